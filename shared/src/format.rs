@@ -1,0 +1,42 @@
+//! The number formats of the core, all of them, in one place.
+//!
+//! `Qm.f` has `m` integer bits (sign included) and `f` fraction bits. Formats
+//! that cross an interface are `fixed` types; inside the loops a value is a
+//! plain integer whose fraction bits are one of the constants below.
+
+use fixed::types::{I2F14, I18F14, U2F14};
+
+/// Screen coordinate, pixels, in sixteenths: pixel centres lie at 8/16.
+pub type Subpixel = fixed::types::I28F4;
+/// Component of a position or of a unit normal in object space, Q2.14 in [-2, 2).
+pub type Unit = I2F14;
+/// Distance in object space, Q18.14.
+pub type Length = I18F14;
+/// Reflectance or light colour of one channel, Q2.14 in [0, 4); 1 is full.
+pub type Gain = U2F14;
+
+/// Fraction bits of [`Subpixel`].
+pub const SUBPIXEL: u32 = 4;
+/// Sixteenths of a pixel from its corner to its centre.
+pub const CENTRE: i32 = 1 << (SUBPIXEL - 1);
+/// Fraction bits of [`Unit`], [`Length`] and [`Gain`].
+pub const UNIT: u32 = 14;
+/// Fraction bits of rotation matrices.
+pub const ROTATION: u32 = 30;
+/// Fraction bits of a dot product of unit vectors, N·L or N·H: Q2.30.
+pub const COSINE: u32 = 30;
+/// Fraction bits of a light level at a node, in 1/255 of full intensity (LSB): Q9.7 held in an `i32`.
+pub const LEVEL: u32 = 7;
+/// Fraction bits of a level while it is walked along a span: unsigned Q9.23.
+pub const WALK: u32 = 23;
+/// Added to every walked level: 0..=127 are below black, 128..=383 the 256 levels, 384..=511 above white.
+///
+/// The six-point quadratic overshoots its nodes' range by at most 5/3 of its
+/// half width (its Lebesgue constant), so nodes in [0, 255] stay in [-85, 340].
+pub const BIAS: i32 = 128;
+/// Fraction bits of depth at a vertex, Q0.28: 1 at the near plane, 0 infinitely far.
+pub const DEPTH: u32 = 28;
+/// Fraction bits of depth while it is walked; the depth buffer keeps the 16 bits above them.
+pub const DEPTH_WALK: u32 = 16;
+/// Fraction bits of the edge constants 1/|N1+N2| and |N1+N2|²/4: unsigned Q1.15.
+pub const EDGE: u32 = 15;

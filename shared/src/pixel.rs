@@ -1,0 +1,134 @@
+//! Pixel formats: how a colour of 8 bits per channel becomes what a display stores.
+
+use embedded_graphics_core::{
+    pixelcolor::{Gray4, Gray8, Rgb565, Rgb888},
+    prelude::{GrayColor, RgbColor},
+};
+use zerocopy::{Immutable, IntoBytes, KnownLayout};
+
+/// A format that the renderer can draw.
+pub trait Pixel: Copy + 'static {
+    /// One channel instead of three.
+    const GRAY: bool;
+    /// Bits of red, green and blue (or of grey, three times).
+    const DEPTH: [u32; 3];
+    /// Bytes that a pixel adds to the picture's checksum.
+    const BYTES: usize;
+
+    /// Packs channel values of [`Self::DEPTH`] bits; a grey format looks at the first.
+    fn pack(channels: [u8; 3]) -> Self;
+
+    /// The value that the display is sent, independent of byte order in memory.
+    fn bits(self) -> u32;
+}
+
+impl Pixel for Rgb565 {
+    const GRAY: bool = false;
+    const DEPTH: [u32; 3] = [5, 6, 5];
+    const BYTES: usize = 2;
+
+    #[inline(always)]
+    fn pack([r, g, b]: [u8; 3]) -> Self {
+        Self::new(r, g, b)
+    }
+
+    fn bits(self) -> u32 {
+        u32::from(self.r()) << 11 | u32::from(self.g()) << 5 | u32::from(self.b())
+    }
+}
+
+impl Pixel for Rgb888 {
+    const GRAY: bool = false;
+    const DEPTH: [u32; 3] = [8; 3];
+    const BYTES: usize = 3;
+
+    #[inline(always)]
+    fn pack([r, g, b]: [u8; 3]) -> Self {
+        Self::new(r, g, b)
+    }
+
+    fn bits(self) -> u32 {
+        u32::from(self.r()) << 16 | u32::from(self.g()) << 8 | u32::from(self.b())
+    }
+}
+
+impl Pixel for Gray8 {
+    const GRAY: bool = true;
+    const DEPTH: [u32; 3] = [8; 3];
+    const BYTES: usize = 1;
+
+    #[inline(always)]
+    fn pack([luma, ..]: [u8; 3]) -> Self {
+        Self::new(luma)
+    }
+
+    fn bits(self) -> u32 {
+        self.luma().into()
+    }
+}
+
+impl Pixel for Gray4 {
+    const GRAY: bool = true;
+    const DEPTH: [u32; 3] = [4; 3];
+    const BYTES: usize = 1;
+
+    #[inline(always)]
+    fn pack([luma, ..]: [u8; 3]) -> Self {
+        Self::new(luma)
+    }
+
+    fn bits(self) -> u32 {
+        self.luma().into()
+    }
+}
+
+/// RGB565 with the high byte first in memory, as serial displays want it: a
+/// band can be handed to the bus as it is, without a copy. The renderer gets
+/// the order for nothing, its colours come from tables.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, IntoBytes, Immutable, KnownLayout)]
+#[repr(transparent)]
+pub struct Rgb565Be(u16);
+
+impl Pixel for Rgb565Be {
+    const GRAY: bool = false;
+    const DEPTH: [u32; 3] = [5, 6, 5];
+    const BYTES: usize = 2;
+
+    #[inline(always)]
+    fn pack([r, g, b]: [u8; 3]) -> Self {
+        Self((u16::from(r) << 11 | u16::from(g) << 5 | u16::from(b)).to_be())
+    }
+
+    fn bits(self) -> u32 {
+        u16::from_be(self.0).into()
+    }
+}
+
+/// Checksum of a picture: CRC-32 over the pixels' values, low byte first, row by row from the top.
+#[derive(Clone)]
+pub struct PictureCrc(crc::Digest<'static, u32, crc::Table<1>>);
+
+/// One kilobyte of table: a picture is checked every frame.
+static PICTURE: crc::Crc<u32, crc::Table<1>> = crc::Crc::<u32, crc::Table<1>>::new(&crc::CRC_32_ISO_HDLC);
+
+impl Default for PictureCrc {
+    fn default() -> Self {
+        Self(PICTURE.digest())
+    }
+}
+
+impl PictureCrc {
+    /// Adds the next pixels.
+    pub fn update<C: Pixel>(&mut self, pixels: &[C]) {
+        for pixel in pixels {
+            let bytes = pixel.bits().to_le_bytes();
+            self.0.update(&bytes[..C::BYTES]);
+        }
+    }
+
+    /// The checksum of all pixels so far.
+    #[must_use]
+    pub fn finish(self) -> u32 {
+        self.0.finalize()
+    }
+}

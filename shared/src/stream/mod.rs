@@ -1,0 +1,298 @@
+//! Bytes to a checked view of meshes, materials, lights and camera.
+//!
+//! [`Stream::parse`] checks everything once: length, checksum, every index and
+//! every range. What it returns can be drawn without a further check failing.
+
+pub mod record;
+
+use crate::{
+    format::{EDGE, ROTATION, UNIT},
+    scene::MAX_LIGHTS,
+    shade::Shader,
+};
+use core::fmt;
+use record::{EYE_SPACE, Header, Light, MAGIC, Material, Mesh, ORTHOGRAPHIC, PERSPECTIVE, POINT, Triangle, VERSION, VIEWER_LOCAL, Vertex};
+use zerocopy::{FromBytes, Immutable, KnownLayout};
+
+/// Bytes aligned for [`Stream::parse`]: wrap `include_bytes!` in it, or use [`crate::include_stream!`].
+#[derive(Clone, Copy, Debug)]
+#[repr(C, align(4))]
+pub struct Aligned<B: ?Sized>(pub B);
+
+/// Embeds a stream file, aligned so that it can be read in place: `include_stream!("teapot.tri")` is a `&'static [u8]`.
+#[macro_export]
+macro_rules! include_stream {
+    ($path:expr) => {{
+        static STREAM: &$crate::stream::Aligned<[u8]> = &$crate::stream::Aligned(*include_bytes!($path));
+        &STREAM.0
+    }};
+}
+
+/// A checked stream; borrows the bytes it was parsed from.
+#[derive(Clone, Copy, Debug)]
+pub struct Stream<'a> {
+    /// Counts, camera, background.
+    pub header: &'a Header,
+    /// Runs of vertices and triangles.
+    pub meshes: &'a [Mesh],
+    /// Colours and exponents.
+    pub materials: &'a [Material],
+    /// All lights shine on all meshes.
+    pub lights: &'a [Light],
+    /// Of all meshes.
+    pub vertices: &'a [Vertex],
+    /// Of all meshes.
+    pub triangles: &'a [Triangle],
+}
+
+/// Why bytes are not a stream.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+pub enum StreamError {
+    /// The slice does not start at a multiple of four: wrap it in [`Aligned`].
+    Misaligned,
+    /// Fewer bytes than the header, or than the header says.
+    Truncated {
+        /// Bytes needed.
+        need: u32,
+        /// Bytes there.
+        have: u32,
+    },
+    /// The first four bytes are not [`MAGIC`].
+    Magic,
+    /// Another version of the format.
+    Version {
+        /// Version found.
+        found: u16,
+    },
+    /// The bytes are not those that were written.
+    Checksum {
+        /// CRC in the header.
+        stored: u32,
+        /// CRC of the bytes.
+        computed: u32,
+    },
+    /// The length does not follow from the counts.
+    Length {
+        /// Bytes that the counts ask for.
+        need: u32,
+        /// Bytes that the header claims.
+        claimed: u32,
+    },
+    /// A field has a value outside its range.
+    Field {
+        /// Which field.
+        name: &'static str,
+        /// Index of the record that holds it.
+        record: u32,
+    },
+}
+
+impl fmt::Display for StreamError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Misaligned => write!(f, "the bytes are not aligned to 4"),
+            Self::Truncated { need, have } => write!(f, "truncated: {have} bytes of {need}"),
+            Self::Magic => write!(f, "offset 0: not a triangle stream (wrong magic)"),
+            Self::Version { found } => {
+                write!(f, "offset 4: format version {found}, this program reads {VERSION}; convert the mesh again")
+            }
+            Self::Checksum { stored, computed } => {
+                write!(f, "offset 12: checksum {stored:08x}, but the bytes have {computed:08x}: the file is damaged")
+            }
+            Self::Length { need, claimed } => {
+                write!(f, "offset 8: length {claimed}, but the counts ask for {need}")
+            }
+            Self::Field { name, record } => write!(f, "{name} of record {record} is out of range"),
+        }
+    }
+}
+
+impl core::error::Error for StreamError {}
+
+/// CRC-32 (ISO-HDLC), the checksum of streams and of pictures. The small table: flash is dearer than the time of one check.
+pub const CRC: crc::Crc<u32, crc::NoTable> = crc::Crc::<u32, crc::NoTable>::new(&crc::CRC_32_ISO_HDLC);
+
+/// Bytes before the checksum's cover: magic, version, shader, length, the checksum itself.
+const CHECKED_FROM: usize = 16;
+
+/// Offset of the stored checksum.
+const CRC_AT: core::ops::Range<usize> = 12..16;
+
+/// Writes the checksum that `bytes` should have into their header: the last step of a writer.
+///
+/// The shader field lies before the checksum's cover on purpose: choosing
+/// another default method does not touch the checksum.
+pub fn seal(bytes: &mut [u8]) {
+    if bytes.len() >= CHECKED_FROM {
+        let crc = CRC.checksum(&bytes[CHECKED_FROM..]);
+        bytes[CRC_AT].copy_from_slice(&crc.to_le_bytes());
+    }
+}
+
+fn field(ok: bool, name: &'static str, record: usize) -> Result<(), StreamError> {
+    if ok { Ok(()) } else { Err(StreamError::Field { name, record: record as u32 }) }
+}
+
+/// Splits `count` records off the front of `bytes`; the caller has checked that they are there.
+fn take<'a, T: FromBytes + Immutable + KnownLayout>(bytes: &mut &'a [u8], count: usize) -> Result<&'a [T], StreamError> {
+    let (records, rest) = <[T]>::ref_from_prefix_with_elems(bytes, count).map_err(|_| StreamError::Misaligned)?;
+    *bytes = rest;
+    Ok(records)
+}
+
+/// Bytes of a stream with these counts; `None` beyond 4 GiB.
+#[must_use]
+pub fn length(header: &Header) -> Option<u32> {
+    let sizes = [
+        (1, size_of::<Header>()),
+        (u32::from(header.meshes), size_of::<Mesh>()),
+        (u32::from(header.materials), size_of::<Material>()),
+        (u32::from(header.lights), size_of::<Light>()),
+        (header.vertices, size_of::<Vertex>()),
+        (header.triangles, size_of::<Triangle>()),
+    ];
+    sizes.iter().try_fold(0u32, |sum, &(count, size)| sum.checked_add(count.checked_mul(size as u32)?))
+}
+
+impl<'a> Stream<'a> {
+    /// Checks `bytes` once and for all. Bytes behind the stream's own length are ignored.
+    ///
+    /// # Errors
+    /// The first thing found wrong, with its place.
+    pub fn parse(bytes: &'a [u8]) -> Result<Self, StreamError> {
+        let have = bytes.len() as u32;
+        let truncated = |need| StreamError::Truncated { need, have };
+        let (header, _) = Header::ref_from_prefix(bytes).map_err(|e| match e {
+            zerocopy::ConvertError::Alignment(_) => StreamError::Misaligned,
+            _ => truncated(size_of::<Header>() as u32),
+        })?;
+        if header.magic != MAGIC {
+            return Err(StreamError::Magic);
+        }
+        if header.version != VERSION {
+            return Err(StreamError::Version { found: header.version });
+        }
+        let stream = bytes.get(..header.length as usize).ok_or(truncated(header.length))?;
+        let need = length(header).ok_or(StreamError::Field { name: "count", record: 0 })?;
+        if need != header.length {
+            return Err(StreamError::Length { need, claimed: header.length });
+        }
+        let computed = CRC.checksum(stream.get(CHECKED_FROM..).ok_or(truncated(need))?);
+        if computed != header.crc {
+            return Err(StreamError::Checksum { stored: header.crc, computed });
+        }
+        let mut rest = stream.get(size_of::<Header>()..).ok_or(truncated(need))?;
+        let stream = Self {
+            header,
+            meshes: take(&mut rest, header.meshes.into())?,
+            materials: take(&mut rest, header.materials.into())?,
+            lights: take(&mut rest, header.lights.into())?,
+            vertices: take(&mut rest, header.vertices as usize)?,
+            triangles: take(&mut rest, header.triangles as usize)?,
+        };
+        stream.check()?;
+        Ok(stream)
+    }
+
+    /// The ranges that the renderer's arithmetic relies on.
+    fn check(&self) -> Result<(), StreamError> {
+        let header = self.header;
+        field(usize::from(header.shader) < Shader::ALL.len(), "shader", 0)?;
+        field(header.frames > 0, "frames", 0)?;
+        field(header.reserved == 0 && header.camera.reserved == 0, "reserved", 0)?;
+        field(header.viewer <= VIEWER_LOCAL, "viewer", 0)?;
+        field(!self.meshes.is_empty(), "meshes", 0)?;
+        field(self.lights.len() <= MAX_LIGHTS, "lights", 0)?;
+        self.check_camera()?;
+        for (i, material) in self.materials.iter().enumerate() {
+            field((1..=MAX_EXPONENT).contains(&material.exponent), "material exponent", i)?;
+            let colours = [material.ambient, material.diffuse, material.specular];
+            field(colours.as_flattened().iter().all(|&c| c <= MAX_GAIN), "material colour", i)?;
+        }
+        field(header.ambient.iter().all(|&c| c <= MAX_GAIN), "ambient light", 0)?;
+        for (i, light) in self.lights.iter().enumerate() {
+            field(light.kind <= POINT && light.space <= EYE_SPACE, "light kind", i)?;
+            field(light.colour.iter().all(|&c| c <= MAX_GAIN), "light colour", i)?;
+            field(light.vector.iter().all(|&c| within(c, MAX_LENGTH)), "light vector", i)?;
+            let length = |v: [i32; 3]| v.iter().map(|&c| i64::from(c) * i64::from(c)).sum::<i64>();
+            field(light.kind == POINT || is_one(length(light.vector), 2 * UNIT), "light direction", i)?;
+        }
+        for (i, mesh) in self.meshes.iter().enumerate() {
+            field(usize::from(mesh.material) < self.materials.len(), "mesh material", i)?;
+            field(self.vertices_of(mesh).is_some(), "mesh vertices", i)?;
+            let triangles = self.triangles_of(mesh).ok_or(StreamError::Field { name: "mesh triangles", record: i as u32 })?;
+            for (k, triangle) in triangles.iter().enumerate() {
+                let name = "triangle corner";
+                field(triangle.corners.iter().all(|&c| u32::from(c) < mesh.vertices), name, mesh.first_triangle as usize + k)?;
+            }
+        }
+        for (i, vertex) in self.vertices.iter().enumerate() {
+            let square: i64 = vertex.normal.iter().map(|&c| i64::from(c) * i64::from(c)).sum();
+            field(is_one(square, 2 * UNIT), "vertex normal", i)?;
+        }
+        for (i, triangle) in self.triangles.iter().enumerate() {
+            let square: i64 = triangle.normal.iter().map(|&c| i64::from(c) * i64::from(c)).sum();
+            field(is_one(square, 2 * UNIT), "triangle normal", i)?;
+            field(triangle.square.iter().all(|&s| s <= 1 << EDGE), "triangle edge", i)?;
+            field(triangle.rho <= 1 << EDGE, "triangle rho", i)?;
+        }
+        Ok(())
+    }
+
+    fn check_camera(&self) -> Result<(), StreamError> {
+        let camera = &self.header.camera;
+        let unit = |v: &[i32; 3]| {
+            let square = v.iter().map(|&c| i64::from(c >> 1) * i64::from(c >> 1)).sum::<i64>();
+            v.iter().all(|&c| within(c, 1 << ROTATION)) && is_one(square, 2 * (ROTATION - 1))
+        };
+        field(camera.rotation.iter().all(unit), "camera rotation", 0)?;
+        field(unit(&camera.axis), "camera axis", 0)?;
+        field(camera.translation.iter().all(|&c| within(c, MAX_LENGTH)), "camera translation", 0)?;
+        field(camera.projection <= ORTHOGRAPHIC, "camera projection", 0)?;
+        field((MIN_FOCAL..=MAX_FOCAL).contains(&camera.focal), "camera focal", 0)?;
+        field((MIN_NEAR..MAX_LENGTH).contains(&camera.near), "camera near", 0)?;
+        let depth = camera.near < camera.far && camera.far <= 2 * MAX_LENGTH;
+        field(camera.projection == PERSPECTIVE || depth, "camera far", 0)
+    }
+
+    /// The vertices of `mesh`.
+    #[must_use]
+    pub fn vertices_of(&self, mesh: &Mesh) -> Option<&'a [Vertex]> {
+        self.vertices.get(mesh.first_vertex as usize..)?.get(..mesh.vertices as usize)
+    }
+
+    /// The triangles of `mesh`.
+    #[must_use]
+    pub fn triangles_of(&self, mesh: &Mesh) -> Option<&'a [Triangle]> {
+        self.triangles.get(mesh.first_triangle as usize..)?.get(..mesh.triangles as usize)
+    }
+
+    /// The method that the stream asks for.
+    #[must_use]
+    pub fn shader(&self) -> Shader {
+        Shader::ALL.get(usize::from(self.header.shader)).copied().unwrap_or_default()
+    }
+}
+
+/// Largest exponent of a highlight.
+pub const MAX_EXPONENT: u16 = 1024;
+/// Largest reflectance or light, [`crate::format::Gain`]: 2.
+pub const MAX_GAIN: u16 = 2 << UNIT;
+/// Largest component of a translation or a light's position, [`crate::format::Length`]: 16 units.
+pub const MAX_LENGTH: i32 = 16 << UNIT;
+/// Smallest distance of the near plane, [`crate::format::Length`]: 1/64.
+pub const MIN_NEAR: i32 = 1 << (UNIT - 6);
+/// Smallest focal length, Q16.16: 1/16.
+pub const MIN_FOCAL: u32 = 1 << 12;
+/// Largest focal length, Q16.16: 16.
+pub const MAX_FOCAL: u32 = 16 << 16;
+
+fn within(c: i32, limit: i32) -> bool {
+    (-limit..=limit).contains(&c)
+}
+
+/// Whether `square`, with `bits` fraction bits, is 1 to 1/256.
+fn is_one(square: i64, bits: u32) -> bool {
+    (square - (1 << bits)).abs() <= 1 << (bits - 8)
+}
