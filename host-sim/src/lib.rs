@@ -1,1 +1,2 @@
+//! The simulator as a library: what the `microphong` command is made of.
 

@@ -1,1 +1,1 @@
-
+//! Cross-checks of whole programs; see the files in `tests/`.

@@ -1,0 +1,2 @@
+//! The `microphong` command.
+fn main() {}
