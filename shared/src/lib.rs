@@ -1,13 +1,39 @@
 //! Phong-quality shading of triangle meshes on microcontrollers, by integer forward differences.
+//!
+//! Per-pixel normalisation and powers are replaced by polynomials that are walked with integer additions.
+//! The way of the data, each module using only those above it:
+//!
+//! | module | what it does |
+//! |---|---|
+//! | [`format`](mod@format) | names every number format |
+//! | [`math`] | reciprocal, root, power, vectors, in integers |
+//! | [`stream`] | bytes in flash to a checked view of meshes, lights and camera |
+//! | [`scene`] | one frame's camera and lights, in object space |
+//! | [`vertex`], [`cull`], [`clip`], [`bin`] | object space to the screen, and what need not be drawn |
+//! | [`poly`] | fits polynomials to a triangle and walks them |
+//! | [`palette`], [`tone`] | levels of light to pixels |
+//! | [`raster`] | exact coverage, and the inner loop |
+//! | [`shade`] | the methods: which polynomials, which tone |
+//! | [`render`] | the loop nest: frame, band, triangle, row |
 #![no_std]
 #![forbid(unsafe_code)]
 
+pub mod band;
+pub mod bin;
+pub mod clip;
+pub mod cull;
 pub mod format;
+pub mod math;
+pub mod palette;
 pub mod pixel;
+pub mod poly;
+pub mod raster;
 pub mod render;
 pub mod scene;
 pub mod shade;
 pub mod stream;
+pub mod tone;
+pub mod vertex;
 
 pub use render::{Frame, Memory, Renderer, SetupError, Stats, Workspace};
 pub use shade::Shader;

@@ -89,6 +89,11 @@ impl Pixel for Gray4 {
 #[repr(transparent)]
 pub struct Rgb565Be(u16);
 
+impl Rgb565Be {
+    /// No light.
+    pub const BLACK: Self = Self(0);
+}
+
 impl Pixel for Rgb565Be {
     const GRAY: bool = false;
     const DEPTH: [u32; 3] = [5, 6, 5];

@@ -1,21 +1,29 @@
 //! The one loop nest: frame, band, triangle, row.
 
-use crate::{Shader, Stream, pixel::Pixel};
-use core::{fmt, marker::PhantomData};
+use crate::{
+    Shader, Stream,
+    band::Band,
+    bin::{Bins, Entry},
+    clip,
+    cull::Facing,
+    format::EDGE,
+    math::vector::wide,
+    palette::Palette,
+    pixel::Pixel,
+    raster::{
+        edge::COLUMNS,
+        triangle::{Bounds, Outline, turn},
+    },
+    scene::{Lighting, Pose},
+    shade::{Facet, Shading},
+    stream::record::{Mesh, Triangle, Vertex},
+    vertex::{ScreenVertex, State, View},
+};
+use core::fmt;
 use embedded_graphics_core::{
     geometry::{Point, Size},
     primitives::Rectangle,
 };
-
-/// STUB
-#[derive(Clone, Copy, Debug)]
-pub struct ScreenVertex(u32);
-/// STUB
-#[derive(Clone, Copy, Debug)]
-pub struct Entry(u32);
-/// STUB
-#[derive(Clone, Copy, Debug)]
-pub struct Palette<C>(PhantomData<C>);
 
 /// The memory that rendering takes, borrowed from wherever a program keeps it.
 #[derive(Debug)]
@@ -42,14 +50,14 @@ pub struct Workspace<C, const VERTICES: usize, const TRIANGLES: usize, const DEP
 impl<C: Pixel, const VERTICES: usize, const TRIANGLES: usize, const DEPTH: usize, const MATERIALS: usize>
     Workspace<C, VERTICES, TRIANGLES, DEPTH, MATERIALS>
 {
-    /// Empty memory.
+    /// Empty memory; `colour` is any colour.
     #[must_use]
-    pub const fn new() -> Self {
+    pub const fn new(colour: C) -> Self {
         Self {
-            vertices: [ScreenVertex(0); VERTICES],
-            bins: [Entry(0); TRIANGLES],
+            vertices: [ScreenVertex::EMPTY; VERTICES],
+            bins: [Entry::EMPTY; TRIANGLES],
             depth: [0; DEPTH],
-            palettes: [Palette(PhantomData); MATERIALS],
+            palettes: [Palette::filled(colour); MATERIALS],
         }
     }
 
@@ -95,7 +103,7 @@ impl fmt::Display for SetupError {
 impl core::error::Error for SetupError {}
 
 /// Largest width and height of a viewport.
-pub const MAX_SIDE: u32 = 4096;
+pub const MAX_SIDE: u32 = COLUMNS - 1;
 
 /// What a frame took.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -123,15 +131,29 @@ pub struct Renderer<'a, C> {
     memory: Memory<'a, C>,
     shader: Shader,
     dither: bool,
+    background: C,
 }
 
 impl<'a, C: Pixel> Renderer<'a, C> {
-    /// A renderer for a viewport of `size` pixels.
+    /// A renderer for a viewport of `size` pixels. Works out the materials, so it takes a moment.
     ///
     /// # Errors
     /// When `size` is out of range or `memory` too small for it.
     pub fn new(stream: Stream<'a>, size: Size, memory: Memory<'a, C>) -> Result<Self, SetupError> {
-        Ok(Self { shader: stream.shader(), stream, size, memory, dither: false })
+        let (width, height) = (size.width, size.height);
+        if !(1..=MAX_SIDE).contains(&width) || !(1..=MAX_SIDE).contains(&height) {
+            return Err(SetupError::Size { width, height });
+        }
+        if memory.depth.len() < width as usize {
+            return Err(SetupError::Depth { need: width as usize });
+        }
+        if memory.palettes.len() < stream.materials.len() {
+            return Err(SetupError::Palettes { need: stream.materials.len() });
+        }
+        for (palette, material) in memory.palettes.iter_mut().zip(stream.materials) {
+            palette.fill(stream.header, material, stream.lights);
+        }
+        Ok(Self { shader: stream.shader(), background: background(stream.header.background), stream, size, memory, dither: false })
     }
 
     /// Uses `shader` instead of the one that the stream asks for.
@@ -164,16 +186,48 @@ impl<'a, C: Pixel> Renderer<'a, C> {
 
     /// Places camera and lights, transforms vertices, culls and bins triangles for frame `number` (modulo the orbit).
     pub fn frame(&mut self, number: u32) -> Frame<'_, 'a, C> {
-        Frame { renderer: self, number, top: 0 }
+        let camera = &self.stream.header.camera;
+        let pose = Pose::new(camera, number);
+        let lighting = Lighting::new(&self.stream, &pose);
+        let constant = lighting.constant();
+        let mut frame = Frame {
+            view: View::new(camera, &pose, self.size),
+            facing: Facing::new(camera, &pose),
+            lighting,
+            constant,
+            bins: Bins::new(self.size.height),
+            binned: false,
+            top: 0,
+            stats: Stats { triangles: self.stream.triangles.len() as u32, ..Stats::default() },
+            renderer: self,
+        };
+        frame.prepare();
+        frame
     }
+}
+
+/// A colour of 8 bits per channel in the output's format, grey by its luma.
+fn background<C: Pixel>([r, g, b]: [u8; 3]) -> C {
+    let luma = ((u32::from(r) * 77 + u32::from(g) * 150 + u32::from(b) * 29) >> 8) as u8;
+    let [r, g, b] = if C::GRAY { [luma; 3] } else { [r, g, b] };
+    let [dr, dg, db] = C::DEPTH;
+    C::pack([r >> (8 - dr), g >> (8 - dg), b >> (8 - db)])
 }
 
 /// One frame, drawn band by band from the top.
 #[derive(Debug)]
 pub struct Frame<'r, 'a, C> {
     renderer: &'r mut Renderer<'a, C>,
-    number: u32,
+    view: View,
+    facing: Facing,
+    lighting: Lighting,
+    /// See [`Lighting::constant`].
+    constant: Option<[[i32; 3]; 2]>,
+    bins: Bins,
+    /// All triangles found room in the bins.
+    binned: bool,
     top: u32,
+    stats: Stats,
 }
 
 impl<C: Pixel> Frame<'_, '_, C> {
@@ -183,12 +237,13 @@ impl<C: Pixel> Frame<'_, '_, C> {
     /// A slice shorter than a band gets fewer rows.
     pub fn next_band(&mut self, pixels: &mut [C]) -> Option<Rectangle> {
         let size = self.renderer.size;
-        let rows = self.renderer.band_rows().min(size.height - self.top).min(pixels.len() as u32 / size.width);
+        let fit = u32::try_from(pixels.len()).unwrap_or(u32::MAX).checked_div(size.width)?;
+        let rows = self.renderer.band_rows().min(size.height.saturating_sub(self.top)).min(fit);
         if rows == 0 {
             return None;
         }
-        pixels[..(rows * size.width) as usize].fill(C::pack([self.number as u8 & 3, 5, 7]));
         let area = Rectangle::new(Point::new(0, self.top as i32), Size::new(size.width, rows));
+        self.draw(pixels.get_mut(..(rows * size.width) as usize)?, rows);
         self.top += rows;
         Some(area)
     }
@@ -196,6 +251,245 @@ impl<C: Pixel> Frame<'_, '_, C> {
     /// Counts so far; complete after the last band.
     #[must_use]
     pub fn stats(&self) -> Stats {
-        Stats::default()
+        Stats { culled: self.stats.triangles.saturating_sub(self.stats.drawn), ..self.stats }
     }
+
+    /// Everything that happens once: which triangles face the camera, which vertices they need, which rows they start in.
+    fn prepare(&mut self) {
+        let Renderer { stream, memory, .. } = &mut *self.renderer;
+        memory.vertices.iter_mut().for_each(|vertex| vertex.state = State::Idle);
+        let capacity = Bins::capacity(memory.bins);
+        let mut count = 0;
+        self.binned = true;
+        for mesh in stream.meshes {
+            for (i, triangle) in stream.triangles_of(mesh).unwrap_or_default().iter().enumerate() {
+                if !self.facing.may_face(triangle) {
+                    continue;
+                }
+                for corner in triangle.corners {
+                    if let Some(vertex) = memory.vertices.get_mut(mesh.first_vertex as usize + usize::from(corner)) {
+                        vertex.state = State::Needed;
+                    }
+                }
+                match memory.bins.get_mut(..capacity).and_then(|bins| bins.get_mut(count)) {
+                    Some(entry) => entry.triangle = mesh.first_triangle + i as u32,
+                    None => self.binned = false,
+                }
+                count += 1;
+            }
+        }
+        self.stats.uncached = stream.vertices.len().saturating_sub(memory.vertices.len()) as u32;
+        self.transform();
+        if self.binned {
+            self.stats.passes = 1;
+            self.sort(count);
+        }
+    }
+
+    /// Transforms and lights the vertices that triangles need.
+    fn transform(&mut self) {
+        let Renderer { stream, memory, shader, .. } = &mut *self.renderer;
+        let Memory { vertices, palettes, .. } = memory;
+        let light = shader.lights_vertices();
+        for mesh in stream.meshes {
+            let Some(palette) = palettes.get(usize::from(mesh.material)) else { continue };
+            let cached = vertices.get_mut(mesh.first_vertex as usize..).unwrap_or_default();
+            for (screen, vertex) in cached.iter_mut().zip(stream.vertices_of(mesh).unwrap_or_default()) {
+                if screen.state == State::Needed {
+                    *screen = screen_vertex(&self.view, &self.lighting, self.constant, light.then_some(palette), vertex);
+                }
+            }
+        }
+    }
+
+    /// Sorts the first `count` entries by the row that they start in, without those that are off screen.
+    fn sort(&mut self, count: usize) {
+        for index in (0..count).rev() {
+            let Some(id) = self.renderer.memory.bins.get(index).map(|entry| entry.triangle) else { continue };
+            let Some(bounds) = self.bounds(id) else { continue };
+            self.stats.drawn += 1;
+            let entries = &mut *self.renderer.memory.bins;
+            if let Some(entry) = entries.get_mut(index) {
+                entry.bottom = bounds.bottom as u16;
+            }
+            self.bins.push(entries, index, bounds.top as u32);
+        }
+    }
+
+    /// The visible box of triangle `id`; `None` if it shows its back, or no pixel can belong to it.
+    fn bounds(&self, id: u32) -> Option<Bounds> {
+        let (mesh, triangle) = self.triangle(id)?;
+        let (width, height) = (self.renderer.size.width as i32, self.renderer.size.height as i32);
+        let [a, b, c] = self.corners(mesh, triangle)?;
+        let bounds = if [a, b, c].iter().all(|corner| corner.state == State::Ready) {
+            if Outline::area([&a, &b, &c]) <= 0 {
+                return None;
+            }
+            Bounds::new([&a, &b, &c])
+        } else {
+            let polygon = clip::clip(&self.view, self.vertices(mesh, triangle)?);
+            let mut corners = polygon.iter().map(|cut| self.view.project(cut.eye).0);
+            let mut bounds = Bounds::at(corners.next()?);
+            corners.for_each(|corner| bounds.include(corner));
+            bounds
+        };
+        let bounds = bounds.clipped(width, height);
+        (!bounds.is_empty()).then_some(bounds)
+    }
+
+    /// Triangle `id` and its mesh.
+    fn triangle(&self, id: u32) -> Option<(&'_ Mesh, &'_ Triangle)> {
+        let stream = &self.renderer.stream;
+        // The meshes follow one another: the last one that does not start behind the triangle.
+        let mesh = stream.meshes.iter().rev().find(|mesh| mesh.first_triangle <= id && mesh.triangles > 0)?;
+        Some((mesh, stream.triangles.get(id as usize)?))
+    }
+
+    /// The three vertices, turning clockwise on the screen, against the stream's order.
+    fn vertices(&self, mesh: &Mesh, triangle: &Triangle) -> Option<[&'_ Vertex; 3]> {
+        let vertices = self.renderer.stream.vertices_of(mesh)?;
+        let [a, b, c] = triangle.corners.map(usize::from);
+        Some([vertices.get(a)?, vertices.get(c)?, vertices.get(b)?])
+    }
+
+    /// The three corners on the screen, in the order of [`Self::vertices`], from the cache or transformed now.
+    fn corners(&self, mesh: &Mesh, triangle: &Triangle) -> Option<[ScreenVertex; 3]> {
+        let memory = &self.renderer.memory;
+        let cached = |corner: u16| memory.vertices.get(mesh.first_vertex as usize + usize::from(corner));
+        let [a, b, c] = triangle.corners;
+        if let (Some(a), Some(b), Some(c)) = (cached(a), cached(b), cached(c)) {
+            return Some([*a, *c, *b]);
+        }
+        let palette = memory.palettes.get(usize::from(mesh.material))?;
+        let palette = self.renderer.shader.lights_vertices().then_some(palette);
+        let vertices = self.vertices(mesh, triangle)?;
+        Some(vertices.map(|vertex| screen_vertex(&self.view, &self.lighting, self.constant, palette, vertex)))
+    }
+
+    /// Clears a band of `rows` rows and draws what falls into it.
+    fn draw(&mut self, pixels: &mut [C], rows: u32) {
+        let width = self.renderer.size.width as usize;
+        let bottom = self.top + rows;
+        // The depth buffer is lent to the band, the rest of the frame stays readable.
+        let depth = core::mem::take(&mut self.renderer.memory.depth);
+        let lent = depth.get_mut(..width * rows as usize).unwrap_or_default();
+        let mut band = Band { pixels, depth: lent, width, top: self.top as i32, rows: rows as i32 };
+        band.clear(self.renderer.background);
+        if self.binned {
+            self.bins.advance(self.renderer.memory.bins, bottom);
+            let mut index = None;
+            while let Some(next) = self.bins.next(self.renderer.memory.bins, index) {
+                if let Some(id) = self.renderer.memory.bins.get(usize::from(next)).map(|entry| entry.triangle) {
+                    self.stats.pixels += self.draw_triangle(id, &mut band);
+                }
+                index = Some(next);
+            }
+            self.bins.retire(self.renderer.memory.bins, bottom);
+        } else {
+            self.stats.passes += 1;
+            for id in 0..self.stats.triangles {
+                if self.triangle(id).is_none_or(|(_, triangle)| !self.facing.may_face(triangle)) {
+                    continue;
+                }
+                let Some(bounds) = self.bounds(id) else { continue };
+                // Counted in the band where it starts.
+                self.stats.drawn += u32::from((band.top..band.top + band.rows).contains(&bounds.top));
+                if bounds.bottom > band.top && bounds.top < bottom as i32 {
+                    self.stats.pixels += self.draw_triangle(id, &mut band);
+                }
+            }
+        }
+        self.renderer.memory.depth = depth;
+    }
+
+    /// Draws triangle `id` into `band`; returns its pixels there.
+    fn draw_triangle(&self, id: u32, band: &mut Band<'_, C>) -> u32 {
+        let Some((mesh, triangle)) = self.triangle(id) else { return 0 };
+        let Some(palette) = self.renderer.memory.palettes.get(usize::from(mesh.material)) else { return 0 };
+        let Some(vertices) = self.vertices(mesh, triangle) else { return 0 };
+        let Some([a, b, c]) = self.corners(mesh, triangle) else { return 0 };
+        let shading = Shading {
+            shader: self.renderer.shader,
+            dither: self.renderer.dither,
+            palette,
+            lighting: &self.lighting,
+            constant: self.constant,
+        };
+        if [a, b, c].iter().all(|corner| corner.state == State::Ready) {
+            self.draw_facet(&shading, [&a, &b, &c], vertices, triangle, band)
+        } else {
+            self.draw_clipped(&shading, vertices, triangle, band)
+        }
+    }
+
+    /// Draws the fan that clipping leaves of a triangle.
+    #[cold]
+    #[inline(never)]
+    fn draw_clipped(&self, shading: &Shading<'_, C>, vertices: [&Vertex; 3], triangle: &Triangle, band: &mut Band<'_, C>) -> u32 {
+        let polygon = clip::clip(&self.view, vertices);
+        let lit = shading.shader.lights_vertices().then_some(shading.palette);
+        let place = |cut: &clip::Cut| {
+            let ([x, y, depth], _) = self.view.project(cut.eye);
+            ScreenVertex { x, y, depth, ..screen_vertex(&self.view, &self.lighting, self.constant, lit, &cut.vertex) }
+        };
+        let Some((first, rest)) = polygon.split_first() else { return 0 };
+        let mut pixels = 0;
+        for pair in rest.windows(2) {
+            if let [second, third] = pair {
+                let corners = [&first.vertex, &second.vertex, &third.vertex];
+                let record = clip::record(triangle, corners);
+                pixels += self.draw_facet(shading, [&place(first), &place(second), &place(third)], corners, &record, band);
+            }
+        }
+        pixels
+    }
+
+    /// Sets up one triangle and shades its rows in `band`.
+    fn draw_facet(
+        &self,
+        shading: &Shading<'_, C>,
+        corners: [&ScreenVertex; 3],
+        vertices: [&Vertex; 3],
+        triangle: &Triangle,
+        band: &mut Band<'_, C>,
+    ) -> u32 {
+        let (width, height) = (self.renderer.size.width as i32, self.renderer.size.height as i32);
+        let outline = Outline::new(corners);
+        let Some(basis) = outline.basis(Bounds::new(corners).clipped(width, height)) else { return 0 };
+        let by = outline.turned;
+        let facet = Facet {
+            outline,
+            basis,
+            corners: turn(corners, by),
+            vertices: turn(vertices, by),
+            rsum: turn(reversed(triangle.rsum), by),
+            square: turn(reversed(triangle.square), by),
+            triangle,
+        };
+        shading.draw(&facet, band)
+    }
+}
+
+/// Edge constants in the order of the screen: the stream's edges 01, 12, 20 of the corners 0, 2, 1.
+fn reversed([ab, bc, ca]: [u16; 3]) -> [u16; 3] {
+    [ca, bc, ab]
+}
+
+/// Transforms a vertex, and lights it if there is a palette to light it with.
+#[inline(always)]
+fn screen_vertex<C: Pixel>(
+    view: &View,
+    lighting: &Lighting,
+    constant: Option<[[i32; 3]; 2]>,
+    palette: Option<&Palette<C>>,
+    vertex: &Vertex,
+) -> ScreenVertex {
+    let ([x, y, depth], inside) = view.project(view.to_eye(vertex.position));
+    let normal = wide(vertex.normal);
+    let light = match (palette, constant) {
+        (None, _) => [0; 3],
+        (Some(_), Some(_)) => lighting.cosines([0; 3], normal, 1 << EDGE).next().map_or([0; 3], |[l, h]| [l, h, 0]),
+        (Some(palette), None) => palette.levels(lighting.cosines(wide(vertex.position), normal, 1 << EDGE)),
+    };
+    ScreenVertex { x, y, depth, light, state: if inside { State::Ready } else { State::Outside } }
 }

@@ -1,4 +1,215 @@
-//! What to draw in one frame, in object space.
+//! One frame's camera and lights, moved into object space: once per frame, instead of every normal out of it.
+
+use crate::{
+    format::{EDGE, ROTATION, UNIT},
+    math::vector::{add, dot, normalise, sub},
+    stream::{
+        Stream,
+        record::{Camera, DIRECTIONAL, EYE_SPACE, Light, PERSPECTIVE, VIEWER_LOCAL},
+    },
+};
+use micromath::F32Ext;
 
 /// Lights in one scene.
 pub const MAX_LIGHTS: usize = 8;
+
+/// A light in object space.
+#[derive(Clone, Copy, Debug)]
+pub enum Source {
+    /// Unit vector towards it, Q2.30, and the unit half vector between it and an infinite viewer.
+    Directional {
+        /// L.
+        towards: [i32; 3],
+        /// H; not used with a local viewer.
+        half: [i32; 3],
+    },
+    /// Position, Q18.14.
+    Point([i32; 3]),
+}
+
+/// Where highlights are seen from, in object space.
+#[derive(Clone, Copy, Debug)]
+pub enum Viewer {
+    /// Unit vector towards it, Q2.30.
+    Infinite([i32; 3]),
+    /// Position, Q18.14.
+    Local([i32; 3]),
+}
+
+/// The camera of one frame.
+#[derive(Clone, Copy, Debug)]
+pub struct Pose {
+    /// Object to eye space, Q2.30.
+    pub rotation: [[i32; 3]; 3],
+    /// Added after rotation, Q18.14.
+    pub translation: [i32; 3],
+}
+
+impl Pose {
+    /// The camera's pose in frame `number`.
+    #[must_use]
+    pub fn new(camera: &Camera, number: u32) -> Self {
+        let mut rotation = camera.rotation;
+        if let Some(frame) = number.checked_rem(camera.period.into())
+            && frame != 0
+        {
+            rotation = turned(rotation, camera.axis, frame, camera.period.into());
+        }
+        Self { rotation, translation: camera.translation }
+    }
+
+    /// A direction of eye space in object space; same format.
+    #[must_use]
+    pub fn to_object(&self, v: [i32; 3]) -> [i32; 3] {
+        let r = &self.rotation;
+        [0, 1, 2].map(|c| (dot([r[0][c], r[1][c], r[2][c]], v) >> ROTATION) as i32)
+    }
+
+    /// The eye in object space, Q18.14.
+    #[must_use]
+    pub fn eye(&self) -> [i32; 3] {
+        self.to_object(self.translation.map(|c| -c))
+    }
+}
+
+/// `rotation` times the rotation by `frame / period` of a turn about `axis` (Rodrigues).
+fn turned(rotation: [[i32; 3]; 3], axis: [i32; 3], frame: u32, period: u32) -> [[i32; 3]; 3] {
+    let (sin, cos) = sin_cos(frame, period);
+    let mul = |a: i64, b: i64| (a * b) >> ROTATION;
+    let [x, y, z] = axis.map(i64::from);
+    let versine = (1 << ROTATION) - cos;
+    let cross = [[0, -z, y], [z, 0, -x], [-y, x, 0]];
+    let axis = [x, y, z];
+    let mut turn = [[0i64; 3]; 3];
+    for (i, row) in turn.iter_mut().enumerate() {
+        for (k, entry) in row.iter_mut().enumerate() {
+            let same = if i == k { cos } else { 0 };
+            *entry = same + mul(mul(axis[i], axis[k]), versine) + mul(cross[i][k], sin);
+        }
+    }
+    let limit = 1i64 << ROTATION;
+    rotation.map(|row| [0, 1, 2].map(|k| (0..3).map(|i| mul(row[i].into(), turn[i][k])).sum::<i64>().clamp(-limit, limit) as i32))
+}
+
+/// Sine and cosine of `frame / period` of a turn, Q2.30.
+///
+/// micromath's polynomial is off by up to 1e-3 but the same on every machine; two
+/// Newton steps put the pair back on the unit circle (tests::unit_circle), so a
+/// rotation stays one. The angle keeps the error: an orbit may run 0.1 degrees ahead.
+fn sin_cos(frame: u32, period: u32) -> (i64, i64) {
+    let angle = frame as f32 / period as f32 * core::f32::consts::TAU;
+    let one = (1u32 << ROTATION) as f32;
+    let (mut sin, mut cos) = ((F32Ext::sin(angle) * one) as i64, (F32Ext::cos(angle) * one) as i64);
+    for _ in 0..2 {
+        let square = (sin * sin + cos * cos) >> ROTATION;
+        let factor = ((3 << ROTATION) - square) >> 1;
+        sin = (sin * factor) >> ROTATION;
+        cos = (cos * factor) >> ROTATION;
+    }
+    (sin, cos)
+}
+
+/// All lights of one frame.
+#[derive(Clone, Debug)]
+pub struct Lighting {
+    /// In the stream's order.
+    pub sources: heapless::Vec<Source, MAX_LIGHTS>,
+    /// For highlights.
+    pub viewer: Viewer,
+}
+
+impl Lighting {
+    /// The stream's lights for `pose`.
+    #[must_use]
+    pub fn new(stream: &Stream<'_>, pose: &Pose) -> Self {
+        let header = stream.header;
+        let towards_eye = pose.to_object([0, 0, -(1 << ROTATION)]);
+        let viewer = if header.viewer == VIEWER_LOCAL && header.camera.projection == PERSPECTIVE {
+            Viewer::Local(pose.eye())
+        } else {
+            Viewer::Infinite(towards_eye)
+        };
+        let sources = stream.lights.iter().take(MAX_LIGHTS).map(|light| source(light, pose, towards_eye)).collect();
+        Self { sources, viewer }
+    }
+
+    /// The two directions that matter if there is just one light, directional, under an infinite viewer:
+    /// then N·L and N·H are linear in N, which every method can use.
+    #[must_use]
+    pub fn constant(&self) -> Option<[[i32; 3]; 2]> {
+        match (self.sources.as_slice(), self.viewer) {
+            ([Source::Directional { towards, half }], Viewer::Infinite(_)) => Some([*towards, *half]),
+            _ => None,
+        }
+    }
+
+    /// `[N·L, N·H]` of each light, Q2.30, at `position` (Q18.14) with the normal `normal / length`:
+    /// `normal` in Q2.14, `rlength` = 1/length in Q1.15.
+    pub fn cosines(&self, position: [i32; 3], normal: [i32; 3], rlength: u16) -> impl Iterator<Item = [i32; 2]> {
+        let cosine = move |direction: [i32; 3]| (((dot(normal, direction) >> UNIT) * i64::from(rlength)) >> EDGE) as i32;
+        self.sources.iter().map(move |source| match (*source, self.viewer) {
+            (Source::Directional { towards, half }, Viewer::Infinite(_)) => [cosine(towards), cosine(half)],
+            _ => {
+                let towards = source.towards(position);
+                [cosine(towards), cosine(half(towards, self.viewer.towards(position)))]
+            }
+        })
+    }
+}
+
+impl Source {
+    /// Unit vector from `position` towards the light, Q2.30.
+    #[must_use]
+    pub fn towards(&self, position: [i32; 3]) -> [i32; 3] {
+        match *self {
+            Self::Directional { towards, .. } => towards,
+            Self::Point(light) => normalise(sub(light, position)),
+        }
+    }
+}
+
+impl Viewer {
+    /// Unit vector from `position` towards the viewer, Q2.30.
+    #[must_use]
+    pub fn towards(&self, position: [i32; 3]) -> [i32; 3] {
+        match *self {
+            Self::Infinite(towards) => towards,
+            Self::Local(eye) => normalise(sub(eye, position)),
+        }
+    }
+}
+
+/// Unit half vector.
+fn half(towards: [i32; 3], viewer: [i32; 3]) -> [i32; 3] {
+    normalise(add(towards.map(|c| c >> 1), viewer.map(|c| c >> 1)))
+}
+
+fn source(light: &Light, pose: &Pose, towards_eye: [i32; 3]) -> Source {
+    let vector = if light.kind == DIRECTIONAL {
+        normalise(light.vector)
+    } else if light.space == EYE_SPACE {
+        sub(light.vector, pose.translation)
+    } else {
+        light.vector
+    };
+    let vector = if light.space == EYE_SPACE { pose.to_object(vector) } else { vector };
+    if light.kind == DIRECTIONAL { Source::Directional { towards: vector, half: half(vector, towards_eye) } } else { Source::Point(vector) }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn unit_circle() {
+        for period in [1u32, 2, 3, 7, 36, 120, 1000, 65_535] {
+            for frame in (0..period).step_by(1 + period as usize / 1000) {
+                let (sin, cos) = sin_cos(frame, period);
+                let (s, c) = (sin as f64 / 2f64.powi(30), cos as f64 / 2f64.powi(30));
+                assert!((s * s + c * c - 1.0).abs() < 1e-8, "{frame}/{period}: {s} {c}");
+                let angle = f64::from(frame) / f64::from(period) * core::f64::consts::TAU;
+                assert!((angle.sin() - s).abs() < 2e-3 && (angle.cos() - c).abs() < 2e-3, "{frame}/{period}: {s} {c}");
+            }
+        }
+    }
+}

@@ -1,4 +1,23 @@
-//! The shading methods.
+//! The shading methods, one file each: what it fits, and what it makes of it at a pixel.
+
+mod flat;
+mod gouraud;
+mod phong;
+mod six_point;
+
+use crate::{
+    band::Band,
+    format::{BIAS, LEVEL, WALK},
+    palette::Palette,
+    pixel::Pixel,
+    poly::{Patch, Walker, basis::Basis},
+    raster::triangle::Outline,
+    scene::Lighting,
+    stream::record::{Triangle, Vertex},
+    tone::{Dithered, Ramp, Rgb},
+    vertex::ScreenVertex,
+};
+use core::marker::PhantomData;
 
 /// A shading method, chosen at run time.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -6,9 +25,9 @@
 pub enum Shader {
     /// One colour per triangle.
     Flat,
-    /// Colours at the vertices, linear in between.
+    /// Lit at the corners, linear in between.
     Gouraud,
-    /// Colours at vertices and edge midpoints, quadratic in between.
+    /// Lit at corners and edge midpoints, quadratic in between.
     #[default]
     SixPoint,
     /// Normals interpolated and normalised at every pixel.
@@ -27,6 +46,94 @@ impl Shader {
             Self::Gouraud => "gouraud",
             Self::SixPoint => "six-point",
             Self::Phong => "phong",
+        }
+    }
+
+    /// Whether vertices need their light before triangles are drawn.
+    #[must_use]
+    pub(crate) const fn lights_vertices(self) -> bool {
+        !matches!(self, Self::Flat)
+    }
+}
+
+/// Fraction bits that a walked level has more than a node's.
+const EXTRA: u32 = WALK - LEVEL;
+
+/// A triangle ready to be shaded; all triples start with its top corner.
+pub(crate) struct Facet<'f> {
+    pub(crate) outline: Outline,
+    pub(crate) basis: Basis,
+    pub(crate) corners: [&'f ScreenVertex; 3],
+    pub(crate) vertices: [&'f Vertex; 3],
+    /// Per edge, see [`Triangle`].
+    pub(crate) rsum: [u16; 3],
+    /// Per edge, see [`Triangle`].
+    pub(crate) square: [u16; 3],
+    pub(crate) triangle: &'f Triangle,
+}
+
+/// What all triangles of one material have in common in one frame.
+pub(crate) struct Shading<'f, C> {
+    pub(crate) shader: Shader,
+    pub(crate) dither: bool,
+    pub(crate) palette: &'f Palette<C>,
+    pub(crate) lighting: &'f Lighting,
+    /// L and H if they are constant, see [`Lighting::constant`].
+    pub(crate) constant: Option<[[i32; 3]; 2]>,
+}
+
+/// The bias of walked levels plus a rounding half, the same in all channels.
+fn lift<const CH: usize>(half: i32) -> [i32; CH] {
+    [(BIAS << WALK).wrapping_add(half); CH]
+}
+
+/// Per channel the values at three corners, from per corner the values in three channels.
+fn transposed([a, b, c]: [[i32; 3]; 3]) -> [[i32; 3]; 3] {
+    [[a[0], b[0], c[0]], [a[1], b[1], c[1]], [a[2], b[2], c[2]]]
+}
+
+impl<C: Pixel> Shading<'_, C> {
+    /// Shades `facet` into `band`; returns its pixels there.
+    pub(crate) fn draw(&self, facet: &Facet<'_>, band: &mut Band<'_, C>) -> u32 {
+        match self.shader {
+            Shader::Flat => flat::draw(facet, self, band),
+            Shader::Gouraud => gouraud::draw(facet, self, band),
+            Shader::SixPoint => six_point::draw(facet, self, band),
+            Shader::Phong => phong::draw(facet, self, band),
+        }
+    }
+
+    /// Levels at a corner.
+    fn corner_levels(&self, corner: &ScreenVertex) -> [i32; 3] {
+        match self.constant {
+            Some(_) => self.palette.levels(core::iter::once([corner.light[0], corner.light[1]])),
+            None => corner.light,
+        }
+    }
+
+    /// Draws a patch of one level.
+    fn draw_one<P>(&self, facet: &Facet<'_>, patch: P, raised: fn(P, [i32; 1]) -> P, band: &mut Band<'_, C>) -> u32
+    where
+        P: Patch<Walker: Walker<Value = [u32; 1]>>,
+    {
+        if self.dither {
+            facet.outline.draw(&facet.basis, raised(patch, lift(0)), Dithered::new(self.palette.base), band)
+        } else {
+            facet.outline.draw(&facet.basis, raised(patch, lift(1 << (WALK - 1))), Ramp(&self.palette.ramp), band)
+        }
+    }
+
+    /// Draws a patch of three levels.
+    fn draw_three<P>(&self, facet: &Facet<'_>, patch: P, raised: fn(P, [i32; 3]) -> P, band: &mut Band<'_, C>) -> u32
+    where
+        P: Patch<Walker: Walker<Value = [u32; 3]>>,
+    {
+        if self.dither {
+            facet.outline.draw(&facet.basis, raised(patch, lift(0)), Dithered::new(self.palette.base), band)
+        } else {
+            // Half a step of each channel.
+            let half = C::DEPTH.map(|depth| (BIAS << WALK).wrapping_add(1 << (WALK + 7 - depth)));
+            facet.outline.draw(&facet.basis, raised(patch, half), Rgb(PhantomData), band)
         }
     }
 }

@@ -218,7 +218,11 @@ impl<'a> Stream<'a> {
             let length = |v: [i32; 3]| v.iter().map(|&c| i64::from(c) * i64::from(c)).sum::<i64>();
             field(light.kind == POINT || is_one(length(light.vector), 2 * UNIT), "light direction", i)?;
         }
+        let (mut next_vertex, mut next_triangle) = (0, 0);
         for (i, mesh) in self.meshes.iter().enumerate() {
+            field(mesh.first_vertex == next_vertex, "mesh first vertex", i)?;
+            field(mesh.first_triangle == next_triangle, "mesh first triangle", i)?;
+            (next_vertex, next_triangle) = (next_vertex.saturating_add(mesh.vertices), next_triangle.saturating_add(mesh.triangles));
             field(usize::from(mesh.material) < self.materials.len(), "mesh material", i)?;
             field(self.vertices_of(mesh).is_some(), "mesh vertices", i)?;
             let triangles = self.triangles_of(mesh).ok_or(StreamError::Field { name: "mesh triangles", record: i as u32 })?;
@@ -227,6 +231,7 @@ impl<'a> Stream<'a> {
                 field(triangle.corners.iter().all(|&c| u32::from(c) < mesh.vertices), name, mesh.first_triangle as usize + k)?;
             }
         }
+        field(next_vertex == header.vertices && next_triangle == header.triangles, "mesh coverage", self.meshes.len())?;
         for (i, vertex) in self.vertices.iter().enumerate() {
             let square: i64 = vertex.normal.iter().map(|&c| i64::from(c) * i64::from(c)).sum();
             field(is_one(square, 2 * UNIT), "vertex normal", i)?;

@@ -90,7 +90,7 @@ pub const PERSPECTIVE: u8 = 0;
 /// Rays are parallel.
 pub const ORTHOGRAPHIC: u8 = 1;
 
-/// A run of vertices and triangles with one material.
+/// A run of vertices and triangles with one material. The meshes follow one another without a gap.
 #[derive(FromBytes, IntoBytes, Immutable, KnownLayout, Clone, Copy, Debug, PartialEq, Eq)]
 #[repr(C)]
 pub struct Mesh {

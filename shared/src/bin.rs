@@ -1,0 +1,155 @@
+//! Triangles sorted by the rows they start in, once per frame.
+//!
+//! Each triangle is stored once, in the list of the first bin it touches; the
+//! list of *active* triangles takes over a bin's list when drawing reaches it,
+//! and drops a triangle below its last row. Lists are in the order of the
+//! stream, so the picture does not depend on the height of the bands.
+
+/// Bins of a frame; the rows are shared out among them.
+pub const BINS: usize = 64;
+
+/// The end of a list.
+const NONE: u16 = u16::MAX;
+
+/// A triangle in a list.
+#[derive(Clone, Copy, Debug)]
+pub struct Entry {
+    /// Index in the stream.
+    pub triangle: u32,
+    /// One past its last row.
+    pub bottom: u16,
+    /// The entry behind it.
+    next: u16,
+}
+
+impl Entry {
+    /// Nothing yet.
+    pub const EMPTY: Self = Self { triangle: 0, bottom: 0, next: NONE };
+}
+
+/// The heads of all lists.
+#[derive(Clone, Debug)]
+pub struct Bins {
+    heads: [u16; BINS],
+    active: u16,
+    /// Bins that `active` has taken over.
+    reached: usize,
+    rows_per_bin: u32,
+}
+
+impl Bins {
+    /// Empty lists for a viewport of `height` rows.
+    #[must_use]
+    pub fn new(height: u32) -> Self {
+        Self { heads: [NONE; BINS], active: NONE, reached: 0, rows_per_bin: height.div_ceil(BINS as u32).max(1) }
+    }
+
+    /// Puts `entries[index]`, which starts in row `top`, in front of its list. Called from the last triangle to the first.
+    pub fn push(&mut self, entries: &mut [Entry], index: usize, top: u32) {
+        let bin = (top / self.rows_per_bin) as usize;
+        if let (Some(head), Some(entry)) = (self.heads.get_mut(bin), entries.get_mut(index)) {
+            entry.next = *head;
+            *head = index as u16;
+        }
+    }
+
+    /// Entries that a list can hold.
+    #[must_use]
+    pub fn capacity(entries: &[Entry]) -> usize {
+        entries.len().min(NONE as usize)
+    }
+
+    /// Takes over the lists of all bins that start above row `bottom`.
+    pub fn advance(&mut self, entries: &mut [Entry], bottom: u32) {
+        let bins = (bottom.div_ceil(self.rows_per_bin) as usize).min(BINS);
+        while self.reached < bins {
+            if let Some(&head) = self.heads.get(self.reached) {
+                self.active = merge(entries, self.active, head);
+            }
+            self.reached += 1;
+        }
+    }
+
+    /// The active entries in the order of the stream: start with `None`, go on with the index returned.
+    #[must_use]
+    pub fn next(&self, entries: &[Entry], after: Option<u16>) -> Option<u16> {
+        let next = after.map_or(self.active, |index| entries.get(usize::from(index)).map_or(NONE, |entry| entry.next));
+        (next != NONE).then_some(next)
+    }
+
+    /// Drops active entries that end at row `bottom` or above.
+    pub fn retire(&mut self, entries: &mut [Entry], bottom: u32) {
+        let mut previous = NONE;
+        let mut index = self.active;
+        while let Some(&entry) = entries.get(usize::from(index)) {
+            if u32::from(entry.bottom) <= bottom {
+                match entries.get_mut(usize::from(previous)) {
+                    Some(previous) => previous.next = entry.next,
+                    None => self.active = entry.next,
+                }
+            } else {
+                previous = index;
+            }
+            index = entry.next;
+        }
+    }
+}
+
+/// Two lists in the order of the stream into one; returns its head.
+fn merge(entries: &mut [Entry], mut a: u16, mut b: u16) -> u16 {
+    let mut head = NONE;
+    let mut tail = NONE;
+    loop {
+        let (first, second) = (entries.get(usize::from(a)).copied(), entries.get(usize::from(b)).copied());
+        let (index, next) = match (first, second) {
+            (Some(x), Some(y)) if x.triangle <= y.triangle => (a, x.next),
+            (_, Some(y)) => (b, y.next),
+            (Some(x), None) => (a, x.next),
+            (None, None) => return head,
+        };
+        match entries.get_mut(usize::from(tail)) {
+            Some(tail) => tail.next = index,
+            None => head = index,
+        }
+        tail = index;
+        if index == a { a = next } else { b = next }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_triangle_is_active_on_its_rows_and_in_order() {
+        const HEIGHT: u32 = 240;
+        let mut entries = [Entry::EMPTY; 100];
+        let rows = |i: u32| (i * 37 % 200, (i * 37 % 200 + 1 + i * 11 % 60).min(HEIGHT));
+        for band in [1, 7, 10, 40, 240] {
+            let mut bins = Bins::new(HEIGHT);
+            for i in (0..100).rev() {
+                entries[i] = Entry { triangle: i as u32, bottom: rows(i as u32).1 as u16, next: NONE };
+                bins.push(&mut entries, i, rows(i as u32).0);
+            }
+            let mut top = 0;
+            while top < HEIGHT {
+                let bottom = (top + band).min(HEIGHT);
+                bins.advance(&mut entries, bottom);
+                let mut seen = [false; 100];
+                let (mut index, mut last) = (None, None);
+                while let Some(i) = bins.next(&entries, index) {
+                    let triangle = entries[usize::from(i)].triangle;
+                    assert!(last < Some(triangle));
+                    seen[triangle as usize] = true;
+                    (last, index) = (Some(triangle), Some(i));
+                }
+                for i in 0..100 {
+                    let (first, end) = rows(i);
+                    assert!(seen[i as usize] || end <= top || first >= bottom, "band {band}, rows {top}..{bottom}, triangle {i}");
+                }
+                bins.retire(&mut entries, bottom);
+                top = bottom;
+            }
+        }
+    }
+}

@@ -1,0 +1,92 @@
+//! Triangles that cross the near plane or leave the guard band, cut in eye space.
+//!
+//! Rare, so it may cost: vertices are transformed anew and lit with the
+//! interpolated normal. Both neighbours of an edge cut it at the same point,
+//! from its inner to its outer end: no crack opens.
+
+use crate::{
+    format::{EDGE, UNIT},
+    math::{
+        rsqrt::rsqrt_wide,
+        vector::{dot, normalise, wide},
+    },
+    stream::record::{Triangle, Vertex},
+    vertex::{PLANES, View},
+};
+use heapless::Vec;
+
+/// Corners of a triangle cut by five planes.
+const CORNERS: usize = 3 + PLANES;
+
+/// A corner of the cut polygon.
+#[derive(Clone, Copy, Debug)]
+struct Corner {
+    eye: [i32; 3],
+    position: [i32; 3],
+    normal: [i32; 3],
+}
+
+/// A corner after the cut: the object-space vertex and its place in eye space.
+#[derive(Clone, Copy, Debug)]
+pub struct Cut {
+    /// Position and unit normal.
+    pub vertex: Vertex,
+    /// Eye space, Q18.14.
+    pub eye: [i32; 3],
+}
+
+/// The part of a triangle that can be projected: a fan around its first corner; empty if there is none.
+#[must_use]
+pub fn clip(view: &View, vertices: [&Vertex; 3]) -> Vec<Cut, CORNERS> {
+    let mut polygon: Vec<Corner, CORNERS> =
+        vertices.iter().map(|v| Corner { eye: view.to_eye(v.position), position: wide(v.position), normal: wide(v.normal) }).collect();
+    for plane in 0..PLANES {
+        let mut cut = Vec::new();
+        for (i, a) in polygon.iter().enumerate() {
+            let b = polygon.get(i + 1).or(polygon.first()).unwrap_or(a);
+            let (da, db) = (view.distance(a.eye, plane), view.distance(b.eye, plane));
+            // A convex polygon gains at most one corner per plane: there is room.
+            if da >= 0 {
+                let _ = cut.push(*a);
+            }
+            if (da >= 0) != (db >= 0) {
+                let _ = cut.push(if da >= 0 { between(a, b, da, db) } else { between(b, a, db, da) });
+            }
+        }
+        polygon = cut;
+    }
+    polygon
+        .iter()
+        .map(|corner| {
+            let normal = normalise(corner.normal).map(|c| ((c + (1 << 15)) >> 16) as i16);
+            Cut { vertex: Vertex { position: corner.position.map(|c| c as i16), normal }, eye: corner.eye }
+        })
+        .collect()
+}
+
+/// Where the way from `inner` (distance `di` >= 0) to `outer` (`d_o` < 0) meets the plane.
+fn between(inner: &Corner, outer: &Corner, di: i64, d_o: i64) -> Corner {
+    // 22 bits of the ratio, without overflow.
+    let whole = di.saturating_sub(d_o).max(1);
+    let spare = 23u32.saturating_sub(whole.leading_zeros());
+    let t = ((di >> spare) << 22) / (whole >> spare).max(1);
+    let mix = |a: [i32; 3], b: [i32; 3]| [0, 1, 2].map(|c| (i64::from(a[c]) + (((i64::from(b[c]) - i64::from(a[c])) * t) >> 22)) as i32);
+    Corner { eye: mix(inner.eye, outer.eye), position: mix(inner.position, outer.position), normal: mix(inner.normal, outer.normal) }
+}
+
+/// The record of one triangle of the fan, cut from `whole`: edge constants belong to the new corners, which turn
+/// clockwise on the screen, against the order of a record.
+#[must_use]
+pub fn record(whole: &Triangle, corners: [&Vertex; 3]) -> Triangle {
+    let mut record = *whole;
+    for edge in 0..3 {
+        let (a, b) = (wide(corners[edge].normal), wide(corners[(edge + 1) % 3].normal));
+        let sum = [a[0] + b[0], a[1] + b[1], a[2] + b[2]];
+        let square = dot(sum, sum).max(1) as u64;
+        let (mantissa, exponent) = rsqrt_wide(square);
+        // 1/|sum| with the normals' 14 bits, as Q1.15.
+        record.rsum[2 - edge] = ((u64::from(mantissa) << (UNIT + EDGE)) >> exponent).min(u64::from(u16::MAX)) as u16;
+        record.square[2 - edge] = (square >> (2 * UNIT + 2 - EDGE)).min(1 << EDGE) as u16;
+    }
+    record
+}

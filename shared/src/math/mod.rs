@@ -1,0 +1,21 @@
+//! Integer mathematics, one function a file: method, domain, error and the test that proves it.
+
+pub mod power;
+pub mod recip;
+pub mod rsqrt;
+pub mod vector;
+
+/// `value / 2^bits` rounded to nearest; for negative `bits` a left shift that wraps.
+#[inline(always)]
+#[must_use]
+pub fn scale(value: i64, bits: i32) -> i64 {
+    if bits > 62 {
+        0
+    } else if bits > 0 {
+        value.wrapping_add(1 << (bits - 1)) >> bits
+    } else if bits > -64 {
+        value.wrapping_shl(bits.unsigned_abs())
+    } else {
+        0
+    }
+}

@@ -1,0 +1,72 @@
+//! Reciprocal square root.
+
+/// First guesses for [`rsqrt`], indexed by the argument's upper eight bits (64..=255), Q0.16.
+static SEED: [u16; 192] = {
+    let mut table = [0; 192];
+    let mut i = 0;
+    while i < 192 {
+        // 2^16 / sqrt(m) at the middle of the interval, m in [1, 4).
+        let middle = ((i as u128 + 64) << 24) + (1 << 23);
+        table[i] = ((1u128 << 62) / middle).isqrt() as u16;
+        i += 1;
+    }
+    table
+};
+
+/// 1/sqrt(m) in Q2.30 for `m` in [1, 4), unsigned Q2.30: between 2^29 and 2^30.
+///
+/// Table of 192 entries and two Newton steps, y (3 - m y²) / 2.
+/// Error: at most [`ERROR`] relative, in 2^-30 (tests::error).
+#[inline]
+#[must_use]
+pub fn rsqrt(m: u32) -> u32 {
+    let m = m.max(1 << 30);
+    let seed = SEED.get((m >> 24) as usize - 64).copied().unwrap_or(0);
+    let mut y = u64::from(seed) << 14;
+    for _ in 0..2 {
+        let square = (y * y) >> 30;
+        let product = (u64::from(m) * square) >> 30;
+        y = (y * ((3 << 30) - product)) >> 31;
+    }
+    y as u32
+}
+
+/// Largest error of [`rsqrt`], in units of its result.
+pub const ERROR: f64 = 8.0;
+
+/// 1/sqrt(x) for any x > 0, as a mantissa from [`rsqrt`] and an exponent: `mantissa * 2^-exponent`.
+#[inline]
+#[must_use]
+pub fn rsqrt_wide(x: u64) -> (u32, u32) {
+    let shift = x.leading_zeros() & !1;
+    let m = ((x << (shift & 63)) >> 32) as u32;
+    // x = m * 2^(32 - shift) with m = Q2.30 * 2^30: the root's exponent is half of it.
+    (rsqrt(m), 30 + (62 - shift.min(62)) / 2)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn error() {
+        let mut worst = 0f64;
+        let mut m = 1u64 << 30;
+        while m < 1 << 32 {
+            let exact = 2f64.powi(30) / (m as f64 / 2f64.powi(30)).sqrt();
+            worst = worst.max((f64::from(rsqrt(m as u32)) - exact).abs());
+            m += 65_521;
+        }
+        assert!(worst <= ERROR, "{worst}");
+    }
+
+    #[test]
+    fn wide() {
+        for x in [1u64, 2, 3, 4, 100, 65_535, 1 << 20, (1 << 40) + 12_345, 1 << 60, u64::MAX] {
+            let (m, e) = rsqrt_wide(x);
+            let got = f64::from(m) / 2f64.powi(e as i32);
+            let exact = 1.0 / (x as f64).sqrt();
+            assert!((got / exact - 1.0).abs() < 1e-7, "{x}: {got} {exact}");
+        }
+    }
+}

@@ -1,0 +1,186 @@
+//! What a material makes of the scene's lights, worked out once.
+
+use crate::{
+    format::{BIAS, LEVEL, UNIT},
+    math::power::{POWER, Power},
+    pixel::Pixel,
+    scene::MAX_LIGHTS,
+    stream::record::{Header, Light, Material},
+    tone::quantise,
+};
+
+/// Entries of a ramp: 256 colours and 128 guards at each end.
+pub const RAMP: usize = 512;
+
+/// Largest level of a node, Q9.7.
+pub const FULL: i32 = 255 << LEVEL;
+
+/// Light levels that one light adds at cosine 1, per channel, in Q9.7.
+#[derive(Clone, Copy, Debug)]
+struct Gains {
+    diffuse: [u16; 3],
+    specular: [u16; 3],
+}
+
+/// A material under the scene's lights: gains per light, the power table, and the table of colours.
+#[derive(Clone, Copy, Debug)]
+pub struct Palette<C> {
+    /// Colour of each level, if one level says it all.
+    pub ramp: [C; RAMP],
+    /// Channels at full level for dither, Q0.8 scaled to the output's depth.
+    pub base: [u16; 3],
+    /// x^exponent.
+    pub power: Power,
+    /// One walked level is enough: every colour of the material is a multiple of `base`.
+    pub one_channel: bool,
+    /// Level without lights, Q9.7.
+    ambient: [i32; 3],
+    gains: [Gains; MAX_LIGHTS],
+    lights: usize,
+}
+
+/// A colour as products of gains, Q4.28.
+type Colour = [u32; 3];
+
+fn product(a: [u16; 3], b: [u16; 3]) -> Colour {
+    [0, 1, 2].map(|c| u32::from(a[c]) * u32::from(b[c]))
+}
+
+/// Rec. 601 luma in all three channels.
+fn grey([r, g, b]: Colour) -> Colour {
+    [(r >> 8) * 77 + (g >> 8) * 150 + (b >> 8) * 29; 3]
+}
+
+fn largest(colour: Colour) -> u32 {
+    colour.into_iter().fold(0, u32::max)
+}
+
+/// Whether `colour` is a multiple of `base`, to 1/1024 of its largest channel.
+fn along(colour: Colour, base: Colour) -> bool {
+    let (a, b) = (u64::from(largest(colour)), u64::from(largest(base)));
+    (0..3).all(|c| (u64::from(colour[c]) * b).abs_diff(u64::from(base[c]) * a) <= (a * b) >> 10)
+}
+
+impl<C: Pixel> Palette<C> {
+    /// Nothing yet, for static memory.
+    #[must_use]
+    pub fn empty() -> Self {
+        Self::filled(C::pack([0; 3]))
+    }
+
+    /// Every colour `colour`: for static memory, where `pack` cannot be called.
+    #[must_use]
+    pub const fn filled(colour: C) -> Self {
+        Self {
+            ramp: [colour; RAMP],
+            base: [0; 3],
+            power: Power::EMPTY,
+            one_channel: true,
+            ambient: [0; 3],
+            gains: [Gains { diffuse: [0; 3], specular: [0; 3] }; MAX_LIGHTS],
+            lights: 0,
+        }
+    }
+
+    /// Works out `material` under `lights`.
+    pub fn fill(&mut self, header: &Header, material: &Material, lights: &[Light]) {
+        self.power.fill(material.exponent);
+        let tint = |colour: Colour| if C::GRAY { grey(colour) } else { colour };
+        let ambient = tint(product(header.ambient, material.ambient));
+        let diffuse = |light: &Light| tint(product(light.colour, material.diffuse));
+        let specular = |light: &Light| tint(product(light.colour, material.specular));
+        // The brightest of all terms sets the base colour; the others may be multiples of it.
+        let terms = || lights.iter().flat_map(|light| [diffuse(light), specular(light)]).chain([ambient]);
+        let base = terms().max_by_key(|&term| largest(term)).unwrap_or([0; 3]);
+        self.one_channel = terms().all(|term| along(term, base));
+        let one_channel = self.one_channel;
+        let levels = |colour: Colour| -> [u16; 3] {
+            if one_channel { [level(largest(colour), 8); 3] } else { [0, 1, 2].map(|c| level(colour[c], C::DEPTH[c])) }
+        };
+        self.ambient = levels(ambient).map(i32::from);
+        self.lights = lights.len().min(MAX_LIGHTS);
+        for (gains, light) in self.gains.iter_mut().zip(lights) {
+            *gains = Gains { diffuse: levels(diffuse(light)), specular: levels(specular(light)) };
+        }
+        // Share of each channel in the base colour, scaled to what the output can show.
+        let whole = u64::from(largest(base).max(1));
+        self.base = [0, 1, 2].map(|c| {
+            let full = ((1u64 << C::DEPTH[c]) - 1) << (8 - C::DEPTH[c]);
+            ((u64::from(base[c]) * full * 256 + whole * 255 / 2) / (whole * 255)) as u16
+        });
+        for (i, colour) in self.ramp.iter_mut().enumerate() {
+            let level = (i as i32 - BIAS).clamp(0, 255) as u32;
+            let mut channels = [0; 3];
+            for (channel, (base, depth)) in channels.iter_mut().zip(self.base.into_iter().zip(C::DEPTH)) {
+                let step = 1 << (16 - depth);
+                *channel = ((level * u32::from(base) + step / 2) / step).min((1 << depth) - 1) as u8;
+            }
+            *colour = C::pack(channels);
+        }
+    }
+
+    /// Levels at a point, Q9.7 in [0, 255], from the cosines `[N·L, N·H]` (Q2.30) of each light.
+    #[inline]
+    #[must_use]
+    pub fn levels(&self, cosines: impl Iterator<Item = [i32; 2]>) -> [i32; 3] {
+        let mut levels = self.ambient;
+        for (gains, [diffuse, half]) in self.gains.iter().zip(cosines) {
+            let power = self.power.at(half);
+            self.add(&mut levels, gains, diffuse, power);
+        }
+        levels.map(|level| level.min(FULL))
+    }
+
+    /// As [`Self::levels`], with the table's nearest entry: for the pixel loop.
+    #[inline(always)]
+    #[must_use]
+    pub fn pixel_levels(&self, cosines: impl Iterator<Item = [i32; 2]>) -> [i32; 3] {
+        let mut levels = self.ambient;
+        for (gains, [diffuse, half]) in self.gains.iter().zip(cosines) {
+            let power = self.power.nearest(half);
+            self.add(&mut levels, gains, diffuse, power);
+        }
+        levels.map(|level| level.min(FULL))
+    }
+
+    #[inline(always)]
+    fn add(&self, levels: &mut [i32; 3], gains: &Gains, diffuse: i32, power: u32) {
+        let cosine = diffuse.max(0) as u32 >> (30 - 15);
+        for (c, level) in levels.iter_mut().enumerate().take(if self.one_channel { 1 } else { 3 }) {
+            let light = ((u32::from(gains.diffuse[c]) * cosine + (1 << 14)) >> 15)
+                + ((u32::from(gains.specular[c]) * power + (1 << (POWER - 1))) >> POWER);
+            *level = level.saturating_add(light as i32);
+        }
+    }
+
+    /// The colour of three levels, Q9.7, rounded.
+    #[inline(always)]
+    #[must_use]
+    pub fn colour(&self, levels: [i32; 3]) -> C {
+        if self.one_channel {
+            let i = (levels[0] + (1 << (LEVEL - 1))) >> LEVEL;
+            self.ramp[((i + BIAS) as usize) & (RAMP - 1)]
+        } else {
+            let mut channels = [0; 3];
+            for (channel, (level, depth)) in channels.iter_mut().zip(levels.into_iter().zip(C::DEPTH)) {
+                let step = LEVEL + 8 - depth;
+                *channel = ((level + (1 << (step - 1))) >> step).clamp(0, (1 << depth) - 1) as u8;
+            }
+            C::pack(channels)
+        }
+    }
+
+    /// The colour of three levels, Q9.7, dithered by `threshold`, see [`crate::tone::threshold`].
+    #[must_use]
+    pub fn dithered(&self, levels: [i32; 3], threshold: u32) -> C {
+        let fine = levels.map(|level| (level.max(0) as u32) << 1);
+        let scaled = if self.one_channel { self.base.map(|base| (fine[0] * u32::from(base)) >> 8) } else { fine };
+        quantise(scaled, threshold)
+    }
+}
+
+/// A product of two gains (Q4.28, 1 is full) as a level in Q9.7 whose upper `depth` bits are the channel.
+fn level(product: u32, depth: u32) -> u16 {
+    let full = ((1u64 << depth) - 1) << (8 - depth + LEVEL);
+    ((u64::from(product) * full + (1 << (2 * UNIT - 1))) >> (2 * UNIT)).min(u64::from(u16::MAX)) as u16
+}

@@ -1,0 +1,166 @@
+//! From values at the nodes of a triangle to derivatives on the screen.
+//!
+//! With corner 0 as the origin, `s` and `t` are the barycentric coordinates of
+//! corners 1 and 2. Their gradients are kept as 30-bit mantissas with one
+//! exponent, so tiny and huge triangles lose nothing. The derivatives of a
+//! quadratic in (s, t) with respect to (x, y) follow by the chain rule, which is
+//! well conditioned where the printed formulas divide by zero
+//! (Szirmay-Kalos et al.; see their T3..T5).
+
+use crate::{
+    format::{CENTRE, SUBPIXEL},
+    math::{recip::recip, scale},
+};
+
+/// More fraction bits than the walked format, while coefficients move to the anchor.
+const GUARD: i32 = 12;
+
+/// Farther than this from the first corner, in columns plus rows, the anchor moves to the middle of what is drawn.
+const NEAR: i32 = 256;
+
+/// The screen geometry of a triangle, ready to fit polynomials.
+///
+/// The *anchor* is the pixel to which coefficients are rounded; errors grow with
+/// the distance from it. It is the pixel at corner 0 for small triangles, and the
+/// middle of the visible part for large ones.
+#[derive(Clone, Copy, Debug)]
+pub struct Basis {
+    /// Gradients of s and t per pixel: mantissas, all with the exponent `exponent`.
+    s: [i32; 2],
+    t: [i32; 2],
+    exponent: i32,
+    /// From corner 0 to the centre of its pixel, in 1/16 pixel.
+    offset: [i32; 2],
+    /// From that pixel to the anchor, in pixels.
+    shift: [i32; 2],
+    /// The anchor.
+    anchor: [i32; 2],
+    /// Thinner than a pixel: quadratic terms would be larger than what they add.
+    thin: bool,
+}
+
+/// Columns and rows that are drawn, half open: `[left, top, right, bottom]`.
+pub type Visible = [i32; 4];
+
+impl Basis {
+    /// The basis of the triangle with `corners` in 1/16 pixel, clockwise on a screen
+    /// whose y runs down; `None` if it has no area or runs the other way.
+    #[inline]
+    #[must_use]
+    pub fn new(corners: [[i32; 2]; 3], visible: Visible) -> Option<Self> {
+        let [[x0, y0], [x1, y1], [x2, y2]] = corners;
+        let (x1, y1, x2, y2) = (x1.wrapping_sub(x0), y1.wrapping_sub(y0), x2.wrapping_sub(x0), y2.wrapping_sub(y0));
+        let det = i64::from(x1) * i64::from(y2) - i64::from(x2) * i64::from(y1);
+        if det <= 0 {
+            return None;
+        }
+        // 1 / det = r 2^(zeros - 94), r = 2^62 / (det's upper 32 bits): relative error 2^-29.
+        let zeros = det.leading_zeros() as i32;
+        let r = i64::from(recip(((det << (zeros & 63)) >> 32) as u32 | 1 << 31));
+        let size = x1.unsigned_abs() | y1.unsigned_abs() | x2.unsigned_abs() | y2.unsigned_abs();
+        // r < 2^31, coordinates < 2^(32 - lz): mantissas below 2^30.
+        let drop = 33 - size.leading_zeros() as i32;
+        let mantissa = |c: i32| scale(i64::from(c) * r, drop) as i32;
+        let pixel = [x0 >> SUBPIXEL, (y0 + CENTRE - 1) >> SUBPIXEL];
+        let middle = [(visible[0] + visible[2]) >> 1, (visible[1] + visible[3]) >> 1];
+        let shift = [middle[0].wrapping_sub(pixel[0]), middle[1].wrapping_sub(pixel[1])];
+        let reach = size.min(1 << 20) as i32 >> (SUBPIXEL - 1);
+        let shift = if reach <= NEAR { [0; 2] } else { shift };
+        Some(Self {
+            s: [mantissa(y2), mantissa(x2.wrapping_neg())],
+            t: [mantissa(y1.wrapping_neg()), mantissa(x1)],
+            // gradient per pixel = 16 c / det = mantissa 2^(drop + 4 + zeros - 94)
+            exponent: 90 - zeros - drop,
+            offset: [(pixel[0] << SUBPIXEL) + CENTRE - x0, (pixel[1] << SUBPIXEL) + CENTRE - y0],
+            shift,
+            anchor: [pixel[0].wrapping_add(shift[0]), pixel[1].wrapping_add(shift[1])],
+            // Height over the longest side below one pixel: det < 16 size.
+            thin: det < i64::from(size) << SUBPIXEL,
+        })
+    }
+
+    /// Column of the anchor.
+    #[inline(always)]
+    #[must_use]
+    pub fn column(&self) -> i32 {
+        self.anchor[0]
+    }
+
+    /// Row of the anchor.
+    #[inline(always)]
+    #[must_use]
+    pub fn row(&self) -> i32 {
+        self.anchor[1]
+    }
+
+    /// `[c, dx, dy, 0, 0, 0]` of the linear field through the corners' values, at the anchor.
+    #[inline]
+    #[must_use]
+    pub fn linear(&self, nodes: [i32; 3], extra: u32) -> [i32; 6] {
+        let (c, dx, dy) = self.slopes(nodes[0], nodes[1].wrapping_sub(nodes[0]).into(), nodes[2].wrapping_sub(nodes[0]).into(), extra);
+        let c = c.wrapping_add(along(dx, self.offset[0])).wrapping_add(along(dy, self.offset[1]));
+        self.round([c, dx, dy, 0, 0, 0])
+    }
+
+    /// Value at corner 0 and derivatives along x and y of `c0 + c1 s + c2 t`, with `GUARD` more bits than walked.
+    #[inline(always)]
+    fn slopes(&self, c0: i32, c1: i64, c2: i64, extra: u32) -> (i64, i64, i64) {
+        let bits = self.exponent - extra as i32 - GUARD;
+        let along = |s: i32, t: i32| scale(c1.wrapping_mul(s.into()).wrapping_add(c2.wrapping_mul(t.into())), bits);
+        (i64::from(c0).wrapping_shl(extra + GUARD as u32), along(self.s[0], self.t[0]), along(self.s[1], self.t[1]))
+    }
+
+    /// `[c, dx, dy, dxx, dxy, dyy]` of the quadratic through six nodes in a range of 2^`BITS`, at the anchor.
+    #[inline]
+    #[must_use]
+    pub fn quadratic<const BITS: u32>(&self, nodes: [i32; 6], extra: u32) -> [i32; 6] {
+        let [i0, i1, i2, i01, i12, i20] = nodes;
+        if self.thin {
+            return self.linear([i0, i1, i2], extra);
+        }
+        let (c, dx, dy) = self.slopes(i0, (4 * i01 - 3 * i0 - i1).into(), (4 * i20 - 3 * i0 - i2).into(), extra);
+        // Half the matrix of second derivatives: [[ss, st], [st, tt]].
+        let ss = i64::from(2 * (i0 + i1 - 2 * i01));
+        let st = i64::from(2 * (i0 - i01 - i20 + i12));
+        let tt = i64::from(2 * (i0 + i2 - 2 * i20));
+        // One factor of the chain rule, then the other. Second differences are below 2^(BITS + 2): two products
+        // with mantissas stay below 2^(BITS + 33), less these bits below 2^31.
+        let less = BITS as i32 + 2;
+        let once = |a: i64, b: i64, k: usize| scale(a * i64::from(self.s[k]) + b * i64::from(self.t[k]), less);
+        let (sx, tx, sy, ty) = (once(ss, st, 0), once(st, tt, 0), once(ss, st, 1), once(st, tt, 1));
+        let bits = 2 * self.exponent - less - extra as i32 - GUARD;
+        let twice = |a: i64, b: i64, k: usize| scale(a * i64::from(self.s[k]) + b * i64::from(self.t[k]), bits);
+        let (dxx, dyy) = (twice(sx, tx, 0), twice(sy, ty, 1));
+        let dxy = twice(sx, tx, 1).wrapping_mul(2);
+        // From the corner to its pixel's centre, at most a pixel away.
+        let [ox, oy] = self.offset;
+        let (bend_x, mixed, bend_y) = (along(dxx, ox), along(dxy, oy), along(dyy, oy));
+        let c = c.wrapping_add(along(dx + bend_x + mixed, ox)).wrapping_add(along(dy + bend_y, oy));
+        let dx = dx.wrapping_add(2 * bend_x).wrapping_add(mixed);
+        let dy = dy.wrapping_add(2 * bend_y).wrapping_add(along(dxy, ox));
+        self.round([c, dx, dy, dxx, dxy, dyy])
+    }
+
+    /// Moves coefficients from corner 0's pixel to the anchor, exactly, and rounds them to the walked format.
+    #[inline]
+    fn round(&self, [c, dx, dy, dxx, dxy, dyy]: [i64; 6]) -> [i32; 6] {
+        let done = |v: i64| scale(v, GUARD) as i32;
+        if self.shift == [0; 2] {
+            return [done(c), done(dx), done(dy), done(dxx), done(dxy), done(dyy)];
+        }
+        let [x, y] = self.shift.map(i64::from);
+        let m = i64::wrapping_mul;
+        let bend_x = m(dxx, x).wrapping_add(m(dxy, y));
+        let bend_y = m(dyy, y);
+        let c = c.wrapping_add(m(dx.wrapping_add(bend_x), x)).wrapping_add(m(dy.wrapping_add(bend_y), y));
+        let dx = dx.wrapping_add(bend_x).wrapping_add(m(dxx, x));
+        let dy = dy.wrapping_add(bend_y).wrapping_add(bend_y).wrapping_add(m(dxy, x));
+        [done(c), done(dx), done(dy), done(dxx), done(dxy), done(dyy)]
+    }
+}
+
+/// `gradient` times `offset` sixteenths of a pixel.
+#[inline(always)]
+fn along(gradient: i64, offset: i32) -> i64 {
+    gradient.wrapping_mul(offset.into()) >> SUBPIXEL
+}

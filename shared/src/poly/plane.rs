@@ -1,0 +1,96 @@
+//! Linear fields.
+
+use super::{Patch, Walker, basis::Basis};
+use core::array;
+
+/// `c + dx x + dy y` in each of `CH` channels, standing on one row.
+#[derive(Clone, Copy, Debug)]
+pub struct Plane<const CH: usize>([Row; CH]);
+
+/// One channel: the value at column 0 of the current row, and the derivatives.
+#[derive(Clone, Copy, Debug)]
+struct Row {
+    c: i32,
+    dx: i32,
+    dy: i32,
+}
+
+impl<const CH: usize> Plane<CH> {
+    /// The field with value `nodes[channel][k]` at corner `k`; walked with `extra` more fraction bits than the nodes have.
+    ///
+    /// Error: at most 2^-1 (1 + S) units of the walked format, S the distance in
+    /// columns plus rows from the basis' anchor (see [`Basis`]).
+    #[inline]
+    #[must_use]
+    pub fn fit(basis: &Basis, nodes: [[i32; 3]; CH], extra: u32) -> Self {
+        Self(array::from_fn(|channel| {
+            let [c, dx, dy, ..] = basis.linear(nodes[channel], extra);
+            Row { c: c.wrapping_sub(dx.wrapping_mul(basis.column())), dx, dy }
+        }))
+    }
+
+    /// Adds `bias` to every channel.
+    #[inline]
+    #[must_use]
+    pub fn raised(mut self, bias: [i32; CH]) -> Self {
+        for (row, bias) in self.0.iter_mut().zip(bias) {
+            row.c = row.c.wrapping_add(bias);
+        }
+        self
+    }
+}
+
+impl<const CH: usize> Patch for Plane<CH> {
+    type Walker = Linear<CH>;
+
+    #[inline(always)]
+    fn jump(&mut self, rows: i32) {
+        for row in &mut self.0 {
+            row.c = row.c.wrapping_add(row.dy.wrapping_mul(rows));
+        }
+    }
+
+    #[inline(always)]
+    fn step_row(&mut self) {
+        for row in &mut self.0 {
+            row.c = row.c.wrapping_add(row.dy);
+        }
+    }
+
+    #[inline(always)]
+    fn enter(&self, x: i32) -> Linear<CH> {
+        Linear { value: self.0.map(|row| row.c.wrapping_add(row.dx.wrapping_mul(x)) as u32), step: self.0.map(|row| row.dx as u32) }
+    }
+}
+
+/// Walks a [`Plane`]: one addition a pixel and channel.
+#[derive(Clone, Copy, Debug)]
+pub struct Linear<const CH: usize> {
+    value: [u32; CH],
+    step: [u32; CH],
+}
+
+impl<const CH: usize> Linear<CH> {
+    /// Values and derivatives along x.
+    #[inline(always)]
+    #[must_use]
+    pub fn parts(self) -> ([u32; CH], [u32; CH]) {
+        (self.value, self.step)
+    }
+}
+
+impl<const CH: usize> Walker for Linear<CH> {
+    type Value = [u32; CH];
+
+    #[inline(always)]
+    fn step(&mut self) {
+        for c in 0..CH {
+            self.value[c] = self.value[c].wrapping_sub(self.step[c]);
+        }
+    }
+
+    #[inline(always)]
+    fn value(&self) -> [u32; CH] {
+        self.value
+    }
+}

@@ -1,0 +1,211 @@
+//! One triangle into one band: edges, depth plane, and the rows between them.
+
+use super::{
+    edge::{COLUMN, Column, Edge, first_centre},
+    fill::fill,
+};
+use crate::{
+    band::Band,
+    poly::{Patch, Walker, basis::Basis, plane::Plane},
+    tone::Tone,
+    vertex::ScreenVertex,
+};
+
+/// A triangle on the screen, its top corner first, clockwise on a screen whose y runs down.
+#[derive(Clone, Copy, Debug)]
+pub struct Outline {
+    corners: [[i32; 2]; 3],
+    depth: [i32; 3],
+    /// Which of the mesh's corners is the top one.
+    pub turned: usize,
+}
+
+/// What steps from row to row. It lives in memory, so that the pixel loop gets the registers.
+struct Rows<P, T> {
+    /// Pixels of the coming row.
+    count: u32,
+    left: Column,
+    right: Column,
+    /// Depth at column 0.
+    depth: Plane<1>,
+    patch: P,
+    tone: T,
+}
+
+/// Columns and rows that a triangle can touch, half open.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Bounds {
+    /// First column.
+    pub left: i32,
+    /// First row.
+    pub top: i32,
+    /// One past the last column.
+    pub right: i32,
+    /// One past the last row.
+    pub bottom: i32,
+}
+
+impl Bounds {
+    /// Of three corners: pixels whose centres their box contains.
+    #[inline(always)]
+    #[must_use]
+    pub fn new(corners: [&ScreenVertex; 3]) -> Self {
+        let [a, b, c] = corners;
+        Self {
+            left: first_centre(a.x.min(b.x).min(c.x)),
+            top: first_centre(a.y.min(b.y).min(c.y)),
+            right: first_centre(a.x.max(b.x).max(c.x)),
+            bottom: first_centre(a.y.max(b.y).max(c.y)),
+        }
+    }
+
+    /// Of one point `[x, y, _]`.
+    #[must_use]
+    pub fn at([x, y, _]: [i32; 3]) -> Self {
+        Self { left: first_centre(x), top: first_centre(y), right: first_centre(x), bottom: first_centre(y) }
+    }
+
+    /// Grows until `point` lies inside.
+    pub fn include(&mut self, point: [i32; 3]) {
+        let other = Self::at(point);
+        self.left = self.left.min(other.left);
+        self.top = self.top.min(other.top);
+        self.right = self.right.max(other.right);
+        self.bottom = self.bottom.max(other.bottom);
+    }
+
+    /// Without what lies outside a viewport.
+    #[inline(always)]
+    #[must_use]
+    pub fn clipped(self, width: i32, height: i32) -> Self {
+        Self { left: self.left.max(0), top: self.top.max(0), right: self.right.min(width), bottom: self.bottom.min(height) }
+    }
+
+    /// No pixel at all.
+    #[inline(always)]
+    #[must_use]
+    pub fn is_empty(&self) -> bool {
+        self.left >= self.right || self.top >= self.bottom
+    }
+}
+
+impl Outline {
+    /// Turns the corners until the top one is first; the order around the triangle stays.
+    #[inline]
+    #[must_use]
+    pub fn new(corners: [&ScreenVertex; 3]) -> Self {
+        let [a, b, c] = corners;
+        let turned = if b.y < a.y || c.y < a.y { if c.y < b.y { 2 } else { 1 } } else { 0 };
+        let [a, b, c] = turn(corners, turned);
+        Self { corners: [[a.x, a.y], [b.x, b.y], [c.x, c.y]], depth: [a.depth, b.depth, c.depth], turned }
+    }
+
+    /// Twice the signed area in 1/256 pixel²; positive seen from the front.
+    #[inline(always)]
+    #[must_use]
+    pub fn area([a, b, c]: [&ScreenVertex; 3]) -> i64 {
+        let (x1, y1, x2, y2) = (b.x - a.x, b.y - a.y, c.x - a.x, c.y - a.y);
+        i64::from(x1) * i64::from(y2) - i64::from(x2) * i64::from(y1)
+    }
+
+    /// The basis for fitting; `None` without area or seen from the back.
+    #[inline]
+    #[must_use]
+    pub fn basis(&self, visible: Bounds) -> Option<Basis> {
+        Basis::new(self.corners, [visible.left, visible.top, visible.right, visible.bottom])
+    }
+
+    /// Draws the rows that lie in `band` and returns how many pixels they have.
+    #[inline(always)]
+    pub fn draw<P: Patch, T: Tone<<P::Walker as Walker>::Value>>(
+        &self,
+        basis: &Basis,
+        patch: P,
+        tone: T,
+        band: &mut Band<'_, T::Pixel>,
+    ) -> u32 {
+        let [top, right, left] = self.corners;
+        let middle = first_centre(right[1].min(left[1]));
+        let end = first_centre(right[1].max(left[1])).min(band.top + band.rows);
+        let mut row = first_centre(top[1]).max(band.top);
+        let width = band.width as i32;
+        let inside = |x: i32| (0..(width << 4)).contains(&x);
+        let walkable = inside(top[0]) && inside(right[0]) && inside(left[0]);
+
+        let mut rows =
+            Rows { count: 0, left: Column::default(), right: Column::default(), depth: Plane::fit(basis, [self.depth], 4), patch, tone };
+        rows.depth.jump(row - basis.row());
+        rows.patch.jump(row - basis.row());
+        rows.tone.start(row);
+
+        let mut pixels = 0;
+        while row < end {
+            // Left of the middle corner's row both edges leave the top; below it, the side of that corner is another edge.
+            let (stop, left_edge, right_edge) = if row < middle {
+                (middle.min(end), Edge::new(top, left), Edge::new(top, right))
+            } else if right[1] < left[1] {
+                (end, Edge::new(top, left), Edge::new(right, left))
+            } else {
+                (end, Edge::new(left, right), Edge::new(top, right))
+            };
+            let exact = if walkable { left_edge.exact_rows().min(right_edge.exact_rows()) } else { 0 };
+            let next;
+            if exact > 0 {
+                next = stop.min(row + exact);
+                rows.left = left_edge.walk(row);
+                rows.right = right_edge.walk(row);
+            } else {
+                // Clipped or very tall: each row by itself.
+                next = row + 1;
+                rows.left = Column { x: (left_edge.column(row).clamp(0, width) as u32) << COLUMN, step: 0 };
+                rows.right = Column { x: (right_edge.column(row).clamp(0, width) as u32) << COLUMN, step: 0 };
+            }
+            rows.count = (rows.right.x >> COLUMN).wrapping_sub(rows.left.x >> COLUMN);
+            for (pixel_row, depth_row) in band.rows_between(row, next) {
+                pixels += self::row(&mut rows, pixel_row, depth_row);
+            }
+            row = next;
+        }
+        pixels
+    }
+}
+
+/// The three of them, `by` places on.
+#[inline(always)]
+#[must_use]
+pub fn turn<A: Copy>([a, b, c]: [A; 3], by: usize) -> [A; 3] {
+    match by {
+        0 => [a, b, c],
+        1 => [b, c, a],
+        _ => [c, a, b],
+    }
+}
+
+/// Fills one row and steps to the next; returns the pixels of the row.
+///
+/// A call of its own, with all state behind one pointer: measured, the pixel
+/// loop then owns the registers and comes out as by hand. `count` comes from
+/// memory, written a row earlier: derived here, the compiler would count in
+/// two registers instead of one.
+#[inline(never)]
+fn row<P: Patch, T: Tone<<P::Walker as Walker>::Value>>(rows: &mut Rows<P, T>, pixels: &mut [T::Pixel], depth: &mut [u16]) -> u32 {
+    let count = rows.count as usize;
+    let (left, right) = ((rows.left.x >> COLUMN) as usize, rows.right.x >> COLUMN);
+    rows.left.x = rows.left.x.wrapping_add(rows.left.step);
+    rows.right.x = rows.right.x.wrapping_add(rows.right.step);
+    rows.count = (rows.right.x >> COLUMN).wrapping_sub(rows.left.x >> COLUMN);
+    let mut drawn = 0;
+    if let Some(pixels) = pixels.get_mut(left..)
+        && let Some(depth) = depth.get_mut(left..)
+        && let Some(pixels) = pixels.get_mut(..count)
+        && let Some(depth) = depth.get_mut(..count)
+    {
+        let ([z], dz) = rows.depth.enter(right as i32).parts();
+        fill(pixels, depth, z, dz[0], rows.patch.enter(right as i32), &rows.tone, left);
+        drawn = count as u32;
+    }
+    rows.depth.step_row();
+    rows.patch.step_row();
+    rows.tone.step_row();
+    drawn
+}

@@ -1,0 +1,33 @@
+//! Flat shading: one colour per triangle, lit at its centroid with the plane's normal.
+//!
+//! Cost: nothing per pixel; one evaluation of the lights per triangle. Not continuous across edges.
+
+use super::{Facet, Shading};
+use crate::{
+    band::Band,
+    format::EDGE,
+    math::vector::wide,
+    pixel::Pixel,
+    poly::Constant,
+    poly::plane::Plane,
+    tone::{Dithered, Solid},
+};
+
+pub(super) fn draw<C: Pixel>(facet: &Facet<'_>, shading: &Shading<'_, C>, band: &mut Band<'_, C>) -> u32 {
+    let [a, b, c] = facet.vertices.map(|vertex| wide(vertex.position));
+    let centroid = [0, 1, 2].map(|k| (a[k] + b[k] + c[k]) / 3);
+    let levels = shading.palette.levels(shading.lighting.cosines(centroid, wide(facet.triangle.normal), 1 << EDGE));
+    if shading.dither {
+        // A field without slope: dither changes from pixel to pixel all the same.
+        let nodes = levels.map(|level| [level; 3]);
+        if shading.palette.one_channel {
+            let patch = Plane::fit(&facet.basis, [nodes[0]], super::EXTRA).raised(super::lift(0));
+            facet.outline.draw(&facet.basis, patch, Dithered::new(shading.palette.base), band)
+        } else {
+            let patch = Plane::fit(&facet.basis, nodes, super::EXTRA).raised(super::lift(0));
+            facet.outline.draw(&facet.basis, patch, Dithered::new(shading.palette.base), band)
+        }
+    } else {
+        facet.outline.draw(&facet.basis, Constant, Solid(shading.palette.colour(levels)), band)
+    }
+}

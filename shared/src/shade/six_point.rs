@@ -1,0 +1,64 @@
+//! The six-point quadratic (Szirmay-Kalos et al.; Vlasic 2002, 4.2): lit at the
+//! corners and at the edges' midpoints, quadratic in between.
+//!
+//! Cost: two additions a pixel and channel. Continuous: both neighbours light the
+//! same midpoint. Good for wide highlights or fine meshes; a highlight narrower
+//! than a triangle is flattened (NUMERICS: 33 LSB on 168 triangles at n = 50, 9 on 690).
+
+use super::{Facet, Shading};
+use crate::{
+    band::Band,
+    format::EDGE,
+    math::vector::{add, wide},
+    pixel::Pixel,
+    poly::quadric::Quadric,
+};
+
+/// Levels of a node are in [0, 255] in Q9.7.
+const BITS: u32 = 15;
+
+pub(super) fn draw<C: Pixel>(facet: &Facet<'_>, shading: &Shading<'_, C>, band: &mut Band<'_, C>) -> u32 {
+    let nodes = match shading.constant {
+        Some(_) => constant(facet, shading),
+        None => lit(facet, shading),
+    };
+    let channel = |c: usize| nodes.map(|levels| levels[c]);
+    if shading.palette.one_channel {
+        let patch = Quadric::fit::<BITS>(&facet.basis, [channel(0)], super::EXTRA);
+        shading.draw_one(facet, patch, Quadric::raised, band)
+    } else {
+        let patch = Quadric::fit::<BITS>(&facet.basis, [channel(0), channel(1), channel(2)], super::EXTRA);
+        shading.draw_three(facet, patch, Quadric::raised, band)
+    }
+}
+
+/// Node levels under one constant light: cosines at midpoints follow from those at the corners.
+fn constant<C: Pixel>(facet: &Facet<'_>, shading: &Shading<'_, C>) -> [[i32; 3]; 6] {
+    let [a, b, c] = facet.corners.map(|corner| corner.light);
+    let highest = a[1].max(b[1]).max(c[1]);
+    // N·H is linear and |N| at least rho: nowhere on the triangle does the highlight reach a visible level.
+    let limit = (i64::from(shading.palette.power.dark_below()) * i64::from(facet.triangle.rho)) >> EDGE;
+    let dark = i64::from(highest) < limit;
+    let node = |cosines: [i32; 2]| {
+        let half = if dark { i32::MIN } else { cosines[1] };
+        shading.palette.levels(core::iter::once([cosines[0], half]))
+    };
+    let middle = |a: [i32; 3], b: [i32; 3], rsum: u16| {
+        node([0, 1].map(|k| (((i64::from(a[k]) + i64::from(b[k])) * i64::from(rsum)) >> EDGE) as i32))
+    };
+    let [ab, bc, ca] = facet.rsum;
+    [node([a[0], a[1]]), node([b[0], b[1]]), node([c[0], c[1]]), middle(a, b, ab), middle(b, c, bc), middle(c, a, ca)]
+}
+
+/// Node levels under any lights: corners are lit already, midpoints are lit here.
+fn lit<C: Pixel>(facet: &Facet<'_>, shading: &Shading<'_, C>) -> [[i32; 3]; 6] {
+    let [a, b, c] = facet.corners.map(|corner| corner.light);
+    let [u, v, w] = facet.vertices;
+    let middle = |a: &crate::stream::record::Vertex, b: &crate::stream::record::Vertex, rsum: u16| {
+        let position = add(wide(a.position), wide(b.position)).map(|c| c >> 1);
+        let normal = add(wide(a.normal), wide(b.normal));
+        shading.palette.levels(shading.lighting.cosines(position, normal, rsum))
+    };
+    let [uv, vw, wu] = facet.rsum;
+    [a, b, c, middle(u, v, uv), middle(v, w, vw), middle(w, u, wu)]
+}

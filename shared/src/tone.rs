@@ -1,0 +1,153 @@
+//! From walked values to pixels.
+
+use crate::{
+    format::{BIAS, WALK},
+    palette::RAMP,
+    pixel::Pixel,
+};
+use core::marker::PhantomData;
+
+/// Turns the value at one pixel into its colour.
+pub trait Tone<V> {
+    /// What is stored.
+    type Pixel;
+
+    /// The colour at column `x` of the current row.
+    fn tone(&self, value: V, x: usize) -> Self::Pixel;
+
+    /// Starts on `row`.
+    #[inline(always)]
+    fn start(&mut self, _row: i32) {}
+
+    /// Moves down one row.
+    #[inline(always)]
+    fn step_row(&mut self) {}
+}
+
+/// One colour.
+#[derive(Clone, Copy, Debug)]
+pub struct Solid<C>(pub C);
+
+impl<C: Copy> Tone<()> for Solid<C> {
+    type Pixel = C;
+
+    #[inline(always)]
+    fn tone(&self, (): (), _: usize) -> C {
+        self.0
+    }
+}
+
+/// One walked level under a table of colours; the guards at both ends clamp for nothing.
+#[derive(Clone, Copy, Debug)]
+pub struct Ramp<'a, C>(pub &'a [C; RAMP]);
+
+impl<C: Copy> Tone<[u32; 1]> for Ramp<'_, C> {
+    type Pixel = C;
+
+    #[inline(always)]
+    fn tone(&self, [level]: [u32; 1], _: usize) -> C {
+        self.0[(level >> WALK) as usize]
+    }
+}
+
+/// Three walked levels, scaled so that their upper bits are the channels; half a step is in them already.
+#[derive(Clone, Copy, Debug)]
+pub struct Rgb<C>(pub PhantomData<C>);
+
+/// A biased, walked level as 0..=255.
+#[inline(always)]
+fn level(walked: u32) -> u8 {
+    ((walked >> WALK) as i32 - BIAS).clamp(0, 255) as u8
+}
+
+impl<C: Pixel> Tone<[u32; 3]> for Rgb<C> {
+    type Pixel = C;
+
+    #[inline(always)]
+    fn tone(&self, [r, g, b]: [u32; 3], _: usize) -> C {
+        let [dr, dg, db] = C::DEPTH;
+        C::pack([level(r) >> (8 - dr), level(g) >> (8 - dg), level(b) >> (8 - db)])
+    }
+}
+
+/// 4x4 ordered dither (Bayer 1973): thresholds in 1/32 of an output step, one row after the other.
+const BAYER: [[u8; 4]; 4] = [[1, 17, 5, 21], [25, 9, 29, 13], [7, 23, 3, 19], [31, 15, 27, 11]];
+
+/// The threshold at a pixel, 1/32 of an output step.
+#[inline(always)]
+#[must_use]
+pub fn threshold(x: usize, y: usize) -> u32 {
+    BAYER[y & 3][x & 3].into()
+}
+
+/// A tone of levels with a threshold that changes from pixel to pixel instead of rounding.
+#[derive(Clone, Copy, Debug)]
+pub struct Dithered<C> {
+    /// Channels at full level, Q0.8 of an 8-bit channel scaled to the output's depth; used for one walked level.
+    pub base: [u16; 3],
+    row: usize,
+    pixel: PhantomData<C>,
+}
+
+impl<C: Pixel> Dithered<C> {
+    /// A dither for one walked level that scales `base`, or for three levels.
+    #[must_use]
+    pub fn new(base: [u16; 3]) -> Self {
+        Self { base, row: 0, pixel: PhantomData }
+    }
+}
+
+/// A pixel from channels in unsigned Q8.8, scaled to the output's depth, under a [`threshold`].
+#[inline(always)]
+#[must_use]
+pub fn quantise<C: Pixel>(channels: [u32; 3], threshold: u32) -> C {
+    let mut out = [0; 3];
+    for (out, (channel, depth)) in out.iter_mut().zip(channels.into_iter().zip(C::DEPTH)) {
+        // One output step is 2^(16 - depth) of the Q8.8 channel.
+        *out = (((channel << 5) + (threshold << (16 - depth))) >> (21 - depth)).min((1 << depth) - 1) as u8;
+    }
+    C::pack(out)
+}
+
+/// A biased, walked level as unsigned Q8.8.
+#[inline(always)]
+fn fine_level(walked: u32) -> u32 {
+    ((walked >> (WALK - 8)) as i32 - (BIAS << 8)).clamp(0, 255 << 8) as u32
+}
+
+impl<C: Pixel> Tone<[u32; 1]> for Dithered<C> {
+    type Pixel = C;
+
+    #[inline(always)]
+    fn tone(&self, [level]: [u32; 1], x: usize) -> C {
+        let level = fine_level(level);
+        quantise(self.base.map(|base| (level * u32::from(base)) >> 8), threshold(x, self.row))
+    }
+
+    fn start(&mut self, row: i32) {
+        self.row = row as usize;
+    }
+
+    #[inline(always)]
+    fn step_row(&mut self) {
+        self.row += 1;
+    }
+}
+
+impl<C: Pixel> Tone<[u32; 3]> for Dithered<C> {
+    type Pixel = C;
+
+    #[inline(always)]
+    fn tone(&self, levels: [u32; 3], x: usize) -> C {
+        quantise(levels.map(fine_level), threshold(x, self.row))
+    }
+
+    fn start(&mut self, row: i32) {
+        self.row = row as usize;
+    }
+
+    #[inline(always)]
+    fn step_row(&mut self) {
+        self.row += 1;
+    }
+}

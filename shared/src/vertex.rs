@@ -1,0 +1,163 @@
+//! Object space to the screen.
+
+use crate::{
+    format::{DEPTH, ROTATION, SUBPIXEL, UNIT},
+    scene::Pose,
+    stream::record::{Camera, PERSPECTIVE},
+};
+use embedded_graphics_core::geometry::Size;
+
+/// A vertex on the screen, with what its light comes to.
+#[derive(Clone, Copy, Debug)]
+pub struct ScreenVertex {
+    /// Column, 1/16 pixel.
+    pub x: i32,
+    /// Row, 1/16 pixel, downwards.
+    pub y: i32,
+    /// Nearness, Q0.28.
+    pub depth: i32,
+    /// `[N·L, N·H, -]` in Q2.30 under one constant light, else light levels in Q9.7.
+    pub light: [i32; 3],
+    /// What is known of it in this frame.
+    pub state: State,
+}
+
+/// What is known of a cached vertex in this frame.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum State {
+    /// No triangle has asked for it.
+    Idle,
+    /// A triangle that faces the camera uses it.
+    Needed,
+    /// Position and light are those of this frame.
+    Ready,
+    /// In front of the near plane or beyond the guard band: its triangles are clipped.
+    Outside,
+}
+
+impl ScreenVertex {
+    /// Nothing yet.
+    pub const EMPTY: Self = Self { x: 0, y: 0, depth: 0, light: [0; 3], state: State::Idle };
+}
+
+/// Largest distance from the viewport's centre that screen coordinates may have, in 1/16 pixel.
+///
+/// Twice the widest viewport: triangles that only cross its border are not clipped but walked.
+pub const GUARD: i64 = 4096 << SUBPIXEL;
+
+/// Nearness of a vertex at the near plane, Q0.28: less than one, so that rounding cannot wrap it.
+const NEAREST: i32 = (1 << DEPTH) - (1 << 10);
+
+/// One frame's way from object space to the screen.
+#[derive(Clone, Copy, Debug)]
+pub struct View {
+    /// Q2.14: positions have no more.
+    rotation: [[i32; 3]; 3],
+    translation: [i32; 3],
+    /// Centre of the viewport, 1/16 pixel.
+    centre: [i32; 2],
+    projection: Projection,
+    /// Half of the viewport's smaller side, in 1/16 pixel, times the focal length, Q.16.
+    focal: i64,
+    near: i32,
+}
+
+#[derive(Clone, Copy, Debug)]
+enum Projection {
+    Perspective {
+        /// `near << shift`, as large as 32 bits allow: divided by z it is nearness with `shift` fraction bits.
+        numerator: u32,
+        shift: u32,
+        /// Pixels (1/16) per unit at the near plane, Q.16.
+        scale: i64,
+    },
+    Orthographic {
+        far: i32,
+        /// Nearness per unit of distance, Q.14.
+        nearness: i64,
+    },
+}
+
+impl View {
+    /// The view of `pose` on a viewport of `size` pixels.
+    #[must_use]
+    pub fn new(camera: &Camera, pose: &Pose, size: Size) -> Self {
+        let round = |c: i32| (c + (1 << (ROTATION - UNIT - 1))) >> (ROTATION - UNIT);
+        let smaller = size.width.min(size.height);
+        let focal = (i64::from(smaller) << (SUBPIXEL - 1)) * i64::from(camera.focal);
+        let near = camera.near.max(1);
+        let projection = if camera.projection == PERSPECTIVE {
+            let shift = near.unsigned_abs().leading_zeros();
+            let scale = (focal << UNIT) / i64::from(near);
+            Projection::Perspective { numerator: near.unsigned_abs() << shift, shift, scale }
+        } else {
+            let nearness = ((NEAREST as i64) << UNIT) / i64::from((camera.far - near).max(1));
+            Projection::Orthographic { far: camera.far, nearness }
+        };
+        Self {
+            rotation: pose.rotation.map(|row| row.map(round)),
+            translation: pose.translation,
+            centre: [(size.width << (SUBPIXEL - 1)) as i32, (size.height << (SUBPIXEL - 1)) as i32],
+            projection,
+            focal,
+            near,
+        }
+    }
+
+    /// Object to eye space, Q18.14.
+    #[inline(always)]
+    #[must_use]
+    pub fn to_eye(&self, [x, y, z]: [i16; 3]) -> [i32; 3] {
+        let along = |k: usize| {
+            let [a, b, c] = self.rotation[k];
+            let sum = a.wrapping_mul(x.into()).wrapping_add(b.wrapping_mul(y.into())).wrapping_add(c.wrapping_mul(z.into()));
+            (sum >> UNIT).wrapping_add(self.translation[k])
+        };
+        [along(0), along(1), along(2)]
+    }
+
+    /// Eye space to `[x, y, nearness]` on the screen, and whether it lies behind the near plane and within the
+    /// guard band. What does not is moved there: only clipping, which rounds, may use it then.
+    #[inline(always)]
+    #[must_use]
+    pub fn project(&self, eye: [i32; 3]) -> ([i32; 3], bool) {
+        let [x, y, z] = eye;
+        let (near, z) = (z >= self.near, z.max(self.near));
+        let (x, y, depth) = match self.projection {
+            Projection::Perspective { numerator, shift, scale } => {
+                let nearness = i64::from(numerator / z.unsigned_abs().max(1));
+                // x near / z in Q.16, then pixels.
+                let place = |c: i32| (((i64::from(c) * nearness) >> (shift - 2)) * scale + (1 << 31)) >> 32;
+                (place(x), place(y), ((nearness as u64) << DEPTH >> shift).min(NEAREST as u64) as i32)
+            }
+            Projection::Orthographic { far, nearness } => {
+                let place = |c: i32| (i64::from(c) * self.focal + (1 << (UNIT + 15))) >> (UNIT + 16);
+                let depth = ((i64::from(far - z) * nearness) >> UNIT).clamp(0, NEAREST.into()) as i32;
+                (place(x), place(y), depth)
+            }
+        };
+        let inside = |c: i64| (-GUARD..=GUARD).contains(&c);
+        let within = near && inside(x) && inside(y);
+        let limited = |c: i64| c.clamp(-GUARD, GUARD) as i32;
+        ([self.centre[0] + limited(x), self.centre[1] - limited(y), depth], within)
+    }
+
+    /// How far `eye` lies on the inner side of a clip plane (near, then the guard band's left, right, bottom, top); negative outside.
+    #[must_use]
+    pub fn distance(&self, eye: [i32; 3], plane: usize) -> i64 {
+        let [x, y, z] = eye.map(i64::from);
+        let along = match plane {
+            0 => return z - i64::from(self.near),
+            1 => -x,
+            2 => x,
+            3 => -y,
+            _ => y,
+        };
+        // along * focal / z <= GUARD, z being 1 without perspective.
+        let z = if matches!(self.projection, Projection::Perspective { .. }) { z } else { 1 << UNIT };
+        ((GUARD * z) << 16) - along * self.focal
+    }
+}
+
+/// Number of clip planes of [`View::distance`].
+pub const PLANES: usize = 5;

@@ -1,0 +1,191 @@
+//! Walked polynomials against exact ones, with the bounds that the documentation promises.
+//!
+//! Walking costs 2^-23 (1 + S + S²/2) LSB, S half the width plus half the height of what is drawn: coefficients are
+//! rounded once, at an anchor. Set-up costs more the thinner the triangle: with k its length over its height, [`QUADRATIC`] k²
+//! and [`LINEAR`] k, a part of the nodes' range.
+
+use microphong::{
+    format::{LEVEL, WALK},
+    poly::{Patch, Walker, basis::Basis, plane::Plane, quadric::Quadric},
+};
+use proptest::{
+    prelude::Rng,
+    test_runner::{RngAlgorithm, TestRng},
+};
+use std::ops::Range;
+
+/// Set-up error of a quadratic on a triangle as long as high, LSB.
+const QUADRATIC: f64 = 255.0 / (1u64 << 24) as f64;
+/// Set-up error of a plane on a triangle as long as high, LSB.
+const LINEAR: f64 = 255.0 / (1u64 << 28) as f64;
+
+struct Random(TestRng);
+
+impl Random {
+    fn pick(&mut self, range: Range<i32>) -> i32 {
+        range.start + (self.0.next_u64() % (range.end - range.start) as u64) as i32
+    }
+}
+
+/// Screen and triangle, 1/16 pixel.
+struct Case {
+    width: i32,
+    height: i32,
+    corners: [[i32; 2]; 3],
+}
+
+fn case(random: &mut Random, kind: usize) -> Case {
+    let (width, height) = [(320, 240), (320, 240), (320, 240), (1920, 1080), (4096, 4096), (320, 240)][kind];
+    let (w, h) = (width * 16, height * 16);
+    let corners = match kind {
+        // Tiny.
+        1 => {
+            let (x, y) = (random.pick(64..w - 64), random.pick(64..h - 64));
+            [0; 3].map(|_| [x + random.pick(-48..48), y + random.pick(-48..48)])
+        }
+        // A full screen, corner to corner.
+        4 if random.pick(0..10) == 0 => [[0, 0], [w, random.pick(0..99)], [random.pick(0..99), h]],
+        // Slivers, 0.1 to 8 pixels high.
+        2 => {
+            let a = [random.pick(0..w), random.pick(0..h)];
+            let b = [random.pick(0..w), random.pick(0..h)];
+            let k = random.pick(0..1000);
+            let c = [0, 1].map(|i| a[i] + (b[i] - a[i]) * k / 1000 + random.pick(-128..128));
+            [a, b, c]
+        }
+        // Far beyond the viewport.
+        5 => [0; 3].map(|_| [random.pick(-32_000..32_000), random.pick(-32_000..32_000)]),
+        _ => [0; 3].map(|_| [random.pick(0..w), random.pick(0..h)]),
+    };
+    Case { width, height, corners }
+}
+
+fn side(a: [i32; 2], b: [i32; 2], p: [i32; 2]) -> i64 {
+    let d = |p: [i32; 2], k: usize| i64::from(p[k]) - i64::from(a[k]);
+    d(b, 0) * d(p, 1) - d(b, 1) * d(p, 0)
+}
+
+/// Barycentric coordinates of a point.
+fn barycentric(c: [[i32; 2]; 3], p: [i32; 2]) -> [f64; 3] {
+    let whole = side(c[0], c[1], c[2]) as f64;
+    [(c[1], c[2]), (c[2], c[0]), (c[0], c[1])].map(|(a, b)| side(a, b, p) as f64 / whole)
+}
+
+/// The columns of `row` whose centres lie inside, and within the viewport.
+fn span(case: &Case, row: i32) -> Range<i32> {
+    let c = case.corners;
+    let y = f64::from(row * 16 + 8);
+    let (mut left, mut right) = (f64::from(case.width * 16), 0f64);
+    for (a, b) in [(c[0], c[1]), (c[1], c[2]), (c[2], c[0])] {
+        let (ay, by) = (f64::from(a[1]), f64::from(b[1]));
+        if (ay <= y) != (by <= y) {
+            let x = f64::from(a[0]) + (y - ay) / (by - ay) * f64::from(b[0] - a[0]);
+            (left, right) = (left.min(x), right.max(x));
+        }
+    }
+    let first = ((left.max(0.0) - 8.0) / 16.0).ceil() as i32;
+    let last = ((right.min(f64::from(case.width * 16)) - 8.0) / 16.0).floor() as i32;
+    first..last + 1
+}
+
+#[test]
+fn quadratics_of_100_000_random_triangles_stay_within_the_bound() {
+    let mut random = Random(TestRng::from_seed(RngAlgorithm::ChaCha, &[3; 32]));
+    let (mut triangles, mut pixels, mut longest) = (0, 0u64, 0);
+    let mut worst = [(0f64, 0f64); 6];
+    for i in 0..150_000 {
+        let kind = i % 6;
+        let mut case = case(&mut random, kind);
+        if side(case.corners[0], case.corners[1], case.corners[2]) < 0 {
+            case.corners.swap(1, 2);
+        }
+        let c = case.corners;
+        let box_of = |k: usize| (c.iter().map(|c| c[k]).min().unwrap(), c.iter().map(|c| c[k]).max().unwrap());
+        let ((x0, x1), (y0, y1)) = (box_of(0), box_of(1));
+        let size = (x1 - x0).max(y1 - y0);
+        let visible = [(x0 >> 4).max(0), (y0 >> 4).max(0), ((x1 >> 4) + 1).min(case.width), ((y1 >> 4) + 1).min(case.height)];
+        // Thinner than a pixel, the field is linear on purpose: the next test.
+        if side(c[0], c[1], c[2]) < i64::from(size) * 32 || visible[0] >= visible[2] || visible[1] >= visible[3] {
+            continue;
+        }
+        let Some(basis) = Basis::new(c, visible) else { continue };
+        triangles += 1;
+        let nodes: [i32; 6] = std::array::from_fn(|_| random.pick(0..255 << LEVEL));
+        let mut patch = Quadric::<1>::fit::<15>(&basis, [nodes], WALK - LEVEL);
+        let half = f64::from(visible[2] - visible[0] + visible[3] - visible[1]) / 2.0;
+        let walking = 2f64.powi(-23) * (1.0 + half + half * half / 2.0);
+        let thinness = f64::from(size).powi(2) / side(c[0], c[1], c[2]) as f64;
+        let bound = walking + QUADRATIC * thinness * thinness;
+        let rows = [visible[1], visible[3] - 1, random.pick(visible[1]..visible[3])];
+        let mut at = basis.row();
+        for row in rows {
+            let columns = span(&case, row);
+            if columns.is_empty() {
+                continue;
+            }
+            patch.jump(row - at);
+            at = row;
+            longest = longest.max(columns.len());
+            let mut walker = patch.enter(columns.end);
+            for x in columns.rev() {
+                walker.step();
+                let [walked] = walker.value();
+                let b = barycentric(c, [x * 16 + 8, row * 16 + 8]);
+                let n = nodes.map(|node| f64::from(node) / 128.0);
+                let exact = (0..3).map(|k| b[k] * (2.0 * b[k] - 1.0) * n[k]).sum::<f64>()
+                    + 4.0 * (b[0] * b[1] * n[3] + b[1] * b[2] * n[4] + b[2] * b[0] * n[5]);
+                let error = (f64::from(walked as i32) / f64::from(1 << WALK) - exact).abs();
+                // Values wrap: 341 LSB is as far from 0 as -171.
+                let error = error.min((error - 512.0).abs());
+                worst[kind] = (worst[kind].0.max(error), worst[kind].1.max(error / bound));
+                assert!(error <= bound, "triangle {i} {c:?}, pixel {x},{row}: error {error}, bound {bound}");
+                pixels += 1;
+            }
+        }
+    }
+    println!("{triangles} triangles, {pixels} pixels, longest span {longest}");
+    for (name, (error, share)) in ["320x240", "tiny", "sliver", "1920x1080", "4096x4096", "clipped"].iter().zip(worst) {
+        println!("{name:10} worst error {error:.5} LSB, {share:.2} of the bound");
+    }
+    assert!(triangles >= 100_000 && longest > 3_900);
+}
+
+#[test]
+fn planes_stay_within_the_bound_even_on_slivers() {
+    let mut random = Random(TestRng::from_seed(RngAlgorithm::ChaCha, &[4; 32]));
+    let mut worst = 0f64;
+    for i in 0..60_000 {
+        let mut case = case(&mut random, [0, 1, 2, 2, 2, 5][i % 6]);
+        if side(case.corners[0], case.corners[1], case.corners[2]) < 0 {
+            case.corners.swap(1, 2);
+        }
+        let Some(basis) = Basis::new(case.corners, [0, 0, case.width, case.height]) else { continue };
+        let nodes: [i32; 3] = std::array::from_fn(|_| random.pick(0..255 << LEVEL));
+        let extent = |k: usize| case.corners.iter().map(|c| c[k]).max().unwrap() - case.corners.iter().map(|c| c[k]).min().unwrap();
+        let size = f64::from(extent(0).max(extent(1)));
+        let thinness = size * size / side(case.corners[0], case.corners[1], case.corners[2]) as f64;
+        let mut plane = Plane::<1>::fit(&basis, [nodes], WALK - LEVEL);
+        let mut at = basis.row();
+        for row in 0..case.height {
+            let columns = span(&case, row);
+            if columns.is_empty() {
+                continue;
+            }
+            plane.jump(row - at);
+            at = row;
+            let mut walker = plane.enter(columns.end);
+            for x in columns.rev() {
+                walker.step();
+                let [walked] = walker.value();
+                let b = barycentric(case.corners, [x * 16 + 8, row * 16 + 8]);
+                let exact: f64 = (0..3).map(|k| b[k] * f64::from(nodes[k]) / 128.0).sum();
+                let error = (f64::from(walked as i32) / f64::from(1 << WALK) - exact).abs();
+                let distance = f64::from((x - basis.column()).abs() + (row - basis.row()).abs());
+                let bound = 2f64.powi(-23) * (1.0 + distance) + LINEAR * thinness;
+                worst = worst.max(error / bound);
+                assert!(error <= bound, "triangle {i} {:?}, pixel {x},{row}: error {error}, bound {bound}", case.corners);
+            }
+        }
+    }
+    println!("worst error {worst:.2} of the bound");
+}
