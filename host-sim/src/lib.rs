@@ -1,2 +1,16 @@
 //! The simulator as a library: what the `microphong` command is made of.
 
+pub mod board;
+pub mod bytes;
+pub mod image;
+pub mod look;
+pub mod mesh;
+pub mod obj;
+pub mod output;
+pub mod quantise;
+pub mod render;
+pub mod scene;
+pub mod shapes;
+pub mod vector;
+pub mod verify;
+pub mod view;

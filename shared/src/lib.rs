@@ -15,6 +15,7 @@
 //! | [`raster`] | exact coverage, and the inner loop |
 //! | [`shade`] | the methods: which polynomials, which tone |
 //! | [`render`] | the loop nest: frame, band, triangle, row |
+//! | [`display`] | frames onto embedded-graphics displays |
 #![no_std]
 #![forbid(unsafe_code)]
 
@@ -22,6 +23,7 @@ pub mod band;
 pub mod bin;
 pub mod clip;
 pub mod cull;
+pub mod display;
 pub mod format;
 pub mod math;
 pub mod palette;
@@ -35,6 +37,7 @@ pub mod stream;
 pub mod tone;
 pub mod vertex;
 
+pub use display::Picture;
 pub use render::{Frame, Memory, Renderer, SetupError, Stats, Workspace};
 pub use shade::Shader;
 pub use stream::{Stream, StreamError};

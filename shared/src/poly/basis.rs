@@ -18,6 +18,11 @@ const GUARD: i32 = 12;
 /// Farther than this from the first corner, in columns plus rows, the anchor moves to the middle of what is drawn.
 const NEAR: i32 = 256;
 
+/// Length over height up to which a triangle gets quadratic fields, linear ones beyond.
+///
+/// The error of a quadratic grows with the square of this ratio: at most 2^-22 of the nodes' range at 1, 2^-8 here.
+pub const MAX_THINNESS: i64 = 128;
+
 /// The screen geometry of a triangle, ready to fit polynomials.
 ///
 /// The *anchor* is the pixel to which coefficients are rounded; errors grow with
@@ -35,7 +40,7 @@ pub struct Basis {
     shift: [i32; 2],
     /// The anchor.
     anchor: [i32; 2],
-    /// Thinner than a pixel: quadratic terms would be larger than what they add.
+    /// Longer than [`MAX_THINNESS`] times its height: quadratic terms would add less than their own error.
     thin: bool,
 }
 
@@ -58,6 +63,7 @@ impl Basis {
         let zeros = det.leading_zeros() as i32;
         let r = i64::from(recip(((det << (zeros & 63)) >> 32) as u32 | 1 << 31));
         let size = x1.unsigned_abs() | y1.unsigned_abs() | x2.unsigned_abs() | y2.unsigned_abs();
+        let extent = x1.unsigned_abs().max(y1.unsigned_abs()).max(x2.unsigned_abs()).max(y2.unsigned_abs());
         // r < 2^31, coordinates < 2^(32 - lz): mantissas below 2^30.
         let drop = 33 - size.leading_zeros() as i32;
         let mantissa = |c: i32| scale(i64::from(c) * r, drop) as i32;
@@ -74,8 +80,7 @@ impl Basis {
             offset: [(pixel[0] << SUBPIXEL) + CENTRE - x0, (pixel[1] << SUBPIXEL) + CENTRE - y0],
             shift,
             anchor: [pixel[0].wrapping_add(shift[0]), pixel[1].wrapping_add(shift[1])],
-            // Height over the longest side below one pixel: det < 16 size.
-            thin: det < i64::from(size) << SUBPIXEL,
+            thin: i64::from(extent) * i64::from(extent) > det.saturating_mul(MAX_THINNESS),
         })
     }
 

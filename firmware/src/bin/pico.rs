@@ -1,0 +1,44 @@
+//! Raspberry Pi Pico (RP2040) with the common 1.3 inch ST7789 panel plugged on.
+#![no_std]
+#![no_main]
+
+use embassy_rp::{
+    bind_interrupts, dma,
+    gpio::{Level, Output},
+    peripherals::DMA_CH0,
+    spi::{self, Spi},
+};
+use microphong::{Workspace, pixel::Rgb565Be};
+use microphong_firmware::{budget::PICO, run, st7789::St7789};
+
+bind_interrupts!(struct Interrupts {
+    DMA_IRQ_0 => dma::InterruptHandler<DMA_CH0>;
+});
+
+/// Half of the peripherals' clock, the fastest that the port can do.
+const SPI_HZ: u32 = 62_500_000;
+
+// SAFETY: transparent over a `u16`, of which 0 is a value.
+const BLACK: Rgb565Be = unsafe { core::mem::zeroed() };
+
+#[cortex_m_rt::entry]
+fn main() -> ! {
+    static mut BANDS: [[Rgb565Be; PICO.band()]; 2] = [[BLACK; PICO.band()]; 2];
+    static mut WORKSPACE: Workspace<Rgb565Be, { PICO.vertices }, { PICO.triangles }, { PICO.band() }, { PICO.materials }> =
+        Workspace::new(BLACK);
+
+    let pins = embassy_rp::init(Default::default());
+    let mut config = spi::Config::default();
+    config.frequency = SPI_HZ;
+    let mut display = St7789 {
+        bus: Spi::new_txonly(pins.SPI1, pins.PIN_10, pins.PIN_11, pins.DMA_CH0, Interrupts, config),
+        select: Output::new(pins.PIN_9, Level::High),
+        data: Output::new(pins.PIN_8, Level::Low),
+        reset: Output::new(pins.PIN_12, Level::High),
+        backlight: Output::new(pins.PIN_13, Level::Low),
+        led: Output::new(pins.PIN_25, Level::Low),
+    };
+    display.start(None);
+    let [front, back] = BANDS;
+    run(&mut display, WORKSPACE.memory(), [front, back])
+}

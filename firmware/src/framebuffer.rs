@@ -1,0 +1,118 @@
+//! A display that is nothing but memory: 320x240 RGB565, which the host reads while the program waits.
+
+use crate::{Display, budget::MPS2, error_picture, semihosting};
+use core::convert::Infallible;
+use embedded_graphics::{
+    pixelcolor::{IntoStorage, Rgb565, RgbColor},
+    prelude::*,
+    primitives::Rectangle,
+};
+
+/// Pixels of the frame buffer.
+pub const LENGTH: usize = MPS2.width * MPS2.height;
+
+/// Rows from the top, two bytes a pixel, little-endian.
+#[derive(Debug)]
+pub struct Framebuffer(&'static mut [u16; LENGTH]);
+
+impl Framebuffer {
+    /// The host finds `memory` by its symbol, `FRAMEBUFFER`.
+    pub fn new(memory: &'static mut [u16; LENGTH]) -> Self {
+        Self(memory)
+    }
+
+    /// Copies pixels into the rows of `area`, which must lie inside.
+    fn blit(&mut self, area: Rectangle, pixels: &[Rgb565]) {
+        let (left, top) = (area.top_left.x as usize, area.top_left.y as usize);
+        let width = area.size.width as usize;
+        let rows = self.0.chunks_exact_mut(MPS2.width).skip(top).map(|row| &mut row[left..left + width]);
+        for (row, source) in rows.zip(pixels.chunks_exact(width)) {
+            for (to, from) in row.iter_mut().zip(source) {
+                *to = from.into_storage();
+            }
+        }
+    }
+}
+
+impl OriginDimensions for Framebuffer {
+    fn size(&self) -> Size {
+        Size::new(MPS2.width as u32, MPS2.height as u32)
+    }
+}
+
+impl DrawTarget for Framebuffer {
+    type Color = Rgb565;
+    type Error = Infallible;
+
+    fn draw_iter<I: IntoIterator<Item = Pixel<Rgb565>>>(&mut self, pixels: I) -> Result<(), Infallible> {
+        let area = self.bounding_box();
+        for Pixel(point, colour) in pixels {
+            if area.contains(point) {
+                self.0[point.y as usize * MPS2.width + point.x as usize] = colour.into_storage();
+            }
+        }
+        Ok(())
+    }
+
+    fn fill_solid(&mut self, area: &Rectangle, colour: Rgb565) -> Result<(), Infallible> {
+        let area = area.intersection(&self.bounding_box());
+        let row = [colour; MPS2.width];
+        for y in area.rows() {
+            let line = Rectangle::new(Point::new(area.top_left.x, y), Size::new(area.size.width, 1));
+            self.blit(line, &row[..area.size.width as usize]);
+        }
+        Ok(())
+    }
+}
+
+impl Display for Framebuffer {
+    type Color = Rgb565;
+
+    fn size(&self) -> Size {
+        OriginDimensions::size(self)
+    }
+
+    fn send<R>(&mut self, area: Rectangle, pixels: &[Rgb565], meanwhile: impl FnOnce() -> R) -> R {
+        self.blit(area, pixels);
+        meanwhile()
+    }
+
+    fn present(&mut self) {
+        semihosting::wait_for_host();
+    }
+
+    fn end(&mut self) {
+        semihosting::exit(0);
+    }
+
+    fn fail(&mut self, message: &str) {
+        let Ok(()) = error_picture(self, Rgb565::new(20, 0, 0), Rgb565::WHITE, message);
+    }
+
+    fn halt(&mut self) -> ! {
+        semihosting::wait_for_host();
+        semihosting::exit(1)
+    }
+}
+
+/// Memory and start of a board with such a display; a macro, as the statics of `main` must be written in it.
+#[macro_export]
+macro_rules! framebuffer_board {
+    () => {
+        use ::embedded_graphics::pixelcolor::{Rgb565, RgbColor};
+        use ::microphong::Workspace;
+        use ::microphong_firmware::{budget::MPS2, framebuffer, run};
+
+        #[::cortex_m_rt::entry]
+        fn main() -> ! {
+            #[unsafe(no_mangle)]
+            static mut FRAMEBUFFER: [u16; framebuffer::LENGTH] = [0; framebuffer::LENGTH];
+            static mut BANDS: [[Rgb565; MPS2.band()]; 2] = [[Rgb565::BLACK; MPS2.band()]; 2];
+            static mut WORKSPACE: Workspace<Rgb565, { MPS2.vertices }, { MPS2.triangles }, { MPS2.band() }, { MPS2.materials }> =
+                Workspace::new(Rgb565::BLACK);
+
+            let [front, back] = BANDS;
+            run(&mut framebuffer::Framebuffer::new(FRAMEBUFFER), WORKSPACE.memory(), [front, back])
+        }
+    };
+}

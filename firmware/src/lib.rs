@@ -1,0 +1,115 @@
+//! The firmware's one frame loop, and what the boards need to take part in it.
+//!
+//! A board is a [`Display`], memory and a `main` that hands both to [`run`].
+#![no_std]
+
+pub mod budget;
+mod failure;
+mod picture;
+#[cfg(feature = "semihosting")]
+mod semihosting;
+mod stack;
+mod stream;
+
+#[cfg(any(feature = "mps2-an385", feature = "mps2-an386"))]
+pub mod framebuffer;
+#[cfg(feature = "lm3s6965evb")]
+pub mod ssd0323;
+#[cfg(feature = "pico")]
+pub mod st7789;
+
+use failure::Failure;
+pub use picture::error_picture;
+
+use embedded_graphics::prelude::*;
+use embedded_graphics::primitives::Rectangle;
+use microphong::{
+    Memory, Renderer, Stream,
+    pixel::{PictureCrc, Pixel},
+};
+use panic_probe as _;
+
+/// What the frame loop needs of a board.
+pub trait Display {
+    /// What the renderer should produce.
+    type Color: Pixel;
+
+    /// The picture's size.
+    fn size(&self) -> Size;
+
+    /// A new frame begins.
+    fn begin(&mut self) {}
+
+    /// Shows the pixels of `area`, row by row, and does `meanwhile`, at the same time if the board can.
+    fn send<R>(&mut self, area: Rectangle, pixels: &[Self::Color], meanwhile: impl FnOnce() -> R) -> R;
+
+    /// All of a frame has been sent.
+    fn present(&mut self);
+
+    /// All frames of the stream have been shown; they start again when this returns.
+    fn end(&mut self) {}
+
+    /// There is no picture to draw: shows `message` instead.
+    fn fail(&mut self, message: &str);
+
+    /// The message stays.
+    fn halt(&mut self) -> !;
+}
+
+/// Draws the frames of the stream in flash, again and again. Two pixel buffers, so that one can be drawn while the other is sent.
+pub fn run<D: Display>(display: &mut D, memory: Memory<'_, D::Color>, bands: [&mut [D::Color]; 2]) -> ! {
+    let Err(failure) = animate(display, memory, bands);
+    let message = failure.message();
+    display.fail(&message);
+    // The host reads this line, and then the display: in this order.
+    defmt::error!("error: {=str}", message.as_str());
+    display.halt()
+}
+
+/// Returns only if it cannot start.
+fn animate<D: Display>(
+    display: &mut D,
+    memory: Memory<'_, D::Color>,
+    [front, back]: [&mut [D::Color]; 2],
+) -> Result<core::convert::Infallible, Failure> {
+    let stream = Stream::parse(stream::bytes())?;
+    let mut renderer = Renderer::new(stream, display.size(), memory)?;
+    loop {
+        for number in 0..u32::from(stream.header.frames) {
+            draw(display, &mut renderer, number, [front, back]);
+        }
+        // The host reads this line: keep its form.
+        defmt::info!("stack {=usize} bytes", stack::used());
+        display.end();
+    }
+}
+
+/// Draws one frame: while a band is on its way to the display, the next one is drawn.
+fn draw<D: Display>(display: &mut D, renderer: &mut Renderer<'_, D::Color>, number: u32, [mut front, mut back]: [&mut [D::Color]; 2]) {
+    display.begin();
+    let shader = renderer.shader().name();
+    let mut crc = PictureCrc::default();
+    let mut frame = renderer.frame(number);
+    let mut next = frame.next_band(front);
+    while let Some(area) = next {
+        let pixels = &front[..(area.size.width * area.size.height) as usize];
+        next = display.send(area, pixels, || {
+            crc.update(pixels);
+            frame.next_band(back)
+        });
+        core::mem::swap(&mut front, &mut back);
+    }
+    let stats = frame.stats();
+    // The host reads this line: keep its form.
+    defmt::info!(
+        "frame {=u32} shader {=str} crc {=u32:08x} triangles {=u32} culled {=u32} drawn {=u32} pixels {=u32}",
+        number,
+        shader,
+        crc.finish(),
+        stats.triangles,
+        stats.culled,
+        stats.drawn,
+        stats.pixels
+    );
+    display.present();
+}

@@ -1,0 +1,19 @@
+//! How much stack was ever used.
+
+use cortex_m_rt::STACK_PAINT_VALUE;
+
+/// Bytes of stack used since the start. The start-up code has painted all of the stack; what has lost its paint has been used.
+#[must_use]
+pub(crate) fn used() -> usize {
+    unsafe extern "C" {
+        static _stack_end: u32;
+        static _stack_start: u32;
+    }
+    let bottom = &raw const _stack_end;
+    let top = &raw const _stack_start;
+    let words = (top.addr() - bottom.addr()) / size_of::<u32>();
+    // SAFETY: the linker places both symbols at the ends of the stack, aligned; it is readable RAM. Volatile, as the part above the stack
+    // pointer changes behind the compiler's back.
+    let clean = (0..words).take_while(|&word| unsafe { bottom.add(word).read_volatile() } == STACK_PAINT_VALUE).count();
+    (words - clean) * size_of::<u32>()
+}

@@ -1,0 +1,57 @@
+//! Compiles the firmware for a board.
+
+use super::Board;
+use anyhow::{Context, Result, ensure};
+use std::{
+    env,
+    ffi::OsString,
+    path::{Path, PathBuf},
+    process::Command,
+};
+
+/// Builds the firmware of `board` and returns the ELF's path.
+///
+/// Each board has a target directory of its own: two boards of one target would overwrite each other's files.
+///
+/// # Errors
+/// When the target or the compiler is missing, or the firmware does not compile.
+pub fn firmware(board: Board) -> Result<PathBuf> {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("..");
+    let root = root
+        .canonicalize()
+        .with_context(|| format!("cannot find the sources in {}: they must lie where this program was compiled", root.display()))?;
+    let directory = root.join("firmware");
+    install_target(board.target(), &directory)?;
+
+    let output = root.join("target/firmware").join(board.name());
+    let status = Command::new(cargo())
+        .current_dir(&directory)
+        .args(["build", "--quiet", "--release", "--locked", "--no-default-features", "--features", board.name()])
+        .args(["--bin", board.name(), "--target", board.target(), "--target-dir"])
+        .arg(&output)
+        // They would take the place of the flags in firmware/.cargo/config.toml.
+        .env_remove("RUSTFLAGS")
+        .env_remove("CARGO_ENCODED_RUSTFLAGS")
+        .env_remove("CARGO_BUILD_TARGET")
+        .status()
+        .context("cannot start cargo: install Rust from https://rustup.rs")?;
+    ensure!(status.success(), "the firmware for {board} did not compile; its messages are above");
+    Ok(output.join(board.target()).join("release").join(board.name()))
+}
+
+fn cargo() -> OsString {
+    env::var_os("CARGO").unwrap_or_else(|| "cargo".into())
+}
+
+/// Adds `target` to the toolchain in use unless it is there.
+fn install_target(target: &str, directory: &Path) -> Result<()> {
+    let remedy = format!("run `rustup target add {target}`");
+    let query = Command::new("rustc").current_dir(directory).args(["--print", "target-libdir", "--target", target]).output();
+    let query = query.with_context(|| format!("cannot start rustc to look for the target {target}: {remedy}"))?;
+    if query.status.success() && Path::new(String::from_utf8_lossy(&query.stdout).trim()).is_dir() {
+        return Ok(());
+    }
+    let added = Command::new("rustup").current_dir(directory).args(["target", "add", target]).status();
+    ensure!(added.is_ok_and(|status| status.success()), "the Rust target {target} is missing and could not be added: {remedy}");
+    Ok(())
+}

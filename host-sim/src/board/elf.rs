@@ -1,0 +1,128 @@
+//! The firmware's ELF file: what it takes of a board's memory, and another stream in it.
+
+use anyhow::{Context, Result, bail, ensure};
+use goblin::elf::{Elf as Parsed, program_header::PT_LOAD};
+use std::{fs, path::Path};
+
+/// A program for a board.
+#[derive(Clone, Debug)]
+pub struct Elf {
+    bytes: Vec<u8>,
+}
+
+/// A piece of flash or RAM to be filled before the start.
+#[derive(Clone, Copy, Debug)]
+pub struct Segment<'a> {
+    /// Where it is loaded.
+    pub address: u32,
+    /// What is loaded.
+    pub bytes: &'a [u8],
+}
+
+/// Size of an ELF32 program header and offsets of its fields.
+const HEADER: usize = 32;
+const OFFSET: usize = 4;
+const FILE_SIZE: usize = 16;
+const MEMORY_SIZE: usize = 20;
+
+impl Elf {
+    /// Reads the file at `path`.
+    ///
+    /// # Errors
+    /// When it cannot be read or is no ELF.
+    pub fn read(path: &Path) -> Result<Self> {
+        let elf = Self { bytes: fs::read(path).with_context(|| format!("cannot read the firmware {}", path.display()))? };
+        elf.parsed().with_context(|| format!("{} is not an ELF file", path.display()))?;
+        Ok(elf)
+    }
+
+    /// The file's content.
+    #[must_use]
+    pub fn bytes(&self) -> &[u8] {
+        &self.bytes
+    }
+
+    fn parsed(&self) -> Result<Parsed<'_>> {
+        let elf = Parsed::parse(&self.bytes)?;
+        ensure!(elf.little_endian && !elf.is_64, "not a little-endian 32-bit ELF");
+        Ok(elf)
+    }
+
+    /// Address and size of a symbol.
+    ///
+    /// # Errors
+    /// When there is no such symbol.
+    pub fn symbol(&self, name: &str) -> Result<(u32, u32)> {
+        let elf = self.parsed()?;
+        let symbol = elf.syms.iter().find(|symbol| elf.strtab.get_at(symbol.st_name) == Some(name));
+        let symbol = symbol.with_context(|| format!("the firmware has no symbol {name}: is it stripped?"))?;
+        Ok((symbol.st_value as u32, symbol.st_size as u32))
+    }
+
+    /// All that is loaded before the start.
+    ///
+    /// # Errors
+    /// When the file is damaged.
+    pub fn segments(&self) -> Result<Vec<Segment<'_>>> {
+        let elf = self.parsed()?;
+        let loaded = elf.program_headers.iter().filter(|header| header.p_type == PT_LOAD && header.p_filesz > 0);
+        loaded
+            .map(|header| {
+                let bytes = self.bytes.get(header.file_range()).context("a segment lies outside the file")?;
+                Ok(Segment { address: header.p_paddr as u32, bytes })
+            })
+            .collect()
+    }
+
+    /// Bytes of flash: code, constants, initial values and the stream.
+    ///
+    /// # Errors
+    /// When the file is damaged.
+    pub fn flash_bytes(&self) -> Result<u64> {
+        Ok(self.segments()?.iter().map(|segment| segment.bytes.len() as u64).sum())
+    }
+
+    /// Bytes of RAM for variables; the stack comes on top.
+    ///
+    /// # Errors
+    /// When the file is damaged.
+    pub fn ram_bytes(&self) -> Result<u64> {
+        let elf = self.parsed()?;
+        let variables = [".data", ".bss", ".uninit"];
+        let sections =
+            elf.section_headers.iter().filter(|s| elf.shdr_strtab.get_at(s.sh_name).is_some_and(|name| variables.contains(&name)));
+        Ok(sections.map(|section| section.sh_size).sum())
+    }
+
+    /// The same program with `stream` in place of its own: the new bytes go to the end of the file, and the segment points there.
+    ///
+    /// Section headers still describe the old stream; loaders look at segments only.
+    ///
+    /// # Errors
+    /// When the stream does not fit the board, or the program has no place for one.
+    pub fn with_stream(&self, stream: &[u8]) -> Result<Self> {
+        let (start, _) = self.symbol("__stream_start")?;
+        let (end, _) = self.symbol("__stream_end")?;
+        let room = (end - start) as usize;
+        ensure!(
+            stream.len() <= room,
+            "the stream has {} bytes, but this board has room for {room}; choose a scene with fewer triangles or another board",
+            stream.len()
+        );
+        let elf = self.parsed()?;
+        let is_stream = |header: &goblin::elf::ProgramHeader| header.p_type == PT_LOAD && header.p_vaddr == u64::from(start);
+        let Some(index) = elf.program_headers.iter().position(is_stream) else {
+            bail!("the firmware has no segment at {start:#x} for the stream: link it with -Tstream.x");
+        };
+        let header = elf.header.e_phoff as usize + index * HEADER;
+
+        let mut bytes = self.bytes.clone();
+        bytes.resize(bytes.len().next_multiple_of(4), 0);
+        let offset = bytes.len();
+        bytes.extend_from_slice(stream);
+        for (field, value) in [(OFFSET, offset), (FILE_SIZE, stream.len()), (MEMORY_SIZE, stream.len())] {
+            bytes[header + field..][..4].copy_from_slice(&(value as u32).to_le_bytes());
+        }
+        Ok(Self { bytes })
+    }
+}

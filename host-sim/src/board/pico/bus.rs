@@ -1,0 +1,271 @@
+//! What the processor sees: the crate's bus, with our serial port and DMA at their addresses, and the panel behind them.
+
+use super::{
+    dma::{CHANNELS, Dma, PACED_BY_SPI1, UNPACED},
+    panel::Panel,
+    spi::Spi,
+};
+use rp2040_emu::{
+    Bus as Chip,
+    bus::ppb::Ppb,
+    core::{CoreBus, Nvic},
+};
+use std::mem;
+
+/// Addresses of our peripherals; each appears four times: plain, toggling, setting and clearing bits.
+const SPI1: u32 = 0x4004_0000;
+const DMA: u32 = 0x5000_0000;
+const PERIPHERAL: u32 = !0x3FFF;
+
+/// The interrupt lines of the DMA controller start here.
+const DMA_INTERRUPT: u8 = 11;
+
+/// Pins that the panel hangs on.
+const SELECT: u32 = 9;
+const DATA: u32 = 8;
+const LED: u32 = 25;
+
+/// One of our peripherals.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Device {
+    Spi,
+    Dma,
+}
+
+fn device(address: u32) -> Option<Device> {
+    match address & PERIPHERAL {
+        SPI1 => Some(Device::Spi),
+        DMA => Some(Device::Dma),
+        _ => None,
+    }
+}
+
+/// The whole chip but for the processor, and what is wired to it.
+pub(super) struct Bus {
+    pub(super) chip: Chip,
+    pub(super) panel: Panel,
+    /// Processor cycles since the start.
+    pub(super) cycle: u64,
+    /// Since last cleared: an access to the fast I/O block, which takes one cycle instead of two.
+    pub(super) fast: bool,
+    /// Since last cleared: cycles that slow peripherals have added.
+    pub(super) wait: u64,
+    spi: Spi,
+    dma: Dma,
+    /// A DMA channel waits for room in the serial port.
+    waiting: bool,
+}
+
+impl Bus {
+    pub(super) fn new(chip: Chip, panel: Panel) -> Self {
+        Self { chip, panel, cycle: 0, fast: false, wait: 0, spi: Spi::default(), dma: Dma::default(), waiting: false }
+    }
+
+    fn pin(&self, number: u32) -> bool {
+        (self.chip.sio.gpio_out & self.chip.sio.gpio_oe) >> number & 1 == 1
+    }
+
+    pub(super) fn led(&self) -> bool {
+        self.pin(LED)
+    }
+
+    /// Lets time go on to `self.cycle`: words leave the serial port, and DMA refills it.
+    ///
+    /// The panel looks at its pins when a byte is complete, so a firmware that changes them too early is found out.
+    pub(super) fn tick(&mut self) {
+        while let Some((word, when)) = self.spi.sent(self.cycle) {
+            let (selected, data) = (!self.pin(SELECT), self.pin(DATA));
+            if selected {
+                self.panel.receive(data, word as u8);
+            } else {
+                self.panel.fail(|| format!("byte {word:#04x} was sent while the panel was not selected"));
+            }
+            if self.waiting {
+                self.transfer(when);
+            }
+        }
+    }
+
+    /// Makes the DMA transfers that can be made at cycle `now`.
+    fn transfer(&mut self, now: u64) {
+        self.waiting = false;
+        for index in 0..CHANNELS {
+            while self.dma.channels[index].busy() && self.dma.channels[index].count > 0 {
+                let channel = self.dma.channels[index];
+                match channel.pace() {
+                    UNPACED => {}
+                    PACED_BY_SPI1 if self.spi.ready() => {}
+                    PACED_BY_SPI1 => {
+                        self.waiting = true;
+                        break;
+                    }
+                    // Nothing else asks for data here, so such a channel never moves.
+                    _ => break,
+                }
+                self.copy(channel.read, channel.write, channel.width(), now);
+                self.dma.channels[index].advance();
+            }
+            if self.dma.channels[index].busy() && self.dma.channels[index].count == 0 {
+                for (line, raised) in (0..).zip(self.dma.end(index)) {
+                    if raised {
+                        self.chip.nvics[0].set_pending(DMA_INTERRUPT + line);
+                    }
+                }
+            }
+        }
+    }
+
+    fn copy(&mut self, from: u32, to: u32, width: u32, now: u64) {
+        let value = match width {
+            1 => self.chip.read8(from).into(),
+            2 => self.chip.read16(from).into(),
+            _ => self.chip.read32(from),
+        };
+        match (device(to), width) {
+            (Some(Device::Spi), _) => self.spi.push(value as u16, now),
+            (_, 1) => self.chip.write8(to, value as u8),
+            (_, 2) => self.chip.write16(to, value as u16),
+            _ => self.chip.write32(to, value),
+        }
+    }
+
+    fn read_device(&mut self, device: Device, address: u32) -> u32 {
+        match device {
+            Device::Spi => self.spi.read(address & 0xFFC),
+            Device::Dma => self.dma.read(address & 0xFFC),
+        }
+    }
+
+    /// True if the address is one of ours.
+    fn write_device(&mut self, address: u32, written: u32) -> bool {
+        let Some(device) = device(address) else {
+            return false;
+        };
+        let mode = address >> 12 & 3;
+        let old = if mode == 0 { 0 } else { self.read_device(device, address) };
+        let value = match mode {
+            0 => written,
+            1 => old ^ written,
+            2 => old | written,
+            _ => old & !written,
+        };
+        match device {
+            Device::Spi => self.spi.write(address & 0xFFC, value, self.cycle),
+            Device::Dma => {
+                if self.dma.write(address & 0xFFC, value, written) {
+                    self.transfer(self.cycle);
+                }
+            }
+        }
+        true
+    }
+
+    /// Counts what an access costs.
+    fn note(&mut self, address: u32) {
+        match address >> 28 {
+            0xD => self.fast = true,
+            0x4 => self.wait += 2,
+            _ => {}
+        }
+    }
+}
+
+impl CoreBus for Bus {
+    fn read8(&mut self, address: u32) -> u8 {
+        self.note(address);
+        match device(address) {
+            Some(device) => (self.read_device(device, address) >> (8 * (address & 3))) as u8,
+            None => self.chip.read8(address),
+        }
+    }
+
+    fn read16(&mut self, address: u32) -> u16 {
+        self.note(address);
+        match device(address) {
+            Some(device) => (self.read_device(device, address) >> (8 * (address & 2))) as u16,
+            None => self.chip.read16(address),
+        }
+    }
+
+    fn read32(&mut self, address: u32) -> u32 {
+        self.note(address);
+        match device(address) {
+            Some(device) => self.read_device(device, address),
+            None => self.chip.read32(address),
+        }
+    }
+
+    // The chip repeats a narrow write over the whole word.
+    fn write8(&mut self, address: u32, value: u8) {
+        self.note(address);
+        if !self.write_device(address, u32::from(value) * 0x0101_0101) {
+            self.chip.write8(address, value);
+        }
+    }
+
+    fn write16(&mut self, address: u32, value: u16) {
+        self.note(address);
+        if !self.write_device(address, u32::from(value) * 0x0001_0001) {
+            self.chip.write16(address, value);
+        }
+    }
+
+    fn write32(&mut self, address: u32, value: u32) {
+        self.note(address);
+        if !self.write_device(address, value) {
+            self.chip.write32(address, value);
+        }
+    }
+
+    fn set_active_pc(&mut self, pc: u32) {
+        self.chip.set_active_pc(pc);
+    }
+
+    fn bus_fault(&self) -> bool {
+        self.chip.bus_fault()
+    }
+
+    fn bus_fault_addr(&self) -> u32 {
+        self.chip.bus_fault_addr()
+    }
+
+    fn clear_bus_fault(&mut self) {
+        self.chip.clear_bus_fault();
+    }
+
+    fn ppb(&self, core: usize) -> &Ppb {
+        &self.chip.ppb[core]
+    }
+
+    fn ppb_mut(&mut self, core: usize) -> &mut Ppb {
+        &mut self.chip.ppb[core]
+    }
+
+    fn nvic(&self, core: usize) -> &Nvic {
+        &self.chip.nvics[core]
+    }
+
+    fn nvic_mut(&mut self, core: usize) -> &mut Nvic {
+        &mut self.chip.nvics[core]
+    }
+
+    fn active_core(&self) -> usize {
+        0
+    }
+
+    fn event_flag(&self, core: usize) -> bool {
+        self.chip.event_flag[core]
+    }
+
+    fn consume_event_flag(&mut self, core: usize) -> bool {
+        mem::replace(&mut self.chip.event_flag[core], false)
+    }
+
+    fn set_wfe_waiting(&mut self, core: usize, waiting: bool) {
+        self.chip.wfe_waiting[core] = waiting;
+    }
+
+    fn signal_sev(&mut self) {
+        self.chip.signal_sev();
+    }
+}

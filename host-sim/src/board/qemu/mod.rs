@@ -1,0 +1,140 @@
+//! Boards that QEMU emulates. The host reads the display while the firmware waits for a byte: no sleeping, no guessing.
+
+mod qmp;
+mod screen;
+
+use super::{Board, Recording, elf::Elf, log};
+use anyhow::{Context, Result, anyhow, bail, ensure};
+use qmp::Qmp;
+use screen::Screen;
+use std::{
+    fs,
+    io::{ErrorKind, Read, Write},
+    path::Path,
+    process::{Child, ChildStdin, ChildStdout, Command, Stdio},
+    sync::mpsc::{self, Receiver, RecvTimeoutError},
+    thread,
+    time::{Duration, Instant},
+};
+
+/// How long the firmware may be silent: a frame takes a second at most, and the machine may be busy.
+const SILENCE: Duration = Duration::from_secs(120);
+/// How long QEMU may take to end after the firmware has.
+const END: Duration = Duration::from_secs(20);
+
+/// A running emulator; ends with it.
+struct Emulator {
+    process: Child,
+    input: ChildStdin,
+    lines: Receiver<String>,
+}
+
+impl Drop for Emulator {
+    fn drop(&mut self) {
+        // It may have ended already, which is all that can be wrong here.
+        let _ = self.process.kill();
+        let _ = self.process.wait();
+    }
+}
+
+impl Emulator {
+    fn start(board: Board, program: &Path, socket: &Path, decoder: log::Decoder) -> Result<Self> {
+        let mut process = Command::new("qemu-system-arm")
+            .args(["-M", board.name(), "-display", "none", "-nodefaults", "-nic", "none", "-serial", "none", "-monitor", "none"])
+            .args(["-chardev", "stdio,id=host,signal=off", "-semihosting-config", "enable=on,target=native,chardev=host"])
+            .arg("-qmp")
+            .arg(format!("unix:{},server=on,wait=off", socket.display()))
+            .arg("-kernel")
+            .arg(program)
+            .stdin(Stdio::piped())
+            .stdout(Stdio::piped())
+            .stderr(Stdio::null())
+            .spawn()
+            .map_err(|error| match error.kind() {
+                ErrorKind::NotFound => {
+                    anyhow!("qemu-system-arm is not installed; `apt-get install -y --no-install-recommends qemu-system-arm`")
+                }
+                _ => anyhow!("cannot start qemu-system-arm: {error}"),
+            })?;
+        let pipes = (process.stdin.take(), process.stdout.take());
+        let (Some(input), Some(output)) = pipes else {
+            bail!("qemu-system-arm started without pipes");
+        };
+        Ok(Self { process, input, lines: read_lines(output, decoder) })
+    }
+
+    /// The next line of the log; `None` when QEMU has ended.
+    fn line(&self) -> Result<Option<String>> {
+        match self.lines.recv_timeout(SILENCE) {
+            Ok(line) => Ok(Some(line)),
+            Err(RecvTimeoutError::Disconnected) => Ok(None),
+            Err(RecvTimeoutError::Timeout) => bail!("the firmware has logged nothing for {} s: it hangs", SILENCE.as_secs()),
+        }
+    }
+
+    /// Lets the firmware go on.
+    fn release(&mut self) -> Result<()> {
+        self.input.write_all(b"n").and_then(|()| self.input.flush()).context("QEMU has closed its input")
+    }
+
+    /// The exit code; QEMU has closed its output and should be about to end.
+    fn wait(&mut self) -> Result<Option<i32>> {
+        let start = Instant::now();
+        while start.elapsed() < END {
+            if let Some(status) = self.process.try_wait()? {
+                return Ok(status.code());
+            }
+            thread::sleep(Duration::from_millis(2));
+        }
+        bail!("QEMU did not end within {} s", END.as_secs())
+    }
+}
+
+/// Decodes in a thread of its own, as reading cannot time out.
+fn read_lines(mut output: ChildStdout, mut decoder: log::Decoder) -> Receiver<String> {
+    let (sender, lines) = mpsc::channel();
+    thread::spawn(move || {
+        let mut buffer = [0; 4096];
+        // Ends with QEMU.
+        while let Ok(count @ 1..) = output.read(&mut buffer) {
+            decoder.push(&buffer[..count], |line| {
+                // Nobody listens any more once the run is over.
+                let _ = sender.send(line);
+            });
+        }
+    });
+    lines
+}
+
+/// Runs the firmware to its end.
+pub(super) fn run(board: Board, elf: &Elf) -> Result<Recording> {
+    // A socket's path must be short, so no directory of the repository's.
+    let directory = tempfile::Builder::new().prefix("mphong").tempdir().context("cannot create a temporary directory")?;
+    let program = directory.path().join("firmware.elf");
+    fs::write(&program, elf.bytes()).with_context(|| format!("cannot write {}", program.display()))?;
+    let socket = directory.path().join("qmp");
+    let screen = Screen::of(board, elf)?;
+
+    let mut recording = Recording::default();
+    let mut emulator = Emulator::start(board, &program, &socket, log::Decoder::new(elf)?)?;
+    let outcome = play(&mut emulator, &socket, &screen, directory.path(), &mut recording);
+    outcome.with_context(|| format!("{board} in QEMU; {}", log::tail(&recording.log)))?;
+    Ok(recording)
+}
+
+fn play(emulator: &mut Emulator, socket: &Path, screen: &Screen, directory: &Path, recording: &mut Recording) -> Result<()> {
+    let mut qmp = Qmp::connect(socket)?;
+    while let Some(line) = emulator.line()? {
+        let shown = line.starts_with("frame ") || line.starts_with("error: ");
+        recording.log.push(line);
+        if shown {
+            // The picture is complete by now, and the firmware waits.
+            recording.pictures.push(screen.picture(&mut qmp, directory)?);
+            emulator.release()?;
+        }
+    }
+    let code = emulator.wait()?;
+    let expected = if recording.failure().is_some() { 1 } else { 0 };
+    ensure!(code == Some(expected), "the firmware ended with code {code:?} instead of {expected}: a panic or a fault");
+    Ok(())
+}

@@ -1,0 +1,51 @@
+//! The bytes of a stream, aligned so that they can be read in place.
+
+use anyhow::{Context, Result, anyhow};
+use microphong::{Stream, StreamError};
+use std::{fs, path::Path};
+use zerocopy::IntoBytes;
+
+/// A stream in memory.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct StreamBytes {
+    words: Vec<u32>,
+    length: usize,
+}
+
+impl From<&[u8]> for StreamBytes {
+    fn from(bytes: &[u8]) -> Self {
+        let mut words = vec![0u32; bytes.len().div_ceil(4)];
+        words.as_mut_bytes()[..bytes.len()].copy_from_slice(bytes);
+        Self { words, length: bytes.len() }
+    }
+}
+
+impl StreamBytes {
+    /// Reads a `.tri` file and checks it.
+    ///
+    /// # Errors
+    /// Names the file, what is wrong with it and what can be done.
+    pub fn read(path: &Path) -> Result<Self> {
+        let bytes = fs::read(path).with_context(|| format!("cannot read {}", path.display()))?;
+        let stream = Self::from(bytes.as_slice());
+        stream.parse().map_err(|error| match error {
+            StreamError::Magic => anyhow!("{}: {error}; make one with `microphong convert mesh.obj -o mesh.tri`", path.display()),
+            _ => anyhow!("{}: {error}; copy the file again, or make it anew with `microphong convert`", path.display()),
+        })?;
+        Ok(stream)
+    }
+
+    /// The bytes as they lie in a file or in flash.
+    #[must_use]
+    pub fn as_bytes(&self) -> &[u8] {
+        &self.words.as_bytes()[..self.length]
+    }
+
+    /// The checked view of the bytes.
+    ///
+    /// # Errors
+    /// Those of [`Stream::parse`].
+    pub fn parse(&self) -> Result<Stream<'_>, StreamError> {
+        Stream::parse(self.as_bytes())
+    }
+}

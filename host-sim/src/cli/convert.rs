@@ -1,0 +1,162 @@
+//! `microphong convert`.
+
+use super::{Outcome, Usage, parse, report};
+use anyhow::{Context, Result};
+use microphong::Shader;
+use microphong_sim::{
+    look::{BACKGROUND, Look, Surface},
+    output,
+    quantise::quantise,
+    scene::{self, COPPER, DISTANCE, MARGIN, ORBIT},
+    vector::V3,
+    view::{Projection, Up, View},
+};
+use serde::Serialize;
+use std::path::PathBuf;
+
+/// Convert a Wavefront OBJ mesh to a stream for a board's flash.
+///
+/// Normals come from the file when every corner has one, else from the
+/// polygons around each vertex. Polygons become fans of triangles. The mesh is
+/// centred and scaled to a sphere of radius 1.
+#[derive(clap::Args)]
+#[command(after_help = EXAMPLES)]
+pub(crate) struct Arguments {
+    /// Mesh to read.
+    mesh: PathBuf,
+    /// Stream to write; the mesh's name with .tri unless given.
+    #[arg(short, long, value_name = "FILE.tri")]
+    output: Option<PathBuf>,
+    /// Axis that points up in the mesh, y or z.
+    #[arg(long, default_value = "y", value_parser = parse::up)]
+    up: Up,
+    /// Turn the surface inside out, for meshes whose faces wind clockwise; closed ones are turned without asking.
+    #[arg(long)]
+    flip: bool,
+    /// Shading method: flat, gouraud, six-point or phong.
+    #[arg(long, default_value = "six-point", value_parser = parse::shader)]
+    shader: Shader,
+    /// Colour of the surface, RRGGBB; copper unless given.
+    #[arg(long, value_name = "RRGGBB", value_parser = parse::colour)]
+    colour: Option<V3>,
+    /// Share of light reflected evenly.
+    #[arg(long, default_value = "0.5", value_parser = parse::share)]
+    diffuse: f64,
+    /// Share of light reflected in the highlight.
+    #[arg(long, default_value = "0.4", value_parser = parse::share)]
+    specular: f64,
+    /// Share of light that is everywhere.
+    #[arg(long, default_value = "0.1", value_parser = parse::share)]
+    ambient: f64,
+    /// Sharpness of the highlight, 1 to 1024.
+    #[arg(long, default_value = "30", value_parser = clap::value_parser!(u16).range(1..=1024))]
+    exponent: u16,
+    /// White highlights, as on plastic, instead of coloured ones, as on metal.
+    #[arg(long)]
+    plastic: bool,
+    /// Colour behind the mesh, RRGGBB.
+    #[arg(long, value_name = "RRGGBB", value_parser = parse::bytes)]
+    background: Option<[u8; 3]>,
+    /// Frames of one turn about the axis that points up; 0 stands still.
+    #[arg(long, value_name = "FRAMES", default_value_t = ORBIT)]
+    orbit: u16,
+    /// Where the eye is: degrees to the right of the front.
+    #[arg(long, value_name = "DEGREES", default_value = "28.6", value_parser = parse::degrees, allow_negative_numbers = true)]
+    azimuth: f64,
+    /// Where the eye is: degrees above the horizon.
+    #[arg(long, value_name = "DEGREES", default_value = "20", value_parser = parse::degrees, allow_negative_numbers = true)]
+    elevation: f64,
+    /// perspective or parallel.
+    #[arg(long, default_value = "perspective", value_parser = parse::projection)]
+    projection: Projection,
+    /// Highlights look from each point to the eye, instead of in one direction for all: dearer.
+    #[arg(long)]
+    local_viewer: bool,
+    /// Picture for which the camera is set up; others show the same with more border.
+    #[arg(long, value_name = "WxH", default_value = "640x480", value_parser = parse::size)]
+    size: (u32, u32),
+    /// Print one JSON object.
+    #[arg(long)]
+    json: bool,
+}
+
+const EXAMPLES: &str = "\
+Examples:
+  microphong convert teapot.obj -o teapot.tri
+  microphong convert part.obj --up z --colour 4080ff --plastic --exponent 60 --orbit 240";
+
+#[derive(Serialize)]
+struct Line<'a> {
+    mesh: &'a str,
+    output: &'a str,
+    meshes: usize,
+    vertices: usize,
+    triangles: usize,
+    welded: usize,
+    degenerate: usize,
+    own_normals: bool,
+    turned: bool,
+    bytes: usize,
+}
+
+pub(crate) fn run(arguments: &Arguments) -> Result<Outcome> {
+    let source = &arguments.mesh;
+    if source.extension().is_some_and(|e| e.eq_ignore_ascii_case("tri")) {
+        return Err(Usage(format!("{} is a stream already; name an .obj file", source.display())).into());
+    }
+    let target = arguments.output.clone().unwrap_or_else(|| source.with_extension("tri"));
+    if target == *source {
+        return Err(Usage(format!("{} would overwrite the mesh; name another file with -o", target.display())).into());
+    }
+    let (mesh, report) = scene::read_obj(source, arguments.flip)?;
+    let (parts, lost) = quantise(&mesh);
+    let place = || source.display().to_string();
+    let view = View::orbit(arguments.up, arguments.azimuth.to_radians(), arguments.elevation.to_radians(), DISTANCE, arguments.orbit);
+    let view = if arguments.projection == Projection::Orthographic { view.parallel() } else { view };
+    let look = Look {
+        background: arguments.background.unwrap_or(BACKGROUND),
+        local_viewer: arguments.local_viewer,
+        shader: arguments.shader,
+        ..Look::new(surface(arguments), view.fit(&mesh.positions, arguments.size, MARGIN))
+    };
+    let bytes = look.stream(&parts).with_context(place)?;
+    output::write(&target, bytes.as_bytes())?;
+    let line = Line {
+        mesh: &source.to_string_lossy(),
+        output: &target.to_string_lossy(),
+        meshes: parts.len(),
+        vertices: parts.iter().map(|p| p.vertices.len()).sum(),
+        triangles: parts.iter().map(|p| p.triangles.len()).sum(),
+        welded: report.welded,
+        degenerate: report.degenerate + lost,
+        own_normals: report.own_normals,
+        turned: report.turned,
+        bytes: bytes.as_bytes().len(),
+    };
+    if arguments.json {
+        report::json(&line)?;
+    } else {
+        text(&line)?;
+    }
+    Ok(Outcome::Done)
+}
+
+fn surface(arguments: &Arguments) -> Surface {
+    let shares = [arguments.ambient, arguments.diffuse, arguments.specular];
+    let colour = arguments.colour.unwrap_or(COPPER);
+    if arguments.plastic {
+        Surface::plastic(colour, shares, arguments.exponent)
+    } else {
+        Surface::metal(colour, shares, arguments.exponent)
+    }
+}
+
+fn text(line: &Line<'_>) -> Result<()> {
+    let count = |n: usize| report::grouped(n as u64);
+    let (vertices, triangles, bytes) = (count(line.vertices), count(line.triangles), count(line.bytes));
+    report::line(&format!("{}: {vertices} vertices, {triangles} triangles, {bytes} bytes", line.output))?;
+    let normals = if line.own_normals { "normals from the file" } else { "normals computed" };
+    let turned = if line.turned { ", surface turned inside out" } else { "" };
+    let (welded, degenerate) = (count(line.welded), count(line.degenerate));
+    report::line(&format!("  {welded} vertices welded, {degenerate} degenerate triangles dropped, {normals}{turned}"))
+}

@@ -1,0 +1,100 @@
+//! `microphong inspect`.
+
+use super::{Outcome, report};
+use anyhow::{Context, Result};
+use microphong::{
+    Stream,
+    format::{EDGE, UNIT},
+    stream::record::{CLOSED_CONVEX, EYE_SPACE, Header, Light, Material, Mesh, PERSPECTIVE, POINT, Triangle, VIEWER_LOCAL, Vertex},
+};
+use microphong_sim::bytes::StreamBytes;
+use serde::Serialize;
+use std::path::PathBuf;
+
+/// Show what is inside a stream, and what it takes in flash.
+#[derive(clap::Args)]
+#[command(after_help = "Example:\n  microphong inspect teapot.tri --json")]
+pub(crate) struct Arguments {
+    /// A stream made by `microphong convert`.
+    file: PathBuf,
+    /// Print one JSON object.
+    #[arg(long)]
+    json: bool,
+}
+
+#[derive(Serialize)]
+struct Line<'a> {
+    file: &'a str,
+    version: u16,
+    meshes: usize,
+    vertices: usize,
+    triangles: usize,
+    lights: usize,
+    frames: u16,
+    bytes: u32,
+}
+
+pub(crate) fn run(arguments: &Arguments) -> Result<Outcome> {
+    let bytes = StreamBytes::read(&arguments.file)?;
+    let stream = bytes.parse().with_context(|| arguments.file.display().to_string())?;
+    let header = stream.header;
+    let file = arguments.file.to_string_lossy();
+    if arguments.json {
+        report::json(&Line {
+            file: &file,
+            version: header.version,
+            meshes: stream.meshes.len(),
+            vertices: stream.vertices.len(),
+            triangles: stream.triangles.len(),
+            lights: stream.lights.len(),
+            frames: header.frames,
+            bytes: header.length,
+        })?;
+    } else {
+        text(&file, &stream)?;
+    }
+    Ok(Outcome::Done)
+}
+
+fn text(file: &str, stream: &Stream<'_>) -> Result<()> {
+    let header = stream.header;
+    let count = |n: usize| report::grouped(n as u64);
+    report::line(&format!("{file}: triangle stream, version {}, {} bytes of flash", header.version, count(header.length as usize)))?;
+    let row = |name: &str, number: usize, size: usize, note: &str| {
+        report::line(format!("  {:>7} {name:9} {:>9} bytes  {note}", count(number), count(number * size)).trim_end())
+    };
+    row("header", 1, size_of::<Header>(), "")?;
+    let convex = stream.meshes.iter().filter(|m| m.flags & CLOSED_CONVEX != 0).count();
+    row("meshes", stream.meshes.len(), size_of::<Mesh>(), &format!("{convex} closed and convex"))?;
+    row("materials", stream.materials.len(), size_of::<Material>(), &exponents(stream))?;
+    row("lights", stream.lights.len(), size_of::<Light>(), &lights(stream))?;
+    row("vertices", stream.vertices.len(), size_of::<Vertex>(), "")?;
+    row("triangles", stream.triangles.len(), size_of::<Triangle>(), &bend(stream))?;
+    let camera = &header.camera;
+    let kind = if camera.projection == PERSPECTIVE { "perspective" } else { "parallel rays" };
+    let orbit = if camera.period == 0 { "stands still".to_owned() } else { format!("one turn in {} frames", camera.period) };
+    let viewer = if header.viewer == VIEWER_LOCAL { "local" } else { "infinite" };
+    let frames = header.frames;
+    report::line(&format!("  {kind}, {viewer} viewer, {orbit}, {frames} frames, shader {}", stream.shader().name()))
+}
+
+fn exponents(stream: &Stream<'_>) -> String {
+    let all: Vec<_> = stream.materials.iter().map(|m| m.exponent.to_string()).collect();
+    format!("exponent {}", all.join(", "))
+}
+
+fn lights(stream: &Stream<'_>) -> String {
+    let kind = |light: &Light| {
+        let [x, y, z] = light.vector.map(|c| f64::from(c) / f64::from(1 << UNIT));
+        let kind = if light.kind == POINT { "at" } else { "towards" };
+        let space = if light.space == EYE_SPACE { "eye" } else { "object" };
+        format!("{kind} ({x:.2}, {y:.2}, {z:.2}) of {space} space")
+    };
+    stream.lights.iter().map(kind).collect::<Vec<_>>().join("; ")
+}
+
+/// How strongly normals vary within a triangle: the shorter they get between the corners, the harder it is to shade.
+fn bend(stream: &Stream<'_>) -> String {
+    let least = stream.triangles.iter().map(|t| t.rho).min().unwrap_or_default();
+    format!("interpolated normals at least {:.3} long", f64::from(least) / f64::from(1 << EDGE))
+}

@@ -1,0 +1,83 @@
+//! Command line: what the user may say, and what comes of it.
+
+mod convert;
+mod inspect;
+mod parse;
+mod render;
+mod report;
+mod scenes;
+mod verify;
+
+use clap::{Parser, Subcommand};
+use microphong_sim::scene;
+use std::process::ExitCode;
+
+/// Phong-quality shading for microcontrollers: convert meshes, look at them, verify boards.
+#[derive(Parser)]
+#[command(version, max_term_width = 100, after_help = EXAMPLES)]
+struct Arguments {
+    #[command(subcommand)]
+    command: Command,
+}
+
+const EXAMPLES: &str = "\
+Examples:
+  microphong scenes                                list the built-in scenes
+  microphong render teapot                         write teapot.png
+  microphong render teapot --frames 120 -o t.apng  write an animation of one turn
+  microphong convert mesh.obj -o mesh.tri          make a stream for a board's flash
+  microphong inspect mesh.tri                      what is inside, and how large it is
+  microphong verify --board all --scene teapot     compare emulated boards with this computer
+
+Exit codes: 0 done; 1 failed, or pictures differ; 2 wrong usage.";
+
+#[derive(Subcommand)]
+enum Command {
+    Convert(Box<convert::Arguments>),
+    Inspect(inspect::Arguments),
+    Render(render::Arguments),
+    Verify(verify::Arguments),
+    Scenes(scenes::Arguments),
+}
+
+/// Wrong usage that the argument parser cannot see: exit code 2.
+#[derive(Debug)]
+struct Usage(String);
+
+impl std::fmt::Display for Usage {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.write_str(&self.0)
+    }
+}
+
+impl std::error::Error for Usage {}
+
+/// What a command ends with when nothing went wrong.
+enum Outcome {
+    Done,
+    Differences,
+}
+
+/// Runs the command line.
+pub(crate) fn main() -> ExitCode {
+    let result = match Arguments::parse().command {
+        Command::Convert(arguments) => convert::run(&arguments),
+        Command::Inspect(arguments) => inspect::run(&arguments),
+        Command::Render(arguments) => render::run(&arguments),
+        Command::Verify(arguments) => verify::run(&arguments),
+        Command::Scenes(arguments) => scenes::run(&arguments),
+    };
+    let error = match result {
+        Ok(Outcome::Done) => return ExitCode::SUCCESS,
+        Ok(Outcome::Differences) => return ExitCode::FAILURE,
+        Err(error) => error,
+    };
+    // A reader that has seen enough, as `head`, is no failure.
+    let closed = error.chain().filter_map(|e| e.downcast_ref::<std::io::Error>()).any(|e| e.kind() == std::io::ErrorKind::BrokenPipe);
+    if closed {
+        return ExitCode::SUCCESS;
+    }
+    report::failure(&error);
+    let usage = error.is::<Usage>() || error.is::<scene::Unknown>();
+    if usage { ExitCode::from(2) } else { ExitCode::FAILURE }
+}

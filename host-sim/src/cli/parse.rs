@@ -1,0 +1,68 @@
+//! Values on the command line.
+
+use microphong::{Shader, render::MAX_SIDE};
+use microphong_sim::{
+    render::Format,
+    vector::V3,
+    view::{Projection, Up},
+};
+
+/// The value among `all` that has the name `text`.
+pub(crate) fn among<T: Copy>(text: &str, all: &[T], name: impl Fn(T) -> &'static str) -> Result<T, String> {
+    all.iter().copied().find(|&value| name(value) == text).ok_or_else(|| {
+        let names: Vec<_> = all.iter().map(|&value| name(value)).collect();
+        format!("one of {} is needed", names.join(", "))
+    })
+}
+
+/// A shading method by name.
+pub(crate) fn shader(text: &str) -> Result<Shader, String> {
+    among(text, &Shader::ALL, Shader::name)
+}
+
+/// A pixel format by name.
+pub(crate) fn format(text: &str) -> Result<Format, String> {
+    among(text, &Format::ALL, Format::name)
+}
+
+/// `y` or `z`.
+pub(crate) fn up(text: &str) -> Result<Up, String> {
+    among(text, &[Up::Y, Up::Z], |up| if up == Up::Y { "y" } else { "z" })
+}
+
+/// `perspective` or `parallel`.
+pub(crate) fn projection(text: &str) -> Result<Projection, String> {
+    let name = |p| if p == Projection::Perspective { "perspective" } else { "parallel" };
+    among(text, &[Projection::Perspective, Projection::Orthographic], name)
+}
+
+/// `640x480`.
+pub(crate) fn size(text: &str) -> Result<(u32, u32), String> {
+    let wrong = || format!("WIDTHxHEIGHT is needed, as 320x240, each side 1 to {MAX_SIDE}");
+    let (width, height) = text.split_once('x').ok_or_else(wrong)?;
+    let side = |text: &str| text.parse().ok().filter(|side| (1..=MAX_SIDE).contains(side)).ok_or_else(wrong);
+    Ok((side(width)?, side(height)?))
+}
+
+/// `RRGGBB` in hexadecimal, with or without `#`.
+pub(crate) fn bytes(text: &str) -> Result<[u8; 3], String> {
+    let digits = text.strip_prefix('#').unwrap_or(text);
+    let number = u32::from_str_radix(digits, 16).ok().filter(|_| digits.len() == 6);
+    let [_, r, g, b] = number.ok_or("six hexadecimal digits are needed, as e0a060")?.to_be_bytes();
+    Ok([r, g, b])
+}
+
+/// [`bytes`] with 1 for ff.
+pub(crate) fn colour(text: &str) -> Result<V3, String> {
+    Ok(bytes(text)?.map(|c| f64::from(c) / 255.0))
+}
+
+/// A share of light, 0 to 2.
+pub(crate) fn share(text: &str) -> Result<f64, String> {
+    text.parse().ok().filter(|share| (0.0..=2.0).contains(share)).ok_or_else(|| "a number from 0 to 2 is needed".to_owned())
+}
+
+/// Degrees, any finite number.
+pub(crate) fn degrees(text: &str) -> Result<f64, String> {
+    text.parse().ok().filter(|angle: &f64| angle.is_finite()).ok_or_else(|| "a number of degrees is needed".to_owned())
+}

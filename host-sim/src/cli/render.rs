@@ -1,0 +1,190 @@
+//! `microphong render`.
+
+use super::{Outcome, Usage, parse, report};
+use anyhow::{Context, Result};
+use embedded_graphics_core::geometry::Size;
+use microphong::{Shader, render::MAX_SIDE};
+use microphong_sim::{
+    image::{self, Film},
+    render::{self, Format, Settings},
+    scene,
+};
+use serde::Serialize;
+use std::{
+    fs,
+    path::{Path, PathBuf},
+};
+
+/// Draw a scene to a PNG file, an animated PNG or a directory of numbered PNGs.
+#[derive(clap::Args)]
+#[command(after_help = EXAMPLES)]
+pub(crate) struct Arguments {
+    /// A .tri or .obj file, or a built-in scene; `microphong scenes` lists them.
+    scene: String,
+    /// Shading method: flat, gouraud, six-point or phong; the scene's own unless given.
+    #[arg(long, value_parser = parse::shader)]
+    shader: Option<Shader>,
+    /// Size of the picture; the scene's own unless given, 640x480 for files.
+    #[arg(long, value_name = "WxH", value_parser = parse::size)]
+    size: Option<(u32, u32)>,
+    /// Pixel format: rgb565, rgb888, gray8 or gray4.
+    #[arg(long, default_value = "rgb565", value_parser = parse::format)]
+    format: Format,
+    /// Number of frames.
+    #[arg(long, default_value_t = 1, value_parser = clap::value_parser!(u32).range(1..=65535))]
+    frames: u32,
+    /// First frame of the orbit.
+    #[arg(long, default_value_t = 0)]
+    first: u32,
+    /// Ordered dither: hides the steps of formats with few colours.
+    #[arg(long)]
+    dither: bool,
+    /// Rows drawn at a time, as a board with little memory does; the picture is the same.
+    #[arg(long, default_value_t = 16, value_parser = clap::value_parser!(u32).range(1..=i64::from(MAX_SIDE)))]
+    band_rows: u32,
+    /// FILE.png, FILE.apng or a directory; SCENE.png (SCENE.apng for several frames) in the current directory unless given.
+    #[arg(short, long)]
+    output: Option<PathBuf>,
+    /// Print one JSON object per frame.
+    #[arg(long)]
+    json: bool,
+}
+
+const EXAMPLES: &str = "\
+Examples:
+  microphong render teapot
+  microphong render teapot --shader gouraud --size 320x240 -o gouraud.png
+  microphong render mesh.tri --format gray4 --dither
+  microphong render bunny --frames 120 -o bunny.apng
+  microphong render torus --frames 30 -o frames/";
+
+#[derive(Serialize)]
+struct Line<'a> {
+    scene: &'a str,
+    shader: &'a str,
+    width: u32,
+    height: u32,
+    frames: u32,
+    triangles: u32,
+    culled: u32,
+    drawn: u32,
+    pixels: u32,
+    crc: String,
+    output: String,
+}
+
+pub(crate) fn run(arguments: &Arguments) -> Result<Outcome> {
+    let frames = arguments.frames;
+    let wanted = arguments.output.as_deref().map(|path| Target::of(path, frames)).transpose()?;
+    let scene = scene::load(&arguments.scene)?;
+    let stream = scene.stream.parse().with_context(|| arguments.scene.clone())?;
+    let target = wanted.unwrap_or_else(|| {
+        let file = PathBuf::from(format!("{}.{}", scene.name, if frames > 1 { "apng" } else { "png" }));
+        Target::File(file)
+    });
+    let (width, height) = arguments.size.unwrap_or(scene.size);
+    let settings = Settings {
+        size: Size::new(width, height),
+        shader: arguments.shader.unwrap_or(stream.shader()),
+        dither: arguments.dither,
+        band_rows: arguments.band_rows,
+        format: arguments.format,
+    };
+    let mut writer = Writer::start(&target, settings.size, frames)?;
+    let bar = report::progress(frames.into(), "drawing");
+    let mut lines = Vec::new();
+    for number in 0..frames {
+        let picture = render::picture(stream, &settings, arguments.first.wrapping_add(number)).with_context(|| scene.name.clone())?;
+        let output = writer.add(number, &picture.rgb)?;
+        let stats = picture.stats;
+        bar.inc(1);
+        lines.push(Line {
+            scene: &scene.name,
+            shader: settings.shader.name(),
+            width,
+            height,
+            frames,
+            triangles: stats.triangles,
+            culled: stats.culled,
+            drawn: stats.drawn,
+            pixels: stats.pixels,
+            crc: format!("{:08x}", picture.crc),
+            output: output.to_string_lossy().into_owned(),
+        });
+    }
+    writer.finish()?;
+    bar.finish_and_clear();
+    if arguments.json {
+        lines.iter().try_for_each(report::json)?;
+    } else if let Some(line) = lines.last() {
+        text(line)?;
+    }
+    Ok(Outcome::Done)
+}
+
+/// Where pictures go.
+enum Target {
+    File(PathBuf),
+    Directory(PathBuf),
+}
+
+impl Target {
+    /// What `path` asks for, by its ending.
+    fn of(path: &Path, frames: u32) -> Result<Self, Usage> {
+        let slash = path.to_string_lossy().ends_with(std::path::is_separator);
+        let ending = path.extension().map(|e| e.to_string_lossy().to_ascii_lowercase());
+        match ending.as_deref() {
+            _ if slash || path.is_dir() => Ok(Self::Directory(path.to_owned())),
+            Some("apng") => Ok(Self::File(path.to_owned())),
+            Some("png") if frames == 1 => Ok(Self::File(path.to_owned())),
+            Some("png") => Err(Usage(format!("{}: {frames} frames do not fit a .png; name an .apng file or a directory", path.display()))),
+            None => Ok(Self::Directory(path.to_owned())),
+            Some(other) => Err(Usage(format!("{}: cannot write .{other}; name a .png or .apng file or a directory", path.display()))),
+        }
+    }
+}
+
+/// Takes the pictures as they are finished.
+enum Writer {
+    Film(Film, PathBuf),
+    Numbered(PathBuf, Size),
+}
+
+impl Writer {
+    fn start(target: &Target, size: Size, frames: u32) -> Result<Self> {
+        match target {
+            Target::File(path) => Ok(Self::Film(Film::create(path, size.width, size.height, frames)?, path.clone())),
+            Target::Directory(path) => {
+                fs::create_dir_all(path).with_context(|| format!("cannot create the directory {}", path.display()))?;
+                Ok(Self::Numbered(path.clone(), size))
+            }
+        }
+    }
+
+    /// Writes a picture and says where.
+    fn add(&mut self, number: u32, rgb: &[u8]) -> Result<PathBuf> {
+        match self {
+            Self::Film(film, path) => film.add(rgb).map(|()| path.clone()),
+            Self::Numbered(directory, size) => {
+                let path = directory.join(format!("{number:04}.png"));
+                image::write_png(&path, size.width, size.height, rgb)?;
+                Ok(path)
+            }
+        }
+    }
+
+    fn finish(self) -> Result<()> {
+        match self {
+            Self::Film(film, _) => film.finish(),
+            Self::Numbered(..) => Ok(()),
+        }
+    }
+}
+
+fn text(line: &Line<'_>) -> Result<()> {
+    let several = if line.frames > 1 { format!("{} frames, ", line.frames) } else { String::new() };
+    report::line(&format!("{}: {}, {}, {several}{}x{}", line.output, line.scene, line.shader, line.width, line.height))?;
+    let last = if line.frames > 1 { "last frame: " } else { "" };
+    let [triangles, culled, drawn, pixels] = [line.triangles, line.culled, line.drawn, line.pixels].map(|n| report::grouped(n.into()));
+    report::line(&format!("  {last}{triangles} triangles, {culled} culled, {drawn} drawn on {pixels} pixels, checksum {}", line.crc))
+}

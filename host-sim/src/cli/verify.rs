@@ -1,0 +1,121 @@
+//! `microphong verify`.
+
+use super::{Outcome, Usage, parse, report};
+use anyhow::{Context, Result, bail};
+use microphong::Shader;
+use microphong_sim::{
+    board::Board,
+    scene::{self, NAMES, Scene},
+    verify::{self, Report, Request},
+};
+use std::path::PathBuf;
+
+/// Draw scenes with a board's own firmware, emulated, and compare every pixel with this computer.
+#[derive(clap::Args)]
+#[command(after_help = EXAMPLES)]
+pub(crate) struct Arguments {
+    /// pico, lm3s6965evb, mps2-an385, mps2-an386, or all.
+    #[arg(long, value_parser = boards)]
+    board: Several<Board>,
+    /// A .tri or .obj file, a built-in scene, or all built-in scenes.
+    #[arg(long, default_value = "teapot")]
+    scene: String,
+    /// Shading method: flat, gouraud, six-point, phong, or all.
+    #[arg(long, default_value = "all", value_parser = shaders)]
+    shader: Several<Shader>,
+    /// Frames to compare, from the first.
+    #[arg(long, default_value_t = 2, value_parser = clap::value_parser!(u16).range(1..))]
+    frames: u16,
+    /// Where pictures go that differ.
+    #[arg(long, value_name = "DIR", default_value = "differences")]
+    artefacts: PathBuf,
+    /// Print one JSON object per comparison.
+    #[arg(long)]
+    json: bool,
+}
+
+const EXAMPLES: &str = "\
+Examples:
+  microphong verify --board pico --scene bunny --shader six-point
+  microphong verify --board all --scene all --json
+
+Exit codes: 0 all pixels are equal; 1 some differ, or a board failed; 2 wrong usage.";
+
+/// One value, or each of them.
+#[derive(Clone)]
+struct Several<T>(Vec<T>);
+
+fn several<T: Copy>(text: &str, all: &[T], one: impl Fn(&str) -> Result<T, String>) -> Result<Several<T>, String> {
+    if text == "all" { Ok(Several(all.to_vec())) } else { one(text).map(|value| Several(vec![value])) }
+}
+
+fn boards(text: &str) -> Result<Several<Board>, String> {
+    several(text, &Board::ALL, |text| parse::among(text, &Board::ALL, Board::name).map_err(|error| format!("{error}, or all")))
+}
+
+fn shaders(text: &str) -> Result<Several<Shader>, String> {
+    several(text, &Shader::ALL, |text| parse::shader(text).map_err(|error| format!("{error}, or all")))
+}
+
+pub(crate) fn run(arguments: &Arguments) -> Result<Outcome> {
+    let scenes = load(&arguments.scene)?;
+    let Several(boards) = &arguments.board;
+    let Several(shaders) = &arguments.shader;
+    let count = boards.len() * scenes.len() * shaders.len();
+    let bar = report::progress(count as u64 + 1, "verifying");
+    let (mut differ, mut failed) = (0, 0);
+    for &board in boards {
+        let elf = verify::build(board).with_context(|| format!("no firmware for {board}"))?;
+        for scene in &scenes {
+            for &shader in shaders {
+                let request = Request {
+                    board,
+                    scene: scene.name.clone(),
+                    stream: scene.stream.as_bytes().to_vec(),
+                    firmware_stream: None,
+                    shader,
+                    frames: arguments.frames,
+                };
+                let artefacts = arguments.artefacts.join(format!("{board}-{}-{}", scene.name, shader.name()));
+                bar.inc(1);
+                match verify::run(&request, &elf, &artefacts) {
+                    Ok(result) => {
+                        differ += usize::from(result.differing > 0);
+                        bar.suspend(|| if arguments.json { report::json(&result) } else { text(&result, &artefacts) })?;
+                    }
+                    // With several comparisons one failure should not hide the others.
+                    Err(error) if count > 1 => {
+                        failed += 1;
+                        bar.suspend(|| report::failure(&error));
+                    }
+                    Err(error) => return Err(error),
+                }
+            }
+        }
+    }
+    bar.finish_and_clear();
+    if failed > 0 {
+        bail!("{failed} of {count} comparisons failed");
+    }
+    Ok(if differ > 0 { Outcome::Differences } else { Outcome::Done })
+}
+
+fn load(name: &str) -> Result<Vec<Scene>> {
+    if name == "all" {
+        return NAMES.iter().map(|name| scene::load(name)).collect();
+    }
+    match scene::load(name) {
+        Err(error) if error.is::<scene::Unknown>() => Err(Usage(format!("{error}, or all")).into()),
+        other => Ok(vec![other?]),
+    }
+}
+
+fn text(result: &Report, artefacts: &std::path::Path) -> Result<()> {
+    let [pixels, differing, ram, flash, stack] =
+        [result.pixels, result.differing, result.ram_bytes, result.flash_bytes, result.stack_bytes].map(report::grouped);
+    let frames = if result.frames == 1 { "1 frame".to_owned() } else { format!("{} frames", result.frames) };
+    let verdict = if result.differing == 0 { "all equal".to_owned() } else { format!("{differing} differ, see {}", artefacts.display()) };
+    let Report { board, scene, shader, .. } = result;
+    report::line(&format!("{board}, {scene}, {}: {frames}, {pixels} pixels, {verdict}", shader.name()))?;
+    report::line(&format!("  {ram} bytes of RAM, {flash} of flash, {stack} of stack"))
+}

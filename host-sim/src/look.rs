@@ -1,0 +1,185 @@
+//! Material, lights and camera; with the quantised mesh they make a stream.
+
+use crate::{
+    bytes::StreamBytes,
+    quantise::Part,
+    vector::{V3, scale, unit},
+    view::{Projection, View},
+};
+use anyhow::{Context, Result};
+use microphong::{
+    Shader,
+    format::{ROTATION, UNIT},
+    stream::{
+        self, MAX_GAIN,
+        record::{
+            CLOSED_CONVEX, Camera, DIRECTIONAL, EYE_SPACE, Header, Light, MAGIC, Material, Mesh, ORTHOGRAPHIC, PERSPECTIVE, POINT, VERSION,
+            VIEWER_INFINITE, VIEWER_LOCAL,
+        },
+    },
+};
+use zerocopy::{FromZeros, IntoBytes};
+
+/// How a surface reflects light; per channel, 1 is all of it.
+#[derive(Clone, Copy, Debug)]
+pub struct Surface {
+    /// Of the ambient light.
+    pub ambient: V3,
+    /// Evenly.
+    pub diffuse: V3,
+    /// In the highlight.
+    pub specular: V3,
+    /// Of the highlight: larger is smaller.
+    pub exponent: u16,
+}
+
+impl Surface {
+    /// All three shares in one colour, as metals have it: every channel is then a multiple of one intensity.
+    #[must_use]
+    pub fn metal(colour: V3, [ambient, diffuse, specular]: [f64; 3], exponent: u16) -> Self {
+        Self { ambient: scale(colour, ambient), diffuse: scale(colour, diffuse), specular: scale(colour, specular), exponent }
+    }
+
+    /// A coloured body under a clear varnish: the highlight is white.
+    #[must_use]
+    pub fn plastic(colour: V3, [ambient, diffuse, specular]: [f64; 3], exponent: u16) -> Self {
+        Self { specular: [specular; 3], ..Self::metal(colour, [ambient, diffuse, 0.0], exponent) }
+    }
+}
+
+/// A light that stays with the camera, so that objects turn under it.
+#[derive(Clone, Copy, Debug)]
+pub enum Lamp {
+    /// Infinitely far: direction towards it in eye space, and colour.
+    Distant(V3, V3),
+    /// Near: position in eye space, and colour.
+    Near(V3, V3),
+}
+
+/// Everything of a scene but its mesh.
+#[derive(Clone, Debug)]
+pub struct Look {
+    /// Material of the whole mesh.
+    pub surface: Surface,
+    /// Lights.
+    pub lamps: Vec<Lamp>,
+    /// Ambient light.
+    pub ambient: V3,
+    /// Red, green, blue.
+    pub background: [u8; 3],
+    /// Highlights see the eye where it is, not infinitely far.
+    pub local_viewer: bool,
+    /// Method unless another one is asked for.
+    pub shader: Shader,
+    /// Camera.
+    pub view: View,
+    /// Frames of the animation.
+    pub frames: u16,
+}
+
+/// A dark neutral: bright and dark objects both stand out.
+pub const BACKGROUND: [u8; 3] = [26, 28, 32];
+/// Key light from the upper left, eye space.
+pub const KEY: V3 = [-0.45, 0.6, -0.66];
+
+impl Look {
+    /// One white key light.
+    #[must_use]
+    pub fn new(surface: Surface, view: View) -> Self {
+        Self {
+            surface,
+            lamps: vec![Lamp::Distant(KEY, [1.0; 3])],
+            ambient: [1.0; 3],
+            background: BACKGROUND,
+            local_viewer: false,
+            shader: Shader::SixPoint,
+            view,
+            frames: view.period.max(1),
+        }
+    }
+
+    /// Packs mesh and look into a stream and checks the result.
+    ///
+    /// # Errors
+    /// When the mesh does not fit a stream, or a value lies outside its range.
+    pub fn stream(&self, parts: &[Part]) -> Result<StreamBytes> {
+        let vertices: usize = parts.iter().map(|p| p.vertices.len()).sum();
+        let triangles: usize = parts.iter().map(|p| p.triangles.len()).sum();
+        let mut header = Header {
+            magic: MAGIC,
+            version: VERSION,
+            shader: Shader::ALL.iter().position(|&s| s == self.shader).unwrap_or_default() as u16,
+            meshes: u16::try_from(parts.len()).context("too many meshes for one stream; simplify the mesh")?,
+            materials: 1,
+            lights: self.lamps.len() as u16,
+            frames: self.frames.max(1),
+            vertices: u32::try_from(vertices).context("too many vertices for one stream; simplify the mesh")?,
+            triangles: u32::try_from(triangles).context("too many triangles for one stream; simplify the mesh")?,
+            background: self.background,
+            viewer: if self.local_viewer { VIEWER_LOCAL } else { VIEWER_INFINITE },
+            ambient: gains(self.ambient),
+            camera: camera(&self.view),
+            ..Header::new_zeroed()
+        };
+        header.length = stream::length(&header).context("the stream would be larger than 4 GiB; simplify the mesh")?;
+        let mut bytes = header.as_bytes().to_vec();
+        let (mut first_vertex, mut first_triangle) = (0, 0);
+        for part in parts {
+            let mesh = Mesh {
+                first_vertex,
+                vertices: part.vertices.len() as u32,
+                first_triangle,
+                triangles: part.triangles.len() as u32,
+                material: 0,
+                flags: if part.closed_convex { CLOSED_CONVEX } else { 0 },
+            };
+            first_vertex += mesh.vertices;
+            first_triangle += mesh.triangles;
+            bytes.extend_from_slice(mesh.as_bytes());
+        }
+        bytes.extend_from_slice(material(&self.surface).as_bytes());
+        self.lamps.iter().for_each(|lamp| bytes.extend_from_slice(light(lamp).as_bytes()));
+        parts.iter().for_each(|part| bytes.extend_from_slice(part.vertices.as_bytes()));
+        parts.iter().for_each(|part| bytes.extend_from_slice(part.triangles.as_bytes()));
+        stream::seal(&mut bytes);
+        let bytes = StreamBytes::from(bytes.as_slice());
+        bytes.parse().context("the stream would not be valid")?;
+        Ok(bytes)
+    }
+}
+
+/// `x` with `bits` fraction bits; the check of the stream catches what does not fit.
+fn fixed(x: f64, bits: u32) -> i32 {
+    (x * f64::from(bits).exp2()).round() as i32
+}
+
+fn gains(colour: V3) -> [u16; 3] {
+    colour.map(|c| fixed(c, UNIT).clamp(0, MAX_GAIN.into()) as u16)
+}
+
+fn material(surface: &Surface) -> Material {
+    let Surface { ambient, diffuse, specular, exponent } = *surface;
+    Material { ambient: gains(ambient), diffuse: gains(diffuse), specular: gains(specular), exponent }
+}
+
+fn light(lamp: &Lamp) -> Light {
+    let (vector, colour, kind) = match *lamp {
+        Lamp::Distant(direction, colour) => (unit(direction).unwrap_or(KEY), colour, DIRECTIONAL),
+        Lamp::Near(position, colour) => (position, colour, POINT),
+    };
+    Light { vector: vector.map(|c| fixed(c, UNIT)), colour: gains(colour), kind, space: EYE_SPACE }
+}
+
+fn camera(view: &View) -> Camera {
+    Camera {
+        rotation: view.rotation.map(|row| row.map(|c| fixed(c, ROTATION))),
+        translation: view.translation.map(|c| fixed(c, UNIT)),
+        axis: view.axis.map(|c| fixed(c, ROTATION)),
+        period: view.period,
+        projection: if view.projection == Projection::Perspective { PERSPECTIVE } else { ORTHOGRAPHIC },
+        reserved: 0,
+        focal: fixed(view.focal, 16) as u32,
+        near: fixed(view.near, UNIT),
+        far: fixed(view.far, UNIT),
+    }
+}

@@ -1,0 +1,235 @@
+//! Polygon soup to a welded mesh of triangles.
+
+use crate::vector::{V3, add, cross, dot, length, scale, sub, unit};
+use anyhow::{Result, bail};
+use std::collections::HashMap;
+
+/// What a mesh file holds: polygons whose corners may repeat positions.
+#[derive(Clone, Debug, Default)]
+pub struct Soup {
+    /// Positions, finite.
+    pub positions: Vec<V3>,
+    /// Normals of any length, finite.
+    pub normals: Vec<V3>,
+    /// Polygons, three corners or more, counter-clockwise seen from the front.
+    pub faces: Vec<Vec<Corner>>,
+}
+
+/// One corner of a polygon.
+#[derive(Clone, Copy, Debug)]
+pub struct Corner {
+    /// Index of the position.
+    pub position: usize,
+    /// Index of the normal, where the file gives one.
+    pub normal: Option<usize>,
+}
+
+/// Triangles on shared vertices.
+#[derive(Clone, Debug, Default)]
+pub struct Mesh {
+    /// One per vertex.
+    pub positions: Vec<V3>,
+    /// One per vertex, unit length.
+    pub normals: Vec<V3>,
+    /// Vertices, counter-clockwise seen from the front.
+    pub triangles: Vec<[usize; 3]>,
+}
+
+/// What welding did.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Report {
+    /// Positions that coincided with another one.
+    pub welded: usize,
+    /// Triangles without an area.
+    pub degenerate: usize,
+    /// The file's own normals were used.
+    pub own_normals: bool,
+    /// The closed surface was inside out and has been turned.
+    pub turned: bool,
+}
+
+/// Positions nearer than this share of the mesh's radius are one.
+const WELD: f64 = 1e-6;
+
+/// Welds, computes missing normals, cuts polygons into fans of triangles, centres and scales to a sphere of radius 1.
+///
+/// # Errors
+/// When nothing is left to draw.
+pub fn weld(soup: &Soup, turn: bool) -> Result<(Mesh, Report)> {
+    if soup.faces.is_empty() {
+        bail!("the mesh has no faces; export it with polygons");
+    }
+    let positions = fit_sphere(soup)?;
+    let places = merge(&positions);
+    let mut report = Report { welded: merged(soup, &places), own_normals: has_normals(soup), ..Report::default() };
+    let mut mesh = if report.own_normals { with_own_normals(soup, &positions, &places) } else { smooth(soup, &positions, &places) };
+    let before = mesh.triangles.len();
+    drop_degenerate(&mut mesh);
+    report.degenerate = before - mesh.triangles.len();
+    if mesh.triangles.is_empty() {
+        bail!("all {before} triangles are degenerate (no area); nothing is left to draw");
+    }
+    let inside_out = is_closed(&mesh) && volume(&mesh) < 0.0;
+    if inside_out != turn {
+        mesh.triangles.iter_mut().for_each(|t| t.swap(1, 2));
+        // Normals from a file are right already when only the winding is wrong.
+        if !report.own_normals {
+            mesh.normals.iter_mut().for_each(|n| *n = scale(*n, -1.0));
+        }
+        report.turned = true;
+    }
+    drop_unused(&mut mesh);
+    Ok((mesh, report))
+}
+
+/// Positions moved to the centre of their box and scaled to radius 1; only those that faces use count.
+fn fit_sphere(soup: &Soup) -> Result<Vec<V3>> {
+    let used = || soup.faces.iter().flatten().map(|c| soup.positions[c.position]);
+    let low = used().fold([f64::INFINITY; 3], |m, p| [0, 1, 2].map(|k| f64::min(m[k], p[k])));
+    let high = used().fold([f64::NEG_INFINITY; 3], |m, p| [0, 1, 2].map(|k| f64::max(m[k], p[k])));
+    let centre = scale(add(low, high), 0.5);
+    let radius = used().map(|p| length(sub(p, centre))).fold(0.0, f64::max);
+    let Some(inverse) = Some(1.0 / radius).filter(|i| i.is_finite()) else {
+        bail!("all vertices lie in one point; nothing is left to draw");
+    };
+    // Positions that no face uses may lie anywhere: they are pulled in, not looked at.
+    Ok(soup.positions.iter().map(|&p| scale(sub(p, centre), inverse).map(|c| c.clamp(-1.0, 1.0))).collect())
+}
+
+/// For each position the first one that lies within [`WELD`] of it.
+fn merge(positions: &[V3]) -> Vec<usize> {
+    let mut cells: HashMap<[i64; 3], Vec<usize>> = HashMap::new();
+    let mut first = Vec::with_capacity(positions.len());
+    for (i, &p) in positions.iter().enumerate() {
+        let cell = p.map(|c| (c / WELD).floor() as i64);
+        let near = (0..27).find_map(|k| {
+            let neighbour = [cell[0] + k % 3 - 1, cell[1] + k / 3 % 3 - 1, cell[2] + k / 9 - 1];
+            cells.get(&neighbour)?.iter().copied().find(|&j| length(sub(positions[j], p)) <= WELD)
+        });
+        if near.is_none() {
+            cells.entry(cell).or_default().push(i);
+        }
+        first.push(near.unwrap_or(i));
+    }
+    first
+}
+
+fn merged(soup: &Soup, places: &[usize]) -> usize {
+    let mut used = vec![false; places.len()];
+    soup.faces.iter().flatten().for_each(|c| used[c.position] = true);
+    places.iter().enumerate().filter(|&(i, &first)| used[i] && first != i).count()
+}
+
+/// Whether every corner has a normal with a direction.
+fn has_normals(soup: &Soup) -> bool {
+    soup.faces.iter().flatten().all(|c| c.normal.is_some_and(|n| unit(soup.normals[n]).is_some()))
+}
+
+fn with_own_normals(soup: &Soup, positions: &[V3], places: &[usize]) -> Mesh {
+    let mut mesh = Mesh::default();
+    let mut vertices: HashMap<(usize, [i32; 3]), usize> = HashMap::new();
+    for face in &soup.faces {
+        let corners: Vec<usize> = face
+            .iter()
+            .map(|corner| {
+                let place = places[corner.position];
+                let normal = corner.normal.and_then(|n| unit(soup.normals[n])).unwrap_or([0.0, 0.0, 1.0]);
+                // Finer than a stream keeps them: equal keys become equal normals.
+                let key = normal.map(|c| (c * 65536.0).round() as i32);
+                *vertices.entry((place, key)).or_insert_with(|| {
+                    mesh.positions.push(positions[place]);
+                    mesh.normals.push(normal);
+                    mesh.positions.len() - 1
+                })
+            })
+            .collect();
+        mesh.triangles.extend(fan(&corners));
+    }
+    mesh
+}
+
+/// One normal per place: the sum of its polygons' area vectors.
+fn smooth(soup: &Soup, positions: &[V3], places: &[usize]) -> Mesh {
+    let mut sums = vec![[0.0; 3]; positions.len()];
+    let mut any: Vec<Option<V3>> = vec![None; positions.len()];
+    let mut triangles = Vec::new();
+    for face in &soup.faces {
+        let corners: Vec<usize> = face.iter().map(|c| places[c.position]).collect();
+        let area = newell(corners.iter().map(|&c| positions[c]));
+        for &c in &corners {
+            sums[c] = add(sums[c], area);
+            any[c] = any[c].or(unit(area));
+        }
+        triangles.extend(fan(&corners));
+    }
+    // Faces back to back cancel; then any one of them is as good as the other.
+    let direction = |(sum, any): (&V3, &Option<V3>)| if length(*sum) > 1e-14 { unit(*sum) } else { *any }.unwrap_or([0.0, 0.0, 1.0]);
+    let normals = sums.iter().zip(&any).map(direction).collect();
+    Mesh { positions: positions.to_vec(), normals, triangles }
+}
+
+/// Newell's formula: twice the area of a polygon, times its normal, exact for planar polygons and a mean for others.
+pub fn newell(points: impl Iterator<Item = V3> + Clone) -> V3 {
+    let next = points.clone().skip(1).chain(points.clone().take(1));
+    points.zip(next).fold([0.0; 3], |sum, (a, b)| add(sum, cross(a, b)))
+}
+
+/// A convex polygon as triangles around its first corner.
+fn fan(corners: &[usize]) -> impl Iterator<Item = [usize; 3]> {
+    (1..corners.len().saturating_sub(1)).map(|k| [corners[0], corners[k], corners[k + 1]])
+}
+
+fn drop_degenerate(mesh: &mut Mesh) {
+    let positions = &mesh.positions;
+    mesh.triangles.retain(|t| {
+        let [a, b, c] = t.map(|v| positions[v]);
+        // Thinner than a weld can tell apart is no area.
+        let longest = [sub(b, a), sub(c, b), sub(a, c)].map(length).into_iter().fold(0.0, f64::max);
+        length(cross(sub(b, a), sub(c, a))) > WELD * longest
+    });
+}
+
+/// Whether each edge has exactly one partner that runs the other way.
+fn is_closed(mesh: &Mesh) -> bool {
+    let mut places: HashMap<[u64; 3], usize> = HashMap::new();
+    let ids: Vec<usize> = mesh
+        .positions
+        .iter()
+        .map(|p| {
+            let next = places.len();
+            *places.entry(p.map(f64::to_bits)).or_insert(next)
+        })
+        .collect();
+    edges_pair_up(mesh.triangles.iter().map(|t| t.map(|v| ids[v])))
+}
+
+/// Whether each directed edge occurs once, and once the other way.
+pub(crate) fn edges_pair_up<P: Copy + Eq + std::hash::Hash>(triangles: impl Iterator<Item = [P; 3]>) -> bool {
+    let mut edges: HashMap<(P, P), usize> = HashMap::new();
+    for [a, b, c] in triangles {
+        for edge in [(a, b), (b, c), (c, a)] {
+            *edges.entry(edge).or_default() += 1;
+        }
+    }
+    edges.iter().all(|(&(a, b), &count)| count == 1 && edges.contains_key(&(b, a)))
+}
+
+/// Six times the volume inside a closed surface; negative when it is inside out.
+fn volume(mesh: &Mesh) -> f64 {
+    mesh.triangles.iter().map(|t| t.map(|v| mesh.positions[v])).map(|[a, b, c]| dot(a, cross(b, c))).sum()
+}
+
+fn drop_unused(mesh: &mut Mesh) {
+    let mut index = vec![None; mesh.positions.len()];
+    let mut kept = Mesh::default();
+    for triangle in &mesh.triangles {
+        kept.triangles.push(triangle.map(|v| {
+            *index[v].get_or_insert_with(|| {
+                kept.positions.push(mesh.positions[v]);
+                kept.normals.push(mesh.normals[v]);
+                kept.positions.len() - 1
+            })
+        }));
+    }
+    *mesh = kept;
+}

@@ -1,0 +1,131 @@
+//! Reads Wavefront OBJ: positions, normals and faces; the rest is of no use here.
+//!
+//! A reader of our own, because a bad number or index should be reported with its line.
+
+use crate::mesh::{Corner, Soup};
+use anyhow::{Context, Result, bail};
+
+/// Larger coordinates would overflow when squared.
+const LARGEST: f64 = 1e100;
+
+/// Parses the text of an OBJ file.
+///
+/// # Errors
+/// Names the line, and what is wrong with it.
+pub fn parse(text: &str) -> Result<Soup> {
+    let mut soup = Soup::default();
+    // Faces may name vertices that follow: indices are checked at the end, by line.
+    let mut lines = Vec::new();
+    for (number, line) in logical_lines(text) {
+        let mut words = line.split_whitespace();
+        match words.next() {
+            Some("v") => soup.positions.push(vector(words).with_context(|| format!("line {number}: vertex"))?),
+            Some("vn") => soup.normals.push(vector(words).with_context(|| format!("line {number}: normal"))?),
+            Some("f") => {
+                let face = face(words, &soup).with_context(|| format!("line {number}: face"))?;
+                soup.faces.push(face);
+                lines.push(number);
+            }
+            _ => {}
+        }
+    }
+    let (positions, normals) = (soup.positions.len(), soup.normals.len());
+    for (face, line) in soup.faces.iter().zip(lines) {
+        for corner in face {
+            if corner.position >= positions {
+                bail!("line {line}: face: vertex {} is out of range; the file has {positions}", corner.position + 1);
+            }
+            if let Some(normal) = corner.normal.filter(|&n| n >= normals) {
+                bail!("line {line}: face: normal {} is out of range; the file has {normals}", normal + 1);
+            }
+        }
+    }
+    Ok(soup)
+}
+
+/// Lines without comments, with their numbers; a backslash at the end joins the next line.
+fn logical_lines(text: &str) -> impl Iterator<Item = (usize, String)> {
+    let mut lines = text.lines().enumerate();
+    std::iter::from_fn(move || {
+        let (index, first) = lines.next()?;
+        let mut line = strip(first).to_owned();
+        while line.ends_with('\\') {
+            line.pop();
+            line.push(' ');
+            line.push_str(lines.next().map_or("", |(_, next)| strip(next)));
+        }
+        Some((index + 1, line))
+    })
+}
+
+fn strip(line: &str) -> &str {
+    line.split('#').next().unwrap_or_default().trim_end()
+}
+
+fn vector<'a>(mut words: impl Iterator<Item = &'a str>) -> Result<[f64; 3]> {
+    let mut vector = [0.0; 3];
+    for (component, axis) in vector.iter_mut().zip(["x", "y", "z"]) {
+        let word = words.next().with_context(|| format!("{axis} is missing; three numbers are needed"))?;
+        let number: f64 = word.parse().ok().with_context(|| format!("{axis} is {word:?}, not a number"))?;
+        *component = number;
+        if !number.is_finite() || number.abs() > LARGEST {
+            bail!("{axis} is {word}; coordinates must be finite and below {LARGEST:e}");
+        }
+    }
+    Ok(vector)
+}
+
+fn face<'a>(words: impl Iterator<Item = &'a str>, soup: &Soup) -> Result<Vec<Corner>> {
+    let corners = words.map(|word| corner(word, soup)).collect::<Result<Vec<_>>>()?;
+    if corners.len() < 3 {
+        bail!("{} corners; three at least are needed", corners.len());
+    }
+    Ok(corners)
+}
+
+/// `position`, `position/texture`, `position/texture/normal` or `position//normal`.
+fn corner(word: &str, soup: &Soup) -> Result<Corner> {
+    let mut parts = word.split('/');
+    let position = index(parts.next().unwrap_or_default(), soup.positions.len(), "vertex")?;
+    let normal = parts.nth(1).filter(|n| !n.is_empty()).map(|n| index(n, soup.normals.len(), "normal")).transpose()?;
+    Ok(Corner { position, normal })
+}
+
+/// Indices count from 1; negative ones count back from the last one so far.
+fn index(word: &str, count: usize, what: &str) -> Result<usize> {
+    let number: i64 = word.parse().ok().with_context(|| format!("{what} index {word:?} is not a whole number"))?;
+    let index = if number > 0 { number - 1 } else { number + count as i64 };
+    if number == 0 || index < 0 {
+        bail!("{what} {number} is out of range; indices count from 1, and there are {count} so far");
+    }
+    Ok(index as usize)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn polygons_negative_indices_and_continued_lines() {
+        let soup = parse("v 0 0 0\nv 1 0 0 # comment\nv 1 1 0\nv 0 1 0\nvn 0 0 2\nf -4//1 -3//1 \\\n -2//1 4//1\n").unwrap();
+        assert_eq!(soup.faces.len(), 1);
+        assert_eq!(soup.faces[0].iter().map(|c| c.position).collect::<Vec<_>>(), [0, 1, 2, 3]);
+        assert!(soup.faces[0].iter().all(|c| c.normal == Some(0)));
+    }
+
+    #[test]
+    fn errors_name_the_line() {
+        for (text, line) in [
+            ("v 0 0 0\nv nan 0 0\n", "line 2"),
+            ("v 0 0 0\nf 1 1 2\n", "line 2"),
+            ("v 0 0\n", "line 1"),
+            ("\nf 1 2\n", "line 2"),
+            ("v 1 2 3\nf 0 1 1", "line 2"),
+            ("v 1 2 3\nf 1//1 1//1 1//2", "line 2"),
+            ("v 1e200 2 3", "line 1"),
+        ] {
+            let error = format!("{:#}", parse(text).unwrap_err());
+            assert!(error.contains(line), "{text:?}: {error}");
+        }
+    }
+}

@@ -1,0 +1,142 @@
+//! A welded mesh to the records of a stream.
+
+use crate::{
+    mesh::{Mesh, edges_pair_up},
+    vector::{V3, add, cross, dot, length, scale, sub, unit},
+};
+use microphong::{
+    format::{EDGE, UNIT},
+    stream::record::{Triangle, Vertex},
+};
+use std::collections::HashMap;
+
+/// One: a [`microphong::format::Unit`] in units of its last place.
+const ONE: f64 = (1 << UNIT) as f64;
+/// One: an edge constant.
+const EDGE_ONE: f64 = (1 << EDGE) as f64;
+/// Corners are 16-bit indices.
+const MAX_VERTICES: usize = u16::MAX as usize;
+/// Farthest eye that a stream can ask for: 16 units along each axis.
+const FARTHEST: f64 = 16.0 * 1.733;
+/// Units in the last place by which the renderer's own eye position, rounded, may be off along a normal.
+const EYE_SLACK: f64 = 4.0;
+/// Quantised corners of a convex body leave its hull by as much, in units of the last place.
+const CONVEX_SLACK: f64 = 2.0;
+
+/// Records of one mesh, indices from 0.
+#[derive(Clone, Debug, Default)]
+pub struct Part {
+    /// At most 65,535.
+    pub vertices: Vec<Vertex>,
+    /// Their corners count from this part's first vertex.
+    pub triangles: Vec<Triangle>,
+    /// Closed and convex: front faces never hide one another.
+    pub closed_convex: bool,
+}
+
+/// Rounds a mesh to a stream's formats; more than 65,535 vertices become several parts.
+///
+/// Also counts triangles that had an area before the rounding, but not after it.
+#[must_use]
+pub fn quantise(mesh: &Mesh) -> (Vec<Part>, usize) {
+    let vertices: Vec<Vertex> =
+        mesh.positions.iter().zip(&mesh.normals).map(|(&p, &n)| Vertex { position: position(p), normal: normal(n) }).collect();
+    let mut parts = vec![Part::default()];
+    let mut index: HashMap<usize, u16> = HashMap::new();
+    let mut dropped = 0;
+    for corners in &mesh.triangles {
+        let Some(mut triangle) = triangle(corners.map(|v| vertices[v])) else {
+            dropped += 1;
+            continue;
+        };
+        if index.len() + corners.iter().filter(|v| !index.contains_key(v)).count() > MAX_VERTICES {
+            parts.push(Part::default());
+            index.clear();
+        }
+        if let Some(part) = parts.last_mut() {
+            triangle.corners = corners.map(|v| {
+                *index.entry(v).or_insert_with(|| {
+                    part.vertices.push(vertices[v]);
+                    (part.vertices.len() - 1) as u16
+                })
+            });
+            part.triangles.push(triangle);
+        }
+    }
+    parts.retain(|part| !part.triangles.is_empty());
+    for part in &mut parts {
+        part.closed_convex = is_closed(part) && is_convex(part);
+    }
+    (parts, dropped)
+}
+
+fn position(p: V3) -> [i16; 3] {
+    p.map(|c| (c * ONE).round() as i16)
+}
+
+/// The lattice point for a unit vector whose length is nearest to one, among the 27 around it.
+///
+/// An error of the length enters a highlight as many times as its exponent
+/// says; an error of the direction by one unit in the last place does not show.
+/// Near an axis all neighbours have nearly the same length: there the error
+/// can reach half a unit in the last place, 3.1e-5.
+#[must_use]
+pub fn normal(n: V3) -> [i16; 3] {
+    let exact = scale(n, ONE);
+    let centre = exact.map(f64::round);
+    let neighbours = (0..27).map(|k| add(centre, [(k % 3 - 1) as f64, (k / 3 % 3 - 1) as f64, (k / 9 - 1) as f64]));
+    let cost = |p: V3| ((length(p) - ONE).abs(), length(sub(p, exact)));
+    let better = |a: V3, b: V3| if cost(b) < cost(a) { b } else { a };
+    neighbours.fold(centre, better).map(|c| c as i16)
+}
+
+fn widen(v: [i16; 3]) -> V3 {
+    v.map(f64::from)
+}
+
+/// All that does not depend on camera or light; `None` without an area. Corners are left at 0.
+fn triangle(corners: [Vertex; 3]) -> Option<Triangle> {
+    let [a, b, c] = corners.map(|v| widen(v.position));
+    // Exact: 16-bit differences, and sums of a few of their products.
+    let plane = unit(cross(sub(b, a), sub(c, a)))?;
+    let normals = corners.map(|v| unit(widen(v.normal)).unwrap_or([0.0, 0.0, 1.0]));
+    let cosine = [0, 1, 2].map(|k| dot(normals[k], normals[(k + 1) % 3]).clamp(-1.0, 1.0));
+    let sums = [0, 1, 2].map(|k| length(add(normals[k], normals[(k + 1) % 3])));
+    let least = cosine.iter().copied().fold(1.0, f64::min);
+    let quantised = normal(plane);
+    Some(Triangle {
+        corners: [0; 3],
+        rsum: sums.map(|s| (EDGE_ONE / s).round().min(f64::from(u16::MAX)) as u16),
+        square: cosine.map(|c| ((1.0 + c) / 2.0 * EDGE_ONE).round() as u16),
+        rho: ((1.0 + 2.0 * least) / 3.0 * EDGE_ONE * EDGE_ONE).max(0.0).sqrt().min(EDGE_ONE) as u16,
+        normal: quantised,
+        offset: offset(plane, dot(plane, a) / ONE, quantised),
+    })
+}
+
+/// The largest offset that never removes a triangle which faces an eye.
+///
+/// The rounded normal is not quite square to the plane, so `normal · eye`
+/// varies over the plane itself; its least value on the part of the plane that
+/// an eye can reach is what an eye in front exceeds. With the rounded normal
+/// written as `along · plane + across`, that value is
+/// `along · distance - |across| · sqrt(FARTHEST² - distance²)`. The
+/// renderer's eye is rounded as well, which takes [`EYE_SLACK`] more.
+fn offset(plane: V3, distance: f64, quantised: [i16; 3]) -> i16 {
+    let rounded = widen(quantised);
+    let along = dot(rounded, plane);
+    let across = length(sub(rounded, scale(plane, along)));
+    let reach = (FARTHEST * FARTHEST - distance * distance).max(0.0).sqrt();
+    (along * distance - across * reach - EYE_SLACK).floor() as i16
+}
+
+fn is_closed(part: &Part) -> bool {
+    edges_pair_up(part.triangles.iter().map(|t| t.corners.map(|c| part.vertices[usize::from(c)].position)))
+}
+
+fn is_convex(part: &Part) -> bool {
+    part.triangles.iter().all(|t| {
+        let [a, b, c] = t.corners.map(|c| widen(part.vertices[usize::from(c)].position));
+        unit(cross(sub(b, a), sub(c, a))).is_some_and(|n| part.vertices.iter().all(|v| dot(n, sub(widen(v.position), a)) <= CONVEX_SLACK))
+    })
+}

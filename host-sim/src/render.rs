@@ -1,0 +1,129 @@
+//! The core renderer with as much memory as a scene wants.
+
+use crate::image;
+use anyhow::{Context, Result};
+use embedded_graphics_core::{
+    geometry::Size,
+    pixelcolor::{Gray4, Gray8, Rgb565, Rgb888},
+};
+use microphong::{
+    Memory, Renderer, Shader, Stats, Stream, Workspace,
+    pixel::{PictureCrc, Pixel},
+};
+
+/// Draws frame `number` and returns its pixels row by row from the top.
+///
+/// Bands have `band_rows` rows, at most the picture's; the picture does not depend on it.
+///
+/// # Errors
+/// When `size` is out of range.
+pub fn frame<C: Pixel>(
+    stream: Stream<'_>,
+    size: Size,
+    shader: Shader,
+    dither: bool,
+    band_rows: u32,
+    number: u32,
+) -> Result<(Vec<C>, Stats)> {
+    // One entry of each kind, to fill the memory with.
+    let mut blank = Workspace::<C, 1, 1, 1, 1>::new(C::pack([0; 3]));
+    let blank = blank.memory();
+    let rows = band_rows.clamp(1, size.height.max(1));
+    let mut vertices = vec![blank.vertices[0]; stream.vertices.len()];
+    let mut bins = vec![blank.bins[0]; stream.triangles.len()];
+    let mut depth = vec![0; size.width as usize * rows as usize];
+    let mut palettes = vec![blank.palettes[0]; stream.materials.len()];
+    let memory = Memory { vertices: &mut vertices, bins: &mut bins, depth: &mut depth, palettes: &mut palettes };
+    let mut renderer = Renderer::new(stream, size, memory)?;
+    renderer.set_shader(shader);
+    renderer.set_dither(dither);
+    let mut pixels = Vec::with_capacity(size.width as usize * size.height as usize);
+    let mut band = vec![C::pack([0; 3]); size.width as usize * rows as usize];
+    let mut frame = renderer.frame(number);
+    while let Some(area) = frame.next_band(&mut band) {
+        let count = area.size.width as usize * area.size.height as usize;
+        pixels.extend_from_slice(band.get(..count).context("the renderer filled more rows than a band has")?);
+    }
+    let stats = frame.stats();
+    Ok((pixels, stats))
+}
+
+/// Checksum of a picture.
+#[must_use]
+pub fn crc<C: Pixel>(pixels: &[C]) -> u32 {
+    let mut crc = PictureCrc::default();
+    crc.update(pixels);
+    crc.finish()
+}
+
+/// A pixel format, chosen at run time.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Format {
+    /// What colour displays store.
+    Rgb565,
+    /// Eight bits per channel.
+    Rgb888,
+    /// 256 greys.
+    Gray8,
+    /// 16 greys.
+    Gray4,
+}
+
+impl Format {
+    /// Every format.
+    pub const ALL: [Self; 4] = [Self::Rgb565, Self::Rgb888, Self::Gray8, Self::Gray4];
+
+    /// The name on the command line.
+    #[must_use]
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Rgb565 => "rgb565",
+            Self::Rgb888 => "rgb888",
+            Self::Gray8 => "gray8",
+            Self::Gray4 => "gray4",
+        }
+    }
+}
+
+/// How to draw.
+#[derive(Clone, Copy, Debug)]
+pub struct Settings {
+    /// Width and height.
+    pub size: Size,
+    /// Shading method.
+    pub shader: Shader,
+    /// Ordered dither.
+    pub dither: bool,
+    /// Rows drawn at a time.
+    pub band_rows: u32,
+    /// Pixel format.
+    pub format: Format,
+}
+
+/// A finished frame of any format.
+#[derive(Clone, Debug)]
+pub struct Picture {
+    /// 8-bit RGB, row by row from the top.
+    pub rgb: Vec<u8>,
+    /// Checksum of the pixels in their own format.
+    pub crc: u32,
+    /// What the frame took.
+    pub stats: Stats,
+}
+
+/// Draws frame `number`, widened for viewing.
+///
+/// # Errors
+/// Those of [`frame`].
+pub fn picture(stream: Stream<'_>, settings: &Settings, number: u32) -> Result<Picture> {
+    fn draw<C: Pixel>(stream: Stream<'_>, s: &Settings, number: u32) -> Result<Picture> {
+        let (pixels, stats) = frame::<C>(stream, s.size, s.shader, s.dither, s.band_rows, number)?;
+        Ok(Picture { rgb: image::rgb_bytes(&pixels), crc: crc(&pixels), stats })
+    }
+    match settings.format {
+        Format::Rgb565 => draw::<Rgb565>(stream, settings, number),
+        Format::Rgb888 => draw::<Rgb888>(stream, settings, number),
+        Format::Gray8 => draw::<Gray8>(stream, settings, number),
+        Format::Gray4 => draw::<Gray4>(stream, settings, number),
+    }
+}

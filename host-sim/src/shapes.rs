@@ -1,0 +1,101 @@
+//! Meshes from formulas, with exact normals.
+
+use crate::{
+    mesh::Mesh,
+    vector::{V3, add, apply, cross, dot, scale, sub, unit},
+};
+use std::f64::consts::{PI, TAU};
+
+/// A unit sphere of `meridians` times `bands` about the z axis: `2 · meridians · (bands - 1)` triangles.
+///
+/// `phase` turns the first meridian away from x.
+#[must_use]
+pub fn sphere(meridians: usize, bands: usize, phase: f64) -> Mesh {
+    let mut positions = vec![[0.0, 0.0, 1.0]];
+    for i in 1..bands {
+        let (s, c) = (PI * i as f64 / bands as f64).sin_cos();
+        positions.extend((0..meridians).map(|j| {
+            let (y, x) = (phase + TAU * j as f64 / meridians as f64).sin_cos();
+            [s * x, s * y, c]
+        }));
+    }
+    positions.push([0.0, 0.0, -1.0]);
+    let south = positions.len() - 1;
+    let at = |i: usize, j: usize| 1 + (i - 1) * meridians + j % meridians;
+    let mut triangles: Vec<[usize; 3]> = (0..meridians).map(|j| [0, at(1, j), at(1, j + 1)]).collect();
+    for i in 1..bands - 1 {
+        for j in 0..meridians {
+            triangles.push([at(i, j), at(i + 1, j), at(i + 1, j + 1)]);
+            triangles.push([at(i, j), at(i + 1, j + 1), at(i, j + 1)]);
+        }
+    }
+    triangles.extend((0..meridians).map(|j| [south, at(bands - 1, j + 1), at(bands - 1, j)]));
+    Mesh { normals: positions.clone(), positions, triangles }
+}
+
+/// A torus about the z axis that a unit sphere encloses: `around` times `across` quadrilaterals, the tube 0.45 of the ring.
+#[must_use]
+pub fn torus(around: usize, across: usize) -> Mesh {
+    const TUBE: f64 = 0.45;
+    let mut mesh = Mesh::default();
+    for i in 0..around {
+        for j in 0..across {
+            let (sa, ca) = (TAU * i as f64 / around as f64).sin_cos();
+            let (sb, cb) = (TAU * j as f64 / across as f64).sin_cos();
+            let normal = [ca * cb, sa * cb, sb];
+            mesh.normals.push(normal);
+            mesh.positions.push(scale(add([ca, sa, 0.0], scale(normal, TUBE)), 1.0 / (1.0 + TUBE)));
+            let at = |i: usize, j: usize| i % around * across + j % across;
+            mesh.triangles.push([at(i, j), at(i + 1, j), at(i + 1, j + 1)]);
+            mesh.triangles.push([at(i, j), at(i + 1, j + 1), at(i, j + 1)]);
+        }
+    }
+    mesh
+}
+
+/// A dodecahedron in the unit sphere with a sphere's normals: few, large, strongly curved triangles.
+#[must_use]
+pub fn dodecahedron() -> Mesh {
+    let golden = (1.0 + 5f64.sqrt()) / 2.0;
+    let signs = [-1.0, 1.0];
+    let pairs = signs.iter().flat_map(|&a| signs.map(|b| (a, b)));
+    let cube = pairs.clone().flat_map(|(a, b)| signs.map(|c| [a, b, c]));
+    let rest =
+        pairs.clone().flat_map(|(a, b)| [[0.0, a / golden, b * golden], [a / golden, b * golden, 0.0], [a * golden, 0.0, b / golden]]);
+    let positions: Vec<V3> = cube.chain(rest).filter_map(unit).collect();
+    let centres = pairs.flat_map(|(a, b)| [[a, 0.0, b * golden], [a * golden, b, 0.0], [0.0, a * golden, b]]);
+    let mut triangles = Vec::new();
+    for centre in centres {
+        // The five corners of a face are the five nearest to its centre; then counter-clockwise about it.
+        let mut corners: Vec<usize> = (0..positions.len()).collect();
+        corners.sort_by(|&a, &b| dot(positions[b], centre).total_cmp(&dot(positions[a], centre)));
+        corners.truncate(5);
+        let start = positions[corners[0]];
+        let side = cross(centre, start);
+        let angle = |c: usize| {
+            dot(positions[c], side)
+                .atan2(dot(positions[c], sub(start, scale(centre, dot(start, centre) / dot(centre, centre)))) * dot(centre, centre).sqrt())
+        };
+        corners.sort_by(|&a, &b| angle(a).total_cmp(&angle(b)));
+        triangles.extend((1..4).map(|k| [corners[0], corners[k], corners[k + 1]]));
+    }
+    Mesh { normals: positions.clone(), positions, triangles }
+}
+
+/// One triangle whose normals bulge it.
+#[must_use]
+pub fn bulged_triangle() -> Mesh {
+    let normals = [[-0.35, -0.3, 1.0], [0.35, -0.3, 1.0], [0.0, 0.4, 1.0]];
+    Mesh {
+        positions: vec![[-1.0, -0.8, 0.0], [1.0, -0.9, 0.0], [0.1, 1.0, 0.0]],
+        normals: normals.into_iter().filter_map(unit).collect(),
+        triangles: vec![[0, 1, 2]],
+    }
+}
+
+/// The mesh turned by a rotation with these rows.
+#[must_use]
+pub fn turned(mut mesh: Mesh, rows: &[V3; 3]) -> Mesh {
+    mesh.positions.iter_mut().chain(&mut mesh.normals).for_each(|v| *v = apply(rows, *v));
+    mesh
+}

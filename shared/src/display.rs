@@ -1,0 +1,50 @@
+//! Frames onto embedded-graphics displays: whole bands, never single pixels.
+
+use crate::{Frame, Renderer, Stats, pixel::Pixel};
+use core::cell::RefCell;
+use embedded_graphics_core::{Drawable, draw_target::DrawTarget, pixelcolor::PixelColor};
+
+impl<C: Pixel + PixelColor> Frame<'_, '_, C> {
+    /// Draws all bands of the frame, handing each to `target` in one `fill_contiguous`.
+    ///
+    /// `band` holds one band at least: `width * band_rows` pixels; with less, bands get fewer rows.
+    ///
+    /// # Errors
+    /// The display's.
+    pub fn draw_to<D: DrawTarget<Color = C>>(mut self, target: &mut D, band: &mut [C]) -> Result<Stats, D::Error> {
+        while let Some(area) = self.next_band(band) {
+            target.fill_contiguous(&area, band.iter().copied().take((area.size.width * area.size.height) as usize))?;
+        }
+        Ok(self.stats())
+    }
+}
+
+/// One frame as a [`Drawable`], to be drawn like any other shape of embedded-graphics. Its output is the frame's [`Stats`].
+#[derive(Debug)]
+pub struct Picture<'r, 'a, C> {
+    parts: RefCell<(&'r mut Renderer<'a, C>, &'r mut [C])>,
+    number: u32,
+}
+
+impl<'r, 'a, C: Pixel> Picture<'r, 'a, C> {
+    /// Frame `number` of `renderer`, drawn by way of `band`, see [`Frame::draw_to`].
+    pub fn new(renderer: &'r mut Renderer<'a, C>, band: &'r mut [C], number: u32) -> Self {
+        Self { parts: RefCell::new((renderer, band)), number }
+    }
+}
+
+impl<C: Pixel + PixelColor> Drawable for Picture<'_, '_, C> {
+    type Color = C;
+    type Output = Stats;
+
+    fn draw<D: DrawTarget<Color = C>>(&self, target: &mut D) -> Result<Stats, D::Error> {
+        // Only a display that draws this very picture from within its own `fill_contiguous` could find it borrowed.
+        match self.parts.try_borrow_mut() {
+            Ok(mut parts) => {
+                let (renderer, band) = &mut *parts;
+                renderer.frame(self.number).draw_to(target, band)
+            }
+            Err(_) => Ok(Stats::default()),
+        }
+    }
+}

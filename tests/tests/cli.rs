@@ -1,0 +1,255 @@
+//! Wrong input of every kind: the message names the file and the place, the exit code says whose fault it is, nothing is left behind.
+
+use microphong::{Stream, StreamError, stream};
+use microphong_sim::{bytes::StreamBytes, scene};
+use std::{
+    fs,
+    path::{Path, PathBuf},
+    process::{Command, Output},
+    sync::LazyLock,
+};
+use tempfile::TempDir;
+
+/// The command; built here, because a package's tests build only the package's own programs.
+static PROGRAM: LazyLock<PathBuf> = LazyLock::new(|| {
+    let cargo = Command::new(env!("CARGO"))
+        .args(["build", "--quiet", "--package", "microphong-sim", "--bin", "microphong", "--message-format", "json"])
+        .current_dir(env!("CARGO_MANIFEST_DIR"))
+        .output()
+        .expect("cargo");
+    assert!(cargo.status.success(), "{}", String::from_utf8_lossy(&cargo.stderr));
+    String::from_utf8_lossy(&cargo.stdout)
+        .lines()
+        .filter_map(|line| serde_json::from_str::<serde_json::Value>(line).ok())
+        .find_map(|message| message["executable"].as_str().map(PathBuf::from))
+        .expect("the program's path")
+});
+
+/// A scratch directory in which the command runs.
+struct Place(TempDir);
+
+impl Place {
+    fn new() -> Self {
+        Self(tempfile::tempdir().expect("scratch directory"))
+    }
+
+    fn file(&self, name: &str, contents: impl AsRef<[u8]>) -> &Self {
+        fs::write(self.0.path().join(name), contents).expect("scratch file");
+        self
+    }
+
+    fn run(&self, arguments: &[&str]) -> Output {
+        Command::new(&*PROGRAM).args(arguments).current_dir(self.0.path()).output().expect("the program")
+    }
+
+    fn files(&self) -> Vec<String> {
+        let entries = fs::read_dir(self.0.path()).expect("scratch directory");
+        let mut names: Vec<_> = entries.map(|e| e.expect("entry").file_name().to_string_lossy().into_owned()).collect();
+        names.sort();
+        names
+    }
+
+    /// Runs the command, which must fail with `code`, say each of `words` on stderr, and leave the directory as it was.
+    #[track_caller]
+    fn fails(&self, arguments: &[&str], code: i32, words: &[&str]) {
+        let before = self.files();
+        let output = self.run(arguments);
+        let stderr = String::from_utf8_lossy(&output.stderr);
+        assert_eq!(output.status.code(), Some(code), "{arguments:?}: {stderr}");
+        assert!(!stderr.contains("panicked"), "{arguments:?}: {stderr}");
+        for word in words {
+            assert!(stderr.contains(word), "{arguments:?}: {word:?} is not in {stderr:?}");
+        }
+        assert!(output.stdout.is_empty(), "{arguments:?}: {}", String::from_utf8_lossy(&output.stdout));
+        assert_eq!(self.files(), before, "{arguments:?}");
+    }
+
+    /// Runs the command, which must succeed, and returns its stdout.
+    #[track_caller]
+    fn succeeds(&self, arguments: &[&str]) -> String {
+        let output = self.run(arguments);
+        let stderr = String::from_utf8_lossy(&output.stderr);
+        assert!(output.status.success(), "{arguments:?}: {stderr}");
+        assert!(stderr.is_empty(), "{arguments:?}: {stderr}");
+        String::from_utf8(output.stdout).expect("text")
+    }
+}
+
+const TETRAHEDRON: &str = "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 1 4 3\nf 2 3 4\n";
+
+#[test]
+fn bad_meshes_are_refused_with_their_line() {
+    let cases = [
+        ("v 0 0 0\nv 1 NaN 0\n", "line 2"),
+        ("v 0 0 0\nv 1 inf 0\n", "line 2"),
+        ("v 0 0 0\nv 1 0\n", "line 2"),
+        ("v 0 0 zero\n", "line 1"),
+        ("v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 4\n", "line 4"),
+        ("v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 -4\n", "line 4"),
+        ("v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 0\n", "line 4"),
+        ("v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2\n", "line 4"),
+        ("v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1//1 2//1 3//1\n", "line 4"),
+        ("v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 99999999999999999999\n", "line 4"),
+        ("", "no faces"),
+        ("v 0 0 0\nv 1 0 0\nv 0 1 0\n", "no faces"),
+        ("v 1 1 1\nf 1 1 1\n", "one point"),
+        ("v 0 0 0\nv 1 0 0\nv 2 0 0\nf 1 2 3\n", "degenerate"),
+    ];
+    let place = Place::new();
+    for (text, words) in cases {
+        place.file("bad.obj", text);
+        place.fails(&["convert", "bad.obj", "-o", "out.tri"], 1, &["bad.obj", words]);
+        place.fails(&["render", "bad.obj"], 1, &["bad.obj", words]);
+    }
+    place.file("bad.obj", [0xFF, 0xFE, 0, b'\n', b'f', b' ', 0x80]);
+    place.fails(&["convert", "bad.obj"], 1, &["bad.obj", "line 2"]);
+}
+
+#[test]
+fn missing_files_and_unwritable_outputs() {
+    let place = Place::new();
+    place.file("good.obj", TETRAHEDRON);
+    fs::create_dir(place.0.path().join("taken.tri")).expect("directory");
+    place.fails(&["convert", "none.obj"], 1, &["none.obj"]);
+    place.fails(&["inspect", "none.tri"], 1, &["none.tri"]);
+    place.fails(&["render", "none.tri"], 1, &["none.tri"]);
+    place.fails(&["render", "none.obj"], 1, &["none.obj"]);
+    place.fails(&["inspect", "."], 1, &["."]);
+    place.fails(&["convert", "good.obj", "-o", "no/such/out.tri"], 1, &["no/such/out.tri", "directory"]);
+    place.fails(&["convert", "good.obj", "-o", "taken.tri"], 1, &["taken.tri", "directory"]);
+    place.fails(&["render", "triangle", "-o", "no/such/out.png"], 1, &["no/such/out.png", "directory"]);
+    place.fails(&["render", "triangle", "-o", "good.obj/frames/"], 1, &["good.obj/frames"]);
+}
+
+#[test]
+fn wrong_usage_is_told_from_failure() {
+    let place = Place::new();
+    place.file("good.obj", TETRAHEDRON);
+    place.fails(&["render", "teapott"], 2, &["teapott", "teapot, bunny"]);
+    place.fails(&["render", "triangle", "--shader", "fong"], 2, &["fong", "phong"]);
+    place.fails(&["render", "triangle", "--format", "rgb8"], 2, &["rgb8", "rgb888"]);
+    for size in ["0x0", "0x10", "10x0", "10", "x", "-1x5", "5000000000x1", "10x10x10"] {
+        place.fails(&["render", "triangle", &format!("--size={size}")], 2, &[size, "WIDTHxHEIGHT"]);
+    }
+    place.fails(&["render", "triangle", "--frames", "0"], 2, &["--frames"]);
+    place.fails(&["render", "triangle", "--band-rows", "0"], 2, &["--band-rows"]);
+    place.fails(&["render", "triangle", "--frames", "2", "-o", "a.png"], 2, &["a.png", ".apng"]);
+    place.fails(&["render", "triangle", "-o", "a.jpg"], 2, &["a.jpg", ".png"]);
+    place.fails(&["convert", "good.obj", "--exponent", "0"], 2, &["--exponent"]);
+    place.fails(&["convert", "good.obj", "--exponent", "1025"], 2, &["--exponent"]);
+    place.fails(&["convert", "good.obj", "--colour", "red"], 2, &["red", "hexadecimal"]);
+    place.fails(&["convert", "good.obj", "--up", "x"], 2, &["--up"]);
+    place.fails(&["convert", "good.obj", "--diffuse", "nan"], 2, &["--diffuse"]);
+    place.fails(&["convert", "good.obj", "-o", "good.obj"], 2, &["overwrite"]);
+    place.fails(&["verify", "--board", "uno"], 2, &["uno", "pico"]);
+    place.fails(&["verify", "--board", "pico", "--scene", "none"], 2, &["none", "teapot"]);
+    place.fails(&["paint"], 2, &["paint"]);
+    place.fails(&[], 2, &["Usage"]);
+}
+
+/// A small valid stream.
+fn good() -> Vec<u8> {
+    scene::load("sphere-40").expect("built-in scene").stream.as_bytes().to_vec()
+}
+
+fn parse(bytes: &[u8]) -> Result<(), StreamError> {
+    StreamBytes::from(bytes).parse().map(|_: Stream<'_>| ())
+}
+
+#[test]
+fn streams_cut_anywhere_are_refused() {
+    let good = good();
+    assert_eq!(parse(&good), Ok(()));
+    for length in 0..good.len() {
+        assert!(matches!(parse(&good[..length]), Err(StreamError::Truncated { have, .. }) if have as usize == length), "{length}");
+    }
+    let place = Place::new();
+    for length in [0, 1, 15, 63, good.len() / 2, good.len() - 1] {
+        place.file("cut.tri", &good[..length]);
+        place.fails(&["inspect", "cut.tri"], 1, &["cut.tri", "truncated", &format!("{length} bytes")]);
+        place.fails(&["render", "cut.tri"], 1, &["cut.tri", "truncated"]);
+    }
+}
+
+#[test]
+fn any_flipped_bit_is_noticed() {
+    // The method is not covered by the checksum, so that it can be changed in place; it has a range of its own.
+    const METHOD: usize = 6;
+    let good = good();
+    for at in 0..good.len() {
+        for bit in 0..8 {
+            let mut bad = good.clone();
+            bad[at] ^= 1 << bit;
+            assert_eq!(parse(&bad).is_ok(), at == METHOD && bit < 2, "byte {at}, bit {bit}");
+        }
+    }
+    let place = Place::new();
+    let cases: [(usize, u8, &[&str]); 4] = [
+        (0, 0xFF, &["offset 0", "magic", "microphong convert"]),
+        (4, 0xFF, &["offset 4", "version"]),
+        (12, 0x01, &["offset 12", "checksum", "damaged"]),
+        (good.len() - 1, 0x80, &["offset 12", "checksum"]),
+    ];
+    for (at, flip, words) in cases {
+        let mut bad = good.clone();
+        bad[at] ^= flip;
+        place.file("bad.tri", &bad);
+        place.fails(&["inspect", "bad.tri"], 1, &[&["bad.tri"], words].concat());
+        place.fails(&["render", "bad.tri"], 1, &[&["bad.tri"], words].concat());
+    }
+}
+
+#[test]
+fn sealed_nonsense_is_refused_or_drawn_but_never_crashes() {
+    let good = good();
+    let place = Place::new();
+    let mut refused = 0;
+    for at in (16..good.len()).step_by(97) {
+        let mut bad = good.clone();
+        bad[at] ^= 0x80;
+        stream::seal(&mut bad);
+        if parse(&bad).is_err() {
+            refused += 1;
+            place.file("bad.tri", &bad);
+            place.fails(&["render", "bad.tri"], 1, &["bad.tri"]);
+        }
+    }
+    assert!(refused > 0);
+}
+
+#[test]
+fn convert_inspect_and_render_work_together() {
+    let place = Place::new();
+    place.file("good.obj", TETRAHEDRON);
+    let json = |text: String| serde_json::from_str::<serde_json::Value>(text.lines().last().expect("a line")).expect("JSON");
+    let converted = json(place.succeeds(&["convert", "good.obj", "--orbit", "7", "--shader", "phong", "--json"]));
+    assert_eq!(converted["triangles"], 4);
+    let inspected = json(place.succeeds(&["inspect", "good.tri", "--json"]));
+    let size = fs::metadata(place.0.path().join("good.tri")).expect("stream").len();
+    assert_eq!(inspected["bytes"], size);
+    assert_eq!((&inspected["vertices"], &inspected["frames"]), (&4.into(), &7.into()));
+    let drawn = json(place.succeeds(&["render", "good.tri", "--size", "33x17", "--json"]));
+    assert_eq!((&drawn["shader"], &drawn["output"]), (&"phong".into(), &"good.png".into()));
+    assert_eq!(place.succeeds(&["render", "good.tri", "--size", "33x17", "--frames", "3", "-o", "f/", "--json"]).lines().count(), 3);
+    assert_eq!(place.succeeds(&["render", "good.tri", "--size", "33x17", "--frames", "3", "-o", "f.apng"]).lines().count(), 2);
+    let numbered = |name: &str| Path::new("f").join(name);
+    for file in [numbered("0000.png"), numbered("0002.png"), "good.png".into(), "f.apng".into()] {
+        assert!(place.0.path().join(&file).is_file(), "{}", file.display());
+    }
+    assert_eq!(place.succeeds(&["scenes"]).lines().count(), scene::NAMES.len());
+    assert_eq!(place.succeeds(&["scenes", "--json"]).lines().count(), scene::NAMES.len());
+}
+
+#[test]
+fn formats_and_bands_keep_their_promises() {
+    let place = Place::new();
+    let mut sums = Vec::new();
+    for rows in ["1", "7", "4096"] {
+        let line = place.succeeds(&["render", "torus", "--size", "64x48", "--band-rows", rows, "--json"]);
+        sums.push(serde_json::from_str::<serde_json::Value>(&line).expect("JSON")["crc"].clone());
+    }
+    assert!(sums.windows(2).all(|w| w[0] == w[1]), "{sums:?}");
+    for format in ["rgb565", "rgb888", "gray8", "gray4"] {
+        place.succeeds(&["render", "torus", "--size", "64x48", "--format", format, "--dither"]);
+    }
+}

@@ -1,0 +1,73 @@
+//! Every built-in scene with every shading method, against pictures that somebody has looked at.
+//!
+//! `MICROPHONG_BLESS=1 cargo test -p microphong-tests golden` makes what is drawn now the standard.
+//! Where a picture differs, target/golden holds it and a picture of the differences.
+
+use microphong::Shader;
+use microphong_sim::{
+    image,
+    render::{self, Format, Settings},
+    scene,
+};
+use std::{
+    fs::{self, File},
+    io::BufReader,
+    path::{Path, PathBuf},
+};
+
+fn root() -> &'static Path {
+    Path::new(env!("CARGO_MANIFEST_DIR"))
+}
+
+/// Width, height and RGB bytes; `None` without a file.
+fn read(path: &Path) -> Option<(u32, u32, Vec<u8>)> {
+    let mut reader = png::Decoder::new(BufReader::new(File::open(path).ok()?)).read_info().expect("golden picture");
+    let mut bytes = vec![0; reader.output_buffer_size().expect("golden picture")];
+    let info = reader.next_frame(&mut bytes).expect("golden picture");
+    Some((info.width, info.height, bytes))
+}
+
+/// Grey where equal, the brighter the larger the difference.
+fn difference(a: &[u8], b: &[u8]) -> Vec<u8> {
+    a.iter().zip(b).map(|(a, b)| if a == b { a / 8 } else { a.abs_diff(*b).saturating_mul(8).saturating_add(96) }).collect()
+}
+
+/// What is wrong with the picture of `name` by `shader`, if anything.
+fn check(name: &str, shader: Shader, bless: bool) -> Option<String> {
+    let scene = scene::load(name).expect("built-in scene");
+    let (width, height) = scene.size;
+    let settings = Settings { size: (width, height).into(), shader, dither: false, band_rows: 16, format: Format::Rgb565 };
+    let drawn = render::picture(scene.stream.parse().expect("built-in scene"), &settings, 0).expect("built-in scene").rgb;
+    let file = format!("{name}-{}.png", shader.name());
+    let golden = root().join("golden").join(&file);
+    if bless {
+        fs::create_dir_all(root().join("golden")).expect("golden directory");
+        image::write_png(&golden, width, height, &drawn).expect("golden picture");
+        return None;
+    }
+    let Some(expected) = read(&golden) else {
+        return Some(format!("{file}: no such golden picture; look at the drawing, then run with MICROPHONG_BLESS=1"));
+    };
+    if expected == (width, height, drawn.clone()) {
+        return None;
+    }
+    let out: PathBuf = root().join("../target/golden");
+    fs::create_dir_all(&out).expect("target directory");
+    image::write_png(&out.join(&file), width, height, &drawn).expect("drawn picture");
+    if expected.2.len() != drawn.len() {
+        return Some(format!("{file}: {width}x{height}, golden {}x{}", expected.0, expected.1));
+    }
+    let path = out.join(format!("{name}-{}-difference.png", shader.name()));
+    image::write_png(&path, width, height, &difference(&drawn, &expected.2)).expect("difference picture");
+    let (drawn, expected) = (drawn.as_chunks::<3>().0, expected.2.as_chunks::<3>().0);
+    let count = drawn.iter().zip(expected).filter(|(a, b)| a != b).count();
+    Some(format!("{file}: {count} of {} pixels differ, see {}", drawn.len(), path.display()))
+}
+
+#[test]
+fn golden() {
+    let bless = std::env::var_os("MICROPHONG_BLESS").is_some_and(|v| v == "1");
+    let pairs = scene::NAMES.iter().flat_map(|name| Shader::ALL.map(|shader| (name, shader)));
+    let wrong: Vec<_> = pairs.filter_map(|(name, shader)| check(name, shader, bless)).collect();
+    assert!(wrong.is_empty(), "{}", wrong.join("\n"));
+}
