@@ -16,7 +16,7 @@ pub const LENGTH: usize = MPS2.width * MPS2.height;
 pub struct Framebuffer(&'static mut [u16; LENGTH]);
 
 impl Framebuffer {
-    /// The host finds `memory` by its symbol, `FRAMEBUFFER`.
+    /// A display in `memory`.
     pub fn new(memory: &'static mut [u16; LENGTH]) -> Self {
         Self(memory)
     }
@@ -103,16 +103,20 @@ macro_rules! framebuffer_board {
         use ::microphong::Workspace;
         use ::microphong_firmware::{budget::MPS2, framebuffer, run};
 
+        /// The host finds it by this name.
+        #[unsafe(no_mangle)]
+        static mut FRAMEBUFFER: [u16; framebuffer::LENGTH] = [0; framebuffer::LENGTH];
+
         #[::cortex_m_rt::entry]
         fn main() -> ! {
-            #[unsafe(no_mangle)]
-            static mut FRAMEBUFFER: [u16; framebuffer::LENGTH] = [0; framebuffer::LENGTH];
             static mut BANDS: [[Rgb565; MPS2.band()]; 2] = [[Rgb565::BLACK; MPS2.band()]; 2];
             static mut WORKSPACE: Workspace<Rgb565, { MPS2.vertices }, { MPS2.triangles }, { MPS2.band() }, { MPS2.materials }> =
                 Workspace::new(Rgb565::BLACK);
 
+            // SAFETY: nothing else in the program names it, and `main` runs once.
+            let memory = unsafe { &mut *(&raw mut FRAMEBUFFER) };
             let [front, back] = BANDS;
-            run(&mut framebuffer::Framebuffer::new(FRAMEBUFFER), WORKSPACE.memory(), [front, back])
+            run(&mut framebuffer::Framebuffer::new(memory), WORKSPACE.memory(), [front, back])
         }
     };
 }

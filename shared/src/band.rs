@@ -7,7 +7,7 @@ pub struct Band<'a, C> {
     pub pixels: &'a mut [C],
     /// Nearness per pixel: 0 is infinitely far.
     pub depth: &'a mut [u16],
-    /// Pixels in a row, at least 1.
+    /// Pixels in a row.
     pub width: usize,
     /// First row.
     pub top: i32,
@@ -29,11 +29,17 @@ impl<C> Band<'_, C> {
     #[inline(always)]
     pub fn rows_between(&mut self, from: i32, to: i32) -> impl Iterator<Item = (&mut [C], &mut [u16])> {
         let first = from.wrapping_sub(self.top).max(0) as usize;
-        let count = to.wrapping_sub(from).max(0) as usize;
-        let width = self.width.max(1);
-        let start = first.saturating_mul(width);
-        let pixels = self.pixels.get_mut(start..).unwrap_or_default().chunks_exact_mut(width);
-        let depth = self.depth.get_mut(start..).unwrap_or_default().chunks_exact_mut(width);
-        pixels.zip(depth).take(count)
+        let start = first.saturating_mul(self.width);
+        let (mut pixels, mut depth) = (self.pixels.get_mut(start..).unwrap_or_default(), self.depth.get_mut(start..).unwrap_or_default());
+        let width = self.width;
+        (from..to).map_while(move |_| Some((split(&mut pixels, width)?, split(&mut depth, width)?)))
     }
+}
+
+/// Takes the first `count` elements off a slice.
+#[inline(always)]
+fn split<'a, A>(slice: &mut &'a mut [A], count: usize) -> Option<&'a mut [A]> {
+    let (first, rest) = core::mem::take(slice).split_at_mut_checked(count)?;
+    *slice = rest;
+    Some(first)
 }

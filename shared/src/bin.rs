@@ -5,6 +5,8 @@
 //! and drops a triangle below its last row. Lists are in the order of the
 //! stream, so the picture does not depend on the height of the bands.
 
+use core::num::NonZeroU32;
+
 /// Bins of a frame; the rows are shared out among them.
 pub const BINS: usize = 64;
 
@@ -34,14 +36,19 @@ pub struct Bins {
     active: u16,
     /// Bins that `active` has taken over.
     reached: usize,
-    rows_per_bin: u32,
+    rows_per_bin: NonZeroU32,
 }
 
 impl Bins {
     /// Empty lists for a viewport of `height` rows.
     #[must_use]
     pub fn new(height: u32) -> Self {
-        Self { heads: [NONE; BINS], active: NONE, reached: 0, rows_per_bin: height.div_ceil(BINS as u32).max(1) }
+        Self {
+            heads: [NONE; BINS],
+            active: NONE,
+            reached: 0,
+            rows_per_bin: NonZeroU32::MIN.saturating_add((height.max(1) - 1) / BINS as u32),
+        }
     }
 
     /// Puts `entries[index]`, which starts in row `top`, in front of its list. Called from the last triangle to the first.
@@ -61,8 +68,8 @@ impl Bins {
 
     /// Takes over the lists of all bins that start above row `bottom`.
     pub fn advance(&mut self, entries: &mut [Entry], bottom: u32) {
-        let bins = (bottom.div_ceil(self.rows_per_bin) as usize).min(BINS);
-        while self.reached < bins {
+        let bins = (bottom.saturating_add(self.rows_per_bin.get() - 1) / self.rows_per_bin) as usize;
+        while self.reached < bins.min(BINS) {
             if let Some(&head) = self.heads.get(self.reached) {
                 self.active = merge(entries, self.active, head);
             }

@@ -8,7 +8,7 @@ use crate::{
     format::{EDGE, UNIT},
     math::{
         rsqrt::rsqrt_wide,
-        vector::{dot, normalise, wide},
+        vector::{add, dot, normalise, wide, zip},
     },
     stream::record::{Triangle, Vertex},
     vertex::{PLANES, View},
@@ -38,8 +38,10 @@ pub struct Cut {
 /// The part of a triangle that can be projected: a fan around its first corner; empty if there is none.
 #[must_use]
 pub fn clip(view: &View, vertices: [&Vertex; 3]) -> Vec<Cut, CORNERS> {
-    let mut polygon: Vec<Corner, CORNERS> =
-        vertices.iter().map(|v| Corner { eye: view.to_eye(v.position), position: wide(v.position), normal: wide(v.normal) }).collect();
+    let mut polygon = Vec::<Corner, CORNERS>::new();
+    for v in vertices {
+        let _ = polygon.push(Corner { eye: view.to_eye(v.position), position: wide(v.position), normal: wide(v.normal) });
+    }
     for plane in 0..PLANES {
         let mut cut = Vec::new();
         for (i, a) in polygon.iter().enumerate() {
@@ -55,13 +57,12 @@ pub fn clip(view: &View, vertices: [&Vertex; 3]) -> Vec<Cut, CORNERS> {
         }
         polygon = cut;
     }
-    polygon
-        .iter()
-        .map(|corner| {
-            let normal = normalise(corner.normal).map(|c| ((c + (1 << 15)) >> 16) as i16);
-            Cut { vertex: Vertex { position: corner.position.map(|c| c as i16), normal }, eye: corner.eye }
-        })
-        .collect()
+    let mut cuts = Vec::new();
+    for corner in &polygon {
+        let normal = normalise(corner.normal).map(|c| ((c + (1 << 15)) >> 16) as i16);
+        let _ = cuts.push(Cut { vertex: Vertex { position: corner.position.map(|c| c as i16), normal }, eye: corner.eye });
+    }
+    cuts
 }
 
 /// Where the way from `inner` (distance `di` >= 0) to `outer` (`d_o` < 0) meets the plane.
@@ -70,7 +71,7 @@ fn between(inner: &Corner, outer: &Corner, di: i64, d_o: i64) -> Corner {
     let whole = di.saturating_sub(d_o).max(1);
     let spare = 23u32.saturating_sub(whole.leading_zeros());
     let t = ((di >> spare) << 22) / (whole >> spare).max(1);
-    let mix = |a: [i32; 3], b: [i32; 3]| [0, 1, 2].map(|c| (i64::from(a[c]) + (((i64::from(b[c]) - i64::from(a[c])) * t) >> 22)) as i32);
+    let mix = |a, b| zip(a, b, |a: i32, b: i32| (i64::from(a) + (((i64::from(b) - i64::from(a)) * t) >> 22)) as i32);
     Corner { eye: mix(inner.eye, outer.eye), position: mix(inner.position, outer.position), normal: mix(inner.normal, outer.normal) }
 }
 
@@ -78,15 +79,16 @@ fn between(inner: &Corner, outer: &Corner, di: i64, d_o: i64) -> Corner {
 /// clockwise on the screen, against the order of a record.
 #[must_use]
 pub fn record(whole: &Triangle, corners: [&Vertex; 3]) -> Triangle {
-    let mut record = *whole;
-    for edge in 0..3 {
-        let (a, b) = (wide(corners[edge].normal), wide(corners[(edge + 1) % 3].normal));
-        let sum = [a[0] + b[0], a[1] + b[1], a[2] + b[2]];
-        let square = dot(sum, sum).max(1) as u64;
-        let (mantissa, exponent) = rsqrt_wide(square);
-        // 1/|sum| with the normals' 14 bits, as Q1.15.
-        record.rsum[2 - edge] = ((u64::from(mantissa) << (UNIT + EDGE)) >> exponent).min(u64::from(u16::MAX)) as u16;
-        record.square[2 - edge] = (square >> (2 * UNIT + 2 - EDGE)).min(1 << EDGE) as u16;
-    }
-    record
+    let [a, b, c] = corners.map(|corner| wide(corner.normal));
+    let edges = [edge(c, a), edge(b, c), edge(a, b)];
+    Triangle { rsum: edges.map(|(rsum, _)| rsum), square: edges.map(|(_, square)| square), ..*whole }
+}
+
+/// 1/|a + b| and |a + b|²/4 of two unit normals, as in a record.
+fn edge(a: [i32; 3], b: [i32; 3]) -> (u16, u16) {
+    let sum = add(a, b);
+    let square = dot(sum, sum).max(1) as u64;
+    let (mantissa, exponent) = rsqrt_wide(square);
+    let rsum = (u64::from(mantissa) << (UNIT + EDGE)) >> exponent;
+    (rsum.min(u64::from(u16::MAX)) as u16, (square >> (2 * UNIT + 2 - EDGE)).min(1 << EDGE) as u16)
 }

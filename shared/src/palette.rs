@@ -2,7 +2,10 @@
 
 use crate::{
     format::{BIAS, LEVEL, UNIT},
-    math::power::{POWER, Power},
+    math::{
+        power::{POWER, Power},
+        vector::zip,
+    },
     pixel::Pixel,
     scene::MAX_LIGHTS,
     stream::record::{Header, Light, Material},
@@ -43,7 +46,7 @@ pub struct Palette<C> {
 type Colour = [u32; 3];
 
 fn product(a: [u16; 3], b: [u16; 3]) -> Colour {
-    [0, 1, 2].map(|c| u32::from(a[c]) * u32::from(b[c]))
+    zip(a, b, |a, b| u32::from(a) * u32::from(b))
 }
 
 /// Rec. 601 luma in all three channels.
@@ -58,7 +61,7 @@ fn largest(colour: Colour) -> u32 {
 /// Whether `colour` is a multiple of `base`, to 1/1024 of its largest channel.
 fn along(colour: Colour, base: Colour) -> bool {
     let (a, b) = (u64::from(largest(colour)), u64::from(largest(base)));
-    (0..3).all(|c| (u64::from(colour[c]) * b).abs_diff(u64::from(base[c]) * a) <= (a * b) >> 10)
+    zip(colour, base, |c, d| (u64::from(c) * b).abs_diff(u64::from(d) * a) <= (a * b) >> 10) == [true; 3]
 }
 
 impl<C: Pixel> Palette<C> {
@@ -94,9 +97,8 @@ impl<C: Pixel> Palette<C> {
         let base = terms().max_by_key(|&term| largest(term)).unwrap_or([0; 3]);
         self.one_channel = terms().all(|term| along(term, base));
         let one_channel = self.one_channel;
-        let levels = |colour: Colour| -> [u16; 3] {
-            if one_channel { [level(largest(colour), 8); 3] } else { [0, 1, 2].map(|c| level(colour[c], C::DEPTH[c])) }
-        };
+        let levels =
+            |colour: Colour| -> [u16; 3] { if one_channel { [level(largest(colour), 8); 3] } else { zip(colour, C::DEPTH, level) } };
         self.ambient = levels(ambient).map(i32::from);
         self.lights = lights.len().min(MAX_LIGHTS);
         for (gains, light) in self.gains.iter_mut().zip(lights) {
@@ -104,9 +106,9 @@ impl<C: Pixel> Palette<C> {
         }
         // Share of each channel in the base colour, scaled to what the output can show.
         let whole = u64::from(largest(base).max(1));
-        self.base = [0, 1, 2].map(|c| {
-            let full = ((1u64 << C::DEPTH[c]) - 1) << (8 - C::DEPTH[c]);
-            ((u64::from(base[c]) * full * 256 + whole * 255 / 2) / (whole * 255)) as u16
+        self.base = zip(base, C::DEPTH, |channel, depth| {
+            let full = ((1u64 << depth) - 1) << (8 - depth);
+            ((u64::from(channel) * full * 256 + whole * 255 / 2) / (whole * 255)) as u16
         });
         for (i, colour) in self.ramp.iter_mut().enumerate() {
             let level = (i as i32 - BIAS).clamp(0, 255) as u32;
@@ -146,10 +148,15 @@ impl<C: Pixel> Palette<C> {
     #[inline(always)]
     fn add(&self, levels: &mut [i32; 3], gains: &Gains, diffuse: i32, power: u32) {
         let cosine = diffuse.max(0) as u32 >> (30 - 15);
-        for (c, level) in levels.iter_mut().enumerate().take(if self.one_channel { 1 } else { 3 }) {
-            let light = ((u32::from(gains.diffuse[c]) * cosine + (1 << 14)) >> 15)
-                + ((u32::from(gains.specular[c]) * power + (1 << (POWER - 1))) >> POWER);
-            *level = level.saturating_add(light as i32);
+        let light = |level: i32, (diffuse, specular): (u16, u16)| {
+            let diffuse = (u32::from(diffuse) * cosine + (1 << 14)) >> 15;
+            let specular = (u32::from(specular) * power + (1 << (POWER - 1))) >> POWER;
+            level.saturating_add((diffuse + specular) as i32)
+        };
+        if self.one_channel {
+            *levels = [light(levels[0], (gains.diffuse[0], gains.specular[0])); 3];
+        } else {
+            *levels = zip(*levels, zip(gains.diffuse, gains.specular, |d, s| (d, s)), light);
         }
     }
 

@@ -181,7 +181,7 @@ impl<'a, C: Pixel> Renderer<'a, C> {
     /// Rows of a band; the last one of a frame may have fewer.
     #[must_use]
     pub fn band_rows(&self) -> u32 {
-        (self.memory.depth.len() as u32 / self.size.width).min(self.size.height)
+        (self.memory.depth.len() as u32).checked_div(self.size.width).unwrap_or(0).min(self.size.height)
     }
 
     /// Places camera and lights, transforms vertices, culls and bins triangles for frame `number` (modulo the orbit).

@@ -2,7 +2,7 @@
 
 use crate::{
     format::{EDGE, ROTATION, UNIT},
-    math::vector::{add, dot, normalise, sub},
+    math::vector::{add, cross, dot, normalise, sub, transposed, zip},
     stream::{
         Stream,
         record::{Camera, DIRECTIONAL, EYE_SPACE, Light, PERSPECTIVE, VIEWER_LOCAL},
@@ -61,8 +61,7 @@ impl Pose {
     /// A direction of eye space in object space; same format.
     #[must_use]
     pub fn to_object(&self, v: [i32; 3]) -> [i32; 3] {
-        let r = &self.rotation;
-        [0, 1, 2].map(|c| (dot([r[0][c], r[1][c], r[2][c]], v) >> ROTATION) as i32)
+        transposed(self.rotation).map(|column| (dot(column, v) >> ROTATION) as i32)
     }
 
     /// The eye in object space, Q18.14.
@@ -72,23 +71,15 @@ impl Pose {
     }
 }
 
-/// `rotation` times the rotation by `frame / period` of a turn about `axis` (Rodrigues).
+/// `rotation` times the rotation by `frame / period` of a turn about `axis`: Rodrigues' formula, row by row.
 fn turned(rotation: [[i32; 3]; 3], axis: [i32; 3], frame: u32, period: u32) -> [[i32; 3]; 3] {
     let (sin, cos) = sin_cos(frame, period);
-    let mul = |a: i64, b: i64| (a * b) >> ROTATION;
-    let [x, y, z] = axis.map(i64::from);
-    let versine = (1 << ROTATION) - cos;
-    let cross = [[0, -z, y], [z, 0, -x], [-y, x, 0]];
-    let axis = [x, y, z];
-    let mut turn = [[0i64; 3]; 3];
-    for (i, row) in turn.iter_mut().enumerate() {
-        for (k, entry) in row.iter_mut().enumerate() {
-            let same = if i == k { cos } else { 0 };
-            *entry = same + mul(mul(axis[i], axis[k]), versine) + mul(cross[i][k], sin);
-        }
-    }
     let limit = 1i64 << ROTATION;
-    rotation.map(|row| [0, 1, 2].map(|k| (0..3).map(|i| mul(row[i].into(), turn[i][k])).sum::<i64>().clamp(-limit, limit) as i32))
+    rotation.map(|row| {
+        let along = ((dot(row, axis) >> ROTATION) * (limit - cos)) >> ROTATION;
+        let turned = zip(row, axis, |r, a| i64::from(r) * cos + along * i64::from(a));
+        zip(turned, cross(row, axis), |t, c| ((t + (c >> ROTATION) * sin) >> ROTATION).clamp(-limit, limit) as i32)
+    })
 }
 
 /// Sine and cosine of `frame / period` of a turn, Q2.30.
@@ -129,7 +120,11 @@ impl Lighting {
         } else {
             Viewer::Infinite(towards_eye)
         };
-        let sources = stream.lights.iter().take(MAX_LIGHTS).map(|light| source(light, pose, towards_eye)).collect();
+        let mut sources = heapless::Vec::new();
+        for light in stream.lights {
+            // A checked stream has no more lights than there is room for.
+            let _ = sources.push(source(light, pose, towards_eye));
+        }
         Self { sources, viewer }
     }
 

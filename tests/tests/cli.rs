@@ -1,7 +1,11 @@
 //! Wrong input of every kind: the message names the file and the place, the exit code says whose fault it is, nothing is left behind.
 
-use microphong::{Stream, StreamError, stream};
-use microphong_sim::{bytes::StreamBytes, scene};
+use microphong::{Shader, Stream, StreamError, stream};
+use microphong_sim::{
+    bytes::StreamBytes,
+    render::{self, Format, Settings},
+    scene,
+};
 use std::{
     fs,
     path::{Path, PathBuf},
@@ -203,18 +207,30 @@ fn any_flipped_bit_is_noticed() {
 fn sealed_nonsense_is_refused_or_drawn_but_never_crashes() {
     let good = good();
     let place = Place::new();
-    let mut refused = 0;
-    for at in (16..good.len()).step_by(97) {
-        let mut bad = good.clone();
-        bad[at] ^= 0x80;
-        stream::seal(&mut bad);
-        if parse(&bad).is_err() {
-            refused += 1;
-            place.file("bad.tri", &bad);
-            place.fails(&["render", "bad.tri"], 1, &["bad.tri"]);
+    let (mut refused, mut drawn) = (0, 0);
+    for at in 16..good.len() {
+        for flip in [0x01, 0x40, 0x80, 0xFF] {
+            let mut bad = good.clone();
+            bad[at] ^= flip;
+            stream::seal(&mut bad);
+            let bytes = StreamBytes::from(bad.as_slice());
+            let Ok(stream) = bytes.parse() else {
+                refused += 1;
+                if refused % 100 == 0 {
+                    place.file("bad.tri", &bad);
+                    place.fails(&["render", "bad.tri"], 1, &["bad.tri"]);
+                }
+                continue;
+            };
+            drawn += 1;
+            for shader in Shader::ALL {
+                let settings = Settings { size: (40, 30).into(), shader, dither: true, band_rows: 8, format: Format::Rgb565 };
+                let picture = render::picture(stream, &settings, 1).expect("a stream that passed the check can be drawn");
+                assert_eq!(picture.rgb.len(), 40 * 30 * 3, "byte {at}, flip {flip:02x}, {}", shader.name());
+            }
         }
     }
-    assert!(refused > 0);
+    assert!(refused > 100 && drawn > 100, "{refused} refused, {drawn} drawn");
 }
 
 #[test]

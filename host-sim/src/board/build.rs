@@ -26,7 +26,7 @@ pub fn firmware(board: Board) -> Result<PathBuf> {
     let output = root.join("target/firmware").join(board.name());
     let status = Command::new(cargo())
         .current_dir(&directory)
-        .args(["build", "--quiet", "--release", "--locked", "--no-default-features", "--features", board.name()])
+        .args(["build", "--quiet", "--release", "--no-default-features", "--features", board.name()])
         .args(["--bin", board.name(), "--target", board.target(), "--target-dir"])
         .arg(&output)
         // They would take the place of the flags in firmware/.cargo/config.toml.

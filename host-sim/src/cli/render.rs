@@ -3,7 +3,7 @@
 use super::{Outcome, Usage, parse, report};
 use anyhow::{Context, Result};
 use embedded_graphics_core::geometry::Size;
-use microphong::{Shader, render::MAX_SIDE};
+use microphong::Shader;
 use microphong_sim::{
     image::{self, Film},
     render::{self, Format, Settings},
@@ -40,7 +40,7 @@ pub(crate) struct Arguments {
     #[arg(long)]
     dither: bool,
     /// Rows drawn at a time, as a board with little memory does; the picture is the same.
-    #[arg(long, default_value_t = 16, value_parser = clap::value_parser!(u32).range(1..=i64::from(MAX_SIDE)))]
+    #[arg(long, default_value_t = 16, value_parser = clap::value_parser!(u32).range(1..))]
     band_rows: u32,
     /// FILE.png, FILE.apng or a directory; SCENE.png (SCENE.apng for several frames) in the current directory unless given.
     #[arg(short, long)]

@@ -16,18 +16,39 @@ pub fn wide(v: [i16; 3]) -> [i32; 3] {
     v.map(i32::from)
 }
 
+/// `f` of each pair of components. Written out: no index, so no check of one.
+#[inline(always)]
+#[must_use]
+pub fn zip<A, B, R>([a0, a1, a2]: [A; 3], [b0, b1, b2]: [B; 3], f: impl Fn(A, B) -> R) -> [R; 3] {
+    [f(a0, b0), f(a1, b1), f(a2, b2)]
+}
+
+/// Rows of a matrix to columns, or the other way.
+#[inline(always)]
+#[must_use]
+pub fn transposed<A>([[a, b, c], [d, e, f], [g, h, i]]: [[A; 3]; 3]) -> [[A; 3]; 3] {
+    [[a, d, g], [b, e, h], [c, f, i]]
+}
+
 /// `a - b`; the caller's ranges keep it from overflowing.
 #[inline(always)]
 #[must_use]
 pub fn sub(a: [i32; 3], b: [i32; 3]) -> [i32; 3] {
-    [a[0].wrapping_sub(b[0]), a[1].wrapping_sub(b[1]), a[2].wrapping_sub(b[2])]
+    zip(a, b, i32::wrapping_sub)
 }
 
 /// `a + b`; the caller's ranges keep it from overflowing.
 #[inline(always)]
 #[must_use]
 pub fn add(a: [i32; 3], b: [i32; 3]) -> [i32; 3] {
-    [a[0].wrapping_add(b[0]), a[1].wrapping_add(b[1]), a[2].wrapping_add(b[2])]
+    zip(a, b, i32::wrapping_add)
+}
+
+/// Cross product of two vectors in 64 bits.
+#[must_use]
+pub fn cross([a0, a1, a2]: [i32; 3], [b0, b1, b2]: [i32; 3]) -> [i64; 3] {
+    let minor = |a: i32, b: i32, c: i32, d: i32| i64::from(a) * i64::from(d) - i64::from(b) * i64::from(c);
+    [minor(a1, a2, b1, b2), minor(a2, a0, b2, b0), minor(a0, a1, b0, b1)]
 }
 
 /// The unit vector along `v`, Q2.30; zero stays zero.

@@ -1,7 +1,6 @@
 //! Linear fields.
 
 use super::{Patch, Walker, basis::Basis};
-use core::array;
 
 /// `c + dx x + dy y` in each of `CH` channels, standing on one row.
 #[derive(Clone, Copy, Debug)]
@@ -23,8 +22,8 @@ impl<const CH: usize> Plane<CH> {
     #[inline]
     #[must_use]
     pub fn fit(basis: &Basis, nodes: [[i32; 3]; CH], extra: u32) -> Self {
-        Self(array::from_fn(|channel| {
-            let [c, dx, dy, ..] = basis.linear(nodes[channel], extra);
+        Self(nodes.map(|nodes| {
+            let [c, dx, dy, ..] = basis.linear(nodes, extra);
             Row { c: c.wrapping_sub(dx.wrapping_mul(basis.column())), dx, dy }
         }))
     }

@@ -1,7 +1,6 @@
 //! Quadratic fields.
 
 use super::{Patch, Walker, basis::Basis};
-use core::array;
 
 /// `c + dx x + dy y + dxx x² + dxy x y + dyy y²` in each of `CH` channels, standing on one row.
 #[derive(Clone, Copy, Debug)]
@@ -34,8 +33,8 @@ impl<const CH: usize> Quadric<CH> {
     #[inline]
     #[must_use]
     pub fn fit<const BITS: u32>(basis: &Basis, nodes: [[i32; 6]; CH], extra: u32) -> Self {
-        Self(array::from_fn(|channel| {
-            let [c, dx, dy, dxx, dxy, dyy] = basis.quadratic::<BITS>(nodes[channel], extra);
+        Self(nodes.map(|nodes| {
+            let [c, dx, dy, dxx, dxy, dyy] = basis.quadratic::<BITS>(nodes, extra);
             let x = basis.column();
             // From the anchor column to column 0: exact integer arithmetic modulo 2^32.
             Row {
@@ -85,16 +84,12 @@ impl<const CH: usize> Patch for Quadric<CH> {
 
     #[inline(always)]
     fn enter(&self, x: i32) -> Quadratic<CH> {
-        let mut walker = Quadratic { value: [0; CH], d1: [0; CH], d2: [0; CH] };
-        for (c, row) in self.0.iter().enumerate() {
-            let bend = row.dxx.wrapping_mul(x);
-            let slope = row.dx.wrapping_add(bend);
-            walker.value[c] = row.c.wrapping_add(slope.wrapping_mul(x)) as u32;
+        Quadratic {
+            value: self.0.map(|row| row.c.wrapping_add(row.dx.wrapping_add(row.dxx.wrapping_mul(x)).wrapping_mul(x)) as u32),
             // V(x - 1) - V(x) = dxx - dx - 2 dxx x.
-            walker.d1[c] = row.dxx.wrapping_sub(slope.wrapping_add(bend)) as u32;
-            walker.d2[c] = row.dxx.wrapping_mul(2) as u32;
+            d1: self.0.map(|row| row.dxx.wrapping_sub(row.dx).wrapping_sub(row.dxx.wrapping_mul(x).wrapping_mul(2)) as u32),
+            d2: self.0.map(|row| row.dxx.wrapping_mul(2) as u32),
         }
-        walker
     }
 }
 

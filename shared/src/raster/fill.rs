@@ -22,7 +22,7 @@ pub fn fill<W: Walker, T: Tone<W::Value>>(
     left: usize,
 ) {
     let mut i = pixels.len();
-    let depth = &mut depth[..i];
+    let Some(depth) = depth.get_mut(..i) else { return };
     while i > 0 {
         i -= 1;
         z = z.wrapping_sub(dz);

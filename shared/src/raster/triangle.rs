@@ -128,7 +128,7 @@ impl Outline {
         let middle = first_centre(right[1].min(left[1]));
         let end = first_centre(right[1].max(left[1])).min(band.top + band.rows);
         let mut row = first_centre(top[1]).max(band.top);
-        let width = band.width as i32;
+        let width = (band.width as i32).max(0);
         let inside = |x: i32| (0..(width << 4)).contains(&x);
         let walkable = inside(top[0]) && inside(right[0]) && inside(left[0]);
 

@@ -6,7 +6,7 @@ use super::{Facet, Shading};
 use crate::{
     band::Band,
     format::EDGE,
-    math::vector::wide,
+    math::vector::{add, wide},
     pixel::Pixel,
     poly::Constant,
     poly::plane::Plane,
@@ -15,7 +15,7 @@ use crate::{
 
 pub(super) fn draw<C: Pixel>(facet: &Facet<'_>, shading: &Shading<'_, C>, band: &mut Band<'_, C>) -> u32 {
     let [a, b, c] = facet.vertices.map(|vertex| wide(vertex.position));
-    let centroid = [0, 1, 2].map(|k| (a[k] + b[k] + c[k]) / 3);
+    let centroid = add(a, add(b, c)).map(|sum| sum / 3);
     let levels = shading.palette.levels(shading.lighting.cosines(centroid, wide(facet.triangle.normal), 1 << EDGE));
     if shading.dither {
         // A field without slope: dither changes from pixel to pixel all the same.

@@ -4,8 +4,8 @@
 //! most 255 ks n (1 - c)/(1 + 2c) for the highlight and 255 kd 1.165 (1 - c)/(1 + 2c)
 //! for diffuse light, c the smallest cosine between two corners' normals.
 
-use super::{Facet, Shading, transposed};
-use crate::{band::Band, pixel::Pixel, poly::plane::Plane};
+use super::{Facet, Shading};
+use crate::{band::Band, math::vector::transposed, pixel::Pixel, poly::plane::Plane};
 
 pub(super) fn draw<C: Pixel>(facet: &Facet<'_>, shading: &Shading<'_, C>, band: &mut Band<'_, C>) -> u32 {
     let levels = transposed(facet.corners.map(|corner| shading.corner_levels(corner)));

@@ -87,11 +87,6 @@ fn lift<const CH: usize>(half: i32) -> [i32; CH] {
     [(BIAS << WALK).wrapping_add(half); CH]
 }
 
-/// Per channel the values at three corners, from per corner the values in three channels.
-fn transposed([a, b, c]: [[i32; 3]; 3]) -> [[i32; 3]; 3] {
-    [[a[0], b[0], c[0]], [a[1], b[1], c[1]], [a[2], b[2], c[2]]]
-}
-
 impl<C: Pixel> Shading<'_, C> {
     /// Shades `facet` into `band`; returns its pixels there.
     pub(crate) fn draw(&self, facet: &Facet<'_>, band: &mut Band<'_, C>) -> u32 {

@@ -68,7 +68,7 @@ struct Constant {
 impl Constant {
     fn fit(facet: &Facet<'_>) -> Self {
         let [a, b, c] = facet.corners.map(|corner| corner.light);
-        let cosines = [0, 1].map(|k| [a[k], b[k], c[k]]);
+        let cosines = [[a[0], b[0], c[0]], [a[1], b[1], c[1]]];
         // |N|² - 1 is zero at the corners.
         let middle = facet.square.map(|square| (i32::from(square) - (1 << EDGE)) << (NODE - EDGE));
         let nodes = [0, 0, 0, middle[0], middle[1], middle[2]];
@@ -137,9 +137,10 @@ fn fitted(vectors: [[i32; 3]; 3]) -> [[i32; 3]; 3] {
 
 /// Six nodes of the product of two linear vector fields (fractions of 28 bits each), [`NODE`] bits.
 fn product(a: &[[i32; 3]; 3], b: &[[i32; 3]; 3]) -> [i32; 6] {
-    let corner = |i: usize| (dot(a[i], b[i]) >> (56 - NODE)) as i32;
-    let middle = |i: usize, k: usize| (dot(add(a[i], a[k]), add(b[i], b[k])) >> (58 - NODE)) as i32;
-    [corner(0), corner(1), corner(2), middle(0, 1), middle(1, 2), middle(2, 0)]
+    let ([a0, a1, a2], [b0, b1, b2]) = (*a, *b);
+    let corner = |a, b| (dot(a, b) >> (56 - NODE)) as i32;
+    let middle = |a, c, b, d| (dot(add(a, c), add(b, d)) >> (58 - NODE)) as i32;
+    [corner(a0, b0), corner(a1, b1), corner(a2, b2), middle(a0, a1, b0, b1), middle(a1, a2, b1, b2), middle(a2, a0, b2, b0)]
 }
 
 impl General {
@@ -206,23 +207,19 @@ impl Walker for GeneralWalker {
         let [nn, vv, nv] = self.view.value();
         let (normal, view) = (root(nn), root(vv));
         let nv = over(nv as i32, view);
-        self.lights
-            .iter()
-            .take(self.count)
-            .map(|light| {
-                let [nl, ll, vl] = light.value();
-                let light = root(ll);
-                let nl = over(nl as i32, light);
-                // |L + V|² = 2 + 2 L·V of unit vectors; halved to stay in range.
-                let vl = over(over(vl as i32, light), view);
-                let half = root((1i32 << 30).saturating_add(vl).max(1) as u32);
-                let nh = (i64::from(nl) + i64::from(nv)) >> 1;
-                // (nl + nv) / sqrt(2 + 2 vl) = ((nl + nv) / 2) sqrt(2) / sqrt(1 + vl).
-                let nh = (nh * SQRT_2) >> 30;
-                let nh = over(nh.clamp(i32::MIN.into(), i32::MAX.into()) as i32, half);
-                [over(nl, normal), over(nh, normal)]
-            })
-            .collect()
+        let mut cosines = heapless::Vec::new();
+        for light in self.lights.iter().take(self.count) {
+            let [nl, ll, vl] = light.value();
+            let light = root(ll);
+            let nl = over(nl as i32, light);
+            let vl = over(over(vl as i32, light), view);
+            // N·(L + V) / |L + V| with |L + V|² = 2 + 2 L·V: half of either, so that both stay in range.
+            let half = root((1i32 << 30).saturating_add(vl).max(1) as u32);
+            let sum = (((i64::from(nl) + i64::from(nv)) >> 1) * SQRT_2) >> 30;
+            let nh = over(sum.clamp(i32::MIN.into(), i32::MAX.into()) as i32, half);
+            let _ = cosines.push([over(nl, normal), over(nh, normal)]);
+        }
+        cosines
     }
 }
 

@@ -22,12 +22,12 @@ pub(super) fn draw<C: Pixel>(facet: &Facet<'_>, shading: &Shading<'_, C>, band: 
         Some(_) => constant(facet, shading),
         None => lit(facet, shading),
     };
-    let channel = |c: usize| nodes.map(|levels| levels[c]);
     if shading.palette.one_channel {
-        let patch = Quadric::fit::<BITS>(&facet.basis, [channel(0)], super::EXTRA);
+        let patch = Quadric::fit::<BITS>(&facet.basis, [nodes.map(|[level, ..]| level)], super::EXTRA);
         shading.draw_one(facet, patch, Quadric::raised, band)
     } else {
-        let patch = Quadric::fit::<BITS>(&facet.basis, [channel(0), channel(1), channel(2)], super::EXTRA);
+        let patch =
+            Quadric::fit::<BITS>(&facet.basis, [nodes.map(|[r, ..]| r), nodes.map(|[_, g, _]| g), nodes.map(|[.., b]| b)], super::EXTRA);
         shading.draw_three(facet, patch, Quadric::raised, band)
     }
 }
@@ -44,7 +44,8 @@ fn constant<C: Pixel>(facet: &Facet<'_>, shading: &Shading<'_, C>) -> [[i32; 3];
         shading.palette.levels(core::iter::once([cosines[0], half]))
     };
     let middle = |a: [i32; 3], b: [i32; 3], rsum: u16| {
-        node([0, 1].map(|k| (((i64::from(a[k]) + i64::from(b[k])) * i64::from(rsum)) >> EDGE) as i32))
+        let cosine = |a: i32, b: i32| (((i64::from(a) + i64::from(b)) * i64::from(rsum)) >> EDGE) as i32;
+        node([cosine(a[0], b[0]), cosine(a[1], b[1])])
     };
     let [ab, bc, ca] = facet.rsum;
     [node([a[0], a[1]]), node([b[0], b[1]]), node([c[0], c[1]]), middle(a, b, ab), middle(b, c, bc), middle(c, a, ca)]

@@ -1,0 +1,134 @@
+//! The flashable firmware of every board, run on its emulated display and compared with the host, pixel by pixel.
+
+use microphong::{
+    Shader,
+    stream::{
+        record::{Triangle, Vertex},
+        seal,
+    },
+};
+use microphong_sim::{
+    board::{self, Board, elf::Elf},
+    scene,
+    verify::{self, Request},
+};
+use std::{error::Error, mem::offset_of};
+
+type Result<T = ()> = std::result::Result<T, Box<dyn Error>>;
+
+const FRAMES: u16 = 3;
+/// Most RAM that variables and stack may take together with the teapot.
+const RAM: [(Board, u64); 2] = [(Board::Pico, 128 << 10), (Board::Lm3s6965evb, 64 << 10)];
+
+fn stream(scene: &str) -> Result<Vec<u8>> {
+    Ok(scene::load(scene)?.stream.as_bytes().to_vec())
+}
+
+fn request(board: Board, scene: &str, shader: Shader) -> Result<Request> {
+    Ok(Request { board, scene: scene.to_owned(), stream: stream(scene)?, firmware_stream: None, shader, frames: FRAMES })
+}
+
+/// All shaders and scenes on one board.
+fn matrix(board: Board) -> Result {
+    let directory = tempfile::tempdir()?;
+    let elf = verify::build(board)?;
+    for scene in ["teapot", "bunny", "sphere-374", "sphere-40", "dodecahedron", "triangle"] {
+        for shader in Shader::ALL {
+            let report = verify::run(&request(board, scene, shader)?, &elf, directory.path())?;
+            println!("{}", serde_json::to_string(&report)?);
+            assert_eq!(report.differing, 0, "{board} {scene} {}", shader.name());
+            let (width, height) = board.size();
+            assert_eq!(report.pixels, u64::from(width * height) * u64::from(FRAMES));
+            assert!(report.stack_bytes > 0 && report.ram_bytes > 0 && report.flash_bytes > 0);
+            if let Some((_, limit)) = RAM.iter().find(|(limited, _)| *limited == board) {
+                let used = report.ram_bytes + report.stack_bytes;
+                assert!(used <= *limit, "{board} {scene}: {used} bytes of RAM, more than {limit}");
+            }
+        }
+    }
+    assert!(!directory.path().join("board.png").exists(), "pictures are kept only where they differ");
+    Ok(())
+}
+
+/// The stream with one bit of the first vertex's normal flipped: too little for a stream to be refused.
+fn bent(scene: &str) -> Result<Vec<u8>> {
+    let stream = scene::load(scene)?.stream;
+    let header = stream.parse()?.header;
+    let triangles = header.triangles as usize * size_of::<Triangle>();
+    let vertices = header.length as usize - triangles - header.vertices as usize * size_of::<Vertex>();
+    let mut bytes = stream.as_bytes().to_vec();
+    bytes[vertices + offset_of!(Vertex, normal)] ^= 1 << 5;
+    seal(&mut bytes);
+    Ok(bytes)
+}
+
+/// One flipped bit of one normal in the firmware's stream must be found, and pictures of it kept.
+fn flipped_bit(board: Board) -> Result {
+    let directory = tempfile::tempdir()?;
+    let request = Request { firmware_stream: Some(bent("triangle")?), ..request(board, "triangle", Shader::SixPoint)? };
+    let report = verify::run(&request, &verify::build(board)?, directory.path())?;
+    assert!(report.differing > 0, "{board}: a bent normal went unnoticed");
+    for name in ["board.png", "host.png", "difference.png"] {
+        assert!(directory.path().join(name).is_file(), "{board}: no {name}");
+    }
+    Ok(())
+}
+
+/// A damaged stream is reported in words, on the display and in the log; nothing hangs.
+fn damaged_stream(board: Board) -> Result {
+    let mut bytes = stream("teapot")?;
+    if let Some(last) = bytes.last_mut() {
+        *last ^= 1;
+    }
+    let elf = Elf::read(&verify::build(board)?)?.with_stream(&bytes)?;
+    let recording = board::run(board, &elf, 1)?;
+    let failure = recording.failure().expect("a line that starts with `error: `");
+    assert!(failure.contains("checksum"), "{board}: {failure}");
+    assert!(recording.checksums().is_empty(), "{board}: frames of a damaged stream");
+
+    // A plain background with a little text on it.
+    let picture = recording.pictures.last().expect("a picture");
+    let background = picture.last().copied().expect("a pixel");
+    let text = picture.iter().filter(|&&pixel| pixel != background).count();
+    assert!((100..picture.len() / 4).contains(&text), "{board}: {text} pixels of text");
+    Ok(())
+}
+
+/// A file that does not fit is refused before it runs.
+#[test]
+fn too_large_a_stream_is_refused() -> Result {
+    let elf = Elf::read(&verify::build(Board::Lm3s6965evb)?)?;
+    let error = elf.with_stream(&vec![0; 256 << 10]).expect_err("no such room").to_string();
+    assert!(error.contains("room"), "{error}");
+    Ok(())
+}
+
+macro_rules! boards {
+    ($($name:ident: $board:expr;)*) => {$(
+        mod $name {
+            use super::*;
+
+            #[test]
+            fn every_pixel_is_the_hosts() -> Result {
+                matrix($board)
+            }
+
+            #[test]
+            fn a_flipped_bit_is_found() -> Result {
+                flipped_bit($board)
+            }
+
+            #[test]
+            fn a_damaged_stream_is_reported() -> Result {
+                damaged_stream($board)
+            }
+        }
+    )*};
+}
+
+boards! {
+    pico: Board::Pico;
+    lm3s6965evb: Board::Lm3s6965evb;
+    mps2_an385: Board::Mps2An385;
+    mps2_an386: Board::Mps2An386;
+}
