@@ -127,7 +127,7 @@ impl Ssd0323 {
 
     fn set_pixel(&mut self, x: usize, y: usize, grey: Gray4) {
         let pair = &mut self.picture[(y * WIDTH + x) / 2];
-        *pair = if x % 2 == 0 { *pair & 0x0F | grey.luma() << 4 } else { *pair & 0xF0 | grey.luma() };
+        *pair = if x.is_multiple_of(2) { *pair & 0x0F | grey.luma() << 4 } else { *pair & 0xF0 | grey.luma() };
     }
 }
 
