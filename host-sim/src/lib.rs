@@ -1,5 +1,6 @@
 //! The simulator as a library: what the `microphong` command is made of.
 
+pub mod bench;
 pub mod board;
 pub mod bytes;
 pub mod image;

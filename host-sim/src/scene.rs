@@ -88,7 +88,7 @@ pub fn load(name_or_path: &str) -> Result<Scene> {
         Some("obj") => {
             let (mesh, _) = read_obj(path, false)?;
             // The same as `convert` without options.
-            let view = View::orbit(Up::Y, 0.5, 0.35, DISTANCE, ORBIT).fit(&mesh.positions, SIZE, MARGIN);
+            let view = View::orbit(Up::Y, 0.5, 0.35, DISTANCE, ORBIT).fit(&mesh.positions, SQUARE, MARGIN);
             Look::new(default_surface(), view).stream(&quantise(&mesh).0).with_context(|| path.display().to_string())?
         }
         _ => return Err(Unknown(name_or_path.to_owned()).into()),
@@ -136,11 +136,12 @@ fn built_in(name: &str) -> Result<(StreamBytes, (u32, u32))> {
 
 type Parts = (Mesh, Look, (u32, u32));
 
+/// What fits a square fits displays of every shape.
 const SQUARE: (u32, u32) = (256, 256);
 
 fn teapot() -> Result<Parts> {
     let mesh = welded(TEAPOT)?;
-    let view = View::orbit(Up::Y, 0.45, 0.3, DISTANCE, ORBIT).fit(&mesh.positions, SIZE, MARGIN);
+    let view = View::orbit(Up::Y, 0.45, 0.3, DISTANCE, ORBIT).fit(&mesh.positions, SQUARE, MARGIN);
     let mut look = Look::new(Surface::metal(COPPER, [0.1, 0.52, 0.38], 30), view);
     // Low enough that the highlight lies on the belly, not on the lid alone.
     look.lamps = vec![Lamp::Distant([-0.5, 0.28, -0.8], [1.0; 3])];

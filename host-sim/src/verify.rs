@@ -89,8 +89,8 @@ pub fn run(request: &Request, elf: &Path, artefacts: &Path) -> Result<Report> {
 
 fn compare(request: &Request, elf: &Path, artefacts: &Path) -> Result<Report> {
     let frames = usize::from(request.frames);
-    let host_stream = StreamBytes::from(prepare(&request.stream, request)?.as_slice());
-    let board_stream = prepare(request.firmware_stream.as_ref().unwrap_or(&request.stream), request)?;
+    let host_stream = StreamBytes::from(prepare(&request.stream, request.shader, request.frames)?.as_slice());
+    let board_stream = prepare(request.firmware_stream.as_ref().unwrap_or(&request.stream), request.shader, request.frames)?;
     let elf = Elf::read(elf)?.with_stream(&board_stream)?;
 
     let stream = host_stream.parse()?;
@@ -134,10 +134,13 @@ fn compare(request: &Request, elf: &Path, artefacts: &Path) -> Result<Report> {
 }
 
 /// The stream with the requested method and number of frames in its header.
-fn prepare(stream: &[u8], request: &Request) -> Result<Vec<u8>> {
+///
+/// # Errors
+/// When `stream` is shorter than its header says.
+pub fn prepare(stream: &[u8], shader: Shader, frames: u16) -> Result<Vec<u8>> {
     let (mut header, _) = Header::read_from_prefix(stream).map_err(|_| anyhow!("the stream is shorter than its header"))?;
-    header.shader = Shader::ALL.iter().position(|&shader| shader == request.shader).context("a method without a number")? as u16;
-    header.frames = request.frames;
+    header.shader = Shader::ALL.iter().position(|&other| other == shader).context("a method without a number")? as u16;
+    header.frames = frames;
     let length = header.length as usize;
     let mut bytes = stream.get(..length).with_context(|| format!("the stream has {} bytes, not {length}", stream.len()))?.to_vec();
     let header = header.as_bytes();

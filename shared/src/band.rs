@@ -17,6 +17,7 @@ pub struct Band<'a, C> {
 
 impl<C> Band<'_, C> {
     /// Background everywhere, infinitely far.
+    #[inline(never)]
     pub fn clear(&mut self, background: C)
     where
         C: Copy,

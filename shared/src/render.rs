@@ -255,6 +255,7 @@ impl<C: Pixel> Frame<'_, '_, C> {
     }
 
     /// Everything that happens once: which triangles face the camera, which vertices they need, which rows they start in.
+    #[inline(never)]
     fn prepare(&mut self) {
         let Renderer { stream, memory, .. } = &mut *self.renderer;
         memory.vertices.iter_mut().for_each(|vertex| vertex.state = State::Idle);
@@ -287,6 +288,7 @@ impl<C: Pixel> Frame<'_, '_, C> {
     }
 
     /// Transforms and lights the vertices that triangles need.
+    #[inline(never)]
     fn transform(&mut self) {
         let Renderer { stream, memory, shader, .. } = &mut *self.renderer;
         let Memory { vertices, palettes, .. } = memory;
@@ -303,6 +305,7 @@ impl<C: Pixel> Frame<'_, '_, C> {
     }
 
     /// Sorts the first `count` entries by the row that they start in, without those that are off screen.
+    #[inline(never)]
     fn sort(&mut self, count: usize) {
         for index in (0..count).rev() {
             let Some(id) = self.renderer.memory.bins.get(index).map(|entry| entry.triangle) else { continue };
@@ -367,6 +370,7 @@ impl<C: Pixel> Frame<'_, '_, C> {
     }
 
     /// Clears a band of `rows` rows and draws what falls into it.
+    #[inline(never)]
     fn draw(&mut self, pixels: &mut [C], rows: u32) {
         let width = self.renderer.size.width as usize;
         let bottom = self.top + rows;

@@ -18,14 +18,11 @@ bind_interrupts!(struct Interrupts {
 /// Half of the peripherals' clock, the fastest that the port can do.
 const SPI_HZ: u32 = 62_500_000;
 
-// SAFETY: transparent over a `u16`, of which 0 is a value.
-const BLACK: Rgb565Be = unsafe { core::mem::zeroed() };
-
 #[cortex_m_rt::entry]
 fn main() -> ! {
-    static mut BANDS: [[Rgb565Be; PICO.band()]; 2] = [[BLACK; PICO.band()]; 2];
+    static mut BANDS: [[Rgb565Be; PICO.band()]; 2] = [[Rgb565Be::BLACK; PICO.band()]; 2];
     static mut WORKSPACE: Workspace<Rgb565Be, { PICO.vertices }, { PICO.triangles }, { PICO.band() }, { PICO.materials }> =
-        Workspace::new(BLACK);
+        Workspace::new(Rgb565Be::BLACK);
 
     let pins = embassy_rp::init(Default::default());
     let mut config = spi::Config::default();

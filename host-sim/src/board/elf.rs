@@ -2,7 +2,7 @@
 
 use anyhow::{Context, Result, bail, ensure};
 use goblin::elf::{Elf as Parsed, program_header::PT_LOAD};
-use std::{fs, path::Path};
+use std::{fs, ops::Range, path::Path};
 
 /// A program for a board.
 #[derive(Clone, Debug)]
@@ -57,6 +57,23 @@ impl Elf {
         let symbol = elf.syms.iter().find(|symbol| elf.strtab.get_at(symbol.st_name) == Some(name));
         let symbol = symbol.with_context(|| format!("the firmware has no symbol {name}: is it stripped?"))?;
         Ok((symbol.st_value as u32, symbol.st_size as u32))
+    }
+
+    /// Names, as in the source, and addresses of all functions.
+    ///
+    /// # Errors
+    /// When the file is damaged.
+    pub fn functions(&self) -> Result<Vec<(String, Range<u32>)>> {
+        let elf = self.parsed()?;
+        let functions = elf.syms.iter().filter(|symbol| symbol.is_function() && symbol.st_size > 0);
+        Ok(functions
+            .filter_map(|symbol| {
+                let name = format!("{:#}", rustc_demangle::demangle(elf.strtab.get_at(symbol.st_name)?));
+                // Bit 0 says that the code is Thumb.
+                let start = symbol.st_value as u32 & !1;
+                Some((name, start..start + symbol.st_size as u32))
+            })
+            .collect())
     }
 
     /// All that is loaded before the start.

@@ -12,6 +12,7 @@ mod qemu;
 use anyhow::Result;
 use budget::Budget;
 use elf::Elf;
+pub use qemu::trace;
 use serde::{Serialize, Serializer};
 use std::fmt;
 

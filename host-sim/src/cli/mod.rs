@@ -1,5 +1,6 @@
 //! Command line: what the user may say, and what comes of it.
 
+mod bench;
 mod convert;
 mod inspect;
 mod parse;
@@ -28,6 +29,7 @@ Examples:
   microphong convert mesh.obj -o mesh.tri          make a stream for a board's flash
   microphong inspect mesh.tri                      what is inside, and how large it is
   microphong verify --board all --scene teapot     compare emulated boards with this computer
+  microphong bench                                 count the instructions of a frame
 
 Exit codes: 0 done; 1 failed, or pictures differ; 2 wrong usage.";
 
@@ -37,6 +39,7 @@ enum Command {
     Inspect(inspect::Arguments),
     Render(render::Arguments),
     Verify(verify::Arguments),
+    Bench(bench::Arguments),
     Scenes(scenes::Arguments),
 }
 
@@ -65,6 +68,7 @@ pub(crate) fn main() -> ExitCode {
         Command::Inspect(arguments) => inspect::run(&arguments),
         Command::Render(arguments) => render::run(&arguments),
         Command::Verify(arguments) => verify::run(&arguments),
+        Command::Bench(arguments) => bench::run(&arguments),
         Command::Scenes(arguments) => scenes::run(&arguments),
     };
     let error = match result {

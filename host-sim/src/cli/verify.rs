@@ -43,7 +43,7 @@ Exit codes: 0 all pixels are equal; 1 some differ, or a board failed; 2 wrong us
 
 /// One value, or each of them.
 #[derive(Clone)]
-struct Several<T>(Vec<T>);
+pub(super) struct Several<T>(pub(super) Vec<T>);
 
 fn several<T: Copy>(text: &str, all: &[T], one: impl Fn(&str) -> Result<T, String>) -> Result<Several<T>, String> {
     if text == "all" { Ok(Several(all.to_vec())) } else { one(text).map(|value| Several(vec![value])) }
@@ -53,7 +53,7 @@ fn boards(text: &str) -> Result<Several<Board>, String> {
     several(text, &Board::ALL, |text| parse::among(text, &Board::ALL, Board::name).map_err(|error| format!("{error}, or all")))
 }
 
-fn shaders(text: &str) -> Result<Several<Shader>, String> {
+pub(super) fn shaders(text: &str) -> Result<Several<Shader>, String> {
     several(text, &Shader::ALL, |text| parse::shader(text).map_err(|error| format!("{error}, or all")))
 }
 
@@ -100,7 +100,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome> {
     Ok(if differ > 0 { Outcome::Differences } else { Outcome::Done })
 }
 
-fn load(name: &str) -> Result<Vec<Scene>> {
+pub(super) fn load(name: &str) -> Result<Vec<Scene>> {
     if name == "all" {
         return NAMES.iter().map(|name| scene::load(name)).collect();
     }

@@ -154,7 +154,7 @@ pub const EYE_SPACE: u8 = 1;
 pub struct Vertex {
     /// Object space.
     pub position: [i16; 3],
-    /// Unit length to 2e-5: of the lattice points around it the one of the best length.
+    /// Unit length to 3.1e-5, half a step: of the lattice points around it the one of the best length.
     pub normal: [i16; 3],
 }
 

@@ -2,9 +2,12 @@
 
 mod qmp;
 mod screen;
+mod trace;
+
+pub use trace::trace;
 
 use super::{Board, Recording, elf::Elf, log};
-use anyhow::{Context, Result, anyhow, bail, ensure};
+use anyhow::{Context, Result, anyhow, bail};
 use qmp::Qmp;
 use screen::Screen;
 use std::{
@@ -21,6 +24,8 @@ use std::{
 const SILENCE: Duration = Duration::from_secs(120);
 /// How long QEMU may take to end after the firmware has.
 const END: Duration = Duration::from_secs(20);
+/// The exit code that the firmware's fault handler chooses.
+const PANIC: i32 = 101;
 
 /// A running emulator; ends with it.
 struct Emulator {
@@ -133,8 +138,12 @@ fn play(emulator: &mut Emulator, socket: &Path, screen: &Screen, directory: &Pat
             emulator.release()?;
         }
     }
-    let code = emulator.wait()?;
     let expected = if recording.failure().is_some() { 1 } else { 0 };
-    ensure!(code == Some(expected), "the firmware ended with code {code:?} instead of {expected}: a panic or a fault");
+    match emulator.wait()? {
+        Some(code) if code == expected => {}
+        Some(PANIC) => bail!("the firmware panicked or crashed (HardFault)"),
+        Some(code) => bail!("QEMU ended with code {code} instead of {expected}"),
+        None => bail!("QEMU was killed"),
+    }
     Ok(())
 }
