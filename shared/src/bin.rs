@@ -10,8 +10,8 @@ use core::num::NonZeroU32;
 /// Bins of a frame; the rows are shared out among them.
 pub const BINS: usize = 64;
 
-/// The end of a list.
-const NONE: u16 = u16::MAX;
+/// The end of a list: links are one more than the index that they lead to, so that empty memory is all zeros.
+const NONE: u16 = 0;
 
 /// A triangle in a list.
 #[derive(Clone, Copy, Debug)]
@@ -56,14 +56,14 @@ impl Bins {
         let bin = (top / self.rows_per_bin) as usize;
         if let (Some(head), Some(entry)) = (self.heads.get_mut(bin), entries.get_mut(index)) {
             entry.next = *head;
-            *head = index as u16;
+            *head = index as u16 + 1;
         }
     }
 
     /// Entries that a list can hold.
     #[must_use]
     pub fn capacity(entries: &[Entry]) -> usize {
-        entries.len().min(NONE as usize)
+        entries.len().min(u16::MAX as usize)
     }
 
     /// Takes over the lists of all bins that start above row `bottom`.
@@ -80,26 +80,32 @@ impl Bins {
     /// The active entries in the order of the stream: start with `None`, go on with the index returned.
     #[must_use]
     pub fn next(&self, entries: &[Entry], after: Option<u16>) -> Option<u16> {
-        let next = after.map_or(self.active, |index| entries.get(usize::from(index)).map_or(NONE, |entry| entry.next));
-        (next != NONE).then_some(next)
+        let link = after.map_or(self.active, |index| entries.get(usize::from(index)).map_or(NONE, |entry| entry.next));
+        link.checked_sub(1)
     }
 
     /// Drops active entries that end at row `bottom` or above.
     pub fn retire(&mut self, entries: &mut [Entry], bottom: u32) {
         let mut previous = NONE;
-        let mut index = self.active;
-        while let Some(&entry) = entries.get(usize::from(index)) {
+        let mut link = self.active;
+        while let Some(&entry) = linked(link).and_then(|index| entries.get(index)) {
             if u32::from(entry.bottom) <= bottom {
-                match entries.get_mut(usize::from(previous)) {
+                match linked(previous).and_then(|index| entries.get_mut(index)) {
                     Some(previous) => previous.next = entry.next,
                     None => self.active = entry.next,
                 }
             } else {
-                previous = index;
+                previous = link;
             }
-            index = entry.next;
+            link = entry.next;
         }
     }
+}
+
+/// The index that a link leads to.
+#[inline(always)]
+fn linked(link: u16) -> Option<usize> {
+    link.checked_sub(1).map(usize::from)
 }
 
 /// Two lists in the order of the stream into one; returns its head.
@@ -107,19 +113,23 @@ fn merge(entries: &mut [Entry], mut a: u16, mut b: u16) -> u16 {
     let mut head = NONE;
     let mut tail = NONE;
     loop {
-        let (first, second) = (entries.get(usize::from(a)).copied(), entries.get(usize::from(b)).copied());
-        let (index, next) = match (first, second) {
+        let entry = |link| linked(link).and_then(|index| entries.get(index)).copied();
+        let (link, next) = match (entry(a), entry(b)) {
             (Some(x), Some(y)) if x.triangle <= y.triangle => (a, x.next),
             (_, Some(y)) => (b, y.next),
             (Some(x), None) => (a, x.next),
             (None, None) => return head,
         };
-        match entries.get_mut(usize::from(tail)) {
-            Some(tail) => tail.next = index,
-            None => head = index,
+        match linked(tail).and_then(|index| entries.get_mut(index)) {
+            Some(tail) => tail.next = link,
+            None => head = link,
         }
-        tail = index;
-        if index == a { a = next } else { b = next }
+        tail = link;
+        if link == a {
+            a = next;
+        } else {
+            b = next;
+        }
     }
 }
 

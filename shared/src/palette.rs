@@ -34,8 +34,8 @@ pub struct Palette<C> {
     pub base: [u16; 3],
     /// x^exponent.
     pub power: Power,
-    /// One walked level is enough: every colour of the material is a multiple of `base`.
-    pub one_channel: bool,
+    /// One walked level is not enough: the material has colours that are no multiples of `base`.
+    pub three_channels: bool,
     /// Level without lights, Q9.7.
     ambient: [i32; 3],
     gains: [Gains; MAX_LIGHTS],
@@ -71,14 +71,14 @@ impl<C: Pixel> Palette<C> {
         Self::filled(C::pack([0; 3]))
     }
 
-    /// Every colour `colour`: for static memory, where `pack` cannot be called.
+    /// Every colour `colour`: for static memory, where `pack` cannot be called. Black makes it all zeros, which takes no flash.
     #[must_use]
     pub const fn filled(colour: C) -> Self {
         Self {
             ramp: [colour; RAMP],
             base: [0; 3],
             power: Power::EMPTY,
-            one_channel: true,
+            three_channels: false,
             ambient: [0; 3],
             gains: [Gains { diffuse: [0; 3], specular: [0; 3] }; MAX_LIGHTS],
             lights: 0,
@@ -95,8 +95,8 @@ impl<C: Pixel> Palette<C> {
         // The brightest of all terms sets the base colour; the others may be multiples of it.
         let terms = || lights.iter().flat_map(|light| [diffuse(light), specular(light)]).chain([ambient]);
         let base = terms().max_by_key(|&term| largest(term)).unwrap_or([0; 3]);
-        self.one_channel = terms().all(|term| along(term, base));
-        let one_channel = self.one_channel;
+        let one_channel = terms().all(|term| along(term, base));
+        self.three_channels = !one_channel;
         let levels =
             |colour: Colour| -> [u16; 3] { if one_channel { [level(largest(colour), 8); 3] } else { zip(colour, C::DEPTH, level) } };
         self.ambient = levels(ambient).map(i32::from);
@@ -153,7 +153,7 @@ impl<C: Pixel> Palette<C> {
             let specular = (u32::from(specular) * power + (1 << (POWER - 1))) >> POWER;
             level.saturating_add((diffuse + specular) as i32)
         };
-        if self.one_channel {
+        if !self.three_channels {
             *levels = [light(levels[0], (gains.diffuse[0], gains.specular[0])); 3];
         } else {
             *levels = zip(*levels, zip(gains.diffuse, gains.specular, |d, s| (d, s)), light);
@@ -164,7 +164,7 @@ impl<C: Pixel> Palette<C> {
     #[inline(always)]
     #[must_use]
     pub fn colour(&self, levels: [i32; 3]) -> C {
-        if self.one_channel {
+        if !self.three_channels {
             let i = (levels[0] + (1 << (LEVEL - 1))) >> LEVEL;
             self.ramp[((i + BIAS) as usize) & (RAMP - 1)]
         } else {
@@ -181,7 +181,7 @@ impl<C: Pixel> Palette<C> {
     #[must_use]
     pub fn dithered(&self, levels: [i32; 3], threshold: u32) -> C {
         let fine = levels.map(|level| (level.max(0) as u32) << 1);
-        let scaled = if self.one_channel { self.base.map(|base| (fine[0] * u32::from(base)) >> 8) } else { fine };
+        let scaled = if !self.three_channels { self.base.map(|base| (fine[0] * u32::from(base)) >> 8) } else { fine };
         quantise(scaled, threshold)
     }
 }

@@ -50,7 +50,7 @@ pub struct Workspace<C, const VERTICES: usize, const TRIANGLES: usize, const DEP
 impl<C: Pixel, const VERTICES: usize, const TRIANGLES: usize, const DEPTH: usize, const MATERIALS: usize>
     Workspace<C, VERTICES, TRIANGLES, DEPTH, MATERIALS>
 {
-    /// Empty memory; `colour` is any colour.
+    /// Empty memory; `colour` is any colour. With black it is all zeros: a `static` then takes no flash.
     #[must_use]
     pub const fn new(colour: C) -> Self {
         Self {

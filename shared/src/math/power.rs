@@ -14,7 +14,7 @@ const SIZE: usize = 2048;
 pub struct Power {
     table: [u16; SIZE + 1],
     /// max(n, 8): turns 1 - x into an index.
-    scale: NonZeroU32,
+    scale: u32,
 }
 
 /// Exponents below it use the whole domain.
@@ -24,15 +24,16 @@ const EIGHT: NonZeroU32 = NonZeroU32::new(8).unwrap();
 pub const POWER: u32 = 16;
 
 impl Power {
-    /// An empty table, for static memory.
-    pub const EMPTY: Self = Self { table: [0; SIZE + 1], scale: EIGHT };
+    /// An empty table, for static memory: all zeros, so that it takes no flash.
+    pub const EMPTY: Self = Self { table: [0; SIZE + 1], scale: 0 };
 
     /// Computes the table for exponent `n`, 1 to 1024, in integers: the same bits on every machine.
     pub fn fill(&mut self, n: u16) {
-        self.scale = EIGHT.max(NonZeroU32::new(n.into()).unwrap_or(EIGHT));
+        let scale = EIGHT.max(NonZeroU32::new(n.into()).unwrap_or(EIGHT));
+        self.scale = scale.get();
         for (i, entry) in self.table.iter_mut().enumerate() {
             // x = 1 - 8 i / (2048 max(n, 8)), Q1.31: products of two fit 64 bits.
-            let below = ((i as u64) << 23) / NonZeroU64::from(self.scale);
+            let below = ((i as u64) << 23) / NonZeroU64::from(scale);
             let x = (1u64 << 31).saturating_sub(below);
             let (mut result, mut base, mut n) = (1u64 << 31, x, n);
             while n > 0 {
@@ -55,7 +56,7 @@ impl Power {
     fn position(&self, cosine: i32) -> u32 {
         let defect = (1i32 << COSINE).saturating_sub(cosine).max(0) as u32;
         // defect * n / 8 * 2048 / 2^30, with 12 fraction bits.
-        ((u64::from(defect) * u64::from(self.scale.get())) >> (COSINE - 20)).min(u64::from(u32::MAX)) as u32
+        ((u64::from(defect) * u64::from(self.scale)) >> (COSINE - 20)).min(u64::from(u32::MAX)) as u32
     }
 
     /// cosine^n, unsigned Q0.16, by linear interpolation; `cosine` in Q2.30.
@@ -82,7 +83,7 @@ impl Power {
     /// Smallest cosine, Q2.30, whose power is not taken as 0.
     #[must_use]
     pub fn dark_below(&self) -> i32 {
-        (1i32 << COSINE) - ((8u64 << COSINE) / NonZeroU64::from(self.scale)) as i32
+        (1i32 << COSINE) - ((8u64 << COSINE) / NonZeroU64::from(NonZeroU32::new(self.scale).unwrap_or(EIGHT))) as i32
     }
 }
 

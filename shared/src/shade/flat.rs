@@ -20,7 +20,7 @@ pub(super) fn draw<C: Pixel>(facet: &Facet<'_>, shading: &Shading<'_, C>, band: 
     if shading.dither {
         // A field without slope: dither changes from pixel to pixel all the same.
         let nodes = levels.map(|level| [level; 3]);
-        if shading.palette.one_channel {
+        if !shading.palette.three_channels {
             let patch = Plane::fit(&facet.basis, [nodes[0]], super::EXTRA).raised(super::lift(0));
             facet.outline.draw(&facet.basis, patch, Dithered::new(shading.palette.base), band)
         } else {

@@ -9,7 +9,7 @@ use crate::{band::Band, math::vector::transposed, pixel::Pixel, poly::plane::Pla
 
 pub(super) fn draw<C: Pixel>(facet: &Facet<'_>, shading: &Shading<'_, C>, band: &mut Band<'_, C>) -> u32 {
     let levels = transposed(facet.corners.map(|corner| shading.corner_levels(corner)));
-    if shading.palette.one_channel {
+    if !shading.palette.three_channels {
         shading.draw_one(facet, Plane::fit(&facet.basis, [levels[0]], super::EXTRA), Plane::raised, band)
     } else {
         shading.draw_three(facet, Plane::fit(&facet.basis, levels, super::EXTRA), Plane::raised, band)

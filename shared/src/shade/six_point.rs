@@ -22,7 +22,7 @@ pub(super) fn draw<C: Pixel>(facet: &Facet<'_>, shading: &Shading<'_, C>, band: 
         Some(_) => constant(facet, shading),
         None => lit(facet, shading),
     };
-    if shading.palette.one_channel {
+    if !shading.palette.three_channels {
         let patch = Quadric::fit::<BITS>(&facet.basis, [nodes.map(|[level, ..]| level)], super::EXTRA);
         shading.draw_one(facet, patch, Quadric::raised, band)
     } else {
