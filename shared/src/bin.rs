@@ -40,14 +40,15 @@ pub struct Bins {
 }
 
 impl Bins {
-    /// Empty lists for a viewport of `height` rows.
+    /// Empty lists for a viewport of `height` rows that is drawn `band_rows` at a time: a bin is at least a band, so that
+    /// each band merges one list.
     #[must_use]
-    pub fn new(height: u32) -> Self {
+    pub fn new(height: u32, band_rows: u32) -> Self {
         Self {
             heads: [NONE; BINS],
             active: NONE,
             reached: 0,
-            rows_per_bin: NonZeroU32::MIN.saturating_add((height.max(1) - 1) / BINS as u32),
+            rows_per_bin: NonZeroU32::new(height.div_ceil(BINS as u32).max(band_rows)).unwrap_or(NonZeroU32::MIN),
         }
     }
 
@@ -143,7 +144,7 @@ mod tests {
         let mut entries = [Entry::EMPTY; 100];
         let rows = |i: u32| (i * 37 % 200, (i * 37 % 200 + 1 + i * 11 % 60).min(HEIGHT));
         for band in [1, 7, 10, 40, 240] {
-            let mut bins = Bins::new(HEIGHT);
+            let mut bins = Bins::new(HEIGHT, band.min(10));
             for i in (0..100).rev() {
                 entries[i] = Entry { triangle: i as u32, bottom: rows(i as u32).1 as u16, next: NONE };
                 bins.push(&mut entries, i, rows(i as u32).0);

@@ -195,7 +195,7 @@ impl<'a, C: Pixel> Renderer<'a, C> {
             facing: Facing::new(camera, &pose),
             lighting,
             constant,
-            bins: Bins::new(self.size.height),
+            bins: Bins::new(self.size.height, self.band_rows()),
             binned: false,
             top: 0,
             stats: Stats { triangles: self.stream.triangles.len() as u32, ..Stats::default() },

@@ -32,7 +32,7 @@ fn request(board: Board, scene: &str, shader: Shader) -> Result<Request> {
 fn matrix(board: Board) -> Result {
     let directory = tempfile::tempdir()?;
     let elf = verify::build(board)?;
-    for scene in ["teapot", "bunny", "sphere-374", "sphere-40", "dodecahedron", "triangle"] {
+    for scene in ["teapot", "bunny", "sphere-690", "sphere-40", "dodecahedron", "triangle"] {
         for shader in Shader::ALL {
             let report = verify::run(&request(board, scene, shader)?, &elf, directory.path())?;
             println!("{}", serde_json::to_string(&report)?);

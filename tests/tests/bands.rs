@@ -1,0 +1,71 @@
+//! Memory decides how a frame is drawn, never what it looks like.
+
+use embedded_graphics::{
+    mock_display::MockDisplay,
+    pixelcolor::{Gray8, Rgb565},
+    prelude::*,
+};
+use microphong::{Memory, Picture, Renderer, Shader, Stats, Stream, bin::Entry, palette::Palette, vertex::ScreenVertex};
+use microphong_sim::scene;
+
+/// A frame with room for so many vertices and triangles, in bands of so many rows.
+fn frame(stream: Stream<'_>, size: Size, shader: Shader, vertices: usize, triangles: usize, rows: u32) -> (Vec<Rgb565>, Stats) {
+    let mut vertices = vec![ScreenVertex::EMPTY; vertices];
+    let mut bins = vec![Entry::EMPTY; triangles];
+    let mut depth = vec![0; (size.width * rows) as usize];
+    let mut palettes = vec![Palette::empty(); stream.materials.len()];
+    let memory = Memory { vertices: &mut vertices, bins: &mut bins, depth: &mut depth, palettes: &mut palettes };
+    let mut renderer = Renderer::new(stream, size, memory).unwrap();
+    renderer.set_shader(shader);
+    let mut band = vec![Rgb565::RED; (size.width * rows) as usize];
+    let mut pixels = Vec::new();
+    let mut frame = renderer.frame(5);
+    while let Some(area) = frame.next_band(&mut band) {
+        pixels.extend_from_slice(&band[..(area.size.width * area.size.height) as usize]);
+    }
+    (pixels, frame.stats())
+}
+
+#[test]
+fn neither_bands_nor_overflow_change_a_pixel() {
+    let size = Size::new(200, 150);
+    for name in ["teapot", "torus", "sphere-40"] {
+        let scene = scene::load(name).unwrap();
+        let stream = scene.stream.parse().unwrap();
+        let (vertices, triangles) = (stream.vertices.len(), stream.triangles.len());
+        for shader in Shader::ALL {
+            let (whole, stats) = frame(stream, size, shader, vertices, triangles, size.height);
+            assert_eq!((stats.passes, stats.uncached), (1, 0));
+            for rows in [1, 7, 16, 64] {
+                let (pixels, banded) = frame(stream, size, shader, vertices, triangles, rows);
+                assert!(pixels == whole, "{name}, {}: bands of {rows} rows", shader.name());
+                assert_eq!(banded, stats);
+            }
+            for (vertices, triangles, rows) in [(0, triangles, 50), (vertices / 2, triangles, 16), (vertices, 3, 16), (7, 0, 40)] {
+                let (pixels, tight) = frame(stream, size, shader, vertices, triangles, rows);
+                assert!(pixels == whole, "{name}, {}: room for {vertices} vertices, {triangles} triangles", shader.name());
+                assert_eq!((tight.drawn, tight.pixels), (stats.drawn, stats.pixels), "nothing is lost");
+                assert!(tight.passes > 1 || tight.uncached > 0, "the overflow is counted");
+            }
+        }
+    }
+}
+
+#[test]
+fn a_display_is_filled_once() {
+    // The mock display panics on a pixel that is drawn twice or lies outside.
+    let scene = scene::load("sphere-168").unwrap();
+    let stream = scene.stream.parse().unwrap();
+    let mut vertices = vec![ScreenVertex::EMPTY; stream.vertices.len()];
+    let mut bins = vec![Entry::EMPTY; stream.triangles.len()];
+    let (mut depth, mut palettes) = ([0; 64 * 10], [Palette::<Gray8>::empty()]);
+    let memory = Memory { vertices: &mut vertices, bins: &mut bins, depth: &mut depth, palettes: &mut palettes };
+    let mut renderer = Renderer::new(stream, Size::new(64, 64), memory).unwrap();
+    let mut band = [Gray8::BLACK; 64 * 10];
+    let mut display = MockDisplay::<Gray8>::new();
+    let stats = Picture::new(&mut renderer, &mut band, 0).draw(&mut display).unwrap();
+    assert!(stats.drawn > 50);
+    assert_eq!(display.affected_area().size, Size::new(64, 64));
+    let lit = (0..64 * 64).filter(|i| display.get_pixel(Point::new(i % 64, i / 64)).unwrap().luma() > 64).count();
+    assert!((1000..4000).contains(&lit), "{lit}");
+}
