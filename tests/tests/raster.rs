@@ -163,3 +163,36 @@ fn fans_are_watertight() {
         }
     }
 }
+
+#[test]
+fn closed_convex_meshes_cover_each_pixel_once() {
+    use embedded_graphics::{pixelcolor::Rgb888, prelude::*};
+    use microphong::{
+        Shader,
+        stream::{record::Header, seal},
+    };
+    use microphong_sim::{bytes::StreamBytes, render, scene};
+    use zerocopy::{FromBytes, IntoBytes};
+
+    for name in ["sphere-168", "sphere-374", "sphere-690", "peer-sphere", "sphere-40", "dodecahedron"] {
+        // A background that no material has tells pixels that were drawn from those that were not.
+        let mut bytes = scene::load(name).unwrap().stream.as_bytes().to_vec();
+        let mut header = Header::read_from_prefix(&bytes).unwrap().0;
+        header.background = [255, 0, 255];
+        bytes[..size_of::<Header>()].copy_from_slice(header.as_bytes());
+        seal(&mut bytes);
+        let bytes = StreamBytes::from(bytes.as_slice());
+        for number in [0, 7, 40] {
+            let size = Size::new(320, 240);
+            let (pixels, stats) = render::frame::<Rgb888>(bytes.parse().unwrap(), size, Shader::Flat, false, 16, number).unwrap();
+            let covered: Vec<bool> = pixels.iter().map(|&pixel| pixel != Rgb888::MAGENTA).collect();
+            let count = covered.iter().filter(|&&covered| covered).count();
+            assert_eq!(stats.pixels as usize, count, "{name}, frame {number}: pixels drawn twice");
+            // A convex outline has no hole: in each row the covered pixels are one run.
+            for (y, row) in covered.chunks(320).enumerate() {
+                let runs = row.windows(2).filter(|pair| !pair[0] && pair[1]).count() + usize::from(row[0]);
+                assert!(runs <= 1, "{name}, frame {number}: a gap in row {y}");
+            }
+        }
+    }
+}
