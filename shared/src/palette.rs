@@ -3,7 +3,7 @@
 use crate::{
     format::{BIAS, LEVEL, UNIT},
     math::{
-        power::{POWER, Power},
+        power::{POWER, PixelPower, Power},
         vector::zip,
     },
     pixel::Pixel,
@@ -160,6 +160,20 @@ impl<C: Pixel> Palette<C> {
         }
     }
 
+    /// What one light comes to in a material of one channel: for the pixel loop.
+    #[must_use]
+    pub fn glossy(&self) -> Glossy<'_, C> {
+        let [gains, ..] = &self.gains;
+        Glossy {
+            ramp: &self.ramp,
+            power: self.power.pixel(),
+            // Bias and rounding half of the ramp's index are in it already.
+            ambient: self.ambient[0] as u32 + ((BIAS as u32) << LEVEL) + (1 << (LEVEL - 1)),
+            diffuse: u32::from(gains.diffuse[0]) << 5,
+            specular: gains.specular[0].into(),
+        }
+    }
+
     /// The colour of three levels, Q9.7, rounded.
     #[inline(always)]
     #[must_use]
@@ -183,6 +197,29 @@ impl<C: Pixel> Palette<C> {
         let fine = levels.map(|level| (level.max(0) as u32) << 1);
         let scaled = if !self.three_channels { self.base.map(|base| (fine[0] * u32::from(base)) >> 8) } else { fine };
         quantise(scaled, threshold)
+    }
+}
+
+/// One light on a material of one channel.
+#[derive(Clone, Copy, Debug)]
+pub struct Glossy<'a, C> {
+    ramp: &'a [C; RAMP],
+    power: PixelPower<'a>,
+    ambient: u32,
+    /// Level at cosine 1, Q9.7, times 2^5: the upper half of its product with a cosine in Q5.27 is a level.
+    diffuse: u32,
+    specular: u32,
+}
+
+impl<C: Copy> Glossy<'_, C> {
+    /// The colour at cosines N·L and N·H in Q5.27.
+    #[inline(always)]
+    #[must_use]
+    pub fn colour(&self, [light, half]: [i32; 2]) -> C {
+        let diffuse = ((u64::from(light.max(0) as u32) * u64::from(self.diffuse)) >> 32) as u32;
+        let specular = (self.power.at(half) * self.specular) >> POWER;
+        let level = (self.ambient + diffuse + specular).min((RAMP as u32 - 1) << LEVEL);
+        self.ramp[(level >> LEVEL) as usize & (RAMP - 1)]
     }
 }
 

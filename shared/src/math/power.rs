@@ -80,10 +80,36 @@ impl Power {
         self.table.get(i as usize).copied().unwrap_or(0).into()
     }
 
+    /// The table with what an index takes: entry `((top - cosine) * factor) >> 32` is the nearest to `cosine`, Q5.27.
+    #[must_use]
+    pub fn pixel(&self) -> PixelPower<'_> {
+        let scale = NonZeroU32::new(self.scale).unwrap_or(EIGHT);
+        PixelPower { table: &self.table, top: (1 << 27) + ((1 << 18) / scale) as i32, factor: scale.get() << 13 }
+    }
+
     /// Smallest cosine, Q2.30, whose power is not taken as 0.
     #[must_use]
     pub fn dark_below(&self) -> i32 {
         (1i32 << COSINE) - ((8u64 << COSINE) / NonZeroU64::from(NonZeroU32::new(self.scale).unwrap_or(EIGHT))) as i32
+    }
+}
+
+/// [`Power::nearest`] for the pixel loop: one product, one load.
+#[derive(Clone, Copy, Debug)]
+pub struct PixelPower<'a> {
+    table: &'a [u16; SIZE + 1],
+    top: i32,
+    factor: u32,
+}
+
+impl PixelPower<'_> {
+    /// cosine^n, unsigned Q0.16; `cosine` in Q5.27. Error: [`NEAREST_ERROR`].
+    #[inline(always)]
+    #[must_use]
+    pub fn at(&self, cosine: i32) -> u32 {
+        let defect = self.top.wrapping_sub(cosine).max(0) as u32;
+        let i = (u64::from(defect) * u64::from(self.factor)) >> 32;
+        self.table.get(i as usize).copied().unwrap_or(0).into()
     }
 }
 
@@ -101,15 +127,17 @@ mod tests {
         for n in [1u16, 2, 5, 7, 8, 9, 20, 50, 128, 500, 1024] {
             let mut power = Power::EMPTY;
             power.fill(n);
-            let (mut at, mut nearest) = (0f64, 0f64);
+            let (mut at, mut nearest, mut pixel) = (0f64, 0f64, 0f64);
             for i in 0..200_000u32 {
                 let cosine = (1 << 30) - (i * 5_368) as i32;
                 let exact = (f64::from(cosine) / 2f64.powi(30)).max(0.0).powi(n.into());
                 at = at.max((f64::from(power.at(cosine)) / 65_536.0 - exact).abs());
                 nearest = nearest.max((f64::from(power.nearest(cosine)) / 65_536.0 - exact).abs());
+                pixel = pixel.max((f64::from(power.pixel().at(cosine >> 3)) / 65_536.0 - exact).abs());
             }
             assert!(at <= ERROR, "n = {n}: {at}");
             assert!(nearest <= NEAREST_ERROR, "n = {n}: {nearest}");
+            assert!(pixel <= NEAREST_ERROR, "n = {n}: {pixel}");
             assert_eq!(power.at(power.dark_below() - (1 << 15)), 0, "n = {n}");
         }
     }

@@ -12,10 +12,10 @@ use crate::{
     band::Band,
     format::EDGE,
     math::{
-        rsqrt::rsqrt,
+        rsqrt::{half_rsqrt, rsqrt},
         vector::{add, dot, sub, wide},
     },
-    palette::Palette,
+    palette::{Glossy, Palette},
     pixel::Pixel,
     poly::{
         Patch, Walker,
@@ -34,12 +34,14 @@ const BITS: u32 = NODE + 1;
 const EXTRA: u32 = 30 - NODE;
 
 pub(super) fn draw<C: Pixel>(facet: &Facet<'_>, shading: &Shading<'_, C>, band: &mut Band<'_, C>) -> u32 {
-    if shading.constant.is_some() {
-        let tone = Lit { palette: shading.palette, dither: shading.dither, row: 0 };
-        facet.outline.draw(&facet.basis, Constant::fit(facet), tone, band)
+    let lit = Lit { palette: shading.palette, dither: shading.dither, row: 0 };
+    // The table of roots begins at |N|² = 1/4.
+    if shading.constant.is_none() || facet.triangle.rho < 1 << (EDGE - 1) {
+        facet.outline.draw(&facet.basis, General::fit(facet, shading), lit, band)
+    } else if shading.dither || shading.palette.three_channels {
+        facet.outline.draw(&facet.basis, Constant::fit(facet), lit, band)
     } else {
-        let tone = Lit { palette: shading.palette, dither: shading.dither, row: 0 };
-        facet.outline.draw(&facet.basis, General::fit(facet, shading), tone, band)
+        facet.outline.draw(&facet.basis, Constant::fit(facet), Gloss(shading.palette.glossy()), band)
     }
 }
 
@@ -101,7 +103,7 @@ impl Patch for Constant {
 struct ConstantWalker(Linear<2>, Quadratic<1>);
 
 impl Walker for ConstantWalker {
-    type Value = [[i32; 2]; 1];
+    type Value = Cosines;
 
     #[inline(always)]
     fn step(&mut self) {
@@ -110,10 +112,38 @@ impl Walker for ConstantWalker {
     }
 
     #[inline(always)]
-    fn value(&self) -> [[i32; 2]; 1] {
+    fn value(&self) -> Cosines {
         let [square] = self.1.value();
-        let root = root(square);
-        [self.0.value().map(|c| over(c as i32, root))]
+        let half_root = i64::from(half_rsqrt(square));
+        // Upper half of Q2.30 times Q2.30, and half of a root: Q5.27.
+        Cosines(self.0.value().map(|cosine| ((i64::from(cosine as i32) * half_root) >> 32) as i32))
+    }
+}
+
+/// N·L and N·H of one light, Q5.27.
+struct Cosines([i32; 2]);
+
+impl IntoIterator for Cosines {
+    type Item = [i32; 2];
+    type IntoIter = core::iter::Once<[i32; 2]>;
+
+    /// Of one light, Q2.30.
+    #[inline(always)]
+    fn into_iter(self) -> Self::IntoIter {
+        core::iter::once(self.0.map(|cosine| cosine.clamp(-(1 << 27), 1 << 27) << 3))
+    }
+}
+
+/// Lights a pixel in a material of one channel.
+#[derive(Clone, Copy)]
+struct Gloss<'a, C>(Glossy<'a, C>);
+
+impl<C: Pixel> Tone<Cosines> for Gloss<'_, C> {
+    type Pixel = C;
+
+    #[inline(always)]
+    fn tone(&self, Cosines(cosines): Cosines, _: usize) -> C {
+        self.0.colour(cosines)
     }
 }
 
