@@ -60,21 +60,26 @@ fn over(value: i32, (mantissa, shift): (i64, u32)) -> i32 {
     product.clamp(i32::MIN.into(), i32::MAX.into()) as i32
 }
 
-/// One constant light: N·L and N·H are linear, |N|² quadratic.
+/// One constant light: N·L and N·H are linear, |N|² quadratic. Two planes of one channel: the compiler
+/// makes a loop of one plane of two, and keeps it in memory.
 #[derive(Clone, Copy)]
 struct Constant {
-    cosines: Plane<2>,
+    light: Plane<1>,
+    half: Plane<1>,
     square: Quadric<1>,
 }
 
 impl Constant {
     fn fit(facet: &Facet<'_>) -> Self {
         let [a, b, c] = facet.corners.map(|corner| corner.light);
-        let cosines = [[a[0], b[0], c[0]], [a[1], b[1], c[1]]];
         // |N|² - 1 is zero at the corners.
         let middle = facet.square.map(|square| (i32::from(square) - (1 << EDGE)) << (NODE - EDGE));
         let nodes = [0, 0, 0, middle[0], middle[1], middle[2]];
-        Self { cosines: Plane::fit(&facet.basis, cosines, 0), square: Quadric::fit::<BITS>(&facet.basis, [nodes], EXTRA).raised([1 << 30]) }
+        Self {
+            light: Plane::fit(&facet.basis, [[a[0], b[0], c[0]]], 0),
+            half: Plane::fit(&facet.basis, [[a[1], b[1], c[1]]], 0),
+            square: Quadric::fit::<BITS>(&facet.basis, [nodes], EXTRA).raised([1 << 30]),
+        }
     }
 }
 
@@ -83,40 +88,48 @@ impl Patch for Constant {
 
     #[inline(always)]
     fn jump(&mut self, rows: i32) {
-        self.cosines.jump(rows);
+        self.light.jump(rows);
+        self.half.jump(rows);
         self.square.jump(rows);
     }
 
     #[inline(always)]
     fn step_row(&mut self) {
-        self.cosines.step_row();
+        self.light.step_row();
+        self.half.step_row();
         self.square.step_row();
     }
 
     #[inline(always)]
     fn enter(&self, x: i32) -> ConstantWalker {
-        ConstantWalker(self.cosines.enter(x), self.square.enter(x))
+        ConstantWalker { light: self.light.enter(x), half: self.half.enter(x), square: self.square.enter(x) }
     }
 }
 
 /// Walks [`Constant`].
-struct ConstantWalker(Linear<2>, Quadratic<1>);
+struct ConstantWalker {
+    light: Linear<1>,
+    half: Linear<1>,
+    square: Quadratic<1>,
+}
 
 impl Walker for ConstantWalker {
     type Value = Cosines;
 
     #[inline(always)]
     fn step(&mut self) {
-        self.0.step();
-        self.1.step();
+        self.light.step();
+        self.half.step();
+        self.square.step();
     }
 
     #[inline(always)]
     fn value(&self) -> Cosines {
-        let [square] = self.1.value();
-        let half_root = i64::from(half_rsqrt(square));
+        let ([light], [half], [square]) = (self.light.value(), self.half.value(), self.square.value());
+        let half_root = half_rsqrt(square) as i32;
         // Upper half of Q2.30 times Q2.30, and half of a root: Q5.27.
-        Cosines(self.0.value().map(|cosine| ((i64::from(cosine as i32) * half_root) >> 32) as i32))
+        let over = |cosine: u32| ((i64::from(cosine as i32) * i64::from(half_root)) >> 32) as i32;
+        Cosines([over(light), over(half)])
     }
 }
 
