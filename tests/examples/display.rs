@@ -1,6 +1,6 @@
 //! A mesh from flash on an embedded-graphics display, here a simulated one.
 //!
-//! `cargo run --release -p microphong-tests --example display` writes `display.png`.
+//! `cargo run --release -p microphong-tests --example display` writes `display.png`, or the file that is named behind `--`.
 
 use embedded_graphics::{pixelcolor::Rgb565, prelude::*};
 use embedded_graphics_simulator::{OutputSettings, SimulatorDisplay};
@@ -17,7 +17,8 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let mut renderer = Renderer::new(stream, display.size(), workspace.memory())?;
     let stats = Picture::new(&mut renderer, &mut band, 0).draw(&mut display)?;
 
-    display.to_rgb_output_image(&OutputSettings::default()).save_png("display.png")?;
-    println!("display.png: {} triangles drawn", stats.drawn);
+    let file = std::env::args().nth(1).unwrap_or_else(|| "display.png".into());
+    display.to_rgb_output_image(&OutputSettings::default()).save_png(&file)?;
+    println!("{file}: {} triangles drawn", stats.drawn);
     Ok(())
 }
