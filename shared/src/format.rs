@@ -40,3 +40,7 @@ pub const DEPTH: u32 = 28;
 pub const DEPTH_WALK: u32 = 16;
 /// Fraction bits of the edge constants 1/|N1+N2| and |N1+N2|²/4: unsigned Q1.15.
 pub const EDGE: u32 = 15;
+/// Entries of a table of colours: the 256 levels and [`BIAS`] guards at each end.
+pub const RAMP: usize = 512;
+/// Lights in one scene.
+pub const MAX_LIGHTS: usize = 8;

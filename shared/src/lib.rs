@@ -7,11 +7,12 @@
 //! |---|---|
 //! | [`format`](mod@format) | names every number format |
 //! | [`math`] | reciprocal, root, power, vectors, in integers |
+//! | [`shader`] | the names of the methods |
 //! | [`stream`] | bytes in flash to a checked view of meshes, lights and camera |
 //! | [`scene`] | one frame's camera and lights, in object space |
 //! | [`vertex`], [`cull`], [`clip`], [`bin`] | object space to the screen, and what need not be drawn |
 //! | [`poly`] | fits polynomials to a triangle and walks them |
-//! | [`palette`], [`tone`] | levels of light to pixels |
+//! | [`pixel`], [`dither`], [`palette`], [`tone`] | levels of light to pixels |
 //! | [`raster`] | exact coverage, and the inner loop |
 //! | [`shade`] | the methods: which polynomials, which tone |
 //! | [`render`] | the loop nest: frame, band, triangle, row |
@@ -24,6 +25,7 @@ pub mod bin;
 pub mod clip;
 pub mod cull;
 pub mod display;
+pub mod dither;
 pub mod format;
 pub mod math;
 pub mod palette;
@@ -33,11 +35,12 @@ pub mod raster;
 pub mod render;
 pub mod scene;
 pub mod shade;
+pub mod shader;
 pub mod stream;
 pub mod tone;
 pub mod vertex;
 
 pub use display::Picture;
 pub use render::{Frame, Memory, Renderer, SetupError, Stats, Workspace};
-pub use shade::Shader;
+pub use shader::Shader;
 pub use stream::{Stream, StreamError};

@@ -1,19 +1,15 @@
 //! What a material makes of the scene's lights, worked out once.
 
 use crate::{
-    format::{BIAS, LEVEL, UNIT},
+    dither::quantise,
+    format::{BIAS, LEVEL, MAX_LIGHTS, RAMP, UNIT},
     math::{
         power::{POWER, PixelPower, Power},
         vector::zip,
     },
     pixel::Pixel,
-    scene::MAX_LIGHTS,
     stream::record::{Header, Light, Material},
-    tone::quantise,
 };
-
-/// Entries of a ramp: 256 colours and 128 guards at each end.
-pub const RAMP: usize = 512;
 
 /// Largest level of a node, Q9.7.
 pub const FULL: i32 = 255 << LEVEL;
@@ -191,7 +187,7 @@ impl<C: Pixel> Palette<C> {
         }
     }
 
-    /// The colour of three levels, Q9.7, dithered by `threshold`, see [`crate::tone::threshold`].
+    /// The colour of three levels, Q9.7, dithered by `threshold`, see [`crate::dither::threshold`].
     #[must_use]
     pub fn dithered(&self, levels: [i32; 3], threshold: u32) -> C {
         let fine = levels.map(|level| (level.max(0) as u32) << 1);

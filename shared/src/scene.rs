@@ -1,7 +1,7 @@
 //! One frame's camera and lights, moved into object space: once per frame, instead of every normal out of it.
 
 use crate::{
-    format::{EDGE, ROTATION, UNIT},
+    format::{EDGE, MAX_LIGHTS, ROTATION, UNIT},
     math::vector::{add, cross, dot, normalise, sub, transposed, zip},
     stream::{
         Stream,
@@ -9,9 +9,6 @@ use crate::{
     },
 };
 use micromath::F32Ext;
-
-/// Lights in one scene.
-pub const MAX_LIGHTS: usize = 8;
 
 /// A light in object space.
 #[derive(Clone, Copy, Debug)]

@@ -10,7 +10,8 @@
 use super::{Facet, Shading};
 use crate::{
     band::Band,
-    format::EDGE,
+    dither::threshold,
+    format::{EDGE, MAX_LIGHTS},
     math::{
         rsqrt::{half_rsqrt, rsqrt},
         vector::{add, dot, sub, wide},
@@ -22,8 +23,8 @@ use crate::{
         plane::{Linear, Plane},
         quadric::{Quadratic, Quadric},
     },
-    scene::{MAX_LIGHTS, Source, Viewer},
-    tone::{Tone, threshold},
+    scene::{Source, Viewer},
+    tone::Tone,
 };
 
 /// Fraction bits of a dot product at a node; walked with 30.

@@ -6,9 +6,8 @@
 pub mod record;
 
 use crate::{
-    format::{EDGE, ROTATION, UNIT},
-    scene::MAX_LIGHTS,
-    shade::Shader,
+    format::{EDGE, MAX_LIGHTS, ROTATION, UNIT},
+    shader::Shader,
 };
 use core::fmt;
 use record::{EYE_SPACE, Header, Light, MAGIC, Material, Mesh, ORTHOGRAPHIC, PERSPECTIVE, POINT, Triangle, VERSION, VIEWER_LOCAL, Vertex};

@@ -31,7 +31,7 @@ pub struct Header {
     pub meshes: u16,
     /// Number of [`Material`] records.
     pub materials: u16,
-    /// Number of [`Light`] records, at most [`crate::scene::MAX_LIGHTS`].
+    /// Number of [`Light`] records, at most [`crate::format::MAX_LIGHTS`].
     pub lights: u16,
     /// Frames in the animation, at least 1.
     pub frames: u16,
