@@ -2,7 +2,7 @@
 
 use crate::{
     dither::quantise,
-    format::{BIAS, LEVEL, MAX_LIGHTS, RAMP, UNIT},
+    format::{BIAS, COSINE, LEVEL, MAX_LIGHTS, RAMP, UNIT},
     math::{
         power::{POWER, PixelPower, Power},
         vector::zip,
@@ -35,7 +35,7 @@ pub struct Palette<C> {
     /// Level without lights, Q9.7.
     ambient: [i32; 3],
     gains: [Gains; MAX_LIGHTS],
-    lights: usize,
+    dark_below: i32,
 }
 
 /// A colour as products of gains, Q4.28.
@@ -77,13 +77,14 @@ impl<C: Pixel> Palette<C> {
             three_channels: false,
             ambient: [0; 3],
             gains: [Gains { diffuse: [0; 3], specular: [0; 3] }; MAX_LIGHTS],
-            lights: 0,
+            dark_below: 0,
         }
     }
 
     /// Works out `material` under `lights`.
     pub fn fill(&mut self, header: &Header, material: &Material, lights: &[Light]) {
         self.power.fill(material.exponent);
+        self.dark_below = self.power.dark_below();
         let tint = |colour: Colour| if C::GRAY { grey(colour) } else { colour };
         let ambient = tint(product(header.ambient, material.ambient));
         let diffuse = |light: &Light| tint(product(light.colour, material.diffuse));
@@ -96,7 +97,6 @@ impl<C: Pixel> Palette<C> {
         let levels =
             |colour: Colour| -> [u16; 3] { if one_channel { [level(largest(colour), 8); 3] } else { zip(colour, C::DEPTH, level) } };
         self.ambient = levels(ambient).map(i32::from);
-        self.lights = lights.len().min(MAX_LIGHTS);
         for (gains, light) in self.gains.iter_mut().zip(lights) {
             *gains = Gains { diffuse: levels(diffuse(light)), specular: levels(specular(light)) };
         }
@@ -115,6 +115,23 @@ impl<C: Pixel> Palette<C> {
             }
             *colour = C::pack(channels);
         }
+    }
+
+    /// Smallest N·H, Q2.30, whose highlight counts: with the power's, see [`Power::dark_below`].
+    #[must_use]
+    pub fn dark_below(&self) -> i32 {
+        self.dark_below
+    }
+
+    /// The level of a material of one channel under one light, Q9.7 in [0, 255], from `[N·L, N·H]` (Q2.30).
+    #[inline]
+    #[must_use]
+    pub fn level(&self, [diffuse, half]: [i32; 2]) -> i32 {
+        let [gains, ..] = &self.gains;
+        let cosine = diffuse.max(0) as u32 >> (COSINE - 15);
+        let diffuse = (u32::from(gains.diffuse[0]) * cosine + (1 << 14)) >> 15;
+        let specular = (u32::from(gains.specular[0]) * self.power.at(half) + (1 << (POWER - 1))) >> POWER;
+        (self.ambient[0] + (diffuse + specular) as i32).min(FULL)
     }
 
     /// Levels at a point, Q9.7 in [0, 255], from the cosines `[N·L, N·H]` (Q2.30) of each light.
@@ -143,7 +160,7 @@ impl<C: Pixel> Palette<C> {
 
     #[inline(always)]
     fn add(&self, levels: &mut [i32; 3], gains: &Gains, diffuse: i32, power: u32) {
-        let cosine = diffuse.max(0) as u32 >> (30 - 15);
+        let cosine = diffuse.max(0) as u32 >> (COSINE - 15);
         let light = |level: i32, (diffuse, specular): (u16, u16)| {
             let diffuse = (u32::from(diffuse) * cosine + (1 << 14)) >> 15;
             let specular = (u32::from(specular) * power + (1 << (POWER - 1))) >> POWER;

@@ -258,7 +258,7 @@ impl<C: Pixel> Frame<'_, '_, C> {
     #[inline(never)]
     fn prepare(&mut self) {
         let Renderer { stream, memory, .. } = &mut *self.renderer;
-        memory.vertices.iter_mut().for_each(|vertex| vertex.state = State::Idle);
+        memory.vertices.iter_mut().take(stream.vertices.len()).for_each(|vertex| vertex.state = State::Idle);
         let capacity = Bins::capacity(memory.bins);
         let mut count = 0;
         self.binned = true;

@@ -56,7 +56,7 @@ impl Power {
     fn position(&self, cosine: i32) -> u32 {
         let defect = (1i32 << COSINE).saturating_sub(cosine).max(0) as u32;
         // defect * n / 8 * 2048 / 2^30, with 12 fraction bits.
-        ((u64::from(defect) * u64::from(self.scale)) >> (COSINE - 20)).min(u64::from(u32::MAX)) as u32
+        u32::try_from((u64::from(defect) * u64::from(self.scale)) >> (COSINE - 20)).unwrap_or(u32::MAX)
     }
 
     /// cosine^n, unsigned Q0.16, by linear interpolation; `cosine` in Q2.30.
