@@ -9,13 +9,13 @@ use crate::{
 /// Where the camera is, as planes see it.
 #[derive(Clone, Copy, Debug)]
 pub struct Facing {
-    /// Perspective: the eye, Q.10; orthographic: the direction towards the viewer, Q.14.
+    /// Perspective: the eye; orthographic: the direction towards the viewer; Q.10.
     vector: [i32; 3],
     /// Shift that takes a plane's offset to the dot product's format.
     offset_shift: Option<u32>,
 }
 
-/// Fraction bits of the eye: the dot product with a unit normal then fits 32 bits.
+/// Fraction bits of `vector`: the dot product with a unit normal then fits 32 bits.
 const EYE: u32 = 10;
 
 /// What rounding of eye, normal and offset may add up to, in the dot product's units: 2^-9 of a unit.
@@ -26,10 +26,10 @@ impl Facing {
     #[must_use]
     pub fn new(camera: &Camera, pose: &Pose) -> Self {
         if camera.projection == PERSPECTIVE {
-            Self { vector: pose.eye().map(|c| c >> (UNIT - EYE)), offset_shift: Some(EYE) }
+            Self { vector: pose.eye().map(|c| (c + (1 << (UNIT - EYE - 1))) >> (UNIT - EYE)), offset_shift: Some(EYE) }
         } else {
             let towards = pose.to_object([0, 0, -(1 << ROTATION)]);
-            Self { vector: towards.map(|c| c >> (ROTATION - UNIT)), offset_shift: None }
+            Self { vector: towards.map(|c| (c >> (ROTATION - EYE - 1)).wrapping_add(1) >> 1), offset_shift: None }
         }
     }
 

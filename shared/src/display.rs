@@ -7,7 +7,8 @@ use embedded_graphics_core::{Drawable, draw_target::DrawTarget, pixelcolor::Pixe
 impl<C: Pixel + PixelColor> Frame<'_, '_, C> {
     /// Draws all bands of the frame, handing each to `target` in one `fill_contiguous`.
     ///
-    /// `band` holds one band at least: `width * band_rows` pixels; with less, bands get fewer rows.
+    /// `band` should hold a band: `width * band_rows` pixels. With less, bands get fewer rows; with less than one row,
+    /// nothing is drawn.
     ///
     /// # Errors
     /// The display's.

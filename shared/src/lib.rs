@@ -13,7 +13,7 @@
 //! | [`vertex`], [`cull`], [`clip`], [`bin`] | object space to the screen, and what need not be drawn |
 //! | [`poly`] | fits polynomials to a triangle and walks them |
 //! | [`pixel`], [`dither`], [`palette`], [`tone`] | levels of light to pixels |
-//! | [`raster`] | exact coverage, and the inner loop |
+//! | [`band`], [`raster`] | exact coverage, and the inner loop |
 //! | [`shade`] | the methods: which polynomials, which tone |
 //! | [`render`] | the loop nest: frame, band, triangle, row |
 //! | [`display`] | frames onto embedded-graphics displays |

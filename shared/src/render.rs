@@ -111,11 +111,11 @@ pub const MAX_SIDE: u32 = COLUMNS - 1;
 pub struct Stats {
     /// Triangles in the stream.
     pub triangles: u32,
-    /// Triangles that face away, lie off screen or cover no pixel centre.
+    /// The others: they face away, or no pixel centre of the viewport lies in their box.
     pub culled: u32,
-    /// Triangles that cover a pixel centre of the viewport.
+    /// Triangles that are handed to the rasterizer: their box contains a pixel centre of the viewport.
     pub drawn: u32,
-    /// Pixels of all drawn triangles, those hidden by depth included.
+    /// Pixels of all drawn triangles, those hidden by depth included; stays at its largest value instead of overflowing.
     pub pixels: u32,
     /// Walks over the mesh: 1, or one per band when the bins overflow.
     pub passes: u32,
@@ -234,7 +234,7 @@ impl<C: Pixel> Frame<'_, '_, C> {
     /// Draws the next band into the front of `pixels`, row by row, and returns the area that it fills; `None` after the last.
     ///
     /// The first `area.size.width * area.size.height` entries of `pixels` are the band.
-    /// A slice shorter than a band gets fewer rows.
+    /// A slice shorter than a band gets fewer rows; one shorter than a row of the viewport draws nothing, and `None` comes first.
     pub fn next_band(&mut self, pixels: &mut [C]) -> Option<Rectangle> {
         let size = self.renderer.size;
         let fit = u32::try_from(pixels.len()).unwrap_or(u32::MAX).checked_div(size.width)?;
@@ -384,7 +384,7 @@ impl<C: Pixel> Frame<'_, '_, C> {
             let mut index = None;
             while let Some(next) = self.bins.next(self.renderer.memory.bins, index) {
                 if let Some(id) = self.renderer.memory.bins.get(usize::from(next)).map(|entry| entry.triangle) {
-                    self.stats.pixels += self.draw_triangle(id, &mut band);
+                    self.stats.pixels = self.stats.pixels.saturating_add(self.draw_triangle(id, &mut band));
                 }
                 index = Some(next);
             }
@@ -399,7 +399,7 @@ impl<C: Pixel> Frame<'_, '_, C> {
                 // Counted in the band where it starts.
                 self.stats.drawn += u32::from((band.top..band.top + band.rows).contains(&bounds.top));
                 if bounds.bottom > band.top && bounds.top < bottom as i32 {
-                    self.stats.pixels += self.draw_triangle(id, &mut band);
+                    self.stats.pixels = self.stats.pixels.saturating_add(self.draw_triangle(id, &mut band));
                 }
             }
         }

@@ -2,6 +2,7 @@
 
 use crate::{
     format::{DEPTH, ROTATION, SUBPIXEL, UNIT},
+    math::{recip::recip, scale},
     scene::Pose,
     stream::record::{Camera, PERSPECTIVE},
 };
@@ -65,11 +66,10 @@ pub struct View {
 #[derive(Clone, Copy, Debug)]
 enum Projection {
     Perspective {
-        /// `near << shift`, as large as 32 bits allow: divided by z it is nearness with `shift` fraction bits.
-        numerator: u32,
-        shift: u32,
-        /// Pixels (1/16) per unit at the near plane, Q.16.
-        scale: i64,
+        /// [`View::focal`] as a mantissa of 31 bits.
+        focal: i64,
+        /// Fraction bits of the mantissa.
+        exponent: u32,
     },
     Orthographic {
         far: i32,
@@ -87,9 +87,10 @@ impl View {
         let focal = (i64::from(smaller) << (SUBPIXEL - 1)) * i64::from(camera.focal);
         let near = camera.near.max(1);
         let projection = if camera.projection == PERSPECTIVE {
-            let shift = near.unsigned_abs().leading_zeros();
-            let scale = (focal << UNIT) / i64::from(near);
-            Projection::Perspective { numerator: near.unsigned_abs() << shift, shift, scale }
+            let bits = 64 - focal.leading_zeros();
+            // focal is Q.16; at 31 bits its fraction bits are these.
+            let exponent = 16 + 31 - bits;
+            Projection::Perspective { focal: if bits > 31 { focal >> (bits - 31) } else { focal << (31 - bits) }, exponent }
         } else {
             let nearness = ((NEAREST as i64) << UNIT) / i64::from((camera.far - near).max(1));
             Projection::Orthographic { far: camera.far, nearness }
@@ -124,11 +125,15 @@ impl View {
         let [x, y, z] = eye;
         let (near, z) = (z >= self.near, z.max(self.near));
         let (x, y, depth) = match self.projection {
-            Projection::Perspective { numerator, shift, scale } => {
-                let nearness = i64::from(numerator / z.unsigned_abs().max(1));
-                // x near / z in Q.16, then pixels.
-                let place = |c: i32| (((i64::from(c) * nearness) >> (shift - 2)) * scale + (1 << 31)) >> 32;
-                (place(x), place(y), ((nearness as u64) << DEPTH >> shift).min(NEAREST as u64) as i32)
+            Projection::Perspective { focal, exponent } => {
+                // 1/z = r 2^(zeros - 62), relative error 2^-29 wherever the near plane lies.
+                let zeros = z.leading_zeros();
+                let r = i64::from(recip(z.unsigned_abs() << (zeros & 31)));
+                // c focal is below 2^(21 + 31); 31 bits of it times r stay below 2^62.
+                let shift = 41 - zeros + exponent;
+                let place = |c: i32| scale(((i64::from(c) * focal) >> 21) * r, shift as i32);
+                let depth = (i64::from(self.near) * r) >> (62 - DEPTH - zeros);
+                (place(x), place(y), depth.min(NEAREST.into()) as i32)
             }
             Projection::Orthographic { far, nearness } => {
                 let place = |c: i32| (i64::from(c) * self.focal + (1 << (UNIT + 15))) >> (UNIT + 16);
@@ -161,3 +166,49 @@ impl View {
 
 /// Number of clip planes of [`View::distance`].
 pub const PLANES: usize = 5;
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Screen coordinates are right to 1/16 pixel wherever the near plane lies.
+    #[test]
+    fn projection_keeps_its_precision() {
+        let one = 1 << ROTATION;
+        let pose = Pose { rotation: [[one, 0, 0], [0, one, 0], [0, 0, -one]], translation: [0; 3] };
+        for near in [1 << 8, 1 << 12, 3 << 13, 5 << 14] {
+            for focal in [1u32 << 12, 1 << 16, 140_000, 16 << 16] {
+                let camera = Camera {
+                    rotation: pose.rotation,
+                    translation: [0; 3],
+                    axis: [0, one, 0],
+                    period: 0,
+                    projection: PERSPECTIVE,
+                    reserved: 0,
+                    focal,
+                    near,
+                    far: 0,
+                };
+                let view = View::new(&camera, &pose, Size::new(640, 480));
+                for k in 0..2_000i32 {
+                    let eye = [
+                        (k * 7_919) % 90_000 - 45_000,
+                        (k * 104_729) % 90_000 - 45_000,
+                        near + k.wrapping_mul(1_299_709).rem_euclid(200_000),
+                    ];
+                    let place = |c: i32| f64::from(c) / f64::from(eye[2]) * f64::from(focal) / 65_536.0 * 240.0 * 16.0;
+                    let exact = [320.0 * 16.0 + place(eye[0]), 240.0 * 16.0 - place(eye[1])];
+                    let ([x, y, depth], inside) = view.project(eye);
+                    if inside {
+                        assert!(
+                            (f64::from(x) - exact[0]).abs() <= 0.51 && (f64::from(y) - exact[1]).abs() <= 0.51,
+                            "{eye:?}: {x} {y} {exact:?}"
+                        );
+                        let nearness = f64::from(near) / f64::from(eye[2]) * 2f64.powi(DEPTH as i32);
+                        assert!((f64::from(depth) - nearness).abs() <= 1_025.0, "{eye:?}: {depth} {nearness}");
+                    }
+                }
+            }
+        }
+    }
+}

@@ -40,6 +40,7 @@ fn matrix(board: Board) -> Result {
             let (width, height) = board.size();
             assert_eq!(report.pixels, u64::from(width * height) * u64::from(FRAMES));
             assert!(report.stack_bytes > 0 && report.ram_bytes > 0 && report.flash_bytes > 0);
+            assert!(board != Board::Lm3s6965evb || report.flash_bytes <= 256 << 10, "{scene}: {} bytes of flash", report.flash_bytes);
             if let Some((_, limit)) = RAM.iter().find(|(limited, _)| *limited == board) {
                 let used = report.ram_bytes + report.stack_bytes;
                 assert!(used <= *limit, "{board} {scene}: {used} bytes of RAM, more than {limit}");

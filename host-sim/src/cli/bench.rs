@@ -75,5 +75,6 @@ fn text(result: &Report) -> Result<()> {
     let Report { board, scene, shader, pixels, triangles, spans, instr_per_pixel, .. } = result;
     report::line(&format!("{board}, {scene}, {shader}: {all} instructions, {instr_per_pixel} per pixel"))?;
     report::line(&format!("  vertex {vertex}, cull and bin {cull}, set-up {setup}, span {span}, pixel {pixel}"))?;
-    report::line(&format!("  {triangles} triangles, {spans} spans, {} pixels", report::grouped(*pixels)))
+    let inner = stages.pixel as f64 / (*pixels).max(1) as f64;
+    report::line(&format!("  {triangles} triangles, {spans} spans, {} pixels of {inner:.1} in the inner loop", report::grouped(*pixels)))
 }

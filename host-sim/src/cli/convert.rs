@@ -105,7 +105,8 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome> {
         return Err(Usage(format!("{} is a stream already; name an .obj file", source.display())).into());
     }
     let target = arguments.output.clone().unwrap_or_else(|| source.with_extension("tri"));
-    if target == *source {
+    let same = |path: &std::path::Path| path.canonicalize().ok();
+    if same(&target).is_some_and(|target| Some(target) == same(source)) {
         return Err(Usage(format!("{} would overwrite the mesh; name another file with -o", target.display())).into());
     }
     let (mesh, report) = scene::read_obj(source, arguments.flip)?;

@@ -24,7 +24,7 @@ pub(crate) struct Arguments {
     #[arg(long, default_value = "all", value_parser = shaders)]
     shader: Several<Shader>,
     /// Frames to compare, from the first.
-    #[arg(long, default_value_t = 2, value_parser = clap::value_parser!(u16).range(1..))]
+    #[arg(long, default_value_t = 3, value_parser = clap::value_parser!(u16).range(1..))]
     frames: u16,
     /// Where pictures go that differ.
     #[arg(long, value_name = "DIR", default_value = "differences")]

@@ -3,9 +3,9 @@
 //! Normals, lights and viewer are linear over the screen, so every dot product
 //! between them is linear or exactly quadratic and can be walked; only the roots
 //! that normalise are taken at each pixel (Duff's form, see Bishop & Weimer 1986).
-//! Cost: one constant light 5 additions, 1 root, 2 products; otherwise
-//! 6 + 6 additions and 3 roots per light. Not walked: nothing is approximated
-//! but the power table ([`crate::math::power::NEAREST_ERROR`]).
+//! Cost: one constant light 4 additions, 1 root from a table, 2 products and the highlight's power from a
+//! table; otherwise 6 additions and 2 roots, and 6 additions and 2 roots more for each light.
+//! Error: that of the tables, [`crate::math::power::NEAREST_ERROR`] of the highlight above all.
 
 use super::{Facet, Shading};
 use crate::{

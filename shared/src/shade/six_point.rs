@@ -3,7 +3,7 @@
 //!
 //! Cost: two additions a pixel and channel. Continuous: both neighbours light the
 //! same midpoint. Good for wide highlights or fine meshes; a highlight narrower
-//! than a triangle is flattened (NUMERICS: 33 LSB on 168 triangles at n = 50, 9 on 690).
+//! than a triangle is flattened.
 
 use super::{Facet, Shading};
 use crate::{

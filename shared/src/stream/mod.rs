@@ -7,9 +7,10 @@ pub mod record;
 
 use crate::{
     format::{EDGE, MAX_LIGHTS, ROTATION, UNIT},
+    math::vector::{cross, dot},
     shader::Shader,
 };
-use core::fmt;
+use core::{fmt, ops::Range};
 use record::{EYE_SPACE, Header, Light, MAGIC, Material, Mesh, ORTHOGRAPHIC, PERSPECTIVE, POINT, Triangle, VERSION, VIEWER_LOCAL, Vertex};
 use zerocopy::{FromBytes, Immutable, KnownLayout};
 
@@ -112,20 +113,22 @@ impl core::error::Error for StreamError {}
 /// CRC-32 (ISO-HDLC), the checksum of streams and of pictures. The small table: flash is dearer than the time of one check.
 pub const CRC: crc::Crc<u32, crc::NoTable> = crc::Crc::<u32, crc::NoTable>::new(&crc::CRC_32_ISO_HDLC);
 
-/// Bytes before the checksum's cover: magic, version, shader, length, the checksum itself.
-const CHECKED_FROM: usize = 16;
-
 /// Offset of the stored checksum.
-const CRC_AT: core::ops::Range<usize> = 12..16;
+const CRC_AT: Range<usize> = 12..16;
+
+/// Checksum of a stream: of all its bytes but the checksum's own.
+fn checksum(bytes: &[u8]) -> u32 {
+    let mut digest = CRC.digest();
+    digest.update(bytes.get(..CRC_AT.start).unwrap_or_default());
+    digest.update(bytes.get(CRC_AT.end..).unwrap_or_default());
+    digest.finalize()
+}
 
 /// Writes the checksum that `bytes` should have into their header: the last step of a writer.
-///
-/// The shader field lies before the checksum's cover on purpose: choosing
-/// another default method does not touch the checksum.
 pub fn seal(bytes: &mut [u8]) {
-    if bytes.len() >= CHECKED_FROM {
-        let crc = CRC.checksum(&bytes[CHECKED_FROM..]);
-        bytes[CRC_AT].copy_from_slice(&crc.to_le_bytes());
+    let crc = checksum(bytes);
+    if let Some(stored) = bytes.get_mut(CRC_AT) {
+        stored.copy_from_slice(&crc.to_le_bytes());
     }
 }
 
@@ -177,7 +180,7 @@ impl<'a> Stream<'a> {
         if need != header.length {
             return Err(StreamError::Length { need, claimed: header.length });
         }
-        let computed = CRC.checksum(stream.get(CHECKED_FROM..).ok_or(truncated(need))?);
+        let computed = checksum(stream);
         if computed != header.crc {
             return Err(StreamError::Checksum { stored: header.crc, computed });
         }
@@ -250,7 +253,11 @@ impl<'a> Stream<'a> {
             let square = v.iter().map(|&c| i64::from(c >> 1) * i64::from(c >> 1)).sum::<i64>();
             v.iter().all(|&c| within(c, 1 << ROTATION)) && is_one(square, 2 * (ROTATION - 1))
         };
+        let [x, y, z] = camera.rotation;
+        let square = |a: [i32; 3], b: [i32; 3]| dot(a, b).abs() <= 1 << (2 * ROTATION - 12);
+        let turns = dot(cross(x, y).map(|c| (c >> ROTATION) as i32), z) < 0;
         field(camera.rotation.iter().all(unit), "camera rotation", 0)?;
+        field(square(x, y) && square(y, z) && square(z, x) && turns, "camera rotation", 0)?;
         field(unit(&camera.axis), "camera axis", 0)?;
         field(camera.translation.iter().all(|&c| within(c, MAX_LENGTH)), "camera translation", 0)?;
         field(camera.projection <= ORTHOGRAPHIC, "camera projection", 0)?;

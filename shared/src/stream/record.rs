@@ -25,7 +25,7 @@ pub struct Header {
     pub shader: u16,
     /// Bytes in the whole stream, this header included.
     pub length: u32,
-    /// CRC-32 (ISO-HDLC) of everything behind this field.
+    /// CRC-32 (ISO-HDLC) of all other bytes.
     pub crc: u32,
     /// Number of [`Mesh`] records.
     pub meshes: u16,
@@ -63,8 +63,8 @@ pub const VIEWER_LOCAL: u8 = 1;
 #[derive(FromBytes, IntoBytes, Immutable, KnownLayout, Clone, Copy, Debug, PartialEq, Eq)]
 #[repr(C)]
 pub struct Camera {
-    /// Rows of the rotation from object to eye space in frame 0, Q2.30, orthonormal, determinant +1 or -1
-    /// (object space is right-handed, eye space left-handed: -1).
+    /// Rows of the rotation from object to eye space in frame 0, Q2.30, orthonormal, determinant -1:
+    /// object space is right-handed, eye space left-handed.
     pub rotation: [[i32; 3]; 3],
     /// Translation, [`crate::format::Length`].
     pub translation: [i32; 3],
