@@ -126,8 +126,12 @@ fn phong_is_exact_but_for_rounding() {
     for name in scene::NAMES {
         for number in [0, 17] {
             let (_, rmse, over) = errors(name, Shader::Phong, number);
-            // Where two surfaces are equally near, 16 bits of depth may choose the other one.
-            assert!(rmse < 0.65 && over <= 40, "{name}: rmse {rmse}, {over} pixels");
+            // Rounding alone makes 0.289 in one channel. In three the worst counts, and a coloured material that is
+            // walked in one channel is rounded twice. Where two surfaces are equally near, 16 bits of depth may
+            // choose the other one.
+            let grey = name.starts_with("sphere-") && name != "sphere-40" || ["peer-sphere", "triangle"].contains(&name);
+            let limit = if grey { 0.32 } else { 0.63 };
+            assert!(rmse < limit && over <= 30, "{name}: rmse {rmse}, {over} pixels");
         }
     }
 }

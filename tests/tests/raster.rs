@@ -196,3 +196,41 @@ fn closed_convex_meshes_cover_each_pixel_once() {
         }
     }
 }
+
+/// A ray through a pixel centre enters a closed mesh as often as it leaves it: so front and back faces cover each
+/// pixel equally often, unless an edge leaves a gap or draws twice.
+#[test]
+fn closed_meshes_are_entered_as_often_as_left() {
+    use embedded_graphics::prelude::Size;
+    use microphong::{scene::Pose, vertex::View};
+    use microphong_sim::scene;
+
+    for name in ["torus", "sphere-690", "peer-sphere", "sphere-40", "dodecahedron"] {
+        let scene = scene::load(name).unwrap();
+        let stream = scene.stream.parse().unwrap();
+        for number in [0, 11, 50, 93] {
+            let camera = &stream.header.camera;
+            let view = View::new(camera, &Pose::new(camera, number), Size::new(WIDTH as u32, HEIGHT as u32));
+            let [mut front, mut back] = [0; 2].map(|_| vec![0u8; WIDTH * HEIGHT]);
+            let mut pixels = 0;
+            for mesh in stream.meshes {
+                let vertices = stream.vertices_of(mesh).unwrap();
+                for triangle in stream.triangles_of(mesh).unwrap() {
+                    let corners = triangle.corners.map(|corner| {
+                        let ([x, y, _], inside) = view.project(view.to_eye(vertices[usize::from(corner)].position));
+                        assert!(inside, "{name}: the scenes are wholly visible");
+                        [x, y]
+                    });
+                    let [a, b, c] = corners;
+                    if side(a, b, c) > 0 {
+                        pixels += draw([a, b, c], 16, &mut back);
+                    } else {
+                        pixels += draw([a, c, b], 16, &mut front);
+                    }
+                }
+            }
+            assert!(front == back, "{name}, frame {number}: a gap, or a pixel drawn twice");
+            assert!(pixels > 2_000, "{name}: {pixels} pixels");
+        }
+    }
+}
