@@ -128,10 +128,8 @@ impl<C: Pixel> Palette<C> {
     #[must_use]
     pub fn level(&self, [diffuse, half]: [i32; 2]) -> i32 {
         let [gains, ..] = &self.gains;
-        let cosine = diffuse.max(0) as u32 >> (COSINE - 15);
-        let diffuse = (u32::from(gains.diffuse[0]) * cosine + (1 << 14)) >> 15;
-        let specular = (u32::from(gains.specular[0]) * self.power.at(half) + (1 << (POWER - 1))) >> POWER;
-        (self.ambient[0] + (diffuse + specular) as i32).min(FULL)
+        let light = reflected((gains.diffuse[0], gains.specular[0]), diffuse, self.power.at(half));
+        (self.ambient[0] + light).min(FULL)
     }
 
     /// Levels at a point, Q9.7 in [0, 255], from the cosines `[N·L, N·H]` (Q2.30) of each light.
@@ -160,12 +158,7 @@ impl<C: Pixel> Palette<C> {
 
     #[inline(always)]
     fn add(&self, levels: &mut [i32; 3], gains: &Gains, diffuse: i32, power: u32) {
-        let cosine = diffuse.max(0) as u32 >> (COSINE - 15);
-        let light = |level: i32, (diffuse, specular): (u16, u16)| {
-            let diffuse = (u32::from(diffuse) * cosine + (1 << 14)) >> 15;
-            let specular = (u32::from(specular) * power + (1 << (POWER - 1))) >> POWER;
-            level.saturating_add((diffuse + specular) as i32)
-        };
+        let light = |level: i32, gains| level.saturating_add(reflected(gains, diffuse, power));
         if !self.three_channels {
             *levels = [light(levels[0], (gains.diffuse[0], gains.specular[0])); 3];
         } else {
@@ -234,6 +227,15 @@ impl<C: Copy> Glossy<'_, C> {
         let level = (self.ambient + diffuse + specular).min((RAMP as u32 - 1) << LEVEL);
         self.ramp[(level >> LEVEL) as usize & (RAMP - 1)]
     }
+}
+
+/// Level, Q9.7, that the gains `(diffuse, specular)` make of N·L (Q2.30) and a power of N·H (Q0.16).
+#[inline(always)]
+fn reflected((diffuse, specular): (u16, u16), cosine: i32, power: u32) -> i32 {
+    let cosine = cosine.max(0) as u32 >> (COSINE - 15);
+    let diffuse = (u32::from(diffuse) * cosine + (1 << 14)) >> 15;
+    let specular = (u32::from(specular) * power + (1 << (POWER - 1))) >> POWER;
+    (diffuse + specular) as i32
 }
 
 /// A product of two gains (Q4.28, 1 is full) as a level in Q9.7 whose upper `depth` bits are the channel.
