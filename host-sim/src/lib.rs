@@ -7,6 +7,7 @@ pub mod image;
 pub mod look;
 pub mod mesh;
 pub mod obj;
+pub mod oracle;
 pub mod output;
 pub mod quantise;
 pub mod render;
