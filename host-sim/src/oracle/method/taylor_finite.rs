@@ -1,0 +1,79 @@
+//! The cosine between two interpolated vectors by its second-order Taylor expansion about the centroid (Bishop and
+//! Weimer 1986, finite eye).
+
+use crate::{
+    oracle::{Facet, Frame, Shade, frame::mixed},
+    vector::{V3, add, dot, length, sub},
+};
+
+/// The expansion of `N·W / (|N| |W|)` at `N = c + m`, `W = f + q`, about `c` and `f`.
+///
+/// With `|N|² = s² (1 + 2α + β)`, α first, β second order: `1/|N| = (1 - α - β/2 + 3α²/2)/s`; likewise for W. The
+/// product of the three series, cut after second order.
+pub(super) fn expansion([c, m]: [V3; 2], [f, q]: [V3; 2]) -> f64 {
+    let [s, r] = [c, f].map(|v| length(v).max(1e-6));
+    let (alpha, beta) = (dot(c, m) / (s * s), dot(m, m) / (s * s));
+    let (gamma, delta) = (dot(f, q) / (r * r), dot(q, q) / (r * r));
+    let (zeroth, first, second) = (dot(c, f), dot(c, q) + dot(m, f), dot(m, q));
+    let scale = [-alpha - gamma, 1.5 * (alpha * alpha + gamma * gamma) - (beta + delta) / 2.0 + alpha * gamma];
+    (zeroth + first + second + zeroth * scale[0] + first * scale[0] + zeroth * scale[1]) / (s * r)
+}
+
+pub(super) fn shade<'f>(frame: &'f Frame, facet: &'f Facet) -> Shade<'f> {
+    // Linear in between: L of unit length, and L + V, along H.
+    let corners: Vec<[[V3; 3]; 2]> = (frame.lights.iter())
+        .map(|light| {
+            let rays = facet.positions.map(|position| frame.rays(light, position));
+            [rays.map(|rays| rays.light), rays.map(|rays| add(rays.light, rays.view))]
+        })
+        .collect();
+    let expand = |v: &[V3; 3], weights: V3| {
+        let centre = mixed(v, Facet::CENTRE);
+        [centre, sub(mixed(v, weights), centre)]
+    };
+    Box::new(move |p| {
+        let weights = facet.weights(p);
+        let normal = expand(&facet.normals, weights);
+        frame.lit(facet, corners.iter().map(|fields| [0, 1].map(|k| expansion(normal, expand(&fields[k], weights)))))
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{super::taylor, *};
+    use crate::vector::scale;
+
+    const NORMALS: [V3; 3] = [[0.3, -0.2, 0.85], [0.4, 0.1, -0.3], [-0.2, 0.5, 0.25]];
+    const TOWARDS: [V3; 3] = [[-0.5, 0.6, 1.2], [0.3, 0.2, 0.1], [0.1, -0.4, 0.2]];
+
+    /// The change of a linear field.
+    fn change([_, a, b]: [V3; 3], x: f64, y: f64) -> V3 {
+        add(scale(a, x), scale(b, y))
+    }
+
+    fn exact(x: f64, y: f64) -> f64 {
+        let [n, w] = [NORMALS, TOWARDS].map(|field| add(field[0], change(field, x, y)));
+        dot(n, w) / (length(n) * length(w))
+    }
+
+    #[test]
+    fn the_expansion_is_that_of_the_cosine() {
+        let found = |x, y| expansion([NORMALS[0], change(NORMALS, x, y)], [TOWARDS[0], change(TOWARDS, x, y)]);
+        taylor::tests::expands(found, exact).unwrap();
+        // The term that mixes both lengths.
+        let mixed = |x, y| {
+            let [(c, m), (f, q)] = [NORMALS, TOWARDS].map(|field| (field[0], change(field, x, y)));
+            dot(c, m) * dot(f, q) * dot(c, f) / (dot(c, c) * dot(f, f) * length(c) * length(f))
+        };
+        assert!(taylor::tests::expands(|x, y| found(x, y) - mixed(x, y), exact).is_err());
+    }
+
+    #[test]
+    fn constant_directions_give_the_simpler_expansion() {
+        for (x, y) in [(0.0, 0.0), (0.3, -0.2), (-0.5, 0.4)] {
+            let m = change(NORMALS, x, y);
+            let simple = taylor::expansion(crate::oracle::frame::direction(TOWARDS[0]), NORMALS[0], m);
+            assert!((expansion([NORMALS[0], m], [TOWARDS[0], [0.0; 3]]) - simple).abs() < 1e-12);
+        }
+    }
+}
