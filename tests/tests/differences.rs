@@ -72,6 +72,11 @@ fn side(a: [i32; 2], b: [i32; 2], p: [i32; 2]) -> i64 {
     d(b, 0) * d(p, 1) - d(b, 1) * d(p, 0)
 }
 
+/// Squared distance.
+fn square(a: [i32; 2], b: [i32; 2]) -> f64 {
+    f64::from(b[0] - a[0]).powi(2) + f64::from(b[1] - a[1]).powi(2)
+}
+
 /// Barycentric coordinates of a point.
 fn barycentric(c: [[i32; 2]; 3], p: [i32; 2]) -> [f64; 3] {
     let whole = side(c[0], c[1], c[2]) as f64;
@@ -109,7 +114,6 @@ fn quadratics_of_100_000_random_triangles_stay_within_the_bound() {
         let c = case.corners;
         let box_of = |k: usize| (c.iter().map(|c| c[k]).min().unwrap(), c.iter().map(|c| c[k]).max().unwrap());
         let ((x0, x1), (y0, y1)) = (box_of(0), box_of(1));
-        let size = (x1 - x0).max(y1 - y0);
         let visible = [(x0 >> 4).max(0), (y0 >> 4).max(0), ((x1 >> 4) + 1).min(case.width), ((y1 >> 4) + 1).min(case.height)];
         if visible[0] >= visible[2] || visible[1] >= visible[3] {
             continue;
@@ -118,7 +122,9 @@ fn quadratics_of_100_000_random_triangles_stay_within_the_bound() {
         triangles += 1;
         let nodes: [i32; 6] = std::array::from_fn(|_| random.pick(0..255 << LEVEL));
         let mut patch = Quadric::<1>::fit::<15>(&basis, [nodes], WALK - LEVEL);
-        let thinness = f64::from(size).powi(2) / side(c[0], c[1], c[2]) as f64;
+        // Longest edge over the height on it.
+        let longest2 = (0..3).map(|k| square(c[k], c[(k + 1) % 3])).fold(0.0, f64::max);
+        let thinness = longest2 / side(c[0], c[1], c[2]) as f64;
         // The basis measures from its first corner.
         let extent = [c[1], c[2]].as_flattened().iter().zip([c[0]; 2].as_flattened()).map(|(a, b)| i64::from((a - b).abs())).max().unwrap();
         let sliver = extent * extent > side(c[0], c[1], c[2]) * MAX_THINNESS;
