@@ -4,6 +4,7 @@ pub mod bench;
 pub mod board;
 pub mod bytes;
 pub mod image;
+pub mod level;
 pub mod look;
 pub mod mesh;
 pub mod obj;

@@ -5,15 +5,13 @@ use crate::{
     vector::{V3, add, cross, dot, length, scale, sub, unit},
 };
 use microphong::{
-    format::{EDGE, UNIT},
+    format::{BEND, EDGE, RHO, UNIT},
     stream::record::{Triangle, Vertex},
 };
 use std::collections::HashMap;
 
 /// One: a [`microphong::format::Unit`] in units of its last place.
 const ONE: f64 = (1 << UNIT) as f64;
-/// One: an edge constant.
-const EDGE_ONE: f64 = (1 << EDGE) as f64;
 /// Corners are 16-bit indices.
 const MAX_VERTICES: usize = u16::MAX as usize;
 /// Farthest eye that a stream can ask for: 16 units along each axis.
@@ -90,6 +88,11 @@ pub fn normal(n: V3) -> [i16; 3] {
     neighbours.fold(centre, better).map(|c| c as i16)
 }
 
+/// One with `bits` fraction bits.
+fn one(bits: u32) -> f64 {
+    f64::from(bits).exp2()
+}
+
 fn widen(v: [i16; 3]) -> V3 {
     v.map(f64::from)
 }
@@ -106,9 +109,10 @@ fn triangle(corners: [Vertex; 3]) -> Option<Triangle> {
     let quantised = normal(plane);
     Some(Triangle {
         corners: [0; 3],
-        rsum: sums.map(|s| (EDGE_ONE / s).round().min(f64::from(u16::MAX)) as u16),
-        square: cosine.map(|c| ((1.0 + c) / 2.0 * EDGE_ONE).round() as u16),
-        rho: ((1.0 + 2.0 * least) / 3.0 * EDGE_ONE * EDGE_ONE).max(0.0).sqrt().min(EDGE_ONE) as u16,
+        // From floating point to 16 bits: both saturate.
+        rsum: sums.map(|s| ((1.0 / s - 0.5) * one(EDGE)).round() as u16),
+        bend: cosine.map(|c| ((1.0 - c) / 2.0 * one(BEND)).round() as u16),
+        rho: (((1.0 + 2.0 * least) / 3.0).max(0.0).sqrt() * one(RHO)).min(one(RHO)) as u16,
         normal: quantised,
         offset: offset(plane, dot(plane, a) / ONE, quantised),
     })

@@ -16,7 +16,7 @@ use microphong::{
 /// Bands have `band_rows` rows, at most the picture's; the picture does not depend on it.
 ///
 /// # Errors
-/// When `size` is out of range.
+/// When `size` is out of range, or `shader` cannot shade the scene.
 pub fn frame<C: Pixel>(
     stream: Stream<'_>,
     size: Size,
@@ -35,7 +35,7 @@ pub fn frame<C: Pixel>(
     let mut palettes = vec![blank.palettes[0]; stream.materials.len()];
     let memory = Memory { vertices: &mut vertices, bins: &mut bins, depth: &mut depth, palettes: &mut palettes };
     let mut renderer = Renderer::new(stream, size, memory)?;
-    renderer.set_shader(shader);
+    renderer.set_shader(shader)?;
     renderer.set_dither(dither);
     let mut pixels = Vec::with_capacity(size.width as usize * size.height as usize);
     let mut band = vec![C::pack([0; 3]); size.width as usize * rows as usize];

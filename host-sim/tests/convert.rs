@@ -75,10 +75,10 @@ fn edge_constants_follow_their_definition() {
         for k in 0..3 {
             let (a, b) = (normals[k], normals[(k + 1) % 3]);
             let sum = length(add(a, b));
-            let rsum = (32768.0 / sum).min(65535.0);
+            let rsum = ((1.0 / sum - 0.5) * 131_072.0).min(65535.0);
             assert!((f64::from(triangle.rsum[k]) - rsum).abs() <= 0.5001, "{name}");
-            let square = (sum / 2.0).powi(2) * 32768.0;
-            assert!((f64::from(triangle.square[k]) - square).abs() <= 0.5001, "{name}");
+            let bend = ((1.0 - (sum / 2.0).powi(2)) * 65_536.0).min(65535.0);
+            assert!((f64::from(triangle.bend[k]) - bend).abs() <= 0.5001, "{name}");
             least = least.min(dot(a, b));
         }
         let rho = ((1.0 + 2.0 * least) / 3.0).max(0.0).sqrt() * 32768.0;

@@ -5,7 +5,7 @@
 //! from its inner to its outer end: no crack opens.
 
 use crate::{
-    format::{EDGE, UNIT},
+    format::{BEND, EDGE, UNIT},
     math::{
         rsqrt::rsqrt_wide,
         vector::{add, dot, normalise, wide, zip},
@@ -81,14 +81,15 @@ fn between(inner: &Corner, outer: &Corner, di: i64, d_o: i64) -> Corner {
 pub fn record(whole: &Triangle, corners: [&Vertex; 3]) -> Triangle {
     let [a, b, c] = corners.map(|corner| wide(corner.normal));
     let edges = [edge(c, a), edge(b, c), edge(a, b)];
-    Triangle { rsum: edges.map(|(rsum, _)| rsum), square: edges.map(|(_, square)| square), ..*whole }
+    Triangle { rsum: edges.map(|(rsum, _)| rsum), bend: edges.map(|(_, bend)| bend), ..*whole }
 }
 
-/// 1/|a + b| and |a + b|²/4 of two unit normals, as in a record.
+/// 1/|a + b| - 1/2 and 1 - |a + b|²/4 of two unit normals, as in a record.
 fn edge(a: [i32; 3], b: [i32; 3]) -> (u16, u16) {
     let sum = add(a, b);
     let square = dot(sum, sum).max(1) as u64;
     let (mantissa, exponent) = rsqrt_wide(square);
-    let rsum = (u64::from(mantissa) << (UNIT + EDGE)) >> exponent;
-    (rsum.min(u64::from(u16::MAX)) as u16, (square >> (2 * UNIT + 2 - EDGE)).min(1 << EDGE) as u16)
+    let rsum = ((u64::from(mantissa) << (UNIT + EDGE)) >> exponent).saturating_sub(1 << (EDGE - 1));
+    let bend = (1u64 << BEND).saturating_sub(square >> (2 * UNIT + 2 - BEND));
+    (rsum.min(u64::from(u16::MAX)) as u16, bend.min(u64::from(u16::MAX)) as u16)
 }

@@ -38,8 +38,14 @@ pub const BIAS: i32 = 128;
 pub const DEPTH: u32 = 28;
 /// Fraction bits of depth while it is walked; the depth buffer keeps the 16 bits above them.
 pub const DEPTH_WALK: u32 = 16;
-/// Fraction bits of the edge constants 1/|N1+N2| and |N1+N2|²/4: unsigned Q1.15.
-pub const EDGE: u32 = 15;
+/// Fraction bits of a cosine in the pixel loop: Q5.27, so that sums and overshoots fit.
+pub const PIXEL_COSINE: u32 = 27;
+/// Fraction bits of the edge constant 1/|N1+N2|, unsigned Q1.17 in [1/2, 1); a stream stores what exceeds 1/2.
+pub const EDGE: u32 = 17;
+/// Fraction bits of the edge constant 1 - |N1+N2|²/4, unsigned Q0.16.
+pub const BEND: u32 = 16;
+/// Fraction bits of the least length of the interpolated normal, unsigned Q1.15.
+pub const RHO: u32 = 15;
 /// Entries of a table of colours: the 256 levels and [`BIAS`] guards at each end.
 pub const RAMP: usize = 512;
 /// Lights in one scene.

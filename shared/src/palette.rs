@@ -2,12 +2,13 @@
 
 use crate::{
     dither::quantise,
-    format::{BIAS, COSINE, LEVEL, MAX_LIGHTS, RAMP, UNIT},
+    format::{BIAS, COSINE, LEVEL, MAX_LIGHTS, PIXEL_COSINE, RAMP, UNIT, WALK},
     math::{
         power::{POWER, PixelPower, Power},
         vector::zip,
     },
     pixel::Pixel,
+    shader::Highlight,
     stream::record::{Header, Light, Material},
 };
 
@@ -81,9 +82,9 @@ impl<C: Pixel> Palette<C> {
         }
     }
 
-    /// Works out `material` under `lights`.
-    pub fn fill(&mut self, header: &Header, material: &Material, lights: &[Light]) {
-        self.power.fill(material.exponent);
+    /// Works out `material` under `lights`, for a method with these highlights.
+    pub fn fill(&mut self, header: &Header, material: &Material, lights: &[Light], highlight: Highlight) {
+        self.power.fill(material.exponent, highlight.halvings());
         self.dark_below = self.power.dark_below();
         let tint = |colour: Colour| if C::GRAY { grey(colour) } else { colour };
         let ambient = tint(product(header.ambient, material.ambient));
@@ -144,14 +145,13 @@ impl<C: Pixel> Palette<C> {
         levels.map(|level| level.min(FULL))
     }
 
-    /// As [`Self::levels`], with the table's nearest entry: for the pixel loop.
+    /// Levels at a pixel, Q9.7 in [0, 255], from what each light sends: N·L (Q5.27) and the highlight (Q0.16).
     #[inline(always)]
     #[must_use]
-    pub fn pixel_levels(&self, cosines: impl Iterator<Item = [i32; 2]>) -> [i32; 3] {
+    pub fn pixel_levels(&self, reflections: impl Iterator<Item = Reflection>) -> [i32; 3] {
         let mut levels = self.ambient;
-        for (gains, [diffuse, half]) in self.gains.iter().zip(cosines) {
-            let power = self.power.nearest(half);
-            self.add(&mut levels, gains, diffuse, power);
+        for (gains, Reflection { diffuse, highlight }) in self.gains.iter().zip(reflections) {
+            self.add(&mut levels, gains, diffuse.min(1 << PIXEL_COSINE) << (COSINE - PIXEL_COSINE), highlight);
         }
         levels.map(|level| level.min(FULL))
     }
@@ -184,16 +184,12 @@ impl<C: Pixel> Palette<C> {
     #[inline(always)]
     #[must_use]
     pub fn colour(&self, levels: [i32; 3]) -> C {
+        // Levels stay below the guards at the ramp's ends.
+        let walked = |level: i32, half: u32| ((level + (BIAS << LEVEL) + (1 << half)) as u32) << (WALK - LEVEL);
         if !self.three_channels {
-            let i = (levels[0] + (1 << (LEVEL - 1))) >> LEVEL;
-            self.ramp[((i + BIAS) as usize) & (RAMP - 1)]
+            C::ramped(&self.ramp, walked(levels[0], LEVEL - 1))
         } else {
-            let mut channels = [0; 3];
-            for (channel, (level, depth)) in channels.iter_mut().zip(levels.into_iter().zip(C::DEPTH)) {
-                let step = LEVEL + 8 - depth;
-                *channel = ((level + (1 << (step - 1))) >> step).clamp(0, (1 << depth) - 1) as u8;
-            }
-            C::pack(channels)
+            C::mixed(zip(levels, C::DEPTH, |level, depth| walked(level, LEVEL + 7 - depth)))
         }
     }
 
@@ -206,26 +202,36 @@ impl<C: Pixel> Palette<C> {
     }
 }
 
+/// What one light sends from a pixel to the viewer, before the material's gains.
+#[derive(Clone, Copy, Debug)]
+pub struct Reflection {
+    /// N·L, Q5.27; negative where the light is behind the surface.
+    pub diffuse: i32,
+    /// The highlight, a power of a cosine, unsigned Q0.16.
+    pub highlight: u32,
+}
+
 /// One light on a material of one channel.
 #[derive(Clone, Copy, Debug)]
 pub struct Glossy<'a, C> {
     ramp: &'a [C; RAMP],
-    power: PixelPower<'a>,
+    /// The highlight's table.
+    pub power: PixelPower<'a>,
     ambient: u32,
     /// Level at cosine 1, Q9.7, times 2^5: the upper half of its product with a cosine in Q5.27 is a level.
     diffuse: u32,
     specular: u32,
 }
 
-impl<C: Copy> Glossy<'_, C> {
-    /// The colour at cosines N·L and N·H in Q5.27.
+impl<C: Pixel> Glossy<'_, C> {
+    /// The colour of what the light sends.
     #[inline(always)]
     #[must_use]
-    pub fn colour(&self, [light, half]: [i32; 2]) -> C {
-        let diffuse = ((u64::from(light.max(0) as u32) * u64::from(self.diffuse)) >> 32) as u32;
-        let specular = (self.power.at(half) * self.specular) >> POWER;
+    pub fn colour(&self, Reflection { diffuse, highlight }: Reflection) -> C {
+        let diffuse = ((u64::from(diffuse.max(0) as u32) * u64::from(self.diffuse)) >> 32) as u32;
+        let specular = (highlight * self.specular) >> POWER;
         let level = (self.ambient + diffuse + specular).min((RAMP as u32 - 1) << LEVEL);
-        self.ramp[(level >> LEVEL) as usize & (RAMP - 1)]
+        C::ramped(self.ramp, level << (WALK - LEVEL))
     }
 }
 

@@ -1,5 +1,6 @@
 //! Pixel formats: how a colour of 8 bits per channel becomes what a display stores.
 
+use crate::format::{BIAS, RAMP, WALK};
 use embedded_graphics_core::{
     pixelcolor::{Gray4, Gray8, Rgb565, Rgb888},
     prelude::{GrayColor, RgbColor},
@@ -20,6 +21,20 @@ pub trait Pixel: Copy + 'static {
 
     /// The value that the display is sent, independent of byte order in memory.
     fn bits(self) -> u32;
+
+    /// The colour of a level under a table of colours. Levels are biased and have [`WALK`] fraction bits, rounding half included.
+    #[inline(always)]
+    fn ramped(ramp: &[Self; RAMP], level: u32) -> Self {
+        ramp[(level >> WALK) as usize]
+    }
+
+    /// The colour of three levels, biased and with [`WALK`] fraction bits, half a step of each channel included.
+    #[inline(always)]
+    fn mixed([r, g, b]: [u32; 3]) -> Self {
+        let channel = |level: u32, depth: u32| (((level >> WALK) as i32 - BIAS).clamp(0, 255) >> (8 - depth)) as u8;
+        let [dr, dg, db] = Self::DEPTH;
+        Self::pack([channel(r, dr), channel(g, dg), channel(b, db)])
+    }
 }
 
 impl Pixel for Rgb565 {

@@ -6,7 +6,7 @@ use crate::{
     bin::{Bins, Entry},
     clip,
     cull::Facing,
-    format::EDGE,
+    format::UNIT,
     math::vector::wide,
     palette::Palette,
     pixel::Pixel,
@@ -88,6 +88,16 @@ pub enum SetupError {
         /// Palettes needed.
         need: usize,
     },
+    /// The method is not part of this build.
+    Missing {
+        /// The method's name.
+        shader: &'static str,
+    },
+    /// The method cannot shade under near lights or for a near viewer.
+    Light {
+        /// The method's name.
+        shader: &'static str,
+    },
 }
 
 impl fmt::Display for SetupError {
@@ -96,6 +106,10 @@ impl fmt::Display for SetupError {
             Self::Size { width, height } => write!(f, "a picture of {width}x{height} pixels; each side must be 1 to {MAX_SIDE}"),
             Self::Depth { need } => write!(f, "the depth buffer needs {need} entries at least, one row"),
             Self::Palettes { need } => write!(f, "the stream has {need} materials, and each needs a palette"),
+            Self::Missing { shader } => write!(f, "this build has no {shader} shading; build it with the feature all-shaders"),
+            Self::Light { shader } => {
+                write!(f, "{shader} shading needs directional lights and an infinitely far viewer; this scene has near ones")
+            }
         }
     }
 }
@@ -135,10 +149,10 @@ pub struct Renderer<'a, C> {
 }
 
 impl<'a, C: Pixel> Renderer<'a, C> {
-    /// A renderer for a viewport of `size` pixels. Works out the materials, so it takes a moment.
+    /// A renderer for a viewport of `size` pixels.
     ///
     /// # Errors
-    /// When `size` is out of range or `memory` too small for it.
+    /// When `size` is out of range, `memory` too small for it, or the stream asks for a method that cannot shade it here.
     pub fn new(stream: Stream<'a>, size: Size, memory: Memory<'a, C>) -> Result<Self, SetupError> {
         let (width, height) = (size.width, size.height);
         if !(1..=MAX_SIDE).contains(&width) || !(1..=MAX_SIDE).contains(&height) {
@@ -150,15 +164,28 @@ impl<'a, C: Pixel> Renderer<'a, C> {
         if memory.palettes.len() < stream.materials.len() {
             return Err(SetupError::Palettes { need: stream.materials.len() });
         }
-        for (palette, material) in memory.palettes.iter_mut().zip(stream.materials) {
-            palette.fill(stream.header, material, stream.lights);
-        }
-        Ok(Self { shader: stream.shader(), background: background(stream.header.background), stream, size, memory, dither: false })
+        let shader = stream.shader();
+        let mut renderer = Self { shader, background: background(stream.header.background), stream, size, memory, dither: false };
+        renderer.set_shader(shader)?;
+        Ok(renderer)
     }
 
-    /// Uses `shader` instead of the one that the stream asks for.
-    pub fn set_shader(&mut self, shader: Shader) {
+    /// Uses `shader` instead of the one that the stream asks for. Works out the materials, so it takes a moment.
+    ///
+    /// # Errors
+    /// When this build has not got the method, or it cannot shade this scene; the method in use stays.
+    pub fn set_shader(&mut self, shader: Shader) -> Result<(), SetupError> {
+        if !shader.is_built_in() {
+            return Err(SetupError::Missing { shader: shader.name() });
+        }
+        if shader.needs_constant_light() && !self.stream.is_constant() {
+            return Err(SetupError::Light { shader: shader.name() });
+        }
         self.shader = shader;
+        for (palette, material) in self.memory.palettes.iter_mut().zip(self.stream.materials) {
+            palette.fill(self.stream.header, material, self.stream.lights, shader.highlight());
+        }
+        Ok(())
     }
 
     /// The method in use.
@@ -417,6 +444,7 @@ impl<C: Pixel> Frame<'_, '_, C> {
             dither: self.renderer.dither,
             palette,
             lighting: &self.lighting,
+            exponent: self.renderer.stream.materials.get(usize::from(mesh.material)).map_or(1, |material| material.exponent),
             constant: self.constant,
         };
         if [a, b, c].iter().all(|corner| corner.state == State::Ready) {
@@ -467,7 +495,7 @@ impl<C: Pixel> Frame<'_, '_, C> {
             corners: turn(corners, by),
             vertices: turn(vertices, by),
             rsum: turn(reversed(triangle.rsum), by),
-            square: turn(reversed(triangle.square), by),
+            bend: turn(reversed(triangle.bend), by),
             triangle,
         };
         shading.draw(&facet, band)
@@ -489,11 +517,11 @@ fn screen_vertex<C: Pixel>(
     vertex: &Vertex,
 ) -> ScreenVertex {
     let ([x, y, depth], inside) = view.project(view.to_eye(vertex.position));
-    let normal = wide(vertex.normal);
+    let normal = wide(vertex.normal).map(|c| c << (30 - UNIT));
     let light = match (palette, constant) {
         (None, _) => [0; 3],
-        (Some(_), Some(_)) => lighting.cosines([0; 3], normal, 1 << EDGE).next().map_or([0; 3], |[l, h]| [l, h, 0]),
-        (Some(palette), None) => palette.levels(lighting.cosines(wide(vertex.position), normal, 1 << EDGE)),
+        (Some(_), Some(_)) => lighting.cosines([0; 3], normal).next().map_or([0; 3], |[l, h]| [l, h, 0]),
+        (Some(palette), None) => palette.levels(lighting.cosines(wide(vertex.position), normal)),
     };
     ScreenVertex { x, y, depth, light, state: if inside { State::Ready } else { State::Outside } }
 }

@@ -1,7 +1,7 @@
 //! One frame's camera and lights, moved into object space: once per frame, instead of every normal out of it.
 
 use crate::{
-    format::{EDGE, MAX_LIGHTS, ROTATION, UNIT},
+    format::{COSINE, MAX_LIGHTS, ROTATION},
     math::vector::{add, cross, dot, normalise, sub, transposed, zip},
     stream::{
         Stream,
@@ -135,17 +135,28 @@ impl Lighting {
         }
     }
 
-    /// `[N·L, N·H]` of each light, Q2.30, at `position` (Q18.14) with the normal `normal / length`:
-    /// `normal` in Q2.14, `rlength` = 1/length in Q1.15.
-    pub fn cosines(&self, position: [i32; 3], normal: [i32; 3], rlength: u16) -> impl Iterator<Item = [i32; 2]> {
-        let cosine = move |direction: [i32; 3]| (((dot(normal, direction) >> UNIT) * i64::from(rlength)) >> EDGE) as i32;
-        self.sources.iter().map(move |source| match (*source, self.viewer) {
-            (Source::Directional { towards, half }, Viewer::Infinite(_)) => [cosine(towards), cosine(half)],
+    /// `[N·L, N·H]` of each light, Q2.30, at `position` (Q18.14) with the normal `normal` (Q2.30, at most unit length).
+    pub fn cosines(&self, position: [i32; 3], normal: [i32; 3]) -> impl Iterator<Item = [i32; 2]> {
+        self.sources.iter().map(move |source| self.directions(source, position).map(|direction| cosine(normal, direction)))
+    }
+
+    /// The unit vectors L and H of a light at `position` (Q18.14), Q2.30.
+    #[must_use]
+    pub fn directions(&self, source: &Source, position: [i32; 3]) -> [[i32; 3]; 2] {
+        match (*source, self.viewer) {
+            (Source::Directional { towards, half }, Viewer::Infinite(_)) => [towards, half],
             _ => {
                 let towards = source.towards(position);
-                [cosine(towards), cosine(half(towards, self.viewer.towards(position)))]
+                [towards, half(towards, self.viewer.towards(position))]
             }
-        })
+        }
+    }
+
+    /// All lights are directional and the viewer is infinitely far: L and H are the same everywhere.
+    #[must_use]
+    pub fn is_constant(&self) -> bool {
+        let directional = self.sources.iter().all(|source| matches!(source, Source::Directional { .. }));
+        directional && matches!(self.viewer, Viewer::Infinite(_))
     }
 }
 
@@ -169,6 +180,13 @@ impl Viewer {
             Self::Local(eye) => normalise(sub(eye, position)),
         }
     }
+}
+
+/// The product of two vectors no longer than 1, all Q2.30.
+#[inline]
+#[must_use]
+pub fn cosine(a: [i32; 3], b: [i32; 3]) -> i32 {
+    (dot(a, b) >> COSINE) as i32
 }
 
 /// Unit half vector.

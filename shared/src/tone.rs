@@ -41,12 +41,12 @@ impl<C: Copy> Tone<()> for Solid<C> {
 #[derive(Clone, Copy, Debug)]
 pub struct Ramp<'a, C>(pub &'a [C; RAMP]);
 
-impl<C: Copy> Tone<[u32; 1]> for Ramp<'_, C> {
+impl<C: Pixel> Tone<[u32; 1]> for Ramp<'_, C> {
     type Pixel = C;
 
     #[inline(always)]
     fn tone(&self, [level]: [u32; 1], _: usize) -> C {
-        self.0[(level >> WALK) as usize]
+        C::ramped(self.0, level)
     }
 }
 
@@ -54,19 +54,12 @@ impl<C: Copy> Tone<[u32; 1]> for Ramp<'_, C> {
 #[derive(Clone, Copy, Debug)]
 pub struct Rgb<C>(pub PhantomData<C>);
 
-/// A biased, walked level as 0..=255.
-#[inline(always)]
-fn level(walked: u32) -> u8 {
-    ((walked >> WALK) as i32 - BIAS).clamp(0, 255) as u8
-}
-
 impl<C: Pixel> Tone<[u32; 3]> for Rgb<C> {
     type Pixel = C;
 
     #[inline(always)]
-    fn tone(&self, [r, g, b]: [u32; 3], _: usize) -> C {
-        let [dr, dg, db] = C::DEPTH;
-        C::pack([level(r) >> (8 - dr), level(g) >> (8 - dg), level(b) >> (8 - db)])
+    fn tone(&self, levels: [u32; 3], _: usize) -> C {
+        C::mixed(levels)
     }
 }
 

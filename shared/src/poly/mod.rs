@@ -10,6 +10,8 @@ pub mod basis;
 pub mod plane;
 pub mod quadric;
 
+use crate::format::MAX_LIGHTS;
+
 /// A polynomial of one triangle, standing on one row.
 pub trait Patch: Copy {
     /// What runs along a span of that row.
@@ -59,4 +61,100 @@ impl Walker for Constant {
     fn step(&mut self) {}
     #[inline(always)]
     fn value(&self) {}
+}
+
+/// Two polynomials side by side.
+impl<A: Patch, B: Patch> Patch for (A, B) {
+    type Walker = (A::Walker, B::Walker);
+
+    #[inline(always)]
+    fn jump(&mut self, rows: i32) {
+        self.0.jump(rows);
+        self.1.jump(rows);
+    }
+
+    #[inline(always)]
+    fn step_row(&mut self) {
+        self.0.step_row();
+        self.1.step_row();
+    }
+
+    #[inline(always)]
+    fn enter(&self, x: i32) -> Self::Walker {
+        (self.0.enter(x), self.1.enter(x))
+    }
+}
+
+impl<A: Walker, B: Walker> Walker for (A, B) {
+    type Value = (A::Value, B::Value);
+
+    #[inline(always)]
+    fn step(&mut self) {
+        self.0.step();
+        self.1.step();
+    }
+
+    #[inline(always)]
+    fn value(&self) -> Self::Value {
+        (self.0.value(), self.1.value())
+    }
+}
+
+/// One polynomial per light.
+#[derive(Clone, Copy, Debug)]
+pub struct PerLight<P> {
+    patches: [P; MAX_LIGHTS],
+    lights: usize,
+}
+
+impl<P: Patch> PerLight<P> {
+    /// The polynomial that `fit` makes for each of `lights`; `zero` stands in for lights that there are not.
+    #[must_use]
+    pub fn new<L>(lights: &[L], zero: P, fit: impl Fn(&L) -> P) -> Self {
+        let mut patches = [zero; MAX_LIGHTS];
+        for (patch, light) in patches.iter_mut().zip(lights) {
+            *patch = fit(light);
+        }
+        Self { patches, lights: lights.len() }
+    }
+}
+
+impl<P: Patch> Patch for PerLight<P>
+where
+    P::Walker: Copy,
+{
+    type Walker = PerLight<P::Walker>;
+
+    fn jump(&mut self, rows: i32) {
+        self.patches.iter_mut().take(self.lights).for_each(|patch| patch.jump(rows));
+    }
+
+    fn step_row(&mut self) {
+        self.patches.iter_mut().take(self.lights).for_each(Patch::step_row);
+    }
+
+    fn enter(&self, x: i32) -> Self::Walker {
+        let [first, ..] = &self.patches;
+        let mut walkers = [first.enter(x); MAX_LIGHTS];
+        for (walker, patch) in walkers.iter_mut().zip(&self.patches).take(self.lights).skip(1) {
+            *walker = patch.enter(x);
+        }
+        PerLight { patches: walkers, lights: self.lights }
+    }
+}
+
+impl<W: Walker> Walker for PerLight<W> {
+    type Value = heapless::Vec<W::Value, MAX_LIGHTS>;
+
+    fn step(&mut self) {
+        self.patches.iter_mut().take(self.lights).for_each(Walker::step);
+    }
+
+    fn value(&self) -> Self::Value {
+        let mut values = heapless::Vec::new();
+        for walker in self.patches.iter().take(self.lights) {
+            let _ = values.push(walker.value());
+        }
+        values
+    }
 }

@@ -15,6 +15,9 @@ struct Row {
 }
 
 impl<const CH: usize> Plane<CH> {
+    /// Nothing everywhere.
+    pub const ZERO: Self = Self([Row { c: 0, dx: 0, dy: 0 }; CH]);
+
     /// The field with value `nodes[channel][k]` at corner `k`; walked with `extra` more fraction bits than the nodes have.
     ///
     /// Error: at most 2^-1 (1 + S) units of the walked format, S the distance in

@@ -22,6 +22,9 @@ struct Row {
 }
 
 impl<const CH: usize> Quadric<CH> {
+    /// Nothing everywhere.
+    pub const ZERO: Self = Self([Row { c: 0, c_down: 0, c_down2: 0, dx: 0, dx_down: 0, dxx: 0 }; CH]);
+
     /// The quadratic through six nodes per channel: corners 0, 1, 2, then the midpoints of the edges 01, 12, 20.
     ///
     /// All nodes lie in a range narrower than 2^`BITS`; values are walked with `extra` more

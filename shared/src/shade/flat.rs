@@ -2,10 +2,10 @@
 //!
 //! Cost: nothing per pixel; one evaluation of the lights per triangle. Not continuous across edges.
 
-use super::{Facet, Shading};
+use super::{Facet, Shading, node::Node};
 use crate::{
     band::Band,
-    format::EDGE,
+    format::UNIT,
     math::vector::{add, wide},
     pixel::Pixel,
     poly::Constant,
@@ -16,7 +16,8 @@ use crate::{
 pub(super) fn draw<C: Pixel>(facet: &Facet<'_>, shading: &Shading<'_, C>, band: &mut Band<'_, C>) -> u32 {
     let [a, b, c] = facet.vertices.map(|vertex| wide(vertex.position));
     let centroid = add(a, add(b, c)).map(|sum| sum / 3);
-    let levels = shading.palette.levels(shading.lighting.cosines(centroid, wide(facet.triangle.normal), 1 << EDGE));
+    let normal = wide(facet.triangle.normal).map(|c| c << (30 - UNIT));
+    let levels = shading.levels(&Node { position: centroid, normal });
     if shading.dither {
         // A field without slope: dither changes from pixel to pixel all the same.
         let nodes = levels.map(|level| [level; 3]);

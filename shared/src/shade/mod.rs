@@ -1,18 +1,30 @@
 //! The shading methods, one file each: what it fits, and what it makes of it at a pixel.
 
+mod duff;
 mod flat;
+mod form;
 mod gouraud;
+mod node;
 mod phong;
+#[cfg(feature = "all-shaders")]
+mod phong_rv;
+#[cfg(feature = "all-shaders")]
+mod renq;
+#[cfg(feature = "all-shaders")]
+mod renq_newton;
 mod six_point;
+#[cfg(feature = "all-shaders")]
+mod sqrt6;
 
 use crate::{
     band::Band,
-    format::{BIAS, LEVEL, WALK},
+    format::{BIAS, LEVEL, RHO, WALK},
     palette::Palette,
     pixel::Pixel,
     poly::{Patch, Walker, basis::Basis},
     raster::triangle::Outline,
     scene::Lighting,
+    shade::node::Node,
     shader::Shader,
     stream::record::{Triangle, Vertex},
     tone::{Dithered, Ramp, Rgb},
@@ -32,8 +44,19 @@ pub(crate) struct Facet<'f> {
     /// Per edge, see [`Triangle`].
     pub(crate) rsum: [u16; 3],
     /// Per edge, see [`Triangle`].
-    pub(crate) square: [u16; 3],
+    pub(crate) bend: [u16; 3],
     pub(crate) triangle: &'f Triangle,
+}
+
+impl Facet<'_> {
+    /// Nowhere on the triangle does the highlight of one constant light reach a visible level:
+    /// N·H is linear and |N| at least rho.
+    #[inline(always)]
+    fn is_dark<C: Pixel>(&self, palette: &Palette<C>) -> bool {
+        let [a, b, c] = self.corners.map(|corner| corner.light[1]);
+        let limit = (i64::from(palette.dark_below()) * i64::from(self.triangle.rho)) >> RHO;
+        i64::from(a.max(b).max(c)) < limit
+    }
 }
 
 /// What all triangles of one material have in common in one frame.
@@ -42,6 +65,8 @@ pub(crate) struct Shading<'f, C> {
     pub(crate) dither: bool,
     pub(crate) palette: &'f Palette<C>,
     pub(crate) lighting: &'f Lighting,
+    /// The material's.
+    pub(crate) exponent: u16,
     /// L and H if they are constant, see [`Lighting::constant`].
     pub(crate) constant: Option<[[i32; 3]; 2]>,
 }
@@ -59,7 +84,29 @@ impl<C: Pixel> Shading<'_, C> {
             Shader::Gouraud => gouraud::draw(facet, self, band),
             Shader::SixPoint => six_point::draw(facet, self, band),
             Shader::Phong => phong::draw(facet, self, band),
+            #[cfg(feature = "all-shaders")]
+            _ => self.draw_literature(facet, band),
+            #[cfg(not(feature = "all-shaders"))]
+            _ => 0,
         }
+    }
+
+    /// The methods that not every build has.
+    #[cfg(feature = "all-shaders")]
+    fn draw_literature(&self, facet: &Facet<'_>, band: &mut Band<'_, C>) -> u32 {
+        match self.shader {
+            Shader::PhongRv => phong_rv::draw(facet, self, band),
+            Shader::Duff => duff::draw(facet, self, band),
+            Shader::Sqrt6 => sqrt6::draw(facet, self, band),
+            Shader::Renq => renq::draw(facet, self, band),
+            Shader::RenqNewton => renq_newton::draw(facet, self, band),
+            _ => 0,
+        }
+    }
+
+    /// Levels at a point, Q9.7.
+    fn levels(&self, node: &Node) -> [i32; 3] {
+        self.palette.levels(self.lighting.cosines(node.position, node.normal))
     }
 
     /// Levels at a corner.

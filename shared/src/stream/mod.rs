@@ -6,12 +6,15 @@
 pub mod record;
 
 use crate::{
-    format::{EDGE, MAX_LIGHTS, ROTATION, UNIT},
+    format::{MAX_LIGHTS, RHO, ROTATION, UNIT},
     math::vector::{cross, dot},
     shader::Shader,
 };
 use core::{fmt, ops::Range};
-use record::{EYE_SPACE, Header, Light, MAGIC, Material, Mesh, ORTHOGRAPHIC, PERSPECTIVE, POINT, Triangle, VERSION, VIEWER_LOCAL, Vertex};
+use record::{
+    DIRECTIONAL, EYE_SPACE, Header, Light, MAGIC, Material, Mesh, ORTHOGRAPHIC, PERSPECTIVE, POINT, Triangle, VERSION, VIEWER_INFINITE,
+    VIEWER_LOCAL, Vertex,
+};
 use zerocopy::{FromBytes, Immutable, KnownLayout};
 
 /// Bytes aligned for [`Stream::parse`]: wrap `include_bytes!` in it, or use [`crate::include_stream!`].
@@ -241,8 +244,7 @@ impl<'a> Stream<'a> {
         for (i, triangle) in self.triangles.iter().enumerate() {
             let square: i64 = triangle.normal.iter().map(|&c| i64::from(c) * i64::from(c)).sum();
             field(is_one(square, 2 * UNIT), "triangle normal", i)?;
-            field(triangle.square.iter().all(|&s| s <= 1 << EDGE), "triangle edge", i)?;
-            field(triangle.rho <= 1 << EDGE, "triangle rho", i)?;
+            field(triangle.rho <= 1 << RHO, "triangle rho", i)?;
         }
         Ok(())
     }
@@ -265,6 +267,13 @@ impl<'a> Stream<'a> {
         field((MIN_NEAR..MAX_LENGTH).contains(&camera.near), "camera near", 0)?;
         let depth = camera.near < camera.far && camera.far <= 2 * MAX_LENGTH;
         field(camera.projection == PERSPECTIVE || depth, "camera far", 0)
+    }
+
+    /// All lights are directional and the viewer is infinitely far.
+    #[must_use]
+    pub fn is_constant(&self) -> bool {
+        let infinite = self.header.viewer == VIEWER_INFINITE || self.header.camera.projection == ORTHOGRAPHIC;
+        infinite && self.lights.iter().all(|light| light.kind == DIRECTIONAL)
     }
 
     /// The vertices of `mesh`.

@@ -11,7 +11,7 @@ compile_error!("streams are read in place and are little-endian");
 /// First four bytes of every stream.
 pub const MAGIC: [u8; 4] = *b"mTRI";
 /// The version of the format that this core reads and the host writes.
-pub const VERSION: u16 = 1;
+pub const VERSION: u16 = 2;
 
 /// How a stream starts. The arrays follow in the order of the counts.
 #[derive(FromBytes, IntoBytes, Immutable, KnownLayout, Clone, Copy, Debug, PartialEq, Eq)]
@@ -167,10 +167,12 @@ pub struct Vertex {
 pub struct Triangle {
     /// Indices relative to the mesh's first vertex.
     pub corners: [u16; 3],
-    /// Per edge 1/|Ni+Nj|, unsigned Q1.15 in [1/2, 2): normalises the normal at the midpoint. 65535 at most.
+    /// Per edge 1/|Ni+Nj| - 1/2, unsigned Q0.17: normalises the normal at the midpoint.
+    /// 65535 where the normals are 120 degrees apart or more: then the renderer works it out.
     pub rsum: [u16; 3],
-    /// Per edge |Ni+Nj|²/4 = (1 + Ni·Nj)/2, unsigned Q1.15 in [0, 1]: squared length of the interpolated normal at the midpoint.
-    pub square: [u16; 3],
+    /// Per edge 1 - |Ni+Nj|²/4 = (1 - Ni·Nj)/2, unsigned Q0.16, 65535 at most:
+    /// what the squared length of the interpolated normal lacks to 1 at the midpoint.
+    pub bend: [u16; 3],
     /// Lower bound of the interpolated normal's length on the triangle, sqrt((1 + 2 min Ni·Nj)/3), unsigned Q1.15, rounded down.
     pub rho: u16,
     /// Unit normal of the plane, [`crate::format::Unit`].

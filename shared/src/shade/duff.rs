@@ -1,0 +1,135 @@
+//! Duff's form (Duff 1979; see Bishop & Weimer 1986): linear N·L and N·H over the root of a quadratic.
+//!
+//! Under a constant light N·L and N·H are exactly linear and |N|² exactly quadratic over a triangle, so only
+//! the reciprocal root is approximated, by a table of 769 knots. Near lights and viewers have numerators that
+//! are not linear: there they are the quadratics through six points.
+//!
+//! Cost: 4 additions a pixel, a root from a table, 2 products and the highlight's table; 2 or 4 additions and
+//! 2 products more per light. Error: that of the tables, [`crate::math::power::NEAREST_ERROR`] of the highlight above all.
+//! Domain: any lights; with near lights as good as six points are.
+
+use super::{
+    Facet, Shading,
+    form::{BITS, EXTRA, Form, NODE, signed},
+};
+use crate::{
+    band::Band,
+    format::{BEND, RHO},
+    math::{
+        power::PixelPower,
+        rsqrt::{half_rsqrt, rsqrt},
+    },
+    palette::Reflection,
+    pixel::Pixel,
+    poly::{plane::Plane, quadric::Quadric},
+};
+
+pub(super) fn draw<C: Pixel>(facet: &Facet<'_>, shading: &Shading<'_, C>, band: &mut Band<'_, C>) -> u32 {
+    let square = square(facet);
+    if is_curved(facet) {
+        let nodes = facet.six_linear_nodes();
+        shading.draw_lit(facet, (Quadric::ZERO, |source| shading.six_products(facet, &nodes, source, |p| p)), square, Rooted, band)
+    } else if let Some(gloss) = shading.gloss(Tabled) {
+        facet.outline.draw(&facet.basis, (numerators(facet), square), gloss, band)
+    } else {
+        let nodes = facet.six_linear_nodes();
+        shading.draw_lit(facet, (Quadric::ZERO, |source| shading.six_products(facet, &nodes, source, |p| p)), square, Tabled, band)
+    }
+}
+
+/// The interpolated normal may be shorter than half: the table of roots, and every fit of 1/|N|, end there.
+pub(super) fn is_curved(facet: &Facet<'_>) -> bool {
+    facet.triangle.rho < 1 << (RHO - 1)
+}
+
+/// N·L and N·H of one constant light, linear. Two planes of one channel: the compiler
+/// makes a loop of one plane of two, and keeps it in memory.
+#[inline(always)]
+pub(super) fn numerators(facet: &Facet<'_>) -> (Plane<1>, Plane<1>) {
+    let [a, b, c] = facet.corners.map(|corner| corner.light);
+    (Plane::fit(&facet.basis, [[a[0], b[0], c[0]]], 0), Plane::fit(&facet.basis, [[a[1], b[1], c[1]]], 0))
+}
+
+/// |N|², Q2.30: exactly quadratic.
+#[inline(always)]
+pub(super) fn square(facet: &Facet<'_>) -> Quadric<1> {
+    // |N|² - 1 is zero at the corners.
+    let [ab, bc, ca] = facet.bend.map(|bend| -(i32::from(bend) << (NODE - BEND)));
+    Quadric::fit::<BITS>(&facet.basis, [[0, 0, 0, ab, bc, ca]], EXTRA).raised([1 << 30])
+}
+
+/// One over the root of |N|² in [1/4, 1] from a table.
+#[derive(Clone, Copy)]
+struct Tabled;
+
+impl Form<[u32; 1], ([u32; 1], [u32; 1])> for Tabled {
+    /// 1/(2|N|), Q2.30.
+    type Common = i32;
+
+    #[inline(always)]
+    fn common(&self, [square]: [u32; 1]) -> i32 {
+        half_rsqrt(square) as i32
+    }
+
+    #[inline(always)]
+    fn reflect(&self, light: usize, half_root: &i32, ([l], [h]): ([u32; 1], [u32; 1]), power: PixelPower<'_>) -> Reflection {
+        self.reflect(light, half_root, [l, h], power)
+    }
+}
+
+impl Form<[u32; 1], [u32; 2]> for Tabled {
+    type Common = i32;
+
+    #[inline(always)]
+    fn common(&self, [square]: [u32; 1]) -> i32 {
+        half_rsqrt(square) as i32
+    }
+
+    #[inline(always)]
+    fn reflect(&self, _: usize, &half_root: &i32, fields: [u32; 2], power: PixelPower<'_>) -> Reflection {
+        // Upper half of Q2.30 times Q2.30, and half of a root: Q5.27.
+        let [diffuse, half] = fields.map(|cosine| ((i64::from(signed(cosine)) * i64::from(half_root)) >> 32) as i32);
+        Reflection { diffuse, highlight: power.at(half) }
+    }
+}
+
+/// One over the root of any |N|².
+#[derive(Clone, Copy)]
+pub(super) struct Rooted;
+
+impl Form<[u32; 1], [u32; 2]> for Rooted {
+    type Common = Root;
+
+    fn common(&self, [square]: [u32; 1]) -> Root {
+        Root::of(square)
+    }
+
+    fn reflect(&self, _: usize, root: &Root, fields: [u32; 2], power: PixelPower<'_>) -> Reflection {
+        let [diffuse, half] = fields.map(|cosine| root.divide(signed(cosine)) >> 3);
+        Reflection { diffuse, highlight: power.at(half) }
+    }
+}
+
+/// 1/sqrt(x): mantissa in Q2.30 and the power of two to multiply it by.
+#[derive(Clone, Copy)]
+pub(super) struct Root {
+    mantissa: u32,
+    shift: u32,
+}
+
+impl Root {
+    /// Of `x` in Q2.30, (0, 2].
+    #[inline(always)]
+    pub(super) fn of(x: u32) -> Self {
+        let shift = x.max(1).leading_zeros() & !1;
+        // x = m 2^-shift, m in [1, 4): the root's exponent is half of it.
+        Self { mantissa: rsqrt(x << (shift & 31)), shift: shift / 2 }
+    }
+
+    /// `value / sqrt(x)`, Q2.30 each; at most 2 by saturation.
+    #[inline(always)]
+    pub(super) fn divide(self, value: i32) -> i32 {
+        let product = (i64::from(value) * i64::from(self.mantissa)) >> (30 - self.shift);
+        product.clamp(i32::MIN.into(), i32::MAX.into()) as i32
+    }
+}

@@ -1,0 +1,131 @@
+//! From fields that are walked per light to what each light sends, and on to a pixel.
+
+use super::{Facet, Shading};
+use crate::{
+    band::Band,
+    dither::threshold,
+    format::{COSINE, MAX_LIGHTS},
+    math::power::PixelPower,
+    palette::{Glossy, Palette, Reflection},
+    pixel::Pixel,
+    poly::{Patch, PerLight, Walker, quadric::Quadric},
+    scene::{Source, cosine},
+    shade::node::Node,
+    tone::Tone,
+};
+
+/// Fraction bits of a field at a node; walked with [`COSINE`].
+pub(super) const NODE: u32 = 24;
+/// Fraction bits that a walked field has more.
+pub(super) const EXTRA: u32 = COSINE - NODE;
+/// Nodes of fields are in [-2, 2].
+pub(super) const BITS: u32 = NODE + 2;
+
+/// What a method makes of its fields at a pixel: `V` is walked for each light, `K` once for all of them.
+pub(super) trait Form<K, V>: Copy {
+    /// What is worked out once for all lights.
+    type Common;
+
+    /// Works it out.
+    fn common(&self, common: K) -> Self::Common;
+
+    /// What light number `light` sends.
+    fn reflect(&self, light: usize, common: &Self::Common, fields: V, power: PixelPower<'_>) -> Reflection;
+}
+
+/// One light on a material of one channel: the fast way.
+#[derive(Clone, Copy)]
+pub(super) struct Gloss<'a, C, F> {
+    pub(super) glossy: Glossy<'a, C>,
+    pub(super) form: F,
+}
+
+impl<C: Pixel, K, V, F: Form<K, V>> Tone<(V, K)> for Gloss<'_, C, F> {
+    type Pixel = C;
+
+    #[inline(always)]
+    fn tone(&self, (fields, common): (V, K), _: usize) -> C {
+        self.glossy.colour(self.form.reflect(0, &self.form.common(common), fields, self.glossy.power))
+    }
+}
+
+/// Any lights on any material.
+#[derive(Clone, Copy)]
+pub(super) struct Lit<'a, C, F> {
+    palette: &'a Palette<C>,
+    form: F,
+    dither: bool,
+    row: usize,
+}
+
+impl<C: Pixel, K, V: Copy, F: Form<K, V>> Tone<(heapless::Vec<V, MAX_LIGHTS>, K)> for Lit<'_, C, F> {
+    type Pixel = C;
+
+    fn tone(&self, (lights, common): (heapless::Vec<V, MAX_LIGHTS>, K), x: usize) -> C {
+        let (power, common) = (self.palette.power.pixel(), self.form.common(common));
+        let reflections = lights.iter().enumerate().map(|(light, &fields)| self.form.reflect(light, &common, fields, power));
+        let levels = self.palette.pixel_levels(reflections);
+        if self.dither { self.palette.dithered(levels, threshold(x, self.row)) } else { self.palette.colour(levels) }
+    }
+
+    fn start(&mut self, row: i32) {
+        self.row = row as usize;
+    }
+
+    #[inline(always)]
+    fn step_row(&mut self) {
+        self.row += 1;
+    }
+}
+
+impl<C: Pixel> Shading<'_, C> {
+    /// The tone for one constant light on a material of one channel without dither, if that is all there is.
+    pub(super) fn gloss<F>(&self, form: F) -> Option<Gloss<'_, C, F>> {
+        let one = self.constant.is_some() && !self.dither && !self.palette.three_channels;
+        one.then(|| Gloss { glossy: self.palette.glossy(), form })
+    }
+
+    /// Draws `common` and what `fit` makes for each light, by `form`.
+    pub(super) fn draw_lit<K, P, F>(
+        &self,
+        facet: &Facet<'_>,
+        (zero, fit): (P, impl Fn(&Source) -> P),
+        common: K,
+        form: F,
+        band: &mut Band<'_, C>,
+    ) -> u32
+    where
+        K: Patch,
+        P: Patch<Walker: Walker<Value: Copy> + Copy>,
+        F: Form<<K::Walker as Walker>::Value, <P::Walker as Walker>::Value>,
+    {
+        let lights = PerLight::new(&self.lighting.sources, zero, fit);
+        let tone = Lit { palette: self.palette, form, dither: self.dither, row: 0 };
+        facet.outline.draw(&facet.basis, (lights, common), tone, band)
+    }
+
+    /// The quadratics through N·L and N·H of a light at six nodes; `map` is applied to both.
+    pub(super) fn six_products(
+        &self,
+        facet: &Facet<'_>,
+        nodes: &[Node; 6],
+        source: &Source,
+        map: impl Fn([i32; 2]) -> [i32; 2],
+    ) -> Quadric<2> {
+        let values = nodes.map(|node| map(self.lighting.directions(source, node.position).map(|direction| cosine(node.normal, direction))));
+        quadratic(facet, [values.map(|[light, _]| light), values.map(|[_, half]| half)])
+    }
+}
+
+/// The quadratics through six nodes in Q2.30.
+#[inline]
+pub(super) fn quadratic<const CH: usize>(facet: &Facet<'_>, nodes: [[i32; 6]; CH]) -> Quadric<CH> {
+    let rounded = nodes.map(|nodes| nodes.map(|node| (node + (1 << (EXTRA - 1))) >> EXTRA));
+    Quadric::fit::<BITS>(&facet.basis, rounded, EXTRA)
+}
+
+/// A walked field in Q2.30, signed.
+#[inline(always)]
+pub(super) fn signed(field: u32) -> i32 {
+    field as i32
+}

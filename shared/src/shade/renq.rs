@@ -1,0 +1,76 @@
+//! Quadratic renormalisation: linear N·L and N·H times the six-point quadratic of 1/|N|.
+//!
+//! 1/|N| is 1 at the corners and 2/|Ni+Nj| at the edges' midpoints whatever the pose, so its nodes are constants of the
+//! mesh and no midpoint is lit. With near lights the numerators are quadratics through six points.
+//!
+//! Cost: 4 additions a pixel, 2 products and the highlight's table; 2 or 4 additions and 2 products more per light.
+//! Continuous. Error against Phong: 255 ks n w^n 0.0125 (e/rho)^4, w the largest N·H/|N|, e the longest |Ni-Nj|, rho
+//! the least |N|: 3 LSB at worst on a sphere of 168 triangles, 0.3 on one of 690 (exponent 50, ks 1/2).
+//! Domain: any lights; where |N| falls below 1/2, [`super::duff`]'s root takes over.
+
+use super::{
+    Facet, Shading, duff,
+    form::{BITS, EXTRA, Form, NODE, signed},
+};
+use crate::{band::Band, format::EDGE, math::power::PixelPower, palette::Reflection, pixel::Pixel, poly::quadric::Quadric};
+
+pub(super) fn draw<C: Pixel>(facet: &Facet<'_>, shading: &Shading<'_, C>, band: &mut Band<'_, C>) -> u32 {
+    if duff::is_curved(facet) {
+        return duff::draw(facet, shading, band);
+    }
+    let length = length(facet);
+    if let Some(gloss) = shading.gloss(Scaled) {
+        return facet.outline.draw(&facet.basis, (duff::numerators(facet), length), gloss, band);
+    }
+    let nodes = facet.six_linear_nodes();
+    shading.draw_lit(facet, (Quadric::ZERO, |source: &_| shading.six_products(facet, &nodes, source, |p| p)), length, Scaled, band)
+}
+
+/// The quadratic through 1/|N| at six nodes, Q2.30.
+#[inline(always)]
+pub(super) fn length(facet: &Facet<'_>) -> Quadric<1> {
+    // 2/|Ni+Nj| - 1, zero at the corners.
+    let [ab, bc, ca] = [0, 1, 2].map(|k| (((facet.rsum(k) << 1) - (1 << EDGE)) << (NODE - EDGE)) as i32);
+    Quadric::fit::<BITS>(&facet.basis, [[0, 0, 0, ab, bc, ca]], EXTRA).raised([1 << 30])
+}
+
+/// Numerators times a reciprocal length.
+#[derive(Clone, Copy)]
+pub(super) struct Scaled;
+
+impl Form<[u32; 1], [u32; 2]> for Scaled {
+    /// 1/|N|, Q2.30.
+    type Common = i32;
+
+    #[inline(always)]
+    fn common(&self, [length]: [u32; 1]) -> i32 {
+        signed(length)
+    }
+
+    #[inline(always)]
+    fn reflect(&self, _: usize, &length: &i32, fields: [u32; 2], power: PixelPower<'_>) -> Reflection {
+        let [diffuse, half] = fields.map(|cosine| over(signed(cosine), length));
+        Reflection { diffuse, highlight: power.at(half) }
+    }
+}
+
+impl Form<[u32; 1], ([u32; 1], [u32; 1])> for Scaled {
+    type Common = i32;
+
+    #[inline(always)]
+    fn common(&self, [length]: [u32; 1]) -> i32 {
+        signed(length)
+    }
+
+    #[inline(always)]
+    fn reflect(&self, light: usize, length: &i32, ([l], [h]): ([u32; 1], [u32; 1]), power: PixelPower<'_>) -> Reflection {
+        self.reflect(light, length, [l, h], power)
+    }
+}
+
+/// A numerator times a reciprocal length, Q2.30 each, as Q5.27. The upper half of the product and its doubling lose
+/// 2^-27, less than the highlight's table.
+#[inline(always)]
+pub(super) fn over(cosine: i32, length: i32) -> i32 {
+    (((i64::from(cosine) * i64::from(length)) >> 32) as i32) << 1
+}

@@ -1,0 +1,79 @@
+//! The six-point quadratic through N·L and through a root of N·H; squared and raised to the exponent at the pixel.
+//!
+//! Near a highlight's centre N·H is nearly quadratic in the angle, and its root more nearly so over the whole
+//! triangle: fitting sqrt(N·H) instead of N·H leaves 1.5 to 6 times less error for the same cost. Below 1/4, where
+//! the root would grow steep, a line of the same slope goes on.
+//!
+//! Cost: 4 additions a pixel and light, 1 square, the highlight's table; 12 cosines to set up. Continuous.
+//! Error against Phong: 2.4 LSB at worst on a sphere of 168 triangles, 0.2 on one of 690 (exponent 50, ks 1/2).
+//! Domain: any lights; coarse triangles near a light need splitting.
+
+use super::{
+    Facet, Shading,
+    form::{Form, quadratic, signed},
+};
+use crate::{
+    band::Band,
+    math::{power::PixelPower, rsqrt::rsqrt},
+    palette::Reflection,
+    pixel::Pixel,
+    poly::{Constant, quadric::Quadric},
+};
+
+/// One, Q2.30.
+const ONE: i32 = 1 << 30;
+/// Below this cosine the root is continued by a line.
+const LOWEST: i32 = ONE / 4;
+
+pub(super) fn draw<C: Pixel>(facet: &Facet<'_>, shading: &Shading<'_, C>, band: &mut Band<'_, C>) -> u32 {
+    if let Some(gloss) = shading.gloss(Squared) {
+        let cosines = facet.six_cosines();
+        let light = quadratic(facet, [cosines.map(|[light, _]| light)]);
+        let half = quadratic(facet, [cosines.map(|[_, half]| root(half))]);
+        return facet.outline.draw(&facet.basis, ((light, half), Constant), gloss, band);
+    }
+    let nodes = facet.six_nodes();
+    let fit = |source: &_| shading.six_products(facet, &nodes, source, |[light, half]| [light, root(half)]);
+    shading.draw_lit(facet, (Quadric::ZERO, fit), Constant, Squared, band)
+}
+
+/// sqrt(w) for w >= 1/4, w + 1/4 below: of one slope where they meet. Q2.30.
+fn root(w: i32) -> i32 {
+    if w < LOWEST {
+        return w + LOWEST;
+    }
+    // sqrt(w) = 2 w / sqrt(4 w), 4 w in [1, 4).
+    let w = w.min(ONE - 1);
+    ((i64::from(w) * i64::from(rsqrt((w as u32) << 2))) >> 29) as i32
+}
+
+/// The inverse of [`root`] at the pixel.
+#[derive(Clone, Copy)]
+struct Squared;
+
+impl Form<(), [u32; 2]> for Squared {
+    type Common = ();
+
+    #[inline(always)]
+    fn common(&self, (): ()) {}
+
+    #[inline(always)]
+    fn reflect(&self, _: usize, (): &(), [light, half]: [u32; 2], power: PixelPower<'_>) -> Reflection {
+        let z = signed(half);
+        // Q4.60 to Q5.27; below a half the line.
+        let half = if z >= ONE / 2 { ((i64::from(z) * i64::from(z)) >> 33) as i32 } else { (z - LOWEST) >> 3 };
+        Reflection { diffuse: signed(light) >> 3, highlight: power.at(half) }
+    }
+}
+
+impl Form<(), ([u32; 1], [u32; 1])> for Squared {
+    type Common = ();
+
+    #[inline(always)]
+    fn common(&self, (): ()) {}
+
+    #[inline(always)]
+    fn reflect(&self, light: usize, (): &(), ([l], [h]): ([u32; 1], [u32; 1]), power: PixelPower<'_>) -> Reflection {
+        self.reflect(light, &(), [l, h], power)
+    }
+}
