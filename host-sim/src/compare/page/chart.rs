@@ -4,13 +4,13 @@ use crate::compare::{Comparison, Reference};
 use maud::{Markup, html};
 
 /// The drawing's size.
-const SIZE: (f64, f64) = (360.0, 244.0);
+const SIZE: (f64, f64) = (360.0, 320.0);
 /// From left to right, both plots.
-const ACROSS: [f64; 2] = [40.0, 352.0];
+const ACROSS: [f64; 2] = [40.0, 354.0];
 /// From bottom to top, levels.
-const LEVELS: [f64; 2] = [138.0, 20.0];
+const LEVELS: [f64; 2] = [190.0, 22.0];
 /// From bottom to top, errors.
-const ERRORS: [f64; 2] = [212.0, 164.0];
+const ERRORS: [f64; 2] = [286.0, 220.0];
 
 /// A linear scale.
 struct Scale {
@@ -80,15 +80,15 @@ pub(super) fn scanline(reference: &Reference<'_>, comparison: &Comparison) -> Ma
             @for level in [0.0, 64.0, 128.0, 192.0, 255.0] { (grid(levels.at(level), &signed(level, 0))) }
             path.reference d=(path(columns.clone(), &x, &levels, |column| reference.level(column, row))) {}
             path.curve d=(path(columns.clone(), &x, &levels, |column| comparison.levels.get(at(column)).copied().flatten())) {}
-            text x="2" y="154" { "error, LSB" }
+            text x="2" y="210" { "error, LSB" }
             @for error in [-range, 0.0, range] { (grid(errors.at(error), &signed(error, if error == 0.0 { 0 } else { places }))) }
             path.curve d=(path(columns.clone(), &x, &errors, error)) {}
             @for tick in ticks {
                 @let place = format!("{:.1}", x.at(tick));
                 line.axis x1=(place) x2=(place) y1=(ERRORS[0]) y2=(ERRORS[0] + 4.0) {}
-                text x=(place) y="226" text-anchor="middle" { (signed(tick, 0)) }
+                text x=(place) y="301" text-anchor="middle" { (signed(tick, 0)) }
             }
-            text x=((ACROSS[0] + ACROSS[1]) / 2.0) y="240" text-anchor="middle" { "column, pixels" }
+            text x=((ACROSS[0] + ACROSS[1]) / 2.0) y="317" text-anchor="middle" { "column, pixels" }
         }
     }
 }

@@ -114,7 +114,7 @@ fn section(index: usize, name: &str, exponent: Option<u16>, reference: &Referenc
                     figcaption { "What all are measured against: Phong shading in floating point" }
                 }
                 div.legends {
-                    figure { (scale::signed()) figcaption { "Signed error, LSB: blue is too dark, red too bright. Even steps are even factors." } }
+                    figure { (scale::signed()) figcaption { "Signed error, LSB: blue is too dark, red too bright; logarithmic but for the innermost quarter." } }
                     figure {
                         (scale::amplified())
                         figcaption { "Amplified difference of 8-bit pixels, LSB: 255 (d/255)" sup { "1/10" } " of each channel (Vlasic 2002). It shows a single step." }
@@ -135,10 +135,10 @@ fn entry(anchor: &str, scene: &str, reference: &Reference<'_>, comparison: &Comp
     let rendering = picture::rgb(window, &drawn)?;
     let amplified = picture::amplified(window, &drawn, &window.cut(&reference.picture(), width))?;
     let signed = picture::signed(window, &window.cut(&comparison.errors, width))?;
-    let panel = |source: &str, alt: &str, caption: &str| {
+    let panel = |class: &str, source: &str, alt: &str, caption: &str| {
         html! {
             figure {
-                img src=(source) width=(window.width()) height=(window.height()) alt=(alt);
+                img class=(class) src=(source) width=(window.width()) height=(window.height()) alt=(alt);
                 figcaption { (caption) }
             }
         }
@@ -149,9 +149,9 @@ fn entry(anchor: &str, scene: &str, reference: &Reference<'_>, comparison: &Comp
             h3 { (name) }
             p.facts { "largest error " (number(total.max)) ", root mean square " (number(total.rmse)) " LSB" }
             div.panels {
-                (panel(&rendering, &format!("{scene} by {name}"), "rendering"))
-                (panel(&amplified, &format!("where {name} differs from Phong shading, amplified"), "difference, amplified"))
-                (panel(&signed, &format!("error of {name} with its sign"), "error with its sign"))
+                (panel("picture", &rendering, &format!("{scene} by {name}"), "rendering"))
+                (panel("amplified", &amplified, &format!("where {name} differs from Phong shading, amplified"), "difference, amplified"))
+                (panel("signed", &signed, &format!("error of {name} with its sign"), "error with its sign"))
                 figure { (chart::scanline(reference, comparison)) figcaption { "along row " (reference.row()) } }
             }
         }

@@ -57,9 +57,13 @@ const GROUPS: [(&str, &[Column]); 6] = [
 pub(super) fn table(scene: &str, outcomes: &[Outcome<'_>], anchor: impl Fn(Shader) -> String) -> Markup {
     let width: usize = GROUPS.iter().map(|(_, columns)| columns.len()).sum();
     html! {
+        p.facts {
+            "Jumps are those of the method in floating point, across edges that two triangles share. Operations are counted by hand from the "
+            "formulas, for one white directional light: per pixel, per triangle, per row of a triangle."
+        }
         div.scroll tabindex="0" role="region" aria-label={ "Figures of " (scene) } {
             table.sortable {
-                caption { "All methods on " (scene) ". Operations are counted by hand from the formulas, for one white directional light." }
+                caption { "All methods on " (scene) }
                 thead {
                     tr {
                         th rowspan="2" scope="col" data-sort="text" { "method" }
