@@ -48,9 +48,8 @@ impl Form<[u32; 1], [u32; 2]> for Scaled {
     }
 
     #[inline(always)]
-    fn reflect(&self, _: usize, &length: &i32, fields: [u32; 2], power: PixelPower<'_>) -> Reflection {
-        let [diffuse, half] = fields.map(|cosine| over(signed(cosine), length));
-        Reflection { diffuse, highlight: power.at(half) }
+    fn reflect(&self, _: usize, &length: &i32, [light, half]: [u32; 2], power: PixelPower<'_>) -> Reflection {
+        Reflection { diffuse: over(signed(light), length), highlight: power.at(over(signed(half), length)) }
     }
 }
 
