@@ -7,6 +7,7 @@
 //! well conditioned where the printed formulas divide by zero
 //! (Szirmay-Kalos et al.; see their T3..T5).
 
+use super::sliver::Sliver;
 use crate::{
     format::{CENTRE, SUBPIXEL},
     math::{recip::recip, scale},
@@ -18,9 +19,9 @@ const GUARD: i32 = 12;
 /// Farther than this from the first corner, in columns plus rows, the anchor moves to the middle of what is drawn.
 const NEAR: i32 = 256;
 
-/// Length over height up to which a triangle gets quadratic fields, linear ones beyond.
+/// Length over height beyond which quadratic fields are fitted by exact fractions.
 ///
-/// The error of a quadratic grows with the square of this ratio: at most 2^-22 of the nodes' range at 1, 2^-8 here.
+/// The error of the fast way grows with the square of this ratio: at most 2^-22 of the nodes' range at 1, 2^-8 here.
 pub const MAX_THINNESS: i64 = 128;
 
 /// The screen geometry of a triangle, ready to fit polynomials.
@@ -40,8 +41,10 @@ pub struct Basis {
     shift: [i32; 2],
     /// The anchor.
     anchor: [i32; 2],
-    /// Longer than [`MAX_THINNESS`] times its height: quadratic terms would add less than their own error.
+    /// Longer than [`MAX_THINNESS`] times its height.
     thin: bool,
+    /// Corners 1 and 2 from corner 0, in 1/16 pixel.
+    edges: [[i32; 2]; 2],
 }
 
 /// Columns and rows that are drawn, half open: `[left, top, right, bottom]`.
@@ -80,6 +83,7 @@ impl Basis {
             offset: [(pixel[0] << SUBPIXEL) + CENTRE - x0, (pixel[1] << SUBPIXEL) + CENTRE - y0],
             shift,
             anchor: [pixel[0].wrapping_add(shift[0]), pixel[1].wrapping_add(shift[1])],
+            edges: [[x1, y1], [x2, y2]],
             thin: i64::from(extent) * i64::from(extent) > det.saturating_mul(MAX_THINNESS),
         })
     }
@@ -121,7 +125,8 @@ impl Basis {
     pub fn quadratic<const BITS: u32>(&self, nodes: [i32; 6], extra: u32) -> [i32; 6] {
         let [i0, i1, i2, i01, i12, i20] = nodes;
         if self.thin {
-            return self.linear([i0, i1, i2], extra);
+            let sliver = Sliver { edges: self.edges, offset: self.offset };
+            return self.round(sliver.quadratic(nodes, extra + GUARD as u32));
         }
         let (c, dx, dy) = self.slopes(i0, (4 * i01 - 3 * i0 - i1).into(), (4 * i20 - 3 * i0 - i2).into(), extra);
         // Half the matrix of second derivatives: [[ss, st], [st, tt]].

@@ -9,6 +9,7 @@
 pub mod basis;
 pub mod plane;
 pub mod quadric;
+mod sliver;
 
 use crate::format::MAX_LIGHTS;
 

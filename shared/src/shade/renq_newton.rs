@@ -50,10 +50,10 @@ const LIMIT: u64 = (0.1 / (255.0 * 1.5 * 0.02 * 0.02) * (1u64 << 26) as f64) as 
 /// One step from m towards 1/sqrt(D): m (3 - D m²)/2, Q2.30.
 #[inline(always)]
 fn newton(m: i32, square: i32) -> i32 {
-    // Upper halves of products: Q4.28 and, doubled twice on the way, Q2.30; 3 - D m² is about 2, in Q4.28.
+    // Upper halves of products: m² in Q4.28, D m² in Q6.26. 3 - D m² is about 2: Q3.29.
     let upper = |a: i32, b: i32| ((i64::from(a) * i64::from(b)) >> 32) as i32;
-    let product = upper(upper(m, m) << 2, square);
-    upper(m, (3 << 28) - product) << 3
+    let product = upper(upper(m, m), square);
+    upper(m, ((3 << 26) - product) << 3) << 2
 }
 
 /// One Newton step, or two.
@@ -64,14 +64,14 @@ impl<const STEPS: usize, V> Form<([u32; 1], [u32; 1]), V> for Newton<STEPS>
 where
     renq::Scaled: Form<[u32; 1], V, Common = i32>,
 {
-    /// 1/|N|, Q2.30.
+    /// 1/(2|N|), Q2.30.
     type Common = i32;
 
     #[inline(always)]
     fn common(&self, ([length], [square]): ([u32; 1], [u32; 1])) -> i32 {
         let (length, square) = (signed(length), signed(square));
         let once = newton(length, square);
-        if STEPS == 1 { once } else { newton(once, square) }
+        if STEPS == 1 { once >> 1 } else { newton(once, square) >> 1 }
     }
 
     #[inline(always)]
