@@ -8,6 +8,7 @@ pub mod level;
 pub mod look;
 pub mod mesh;
 pub mod obj;
+pub mod oracle;
 pub mod output;
 pub mod quantise;
 pub mod render;

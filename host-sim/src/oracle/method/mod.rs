@@ -1,0 +1,140 @@
+//! The methods by name.
+
+mod angular;
+mod blinn;
+mod cubic;
+mod duff;
+mod environment;
+mod flat;
+mod goldman;
+mod gouraud;
+mod gouraud4;
+mod highlight_test;
+mod phong_rv;
+mod pseudo_phong;
+mod renq;
+mod renq_newton;
+mod six_point;
+mod six_point_adaptive;
+mod six_point_centre;
+mod slerp;
+mod sqrt6;
+mod taylor;
+mod taylor_finite;
+
+use super::{Facet, Frame, Shade, light::phong};
+use std::fmt;
+
+/// A method's way to shade one triangle, its thresholds shifted by as many levels.
+type Build = for<'f> fn(&'f Frame, &'f Facet, f64) -> Shade<'f>;
+
+/// What is known of a method.
+struct Method {
+    name: &'static str,
+    /// Only for lights and a viewer that are infinitely far.
+    constant: bool,
+    /// It compares something with a threshold.
+    decides: bool,
+    build: Build,
+}
+
+/// A method for every scene that decides nothing.
+const fn any(name: &'static str, build: Build) -> Method {
+    Method { name, constant: false, decides: false, build }
+}
+
+/// A method for lights and a viewer that are infinitely far.
+const fn constant(name: &'static str, build: Build) -> Method {
+    Method { constant: true, ..any(name, build) }
+}
+
+/// A method that takes decisions.
+const fn deciding(name: &'static str, build: Build) -> Method {
+    Method { decides: true, ..any(name, build) }
+}
+
+const METHODS: [Method; 26] = [
+    any("flat", |frame, facet, _| flat::shade(frame, facet)),
+    any("gouraud", |frame, facet, _| gouraud::shade(frame, facet)),
+    any("gouraud4", |frame, facet, _| gouraud4::shade(frame, facet)),
+    any("pseudo-phong", |frame, facet, _| pseudo_phong::shade(frame, facet)),
+    deciding("highlight-test", highlight_test::shade),
+    any("six-point", |frame, facet, _| six_point::shade(frame, facet)),
+    deciding("six-point-centre", six_point_centre::shade),
+    deciding("six-point-adaptive", six_point_adaptive::shade),
+    any("cubic", |frame, facet, _| cubic::shade(frame, facet)),
+    any("sqrt6", |frame, facet, _| sqrt6::shade(frame, facet)),
+    any("renq", |frame, facet, _| renq::shade(frame, facet)),
+    any("renq-newton", |frame, facet, _| renq_newton::shade(frame, facet)),
+    any("duff", |frame, facet, _| duff::shade(frame, facet)),
+    constant("taylor", |frame, facet, _| taylor::shade(frame, facet)),
+    any("taylor-finite", |frame, facet, _| taylor_finite::shade(frame, facet)),
+    any("phong", |frame, facet, _| phong(frame, facet)),
+    any("phong-rv", |frame, facet, _| phong_rv::shade(frame, facet)),
+    any("environment", |frame, facet, _| environment::shade(frame, facet)),
+    any("blinn", |frame, facet, _| blinn::linear(frame, facet)),
+    any("quadratic-blinn", |frame, facet, _| blinn::quadratic(frame, facet)),
+    constant("goldman", |frame, facet, _| goldman::shade(frame, facet)),
+    constant("slerp", |frame, facet, _| slerp::shade(frame, facet)),
+    any("angular", |frame, facet, _| angular::angular(frame, facet, angular::refitted)),
+    any("hybrid", |frame, facet, _| angular::hybrid(frame, facet, angular::refitted)),
+    any("angular-original", |frame, facet, _| angular::angular(frame, facet, angular::printed)),
+    any("hybrid-original", |frame, facet, _| angular::hybrid(frame, facet, angular::printed)),
+];
+
+/// The names of all methods.
+pub const NAMES: [&str; METHODS.len()] = {
+    let mut names = [""; METHODS.len()];
+    let mut k = 0;
+    while k < names.len() {
+        names[k] = METHODS[k].name;
+        k += 1;
+    }
+    names
+};
+
+/// Why a method cannot draw a scene.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Unsupported {
+    /// No method has this name.
+    Unknown(String),
+    /// The method wants directions that are the same everywhere, and a light or the viewer is near.
+    Near(&'static str),
+}
+
+impl fmt::Display for Unsupported {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Unknown(name) => write!(f, "unknown method {name:?}; name one of: {}", NAMES.join(", ")),
+            Self::Near(name) => write!(f, "{name} cannot draw point lights or a local viewer: its directions are constant"),
+        }
+    }
+}
+
+impl std::error::Error for Unsupported {}
+
+fn find(name: &str) -> Option<&'static Method> {
+    static TABLE: [Method; METHODS.len()] = METHODS;
+    TABLE.iter().find(|method| method.name == name)
+}
+
+/// The shading of `facet` by a method.
+///
+/// `lean` shifts each threshold that the method decides by, in levels; 0 is the method itself. Two shadings that lean
+/// to either side tell where another arithmetic may decide otherwise.
+///
+/// # Errors
+/// When there is no such method, or when it cannot draw this frame.
+pub fn method<'f>(name: &str, frame: &'f Frame, facet: &'f Facet, lean: f64) -> Result<Shade<'f>, Unsupported> {
+    let method = find(name).ok_or_else(|| Unsupported::Unknown(name.to_owned()))?;
+    if method.constant && !frame.is_constant() {
+        return Err(Unsupported::Near(method.name));
+    }
+    Ok((method.build)(frame, facet, lean))
+}
+
+/// Whether the method takes decisions by a threshold, so that `lean` matters.
+#[must_use]
+pub fn decides(name: &str) -> bool {
+    find(name).is_some_and(|method| method.decides)
+}
