@@ -5,7 +5,7 @@ use crate::vector::{V3, add, apply, cross, dot, length, scale, sub, unit};
 use embedded_graphics_core::geometry::Size;
 use microphong::{
     Stream,
-    format::{DEPTH, EDGE, ROTATION, SUBPIXEL, UNIT},
+    format::{DEPTH, RHO, ROTATION, SUBPIXEL, UNIT},
     scene::Pose,
     stream::record::{self, DIRECTIONAL, EYE_SPACE, PERSPECTIVE, VIEWER_LOCAL},
     vertex::View,
@@ -146,7 +146,7 @@ fn facet(stream: Stream<'_>, mesh: &record::Mesh, triangle: &record::Triangle, i
         normals: corners.map(|v| real(v.normal.map(i32::from), UNIT)),
         positions: corners.map(|v| real(v.position.map(i32::from), UNIT)),
         plane: real(triangle.normal.map(i32::from), UNIT),
-        rho: f64::from(triangle.rho) / f64::from(EDGE).exp2(),
+        rho: f64::from(triangle.rho) / f64::from(RHO).exp2(),
         material: mesh.material.into(),
         id,
     })
