@@ -9,7 +9,8 @@
 
 use crate::{
     format::{CENTRE, SUBPIXEL},
-    math::{recip::recip, scale},
+    math::{recip::recip, scale, scale_wide},
+    poly::cubic::Terms,
 };
 
 /// More fraction bits than the walked format, while coefficients move to the anchor.
@@ -144,6 +145,50 @@ impl Basis {
         let dx = dx.wrapping_add(2 * bend_x).wrapping_add(mixed);
         let dy = dy.wrapping_add(2 * bend_y).wrapping_add(along(dxy, ox));
         self.round([c, dx, dy, dxx, dxy, dyy])
+    }
+
+    /// The terms of the cubic through ten nodes in a range of 2^15, at the anchor; by powers of x, then of y.
+    ///
+    /// In 128 bits all is exact but the gradients, and one rounding of each coefficient.
+    #[must_use]
+    pub fn cubic(&self, nodes: [i32; 10], extra: u32) -> Terms<i64> {
+        let [v0, v1, v2, a1, a2, b1, b2, c1, c2, m] = nodes.map(i128::from);
+        // Symmetric forms in (s, t): 2 times the linear, 4 times the quadratic, 2 times the cubic one.
+        let linear = [-11 * v0 + 2 * v1 + 18 * a1 - 9 * a2, -11 * v0 + 2 * v2 + 18 * c2 - 9 * c1];
+        let side = |v: i128, near: i128, far: i128| 36 * v0 - 18 * v - 90 * near + 72 * far;
+        let quadratic = [side(v1, a1, a2), 36 * v0 - 45 * (a1 + c2) + 9 * (a2 + c1 - b1 - b2) + 54 * m, side(v2, c2, c1)];
+        let side = |v: i128, near: i128, far: i128| 9 * (v - v0) + 27 * (near - far);
+        let mixed = |a: i128, far: i128, b: i128, c: i128| 9 * (2 * a - v0 - far + b + c - 2 * m);
+        let cubic = [side(v1, a1, a2), mixed(a1, a2, b1, c2), mixed(c2, c1, b2, a1), side(v2, c2, c1)];
+        let (linear, quadratic, cubic) =
+            if self.thin { ([2 * (v1 - v0), 2 * (v2 - v0)], [0; 3], [0; 4]) } else { (linear, quadratic, cubic) };
+        // The chain rule, one factor at a time. Products with three mantissas stay below 2^114.
+        let along = |k: usize| {
+            let (s, t) = (i128::from(self.s[k]), i128::from(self.t[k]));
+            move |a: i128, b: i128| a * s + b * t
+        };
+        let (x, y) = (along(0), along(1));
+        let ([l0, l1], [q0, q1, q2], [c0, c1, c2, c3]) = (linear, quadratic, cubic);
+        let ([qx0, qx1], [qy0, qy1]) = ([x(q0, q1), x(q1, q2)], [y(q0, q1), y(q1, q2)]);
+        let [cx0, cx1, cx2] = [x(c0, c1), x(c1, c2), x(c2, c3)];
+        let [cy0, cy1, cy2] = [y(c0, c1), y(c1, c2), y(c2, c3)];
+        let (cxx0, cxx1, cyy0, cyy1) = (x(cx0, cx1), x(cx1, cx2), y(cy0, cy1), y(cy1, cy2));
+        let fraction = extra as i32 + GUARD;
+        let first = |v: i128| scale_wide(v, self.exponent + 1 - fraction);
+        let second = |v: i128| scale_wide(v, 2 * self.exponent + 2 - fraction);
+        let third = |v: i128| scale_wide(v, 3 * self.exponent + 1 - fraction);
+        let terms = Terms(
+            [v0 << fraction, first(y(l0, l1)), second(y(qy0, qy1)), third(y(cyy0, cyy1))],
+            [first(x(l0, l1)), second(2 * y(qx0, qx1)), third(3 * x(cyy0, cyy1))],
+            [second(x(qx0, qx1)), third(3 * y(cxx0, cxx1))],
+            [third(x(cxx0, cxx1))],
+        );
+        // From the corner to the anchor.
+        let by = |k: usize| {
+            let way = i128::from(self.offset[k]) + (i128::from(self.shift[k]) << SUBPIXEL);
+            move |a: i128, b: i128| a + ((b * way) >> SUBPIXEL)
+        };
+        terms.moved(by(1)).transposed().moved(by(0)).transposed().map(|c| scale_wide(c, GUARD) as i64)
     }
 
     /// Moves coefficients from corner 0's pixel to the anchor, exactly, and rounds them to the walked format.

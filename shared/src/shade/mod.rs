@@ -1,13 +1,23 @@
 //! The shading methods, one file each: what it fits, and what it makes of it at a pixel.
 
+#[cfg(feature = "all-shaders")]
+mod blinn;
+#[cfg(feature = "all-shaders")]
+mod cubic;
 mod duff;
+#[cfg(feature = "all-shaders")]
+mod environment;
 mod flat;
 mod form;
 mod gouraud;
+#[cfg(feature = "all-shaders")]
+mod highlight_test;
 mod node;
 mod phong;
 #[cfg(feature = "all-shaders")]
 mod phong_rv;
+#[cfg(feature = "all-shaders")]
+mod quadratic_blinn;
 #[cfg(feature = "all-shaders")]
 mod renq;
 #[cfg(feature = "all-shaders")]
@@ -15,6 +25,10 @@ mod renq_newton;
 mod six_point;
 #[cfg(feature = "all-shaders")]
 mod sqrt6;
+#[cfg(feature = "all-shaders")]
+mod taylor;
+#[cfg(feature = "all-shaders")]
+mod taylor_finite;
 
 use crate::{
     band::Band,
@@ -54,8 +68,13 @@ impl Facet<'_> {
     #[inline(always)]
     fn is_dark<C: Pixel>(&self, palette: &Palette<C>) -> bool {
         let [a, b, c] = self.corners.map(|corner| corner.light[1]);
-        let limit = (i64::from(palette.dark_below()) * i64::from(self.triangle.rho)) >> RHO;
-        i64::from(a.max(b).max(c)) < limit
+        i64::from(a.max(b).max(c)) < self.dark_below(palette)
+    }
+
+    /// Where N·H, linear between the corners, is smaller, N·H over |N| is too small for a highlight; Q2.30.
+    #[inline(always)]
+    fn dark_below<C: Pixel>(&self, palette: &Palette<C>) -> i64 {
+        (i64::from(palette.dark_below()) * i64::from(self.triangle.rho)) >> RHO
     }
 }
 
@@ -96,6 +115,13 @@ impl<C: Pixel> Shading<'_, C> {
     fn draw_literature(&self, facet: &Facet<'_>, band: &mut Band<'_, C>) -> u32 {
         match self.shader {
             Shader::PhongRv => phong_rv::draw(facet, self, band),
+            Shader::HighlightTest => highlight_test::draw(facet, self, band),
+            Shader::Taylor => taylor::draw(facet, self, band),
+            Shader::TaylorFinite => taylor_finite::draw(facet, self, band),
+            Shader::Cubic => cubic::draw(facet, self, band),
+            Shader::Environment => environment::draw(facet, self, band),
+            Shader::Blinn => blinn::draw(facet, self, band),
+            Shader::QuadraticBlinn => quadratic_blinn::draw(facet, self, band),
             Shader::Duff => duff::draw(facet, self, band),
             Shader::Sqrt6 => sqrt6::draw(facet, self, band),
             Shader::Renq => renq::draw(facet, self, band),
