@@ -151,7 +151,9 @@ impl<C: Pixel> Palette<C> {
     pub fn pixel_levels(&self, reflections: impl Iterator<Item = Reflection>) -> [i32; 3] {
         let mut levels = self.ambient;
         for (gains, Reflection { diffuse, highlight }) in self.gains.iter().zip(reflections) {
-            self.add(&mut levels, gains, diffuse.min(1 << PIXEL_COSINE) << (COSINE - PIXEL_COSINE), highlight);
+            // Approximations may lift a cosine above 1, to less than 2.
+            let diffuse = diffuse.min((2 << PIXEL_COSINE) - 1) << (COSINE - PIXEL_COSINE);
+            self.add(&mut levels, gains, diffuse, highlight);
         }
         levels.map(|level| level.min(FULL))
     }

@@ -106,6 +106,8 @@ pub struct Lighting {
     pub viewer: Viewer,
     /// The axes of the eye, to the right, up, and towards the viewer: unit vectors, Q2.30.
     pub axes: [[i32; 3]; 3],
+    /// The eye in these axes, seen from the object's origin, Q18.14: as exact as the camera, unlike a [`Viewer::Local`].
+    pub eye: [i32; 3],
 }
 
 impl Lighting {
@@ -125,7 +127,8 @@ impl Lighting {
             // A checked stream has no more lights than there is room for.
             let _ = sources.push(source(light, pose, towards_eye));
         }
-        Self { sources, viewer, axes: [right, up, towards_eye] }
+        let [x, y, z] = pose.translation;
+        Self { sources, viewer, axes: [right, up, towards_eye], eye: [-x, -y, z] }
     }
 
     /// The two directions that matter if there is just one light, directional, under an infinite viewer:

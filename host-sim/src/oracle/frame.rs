@@ -153,6 +153,11 @@ fn facet(stream: Stream<'_>, mesh: &record::Mesh, triangle: &record::Triangle, i
 }
 
 impl Facet {
+    /// Affine coordinates of the corners.
+    pub(super) const CORNERS: [V3; 3] = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
+    /// Affine coordinates of the centroid.
+    pub(super) const CENTRE: V3 = [1.0 / 3.0; 3];
+
     /// A triangle that comes from no stream. `screen` runs clockwise (y down), and so do the other corners.
     #[must_use]
     pub fn new(screen: [[f64; 2]; 3], vertices: [usize; 3], normals: [V3; 3], positions: [V3; 3]) -> Self {
@@ -202,11 +207,6 @@ impl Facet {
     pub(super) fn middle(&self, i: usize, j: usize) -> f64 {
         length(add(self.normals[i], self.normals[j])) / 2.0
     }
-
-    /// Corners are marked by their number.
-    pub(super) const CORNERS: [V3; 3] = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
-    /// The centroid.
-    pub(super) const CENTRE: V3 = [1.0 / 3.0; 3];
 }
 
 /// Sum of three vectors, weighted.

@@ -67,3 +67,39 @@ pub(super) fn quarter([a, b, c]: V3) -> (usize, V3) {
 pub(super) fn within(part: &[V3; 3], weights: V3) -> V3 {
     blend(&weights, part)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Points inside and a little outside.
+    fn points() -> impl Iterator<Item = V3> {
+        (-2..=12).flat_map(|i| (-2..=12).map(move |j| [f64::from(i) / 10.0, f64::from(j) / 10.0])).map(|[a, b]| [a, b, 1.0 - a - b])
+    }
+
+    #[test]
+    fn six_nodes_give_back_any_quadratic() {
+        let f = |[s, t, _]: V3| 3.0 - 7.0 * s + 2.5 * t + 4.0 * s * s - 9.0 * s * t + 1.25 * t * t;
+        let nodes = SIX.map(f);
+        points().for_each(|p| assert!((sum(&quadratic(p), &nodes) - f(p)).abs() < 1e-12, "{p:?}"));
+    }
+
+    #[test]
+    fn ten_nodes_give_back_any_cubic() {
+        let f =
+            |[s, t, _]: V3| 1.0 + 2.0 * s - t + s * t - 3.0 * t * t + 5.0 * s * s * s - 4.0 * s * s * t + 7.0 * s * t * t - 2.0 * t * t * t;
+        let nodes = TEN.map(f);
+        points().for_each(|p| assert!((sum(&cubic(p), &nodes) - f(p)).abs() < 1e-11, "{p:?}"));
+    }
+
+    #[test]
+    fn quarters_tile_the_triangle() {
+        for p in points() {
+            let (which, inner) = quarter(p);
+            let back = within(&FOUR[which], inner);
+            assert!((0..3).all(|k| (back[k] - p[k]).abs() < 1e-12), "{p:?}: {which} {inner:?}");
+            let inside = |p: V3| p.iter().all(|&w| w >= -1e-12);
+            assert!(!inside(p) || inside(inner), "{p:?}: {which} {inner:?}");
+        }
+    }
+}

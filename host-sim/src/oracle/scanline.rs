@@ -78,3 +78,29 @@ pub(super) fn slerp(a: V3, b: V3, t: f64) -> V3 {
     }
     add(scale(a, ((1.0 - t) * angle).sin() / sine), scale(b, (t * angle).sin() / sine))
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn rows_end_on_the_edges() {
+        let screen = [[0.0, 0.0], [6.0, 4.0], [-2.0, 8.0]];
+        for (y, left, right) in [(0.0, 0.0, 0.0), (2.0, -0.5, 3.0), (4.0, -1.0, 6.0), (6.0, -1.5, 2.0), (9.0, -2.0, -2.0)] {
+            for turn in 0..3 {
+                let span = Span::new(&[0, 1, 2].map(|k| screen[(k + turn) % 3]), y);
+                assert_eq!((span.left.x, span.right.x), (left, right), "{y}");
+            }
+        }
+    }
+
+    #[test]
+    fn great_circles_are_walked_evenly() {
+        let (a, b) = ([1.0, 0.0, 0.0], [0.0, 0.6, 0.8]);
+        for t in [0.0, 0.25, 0.5, 1.0] {
+            let v = slerp(a, b, t);
+            assert!((dot(v, v) - 1.0).abs() < 1e-12);
+            assert!((dot(v, a).acos() - t * std::f64::consts::FRAC_PI_2).abs() < 1e-7);
+        }
+    }
+}

@@ -63,3 +63,51 @@ fn covers(corners: &[[i64; 2]; 3], pixel: [u32; 2]) -> bool {
         side > 0 || side == 0 && (dy < 0 || dy == 0 && dx > 0)
     })
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn facet(screen: [[f64; 2]; 3], nearness: f64) -> Facet {
+        Facet { nearness: [nearness; 3], ..Facet::new(screen, [0, 1, 2], [[0.0, 0.0, 1.0]; 3], [[0.0; 3]; 3]) }
+    }
+
+    /// A fan around a pixel centre, spokes through other centres: every pixel of the square belongs to exactly one part.
+    #[test]
+    fn neighbours_share_no_pixel_and_leave_none() {
+        let hub = [4.5, 3.5];
+        let rim = [[0.5, 0.5], [8.5, 0.5], [8.5, 3.5], [8.5, 8.5], [4.5, 8.5], [0.5, 8.5], [0.5, 5.5]];
+        let mut count = [[0; 10]; 10];
+        for k in 0..rim.len() {
+            for [x, y] in facet([hub, rim[k], rim[(k + 1) % rim.len()]], 0.5).pixels((10, 10)) {
+                count[y as usize][x as usize] += 1;
+            }
+        }
+        for (y, row) in count.iter().enumerate() {
+            for (x, &n) in row.iter().enumerate() {
+                // Top and left edges take their pixels, bottom and right ones do not.
+                assert_eq!(n, i32::from(x < 8 && y < 8), "{x} {y}");
+            }
+        }
+    }
+
+    #[test]
+    fn pixels_outside_the_picture_are_cut_off() {
+        let wide = facet([[-50.0, -50.0], [100.0, -50.0], [-50.0, 100.0]], 0.5);
+        assert_eq!(wide.pixels((7, 5)).count(), 35);
+        assert_eq!(facet([[-50.0, -50.0], [-40.0, -50.0], [-50.0, -40.0]], 0.5).pixels((7, 5)).count(), 0);
+    }
+
+    #[test]
+    fn the_nearest_comes_first_and_equals_stay() {
+        let square = [[0.0, 0.0], [8.0, 0.0], [0.0, 8.0]];
+        let step = 1.0 / 65_536.0;
+        let facets = [0.25, 0.5, 0.5 + step, 0.5, 0.5 - 4.0 * step].map(|nearness| facet(square, nearness));
+        let axes = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
+        let viewer = crate::oracle::Place::Far(axes[2]);
+        let frame = Frame { size: (8, 8), facets: facets.to_vec(), lights: Vec::new(), viewer, axes, materials: Vec::new() };
+        let visible = frame.visible();
+        assert_eq!(visible[0], [2, 1, 3]);
+        assert!(visible[63].is_empty());
+    }
+}

@@ -7,21 +7,22 @@
 //! well conditioned where the printed formulas divide by zero
 //! (Szirmay-Kalos et al.; see their T3..T5).
 
+use super::sliver::Sliver;
 use crate::{
-    format::{CENTRE, SUBPIXEL},
+    format::{CENTRE, FINE, SPLITS, SUBPIXEL},
     math::{recip::recip, scale, scale_wide},
-    poly::cubic::Terms,
+    poly::terms::Terms,
 };
 
 /// More fraction bits than the walked format, while coefficients move to the anchor.
 const GUARD: i32 = 12;
 
 /// Farther than this from the first corner, in columns plus rows, the anchor moves to the middle of what is drawn.
-const NEAR: i32 = 256;
+pub const NEAR: i32 = 256;
 
-/// Length over height up to which a triangle gets quadratic fields, linear ones beyond.
+/// Length over height beyond which quadratic fields are fitted by exact fractions.
 ///
-/// The error of a quadratic grows with the square of this ratio: at most 2^-22 of the nodes' range at 1, 2^-8 here.
+/// The error of the fast way grows with the square of this ratio: at most 2^-22 of the nodes' range at 1, 2^-8 here.
 pub const MAX_THINNESS: i64 = 128;
 
 /// The screen geometry of a triangle, ready to fit polynomials.
@@ -35,14 +36,16 @@ pub struct Basis {
     s: [i32; 2],
     t: [i32; 2],
     exponent: i32,
-    /// From corner 0 to the centre of its pixel, in 1/16 pixel.
+    /// From corner 0 to the centre of its pixel, [`FINE`] fraction bits.
     offset: [i32; 2],
     /// From that pixel to the anchor, in pixels.
     shift: [i32; 2],
     /// The anchor.
     anchor: [i32; 2],
-    /// Longer than [`MAX_THINNESS`] times its height: quadratic terms would add less than their own error.
+    /// Longer than [`MAX_THINNESS`] times its height.
     thin: bool,
+    /// Corners 1 and 2 from corner 0, in 1/16 pixel.
+    edges: [[i32; 2]; 2],
 }
 
 /// Columns and rows that are drawn, half open: `[left, top, right, bottom]`.
@@ -78,11 +81,34 @@ impl Basis {
             t: [mantissa(y1.wrapping_neg()), mantissa(x1)],
             // gradient per pixel = 16 c / det = mantissa 2^(drop + 4 + zeros - 94)
             exponent: 90 - zeros - drop,
-            offset: [(pixel[0] << SUBPIXEL) + CENTRE - x0, (pixel[1] << SUBPIXEL) + CENTRE - y0],
+            offset: [(pixel[0] << SUBPIXEL) + CENTRE - x0, (pixel[1] << SUBPIXEL) + CENTRE - y0].map(|c| c << SPLITS),
             shift,
             anchor: [pixel[0].wrapping_add(shift[0]), pixel[1].wrapping_add(shift[1])],
+            edges: [[x1, y1], [x2, y2]],
             thin: i64::from(extent) * i64::from(extent) > det.saturating_mul(MAX_THINNESS),
         })
+    }
+
+    /// The basis of a part of the triangle: its copy, 2^`level` times smaller, with corner 0 at `corner` ([`FINE`] fraction
+    /// bits), turned by 180 degrees or not. Exact: a copy's gradients are the triangle's, times ±2^`level`.
+    ///
+    /// A part that is not `near` its corner everywhere has the triangle's anchor.
+    #[cfg(feature = "all-shaders")]
+    #[must_use]
+    pub fn part(&self, corner: [i32; 2], level: u32, turned: bool, near: bool) -> Self {
+        let gradient = |g: [i32; 2]| if turned { g.map(i32::wrapping_neg) } else { g };
+        let pixel = corner.map(|c| c >> FINE);
+        let centre = |k: usize| (pixel[k] << FINE).wrapping_add(1 << (FINE - 1)).wrapping_sub(corner[k]);
+        let anchor = if near { pixel } else { self.anchor };
+        Self {
+            s: gradient(self.s),
+            t: gradient(self.t),
+            exponent: self.exponent - level as i32,
+            offset: [centre(0), centre(1)],
+            shift: [anchor[0].wrapping_sub(pixel[0]), anchor[1].wrapping_sub(pixel[1])],
+            anchor,
+            thin: self.thin,
+        }
     }
 
     /// Column of the anchor.
@@ -122,7 +148,8 @@ impl Basis {
     pub fn quadratic<const BITS: u32>(&self, nodes: [i32; 6], extra: u32) -> [i32; 6] {
         let [i0, i1, i2, i01, i12, i20] = nodes;
         if self.thin {
-            return self.linear([i0, i1, i2], extra);
+            let sliver = Sliver { edges: self.edges, offset: self.offset };
+            return self.round(sliver.quadratic(nodes, extra + GUARD as u32));
         }
         let (c, dx, dy) = self.slopes(i0, (4 * i01 - 3 * i0 - i1).into(), (4 * i20 - 3 * i0 - i2).into(), extra);
         // Half the matrix of second derivatives: [[ss, st], [st, tt]].
@@ -152,43 +179,21 @@ impl Basis {
     /// In 128 bits all is exact but the gradients, and one rounding of each coefficient.
     #[must_use]
     pub fn cubic(&self, nodes: [i32; 10], extra: u32) -> Terms<i64> {
-        let [v0, v1, v2, a1, a2, b1, b2, c1, c2, m] = nodes.map(i128::from);
-        // Symmetric forms in (s, t): 2 times the linear, 4 times the quadratic, 2 times the cubic one.
-        let linear = [-11 * v0 + 2 * v1 + 18 * a1 - 9 * a2, -11 * v0 + 2 * v2 + 18 * c2 - 9 * c1];
-        let side = |v: i128, near: i128, far: i128| 36 * v0 - 18 * v - 90 * near + 72 * far;
-        let quadratic = [side(v1, a1, a2), 36 * v0 - 45 * (a1 + c2) + 9 * (a2 + c1 - b1 - b2) + 54 * m, side(v2, c2, c1)];
-        let side = |v: i128, near: i128, far: i128| 9 * (v - v0) + 27 * (near - far);
-        let mixed = |a: i128, far: i128, b: i128, c: i128| 9 * (2 * a - v0 - far + b + c - 2 * m);
-        let cubic = [side(v1, a1, a2), mixed(a1, a2, b1, c2), mixed(c2, c1, b2, a1), side(v2, c2, c1)];
-        let (linear, quadratic, cubic) =
-            if self.thin { ([2 * (v1 - v0), 2 * (v2 - v0)], [0; 3], [0; 4]) } else { (linear, quadratic, cubic) };
-        // The chain rule, one factor at a time. Products with three mantissas stay below 2^114.
-        let along = |k: usize| {
-            let (s, t) = (i128::from(self.s[k]), i128::from(self.t[k]));
-            move |a: i128, b: i128| a * s + b * t
+        let fraction = extra + GUARD as u32;
+        let terms = if self.thin {
+            let sliver = Sliver { edges: self.edges, offset: self.offset.map(|c| c >> SPLITS), bits: SUBPIXEL };
+            let by = |k: usize| move |a: i128, b: i128| a.wrapping_add(b.wrapping_mul(self.shift[k].into()));
+            sliver.cubic(nodes, fraction).moved_across(by(0)).moved_down(by(1))
+        } else {
+            // With three mantissas terms stay below 2^114, moved below 2^124.
+            let terms = Terms::of(nodes.map(i128::from), self.s.map(i128::from), self.t.map(i128::from));
+            let scaled = terms.map(|c, degree| scale_wide(c, degree as i32 * self.exponent + 2 - fraction as i32));
+            // From the corner to the anchor.
+            let way = |k: usize| i128::from(self.offset[k]) + (i128::from(self.shift[k]) << FINE);
+            let by = |k: usize| move |a: i128, b: i128| a + ((b * way(k)) >> FINE);
+            scaled.moved_across(by(0)).moved_down(by(1))
         };
-        let (x, y) = (along(0), along(1));
-        let ([l0, l1], [q0, q1, q2], [c0, c1, c2, c3]) = (linear, quadratic, cubic);
-        let ([qx0, qx1], [qy0, qy1]) = ([x(q0, q1), x(q1, q2)], [y(q0, q1), y(q1, q2)]);
-        let [cx0, cx1, cx2] = [x(c0, c1), x(c1, c2), x(c2, c3)];
-        let [cy0, cy1, cy2] = [y(c0, c1), y(c1, c2), y(c2, c3)];
-        let (cxx0, cxx1, cyy0, cyy1) = (x(cx0, cx1), x(cx1, cx2), y(cy0, cy1), y(cy1, cy2));
-        let fraction = extra as i32 + GUARD;
-        let first = |v: i128| scale_wide(v, self.exponent + 1 - fraction);
-        let second = |v: i128| scale_wide(v, 2 * self.exponent + 2 - fraction);
-        let third = |v: i128| scale_wide(v, 3 * self.exponent + 1 - fraction);
-        let terms = Terms(
-            [v0 << fraction, first(y(l0, l1)), second(y(qy0, qy1)), third(y(cyy0, cyy1))],
-            [first(x(l0, l1)), second(2 * y(qx0, qx1)), third(3 * x(cyy0, cyy1))],
-            [second(x(qx0, qx1)), third(3 * y(cxx0, cxx1))],
-            [third(x(cxx0, cxx1))],
-        );
-        // From the corner to the anchor.
-        let by = |k: usize| {
-            let way = i128::from(self.offset[k]) + (i128::from(self.shift[k]) << SUBPIXEL);
-            move |a: i128, b: i128| a + ((b * way) >> SUBPIXEL)
-        };
-        terms.moved(by(1)).transposed().moved(by(0)).transposed().map(|c| scale_wide(c, GUARD) as i64)
+        terms.map(|c, _| scale_wide(c, GUARD) as i64)
     }
 
     /// Moves coefficients from corner 0's pixel to the anchor, exactly, and rounds them to the walked format.
@@ -209,8 +214,8 @@ impl Basis {
     }
 }
 
-/// `gradient` times `offset` sixteenths of a pixel.
+/// `gradient` times `offset`, [`FINE`] fraction bits.
 #[inline(always)]
 fn along(gradient: i64, offset: i32) -> i64 {
-    gradient.wrapping_mul(offset.into()) >> SUBPIXEL
+    gradient.wrapping_mul(offset.into()) >> FINE
 }

@@ -3,49 +3,15 @@
 //! Third differences add up with the third power of the distance, so coefficients have [`FINER`] more fraction bits than
 //! the walked format, in 64 bits.
 
-use super::{Patch, Walker, basis::Basis};
+use super::{
+    Patch, Walker,
+    basis::Basis,
+    terms::{Terms, moved},
+};
 
 /// Fraction bits of a coefficient that a walked value has not. Nine integer bits of the walked format become eleven:
 /// values a factor of two outside of it are clamped, not wrapped.
 pub const FINER: u32 = 30;
-
-/// The terms of a cubic in two variables: by powers of the first one, each list by powers of the second.
-#[derive(Clone, Copy, Debug)]
-pub struct Terms<T>(pub [T; 4], pub [T; 3], pub [T; 2], pub [T; 1]);
-
-impl<T: Copy> Terms<T> {
-    /// `f` of each coefficient.
-    #[must_use]
-    pub fn map<R>(self, f: impl Fn(T) -> R) -> Terms<R> {
-        Terms(self.0.map(&f), self.1.map(&f), self.2.map(&f), self.3.map(&f))
-    }
-
-    /// The variables change places.
-    #[must_use]
-    pub fn transposed(self) -> Self {
-        let Self([c, y, yy, yyy], [x, xy, xyy], [xx, xxy], [xxx]) = self;
-        Self([c, x, xx, xxx], [y, xy, xxy], [yy, xyy], [yyy])
-    }
-
-    /// Moves the origin along the second variable; `step(a, b)` is `a` plus `b` times the way.
-    #[inline(always)]
-    #[must_use]
-    pub fn moved(self, step: impl Fn(T, T) -> T) -> Self {
-        let Self([c, y, yy, yyy], [x, xy, xyy], [xx, xxy], [xxx]) = self;
-        // Horner's rule, once for each derivative.
-        let quadratic = |c, y, yy| {
-            let y = step(y, yy);
-            [step(c, y), step(y, yy), yy]
-        };
-        let cubic = |c, y, yy, yyy| {
-            let yy = step(yy, yyy);
-            let y = step(y, yy);
-            let [y_moved, yy_moved, _] = quadratic(y, yy, yyy);
-            [step(c, y), y_moved, yy_moved, yyy]
-        };
-        Self(cubic(c, y, yy, yyy), quadratic(x, xy, xyy), [step(xx, xxy), xxy], [xxx])
-    }
-}
 
 /// A cubic in each of `CH` channels, standing on one row.
 #[derive(Clone, Copy, Debug)]
@@ -55,17 +21,17 @@ impl<const CH: usize> Cubic<CH> {
     /// The cubic through ten nodes per channel: corners 0, 1, 2; the thirds of the edges 01, 12, 20, each time the one
     /// nearer to the edge's start first; the centroid.
     ///
-    /// Nodes lie in a range narrower than 2^15; values are walked with `extra` more fraction bits. A triangle longer than
-    /// [`super::basis::MAX_THINNESS`] times its height gets the linear field through its corners.
+    /// Nodes lie in a range narrower than 2^15; values are walked with `extra` more fraction bits.
     /// Error: at most 2^-31 (1 + S + S² + S³) units of the walked format, S the distance in columns plus rows from the
-    /// anchor, and for set-up 2^-22 k of the nodes' range, k the length over the height.
+    /// anchor, and for set-up 2^-22 k of the nodes' range, k the length over the height; nothing for set-up where k is
+    /// beyond [`super::basis::MAX_THINNESS`].
     /// Source: Vlasic 2002, 4.2; change of basis without his divisions.
     #[must_use]
     pub fn fit(basis: &Basis, nodes: [[i32; 10]; CH], extra: u32) -> Self {
         // From the anchor column to column 0: exact integer arithmetic modulo 2^64.
         let back = i64::from(basis.column());
         let step = |a: i64, b: i64| a.wrapping_sub(b.wrapping_mul(back));
-        Self(nodes.map(|nodes| basis.cubic(nodes, extra + FINER).transposed().moved(step).transposed()))
+        Self(nodes.map(|nodes| basis.cubic(nodes, extra + FINER).moved_across(step)))
     }
 
     /// Adds `bias` to every channel.
@@ -83,13 +49,13 @@ impl<const CH: usize> Patch for Cubic<CH> {
 
     fn jump(&mut self, rows: i32) {
         let rows = i64::from(rows);
-        self.0 = self.0.map(|terms| terms.moved(|a, b| a.wrapping_add(b.wrapping_mul(rows))));
+        self.0 = self.0.map(|terms| terms.moved_down(|a, b| a.wrapping_add(b.wrapping_mul(rows))));
     }
 
     #[inline(always)]
     fn step_row(&mut self) {
         for terms in &mut self.0 {
-            *terms = terms.moved(i64::wrapping_add);
+            *terms = terms.moved_down(i64::wrapping_add);
         }
     }
 
@@ -98,7 +64,7 @@ impl<const CH: usize> Patch for Cubic<CH> {
         let x = i64::from(x);
         let step = |a: i64, b: i64| a.wrapping_add(b.wrapping_mul(x));
         Cubical(self.0.map(|Terms([c, ..], [dx, ..], [dxx, _], [dxxx])| {
-            let Terms([c, dx, dxx, dxxx], ..) = Terms([c, dx, dxx, dxxx], [0; 3], [0; 2], [0]).moved(step);
+            let [c, dx, dxx, dxxx] = moved([c, dx, dxx, dxxx], &step);
             // Differences towards x - 1.
             let d3 = dxxx.wrapping_mul(-6);
             [c, dxx.wrapping_sub(dx).wrapping_sub(dxxx), dxx.wrapping_mul(2).wrapping_add(d3), d3]

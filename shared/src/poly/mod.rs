@@ -10,6 +10,8 @@ pub mod basis;
 pub mod cubic;
 pub mod plane;
 pub mod quadric;
+pub mod terms;
+mod sliver;
 
 use crate::format::MAX_LIGHTS;
 

@@ -28,10 +28,9 @@ impl<const CH: usize> Quadric<CH> {
     /// The quadratic through six nodes per channel: corners 0, 1, 2, then the midpoints of the edges 01, 12, 20.
     ///
     /// All nodes lie in a range narrower than 2^`BITS`; values are walked with `extra` more
-    /// fraction bits. A triangle longer than [`super::basis::MAX_THINNESS`] times its height
-    /// gets the linear field through its corners.
-    /// Error: at most 2^-1 (1 + S + S²) units of the walked format, S the distance
-    /// in columns plus rows from the anchor, and for set-up 2^-22 k² of the nodes' range, k the length over the height.
+    /// fraction bits. Error: at most 2^-1 (1 + S + S²) units of the walked format, S the distance in columns plus rows
+    /// from the anchor, and for set-up 2^-22 k² of the nodes' range, k the length over the height, up to
+    /// [`super::basis::MAX_THINNESS`]; nothing beyond.
     /// Source: Szirmay-Kalos et al.; Vlasic 2002, 4.2; change of basis without his divisions.
     #[inline]
     #[must_use]

@@ -86,10 +86,10 @@ impl Form<[u32; 1], [u32; 2]> for Tabled {
     }
 
     #[inline(always)]
-    fn reflect(&self, _: usize, &half_root: &i32, fields: [u32; 2], power: PixelPower<'_>) -> Reflection {
+    fn reflect(&self, _: usize, &half_root: &i32, [light, half]: [u32; 2], power: PixelPower<'_>) -> Reflection {
         // Upper half of Q2.30 times Q2.30, and half of a root: Q5.27.
-        let [diffuse, half] = fields.map(|cosine| ((i64::from(signed(cosine)) * i64::from(half_root)) >> 32) as i32);
-        Reflection { diffuse, highlight: power.at(half) }
+        let over = |cosine: u32| ((i64::from(signed(cosine)) * i64::from(half_root)) >> 32) as i32;
+        Reflection { diffuse: over(light), highlight: power.at(over(half)) }
     }
 }
 

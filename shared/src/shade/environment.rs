@@ -26,7 +26,7 @@ use crate::{
     palette::Reflection,
     pixel::Pixel,
     poly::{Held, plane::Plane},
-    scene::{Lighting, Source, cosine},
+    scene::{Lighting, Source, Viewer, cosine},
     shade::node::Node,
 };
 
@@ -54,15 +54,17 @@ pub(super) fn linear<const CH: usize>(facet: &Facet<'_>, nodes: [[i32; 3]; CH]) 
     Plane::fit(&facet.basis, nodes.map(|nodes| nodes.map(|node| (node + (1 << (EXTRA - 1))) >> EXTRA)), EXTRA)
 }
 
-/// (u, v) of W = 2(N·V)N - V, Q2.30.
+/// (u, v) of W = 2(N·V)N - V, Q2.30; all in the axes of the eye.
 fn coordinates(lighting: &Lighting, node: &Node) -> [i32; 2] {
-    let view = lighting.viewer.towards(node.position);
-    let [right, up, towards] = lighting.axes;
-    // Half of W + (0, 0, 1), Q4.60: where N is square to V it is small, and all its bits count.
-    let nv = i64::from(cosine(node.normal, view));
-    let ahead = zip(towards, view, |z, v| (i64::from(z) - i64::from(v)) << (COSINE - 1));
-    let middle = normalise_wide(zip(node.normal, ahead, |n, z| i64::from(n) * nv + z));
-    [cosine(right, middle), cosine(up, middle)]
+    let normal = lighting.axes.map(|axis| cosine(axis, node.normal));
+    let [x, y, z] = match lighting.viewer {
+        Viewer::Infinite(_) => [0, 0, ONE],
+        Viewer::Local(_) => normalise_wide(zip(lighting.axes, lighting.eye, |axis, eye| (i64::from(eye) << COSINE) - dot(axis, node.position))),
+    };
+    // Half of W + (0, 0, 1), Q4.60: where it is small, all its bits count.
+    let nv = i64::from(cosine(normal, [x, y, z]));
+    let [u, v, _] = normalise_wide(zip(normal, [-x, -y, ONE - z], |n, ahead| i64::from(n) * nv + (i64::from(ahead) << (COSINE - 1))));
+    [u, v]
 }
 
 /// The unit vector along `v`, Q2.30; zero stays zero.

@@ -39,18 +39,17 @@ pub(super) fn length(facet: &Facet<'_>) -> Quadric<1> {
 pub(super) struct Scaled;
 
 impl Form<[u32; 1], [u32; 2]> for Scaled {
-    /// 1/|N|, Q2.30.
+    /// 1/(2|N|), Q2.30.
     type Common = i32;
 
     #[inline(always)]
     fn common(&self, [length]: [u32; 1]) -> i32 {
-        signed(length)
+        signed(length) >> 1
     }
 
     #[inline(always)]
-    fn reflect(&self, _: usize, &length: &i32, fields: [u32; 2], power: PixelPower<'_>) -> Reflection {
-        let [diffuse, half] = fields.map(|cosine| over(signed(cosine), length));
-        Reflection { diffuse, highlight: power.at(half) }
+    fn reflect(&self, _: usize, &length: &i32, [light, half]: [u32; 2], power: PixelPower<'_>) -> Reflection {
+        Reflection { diffuse: over(signed(light), length), highlight: power.at(over(signed(half), length)) }
     }
 }
 
@@ -59,7 +58,7 @@ impl Form<[u32; 1], ([u32; 1], [u32; 1])> for Scaled {
 
     #[inline(always)]
     fn common(&self, [length]: [u32; 1]) -> i32 {
-        signed(length)
+        signed(length) >> 1
     }
 
     #[inline(always)]
@@ -68,9 +67,8 @@ impl Form<[u32; 1], ([u32; 1], [u32; 1])> for Scaled {
     }
 }
 
-/// A numerator times a reciprocal length, Q2.30 each, as Q5.27. The upper half of the product and its doubling lose
-/// 2^-27, less than the highlight's table.
+/// A numerator times half a reciprocal length, Q2.30 each: the upper half is a cosine in Q5.27.
 #[inline(always)]
-pub(super) fn over(cosine: i32, length: i32) -> i32 {
-    (((i64::from(cosine) * i64::from(length)) >> 32) as i32) << 1
+fn over(cosine: i32, half: i32) -> i32 {
+    ((i64::from(cosine) * i64::from(half)) >> 32) as i32
 }

@@ -47,7 +47,16 @@ fn needs_two(rho: u16, exponent: u16) -> bool {
 /// 0.1 / (255 · 1.5 · 0.02²), Q.26.
 const LIMIT: u64 = (0.1 / (255.0 * 1.5 * 0.02 * 0.02) * (1u64 << 26) as f64) as u64;
 
-/// As many Newton steps.
+/// One step from m towards 1/sqrt(D): m (3 - D m²)/2, Q2.30.
+#[inline(always)]
+fn newton(m: i32, square: i32) -> i32 {
+    // Upper halves of products: m² in Q4.28, D m² in Q6.26. 3 - D m² is about 2: Q3.29.
+    let upper = |a: i32, b: i32| ((i64::from(a) * i64::from(b)) >> 32) as i32;
+    let product = upper(upper(m, m), square);
+    upper(m, ((3 << 26) - product) << 3) << 2
+}
+
+/// One Newton step, or two.
 #[derive(Clone, Copy)]
 struct Newton<const STEPS: usize>;
 
@@ -55,19 +64,14 @@ impl<const STEPS: usize, V> Form<([u32; 1], [u32; 1]), V> for Newton<STEPS>
 where
     renq::Scaled: Form<[u32; 1], V, Common = i32>,
 {
-    /// 1/|N|, Q2.30.
+    /// 1/(2|N|), Q2.30.
     type Common = i32;
 
     #[inline(always)]
     fn common(&self, ([length], [square]): ([u32; 1], [u32; 1])) -> i32 {
-        let mut length = signed(length);
-        for _ in 0..STEPS {
-            // |N|² m², about 1: Q2.30 by two upper halves, each short of two bits.
-            let square = ((i64::from(length) * i64::from(signed(square))) >> 30) as i32;
-            let product = ((i64::from(length) * i64::from(square)) >> 30) as i32;
-            length = ((i64::from(length) * i64::from((3i64 << 30) - i64::from(product))) >> 31) as i32;
-        }
-        length
+        let (length, square) = (signed(length), signed(square));
+        let once = newton(length, square);
+        if STEPS == 1 { once >> 1 } else { newton(once, square) >> 1 }
     }
 
     #[inline(always)]

@@ -111,3 +111,62 @@ pub(super) fn hybrid<'f>(frame: &'f Frame, facet: &'f Facet, widths: Widths) -> 
         frame.levels(facet, lights.iter().map(|(diffuse, half)| [sum(&weights, diffuse), power(half)]))
     })
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::vector::unit;
+    use std::f64::consts::FRAC_PI_2;
+
+    /// Largest difference of the parabolas to cos^s.
+    fn worst(s: f64, widths: Widths) -> f64 {
+        let angles = (0..=20_000).map(|k| FRAC_PI_2 * f64::from(k) / 20_000.0);
+        angles.map(|angle| (parabolas(angle, widths(s)) - angle.cos().powf(s)).abs()).fold(0.0, f64::max)
+    }
+
+    #[test]
+    fn three_parabolas_are_almost_a_power_of_the_cosine() {
+        let refit = (8..=512).map(|s| worst(s.into(), refitted)).fold(0.0, f64::max);
+        assert!((0.0140..0.0145).contains(&refit), "{refit}");
+        assert!((worst(1.0, refitted) - 0.024).abs() < 0.001, "{}", worst(1.0, refitted));
+        for (s, error) in [(1.0, 0.0523), (2.0, 0.041), (128.0, 0.058), (512.0, 0.264)] {
+            assert!((worst(s, printed) - error).abs() < 0.01 * error + 0.0005, "{s}: {}", worst(s, printed));
+        }
+    }
+
+    #[test]
+    fn parabolas_join_smoothly() {
+        for s in [1.0, 5.0, 50.0, 1024.0] {
+            for widths in [printed, refitted] {
+                let [a, b] = widths(s);
+                for joint in [a, b] {
+                    let [before, at, after] = [-1e-6, 0.0, 1e-6].map(|step| parabolas(joint + step, [a, b]));
+                    assert!((after - 2.0 * at + before).abs() < 1e-9, "{s}: {before} {at} {after}");
+                }
+            }
+        }
+    }
+
+    /// With the exponent 1 and a cosine for the parabolas, the formula is exact: a great circle is walked evenly.
+    #[test]
+    fn angles_are_those_of_the_great_circle() {
+        let [l, r, v] = [[0.2, 0.3, 1.0], [-0.5, 0.1, 0.9], [0.4, -0.3, 0.8]].map(|v| unit(v).unwrap());
+        for k in 0..=10 {
+            let t = f64::from(k) / 10.0;
+            let exact = dot(crate::oracle::scanline::slerp(l, r, t), v).powi(40);
+            // Normals of any length, near a fine approximation.
+            let found = along([scale(l, 0.7), scale(r, 1.3)], v, t, 40.0, refitted);
+            assert!((found - exact).abs() < 0.0143 + 1e-6, "{t}: {found} {exact}");
+        }
+    }
+
+    #[test]
+    fn turning_takes_one_direction_to_the_other() {
+        let [from, to, normal] = [[0.2, 0.3, 1.0], [-0.5, 0.1, 0.9], [0.4, -0.3, 0.8]].map(|v| unit(v).unwrap());
+        let moved = turned(from, from, to);
+        assert!((0..3).all(|k| (moved[k] - to[k]).abs() < 1e-12));
+        // A rotation: the normal sees the new direction as it saw the old one.
+        assert!((dot(turned(normal, from, to), to) - dot(normal, from)).abs() < 1e-12);
+        assert!((dot(turned(normal, from, to), turned(normal, from, to)) - 1.0).abs() < 1e-12);
+    }
+}

@@ -7,7 +7,8 @@ use crate::{
 };
 
 /// The largest N·H on a triangle is at most the corners' largest over rho, the least length of an interpolated normal.
-/// A triangle on which it stays below `1 - 8/e` for every light counts as dark; there `cos^e` is below e^-8.
+/// A triangle on which it stays below `1 - 8/e` for every light counts as dark: to the power of e that is less than
+/// exp(-8), a twelfth of a level.
 ///
 /// Near lights or a near viewer: always Phong. `lean` counts in 1/255 of a cosine.
 pub(super) fn shade<'f>(frame: &'f Frame, facet: &'f Facet, lean: f64) -> Shade<'f> {

@@ -46,10 +46,14 @@ pub(super) fn rsqrt(square: f64) -> f64 {
     1.0 / square.max(SHORTEST * SHORTEST).sqrt()
 }
 
+/// Where the interpolated normal may be shorter, no quadratic is near 1/|N|: there it is worked out.
+pub(super) const CURVED: f64 = 0.5;
+
 pub(super) fn shade<'f>(frame: &'f Frame, facet: &'f Facet) -> Shade<'f> {
-    let (numerators, reciprocals) = (Numerators::new(frame, facet), reciprocals(facet));
+    let (numerators, reciprocals, squares) = (Numerators::new(frame, facet), reciprocals(facet), squares(facet));
     Box::new(move |p| {
         let weights = quadratic(facet.weights(p));
-        numerators.lit(&weights, sum(&weights, &reciprocals))
+        let scale = if facet.rho < CURVED { rsqrt(sum(&weights, &squares)) } else { sum(&weights, &reciprocals) };
+        numerators.lit(&weights, scale)
     })
 }

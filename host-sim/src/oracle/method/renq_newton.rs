@@ -1,6 +1,6 @@
 //! Phong without a division: as renq, its 1/|N| made better by Newton's iteration with the exact |N|².
 
-use super::renq::{Numerators, reciprocals, rsqrt, squares};
+use super::renq::{CURVED, Numerators, reciprocals, rsqrt, squares};
 use crate::oracle::{
     Facet, Frame, Shade,
     poly::{quadratic, sum},
@@ -22,7 +22,7 @@ pub(super) fn shade<'f>(frame: &'f Frame, facet: &'f Facet) -> Shade<'f> {
         let weights = quadratic(facet.weights(p));
         let square = sum(&weights, &squares);
         let newton = |m: f64| m * (3.0 - square * m * m) / 2.0;
-        let scale = if facet.rho < 0.5 { rsqrt(square) } else { (0..steps).fold(sum(&weights, &reciprocals), |m, _| newton(m)) };
+        let scale = if facet.rho < CURVED { rsqrt(square) } else { (0..steps).fold(sum(&weights, &reciprocals), |m, _| newton(m)) };
         numerators.lit(&weights, scale)
     })
 }
