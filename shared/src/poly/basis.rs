@@ -44,8 +44,10 @@ pub struct Basis {
     anchor: [i32; 2],
     /// Longer than [`MAX_THINNESS`] times its height.
     thin: bool,
-    /// Corners 1 and 2 from corner 0, in 1/16 pixel.
+    /// Corners 1 and 2 from corner 0, in 1/16 pixel, of a part of the triangle 2^`level` times finer.
     edges: [[i32; 2]; 2],
+    /// How often the triangle was split.
+    level: u32,
 }
 
 /// Columns and rows that are drawn, half open: `[left, top, right, bottom]`.
@@ -85,6 +87,7 @@ impl Basis {
             shift,
             anchor: [pixel[0].wrapping_add(shift[0]), pixel[1].wrapping_add(shift[1])],
             edges: [[x1, y1], [x2, y2]],
+            level: 0,
             thin: i64::from(extent) * i64::from(extent) > det.saturating_mul(MAX_THINNESS),
         })
     }
@@ -108,6 +111,8 @@ impl Basis {
             shift: [anchor[0].wrapping_sub(pixel[0]), anchor[1].wrapping_sub(pixel[1])],
             anchor,
             thin: self.thin,
+            edges: self.edges.map(gradient),
+            level,
         }
     }
 
@@ -148,7 +153,9 @@ impl Basis {
     pub fn quadratic<const BITS: u32>(&self, nodes: [i32; 6], extra: u32) -> [i32; 6] {
         let [i0, i1, i2, i01, i12, i20] = nodes;
         if self.thin {
-            let sliver = Sliver { edges: self.edges, offset: self.offset };
+            // In 1/16 pixel, in a part of the triangle as much finer as it is smaller: all exact.
+            let offset = self.offset.map(|c| c >> (SPLITS - self.level));
+            let sliver = Sliver { edges: self.edges, offset, bits: SUBPIXEL + self.level };
             return self.round(sliver.quadratic(nodes, extra + GUARD as u32));
         }
         let (c, dx, dy) = self.slopes(i0, (4 * i01 - 3 * i0 - i1).into(), (4 * i20 - 3 * i0 - i2).into(), extra);
