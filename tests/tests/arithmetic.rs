@@ -79,7 +79,10 @@ fn integers_follow_their_method() {
                     let worst: Vec<_> = worst.collect();
                     let (most, place) = worst.iter().copied().fold((0.0, ""), |a, b| if b.0 > a.0 { b } else { a });
                     println!("{:20} {most:.3} LSB at most, on {place}", shader.name());
-                    wrong.lock().unwrap().extend(worst.iter().filter(|w| w.0 > LIMIT).map(|w| format!("{} {}: {}", shader.name(), w.1, w.0)));
+                    wrong
+                        .lock()
+                        .unwrap()
+                        .extend(worst.iter().filter(|w| w.0 > LIMIT).map(|w| format!("{} {}: {}", shader.name(), w.1, w.0)));
                 }
             });
         }

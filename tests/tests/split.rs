@@ -150,7 +150,8 @@ fn arithmetic_is_exact_to_half_a_level() {
     for name in scene::NAMES {
         for shader in SPLITTING {
             for number in [0, 17, 63] {
-                let e = error(name, shader, number); assert!(e <= 500.0, "{name}, {}, frame {number}", shader.name());
+                let e = error(name, shader, number);
+                assert!(e <= 500.0, "{name}, {}, frame {number}", shader.name());
             }
         }
     }

@@ -10,8 +10,8 @@ pub mod basis;
 pub mod cubic;
 pub mod plane;
 pub mod quadric;
-pub mod terms;
 mod sliver;
+pub mod terms;
 
 use crate::format::MAX_LIGHTS;
 

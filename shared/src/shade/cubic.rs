@@ -8,7 +8,8 @@ use crate::{band::Band, pixel::Pixel, poly::cubic::Cubic};
 
 pub(super) fn draw<C: Pixel>(facet: &Facet<'_>, shading: &Shading<'_, C>, band: &mut Band<'_, C>) -> u32 {
     let [a, b, c] = facet.corners.map(|corner| shading.corner_levels(corner));
-    let [ab, ba, bc, cb, ca, ac, middle] = facet.thirds().map(|node| shading.levels(&node));
+    let thirds = [[2, 1, 0], [1, 2, 0], [0, 2, 1], [0, 1, 2], [1, 0, 2], [2, 0, 1], [1, 1, 1]];
+    let [ab, ba, bc, cb, ca, ac, middle] = thirds.map(|weights| shading.levels(&facet.third(weights, 0)));
     let nodes = [a, b, c, ab, ba, bc, cb, ca, ac, middle];
     let channel = |k: usize| nodes.map(|levels| levels[k]);
     if !shading.palette.three_channels {

@@ -11,17 +11,17 @@ mod flat;
 mod form;
 mod gouraud;
 #[cfg(feature = "all-shaders")]
-mod highlight_test;
-#[cfg(feature = "all-shaders")]
 mod gouraud4;
+#[cfg(feature = "all-shaders")]
+mod highlight_test;
 mod node;
 mod phong;
 #[cfg(feature = "all-shaders")]
 mod phong_rv;
 #[cfg(feature = "all-shaders")]
-mod quadratic_blinn;
-#[cfg(feature = "all-shaders")]
 mod pseudo_phong;
+#[cfg(feature = "all-shaders")]
+mod quadratic_blinn;
 #[cfg(feature = "all-shaders")]
 mod renq;
 #[cfg(feature = "all-shaders")]

@@ -48,27 +48,21 @@ impl Facet<'_> {
     }
 
     /// The point with the barycentric coordinates `weights / 2^bits`, which are not negative; unit normal.
-    pub(super) fn node(&self, weights: [i32; 3], bits: u32) -> Node {
-        let (position, normal) = self.weighted(weights);
-        Node { position: position.map(|c| c >> bits), normal: normalise(normal) }
-    }
-
-    /// Thirds of the edges 01, 12, 20, each time the one nearer to the edge's start first, and the centroid; unit normals.
     #[cfg(feature = "all-shaders")]
-    pub(super) fn thirds(&self) -> [Node; 7] {
-        [[2, 1, 0], [1, 2, 0], [0, 2, 1], [0, 1, 2], [1, 0, 2], [2, 0, 1], [1, 1, 1]].map(|weights| {
-            let (position, normal) = self.weighted(weights);
-            Node { position: position.map(|c| (c + 1).div_euclid(3)), normal: normalise(normal) }
-        })
-    }
-
-    /// The corners' positions and normals, each time its weight, summed up.
-    fn weighted(&self, weights: [i32; 3]) -> ([i32; 3], [i32; 3]) {
-        let sum = |v: [[i32; 3]; 3]| {
+    pub(super) fn node(&self, weights: [i32; 3], bits: u32) -> Node {
+        let mean = |v: [[i32; 3]; 3]| {
             let [a, b, c] = zip(v, weights, |v, weight| v.map(|c| c * weight));
             add(a, add(b, c))
         };
-        (sum(self.vertices.map(|vertex| wide(vertex.position))), sum(self.vertices.map(|vertex| wide(vertex.normal))))
+        let position = mean(self.vertices.map(|vertex| wide(vertex.position)));
+        Node { position: position.map(|c| c >> bits), normal: normalise(mean(self.vertices.map(|vertex| wide(vertex.normal)))) }
+    }
+
+    /// The point with the barycentric coordinates `weights / (3 2^bits)`; unit normal.
+    #[cfg(feature = "all-shaders")]
+    pub(super) fn third(&self, weights: [i32; 3], bits: u32) -> Node {
+        let node = self.node(weights, bits);
+        Node { position: node.position.map(|c| c / 3), ..node }
     }
 
     /// Position, and sum of the ends' normals (Q3.14), at the middle of each edge.
