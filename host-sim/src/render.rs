@@ -8,7 +8,6 @@ use embedded_graphics_core::{
 };
 use microphong::{
     Memory, Renderer, Shader, Stats, Stream, Workspace,
-    format::{BIAS, RAMP, WALK},
     pixel::{PictureCrc, Pixel},
 };
 
@@ -127,52 +126,4 @@ pub fn picture(stream: Stream<'_>, settings: &Settings, number: u32) -> Result<P
         Format::Gray8 => draw::<Gray8>(stream, settings, number),
         Format::Gray4 => draw::<Gray4>(stream, settings, number),
     }
-}
-
-/// A level as it is walked, before an output format makes colours of it.
-#[derive(Clone, Copy, Debug)]
-enum Walked {
-    /// A colour from outside the walk: the background.
-    Colour,
-    /// Biased, with [`WALK`] fraction bits, half a level included.
-    Levels([u32; 3]),
-}
-
-impl Pixel for Walked {
-    const GRAY: bool = false;
-    const DEPTH: [u32; 3] = [8; 3];
-    const BYTES: usize = 3;
-
-    fn pack(_: [u8; 3]) -> Self {
-        Self::Colour
-    }
-
-    fn bits(self) -> u32 {
-        0
-    }
-
-    fn ramped(_: &[Self; RAMP], level: u32) -> Self {
-        Self::Levels([level; 3])
-    }
-
-    fn mixed(levels: [u32; 3]) -> Self {
-        Self::Levels(levels)
-    }
-}
-
-/// Draws frame `number` and returns its levels before they are rounded to a pixel format; 255 is full, `None` is background.
-///
-/// Of a material that is drawn in one channel all three are the level of its brightest one.
-///
-/// # Errors
-/// Those of [`frame`].
-pub fn levels(stream: Stream<'_>, size: Size, shader: Shader, number: u32) -> Result<Vec<Option<[f64; 3]>>> {
-    let (pixels, _) = frame::<Walked>(stream, size, shader, false, size.height, number)?;
-    let one = f64::from(WALK).exp2();
-    let level = |walked: u32| ((f64::from(walked) / one) - 0.5 - f64::from(BIAS)).clamp(0.0, 255.0);
-    let levels = pixels.into_iter().map(|pixel| match pixel {
-        Walked::Colour => None,
-        Walked::Levels(walked) => Some(walked.map(level)),
-    });
-    Ok(levels.collect())
 }

@@ -235,6 +235,68 @@ fn near_lights_are_refused_by_name() {
     assert_eq!(unknown, Unsupported::Unknown("tylor".to_owned()));
 }
 
+/// One of Newton's steps per pixel is enough: rows of 8 pixels and more, normals up to 60 degrees apart.
+#[test]
+fn a_length_is_known_from_its_neighbour() {
+    let normals = [-30.0f64, 30.0, 30.0].map(|degrees| [degrees.to_radians().sin(), 0.0, degrees.to_radians().cos()]);
+    for (width, error) in [(8.0, 2e-3), (32.0, 2e-4)] {
+        // The left edge has one normal, the right edge the other: all rows are alike but for their lengths.
+        let facet = Facet::new([[0.0, 0.0], [width, -20.0], [width, 20.0]], [0, 1, 2], normals, POSITIONS);
+        let mut frame = single(facet, TOWARDS_EYE, TOWARDS_EYE, 50.0);
+        frame.materials[0] = Material { ambient: [0.0; 3], diffuse: [1.0; 3], specular: [0.0; 3], exponent: 50.0 };
+        let facet = &frame.facets[0];
+        let (found, exact) = (method("goldman", &frame, facet, 0.0).unwrap(), phong(&frame, facet));
+        let errors = (0..width as u32).map(|x| [f64::from(x) + 0.5, 0.0]).map(|p| distance(found(p), exact(p)) / 255.0);
+        let worst = errors.fold(0.0, f64::max);
+        assert!((error / 20.0..error).contains(&worst), "{width}: {worst}");
+    }
+}
+
+/// Triangles of 8, 16, 32 ... pixels are split 0, 1, 2 ... times.
+#[test]
+fn pseudo_phong_counts_pixels() {
+    let normals = [[-0.4, 0.3, 1.0], [0.5, 0.2, 1.0], [0.0, -0.6, 1.0]].map(|n| unit(n).unwrap());
+    let levels = |name: &str, longest: f64| {
+        // A right-angled triangle of the sides 3, 4, 5.
+        let facet = Facet::new([[0.0, 0.0], [0.8 * longest, 0.0], [0.0, 0.6 * longest]], [0, 1, 2], normals, POSITIONS);
+        let frame = single(facet, Place::Far(unit([-0.4, 0.5, 0.77]).unwrap()), TOWARDS_EYE, 50.0);
+        let shade = method(name, &frame, &frame.facets[0], 0.0).unwrap();
+        [[0.3, 0.3], [0.1, 0.2], [0.21, 0.09], [0.5, 0.05]].map(|p| shade(p.map(|c| c * longest)))
+    };
+    for (longest, name) in [(7.999, "gouraud"), (8.001, "gouraud4"), (15.999, "gouraud4")] {
+        let (one, other) = (levels("pseudo-phong", longest), levels(name, longest));
+        assert!(one.iter().zip(other).all(|(&a, b)| distance(a, b) < 1e-9), "{longest} {name}: {one:?} {other:?}");
+    }
+    // Finer and finer, until 6 splits are reached.
+    let error = |longest: f64| {
+        let pairs = levels("pseudo-phong", longest).into_iter().zip(levels("phong", longest));
+        pairs.map(|(a, b)| distance(a, b)).fold(0.0, f64::max)
+    };
+    let errors = [6.0, 12.0, 24.0, 48.0, 96.0, 192.0, 384.0, 768.0].map(error);
+    assert!(errors[1..7].windows(2).all(|e| e[1] < e[0]) && errors[6] == errors[7] && errors[6] < 0.1, "{errors:?}");
+}
+
+/// What counts as dark is dark, and most of a sphere does.
+#[test]
+fn no_highlight_is_missed() {
+    let mut frame = frame("sphere-690", 0);
+    frame.materials[0].exponent = 50.0;
+    let mut shiny = frame.clone();
+    shiny.materials[0] = Material { ambient: [0.0; 3], diffuse: [0.0; 3], specular: [1.0; 3], exponent: 50.0 };
+    let mut dark = 0;
+    for (facet, bare) in frame.facets.iter().zip(&shiny.facets) {
+        let [tested, gouraud, exact] = ["highlight-test", "gouraud", "phong"].map(|name| method(name, &frame, facet, 0.0).unwrap());
+        if points(facet).all(|p| tested(p) == gouraud(p)) {
+            dark += 1;
+            points(facet).for_each(|p| assert!(phong(&shiny, bare)(p)[0] < 255.0 * (-8.0f64).exp(), "triangle {}", facet.id));
+        } else {
+            points(facet).for_each(|p| assert_eq!(tested(p), exact(p)));
+        }
+    }
+    let share = f64::from(dark) / frame.facets.len() as f64;
+    assert!((0.6..0.9).contains(&share), "{share}");
+}
+
 /// The highlight stays where it is, whichever of both formulas draws it, if light, eye and normal lie in a plane.
 #[test]
 fn reflection_and_half_vector_agree_on_the_mirror_direction() {

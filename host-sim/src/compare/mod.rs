@@ -11,6 +11,7 @@ pub mod page;
 mod samples;
 
 use crate::{
+    level,
     oracle::{self, Frame, Levels},
     render::{self, Format, Settings},
 };
@@ -185,7 +186,7 @@ impl<'s> Reference<'s> {
         check(&self.stream, shader)?;
         let name = shader.name();
         let size = Size::new(self.frame.size.0, self.frame.size.1);
-        let integers = render::levels(self.stream, size, shader, self.number)?;
+        let integers = level::picture(self.stream, size, shader, self.number)?;
         let settings = Settings { size, shader, dither: false, band_rows: size.height, format: Format::Rgb888 };
         let picture = render::picture(self.stream, &settings, self.number)?.rgb.as_chunks::<3>().0.to_vec();
         let leans = if oracle::decides(name) { &LEANS[..] } else { &LEANS[..1] };

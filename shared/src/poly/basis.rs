@@ -9,7 +9,7 @@
 
 use super::sliver::Sliver;
 use crate::{
-    format::{CENTRE, SUBPIXEL},
+    format::{CENTRE, FINE, SPLITS, SUBPIXEL},
     math::{recip::recip, scale},
 };
 
@@ -17,7 +17,7 @@ use crate::{
 const GUARD: i32 = 12;
 
 /// Farther than this from the first corner, in columns plus rows, the anchor moves to the middle of what is drawn.
-const NEAR: i32 = 256;
+pub const NEAR: i32 = 256;
 
 /// Length over height beyond which quadratic fields are fitted by exact fractions.
 ///
@@ -35,7 +35,7 @@ pub struct Basis {
     s: [i32; 2],
     t: [i32; 2],
     exponent: i32,
-    /// From corner 0 to the centre of its pixel, in 1/16 pixel.
+    /// From corner 0 to the centre of its pixel, [`FINE`] fraction bits.
     offset: [i32; 2],
     /// From that pixel to the anchor, in pixels.
     shift: [i32; 2],
@@ -43,8 +43,10 @@ pub struct Basis {
     anchor: [i32; 2],
     /// Longer than [`MAX_THINNESS`] times its height.
     thin: bool,
-    /// Corners 1 and 2 from corner 0, in 1/16 pixel.
+    /// Corners 1 and 2 from corner 0, in 1/16 pixel, of a part of the triangle 2^`level` times finer.
     edges: [[i32; 2]; 2],
+    /// How often the triangle was split.
+    level: u32,
 }
 
 /// Columns and rows that are drawn, half open: `[left, top, right, bottom]`.
@@ -80,12 +82,37 @@ impl Basis {
             t: [mantissa(y1.wrapping_neg()), mantissa(x1)],
             // gradient per pixel = 16 c / det = mantissa 2^(drop + 4 + zeros - 94)
             exponent: 90 - zeros - drop,
-            offset: [(pixel[0] << SUBPIXEL) + CENTRE - x0, (pixel[1] << SUBPIXEL) + CENTRE - y0],
+            offset: [(pixel[0] << SUBPIXEL) + CENTRE - x0, (pixel[1] << SUBPIXEL) + CENTRE - y0].map(|c| c << SPLITS),
             shift,
             anchor: [pixel[0].wrapping_add(shift[0]), pixel[1].wrapping_add(shift[1])],
             edges: [[x1, y1], [x2, y2]],
+            level: 0,
             thin: i64::from(extent) * i64::from(extent) > det.saturating_mul(MAX_THINNESS),
         })
+    }
+
+    /// The basis of a part of the triangle: its copy, 2^`level` times smaller, with corner 0 at `corner` ([`FINE`] fraction
+    /// bits), turned by 180 degrees or not. Exact: a copy's gradients are the triangle's, times ±2^`level`.
+    ///
+    /// A part that is not `near` its corner everywhere has the triangle's anchor.
+    #[cfg(feature = "all-shaders")]
+    #[must_use]
+    pub fn part(&self, corner: [i32; 2], level: u32, turned: bool, near: bool) -> Self {
+        let gradient = |g: [i32; 2]| if turned { g.map(i32::wrapping_neg) } else { g };
+        let pixel = corner.map(|c| c >> FINE);
+        let centre = |k: usize| (pixel[k] << FINE).wrapping_add(1 << (FINE - 1)).wrapping_sub(corner[k]);
+        let anchor = if near { pixel } else { self.anchor };
+        Self {
+            s: gradient(self.s),
+            t: gradient(self.t),
+            exponent: self.exponent - level as i32,
+            offset: [centre(0), centre(1)],
+            shift: [anchor[0].wrapping_sub(pixel[0]), anchor[1].wrapping_sub(pixel[1])],
+            anchor,
+            thin: self.thin,
+            edges: self.edges.map(gradient),
+            level,
+        }
     }
 
     /// Column of the anchor.
@@ -125,7 +152,9 @@ impl Basis {
     pub fn quadratic<const BITS: u32>(&self, nodes: [i32; 6], extra: u32) -> [i32; 6] {
         let [i0, i1, i2, i01, i12, i20] = nodes;
         if self.thin {
-            let sliver = Sliver { edges: self.edges, offset: self.offset };
+            // In 1/16 pixel, in a part of the triangle as much finer as it is smaller: all exact.
+            let offset = self.offset.map(|c| c >> (SPLITS - self.level));
+            let sliver = Sliver { edges: self.edges, offset, bits: SUBPIXEL + self.level };
             return self.round(sliver.quadratic(nodes, extra + GUARD as u32));
         }
         let (c, dx, dy) = self.slopes(i0, (4 * i01 - 3 * i0 - i1).into(), (4 * i20 - 3 * i0 - i2).into(), extra);
@@ -169,8 +198,8 @@ impl Basis {
     }
 }
 
-/// `gradient` times `offset` sixteenths of a pixel.
+/// `gradient` times `offset`, [`FINE`] fraction bits.
 #[inline(always)]
 fn along(gradient: i64, offset: i32) -> i64 {
-    gradient.wrapping_mul(offset.into()) >> SUBPIXEL
+    gradient.wrapping_mul(offset.into()) >> FINE
 }

@@ -11,7 +11,7 @@ use crate::{
     vector::{dot, length as length_of},
 };
 
-/// A row's end counts as left of a pixel centre only by more: its column is rounded, and ties are then not missed.
+/// A pixel centre on the right edge is not in the row; the edge's column is rounded, by less than this.
 const TIE: f64 = 1e-9;
 
 pub(super) fn shade<'f>(frame: &'f Frame, facet: &'f Facet) -> Shade<'f> {

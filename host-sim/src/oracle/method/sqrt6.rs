@@ -29,3 +29,17 @@ pub(super) fn shade<'f>(frame: &'f Frame, facet: &'f Facet) -> Shade<'f> {
         frame.lit(facet, cosines)
     })
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn square_undoes_root_and_both_are_smooth() {
+        for w in (-100..=100).map(|k| f64::from(k) / 100.0) {
+            assert!((square(root(w)) - w).abs() < 1e-12, "{w}");
+        }
+        let slope = |w: f64| (root(w + 1e-6) - root(w)) / 1e-6;
+        assert!((slope(0.25 - 1e-6) - 1.0).abs() < 1e-5 && (slope(0.25) - 1.0).abs() < 1e-5);
+    }
+}

@@ -41,7 +41,10 @@ pub(super) fn shade<'f>(frame: &'f Frame, facet: &'f Facet) -> Shade<'f> {
 #[cfg(test)]
 mod tests {
     use super::{super::taylor, *};
-    use crate::vector::scale;
+    use crate::{
+        oracle::{Light, Material, Place},
+        vector::scale,
+    };
 
     const NORMALS: [V3; 3] = [[0.3, -0.2, 0.85], [0.4, 0.1, -0.3], [-0.2, 0.5, 0.25]];
     const TOWARDS: [V3; 3] = [[-0.5, 0.6, 1.2], [0.3, 0.2, 0.1], [0.1, -0.4, 0.2]];
@@ -75,5 +78,33 @@ mod tests {
             let simple = taylor::expansion(crate::oracle::frame::direction(TOWARDS[0]), NORMALS[0], m);
             assert!((expansion([NORMALS[0], m], [TOWARDS[0], [0.0; 3]]) - simple).abs() < 1e-12);
         }
+    }
+
+    /// The vector that is linear in between is L + V, both of unit length, not H.
+    #[test]
+    fn the_sum_of_light_and_view_is_interpolated() {
+        let normals = [[-0.3, -0.2, 1.0], [0.35, -0.1, 1.0], [0.0, 0.4, 1.0]].map(crate::oracle::frame::direction);
+        let positions = [[-0.8, -0.6, 0.0], [0.1, 0.9, 0.0], [0.8, -0.4, 0.0]];
+        let facet = Facet::new([[10.0, 90.0], [40.0, 5.0], [95.0, 70.0]], [0, 1, 2], normals, positions);
+        let glossy = Material { ambient: [0.0; 3], diffuse: [0.0; 3], specular: [1.0; 3], exponent: 1.0 };
+        let frame = Frame {
+            size: (100, 100),
+            facets: vec![facet.clone()],
+            lights: vec![Light { place: Place::Near([-0.9, 1.0, 1.0]), colour: [1.0; 3] }],
+            viewer: Place::Near([0.5, 0.0, 1.5]),
+            axes: Facet::CORNERS,
+            materials: vec![glossy],
+        };
+        let sums = positions.map(|p| {
+            let rays = frame.rays(&frame.lights[0], p);
+            add(rays.light, rays.view)
+        });
+        let place = |x: f64, y: f64| [145.0 / 3.0 + 50.0 * x, 55.0 + 50.0 * y];
+        let shade = shade(&frame, &facet);
+        let exact = |x, y| {
+            let [n, w] = [facet.normals, sums].map(|field| mixed(&field, facet.weights(place(x, y))));
+            dot(n, w) / (length(n) * length(w))
+        };
+        taylor::tests::expands(|x, y| shade(place(x, y))[0] / 255.0, exact).unwrap();
     }
 }
