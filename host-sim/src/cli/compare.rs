@@ -117,7 +117,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome> {
             let compared = compare::check(&stream, shader).map_err(Into::into).and_then(|()| reference.compare(shader));
             let result = match compared {
                 // Among all methods, one that cannot draw the scene does not hide the others.
-                Err(error) if !named => Err(format!("{error:#}")),
+                Err(error) if *all => Err(format!("{error:#}")),
                 other => Ok(other?),
             };
             bar.inc(1);
