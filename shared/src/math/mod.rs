@@ -1,5 +1,9 @@
 //! Integer mathematics, one function a file: method, domain, error and the test that proves it.
 
+#[cfg(feature = "all-shaders")]
+pub mod angle;
+#[cfg(feature = "all-shaders")]
+pub mod arc;
 pub mod power;
 pub mod recip;
 pub mod rsqrt;

@@ -1,6 +1,8 @@
 //! The shading methods, one file each: what it fits, and what it makes of it at a pixel.
 
 #[cfg(feature = "all-shaders")]
+mod angular;
+#[cfg(feature = "all-shaders")]
 mod blinn;
 #[cfg(feature = "all-shaders")]
 mod cubic;
@@ -9,12 +11,18 @@ mod duff;
 mod environment;
 mod flat;
 mod form;
+#[cfg(feature = "all-shaders")]
+mod goldman;
 mod gouraud;
 #[cfg(feature = "all-shaders")]
 mod gouraud4;
 #[cfg(feature = "all-shaders")]
 mod highlight_test;
+#[cfg(feature = "all-shaders")]
+mod hybrid;
 mod node;
+#[cfg(feature = "all-shaders")]
+mod parabola;
 mod phong;
 #[cfg(feature = "all-shaders")]
 mod phong_rv;
@@ -26,11 +34,15 @@ mod quadratic_blinn;
 mod renq;
 #[cfg(feature = "all-shaders")]
 mod renq_newton;
+#[cfg(feature = "all-shaders")]
+mod scanline;
 mod six_point;
 #[cfg(feature = "all-shaders")]
 mod six_point_adaptive;
 #[cfg(feature = "all-shaders")]
 mod six_point_centre;
+#[cfg(feature = "all-shaders")]
+mod slerp;
 #[cfg(feature = "all-shaders")]
 mod split;
 #[cfg(feature = "all-shaders")]
@@ -55,6 +67,8 @@ use crate::{
     vertex::ScreenVertex,
 };
 use core::marker::PhantomData;
+#[cfg(feature = "all-shaders")]
+use parabola::Parabolas;
 
 /// Fraction bits that a walked level has more than a node's.
 const EXTRA: u32 = WALK - LEVEL;
@@ -154,6 +168,12 @@ impl<C: Pixel> Shading<'_, C> {
             Shader::Sqrt6 => sqrt6::draw(facet, self, band),
             Shader::Renq => renq::draw(facet, self, band),
             Shader::RenqNewton => renq_newton::draw(facet, self, band),
+            Shader::Goldman => goldman::draw(facet, self, band),
+            Shader::Slerp => slerp::draw(facet, self, band),
+            Shader::Angular => angular::draw(facet, self, Parabolas::refitted, band),
+            Shader::AngularOriginal => angular::draw(facet, self, Parabolas::printed, band),
+            Shader::Hybrid => hybrid::draw(facet, self, Parabolas::refitted, band),
+            Shader::HybridOriginal => hybrid::draw(facet, self, Parabolas::printed, band),
             _ => 0,
         }
     }
