@@ -22,7 +22,7 @@ impl<const CH: usize> Cubic<CH> {
     /// nearer to the edge's start first; the centroid.
     ///
     /// Nodes lie in a range narrower than 2^15; values are walked with `extra` more fraction bits.
-    /// Error: at most 2^-31 (1 + S + S² + S³) units of the walked format, S the distance in columns plus rows from the
+    /// Error: at most 1 + 2^-31 (1 + S + S² + S³) units of the walked format, S the distance in columns plus rows from the
     /// anchor, and for set-up 2^-22 k of the nodes' range, k the length over the height; nothing for set-up where k is
     /// beyond [`super::basis::MAX_THINNESS`].
     /// Source: Vlasic 2002, 4.2; change of basis without his divisions.
