@@ -14,7 +14,15 @@ fn loops_are_as_short_as_by_hand() {
     let board = Board::Mps2An385;
     let scene = scene::load("peer-sphere").unwrap();
     let elf = Elf::read(&verify::build(board).unwrap()).unwrap();
-    for (shader, limit) in [(Shader::Flat, 9), (Shader::Gouraud, 12), (Shader::SixPoint, 13)] {
+    let limits = [
+        (Shader::Flat, 9),
+        (Shader::Gouraud, 12),
+        (Shader::SixPoint, 13),
+        // The same loops, on parts of triangles.
+        (Shader::Gouraud4, 12),
+        (Shader::SixPointCentre, 13),
+    ];
+    for (shader, limit) in limits {
         let (width, height) = board.size();
         let stream = scene.stream.parse().unwrap();
         let (_, stats) = render::frame::<Rgb565>(stream, Size::new(width, height), shader, false, height, 0).unwrap();

@@ -25,22 +25,44 @@ pub(super) fn draw<C: Pixel>(facet: &Facet<'_>, shading: &Shading<'_, C>, band: 
     parts(&cells, &Cell::WHOLE, &cells.six(), [false; 3], DEPTH, band)
 }
 
-/// Draws a cell by its nodes, or its parts if it may be split and has to be; `locked` edges lie on one that was not split.
+/// The edges of a cell, halved.
+struct Halves {
+    /// The middle of the first half of each edge, and of the second.
+    middles: [[Levels; 2]; 3],
+    /// Whether the edge's parabola fits; then they lie on it.
+    fits: [bool; 3],
+}
+
+/// Draws a cell by its nodes, or its parts if it has to be split; `depth` is how often it may be, once at least.
+/// `locked` edges lie on one that was not split.
 #[inline(never)]
 fn parts<C: Pixel>(cells: &Cells<'_, '_, C>, cell: &Cell, six: &Six, locked: [bool; 3], depth: u32, band: &mut Band<'_, C>) -> u32 {
     if !cells.meets(cell, band) {
         return 0;
     }
-    if depth == 0 {
+    let Halves { middles, fits } = halves(cells, cell, six, locked);
+    if fits == [true; 3] && !cells.misses_centre(cell, six, CENTRE) {
         return cells.quadratic(cell, six, band);
     }
+    let cuts = cells.cuts(cell);
+    let mut pixels = 0;
+    for (k, part) in cell.split().iter().enumerate() {
+        let six = Six { corners: corners(six.corners, six.middles, k), middles: edges(middles, cuts, k) };
+        let locked = edges(fits.map(|fits| [fits; 2]), [false; 3], k);
+        pixels += if depth > 1 { parts(cells, part, &six, locked, depth - 1, band) } else { cells.quadratic(part, &six, band) };
+    }
+    pixels
+}
+
+/// A call of its own: what it needs is off the stack before parts are drawn.
+#[inline(never)]
+fn halves<C: Pixel>(cells: &Cells<'_, '_, C>, cell: &Cell, six: &Six, locked: [bool; 3]) -> Halves {
     let [a, b, c] = six.corners;
     let [ab, bc, ca] = six.middles;
-    // Where the middles of each edge's halves will be, and whether on its parabola.
-    let halves = [(a, ab, b, 0), (b, bc, c, 1), (c, ca, a, 2)].map(|(a, middle, b, k)| {
-        let parabola = [eighths(a, middle, b), eighths(b, middle, a)];
-        let [near, far] = parabola;
-        if !locked.get(k).is_some_and(|&locked| locked) {
+    let [lock_ab, lock_bc, lock_ca] = locked;
+    let half = |k: usize, locked: bool, a: Levels, middle: Levels, b: Levels| {
+        let parabola @ [near, far] = [eighths(a, middle, b), eighths(b, middle, a)];
+        if !locked {
             let lit @ [p, q] = cells.quarters(cell, k);
             let misses = |fitted: Levels, exact: Levels| differ(fitted, exact.map(|level| 8 * level), 8 * EDGE);
             if misses(near, p) || misses(far, q) {
@@ -48,19 +70,9 @@ fn parts<C: Pixel>(cells: &Cells<'_, '_, C>, cell: &Cell, six: &Six, locked: [bo
             }
         }
         (parabola.map(|point| point.map(|level| (level + 4) >> 3)), true)
-    });
-    let fits = halves.map(|(_, fits)| fits);
-    if fits == [true; 3] && !cells.misses_centre(cell, six, CENTRE) {
-        return cells.quadratic(cell, six, band);
-    }
-    let cuts = cells.cuts(cell);
-    let mut pixels = 0;
-    for (k, part) in cell.split().iter().enumerate() {
-        let six = Six { corners: corners(six.corners, six.middles, k), middles: edges(halves.map(|(levels, _)| levels), cuts, k) };
-        let locked = edges(fits.map(|fits| [fits; 2]), [false; 3], k);
-        pixels += parts(cells, part, &six, locked, depth - 1, band);
-    }
-    pixels
+    };
+    let halves = [half(0, lock_ab, a, ab, b), half(1, lock_bc, b, bc, c), half(2, lock_ca, c, ca, a)];
+    Halves { middles: halves.map(|(middles, _)| middles), fits: halves.map(|(_, fits)| fits) }
 }
 
 /// Eight times the parabola from `a` through `middle` to `b`, a quarter of the way.

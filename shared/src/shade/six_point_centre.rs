@@ -23,13 +23,13 @@ pub(super) fn draw<C: Pixel>(facet: &Facet<'_>, shading: &Shading<'_, C>, band: 
     parts(&cells, &Cell::WHOLE, &cells.six(), DEPTH, band)
 }
 
-/// Draws a cell by its nodes, or its parts if it may be split and has to be.
+/// Draws a cell by its nodes, or its parts if it has to be split; `depth` is how often it may be, once at least.
 #[inline(never)]
 fn parts<C: Pixel>(cells: &Cells<'_, '_, C>, cell: &Cell, six: &Six, depth: u32, band: &mut Band<'_, C>) -> u32 {
     if !cells.meets(cell, band) {
         return 0;
     }
-    if depth == 0 || !cells.misses_centre(cell, six, CENTRE) {
+    if !cells.misses_centre(cell, six, CENTRE) {
         return cells.quadratic(cell, six, band);
     }
     let halves = [0, 1, 2].map(|k| cells.quarters(cell, k));
@@ -37,7 +37,7 @@ fn parts<C: Pixel>(cells: &Cells<'_, '_, C>, cell: &Cell, six: &Six, depth: u32,
     let mut pixels = 0;
     for (k, part) in cell.split().iter().enumerate() {
         let six = Six { corners: corners(six.corners, six.middles, k), middles: edges(halves, cuts, k) };
-        pixels += parts(cells, part, &six, depth - 1, band);
+        pixels += if depth > 1 { parts(cells, part, &six, depth - 1, band) } else { cells.quadratic(part, &six, band) };
     }
     pixels
 }

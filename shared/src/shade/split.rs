@@ -44,8 +44,8 @@ pub(super) struct Six {
     pub(super) middles: [Levels; 3],
 }
 
-/// Of a cell's edges 01, 12, 20: their halves in this order, and the edges that cut off the corners 0, 1, 2.
-/// What the edges of part `k` of [`Cell::split`] have of it.
+/// What the edges of part `k` of [`Cell::split`] have of what is known at the halves of a cell's edges 01, 12, 20, and at
+/// the edges that cut off its corners 0, 1, 2.
 #[inline]
 pub(super) fn edges<A: Copy>(halves: [[A; 2]; 3], cuts: [A; 3], k: usize) -> [A; 3] {
     let [[ab, ba], [bc, cb], [ca, ac]] = halves;
@@ -127,15 +127,16 @@ impl<'a, 'f, C: Pixel> Cells<'a, 'f, C> {
         differ(fitted, exact.map(|level| 9 * level), 9 * tolerance)
     }
 
-    fn part(&self, cell: &Cell) -> Part {
+    /// `cell`, unless nothing of it may be seen in `band`.
+    fn part(&self, cell: &Cell, band: &Band<'_, C>) -> Option<Part> {
         let piece = self.facet.outline.piece(cell);
-        Part { piece, basis: piece.basis(&self.facet.basis), depth: self.depth }
+        piece.meets(band).then(|| Part { piece, basis: piece.basis(&self.facet.basis), depth: self.depth })
     }
 
     /// Draws `cell` linear between its corners.
     #[inline(never)]
     pub(super) fn linear(&self, cell: &Cell, corners: &[Levels; 3], band: &mut Band<'_, C>) -> u32 {
-        let part = self.part(cell);
+        let Some(part) = self.part(cell, band) else { return 0 };
         let nodes = transposed(*corners);
         if !self.shading.palette.three_channels {
             self.shading.draw_one(&part, Plane::fit(&part.basis, [nodes[0]], super::EXTRA), Plane::raised, band)
@@ -147,7 +148,7 @@ impl<'a, 'f, C: Pixel> Cells<'a, 'f, C> {
     /// Draws `cell` quadratic between its nodes.
     #[inline(never)]
     pub(super) fn quadratic(&self, cell: &Cell, six: &Six, band: &mut Band<'_, C>) -> u32 {
-        let part = self.part(cell);
+        let Some(part) = self.part(cell, band) else { return 0 };
         let (corners, middles) = (transposed(six.corners), transposed(six.middles));
         let nodes = zip(corners, middles, |[a, b, c], [ab, bc, ca]| [a, b, c, ab, bc, ca]);
         if !self.shading.palette.three_channels {
@@ -162,11 +163,11 @@ impl<'a, 'f, C: Pixel> Cells<'a, 'f, C> {
     /// Each split lights three points, so a part costs the light of one. Parts outside the band cost nothing.
     #[inline(never)]
     pub(super) fn linear_parts(&self, cell: &Cell, corners: &[Levels; 3], depth: u32, band: &mut Band<'_, C>) -> u32 {
-        if !self.meets(cell, band) {
-            return 0;
-        }
         if depth == 0 {
             return self.linear(cell, corners, band);
+        }
+        if !self.meets(cell, band) {
+            return 0;
         }
         let middles = self.middles(cell);
         let mut pixels = 0;
@@ -180,4 +181,48 @@ impl<'a, 'f, C: Pixel> Cells<'a, 'f, C> {
 /// Whether two lights differ by more than `tolerance` in any channel.
 pub(super) fn differ(a: Levels, b: Levels, tolerance: i32) -> bool {
     zip(a, b, |a, b| a.abs_diff(b) > tolerance.unsigned_abs()).contains(&true)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{
+        raster::triangle::Outline,
+        stream::record::{Triangle, Vertex},
+        vertex::{ScreenVertex, State},
+    };
+    use zerocopy::FromZeros;
+
+    /// Points of an edge by the weights of its ends are the same, bit for bit, in both triangles that share it,
+    /// whichever corners its ends are there and whatever lies opposite: so both light and split it alike.
+    #[test]
+    fn neighbours_agree_on_their_edge() {
+        let mut state = 1u64;
+        let mut random = || {
+            state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+            (state >> 48) as i16 / 2
+        };
+        let screen = [[0, 0], [160, 90], [20, 200]].map(|[x, y]| ScreenVertex { x, y, depth: 0, light: [0; 3], state: State::Ready });
+        let [a, b, c] = &screen;
+        let outline = Outline::new([a, b, c]);
+        let basis = outline.basis(crate::raster::triangle::Bounds::new([a, b, c])).unwrap();
+        let triangle = Triangle::new_zeroed();
+        for _ in 0..1_000 {
+            let mut vertex = || Vertex { position: [random(), random(), random()], normal: [random(), random(), random()] };
+            let [p, q, r, s] = [vertex(), vertex(), vertex(), vertex()];
+            let facet = |vertices| Facet { outline, basis, corners: [a, b, c], vertices, rsum: [0; 3], bend: [0; 3], triangle: &triangle };
+            let one = facet([&p, &q, &r]);
+            for (k, other) in [[&q, &p, &s], [&s, &q, &p], [&p, &s, &q]].map(facet).iter().enumerate() {
+                for bits in 0..=5 {
+                    for w in 0..=1 << bits {
+                        let v = (1 << bits) - w;
+                        let node = one.node([v, w, 0], bits);
+                        // Split once more or less, it is the same point.
+                        let same = other.node([[w, v, 0], [0, w, v], [v, 0, w]][k].map(|w| 2 * w), bits + 1);
+                        assert_eq!((node.position, node.normal), (same.position, same.normal));
+                    }
+                }
+            }
+        }
+    }
 }
