@@ -107,7 +107,7 @@ fn parts_cover_what_triangles_cover() {
     for name in scene::NAMES {
         let scene = scene::load(name).unwrap();
         let (width, height) = scene.size;
-        for number in [0, 17, 63] {
+        for number in [0, 63] {
             let draw = |shader| {
                 let (stream, size) = (scene.stream.parse().unwrap(), Size::new(width, height));
                 let picture = level::picture(stream, size, shader, number).unwrap();
