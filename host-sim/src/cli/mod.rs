@@ -3,6 +3,7 @@
 mod bench;
 mod convert;
 mod inspect;
+mod papers;
 mod parse;
 mod render;
 mod report;
@@ -30,6 +31,7 @@ Examples:
   microphong inspect mesh.tri                      what is inside, and how large it is
   microphong verify --board all --scene teapot     compare emulated boards with this computer
   microphong bench                                 count the instructions of a frame
+  microphong papers --only vlasic                  compute again what a paper claims
 
 Exit codes: 0 done; 1 failed, or pictures differ; 2 wrong usage.";
 
@@ -40,6 +42,7 @@ enum Command {
     Render(render::Arguments),
     Verify(verify::Arguments),
     Bench(bench::Arguments),
+    Papers(papers::Arguments),
     Scenes(scenes::Arguments),
 }
 
@@ -69,6 +72,7 @@ pub(crate) fn main() -> ExitCode {
         Command::Render(arguments) => render::run(&arguments),
         Command::Verify(arguments) => verify::run(&arguments),
         Command::Bench(arguments) => bench::run(&arguments),
+        Command::Papers(arguments) => papers::run(&arguments),
         Command::Scenes(arguments) => scenes::run(&arguments),
     };
     let error = match result {
