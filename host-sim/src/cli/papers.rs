@@ -55,28 +55,31 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome> {
 /// What fits a line.
 const WIDTH: usize = 100;
 
+/// Columns of the claim and both figures.
+const LEFT: usize = 69;
+
 /// A table, with a heading for each place in the paper.
 fn text(claims: &[Claim]) -> Result<()> {
     let mut source = "";
     for claim in claims {
+        let Claim { what, unit, paper, ours, verdict, note, .. } = claim;
         if claim.source != source {
             source = &claim.source;
-            report::line(&format!("{source:57} {:>10} {:>10}", "paper", "ours"))?;
+            report::line(&row(source, "paper", "ours"))?;
         }
-        let Claim { what, unit, paper, ours, verdict, note, .. } = claim;
-        let [paper, ours] = [paper, ours].map(ToString::to_string);
-        // Rankings need more room than figures.
-        let line = if paper.len() + ours.len() > 22 {
-            format!("  {what:30} {paper:>18} {ours:>18} {unit:8} {}", verdict.name())
-        } else {
-            format!("  {what:55} {paper:>10} {ours:>10} {unit:8} {}", verdict.name())
-        };
-        report::line(line.trim_end())?;
+        let figures = row(&format!("  {what}"), &paper.to_string(), &ours.to_string());
+        report::line(format!("{figures} {unit:7} {}", verdict.name()).trim_end())?;
         for part in wrapped(note) {
             report::line(&format!("      {part}"))?;
         }
     }
     report::line("")
+}
+
+/// What the figures are, and the figures, to the right.
+fn row(what: &str, paper: &str, ours: &str) -> String {
+    let figures = format!("{paper:>10} {ours:>9}");
+    format!("{what:0$}{figures}", LEFT.saturating_sub(figures.chars().count()))
 }
 
 /// A sentence in lines that leave room for their indentation.

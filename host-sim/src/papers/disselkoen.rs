@@ -1,6 +1,6 @@
 //! Light as a function of an angle (Disselkoen 1991, after Kuijk and Blake 1989).
 
-use super::{Claim, Random, Source, Topic, Value, Verdict, direction, largest};
+use super::{Claim, Random, Source, Topic, Value, Verdict, bishop_weimer, direction, largest};
 use crate::{
     oracle::angular::{Widths, along, parabolas, printed, refitted},
     vector::{V3, add, dot, length, scale, sub},
@@ -21,6 +21,7 @@ pub(super) fn claims() -> Vec<Claim> {
     let mut claims = fit();
     claims.extend(refit());
     claims.extend(small());
+    claims.extend(bishop_weimer::quoted());
     claims.extend(alpha());
     claims.extend(symbols());
     claims.extend(code());
@@ -72,7 +73,7 @@ fn fit() -> Vec<Claim> {
                 (_, Verdict::Confirmed) => "Within his largest error.",
                 _ => "The largest error is not at s = 1.",
             };
-            ANGULAR.claim(format!("cos^s by three parabolas: largest error at s = {s}"), "", text, ours, (verdict, note))
+            ANGULAR.claim(format!("cos^s by three parabolas: worst at s = {s}"), "", text, ours, (verdict, note))
         })
         .into();
     let signed = mean(|error| error);
@@ -400,7 +401,7 @@ fn code() -> Vec<Claim> {
     let cosine = -0.3f64;
     claims.push(CODE.formula(
         "linearshade: sgn·|cos|^s, cos = -0.3, s = 1",
-        [cosine.signum() * cosine.abs(), cosine.max(0.0), parabolas(cosine.acos(), [FRAC_PI_2; 2].map(|w| w - 1e-9)).round()],
+        [cosine.signum() * cosine.abs(), cosine.max(0.0), parabolas(cosine.acos(), refitted(1.0))],
         "Light from behind is none: negative cosines count as 0",
     ));
     claims

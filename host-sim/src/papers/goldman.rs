@@ -59,8 +59,8 @@ fn drift(degrees: f64) -> Claim {
         let exact = direction(add(from, scale(step, f64::from(k))));
         length(cross(normal, exact)).atan2(dot(normal, exact)).to_degrees()
     }));
-    let note = "A constant dN added to a shortened N turns it by too much; the sum must stay as it is, and a copy be normalised.";
-    let what = format!("N + dN renormalised, ends {degrees} degrees apart: off by");
+    let note = "Step the sum and normalise a copy: a constant dN turns the shortened N too far.";
+    let what = format!("N + dN renormalised, ends {degrees} degrees apart");
     NORMALS.claim(what, "degrees", 0.0, worst, (Verdict::at_most(worst, 0.1, 0.25), note))
 }
 
@@ -73,8 +73,8 @@ fn newton(pixels: u32) -> Claim {
         root = (root + square / root) / 2.0;
         (root / square.sqrt() - 1.0).abs()
     }));
-    let note = "Half a level is 2e-3 of full light.";
-    let what = format!("one step per pixel, 60 degrees in {pixels} pixels: relative error");
+    let note = "The relative error of |N|; half a level is 2e-3 of full light.";
+    let what = format!("one step per pixel, 60 degrees in {pixels} pixels");
     NEWTON.claim(what, "", "enough", worst, (Verdict::at_most(worst, 0.5 / 255.0, 1.0 / 255.0), note))
 }
 

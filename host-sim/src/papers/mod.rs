@@ -168,7 +168,7 @@ impl fmt::Display for Value {
                 let text = if size.fract() == 0.0 && size < 1e6 {
                     format!("{number}")
                 } else if (1e-3..1e6).contains(&size) {
-                    format!("{number:.*}", (3.0 - size.log10().floor()).clamp(0.0, 4.0) as usize)
+                    format!("{number:.*}", (3.0 - size.log10().floor()).clamp(0.0, 6.0) as usize)
                 } else {
                     format!("{number:.1e}")
                 };
@@ -183,13 +183,22 @@ impl fmt::Display for Value {
 /// # Errors
 /// When a built-in scene cannot be drawn.
 pub fn claims(topic: Topic) -> Result<Vec<Claim>> {
-    match topic {
-        Topic::Vlasic => vlasic::claims(),
-        Topic::SzirmayKalos => szirmay_kalos::claims(),
-        Topic::BishopWeimer => bishop_weimer::claims(),
-        Topic::Disselkoen => Ok(disselkoen::claims()),
-        Topic::Goldman => Ok(goldman::claims()),
+    let mut claims = match topic {
+        Topic::Vlasic => vlasic::claims()?,
+        Topic::SzirmayKalos => szirmay_kalos::claims()?,
+        Topic::BishopWeimer => bishop_weimer::claims()?,
+        Topic::Disselkoen => disselkoen::claims(),
+        Topic::Goldman => goldman::claims(),
+    };
+    // Claims of one place stand together, places as they first come.
+    let mut places: Vec<String> = Vec::new();
+    for claim in &claims {
+        if !places.contains(&claim.source) {
+            places.push(claim.source.clone());
+        }
     }
+    claims.sort_by_key(|claim| places.iter().position(|place| *place == claim.source));
+    Ok(claims)
 }
 
 /// A place in a paper.

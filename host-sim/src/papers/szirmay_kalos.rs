@@ -62,11 +62,11 @@ fn sphere(meridians: usize, bands: usize, exponent: f64) -> Result<[Claim; 3]> {
         _ => "beyond 4 % of full light the highlight changes its shape",
     };
     let note = format!("Root mean square {quadratic_mean:.2} LSB; {limit}.");
-    let looks = FIGURES.claim(format!("{scene}: quadratic looks like Phong"), "LSB", "invisible", quadratic, (verdict, note));
+    let looks = FIGURES.claim(format!("{scene}: quadratic is wrong by"), "LSB", "invisible", quadratic, (verdict, note));
     let ratio = linear_mean / quadratic_mean;
     let verdict = if ratio > 1.0 { Verdict::Confirmed } else { Verdict::Refuted };
     let note = "Root mean squares, Gouraud's over the quadratic's.";
-    let better = FIGURES.claim(format!("{scene}: quadratic is better than Gouraud by"), "times", "> 1", ratio, (verdict, note));
+    let better = FIGURES.claim(format!("{scene}: better than Gouraud by"), "times", "> 1", ratio, (verdict, note));
     Ok([gouraud, looks, better])
 }
 
@@ -130,7 +130,7 @@ fn centre_test() -> Vec<Claim> {
     }
     let note = "The worst of them all: highlights may lie where the centre does not see them.";
     let verdict = Verdict::at_most(worst, UNSEEN, SLIGHT);
-    found.push(SUBDIVISION.claim("test at the centre: largest error that it overlooks", "LSB", 2.0, worst, (verdict, note)));
+    found.push(SUBDIVISION.claim("test at the centre: largest error overlooked", "LSB", 2.0, worst, (verdict, note)));
     found
 }
 
@@ -150,9 +150,9 @@ fn crack(degrees: f64, exponent: i32) -> Claim {
             (parabola(0.0, 1.0, u) - half).abs()
         }))
     }));
-    let note = "Neighbours may decide differently: the one sees a parabola, the other two.";
-    let what = format!("crack on an edge of {degrees} degrees split on one side, n = {exponent}");
-    SUBDIVISION.claim(what, "LSB", 0.0, gap, (Verdict::at_most(gap, UNSEEN, SLIGHT), note))
+    let note = "The crack: the one neighbour draws a parabola, the other two halves of it.";
+    let what = format!("edge of {degrees} degrees split on one side, n = {exponent}");
+    SUBDIVISION.claim(what, "LSB", 0.0, gap, (Verdict::at_most(gap, 0.5, UNSEEN), note))
 }
 
 /// A recurrence of second order in integers with `bits` fraction bits against the parabola `c + b k + a k²`.
@@ -234,10 +234,10 @@ fn starts() -> [Claim; 2] {
         }
     }
     let mean = (square / f64::from(count.max(1))).sqrt();
-    let judge = |value| (Verdict::at_most(value, UNSEEN, SLIGHT), "The samples lie up to one pixel beside the pixels they are written to.");
+    let judge = |value| (Verdict::at_most(value, 0.5, UNSEEN), "The samples lie up to one pixel beside the pixels they are written to.");
     [
         EDGES.claim("sampling at X_start + k, 168 triangles, n = 50", "LSB", 0.0, worst, judge(worst)),
-        EDGES.claim("the same, root mean square", "LSB", 0.0, mean, judge(mean)),
+        EDGES.claim("sampling at X_start + k: root mean square", "LSB", 0.0, mean, judge(mean)),
     ]
 }
 
@@ -325,9 +325,9 @@ fn affine<T: Real>(sample: &Sample) -> [f64; 6] {
 /// Random triangles on a screen of 320 by 240: what rounding does to the printed solution.
 fn solution() -> [Claim; 4] {
     let mut random = Random(74);
-    // In f64: both forms. In f32: each against the exact one. And triangles whose edge 1-2 is horizontal.
-    let (mut same, mut theirs, mut ours, mut level) = (0f64, 0f64, 0f64, 0u32);
-    for _ in 0..4000 {
+    // The printed form in f64; both in f32.
+    let (mut same, mut theirs, mut ours, mut bad) = (0f64, 0f64, 0f64, 0u32);
+    for _ in 0..40_000 {
         let fine = |v: f64, step: f64| (v * step).round() / step;
         let screen = [(); 3].map(|()| [320.0, 240.0].map(|side| fine(random.between(0.0, side), 16.0)));
         let edges = [1, 2].map(|k| [0, 1].map(|axis| (screen[k][axis] - screen[0][axis]) as f32));
@@ -350,22 +350,22 @@ fn solution() -> [Claim; 4] {
             largest(points.map(|(x, y)| (polynomial(t, x, y) - polynomial(exact, x, y)).abs()).chain([0.0]))
         };
         ours = ours.max(error(affine::<f32>(&sample)));
-        if edges[0][1] == 0.0 {
-            level += u32::from(printed::<f64>(&sample)[3].is_nan());
-        } else {
+        if edges[0][1] != 0.0 {
             same = same.max(error(printed::<f64>(&sample)));
-            theirs = theirs.max(error(printed::<f32>(&sample)));
+            let rounded = error(printed::<f32>(&sample));
+            theirs = theirs.max(rounded);
+            bad += u32::from(rounded > UNSEEN);
         }
     }
     let flat = Sample { edges: [[100.0, 0.0], [30.0, 80.0]], nodes: [10.0, 60.0, 90.0, 40.0, 80.0, 45.0] };
     let flat = [printed::<f64>(&flat)[3], affine::<f64>(&flat)[3]];
     let undefined = if flat[0].is_finite() { Verdict::Confirmed } else { Verdict::Refuted };
     let right = if same < 1e-3 { Verdict::Confirmed } else { Verdict::Refuted };
-    let note = format!("The edge is horizontal, so T3 divides 0 by 0; so it is in {level} of 4000 random triangles.");
+    let note = "Where edge 1-2 is horizontal, T3 divides 0 by 0.";
     [
         FIT.claim("T1 to T5 as printed, in f64", "LSB", "exact", same, (right, "The solution is right but for rounding.")),
         FIT.claim("T1 to T5 as printed, in f32", "LSB", 0.0, theirs, {
-            let note = "4000 triangles of 320 x 240, at least 4 pixels high: T3 divides by Y2², T4 and T5 by det³.";
+            let note = format!("T3 divides by Y2², T4 and T5 by det³; of 40,000 triangles {bad} err by more than 1 %.");
             (Verdict::at_most(theirs, UNSEEN, SLIGHT), note)
         }),
         FIT.claim("the same quadratic by affine coordinates, in f32", "LSB", 0.0, ours, {
