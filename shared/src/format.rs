@@ -19,6 +19,10 @@ pub type Gain = U2F14;
 pub const SUBPIXEL: u32 = 4;
 /// Sixteenths of a pixel from its corner to its centre.
 pub const CENTRE: i32 = 1 << (SUBPIXEL - 1);
+/// How often a triangle is split at most.
+pub const SPLITS: u32 = 6;
+/// Fraction bits of a screen coordinate within a triangle: corners of its parts are exact, however often it is split.
+pub const FINE: u32 = SUBPIXEL + SPLITS;
 /// Fraction bits of [`Unit`], [`Length`] and [`Gain`].
 pub const UNIT: u32 = 14;
 /// Fraction bits of rotation matrices.

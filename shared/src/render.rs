@@ -444,6 +444,7 @@ impl<C: Pixel> Frame<'_, '_, C> {
             dither: self.renderer.dither,
             palette,
             lighting: &self.lighting,
+            #[cfg(feature = "all-shaders")]
             exponent: self.renderer.stream.materials.get(usize::from(mesh.material)).map_or(1, |material| material.exponent),
             constant: self.constant,
         };

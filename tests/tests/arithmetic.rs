@@ -4,50 +4,98 @@ use embedded_graphics::prelude::Size;
 use microphong::Shader;
 use microphong_sim::{
     level,
-    oracle::{Frame, decides, method},
-    scene,
+    oracle::{Frame, Shade, decides, method},
+    scene::{self, Scene},
 };
+use std::{sync::Mutex, thread};
 
 /// Largest difference allowed, in 1/255.
 const LIMIT: f64 = 0.5;
+/// Frames of the orbit.
+const FRAMES: u32 = 36;
+/// One in so many pixels is compared, other ones in each frame; all of them if `MICROPHONG_ALL=1`.
+const SAMPLE: usize = 5;
+/// How far integers may be off where a method compares levels with a threshold, at most twice the error of the table of
+/// highlights. Several decisions shape a triangle, and each may fall its own way.
+const LEANS: [f64; 9] = [0.0, -0.01, 0.01, -0.03, 0.03, -0.07, 0.07, -0.14, 0.14];
+/// Where a pixel's centre lies on the border of two parts of a triangle, either may show.
+const NUDGE: f64 = 1e-6;
 
-/// Largest difference of `shader` on a scene in some frame, before the output format rounds.
-fn error(name: &str, shader: Shader, number: u32) -> Option<f64> {
-    let scene = scene::load(name).unwrap();
+/// All of a method's triangles in one frame, in floating point; `None` if the method cannot shade them.
+fn shades<'f>(frame: &'f Frame, shader: Shader, lean: f64) -> Option<Vec<Shade<'f>>> {
+    frame.facets.iter().map(|facet| method(shader.name(), frame, facet, lean).ok()).collect()
+}
+
+/// Difference of levels; one level for all channels is that of the brightest.
+fn difference(drawn: [f64; 3], exact: [f64; 3]) -> f64 {
+    let all = (0..3).map(|k| (drawn[k] - exact[k]).abs()).fold(0.0, f64::max);
+    let one = drawn[0] == drawn[1] && drawn[1] == drawn[2];
+    if one { all.min((drawn[0] - exact.into_iter().fold(0.0, f64::max)).abs()) } else { all }
+}
+
+/// Largest difference in one frame of each method, before the output format rounds.
+fn errors(scene: &Scene, number: u32, every: usize) -> Vec<f64> {
     let stream = scene.stream.parse().unwrap();
     let frame = Frame::new(stream, scene.size, number);
-    let leans: &[f64] = if decides(shader.name()) { &[-0.05, 0.0, 0.05] } else { &[0.0] };
-    let shades = |lean| frame.facets.iter().map(|facet| method(shader.name(), &frame, facet, lean).ok()).collect::<Option<Vec<_>>>();
-    let shades = leans.iter().map(|&lean| shades(lean)).collect::<Option<Vec<_>>>()?;
-    let drawn = level::picture(stream, Size::new(scene.size.0, scene.size.1), shader, number).unwrap();
-    let mut worst = 0f64;
-    for (i, (levels, candidates)) in drawn.iter().zip(frame.visible()).enumerate() {
-        let Some(levels) = levels else {
-            assert!(candidates.is_empty(), "{name} {}: pixel {i} is not drawn", shader.name());
-            continue;
+    let visible = frame.visible();
+    Shader::ALL.iter().map(|&shader| error(scene, &frame, &visible, shader, number, every)).collect()
+}
+
+fn error(scene: &Scene, frame: &Frame, visible: &[Vec<u32>], shader: Shader, number: u32, every: usize) -> f64 {
+    let leans: &[f64] = if decides(shader.name()) { &LEANS } else { &[0.0] };
+    let shades: Option<Vec<_>> = leans.iter().map(|&lean| shades(frame, shader, lean)).collect();
+    let Some(shades) = shades else { return 0.0 };
+    let size = Size::new(scene.size.0, scene.size.1);
+    let drawn = level::picture(scene.stream.parse().unwrap(), size, shader, number).unwrap();
+    let (mut worst, mut edge_on) = (0f64, 0);
+    for (i, (levels, candidates)) in drawn.iter().zip(visible).enumerate() {
+        // A face that is seen edge-on may be culled in object space, and yet rounded corners give it a pixel.
+        edge_on += usize::from(levels.is_none() && !candidates.is_empty());
+        let Some(levels) = levels.filter(|_| (i + number as usize).is_multiple_of(every)) else { continue };
+        assert!(!candidates.is_empty(), "{} {}: pixel {i}", scene.name, shader.name());
+        let centre = [i as u32 % scene.size.0, i as u32 / scene.size.0].map(|c| f64::from(c) + 0.5);
+        let at = |x: f64, y: f64, leans: usize| {
+            let point = [centre[0] + x, centre[1] + y];
+            let all = candidates.iter().flat_map(|&c| shades.iter().take(leans).map(move |shades| &shades[c as usize]));
+            all.map(|shade| difference(levels, shade(point))).fold(f64::MAX, f64::min)
         };
-        let centre = [f64::from(i as u32 % scene.size.0) + 0.5, f64::from(i as u32 / scene.size.0) + 0.5];
-        let one = levels[0] == levels[1] && levels[1] == levels[2];
-        let difference = |exact: [f64; 3]| {
-            // One level for all channels is that of the brightest.
-            let all = (0..3).map(|k| (levels[k] - exact[k]).abs()).fold(0.0, f64::max);
-            if one { all.min((levels[0] - exact.into_iter().fold(0.0, f64::max)).abs()) } else { all }
-        };
-        let nearest = candidates.iter().flat_map(|&c| shades.iter().map(move |shades| (shades, c)));
-        let error = nearest.map(|(shades, c)| difference(shades[c as usize](centre))).fold(f64::MAX, f64::min);
+        let mut error = at(0.0, 0.0, 1);
+        if error > LIMIT / 2.0 && decides(shader.name()) {
+            let around = [(0.0, 0.0), (NUDGE, NUDGE), (NUDGE, -NUDGE), (-NUDGE, NUDGE), (-NUDGE, -NUDGE)];
+            error = around.map(|(x, y)| at(x, y, leans.len())).into_iter().fold(error, f64::min);
+        }
         worst = worst.max(error);
     }
-    Some(worst)
+    assert!(edge_on <= 2, "{} {}: {edge_on} pixels are missing", scene.name, shader.name());
+    worst
 }
 
 #[test]
 fn integers_follow_their_method() {
-    let step: u32 = std::env::var("STEP").ok().and_then(|s| s.parse().ok()).unwrap_or(40);
-    let only = std::env::var("ONLY").unwrap_or_default();
-    for shader in Shader::ALL.into_iter().filter(|s| only.is_empty() || only.split(',').any(|o| o == s.name())) {
-        for name in scene::NAMES {
-            let worst = (0..120).step_by(step as usize).filter_map(|number| error(name, shader, number)).fold(0.0, f64::max);
-            println!("{name:12} {:16} {worst:.3} {}", shader.name(), if worst > LIMIT { "TOO MUCH" } else { "" });
+    let every = if std::env::var_os("MICROPHONG_ALL").is_some_and(|v| v == "1") { 1 } else { SAMPLE };
+    let scenes: Vec<Scene> = scene::NAMES.iter().map(|name| scene::load(name).unwrap()).collect();
+    let jobs = Mutex::new(scenes.iter().flat_map(|scene| (0..FRAMES).map(move |k| (scene, k))));
+    let worst = Mutex::new(vec![(0.0, ""); Shader::ALL.len()]);
+    thread::scope(|scope| {
+        for _ in 0..thread::available_parallelism().map_or(1, usize::from) {
+            scope.spawn(|| {
+                loop {
+                    let job = jobs.lock().unwrap().next();
+                    let Some((scene, k)) = job else { break };
+                    let period = scene.stream.parse().unwrap().header.camera.period.max(1);
+                    let errors = errors(scene, k * u32::from(period) / FRAMES, every);
+                    for (worst, error) in worst.lock().unwrap().iter_mut().zip(errors) {
+                        if error > worst.0 {
+                            *worst = (error, &scene.name);
+                        }
+                    }
+                }
+            });
         }
+    });
+    let worst = worst.into_inner().unwrap();
+    for (shader, (error, place)) in Shader::ALL.iter().zip(&worst) {
+        println!("{:20} {error:.3} LSB at most, on {place}", shader.name());
     }
+    assert!(worst.iter().all(|&(error, _)| error <= LIMIT), "a method is more than {LIMIT} LSB off");
 }

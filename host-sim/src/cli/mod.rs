@@ -1,6 +1,7 @@
 //! Command line: what the user may say, and what comes of it.
 
 mod bench;
+mod compare;
 mod convert;
 mod inspect;
 mod papers;
@@ -31,6 +32,7 @@ Examples:
   microphong inspect mesh.tri                      what is inside, and how large it is
   microphong verify --board all --scene teapot     compare emulated boards with this computer
   microphong bench                                 count the instructions of a frame
+  microphong compare teapot --report comparison    measure all methods against Phong shading
   microphong papers --only vlasic                  compute again what a paper claims
 
 Exit codes: 0 done; 1 failed, or pictures differ; 2 wrong usage.";
@@ -42,6 +44,7 @@ enum Command {
     Render(render::Arguments),
     Verify(verify::Arguments),
     Bench(bench::Arguments),
+    Compare(compare::Arguments),
     Papers(papers::Arguments),
     Scenes(scenes::Arguments),
 }
@@ -72,6 +75,7 @@ pub(crate) fn main() -> ExitCode {
         Command::Render(arguments) => render::run(&arguments),
         Command::Verify(arguments) => verify::run(&arguments),
         Command::Bench(arguments) => bench::run(&arguments),
+        Command::Compare(arguments) => compare::run(&arguments),
         Command::Papers(arguments) => papers::run(&arguments),
         Command::Scenes(arguments) => scenes::run(&arguments),
     };

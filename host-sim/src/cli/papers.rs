@@ -1,6 +1,10 @@
 //! `microphong papers`.
 
-use super::{Outcome, parse, report};
+use super::{
+    Outcome,
+    parse::{self, Several},
+    report,
+};
 use anyhow::Result;
 use microphong_sim::papers::{self, Claim, Topic, Verdict};
 
@@ -11,9 +15,9 @@ use microphong_sim::papers::{self, Claim, Topic, Verdict};
 #[derive(clap::Args)]
 #[command(after_help = EXAMPLES)]
 pub(crate) struct Arguments {
-    /// Only these: vlasic, szirmay-kalos, bishop-weimer, disselkoen, goldman, separated by commas.
-    #[arg(long, value_name = "TOPIC,...", value_delimiter = ',', value_parser = topic)]
-    only: Vec<Topic>,
+    /// Papers, separated by commas: vlasic, szirmay-kalos, bishop-weimer, disselkoen, goldman, or all.
+    #[arg(long, value_name = "TOPIC,...", default_value = "all", value_parser = parse::topics)]
+    only: Several<Topic>,
     /// Print one JSON object per claim.
     #[arg(long)]
     json: bool,
@@ -25,16 +29,11 @@ Examples:
   microphong papers --only vlasic,goldman
   microphong papers --json";
 
-fn topic(text: &str) -> Result<Topic, String> {
-    parse::among(text, &Topic::ALL, Topic::name)
-}
-
 pub(crate) fn run(arguments: &Arguments) -> Result<Outcome> {
-    let topics = Topic::ALL.into_iter().filter(|topic| arguments.only.is_empty() || arguments.only.contains(topic));
-    let topics: Vec<_> = topics.collect();
+    let topics = &arguments.only.values;
     let bar = report::progress(topics.len() as u64 + 1, "computing");
     let mut counts = [0; Verdict::ALL.len()];
-    for &topic in &topics {
+    for &topic in topics {
         bar.inc(1);
         let claims = papers::claims(topic)?;
         for claim in &claims {

@@ -17,6 +17,34 @@ pub fn recip(d: u32) -> u32 {
     x as u32
 }
 
+/// A number to divide by, Q2.30.
+#[cfg(feature = "all-shaders")]
+#[derive(Clone, Copy, Debug)]
+pub struct Divisor {
+    /// 1/x, scaled up until its first bit is set.
+    inverse: u32,
+    zeros: u32,
+}
+
+#[cfg(feature = "all-shaders")]
+impl Divisor {
+    /// `x` in Q2.30; 0 counts as the smallest number.
+    #[inline(always)]
+    #[must_use]
+    pub fn new(x: u32) -> Self {
+        let zeros = x.max(1).leading_zeros();
+        Self { inverse: recip(x << (zeros & 31)), zeros }
+    }
+
+    /// `value / x`, same format as `value`; at most what fits by saturation.
+    #[inline(always)]
+    #[must_use]
+    pub fn divide(self, value: i32) -> i32 {
+        let product = (i64::from(value) * i64::from(self.inverse)) >> (32 - self.zeros.min(31));
+        product.clamp(i32::MIN.into(), i32::MAX.into()) as i32
+    }
+}
+
 /// Largest error of [`recip`], in units of its result: relative 2^-29.
 pub const ERROR: u32 = 2;
 

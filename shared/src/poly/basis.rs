@@ -9,15 +9,16 @@
 
 use super::sliver::Sliver;
 use crate::{
-    format::{CENTRE, SUBPIXEL},
-    math::{recip::recip, scale},
+    format::{CENTRE, FINE, SPLITS, SUBPIXEL},
+    math::{recip::recip, scale, scale_wide},
+    poly::terms::Terms,
 };
 
 /// More fraction bits than the walked format, while coefficients move to the anchor.
 const GUARD: i32 = 12;
 
 /// Farther than this from the first corner, in columns plus rows, the anchor moves to the middle of what is drawn.
-const NEAR: i32 = 256;
+pub const NEAR: i32 = 256;
 
 /// Length over height beyond which quadratic fields are fitted by exact fractions.
 ///
@@ -35,7 +36,7 @@ pub struct Basis {
     s: [i32; 2],
     t: [i32; 2],
     exponent: i32,
-    /// From corner 0 to the centre of its pixel, in 1/16 pixel.
+    /// From corner 0 to the centre of its pixel, [`FINE`] fraction bits.
     offset: [i32; 2],
     /// From that pixel to the anchor, in pixels.
     shift: [i32; 2],
@@ -43,8 +44,10 @@ pub struct Basis {
     anchor: [i32; 2],
     /// Longer than [`MAX_THINNESS`] times its height.
     thin: bool,
-    /// Corners 1 and 2 from corner 0, in 1/16 pixel.
+    /// Corners 1 and 2 from corner 0, in 1/16 pixel, of a part of the triangle 2^`level` times finer.
     edges: [[i32; 2]; 2],
+    /// How often the triangle was split.
+    level: u32,
 }
 
 /// Columns and rows that are drawn, half open: `[left, top, right, bottom]`.
@@ -80,12 +83,37 @@ impl Basis {
             t: [mantissa(y1.wrapping_neg()), mantissa(x1)],
             // gradient per pixel = 16 c / det = mantissa 2^(drop + 4 + zeros - 94)
             exponent: 90 - zeros - drop,
-            offset: [(pixel[0] << SUBPIXEL) + CENTRE - x0, (pixel[1] << SUBPIXEL) + CENTRE - y0],
+            offset: [(pixel[0] << SUBPIXEL) + CENTRE - x0, (pixel[1] << SUBPIXEL) + CENTRE - y0].map(|c| c << SPLITS),
             shift,
             anchor: [pixel[0].wrapping_add(shift[0]), pixel[1].wrapping_add(shift[1])],
             edges: [[x1, y1], [x2, y2]],
+            level: 0,
             thin: i64::from(extent) * i64::from(extent) > det.saturating_mul(MAX_THINNESS),
         })
+    }
+
+    /// The basis of a part of the triangle: its copy, 2^`level` times smaller, with corner 0 at `corner` ([`FINE`] fraction
+    /// bits), turned by 180 degrees or not. Exact: a copy's gradients are the triangle's, times ±2^`level`.
+    ///
+    /// A part that is not `near` its corner everywhere has the triangle's anchor.
+    #[cfg(feature = "all-shaders")]
+    #[must_use]
+    pub fn part(&self, corner: [i32; 2], level: u32, turned: bool, near: bool) -> Self {
+        let gradient = |g: [i32; 2]| if turned { g.map(i32::wrapping_neg) } else { g };
+        let pixel = corner.map(|c| c >> FINE);
+        let centre = |k: usize| (pixel[k] << FINE).wrapping_add(1 << (FINE - 1)).wrapping_sub(corner[k]);
+        let anchor = if near { pixel } else { self.anchor };
+        Self {
+            s: gradient(self.s),
+            t: gradient(self.t),
+            exponent: self.exponent - level as i32,
+            offset: [centre(0), centre(1)],
+            shift: [anchor[0].wrapping_sub(pixel[0]), anchor[1].wrapping_sub(pixel[1])],
+            anchor,
+            thin: self.thin,
+            edges: self.edges.map(gradient),
+            level,
+        }
     }
 
     /// Column of the anchor.
@@ -125,7 +153,9 @@ impl Basis {
     pub fn quadratic<const BITS: u32>(&self, nodes: [i32; 6], extra: u32) -> [i32; 6] {
         let [i0, i1, i2, i01, i12, i20] = nodes;
         if self.thin {
-            let sliver = Sliver { edges: self.edges, offset: self.offset };
+            // In 1/16 pixel, in a part of the triangle as much finer as it is smaller: all exact.
+            let offset = self.offset.map(|c| c >> (SPLITS - self.level));
+            let sliver = Sliver { edges: self.edges, offset, bits: SUBPIXEL + self.level };
             return self.round(sliver.quadratic(nodes, extra + GUARD as u32));
         }
         let (c, dx, dy) = self.slopes(i0, (4 * i01 - 3 * i0 - i1).into(), (4 * i20 - 3 * i0 - i2).into(), extra);
@@ -151,6 +181,28 @@ impl Basis {
         self.round([c, dx, dy, dxx, dxy, dyy])
     }
 
+    /// The terms of the cubic through ten nodes in a range of 2^15, at the anchor; by powers of x, then of y.
+    ///
+    /// In 128 bits all is exact but the gradients, and one rounding of each coefficient.
+    #[must_use]
+    pub fn cubic(&self, nodes: [i32; 10], extra: u32) -> Terms<i64> {
+        let fraction = extra + GUARD as u32;
+        let terms = if self.thin {
+            let sliver = Sliver { edges: self.edges, offset: self.offset.map(|c| c >> SPLITS), bits: SUBPIXEL };
+            let by = |k: usize| move |a: i128, b: i128| a.wrapping_add(b.wrapping_mul(self.shift[k].into()));
+            sliver.cubic(nodes, fraction).moved_across(by(0)).moved_down(by(1))
+        } else {
+            // With three mantissas terms stay below 2^114, moved below 2^124.
+            let terms = Terms::of(nodes.map(i128::from), self.s.map(i128::from), self.t.map(i128::from));
+            let scaled = terms.map(|c, degree| scale_wide(c, degree as i32 * self.exponent + 2 - fraction as i32));
+            // From the corner to the anchor.
+            let way = |k: usize| i128::from(self.offset[k]) + (i128::from(self.shift[k]) << FINE);
+            let by = |k: usize| move |a: i128, b: i128| a + ((b * way(k)) >> FINE);
+            scaled.moved_across(by(0)).moved_down(by(1))
+        };
+        terms.map(|c, _| scale_wide(c, GUARD) as i64)
+    }
+
     /// Moves coefficients from corner 0's pixel to the anchor, exactly, and rounds them to the walked format.
     #[inline]
     fn round(&self, [c, dx, dy, dxx, dxy, dyy]: [i64; 6]) -> [i32; 6] {
@@ -169,8 +221,8 @@ impl Basis {
     }
 }
 
-/// `gradient` times `offset` sixteenths of a pixel.
+/// `gradient` times `offset`, [`FINE`] fraction bits.
 #[inline(always)]
 fn along(gradient: i64, offset: i32) -> i64 {
-    gradient.wrapping_mul(offset.into()) >> SUBPIXEL
+    gradient.wrapping_mul(offset.into()) >> FINE
 }

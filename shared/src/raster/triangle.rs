@@ -14,22 +14,22 @@ use crate::{
 /// A triangle on the screen, its top corner first, clockwise on a screen whose y runs down.
 #[derive(Clone, Copy, Debug)]
 pub struct Outline {
-    corners: [[i32; 2]; 3],
-    depth: [i32; 3],
+    pub(super) corners: [[i32; 2]; 3],
+    pub(super) depth: [i32; 3],
     /// Which of the mesh's corners is the top one.
     pub turned: usize,
 }
 
 /// What steps from row to row. It lives in memory, so that the pixel loop gets the registers.
-struct Rows<P, T> {
+pub(super) struct Rows<P, T> {
     /// Pixels of the coming row.
-    count: u32,
-    left: Column,
-    right: Column,
+    pub(super) count: u32,
+    pub(super) left: Column,
+    pub(super) right: Column,
     /// Depth at column 0.
-    depth: Plane<1>,
-    patch: P,
-    tone: T,
+    pub(super) depth: Plane<1>,
+    pub(super) patch: P,
+    pub(super) tone: T,
 }
 
 /// Columns and rows that a triangle can touch, half open.
@@ -188,7 +188,11 @@ pub fn turn<A: Copy>([a, b, c]: [A; 3], by: usize) -> [A; 3] {
 /// memory, written a row earlier: derived here, the compiler would count in
 /// two registers instead of one.
 #[inline(never)]
-fn row<P: Patch, T: Tone<<P::Walker as Walker>::Value>>(rows: &mut Rows<P, T>, pixels: &mut [T::Pixel], depth: &mut [u16]) -> u32 {
+pub(super) fn row<P: Patch, T: Tone<<P::Walker as Walker>::Value>>(
+    rows: &mut Rows<P, T>,
+    pixels: &mut [T::Pixel],
+    depth: &mut [u16],
+) -> u32 {
     let count = rows.count as usize;
     let (left, right) = ((rows.left.x >> COLUMN) as usize, rows.right.x >> COLUMN);
     rows.left.x = rows.left.x.wrapping_add(rows.left.step);

@@ -1,20 +1,56 @@
 //! The shading methods, one file each: what it fits, and what it makes of it at a pixel.
 
+#[cfg(feature = "all-shaders")]
+mod angular;
+#[cfg(feature = "all-shaders")]
+mod blinn;
+#[cfg(feature = "all-shaders")]
+mod cubic;
 mod duff;
+#[cfg(feature = "all-shaders")]
+mod environment;
 mod flat;
 mod form;
+#[cfg(feature = "all-shaders")]
+mod goldman;
 mod gouraud;
+#[cfg(feature = "all-shaders")]
+mod gouraud4;
+#[cfg(feature = "all-shaders")]
+mod highlight_test;
+#[cfg(feature = "all-shaders")]
+mod hybrid;
 mod node;
+#[cfg(feature = "all-shaders")]
+mod parabola;
 mod phong;
 #[cfg(feature = "all-shaders")]
 mod phong_rv;
 #[cfg(feature = "all-shaders")]
+mod pseudo_phong;
+#[cfg(feature = "all-shaders")]
+mod quadratic_blinn;
+#[cfg(feature = "all-shaders")]
 mod renq;
 #[cfg(feature = "all-shaders")]
 mod renq_newton;
+#[cfg(feature = "all-shaders")]
+mod scanline;
 mod six_point;
 #[cfg(feature = "all-shaders")]
+mod six_point_adaptive;
+#[cfg(feature = "all-shaders")]
+mod six_point_centre;
+#[cfg(feature = "all-shaders")]
+mod slerp;
+#[cfg(feature = "all-shaders")]
+mod split;
+#[cfg(feature = "all-shaders")]
 mod sqrt6;
+#[cfg(feature = "all-shaders")]
+mod taylor;
+#[cfg(feature = "all-shaders")]
+mod taylor_finite;
 
 use crate::{
     band::Band,
@@ -27,10 +63,12 @@ use crate::{
     shade::node::Node,
     shader::Shader,
     stream::record::{Triangle, Vertex},
-    tone::{Dithered, Ramp, Rgb},
+    tone::{Dithered, Ramp, Rgb, Tone},
     vertex::ScreenVertex,
 };
 use core::marker::PhantomData;
+#[cfg(feature = "all-shaders")]
+use parabola::Parabolas;
 
 /// Fraction bits that a walked level has more than a node's.
 const EXTRA: u32 = WALK - LEVEL;
@@ -54,8 +92,27 @@ impl Facet<'_> {
     #[inline(always)]
     fn is_dark<C: Pixel>(&self, palette: &Palette<C>) -> bool {
         let [a, b, c] = self.corners.map(|corner| corner.light[1]);
-        let limit = (i64::from(palette.dark_below()) * i64::from(self.triangle.rho)) >> RHO;
-        i64::from(a.max(b).max(c)) < limit
+        i64::from(a.max(b).max(c)) < self.dark_below(palette)
+    }
+
+    /// Where N·H, linear between the corners, is smaller, N·H over |N| is too small for a highlight; Q2.30.
+    #[inline(always)]
+    fn dark_below<C: Pixel>(&self, palette: &Palette<C>) -> i64 {
+        (i64::from(palette.dark_below()) * i64::from(self.triangle.rho)) >> RHO
+    }
+}
+
+/// Some part of the screen that belongs to a triangle.
+trait Area {
+    /// Draws a patch there; returns the pixels in `band`.
+    fn draw<P: Patch, T: Tone<<P::Walker as Walker>::Value>>(&self, patch: P, tone: T, band: &mut Band<'_, T::Pixel>) -> u32;
+}
+
+/// The whole triangle.
+impl Area for Facet<'_> {
+    #[inline(always)]
+    fn draw<P: Patch, T: Tone<<P::Walker as Walker>::Value>>(&self, patch: P, tone: T, band: &mut Band<'_, T::Pixel>) -> u32 {
+        self.outline.draw(&self.basis, patch, tone, band)
     }
 }
 
@@ -66,6 +123,7 @@ pub(crate) struct Shading<'f, C> {
     pub(crate) palette: &'f Palette<C>,
     pub(crate) lighting: &'f Lighting,
     /// The material's.
+    #[cfg(feature = "all-shaders")]
     pub(crate) exponent: u16,
     /// L and H if they are constant, see [`Lighting::constant`].
     pub(crate) constant: Option<[[i32; 3]; 2]>,
@@ -95,11 +153,28 @@ impl<C: Pixel> Shading<'_, C> {
     #[cfg(feature = "all-shaders")]
     fn draw_literature(&self, facet: &Facet<'_>, band: &mut Band<'_, C>) -> u32 {
         match self.shader {
+            Shader::Gouraud4 => gouraud4::draw(facet, self, band),
+            Shader::PseudoPhong => pseudo_phong::draw(facet, self, band),
+            Shader::SixPointAdaptive => six_point_adaptive::draw(facet, self, band),
+            Shader::SixPointCentre => six_point_centre::draw(facet, self, band),
             Shader::PhongRv => phong_rv::draw(facet, self, band),
+            Shader::HighlightTest => highlight_test::draw(facet, self, band),
+            Shader::Taylor => taylor::draw(facet, self, band),
+            Shader::TaylorFinite => taylor_finite::draw(facet, self, band),
+            Shader::Cubic => cubic::draw(facet, self, band),
+            Shader::Environment => environment::draw(facet, self, band),
+            Shader::Blinn => blinn::draw(facet, self, band),
+            Shader::QuadraticBlinn => quadratic_blinn::draw(facet, self, band),
             Shader::Duff => duff::draw(facet, self, band),
             Shader::Sqrt6 => sqrt6::draw(facet, self, band),
             Shader::Renq => renq::draw(facet, self, band),
             Shader::RenqNewton => renq_newton::draw(facet, self, band),
+            Shader::Goldman => goldman::draw(facet, self, band),
+            Shader::Slerp => slerp::draw(facet, self, band),
+            Shader::Angular => angular::draw(facet, self, Parabolas::refitted, band),
+            Shader::AngularOriginal => angular::draw(facet, self, Parabolas::printed, band),
+            Shader::Hybrid => hybrid::draw(facet, self, Parabolas::refitted, band),
+            Shader::HybridOriginal => hybrid::draw(facet, self, Parabolas::printed, band),
             _ => 0,
         }
     }
@@ -118,28 +193,28 @@ impl<C: Pixel> Shading<'_, C> {
     }
 
     /// Draws a patch of one level.
-    fn draw_one<P>(&self, facet: &Facet<'_>, patch: P, raised: fn(P, [i32; 1]) -> P, band: &mut Band<'_, C>) -> u32
+    fn draw_one<P>(&self, area: &impl Area, patch: P, raised: fn(P, [i32; 1]) -> P, band: &mut Band<'_, C>) -> u32
     where
         P: Patch<Walker: Walker<Value = [u32; 1]>>,
     {
         if self.dither {
-            facet.outline.draw(&facet.basis, raised(patch, lift(0)), Dithered::new(self.palette.base), band)
+            area.draw(raised(patch, lift(0)), Dithered::new(self.palette.base), band)
         } else {
-            facet.outline.draw(&facet.basis, raised(patch, lift(1 << (WALK - 1))), Ramp(&self.palette.ramp), band)
+            area.draw(raised(patch, lift(1 << (WALK - 1))), Ramp(&self.palette.ramp), band)
         }
     }
 
     /// Draws a patch of three levels.
-    fn draw_three<P>(&self, facet: &Facet<'_>, patch: P, raised: fn(P, [i32; 3]) -> P, band: &mut Band<'_, C>) -> u32
+    fn draw_three<P>(&self, area: &impl Area, patch: P, raised: fn(P, [i32; 3]) -> P, band: &mut Band<'_, C>) -> u32
     where
         P: Patch<Walker: Walker<Value = [u32; 3]>>,
     {
         if self.dither {
-            facet.outline.draw(&facet.basis, raised(patch, lift(0)), Dithered::new(self.palette.base), band)
+            area.draw(raised(patch, lift(0)), Dithered::new(self.palette.base), band)
         } else {
             // Half a step of each channel.
             let half = C::DEPTH.map(|depth| (BIAS << WALK).wrapping_add(1 << (WALK + 7 - depth)));
-            facet.outline.draw(&facet.basis, raised(patch, half), Rgb(PhantomData), band)
+            area.draw(raised(patch, half), Rgb(PhantomData), band)
         }
     }
 }

@@ -36,6 +36,9 @@ pub(crate) fn parabolas(angle: f64, [a, b]: [f64; 2]) -> f64 {
     }
 }
 
+/// Squared sine of an angle below which two normals have no plane, 2^-40: integers cannot tell it.
+const SHORT: f64 = 1.0 / (1u64 << 40) as f64;
+
 /// `cos^s` of the angle to `v`, a share `t` of the way from the normal `l` to `r`, of any lengths.
 ///
 /// On their great circle the cosine is `Γ cos(θ - α)`, θ running from 0 to the angle between them:
@@ -43,8 +46,8 @@ pub(crate) fn parabolas(angle: f64, [a, b]: [f64; 2]) -> f64 {
 pub(crate) fn along([l, r]: [V3; 2], v: V3, t: f64, s: f64, widths: Widths) -> f64 {
     let (ll, lr, rr, lv, rv) = (dot(l, l), dot(l, r), dot(r, r), dot(l, v), dot(r, v));
     let area = ll * rr - lr * lr;
-    if area <= 1e-14 * ll * rr {
-        // Hardly any angle between them: linear.
+    if area < SHORT * ll * rr {
+        // Hardly any angle between them, so no plane either: linear.
         let end = |cosine: f64, square: f64| (cosine / square.sqrt().max(1e-6)).max(0.0).powf(s);
         return end(lv, ll) * (1.0 - t) + end(rv, rr) * t;
     }

@@ -1,0 +1,235 @@
+//! `microphong compare`.
+
+use super::{
+    Outcome,
+    parse::{self, Several},
+    report,
+    verify::load,
+};
+use anyhow::{Context, Result};
+use microphong::Shader;
+use microphong_sim::{
+    bytes::StreamBytes,
+    compare::{self, Comparison, Reference, costs, exponent::with_exponent, page::Page},
+    scene::Scene,
+};
+use rayon::prelude::*;
+use serde::Serialize;
+use std::path::PathBuf;
+
+/// Measure shading methods against Phong shading in 64-bit floating point.
+///
+/// Levels are compared before an output format rounds them. LSB: 255 is full.
+#[derive(clap::Args)]
+#[command(after_help = EXAMPLES)]
+pub(crate) struct Arguments {
+    /// .tri or .obj files, built-in scenes, or all built-in scenes.
+    #[arg(required = true, value_name = "SCENE")]
+    scenes: Vec<String>,
+    /// Shading methods by name, separated by commas, or all.
+    #[arg(long, default_value = "all", value_name = "S,...", value_parser = parse::shaders)]
+    shader: Several<Shader>,
+    /// Exponent of all highlights; the scene's own unless given.
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
+    exponent: Option<u16>,
+    /// Size of the picture; the scene's own unless given, 640x480 for files.
+    #[arg(long, value_name = "WxH", value_parser = parse::size)]
+    size: Option<(u32, u32)>,
+    /// Frame of the orbit.
+    #[arg(long, value_name = "N", default_value_t = 0)]
+    frame: u32,
+    /// Write DIR/index.html: pictures, errors and curves of all methods on one page.
+    #[arg(long, value_name = "DIR")]
+    report: Option<PathBuf>,
+    /// Print one JSON object per scene and method.
+    #[arg(long)]
+    json: bool,
+}
+
+const EXAMPLES: &str = "\
+Examples:
+  microphong compare teapot
+  microphong compare sphere-168 torus --exponent 50 --report comparison
+  microphong compare all --shader six-point,renq --json
+
+Columns:
+  error       of the integer picture: largest, 99th percentile, root mean square
+  method      of the method in floating point: what its formula leaves
+  arithmetic  of the integers against the method in floating point, largest
+  colour      1 less the mean difference of 8-bit pixels; psnr in dB, of the same
+  alike       structure and colour as the eye sees them, 1 is the same
+  edge, mach  largest jump of the level across an edge, and of its slope (LSB per pixel)
+  + * load    additions, multiplications and table look-ups per pixel
+  set-up      operations per triangle, and per row where there are any";
+
+/// What is known of one method on one scene; all figures are null if it could not be drawn, and `reason` says why.
+#[derive(Serialize)]
+struct Line<'a> {
+    scene: &'a str,
+    shader: &'a str,
+    exponent: Option<u16>,
+    max_lsb: Option<f64>,
+    p99_lsb: Option<f64>,
+    rmse_lsb: Option<f64>,
+    color_correctness: Option<f64>,
+    psnr: Option<f64>,
+    similarity: Option<f64>,
+    edge_jump_lsb: Option<f64>,
+    mach_jump_lsb: Option<f64>,
+    arithmetic_lsb: Option<f64>,
+    arithmetic_rmse_lsb: Option<f64>,
+    method_max_lsb: Option<f64>,
+    method_rmse_lsb: Option<f64>,
+    adds: Option<u32>,
+    multiplies: Option<u32>,
+    loads: Option<u32>,
+    setup: Option<u32>,
+    setup_row: Option<u32>,
+    pixels: Option<usize>,
+    unmatched: Option<usize>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    reason: Option<&'a str>,
+}
+
+/// One method's figures, or why there are none.
+struct Row {
+    shader: Shader,
+    result: Result<Comparison, String>,
+}
+
+pub(crate) fn run(arguments: &Arguments) -> Result<Outcome> {
+    let scenes = scenes(arguments)?;
+    let Several { values: shaders, all } = &arguments.shader;
+    if !all {
+        for scene in &scenes {
+            let stream = scene.stream.parse().with_context(|| scene.name.clone())?;
+            shaders.iter().try_for_each(|&shader| compare::check(&stream, shader)).with_context(|| scene.name.clone())?;
+        }
+    }
+    let mut page = arguments.report.as_deref().map(Page::create).transpose()?;
+    let bar = report::progress((scenes.len() * shaders.len()) as u64, "comparing");
+    for scene in &scenes {
+        let stream = scene.stream.parse().with_context(|| scene.name.clone())?;
+        let size = arguments.size.unwrap_or(scene.size);
+        let reference = Reference::new(stream, size, arguments.frame).with_context(|| scene.name.clone())?;
+        let exponent = same(stream.materials.iter().map(|material| material.exponent));
+        let row = |&shader: &Shader| {
+            let compared = compare::check(&stream, shader).map_err(Into::into).and_then(|()| reference.compare(shader));
+            let result = match compared {
+                // Among all methods, one that cannot draw the scene does not hide the others.
+                Err(error) if *all => Err(format!("{error:#}")),
+                other => Ok(other?),
+            };
+            bar.inc(1);
+            Ok(Row { shader, result })
+        };
+        let rows: Vec<Row> = shaders.par_iter().map(row).collect::<Result<_>>().with_context(|| scene.name.clone())?;
+        bar.suspend(|| if arguments.json { json(scene, exponent, &rows) } else { text(scene, exponent, &reference, &rows) })?;
+        if let Some(page) = &mut page {
+            let results: Vec<_> = rows.iter().map(|row| (row.shader, row.result.as_ref().map_err(String::as_str))).collect();
+            page.add(&scene.name, exponent, &reference, &results)?;
+        }
+    }
+    bar.finish_and_clear();
+    if let Some(page) = page {
+        let path = page.finish()?;
+        if !arguments.json {
+            report::line(&format!("report: {}", path.display()))?;
+        }
+    }
+    Ok(Outcome::Done)
+}
+
+/// The scenes with the exponent that was asked for.
+fn scenes(arguments: &Arguments) -> Result<Vec<Scene>> {
+    let mut scenes = Vec::new();
+    for name in &arguments.scenes {
+        for mut scene in load(name)? {
+            if let Some(exponent) = arguments.exponent {
+                let bytes = with_exponent(scene.stream.as_bytes(), exponent).with_context(|| scene.name.clone())?;
+                scene.stream = StreamBytes::from(bytes.as_slice());
+            }
+            scenes.push(scene);
+        }
+    }
+    Ok(scenes)
+}
+
+/// The number that all are; `None` if they differ.
+fn same(mut numbers: impl Iterator<Item = u16>) -> Option<u16> {
+    let first = numbers.next()?;
+    numbers.all(|number| number == first).then_some(first)
+}
+
+fn json(scene: &Scene, exponent: Option<u16>, rows: &[Row]) -> Result<()> {
+    for Row { shader, result } in rows {
+        let found = result.as_ref().ok();
+        let figure = |of: fn(&Comparison) -> f64| found.map(of);
+        let costs = costs::of(shader.name());
+        report::json(&Line {
+            scene: &scene.name,
+            shader: shader.name(),
+            exponent,
+            max_lsb: figure(|c| c.total.max),
+            p99_lsb: figure(|c| c.total.p99),
+            rmse_lsb: figure(|c| c.total.rmse),
+            color_correctness: figure(|c| c.colour_correctness),
+            psnr: figure(|c| c.psnr),
+            similarity: figure(|c| c.similarity),
+            edge_jump_lsb: figure(|c| c.jumps.level),
+            mach_jump_lsb: figure(|c| c.jumps.slope),
+            arithmetic_lsb: figure(|c| c.arithmetic.max),
+            arithmetic_rmse_lsb: figure(|c| c.arithmetic.rmse),
+            method_max_lsb: figure(|c| c.method.max),
+            method_rmse_lsb: figure(|c| c.method.rmse),
+            adds: costs.map(|c| c.adds),
+            multiplies: costs.map(|c| c.multiplies),
+            loads: costs.map(|c| c.loads),
+            setup: costs.map(|c| c.setup),
+            setup_row: costs.map(|c| c.row),
+            pixels: found.map(|c| c.pixels),
+            unmatched: found.map(|c| c.unmatched),
+            reason: result.as_ref().err().map(String::as_str),
+        })?;
+    }
+    Ok(())
+}
+
+fn text(scene: &Scene, exponent: Option<u16>, reference: &Reference<'_>, rows: &[Row]) -> Result<()> {
+    let (width, height) = reference.size();
+    let exponent = exponent.map_or("several exponents".to_owned(), |exponent| format!("exponent {exponent}"));
+    let pixels = rows.iter().find_map(|row| row.result.as_ref().ok()).map(|c| (c.pixels, c.unmatched));
+    let compared = pixels.map_or(String::new(), |(pixels, unmatched)| {
+        let only = if unmatched > 0 { format!(", {} in one picture only", report::grouped(unmatched as u64)) } else { String::new() };
+        format!(", {} pixels compared{only}", report::grouped(pixels as u64))
+    });
+    report::line(&format!("{}: {width}x{height}, {exponent}{compared}; errors in LSB", scene.name))?;
+    report::line(
+        "method                error: max     p99    rmse   method: max  rmse  arith.  colour   psnr  alike    edge    mach   +  *  load  set-up",
+    )?;
+    rows.iter().try_for_each(|Row { shader, result }| match result {
+        Err(reason) => report::line(&format!("  {:18}  {reason}", shader.name())),
+        Ok(c) => {
+            let row = if c.costs.row > 0 { format!(" + {}/row", c.costs.row) } else { String::new() };
+            report::line(&format!(
+                "  {:18}  {:>10.2} {:>7.2} {:>7.3}   {:>11.2} {:>5.2}  {:>6.2}  {:>6.4} {:>6.1} {:>6.4} {:>7.2} {:>7.2}  {:>2} {:>2}  {:>4}  {:>6}{row}",
+                shader.name(),
+                c.total.max,
+                c.total.p99,
+                c.total.rmse,
+                c.method.max,
+                c.method.rmse,
+                c.arithmetic.max,
+                c.colour_correctness,
+                c.psnr,
+                c.similarity,
+                c.jumps.level,
+                c.jumps.slope,
+                c.costs.adds,
+                c.costs.multiplies,
+                c.costs.loads,
+                c.costs.setup,
+            ))
+        }
+    })
+}

@@ -1,0 +1,183 @@
+//! What the methods share that split a triangle into cells and shade each by itself.
+
+use super::{Area, Facet, Shading};
+use crate::{
+    band::Band,
+    math::vector::{add, transposed, zip},
+    pixel::Pixel,
+    poly::{Patch, Walker, basis::Basis, plane::Plane, quadric::Quadric},
+    raster::cell::{Cell, Piece},
+    tone::Tone,
+};
+
+/// Light of three channels, Q9.7.
+pub(super) type Levels = [i32; 3];
+
+/// Nodes are in [0, 255], those on a parabola a little outside.
+const BITS: u32 = 16;
+
+/// A triangle that is drawn cell by cell.
+pub(super) struct Cells<'a, 'f, C> {
+    facet: &'a Facet<'f>,
+    shading: &'a Shading<'f, C>,
+    depth: Plane<1>,
+}
+
+/// A cell on the screen, ready for fitting.
+struct Part {
+    piece: Piece,
+    basis: Basis,
+    depth: Plane<1>,
+}
+
+impl Area for Part {
+    #[inline(always)]
+    fn draw<P: Patch, T: Tone<<P::Walker as Walker>::Value>>(&self, patch: P, tone: T, band: &mut Band<'_, T::Pixel>) -> u32 {
+        self.piece.draw(&self.basis, self.depth, patch, tone, band)
+    }
+}
+
+/// Light at the corners of a cell and at the middles of its edges 01, 12, 20.
+#[derive(Clone, Copy)]
+pub(super) struct Six {
+    pub(super) corners: [Levels; 3],
+    pub(super) middles: [Levels; 3],
+}
+
+/// Of a cell's edges 01, 12, 20: their halves in this order, and the edges that cut off the corners 0, 1, 2.
+/// What the edges of part `k` of [`Cell::split`] have of it.
+#[inline]
+pub(super) fn edges<A: Copy>(halves: [[A; 2]; 3], cuts: [A; 3], k: usize) -> [A; 3] {
+    let [[ab, ba], [bc, cb], [ca, ac]] = halves;
+    let [a, b, c] = cuts;
+    match k {
+        0 => [ab, a, ac],
+        1 => [ba, bc, b],
+        2 => [c, cb, ca],
+        _ => [c, a, b],
+    }
+}
+
+/// What the corners of part `k` of [`Cell::split`] have of what is known at a cell's corners and edge middles.
+#[inline]
+pub(super) fn corners<A: Copy>([a, b, c]: [A; 3], [ab, bc, ca]: [A; 3], k: usize) -> [A; 3] {
+    match k {
+        0 => [a, ab, ca],
+        1 => [ab, b, bc],
+        2 => [ca, bc, c],
+        _ => [bc, ca, ab],
+    }
+}
+
+impl<'a, 'f, C: Pixel> Cells<'a, 'f, C> {
+    pub(super) fn new(facet: &'a Facet<'f>, shading: &'a Shading<'f, C>) -> Self {
+        Self { facet, shading, depth: facet.outline.depth(&facet.basis) }
+    }
+
+    /// Whether anything of `cell` may be seen in `band`.
+    pub(super) fn meets(&self, cell: &Cell, band: &Band<'_, C>) -> bool {
+        self.facet.outline.piece(cell).meets(band)
+    }
+
+    /// Light at the triangle's corners.
+    pub(super) fn corners(&self) -> [Levels; 3] {
+        self.facet.corners.map(|corner| self.shading.corner_levels(corner))
+    }
+
+    /// Light at the triangle's corners and edge midpoints.
+    pub(super) fn six(&self) -> Six {
+        Six { corners: self.corners(), middles: self.middles(&Cell::WHOLE) }
+    }
+
+    /// Light at a point with the barycentric coordinates `weights / 2^bits`.
+    fn light(&self, weights: [i32; 3], bits: u32) -> Levels {
+        self.shading.levels(&self.facet.node(weights, bits))
+    }
+
+    /// Light at the middles of the edges 01, 12, 20.
+    pub(super) fn middles(&self, cell: &Cell) -> [Levels; 3] {
+        let [a, b, c] = cell.corners();
+        [[a, b], [b, c], [c, a]].map(|[a, b]| self.light(add(a, b), cell.level() + 1))
+    }
+
+    /// Light on edge `k` at a quarter and three quarters of the way.
+    pub(super) fn quarters(&self, cell: &Cell, k: usize) -> [Levels; 2] {
+        let [a, b, c] = cell.corners();
+        let [a, b] = match k {
+            0 => [a, b],
+            1 => [b, c],
+            _ => [c, a],
+        };
+        [[a, b], [b, a]].map(|[near, far]| self.light(zip(near, far, |n, f| 3 * n + f), cell.level() + 2))
+    }
+
+    /// Light in the middle of the edges that cut off the corners 0, 1, 2 when `cell` is split.
+    pub(super) fn cuts(&self, cell: &Cell) -> [Levels; 3] {
+        let [a, b, c] = cell.corners();
+        [[a, b, c], [b, c, a], [c, a, b]].map(|[a, b, c]| self.light(add(add(a, a), add(b, c)), cell.level() + 2))
+    }
+
+    /// Whether the quadratic through `six` misses the light in the centre of `cell` by more than `tolerance` in any channel.
+    pub(super) fn misses_centre(&self, cell: &Cell, six: &Six, tolerance: i32) -> bool {
+        let [a, b, c] = cell.corners();
+        let exact = self.shading.levels(&self.facet.third(add(a, add(b, c)), cell.level()));
+        let sum = |[a, b, c]: [Levels; 3]| add(a, add(b, c));
+        // Lagrange's weights are -1/9 and 4/9.
+        let fitted = zip(sum(six.middles), sum(six.corners), |m, c| 4 * m - c);
+        differ(fitted, exact.map(|level| 9 * level), 9 * tolerance)
+    }
+
+    fn part(&self, cell: &Cell) -> Part {
+        let piece = self.facet.outline.piece(cell);
+        Part { piece, basis: piece.basis(&self.facet.basis), depth: self.depth }
+    }
+
+    /// Draws `cell` linear between its corners.
+    #[inline(never)]
+    pub(super) fn linear(&self, cell: &Cell, corners: &[Levels; 3], band: &mut Band<'_, C>) -> u32 {
+        let part = self.part(cell);
+        let nodes = transposed(*corners);
+        if !self.shading.palette.three_channels {
+            self.shading.draw_one(&part, Plane::fit(&part.basis, [nodes[0]], super::EXTRA), Plane::raised, band)
+        } else {
+            self.shading.draw_three(&part, Plane::fit(&part.basis, nodes, super::EXTRA), Plane::raised, band)
+        }
+    }
+
+    /// Draws `cell` quadratic between its nodes.
+    #[inline(never)]
+    pub(super) fn quadratic(&self, cell: &Cell, six: &Six, band: &mut Band<'_, C>) -> u32 {
+        let part = self.part(cell);
+        let (corners, middles) = (transposed(six.corners), transposed(six.middles));
+        let nodes = zip(corners, middles, |[a, b, c], [ab, bc, ca]| [a, b, c, ab, bc, ca]);
+        if !self.shading.palette.three_channels {
+            self.shading.draw_one(&part, Quadric::fit::<BITS>(&part.basis, [nodes[0]], super::EXTRA), Quadric::raised, band)
+        } else {
+            self.shading.draw_three(&part, Quadric::fit::<BITS>(&part.basis, nodes, super::EXTRA), Quadric::raised, band)
+        }
+    }
+
+    /// Draws `cell` linear between the corners of the parts that `depth` splits make of it; `corners` is its own light.
+    ///
+    /// Each split lights three points, so a part costs the light of one. Parts outside the band cost nothing.
+    #[inline(never)]
+    pub(super) fn linear_parts(&self, cell: &Cell, corners: &[Levels; 3], depth: u32, band: &mut Band<'_, C>) -> u32 {
+        if !self.meets(cell, band) {
+            return 0;
+        }
+        if depth == 0 {
+            return self.linear(cell, corners, band);
+        }
+        let middles = self.middles(cell);
+        let mut pixels = 0;
+        for (k, part) in cell.split().iter().enumerate() {
+            pixels += self.linear_parts(part, &self::corners(*corners, middles, k), depth - 1, band);
+        }
+        pixels
+    }
+}
+
+/// Whether two lights differ by more than `tolerance` in any channel.
+pub(super) fn differ(a: Levels, b: Levels, tolerance: i32) -> bool {
+    zip(a, b, |a, b| a.abs_diff(b) > tolerance.unsigned_abs()).contains(&true)
+}
