@@ -3,7 +3,7 @@
 use super::{Claim, Random, Source, Topic, Value, Verdict, bishop_weimer, direction, largest};
 use crate::{
     oracle::angular::{Widths, along, parabolas, printed, refitted},
-    vector::{V3, add, dot, length, scale, sub},
+    vector::{V3, add, cross, dot, length, scale, sub},
 };
 use std::{collections::HashMap, f64::consts::FRAC_PI_2};
 
@@ -119,14 +119,11 @@ fn small() -> [Claim; 5] {
     let mut random = Random(101);
     let corners = [(); 3].map(|()| [random.between(0.0, 100.0), random.between(0.0, 100.0)]);
     let values = random.normals();
+    let row = |[x, y]: [f64; 2]| [x, y, 1.0];
     let at_first = |first: [f64; 2]| {
-        let rows = [first, corners[1], corners[2]];
-        let minor = |i: usize, j: usize| [values[i] - values[2], values[j] - values[2], rows[i][0] - rows[2][0], rows[j][1] - rows[2][1]];
-        let [u, v, x0, y1] = minor(0, 1);
-        let (x1, y0) = (rows[1][0] - rows[2][0], rows[0][1] - rows[2][1]);
-        let det = x0 * y1 - x1 * y0;
-        let (a, b) = ((u * y1 - v * y0) / det, (x0 * v - x1 * u) / det);
-        values[2] + a * (corners[0][0] - corners[2][0]) + b * (corners[0][1] - corners[2][1])
+        let [p, q, r] = [first, corners[1], corners[2]].map(row);
+        let shares = [cross(q, r), cross(r, p), cross(p, q)].map(|v| dot(v, row(corners[0])) / dot(p, cross(q, r)));
+        dot(shares, values)
     };
     let [[x1, y1], [_, y2], _] = corners;
     let plane = PLANES.formula(
