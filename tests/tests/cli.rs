@@ -3,6 +3,7 @@
 use microphong::{Shader, Stream, StreamError, stream};
 use microphong_sim::{
     bytes::StreamBytes,
+    compare,
     render::{self, Format, Settings},
     scene,
 };
@@ -227,8 +228,9 @@ fn sealed_nonsense_is_refused_or_drawn_but_never_crashes() {
             drawn += 1;
             // Header, material and light concern every method; of the many vertices and triangles each meets one.
             let all = at < stream.header.length as usize - size_of_val(stream.vertices) - size_of_val(stream.triangles);
-            let shaders = if all { &Shader::ALL[..] } else { &Shader::ALL[at % 4..][..1] };
-            for &shader in shaders {
+            let shaders = if all { &Shader::ALL[..] } else { &Shader::ALL[at % Shader::ALL.len()..][..1] };
+            // A bit may have made a far light near, which some methods refuse.
+            for &shader in shaders.iter().filter(|&&shader| compare::check(&stream, shader).is_ok()) {
                 let settings = Settings { size: (40, 30).into(), shader, dither: true, band_rows: 8, format: Format::Rgb565 };
                 let picture = render::picture(stream, &settings, 1).expect("a stream that passed the check can be drawn");
                 assert_eq!(picture.rgb.len(), 40 * 30 * 3, "byte {at}, flip {flip:02x}, {}", shader.name());
