@@ -11,10 +11,11 @@ pub(super) fn draw<C: Pixel>(facet: &Facet<'_>, shading: &Shading<'_, C>, band: 
     let thirds = [[2, 1, 0], [1, 2, 0], [0, 2, 1], [0, 1, 2], [1, 0, 2], [2, 0, 1], [1, 1, 1]];
     let [ab, ba, bc, cb, ca, ac, middle] = thirds.map(|weights| shading.levels(&facet.third(weights, 0)));
     let nodes = [a, b, c, ab, ba, bc, cb, ca, ac, middle];
-    let channel = |k: usize| nodes.map(|levels| levels[k]);
+    let red = nodes.map(|[r, ..]| r);
     if !shading.palette.three_channels {
-        shading.draw_one(facet, Cubic::fit(&facet.basis, [channel(0)], super::EXTRA), Cubic::raised, band)
+        shading.draw_one(facet, Cubic::fit(&facet.basis, [red], super::EXTRA), Cubic::raised, band)
     } else {
-        shading.draw_three(facet, Cubic::fit(&facet.basis, [0, 1, 2].map(channel), super::EXTRA), Cubic::raised, band)
+        let channels = [red, nodes.map(|[_, g, _]| g), nodes.map(|[.., b]| b)];
+        shading.draw_three(facet, Cubic::fit(&facet.basis, channels, super::EXTRA), Cubic::raised, band)
     }
 }
