@@ -34,8 +34,7 @@ pub fn frame<C: Pixel>(
     let mut depth = vec![0; size.width as usize * rows as usize];
     let mut palettes = vec![blank.palettes[0]; stream.materials.len()];
     let memory = Memory { vertices: &mut vertices, bins: &mut bins, depth: &mut depth, palettes: &mut palettes };
-    let mut renderer = Renderer::new(stream, size, memory)?;
-    renderer.set_shader(shader)?;
+    let mut renderer = Renderer::with_shader(stream, size, memory, shader)?;
     renderer.set_dither(dither);
     let mut pixels = Vec::with_capacity(size.width as usize * size.height as usize);
     let mut band = vec![C::pack([0; 3]); size.width as usize * rows as usize];
