@@ -1,4 +1,4 @@
-//! The oracle by itself: closed forms, symmetries, continuity, and the methods that the core has had from the start.
+//! The oracle by itself: closed forms, symmetries, continuity.
 
 use microphong_sim::{
     oracle::{Facet, Frame, Levels, Light, Material, NAMES, Place, Unsupported, decides, method, phong},
