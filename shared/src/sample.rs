@@ -3,9 +3,11 @@
 //! Fragments whose ranges of depth touch are parts of one surface, a *layer*: their coverages add up. A layer lies over
 //! those behind it, which show through by what it leaves uncovered.
 //!
-//! The order of triangles matters in two cases only: where more than [`LAYERS`] surfaces share a pixel, of which the
-//! farthest are then made one; and, by rounding, in the last bit. Surfaces that meet within a pixel are one layer: where
-//! its coverages exceed the pixel, it is their mean.
+//! Surfaces that cut each other within a pixel are one layer too. Their coverages exceed the pixel then, and the excess is
+//! shared out by how far their ranges of depth overlap (Carpenter's rule).
+//!
+//! The order of triangles matters where more than [`LAYERS`] surfaces share a pixel, of which the farthest are then made
+//! one; where a surface that comes in several fragments cuts another; and, by rounding, in the last of 16 bits.
 
 use crate::format::{COVERAGE, LAYERS};
 
@@ -19,7 +21,7 @@ pub struct Layer {
     pub near: u16,
     /// Its far end.
     pub far: u16,
-    /// [`COVERAGE`] fraction bits; 0: there is none. More than one where surfaces meet.
+    /// [`COVERAGE`] fraction bits, at most one; 0: there is none.
     pub coverage: u32,
     /// Channels times coverage.
     pub light: [u32; 3],
@@ -33,6 +35,7 @@ impl Layer {
     #[inline]
     #[must_use]
     pub fn new([near, far]: [u16; 2], coverage: u32, colour: [u8; 3]) -> Self {
+        let coverage = coverage.min(WHOLE);
         Self { near, far, coverage, light: colour.map(|channel| u32::from(channel) * coverage) }
     }
 
@@ -40,37 +43,44 @@ impl Layer {
         self.near >= other.far && other.near >= self.far
     }
 
-    /// Adds another part of the same surface.
-    fn join(&mut self, other: &Self) {
-        self.near = self.near.max(other.near);
-        self.far = self.far.min(other.far);
-        self.coverage = self.coverage.saturating_add(other.coverage);
-        for (light, other) in self.light.iter_mut().zip(other.light) {
-            *light = light.saturating_add(other);
+    /// Adds a part of the same surface, or of one that cuts it.
+    fn join(&mut self, part: &Self) {
+        // Both cover this much; the nearer one is seen.
+        let excess = (self.coverage + part.coverage).saturating_sub(WHOLE);
+        let lead = |near: u16, far: u16| u64::from(near.saturating_sub(far));
+        let (lead, behind) = (lead(self.near, part.far), lead(part.near, self.far));
+        let lost = (u64::from(excess) * behind).checked_div(lead + behind).map_or(excess / 2, |lost| lost as u32);
+        self.hide(lost);
+        let mut part = *part;
+        part.hide(excess - lost);
+        self.near = self.near.max(part.near);
+        self.far = self.far.min(part.far);
+        self.coverage += part.coverage;
+        for (light, part) in self.light.iter_mut().zip(part.light) {
+            *light += part;
         }
     }
 
-    /// No more than the pixel: where surfaces meet, their mean.
-    fn limited(mut self) -> Self {
-        if self.coverage > WHOLE {
-            let coverage = u64::from(self.coverage);
-            self.light = self.light.map(|light| ((u64::from(light) << COVERAGE).checked_div(coverage).unwrap_or(0)) as u32);
-            self.coverage = WHOLE;
+    /// Covers so much less.
+    fn hide(&mut self, lost: u32) {
+        if lost > 0 {
+            let left = u64::from(self.coverage.saturating_sub(lost));
+            let kept = |light: u32| (u64::from(light) * left).checked_div(self.coverage.into()).unwrap_or(0) as u32;
+            self.light = self.light.map(kept);
+            self.coverage = left as u32;
         }
-        self
     }
 
     /// With what is seen of the layer behind it.
-    fn over(self, behind: Self) -> Self {
-        let (mut front, behind) = (self.limited(), behind.limited());
-        let left = WHOLE - front.coverage;
+    fn over(mut self, behind: Self) -> Self {
+        let left = WHOLE.saturating_sub(self.coverage);
         let seen = |part: u32| ((u64::from(part) * u64::from(left)) >> COVERAGE) as u32;
-        front.coverage += seen(behind.coverage);
-        for (light, behind) in front.light.iter_mut().zip(behind.light) {
+        self.coverage += seen(behind.coverage);
+        for (light, behind) in self.light.iter_mut().zip(behind.light) {
             *light += seen(behind);
         }
-        front.far = behind.far;
-        front
+        self.far = behind.far;
+        self
     }
 }
 
