@@ -1,7 +1,8 @@
 //! What is seen through one pixel: parts of surfaces, one behind the other (after Carpenter's A-buffer, 1984).
 //!
 //! Fragments whose ranges of depth touch are parts of one surface, a *layer*: their coverages add up. A layer lies over
-//! those behind it, which show through by what it leaves uncovered.
+//! those behind it. How much of them it hides is judged by a mask of points: surfaces that fill a pixel together, such as
+//! the two sides of a fold, leave nothing of the background between them.
 //!
 //! Surfaces that cut each other within a pixel are one layer too. Their coverages exceed the pixel then, and the excess is
 //! shared out by how far their ranges of depth overlap (Carpenter's rule).
@@ -9,7 +10,10 @@
 //! The order of triangles matters where more than [`LAYERS`] surfaces share a pixel, of which the farthest are then made
 //! one; where a surface that comes in several fragments cuts another; and, by rounding, in the last of 16 bits.
 
-use crate::format::{COVERAGE, LAYERS};
+use crate::{
+    format::{COVERAGE, LAYERS},
+    raster::area::Mask,
+};
 
 /// A wholly covered pixel.
 const WHOLE: u32 = 1 << COVERAGE;
@@ -23,20 +27,29 @@ pub struct Layer {
     pub far: u16,
     /// [`COVERAGE`] fraction bits, at most one; 0: there is none.
     pub coverage: u32,
+    /// Where it lies.
+    pub mask: Mask,
     /// Channels times coverage.
     pub light: [u32; 3],
 }
 
 impl Layer {
     /// No surface.
-    const NONE: Self = Self { near: 0, far: 0, coverage: 0, light: [0; 3] };
+    const NONE: Self = Self { near: 0, far: 0, coverage: 0, mask: 0, light: [0; 3] };
 
     /// A surface of one colour.
     #[inline]
     #[must_use]
-    pub fn new([near, far]: [u16; 2], coverage: u32, colour: [u8; 3]) -> Self {
+    pub fn new([near, far]: [u16; 2], coverage: u32, mask: Mask, colour: [u8; 3]) -> Self {
         let coverage = coverage.min(WHOLE);
-        Self { near, far, coverage, light: colour.map(|channel| u32::from(channel) * coverage) }
+        Self { near, far, coverage, mask, light: colour.map(|channel| u32::from(channel) * coverage) }
+    }
+
+    /// A surface over all of the pixel.
+    #[inline]
+    #[must_use]
+    pub fn whole(range: [u16; 2], colour: [u8; 3]) -> Self {
+        Self::new(range, WHOLE, Mask::MAX, colour)
     }
 
     fn touches(&self, other: &Self) -> bool {
@@ -56,6 +69,7 @@ impl Layer {
         self.near = self.near.max(part.near);
         self.far = self.far.min(part.far);
         self.coverage += part.coverage;
+        self.mask |= part.mask;
         for (light, part) in self.light.iter_mut().zip(part.light) {
             *light += part;
         }
@@ -73,11 +87,22 @@ impl Layer {
 
     /// With what is seen of the layer behind it.
     fn over(mut self, behind: Self) -> Self {
-        let left = WHOLE.saturating_sub(self.coverage);
-        let seen = |part: u32| ((u64::from(part) * u64::from(left)) >> COVERAGE) as u32;
-        self.coverage += seen(behind.coverage);
+        let left = u64::from(WHOLE.saturating_sub(self.coverage));
+        let whole = u64::from(behind.coverage);
+        let points = behind.mask.count_ones();
+        let free = (behind.mask & !self.mask).count_ones();
+        let seen = if self.mask != 0 && self.mask | behind.mask == Mask::MAX {
+            left
+        } else if points > 0 {
+            (whole * u64::from(free) / u64::from(points.max(1))).min(left)
+        } else {
+            // Too little for any point: as likely hidden as not.
+            (whole * left) >> COVERAGE
+        };
+        self.coverage += seen as u32;
+        self.mask |= behind.mask;
         for (light, behind) in self.light.iter_mut().zip(behind.light) {
-            *light += seen(behind);
+            *light += (u64::from(behind) * seen).checked_div(whole).unwrap_or(0) as u32;
         }
         self.far = behind.far;
         self
@@ -142,8 +167,8 @@ impl Sample {
     /// The colour of all layers over the background's.
     #[must_use]
     pub fn resolve(&self, background: [u8; 3]) -> [u8; 3] {
-        let ground = Layer::new([0; 2], WHOLE, background);
-        let sum = self.layers.iter().rev().filter(|layer| layer.coverage > 0).fold(ground, |behind, layer| layer.over(behind));
-        sum.light.map(|light| ((light + WHOLE / 2) >> COVERAGE) as u8)
+        let layers = self.layers.iter().copied().filter(|layer| layer.coverage > 0);
+        let seen = layers.chain([Layer::whole([0; 2], background)]).reduce(Layer::over).unwrap_or(Layer::NONE);
+        seen.light.map(|light| ((light + WHOLE / 2) >> COVERAGE) as u8)
     }
 }

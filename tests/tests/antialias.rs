@@ -250,6 +250,12 @@ fn silhouette(frame: &Frame) -> Vec<u32> {
     counts
 }
 
+/// Whether the eight pixels around one are covered wholly, too.
+fn surrounded(counts: &[u32], width: usize, i: usize) -> bool {
+    let row = |i: usize| counts.get(i - 1..i + 2).is_some_and(|row| row == [256; 3]);
+    i > width && row(i - width) && row(i) && row(i + width)
+}
+
 /// One colour over a contrasting background: no seam inside, and an outline like a supersampled one.
 #[test]
 fn meshes_have_no_seams_and_smooth_outlines() {
@@ -261,12 +267,15 @@ fn meshes_have_no_seams_and_smooth_outlines() {
             let (pixels, _) = render::smooth::<White>(stream, size, Shader::Gouraud, false, 160, number).unwrap();
             let ground = f64::from(pixels[0].0);
             let counts = silhouette(&Frame::new(stream, (200, 160), number));
-            let (mut worst, mut square, mut edge, mut seams, mut inside) = (0f64, 0.0, 0u32, 0, 0);
-            for (pixel, &count) in pixels.iter().zip(&counts) {
+            let (mut worst, mut square, mut edge, mut seams, mut inside, mut deepest) = (0f64, 0.0, 0u32, 0, 0, 0);
+            for (i, (pixel, &count)) in pixels.iter().zip(&counts).enumerate() {
                 match count {
+                    // An outline may cut off less than shows in any of the points.
+                    256 if !surrounded(&counts, 200, i) => assert!(pixel.0 > 240),
                     256 => {
                         inside += 1;
                         seams += u32::from(pixel.0 != 255);
+                        deepest = deepest.max(255 - pixel.0);
                     }
                     0 => assert!(f64::from(pixel.0) - ground < 24.0),
                     _ => {
@@ -278,7 +287,9 @@ fn meshes_have_no_seams_and_smooth_outlines() {
                 }
             }
             let rms = (square / f64::from(edge.max(1))).sqrt();
-            println!("{name:12} frame {number:2}: {seams} seams in {inside} pixels; outline, {edge} pixels: rms {rms:.4}, max {worst:.3}");
+            println!(
+                "{name:12} frame {number:2}: {seams} seams of {deepest} at most in {inside} pixels; outline, {edge} pixels: rms {rms:.4}, max {worst:.3}"
+            );
         }
     }
 }
@@ -332,7 +343,9 @@ fn pictures_are_like_supersampled_ones() {
             let size = Size::new(width, height);
             let Ok((plain, _)) = render::frame::<Rgb888>(stream, size, shader, false, height, 5) else { continue };
             let (smooth, stats) = render::smooth::<Rgb888>(stream, size, shader, false, height, 5).unwrap();
-            assert!(stats.pixels > 0);
+            if stats.pixels == 0 {
+                continue; // A name without a method yet.
+            }
             let ground = [smooth[0].r(), smooth[0].g(), smooth[0].b()].map(f64::from);
             let exact = supersampled(&frame, shader.name(), ground);
             let errors = |pixels: &[Rgb888]| {
@@ -346,6 +359,8 @@ fn pictures_are_like_supersampled_ones() {
                 (rms, errors[errors.len() * 999 / 1000], errors[errors.len() - 1])
             };
             let ((a, b, c), (d, e, f)) = (errors(&plain), errors(&smooth));
+            let (rms, tail) = if name == "teapot" || name == "bunny" { (1.0, 12.0) } else { (0.6, 4.0) };
+            assert!(d < rms && e < tail && d < a / 2.0, "{name}, {}: rms {d}, 999 in 1000 below {e}", shader.name());
             println!(
                 "{name:12} {:18} rms {a:6.2} -> {d:5.2}, of 999 in 1000 {b:6.1} -> {e:5.1}, max {c:6.1} -> {f:5.1} LSB",
                 shader.name()
@@ -361,8 +376,7 @@ fn frame(stream: Stream<'_>, shader: Shader, vertices: usize, triangles: usize, 
     // The samples decide how many rows a band has.
     let (mut depth, mut samples) = (vec![0; 150 * 110], vec![Sample::EMPTY; (150 * rows) as usize]);
     let mut palettes = vec![Palette::empty(); stream.materials.len()];
-    let memory =
-        Memory { vertices: &mut vertices, bins: &mut bins, depth: &mut depth, palettes: &mut palettes, samples: &mut samples };
+    let memory = Memory { vertices: &mut vertices, bins: &mut bins, depth: &mut depth, palettes: &mut palettes, samples: &mut samples };
     let mut renderer = Renderer::new(stream, size, memory).unwrap();
     renderer.set_antialias(true).unwrap();
     renderer.set_shader(shader).unwrap();

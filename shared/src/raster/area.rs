@@ -17,9 +17,6 @@ use crate::format::COVERAGE;
 const PLACE: u32 = 16;
 const ONE: i64 = 1 << PLACE;
 
-/// A wholly covered pixel.
-pub(super) const WHOLE: i32 = 1 << COVERAGE;
-
 /// An edge from its upper to its lower end.
 #[derive(Clone, Copy, Debug)]
 struct Edge {
@@ -104,6 +101,8 @@ struct Portion {
     left: bool,
     /// The left and the right end in the row, [`PLACE`] fraction bits.
     ends: [[i64; 2]; 2],
+    /// Where it crosses the rows of points of a [`Mask`]; far right those that it does not.
+    crossings: [i64; 4],
     /// `F` at the current column, and the height at which the edge enters it.
     integral: i64,
     entry: i64,
@@ -116,6 +115,14 @@ impl Portion {
         let at = |y: i64| edge.x * edge.dy + edge.dx * (y - edge.y);
         let end = |y: i64| [(at(y) << (PLACE - bits)).div_euclid(edge.dy.max(1)), (y - top) << (PLACE - bits)];
         let (l, r) = if edge.dx < 0 { (to, from) } else { (from, to) };
+        let ends @ [[x0, y0], [x1, y1]] = [end(l), end(r)];
+        let crossing = |k: i64| {
+            let y = (2 * k + 1) << (PLACE - 3);
+            // Half open, as any fill of neighbours.
+            let crossed = y0.min(y1) <= y && y < y0.max(y1);
+            let height = if y1 > y0 { (y - y0, y1 - y0) } else { (y0 - y, y0 - y1) };
+            if crossed { x0 + (height.0 * (x1 - x0)).div_euclid(height.1.max(1)) } else { i64::MAX >> 2 }
+        };
         Self {
             height: (to - from).max(0),
             low: at(l),
@@ -124,7 +131,8 @@ impl Portion {
             dy: edge.dy,
             bits,
             left: edge.left,
-            ends: [end(l), end(r)],
+            ends,
+            crossings: [crossing(0), crossing(1), crossing(2), crossing(3)],
             integral: 0,
             entry: 0,
         }
@@ -182,7 +190,21 @@ impl Portion {
         (self.integral, self.entry) = (next, leave);
         area
     }
+
+    /// The points of `column` to its right.
+    fn mask(&self, column: i32) -> Mask {
+        let border = i64::from(column) << PLACE;
+        let [a, b, c, d] = self.crossings.map(|x| {
+            // Points lie at odd sixteenths.
+            let left = ((x - border + (1 << (PLACE - 4)) - 1) >> (PLACE - 3)).clamp(0, 8);
+            (0xFF_u32 << left) & 0xFF
+        });
+        a | b << 8 | c << 16 | d << 24
+    }
 }
+
+/// Which of 8 x 4 points of a pixel are covered: tells where in it an area lies. Neighbours share out the points.
+pub type Mask = u32;
 
 /// An area and its moments about the upper left corner of a pixel.
 #[derive(Clone, Copy, Debug, Default)]
@@ -210,6 +232,8 @@ pub struct Row {
 pub struct Fragment {
     /// Area, [`COVERAGE`] fraction bits; rounding may leave a negative one of two units at most.
     pub coverage: i32,
+    /// Where it lies.
+    pub mask: Mask,
     /// Its centroid from the centre of the pixel, to the right and down, 16 fraction bits.
     pub centroid: [i32; 2],
 }
@@ -222,9 +246,10 @@ impl Row {
 
     /// What is covered of `column`, where it stands; steps to the next one.
     pub fn step(&mut self, column: i32) -> Fragment {
-        let mut sum = Area::default();
+        let (mut sum, mut mask) = (Area::default(), 0);
         for portion in self.portions.iter_mut().filter(|portion| portion.height > 0) {
             let area = portion.area(column);
+            mask ^= portion.mask(column);
             let add = |to: &mut i64, part: i64| *to += if portion.left { part } else { -part };
             add(&mut sum.coverage, area.coverage);
             add(&mut sum.size, area.size);
@@ -233,6 +258,6 @@ impl Row {
         }
         // Nothing but rounding where the area is not positive.
         let place = |moment: i64| if sum.size > 0 { (moment / sum.size.max(1)).clamp(0, ONE) - ONE / 2 } else { 0 };
-        Fragment { coverage: sum.coverage as i32, centroid: [place(sum.x), place(sum.y)].map(|c| c as i32) }
+        Fragment { coverage: sum.coverage as i32, mask, centroid: [place(sum.x), place(sum.y)].map(|c| c as i32) }
     }
 }

@@ -173,7 +173,7 @@ impl Shape<'_> {
                 let (from, to) = (start.max(from).max(0), stop.min(to).min(width));
                 if from < to {
                     ink(Place { at: [row, from], row, column: from, count: to - from }, &mut |column, colour| {
-                        add(column, row, Layer::new(slant.range(column, row), super::area::WHOLE as u32, colour));
+                        add(column, row, Layer::whole(slant.range(column, row), colour));
                     });
                     pixels += (to - from) as u32;
                 }
@@ -191,7 +191,7 @@ impl Shape<'_> {
                     let place = |pixel: i32, offset: i32| (pixel << finer) + ((offset + (1 << (15 - finer))) >> (16 - finer));
                     let at = [place(row, fragment.centroid[1]), place(column, fragment.centroid[0])];
                     ink(Place { at, row, column, count: 1 }, &mut |column, colour| {
-                        add(column, row, Layer::new(slant.range(column, row), coverage, colour));
+                        add(column, row, Layer::new(slant.range(column, row), coverage, fragment.mask, colour));
                     });
                     pixels += 1;
                 }
