@@ -62,8 +62,7 @@ fn draw<C: Pixel>(
     let mut palettes = vec![blank.palettes[0]; stream.materials.len()];
     let mut samples = vec![Sample::EMPTY; if antialias { depth.len() } else { 0 }];
     let memory = Memory { vertices: &mut vertices, bins: &mut bins, depth: &mut depth, palettes: &mut palettes, samples: &mut samples };
-    let mut renderer = Renderer::new(stream, size, memory)?;
-    renderer.set_shader(shader)?;
+    let mut renderer = Renderer::with_shader(stream, size, memory, shader)?;
     renderer.set_dither(dither);
     renderer.set_antialias(antialias)?;
     let mut pixels = Vec::with_capacity(size.width as usize * size.height as usize);

@@ -106,6 +106,8 @@ pub enum SetupError {
         /// Samples needed at least.
         need: usize,
     },
+    /// Antialiasing is not part of this build.
+    Antialias,
     /// The method is not part of this build.
     Missing {
         /// The method's name.
@@ -125,6 +127,7 @@ impl fmt::Display for SetupError {
             Self::Depth { need } => write!(f, "the depth buffer needs {need} entries at least, one row"),
             Self::Palettes { need } => write!(f, "the stream has {need} materials, and each needs a palette"),
             Self::Samples { need } => write!(f, "antialiasing needs {need} samples at least, one row"),
+            Self::Antialias => f.write_str("this build cannot antialias; build it with the feature antialias"),
             Self::Missing { shader } => write!(f, "this build has no {shader} shading; build it with the feature all-shaders"),
             Self::Light { shader } => {
                 write!(f, "{shader} shading needs directional lights and an infinitely far viewer; this scene has near ones")
@@ -169,11 +172,19 @@ pub struct Renderer<'a, C> {
 }
 
 impl<'a, C: Pixel> Renderer<'a, C> {
-    /// A renderer for a viewport of `size` pixels.
+    /// A renderer for a viewport of `size` pixels, with the method that the stream asks for.
     ///
     /// # Errors
-    /// When `size` is out of range, `memory` too small for it, or the stream asks for a method that cannot shade it here.
+    /// When `size` is out of range, `memory` too small for it, or the method cannot shade the scene here.
     pub fn new(stream: Stream<'a>, size: Size, memory: Memory<'a, C>) -> Result<Self, SetupError> {
+        Self::with_shader(stream, size, memory, stream.shader())
+    }
+
+    /// As [`Self::new`], with another method than the stream's.
+    ///
+    /// # Errors
+    /// Likewise.
+    pub fn with_shader(stream: Stream<'a>, size: Size, memory: Memory<'a, C>, shader: Shader) -> Result<Self, SetupError> {
         let (width, height) = (size.width, size.height);
         if !(1..=MAX_SIDE).contains(&width) || !(1..=MAX_SIDE).contains(&height) {
             return Err(SetupError::Size { width, height });
@@ -184,7 +195,6 @@ impl<'a, C: Pixel> Renderer<'a, C> {
         if memory.palettes.len() < stream.materials.len() {
             return Err(SetupError::Palettes { need: stream.materials.len() });
         }
-        let shader = stream.shader();
         let background = background(stream.header.background);
         let mut renderer = Self { shader, background, stream, size, memory, dither: false, antialias: false };
         renderer.set_shader(shader)?;
@@ -223,11 +233,23 @@ impl<'a, C: Pixel> Renderer<'a, C> {
     /// Antialiasing by exact areas on or off, see [`crate::raster::smooth`]; off at first.
     ///
     /// # Errors
-    /// When `samples` does not hold a row; antialiasing stays off.
+    /// When `samples` does not hold a row, or this build has not got the feature `antialias`; it stays off then.
     pub fn set_antialias(&mut self, antialias: bool) -> Result<(), SetupError> {
         let need = self.size.width as usize;
-        self.antialias = antialias && self.memory.samples.len() >= need;
-        if self.antialias == antialias { Ok(()) } else { Err(SetupError::Samples { need }) }
+        self.antialias = false;
+        if antialias && !cfg!(feature = "antialias") {
+            return Err(SetupError::Antialias);
+        }
+        if antialias && self.memory.samples.len() < need {
+            return Err(SetupError::Samples { need });
+        }
+        self.antialias = antialias;
+        Ok(())
+    }
+
+    #[inline(always)]
+    fn antialiased(&self) -> bool {
+        cfg!(feature = "antialias") && self.antialias
     }
 
     /// The viewport.
@@ -240,7 +262,7 @@ impl<'a, C: Pixel> Renderer<'a, C> {
     #[must_use]
     pub fn band_rows(&self) -> u32 {
         let Memory { depth, samples, .. } = &self.memory;
-        let pixels = if self.antialias { depth.len().min(samples.len()) } else { depth.len() };
+        let pixels = if self.antialiased() { depth.len().min(samples.len()) } else { depth.len() };
         (pixels as u32).checked_div(self.size.width).unwrap_or(0).min(self.size.height)
     }
 
@@ -388,7 +410,7 @@ impl<C: Pixel> Frame<'_, '_, C> {
             if Outline::area([&a, &b, &c]) <= 0 {
                 return None;
             }
-            if self.renderer.antialias {
+            if self.renderer.antialiased() {
                 Bounds::touched([a, b, c].iter().map(|corner| [corner.x, corner.y, 0]))
             } else {
                 Bounds::new([&a, &b, &c])
@@ -396,7 +418,7 @@ impl<C: Pixel> Frame<'_, '_, C> {
         } else {
             let polygon = clip::clip(&self.view, self.vertices(mesh, triangle)?);
             let mut corners = polygon.iter().map(|cut| self.view.project(cut.eye).0);
-            if self.renderer.antialias {
+            if self.renderer.antialiased() {
                 return Some(Bounds::touched(corners).clipped(width, height)).filter(|bounds| !bounds.is_empty());
             }
             let mut bounds = Bounds::at(corners.next()?);
@@ -446,7 +468,8 @@ impl<C: Pixel> Frame<'_, '_, C> {
         let samples = core::mem::take(&mut self.renderer.memory.samples);
         let count = width * rows as usize;
         let lent = depth.get_mut(..count).unwrap_or_default();
-        let blend = self.renderer.antialias.then(|| Blend { samples: samples.get_mut(..count).unwrap_or_default(), channels: C::channels });
+        let blend =
+            self.renderer.antialiased().then(|| Blend { samples: samples.get_mut(..count).unwrap_or_default(), channels: C::channels });
         let mut band = Band { pixels, depth: lent, width, top: self.top as i32, rows: rows as i32, blend };
         band.clear(self.renderer.background);
         if self.binned {
@@ -473,7 +496,9 @@ impl<C: Pixel> Frame<'_, '_, C> {
                 }
             }
         }
-        band.resolve(self.renderer.background);
+        if self.renderer.antialiased() {
+            band.resolve(self.renderer.background);
+        }
         self.renderer.memory.depth = depth;
         self.renderer.memory.samples = samples;
     }
@@ -489,6 +514,7 @@ impl<C: Pixel> Frame<'_, '_, C> {
             dither: self.renderer.dither,
             palette,
             lighting: &self.lighting,
+            #[cfg(feature = "all-shaders")]
             exponent: self.renderer.stream.materials.get(usize::from(mesh.material)).map_or(1, |material| material.exponent),
             constant: self.constant,
         };
@@ -530,7 +556,7 @@ impl<C: Pixel> Frame<'_, '_, C> {
         triangle: &Triangle,
         band: &mut Band<'_, C>,
     ) -> u32 {
-        if self.renderer.antialias {
+        if self.renderer.antialiased() {
             self.draw_smooth(shading, corners, vertices, triangle, band)
         } else {
             self.draw_part(Part::Centres, shading, corners, vertices, triangle, band)

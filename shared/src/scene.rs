@@ -104,6 +104,10 @@ pub struct Lighting {
     pub sources: heapless::Vec<Source, MAX_LIGHTS>,
     /// For highlights.
     pub viewer: Viewer,
+    /// The axes of the eye, to the right, up, and towards the viewer: unit vectors, Q2.30.
+    pub axes: [[i32; 3]; 3],
+    /// The eye in these axes, seen from the object's origin, Q18.14: as exact as the camera, unlike a [`Viewer::Local`].
+    pub eye: [i32; 3],
 }
 
 impl Lighting {
@@ -111,7 +115,8 @@ impl Lighting {
     #[must_use]
     pub fn new(stream: &Stream<'_>, pose: &Pose) -> Self {
         let header = stream.header;
-        let towards_eye = pose.to_object([0, 0, -(1 << ROTATION)]);
+        let [right, up, away] = pose.rotation;
+        let towards_eye = away.map(|c| -c);
         let viewer = if header.viewer == VIEWER_LOCAL && header.camera.projection == PERSPECTIVE {
             Viewer::Local(pose.eye())
         } else {
@@ -122,7 +127,8 @@ impl Lighting {
             // A checked stream has no more lights than there is room for.
             let _ = sources.push(source(light, pose, towards_eye));
         }
-        Self { sources, viewer }
+        let [x, y, z] = pose.translation;
+        Self { sources, viewer, axes: [right, up, towards_eye], eye: [-x, -y, z] }
     }
 
     /// The two directions that matter if there is just one light, directional, under an infinite viewer:

@@ -336,7 +336,7 @@ fn pictures_are_like_supersampled_ones() {
         let scene = scene::load(name).unwrap();
         let stream: Stream<'_> = scene.stream.parse().unwrap();
         let frame = Frame::new(stream, (width, height), 5);
-        for shader in Shader::ALL.into_iter().filter(|shader| shader.is_built_in()) {
+        for shader in Shader::ALL.into_iter() {
             if oracle::method(shader.name(), &frame, &frame.facets[0], 0.0).is_err() {
                 continue;
             }
@@ -377,9 +377,8 @@ fn frame(stream: Stream<'_>, shader: Shader, vertices: usize, triangles: usize, 
     let (mut depth, mut samples) = (vec![0; 150 * 110], vec![Sample::EMPTY; (150 * rows) as usize]);
     let mut palettes = vec![Palette::empty(); stream.materials.len()];
     let memory = Memory { vertices: &mut vertices, bins: &mut bins, depth: &mut depth, palettes: &mut palettes, samples: &mut samples };
-    let mut renderer = Renderer::new(stream, size, memory).unwrap();
+    let mut renderer = Renderer::with_shader(stream, size, memory, shader).unwrap();
     renderer.set_antialias(true).unwrap();
-    renderer.set_shader(shader).unwrap();
     let mut band = vec![Rgb565::RED; 150 * 110];
     let mut pixels = Vec::new();
     let mut frame = renderer.frame(5);
@@ -396,7 +395,7 @@ fn neither_bands_nor_overflow_change_a_pixel() {
         let scene = scene::load(name).unwrap();
         let stream = scene.stream.parse().unwrap();
         let (vertices, triangles) = (stream.vertices.len(), stream.triangles.len());
-        for shader in Shader::ALL.into_iter().filter(|shader| shader.is_built_in()) {
+        for shader in Shader::ALL.into_iter() {
             if shader.needs_constant_light() && !stream.is_constant() {
                 continue;
             }
@@ -429,7 +428,7 @@ fn memory_that_is_missing_is_named() {
 fn inner_pixels_stay() {
     let scene = scene::load("dodecahedron").unwrap();
     let stream = scene.stream.parse().unwrap();
-    for shader in Shader::ALL.into_iter().filter(|shader| shader.is_built_in()) {
+    for shader in Shader::ALL.into_iter() {
         let size = Size::new(160, 120);
         let Ok((plain, _)) = render::frame::<Rgb565>(stream, size, shader, false, 120, 3) else { continue };
         let (smooth, _) = render::smooth::<Rgb565>(stream, size, shader, false, 120, 3).unwrap();

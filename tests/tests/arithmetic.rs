@@ -15,8 +15,9 @@ const LIMIT: f64 = 0.5;
 const FRAMES: u32 = 36;
 /// One in so many pixels is compared, other ones in each frame; all of them if `MICROPHONG_ALL=1`.
 const SAMPLE: usize = 5;
-/// How far integers may be off where a method compares a level with a threshold: the error of the table of highlights.
-const LEAN: f64 = 0.12;
+/// How far integers may be off where a method compares levels with a threshold, at most twice the error of the table of
+/// highlights. Several decisions shape a triangle, and each may fall its own way.
+const LEANS: [f64; 9] = [0.0, -0.01, 0.01, -0.03, 0.03, -0.07, 0.07, -0.14, 0.14];
 /// Where a pixel's centre lies on the border of two parts of a triangle, either may show.
 const NUDGE: f64 = 1e-6;
 
@@ -32,31 +33,40 @@ fn difference(drawn: [f64; 3], exact: [f64; 3]) -> f64 {
     if one { all.min((drawn[0] - exact.into_iter().fold(0.0, f64::max)).abs()) } else { all }
 }
 
-/// Largest difference of `shader` in one frame, before the output format rounds.
-fn error(scene: &Scene, shader: Shader, number: u32, every: usize) -> f64 {
+/// Largest difference in one frame of each method, before the output format rounds.
+fn errors(scene: &Scene, number: u32, every: usize) -> Vec<f64> {
     let stream = scene.stream.parse().unwrap();
     let frame = Frame::new(stream, scene.size, number);
-    let leans: &[f64] = if decides(shader.name()) { &[0.0, -LEAN, LEAN] } else { &[0.0] };
-    let shades: Option<Vec<_>> = leans.iter().map(|&lean| shades(&frame, shader, lean)).collect();
+    let visible = frame.visible();
+    Shader::ALL.iter().map(|&shader| error(scene, &frame, &visible, shader, number, every)).collect()
+}
+
+fn error(scene: &Scene, frame: &Frame, visible: &[Vec<u32>], shader: Shader, number: u32, every: usize) -> f64 {
+    let leans: &[f64] = if decides(shader.name()) { &LEANS } else { &[0.0] };
+    let shades: Option<Vec<_>> = leans.iter().map(|&lean| shades(frame, shader, lean)).collect();
     let Some(shades) = shades else { return 0.0 };
-    let drawn = level::picture(stream, Size::new(scene.size.0, scene.size.1), shader, number).unwrap();
-    let mut worst = 0f64;
-    for (i, (levels, candidates)) in drawn.iter().zip(frame.visible()).enumerate() {
-        assert_eq!(levels.is_none(), candidates.is_empty(), "{} {}: pixel {i}", scene.name, shader.name());
+    let size = Size::new(scene.size.0, scene.size.1);
+    let drawn = level::picture(scene.stream.parse().unwrap(), size, shader, number).unwrap();
+    let (mut worst, mut edge_on) = (0f64, 0);
+    for (i, (levels, candidates)) in drawn.iter().zip(visible).enumerate() {
+        // A face that is seen edge-on may be culled in object space, and yet rounded corners give it a pixel.
+        edge_on += usize::from(levels.is_none() && !candidates.is_empty());
         let Some(levels) = levels.filter(|_| (i + number as usize).is_multiple_of(every)) else { continue };
+        assert!(!candidates.is_empty(), "{} {}: pixel {i}", scene.name, shader.name());
         let centre = [i as u32 % scene.size.0, i as u32 / scene.size.0].map(|c| f64::from(c) + 0.5);
-        let at = |x: f64, y: f64| {
+        let at = |x: f64, y: f64, leans: usize| {
             let point = [centre[0] + x, centre[1] + y];
-            let all = candidates.iter().flat_map(|&c| shades.iter().map(move |shades| &shades[c as usize]));
+            let all = candidates.iter().flat_map(|&c| shades.iter().take(leans).map(move |shades| &shades[c as usize]));
             all.map(|shade| difference(levels, shade(point))).fold(f64::MAX, f64::min)
         };
-        let mut error = at(0.0, 0.0);
-        if error > LIMIT && decides(shader.name()) {
-            let around = [(NUDGE, NUDGE), (NUDGE, -NUDGE), (-NUDGE, NUDGE), (-NUDGE, -NUDGE)];
-            error = around.map(|(x, y)| at(x, y)).into_iter().fold(error, f64::min);
+        let mut error = at(0.0, 0.0, 1);
+        if error > LIMIT / 2.0 && decides(shader.name()) {
+            let around = [(0.0, 0.0), (NUDGE, NUDGE), (NUDGE, -NUDGE), (-NUDGE, NUDGE), (-NUDGE, -NUDGE)];
+            error = around.map(|(x, y)| at(x, y, leans.len())).into_iter().fold(error, f64::min);
         }
         worst = worst.max(error);
     }
+    assert!(edge_on <= 2, "{} {}: {edge_on} pixels are missing", scene.name, shader.name());
     worst
 }
 
@@ -64,29 +74,28 @@ fn error(scene: &Scene, shader: Shader, number: u32, every: usize) -> f64 {
 fn integers_follow_their_method() {
     let every = if std::env::var_os("MICROPHONG_ALL").is_some_and(|v| v == "1") { 1 } else { SAMPLE };
     let scenes: Vec<Scene> = scene::NAMES.iter().map(|name| scene::load(name).unwrap()).collect();
-    let jobs = Mutex::new(Shader::ALL.iter());
-    let wrong = Mutex::new(Vec::new());
+    let jobs = Mutex::new(scenes.iter().flat_map(|scene| (0..FRAMES).map(move |k| (scene, k))));
+    let worst = Mutex::new(vec![(0.0, ""); Shader::ALL.len()]);
     thread::scope(|scope| {
         for _ in 0..thread::available_parallelism().map_or(1, usize::from) {
             scope.spawn(|| {
                 loop {
-                    let Some(&shader) = jobs.lock().unwrap().next() else { break };
-                    let worst = scenes.iter().map(|scene| {
-                        let period = scene.stream.parse().unwrap().header.camera.period.max(1);
-                        let frames = (0..FRAMES).map(|k| k * u32::from(period) / FRAMES);
-                        (frames.map(|number| error(scene, shader, number, every)).fold(0.0, f64::max), scene.name.as_str())
-                    });
-                    let worst: Vec<_> = worst.collect();
-                    let (most, place) = worst.iter().copied().fold((0.0, ""), |a, b| if b.0 > a.0 { b } else { a });
-                    println!("{:20} {most:.3} LSB at most, on {place}", shader.name());
-                    wrong
-                        .lock()
-                        .unwrap()
-                        .extend(worst.iter().filter(|w| w.0 > LIMIT).map(|w| format!("{} {}: {}", shader.name(), w.1, w.0)));
+                    let job = jobs.lock().unwrap().next();
+                    let Some((scene, k)) = job else { break };
+                    let period = scene.stream.parse().unwrap().header.camera.period.max(1);
+                    let errors = errors(scene, k * u32::from(period) / FRAMES, every);
+                    for (worst, error) in worst.lock().unwrap().iter_mut().zip(errors) {
+                        if error > worst.0 {
+                            *worst = (error, &scene.name);
+                        }
+                    }
                 }
             });
         }
     });
-    let wrong = wrong.into_inner().unwrap();
-    assert!(wrong.is_empty(), "{wrong:#?}");
+    let worst = worst.into_inner().unwrap();
+    for (shader, (error, place)) in Shader::ALL.iter().zip(&worst) {
+        println!("{:20} {error:.3} LSB at most, on {place}", shader.name());
+    }
+    assert!(worst.iter().all(|&(error, _)| error <= LIMIT), "a method is more than {LIMIT} LSB off");
 }

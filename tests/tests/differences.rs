@@ -4,13 +4,14 @@
 //! once, there. The anchor is the middle of what is drawn, or the top corner of triangles below 128 pixels, so S is at most
 //! half the width plus half the height of the screen, or 256. Set-up costs more the thinner the triangle: with k its
 //! length over its height, [`QUADRATIC`] k² and [`LINEAR`] k, a part of the nodes' range; slivers' quadratics are
-//! fitted exactly.
+//! fitted exactly. Cubics cost 2^-54 (1 + S + S² + S³) LSB and [`CUBIC`] k: they are set up in 128 bits.
 
 use microphong::{
-    format::{LEVEL, WALK},
+    format::{BIAS, LEVEL, WALK},
     poly::{
         Patch, Walker,
         basis::{Basis, MAX_THINNESS},
+        cubic::Cubic,
         plane::Plane,
         quadric::Quadric,
     },
@@ -23,6 +24,8 @@ use std::ops::Range;
 
 /// Set-up error of a quadratic on a triangle as long as high, LSB.
 const QUADRATIC: f64 = 255.0 / (1u64 << 22) as f64;
+/// Set-up error of a cubic on a triangle as long as high, LSB.
+const CUBIC: f64 = 255.0 / (1u64 << 22) as f64;
 /// Set-up error of a plane on a triangle as long as high, LSB.
 const LINEAR: f64 = 255.0 / (1u64 << 28) as f64;
 
@@ -171,6 +174,75 @@ fn quadratics_of_100_000_random_triangles_stay_within_the_bound() {
         println!("{name:10} worst error {error:.5} LSB, {share:.2} of the bound");
     }
     assert!(triangles >= 100_000 && slivers >= 1_000 && longest > 3_900);
+}
+
+#[test]
+fn cubics_stay_within_the_bound() {
+    let mut random = Random(TestRng::from_seed(RngAlgorithm::ChaCha, &[5; 32]));
+    let mut worst = [(0f64, 0f64); 6];
+    let (mut triangles, mut slivers) = (0, 0);
+    for i in 0..150_000 {
+        let kind = i % 6;
+        let mut case = case(&mut random, kind);
+        if side(case.corners[0], case.corners[1], case.corners[2]) < 0 {
+            case.corners.swap(1, 2);
+        }
+        let c = case.corners;
+        let range = |k: usize, end: i32| {
+            let (low, high) = c.iter().fold((i32::MAX, i32::MIN), |(low, high), c| (low.min(c[k]), high.max(c[k])));
+            (low >> 4).max(0)..((high >> 4) + 1).min(end)
+        };
+        let (across, down) = (range(0, case.width), range(1, case.height));
+        if across.is_empty() || down.is_empty() {
+            continue;
+        }
+        let Some(basis) = Basis::new(c, [across.start, down.start, across.end, down.end]) else { continue };
+        triangles += 1;
+        let nodes: [i32; 10] = std::array::from_fn(|_| random.pick(0..255 << LEVEL));
+        let mut patch = Cubic::<1>::fit(&basis, [nodes], WALK - LEVEL).raised([BIAS << WALK]);
+        // Longest edge over the height on it.
+        let longest2 = (0..3).map(|k| square(c[k], c[(k + 1) % 3])).fold(0.0, f64::max);
+        let thinness = longest2 / side(c[0], c[1], c[2]) as f64;
+        let extent = [c[1], c[2]].as_flattened().iter().zip([c[0]; 2].as_flattened()).map(|(a, b)| i64::from((a - b).abs())).max().unwrap();
+        let sliver = extent * extent > side(c[0], c[1], c[2]) * MAX_THINNESS;
+        slivers += u32::from(sliver);
+        let setup = if sliver { 0.0 } else { CUBIC * thinness };
+        let mut at = basis.row();
+        for row in [down.start, down.end - 1, random.pick(down)] {
+            let columns = span(&case, row);
+            if columns.is_empty() {
+                continue;
+            }
+            patch.jump(row - at);
+            at = row;
+            let mut walker = patch.enter(columns.end);
+            for x in columns.rev() {
+                walker.step();
+                let [walked] = walker.value();
+                let b = barycentric(c, [x * 16 + 8, row * 16 + 8]);
+                let n = nodes.map(|node| f64::from(node) / 128.0);
+                let corner = |k: usize| b[k] * (3.0 * b[k] - 1.0) * (3.0 * b[k] - 2.0) / 2.0;
+                let edge = |near: usize, far: usize| 4.5 * b[near] * b[far] * (3.0 * b[near] - 1.0);
+                let thirds = [(0, 1), (1, 0), (1, 2), (2, 1), (2, 0), (0, 2)];
+                let exact = (0..3).map(|k| corner(k) * n[k]).sum::<f64>()
+                    + thirds.iter().zip(&n[3..]).map(|(&(near, far), n)| edge(near, far) * n).sum::<f64>()
+                    + 27.0 * b[0] * b[1] * b[2] * n[9];
+                // Clamped to what a walked level can hold.
+                let exact = (exact + f64::from(BIAS)).clamp(0.0, 512.0);
+                let error = (f64::from(walked) / f64::from(1 << WALK) - exact).abs();
+                let distance = f64::from((x - basis.column()).abs() + (row - basis.row()).abs());
+                // The last bits are cut off.
+                let bound = 2f64.powi(-23) + 2f64.powi(-54) * (1.0 + distance + distance.powi(2) + distance.powi(3)) + setup;
+                worst[kind] = (worst[kind].0.max(error), worst[kind].1.max(error / bound));
+                assert!(error <= bound, "triangle {i} {c:?}, pixel {x},{row}: error {error}, bound {bound}");
+            }
+        }
+    }
+    println!("{triangles} triangles, {slivers} slivers among them");
+    for (name, (error, share)) in ["320x240", "tiny", "sliver", "1920x1080", "4096x4096", "clipped"].iter().zip(worst) {
+        println!("{name:10} worst error {error:.7} LSB, {share:.2} of the bound");
+    }
+    assert!(triangles >= 100_000 && slivers >= 1_000);
 }
 
 #[test]

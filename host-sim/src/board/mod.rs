@@ -12,6 +12,7 @@ mod qemu;
 use anyhow::Result;
 use budget::Budget;
 use elf::Elf;
+use microphong::Shader;
 pub use qemu::trace;
 use serde::{Serialize, Serializer};
 use std::fmt;
@@ -80,6 +81,12 @@ impl Board {
     pub const fn size(self) -> (u32, u32) {
         let budget = self.budget();
         (budget.width as u32, budget.height as u32)
+    }
+
+    /// Whether its firmware has room for the method.
+    #[must_use]
+    pub fn has(self, shader: Shader) -> bool {
+        self != Self::Lm3s6965evb || Shader::BASIC.contains(&shader)
     }
 
     /// How it stores a pixel.

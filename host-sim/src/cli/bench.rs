@@ -1,8 +1,10 @@
 //! `microphong bench`.
 
 use super::{
-    Outcome, parse, report,
-    verify::{Several, load, shaders},
+    Outcome,
+    parse::{self, Several},
+    report,
+    verify::load,
 };
 use anyhow::Result;
 use embedded_graphics_core::{geometry::Size, pixelcolor::Rgb565};
@@ -23,8 +25,8 @@ pub(crate) struct Arguments {
     /// A .tri or .obj file, a built-in scene, or all built-in scenes.
     #[arg(default_value = "peer-sphere")]
     scene: String,
-    /// Shading method: flat, gouraud, six-point, phong, or all.
-    #[arg(long, default_value = "all", value_parser = shaders)]
+    /// Shading methods, separated by commas, or all.
+    #[arg(long, default_value = "flat,gouraud,six-point,phong", value_parser = parse::shaders)]
     shader: Several<Shader>,
     /// mps2-an385 (Cortex-M3) or mps2-an386 (Cortex-M4F).
     #[arg(long, default_value = "mps2-an385", value_parser = board)]
@@ -50,7 +52,7 @@ fn board(text: &str) -> Result<Board, String> {
 pub(crate) fn run(arguments: &Arguments) -> Result<Outcome> {
     let scenes = load(&arguments.scene)?;
     let board = arguments.board;
-    let Several(shaders) = &arguments.shader;
+    let shaders = &arguments.shader.values;
     let bar = report::progress((scenes.len() * shaders.len()) as u64 + 1, "counting");
     let elf = Elf::read(&verify::build(board)?)?;
     let (width, height) = board.size();

@@ -1,6 +1,11 @@
 //! `microphong compare`.
 
-use super::{Outcome, parse, report, verify::load};
+use super::{
+    Outcome,
+    parse::{self, Several},
+    report,
+    verify::load,
+};
 use anyhow::{Context, Result};
 use microphong::Shader;
 use microphong_sim::{
@@ -22,8 +27,8 @@ pub(crate) struct Arguments {
     #[arg(required = true, value_name = "SCENE")]
     scenes: Vec<String>,
     /// Shading methods by name, separated by commas, or all.
-    #[arg(long, default_value = "all", value_name = "S,...", value_parser = methods)]
-    shader: Methods,
+    #[arg(long, default_value = "all", value_name = "S,...", value_parser = parse::shaders)]
+    shader: Several<Shader>,
     /// Exponent of all highlights; the scene's own unless given.
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
     exponent: Option<u16>,
@@ -56,27 +61,6 @@ Columns:
   edge, mach  largest jump of the level across an edge, and of its slope (LSB per pixel)
   + * load    additions, multiplications and table look-ups per pixel
   set-up      operations per triangle, and per row where there are any";
-
-/// Methods, and whether they were asked for by name.
-#[derive(Clone)]
-struct Methods {
-    shaders: Vec<Shader>,
-    named: bool,
-}
-
-fn methods(text: &str) -> Result<Methods, String> {
-    if text == "all" {
-        return Ok(Methods { shaders: Shader::ALL.to_vec(), named: false });
-    }
-    let mut shaders = Vec::new();
-    for name in text.split(',') {
-        let shader = parse::shader(name.trim()).map_err(|error| format!("{error}, or all"))?;
-        if !shaders.contains(&shader) {
-            shaders.push(shader);
-        }
-    }
-    Ok(Methods { shaders, named: true })
-}
 
 /// What is known of one method on one scene; all figures are null if it could not be drawn, and `reason` says why.
 #[derive(Serialize)]
@@ -115,8 +99,8 @@ struct Row {
 
 pub(crate) fn run(arguments: &Arguments) -> Result<Outcome> {
     let scenes = scenes(arguments)?;
-    let Methods { shaders, named } = &arguments.shader;
-    if *named {
+    let Several { values: shaders, all } = &arguments.shader;
+    if !all {
         for scene in &scenes {
             let stream = scene.stream.parse().with_context(|| scene.name.clone())?;
             shaders.iter().try_for_each(|&shader| compare::check(&stream, shader)).with_context(|| scene.name.clone())?;
@@ -133,7 +117,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome> {
             let compared = compare::check(&stream, shader).map_err(Into::into).and_then(|()| reference.compare(shader));
             let result = match compared {
                 // Among all methods, one that cannot draw the scene does not hide the others.
-                Err(error) if !named => Err(format!("{error:#}")),
+                Err(error) if *all => Err(format!("{error:#}")),
                 other => Ok(other?),
             };
             bar.inc(1);

@@ -2,6 +2,8 @@
 
 use microphong::{Shader, render::MAX_SIDE};
 use microphong_sim::{
+    board::Board,
+    papers::Topic,
     render::Format,
     vector::V3,
     view::{Projection, Up},
@@ -13,6 +15,43 @@ pub(crate) fn among<T: Copy>(text: &str, all: &[T], name: impl Fn(T) -> &'static
         let names: Vec<_> = all.iter().map(|&value| name(value)).collect();
         format!("one of {} is needed", names.join(", "))
     })
+}
+
+/// Some values, or each of them that can be had.
+#[derive(Clone)]
+pub(crate) struct Several<T> {
+    pub(crate) values: Vec<T>,
+    pub(crate) all: bool,
+}
+
+/// `all`, or values separated by commas.
+fn several<T: Copy + PartialEq>(text: &str, all: &[T], one: impl Fn(&str) -> Result<T, String>) -> Result<Several<T>, String> {
+    if text == "all" {
+        return Ok(Several { values: all.to_vec(), all: true });
+    }
+    let mut values = Vec::new();
+    for name in text.split(',') {
+        let value = one(name.trim()).map_err(|error| format!("{error}, or all"))?;
+        if !values.contains(&value) {
+            values.push(value);
+        }
+    }
+    Ok(Several { values, all: false })
+}
+
+/// Boards by name.
+pub(crate) fn boards(text: &str) -> Result<Several<Board>, String> {
+    several(text, &Board::ALL, |text| among(text, &Board::ALL, Board::name))
+}
+
+/// Shading methods by name.
+pub(crate) fn shaders(text: &str) -> Result<Several<Shader>, String> {
+    several(text, &Shader::ALL, shader)
+}
+
+/// Papers by name.
+pub(crate) fn topics(text: &str) -> Result<Several<Topic>, String> {
+    several(text, &Topic::ALL, |text| among(text, &Topic::ALL, Topic::name))
 }
 
 /// A shading method by name.

@@ -21,7 +21,7 @@ use std::{
 pub(crate) struct Arguments {
     /// A .tri or .obj file, or a built-in scene; `microphong scenes` lists them.
     scene: String,
-    /// Shading method: flat, gouraud, six-point or phong; the scene's own unless given.
+    /// Shading method; the scene's own unless given. `microphong compare` shows what each is worth.
     #[arg(long, value_parser = parse::shader)]
     shader: Option<Shader>,
     /// Size of the picture; the scene's own unless given, 640x480 for files.

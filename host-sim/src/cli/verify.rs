@@ -1,10 +1,15 @@
 //! `microphong verify`.
 
-use super::{Outcome, Usage, parse, report};
+use super::{
+    Outcome, Usage,
+    parse::{self, Several},
+    report,
+};
 use anyhow::{Context, Result, bail};
 use microphong::Shader;
 use microphong_sim::{
     board::Board,
+    compare,
     scene::{self, NAMES, Scene},
     verify::{self, Report, Request},
 };
@@ -14,14 +19,14 @@ use std::path::PathBuf;
 #[derive(clap::Args)]
 #[command(after_help = EXAMPLES)]
 pub(crate) struct Arguments {
-    /// pico, lm3s6965evb, mps2-an385, mps2-an386, or all.
-    #[arg(long, value_parser = boards)]
+    /// Boards, separated by commas: pico, lm3s6965evb, mps2-an385, mps2-an386; or all.
+    #[arg(long, value_parser = parse::boards)]
     board: Several<Board>,
     /// A .tri or .obj file, a built-in scene, or all built-in scenes.
     #[arg(long, default_value = "teapot")]
     scene: String,
-    /// Shading method: flat, gouraud, six-point, phong, or all.
-    #[arg(long, default_value = "all", value_parser = shaders)]
+    /// Shading methods, separated by commas, or all that the board has room for.
+    #[arg(long, default_value = "all", value_parser = parse::shaders)]
     shader: Several<Shader>,
     /// Frames to compare, from the first.
     #[arg(long, default_value_t = 3, value_parser = clap::value_parser!(u16).range(1..))]
@@ -41,56 +46,52 @@ Examples:
 
 Exit codes: 0 all pixels are equal; 1 some differ, or a board failed; 2 wrong usage.";
 
-/// One value, or each of them.
-#[derive(Clone)]
-pub(super) struct Several<T>(pub(super) Vec<T>);
-
-fn several<T: Copy>(text: &str, all: &[T], one: impl Fn(&str) -> Result<T, String>) -> Result<Several<T>, String> {
-    if text == "all" { Ok(Several(all.to_vec())) } else { one(text).map(|value| Several(vec![value])) }
-}
-
-fn boards(text: &str) -> Result<Several<Board>, String> {
-    several(text, &Board::ALL, |text| parse::among(text, &Board::ALL, Board::name).map_err(|error| format!("{error}, or all")))
-}
-
-pub(super) fn shaders(text: &str) -> Result<Several<Shader>, String> {
-    several(text, &Shader::ALL, |text| parse::shader(text).map_err(|error| format!("{error}, or all")))
-}
-
 pub(crate) fn run(arguments: &Arguments) -> Result<Outcome> {
     let scenes = load(&arguments.scene)?;
-    let Several(boards) = &arguments.board;
-    let Several(shaders) = &arguments.shader;
-    let count = boards.len() * scenes.len() * shaders.len();
+    let boards = &arguments.board.values;
+    let shaders = &arguments.shader;
+    // Of all methods those that the board has and that can shade the scene.
+    let wanted = |board: Board, scene: &Scene, shader: Shader| {
+        let possible = scene.stream.parse().is_ok_and(|stream| compare::check(&stream, shader).is_ok());
+        !shaders.all || board.has(shader) && possible
+    };
+    let mut runs = Vec::new();
+    for &board in boards {
+        for scene in &scenes {
+            runs.extend(shaders.values.iter().filter(|&&shader| wanted(board, scene, shader)).map(|&shader| (board, scene, shader)));
+        }
+    }
+    let count = runs.len();
     let bar = report::progress(count as u64 + 1, "verifying");
     let (mut differ, mut failed) = (0, 0);
-    for &board in boards {
-        let elf = verify::build(board).with_context(|| format!("no firmware for {board}"))?;
-        for scene in &scenes {
-            for &shader in shaders {
-                let request = Request {
-                    board,
-                    scene: scene.name.clone(),
-                    stream: scene.stream.as_bytes().to_vec(),
-                    firmware_stream: None,
-                    shader,
-                    frames: arguments.frames,
-                };
-                let artefacts = arguments.artefacts.join(format!("{board}-{}-{}", scene.name, shader.name()));
-                bar.inc(1);
-                match verify::run(&request, &elf, &artefacts) {
-                    Ok(result) => {
-                        differ += usize::from(result.differing > 0);
-                        bar.suspend(|| if arguments.json { report::json(&result) } else { text(&result, &artefacts) })?;
-                    }
-                    // With several comparisons one failure should not hide the others.
-                    Err(error) if count > 1 => {
-                        failed += 1;
-                        bar.suspend(|| report::failure(&error));
-                    }
-                    Err(error) => return Err(error),
-                }
+    let mut built: Option<(Board, PathBuf)> = None;
+    for (board, scene, shader) in runs {
+        let elf = match &built {
+            Some((of, elf)) if *of == board => elf.clone(),
+            _ => verify::build(board).with_context(|| format!("no firmware for {board}"))?,
+        };
+        built = Some((board, elf.clone()));
+        let request = Request {
+            board,
+            scene: scene.name.clone(),
+            stream: scene.stream.as_bytes().to_vec(),
+            firmware_stream: None,
+            shader,
+            frames: arguments.frames,
+        };
+        let artefacts = arguments.artefacts.join(format!("{board}-{}-{}", scene.name, shader.name()));
+        bar.inc(1);
+        match verify::run(&request, &elf, &artefacts) {
+            Ok(result) => {
+                differ += usize::from(result.differing > 0);
+                bar.suspend(|| if arguments.json { report::json(&result) } else { text(&result, &artefacts) })?;
             }
+            // With several comparisons one failure should not hide the others.
+            Err(error) if count > 1 => {
+                failed += 1;
+                bar.suspend(|| report::failure(&error));
+            }
+            Err(error) => return Err(error),
         }
     }
     bar.finish_and_clear();

@@ -3,11 +3,14 @@
 use crate::oracle::{self, Frame, Levels, Unsupported};
 use rayon::prelude::*;
 
+/// A point of the screen, and its place in the result.
+type Point = (usize, [f64; 2]);
+
 /// Points on facets. A method is set up once per facet, whatever the order of its points.
 #[derive(Clone, Debug)]
 pub(super) struct Samples {
-    /// Per facet that has any: its index, and each point with its place in the result.
-    by_facet: Vec<(usize, Vec<(usize, [f64; 2])>)>,
+    /// Per facet that has any: its index, and the points.
+    by_facet: Vec<(usize, Vec<Point>)>,
     count: usize,
 }
 

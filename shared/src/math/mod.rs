@@ -23,3 +23,14 @@ pub fn scale(value: i64, bits: i32) -> i64 {
         0
     }
 }
+
+/// [`scale`] in 128 bits; `bits` is at most 126.
+#[must_use]
+pub fn scale_wide(value: i128, bits: i32) -> i128 {
+    if bits > 0 {
+        let bits = bits.unsigned_abs().min(126);
+        value.wrapping_add(1 << (bits - 1)) >> bits
+    } else {
+        value.wrapping_shl(bits.unsigned_abs())
+    }
+}

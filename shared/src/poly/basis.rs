@@ -10,7 +10,8 @@
 use super::sliver::Sliver;
 use crate::{
     format::{CENTRE, FINE, SPLITS, SUBPIXEL},
-    math::{recip::recip, scale},
+    math::{recip::recip, scale, scale_wide},
+    poly::terms::Terms,
 };
 
 /// More fraction bits than the walked format, while coefficients move to the anchor.
@@ -178,6 +179,28 @@ impl Basis {
         let dx = dx.wrapping_add(2 * bend_x).wrapping_add(mixed);
         let dy = dy.wrapping_add(2 * bend_y).wrapping_add(along(dxy, ox));
         self.round([c, dx, dy, dxx, dxy, dyy])
+    }
+
+    /// The terms of the cubic through ten nodes in a range of 2^15, at the anchor; by powers of x, then of y.
+    ///
+    /// In 128 bits all is exact but the gradients, and one rounding of each coefficient.
+    #[must_use]
+    pub fn cubic(&self, nodes: [i32; 10], extra: u32) -> Terms<i64> {
+        let fraction = extra + GUARD as u32;
+        let terms = if self.thin {
+            let sliver = Sliver { edges: self.edges, offset: self.offset.map(|c| c >> SPLITS), bits: SUBPIXEL };
+            let by = |k: usize| move |a: i128, b: i128| a.wrapping_add(b.wrapping_mul(self.shift[k].into()));
+            sliver.cubic(nodes, fraction).moved_across(by(0)).moved_down(by(1))
+        } else {
+            // With three mantissas terms stay below 2^114, moved below 2^124.
+            let terms = Terms::of(nodes.map(i128::from), self.s.map(i128::from), self.t.map(i128::from));
+            let scaled = terms.map(|c, degree| scale_wide(c, degree as i32 * self.exponent + 2 - fraction as i32));
+            // From the corner to the anchor.
+            let way = |k: usize| i128::from(self.offset[k]) + (i128::from(self.shift[k]) << FINE);
+            let by = |k: usize| move |a: i128, b: i128| a + ((b * way(k)) >> FINE);
+            scaled.moved_across(by(0)).moved_down(by(1))
+        };
+        terms.map(|c, _| scale_wide(c, GUARD) as i64)
     }
 
     /// Moves coefficients from corner 0's pixel to the anchor, exactly, and rounds them to the walked format.

@@ -1,15 +1,17 @@
 //! Polynomials over a triangle: fitted once, then walked by additions.
 //!
-//! `Basis` turns node values into derivatives, [`plane::Plane`] and
-//! [`quadric::Quadric`] hold them as integers for the rows of a triangle, and
+//! `Basis` turns node values into derivatives, [`plane::Plane`], [`quadric::Quadric`] and
+//! [`cubic::Cubic`] hold them as integers for the rows of a triangle, and
 //! their walkers run along one span. Coefficients are rounded once; every later
-//! step is exact modulo 2^32, so neither rows, nor bands, nor clipping change a
+//! step is exact modulo 2^32 (2^64), so neither rows, nor bands, nor clipping change a
 //! bit of a value, and nothing drifts.
 
 pub mod basis;
+pub mod cubic;
 pub mod plane;
 pub mod quadric;
 mod sliver;
+pub mod terms;
 
 use crate::format::MAX_LIGHTS;
 
@@ -62,6 +64,32 @@ impl Walker for Constant {
     fn step(&mut self) {}
     #[inline(always)]
     fn value(&self) {}
+}
+
+/// A value that goes along with a polynomial, the same everywhere.
+#[derive(Clone, Copy, Debug)]
+pub struct Held<T>(pub T);
+
+impl<T: Copy> Patch for Held<T> {
+    type Walker = Self;
+    #[inline(always)]
+    fn jump(&mut self, _: i32) {}
+    #[inline(always)]
+    fn step_row(&mut self) {}
+    #[inline(always)]
+    fn enter(&self, _: i32) -> Self {
+        *self
+    }
+}
+
+impl<T: Copy> Walker for Held<T> {
+    type Value = T;
+    #[inline(always)]
+    fn step(&mut self) {}
+    #[inline(always)]
+    fn value(&self) -> T {
+        self.0
+    }
 }
 
 /// Two polynomials side by side.

@@ -1,7 +1,9 @@
-//! Quadratics on very thin triangles, by exact fractions.
+//! Quadratics and cubics on very thin triangles, by exact fractions.
 //!
-//! Across a sliver a quadratic bends so sharply that its derivatives on the screen cancel one another; any that are
+//! Across a sliver a polynomial bends so sharply that its derivatives on the screen cancel one another; any that are
 //! rounded before they meet lose the value. Here nothing is rounded before the last division. Slow, and rare.
+
+use super::terms::Terms;
 
 /// A triangle from its first corner: the two edges that leave it, and where values are wanted.
 #[derive(Clone, Copy, Debug)]
@@ -44,5 +46,28 @@ impl Sliver {
             over(2 * ss * sx * sy + st * (sx * ty + sy * tx) + 2 * tt * tx * ty, 2),
             over(ss * sy * sy + st * sy * ty + tt * ty * ty, 2),
         ]
+    }
+    /// The terms of the cubic through ten nodes at the anchor, with `extra` more bits than the nodes.
+    ///
+    /// Every coefficient is the exact one, rounded down, modulo 2^128.
+    #[cold]
+    #[inline(never)]
+    pub(super) fn cubic(&self, nodes: [i32; 10], extra: u32) -> Terms<i128> {
+        let [[x1, y1], [x2, y2]] = self.edges.map(|edge| edge.map(i128::from));
+        let [ox, oy] = self.offset.map(i128::from);
+        let det = x1 * y2 - x2 * y1;
+        // det is below 2^28, as slivers have less than 1/128 of their square; all together below 2^105.
+        let common = Terms::of(nodes.map(i128::from), [y2, -x2], [-y1, x1]).map(|c, degree| (degree..3).fold(c, |c, _| c * det));
+        let divisor = 4 * det * det * det;
+        let over = |numerator: i128, bits: u32| {
+            let divided = |n: i128| (n.checked_div_euclid(divisor).unwrap_or(0), n.checked_rem_euclid(divisor).unwrap_or(0));
+            // Long division, 35 bits at a time.
+            let (whole, rest) = divided(numerator);
+            let (upper, rest) = divided(rest << (bits / 2));
+            let (lower, _) = divided(rest << (bits - bits / 2));
+            (whole << bits).wrapping_add(upper << (bits - bits / 2)).wrapping_add(lower)
+        };
+        let at_anchor = common.moved_across(|a, b| a + b * ox).moved_down(|a, b| a + b * oy);
+        at_anchor.map(|c, degree| over(c, extra + degree * self.bits))
     }
 }

@@ -176,7 +176,7 @@ impl Portion {
         let border = i64::from(column) << PLACE;
         let [[x0, y0], [x1, _]] = self.ends;
         let (next, leave) = (self.integral(column + 1), self.crossing(border + ONE));
-        let [a, b] = [border, border + ONE].map(|x| x.clamp(x0, x1).clamp(border, border + ONE) - border);
+        let [a, b] = [border, border + ONE].map(|x| (x.max(x0).min(x1) - border).clamp(0, ONE));
         // Beside the part that passed on the left, the whole width; beside the part in the column, what it leaves.
         let (beside, within) = ((self.entry - y0).abs(), (leave - self.entry).abs());
         let rest = within * (2 * ONE - a - b);

@@ -159,7 +159,7 @@ impl Piece {
         tone: T,
         band: &mut Band<'_, T::Pixel>,
     ) -> u32 {
-        if self.outline.part != Part::Centres {
+        if cfg!(feature = "antialias") && self.outline.part != Part::Centres {
             return self.smooth(basis, patch, tone, band);
         }
         let [a, b, c] = self.corners;

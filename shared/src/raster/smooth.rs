@@ -97,7 +97,7 @@ impl Slant {
         } else {
             let along = self.dx * (x - self.corner[0]) + self.dy * (y - self.corner[1]);
             let centre = self.start + (along >> SUBPIXEL);
-            [(centre + half).clamp(least, most), (centre - half).clamp(least, most)]
+            [centre + half, centre - half].map(|z| z.max(least).min(most))
         };
         [((near >> 16) + 1).clamp(0, 0xFFFF) as u16, ((far >> 16) - 1).clamp(0, 0xFFFF) as u16]
     }

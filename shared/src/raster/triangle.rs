@@ -152,7 +152,7 @@ impl Outline {
         tone: T,
         band: &mut Band<'_, T::Pixel>,
     ) -> u32 {
-        if self.part != Part::Centres {
+        if cfg!(feature = "antialias") && self.part != Part::Centres {
             return Shape { outline: self, piece: None }.draw(basis, patch, tone, band, &mut |_| [i32::MIN, i32::MAX]);
         }
         let [top, right, left] = self.corners;

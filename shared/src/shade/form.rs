@@ -104,6 +104,27 @@ impl<C: Pixel> Shading<'_, C> {
         facet.outline.draw(&facet.basis, (lights, common), tone, band)
     }
 
+    /// [`Self::draw_lit`], in the fast way where there is one.
+    #[cfg(feature = "all-shaders")]
+    pub(super) fn draw_reflected<K, P, F>(
+        &self,
+        facet: &Facet<'_>,
+        (zero, fit): (P, impl Fn(&Source) -> P),
+        common: K,
+        form: F,
+        band: &mut Band<'_, C>,
+    ) -> u32
+    where
+        K: Patch,
+        P: Patch<Walker: Walker<Value: Copy> + Copy>,
+        F: Form<<K::Walker as Walker>::Value, <P::Walker as Walker>::Value>,
+    {
+        match (self.gloss(form), self.lighting.sources.first()) {
+            (Some(gloss), Some(source)) => facet.outline.draw(&facet.basis, (fit(source), common), gloss, band),
+            _ => self.draw_lit(facet, (zero, fit), common, form, band),
+        }
+    }
+
     /// The quadratics through N·L and N·H of a light at six nodes; `map` is applied to both.
     pub(super) fn six_products(
         &self,

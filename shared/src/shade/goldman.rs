@@ -12,7 +12,6 @@
 use super::{
     Facet, Shading,
     form::Form,
-    phong_rv::mirrored,
     scanline::{Edges, Rows},
 };
 use crate::{
@@ -124,9 +123,12 @@ impl<const M: usize> Walker for Chord<M> {
 }
 
 /// N·L and R·V from N·L and N·V of a normal that is not normalised, and L·V.
+#[inline(always)]
 fn reflect([nl, nv]: [i32; 2], lv: i32, inverse: Divisor, square: Divisor, power: PixelPower<'_>) -> Reflection {
-    // N·L or N·V over |N|²: either will do.
-    Reflection { diffuse: inverse.divide(nl) >> 3, highlight: power.at(mirrored(square.divide(nl), nv, lv)) }
+    // The product is divided, not a factor: it is at most |N|².
+    let both = square.divide(((i64::from(nl) * i64::from(nv)) >> 30) as i32);
+    let mirrored = if i64::from(nl) + i64::from(nv) > 0 { (2 * i64::from(both) - i64::from(lv)) >> 3 } else { -1 };
+    Reflection { diffuse: inverse.divide(nl) >> 3, highlight: power.at(mirrored as i32) }
 }
 
 /// One light.

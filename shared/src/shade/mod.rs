@@ -2,7 +2,13 @@
 
 #[cfg(feature = "all-shaders")]
 mod angular;
+#[cfg(feature = "all-shaders")]
+mod blinn;
+#[cfg(feature = "all-shaders")]
+mod cubic;
 mod duff;
+#[cfg(feature = "all-shaders")]
+mod environment;
 mod flat;
 mod form;
 #[cfg(feature = "all-shaders")]
@@ -10,6 +16,8 @@ mod goldman;
 mod gouraud;
 #[cfg(feature = "all-shaders")]
 mod gouraud4;
+#[cfg(feature = "all-shaders")]
+mod highlight_test;
 #[cfg(feature = "all-shaders")]
 mod hybrid;
 mod node;
@@ -20,6 +28,8 @@ mod phong;
 mod phong_rv;
 #[cfg(feature = "all-shaders")]
 mod pseudo_phong;
+#[cfg(feature = "all-shaders")]
+mod quadratic_blinn;
 #[cfg(feature = "all-shaders")]
 mod renq;
 #[cfg(feature = "all-shaders")]
@@ -37,6 +47,10 @@ mod slerp;
 mod split;
 #[cfg(feature = "all-shaders")]
 mod sqrt6;
+#[cfg(feature = "all-shaders")]
+mod taylor;
+#[cfg(feature = "all-shaders")]
+mod taylor_finite;
 
 use crate::{
     band::Band,
@@ -78,8 +92,13 @@ impl Facet<'_> {
     #[inline(always)]
     fn is_dark<C: Pixel>(&self, palette: &Palette<C>) -> bool {
         let [a, b, c] = self.corners.map(|corner| corner.light[1]);
-        let limit = (i64::from(palette.dark_below()) * i64::from(self.triangle.rho)) >> RHO;
-        i64::from(a.max(b).max(c)) < limit
+        i64::from(a.max(b).max(c)) < self.dark_below(palette)
+    }
+
+    /// Where N·H, linear between the corners, is smaller, N·H over |N| is too small for a highlight; Q2.30.
+    #[inline(always)]
+    fn dark_below<C: Pixel>(&self, palette: &Palette<C>) -> i64 {
+        (i64::from(palette.dark_below()) * i64::from(self.triangle.rho)) >> RHO
     }
 }
 
@@ -104,6 +123,7 @@ pub(crate) struct Shading<'f, C> {
     pub(crate) palette: &'f Palette<C>,
     pub(crate) lighting: &'f Lighting,
     /// The material's.
+    #[cfg(feature = "all-shaders")]
     pub(crate) exponent: u16,
     /// L and H if they are constant, see [`Lighting::constant`].
     pub(crate) constant: Option<[[i32; 3]; 2]>,
@@ -138,6 +158,13 @@ impl<C: Pixel> Shading<'_, C> {
             Shader::SixPointAdaptive => six_point_adaptive::draw(facet, self, band),
             Shader::SixPointCentre => six_point_centre::draw(facet, self, band),
             Shader::PhongRv => phong_rv::draw(facet, self, band),
+            Shader::HighlightTest => highlight_test::draw(facet, self, band),
+            Shader::Taylor => taylor::draw(facet, self, band),
+            Shader::TaylorFinite => taylor_finite::draw(facet, self, band),
+            Shader::Cubic => cubic::draw(facet, self, band),
+            Shader::Environment => environment::draw(facet, self, band),
+            Shader::Blinn => blinn::draw(facet, self, band),
+            Shader::QuadraticBlinn => quadratic_blinn::draw(facet, self, band),
             Shader::Duff => duff::draw(facet, self, band),
             Shader::Sqrt6 => sqrt6::draw(facet, self, band),
             Shader::Renq => renq::draw(facet, self, band),

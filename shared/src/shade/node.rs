@@ -1,11 +1,13 @@
 //! Points of a triangle where its light is worked out.
 
 use super::Facet;
+#[cfg(feature = "all-shaders")]
+use crate::math::vector::{normalise, zip};
 use crate::{
     format::{EDGE, UNIT},
     math::{
         rsqrt::rsqrt_wide,
-        vector::{add, dot, normalise, wide, zip},
+        vector::{add, dot, wide},
     },
 };
 
@@ -48,6 +50,7 @@ impl Facet<'_> {
     }
 
     /// The point with the barycentric coordinates `weights / 2^bits`, which are not negative; unit normal.
+    #[cfg(feature = "all-shaders")]
     pub(super) fn node(&self, weights: [i32; 3], bits: u32) -> Node {
         let mean = |v: [[i32; 3]; 3]| {
             let [a, b, c] = zip(v, weights, |v, weight| v.map(|c| c * weight));
@@ -55,6 +58,13 @@ impl Facet<'_> {
         };
         let position = mean(self.vertices.map(|vertex| wide(vertex.position)));
         Node { position: position.map(|c| c >> bits), normal: normalise(mean(self.vertices.map(|vertex| wide(vertex.normal)))) }
+    }
+
+    /// The point with the barycentric coordinates `weights / (3 2^bits)`; unit normal.
+    #[cfg(feature = "all-shaders")]
+    pub(super) fn third(&self, weights: [i32; 3], bits: u32) -> Node {
+        let node = self.node(weights, bits);
+        Node { position: node.position.map(|c| c / 3), ..node }
     }
 
     /// Position, and sum of the ends' normals (Q3.14), at the middle of each edge.

@@ -30,7 +30,8 @@ pub(super) fn draw<C: Pixel>(facet: &Facet<'_>, shading: &Shading<'_, C>, band: 
 #[inline(always)]
 pub(super) fn length(facet: &Facet<'_>) -> Quadric<1> {
     // 2/|Ni+Nj| - 1, zero at the corners.
-    let [ab, bc, ca] = [0, 1, 2].map(|k| (((facet.rsum(k) << 1) - (1 << EDGE)) << (NODE - EDGE)) as i32);
+    let node = |rsum: u32| (((rsum << 1) - (1 << EDGE)) << (NODE - EDGE)) as i32;
+    let [ab, bc, ca] = [facet.rsum(0), facet.rsum(1), facet.rsum(2)].map(node);
     Quadric::fit::<BITS>(&facet.basis, [[0, 0, 0, ab, bc, ca]], EXTRA).raised([1 << 30])
 }
 

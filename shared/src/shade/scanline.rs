@@ -43,7 +43,7 @@ impl Edge {
 
     /// How far along the edge a height is, Q2.30 from 0 to 1. Error: 2^-28.
     fn along(&self, y: i32) -> i32 {
-        let way = i64::from(y.wrapping_sub(self.start[1]).wrapping_abs().clamp(0, self.height));
+        let way = i64::from(y.wrapping_sub(self.start[1]).wrapping_abs().max(0).min(self.height));
         ((way * i64::from(self.inverse)) >> (32 - self.zeros.min(31))).min(1 << 30) as i32
     }
 
@@ -126,7 +126,7 @@ impl Rows<'_> {
         let zeros = whole.leading_zeros() & 63;
         let inverse = u64::from(recip(((whole << zeros) as u64 >> 32) as u32));
         let share = |part: i64| {
-            let part = part.wrapping_mul(r.height.into()).clamp(0, whole);
+            let part = part.wrapping_mul(r.height.into()).max(0).min(whole);
             ((((part << zeros) as u64 >> 32) * inverse) >> 32).min(1 << 30) as i32
         };
         Span {

@@ -1,6 +1,6 @@
 //! What the methods share that split a triangle into cells and shade each by itself.
 
-use super::{Area, Facet, Shading, node::Node};
+use super::{Area, Facet, Shading};
 use crate::{
     band::Band,
     math::vector::{add, transposed, zip},
@@ -174,14 +174,6 @@ impl<'a, 'f, C: Pixel> Cells<'a, 'f, C> {
             pixels += self.linear_parts(part, &self::corners(*corners, middles, k), depth - 1, band);
         }
         pixels
-    }
-}
-
-impl Facet<'_> {
-    /// The point with the barycentric coordinates `weights / (3 2^bits)`; unit normal.
-    fn third(&self, weights: [i32; 3], bits: u32) -> Node {
-        let node = self.node(weights, bits);
-        Node { position: node.position.map(|c| c / 3), ..node }
     }
 }
 

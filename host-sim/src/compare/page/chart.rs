@@ -4,13 +4,13 @@ use crate::compare::{Comparison, Reference};
 use maud::{Markup, html};
 
 /// The drawing's size.
-const SIZE: (f64, f64) = (360.0, 320.0);
+const SIZE: (f64, f64) = (300.0, 290.0);
 /// From left to right, both plots.
-const ACROSS: [f64; 2] = [40.0, 354.0];
+const ACROSS: [f64; 2] = [36.0, 296.0];
 /// From bottom to top, levels.
-const LEVELS: [f64; 2] = [190.0, 22.0];
+const LEVELS: [f64; 2] = [170.0, 22.0];
 /// From bottom to top, errors.
-const ERRORS: [f64; 2] = [286.0, 220.0];
+const ERRORS: [f64; 2] = [256.0, 198.0];
 
 /// A linear scale.
 struct Scale {
@@ -67,28 +67,28 @@ pub(super) fn scanline(reference: &Reference<'_>, comparison: &Comparison) -> Ma
     let x = Scale { from: [columns.start, columns.end].map(f64::from), to: ACROSS };
     let levels = Scale { from: [0.0, 255.0], to: LEVELS };
     let errors = Scale { from: [-range, range], to: ERRORS };
-    let step = round_up(f64::from(columns.end - columns.start) / 6.0).max(1.0);
+    let step = round_up(f64::from(columns.end - columns.start) / 5.0).max(1.0);
     let ticks = (0..).map(|i| (f64::from(columns.start) / step).ceil() * step + step * f64::from(i)).take_while(|&tick| tick <= x.from[1]);
     let label = format!("Levels of {name} and of Phong shading along row {row}; the error is at most {}", super::number(largest));
     html! {
         svg.chart viewBox={ "0 0 " (SIZE.0) " " (SIZE.1) } role="img" aria-label=(label) {
             text x="2" y="10" { "level, LSB" }
-            line.reference x1="196" x2="212" y1="6.5" y2="6.5" {}
-            text x="216" y="10" { "Phong" }
-            line.curve x1="254" x2="270" y1="6.5" y2="6.5" {}
-            text x="274" y="10" textLength=[(name.len() > 15).then_some("82")] lengthAdjust="spacingAndGlyphs" { (name) }
+            line.reference x1="88" x2="104" y1="6.5" y2="6.5" {}
+            text x="108" y="10" { "Phong" }
+            line.curve x1="152" x2="168" y1="6.5" y2="6.5" {}
+            text x="172" y="10" { (name) }
             @for level in [0.0, 64.0, 128.0, 192.0, 255.0] { (grid(levels.at(level), &signed(level, 0))) }
             path.reference d=(path(columns.clone(), &x, &levels, |column| reference.level(column, row))) {}
             path.curve d=(path(columns.clone(), &x, &levels, |column| comparison.levels.get(at(column)).copied().flatten())) {}
-            text x="2" y="210" { "error, LSB" }
+            text x="2" y="189" { "error, LSB" }
             @for error in [-range, 0.0, range] { (grid(errors.at(error), &signed(error, if error == 0.0 { 0 } else { places }))) }
             path.curve d=(path(columns.clone(), &x, &errors, error)) {}
             @for tick in ticks {
                 @let place = format!("{:.1}", x.at(tick));
                 line.axis x1=(place) x2=(place) y1=(ERRORS[0]) y2=(ERRORS[0] + 4.0) {}
-                text x=(place) y="301" text-anchor="middle" { (signed(tick, 0)) }
+                text x=(place) y="271" text-anchor="middle" { (signed(tick, 0)) }
             }
-            text x=((ACROSS[0] + ACROSS[1]) / 2.0) y="317" text-anchor="middle" { "column, pixels" }
+            text x=((ACROSS[0] + ACROSS[1]) / 2.0) y="286" text-anchor="middle" { "column, pixels" }
         }
     }
 }

@@ -114,7 +114,7 @@ fn section(index: usize, name: &str, exponent: Option<u16>, reference: &Referenc
                     figcaption { "What all are measured against: Phong shading in floating point" }
                 }
                 div.legends {
-                    figure { (scale::signed()) figcaption { "Signed error, LSB: blue is too dark, red too bright; logarithmic but for the innermost quarter." } }
+                    figure { (scale::signed(&format!("errors-{index}"))) figcaption { "Signed error, LSB: blue is too dark, red too bright. The scale is logarithmic beyond a quarter LSB." } }
                     figure {
                         (scale::amplified())
                         figcaption { "Amplified difference of 8-bit pixels, LSB: 255 (d/255)" sup { "1/10" } " of each channel (Vlasic 2002). It shows a single step." }

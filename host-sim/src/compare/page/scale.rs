@@ -48,21 +48,23 @@ pub(super) fn amplify(difference: u8) -> u8 {
 
 const WIDTH: f64 = 360.0;
 
-/// Legend of the colours of signed errors.
-pub(super) fn signed() -> Markup {
-    const BAR: f64 = 340.0;
+/// Legend of the colours of signed errors; `id` is for its gradient.
+pub(super) fn signed(id: &str) -> Markup {
+    const BAR: f64 = 336.0;
     let left = (WIDTH - BAR) / 2.0;
-    let palette = palette();
+    let stops = COLOURS.len() - 1;
     html! {
         svg.legend viewBox="0 0 360 34" role="img" aria-label={ "Colours from blue, " (MOST) " LSB too dark, over white to red, as much too bright" } {
-            @for step in 0..64 {
-                rect x=(left + BAR * f64::from(step) / 64.0) y="0" width=(BAR / 64.0 + 0.3) height="14" fill=(colour(palette[(1 + step * 254 / 63) as usize])) {}
+            linearGradient id=(id) {
+                @for (index, stop) in COLOURS.iter().enumerate() {
+                    stop offset=(format!("{:.4}", index as f64 / stops as f64)) stop-color=(colour(stop.map(|c| c as u8))) {}
+                }
             }
+            rect.swatch x=(left) y="0.5" width=(BAR) height="14" fill={ "url(#" (id) ")" } {}
             @for error in [-128.0, -16.0, -4.0, -1.0, 0.0, 1.0, 4.0, 16.0, 128.0] {
-                @let x = left + BAR * (1.0 + place(error)) / 2.0;
-                @let x = format!("{x:.1}");
-                line.axis x1=(x) x2=(x) y1="14" y2="18" {}
-                text x=(x) y="30" text-anchor="middle" { (super::chart::signed(error, 0)) }
+                @let x = format!("{:.1}", left + BAR * (1.0 + place(error)) / 2.0);
+                line.axis x1=(x) x2=(x) y1="14" y2="19" {}
+                text x=(x) y="31" text-anchor="middle" { (super::chart::signed(error, 0)) }
             }
         }
     }

@@ -1,0 +1,241 @@
+//! `microphong compare`: what it prints, what it refuses, and the page that it writes.
+
+use microphong::Shader;
+use microphong_sim::{
+    bytes::StreamBytes,
+    compare::{Reference, exponent::with_exponent},
+    image, oracle, scene,
+};
+use serde_json::Value;
+use std::{
+    fs,
+    path::{Path, PathBuf},
+    process::{Command, Output},
+    sync::LazyLock,
+};
+
+/// The command; built here, because a package's tests build only the package's own programs.
+static PROGRAM: LazyLock<PathBuf> = LazyLock::new(|| {
+    let cargo = Command::new(env!("CARGO"))
+        .args(["build", "--quiet", "--package", "microphong-sim", "--bin", "microphong", "--message-format", "json"])
+        .current_dir(env!("CARGO_MANIFEST_DIR"))
+        .output()
+        .expect("cargo");
+    assert!(cargo.status.success(), "{}", String::from_utf8_lossy(&cargo.stderr));
+    String::from_utf8_lossy(&cargo.stdout)
+        .lines()
+        .filter_map(|line| serde_json::from_str::<Value>(line).ok())
+        .find_map(|message| message["executable"].as_str().map(PathBuf::from))
+        .expect("the program's path")
+});
+
+fn run(directory: &Path, arguments: &[&str]) -> Output {
+    Command::new(&*PROGRAM).arg("compare").args(arguments).current_dir(directory).output().expect("the program")
+}
+
+/// Runs the command, which must succeed in silence on stderr, and returns its stdout.
+#[track_caller]
+fn succeeds(directory: &Path, arguments: &[&str]) -> String {
+    let output = run(directory, arguments);
+    let stderr = String::from_utf8_lossy(&output.stderr);
+    assert!(output.status.success() && stderr.is_empty(), "{arguments:?}: {stderr}");
+    String::from_utf8(output.stdout).expect("text")
+}
+
+fn objects(lines: &str) -> Vec<Value> {
+    lines.lines().map(|line| serde_json::from_str(line).expect("an object per line")).collect()
+}
+
+/// The figures that every method has that can draw the scene.
+const FIGURES: [&str; 12] = [
+    "max_lsb",
+    "p99_lsb",
+    "rmse_lsb",
+    "color_correctness",
+    "psnr",
+    "similarity",
+    "edge_jump_lsb",
+    "mach_jump_lsb",
+    "arithmetic_lsb",
+    "arithmetic_rmse_lsb",
+    "method_max_lsb",
+    "method_rmse_lsb",
+];
+
+#[test]
+fn json_has_all_figures_of_every_scene_and_method() {
+    let directory = tempfile::tempdir().expect("scratch directory");
+    let lines = succeeds(directory.path(), &["sphere-168", "torus", "--shader", "gouraud,six-point,phong", "--exponent", "50", "--json"]);
+    let objects = objects(&lines);
+    let keys: Vec<_> = objects.iter().map(|o| (o["scene"].as_str().unwrap_or(""), o["shader"].as_str().unwrap_or(""))).collect();
+    let methods = ["gouraud", "six-point", "phong"];
+    let expected: Vec<_> = ["sphere-168", "torus"].iter().flat_map(|&scene| methods.map(|method| (scene, method))).collect();
+    assert_eq!(keys, expected);
+    for object in &objects {
+        assert_eq!(object["exponent"], 50);
+        for figure in FIGURES {
+            assert!(object[figure].as_f64().is_some_and(|value| value >= 0.0), "{figure} of {object}");
+        }
+        for count in ["adds", "multiplies", "loads", "setup", "setup_row", "pixels"] {
+            assert!(object[count].is_u64(), "{count} of {object}");
+        }
+        assert_eq!((object["unmatched"].as_u64(), object.get("reason")), (Some(0), None), "{object}");
+        let [max, p99, rmse] = ["max_lsb", "p99_lsb", "rmse_lsb"].map(|figure| object[figure].as_f64().unwrap_or(f64::NAN));
+        assert!(max >= p99 && max >= rmse, "{object}");
+    }
+    // The better a method, the better all of its figures.
+    for [worse, better] in [&objects[0..2], &objects[1..3], &objects[3..5], &objects[4..6]].map(|pair| [&pair[0], &pair[1]]) {
+        for figure in ["max_lsb", "rmse_lsb", "method_max_lsb"] {
+            assert!(worse[figure].as_f64() > better[figure].as_f64(), "{figure} of {worse} and {better}");
+        }
+        for figure in ["color_correctness", "psnr", "similarity"] {
+            assert!(worse[figure].as_f64() < better[figure].as_f64(), "{figure} of {worse} and {better}");
+        }
+    }
+}
+
+#[test]
+fn an_exponent_changes_the_highlights_alone() {
+    let directory = tempfile::tempdir().expect("scratch directory");
+    let figure = |exponent: &str, shader: &str| {
+        let lines = succeeds(directory.path(), &["sphere-374", "--size", "96x96", "--shader", shader, "--exponent", exponent, "--json"]);
+        objects(&lines)[0]["method_max_lsb"].as_f64().expect("a figure")
+    };
+    assert!(figure("100", "gouraud") > 2.0 * figure("5", "gouraud"));
+    assert_eq!(figure("100", "phong"), 0.0);
+}
+
+#[test]
+fn wrong_usage_and_impossible_methods() {
+    let directory = tempfile::tempdir().expect("scratch directory");
+    let cases: [(&[&str], i32, &[&str]); 9] = [
+        (&["teapott"], 2, &["teapott", "teapot, bunny"]),
+        (&["teapot", "--shader", "fong"], 2, &["fong", "six-point", "or all"]),
+        (&["teapot", "--shader", "phong,"], 2, &["--shader"]),
+        (&["teapot", "--exponent", "0"], 2, &["--exponent"]),
+        (&["teapot", "--exponent", "1025"], 2, &["--exponent"]),
+        (&["teapot", "--size", "0x4"], 2, &["WIDTHxHEIGHT"]),
+        (&[], 2, &["SCENE"]),
+        // Before anything is drawn: nothing on stdout, though the other method and scene could be.
+        (&["sphere-40", "--shader", "phong,taylor", "--json"], 1, &["sphere-40", "taylor", "directional"]),
+        (&["sphere-168", "dodecahedron", "--shader", "goldman", "--report", "page"], 1, &["dodecahedron", "goldman"]),
+    ];
+    for (arguments, code, words) in cases {
+        let output = run(directory.path(), arguments);
+        let stderr = String::from_utf8_lossy(&output.stderr);
+        assert_eq!(output.status.code(), Some(code), "{arguments:?}: {stderr}");
+        assert!(output.stdout.is_empty() && !stderr.contains("panicked"), "{arguments:?}: {stderr}");
+        for word in words {
+            assert!(stderr.contains(word), "{arguments:?}: {word:?} is not in {stderr:?}");
+        }
+    }
+    assert_eq!(fs::read_dir(directory.path()).expect("scratch directory").count(), 0);
+    fs::write(directory.path().join("taken"), "").expect("scratch file");
+    assert_eq!(run(directory.path(), &["triangle", "--report", "taken"]).status.code(), Some(1));
+}
+
+#[test]
+fn among_all_an_impossible_method_says_why() {
+    let directory = tempfile::tempdir().expect("scratch directory");
+    let objects = objects(&succeeds(directory.path(), &["sphere-40", "--size", "64x64", "--json"]));
+    assert_eq!(objects.iter().map(|o| o["shader"].as_str()).collect::<Vec<_>>(), Shader::ALL.map(|s| Some(s.name())));
+    for (object, shader) in objects.iter().zip(Shader::ALL) {
+        if shader.needs_constant_light() {
+            assert!(object["reason"].as_str().is_some_and(|reason| reason.contains("directional")), "{object}");
+            assert!(FIGURES.iter().all(|figure| object[figure].is_null()), "{object}");
+        }
+    }
+    let text = succeeds(directory.path(), &["sphere-40", "--size", "64x64"]);
+    assert!(text.lines().any(|line| line.contains("taylor ") && line.contains("directional")), "{text}");
+}
+
+#[test]
+fn the_report_is_one_file_that_needs_no_other() {
+    let directory = tempfile::tempdir().expect("scratch directory");
+    let arguments = ["sphere-40", "torus", "--shader", "flat,renq", "--size", "80x60", "--report", "a/b"];
+    let text = succeeds(directory.path(), &arguments);
+    assert!(text.contains("a/b/index.html"), "{text}");
+    let files: Vec<_> = fs::read_dir(directory.path().join("a/b")).expect("the report").map(|e| e.expect("entry").file_name()).collect();
+    assert_eq!(files, ["index.html"]);
+    let page = fs::read_to_string(directory.path().join("a/b/index.html")).expect("text");
+    assert!(!page.contains("://"), "a link leads out");
+    for start in ["src=\"", "href=\"", "url("] {
+        for (at, _) in page.match_indices(start) {
+            let target = &page[at + start.len()..];
+            assert!(target.starts_with("data:image/png;base64,") || target.starts_with('#'), "{}", &target[..40]);
+        }
+    }
+    // A reference for each scene, and three pictures of each method.
+    assert_eq!(page.matches("<img ").count(), 2 * (1 + 2 * 3));
+    assert_eq!(page.matches("<img ").count(), page.matches(" alt=\"").count());
+    // Two legends for each scene and a curve for each method, all with a label.
+    assert_eq!(page.matches("<svg ").count(), 2 * (2 + 2));
+    assert_eq!(page.matches("role=\"img\" aria-label=\"").count(), page.matches("<svg ").count());
+    assert_eq!(page.matches("<table").count(), 2);
+}
+
+#[test]
+fn figures_are_those_of_pictures_compared_by_hand() {
+    let scene = scene::load("triangle").expect("a built-in scene");
+    let bytes = with_exponent(scene.stream.as_bytes(), 9).expect("a whole stream");
+    let bytes = StreamBytes::from(bytes.as_slice());
+    let stream = bytes.parse().expect("a stream");
+    let (size, number) = ((120, 90), 3);
+    let reference = Reference::new(stream, size, number).expect("something to see");
+    let comparison = reference.compare(Shader::Gouraud).expect("a comparison");
+
+    // One white triangle: no pixel is in doubt, and all channels are equal.
+    let frame = oracle::Frame::new(stream, size, number);
+    let facet = &frame.facets[0];
+    let phong = oracle::phong(&frame, facet);
+    let gouraud = oracle::method("gouraud", &frame, facet, 0.0).expect("a method for every scene");
+    let (mut worst, mut square, mut off, mut count) = (0.0f64, 0.0, 0.0, 0.0);
+    let (mut left, mut right) = (u32::MAX, 0);
+    for [x, y] in facet.pixels(size) {
+        let centre = [f64::from(x) + 0.5, f64::from(y) + 0.5];
+        let error = gouraud(centre)[0] - phong(centre)[0];
+        worst = worst.max(error.abs());
+        square += error * error;
+        let at = (y * size.0 + x) as usize;
+        off += (f64::from(comparison.picture[at][0]) - phong(centre)[0].round()).abs();
+        assert!((comparison.errors[at].expect("a pixel of the triangle") - error).abs() <= comparison.arithmetic.max + 1e-9);
+        assert!((reference.level(x, y).expect("a pixel of the triangle") - phong(centre)[0]).abs() < 1e-9);
+        count += 1.0;
+        (left, right) = (left.min(x), right.max(x));
+    }
+    assert!(worst > 1.0 && comparison.arithmetic.max < 0.1, "{worst} {:?}", comparison.arithmetic);
+    assert_eq!((comparison.pixels, comparison.unmatched), (count as usize, 0));
+    assert!((comparison.method.max - worst).abs() < 1e-9 && (comparison.method.rmse - (square / count).sqrt()).abs() < 1e-9);
+    assert!((comparison.total.max - worst).abs() <= comparison.arithmetic.max);
+    assert!((comparison.colour_correctness - (1.0 - off / 255.0 / count)).abs() < 1e-12);
+    // A triangle alone shares no edge.
+    assert_eq!((comparison.jumps.level, comparison.jumps.slope), (0.0, 0.0));
+    let columns = reference.window().columns.clone();
+    assert!(columns.contains(&left) && columns.contains(&right) && columns.end - columns.start <= right - left + 9);
+}
+
+#[test]
+fn jumps_of_the_prototypes() {
+    let scene = scene::load("sphere-168").expect("a built-in scene");
+    let reference = Reference::new(scene.stream.parse().expect("a stream"), scene.size, 0).expect("something to see");
+    let jumps = |shader| reference.compare(shader).expect("a comparison").jumps;
+    // Flat shading jumps and has no slope; all others are continuous, and Gouraud's slope breaks.
+    let flat = jumps(Shader::Flat);
+    assert!(flat.level > 30.0 && flat.slope == 0.0, "{flat:?}");
+    for shader in [Shader::Gouraud, Shader::SixPoint, Shader::Phong] {
+        assert!(jumps(shader).level < 0.01, "{}", shader.name());
+    }
+    assert!(jumps(Shader::Gouraud).slope > 1.0);
+}
+
+#[test]
+fn pictures_are_those_of_the_renderer() {
+    let scene = scene::load("torus").expect("a built-in scene");
+    let stream = scene.stream.parse().expect("a stream");
+    let reference = Reference::new(stream, (64, 64), 0).expect("something to see");
+    let comparison = reference.compare(Shader::SixPoint).expect("a comparison");
+    let size = embedded_graphics::geometry::Size::new(64, 64);
+    let (pixels, _) = microphong_sim::render::frame::<embedded_graphics::pixelcolor::Rgb888>(stream, size, Shader::SixPoint, false, 16, 0)
+        .expect("a picture");
+    assert_eq!(comparison.picture.as_flattened(), image::rgb_bytes(&pixels));
+}
