@@ -359,12 +359,18 @@ fn pictures_are_like_supersampled_ones() {
                 (rms, errors[errors.len() * 999 / 1000], errors[errors.len() - 1])
             };
             let ((a, b, c), (d, e, f)) = (errors(&plain), errors(&smooth));
-            let (rms, tail) = if name == "teapot" || name == "bunny" { (1.0, 12.0) } else { (0.6, 4.0) };
-            assert!(d < rms && e < tail && d < a / 2.0, "{name}, {}: rms {d}, 999 in 1000 below {e}", shader.name());
             println!(
                 "{name:12} {:18} rms {a:6.2} -> {d:5.2}, of 999 in 1000 {b:6.1} -> {e:5.1}, max {c:6.1} -> {f:5.1} LSB",
                 shader.name()
             );
+            // Steep highlights of a pixel or two, and surfaces that cut each other; at the rim of its map an environment is steepest.
+            let (rms, tail) = match (shader, name) {
+                (Shader::Environment, _) => (1.3, 20.0),
+                (_, "teapot") => (1.0, 13.0),
+                (_, "bunny") => (0.55, 6.0),
+                _ => (0.4, 3.5),
+            };
+            assert!(d < rms && e < tail && d < a / 1.5, "{name}, {}: rms {d}, 999 in 1000 below {e}", shader.name());
         }
     }
 }
@@ -423,16 +429,23 @@ fn memory_that_is_missing_is_named() {
     assert_eq!(renderer.band_rows(), 2, "still without");
 }
 
-/// Pixels wholly inside one triangle are those of the ordinary picture.
+/// Pixels wholly inside one triangle are those of the ordinary picture; others change little by little.
 #[test]
 fn inner_pixels_stay() {
     let scene = scene::load("dodecahedron").unwrap();
-    let stream = scene.stream.parse().unwrap();
-    for shader in Shader::ALL.into_iter() {
+    let stream: Stream<'_> = scene.stream.parse().unwrap();
+    let mut inner = vec![false; 160 * 120];
+    for facet in &Frame::new(stream, (160, 120), 3).facets {
+        let corners = facet.screen.map(|corner| corner.map(|c| (c * 16.0) as i32));
+        for ([x, y], _) in coverage(corners, 4).into_iter().filter(|(_, (coverage, _))| *coverage == WHOLE) {
+            inner[(y * 160 + x) as usize] = true;
+        }
+    }
+    for shader in Shader::ALL {
         let size = Size::new(160, 120);
         let Ok((plain, _)) = render::frame::<Rgb565>(stream, size, shader, false, 120, 3) else { continue };
         let (smooth, _) = render::smooth::<Rgb565>(stream, size, shader, false, 120, 3).unwrap();
-        let changed = plain.iter().zip(&smooth).filter(|(a, b)| a != b).count();
-        println!("{}: {changed} pixels differ", shader.name());
+        let changed = plain.iter().zip(&smooth).zip(&inner).filter(|((a, b), inner)| **inner && a != b).count();
+        assert_eq!(changed, 0, "{}", shader.name());
     }
 }

@@ -219,7 +219,8 @@ impl Piece {
             }
             columns
         };
-        Shape { outline: &self.outline, piece: Some(piece) }.draw(basis, patch, tone, band, &mut owned)
+        let shape = Shape { outline: &self.outline, piece: Some(piece), corners: self.corners, bits: FINE };
+        shape.draw(basis, patch, tone, band, &mut owned)
     }
 }
 

@@ -7,7 +7,8 @@
 //!
 //! Exact are coverage, to less than three units of 2^-16 of a pixel, and the sum of coverages over a patch, to the last
 //! bit (see [`super::area`]). Rounded are the centroid, to half a place of the finer grid, and with it the intensity; left
-//! out is the curvature of the intensity within a pixel, I''/24 in a whole one.
+//! out is the curvature of the intensity within a pixel, I''/24 in a whole one. A triangle too thin for the finer grid is
+//! shaded beyond its edge by a quarter of itself at most, else at its nearest corner.
 //!
 //! Cost: an inner pixel one layer of a [`Sample`](crate::sample::Sample) more; a rim pixel one to three divisions of 64 bits for each edge in
 //! it, two for the centroid, and entering the patch there. Set-up and lights are worked out twice.
@@ -109,6 +110,46 @@ pub(super) struct Shape<'o> {
     pub(super) outline: &'o Outline,
     /// What is drawn of it, if not all.
     pub(super) piece: Option<Contour>,
+    /// Corners of what is drawn on the finer grid, with `bits` fraction bits.
+    pub(super) corners: [[i32; 2]; 3],
+    pub(super) bits: u32,
+}
+
+/// Where polynomials of a thin triangle may be evaluated.
+struct Inside {
+    corners: [[i64; 2]; 3],
+    bits: u32,
+    /// Twice the area.
+    area: i64,
+}
+
+impl Inside {
+    fn new(corners: [[i32; 2]; 3], bits: u32) -> Self {
+        let corners = corners.map(|corner| corner.map(i64::from));
+        let [a, b, c] = corners;
+        Self { corners, bits, area: side(a, b, c) }
+    }
+
+    /// The centre of a place lies inside, or beyond an edge by less than a quarter of the triangle.
+    fn takes(&self, [row, column]: [i32; 2]) -> bool {
+        let [x, y] = [column, row].map(|c| (i64::from(c) << self.bits) + (1 << (self.bits - 1)));
+        let [a, b, c] = self.corners;
+        [(a, b), (b, c), (c, a)].iter().all(|&(from, to)| 4 * side(from, to, [x, y]) + self.area >= 0)
+    }
+
+    /// The place itself, or one beside it, or that of the nearest corner.
+    fn nearest(&self, at: [i32; 2]) -> [i32; 2] {
+        const BESIDE: [[i32; 2]; 9] = [[0, 0], [0, -1], [0, 1], [-1, 0], [1, 0], [-1, -1], [-1, 1], [1, -1], [1, 1]];
+        let beside = BESIDE.iter().map(|[y, x]| [at[0] + y, at[1] + x]).find(|&place| self.takes(place));
+        let corners = self.corners.map(|[x, y]| [(y >> self.bits) as i32, (x >> self.bits) as i32]);
+        let far = |corner: &[i32; 2]| corner[0].abs_diff(at[0]).saturating_add(corner[1].abs_diff(at[1]));
+        beside.or(corners.into_iter().min_by_key(far)).unwrap_or(at)
+    }
+}
+
+/// How far `p` lies inside of an edge, times its length.
+fn side(from: [i64; 2], to: [i64; 2], p: [i64; 2]) -> i64 {
+    (to[0] - from[0]) * (p[1] - from[1]) - (to[1] - from[1]) * (p[0] - from[0])
 }
 
 /// Where a span of pixels is shaded: row and column on the patch's grid, row, first column and their number on the screen.
@@ -163,6 +204,7 @@ impl Shape<'_> {
         let whole = Contour::new(corners, SUBPIXEL);
         let drawn = self.piece.unwrap_or(whole);
         let slant = Slant::new(corners, self.outline.depth);
+        let inside = Inside::new(self.corners, self.bits);
         let [first, end] = drawn.rows();
         let mut pixels = 0;
         for row in first.max(top)..end.min(bottom) {
@@ -189,7 +231,7 @@ impl Shape<'_> {
                     let Ok(coverage @ 1..) = u32::try_from(fragment.coverage) else { continue };
                     // The nearest place of the finer grid.
                     let place = |pixel: i32, offset: i32| (pixel << finer) + ((offset + (1 << (15 - finer))) >> (16 - finer));
-                    let at = [place(row, fragment.centroid[1]), place(column, fragment.centroid[0])];
+                    let at = inside.nearest([place(row, fragment.centroid[1]), place(column, fragment.centroid[0])]);
                     ink(Place { at, row, column, count: 1 }, &mut |column, colour| {
                         add(column, row, Layer::new(slant.range(column, row), coverage, fragment.mask, colour));
                     });

@@ -7,7 +7,7 @@ use super::{
 };
 use crate::{
     band::Band,
-    format::CENTRE,
+    format::{CENTRE, SUBPIXEL},
     poly::{Patch, Walker, basis::Basis, plane::Plane},
     tone::Tone,
     vertex::ScreenVertex,
@@ -153,7 +153,8 @@ impl Outline {
         band: &mut Band<'_, T::Pixel>,
     ) -> u32 {
         if cfg!(feature = "antialias") && self.part != Part::Centres {
-            return Shape { outline: self, piece: None }.draw(basis, patch, tone, band, &mut |_| [i32::MIN, i32::MAX]);
+            let shape = Shape { outline: self, piece: None, corners: self.corners, bits: SUBPIXEL };
+            return shape.draw(basis, patch, tone, band, &mut |_| [i32::MIN, i32::MAX]);
         }
         let [top, right, left] = self.corners;
         let middle = first_centre(right[1].min(left[1]));
