@@ -437,8 +437,11 @@ fn inner_pixels_stay() {
     let mut inner = vec![false; 160 * 120];
     for facet in &Frame::new(stream, (160, 120), 3).facets {
         let corners = facet.screen.map(|corner| corner.map(|c| (c * 16.0) as i32));
-        for ([x, y], _) in coverage(corners, 4).into_iter().filter(|(_, (coverage, _))| *coverage == WHOLE) {
-            inner[(y * 160 + x) as usize] = true;
+        let contour = Contour::new(corners, 4);
+        let [top, bottom] = contour.rows();
+        for y in top..bottom {
+            let [start, stop] = contour.row(y).inner;
+            (start..stop).for_each(|x| inner[(y * 160 + x) as usize] = true);
         }
     }
     for shader in Shader::ALL {

@@ -160,6 +160,9 @@ struct Place {
     count: i32,
 }
 
+/// Takes the colour of a column.
+type Put<'a> = dyn FnMut(i32, [u8; 3]) + 'a;
+
 impl Shape<'_> {
     /// Adds the outline's [`Part`] to `band`, of inner pixels only those that `owned` takes in a row; returns how many
     /// pixels they are.
@@ -176,7 +179,7 @@ impl Shape<'_> {
         let Some(blend) = &mut band.blend else { return 0 };
         let (width, top) = (band.width as i32, band.top);
         let channels = blend.channels;
-        let mut ink = |place: Place, put: &mut dyn FnMut(i32, [u8; 3])| {
+        let mut ink = |place: Place, put: &mut Put<'_>| {
             let mut patch = patch;
             patch.jump(place.at[0].wrapping_sub(basis.row()));
             tone.start(place.row);
@@ -195,7 +198,7 @@ impl Shape<'_> {
     fn fill(
         &self,
         [width, top, bottom]: [i32; 3],
-        ink: &mut dyn FnMut(Place, &mut dyn FnMut(i32, [u8; 3])),
+        ink: &mut dyn FnMut(Place, &mut Put<'_>),
         add: &mut dyn FnMut(i32, i32, Layer),
         owned: &mut dyn FnMut(i32) -> [i32; 2],
     ) -> u32 {
