@@ -46,7 +46,7 @@ const SHORT: f64 = 1.0 / (1u64 << 40) as f64;
 pub(crate) fn along([l, r]: [V3; 2], v: V3, t: f64, s: f64, widths: Widths) -> f64 {
     let (ll, lr, rr, lv, rv) = (dot(l, l), dot(l, r), dot(r, r), dot(l, v), dot(r, v));
     let area = ll * rr - lr * lr;
-    if area < SHORT * ll * rr {
+    if area <= SHORT * ll * rr {
         // Hardly any angle between them, so no plane either: linear.
         let end = |cosine: f64, square: f64| (cosine / square.sqrt().max(1e-6)).max(0.0).powf(s);
         return end(lv, ll) * (1.0 - t) + end(rv, rr) * t;
