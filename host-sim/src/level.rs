@@ -22,6 +22,10 @@ impl Pixel for Fine {
         Self(None)
     }
 
+    fn channels(self) -> [u8; 3] {
+        [0; 3]
+    }
+
     fn bits(self) -> u32 {
         0
     }

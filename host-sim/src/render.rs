@@ -9,6 +9,7 @@ use embedded_graphics_core::{
 use microphong::{
     Memory, Renderer, Shader, Stats, Stream, Workspace,
     pixel::{PictureCrc, Pixel},
+    sample::Sample,
 };
 
 /// Draws frame `number` and returns its pixels row by row from the top.
@@ -25,6 +26,32 @@ pub fn frame<C: Pixel>(
     band_rows: u32,
     number: u32,
 ) -> Result<(Vec<C>, Stats)> {
+    draw(stream, size, shader, [dither, false], band_rows, number)
+}
+
+/// As [`frame`], antialiased.
+///
+/// # Errors
+/// Those of [`frame`].
+pub fn smooth<C: Pixel>(
+    stream: Stream<'_>,
+    size: Size,
+    shader: Shader,
+    dither: bool,
+    band_rows: u32,
+    number: u32,
+) -> Result<(Vec<C>, Stats)> {
+    draw(stream, size, shader, [dither, true], band_rows, number)
+}
+
+fn draw<C: Pixel>(
+    stream: Stream<'_>,
+    size: Size,
+    shader: Shader,
+    [dither, antialias]: [bool; 2],
+    band_rows: u32,
+    number: u32,
+) -> Result<(Vec<C>, Stats)> {
     // One entry of each kind, to fill the memory with.
     let mut blank = Workspace::<C, 1, 1, 1, 1>::new(C::pack([0; 3]));
     let blank = blank.memory();
@@ -33,9 +60,11 @@ pub fn frame<C: Pixel>(
     let mut bins = vec![blank.bins[0]; stream.triangles.len()];
     let mut depth = vec![0; size.width as usize * rows as usize];
     let mut palettes = vec![blank.palettes[0]; stream.materials.len()];
-    let memory = Memory { vertices: &mut vertices, bins: &mut bins, depth: &mut depth, palettes: &mut palettes };
+    let mut samples = vec![Sample::EMPTY; if antialias { depth.len() } else { 0 }];
+    let memory = Memory { vertices: &mut vertices, bins: &mut bins, depth: &mut depth, palettes: &mut palettes, samples: &mut samples };
     let mut renderer = Renderer::with_shader(stream, size, memory, shader)?;
     renderer.set_dither(dither);
+    renderer.set_antialias(antialias)?;
     let mut pixels = Vec::with_capacity(size.width as usize * size.height as usize);
     let mut band = vec![C::pack([0; 3]); size.width as usize * rows as usize];
     let mut frame = renderer.frame(number);
@@ -93,6 +122,8 @@ pub struct Settings {
     pub shader: Shader,
     /// Ordered dither.
     pub dither: bool,
+    /// Antialiasing.
+    pub antialias: bool,
     /// Rows drawn at a time.
     pub band_rows: u32,
     /// Pixel format.
@@ -115,14 +146,14 @@ pub struct Picture {
 /// # Errors
 /// Those of [`frame`].
 pub fn picture(stream: Stream<'_>, settings: &Settings, number: u32) -> Result<Picture> {
-    fn draw<C: Pixel>(stream: Stream<'_>, s: &Settings, number: u32) -> Result<Picture> {
-        let (pixels, stats) = frame::<C>(stream, s.size, s.shader, s.dither, s.band_rows, number)?;
+    fn view<C: Pixel>(stream: Stream<'_>, s: &Settings, number: u32) -> Result<Picture> {
+        let (pixels, stats) = draw::<C>(stream, s.size, s.shader, [s.dither, s.antialias], s.band_rows, number)?;
         Ok(Picture { rgb: image::rgb_bytes(&pixels), crc: crc(&pixels), stats })
     }
     match settings.format {
-        Format::Rgb565 => draw::<Rgb565>(stream, settings, number),
-        Format::Rgb888 => draw::<Rgb888>(stream, settings, number),
-        Format::Gray8 => draw::<Gray8>(stream, settings, number),
-        Format::Gray4 => draw::<Gray4>(stream, settings, number),
+        Format::Rgb565 => view::<Rgb565>(stream, settings, number),
+        Format::Rgb888 => view::<Rgb888>(stream, settings, number),
+        Format::Gray8 => view::<Gray8>(stream, settings, number),
+        Format::Gray4 => view::<Gray4>(stream, settings, number),
     }
 }

@@ -192,7 +192,7 @@ fn draw<C: Pixel>(stream: Stream<'_>, budget: Budget, frames: usize) -> Result<V
     let mut bins = vec![blank.bins[0]; budget.triangles];
     let mut depth = vec![0; budget.band()];
     let mut palettes = vec![blank.palettes[0]; budget.materials];
-    let memory = Memory { vertices: &mut vertices, bins: &mut bins, depth: &mut depth, palettes: &mut palettes };
+    let memory = Memory { vertices: &mut vertices, bins: &mut bins, depth: &mut depth, palettes: &mut palettes, samples: &mut [] };
     let size = Size::new(budget.width as u32, budget.height as u32);
     let mut renderer = Renderer::new(stream, size, memory).context("the board cannot draw this stream")?;
     let mut band = vec![black; budget.band()];

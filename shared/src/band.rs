@@ -1,5 +1,10 @@
 //! A strip of the picture and its depth: the only memory that drawing writes.
 
+use crate::{
+    pixel::Pixel,
+    sample::{Layer, Sample},
+};
+
 /// Rows `top .. top + rows` of the viewport.
 #[derive(Debug)]
 pub struct Band<'a, C> {
@@ -13,6 +18,40 @@ pub struct Band<'a, C> {
     pub top: i32,
     /// Number of rows.
     pub rows: i32,
+    /// For antialiasing: takes the place of `depth`, and of `pixels` until [`Self::resolve`].
+    pub blend: Option<Blend<'a, C>>,
+}
+
+/// Where antialiasing gathers what it knows of each pixel.
+#[derive(Debug)]
+pub struct Blend<'a, C> {
+    /// Row by row.
+    pub samples: &'a mut [Sample],
+    /// The channels of a colour, see [`Pixel::channels`].
+    pub channels: fn(C) -> [u8; 3],
+}
+
+impl<C> Blend<'_, C> {
+    /// Adds a part of a surface to the pixel number `index`.
+    #[inline]
+    pub fn add(&mut self, index: usize, layer: Layer) {
+        if let Some(sample) = self.samples.get_mut(index) {
+            sample.add(layer);
+        }
+    }
+}
+
+impl<C: Pixel> Band<'_, C> {
+    /// Turns what antialiasing has gathered into pixels.
+    #[inline(never)]
+    pub fn resolve(&mut self, background: C) {
+        if let Some(blend) = &self.blend {
+            let background = background.channels();
+            for (pixel, sample) in self.pixels.iter_mut().zip(blend.samples.iter()) {
+                *pixel = C::pack(sample.resolve(background));
+            }
+        }
+    }
 }
 
 impl<C> Band<'_, C> {
@@ -22,8 +61,13 @@ impl<C> Band<'_, C> {
     where
         C: Copy,
     {
-        self.pixels.fill(background);
-        self.depth.fill(0);
+        match &mut self.blend {
+            Some(blend) => blend.samples.fill(Sample::EMPTY),
+            None => {
+                self.pixels.fill(background);
+                self.depth.fill(0);
+            }
+        }
     }
 
     /// Pixels and depth of rows `from .. to`; rows outside the band are left out.

@@ -42,6 +42,12 @@ pub const BIAS: i32 = 128;
 pub const DEPTH: u32 = 28;
 /// Fraction bits of depth while it is walked; the depth buffer keeps the 16 bits above them.
 pub const DEPTH_WALK: u32 = 16;
+/// Fraction bits of the area that a triangle covers of a pixel: Q1.16, 1 is the whole pixel.
+pub const COVERAGE: u32 = 16;
+/// Surfaces in one pixel that antialiasing tells apart.
+pub const LAYERS: usize = 3;
+/// Places of a partly covered pixel where it can be shaded, in each direction: at most 2 to this power.
+pub const FINER: u32 = 4;
 /// Fraction bits of a cosine in the pixel loop: Q5.27, so that sums and overshoots fit.
 pub const PIXEL_COSINE: u32 = 27;
 /// Fraction bits of the edge constant 1/|N1+N2|, unsigned Q1.17 in [1/2, 1); a stream stores what exceeds 1/2.

@@ -13,6 +13,7 @@
 //! | [`vertex`], [`cull`], [`clip`], [`bin`] | object space to the screen, and what need not be drawn |
 //! | [`poly`] | fits polynomials to a triangle and walks them |
 //! | [`pixel`], [`dither`], [`palette`], [`tone`] | levels of light to pixels |
+//! | [`sample`] | what is seen through one pixel when it is antialiased |
 //! | [`band`], [`raster`] | exact coverage, and the inner loop |
 //! | [`shade`] | the methods: which polynomials, which tone |
 //! | [`render`] | the loop nest: frame, band, triangle, row |
@@ -33,6 +34,7 @@ pub mod pixel;
 pub mod poly;
 pub mod raster;
 pub mod render;
+pub mod sample;
 pub mod scene;
 pub mod shade;
 pub mod shader;

@@ -19,6 +19,9 @@ pub trait Pixel: Copy + 'static {
     /// Packs channel values of [`Self::DEPTH`] bits; a grey format looks at the first.
     fn pack(channels: [u8; 3]) -> Self;
 
+    /// What was packed.
+    fn channels(self) -> [u8; 3];
+
     /// The value that the display is sent, independent of byte order in memory.
     fn bits(self) -> u32;
 
@@ -47,6 +50,10 @@ impl Pixel for Rgb565 {
         Self::new(r, g, b)
     }
 
+    fn channels(self) -> [u8; 3] {
+        [self.r(), self.g(), self.b()]
+    }
+
     fn bits(self) -> u32 {
         u32::from(self.r()) << 11 | u32::from(self.g()) << 5 | u32::from(self.b())
     }
@@ -60,6 +67,10 @@ impl Pixel for Rgb888 {
     #[inline(always)]
     fn pack([r, g, b]: [u8; 3]) -> Self {
         Self::new(r, g, b)
+    }
+
+    fn channels(self) -> [u8; 3] {
+        [self.r(), self.g(), self.b()]
     }
 
     fn bits(self) -> u32 {
@@ -77,6 +88,10 @@ impl Pixel for Gray8 {
         Self::new(luma)
     }
 
+    fn channels(self) -> [u8; 3] {
+        [self.luma(); 3]
+    }
+
     fn bits(self) -> u32 {
         self.luma().into()
     }
@@ -90,6 +105,10 @@ impl Pixel for Gray4 {
     #[inline(always)]
     fn pack([luma, ..]: [u8; 3]) -> Self {
         Self::new(luma)
+    }
+
+    fn channels(self) -> [u8; 3] {
+        [self.luma(); 3]
     }
 
     fn bits(self) -> u32 {
@@ -117,6 +136,11 @@ impl Pixel for Rgb565Be {
     #[inline(always)]
     fn pack([r, g, b]: [u8; 3]) -> Self {
         Self((u16::from(r) << 11 | u16::from(g) << 5 | u16::from(b)).to_be())
+    }
+
+    fn channels(self) -> [u8; 3] {
+        let bits = u16::from_be(self.0);
+        [(bits >> 11) as u8, (bits >> 5 & 0x3F) as u8, (bits & 0x1F) as u8]
     }
 
     fn bits(self) -> u32 {

@@ -2,7 +2,7 @@
 
 use crate::{
     Shader, Stream,
-    band::Band,
+    band::{Band, Blend},
     bin::{Bins, Entry},
     clip,
     cull::Facing,
@@ -12,8 +12,10 @@ use crate::{
     pixel::Pixel,
     raster::{
         edge::COLUMNS,
+        smooth::{self, Part},
         triangle::{Bounds, Outline, turn},
     },
+    sample::Sample,
     scene::{Lighting, Pose},
     shade::{Facet, Shading},
     stream::record::{Mesh, Triangle, Vertex},
@@ -36,19 +38,23 @@ pub struct Memory<'a, C> {
     pub depth: &'a mut [u16],
     /// One per material.
     pub palettes: &'a mut [Palette<C>],
+    /// For antialiasing as many as [`Self::depth`], or bands have fewer rows; none without it.
+    pub samples: &'a mut [Sample],
 }
 
 /// [`Memory`] in one piece, for a `static`.
 #[derive(Debug)]
-pub struct Workspace<C, const VERTICES: usize, const TRIANGLES: usize, const DEPTH: usize, const MATERIALS: usize> {
+pub struct Workspace<C, const VERTICES: usize, const TRIANGLES: usize, const DEPTH: usize, const MATERIALS: usize, const SAMPLES: usize = 0>
+{
     vertices: [ScreenVertex; VERTICES],
     bins: [Entry; TRIANGLES],
     depth: [u16; DEPTH],
     palettes: [Palette<C>; MATERIALS],
+    samples: [Sample; SAMPLES],
 }
 
-impl<C: Pixel, const VERTICES: usize, const TRIANGLES: usize, const DEPTH: usize, const MATERIALS: usize>
-    Workspace<C, VERTICES, TRIANGLES, DEPTH, MATERIALS>
+impl<C: Pixel, const VERTICES: usize, const TRIANGLES: usize, const DEPTH: usize, const MATERIALS: usize, const SAMPLES: usize>
+    Workspace<C, VERTICES, TRIANGLES, DEPTH, MATERIALS, SAMPLES>
 {
     /// Empty memory; `colour` is any colour. With black it is all zeros: a `static` then takes no flash.
     #[must_use]
@@ -58,12 +64,19 @@ impl<C: Pixel, const VERTICES: usize, const TRIANGLES: usize, const DEPTH: usize
             bins: [Entry::EMPTY; TRIANGLES],
             depth: [0; DEPTH],
             palettes: [Palette::filled(colour); MATERIALS],
+            samples: [Sample::EMPTY; SAMPLES],
         }
     }
 
     /// Lends the memory to a [`Renderer`].
     pub fn memory(&mut self) -> Memory<'_, C> {
-        Memory { vertices: &mut self.vertices, bins: &mut self.bins, depth: &mut self.depth, palettes: &mut self.palettes }
+        Memory {
+            vertices: &mut self.vertices,
+            bins: &mut self.bins,
+            depth: &mut self.depth,
+            palettes: &mut self.palettes,
+            samples: &mut self.samples,
+        }
     }
 }
 
@@ -88,6 +101,13 @@ pub enum SetupError {
         /// Palettes needed.
         need: usize,
     },
+    /// `samples` does not hold one row, and antialiasing needs it.
+    Samples {
+        /// Samples needed at least.
+        need: usize,
+    },
+    /// Antialiasing is not part of this build.
+    Antialias,
     /// The method is not part of this build.
     Missing {
         /// The method's name.
@@ -106,6 +126,8 @@ impl fmt::Display for SetupError {
             Self::Size { width, height } => write!(f, "a picture of {width}x{height} pixels; each side must be 1 to {MAX_SIDE}"),
             Self::Depth { need } => write!(f, "the depth buffer needs {need} entries at least, one row"),
             Self::Palettes { need } => write!(f, "the stream has {need} materials, and each needs a palette"),
+            Self::Samples { need } => write!(f, "antialiasing needs {need} samples at least, one row"),
+            Self::Antialias => f.write_str("this build cannot antialias; build it with the feature antialias"),
             Self::Missing { shader } => write!(f, "this build has no {shader} shading; build it with the feature all-shaders"),
             Self::Light { shader } => {
                 write!(f, "{shader} shading needs directional lights and an infinitely far viewer; this scene has near ones")
@@ -145,6 +167,7 @@ pub struct Renderer<'a, C> {
     memory: Memory<'a, C>,
     shader: Shader,
     dither: bool,
+    antialias: bool,
     background: C,
 }
 
@@ -172,7 +195,8 @@ impl<'a, C: Pixel> Renderer<'a, C> {
         if memory.palettes.len() < stream.materials.len() {
             return Err(SetupError::Palettes { need: stream.materials.len() });
         }
-        let mut renderer = Self { shader, background: background(stream.header.background), stream, size, memory, dither: false };
+        let background = background(stream.header.background);
+        let mut renderer = Self { shader, background, stream, size, memory, dither: false, antialias: false };
         renderer.set_shader(shader)?;
         Ok(renderer)
     }
@@ -206,6 +230,28 @@ impl<'a, C: Pixel> Renderer<'a, C> {
         self.dither = dither;
     }
 
+    /// Antialiasing by exact areas on or off, see [`crate::raster::smooth`]; off at first.
+    ///
+    /// # Errors
+    /// When `samples` does not hold a row, or this build has not got the feature `antialias`; it stays off then.
+    pub fn set_antialias(&mut self, antialias: bool) -> Result<(), SetupError> {
+        let need = self.size.width as usize;
+        self.antialias = false;
+        if antialias && !cfg!(feature = "antialias") {
+            return Err(SetupError::Antialias);
+        }
+        if antialias && self.memory.samples.len() < need {
+            return Err(SetupError::Samples { need });
+        }
+        self.antialias = antialias;
+        Ok(())
+    }
+
+    #[inline(always)]
+    fn antialiased(&self) -> bool {
+        cfg!(feature = "antialias") && self.antialias
+    }
+
     /// The viewport.
     #[must_use]
     pub fn size(&self) -> Size {
@@ -215,7 +261,9 @@ impl<'a, C: Pixel> Renderer<'a, C> {
     /// Rows of a band; the last one of a frame may have fewer.
     #[must_use]
     pub fn band_rows(&self) -> u32 {
-        (self.memory.depth.len() as u32).checked_div(self.size.width).unwrap_or(0).min(self.size.height)
+        let Memory { depth, samples, .. } = &self.memory;
+        let pixels = if self.antialiased() { depth.len().min(samples.len()) } else { depth.len() };
+        (pixels as u32).checked_div(self.size.width).unwrap_or(0).min(self.size.height)
     }
 
     /// Places camera and lights, transforms vertices, culls and bins triangles for frame `number` (modulo the orbit).
@@ -362,10 +410,17 @@ impl<C: Pixel> Frame<'_, '_, C> {
             if Outline::area([&a, &b, &c]) <= 0 {
                 return None;
             }
-            Bounds::new([&a, &b, &c])
+            if self.renderer.antialiased() {
+                Bounds::touched([a, b, c].iter().map(|corner| [corner.x, corner.y, 0]))
+            } else {
+                Bounds::new([&a, &b, &c])
+            }
         } else {
             let polygon = clip::clip(&self.view, self.vertices(mesh, triangle)?);
             let mut corners = polygon.iter().map(|cut| self.view.project(cut.eye).0);
+            if self.renderer.antialiased() {
+                return Some(Bounds::touched(corners).clipped(width, height)).filter(|bounds| !bounds.is_empty());
+            }
             let mut bounds = Bounds::at(corners.next()?);
             corners.for_each(|corner| bounds.include(corner));
             bounds
@@ -410,8 +465,12 @@ impl<C: Pixel> Frame<'_, '_, C> {
         let bottom = self.top + rows;
         // The depth buffer is lent to the band, the rest of the frame stays readable.
         let depth = core::mem::take(&mut self.renderer.memory.depth);
-        let lent = depth.get_mut(..width * rows as usize).unwrap_or_default();
-        let mut band = Band { pixels, depth: lent, width, top: self.top as i32, rows: rows as i32 };
+        let samples = core::mem::take(&mut self.renderer.memory.samples);
+        let count = width * rows as usize;
+        let lent = depth.get_mut(..count).unwrap_or_default();
+        let blend =
+            self.renderer.antialiased().then(|| Blend { samples: samples.get_mut(..count).unwrap_or_default(), channels: C::channels });
+        let mut band = Band { pixels, depth: lent, width, top: self.top as i32, rows: rows as i32, blend };
         band.clear(self.renderer.background);
         if self.binned {
             self.bins.advance(self.renderer.memory.bins, bottom);
@@ -437,7 +496,11 @@ impl<C: Pixel> Frame<'_, '_, C> {
                 }
             }
         }
+        if self.renderer.antialiased() {
+            band.resolve(self.renderer.background);
+        }
         self.renderer.memory.depth = depth;
+        self.renderer.memory.samples = samples;
     }
 
     /// Draws triangle `id` into `band`; returns its pixels there.
@@ -484,7 +547,7 @@ impl<C: Pixel> Frame<'_, '_, C> {
         pixels
     }
 
-    /// Sets up one triangle and shades its rows in `band`.
+    /// Shades one triangle's rows in `band`.
     fn draw_facet(
         &self,
         shading: &Shading<'_, C>,
@@ -493,8 +556,44 @@ impl<C: Pixel> Frame<'_, '_, C> {
         triangle: &Triangle,
         band: &mut Band<'_, C>,
     ) -> u32 {
-        let (width, height) = (self.renderer.size.width as i32, self.renderer.size.height as i32);
-        let outline = Outline::new(corners);
+        if self.renderer.antialiased() {
+            self.draw_smooth(shading, corners, vertices, triangle, band)
+        } else {
+            self.draw_part(Part::Centres, shading, corners, vertices, triangle, band)
+        }
+    }
+
+    /// Shades one triangle's pixels wholly inside, then the others that it touches.
+    #[cold]
+    #[inline(never)]
+    fn draw_smooth(
+        &self,
+        shading: &Shading<'_, C>,
+        corners: [&ScreenVertex; 3],
+        vertices: [&Vertex; 3],
+        triangle: &Triangle,
+        band: &mut Band<'_, C>,
+    ) -> u32 {
+        let finer = smooth::finer(corners);
+        let [a, b, c] = corners.map(|corner| smooth::refined(corner, finer));
+        self.draw_part(Part::Inner, shading, corners, vertices, triangle, band)
+            + self.draw_part(Part::Rim(finer), shading, [&a, &b, &c], vertices, triangle, band)
+    }
+
+    /// Sets up one triangle and shades part of its pixels in `band`; for a rim its corners are on the finer grid.
+    fn draw_part(
+        &self,
+        part: Part,
+        shading: &Shading<'_, C>,
+        corners: [&ScreenVertex; 3],
+        vertices: [&Vertex; 3],
+        triangle: &Triangle,
+        band: &mut Band<'_, C>,
+    ) -> u32 {
+        let mut outline = Outline::new(corners);
+        outline.part = part;
+        let Size { width, height } = self.renderer.size;
+        let [width, height] = [width, height].map(|side| (side << outline.finer()) as i32);
         let Some(basis) = outline.basis(Bounds::new(corners).clipped(width, height)) else { return 0 };
         let by = outline.turned;
         let facet = Facet {

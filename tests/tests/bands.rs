@@ -14,7 +14,7 @@ fn frame(stream: Stream<'_>, size: Size, shader: Shader, vertices: usize, triang
     let mut bins = vec![Entry::EMPTY; triangles];
     let mut depth = vec![0; (size.width * rows) as usize];
     let mut palettes = vec![Palette::empty(); stream.materials.len()];
-    let memory = Memory { vertices: &mut vertices, bins: &mut bins, depth: &mut depth, palettes: &mut palettes };
+    let memory = Memory { vertices: &mut vertices, bins: &mut bins, depth: &mut depth, palettes: &mut palettes, samples: &mut [] };
     let mut renderer = Renderer::with_shader(stream, size, memory, shader).unwrap();
     let mut band = vec![Rgb565::RED; (size.width * rows) as usize];
     let mut pixels = Vec::new();
@@ -58,7 +58,7 @@ fn a_display_is_filled_once() {
     let mut vertices = vec![ScreenVertex::EMPTY; stream.vertices.len()];
     let mut bins = vec![Entry::EMPTY; stream.triangles.len()];
     let (mut depth, mut palettes) = ([0; 64 * 10], [Palette::<Gray8>::empty()]);
-    let memory = Memory { vertices: &mut vertices, bins: &mut bins, depth: &mut depth, palettes: &mut palettes };
+    let memory = Memory { vertices: &mut vertices, bins: &mut bins, depth: &mut depth, palettes: &mut palettes, samples: &mut [] };
     let mut renderer = Renderer::new(stream, Size::new(64, 64), memory).unwrap();
     let mut band = [Gray8::BLACK; 64 * 10];
     let mut display = MockDisplay::<Gray8>::new();

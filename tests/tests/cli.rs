@@ -231,7 +231,8 @@ fn sealed_nonsense_is_refused_or_drawn_but_never_crashes() {
             let shaders = if all { &Shader::ALL[..] } else { &Shader::ALL[at % Shader::ALL.len()..][..1] };
             // A bit may have made a far light near, which some methods refuse.
             for &shader in shaders.iter().filter(|&&shader| compare::check(&stream, shader).is_ok()) {
-                let settings = Settings { size: (40, 30).into(), shader, dither: true, band_rows: 8, format: Format::Rgb565 };
+                let settings =
+                    Settings { size: (40, 30).into(), shader, dither: true, antialias: at % 2 == 0, band_rows: 8, format: Format::Rgb565 };
                 let picture = render::picture(stream, &settings, 1).expect("a stream that passed the check can be drawn");
                 assert_eq!(picture.rgb.len(), 40 * 30 * 3, "byte {at}, flip {flip:02x}, {}", shader.name());
             }
@@ -273,7 +274,7 @@ fn formats_and_bands_keep_their_promises() {
     }
     assert!(sums.windows(2).all(|w| w[0] == w[1]), "{sums:?}");
     for format in ["rgb565", "rgb888", "gray8", "gray4"] {
-        place.succeeds(&["render", "torus", "--size", "64x48", "--format", format, "--dither"]);
+        place.succeeds(&["render", "torus", "--size", "64x48", "--format", format, "--dither", "--antialias"]);
     }
 }
 

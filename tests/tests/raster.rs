@@ -79,7 +79,7 @@ fn draw(corners: Corners, band_rows: usize, counts: &mut [u8]) -> u32 {
         let rows = band_rows.min(HEIGHT - top);
         let mut pixels = vec![0u8; rows * WIDTH];
         let mut depth = vec![0u16; rows * WIDTH];
-        let mut band = Band { pixels: &mut pixels, depth: &mut depth, width: WIDTH, top: top as i32, rows: rows as i32 };
+        let mut band = Band { pixels: &mut pixels, depth: &mut depth, width: WIDTH, top: top as i32, rows: rows as i32, blend: None };
         drawn += outline.draw(&basis, Constant, Solid(1), &mut band);
         for (count, pixel) in counts[top * WIDTH..].iter_mut().zip(&pixels) {
             *count += pixel;

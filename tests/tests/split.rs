@@ -81,7 +81,8 @@ fn cells_of_random_triangles_cover_each_pixel_once() {
             for (k, picture) in pictures.iter_mut().enumerate() {
                 let mut depth_rows = vec![0u16; rows * WIDTH];
                 let mut pixels = vec![0u8; rows * WIDTH];
-                let mut band = Band { pixels: &mut pixels, depth: &mut depth_rows, width: WIDTH, top: top as i32, rows: rows as i32 };
+                let mut band =
+                    Band { pixels: &mut pixels, depth: &mut depth_rows, width: WIDTH, top: top as i32, rows: rows as i32, blend: None };
                 drawn[k] += if k == 0 {
                     outline.draw(&basis, Constant, Solid(1), &mut band)
                 } else {

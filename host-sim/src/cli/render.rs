@@ -39,6 +39,9 @@ pub(crate) struct Arguments {
     /// Ordered dither: hides the steps of formats with few colours.
     #[arg(long)]
     dither: bool,
+    /// Smooth outlines: pixels on an edge take from either side by the exact area that each covers.
+    #[arg(long)]
+    antialias: bool,
     /// Rows drawn at a time, as a board with little memory does; the picture is the same.
     #[arg(long, default_value_t = 16, value_parser = clap::value_parser!(u32).range(1..))]
     band_rows: u32,
@@ -54,6 +57,7 @@ const EXAMPLES: &str = "\
 Examples:
   microphong render teapot
   microphong render teapot --shader gouraud --size 320x240 -o gouraud.png
+  microphong render bunny --antialias
   microphong render mesh.tri --format gray4 --dither
   microphong render bunny --frames 120 -o bunny.apng
   microphong render torus --frames 30 -o frames/";
@@ -87,6 +91,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome> {
         size: Size::new(width, height),
         shader: arguments.shader.unwrap_or(stream.shader()),
         dither: arguments.dither,
+        antialias: arguments.antialias,
         band_rows: arguments.band_rows,
         format: arguments.format,
     };

@@ -188,7 +188,7 @@ impl<'s> Reference<'s> {
         let name = shader.name();
         let size = Size::new(self.frame.size.0, self.frame.size.1);
         let integers = level::picture(self.stream, size, shader, self.number)?;
-        let settings = Settings { size, shader, dither: false, band_rows: size.height, format: Format::Rgb888 };
+        let settings = Settings { size, shader, dither: false, antialias: false, band_rows: size.height, format: Format::Rgb888 };
         let picture = render::picture(self.stream, &settings, self.number)?.rgb.as_chunks::<3>().0.to_vec();
         let leans = if oracle::decides(name) { &LEANS[..] } else { &LEANS[..1] };
         let reals: Vec<_> = leans.iter().map(|&lean| self.samples.shade(&self.frame, name, lean)).collect::<Result<_, _>>()?;

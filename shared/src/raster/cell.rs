@@ -8,12 +8,14 @@
 //! and no pixel more or less than the triangle has.
 
 use super::{
+    area::Contour,
     edge::{COLUMN, Column},
+    smooth::{Part, Shape, coarse},
     triangle::{Outline, Rows, row},
 };
 use crate::{
     band::Band,
-    format::{FINE, SPLITS},
+    format::{FINE, SPLITS, SUBPIXEL},
     math::vector::zip,
     poly::{
         Patch, Walker,
@@ -77,10 +79,11 @@ impl Cell {
 /// A cell in its place on the screen.
 #[derive(Clone, Copy, Debug)]
 pub struct Piece {
+    outline: Outline,
     cell: Cell,
     /// Clockwise, [`FINE`] fraction bits.
     corners: [[i32; 2]; 3],
-    /// Its first row and the one after its last.
+    /// Its first row and the one after its last, on the grid of the corners.
     rows: [i32; 2],
     /// Likewise.
     columns: [i32; 2],
@@ -110,7 +113,7 @@ impl Outline {
             [along(0), along(1)]
         };
         let corners = cell.corners().map(place);
-        Piece { cell: *cell, corners, rows: range(corners.map(|c| c[1])), columns: range(corners.map(|c| c[0])) }
+        Piece { outline: *self, cell: *cell, corners, rows: range(corners.map(|c| c[1])), columns: range(corners.map(|c| c[0])) }
     }
 
     /// The triangle's depth on row 0; all its pieces share it.
@@ -127,7 +130,14 @@ impl Piece {
     #[inline]
     #[must_use]
     pub fn meets<C>(&self, band: &Band<'_, C>) -> bool {
-        let ([top, bottom], [left, right]) = (self.rows, self.columns);
+        let ([top, bottom], [left, right]) = match self.outline.part {
+            Part::Centres | Part::Inner => (self.rows, self.columns),
+            // A pixel that it touches has one of the finer places, or has it next to it.
+            Part::Rim(finer) => {
+                let touched = |[from, to]: [i32; 2]| [(from >> finer).wrapping_sub(1), (to >> finer).wrapping_add(2)];
+                (touched(self.rows), touched(self.columns))
+            }
+        };
         top.max(band.top) < bottom.min(band.top.wrapping_add(band.rows)) && left.max(0) < right.min(band.width as i32)
     }
 
@@ -149,6 +159,9 @@ impl Piece {
         tone: T,
         band: &mut Band<'_, T::Pixel>,
     ) -> u32 {
+        if cfg!(feature = "antialias") && self.outline.part != Part::Centres {
+            return self.smooth(basis, patch, tone, band);
+        }
         let [a, b, c] = self.corners;
         let (first, end) = (self.rows[0].max(band.top), self.rows[1].min(band.top.wrapping_add(band.rows)));
         let mut rows = Rows { count: 0, left: Column::default(), right: Column::default(), depth, patch, tone };
@@ -174,6 +187,40 @@ impl Piece {
             pixels += row(&mut rows, pixel_row, depth_row);
         }
         pixels
+    }
+
+    /// [`Self::draw`] with antialiasing.
+    #[inline(never)]
+    fn smooth<P: Patch, T: Tone<<P::Walker as Walker>::Value>>(
+        &self,
+        basis: &Basis,
+        patch: P,
+        tone: T,
+        band: &mut Band<'_, T::Pixel>,
+    ) -> u32 {
+        // Corners of a piece have only so many fraction bits as it was split more.
+        let (bits, level) = (FINE - SUBPIXEL, self.cell.level.min(SPLITS));
+        let piece =
+            Contour::new(self.corners.map(|c| coarse(c, self.outline.finer(), bits).map(|c| c >> (SPLITS - level))), SUBPIXEL + level);
+        let [a, b, c] = self.corners;
+        let mut owned = |row: i32| {
+            let mut columns = [i32::MIN, i32::MAX];
+            if (self.rows[0]..self.rows[1]).contains(&row) {
+                for line in [Line::new(a, b, row), Line::new(b, c, row), Line::new(c, a, row)] {
+                    let column = line.column as i32;
+                    match line.side {
+                        Side::Left => columns[0] = columns[0].max(column),
+                        Side::Right => columns[1] = columns[1].min(column),
+                        Side::None => {}
+                    }
+                }
+            } else {
+                columns = [0; 2];
+            }
+            columns
+        };
+        let shape = Shape { outline: &self.outline, piece: Some(piece), corners: self.corners, bits: FINE };
+        shape.draw(basis, patch, tone, band, &mut owned)
     }
 }
 

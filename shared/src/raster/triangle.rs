@@ -3,9 +3,11 @@
 use super::{
     edge::{COLUMN, Column, Edge, first_centre},
     fill::fill,
+    smooth::{Part, Shape},
 };
 use crate::{
     band::Band,
+    format::{CENTRE, SUBPIXEL},
     poly::{Patch, Walker, basis::Basis, plane::Plane},
     tone::Tone,
     vertex::ScreenVertex,
@@ -18,6 +20,8 @@ pub struct Outline {
     pub(super) depth: [i32; 3],
     /// Which of the mesh's corners is the top one.
     pub turned: usize,
+    /// Which of its pixels are drawn.
+    pub part: Part,
 }
 
 /// What steps from row to row. It lives in memory, so that the pixel loop gets the registers.
@@ -59,6 +63,23 @@ impl Bounds {
         }
     }
 
+    /// Of corners: pixels that their box touches.
+    #[must_use]
+    pub fn touched(corners: impl Iterator<Item = [i32; 3]>) -> Self {
+        let none = Self { left: i32::MAX, top: i32::MAX, right: i32::MIN, bottom: i32::MIN };
+        // A centre as far beyond the box as it can be.
+        let reach = |c: i32| [first_centre(c - (CENTRE - 1)), first_centre(c + CENTRE)];
+        corners.fold(none, |bounds, [x, y, _]| {
+            let ([left, right], [top, bottom]) = (reach(x), reach(y));
+            Self {
+                left: bounds.left.min(left),
+                top: bounds.top.min(top),
+                right: bounds.right.max(right),
+                bottom: bounds.bottom.max(bottom),
+            }
+        })
+    }
+
     /// Of one point `[x, y, _]`.
     #[must_use]
     pub fn at([x, y, _]: [i32; 3]) -> Self {
@@ -97,7 +118,7 @@ impl Outline {
         let [a, b, c] = corners;
         let turned = if b.y < a.y || c.y < a.y { if c.y < b.y { 2 } else { 1 } } else { 0 };
         let [a, b, c] = turn(corners, turned);
-        Self { corners: [[a.x, a.y], [b.x, b.y], [c.x, c.y]], depth: [a.depth, b.depth, c.depth], turned }
+        Self { corners: [[a.x, a.y], [b.x, b.y], [c.x, c.y]], depth: [a.depth, b.depth, c.depth], turned, part: Part::Centres }
     }
 
     /// Twice the signed area in 1/256 pixel²; positive seen from the front.
@@ -106,6 +127,13 @@ impl Outline {
     pub fn area([a, b, c]: [&ScreenVertex; 3]) -> i64 {
         let (x1, y1, x2, y2) = (b.x - a.x, b.y - a.y, c.x - a.x, c.y - a.y);
         i64::from(x1) * i64::from(y2) - i64::from(x2) * i64::from(y1)
+    }
+
+    /// Its grid is finer than the pixels' by 2 to this power.
+    #[inline]
+    #[must_use]
+    pub fn finer(&self) -> u32 {
+        if let Part::Rim(finer) = self.part { finer } else { 0 }
     }
 
     /// The basis for fitting; `None` without area or seen from the back.
@@ -124,6 +152,10 @@ impl Outline {
         tone: T,
         band: &mut Band<'_, T::Pixel>,
     ) -> u32 {
+        if cfg!(feature = "antialias") && self.part != Part::Centres {
+            let shape = Shape { outline: self, piece: None, corners: self.corners, bits: SUBPIXEL };
+            return shape.draw(basis, patch, tone, band, &mut |_| [i32::MIN, i32::MAX]);
+        }
         let [top, right, left] = self.corners;
         let middle = first_centre(right[1].min(left[1]));
         let end = first_centre(right[1].max(left[1])).min(band.top + band.rows);

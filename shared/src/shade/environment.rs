@@ -89,10 +89,10 @@ impl Form<[u32; 2], ([u32; 1], [i32; 3])> for Mirror {
         let [u, v] = map.map(signed);
         let square = ((i64::from(u) * i64::from(u) + i64::from(v) * i64::from(v)) >> COSINE) as i32;
         // sqrt(1 - u² - v²) as a value over its own root.
-        let rest = (ONE - square).max(0);
+        let rest = ONE.wrapping_sub(square).max(0);
         let root = Root::of(rest as u32).divide(rest);
         let twice = |c: i32| ((i64::from(c) * i64::from(root)) >> (COSINE - 1)) as i32;
-        [twice(u), twice(v), ONE - square - square]
+        [twice(u), twice(v), ONE.wrapping_sub(square).wrapping_sub(square)]
     }
 
     #[inline(always)]

@@ -25,10 +25,10 @@ pub(super) fn draw<C: Pixel>(facet: &Facet<'_>, shading: &Shading<'_, C>, band: 
 
 /// How often the triangle is split.
 fn splits(facet: &Facet<'_>) -> u32 {
-    let [a, b, c] = facet.corners;
+    let ([a, b, c], finer) = (facet.corners, facet.outline.finer());
     let longest = [(a, b), (b, c), (c, a)].into_iter().fold(0, |longest, (a, b)| {
         let (x, y) = (i64::from(a.x) - i64::from(b.x), i64::from(a.y) - i64::from(b.y));
         longest.max(x * x + y * y)
     });
-    (0..SPLITS).find(|k| longest <= 1 << (2 * (LONGEST + k))).unwrap_or(SPLITS)
+    (0..SPLITS).find(|k| longest <= 1 << (2 * (LONGEST + finer + k))).unwrap_or(SPLITS)
 }

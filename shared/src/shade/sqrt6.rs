@@ -61,7 +61,7 @@ impl Form<(), [u32; 2]> for Squared {
     fn reflect(&self, _: usize, (): &(), [light, half]: [u32; 2], power: PixelPower<'_>) -> Reflection {
         let z = signed(half);
         // Q4.60 to Q5.27; below a half the line.
-        let half = if z >= ONE / 2 { ((i64::from(z) * i64::from(z)) >> 33) as i32 } else { (z - LOWEST) >> 3 };
+        let half = if z >= ONE / 2 { ((i64::from(z) * i64::from(z)) >> 33) as i32 } else { z.wrapping_sub(LOWEST) >> 3 };
         Reflection { diffuse: signed(light) >> 3, highlight: power.at(half) }
     }
 }

@@ -20,11 +20,18 @@ fn panic(_: &core::panic::PanicInfo<'_>) -> ! {
     a_panic_can_be_reached()
 }
 
-fn draw<C: Pixel>(bytes: &[u8], workspace: &mut Workspace<C, 600, 600, 9600, 2>, pixels: &mut [C], size: u32, options: u32) -> Option<Stats> {
+fn draw<C: Pixel>(
+    bytes: &[u8],
+    workspace: &mut Workspace<C, 600, 600, 9600, 2, 2400>,
+    pixels: &mut [C],
+    size: u32,
+    options: u32,
+) -> Option<Stats> {
     let mut renderer = Renderer::new(Stream::parse(bytes).ok()?, Size::new(size, size), workspace.memory()).ok()?;
     renderer.set_shader(*Shader::ALL.get(options as usize & 31)?).ok()?;
     renderer.set_dither(options & 32 != 0);
-    let mut frame = renderer.frame(options >> 6);
+    renderer.set_antialias(options & 64 != 0).ok()?;
+    let mut frame = renderer.frame(options >> 7);
     while frame.next_band(pixels).is_some() {}
     Some(frame.stats())
 }
@@ -33,8 +40,8 @@ fn draw<C: Pixel>(bytes: &[u8], workspace: &mut Workspace<C, 600, 600, 9600, 2>,
 #[unsafe(no_mangle)]
 pub extern "C" fn _start(
     bytes: &'static &'static [u8],
-    colour: &'static mut Workspace<Rgb565, 600, 600, 9600, 2>,
-    grey: &'static mut Workspace<Gray4, 600, 600, 9600, 2>,
+    colour: &'static mut Workspace<Rgb565, 600, 600, 9600, 2, 2400>,
+    grey: &'static mut Workspace<Gray4, 600, 600, 9600, 2, 2400>,
     pixels: &'static mut ([Rgb565; 9600], [Gray4; 9600]),
     size: u32,
     options: u32,
