@@ -11,12 +11,12 @@ use super::{
 use crate::{
     band::Band,
     pixel::Pixel,
-    poly::{Constant, quadric::Quadric},
+    poly::Constant,
     scene::Source,
 };
 
 pub(super) fn draw<C: Pixel>(facet: &Facet<'_>, shading: &Shading<'_, C>, band: &mut Band<'_, C>) -> u32 {
     let nodes = facet.six_nodes();
-    let fit = |source: &Source| quadratic(facet, coordinates(shading.lighting, source, nodes));
-    shading.draw_reflected(facet, (Quadric::ZERO, fit), Constant, Across, band)
+    let fit = |source: &Source| quadratic(coordinates(shading.lighting, source, nodes));
+    shading.draw_reflected(facet, fit, Constant, Across, band)
 }
