@@ -11,20 +11,44 @@ use microphong::{
     pixel::{PictureCrc, Pixel},
 };
 
+/// How triangles are shaded.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Method {
+    /// The shading method.
+    pub shader: Shader,
+    /// Interpolation in perspective.
+    pub perspective_correct: bool,
+}
+
+impl From<Shader> for Method {
+    fn from(shader: Shader) -> Self {
+        Self { shader, perspective_correct: false }
+    }
+}
+
+impl Method {
+    /// `shader`, perspective-correct.
+    #[must_use]
+    pub fn perspective_correct(shader: Shader) -> Self {
+        Self { shader, perspective_correct: true }
+    }
+}
+
 /// Draws frame `number` and returns its pixels row by row from the top.
 ///
 /// Bands have `band_rows` rows, at most the picture's; the picture does not depend on it.
 ///
 /// # Errors
-/// When `size` is out of range, or `shader` cannot shade the scene.
+/// When `size` is out of range, or `method` cannot shade the scene.
 pub fn frame<C: Pixel>(
     stream: Stream<'_>,
     size: Size,
-    shader: Shader,
+    method: impl Into<Method>,
     dither: bool,
     band_rows: u32,
     number: u32,
 ) -> Result<(Vec<C>, Stats)> {
+    let method = method.into();
     // One entry of each kind, to fill the memory with.
     let mut blank = Workspace::<C, 1, 1, 1, 1>::new(C::pack([0; 3]));
     let blank = blank.memory();
@@ -35,7 +59,8 @@ pub fn frame<C: Pixel>(
     let mut palettes = vec![blank.palettes[0]; stream.materials.len()];
     let memory = Memory { vertices: &mut vertices, bins: &mut bins, depth: &mut depth, palettes: &mut palettes };
     let mut renderer = Renderer::new(stream, size, memory)?;
-    renderer.set_shader(shader)?;
+    renderer.set_shader(method.shader)?;
+    renderer.set_perspective_correct(method.perspective_correct)?;
     renderer.set_dither(dither);
     let mut pixels = Vec::with_capacity(size.width as usize * size.height as usize);
     let mut band = vec![C::pack([0; 3]); size.width as usize * rows as usize];
@@ -92,6 +117,8 @@ pub struct Settings {
     pub size: Size,
     /// Shading method.
     pub shader: Shader,
+    /// Interpolation in perspective.
+    pub perspective_correct: bool,
     /// Ordered dither.
     pub dither: bool,
     /// Rows drawn at a time.
@@ -117,7 +144,8 @@ pub struct Picture {
 /// Those of [`frame`].
 pub fn picture(stream: Stream<'_>, settings: &Settings, number: u32) -> Result<Picture> {
     fn draw<C: Pixel>(stream: Stream<'_>, s: &Settings, number: u32) -> Result<Picture> {
-        let (pixels, stats) = frame::<C>(stream, s.size, s.shader, s.dither, s.band_rows, number)?;
+        let method = Method { shader: s.shader, perspective_correct: s.perspective_correct };
+        let (pixels, stats) = frame::<C>(stream, s.size, method, s.dither, s.band_rows, number)?;
         Ok(Picture { rgb: image::rgb_bytes(&pixels), crc: crc(&pixels), stats })
     }
     match settings.format {

@@ -228,7 +228,14 @@ fn sealed_nonsense_is_refused_or_drawn_but_never_crashes() {
             let all = at < stream.header.length as usize - size_of_val(stream.vertices) - size_of_val(stream.triangles);
             let shaders = if all { &Shader::ALL[..] } else { &Shader::ALL[at % 4..][..1] };
             for &shader in shaders {
-                let settings = Settings { size: (40, 30).into(), shader, dither: true, band_rows: 8, format: Format::Rgb565 };
+                let settings = Settings {
+                    size: (40, 30).into(),
+                    shader,
+                    perspective_correct: false,
+                    dither: true,
+                    band_rows: 8,
+                    format: Format::Rgb565,
+                };
                 let picture = render::picture(stream, &settings, 1).expect("a stream that passed the check can be drawn");
                 assert_eq!(picture.rgb.len(), 40 * 30 * 3, "byte {at}, flip {flip:02x}, {}", shader.name());
             }

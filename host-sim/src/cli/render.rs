@@ -3,7 +3,7 @@
 use super::{Outcome, Usage, parse, report};
 use anyhow::{Context, Result};
 use embedded_graphics_core::geometry::Size;
-use microphong::Shader;
+use microphong::{Shader, render::check};
 use microphong_sim::{
     image::{self, Film},
     render::{self, Format, Settings},
@@ -36,6 +36,9 @@ pub(crate) struct Arguments {
     /// First frame of the orbit.
     #[arg(long, default_value_t = 0)]
     first: u32,
+    /// Interpolate in perspective: right where a triangle reaches from near to far.
+    #[arg(long)]
+    perspective_correct: bool,
     /// Ordered dither: hides the steps of formats with few colours.
     #[arg(long)]
     dither: bool,
@@ -86,10 +89,12 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome> {
     let settings = Settings {
         size: Size::new(width, height),
         shader: arguments.shader.unwrap_or(stream.shader()),
+        perspective_correct: arguments.perspective_correct,
         dither: arguments.dither,
         band_rows: arguments.band_rows,
         format: arguments.format,
     };
+    check(&stream, settings.shader, settings.perspective_correct).with_context(|| scene.name.clone())?;
     let mut writer = Writer::start(&target, settings.size, frames)?;
     let bar = report::progress(frames.into(), "drawing");
     let mut lines = Vec::new();

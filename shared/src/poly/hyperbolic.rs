@@ -10,11 +10,7 @@
 //! nodes: none for planes, 6 products for quadratics, 15 for cubics, and then a product per node and channel.
 //! Set-up: three planes instead of a fit of each channel.
 
-use super::{
-    Patch, Walker,
-    basis::{Basis, GUARD},
-    field::Nodes,
-};
+use super::{Patch, Walker, basis::Basis, field::Nodes};
 use crate::math::recip::recip;
 
 /// Fraction bits of shares: a Q2.30 holds them.
@@ -43,7 +39,7 @@ pub struct Hyperbolic<S> {
     surface: S,
 }
 
-/// `c + dx x + dy y`, [`SHARE`] and [`GUARD`] fraction bits.
+/// `c + dx x + dy y`, see [`Basis::fine`].
 #[derive(Clone, Copy, Debug)]
 struct Row {
     /// Value at column 0 of the current row.

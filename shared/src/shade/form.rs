@@ -1,6 +1,8 @@
 //! From fields that are walked per light to what each light sends, and on to a pixel.
 
 use super::{Area, Facet, Shading};
+#[cfg(feature = "all-shaders")]
+use crate::poly::{Patch, PerLight, Walker};
 use crate::{
     band::Band,
     dither::threshold,
@@ -13,8 +15,6 @@ use crate::{
     shade::node::Node,
     tone::Tone,
 };
-#[cfg(feature = "all-shaders")]
-use crate::poly::{Patch, PerLight, Walker};
 
 /// Fraction bits of a field at a node; walked with [`COSINE`].
 pub(super) const NODE: u32 = 24;

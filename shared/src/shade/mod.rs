@@ -52,6 +52,8 @@ mod taylor;
 #[cfg(feature = "all-shaders")]
 mod taylor_finite;
 
+#[cfg(feature = "all-shaders")]
+use crate::poly::hyperbolic::Hyperbolic;
 use crate::{
     band::Band,
     format::{BIAS, LEVEL, RHO, WALK},
@@ -69,8 +71,6 @@ use crate::{
     tone::{Dithered, Ramp, Rgb, Tone},
     vertex::ScreenVertex,
 };
-#[cfg(feature = "all-shaders")]
-use crate::poly::hyperbolic::Hyperbolic;
 use core::marker::PhantomData;
 #[cfg(feature = "all-shaders")]
 use parabola::Parabolas;

@@ -8,12 +8,7 @@ use super::{
     blinn::{Across, coordinates},
     form::quadratic,
 };
-use crate::{
-    band::Band,
-    pixel::Pixel,
-    poly::Constant,
-    scene::Source,
-};
+use crate::{band::Band, pixel::Pixel, poly::Constant, scene::Source};
 
 pub(super) fn draw<C: Pixel>(facet: &Facet<'_>, shading: &Shading<'_, C>, band: &mut Band<'_, C>) -> u32 {
     let nodes = facet.six_nodes();
