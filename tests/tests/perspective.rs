@@ -46,9 +46,11 @@ fn upright(tilt: f64, distance: f64) -> View {
 /// The eye close to a dodecahedron, to a floor and to a triangle lying down: depths of one triangle 1 to 4 and more.
 fn close_scenes() -> Vec<Scene> {
     let distant = || vec![Lamp::Distant([-0.2, 0.7, 0.3], [1.0; 3])];
-    let near = || vec![Lamp::Near([-0.5, 0.8, 1.4], [1.0, 0.9, 0.8]), Lamp::Distant([0.6, 0.5, -0.6], [0.2, 0.3, 0.4])];
+    let near = || vec![Lamp::Near([-1.2, 1.6, 0.4], [1.0, 0.9, 0.8]), Lamp::Distant([0.6, 0.5, -0.6], [0.2, 0.3, 0.4])];
     let with = |view: View, near: f64, focal: f64| View { near, ..view.focal(focal) };
     let flat = with(upright(0.35, 1.8), 0.1, 1.1);
+    // Turns about the line of sight of an upright one: it has no back to show.
+    let lying = with(View { axis: [0.0, 0.0, 1.0], ..upright(-1.1, 1.5) }, 0.1, 1.0);
     let ball = with(upright(0.3, 1.15), 0.05, 0.9);
     let mut metal = close("floor, metal", &floor(0.5), flat, distant(), false);
     let mut look = Look::new(Surface::metal([1.0; 3], [0.08, 0.47, 0.45], 50), flat);
@@ -60,7 +62,7 @@ fn close_scenes() -> Vec<Scene> {
         close("floor, near light", &floor(0.3), flat, near(), true),
         close("dodecahedron", &shapes::dodecahedron(), ball, distant(), false),
         close("dodecahedron, near light", &shapes::dodecahedron(), ball, near(), true),
-        close("triangle", &shapes::bulged_triangle(), with(upright(-1.1, 1.5), 0.1, 1.0), near(), true),
+        close("triangle", &shapes::bulged_triangle(), lying, near(), true),
     ]
 }
 
@@ -129,11 +131,11 @@ fn integers_follow_the_perspective() {
     for (shader, (error, place)) in Shader::ALL.iter().zip(&worst).filter(|(shader, _)| shader.has_perspective()) {
         println!("{:20} {error:.3} LSB at most, on {place}", shader.name());
     }
-    // The method that decides may decide otherwise, see the test of arithmetic.
-    assert!(Shader::ALL.iter().zip(&worst).all(|(s, &(error, _))| error <= LIMIT || *s == Shader::HighlightTest));
+    assert!(worst.iter().all(|&(error, _)| error <= LIMIT), "a method is more than {LIMIT} LSB off");
 }
 
-/// The triangles of the close scenes are what they are meant to be, and correction is worth it there.
+/// The triangles of the close scenes are what they are meant to be, and correction is worth it there: of each method against
+/// what it would be at the point that is seen.
 #[test]
 fn correction_comes_closer_to_the_truth() {
     for scene in close_scenes() {
@@ -144,21 +146,16 @@ fn correction_comes_closer_to_the_truth() {
             most / least
         });
         let ratio = ratio.fold(0.0, f64::max);
+        assert!(ratio > 3.0, "{}: depths 1 to {ratio}", scene.name);
         println!("{}: depths 1 to {ratio:.1}", scene.name);
-        for shader in [Shader::Phong, Shader::SixPoint, Shader::Renq, Shader::Duff] {
+        for shader in Shader::ALL.into_iter().filter(|&shader| check(&stream, shader, true).is_ok() && shader != Shader::Flat) {
             let [affine, correct] = [Method::from(shader), Method::perspective_correct(shader)].map(|method| {
                 let picture = level::picture(stream, size(&scene), method, 0).unwrap();
-                errors(&scene, &frame, &picture, "phong", 1, 0)
+                errors(&scene, &frame, &picture, shader.name(), 1, 0)
             });
-            println!(
-                "    {:12} without {:.2} at most, {:.2} rms; with {:.2}, {:.2}",
-                shader.name(),
-                affine.0,
-                affine.1.sqrt(),
-                correct.0,
-                correct.1.sqrt()
-            );
-            assert!(correct.1 < affine.1, "{}, {}", scene.name, shader.name());
+            let [without, with] = [affine.1, correct.1].map(f64::sqrt);
+            println!("    {:16} without {:.2} at most, {without:.2} rms; with {:.2}, {with:.2}", shader.name(), affine.0, correct.0);
+            assert!(with < 0.1 && without > 1.0, "{}, {}", scene.name, shader.name());
         }
     }
 }
