@@ -58,8 +58,7 @@ pub fn frame<C: Pixel>(
     let mut depth = vec![0; size.width as usize * rows as usize];
     let mut palettes = vec![blank.palettes[0]; stream.materials.len()];
     let memory = Memory { vertices: &mut vertices, bins: &mut bins, depth: &mut depth, palettes: &mut palettes };
-    let mut renderer = Renderer::new(stream, size, memory)?;
-    renderer.set_shader(method.shader)?;
+    let mut renderer = Renderer::with_shader(stream, size, memory, method.shader)?;
     renderer.set_perspective_correct(method.perspective_correct)?;
     renderer.set_dither(dither);
     let mut pixels = Vec::with_capacity(size.width as usize * size.height as usize);

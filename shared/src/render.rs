@@ -156,11 +156,19 @@ pub struct Renderer<'a, C> {
 }
 
 impl<'a, C: Pixel> Renderer<'a, C> {
-    /// A renderer for a viewport of `size` pixels.
+    /// A renderer for a viewport of `size` pixels, with the method that the stream asks for.
     ///
     /// # Errors
-    /// When `size` is out of range, `memory` too small for it, or the stream asks for a method that cannot shade it here.
+    /// When `size` is out of range, `memory` too small for it, or the method cannot shade the scene here.
     pub fn new(stream: Stream<'a>, size: Size, memory: Memory<'a, C>) -> Result<Self, SetupError> {
+        Self::with_shader(stream, size, memory, stream.shader())
+    }
+
+    /// As [`Self::new`], with another method than the stream's.
+    ///
+    /// # Errors
+    /// Likewise.
+    pub fn with_shader(stream: Stream<'a>, size: Size, memory: Memory<'a, C>, shader: Shader) -> Result<Self, SetupError> {
         let (width, height) = (size.width, size.height);
         if !(1..=MAX_SIDE).contains(&width) || !(1..=MAX_SIDE).contains(&height) {
             return Err(SetupError::Size { width, height });
@@ -171,7 +179,6 @@ impl<'a, C: Pixel> Renderer<'a, C> {
         if memory.palettes.len() < stream.materials.len() {
             return Err(SetupError::Palettes { need: stream.materials.len() });
         }
-        let shader = stream.shader();
         let background = background(stream.header.background);
         let mut renderer = Self { stream, size, memory, shader, dither: false, perspective_correct: false, background };
         renderer.set_shader(shader)?;

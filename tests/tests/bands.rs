@@ -5,7 +5,7 @@ use embedded_graphics::{
     pixelcolor::{Gray8, Rgb565},
     prelude::*,
 };
-use microphong::{Memory, Picture, Renderer, Shader, Stats, Stream, bin::Entry, palette::Palette, vertex::ScreenVertex};
+use microphong::{Memory, Picture, Renderer, Shader, Stats, Stream, bin::Entry, palette::Palette, render::check, vertex::ScreenVertex};
 use microphong_sim::scene;
 
 /// A frame with room for so many vertices and triangles, in bands of so many rows.
@@ -15,8 +15,7 @@ fn frame(stream: Stream<'_>, size: Size, shader: Shader, vertices: usize, triang
     let mut depth = vec![0; (size.width * rows) as usize];
     let mut palettes = vec![Palette::empty(); stream.materials.len()];
     let memory = Memory { vertices: &mut vertices, bins: &mut bins, depth: &mut depth, palettes: &mut palettes };
-    let mut renderer = Renderer::new(stream, size, memory).unwrap();
-    renderer.set_shader(shader);
+    let mut renderer = Renderer::with_shader(stream, size, memory, shader).unwrap();
     let mut band = vec![Rgb565::RED; (size.width * rows) as usize];
     let mut pixels = Vec::new();
     let mut frame = renderer.frame(5);
@@ -33,7 +32,7 @@ fn neither_bands_nor_overflow_change_a_pixel() {
         let scene = scene::load(name).unwrap();
         let stream = scene.stream.parse().unwrap();
         let (vertices, triangles) = (stream.vertices.len(), stream.triangles.len());
-        for shader in Shader::ALL {
+        for shader in Shader::ALL.into_iter().filter(|&shader| check(&stream, shader, false).is_ok()) {
             let (whole, stats) = frame(stream, size, shader, vertices, triangles, size.height);
             assert_eq!((stats.passes, stats.uncached), (1, 0));
             for rows in [1, 7, 16, 64] {

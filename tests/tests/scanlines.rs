@@ -56,8 +56,8 @@ fn wrong(stream: &StreamBytes, side: u32, shader: Shader) -> usize {
 
 #[test]
 fn rows_keep_to_their_method_where_they_are_hard() {
-    let swapped = |i: usize, [x, y, z]: [i16; 3]| if i % 3 == 0 { [y, z, x] } else { [x, y, z] };
-    let close = |i: usize, _| [0, 1, 2].map(|k| 9_458 + (((i * 7_919 + k * 104_729) * 40_503 >> 7) & 3) as i16);
+    let swapped = |i: usize, [x, y, z]: [i16; 3]| if i.is_multiple_of(3) { [y, z, x] } else { [x, y, z] };
+    let close = |i: usize, _| [0, 1, 2].map(|k| 9_458 + ((((i * 7_919 + k * 104_729) * 40_503) >> 7) & 3) as i16);
     let scenes = [
         ("far apart", changed("sphere-168", 20, swapped), 240),
         ("hardly apart", changed("sphere-690", 20, close), 300),

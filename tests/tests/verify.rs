@@ -51,6 +51,22 @@ fn matrix(board: Board) -> Result {
     Ok(())
 }
 
+/// Every method on one scene.
+fn methods(board: Board) -> Result {
+    let directory = tempfile::tempdir()?;
+    let elf = verify::build(board)?;
+    for shader in Shader::ALL.into_iter().filter(|&shader| board.has(shader)) {
+        let report = verify::run(&Request { frames: 1, ..request(board, "teapot", shader)? }, &elf, directory.path())?;
+        println!("{}", serde_json::to_string(&report)?);
+        assert_eq!(report.differing, 0, "{board} {}", shader.name());
+        if let Some((_, limit)) = RAM.iter().find(|(limited, _)| *limited == board) {
+            let used = report.ram_bytes + report.stack_bytes;
+            assert!(used <= *limit, "{board} {}: {used} bytes of RAM, more than {limit}", shader.name());
+        }
+    }
+    Ok(())
+}
+
 /// The stream with one bit of the first vertex's normal flipped: too little for a stream to be refused.
 fn bent(scene: &str) -> Result<Vec<u8>> {
     let stream = scene::load(scene)?.stream;
@@ -112,6 +128,11 @@ macro_rules! boards {
             #[test]
             fn every_pixel_is_the_hosts() -> Result {
                 matrix($board)
+            }
+
+            #[test]
+            fn every_method_is_the_hosts() -> Result {
+                methods($board)
             }
 
             #[test]

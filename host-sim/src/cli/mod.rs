@@ -4,6 +4,7 @@ mod bench;
 mod compare;
 mod convert;
 mod inspect;
+mod papers;
 mod parse;
 mod render;
 mod report;
@@ -32,6 +33,7 @@ Examples:
   microphong verify --board all --scene teapot     compare emulated boards with this computer
   microphong bench                                 count the instructions of a frame
   microphong compare teapot --report comparison    measure all methods against Phong shading
+  microphong papers --only vlasic                  compute again what a paper claims
 
 Exit codes: 0 done; 1 failed, or pictures differ; 2 wrong usage.";
 
@@ -43,6 +45,7 @@ enum Command {
     Verify(verify::Arguments),
     Bench(bench::Arguments),
     Compare(compare::Arguments),
+    Papers(papers::Arguments),
     Scenes(scenes::Arguments),
 }
 
@@ -73,6 +76,7 @@ pub(crate) fn main() -> ExitCode {
         Command::Verify(arguments) => verify::run(&arguments),
         Command::Bench(arguments) => bench::run(&arguments),
         Command::Compare(arguments) => compare::run(&arguments),
+        Command::Papers(arguments) => papers::run(&arguments),
         Command::Scenes(arguments) => scenes::run(&arguments),
     };
     let error = match result {

@@ -3,6 +3,7 @@
 use microphong::{Shader, render::MAX_SIDE};
 use microphong_sim::{
     board::Board,
+    papers::Topic,
     render::Format,
     vector::V3,
     view::{Projection, Up},
@@ -46,6 +47,11 @@ pub(crate) fn boards(text: &str) -> Result<Several<Board>, String> {
 /// Shading methods by name.
 pub(crate) fn shaders(text: &str) -> Result<Several<Shader>, String> {
     several(text, &Shader::ALL, shader)
+}
+
+/// Papers by name.
+pub(crate) fn topics(text: &str) -> Result<Several<Topic>, String> {
+    several(text, &Topic::ALL, |text| among(text, &Topic::ALL, Topic::name))
 }
 
 /// A shading method by name.

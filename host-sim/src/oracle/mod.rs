@@ -13,7 +13,9 @@ mod visible;
 
 pub use frame::{Facet, Frame};
 pub use light::{Light, Material, Place, phong};
+pub(crate) use method::angular;
 pub use method::{NAMES, Unsupported, decides, method};
+pub(crate) use poly::{SIX, TEN, cubic, quadratic, sum};
 
 /// Red, green and blue; 255 is full. Clamped to [0, 255].
 pub type Levels = [f64; 3];

@@ -3,13 +3,13 @@
 use crate::vector::V3;
 
 /// The corners, then the midpoints of the edges 0-1, 1-2 and 2-0.
-pub(super) const SIX: [V3; 6] = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0], [0.5, 0.5, 0.0], [0.0, 0.5, 0.5], [0.5, 0.0, 0.5]];
+pub(crate) const SIX: [V3; 6] = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0], [0.5, 0.5, 0.0], [0.0, 0.5, 0.5], [0.5, 0.0, 0.5]];
 
 const THIRD: f64 = 1.0 / 3.0;
 const TWO: f64 = 2.0 / 3.0;
 
 /// The corners; on each edge the node nearer to its start, then the one nearer to its end; the centroid.
-pub(super) const TEN: [V3; 10] = [
+pub(crate) const TEN: [V3; 10] = [
     [1.0, 0.0, 0.0],
     [0.0, 1.0, 0.0],
     [0.0, 0.0, 1.0],
@@ -23,13 +23,13 @@ pub(super) const TEN: [V3; 10] = [
 ];
 
 /// What the six nodes count for: Lagrange's quadratic, `b (2b - 1)` for corners, `4 b b'` for midpoints.
-pub(super) fn quadratic([a, b, c]: V3) -> [f64; 6] {
+pub(crate) fn quadratic([a, b, c]: V3) -> [f64; 6] {
     let corner = |u: f64| u * (2.0 * u - 1.0);
     [corner(a), corner(b), corner(c), 4.0 * a * b, 4.0 * b * c, 4.0 * c * a]
 }
 
 /// What the ten nodes count for: Lagrange's cubic.
-pub(super) fn cubic([a, b, c]: V3) -> [f64; 10] {
+pub(crate) fn cubic([a, b, c]: V3) -> [f64; 10] {
     let corner = |u: f64| u * (3.0 * u - 1.0) * (3.0 * u - 2.0) / 2.0;
     let edge = |near: f64, far: f64| 4.5 * near * far * (3.0 * near - 1.0);
     [corner(a), corner(b), corner(c), edge(a, b), edge(b, a), edge(b, c), edge(c, b), edge(c, a), edge(a, c), 27.0 * a * b * c]
@@ -41,7 +41,7 @@ pub(super) fn blend<const NODES: usize, const WIDTH: usize>(weights: &[f64; NODE
 }
 
 /// Sum of plain numbers, weighted.
-pub(super) fn sum<const NODES: usize>(weights: &[f64; NODES], values: &[f64; NODES]) -> f64 {
+pub(crate) fn sum<const NODES: usize>(weights: &[f64; NODES], values: &[f64; NODES]) -> f64 {
     weights.iter().zip(values).map(|(weight, value)| weight * value).sum()
 }
 

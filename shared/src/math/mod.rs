@@ -8,6 +8,7 @@ pub mod power;
 pub mod recip;
 pub mod rsqrt;
 pub mod vector;
+pub mod wide;
 
 /// `value / 2^bits` rounded to nearest; for negative `bits` a left shift that wraps.
 #[inline(always)]
@@ -25,6 +26,7 @@ pub fn scale(value: i64, bits: i32) -> i64 {
 }
 
 /// [`scale`] in 128 bits; `bits` is at most 126.
+#[inline(never)]
 #[must_use]
 pub fn scale_wide(value: i128, bits: i32) -> i128 {
     if bits > 0 {

@@ -10,7 +10,7 @@
 use super::sliver::Sliver;
 use crate::{
     format::{CENTRE, FINE, SPLITS, SUBPIXEL},
-    math::{recip::recip, scale, scale_wide},
+    math::{recip::recip, scale, scale_wide, wide::Wide},
     poly::terms::Terms,
 };
 
@@ -204,18 +204,18 @@ impl Basis {
         let fraction = extra + GUARD as u32;
         let terms = if self.thin {
             let sliver = Sliver { edges: self.edges, offset: self.offset.map(|c| c >> SPLITS), bits: SUBPIXEL };
-            let by = |k: usize| move |a: i128, b: i128| a.wrapping_add(b.wrapping_mul(self.shift[k].into()));
+            let by = |k: usize| move |a: Wide, b: Wide| a + b * Wide::from(self.shift[k]);
             sliver.cubic(nodes, fraction).moved_across(by(0)).moved_down(by(1))
         } else {
             // With three mantissas terms stay below 2^114, moved below 2^124.
-            let terms = Terms::of(nodes.map(i128::from), self.s.map(i128::from), self.t.map(i128::from));
-            let scaled = terms.map(|c, degree| scale_wide(c, degree as i32 * self.exponent + 2 - fraction as i32));
+            let terms = Terms::of(nodes.map(Wide::from), self.s.map(Wide::from), self.t.map(Wide::from));
+            let scaled = terms.map(|c, degree| Wide(scale_wide(c.0, degree as i32 * self.exponent + 2 - fraction as i32)));
             // From the corner to the anchor.
-            let way = |k: usize| i128::from(self.offset[k]) + (i128::from(self.shift[k]) << FINE);
-            let by = |k: usize| move |a: i128, b: i128| a + ((b * way(k)) >> FINE);
+            let way = |k: usize| Wide(i128::from(self.offset[k]) + (i128::from(self.shift[k]) << FINE));
+            let by = |k: usize| move |a: Wide, b: Wide| a + Wide((b * way(k)).0 >> FINE);
             scaled.moved_across(by(0)).moved_down(by(1))
         };
-        terms.map(|c, _| scale_wide(c, GUARD) as i64)
+        terms.map(|c, _| scale_wide(c.0, GUARD) as i64)
     }
 
     /// Moves coefficients from corner 0's pixel to the anchor, exactly, and rounds them to the walked format.

@@ -4,6 +4,7 @@
 //! rounded before they meet lose the value. Here nothing is rounded before the last division. Slow, and rare.
 
 use super::terms::Terms;
+use crate::math::wide::Wide;
 
 /// A triangle from its first corner: the two edges that leave it, and where values are wanted.
 #[derive(Clone, Copy, Debug)]
@@ -23,21 +24,20 @@ impl Sliver {
     #[cold]
     #[inline(never)]
     pub(super) fn quadratic(&self, nodes: [i32; 6], extra: u32) -> [i64; 6] {
-        let [i0, i1, i2, i01, i12, i20] = nodes.map(i128::from);
+        let [i0, i1, i2, i01, i12, i20] = nodes.map(Wide::from);
         let (c1, c2) = (4 * i01 - 3 * i0 - i1, 4 * i20 - 3 * i0 - i2);
         let (ss, st, tt) = (2 * (i0 + i1 - 2 * i01), 4 * (i0 - i01 - i20 + i12), 2 * (i0 + i2 - 2 * i20));
-        let [[x1, y1], [x2, y2]] = self.edges.map(|edge| edge.map(i128::from));
-        let [ox, oy] = self.offset.map(i128::from);
+        let [[x1, y1], [x2, y2]] = self.edges.map(|edge| edge.map(Wide::from));
+        let [ox, oy] = self.offset.map(Wide::from);
         let det = x1 * y2 - x2 * y1;
         // The anchor's barycentric coordinates and their gradients per unit, all times det.
         let (s, t) = (y2 * ox - x2 * oy, x1 * oy - y1 * ox);
         let (sx, sy, tx, ty) = (y2, -x2, -y1, x1);
         // At most 2^29 · 2^56 · 2^28 · 2^13: within 128 bits. The divisor is not 0: the triangle has an area.
         let divisor = det * det;
-        let over = |numerator: i128, order: u32| {
-            ((numerator << (extra + order * self.bits)) + (divisor >> 1)).checked_div_euclid(divisor).unwrap_or(0) as i64
-        };
-        let along = |ds: i128, dt: i128| (c1 * ds + c2 * dt) * det + 2 * ss * s * ds + st * (s * dt + t * ds) + 2 * tt * t * dt;
+        let half = Wide(divisor.0 >> 1);
+        let over = |numerator: Wide, order: u32| (numerator.shifted(extra + order * self.bits) + half).divided(divisor).0.0 as i64;
+        let along = |ds: Wide, dt: Wide| (c1 * ds + c2 * dt) * det + 2 * ss * s * ds + st * (s * dt + t * ds) + 2 * tt * t * dt;
         [
             over(i0 * det * det + (c1 * s + c2 * t) * det + ss * s * s + st * s * t + tt * t * t, 0),
             over(along(sx, tx), 1),
@@ -47,25 +47,25 @@ impl Sliver {
             over(ss * sy * sy + st * sy * ty + tt * ty * ty, 2),
         ]
     }
+
     /// The terms of the cubic through ten nodes at the anchor, with `extra` more bits than the nodes.
     ///
     /// Every coefficient is the exact one, rounded down, modulo 2^128.
     #[cold]
     #[inline(never)]
-    pub(super) fn cubic(&self, nodes: [i32; 10], extra: u32) -> Terms<i128> {
-        let [[x1, y1], [x2, y2]] = self.edges.map(|edge| edge.map(i128::from));
-        let [ox, oy] = self.offset.map(i128::from);
+    pub(super) fn cubic(&self, nodes: [i32; 10], extra: u32) -> Terms<Wide> {
+        let [[x1, y1], [x2, y2]] = self.edges.map(|edge| edge.map(Wide::from));
+        let [ox, oy] = self.offset.map(Wide::from);
         let det = x1 * y2 - x2 * y1;
         // det is below 2^28, as slivers have less than 1/128 of their square; all together below 2^105.
-        let common = Terms::of(nodes.map(i128::from), [y2, -x2], [-y1, x1]).map(|c, degree| (degree..3).fold(c, |c, _| c * det));
+        let common = Terms::of(nodes.map(Wide::from), [y2, -x2], [-y1, x1]).map(|c, degree| (degree..3).fold(c, |c, _| c * det));
         let divisor = 4 * det * det * det;
-        let over = |numerator: i128, bits: u32| {
-            let divided = |n: i128| (n.checked_div_euclid(divisor).unwrap_or(0), n.checked_rem_euclid(divisor).unwrap_or(0));
+        let over = |numerator: Wide, bits: u32| {
             // Long division, 35 bits at a time.
-            let (whole, rest) = divided(numerator);
-            let (upper, rest) = divided(rest << (bits / 2));
-            let (lower, _) = divided(rest << (bits - bits / 2));
-            (whole << bits).wrapping_add(upper << (bits - bits / 2)).wrapping_add(lower)
+            let (whole, rest) = numerator.divided(divisor);
+            let (upper, rest) = rest.shifted(bits / 2).divided(divisor);
+            let (lower, _) = rest.shifted(bits - bits / 2).divided(divisor);
+            whole.shifted(bits) + upper.shifted(bits - bits / 2) + lower
         };
         let at_anchor = common.moved_across(|a, b| a + b * ox).moved_down(|a, b| a + b * oy);
         at_anchor.map(|c, degree| over(c, extra + degree * self.bits))

@@ -1,26 +1,28 @@
 //! The terms of a cubic in two variables.
 
+use crate::math::wide::Wide;
+
 /// By powers of the first variable, each list by powers of the second.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Terms<T>(pub [T; 4], pub [T; 3], pub [T; 2], pub [T; 1]);
 
-impl Terms<i128> {
+impl Terms<Wide> {
     /// Four times the cubic through ten nodes, see [`super::cubic::Cubic::fit`], measured from corner 0: with `s` and `t` the
     /// gradients of the barycentric coordinates of corners 1 and 2. A term of degree n has n factors of them.
     #[must_use]
-    pub(super) fn of(nodes: [i128; 10], s: [i128; 2], t: [i128; 2]) -> Self {
+    pub(super) fn of(nodes: [Wide; 10], s: [Wide; 2], t: [Wide; 2]) -> Self {
         let [v0, v1, v2, a1, a2, b1, b2, c1, c2, m] = nodes;
         // Symmetric forms in (s, t); the linear and the cubic one are halved.
-        let side = |v: i128, near: i128, far: i128| 2 * v - 11 * v0 + 18 * near - 9 * far;
+        let side = |v: Wide, near: Wide, far: Wide| 2 * v - 11 * v0 + 18 * near - 9 * far;
         let [l0, l1] = [side(v1, a1, a2), side(v2, c2, c1)];
-        let side = |v: i128, near: i128, far: i128| 36 * v0 - 18 * v - 90 * near + 72 * far;
+        let side = |v: Wide, near: Wide, far: Wide| 36 * v0 - 18 * v - 90 * near + 72 * far;
         let [q0, q2] = [side(v1, a1, a2), side(v2, c2, c1)];
         let q1 = 36 * v0 - 45 * (a1 + c2) + 9 * (a2 + c1 - b1 - b2) + 54 * m;
-        let side = |v: i128, near: i128, far: i128| 9 * (v - v0) + 27 * (near - far);
-        let mixed = |near: i128, far: i128, opposite: i128, other: i128| 9 * (2 * (near - m) - v0 - far + opposite + other);
+        let side = |v: Wide, near: Wide, far: Wide| 9 * (v - v0) + 27 * (near - far);
+        let mixed = |near: Wide, far: Wide, opposite: Wide, other: Wide| 9 * (2 * (near - m) - v0 - far + opposite + other);
         let [c0, c1, c2, c3] = [side(v1, a1, a2), mixed(a1, a2, b1, c2), mixed(c2, c1, b2, a1), side(v2, c2, c1)];
         // The chain rule, one factor at a time.
-        let along = |k: usize| move |a: i128, b: i128| a * s[k] + b * t[k];
+        let along = |k: usize| move |a: Wide, b: Wide| a * s[k] + b * t[k];
         let (x, y) = (along(0), along(1));
         let ([qx0, qx1], [qy0, qy1]) = ([x(q0, q1), x(q1, q2)], [y(q0, q1), y(q1, q2)]);
         let ([cx0, cx1, cx2], [cy0, cy1, cy2]) = ([x(c0, c1), x(c1, c2), x(c2, c3)], [y(c0, c1), y(c1, c2), y(c2, c3)]);

@@ -22,9 +22,10 @@ fn panic(_: &core::panic::PanicInfo<'_>) -> ! {
 
 fn draw<C: Pixel>(bytes: &[u8], workspace: &mut Workspace<C, 600, 600, 9600, 2>, pixels: &mut [C], size: u32, options: u32) -> Option<Stats> {
     let mut renderer = Renderer::new(Stream::parse(bytes).ok()?, Size::new(size, size), workspace.memory()).ok()?;
-    renderer.set_shader(*Shader::ALL.get(options as usize & 3)?);
-    renderer.set_dither(options & 4 != 0);
-    let mut frame = renderer.frame(options >> 3);
+    renderer.set_shader(*Shader::ALL.get(options as usize & 31)?).ok()?;
+    renderer.set_dither(options & 32 != 0);
+    renderer.set_perspective_correct(options & 64 != 0).ok()?;
+    let mut frame = renderer.frame(options >> 7);
     while frame.next_band(pixels).is_some() {}
     Some(frame.stats())
 }

@@ -12,20 +12,20 @@ use crate::{
 };
 
 /// Half widths of the parabolas for an exponent: of the middle one, and of all three.
-pub(super) type Widths = fn(f64) -> [f64; 2];
+pub(crate) type Widths = fn(f64) -> [f64; 2];
 
 /// Kuijk and Blake's fit, as printed.
-pub(super) fn printed(s: f64) -> [f64; 2] {
+pub(crate) fn printed(s: f64) -> [f64; 2] {
     [(s + 5.6) / (s * (0.09 * s + 5.2)), (s + 65.0) / (5.0 * s + 31.7)]
 }
 
 /// A better one: wrong by 0.0143 at most for 8 to 512, 0.024 for 1.
-pub(super) fn refitted(s: f64) -> [f64; 2] {
+pub(crate) fn refitted(s: f64) -> [f64; 2] {
     if s <= 1.0 { [1.3545, 1.6861] } else { [(0.7535 + 0.55 / s) / s.sqrt(), (2.992 - 1.33 / s) / s.sqrt()] }
 }
 
 /// cos^s by three parabolas that join smoothly: `1 - θ²/(ab)` up to a, `(b - |θ|)²/(b (b - a))` up to b, then none.
-pub(super) fn parabolas(angle: f64, [a, b]: [f64; 2]) -> f64 {
+pub(crate) fn parabolas(angle: f64, [a, b]: [f64; 2]) -> f64 {
     let angle = angle.abs();
     if angle <= a {
         1.0 - angle * angle / (a * b)
@@ -43,7 +43,7 @@ const SHORT: f64 = 1.0 / (1u64 << 40) as f64;
 ///
 /// On their great circle the cosine is `Γ cos(θ - α)`, θ running from 0 to the angle between them:
 /// `Γ² = (rr lv² - 2 lv lr rv + ll rv²)/(ll rr - lr²)`, `α = atan2(ll rv - lr lv, lv sqrt(ll rr - lr²))`.
-fn along([l, r]: [V3; 2], v: V3, t: f64, s: f64, widths: Widths) -> f64 {
+pub(crate) fn along([l, r]: [V3; 2], v: V3, t: f64, s: f64, widths: Widths) -> f64 {
     let (ll, lr, rr, lv, rv) = (dot(l, l), dot(l, r), dot(r, r), dot(l, v), dot(r, v));
     let area = ll * rr - lr * lr;
     if area < SHORT * ll * rr {

@@ -1,6 +1,6 @@
 //! The methods by name.
 
-mod angular;
+pub(crate) mod angular;
 mod blinn;
 mod cubic;
 mod duff;
