@@ -1,10 +1,10 @@
 //! A picture of light levels, before any pixel format rounds them: what errors are measured on.
 
-use crate::render;
+use crate::render::{self, Style};
 use anyhow::Result;
 use embedded_graphics_core::geometry::Size;
 use microphong::{
-    Shader, Stream,
+    Stream,
     format::{BIAS, RAMP, WALK},
     pixel::Pixel,
 };
@@ -44,9 +44,9 @@ impl Pixel for Fine {
 /// Where the renderer walks one level for all channels it stands in all three; it is that of the brightest channel.
 ///
 /// # Errors
-/// When `size` is out of range, or `shader` cannot shade the scene.
-pub fn picture(stream: Stream<'_>, size: Size, shader: Shader, number: u32) -> Result<Vec<Option<[f64; 3]>>> {
-    let (pixels, _) = render::frame::<Fine>(stream, size, shader, false, size.height, number)?;
+/// When `size` is out of range, or the scene cannot be drawn in this style.
+pub fn picture(stream: Stream<'_>, size: Size, style: impl Into<Style>, number: u32) -> Result<Vec<Option<[f64; 3]>>> {
+    let (pixels, _) = render::frame::<Fine>(stream, size, style, size.height, number)?;
     // The half that rounds, and the guards below black.
     let level = |walked: u32| ((f64::from(walked) - f64::from(1 << (WALK - 1))) / f64::from(1 << WALK) - f64::from(BIAS)).clamp(0.0, 255.0);
     Ok(pixels.into_iter().map(|Fine(levels)| levels.map(|levels| levels.map(level))).collect())

@@ -12,46 +12,34 @@ use microphong::{
     sample::Sample,
 };
 
+/// How a scene is drawn.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Style {
+    /// Shading method.
+    pub shader: Shader,
+    /// Interpolation in perspective.
+    pub perspective_correct: bool,
+    /// Antialiasing.
+    pub antialias: bool,
+    /// Ordered dither.
+    pub dither: bool,
+}
+
+/// The method, and nothing else.
+impl From<Shader> for Style {
+    fn from(shader: Shader) -> Self {
+        Self { shader, perspective_correct: false, antialias: false, dither: false }
+    }
+}
+
 /// Draws frame `number` and returns its pixels row by row from the top.
 ///
 /// Bands have `band_rows` rows, at most the picture's; the picture does not depend on it.
 ///
 /// # Errors
-/// When `size` is out of range, or `shader` cannot shade the scene.
-pub fn frame<C: Pixel>(
-    stream: Stream<'_>,
-    size: Size,
-    shader: Shader,
-    dither: bool,
-    band_rows: u32,
-    number: u32,
-) -> Result<(Vec<C>, Stats)> {
-    draw(stream, size, shader, [dither, false], band_rows, number)
-}
-
-/// As [`frame`], antialiased.
-///
-/// # Errors
-/// Those of [`frame`].
-pub fn smooth<C: Pixel>(
-    stream: Stream<'_>,
-    size: Size,
-    shader: Shader,
-    dither: bool,
-    band_rows: u32,
-    number: u32,
-) -> Result<(Vec<C>, Stats)> {
-    draw(stream, size, shader, [dither, true], band_rows, number)
-}
-
-fn draw<C: Pixel>(
-    stream: Stream<'_>,
-    size: Size,
-    shader: Shader,
-    [dither, antialias]: [bool; 2],
-    band_rows: u32,
-    number: u32,
-) -> Result<(Vec<C>, Stats)> {
+/// When `size` is out of range, or the scene cannot be drawn in this style.
+pub fn frame<C: Pixel>(stream: Stream<'_>, size: Size, style: impl Into<Style>, band_rows: u32, number: u32) -> Result<(Vec<C>, Stats)> {
+    let style = style.into();
     // One entry of each kind, to fill the memory with.
     let mut blank = Workspace::<C, 1, 1, 1, 1>::new(C::pack([0; 3]));
     let blank = blank.memory();
@@ -60,11 +48,12 @@ fn draw<C: Pixel>(
     let mut bins = vec![blank.bins[0]; stream.triangles.len()];
     let mut depth = vec![0; size.width as usize * rows as usize];
     let mut palettes = vec![blank.palettes[0]; stream.materials.len()];
-    let mut samples = vec![Sample::EMPTY; if antialias { depth.len() } else { 0 }];
+    let mut samples = vec![Sample::EMPTY; if style.antialias { depth.len() } else { 0 }];
     let memory = Memory { vertices: &mut vertices, bins: &mut bins, depth: &mut depth, palettes: &mut palettes, samples: &mut samples };
-    let mut renderer = Renderer::with_shader(stream, size, memory, shader)?;
-    renderer.set_dither(dither);
-    renderer.set_antialias(antialias)?;
+    let mut renderer = Renderer::with_shader(stream, size, memory, style.shader)?;
+    renderer.set_perspective_correct(style.perspective_correct)?;
+    renderer.set_dither(style.dither);
+    renderer.set_antialias(style.antialias)?;
     let mut pixels = Vec::with_capacity(size.width as usize * size.height as usize);
     let mut band = vec![C::pack([0; 3]); size.width as usize * rows as usize];
     let mut frame = renderer.frame(number);
@@ -118,12 +107,8 @@ impl Format {
 pub struct Settings {
     /// Width and height.
     pub size: Size,
-    /// Shading method.
-    pub shader: Shader,
-    /// Ordered dither.
-    pub dither: bool,
-    /// Antialiasing.
-    pub antialias: bool,
+    /// How.
+    pub style: Style,
     /// Rows drawn at a time.
     pub band_rows: u32,
     /// Pixel format.
@@ -147,7 +132,7 @@ pub struct Picture {
 /// Those of [`frame`].
 pub fn picture(stream: Stream<'_>, settings: &Settings, number: u32) -> Result<Picture> {
     fn view<C: Pixel>(stream: Stream<'_>, s: &Settings, number: u32) -> Result<Picture> {
-        let (pixels, stats) = draw::<C>(stream, s.size, s.shader, [s.dither, s.antialias], s.band_rows, number)?;
+        let (pixels, stats) = frame::<C>(stream, s.size, s.style, s.band_rows, number)?;
         Ok(Picture { rgb: image::rgb_bytes(&pixels), crc: crc(&pixels), stats })
     }
     match settings.format {

@@ -118,6 +118,11 @@ pub enum SetupError {
         /// The method's name.
         shader: &'static str,
     },
+    /// The method cannot interpolate in perspective.
+    Perspective {
+        /// The method's name.
+        shader: &'static str,
+    },
 }
 
 impl fmt::Display for SetupError {
@@ -132,6 +137,7 @@ impl fmt::Display for SetupError {
             Self::Light { shader } => {
                 write!(f, "{shader} shading needs directional lights and an infinitely far viewer; this scene has near ones")
             }
+            Self::Perspective { shader } => write!(f, "{shader} shading has no perspective-correct form"),
         }
     }
 }
@@ -167,6 +173,7 @@ pub struct Renderer<'a, C> {
     memory: Memory<'a, C>,
     shader: Shader,
     dither: bool,
+    perspective_correct: bool,
     antialias: bool,
     background: C,
 }
@@ -196,7 +203,7 @@ impl<'a, C: Pixel> Renderer<'a, C> {
             return Err(SetupError::Palettes { need: stream.materials.len() });
         }
         let background = background(stream.header.background);
-        let mut renderer = Self { shader, background, stream, size, memory, dither: false, antialias: false };
+        let mut renderer = Self { stream, size, memory, shader, dither: false, perspective_correct: false, antialias: false, background };
         renderer.set_shader(shader)?;
         Ok(renderer)
     }
@@ -206,12 +213,7 @@ impl<'a, C: Pixel> Renderer<'a, C> {
     /// # Errors
     /// When this build has not got the method, or it cannot shade this scene; the method in use stays.
     pub fn set_shader(&mut self, shader: Shader) -> Result<(), SetupError> {
-        if !shader.is_built_in() {
-            return Err(SetupError::Missing { shader: shader.name() });
-        }
-        if shader.needs_constant_light() && !self.stream.is_constant() {
-            return Err(SetupError::Light { shader: shader.name() });
-        }
+        check(&self.stream, shader, self.perspective_correct)?;
         self.shader = shader;
         for (palette, material) in self.memory.palettes.iter_mut().zip(self.stream.materials) {
             palette.fill(self.stream.header, material, self.stream.lights, shader.highlight());
@@ -223,6 +225,17 @@ impl<'a, C: Pixel> Renderer<'a, C> {
     #[must_use]
     pub fn shader(&self) -> Shader {
         self.shader
+    }
+
+    /// Interpolation in perspective on or off; off at first. Without it triangles are shaded as if they were flat on the
+    /// screen, which shows where one of them reaches from near to far. Parallel rays make no difference.
+    ///
+    /// # Errors
+    /// When this build, or the method in use, cannot do it; all stays as it was.
+    pub fn set_perspective_correct(&mut self, on: bool) -> Result<(), SetupError> {
+        check(&self.stream, self.shader, on)?;
+        self.perspective_correct = on;
+        Ok(())
     }
 
     /// 4x4 ordered dither on or off; off at first.
@@ -286,6 +299,26 @@ impl<'a, C: Pixel> Renderer<'a, C> {
         frame.prepare();
         frame
     }
+}
+
+/// Whether `shader` can shade a stream, in perspective or without.
+///
+/// # Errors
+/// When this build has not got the method, or it cannot do it.
+pub fn check(stream: &Stream<'_>, shader: Shader, perspective_correct: bool) -> Result<(), SetupError> {
+    if !shader.is_built_in() {
+        return Err(SetupError::Missing { shader: shader.name() });
+    }
+    if shader.needs_constant_light() && !stream.is_constant() {
+        return Err(SetupError::Light { shader: shader.name() });
+    }
+    if perspective_correct && !cfg!(feature = "all-shaders") {
+        return Err(SetupError::Missing { shader: "perspective-correct" });
+    }
+    if perspective_correct && stream.is_perspective() && !shader.has_perspective() {
+        return Err(SetupError::Perspective { shader: shader.name() });
+    }
+    Ok(())
 }
 
 /// A colour of 8 bits per channel in the output's format, grey by its luma.
@@ -604,8 +637,20 @@ impl<C: Pixel> Frame<'_, '_, C> {
             rsum: turn(reversed(triangle.rsum), by),
             bend: turn(reversed(triangle.bend), by),
             triangle,
+            #[cfg(feature = "all-shaders")]
+            nearness: self.nearness(corners).map(|nearness| turn(nearness, by)),
         };
         shading.draw(&facet, band)
+    }
+
+    /// Nearness of the corners of a triangle that is to be shaded in perspective.
+    #[cfg(feature = "all-shaders")]
+    fn nearness(&self, corners: [&ScreenVertex; 3]) -> Option<[i32; 3]> {
+        let perspective = self.renderer.perspective_correct && self.renderer.stream.is_perspective();
+        let nearness = corners.map(|corner| corner.depth);
+        let [a, b, c] = nearness;
+        // All of it equally far is all of it flat on the screen.
+        (perspective && !(a == b && b == c)).then_some(nearness)
     }
 }
 

@@ -138,6 +138,25 @@ impl Shader {
         matches!(self, Self::Goldman | Self::Slerp | Self::Taylor)
     }
 
+    /// Whether it has a perspective-correct form: it interpolates over whole triangles, not along their rows on the screen,
+    /// and does not split them there.
+    #[must_use]
+    pub const fn has_perspective(self) -> bool {
+        !matches!(
+            self,
+            Self::Gouraud4
+                | Self::PseudoPhong
+                | Self::SixPointAdaptive
+                | Self::SixPointCentre
+                | Self::Goldman
+                | Self::Slerp
+                | Self::Angular
+                | Self::AngularOriginal
+                | Self::Hybrid
+                | Self::HybridOriginal
+        )
+    }
+
     /// What it raises to the exponent for a highlight.
     #[must_use]
     pub const fn highlight(self) -> Highlight {

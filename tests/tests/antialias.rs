@@ -16,7 +16,8 @@ use microphong::{
 };
 use microphong_sim::{
     oracle::{self, Frame},
-    render, scene,
+    render::{self, Style},
+    scene,
 };
 use proptest::{
     prelude::Rng,
@@ -27,6 +28,10 @@ use std::collections::BTreeMap;
 const WHOLE: i32 = 1 << 16;
 
 type Corners = [[i32; 2]; 3];
+
+fn smooth(shader: Shader) -> Style {
+    Style { antialias: true, ..shader.into() }
+}
 
 /// Random numbers, the same in every run.
 struct Random(TestRng);
@@ -264,7 +269,7 @@ fn meshes_have_no_seams_and_smooth_outlines() {
         let stream = scene.stream.parse().unwrap();
         let size = Size::new(200, 160);
         for number in [0, 7, 23, 41] {
-            let (pixels, _) = render::smooth::<White>(stream, size, Shader::Gouraud, false, 160, number).unwrap();
+            let (pixels, _) = render::frame::<White>(stream, size, smooth(Shader::Gouraud), 160, number).unwrap();
             let ground = f64::from(pixels[0].0);
             let counts = silhouette(&Frame::new(stream, (200, 160), number));
             let (mut worst, mut square, mut edge, mut seams, mut inside, mut deepest) = (0f64, 0.0, 0u32, 0, 0, 0);
@@ -341,8 +346,8 @@ fn pictures_are_like_supersampled_ones() {
                 continue;
             }
             let size = Size::new(width, height);
-            let Ok((plain, _)) = render::frame::<Rgb888>(stream, size, shader, false, height, 5) else { continue };
-            let (smooth, stats) = render::smooth::<Rgb888>(stream, size, shader, false, height, 5).unwrap();
+            let Ok((plain, _)) = render::frame::<Rgb888>(stream, size, shader, height, 5) else { continue };
+            let (smooth, stats) = render::frame::<Rgb888>(stream, size, smooth(shader), height, 5).unwrap();
             if stats.pixels == 0 {
                 continue; // A name without a method yet.
             }
@@ -446,8 +451,8 @@ fn inner_pixels_stay() {
     }
     for shader in Shader::ALL {
         let size = Size::new(160, 120);
-        let Ok((plain, _)) = render::frame::<Rgb565>(stream, size, shader, false, 120, 3) else { continue };
-        let (smooth, _) = render::smooth::<Rgb565>(stream, size, shader, false, 120, 3).unwrap();
+        let Ok((plain, _)) = render::frame::<Rgb565>(stream, size, shader, 120, 3) else { continue };
+        let (smooth, _) = render::frame::<Rgb565>(stream, size, smooth(shader), 120, 3).unwrap();
         let changed = plain.iter().zip(&smooth).zip(&inner).filter(|((a, b), inner)| **inner && a != b).count();
         assert_eq!(changed, 0, "{}", shader.name());
     }

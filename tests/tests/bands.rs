@@ -5,8 +5,8 @@ use embedded_graphics::{
     pixelcolor::{Gray8, Rgb565},
     prelude::*,
 };
-use microphong::{Memory, Picture, Renderer, Shader, Stats, Stream, bin::Entry, palette::Palette, vertex::ScreenVertex};
-use microphong_sim::{compare, scene};
+use microphong::{Memory, Picture, Renderer, Shader, Stats, Stream, bin::Entry, palette::Palette, render::check, vertex::ScreenVertex};
+use microphong_sim::scene;
 
 /// A frame with room for so many vertices and triangles, in bands of so many rows.
 fn frame(stream: Stream<'_>, size: Size, shader: Shader, vertices: usize, triangles: usize, rows: u32) -> (Vec<Rgb565>, Stats) {
@@ -32,7 +32,7 @@ fn neither_bands_nor_overflow_change_a_pixel() {
         let scene = scene::load(name).unwrap();
         let stream = scene.stream.parse().unwrap();
         let (vertices, triangles) = (stream.vertices.len(), stream.triangles.len());
-        for shader in Shader::ALL.into_iter().filter(|&shader| compare::check(&stream, shader).is_ok()) {
+        for shader in Shader::ALL.into_iter().filter(|&shader| check(&stream, shader, false).is_ok()) {
             let (whole, stats) = frame(stream, size, shader, vertices, triangles, size.height);
             assert_eq!((stats.passes, stats.uncached), (1, 0));
             for rows in [1, 7, 16, 64] {

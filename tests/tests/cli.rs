@@ -1,10 +1,9 @@
 //! Wrong input of every kind: the message names the file and the place, the exit code says whose fault it is, nothing is left behind.
 
-use microphong::{Shader, Stream, StreamError, stream};
+use microphong::{Shader, Stream, StreamError, render::check, stream};
 use microphong_sim::{
     bytes::StreamBytes,
-    compare,
-    render::{self, Format, Settings},
+    render::{self, Format, Settings, Style},
     scene,
 };
 use std::{
@@ -230,9 +229,9 @@ fn sealed_nonsense_is_refused_or_drawn_but_never_crashes() {
             let all = at < stream.header.length as usize - size_of_val(stream.vertices) - size_of_val(stream.triangles);
             let shaders = if all { &Shader::ALL[..] } else { &Shader::ALL[at % Shader::ALL.len()..][..1] };
             // A bit may have made a far light near, which some methods refuse.
-            for &shader in shaders.iter().filter(|&&shader| compare::check(&stream, shader).is_ok()) {
-                let settings =
-                    Settings { size: (40, 30).into(), shader, dither: true, antialias: at % 2 == 0, band_rows: 8, format: Format::Rgb565 };
+            for &shader in shaders.iter().filter(|&&shader| check(&stream, shader, false).is_ok()) {
+                let style = Style { dither: true, antialias: at % 2 == 0, ..shader.into() };
+                let settings = Settings { size: (40, 30).into(), style, band_rows: 8, format: Format::Rgb565 };
                 let picture = render::picture(stream, &settings, 1).expect("a stream that passed the check can be drawn");
                 assert_eq!(picture.rgb.len(), 40 * 30 * 3, "byte {at}, flip {flip:02x}, {}", shader.name());
             }
@@ -275,6 +274,21 @@ fn formats_and_bands_keep_their_promises() {
     assert!(sums.windows(2).all(|w| w[0] == w[1]), "{sums:?}");
     for format in ["rgb565", "rgb888", "gray8", "gray4"] {
         place.succeeds(&["render", "torus", "--size", "64x48", "--format", format, "--dither", "--antialias"]);
+    }
+}
+
+#[test]
+fn perspective_is_corrected_or_refused() {
+    let place = Place::new();
+    let words = ["goldman shading has no perspective-correct form"];
+    place.fails(&["render", "teapot", "--shader", "goldman", "--perspective-correct"], 1, &words);
+    place.fails(&["compare", "teapot", "--size", "64x48", "--shader", "duff,goldman", "--perspective-correct"], 1, &words);
+    let compare = ["compare", "teapot", "--size", "64x48", "--shader", "all", "--perspective-correct", "--json"];
+    assert_eq!(place.succeeds(&compare).lines().filter(|line| line.contains(&words[0][7..])).count(), 10);
+    for more in [&[][..], &["--perspective-correct"]] {
+        let line = place.succeeds(&[&["render", "torus", "--size", "64x48", "--json"], more].concat());
+        let other = place.succeeds(&["render", "torus", "--size", "64x48", "--json"]);
+        assert_eq!(line, other, "parallel rays make no difference");
     }
 }
 

@@ -96,7 +96,7 @@ fn what_crosses_the_near_plane_or_leaves_the_guard_band_is_cut_not_lost() {
             let (hit, unsure) = rays(&stream, size);
             for shader in Shader::ALL {
                 // Not all can draw near lights.
-                let Ok((pixels, stats)) = render::frame::<Rgb888>(stream, size, shader, false, 16, 0) else { continue };
+                let Ok((pixels, stats)) = render::frame::<Rgb888>(stream, size, shader, 16, 0) else { continue };
                 let drawn = |p: &Rgb888| *p != Rgb888::BLUE;
                 let wrong = pixels.iter().zip(&hit).zip(&unsure).filter(|((p, hit), unsure)| drawn(p) != **hit && !**unsure).count();
                 let sure = unsure.iter().filter(|unsure| !**unsure).count();
@@ -115,8 +115,8 @@ fn a_narrower_viewport_cuts_rows_off_and_changes_nothing_else() {
         let bytes = changed(name, |header| header.camera.focal *= 2);
         let stream = bytes.parse().unwrap();
         for shader in Shader::ALL {
-            let Ok((whole, _)) = render::frame::<Rgb888>(stream, wide, shader, false, 16, 3) else { continue };
-            let (part, _) = render::frame::<Rgb888>(stream, narrow, shader, false, 16, 3).unwrap();
+            let Ok((whole, _)) = render::frame::<Rgb888>(stream, wide, shader, 16, 3) else { continue };
+            let (part, _) = render::frame::<Rgb888>(stream, narrow, shader, 16, 3).unwrap();
             let cut = whole.chunks(300).flat_map(|row| &row[100..200]);
             assert!(part.iter().eq(cut), "{name}, {}", shader.name());
         }

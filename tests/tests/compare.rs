@@ -235,7 +235,7 @@ fn pictures_are_those_of_the_renderer() {
     let reference = Reference::new(stream, (64, 64), 0).expect("something to see");
     let comparison = reference.compare(Shader::SixPoint).expect("a comparison");
     let size = embedded_graphics::geometry::Size::new(64, 64);
-    let (pixels, _) = microphong_sim::render::frame::<embedded_graphics::pixelcolor::Rgb888>(stream, size, Shader::SixPoint, false, 16, 0)
-        .expect("a picture");
+    let (pixels, _) =
+        microphong_sim::render::frame::<embedded_graphics::pixelcolor::Rgb888>(stream, size, Shader::SixPoint, 16, 0).expect("a picture");
     assert_eq!(comparison.picture.as_flattened(), image::rgb_bytes(&pixels));
 }

@@ -39,8 +39,7 @@ fn difference(a: &[u8], b: &[u8]) -> Vec<u8> {
 fn check(name: &str, shader: Shader, bless: bool) -> Option<String> {
     let scene = scene::load(name).expect("built-in scene");
     let (width, height) = scene.size;
-    let settings =
-        Settings { size: (width, height).into(), shader, dither: false, antialias: false, band_rows: 16, format: Format::Rgb565 };
+    let settings = Settings { size: (width, height).into(), style: shader.into(), band_rows: 16, format: Format::Rgb565 };
     let drawn = render::picture(scene.stream.parse().expect("built-in scene"), &settings, 0).expect("built-in scene").rgb;
     let file = format!("{name}-{}.png", shader.name());
     let golden = root().join("golden").join(&file);

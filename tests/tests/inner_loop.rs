@@ -25,7 +25,7 @@ fn loops_are_as_short_as_by_hand() {
     for (shader, limit) in limits {
         let (width, height) = board.size();
         let stream = scene.stream.parse().unwrap();
-        let (_, stats) = render::frame::<Rgb565>(stream, Size::new(width, height), shader, false, height, 0).unwrap();
+        let (_, stats) = render::frame::<Rgb565>(stream, Size::new(width, height), shader, height, 0).unwrap();
         let elf = elf.with_stream(&verify::prepare(scene.stream.as_bytes(), shader, 1).unwrap()).unwrap();
         let report = bench::measure(board, &elf, &scene.name, shader, stats.pixels.into(), stats.drawn.into()).unwrap();
         // Spans end on a branch that is not taken, so a few instructions of the loop may be counted with the span.

@@ -69,7 +69,7 @@ fn errors(name: &str, shader: Shader, number: u32) -> (f64, f64, usize) {
     let scene = scene::load(name).unwrap();
     let stream = scene.stream.parse().unwrap();
     let size = Size::new(scene.size.0, scene.size.1);
-    let (pixels, _) = render::frame::<Rgb888>(stream, size, shader, false, 16, number).unwrap();
+    let (pixels, _) = render::frame::<Rgb888>(stream, size, shader, 16, number).unwrap();
     let pose = Pose::new(&stream.header.camera, number);
     let view = View::new(&stream.header.camera, &pose, size);
     let rotation = pose.rotation.map(|row| real(row, 30));

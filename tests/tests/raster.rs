@@ -184,7 +184,7 @@ fn closed_convex_meshes_cover_each_pixel_once() {
         let bytes = StreamBytes::from(bytes.as_slice());
         for number in [0, 7, 40] {
             let size = Size::new(320, 240);
-            let (pixels, stats) = render::frame::<Rgb888>(bytes.parse().unwrap(), size, Shader::Flat, false, 16, number).unwrap();
+            let (pixels, stats) = render::frame::<Rgb888>(bytes.parse().unwrap(), size, Shader::Flat, 16, number).unwrap();
             let covered: Vec<bool> = pixels.iter().map(|&pixel| pixel != Rgb888::MAGENTA).collect();
             let count = covered.iter().filter(|&&covered| covered).count();
             assert_eq!(stats.pixels as usize, count, "{name}, frame {number}: pixels drawn twice");

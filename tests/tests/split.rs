@@ -113,7 +113,7 @@ fn parts_cover_what_triangles_cover() {
                 let (stream, size) = (scene.stream.parse().unwrap(), Size::new(width, height));
                 let picture = level::picture(stream, size, shader, number).unwrap();
                 let covered: Vec<bool> = picture.iter().map(Option::is_some).collect();
-                let (_, stats) = render::frame::<Gray8>(stream, size, shader, false, 16, number).unwrap();
+                let (_, stats) = render::frame::<Gray8>(stream, size, shader, 16, number).unwrap();
                 (covered, stats)
             };
             let gouraud = draw(Shader::Gouraud);

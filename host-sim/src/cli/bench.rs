@@ -60,7 +60,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome> {
         for &shader in shaders {
             bar.inc(1);
             let size = Size::new(width, height);
-            let (_, stats) = render::frame::<Rgb565>(scene.stream.parse()?, size, shader, false, height, 0)?;
+            let (_, stats) = render::frame::<Rgb565>(scene.stream.parse()?, size, shader, height, 0)?;
             let elf = elf.with_stream(&verify::prepare(scene.stream.as_bytes(), shader, 1)?)?;
             let result = bench::measure(board, &elf, &scene.name, shader, stats.pixels.into(), stats.drawn.into())?;
             bar.suspend(|| if arguments.json { report::json(&result) } else { text(&result) })?;

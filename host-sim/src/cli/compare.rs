@@ -7,10 +7,10 @@ use super::{
     verify::load,
 };
 use anyhow::{Context, Result};
-use microphong::Shader;
+use microphong::{Shader, render::check};
 use microphong_sim::{
     bytes::StreamBytes,
-    compare::{self, Comparison, Reference, costs, exponent::with_exponent, page::Page},
+    compare::{Comparison, Reference, costs, exponent::with_exponent, page::Page},
     scene::Scene,
 };
 use rayon::prelude::*;
@@ -35,6 +35,9 @@ pub(crate) struct Arguments {
     /// Size of the picture; the scene's own unless given, 640x480 for files.
     #[arg(long, value_name = "WxH", value_parser = parse::size)]
     size: Option<(u32, u32)>,
+    /// Interpolate in perspective: Phong shading, and all that is measured against it.
+    #[arg(long)]
+    perspective_correct: bool,
     /// Frame of the orbit.
     #[arg(long, value_name = "N", default_value_t = 0)]
     frame: u32,
@@ -59,7 +62,7 @@ Columns:
   colour      1 less the mean difference of 8-bit pixels; psnr in dB, of the same
   alike       structure and colour as the eye sees them, 1 is the same
   edge, mach  largest jump of the level across an edge, and of its slope (LSB per pixel)
-  + * load    additions, multiplications and table look-ups per pixel
+  + * load    additions, multiplications and table look-ups per pixel, without those of perspective
   set-up      operations per triangle, and per row where there are any";
 
 /// What is known of one method on one scene; all figures are null if it could not be drawn, and `reason` says why.
@@ -103,7 +106,10 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome> {
     if !all {
         for scene in &scenes {
             let stream = scene.stream.parse().with_context(|| scene.name.clone())?;
-            shaders.iter().try_for_each(|&shader| compare::check(&stream, shader)).with_context(|| scene.name.clone())?;
+            shaders
+                .iter()
+                .try_for_each(|&shader| check(&stream, shader, arguments.perspective_correct))
+                .with_context(|| scene.name.clone())?;
         }
     }
     let mut page = arguments.report.as_deref().map(Page::create).transpose()?;
@@ -111,10 +117,12 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome> {
     for scene in &scenes {
         let stream = scene.stream.parse().with_context(|| scene.name.clone())?;
         let size = arguments.size.unwrap_or(scene.size);
-        let reference = Reference::new(stream, size, arguments.frame).with_context(|| scene.name.clone())?;
+        let reference = if arguments.perspective_correct { Reference::perspective_correct } else { Reference::new };
+        let reference = reference(stream, size, arguments.frame).with_context(|| scene.name.clone())?;
         let exponent = same(stream.materials.iter().map(|material| material.exponent));
         let row = |&shader: &Shader| {
-            let compared = compare::check(&stream, shader).map_err(Into::into).and_then(|()| reference.compare(shader));
+            let compared =
+                check(&stream, shader, arguments.perspective_correct).map_err(Into::into).and_then(|()| reference.compare(shader));
             let result = match compared {
                 // Among all methods, one that cannot draw the scene does not hide the others.
                 Err(error) if *all => Err(format!("{error:#}")),

@@ -3,10 +3,10 @@
 use super::{Outcome, Usage, parse, report};
 use anyhow::{Context, Result};
 use embedded_graphics_core::geometry::Size;
-use microphong::Shader;
+use microphong::{Shader, render::check};
 use microphong_sim::{
     image::{self, Film},
-    render::{self, Format, Settings},
+    render::{self, Format, Settings, Style},
     scene,
 };
 use serde::Serialize;
@@ -36,6 +36,9 @@ pub(crate) struct Arguments {
     /// First frame of the orbit.
     #[arg(long, default_value_t = 0)]
     first: u32,
+    /// Interpolate in perspective: right where a triangle reaches from near to far.
+    #[arg(long)]
+    perspective_correct: bool,
     /// Ordered dither: hides the steps of formats with few colours.
     #[arg(long)]
     dither: bool,
@@ -89,12 +92,16 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome> {
     let (width, height) = arguments.size.unwrap_or(scene.size);
     let settings = Settings {
         size: Size::new(width, height),
-        shader: arguments.shader.unwrap_or(stream.shader()),
-        dither: arguments.dither,
-        antialias: arguments.antialias,
+        style: Style {
+            shader: arguments.shader.unwrap_or(stream.shader()),
+            perspective_correct: arguments.perspective_correct,
+            antialias: arguments.antialias,
+            dither: arguments.dither,
+        },
         band_rows: arguments.band_rows,
         format: arguments.format,
     };
+    check(&stream, settings.style.shader, settings.style.perspective_correct).with_context(|| scene.name.clone())?;
     let mut writer = Writer::start(&target, settings.size, frames)?;
     let bar = report::progress(frames.into(), "drawing");
     let mut lines = Vec::new();
@@ -105,7 +112,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome> {
         bar.inc(1);
         lines.push(Line {
             scene: &scene.name,
-            shader: settings.shader.name(),
+            shader: settings.style.shader.name(),
             width,
             height,
             frames,

@@ -6,10 +6,9 @@ use super::{
     report,
 };
 use anyhow::{Context, Result, bail};
-use microphong::Shader;
+use microphong::{Shader, render::check};
 use microphong_sim::{
     board::Board,
-    compare,
     scene::{self, NAMES, Scene},
     verify::{self, Report, Request},
 };
@@ -52,7 +51,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome> {
     let shaders = &arguments.shader;
     // Of all methods those that the board has and that can shade the scene.
     let wanted = |board: Board, scene: &Scene, shader: Shader| {
-        let possible = scene.stream.parse().is_ok_and(|stream| compare::check(&stream, shader).is_ok());
+        let possible = scene.stream.parse().is_ok_and(|stream| check(&stream, shader, false).is_ok());
         !shaders.all || board.has(shader) && possible
     };
     let mut runs = Vec::new();

@@ -13,7 +13,7 @@ mod samples;
 use crate::{
     level,
     oracle::{self, Frame, Levels},
-    render::{self, Format, Settings},
+    render::{self, Format, Settings, Style},
 };
 use anyhow::{Context, Result};
 use costs::Costs;
@@ -21,7 +21,7 @@ use edges::Edges;
 pub use edges::Jumps;
 use embedded_graphics_core::{geometry::Size, pixelcolor::Rgb888};
 use figures::Spread;
-use microphong::{SetupError, Shader, Stream, palette::Palette, shader::Highlight};
+use microphong::{Shader, Stream, palette::Palette, render::check, shader::Highlight};
 use samples::Samples;
 use std::ops::Range;
 
@@ -34,6 +34,7 @@ const LEANS: [f64; 9] = [0.0, -0.01, 0.01, -0.03, 0.03, -0.07, 0.07, -0.14, 0.14
 pub struct Reference<'s> {
     stream: Stream<'s>,
     number: u32,
+    perspective_correct: bool,
     frame: Frame,
     /// Per material: the core draws it in one channel.
     one_channel: Vec<bool>,
@@ -98,7 +99,19 @@ impl<'s> Reference<'s> {
     /// # Errors
     /// When no pixel shows a triangle.
     pub fn new(stream: Stream<'s>, size: (u32, u32), number: u32) -> Result<Self> {
-        let frame = Frame::new(stream, size, number);
+        Self::of(stream, Frame::new(stream, size, number), number, false)
+    }
+
+    /// [`Self::new`], perspective-correct: Phong, and all that is compared with it.
+    ///
+    /// # Errors
+    /// When no pixel shows a triangle.
+    pub fn perspective_correct(stream: Stream<'s>, size: (u32, u32), number: u32) -> Result<Self> {
+        Self::of(stream, Frame::perspective_correct(stream, size, number), number, true)
+    }
+
+    fn of(stream: Stream<'s>, frame: Frame, number: u32, perspective_correct: bool) -> Result<Self> {
+        let size = frame.size;
         let (mut starts, mut facets, mut points) = (vec![0], Vec::new(), Vec::new());
         let mut shown = vec![false; frame.facets.len()];
         for (pixel, candidates) in (0..).zip(frame.visible()) {
@@ -123,7 +136,7 @@ impl<'s> Reference<'s> {
         });
         let one_channel = one_channel.collect();
         let (window, row) = ends(&starts, &phong, size).context("no pixel shows a triangle")?;
-        Ok(Self { stream, number, frame, one_channel, starts, facets, samples, phong, edges, window, row })
+        Ok(Self { stream, number, perspective_correct, frame, one_channel, starts, facets, samples, phong, edges, window, row })
     }
 
     /// Width and height of the picture.
@@ -182,13 +195,15 @@ impl<'s> Reference<'s> {
     /// Draws the frame by a method and measures it.
     ///
     /// # Errors
-    /// When the method cannot draw this scene, see [`check`], or draws none of its pixels.
+    /// When the method cannot draw this scene, see [`microphong::render::check`], or draws none of its pixels.
     pub fn compare(&self, shader: Shader) -> Result<Comparison> {
-        check(&self.stream, shader)?;
+        let perspective_correct = self.perspective_correct;
+        check(&self.stream, shader, perspective_correct)?;
         let name = shader.name();
         let size = Size::new(self.frame.size.0, self.frame.size.1);
-        let integers = level::picture(self.stream, size, shader, self.number)?;
-        let settings = Settings { size, shader, dither: false, antialias: false, band_rows: size.height, format: Format::Rgb888 };
+        let style = Style { shader, perspective_correct, antialias: false, dither: false };
+        let integers = level::picture(self.stream, size, style, self.number)?;
+        let settings = Settings { size, style, band_rows: size.height, format: Format::Rgb888 };
         let picture = render::picture(self.stream, &settings, self.number)?.rgb.as_chunks::<3>().0.to_vec();
         let leans = if oracle::decides(name) { &LEANS[..] } else { &LEANS[..1] };
         let reals: Vec<_> = leans.iter().map(|&lean| self.samples.shade(&self.frame, name, lean)).collect::<Result<_, _>>()?;
@@ -234,20 +249,6 @@ impl<'s> Reference<'s> {
             levels: integers.into_iter().map(|level| level.map(brightest)).collect(),
         })
     }
-}
-
-/// Whether a method can draw a scene.
-///
-/// # Errors
-/// When this build has not got the method, or it needs other lights.
-pub fn check(stream: &Stream<'_>, shader: Shader) -> Result<(), SetupError> {
-    if !shader.is_built_in() {
-        return Err(SetupError::Missing { shader: shader.name() });
-    }
-    if shader.needs_constant_light() && !stream.is_constant() {
-        return Err(SetupError::Light { shader: shader.name() });
-    }
-    Ok(())
 }
 
 impl Window {

@@ -35,6 +35,8 @@ pub struct Facet {
     pub screen: [[f64; 2]; 3],
     /// Nearness of the corners: 1 at the near plane, 0 far away, linear on the screen.
     pub nearness: [f64; 3],
+    /// What a corner's share of the screen counts for in space: 1, or its nearness where perspective is corrected.
+    pub shares: [f64; 3],
     /// Which vertices of the whole scene the corners are: neighbours share them.
     pub vertices: [usize; 3],
     /// Normals of the corners as they are stored: of unit length but for their rounding.
@@ -116,6 +118,17 @@ impl Frame {
         }
     }
 
+    /// [`Self::new`], but methods take the point of the triangle that is seen, not the one that parts the triangle of the
+    /// screen in the same way. With parallel rays it is the same point.
+    #[must_use]
+    pub fn perspective_correct(stream: Stream<'_>, size: (u32, u32), number: u32) -> Self {
+        let mut frame = Self::new(stream, size, number);
+        if stream.is_perspective() {
+            frame.facets.iter_mut().for_each(|facet| facet.shares = facet.nearness);
+        }
+        frame
+    }
+
     /// Whether lights and viewer are all infinitely far: N·L and N·H then depend on the normal alone.
     #[must_use]
     pub fn is_constant(&self) -> bool {
@@ -142,6 +155,7 @@ fn facet(stream: Stream<'_>, mesh: &record::Mesh, triangle: &record::Triangle, i
     Some(Facet {
         screen: places.map(|[x, y, _]| real([x, y], SUBPIXEL)),
         nearness: places.map(|[_, _, depth]| f64::from(depth) / f64::from(DEPTH).exp2()),
+        shares: [1.0; 3],
         vertices,
         normals: corners.map(|v| real(v.normal.map(i32::from), UNIT)),
         positions: corners.map(|v| real(v.position.map(i32::from), UNIT)),
@@ -166,6 +180,7 @@ impl Facet {
         Self {
             screen,
             nearness: [0.5; 3],
+            shares: [1.0; 3],
             vertices,
             normals,
             positions,
@@ -176,9 +191,18 @@ impl Facet {
         }
     }
 
-    /// Affine coordinates of a point of the screen: the corners' shares, which sum up to one.
+    /// Affine coordinates of what is seen in a point of the screen: the corners' shares, which sum up to one.
     #[must_use]
     pub fn weights(&self, p: [f64; 2]) -> V3 {
+        let [flat, shares] = [self.flat_weights(p), self.shares];
+        let parts = [0, 1, 2].map(|k| flat[k] * shares[k]);
+        let whole: f64 = parts.iter().sum();
+        parts.map(|part| part / whole)
+    }
+
+    /// Affine coordinates of a point on the screen.
+    #[must_use]
+    pub fn flat_weights(&self, p: [f64; 2]) -> V3 {
         let [a, b, c] = self.screen;
         let area = |p: [f64; 2], q: [f64; 2], r: [f64; 2]| (q[0] - p[0]) * (r[1] - p[1]) - (q[1] - p[1]) * (r[0] - p[0]);
         let whole = area(a, b, c);

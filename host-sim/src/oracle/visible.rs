@@ -36,7 +36,7 @@ impl Facet {
     /// Nearness at a point of the screen.
     #[must_use]
     pub fn nearness_at(&self, p: [f64; 2]) -> f64 {
-        self.weights(p).iter().zip(self.nearness).map(|(w, n)| w * n).sum()
+        self.flat_weights(p).iter().zip(self.nearness).map(|(w, n)| w * n).sum()
     }
 
     /// The pixels whose centres lie inside, or on a left or top edge.

@@ -15,7 +15,7 @@ use crate::{
 };
 
 /// More fraction bits than the walked format, while coefficients move to the anchor.
-const GUARD: i32 = 12;
+pub const GUARD: i32 = 12;
 
 /// Farther than this from the first corner, in columns plus rows, the anchor moves to the middle of what is drawn.
 pub const NEAR: i32 = 256;
@@ -134,9 +134,24 @@ impl Basis {
     #[inline]
     #[must_use]
     pub fn linear(&self, nodes: [i32; 3], extra: u32) -> [i32; 6] {
-        let (c, dx, dy) = self.slopes(nodes[0], nodes[1].wrapping_sub(nodes[0]).into(), nodes[2].wrapping_sub(nodes[0]).into(), extra);
-        let c = c.wrapping_add(along(dx, self.offset[0])).wrapping_add(along(dy, self.offset[1]));
+        let [c, dx, dy] = self.plane(nodes, extra);
         self.round([c, dx, dy, 0, 0, 0])
+    }
+
+    /// `[c, dx, dy]` of the linear field through the corners' values, at the anchor, with [`GUARD`] more fraction bits.
+    #[must_use]
+    pub fn fine(&self, nodes: [i32; 3]) -> [i64; 3] {
+        let [c, dx, dy] = self.plane(nodes, 0);
+        let [x, y] = self.shift.map(i64::from);
+        [c.wrapping_add(dx.wrapping_mul(x)).wrapping_add(dy.wrapping_mul(y)), dx, dy]
+    }
+
+    /// `[c, dx, dy]` of the linear field through the corners' values, in the pixel at corner 0, with `GUARD` more bits than
+    /// walked.
+    #[inline(always)]
+    fn plane(&self, nodes: [i32; 3], extra: u32) -> [i64; 3] {
+        let (c, dx, dy) = self.slopes(nodes[0], nodes[1].wrapping_sub(nodes[0]).into(), nodes[2].wrapping_sub(nodes[0]).into(), extra);
+        [c.wrapping_add(along(dx, self.offset[0])).wrapping_add(along(dy, self.offset[1])), dx, dy]
     }
 
     /// Value at corner 0 and derivatives along x and y of `c0 + c1 s + c2 t`, with `GUARD` more bits than walked.

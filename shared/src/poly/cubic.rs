@@ -17,6 +17,12 @@ pub const FINER: u32 = 30;
 #[derive(Clone, Copy, Debug)]
 pub struct Cubic<const CH: usize>([Terms<i64>; CH]);
 
+impl<const CH: usize> Default for Cubic<CH> {
+    fn default() -> Self {
+        Self([Terms::default(); CH])
+    }
+}
+
 impl<const CH: usize> Cubic<CH> {
     /// The cubic through ten nodes per channel: corners 0, 1, 2; the thirds of the edges 01, 12, 20, each time the one
     /// nearer to the edge's start first; the centroid.

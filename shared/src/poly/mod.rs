@@ -5,9 +5,13 @@
 //! their walkers run along one span. Coefficients are rounded once; every later
 //! step is exact modulo 2^32 (2^64), so neither rows, nor bands, nor clipping change a
 //! bit of a value, and nothing drifts.
+//!
+//! Methods say what they interpolate by [`field`]s; [`hyperbolic`] interpolates the same in perspective.
 
 pub mod basis;
 pub mod cubic;
+pub mod field;
+pub mod hyperbolic;
 pub mod plane;
 pub mod quadric;
 mod sliver;
@@ -43,7 +47,7 @@ pub trait Walker {
 }
 
 /// The same everywhere.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, Default)]
 pub struct Constant;
 
 impl Patch for Constant {
@@ -67,7 +71,7 @@ impl Walker for Constant {
 }
 
 /// A value that goes along with a polynomial, the same everywhere.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, Default)]
 pub struct Held<T>(pub T);
 
 impl<T: Copy> Patch for Held<T> {
@@ -130,13 +134,13 @@ impl<A: Walker, B: Walker> Walker for (A, B) {
 }
 
 /// One polynomial per light.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, Default)]
 pub struct PerLight<P> {
     patches: [P; MAX_LIGHTS],
     lights: usize,
 }
 
-impl<P: Patch> PerLight<P> {
+impl<P: Copy> PerLight<P> {
     /// The polynomial that `fit` makes for each of `lights`; `zero` stands in for lights that there are not.
     #[must_use]
     pub fn new<L>(lights: &[L], zero: P, fit: impl Fn(&L) -> P) -> Self {

@@ -6,8 +6,14 @@ use super::{Patch, Walker, basis::Basis};
 #[derive(Clone, Copy, Debug)]
 pub struct Plane<const CH: usize>([Row; CH]);
 
+impl<const CH: usize> Default for Plane<CH> {
+    fn default() -> Self {
+        Self([Row::default(); CH])
+    }
+}
+
 /// One channel: the value at column 0 of the current row, and the derivatives.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, Default)]
 struct Row {
     c: i32,
     dx: i32,
@@ -15,9 +21,6 @@ struct Row {
 }
 
 impl<const CH: usize> Plane<CH> {
-    /// Nothing everywhere.
-    pub const ZERO: Self = Self([Row { c: 0, dx: 0, dy: 0 }; CH]);
-
     /// The field with value `nodes[channel][k]` at corner `k`; walked with `extra` more fraction bits than the nodes have.
     ///
     /// Error: at most 2^-1 (1 + S) units of the walked format, S the distance in

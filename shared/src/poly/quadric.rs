@@ -6,8 +6,14 @@ use super::{Patch, Walker, basis::Basis};
 #[derive(Clone, Copy, Debug)]
 pub struct Quadric<const CH: usize>([Row; CH]);
 
+impl<const CH: usize> Default for Quadric<CH> {
+    fn default() -> Self {
+        Self([Row::default(); CH])
+    }
+}
+
 /// One channel, x measured from column 0: what a row needs, and how it changes from row to row.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, Default)]
 struct Row {
     /// Value at column 0.
     c: i32,
@@ -22,9 +28,6 @@ struct Row {
 }
 
 impl<const CH: usize> Quadric<CH> {
-    /// Nothing everywhere.
-    pub const ZERO: Self = Self([Row { c: 0, c_down: 0, c_down2: 0, dx: 0, dx_down: 0, dxx: 0 }; CH]);
-
     /// The quadratic through six nodes per channel: corners 0, 1, 2, then the midpoints of the edges 01, 12, 20.
     ///
     /// All nodes lie in a range narrower than 2^`BITS`; values are walked with `extra` more

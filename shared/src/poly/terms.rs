@@ -3,7 +3,7 @@
 use crate::math::wide::Wide;
 
 /// By powers of the first variable, each list by powers of the second.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, Default)]
 pub struct Terms<T>(pub [T; 4], pub [T; 3], pub [T; 2], pub [T; 1]);
 
 impl Terms<Wide> {

@@ -45,7 +45,7 @@ pub(super) fn draw<C: Pixel>(facet: &Facet<'_>, shading: &Shading<'_, C>, fit: f
             return facet.outline.draw(&facet.basis, (fit(constant), Constant), gloss, band);
         }
         let of = |source: &Source| fit(shading.lighting.directions(source, [0; 3]));
-        shading.draw_lit(facet, (fit([[0; 3]; 2]), of), Constant, Both, band)
+        shading.draw_rows(facet, (fit([[0; 3]; 2]), of), Constant, Both, band)
     } else {
         let fit = |source: &Source| {
             let [l, h] = turned(facet, shading.lighting, source);
@@ -53,7 +53,7 @@ pub(super) fn draw<C: Pixel>(facet: &Facet<'_>, shading: &Shading<'_, C>, fit: f
             (bows(l, diffuse(l.direction)), bows(h, highlight(h.direction)))
         };
         let none = |lobe| Bows { rows, arcs: [Arc::ZERO; 3], lobes: [lobe] };
-        shading.draw_lit(facet, ((none(diffuse([0; 3])), none(highlight([0; 3]))), fit), Constant, Both, band)
+        shading.draw_rows(facet, ((none(diffuse([0; 3])), none(highlight([0; 3]))), fit), Constant, Both, band)
     }
 }
 

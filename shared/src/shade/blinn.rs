@@ -11,8 +11,7 @@
 
 use super::{
     Facet, Shading,
-    environment::linear,
-    form::{Form, signed},
+    form::{Form, linear, signed},
 };
 use crate::{
     band::Band,
@@ -23,7 +22,7 @@ use crate::{
     },
     palette::Reflection,
     pixel::Pixel,
-    poly::{Constant, plane::Plane},
+    poly::Constant,
     scene::{Lighting, Source, cosine},
     shade::node::Node,
 };
@@ -32,9 +31,9 @@ pub(super) fn draw<C: Pixel>(facet: &Facet<'_>, shading: &Shading<'_, C>, band: 
     let corners = facet.corner_nodes();
     let fit = |source: &Source| {
         let [diffuse, u, v] = coordinates(shading.lighting, source, corners);
-        linear(facet, [diffuse.map(|diffuse| diffuse.max(0)), u, v])
+        linear([diffuse.map(|diffuse| diffuse.max(0)), u, v])
     };
-    shading.draw_reflected(facet, (Plane::ZERO, fit), Constant, Across, band)
+    shading.draw_reflected(facet, fit, Constant, Across, band)
 }
 
 /// `[N·L, u, v]` at each node, Q2.30.

@@ -3,19 +3,12 @@
 //! Cost: three additions of 64 bits a pixel and channel; ten points to light. Continuous: both neighbours light the
 //! same thirds. A third to a half of the error of [`super::six_point`]. Domain: any lights.
 
-use super::{Facet, Shading};
-use crate::{band::Band, pixel::Pixel, poly::cubic::Cubic};
+use super::{Facet, RANGE, Shading};
+use crate::{band::Band, pixel::Pixel};
 
 pub(super) fn draw<C: Pixel>(facet: &Facet<'_>, shading: &Shading<'_, C>, band: &mut Band<'_, C>) -> u32 {
     let [a, b, c] = facet.corners.map(|corner| shading.corner_levels(corner));
     let thirds = [[2, 1, 0], [1, 2, 0], [0, 2, 1], [0, 1, 2], [1, 0, 2], [2, 0, 1], [1, 1, 1]];
     let [ab, ba, bc, cb, ca, ac, middle] = thirds.map(|weights| shading.levels(&facet.third(weights, 0)));
-    let nodes = [a, b, c, ab, ba, bc, cb, ca, ac, middle];
-    let red = nodes.map(|[r, ..]| r);
-    if !shading.palette.three_channels {
-        shading.draw_one(facet, Cubic::fit(&facet.basis, [red], super::EXTRA), Cubic::raised, band)
-    } else {
-        let channels = [red, nodes.map(|[_, g, _]| g), nodes.map(|[.., b]| b)];
-        shading.draw_three(facet, Cubic::fit(&facet.basis, channels, super::EXTRA), Cubic::raised, band)
-    }
+    shading.draw_levels::<10, RANGE>(facet, [a, b, c, ab, ba, bc, cb, ca, ac, middle], band)
 }

@@ -9,8 +9,8 @@
 //! Domain: any lights; with near lights as good as six points are.
 
 use super::{
-    Facet, Shading,
-    form::{BITS, EXTRA, Form, NODE, signed},
+    Area, Facet, Shading,
+    form::{EXTRA, Form, Linear, NODE, Quadratic, signed},
 };
 use crate::{
     band::Band,
@@ -21,19 +21,18 @@ use crate::{
     },
     palette::Reflection,
     pixel::Pixel,
-    poly::{plane::Plane, quadric::Quadric},
 };
 
 pub(super) fn draw<C: Pixel>(facet: &Facet<'_>, shading: &Shading<'_, C>, band: &mut Band<'_, C>) -> u32 {
     let square = square(facet);
     if is_curved(facet) {
         let nodes = facet.six_linear_nodes();
-        shading.draw_lit(facet, (Quadric::ZERO, |source| shading.six_products(facet, &nodes, source, |p| p)), square, Rooted, band)
+        shading.draw_lit(facet, |source| shading.six_products(&nodes, source, |p| p), square, Rooted, band)
     } else if let Some(gloss) = shading.gloss(Tabled) {
-        facet.outline.draw(&facet.basis, (numerators(facet), square), gloss, band)
+        facet.draw((numerators(facet), square), gloss, band)
     } else {
         let nodes = facet.six_linear_nodes();
-        shading.draw_lit(facet, (Quadric::ZERO, |source| shading.six_products(facet, &nodes, source, |p| p)), square, Tabled, band)
+        shading.draw_lit(facet, |source| shading.six_products(&nodes, source, |p| p), square, Tabled, band)
     }
 }
 
@@ -45,17 +44,17 @@ pub(super) fn is_curved(facet: &Facet<'_>) -> bool {
 /// N·L and N·H of one constant light, linear. Two planes of one channel: the compiler
 /// makes a loop of one plane of two, and keeps it in memory.
 #[inline(always)]
-pub(super) fn numerators(facet: &Facet<'_>) -> (Plane<1>, Plane<1>) {
+pub(super) fn numerators(facet: &Facet<'_>) -> (Linear<1>, Linear<1>) {
     let [a, b, c] = facet.corners.map(|corner| corner.light);
-    (Plane::fit(&facet.basis, [[a[0], b[0], c[0]]], 0), Plane::fit(&facet.basis, [[a[1], b[1], c[1]]], 0))
+    (Linear::new([[a[0], b[0], c[0]]], 0), Linear::new([[a[1], b[1], c[1]]], 0))
 }
 
 /// |N|², Q2.30: exactly quadratic.
 #[inline(always)]
-pub(super) fn square(facet: &Facet<'_>) -> Quadric<1> {
+pub(super) fn square(facet: &Facet<'_>) -> Quadratic<1> {
     // |N|² - 1 is zero at the corners.
     let [ab, bc, ca] = facet.bend.map(|bend| -(i32::from(bend) << (NODE - BEND)));
-    Quadric::fit::<BITS>(&facet.basis, [[0, 0, 0, ab, bc, ca]], EXTRA).raised([1 << 30])
+    Quadratic::new([[0, 0, 0, ab, bc, ca]], EXTRA).raised([1 << 30])
 }
 
 /// One over the root of |N|² in [1/4, 1] from a table.

@@ -14,7 +14,7 @@
 use super::{
     Facet, Shading,
     duff::Root,
-    form::{EXTRA, Form, signed},
+    form::{Form, linear, signed},
 };
 use crate::{
     band::Band,
@@ -25,7 +25,7 @@ use crate::{
     },
     palette::Reflection,
     pixel::Pixel,
-    poly::{Held, plane::Plane},
+    poly::Held,
     scene::{Lighting, Source, Viewer, cosine},
     shade::node::Node,
 };
@@ -36,22 +36,17 @@ const ONE: i32 = 1 << COSINE;
 pub(super) fn draw<C: Pixel>(facet: &Facet<'_>, shading: &Shading<'_, C>, band: &mut Band<'_, C>) -> u32 {
     let (corners, lighting) = (facet.corner_nodes(), shading.lighting);
     let [a, b, c] = corners.map(|corner| coordinates(lighting, &corner));
-    let map = linear(facet, [[a[0], b[0], c[0]], [a[1], b[1], c[1]]]);
+    let map = linear([[a[0], b[0], c[0]], [a[1], b[1], c[1]]]);
     let fit = |source: &Source| {
         let to_eye = |v: [i32; 3]| lighting.axes.map(|axis| cosine(axis, v));
-        (linear(facet, [diffuse(&corners, source)]), Held(to_eye(source.towards([0; 3]))))
+        (linear([diffuse(&corners, source)]), Held(to_eye(source.towards([0; 3]))))
     };
-    shading.draw_reflected(facet, ((Plane::ZERO, Held([0; 3])), fit), map, Mirror, band)
+    shading.draw_reflected(facet, fit, map, Mirror, band)
 }
 
 /// The corners' N·L, not negative.
 fn diffuse(corners: &[Node; 3], source: &Source) -> [i32; 3] {
     corners.map(|corner| cosine(corner.normal, source.towards(corner.position)).max(0))
-}
-
-/// The planes through three nodes in Q2.30.
-pub(super) fn linear<const CH: usize>(facet: &Facet<'_>, nodes: [[i32; 3]; CH]) -> Plane<CH> {
-    Plane::fit(&facet.basis, nodes.map(|nodes| nodes.map(|node| (node + (1 << (EXTRA - 1))) >> EXTRA)), EXTRA)
 }
 
 /// (u, v) of W = 2(N·V)N - V, Q2.30; all in the axes of the eye.

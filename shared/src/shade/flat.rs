@@ -2,15 +2,14 @@
 //!
 //! Cost: nothing per pixel; one evaluation of the lights per triangle. Not continuous across edges.
 
-use super::{Facet, Shading, node::Node};
+use super::{Facet, RANGE, Shading, node::Node};
 use crate::{
     band::Band,
     format::UNIT,
     math::vector::{add, wide},
     pixel::Pixel,
     poly::Constant,
-    poly::plane::Plane,
-    tone::{Dithered, Solid},
+    tone::Solid,
 };
 
 pub(super) fn draw<C: Pixel>(facet: &Facet<'_>, shading: &Shading<'_, C>, band: &mut Band<'_, C>) -> u32 {
@@ -20,14 +19,7 @@ pub(super) fn draw<C: Pixel>(facet: &Facet<'_>, shading: &Shading<'_, C>, band: 
     let levels = shading.levels(&Node { position: centroid, normal });
     if shading.dither {
         // A field without slope: dither changes from pixel to pixel all the same.
-        let nodes = levels.map(|level| [level; 3]);
-        if !shading.palette.three_channels {
-            let patch = Plane::fit(&facet.basis, [nodes[0]], super::EXTRA).raised(super::lift(0));
-            facet.outline.draw(&facet.basis, patch, Dithered::new(shading.palette.base), band)
-        } else {
-            let patch = Plane::fit(&facet.basis, nodes, super::EXTRA).raised(super::lift(0));
-            facet.outline.draw(&facet.basis, patch, Dithered::new(shading.palette.base), band)
-        }
+        shading.draw_levels::<3, RANGE>(facet, [levels; 3], band)
     } else {
         facet.outline.draw(&facet.basis, Constant, Solid(shading.palette.colour(levels)), band)
     }

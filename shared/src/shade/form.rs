@@ -1,6 +1,8 @@
 //! From fields that are walked per light to what each light sends, and on to a pixel.
 
-use super::{Facet, Shading};
+use super::{Area, Facet, Shading};
+#[cfg(feature = "all-shaders")]
+use crate::poly::{Patch, PerLight, Walker};
 use crate::{
     band::Band,
     dither::threshold,
@@ -8,7 +10,7 @@ use crate::{
     math::power::PixelPower,
     palette::{Glossy, Palette, Reflection},
     pixel::Pixel,
-    poly::{Patch, PerLight, Walker, quadric::Quadric},
+    poly::field::{EachLight, Field, Nodes},
     scene::{Source, cosine},
     shade::node::Node,
     tone::Tone,
@@ -85,8 +87,45 @@ impl<C: Pixel> Shading<'_, C> {
         one.then(|| Gloss { glossy: self.palette.glossy(), form })
     }
 
-    /// Draws `common` and what `fit` makes for each light, by `form`.
-    pub(super) fn draw_lit<K, P, F>(
+    /// The tone for any lights.
+    fn lit<F>(&self, form: F) -> Lit<'_, C, F> {
+        Lit { palette: self.palette, form, dither: self.dither, row: 0 }
+    }
+
+    /// Draws `common` and the field `of` each light, by `form`.
+    pub(super) fn draw_lit<K, V, F>(&self, facet: &Facet<'_>, of: impl Fn(&Source) -> V, common: K, form: F, band: &mut Band<'_, C>) -> u32
+    where
+        K: Field,
+        V: Field<Value: Copy>,
+        F: Form<K::Value, V::Value>,
+    {
+        facet.draw((EachLight { sources: &self.lighting.sources, of }, common), self.lit(form), band)
+    }
+
+    /// [`Self::draw_lit`], in the fast way where there is one.
+    #[cfg(feature = "all-shaders")]
+    pub(super) fn draw_reflected<K, V, F>(
+        &self,
+        facet: &Facet<'_>,
+        of: impl Fn(&Source) -> V,
+        common: K,
+        form: F,
+        band: &mut Band<'_, C>,
+    ) -> u32
+    where
+        K: Field,
+        V: Field<Value: Copy>,
+        F: Form<K::Value, V::Value>,
+    {
+        match (self.gloss(form), self.lighting.sources.first()) {
+            (Some(gloss), Some(source)) => facet.draw((of(source), common), gloss, band),
+            _ => self.draw_lit(facet, of, common, form, band),
+        }
+    }
+
+    /// [`Self::draw_lit`] for what knows nothing but its rows on the screen.
+    #[cfg(feature = "all-shaders")]
+    pub(super) fn draw_rows<K, P, F>(
         &self,
         facet: &Facet<'_>,
         (zero, fit): (P, impl Fn(&Source) -> P),
@@ -100,49 +139,37 @@ impl<C: Pixel> Shading<'_, C> {
         F: Form<<K::Walker as Walker>::Value, <P::Walker as Walker>::Value>,
     {
         let lights = PerLight::new(&self.lighting.sources, zero, fit);
-        let tone = Lit { palette: self.palette, form, dither: self.dither, row: 0 };
-        facet.outline.draw(&facet.basis, (lights, common), tone, band)
-    }
-
-    /// [`Self::draw_lit`], in the fast way where there is one.
-    #[cfg(feature = "all-shaders")]
-    pub(super) fn draw_reflected<K, P, F>(
-        &self,
-        facet: &Facet<'_>,
-        (zero, fit): (P, impl Fn(&Source) -> P),
-        common: K,
-        form: F,
-        band: &mut Band<'_, C>,
-    ) -> u32
-    where
-        K: Patch,
-        P: Patch<Walker: Walker<Value: Copy> + Copy>,
-        F: Form<<K::Walker as Walker>::Value, <P::Walker as Walker>::Value>,
-    {
-        match (self.gloss(form), self.lighting.sources.first()) {
-            (Some(gloss), Some(source)) => facet.outline.draw(&facet.basis, (fit(source), common), gloss, band),
-            _ => self.draw_lit(facet, (zero, fit), common, form, band),
-        }
+        facet.outline.draw(&facet.basis, (lights, common), self.lit(form), band)
     }
 
     /// The quadratics through N·L and N·H of a light at six nodes; `map` is applied to both.
-    pub(super) fn six_products(
-        &self,
-        facet: &Facet<'_>,
-        nodes: &[Node; 6],
-        source: &Source,
-        map: impl Fn([i32; 2]) -> [i32; 2],
-    ) -> Quadric<2> {
+    pub(super) fn six_products(&self, nodes: &[Node; 6], source: &Source, map: impl Fn([i32; 2]) -> [i32; 2]) -> Quadratic<2> {
         let values = nodes.map(|node| map(self.lighting.directions(source, node.position).map(|direction| cosine(node.normal, direction))));
-        quadratic(facet, [values.map(|[light, _]| light), values.map(|[_, half]| half)])
+        quadratic([values.map(|[light, _]| light), values.map(|[_, half]| half)])
     }
 }
 
+/// A field through three nodes.
+pub(super) type Linear<const CH: usize> = Nodes<3, CH>;
+/// A field through six nodes.
+pub(super) type Quadratic<const CH: usize> = Nodes<6, CH, BITS>;
+
 /// The quadratics through six nodes in Q2.30.
 #[inline]
-pub(super) fn quadratic<const CH: usize>(facet: &Facet<'_>, nodes: [[i32; 6]; CH]) -> Quadric<CH> {
-    let rounded = nodes.map(|nodes| nodes.map(|node| (node + (1 << (EXTRA - 1))) >> EXTRA));
-    Quadric::fit::<BITS>(&facet.basis, rounded, EXTRA)
+pub(super) fn quadratic<const CH: usize>(nodes: [[i32; 6]; CH]) -> Quadratic<CH> {
+    Nodes::new(rounded(nodes), EXTRA)
+}
+
+/// The planes through three nodes in Q2.30.
+#[cfg(feature = "all-shaders")]
+pub(super) fn linear<const CH: usize>(nodes: [[i32; 3]; CH]) -> Linear<CH> {
+    Nodes::new(rounded(nodes), EXTRA)
+}
+
+/// From Q2.30 to [`NODE`] fraction bits.
+#[inline(always)]
+fn rounded<const N: usize, const CH: usize>(nodes: [[i32; N]; CH]) -> [[i32; N]; CH] {
+    nodes.map(|nodes| nodes.map(|node| (node + (1 << (EXTRA - 1))) >> EXTRA))
 }
 
 /// A walked field in Q2.30, signed.

@@ -40,7 +40,7 @@ pub(super) fn draw<C: Pixel>(facet: &Facet<'_>, shading: &Shading<'_, C>, band: 
     // The normal itself: its products with the axes.
     let one = 1 << 30;
     let chords = Chords { rows, normals, along: [[one, 0, 0], [0, one, 0], [0, 0, one]] };
-    shading.draw_lit(facet, (Constant, |_| Constant), chords, Many { lighting: shading.lighting, view }, band)
+    shading.draw_rows(facet, (Constant, |_| Constant), chords, Many { lighting: shading.lighting, view }, band)
 }
 
 /// Normals along rows, multiplied by `M` vectors.

@@ -17,7 +17,7 @@ use crate::{
     math::{arc::Arc, power::PixelPower, vector::normalise},
     palette::Reflection,
     pixel::Pixel,
-    poly::{Constant, Patch, quadric::Quadric},
+    poly::{Constant, Patch, field::Field, quadric::Quadric},
     scene::{Source, cosine},
 };
 
@@ -33,12 +33,12 @@ pub(super) fn draw<C: Pixel>(facet: &Facet<'_>, shading: &Shading<'_, C>, fit: f
     if let Some([_, half]) = shading.constant
         && let Some(gloss) = shading.gloss(Both)
     {
-        let diffuse = quadratic(facet, [facet.six_cosines().map(|[light, _]| light)]);
+        let diffuse = quadratic([facet.six_cosines().map(|[light, _]| light)]).fit(&facet.basis);
         return facet.outline.draw(&facet.basis, ((diffuse, constant(half)), Constant), gloss, band);
     }
     let (nodes, is_constant) = (facet.six_nodes(), shading.lighting.is_constant());
     let fit = |source: &Source| {
-        let diffuse = quadratic(facet, [nodes.map(|node| cosine(node.normal, source.towards(node.position)))]);
+        let diffuse = quadratic([nodes.map(|node| cosine(node.normal, source.towards(node.position)))]).fit(&facet.basis);
         let highlight = if is_constant {
             let [_, half] = shading.lighting.directions(source, [0; 3]);
             constant(half)
@@ -48,7 +48,7 @@ pub(super) fn draw<C: Pixel>(facet: &Facet<'_>, shading: &Shading<'_, C>, fit: f
         };
         (diffuse, highlight)
     };
-    shading.draw_lit(facet, ((Quadric::ZERO, constant([0; 3])), fit), Constant, Both, band)
+    shading.draw_rows(facet, ((Quadric::default(), constant([0; 3])), fit), Constant, Both, band)
 }
 
 /// Highlights along the rows.

@@ -52,12 +52,17 @@ mod taylor;
 #[cfg(feature = "all-shaders")]
 mod taylor_finite;
 
+#[cfg(feature = "all-shaders")]
+use crate::poly::hyperbolic::Hyperbolic;
 use crate::{
     band::Band,
     format::{BIAS, LEVEL, RHO, WALK},
     palette::Palette,
     pixel::Pixel,
-    poly::{Patch, Walker, basis::Basis},
+    poly::{
+        basis::Basis,
+        field::{Field, Nodes},
+    },
     raster::triangle::Outline,
     scene::Lighting,
     shade::node::Node,
@@ -72,6 +77,8 @@ use parabola::Parabolas;
 
 /// Fraction bits that a walked level has more than a node's.
 const EXTRA: u32 = WALK - LEVEL;
+/// Levels of nodes are in [0, 255] in Q9.7.
+const RANGE: u32 = LEVEL + 8;
 
 /// A triangle ready to be shaded; all triples start with its top corner.
 pub(crate) struct Facet<'f> {
@@ -84,6 +91,9 @@ pub(crate) struct Facet<'f> {
     /// Per edge, see [`Triangle`].
     pub(crate) bend: [u16; 3],
     pub(crate) triangle: &'f Triangle,
+    /// Of the corners, where it matters.
+    #[cfg(feature = "all-shaders")]
+    pub(crate) nearness: Option<[i32; 3]>,
 }
 
 impl Facet<'_> {
@@ -104,15 +114,19 @@ impl Facet<'_> {
 
 /// Some part of the screen that belongs to a triangle.
 trait Area {
-    /// Draws a patch there; returns the pixels in `band`.
-    fn draw<P: Patch, T: Tone<<P::Walker as Walker>::Value>>(&self, patch: P, tone: T, band: &mut Band<'_, T::Pixel>) -> u32;
+    /// Draws a field there; returns the pixels in `band`.
+    fn draw<F: Field, T: Tone<F::Value>>(&self, field: F, tone: T, band: &mut Band<'_, T::Pixel>) -> u32;
 }
 
-/// The whole triangle.
+/// The whole triangle, in perspective or without.
 impl Area for Facet<'_> {
     #[inline(always)]
-    fn draw<P: Patch, T: Tone<<P::Walker as Walker>::Value>>(&self, patch: P, tone: T, band: &mut Band<'_, T::Pixel>) -> u32 {
-        self.outline.draw(&self.basis, patch, tone, band)
+    fn draw<F: Field, T: Tone<F::Value>>(&self, field: F, tone: T, band: &mut Band<'_, T::Pixel>) -> u32 {
+        #[cfg(feature = "all-shaders")]
+        if let Some(nearness) = self.nearness {
+            return self.outline.draw(&self.basis, Hyperbolic::new(&self.basis, nearness, field.surface()), tone, band);
+        }
+        self.outline.draw(&self.basis, field.fit(&self.basis), tone, band)
     }
 }
 
@@ -192,29 +206,46 @@ impl<C: Pixel> Shading<'_, C> {
         }
     }
 
-    /// Draws a patch of one level.
-    fn draw_one<P>(&self, area: &impl Area, patch: P, raised: fn(P, [i32; 1]) -> P, band: &mut Band<'_, C>) -> u32
+    /// Draws one level or three, whichever the material needs, from those at `N` nodes, Q9.7 in a range narrower than
+    /// 2^`BITS`.
+    #[inline(always)]
+    fn draw_levels<const N: usize, const BITS: u32>(&self, area: &impl Area, levels: [[i32; 3]; N], band: &mut Band<'_, C>) -> u32
     where
-        P: Patch<Walker: Walker<Value = [u32; 1]>>,
+        Nodes<N, 1, BITS>: Field<Value = [u32; 1]>,
+        Nodes<N, 3, BITS>: Field<Value = [u32; 3]>,
     {
-        if self.dither {
-            area.draw(raised(patch, lift(0)), Dithered::new(self.palette.base), band)
+        if !self.palette.three_channels {
+            self.draw_one::<N, BITS>(area, levels.map(|[level, ..]| level), band)
         } else {
-            area.draw(raised(patch, lift(1 << (WALK - 1))), Ramp(&self.palette.ramp), band)
+            self.draw_three::<N, BITS>(area, [levels.map(|[r, ..]| r), levels.map(|[_, g, _]| g), levels.map(|[.., b]| b)], band)
         }
     }
 
-    /// Draws a patch of three levels.
-    fn draw_three<P>(&self, area: &impl Area, patch: P, raised: fn(P, [i32; 3]) -> P, band: &mut Band<'_, C>) -> u32
+    /// Draws one level by its nodes.
+    fn draw_one<const N: usize, const BITS: u32>(&self, area: &impl Area, nodes: [i32; N], band: &mut Band<'_, C>) -> u32
     where
-        P: Patch<Walker: Walker<Value = [u32; 3]>>,
+        Nodes<N, 1, BITS>: Field<Value = [u32; 1]>,
     {
+        let field = Nodes::<N, 1, BITS>::new([nodes], EXTRA);
         if self.dither {
-            area.draw(raised(patch, lift(0)), Dithered::new(self.palette.base), band)
+            area.draw(field.raised(lift(0)), Dithered::new(self.palette.base), band)
+        } else {
+            area.draw(field.raised(lift(1 << (WALK - 1))), Ramp(&self.palette.ramp), band)
+        }
+    }
+
+    /// Draws three levels by their nodes.
+    fn draw_three<const N: usize, const BITS: u32>(&self, area: &impl Area, nodes: [[i32; N]; 3], band: &mut Band<'_, C>) -> u32
+    where
+        Nodes<N, 3, BITS>: Field<Value = [u32; 3]>,
+    {
+        let field = Nodes::<N, 3, BITS>::new(nodes, EXTRA);
+        if self.dither {
+            area.draw(field.raised(lift(0)), Dithered::new(self.palette.base), band)
         } else {
             // Half a step of each channel.
             let half = C::DEPTH.map(|depth| (BIAS << WALK).wrapping_add(1 << (WALK + 7 - depth)));
-            area.draw(raised(patch, half), Rgb(PhantomData), band)
+            area.draw(field.raised(half), Rgb(PhantomData), band)
         }
     }
 }

@@ -21,7 +21,6 @@ use crate::{
     },
     palette::Reflection,
     pixel::Pixel,
-    poly::quadric::Quadric,
     scene::{Source, Viewer},
 };
 
@@ -40,15 +39,15 @@ where
         Viewer::Infinite(towards) => [towards; 3],
         Viewer::Local(eye) => positions.map(|p| sub(eye, p)),
     });
-    let common = quadratic(facet, [product(&normals, &normals), product(&view, &view), product(&normals, &view)]);
+    let common = quadratic([product(&normals, &normals), product(&view, &view), product(&normals, &view)]);
     let fit = |source: &Source| {
         let towards = fitted(match *source {
             Source::Directional { towards, .. } => [towards; 3],
             Source::Point(position) => positions.map(|p| sub(position, p)),
         });
-        quadratic(facet, [product(&normals, &towards), product(&towards, &towards), product(&view, &towards)])
+        quadratic([product(&normals, &towards), product(&towards, &towards), product(&view, &towards)])
     };
-    shading.draw_lit(facet, (Quadric::ZERO, fit), common, form, band)
+    shading.draw_lit(facet, fit, common, form, band)
 }
 
 /// A vector at the three corners, all shifted alike such that the longest is just below 1, in fractions of 28 bits.

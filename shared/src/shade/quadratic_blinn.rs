@@ -8,15 +8,10 @@ use super::{
     blinn::{Across, coordinates},
     form::quadratic,
 };
-use crate::{
-    band::Band,
-    pixel::Pixel,
-    poly::{Constant, quadric::Quadric},
-    scene::Source,
-};
+use crate::{band::Band, pixel::Pixel, poly::Constant, scene::Source};
 
 pub(super) fn draw<C: Pixel>(facet: &Facet<'_>, shading: &Shading<'_, C>, band: &mut Band<'_, C>) -> u32 {
     let nodes = facet.six_nodes();
-    let fit = |source: &Source| quadratic(facet, coordinates(shading.lighting, source, nodes));
-    shading.draw_reflected(facet, (Quadric::ZERO, fit), Constant, Across, band)
+    let fit = |source: &Source| quadratic(coordinates(shading.lighting, source, nodes));
+    shading.draw_reflected(facet, fit, Constant, Across, band)
 }

@@ -9,10 +9,10 @@
 //! Domain: any lights; where |N| falls below 1/2, [`super::duff`]'s root takes over.
 
 use super::{
-    Facet, Shading, duff,
-    form::{BITS, EXTRA, Form, NODE, signed},
+    Area, Facet, Shading, duff,
+    form::{EXTRA, Form, NODE, Quadratic, signed},
 };
-use crate::{band::Band, format::EDGE, math::power::PixelPower, palette::Reflection, pixel::Pixel, poly::quadric::Quadric};
+use crate::{band::Band, format::EDGE, math::power::PixelPower, palette::Reflection, pixel::Pixel};
 
 pub(super) fn draw<C: Pixel>(facet: &Facet<'_>, shading: &Shading<'_, C>, band: &mut Band<'_, C>) -> u32 {
     if duff::is_curved(facet) {
@@ -20,19 +20,19 @@ pub(super) fn draw<C: Pixel>(facet: &Facet<'_>, shading: &Shading<'_, C>, band: 
     }
     let length = length(facet);
     if let Some(gloss) = shading.gloss(Scaled) {
-        return facet.outline.draw(&facet.basis, (duff::numerators(facet), length), gloss, band);
+        return facet.draw((duff::numerators(facet), length), gloss, band);
     }
     let nodes = facet.six_linear_nodes();
-    shading.draw_lit(facet, (Quadric::ZERO, |source: &_| shading.six_products(facet, &nodes, source, |p| p)), length, Scaled, band)
+    shading.draw_lit(facet, |source| shading.six_products(&nodes, source, |p| p), length, Scaled, band)
 }
 
 /// The quadratic through 1/|N| at six nodes, Q2.30.
 #[inline(always)]
-pub(super) fn length(facet: &Facet<'_>) -> Quadric<1> {
+pub(super) fn length(facet: &Facet<'_>) -> Quadratic<1> {
     // 2/|Ni+Nj| - 1, zero at the corners.
     let node = |rsum: u32| (((rsum << 1) - (1 << EDGE)) << (NODE - EDGE)) as i32;
     let [ab, bc, ca] = [facet.rsum(0), facet.rsum(1), facet.rsum(2)].map(node);
-    Quadric::fit::<BITS>(&facet.basis, [[0, 0, 0, ab, bc, ca]], EXTRA).raised([1 << 30])
+    Quadratic::new([[0, 0, 0, ab, bc, ca]], EXTRA).raised([1 << 30])
 }
 
 /// Numerators times a reciprocal length.

@@ -8,11 +8,11 @@
 //! Domain: any lights; where |N| falls below 1/2, [`super::duff`]'s root takes over.
 
 use super::{
-    Facet, Shading, duff,
+    Area, Facet, Shading, duff,
     form::{Form, signed},
     renq,
 };
-use crate::{band::Band, format::RHO, math::power::PixelPower, palette::Reflection, pixel::Pixel, poly::quadric::Quadric};
+use crate::{band::Band, format::RHO, math::power::PixelPower, palette::Reflection, pixel::Pixel};
 
 pub(super) fn draw<C: Pixel>(facet: &Facet<'_>, shading: &Shading<'_, C>, band: &mut Band<'_, C>) -> u32 {
     if duff::is_curved(facet) {
@@ -28,10 +28,10 @@ pub(super) fn draw<C: Pixel>(facet: &Facet<'_>, shading: &Shading<'_, C>, band: 
 fn draw_by<C: Pixel, const STEPS: usize>(facet: &Facet<'_>, shading: &Shading<'_, C>, form: Newton<STEPS>, band: &mut Band<'_, C>) -> u32 {
     let lengths = (renq::length(facet), duff::square(facet));
     if let Some(gloss) = shading.gloss(form) {
-        return facet.outline.draw(&facet.basis, (duff::numerators(facet), lengths), gloss, band);
+        return facet.draw((duff::numerators(facet), lengths), gloss, band);
     }
     let nodes = facet.six_linear_nodes();
-    shading.draw_lit(facet, (Quadric::ZERO, |source: &_| shading.six_products(facet, &nodes, source, |p| p)), lengths, form, band)
+    shading.draw_lit(facet, |source| shading.six_products(&nodes, source, |p| p), lengths, form, band)
 }
 
 /// Whether one step may leave more than 0.1 LSB: 255 n 1.5 delta² > 0.1 with delta = 0.02 e⁴ and e² = 3 (1 - rho²).

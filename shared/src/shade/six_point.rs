@@ -5,11 +5,8 @@
 //! same midpoint. Good for wide highlights or fine meshes; a highlight narrower
 //! than a triangle is flattened.
 
-use super::{Facet, Shading};
-use crate::{band::Band, palette::Palette, pixel::Pixel, poly::quadric::Quadric};
-
-/// Levels of a node are in [0, 255] in Q9.7.
-const BITS: u32 = 15;
+use super::{Facet, RANGE, Shading};
+use crate::{band::Band, palette::Palette, pixel::Pixel};
 
 pub(super) fn draw<C: Pixel>(facet: &Facet<'_>, shading: &Shading<'_, C>, band: &mut Band<'_, C>) -> u32 {
     let palette = shading.palette;
@@ -18,16 +15,14 @@ pub(super) fn draw<C: Pixel>(facet: &Facet<'_>, shading: &Shading<'_, C>, band: 
             Some(_) => constant(facet, palette, |cosines| palette.level(cosines)),
             None => lit(facet, shading).map(|[level, ..]| level),
         };
-        let patch = Quadric::fit::<BITS>(&facet.basis, [nodes], super::EXTRA);
-        shading.draw_one(facet, patch, Quadric::raised, band)
+        shading.draw_one::<6, RANGE>(facet, nodes, band)
     } else {
         let nodes = match shading.constant {
             Some(_) => constant(facet, palette, |cosines| palette.levels(core::iter::once(cosines))),
             None => lit(facet, shading),
         };
         let nodes = [nodes.map(|[r, ..]| r), nodes.map(|[_, g, _]| g), nodes.map(|[.., b]| b)];
-        let patch = Quadric::fit::<BITS>(&facet.basis, nodes, super::EXTRA);
-        shading.draw_three(facet, patch, Quadric::raised, band)
+        shading.draw_three::<6, RANGE>(facet, nodes, band)
     }
 }
 

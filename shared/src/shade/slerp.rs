@@ -39,7 +39,7 @@ pub(super) fn draw<C: Pixel>(facet: &Facet<'_>, shading: &Shading<'_, C>, band: 
     // The normal itself: its products with the axes.
     let one = 1 << 30;
     let arcs = Arcs { rows, arcs, along: [[one, 0, 0], [0, one, 0], [0, 0, one]] };
-    shading.draw_lit(facet, (Constant, |_| Constant), arcs, Many(shading.lighting), band)
+    shading.draw_rows(facet, (Constant, |_| Constant), arcs, Many(shading.lighting), band)
 }
 
 /// The arcs along the three edges between normals of any length.

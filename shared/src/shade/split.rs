@@ -3,9 +3,9 @@
 use super::{Area, Facet, Shading};
 use crate::{
     band::Band,
-    math::vector::{add, transposed, zip},
+    math::vector::{add, zip},
     pixel::Pixel,
-    poly::{Patch, Walker, basis::Basis, plane::Plane, quadric::Quadric},
+    poly::{basis::Basis, field::Field, plane::Plane},
     raster::cell::{Cell, Piece},
     tone::Tone,
 };
@@ -32,8 +32,8 @@ struct Part {
 
 impl Area for Part {
     #[inline(always)]
-    fn draw<P: Patch, T: Tone<<P::Walker as Walker>::Value>>(&self, patch: P, tone: T, band: &mut Band<'_, T::Pixel>) -> u32 {
-        self.piece.draw(&self.basis, self.depth, patch, tone, band)
+    fn draw<F: Field, T: Tone<F::Value>>(&self, field: F, tone: T, band: &mut Band<'_, T::Pixel>) -> u32 {
+        self.piece.draw(&self.basis, self.depth, field.fit(&self.basis), tone, band)
     }
 }
 
@@ -137,25 +137,15 @@ impl<'a, 'f, C: Pixel> Cells<'a, 'f, C> {
     #[inline(never)]
     pub(super) fn linear(&self, cell: &Cell, corners: &[Levels; 3], band: &mut Band<'_, C>) -> u32 {
         let Some(part) = self.part(cell, band) else { return 0 };
-        let nodes = transposed(*corners);
-        if !self.shading.palette.three_channels {
-            self.shading.draw_one(&part, Plane::fit(&part.basis, [nodes[0]], super::EXTRA), Plane::raised, band)
-        } else {
-            self.shading.draw_three(&part, Plane::fit(&part.basis, nodes, super::EXTRA), Plane::raised, band)
-        }
+        self.shading.draw_levels::<3, BITS>(&part, *corners, band)
     }
 
     /// Draws `cell` quadratic between its nodes.
     #[inline(never)]
     pub(super) fn quadratic(&self, cell: &Cell, six: &Six, band: &mut Band<'_, C>) -> u32 {
         let Some(part) = self.part(cell, band) else { return 0 };
-        let (corners, middles) = (transposed(six.corners), transposed(six.middles));
-        let nodes = zip(corners, middles, |[a, b, c], [ab, bc, ca]| [a, b, c, ab, bc, ca]);
-        if !self.shading.palette.three_channels {
-            self.shading.draw_one(&part, Quadric::fit::<BITS>(&part.basis, [nodes[0]], super::EXTRA), Quadric::raised, band)
-        } else {
-            self.shading.draw_three(&part, Quadric::fit::<BITS>(&part.basis, nodes, super::EXTRA), Quadric::raised, band)
-        }
+        let ([a, b, c], [ab, bc, ca]) = (six.corners, six.middles);
+        self.shading.draw_levels::<6, BITS>(&part, [a, b, c, ab, bc, ca], band)
     }
 
     /// Draws `cell` linear between the corners of the parts that `depth` splits make of it; `corners` is its own light.
@@ -210,7 +200,16 @@ mod tests {
         for _ in 0..1_000 {
             let mut vertex = || Vertex { position: [random(), random(), random()], normal: [random(), random(), random()] };
             let [p, q, r, s] = [vertex(), vertex(), vertex(), vertex()];
-            let facet = |vertices| Facet { outline, basis, corners: [a, b, c], vertices, rsum: [0; 3], bend: [0; 3], triangle: &triangle };
+            let facet = |vertices| Facet {
+                outline,
+                basis,
+                corners: [a, b, c],
+                vertices,
+                rsum: [0; 3],
+                bend: [0; 3],
+                triangle: &triangle,
+                nearness: None,
+            };
             let one = facet([&p, &q, &r]);
             for (k, other) in [[&q, &p, &s], [&s, &q, &p], [&p, &s, &q]].map(facet).iter().enumerate() {
                 for bits in 0..=5 {

@@ -9,7 +9,7 @@
 //! Domain: any lights; coarse triangles near a light need splitting.
 
 use super::{
-    Facet, Shading,
+    Area, Facet, Shading,
     form::{Form, quadratic, signed},
 };
 use crate::{
@@ -17,7 +17,7 @@ use crate::{
     math::{power::PixelPower, rsqrt::rsqrt},
     palette::Reflection,
     pixel::Pixel,
-    poly::{Constant, quadric::Quadric},
+    poly::Constant,
 };
 
 /// One, Q2.30.
@@ -28,13 +28,13 @@ const LOWEST: i32 = ONE / 4;
 pub(super) fn draw<C: Pixel>(facet: &Facet<'_>, shading: &Shading<'_, C>, band: &mut Band<'_, C>) -> u32 {
     if let Some(gloss) = shading.gloss(Squared) {
         let cosines = facet.six_cosines();
-        let light = quadratic(facet, [cosines.map(|[light, _]| light)]);
-        let half = quadratic(facet, [cosines.map(|[_, half]| root(half))]);
-        return facet.outline.draw(&facet.basis, ((light, half), Constant), gloss, band);
+        let light = quadratic([cosines.map(|[light, _]| light)]);
+        let half = quadratic([cosines.map(|[_, half]| root(half))]);
+        return facet.draw(((light, half), Constant), gloss, band);
     }
     let nodes = facet.six_nodes();
-    let fit = |source: &_| shading.six_products(facet, &nodes, source, |[light, half]| [light, root(half)]);
-    shading.draw_lit(facet, (Quadric::ZERO, fit), Constant, Squared, band)
+    let fit = |source: &_| shading.six_products(&nodes, source, |[light, half]| [light, root(half)]);
+    shading.draw_lit(facet, fit, Constant, Squared, band)
 }
 
 /// sqrt(w) for w >= 1/4, w + 1/4 below: of one slope where they meet. Q2.30.

@@ -15,7 +15,7 @@
 
 use super::{
     Facet, Shading,
-    form::{BITS, EXTRA, Form, NODE, signed},
+    form::{EXTRA, Form, NODE, Quadratic, signed},
 };
 use crate::{
     band::Band,
@@ -27,7 +27,7 @@ use crate::{
     },
     palette::Reflection,
     pixel::Pixel,
-    poly::{Constant, Held, quadric::Quadric},
+    poly::{Constant, Held},
     scene::Source,
 };
 
@@ -55,9 +55,9 @@ pub(super) fn draw_by<C: Pixel>(
         let largest = values.as_flattened().iter().fold(0, |m, v| v.unsigned_abs().max(m));
         // Nodes stay below 6/5, so that quadratics stay below 2.
         let shift = (64 - (largest - largest / 6).leading_zeros()).saturating_sub(NODE);
-        (Quadric::fit::<BITS>(&facet.basis, values.map(|nodes| nodes.map(|node| (node >> shift) as i32)), EXTRA), Held(shift))
+        (Quadratic::new(values.map(|nodes| nodes.map(|node| (node >> shift) as i32)), EXTRA), Held(shift))
     };
-    shading.draw_reflected(facet, ((Quadric::ZERO, Held(0)), fit), Constant, Clamped, band)
+    shading.draw_reflected(facet, fit, Constant, Clamped, band)
 }
 
 /// A vector that is linear over the triangle, divided by its length at the centroid.

@@ -276,6 +276,12 @@ impl<'a> Stream<'a> {
         infinite && self.lights.iter().all(|light| light.kind == DIRECTIONAL)
     }
 
+    /// Rays meet in the eye.
+    #[must_use]
+    pub fn is_perspective(&self) -> bool {
+        self.header.camera.projection == PERSPECTIVE
+    }
+
     /// The vertices of `mesh`.
     #[must_use]
     pub fn vertices_of(&self, mesh: &Mesh) -> Option<&'a [Vertex]> {

@@ -31,7 +31,8 @@ fn draw<C: Pixel>(
     renderer.set_shader(*Shader::ALL.get(options as usize & 31)?).ok()?;
     renderer.set_dither(options & 32 != 0);
     renderer.set_antialias(options & 64 != 0).ok()?;
-    let mut frame = renderer.frame(options >> 7);
+    renderer.set_perspective_correct(options & 128 != 0).ok()?;
+    let mut frame = renderer.frame(options >> 8);
     while frame.next_band(pixels).is_some() {}
     Some(frame.stats())
 }

@@ -35,12 +35,14 @@ struct Method {
     constant: bool,
     /// It compares something with a threshold.
     decides: bool,
+    /// It interpolates along rows of the screen.
+    rows: bool,
     build: Build,
 }
 
 /// A method for every scene that decides nothing.
 const fn any(name: &'static str, build: Build) -> Method {
-    Method { name, constant: false, decides: false, build }
+    Method { name, constant: false, decides: false, rows: false, build }
 }
 
 /// A method for lights and a viewer that are infinitely far.
@@ -51,6 +53,11 @@ const fn constant(name: &'static str, build: Build) -> Method {
 /// A method that takes decisions.
 const fn deciding(name: &'static str, build: Build) -> Method {
     Method { decides: true, ..any(name, build) }
+}
+
+/// A method that knows rows of the screen, and nothing of perspective.
+const fn by_rows(method: Method) -> Method {
+    Method { rows: true, ..method }
 }
 
 const METHODS: [Method; 26] = [
@@ -74,12 +81,12 @@ const METHODS: [Method; 26] = [
     any("environment", |frame, facet, _| environment::shade(frame, facet)),
     any("blinn", |frame, facet, _| blinn::linear(frame, facet)),
     any("quadratic-blinn", |frame, facet, _| blinn::quadratic(frame, facet)),
-    constant("goldman", |frame, facet, _| goldman::shade(frame, facet)),
-    constant("slerp", |frame, facet, _| slerp::shade(frame, facet)),
-    any("angular", |frame, facet, _| angular::angular(frame, facet, angular::refitted)),
-    any("hybrid", |frame, facet, _| angular::hybrid(frame, facet, angular::refitted)),
-    any("angular-original", |frame, facet, _| angular::angular(frame, facet, angular::printed)),
-    any("hybrid-original", |frame, facet, _| angular::hybrid(frame, facet, angular::printed)),
+    by_rows(constant("goldman", |frame, facet, _| goldman::shade(frame, facet))),
+    by_rows(constant("slerp", |frame, facet, _| slerp::shade(frame, facet))),
+    by_rows(any("angular", |frame, facet, _| angular::angular(frame, facet, angular::refitted))),
+    by_rows(any("hybrid", |frame, facet, _| angular::hybrid(frame, facet, angular::refitted))),
+    by_rows(any("angular-original", |frame, facet, _| angular::angular(frame, facet, angular::printed))),
+    by_rows(any("hybrid-original", |frame, facet, _| angular::hybrid(frame, facet, angular::printed))),
 ];
 
 /// The names of all methods.
@@ -100,6 +107,8 @@ pub enum Unsupported {
     Unknown(String),
     /// The method wants directions that are the same everywhere, and a light or the viewer is near.
     Near(&'static str),
+    /// The method interpolates along rows of the screen, and the facet is to be seen in perspective.
+    Perspective(&'static str),
 }
 
 impl fmt::Display for Unsupported {
@@ -107,6 +116,7 @@ impl fmt::Display for Unsupported {
         match self {
             Self::Unknown(name) => write!(f, "unknown method {name:?}; name one of: {}", NAMES.join(", ")),
             Self::Near(name) => write!(f, "{name} cannot draw point lights or a local viewer: its directions are constant"),
+            Self::Perspective(name) => write!(f, "{name} has no perspective-correct form"),
         }
     }
 }
@@ -129,6 +139,9 @@ pub fn method<'f>(name: &str, frame: &'f Frame, facet: &'f Facet, lean: f64) -> 
     let method = find(name).ok_or_else(|| Unsupported::Unknown(name.to_owned()))?;
     if method.constant && !frame.is_constant() {
         return Err(Unsupported::Near(method.name));
+    }
+    if method.rows && facet.shares != [1.0; 3] {
+        return Err(Unsupported::Perspective(method.name));
     }
     Ok((method.build)(frame, facet, lean))
 }
