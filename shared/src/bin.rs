@@ -34,9 +34,14 @@ impl Entry {
 pub struct Bins {
     heads: [u16; BINS],
     active: u16,
+    /// Entries in use.
+    count: u16,
+    /// Some triangle found no room.
+    overflow: bool,
     /// Bins that `active` has taken over.
     reached: usize,
-    rows_per_bin: NonZeroU32,
+    /// 1 over the rows of a bin, Q1.20.
+    bins_per_row: u32,
 }
 
 impl Bins {
@@ -47,30 +52,45 @@ impl Bins {
         Self {
             heads: [NONE; BINS],
             active: NONE,
+            count: 0,
+            overflow: false,
             reached: 0,
-            rows_per_bin: NonZeroU32::new(height.div_ceil(BINS as u32).max(band_rows)).unwrap_or(NonZeroU32::MIN),
+            bins_per_row: (1 << 20) / NonZeroU32::new(height.div_ceil(BINS as u32).max(band_rows)).unwrap_or(NonZeroU32::MIN) + 1,
         }
     }
 
-    /// Puts `entries[index]`, which starts in row `top`, in front of its list. Called from the last triangle to the first.
-    pub fn push(&mut self, entries: &mut [Entry], index: usize, top: u32) {
-        let bin = (top / self.rows_per_bin) as usize;
-        if let (Some(head), Some(entry)) = (self.heads.get_mut(bin), entries.get_mut(index)) {
-            entry.next = *head;
-            *head = index as u16 + 1;
+    /// The bin of a row below 2048: a product is cheaper than a quotient. In a bin of more than 512 rows it may be one too
+    /// high, both when triangles are put there and when they are taken.
+    #[inline(always)]
+    fn of(&self, row: u32) -> usize {
+        (row.wrapping_mul(self.bins_per_row) >> 20) as usize
+    }
+
+    /// Puts a triangle that covers rows `top .. bottom` in front of its list. Called from the last triangle to the first.
+    #[inline(always)]
+    pub fn push(&mut self, entries: &mut [Entry], triangle: u32, top: u32, bottom: u32) {
+        let bin = self.of(top);
+        let link = self.count.wrapping_add(1);
+        match (self.heads.get_mut(bin), entries.get_mut(usize::from(self.count))) {
+            (Some(head), Some(entry)) if link != NONE => {
+                *entry = Entry { triangle, bottom: bottom as u16, next: *head };
+                *head = link;
+                self.count = link;
+            }
+            _ => self.overflow = true,
         }
     }
 
-    /// Entries that a list can hold.
+    /// Triangles in all lists; `None` if they did not find room.
     #[must_use]
-    pub fn capacity(entries: &[Entry]) -> usize {
-        entries.len().min(u16::MAX as usize)
+    pub fn count(&self) -> Option<u16> {
+        (!self.overflow).then_some(self.count)
     }
 
     /// Takes over the lists of all bins that start above row `bottom`.
     pub fn advance(&mut self, entries: &mut [Entry], bottom: u32) {
-        let bins = (bottom.saturating_add(self.rows_per_bin.get() - 1) / self.rows_per_bin) as usize;
-        while self.reached < bins.min(BINS) {
+        let last = self.of(bottom.saturating_sub(1));
+        while self.reached <= last {
             if let Some(&head) = self.heads.get(self.reached) {
                 self.active = merge(entries, self.active, head);
             }
@@ -109,28 +129,25 @@ fn linked(link: u16) -> Option<usize> {
     link.checked_sub(1).map(usize::from)
 }
 
-/// Two lists in the order of the stream into one; returns its head.
+/// Two lists in the order of the stream into one; returns its head. What is left of one when the other ends stays as it is.
 fn merge(entries: &mut [Entry], mut a: u16, mut b: u16) -> u16 {
     let mut head = NONE;
     let mut tail = NONE;
     loop {
         let entry = |link| linked(link).and_then(|index| entries.get(index)).copied();
-        let (link, next) = match (entry(a), entry(b)) {
-            (Some(x), Some(y)) if x.triangle <= y.triangle => (a, x.next),
-            (_, Some(y)) => (b, y.next),
-            (Some(x), None) => (a, x.next),
-            (None, None) => return head,
+        let (link, rest) = match (entry(a), entry(b)) {
+            (Some(x), Some(y)) if x.triangle <= y.triangle => (a, Some((&mut a, x.next))),
+            (Some(_), Some(y)) => (b, Some((&mut b, y.next))),
+            (None, _) => (b, None),
+            (_, None) => (a, None),
         };
         match linked(tail).and_then(|index| entries.get_mut(index)) {
             Some(tail) => tail.next = link,
             None => head = link,
         }
+        let Some((list, next)) = rest else { return head };
+        *list = next;
         tail = link;
-        if link == a {
-            a = next;
-        } else {
-            b = next;
-        }
     }
 }
 
@@ -146,9 +163,10 @@ mod tests {
         for band in [1, 7, 10, 40, 240] {
             let mut bins = Bins::new(HEIGHT, band.min(10));
             for i in (0..100).rev() {
-                entries[i] = Entry { triangle: i as u32, bottom: rows(i as u32).1 as u16, next: NONE };
-                bins.push(&mut entries, i, rows(i as u32).0);
+                let (top, bottom) = rows(i as u32);
+                bins.push(&mut entries, i as u32, top, bottom);
             }
+            assert_eq!(bins.count(), Some(100));
             let mut top = 0;
             while top < HEIGHT {
                 let bottom = (top + band).min(HEIGHT);

@@ -2,6 +2,7 @@
 
 use crate::{
     format::{ROTATION, UNIT},
+    math::vector::{narrow_dot, wide},
     scene::Pose,
     stream::record::{Camera, PERSPECTIVE, Triangle},
 };
@@ -11,8 +12,8 @@ use crate::{
 pub struct Facing {
     /// Perspective: the eye; orthographic: the direction towards the viewer; Q.10.
     vector: [i32; 3],
-    /// Shift that takes a plane's offset to the dot product's format.
-    offset_shift: Option<u32>,
+    /// Takes a plane's offset to the dot product's format; 0 for parallel rays, to which it does not matter.
+    offset_scale: i32,
 }
 
 /// Fraction bits of `vector`: the dot product with a unit normal then fits 32 bits.
@@ -26,10 +27,10 @@ impl Facing {
     #[must_use]
     pub fn new(camera: &Camera, pose: &Pose) -> Self {
         if camera.projection == PERSPECTIVE {
-            Self { vector: pose.eye().map(|c| (c + (1 << (UNIT - EYE - 1))) >> (UNIT - EYE)), offset_shift: Some(EYE) }
+            Self { vector: pose.eye().map(|c| (c + (1 << (UNIT - EYE - 1))) >> (UNIT - EYE)), offset_scale: 1 << EYE }
         } else {
             let towards = pose.to_object([0, 0, -(1 << ROTATION)]);
-            Self { vector: towards.map(|c| (c >> (ROTATION - EYE - 1)).wrapping_add(1) >> 1), offset_shift: None }
+            Self { vector: towards.map(|c| (c >> (ROTATION - EYE - 1)).wrapping_add(1) >> 1), offset_scale: 0 }
         }
     }
 
@@ -37,10 +38,7 @@ impl Facing {
     #[inline(always)]
     #[must_use]
     pub fn may_face(&self, triangle: &Triangle) -> bool {
-        let [x, y, z] = self.vector;
-        let [a, b, c] = triangle.normal.map(i32::from);
-        let dot = x.wrapping_mul(a).wrapping_add(y.wrapping_mul(b)).wrapping_add(z.wrapping_mul(c));
-        let plane = self.offset_shift.map_or(0, |shift| i32::from(triangle.offset) << shift);
-        dot >= plane - SLACK
+        let plane = i32::from(triangle.offset).wrapping_mul(self.offset_scale);
+        narrow_dot(self.vector, wide(triangle.normal)) >= plane - SLACK
     }
 }

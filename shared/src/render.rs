@@ -16,7 +16,7 @@ use crate::{
         triangle::{Bounds, Outline, turn},
     },
     sample::Sample,
-    scene::{Lighting, Pose},
+    scene::{Lighting, Pose, vertex_cosine},
     shade::{Facet, Shading},
     stream::record::{Mesh, Triangle, Vertex},
     vertex::{ScreenVertex, State, View},
@@ -265,6 +265,10 @@ impl<'a, C: Pixel> Renderer<'a, C> {
         cfg!(feature = "antialias") && self.antialias
     }
 
+    fn viewport(&self) -> Viewport {
+        Viewport { width: self.size.width as i32, height: self.size.height as i32, antialiased: self.antialiased() }
+    }
+
     /// The viewport.
     #[must_use]
     pub fn size(&self) -> Size {
@@ -369,97 +373,57 @@ impl<C: Pixel> Frame<'_, '_, C> {
         Stats { culled: self.stats.triangles.saturating_sub(self.stats.drawn), ..self.stats }
     }
 
-    /// Everything that happens once: which triangles face the camera, which vertices they need, which rows they start in.
+    /// Everything that happens once: which triangles face the camera, where their vertices are, which rows they start in.
+    /// From the last triangle to the first, as [`Bins::push`] wants it.
     #[inline(never)]
     fn prepare(&mut self) {
-        let Renderer { stream, memory, .. } = &mut *self.renderer;
-        memory.vertices.iter_mut().take(stream.vertices.len()).for_each(|vertex| vertex.state = State::Idle);
-        let capacity = Bins::capacity(memory.bins);
-        let mut count = 0;
-        self.binned = true;
-        for mesh in stream.meshes {
-            for (i, triangle) in stream.triangles_of(mesh).unwrap_or_default().iter().enumerate() {
-                if !self.facing.may_face(triangle) {
-                    continue;
-                }
-                for corner in triangle.corners {
-                    if let Some(vertex) = memory.vertices.get_mut(mesh.first_vertex as usize + usize::from(corner)) {
-                        vertex.state = State::Needed;
-                    }
-                }
-                match memory.bins.get_mut(..capacity).and_then(|bins| bins.get_mut(count)) {
-                    Some(entry) => entry.triangle = mesh.first_triangle + i as u32,
-                    None => self.binned = false,
-                }
-                count += 1;
-            }
-        }
-        self.stats.uncached = stream.vertices.len().saturating_sub(memory.vertices.len()) as u32;
-        self.transform();
-        if self.binned {
-            self.stats.passes = 1;
-            self.sort(count);
-        }
-    }
-
-    /// Transforms and lights the vertices that triangles need.
-    #[inline(never)]
-    fn transform(&mut self) {
-        let Renderer { stream, memory, shader, .. } = &mut *self.renderer;
-        let Memory { vertices, palettes, .. } = memory;
-        let light = shader.lights_vertices();
-        for mesh in stream.meshes {
+        // A copy, which stays in registers.
+        let facing = self.facing;
+        let Self { renderer, view, lighting, constant, bins, stats, .. } = self;
+        let viewport = renderer.viewport();
+        let Renderer { stream, memory: Memory { vertices: cache, bins: entries, palettes, .. }, shader, .. } = &mut **renderer;
+        cache.iter_mut().take(stream.vertices.len()).for_each(|vertex| vertex.state = State::Idle);
+        for mesh in stream.meshes.iter().rev() {
+            let (vertices, triangles) = (stream.vertices_of(mesh).unwrap_or_default(), stream.triangles_of(mesh).unwrap_or_default());
             let Some(palette) = palettes.get(usize::from(mesh.material)) else { continue };
-            let cached = vertices.get_mut(mesh.first_vertex as usize..).unwrap_or_default();
-            for (screen, vertex) in cached.iter_mut().zip(stream.vertices_of(mesh).unwrap_or_default()) {
-                if screen.state == State::Needed {
-                    *screen = screen_vertex(&self.view, &self.lighting, self.constant, light.then_some(palette), vertex);
+            let lit = shader.lights_vertices(constant.is_some()).then_some(palette);
+            let stage = Stage { view, lighting, constant: constant.as_ref(), lit };
+            let cached = cache.get_mut(mesh.first_vertex as usize..).unwrap_or_default();
+            for (index, triangle) in triangles.iter().enumerate().rev().filter(|(_, triangle)| facing.may_face(triangle)) {
+                let bounds = match stage.corners(cached, vertices, triangle) {
+                    Some([a, b, c]) => viewport.bounds([&a, &b, &c]),
+                    None => stage.bounds(viewport, vertices, triangle),
+                };
+                if let Some(Bounds { top, bottom, .. }) = bounds {
+                    bins.push(entries, mesh.first_triangle + index as u32, top as u32, bottom as u32);
                 }
             }
         }
-    }
-
-    /// Sorts the first `count` entries by the row that they start in, without those that are off screen.
-    #[inline(never)]
-    fn sort(&mut self, count: usize) {
-        for index in (0..count).rev() {
-            let Some(id) = self.renderer.memory.bins.get(index).map(|entry| entry.triangle) else { continue };
-            let Some(bounds) = self.bounds(id) else { continue };
-            self.stats.drawn += 1;
-            let entries = &mut *self.renderer.memory.bins;
-            if let Some(entry) = entries.get_mut(index) {
-                entry.bottom = bounds.bottom as u16;
-            }
-            self.bins.push(entries, index, bounds.top as u32);
+        stats.uncached = stream.vertices.len().saturating_sub(cache.len()) as u32;
+        if let Some(count) = bins.count() {
+            self.binned = true;
+            (stats.passes, stats.drawn) = (1, count.into());
         }
     }
 
     /// The visible box of triangle `id`; `None` if it shows its back, or no pixel can belong to it.
     fn bounds(&self, id: u32) -> Option<Bounds> {
         let (mesh, triangle) = self.triangle(id)?;
-        let (width, height) = (self.renderer.size.width as i32, self.renderer.size.height as i32);
-        let [a, b, c] = self.corners(mesh, triangle)?;
-        let bounds = if [a, b, c].iter().all(|corner| corner.state == State::Ready) {
-            if Outline::area([&a, &b, &c]) <= 0 {
-                return None;
-            }
-            if self.renderer.antialiased() {
-                Bounds::touched([a, b, c].iter().map(|corner| [corner.x, corner.y, 0]))
-            } else {
-                Bounds::new([&a, &b, &c])
-            }
+        let corners = self.corners(mesh, triangle)?;
+        let [a, b, c] = &corners;
+        if corners.iter().all(|corner| corner.state == State::Ready) {
+            self.renderer.viewport().bounds([a, b, c])
         } else {
-            let polygon = clip::clip(&self.view, self.vertices(mesh, triangle)?);
-            let mut corners = polygon.iter().map(|cut| self.view.project(cut.eye).0);
-            if self.renderer.antialiased() {
-                return Some(Bounds::touched(corners).clipped(width, height)).filter(|bounds| !bounds.is_empty());
-            }
-            let mut bounds = Bounds::at(corners.next()?);
-            corners.for_each(|corner| bounds.include(corner));
-            bounds
-        };
-        let bounds = bounds.clipped(width, height);
-        (!bounds.is_empty()).then_some(bounds)
+            self.renderer.viewport().clipped_bounds(&self.view, self.vertices(mesh, triangle)?)
+        }
+    }
+
+    /// What takes vertices of `mesh` to the screen.
+    fn stage(&self, mesh: &Mesh) -> Option<Stage<'_, C>> {
+        let Self { renderer, view, lighting, constant, .. } = self;
+        let lit = renderer.shader.lights_vertices(constant.is_some());
+        let palette = renderer.memory.palettes.get(usize::from(mesh.material))?;
+        Some(Stage { view, lighting, constant: constant.as_ref(), lit: lit.then_some(palette) })
     }
 
     /// Triangle `id` and its mesh.
@@ -485,10 +449,8 @@ impl<C: Pixel> Frame<'_, '_, C> {
         if let (Some(a), Some(b), Some(c)) = (cached(a), cached(b), cached(c)) {
             return Some([*a, *c, *b]);
         }
-        let palette = memory.palettes.get(usize::from(mesh.material))?;
-        let palette = self.renderer.shader.lights_vertices().then_some(palette);
-        let vertices = self.vertices(mesh, triangle)?;
-        Some(vertices.map(|vertex| screen_vertex(&self.view, &self.lighting, self.constant, palette, vertex)))
+        let stage = self.stage(mesh)?;
+        Some(self.vertices(mesh, triangle)?.map(|vertex| stage.transform(vertex)))
     }
 
     /// Clears a band of `rows` rows and draws what falls into it.
@@ -514,7 +476,9 @@ impl<C: Pixel> Frame<'_, '_, C> {
                 }
                 index = Some(next);
             }
-            self.bins.retire(self.renderer.memory.bins, bottom);
+            if bottom < self.renderer.size.height {
+                self.bins.retire(self.renderer.memory.bins, bottom);
+            }
         } else {
             self.stats.passes += 1;
             for id in 0..self.stats.triangles {
@@ -554,19 +518,18 @@ impl<C: Pixel> Frame<'_, '_, C> {
         if [a, b, c].iter().all(|corner| corner.state == State::Ready) {
             self.draw_facet(&shading, [&a, &b, &c], vertices, triangle, band)
         } else {
-            self.draw_clipped(&shading, vertices, triangle, band)
+            self.stage(mesh).map_or(0, |stage| self.draw_clipped(&stage, &shading, vertices, triangle, band))
         }
     }
 
     /// Draws the fan that clipping leaves of a triangle.
     #[cold]
     #[inline(never)]
-    fn draw_clipped(&self, shading: &Shading<'_, C>, vertices: [&Vertex; 3], triangle: &Triangle, band: &mut Band<'_, C>) -> u32 {
+    fn draw_clipped(&self, stage: &Stage<'_, C>, shading: &Shading<'_, C>, vertices: [&Vertex; 3], triangle: &Triangle, band: &mut Band<'_, C>) -> u32 {
         let polygon = clip::clip(&self.view, vertices);
-        let lit = shading.shader.lights_vertices().then_some(shading.palette);
         let place = |cut: &clip::Cut| {
             let ([x, y, depth], _) = self.view.project(cut.eye);
-            ScreenVertex { x, y, depth, ..screen_vertex(&self.view, &self.lighting, self.constant, lit, &cut.vertex) }
+            ScreenVertex { x, y, depth, ..stage.transform(&cut.vertex) }
         };
         let Some((first, rest)) = polygon.split_first() else { return 0 };
         let mut pixels = 0;
@@ -659,21 +622,112 @@ fn reversed([ab, bc, ca]: [u16; 3]) -> [u16; 3] {
     [ca, bc, ab]
 }
 
-/// Transforms a vertex, and lights it if there is a palette to light it with.
-#[inline(always)]
-fn screen_vertex<C: Pixel>(
-    view: &View,
-    lighting: &Lighting,
-    constant: Option<[[i32; 3]; 2]>,
-    palette: Option<&Palette<C>>,
-    vertex: &Vertex,
-) -> ScreenVertex {
-    let ([x, y, depth], inside) = view.project(view.to_eye(vertex.position));
-    let normal = wide(vertex.normal).map(|c| c << (30 - UNIT));
-    let light = match (palette, constant) {
-        (None, _) => [0; 3],
-        (Some(_), Some(_)) => lighting.cosines([0; 3], normal).next().map_or([0; 3], |[l, h]| [l, h, 0]),
-        (Some(palette), None) => palette.levels(lighting.cosines(wide(vertex.position), normal)),
-    };
-    ScreenVertex { x, y, depth, light, state: if inside { State::Ready } else { State::Outside } }
+/// A viewport, as culling sees it.
+#[derive(Clone, Copy)]
+struct Viewport {
+    width: i32,
+    height: i32,
+    antialiased: bool,
+}
+
+impl Viewport {
+    /// The visible box of a triangle; `None` if it shows its back, or no pixel can belong to it.
+    #[inline(always)]
+    fn bounds(self, corners: [&ScreenVertex; 3]) -> Option<Bounds> {
+        if Outline::area(corners) <= 0 {
+            return None;
+        }
+        self.visible(if self.antialiased {
+            Bounds::touched(corners.iter().map(|corner| [corner.x, corner.y, 0]))
+        } else {
+            Bounds::new(corners)
+        })
+    }
+
+    /// The visible box of what clipping leaves of a triangle.
+    #[cold]
+    #[inline(never)]
+    fn clipped_bounds(self, view: &View, vertices: [&Vertex; 3]) -> Option<Bounds> {
+        let polygon = clip::clip(view, vertices);
+        let mut corners = polygon.iter().map(|cut| view.project(cut.eye).0);
+        if self.antialiased {
+            return self.visible(Bounds::touched(corners));
+        }
+        let mut bounds = Bounds::at(corners.next()?);
+        corners.for_each(|corner| bounds.include(corner));
+        self.visible(bounds)
+    }
+
+    #[inline(always)]
+    fn visible(self, bounds: Bounds) -> Option<Bounds> {
+        let bounds = bounds.clipped(self.width, self.height);
+        (!bounds.is_empty()).then_some(bounds)
+    }
+}
+
+/// What takes the vertices of one mesh to the screen in one frame.
+struct Stage<'f, C> {
+    view: &'f View,
+    lighting: &'f Lighting,
+    /// See [`Lighting::constant`].
+    constant: Option<&'f [[i32; 3]; 2]>,
+    /// The material, if the method starts from the light at vertices.
+    lit: Option<&'f Palette<C>>,
+}
+
+impl<C: Pixel> Stage<'_, C> {
+    /// The corners on the screen, turning clockwise, against the stream's order; `None` if one is not kept or off the screen.
+    #[inline(always)]
+    fn corners(&self, cached: &mut [ScreenVertex], vertices: &[Vertex], triangle: &Triangle) -> Option<[ScreenVertex; 3]> {
+        let [a, b, c] = triangle.corners;
+        let mut place = |corner| self.place(cached, vertices, corner);
+        Some([place(a)?, place(c)?, place(b)?])
+    }
+
+    /// The screen vertex of `corner`, transformed when it is first asked for.
+    #[inline(always)]
+    fn place(&self, cached: &mut [ScreenVertex], vertices: &[Vertex], corner: u16) -> Option<ScreenVertex> {
+        let screen = cached.get_mut(usize::from(corner))?;
+        if screen.state != State::Ready {
+            if screen.state == State::Idle {
+                *screen = self.transform(vertices.get(usize::from(corner))?);
+            }
+            if screen.state != State::Ready {
+                return None;
+            }
+        }
+        Some(*screen)
+    }
+
+    /// Transforms a vertex, and lights it if the method needs that.
+    #[inline(never)]
+    fn transform(&self, vertex: &Vertex) -> ScreenVertex {
+        let ([x, y, depth], inside) = self.view.project(self.view.to_eye(vertex.position));
+        let light = match (self.lit, self.constant) {
+            (None, _) => [0; 3],
+            (Some(_), Some([towards, half])) => [vertex_cosine(vertex.normal, *towards), vertex_cosine(vertex.normal, *half), 0],
+            (Some(palette), None) => {
+                let [x, y, z] = wide(vertex.normal);
+                let normal = [x << (30 - UNIT), y << (30 - UNIT), z << (30 - UNIT)];
+                palette.levels(self.lighting.cosines(wide(vertex.position), normal))
+            }
+        };
+        ScreenVertex { x, y, depth, light, state: if inside { State::Ready } else { State::Outside } }
+    }
+
+    /// The visible box of a triangle that has a corner off the screen, or one that is not kept.
+    #[cold]
+    #[inline(never)]
+    fn bounds(&self, viewport: Viewport, vertices: &[Vertex], triangle: &Triangle) -> Option<Bounds> {
+        let [a, b, c] = triangle.corners.map(|corner| vertices.get(usize::from(corner)));
+        // Against the stream's order.
+        let vertices = [a?, c?, b?];
+        let corners = vertices.map(|vertex| self.transform(vertex));
+        let [a, b, c] = &corners;
+        if corners.iter().all(|corner| corner.state == State::Ready) {
+            viewport.bounds([a, b, c])
+        } else {
+            viewport.clipped_bounds(self.view, vertices)
+        }
+    }
 }

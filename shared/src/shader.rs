@@ -167,10 +167,16 @@ impl Shader {
         }
     }
 
-    /// Whether vertices need their light before triangles are drawn.
+    /// Whether it starts from the light at vertices: under one constant light from the cosines, else from levels.
     #[must_use]
-    pub(crate) const fn lights_vertices(self) -> bool {
-        !matches!(self, Self::Flat)
+    pub(crate) const fn lights_vertices(self, constant: bool) -> bool {
+        match self {
+            Self::Flat | Self::PhongRv | Self::Goldman | Self::Slerp | Self::Taylor | Self::TaylorFinite => false,
+            Self::Angular | Self::AngularOriginal | Self::Environment | Self::Blinn | Self::QuadraticBlinn => false,
+            // The levels that they draw are worked out at the pixel.
+            Self::Phong | Self::Duff | Self::Sqrt6 | Self::Renq | Self::RenqNewton | Self::Hybrid | Self::HybridOriginal => constant,
+            _ => true,
+        }
     }
 }
 

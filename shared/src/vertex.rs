@@ -2,7 +2,11 @@
 
 use crate::{
     format::{DEPTH, ROTATION, SUBPIXEL, UNIT},
-    math::{recip::recip, scale},
+    math::{
+        recip::recip,
+        scale,
+        vector::{add, narrow_dot, wide},
+    },
     scene::Pose,
     stream::record::{Camera, PERSPECTIVE},
 };
@@ -26,10 +30,8 @@ pub struct ScreenVertex {
 /// What is known of a cached vertex in this frame.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum State {
-    /// No triangle has asked for it.
+    /// No triangle that faces the camera has asked for it.
     Idle,
-    /// A triangle that faces the camera uses it.
-    Needed,
     /// Position and light are those of this frame.
     Ready,
     /// In front of the near plane or beyond the guard band: its triangles are clipped.
@@ -44,7 +46,7 @@ impl ScreenVertex {
 /// Largest distance from the viewport's centre that screen coordinates may have, in 1/16 pixel.
 ///
 /// Twice the widest viewport: triangles that only cross its border are not clipped but walked.
-pub const GUARD: i64 = 4096 << SUBPIXEL;
+pub const GUARD: i32 = 4096 << SUBPIXEL;
 
 /// Nearness of a vertex at the near plane, Q0.28: less than one, so that rounding cannot wrap it.
 const NEAREST: i32 = (1 << DEPTH) - (1 << 10);
@@ -67,9 +69,13 @@ pub struct View {
 enum Projection {
     Perspective {
         /// [`View::focal`] as a mantissa of 31 bits.
-        focal: i64,
+        focal: i32,
         /// Fraction bits of the mantissa.
         exponent: u32,
+        /// [`View::near`] as a mantissa of 31 bits.
+        near: i32,
+        /// How far it is shifted, for depth in the upper half of its product with 1/z.
+        depth_shift: u32,
     },
     Orthographic {
         far: i32,
@@ -90,7 +96,9 @@ impl View {
             let bits = 64 - focal.leading_zeros();
             // focal is Q.16; at 31 bits its fraction bits are these.
             let exponent = 16 + 31 - bits;
-            Projection::Perspective { focal: if bits > 31 { focal >> (bits - 31) } else { focal << (31 - bits) }, exponent }
+            let focal = if bits > 31 { focal >> (bits - 31) } else { focal << (31 - bits) } as i32;
+            let shift = near.leading_zeros() - 1;
+            Projection::Perspective { focal, exponent, near: near << shift, depth_shift: shift + 30 - DEPTH }
         } else {
             let nearness = ((NEAREST as i64) << UNIT) / i64::from((camera.far - near).max(1));
             Projection::Orthographic { far: camera.far, nearness }
@@ -108,13 +116,10 @@ impl View {
     /// Object to eye space, Q18.14.
     #[inline(always)]
     #[must_use]
-    pub fn to_eye(&self, [x, y, z]: [i16; 3]) -> [i32; 3] {
-        let along = |k: usize| {
-            let [a, b, c] = self.rotation[k];
-            let sum = a.wrapping_mul(x.into()).wrapping_add(b.wrapping_mul(y.into())).wrapping_add(c.wrapping_mul(z.into()));
-            (sum >> UNIT).wrapping_add(self.translation[k])
-        };
-        [along(0), along(1), along(2)]
+    pub fn to_eye(&self, position: [i16; 3]) -> [i32; 3] {
+        let [x, y, z] = self.rotation;
+        let along = |row| narrow_dot(row, wide(position)) >> UNIT;
+        add([along(x), along(y), along(z)], self.translation)
     }
 
     /// Eye space to `[x, y, nearness]` on the screen, and whether it lies behind the near plane and within the
@@ -123,28 +128,28 @@ impl View {
     #[must_use]
     pub fn project(&self, eye: [i32; 3]) -> ([i32; 3], bool) {
         let [x, y, z] = eye;
-        let (near, z) = (z >= self.near, z.max(self.near));
+        let (behind, z) = (z >= self.near, z.max(self.near));
         let (x, y, depth) = match self.projection {
-            Projection::Perspective { focal, exponent } => {
+            Projection::Perspective { focal, exponent, near, depth_shift } => {
                 // 1/z = r 2^(zeros - 62), relative error 2^-29 wherever the near plane lies.
                 let zeros = z.leading_zeros();
-                let r = i64::from(recip(z.unsigned_abs() << (zeros & 31)));
+                let r = recip((z as u32) << (zeros & 31)) as i32;
                 // c focal is below 2^(21 + 31); 31 bits of it times r stay below 2^62.
                 let shift = 41 - zeros + exponent;
-                let place = |c: i32| scale(((i64::from(c) * focal) >> 21) * r, shift as i32);
-                let depth = (i64::from(self.near) * r) >> (62 - DEPTH - zeros);
-                (place(x), place(y), depth.min(NEAREST.into()) as i32)
-            }
-            Projection::Orthographic { far, nearness } => {
-                let place = |c: i32| (i64::from(c) * self.focal + (1 << (UNIT + 15))) >> (UNIT + 16);
-                let depth = ((i64::from(far - z) * nearness) >> UNIT).clamp(0, NEAREST.into()) as i32;
+                let place = |c: i32| shifted(i64::from(((i64::from(c) * i64::from(focal)) >> 21) as i32) * i64::from(r), shift);
+                // Behind the near plane z has no more leading zeros than `near`: the shift is positive.
+                let depth = upper(i64::from(near) * i64::from(r)) >> ((depth_shift - zeros) & 31);
                 (place(x), place(y), depth)
             }
+            Projection::Orthographic { far, nearness } => {
+                let place = |c: i32| saturated((i64::from(c) * self.focal + (1 << (UNIT + 15))) >> (UNIT + 16));
+                (place(x), place(y), saturated((i64::from(far - z) * nearness) >> UNIT).max(0))
+            }
         };
-        let inside = |c: i64| (-GUARD..=GUARD).contains(&c);
-        let within = near && inside(x) && inside(y);
-        let limited = |c: i64| c.clamp(-GUARD, GUARD) as i32;
-        ([self.centre[0] + limited(x), self.centre[1] - limited(y), depth], within)
+        let inside = |c: i32| c.wrapping_add(GUARD) as u32 <= 2 * GUARD as u32;
+        let within = behind && inside(x) && inside(y);
+        let [x, y] = if within { [x, y] } else { [limited(x), limited(y)] };
+        ([self.centre[0] + x, self.centre[1] - y, depth.min(NEAREST)], within)
     }
 
     /// How far `eye` lies on the inner side of a clip plane (near, then the guard band's left, right, bottom, top); negative outside.
@@ -160,8 +165,43 @@ impl View {
         };
         // along * focal / z <= GUARD, z being 1 without perspective.
         let z = if matches!(self.projection, Projection::Perspective { .. }) { z } else { 1 << UNIT };
-        ((GUARD * z) << 16) - along * self.focal
+        ((i64::from(GUARD) * z) << 16) - along * self.focal
     }
+}
+
+/// `value / 2^bits` rounded to nearest, as far as 32 bits hold it.
+#[inline(always)]
+fn shifted(value: i64, bits: u32) -> i32 {
+    match bits.checked_sub(33) {
+        Some(bits) => ((upper(value) >> (bits & 31)) + 1) >> 1,
+        None => slightly_shifted(value, bits),
+    }
+}
+
+/// The same where not all of the lower half is shifted out: very near things.
+#[cold]
+#[inline(never)]
+fn slightly_shifted(value: i64, bits: u32) -> i32 {
+    saturated(scale(value, bits as i32))
+}
+
+/// Moved to the guard band.
+#[cold]
+#[inline(never)]
+fn limited(c: i32) -> i32 {
+    c.clamp(-GUARD, GUARD)
+}
+
+/// The upper half.
+#[inline(always)]
+fn upper(value: i64) -> i32 {
+    (value >> 32) as i32
+}
+
+/// The nearest that 32 bits hold.
+#[inline(always)]
+fn saturated(value: i64) -> i32 {
+    value.clamp(i32::MIN.into(), i32::MAX.into()) as i32
 }
 
 /// Number of clip planes of [`View::distance`].

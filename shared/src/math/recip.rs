@@ -1,6 +1,6 @@
 //! Reciprocal of a normalised integer.
 
-/// 2^62 / d for `d` in [2^31, 2^32): between 2^30 and 2^31.
+/// 2^62 / d for `d` in [2^31, 2^32): between 2^30 and 2^31 - 1, so that it fits an `i32` too (tests::error).
 ///
 /// One 32-bit division of the upper half gives 15 bits, one Newton step the rest.
 /// Error: at most [`ERROR`] units (tests::error).
@@ -10,11 +10,10 @@ pub fn recip(d: u32) -> u32 {
     let d = d | 1 << 31;
     // 2^47 / d from the upper 16 bits, rounded up: in (2^15, 2^16].
     let high = (u32::MAX / (d >> 16)) >> 1;
-    let x = u64::from(high) << 15;
-    // x (2 - d x / 2^62) / 1, with d x / 2^62 close to 1: e is the defect in 2^-31.
-    let defect = (1i64 << 31) - ((u64::from(d) * x) >> 31) as i64;
-    let x = x as i64 + ((x as i64 * defect) >> 31);
-    x as u32
+    let x = high << 15;
+    // x (2 - d x / 2^62) / 1, with d x / 2^62 so close to 1 that the defect, in 2^-31, fits 18 bits.
+    let defect = (1u32 << 31).wrapping_sub(((u64::from(d) * u64::from(x)) >> 31) as u32) as i32;
+    x.wrapping_add(((i64::from(x as i32) * i64::from(defect)) >> 31) as u32)
 }
 
 /// A number to divide by, Q2.30.
@@ -59,6 +58,7 @@ mod tests {
         while d < u32::MAX - 70_000 {
             for d in [d, d | 0xffff, d.next_multiple_of(1 << 16)] {
                 worst = worst.max(((1u64 << 62) / u64::from(d)).abs_diff(recip(d).into()));
+                assert!(recip(d) < 1 << 31, "{d}");
             }
             d += 65_521;
         }

@@ -9,11 +9,18 @@ pub fn dot(a: [i32; 3], b: [i32; 3]) -> i64 {
     i64::from(a[0]) * i64::from(b[0]) + i64::from(a[1]) * i64::from(b[1]) + i64::from(a[2]) * i64::from(b[2])
 }
 
-/// A vertex normal or position as `i32`.
+/// A vertex normal or position as `i32`. Written out: `map` is a loop through memory at opt-level "s".
 #[inline(always)]
 #[must_use]
-pub fn wide(v: [i16; 3]) -> [i32; 3] {
-    v.map(i32::from)
+pub fn wide([x, y, z]: [i16; 3]) -> [i32; 3] {
+    [x.into(), y.into(), z.into()]
+}
+
+/// Dot product of two vectors whose product fits 32 bits.
+#[inline(always)]
+#[must_use]
+pub fn narrow_dot([a0, a1, a2]: [i32; 3], [b0, b1, b2]: [i32; 3]) -> i32 {
+    a0.wrapping_mul(b0).wrapping_add(a1.wrapping_mul(b1)).wrapping_add(a2.wrapping_mul(b2))
 }
 
 /// `f` of each pair of components. Written out: no index, so no check of one.
