@@ -27,6 +27,7 @@ pub mod clip;
 pub mod cull;
 pub mod display;
 pub mod dither;
+mod draw;
 pub mod format;
 pub mod math;
 pub mod palette;

@@ -125,12 +125,20 @@ impl<C: Pixel> Palette<C> {
     }
 
     /// The level of a material of one channel under one light, Q9.7 in [0, 255], from `[N·L, N·H]` (Q2.30).
-    #[inline]
+    #[inline(never)]
     #[must_use]
     pub fn level(&self, [diffuse, half]: [i32; 2]) -> i32 {
         let [gains, ..] = &self.gains;
         let light = reflected((gains.diffuse[0], gains.specular[0]), diffuse, self.power.at(half));
         (self.ambient[0] + light).min(FULL)
+    }
+
+    /// [`Self::level`] where there is no highlight.
+    #[inline]
+    #[must_use]
+    pub fn matte(&self, diffuse: i32) -> i32 {
+        let [gains, ..] = &self.gains;
+        (self.ambient[0] + reflected((gains.diffuse[0], 0), diffuse, 0)).min(FULL)
     }
 
     /// Levels at a point, Q9.7 in [0, 255], from the cosines `[N·L, N·H]` (Q2.30) of each light.

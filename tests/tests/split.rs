@@ -7,6 +7,7 @@ use microphong::{
     poly::Constant,
     raster::{
         cell::Cell,
+        smooth::Part,
         triangle::{Bounds, Outline},
     },
     tone::Solid,
@@ -68,8 +69,8 @@ fn cells_of_random_triangles_cover_each_pixel_once() {
         };
         let [a, b, c] = corners.map(|[x, y]| ScreenVertex { x, y, depth: 1 << 27, light: [0; 3], state: State::Ready });
         let corners = if Outline::area([&a, &b, &c]) < 0 { [&a, &c, &b] } else { [&a, &b, &c] };
-        let outline = Outline::new(corners);
-        let Some(basis) = outline.basis(Bounds::new(corners).clipped(w / 16, h / 16)) else { continue };
+        let outline = Outline::new(corners, Part::Centres);
+        let Some(basis) = outline.basis(|| Bounds::new(corners).clipped(w / 16, h / 16)) else { continue };
         let depth = outline.depth(&basis);
         let mut pictures = [[0u8; WIDTH * HEIGHT]; 2];
         let mut drawn = [0; 2];

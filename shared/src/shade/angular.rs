@@ -42,7 +42,7 @@ pub(super) fn draw<C: Pixel>(facet: &Facet<'_>, shading: &Shading<'_, C>, fit: f
         if let Some(constant) = shading.constant
             && let Some(gloss) = shading.gloss(Both)
         {
-            return facet.outline.draw(&facet.basis, (fit(constant), Constant), gloss, band);
+            return facet.outline.draw(facet.basis, (fit(constant), Constant), gloss, band);
         }
         let of = |source: &Source| fit(shading.lighting.directions(source, [0; 3]));
         shading.draw_rows(facet, (fit([[0; 3]; 2]), of), Constant, Both, band)

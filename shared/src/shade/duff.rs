@@ -53,7 +53,7 @@ pub(super) fn numerators(facet: &Facet<'_>) -> (Linear<1>, Linear<1>) {
 #[inline(always)]
 pub(super) fn square(facet: &Facet<'_>) -> Quadratic<1> {
     // |N|² - 1 is zero at the corners.
-    let [ab, bc, ca] = facet.bend.map(|bend| -(i32::from(bend) << (NODE - BEND)));
+    let [ab, bc, ca] = facet.edges(facet.triangle.bend).map(|bend| -(i32::from(bend) << (NODE - BEND)));
     Quadratic::new([[0, 0, 0, ab, bc, ca]], EXTRA).raised([1 << 30])
 }
 

@@ -139,7 +139,7 @@ impl<C: Pixel> Shading<'_, C> {
         F: Form<<K::Walker as Walker>::Value, <P::Walker as Walker>::Value>,
     {
         let lights = PerLight::new(&self.lighting.sources, zero, fit);
-        facet.outline.draw(&facet.basis, (lights, common), self.lit(form), band)
+        facet.outline.draw(facet.basis, (lights, common), self.lit(form), band)
     }
 
     /// The quadratics through N·L and N·H of a light at six nodes; `map` is applied to both.

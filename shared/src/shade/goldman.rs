@@ -35,7 +35,7 @@ pub(super) fn draw<C: Pixel>(facet: &Facet<'_>, shading: &Shading<'_, C>, band: 
     if let Some([towards, _]) = shading.constant
         && let Some(gloss) = shading.gloss(One { lv: cosine(towards, view) })
     {
-        return facet.outline.draw(&facet.basis, (Constant, Chords { rows, normals, along: [towards, view] }), gloss, band);
+        return facet.outline.draw(facet.basis, (Constant, Chords { rows, normals, along: [towards, view] }), gloss, band);
     }
     // The normal itself: its products with the axes.
     let one = 1 << 30;

@@ -31,7 +31,7 @@ pub(super) fn draw<C: Pixel>(facet: &Facet<'_>, shading: &Shading<'_, C>, band: 
 pub(super) fn length(facet: &Facet<'_>) -> Quadratic<1> {
     // 2/|Ni+Nj| - 1, zero at the corners.
     let node = |rsum: u32| (((rsum << 1) - (1 << EDGE)) << (NODE - EDGE)) as i32;
-    let [ab, bc, ca] = [facet.rsum(0), facet.rsum(1), facet.rsum(2)].map(node);
+    let [ab, bc, ca] = facet.rsums().map(node);
     Quadratic::new([[0, 0, 0, ab, bc, ca]], EXTRA).raised([1 << 30])
 }
 

@@ -34,7 +34,7 @@ pub(super) fn draw<C: Pixel>(facet: &Facet<'_>, shading: &Shading<'_, C>, band: 
     if let Some(along) = shading.constant
         && let Some(gloss) = shading.gloss(One)
     {
-        return facet.outline.draw(&facet.basis, (Constant, Arcs { rows, arcs, along }), gloss, band);
+        return facet.outline.draw(facet.basis, (Constant, Arcs { rows, arcs, along }), gloss, band);
     }
     // The normal itself: its products with the axes.
     let one = 1 << 30;

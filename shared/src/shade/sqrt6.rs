@@ -27,9 +27,8 @@ const LOWEST: i32 = ONE / 4;
 
 pub(super) fn draw<C: Pixel>(facet: &Facet<'_>, shading: &Shading<'_, C>, band: &mut Band<'_, C>) -> u32 {
     if let Some(gloss) = shading.gloss(Squared) {
-        let cosines = facet.six_cosines();
-        let light = quadratic([cosines.map(|[light, _]| light)]);
-        let half = quadratic([cosines.map(|[_, half]| root(half))]);
+        let light = quadratic([facet.six_cosines(0)]);
+        let half = quadratic([facet.six_cosines(1).map(root)]);
         return facet.draw(((light, half), Constant), gloss, band);
     }
     let nodes = facet.six_nodes();
