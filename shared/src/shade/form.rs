@@ -84,7 +84,8 @@ impl<C: Pixel> Shading<'_, C> {
     /// The tone for one constant light on a material of one channel without dither, if that is all there is.
     pub(super) fn gloss<F>(&self, form: F) -> Option<Gloss<'_, C, F>> {
         let one = self.constant.is_some() && !self.dither && !self.palette.three_channels;
-        one.then(|| Gloss { glossy: self.palette.glossy(), form })
+        let glossy = if one { self.palette.glossy() } else { None };
+        glossy.map(|glossy| Gloss { glossy, form })
     }
 
     /// The tone for any lights.

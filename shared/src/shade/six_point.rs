@@ -31,7 +31,7 @@ pub(super) fn draw<C: Pixel>(facet: &Facet<'_>, shading: &Shading<'_, C>, band: 
 fn one_level<C: Pixel>(facet: &Facet<'_>, palette: &Palette<C>) -> [i32; 6] {
     let light = facet.six_cosines(0);
     if facet.is_dark(palette) {
-        zip_six(light, [(); 6], |light, ()| palette.matte(light))
+        palette.six_matte(light)
     } else {
         zip_six(light, facet.six_cosines(1), |light, half| palette.level([light, half]))
     }
