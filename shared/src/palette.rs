@@ -4,7 +4,7 @@ use crate::{
     dither::quantise,
     format::{BIAS, COSINE, LEVEL, MAX_LIGHTS, PIXEL_COSINE, RAMP, UNIT, WALK},
     math::{
-        power::{POWER, PixelPower, Power},
+        power::{Base, POWER, PixelPower, Power, square},
         vector::zip,
     },
     pixel::Pixel,
@@ -85,7 +85,10 @@ impl<C: Pixel> Palette<C> {
     /// Works out `material` under `lights`, for a method with these highlights.
     pub fn fill(&mut self, header: &Header, material: &Material, lights: &[Light], highlight: Highlight) {
         self.power.fill(material.exponent, highlight.base());
-        self.dark_below = self.power.dark_below();
+        self.dark_below = match highlight.base() {
+            Base::Square => square(self.power.dark_below()),
+            _ => self.power.dark_below(),
+        };
         let tint = |colour: Colour| if C::GRAY { grey(colour) } else { colour };
         let ambient = tint(product(header.ambient, material.ambient));
         let diffuse = |light: &Light| tint(product(light.colour, material.diffuse));
@@ -118,7 +121,7 @@ impl<C: Pixel> Palette<C> {
         }
     }
 
-    /// Smallest N·H, Q2.30, whose highlight counts: with the power's, see [`Power::dark_below`].
+    /// Smallest N·H, Q2.30, whose highlight counts, see [`Power::dark_below`].
     #[must_use]
     pub fn dark_below(&self) -> i32 {
         self.dark_below

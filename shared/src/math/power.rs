@@ -41,6 +41,12 @@ impl Base {
     }
 }
 
+/// [`Base::Square`] of `x`, Q2.30.
+#[must_use]
+pub fn square(x: i32) -> i32 {
+    if x >= 1 << (COSINE - 1) { ((i64::from(x) * i64::from(x)) >> COSINE) as i32 } else { x - (1 << (COSINE - 2)) }
+}
+
 /// Four times the exponent up to which the whole domain is used.
 const WHOLE: NonZeroU32 = NonZeroU32::new(4 * 8).unwrap();
 
@@ -61,8 +67,7 @@ impl Power {
             let below = ((i as u64) << 25) / NonZeroU64::from(scale);
             let x = (1u64 << 31).saturating_sub(below);
             let x = match base {
-                Base::Square if x >= 1 << 30 => (x * x) >> 31,
-                Base::Square => x.saturating_sub(1 << 29),
+                Base::Square => (square((x >> 1) as i32).max(0) as u64) << 1,
                 _ => (0..base.roots()).fold(x, |x, _| (x << 31).isqrt()),
             };
             let (mut result, mut base, mut n) = (1u64 << 31, x, n);
