@@ -3,17 +3,17 @@
 use embedded_graphics::{pixelcolor::Rgb565, prelude::Size};
 use microphong::Shader;
 use microphong_sim::{
-    bench,
-    board::{Board, elf::Elf},
+    bench::{self, Processor},
+    board::elf::Elf,
     render, scene, verify,
 };
 
 /// A depth-tested quadratic takes 13 instructions a pixel, as many as written by hand; a plane one fewer, a constant 9.
 #[test]
 fn loops_are_as_short_as_by_hand() {
-    let board = Board::Mps2An385;
+    let board = Processor::CortexM3;
     let scene = scene::load("peer-sphere").unwrap();
-    let elf = Elf::read(&verify::build(board).unwrap()).unwrap();
+    let elf = Elf::read(&verify::build(board.board().unwrap()).unwrap()).unwrap();
     let limits = [
         (Shader::Flat, 9),
         (Shader::Gouraud, 12),

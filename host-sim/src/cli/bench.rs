@@ -6,12 +6,12 @@ use super::{
     report,
     verify::load,
 };
-use anyhow::Result;
+use anyhow::{Context, Result};
 use embedded_graphics_core::{geometry::Size, pixelcolor::Rgb565};
 use microphong::Shader;
 use microphong_sim::{
-    bench::{self, Report},
-    board::{Board, elf::Elf},
+    bench::{self, Measurement, Processor},
+    board::elf::Elf,
     render, verify,
 };
 
@@ -30,7 +30,7 @@ pub(crate) struct Arguments {
     shader: Several<Shader>,
     /// mps2-an385 (Cortex-M3) or mps2-an386 (Cortex-M4F).
     #[arg(long, default_value = "mps2-an385", value_parser = board)]
-    board: Board,
+    board: Processor,
     /// Print one JSON object per frame.
     #[arg(long)]
     json: bool,
@@ -43,10 +43,10 @@ Examples:
   microphong bench sphere-690 --board mps2-an386";
 
 /// Boards whose every instruction can be logged.
-const BOARDS: [Board; 2] = [Board::Mps2An385, Board::Mps2An386];
+const BOARDS: [Processor; 2] = [Processor::CortexM3, Processor::CortexM4F];
 
-fn board(text: &str) -> Result<Board, String> {
-    parse::among(text, &BOARDS, Board::name)
+fn board(text: &str) -> Result<Processor, String> {
+    parse::among(text, &BOARDS, Processor::board_name)
 }
 
 pub(crate) fn run(arguments: &Arguments) -> Result<Outcome> {
@@ -54,7 +54,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome> {
     let board = arguments.board;
     let shaders = &arguments.shader.values;
     let bar = report::progress((scenes.len() * shaders.len()) as u64 + 1, "counting");
-    let elf = Elf::read(&verify::build(board)?)?;
+    let elf = Elf::read(&verify::build(board.board().context("no board")?)?)?;
     let (width, height) = board.size();
     for scene in &scenes {
         for &shader in shaders {
@@ -70,11 +70,12 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome> {
     Ok(Outcome::Done)
 }
 
-fn text(result: &Report) -> Result<()> {
+fn text(result: &Measurement) -> Result<()> {
     let stages = result.by_stage;
     let [all, vertex, cull, setup, span, pixel] =
         [result.instructions, stages.vertex, stages.cull, stages.setup, stages.span, stages.pixel].map(report::grouped);
-    let Report { board, scene, shader, pixels, triangles, spans, instr_per_pixel, .. } = result;
+    let board = result.board.board_name();
+    let Measurement { scene, shader, pixels, triangles, spans, instr_per_pixel, .. } = result;
     report::line(&format!("{board}, {scene}, {shader}: {all} instructions, {instr_per_pixel} per pixel"))?;
     report::line(&format!("  vertex {vertex}, cull and bin {cull}, set-up {setup}, span {span}, pixel {pixel}"))?;
     let inner = stages.pixel as f64 / (*pixels).max(1) as f64;

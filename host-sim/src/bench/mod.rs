@@ -1,58 +1,16 @@
 //! What a frame costs, in instructions, stage by stage: exact, because an emulated board executes the firmware itself.
 
-use crate::board::{Board, elf::Elf, trace};
+pub mod measurement;
+pub mod processor;
+pub mod stage;
+
+use crate::board::{elf::Elf, trace};
 use anyhow::{Context, Result};
+pub use measurement::Measurement;
 use microphong::Shader;
-use serde::Serialize;
+pub use processor::Processor;
+pub use stage::Stages;
 use std::{collections::HashMap, ops::Range};
-
-/// Instructions of one frame by stage. Clearing the band, checksum, log and display are left out.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
-pub struct Stages {
-    /// Vertices: transformation and light.
-    pub vertex: u64,
-    /// Triangles that face away or lie off screen told apart, the others binned.
-    pub cull: u64,
-    /// Per drawn triangle and band: nodes, fits, edges.
-    pub setup: u64,
-    /// Per row of a triangle: stepping, slices, the start of the walkers.
-    pub span: u64,
-    /// The inner loop.
-    pub pixel: u64,
-}
-
-impl Stages {
-    /// All of them.
-    #[must_use]
-    pub fn sum(&self) -> u64 {
-        self.vertex + self.cull + self.setup + self.span + self.pixel
-    }
-}
-
-/// One measured frame.
-#[derive(Clone, Debug, Serialize)]
-pub struct Report {
-    /// The board that drew.
-    pub board: Board,
-    /// Its processor.
-    pub cpu: &'static str,
-    /// The scene's name.
-    pub scene: String,
-    /// The method's name.
-    pub shader: &'static str,
-    /// Instructions of the frame.
-    pub instructions: u64,
-    /// Pixels of all drawn triangles.
-    pub pixels: u64,
-    /// Triangles drawn.
-    pub triangles: u64,
-    /// Rows of triangles.
-    pub spans: u64,
-    /// Instructions per pixel.
-    pub instr_per_pixel: f64,
-    /// Where they go.
-    pub by_stage: Stages,
-}
 
 /// Part of a frame that a function belongs to.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -96,7 +54,7 @@ fn part(name: &str) -> Part {
 ///
 /// # Errors
 /// When QEMU cannot be run, or the firmware is stripped.
-pub fn measure(board: Board, elf: &Elf, scene: &str, shader: Shader, pixels: u64, triangles: u64) -> Result<Report> {
+pub fn measure(processor: Processor, elf: &Elf, scene: &str, shader: Shader, pixels: u64, triangles: u64) -> Result<Measurement> {
     let mut functions: Vec<Function> = elf.functions()?.into_iter().map(|(name, range)| Function { part: part(&name), range }).collect();
     functions.sort_by_key(|function| function.range.start);
     // Start-up paints the stack, which takes longer than a frame.
@@ -106,6 +64,7 @@ pub fn measure(board: Board, elf: &Elf, scene: &str, shader: Shader, pixels: u64
     let mut stages = Stages::default();
     let mut rows: HashMap<u32, u64> = HashMap::new();
     let mut current = Part::Other;
+    let board = processor.board().context("no board to trace")?;
     trace(board, elf, &merged(ranges), |address| {
         let index = functions.partition_point(|function| function.range.start <= address);
         let part = index.checked_sub(1).and_then(|i| functions.get(i)).map_or(Part::Other, |function| function.part);
@@ -126,16 +85,11 @@ pub fn measure(board: Board, elf: &Elf, scene: &str, shader: Shader, pixels: u64
     for count in rows.values() {
         if *count > entries { stages.pixel += count } else { stages.span += count }
     }
-    let cpu = match board {
-        Board::Pico => "cortex-m0plus",
-        Board::Lm3s6965evb | Board::Mps2An385 => "cortex-m3",
-        Board::Mps2An386 => "cortex-m4",
-    };
-    let instructions = stages.sum();
+    let instructions = stages.drawing();
     let instr_per_pixel = instructions as f64 / pixels.max(1) as f64;
-    Ok(Report {
-        board,
-        cpu,
+    Ok(Measurement {
+        board: processor,
+        cpu: processor.name(),
         scene: scene.to_owned(),
         shader: shader.name(),
         instructions,
@@ -144,6 +98,11 @@ pub fn measure(board: Board, elf: &Elf, scene: &str, shader: Shader, pixels: u64
         spans: entries,
         instr_per_pixel: (instr_per_pixel * 100.0).round() / 100.0,
         by_stage: stages,
+        cycles: None,
+        ram_bytes: None,
+        flash_bytes: None,
+        max_lsb: None,
+        rmse_lsb: None,
     })
 }
 
