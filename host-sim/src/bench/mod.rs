@@ -1,6 +1,10 @@
 //! What a frame costs, in instructions, stage by stage: exact, because an emulated board executes the firmware itself.
 
+pub mod break_even;
+pub mod callgrind;
+pub mod growth;
 pub mod measurement;
+pub mod pareto;
 pub mod processor;
 pub mod stage;
 

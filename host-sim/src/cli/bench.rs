@@ -43,7 +43,7 @@ Examples:
   microphong bench sphere-690 --board mps2-an386";
 
 /// Boards whose every instruction can be logged.
-const BOARDS: [Processor; 2] = [Processor::CortexM3, Processor::CortexM4F];
+const BOARDS: [Processor; 3] = [Processor::CortexM3, Processor::CortexM4F, Processor::X86_64];
 
 fn board(text: &str) -> Result<Processor, String> {
     parse::among(text, &BOARDS, Processor::board_name)
@@ -53,6 +53,20 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome> {
     let scenes = load(&arguments.scene)?;
     let board = arguments.board;
     let shaders = &arguments.shader.values;
+    if board == Processor::X86_64 {
+        let program = bench::callgrind::build()?;
+        for scene in &scenes {
+            let shaders: Vec<_> =
+                shaders.iter().copied().filter(|&s| microphong::render::check(&scene.stream.parse().unwrap(), s, false).is_ok()).collect();
+            let frames: Vec<_> =
+                shaders.iter().map(|&shader| bench::callgrind::Frame { size: board.size(), band_rows: board.size().1, shader }).collect();
+            for (count, &shader) in bench::callgrind::count(&program, scene.stream.as_bytes(), &frames)?.iter().zip(&shaders) {
+                let result = count.measurement(&scene.name, shader);
+                if arguments.json { report::json(&result) } else { text(&result) }?;
+            }
+        }
+        return Ok(Outcome::Done);
+    }
     let bar = report::progress((scenes.len() * shaders.len()) as u64 + 1, "counting");
     let elf = Elf::read(&verify::build(board.board().context("no board")?)?)?;
     let (width, height) = board.size();

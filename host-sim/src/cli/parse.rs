@@ -2,6 +2,7 @@
 
 use microphong::{Shader, render::MAX_SIDE};
 use microphong_sim::{
+    bench::growth::Sweep,
     board::Board,
     papers::Topic,
     render::Format,
@@ -52,6 +53,11 @@ pub(crate) fn shaders(text: &str) -> Result<Several<Shader>, String> {
 /// Papers by name.
 pub(crate) fn topics(text: &str) -> Result<Several<Topic>, String> {
     several(text, &Topic::ALL, |text| among(text, &Topic::ALL, Topic::name))
+}
+
+/// What grows, by name.
+pub(crate) fn sweeps(text: &str) -> Result<Several<Sweep>, String> {
+    several(text, &Sweep::ALL, |text| among(text, &Sweep::ALL, Sweep::name))
 }
 
 /// A shading method by name.
