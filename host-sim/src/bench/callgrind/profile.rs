@@ -40,7 +40,9 @@ impl Profile {
         for (line, number) in text.lines().zip(1..) {
             let wrong = || format!("line {number} of callgrind's profile: {line}");
             if let Some(symbol) = line.strip_prefix("fn=") {
-                let name = format!("{:#}", rustc_demangle::demangle(symbol));
+                // `'2` is the function called by itself.
+                let mangled = symbol.split_once('\'').map_or(symbol, |(symbol, _)| symbol);
+                let name = format!("{:#}", rustc_demangle::demangle(mangled));
                 profile.functions.push(Function { name, symbol: symbol.to_owned(), ..Function::default() });
             } else if let Some(symbol) = line.strip_prefix("cfn=") {
                 symbol.clone_into(&mut called);

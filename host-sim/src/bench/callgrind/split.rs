@@ -4,7 +4,7 @@ use super::{
     super::{Part, Stages, part as board_part},
     profile::{Function, Profile},
 };
-use anyhow::{Result, ensure};
+use anyhow::{Context, Result, ensure};
 use std::collections::HashMap;
 
 /// The part that a function belongs to. Whatever is not the core's own works for its caller.
@@ -19,7 +19,7 @@ fn part(name: &str) -> Part {
 pub(super) fn stages(profile: &Profile) -> Result<(Stages, u64)> {
     let helpers = Helpers::of(profile);
     let mut stages = Stages::default();
-    let mut spans = 0;
+    let (mut spans, mut rows) = (0, 0);
     for function in &profile.functions {
         let part = part(&function.name);
         if part == Part::Callers {
@@ -27,7 +27,15 @@ pub(super) fn stages(profile: &Profile) -> Result<(Stages, u64)> {
         }
         let entries = helpers.entries(function);
         let own = function.executions.iter().map(|&count| (count, count));
-        let calls = function.calls.iter().map(|call| (call.count, helpers.own_cost(&call.to, call.cost)));
+        let calls = function.calls.iter().map(|call| {
+            let helped = helpers.own_cost(&call.to, call.cost);
+            if part != Part::Row {
+                return (call.count, helped);
+            }
+            // Rows call what methods do per row and per pixel; it has been, or will be, counted as set-up where it is defined.
+            rows += call.cost - helped;
+            (call.count, call.cost)
+        });
         for (executions, cost) in own.chain(calls) {
             match part {
                 Part::Vertex => stages.vertex += cost,
@@ -44,6 +52,7 @@ pub(super) fn stages(profile: &Profile) -> Result<(Stages, u64)> {
             spans += entries;
         }
     }
+    stages.setup = stages.setup.checked_sub(rows).context("rows cost more than all that they call")?;
     ensure!(spans > 0, "no function that fills a row is known by its name, or nothing was drawn");
     Ok((stages, spans))
 }
@@ -73,14 +82,20 @@ impl<'p> Helpers<'p> {
     /// Of `cost`, spent in calls of the function `symbol`, what its caller has to bear: nothing if the function has a stage
     /// of its own, and of a helper all but its own calls of such functions, which are shared out among its callers.
     fn own_cost(&self, symbol: &str, cost: u64) -> u64 {
-        let Some(function) = self.profile.function(symbol) else { return cost };
+        self.share(symbol, cost, &mut Vec::new())
+    }
+
+    /// `path` is what has called the function.
+    fn share<'a>(&'a self, symbol: &'a str, cost: u64, path: &mut Vec<&'a str>) -> u64 {
+        let Some(function) = self.profile.function(symbol).filter(|_| !path.contains(&symbol)) else { return cost };
         if part(&function.name) != Part::Callers {
             return 0;
         }
-        let all = self.entered.get(symbol).map_or(0, |(_, cost)| *cost);
-        let elsewhere = function.calls.iter().map(|call| call.cost - self.own_cost(&call.to, call.cost)).sum::<u64>().min(all);
-        let share = u128::from(cost) * u128::from(all - elsewhere) / u128::from(all.max(1));
-        share as u64
+        path.push(symbol);
+        let elsewhere: u64 = function.calls.iter().map(|call| call.cost - self.share(&call.to, call.cost, path)).sum();
+        path.pop();
+        let all = self.entered.get(symbol).map_or(0, |(_, cost)| *cost).max(1);
+        (u128::from(cost) * u128::from(all.saturating_sub(elsewhere)) / u128::from(all)) as u64
     }
 }
 
@@ -102,12 +117,12 @@ calls=1 0x80
 0x4 1000
 cfn=helper
 calls=2 0x70
-0x5 206
+0x5 656
 fn=helper
 0x6 6
 cfn=microphong::raster::triangle::row
 calls=6 0x60
-0x7 200
+0x7 650
 fn=microphong::raster::triangle::row
 0x60 6
 0x61 90
@@ -117,18 +132,23 @@ calls=6 0x90
 cfn=memcpy
 calls=45 0x90
 0x63 90
+cfn=microphong::shade::tone
+calls=45 0xa0
+0x64 450
+fn=microphong::shade::tone
+0xa0 450
 fn=microphong::band::Band<C>::clear
 0x80 1000
 fn=memcpy
 0x90 109
-totals: 1281
+totals: 1731
 ";
 
     #[test]
     fn each_instruction_goes_to_one_stage() {
         let profile = Profile::parse(TEXT).expect("a profile");
         let (stages, spans) = stages(&profile).expect("stages");
-        let expected = Stages { vertex: 55, cull: 0, setup: 26, span: 20, pixel: 180, clear: 1000, transfer: 0 };
+        let expected = Stages { vertex: 55, cull: 0, setup: 26, span: 20, pixel: 630, clear: 1000, transfer: 0 };
         assert_eq!(stages, expected);
         assert_eq!(spans, 6);
         assert_eq!(stages.drawing() + stages.clear, profile.total);
