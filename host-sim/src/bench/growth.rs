@@ -36,14 +36,14 @@ pub enum Sweep {
 pub struct Point {
     /// What grows.
     pub sweep: Sweep,
-    /// How much of it there is: of triangles and pixels what the frame has of them.
+    /// How much of it there is.
     pub amount: u64,
     /// The method.
     #[serde(serialize_with = "name")]
     pub shader: Shader,
     /// Instructions of the frame, without clearing.
     pub instructions: u64,
-    /// Triangles drawn.
+    /// Triangles drawn: those in whose box a pixel's centre lies.
     pub triangles: u64,
     /// Rows of triangles.
     pub spans: u64,
@@ -164,11 +164,7 @@ impl Step {
             let counts = callgrind::count(program, self.stream.as_bytes(), &[frame])?;
             let points = counts.into_iter().map(|count| Point {
                 sweep: self.sweep,
-                amount: match self.sweep {
-                    Sweep::Triangles => count.triangles,
-                    Sweep::Pixels => count.pixels,
-                    Sweep::Lights | Sweep::Bands => self.amount,
-                },
+                amount: self.amount,
                 shader,
                 instructions: count.stages.drawing(),
                 triangles: count.triangles,

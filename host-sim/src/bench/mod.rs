@@ -2,8 +2,10 @@
 
 pub mod break_even;
 pub mod callgrind;
+pub mod family;
 pub mod growth;
 pub mod measurement;
+pub mod page;
 pub mod pareto;
 pub mod processor;
 pub mod stage;
