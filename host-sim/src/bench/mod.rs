@@ -4,7 +4,7 @@ pub mod measurement;
 pub mod processor;
 pub mod stage;
 
-use crate::board::{elf::Elf, trace};
+use crate::board::{Blocks, elf::Elf, trace};
 use anyhow::{Context, Result};
 pub use measurement::Measurement;
 use microphong::Shader;
@@ -65,7 +65,7 @@ pub fn measure(processor: Processor, elf: &Elf, scene: &str, shader: Shader, pix
     let mut rows: HashMap<u32, u64> = HashMap::new();
     let mut current = Part::Other;
     let board = processor.board().context("no board to trace")?;
-    trace(board, elf, &merged(ranges), |address| {
+    trace(board, elf, &merged(ranges), Blocks::Whole, |address| {
         let index = functions.partition_point(|function| function.range.start <= address);
         let part = index.checked_sub(1).and_then(|i| functions.get(i)).map_or(Part::Other, |function| function.part);
         if part != Part::Callers {

@@ -13,7 +13,7 @@ use anyhow::Result;
 use budget::Budget;
 use elf::Elf;
 use microphong::Shader;
-pub use qemu::trace;
+pub use qemu::{Blocks, trace};
 use serde::{Serialize, Serializer};
 use std::fmt;
 
