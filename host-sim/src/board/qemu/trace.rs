@@ -3,15 +3,20 @@
 //! QEMU translates blocks of instructions. It logs the instructions of a block when it translates it, and the block each time it
 //! runs: far fewer lines than instructions, and as exact.
 
-use super::super::{Board, elf::Elf};
+use super::super::{
+    Board, Recording,
+    elf::Elf,
+    log::{Decoder, tail},
+};
 use anyhow::{Context, Result, anyhow, bail, ensure};
 use std::{
     collections::HashMap,
     fmt::Write as _,
     fs,
-    io::{BufRead, BufReader, Write},
+    io::{BufRead, BufReader, Read, Write},
     ops::Range,
     process::{Command, Stdio},
+    thread,
 };
 
 /// How much QEMU translates at once.
@@ -23,11 +28,13 @@ pub enum Blocks {
     Single,
 }
 
-/// Runs the firmware to its end and hands the address of each instruction that is executed in `ranges` to `visit`.
+/// Runs the firmware to its end and hands the address of each instruction that is executed in `ranges` to `visit`. Pictures are not
+/// looked at.
 ///
 /// # Errors
 /// When QEMU cannot be started or its log cannot be read.
-pub fn trace(board: Board, elf: &Elf, ranges: &[Range<u32>], blocks: Blocks, mut visit: impl FnMut(u32)) -> Result<()> {
+pub fn trace(board: Board, elf: &Elf, ranges: &[Range<u32>], blocks: Blocks, mut visit: impl FnMut(u32)) -> Result<Recording> {
+    let mut decoder = Decoder::new(elf)?;
     let directory = tempfile::Builder::new().prefix("mphong").tempdir().context("cannot create a temporary directory")?;
     let program = directory.path().join("firmware.elf");
     fs::write(&program, elf.bytes()).with_context(|| format!("cannot write {}", program.display()))?;
@@ -45,15 +52,21 @@ pub fn trace(board: Board, elf: &Elf, ranges: &[Range<u32>], blocks: Blocks, mut
         .arg("-kernel")
         .arg(&program)
         .stdin(Stdio::piped())
-        .stdout(Stdio::null())
+        .stdout(Stdio::piped())
         .stderr(Stdio::piped())
         .spawn()
         .map_err(|error| anyhow!("cannot start qemu-system-arm: {error}; `apt-get install -y --no-install-recommends qemu-system-arm`"))?;
-    let (Some(mut input), Some(output)) = (process.stdin.take(), process.stderr.take()) else {
+    let pipes = (process.stdin.take(), process.stdout.take(), process.stderr.take());
+    let (Some(mut input), Some(mut messages), Some(output)) = pipes else {
         bail!("qemu-system-arm started without pipes");
     };
     // The firmware waits for a byte after each frame; nobody looks at the display here.
     input.write_all(&[b'n'; 64]).context("QEMU has closed its input")?;
+    // In a thread of its own, or QEMU would wait for a reader of the one while nobody reads the other.
+    let messages = thread::spawn(move || {
+        let mut bytes = Vec::new();
+        messages.read_to_end(&mut bytes).map(|_| bytes)
+    });
     let mut output = BufReader::with_capacity(1 << 20, output);
     let mut log = Log::default();
     let mut line = Vec::new();
@@ -63,8 +76,11 @@ pub fn trace(board: Board, elf: &Elf, ranges: &[Range<u32>], blocks: Blocks, mut
     }
     log.end(&mut visit);
     let status = process.wait()?;
-    ensure!(status.success(), "the firmware did not run to its end in QEMU: {status}");
-    Ok(())
+    let messages = messages.join().map_err(|_| anyhow!("the reader of the firmware's log panicked"))?.context("no log from QEMU")?;
+    let mut recording = Recording::default();
+    decoder.push(&messages, |line| recording.log.push(line));
+    ensure!(status.success(), "the firmware did not run to its end in QEMU ({status}); {}", tail(&recording.log));
+    Ok(recording)
 }
 
 /// What has been read of the log.
