@@ -10,7 +10,7 @@ use serde::Serialize;
 /// What one method's frame is made of, instructions.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Costs {
-    /// Per triangle drawn, with its share of vertices and of triangles not drawn.
+    /// Per triangle drawn, with its share of camera, vertices and triangles not drawn.
     pub triangle: f64,
     /// Per span, times the spans of a triangle of one pixel.
     pub span: f64,
@@ -25,7 +25,7 @@ impl Costs {
         let [triangles, pixels] = [frame.triangles, frame.pixels].map(|n| n as f64);
         let stages = frame.by_stage;
         (frame.triangles > 0 && frame.pixels > 0).then(|| Self {
-            triangle: (stages.vertex + stages.cull + stages.setup) as f64 / triangles,
+            triangle: (stages.frame + stages.vertex + stages.cull + stages.setup) as f64 / triangles,
             span: stages.span as f64 / (triangles * pixels).sqrt(),
             pixel: stages.pixel as f64 / pixels,
         })

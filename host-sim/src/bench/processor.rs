@@ -17,7 +17,7 @@ pub enum Processor {
 
 impl Processor {
     /// All that can be measured.
-    pub const ALL: [Self; 3] = [Self::CortexM3, Self::CortexM4F, Self::CortexM0Plus];
+    pub const ALL: [Self; 4] = [Self::CortexM3, Self::CortexM4F, Self::CortexM0Plus, Self::X86_64];
 
     /// The processor's name.
     #[must_use]

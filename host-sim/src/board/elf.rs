@@ -1,7 +1,11 @@
 //! The firmware's ELF file: what it takes of a board's memory, and another stream in it.
 
 use anyhow::{Context, Result, bail, ensure};
-use goblin::elf::{Elf as Parsed, program_header::PT_LOAD};
+use goblin::elf::{
+    Elf as Parsed,
+    program_header::PT_LOAD,
+    sym::{STT_FUNC, STT_OBJECT},
+};
 use std::{fs, ops::Range, path::Path};
 
 /// A program for a board.
@@ -64,13 +68,29 @@ impl Elf {
     /// # Errors
     /// When the file is damaged.
     pub fn functions(&self) -> Result<Vec<(String, Range<u32>)>> {
+        self.symbols(STT_FUNC)
+    }
+
+    /// Names and addresses of all variables and constants that have a symbol.
+    ///
+    /// # Errors
+    /// When the file is damaged.
+    pub fn constants(&self) -> Result<Vec<(String, Range<u32>)>> {
+        let loaded: Vec<_> = self.segments()?.iter().map(|s| s.address..s.address + s.bytes.len() as u32).collect();
+        let mut objects = self.symbols(STT_OBJECT)?;
+        // The others lie in RAM.
+        objects.retain(|(_, range)| loaded.iter().any(|segment| segment.contains(&range.start)));
+        Ok(objects)
+    }
+
+    fn symbols(&self, kind: u8) -> Result<Vec<(String, Range<u32>)>> {
         let elf = self.parsed()?;
-        let functions = elf.syms.iter().filter(|symbol| symbol.is_function() && symbol.st_size > 0);
-        Ok(functions
+        let symbols = elf.syms.iter().filter(|symbol| symbol.st_type() == kind && symbol.st_size > 0);
+        Ok(symbols
             .filter_map(|symbol| {
                 let name = format!("{:#}", rustc_demangle::demangle(elf.strtab.get_at(symbol.st_name)?));
-                // Bit 0 says that the code is Thumb.
-                let start = symbol.st_value as u32 & !1;
+                // Bit 0 of a function says that the code is Thumb.
+                let start = symbol.st_value as u32 & if kind == STT_FUNC { !1 } else { !0 };
                 Some((name, start..start + symbol.st_size as u32))
             })
             .collect())

@@ -2,6 +2,7 @@
 
 use microphong::{Shader, render::MAX_SIDE};
 use microphong_sim::{
+    bench::Processor,
     bench::growth::Sweep,
     board::Board,
     papers::Topic,
@@ -43,6 +44,11 @@ fn several<T: Copy + PartialEq>(text: &str, all: &[T], one: impl Fn(&str) -> Res
 /// Boards by name.
 pub(crate) fn boards(text: &str) -> Result<Several<Board>, String> {
     several(text, &Board::ALL, |text| among(text, &Board::ALL, Board::name))
+}
+
+/// What `bench` measures, by its boards.
+pub(crate) fn processors(text: &str) -> Result<Several<Processor>, String> {
+    several(text, &Processor::ALL, |text| among(text, &Processor::ALL, Processor::board_name))
 }
 
 /// Shading methods by name.

@@ -64,6 +64,9 @@ impl Count {
             flash_bytes: None,
             max_lsb: None,
             rmse_lsb: None,
+            flash_own_bytes: None,
+            firmware_bytes: None,
+            timing: None,
         }
     }
 }

@@ -1,58 +1,39 @@
 //! A profile by stages.
 
 use super::{
-    super::{Part, Stages, part as board_part},
+    super::stage::{Part, Stages, part},
     profile::{Function, Profile},
 };
-use anyhow::{Context, Result, ensure};
+use anyhow::{Result, ensure};
 use std::collections::HashMap;
-
-/// The part that a function belongs to. Whatever is not the core's own works for its caller.
-fn part(name: &str) -> Part {
-    match board_part(name) {
-        Part::Other if !name.contains("microphong::") && !name.starts_with("frame::") => Part::Callers,
-        part => part,
-    }
-}
 
 /// Instructions by stage, and rows of triangles.
 pub(super) fn stages(profile: &Profile) -> Result<(Stages, u64)> {
     let helpers = Helpers::of(profile);
     let mut stages = Stages::default();
-    let (mut spans, mut rows) = (0, 0);
+    let mut spans = 0;
     for function in &profile.functions {
         let part = part(&function.name);
-        if part == Part::Callers {
-            continue;
-        }
         let entries = helpers.entries(function);
         let own = function.executions.iter().map(|&count| (count, count));
-        let calls = function.calls.iter().map(|call| {
-            let helped = helpers.own_cost(&call.to, call.cost);
-            if part != Part::Row {
-                return (call.count, helped);
-            }
-            // Rows call what methods do per row and per pixel; it has been, or will be, counted as set-up where it is defined.
-            rows += call.cost - helped;
-            (call.count, call.cost)
-        });
+        let calls = function.calls.iter().map(|call| (call.count, helpers.own_cost(&call.to, call.cost)));
         for (executions, cost) in own.chain(calls) {
             match part {
+                Part::Frame => stages.frame += cost,
                 Part::Vertex => stages.vertex += cost,
                 Part::Cull => stages.cull += cost,
                 Part::Setup => stages.setup += cost,
                 // What happens more often than the function is entered happens in its loop.
                 Part::Row if executions > entries => stages.pixel += cost,
                 Part::Row => stages.span += cost,
-                Part::Other if function.name.contains("Band<") => stages.clear += cost,
-                Part::Other | Part::Callers => {}
+                Part::Clear => stages.clear += cost,
+                Part::Transfer | Part::Idle | Part::Outside | Part::Unwatched | Part::Callers => {}
             }
         }
         if part == Part::Row {
             spans += entries;
         }
     }
-    stages.setup = stages.setup.checked_sub(rows).context("rows cost more than all that they call")?;
     ensure!(spans > 0, "no function that fills a row is known by its name, or nothing was drawn");
     Ok((stages, spans))
 }
@@ -148,7 +129,7 @@ totals: 1731
     fn each_instruction_goes_to_one_stage() {
         let profile = Profile::parse(TEXT).expect("a profile");
         let (stages, spans) = stages(&profile).expect("stages");
-        let expected = Stages { vertex: 55, cull: 0, setup: 26, span: 20, pixel: 630, clear: 1000, transfer: 0 };
+        let expected = Stages { vertex: 55, cull: 0, setup: 26, span: 20, pixel: 630, clear: 1000, ..Stages::default() };
         assert_eq!(stages, expected);
         assert_eq!(spans, 6);
         assert_eq!(stages.drawing() + stages.clear, profile.total);

@@ -49,8 +49,10 @@ fn crosses(from: (f64, f64), to: (f64, f64), area: Box) -> bool {
     })
 }
 
-/// Places a name at each point inside `frame`. Points come first in the choice that come first in the list.
-pub(super) fn place(points: &[((f64, f64), &str)], frame: Box) -> Vec<Label> {
+/// Places a name at each point inside `frame`, off the `lines` if possible, which run across or down. Points come first in the
+/// choice that come first in the list.
+pub(super) fn place(points: &[((f64, f64), &str)], lines: &[[(f64, f64); 2]], frame: Box) -> Vec<Label> {
+    let lines: Vec<Box> = lines.iter().map(|[a, b]| [a.0.min(b.0), a.1.min(b.1), a.0.max(b.0), a.1.max(b.1)]).collect();
     let dots: Vec<Box> = points.iter().map(|&((x, y), _)| [x - POINT, y - POINT, x + POINT, y + POINT]).collect();
     let mut taken: Vec<Box> = Vec::new();
     let mut leaders: Vec<[(f64, f64); 2]> = Vec::new();
@@ -62,7 +64,8 @@ pub(super) fn place(points: &[((f64, f64), &str)], frame: Box) -> Vec<Label> {
             let outside = area[0] < frame[0] || area[1] < frame[1] || area[2] > frame[2] || area[3] > frame[3];
             let end = edge(point, area);
             let covered = taken.iter().filter(|other| overlap(area, **other)).count();
-            let hidden = dots.iter().filter(|dot| overlap(area, **dot)).count();
+            let hidden = lines.iter().filter(|line| overlap(area, **line)).count();
+            let hidden = hidden + dots.iter().filter(|dot| overlap(area, **dot)).count();
             let struck = leaders.iter().filter(|[from, to]| crosses(*from, *to, area)).count()
                 + if distance > DISTANCES[1] { taken.iter().filter(|other| crosses(point, end, **other)).count() } else { 0 };
             let worst = 1e6 * covered as f64 + 1e4 * hidden as f64 + 300.0 * struck as f64 + if outside { 1e7 } else { 0.0 };
@@ -122,13 +125,19 @@ mod tests {
             let (x, y) = label.text;
             [x, y + 2.2 - height, x + width, y + 2.2]
         };
-        super::place(points, FRAME).into_iter().zip(points).map(place).collect()
+        super::place(points, &[], FRAME).into_iter().zip(points).map(place).collect()
     }
 
     #[test]
     fn a_lonely_point_has_its_name_at_its_right() {
-        let [label] = place(&[((100.0, 100.0), "phong")], FRAME)[..] else { panic!("one label") };
+        let [label] = place(&[((100.0, 100.0), "phong")], &[], FRAME)[..] else { panic!("one label") };
         assert!(label.text.0 > 104.0 && label.text.0 < 112.0 && label.leader.is_none(), "{label:?}");
+    }
+
+    #[test]
+    fn a_name_does_not_lie_on_a_line() {
+        let [label] = place(&[((100.0, 100.0), "phong")], &[[(100.0, 100.0), (300.0, 100.0)]], FRAME)[..] else { panic!("one label") };
+        assert!((label.text.1 - 100.0).abs() > 2.2, "{label:?}");
     }
 
     proptest! {

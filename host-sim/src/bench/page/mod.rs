@@ -11,7 +11,10 @@ use super::{
     family::Family,
     growth::{Point, Sweep},
 };
-use crate::{output::Output, page::{COLOURS, document}};
+use crate::{
+    output::Output,
+    page::{COLOURS, document},
+};
 use anyhow::{Context, Result};
 use maud::{Markup, PreEscaped, html};
 use scatter::{Axes, Error};
@@ -234,6 +237,9 @@ mod tests {
                 flash_bytes: None,
                 max_lsb: Some(40.0 / (index + 1) as f64),
                 rmse_lsb: Some(10.0 / (index + 1) as f64),
+                flash_own_bytes: None,
+                firmware_bytes: None,
+                timing: None,
             }
         };
         let processors = [Processor::CortexM3, Processor::X86_64];

@@ -97,7 +97,9 @@ pub(super) fn drawing(processor: Processor, measurements: &[&Measurement], axes:
     let order = || front.iter().copied().chain((0..points.len()).filter(|index| !front.contains(index)));
     let place = |p: &Point<'_>| (x.at(p.error), y.at(p.measurement.instr_per_pixel));
     let names: Vec<_> = order().filter_map(|index| points.get(index)).map(|p| (place(p), p.measurement.shader)).collect();
-    let labels = label::place(&names, [LEFT + 2.0, TOP, SIZE.0, BOTTOM - 2.0]);
+    let stairs = stairs(&front.iter().filter_map(|&i| points.get(i)).map(place).collect::<Vec<_>>());
+    let steps: Vec<[(f64, f64); 2]> = stairs.array_windows().copied().collect();
+    let labels = label::place(&names, &steps, [LEFT + 2.0, TOP, SIZE.0, BOTTOM - 2.0]);
     html! {
         text.title x=(LEFT) y="11" { (processor.name()) }
         @for tick in y.ticks() {
@@ -112,7 +114,7 @@ pub(super) fn drawing(processor: Processor, measurements: &[&Measurement], axes:
         }
         text x=(RIGHT) y="11" text-anchor="end" { "instructions per pixel" }
         text x=((LEFT + RIGHT) / 2.0) y=(SIZE.1 - 4.0) text-anchor="middle" { (error.label()) }
-        path.front d=(stairs(&front.iter().filter_map(|&i| points.get(i)).map(place).collect::<Vec<_>>())) {}
+        polyline.front points=(stairs.iter().map(|(x, y)| format!("{x:.1},{y:.1}")).collect::<Vec<_>>().join(" ")) {}
         @for (index, label) in order().zip(&labels) {
             @if let Some(point) = points.get(index) {
                 @let (px, py) = place(point);
@@ -130,13 +132,10 @@ pub(super) fn drawing(processor: Processor, measurements: &[&Measurement], axes:
     }
 }
 
-/// The front as steps: what is at the corner of a step is beaten by the point at its end.
-fn stairs(front: &[(f64, f64)]) -> String {
-    let mut path = String::new();
-    for (index, (x, y)) in front.iter().enumerate() {
-        path.push_str(&if index == 0 { format!("M{x:.1} {y:.1}") } else { format!("V{y:.1}H{x:.1}") });
-    }
-    path
+/// The front as the corners of steps: each point is as exact as it gets until the next one can be paid for.
+fn stairs(front: &[(f64, f64)]) -> Vec<(f64, f64)> {
+    let corners = front.array_windows().flat_map(|&[from, to]| [from, (from.0, to.1)]);
+    corners.chain(front.last().copied()).collect()
 }
 
 fn tip(m: &Measurement) -> String {
@@ -157,7 +156,8 @@ mod tests {
 
     #[test]
     fn the_front_goes_in_steps() {
-        assert_eq!(stairs(&[(90.0, 300.0), (50.0, 200.0), (10.0, 20.0)]), "M90.0 300.0V200.0H50.0V20.0H10.0");
-        assert_eq!(stairs(&[]), "");
+        let steps = [(90.0, 300.0), (90.0, 200.0), (50.0, 200.0), (50.0, 20.0), (10.0, 20.0)];
+        assert_eq!(stairs(&[steps[0], steps[2], steps[4]]), steps);
+        assert_eq!(stairs(&[]), []);
     }
 }

@@ -21,6 +21,9 @@ fn find<'m>(measurements: &[&'m Measurement], processor: Processor, shader: &str
 /// The area from which on a method is cheaper than per-pixel Phong shading, in words.
 fn words(found: BreakEven) -> (String, Option<f64>) {
     match found {
+        // Triangles of less than a twentieth of a pixel draw nothing.
+        BreakEven::From(area) if area < 0.05 => words(BreakEven::Always),
+        BreakEven::Below(area) if area < 0.05 => words(BreakEven::Never),
         BreakEven::Always => ("always".to_owned(), Some(0.0)),
         BreakEven::From(area) => (format!("{area:.1}"), Some(area)),
         BreakEven::Below(area) => (format!("below {area:.1}"), None),
@@ -126,10 +129,11 @@ pub(super) fn ratios(measurements: &[&Measurement], processors: &[Processor]) ->
 type Column = (&'static str, &'static str, usize, fn(&Measurement) -> Option<f64>);
 
 /// What is printed of a measurement.
-const COLUMNS: [Column; 17] = [
+const COLUMNS: [Column; 18] = [
     ("per pixel", "instructions per pixel", 2, |m| Some(m.instr_per_pixel)),
     ("frame", "instructions of the frame, without clearing and transfer", 0, |m| Some(m.instructions as f64)),
     ("cycles", "cycles of the frame, approximate", 0, |m| m.cycles.map(|n| n as f64)),
+    ("camera", "instructions once a frame", 0, |m| Some(m.by_stage.frame as f64)),
     ("vertex", "instructions for vertices", 0, |m| Some(m.by_stage.vertex as f64)),
     ("cull, bin", "instructions for culling and binning", 0, |m| Some(m.by_stage.cull as f64)),
     ("set-up", "instructions for setting up triangles", 0, |m| Some(m.by_stage.setup as f64)),
