@@ -114,7 +114,7 @@ pub fn count(program: &Path, stream: &[u8], frames: &[Frame]) -> Result<Vec<Coun
         valgrind.arg(&stream_file).args([format!("{width}x{height}"), band_rows.to_string(), shader.name().to_owned()]);
     }
     let output = valgrind.output().map_err(|error| match error.kind() {
-        ErrorKind::NotFound => anyhow!("valgrind is not installed; `apt-get install -y valgrind`"),
+        ErrorKind::NotFound => anyhow!("valgrind is not installed; `apt-get install -y --no-install-recommends valgrind`"),
         _ => anyhow!("cannot start valgrind: {error}"),
     })?;
     let messages = String::from_utf8_lossy(&output.stderr);
