@@ -66,7 +66,7 @@ impl Graph {
         let needs: Vec<BTreeSet<usize>> = (0..)
             .zip(&nodes)
             .map(|(node, range)| {
-                let found = references(range.start, bytes(range), node < functions.len());
+                let found = if node < functions.len() { references(range.start, bytes(range)) } else { pointers(bytes(range)) };
                 found.into_iter().filter_map(needed).filter(|&other| other != node).collect()
             })
             .collect();
@@ -110,49 +110,58 @@ impl Graph {
     }
 }
 
-/// Something that code names.
+/// What code names.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Reference {
+    /// A function.
     Jump(u32),
+    /// A function, plus one, or a place in a constant.
     Address(u32),
 }
 
-/// All references in the bytes at address `start`. Every half-word is looked at as if an instruction began there: what is none
-/// hardly ever hits the start of a function.
-fn references(start: u32, bytes: &[u8], is_code: bool) -> Vec<Reference> {
+/// All references in the code at address `start`. Every half-word is looked at as if an instruction began there: what is none
+/// hardly ever names the start of a function.
+fn references(start: u32, bytes: &[u8]) -> Vec<Reference> {
     let halves: Vec<u32> = bytes.as_chunks::<2>().0.iter().map(|&pair| u16::from_le_bytes(pair).into()).collect();
+    let word = |address: u32| {
+        let place = address.checked_sub(start)? as usize / 2;
+        Some(halves.get(place)? | halves.get(place + 1)? << 16)
+    };
     let mut found = Vec::new();
+    // The lower halves of addresses, by register.
     let mut low = [0; 16];
-    for (address, pair) in (start..).step_by(2).zip(halves.array_windows::<2>()) {
-        let [first, second] = *pair;
-        if address % 4 == 0 {
-            found.push(Reference::Address(first | second << 16));
+    for (address, &[first, second]) in (start..).step_by(2).zip(halves.array_windows::<2>()) {
+        let pool = (address + 4) & !3;
+        // LDR from the literal pool, short and long.
+        let literal = match first {
+            0x4800..=0x4FFF => word(pool + (first & 0xFF) * 4),
+            0xF8DF => word(pool + (second & 0xFFF)),
+            _ => None,
+        };
+        found.extend(literal.map(Reference::Address));
+        // BL and B.W.
+        if first >> 11 == 0b11110 && matches!(second >> 12 & 0b1101, 0b1101 | 0b1001) {
+            let sign = first >> 10 & 1;
+            let [i1, i2] = [second >> 13 & 1, second >> 11 & 1].map(|bit| 1 ^ bit ^ sign);
+            let offset = sign << 24 | i1 << 23 | i2 << 22 | (first & 0x3FF) << 12 | (second & 0x7FF) << 1;
+            // Bit 24 is the sign.
+            found.push(Reference::Jump((address + 4).wrapping_add_signed(((offset << 7) as i32) >> 7)));
         }
-        if !is_code {
-            continue;
-        }
-        match (first >> 11, second >> 12 & 0b1101) {
-            // BL and B.W.
-            (0b11110, 0b1101 | 0b1001) => {
-                let sign = first >> 10 & 1;
-                let [i1, i2] = [second >> 13 & 1, second >> 11 & 1].map(|bit| 1 ^ bit ^ sign);
-                let offset = sign << 24 | i1 << 23 | i2 << 22 | (first & 0x3FF) << 12 | (second & 0x7FF) << 1;
-                // The sign is bit 24.
-                let offset = ((offset << 7) as i32) >> 7;
-                found.push(Reference::Jump(address.wrapping_add(4).wrapping_add_signed(offset)));
-            }
-            _ => {}
-        }
-        // MOVW and MOVT: the halves of an address.
-        let value = (first & 0xF) << 12 | (first >> 10 & 1) << 11 | (second >> 12 & 7) << 8 | second & 0xFF;
-        let register = (second >> 8 & 0xF) as usize;
+        // MOVW and MOVT.
+        let half = (first & 0xF) << 12 | (first >> 10 & 1) << 11 | (second >> 12 & 7) << 8 | second & 0xFF;
+        let register = &mut low[(second >> 8 & 0xF) as usize];
         match first & 0xFBF0 {
-            0xF240 => low[register] = value,
-            0xF2C0 => found.push(Reference::Address(value << 16 | low[register])),
+            0xF240 => *register = half,
+            0xF2C0 => found.push(Reference::Address(half << 16 | *register)),
             _ => {}
         }
     }
     found
+}
+
+/// All references in a constant.
+fn pointers(bytes: &[u8]) -> Vec<Reference> {
+    bytes.as_chunks::<4>().0.iter().map(|&word| Reference::Address(u32::from_le_bytes(word))).collect()
 }
 
 #[cfg(test)]
@@ -164,7 +173,7 @@ mod tests {
         // At 0x1000: bl 0x1064; b.w 0xffc; movw r3, #0x1234; movt r3, #0x2000.
         let halves: [u16; 8] = [0xF000, 0xF830, 0xF7FF, 0xBFFA, 0xF241, 0x2334, 0xF2C2, 0x0300];
         let bytes: Vec<u8> = halves.iter().flat_map(|half| half.to_le_bytes()).collect();
-        let found = references(0x1000, &bytes, true);
+        let found = references(0x1000, &bytes);
         for wanted in [Reference::Jump(0x1064), Reference::Jump(0xFFC), Reference::Address(0x2000_1234)] {
             assert!(found.contains(&wanted), "{wanted:x?} in {found:x?}");
         }

@@ -23,6 +23,8 @@ pub struct Segment<'a> {
     pub bytes: &'a [u8],
 }
 
+/// Fields of the header that tell where sections are, and how many.
+const SECTIONS: [Range<usize>; 2] = [0x20..0x24, 0x30..0x34];
 /// Size of an ELF32 program header and offsets of its fields.
 const HEADER: usize = 32;
 const OFFSET: usize = 4;
@@ -44,6 +46,18 @@ impl Elf {
     #[must_use]
     pub fn bytes(&self) -> &[u8] {
         &self.bytes
+    }
+
+    /// The file as it is loaded, without names: what logs them logs less.
+    ///
+    /// # Errors
+    /// When the file is shorter than its header.
+    pub fn without_symbols(&self) -> Result<Vec<u8>> {
+        let mut bytes = self.bytes.clone();
+        for field in SECTIONS {
+            bytes.get_mut(field).context("the ELF is shorter than its header")?.fill(0);
+        }
+        Ok(bytes)
     }
 
     fn parsed(&self) -> Result<Parsed<'_>> {
@@ -71,15 +85,16 @@ impl Elf {
         self.symbols(STT_FUNC)
     }
 
-    /// Names and addresses of all variables and constants that have a symbol.
+    /// Names and addresses of all constants that have a symbol.
     ///
     /// # Errors
     /// When the file is damaged.
     pub fn constants(&self) -> Result<Vec<(String, Range<u32>)>> {
-        let loaded: Vec<_> = self.segments()?.iter().map(|s| s.address..s.address + s.bytes.len() as u32).collect();
+        let elf = self.parsed()?;
+        let section = elf.section_headers.iter().find(|section| elf.shdr_strtab.get_at(section.sh_name) == Some(".rodata"));
+        let range = section.context("the firmware has no section .rodata")?.vm_range();
         let mut objects = self.symbols(STT_OBJECT)?;
-        // The others lie in RAM.
-        objects.retain(|(_, range)| loaded.iter().any(|segment| segment.contains(&range.start)));
+        objects.retain(|(_, object)| range.contains(&(object.start as usize)));
         Ok(objects)
     }
 

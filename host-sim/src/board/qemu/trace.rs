@@ -37,7 +37,7 @@ pub fn trace(board: Board, elf: &Elf, ranges: &[Range<u32>], blocks: Blocks, mut
     let mut decoder = Decoder::new(elf)?;
     let directory = tempfile::Builder::new().prefix("mphong").tempdir().context("cannot create a temporary directory")?;
     let program = directory.path().join("firmware.elf");
-    fs::write(&program, elf.bytes()).with_context(|| format!("cannot write {}", program.display()))?;
+    fs::write(&program, elf.without_symbols()?).with_context(|| format!("cannot write {}", program.display()))?;
     let mut filter = String::new();
     for range in ranges {
         let separator = if filter.is_empty() { "" } else { "," };
