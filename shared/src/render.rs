@@ -284,6 +284,7 @@ impl<'a, C: Pixel> Renderer<'a, C> {
     }
 
     /// Places camera and lights, transforms vertices, culls and bins triangles for frame `number` (modulo the orbit).
+    #[inline(never)]
     pub fn frame(&mut self, number: u32) -> Frame<'_, 'a, C> {
         let camera = &self.stream.header.camera;
         let pose = Pose::new(camera, number);

@@ -31,6 +31,7 @@ use crate::{
 };
 
 /// Shades by the parabolas that `fit` makes for an exponent.
+#[inline(never)]
 pub(super) fn draw<C: Pixel>(facet: &Facet<'_>, shading: &Shading<'_, C>, fit: fn(u16) -> Parabolas, band: &mut Band<'_, C>) -> u32 {
     let (edges, [one, many]) = (Edges::new(facet), [1, shading.exponent].map(fit));
     let rows = edges.rows(facet);

@@ -23,6 +23,7 @@ use crate::{
     pixel::Pixel,
 };
 
+#[inline(never)]
 pub(super) fn draw<C: Pixel>(facet: &Facet<'_>, shading: &Shading<'_, C>, band: &mut Band<'_, C>) -> u32 {
     let square = square(facet);
     if is_curved(facet) {

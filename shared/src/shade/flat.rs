@@ -12,6 +12,7 @@ use crate::{
     tone::Solid,
 };
 
+#[inline(never)]
 pub(super) fn draw<C: Pixel>(facet: &Facet<'_>, shading: &Shading<'_, C>, band: &mut Band<'_, C>) -> u32 {
     let [a, b, c] = facet.vertices.map(|vertex| wide(vertex.position));
     let centroid = add(a, add(b, c)).map(|sum| sum / 3);

@@ -27,6 +27,7 @@ use crate::{
     scene::{Lighting, Source, Viewer, cosine},
 };
 
+#[inline(never)]
 pub(super) fn draw<C: Pixel>(facet: &Facet<'_>, shading: &Shading<'_, C>, band: &mut Band<'_, C>) -> u32 {
     // A near viewer is refused before drawing.
     let Viewer::Infinite(view) = shading.lighting.viewer else { return 0 };

@@ -22,6 +22,7 @@ use crate::{
 };
 
 /// Shades by the parabolas that `fit` makes for an exponent.
+#[inline(never)]
 pub(super) fn draw<C: Pixel>(facet: &Facet<'_>, shading: &Shading<'_, C>, fit: fn(u16) -> Parabolas, band: &mut Band<'_, C>) -> u32 {
     let (edges, parabolas) = (Edges::new(facet), fit(shading.exponent));
     let rows = edges.rows(facet);

@@ -14,6 +14,7 @@ use super::{
 };
 use crate::{band::Band, format::RHO, math::power::PixelPower, palette::Reflection, pixel::Pixel};
 
+#[inline(never)]
 pub(super) fn draw<C: Pixel>(facet: &Facet<'_>, shading: &Shading<'_, C>, band: &mut Band<'_, C>) -> u32 {
     if duff::is_curved(facet) {
         duff::draw(facet, shading, band)

@@ -8,6 +8,7 @@
 use super::{Facet, RANGE, Shading, node::zip_six};
 use crate::{band::Band, palette::Palette, pixel::Pixel};
 
+#[inline(never)]
 pub(super) fn draw<C: Pixel>(facet: &Facet<'_>, shading: &Shading<'_, C>, band: &mut Band<'_, C>) -> u32 {
     let palette = shading.palette;
     if !palette.three_channels {

@@ -28,6 +28,7 @@ use crate::{
     scene::{Lighting, Source, cosine},
 };
 
+#[inline(never)]
 pub(super) fn draw<C: Pixel>(facet: &Facet<'_>, shading: &Shading<'_, C>, band: &mut Band<'_, C>) -> u32 {
     let edges = Edges::new(facet);
     let (rows, arcs) = (edges.rows(facet), arcs(facet.vertices.map(|vertex| wide(vertex.normal))));

@@ -26,6 +26,7 @@ const ONE: i32 = 1 << 30;
 /// Below this cosine the root is continued by a line.
 const LOWEST: i32 = ONE / 4;
 
+#[inline(never)]
 pub(super) fn draw<C: Pixel>(facet: &Facet<'_>, shading: &Shading<'_, C>, band: &mut Band<'_, C>) -> u32 {
     if let Some(gloss) = shading.gloss(Squared) {
         let cosines = facet.six_cosines(0);
