@@ -559,8 +559,7 @@ impl Viewport {
 
     /// The visible box of a triangle, on a grid finer by 2 to the power `finer`.
     pub(crate) fn box_of(self, corners: [&ScreenVertex; 3], finer: u32) -> [i32; 4] {
-        let Bounds { left, top, right, bottom } = Bounds::new(corners).clipped(self.width << finer, self.height << finer);
-        [left, top, right, bottom]
+        Bounds::new(corners).clipped(self.width << finer, self.height << finer).sides()
     }
 
     #[inline(always)]

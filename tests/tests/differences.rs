@@ -121,7 +121,7 @@ fn quadratics_of_100_000_random_triangles_stay_within_the_bound() {
         if visible[0] >= visible[2] || visible[1] >= visible[3] {
             continue;
         }
-        let Some(basis) = Basis::new(c, || visible) else { continue };
+        let Some(basis) = Basis::new(c, visible) else { continue };
         triangles += 1;
         let nodes: [i32; 6] = std::array::from_fn(|_| random.pick(0..255 << LEVEL));
         let mut patch = Quadric::<1>::fit::<15>(&basis, [nodes], WALK - LEVEL);
@@ -196,7 +196,7 @@ fn cubics_stay_within_the_bound() {
         if across.is_empty() || down.is_empty() {
             continue;
         }
-        let Some(basis) = Basis::new(c, || [across.start, down.start, across.end, down.end]) else { continue };
+        let Some(basis) = Basis::new(c, [across.start, down.start, across.end, down.end]) else { continue };
         triangles += 1;
         let nodes: [i32; 10] = std::array::from_fn(|_| random.pick(0..255 << LEVEL));
         let mut patch = Cubic::<1>::fit(&basis, [nodes], WALK - LEVEL).raised([BIAS << WALK]);
@@ -254,7 +254,7 @@ fn planes_stay_within_the_bound_even_on_slivers() {
         if side(case.corners[0], case.corners[1], case.corners[2]) < 0 {
             case.corners.swap(1, 2);
         }
-        let Some(basis) = Basis::new(case.corners, || [0, 0, case.width, case.height]) else { continue };
+        let Some(basis) = Basis::new(case.corners, [0, 0, case.width, case.height]) else { continue };
         let nodes: [i32; 3] = std::array::from_fn(|_| random.pick(0..255 << LEVEL));
         let extent = |k: usize| case.corners.iter().map(|c| c[k]).max().unwrap() - case.corners.iter().map(|c| c[k]).min().unwrap();
         let size = f64::from(extent(0).max(extent(1)));

@@ -4,7 +4,7 @@ use embedded_graphics::{pixelcolor::Gray8, prelude::Size};
 use microphong::{
     Shader,
     band::Band,
-    poly::Constant,
+    poly::{Constant, basis::Basis},
     raster::{
         cell::Cell,
         smooth::Part,
@@ -70,7 +70,7 @@ fn cells_of_random_triangles_cover_each_pixel_once() {
         let [a, b, c] = corners.map(|[x, y]| ScreenVertex { x, y, depth: 1 << 27, light: [0; 3], state: State::Ready });
         let corners = if Outline::area([&a, &b, &c]) < 0 { [&a, &c, &b] } else { [&a, &b, &c] };
         let outline = Outline::new(corners, Part::Centres);
-        let Some(basis) = outline.basis(|| Bounds::new(corners).clipped(w / 16, h / 16)) else { continue };
+        let Some(basis) = Basis::new(outline.corners, Bounds::new(corners).clipped(w / 16, h / 16).sides()) else { continue };
         let depth = outline.depth(&basis);
         let mut pictures = [[0u8; WIDTH * HEIGHT]; 2];
         let mut drawn = [0; 2];

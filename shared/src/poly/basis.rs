@@ -82,8 +82,7 @@ impl Basis {
     pub fn small(corners: [[i32; 2]; 3]) -> Option<Self> {
         let ([x0, y0], edges) = edges(corners);
         let [[x1, y1], [x2, y2]] = edges;
-        // No side is longer than 2^bits.
-        let size = |c: i32| (c ^ (c >> 31)) as u32;
+        let size = |c: i32| (c.wrapping_add(c >> 31) ^ (c >> 31)) as u32;
         let bits = 32 - (size(x1) | size(y1) | size(x2) | size(y2)).leading_zeros();
         let det = x1.wrapping_mul(y2).wrapping_sub(x2.wrapping_mul(y1));
         let zeros = det.leading_zeros();
@@ -91,7 +90,7 @@ impl Basis {
         if bits > SMALL || det <= 0 || 2 * bits + zeros > 38 {
             return None;
         }
-        // 1 / det = r 2^(zeros - 62); coordinates are at most 2^bits, so mantissas c r 2^(zeros - 58 + exponent) at most 2^30.
+        // 1 / det = r 2^(zeros - 62); coordinates are below 2^bits, so mantissas c r 2^(zeros - 58 + exponent) below 2^30.
         let r = i64::from(recip((det as u32) << zeros).min(i32::MAX as u32));
         let exponent = (57 - zeros - bits).min(LARGEST);
         let up = zeros + exponent - 26;

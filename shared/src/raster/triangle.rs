@@ -106,6 +106,13 @@ impl Bounds {
         Self { left: self.left.max(0), top: self.top.max(0), right: self.right.min(width), bottom: self.bottom.min(height) }
     }
 
+    /// `[left, top, right, bottom]`.
+    #[inline(always)]
+    #[must_use]
+    pub fn sides(self) -> [i32; 4] {
+        [self.left, self.top, self.right, self.bottom]
+    }
+
     /// No pixel at all.
     #[inline(always)]
     #[must_use]

@@ -195,7 +195,7 @@ mod tests {
         let screen = [[0, 0], [160, 90], [20, 200]].map(|[x, y]| ScreenVertex { x, y, depth: 0, light: [0; 3], state: State::Ready });
         let [a, b, c] = &screen;
         let outline = Outline::new([a, b, c], crate::raster::smooth::Part::Centres);
-        let basis = outline.basis(|| crate::raster::triangle::Bounds::new([a, b, c])).unwrap();
+        let basis = Basis::small(outline.corners).unwrap();
         let triangle = Triangle::new_zeroed();
         for _ in 0..1_000 {
             let mut vertex = || Vertex { position: [random(), random(), random()], normal: [random(), random(), random()] };
