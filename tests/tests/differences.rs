@@ -259,7 +259,7 @@ fn planes_stay_within_the_bound_even_on_slivers() {
         let extent = |k: usize| case.corners.iter().map(|c| c[k]).max().unwrap() - case.corners.iter().map(|c| c[k]).min().unwrap();
         let size = f64::from(extent(0).max(extent(1)));
         let thinness = size * size / side(case.corners[0], case.corners[1], case.corners[2]) as f64;
-        let mut plane = Plane::<1>::fit(&basis, [nodes], WALK - LEVEL);
+        let mut plane = Plane::<1>::fit::<15>(&basis, [nodes], WALK - LEVEL);
         let mut at = basis.row();
         for row in 0..case.height {
             let columns = span(&case, row);

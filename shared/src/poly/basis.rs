@@ -25,6 +25,14 @@ pub const NEAR: i32 = 256;
 /// The error of the fast way grows with the square of this ratio: at most 2^-22 of the nodes' range at 1, 2^-8 here.
 pub const MAX_THINNESS: i64 = 128;
 
+/// Bits of the sides of a small triangle in 1/16 pixel.
+const SMALL: u32 = 11;
+/// Largest exponent of a small triangle's gradients: no shift of what they are multiplied with goes to the right.
+const LARGEST: u32 = 33;
+/// Smallest one: no shift to the left drops all.
+#[cfg(feature = "all-shaders")]
+const LEAST: i32 = 20;
+
 /// The screen geometry of a triangle, ready to fit polynomials.
 ///
 /// The *anchor* is the pixel to which coefficients are rounded; errors grow with
@@ -36,12 +44,16 @@ pub struct Basis {
     s: [i32; 2],
     t: [i32; 2],
     exponent: i32,
+    /// s and t at the anchor of a small triangle: mantissas too.
+    at: [i32; 2],
     /// From corner 0 to the centre of its pixel, [`FINE`] fraction bits.
     offset: [i32; 2],
     /// From that pixel to the anchor, in pixels.
     shift: [i32; 2],
     /// The anchor.
     anchor: [i32; 2],
+    /// Words of 32 bits are enough, see [`Self::small`].
+    small: bool,
     /// Longer than [`MAX_THINNESS`] times its height.
     thin: bool,
     /// Corners 1 and 2 from corner 0, in 1/16 pixel, of a part of the triangle 2^`level` times finer.
@@ -60,7 +72,52 @@ impl Basis {
     #[must_use]
     pub fn new(corners: [[i32; 2]; 3], visible: Visible) -> Option<Self> {
         let [[x0, y0], [x1, y1], [x2, y2]] = corners;
-        let (x1, y1, x2, y2) = (x1.wrapping_sub(x0), y1.wrapping_sub(y0), x2.wrapping_sub(x0), y2.wrapping_sub(y0));
+        let edges = [[x1.wrapping_sub(x0), y1.wrapping_sub(y0)], [x2.wrapping_sub(x0), y2.wrapping_sub(y0)]];
+        Self::small([x0, y0], edges).or_else(|| Self::any([x0, y0], edges, visible))
+    }
+
+    /// That of a small and stout triangle: shorter than [`NEAR`] / 2 pixels, and not even nearly [`MAX_THINNESS`].
+    ///
+    /// What is fitted then has few bits: two words hold any product with a mantissa, and of that the upper one is enough
+    /// where it is rounded before its last use.
+    #[inline(always)]
+    fn small([x0, y0]: [i32; 2], edges: [[i32; 2]; 2]) -> Option<Self> {
+        let [[x1, y1], [x2, y2]] = edges;
+        let bits = 32 - (x1.unsigned_abs() | y1.unsigned_abs() | x2.unsigned_abs() | y2.unsigned_abs()).leading_zeros();
+        let det = x1.wrapping_mul(y2).wrapping_sub(x2.wrapping_mul(y1));
+        let zeros = det.leading_zeros();
+        // 2^(2 bits) <= 128 det.
+        if bits > SMALL || det <= 0 || 2 * bits + zeros > 38 {
+            return None;
+        }
+        // 1 / det = r 2^(zeros - 62); coordinates are below 2^bits, so mantissas c r 2^(zeros - 58 + exponent) below 2^30.
+        let r = i64::from(recip((det as u32) << zeros).min(i32::MAX as u32));
+        let exponent = (57 - zeros - bits).min(LARGEST);
+        let up = zeros + exponent - 26;
+        let mantissa = |c: i32| ((i64::from(c << up) * r + (1 << 31)) >> 32) as i32;
+        let pixel = [x0 >> SUBPIXEL, (y0 + CENTRE - 1) >> SUBPIXEL];
+        let offset = [((pixel[0] << SUBPIXEL) + CENTRE - x0) << SPLITS, ((pixel[1] << SUBPIXEL) + CENTRE - y0) << SPLITS];
+        let (s, t) = ([mantissa(y2), mantissa(-x2)], [mantissa(-y1), mantissa(x1)]);
+        Some(Self {
+            s,
+            t,
+            exponent: exponent as i32,
+            at: [s, t].map(|gradient| at(gradient, offset)),
+            offset,
+            shift: [0; 2],
+            anchor: pixel,
+            small: true,
+            thin: false,
+            edges,
+            level: 0,
+        })
+    }
+
+    /// That of any triangle.
+    #[cold]
+    #[inline(never)]
+    fn any([x0, y0]: [i32; 2], edges: [[i32; 2]; 2], visible: Visible) -> Option<Self> {
+        let [[x1, y1], [x2, y2]] = edges;
         let det = i64::from(x1) * i64::from(y2) - i64::from(x2) * i64::from(y1);
         if det <= 0 {
             return None;
@@ -83,11 +140,13 @@ impl Basis {
             t: [mantissa(y1.wrapping_neg()), mantissa(x1)],
             // gradient per pixel = 16 c / det = mantissa 2^(drop + 4 + zeros - 94)
             exponent: 90 - zeros - drop,
+            at: [0; 2],
             offset: [(pixel[0] << SUBPIXEL) + CENTRE - x0, (pixel[1] << SUBPIXEL) + CENTRE - y0].map(|c| c << SPLITS),
             shift,
             anchor: [pixel[0].wrapping_add(shift[0]), pixel[1].wrapping_add(shift[1])],
-            edges: [[x1, y1], [x2, y2]],
+            edges,
             level: 0,
+            small: false,
             thin: i64::from(extent) * i64::from(extent) > det.saturating_mul(MAX_THINNESS),
         })
     }
@@ -103,13 +162,16 @@ impl Basis {
         let pixel = corner.map(|c| c >> FINE);
         let centre = |k: usize| (pixel[k] << FINE).wrapping_add(1 << (FINE - 1)).wrapping_sub(corner[k]);
         let anchor = if near { pixel } else { self.anchor };
+        let (s, t, offset) = (gradient(self.s), gradient(self.t), [centre(0), centre(1)]);
         Self {
-            s: gradient(self.s),
-            t: gradient(self.t),
+            s,
+            t,
             exponent: self.exponent - level as i32,
-            offset: [centre(0), centre(1)],
+            at: [s, t].map(|gradient| at(gradient, offset)),
+            offset,
             shift: [anchor[0].wrapping_sub(pixel[0]), anchor[1].wrapping_sub(pixel[1])],
             anchor,
+            small: self.small && near && self.exponent - level as i32 >= LEAST,
             thin: self.thin,
             edges: self.edges.map(gradient),
             level,
@@ -130,12 +192,35 @@ impl Basis {
         self.anchor[1]
     }
 
-    /// `[c, dx, dy, 0, 0, 0]` of the linear field through the corners' values, at the anchor.
-    #[inline]
+    /// `[c, dx, dy]` of the linear field through the corners' values in a range of 2^`BITS`, at the anchor.
+    #[inline(always)]
     #[must_use]
-    pub fn linear(&self, nodes: [i32; 3], extra: u32) -> [i32; 6] {
+    pub fn linear<const BITS: u32>(&self, nodes: [i32; 3], extra: u32) -> [i32; 3] {
+        if self.small { self.linear_small::<BITS>(nodes, extra) } else { self.linear_any(nodes, extra) }
+    }
+
+    #[inline(always)]
+    fn linear_small<const BITS: u32>(&self, [i0, i1, i2]: [i32; 3], extra: u32) -> [i32; 3] {
+        // Differences are below 2^BITS.
+        let up = 30 - BITS;
+        let left = extra + BITS + 2 - self.exponent as u32;
+        let [c, dx, dy] = self.products((i1 - i0) << up, (i2 - i0) << up).map(|product| product.shifted(left));
+        [(i0 << extra).wrapping_add(c), dx, dy]
+    }
+
+    #[cold]
+    #[inline(never)]
+    fn linear_any(&self, nodes: [i32; 3], extra: u32) -> [i32; 3] {
         let [c, dx, dy] = self.plane(nodes, extra);
-        self.round([c, dx, dy, 0, 0, 0])
+        let [c, dx, dy, ..] = self.round([c, dx, dy, 0, 0, 0]);
+        [c, dx, dy]
+    }
+
+    /// Of `a s + b t`: the value at the anchor, and the derivatives along x and y; `a` and `b` are at most 2^30.
+    #[inline(always)]
+    fn products(&self, a: i32, b: i32) -> [Product; 3] {
+        let along = |s: i32, t: i32| Product(i64::from(a) * i64::from(s) + i64::from(b) * i64::from(t));
+        [along(self.at[0], self.at[1]), along(self.s[0], self.t[0]), along(self.s[1], self.t[1])]
     }
 
     /// `[c, dx, dy]` of the linear field through the corners' values, at the anchor, with [`GUARD`] more fraction bits.
@@ -163,9 +248,38 @@ impl Basis {
     }
 
     /// `[c, dx, dy, dxx, dxy, dyy]` of the quadratic through six nodes in a range of 2^`BITS`, at the anchor.
-    #[inline]
+    #[inline(always)]
     #[must_use]
     pub fn quadratic<const BITS: u32>(&self, nodes: [i32; 6], extra: u32) -> [i32; 6] {
+        if self.small { self.quadratic_small::<BITS>(nodes, extra) } else { self.quadratic_any::<BITS>(nodes, extra) }
+    }
+
+    #[inline(always)]
+    fn quadratic_small<const BITS: u32>(&self, [i0, i1, i2, i01, i12, i20]: [i32; 6], extra: u32) -> [i32; 6] {
+        // First and second differences are below 2^(BITS + 2).
+        let up = 28 - BITS;
+        let (once, twice) = (extra + BITS + 4 - self.exponent as u32, extra + BITS + 35 - 2 * self.exponent as u32);
+        let [c, dx, dy] = self.products((4 * i01 - 3 * i0 - i1) << up, (4 * i20 - 3 * i0 - i2) << up).map(|product| product.shifted(once));
+        // Half the matrix of second derivatives: [[ss, st], [st, tt]].
+        let half = |difference: i32| difference << (up + 1);
+        let (ss, st, tt) = (half(i0 + i1 - 2 * i01), half(i0 - i01 - i20 + i12), half(i0 + i2 - 2 * i20));
+        // One factor of the chain rule, then the other.
+        let rounded = |product: Product| product.rounded() << 1;
+        let ([s, sx, sy], [t, tx, ty]) = (self.products(ss, st).map(rounded), self.products(st, tt).map(rounded));
+        let ([bend, bend_x, bend_y], [_, dxx, dxy], [_, _, dyy]) = (self.products(s, t), self.products(sx, tx), self.products(sy, ty));
+        [
+            (i0 << extra).wrapping_add(c).wrapping_add(bend.shifted(twice)),
+            dx.wrapping_add(bend_x.shifted(twice + 1)),
+            dy.wrapping_add(bend_y.shifted(twice + 1)),
+            dxx.shifted(twice),
+            dxy.shifted(twice + 1),
+            dyy.shifted(twice),
+        ]
+    }
+
+    #[cold]
+    #[inline(never)]
+    fn quadratic_any<const BITS: u32>(&self, nodes: [i32; 6], extra: u32) -> [i32; 6] {
         let [i0, i1, i2, i01, i12, i20] = nodes;
         if self.thin {
             // In 1/16 pixel, in a part of the triangle as much finer as it is smaller: all exact.
@@ -234,6 +348,32 @@ impl Basis {
         let dy = dy.wrapping_add(bend_y).wrapping_add(bend_y).wrapping_add(m(dxy, x));
         [done(c), done(dx), done(dy), done(dxx), done(dxy), done(dyy)]
     }
+}
+
+/// Products of mantissas.
+#[derive(Clone, Copy)]
+struct Product(i64);
+
+impl Product {
+    /// The upper half, rounded to nearest.
+    #[inline(always)]
+    fn rounded(self) -> i32 {
+        (self.0.wrapping_add(1 << 31) >> 32) as i32
+    }
+
+    /// The upper half of the product times 2^`left`, rounded, modulo 2^32; `left` is less than 32.
+    #[inline(always)]
+    fn shifted(self, left: u32) -> i32 {
+        let product = self.0.wrapping_add(((1u32 << 31) >> left).into());
+        let (upper, lower) = ((product >> 32) as u32, product as u32);
+        (upper.wrapping_shl(left) | (lower >> 1).wrapping_shr(31 - left)) as i32
+    }
+}
+
+/// What `gradient` comes to at `offset`, which is at most a pixel away ([`FINE`] fraction bits).
+#[inline(always)]
+fn at(gradient: [i32; 2], offset: [i32; 2]) -> i32 {
+    ((i64::from(gradient[0]) * i64::from(offset[0]) + i64::from(gradient[1]) * i64::from(offset[1])) >> FINE) as i32
 }
 
 /// `gradient` times `offset`, [`FINE`] fraction bits.

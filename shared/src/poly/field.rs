@@ -68,7 +68,7 @@ impl<const CH: usize, const BITS: u32> Field for Nodes<3, CH, BITS> {
 
     #[inline(always)]
     fn fit(&self, basis: &Basis) -> Plane<CH> {
-        Plane::fit(basis, self.values, self.extra).raised(self.bias)
+        Plane::fit::<BITS>(basis, self.values, self.extra).raised(self.bias)
     }
 
     fn surface(&self) -> Self {

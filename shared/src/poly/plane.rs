@@ -21,15 +21,15 @@ struct Row {
 }
 
 impl<const CH: usize> Plane<CH> {
-    /// The field with value `nodes[channel][k]` at corner `k`; walked with `extra` more fraction bits than the nodes have.
+    /// The field with value `nodes[channel][k]` at corner `k`, all of them in a range narrower than 2^`BITS`; walked with `extra` more fraction bits than the nodes have.
     ///
     /// Error: at most 2^-1 (1 + S) units of the walked format, S the distance in
     /// columns plus rows from the basis' anchor (see [`Basis`]).
     #[inline]
     #[must_use]
-    pub fn fit(basis: &Basis, nodes: [[i32; 3]; CH], extra: u32) -> Self {
+    pub fn fit<const BITS: u32>(basis: &Basis, nodes: [[i32; 3]; CH], extra: u32) -> Self {
         Self(nodes.map(|nodes| {
-            let [c, dx, dy, ..] = basis.linear(nodes, extra);
+            let [c, dx, dy] = basis.linear::<BITS>(nodes, extra);
             Row { c: c.wrapping_sub(dx.wrapping_mul(basis.column())), dx, dy }
         }))
     }

@@ -15,7 +15,7 @@ use super::{
 };
 use crate::{
     band::Band,
-    format::{FINE, SPLITS, SUBPIXEL},
+    format::{DEPTH, FINE, SPLITS, SUBPIXEL},
     math::vector::zip,
     poly::{
         Patch, Walker,
@@ -119,7 +119,7 @@ impl Outline {
     /// The triangle's depth on row 0; all its pieces share it.
     #[must_use]
     pub fn depth(&self, basis: &Basis) -> Plane<1> {
-        let mut depth = Plane::fit(basis, [self.depth], 4);
+        let mut depth = Plane::fit::<DEPTH>(basis, [self.depth], 4);
         depth.jump(basis.row().wrapping_neg());
         depth
     }

@@ -7,7 +7,7 @@ use super::{
 };
 use crate::{
     band::Band,
-    format::{CENTRE, SUBPIXEL},
+    format::{CENTRE, DEPTH, SUBPIXEL},
     poly::{Patch, Walker, basis::Basis, plane::Plane},
     tone::Tone,
     vertex::ScreenVertex,
@@ -164,8 +164,14 @@ impl Outline {
         let inside = |x: i32| (0..(width << 4)).contains(&x);
         let walkable = inside(top[0]) && inside(right[0]) && inside(left[0]);
 
-        let mut rows =
-            Rows { count: 0, left: Column::default(), right: Column::default(), depth: Plane::fit(basis, [self.depth], 4), patch, tone };
+        let mut rows = Rows {
+            count: 0,
+            left: Column::default(),
+            right: Column::default(),
+            depth: Plane::fit::<DEPTH>(basis, [self.depth], 4),
+            patch,
+            tone,
+        };
         rows.depth.jump(row - basis.row());
         rows.patch.jump(row - basis.row());
         rows.tone.start(row);

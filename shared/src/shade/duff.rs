@@ -10,7 +10,7 @@
 
 use super::{
     Area, Facet, Shading,
-    form::{EXTRA, Form, Linear, NODE, Quadratic, signed},
+    form::{EXTRA, Form, Linear, NODE, Quadratic, linear, signed},
 };
 use crate::{
     band::Band,
@@ -46,7 +46,7 @@ pub(super) fn is_curved(facet: &Facet<'_>) -> bool {
 #[inline(always)]
 pub(super) fn numerators(facet: &Facet<'_>) -> (Linear<1>, Linear<1>) {
     let [a, b, c] = facet.corners.map(|corner| corner.light);
-    (Linear::new([[a[0], b[0], c[0]]], 0), Linear::new([[a[1], b[1], c[1]]], 0))
+    (linear([[a[0], b[0], c[0]]]), linear([[a[1], b[1], c[1]]]))
 }
 
 /// |N|², Q2.30: exactly quadratic.

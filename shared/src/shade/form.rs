@@ -150,7 +150,7 @@ impl<C: Pixel> Shading<'_, C> {
 }
 
 /// A field through three nodes.
-pub(super) type Linear<const CH: usize> = Nodes<3, CH>;
+pub(super) type Linear<const CH: usize> = Nodes<3, CH, BITS>;
 /// A field through six nodes.
 pub(super) type Quadratic<const CH: usize> = Nodes<6, CH, BITS>;
 
@@ -161,7 +161,7 @@ pub(super) fn quadratic<const CH: usize>(nodes: [[i32; 6]; CH]) -> Quadratic<CH>
 }
 
 /// The planes through three nodes in Q2.30.
-#[cfg(feature = "all-shaders")]
+#[inline]
 pub(super) fn linear<const CH: usize>(nodes: [[i32; 3]; CH]) -> Linear<CH> {
     Nodes::new(rounded(nodes), EXTRA)
 }
