@@ -39,6 +39,6 @@ impl Facing {
     #[must_use]
     pub fn may_face(&self, triangle: &Triangle) -> bool {
         let plane = i32::from(triangle.offset).wrapping_mul(self.offset_scale);
-        narrow_dot(self.vector, wide(triangle.normal)) >= plane - SLACK
+        narrow_dot(self.vector, wide(triangle.normal)).wrapping_sub(plane) >= -SLACK
     }
 }

@@ -16,7 +16,7 @@ use crate::{
         triangle::{Bounds, Outline},
     },
     sample::Sample,
-    scene::{Lighting, Pose, vertex_cosine},
+    scene::{Direction, Lighting, Pose},
     shade::Shading,
     stream::record::{Mesh, Triangle, Vertex},
     vertex::{ScreenVertex, State, View},
@@ -383,20 +383,26 @@ impl<C: Pixel> Frame<'_, '_, C> {
         let Self { renderer, view, lighting, constant, bins, stats, .. } = self;
         let viewport = renderer.viewport();
         let Renderer { stream, memory: Memory { vertices: cache, bins: entries, palettes, .. }, shader, .. } = &mut **renderer;
+        let entries = &mut **entries;
         cache.iter_mut().take(stream.vertices.len()).for_each(|vertex| vertex.state = State::Idle);
         for mesh in stream.meshes.iter().rev() {
             let (vertices, triangles) = (stream.vertices_of(mesh).unwrap_or_default(), stream.triangles_of(mesh).unwrap_or_default());
             let Some(palette) = palettes.get(usize::from(mesh.material)) else { continue };
             let lit = shader.lights_vertices(constant.is_some()).then_some(palette);
-            let stage = Stage { view, lighting, constant: constant.as_ref(), lit };
+            let stage = Stage { view, lighting, constant: constant.map(directions), lit };
             let cached = cache.get_mut(mesh.first_vertex as usize..).unwrap_or_default();
-            for (index, triangle) in triangles.iter().enumerate().rev().filter(|(_, triangle)| facing.may_face(triangle)) {
+            let (first, mut rest) = (mesh.first_triangle, triangles);
+            while let [before @ .., triangle] = rest {
+                rest = before;
+                if !facing.may_face(triangle) {
+                    continue;
+                }
                 let bounds = match stage.corners(cached, vertices, triangle) {
                     Some([a, b, c]) => viewport.bounds([&a, &b, &c]),
                     None => stage.bounds(viewport, vertices, triangle),
                 };
                 if let Some(Bounds { top, bottom, .. }) = bounds {
-                    bins.push(entries, mesh.first_triangle + index as u32, top as u32, bottom as u32);
+                    bins.push(entries, first + rest.len() as u32, top as u32, bottom as u32);
                 }
             }
         }
@@ -412,7 +418,7 @@ impl<C: Pixel> Frame<'_, '_, C> {
         let Self { renderer, view, lighting, constant, .. } = self;
         let lit = renderer.shader.lights_vertices(constant.is_some());
         let palette = renderer.memory.palettes.get(usize::from(mesh.material))?;
-        Some(Stage { view, lighting, constant: constant.as_ref(), lit: lit.then_some(palette) })
+        Some(Stage { view, lighting, constant: constant.map(directions), lit: lit.then_some(palette) })
     }
 
     /// The mesh of triangle `id`.
@@ -574,9 +580,13 @@ pub(crate) struct Stage<'f, C> {
     pub(crate) view: &'f View,
     lighting: &'f Lighting,
     /// See [`Lighting::constant`].
-    constant: Option<&'f [[i32; 3]; 2]>,
+    constant: Option<[Direction; 2]>,
     /// The material, if the method starts from the light at vertices.
     lit: Option<&'f Palette<C>>,
+}
+
+fn directions(constant: [[i32; 3]; 2]) -> [Direction; 2] {
+    constant.map(Direction::new)
 }
 
 impl<C: Pixel> Stage<'_, C> {
@@ -607,12 +617,11 @@ impl<C: Pixel> Stage<'_, C> {
     #[inline(never)]
     pub(crate) fn transform(&self, vertex: &Vertex) -> ScreenVertex {
         let ([x, y, depth], inside) = self.view.project(self.view.to_eye(vertex.position));
-        let light = match (self.lit, self.constant) {
+        let light = match (self.lit, &self.constant) {
             (None, _) => [0; 3],
-            (Some(_), Some([towards, half])) => [vertex_cosine(vertex.normal, *towards), vertex_cosine(vertex.normal, *half), 0],
+            (Some(_), Some([towards, half])) => [towards.cosine(wide(vertex.normal)), half.cosine(wide(vertex.normal)), 0],
             (Some(palette), None) => {
-                let [x, y, z] = wide(vertex.normal);
-                let normal = [x << (30 - UNIT), y << (30 - UNIT), z << (30 - UNIT)];
+                let normal = wide(vertex.normal).map(|c| c << (30 - UNIT));
                 palette.levels(self.lighting.cosines(wide(vertex.position), normal))
             }
         };

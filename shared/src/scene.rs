@@ -2,7 +2,7 @@
 
 use crate::{
     format::{COSINE, MAX_LIGHTS, ROTATION, UNIT},
-    math::vector::{add, cross, dot, narrow_dot, normalise, sub, transposed, wide, zip},
+    math::vector::{add, cross, dot, narrow_dot, normalise, sub, transposed, zip},
     stream::{
         Stream,
         record::{Camera, DIRECTIONAL, EYE_SPACE, Light, PERSPECTIVE, VIEWER_LOCAL},
@@ -195,15 +195,26 @@ pub fn cosine(a: [i32; 3], b: [i32; 3]) -> i32 {
     (dot(a, b) >> COSINE) as i32
 }
 
-/// [`cosine`] of a vertex normal, [`crate::format::Unit`], and a unit vector, Q2.30: the same bits from products of 32 bits.
-#[inline(always)]
-#[must_use]
-pub fn vertex_cosine(normal: [i16; 3], direction: [i32; 3]) -> i32 {
-    let normal = wide(normal);
-    let [x, y, z] = direction;
-    let upper = narrow_dot(normal, [x >> UNIT, y >> UNIT, z >> UNIT]);
-    let lower = |c: i32| c & ((1 << UNIT) - 1);
-    upper.wrapping_add(narrow_dot(normal, [lower(x), lower(y), lower(z)]) >> UNIT)
+/// A unit vector for products with vertex normals: its components, Q2.30, in an upper and a lower part of [`UNIT`] bits.
+#[derive(Clone, Copy, Debug)]
+pub struct Direction {
+    upper: [i32; 3],
+    lower: [i32; 3],
+}
+
+impl Direction {
+    /// Of `v`, Q2.30.
+    #[must_use]
+    pub fn new(v: [i32; 3]) -> Self {
+        Self { upper: v.map(|c| c >> UNIT), lower: v.map(|c| c & ((1 << UNIT) - 1)) }
+    }
+
+    /// [`cosine`] of this and a vertex normal, [`crate::format::Unit`]: the same bits, from products of 32 bits.
+    #[inline(always)]
+    #[must_use]
+    pub fn cosine(&self, normal: [i32; 3]) -> i32 {
+        narrow_dot(normal, self.upper).wrapping_add(narrow_dot(normal, self.lower) >> UNIT)
+    }
 }
 
 /// Unit half vector.
@@ -226,6 +237,16 @@ fn source(light: &Light, pose: &Pose, towards_eye: [i32; 3]) -> Source {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn vertex_cosines_are_the_same_bits() {
+        for seed in 1..20_000i32 {
+            let c = |k: i32| seed.wrapping_mul(k).wrapping_mul(seed ^ 77);
+            let direction = normalise([c(1_664_525), c(22_695_477), c(1_103_515_245)]);
+            let normal = normalise([c(69_069), c(134_775_813), c(48_271)]).map(|c| c >> 16);
+            assert_eq!(Direction::new(direction).cosine(normal), cosine(normal.map(|c| c << 16), direction), "{direction:?} {normal:?}");
+        }
+    }
 
     #[test]
     fn unit_circle() {
