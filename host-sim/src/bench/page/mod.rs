@@ -180,7 +180,7 @@ fn legend() -> Markup {
 /// The panels of the first scene as one drawing, with its own style: for the README.
 fn chart(measurements: &[Measurement]) -> Markup {
     const GAP: f64 = 24.0;
-    const HEAD: f64 = 34.0;
+    const HEAD: f64 = 46.0;
     let scene = scenes(measurements).first().copied().unwrap_or_default();
     let measurements = of_scene(measurements, scene);
     let chips = processors(&measurements);

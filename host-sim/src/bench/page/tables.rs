@@ -14,6 +14,9 @@ const PHONG: &str = "phong";
 /// The method that papers compare times with.
 const GOURAUD: &str = "gouraud";
 
+/// Pixels of 320 x 240.
+const PICTURE: f64 = 76_800.0;
+
 fn find<'m>(measurements: &[&'m Measurement], processor: Processor, shader: &str) -> Option<&'m Measurement> {
     measurements.iter().copied().find(|m| m.board == processor && m.shader == shader)
 }
@@ -22,6 +25,9 @@ fn find<'m>(measurements: &[&'m Measurement], processor: Processor, shader: &str
 fn words(found: BreakEven) -> (String, Option<f64>) {
     match found {
         // Triangles of less than a twentieth of a pixel draw nothing.
+        // Larger than the picture.
+        BreakEven::From(area) if area > PICTURE => words(BreakEven::Never),
+        BreakEven::Below(area) if area > PICTURE => words(BreakEven::Always),
         BreakEven::From(area) if area < 0.05 => words(BreakEven::Always),
         BreakEven::Below(area) if area < 0.05 => words(BreakEven::Never),
         BreakEven::Always => ("always".to_owned(), Some(0.0)),
