@@ -261,7 +261,7 @@ mod tests {
         assert_eq!(text.matches("<svg class=\"chart\"").count(), 8);
         for shader in Shader::ALL {
             let points = text.matches(&format!("\" data-method=\"{}\"><title>", shader.name())).count();
-            assert_eq!(points, 8, "{shader}");
+            assert_eq!(points, 8, "{}", shader.name());
         }
         assert_eq!(chart(&measurements).into_string().matches("<title>").count(), 1 + 2 * Shader::ALL.len(), "the drawing shows one scene");
     }
