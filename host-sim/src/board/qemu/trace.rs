@@ -13,10 +13,11 @@ use std::{
     collections::HashMap,
     fmt::Write as _,
     fs,
-    io::{BufRead, BufReader, Read, Write},
+    io::{self, BufRead, BufReader, Read, Write},
     ops::Range,
     process::{Command, Stdio},
     thread,
+    time::Duration,
 };
 
 /// How much QEMU translates at once.
@@ -67,7 +68,7 @@ pub fn trace(board: Board, elf: &Elf, ranges: &[Range<u32>], blocks: Blocks, mut
         let mut bytes = Vec::new();
         messages.read_to_end(&mut bytes).map(|_| bytes)
     });
-    let mut output = BufReader::with_capacity(1 << 20, output);
+    let mut output = BufReader::with_capacity(1 << 20, Unhurried(output));
     let mut log = Log::default();
     let mut line = Vec::new();
     while output.read_until(b'\n', &mut line).context("cannot read QEMU's log")? > 0 {
@@ -81,6 +82,19 @@ pub fn trace(board: Board, elf: &Elf, ranges: &[Range<u32>], blocks: Blocks, mut
     decoder.push(&messages, |line| recording.log.push(line));
     ensure!(status.success(), "the firmware did not run to its end in QEMU ({status}); {}", tail(&recording.log));
     Ok(recording)
+}
+
+/// Lets some lines gather before it reads: QEMU writes each by itself, and to wake a reader for each takes longer than all else.
+struct Unhurried<R>(R);
+
+/// A pipe has room for about a thousand lines, which take QEMU longer than this.
+const REST: Duration = Duration::from_micros(300);
+
+impl<R: Read> Read for Unhurried<R> {
+    fn read(&mut self, bytes: &mut [u8]) -> io::Result<usize> {
+        thread::sleep(REST);
+        self.0.read(bytes)
+    }
 }
 
 /// What has been read of the log.
