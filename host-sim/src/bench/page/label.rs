@@ -177,8 +177,8 @@ mod tests {
         fn names_stay_inside_and_cover_no_other(places in prop::array::uniform26((10.0..420.0f64, 10.0..320.0f64)), crowded in 0usize..12) {
             let mut places = places;
             // Some of them nearly in the same place.
-            for i in 0..crowded {
-                places[i] = (200.0 + i as f64 % 3.0, 150.0 + i as f64 / 2.0);
+            for (i, place) in places.iter_mut().enumerate().take(crowded) {
+                *place = (200.0 + i as f64 % 3.0, 150.0 + i as f64 / 2.0);
             }
             let points: Vec<_> = places.into_iter().zip(NAMES).map(|(at, name)| thin(at, name)).collect();
             let boxes = boxes(&points);
