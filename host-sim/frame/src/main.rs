@@ -5,7 +5,7 @@
 
 use embedded_graphics_core::{geometry::Size, pixelcolor::Rgb565};
 use microphong::{Memory, Renderer, Shader, Stats, Stream, Workspace, pixel::Pixel};
-use std::{env, error::Error, fs, hint::black_box};
+use std::{env, error::Error, fs, hint::black_box, process::ExitCode};
 use zerocopy::IntoBytes;
 
 /// Callgrind knows it by its name, and starts from zero where it begins.
@@ -46,12 +46,22 @@ fn draw(path: &str, size: Size, rows: u32, shader: &str) -> Result<(), Box<dyn E
     Ok(())
 }
 
-fn main() -> Result<(), Box<dyn Error>> {
-    let arguments: Vec<String> = env::args().skip(1).collect();
+fn run(arguments: &[String]) -> Result<(), Box<dyn Error>> {
     let (frames, []) = arguments.as_chunks::<4>() else { return Err("groups of FILE WIDTHxHEIGHT ROWS METHOD are needed".into()) };
     for [path, size, rows, shader] in frames {
         let (width, height) = size.split_once('x').ok_or("a size is WIDTHxHEIGHT")?;
         draw(path, Size::new(width.parse()?, height.parse()?), rows.parse()?, shader)?;
     }
     Ok(())
+}
+
+fn main() -> ExitCode {
+    let arguments: Vec<String> = env::args().skip(1).collect();
+    match run(&arguments) {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(error) => {
+            eprintln!("{error}");
+            ExitCode::FAILURE
+        }
+    }
 }

@@ -20,8 +20,8 @@ use std::path::{Path, PathBuf};
 
 /// Count the instructions that processors take for one frame, stage by stage, beside the error of the same frame.
 ///
-/// Exact: an emulated board executes its firmware, callgrind the same on this computer, and every instruction is counted. Instructions are not cycles; those of the Pico
-/// are approximate.
+/// Exact: an emulated board executes its firmware, callgrind the same on this computer, and every instruction is counted.
+/// Instructions are not cycles; those of the Pico are approximate.
 #[derive(clap::Args)]
 #[command(after_help = EXAMPLES)]
 pub(crate) struct Arguments {
@@ -31,7 +31,8 @@ pub(crate) struct Arguments {
     /// Shading methods, separated by commas, or all that can shade the scene.
     #[arg(long, value_name = "S,...", default_value = "flat,gouraud,six-point,phong", value_parser = parse::shaders)]
     shader: Several<Shader>,
-    /// Boards, separated by commas: mps2-an385 (Cortex-M3), mps2-an386 (Cortex-M4F), pico (Cortex-M0+), x86-64 (this computer); or all.
+    /// Boards, separated by commas: mps2-an385 (Cortex-M3), mps2-an386 (Cortex-M4F), pico (Cortex-M0+), x86-64 (this computer);
+    /// or all.
     #[arg(long, value_name = "B,...", default_value = "mps2-an385", value_parser = parse::processors)]
     board: Several<Processor>,
     /// Print one JSON object per frame.

@@ -1,5 +1,9 @@
 //! Axes of charts.
 
+/// Room that a number takes.
+const WIDTH: f64 = 38.0;
+const HEIGHT: f64 = 13.0;
+
 /// From values to places on a drawing.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Axis {
@@ -29,13 +33,14 @@ impl Axis {
         self.to[0] + (scale(value) - low) / (high - low) * (self.to[1] - self.to[0])
     }
 
-    /// Round values on the axis: 1, 2, 5 in each decade or fewer if there are many; about five of them if it is linear.
+    /// Round values on the axis: 1, 2 and 5 in each decade, 1 alone where they would touch; about five of them if it is linear.
     pub(super) fn ticks(&self) -> Vec<f64> {
         let [low, high] = self.from;
         let inside = |value: &f64| (low * 0.999_999..=high * 1.000_001).contains(value);
         if self.logarithmic {
-            let decades = (high / low).log10();
-            let steps: &[f64] = if decades > 3.5 { &[1.0] } else { &[1.0, 2.0, 5.0] };
+            let across = self.to[1] > self.to[0];
+            let doubling = (self.at(2.0 * low) - self.at(low)).abs();
+            let steps: &[f64] = if doubling < if across { WIDTH } else { HEIGHT } { &[1.0] } else { &[1.0, 2.0, 5.0] };
             let powers = low.log10().floor() as i32..=high.log10().ceil() as i32;
             return powers.flat_map(|power| steps.iter().map(move |step| step * 10f64.powi(power))).filter(inside).collect();
         }
@@ -63,12 +68,14 @@ mod tests {
 
     #[test]
     fn ends_are_where_they_belong() {
-        let axis = Axis { from: [1.0, 100.0], to: [0.0, 200.0], logarithmic: true };
-        assert!((axis.at(10.0) - 100.0).abs() < 1e-9);
-        assert_eq!(axis.ticks().iter().map(|t| short(*t)).collect::<Vec<_>>(), ["1", "2", "5", "10", "20", "50", "100"]);
+        let axis = Axis { from: [1.0, 100.0], to: [0.0, 400.0], logarithmic: true };
+        assert!((axis.at(10.0) - 200.0).abs() < 1e-9);
+        let text = |axis: Axis| axis.ticks().into_iter().map(short).collect::<Vec<_>>();
+        assert_eq!(text(axis), ["1", "2", "5", "10", "20", "50", "100"]);
+        assert_eq!(text(Axis { to: [0.0, 200.0], ..axis }), ["1", "10", "100"], "no room for more");
         let axis = Axis::linear([1.0, 1.6], [200.0, 0.0]);
         assert!((axis.at(1.6)).abs() < 1e-9);
-        assert_eq!(axis.ticks().iter().map(|t| short(*t)).collect::<Vec<_>>(), ["1", "1.2", "1.4", "1.6"]);
+        assert_eq!(text(axis), ["1", "1.2", "1.4", "1.6"]);
     }
 
     #[test]

@@ -81,7 +81,7 @@ pub(super) fn plot(sweep: Sweep, points: &[Point]) -> Markup {
             @if sweep == Sweep::Bands {
                 @let at = format!("{:.1}", y.at(BANDS));
                 line.limit x1=(LEFT) x2=(RIGHT) y1=(at) y2=(at) {}
-                text x=(LEFT + 4.0) y=(format!("{:.1}", y.at(BANDS) - 4.0)) { "limit of 24 bands, 1.15" }
+                text x=(RIGHT - 4.0) y=(format!("{:.1}", y.at(BANDS) + 12.0)) text-anchor="end" { "limit of 24 bands, 1.15" }
             }
             @for ((shader, line), name) in lines.iter().zip(spread(&lines.iter().map(|(_, line)| line.last().map_or(0.0, |p| y.at(p.1))).collect::<Vec<_>>())) {
                 g class={ "line " (Family::of(*shader).class()) } data-method=(shader.name()) {

@@ -180,7 +180,7 @@ fn legend() -> Markup {
 /// The panels of the first scene as one drawing, with its own style: for the README.
 fn chart(measurements: &[Measurement]) -> Markup {
     const GAP: f64 = 24.0;
-    const HEAD: f64 = 34.0;
+    const HEAD: f64 = 46.0;
     let scene = scenes(measurements).first().copied().unwrap_or_default();
     let measurements = of_scene(measurements, scene);
     let chips = processors(&measurements);
@@ -261,7 +261,7 @@ mod tests {
         assert_eq!(text.matches("<svg class=\"chart\"").count(), 8);
         for shader in Shader::ALL {
             let points = text.matches(&format!("\" data-method=\"{}\"><title>", shader.name())).count();
-            assert_eq!(points, 8, "{shader}");
+            assert_eq!(points, 8, "{}", shader.name());
         }
         assert_eq!(chart(&measurements).into_string().matches("<title>").count(), 1 + 2 * Shader::ALL.len(), "the drawing shows one scene");
     }

@@ -2,7 +2,7 @@
 
 use super::{
     axis::{Axis, short},
-    label,
+    label::{self, Named},
 };
 use crate::bench::{Measurement, Processor, family::Family, pareto};
 use maud::{Markup, html};
@@ -96,7 +96,11 @@ pub(super) fn drawing(processor: Processor, measurements: &[&Measurement], axes:
     // Those at the front choose first where their names go.
     let order = || front.iter().copied().chain((0..points.len()).filter(|index| !front.contains(index)));
     let place = |p: &Point<'_>| (x.at(p.error), y.at(p.measurement.instr_per_pixel));
-    let names: Vec<_> = order().filter_map(|index| points.get(index)).map(|p| (place(p), p.measurement.shader)).collect();
+    let named = |index| {
+        let point: &Point<'_> = points.get(index)?;
+        Some(Named { at: place(point), name: point.measurement.shader, bold: front.contains(&index) })
+    };
+    let names: Vec<_> = order().filter_map(named).collect();
     let stairs = stairs(&front.iter().filter_map(|&i| points.get(i)).map(place).collect::<Vec<_>>());
     let steps: Vec<[(f64, f64); 2]> = stairs.array_windows().copied().collect();
     let labels = label::place(&names, &steps, [LEFT + 2.0, TOP, SIZE.0, BOTTOM - 2.0]);
@@ -125,7 +129,7 @@ pub(super) fn drawing(processor: Processor, measurements: &[&Measurement], axes:
                         line.leader x1=(format!("{px:.1}")) y1=(format!("{py:.1}")) x2=(format!("{lx:.1}")) y2=(format!("{ly:.1}")) {}
                     }
                     circle cx=(format!("{px:.1}")) cy=(format!("{py:.1}")) r="3.6" {}
-                    text x=(format!("{:.1}", label.text.0)) y=(format!("{:.1}", label.text.1)) { (m.shader) }
+                    text x=(format!("{:.1}", label.text.0)) y=(format!("{:.1}", label.text.1)) text-anchor=(label.anchor) { (m.shader) }
                 }
             }
         }

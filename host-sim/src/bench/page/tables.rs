@@ -14,6 +14,9 @@ const PHONG: &str = "phong";
 /// The method that papers compare times with.
 const GOURAUD: &str = "gouraud";
 
+/// Pixels of 320 x 240.
+const PICTURE: f64 = 76_800.0;
+
 fn find<'m>(measurements: &[&'m Measurement], processor: Processor, shader: &str) -> Option<&'m Measurement> {
     measurements.iter().copied().find(|m| m.board == processor && m.shader == shader)
 }
@@ -22,6 +25,9 @@ fn find<'m>(measurements: &[&'m Measurement], processor: Processor, shader: &str
 fn words(found: BreakEven) -> (String, Option<f64>) {
     match found {
         // Triangles of less than a twentieth of a pixel draw nothing.
+        // Larger than the picture.
+        BreakEven::From(area) if area > PICTURE => words(BreakEven::Never),
+        BreakEven::Below(area) if area > PICTURE => words(BreakEven::Always),
         BreakEven::From(area) if area < 0.05 => words(BreakEven::Always),
         BreakEven::Below(area) if area < 0.05 => words(BreakEven::Never),
         BreakEven::Always => ("always".to_owned(), Some(0.0)),
@@ -131,6 +137,8 @@ type Column = (&'static str, &'static str, usize, fn(&Measurement) -> Option<f64
 /// What is printed of a measurement.
 const COLUMNS: [Column; 18] = [
     ("per pixel", "instructions per pixel", 2, |m| Some(m.instr_per_pixel)),
+    ("max LSB", "largest error", 2, |m| m.max_lsb),
+    ("rms LSB", "root mean square of errors", 3, |m| m.rmse_lsb),
     ("frame", "instructions of the frame, without clearing and transfer", 0, |m| Some(m.instructions as f64)),
     ("cycles", "cycles of the frame, approximate", 0, |m| m.cycles.map(|n| n as f64)),
     ("camera", "instructions once a frame", 0, |m| Some(m.by_stage.frame as f64)),
@@ -146,8 +154,6 @@ const COLUMNS: [Column; 18] = [
     ("pixels", "pixels drawn", 0, |m| Some(m.pixels as f64)),
     ("RAM", "bytes of variables and stack", 0, |m| m.ram_bytes.map(|n| n as f64)),
     ("flash", "bytes that nothing but the method needs", 0, |m| m.flash_bytes.map(|n| n as f64)),
-    ("max LSB", "largest error", 2, |m| m.max_lsb),
-    ("rms LSB", "root mean square of errors", 3, |m| m.rmse_lsb),
 ];
 
 /// Everything measured of a scene.
