@@ -59,13 +59,12 @@ pub(super) enum Part {
 
 /// Parts of functions by what their names contain; the first that fits counts. Names as the compiler writes them, so that this
 /// is the one place to follow when functions move.
-const TABLE: [(&str, Part); 18] = [
+const TABLE: [(&str, Part); 17] = [
     ("microphong::raster::triangle::row", Part::Row),
     ("microphong::band::Band<C>::clear", Part::Clear),
     ("microphong::render::Renderer<C>::frame", Part::Frame),
-    ("microphong::render::Frame<C>::transform", Part::Vertex),
+    ("microphong::render::Stage<C>::transform", Part::Vertex),
     ("microphong::render::Frame<C>::prepare", Part::Cull),
-    ("microphong::render::Frame<C>::sort", Part::Cull),
     ("microphong::bin::Bins", Part::Cull),
     ("microphong::render::Frame<C>::draw", Part::Setup),
     // Of the host's program, which has no display.
