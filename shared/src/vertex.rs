@@ -3,6 +3,7 @@
 use crate::{
     format::{DEPTH, ROTATION, SUBPIXEL, UNIT},
     math::{
+        product::{product, upper},
         recip::recip,
         scale,
         vector::{add, narrow_dot, wide},
@@ -136,9 +137,9 @@ impl View {
                 let r = recip((z as u32) << (zeros & 31)) as i32;
                 // c focal is below 2^(21 + 31); 31 bits of it times r stay below 2^62.
                 let shift = 41 - zeros + exponent;
-                let place = |c: i32| shifted(i64::from(((i64::from(c) * i64::from(focal)) >> 21) as i32) * i64::from(r), shift);
+                let place = |c: i32| shifted(product((product(c, focal) >> 21) as i32, r), shift);
                 // Behind the near plane z has no more leading zeros than `near`: the shift is positive.
-                let depth = upper(i64::from(near) * i64::from(r)) >> ((depth_shift - zeros) & 31);
+                let depth = upper(near, r) >> ((depth_shift - zeros) & 31);
                 (place(x), place(y), depth)
             }
             Projection::Orthographic { far, nearness } => {
@@ -173,7 +174,7 @@ impl View {
 #[inline(always)]
 fn shifted(value: i64, bits: u32) -> i32 {
     match bits.checked_sub(33) {
-        Some(bits) => ((upper(value) >> (bits & 31)) + 1) >> 1,
+        Some(bits) => (((value >> 32) as i32 >> (bits & 31)) + 1) >> 1,
         None => slightly_shifted(value, bits),
     }
 }
@@ -190,12 +191,6 @@ fn slightly_shifted(value: i64, bits: u32) -> i32 {
 #[inline(never)]
 fn limited(c: i32) -> i32 {
     c.clamp(-GUARD, GUARD)
-}
-
-/// The upper half.
-#[inline(always)]
-fn upper(value: i64) -> i32 {
-    (value >> 32) as i32
 }
 
 /// The nearest that 32 bits hold.

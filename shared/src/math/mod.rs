@@ -5,6 +5,7 @@ pub mod angle;
 #[cfg(feature = "all-shaders")]
 pub mod arc;
 pub mod power;
+pub mod product;
 pub mod recip;
 pub mod rsqrt;
 pub mod vector;

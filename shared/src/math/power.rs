@@ -1,6 +1,9 @@
 //! The highlight's power function, x^n, from a table.
 
-use crate::format::{COSINE, PIXEL_COSINE};
+use crate::{
+    format::{COSINE, PIXEL_COSINE},
+    math::product::{product, unsigned_product, upper_by_half_word},
+};
 use core::num::{NonZeroU32, NonZeroU64};
 
 /// Intervals of the table.
@@ -44,7 +47,7 @@ impl Base {
 /// [`Base::Square`] of `x`, Q2.30.
 #[must_use]
 pub fn square(x: i32) -> i32 {
-    if x >= 1 << (COSINE - 1) { ((i64::from(x) * i64::from(x)) >> COSINE) as i32 } else { x - (1 << (COSINE - 2)) }
+    if x >= 1 << (COSINE - 1) { (product(x, x) >> COSINE) as i32 } else { x - (1 << (COSINE - 2)) }
 }
 
 /// Four times the exponent up to which the whole domain is used.
@@ -93,7 +96,7 @@ impl Power {
     fn position(&self, cosine: i32) -> u32 {
         let defect = (1i32 << COSINE).saturating_sub(cosine).max(0) as u32;
         // defect * 4 n / 32 * 2048 / 2^30, with 12 fraction bits.
-        u32::try_from((u64::from(defect) * u64::from(self.scale)) >> (COSINE - 18)).unwrap_or(u32::MAX)
+        u32::try_from(unsigned_product(defect, self.scale) >> (COSINE - 18)).unwrap_or(u32::MAX)
     }
 
     /// cosine^n, unsigned Q0.16, by linear interpolation; `cosine` in Q2.30.
@@ -108,11 +111,11 @@ impl Power {
         }
     }
 
-    /// The table for the pixel loop: entry `((top - cosine) * factor) >> 33` is the nearest to `cosine`, Q5.27.
+    /// The table for the pixel loop: entry `((top - cosine) * factor) >> 37` is the nearest to `cosine`, Q5.27.
     #[must_use]
     pub fn pixel(&self) -> PixelPower<'_> {
         let scale = NonZeroU32::new(self.scale).unwrap_or(WHOLE);
-        PixelPower { table: &self.table, top: (1 << PIXEL_COSINE) + ((1 << 20) / scale) as i32, factor: (scale.get() << 12) as i32 }
+        PixelPower { table: &self.table, top: (1 << PIXEL_COSINE) + ((1 << 20) / scale) as i32, factor: (scale.get() << 16) as i32 }
     }
 
     /// Smallest cosine, Q2.30, whose power is not taken as 0.
@@ -135,9 +138,9 @@ impl PixelPower<'_> {
     #[inline(always)]
     #[must_use]
     pub fn at(&self, cosine: i32) -> u32 {
-        let twice = ((i64::from(self.top.wrapping_sub(cosine)) * i64::from(self.factor)) >> 32) as i32;
-        // One instruction halves and clamps, and nothing is left to check.
-        self.table[(twice >> 1).clamp(0, SIZE as i32 - 1) as usize].into()
+        let fine = upper_by_half_word(self.top.wrapping_sub(cosine), self.factor);
+        // One instruction shifts and clamps, and nothing is left to check.
+        self.table[(fine >> 5).clamp(0, SIZE as i32 - 1) as usize].into()
     }
 }
 

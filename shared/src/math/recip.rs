@@ -1,5 +1,7 @@
 //! Reciprocal of a normalised integer.
 
+use super::product::{product, unsigned_product};
+
 /// 2^62 / d for `d` in [2^31, 2^32): between 2^30 and 2^31 - 1, so that it fits an `i32` too (tests::error).
 ///
 /// One 32-bit division of the upper half gives 15 bits, one Newton step the rest.
@@ -12,8 +14,8 @@ pub fn recip(d: u32) -> u32 {
     let high = (u32::MAX / (d >> 16)) >> 1;
     let x = high << 15;
     // x (2 - d x / 2^62) / 1, with d x / 2^62 so close to 1 that the defect, in 2^-31, fits 18 bits.
-    let defect = (1u32 << 31).wrapping_sub(((u64::from(d) * u64::from(x)) >> 31) as u32) as i32;
-    x.wrapping_add(((i64::from(x as i32) * i64::from(defect)) >> 31) as u32)
+    let defect = (1u32 << 31).wrapping_sub((unsigned_product(d, x) >> 31) as u32) as i32;
+    x.wrapping_add((product(x as i32, defect) >> 31) as u32)
 }
 
 /// A number to divide by, Q2.30.
@@ -39,7 +41,7 @@ impl Divisor {
     #[inline(always)]
     #[must_use]
     pub fn divide(self, value: i32) -> i32 {
-        let product = (i64::from(value) * i64::from(self.inverse)) >> (32 - self.zeros.min(31));
+        let product = product(value, self.inverse as i32) >> (32 - self.zeros.min(31));
         product.clamp(i32::MIN.into(), i32::MAX.into()) as i32
     }
 }

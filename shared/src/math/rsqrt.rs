@@ -1,5 +1,7 @@
 //! Reciprocal square root.
 
+use super::product::unsigned_product;
+
 /// First guesses for [`rsqrt`], indexed by the argument's upper eight bits (64..=255), Q0.16.
 static SEED: [u16; 192] = {
     let mut table = [0; 192];
@@ -22,13 +24,13 @@ static SEED: [u16; 192] = {
 pub fn rsqrt(m: u32) -> u32 {
     let m = m.max(1 << 30);
     let seed = SEED.get((m >> 24) as usize - 64).copied().unwrap_or(0);
-    let mut y = u64::from(seed) << 14;
+    let mut y = u32::from(seed) << 14;
     for _ in 0..2 {
-        let square = (y * y) >> 30;
-        let product = (u64::from(m) * square) >> 30;
-        y = (y * ((3 << 30) - product)) >> 31;
+        let square = (unsigned_product(y, y) >> 30) as u32;
+        let product = (unsigned_product(m, square) >> 30) as u32;
+        y = (unsigned_product(y, (3 << 30) - product) >> 31) as u32;
     }
-    y as u32
+    y
 }
 
 /// Largest error of [`rsqrt`], in units of its result.

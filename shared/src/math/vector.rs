@@ -1,12 +1,12 @@
 //! Dot products and unit vectors.
 
-use super::rsqrt::rsqrt_wide;
+use super::{product::product, rsqrt::rsqrt_wide};
 
 /// Dot product of two vectors in 64 bits.
 #[inline(always)]
 #[must_use]
 pub fn dot(a: [i32; 3], b: [i32; 3]) -> i64 {
-    i64::from(a[0]) * i64::from(b[0]) + i64::from(a[1]) * i64::from(b[1]) + i64::from(a[2]) * i64::from(b[2])
+    product(a[0], b[0]) + product(a[1], b[1]) + product(a[2], b[2])
 }
 
 /// A vertex normal or position as `i32`. Written out: `map` is a loop through memory at opt-level "s".
@@ -54,7 +54,7 @@ pub fn add(a: [i32; 3], b: [i32; 3]) -> [i32; 3] {
 /// Cross product of two vectors in 64 bits.
 #[must_use]
 pub fn cross([a0, a1, a2]: [i32; 3], [b0, b1, b2]: [i32; 3]) -> [i64; 3] {
-    let minor = |a: i32, b: i32, c: i32, d: i32| i64::from(a) * i64::from(d) - i64::from(b) * i64::from(c);
+    let minor = |a: i32, b: i32, c: i32, d: i32| product(a, d) - product(b, c);
     [minor(a1, a2, b1, b2), minor(a2, a0, b2, b0), minor(a0, a1, b0, b1)]
 }
 
@@ -71,7 +71,7 @@ pub fn normalise(v: [i32; 3]) -> [i32; 3] {
     let zeros = largest.leading_zeros();
     let v = v.map(|c| if zeros >= 3 { c.wrapping_shl(zeros - 3) } else { c >> (3 - zeros) });
     let (mantissa, exponent) = rsqrt_wide(dot(v, v) as u64);
-    v.map(|c| ((i64::from(c) * i64::from(mantissa)) >> (exponent - 30)) as i32)
+    v.map(|c| (product(c, mantissa as i32) >> (exponent - 30)) as i32)
 }
 
 #[cfg(test)]

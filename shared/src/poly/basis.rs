@@ -10,7 +10,7 @@
 use super::sliver::Sliver;
 use crate::{
     format::{CENTRE, FINE, SPLITS, SUBPIXEL},
-    math::{recip::recip, scale, scale_wide, wide::Wide},
+    math::{product::product, recip::recip, scale, scale_wide, wide::Wide},
     poly::terms::Terms,
 };
 
@@ -91,10 +91,10 @@ impl Basis {
             return None;
         }
         // 1 / det = r 2^(zeros - 62); coordinates are below 2^bits, so mantissas c r 2^(zeros - 58 + exponent) below 2^30.
-        let r = i64::from(recip((det as u32) << zeros).min(i32::MAX as u32));
+        let r = recip((det as u32) << zeros).min(i32::MAX as u32) as i32;
         let exponent = (57 - zeros - bits).min(LARGEST);
         let up = zeros + exponent - 26;
-        let mantissa = |c: i32| ((i64::from(c << up) * r + (1 << 31)) >> 32) as i32;
+        let mantissa = |c: i32| ((product(c << up, r) + (1 << 31)) >> 32) as i32;
         let pixel = [x0 >> SUBPIXEL, (y0 + CENTRE - 1) >> SUBPIXEL];
         let offset = [((pixel[0] << SUBPIXEL) + CENTRE - x0) << SPLITS, ((pixel[1] << SUBPIXEL) + CENTRE - y0) << SPLITS];
         let (s, t) = ([mantissa(y2), mantissa(-x2)], [mantissa(-y1), mantissa(x1)]);
@@ -221,7 +221,7 @@ impl Basis {
     /// Of `a s + b t`: the value at the anchor, and the derivatives along x and y; `a` and `b` are at most 2^30.
     #[inline(always)]
     fn products(&self, a: i32, b: i32) -> [Product; 3] {
-        let along = |s: i32, t: i32| Product(i64::from(a) * i64::from(s) + i64::from(b) * i64::from(t));
+        let along = |s: i32, t: i32| Product(product(a, s) + product(b, t));
         [along(self.at[0], self.at[1]), along(self.s[0], self.t[0]), along(self.s[1], self.t[1])]
     }
 
@@ -381,7 +381,7 @@ impl Product {
 /// What `gradient` comes to at `offset`, which is at most a pixel away ([`FINE`] fraction bits).
 #[inline(always)]
 fn at(gradient: [i32; 2], offset: [i32; 2]) -> i32 {
-    ((i64::from(gradient[0]) * i64::from(offset[0]) + i64::from(gradient[1]) * i64::from(offset[1])) >> FINE) as i32
+    ((product(gradient[0], offset[0]) + product(gradient[1], offset[1])) >> FINE) as i32
 }
 
 /// `gradient` times `offset`, [`FINE`] fraction bits.

@@ -9,6 +9,7 @@ use super::{
 use crate::{
     band::Band,
     format::{CENTRE, DEPTH, SUBPIXEL},
+    math::product::product,
     poly::{Patch, Walker, basis::Basis, plane::Plane},
     tone::Tone,
     vertex::ScreenVertex,
@@ -137,7 +138,7 @@ impl Outline {
     #[must_use]
     pub fn area([a, b, c]: [&ScreenVertex; 3]) -> i64 {
         let (x1, y1, x2, y2) = (b.x - a.x, b.y - a.y, c.x - a.x, c.y - a.y);
-        i64::from(x1) * i64::from(y2) - i64::from(x2) * i64::from(y1)
+        product(x1, y2) - product(x2, y1)
     }
 
     /// Its grid is finer than the pixels' by 2 to this power.

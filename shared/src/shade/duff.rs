@@ -17,6 +17,7 @@ use crate::{
     format::{BEND, RHO},
     math::{
         power::PixelPower,
+        product::{product, upper},
         rsqrt::{QUARTER, half_rsqrt, rsqrt},
     },
     palette::Reflection,
@@ -89,7 +90,7 @@ impl Form<[u32; 1], [u32; 2]> for Tabled {
     #[inline(always)]
     fn reflect(&self, _: usize, &half_root: &i32, [light, half]: [u32; 2], power: PixelPower<'_>) -> Reflection {
         // Upper half of Q2.30 times Q2.30, and half of a root: Q5.27.
-        let over = |cosine: u32| ((i64::from(signed(cosine)) * i64::from(half_root)) >> 32) as i32;
+        let over = |cosine: u32| upper(signed(cosine), half_root);
         Reflection { diffuse: over(light), highlight: power.at(over(half)) }
     }
 }
@@ -130,7 +131,7 @@ impl Root {
     /// `value / sqrt(x)`, Q2.30 each; at most 2 by saturation.
     #[inline(always)]
     pub(super) fn divide(self, value: i32) -> i32 {
-        let product = (i64::from(value) * i64::from(self.mantissa)) >> (30 - self.shift);
+        let product = product(value, self.mantissa as i32) >> (30 - self.shift);
         product.clamp(i32::MIN.into(), i32::MAX.into()) as i32
     }
 }

@@ -57,6 +57,7 @@ use crate::poly::hyperbolic::Hyperbolic;
 use crate::{
     band::Band,
     format::{BIAS, LEVEL, RHO, WALK},
+    math::product::product,
     palette::Palette,
     pixel::Pixel,
     poly::{
@@ -110,7 +111,7 @@ impl Facet<'_> {
     /// Where N·H, linear between the corners, is smaller, N·H over |N| is too small for a highlight; Q2.30.
     #[inline(always)]
     fn dark_below<C: Pixel>(&self, palette: &Palette<C>) -> i64 {
-        (i64::from(palette.dark_below()) * i64::from(self.triangle.rho)) >> RHO
+        product(palette.dark_below(), self.triangle.rho.into()) >> RHO
     }
 }
 

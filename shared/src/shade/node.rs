@@ -6,6 +6,7 @@ use crate::math::vector::normalise;
 use crate::{
     format::{EDGE, UNIT},
     math::{
+        product::product,
         rsqrt::rsqrt_wide,
         vector::{add, dot, wide, zip},
     },
@@ -34,9 +35,9 @@ impl Facet<'_> {
         let (sums, rsums) = (self.sums(), self.rsums());
         let middle = |k: usize| {
             let (position, sum) = sums[k];
-            let rsum = i64::from(rsums[k]);
+            let rsum = rsums[k] as i32;
             // Q3.14 times Q1.17: one bit more than wanted.
-            Node { position, normal: sum.map(|c| ((i64::from(c) * rsum) >> (UNIT + EDGE - 30)) as i32) }
+            Node { position, normal: sum.map(|c| (product(c, rsum) >> (UNIT + EDGE - 30)) as i32) }
         };
         let [a, b, c] = self.corner_nodes();
         [a, b, c, middle(0), middle(1), middle(2)]
@@ -109,7 +110,7 @@ impl Facet<'_> {
         let (a, b, c) = (a.light[which], b.light[which], c.light[which]);
         let [ab, bc, ca] = self.rsums();
         // Half of both.
-        let middle = |a: i32, b: i32, rsum: u32| ((i64::from((a >> 1) + (b >> 1)) * i64::from(rsum as i32)) >> (EDGE - 1)) as i32;
+        let middle = |a: i32, b: i32, rsum: u32| (product((a >> 1) + (b >> 1), rsum as i32) >> (EDGE - 1)) as i32;
         [a, b, c, middle(a, b, ab), middle(b, c, bc), middle(c, a, ca)]
     }
 }

@@ -12,7 +12,13 @@ use super::{
     Area, Facet, Shading, duff,
     form::{EXTRA, Form, NODE, Quadratic, signed},
 };
-use crate::{band::Band, format::EDGE, math::power::PixelPower, palette::Reflection, pixel::Pixel};
+use crate::{
+    band::Band,
+    format::EDGE,
+    math::{power::PixelPower, product::upper},
+    palette::Reflection,
+    pixel::Pixel,
+};
 
 #[inline(never)]
 pub(super) fn draw<C: Pixel>(facet: &Facet<'_>, shading: &Shading<'_, C>, band: &mut Band<'_, C>) -> u32 {
@@ -72,5 +78,5 @@ impl Form<[u32; 1], ([u32; 1], [u32; 1])> for Scaled {
 /// A numerator times half a reciprocal length, Q2.30 each: the upper half is a cosine in Q5.27.
 #[inline(always)]
 fn over(cosine: i32, half: i32) -> i32 {
-    ((i64::from(cosine) * i64::from(half)) >> 32) as i32
+    upper(cosine, half)
 }

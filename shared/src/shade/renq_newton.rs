@@ -12,7 +12,13 @@ use super::{
     form::{Form, signed},
     renq,
 };
-use crate::{band::Band, format::RHO, math::power::PixelPower, palette::Reflection, pixel::Pixel};
+use crate::{
+    band::Band,
+    format::RHO,
+    math::{power::PixelPower, product::upper},
+    palette::Reflection,
+    pixel::Pixel,
+};
 
 #[inline(never)]
 pub(super) fn draw<C: Pixel>(facet: &Facet<'_>, shading: &Shading<'_, C>, band: &mut Band<'_, C>) -> u32 {
@@ -52,7 +58,6 @@ const LIMIT: u64 = (0.1 / (255.0 * 1.5 * 0.02 * 0.02) * (1u64 << 26) as f64) as 
 #[inline(always)]
 fn newton(h: i32, square: i32) -> i32 {
     // Upper halves of products: h² in Q4.28, D h² in Q6.26. 3 - 4 D h² is about 2: Q3.29.
-    let upper = |a: i32, b: i32| ((i64::from(a) * i64::from(b)) >> 32) as i32;
     let product = upper(upper(h, h), square);
     upper(h, ((3 << 26) - (product << 2)) << 3) << 2
 }

@@ -15,7 +15,7 @@ use super::{
 };
 use crate::{
     band::Band,
-    math::{power::PixelPower, rsqrt::rsqrt},
+    math::{power::PixelPower, product::product, rsqrt::rsqrt},
     palette::Reflection,
     pixel::Pixel,
     poly::Constant,
@@ -56,7 +56,7 @@ fn root(w: i32) -> i32 {
     }
     // sqrt(w) = 2 w / sqrt(4 w), 4 w in [1, 4).
     let w = w.min(ONE - 1);
-    ((i64::from(w) * i64::from(rsqrt((w as u32) << 2))) >> 29) as i32
+    (product(w, rsqrt((w as u32) << 2) as i32) >> 29) as i32
 }
 
 /// The inverse of [`root`] at the pixel.

@@ -1,0 +1,103 @@
+//! Products of two words.
+//!
+//! Most machines multiply 32 by 32 bits into 64 in one instruction. Armv6-M has none: a 64-bit product is a call of 40 instructions
+//! there, and four products of half words are less than half of that. The bits are the same.
+
+/// Armv6-M, told by what else it has not got.
+const HALVES: bool = cfg!(all(target_arch = "arm", not(target_has_atomic = "32")));
+
+/// `a b`.
+#[inline(always)]
+#[must_use]
+pub fn product(a: i32, b: i32) -> i64 {
+    if HALVES { whole_by_halves(a, b) } else { i64::from(a) * i64::from(b) }
+}
+
+/// `a b`, unsigned.
+#[inline(always)]
+#[must_use]
+pub fn unsigned_product(a: u32, b: u32) -> u64 {
+    if HALVES { unsigned_by_halves(a, b) } else { u64::from(a) * u64::from(b) }
+}
+
+/// `a b / 2^32`, rounded down.
+#[inline(always)]
+#[must_use]
+pub fn upper(a: i32, b: i32) -> i32 {
+    if HALVES { upper_by_halves(a, b) } else { ((i64::from(a) * i64::from(b)) >> 32) as i32 }
+}
+
+/// `a b / 2^32`, rounded down, for the pixel loop; `b` is a multiple of 2^16.
+#[inline(always)]
+#[must_use]
+pub fn upper_by_half_word(a: i32, b: i32) -> i32 {
+    if HALVES { by_half_word(a, b >> 16) } else { ((i64::from(a) * i64::from(b)) >> 32) as i32 }
+}
+
+/// Lower half, unsigned, and upper half.
+#[inline(always)]
+fn split(a: i32) -> (i32, i32) {
+    (a & 0xFFFF, a >> 16)
+}
+
+/// Upper half of a product (Knuth; Warren, Hacker's Delight 8-2): no sum of half words overflows.
+#[inline(always)]
+fn upper_by_halves(a: i32, b: i32) -> i32 {
+    let ((al, ah), (bl, bh)) = (split(a), split(b));
+    let (low, high) = split(ah.wrapping_mul(bl).wrapping_add((al.wrapping_mul(bl) as u32 >> 16) as i32));
+    ah.wrapping_mul(bh).wrapping_add(high).wrapping_add(al.wrapping_mul(bh).wrapping_add(low) >> 16)
+}
+
+/// A call of its own: what is multiplied at set-up is worth less than its flash.
+#[inline(never)]
+fn whole_by_halves(a: i32, b: i32) -> i64 {
+    i64::from(upper_by_halves(a, b)) << 32 | i64::from(a.wrapping_mul(b) as u32)
+}
+
+#[inline(never)]
+fn unsigned_by_halves(a: u32, b: u32) -> u64 {
+    let (al, ah, bl, bh) = (a & 0xFFFF, a >> 16, b & 0xFFFF, b >> 16);
+    let middle = ah.wrapping_mul(bl).wrapping_add(al.wrapping_mul(bl) >> 16);
+    let lower = al.wrapping_mul(bh).wrapping_add(middle & 0xFFFF);
+    let upper = ah.wrapping_mul(bh).wrapping_add(middle >> 16).wrapping_add(lower >> 16);
+    u64::from(upper) << 32 | u64::from(a.wrapping_mul(b))
+}
+
+/// `a b / 2^16`, rounded down; `b` is at most 15 bits.
+#[inline(always)]
+fn by_half_word(a: i32, b: i32) -> i32 {
+    let (low, high) = split(a);
+    high.wrapping_mul(b).wrapping_add((low.wrapping_mul(b) as u32 >> 16) as i32)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    fn check(a: i32, b: i32) {
+        let whole = i64::from(a) * i64::from(b);
+        assert_eq!(whole_by_halves(a, b), whole, "{a} {b}");
+        assert_eq!(upper_by_halves(a, b), (whole >> 32) as i32, "{a} {b}");
+        assert_eq!(unsigned_by_halves(a as u32, b as u32), u64::from(a as u32) * u64::from(b as u32), "{a} {b}");
+        let (factor, product) = (b & 0x7FFF, i64::from(a) * i64::from(b & 0x7FFF));
+        assert_eq!(i64::from(by_half_word(a, factor)), product >> 16, "{a} {factor}");
+        assert_eq!(i64::from(upper_by_half_word(a, factor << 16)), product >> 16, "{a} {factor}");
+    }
+
+    #[test]
+    fn halves_where_they_carry() {
+        let edges = [0, 1, 0x7FFF, 0x8000, 0xFFFF, 0x1_0000, 0x7FFF_0000, 0x7FFF_8000, 0x7FFF_FFFF];
+        let edges = || edges.into_iter().flat_map(|c: i32| [c, -c, !c, c ^ i32::MIN]);
+        for (a, b) in edges().flat_map(|a| edges().map(move |b| (a, b))) {
+            check(a, b);
+        }
+    }
+
+    proptest! {
+        #[test]
+        fn halves_make_the_same(a: i32, b: i32) {
+            check(a, b);
+        }
+    }
+}
