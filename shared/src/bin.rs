@@ -5,7 +5,7 @@
 //! and drops a triangle below its last row. Lists are in the order of the
 //! stream, so the picture does not depend on the height of the bands.
 
-use core::num::NonZeroU32;
+use core::{iter, num::NonZeroU32};
 
 /// Bins of a frame; the rows are shared out among them.
 pub const BINS: usize = 64;
@@ -98,11 +98,15 @@ impl Bins {
         }
     }
 
-    /// The active entries in the order of the stream: start with `None`, go on with the index returned.
-    #[must_use]
-    pub fn next(&self, entries: &[Entry], after: Option<u16>) -> Option<u16> {
-        let link = after.map_or(self.active, |index| entries.get(usize::from(index)).map_or(NONE, |entry| entry.next));
-        link.checked_sub(1)
+    /// The active entries in the order of the stream.
+    #[inline(always)]
+    pub fn active<'e>(&self, entries: &'e [Entry]) -> impl Iterator<Item = &'e Entry> + use<'e> {
+        let mut link = self.active;
+        iter::from_fn(move || {
+            let entry = linked(link).and_then(|index| entries.get(index))?;
+            link = entry.next;
+            Some(entry)
+        })
     }
 
     /// Drops active entries that end at row `bottom` or above.
@@ -172,12 +176,11 @@ mod tests {
                 let bottom = (top + band).min(HEIGHT);
                 bins.advance(&mut entries, bottom);
                 let mut seen = [false; 100];
-                let (mut index, mut last) = (None, None);
-                while let Some(i) = bins.next(&entries, index) {
-                    let triangle = entries[usize::from(i)].triangle;
+                let mut last = None;
+                for &Entry { triangle, .. } in bins.active(&entries) {
                     assert!(last < Some(triangle));
                     seen[triangle as usize] = true;
-                    (last, index) = (Some(triangle), Some(i));
+                    last = Some(triangle);
                 }
                 for i in 0..100 {
                     let (first, end) = rows(i);

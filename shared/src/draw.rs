@@ -39,8 +39,7 @@ impl<C: Pixel> Drawing<'_, C> {
     /// Draws `triangle`; returns its pixels in `band`.
     #[inline(always)]
     pub(crate) fn draw(&self, triangle: &Triangle, band: &mut Band<'_, C>) -> u32 {
-        // Against the stream's order.
-        let [a, c, b] = triangle.corners.map(usize::from);
+        let [a, b, c] = places(triangle);
         let (Some(p), Some(q), Some(r)) = (self.vertices.get(a), self.vertices.get(b), self.vertices.get(c)) else { return 0 };
         let vertices = [p, q, r];
         match self.corners([a, b, c]) {
@@ -58,8 +57,7 @@ impl<C: Pixel> Drawing<'_, C> {
 
     /// The visible box of `triangle`; `None` if it shows its back, or no pixel can belong to it.
     pub(crate) fn bounds(&self, triangle: &Triangle) -> Option<Bounds> {
-        let [a, c, b] = triangle.corners.map(usize::from);
-        match self.corners([a, b, c]) {
+        match self.corners(places(triangle)) {
             Some(corners) => self.viewport.bounds(corners),
             None => self.stage.bounds(self.viewport, self.vertices, triangle),
         }
@@ -138,10 +136,18 @@ impl<C: Pixel> Drawing<'_, C> {
     #[cfg(feature = "all-shaders")]
     #[inline(always)]
     fn nearness(&self, corners: [&ScreenVertex; 3]) -> Option<[i32; 3]> {
-        let [a, b, c] = corners.map(|corner| corner.depth);
+        let [a, b, c] = corners;
+        let (a, b, c) = (a.depth, b.depth, c.depth);
         // All of it equally far is all of it flat on the screen.
         (self.perspective && !(a == b && b == c)).then_some([a, b, c])
     }
+}
+
+/// Where the corners are, against the stream's order. Written out: `map` is a loop through memory at opt-level "s".
+#[inline(always)]
+fn places(triangle: &Triangle) -> [usize; 3] {
+    let [a, c, b] = triangle.corners;
+    [a.into(), b.into(), c.into()]
 }
 
 #[inline(always)]

@@ -21,7 +21,7 @@ use crate::{
     stream::record::{Mesh, Triangle, Vertex},
     vertex::{ScreenVertex, State, View},
 };
-use core::{fmt, ops::Range};
+use core::fmt;
 use embedded_graphics_core::{
     geometry::{Point, Size},
     primitives::Rectangle,
@@ -464,18 +464,22 @@ impl<C: Pixel> Frame<'_, '_, C> {
     /// Draws the triangles that lie in `band`; returns their pixels there.
     fn draw_binned(&self, band: &mut Band<'_, C>) -> u32 {
         let Renderer { stream, memory, .. } = &*self.renderer;
-        let (mut pixels, mut index) = (0u32, None);
-        let mut current: Option<(Range<u32>, Drawing<'_, C>)> = None;
-        while let Some(next) = self.bins.next(memory.bins, index) {
-            index = Some(next);
-            let Some(entry) = memory.bins.get(usize::from(next)) else { break };
-            if current.as_ref().is_none_or(|(triangles, _)| !triangles.contains(&entry.triangle)) {
-                current = self
-                    .mesh(entry.triangle)
-                    .and_then(|mesh| Some((mesh.first_triangle..mesh.first_triangle.saturating_add(mesh.triangles), self.drawing(mesh)?)));
-            }
-            if let (Some((_, drawing)), Some(triangle)) = (&current, stream.triangles.get(entry.triangle as usize)) {
-                pixels = pixels.saturating_add(drawing.draw(triangle, band));
+        let mut pixels = 0u32;
+        let mut active = self.bins.active(memory.bins).map(|entry| entry.triangle);
+        let mut next = active.next();
+        while let Some(mut id) = next {
+            let Some(mesh) = self.mesh(id) else { break };
+            let Some(drawing) = self.drawing(mesh) else { break };
+            let end = mesh.first_triangle.saturating_add(mesh.triangles);
+            loop {
+                if let Some(triangle) = stream.triangles.get(id as usize) {
+                    pixels = pixels.saturating_add(drawing.draw(triangle, band));
+                }
+                next = active.next();
+                match next {
+                    Some(other) if other < end => id = other,
+                    _ => break,
+                }
             }
         }
         pixels

@@ -82,7 +82,8 @@ impl Basis {
     pub fn small(corners: [[i32; 2]; 3]) -> Option<Self> {
         let ([x0, y0], edges) = edges(corners);
         let [[x1, y1], [x2, y2]] = edges;
-        let size = |c: i32| (c.wrapping_add(c >> 31) ^ (c >> 31)) as u32;
+        // One less than the size where negative: -2^k counts as k bits.
+        let size = |c: i32| (c ^ (c >> 31)) as u32;
         let bits = 32 - (size(x1) | size(y1) | size(x2) | size(y2)).leading_zeros();
         let det = x1.wrapping_mul(y2).wrapping_sub(x2.wrapping_mul(y1));
         let zeros = det.leading_zeros();
@@ -90,14 +91,14 @@ impl Basis {
         if bits > SMALL || det <= 0 || 2 * bits + zeros > 38 {
             return None;
         }
-        // 1 / det = r 2^(zeros - 62); coordinates are below 2^bits, so mantissas c r 2^(zeros - 58 + exponent) below 2^30.
+        // 1 / det = r 2^(zeros - 62); coordinates are at most 2^bits, so mantissas c r 2^(zeros - 58 + exponent) at most 2^30.
         let r = recip((det as u32) << zeros).min(i32::MAX as u32) as i32;
         let exponent = (57 - zeros - bits).min(LARGEST);
         let up = zeros + exponent - 26;
         let mantissa = |c: i32| ((product(c << up, r) + (1 << 31)) >> 32) as i32;
         let pixel = [x0 >> SUBPIXEL, (y0 + CENTRE - 1) >> SUBPIXEL];
         let offset = [((pixel[0] << SUBPIXEL) + CENTRE - x0) << SPLITS, ((pixel[1] << SUBPIXEL) + CENTRE - y0) << SPLITS];
-        let (s, t) = ([mantissa(y2), mantissa(-x2)], [mantissa(-y1), mantissa(x1)]);
+        let (s, t) = ([mantissa(y2), -mantissa(x2)], [-mantissa(y1), mantissa(x1)]);
         Some(Self {
             s,
             t,

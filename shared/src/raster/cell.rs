@@ -9,7 +9,8 @@
 
 use super::{
     area::Contour,
-    edge::{COLUMN, Column},
+    edge::COLUMN,
+    sides::Pair,
     smooth::{Part, Shape, coarse},
     triangle::{Outline, Rows, row},
 };
@@ -164,8 +165,7 @@ impl Piece {
         }
         let [a, b, c] = self.corners;
         let (first, end) = (self.rows[0].max(band.top), self.rows[1].min(band.top.wrapping_add(band.rows)));
-        let (left, right) = (Column::default(), Column::default());
-        let mut rows = Rows { count: 0, start: band.start(first), left, right, depth, patch, tone };
+        let mut rows = Rows { count: 0, start: band.start(first), sides: Pair::default(), depth, patch, tone };
         rows.depth.jump(first);
         rows.patch.jump(first.wrapping_sub(basis.row()));
         rows.tone.start(first);
@@ -182,8 +182,8 @@ impl Piece {
                 }
                 line.step_row();
             }
-            rows.left.x = (left.min(width) as u32) << COLUMN;
-            rows.right.x = (right.max(0) as u32) << COLUMN;
+            rows.sides.left.x = (left.min(width) as u32) << COLUMN;
+            rows.sides.right.x = (right.max(0) as u32) << COLUMN;
             rows.count = right.saturating_sub(left).max(0) as u32;
             pixels += row(&mut rows, band);
         }

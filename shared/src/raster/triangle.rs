@@ -1,9 +1,9 @@
 //! One triangle into one band: edges, depth plane, and the rows between them.
 
 use super::{
-    edge::{COLUMN, Column, first_centre},
+    edge::{COLUMN, first_centre},
     fill::fill,
-    sides::Sides,
+    sides::{Pair, Sides},
     smooth::{Part, Shape},
 };
 use crate::{
@@ -29,12 +29,11 @@ pub struct Outline {
 
 /// What steps from row to row. It lives in memory, so that the pixel loop gets the registers.
 pub(super) struct Rows<P, T> {
+    pub(super) sides: Pair,
     /// Pixels of the coming row.
     pub(super) count: u32,
     /// Where it starts in the band.
     pub(super) start: usize,
-    pub(super) left: Column,
-    pub(super) right: Column,
     /// Depth at column 0.
     pub(super) depth: Plane<1>,
     pub(super) patch: P,
@@ -161,19 +160,11 @@ impl Outline {
             let shape = Shape { outline: self, piece: None, corners: self.corners, bits: SUBPIXEL };
             return shape.draw(basis, patch, tone, band, &mut |_| [i32::MIN, i32::MAX]);
         }
-        let mut sides = self.sides(band);
+        let (mut sides, pair) = self.sides(band);
         if sides.row >= sides.stop {
             return 0;
         }
-        let mut rows = Rows {
-            count: 0,
-            start: band.start(sides.row),
-            left: sides.left,
-            right: sides.right,
-            depth: self.plane(basis, sides.row),
-            patch,
-            tone,
-        };
+        let mut rows = Rows { count: 0, start: band.start(sides.row), sides: pair, depth: self.plane(basis, sides.row), patch, tone };
         if sides.row != basis.row() {
             rows.patch.jump(sides.row.wrapping_sub(basis.row()));
         }
@@ -181,19 +172,18 @@ impl Outline {
 
         let mut pixels = 0;
         loop {
-            rows.count = (rows.right.x >> COLUMN).wrapping_sub(rows.left.x >> COLUMN);
+            rows.count = rows.sides.columns();
             for _ in sides.row..sides.stop {
                 pixels += row(&mut rows, band);
             }
-            if !sides.next(rows.left, rows.right) {
+            if !sides.next(&mut rows.sides, self.corners, band.width as i32) {
                 return pixels;
             }
-            (rows.left, rows.right) = (sides.left, sides.right);
         }
     }
 
     #[inline(never)]
-    fn sides<C>(&self, band: &Band<'_, C>) -> Sides {
+    fn sides<C>(&self, band: &Band<'_, C>) -> (Sides, Pair) {
         Sides::new(self.corners, [band.top, band.top.wrapping_add(band.rows)], band.width as i32)
     }
 
@@ -226,10 +216,9 @@ pub fn turn<A: Copy>([a, b, c]: [A; 3], by: usize) -> [A; 3] {
 #[inline(never)]
 pub(super) fn row<P: Patch, T: Tone<<P::Walker as Walker>::Value>>(rows: &mut Rows<P, T>, band: &mut Band<'_, T::Pixel>) -> u32 {
     let count = rows.count as usize;
-    let (left, right) = ((rows.left.x >> COLUMN) as usize, rows.right.x >> COLUMN);
-    rows.left.skip(1);
-    rows.right.skip(1);
-    rows.count = (rows.right.x >> COLUMN).wrapping_sub(rows.left.x >> COLUMN);
+    let (left, right) = ((rows.sides.left.x >> COLUMN) as usize, rows.sides.right.x >> COLUMN);
+    rows.sides.skip(1);
+    rows.count = rows.sides.columns();
     let start = rows.start.wrapping_add(left);
     rows.start = rows.start.wrapping_add(band.width);
     let mut drawn = 0;

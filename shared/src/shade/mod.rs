@@ -104,8 +104,8 @@ impl Facet<'_> {
     /// N·H is linear and |N| at least rho.
     #[inline(always)]
     fn is_dark<C: Pixel>(&self, palette: &Palette<C>) -> bool {
-        let [a, b, c] = self.corners.map(|corner| corner.light[1]);
-        i64::from(a.max(b).max(c)) < self.dark_below(palette)
+        let [a, b, c] = self.corners;
+        i64::from(a.light[1].max(b.light[1]).max(c.light[1])) < self.dark_below(palette)
     }
 
     /// Where N·H, linear between the corners, is smaller, N·H over |N| is too small for a highlight; Q2.30.
