@@ -8,7 +8,7 @@ use crate::{
 use core::marker::PhantomData;
 
 /// Turns the value at one pixel into its colour.
-pub trait Tone<V> {
+pub trait Tone<V>: Copy {
     /// What is stored.
     type Pixel;
 

@@ -12,7 +12,7 @@ use super::{
     edge::COLUMN,
     sides::Pair,
     smooth::{Part, Shape, coarse},
-    triangle::{Outline, Rows, row},
+    triangle::{Outline, Rows, fill_rows},
 };
 use crate::{
     band::Band,
@@ -165,13 +165,12 @@ impl Piece {
         }
         let [a, b, c] = self.corners;
         let (first, end) = (self.rows[0].max(band.top), self.rows[1].min(band.top.wrapping_add(band.rows)));
-        let mut rows = Rows { count: 0, start: band.start(first), sides: Pair::default(), depth, patch, tone };
+        let width = i64::from(band.width as i32);
+        let mut rows = Rows::new(band, first, Pair::default(), depth, patch, tone);
         rows.depth.jump(first);
         rows.patch.jump(first.wrapping_sub(basis.row()));
         rows.tone.start(first);
         let mut lines = [Line::new(a, b, first), Line::new(b, c, first), Line::new(c, a, first)];
-        let width = i64::from(band.width as i32);
-        let mut pixels = 0;
         for _ in first..end {
             let (mut left, mut right) = (0, width);
             for line in &mut lines {
@@ -185,9 +184,10 @@ impl Piece {
             rows.sides.left.x = (left.min(width) as u32) << COLUMN;
             rows.sides.right.x = (right.max(0) as u32) << COLUMN;
             rows.count = right.saturating_sub(left).max(0) as u32;
-            pixels += row(&mut rows, band);
+            rows.height = 1;
+            fill_rows(&mut rows);
         }
-        pixels
+        rows.filled
     }
 
     /// [`Self::draw`] with antialiasing.

@@ -18,7 +18,7 @@ pub fn fill<W: Walker, T: Tone<W::Value>>(
     mut z: u32,
     dz: u32,
     mut walker: W,
-    tone: &T,
+    tone: T,
     left: usize,
 ) {
     let mut i = pixels.len();

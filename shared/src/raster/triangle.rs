@@ -1,5 +1,7 @@
 //! One triangle into one band: edges, depth plane, and the rows between them.
 
+use core::hint::black_box;
+
 use super::{
     edge::{COLUMN, first_centre},
     fill::fill,
@@ -27,13 +29,24 @@ pub struct Outline {
     pub part: Part,
 }
 
-/// What steps from row to row. It lives in memory, so that the pixel loop gets the registers.
-pub(super) struct Rows<P, T> {
+/// What steps from row to row.
+pub(super) struct Rows<'b, P, T: Tone<<P::Walker as Walker>::Value>>
+where
+    P: Patch,
+{
+    /// Pixels and nearness of the band, as many of each in a row as it is wide.
+    pub(super) pixels: &'b mut [T::Pixel],
+    pub(super) buffer: &'b mut [u16],
+    pub(super) width: usize,
+    /// Where the coming row starts in them.
+    pub(super) start: usize,
     pub(super) sides: Pair,
     /// Pixels of the coming row.
     pub(super) count: u32,
-    /// Where it starts in the band.
-    pub(super) start: usize,
+    /// Rows to come.
+    pub(super) height: u32,
+    /// Pixels of the rows that are done.
+    pub(super) filled: u32,
     /// Depth at column 0.
     pub(super) depth: Plane<1>,
     pub(super) patch: P,
@@ -164,20 +177,19 @@ impl Outline {
         if sides.row >= sides.stop {
             return 0;
         }
-        let mut rows = Rows { count: 0, start: band.start(sides.row), sides: pair, depth: self.plane(basis, sides.row), patch, tone };
+        let depth = self.plane(basis, sides.row);
+        let width = band.width as i32;
+        let mut rows = Rows::new(band, sides.row, pair, depth, patch, tone);
         if sides.row != basis.row() {
             rows.patch.jump(sides.row.wrapping_sub(basis.row()));
         }
         rows.tone.start(sides.row);
-
-        let mut pixels = 0;
         loop {
+            rows.height = sides.stop.wrapping_sub(sides.row) as u32;
             rows.count = rows.sides.columns();
-            for _ in sides.row..sides.stop {
-                pixels += row(&mut rows, band);
-            }
-            if !sides.next(&mut rows.sides, self.corners, band.width as i32) {
-                return pixels;
+            fill_rows(&mut rows);
+            if !sides.next(&mut rows.sides, self.corners, width) {
+                return rows.filled;
             }
         }
     }
@@ -207,33 +219,51 @@ pub fn turn<A: Copy>([a, b, c]: [A; 3], by: usize) -> [A; 3] {
     }
 }
 
-/// Fills one row and steps to the next; returns the pixels of the row.
+/// Fills the rows to come; there is at least one.
 ///
-/// A call of its own, with all state behind one pointer: measured, the pixel
-/// loop then owns the registers and comes out as by hand. `count` comes from
-/// memory, written a row earlier: derived here, the compiler would count in
-/// two registers instead of one.
+/// All that lives longer than a row stays in memory, behind one pointer that the compiler knows nothing of: measured, the pixel loop
+/// then owns the registers and comes out as by hand. `count` comes from there too, written a row earlier: derived in the row, the
+/// compiler would count in two registers instead of one.
 #[inline(never)]
-pub(super) fn row<P: Patch, T: Tone<<P::Walker as Walker>::Value>>(rows: &mut Rows<P, T>, band: &mut Band<'_, T::Pixel>) -> u32 {
-    let count = rows.count as usize;
-    let (left, right) = ((rows.sides.left.x >> COLUMN) as usize, rows.sides.right.x >> COLUMN);
-    rows.sides.skip(1);
-    rows.count = rows.sides.columns();
-    let start = rows.start.wrapping_add(left);
-    rows.start = rows.start.wrapping_add(band.width);
-    let mut drawn = 0;
-    if count > 0
-        && let Some(pixels) = band.pixels.get_mut(start..)
-        && let Some(depth) = band.depth.get_mut(start..)
-        && let Some(pixels) = pixels.get_mut(..count)
-        && let Some(depth) = depth.get_mut(..count)
-    {
-        let ([z], dz) = rows.depth.enter(right as i32).parts();
-        fill(pixels, depth, z, dz[0], rows.patch.enter(right as i32), &rows.tone, left);
-        drawn = count as u32;
+pub(super) fn fill_rows<P: Patch, T: Tone<<P::Walker as Walker>::Value>>(mut rows: &mut Rows<'_, P, T>) {
+    loop {
+        rows = black_box(rows);
+        rows.fill();
+        rows.height = rows.height.wrapping_sub(1);
+        if rows.height == 0 {
+            return;
+        }
     }
-    rows.depth.step_row();
-    rows.patch.step_row();
-    rows.tone.step_row();
-    drawn
+}
+
+impl<'b, P: Patch, T: Tone<<P::Walker as Walker>::Value>> Rows<'b, P, T> {
+    /// No rows yet, from `row` of the band on.
+    #[inline(always)]
+    pub(super) fn new(band: &'b mut Band<'_, T::Pixel>, row: i32, sides: Pair, depth: Plane<1>, patch: P, tone: T) -> Self {
+        let (width, start) = (band.width, band.start(row));
+        Self { pixels: band.pixels, buffer: band.depth, width, start, sides, count: 0, height: 0, filled: 0, depth, patch, tone }
+    }
+
+    /// Fills one row and steps to the next.
+    #[inline(always)]
+    fn fill(&mut self) {
+        let count = self.count as usize;
+        let (left, right) = ((self.sides.left.x >> COLUMN) as usize, self.sides.right.x >> COLUMN);
+        self.sides.skip(1);
+        self.count = self.sides.columns();
+        let start = self.start.wrapping_add(left);
+        let end = start.wrapping_add(count);
+        self.start = self.start.wrapping_add(self.width);
+        if count > 0
+            && let Some(pixels) = self.pixels.get_mut(start..end)
+            && let Some(buffer) = self.buffer.get_mut(start..end)
+        {
+            let ([z], dz) = self.depth.enter(right as i32).parts();
+            fill(pixels, buffer, z, dz[0], self.patch.enter(right as i32), self.tone, left);
+            self.filled = self.filled.wrapping_add(count as u32);
+        }
+        self.depth.step_row();
+        self.patch.step_row();
+        self.tone.step_row();
+    }
 }
