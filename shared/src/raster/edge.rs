@@ -21,6 +21,9 @@ pub const COLUMNS: u32 = 1 << (32 - COLUMN);
 /// Heights up to here, in 1/16 pixel, are walked from end to end: 89 rows.
 pub const SHORT: i32 = 89 << SUBPIXEL;
 
+/// Widths up to here, in 1/16 pixel, fit a word with [`COLUMN`] fraction bits: 64 columns.
+pub const NARROW: i32 = (1 << (31 - COLUMN)) - 1;
+
 /// Heights from here on, in 1/16 pixel, are not walked but divided anew on each row.
 const TALL: i32 = 1 << (32 - COLUMN);
 
@@ -47,6 +50,12 @@ pub struct Column {
 #[must_use]
 pub fn first_centre(y: i32) -> i32 {
     y.wrapping_add(CENTRE - 1) >> SUBPIXEL
+}
+
+/// A place in 1/16 pixel as one that is walked. All ones below the integer part turn its floor into a ceiling.
+#[inline(always)]
+fn walked(sixteenths: i32) -> u32 {
+    ((sixteenths << (COLUMN - SUBPIXEL)) as u32).wrapping_add((1 << COLUMN) - 1)
 }
 
 impl Column {
@@ -77,26 +86,18 @@ impl Edge {
     }
 
     /// The column at the centre of its first row, ready to be stepped to its end. Only for edges of at most [`SHORT`]
-    /// whose columns lie in [0, [`COLUMNS`]).
+    /// and [`NARROW`], whose columns lie in [0, [`COLUMNS`]).
     ///
     /// A true position is a multiple of 1/(256 h) columns, h the height in rows. The start is too small by less than
     /// 2 · 2^-21 and each step by less than 2^-21, so in row n the integer part is right while (n + 3) 256 h < 2^21.
     #[inline]
     #[must_use]
     pub fn walk(&self) -> Column {
-        let dy = self.dy.max(1);
-        let whole = self.dx.div_euclid(dy);
-        let fraction = (self.dx.wrapping_sub(whole.wrapping_mul(dy)) as u32).wrapping_shl(COLUMN) / dy as u32;
-        // To the first centre: less than a row.
+        let step = (self.dx << COLUMN).div_euclid(self.dy.max(1));
+        // From the start to the first centre, less than a row: step down / 16, rounded down.
         let down = CENTRE.wrapping_sub(self.y) & (2 * CENTRE - 1);
-        let sixteenths = (self.x - CENTRE).wrapping_add(whole.wrapping_mul(down));
-        Column {
-            // All ones below the integer part turn its floor into a ceiling.
-            x: ((sixteenths << (COLUMN - SUBPIXEL)) as u32)
-                .wrapping_add(fraction.wrapping_mul(down as u32) >> SUBPIXEL)
-                .wrapping_add((1 << COLUMN) - 1),
-            step: ((whole << COLUMN) as u32).wrapping_add(fraction),
-        }
+        let across = (step >> SUBPIXEL).wrapping_mul(down).wrapping_add((step & (2 * CENTRE - 1)).wrapping_mul(down) >> SUBPIXEL);
+        Column { x: walked(self.x.wrapping_sub(CENTRE)).wrapping_add(across as u32), step: step as u32 }
     }
 
     /// How many rows of an edge that is not short a walked column stays exact, 0 if it cannot be walked.
@@ -120,10 +121,8 @@ impl Edge {
         let part = rest.wrapping_mul(t);
         let (quotient, rest_t) = (part / dy, part % dy);
         let sixteenths = (self.x - CENTRE).wrapping_add(whole.wrapping_mul(t as i32)).wrapping_add(quotient as i32);
-        let x = (sixteenths << (COLUMN - SUBPIXEL)) as u32;
         Column {
-            // All ones below the integer part turn its floor into a ceiling.
-            x: x.wrapping_add((rest_t << (COLUMN - SUBPIXEL)) / dy).wrapping_add((1 << COLUMN) - 1),
+            x: walked(sixteenths).wrapping_add((rest_t << (COLUMN - SUBPIXEL)) / dy),
             step: ((whole << COLUMN) as u32).wrapping_add((rest << COLUMN) / dy),
         }
     }
@@ -137,12 +136,17 @@ mod tests {
     proptest! {
         #![proptest_config(ProptestConfig::with_cases(20_000))]
         #[test]
-        fn walked_columns_are_the_exact_ones(x0 in 0i32..32_000, x1 in 0i32..32_000, y0 in -3000i32..3000, height in 1i32..2048) {
-            let edge = Edge::new([x0, y0], [x1, y0 + height]);
+        fn walked_columns_are_the_exact_ones(
+            x0 in 0i32..32_000,
+            dx in prop_oneof![-32_000i32..32_000, -1030i32..1030],
+            y0 in -3000i32..3000,
+            height in 1i32..2048,
+        ) {
+            let edge = Edge::new([x0, y0], [(x0 + dx).clamp(0, 32_000), y0 + height]);
             let (mut row, end) = (first_centre(y0), first_centre(y0 + height));
             while row < end {
                 let (mut column, rows) =
-                    if height <= SHORT { (edge.walk(), end - row) } else { (edge.walk_from(row), edge.exact_rows()) };
+                    if height <= SHORT && edge.dx.abs() <= NARROW { (edge.walk(), end - row) } else { (edge.walk_from(row), edge.exact_rows()) };
                 for row in row..end.min(row + rows) {
                     prop_assert_eq!((column.x >> COLUMN) as i32, edge.column(row).rem_euclid(1 << 11));
                     column.skip(1);

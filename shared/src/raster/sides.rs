@@ -1,6 +1,6 @@
 //! The sides of a triangle, in pieces in which both are walked.
 
-use super::edge::{COLUMN, Column, Edge, SHORT, first_centre};
+use super::edge::{COLUMN, Column, Edge, NARROW, SHORT, first_centre};
 
 /// The sides of a row.
 #[derive(Clone, Copy, Debug, Default)]
@@ -32,10 +32,10 @@ pub(super) struct Sides {
     pub(super) stop: i32,
     /// Where the rows end.
     end: i32,
-    /// Takes the place of one of the sides of a short triangle at `stop`.
+    /// Takes the place of one of the sides of a small triangle at `stop`.
     below: Column,
-    /// Walked from end to end: no corner beside the band, few rows.
-    short: bool,
+    /// Walked from end to end: no corner beside the band, few rows and columns.
+    small: bool,
 }
 
 impl Sides {
@@ -45,26 +45,26 @@ impl Sides {
         let [upper, right, left] = corners;
         let (high, low) = (right[1].min(left[1]), right[1].max(left[1]));
         let first = first_centre(upper[1]);
-        let mut sides = Self {
-            row: first.max(top),
-            stop: first_centre(high),
-            end: first_centre(low).min(bottom),
-            below: if turns_right(corners) { Edge::new(right, left) } else { Edge::new(left, right) }.walk(),
-            short: is_walkable(corners, width) && low - upper[1] <= SHORT,
-        };
-        let mut pair = Pair { left: Edge::new(upper, left).walk(), right: Edge::new(upper, right).walk() };
-        if !sides.short {
-            sides.next_tall(&mut pair, corners, width);
-        } else if sides.row > first {
-            sides.skip(&mut pair, sides.row - first, corners);
-        } else if sides.stop <= first {
-            sides.turn(&mut pair, corners);
+        let small = is_walkable(corners, width) && is_narrow(corners) && low - upper[1] <= SHORT;
+        let mut sides =
+            Self { row: first.max(top), stop: first_centre(high), end: first_centre(low).min(bottom), below: Column::default(), small };
+        let mut pair = Pair::default();
+        if small {
+            pair = Pair { left: Edge::new(upper, left).walk(), right: Edge::new(upper, right).walk() };
+            sides.below = if turns_right(corners) { Edge::new(right, left) } else { Edge::new(left, right) }.walk();
+            if sides.row > first {
+                sides.skip(&mut pair, sides.row - first, corners);
+            } else if sides.stop <= first {
+                sides.turn(&mut pair, corners);
+            }
+        } else {
+            sides.next_large(&mut pair, corners, width);
         }
         sides.stop = sides.stop.min(sides.end);
         (sides, pair)
     }
 
-    /// The upper rows of a short triangle lie above the band.
+    /// The upper rows of a small triangle lie above the band.
     #[cold]
     #[inline(never)]
     fn skip(&mut self, pair: &mut Pair, rows: i32, corners: [[i32; 2]; 3]) {
@@ -75,7 +75,7 @@ impl Sides {
         }
     }
 
-    /// Below the middle corner of a short triangle.
+    /// Below the middle corner of a small triangle.
     #[inline(always)]
     fn turn(&mut self, pair: &mut Pair, corners: [[i32; 2]; 3]) {
         *(if turns_right(corners) { &mut pair.right } else { &mut pair.left }) = self.below;
@@ -89,19 +89,19 @@ impl Sides {
         if self.row >= self.end {
             return false;
         }
-        if self.short {
+        if self.small {
             self.turn(pair, corners);
         } else {
-            self.next_tall(pair, corners, width);
+            self.next_large(pair, corners, width);
             self.stop = self.stop.min(self.end);
         }
         true
     }
 
-    /// The next rows of a triangle that is clipped, or very tall: as many as stay exact, or one.
+    /// The next rows of a triangle that is clipped, or large: as many as stay exact, or one.
     #[cold]
     #[inline(never)]
-    fn next_tall(&mut self, pair: &mut Pair, corners: [[i32; 2]; 3], width: i32) {
+    fn next_large(&mut self, pair: &mut Pair, corners: [[i32; 2]; 3], width: i32) {
         let ([top, right, left], row) = (corners, self.row);
         let middle = first_centre(right[1].min(left[1]));
         // Left of the middle corner's row both edges leave the top; below it, the side of that corner is another edge.
@@ -127,6 +127,13 @@ impl Sides {
 fn is_walkable([[a, _], [b, _], [c, _]]: [[i32; 2]; 3], width: i32) -> bool {
     let inside = |x: i32| (x as u32) < (width as u32) << 4;
     inside(a) && inside(b) && inside(c)
+}
+
+/// Every edge can be walked in one word.
+#[inline(always)]
+fn is_narrow([[a, _], [b, _], [c, _]]: [[i32; 2]; 3]) -> bool {
+    let narrow = |from: i32, to: i32| (to.wrapping_sub(from).wrapping_add(NARROW) as u32) <= 2 * NARROW as u32;
+    narrow(a, b) && narrow(b, c) && narrow(c, a)
 }
 
 /// The corner in the middle is on the right side.
