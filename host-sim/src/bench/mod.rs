@@ -8,6 +8,7 @@ pub mod family;
 pub mod flash;
 pub mod growth;
 pub mod measurement;
+mod nest;
 pub mod page;
 pub mod pareto;
 pub mod processor;

@@ -1,5 +1,6 @@
 //! The stages of a frame, told apart by the functions that are executed.
 
+use super::nest::Nest;
 use crate::board::elf::Elf;
 use anyhow::{Context, Result, ensure};
 use serde::Serialize;
@@ -60,7 +61,7 @@ pub(super) enum Part {
 /// Parts of functions by what their names contain; the first that fits counts. Names as the compiler writes them, so that this
 /// is the one place to follow when functions move.
 const TABLE: [(&str, Part); 17] = [
-    ("microphong::raster::triangle::row", Part::Row),
+    ("microphong::raster::triangle::fill_rows", Part::Row),
     ("microphong::band::Band<C>::clear", Part::Clear),
     ("microphong::render::Renderer<C>::frame", Part::Frame),
     ("microphong::render::Stage<C>::transform", Part::Vertex),
@@ -115,11 +116,12 @@ impl Sum for Cost {
     }
 }
 
-/// At an address of a row's function: how often it was executed, and what it cost with all that it called.
-#[derive(Clone, Copy, Debug, Default)]
+/// At an address of a row's function: how often it was executed, what it cost with all that it called, and where it went on.
+#[derive(Clone, Debug, Default)]
 struct Site {
     count: u64,
     cost: Cost,
+    next: Vec<usize>,
 }
 
 /// Follows a program instruction by instruction and books each to a stage.
@@ -206,6 +208,10 @@ impl Meter {
         let cost = Cost { instructions: 1, cycles };
         if part == Part::Row {
             if self.functions.get(usize::from(function)).is_some_and(|function| function.part == Part::Row) {
+                let starts = self.functions.get(usize::from(function)).is_some_and(|function| function.range.start == address);
+                if !starts && !self.sites[self.site].next.contains(&index) {
+                    self.sites[self.site].next.push(index);
+                }
                 self.site = index;
                 self.sites[index].count += 1;
             }
@@ -236,13 +242,15 @@ impl Meter {
         let (mut span, mut pixel, mut spans) = (Cost::default(), Cost::default(), 0);
         for function in self.functions.iter().filter(|function| function.part == Part::Row) {
             let place = |address: u32| (address - self.base) as usize / 2;
-            let sites = &self.sites[place(function.range.start)..place(function.range.end)];
-            // What is executed more often than the function is entered lies in its loop.
-            let entries = sites.first().map_or(0, |site| site.count);
-            let (inner, outer): (Vec<&Site>, Vec<&Site>) = sites.iter().partition(|site| site.count > entries);
-            pixel = pixel + inner.iter().map(|site| site.cost).sum();
-            span = span + outer.iter().map(|site| site.cost).sum();
-            spans += entries;
+            let (start, end) = (place(function.range.start), place(function.range.end));
+            let sites = || self.sites[start..end].iter().zip(start as u64..);
+            let ways = sites().flat_map(|(site, index)| site.next.iter().map(move |&next| (index, next as u64)));
+            let nest = Nest::new(start as u64, ways, |index| self.sites[index as usize].count);
+            for (site, index) in sites() {
+                let sum = if nest.inner.contains(&index) { &mut pixel } else { &mut span };
+                *sum = *sum + site.cost;
+            }
+            spans += nest.rows;
         }
         let stages = |of: fn(Cost) -> u64| {
             let part = |part: Part| of(self.costs[part as usize]);

@@ -93,7 +93,7 @@ pub fn count(program: &Path, stream: &[u8], frames: &[Frame]) -> Result<Vec<Coun
     fs::write(&stream_file, stream).with_context(|| format!("cannot write {}", stream_file.display()))?;
     let mut valgrind = Command::new("valgrind");
     valgrind
-        .args(["--tool=callgrind", "--quiet", "--demangle=no", "--dump-instr=yes", "--dump-line=no"])
+        .args(["--tool=callgrind", "--quiet", "--demangle=no", "--dump-instr=yes", "--dump-line=no", "--collect-jumps=yes"])
         .args(["--compress-strings=no", "--compress-pos=no", "--zero-before=*counted_frame*", "--dump-after=*dumped_frame*"])
         .arg(format!("--callgrind-out-file={}", profile.display()))
         .arg(program);

@@ -1,6 +1,7 @@
 //! What callgrind writes: the executions of each instruction, and what calls cost.
 
 use anyhow::{Context, Result, bail};
+use std::collections::{BTreeMap, HashMap};
 
 /// Profile of one frame.
 #[derive(Debug, Default, PartialEq, Eq)]
@@ -17,14 +18,37 @@ pub(super) struct Function {
     pub(super) name: String,
     /// As in the symbol table: the only name that is its own.
     pub(super) symbol: String,
-    /// Executions of each instruction.
-    pub(super) executions: Vec<u64>,
+    /// Executions of each instruction, by address.
+    pub(super) executions: BTreeMap<u64, u64>,
     pub(super) calls: Vec<Call>,
+    pub(super) jumps: Vec<Jump>,
+}
+
+impl Function {
+    /// From which instructions it went on to which others.
+    pub(super) fn ways(&self) -> impl Iterator<Item = (u64, u64)> {
+        let taken: HashMap<u64, u64> = self.jumps.iter().map(|jump| (jump.from, jump.count)).collect();
+        // Unless it always jumps.
+        let falls = move |(&address, &count): (&u64, &u64)| (taken.get(&address).is_none_or(|&taken| taken < count)).then_some(address);
+        let following = self.executions.iter().zip(self.executions.keys().skip(1));
+        let falls = following.filter_map(move |(one, &next)| Some((falls(one)?, next)));
+        falls.chain(self.jumps.iter().filter(|jump| jump.count > 0).map(|jump| (jump.from, jump.to)))
+    }
+}
+
+/// All jumps from one instruction to one other within a function.
+#[derive(Debug, PartialEq, Eq)]
+pub(super) struct Jump {
+    pub(super) from: u64,
+    pub(super) to: u64,
+    pub(super) count: u64,
 }
 
 /// All calls from one instruction to one function.
 #[derive(Debug, PartialEq, Eq)]
 pub(super) struct Call {
+    /// Address of the instruction.
+    pub(super) from: u64,
     /// Symbol of the called function.
     pub(super) to: String,
     pub(super) count: u64,
@@ -36,7 +60,8 @@ impl Profile {
     /// Reads the format of callgrind 1, neither names nor positions compressed.
     pub(super) fn parse(text: &str) -> Result<Self> {
         let mut profile = Self::default();
-        let (mut called, mut calls) = (String::new(), None);
+        let (mut called, mut calls, mut jump) = (String::new(), None, None);
+        let address = |text: &str| u64::from_str_radix(text.trim().trim_start_matches("0x"), 16);
         for (line, number) in text.lines().zip(1..) {
             let wrong = || format!("line {number} of callgrind's profile: {line}");
             if let Some(symbol) = line.strip_prefix("fn=") {
@@ -48,15 +73,24 @@ impl Profile {
                 symbol.clone_into(&mut called);
             } else if let Some(count) = line.strip_prefix("calls=") {
                 calls = Some(count.split(' ').next().unwrap_or_default().parse().with_context(wrong)?);
+            } else if let Some(text) = line.strip_prefix("jump=").or_else(|| line.strip_prefix("jcnd=")) {
+                // `count target`, or `count/executions target`.
+                let (count, to) = text.split_once(' ').with_context(wrong)?;
+                let count = count.split('/').next().unwrap_or_default().parse().with_context(wrong)?;
+                jump = Some((count, address(to).with_context(wrong)?));
             } else if let Some(total) = line.strip_prefix("totals: ") {
                 profile.total = total.trim().parse().with_context(wrong)?;
             } else if line.starts_with("0x") {
-                let (_, cost) = line.split_once(' ').with_context(wrong)?;
-                let cost = cost.trim().parse().with_context(wrong)?;
                 let function = profile.functions.last_mut().with_context(wrong)?;
+                if let Some((count, to)) = jump.take() {
+                    function.jumps.push(Jump { from: address(line).with_context(wrong)?, to, count });
+                    continue;
+                }
+                let (from, cost) = line.split_once(' ').with_context(wrong)?;
+                let (from, cost) = (address(from).with_context(wrong)?, cost.trim().parse().with_context(wrong)?);
                 match calls.take() {
-                    Some(count) => function.calls.push(Call { to: called.clone(), count, cost }),
-                    None => function.executions.push(cost),
+                    Some(count) => function.calls.push(Call { from, to: called.clone(), count, cost }),
+                    None => *function.executions.entry(from).or_default() += cost,
                 }
             } else if line.starts_with(['+', '-', '*']) {
                 bail!("compressed position in {}", wrong());
@@ -69,6 +103,7 @@ impl Profile {
             if same {
                 function.executions.append(&mut part.executions);
                 function.calls.append(&mut part.calls);
+                function.jumps.append(&mut part.jumps);
             }
             same
         });
@@ -115,9 +150,9 @@ totals: 41
     fn executions_and_calls_are_told_apart() {
         let profile = Profile::parse(TEXT).expect("a profile");
         assert_eq!(profile.total, 41);
-        assert_eq!(profile.functions.iter().flat_map(|function| &function.executions).sum::<u64>(), 41);
+        assert_eq!(profile.functions.iter().flat_map(|function| function.executions.values()).sum::<u64>(), 41);
         let outer = profile.function("outer").expect("the caller");
-        assert_eq!(outer.executions, [1, 1, 9], "the cost of a call is not the caller's own");
+        assert_eq!(outer.executions.values().copied().collect::<Vec<_>>(), [1, 1, 9], "the cost of a call is not the caller's own");
         let called = &outer.calls[0];
         assert_eq!((called.count, called.cost), (3, 30));
         assert_eq!(profile.function(&called.to).expect("the function called").name, "core::ptr::read");

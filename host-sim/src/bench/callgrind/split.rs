@@ -1,8 +1,11 @@
 //! A profile by stages.
 
 use super::{
-    super::stage::{Part, Stages, part},
-    profile::{Function, Profile},
+    super::{
+        nest::Nest,
+        stage::{Part, Stages, part},
+    },
+    profile::Profile,
 };
 use anyhow::{Result, ensure};
 use std::collections::HashMap;
@@ -14,24 +17,26 @@ pub(super) fn stages(profile: &Profile) -> Result<(Stages, u64)> {
     let mut spans = 0;
     for function in &profile.functions {
         let part = part(&function.name);
-        let entries = helpers.entries(function);
-        let own = function.executions.iter().map(|&count| (count, count));
-        let calls = function.calls.iter().map(|call| (call.count, helpers.own_cost(&call.to, call.cost)));
-        for (executions, cost) in own.chain(calls) {
+        let nest = match (part, function.executions.first_key_value()) {
+            (Part::Row, Some((&entry, _))) => {
+                Nest::new(entry, function.ways(), |address| function.executions.get(&address).copied().unwrap_or(0))
+            }
+            _ => Nest::default(),
+        };
+        spans += nest.rows;
+        let own = function.executions.iter().map(|(&address, &count)| (address, count));
+        let calls = function.calls.iter().map(|call| (call.from, helpers.own_cost(&call.to, call.cost)));
+        for (address, cost) in own.chain(calls) {
             match part {
                 Part::Frame => stages.frame += cost,
                 Part::Vertex => stages.vertex += cost,
                 Part::Cull => stages.cull += cost,
                 Part::Setup => stages.setup += cost,
-                // What happens more often than the function is entered happens in its loop.
-                Part::Row if executions > entries => stages.pixel += cost,
+                Part::Row if nest.inner.contains(&address) => stages.pixel += cost,
                 Part::Row => stages.span += cost,
                 Part::Clear => stages.clear += cost,
                 Part::Transfer | Part::Idle | Part::Outside | Part::Unwatched | Part::Callers => {}
             }
-        }
-        if part == Part::Row {
-            spans += entries;
         }
     }
     ensure!(spans > 0, "no function that fills a row is known by its name, or nothing was drawn");
@@ -54,10 +59,6 @@ impl<'p> Helpers<'p> {
             *cost += call.cost;
         }
         Self { profile, entered }
-    }
-
-    fn entries(&self, function: &Function) -> u64 {
-        self.entered.get(function.symbol.as_str()).map_or(0, |(count, _)| *count)
     }
 
     /// Of `cost`, spent in calls of the function `symbol`, what its caller has to bear: nothing if the function has a stage
@@ -84,7 +85,7 @@ impl<'p> Helpers<'p> {
 mod tests {
     use super::*;
 
-    /// A frame that draws two triangles of three rows; `memcpy` works for whoever calls it.
+    /// A frame that draws two triangles of three rows and 45 pixels; `memcpy` works for whoever calls it.
     const TEXT: &str = "\
 fn=microphong::render::Stage<C>::transform
 0x1 50
@@ -101,27 +102,34 @@ calls=2 0x70
 0x5 656
 fn=helper
 0x6 6
-cfn=microphong::raster::triangle::row
-calls=6 0x60
+cfn=microphong::raster::triangle::fill_rows
+calls=2 0x60
 0x7 650
-fn=microphong::raster::triangle::row
-0x60 6
-0x61 90
+fn=microphong::raster::triangle::fill_rows
+0x60 2
+0x61 6
 cfn=memcpy
 calls=6 0x90
-0x62 14
+0x61 14
+0x62 45
 cfn=memcpy
 calls=45 0x90
-0x63 90
+0x62 88
+0x63 45
 cfn=microphong::shade::tone
 calls=45 0xa0
-0x64 450
+0x63 444
+jcnd=39/45 0x62
+0x63
+0x64 6
+jcnd=4/6 0x61
+0x64
 fn=microphong::shade::tone
-0xa0 450
+0xa0 444
 fn=microphong::band::Band<C>::clear
 0x80 1000
 fn=memcpy
-0x90 109
+0x90 107
 totals: 1731
 ";
 
@@ -129,7 +137,7 @@ totals: 1731
     fn each_instruction_goes_to_one_stage() {
         let profile = Profile::parse(TEXT).expect("a profile");
         let (stages, spans) = stages(&profile).expect("stages");
-        let expected = Stages { vertex: 55, cull: 0, setup: 26, span: 20, pixel: 630, clear: 1000, ..Stages::default() };
+        let expected = Stages { vertex: 55, cull: 0, setup: 26, span: 28, pixel: 622, clear: 1000, ..Stages::default() };
         assert_eq!(stages, expected);
         assert_eq!(spans, 6);
         assert_eq!(stages.drawing() + stages.clear, profile.total);
