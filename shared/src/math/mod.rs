@@ -6,6 +6,7 @@ pub mod angle;
 pub mod arc;
 pub mod power;
 pub mod product;
+pub mod quotient;
 pub mod recip;
 pub mod rsqrt;
 pub mod vector;

@@ -4,7 +4,7 @@
 //! there, and four products of half words are less than half of that. The bits are the same.
 
 /// Armv6-M, told by what else it has not got.
-const HALVES: bool = cfg!(all(target_arch = "arm", not(target_has_atomic = "32")));
+pub(super) const HALVES: bool = cfg!(all(target_arch = "arm", not(target_has_atomic = "32")));
 
 /// `a b`.
 #[inline(always)]
@@ -54,12 +54,13 @@ fn whole_by_halves(a: i32, b: i32) -> i64 {
     i64::from(upper_by_halves(a, b)) << 32 | i64::from(a.wrapping_mul(b) as u32)
 }
 
+/// From signed factors, each too small by 2^32 where its first bit is set. (Half words without a sign the compiler knows for what they
+/// are, and calls its own product.)
 #[inline(never)]
 fn unsigned_by_halves(a: u32, b: u32) -> u64 {
-    let (al, ah, bl, bh) = (a & 0xFFFF, a >> 16, b & 0xFFFF, b >> 16);
-    let middle = ah.wrapping_mul(bl).wrapping_add(al.wrapping_mul(bl) >> 16);
-    let lower = al.wrapping_mul(bh).wrapping_add(middle & 0xFFFF);
-    let upper = ah.wrapping_mul(bh).wrapping_add(middle >> 16).wrapping_add(lower >> 16);
+    let (signed_a, signed_b) = (a as i32, b as i32);
+    let correction = ((signed_a >> 31) & signed_b).wrapping_add((signed_b >> 31) & signed_a);
+    let upper = upper_by_halves(signed_a, signed_b).wrapping_add(correction) as u32;
     u64::from(upper) << 32 | u64::from(a.wrapping_mul(b))
 }
 

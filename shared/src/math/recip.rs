@@ -1,6 +1,9 @@
 //! Reciprocal of a normalised integer.
 
-use super::product::{product, unsigned_product};
+use super::{
+    product::{product, unsigned_product},
+    quotient::inverse,
+};
 
 /// 2^62 / d for `d` in [2^31, 2^32): between 2^30 and 2^31 - 1, so that it fits an `i32` too (tests::error).
 ///
@@ -11,7 +14,7 @@ use super::product::{product, unsigned_product};
 pub fn recip(d: u32) -> u32 {
     let d = d | 1 << 31;
     // 2^47 / d from the upper 16 bits, rounded up: in (2^15, 2^16].
-    let high = (u32::MAX / (d >> 16)) >> 1;
+    let high = inverse(d >> 16) >> 1;
     let x = high << 15;
     // x (2 - d x / 2^62) / 1, with d x / 2^62 so close to 1 that the defect, in 2^-31, fits 18 bits.
     let defect = (1u32 << 31).wrapping_sub((unsigned_product(d, x) >> 31) as u32) as i32;

@@ -10,7 +10,10 @@
 //!   column    0   1   2   3      x = 2.5 on a right edge: column 2 is out
 //! ```
 
-use crate::format::{CENTRE, SUBPIXEL};
+use crate::{
+    format::{CENTRE, SUBPIXEL},
+    math::quotient::{LARGEST, quotient},
+};
 
 /// Fraction bits of a walked column.
 pub const COLUMN: u32 = 21;
@@ -20,6 +23,7 @@ pub const COLUMNS: u32 = 1 << (32 - COLUMN);
 
 /// Heights up to here, in 1/16 pixel, are walked from end to end: 89 rows.
 pub const SHORT: i32 = 89 << SUBPIXEL;
+const _: () = assert!(SHORT as usize <= LARGEST);
 
 /// Widths up to here, in 1/16 pixel, fit a word with [`COLUMN`] fraction bits: 64 columns.
 pub const NARROW: i32 = (1 << (31 - COLUMN)) - 1;
@@ -93,7 +97,7 @@ impl Edge {
     #[inline]
     #[must_use]
     pub fn walk(&self) -> Column {
-        let step = (self.dx << COLUMN).div_euclid(self.dy.max(1));
+        let step = quotient(self.dx << COLUMN, self.dy.max(1));
         // From the start to the first centre, less than a row: step down / 16, rounded down.
         let down = CENTRE.wrapping_sub(self.y) & (2 * CENTRE - 1);
         let across = (step >> SUBPIXEL).wrapping_mul(down).wrapping_add((step & (2 * CENTRE - 1)).wrapping_mul(down) >> SUBPIXEL);
