@@ -1,4 +1,5 @@
-//! Triangles that face away, told apart in object space: three products, no vertex touched.
+//! Triangles that face away, told apart in object space: three products, no vertex touched. Those that it lets through are
+//! told apart by their extent on the screen.
 
 use crate::{
     format::{ROTATION, UNIT},
@@ -41,4 +42,47 @@ impl Facing {
         let plane = i32::from(triangle.offset).wrapping_mul(self.offset_scale);
         narrow_dot(self.vector, wide(triangle.normal)).wrapping_sub(plane) >= -SLACK
     }
+}
+
+/// What a triangle takes up on the screen.
+#[derive(Clone, Copy, Debug)]
+pub struct Extent {
+    /// Least column, 1/16 pixel.
+    pub left: i32,
+    /// Largest column.
+    pub right: i32,
+    /// Least row.
+    pub top: i32,
+    /// Largest row.
+    pub bottom: i32,
+    /// Twice the signed area, 1/256 pixel², as far as 32 bits hold it; positive seen from the front.
+    pub area: i32,
+}
+
+impl Extent {
+    /// Of corners `[x, y]` that run clockwise seen from the front.
+    #[inline(always)]
+    #[must_use]
+    pub fn new([[x0, y0], [x1, y1], [x2, y2]]: [[i32; 2]; 3]) -> Self {
+        let (left, right) = (x0.min(x1).min(x2), x0.max(x1).max(x2));
+        let (top, bottom) = (y0.min(y1).min(y2), y0.max(y1).max(y2));
+        let (x1, y1, x2, y2) = (x1 - x0, y1 - y0, x2 - x0, y2 - y0);
+        // Products of 64 bits are calls on an M0+.
+        let area = if (right - left) | (bottom - top) < 1 << 15 { x1 * y2 - x2 * y1 } else { large_area([x1, y1], [x2, y2]) };
+        Self { left, right, top, bottom, area }
+    }
+
+    /// Width and height together: no side is longer.
+    #[inline(always)]
+    #[must_use]
+    pub fn size(&self) -> i32 {
+        self.right - self.left + (self.bottom - self.top)
+    }
+}
+
+#[cold]
+#[inline(never)]
+fn large_area([x1, y1]: [i32; 2], [x2, y2]: [i32; 2]) -> i32 {
+    let area = i64::from(x1) * i64::from(y2) - i64::from(x2) * i64::from(y1);
+    area.clamp(i32::MIN.into(), i32::MAX.into()) as i32
 }

@@ -5,13 +5,14 @@ use crate::{
     band::{Band, Blend},
     bin::{Bins, Entry},
     clip,
-    cull::Facing,
+    convex::Convex,
+    cull::{Extent, Facing},
     format::UNIT,
     math::vector::wide,
     palette::Palette,
     pixel::Pixel,
     raster::{
-        edge::COLUMNS,
+        edge::{COLUMNS, first_centre},
         smooth::{self, Part},
         triangle::{Bounds, Outline, turn},
     },
@@ -381,14 +382,16 @@ impl<C: Pixel> Frame<'_, '_, C> {
         let facing = self.facing;
         let Self { renderer, view, lighting, constant, bins, stats, .. } = self;
         let viewport = renderer.viewport();
-        let Renderer { stream, memory: Memory { vertices: cache, bins: entries, palettes, .. }, shader, .. } = &mut **renderer;
+        let Renderer { stream, memory: Memory { vertices: cache, bins: entries, palettes, .. }, shader, size, .. } = &mut **renderer;
         let entries = &mut **entries;
+        let convex = if viewport.antialiased { None } else { Convex::new(stream, view, *size) };
+        let mut clipped = false;
         cache.iter_mut().take(stream.vertices.len()).for_each(|vertex| vertex.state = State::Idle);
         for mesh in stream.meshes.iter().rev() {
             let (vertices, triangles) = (stream.vertices_of(mesh).unwrap_or_default(), stream.triangles_of(mesh).unwrap_or_default());
             let Some(palette) = palettes.get(usize::from(mesh.material)) else { continue };
             let lit = shader.lights_vertices(constant.is_some()).then_some(palette);
-            let stage = Stage { view, lighting, constant: constant.map(directions), lit };
+            let stage = Stage { view, lighting, constant: constant.map(directions), lit, contested: convex.is_none() };
             let cached = cache.get_mut(mesh.first_vertex as usize..).unwrap_or_default();
             let (first, mut rest) = (mesh.first_triangle, triangles);
             while let [before @ .., triangle] = rest {
@@ -397,13 +400,25 @@ impl<C: Pixel> Frame<'_, '_, C> {
                     continue;
                 }
                 let bounds = match stage.corners(cached, vertices, triangle) {
-                    Some([a, b, c]) => viewport.bounds([&a, &b, &c]),
-                    None => stage.bounds(viewport, vertices, triangle),
+                    Some(corners) => {
+                        let extent = Extent::new(corners);
+                        if convex.is_some_and(|convex| !convex.is_thick(&extent)) {
+                            contest(cached, triangle);
+                        }
+                        viewport.bounds(&extent)
+                    }
+                    None => {
+                        clipped = true;
+                        stage.bounds(viewport, vertices, triangle)
+                    }
                 };
                 if let Some(Bounds { top, bottom, .. }) = bounds {
                     bins.push(entries, first + rest.len() as u32, top as u32, bottom as u32);
                 }
             }
+        }
+        if clipped {
+            cache.iter_mut().for_each(|vertex| vertex.contested = true);
         }
         stats.uncached = stream.vertices.len().saturating_sub(cache.len()) as u32;
         if let Some(count) = bins.count() {
@@ -416,9 +431,8 @@ impl<C: Pixel> Frame<'_, '_, C> {
     fn bounds(&self, id: u32) -> Option<Bounds> {
         let (mesh, triangle) = self.triangle(id)?;
         let corners = self.corners(mesh, triangle)?;
-        let [a, b, c] = &corners;
         if corners.iter().all(|corner| corner.state == State::Ready) {
-            self.renderer.viewport().bounds([a, b, c])
+            self.renderer.viewport().bounds(&Extent::new(corners.map(|corner| [corner.x, corner.y])))
         } else {
             self.renderer.viewport().clipped_bounds(&self.view, self.vertices(mesh, triangle)?)
         }
@@ -429,7 +443,7 @@ impl<C: Pixel> Frame<'_, '_, C> {
         let Self { renderer, view, lighting, constant, .. } = self;
         let lit = renderer.shader.lights_vertices(constant.is_some());
         let palette = renderer.memory.palettes.get(usize::from(mesh.material))?;
-        Some(Stage { view, lighting, constant: constant.map(directions), lit: lit.then_some(palette) })
+        Some(Stage { view, lighting, constant: constant.map(directions), lit: lit.then_some(palette), contested: true })
     }
 
     /// Triangle `id` and its mesh.
@@ -531,7 +545,14 @@ impl<C: Pixel> Frame<'_, '_, C> {
     /// Draws the fan that clipping leaves of a triangle.
     #[cold]
     #[inline(never)]
-    fn draw_clipped(&self, stage: &Stage<'_, C>, shading: &Shading<'_, C>, vertices: [&Vertex; 3], triangle: &Triangle, band: &mut Band<'_, C>) -> u32 {
+    fn draw_clipped(
+        &self,
+        stage: &Stage<'_, C>,
+        shading: &Shading<'_, C>,
+        vertices: [&Vertex; 3],
+        triangle: &Triangle,
+        band: &mut Band<'_, C>,
+    ) -> u32 {
         let polygon = clip::clip(&self.view, vertices);
         let place = |cut: &clip::Cut| {
             let ([x, y, depth], _) = self.view.project(cut.eye);
@@ -639,14 +660,15 @@ struct Viewport {
 impl Viewport {
     /// The visible box of a triangle; `None` if it shows its back, or no pixel can belong to it.
     #[inline(always)]
-    fn bounds(self, corners: [&ScreenVertex; 3]) -> Option<Bounds> {
-        if Outline::area(corners) <= 0 {
+    fn bounds(self, extent: &Extent) -> Option<Bounds> {
+        if extent.area <= 0 {
             return None;
         }
+        let Extent { left, right, top, bottom, .. } = *extent;
         self.visible(if self.antialiased {
-            Bounds::touched(corners.iter().map(|corner| [corner.x, corner.y, 0]))
+            Bounds::touched([[left, top, 0], [right, bottom, 0]].into_iter())
         } else {
-            Bounds::new(corners)
+            Bounds { left: first_centre(left), top: first_centre(top), right: first_centre(right), bottom: first_centre(bottom) }
         })
     }
 
@@ -679,6 +701,18 @@ struct Stage<'f, C> {
     constant: Option<[Direction; 2]>,
     /// The material, if the method starts from the light at vertices.
     lit: Option<&'f Palette<C>>,
+    /// Triangles may hide one another.
+    contested: bool,
+}
+
+/// Around the corners of `triangle` others may hide one another.
+#[inline(never)]
+fn contest(cached: &mut [ScreenVertex], triangle: &Triangle) {
+    for corner in triangle.corners {
+        if let Some(vertex) = cached.get_mut(usize::from(corner)) {
+            vertex.contested = true;
+        }
+    }
 }
 
 fn directions(constant: [[i32; 3]; 2]) -> [Direction; 2] {
@@ -686,17 +720,18 @@ fn directions(constant: [[i32; 3]; 2]) -> [Direction; 2] {
 }
 
 impl<C: Pixel> Stage<'_, C> {
-    /// The corners on the screen, turning clockwise, against the stream's order; `None` if one is not kept or off the screen.
+    /// The corners' `[x, y]` on the screen, turning clockwise, against the stream's order; `None` if one is not kept or off
+    /// the screen.
     #[inline(always)]
-    fn corners(&self, cached: &mut [ScreenVertex], vertices: &[Vertex], triangle: &Triangle) -> Option<[ScreenVertex; 3]> {
+    fn corners(&self, cached: &mut [ScreenVertex], vertices: &[Vertex], triangle: &Triangle) -> Option<[[i32; 2]; 3]> {
         let [a, b, c] = triangle.corners;
         let mut place = |corner| self.place(cached, vertices, corner);
         Some([place(a)?, place(c)?, place(b)?])
     }
 
-    /// The screen vertex of `corner`, transformed when it is first asked for.
+    /// Where `corner` is on the screen; it is transformed when it is first asked for.
     #[inline(always)]
-    fn place(&self, cached: &mut [ScreenVertex], vertices: &[Vertex], corner: u16) -> Option<ScreenVertex> {
+    fn place(&self, cached: &mut [ScreenVertex], vertices: &[Vertex], corner: u16) -> Option<[i32; 2]> {
         let screen = cached.get_mut(usize::from(corner))?;
         if screen.state != State::Ready {
             if screen.state == State::Idle {
@@ -706,7 +741,7 @@ impl<C: Pixel> Stage<'_, C> {
                 return None;
             }
         }
-        Some(*screen)
+        Some([screen.x, screen.y])
     }
 
     /// Transforms a vertex, and lights it if the method needs that.
@@ -721,7 +756,7 @@ impl<C: Pixel> Stage<'_, C> {
                 palette.levels(self.lighting.cosines(wide(vertex.position), normal))
             }
         };
-        ScreenVertex { x, y, depth, light, state: if inside { State::Ready } else { State::Outside } }
+        ScreenVertex { x, y, depth, light, state: if inside { State::Ready } else { State::Outside }, contested: self.contested }
     }
 
     /// The visible box of a triangle that has a corner off the screen, or one that is not kept.
@@ -732,9 +767,8 @@ impl<C: Pixel> Stage<'_, C> {
         // Against the stream's order.
         let vertices = [a?, c?, b?];
         let corners = vertices.map(|vertex| self.transform(vertex));
-        let [a, b, c] = &corners;
         if corners.iter().all(|corner| corner.state == State::Ready) {
-            viewport.bounds([a, b, c])
+            viewport.bounds(&Extent::new(corners.map(|corner| [corner.x, corner.y])))
         } else {
             viewport.clipped_bounds(self.view, vertices)
         }

@@ -25,6 +25,8 @@ pub struct ScreenVertex {
     pub light: [i32; 3],
     /// What is known of it in this frame.
     pub state: State,
+    /// Triangles around it may hide one another, see [`crate::convex`].
+    pub contested: bool,
 }
 
 /// What is known of a cached vertex in this frame.
@@ -40,7 +42,7 @@ pub enum State {
 
 impl ScreenVertex {
     /// Nothing yet.
-    pub const EMPTY: Self = Self { x: 0, y: 0, depth: 0, light: [0; 3], state: State::Idle };
+    pub const EMPTY: Self = Self { x: 0, y: 0, depth: 0, light: [0; 3], state: State::Idle, contested: false };
 }
 
 /// Largest distance from the viewport's centre that screen coordinates may have, in 1/16 pixel.
@@ -150,6 +152,18 @@ impl View {
         let within = behind && inside(x) && inside(y);
         let [x, y] = if within { [x, y] } else { [limited(x), limited(y)] };
         ([self.centre[0] + x, self.centre[1] - y, depth.min(NEAREST)], within)
+    }
+
+    /// How far `length` in eye space, [`crate::format::Length`] without its format, reaches on the screen at most, 1/16 pixel,
+    /// rounded up, from a point in a viewport of this size (1/16 pixel) behind the near plane.
+    #[must_use]
+    pub fn magnified(&self, length: i64, [width, height]: [i32; 2]) -> i64 {
+        let focal = self.focal >> 16;
+        match self.projection {
+            // Aside by focal / z, and in depth by as much as the point lies aside.
+            Projection::Perspective { .. } => length * (focal + i64::from(width.max(height))) / i64::from(self.near) + 1,
+            Projection::Orthographic { .. } => ((length * focal) >> UNIT) + 1,
+        }
     }
 
     /// How far `eye` lies on the inner side of a clip plane (near, then the guard band's left, right, bottom, top); negative outside.

@@ -66,7 +66,7 @@ fn cells_of_random_triangles_cover_each_pixel_once() {
             // Corners, and with them many corners of cells, on pixel centres.
             _ => [0; 3].map(|_| [random.pick(-4..100) * 16 + 8, random.pick(-4..84) * 16 + 8]),
         };
-        let [a, b, c] = corners.map(|[x, y]| ScreenVertex { x, y, depth: 1 << 27, light: [0; 3], state: State::Ready });
+        let [a, b, c] = corners.map(|[x, y]| ScreenVertex { x, y, depth: 1 << 27, light: [0; 3], state: State::Ready, contested: true });
         let corners = if Outline::area([&a, &b, &c]) < 0 { [&a, &c, &b] } else { [&a, &b, &c] };
         let outline = Outline::new(corners);
         let Some(basis) = outline.basis(Bounds::new(corners).clipped(w / 16, h / 16)) else { continue };

@@ -2,13 +2,13 @@
 
 use super::{
     edge::{COLUMN, Column, Edge, first_centre},
-    fill::fill,
+    fill::{Sight, fill},
     smooth::{Part, Shape},
 };
 use crate::{
     band::Band,
     format::{CENTRE, DEPTH, SUBPIXEL},
-    poly::{Patch, Walker, basis::Basis, plane::Plane},
+    poly::{Constant, Patch, Walker, basis::Basis, plane::Plane},
     tone::Tone,
     vertex::ScreenVertex,
 };
@@ -22,16 +22,18 @@ pub struct Outline {
     pub turned: usize,
     /// Which of its pixels are drawn.
     pub part: Part,
+    /// Others may hide it, or it them.
+    pub(super) contested: bool,
 }
 
 /// What steps from row to row. It lives in memory, so that the pixel loop gets the registers.
-pub(super) struct Rows<P, T> {
+pub(super) struct Rows<D, P, T> {
     /// Pixels of the coming row.
     pub(super) count: u32,
     pub(super) left: Column,
     pub(super) right: Column,
-    /// Depth at column 0.
-    pub(super) depth: Plane<1>,
+    /// Depth at column 0, unless nothing is hidden.
+    pub(super) depth: D,
     pub(super) patch: P,
     pub(super) tone: T,
 }
@@ -118,7 +120,13 @@ impl Outline {
         let [a, b, c] = corners;
         let turned = if b.y < a.y || c.y < a.y { if c.y < b.y { 2 } else { 1 } } else { 0 };
         let [a, b, c] = turn(corners, turned);
-        Self { corners: [[a.x, a.y], [b.x, b.y], [c.x, c.y]], depth: [a.depth, b.depth, c.depth], turned, part: Part::Centres }
+        Self {
+            corners: [[a.x, a.y], [b.x, b.y], [c.x, c.y]],
+            depth: [a.depth, b.depth, c.depth],
+            turned,
+            part: Part::Centres,
+            contested: a.contested || b.contested || c.contested,
+        }
     }
 
     /// Twice the signed area in 1/256 pixel²; positive seen from the front.
@@ -156,6 +164,23 @@ impl Outline {
             let shape = Shape { outline: self, piece: None, corners: self.corners, bits: SUBPIXEL };
             return shape.draw(basis, patch, tone, band, &mut |_| [i32::MIN, i32::MAX]);
         }
+        if self.contested {
+            self.draw_rows(basis, Plane::fit::<DEPTH>(basis, [self.depth], 4), patch, tone, band)
+        } else {
+            self.draw_rows(basis, Constant, patch, tone, band)
+        }
+    }
+
+    /// The same, with depth or without.
+    #[inline(always)]
+    fn draw_rows<D: Patch<Walker: Sight>, P: Patch, T: Tone<<P::Walker as Walker>::Value>>(
+        &self,
+        basis: &Basis,
+        depth: D,
+        patch: P,
+        tone: T,
+        band: &mut Band<'_, T::Pixel>,
+    ) -> u32 {
         let [top, right, left] = self.corners;
         let middle = first_centre(right[1].min(left[1]));
         let end = first_centre(right[1].max(left[1])).min(band.top + band.rows);
@@ -164,14 +189,7 @@ impl Outline {
         let inside = |x: i32| (0..(width << 4)).contains(&x);
         let walkable = inside(top[0]) && inside(right[0]) && inside(left[0]);
 
-        let mut rows = Rows {
-            count: 0,
-            left: Column::default(),
-            right: Column::default(),
-            depth: Plane::fit::<DEPTH>(basis, [self.depth], 4),
-            patch,
-            tone,
-        };
+        let mut rows = Rows { count: 0, left: Column::default(), right: Column::default(), depth, patch, tone };
         rows.depth.jump(row - basis.row());
         rows.patch.jump(row - basis.row());
         rows.tone.start(row);
@@ -226,8 +244,8 @@ pub fn turn<A: Copy>([a, b, c]: [A; 3], by: usize) -> [A; 3] {
 /// memory, written a row earlier: derived here, the compiler would count in
 /// two registers instead of one.
 #[inline(never)]
-pub(super) fn row<P: Patch, T: Tone<<P::Walker as Walker>::Value>>(
-    rows: &mut Rows<P, T>,
+pub(super) fn row<D: Patch<Walker: Sight>, P: Patch, T: Tone<<P::Walker as Walker>::Value>>(
+    rows: &mut Rows<D, P, T>,
     pixels: &mut [T::Pixel],
     depth: &mut [u16],
 ) -> u32 {
@@ -242,8 +260,7 @@ pub(super) fn row<P: Patch, T: Tone<<P::Walker as Walker>::Value>>(
         && let Some(pixels) = pixels.get_mut(..count)
         && let Some(depth) = depth.get_mut(..count)
     {
-        let ([z], dz) = rows.depth.enter(right as i32).parts();
-        fill(pixels, depth, z, dz[0], rows.patch.enter(right as i32), &rows.tone, left);
+        fill(pixels, depth, rows.depth.enter(right as i32), rows.patch.enter(right as i32), &rows.tone, left);
         drawn = count as u32;
     }
     rows.depth.step_row();

@@ -192,7 +192,14 @@ mod tests {
             state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
             (state >> 48) as i16 / 2
         };
-        let screen = [[0, 0], [160, 90], [20, 200]].map(|[x, y]| ScreenVertex { x, y, depth: 0, light: [0; 3], state: State::Ready });
+        let screen = [[0, 0], [160, 90], [20, 200]].map(|[x, y]| ScreenVertex {
+            x,
+            y,
+            depth: 0,
+            light: [0; 3],
+            state: State::Ready,
+            contested: true,
+        });
         let [a, b, c] = &screen;
         let outline = Outline::new([a, b, c]);
         let basis = outline.basis(crate::raster::triangle::Bounds::new([a, b, c])).unwrap();
