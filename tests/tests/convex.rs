@@ -68,7 +68,7 @@ fn body(sides: usize, bands: usize, squeeze: V3, turn: V3) -> mesh::Mesh {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig::with_cases(400))]
+    #![proptest_config(ProptestConfig::with_cases(1_000))]
     #[test]
     fn convex_bodies_look_the_same(
         (sides, bands) in (3usize..40, 2usize..40),
