@@ -24,7 +24,7 @@ pub use picture::error_picture;
 use embedded_graphics::prelude::*;
 use embedded_graphics::primitives::Rectangle;
 use microphong::{
-    Memory, Renderer, Stream,
+    Memory, Renderer, Stats, Stream,
     pixel::{PictureCrc, Pixel},
 };
 use panic_probe as _;
@@ -74,42 +74,58 @@ fn animate<D: Display>(
 ) -> Result<core::convert::Infallible, Failure> {
     let stream = Stream::parse(stream::bytes())?;
     let mut renderer = Renderer::new(stream, display.size(), memory)?;
+    for number in 0..u32::from(stream.header.frames) {
+        let mut crc = PictureCrc::default();
+        let stats = draw(display, &mut renderer, number, [front, back], |pixels| check(&mut crc, pixels));
+        // The host reads this line: keep its form.
+        defmt::info!(
+            "frame {=u32} shader {=str} crc {=u32:08x} triangles {=u32} culled {=u32} drawn {=u32} pixels {=u32}",
+            number,
+            renderer.shader().name(),
+            crc.finish(),
+            stats.triangles,
+            stats.culled,
+            stats.drawn,
+            stats.pixels
+        );
+        display.present();
+    }
+    // The host reads this line: keep its form.
+    defmt::info!("stack {=usize} bytes", stack::used());
+    display.end();
+    // All has been checked: from now on at full speed.
     loop {
         for number in 0..u32::from(stream.header.frames) {
-            draw(display, &mut renderer, number, [front, back]);
+            draw(display, &mut renderer, number, [front, back], |_| ());
+            display.present();
         }
-        // The host reads this line: keep its form.
-        defmt::info!("stack {=usize} bytes", stack::used());
-        display.end();
     }
 }
 
-/// Draws one frame: while a band is on its way to the display, the next one is drawn.
-fn draw<D: Display>(display: &mut D, renderer: &mut Renderer<'_, D::Color>, number: u32, [mut front, mut back]: [&mut [D::Color]; 2]) {
+/// A call of its own, so that its instructions can be told from a frame's.
+#[inline(never)]
+fn check<C: Pixel>(crc: &mut PictureCrc, pixels: &[C]) {
+    crc.update(pixels);
+}
+
+/// Draws one frame: while a band is on its way to the display, `look` sees it and the next one is drawn.
+fn draw<D: Display>(
+    display: &mut D,
+    renderer: &mut Renderer<'_, D::Color>,
+    number: u32,
+    [mut front, mut back]: [&mut [D::Color]; 2],
+    mut look: impl FnMut(&[D::Color]),
+) -> Stats {
     display.begin();
-    let shader = renderer.shader().name();
-    let mut crc = PictureCrc::default();
     let mut frame = renderer.frame(number);
     let mut next = frame.next_band(front);
     while let Some(area) = next {
         let pixels = &front[..(area.size.width * area.size.height) as usize];
         next = display.send(area, pixels, || {
-            crc.update(pixels);
+            look(pixels);
             frame.next_band(back)
         });
         core::mem::swap(&mut front, &mut back);
     }
-    let stats = frame.stats();
-    // The host reads this line: keep its form.
-    defmt::info!(
-        "frame {=u32} shader {=str} crc {=u32:08x} triangles {=u32} culled {=u32} drawn {=u32} pixels {=u32}",
-        number,
-        shader,
-        crc.finish(),
-        stats.triangles,
-        stats.culled,
-        stats.drawn,
-        stats.pixels
-    );
-    display.present();
+    frame.stats()
 }

@@ -87,6 +87,13 @@ impl St7789 {
     }
 }
 
+/// The display is slower than the drawing. A call of its own, so that its time can be told from the rest.
+#[inline(never)]
+fn wait(transfer: impl Future) {
+    // Sending has no failure that the driver could see.
+    let _ = block_on(transfer);
+}
+
 impl Display for St7789 {
     type Color = Rgb565Be;
 
@@ -98,6 +105,7 @@ impl Display for St7789 {
         self.led.set_low();
     }
 
+    #[inline(never)]
     fn send<R>(&mut self, area: Rectangle, pixels: &[Rgb565Be], meanwhile: impl FnOnce() -> R) -> R {
         let range = |start: i32, length: u32| {
             let [a, b] = (start as u16).to_be_bytes();
@@ -114,7 +122,7 @@ impl Display for St7789 {
             let started = transfer.as_mut().poll(&mut Context::from_waker(Waker::noop()));
             let result = meanwhile();
             if started.is_pending() {
-                let _ = block_on(transfer);
+                wait(transfer);
             }
             result
         };

@@ -11,6 +11,7 @@ pub mod mesh;
 pub mod obj;
 pub mod oracle;
 pub mod output;
+mod page;
 pub mod papers;
 pub mod quantise;
 pub mod render;

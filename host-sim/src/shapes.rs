@@ -93,6 +93,30 @@ pub fn bulged_triangle() -> Mesh {
     }
 }
 
+/// A flat square that the unit sphere encloses, in `cells` times `cells` quadrilaterals, with the normals of a cushion:
+/// however fine it is, it covers the same pixels.
+#[must_use]
+pub fn cushion(cells: usize) -> Mesh {
+    /// How far normals lean at the middle of a side: tan 45 degrees.
+    const LEAN: f64 = 1.0;
+    let mut mesh = Mesh::default();
+    for i in 0..=cells {
+        for j in 0..=cells {
+            let [y, x] = [i, j].map(|k| 2.0 * k as f64 / cells as f64 - 1.0);
+            mesh.positions.push(scale([x, y, 0.0], 0.5f64.sqrt()));
+            mesh.normals.extend(unit([LEAN * x, LEAN * y, 1.0]));
+        }
+    }
+    let at = |i: usize, j: usize| i * (cells + 1) + j;
+    for i in 0..cells {
+        for j in 0..cells {
+            mesh.triangles.push([at(i, j), at(i, j + 1), at(i + 1, j + 1)]);
+            mesh.triangles.push([at(i, j), at(i + 1, j + 1), at(i + 1, j)]);
+        }
+    }
+    mesh
+}
+
 /// The mesh turned by a rotation with these rows.
 #[must_use]
 pub fn turned(mut mesh: Mesh, rows: &[V3; 3]) -> Mesh {

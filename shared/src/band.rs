@@ -70,21 +70,10 @@ impl<C> Band<'_, C> {
         }
     }
 
-    /// Pixels and depth of rows `from .. to`; rows outside the band are left out.
+    /// Index of the first pixel of `row`.
     #[inline(always)]
-    pub fn rows_between(&mut self, from: i32, to: i32) -> impl Iterator<Item = (&mut [C], &mut [u16])> {
-        let first = from.wrapping_sub(self.top).max(0) as usize;
-        let start = first.saturating_mul(self.width);
-        let (mut pixels, mut depth) = (self.pixels.get_mut(start..).unwrap_or_default(), self.depth.get_mut(start..).unwrap_or_default());
-        let width = self.width;
-        (from..to).map_while(move |_| Some((split(&mut pixels, width)?, split(&mut depth, width)?)))
+    #[must_use]
+    pub fn start(&self, row: i32) -> usize {
+        (row.wrapping_sub(self.top) as usize).wrapping_mul(self.width)
     }
-}
-
-/// Takes the first `count` elements off a slice.
-#[inline(always)]
-fn split<'a, A>(slice: &mut &'a mut [A], count: usize) -> Option<&'a mut [A]> {
-    let (first, rest) = core::mem::take(slice).split_at_mut_checked(count)?;
-    *slice = rest;
-    Some(first)
 }

@@ -28,6 +28,7 @@ pub mod convex;
 pub mod cull;
 pub mod display;
 pub mod dither;
+mod draw;
 pub mod format;
 pub mod math;
 pub mod palette;

@@ -4,7 +4,7 @@ use crate::{
     dither::quantise,
     format::{BIAS, COSINE, LEVEL, MAX_LIGHTS, PIXEL_COSINE, RAMP, UNIT, WALK},
     math::{
-        power::{POWER, PixelPower, Power},
+        power::{Base, POWER, PixelPower, Power, square},
         vector::zip,
     },
     pixel::Pixel,
@@ -84,8 +84,11 @@ impl<C: Pixel> Palette<C> {
 
     /// Works out `material` under `lights`, for a method with these highlights.
     pub fn fill(&mut self, header: &Header, material: &Material, lights: &[Light], highlight: Highlight) {
-        self.power.fill(material.exponent, highlight.halvings());
-        self.dark_below = self.power.dark_below();
+        self.power.fill(material.exponent, highlight.base());
+        self.dark_below = match highlight.base() {
+            Base::Square => square(self.power.dark_below()),
+            _ => self.power.dark_below(),
+        };
         let tint = |colour: Colour| if C::GRAY { grey(colour) } else { colour };
         let ambient = tint(product(header.ambient, material.ambient));
         let diffuse = |light: &Light| tint(product(light.colour, material.diffuse));
@@ -118,19 +121,28 @@ impl<C: Pixel> Palette<C> {
         }
     }
 
-    /// Smallest N·H, Q2.30, whose highlight counts: with the power's, see [`Power::dark_below`].
+    /// Smallest N·H, Q2.30, whose highlight counts, see [`Power::dark_below`].
     #[must_use]
     pub fn dark_below(&self) -> i32 {
         self.dark_below
     }
 
     /// The level of a material of one channel under one light, Q9.7 in [0, 255], from `[N·L, N·H]` (Q2.30).
-    #[inline]
+    #[inline(never)]
     #[must_use]
     pub fn level(&self, [diffuse, half]: [i32; 2]) -> i32 {
         let [gains, ..] = &self.gains;
         let light = reflected((gains.diffuse[0], gains.specular[0]), diffuse, self.power.at(half));
         (self.ambient[0] + light).min(FULL)
+    }
+
+    /// [`Self::level`] at six nodes where there is no highlight.
+    #[inline]
+    #[must_use]
+    pub fn six_matte(&self, [a, b, c, ab, bc, ca]: [i32; 6]) -> [i32; 6] {
+        let [gains, ..] = &self.gains;
+        let matte = |diffuse| (self.ambient[0] + reflected((gains.diffuse[0], 0), diffuse, 0)).min(FULL);
+        [matte(a), matte(b), matte(c), matte(ab), matte(bc), matte(ca)]
     }
 
     /// Levels at a point, Q9.7 in [0, 255], from the cosines `[N·L, N·H]` (Q2.30) of each light.
@@ -151,8 +163,8 @@ impl<C: Pixel> Palette<C> {
     pub fn pixel_levels(&self, reflections: impl Iterator<Item = Reflection>) -> [i32; 3] {
         let mut levels = self.ambient;
         for (gains, Reflection { diffuse, highlight }) in self.gains.iter().zip(reflections) {
-            // Approximations may lift a cosine above 1, to less than 2.
-            let diffuse = diffuse.min((2 << PIXEL_COSINE) - 1) << (COSINE - PIXEL_COSINE);
+            // What approximations lift above 1 counts as 1.
+            let diffuse = diffuse.min(1 << PIXEL_COSINE) << (COSINE - PIXEL_COSINE);
             self.add(&mut levels, gains, diffuse, highlight);
         }
         levels.map(|level| level.min(FULL))
@@ -168,18 +180,20 @@ impl<C: Pixel> Palette<C> {
         }
     }
 
-    /// What one light comes to in a material of one channel: for the pixel loop.
+    /// What one light comes to in a material of one channel: for the pixel loop. `None` if that is more than the ramp takes.
     #[must_use]
-    pub fn glossy(&self) -> Glossy<'_, C> {
+    pub fn glossy(&self) -> Option<Glossy<'_, C>> {
         let [gains, ..] = &self.gains;
-        Glossy {
+        let (ambient, diffuse, specular) = (self.ambient[0] as u32, u32::from(gains.diffuse[0]), u32::from(gains.specular[0]));
+        let fits = ambient + diffuse + specular < (RAMP as u32 - BIAS as u32 - 1) << LEVEL;
+        fits.then(|| Glossy {
             ramp: &self.ramp,
             power: self.power.pixel(),
             // Bias and rounding half of the ramp's index are in it already.
-            ambient: self.ambient[0] as u32 + ((BIAS as u32) << LEVEL) + (1 << (LEVEL - 1)),
-            diffuse: u32::from(gains.diffuse[0]) << 5,
-            specular: gains.specular[0].into(),
-        }
+            ambient: (ambient + ((BIAS as u32) << LEVEL) + (1 << (LEVEL - 1))) << (WALK - LEVEL),
+            diffuse: diffuse << (WALK - LEVEL - DIFFUSE),
+            specular,
+        })
     }
 
     /// The colour of three levels, Q9.7, rounded.
@@ -219,21 +233,25 @@ pub struct Glossy<'a, C> {
     ramp: &'a [C; RAMP],
     /// The highlight's table.
     pub power: PixelPower<'a>,
+    /// Q9.23.
     ambient: u32,
-    /// Level at cosine 1, Q9.7, times 2^5: the upper half of its product with a cosine in Q5.27 is a level.
+    /// Level at cosine 1, such that its product with a cosine of [`DIFFUSE`] fraction bits is Q9.23.
     diffuse: u32,
+    /// Level of a full highlight, Q9.7.
     specular: u32,
 }
+
+/// Fraction bits of N·L in the pixel loop; 1 is one unit less. Error: 2^-14 of the light, 0.02 LSB.
+const DIFFUSE: u32 = 15;
 
 impl<C: Pixel> Glossy<'_, C> {
     /// The colour of what the light sends.
     #[inline(always)]
     #[must_use]
     pub fn colour(&self, Reflection { diffuse, highlight }: Reflection) -> C {
-        let diffuse = ((u64::from(diffuse.max(0) as u32) * u64::from(self.diffuse)) >> 32) as u32;
-        let specular = (highlight * self.specular) >> POWER;
-        let level = (self.ambient + diffuse + specular).min((RAMP as u32 - 1) << LEVEL);
-        C::ramped(self.ramp, level << (WALK - LEVEL))
+        let diffuse = (diffuse >> (PIXEL_COSINE - DIFFUSE)).clamp(0, (1 << DIFFUSE) - 1) as u32;
+        let level = self.ambient.wrapping_add(diffuse.wrapping_mul(self.diffuse)).wrapping_add(highlight.wrapping_mul(self.specular));
+        C::ramped(self.ramp, level)
     }
 }
 

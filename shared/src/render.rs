@@ -7,22 +7,22 @@ use crate::{
     clip,
     convex::Convex,
     cull::{Extent, Facing},
+    draw::Drawing,
     format::UNIT,
     math::vector::wide,
     palette::Palette,
     pixel::Pixel,
     raster::{
         edge::{COLUMNS, first_centre},
-        smooth::{self, Part},
-        triangle::{Bounds, Outline, turn},
+        triangle::Bounds,
     },
     sample::Sample,
     scene::{Direction, Lighting, Pose},
-    shade::{Facet, Shading},
+    shade::Shading,
     stream::record::{Mesh, Triangle, Vertex},
     vertex::{ScreenVertex, State, View},
 };
-use core::fmt;
+use core::{fmt, ops::Range};
 use embedded_graphics_core::{
     geometry::{Point, Size},
     primitives::Rectangle,
@@ -285,6 +285,7 @@ impl<'a, C: Pixel> Renderer<'a, C> {
     }
 
     /// Places camera and lights, transforms vertices, culls and bins triangles for frame `number` (modulo the orbit).
+    #[inline(never)]
     pub fn frame(&mut self, number: u32) -> Frame<'_, 'a, C> {
         let camera = &self.stream.header.camera;
         let pose = Pose::new(camera, number);
@@ -427,17 +428,6 @@ impl<C: Pixel> Frame<'_, '_, C> {
         }
     }
 
-    /// The visible box of triangle `id`; `None` if it shows its back, or no pixel can belong to it.
-    fn bounds(&self, id: u32) -> Option<Bounds> {
-        let (mesh, triangle) = self.triangle(id)?;
-        let corners = self.corners(mesh, triangle)?;
-        if corners.iter().all(|corner| corner.state == State::Ready) {
-            self.renderer.viewport().bounds(&Extent::new(corners.map(|corner| [corner.x, corner.y])))
-        } else {
-            self.renderer.viewport().clipped_bounds(&self.view, self.vertices(mesh, triangle)?)
-        }
-    }
-
     /// What takes vertices of `mesh` to the screen.
     fn stage(&self, mesh: &Mesh) -> Option<Stage<'_, C>> {
         let Self { renderer, view, lighting, constant, .. } = self;
@@ -446,31 +436,10 @@ impl<C: Pixel> Frame<'_, '_, C> {
         Some(Stage { view, lighting, constant: constant.map(directions), lit: lit.then_some(palette), contested: true })
     }
 
-    /// Triangle `id` and its mesh.
-    fn triangle(&self, id: u32) -> Option<(&'_ Mesh, &'_ Triangle)> {
-        let stream = &self.renderer.stream;
+    /// The mesh of triangle `id`.
+    fn mesh(&self, id: u32) -> Option<&'_ Mesh> {
         // The meshes follow one another: the last one that does not start behind the triangle.
-        let mesh = stream.meshes.iter().rev().find(|mesh| mesh.first_triangle <= id && mesh.triangles > 0)?;
-        Some((mesh, stream.triangles.get(id as usize)?))
-    }
-
-    /// The three vertices, turning clockwise on the screen, against the stream's order.
-    fn vertices(&self, mesh: &Mesh, triangle: &Triangle) -> Option<[&'_ Vertex; 3]> {
-        let vertices = self.renderer.stream.vertices_of(mesh)?;
-        let [a, b, c] = triangle.corners.map(usize::from);
-        Some([vertices.get(a)?, vertices.get(c)?, vertices.get(b)?])
-    }
-
-    /// The three corners on the screen, in the order of [`Self::vertices`], from the cache or transformed now.
-    fn corners(&self, mesh: &Mesh, triangle: &Triangle) -> Option<[ScreenVertex; 3]> {
-        let memory = &self.renderer.memory;
-        let cached = |corner: u16| memory.vertices.get(mesh.first_vertex as usize + usize::from(corner));
-        let [a, b, c] = triangle.corners;
-        if let (Some(a), Some(b), Some(c)) = (cached(a), cached(b), cached(c)) {
-            return Some([*a, *c, *b]);
-        }
-        let stage = self.stage(mesh)?;
-        Some(self.vertices(mesh, triangle)?.map(|vertex| stage.transform(vertex)))
+        self.renderer.stream.meshes.iter().rev().find(|mesh| mesh.first_triangle <= id && mesh.triangles > 0)
     }
 
     /// Clears a band of `rows` rows and draws what falls into it.
@@ -487,32 +456,19 @@ impl<C: Pixel> Frame<'_, '_, C> {
             self.renderer.antialiased().then(|| Blend { samples: samples.get_mut(..count).unwrap_or_default(), channels: C::channels });
         let mut band = Band { pixels, depth: lent, width, top: self.top as i32, rows: rows as i32, blend };
         band.clear(self.renderer.background);
-        if self.binned {
+        let (pixels, drawn) = if self.binned {
             self.bins.advance(self.renderer.memory.bins, bottom);
-            let mut index = None;
-            while let Some(next) = self.bins.next(self.renderer.memory.bins, index) {
-                if let Some(id) = self.renderer.memory.bins.get(usize::from(next)).map(|entry| entry.triangle) {
-                    self.stats.pixels = self.stats.pixels.saturating_add(self.draw_triangle(id, &mut band));
-                }
-                index = Some(next);
-            }
+            let pixels = self.draw_binned(&mut band);
             if bottom < self.renderer.size.height {
                 self.bins.retire(self.renderer.memory.bins, bottom);
             }
+            (pixels, 0)
         } else {
             self.stats.passes += 1;
-            for id in 0..self.stats.triangles {
-                if self.triangle(id).is_none_or(|(_, triangle)| !self.facing.may_face(triangle)) {
-                    continue;
-                }
-                let Some(bounds) = self.bounds(id) else { continue };
-                // Counted in the band where it starts.
-                self.stats.drawn += u32::from((band.top..band.top + band.rows).contains(&bounds.top));
-                if bounds.bottom > band.top && bounds.top < bottom as i32 {
-                    self.stats.pixels = self.stats.pixels.saturating_add(self.draw_triangle(id, &mut band));
-                }
-            }
-        }
+            self.draw_all(&mut band)
+        };
+        self.stats.pixels = self.stats.pixels.saturating_add(pixels);
+        self.stats.drawn += drawn;
         if self.renderer.antialiased() {
             band.resolve(self.renderer.background);
         }
@@ -520,147 +476,84 @@ impl<C: Pixel> Frame<'_, '_, C> {
         self.renderer.memory.samples = samples;
     }
 
-    /// Draws triangle `id` into `band`; returns its pixels there.
-    fn draw_triangle(&self, id: u32, band: &mut Band<'_, C>) -> u32 {
-        let Some((mesh, triangle)) = self.triangle(id) else { return 0 };
-        let Some(palette) = self.renderer.memory.palettes.get(usize::from(mesh.material)) else { return 0 };
-        let Some(vertices) = self.vertices(mesh, triangle) else { return 0 };
-        let Some([a, b, c]) = self.corners(mesh, triangle) else { return 0 };
-        let shading = Shading {
-            shader: self.renderer.shader,
-            dither: self.renderer.dither,
-            palette,
-            lighting: &self.lighting,
-            #[cfg(feature = "all-shaders")]
-            exponent: self.renderer.stream.materials.get(usize::from(mesh.material)).map_or(1, |material| material.exponent),
-            constant: self.constant,
-        };
-        if [a, b, c].iter().all(|corner| corner.state == State::Ready) {
-            self.draw_facet(&shading, [&a, &b, &c], vertices, triangle, band)
-        } else {
-            self.stage(mesh).map_or(0, |stage| self.draw_clipped(&stage, &shading, vertices, triangle, band))
-        }
-    }
-
-    /// Draws the fan that clipping leaves of a triangle.
-    #[cold]
-    #[inline(never)]
-    fn draw_clipped(
-        &self,
-        stage: &Stage<'_, C>,
-        shading: &Shading<'_, C>,
-        vertices: [&Vertex; 3],
-        triangle: &Triangle,
-        band: &mut Band<'_, C>,
-    ) -> u32 {
-        let polygon = clip::clip(&self.view, vertices);
-        let place = |cut: &clip::Cut| {
-            let ([x, y, depth], _) = self.view.project(cut.eye);
-            ScreenVertex { x, y, depth, ..stage.transform(&cut.vertex) }
-        };
-        let Some((first, rest)) = polygon.split_first() else { return 0 };
-        let mut pixels = 0;
-        for pair in rest.windows(2) {
-            if let [second, third] = pair {
-                let corners = [&first.vertex, &second.vertex, &third.vertex];
-                let record = clip::record(triangle, corners);
-                pixels += self.draw_facet(shading, [&place(first), &place(second), &place(third)], corners, &record, band);
+    /// Draws the triangles that lie in `band`; returns their pixels there.
+    fn draw_binned(&self, band: &mut Band<'_, C>) -> u32 {
+        let Renderer { stream, memory, .. } = &*self.renderer;
+        let (mut pixels, mut index) = (0u32, None);
+        let mut current: Option<(Range<u32>, Drawing<'_, C>)> = None;
+        while let Some(next) = self.bins.next(memory.bins, index) {
+            index = Some(next);
+            let Some(entry) = memory.bins.get(usize::from(next)) else { break };
+            if current.as_ref().is_none_or(|(triangles, _)| !triangles.contains(&entry.triangle)) {
+                current = self
+                    .mesh(entry.triangle)
+                    .and_then(|mesh| Some((mesh.first_triangle..mesh.first_triangle.saturating_add(mesh.triangles), self.drawing(mesh)?)));
+            }
+            if let (Some((_, drawing)), Some(triangle)) = (&current, stream.triangles.get(entry.triangle as usize)) {
+                pixels = pixels.saturating_add(drawing.draw(triangle, band));
             }
         }
         pixels
     }
 
-    /// Shades one triangle's rows in `band`.
-    fn draw_facet(
-        &self,
-        shading: &Shading<'_, C>,
-        corners: [&ScreenVertex; 3],
-        vertices: [&Vertex; 3],
-        triangle: &Triangle,
-        band: &mut Band<'_, C>,
-    ) -> u32 {
-        if self.renderer.antialiased() {
-            self.draw_smooth(shading, corners, vertices, triangle, band)
-        } else {
-            self.draw_part(Part::Centres, shading, corners, vertices, triangle, band)
-        }
-    }
-
-    /// Shades one triangle's pixels wholly inside, then the others that it touches.
+    /// Draws all triangles into `band`; returns their pixels there, and how many of them start there.
     #[cold]
     #[inline(never)]
-    fn draw_smooth(
-        &self,
-        shading: &Shading<'_, C>,
-        corners: [&ScreenVertex; 3],
-        vertices: [&Vertex; 3],
-        triangle: &Triangle,
-        band: &mut Band<'_, C>,
-    ) -> u32 {
-        let finer = smooth::finer(corners);
-        let [a, b, c] = corners.map(|corner| smooth::refined(corner, finer));
-        self.draw_part(Part::Inner, shading, corners, vertices, triangle, band)
-            + self.draw_part(Part::Rim(finer), shading, [&a, &b, &c], vertices, triangle, band)
+    fn draw_all(&self, band: &mut Band<'_, C>) -> (u32, u32) {
+        let stream = &self.renderer.stream;
+        let (mut pixels, mut drawn) = (0u32, 0);
+        for mesh in stream.meshes {
+            let Some(drawing) = self.drawing(mesh) else { continue };
+            for triangle in stream.triangles_of(mesh).unwrap_or_default().iter().filter(|triangle| self.facing.may_face(triangle)) {
+                let Some(bounds) = drawing.bounds(triangle) else { continue };
+                // Counted in the band where it starts.
+                let bottom = band.top + band.rows;
+                drawn += u32::from((band.top..bottom).contains(&bounds.top));
+                if bounds.bottom > band.top && bounds.top < bottom {
+                    pixels = pixels.saturating_add(drawing.draw(triangle, band));
+                }
+            }
+        }
+        (pixels, drawn)
     }
 
-    /// Sets up one triangle and shades part of its pixels in `band`; for a rim its corners are on the finer grid.
-    fn draw_part(
-        &self,
-        part: Part,
-        shading: &Shading<'_, C>,
-        corners: [&ScreenVertex; 3],
-        vertices: [&Vertex; 3],
-        triangle: &Triangle,
-        band: &mut Band<'_, C>,
-    ) -> u32 {
-        let mut outline = Outline::new(corners);
-        outline.part = part;
-        let Size { width, height } = self.renderer.size;
-        let [width, height] = [width, height].map(|side| (side << outline.finer()) as i32);
-        let Some(basis) = outline.basis(Bounds::new(corners).clipped(width, height)) else { return 0 };
-        let by = outline.turned;
-        let facet = Facet {
-            outline,
-            basis,
-            corners: turn(corners, by),
-            vertices: turn(vertices, by),
-            rsum: turn(reversed(triangle.rsum), by),
-            bend: turn(reversed(triangle.bend), by),
-            triangle,
+    /// What it takes to draw the triangles of `mesh`.
+    #[inline(never)]
+    fn drawing(&self, mesh: &Mesh) -> Option<Drawing<'_, C>> {
+        let Renderer { stream, memory, shader, dither, .. } = &*self.renderer;
+        let shading = Shading {
+            shader: *shader,
+            dither: *dither,
+            palette: memory.palettes.get(usize::from(mesh.material))?,
+            lighting: &self.lighting,
             #[cfg(feature = "all-shaders")]
-            nearness: self.nearness(corners).map(|nearness| turn(nearness, by)),
+            exponent: stream.materials.get(usize::from(mesh.material))?.exponent,
+            constant: self.constant,
         };
-        shading.draw(&facet, band)
+        Some(Drawing {
+            shading,
+            stage: self.stage(mesh)?,
+            vertices: stream.vertices_of(mesh)?,
+            kept: memory.vertices.get(mesh.first_vertex as usize..).unwrap_or_default(),
+            viewport: self.renderer.viewport(),
+            #[cfg(feature = "all-shaders")]
+            perspective: self.renderer.perspective_correct && stream.is_perspective(),
+        })
     }
-
-    /// Nearness of the corners of a triangle that is to be shaded in perspective.
-    #[cfg(feature = "all-shaders")]
-    fn nearness(&self, corners: [&ScreenVertex; 3]) -> Option<[i32; 3]> {
-        let perspective = self.renderer.perspective_correct && self.renderer.stream.is_perspective();
-        let nearness = corners.map(|corner| corner.depth);
-        let [a, b, c] = nearness;
-        // All of it equally far is all of it flat on the screen.
-        (perspective && !(a == b && b == c)).then_some(nearness)
-    }
-}
-
-/// Edge constants in the order of the screen: the stream's edges 01, 12, 20 of the corners 0, 2, 1.
-fn reversed([ab, bc, ca]: [u16; 3]) -> [u16; 3] {
-    [ca, bc, ab]
 }
 
 /// A viewport, as culling sees it.
 #[derive(Clone, Copy)]
-struct Viewport {
+pub(crate) struct Viewport {
     width: i32,
     height: i32,
-    antialiased: bool,
+    pub(crate) antialiased: bool,
 }
 
 impl Viewport {
     /// The visible box of a triangle; `None` if it shows its back, or no pixel can belong to it.
     #[inline(always)]
-    fn bounds(self, extent: &Extent) -> Option<Bounds> {
+    pub(crate) fn bounds(self, extent: &Extent) -> Option<Bounds> {
         if extent.area <= 0 {
             return None;
         }
@@ -686,6 +579,11 @@ impl Viewport {
         self.visible(bounds)
     }
 
+    /// The visible box of a triangle, on a grid finer by 2 to the power `finer`.
+    pub(crate) fn box_of(self, corners: [&ScreenVertex; 3], finer: u32) -> [i32; 4] {
+        Bounds::new(corners).clipped(self.width << finer, self.height << finer).sides()
+    }
+
     #[inline(always)]
     fn visible(self, bounds: Bounds) -> Option<Bounds> {
         let bounds = bounds.clipped(self.width, self.height);
@@ -694,8 +592,8 @@ impl Viewport {
 }
 
 /// What takes the vertices of one mesh to the screen in one frame.
-struct Stage<'f, C> {
-    view: &'f View,
+pub(crate) struct Stage<'f, C> {
+    pub(crate) view: &'f View,
     lighting: &'f Lighting,
     /// See [`Lighting::constant`].
     constant: Option<[Direction; 2]>,
@@ -746,7 +644,7 @@ impl<C: Pixel> Stage<'_, C> {
 
     /// Transforms a vertex, and lights it if the method needs that.
     #[inline(never)]
-    fn transform(&self, vertex: &Vertex) -> ScreenVertex {
+    pub(crate) fn transform(&self, vertex: &Vertex) -> ScreenVertex {
         let ([x, y, depth], inside) = self.view.project(self.view.to_eye(vertex.position));
         let light = match (self.lit, &self.constant) {
             (None, _) => [0; 3],
@@ -762,7 +660,7 @@ impl<C: Pixel> Stage<'_, C> {
     /// The visible box of a triangle that has a corner off the screen, or one that is not kept.
     #[cold]
     #[inline(never)]
-    fn bounds(&self, viewport: Viewport, vertices: &[Vertex], triangle: &Triangle) -> Option<Bounds> {
+    pub(crate) fn bounds(&self, viewport: Viewport, vertices: &[Vertex], triangle: &Triangle) -> Option<Bounds> {
         let [a, b, c] = triangle.corners.map(|corner| vertices.get(usize::from(corner)));
         // Against the stream's order.
         let vertices = [a?, c?, b?];

@@ -1,5 +1,7 @@
 //! The names of the shading methods; what they do is in [`crate::shade`].
 
+use crate::math::power::Base;
+
 /// A shading method, chosen at run time.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
@@ -163,6 +165,7 @@ impl Shader {
         match self {
             Self::PhongRv | Self::Goldman | Self::Environment => Highlight::Reflected,
             Self::Blinn | Self::QuadraticBlinn => Highlight::HalfSquared,
+            Self::Sqrt6 => Highlight::Root,
             _ => Highlight::Half,
         }
     }
@@ -188,18 +191,21 @@ pub enum Highlight {
     Half,
     /// ((N·H)²)^(n/2).
     HalfSquared,
+    /// (z²)^n of z = sqrt(N·H).
+    Root,
     /// (R·V)^(n/4): with L, N and V in a plane the angle of R and V is twice that of N and H (Phong 1975).
     Reflected,
 }
 
 impl Highlight {
-    /// The exponent is divided by 2 to this power.
+    /// What of it is raised to the material's exponent.
     #[must_use]
-    pub const fn halvings(self) -> u32 {
+    pub const fn base(self) -> Base {
         match self {
-            Self::Half => 0,
-            Self::HalfSquared => 1,
-            Self::Reflected => 2,
+            Self::Half => Base::Itself,
+            Self::HalfSquared => Base::Root,
+            Self::Root => Base::Square,
+            Self::Reflected => Base::FourthRoot,
         }
     }
 }

@@ -1,13 +1,7 @@
 //! Without depth where it cannot matter, a closed convex mesh looks the same, pixel by pixel.
 
 use embedded_graphics::{pixelcolor::Rgb565, prelude::Size};
-use microphong::{
-    Shader, Stats,
-    stream::{
-        record::{CLOSED_CONVEX, Header, Mesh},
-        seal,
-    },
-};
+use microphong::{Shader, Stats, stream::record::CLOSED_CONVEX};
 use microphong_sim::{
     bytes::StreamBytes,
     look::{Look, Surface},
@@ -17,16 +11,8 @@ use microphong_sim::{
     vector::{V3, product, rotation, unit},
     view::{Up, View},
 };
+use microphong_tests::unmarked;
 use proptest::prelude::*;
-use std::mem::{offset_of, size_of};
-
-/// The same stream, its first mesh not marked as convex.
-fn unmarked(stream: &StreamBytes) -> StreamBytes {
-    let mut bytes = stream.as_bytes().to_vec();
-    bytes[size_of::<Header>() + offset_of!(Mesh, flags)] &= !CLOSED_CONVEX as u8;
-    seal(&mut bytes);
-    StreamBytes::from(bytes.as_slice())
-}
 
 fn picture(stream: &StreamBytes, size: Size, shader: Shader, number: u32) -> (Vec<Rgb565>, Stats) {
     render::frame(stream.parse().unwrap(), size, shader, 16, number).unwrap()

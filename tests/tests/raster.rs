@@ -5,8 +5,11 @@
 
 use microphong::{
     band::Band,
-    poly::Constant,
-    raster::triangle::{Bounds, Outline},
+    poly::{Constant, basis::Basis},
+    raster::{
+        smooth::Part,
+        triangle::{Bounds, Outline},
+    },
     tone::Solid,
     vertex::{ScreenVertex, State},
 };
@@ -72,8 +75,8 @@ fn vertex([x, y]: [i32; 2]) -> ScreenVertex {
 fn draw(corners: Corners, band_rows: usize, counts: &mut [u8]) -> u32 {
     let vertices = corners.map(vertex);
     let corners = [&vertices[0], &vertices[1], &vertices[2]];
-    let outline = Outline::new(corners);
-    let Some(basis) = outline.basis(Bounds::new(corners).clipped(WIDTH as i32, HEIGHT as i32)) else { return 0 };
+    let outline = Outline::new(corners, Part::Centres);
+    let Some(basis) = Basis::new(outline.corners, Bounds::new(corners).clipped(WIDTH as i32, HEIGHT as i32).sides()) else { return 0 };
     let mut drawn = 0;
     for top in (0..HEIGHT).step_by(band_rows) {
         let rows = band_rows.min(HEIGHT - top);

@@ -39,7 +39,8 @@ pub fn firmware(board: Board) -> Result<PathBuf> {
     Ok(output.join(board.target()).join("release").join(board.name()))
 }
 
-fn cargo() -> OsString {
+/// The cargo in use.
+pub(crate) fn cargo() -> OsString {
     env::var_os("CARGO").unwrap_or_else(|| "cargo".into())
 }
 

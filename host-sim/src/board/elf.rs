@@ -1,7 +1,11 @@
 //! The firmware's ELF file: what it takes of a board's memory, and another stream in it.
 
 use anyhow::{Context, Result, bail, ensure};
-use goblin::elf::{Elf as Parsed, program_header::PT_LOAD};
+use goblin::elf::{
+    Elf as Parsed,
+    program_header::PT_LOAD,
+    sym::{STT_FUNC, STT_OBJECT},
+};
 use std::{fs, ops::Range, path::Path};
 
 /// A program for a board.
@@ -19,6 +23,8 @@ pub struct Segment<'a> {
     pub bytes: &'a [u8],
 }
 
+/// Fields of the header that tell where sections are, and how many.
+const SECTIONS: [Range<usize>; 2] = [0x20..0x24, 0x30..0x34];
 /// Size of an ELF32 program header and offsets of its fields.
 const HEADER: usize = 32;
 const OFFSET: usize = 4;
@@ -40,6 +46,18 @@ impl Elf {
     #[must_use]
     pub fn bytes(&self) -> &[u8] {
         &self.bytes
+    }
+
+    /// The file as it is loaded, without names: what logs them logs less.
+    ///
+    /// # Errors
+    /// When the file is shorter than its header.
+    pub fn without_symbols(&self) -> Result<Vec<u8>> {
+        let mut bytes = self.bytes.clone();
+        for field in SECTIONS {
+            bytes.get_mut(field).context("the ELF is shorter than its header")?.fill(0);
+        }
+        Ok(bytes)
     }
 
     fn parsed(&self) -> Result<Parsed<'_>> {
@@ -64,13 +82,30 @@ impl Elf {
     /// # Errors
     /// When the file is damaged.
     pub fn functions(&self) -> Result<Vec<(String, Range<u32>)>> {
+        self.symbols(STT_FUNC)
+    }
+
+    /// Names and addresses of all constants that have a symbol.
+    ///
+    /// # Errors
+    /// When the file is damaged.
+    pub fn constants(&self) -> Result<Vec<(String, Range<u32>)>> {
         let elf = self.parsed()?;
-        let functions = elf.syms.iter().filter(|symbol| symbol.is_function() && symbol.st_size > 0);
-        Ok(functions
+        let section = elf.section_headers.iter().find(|section| elf.shdr_strtab.get_at(section.sh_name) == Some(".rodata"));
+        let range = section.context("the firmware has no section .rodata")?.vm_range();
+        let mut objects = self.symbols(STT_OBJECT)?;
+        objects.retain(|(_, object)| range.contains(&(object.start as usize)));
+        Ok(objects)
+    }
+
+    fn symbols(&self, kind: u8) -> Result<Vec<(String, Range<u32>)>> {
+        let elf = self.parsed()?;
+        let symbols = elf.syms.iter().filter(|symbol| symbol.st_type() == kind && symbol.st_size > 0);
+        Ok(symbols
             .filter_map(|symbol| {
                 let name = format!("{:#}", rustc_demangle::demangle(elf.strtab.get_at(symbol.st_name)?));
-                // Bit 0 says that the code is Thumb.
-                let start = symbol.st_value as u32 & !1;
+                // Bit 0 of a function says that the code is Thumb.
+                let start = symbol.st_value as u32 & if kind == STT_FUNC { !1 } else { !0 };
                 Some((name, start..start + symbol.st_size as u32))
             })
             .collect())

@@ -9,13 +9,15 @@ mod log;
 mod pico;
 mod qemu;
 
-use anyhow::Result;
+use anyhow::{Context, Result};
 use budget::Budget;
 use elf::Elf;
 use microphong::Shader;
-pub use qemu::trace;
+pub use pico::FrameTime;
+pub use qemu::{Blocks, trace};
 use serde::{Serialize, Serializer};
 use std::fmt;
+use std::ops::Range;
 
 /// A board that the firmware runs on.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, clap::ValueEnum)]
@@ -139,6 +141,17 @@ impl Recording {
         self.log.iter().filter_map(checksum).collect()
     }
 
+    /// What the firmware has counted under this name in its last frame.
+    ///
+    /// # Errors
+    /// When it has not logged that.
+    pub fn figure(&self, name: &str) -> Result<u64> {
+        let frame = self.log.iter().rev().find_map(|line| line.strip_prefix("frame "));
+        let mut words = frame.unwrap_or_default().split_whitespace();
+        let value = words.find(|&word| word == name).and_then(|_| words.next()?.parse().ok());
+        value.with_context(|| format!("the firmware has not logged {name}; {}", log::tail(&self.log)))
+    }
+
     /// Bytes of stack that the firmware has used, by its own account.
     #[must_use]
     pub fn stack_bytes(&self) -> Option<u64> {
@@ -155,4 +168,28 @@ pub fn run(board: Board, elf: &Elf, frames: usize) -> Result<Recording> {
         Board::Pico => pico::run(elf, frames),
         Board::Lm3s6965evb | Board::Mps2An385 | Board::Mps2An386 => qemu::run(board, elf),
     }
+}
+
+/// A frame of which every instruction was watched.
+#[derive(Clone, Debug, Default)]
+pub struct Watched {
+    /// What the firmware said; no pictures.
+    pub recording: Recording,
+    /// How long the frame took, where time is modelled.
+    pub time: Option<FrameTime>,
+}
+
+/// Runs `elf`, whose stream must have a single frame, and hands address and cycles of each instruction of one frame to `visit`. In QEMU
+/// those in `ranges` and without cycles; on the Pico all, of a frame that follows another.
+///
+/// # Errors
+/// When the program crashes, falls silent or drives its display wrongly.
+pub fn watch(board: Board, elf: &Elf, ranges: &[Range<u32>], mut visit: impl FnMut(u32, u64)) -> Result<Watched> {
+    let (recording, time) = match board {
+        Board::Pico => pico::watch(elf, visit).map(|(recording, time)| (recording, Some(time)))?,
+        Board::Lm3s6965evb | Board::Mps2An385 | Board::Mps2An386 => {
+            (trace(board, elf, ranges, Blocks::Whole, |address| visit(address, 0))?, None)
+        }
+    };
+    Ok(Watched { recording, time })
 }

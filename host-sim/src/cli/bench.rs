@@ -1,82 +1,182 @@
 //! `microphong bench`.
 
 use super::{
-    Outcome,
+    Outcome, growth,
     parse::{self, Several},
     report,
     verify::load,
 };
 use anyhow::Result;
-use embedded_graphics_core::{geometry::Size, pixelcolor::Rgb565};
-use microphong::Shader;
+use microphong::{Shader, render::check};
 use microphong_sim::{
-    bench::{self, Report},
-    board::{Board, elf::Elf},
-    render, verify,
+    bench::{
+        Bench, Measurement, PICO_HZ, Processor, Timing, baseline,
+        growth::{SHADERS, Sweep},
+        page::Page,
+    },
+    scene::Scene,
 };
+use std::path::{Path, PathBuf};
 
-/// Count the instructions that a board's firmware takes for one frame, stage by stage.
+/// Count the instructions that processors take for one frame, stage by stage, beside the error of the same frame.
 ///
-/// Exact: QEMU executes the firmware and logs every instruction. Instructions are not cycles. Clearing,
-/// checksum and transfer are left out.
+/// Exact: an emulated board executes its firmware, callgrind the same on this computer, and every instruction is counted.
+/// Instructions are not cycles; those of the Pico are approximate.
 #[derive(clap::Args)]
 #[command(after_help = EXAMPLES)]
 pub(crate) struct Arguments {
-    /// A .tri or .obj file, a built-in scene, or all built-in scenes.
-    #[arg(default_value = "peer-sphere")]
-    scene: String,
-    /// Shading methods, separated by commas, or all.
-    #[arg(long, default_value = "flat,gouraud,six-point,phong", value_parser = parse::shaders)]
+    /// .tri or .obj files, built-in scenes, or all built-in scenes.
+    #[arg(value_name = "SCENE", default_value = "peer-sphere")]
+    scenes: Vec<String>,
+    /// Shading methods, separated by commas, or all that can shade the scene.
+    #[arg(long, value_name = "S,...", default_value = "flat,gouraud,six-point,phong", value_parser = parse::shaders)]
     shader: Several<Shader>,
-    /// mps2-an385 (Cortex-M3) or mps2-an386 (Cortex-M4F).
-    #[arg(long, default_value = "mps2-an385", value_parser = board)]
-    board: Board,
+    /// Boards, separated by commas: mps2-an385 (Cortex-M3), mps2-an386 (Cortex-M4F), pico (Cortex-M0+), x86-64 (this computer);
+    /// or all.
+    #[arg(long, value_name = "B,...", default_value = "mps2-an385", value_parser = parse::processors)]
+    board: Several<Processor>,
     /// Print one JSON object per frame.
     #[arg(long)]
     json: bool,
+    /// Write DIR/index.html, run time against error, growth and break-even on one page, and DIR/chart.svg.
+    #[arg(long, value_name = "DIR")]
+    report: Option<PathBuf>,
+    /// Measure the frames that FILE lists, and fail where one costs over 1 % more than recorded there.
+    #[arg(long, value_name = "FILE", conflicts_with_all = ["scenes", "shader", "board", "json", "report"])]
+    check: Option<PathBuf>,
+    /// Measure the frames that FILE lists, and record what they cost.
+    #[arg(long, value_name = "FILE", conflicts_with_all = ["scenes", "shader", "board", "json", "report", "check"])]
+    renew: Option<PathBuf>,
 }
 
 const EXAMPLES: &str = "\
 Examples:
-  microphong bench                                   the frame that other renderers are measured with
-  microphong bench teapot --shader six-point --json
-  microphong bench sphere-690 --board mps2-an386";
+  microphong bench                                       the frame that other renderers are measured with
+  microphong bench teapot --board pico --shader sqrt6    frame time and frames per second of the Pico
+  microphong bench all --shader all --board all --json   everything
+  microphong bench --shader all --board all --report bench    the chart, as a page
+  microphong bench --check tests/baselines/costs.csv     has anything become dearer?
+  microphong bench --renew tests/baselines/costs.csv     it has, and for a reason
 
-/// Boards whose every instruction can be logged.
-const BOARDS: [Board; 2] = [Board::Mps2An385, Board::Mps2An386];
+Stages:
+  frame     once a frame: camera, lights
+  vertex    transformation and light
+  cull      triangles that face away or are off screen, binning
+  set-up    per triangle and band: nodes, fits, edges
+  span      per row of a triangle, up to the inner loop
+  pixel     the inner loop
+  clear     background and depth of the band; not part of the sum
+  transfer  pixels on their way to the display, waiting left out; not part of the sum
 
-fn board(text: &str) -> Result<Board, String> {
-    parse::among(text, &BOARDS, Board::name)
-}
+  flash     what a firmware with this method alone has more than one with none; in brackets
+            what no other method needs
+  error     against per-pixel Phong shading in 64-bit floating point, 255 is full
+
+Exit codes: 0 done; 1 failed, or something has become dearer; 2 wrong usage.";
 
 pub(crate) fn run(arguments: &Arguments) -> Result<Outcome> {
-    let scenes = load(&arguments.scene)?;
-    let board = arguments.board;
-    let shaders = &arguments.shader.values;
-    let bar = report::progress((scenes.len() * shaders.len()) as u64 + 1, "counting");
-    let elf = Elf::read(&verify::build(board)?)?;
-    let (width, height) = board.size();
-    for scene in &scenes {
-        for &shader in shaders {
-            bar.inc(1);
-            let size = Size::new(width, height);
-            let (_, stats) = render::frame::<Rgb565>(scene.stream.parse()?, size, shader, height, 0)?;
-            let elf = elf.with_stream(&verify::prepare(scene.stream.as_bytes(), shader, 1)?)?;
-            let result = bench::measure(board, &elf, &scene.name, shader, stats.pixels.into(), stats.drawn.into())?;
-            bar.suspend(|| if arguments.json { report::json(&result) } else { text(&result) })?;
-        }
+    if let Some(path) = &arguments.check {
+        return compare(path);
+    }
+    if let Some(path) = &arguments.renew {
+        return renew(path);
+    }
+    let mut scenes = Vec::new();
+    for name in &arguments.scenes {
+        scenes.extend(load(name)?);
+    }
+    let Several { values: shaders, all } = &arguments.shader;
+    let wanted = |scene: &Scene| {
+        let possible = |shader| scene.stream.parse().is_ok_and(|stream| check(&stream, shader, false).is_ok());
+        let shaders: Vec<_> = shaders.iter().copied().filter(|&shader| !all || possible(shader)).collect();
+        arguments.board.values.iter().flat_map(|&board| shaders.iter().map(move |&shader| (board, shader)).collect::<Vec<_>>()).collect()
+    };
+    let scenes: Vec<(Scene, Vec<_>)> = scenes.into_iter().map(|scene| (wanted(&scene), scene)).map(|(w, s)| (s, w)).collect();
+    let page = arguments.report.as_deref().map(Page::create).transpose()?;
+    let bar = report::progress(scenes.iter().map(|(_, wanted)| wanted.len() as u64).sum::<u64>() + 1, "counting");
+    let bench = Bench::new(&arguments.board.values)?;
+    bar.inc(1);
+    let mut all = Vec::new();
+    for (scene, wanted) in &scenes {
+        let measured = bench.measure(scene, wanted, || bar.inc(1))?;
+        bar.suspend(|| measured.iter().try_for_each(|m| if arguments.json { report::json(m) } else { text(m) }))?;
+        all.extend(measured);
     }
     bar.finish_and_clear();
+    if let Some(page) = page {
+        let path = page.finish(&all, &growth::count(&Sweep::ALL, &SHADERS)?)?;
+        if !arguments.json {
+            report::line(&format!("report: {}", path.display()))?;
+        }
+    }
     Ok(Outcome::Done)
 }
 
-fn text(result: &Report) -> Result<()> {
-    let stages = result.by_stage;
-    let [all, vertex, cull, setup, span, pixel] =
-        [result.instructions, stages.vertex, stages.cull, stages.setup, stages.span, stages.pixel].map(report::grouped);
-    let Report { board, scene, shader, pixels, triangles, spans, instr_per_pixel, .. } = result;
-    report::line(&format!("{board}, {scene}, {shader}: {all} instructions, {instr_per_pixel} per pixel"))?;
-    report::line(&format!("  vertex {vertex}, cull and bin {cull}, set-up {setup}, span {span}, pixel {pixel}"))?;
-    let inner = stages.pixel as f64 / (*pixels).max(1) as f64;
-    report::line(&format!("  {triangles} triangles, {spans} spans, {} pixels of {inner:.1} in the inner loop", report::grouped(*pixels)))
+/// What a file lists, as recorded and as measured now.
+fn again(path: &Path) -> Result<[Vec<baseline::Entry>; 2]> {
+    let recorded = baseline::read(path)?;
+    let bar = report::progress(recorded.len() as u64, "counting");
+    let measured = baseline::measure(&recorded, || bar.inc(1))?;
+    bar.finish_and_clear();
+    Ok([recorded, measured])
+}
+
+fn compare(path: &Path) -> Result<Outcome> {
+    let [recorded, measured] = again(path)?;
+    let changes = baseline::changes(&recorded, &measured);
+    changes.iter().try_for_each(|change| report::line(&change.to_string()))?;
+    let grown = changes.iter().filter(|change| change.percent() > 0.0).count();
+    let shrunk = changes.len() - grown;
+    let renew = format!("if that is meant, renew the file: microphong bench --renew {}", path.display());
+    if grown > 0 {
+        report::line(&format!("{grown} of {} costs have grown by more than {} %; {renew}", 2 * recorded.len(), baseline::TOLERANCE))?;
+    } else if shrunk > 0 {
+        report::line(&format!("{shrunk} costs have shrunk, which would hide later growth; {renew}"))?;
+    } else {
+        report::line(&format!("{} frames cost what they did", recorded.len()))?;
+    }
+    Ok(if grown > 0 { Outcome::Differences } else { Outcome::Done })
+}
+
+fn renew(path: &Path) -> Result<Outcome> {
+    let [recorded, measured] = again(path)?;
+    baseline::changes(&recorded, &measured).iter().try_for_each(|change| report::line(&change.to_string()))?;
+    baseline::write(path, &measured)?;
+    report::line(&format!("{} frames recorded in {}", measured.len(), path.display()))?;
+    Ok(Outcome::Done)
+}
+
+fn text(m: &Measurement) -> Result<()> {
+    let per = |count: u64, of: u64| count as f64 / of.max(1) as f64;
+    let [all, pixels, spans] = [m.instructions, m.pixels, m.spans].map(report::grouped);
+    let error = m.max_lsb.zip(m.rmse_lsb).map_or(String::new(), |(max, rmse)| format!("; error {max:.2} at most, {rmse:.3} rms"));
+    report::line(&format!("{} ({}), {}, {}: {all} instructions{error}", m.board.board_name(), m.cpu, m.scene, m.shader))?;
+    let s = m.by_stage;
+    let stages = [s.frame, s.vertex, s.cull, s.setup, s.span, s.pixel, s.clear, s.transfer].map(report::grouped);
+    let [frame, vertex, cull, setup, span, pixel, clear, transfer] = stages;
+    report::line(&format!(
+        "  frame {frame}, vertex {vertex}, cull {cull}, set-up {setup}, span {span}, pixel {pixel}; clear {clear}, transfer {transfer}"
+    ))?;
+    let rates = format!(
+        "{:.2} per pixel, {:.1} of them in the inner loop; set-up {:.0} per triangle, {:.1} per span",
+        m.instr_per_pixel,
+        per(s.pixel, m.pixels),
+        per(s.setup, m.triangles),
+        per(s.span, m.spans)
+    );
+    report::line(&format!("  {pixels} pixels, {} triangles, {spans} spans: {rates}", report::grouped(m.triangles)))?;
+    if let (Some(ram), Some(flash), Some(own), Some(whole)) = (m.ram_bytes, m.flash_bytes, m.flash_own_bytes, m.firmware_bytes) {
+        let [ram, flash, own, whole] = [ram, flash, own, whole].map(report::grouped);
+        report::line(&format!("  {ram} bytes of RAM, {flash} ({own}) of flash, {whole} with all methods"))?;
+    }
+    if let (Some(cycles), Some(t)) = (m.cycles, m.timing) {
+        let Timing { frame_cycles, render_cycles, wire_cycles, idle_cycles, frames_per_second } = t;
+        let [frame, render, wire, idle] =
+            [frame_cycles, render_cycles, wire_cycles, idle_cycles].map(|cycles| cycles as f64 / PICO_HZ * 1e3);
+        report::line(&format!(
+            "  about {} cycles; frame {frame:.2} ms, render {render:.2}, wire {wire:.2}, idle {idle:.2}: {frames_per_second} frames/s",
+            report::grouped(cycles)
+        ))?;
+    }
+    Ok(())
 }

@@ -3,6 +3,7 @@
 mod bench;
 mod compare;
 mod convert;
+mod growth;
 mod inspect;
 mod papers;
 mod parse;
@@ -32,6 +33,7 @@ Examples:
   microphong inspect mesh.tri                      what is inside, and how large it is
   microphong verify --board all --scene teapot     compare emulated boards with this computer
   microphong bench                                 count the instructions of a frame
+  microphong growth                                count how that grows with triangles, pixels, lights, bands
   microphong compare teapot --report comparison    measure all methods against Phong shading
   microphong papers --only vlasic                  compute again what a paper claims
 
@@ -44,6 +46,7 @@ enum Command {
     Render(render::Arguments),
     Verify(verify::Arguments),
     Bench(bench::Arguments),
+    Growth(growth::Arguments),
     Compare(compare::Arguments),
     Papers(papers::Arguments),
     Scenes(scenes::Arguments),
@@ -75,6 +78,7 @@ pub(crate) fn main() -> ExitCode {
         Command::Render(arguments) => render::run(&arguments),
         Command::Verify(arguments) => verify::run(&arguments),
         Command::Bench(arguments) => bench::run(&arguments),
+        Command::Growth(arguments) => growth::run(&arguments),
         Command::Compare(arguments) => compare::run(&arguments),
         Command::Papers(arguments) => papers::run(&arguments),
         Command::Scenes(arguments) => scenes::run(&arguments),

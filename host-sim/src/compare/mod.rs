@@ -192,6 +192,25 @@ impl<'s> Reference<'s> {
         }
     }
 
+    /// The candidate of a pixel that levels are closest to, and how far they are off: of triangles at the same depth the integers may
+    /// show any.
+    fn best(&self, pixel: usize, level: Levels) -> Option<(usize, f64)> {
+        let errors = self.candidates(pixel).map(|sample| (sample, self.error(sample, level, self.phong[sample])));
+        errors.min_by(|a, b| a.1.abs().total_cmp(&b.1.abs()))
+    }
+
+    /// [`Comparison::total`] alone, which is quick.
+    ///
+    /// # Errors
+    /// Those of [`Self::compare`].
+    pub fn total(&self, shader: Shader) -> Result<Spread> {
+        let size = Size::new(self.frame.size.0, self.frame.size.1);
+        let style = Style { perspective_correct: self.perspective_correct, ..shader.into() };
+        let levels = level::picture(self.stream, size, style, self.number)?;
+        let errors: Vec<_> = (0..).zip(levels).filter_map(|(pixel, level)| Some(self.best(pixel, level?)?.1)).collect();
+        Spread::of(&errors).with_context(|| format!("{} has drawn nothing", shader.name()))
+    }
+
     /// Draws the frame by a method and measures it.
     ///
     /// # Errors
@@ -218,9 +237,7 @@ impl<'s> Reference<'s> {
                 unmatched += usize::from(level.is_some() || !candidates.is_empty());
                 continue;
             };
-            // Of triangles at the same depth the integers may show any.
-            let best = candidates.clone().map(|sample| (sample, self.error(sample, level, self.phong[sample])));
-            let Some((sample, error)) = best.min_by(|a, b| a.1.abs().total_cmp(&b.1.abs())) else { continue };
+            let Some((sample, error)) = self.best(pixel, level) else { continue };
             errors[pixel] = Some(error);
             total.push(error);
             method.push(self.error(nearest, reals[0][nearest], self.phong[nearest]));

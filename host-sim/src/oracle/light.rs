@@ -78,13 +78,14 @@ impl Frame {
         self.materials.get(facet.material).copied().unwrap_or(black)
     }
 
-    /// `255 (ka + Σ colour (kd max(0, d) + ks s))` over all lights, each with its `[d, s]`.
+    /// `255 (ka + Σ colour (kd d + ks s))` over all lights, each with its `[d, s]`, d from 0 to 1: what approximation lifts above
+    /// one counts as one.
     pub(super) fn levels(&self, facet: &Facet, reflected: impl IntoIterator<Item = [f64; 2]>) -> Levels {
         let material = self.material(facet);
         let mut sum = material.ambient;
         for (light, [diffuse, specular]) in self.lights.iter().zip(reflected) {
             for (k, channel) in sum.iter_mut().enumerate() {
-                *channel += light.colour[k] * (material.diffuse[k] * diffuse.max(0.0) + material.specular[k] * specular);
+                *channel += light.colour[k] * (material.diffuse[k] * diffuse.clamp(0.0, 1.0) + material.specular[k] * specular);
             }
         }
         sum.map(|channel| (255.0 * channel).clamp(0.0, 255.0))

@@ -17,6 +17,36 @@ pub struct Power {
     scale: u32,
 }
 
+/// What is raised to a power, as a function of what a table is looked up by.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Base {
+    /// x.
+    Itself,
+    /// The root of x.
+    Root,
+    /// The fourth root of x.
+    FourthRoot,
+    /// x², continued by a line of the same slope below 1/2: x - 1/4.
+    Square,
+}
+
+impl Base {
+    /// How often the root is taken.
+    const fn roots(self) -> u32 {
+        match self {
+            Self::Itself | Self::Square => 0,
+            Self::Root => 1,
+            Self::FourthRoot => 2,
+        }
+    }
+}
+
+/// [`Base::Square`] of `x`, Q2.30.
+#[must_use]
+pub fn square(x: i32) -> i32 {
+    if x >= 1 << (COSINE - 1) { ((i64::from(x) * i64::from(x)) >> COSINE) as i32 } else { x - (1 << (COSINE - 2)) }
+}
+
 /// Four times the exponent up to which the whole domain is used.
 const WHOLE: NonZeroU32 = NonZeroU32::new(4 * 8).unwrap();
 
@@ -27,14 +57,19 @@ impl Power {
     /// An empty table, for static memory: all zeros, so that it takes no flash.
     pub const EMPTY: Self = Self { table: [0; SIZE + 1], scale: 0 };
 
-    /// Computes the table for exponent `n / 2^halvings`, `n` from 1 to 1024, in integers: the same bits on every machine.
-    pub fn fill(&mut self, n: u16, halvings: u32) {
-        let scale = WHOLE.max(NonZeroU32::new((u32::from(n) << 2) >> (halvings & 31)).unwrap_or(WHOLE));
+    /// Computes the table of `base^n`, `n` from 1 to 1024, in integers: the same bits on every machine.
+    pub fn fill(&mut self, n: u16, base: Base) {
+        let n4 = u32::from(n) << 2;
+        let scale = WHOLE.max(NonZeroU32::new(if base == Base::Square { n4 << 1 } else { n4 >> base.roots() }).unwrap_or(WHOLE));
         self.scale = scale.get();
         for (i, entry) in self.table.iter_mut().enumerate() {
             // x = 1 - 8 i / (2048 max(n, 8)), Q1.31: products of two fit 64 bits.
             let below = ((i as u64) << 25) / NonZeroU64::from(scale);
-            let x = (0..halvings).fold((1u64 << 31).saturating_sub(below), |x, _| (x << 31).isqrt());
+            let x = (1u64 << 31).saturating_sub(below);
+            let x = match base {
+                Base::Square => (square((x >> 1) as i32).max(0) as u64) << 1,
+                _ => (0..base.roots()).fold(x, |x, _| (x << 31).isqrt()),
+            };
             let (mut result, mut base, mut n) = (1u64 << 31, x, n);
             while n > 0 {
                 if n & 1 == 1 {
@@ -45,9 +80,11 @@ impl Power {
             }
             *entry = ((result + (1 << 14)) >> 15).min(0xffff) as u16;
         }
-        // The lowest entry is what everything below the domain gets.
-        if let Some(last) = self.table.last_mut() {
-            *last = 0;
+        // The lowest entry is what everything below the domain gets, in the pixel loop the one above it.
+        let [.., lower, lowest] = &mut self.table;
+        *lowest = 0;
+        if scale > WHOLE {
+            *lower = 0;
         }
     }
 
@@ -71,11 +108,11 @@ impl Power {
         }
     }
 
-    /// The table for the pixel loop: entry `((top - cosine) * factor) >> 32` is the nearest to `cosine`, Q5.27.
+    /// The table for the pixel loop: entry `((top - cosine) * factor) >> 33` is the nearest to `cosine`, Q5.27.
     #[must_use]
     pub fn pixel(&self) -> PixelPower<'_> {
         let scale = NonZeroU32::new(self.scale).unwrap_or(WHOLE);
-        PixelPower { table: &self.table, top: (1 << PIXEL_COSINE) + ((1 << 20) / scale) as i32, factor: scale.get() << 11 }
+        PixelPower { table: &self.table, top: (1 << PIXEL_COSINE) + ((1 << 20) / scale) as i32, factor: (scale.get() << 12) as i32 }
     }
 
     /// Smallest cosine, Q2.30, whose power is not taken as 0.
@@ -90,7 +127,7 @@ impl Power {
 pub struct PixelPower<'a> {
     table: &'a [u16; SIZE + 1],
     top: i32,
-    factor: u32,
+    factor: i32,
 }
 
 impl PixelPower<'_> {
@@ -98,9 +135,9 @@ impl PixelPower<'_> {
     #[inline(always)]
     #[must_use]
     pub fn at(&self, cosine: i32) -> u32 {
-        let defect = self.top.wrapping_sub(cosine).max(0) as u32;
-        let i = (u64::from(defect) * u64::from(self.factor)) >> 32;
-        self.table.get(i as usize).copied().unwrap_or(0).into()
+        let twice = ((i64::from(self.top.wrapping_sub(cosine)) * i64::from(self.factor)) >> 32) as i32;
+        // One instruction halves and clamps, and nothing is left to check.
+        self.table[(twice >> 1).clamp(0, SIZE as i32 - 1) as usize].into()
     }
 }
 
@@ -116,19 +153,28 @@ mod tests {
     #[test]
     fn error() {
         for n in [1u16, 2, 5, 7, 8, 9, 20, 50, 128, 500, 1024] {
-            for halvings in [0, 1, 2].into_iter().filter(|halvings| n >> halvings > 0) {
+            for base in [Base::Itself, Base::Root, Base::FourthRoot, Base::Square] {
+                if n >> base.roots() == 0 {
+                    continue;
+                }
                 let mut power = Power::EMPTY;
-                power.fill(n, halvings);
+                power.fill(n, base);
                 let (mut at, mut nearest) = (0f64, 0f64);
                 for i in 0..200_000u32 {
                     let cosine = (1 << 30) - (i * 5_368) as i32;
-                    let exact = (f64::from(cosine) / 2f64.powi(30)).max(0.0).powf(f64::from(n) / f64::from(1 << halvings));
+                    let x = f64::from(cosine) / 2f64.powi(30);
+                    let x = match base {
+                        Base::Square if x >= 0.5 => x * x,
+                        Base::Square => (x - 0.25).max(0.0),
+                        _ => x.max(0.0).powf(1.0 / f64::from(1 << base.roots())),
+                    };
+                    let exact = x.powi(n.into());
                     at = at.max((f64::from(power.at(cosine)) / 65_536.0 - exact).abs());
                     nearest = nearest.max((f64::from(power.pixel().at(cosine >> 3)) / 65_536.0 - exact).abs());
                 }
-                assert!(at <= ERROR, "n = {n}/2^{halvings}: {at}");
-                assert!(nearest <= NEAREST_ERROR, "n = {n}/2^{halvings}: {nearest}");
-                assert_eq!(power.at(power.dark_below() - (1 << 15)), 0, "n = {n}/2^{halvings}");
+                assert!(at <= ERROR, "n = {n}, {base:?}: {at}");
+                assert!(nearest <= NEAREST_ERROR, "n = {n}, {base:?}: {nearest}");
+                assert_eq!(power.at(power.dark_below() - (1 << 15)), 0, "n = {n}, {base:?}");
             }
         }
     }

@@ -34,30 +34,32 @@ pub fn rsqrt(m: u32) -> u32 {
 /// Largest error of [`rsqrt`], in units of its result.
 pub const ERROR: f64 = 8.0;
 
-/// Knots of [`half_rsqrt`]: 1/(2 sqrt(x)) at x = (256 + i)/1024, Q2.30.
-static HALVES: [u32; 769] = {
-    let mut table = [0; 769];
+/// Knots of [`half_rsqrt`]: 1/(2 sqrt(x)) at x = (256 + i)/1024, Q2.30, and how much less it is 1/2048 of the way to the
+/// next one. As many as a saturated index can tell apart.
+static HALVES: [[u32; 2]; 1024] = {
+    let mut table = [[0; 2]; 1024];
     let mut i = 0;
-    while i < 769 {
+    while i < 1024 {
         // 2^30 / (2 sqrt(k / 1024)) = 2^34 / sqrt(k) = sqrt(2^68 / k).
-        table[i] = ((1u128 << 68) / (i as u128 + 256)).isqrt() as u32;
+        let [here, next] = [((1u128 << 68) / (i as u128 + 256)).isqrt() as u32, ((1u128 << 68) / (i as u128 + 257)).isqrt() as u32];
+        table[i] = [here, (here - next + 1024) >> 11];
         i += 1;
     }
     table
 };
 
-/// 1/(2 sqrt(x)) in Q2.30 for `x` in [1/4, 1], Q2.30, by linear interpolation: for the pixel loop.
+/// One quarter, Q2.30: the least argument of [`half_rsqrt`].
+pub const QUARTER: i32 = 1 << 28;
+
+/// 1/(2 sqrt(x)) in Q2.30 for `x` in [1/4, 1] by linear interpolation: for the pixel loop. `above` is x less [`QUARTER`], Q2.30.
 ///
-/// Error: at most [`HALF_ERROR`] relative (tests::half_error). Arguments outside are moved to the nearer end.
+/// Error: at most [`HALF_ERROR`] relative (tests::half_error). Arguments outside give something in range.
 #[inline(always)]
 #[must_use]
-pub fn half_rsqrt(x: u32) -> u32 {
-    // Interval in the upper bits, place in it in the lower 20.
-    let i = (x >> 20).saturating_sub(256) as usize;
-    match (HALVES.get(i), HALVES.get(i + 1)) {
-        (Some(&a), Some(&b)) => a - ((u64::from(a - b) * u64::from(x << 12)) >> 32) as u32,
-        _ => 1 << 29,
-    }
+pub fn half_rsqrt(above: i32) -> u32 {
+    // Interval in the upper bits, place in it in the eleven below them.
+    let [knot, slope] = HALVES[(above >> 20).clamp(0, 1023) as usize];
+    knot.wrapping_sub(slope.wrapping_mul((above >> 9) as u32 & 0x7FF))
 }
 
 /// Relative error of [`half_rsqrt`]: a quarter LSB at exponent 1024.
@@ -94,7 +96,7 @@ mod tests {
         let mut worst = 0f64;
         for x in ((1u32 << 28)..=1 << 30).step_by(4_093) {
             let exact = 2f64.powi(29) / (f64::from(x) / 2f64.powi(30)).sqrt();
-            worst = worst.max((f64::from(half_rsqrt(x)) / exact - 1.0).abs());
+            worst = worst.max((f64::from(half_rsqrt(x as i32 - QUARTER)) / exact - 1.0).abs());
         }
         assert!(worst <= HALF_ERROR, "{worst}");
     }

@@ -68,12 +68,9 @@ pub type Visible = [i32; 4];
 impl Basis {
     /// The basis of the triangle with `corners` in 1/16 pixel, clockwise on a screen
     /// whose y runs down; `None` if it has no area or runs the other way.
-    #[inline]
     #[must_use]
     pub fn new(corners: [[i32; 2]; 3], visible: Visible) -> Option<Self> {
-        let [[x0, y0], [x1, y1], [x2, y2]] = corners;
-        let edges = [[x1.wrapping_sub(x0), y1.wrapping_sub(y0)], [x2.wrapping_sub(x0), y2.wrapping_sub(y0)]];
-        Self::small([x0, y0], edges).or_else(|| Self::any([x0, y0], edges, visible))
+        Self::small(corners).or_else(|| Self::any(corners, visible))
     }
 
     /// That of a small and stout triangle: shorter than [`NEAR`] / 2 pixels, and not even nearly [`MAX_THINNESS`].
@@ -81,9 +78,12 @@ impl Basis {
     /// What is fitted then has few bits: two words hold any product with a mantissa, and of that the upper one is enough
     /// where it is rounded before its last use.
     #[inline(always)]
-    fn small([x0, y0]: [i32; 2], edges: [[i32; 2]; 2]) -> Option<Self> {
+    #[must_use]
+    pub fn small(corners: [[i32; 2]; 3]) -> Option<Self> {
+        let ([x0, y0], edges) = edges(corners);
         let [[x1, y1], [x2, y2]] = edges;
-        let bits = 32 - (x1.unsigned_abs() | y1.unsigned_abs() | x2.unsigned_abs() | y2.unsigned_abs()).leading_zeros();
+        let size = |c: i32| (c.wrapping_add(c >> 31) ^ (c >> 31)) as u32;
+        let bits = 32 - (size(x1) | size(y1) | size(x2) | size(y2)).leading_zeros();
         let det = x1.wrapping_mul(y2).wrapping_sub(x2.wrapping_mul(y1));
         let zeros = det.leading_zeros();
         // 2^(2 bits) <= 128 det.
@@ -102,7 +102,7 @@ impl Basis {
             s,
             t,
             exponent: exponent as i32,
-            at: [s, t].map(|gradient| at(gradient, offset)),
+            at: [at(s, offset), at(t, offset)],
             offset,
             shift: [0; 2],
             anchor: pixel,
@@ -116,7 +116,9 @@ impl Basis {
     /// That of any triangle.
     #[cold]
     #[inline(never)]
-    fn any([x0, y0]: [i32; 2], edges: [[i32; 2]; 2], visible: Visible) -> Option<Self> {
+    #[must_use]
+    pub fn any(corners: [[i32; 2]; 3], visible: Visible) -> Option<Self> {
+        let ([x0, y0], edges) = edges(corners);
         let [[x1, y1], [x2, y2]] = edges;
         let det = i64::from(x1) * i64::from(y2) - i64::from(x2) * i64::from(y1);
         if det <= 0 {
@@ -167,7 +169,7 @@ impl Basis {
             s,
             t,
             exponent: self.exponent - level as i32,
-            at: [s, t].map(|gradient| at(gradient, offset)),
+            at: [at(s, offset), at(t, offset)],
             offset,
             shift: [anchor[0].wrapping_sub(pixel[0]), anchor[1].wrapping_sub(pixel[1])],
             anchor,
@@ -204,8 +206,8 @@ impl Basis {
         // Differences are below 2^BITS.
         let up = 30 - BITS;
         let left = extra + BITS + 2 - self.exponent as u32;
-        let [c, dx, dy] = self.products((i1 - i0) << up, (i2 - i0) << up).map(|product| product.shifted(left));
-        [(i0 << extra).wrapping_add(c), dx, dy]
+        let [c, dx, dy] = self.products((i1 - i0) << up, (i2 - i0) << up);
+        [(i0 << extra).wrapping_add(c.shifted(left)), dx.shifted(left), dy.shifted(left)]
     }
 
     #[cold]
@@ -259,20 +261,20 @@ impl Basis {
         // First and second differences are below 2^(BITS + 2).
         let up = 28 - BITS;
         let (once, twice) = (extra + BITS + 4 - self.exponent as u32, extra + BITS + 35 - 2 * self.exponent as u32);
-        let [c, dx, dy] = self.products((4 * i01 - 3 * i0 - i1) << up, (4 * i20 - 3 * i0 - i2) << up).map(|product| product.shifted(once));
+        let [c, dx, dy] = self.products((4 * i01 - 3 * i0 - i1) << up, (4 * i20 - 3 * i0 - i2) << up);
         // Half the matrix of second derivatives: [[ss, st], [st, tt]].
         let half = |difference: i32| difference << (up + 1);
         let (ss, st, tt) = (half(i0 + i1 - 2 * i01), half(i0 - i01 - i20 + i12), half(i0 + i2 - 2 * i20));
         // One factor of the chain rule, then the other.
-        let rounded = |product: Product| product.rounded() << 1;
-        let ([s, sx, sy], [t, tx, ty]) = (self.products(ss, st).map(rounded), self.products(st, tt).map(rounded));
-        let ([bend, bend_x, bend_y], [_, dxx, dxy], [_, _, dyy]) = (self.products(s, t), self.products(sx, tx), self.products(sy, ty));
+        let ([s, sx, sy], [t, tx, ty]) = (self.products(ss, st), self.products(st, tt));
+        let [bend, bend_x, bend_y] = self.products(s.twice(), t.twice());
+        let ([_, dxx, dxy], [_, _, dyy]) = (self.products(sx.twice(), tx.twice()), self.products(sy.twice(), ty.twice()));
         [
-            (i0 << extra).wrapping_add(c).wrapping_add(bend.shifted(twice)),
-            dx.wrapping_add(bend_x.shifted(twice + 1)),
-            dy.wrapping_add(bend_y.shifted(twice + 1)),
+            (i0 << extra).wrapping_add(c.shifted(once)).wrapping_add(bend.shifted(twice)),
+            dx.shifted(once).wrapping_add(bend_x.shifted(twice).wrapping_mul(2)),
+            dy.shifted(once).wrapping_add(bend_y.shifted(twice).wrapping_mul(2)),
             dxx.shifted(twice),
-            dxy.shifted(twice + 1),
+            dxy.shifted(twice).wrapping_mul(2),
             dyy.shifted(twice),
         ]
     }
@@ -350,15 +352,21 @@ impl Basis {
     }
 }
 
+/// The first corner, and the edges from it to the others.
+#[inline(always)]
+fn edges([[x0, y0], [x1, y1], [x2, y2]]: [[i32; 2]; 3]) -> ([i32; 2], [[i32; 2]; 2]) {
+    ([x0, y0], [[x1.wrapping_sub(x0), y1.wrapping_sub(y0)], [x2.wrapping_sub(x0), y2.wrapping_sub(y0)]])
+}
+
 /// Products of mantissas.
 #[derive(Clone, Copy)]
 struct Product(i64);
 
 impl Product {
-    /// The upper half, rounded to nearest.
+    /// The upper half, rounded to nearest, times 2.
     #[inline(always)]
-    fn rounded(self) -> i32 {
-        (self.0.wrapping_add(1 << 31) >> 32) as i32
+    fn twice(self) -> i32 {
+        ((self.0.wrapping_add(1 << 31) >> 32) as i32) << 1
     }
 
     /// The upper half of the product times 2^`left`, rounded, modulo 2^32; `left` is less than 32.

@@ -164,14 +164,15 @@ impl Piece {
         }
         let [a, b, c] = self.corners;
         let (first, end) = (self.rows[0].max(band.top), self.rows[1].min(band.top.wrapping_add(band.rows)));
-        let mut rows = Rows { count: 0, left: Column::default(), right: Column::default(), depth, patch, tone };
+        let (left, right) = (Column::default(), Column::default());
+        let mut rows = Rows { count: 0, start: band.start(first), left, right, depth, patch, tone };
         rows.depth.jump(first);
         rows.patch.jump(first.wrapping_sub(basis.row()));
         rows.tone.start(first);
         let mut lines = [Line::new(a, b, first), Line::new(b, c, first), Line::new(c, a, first)];
         let width = i64::from(band.width as i32);
         let mut pixels = 0;
-        for (pixel_row, depth_row) in band.rows_between(first, end) {
+        for _ in first..end {
             let (mut left, mut right) = (0, width);
             for line in &mut lines {
                 match line.side {
@@ -184,7 +185,7 @@ impl Piece {
             rows.left.x = (left.min(width) as u32) << COLUMN;
             rows.right.x = (right.max(0) as u32) << COLUMN;
             rows.count = right.saturating_sub(left).max(0) as u32;
-            pixels += row(&mut rows, pixel_row, depth_row);
+            pixels += row(&mut rows, band);
         }
         pixels
     }

@@ -18,6 +18,9 @@ pub const COLUMN: u32 = 21;
 /// Columns that a walked column can tell apart: no viewport is wider.
 pub const COLUMNS: u32 = 1 << (32 - COLUMN);
 
+/// Heights up to here, in 1/16 pixel, are walked from end to end: 89 rows.
+pub const SHORT: i32 = 89 << SUBPIXEL;
+
 /// Heights from here on, in 1/16 pixel, are not walked but divided anew on each row.
 const TALL: i32 = 1 << (32 - COLUMN);
 
@@ -46,6 +49,14 @@ pub fn first_centre(y: i32) -> i32 {
     y.wrapping_add(CENTRE - 1) >> SUBPIXEL
 }
 
+impl Column {
+    /// Moves down `rows` rows.
+    #[inline(always)]
+    pub fn skip(&mut self, rows: i32) {
+        self.x = self.x.wrapping_add(self.step.wrapping_mul(rows as u32));
+    }
+}
+
 impl Edge {
     /// From `upper` to `lower`, each `[x, y]` in 1/16 pixel.
     #[inline(always)]
@@ -65,30 +76,42 @@ impl Edge {
         -(-numerator).div_euclid(dy << SUBPIXEL) as i32
     }
 
-    /// How many rows a walked column stays exact, 0 if this edge cannot be walked.
+    /// The column at the centre of its first row, ready to be stepped to its end. Only for edges of at most [`SHORT`]
+    /// whose columns lie in [0, [`COLUMNS`]).
     ///
-    /// A true position is a multiple of 1/(256 h) columns, h the height in rows;
-    /// start and step are each too small by less than 2^-21, so after n rows the
-    /// integer part is still right while (n + 2) 256 h < 2^21.
+    /// A true position is a multiple of 1/(256 h) columns, h the height in rows. The start is too small by less than
+    /// 2 · 2^-21 and each step by less than 2^-21, so in row n the integer part is right while (n + 3) 256 h < 2^21.
+    #[inline]
+    #[must_use]
+    pub fn walk(&self) -> Column {
+        let dy = self.dy.max(1);
+        let whole = self.dx.div_euclid(dy);
+        let fraction = (self.dx.wrapping_sub(whole.wrapping_mul(dy)) as u32).wrapping_shl(COLUMN) / dy as u32;
+        // To the first centre: less than a row.
+        let down = CENTRE.wrapping_sub(self.y) & (2 * CENTRE - 1);
+        let sixteenths = (self.x - CENTRE).wrapping_add(whole.wrapping_mul(down));
+        Column {
+            // All ones below the integer part turn its floor into a ceiling.
+            x: ((sixteenths << (COLUMN - SUBPIXEL)) as u32)
+                .wrapping_add(fraction.wrapping_mul(down as u32) >> SUBPIXEL)
+                .wrapping_add((1 << COLUMN) - 1),
+            step: ((whole << COLUMN) as u32).wrapping_add(fraction),
+        }
+    }
+
+    /// How many rows of an edge that is not short a walked column stays exact, 0 if it cannot be walked.
+    ///
+    /// As in [`Self::walk`], but the start is too small by less than 2^-21.
     #[inline(always)]
     #[must_use]
     pub fn exact_rows(&self) -> i32 {
-        // 89 rows and less are exact to their end: no division.
-        const WHOLE: i32 = 89;
-        if self.dy <= WHOLE << SUBPIXEL {
-            WHOLE + 1
-        } else if self.dy < TALL {
-            (1 << (COLUMN + SUBPIXEL - 8)) / self.dy.max(1) - 2
-        } else {
-            0
-        }
+        if self.dy < TALL { (1 << (COLUMN + SUBPIXEL - 8)) / self.dy.max(1) - 2 } else { 0 }
     }
 
     /// The column at the centre of `row`, ready to be stepped. Only for edges with `exact_rows() > 0`
     /// whose columns lie in [0, [`COLUMNS`]), and rows of the edge.
-    #[inline]
     #[must_use]
-    pub fn walk(&self, row: i32) -> Column {
+    pub fn walk_from(&self, row: i32) -> Column {
         let dy = self.dy.max(1) as u32;
         let whole = self.dx.div_euclid(self.dy.max(1));
         let rest = self.dx.wrapping_sub(whole.wrapping_mul(self.dy.max(1))) as u32;
@@ -118,12 +141,13 @@ mod tests {
             let edge = Edge::new([x0, y0], [x1, y0 + height]);
             let (mut row, end) = (first_centre(y0), first_centre(y0 + height));
             while row < end {
-                let mut column = edge.walk(row);
-                for row in row..end.min(row + edge.exact_rows()) {
+                let (mut column, rows) =
+                    if height <= SHORT { (edge.walk(), end - row) } else { (edge.walk_from(row), edge.exact_rows()) };
+                for row in row..end.min(row + rows) {
                     prop_assert_eq!((column.x >> COLUMN) as i32, edge.column(row).rem_euclid(1 << 11));
-                    column.x = column.x.wrapping_add(column.step);
+                    column.skip(1);
                 }
-                row += edge.exact_rows();
+                row += rows;
             }
         }
     }

@@ -1,8 +1,9 @@
 //! One triangle into one band: edges, depth plane, and the rows between them.
 
 use super::{
-    edge::{COLUMN, Column, Edge, first_centre},
+    edge::{COLUMN, Column, first_centre},
     fill::{Sight, fill},
+    sides::Sides,
     smooth::{Part, Shape},
 };
 use crate::{
@@ -16,7 +17,8 @@ use crate::{
 /// A triangle on the screen, its top corner first, clockwise on a screen whose y runs down.
 #[derive(Clone, Copy, Debug)]
 pub struct Outline {
-    pub(super) corners: [[i32; 2]; 3],
+    /// `[x, y]`, 1/16 pixel.
+    pub corners: [[i32; 2]; 3],
     pub(super) depth: [i32; 3],
     /// Which of the mesh's corners is the top one.
     pub turned: usize,
@@ -30,6 +32,8 @@ pub struct Outline {
 pub(super) struct Rows<D, P, T> {
     /// Pixels of the coming row.
     pub(super) count: u32,
+    /// Where it starts in the band.
+    pub(super) start: usize,
     pub(super) left: Column,
     pub(super) right: Column,
     /// Depth at column 0, unless nothing is hidden.
@@ -104,6 +108,13 @@ impl Bounds {
         Self { left: self.left.max(0), top: self.top.max(0), right: self.right.min(width), bottom: self.bottom.min(height) }
     }
 
+    /// `[left, top, right, bottom]`.
+    #[inline(always)]
+    #[must_use]
+    pub fn sides(self) -> [i32; 4] {
+        [self.left, self.top, self.right, self.bottom]
+    }
+
     /// No pixel at all.
     #[inline(always)]
     #[must_use]
@@ -116,7 +127,7 @@ impl Outline {
     /// Turns the corners until the top one is first; the order around the triangle stays.
     #[inline]
     #[must_use]
-    pub fn new(corners: [&ScreenVertex; 3]) -> Self {
+    pub fn new(corners: [&ScreenVertex; 3], part: Part) -> Self {
         let [a, b, c] = corners;
         let turned = if b.y < a.y || c.y < a.y { if c.y < b.y { 2 } else { 1 } } else { 0 };
         let [a, b, c] = turn(corners, turned);
@@ -124,17 +135,9 @@ impl Outline {
             corners: [[a.x, a.y], [b.x, b.y], [c.x, c.y]],
             depth: [a.depth, b.depth, c.depth],
             turned,
-            part: Part::Centres,
+            part,
             contested: a.contested || b.contested || c.contested,
         }
-    }
-
-    /// Twice the signed area in 1/256 pixel²; positive seen from the front.
-    #[inline(always)]
-    #[must_use]
-    pub fn area([a, b, c]: [&ScreenVertex; 3]) -> i64 {
-        let (x1, y1, x2, y2) = (b.x - a.x, b.y - a.y, c.x - a.x, c.y - a.y);
-        i64::from(x1) * i64::from(y2) - i64::from(x2) * i64::from(y1)
     }
 
     /// Its grid is finer than the pixels' by 2 to this power.
@@ -142,13 +145,6 @@ impl Outline {
     #[must_use]
     pub fn finer(&self) -> u32 {
         if let Part::Rim(finer) = self.part { finer } else { 0 }
-    }
-
-    /// The basis for fitting; `None` without area or seen from the back.
-    #[inline]
-    #[must_use]
-    pub fn basis(&self, visible: Bounds) -> Option<Basis> {
-        Basis::new(self.corners, [visible.left, visible.top, visible.right, visible.bottom])
     }
 
     /// Draws the rows that lie in `band` and returns how many pixels they have.
@@ -164,65 +160,57 @@ impl Outline {
             let shape = Shape { outline: self, piece: None, corners: self.corners, bits: SUBPIXEL };
             return shape.draw(basis, patch, tone, band, &mut |_| [i32::MIN, i32::MAX]);
         }
-        if self.contested {
-            self.draw_rows(basis, Plane::fit::<DEPTH>(basis, [self.depth], 4), patch, tone, band)
+        let sides = self.sides(band);
+        if sides.row >= sides.stop {
+            0
+        } else if self.contested {
+            self.draw_rows(sides, basis, self.plane(basis, sides.row), patch, tone, band)
         } else {
-            self.draw_rows(basis, Constant, patch, tone, band)
+            self.draw_rows(sides, basis, Constant, patch, tone, band)
         }
     }
 
-    /// The same, with depth or without.
+    /// The same, `depth` standing on the first row.
     #[inline(always)]
     fn draw_rows<D: Patch<Walker: Sight>, P: Patch, T: Tone<<P::Walker as Walker>::Value>>(
         &self,
+        mut sides: Sides,
         basis: &Basis,
         depth: D,
         patch: P,
         tone: T,
         band: &mut Band<'_, T::Pixel>,
     ) -> u32 {
-        let [top, right, left] = self.corners;
-        let middle = first_centre(right[1].min(left[1]));
-        let end = first_centre(right[1].max(left[1])).min(band.top + band.rows);
-        let mut row = first_centre(top[1]).max(band.top);
-        let width = (band.width as i32).max(0);
-        let inside = |x: i32| (0..(width << 4)).contains(&x);
-        let walkable = inside(top[0]) && inside(right[0]) && inside(left[0]);
-
-        let mut rows = Rows { count: 0, left: Column::default(), right: Column::default(), depth, patch, tone };
-        rows.depth.jump(row - basis.row());
-        rows.patch.jump(row - basis.row());
-        rows.tone.start(row);
+        let mut rows = Rows { count: 0, start: band.start(sides.row), left: sides.left, right: sides.right, depth, patch, tone };
+        if sides.row != basis.row() {
+            rows.patch.jump(sides.row.wrapping_sub(basis.row()));
+        }
+        rows.tone.start(sides.row);
 
         let mut pixels = 0;
-        while row < end {
-            // Left of the middle corner's row both edges leave the top; below it, the side of that corner is another edge.
-            let (stop, left_edge, right_edge) = if row < middle {
-                (middle.min(end), Edge::new(top, left), Edge::new(top, right))
-            } else if right[1] < left[1] {
-                (end, Edge::new(top, left), Edge::new(right, left))
-            } else {
-                (end, Edge::new(left, right), Edge::new(top, right))
-            };
-            let exact = if walkable { left_edge.exact_rows().min(right_edge.exact_rows()) } else { 0 };
-            let next;
-            if exact > 0 {
-                next = stop.min(row + exact);
-                rows.left = left_edge.walk(row);
-                rows.right = right_edge.walk(row);
-            } else {
-                // Clipped or very tall: each row by itself.
-                next = row + 1;
-                rows.left = Column { x: (left_edge.column(row).clamp(0, width) as u32) << COLUMN, step: 0 };
-                rows.right = Column { x: (right_edge.column(row).clamp(0, width) as u32) << COLUMN, step: 0 };
-            }
+        loop {
             rows.count = (rows.right.x >> COLUMN).wrapping_sub(rows.left.x >> COLUMN);
-            for (pixel_row, depth_row) in band.rows_between(row, next) {
-                pixels += self::row(&mut rows, pixel_row, depth_row);
+            for _ in sides.row..sides.stop {
+                pixels += row(&mut rows, band);
             }
-            row = next;
+            if !sides.next(rows.left, rows.right) {
+                return pixels;
+            }
+            (rows.left, rows.right) = (sides.left, sides.right);
         }
-        pixels
+    }
+
+    #[inline(never)]
+    fn sides<C>(&self, band: &Band<'_, C>) -> Sides {
+        Sides::new(self.corners, [band.top, band.top.wrapping_add(band.rows)], band.width as i32)
+    }
+
+    /// Depth, standing on `row`.
+    #[inline(never)]
+    fn plane(&self, basis: &Basis, row: i32) -> Plane<1> {
+        let mut depth = Plane::fit::<DEPTH>(basis, [self.depth], 4);
+        depth.jump(row.wrapping_sub(basis.row()));
+        depth
     }
 }
 
@@ -246,17 +234,19 @@ pub fn turn<A: Copy>([a, b, c]: [A; 3], by: usize) -> [A; 3] {
 #[inline(never)]
 pub(super) fn row<D: Patch<Walker: Sight>, P: Patch, T: Tone<<P::Walker as Walker>::Value>>(
     rows: &mut Rows<D, P, T>,
-    pixels: &mut [T::Pixel],
-    depth: &mut [u16],
+    band: &mut Band<'_, T::Pixel>,
 ) -> u32 {
     let count = rows.count as usize;
     let (left, right) = ((rows.left.x >> COLUMN) as usize, rows.right.x >> COLUMN);
-    rows.left.x = rows.left.x.wrapping_add(rows.left.step);
-    rows.right.x = rows.right.x.wrapping_add(rows.right.step);
+    rows.left.skip(1);
+    rows.right.skip(1);
     rows.count = (rows.right.x >> COLUMN).wrapping_sub(rows.left.x >> COLUMN);
+    let start = rows.start.wrapping_add(left);
+    rows.start = rows.start.wrapping_add(band.width);
     let mut drawn = 0;
-    if let Some(pixels) = pixels.get_mut(left..)
-        && let Some(depth) = depth.get_mut(left..)
+    if count > 0
+        && let Some(pixels) = band.pixels.get_mut(start..)
+        && let Some(depth) = band.depth.get_mut(start..)
         && let Some(pixels) = pixels.get_mut(..count)
         && let Some(depth) = depth.get_mut(..count)
     {

@@ -31,6 +31,7 @@ use crate::{
 };
 
 /// Shades by the parabolas that `fit` makes for an exponent.
+#[inline(never)]
 pub(super) fn draw<C: Pixel>(facet: &Facet<'_>, shading: &Shading<'_, C>, fit: fn(u16) -> Parabolas, band: &mut Band<'_, C>) -> u32 {
     let (edges, [one, many]) = (Edges::new(facet), [1, shading.exponent].map(fit));
     let rows = edges.rows(facet);
@@ -42,7 +43,7 @@ pub(super) fn draw<C: Pixel>(facet: &Facet<'_>, shading: &Shading<'_, C>, fit: f
         if let Some(constant) = shading.constant
             && let Some(gloss) = shading.gloss(Both)
         {
-            return facet.outline.draw(&facet.basis, (fit(constant), Constant), gloss, band);
+            return facet.outline.draw(facet.basis, (fit(constant), Constant), gloss, band);
         }
         let of = |source: &Source| fit(shading.lighting.directions(source, [0; 3]));
         shading.draw_rows(facet, (fit([[0; 3]; 2]), of), Constant, Both, band)

@@ -27,6 +27,7 @@ use crate::{
     shade::node::Node,
 };
 
+#[inline(never)]
 pub(super) fn draw<C: Pixel>(facet: &Facet<'_>, shading: &Shading<'_, C>, band: &mut Band<'_, C>) -> u32 {
     let corners = facet.corner_nodes();
     let fit = |source: &Source| {

@@ -6,6 +6,7 @@
 use super::{Facet, RANGE, Shading};
 use crate::{band::Band, pixel::Pixel};
 
+#[inline(never)]
 pub(super) fn draw<C: Pixel>(facet: &Facet<'_>, shading: &Shading<'_, C>, band: &mut Band<'_, C>) -> u32 {
     let [a, b, c] = facet.corners.map(|corner| shading.corner_levels(corner));
     let thirds = [[2, 1, 0], [1, 2, 0], [0, 2, 1], [0, 1, 2], [1, 0, 2], [2, 0, 1], [1, 1, 1]];

@@ -17,21 +17,23 @@ use crate::{
     format::{BEND, RHO},
     math::{
         power::PixelPower,
-        rsqrt::{half_rsqrt, rsqrt},
+        rsqrt::{QUARTER, half_rsqrt, rsqrt},
     },
     palette::Reflection,
     pixel::Pixel,
 };
 
+#[inline(never)]
 pub(super) fn draw<C: Pixel>(facet: &Facet<'_>, shading: &Shading<'_, C>, band: &mut Band<'_, C>) -> u32 {
     let square = square(facet);
     if is_curved(facet) {
         let nodes = facet.six_linear_nodes();
         shading.draw_lit(facet, |source| shading.six_products(&nodes, source, |p| p), square, Rooted, band)
     } else if let Some(gloss) = shading.gloss(Tabled) {
-        facet.draw((numerators(facet), square), gloss, band)
+        facet.draw((numerators(facet), square.raised([(1 << 30) - QUARTER])), gloss, band)
     } else {
         let nodes = facet.six_linear_nodes();
+        let square = square.raised([(1 << 30) - QUARTER]);
         shading.draw_lit(facet, |source| shading.six_products(&nodes, source, |p| p), square, Tabled, band)
     }
 }
@@ -53,11 +55,11 @@ pub(super) fn numerators(facet: &Facet<'_>) -> (Linear<1>, Linear<1>) {
 #[inline(always)]
 pub(super) fn square(facet: &Facet<'_>) -> Quadratic<1> {
     // |N|² - 1 is zero at the corners.
-    let [ab, bc, ca] = facet.bend.map(|bend| -(i32::from(bend) << (NODE - BEND)));
+    let [ab, bc, ca] = facet.edges(facet.triangle.bend).map(|bend| -(i32::from(bend) << (NODE - BEND)));
     Quadratic::new([[0, 0, 0, ab, bc, ca]], EXTRA).raised([1 << 30])
 }
 
-/// One over the root of |N|² in [1/4, 1] from a table.
+/// One over the root of |N|² in [1/4, 1] from a table, by |N|² - 1/4.
 #[derive(Clone, Copy)]
 struct Tabled;
 
@@ -67,7 +69,7 @@ impl Form<[u32; 1], ([u32; 1], [u32; 1])> for Tabled {
 
     #[inline(always)]
     fn common(&self, [square]: [u32; 1]) -> i32 {
-        half_rsqrt(square) as i32
+        half_rsqrt(signed(square)) as i32
     }
 
     #[inline(always)]
@@ -81,7 +83,7 @@ impl Form<[u32; 1], [u32; 2]> for Tabled {
 
     #[inline(always)]
     fn common(&self, [square]: [u32; 1]) -> i32 {
-        half_rsqrt(square) as i32
+        half_rsqrt(signed(square)) as i32
     }
 
     #[inline(always)]

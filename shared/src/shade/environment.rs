@@ -33,6 +33,7 @@ use crate::{
 /// One, Q2.30.
 const ONE: i32 = 1 << COSINE;
 
+#[inline(never)]
 pub(super) fn draw<C: Pixel>(facet: &Facet<'_>, shading: &Shading<'_, C>, band: &mut Band<'_, C>) -> u32 {
     let (corners, lighting) = (facet.corner_nodes(), shading.lighting);
     let [a, b, c] = corners.map(|corner| coordinates(lighting, &corner));

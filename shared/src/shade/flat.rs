@@ -12,6 +12,7 @@ use crate::{
     tone::Solid,
 };
 
+#[inline(never)]
 pub(super) fn draw<C: Pixel>(facet: &Facet<'_>, shading: &Shading<'_, C>, band: &mut Band<'_, C>) -> u32 {
     let [a, b, c] = facet.vertices.map(|vertex| wide(vertex.position));
     let centroid = add(a, add(b, c)).map(|sum| sum / 3);
@@ -21,6 +22,6 @@ pub(super) fn draw<C: Pixel>(facet: &Facet<'_>, shading: &Shading<'_, C>, band: 
         // A field without slope: dither changes from pixel to pixel all the same.
         shading.draw_levels::<3, RANGE>(facet, [levels; 3], band)
     } else {
-        facet.outline.draw(&facet.basis, Constant, Solid(shading.palette.colour(levels)), band)
+        facet.outline.draw(facet.basis, Constant, Solid(shading.palette.colour(levels)), band)
     }
 }

@@ -84,7 +84,8 @@ impl<C: Pixel> Shading<'_, C> {
     /// The tone for one constant light on a material of one channel without dither, if that is all there is.
     pub(super) fn gloss<F>(&self, form: F) -> Option<Gloss<'_, C, F>> {
         let one = self.constant.is_some() && !self.dither && !self.palette.three_channels;
-        one.then(|| Gloss { glossy: self.palette.glossy(), form })
+        let glossy = if one { self.palette.glossy() } else { None };
+        glossy.map(|glossy| Gloss { glossy, form })
     }
 
     /// The tone for any lights.
@@ -139,7 +140,7 @@ impl<C: Pixel> Shading<'_, C> {
         F: Form<<K::Walker as Walker>::Value, <P::Walker as Walker>::Value>,
     {
         let lights = PerLight::new(&self.lighting.sources, zero, fit);
-        facet.outline.draw(&facet.basis, (lights, common), self.lit(form), band)
+        facet.outline.draw(facet.basis, (lights, common), self.lit(form), band)
     }
 
     /// The quadratics through N·L and N·H of a light at six nodes; `map` is applied to both.

@@ -27,6 +27,7 @@ use crate::{
     scene::{Lighting, Source, Viewer, cosine},
 };
 
+#[inline(never)]
 pub(super) fn draw<C: Pixel>(facet: &Facet<'_>, shading: &Shading<'_, C>, band: &mut Band<'_, C>) -> u32 {
     // A near viewer is refused before drawing.
     let Viewer::Infinite(view) = shading.lighting.viewer else { return 0 };
@@ -35,7 +36,7 @@ pub(super) fn draw<C: Pixel>(facet: &Facet<'_>, shading: &Shading<'_, C>, band: 
     if let Some([towards, _]) = shading.constant
         && let Some(gloss) = shading.gloss(One { lv: cosine(towards, view) })
     {
-        return facet.outline.draw(&facet.basis, (Constant, Chords { rows, normals, along: [towards, view] }), gloss, band);
+        return facet.outline.draw(facet.basis, (Constant, Chords { rows, normals, along: [towards, view] }), gloss, band);
     }
     // The normal itself: its products with the axes.
     let one = 1 << 30;

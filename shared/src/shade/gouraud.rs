@@ -7,6 +7,7 @@
 use super::{Facet, RANGE, Shading};
 use crate::{band::Band, pixel::Pixel};
 
+#[inline(never)]
 pub(super) fn draw<C: Pixel>(facet: &Facet<'_>, shading: &Shading<'_, C>, band: &mut Band<'_, C>) -> u32 {
     shading.draw_levels::<3, RANGE>(facet, facet.corners.map(|corner| shading.corner_levels(corner)), band)
 }

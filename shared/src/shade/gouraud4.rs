@@ -7,6 +7,7 @@
 use super::{Facet, Shading, split::Cells};
 use crate::{band::Band, pixel::Pixel, raster::cell::Cell};
 
+#[inline(never)]
 pub(super) fn draw<C: Pixel>(facet: &Facet<'_>, shading: &Shading<'_, C>, band: &mut Band<'_, C>) -> u32 {
     let cells = Cells::new(facet, shading);
     cells.linear_parts(&Cell::WHOLE, &cells.corners(), 1, band)

@@ -14,6 +14,7 @@ use crate::{
     scene::{Source, cosine},
 };
 
+#[inline(never)]
 pub(super) fn draw<C: Pixel>(facet: &Facet<'_>, shading: &Shading<'_, C>, band: &mut Band<'_, C>) -> u32 {
     if is_dark(facet, shading) { gouraud::draw(facet, shading, band) } else { phong::draw(facet, shading, band) }
 }

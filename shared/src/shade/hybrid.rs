@@ -22,6 +22,7 @@ use crate::{
 };
 
 /// Shades by the parabolas that `fit` makes for an exponent.
+#[inline(never)]
 pub(super) fn draw<C: Pixel>(facet: &Facet<'_>, shading: &Shading<'_, C>, fit: fn(u16) -> Parabolas, band: &mut Band<'_, C>) -> u32 {
     let (edges, parabolas) = (Edges::new(facet), fit(shading.exponent));
     let rows = edges.rows(facet);
@@ -33,12 +34,12 @@ pub(super) fn draw<C: Pixel>(facet: &Facet<'_>, shading: &Shading<'_, C>, fit: f
     if let Some([_, half]) = shading.constant
         && let Some(gloss) = shading.gloss(Both)
     {
-        let diffuse = quadratic([facet.six_cosines().map(|[light, _]| light)]).fit(&facet.basis);
-        return facet.outline.draw(&facet.basis, ((diffuse, constant(half)), Constant), gloss, band);
+        let diffuse = quadratic([facet.six_cosines(0)]).fit(facet.basis);
+        return facet.outline.draw(facet.basis, ((diffuse, constant(half)), Constant), gloss, band);
     }
     let (nodes, is_constant) = (facet.six_nodes(), shading.lighting.is_constant());
     let fit = |source: &Source| {
-        let diffuse = quadratic([nodes.map(|node| cosine(node.normal, source.towards(node.position)))]).fit(&facet.basis);
+        let diffuse = quadratic([nodes.map(|node| cosine(node.normal, source.towards(node.position)))]).fit(facet.basis);
         let highlight = if is_constant {
             let [_, half] = shading.lighting.directions(source, [0; 3]);
             constant(half)

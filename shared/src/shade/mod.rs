@@ -63,7 +63,7 @@ use crate::{
         basis::Basis,
         field::{Field, Nodes},
     },
-    raster::triangle::Outline,
+    raster::triangle::{Outline, turn},
     scene::Lighting,
     shade::node::Node,
     shader::Shader,
@@ -82,14 +82,10 @@ const RANGE: u32 = LEVEL + 8;
 
 /// A triangle ready to be shaded; all triples start with its top corner.
 pub(crate) struct Facet<'f> {
-    pub(crate) outline: Outline,
-    pub(crate) basis: Basis,
+    pub(crate) outline: &'f Outline,
+    pub(crate) basis: &'f Basis,
     pub(crate) corners: [&'f ScreenVertex; 3],
     pub(crate) vertices: [&'f Vertex; 3],
-    /// Per edge, see [`Triangle`].
-    pub(crate) rsum: [u16; 3],
-    /// Per edge, see [`Triangle`].
-    pub(crate) bend: [u16; 3],
     pub(crate) triangle: &'f Triangle,
     /// Of the corners, where it matters.
     #[cfg(feature = "all-shaders")]
@@ -97,6 +93,12 @@ pub(crate) struct Facet<'f> {
 }
 
 impl Facet<'_> {
+    /// Constants of the stream's edges in the order of the corners here, which turn the other way.
+    #[inline(always)]
+    fn edges(&self, [ab, bc, ca]: [u16; 3]) -> [u16; 3] {
+        turn([ca, bc, ab], self.outline.turned)
+    }
+
     /// Nowhere on the triangle does the highlight of one constant light reach a visible level:
     /// N·H is linear and |N| at least rho.
     #[inline(always)]
@@ -124,9 +126,9 @@ impl Area for Facet<'_> {
     fn draw<F: Field, T: Tone<F::Value>>(&self, field: F, tone: T, band: &mut Band<'_, T::Pixel>) -> u32 {
         #[cfg(feature = "all-shaders")]
         if let Some(nearness) = self.nearness {
-            return self.outline.draw(&self.basis, Hyperbolic::new(&self.basis, nearness, field.surface()), tone, band);
+            return self.outline.draw(self.basis, Hyperbolic::new(self.basis, nearness, field.surface()), tone, band);
         }
-        self.outline.draw(&self.basis, field.fit(&self.basis), tone, band)
+        self.outline.draw(self.basis, field.fit(self.basis), tone, band)
     }
 }
 

@@ -2,12 +2,12 @@
 
 use super::Facet;
 #[cfg(feature = "all-shaders")]
-use crate::math::vector::{normalise, zip};
+use crate::math::vector::normalise;
 use crate::{
     format::{EDGE, UNIT},
     math::{
         rsqrt::rsqrt_wide,
-        vector::{add, dot, wide},
+        vector::{add, dot, wide, zip},
     },
 };
 
@@ -31,10 +31,10 @@ impl Facet<'_> {
 
     /// Corners and edge midpoints (01, 12, 20), unit normals.
     pub(super) fn six_nodes(&self) -> [Node; 6] {
-        let sums = self.sums();
+        let (sums, rsums) = (self.sums(), self.rsums());
         let middle = |k: usize| {
             let (position, sum) = sums[k];
-            let rsum = i64::from(self.rsum(k));
+            let rsum = i64::from(rsums[k]);
             // Q3.14 times Q1.17: one bit more than wanted.
             Node { position, normal: sum.map(|c| ((i64::from(c) * rsum) >> (UNIT + EDGE - 30)) as i32) }
         };
@@ -76,32 +76,46 @@ impl Facet<'_> {
         })
     }
 
-    /// 1/|Ni+Nj| of edge `k`, unsigned, [`EDGE`] fraction bits.
+    /// 1/|Ni+Nj| of the edges 01, 12, 20, unsigned, [`EDGE`] fraction bits.
     #[inline(always)]
-    pub(super) fn rsum(&self, k: usize) -> u32 {
-        match self.rsum[k] {
-            u16::MAX => self.wide_rsum(k),
-            excess => (1 << (EDGE - 1)) + u32::from(excess),
+    pub(super) fn rsums(&self) -> [u32; 3] {
+        let [ab, bc, ca] = self.edges(self.triangle.rsum);
+        if ab.max(bc).max(ca) == u16::MAX {
+            return self.wide_rsums();
         }
+        let rsum = |excess: u16| (1 << (EDGE - 1)) + u32::from(excess);
+        [rsum(ab), rsum(bc), rsum(ca)]
     }
 
-    /// [`Self::rsum`] where a stream's 16 bits do not hold it.
+    /// [`Self::rsums`] where a stream's 16 bits do not hold all of them.
     #[cold]
     #[inline(never)]
-    fn wide_rsum(&self, k: usize) -> u32 {
-        let (_, sum) = self.sums()[k];
-        let (mantissa, exponent) = rsqrt_wide(dot(sum, sum).max(1) as u64);
-        ((u64::from(mantissa) << (UNIT + EDGE)) >> exponent) as u32
+    fn wide_rsums(&self) -> [u32; 3] {
+        let given = self.edges(self.triangle.rsum);
+        zip(self.sums(), given, |(_, sum), given| {
+            if given < u16::MAX {
+                return (1 << (EDGE - 1)) + u32::from(given);
+            }
+            let (mantissa, exponent) = rsqrt_wide(dot(sum, sum).max(1) as u64);
+            ((u64::from(mantissa) << (UNIT + EDGE)) >> exponent) as u32
+        })
     }
 
-    /// `[N·L, N·H]`, Q2.30, at the six nodes under one constant light: at midpoints they follow from those at the corners.
+    /// N·L (`which` is 0) or N·H (1), Q2.30, at the six nodes under one constant light: at midpoints it follows from that
+    /// at the corners.
     #[inline(always)]
-    pub(super) fn six_cosines(&self) -> [[i32; 2]; 6] {
-        let [a, b, c] = self.corners.map(|corner| [corner.light[0], corner.light[1]]);
-        let middle = |[l, h]: [i32; 2], [m, i]: [i32; 2], k: usize| {
-            let rsum = i64::from(self.rsum(k));
-            [(l, m), (h, i)].map(|(a, b)| (((i64::from(a) + i64::from(b)) * rsum) >> EDGE) as i32)
-        };
-        [a, b, c, middle(a, b, 0), middle(b, c, 1), middle(c, a, 2)]
+    pub(super) fn six_cosines(&self, which: usize) -> [i32; 6] {
+        let [a, b, c] = self.corners;
+        let (a, b, c) = (a.light[which], b.light[which], c.light[which]);
+        let [ab, bc, ca] = self.rsums();
+        // Half of Q2.30 each, times Q0.17.
+        let middle = |a: i32, b: i32, rsum: u32| ((i64::from((a >> 1) + (b >> 1)) * i64::from((rsum << 14) as i32)) >> 30) as i32;
+        [a, b, c, middle(a, b, ab), middle(b, c, bc), middle(c, a, ca)]
     }
+}
+
+/// `f` of each pair of values at six nodes. Written out: `map` is a loop through memory at opt-level "s".
+#[inline(always)]
+pub(super) fn zip_six<A, B, R>([a0, a1, a2, a3, a4, a5]: [A; 6], [b0, b1, b2, b3, b4, b5]: [B; 6], f: impl Fn(A, B) -> R) -> [R; 6] {
+    [f(a0, b0), f(a1, b1), f(a2, b2), f(a3, b3), f(a4, b4), f(a5, b5)]
 }

@@ -24,6 +24,7 @@ use crate::{
     scene::{Source, Viewer},
 };
 
+#[inline(never)]
 pub(super) fn draw<C: Pixel>(facet: &Facet<'_>, shading: &Shading<'_, C>, band: &mut Band<'_, C>) -> u32 {
     if shading.lighting.is_constant() { duff::draw(facet, shading, band) } else { draw_by(facet, shading, Blinn, band) }
 }

@@ -13,6 +13,7 @@ use super::{
 };
 use crate::{band::Band, math::power::PixelPower, palette::Reflection, pixel::Pixel};
 
+#[inline(never)]
 pub(super) fn draw<C: Pixel>(facet: &Facet<'_>, shading: &Shading<'_, C>, band: &mut Band<'_, C>) -> u32 {
     phong::draw_by(facet, shading, Mirrored, band)
 }

@@ -18,6 +18,7 @@ use crate::{
 /// Logarithm of the longest edge of a part, 8 pixels in 1/16 pixel.
 const LONGEST: u32 = 3 + SUBPIXEL;
 
+#[inline(never)]
 pub(super) fn draw<C: Pixel>(facet: &Facet<'_>, shading: &Shading<'_, C>, band: &mut Band<'_, C>) -> u32 {
     let cells = Cells::new(facet, shading);
     cells.linear_parts(&Cell::WHOLE, &cells.corners(), splits(facet), band)

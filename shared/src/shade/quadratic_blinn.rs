@@ -10,6 +10,7 @@ use super::{
 };
 use crate::{band::Band, pixel::Pixel, poly::Constant, scene::Source};
 
+#[inline(never)]
 pub(super) fn draw<C: Pixel>(facet: &Facet<'_>, shading: &Shading<'_, C>, band: &mut Band<'_, C>) -> u32 {
     let nodes = facet.six_nodes();
     let fit = |source: &Source| quadratic(coordinates(shading.lighting, source, nodes));

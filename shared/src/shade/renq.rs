@@ -14,6 +14,7 @@ use super::{
 };
 use crate::{band::Band, format::EDGE, math::power::PixelPower, palette::Reflection, pixel::Pixel};
 
+#[inline(never)]
 pub(super) fn draw<C: Pixel>(facet: &Facet<'_>, shading: &Shading<'_, C>, band: &mut Band<'_, C>) -> u32 {
     if duff::is_curved(facet) {
         return duff::draw(facet, shading, band);
@@ -26,13 +27,13 @@ pub(super) fn draw<C: Pixel>(facet: &Facet<'_>, shading: &Shading<'_, C>, band: 
     shading.draw_lit(facet, |source| shading.six_products(&nodes, source, |p| p), length, Scaled, band)
 }
 
-/// The quadratic through 1/|N| at six nodes, Q2.30.
+/// Half the quadratic through 1/|N| at six nodes, Q2.30.
 #[inline(always)]
 pub(super) fn length(facet: &Facet<'_>) -> Quadratic<1> {
-    // 2/|Ni+Nj| - 1, zero at the corners.
-    let node = |rsum: u32| (((rsum << 1) - (1 << EDGE)) << (NODE - EDGE)) as i32;
-    let [ab, bc, ca] = [facet.rsum(0), facet.rsum(1), facet.rsum(2)].map(node);
-    Quadratic::new([[0, 0, 0, ab, bc, ca]], EXTRA).raised([1 << 30])
+    // 1/|Ni+Nj| - 1/2, zero at the corners.
+    let node = |rsum: u32| (rsum.wrapping_sub(1 << (EDGE - 1)) << (NODE - EDGE)) as i32;
+    let [ab, bc, ca] = facet.rsums();
+    Quadratic::new([[0, 0, 0, node(ab), node(bc), node(ca)]], EXTRA).raised([1 << 29])
 }
 
 /// Numerators times a reciprocal length.
@@ -45,7 +46,7 @@ impl Form<[u32; 1], [u32; 2]> for Scaled {
 
     #[inline(always)]
     fn common(&self, [length]: [u32; 1]) -> i32 {
-        signed(length) >> 1
+        signed(length)
     }
 
     #[inline(always)]
@@ -59,7 +60,7 @@ impl Form<[u32; 1], ([u32; 1], [u32; 1])> for Scaled {
 
     #[inline(always)]
     fn common(&self, [length]: [u32; 1]) -> i32 {
-        signed(length) >> 1
+        signed(length)
     }
 
     #[inline(always)]

@@ -14,6 +14,7 @@ use super::{
 };
 use crate::{band::Band, format::RHO, math::power::PixelPower, palette::Reflection, pixel::Pixel};
 
+#[inline(never)]
 pub(super) fn draw<C: Pixel>(facet: &Facet<'_>, shading: &Shading<'_, C>, band: &mut Band<'_, C>) -> u32 {
     if duff::is_curved(facet) {
         duff::draw(facet, shading, band)
@@ -47,13 +48,13 @@ fn needs_two(rho: u16, exponent: u16) -> bool {
 /// 0.1 / (255 · 1.5 · 0.02²), Q.26.
 const LIMIT: u64 = (0.1 / (255.0 * 1.5 * 0.02 * 0.02) * (1u64 << 26) as f64) as u64;
 
-/// One step from m towards 1/sqrt(D): m (3 - D m²)/2, Q2.30.
+/// One step from h towards 1/(2 sqrt(D)): h (3 - 4 D h²)/2, Q2.30.
 #[inline(always)]
-fn newton(m: i32, square: i32) -> i32 {
-    // Upper halves of products: m² in Q4.28, D m² in Q6.26. 3 - D m² is about 2: Q3.29.
+fn newton(h: i32, square: i32) -> i32 {
+    // Upper halves of products: h² in Q4.28, D h² in Q6.26. 3 - 4 D h² is about 2: Q3.29.
     let upper = |a: i32, b: i32| ((i64::from(a) * i64::from(b)) >> 32) as i32;
-    let product = upper(upper(m, m), square);
-    upper(m, ((3 << 26) - product) << 3) << 2
+    let product = upper(upper(h, h), square);
+    upper(h, ((3 << 26) - (product << 2)) << 3) << 2
 }
 
 /// One Newton step, or two.
@@ -71,7 +72,7 @@ where
     fn common(&self, ([length], [square]): ([u32; 1], [u32; 1])) -> i32 {
         let (length, square) = (signed(length), signed(square));
         let once = newton(length, square);
-        if STEPS == 1 { once >> 1 } else { newton(once, square) >> 1 }
+        if STEPS == 1 { once } else { newton(once, square) }
     }
 
     #[inline(always)]

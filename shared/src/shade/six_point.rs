@@ -5,20 +5,21 @@
 //! same midpoint. Good for wide highlights or fine meshes; a highlight narrower
 //! than a triangle is flattened.
 
-use super::{Facet, RANGE, Shading};
+use super::{Facet, RANGE, Shading, node::zip_six};
 use crate::{band::Band, palette::Palette, pixel::Pixel};
 
+#[inline(never)]
 pub(super) fn draw<C: Pixel>(facet: &Facet<'_>, shading: &Shading<'_, C>, band: &mut Band<'_, C>) -> u32 {
     let palette = shading.palette;
     if !palette.three_channels {
         let nodes = match shading.constant {
-            Some(_) => constant(facet, palette, |cosines| palette.level(cosines)),
+            Some(_) => one_level(facet, palette),
             None => lit(facet, shading).map(|[level, ..]| level),
         };
         shading.draw_one::<6, RANGE>(facet, nodes, band)
     } else {
         let nodes = match shading.constant {
-            Some(_) => constant(facet, palette, |cosines| palette.levels(core::iter::once(cosines))),
+            Some(_) => zip_six(facet.six_cosines(0), facet.six_cosines(1), |l, h| palette.levels(core::iter::once([l, h]))),
             None => lit(facet, shading),
         };
         let nodes = [nodes.map(|[r, ..]| r), nodes.map(|[_, g, _]| g), nodes.map(|[.., b]| b)];
@@ -26,11 +27,15 @@ pub(super) fn draw<C: Pixel>(facet: &Facet<'_>, shading: &Shading<'_, C>, band: 
     }
 }
 
-/// Six nodes under one constant light.
+/// Levels of a material of one channel at six nodes under one constant light.
 #[inline(always)]
-fn constant<C: Pixel, N>(facet: &Facet<'_>, palette: &Palette<C>, light: impl Fn([i32; 2]) -> N) -> [N; 6] {
-    let dark = facet.is_dark(palette);
-    facet.six_cosines().map(|[light_cosine, half]| light([light_cosine, if dark { i32::MIN } else { half }]))
+fn one_level<C: Pixel>(facet: &Facet<'_>, palette: &Palette<C>) -> [i32; 6] {
+    let light = facet.six_cosines(0);
+    if facet.is_dark(palette) {
+        palette.six_matte(light)
+    } else {
+        zip_six(light, facet.six_cosines(1), |light, half| palette.level([light, half]))
+    }
 }
 
 /// Node levels under any lights: corners are lit already, midpoints are lit here.

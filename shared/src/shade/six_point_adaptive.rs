@@ -20,6 +20,7 @@ use crate::{band::Band, format::LEVEL, math::vector::zip, pixel::Pixel, raster::
 /// What an edge's parabola may be wrong by at its quarters, Q9.7.
 const EDGE: i32 = 1 << LEVEL;
 
+#[inline(never)]
 pub(super) fn draw<C: Pixel>(facet: &Facet<'_>, shading: &Shading<'_, C>, band: &mut Band<'_, C>) -> u32 {
     let cells = Cells::new(facet, shading);
     parts(&cells, &Cell::WHOLE, &cells.six(), [false; 3], DEPTH, band)

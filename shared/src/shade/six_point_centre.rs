@@ -18,6 +18,7 @@ pub(super) const CENTRE: i32 = 2 << LEVEL;
 /// How often a triangle is split at most.
 pub(super) const DEPTH: u32 = 3;
 
+#[inline(never)]
 pub(super) fn draw<C: Pixel>(facet: &Facet<'_>, shading: &Shading<'_, C>, band: &mut Band<'_, C>) -> u32 {
     let cells = Cells::new(facet, shading);
     parts(&cells, &Cell::WHOLE, &cells.six(), DEPTH, band)

@@ -28,13 +28,14 @@ use crate::{
     scene::{Lighting, Source, cosine},
 };
 
+#[inline(never)]
 pub(super) fn draw<C: Pixel>(facet: &Facet<'_>, shading: &Shading<'_, C>, band: &mut Band<'_, C>) -> u32 {
     let edges = Edges::new(facet);
     let (rows, arcs) = (edges.rows(facet), arcs(facet.vertices.map(|vertex| wide(vertex.normal))));
     if let Some(along) = shading.constant
         && let Some(gloss) = shading.gloss(One)
     {
-        return facet.outline.draw(&facet.basis, (Constant, Arcs { rows, arcs, along }), gloss, band);
+        return facet.outline.draw(facet.basis, (Constant, Arcs { rows, arcs, along }), gloss, band);
     }
     // The normal itself: its products with the axes.
     let one = 1 << 30;

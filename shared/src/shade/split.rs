@@ -71,7 +71,7 @@ pub(super) fn corners<A: Copy>([a, b, c]: [A; 3], [ab, bc, ca]: [A; 3], k: usize
 
 impl<'a, 'f, C: Pixel> Cells<'a, 'f, C> {
     pub(super) fn new(facet: &'a Facet<'f>, shading: &'a Shading<'f, C>) -> Self {
-        Self { facet, shading, depth: facet.outline.depth(&facet.basis) }
+        Self { facet, shading, depth: facet.outline.depth(facet.basis) }
     }
 
     /// Whether anything of `cell` may be seen in `band`.
@@ -130,7 +130,7 @@ impl<'a, 'f, C: Pixel> Cells<'a, 'f, C> {
     /// `cell`, unless nothing of it may be seen in `band`.
     fn part(&self, cell: &Cell, band: &Band<'_, C>) -> Option<Part> {
         let piece = self.facet.outline.piece(cell);
-        piece.meets(band).then(|| Part { piece, basis: piece.basis(&self.facet.basis), depth: self.depth })
+        piece.meets(band).then(|| Part { piece, basis: piece.basis(self.facet.basis), depth: self.depth })
     }
 
     /// Draws `cell` linear between its corners.
@@ -201,22 +201,14 @@ mod tests {
             contested: true,
         });
         let [a, b, c] = &screen;
-        let outline = Outline::new([a, b, c]);
-        let basis = outline.basis(crate::raster::triangle::Bounds::new([a, b, c])).unwrap();
+        let outline = Outline::new([a, b, c], crate::raster::smooth::Part::Centres);
+        let basis = Basis::small(outline.corners).unwrap();
         let triangle = Triangle::new_zeroed();
         for _ in 0..1_000 {
             let mut vertex = || Vertex { position: [random(), random(), random()], normal: [random(), random(), random()] };
             let [p, q, r, s] = [vertex(), vertex(), vertex(), vertex()];
-            let facet = |vertices| Facet {
-                outline,
-                basis,
-                corners: [a, b, c],
-                vertices,
-                rsum: [0; 3],
-                bend: [0; 3],
-                triangle: &triangle,
-                nearness: None,
-            };
+            let facet =
+                |vertices| Facet { outline: &outline, basis: &basis, corners: [a, b, c], vertices, triangle: &triangle, nearness: None };
             let one = facet([&p, &q, &r]);
             for (k, other) in [[&q, &p, &s], [&s, &q, &p], [&p, &s, &q]].map(facet).iter().enumerate() {
                 for bits in 0..=5 {

@@ -34,6 +34,7 @@ use crate::{
 /// Fraction bits of the vectors that [`Series::new`] takes.
 pub(super) const VECTOR: u32 = 26;
 
+#[inline(never)]
 pub(super) fn draw<C: Pixel>(facet: &Facet<'_>, shading: &Shading<'_, C>, band: &mut Band<'_, C>) -> u32 {
     draw_by(facet, shading, band, |source| match *source {
         Source::Directional { towards, half } => [towards, half].map(Series::constant),

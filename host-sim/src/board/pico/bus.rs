@@ -65,6 +65,11 @@ impl Bus {
         (self.chip.sio.gpio_out & self.chip.sio.gpio_oe) >> number & 1 == 1
     }
 
+    /// Cycles in which the serial port was sending.
+    pub(super) fn wire(&self) -> u64 {
+        self.spi.busy
+    }
+
     pub(super) fn led(&self) -> bool {
         self.pin(LED)
     }

@@ -52,8 +52,8 @@ impl Machine {
         Ok(Self { core, bus: Bus::new(chip, Panel::new(Board::Pico.size())), rtt: Rtt(rtt), steps: 0 })
     }
 
-    /// Executes one instruction.
-    pub(super) fn step(&mut self) -> Result<()> {
+    /// Executes one instruction; tells where, and how many cycles it took.
+    pub(super) fn step(&mut self) -> Result<(u32, u64)> {
         let pc = self.pc();
         let memory = &self.bus.chip.memory;
         // The core fetches it again; this is to look up its time.
@@ -72,7 +72,7 @@ impl Machine {
         self.bus.chip.pending_cache_invalidations.clear();
         self.bus.tick();
         ensure!(!self.core.is_in_hardfault(), "the firmware crashed (HardFault) at {pc:#010x}; look it up with `addr2line -e ELF {pc:#x}`");
-        Ok(())
+        Ok((pc, cycles))
     }
 
     /// It is time to take the log.
@@ -90,6 +90,11 @@ impl Machine {
 
     pub(super) fn cycle(&self) -> u64 {
         self.bus.cycle
+    }
+
+    /// Cycles in which bits went over the wire to the panel, up to the last complete byte.
+    pub(super) fn wire(&self) -> u64 {
+        self.bus.wire()
     }
 
     pub(super) fn led(&self) -> bool {

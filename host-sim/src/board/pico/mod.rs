@@ -12,7 +12,7 @@ mod rtt;
 mod spi;
 
 use super::{Board, Recording, elf::Elf, log};
-use anyhow::{Context, Result, ensure};
+use anyhow::{Context, Result, bail, ensure};
 use machine::Machine;
 
 /// Cycles that a run may take: 16 s of the board's time for the set-up, and as many for every frame.
@@ -60,4 +60,56 @@ fn play(machine: &mut Machine, decoder: &mut log::Decoder, frames: usize, record
             machine.pc()
         );
     }
+}
+
+/// Cycles of one frame; 125 of them are a microsecond.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct FrameTime {
+    /// From its beginning to that of the next.
+    pub all: u64,
+    /// While bits went over the wire to the panel.
+    pub wire: u64,
+}
+
+/// Runs the firmware until it has checked all frames, and on through the next one, whose instructions and their cycles go to `visit`.
+pub(super) fn watch(elf: &Elf, mut visit: impl FnMut(u32, u64)) -> Result<(Recording, FrameTime)> {
+    let mut machine = Machine::new(elf)?;
+    let mut decoder = log::Decoder::new(elf)?;
+    let mut recording = Recording::default();
+    let outcome = follow(&mut machine, &mut decoder, &mut recording, &mut visit);
+    let time = outcome.with_context(|| format!("{} emulated; {}", Board::Pico, log::tail(&recording.log)))?;
+    Ok((recording, time))
+}
+
+fn follow(
+    machine: &mut Machine,
+    decoder: &mut log::Decoder,
+    recording: &mut Recording,
+    visit: &mut impl FnMut(u32, u64),
+) -> Result<FrameTime> {
+    let mut start = None;
+    let mut led = false;
+    let deadline = 2 * PATIENCE;
+    while machine.cycle() < deadline {
+        let step = machine.step();
+        if step.is_err() || machine.log_is_due() {
+            decoder.push(&machine.take_log(), |line| recording.log.push(line));
+            if let Some(failure) = recording.failure() {
+                bail!("the firmware reports: {failure}");
+            }
+        }
+        let (address, cycles) = step?;
+        // The light goes out when a frame begins.
+        let begins = led && !machine.led();
+        led = machine.led();
+        match start {
+            Some(FrameTime { all, wire }) if begins => {
+                return Ok(FrameTime { all: machine.cycle() - all, wire: machine.wire() - wire });
+            }
+            Some(_) => visit(address, cycles),
+            None if begins => start = Some(FrameTime { all: machine.cycle(), wire: machine.wire() }),
+            None => {}
+        }
+    }
+    bail!("the firmware has not shown two frames in {deadline} cycles: it hangs")
 }

@@ -27,6 +27,8 @@ pub(super) struct Spi {
     received: VecDeque<u16>,
     /// When the word at the front of `transmit` has been sent.
     done: Option<u64>,
+    /// Cycles that sending took, of all words so far.
+    pub(super) busy: u64,
 }
 
 impl Spi {
@@ -43,12 +45,17 @@ impl Spi {
         }
     }
 
+    /// Cycles that one word takes.
+    fn duration(&self) -> u64 {
+        let divisor = u64::from(self.prescale.max(2)) * u64::from((self.control[0] >> 8 & 0xFF) + 1);
+        let bits = u64::from((self.control[0] & 0xF) + 1);
+        divisor * bits
+    }
+
     /// Puts the next word on the wire if the wire is free.
     fn start(&mut self, now: u64) {
         if self.done.is_none() && !self.transmit.is_empty() {
-            let divisor = u64::from(self.prescale.max(2)) * u64::from((self.control[0] >> 8 & 0xFF) + 1);
-            let bits = u64::from((self.control[0] & 0xF) + 1);
-            self.done = Some(now + divisor * bits);
+            self.done = Some(now + self.duration());
         }
     }
 
@@ -57,6 +64,7 @@ impl Spi {
         let done = self.done.filter(|&done| done <= now)?;
         self.done = None;
         let word = self.transmit.pop_front()?;
+        self.busy += self.duration();
         // Every word sent is a word received; nobody drives the wire.
         if self.received.len() < DEPTH {
             self.received.push_back(0);

@@ -4,7 +4,7 @@ mod qmp;
 mod screen;
 mod trace;
 
-pub use trace::trace;
+pub use trace::{Blocks, trace};
 
 use super::{Board, Recording, elf::Elf, log};
 use anyhow::{Context, Result, anyhow, bail};

@@ -6,9 +6,9 @@ mod scale;
 mod table;
 
 use super::{Comparison, Reference};
-use crate::output::Output;
+use crate::{output::Output, page::document};
 use anyhow::{Context, Result};
-use maud::{DOCTYPE, Markup, PreEscaped, html};
+use maud::{Markup, html};
 use microphong::Shader;
 use rayon::prelude::*;
 use std::{
@@ -18,7 +18,6 @@ use std::{
 };
 
 const STYLE: &str = include_str!("style.css");
-const SORT: &str = include_str!("sort.js");
 
 /// A page under construction.
 #[derive(Debug)]
@@ -64,32 +63,16 @@ impl Page {
 }
 
 fn page(scenes: &[(String, Markup)]) -> Markup {
-    html! {
-        (DOCTYPE)
-        html lang="en" {
-            head {
-                meta charset="utf-8";
-                meta name="viewport" content="width=device-width, initial-scale=1";
-                meta name="color-scheme" content="light dark";
-                title { "Shading methods compared" }
-                style { (PreEscaped(STYLE)) }
-            }
-            body {
-                header {
-                    h1 { "Shading methods compared" }
-                    p {
-                        "Each method's integer picture against Phong shading in 64-bit floating point: the normal interpolated, normalised and "
-                        "lit at every pixel. Errors are in LSB, steps of which 255 are full level, before an output format rounds."
-                    }
-                    @if scenes.len() > 1 {
-                        nav aria-label="Scenes" { ul { @for (index, (name, _)) in scenes.iter().enumerate() { li { a href={ "#scene-" (index) } { (name) } } } } }
-                    }
-                }
-                main { @for (_, section) in scenes { (section) } }
-                script { (PreEscaped(SORT)) }
-            }
+    let head = html! {
+        p {
+            "Each method's integer picture against Phong shading in 64-bit floating point: the normal interpolated, normalised and "
+            "lit at every pixel. Errors are in LSB, steps of which 255 are full level, before an output format rounds."
         }
-    }
+        @if scenes.len() > 1 {
+            nav aria-label="Scenes" { ul { @for (index, (name, _)) in scenes.iter().enumerate() { li { a href={ "#scene-" (index) } { (name) } } } } }
+        }
+    };
+    document("Shading methods compared", [STYLE, ""], &head, &html! { @for (_, section) in scenes { (section) } })
 }
 
 fn section(index: usize, name: &str, exponent: Option<u16>, reference: &Reference<'_>, outcomes: &[Outcome<'_>]) -> Result<Markup> {
@@ -119,7 +102,7 @@ fn section(index: usize, name: &str, exponent: Option<u16>, reference: &Referenc
                         (scale::amplified())
                         figcaption { "Amplified difference of 8-bit pixels, LSB: 255 (d/255)" sup { "1/10" } " of each channel (Vlasic 2002). It shows a single step." }
                     }
-                    p { "Curves run along row " (reference.row()) ", through the highlight." }
+                    p.note { "Curves run along row " (reference.row()) ", through the highlight." }
                 }
             }
             @for entry in &entries { (entry) }

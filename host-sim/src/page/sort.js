@@ -3,9 +3,10 @@ for (const table of document.querySelectorAll("table.sortable")) {
   const body = table.tBodies[0];
   const headings = [...table.querySelectorAll("th[data-sort]")];
   headings.forEach((heading, column) => {
+    const text = heading.dataset.sort === "text";
     const key = (row) => {
       const cell = row.cells[column];
-      if (column === 0) return cell.textContent;
+      if (text) return cell.textContent;
       const value = cell && cell.dataset.value;
       return value === undefined ? NaN : value === "inf" ? Infinity : Number(value);
     };
@@ -20,7 +21,7 @@ for (const table of document.querySelectorAll("table.sortable")) {
       const sign = down ? -1 : 1;
       const rows = [...body.rows].map((row) => ({ row, key: key(row) }));
       rows.sort((a, b) => {
-        if (column === 0) return sign * a.key.localeCompare(b.key);
+        if (text) return sign * a.key.localeCompare(b.key);
         if (Number.isNaN(a.key) || Number.isNaN(b.key)) return Number.isNaN(a.key) - Number.isNaN(b.key);
         return a.key === b.key ? 0 : sign * (a.key < b.key ? -1 : 1);
       });

@@ -1,0 +1,65 @@
+//! Methods that are alike: one colour in charts.
+
+use microphong::Shader;
+
+/// What a method walks along a span, and what it makes of that at each pixel.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub enum Family {
+    /// Intensity, linear on triangles or parts of them.
+    Linear,
+    /// Intensity, quadratic or cubic.
+    Curved,
+    /// A cosine or its parts as polynomials; a table raises it.
+    Cosine,
+    /// Places in a map of reflections.
+    Map,
+    /// Angles, or the vector turned by them.
+    Angle,
+    /// The vector, normalised or divided by its length at each pixel.
+    Vector,
+}
+
+impl Family {
+    /// All of them, from cheap to dear.
+    pub const ALL: [Self; 6] = [Self::Linear, Self::Curved, Self::Cosine, Self::Map, Self::Angle, Self::Vector];
+
+    /// The family of a method.
+    #[must_use]
+    pub const fn of(shader: Shader) -> Self {
+        match shader {
+            Shader::Flat | Shader::Gouraud | Shader::Gouraud4 | Shader::PseudoPhong => Self::Linear,
+            Shader::SixPoint | Shader::SixPointCentre | Shader::SixPointAdaptive | Shader::Cubic => Self::Curved,
+            Shader::Taylor | Shader::TaylorFinite | Shader::Sqrt6 | Shader::Renq | Shader::RenqNewton => Self::Cosine,
+            Shader::Environment | Shader::Blinn | Shader::QuadraticBlinn => Self::Map,
+            Shader::Goldman | Shader::Slerp | Shader::Angular | Shader::AngularOriginal | Shader::Hybrid | Shader::HybridOriginal => {
+                Self::Angle
+            }
+            Shader::Phong | Shader::PhongRv | Shader::Duff | Shader::HighlightTest => Self::Vector,
+        }
+    }
+
+    /// As a legend says it.
+    #[must_use]
+    pub const fn label(self) -> &'static str {
+        match self {
+            Self::Linear => "linear intensity",
+            Self::Curved => "quadratic or cubic intensity",
+            Self::Cosine => "polynomial cosine, then a table",
+            Self::Map => "reflection map",
+            Self::Angle => "angles and rotation",
+            Self::Vector => "vector at each pixel",
+        }
+    }
+
+    /// Its class in a drawing.
+    pub(super) const fn class(self) -> &'static str {
+        match self {
+            Self::Linear => "linear",
+            Self::Curved => "curved",
+            Self::Cosine => "cosine",
+            Self::Map => "map",
+            Self::Angle => "angle",
+            Self::Vector => "vector",
+        }
+    }
+}

@@ -1,0 +1,74 @@
+//! What `bench` counts is exact, the same each time, and has not grown since somebody last looked.
+
+use microphong::Shader;
+use microphong_sim::{
+    bench::{Bench, Processor, baseline, stage::Meter},
+    board::{Blocks, elf::Elf, trace},
+    scene, verify,
+};
+use std::{collections::BTreeMap, path::Path};
+
+/// QEMU logs blocks of instructions; one by one it executes the same, address by address.
+#[test]
+fn blocks_are_the_instructions_in_them() {
+    let board = Processor::CortexM3.board().unwrap();
+    let scene = scene::load("sphere-40").unwrap();
+    let elf = Elf::read(&verify::build(board).unwrap()).unwrap();
+    let elf = elf.with_stream(&verify::prepare(scene.stream.as_bytes(), Shader::Duff, 1).unwrap()).unwrap();
+    let ranges = Meter::new(&elf).unwrap().ranges();
+    let executed = [Blocks::Whole, Blocks::Single].map(|blocks| {
+        let mut counts = BTreeMap::<u32, u64>::new();
+        let mut sequence = 0_u64;
+        let visit = |address| {
+            *counts.entry(address).or_default() += 1;
+            // The order matters as well.
+            sequence = sequence.rotate_left(5).wrapping_mul(0x517C_C1B7_2722_0A95) ^ u64::from(address);
+        };
+        trace(board, &elf, &ranges, blocks, visit).unwrap();
+        (counts, sequence)
+    });
+    let [(blocks, _), _] = &executed;
+    println!("{} instructions at {} addresses", blocks.values().sum::<u64>(), blocks.len());
+    assert!(blocks.values().sum::<u64>() > 1_000_000);
+    assert!(executed[0] == executed[1], "blocks and single instructions differ");
+}
+
+/// Two runs, each side by side with others, give the same to the instruction and cycle.
+#[test]
+fn counts_repeat() {
+    let processors = Processor::ALL;
+    let bench = Bench::new(&processors).unwrap();
+    let scene = scene::load("sphere-168").unwrap();
+    let wanted: Vec<_> =
+        processors.iter().flat_map(|&processor| [Shader::Gouraud, Shader::Renq].map(|shader| (processor, shader))).collect();
+    let [first, second] = [(); 2].map(|()| bench.measure(&scene, &wanted, || ()).unwrap());
+    assert_eq!(first, second);
+    for found in first {
+        let line = serde_json::to_string(&found).unwrap();
+        println!("{line}");
+        let stages = found.by_stage;
+        assert!(found.instructions == stages.drawing() && stages.clear > 0 && stages.transfer > 0);
+        assert!(found.max_lsb > Some(0.0) && found.rmse_lsb < found.max_lsb && found.flash_own_bytes <= found.flash_bytes);
+        assert_eq!(found.cycles.is_some(), found.board == Processor::CortexM0Plus);
+        // Bytes go over the wire in every frame, at 16 cycles each.
+        assert!(found.timing.is_none_or(|time| time.wire_cycles >= 240 * 240 * 2 * 16 && time.frame_cycles > time.wire_cycles));
+    }
+}
+
+/// No frame costs more than recorded, but for the tolerance.
+#[test]
+fn costs_have_not_grown() {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("baselines/costs.csv");
+    let recorded = baseline::read(&path).unwrap();
+    let changes = baseline::changes(&recorded, &baseline::measure(&recorded, || ()).unwrap());
+    let (grown, shrunk): (Vec<_>, Vec<_>) = changes.iter().partition(|change| change.percent() > 0.0);
+    let renew = "renew the file: cargo run --release -- bench --renew tests/baselines/costs.csv";
+    for change in shrunk.iter().chain(&grown) {
+        println!("{change}");
+    }
+    if !shrunk.is_empty() {
+        println!("{} costs have shrunk, which would hide later growth: {renew}", shrunk.len());
+    }
+    let list: Vec<_> = grown.iter().map(|change| change.to_string()).collect();
+    assert!(grown.is_empty(), "{} costs have grown:\n{}\nif that is meant, {renew}", grown.len(), list.join("\n"));
+}
