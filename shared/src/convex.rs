@@ -19,10 +19,10 @@ use embedded_graphics_core::geometry::Size;
 
 /// How far a coordinate in eye space may lie from that of a convex body, in units of its last place: two in the mesh, as
 /// `microphong convert` sees to, one by rounding, and one to spare.
-const MOVED: i64 = 4;
+const MOVED: u32 = 4;
 
 /// Thicker triangles than this are told from none, 1/16 pixel: everything is contested.
-const THICKEST: i64 = 1 << 12;
+const THICKEST: u32 = 1 << 12;
 
 /// What tells thin triangles of a convex mesh.
 #[derive(Clone, Copy, Debug)]
@@ -39,7 +39,7 @@ impl Convex {
     pub fn new(stream: &Stream<'_>, view: &View, size: Size) -> Option<Self> {
         let [Mesh { flags, .. }] = stream.meshes else { return None };
         let size = [size.width, size.height].map(|side| (side << SUBPIXEL) as i32);
-        let thickness = 4 * (view.magnified(MOVED, size) + 1);
+        let thickness = view.magnified(MOVED, size).saturating_add(1).saturating_mul(4);
         (flags & CLOSED_CONVEX != 0 && thickness < THICKEST).then_some(Self { thickness: thickness as i32, size })
     }
 

@@ -10,6 +10,7 @@ use crate::{
     scene::Pose,
     stream::record::{Camera, PERSPECTIVE},
 };
+use core::num::NonZeroU32;
 use embedded_graphics_core::geometry::Size;
 
 /// A vertex on the screen, with what its light comes to.
@@ -154,15 +155,18 @@ impl View {
         ([self.centre[0] + x, self.centre[1] - y, depth.min(NEAREST)], within)
     }
 
-    /// How far `length` in eye space, [`crate::format::Length`] without its format, reaches on the screen at most, 1/16 pixel,
-    /// rounded up, from a point in a viewport of this size (1/16 pixel) behind the near plane.
+    /// How far a small `length` in eye space, in units of its last place, reaches on the screen at most, 1/16 pixel, rounded
+    /// up, from a point in a viewport of this size (1/16 pixel) behind the near plane.
     #[must_use]
-    pub fn magnified(&self, length: i64, [width, height]: [i32; 2]) -> i64 {
-        let focal = self.focal >> 16;
+    pub fn magnified(&self, length: u32, [width, height]: [i32; 2]) -> u32 {
+        let focal = (self.focal >> 16) as u32;
         match self.projection {
             // Aside by focal / z, and in depth by as much as the point lies aside.
-            Projection::Perspective { .. } => length * (focal + i64::from(width.max(height))) / i64::from(self.near) + 1,
-            Projection::Orthographic { .. } => ((length * focal) >> UNIT) + 1,
+            Projection::Perspective { .. } => {
+                let near = NonZeroU32::new(self.near.unsigned_abs()).unwrap_or(NonZeroU32::MIN);
+                length.wrapping_mul(focal.wrapping_add(width.max(height).unsigned_abs())) / near + 1
+            }
+            Projection::Orthographic { .. } => (length.wrapping_mul(focal) >> UNIT) + 1,
         }
     }
 

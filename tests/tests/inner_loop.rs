@@ -22,10 +22,11 @@ fn loops_are_as_short_as_by_hand() {
     check(&Scene { stream: unmarked(&scene.stream), ..scene }, &limits);
 }
 
-/// Without depth a quadratic takes 6, a plane 5, a constant 3; triangles at the silhouette are tested.
+/// Without depth a quadratic takes 7 instructions a pixel, as many as written by hand, a plane 6, a constant 4. A twelfth of
+/// the pixels lies in triangles where it is tested all the same.
 #[test]
 fn convex_meshes_need_no_depth() {
-    check(&scene::load("peer-sphere").unwrap(), &[(Shader::Flat, 4), (Shader::Gouraud, 6), (Shader::SixPoint, 7)]);
+    check(&scene::load("peer-sphere").unwrap(), &[(Shader::Flat, 5), (Shader::Gouraud, 7), (Shader::SixPoint, 8)]);
 }
 
 fn check(scene: &Scene, limits: &[(Shader, u32)]) {
