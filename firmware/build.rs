@@ -21,7 +21,8 @@ fn main() -> Result<(), Box<dyn Error>> {
     fs::copy(memory, out.join("memory.x")).map_err(|e| format!("{memory}: {e}"))?;
     fs::copy("boards/stream.x", out.join("stream.x")).map_err(|e| format!("boards/stream.x: {e}"))?;
     println!("cargo:rustc-link-search={}", out.display());
-    for argument in ["--nmagic", "-Tlink.x", "-Tstream.x", "-Tdefmt.x"] {
+    // Relocations stay on the host, as symbols do: `microphong bench` tells from them which function needs which.
+    for argument in ["--nmagic", "--emit-relocs", "-Tlink.x", "-Tstream.x", "-Tdefmt.x"] {
         println!("cargo:rustc-link-arg-bins={argument}");
     }
     if *board == "PICO" {

@@ -44,23 +44,25 @@ impl<C: Pixel> Drawing<'_, C> {
         let [a, c, b] = triangle.corners.map(usize::from);
         let (Some(p), Some(q), Some(r)) = (self.vertices.get(a), self.vertices.get(b), self.vertices.get(c)) else { return 0 };
         let vertices = [p, q, r];
-        if let (Some(a), Some(b), Some(c)) = (self.kept.get(a), self.kept.get(b), self.kept.get(c))
-            && is_ready([a, b, c])
-        {
-            self.face(&Face { corners: [a, b, c], vertices, triangle }, band)
-        } else {
-            self.other(vertices, triangle, band)
+        match self.corners([a, b, c]) {
+            Some(corners) => self.face(&Face { corners, vertices, triangle }, band),
+            None => self.other(vertices, triangle, band),
         }
+    }
+
+    /// Corners on the screen; `None` if one is not kept, or not on the screen.
+    #[inline(always)]
+    fn corners(&self, [a, b, c]: [usize; 3]) -> Option<[&ScreenVertex; 3]> {
+        let corners = [self.kept.get(a)?, self.kept.get(b)?, self.kept.get(c)?];
+        is_ready(corners).then_some(corners)
     }
 
     /// The visible box of `triangle`; `None` if it shows its back, or no pixel can belong to it.
     pub(crate) fn bounds(&self, triangle: &Triangle) -> Option<Bounds> {
         let [a, c, b] = triangle.corners.map(usize::from);
-        match (self.kept.get(a), self.kept.get(b), self.kept.get(c)) {
-            (Some(a), Some(b), Some(c)) if is_ready([a, b, c]) => {
-                self.viewport.bounds(&Extent::new([a, b, c].map(|corner| [corner.x, corner.y])))
-            }
-            _ => self.stage.bounds(self.viewport, self.vertices, triangle),
+        match self.corners([a, b, c]) {
+            Some(corners) => self.viewport.bounds(&Extent::new(corners.map(|corner| [corner.x, corner.y]))),
+            None => self.stage.bounds(self.viewport, self.vertices, triangle),
         }
     }
 

@@ -145,6 +145,13 @@ impl<C: Pixel> Palette<C> {
         [matte(a), matte(b), matte(c), matte(ab), matte(bc), matte(ca)]
     }
 
+    /// Levels under one light, Q9.7 in [0, 255], from `[N·L, N·H]` (Q2.30).
+    #[inline]
+    #[must_use]
+    pub fn one_light(&self, cosines: [i32; 2]) -> [i32; 3] {
+        if self.three_channels { self.levels(core::iter::once(cosines)) } else { [self.level(cosines); 3] }
+    }
+
     /// Levels at a point, Q9.7 in [0, 255], from the cosines `[N·L, N·H]` (Q2.30) of each light.
     #[inline]
     #[must_use]

@@ -47,7 +47,9 @@ fn counts_repeat() {
         let line = serde_json::to_string(&found).unwrap();
         println!("{line}");
         let stages = found.by_stage;
-        assert!(found.instructions == stages.drawing() && stages.clear > 0 && stages.transfer > 0);
+        // The host has no display.
+        let sends = found.board != Processor::X86_64;
+        assert!(found.instructions == stages.drawing() && stages.clear > 0 && (stages.transfer > 0) == sends);
         assert!(found.max_lsb > Some(0.0) && found.rmse_lsb < found.max_lsb && found.flash_own_bytes <= found.flash_bytes);
         assert_eq!(found.cycles.is_some(), found.board == Processor::CortexM0Plus);
         // Bytes go over the wire in every frame, at 16 cycles each.

@@ -6,28 +6,13 @@ use microphong_sim::{
     render::{self, Format, Settings, Style},
     scene,
 };
+use microphong_tests::program;
 use std::{
     fs,
-    path::{Path, PathBuf},
+    path::Path,
     process::{Command, Output},
-    sync::LazyLock,
 };
 use tempfile::TempDir;
-
-/// The command; built here, because a package's tests build only the package's own programs.
-static PROGRAM: LazyLock<PathBuf> = LazyLock::new(|| {
-    let cargo = Command::new(env!("CARGO"))
-        .args(["build", "--quiet", "--package", "microphong-sim", "--bin", "microphong", "--message-format", "json"])
-        .current_dir(env!("CARGO_MANIFEST_DIR"))
-        .output()
-        .expect("cargo");
-    assert!(cargo.status.success(), "{}", String::from_utf8_lossy(&cargo.stderr));
-    String::from_utf8_lossy(&cargo.stdout)
-        .lines()
-        .filter_map(|line| serde_json::from_str::<serde_json::Value>(line).ok())
-        .find_map(|message| message["executable"].as_str().map(PathBuf::from))
-        .expect("the program's path")
-});
 
 /// A scratch directory in which the command runs.
 struct Place(TempDir);
@@ -43,7 +28,7 @@ impl Place {
     }
 
     fn run(&self, arguments: &[&str]) -> Output {
-        Command::new(&*PROGRAM).args(arguments).current_dir(self.0.path()).output().expect("the program")
+        Command::new(program()).args(arguments).current_dir(self.0.path()).output().expect("the program")
     }
 
     fn files(&self) -> Vec<String> {

@@ -6,31 +6,16 @@ use microphong_sim::{
     compare::{Reference, exponent::with_exponent},
     image, oracle, scene,
 };
+use microphong_tests::program;
 use serde_json::Value;
 use std::{
     fs,
-    path::{Path, PathBuf},
+    path::Path,
     process::{Command, Output},
-    sync::LazyLock,
 };
 
-/// The command; built here, because a package's tests build only the package's own programs.
-static PROGRAM: LazyLock<PathBuf> = LazyLock::new(|| {
-    let cargo = Command::new(env!("CARGO"))
-        .args(["build", "--quiet", "--package", "microphong-sim", "--bin", "microphong", "--message-format", "json"])
-        .current_dir(env!("CARGO_MANIFEST_DIR"))
-        .output()
-        .expect("cargo");
-    assert!(cargo.status.success(), "{}", String::from_utf8_lossy(&cargo.stderr));
-    String::from_utf8_lossy(&cargo.stdout)
-        .lines()
-        .filter_map(|line| serde_json::from_str::<Value>(line).ok())
-        .find_map(|message| message["executable"].as_str().map(PathBuf::from))
-        .expect("the program's path")
-});
-
 fn run(directory: &Path, arguments: &[&str]) -> Output {
-    Command::new(&*PROGRAM).arg("compare").args(arguments).current_dir(directory).output().expect("the program")
+    Command::new(program()).arg("compare").args(arguments).current_dir(directory).output().expect("the program")
 }
 
 /// Runs the command, which must succeed in silence on stderr, and returns its stdout.

@@ -9,8 +9,11 @@ use anyhow::{Context, Result};
 use microphong::Shader;
 use std::{fmt, fs, path::Path};
 
-/// Growth that is let pass, in percent. A shrinkage of more asks to renew the file, or it would hide later growth.
+/// Growth of instructions that is let pass, in percent. A shrinkage of more asks to renew the file, or it would hide later growth.
 pub const TOLERANCE: f64 = 1.0;
+/// The same of flash: one source in two folders has symbols with other hashes, which the compiler goes through in another
+/// order and inlines in another way. Seen: 1.5 %; instructions differ by 0.01 %.
+pub const FLASH_TOLERANCE: f64 = 2.5;
 
 const HEAD: &str = "board,scene,shader,instructions,flash_bytes";
 
@@ -60,7 +63,7 @@ impl fmt::Display for Entry {
     }
 }
 
-/// A figure that has changed by more than [`TOLERANCE`].
+/// A figure that has changed by more than its tolerance.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Change {
     /// Which frame.
@@ -93,10 +96,11 @@ impl fmt::Display for Change {
 #[must_use]
 pub fn changes(recorded: &[Entry], measured: &[Entry]) -> Vec<Change> {
     let pairs = recorded.iter().zip(measured).flat_map(|(entry, now)| {
-        [("instructions", entry.instructions, now.instructions), ("bytes of flash", entry.flash_bytes, now.flash_bytes)]
-            .map(|(what, was, is)| Change { entry: entry.clone(), what, was, is })
+        let instructions = ("instructions", entry.instructions, now.instructions, TOLERANCE);
+        let flash = ("bytes of flash", entry.flash_bytes, now.flash_bytes, FLASH_TOLERANCE);
+        [instructions, flash].map(|(what, was, is, tolerance)| (Change { entry: entry.clone(), what, was, is }, tolerance))
     });
-    pairs.filter(|change| change.percent().abs() > TOLERANCE).collect()
+    pairs.filter(|(change, tolerance)| change.percent().abs() > *tolerance).map(|(change, _)| change).collect()
 }
 
 /// Reads a file.
@@ -151,12 +155,16 @@ mod tests {
     use super::{Entry, changes};
 
     #[test]
-    fn growth_beyond_a_percent_is_named() {
+    fn growth_beyond_the_tolerances_is_named() {
         let old = Entry::parse("mps2-an385,teapot,flat,1000,2000").unwrap();
         assert_eq!(old.to_string(), "mps2-an385,teapot,flat,1000,2000");
-        let now = Entry { instructions: 1010, flash_bytes: 2021, ..old.clone() };
-        let [change] = &changes(&[old], &[now])[..] else { panic!("one of them is within a percent") };
-        assert_eq!(change.to_string(), "flat on cortex-m3, teapot: bytes of flash 2000 -> 2021 (+1.05 %)");
+        let changes = |instructions, flash_bytes| {
+            let now = Entry { instructions, flash_bytes, ..old.clone() };
+            changes(std::slice::from_ref(&old), &[now]).iter().map(ToString::to_string).collect::<Vec<_>>()
+        };
+        assert!(changes(1010, 2050).is_empty());
+        assert_eq!(changes(1011, 2050), ["flat on cortex-m3, teapot: instructions 1000 -> 1011 (+1.10 %)"]);
+        assert_eq!(changes(1010, 2051), ["flat on cortex-m3, teapot: bytes of flash 2000 -> 2051 (+2.55 %)"]);
     }
 
     #[test]

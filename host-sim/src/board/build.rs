@@ -4,7 +4,6 @@ use super::Board;
 use anyhow::{Context, Result, ensure};
 use std::{
     env,
-    ffi::OsString,
     path::{Path, PathBuf},
     process::Command,
 };
@@ -16,32 +15,39 @@ use std::{
 /// # Errors
 /// When the target or the compiler is missing, or the firmware does not compile.
 pub fn firmware(board: Board) -> Result<PathBuf> {
-    let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("..");
-    let root = root
-        .canonicalize()
-        .with_context(|| format!("cannot find the sources in {}: they must lie where this program was compiled", root.display()))?;
+    let root = sources()?;
     let directory = root.join("firmware");
     install_target(board.target(), &directory)?;
 
     let output = root.join("target/firmware").join(board.name());
-    let status = Command::new(cargo())
-        .current_dir(&directory)
-        .args(["build", "--quiet", "--release", "--no-default-features", "--features", board.name()])
-        .args(["--bin", board.name(), "--target", board.target(), "--target-dir"])
-        .arg(&output)
-        // They would take the place of the flags in firmware/.cargo/config.toml.
+    let what = format!("the firmware for {board}");
+    let arguments = ["--no-default-features", "--features", board.name(), "--bin", board.name(), "--target", board.target()];
+    release(&directory, &arguments, &output, &what)?;
+    Ok(output.join(board.target()).join("release").join(board.name()))
+}
+
+/// The folder of the sources.
+pub(crate) fn sources() -> Result<PathBuf> {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("..");
+    root.canonicalize()
+        .with_context(|| format!("cannot find the sources in {}: they must lie where this program was compiled", root.display()))
+}
+
+/// Builds the workspace in `directory` into `output`; `what` is its name in an error.
+pub(crate) fn release(directory: &Path, arguments: &[&str], output: &Path, what: &str) -> Result<()> {
+    let status = Command::new(env::var_os("CARGO").unwrap_or_else(|| "cargo".into()))
+        .current_dir(directory)
+        .args(["build", "--quiet", "--release", "--target-dir"])
+        .arg(output)
+        .args(arguments)
+        // They would take the place of the flags that the workspace asks for, and counts depend on those.
         .env_remove("RUSTFLAGS")
         .env_remove("CARGO_ENCODED_RUSTFLAGS")
         .env_remove("CARGO_BUILD_TARGET")
         .status()
         .context("cannot start cargo: install Rust from https://rustup.rs")?;
-    ensure!(status.success(), "the firmware for {board} did not compile; its messages are above");
-    Ok(output.join(board.target()).join("release").join(board.name()))
-}
-
-/// The cargo in use.
-pub(crate) fn cargo() -> OsString {
-    env::var_os("CARGO").unwrap_or_else(|| "cargo".into())
+    ensure!(status.success(), "{what} did not compile; its messages are above");
+    Ok(())
 }
 
 /// Adds `target` to the toolchain in use unless it is there.

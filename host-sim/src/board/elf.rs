@@ -4,7 +4,8 @@ use anyhow::{Context, Result, bail, ensure};
 use goblin::elf::{
     Elf as Parsed,
     program_header::PT_LOAD,
-    sym::{STT_FUNC, STT_OBJECT},
+    reloc::{R_ARM_ABS32, R_ARM_THM_MOVT_ABS, R_ARM_THM_MOVW_ABS_NC},
+    sym::{STT_FUNC, STT_OBJECT, STT_SECTION},
 };
 use std::{fs, ops::Range, path::Path};
 
@@ -109,6 +110,43 @@ impl Elf {
                 Some((name, start..start + symbol.st_size as u32))
             })
             .collect())
+    }
+
+    /// Places in flash and RAM into which the linker put an address, and that address, without the bit that says Thumb.
+    ///
+    /// # Errors
+    /// When the file is damaged, or the linker did not keep its notes.
+    pub fn references(&self) -> Result<Vec<(u32, u32)>> {
+        let elf = self.parsed()?;
+        let mut found = Vec::new();
+        for (index, relocations) in &elf.shdr_relocs {
+            let section = elf.section_headers.get(*index).and_then(|header| elf.section_headers.get(header.sh_info as usize));
+            let Some(section) = section.filter(|section| section.is_alloc()) else { continue };
+            // Lower halves of addresses whose upper halves follow, by register.
+            let mut low = [0; 16];
+            for relocation in relocations {
+                let Some(symbol) = elf.syms.get(relocation.r_sym) else { continue };
+                let place = relocation.r_offset as u32;
+                if symbol.st_type() != STT_SECTION {
+                    found.push((place, symbol.st_value as u32 & !u32::from(symbol.is_function())));
+                    continue;
+                }
+                // What lies within a section is told by the linked bytes alone.
+                let offset = (section.sh_offset + relocation.r_offset - section.sh_addr) as usize;
+                let bytes = self.bytes.get(offset..).and_then(|rest| rest.first_chunk()).context("an address lies outside the file")?;
+                let word = u32::from_le_bytes(*bytes);
+                let immediate = (word & 0xF) << 12 | (word >> 10 & 1) << 11 | (word >> 28 & 7) << 8 | word >> 16 & 0xFF;
+                let low = &mut low[(word >> 24 & 0xF) as usize];
+                match relocation.r_type {
+                    R_ARM_ABS32 => found.push((place, word)),
+                    R_ARM_THM_MOVW_ABS_NC => *low = immediate,
+                    R_ARM_THM_MOVT_ABS => found.push((place, immediate << 16 | *low)),
+                    _ => {}
+                }
+            }
+        }
+        ensure!(!found.is_empty(), "the firmware has no relocations: link it with --emit-relocs");
+        Ok(found)
     }
 
     /// All that is loaded before the start.

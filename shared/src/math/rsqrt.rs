@@ -34,15 +34,24 @@ pub fn rsqrt(m: u32) -> u32 {
 /// Largest error of [`rsqrt`], in units of its result.
 pub const ERROR: f64 = 8.0;
 
-/// Knots of [`half_rsqrt`]: 1/(2 sqrt(x)) at x = (256 + i)/1024, Q2.30, and how much less it is 1/2048 of the way to the
-/// next one. As many as a saturated index can tell apart.
+/// 1/(2 sqrt(x)) in Q2.30 at x = k/2048.
+const fn half_root(k: u128) -> u32 {
+    // 2^30 / (2 sqrt(k / 2048)) = sqrt(2^69 / k).
+    ((1u128 << 69) / k).isqrt() as u32
+}
+
+/// Knots of [`half_rsqrt`] at x = (256 + i)/1024, Q2.30, and how much less it is 1/2048 of the way to the next one, with 4
+/// more fraction bits. As many as a saturated index can tell apart.
+///
+/// Knots are lower by half of what chords lie above the curve, and by half a place between knots, for places are cut off.
 static HALVES: [[u32; 2]; 1024] = {
     let mut table = [[0; 2]; 1024];
     let mut i = 0;
     while i < 1024 {
-        // 2^30 / (2 sqrt(k / 1024)) = 2^34 / sqrt(k) = sqrt(2^68 / k).
-        let [here, next] = [((1u128 << 68) / (i as u128 + 256)).isqrt() as u32, ((1u128 << 68) / (i as u128 + 257)).isqrt() as u32];
-        table[i] = [here, (here - next + 1024) >> 11];
+        let k = 2 * (i as u128 + 256);
+        let (here, middle, next) = (half_root(k), half_root(k + 1), half_root(k + 2));
+        let slope = (here - next + 64) >> 7;
+        table[i] = [here - (((here + next) / 2 - middle) >> 1) - (slope >> 5), slope];
         i += 1;
     }
     table
@@ -59,7 +68,7 @@ pub const QUARTER: i32 = 1 << 28;
 pub fn half_rsqrt(above: i32) -> u32 {
     // Interval in the upper bits, place in it in the eleven below them.
     let [knot, slope] = HALVES[(above >> 20).clamp(0, 1023) as usize];
-    knot.wrapping_sub(slope.wrapping_mul((above >> 9) as u32 & 0x7FF))
+    knot.wrapping_sub(slope.wrapping_mul((above >> 9) as u32 & 0x7FF) >> 4)
 }
 
 /// Relative error of [`half_rsqrt`]: a quarter LSB at exponent 1024.

@@ -98,7 +98,7 @@ impl Sides {
             (self.end, Edge::new(left, right), Edge::new(top, right))
         };
         let exact = if is_walkable(self.corners, self.width) { left.exact_rows().min(right.exact_rows()) } else { 0 };
-        let by_itself = |edge: Edge| Column { x: (edge.column(row).clamp(0, self.width) as u32) << COLUMN, step: 0 };
+        let by_itself = |edge: Edge| Column { x: (edge.column(row).max(0).min(self.width) as u32) << COLUMN, step: 0 };
         if exact > 0 {
             (self.stop, self.left, self.right) = (stop.min(row + exact), left.walk_from(row), right.walk_from(row));
         } else {

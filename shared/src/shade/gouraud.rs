@@ -9,5 +9,6 @@ use crate::{band::Band, pixel::Pixel};
 
 #[inline(never)]
 pub(super) fn draw<C: Pixel>(facet: &Facet<'_>, shading: &Shading<'_, C>, band: &mut Band<'_, C>) -> u32 {
-    shading.draw_levels::<3, RANGE>(facet, facet.corners.map(|corner| shading.corner_levels(corner)), band)
+    let [a, b, c] = facet.corners;
+    shading.draw_levels::<3, RANGE>(facet, [shading.corner_levels(a), shading.corner_levels(b), shading.corner_levels(c)], band)
 }

@@ -64,7 +64,7 @@ use crate::{
         field::{Field, Nodes},
     },
     raster::triangle::{Outline, turn},
-    scene::Lighting,
+    scene::{Lighting, cosine},
     shade::node::Node,
     shader::Shader,
     stream::record::{Triangle, Vertex},
@@ -197,13 +197,16 @@ impl<C: Pixel> Shading<'_, C> {
 
     /// Levels at a point, Q9.7.
     fn levels(&self, node: &Node) -> [i32; 3] {
+        if let Some([towards, half]) = self.constant {
+            return self.palette.one_light([cosine(node.normal, towards), cosine(node.normal, half)]);
+        }
         self.palette.levels(self.lighting.cosines(node.position, node.normal))
     }
 
     /// Levels at a corner.
     fn corner_levels(&self, corner: &ScreenVertex) -> [i32; 3] {
         match self.constant {
-            Some(_) => self.palette.levels(core::iter::once([corner.light[0], corner.light[1]])),
+            Some(_) => self.palette.one_light([corner.light[0], corner.light[1]]),
             None => corner.light,
         }
     }

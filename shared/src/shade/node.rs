@@ -76,7 +76,7 @@ impl Facet<'_> {
         })
     }
 
-    /// 1/|Ni+Nj| of the edges 01, 12, 20, unsigned, [`EDGE`] fraction bits.
+    /// 1/|Ni+Nj| of the edges 01, 12, 20, [`EDGE`] fraction bits, less than 2^31.
     #[inline(always)]
     pub(super) fn rsums(&self) -> [u32; 3] {
         let [ab, bc, ca] = self.edges(self.triangle.rsum);
@@ -97,7 +97,7 @@ impl Facet<'_> {
                 return (1 << (EDGE - 1)) + u32::from(given);
             }
             let (mantissa, exponent) = rsqrt_wide(dot(sum, sum).max(1) as u64);
-            ((u64::from(mantissa) << (UNIT + EDGE)) >> exponent) as u32
+            ((u64::from(mantissa) << (UNIT + EDGE)) >> exponent).min(i32::MAX as u64) as u32
         })
     }
 
@@ -108,8 +108,8 @@ impl Facet<'_> {
         let [a, b, c] = self.corners;
         let (a, b, c) = (a.light[which], b.light[which], c.light[which]);
         let [ab, bc, ca] = self.rsums();
-        // Half of Q2.30 each, times Q0.17.
-        let middle = |a: i32, b: i32, rsum: u32| ((i64::from((a >> 1) + (b >> 1)) * i64::from((rsum << 14) as i32)) >> 30) as i32;
+        // Half of both.
+        let middle = |a: i32, b: i32, rsum: u32| ((i64::from((a >> 1) + (b >> 1)) * i64::from(rsum as i32)) >> (EDGE - 1)) as i32;
         [a, b, c, middle(a, b, ab), middle(b, c, bc), middle(c, a, ca)]
     }
 }

@@ -7,7 +7,7 @@ mod profile;
 mod split;
 
 use super::{Measurement, Processor, Stages};
-use crate::board::build::cargo;
+use crate::board::build::{release, sources};
 use anyhow::{Context, Result, anyhow, ensure};
 use microphong::Shader;
 use profile::Profile;
@@ -77,22 +77,9 @@ impl Count {
 /// When this is no x86-64 computer, or the program does not compile.
 pub fn build() -> Result<PathBuf> {
     ensure!(cfg!(target_arch = "x86_64"), "instructions of x86-64 are counted on such computers only; choose another board");
-    let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("..");
-    let root = root
-        .canonicalize()
-        .with_context(|| format!("cannot find the sources in {}: they must lie where this program was compiled", root.display()))?;
+    let root = sources()?;
     let output = root.join("target/firmware/x86-64");
-    let status = Command::new(cargo())
-        .current_dir(root.join("host-sim/frame"))
-        .args(["build", "--quiet", "--release", "--target-dir"])
-        .arg(&output)
-        // Counts must not depend on them.
-        .env_remove("RUSTFLAGS")
-        .env_remove("CARGO_ENCODED_RUSTFLAGS")
-        .env_remove("CARGO_BUILD_TARGET")
-        .status()
-        .context("cannot start cargo: install Rust from https://rustup.rs")?;
-    ensure!(status.success(), "the program that draws for callgrind did not compile; its messages are above");
+    release(&root.join("host-sim/frame"), &[], &output, "the program that draws for callgrind")?;
     Ok(output.join("release/frame"))
 }
 

@@ -86,7 +86,7 @@ mod tests {
 
     /// A frame that draws two triangles of three rows; `memcpy` works for whoever calls it.
     const TEXT: &str = "\
-fn=microphong::render::Frame<C>::transform
+fn=microphong::render::Stage<C>::transform
 0x1 50
 cfn=memcpy
 calls=1 0x90

@@ -1,5 +1,7 @@
 //! Axes of charts.
 
+use maud::{Markup, html};
+
 /// Room that a number takes.
 const WIDTH: f64 = 38.0;
 const HEIGHT: f64 = 13.0;
@@ -31,6 +33,17 @@ impl Axis {
         let scale = |v: f64| if self.logarithmic { v.max(f64::MIN_POSITIVE).ln() } else { v };
         let [low, high] = self.from.map(scale);
         self.to[0] + (scale(value) - low) / (high - low) * (self.to[1] - self.to[0])
+    }
+
+    /// Lines across the drawing at the ticks of a vertical axis, from column `left` to `right`, and their values.
+    pub(super) fn grid(&self, left: f64, right: f64) -> Markup {
+        html! {
+            @for tick in self.ticks() {
+                @let at = format!("{:.1}", self.at(tick));
+                line.grid x1=(left) x2=(right) y1=(at) y2=(at) {}
+                text x=(left - 6.0) y=(format!("{:.1}", self.at(tick) + 3.8)) text-anchor="end" { (short(tick)) }
+            }
+        }
     }
 
     /// Round values on the axis: 1, 2 and 5 in each decade, 1 alone where they would touch; about five of them if it is linear.

@@ -67,11 +67,7 @@ pub(super) fn plot(sweep: Sweep, points: &[Point]) -> Markup {
         svg.chart viewBox={ "0 0 " (SIZE.0) " " (SIZE.1) } role="img" aria-label={ (what) " over " (across) } {
             text.title x=(LEFT) y="11" { (sweep) }
             text x=(RIGHT) y="11" text-anchor="end" { (what) }
-            @for tick in y.ticks() {
-                @let at = format!("{:.1}", y.at(tick));
-                line.grid x1=(LEFT) x2=(RIGHT) y1=(at) y2=(at) {}
-                text x=(LEFT - 6.0) y=(format!("{:.1}", y.at(tick) + 3.8)) text-anchor="end" { (short(tick)) }
-            }
+            (y.grid(LEFT, RIGHT))
             @for tick in x.ticks() {
                 @let at = format!("{:.1}", x.at(tick));
                 line.axis x1=(at) x2=(at) y1=(BOTTOM) y2=(BOTTOM + 4.0) {}

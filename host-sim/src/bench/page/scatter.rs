@@ -106,11 +106,7 @@ pub(super) fn drawing(processor: Processor, measurements: &[&Measurement], axes:
     let labels = label::place(&names, &steps, [LEFT + 2.0, TOP, SIZE.0, BOTTOM - 2.0]);
     html! {
         text.title x=(LEFT) y="11" { (processor.name()) }
-        @for tick in y.ticks() {
-            @let at = format!("{:.1}", y.at(tick));
-            line.grid x1=(LEFT) x2=(RIGHT) y1=(at) y2=(at) {}
-            text x=(LEFT - 6.0) y=(format!("{:.1}", y.at(tick) + 3.8)) text-anchor="end" { (short(tick)) }
-        }
+        (y.grid(LEFT, RIGHT))
         @for tick in x.ticks() {
             @let at = format!("{:.1}", x.at(tick));
             line.grid x1=(at) x2=(at) y1=(TOP) y2=(BOTTOM) {}
