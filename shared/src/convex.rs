@@ -1,36 +1,58 @@
 //! Where a closed convex mesh needs no depth.
 //!
-//! The front faces of a convex body do not hide one another: seen exactly, no pixel belongs to two. But vertices are moved
-//! a little, by rounding in the mesh, in eye space and on the screen, and a triangle that is thinner than they are moved may
-//! turn over and let its neighbours overlap. Its corners are *contested*. A triangle without a contested corner is ringed by
-//! triangles too thick for that, so that nothing beyond them reaches it, and within them all turn the right way: it is drawn
-//! without depth. Where triangles may overlap, all of them are drawn with depth, and the picture is the same.
+//! The front faces of a convex body do not hide one another: seen exactly, no pixel belongs to two. What is drawn is not
+//! that exact picture `G` but `F`, whose corners are rounded, in the mesh, in eye space, and on the screen; each coordinate is
+//! moved by at most `d` ([`View::moved`]). So a triangle that is thinner than it is moved may turn over, or let its neighbours
+//! overlap. A triangle is *thick* if it lies in the viewport and is at least `3 d` thick in `F`. Those that are not, and that
+//! may show their front in `G`, *contest* the cells of a coarse grid that lie within `3 d` of their box. A triangle whose
+//! box lies in no contested cell is drawn without depth, all others are drawn with it, and the picture is the same:
+//!
+//! No pixel of a triangle `T` that is drawn without depth belongs to another one that is drawn. Suppose that the pixel `p`
+//! belongs to `T'` as well. Neither contests its cell, so both are thick. On a thick triangle the displacement `G - F`, linear
+//! and no longer than √2 d at the corners, has a slope below 1: 2 √2 d over 3 d. So it turns in `G` as it does in `F`, and
+//! both show their front in `G`. Let `q` and `q'` be the points that `F` takes to `p` on `T` and `T'`, seen in `G`: each is within
+//! `d` of `p` along x and y. The outline of a convex body is convex, so all of the segment from `q` to `q'` is covered by front
+//! faces. Each of them has in `F` a point within `2 d` of `p`, so it is thick, or it would contest the cell of `p`. Along the
+//! segment therefore the way from `G` to `F` is continuous and, its slope differing from one by less than one, never goes back: it
+//! takes `q` and `q'` to one `p` only if they are one point. This lies on an edge or corner that `T` and `T'` share, of which
+//! the top-left rule gives `p` to one.
+//!
+//! What this takes for granted, [`CLOSED_CONVEX`] promises: that a convex body lies so near to the mesh, and how far planes
+//! lean that were computed from rounded corners. Depth has one more effect, it hides what is farther than all else: no pixel
+//! is as far as that.
 
 use crate::{
     cull::Extent,
-    format::SUBPIXEL,
+    format::{SUBPIXEL, UNIT},
     stream::{
         Stream,
-        record::{CLOSED_CONVEX, Mesh},
+        record::{CLOSED_CONVEX, Mesh, PERSPECTIVE},
     },
     vertex::View,
 };
+use core::ops::RangeInclusive;
 use embedded_graphics_core::geometry::Size;
 
-/// How far a coordinate in eye space may lie from that of a convex body, in units of its last place: two in the mesh, as
-/// `microphong convert` sees to, one by rounding, and one to spare.
-const MOVED: u32 = 4;
+/// Rows and columns of the grid.
+const CELLS: u32 = u32::BITS;
 
 /// Thicker triangles than this are told from none, 1/16 pixel: everything is contested.
 const THICKEST: u32 = 1 << 12;
 
-/// What tells thin triangles of a convex mesh.
-#[derive(Clone, Copy, Debug)]
+/// How far the far plane has to lie behind the body, [`crate::format::Length`]: nothing is then as far as an empty depth buffer.
+const BEHIND: i32 = 1 << (UNIT - 6);
+
+/// Where triangles may overlap.
+#[derive(Clone, Debug)]
 pub struct Convex {
-    /// Four times as far as a vertex in the viewport may be moved, 1/16 pixel.
+    /// Of thick triangles, 1/16 pixel.
     thickness: i32,
     /// Of the viewport, 1/16 pixel.
     size: [i32; 2],
+    /// Fraction bits of a cell in 1/16 pixel.
+    cell: u32,
+    /// Contested cells, a row each.
+    contested: [u32; CELLS as usize],
 }
 
 impl Convex {
@@ -38,18 +60,55 @@ impl Convex {
     #[must_use]
     pub fn new(stream: &Stream<'_>, view: &View, size: Size) -> Option<Self> {
         let [Mesh { flags, .. }] = stream.meshes else { return None };
-        let size = [size.width, size.height].map(|side| (side << SUBPIXEL) as i32);
-        let thickness = view.magnified(MOVED, size).saturating_add(1).saturating_mul(4);
-        (flags & CLOSED_CONVEX != 0 && thickness < THICKEST).then_some(Self { thickness: thickness as i32, size })
+        let camera = &stream.header.camera;
+        let thickness = view.moved(size, 3);
+        // The body lies within one unit of its origin.
+        let is_seen = camera.projection == PERSPECTIVE || camera.translation[2] + (1 << UNIT) + BEHIND <= camera.far;
+        let larger = size.width.max(size.height) << SUBPIXEL;
+        (flags & CLOSED_CONVEX != 0 && is_seen && thickness < THICKEST).then_some(Self {
+            thickness: thickness as i32,
+            size: [size.width, size.height].map(|side| (side << SUBPIXEL) as i32),
+            cell: larger.div_ceil(CELLS).next_power_of_two().ilog2(),
+            contested: [0; CELLS as usize],
+        })
     }
 
-    /// The triangle lies in the viewport and is thick, or surely shows its back: its corners are not contested.
+    /// Takes notice of a triangle that may show its front.
     #[inline(always)]
+    pub fn see(&mut self, extent: &Extent) {
+        if !self.is_thick(extent) {
+            self.contest(extent);
+        }
+    }
+
+    /// Whether others may overlap a triangle; all that may show their front have been seen.
+    #[inline(never)]
     #[must_use]
-    pub fn is_thick(&self, extent: &Extent) -> bool {
+    pub fn contests(&self, extent: &Extent) -> bool {
+        let (rows, columns) = self.cells(extent, 0);
+        self.contested.get(rows).is_none_or(|rows| rows.iter().any(|row| row & columns != 0))
+    }
+
+    #[inline(always)]
+    fn is_thick(&self, extent: &Extent) -> bool {
         let [width, height] = self.size;
         let inside = extent.left | extent.top | (width - extent.right) | (height - extent.bottom) >= 0;
-        // Its thickness is at least twice the area over the size.
-        inside && extent.area.unsigned_abs() > (self.thickness * extent.size()) as u32
+        // It is at least as thick as twice its area over its size.
+        inside && extent.area.unsigned_abs() >= (self.thickness * extent.size()) as u32
+    }
+
+    #[inline(never)]
+    fn contest(&mut self, extent: &Extent) {
+        let (rows, columns) = self.cells(extent, self.thickness);
+        self.contested.get_mut(rows).unwrap_or_default().iter_mut().for_each(|row| *row |= columns);
+    }
+
+    /// Rows and columns of the grid within `around` of a box; what lies beside the grid counts as its border.
+    #[inline(always)]
+    fn cells(&self, extent: &Extent, around: i32) -> (RangeInclusive<usize>, u32) {
+        let cell = |c: i32| (c >> self.cell).clamp(0, CELLS as i32 - 1) as u32;
+        let [left, right] = [cell(extent.left - around), cell(extent.right + around)];
+        let [top, bottom] = [cell(extent.top - around), cell(extent.bottom + around)];
+        (top as usize..=bottom as usize, (u32::MAX << left) & (u32::MAX >> (CELLS - 1 - right)))
     }
 }

@@ -5,7 +5,7 @@ use crate::{
     format::{ROTATION, UNIT},
     math::vector::{narrow_dot, wide},
     scene::Pose,
-    stream::record::{Camera, PERSPECTIVE, Triangle},
+    stream::record::{Camera, LEAN, PERSPECTIVE, Triangle},
 };
 
 /// Where the camera is, as planes see it.
@@ -39,8 +39,27 @@ impl Facing {
     #[inline(always)]
     #[must_use]
     pub fn may_face(&self, triangle: &Triangle) -> bool {
+        self.height(triangle) >= Self::FRONT
+    }
+
+    /// Least [`Self::height`] above triangles that may show their front.
+    pub(crate) const FRONT: i32 = -SLACK;
+
+    /// How high the eye lies above the plane of `triangle`.
+    #[inline(always)]
+    #[must_use]
+    pub(crate) fn height(&self, triangle: &Triangle) -> i32 {
         let plane = i32::from(triangle.offset).wrapping_mul(self.offset_scale);
-        narrow_dot(self.vector, wide(triangle.normal)).wrapping_sub(plane) >= -SLACK
+        narrow_dot(self.vector, wide(triangle.normal)).wrapping_sub(plane)
+    }
+
+    /// Least [`Self::height`] above triangles that might show their front if their plane leaned as [`crate::stream::record::CLOSED_CONVEX`] allows.
+    #[must_use]
+    pub(crate) fn leaning(&self) -> i32 {
+        // From the eye to any point of the body: its own distance from the origin and, with room to spare, a radius.
+        let [x, y, z] = self.vector.map(i32::abs);
+        let reach = x + y + z + 2 * self.offset_scale;
+        Self::FRONT - (reach << (UNIT - LEAN))
     }
 }
 

@@ -3,6 +3,7 @@
 use crate::{
     band::Band,
     clip,
+    convex::Convex,
     cull::Extent,
     pixel::Pixel,
     poly::basis::Basis,
@@ -20,6 +21,8 @@ use crate::{
 pub(crate) struct Drawing<'f, C> {
     pub(crate) shading: Shading<'f, C>,
     pub(crate) stage: Stage<'f, C>,
+    /// Where triangles may overlap, if not everywhere.
+    pub(crate) convex: Option<&'f Convex>,
     pub(crate) vertices: &'f [Vertex],
     /// Those on the screen, as far as they are kept.
     pub(crate) kept: &'f [ScreenVertex],
@@ -107,7 +110,10 @@ impl<C: Pixel> Drawing<'_, C> {
 
     /// Sets up a triangle and draws part of its pixels.
     fn part(&self, part: Part, face: &Face<'_>, band: &mut Band<'_, C>) -> u32 {
-        let outline = Outline::new(face.corners, part);
+        let mut outline = Outline::new(face.corners, part);
+        if let Some(convex) = self.convex {
+            outline.contested = convex.contests(&Extent::new(outline.corners));
+        }
         // Not one option or the other, which would be a copy.
         let (small, any);
         let basis = match Basis::small(outline.corners) {

@@ -296,6 +296,7 @@ impl<'a, C: Pixel> Renderer<'a, C> {
             facing: Facing::new(camera, &pose),
             lighting,
             constant,
+            convex: None,
             bins: Bins::new(self.size.height, self.band_rows()),
             binned: false,
             top: 0,
@@ -344,6 +345,8 @@ pub struct Frame<'r, 'a, C> {
     lighting: Lighting,
     /// See [`Lighting::constant`].
     constant: Option<[[i32; 3]; 2]>,
+    /// Where triangles may overlap, if not everywhere.
+    convex: Option<Convex>,
     bins: Bins,
     /// All triangles found room in the bins.
     binned: bool,
@@ -381,45 +384,47 @@ impl<C: Pixel> Frame<'_, '_, C> {
     fn prepare(&mut self) {
         // A copy, which stays in registers.
         let facing = self.facing;
-        let Self { renderer, view, lighting, constant, bins, stats, .. } = self;
+        let Self { renderer, view, lighting, constant, convex, bins, stats, .. } = self;
         let viewport = renderer.viewport();
         let Renderer { stream, memory: Memory { vertices: cache, bins: entries, palettes, .. }, shader, size, .. } = &mut **renderer;
         let entries = &mut **entries;
-        let convex = if viewport.antialiased { None } else { Convex::new(stream, view, *size) };
-        let mut clipped = false;
+        if !viewport.antialiased {
+            *convex = Convex::new(stream, view, *size);
+        }
+        let leaning = if convex.is_some() { facing.leaning() } else { Facing::FRONT };
         cache.iter_mut().take(stream.vertices.len()).for_each(|vertex| vertex.state = State::Idle);
         for mesh in stream.meshes.iter().rev() {
             let (vertices, triangles) = (stream.vertices_of(mesh).unwrap_or_default(), stream.triangles_of(mesh).unwrap_or_default());
             let Some(palette) = palettes.get(usize::from(mesh.material)) else { continue };
             let lit = shader.lights_vertices(constant.is_some()).then_some(palette);
-            let stage = Stage { view, lighting, constant: constant.map(directions), lit, contested: convex.is_none() };
+            let stage = Stage { view, lighting, constant: constant.map(directions), lit };
             let cached = cache.get_mut(mesh.first_vertex as usize..).unwrap_or_default();
             let (first, mut rest) = (mesh.first_triangle, triangles);
             while let [before @ .., triangle] = rest {
                 rest = before;
-                if !facing.may_face(triangle) {
+                let height = facing.height(triangle);
+                if height < leaning {
                     continue;
                 }
                 let bounds = match stage.corners(cached, vertices, triangle) {
                     Some(corners) => {
                         let extent = Extent::new(corners);
-                        if convex.is_some_and(|convex| !convex.is_thick(&extent)) {
-                            contest(cached, triangle);
+                        if let Some(convex) = convex {
+                            convex.see(&extent);
                         }
                         viewport.bounds(&extent)
                     }
                     None => {
-                        clipped = true;
+                        *convex = None;
                         stage.bounds(viewport, vertices, triangle)
                     }
                 };
-                if let Some(Bounds { top, bottom, .. }) = bounds {
+                if let Some(Bounds { top, bottom, .. }) = bounds
+                    && height >= Facing::FRONT
+                {
                     bins.push(entries, first + rest.len() as u32, top as u32, bottom as u32);
                 }
             }
-        }
-        if clipped {
-            cache.iter_mut().for_each(|vertex| vertex.contested = true);
         }
         stats.uncached = stream.vertices.len().saturating_sub(cache.len()) as u32;
         if let Some(count) = bins.count() {
@@ -433,7 +438,7 @@ impl<C: Pixel> Frame<'_, '_, C> {
         let Self { renderer, view, lighting, constant, .. } = self;
         let lit = renderer.shader.lights_vertices(constant.is_some());
         let palette = renderer.memory.palettes.get(usize::from(mesh.material))?;
-        Some(Stage { view, lighting, constant: constant.map(directions), lit: lit.then_some(palette), contested: true })
+        Some(Stage { view, lighting, constant: constant.map(directions), lit: lit.then_some(palette) })
     }
 
     /// The mesh of triangle `id`.
@@ -533,6 +538,7 @@ impl<C: Pixel> Frame<'_, '_, C> {
         Some(Drawing {
             shading,
             stage: self.stage(mesh)?,
+            convex: self.convex.as_ref(),
             vertices: stream.vertices_of(mesh)?,
             kept: memory.vertices.get(mesh.first_vertex as usize..).unwrap_or_default(),
             viewport: self.renderer.viewport(),
@@ -599,18 +605,6 @@ pub(crate) struct Stage<'f, C> {
     constant: Option<[Direction; 2]>,
     /// The material, if the method starts from the light at vertices.
     lit: Option<&'f Palette<C>>,
-    /// Triangles may hide one another.
-    contested: bool,
-}
-
-/// Around the corners of `triangle` others may hide one another.
-#[inline(never)]
-fn contest(cached: &mut [ScreenVertex], triangle: &Triangle) {
-    for corner in triangle.corners {
-        if let Some(vertex) = cached.get_mut(usize::from(corner)) {
-            vertex.contested = true;
-        }
-    }
 }
 
 fn directions(constant: [[i32; 3]; 2]) -> [Direction; 2] {
@@ -654,7 +648,7 @@ impl<C: Pixel> Stage<'_, C> {
                 palette.levels(self.lighting.cosines(wide(vertex.position), normal))
             }
         };
-        ScreenVertex { x, y, depth, light, state: if inside { State::Ready } else { State::Outside }, contested: self.contested }
+        ScreenVertex { x, y, depth, light, state: if inside { State::Ready } else { State::Outside } }
     }
 
     /// The visible box of a triangle that has a corner off the screen, or one that is not kept.

@@ -10,7 +10,6 @@ use crate::{
     scene::Pose,
     stream::record::{Camera, PERSPECTIVE},
 };
-use core::num::NonZeroU32;
 use embedded_graphics_core::geometry::Size;
 
 /// A vertex on the screen, with what its light comes to.
@@ -26,8 +25,6 @@ pub struct ScreenVertex {
     pub light: [i32; 3],
     /// What is known of it in this frame.
     pub state: State,
-    /// Triangles around it may hide one another, see [`crate::convex`].
-    pub contested: bool,
 }
 
 /// What is known of a cached vertex in this frame.
@@ -43,13 +40,17 @@ pub enum State {
 
 impl ScreenVertex {
     /// Nothing yet.
-    pub const EMPTY: Self = Self { x: 0, y: 0, depth: 0, light: [0; 3], state: State::Idle, contested: false };
+    pub const EMPTY: Self = Self { x: 0, y: 0, depth: 0, light: [0; 3], state: State::Idle };
 }
 
 /// Largest distance from the viewport's centre that screen coordinates may have, in 1/16 pixel.
 ///
 /// Twice the widest viewport: triangles that only cross its border are not clipped but walked.
 pub const GUARD: i32 = 4096 << SUBPIXEL;
+
+/// How far a coordinate in eye space may lie from that of a convex body, but for a shift of them all, in units of its last
+/// place: half by its own rounding, and √3 times 0.86 by that in the mesh.
+const MOVED: u32 = 2;
 
 /// Nearness of a vertex at the near plane, Q0.28: less than one, so that rounding cannot wrap it.
 const NEAREST: i32 = (1 << DEPTH) - (1 << 10);
@@ -155,19 +156,23 @@ impl View {
         ([self.centre[0] + x, self.centre[1] - y, depth.min(NEAREST)], within)
     }
 
-    /// How far a small `length` in eye space, in units of its last place, reaches on the screen at most, 1/16 pixel, rounded
-    /// up, from a point in a viewport of this size (1/16 pixel) behind the near plane.
+    /// How far rounding may move a point of a mesh that is marked as [`crate::stream::record::CLOSED_CONVEX`] along x or y, seen in a viewport of
+    /// `size` pixels behind the near plane; `times` that, 1/16 pixel, rounded up.
     #[must_use]
-    pub fn magnified(&self, length: u32, [width, height]: [i32; 2]) -> u32 {
+    pub fn moved(&self, size: Size, times: u32) -> u32 {
         let focal = (self.focal >> 16) as u32;
-        match self.projection {
+        let within = times.wrapping_mul(MOVED).wrapping_mul(match self.projection {
             // Aside by focal / z, and in depth by as much as the point lies aside.
-            Projection::Perspective { .. } => {
-                let near = NonZeroU32::new(self.near.unsigned_abs()).unwrap_or(NonZeroU32::MIN);
-                length.wrapping_mul(focal.wrapping_add(width.max(height).unsigned_abs())) / near + 1
-            }
-            Projection::Orthographic { .. } => (length.wrapping_mul(focal) >> UNIT) + 1,
-        }
+            Projection::Perspective { .. } => focal.wrapping_add(size.width.max(size.height) << (SUBPIXEL - 1)),
+            Projection::Orthographic { .. } => focal,
+        });
+        let unit = match self.projection {
+            Projection::Perspective { .. } => self.near.unsigned_abs(),
+            Projection::Orthographic { .. } => 1 << UNIT,
+        };
+        // On the screen it is rounded to the nearest, with 2^-7 to spare for the arithmetic on the way.
+        let rounded = times.wrapping_mul(65).div_ceil(128);
+        within.checked_div(unit).map_or(u32::MAX, |within| within.saturating_add(1).saturating_add(rounded))
     }
 
     /// How far `eye` lies on the inner side of a clip plane (near, then the guard band's left, right, bottom, top); negative outside.

@@ -68,7 +68,7 @@ impl Random {
 }
 
 fn vertex([x, y]: [i32; 2]) -> ScreenVertex {
-    ScreenVertex { x, y, depth: 1 << 27, light: [0; 3], state: State::Ready, contested: true }
+    ScreenVertex { x, y, depth: 1 << 27, light: [0; 3], state: State::Ready }
 }
 
 /// Adds to `counts` the pixels that the core draws for a triangle, band by band; returns how many it says they are.

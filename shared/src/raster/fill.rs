@@ -7,15 +7,24 @@ use crate::{
 
 /// Decides whether a pixel is seen.
 pub trait Sight: Walker {
-    /// Whether the current pixel is nearer than `depth`, which it then takes.
-    fn passes(&self, depth: &mut u16) -> bool;
+    /// What it needs of the depth buffer for `count` pixels from `start`.
+    fn depth(depth: &mut [u16], start: usize, count: usize) -> Option<&mut [u16]>;
+
+    /// Whether pixel `i` of `depth` is seen, which then is as deep as this.
+    fn passes(&self, depth: &mut [u16], i: usize) -> bool;
 }
 
-/// A nearness to be tested; what is seen is in the upper half.
+/// A nearness to be tested; what is stored of it is the upper half.
 impl Sight for Linear<1> {
     #[inline(always)]
-    fn passes(&self, depth: &mut u16) -> bool {
+    fn depth(depth: &mut [u16], start: usize, count: usize) -> Option<&mut [u16]> {
+        depth.get_mut(start..)?.get_mut(..count)
+    }
+
+    #[inline(always)]
+    fn passes(&self, depth: &mut [u16], i: usize) -> bool {
         let nearness = (self.value()[0] >> 16) as u16;
+        let Some(depth) = depth.get_mut(i) else { return false };
         let passes = nearness > *depth;
         if passes {
             *depth = nearness;
@@ -27,12 +36,17 @@ impl Sight for Linear<1> {
 /// Nothing hides it.
 impl Sight for Constant {
     #[inline(always)]
-    fn passes(&self, _: &mut u16) -> bool {
+    fn depth(_: &mut [u16], _: usize, _: usize) -> Option<&mut [u16]> {
+        Some(&mut [])
+    }
+
+    #[inline(always)]
+    fn passes(&self, _: &mut [u16], _: usize) -> bool {
         true
     }
 }
 
-/// Shades the pixels of one span from right to left where they are nearer than what is there.
+/// Shades the pixels of one span from right to left where they are seen.
 ///
 /// `sight` and `walker` stand one pixel right of the span. They step first and the index counts down
 /// to zero: the loop ends on its own subtraction, and every slice is checked
@@ -50,12 +64,12 @@ pub fn fill<S: Sight, W: Walker, T: Tone<W::Value>>(
     left: usize,
 ) {
     let mut i = pixels.len();
-    let Some(depth) = depth.get_mut(..i) else { return };
+    let Some(depth) = S::depth(depth, 0, i) else { return };
     while i > 0 {
         i -= 1;
         sight.step();
         walker.step();
-        if sight.passes(&mut depth[i]) {
+        if sight.passes(depth, i) {
             pixels[i] = tone.tone(walker.value(), left + i);
         }
     }

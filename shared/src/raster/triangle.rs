@@ -25,7 +25,7 @@ pub struct Outline {
     /// Which of its pixels are drawn.
     pub part: Part,
     /// Others may hide it, or it them.
-    pub(super) contested: bool,
+    pub contested: bool,
 }
 
 /// What steps from row to row. It lives in memory, so that the pixel loop gets the registers.
@@ -131,13 +131,7 @@ impl Outline {
         let [a, b, c] = corners;
         let turned = if b.y < a.y || c.y < a.y { if c.y < b.y { 2 } else { 1 } } else { 0 };
         let [a, b, c] = turn(corners, turned);
-        Self {
-            corners: [[a.x, a.y], [b.x, b.y], [c.x, c.y]],
-            depth: [a.depth, b.depth, c.depth],
-            turned,
-            part,
-            contested: a.contested || b.contested || c.contested,
-        }
+        Self { corners: [[a.x, a.y], [b.x, b.y], [c.x, c.y]], depth: [a.depth, b.depth, c.depth], turned, part, contested: true }
     }
 
     /// Its grid is finer than the pixels' by 2 to this power.
@@ -161,18 +155,25 @@ impl Outline {
             return shape.draw(basis, patch, tone, band, &mut |_| [i32::MIN, i32::MAX]);
         }
         let sides = self.sides(band);
-        if sides.row >= sides.stop {
-            0
-        } else if self.contested {
-            self.draw_rows(sides, basis, self.plane(basis, sides.row), patch, tone, band)
-        } else {
-            self.draw_rows(sides, basis, Constant, patch, tone, band)
-        }
+        if sides.row >= sides.stop { 0 } else { self.walk(sides, basis, self.plane(basis, sides.row), patch, tone, band) }
     }
 
-    /// The same, `depth` standing on the first row.
+    /// As [`Self::draw`], without depth: only where nothing is contested, and without antialiasing.
     #[inline(always)]
-    fn draw_rows<D: Patch<Walker: Sight>, P: Patch, T: Tone<<P::Walker as Walker>::Value>>(
+    pub fn draw_alone<P: Patch, T: Tone<<P::Walker as Walker>::Value>>(
+        &self,
+        basis: &Basis,
+        patch: P,
+        tone: T,
+        band: &mut Band<'_, T::Pixel>,
+    ) -> u32 {
+        let sides = self.sides(band);
+        if sides.row >= sides.stop { 0 } else { self.walk(sides, basis, Constant, patch, tone, band) }
+    }
+
+    /// Walks down its `sides`; `depth` stands on the first row.
+    #[inline(always)]
+    fn walk<D: Patch<Walker: Sight>, P: Patch, T: Tone<<P::Walker as Walker>::Value>>(
         &self,
         mut sides: Sides,
         basis: &Basis,
@@ -246,9 +247,8 @@ pub(super) fn row<D: Patch<Walker: Sight>, P: Patch, T: Tone<<P::Walker as Walke
     let mut drawn = 0;
     if count > 0
         && let Some(pixels) = band.pixels.get_mut(start..)
-        && let Some(depth) = band.depth.get_mut(start..)
         && let Some(pixels) = pixels.get_mut(..count)
-        && let Some(depth) = depth.get_mut(..count)
+        && let Some(depth) = D::Walker::depth(band.depth, start, count)
     {
         fill(pixels, depth, rows.depth.enter(right as i32), rows.patch.enter(right as i32), &rows.tone, left);
         drawn = count as u32;

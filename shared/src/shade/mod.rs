@@ -60,6 +60,7 @@ use crate::{
     palette::Palette,
     pixel::Pixel,
     poly::{
+        Patch, Walker,
         basis::Basis,
         field::{Field, Nodes},
     },
@@ -99,6 +100,16 @@ impl Facet<'_> {
         turn([ca, bc, ab], self.outline.turned)
     }
 
+    /// Draws it, without depth where that is possible and worth a loop of its own; returns the pixels in `band`.
+    #[inline(always)]
+    fn fill<P: Patch, T: Tone<<P::Walker as Walker>::Value>>(&self, patch: P, tone: T, band: &mut Band<'_, T::Pixel>) -> u32 {
+        if T::CHEAP && !self.outline.contested {
+            self.outline.draw_alone(self.basis, patch, tone, band)
+        } else {
+            self.outline.draw(self.basis, patch, tone, band)
+        }
+    }
+
     /// Nowhere on the triangle does the highlight of one constant light reach a visible level:
     /// N·H is linear and |N| at least rho.
     #[inline(always)]
@@ -128,7 +139,7 @@ impl Area for Facet<'_> {
         if let Some(nearness) = self.nearness {
             return self.outline.draw(self.basis, Hyperbolic::new(self.basis, nearness, field.surface()), tone, band);
         }
-        self.outline.draw(self.basis, field.fit(self.basis), tone, band)
+        self.fill(field.fit(self.basis), tone, band)
     }
 }
 

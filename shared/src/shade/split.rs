@@ -192,14 +192,7 @@ mod tests {
             state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
             (state >> 48) as i16 / 2
         };
-        let screen = [[0, 0], [160, 90], [20, 200]].map(|[x, y]| ScreenVertex {
-            x,
-            y,
-            depth: 0,
-            light: [0; 3],
-            state: State::Ready,
-            contested: true,
-        });
+        let screen = [[0, 0], [160, 90], [20, 200]].map(|[x, y]| ScreenVertex { x, y, depth: 0, light: [0; 3], state: State::Ready });
         let [a, b, c] = &screen;
         let outline = Outline::new([a, b, c], crate::raster::smooth::Part::Centres);
         let basis = Basis::small(outline.corners).unwrap();
