@@ -49,8 +49,8 @@ pub struct Convex {
     thickness: i32,
     /// Of the viewport, 1/16 pixel.
     size: [i32; 2],
-    /// Fraction bits of a cell in 1/16 pixel.
-    cell: u32,
+    /// Cells per 1/16 pixel, Q.16.
+    scale: [i32; 2],
     /// Contested cells, a row each.
     contested: [u32; CELLS as usize],
 }
@@ -64,11 +64,11 @@ impl Convex {
         let thickness = view.moved(size, 3);
         // The body lies within one unit of its origin.
         let is_seen = camera.projection == PERSPECTIVE || camera.translation[2] + (1 << UNIT) + BEHIND <= camera.far;
-        let larger = size.width.max(size.height) << SUBPIXEL;
+        let size = [size.width, size.height].map(|side| (side << SUBPIXEL) as i32);
         (flags & CLOSED_CONVEX != 0 && is_seen && thickness < THICKEST).then_some(Self {
             thickness: thickness as i32,
-            size: [size.width, size.height].map(|side| (side << SUBPIXEL) as i32),
-            cell: larger.div_ceil(CELLS).next_power_of_two().ilog2(),
+            size,
+            scale: size.map(|side| ((CELLS << 16) as i32).checked_div(side).unwrap_or(0)),
             contested: [0; CELLS as usize],
         })
     }
@@ -93,8 +93,8 @@ impl Convex {
     fn is_thick(&self, extent: &Extent) -> bool {
         let [width, height] = self.size;
         let inside = extent.left | extent.top | (width - extent.right) | (height - extent.bottom) >= 0;
-        // It is at least as thick as twice its area over its size.
-        inside && extent.area.unsigned_abs() >= (self.thickness * extent.size()) as u32
+        // It is at least as thick as twice its area over its length.
+        inside && extent.area.unsigned_abs() >= (self.thickness * extent.length()) as u32
     }
 
     #[inline(never)]
@@ -106,9 +106,10 @@ impl Convex {
     /// Rows and columns of the grid within `around` of a box; what lies beside the grid counts as its border.
     #[inline(always)]
     fn cells(&self, extent: &Extent, around: i32) -> (RangeInclusive<usize>, u32) {
-        let cell = |c: i32| (c >> self.cell).clamp(0, CELLS as i32 - 1) as u32;
-        let [left, right] = [cell(extent.left - around), cell(extent.right + around)];
-        let [top, bottom] = [cell(extent.top - around), cell(extent.bottom + around)];
+        let [[width, height], [across, down]] = [self.size, self.scale];
+        let cell = |c: i32, side: i32, scale: i32| ((c.clamp(0, side - 1) * scale) >> 16) as u32;
+        let [left, right] = [extent.left - around, extent.right + around].map(|x| cell(x, width, across));
+        let [top, bottom] = [extent.top - around, extent.bottom + around].map(|y| cell(y, height, down));
         (top as usize..=bottom as usize, (u32::MAX << left) & (u32::MAX >> (CELLS - 1 - right)))
     }
 }

@@ -91,11 +91,13 @@ impl Extent {
         Self { left, right, top, bottom, area }
     }
 
-    /// Width and height together: no side is longer.
+    /// Its longest side is no longer: the larger of width and height and half of the other, since
+    /// x² + y² <= (x + y/2)² where y <= x.
     #[inline(always)]
     #[must_use]
-    pub fn size(&self) -> i32 {
-        self.right - self.left + (self.bottom - self.top)
+    pub fn length(&self) -> i32 {
+        let (width, height) = (self.right - self.left, self.bottom - self.top);
+        width.max(height) + ((width.min(height) + 1) >> 1)
     }
 }
 
