@@ -68,7 +68,8 @@ impl Convex {
         (flags & CLOSED_CONVEX != 0 && is_seen && thickness < THICKEST).then_some(Self {
             thickness: thickness as i32,
             size,
-            scale: size.map(|side| ((CELLS << 16) as i32).checked_div(side).unwrap_or(0)),
+            // The last coordinate lies in the last cell.
+            scale: size.map(|side| ((CELLS << 16) as i32).checked_div(side + 1).unwrap_or(0)),
             contested: [0; CELLS as usize],
         })
     }
@@ -76,40 +77,46 @@ impl Convex {
     /// Takes notice of a triangle that may show its front.
     #[inline(always)]
     pub fn see(&mut self, extent: &Extent) {
-        if !self.is_thick(extent) {
+        let inside = self.is_inside([extent.left, extent.right], [extent.top, extent.bottom]);
+        // It is at least as thick as twice its area over its length.
+        if !inside || extent.area.unsigned_abs() < (self.thickness * extent.length()) as u32 {
             self.contest(extent);
         }
     }
 
-    /// Whether others may overlap a triangle; all that may show their front have been seen.
+    #[inline(never)]
+    fn contest(&mut self, extent: &Extent) {
+        let ([width, height], around) = (self.size, self.thickness);
+        let columns = [extent.left - around, extent.right + around].map(|x| x.clamp(0, width));
+        let rows = [extent.top - around, extent.bottom + around].map(|y| y.clamp(0, height));
+        let (rows, columns) = self.cells(columns, rows);
+        self.contested.get_mut(rows).unwrap_or_default().iter_mut().for_each(|row| *row |= columns);
+    }
+
+    /// Whether others may overlap a triangle, its top corner first; all that may show their front have been seen.
     #[inline(never)]
     #[must_use]
-    pub fn contests(&self, extent: &Extent) -> bool {
-        let (rows, columns) = self.cells(extent, 0);
+    pub fn contests(&self, [[x0, top], [x1, y1], [x2, y2]]: &[[i32; 2]; 3]) -> bool {
+        let (columns, rows) = ([*x0.min(x1).min(x2), *x0.max(x1).max(x2)], [*top, *y1.max(y2)]);
+        if !self.is_inside(columns, rows) {
+            return true;
+        }
+        let (rows, columns) = self.cells(columns, rows);
         self.contested.get(rows).is_none_or(|rows| rows.iter().any(|row| row & columns != 0))
     }
 
     #[inline(always)]
-    fn is_thick(&self, extent: &Extent) -> bool {
+    fn is_inside(&self, [left, right]: [i32; 2], [top, bottom]: [i32; 2]) -> bool {
         let [width, height] = self.size;
-        let inside = extent.left | extent.top | (width - extent.right) | (height - extent.bottom) >= 0;
-        // It is at least as thick as twice its area over its length.
-        inside && extent.area.unsigned_abs() >= (self.thickness * extent.length()) as u32
+        left | top | (width - right) | (height - bottom) >= 0
     }
 
-    #[inline(never)]
-    fn contest(&mut self, extent: &Extent) {
-        let (rows, columns) = self.cells(extent, self.thickness);
-        self.contested.get_mut(rows).unwrap_or_default().iter_mut().for_each(|row| *row |= columns);
-    }
-
-    /// Rows and columns of the grid within `around` of a box; what lies beside the grid counts as its border.
+    /// Rows and columns of the grid that a box in the viewport touches.
     #[inline(always)]
-    fn cells(&self, extent: &Extent, around: i32) -> (RangeInclusive<usize>, u32) {
-        let [[width, height], [across, down]] = [self.size, self.scale];
-        let cell = |c: i32, side: i32, scale: i32| ((c.clamp(0, side - 1) * scale) >> 16) as u32;
-        let [left, right] = [extent.left - around, extent.right + around].map(|x| cell(x, width, across));
-        let [top, bottom] = [extent.top - around, extent.bottom + around].map(|y| cell(y, height, down));
-        (top as usize..=bottom as usize, (u32::MAX << left) & (u32::MAX >> (CELLS - 1 - right)))
+    fn cells(&self, columns: [i32; 2], rows: [i32; 2]) -> (RangeInclusive<usize>, u32) {
+        let [across, down] = self.scale;
+        let [left, right] = columns.map(|x| (x * across) as u32 >> 16);
+        let [top, bottom] = rows.map(|y| (y * down) as usize >> 16);
+        (top..=bottom, (u32::MAX << (left & 31)) & (u32::MAX >> ((CELLS - 1).wrapping_sub(right) & 31)))
     }
 }

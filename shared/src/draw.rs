@@ -110,10 +110,7 @@ impl<C: Pixel> Drawing<'_, C> {
 
     /// Sets up a triangle and draws part of its pixels.
     fn part(&self, part: Part, face: &Face<'_>, band: &mut Band<'_, C>) -> u32 {
-        let mut outline = Outline::new(face.corners, part);
-        if let Some(convex) = self.convex {
-            outline.contested = convex.contests(&Extent::new(outline.corners));
-        }
+        let outline = Outline::new(face.corners, part);
         // Not one option or the other, which would be a copy.
         let (small, any);
         let basis = match Basis::small(outline.corners) {
@@ -135,6 +132,7 @@ impl<C: Pixel> Drawing<'_, C> {
             corners,
             vertices: turn(face.vertices, by),
             triangle: face.triangle,
+            convex: self.convex,
             #[cfg(feature = "all-shaders")]
             nearness: self.nearness(corners),
         };

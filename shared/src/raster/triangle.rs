@@ -24,8 +24,6 @@ pub struct Outline {
     pub turned: usize,
     /// Which of its pixels are drawn.
     pub part: Part,
-    /// Others may hide it, or it them.
-    pub contested: bool,
 }
 
 /// What steps from row to row. It lives in memory, so that the pixel loop gets the registers.
@@ -131,7 +129,7 @@ impl Outline {
         let [a, b, c] = corners;
         let turned = if b.y < a.y || c.y < a.y { if c.y < b.y { 2 } else { 1 } } else { 0 };
         let [a, b, c] = turn(corners, turned);
-        Self { corners: [[a.x, a.y], [b.x, b.y], [c.x, c.y]], depth: [a.depth, b.depth, c.depth], turned, part, contested: true }
+        Self { corners: [[a.x, a.y], [b.x, b.y], [c.x, c.y]], depth: [a.depth, b.depth, c.depth], turned, part }
     }
 
     /// Its grid is finer than the pixels' by 2 to this power.
@@ -158,7 +156,7 @@ impl Outline {
         if sides.row >= sides.stop { 0 } else { self.walk(sides, basis, self.plane(basis, sides.row), patch, tone, band) }
     }
 
-    /// As [`Self::draw`], without depth: only where nothing is contested, and without antialiasing.
+    /// As [`Self::draw`], without depth: where nothing else is, and without antialiasing.
     #[inline(always)]
     pub fn draw_alone<P: Patch, T: Tone<<P::Walker as Walker>::Value>>(
         &self,

@@ -56,6 +56,7 @@ mod taylor_finite;
 use crate::poly::hyperbolic::Hyperbolic;
 use crate::{
     band::Band,
+    convex::Convex,
     format::{BIAS, LEVEL, RHO, WALK},
     palette::Palette,
     pixel::Pixel,
@@ -88,6 +89,8 @@ pub(crate) struct Facet<'f> {
     pub(crate) corners: [&'f ScreenVertex; 3],
     pub(crate) vertices: [&'f Vertex; 3],
     pub(crate) triangle: &'f Triangle,
+    /// Where triangles may overlap, if not everywhere.
+    pub(crate) convex: Option<&'f Convex>,
     /// Of the corners, where it matters.
     #[cfg(feature = "all-shaders")]
     pub(crate) nearness: Option<[i32; 3]>,
@@ -103,7 +106,7 @@ impl Facet<'_> {
     /// Draws it, without depth where that is possible and worth a loop of its own; returns the pixels in `band`.
     #[inline(always)]
     fn fill<P: Patch, T: Tone<<P::Walker as Walker>::Value>>(&self, patch: P, tone: T, band: &mut Band<'_, T::Pixel>) -> u32 {
-        if T::CHEAP && !self.outline.contested {
+        if T::CHEAP && self.convex.is_some_and(|convex| !convex.contests(&self.outline.corners)) {
             self.outline.draw_alone(self.basis, patch, tone, band)
         } else {
             self.outline.draw(self.basis, patch, tone, band)
