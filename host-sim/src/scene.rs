@@ -42,7 +42,7 @@ pub fn description(name: &str) -> &'static str {
         "sphere-168" => "sphere of 168 triangles, parallel rays",
         "sphere-374" => "sphere of 374 triangles, parallel rays",
         "sphere-690" => "sphere of 690 triangles, parallel rays",
-        "peer-sphere" => "sphere of 720 triangles on 43,800 pixels, for comparison with other renderers",
+        PEER => "sphere of 720 triangles on 43,800 pixels, for comparison with other renderers; as peer-sphere-convex without depth",
         "sphere-40" => "sphere of 40 triangles, near point light, local viewer",
         "dodecahedron" => "dodecahedron with a sphere's normals, near point light, local viewer",
         "torus" => "torus of 3,750 triangles, blue with a white highlight",
