@@ -87,8 +87,9 @@ impl Convex {
     #[inline(never)]
     fn contest(&mut self, extent: &Extent) {
         let ([width, height], around) = (self.size, self.thickness);
-        let columns = [extent.left - around, extent.right + around].map(|x| x.clamp(0, width));
-        let rows = [extent.top - around, extent.bottom + around].map(|y| y.clamp(0, height));
+        // `clamp` panics if the ends are in the wrong order.
+        let columns = [extent.left - around, extent.right + around].map(|x| x.max(0).min(width));
+        let rows = [extent.top - around, extent.bottom + around].map(|y| y.max(0).min(height));
         let (rows, columns) = self.cells(columns, rows);
         self.contested.get_mut(rows).unwrap_or_default().iter_mut().for_each(|row| *row |= columns);
     }
