@@ -4,6 +4,7 @@ pub mod bench;
 pub mod board;
 pub mod bytes;
 pub mod compare;
+pub mod convex;
 pub mod image;
 pub mod level;
 pub mod look;

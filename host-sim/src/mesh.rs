@@ -190,7 +190,7 @@ fn drop_degenerate(mesh: &mut Mesh) {
 }
 
 /// Whether each edge has exactly one partner that runs the other way.
-fn is_closed(mesh: &Mesh) -> bool {
+pub(crate) fn is_closed(mesh: &Mesh) -> bool {
     let mut places: HashMap<[u64; 3], usize> = HashMap::new();
     let ids: Vec<usize> = mesh
         .positions
@@ -204,7 +204,7 @@ fn is_closed(mesh: &Mesh) -> bool {
 }
 
 /// Whether each directed edge occurs once, and once the other way.
-pub(crate) fn edges_pair_up<P: Copy + Eq + std::hash::Hash>(triangles: impl Iterator<Item = [P; 3]>) -> bool {
+fn edges_pair_up<P: Copy + Eq + std::hash::Hash>(triangles: impl Iterator<Item = [P; 3]>) -> bool {
     let mut edges: HashMap<(P, P), usize> = HashMap::new();
     for [a, b, c] in triangles {
         for edge in [(a, b), (b, c), (c, a)] {

@@ -1,7 +1,8 @@
 //! A welded mesh to the records of a stream.
 
 use crate::{
-    mesh::{Mesh, edges_pair_up},
+    convex::is_closed_convex,
+    mesh::Mesh,
     vector::{V3, add, cross, dot, length, scale, sub, unit},
 };
 use microphong::{
@@ -18,8 +19,6 @@ const MAX_VERTICES: usize = u16::MAX as usize;
 const FARTHEST: f64 = 16.0 * 1.733;
 /// Units in the last place by which the renderer's own eye position, rounded, may be off along a normal.
 const EYE_SLACK: f64 = 4.0;
-/// Quantised corners of a convex body leave its hull by as much, in units of the last place.
-const CONVEX_SLACK: f64 = 2.0;
 
 /// Records of one mesh, indices from 0.
 #[derive(Clone, Debug, Default)]
@@ -62,8 +61,8 @@ pub fn quantise(mesh: &Mesh) -> (Vec<Part>, usize) {
         }
     }
     parts.retain(|part| !part.triangles.is_empty());
-    for part in &mut parts {
-        part.closed_convex = is_closed(part) && is_convex(part);
+    if let ([part], 0) = (&mut parts[..], dropped) {
+        part.closed_convex = is_closed_convex(mesh, part);
     }
     (parts, dropped)
 }
@@ -132,15 +131,4 @@ fn offset(plane: V3, distance: f64, quantised: [i16; 3]) -> i16 {
     let across = length(sub(rounded, scale(plane, along)));
     let reach = (FARTHEST * FARTHEST - distance * distance).max(0.0).sqrt();
     (along * distance - across * reach - EYE_SLACK).floor() as i16
-}
-
-fn is_closed(part: &Part) -> bool {
-    edges_pair_up(part.triangles.iter().map(|t| t.corners.map(|c| part.vertices[usize::from(c)].position)))
-}
-
-fn is_convex(part: &Part) -> bool {
-    part.triangles.iter().all(|t| {
-        let [a, b, c] = t.corners.map(|c| widen(part.vertices[usize::from(c)].position));
-        unit(cross(sub(b, a), sub(c, a))).is_some_and(|n| part.vertices.iter().all(|v| dot(n, sub(widen(v.position), a)) <= CONVEX_SLACK))
-    })
 }

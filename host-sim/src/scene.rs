@@ -28,6 +28,11 @@ pub struct Scene {
 pub const NAMES: [&str; 10] =
     ["teapot", "bunny", "sphere-168", "sphere-374", "sphere-690", "peer-sphere", "sphere-40", "dodecahedron", "torus", "triangle"];
 
+const PEER: &str = "peer-sphere";
+
+/// `peer-sphere`, and marked as convex: drawn without depth. Not one of [`NAMES`], for it shows the same.
+pub const CONVEX: &str = "peer-sphere-convex";
+
 /// What a built-in scene shows; empty for other names.
 #[must_use]
 pub fn description(name: &str) -> &'static str {
@@ -37,7 +42,7 @@ pub fn description(name: &str) -> &'static str {
         "sphere-168" => "sphere of 168 triangles, parallel rays",
         "sphere-374" => "sphere of 374 triangles, parallel rays",
         "sphere-690" => "sphere of 690 triangles, parallel rays",
-        "peer-sphere" => "sphere of 720 triangles on 43,800 pixels, for comparison with other renderers",
+        PEER => "sphere of 720 triangles on 43,800 pixels, for comparison with other renderers; as peer-sphere-convex without depth",
         "sphere-40" => "sphere of 40 triangles, near point light, local viewer",
         "dodecahedron" => "dodecahedron with a sphere's normals, near point light, local viewer",
         "torus" => "torus of 3,750 triangles, blue with a white highlight",
@@ -77,7 +82,7 @@ const BUNNY: &str = include_str!("../../tests/meshes/bunny.obj");
 /// # Errors
 /// [`Unknown`] when `name_or_path` is neither; else what is wrong with the file.
 pub fn load(name_or_path: &str) -> Result<Scene> {
-    if NAMES.contains(&name_or_path) {
+    if NAMES.contains(&name_or_path) || name_or_path == CONVEX {
         let (stream, size) = built_in(name_or_path)?;
         return Ok(Scene { name: name_or_path.to_owned(), stream, size });
     }
@@ -124,14 +129,19 @@ fn built_in(name: &str) -> Result<(StreamBytes, (u32, u32))> {
         "sphere-168" => ball(12, 8),
         "sphere-374" => ball(17, 12),
         "sphere-690" => ball(23, 16),
-        "peer-sphere" => peer_sphere(),
+        PEER | CONVEX => peer_sphere(),
         "sphere-40" => (shapes::sphere(5, 5, 0.0), near_light([0.9, 0.92, 1.0], tilted(0.5, 0.35)), SQUARE),
         "dodecahedron" => (shapes::dodecahedron(), near_light([0.75, 1.0, 0.6], tilted(0.3, 0.2)), SQUARE),
         "torus" => torus(),
         "triangle" => triangle(),
         _ => return Err(Unknown(name.to_owned()).into()),
     };
-    Ok((look.stream(&quantise(&mesh).0)?, size))
+    let (mut parts, _) = quantise(&mesh);
+    if name == PEER {
+        // The other renderers test depth.
+        parts.iter_mut().for_each(|part| part.closed_convex = false);
+    }
+    Ok((look.stream(&parts)?, size))
 }
 
 type Parts = (Mesh, Look, (u32, u32));

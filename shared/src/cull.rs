@@ -1,10 +1,11 @@
-//! Triangles that face away, told apart in object space: three products, no vertex touched.
+//! Triangles that face away, told apart in object space: three products, no vertex touched. Those that it lets through are
+//! told apart by their extent on the screen.
 
 use crate::{
     format::{ROTATION, UNIT},
     math::vector::{narrow_dot, wide},
     scene::Pose,
-    stream::record::{Camera, PERSPECTIVE, Triangle},
+    stream::record::{Camera, LEAN, PERSPECTIVE, Triangle},
 };
 
 /// Where the camera is, as planes see it.
@@ -38,7 +39,71 @@ impl Facing {
     #[inline(always)]
     #[must_use]
     pub fn may_face(&self, triangle: &Triangle) -> bool {
-        let plane = i32::from(triangle.offset).wrapping_mul(self.offset_scale);
-        narrow_dot(self.vector, wide(triangle.normal)).wrapping_sub(plane) >= -SLACK
+        self.height(triangle) >= Self::FRONT
     }
+
+    /// Least [`Self::height`] above triangles that may show their front.
+    pub(crate) const FRONT: i32 = -SLACK;
+
+    /// How high the eye lies above the plane of `triangle`.
+    #[inline(always)]
+    #[must_use]
+    pub(crate) fn height(&self, triangle: &Triangle) -> i32 {
+        let plane = i32::from(triangle.offset).wrapping_mul(self.offset_scale);
+        narrow_dot(self.vector, wide(triangle.normal)).wrapping_sub(plane)
+    }
+
+    /// Least [`Self::height`] above triangles that might show their front if their plane leaned as [`crate::stream::record::CLOSED_CONVEX`] allows.
+    #[must_use]
+    pub(crate) fn leaning(&self) -> i32 {
+        // From the eye to any point of the body: its own distance from the origin and, with room to spare, a radius.
+        let [x, y, z] = self.vector.map(i32::abs);
+        let reach = x + y + z + 2 * self.offset_scale;
+        Self::FRONT - (reach << (UNIT - LEAN))
+    }
+}
+
+/// What a triangle takes up on the screen.
+#[derive(Clone, Copy, Debug)]
+pub struct Extent {
+    /// Least column, 1/16 pixel.
+    pub left: i32,
+    /// Largest column.
+    pub right: i32,
+    /// Least row.
+    pub top: i32,
+    /// Largest row.
+    pub bottom: i32,
+    /// Twice the signed area, 1/256 pixel², as far as 32 bits hold it; positive seen from the front.
+    pub area: i32,
+}
+
+impl Extent {
+    /// Of corners `[x, y]` that run clockwise seen from the front.
+    #[inline(always)]
+    #[must_use]
+    pub fn new([[x0, y0], [x1, y1], [x2, y2]]: [[i32; 2]; 3]) -> Self {
+        let (left, right) = (x0.min(x1).min(x2), x0.max(x1).max(x2));
+        let (top, bottom) = (y0.min(y1).min(y2), y0.max(y1).max(y2));
+        let (x1, y1, x2, y2) = (x1 - x0, y1 - y0, x2 - x0, y2 - y0);
+        // Products of 64 bits are calls on an M0+.
+        let area = if (right - left) | (bottom - top) < 1 << 15 { x1 * y2 - x2 * y1 } else { large_area([x1, y1], [x2, y2]) };
+        Self { left, right, top, bottom, area }
+    }
+
+    /// Its longest side is no longer: the larger of width and height and half of the other, since
+    /// x² + y² <= (x + y/2)² where y <= x.
+    #[inline(always)]
+    #[must_use]
+    pub fn length(&self) -> i32 {
+        let (width, height) = (self.right - self.left, self.bottom - self.top);
+        width.max(height) + ((width.min(height) + 1) >> 1)
+    }
+}
+
+#[cold]
+#[inline(never)]
+fn large_area([x1, y1]: [i32; 2], [x2, y2]: [i32; 2]) -> i32 {
+    let area = i64::from(x1) * i64::from(y2) - i64::from(x2) * i64::from(y1);
+    area.clamp(i32::MIN.into(), i32::MAX.into()) as i32
 }

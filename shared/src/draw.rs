@@ -3,6 +3,8 @@
 use crate::{
     band::Band,
     clip,
+    convex::Convex,
+    cull::Extent,
     pixel::Pixel,
     poly::basis::Basis,
     raster::{
@@ -19,6 +21,8 @@ use crate::{
 pub(crate) struct Drawing<'f, C> {
     pub(crate) shading: Shading<'f, C>,
     pub(crate) stage: Stage<'f, C>,
+    /// Where triangles may overlap, if not everywhere.
+    pub(crate) convex: Option<&'f Convex>,
     pub(crate) vertices: &'f [Vertex],
     /// Those on the screen, as far as they are kept.
     pub(crate) kept: &'f [ScreenVertex],
@@ -58,7 +62,7 @@ impl<C: Pixel> Drawing<'_, C> {
     /// The visible box of `triangle`; `None` if it shows its back, or no pixel can belong to it.
     pub(crate) fn bounds(&self, triangle: &Triangle) -> Option<Bounds> {
         match self.corners(places(triangle)) {
-            Some(corners) => self.viewport.bounds(corners),
+            Some([a, b, c]) => self.viewport.bounds(&Extent::new([[a.x, a.y], [b.x, b.y], [c.x, c.y]])),
             None => self.stage.bounds(self.viewport, self.vertices, triangle),
         }
     }
@@ -126,6 +130,7 @@ impl<C: Pixel> Drawing<'_, C> {
             corners,
             vertices: turn(face.vertices, by),
             triangle: face.triangle,
+            convex: self.convex,
             #[cfg(feature = "all-shaders")]
             nearness: self.nearness(corners),
         };

@@ -24,6 +24,7 @@
 pub mod band;
 pub mod bin;
 pub mod clip;
+pub mod convex;
 pub mod cull;
 pub mod display;
 pub mod dither;

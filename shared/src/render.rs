@@ -5,15 +5,16 @@ use crate::{
     band::{Band, Blend},
     bin::{Bins, Entry},
     clip,
-    cull::Facing,
+    convex::Convex,
+    cull::{Extent, Facing},
     draw::Drawing,
     format::UNIT,
     math::vector::wide,
     palette::Palette,
     pixel::Pixel,
     raster::{
-        edge::COLUMNS,
-        triangle::{Bounds, Outline},
+        edge::{COLUMNS, first_centre},
+        triangle::Bounds,
     },
     sample::Sample,
     scene::{Direction, Lighting, Pose},
@@ -295,6 +296,7 @@ impl<'a, C: Pixel> Renderer<'a, C> {
             facing: Facing::new(camera, &pose),
             lighting,
             constant,
+            convex: None,
             bins: Bins::new(self.size.height, self.band_rows()),
             binned: false,
             top: 0,
@@ -343,6 +345,8 @@ pub struct Frame<'r, 'a, C> {
     lighting: Lighting,
     /// See [`Lighting::constant`].
     constant: Option<[[i32; 3]; 2]>,
+    /// Where triangles may overlap, if not everywhere.
+    convex: Option<Convex>,
     bins: Bins,
     /// All triangles found room in the bins.
     binned: bool,
@@ -380,10 +384,14 @@ impl<C: Pixel> Frame<'_, '_, C> {
     fn prepare(&mut self) {
         // A copy, which stays in registers.
         let facing = self.facing;
-        let Self { renderer, view, lighting, constant, bins, stats, .. } = self;
+        let Self { renderer, view, lighting, constant, convex, bins, stats, .. } = self;
         let viewport = renderer.viewport();
-        let Renderer { stream, memory: Memory { vertices: cache, bins: entries, palettes, .. }, shader, .. } = &mut **renderer;
+        let Renderer { stream, memory: Memory { vertices: cache, bins: entries, palettes, .. }, shader, size, .. } = &mut **renderer;
         let entries = &mut **entries;
+        if !viewport.antialiased {
+            *convex = Convex::new(stream, view, *size);
+        }
+        let leaning = if convex.is_some() { facing.leaning() } else { Facing::FRONT };
         cache.iter_mut().take(stream.vertices.len()).for_each(|vertex| vertex.state = State::Idle);
         for mesh in stream.meshes.iter().rev() {
             let (vertices, triangles) = (stream.vertices_of(mesh).unwrap_or_default(), stream.triangles_of(mesh).unwrap_or_default());
@@ -394,14 +402,26 @@ impl<C: Pixel> Frame<'_, '_, C> {
             let (first, mut rest) = (mesh.first_triangle, triangles);
             while let [before @ .., triangle] = rest {
                 rest = before;
-                if !facing.may_face(triangle) {
+                let height = facing.height(triangle);
+                if height < leaning {
                     continue;
                 }
                 let bounds = match stage.corners(cached, vertices, triangle) {
-                    Some([a, b, c]) => viewport.bounds([&a, &b, &c]),
-                    None => stage.bounds(viewport, vertices, triangle),
+                    Some(corners) => {
+                        let extent = Extent::new(corners);
+                        if let Some(convex) = convex {
+                            convex.see(&extent);
+                        }
+                        viewport.bounds(&extent)
+                    }
+                    None => {
+                        *convex = None;
+                        stage.bounds(viewport, vertices, triangle)
+                    }
                 };
-                if let Some(Bounds { top, bottom, .. }) = bounds {
+                if let Some(Bounds { top, bottom, .. }) = bounds
+                    && height >= Facing::FRONT
+                {
                     bins.push(entries, first + rest.len() as u32, top as u32, bottom as u32);
                 }
             }
@@ -522,6 +542,7 @@ impl<C: Pixel> Frame<'_, '_, C> {
         Some(Drawing {
             shading,
             stage: self.stage(mesh)?,
+            convex: self.convex.as_ref(),
             vertices: stream.vertices_of(mesh)?,
             kept: memory.vertices.get(mesh.first_vertex as usize..).unwrap_or_default(),
             viewport: self.renderer.viewport(),
@@ -542,14 +563,15 @@ pub(crate) struct Viewport {
 impl Viewport {
     /// The visible box of a triangle; `None` if it shows its back, or no pixel can belong to it.
     #[inline(always)]
-    pub(crate) fn bounds(self, corners: [&ScreenVertex; 3]) -> Option<Bounds> {
-        if Outline::area(corners) <= 0 {
+    pub(crate) fn bounds(self, extent: &Extent) -> Option<Bounds> {
+        if extent.area <= 0 {
             return None;
         }
+        let Extent { left, right, top, bottom, .. } = *extent;
         self.visible(if self.antialiased {
-            Bounds::touched(corners.iter().map(|corner| [corner.x, corner.y, 0]))
+            Bounds::touched([[left, top, 0], [right, bottom, 0]].into_iter())
         } else {
-            Bounds::new(corners)
+            Bounds { left: first_centre(left), top: first_centre(top), right: first_centre(right), bottom: first_centre(bottom) }
         })
     }
 
@@ -594,17 +616,18 @@ fn directions(constant: [[i32; 3]; 2]) -> [Direction; 2] {
 }
 
 impl<C: Pixel> Stage<'_, C> {
-    /// The corners on the screen, turning clockwise, against the stream's order; `None` if one is not kept or off the screen.
+    /// The corners' `[x, y]` on the screen, turning clockwise, against the stream's order; `None` if one is not kept or off
+    /// the screen.
     #[inline(always)]
-    fn corners(&self, cached: &mut [ScreenVertex], vertices: &[Vertex], triangle: &Triangle) -> Option<[ScreenVertex; 3]> {
+    fn corners(&self, cached: &mut [ScreenVertex], vertices: &[Vertex], triangle: &Triangle) -> Option<[[i32; 2]; 3]> {
         let [a, b, c] = triangle.corners;
         let mut place = |corner| self.place(cached, vertices, corner);
         Some([place(a)?, place(c)?, place(b)?])
     }
 
-    /// The screen vertex of `corner`, transformed when it is first asked for.
+    /// Where `corner` is on the screen; it is transformed when it is first asked for.
     #[inline(always)]
-    fn place(&self, cached: &mut [ScreenVertex], vertices: &[Vertex], corner: u16) -> Option<ScreenVertex> {
+    fn place(&self, cached: &mut [ScreenVertex], vertices: &[Vertex], corner: u16) -> Option<[i32; 2]> {
         let screen = cached.get_mut(usize::from(corner))?;
         if screen.state != State::Ready {
             if screen.state == State::Idle {
@@ -614,7 +637,7 @@ impl<C: Pixel> Stage<'_, C> {
                 return None;
             }
         }
-        Some(*screen)
+        Some([screen.x, screen.y])
     }
 
     /// Transforms a vertex, and lights it if the method needs that.
@@ -640,9 +663,8 @@ impl<C: Pixel> Stage<'_, C> {
         // Against the stream's order.
         let vertices = [a?, c?, b?];
         let corners = vertices.map(|vertex| self.transform(vertex));
-        let [a, b, c] = &corners;
         if corners.iter().all(|corner| corner.state == State::Ready) {
-            viewport.bounds([a, b, c])
+            viewport.bounds(&Extent::new(corners.map(|corner| [corner.x, corner.y])))
         } else {
             viewport.clipped_bounds(self.view, vertices)
         }

@@ -12,6 +12,9 @@ pub trait Tone<V>: Copy {
     /// What is stored.
     type Pixel;
 
+    /// So few instructions that a test of depth would be a large share of them: worth a loop without one.
+    const CHEAP: bool = false;
+
     /// The colour at column `x` of the current row.
     fn tone(&self, value: V, x: usize) -> Self::Pixel;
 
@@ -31,6 +34,8 @@ pub struct Solid<C>(pub C);
 impl<C: Copy> Tone<()> for Solid<C> {
     type Pixel = C;
 
+    const CHEAP: bool = true;
+
     #[inline(always)]
     fn tone(&self, (): (), _: usize) -> C {
         self.0
@@ -43,6 +48,8 @@ pub struct Ramp<'a, C>(pub &'a [C; RAMP]);
 
 impl<C: Pixel> Tone<[u32; 1]> for Ramp<'_, C> {
     type Pixel = C;
+
+    const CHEAP: bool = true;
 
     #[inline(always)]
     fn tone(&self, [level]: [u32; 1], _: usize) -> C {

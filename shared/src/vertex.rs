@@ -49,6 +49,10 @@ impl ScreenVertex {
 /// Twice the widest viewport: triangles that only cross its border are not clipped but walked.
 pub const GUARD: i32 = 4096 << SUBPIXEL;
 
+/// How far a coordinate in eye space may lie from that of a convex body, but for a shift of them all, in units of its last
+/// place: half by its own rounding, and √3 times 0.86 by that in the mesh.
+const MOVED: u32 = 2;
+
 /// Nearness of a vertex at the near plane, Q0.28: less than one, so that rounding cannot wrap it.
 const NEAREST: i32 = (1 << DEPTH) - (1 << 10);
 
@@ -151,6 +155,25 @@ impl View {
         let within = behind && inside(x) && inside(y);
         let [x, y] = if within { [x, y] } else { [limited(x), limited(y)] };
         ([self.centre[0] + x, self.centre[1] - y, depth.min(NEAREST)], within)
+    }
+
+    /// How far rounding may move a point of a mesh that is marked as [`crate::stream::record::CLOSED_CONVEX`] along x or y, seen in a viewport of
+    /// `size` pixels behind the near plane; `times` that, 1/16 pixel, rounded up.
+    #[must_use]
+    pub fn moved(&self, size: Size, times: u32) -> u32 {
+        let focal = (self.focal >> 16) as u32;
+        let within = times.wrapping_mul(MOVED).wrapping_mul(match self.projection {
+            // Aside by focal / z, and in depth by as much as the point lies aside.
+            Projection::Perspective { .. } => focal.wrapping_add(size.width.max(size.height) << (SUBPIXEL - 1)),
+            Projection::Orthographic { .. } => focal,
+        });
+        let unit = match self.projection {
+            Projection::Perspective { .. } => self.near.unsigned_abs(),
+            Projection::Orthographic { .. } => 1 << UNIT,
+        };
+        // On the screen it is rounded to the nearest, with 2^-7 to spare for the arithmetic on the way.
+        let rounded = times.wrapping_mul(65).div_ceil(128);
+        within.checked_div(unit).map_or(u32::MAX, |within| within.saturating_add(1).saturating_add(rounded))
     }
 
     /// How far `eye` lies on the inner side of a clip plane (near, then the guard band's left, right, bottom, top); negative outside.

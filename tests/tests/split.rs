@@ -4,6 +4,7 @@ use embedded_graphics::{pixelcolor::Gray8, prelude::Size};
 use microphong::{
     Shader,
     band::Band,
+    cull::Extent,
     poly::{Constant, basis::Basis},
     raster::{
         cell::Cell,
@@ -68,7 +69,7 @@ fn cells_of_random_triangles_cover_each_pixel_once() {
             _ => [0; 3].map(|_| [random.pick(-4..100) * 16 + 8, random.pick(-4..84) * 16 + 8]),
         };
         let [a, b, c] = corners.map(|[x, y]| ScreenVertex { x, y, depth: 1 << 27, light: [0; 3], state: State::Ready });
-        let corners = if Outline::area([&a, &b, &c]) < 0 { [&a, &c, &b] } else { [&a, &b, &c] };
+        let corners = if Extent::new(corners).area < 0 { [&a, &c, &b] } else { [&a, &b, &c] };
         let outline = Outline::new(corners, Part::Centres);
         let Some(basis) = Basis::new(outline.corners, Bounds::new(corners).clipped(w / 16, h / 16).sides()) else { continue };
         let depth = outline.depth(&basis);

@@ -52,6 +52,7 @@ pub(crate) struct Arguments {
 const EXAMPLES: &str = "\
 Examples:
   microphong bench                                       the frame that other renderers are measured with
+  microphong bench peer-sphere-convex                    the same, marked as convert marks it: without depth
   microphong bench teapot --board pico --shader sqrt6    frame time and frames per second of the Pico
   microphong bench all --shader all --board all --json   everything
   microphong bench --shader all --board all --report bench    the chart, as a page

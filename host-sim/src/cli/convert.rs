@@ -18,7 +18,8 @@ use std::path::PathBuf;
 ///
 /// Normals come from the file when every corner has one, else from the
 /// polygons around each vertex. Polygons become fans of triangles. The mesh is
-/// centred and scaled to a sphere of radius 1.
+/// centred and scaled to a sphere of radius 1. One closed convex mesh is marked as
+/// such: it is drawn without depth, and looks the same.
 #[derive(clap::Args)]
 #[command(after_help = EXAMPLES)]
 pub(crate) struct Arguments {
@@ -96,6 +97,7 @@ struct Line<'a> {
     degenerate: usize,
     own_normals: bool,
     turned: bool,
+    closed_convex: bool,
     bytes: usize,
 }
 
@@ -132,6 +134,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome> {
         degenerate: report.degenerate + lost,
         own_normals: report.own_normals,
         turned: report.turned,
+        closed_convex: parts.iter().all(|part| part.closed_convex),
         bytes: bytes.as_bytes().len(),
     };
     if arguments.json {
@@ -159,5 +162,6 @@ fn text(line: &Line<'_>) -> Result<()> {
     let normals = if line.own_normals { "normals from the file" } else { "normals computed" };
     let turned = if line.turned { ", surface turned inside out" } else { "" };
     let (welded, degenerate) = (count(line.welded), count(line.degenerate));
-    report::line(&format!("  {welded} vertices welded, {degenerate} degenerate triangles dropped, {normals}{turned}"))
+    let convex = if line.closed_convex { ", closed and convex" } else { "" };
+    report::line(&format!("  {welded} vertices welded, {degenerate} degenerate triangles dropped, {normals}{turned}{convex}"))
 }

@@ -27,6 +27,7 @@ struct Line<'a> {
     file: &'a str,
     version: u16,
     meshes: usize,
+    closed_convex: usize,
     vertices: usize,
     triangles: usize,
     lights: usize,
@@ -44,6 +45,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome> {
             file: &file,
             version: header.version,
             meshes: stream.meshes.len(),
+            closed_convex: closed_convex(&stream),
             vertices: stream.vertices.len(),
             triangles: stream.triangles.len(),
             lights: stream.lights.len(),
@@ -64,8 +66,7 @@ fn text(file: &str, stream: &Stream<'_>) -> Result<()> {
         report::line(format!("  {:>7} {name:9} {:>9} bytes  {note}", count(number), count(number * size)).trim_end())
     };
     row("header", 1, size_of::<Header>(), "")?;
-    let convex = stream.meshes.iter().filter(|m| m.flags & CLOSED_CONVEX != 0).count();
-    row("meshes", stream.meshes.len(), size_of::<Mesh>(), &format!("{convex} closed and convex"))?;
+    row("meshes", stream.meshes.len(), size_of::<Mesh>(), &format!("{} closed and convex", closed_convex(stream)))?;
     row("materials", stream.materials.len(), size_of::<Material>(), &exponents(stream))?;
     row("lights", stream.lights.len(), size_of::<Light>(), &lights(stream))?;
     row("vertices", stream.vertices.len(), size_of::<Vertex>(), "")?;
@@ -76,6 +77,10 @@ fn text(file: &str, stream: &Stream<'_>) -> Result<()> {
     let viewer = if header.viewer == VIEWER_LOCAL { "local" } else { "infinite" };
     let frames = header.frames;
     report::line(&format!("  {kind}, {viewer} viewer, {orbit}, {frames} frames, shader {}", stream.shader().name()))
+}
+
+fn closed_convex(stream: &Stream<'_>) -> usize {
+    stream.meshes.iter().filter(|mesh| mesh.flags & CLOSED_CONVEX != 0).count()
 }
 
 fn exponents(stream: &Stream<'_>) -> String {

@@ -75,15 +75,6 @@ pub struct Linear<const CH: usize> {
     step: [u32; CH],
 }
 
-impl<const CH: usize> Linear<CH> {
-    /// Values and derivatives along x.
-    #[inline(always)]
-    #[must_use]
-    pub fn parts(self) -> ([u32; CH], [u32; CH]) {
-        (self.value, self.step)
-    }
-}
-
 impl<const CH: usize> Walker for Linear<CH> {
     type Value = [u32; CH];
 

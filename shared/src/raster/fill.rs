@@ -1,35 +1,76 @@
 //! The inner loop.
 
-use crate::{poly::Walker, tone::Tone};
+use crate::{
+    poly::{Constant, Walker, plane::Linear},
+    tone::Tone,
+};
+use core::ops::Range;
 
-/// Shades the pixels of one span from right to left where they are nearer than what is there.
+/// Decides whether a pixel is seen.
+pub trait Sight: Walker {
+    /// What it needs of the depth buffer for these pixels.
+    fn depth(depth: &mut [u16], pixels: Range<usize>) -> Option<&mut [u16]>;
+
+    /// Whether pixel `i` of `depth` is seen, which then is as deep as this.
+    fn passes(&self, depth: &mut [u16], i: usize) -> bool;
+}
+
+/// A nearness to be tested; what is stored of it is the upper half.
+impl Sight for Linear<1> {
+    #[inline(always)]
+    fn depth(depth: &mut [u16], pixels: Range<usize>) -> Option<&mut [u16]> {
+        depth.get_mut(pixels)
+    }
+
+    #[inline(always)]
+    fn passes(&self, depth: &mut [u16], i: usize) -> bool {
+        let nearness = (self.value()[0] >> 16) as u16;
+        let Some(depth) = depth.get_mut(i) else { return false };
+        let passes = nearness > *depth;
+        if passes {
+            *depth = nearness;
+        }
+        passes
+    }
+}
+
+/// Nothing hides it.
+impl Sight for Constant {
+    #[inline(always)]
+    fn depth(_: &mut [u16], _: Range<usize>) -> Option<&mut [u16]> {
+        Some(&mut [])
+    }
+
+    #[inline(always)]
+    fn passes(&self, _: &mut [u16], _: usize) -> bool {
+        true
+    }
+}
+
+/// Shades the pixels of one span from right to left where they are seen.
 ///
-/// `z` is the depth one pixel right of the span and `dz` its derivative along x;
-/// `walker` stands there too. The walkers step first and the index counts down
+/// `sight` and `walker` stand one pixel right of the span. They step first and the index counts down
 /// to zero: the loop ends on its own subtraction, and every slice is checked
 /// once, before it.
 ///
-/// Head-room: `z` and the walked values wrap freely; at a pixel centre inside
+/// Head-room: nearness and the walked values wrap freely; at a pixel centre inside
 /// the triangle they are back in range (see [`crate::poly`]).
 #[inline(always)]
-pub fn fill<W: Walker, T: Tone<W::Value>>(
+pub fn fill<S: Sight, W: Walker, T: Tone<W::Value>>(
     pixels: &mut [T::Pixel],
     depth: &mut [u16],
-    mut z: u32,
-    dz: u32,
+    mut sight: S,
     mut walker: W,
     tone: T,
     left: usize,
 ) {
     let mut i = pixels.len();
-    let Some(depth) = depth.get_mut(..i) else { return };
+    let Some(depth) = S::depth(depth, 0..i) else { return };
     while i > 0 {
         i -= 1;
-        z = z.wrapping_sub(dz);
+        sight.step();
         walker.step();
-        let nearness = (z >> 16) as u16;
-        if nearness > depth[i] {
-            depth[i] = nearness;
+        if sight.passes(depth, i) {
             pixels[i] = tone.tone(walker.value(), left + i);
         }
     }

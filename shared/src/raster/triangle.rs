@@ -1,21 +1,19 @@
 //! One triangle into one band: edges, depth plane, and the rows between them.
 
-use core::hint::black_box;
-
 use super::{
     edge::{COLUMN, first_centre},
-    fill::fill,
+    fill::{Sight, fill},
     sides::{Pair, Sides},
     smooth::{Part, Shape},
 };
 use crate::{
     band::Band,
     format::{CENTRE, DEPTH, SUBPIXEL},
-    math::product::product,
-    poly::{Patch, Walker, basis::Basis, plane::Plane},
+    poly::{Constant, Patch, Walker, basis::Basis, plane::Plane},
     tone::Tone,
     vertex::ScreenVertex,
 };
+use core::hint::black_box;
 
 /// A triangle on the screen, its top corner first, clockwise on a screen whose y runs down.
 #[derive(Clone, Copy, Debug)]
@@ -30,7 +28,7 @@ pub struct Outline {
 }
 
 /// What steps from row to row.
-pub(super) struct Rows<'b, P, T: Tone<<P::Walker as Walker>::Value>>
+pub(super) struct Rows<'b, D, P, T: Tone<<P::Walker as Walker>::Value>>
 where
     P: Patch,
 {
@@ -47,8 +45,8 @@ where
     pub(super) height: u32,
     /// Pixels of the rows that are done.
     pub(super) filled: u32,
-    /// Depth at column 0.
-    pub(super) depth: Plane<1>,
+    /// Depth at column 0, unless nothing is hidden.
+    pub(super) depth: D,
     pub(super) patch: P,
     pub(super) tone: T,
 }
@@ -145,14 +143,6 @@ impl Outline {
         Self { corners: [[a.x, a.y], [b.x, b.y], [c.x, c.y]], depth: [a.depth, b.depth, c.depth], turned, part }
     }
 
-    /// Twice the signed area in 1/256 pixel²; positive seen from the front.
-    #[inline(always)]
-    #[must_use]
-    pub fn area([a, b, c]: [&ScreenVertex; 3]) -> i64 {
-        let (x1, y1, x2, y2) = (b.x - a.x, b.y - a.y, c.x - a.x, c.y - a.y);
-        product(x1, y2) - product(x2, y1)
-    }
-
     /// Its grid is finer than the pixels' by 2 to this power.
     #[inline]
     #[must_use]
@@ -173,11 +163,34 @@ impl Outline {
             let shape = Shape { outline: self, piece: None, corners: self.corners, bits: SUBPIXEL };
             return shape.draw(basis, patch, tone, band, &mut |_| [i32::MIN, i32::MAX]);
         }
-        let (mut sides, pair) = self.sides(band);
-        if sides.row >= sides.stop {
-            return 0;
-        }
-        let depth = self.plane(basis, sides.row);
+        let (sides, pair) = self.sides(band);
+        if sides.row >= sides.stop { 0 } else { self.walk((sides, pair), basis, self.plane(basis, sides.row), patch, tone, band) }
+    }
+
+    /// As [`Self::draw`], without depth: where nothing else is, and without antialiasing.
+    #[inline(always)]
+    pub fn draw_alone<P: Patch, T: Tone<<P::Walker as Walker>::Value>>(
+        &self,
+        basis: &Basis,
+        patch: P,
+        tone: T,
+        band: &mut Band<'_, T::Pixel>,
+    ) -> u32 {
+        let (sides, pair) = self.sides(band);
+        if sides.row >= sides.stop { 0 } else { self.walk((sides, pair), basis, Constant, patch, tone, band) }
+    }
+
+    /// Walks down its `sides`; `depth` stands on the first row.
+    #[inline(always)]
+    fn walk<D: Patch<Walker: Sight>, P: Patch, T: Tone<<P::Walker as Walker>::Value>>(
+        &self,
+        (mut sides, pair): (Sides, Pair),
+        basis: &Basis,
+        depth: D,
+        patch: P,
+        tone: T,
+        band: &mut Band<'_, T::Pixel>,
+    ) -> u32 {
         let width = band.width as i32;
         let mut rows = Rows::new(band, sides.row, pair, depth, patch, tone);
         if sides.row != basis.row() {
@@ -225,7 +238,7 @@ pub fn turn<A: Copy>([a, b, c]: [A; 3], by: usize) -> [A; 3] {
 /// then owns the registers and comes out as by hand. `count` comes from there too, written a row earlier: derived in the row, the
 /// compiler would count in two registers instead of one.
 #[inline(never)]
-pub(super) fn fill_rows<P: Patch, T: Tone<<P::Walker as Walker>::Value>>(mut rows: &mut Rows<'_, P, T>) {
+pub(super) fn fill_rows<D: Patch<Walker: Sight>, P: Patch, T: Tone<<P::Walker as Walker>::Value>>(mut rows: &mut Rows<'_, D, P, T>) {
     loop {
         rows = black_box(rows);
         rows.fill();
@@ -236,10 +249,10 @@ pub(super) fn fill_rows<P: Patch, T: Tone<<P::Walker as Walker>::Value>>(mut row
     }
 }
 
-impl<'b, P: Patch, T: Tone<<P::Walker as Walker>::Value>> Rows<'b, P, T> {
+impl<'b, D: Patch<Walker: Sight>, P: Patch, T: Tone<<P::Walker as Walker>::Value>> Rows<'b, D, P, T> {
     /// No rows yet, from `row` of the band on.
     #[inline(always)]
-    pub(super) fn new(band: &'b mut Band<'_, T::Pixel>, row: i32, sides: Pair, depth: Plane<1>, patch: P, tone: T) -> Self {
+    pub(super) fn new(band: &'b mut Band<'_, T::Pixel>, row: i32, sides: Pair, depth: D, patch: P, tone: T) -> Self {
         let (width, start) = (band.width, band.start(row));
         Self { pixels: band.pixels, buffer: band.depth, width, start, sides, count: 0, height: 0, filled: 0, depth, patch, tone }
     }
@@ -256,10 +269,9 @@ impl<'b, P: Patch, T: Tone<<P::Walker as Walker>::Value>> Rows<'b, P, T> {
         self.start = self.start.wrapping_add(self.width);
         if count > 0
             && let Some(pixels) = self.pixels.get_mut(start..end)
-            && let Some(buffer) = self.buffer.get_mut(start..end)
+            && let Some(buffer) = D::Walker::depth(self.buffer, start..end)
         {
-            let ([z], dz) = self.depth.enter(right as i32).parts();
-            fill(pixels, buffer, z, dz[0], self.patch.enter(right as i32), self.tone, left);
+            fill(pixels, buffer, self.depth.enter(right as i32), self.patch.enter(right as i32), self.tone, left);
             self.filled = self.filled.wrapping_add(count as u32);
         }
         self.depth.step_row();

@@ -23,6 +23,6 @@ pub(super) fn draw<C: Pixel>(facet: &Facet<'_>, shading: &Shading<'_, C>, band: 
         // A field without slope: dither changes from pixel to pixel all the same.
         shading.draw_levels::<3, RANGE>(facet, [levels; 3], band)
     } else {
-        facet.outline.draw(facet.basis, Constant, Solid(shading.palette.colour(levels)), band)
+        facet.fill(Constant, Solid(shading.palette.colour(levels)), band)
     }
 }

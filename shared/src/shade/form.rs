@@ -45,6 +45,8 @@ pub(super) struct Gloss<'a, C, F> {
 impl<C: Pixel, K, V, F: Form<K, V>> Tone<(V, K)> for Gloss<'_, C, F> {
     type Pixel = C;
 
+    const CHEAP: bool = true;
+
     #[inline(always)]
     fn tone(&self, (fields, common): (V, K), _: usize) -> C {
         self.glossy.colour(self.form.reflect(0, &self.form.common(common), fields, self.glossy.power))

@@ -56,11 +56,13 @@ mod taylor_finite;
 use crate::poly::hyperbolic::Hyperbolic;
 use crate::{
     band::Band,
+    convex::Convex,
     format::{BIAS, LEVEL, RHO, WALK},
     math::product::product,
     palette::Palette,
     pixel::Pixel,
     poly::{
+        Patch, Walker,
         basis::Basis,
         field::{Field, Nodes},
     },
@@ -88,6 +90,8 @@ pub(crate) struct Facet<'f> {
     pub(crate) corners: [&'f ScreenVertex; 3],
     pub(crate) vertices: [&'f Vertex; 3],
     pub(crate) triangle: &'f Triangle,
+    /// Where triangles may overlap, if not everywhere.
+    pub(crate) convex: Option<&'f Convex>,
     /// Of the corners, where it matters.
     #[cfg(feature = "all-shaders")]
     pub(crate) nearness: Option<[i32; 3]>,
@@ -98,6 +102,16 @@ impl Facet<'_> {
     #[inline(always)]
     fn edges(&self, [ab, bc, ca]: [u16; 3]) -> [u16; 3] {
         turn([ca, bc, ab], self.outline.turned)
+    }
+
+    /// Draws it, without depth where that is possible and worth a loop of its own; returns the pixels in `band`.
+    #[inline(always)]
+    fn fill<P: Patch, T: Tone<<P::Walker as Walker>::Value>>(&self, patch: P, tone: T, band: &mut Band<'_, T::Pixel>) -> u32 {
+        if T::CHEAP && self.convex.is_some_and(|convex| !convex.contests(&self.outline.corners)) {
+            self.outline.draw_alone(self.basis, patch, tone, band)
+        } else {
+            self.outline.draw(self.basis, patch, tone, band)
+        }
     }
 
     /// Nowhere on the triangle does the highlight of one constant light reach a visible level:
@@ -129,7 +143,7 @@ impl Area for Facet<'_> {
         if let Some(nearness) = self.nearness {
             return self.outline.draw(self.basis, Hyperbolic::new(self.basis, nearness, field.surface()), tone, band);
         }
-        self.outline.draw(self.basis, field.fit(self.basis), tone, band)
+        self.fill(field.fit(self.basis), tone, band)
     }
 }
 

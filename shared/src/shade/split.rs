@@ -200,8 +200,15 @@ mod tests {
         for _ in 0..1_000 {
             let mut vertex = || Vertex { position: [random(), random(), random()], normal: [random(), random(), random()] };
             let [p, q, r, s] = [vertex(), vertex(), vertex(), vertex()];
-            let facet =
-                |vertices| Facet { outline: &outline, basis: &basis, corners: [a, b, c], vertices, triangle: &triangle, nearness: None };
+            let facet = |vertices| Facet {
+                outline: &outline,
+                basis: &basis,
+                corners: [a, b, c],
+                vertices,
+                triangle: &triangle,
+                convex: None,
+                nearness: None,
+            };
             let one = facet([&p, &q, &r]);
             for (k, other) in [[&q, &p, &s], [&s, &q, &p], [&p, &s, &q]].map(facet).iter().enumerate() {
                 for bits in 0..=5 {
