@@ -56,7 +56,8 @@ fn drawing(scene: &Scene, mode: RenderMode) -> impl FnMut(&mut Picture) {
     let mut depth = vec![Z_MAX_VALUE; WIDTH * HEIGHT];
     move |picture| {
         let mut frame = FrameCtx { zbuffer: &mut depth, width: WIDTH, height: HEIGHT };
-        let drawn = engine.record([&mesh], &mut commands, None).and_then(|()| engine.execute(&mut Target(picture), &mut frame, &commands, None));
+        let drawn =
+            engine.record([&mesh], &mut commands, None).and_then(|()| engine.execute(&mut Target(picture), &mut frame, &commands, None));
         drawn.expect("the buffers are large enough");
     }
 }

@@ -50,16 +50,15 @@ impl Peer {
         }
     }
 
-    /// Draws `scene` on black.
-    pub fn draw(self, scene: &Scene, picture: &mut Picture) {
-        let mut drawing: Box<dyn FnMut(&mut Picture)> = match self {
+    /// Converts `scene`, and returns what draws a frame of it on black: once, as depth is not cleared again.
+    #[must_use]
+    pub fn prepare(self, scene: &Scene) -> Box<dyn FnMut(&mut Picture) + '_> {
+        match self {
             Self::RetrofireGouraud => Box::new(retrofire::gouraud(scene)),
             Self::RetrofirePhong => Box::new(retrofire::phong(scene)),
             Self::Embedded3dgfxFlat => Box::new(embedded_3dgfx::flat(scene)),
             Self::Embedded3dgfxGouraud => Box::new(embedded_3dgfx::gouraud(scene)),
-        };
-        picture.fill(0);
-        dumped_frame(&mut *drawing, picture);
+        }
     }
 }
 
@@ -69,16 +68,16 @@ pub fn covered(picture: &Picture) -> usize {
     picture.iter().filter(|&&pixel| pixel != 0).count()
 }
 
-/// Those who count know it by its name, and start from zero where it begins.
+/// Callgrind knows it by its name, and starts from zero where it begins.
 #[inline(never)]
-fn counted_frame(draw: &mut dyn FnMut(&mut Picture), picture: &mut Picture) {
+pub fn counted_frame(draw: &mut dyn FnMut(&mut Picture), picture: &mut Picture) {
     draw(picture);
     black_box(picture);
 }
 
-/// Those who count stop where this goes on.
+/// Callgrind writes down what it has counted where this ends.
 #[inline(never)]
-fn dumped_frame(draw: &mut dyn FnMut(&mut Picture), picture: &mut Picture) {
+pub fn dumped_frame(draw: &mut dyn FnMut(&mut Picture), picture: &mut Picture) {
     counted_frame(draw, picture);
     black_box(picture);
 }

@@ -1,6 +1,9 @@
 //! [retrofire](https://crates.io/crates/retrofire): vertex and fragment shaders, always perspective-correct, depth in `f32`.
 
-use crate::{HEIGHT, Picture, WIDTH, scene::{Scene, Surface}};
+use crate::{
+    HEIGHT, Picture, WIDTH,
+    scene::{Scene, Surface},
+};
 use alloc::{vec, vec::Vec};
 use retrofire_core::{
     geom::{Tri, Vertex3, tri, vertex},
@@ -54,8 +57,12 @@ where
         scene.positions.iter().zip(&scene.normals).map(|(&[x, y, z], &normal)| vertex(pt3(x, y, z), normal.into())).collect();
     // On its screen y runs down, so that they turn the other way.
     let triangles: Vec<Tri<usize>> = scene.faces.iter().map(|&[a, b, c]| tri(a, c, b)).collect();
-    let uniforms =
-        Uniforms { to_clip: to_view(scene).then(&to_clip(scene)), towards: scene.towards.into(), half: scene.half.into(), surface: scene.surface };
+    let uniforms = Uniforms {
+        to_clip: to_view(scene).then(&to_clip(scene)),
+        towards: scene.towards.into(),
+        half: scene.half.into(),
+        surface: scene.surface,
+    };
     let size = Dims(WIDTH as u32, HEIGHT as u32);
     let to_screen: Mat4<Ndc, Screen> = viewport(pt2(0, 0)..pt2(size.0, size.1));
     let context = Context::default();

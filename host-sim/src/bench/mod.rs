@@ -10,6 +10,7 @@ pub mod growth;
 pub mod measurement;
 pub mod page;
 pub mod pareto;
+pub mod peers;
 pub mod processor;
 pub mod stage;
 

@@ -4,20 +4,20 @@
 //! pixel.
 
 use microphong::Stream;
-use peers::{HEIGHT, Peer, WIDTH, scene::Scene};
+use peers::{HEIGHT, Peer, WIDTH, dumped_frame, scene::Scene};
 use std::{env, error::Error, fs, process::ExitCode};
+use zerocopy::IntoBytes;
 
 fn draw(stream: &str, peer: &str, picture: &str) -> Result<(), Box<dyn Error>> {
     let bytes = fs::read(stream)?;
     // Read in place, so the bytes must be aligned.
-    let words: Vec<u32> = bytes.chunks_exact(4).map(|word| u32::from_ne_bytes([word[0], word[1], word[2], word[3]])).collect();
-    let bytes = words.as_slice();
-    // SAFETY: any word is four bytes.
-    let bytes = unsafe { bytes.align_to::<u8>().1 };
-    let scene = Scene::new(&Stream::parse(bytes)?).ok_or("other renderers draw one mesh of one grey material under one light")?;
+    let mut words = vec![0u32; bytes.len().div_ceil(4)];
+    words.as_mut_bytes()[..bytes.len()].copy_from_slice(&bytes);
+    let scene = Scene::new(&Stream::parse(&words.as_bytes()[..bytes.len()])?)
+        .ok_or("other renderers draw one mesh of one grey material under one light")?;
     let peer = Peer::ALL.into_iter().find(|other| other.name() == peer).ok_or("no such peer")?;
     let mut pixels = Box::new([0; WIDTH * HEIGHT]);
-    peer.draw(&scene, &mut pixels);
+    dumped_frame(&mut *peer.prepare(&scene), &mut pixels);
     fs::write(picture, pixels.iter().flat_map(|pixel| pixel.to_le_bytes()).collect::<Vec<_>>())?;
     Ok(())
 }
