@@ -167,10 +167,17 @@ pub fn draw(scene: &Scene) -> Result<Vec<(u64, Picture)>> {
     drawn.collect()
 }
 
+/// The program that has all [`PEERS`] draw `scene` on `board`.
+///
+/// # Errors
+/// When it does not compile.
+pub fn program(board: Board, scene: &Scene) -> Result<Elf> {
+    Elf::read(&build("mps2", Some(board.target()))?)?.with_stream(scene.stream.as_bytes())
+}
+
 fn on_board(processor: Processor, board: Board, scene: &Scene) -> Result<Vec<Frame>> {
     ensure!(possible(processor), "other renderers are not measured on {board}");
-    let elf = Elf::read(&build("mps2", Some(board.target()))?)?.with_stream(scene.stream.as_bytes())?;
-    let lines = clocked(board, &elf)?;
+    let lines = clocked(board, &program(board, scene)?)?;
     PEERS
         .into_iter()
         .map(|peer| {
