@@ -159,6 +159,9 @@ fn beside(table: &Table) -> Result<()> {
         }
         report::line(&format!("  {:28}{}", row.name, cells(row.figures.iter().map(|f| f.map_or("-".to_owned(), short)).collect())))?;
     }
+    if let Some(note) = table.note() {
+        report::line(&format!("  {note}"))?;
+    }
     Ok(())
 }
 

@@ -121,6 +121,7 @@ fn page(measurements: &[Measurement], peers: Option<&Table>, growth: &[Point], s
             section.scene {
                 h2 { "Beside other renderers" }
                 p.facts { "Instructions per covered pixel, scene " (FIRST) ", clearing and transfer excluded, everything else included." }
+                @if let Some(note) = table.note() { p.facts { (note) } }
                 (tables::peers(table))
             }
         }

@@ -69,7 +69,16 @@ impl Table {
         });
         Ok(Self { processors: processors.to_vec(), rows: own.chain(theirs).chain(earlier(processors)?).collect() })
     }
+
+    /// What has to be known of its columns.
+    #[must_use]
+    pub fn note(&self) -> Option<&'static str> {
+        self.processors.contains(&Processor::CortexM0Plus).then_some(PICO)
+    }
 }
+
+/// What has to be known of the Cortex-M0+.
+const PICO: &str = "cortex-m0plus: ours on the Pico in bands of 16 rows, theirs as ARMv6-M code on a Cortex-M3 in one band";
 
 /// Figures that were measured once.
 fn earlier(processors: &[Processor]) -> Result<Vec<Row>> {
