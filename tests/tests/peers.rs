@@ -10,6 +10,7 @@ use microphong_sim::{
     board::{Blocks, Board, trace},
     render, scene,
 };
+use std::slice;
 
 /// Mean of the green of what is not `background`, 1 is full.
 fn brightness(pixels: &[Rgb565], background: Rgb565) -> f64 {
@@ -87,7 +88,7 @@ fn the_clock_is_exact() {
             *counts.last_mut().unwrap() += 1;
         }
     };
-    trace(board, &elf, &[start..end], Blocks::Whole, visit).unwrap();
+    trace(board, &elf, slice::from_ref(&(start..end)), Blocks::Whole, visit).unwrap();
     // The first draws nothing.
     let traced: Vec<u64> = counts[1..].iter().map(|count| count - counts[0]).collect();
     let clocked: Vec<u64> = peers::measure(processor, &scene).unwrap().iter().map(|frame| frame.instructions).collect();
