@@ -136,6 +136,7 @@ fn wrong_usage_is_told_from_failure() {
     place.fails(&["convert", "good.obj", "-o", "good.obj"], 2, &["overwrite"]);
     place.fails(&["verify", "--board", "uno"], 2, &["uno", "pico"]);
     place.fails(&["verify", "--board", "pico", "--scene", "none"], 2, &["none", "teapot"]);
+    place.fails(&["bench", "triangle", "--peers"], 2, &["peer-sphere"]);
     place.fails(&["paint"], 2, &["paint"]);
     place.fails(&[], 2, &["Usage"]);
 }

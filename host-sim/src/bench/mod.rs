@@ -11,6 +11,7 @@ pub mod measurement;
 mod nest;
 pub mod page;
 pub mod pareto;
+pub mod peers;
 pub mod processor;
 pub mod stage;
 

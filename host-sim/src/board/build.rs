@@ -51,7 +51,7 @@ pub(crate) fn release(directory: &Path, arguments: &[&str], output: &Path, what:
 }
 
 /// Adds `target` to the toolchain in use unless it is there.
-fn install_target(target: &str, directory: &Path) -> Result<()> {
+pub(crate) fn install_target(target: &str, directory: &Path) -> Result<()> {
     let remedy = format!("run `rustup target add {target}`");
     let query = Command::new("rustc").current_dir(directory).args(["--print", "target-libdir", "--target", target]).output();
     let query = query.with_context(|| format!("cannot start rustc to look for the target {target}: {remedy}"))?;

@@ -14,7 +14,7 @@ use budget::Budget;
 use elf::Elf;
 use microphong::Shader;
 pub use pico::FrameTime;
-pub use qemu::{Blocks, trace};
+pub use qemu::{Blocks, INSTRUCTIONS_PER_TICK, clocked, trace};
 use serde::{Serialize, Serializer};
 use std::fmt;
 use std::ops::Range;

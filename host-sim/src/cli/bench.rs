@@ -1,7 +1,7 @@
 //! `microphong bench`.
 
 use super::{
-    Outcome, growth,
+    Outcome, Usage, growth,
     parse::{self, Several},
     report,
     verify::load,
@@ -13,10 +13,17 @@ use microphong_sim::{
         Bench, Measurement, PICO_HZ, Processor, Timing, baseline,
         growth::{SHADERS, Sweep},
         page::Page,
+        peers::{
+            self,
+            table::{Table, short},
+        },
     },
     scene::Scene,
 };
-use std::path::{Path, PathBuf};
+use std::{
+    iter,
+    path::{Path, PathBuf},
+};
 
 /// Count the instructions that processors take for one frame, stage by stage, beside the error of the same frame.
 ///
@@ -41,11 +48,14 @@ pub(crate) struct Arguments {
     /// Write DIR/index.html, run time against error, growth and break-even on one page, and DIR/chart.svg.
     #[arg(long, value_name = "DIR")]
     report: Option<PathBuf>,
+    /// Also measure other renderers on the scene peer-sphere, on the boards mps2-an385, mps2-an386 and x86-64.
+    #[arg(long)]
+    peers: bool,
     /// Measure the frames that FILE lists, and fail where one costs over 1 % more instructions, or 2.5 % more flash, than recorded there.
-    #[arg(long, value_name = "FILE", conflicts_with_all = ["scenes", "shader", "board", "json", "report"])]
+    #[arg(long, value_name = "FILE", conflicts_with_all = ["scenes", "shader", "board", "json", "report", "peers"])]
     check: Option<PathBuf>,
     /// Measure the frames that FILE lists, and record what they cost.
-    #[arg(long, value_name = "FILE", conflicts_with_all = ["scenes", "shader", "board", "json", "report", "check"])]
+    #[arg(long, value_name = "FILE", conflicts_with_all = ["scenes", "shader", "board", "json", "report", "peers", "check"])]
     renew: Option<PathBuf>,
 }
 
@@ -56,6 +66,7 @@ Examples:
   microphong bench teapot --board pico --shader sqrt6    frame time and frames per second of the Pico
   microphong bench all --shader all --board all --json   everything
   microphong bench --shader all --board all --report bench    the chart, as a page
+  microphong bench --peers --board mps2-an385,mps2-an386,x86-64    beside other renderers
   microphong bench --check tests/baselines/costs.csv     has anything become dearer?
   microphong bench --renew tests/baselines/costs.csv     it has, and for a reason
 
@@ -94,7 +105,10 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome> {
     };
     let scenes: Vec<(Scene, Vec<_>)> = scenes.into_iter().map(|scene| (wanted(&scene), scene)).map(|(w, s)| (s, w)).collect();
     let page = arguments.report.as_deref().map(Page::create).transpose()?;
-    let bar = report::progress(scenes.iter().map(|(_, wanted)| wanted.len() as u64).sum::<u64>() + 1, "counting");
+    let common = arguments.peers.then(|| common(&scenes)).transpose()?;
+    let others: Vec<_> = arguments.board.values.iter().copied().filter(|&board| common.is_some() && peers::possible(board)).collect();
+    let steps = scenes.iter().map(|(_, wanted)| wanted.len()).sum::<usize>() + 1 + others.len();
+    let bar = report::progress(steps as u64, "counting");
     let bench = Bench::new(&arguments.board.values)?;
     bar.inc(1);
     let mut all = Vec::new();
@@ -103,14 +117,53 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome> {
         bar.suspend(|| measured.iter().try_for_each(|m| if arguments.json { report::json(m) } else { text(m) }))?;
         all.extend(measured);
     }
+    let mut theirs = Vec::new();
+    for board in others {
+        let measured = common.map_or(Ok(Vec::new()), |scene| peers::measure(board, scene))?;
+        bar.inc(1);
+        if arguments.json {
+            bar.suspend(|| measured.iter().try_for_each(report::json))?;
+        }
+        theirs.extend(measured);
+    }
     bar.finish_and_clear();
+    let table = common.map(|_| Table::new(&all, &theirs, &arguments.board.values)).transpose()?;
+    if let Some(table) = table.as_ref().filter(|_| !arguments.json) {
+        beside(table)?;
+    }
     if let Some(page) = page {
-        let path = page.finish(&all, &growth::count(&Sweep::ALL, &SHADERS)?)?;
+        let path = page.finish(&all, table.as_ref(), &growth::count(&Sweep::ALL, &SHADERS)?)?;
         if !arguments.json {
             report::line(&format!("report: {}", path.display()))?;
         }
     }
     Ok(Outcome::Done)
+}
+
+/// The scene that other renderers draw.
+fn common<W>(scenes: &[(Scene, W)]) -> Result<&Scene> {
+    let found = scenes.iter().map(|(scene, _)| scene).find(|scene| scene.name == peers::SCENE);
+    found.ok_or_else(|| {
+        Usage(format!("other renderers are measured on the scene {0}; name it, too: bench {0} --peers", peers::SCENE)).into()
+    })
+}
+
+/// Ours beside theirs.
+fn beside(table: &Table) -> Result<()> {
+    report::line(&format!("{}, instructions per covered pixel", peers::SCENE))?;
+    let cells = |cells: Vec<String>| cells.iter().map(|cell| format!("{cell:>15}")).collect::<String>();
+    report::line(&format!("  {:28}{}", "", cells(table.processors.iter().map(|cpu| cpu.name().to_owned()).collect())))?;
+    for (row, before) in table.rows.iter().zip(iter::once(None).chain(table.rows.iter().map(Some))) {
+        let note = row.source.note();
+        if before.is_some_and(|before| before.source != row.source) && !note.is_empty() {
+            report::line(&format!("  {note}:"))?;
+        }
+        report::line(&format!("  {:28}{}", row.name, cells(row.figures.iter().map(|f| f.map_or("-".to_owned(), short)).collect())))?;
+    }
+    if let Some(note) = table.note() {
+        report::line(&format!("  {note}"))?;
+    }
+    Ok(())
 }
 
 /// What a file lists, as recorded and as measured now.

@@ -12,6 +12,7 @@ use anyhow::{Context, Result, anyhow, ensure};
 use microphong::Shader;
 use profile::Profile;
 use std::{
+    ffi::OsString,
     fs,
     io::ErrorKind,
     path::{Path, PathBuf},
@@ -89,33 +90,44 @@ pub fn build() -> Result<PathBuf> {
 /// When valgrind is missing, or the scene cannot be drawn in one of these ways.
 pub fn count(program: &Path, stream: &[u8], frames: &[Frame]) -> Result<Vec<Count>> {
     let directory = tempfile::Builder::new().prefix("mphong").tempdir().context("cannot create a temporary directory")?;
-    let (stream_file, profile) = (directory.path().join("stream"), directory.path().join("profile"));
+    let stream_file = directory.path().join("stream");
     fs::write(&stream_file, stream).with_context(|| format!("cannot write {}", stream_file.display()))?;
+    let arguments = |&Frame { size: (width, height), band_rows, shader }: &Frame| -> [OsString; 4] {
+        [stream_file.clone().into(), format!("{width}x{height}").into(), band_rows.to_string().into(), shader.name().into()]
+    };
+    let (stats, profiles) = profiles(program, &frames.iter().map(arguments).collect::<Vec<_>>())?;
+    ensure!(stats.lines().count() == frames.len(), "callgrind has drawn {} of {} frames", stats.lines().count(), frames.len());
+    let counts = stats.lines().zip(&profiles).map(|(line, profile)| {
+        let (stages, spans) = split::stages(profile)?;
+        let figures: Vec<u64> = line.split(' ').map(str::parse).collect::<Result<_, _>>()?;
+        let [triangles, pixels] = figures[..] else { return Err(anyhow!("a frame of {line:?}")) };
+        Ok(Count { stages, triangles, spans, pixels })
+    });
+    counts.collect()
+}
+
+/// What `program` prints, and a profile of each frame that it draws: of what `counted_frame` does within `dumped_frame`.
+pub(super) fn profiles<const N: usize>(program: &Path, frames: &[[OsString; N]]) -> Result<(String, Vec<Profile>)> {
+    let directory = tempfile::Builder::new().prefix("mphong").tempdir().context("cannot create a temporary directory")?;
+    let profile = directory.path().join("profile");
     let mut valgrind = Command::new("valgrind");
     valgrind
         .args(["--tool=callgrind", "--quiet", "--demangle=no", "--dump-instr=yes", "--dump-line=no", "--collect-jumps=yes"])
         .args(["--compress-strings=no", "--compress-pos=no", "--zero-before=*counted_frame*", "--dump-after=*dumped_frame*"])
         .arg(format!("--callgrind-out-file={}", profile.display()))
-        .arg(program);
-    for Frame { size: (width, height), band_rows, shader } in frames {
-        valgrind.arg(&stream_file).args([format!("{width}x{height}"), band_rows.to_string(), shader.name().to_owned()]);
-    }
+        .arg(program)
+        .args(frames.as_flattened());
     let output = valgrind.output().map_err(|error| match error.kind() {
         ErrorKind::NotFound => anyhow!("valgrind is not installed; `apt-get install -y --no-install-recommends valgrind`"),
         _ => anyhow!("cannot start valgrind: {error}"),
     })?;
     let messages = String::from_utf8_lossy(&output.stderr);
     ensure!(output.status.success(), "callgrind could not count: {}", messages.trim());
-    let stats = String::from_utf8_lossy(&output.stdout);
-    ensure!(stats.lines().count() == frames.len(), "callgrind has drawn {} of {} frames", stats.lines().count(), frames.len());
     // It numbers what it writes from 1; without number is what came behind the last frame.
-    let counts = stats.lines().zip(1..).map(|(line, number)| {
+    let profiles = (1..=frames.len()).map(|number| {
         let path = profile.with_extension(number.to_string());
         let text = fs::read_to_string(&path).with_context(|| format!("callgrind has not written {}", path.display()))?;
-        let (stages, spans) = split::stages(&Profile::parse(&text)?)?;
-        let figures: Vec<u64> = line.split(' ').map(str::parse).collect::<Result<_, _>>()?;
-        let [triangles, pixels] = figures[..] else { return Err(anyhow!("a frame of {line:?}")) };
-        Ok(Count { stages, triangles, spans, pixels })
+        Profile::parse(&text)
     });
-    counts.collect()
+    Ok((String::from_utf8_lossy(&output.stdout).into_owned(), profiles.collect::<Result<_>>()?))
 }

@@ -5,10 +5,10 @@ use std::collections::{BTreeMap, HashMap};
 
 /// Profile of one frame.
 #[derive(Debug, Default, PartialEq, Eq)]
-pub(super) struct Profile {
+pub(in crate::bench) struct Profile {
     pub(super) functions: Vec<Function>,
     /// All instructions.
-    pub(super) total: u64,
+    pub(in crate::bench) total: u64,
 }
 
 /// A function and everything that it did itself.

@@ -5,6 +5,7 @@ use crate::bench::{
     Measurement, Processor,
     break_even::{AREAS, BreakEven, Costs, RATIOS, break_even, crossing},
     growth::{Point, Sweep},
+    peers::table::{self, Table},
 };
 use maud::{Markup, html};
 use microphong::Shader;
@@ -123,6 +124,31 @@ pub(super) fn ratios(measurements: &[&Measurement], processors: &[Processor]) ->
                             td { (format!("{:.2}", printed.ratio)) " " span.note { (printed.source) } }
                             @for (index, &processor) in processors.iter().enumerate() { td.first[index == 0] { (cell(ratio(processor, printed.shader, |m| m.instructions))) } }
                             @for (index, &processor) in processors.iter().enumerate() { td.first[index == 0] { (cell(ratio(processor, printed.shader, |m| m.by_stage.pixel))) } }
+                        }
+                    }
+                }
+            }
+        }
+    }
+}
+
+/// Other renderers beside ours.
+pub(super) fn peers(table: &Table) -> Markup {
+    html! {
+        div.scroll tabindex="0" role="region" aria-label="Beside other renderers" {
+            table.sortable.narrow {
+                caption { "Instructions per covered pixel" }
+                thead { tr {
+                    th scope="col" data-sort="text" { "renderer, method" }
+                    @for processor in &table.processors { th scope="col" data-sort="number" { (processor.name()) } }
+                    th.first scope="col" data-sort="text" {}
+                } }
+                tbody {
+                    @for row in &table.rows {
+                        tr {
+                            th scope="row" { (row.name) }
+                            @for figure in &row.figures { td data-value=[*figure] { @if let Some(figure) = figure { (table::short(*figure)) } } }
+                            td.text.first { (row.source.note()) }
                         }
                     }
                 }

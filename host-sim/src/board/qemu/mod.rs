@@ -12,7 +12,7 @@ use qmp::Qmp;
 use screen::Screen;
 use std::{
     fs,
-    io::{ErrorKind, Read, Write},
+    io::{self, ErrorKind, Read, Write},
     path::Path,
     process::{Child, ChildStdin, ChildStdout, Command, Stdio},
     sync::mpsc::{self, Receiver, RecvTimeoutError},
@@ -26,6 +26,25 @@ const SILENCE: Duration = Duration::from_secs(120);
 const END: Duration = Duration::from_secs(20);
 /// The exit code that the firmware's fault handler chooses.
 const PANIC: i32 = 101;
+
+/// The command that runs `program` on `board`, without anything that looks at it.
+fn machine(board: Board, program: &Path) -> Command {
+    let mut machine = Command::new("qemu-system-arm");
+    machine
+        .args(["-M", board.name(), "-display", "none", "-nodefaults", "-nic", "none", "-serial", "none", "-monitor", "none"])
+        .args(["-chardev", "stdio,id=host,signal=off", "-semihosting-config", "enable=on,target=native,chardev=host"])
+        .arg("-kernel")
+        .arg(program);
+    machine
+}
+
+/// Why QEMU has not started.
+fn missing(error: io::Error) -> anyhow::Error {
+    match error.kind() {
+        ErrorKind::NotFound => anyhow!("qemu-system-arm is not installed; `apt-get install -y --no-install-recommends qemu-system-arm`"),
+        _ => anyhow!("cannot start qemu-system-arm: {error}"),
+    }
+}
 
 /// A running emulator; ends with it.
 struct Emulator {
@@ -43,24 +62,8 @@ impl Drop for Emulator {
 }
 
 impl Emulator {
-    fn start(board: Board, program: &Path, socket: &Path, decoder: log::Decoder) -> Result<Self> {
-        let mut process = Command::new("qemu-system-arm")
-            .args(["-M", board.name(), "-display", "none", "-nodefaults", "-nic", "none", "-serial", "none", "-monitor", "none"])
-            .args(["-chardev", "stdio,id=host,signal=off", "-semihosting-config", "enable=on,target=native,chardev=host"])
-            .arg("-qmp")
-            .arg(format!("unix:{},server=on,wait=off", socket.display()))
-            .arg("-kernel")
-            .arg(program)
-            .stdin(Stdio::piped())
-            .stdout(Stdio::piped())
-            .stderr(Stdio::null())
-            .spawn()
-            .map_err(|error| match error.kind() {
-                ErrorKind::NotFound => {
-                    anyhow!("qemu-system-arm is not installed; `apt-get install -y --no-install-recommends qemu-system-arm`")
-                }
-                _ => anyhow!("cannot start qemu-system-arm: {error}"),
-            })?;
+    fn start(mut machine: Command, decoder: log::Decoder) -> Result<Self> {
+        let mut process = machine.stdin(Stdio::piped()).stdout(Stdio::piped()).stderr(Stdio::null()).spawn().map_err(missing)?;
         let pipes = (process.stdin.take(), process.stdout.take());
         let (Some(input), Some(output)) = pipes else {
             bail!("qemu-system-arm started without pipes");
@@ -121,10 +124,37 @@ pub(super) fn run(board: Board, elf: &Elf) -> Result<Recording> {
     let screen = Screen::of(board, elf)?;
 
     let mut recording = Recording::default();
-    let mut emulator = Emulator::start(board, &program, &socket, log::Decoder::new(elf)?)?;
+    let mut machine = machine(board, &program);
+    machine.arg("-qmp").arg(format!("unix:{},server=on,wait=off", socket.display()));
+    let mut emulator = Emulator::start(machine, log::Decoder::new(elf)?)?;
     let outcome = play(&mut emulator, &socket, &screen, directory.path(), &mut recording);
     outcome.with_context(|| format!("{board} in QEMU; {}", log::tail(&recording.log)))?;
     Ok(recording)
+}
+
+/// Instructions in a tick of the timers of the boards `mps2-*` while [`clocked`].
+pub const INSTRUCTIONS_PER_TICK: f64 = 40.0 / 256.0;
+
+/// Runs a program that looks at nothing but a timer, to its end, and returns its log. Time is what the processor executes, 256 ns an
+/// instruction: exact, and far quicker than [`trace`].
+///
+/// # Errors
+/// When the program crashes, falls silent or fails.
+pub fn clocked(board: Board, elf: &Elf) -> Result<Vec<String>> {
+    let directory = tempfile::Builder::new().prefix("mphong").tempdir().context("cannot create a temporary directory")?;
+    let program = directory.path().join("program.elf");
+    fs::write(&program, elf.bytes()).with_context(|| format!("cannot write {}", program.display()))?;
+    let mut machine = machine(board, &program);
+    machine.args(["-icount", "shift=8,sleep=off"]);
+    let mut emulator = Emulator::start(machine, log::Decoder::new(elf)?)?;
+    let mut lines = Vec::new();
+    while let Some(line) = emulator.line()? {
+        lines.push(line);
+    }
+    match emulator.wait()? {
+        Some(0) => Ok(lines),
+        _ => bail!("the program on {board} failed; {}", log::tail(&lines)),
+    }
 }
 
 fn play(emulator: &mut Emulator, socket: &Path, screen: &Screen, directory: &Path, recording: &mut Recording) -> Result<()> {

@@ -3,10 +3,13 @@
 //! QEMU translates blocks of instructions. It logs the instructions of a block when it translates it, and the block each time it
 //! runs: far fewer lines than instructions, and as exact.
 
-use super::super::{
-    Board, Recording,
-    elf::Elf,
-    log::{Decoder, tail},
+use super::{
+    super::{
+        Board, Recording,
+        elf::Elf,
+        log::{Decoder, tail},
+    },
+    machine, missing,
 };
 use anyhow::{Context, Result, anyhow, bail, ensure};
 use std::{
@@ -15,7 +18,7 @@ use std::{
     fs,
     io::{self, BufRead, BufReader, Read, Write},
     ops::Range,
-    process::{Command, Stdio},
+    process::Stdio,
     thread,
     time::Duration,
 };
@@ -44,19 +47,15 @@ pub fn trace(board: Board, elf: &Elf, ranges: &[Range<u32>], blocks: Blocks, mut
         let separator = if filter.is_empty() { "" } else { "," };
         write!(filter, "{separator}{:#x}..{:#x}", range.start, range.end - 1)?;
     }
-    let mut process = Command::new("qemu-system-arm")
-        .args(["-M", board.name(), "-display", "none", "-nodefaults", "-nic", "none", "-serial", "none", "-monitor", "none"])
-        .args(["-chardev", "stdio,id=host,signal=off", "-semihosting-config", "enable=on,target=native,chardev=host"])
+    let mut process = machine(board, &program)
         // The log goes to the standard error output. Blocks that lead to others by themselves would not be in it.
         .args(["-d", "in_asm,exec,nochain", "-dfilter", &filter])
         .args((blocks == Blocks::Single).then_some("-singlestep"))
-        .arg("-kernel")
-        .arg(&program)
         .stdin(Stdio::piped())
         .stdout(Stdio::piped())
         .stderr(Stdio::piped())
         .spawn()
-        .map_err(|error| anyhow!("cannot start qemu-system-arm: {error}; `apt-get install -y --no-install-recommends qemu-system-arm`"))?;
+        .map_err(missing)?;
     let pipes = (process.stdin.take(), process.stdout.take(), process.stderr.take());
     let (Some(mut input), Some(mut messages), Some(output)) = pipes else {
         bail!("qemu-system-arm started without pipes");

@@ -1,0 +1,83 @@
+//! Other renderers draw the frame `peer-sphere`, each in the way that its documentation shows, for `microphong bench --peers`.
+//!
+//! Only [`counted_frame`] is counted: all that a renderer does for a frame but clearing. What stays the same from frame to frame is
+//! converted before: meshes, matrices, the light's direction.
+#![no_std]
+
+extern crate alloc;
+
+mod embedded_3dgfx;
+mod retrofire;
+pub mod scene;
+
+use alloc::boxed::Box;
+use core::hint::black_box;
+use scene::Scene;
+
+/// Columns of the picture.
+pub const WIDTH: usize = 320;
+/// Rows of the picture.
+pub const HEIGHT: usize = 240;
+
+/// Pixels from the top left on, row by row, as RGB565.
+pub type Picture = [u16; WIDTH * HEIGHT];
+
+/// A renderer and its way to shade.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Peer {
+    /// Light at the vertices, by a vertex shader.
+    RetrofireGouraud,
+    /// Light at each pixel, by a fragment shader.
+    RetrofirePhong,
+    /// One colour a triangle, `RenderMode::SolidLightDir`.
+    Embedded3dgfxFlat,
+    /// Light at the vertices, `RenderMode::GouraudLightDir`.
+    Embedded3dgfxGouraud,
+}
+
+impl Peer {
+    /// All of them.
+    pub const ALL: [Self; 4] = [Self::RetrofireGouraud, Self::RetrofirePhong, Self::Embedded3dgfxFlat, Self::Embedded3dgfxGouraud];
+
+    /// The name that the host knows.
+    #[must_use]
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::RetrofireGouraud => "retrofire gouraud",
+            Self::RetrofirePhong => "retrofire phong",
+            Self::Embedded3dgfxFlat => "embedded-3dgfx flat",
+            Self::Embedded3dgfxGouraud => "embedded-3dgfx gouraud",
+        }
+    }
+
+    /// Converts `scene`, and returns what draws a frame of it on black: once, as depth is not cleared again.
+    #[must_use]
+    pub fn prepare(self, scene: &Scene) -> Box<dyn FnMut(&mut Picture) + '_> {
+        match self {
+            Self::RetrofireGouraud => Box::new(retrofire::gouraud(scene)),
+            Self::RetrofirePhong => Box::new(retrofire::phong(scene)),
+            Self::Embedded3dgfxFlat => Box::new(embedded_3dgfx::flat(scene)),
+            Self::Embedded3dgfxGouraud => Box::new(embedded_3dgfx::gouraud(scene)),
+        }
+    }
+}
+
+/// Pixels that are not background.
+#[must_use]
+pub fn covered(picture: &Picture) -> usize {
+    picture.iter().filter(|&&pixel| pixel != 0).count()
+}
+
+/// Callgrind knows it by its name, and starts from zero where it begins.
+#[inline(never)]
+pub fn counted_frame(draw: &mut dyn FnMut(&mut Picture), picture: &mut Picture) {
+    draw(picture);
+    black_box(picture);
+}
+
+/// Callgrind writes down what it has counted where this ends.
+#[inline(never)]
+pub fn dumped_frame(draw: &mut dyn FnMut(&mut Picture), picture: &mut Picture) {
+    counted_frame(draw, picture);
+    black_box(picture);
+}
