@@ -42,11 +42,11 @@ const fn half_root(k: u128) -> u32 {
     ((1u128 << 69) / k).isqrt() as u32
 }
 
-/// Knots of [`HalfRoots::at`] at x = (256 + i)/1024, Q2.30, and how much less it is 1/2048 of the way to the next one, with 4
+/// Knots of [`half_rsqrt`] at x = (256 + i)/1024, Q2.30, and how much less it is 1/2048 of the way to the next one, with 4
 /// more fraction bits. As many as a saturated index can tell apart.
 ///
 /// Knots are lower by half of what chords lie above the curve, and by half a place between knots, for places are cut off.
-pub static HALVES: HalfRoots = HalfRoots({
+static HALVES: [[u32; 2]; 1024] = {
     let mut table = [[0; 2]; 1024];
     let mut i = 0;
     while i < 1024 {
@@ -57,29 +57,23 @@ pub static HALVES: HalfRoots = HalfRoots({
         i += 1;
     }
     table
-});
+};
 
-/// A table for 1/(2 sqrt(x)).
-#[derive(Debug)]
-pub struct HalfRoots([[u32; 2]; 1024]);
-
-/// One quarter, Q2.30: the least argument of [`HalfRoots::at`].
+/// One quarter, Q2.30: the least argument of [`half_rsqrt`].
 pub const QUARTER: i32 = 1 << 28;
 
-impl HalfRoots {
-    /// 1/(2 sqrt(x)) in Q2.30 for `x` in [1/4, 1] by linear interpolation: for the pixel loop. `above` is x less [`QUARTER`], Q2.30.
-    ///
-    /// Error: at most [`HALF_ERROR`] relative (tests::half_error). Arguments outside give something in range.
-    #[inline(always)]
-    #[must_use]
-    pub fn at(&self, above: i32) -> u32 {
-        // Interval in the upper bits, place in it in the eleven below them.
-        let [knot, slope] = self.0[(above >> 20).clamp(0, 1023) as usize];
-        knot.wrapping_sub(slope.wrapping_mul((above >> 9) as u32 & 0x7FF) >> 4)
-    }
+/// 1/(2 sqrt(x)) in Q2.30 for `x` in [1/4, 1] by linear interpolation: for the pixel loop. `above` is x less [`QUARTER`], Q2.30.
+///
+/// Error: at most [`HALF_ERROR`] relative (tests::half_error). Arguments outside give something in range.
+#[inline(always)]
+#[must_use]
+pub fn half_rsqrt(above: i32) -> u32 {
+    // Interval in the upper bits, place in it in the eleven below them.
+    let [knot, slope] = HALVES[(above >> 20).clamp(0, 1023) as usize];
+    knot.wrapping_sub(slope.wrapping_mul((above >> 9) as u32 & 0x7FF) >> 4)
 }
 
-/// Relative error of [`HalfRoots::at`]: a quarter LSB at exponent 1024.
+/// Relative error of [`half_rsqrt`]: a quarter LSB at exponent 1024.
 pub const HALF_ERROR: f64 = 1.5e-6;
 
 /// 1/sqrt(x) for any x > 0, as a mantissa from [`rsqrt`] and an exponent: `mantissa * 2^-exponent`.
@@ -113,7 +107,7 @@ mod tests {
         let mut worst = 0f64;
         for x in ((1u32 << 28)..=1 << 30).step_by(4_093) {
             let exact = 2f64.powi(29) / (f64::from(x) / 2f64.powi(30)).sqrt();
-            worst = worst.max((f64::from(HALVES.at(x as i32 - QUARTER)) / exact - 1.0).abs());
+            worst = worst.max((f64::from(half_rsqrt(x as i32 - QUARTER)) / exact - 1.0).abs());
         }
         assert!(worst <= HALF_ERROR, "{worst}");
     }

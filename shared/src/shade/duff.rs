@@ -18,7 +18,7 @@ use crate::{
     math::{
         power::PixelPower,
         product::{product, upper},
-        rsqrt::{HALVES, HalfRoots, QUARTER, rsqrt},
+        rsqrt::{QUARTER, half_rsqrt, rsqrt},
     },
     palette::Reflection,
     pixel::Pixel,
@@ -30,12 +30,12 @@ pub(super) fn draw<C: Pixel>(facet: &Facet<'_>, shading: &Shading<'_, C>, band: 
     if is_curved(facet) {
         let nodes = facet.six_linear_nodes();
         shading.draw_lit(facet, |source| shading.six_products(&nodes, source, |p| p), square, Rooted, band)
-    } else if let Some(gloss) = shading.gloss(Tabled(&HALVES)) {
+    } else if let Some(gloss) = shading.gloss(Tabled) {
         facet.draw((numerators(facet), square.raised([(1 << 30) - QUARTER])), gloss, band)
     } else {
         let nodes = facet.six_linear_nodes();
         let square = square.raised([(1 << 30) - QUARTER]);
-        shading.draw_lit(facet, |source| shading.six_products(&nodes, source, |p| p), square, Tabled(&HALVES), band)
+        shading.draw_lit(facet, |source| shading.six_products(&nodes, source, |p| p), square, Tabled, band)
     }
 }
 
@@ -62,15 +62,15 @@ pub(super) fn square(facet: &Facet<'_>) -> Quadratic<1> {
 
 /// One over the root of |N|² in [1/4, 1] from a table, by |N|² - 1/4.
 #[derive(Clone, Copy)]
-struct Tabled<'t>(&'t HalfRoots);
+struct Tabled;
 
-impl Form<[u32; 1], ([u32; 1], [u32; 1])> for Tabled<'_> {
+impl Form<[u32; 1], ([u32; 1], [u32; 1])> for Tabled {
     /// 1/(2|N|), Q2.30.
     type Common = i32;
 
     #[inline(always)]
     fn common(&self, [square]: [u32; 1]) -> i32 {
-        self.0.at(signed(square)) as i32
+        half_rsqrt(signed(square)) as i32
     }
 
     #[inline(always)]
@@ -79,12 +79,12 @@ impl Form<[u32; 1], ([u32; 1], [u32; 1])> for Tabled<'_> {
     }
 }
 
-impl Form<[u32; 1], [u32; 2]> for Tabled<'_> {
+impl Form<[u32; 1], [u32; 2]> for Tabled {
     type Common = i32;
 
     #[inline(always)]
     fn common(&self, [square]: [u32; 1]) -> i32 {
-        self.0.at(signed(square)) as i32
+        half_rsqrt(signed(square)) as i32
     }
 
     #[inline(always)]
