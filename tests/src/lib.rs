@@ -21,7 +21,8 @@ use std::{
 pub fn program() -> &'static Path {
     static PROGRAM: LazyLock<PathBuf> = LazyLock::new(|| {
         let cargo = Command::new(env!("CARGO"))
-            .args(["build", "--quiet", "--package", "microphong-sim", "--bin", "microphong", "--message-format", "json"])
+            // As `cargo test --workspace` compiles it, so that nothing is compiled twice.
+            .args(["build", "--quiet", "--workspace", "--tests", "--bin", "microphong", "--message-format", "json"])
             .current_dir(env!("CARGO_MANIFEST_DIR"))
             .output()
             .expect("cargo");
@@ -29,6 +30,7 @@ pub fn program() -> &'static Path {
         String::from_utf8_lossy(&cargo.stdout)
             .lines()
             .filter_map(|line| serde_json::from_str::<Value>(line).ok())
+            .filter(|message| message["target"]["kind"][0] == "bin" && message["profile"]["test"] == false)
             .find_map(|message| message["executable"].as_str().map(PathBuf::from))
             .expect("the program's path")
     });

@@ -7,7 +7,7 @@ fn link(target: &str, source: &str) -> (bool, String) {
     let output = Command::new(env!("CARGO"))
         .current_dir(root.join("panic-free"))
         .args(["build", "--release", "--target", target, "--features", source, "--target-dir"])
-        .arg(root.join("../target/panic-free"))
+        .arg(root.join("../target/firmware"))
         .env_remove("RUSTFLAGS")
         .env_remove("CARGO_ENCODED_RUSTFLAGS")
         .output()

@@ -10,7 +10,7 @@ use std::{
 
 /// Builds the firmware of `board` and returns the ELF's path.
 ///
-/// Each board has a target directory of its own: two boards of one target would overwrite each other's files.
+/// All boards, and whatever else is compiled for them, share a target directory, so that dependencies are compiled once.
 ///
 /// # Errors
 /// When the target or the compiler is missing, or the firmware does not compile.
@@ -19,7 +19,7 @@ pub fn firmware(board: Board) -> Result<PathBuf> {
     let directory = root.join("firmware");
     install_target(board.target(), &directory)?;
 
-    let output = root.join("target/firmware").join(board.name());
+    let output = root.join("target/firmware");
     let what = format!("the firmware for {board}");
     let arguments = ["--no-default-features", "--features", board.name(), "--bin", board.name(), "--target", board.target()];
     release(&directory, &arguments, &output, &what)?;

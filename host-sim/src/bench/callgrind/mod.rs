@@ -79,7 +79,7 @@ impl Count {
 pub fn build() -> Result<PathBuf> {
     ensure!(cfg!(target_arch = "x86_64"), "instructions of x86-64 are counted on such computers only; choose another board");
     let root = sources()?;
-    let output = root.join("target/firmware/x86-64");
+    let output = root.join("target/firmware");
     release(&root.join("host-sim/frame"), &[], &output, "the program that draws for callgrind")?;
     Ok(output.join("release/frame"))
 }

@@ -136,7 +136,7 @@ impl Picture {
 /// Compiles `host-sim/peers` for `target`, or for the host, and returns the program's path.
 fn build(program: &str, target: Option<&str>) -> Result<PathBuf> {
     let root = sources()?;
-    let (directory, output) = (root.join("host-sim/peers"), root.join("target/firmware/peers"));
+    let (directory, output) = (root.join("host-sim/peers"), root.join("target/firmware"));
     let mut arguments = vec!["--features", program, "--bin", program];
     if let Some(target) = target {
         install_target(target, &directory)?;
