@@ -207,9 +207,8 @@ impl Meter {
         let Some(&(function, part)) = self.calls.last() else { return };
         let cost = Cost { instructions: 1, cycles };
         if part == Part::Row {
-            if self.functions.get(usize::from(function)).is_some_and(|function| function.part == Part::Row) {
-                let starts = self.functions.get(usize::from(function)).is_some_and(|function| function.range.start == address);
-                if !starts && !self.sites[self.site].next.contains(&index) {
+            if let Some(Function { range, part: Part::Row }) = self.functions.get(usize::from(function)) {
+                if address != range.start && !self.sites[self.site].next.contains(&index) {
                     self.sites[self.site].next.push(index);
                 }
                 self.site = index;

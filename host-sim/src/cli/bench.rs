@@ -51,7 +51,7 @@ pub(crate) struct Arguments {
     /// Also measure other renderers on the scene peer-sphere, on the boards mps2-an385, mps2-an386 and x86-64.
     #[arg(long)]
     peers: bool,
-    /// Measure the frames that FILE lists, and fail where one costs over 1 % more instructions, or 2.5 % more flash, than recorded there.
+    /// Measure the frames that FILE lists, and fail where one costs over 1 % more instructions or flash than recorded there.
     #[arg(long, value_name = "FILE", conflicts_with_all = ["scenes", "shader", "board", "json", "report", "peers"])]
     check: Option<PathBuf>,
     /// Measure the frames that FILE lists, and record what they cost.
@@ -183,7 +183,7 @@ fn compare(path: &Path) -> Result<Outcome> {
     let shrunk = changes.len() - grown;
     let renew = format!("if that is meant, renew the file: microphong bench --renew {}", path.display());
     if grown > 0 {
-        report::line(&format!("{grown} of {} costs have grown; {renew}", 2 * recorded.len()))?;
+        report::line(&format!("{grown} of {} costs have grown by more than {} %; {renew}", 2 * recorded.len(), baseline::TOLERANCE))?;
     } else if shrunk > 0 {
         report::line(&format!("{shrunk} costs have shrunk, which would hide later growth; {renew}"))?;
     } else {

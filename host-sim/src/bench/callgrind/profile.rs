@@ -28,11 +28,11 @@ impl Function {
     /// From which instructions it went on to which others.
     pub(super) fn ways(&self) -> impl Iterator<Item = (u64, u64)> {
         let taken: HashMap<u64, u64> = self.jumps.iter().map(|jump| (jump.from, jump.count)).collect();
-        // Unless it always jumps.
-        let falls = move |(&address, &count): (&u64, &u64)| (taken.get(&address).is_none_or(|&taken| taken < count)).then_some(address);
         let following = self.executions.iter().zip(self.executions.keys().skip(1));
-        let falls = following.filter_map(move |(one, &next)| Some((falls(one)?, next)));
-        falls.chain(self.jumps.iter().filter(|jump| jump.count > 0).map(|jump| (jump.from, jump.to)))
+        // Unless it always jumps.
+        let on = following.filter(move |((from, count), _)| taken.get(from).is_none_or(|&taken| taken < **count));
+        let jumps = self.jumps.iter().filter(|jump| jump.count > 0);
+        on.map(|((&from, _), &to)| (from, to)).chain(jumps.map(|jump| (jump.from, jump.to)))
     }
 }
 
