@@ -24,7 +24,7 @@ pub use picture::error_picture;
 use embedded_graphics::prelude::*;
 use embedded_graphics::primitives::Rectangle;
 use microphong::{
-    Memory, Renderer, Stats, Stream,
+    Frame, Memory, Renderer, Stats, Stream,
     pixel::{PictureCrc, Pixel},
 };
 use panic_probe as _;
@@ -37,7 +37,7 @@ pub trait Display {
     /// The picture's size.
     fn size(&self) -> Size;
 
-    /// A new frame begins.
+    /// A new frame begins to be drawn; the last band of the one before may still be to be sent.
     fn begin(&mut self) {}
 
     /// Shows the pixels of `area`, row by row, and does `meanwhile`, at the same time if the board can.
@@ -70,13 +70,17 @@ pub fn run<D: Display>(display: &mut D, memory: Memory<'_, D::Color>, bands: [&m
 fn animate<D: Display>(
     display: &mut D,
     memory: Memory<'_, D::Color>,
-    [front, back]: [&mut [D::Color]; 2],
+    mut bands: [&mut [D::Color]; 2],
 ) -> Result<core::convert::Infallible, Failure> {
     let stream = Stream::parse(stream::bytes())?;
     let mut renderer = Renderer::new(stream, display.size(), memory)?;
     for number in 0..u32::from(stream.header.frames) {
         let mut crc = PictureCrc::default();
-        let stats = draw(display, &mut renderer, number, [front, back], |pixels| check(&mut crc, pixels));
+        let (stats, last) = draw(display, &mut renderer, number, &mut bands, None, |pixels| check(&mut crc, pixels));
+        if let Some(area) = last {
+            let pixels = part(bands[0], area);
+            display.send(area, pixels, || check(&mut crc, pixels));
+        }
         // The host reads this line: keep its form.
         defmt::info!(
             "frame {=u32} shader {=str} crc {=u32:08x} triangles {=u32} culled {=u32} drawn {=u32} pixels {=u32}",
@@ -94,10 +98,10 @@ fn animate<D: Display>(
     defmt::info!("stack {=usize} bytes", stack::used());
     display.end();
     // All has been checked: from now on at full speed.
+    let mut last = None;
     loop {
         for number in 0..u32::from(stream.header.frames) {
-            draw(display, &mut renderer, number, [front, back], |_| ());
-            display.present();
+            (_, last) = draw(display, &mut renderer, number, &mut bands, last, |_| ());
         }
     }
 }
@@ -109,23 +113,52 @@ fn check<C: Pixel>(crc: &mut PictureCrc, pixels: &[C]) {
 }
 
 /// Draws one frame: while a band is on its way to the display, `look` sees it and the next one is drawn.
+///
+/// `last` is the band of the frame before that is still to be sent; the last one of this frame is returned likewise. Both lie in
+/// the first of the `bands`.
 fn draw<D: Display>(
     display: &mut D,
     renderer: &mut Renderer<'_, D::Color>,
     number: u32,
-    [mut front, mut back]: [&mut [D::Color]; 2],
+    bands: &mut [&mut [D::Color]; 2],
+    last: Option<Rectangle>,
     mut look: impl FnMut(&[D::Color]),
-) -> Stats {
+) -> (Stats, Option<Rectangle>) {
     display.begin();
-    let mut frame = renderer.frame(number);
-    let mut next = frame.next_band(front);
-    while let Some(area) = next {
-        let pixels = &front[..(area.size.width * area.size.height) as usize];
-        next = display.send(area, pixels, || {
-            look(pixels);
-            frame.next_band(back)
-        });
-        core::mem::swap(&mut front, &mut back);
+    let bottom = display.size().height as i32;
+    let [front, back] = bands;
+    let (mut frame, mut next) = match last {
+        Some(area) => {
+            let started = display.send(area, part(front, area), move || start(renderer, number, back));
+            display.present();
+            started
+        }
+        None => start(renderer, number, back),
+    };
+    loop {
+        bands.swap(0, 1);
+        let [front, back] = bands;
+        match next {
+            Some(area) if area.top_left.y + (area.size.height as i32) < bottom => {
+                let pixels = part(front, area);
+                next = display.send(area, pixels, || {
+                    look(pixels);
+                    frame.next_band(back)
+                });
+            }
+            _ => return (frame.stats(), next),
+        }
     }
-    frame.stats()
+}
+
+/// Begins a frame and draws its first band.
+fn start<'r, 'a, C: Pixel>(renderer: &'r mut Renderer<'a, C>, number: u32, band: &mut [C]) -> (Frame<'r, 'a, C>, Option<Rectangle>) {
+    let mut frame = renderer.frame(number);
+    let area = frame.next_band(band);
+    (frame, area)
+}
+
+/// The pixels of `area` in a band.
+fn part<C>(band: &[C], area: Rectangle) -> &[C] {
+    &band[..(area.size.width * area.size.height) as usize]
 }

@@ -45,7 +45,7 @@ pub struct St7789 {
     pub reset: Output<'static>,
     /// High lights the panel.
     pub backlight: Output<'static>,
-    /// The board's own light: on while a complete frame is shown, off while the next one is drawn.
+    /// The board's own light: goes out when a frame begins to be drawn, and on when one is complete.
     pub led: Output<'static>,
 }
 

@@ -65,7 +65,7 @@ fn play(machine: &mut Machine, decoder: &mut log::Decoder, frames: usize, record
 /// Cycles of one frame; 125 of them are a microsecond.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct FrameTime {
-    /// From its beginning to that of the next.
+    /// From the end of the one before to its own.
     pub all: u64,
     /// While bits went over the wire to the panel.
     pub wire: u64,
@@ -89,6 +89,7 @@ fn follow(
 ) -> Result<FrameTime> {
     let mut start = None;
     let mut led = false;
+    let mut shown = 0;
     let deadline = 2 * PATIENCE;
     while machine.cycle() < deadline {
         let step = machine.step();
@@ -99,17 +100,19 @@ fn follow(
             }
         }
         let (address, cycles) = step?;
-        // The light goes out when a frame begins.
-        let begins = led && !machine.led();
+        // The light goes on when a frame is complete, and its next one begun.
+        let completes = !led && machine.led();
         led = machine.led();
+        shown += u32::from(completes);
         match start {
-            Some(FrameTime { all, wire }) if begins => {
+            Some(FrameTime { all, wire }) if completes => {
                 return Ok(FrameTime { all: machine.cycle() - all, wire: machine.wire() - wire });
             }
             Some(_) => visit(address, cycles),
-            None if begins => start = Some(FrameTime { all: machine.cycle(), wire: machine.wire() }),
+            // The first frame is checked, while the second one is drawn nothing is on its way yet.
+            None if completes && shown == 2 => start = Some(FrameTime { all: machine.cycle(), wire: machine.wire() }),
             None => {}
         }
     }
-    bail!("the firmware has not shown two frames in {deadline} cycles: it hangs")
+    bail!("the firmware has not shown three frames in {deadline} cycles: it hangs")
 }
