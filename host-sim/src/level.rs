@@ -30,8 +30,8 @@ impl Pixel for Fine {
         0
     }
 
-    fn ramped(_: &[Self; RAMP], level: u32) -> Self {
-        Self(Some([level; 3]))
+    fn ramped<const BITS: u32>(_: &[Self; RAMP], level: u32) -> Self {
+        Self(Some([level << (WALK - BITS); 3]))
     }
 
     fn mixed(levels: [u32; 3]) -> Self {

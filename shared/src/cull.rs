@@ -3,7 +3,10 @@
 
 use crate::{
     format::{ROTATION, UNIT},
-    math::vector::{narrow_dot, wide},
+    math::{
+        product::product,
+        vector::{narrow_dot, wide},
+    },
     scene::Pose,
     stream::record::{Camera, LEAN, PERSPECTIVE, Triangle},
 };
@@ -104,6 +107,6 @@ impl Extent {
 #[cold]
 #[inline(never)]
 fn large_area([x1, y1]: [i32; 2], [x2, y2]: [i32; 2]) -> i32 {
-    let area = i64::from(x1) * i64::from(y2) - i64::from(x2) * i64::from(y1);
+    let area = product(x1, y2) - product(x2, y1);
     area.clamp(i32::MIN.into(), i32::MAX.into()) as i32
 }

@@ -40,6 +40,8 @@ pub const WALK: u32 = 23;
 pub const BIAS: i32 = 128;
 /// Fraction bits of depth at a vertex, Q0.28: 1 at the near plane, 0 infinitely far.
 pub const DEPTH: u32 = 28;
+/// Fraction bits of depth between the corners of a triangle: 1/16 of what the depth buffer tells apart.
+pub const DEPTH_NODE: u32 = 20;
 /// Fraction bits of depth while it is walked; the depth buffer keeps the 16 bits above them.
 pub const DEPTH_WALK: u32 = 16;
 /// Fraction bits of the area that a triangle covers of a pixel: Q1.16, 1 is the whole pixel.

@@ -5,6 +5,7 @@ use crate::{
     format::{BIAS, COSINE, LEVEL, MAX_LIGHTS, PIXEL_COSINE, RAMP, UNIT, WALK},
     math::{
         power::{Base, POWER, PixelPower, Power, square},
+        product::upper,
         vector::zip,
     },
     pixel::Pixel,
@@ -37,6 +38,8 @@ pub struct Palette<C> {
     ambient: [i32; 3],
     gains: [Gains; MAX_LIGHTS],
     dark_below: i32,
+    /// `power` holds levels: what its highlight adds to the only light, on top of the level without lights.
+    holds_levels: bool,
 }
 
 /// A colour as products of gains, Q4.28.
@@ -79,16 +82,13 @@ impl<C: Pixel> Palette<C> {
             ambient: [0; 3],
             gains: [Gains { diffuse: [0; 3], specular: [0; 3] }; MAX_LIGHTS],
             dark_below: 0,
+            holds_levels: false,
         }
     }
 
-    /// Works out `material` under `lights`, for a method with these highlights.
-    pub fn fill(&mut self, header: &Header, material: &Material, lights: &[Light], highlight: Highlight) {
-        self.power.fill(material.exponent, highlight.base());
-        self.dark_below = match highlight.base() {
-            Base::Square => square(self.power.dark_below()),
-            _ => self.power.dark_below(),
-        };
+    /// Works out `material` under `lights`, for a method with these highlights. Where one level says it all, and it may, the highlight's
+    /// table `holds_levels` instead of shares.
+    pub fn fill(&mut self, header: &Header, material: &Material, lights: &[Light], highlight: Highlight, holds_levels: bool) {
         let tint = |colour: Colour| if C::GRAY { grey(colour) } else { colour };
         let ambient = tint(product(header.ambient, material.ambient));
         let diffuse = |light: &Light| tint(product(light.colour, material.diffuse));
@@ -104,6 +104,19 @@ impl<C: Pixel> Palette<C> {
         for (gains, light) in self.gains.iter_mut().zip(lights) {
             *gains = Gains { diffuse: levels(diffuse(light)), specular: levels(specular(light)) };
         }
+        self.holds_levels = holds_levels && one_channel && lights.len() == 1 && self.fits();
+        let [one, ..] = &mut self.gains;
+        let (mut full, mut floor) = (1 << POWER, 0);
+        if self.holds_levels {
+            (full, floor) = (one.specular[0].into(), Self::raised(self.ambient[0]) as u16);
+            // What is left to multiply with is all but one.
+            one.specular = [u16::MAX; 3];
+        }
+        self.power.fill(material.exponent, highlight.base(), full, floor);
+        self.dark_below = match highlight.base() {
+            Base::Square => square(self.power.dark_below()),
+            _ => self.power.dark_below(),
+        };
         // Share of each channel in the base colour, scaled to what the output can show.
         let whole = u64::from(largest(base).max(1));
         self.base = zip(base, C::DEPTH, |channel, depth| {
@@ -172,7 +185,7 @@ impl<C: Pixel> Palette<C> {
         for (gains, Reflection { diffuse, highlight }) in self.gains.iter().zip(reflections) {
             // What approximations lift above 1 counts as 1.
             let diffuse = diffuse.min(1 << PIXEL_COSINE) << (COSINE - PIXEL_COSINE);
-            self.add(&mut levels, gains, diffuse, highlight);
+            self.add(&mut levels, gains, diffuse, highlight.saturating_sub(self.power.floor()));
         }
         levels.map(|level| level.min(FULL))
     }
@@ -187,20 +200,37 @@ impl<C: Pixel> Palette<C> {
         }
     }
 
+    /// A level, Q9.7, with bias and rounding half of the ramp's index.
+    fn raised(level: i32) -> u32 {
+        (level + (BIAS << LEVEL) + (1 << (LEVEL - 1))) as u32
+    }
+
+    /// One light on one channel is at most what the ramp takes.
+    fn fits(&self) -> bool {
+        let [gains, ..] = &self.gains;
+        let sum = self.ambient[0] as u32 + u32::from(gains.diffuse[0]) + u32::from(gains.specular[0]);
+        sum < (RAMP as u32 - BIAS as u32 - 1) << LEVEL
+    }
+
     /// What one light comes to in a material of one channel: for the pixel loop. `None` if that is more than the ramp takes.
     #[must_use]
     pub fn glossy(&self) -> Option<Glossy<'_, C>> {
         let [gains, ..] = &self.gains;
-        let (ambient, diffuse, specular) = (self.ambient[0] as u32, u32::from(gains.diffuse[0]), u32::from(gains.specular[0]));
-        let fits = ambient + diffuse + specular < (RAMP as u32 - BIAS as u32 - 1) << LEVEL;
-        fits.then(|| Glossy {
-            ramp: &self.ramp,
-            power: self.power.pixel(),
-            // Bias and rounding half of the ramp's index are in it already.
-            ambient: (ambient + ((BIAS as u32) << LEVEL) + (1 << (LEVEL - 1))) << (WALK - LEVEL),
-            diffuse: diffuse << (WALK - LEVEL - DIFFUSE),
-            specular,
-        })
+        let diffuse = u32::from(gains.diffuse[0]) << (WALK - LEVEL - DIFFUSE);
+        let (ramp, power) = (&self.ramp, self.power.pixel());
+        if self.holds_levels {
+            Some(Glossy { ramp, power, ambient: 0, diffuse, specular: 1 << (WALK - LEVEL) })
+        } else {
+            let ambient = Self::raised(self.ambient[0]) << (WALK - LEVEL);
+            self.fits().then(|| Glossy { ramp, power, ambient, diffuse, specular: gains.specular[0].into() })
+        }
+    }
+
+    /// The same, of a highlight's table that holds levels; `None` if it does not.
+    #[must_use]
+    pub fn levels_of_one(&self) -> Option<Levels<'_, C>> {
+        let [gains, ..] = &self.gains;
+        self.holds_levels.then(|| Levels { ramp: &self.ramp, diffuse: gains.diffuse[0] })
     }
 
     /// The colour of three levels, Q9.7, rounded.
@@ -210,7 +240,7 @@ impl<C: Pixel> Palette<C> {
         // Levels stay below the guards at the ramp's ends.
         let walked = |level: i32, half: u32| ((level + (BIAS << LEVEL) + (1 << half)) as u32) << (WALK - LEVEL);
         if !self.three_channels {
-            C::ramped(&self.ramp, walked(levels[0], LEVEL - 1))
+            C::ramped::<WALK>(&self.ramp, walked(levels[0], LEVEL - 1))
         } else {
             C::mixed(zip(levels, C::DEPTH, |level, depth| walked(level, LEVEL + 7 - depth)))
         }
@@ -258,7 +288,39 @@ impl<C: Pixel> Glossy<'_, C> {
     pub fn colour(&self, Reflection { diffuse, highlight }: Reflection) -> C {
         let diffuse = (diffuse >> (PIXEL_COSINE - DIFFUSE)).clamp(0, (1 << DIFFUSE) - 1) as u32;
         let level = self.ambient.wrapping_add(diffuse.wrapping_mul(self.diffuse)).wrapping_add(highlight.wrapping_mul(self.specular));
-        C::ramped(self.ramp, level)
+        C::ramped::<WALK>(self.ramp, level)
+    }
+}
+
+/// One light on a material of one channel, its levels walked: what its highlight adds, and all that is the same everywhere, is in
+/// the highlight's table.
+#[derive(Clone, Copy, Debug)]
+pub struct Levels<'a, C> {
+    ramp: &'a [C; RAMP],
+    /// Level at cosine 1, Q9.7.
+    diffuse: u16,
+}
+
+impl<C: Pixel> Levels<'_, C> {
+    /// The diffuse level at a node, in Q10 with `bits` more, at most 20, rounded down; `cosine` in Q2.30.
+    #[inline(always)]
+    #[must_use]
+    pub fn node(&self, cosine: i32, bits: u32) -> i32 {
+        upper(cosine, i32::from(self.diffuse) << 15) >> (COSINE + LEVEL - 17 - bits)
+    }
+
+    /// No diffuse level is above 255.
+    #[inline(always)]
+    #[must_use]
+    pub fn is_within(&self) -> bool {
+        i32::from(self.diffuse) <= FULL
+    }
+
+    /// The colour of a walked diffuse level, not negative, Q9.`BITS`, and the highlight's entry.
+    #[inline(always)]
+    #[must_use]
+    pub fn colour<const BITS: u32>(&self, diffuse: u32, highlight: u32) -> C {
+        C::ramped::<BITS>(self.ramp, diffuse.wrapping_add(highlight << (BITS - LEVEL)))
     }
 }
 

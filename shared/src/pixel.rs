@@ -25,10 +25,10 @@ pub trait Pixel: Copy + 'static {
     /// The value that the display is sent, independent of byte order in memory.
     fn bits(self) -> u32;
 
-    /// The colour of a level under a table of colours. Levels are biased and have [`WALK`] fraction bits, rounding half included.
+    /// The colour of a level under a table of colours. Levels are biased and have `BITS` fraction bits, rounding half included.
     #[inline(always)]
-    fn ramped(ramp: &[Self; RAMP], level: u32) -> Self {
-        ramp[(level >> WALK) as usize]
+    fn ramped<const BITS: u32>(ramp: &[Self; RAMP], level: u32) -> Self {
+        ramp[(level >> BITS) as usize % RAMP]
     }
 
     /// The colour of three levels, biased and with [`WALK`] fraction bits, half a step of each channel included.

@@ -12,10 +12,7 @@ use crate::{
     math::vector::wide,
     palette::Palette,
     pixel::Pixel,
-    raster::{
-        edge::{COLUMNS, first_centre},
-        triangle::Bounds,
-    },
+    raster::{edge::COLUMNS, triangle::Bounds},
     sample::Sample,
     scene::{Direction, Lighting, Pose},
     shade::Shading,
@@ -217,7 +214,7 @@ impl<'a, C: Pixel> Renderer<'a, C> {
         check(&self.stream, shader, self.perspective_correct)?;
         self.shader = shader;
         for (palette, material) in self.memory.palettes.iter_mut().zip(self.stream.materials) {
-            palette.fill(self.stream.header, material, self.stream.lights, shader.highlight());
+            palette.fill(self.stream.header, material, self.stream.lights, shader.highlight(), shader.walks_levels());
         }
         Ok(())
     }
@@ -488,6 +485,7 @@ impl<C: Pixel> Frame<'_, '_, C> {
         let mut active = self.bins.active(memory.bins).map(|entry| entry.triangle);
         let mut next = active.next();
         while let Some(mut id) = next {
+            // A stream that has been checked has both.
             let Some(mesh) = self.mesh(id) else { break };
             let Some(drawing) = self.drawing(mesh) else { break };
             let end = mesh.first_triangle.saturating_add(mesh.triangles);
@@ -538,6 +536,7 @@ impl<C: Pixel> Frame<'_, '_, C> {
             #[cfg(feature = "all-shaders")]
             exponent: stream.materials.get(usize::from(mesh.material))?.exponent,
             constant: self.constant,
+            directions: self.constant.map(directions),
         };
         Some(Drawing {
             shading,
@@ -567,11 +566,10 @@ impl Viewport {
         if extent.area <= 0 {
             return None;
         }
-        let Extent { left, right, top, bottom, .. } = *extent;
         self.visible(if self.antialiased {
-            Bounds::touched([[left, top, 0], [right, bottom, 0]].into_iter())
+            Bounds::touched([[extent.left, extent.top, 0], [extent.right, extent.bottom, 0]].into_iter())
         } else {
-            Bounds { left: first_centre(left), top: first_centre(top), right: first_centre(right), bottom: first_centre(bottom) }
+            Bounds::new(extent)
         })
     }
 
@@ -591,7 +589,8 @@ impl Viewport {
 
     /// The visible box of a triangle, on a grid finer by 2 to the power `finer`.
     pub(crate) fn box_of(self, corners: [&ScreenVertex; 3], finer: u32) -> [i32; 4] {
-        Bounds::new(corners).clipped(self.width << finer, self.height << finer).sides()
+        let extent = Extent::new(corners.map(|corner| [corner.x, corner.y]));
+        Bounds::new(&extent).clipped(self.width << finer, self.height << finer).sides()
     }
 
     #[inline(always)]

@@ -170,6 +170,12 @@ impl Shader {
         }
     }
 
+    /// Whether the highlight's table may hold levels: it shades in no other way than by that table.
+    #[must_use]
+    pub const fn walks_levels(self) -> bool {
+        matches!(self, Self::Phong | Self::HighlightTest | Self::Duff | Self::Sqrt6 | Self::Renq | Self::RenqNewton)
+    }
+
     /// Whether it starts from the light at vertices: under one constant light from the cosines, else from levels.
     #[must_use]
     pub(crate) const fn lights_vertices(self, constant: bool) -> bool {

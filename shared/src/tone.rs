@@ -53,7 +53,7 @@ impl<C: Pixel> Tone<[u32; 1]> for Ramp<'_, C> {
 
     #[inline(always)]
     fn tone(&self, [level]: [u32; 1], _: usize) -> C {
-        C::ramped(self.0, level)
+        C::ramped::<WALK>(self.0, level)
     }
 }
 

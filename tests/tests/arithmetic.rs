@@ -1,13 +1,21 @@
 //! Integers against the same method in 64-bit floating point: every method, every scene, all around.
 
 use embedded_graphics::prelude::Size;
-use microphong::Shader;
+use microphong::{
+    Shader,
+    stream::{
+        record::{Light, Material},
+        seal,
+    },
+};
 use microphong_sim::{
+    bytes::StreamBytes,
     level,
     oracle::{Frame, Shade, decides, method},
     scene::{self, Scene},
 };
 use std::{sync::Mutex, thread};
+use zerocopy::IntoBytes;
 
 /// Largest difference allowed, in 1/255.
 const LIMIT: f64 = 0.5;
@@ -98,4 +106,31 @@ fn integers_follow_their_method() {
         println!("{:20} {error:.3} LSB at most, on {place}", shader.name());
     }
     assert!(worst.iter().all(|&(error, _)| error <= LIMIT), "a method is more than {LIMIT} LSB off");
+}
+
+/// A light brighter than full, on a material that it lifts above white.
+#[test]
+fn bright_lights_are_clamped_at_the_end() {
+    let mut scene = scene::load("sphere-168").unwrap();
+    let mut bytes = scene.stream.as_bytes().to_vec();
+    let stream = scene.stream.parse().unwrap();
+    let place = |record: *const u8| record as usize - scene.stream.as_bytes().as_ptr() as usize;
+    for light in stream.lights {
+        let bright = Light { colour: light.colour.map(|c| (u32::from(c) * 8 / 5) as u16), ..*light };
+        bytes[place((&raw const *light).cast())..][..size_of::<Light>()].copy_from_slice(bright.as_bytes());
+    }
+    for material in stream.materials {
+        let matte = Material {
+            diffuse: material.diffuse.map(|c| (u32::from(c) * 8 / 5) as u16),
+            specular: material.specular.map(|c| c / 10),
+            ..*material
+        };
+        bytes[place((&raw const *material).cast())..][..size_of::<Material>()].copy_from_slice(matte.as_bytes());
+    }
+    seal(&mut bytes);
+    scene.stream = StreamBytes::from(&bytes[..]);
+    for (shader, error) in Shader::ALL.iter().zip(errors(&scene, 7, 1)) {
+        println!("{:20} {error:.3} LSB at most", shader.name());
+        assert!(error <= LIMIT, "{}: {error} LSB", shader.name());
+    }
 }

@@ -4,7 +4,8 @@
 //! once, there. The anchor is the middle of what is drawn, or the top corner of triangles below 128 pixels, so S is at most
 //! half the width plus half the height of the screen, or 256. Set-up costs more the thinner the triangle: with k its
 //! length over its height, [`QUADRATIC`] k² and [`LINEAR`] k, a part of the nodes' range; slivers' quadratics are
-//! fitted exactly. Cubics cost 2^-54 (1 + S + S² + S³) LSB and [`CUBIC`] k: they are set up in 128 bits.
+//! fitted exactly. On triangles below 64 pixels first derivatives are rounded per 1/16 pixel, which costs up to
+//! [`SMALL_QUADRATIC`] and [`SMALL_LINEAR`] times 1 + S more. Cubics cost 2^-54 (1 + S + S² + S³) LSB and [`CUBIC`] k: they are set up in 128 bits.
 
 use microphong::{
     format::{BIAS, LEVEL, WALK},
@@ -28,6 +29,15 @@ const QUADRATIC: f64 = 255.0 / (1u64 << 22) as f64;
 const CUBIC: f64 = 255.0 / (1u64 << 22) as f64;
 /// Set-up error of a plane on a triangle as long as high, LSB.
 const LINEAR: f64 = 255.0 / (1u64 << 28) as f64;
+
+/// The same where nodes have 20 bits, such as those of depth.
+const LINEAR_FINER: f64 = 255.0 / (1u64 << 22) as f64;
+/// What first derivatives of a quadratic on a small triangle cost for each pixel of the way from the anchor, LSB.
+const SMALL_QUADRATIC: f64 = 1.0 / (1u64 << 14) as f64;
+/// What those of a plane cost, LSB.
+const SMALL_LINEAR: f64 = 1.0 / (1u64 << 19) as f64;
+/// Up to this far from its first corner, 1/16 pixel, a triangle is small.
+const SMALL: i64 = 1 << 10;
 
 struct Random(TestRng);
 
@@ -80,6 +90,11 @@ fn square(a: [i32; 2], b: [i32; 2]) -> f64 {
     f64::from(b[0] - a[0]).powi(2) + f64::from(b[1] - a[1]).powi(2)
 }
 
+/// The farthest that the other corners lie from the first one, in columns or rows.
+fn reach(c: [[i32; 2]; 3]) -> i64 {
+    [c[1], c[2]].as_flattened().iter().zip([c[0]; 2].as_flattened()).map(|(a, b)| i64::from((a - b).abs())).max().unwrap()
+}
+
 /// Barycentric coordinates of a point.
 fn barycentric(c: [[i32; 2]; 3], p: [i32; 2]) -> [f64; 3] {
     let whole = side(c[0], c[1], c[2]) as f64;
@@ -129,7 +144,7 @@ fn quadratics_of_100_000_random_triangles_stay_within_the_bound() {
         let longest2 = (0..3).map(|k| square(c[k], c[(k + 1) % 3])).fold(0.0, f64::max);
         let thinness = longest2 / side(c[0], c[1], c[2]) as f64;
         // The basis measures from its first corner.
-        let extent = [c[1], c[2]].as_flattened().iter().zip([c[0]; 2].as_flattened()).map(|(a, b)| i64::from((a - b).abs())).max().unwrap();
+        let extent = reach(c);
         let sliver = extent * extent > side(c[0], c[1], c[2]) * MAX_THINNESS;
         slivers += u32::from(sliver);
         let setup = if sliver { 0.0 } else { QUADRATIC * thinness * thinness };
@@ -162,7 +177,8 @@ fn quadratics_of_100_000_random_triangles_stay_within_the_bound() {
                 // Half a unit of each second derivative; products with the offset are cut, which costs a first
                 // derivative three units more, and the value five.
                 let moving = 2f64.powi(-36) * (11.0 + 7.0 * moved + moved * moved);
-                let bound = walking + moving + setup;
+                let small = if extent <= SMALL { SMALL_QUADRATIC * (1.0 + distance) } else { 0.0 };
+                let bound = walking + moving + setup + small;
                 worst[kind] = (worst[kind].0.max(error), worst[kind].1.max(error / bound));
                 assert!(error <= bound, "triangle {i} {c:?}, pixel {x},{row}: error {error}, bound {bound}");
                 pixels += 1;
@@ -203,7 +219,7 @@ fn cubics_stay_within_the_bound() {
         // Longest edge over the height on it.
         let longest2 = (0..3).map(|k| square(c[k], c[(k + 1) % 3])).fold(0.0, f64::max);
         let thinness = longest2 / side(c[0], c[1], c[2]) as f64;
-        let extent = [c[1], c[2]].as_flattened().iter().zip([c[0]; 2].as_flattened()).map(|(a, b)| i64::from((a - b).abs())).max().unwrap();
+        let extent = reach(c);
         let sliver = extent * extent > side(c[0], c[1], c[2]) * MAX_THINNESS;
         slivers += u32::from(sliver);
         let setup = if sliver { 0.0 } else { CUBIC * thinness };
@@ -255,11 +271,16 @@ fn planes_stay_within_the_bound_even_on_slivers() {
             case.corners.swap(1, 2);
         }
         let Some(basis) = Basis::new(case.corners, [0, 0, case.width, case.height]) else { continue };
-        let nodes: [i32; 3] = std::array::from_fn(|_| random.pick(0..255 << LEVEL));
+        // Levels with as many bits as nodes have, or with four more.
+        let finer = 4 * (i as u32 / 6 % 2);
+        let nodes: [i32; 3] = std::array::from_fn(|_| random.pick(0..255 << (LEVEL + finer)));
         let extent = |k: usize| case.corners.iter().map(|c| c[k]).max().unwrap() - case.corners.iter().map(|c| c[k]).min().unwrap();
         let size = f64::from(extent(0).max(extent(1)));
         let thinness = size * size / side(case.corners[0], case.corners[1], case.corners[2]) as f64;
-        let mut plane = Plane::<1>::fit::<15>(&basis, [nodes], WALK - LEVEL);
+        let (mut plane, setup) = match finer {
+            0 => (Plane::<1>::fit::<15>(&basis, [nodes], WALK - LEVEL), LINEAR),
+            _ => (Plane::<1>::fit::<20>(&basis, [nodes], WALK - LEVEL - finer), LINEAR_FINER),
+        };
         let mut at = basis.row();
         for row in 0..case.height {
             let columns = span(&case, row);
@@ -273,10 +294,11 @@ fn planes_stay_within_the_bound_even_on_slivers() {
                 walker.step();
                 let [walked] = walker.value();
                 let b = barycentric(case.corners, [x * 16 + 8, row * 16 + 8]);
-                let exact: f64 = (0..3).map(|k| b[k] * f64::from(nodes[k]) / 128.0).sum();
+                let exact: f64 = (0..3).map(|k| b[k] * f64::from(nodes[k] << (4 - finer)) / 2048.0).sum();
                 let error = (f64::from(walked as i32) / f64::from(1 << WALK) - exact).abs();
                 let distance = f64::from((x - basis.column()).abs() + (row - basis.row()).abs());
-                let bound = 2f64.powi(-23) * (1.0 + distance) + LINEAR * thinness;
+                let small = if reach(case.corners) <= SMALL { SMALL_LINEAR * (1.0 + distance) } else { 0.0 };
+                let bound = 2f64.powi(-23) * (1.0 + distance) + setup * thinness + small;
                 worst = worst.max(error / bound);
                 assert!(error <= bound, "triangle {i} {:?}, pixel {x},{row}: error {error}, bound {bound}", case.corners);
             }

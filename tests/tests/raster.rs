@@ -5,6 +5,7 @@
 
 use microphong::{
     band::Band,
+    cull::Extent,
     poly::{Constant, basis::Basis},
     raster::{
         smooth::Part,
@@ -76,7 +77,10 @@ fn draw(corners: Corners, band_rows: usize, counts: &mut [u8]) -> u32 {
     let vertices = corners.map(vertex);
     let corners = [&vertices[0], &vertices[1], &vertices[2]];
     let outline = Outline::new(corners, Part::Centres);
-    let Some(basis) = Basis::new(outline.corners, Bounds::new(corners).clipped(WIDTH as i32, HEIGHT as i32).sides()) else { return 0 };
+    let Some(basis) = Basis::new(outline.corners, Bounds::new(&Extent::new(outline.corners)).clipped(WIDTH as i32, HEIGHT as i32).sides())
+    else {
+        return 0;
+    };
     let mut drawn = 0;
     for top in (0..HEIGHT).step_by(band_rows) {
         let rows = band_rows.min(HEIGHT - top);

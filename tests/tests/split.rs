@@ -71,7 +71,9 @@ fn cells_of_random_triangles_cover_each_pixel_once() {
         let [a, b, c] = corners.map(|[x, y]| ScreenVertex { x, y, depth: 1 << 27, light: [0; 3], state: State::Ready });
         let corners = if Extent::new(corners).area < 0 { [&a, &c, &b] } else { [&a, &b, &c] };
         let outline = Outline::new(corners, Part::Centres);
-        let Some(basis) = Basis::new(outline.corners, Bounds::new(corners).clipped(w / 16, h / 16).sides()) else { continue };
+        let Some(basis) = Basis::new(outline.corners, Bounds::new(&Extent::new(outline.corners)).clipped(w / 16, h / 16).sides()) else {
+            continue;
+        };
         let depth = outline.depth(&basis);
         let mut pictures = [[0u8; WIDTH * HEIGHT]; 2];
         let mut drawn = [0; 2];

@@ -131,7 +131,7 @@ impl<'s> Reference<'s> {
         let edges = Edges::new(&frame, |facet| shown.get(facet) == Some(&true));
         let one_channel = stream.materials.iter().map(|material| {
             let mut palette = Palette::<Rgb888>::empty();
-            palette.fill(stream.header, material, stream.lights, Highlight::Half);
+            palette.fill(stream.header, material, stream.lights, Highlight::Half, false);
             !palette.three_channels
         });
         let one_channel = one_channel.collect();

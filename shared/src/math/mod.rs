@@ -9,8 +9,10 @@ pub mod product;
 pub mod quotient;
 pub mod recip;
 pub mod rsqrt;
+pub mod steps;
 pub mod vector;
 pub mod wide;
+pub mod zeros;
 
 /// `value / 2^bits` rounded to nearest; for negative `bits` a left shift that wraps.
 #[inline(always)]

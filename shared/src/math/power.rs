@@ -7,17 +7,19 @@ use crate::{
 use core::num::{NonZeroU32, NonZeroU64};
 
 /// Intervals of the table.
-const SIZE: usize = 2048;
+pub(super) const SIZE: usize = 2048;
 
 /// x^n on [1 - 8/n, 1] in 2048 intervals (on [0, 1] for n < 8); below that it is less than e^-8 and taken as 0.
 ///
 /// Restricting the domain makes the error independent of n (Bishop & Weimer 1986
-/// use the whole of [0, 1], where the error grows with n). Entries are unsigned Q0.16.
+/// use the whole of [0, 1], where the error grows with n). Entries are unsigned Q0.16, or multiples of such above a floor.
 #[derive(Clone, Copy, Debug)]
 pub struct Power {
-    table: [u16; SIZE + 1],
-    /// 4 max(n, 8): turns 1 - x into an index.
-    scale: u32,
+    pub(super) table: [u16; SIZE + 1],
+    /// 4 max(n, 8): turns 1 - x into an index, 64 times less of it.
+    pub(super) scale: u32,
+    /// What every entry has more.
+    floor: u16,
 }
 
 /// What is raised to a power, as a function of what a table is looked up by.
@@ -58,13 +60,15 @@ pub const POWER: u32 = 16;
 
 impl Power {
     /// An empty table, for static memory: all zeros, so that it takes no flash.
-    pub const EMPTY: Self = Self { table: [0; SIZE + 1], scale: 0 };
+    pub const EMPTY: Self = Self { table: [0; SIZE + 1], scale: 0, floor: 0 };
 
-    /// Computes the table of `base^n`, `n` from 1 to 1024, in integers: the same bits on every machine.
-    pub fn fill(&mut self, n: u16, base: Base) {
+    /// Computes the table of `floor + full base^n`, `n` from 1 to 1024, in integers: the same bits on every machine.
+    /// `floor + full` is at most 2^16.
+    pub fn fill(&mut self, n: u16, base: Base, full: u32, floor: u16) {
         let n4 = u32::from(n) << 2;
         let scale = WHOLE.max(NonZeroU32::new(if base == Base::Square { n4 << 1 } else { n4 >> base.roots() }).unwrap_or(WHOLE));
         self.scale = scale.get();
+        self.floor = floor;
         for (i, entry) in self.table.iter_mut().enumerate() {
             // x = 1 - 8 i / (2048 max(n, 8)), Q1.31: products of two fit 64 bits.
             let below = ((i as u64) << 25) / NonZeroU64::from(scale);
@@ -81,13 +85,13 @@ impl Power {
                 base = (base * base) >> 31;
                 n >>= 1;
             }
-            *entry = ((result + (1 << 14)) >> 15).min(0xffff) as u16;
+            *entry = (u64::from(floor) + ((result * u64::from(full) + (1 << 30)) >> 31)).min(0xffff) as u16;
         }
         // The lowest entry is what everything below the domain gets, in the pixel loop the one above it.
         let [.., lower, lowest] = &mut self.table;
-        *lowest = 0;
+        *lowest = floor;
         if scale > WHOLE {
-            *lower = 0;
+            *lower = floor;
         }
     }
 
@@ -99,14 +103,14 @@ impl Power {
         u32::try_from(unsigned_product(defect, self.scale) >> (COSINE - 18)).unwrap_or(u32::MAX)
     }
 
-    /// cosine^n, unsigned Q0.16, by linear interpolation; `cosine` in Q2.30.
+    /// cosine^n, unsigned Q0.16, by linear interpolation, without the floor; `cosine` in Q2.30.
     /// Error: at most [`ERROR`] of full intensity (tests::error).
     #[must_use]
     pub fn at(&self, cosine: i32) -> u32 {
         let position = self.position(cosine);
         let i = (position >> 12) as usize;
         match (self.table.get(i), self.table.get(i + 1)) {
-            (Some(&a), Some(&b)) => u32::from(a) - ((u32::from(a.saturating_sub(b)) * (position & 0xfff)) >> 12),
+            (Some(&a), Some(&b)) => u32::from(a) - ((u32::from(a.saturating_sub(b)) * (position & 0xfff)) >> 12) - u32::from(self.floor),
             _ => 0,
         }
     }
@@ -116,6 +120,12 @@ impl Power {
     pub fn pixel(&self) -> PixelPower<'_> {
         let scale = NonZeroU32::new(self.scale).unwrap_or(WHOLE);
         PixelPower { table: &self.table, top: (1 << PIXEL_COSINE) + ((1 << 20) / scale) as i32, factor: (scale.get() << 16) as i32 }
+    }
+
+    /// What every entry has more.
+    #[must_use]
+    pub fn floor(&self) -> u32 {
+        self.floor.into()
     }
 
     /// Smallest cosine, Q2.30, whose power is not taken as 0.
@@ -134,7 +144,7 @@ pub struct PixelPower<'a> {
 }
 
 impl PixelPower<'_> {
-    /// cosine^n, unsigned Q0.16; `cosine` in Q5.27. Error: [`NEAREST_ERROR`].
+    /// cosine^n, unsigned Q0.16, with the floor; `cosine` in Q5.27. Error: [`NEAREST_ERROR`].
     #[inline(always)]
     #[must_use]
     pub fn at(&self, cosine: i32) -> u32 {
@@ -161,7 +171,7 @@ mod tests {
                     continue;
                 }
                 let mut power = Power::EMPTY;
-                power.fill(n, base);
+                power.fill(n, base, 1 << 16, 0);
                 let (mut at, mut nearest) = (0f64, 0f64);
                 for i in 0..200_000u32 {
                     let cosine = (1 << 30) - (i * 5_368) as i32;

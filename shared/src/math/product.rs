@@ -34,6 +34,30 @@ pub fn upper_by_half_word(a: i32, b: i32) -> i32 {
     if HALVES { by_half_word(a, b >> 16) } else { ((i64::from(a) * i64::from(b)) >> 32) as i32 }
 }
 
+/// `(a x + b y) / 2^32`, rounded down; `x` and `y` are multiples of 2^16.
+#[inline(always)]
+#[must_use]
+pub fn upper_dot([a, b]: [i32; 2], [x, y]: [i32; 2]) -> i32 {
+    if HALVES { dot_by_halves([a, b], [x >> 16, y >> 16]) } else { ((product(a, x) + product(b, y)) >> 32) as i32 }
+}
+
+/// The bits of a `product` above 2^(32 - `left`), rounded to nearest, modulo 2^32; `left` is less than 32.
+#[inline(always)]
+#[must_use]
+pub fn rounded(product: i64, left: u32) -> i32 {
+    let product = product.wrapping_add(((1u32 << 31) >> left).into());
+    let (upper, lower) = ((product >> 32) as u32, product as u32);
+    (upper.wrapping_shl(left) | (lower >> 1).wrapping_shr(31 - left)) as i32
+}
+
+/// The bits of a `product` above 2^(32 - `left`), rounded down, modulo 2^32; `left` is 1 to 31.
+#[inline(always)]
+#[must_use]
+pub fn shifted(product: i64, left: u32) -> i32 {
+    let (upper, lower) = ((product >> 32) as u32, product as u32);
+    (upper.wrapping_shl(left) | lower.wrapping_shr(32 - left)) as i32
+}
+
 /// Lower half, unsigned, and upper half.
 #[inline(always)]
 fn split(a: i32) -> (i32, i32) {
@@ -71,6 +95,16 @@ fn by_half_word(a: i32, b: i32) -> i32 {
     high.wrapping_mul(b).wrapping_add((low.wrapping_mul(b) as u32 >> 16) as i32)
 }
 
+/// `(a x + b y) / 2^16`, rounded down; `x` and `y` are half words.
+#[inline(always)]
+fn dot_by_halves([a, b]: [i32; 2], [x, y]: [i32; 2]) -> i32 {
+    let ((al, ah), (bl, bh)) = (split(a), split(b));
+    // What the lower halves come to, halved again: the sum of both would not fit.
+    let ((l, h), (m, i)) = (split(al.wrapping_mul(x)), split(bl.wrapping_mul(y)));
+    let carried = h.wrapping_add(i).wrapping_add((l + m) >> 16);
+    ah.wrapping_mul(x).wrapping_add(bh.wrapping_mul(y)).wrapping_add(carried)
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -99,6 +133,21 @@ mod tests {
         #[test]
         fn halves_make_the_same(a: i32, b: i32) {
             check(a, b);
+        }
+
+        #[test]
+        fn dots_make_the_same(a in -(1 << 30)..1 << 30, b in -(1 << 30)..1 << 30, x: i16, y: i16) {
+            let (x, y) = (i32::from(x), i32::from(y));
+            let whole = (i64::from(a) * i64::from(x) + i64::from(b) * i64::from(y)) >> 16;
+            prop_assert_eq!(dot_by_halves([a, b], [x, y]), whole as i32);
+            prop_assert_eq!(upper_dot([a, b], [x << 16, y << 16]), whole as i32);
+        }
+
+        #[test]
+        fn shifts_make_the_same(product: i64, left in 1..32u32) {
+            prop_assert_eq!(shifted(product, left), (product >> (32 - left)) as i32);
+            let half = 1i128 << (31 - left);
+            prop_assert_eq!(rounded(product, left), ((i128::from(product) + half) >> (32 - left)) as i32);
         }
     }
 }

@@ -36,44 +36,60 @@ pub fn rsqrt(m: u32) -> u32 {
 /// Largest error of [`rsqrt`], in units of its result.
 pub const ERROR: f64 = 8.0;
 
-/// 1/(2 sqrt(x)) in Q2.30 at x = k/2048.
+/// 1/(2 sqrt(x)) in Q2.30 at x = k/4096.
 const fn half_root(k: u128) -> u32 {
-    // 2^30 / (2 sqrt(k / 2048)) = sqrt(2^69 / k).
-    ((1u128 << 69) / k).isqrt() as u32
+    // 2^30 / (2 sqrt(k / 4096)) = sqrt(2^70 / k).
+    ((1u128 << 70) / k).isqrt() as u32
 }
 
-/// Knots of [`half_rsqrt`] at x = (256 + i)/1024, Q2.30, and how much less it is 1/2048 of the way to the next one, with 4
-/// more fraction bits. As many as a saturated index can tell apart.
+/// Knots of [`Halves::rsqrt`] at x = (512 + i)/2048, Q2.30, but for their lower ten bits: these say how much less it is 1/1024 of the
+/// way to the next one. As many as a saturated index can tell apart.
 ///
-/// Knots are lower by half of what chords lie above the curve, and by half a place between knots, for places are cut off.
-static HALVES: [[u32; 2]; 1024] = {
-    let mut table = [[0; 2]; 1024];
+/// Knots are lower by half of what chords lie above the curve, and by half a place between knots, for places are cut off, and take half
+/// of what rounding the slope comes to at its end; their lower bits, which count as well, are rounded to the nearest.
+static HALVES: Halves = Halves({
+    let mut table = [0; 2048];
     let mut i = 0;
-    while i < 1024 {
-        let k = 2 * (i as u128 + 256);
+    while i < 2048 {
+        let k = 2 * (i as u128 + 512);
         let (here, middle, next) = (half_root(k), half_root(k + 1), half_root(k + 2));
-        let slope = (here - next + 64) >> 7;
-        table[i] = [here - (((here + next) / 2 - middle) >> 1) - (slope >> 5), slope];
+        let slope = (here - next + 512) >> 10;
+        let knot = here.wrapping_add(((slope << 10).wrapping_add(next).wrapping_sub(here) as i32 >> 1) as u32)
+            - (((here + next) / 2 - middle) >> 1)
+            - (slope >> 1);
+        table[i] = ((knot - slope + 512) & !0x3FF) | slope;
         i += 1;
     }
     table
-};
+});
 
-/// One quarter, Q2.30: the least argument of [`half_rsqrt`].
+/// One quarter, Q2.30: the least argument of [`Halves::rsqrt`].
 pub const QUARTER: i32 = 1 << 28;
 
-/// 1/(2 sqrt(x)) in Q2.30 for `x` in [1/4, 1] by linear interpolation: for the pixel loop. `above` is x less [`QUARTER`], Q2.30.
-///
-/// Error: at most [`HALF_ERROR`] relative (tests::half_error). Arguments outside give something in range.
-#[inline(always)]
-#[must_use]
-pub fn half_rsqrt(above: i32) -> u32 {
-    // Interval in the upper bits, place in it in the eleven below them.
-    let [knot, slope] = HALVES[(above >> 20).clamp(0, 1023) as usize];
-    knot.wrapping_sub(slope.wrapping_mul((above >> 9) as u32 & 0x7FF) >> 4)
+/// The table of 1/(2 sqrt(x)) for x in [1/4, 1]: for the pixel loop, where its address had better come from memory.
+#[derive(Debug)]
+pub struct Halves([u32; 2048]);
+
+impl Halves {
+    /// There is one.
+    #[must_use]
+    pub fn get() -> &'static Self {
+        &HALVES
+    }
+
+    /// 1/(2 sqrt(x)) in Q2.30 for `x` in [1/4, 1] by linear interpolation; `above` is x less [`QUARTER`], Q2.30.
+    ///
+    /// Error: at most [`HALF_ERROR`] relative (tests::half_error). Arguments outside give something in range.
+    #[inline(always)]
+    #[must_use]
+    pub fn rsqrt(&self, above: i32) -> u32 {
+        // Interval in the upper bits, place in it in the ten below them.
+        let knot = self.0[(above >> 19).clamp(0, 2047) as usize];
+        knot.wrapping_sub((knot & 0x3FF).wrapping_mul((above >> 9) as u32 & 0x3FF))
+    }
 }
 
-/// Relative error of [`half_rsqrt`]: a quarter LSB at exponent 1024.
+/// Relative error of [`Halves::rsqrt`]: a quarter LSB at exponent 1024.
 pub const HALF_ERROR: f64 = 1.5e-6;
 
 /// 1/sqrt(x) for any x > 0, as a mantissa from [`rsqrt`] and an exponent: `mantissa * 2^-exponent`.
@@ -107,7 +123,7 @@ mod tests {
         let mut worst = 0f64;
         for x in ((1u32 << 28)..=1 << 30).step_by(4_093) {
             let exact = 2f64.powi(29) / (f64::from(x) / 2f64.powi(30)).sqrt();
-            worst = worst.max((f64::from(half_rsqrt(x as i32 - QUARTER)) / exact - 1.0).abs());
+            worst = worst.max((f64::from(Halves::get().rsqrt(x as i32 - QUARTER)) / exact - 1.0).abs());
         }
         assert!(worst <= HALF_ERROR, "{worst}");
     }

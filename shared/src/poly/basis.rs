@@ -1,16 +1,26 @@
 //! From values at the nodes of a triangle to derivatives on the screen.
 //!
 //! With corner 0 as the origin, `s` and `t` are the barycentric coordinates of
-//! corners 1 and 2. Their gradients are kept as 30-bit mantissas with one
+//! corners 1 and 2. Their gradients are 30-bit mantissas with one
 //! exponent, so tiny and huge triangles lose nothing. The derivatives of a
 //! quadratic in (s, t) with respect to (x, y) follow by the chain rule, which is
 //! well conditioned where the printed formulas divide by zero
 //! (Szirmay-Kalos et al.; see their T3..T5).
+//!
+//! Triangles that are small take shorter ways: in words where nodes have few bits, and mantissas of one word elsewhere.
 
-use super::sliver::Sliver;
+use super::{
+    sliver::Sliver,
+    small::{self, Small},
+};
 use crate::{
     format::{CENTRE, FINE, SPLITS, SUBPIXEL},
-    math::{product::product, recip::recip, scale, scale_wide, wide::Wide},
+    math::{
+        product::{product, rounded},
+        recip::recip,
+        scale, scale_wide,
+        wide::Wide,
+    },
     poly::terms::Terms,
 };
 
@@ -25,8 +35,6 @@ pub const NEAR: i32 = 256;
 /// The error of the fast way grows with the square of this ratio: at most 2^-22 of the nodes' range at 1, 2^-8 here.
 pub const MAX_THINNESS: i64 = 128;
 
-/// Bits of the sides of a small triangle in 1/16 pixel.
-const SMALL: u32 = 11;
 /// Largest exponent of a small triangle's gradients: no shift of what they are multiplied with goes to the right.
 const LARGEST: u32 = 33;
 /// Smallest one: no shift to the left drops all.
@@ -40,26 +48,38 @@ const LEAST: i32 = 20;
 /// middle of the visible part for large ones.
 #[derive(Clone, Copy, Debug)]
 pub struct Basis {
-    /// Gradients of s and t per pixel: mantissas, all with the exponent `exponent`.
-    s: [i32; 2],
-    t: [i32; 2],
-    exponent: i32,
-    /// s and t at the anchor of a small triangle: mantissas too.
-    at: [i32; 2],
+    scale: Scale,
     /// From corner 0 to the centre of its pixel, [`FINE`] fraction bits.
     offset: [i32; 2],
     /// From that pixel to the anchor, in pixels.
     shift: [i32; 2],
     /// The anchor.
     anchor: [i32; 2],
-    /// Words of 32 bits are enough, see [`Self::small`].
-    small: bool,
     /// Longer than [`MAX_THINNESS`] times its height.
     thin: bool,
     /// Corners 1 and 2 from corner 0, in 1/16 pixel, of a part of the triangle 2^`level` times finer.
     edges: [[i32; 2]; 2],
     /// How often the triangle was split.
     level: u32,
+}
+
+/// What edges are divided by to become gradients, or the gradients.
+#[derive(Clone, Copy, Debug)]
+enum Scale {
+    /// Words of 32 bits are enough, see [`Basis::small`].
+    Small(Small),
+    /// The same of a part of such a triangle.
+    #[cfg(feature = "all-shaders")]
+    Part(Gradients),
+    Any(Gradients),
+}
+
+/// Gradients of s and t per pixel: mantissas, all with the exponent `exponent`.
+#[derive(Clone, Copy, Debug)]
+struct Gradients {
+    s: [i32; 2],
+    t: [i32; 2],
+    exponent: i32,
 }
 
 /// Columns and rows that are drawn, half open: `[left, top, right, bottom]`.
@@ -73,45 +93,15 @@ impl Basis {
         Self::small(corners).or_else(|| Self::any(corners, visible))
     }
 
-    /// That of a small and stout triangle: shorter than [`NEAR`] / 2 pixels, and not even nearly [`MAX_THINNESS`].
-    ///
-    /// What is fitted then has few bits: two words hold any product with a mantissa, and of that the upper one is enough
-    /// where it is rounded before its last use.
+    /// That of a small and stout triangle: of up to 64 pixels, and not even nearly [`MAX_THINNESS`].
     #[inline(always)]
     #[must_use]
     pub fn small(corners: [[i32; 2]; 3]) -> Option<Self> {
         let ([x0, y0], edges) = edges(corners);
-        let [[x1, y1], [x2, y2]] = edges;
-        // One less than the size where negative: -2^k counts as k bits.
-        let size = |c: i32| (c ^ (c >> 31)) as u32;
-        let bits = 32 - (size(x1) | size(y1) | size(x2) | size(y2)).leading_zeros();
-        let det = x1.wrapping_mul(y2).wrapping_sub(x2.wrapping_mul(y1));
-        let zeros = det.leading_zeros();
-        // 2^(2 bits) <= 128 det.
-        if bits > SMALL || det <= 0 || 2 * bits + zeros > 38 {
-            return None;
-        }
-        // 1 / det = r 2^(zeros - 62); coordinates are at most 2^bits, so mantissas c r 2^(zeros - 58 + exponent) at most 2^30.
-        let r = recip((det as u32) << zeros).min(i32::MAX as u32) as i32;
-        let exponent = (57 - zeros - bits).min(LARGEST);
-        let up = zeros + exponent - 26;
-        let mantissa = |c: i32| ((product(c << up, r) + (1 << 31)) >> 32) as i32;
-        let pixel = [x0 >> SUBPIXEL, (y0 + CENTRE - 1) >> SUBPIXEL];
-        let offset = [((pixel[0] << SUBPIXEL) + CENTRE - x0) << SPLITS, ((pixel[1] << SUBPIXEL) + CENTRE - y0) << SPLITS];
-        let (s, t) = ([mantissa(y2), -mantissa(x2)], [-mantissa(y1), mantissa(x1)]);
-        Some(Self {
-            s,
-            t,
-            exponent: exponent as i32,
-            at: [at(s, offset), at(t, offset)],
-            offset,
-            shift: [0; 2],
-            anchor: pixel,
-            small: true,
-            thin: false,
-            edges,
-            level: 0,
-        })
+        let small = Small::new(edges)?;
+        let anchor = [x0 >> SUBPIXEL, (y0 + CENTRE - 1) >> SUBPIXEL];
+        let offset = [((anchor[0] << SUBPIXEL) + CENTRE - x0) << SPLITS, ((anchor[1] << SUBPIXEL) + CENTRE - y0) << SPLITS];
+        Some(Self { scale: Scale::Small(small), offset, shift: [0; 2], anchor, thin: false, edges, level: 0 })
     }
 
     /// That of any triangle.
@@ -138,18 +128,19 @@ impl Basis {
         let shift = [middle[0].wrapping_sub(pixel[0]), middle[1].wrapping_sub(pixel[1])];
         let reach = size.min(1 << 20) as i32 >> (SUBPIXEL - 1);
         let shift = if reach <= NEAR { [0; 2] } else { shift };
-        Some(Self {
+        let gradients = Gradients {
             s: [mantissa(y2), mantissa(x2.wrapping_neg())],
             t: [mantissa(y1.wrapping_neg()), mantissa(x1)],
             // gradient per pixel = 16 c / det = mantissa 2^(drop + 4 + zeros - 94)
             exponent: 90 - zeros - drop,
-            at: [0; 2],
+        };
+        Some(Self {
+            scale: Scale::Any(gradients),
             offset: [(pixel[0] << SUBPIXEL) + CENTRE - x0, (pixel[1] << SUBPIXEL) + CENTRE - y0].map(|c| c << SPLITS),
             shift,
             anchor: [pixel[0].wrapping_add(shift[0]), pixel[1].wrapping_add(shift[1])],
             edges,
             level: 0,
-            small: false,
             thin: i64::from(extent) * i64::from(extent) > det.saturating_mul(MAX_THINNESS),
         })
     }
@@ -165,19 +156,27 @@ impl Basis {
         let pixel = corner.map(|c| c >> FINE);
         let centre = |k: usize| (pixel[k] << FINE).wrapping_add(1 << (FINE - 1)).wrapping_sub(corner[k]);
         let anchor = if near { pixel } else { self.anchor };
-        let (s, t, offset) = (gradient(self.s), gradient(self.t), [centre(0), centre(1)]);
+        let Gradients { s, t, exponent } = self.gradients();
+        let gradients = Gradients { s: gradient(s), t: gradient(t), exponent: exponent - level as i32 };
+        let is_small = near && gradients.exponent >= LEAST && !matches!(self.scale, Scale::Any(_));
         Self {
-            s,
-            t,
-            exponent: self.exponent - level as i32,
-            at: [at(s, offset), at(t, offset)],
-            offset,
+            scale: if is_small { Scale::Part(gradients) } else { Scale::Any(gradients) },
+            offset: [centre(0), centre(1)],
             shift: [anchor[0].wrapping_sub(pixel[0]), anchor[1].wrapping_sub(pixel[1])],
             anchor,
-            small: self.small && near && self.exponent - level as i32 >= LEAST,
             thin: self.thin,
             edges: self.edges.map(gradient),
             level,
+        }
+    }
+
+    /// The same, ready to be asked for many parts.
+    #[cfg(feature = "all-shaders")]
+    #[must_use]
+    pub fn parted(&self) -> Self {
+        match self.scale {
+            Scale::Small(small) => Self { scale: Scale::Part(self.mantissas(small)), ..*self },
+            _ => *self,
         }
     }
 
@@ -195,20 +194,60 @@ impl Basis {
         self.anchor[1]
     }
 
+    /// Gradients of s and t.
+    #[inline(always)]
+    fn gradients(&self) -> Gradients {
+        match self.scale {
+            Scale::Small(small) => self.mantissas(small),
+            #[cfg(feature = "all-shaders")]
+            Scale::Part(gradients) => gradients,
+            Scale::Any(gradients) => gradients,
+        }
+    }
+
+    /// Those of a small triangle: no shift of what they are multiplied with goes to the right.
+    #[inline(never)]
+    fn mantissas(&self, Small { zeros, bits, .. }: Small) -> Gradients {
+        let [[x1, y1], [x2, y2]] = self.edges;
+        let det = x1.wrapping_mul(y2).wrapping_sub(x2.wrapping_mul(y1));
+        // 1 / det = r 2^(zeros - 62); coordinates are at most 2^bits, so mantissas c r 2^(zeros - 58 + exponent) at most 2^30.
+        let r = recip((det as u32) << (zeros & 31)).min(i32::MAX as u32) as i32;
+        let exponent = (57 - zeros - bits).min(LARGEST);
+        let up = zeros + exponent - 26;
+        let mantissa = |c: i32| ((product(c << up, r) + (1 << 31)) >> 32) as i32;
+
+        let (s, t) = ([mantissa(y2), -mantissa(x2)], [-mantissa(y1), mantissa(x1)]);
+        Gradients { s, t, exponent: exponent as i32 }
+    }
+
     /// `[c, dx, dy]` of the linear field through the corners' values in a range of 2^`BITS`, at the anchor.
     #[inline(always)]
     #[must_use]
     pub fn linear<const BITS: u32>(&self, nodes: [i32; 3], extra: u32) -> [i32; 3] {
-        if self.small { self.linear_small::<BITS>(nodes, extra) } else { self.linear_any(nodes, extra) }
+        match self.scale {
+            Scale::Small(small) if BITS <= small::LINEAR && extra <= small::EXTRA => {
+                small.linear(self.edges, self.subpixels(), nodes, extra)
+            }
+            Scale::Small(small) => self.linear_small::<BITS>(self.mantissas(small), nodes, extra),
+            #[cfg(feature = "all-shaders")]
+            Scale::Part(gradients) => self.linear_small::<BITS>(gradients, nodes, extra),
+            Scale::Any(_) => self.linear_any(nodes, extra),
+        }
+    }
+
+    /// From corner 0 to the centre of its pixel, in 1/16 pixel; of a whole triangle.
+    #[inline(always)]
+    fn subpixels(&self) -> [i32; 2] {
+        [self.offset[0] >> SPLITS, self.offset[1] >> SPLITS]
     }
 
     #[inline(always)]
-    fn linear_small<const BITS: u32>(&self, [i0, i1, i2]: [i32; 3], extra: u32) -> [i32; 3] {
+    fn linear_small<const BITS: u32>(&self, gradients: Gradients, [i0, i1, i2]: [i32; 3], extra: u32) -> [i32; 3] {
         // Differences are below 2^BITS.
         let up = 30 - BITS;
-        let left = extra + BITS + 2 - self.exponent as u32;
-        let [c, dx, dy] = self.products((i1 - i0) << up, (i2 - i0) << up);
-        [(i0 << extra).wrapping_add(c.shifted(left)), dx.shifted(left), dy.shifted(left)]
+        let left = extra + BITS + 2 - gradients.exponent as u32;
+        let [c, dx, dy] = Mantissas::new(gradients, self.offset).products((i1 - i0) << up, (i2 - i0) << up);
+        [(i0 << extra).wrapping_add(rounded(c, left)), rounded(dx, left), rounded(dy, left)]
     }
 
     #[cold]
@@ -217,13 +256,6 @@ impl Basis {
         let [c, dx, dy] = self.plane(nodes, extra);
         let [c, dx, dy, ..] = self.round([c, dx, dy, 0, 0, 0]);
         [c, dx, dy]
-    }
-
-    /// Of `a s + b t`: the value at the anchor, and the derivatives along x and y; `a` and `b` are at most 2^30.
-    #[inline(always)]
-    fn products(&self, a: i32, b: i32) -> [Product; 3] {
-        let along = |s: i32, t: i32| Product(product(a, s) + product(b, t));
-        [along(self.at[0], self.at[1]), along(self.s[0], self.t[0]), along(self.s[1], self.t[1])]
     }
 
     /// `[c, dx, dy]` of the linear field through the corners' values, at the anchor, with [`GUARD`] more fraction bits.
@@ -245,38 +277,53 @@ impl Basis {
     /// Value at corner 0 and derivatives along x and y of `c0 + c1 s + c2 t`, with `GUARD` more bits than walked.
     #[inline(always)]
     fn slopes(&self, c0: i32, c1: i64, c2: i64, extra: u32) -> (i64, i64, i64) {
-        let bits = self.exponent - extra as i32 - GUARD;
+        let Gradients { s, t, exponent } = self.gradients();
+        let bits = exponent - extra as i32 - GUARD;
         let along = |s: i32, t: i32| scale(c1.wrapping_mul(s.into()).wrapping_add(c2.wrapping_mul(t.into())), bits);
-        (i64::from(c0).wrapping_shl(extra + GUARD as u32), along(self.s[0], self.t[0]), along(self.s[1], self.t[1]))
+        (i64::from(c0).wrapping_shl(extra + GUARD as u32), along(s[0], t[0]), along(s[1], t[1]))
     }
 
     /// `[c, dx, dy, dxx, dxy, dyy]` of the quadratic through six nodes in a range of 2^`BITS`, at the anchor.
     #[inline(always)]
     #[must_use]
     pub fn quadratic<const BITS: u32>(&self, nodes: [i32; 6], extra: u32) -> [i32; 6] {
-        if self.small { self.quadratic_small::<BITS>(nodes, extra) } else { self.quadratic_any::<BITS>(nodes, extra) }
+        match self.scale {
+            Scale::Small(small) if BITS <= small::QUADRATIC && extra == small::EXTRA => {
+                match small.quadratic(self.edges, self.subpixels(), nodes) {
+                    Some(fitted) => fitted,
+                    None => self.quadratic_any::<BITS>(nodes, extra),
+                }
+            }
+            Scale::Small(small) => self.quadratic_small::<BITS>(self.mantissas(small), nodes, extra),
+            #[cfg(feature = "all-shaders")]
+            Scale::Part(gradients) => self.quadratic_small::<BITS>(gradients, nodes, extra),
+            Scale::Any(_) => self.quadratic_any::<BITS>(nodes, extra),
+        }
     }
 
     #[inline(always)]
-    fn quadratic_small<const BITS: u32>(&self, [i0, i1, i2, i01, i12, i20]: [i32; 6], extra: u32) -> [i32; 6] {
+    fn quadratic_small<const BITS: u32>(&self, gradients: Gradients, [i0, i1, i2, i01, i12, i20]: [i32; 6], extra: u32) -> [i32; 6] {
+        let mantissas = Mantissas::new(gradients, self.offset);
+        let exponent = gradients.exponent as u32;
         // First and second differences are below 2^(BITS + 2).
         let up = 28 - BITS;
-        let (once, twice) = (extra + BITS + 4 - self.exponent as u32, extra + BITS + 35 - 2 * self.exponent as u32);
-        let [c, dx, dy] = self.products((4 * i01 - 3 * i0 - i1) << up, (4 * i20 - 3 * i0 - i2) << up);
+        let (once, twice) = (extra + BITS + 4 - exponent, extra + BITS + 35 - 2 * exponent);
+        let [c, dx, dy] = mantissas.products((4 * i01 - 3 * i0 - i1) << up, (4 * i20 - 3 * i0 - i2) << up);
         // Half the matrix of second derivatives: [[ss, st], [st, tt]].
         let half = |difference: i32| difference << (up + 1);
         let (ss, st, tt) = (half(i0 + i1 - 2 * i01), half(i0 - i01 - i20 + i12), half(i0 + i2 - 2 * i20));
         // One factor of the chain rule, then the other.
-        let ([s, sx, sy], [t, tx, ty]) = (self.products(ss, st), self.products(st, tt));
-        let [bend, bend_x, bend_y] = self.products(s.twice(), t.twice());
-        let ([_, dxx, dxy], [_, _, dyy]) = (self.products(sx.twice(), tx.twice()), self.products(sy.twice(), ty.twice()));
+        let ([s, sx, sy], [t, tx, ty]) = (mantissas.products(ss, st), mantissas.products(st, tt));
+        let [bend, bend_x, bend_y] = mantissas.products(twice_upper(s), twice_upper(t));
+        let ([_, dxx, dxy], [_, _, dyy]) =
+            (mantissas.products(twice_upper(sx), twice_upper(tx)), mantissas.products(twice_upper(sy), twice_upper(ty)));
         [
-            (i0 << extra).wrapping_add(c.shifted(once)).wrapping_add(bend.shifted(twice)),
-            dx.shifted(once).wrapping_add(bend_x.shifted(twice).wrapping_mul(2)),
-            dy.shifted(once).wrapping_add(bend_y.shifted(twice).wrapping_mul(2)),
-            dxx.shifted(twice),
-            dxy.shifted(twice).wrapping_mul(2),
-            dyy.shifted(twice),
+            (i0 << extra).wrapping_add(rounded(c, once)).wrapping_add(rounded(bend, twice)),
+            rounded(dx, once).wrapping_add(rounded(bend_x, twice).wrapping_mul(2)),
+            rounded(dy, once).wrapping_add(rounded(bend_y, twice).wrapping_mul(2)),
+            rounded(dxx, twice),
+            rounded(dxy, twice).wrapping_mul(2),
+            rounded(dyy, twice),
         ]
     }
 
@@ -298,10 +345,11 @@ impl Basis {
         // One factor of the chain rule, then the other. Second differences are below 2^(BITS + 2): two products
         // with mantissas stay below 2^(BITS + 33), less these bits below 2^31.
         let less = BITS as i32 + 2;
-        let once = |a: i64, b: i64, k: usize| scale(a * i64::from(self.s[k]) + b * i64::from(self.t[k]), less);
+        let Gradients { s, t, exponent } = self.gradients();
+        let once = |a: i64, b: i64, k: usize| scale(a * i64::from(s[k]) + b * i64::from(t[k]), less);
         let (sx, tx, sy, ty) = (once(ss, st, 0), once(st, tt, 0), once(ss, st, 1), once(st, tt, 1));
-        let bits = 2 * self.exponent - less - extra as i32 - GUARD;
-        let twice = |a: i64, b: i64, k: usize| scale(a * i64::from(self.s[k]) + b * i64::from(self.t[k]), bits);
+        let bits = 2 * exponent - less - extra as i32 - GUARD;
+        let twice = |a: i64, b: i64, k: usize| scale(a * i64::from(s[k]) + b * i64::from(t[k]), bits);
         let (dxx, dyy) = (twice(sx, tx, 0), twice(sy, ty, 1));
         let dxy = twice(sx, tx, 1).wrapping_mul(2);
         // From the corner to its pixel's centre, at most a pixel away.
@@ -325,8 +373,9 @@ impl Basis {
             sliver.cubic(nodes, fraction).moved_across(by(0)).moved_down(by(1))
         } else {
             // With three mantissas terms stay below 2^114, moved below 2^124.
-            let terms = Terms::of(nodes.map(Wide::from), self.s.map(Wide::from), self.t.map(Wide::from));
-            let scaled = terms.map(|c, degree| Wide(scale_wide(c.0, degree as i32 * self.exponent + 2 - fraction as i32)));
+            let Gradients { s, t, exponent } = self.gradients();
+            let terms = Terms::of(nodes.map(Wide::from), s.map(Wide::from), t.map(Wide::from));
+            let scaled = terms.map(|c, degree| Wide(scale_wide(c.0, degree as i32 * exponent + 2 - fraction as i32)));
             // From the corner to the anchor.
             let way = |k: usize| Wide(i128::from(self.offset[k]) + (i128::from(self.shift[k]) << FINE));
             let by = |k: usize| move |a: Wide, b: Wide| a + Wide((b * way(k)).0 >> FINE);
@@ -359,24 +408,32 @@ fn edges([[x0, y0], [x1, y1], [x2, y2]]: [[i32; 2]; 3]) -> ([i32; 2], [[i32; 2];
     ([x0, y0], [[x1.wrapping_sub(x0), y1.wrapping_sub(y0)], [x2.wrapping_sub(x0), y2.wrapping_sub(y0)]])
 }
 
-/// Products of mantissas.
-#[derive(Clone, Copy)]
-struct Product(i64);
+/// Gradients of s and t, and s and t at the anchor of a small triangle, all with one exponent.
+struct Mantissas {
+    gradients: Gradients,
+    at: [i32; 2],
+}
 
-impl Product {
-    /// The upper half, rounded to nearest, times 2.
+impl Mantissas {
+    /// `offset` leads from corner 0 to the anchor.
     #[inline(always)]
-    fn twice(self) -> i32 {
-        ((self.0.wrapping_add(1 << 31) >> 32) as i32) << 1
+    fn new(gradients: Gradients, offset: [i32; 2]) -> Self {
+        Self { at: [at(gradients.s, offset), at(gradients.t, offset)], gradients }
     }
 
-    /// The upper half of the product times 2^`left`, rounded, modulo 2^32; `left` is less than 32.
+    /// Of `a s + b t`: the value at the anchor, and the derivatives along x and y; `a` and `b` are at most 2^30.
     #[inline(always)]
-    fn shifted(self, left: u32) -> i32 {
-        let product = self.0.wrapping_add(((1u32 << 31) >> left).into());
-        let (upper, lower) = ((product >> 32) as u32, product as u32);
-        (upper.wrapping_shl(left) | (lower >> 1).wrapping_shr(31 - left)) as i32
+    fn products(&self, a: i32, b: i32) -> [i64; 3] {
+        let Gradients { s, t, .. } = self.gradients;
+        let along = |s: i32, t: i32| product(a, s) + product(b, t);
+        [along(self.at[0], self.at[1]), along(s[0], t[0]), along(s[1], t[1])]
     }
+}
+
+/// The upper half of a product, rounded to nearest, times 2.
+#[inline(always)]
+fn twice_upper(product: i64) -> i32 {
+    ((product.wrapping_add(1 << 31) >> 32) as i32) << 1
 }
 
 /// What `gradient` comes to at `offset`, which is at most a pixel away ([`FINE`] fraction bits).

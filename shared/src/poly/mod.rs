@@ -15,6 +15,7 @@ pub mod hyperbolic;
 pub mod plane;
 pub mod quadric;
 mod sliver;
+mod small;
 pub mod terms;
 
 use crate::format::MAX_LIGHTS;

@@ -16,7 +16,7 @@ use super::{
 };
 use crate::{
     band::Band,
-    format::{DEPTH, FINE, SPLITS, SUBPIXEL},
+    format::{FINE, SPLITS, SUBPIXEL},
     math::vector::zip,
     poly::{
         Patch, Walker,
@@ -120,9 +120,7 @@ impl Outline {
     /// The triangle's depth on row 0; all its pieces share it.
     #[must_use]
     pub fn depth(&self, basis: &Basis) -> Plane<1> {
-        let mut depth = Plane::fit::<DEPTH>(basis, [self.depth], 4);
-        depth.jump(basis.row().wrapping_neg());
-        depth
+        self.plane(basis, 0)
     }
 }
 

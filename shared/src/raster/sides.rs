@@ -16,6 +16,12 @@ impl Pair {
         (self.right.x >> COLUMN).wrapping_sub(self.left.x >> COLUMN)
     }
 
+    /// Another edge takes the place of the one that ends at the middle corner.
+    #[inline(always)]
+    fn turn(&mut self, corners: [[i32; 2]; 3], below: Column) {
+        *(if turns_right(corners) { &mut self.right } else { &mut self.left }) = below;
+    }
+
     /// Moves down `rows` rows.
     #[inline(always)]
     pub(super) fn skip(&mut self, rows: i32) {
@@ -27,6 +33,8 @@ impl Pair {
 /// What is left of a triangle's rows in a band.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Sides {
+    /// Those of the coming row.
+    pub(super) pair: Pair,
     /// The coming row, and where the rows end that its sides can be walked to.
     pub(super) row: i32,
     pub(super) stop: i32,
@@ -41,48 +49,58 @@ pub(super) struct Sides {
 impl Sides {
     /// Of a triangle, its top corner first, clockwise, in the rows from `top` to `bottom` of a band of `width` columns.
     #[inline(always)]
-    pub(super) fn new(corners: [[i32; 2]; 3], [top, bottom]: [i32; 2], width: i32) -> (Self, Pair) {
+    pub(super) fn new(corners: [[i32; 2]; 3], [top, bottom]: [i32; 2], width: i32) -> Self {
         let [upper, right, left] = corners;
         let (high, low) = (right[1].min(left[1]), right[1].max(left[1]));
         let first = first_centre(upper[1]);
         let small = is_walkable(corners, width) && is_narrow(corners) && low - upper[1] <= SHORT;
-        let mut sides =
-            Self { row: first.max(top), stop: first_centre(high), end: first_centre(low).min(bottom), below: Column::default(), small };
-        let mut pair = Pair::default();
-        if small {
-            pair = Pair { left: Edge::new(upper, left).walk(), right: Edge::new(upper, right).walk() };
-            sides.below = if turns_right(corners) { Edge::new(right, left) } else { Edge::new(left, right) }.walk();
-            if sides.row > first {
-                sides.skip(&mut pair, sides.row - first, corners);
-            } else if sides.stop <= first {
-                sides.turn(&mut pair, corners);
-            }
-        } else {
-            sides.next_large(&mut pair, corners, width);
+        let (row, stop, end) = (first.max(top), first_centre(high), first_centre(low).min(bottom));
+        if !small {
+            return Self::large(row, end, corners, width);
         }
-        sides.stop = sides.stop.min(sides.end);
-        (sides, pair)
+        let mut sides = Self {
+            pair: Pair { left: Edge::new(upper, left).walk(), right: Edge::new(upper, right).walk() },
+            row,
+            stop: stop.min(end),
+            end,
+            below: if turns_right(corners) { Edge::new(right, left) } else { Edge::new(left, right) }.walk(),
+            small,
+        };
+        if row > first {
+            sides.skip(row - first, stop, corners);
+        } else if stop <= first {
+            sides.turn(corners);
+        }
+        sides
     }
 
-    /// The upper rows of a small triangle lie above the band.
     #[cold]
     #[inline(never)]
-    fn skip(&mut self, pair: &mut Pair, rows: i32, corners: [[i32; 2]; 3]) {
-        pair.skip(rows);
-        if self.row >= self.stop {
-            self.below.skip(self.row - self.stop);
-            self.turn(pair, corners);
+    fn large(row: i32, end: i32, corners: [[i32; 2]; 3], width: i32) -> Self {
+        let mut sides = Self { pair: Pair::default(), row, stop: row, end, below: Column::default(), small: false };
+        sides.next_large(corners, width);
+        sides
+    }
+
+    /// The upper rows of a small triangle lie above the band; `turn` is the row of its middle corner.
+    #[cold]
+    #[inline(never)]
+    fn skip(&mut self, rows: i32, turn: i32, corners: [[i32; 2]; 3]) {
+        self.pair.skip(rows);
+        if self.row >= turn {
+            self.below.skip(self.row - turn);
+            self.turn(corners);
         }
     }
 
     /// Below the middle corner of a small triangle.
     #[inline(always)]
-    fn turn(&mut self, pair: &mut Pair, corners: [[i32; 2]; 3]) {
-        *(if turns_right(corners) { &mut pair.right } else { &mut pair.left }) = self.below;
+    fn turn(&mut self, corners: [[i32; 2]; 3]) {
+        self.pair.turn(corners, self.below);
         self.stop = self.end;
     }
 
-    /// Goes on with the rows from `stop`, to which both sides have been walked; false after the last ones.
+    /// Goes on with the rows from `stop`, to which both sides have been walked: `pair`; false after the last ones.
     #[inline(always)]
     pub(super) fn next(&mut self, pair: &mut Pair, corners: [[i32; 2]; 3], width: i32) -> bool {
         self.row = self.stop;
@@ -90,10 +108,11 @@ impl Sides {
             return false;
         }
         if self.small {
-            self.turn(pair, corners);
+            pair.turn(corners, self.below);
+            self.stop = self.end;
         } else {
-            self.next_large(pair, corners, width);
-            self.stop = self.stop.min(self.end);
+            self.next_large(corners, width);
+            *pair = self.pair;
         }
         true
     }
@@ -101,7 +120,7 @@ impl Sides {
     /// The next rows of a triangle that is clipped, or large: as many as stay exact, or one.
     #[cold]
     #[inline(never)]
-    fn next_large(&mut self, pair: &mut Pair, corners: [[i32; 2]; 3], width: i32) {
+    fn next_large(&mut self, corners: [[i32; 2]; 3], width: i32) {
         let ([top, right, left], row) = (corners, self.row);
         let middle = first_centre(right[1].min(left[1]));
         // Left of the middle corner's row both edges leave the top; below it, the side of that corner is another edge.
@@ -114,11 +133,12 @@ impl Sides {
         };
         let exact = if is_walkable(corners, width) { left.exact_rows().min(right.exact_rows()) } else { 0 };
         let by_itself = |edge: Edge| Column { x: (edge.column(row).max(0).min(width) as u32) << COLUMN, step: 0 };
-        if exact > 0 {
-            (self.stop, *pair) = (stop.min(row + exact), Pair { left: left.walk_from(row), right: right.walk_from(row) });
+        let (stop, pair) = if exact > 0 {
+            (stop.min(row + exact), Pair { left: left.walk_from(row), right: right.walk_from(row) })
         } else {
-            (self.stop, *pair) = (row + 1, Pair { left: by_itself(left), right: by_itself(right) });
-        }
+            (row + 1, Pair { left: by_itself(left), right: by_itself(right) })
+        };
+        (self.stop, self.pair) = (stop.min(self.end), pair);
     }
 }
 

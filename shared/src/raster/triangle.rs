@@ -8,7 +8,8 @@ use super::{
 };
 use crate::{
     band::Band,
-    format::{CENTRE, DEPTH, SUBPIXEL},
+    cull::Extent,
+    format::{CENTRE, DEPTH, DEPTH_NODE, DEPTH_WALK, SUBPIXEL},
     poly::{Constant, Patch, Walker, basis::Basis, plane::Plane},
     tone::Tone,
     vertex::ScreenVertex,
@@ -28,10 +29,7 @@ pub struct Outline {
 }
 
 /// What steps from row to row.
-pub(super) struct Rows<'b, D, P, T: Tone<<P::Walker as Walker>::Value>>
-where
-    P: Patch,
-{
+pub(super) struct Rows<'b, D, P: Patch, T: Tone<<P::Walker as Walker>::Value>> {
     /// Pixels and nearness of the band, as many of each in a row as it is wide.
     pub(super) pixels: &'b mut [T::Pixel],
     pub(super) buffer: &'b mut [u16],
@@ -65,16 +63,15 @@ pub struct Bounds {
 }
 
 impl Bounds {
-    /// Of three corners: pixels whose centres their box contains.
+    /// Of a triangle: pixels whose centres its box contains.
     #[inline(always)]
     #[must_use]
-    pub fn new(corners: [&ScreenVertex; 3]) -> Self {
-        let [a, b, c] = corners;
+    pub fn new(extent: &Extent) -> Self {
         Self {
-            left: first_centre(a.x.min(b.x).min(c.x)),
-            top: first_centre(a.y.min(b.y).min(c.y)),
-            right: first_centre(a.x.max(b.x).max(c.x)),
-            bottom: first_centre(a.y.max(b.y).max(c.y)),
+            left: first_centre(extent.left),
+            top: first_centre(extent.top),
+            right: first_centre(extent.right),
+            bottom: first_centre(extent.bottom),
         }
     }
 
@@ -163,8 +160,7 @@ impl Outline {
             let shape = Shape { outline: self, piece: None, corners: self.corners, bits: SUBPIXEL };
             return shape.draw(basis, patch, tone, band, &mut |_| [i32::MIN, i32::MAX]);
         }
-        let (sides, pair) = self.sides(band);
-        if sides.row >= sides.stop { 0 } else { self.walk((sides, pair), basis, self.plane(basis, sides.row), patch, tone, band) }
+        self.walk(basis, |row| self.plane(basis, row), patch, tone, band)
     }
 
     /// As [`Self::draw`], without depth: where nothing else is, and without antialiasing.
@@ -176,23 +172,25 @@ impl Outline {
         tone: T,
         band: &mut Band<'_, T::Pixel>,
     ) -> u32 {
-        let (sides, pair) = self.sides(band);
-        if sides.row >= sides.stop { 0 } else { self.walk((sides, pair), basis, Constant, patch, tone, band) }
+        self.walk(basis, |_| Constant, patch, tone, band)
     }
 
-    /// Walks down its `sides`; `depth` stands on the first row.
+    /// Walks down its sides; `depth` stands on the row that it is asked for.
     #[inline(always)]
     fn walk<D: Patch<Walker: Sight>, P: Patch, T: Tone<<P::Walker as Walker>::Value>>(
         &self,
-        (mut sides, pair): (Sides, Pair),
         basis: &Basis,
-        depth: D,
+        depth: impl FnOnce(i32) -> D,
         patch: P,
         tone: T,
         band: &mut Band<'_, T::Pixel>,
     ) -> u32 {
+        let mut sides = self.sides(band);
+        if sides.row >= sides.stop {
+            return 0;
+        }
         let width = band.width as i32;
-        let mut rows = Rows::new(band, sides.row, pair, depth, patch, tone);
+        let mut rows = Rows::new(band, sides.row, sides.pair, depth(sides.row), patch, tone);
         if sides.row != basis.row() {
             rows.patch.jump(sides.row.wrapping_sub(basis.row()));
         }
@@ -208,14 +206,16 @@ impl Outline {
     }
 
     #[inline(never)]
-    fn sides<C>(&self, band: &Band<'_, C>) -> (Sides, Pair) {
+    fn sides<C>(&self, band: &Band<'_, C>) -> Sides {
         Sides::new(self.corners, [band.top, band.top.wrapping_add(band.rows)], band.width as i32)
     }
 
     /// Depth, standing on `row`.
     #[inline(never)]
-    fn plane(&self, basis: &Basis, row: i32) -> Plane<1> {
-        let mut depth = Plane::fit::<DEPTH>(basis, [self.depth], 4);
+    pub(super) fn plane(&self, basis: &Basis, row: i32) -> Plane<1> {
+        let [a, b, c] = self.depth;
+        let node = |depth: i32| (depth + (1 << (DEPTH - DEPTH_NODE - 1))) >> (DEPTH - DEPTH_NODE);
+        let mut depth = Plane::fit::<DEPTH_NODE>(basis, [[node(a), node(b), node(c)]], 16 + DEPTH_WALK - DEPTH_NODE);
         depth.jump(row.wrapping_sub(basis.row()));
         depth
     }

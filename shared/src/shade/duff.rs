@@ -9,8 +9,8 @@
 //! Domain: any lights; with near lights as good as six points are.
 
 use super::{
-    Area, Facet, Shading,
-    form::{EXTRA, Form, Linear, NODE, Quadratic, linear, signed},
+    Facet, Shading,
+    form::{EXTRA, Form, NODE, Quadratic, signed},
 };
 use crate::{
     band::Band,
@@ -18,7 +18,7 @@ use crate::{
     math::{
         power::PixelPower,
         product::{product, upper},
-        rsqrt::{QUARTER, half_rsqrt, rsqrt},
+        rsqrt::{Halves, QUARTER, rsqrt},
     },
     palette::Reflection,
     pixel::Pixel,
@@ -29,27 +29,20 @@ pub(super) fn draw<C: Pixel>(facet: &Facet<'_>, shading: &Shading<'_, C>, band: 
     let square = square(facet);
     if is_curved(facet) {
         let nodes = facet.six_linear_nodes();
-        shading.draw_lit(facet, |source| shading.six_products(&nodes, source, |p| p), square, Rooted, band)
-    } else if let Some(gloss) = shading.gloss(Tabled) {
-        facet.draw((numerators(facet), square.raised([(1 << 30) - QUARTER])), gloss, band)
-    } else {
-        let nodes = facet.six_linear_nodes();
-        let square = square.raised([(1 << 30) - QUARTER]);
-        shading.draw_lit(facet, |source| shading.six_products(&nodes, source, |p| p), square, Tabled, band)
+        return shading.draw_lit(facet, |source| shading.six_products(&nodes, source, |p| p), square, Rooted, band);
     }
+    let square = square.raised([(1 << 30) - QUARTER]);
+    let halves = Halves::get();
+    let fast = shading.draw_quotients::<true, _>(facet, square, |[square]| halves.rsqrt(signed(square)) as i32, band);
+    fast.unwrap_or_else(|| {
+        let nodes = facet.six_linear_nodes();
+        shading.draw_lit(facet, |source| shading.six_products(&nodes, source, |p| p), square, Tabled, band)
+    })
 }
 
 /// The interpolated normal may be shorter than half: the table of roots, and every fit of 1/|N|, end there.
 pub(super) fn is_curved(facet: &Facet<'_>) -> bool {
     facet.triangle.rho < 1 << (RHO - 1)
-}
-
-/// N·L and N·H of one constant light, linear. Two planes of one channel: the compiler
-/// makes a loop of one plane of two, and keeps it in memory.
-#[inline(always)]
-pub(super) fn numerators(facet: &Facet<'_>) -> (Linear<1>, Linear<1>) {
-    let [a, b, c] = facet.corners.map(|corner| corner.light);
-    (linear([[a[0], b[0], c[0]]]), linear([[a[1], b[1], c[1]]]))
 }
 
 /// |N|², Q2.30: exactly quadratic.
@@ -64,27 +57,12 @@ pub(super) fn square(facet: &Facet<'_>) -> Quadratic<1> {
 #[derive(Clone, Copy)]
 struct Tabled;
 
-impl Form<[u32; 1], ([u32; 1], [u32; 1])> for Tabled {
-    /// 1/(2|N|), Q2.30.
-    type Common = i32;
-
-    #[inline(always)]
-    fn common(&self, [square]: [u32; 1]) -> i32 {
-        half_rsqrt(signed(square)) as i32
-    }
-
-    #[inline(always)]
-    fn reflect(&self, light: usize, half_root: &i32, ([l], [h]): ([u32; 1], [u32; 1]), power: PixelPower<'_>) -> Reflection {
-        self.reflect(light, half_root, [l, h], power)
-    }
-}
-
 impl Form<[u32; 1], [u32; 2]> for Tabled {
     type Common = i32;
 
     #[inline(always)]
     fn common(&self, [square]: [u32; 1]) -> i32 {
-        half_rsqrt(signed(square)) as i32
+        Halves::get().rsqrt(signed(square)) as i32
     }
 
     #[inline(always)]

@@ -14,15 +14,22 @@ use crate::{
 
 #[inline(never)]
 pub(super) fn draw<C: Pixel>(facet: &Facet<'_>, shading: &Shading<'_, C>, band: &mut Band<'_, C>) -> u32 {
-    let [a, b, c] = facet.vertices;
-    let centroid = add(wide(a.position), add(wide(b.position), wide(c.position)));
-    let [x, y, z] = wide(facet.triangle.normal);
-    let normal = [x << (30 - UNIT), y << (30 - UNIT), z << (30 - UNIT)];
-    let levels = shading.levels(&Node { position: [centroid[0] / 3, centroid[1] / 3, centroid[2] / 3], normal });
+    let normal = wide(facet.triangle.normal);
+    let levels = match &shading.directions {
+        Some([towards, half]) => shading.palette.one_light([towards.cosine(normal), half.cosine(normal)]),
+        None => shading.levels(&centroid(facet, normal)),
+    };
     if shading.dither {
         // A field without slope: dither changes from pixel to pixel all the same.
         shading.draw_levels::<3, RANGE>(facet, [levels; 3], band)
     } else {
         facet.fill(Constant, Solid(shading.palette.colour(levels)), band)
     }
+}
+
+/// The triangle's centroid, and the `normal` of its plane (Q2.14).
+fn centroid(facet: &Facet<'_>, normal: [i32; 3]) -> Node {
+    let [a, b, c] = facet.vertices;
+    let sum = add(wide(a.position), add(wide(b.position), wide(c.position)));
+    Node { position: sum.map(|c| c / 3), normal: normal.map(|c| c << (30 - UNIT)) }
 }

@@ -8,7 +8,7 @@ use crate::{
     dither::threshold,
     format::{COSINE, MAX_LIGHTS},
     math::power::PixelPower,
-    palette::{Glossy, Palette, Reflection},
+    palette::{Palette, Reflection},
     pixel::Pixel,
     poly::field::{EachLight, Field, Nodes},
     scene::{Source, cosine},
@@ -33,24 +33,6 @@ pub(super) trait Form<K, V>: Copy {
 
     /// What light number `light` sends.
     fn reflect(&self, light: usize, common: &Self::Common, fields: V, power: PixelPower<'_>) -> Reflection;
-}
-
-/// One light on a material of one channel: the fast way.
-#[derive(Clone, Copy)]
-pub(super) struct Gloss<'a, C, F> {
-    pub(super) glossy: Glossy<'a, C>,
-    pub(super) form: F,
-}
-
-impl<C: Pixel, K, V, F: Form<K, V>> Tone<(V, K)> for Gloss<'_, C, F> {
-    type Pixel = C;
-
-    const CHEAP: bool = true;
-
-    #[inline(always)]
-    fn tone(&self, (fields, common): (V, K), _: usize) -> C {
-        self.glossy.colour(self.form.reflect(0, &self.form.common(common), fields, self.glossy.power))
-    }
 }
 
 /// Any lights on any material.
@@ -83,13 +65,6 @@ impl<C: Pixel, K, V: Copy, F: Form<K, V>> Tone<(heapless::Vec<V, MAX_LIGHTS>, K)
 }
 
 impl<C: Pixel> Shading<'_, C> {
-    /// The tone for one constant light on a material of one channel without dither, if that is all there is.
-    pub(super) fn gloss<F>(&self, form: F) -> Option<Gloss<'_, C, F>> {
-        let one = self.constant.is_some() && !self.dither && !self.palette.three_channels;
-        let glossy = if one { self.palette.glossy() } else { None };
-        glossy.map(|glossy| Gloss { glossy, form })
-    }
-
     /// The tone for any lights.
     fn lit<F>(&self, form: F) -> Lit<'_, C, F> {
         Lit { palette: self.palette, form, dither: self.dither, row: 0 }
@@ -103,27 +78,6 @@ impl<C: Pixel> Shading<'_, C> {
         F: Form<K::Value, V::Value>,
     {
         facet.draw((EachLight { sources: &self.lighting.sources, of }, common), self.lit(form), band)
-    }
-
-    /// [`Self::draw_lit`], in the fast way where there is one.
-    #[cfg(feature = "all-shaders")]
-    pub(super) fn draw_reflected<K, V, F>(
-        &self,
-        facet: &Facet<'_>,
-        of: impl Fn(&Source) -> V,
-        common: K,
-        form: F,
-        band: &mut Band<'_, C>,
-    ) -> u32
-    where
-        K: Field,
-        V: Field<Value: Copy>,
-        F: Form<K::Value, V::Value>,
-    {
-        match (self.gloss(form), self.lighting.sources.first()) {
-            (Some(gloss), Some(source)) => facet.draw((of(source), common), gloss, band),
-            _ => self.draw_lit(facet, of, common, form, band),
-        }
     }
 
     /// [`Self::draw_lit`] for what knows nothing but its rows on the screen.
@@ -153,6 +107,7 @@ impl<C: Pixel> Shading<'_, C> {
 }
 
 /// A field through three nodes.
+#[cfg(feature = "all-shaders")]
 pub(super) type Linear<const CH: usize> = Nodes<3, CH, BITS>;
 /// A field through six nodes.
 pub(super) type Quadratic<const CH: usize> = Nodes<6, CH, BITS>;
@@ -164,6 +119,7 @@ pub(super) fn quadratic<const CH: usize>(nodes: [[i32; 6]; CH]) -> Quadratic<CH>
 }
 
 /// The planes through three nodes in Q2.30.
+#[cfg(feature = "all-shaders")]
 #[inline]
 pub(super) fn linear<const CH: usize>(nodes: [[i32; 3]; CH]) -> Linear<CH> {
     Nodes::new(rounded(nodes), EXTRA)

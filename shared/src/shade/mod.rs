@@ -12,6 +12,8 @@ mod environment;
 mod flat;
 mod form;
 #[cfg(feature = "all-shaders")]
+mod gloss;
+#[cfg(feature = "all-shaders")]
 mod goldman;
 mod gouraud;
 #[cfg(feature = "all-shaders")]
@@ -30,6 +32,7 @@ mod phong_rv;
 mod pseudo_phong;
 #[cfg(feature = "all-shaders")]
 mod quadratic_blinn;
+mod quotient;
 #[cfg(feature = "all-shaders")]
 mod renq;
 #[cfg(feature = "all-shaders")]
@@ -67,7 +70,7 @@ use crate::{
         field::{Field, Nodes},
     },
     raster::triangle::{Outline, turn},
-    scene::{Lighting, cosine},
+    scene::{Direction, Lighting, cosine},
     shade::node::Node,
     shader::Shader,
     stream::record::{Triangle, Vertex},
@@ -158,6 +161,8 @@ pub(crate) struct Shading<'f, C> {
     pub(crate) exponent: u16,
     /// L and H if they are constant, see [`Lighting::constant`].
     pub(crate) constant: Option<[[i32; 3]; 2]>,
+    /// The same, for products with vertex normals.
+    pub(crate) directions: Option<[Direction; 2]>,
 }
 
 /// The bias of walked levels plus a rounding half, the same in all channels.

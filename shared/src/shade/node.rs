@@ -115,6 +115,13 @@ impl Facet<'_> {
     }
 }
 
+/// `f` of each value at six nodes. Written out: `map` is a loop through memory at opt-level "s".
+#[cfg(feature = "all-shaders")]
+#[inline(always)]
+pub(super) fn map_six<A, R>([a, b, c, d, e, g]: [A; 6], f: impl Fn(A) -> R) -> [R; 6] {
+    [f(a), f(b), f(c), f(d), f(e), f(g)]
+}
+
 /// `f` of each pair of values at six nodes. Written out: `map` is a loop through memory at opt-level "s".
 #[inline(always)]
 pub(super) fn zip_six<A, B, R>([a0, a1, a2, a3, a4, a5]: [A; 6], [b0, b1, b2, b3, b4, b5]: [B; 6], f: impl Fn(A, B) -> R) -> [R; 6] {

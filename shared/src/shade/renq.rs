@@ -9,7 +9,7 @@
 //! Domain: any lights; where |N| falls below 1/2, [`super::duff`]'s root takes over.
 
 use super::{
-    Area, Facet, Shading, duff,
+    Facet, Shading, duff,
     form::{EXTRA, Form, NODE, Quadratic, signed},
 };
 use crate::{
@@ -26,11 +26,10 @@ pub(super) fn draw<C: Pixel>(facet: &Facet<'_>, shading: &Shading<'_, C>, band: 
         return duff::draw(facet, shading, band);
     }
     let length = length(facet);
-    if let Some(gloss) = shading.gloss(Scaled) {
-        return facet.draw((duff::numerators(facet), length), gloss, band);
-    }
-    let nodes = facet.six_linear_nodes();
-    shading.draw_lit(facet, |source| shading.six_products(&nodes, source, |p| p), length, Scaled, band)
+    shading.draw_quotients::<false, _>(facet, length, |[length]| signed(length), band).unwrap_or_else(|| {
+        let nodes = facet.six_linear_nodes();
+        shading.draw_lit(facet, |source| shading.six_products(&nodes, source, |p| p), length, Scaled, band)
+    })
 }
 
 /// Half the quadratic through 1/|N| at six nodes, Q2.30.
@@ -58,20 +57,6 @@ impl Form<[u32; 1], [u32; 2]> for Scaled {
     #[inline(always)]
     fn reflect(&self, _: usize, &length: &i32, [light, half]: [u32; 2], power: PixelPower<'_>) -> Reflection {
         Reflection { diffuse: over(signed(light), length), highlight: power.at(over(signed(half), length)) }
-    }
-}
-
-impl Form<[u32; 1], ([u32; 1], [u32; 1])> for Scaled {
-    type Common = i32;
-
-    #[inline(always)]
-    fn common(&self, [length]: [u32; 1]) -> i32 {
-        signed(length)
-    }
-
-    #[inline(always)]
-    fn reflect(&self, light: usize, length: &i32, ([l], [h]): ([u32; 1], [u32; 1]), power: PixelPower<'_>) -> Reflection {
-        self.reflect(light, length, [l, h], power)
     }
 }
 

@@ -8,7 +8,7 @@
 //! Domain: any lights; where |N| falls below 1/2, [`super::duff`]'s root takes over.
 
 use super::{
-    Area, Facet, Shading, duff,
+    Facet, Shading, duff,
     form::{Form, signed},
     renq,
 };
@@ -34,11 +34,10 @@ pub(super) fn draw<C: Pixel>(facet: &Facet<'_>, shading: &Shading<'_, C>, band: 
 /// Shades with the steps of `form`.
 fn draw_by<C: Pixel, const STEPS: usize>(facet: &Facet<'_>, shading: &Shading<'_, C>, form: Newton<STEPS>, band: &mut Band<'_, C>) -> u32 {
     let lengths = (renq::length(facet), duff::square(facet));
-    if let Some(gloss) = shading.gloss(form) {
-        return facet.draw((duff::numerators(facet), lengths), gloss, band);
-    }
-    let nodes = facet.six_linear_nodes();
-    shading.draw_lit(facet, |source| shading.six_products(&nodes, source, |p| p), lengths, form, band)
+    shading.draw_quotients::<false, _>(facet, lengths, |lengths| form.half_reciprocal(lengths), band).unwrap_or_else(|| {
+        let nodes = facet.six_linear_nodes();
+        shading.draw_lit(facet, |source| shading.six_products(&nodes, source, |p| p), lengths, form, band)
+    })
 }
 
 /// Whether one step may leave more than 0.1 LSB: 255 n 1.5 delta² > 0.1 with delta = 0.02 e⁴ and e² = 3 (1 - rho²).
@@ -66,22 +65,26 @@ fn newton(h: i32, square: i32) -> i32 {
 #[derive(Clone, Copy)]
 struct Newton<const STEPS: usize>;
 
-impl<const STEPS: usize, V> Form<([u32; 1], [u32; 1]), V> for Newton<STEPS>
-where
-    renq::Scaled: Form<[u32; 1], V, Common = i32>,
-{
+impl<const STEPS: usize> Newton<STEPS> {
     /// 1/(2|N|), Q2.30.
-    type Common = i32;
-
     #[inline(always)]
-    fn common(&self, ([length], [square]): ([u32; 1], [u32; 1])) -> i32 {
+    fn half_reciprocal(self, ([length], [square]): ([u32; 1], [u32; 1])) -> i32 {
         let (length, square) = (signed(length), signed(square));
         let once = newton(length, square);
         if STEPS == 1 { once } else { newton(once, square) }
     }
+}
+
+impl<const STEPS: usize> Form<([u32; 1], [u32; 1]), [u32; 2]> for Newton<STEPS> {
+    type Common = i32;
 
     #[inline(always)]
-    fn reflect(&self, light: usize, length: &i32, fields: V, power: PixelPower<'_>) -> Reflection {
+    fn common(&self, lengths: ([u32; 1], [u32; 1])) -> i32 {
+        self.half_reciprocal(lengths)
+    }
+
+    #[inline(always)]
+    fn reflect(&self, light: usize, length: &i32, fields: [u32; 2], power: PixelPower<'_>) -> Reflection {
         renq::Scaled.reflect(light, length, fields, power)
     }
 }

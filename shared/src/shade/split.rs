@@ -20,6 +20,7 @@ const BITS: u32 = 16;
 pub(super) struct Cells<'a, 'f, C> {
     facet: &'a Facet<'f>,
     shading: &'a Shading<'f, C>,
+    basis: Basis,
     depth: Plane<1>,
 }
 
@@ -71,7 +72,7 @@ pub(super) fn corners<A: Copy>([a, b, c]: [A; 3], [ab, bc, ca]: [A; 3], k: usize
 
 impl<'a, 'f, C: Pixel> Cells<'a, 'f, C> {
     pub(super) fn new(facet: &'a Facet<'f>, shading: &'a Shading<'f, C>) -> Self {
-        Self { facet, shading, depth: facet.outline.depth(facet.basis) }
+        Self { facet, shading, basis: facet.basis.parted(), depth: facet.outline.depth(facet.basis) }
     }
 
     /// Whether anything of `cell` may be seen in `band`.
@@ -130,7 +131,7 @@ impl<'a, 'f, C: Pixel> Cells<'a, 'f, C> {
     /// `cell`, unless nothing of it may be seen in `band`.
     fn part(&self, cell: &Cell, band: &Band<'_, C>) -> Option<Part> {
         let piece = self.facet.outline.piece(cell);
-        piece.meets(band).then(|| Part { piece, basis: piece.basis(self.facet.basis), depth: self.depth })
+        piece.meets(band).then(|| Part { piece, basis: piece.basis(&self.basis), depth: self.depth })
     }
 
     /// Draws `cell` linear between its corners.

@@ -11,14 +11,17 @@
 
 use super::{
     Area, Facet, RANGE, Shading,
-    form::{Form, quadratic, signed},
+    form::{BITS, EXTRA, Form, quadratic, signed},
+    node::map_six,
 };
 use crate::{
     band::Band,
-    math::{power::PixelPower, product::product, rsqrt::rsqrt},
-    palette::Reflection,
+    format::{LEVEL, WALK},
+    math::{power::PixelPower, product::product, rsqrt::rsqrt, steps::Defects},
+    palette::{Levels, Reflection},
     pixel::Pixel,
-    poly::Constant,
+    poly::{Constant, field::Nodes},
+    tone::Tone,
 };
 
 /// One, Q2.30.
@@ -30,16 +33,40 @@ const LOWEST: i32 = ONE / 4;
 pub(super) fn draw<C: Pixel>(facet: &Facet<'_>, shading: &Shading<'_, C>, band: &mut Band<'_, C>) -> u32 {
     if let Some(gloss) = shading.gloss(Squared) {
         let cosines = facet.six_cosines(0);
-        if facet.is_dark(shading.palette) && is_bright(cosines) {
+        let is_bright = is_bright(cosines);
+        if is_bright && facet.is_dark(shading.palette) {
             return shading.draw_one::<6, RANGE>(facet, shading.palette.six_matte(cosines), band);
         }
-        let light = quadratic([cosines]);
-        let half = quadratic([facet.six_cosines(1).map(root)]);
-        return facet.draw(((light, half), Constant), gloss, band);
+        let roots = map_six(facet.six_cosines(1), root);
+        if let Some(levels) = shading.one_light().filter(|levels| is_bright && levels.is_within()) {
+            let defects = Defects::new(&shading.palette.power);
+            let light = Nodes::<6, 1, RANGE>::new([map_six(cosines, |cosine| levels.node(cosine, LEVEL))], WALK - LEVEL);
+            let half = Nodes::<6, 1, BITS>::new([map_six(roots, |root| defects.node(root))], EXTRA).raised([defects.half()]);
+            return facet.draw((light, half), Defective { levels, defects }, band);
+        }
+        return facet.draw(((quadratic([cosines]), quadratic([roots])), Constant), gloss, band);
     }
     let nodes = facet.six_nodes();
     let fit = |source: &_| shading.six_products(&nodes, source, |[light, half]| [light, root(half)]);
     shading.draw_lit(facet, fit, Constant, Squared, band)
+}
+
+/// Level and what the root of N·H lacks of 1.
+#[derive(Clone, Copy)]
+struct Defective<'a, C> {
+    levels: Levels<'a, C>,
+    defects: Defects<'a>,
+}
+
+impl<C: Pixel> Tone<([u32; 1], [u32; 1])> for Defective<'_, C> {
+    type Pixel = C;
+
+    const CHEAP: bool = true;
+
+    #[inline(always)]
+    fn tone(&self, ([light], [defect]): ([u32; 1], [u32; 1]), _: usize) -> C {
+        self.levels.colour::<WALK>(light, self.defects.at(signed(defect)))
+    }
 }
 
 /// Whether the quadratic through these nodes is positive everywhere: it leaves the middle of its nodes' range by at most 5/3

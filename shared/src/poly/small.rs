@@ -1,0 +1,122 @@
+//! Levels on small triangles: sums of products in one word, before they meet the triangle's area.
+//!
+//! A triangle of up to 64 pixels has sides of few bits, and so have light levels. The numerator of a first derivative is then an
+//! integer of one word, exact, that of a second one is rounded once to a word; each meets the inverse of the area, or its square, in one
+//! product. First derivatives are kept per 1/16 pixel: the way from corner 0 to the centre of its pixel is whole steps of these, exact
+//! modulo 2^32 however steep they are. Eight long products for depth and a quadratic, where the general way takes fifty.
+
+use crate::{
+    format::SUBPIXEL,
+    math::{
+        product::{product, shifted, upper_dot},
+        quotient::inverse,
+        zeros::leading_zeros,
+    },
+};
+
+/// Bits of the sides of a small triangle in 1/16 pixel.
+pub(super) const SMALL: u32 = 10;
+/// More fraction bits that values are walked with, at most.
+pub(super) const EXTRA: u32 = 16;
+/// Bits of the range of nodes between which a linear field may go.
+pub(super) const LINEAR: u32 = 20;
+/// Bits of the range of nodes between which a quadratic may go.
+pub(super) const QUADRATIC: u32 = 15;
+
+/// Twice the area of a small triangle, ready to divide by.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Small {
+    /// 1 / area = `inverse` 2^(`zeros` - 58).
+    inverse: i32,
+    /// Zeros above it: 11 to 30.
+    pub(super) zeros: u32,
+    /// Bits of the longest side: 1 to [`SMALL`].
+    pub(super) bits: u32,
+}
+
+impl Small {
+    /// That of a small and stout triangle by its edges from corner 0: not even nearly [`super::basis::MAX_THINNESS`].
+    #[inline(always)]
+    pub(super) fn new([[x1, y1], [x2, y2]]: [[i32; 2]; 2]) -> Option<Self> {
+        // One less than the size where negative: -2^k counts as k bits.
+        let size = |c: i32| (c ^ (c >> 31)) as u32;
+        let longest = size(x1) | size(y1) | size(x2) | size(y2);
+        let det = x1.wrapping_mul(y2).wrapping_sub(x2.wrapping_mul(y1));
+        if longest >= 1 << SMALL || det <= 1 {
+            return None;
+        }
+        let (bits, zeros) = (32 - leading_zeros(longest), leading_zeros(det as u32));
+        // 2^(2 bits) <= 128 det.
+        if 2 * bits + zeros > 38 {
+            return None;
+        }
+        // 24 bits, all of them: an area has at most 21.
+        let area = (det as u32) << ((zeros - 8) & 31);
+        // 2^40 / area to 15 bits, and what is missing of its product with the area in one word: one Newton step.
+        let high = inverse(area >> 8);
+        let rest = high.wrapping_mul(area).wrapping_neg() as i32;
+        let more = (rest >> 11).wrapping_mul(high as i32) >> 19;
+        Some(Self { inverse: ((high << 10) as i32).wrapping_add(more), zeros, bits })
+    }
+
+    /// `[c, dx, dy]` of the linear field through the corners' values, of at most [`LINEAR`] bits, at `offset` from corner 0
+    /// (1/16 pixel), with up to [`EXTRA`] more fraction bits.
+    #[inline(always)]
+    pub(super) fn linear(&self, edges: [[i32; 2]; 2], offset: [i32; 2], [i0, i1, i2]: [i32; 3], extra: u32) -> [i32; 3] {
+        let [dx, dy] = self.slopes(edges, [i1 - i0, i2 - i0], extra);
+        // All of it in 1/16 pixel, where corner 0 and the centre of its pixel are whole steps apart, and exact modulo 2^32.
+        let c = (i0 << extra).wrapping_add(dx.wrapping_mul(offset[0])).wrapping_add(dy.wrapping_mul(offset[1]));
+        [c, dx << SUBPIXEL, dy << SUBPIXEL]
+    }
+
+    /// `[c, dx, dy, dxx, dxy, dyy]` of the quadratic through six nodes, of at most [`QUADRATIC`] bits, at `offset` from corner 0
+    /// (1/16 pixel), with [`EXTRA`] more fraction bits; `None` if a second derivative does not fit a word.
+    #[inline(always)]
+    pub(super) fn quadratic(&self, edges: [[i32; 2]; 2], [ox, oy]: [i32; 2], [i0, i1, i2, i01, i12, i20]: [i32; 6]) -> Option<[i32; 6]> {
+        let [dx, dy] = self.slopes(edges, [4 * i01 - 3 * i0 - i1, 4 * i20 - 3 * i0 - i2], EXTRA);
+        // Half the matrix of second derivatives by s and t.
+        let (ss, st, tt) = (2 * (i0 + i1 - 2 * i01), 2 * (i0 - i01 - i20 + i12), 2 * (i0 + i2 - 2 * i20));
+        let [[x1, y1], [x2, y2]] = edges;
+        // Sides take all of a word but its sign. Second differences take as much of one as leaves room for their products with two
+        // sides, or for what then is a whole number.
+        let (side, second) = (|c: i32| c << (31 - self.bits), (28 - QUADRATIC - self.bits).min(self.bits + 1));
+        let (ss, st, tt) = (ss << second, st << second, tt << second);
+        // Times the area: one factor of the chain rule, then the other, and the area once more.
+        let (sx, tx) = (ss * y2 - st * y1, st * y2 - tt * y1);
+        let (sy, ty) = (st * x1 - ss * x2, tt * x1 - st * x2);
+        let (x1, y1, x2, y2) = (side(x1), side(y1), side(x2), side(y2));
+        // 1 / area² = square 2^(2 zeros - 85).
+        let square = (product(self.inverse, self.inverse) >> 31) as i32;
+        let left = (2 * self.zeros + self.bits + EXTRA - 44) - second;
+        // Bits that a word has no room for.
+        let mut steep = 0;
+        let mut bend = |a: i32, b: i32, x: i32, y: i32| {
+            let product = product(upper_dot([a, b], [x, y]), square);
+            let upper = (product >> 32) as i32;
+            steep |= (upper << (left & 31) >> (left & 31)) ^ upper;
+            shifted(product, left)
+        };
+        let (dxx, dxy, dyy) = (bend(sx, -tx, y2, y1), bend(-sx, tx, x2, x1), bend(-sy, ty, x2, x1));
+        if steep != 0 {
+            return None;
+        }
+        // Per (1/16 pixel)², for the way to the anchor.
+        let fine = |c: i32| c >> (2 * SUBPIXEL);
+        let (xx, xy, yy) = (fine(dxx), fine(dxy), fine(dyy));
+        let (across, mixed, down) = (xx.wrapping_mul(ox), xy.wrapping_mul(oy).wrapping_mul(2), yy.wrapping_mul(oy));
+        let first = dx.wrapping_add(across).wrapping_add(mixed);
+        let c = (i0 << EXTRA).wrapping_add(first.wrapping_mul(ox)).wrapping_add(dy.wrapping_add(down).wrapping_mul(oy));
+        let dx = first.wrapping_add(across);
+        let dy = dy.wrapping_add(down.wrapping_add(xy.wrapping_mul(ox)).wrapping_mul(2));
+        Some([c, dx << SUBPIXEL, dy << SUBPIXEL, dxx, dxy.wrapping_mul(2), dyy])
+    }
+
+    /// Derivatives along x and y of `a s + b t` per 1/16 pixel, with `extra` more fraction bits.
+    #[inline(always)]
+    fn slopes(&self, [[x1, y1], [x2, y2]]: [[i32; 2]; 2], [a, b]: [i32; 2], extra: u32) -> [i32; 2] {
+        // As many bits of the inverse as a shift by less than a word leaves room for.
+        let inverse = self.inverse >> (EXTRA - extra);
+        let slope = |numerator: i32| shifted(product(numerator, inverse), self.zeros - 10);
+        [slope(a * y2 - b * y1), slope(b * x1 - a * x2)]
+    }
+}

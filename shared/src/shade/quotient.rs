@@ -1,0 +1,78 @@
+//! One constant light on a material of one channel, by linear numerators over a length: level and highlight are walked in the units
+//! of their tables, so that a pixel takes one product for each.
+
+use super::{Area, Facet, Shading};
+use crate::{
+    band::Band,
+    format::COSINE,
+    math::{
+        product::upper,
+        steps::{self, Quotients},
+    },
+    palette::Levels,
+    pixel::Pixel,
+    poly::field::{Field, Nodes},
+    tone::Tone,
+};
+
+/// Fraction bits of a diffuse level at a node: as much of one as the ramp takes, in either direction, is [`RANGE`] bits.
+const NODE: u32 = 10;
+/// Bits of what diffuse levels at nodes differ by.
+const RANGE: u32 = 20;
+/// Fraction bits that it is walked with.
+const LEVEL: u32 = 22;
+/// Fraction bits of a level at a pixel: of the upper half of its product with half a reciprocal length, Q2.30.
+const PIXEL: u32 = LEVEL - 3;
+/// Bits of what steps at nodes differ by.
+const STEPS: u32 = 26;
+
+/// What numerators and a length come to; `R` makes half a reciprocal length, Q2.30, of what is walked for it. One that is not `EXACT`
+/// may lift cosines above 1, which then count as 1.
+#[derive(Clone, Copy)]
+struct Quotient<'a, C, R, const EXACT: bool> {
+    levels: Levels<'a, C>,
+    steps: Quotients<'a>,
+    half_reciprocal: R,
+}
+
+impl<C: Pixel, V, R: Fn(V) -> i32 + Copy, const EXACT: bool> Tone<(([u32; 1], [u32; 1]), V)> for Quotient<'_, C, R, EXACT> {
+    type Pixel = C;
+
+    const CHEAP: bool = true;
+
+    #[inline(always)]
+    fn tone(&self, (([light], [half]), length): (([u32; 1], [u32; 1]), V), _: usize) -> C {
+        let half_reciprocal = (self.half_reciprocal)(length);
+        let diffuse = upper(light as i32, half_reciprocal).max(0);
+        let diffuse = if EXACT { diffuse } else { diffuse.min(self.levels.node(1 << COSINE, PIXEL)) } as u32;
+        let highlight = self.steps.at(upper(half as i32, half_reciprocal));
+        self.levels.colour::<PIXEL>(diffuse, highlight)
+    }
+}
+
+impl<C: Pixel> Shading<'_, C> {
+    /// What it takes to walk levels under one constant light, if that is all there is, and the method's table is made for it.
+    pub(super) fn one_light(&self) -> Option<Levels<'_, C>> {
+        if self.constant.is_some() && !self.dither { self.palette.levels_of_one() } else { None }
+    }
+
+    /// Draws `facet`, if there is no more than that; `EXACT` or not, `half_reciprocal` makes half a reciprocal length, Q2.30, of the walked `length`.
+    #[inline(always)]
+    pub(super) fn draw_quotients<const EXACT: bool, F: Field>(
+        &self,
+        facet: &Facet<'_>,
+        length: F,
+        half_reciprocal: impl Fn(F::Value) -> i32 + Copy,
+        band: &mut Band<'_, C>,
+    ) -> Option<u32> {
+        let levels = self.one_light()?;
+        let steps = Quotients::new(&self.palette.power);
+        let [a, b, c] = facet.corners.map(|corner| corner.light);
+        let light = [levels.node(a[0], NODE), levels.node(b[0], NODE), levels.node(c[0], NODE)];
+        let half = [steps.node(a[1]), steps.node(b[1]), steps.node(c[1])];
+        // Two planes of one channel: the compiler makes a loop of one plane of two, and keeps it in memory.
+        let light = Nodes::<3, 1, RANGE>::new([light], LEVEL - NODE);
+        let half = Nodes::<3, 1, STEPS>::new([half], steps::EXTRA);
+        Some(facet.draw(((light, half), length), Quotient::<_, _, EXACT> { levels, steps, half_reciprocal }, band))
+    }
+}
