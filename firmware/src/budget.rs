@@ -25,8 +25,8 @@ impl Budget {
     }
 }
 
-/// ST7789 panel; all of it stays within 192 KiB of the RP2040's 264.
-pub const PICO: Budget = Budget { width: 240, height: 240, rows: 60, vertices: 2048, triangles: 2048, materials: 4 };
+/// ST7789 panel; all of it stays within 128 KiB, half of what the RP2040 has.
+pub const PICO: Budget = Budget { width: 240, height: 240, rows: 40, vertices: 1024, triangles: 1024, materials: 4 };
 /// OLED; 64 KiB of RAM in all.
 pub const LM3S6965EVB: Budget = Budget { width: 128, height: 64, rows: 16, vertices: 640, triangles: 1024, materials: 2 };
 /// Frame buffer in plentiful RAM, one band for the whole picture.

@@ -78,7 +78,7 @@ impl Table {
 }
 
 /// What has to be known of the Cortex-M0+.
-const PICO: &str = "cortex-m0plus: ours on the Pico in bands of 60 rows, theirs as ARMv6-M code on a Cortex-M3 in one band";
+const PICO: &str = "cortex-m0plus: ours on the Pico in bands of 40 rows, theirs as ARMv6-M code on a Cortex-M3 in one band";
 
 /// Figures that were measured once.
 fn earlier(processors: &[Processor]) -> Result<Vec<Row>> {
