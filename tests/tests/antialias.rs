@@ -214,7 +214,7 @@ impl Pixel for White {
 
     fn ramped<const BITS: u32>(_: &[Self; RAMP], level: u32) -> Self {
         // No level is so far from what it should be that it wraps.
-        assert!(i64::from(level >> 23) < i64::from(BIAS) * 4);
+        assert!(i64::from(level >> BITS) < i64::from(BIAS) * 4);
         Self(255)
     }
 

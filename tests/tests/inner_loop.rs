@@ -6,9 +6,9 @@ use microphong_sim::{
     scene,
 };
 
-/// A depth-tested quadratic takes 13 instructions a pixel, as many as written by hand; a plane one fewer, a constant 9. A root and two
-/// products make it 36; two quadratics and the highlight's table 26, 22 on
-/// average, as there are triangles without a highlight.
+/// A depth-tested quadratic takes 13 instructions a pixel, as many as written by hand; a plane one fewer, a
+/// constant 9. A root and two products make it 36; two quadratics and the highlight's table 26, but 22 on
+/// average: there are triangles without a highlight.
 #[test]
 fn loops_are_as_short_as_by_hand() {
     let limits = [

@@ -16,7 +16,7 @@ pub(super) const SIZE: usize = 2048;
 #[derive(Clone, Copy, Debug)]
 pub struct Power {
     pub(super) table: [u16; SIZE + 1],
-    /// 4 max(n, 8): turns 1 - x into an index, 64 times less of it.
+    /// 4 max(n, 8): 1 - x times 64 of it is an index.
     pub(super) scale: u32,
     /// What every entry has more.
     floor: u16,

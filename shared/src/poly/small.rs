@@ -15,7 +15,7 @@ use crate::{
 };
 
 /// Bits of the sides of a small triangle in 1/16 pixel.
-pub(super) const SMALL: u32 = 10;
+const SMALL: u32 = 10;
 /// More fraction bits that values are walked with, at most.
 pub(super) const EXTRA: u32 = 16;
 /// Bits of the range of nodes between which a linear field may go.

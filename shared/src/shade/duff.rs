@@ -1,7 +1,7 @@
 //! Duff's form (Duff 1979; see Bishop & Weimer 1986): linear N·L and N·H over the root of a quadratic.
 //!
 //! Under a constant light N·L and N·H are exactly linear and |N|² exactly quadratic over a triangle, so only
-//! the reciprocal root is approximated, by a table of 769 knots. Near lights and viewers have numerators that
+//! the reciprocal root is approximated, by a table of 1,537 knots. Near lights and viewers have numerators that
 //! are not linear: there they are the quadratics through six points.
 //!
 //! Cost: 4 additions a pixel, a root from a table, 2 products and the highlight's table; 2 or 4 additions and
