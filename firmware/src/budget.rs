@@ -15,6 +15,8 @@ pub struct Budget {
     pub triangles: usize,
     /// Materials that a stream may have.
     pub materials: usize,
+    /// Triangles that one band hands on to the next: those beyond are set up anew there.
+    pub legs: usize,
 }
 
 impl Budget {
@@ -26,8 +28,8 @@ impl Budget {
 }
 
 /// ST7789 panel; all of it stays within 128 KiB, half of what the RP2040 has.
-pub const PICO: Budget = Budget { width: 240, height: 240, rows: 40, vertices: 1024, triangles: 1024, materials: 4 };
+pub const PICO: Budget = Budget { width: 240, height: 240, rows: 36, vertices: 1024, triangles: 1024, materials: 4, legs: 48 };
 /// OLED; 64 KiB of RAM in all.
-pub const LM3S6965EVB: Budget = Budget { width: 128, height: 64, rows: 16, vertices: 640, triangles: 1024, materials: 2 };
+pub const LM3S6965EVB: Budget = Budget { width: 128, height: 64, rows: 16, vertices: 640, triangles: 1024, materials: 2, legs: 32 };
 /// Frame buffer in plentiful RAM, one band for the whole picture.
-pub const MPS2: Budget = Budget { width: 320, height: 240, rows: 240, vertices: 16384, triangles: 32768, materials: 16 };
+pub const MPS2: Budget = Budget { width: 320, height: 240, rows: 240, vertices: 16384, triangles: 32768, materials: 16, legs: 0 };

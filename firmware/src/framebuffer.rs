@@ -110,8 +110,14 @@ macro_rules! framebuffer_board {
         #[::cortex_m_rt::entry]
         fn main() -> ! {
             static mut BANDS: [[Rgb565; MPS2.band()]; 2] = [[Rgb565::BLACK; MPS2.band()]; 2];
-            static mut WORKSPACE: Workspace<Rgb565, { MPS2.vertices }, { MPS2.triangles }, { MPS2.band() }, { MPS2.materials }> =
-                Workspace::new(Rgb565::BLACK);
+            static mut WORKSPACE: Workspace<
+                Rgb565,
+                { MPS2.vertices },
+                { MPS2.triangles },
+                { MPS2.band() },
+                { MPS2.materials },
+                { MPS2.legs },
+            > = Workspace::new(Rgb565::BLACK);
 
             // SAFETY: nothing else in the program names it, and `main` runs once.
             let memory = unsafe { &mut *(&raw mut FRAMEBUFFER) };

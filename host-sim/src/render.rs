@@ -9,6 +9,7 @@ use embedded_graphics_core::{
 use microphong::{
     Memory, Renderer, Shader, Stats, Stream, Workspace,
     pixel::{PictureCrc, Pixel},
+    relay::Leg,
     sample::Sample,
 };
 
@@ -49,7 +50,15 @@ pub fn frame<C: Pixel>(stream: Stream<'_>, size: Size, style: impl Into<Style>, 
     let mut depth = vec![0; size.width as usize * rows as usize];
     let mut palettes = vec![blank.palettes[0]; stream.materials.len()];
     let mut samples = vec![Sample::EMPTY; if style.antialias { depth.len() } else { 0 }];
-    let memory = Memory { vertices: &mut vertices, bins: &mut bins, depth: &mut depth, palettes: &mut palettes, samples: &mut samples };
+    let mut legs = vec![Leg::EMPTY; if rows < size.height { stream.triangles.len() } else { 0 }];
+    let memory = Memory {
+        vertices: &mut vertices,
+        bins: &mut bins,
+        depth: &mut depth,
+        palettes: &mut palettes,
+        samples: &mut samples,
+        legs: &mut legs,
+    };
     let mut renderer = Renderer::with_shader(stream, size, memory, style.shader)?;
     renderer.set_perspective_correct(style.perspective_correct)?;
     renderer.set_dither(style.dither);

@@ -13,6 +13,7 @@ use embedded_graphics_core::{
 use microphong::{
     Memory, Renderer, Shader, Stats, Stream, Workspace,
     pixel::{PictureCrc, Pixel, Rgb565Be},
+    relay::Leg,
     stream::{record::Header, seal},
 };
 use serde::{Serialize, Serializer};
@@ -192,7 +193,9 @@ fn draw<C: Pixel>(stream: Stream<'_>, budget: Budget, frames: usize) -> Result<V
     let mut bins = vec![blank.bins[0]; budget.triangles];
     let mut depth = vec![0; budget.band()];
     let mut palettes = vec![blank.palettes[0]; budget.materials];
-    let memory = Memory { vertices: &mut vertices, bins: &mut bins, depth: &mut depth, palettes: &mut palettes, samples: &mut [] };
+    let mut legs = vec![Leg::EMPTY; budget.legs];
+    let memory =
+        Memory { vertices: &mut vertices, bins: &mut bins, depth: &mut depth, palettes: &mut palettes, samples: &mut [], legs: &mut legs };
     let size = Size::new(budget.width as u32, budget.height as u32);
     let mut renderer = Renderer::new(stream, size, memory).context("the board cannot draw this stream")?;
     let mut band = vec![black; budget.band()];

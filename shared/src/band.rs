@@ -2,6 +2,7 @@
 
 use crate::{
     pixel::Pixel,
+    relay::Relay,
     sample::{Layer, Sample},
 };
 
@@ -20,6 +21,8 @@ pub struct Band<'a, C> {
     pub rows: i32,
     /// For antialiasing: takes the place of `depth`, and of `pixels` until [`Self::resolve`].
     pub blend: Option<Blend<'a, C>>,
+    /// What the band above handed on, and this one does.
+    pub relay: Relay<'a>,
 }
 
 /// Where antialiasing gathers what it knows of each pixel.
@@ -68,6 +71,12 @@ impl<C> Band<'_, C> {
                 fill(self.depth, 0);
             }
         }
+    }
+
+    /// Its first row, and the one behind its last.
+    #[inline(always)]
+    pub(crate) fn range(&self) -> [i32; 2] {
+        [self.top, self.top.wrapping_add(self.rows)]
     }
 
     /// Index of the first pixel of `row`.

@@ -16,17 +16,38 @@ const NONE: u16 = 0;
 /// A triangle in a list.
 #[derive(Clone, Copy, Debug)]
 pub struct Entry {
-    /// Index in the stream.
-    pub triangle: u32,
+    /// Twice the index in the stream, and 1 more if it is simple: lists are in this order.
+    key: u32,
     /// One past its last row.
-    pub bottom: u16,
+    bottom: u16,
     /// The entry behind it.
     next: u16,
 }
 
 impl Entry {
     /// Nothing yet.
-    pub const EMPTY: Self = Self { triangle: 0, bottom: 0, next: NONE };
+    pub const EMPTY: Self = Self { key: 0, bottom: 0, next: NONE };
+
+    /// Index in the stream.
+    #[inline(always)]
+    #[must_use]
+    pub fn triangle(&self) -> u32 {
+        self.key >> 1
+    }
+
+    /// Different from that of all others, and not 0 if it is simple.
+    #[inline(always)]
+    #[must_use]
+    pub fn key(&self) -> u32 {
+        self.key
+    }
+
+    /// What was said of it, see [`Bins::push`].
+    #[inline(always)]
+    #[must_use]
+    pub fn is_simple(&self) -> bool {
+        self.key & 1 != 0
+    }
 }
 
 /// The heads of all lists.
@@ -66,14 +87,15 @@ impl Bins {
         (row.wrapping_mul(self.bins_per_row) >> 20) as usize
     }
 
-    /// Puts a triangle that covers rows `top .. bottom` in front of its list. Called from the last triangle to the first.
+    /// Puts a triangle that covers rows `top .. bottom` in front of its list, and remembers whether it is `simple`. Called from the last
+    /// triangle to the first.
     #[inline(always)]
-    pub fn push(&mut self, entries: &mut [Entry], triangle: u32, top: u32, bottom: u32) {
+    pub fn push(&mut self, entries: &mut [Entry], triangle: u32, simple: bool, [top, bottom]: [u32; 2]) {
         let bin = self.of(top);
         let link = self.count.wrapping_add(1);
         match (self.heads.get_mut(bin), entries.get_mut(usize::from(self.count))) {
             (Some(head), Some(entry)) if link != NONE => {
-                *entry = Entry { triangle, bottom: bottom as u16, next: *head };
+                *entry = Entry { key: triangle << 1 | u32::from(simple), bottom: bottom as u16, next: *head };
                 *head = link;
                 self.count = link;
             }
@@ -140,7 +162,7 @@ fn merge(entries: &mut [Entry], mut a: u16, mut b: u16) -> u16 {
     loop {
         let entry = |link| linked(link).and_then(|index| entries.get(index)).copied();
         let (link, rest) = match (entry(a), entry(b)) {
-            (Some(x), Some(y)) if x.triangle <= y.triangle => (a, Some((&mut a, x.next))),
+            (Some(x), Some(y)) if x.key <= y.key => (a, Some((&mut a, x.next))),
             (Some(_), Some(y)) => (b, Some((&mut b, y.next))),
             (None, _) => (b, None),
             (_, None) => (a, None),
@@ -168,7 +190,7 @@ mod tests {
             let mut bins = Bins::new(HEIGHT, band.min(10));
             for i in (0..100).rev() {
                 let (top, bottom) = rows(i as u32);
-                bins.push(&mut entries, i as u32, top, bottom);
+                bins.push(&mut entries, i as u32, i % 3 == 0, [top, bottom]);
             }
             assert_eq!(bins.count(), Some(100));
             let mut top = 0;
@@ -177,7 +199,9 @@ mod tests {
                 bins.advance(&mut entries, bottom);
                 let mut seen = [false; 100];
                 let mut last = None;
-                for &Entry { triangle, .. } in bins.active(&entries) {
+                for entry in bins.active(&entries) {
+                    let triangle = entry.triangle();
+                    assert_eq!(entry.is_simple(), triangle % 3 == 0);
                     assert!(last < Some(triangle));
                     seen[triangle as usize] = true;
                     last = Some(triangle);

@@ -75,13 +75,13 @@ fn between(inner: &Corner, outer: &Corner, di: i64, d_o: i64) -> Corner {
     Corner { eye: mix(inner.eye, outer.eye), position: mix(inner.position, outer.position), normal: mix(inner.normal, outer.normal) }
 }
 
-/// The record of one triangle of the fan, cut from `whole`: edge constants belong to the new corners, which turn
+/// The record of one triangle of the fan, cut from `whole`: indices and edge constants are of the new `corners`, which turn
 /// clockwise on the screen, against the order of a record.
 #[must_use]
-pub fn record(whole: &Triangle, corners: [&Vertex; 3]) -> Triangle {
+pub fn record(whole: &Triangle, corners: &[Vertex; 3]) -> Triangle {
     let [a, b, c] = corners.map(|corner| wide(corner.normal));
     let edges = [edge(c, a), edge(b, c), edge(a, b)];
-    Triangle { rsum: edges.map(|(rsum, _)| rsum), bend: edges.map(|(_, bend)| bend), ..*whole }
+    Triangle { corners: [0, 2, 1], rsum: edges.map(|(rsum, _)| rsum), bend: edges.map(|(_, bend)| bend), ..*whole }
 }
 
 /// 1/|a + b| - 1/2 and 1 - |a + b|²/4 of two unit normals, as in a record.

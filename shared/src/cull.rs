@@ -6,6 +6,7 @@ use crate::{
     math::{
         product::product,
         vector::{narrow_dot, wide},
+        zeros::leading_zeros,
     },
     scene::Pose,
     stream::record::{Camera, LEAN, PERSPECTIVE, Triangle},
@@ -94,6 +95,13 @@ impl Extent {
         Self { left, right, top, bottom, area }
     }
 
+    /// Small and stout, see [`is_small`].
+    #[inline(always)]
+    #[must_use]
+    pub(crate) fn is_small(&self) -> bool {
+        is_small(((self.right - self.left) | (self.bottom - self.top)) as u32, self.area)
+    }
+
     /// Its longest side is no longer: the larger of width and height and half of the other, since
     /// x² + y² <= (x + y/2)² where y <= x.
     #[inline(always)]
@@ -102,6 +110,17 @@ impl Extent {
         let (width, height) = (self.right - self.left, self.bottom - self.top);
         width.max(height) + ((width.min(height) + 1) >> 1)
     }
+}
+
+/// Bits of the sides of a small triangle, 1/16 pixel.
+const SMALL: u32 = 10;
+
+/// Whether a triangle is so small and stout, not even nearly [`crate::poly::basis::MAX_THINNESS`], that its polynomials are set up in
+/// words: by its box's width or height, whichever is larger or both in one, and twice its area.
+#[inline(always)]
+pub(crate) fn is_small(size: u32, area: i32) -> bool {
+    // 2^(2 bits) <= 128 area.
+    size < 1 << SMALL && area > 1 && 64 - 2 * leading_zeros(size) + leading_zeros(area as u32) <= 38
 }
 
 #[cold]

@@ -9,7 +9,7 @@ use crate::{
     poly::basis::Basis,
     raster::{
         smooth::{self, Part},
-        triangle::{Bounds, Outline, turn},
+        triangle::{Bounds, Outline, turn, turned},
     },
     render::{Stage, Viewport},
     shade::{Facet, Shading},
@@ -35,33 +35,84 @@ pub(crate) struct Drawing<'f, C> {
 /// A triangle, its corners turning clockwise on the screen.
 struct Face<'f> {
     corners: [&'f ScreenVertex; 3],
-    vertices: [&'f Vertex; 3],
     triangle: &'f Triangle,
+    /// Those that its indices are of.
+    vertices: &'f [Vertex],
 }
 
 impl<C: Pixel> Drawing<'_, C> {
     /// Draws `triangle`; returns its pixels in `band`.
-    #[inline(always)]
+    #[inline(never)]
     pub(crate) fn draw(&self, triangle: &Triangle, band: &mut Band<'_, C>) -> u32 {
-        let [a, b, c] = places(triangle);
-        let (Some(p), Some(q), Some(r)) = (self.vertices.get(a), self.vertices.get(b), self.vertices.get(c)) else { return 0 };
-        let vertices = [p, q, r];
-        match self.corners([a, b, c]) {
-            Some(corners) => self.face(&Face { corners, vertices, triangle }, band),
-            None => self.other(vertices, triangle, band),
+        match self.corners(triangle).filter(is_ready) {
+            Some(corners) => self.face(&Face { corners, triangle, vertices: self.vertices }, band),
+            None => self.other(triangle, band),
         }
     }
 
-    /// Corners on the screen; `None` if one is not kept, or not on the screen.
+    /// The same of a triangle that [`Viewport::is_simple`], by its `key` in [`crate::relay`].
+    #[inline(never)]
+    pub(crate) fn draw_simple(&self, triangle: &Triangle, key: u32, band: &mut Band<'_, C>) -> u32 {
+        let Some(corners) = self.corners(triangle) else { return 0 };
+        let (by, corners) = turned(corners);
+        let mut outline = Outline::simple((by, corners), key, band);
+        if outline.is_empty() {
+            return 0;
+        }
+        let basis = Basis::simple(outline.corners);
+        let contested = self.contested(&outline);
+        if contested {
+            outline.see(&basis);
+        }
+        let facet = Facet {
+            outline: &outline,
+            basis: &basis,
+            corners,
+            triangle,
+            vertices: self.vertices,
+            contested,
+            #[cfg(feature = "all-shaders")]
+            perspective: self.perspective,
+            place: None,
+        };
+        self.shading.draw(&facet, band)
+    }
+
+    /// The same of a triangle that the band above handed on to `place`.
+    #[inline(never)]
+    pub(crate) fn go_on(&self, triangle: &Triangle, place: usize, band: &mut Band<'_, C>) -> u32 {
+        let (Some(leg), Some(corners)) = (band.relay.leg(place), self.corners(triangle)) else { return 0 };
+        let (by, corners) = turned(corners);
+        let facet = Facet {
+            outline: &Outline::handed_on(leg.course, by, band),
+            basis: &Basis::NONE,
+            corners,
+            triangle,
+            vertices: self.vertices,
+            contested: leg.course.nearness.is_some(),
+            #[cfg(feature = "all-shaders")]
+            perspective: false,
+            place: Some(place),
+        };
+        self.shading.draw(&facet, band)
+    }
+
+    /// Corners on the screen; `None` if one is not kept.
     #[inline(always)]
-    fn corners(&self, [a, b, c]: [usize; 3]) -> Option<[&ScreenVertex; 3]> {
-        let corners = [self.kept.get(a)?, self.kept.get(b)?, self.kept.get(c)?];
-        is_ready(corners).then_some(corners)
+    fn corners(&self, triangle: &Triangle) -> Option<[&ScreenVertex; 3]> {
+        let [a, c, b] = triangle.corners;
+        Some([self.kept.get(usize::from(a))?, self.kept.get(usize::from(b))?, self.kept.get(usize::from(c))?])
+    }
+
+    /// Others may overlap a triangle.
+    #[inline(always)]
+    fn contested(&self, outline: &Outline) -> bool {
+        self.convex.is_none_or(|convex| convex.contests(&outline.corners))
     }
 
     /// The visible box of `triangle`; `None` if it shows its back, or no pixel can belong to it.
     pub(crate) fn bounds(&self, triangle: &Triangle) -> Option<Bounds> {
-        match self.corners(places(triangle)) {
+        match self.corners(triangle).filter(is_ready) {
             Some([a, b, c]) => self.viewport.bounds(&Extent::new([[a.x, a.y], [b.x, b.y], [c.x, c.y]])),
             None => self.stage.bounds(self.viewport, self.vertices, triangle),
         }
@@ -70,10 +121,13 @@ impl<C: Pixel> Drawing<'_, C> {
     /// Draws a triangle whose corners are not kept, or not on the screen.
     #[cold]
     #[inline(never)]
-    fn other(&self, vertices: [&Vertex; 3], triangle: &Triangle, band: &mut Band<'_, C>) -> u32 {
+    fn other(&self, triangle: &Triangle, band: &mut Band<'_, C>) -> u32 {
+        let [a, c, b] = triangle.corners.map(|corner| self.vertices.get(usize::from(corner)));
+        let (Some(a), Some(b), Some(c)) = (a, b, c) else { return 0 };
+        let vertices = [a, b, c];
         let [a, b, c] = &vertices.map(|vertex| self.stage.transform(vertex));
-        if is_ready([a, b, c]) {
-            return self.face(&Face { corners: [a, b, c], vertices, triangle }, band);
+        if is_ready(&[a, b, c]) {
+            return self.face(&Face { corners: [a, b, c], triangle, vertices: self.vertices }, band);
         }
         // The fan that clipping leaves.
         let polygon = clip::clip(self.stage.view, vertices);
@@ -85,9 +139,9 @@ impl<C: Pixel> Drawing<'_, C> {
         let mut pixels = 0;
         for pair in rest.windows(2) {
             if let [second, third] = pair {
-                let vertices = [&first.vertex, &second.vertex, &third.vertex];
+                let vertices = [first.vertex, second.vertex, third.vertex];
                 let corners = [&place(first), &place(second), &place(third)];
-                pixels += self.face(&Face { corners, vertices, triangle: &clip::record(triangle, vertices) }, band);
+                pixels += self.face(&Face { corners, triangle: &clip::record(triangle, &vertices), vertices: &vertices }, band);
             }
         }
         pixels
@@ -108,54 +162,27 @@ impl<C: Pixel> Drawing<'_, C> {
 
     /// Sets up a triangle and draws part of its pixels.
     fn part(&self, part: Part, face: &Face<'_>, band: &mut Band<'_, C>) -> u32 {
-        let outline = Outline::new(face.corners, part);
-        // Not one option or the other, which would be a copy.
-        let (small, any);
-        let basis = match Basis::small(outline.corners) {
-            Some(basis) => {
-                small = basis;
-                &small
-            }
-            None => {
-                any = Basis::any(outline.corners, self.viewport.box_of(face.corners, outline.finer()));
-                let Some(basis) = &any else { return 0 };
-                basis
-            }
-        };
-        let by = outline.turned;
-        let corners = turn(face.corners, by);
+        let outline = Outline::new(face.corners, part, band);
+        if outline.is_empty() {
+            return 0;
+        }
+        let Some(basis) = Basis::new(outline.corners, self.viewport.box_of(face.corners, outline.finer())) else { return 0 };
         let facet = Facet {
             outline: &outline,
-            basis,
-            corners,
-            vertices: turn(face.vertices, by),
+            basis: &basis,
+            corners: turn(face.corners, outline.turned),
             triangle: face.triangle,
-            convex: self.convex,
+            vertices: face.vertices,
+            contested: self.contested(&outline),
             #[cfg(feature = "all-shaders")]
-            nearness: self.nearness(corners),
+            perspective: self.perspective,
+            place: None,
         };
         self.shading.draw(&facet, band)
     }
-
-    /// Nearness of the corners of a triangle that is to be shaded in perspective.
-    #[cfg(feature = "all-shaders")]
-    #[inline(always)]
-    fn nearness(&self, corners: [&ScreenVertex; 3]) -> Option<[i32; 3]> {
-        let [a, b, c] = corners;
-        let (a, b, c) = (a.depth, b.depth, c.depth);
-        // All of it equally far is all of it flat on the screen.
-        (self.perspective && !(a == b && b == c)).then_some([a, b, c])
-    }
-}
-
-/// Where the corners are, against the stream's order. Written out: `map` is a loop through memory at opt-level "s".
-#[inline(always)]
-fn places(triangle: &Triangle) -> [usize; 3] {
-    let [a, c, b] = triangle.corners;
-    [a.into(), b.into(), c.into()]
 }
 
 #[inline(always)]
-fn is_ready([a, b, c]: [&ScreenVertex; 3]) -> bool {
+fn is_ready([a, b, c]: &[&ScreenVertex; 3]) -> bool {
     a.state == State::Ready && b.state == State::Ready && c.state == State::Ready
 }

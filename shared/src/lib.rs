@@ -14,7 +14,7 @@
 //! | [`poly`] | fits polynomials to a triangle and walks them |
 //! | [`pixel`], [`dither`], [`palette`], [`tone`] | levels of light to pixels |
 //! | [`sample`] | what is seen through one pixel when it is antialiased |
-//! | [`band`], [`raster`] | exact coverage, and the inner loop |
+//! | [`band`], [`relay`], [`raster`] | exact coverage, the inner loop, and what a band hands on to the next |
 //! | [`shade`] | the methods: which polynomials, which tone |
 //! | [`render`] | the loop nest: frame, band, triangle, row |
 //! | [`display`] | frames onto embedded-graphics displays |
@@ -35,6 +35,7 @@ pub mod palette;
 pub mod pixel;
 pub mod poly;
 pub mod raster;
+pub mod relay;
 pub mod render;
 pub mod sample;
 pub mod scene;

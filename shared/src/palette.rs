@@ -154,7 +154,14 @@ impl<C: Pixel> Palette<C> {
     #[must_use]
     pub fn six_matte(&self, [a, b, c, ab, bc, ca]: [i32; 6]) -> [i32; 6] {
         let [gains, ..] = &self.gains;
-        let matte = |diffuse| (self.ambient[0] + reflected((gains.diffuse[0], 0), diffuse, 0)).min(FULL);
+        let (ambient, diffuse) = (self.ambient[0] as u32, u32::from(gains.diffuse[0]));
+        // Rounded as by `reflected`.
+        let base = (ambient << 15) + (1 << 14);
+        let matte = |cosine: i32| ((base + diffuse * (cosine.max(0) as u32 >> (COSINE - 15))) >> 15) as i32;
+        if ambient + diffuse <= FULL as u32 {
+            return [matte(a), matte(b), matte(c), matte(ab), matte(bc), matte(ca)];
+        }
+        let matte = |cosine| matte(cosine).min(FULL);
         [matte(a), matte(b), matte(c), matte(ab), matte(bc), matte(ca)]
     }
 
@@ -237,13 +244,17 @@ impl<C: Pixel> Palette<C> {
     #[inline(always)]
     #[must_use]
     pub fn colour(&self, levels: [i32; 3]) -> C {
-        // Levels stay below the guards at the ramp's ends.
-        let walked = |level: i32, half: u32| ((level + (BIAS << LEVEL) + (1 << half)) as u32) << (WALK - LEVEL);
         if !self.three_channels {
-            C::ramped::<WALK>(&self.ramp, walked(levels[0], LEVEL - 1))
-        } else {
-            C::mixed(zip(levels, C::DEPTH, |level, depth| walked(level, LEVEL + 7 - depth)))
+            return self.tint(levels[0]);
         }
+        C::mixed(zip(levels, C::DEPTH, |level, depth| walked(level, LEVEL + 7 - depth)))
+    }
+
+    /// The colour of a level, Q9.7, of a material of one channel, rounded.
+    #[inline(always)]
+    #[must_use]
+    pub fn tint(&self, level: i32) -> C {
+        C::ramped::<WALK>(&self.ramp, walked(level, LEVEL - 1))
     }
 
     /// The colour of three levels, Q9.7, dithered by `threshold`, see [`crate::dither::threshold`].
@@ -322,6 +333,12 @@ impl<C: Pixel> Levels<'_, C> {
     pub fn colour<const BITS: u32>(&self, diffuse: u32, highlight: u32) -> C {
         C::ramped::<BITS>(self.ramp, diffuse.wrapping_add(highlight << (BITS - LEVEL)))
     }
+}
+
+/// A level, Q9.7, as it is walked, with half a step: the guards at the ramp's ends are not reached.
+#[inline(always)]
+fn walked(level: i32, half: u32) -> u32 {
+    ((level + (BIAS << LEVEL) + (1 << half)) as u32) << (WALK - LEVEL)
 }
 
 /// Level, Q9.7, that the gains `(diffuse, specular)` make of N·L (Q2.30) and a power of N·H (Q0.16).

@@ -8,14 +8,16 @@ use crate::{
     convex::Convex,
     cull::{Extent, Facing},
     draw::Drawing,
-    format::UNIT,
+    format::{SUBPIXEL, UNIT},
     math::vector::wide,
     palette::Palette,
     pixel::Pixel,
     raster::{edge::COLUMNS, triangle::Bounds},
+    relay::{Leg, Queued, Relay},
     sample::Sample,
     scene::{Direction, Lighting, Pose},
     shade::Shading,
+    shader::VertexLight,
     stream::record::{Mesh, Triangle, Vertex},
     vertex::{ScreenVertex, State, View},
 };
@@ -38,21 +40,38 @@ pub struct Memory<'a, C> {
     pub palettes: &'a mut [Palette<C>],
     /// For antialiasing as many as [`Self::depth`], or bands have fewer rows; none without it.
     pub samples: &'a mut [Sample],
+    /// What bands hand on to the next: as many as triangles reach across a border. Those that do not fit are set up anew.
+    pub legs: &'a mut [Leg],
 }
 
 /// [`Memory`] in one piece, for a `static`.
 #[derive(Debug)]
-pub struct Workspace<C, const VERTICES: usize, const TRIANGLES: usize, const DEPTH: usize, const MATERIALS: usize, const SAMPLES: usize = 0>
-{
+pub struct Workspace<
+    C,
+    const VERTICES: usize,
+    const TRIANGLES: usize,
+    const DEPTH: usize,
+    const MATERIALS: usize,
+    const LEGS: usize = 0,
+    const SAMPLES: usize = 0,
+> {
     vertices: [ScreenVertex; VERTICES],
     bins: [Entry; TRIANGLES],
     depth: [u16; DEPTH],
     palettes: [Palette<C>; MATERIALS],
     samples: [Sample; SAMPLES],
+    legs: [Leg; LEGS],
 }
 
-impl<C: Pixel, const VERTICES: usize, const TRIANGLES: usize, const DEPTH: usize, const MATERIALS: usize, const SAMPLES: usize>
-    Workspace<C, VERTICES, TRIANGLES, DEPTH, MATERIALS, SAMPLES>
+impl<
+    C: Pixel,
+    const VERTICES: usize,
+    const TRIANGLES: usize,
+    const DEPTH: usize,
+    const MATERIALS: usize,
+    const LEGS: usize,
+    const SAMPLES: usize,
+> Workspace<C, VERTICES, TRIANGLES, DEPTH, MATERIALS, LEGS, SAMPLES>
 {
     /// Empty memory; `colour` is any colour. With black it is all zeros: a `static` then takes no flash.
     #[must_use]
@@ -63,6 +82,7 @@ impl<C: Pixel, const VERTICES: usize, const TRIANGLES: usize, const DEPTH: usize
             depth: [0; DEPTH],
             palettes: [Palette::filled(colour); MATERIALS],
             samples: [Sample::EMPTY; SAMPLES],
+            legs: [Leg::EMPTY; LEGS],
         }
     }
 
@@ -74,6 +94,7 @@ impl<C: Pixel, const VERTICES: usize, const TRIANGLES: usize, const DEPTH: usize
             depth: &mut self.depth,
             palettes: &mut self.palettes,
             samples: &mut self.samples,
+            legs: &mut self.legs,
         }
     }
 }
@@ -293,9 +314,11 @@ impl<'a, C: Pixel> Renderer<'a, C> {
             facing: Facing::new(camera, &pose),
             lighting,
             constant,
+            directions: constant.map(|constant| constant.map(Direction::new)),
             convex: None,
             bins: Bins::new(self.size.height, self.band_rows()),
             binned: false,
+            queued: Queued::default(),
             top: 0,
             stats: Stats { triangles: self.stream.triangles.len() as u32, ..Stats::default() },
             renderer: self,
@@ -342,11 +365,15 @@ pub struct Frame<'r, 'a, C> {
     lighting: Lighting,
     /// See [`Lighting::constant`].
     constant: Option<[[i32; 3]; 2]>,
+    /// The same, for products with vertex normals.
+    directions: Option<[Direction; 2]>,
     /// Where triangles may overlap, if not everywhere.
     convex: Option<Convex>,
     bins: Bins,
     /// All triangles found room in the bins.
     binned: bool,
+    /// What the last band has handed on.
+    queued: Queued,
     top: u32,
     stats: Stats,
 }
@@ -381,7 +408,7 @@ impl<C: Pixel> Frame<'_, '_, C> {
     fn prepare(&mut self) {
         // A copy, which stays in registers.
         let facing = self.facing;
-        let Self { renderer, view, lighting, constant, convex, bins, stats, .. } = self;
+        let Self { renderer, view, lighting, directions, convex, bins, stats, .. } = self;
         let viewport = renderer.viewport();
         let Renderer { stream, memory: Memory { vertices: cache, bins: entries, palettes, .. }, shader, size, .. } = &mut **renderer;
         let entries = &mut **entries;
@@ -393,8 +420,8 @@ impl<C: Pixel> Frame<'_, '_, C> {
         for mesh in stream.meshes.iter().rev() {
             let (vertices, triangles) = (stream.vertices_of(mesh).unwrap_or_default(), stream.triangles_of(mesh).unwrap_or_default());
             let Some(palette) = palettes.get(usize::from(mesh.material)) else { continue };
-            let lit = shader.lights_vertices(constant.is_some()).then_some(palette);
-            let stage = Stage { view, lighting, constant: constant.map(directions), lit };
+            let light = shader.vertex_light(directions.is_some());
+            let stage = Stage { view, lighting, constant: directions.as_ref(), palette, light };
             let cached = cache.get_mut(mesh.first_vertex as usize..).unwrap_or_default();
             let (first, mut rest) = (mesh.first_triangle, triangles);
             while let [before @ .., triangle] = rest {
@@ -403,12 +430,14 @@ impl<C: Pixel> Frame<'_, '_, C> {
                 if height < leaning {
                     continue;
                 }
+                let mut simple = false;
                 let bounds = match stage.corners(cached, vertices, triangle) {
                     Some(corners) => {
                         let extent = Extent::new(corners);
                         if let Some(convex) = convex {
                             convex.see(&extent);
                         }
+                        simple = viewport.is_simple(&extent);
                         viewport.bounds(&extent)
                     }
                     None => {
@@ -419,7 +448,7 @@ impl<C: Pixel> Frame<'_, '_, C> {
                 if let Some(Bounds { top, bottom, .. }) = bounds
                     && height >= Facing::FRONT
                 {
-                    bins.push(entries, first + rest.len() as u32, top as u32, bottom as u32);
+                    bins.push(entries, first + rest.len() as u32, simple, [top as u32, bottom as u32]);
                 }
             }
         }
@@ -432,10 +461,10 @@ impl<C: Pixel> Frame<'_, '_, C> {
 
     /// What takes vertices of `mesh` to the screen.
     fn stage(&self, mesh: &Mesh) -> Option<Stage<'_, C>> {
-        let Self { renderer, view, lighting, constant, .. } = self;
-        let lit = renderer.shader.lights_vertices(constant.is_some());
+        let Self { renderer, view, lighting, directions, .. } = self;
+        let light = renderer.shader.vertex_light(directions.is_some());
         let palette = renderer.memory.palettes.get(usize::from(mesh.material))?;
-        Some(Stage { view, lighting, constant: constant.map(directions), lit: lit.then_some(palette) })
+        Some(Stage { view, lighting, constant: directions.as_ref(), palette, light })
     }
 
     /// The mesh of triangle `id`.
@@ -453,10 +482,12 @@ impl<C: Pixel> Frame<'_, '_, C> {
         let depth = core::mem::take(&mut self.renderer.memory.depth);
         let samples = core::mem::take(&mut self.renderer.memory.samples);
         let count = width * rows as usize;
+        let legs = core::mem::take(&mut self.renderer.memory.legs);
         let lent = depth.get_mut(..count).unwrap_or_default();
+        let relay = Relay::new(legs, self.queued);
         let blend =
             self.renderer.antialiased().then(|| Blend { samples: samples.get_mut(..count).unwrap_or_default(), channels: C::channels });
-        let mut band = Band { pixels, depth: lent, width, top: self.top as i32, rows: rows as i32, blend };
+        let mut band = Band { pixels, depth: lent, width, top: self.top as i32, rows: rows as i32, blend, relay };
         band.clear(self.renderer.background);
         let (pixels, drawn) = if self.binned {
             self.bins.advance(self.renderer.memory.bins, bottom);
@@ -474,6 +505,8 @@ impl<C: Pixel> Frame<'_, '_, C> {
         if self.renderer.antialiased() {
             band.resolve(self.renderer.background);
         }
+        self.queued = band.relay.queued();
+        self.renderer.memory.legs = legs;
         self.renderer.memory.depth = depth;
         self.renderer.memory.samples = samples;
     }
@@ -482,20 +515,27 @@ impl<C: Pixel> Frame<'_, '_, C> {
     fn draw_binned(&self, band: &mut Band<'_, C>) -> u32 {
         let Renderer { stream, memory, .. } = &*self.renderer;
         let mut pixels = 0u32;
-        let mut active = self.bins.active(memory.bins).map(|entry| entry.triangle);
+        let mut active = self.bins.active(memory.bins);
         let mut next = active.next();
-        while let Some(mut id) = next {
+        while let Some(mut entry) = next {
             // A stream that has been checked has both.
-            let Some(mesh) = self.mesh(id) else { break };
+            let Some(mesh) = self.mesh(entry.triangle()) else { break };
             let Some(drawing) = self.drawing(mesh) else { break };
             let end = mesh.first_triangle.saturating_add(mesh.triangles);
             loop {
-                if let Some(triangle) = stream.triangles.get(id as usize) {
-                    pixels = pixels.saturating_add(drawing.draw(triangle, band));
+                if let Some(triangle) = stream.triangles.get(entry.triangle() as usize) {
+                    let drawn = if !entry.is_simple() {
+                        drawing.draw(triangle, band)
+                    } else if let Some(place) = band.relay.take(entry.key()) {
+                        drawing.go_on(triangle, place, band)
+                    } else {
+                        drawing.draw_simple(triangle, entry.key(), band)
+                    };
+                    pixels = pixels.saturating_add(drawn);
                 }
                 next = active.next();
                 match next {
-                    Some(other) if other < end => id = other,
+                    Some(other) if other.triangle() < end => entry = other,
                     _ => break,
                 }
             }
@@ -536,7 +576,7 @@ impl<C: Pixel> Frame<'_, '_, C> {
             #[cfg(feature = "all-shaders")]
             exponent: stream.materials.get(usize::from(mesh.material))?.exponent,
             constant: self.constant,
-            directions: self.constant.map(directions),
+            directions: self.directions,
         };
         Some(Drawing {
             shading,
@@ -573,6 +613,12 @@ impl Viewport {
         })
     }
 
+    /// A triangle whose corners are kept, small and not beside the viewport: there is a shorter way to draw it.
+    #[inline(always)]
+    pub(crate) fn is_simple(self, extent: &Extent) -> bool {
+        !self.antialiased && extent.left >= 0 && extent.right < self.width << SUBPIXEL && extent.is_small()
+    }
+
     /// The visible box of what clipping leaves of a triangle.
     #[cold]
     #[inline(never)]
@@ -605,13 +651,10 @@ pub(crate) struct Stage<'f, C> {
     pub(crate) view: &'f View,
     lighting: &'f Lighting,
     /// See [`Lighting::constant`].
-    constant: Option<[Direction; 2]>,
-    /// The material, if the method starts from the light at vertices.
-    lit: Option<&'f Palette<C>>,
-}
-
-fn directions(constant: [[i32; 3]; 2]) -> [Direction; 2] {
-    constant.map(Direction::new)
+    constant: Option<&'f [Direction; 2]>,
+    palette: &'f Palette<C>,
+    /// What the method wants to know of it at vertices.
+    light: VertexLight,
 }
 
 impl<C: Pixel> Stage<'_, C> {
@@ -643,13 +686,14 @@ impl<C: Pixel> Stage<'_, C> {
     #[inline(never)]
     pub(crate) fn transform(&self, vertex: &Vertex) -> ScreenVertex {
         let ([x, y, depth], inside) = self.view.project(self.view.to_eye(vertex.position));
-        let light = match (self.lit, &self.constant) {
-            (None, _) => [0; 3],
-            (Some(_), Some([towards, half])) => [towards.cosine(wide(vertex.normal)), half.cosine(wide(vertex.normal)), 0],
-            (Some(palette), None) => {
-                let normal = wide(vertex.normal).map(|c| c << (30 - UNIT));
-                palette.levels(self.lighting.cosines(wide(vertex.position), normal))
+        let normal = wide(vertex.normal);
+        let light = match (self.light, self.constant) {
+            (VertexLight::None, _) => [0; 3],
+            (light, Some([towards, half])) => {
+                let [diffuse, half] = [towards.cosine(normal), half.cosine(normal)];
+                if light == VertexLight::Levels { self.palette.one_light([diffuse, half]) } else { [diffuse, half, 0] }
             }
+            (_, None) => self.palette.levels(self.lighting.cosines(wide(vertex.position), normal.map(|c| c << (30 - UNIT)))),
         };
         ScreenVertex { x, y, depth, light, state: if inside { State::Ready } else { State::Outside } }
     }

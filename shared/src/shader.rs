@@ -176,17 +176,35 @@ impl Shader {
         matches!(self, Self::Phong | Self::HighlightTest | Self::Duff | Self::Sqrt6 | Self::Renq | Self::RenqNewton)
     }
 
-    /// Whether it starts from the light at vertices: under one constant light from the cosines, else from levels.
+    /// What it wants to know of the light at vertices; under one `constant` light cosines are enough for some.
     #[must_use]
-    pub(crate) const fn lights_vertices(self, constant: bool) -> bool {
+    pub(crate) const fn vertex_light(self, constant: bool) -> VertexLight {
         match self {
-            Self::Flat | Self::PhongRv | Self::Goldman | Self::Slerp | Self::Taylor | Self::TaylorFinite => false,
-            Self::Angular | Self::AngularOriginal | Self::Environment | Self::Blinn | Self::QuadraticBlinn => false,
+            Self::Flat | Self::PhongRv | Self::Goldman | Self::Slerp | Self::Taylor | Self::TaylorFinite => VertexLight::None,
+            Self::Angular | Self::AngularOriginal | Self::Environment | Self::Blinn | Self::QuadraticBlinn => VertexLight::None,
             // The levels that they draw are worked out at the pixel.
-            Self::Phong | Self::Duff | Self::Sqrt6 | Self::Renq | Self::RenqNewton | Self::Hybrid | Self::HybridOriginal => constant,
-            _ => true,
+            Self::Phong | Self::Duff | Self::Sqrt6 | Self::Renq | Self::RenqNewton | Self::Hybrid | Self::HybridOriginal if !constant => {
+                VertexLight::None
+            }
+            Self::Phong | Self::Duff | Self::Sqrt6 | Self::Renq | Self::RenqNewton | Self::Hybrid | Self::HybridOriginal => {
+                VertexLight::Cosines
+            }
+            // Cosines at midpoints follow from those at vertices.
+            Self::SixPoint | Self::HighlightTest if constant => VertexLight::Cosines,
+            _ => VertexLight::Levels,
         }
     }
+}
+
+/// What is worked out once for all triangles that share a vertex.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum VertexLight {
+    /// Nothing.
+    None,
+    /// `[N·L, N·H]` of the one constant light.
+    Cosines,
+    /// Levels.
+    Levels,
 }
 
 /// What is raised to the exponent `n` of a material, such that highlights have the same width by all methods.

@@ -9,8 +9,8 @@ use microphong::{Picture, Renderer, Stream, Workspace, include_stream};
 fn main() -> Result<(), Box<dyn std::error::Error>> {
     // Read in place: on a microcontroller the mesh stays in flash.
     let stream = Stream::parse(include_stream!("../../firmware/teapot.tri"))?;
-    // 1024 vertices, 1024 triangles, bands of 40 rows, 1 material; a `static` on a microcontroller.
-    let mut workspace = Box::new(Workspace::<Rgb565, 1024, 1024, { 240 * 40 }, 1>::new(Rgb565::BLACK));
+    // 1024 vertices, 1024 triangles, bands of 40 rows, 1 material, 48 triangles across a border; a `static` on a microcontroller.
+    let mut workspace = Box::new(Workspace::<Rgb565, 1024, 1024, { 240 * 40 }, 1, 48>::new(Rgb565::BLACK));
     let mut band = [Rgb565::BLACK; 240 * 40];
 
     let mut display = SimulatorDisplay::<Rgb565>::new(Size::new(240, 240));

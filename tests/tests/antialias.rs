@@ -387,7 +387,14 @@ fn frame(stream: Stream<'_>, shader: Shader, vertices: usize, triangles: usize, 
     // The samples decide how many rows a band has.
     let (mut depth, mut samples) = (vec![0; 150 * 110], vec![Sample::EMPTY; (150 * rows) as usize]);
     let mut palettes = vec![Palette::empty(); stream.materials.len()];
-    let memory = Memory { vertices: &mut vertices, bins: &mut bins, depth: &mut depth, palettes: &mut palettes, samples: &mut samples };
+    let memory = Memory {
+        vertices: &mut vertices,
+        bins: &mut bins,
+        depth: &mut depth,
+        palettes: &mut palettes,
+        samples: &mut samples,
+        legs: &mut [],
+    };
     let mut renderer = Renderer::with_shader(stream, size, memory, shader).unwrap();
     renderer.set_antialias(true).unwrap();
     let mut band = vec![Rgb565::RED; 150 * 110];
@@ -426,7 +433,8 @@ fn memory_that_is_missing_is_named() {
     let stream: Stream<'_> = scene.stream.parse().unwrap();
     let (mut depth, mut palettes) = ([0; 64], [Palette::<Rgb565>::empty()]);
     let mut samples = [Sample::EMPTY; 31];
-    let memory = Memory { vertices: &mut [], bins: &mut [], depth: &mut depth, palettes: &mut palettes, samples: &mut samples };
+    let memory =
+        Memory { vertices: &mut [], bins: &mut [], depth: &mut depth, palettes: &mut palettes, samples: &mut samples, legs: &mut [] };
     let mut renderer = Renderer::new(stream, Size::new(32, 8), memory).unwrap();
     assert_eq!(renderer.set_antialias(true), Err(SetupError::Samples { need: 32 }));
     assert_eq!(renderer.set_antialias(true).unwrap_err().to_string(), "antialiasing needs 32 samples at least, one row");

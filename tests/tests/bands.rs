@@ -5,16 +5,20 @@ use embedded_graphics::{
     pixelcolor::{Gray8, Rgb565},
     prelude::*,
 };
-use microphong::{Memory, Picture, Renderer, Shader, Stats, Stream, bin::Entry, palette::Palette, render::check, vertex::ScreenVertex};
+use microphong::{
+    Memory, Picture, Renderer, Shader, Stats, Stream, bin::Entry, palette::Palette, relay::Leg, render::check, vertex::ScreenVertex,
+};
 use microphong_sim::scene;
 
-/// A frame with room for so many vertices and triangles, in bands of so many rows.
-fn frame(stream: Stream<'_>, size: Size, shader: Shader, vertices: usize, triangles: usize, rows: u32) -> (Vec<Rgb565>, Stats) {
+/// A frame with room for so many vertices, triangles, and triangles that are handed on, in bands of so many rows.
+fn frame(stream: Stream<'_>, size: Size, shader: Shader, [vertices, triangles, legs]: [usize; 3], rows: u32) -> (Vec<Rgb565>, Stats) {
     let mut vertices = vec![ScreenVertex::EMPTY; vertices];
     let mut bins = vec![Entry::EMPTY; triangles];
     let mut depth = vec![0; (size.width * rows) as usize];
     let mut palettes = vec![Palette::empty(); stream.materials.len()];
-    let memory = Memory { vertices: &mut vertices, bins: &mut bins, depth: &mut depth, palettes: &mut palettes, samples: &mut [] };
+    let mut legs = vec![Leg::EMPTY; legs];
+    let memory =
+        Memory { vertices: &mut vertices, bins: &mut bins, depth: &mut depth, palettes: &mut palettes, samples: &mut [], legs: &mut legs };
     let mut renderer = Renderer::with_shader(stream, size, memory, shader).unwrap();
     let mut band = vec![Rgb565::RED; (size.width * rows) as usize];
     let mut pixels = Vec::new();
@@ -33,15 +37,15 @@ fn neither_bands_nor_overflow_change_a_pixel() {
         let stream = scene.stream.parse().unwrap();
         let (vertices, triangles) = (stream.vertices.len(), stream.triangles.len());
         for shader in Shader::ALL.into_iter().filter(|&shader| check(&stream, shader, false).is_ok()) {
-            let (whole, stats) = frame(stream, size, shader, vertices, triangles, size.height);
+            let (whole, stats) = frame(stream, size, shader, [vertices, triangles, 0], size.height);
             assert_eq!((stats.passes, stats.uncached), (1, 0));
-            for rows in [1, 7, 16, 64] {
-                let (pixels, banded) = frame(stream, size, shader, vertices, triangles, rows);
-                assert!(pixels == whole, "{name}, {}: bands of {rows} rows", shader.name());
+            for (rows, legs) in [(1, triangles), (7, 40), (7, 3), (16, triangles), (16, 0), (64, 1)] {
+                let (pixels, banded) = frame(stream, size, shader, [vertices, triangles, legs], rows);
+                assert!(pixels == whole, "{name}, {}: bands of {rows} rows, {legs} handed on", shader.name());
                 assert_eq!(banded, stats);
             }
             for (vertices, triangles, rows) in [(0, triangles, 50), (vertices / 2, triangles, 16), (vertices, 3, 16), (7, 0, 40)] {
-                let (pixels, tight) = frame(stream, size, shader, vertices, triangles, rows);
+                let (pixels, tight) = frame(stream, size, shader, [vertices, triangles, 10], rows);
                 assert!(pixels == whole, "{name}, {}: room for {vertices} vertices, {triangles} triangles", shader.name());
                 assert_eq!((tight.drawn, tight.pixels), (stats.drawn, stats.pixels), "nothing is lost");
                 assert!(tight.passes > 1 || tight.uncached > 0, "the overflow is counted");
@@ -58,7 +62,9 @@ fn a_display_is_filled_once() {
     let mut vertices = vec![ScreenVertex::EMPTY; stream.vertices.len()];
     let mut bins = vec![Entry::EMPTY; stream.triangles.len()];
     let (mut depth, mut palettes) = ([0; 64 * 10], [Palette::<Gray8>::empty()]);
-    let memory = Memory { vertices: &mut vertices, bins: &mut bins, depth: &mut depth, palettes: &mut palettes, samples: &mut [] };
+    let mut legs = [Leg::EMPTY; 8];
+    let memory =
+        Memory { vertices: &mut vertices, bins: &mut bins, depth: &mut depth, palettes: &mut palettes, samples: &mut [], legs: &mut legs };
     let mut renderer = Renderer::new(stream, Size::new(64, 64), memory).unwrap();
     let mut band = [Gray8::BLACK; 64 * 10];
     let mut display = MockDisplay::<Gray8>::new();

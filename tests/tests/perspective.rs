@@ -217,7 +217,8 @@ fn what_cannot_be_corrected_is_refused() {
     let mut vertices = [ScreenVertex::EMPTY; 1];
     let mut bins = [Entry::EMPTY; 1];
     let (mut depth, mut palettes) = ([0; 64], [Palette::<Rgb888>::empty()]);
-    let memory = Memory { vertices: &mut vertices, bins: &mut bins, depth: &mut depth, palettes: &mut palettes, samples: &mut [] };
+    let memory =
+        Memory { vertices: &mut vertices, bins: &mut bins, depth: &mut depth, palettes: &mut palettes, samples: &mut [], legs: &mut [] };
     let mut renderer = Renderer::new(stream, Size::new(64, 64), memory).unwrap();
     let mut refused = Vec::new();
     for shader in Shader::ALL {

@@ -11,6 +11,7 @@ use microphong::{
         smooth::Part,
         triangle::{Bounds, Outline},
     },
+    relay::Relay,
     tone::Solid,
     vertex::{ScreenVertex, State},
 };
@@ -76,17 +77,23 @@ fn vertex([x, y]: [i32; 2]) -> ScreenVertex {
 fn draw(corners: Corners, band_rows: usize, counts: &mut [u8]) -> u32 {
     let vertices = corners.map(vertex);
     let corners = [&vertices[0], &vertices[1], &vertices[2]];
-    let outline = Outline::new(corners, Part::Centres);
-    let Some(basis) = Basis::new(outline.corners, Bounds::new(&Extent::new(outline.corners)).clipped(WIDTH as i32, HEIGHT as i32).sides())
-    else {
-        return 0;
-    };
     let mut drawn = 0;
     for top in (0..HEIGHT).step_by(band_rows) {
         let rows = band_rows.min(HEIGHT - top);
         let mut pixels = vec![0u8; rows * WIDTH];
         let mut depth = vec![0u16; rows * WIDTH];
-        let mut band = Band { pixels: &mut pixels, depth: &mut depth, width: WIDTH, top: top as i32, rows: rows as i32, blend: None };
+        let mut band = Band {
+            pixels: &mut pixels,
+            depth: &mut depth,
+            width: WIDTH,
+            top: top as i32,
+            rows: rows as i32,
+            blend: None,
+            relay: Relay::default(),
+        };
+        let outline = Outline::new(corners, Part::Centres, &band);
+        let visible = Bounds::new(&Extent::new(outline.corners)).clipped(WIDTH as i32, HEIGHT as i32).sides();
+        let Some(basis) = Basis::new(outline.corners, visible) else { return 0 };
         drawn += outline.draw(&basis, Constant, Solid(1), &mut band);
         for (count, pixel) in counts[top * WIDTH..].iter_mut().zip(&pixels) {
             *count += pixel;

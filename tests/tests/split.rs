@@ -11,6 +11,7 @@ use microphong::{
         smooth::Part,
         triangle::{Bounds, Outline},
     },
+    relay::Relay,
     tone::Solid,
     vertex::{ScreenVertex, State},
 };
@@ -70,7 +71,8 @@ fn cells_of_random_triangles_cover_each_pixel_once() {
         };
         let [a, b, c] = corners.map(|[x, y]| ScreenVertex { x, y, depth: 1 << 27, light: [0; 3], state: State::Ready });
         let corners = if Extent::new(corners).area < 0 { [&a, &c, &b] } else { [&a, &b, &c] };
-        let outline = Outline::new(corners, Part::Centres);
+        let nowhere = Band::<u8> { pixels: &mut [], depth: &mut [], width: WIDTH, top: 0, rows: 0, blend: None, relay: Relay::default() };
+        let outline = Outline::new(corners, Part::Centres, &nowhere);
         let Some(basis) = Basis::new(outline.corners, Bounds::new(&Extent::new(outline.corners)).clipped(w / 16, h / 16).sides()) else {
             continue;
         };
@@ -85,10 +87,17 @@ fn cells_of_random_triangles_cover_each_pixel_once() {
             for (k, picture) in pictures.iter_mut().enumerate() {
                 let mut depth_rows = vec![0u16; rows * WIDTH];
                 let mut pixels = vec![0u8; rows * WIDTH];
-                let mut band =
-                    Band { pixels: &mut pixels, depth: &mut depth_rows, width: WIDTH, top: top as i32, rows: rows as i32, blend: None };
+                let mut band = Band {
+                    pixels: &mut pixels,
+                    depth: &mut depth_rows,
+                    width: WIDTH,
+                    top: top as i32,
+                    rows: rows as i32,
+                    blend: None,
+                    relay: Relay::default(),
+                };
                 drawn[k] += if k == 0 {
-                    outline.draw(&basis, Constant, Solid(1), &mut band)
+                    Outline::new(corners, Part::Centres, &band).draw(&basis, Constant, Solid(1), &mut band)
                 } else {
                     let mut chance = Random(TestRng::from_seed(RngAlgorithm::ChaCha, &[seed; 4].concat()));
                     let mut chance = (i % 3 > 0 && rows == HEIGHT).then_some(&mut chance);

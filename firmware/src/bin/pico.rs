@@ -21,7 +21,7 @@ const SPI_HZ: u32 = 62_500_000;
 #[cortex_m_rt::entry]
 fn main() -> ! {
     static mut BANDS: [[Rgb565Be; PICO.band()]; 2] = [[Rgb565Be::BLACK; PICO.band()]; 2];
-    static mut WORKSPACE: Workspace<Rgb565Be, { PICO.vertices }, { PICO.triangles }, { PICO.band() }, { PICO.materials }> =
+    static mut WORKSPACE: Workspace<Rgb565Be, { PICO.vertices }, { PICO.triangles }, { PICO.band() }, { PICO.materials }, { PICO.legs }> =
         Workspace::new(Rgb565Be::BLACK);
 
     let pins = embassy_rp::init(Default::default());

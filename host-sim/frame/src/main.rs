@@ -4,7 +4,7 @@
 //! band, and a method. Only [`counted_frame`] is counted.
 
 use embedded_graphics_core::{geometry::Size, pixelcolor::Rgb565};
-use microphong::{Memory, Renderer, Shader, Stats, Stream, Workspace, pixel::Pixel};
+use microphong::{Memory, Renderer, Shader, Stats, Stream, Workspace, pixel::Pixel, relay::Leg};
 use std::{env, error::Error, fs, hint::black_box, process::ExitCode};
 use zerocopy::IntoBytes;
 
@@ -40,7 +40,9 @@ fn draw(path: &str, size: Size, rows: u32, shader: &str) -> Result<(), Box<dyn E
     let mut palettes = vec![blank.palettes[0]; stream.materials.len()];
     let mut depth = vec![0; pixels];
     let mut band = vec![Rgb565::pack([0; 3]); pixels];
-    let memory = Memory { vertices: &mut vertices, bins: &mut bins, depth: &mut depth, palettes: &mut palettes, samples: &mut [] };
+    let mut legs = vec![Leg::EMPTY; stream.triangles.len()];
+    let memory =
+        Memory { vertices: &mut vertices, bins: &mut bins, depth: &mut depth, palettes: &mut palettes, samples: &mut [], legs: &mut legs };
     let stats = dumped_frame(&mut Renderer::with_shader(stream, size, memory, shader)?, &mut band);
     println!("{} {}", stats.drawn, stats.pixels);
     Ok(())

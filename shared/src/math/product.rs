@@ -4,7 +4,7 @@
 //! there, and four products of half words are less than half of that. The bits are the same.
 
 /// Armv6-M, told by what else it has not got.
-pub(super) const HALVES: bool = cfg!(all(target_arch = "arm", not(target_has_atomic = "32")));
+pub(crate) const HALVES: bool = cfg!(all(target_arch = "arm", not(target_has_atomic = "32")));
 
 /// `a b`.
 #[inline(always)]

@@ -54,7 +54,8 @@ static SEEDS: [u16; 256] = {
 #[inline(always)]
 #[must_use]
 pub fn inverse(d: u32) -> u32 {
-    if HALVES { inverse_by_table(d) } else { u32::MAX / d.max(1) }
+    // The bit is set: what divides is not 0.
+    if HALVES { inverse_by_table(d) } else { u32::MAX / (d | 1 << 15) }
 }
 
 #[inline(always)]

@@ -42,8 +42,8 @@ const fn half_root(k: u128) -> u32 {
     ((1u128 << 70) / k).isqrt() as u32
 }
 
-/// Knots of [`Halves::rsqrt`] at x = (512 + i)/2048, Q2.30, but for their lower ten bits: these say how much less it is 1/1024 of the
-/// way to the next one. As many as a saturated index can tell apart.
+/// Knots of [`Halves::rsqrt`] at x = (510 + i)/2048, Q2.30, but for their lower ten bits: these say how much less it is 1/1024 of the
+/// way to the next one. As many as eleven bits can tell apart.
 ///
 /// Knots are lower by half of what chords lie above the curve, and by half a place between knots, for places are cut off, and take half
 /// of what rounding the slope comes to at its end; their lower bits, which count as well, are rounded to the nearest.
@@ -51,7 +51,7 @@ static HALVES: Halves = Halves({
     let mut table = [0; 2048];
     let mut i = 0;
     while i < 2048 {
-        let k = 2 * (i as u128 + 512);
+        let k = 2 * (i as u128 + 510);
         let (here, middle, next) = (half_root(k), half_root(k + 1), half_root(k + 2));
         let slope = (here - next + 512) >> 10;
         let knot = here.wrapping_add(((slope << 10).wrapping_add(next).wrapping_sub(here) as i32 >> 1) as u32)
@@ -63,10 +63,10 @@ static HALVES: Halves = Halves({
     table
 });
 
-/// One quarter, Q2.30: the least argument of [`Halves::rsqrt`].
-pub const QUARTER: i32 = 1 << 28;
+/// The least argument of [`Halves::rsqrt`], Q0.32: 2^-10 less than a quarter, as much as walking may err there.
+pub const LEAST: u32 = (1 << 30) - (1 << 22);
 
-/// The table of 1/(2 sqrt(x)) for x in [1/4, 1]: for the pixel loop, where its address had better come from memory.
+/// The table of 1/(2 sqrt(x)) for x in [1/4, 1] and a little around: for the pixel loop, where its address had better come from memory.
 #[derive(Debug)]
 pub struct Halves([u32; 2048]);
 
@@ -77,15 +77,15 @@ impl Halves {
         &HALVES
     }
 
-    /// 1/(2 sqrt(x)) in Q2.30 for `x` in [1/4, 1] by linear interpolation; `above` is x less [`QUARTER`], Q2.30.
+    /// 1/(2 sqrt(x)) in Q2.30 for `x` in [1/4, 1] by linear interpolation; `above` is x less [`LEAST`], Q0.32.
     ///
     /// Error: at most [`HALF_ERROR`] relative (tests::half_error). Arguments outside give something in range.
     #[inline(always)]
     #[must_use]
-    pub fn rsqrt(&self, above: i32) -> u32 {
+    pub fn rsqrt(&self, above: u32) -> u32 {
         // Interval in the upper bits, place in it in the ten below them.
-        let knot = self.0[(above >> 19).clamp(0, 2047) as usize];
-        knot.wrapping_sub((knot & 0x3FF).wrapping_mul((above >> 9) as u32 & 0x3FF))
+        let knot = self.0[(above >> 21) as usize];
+        knot.wrapping_sub((knot & 0x3FF).wrapping_mul((above >> 11) & 0x3FF))
     }
 }
 
@@ -123,7 +123,8 @@ mod tests {
         let mut worst = 0f64;
         for x in ((1u32 << 28)..=1 << 30).step_by(4_093) {
             let exact = 2f64.powi(29) / (f64::from(x) / 2f64.powi(30)).sqrt();
-            worst = worst.max((f64::from(Halves::get().rsqrt(x as i32 - QUARTER)) / exact - 1.0).abs());
+            // One is 2^32, which wraps.
+            worst = worst.max((f64::from(Halves::get().rsqrt((x << 2).wrapping_sub(LEAST))) / exact - 1.0).abs());
         }
         assert!(worst <= HALF_ERROR, "{worst}");
     }

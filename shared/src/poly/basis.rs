@@ -97,11 +97,35 @@ impl Basis {
     #[inline(always)]
     #[must_use]
     pub fn small(corners: [[i32; 2]; 3]) -> Option<Self> {
+        let (_, edges) = edges(corners);
+        Some(Self::of_small(corners, Small::new(edges)?))
+    }
+
+    /// Of a triangle on which nothing is to be fitted.
+    pub(crate) const NONE: Self = Self {
+        scale: Scale::Any(Gradients { s: [0; 2], t: [0; 2], exponent: 0 }),
+        offset: [0; 2],
+        shift: [0; 2],
+        anchor: [0; 2],
+        thin: false,
+        edges: [[0; 2]; 2],
+        level: 0,
+    };
+
+    /// That of a triangle of which is known that [`Self::small`] takes it.
+    #[inline(always)]
+    #[must_use]
+    pub(crate) fn simple(corners: [[i32; 2]; 3]) -> Self {
+        let (_, edges) = edges(corners);
+        Self::of_small(corners, Small::of(edges))
+    }
+
+    #[inline(always)]
+    fn of_small(corners: [[i32; 2]; 3], small: Small) -> Self {
         let ([x0, y0], edges) = edges(corners);
-        let small = Small::new(edges)?;
         let anchor = [x0 >> SUBPIXEL, (y0 + CENTRE - 1) >> SUBPIXEL];
         let offset = [((anchor[0] << SUBPIXEL) + CENTRE - x0) << SPLITS, ((anchor[1] << SUBPIXEL) + CENTRE - y0) << SPLITS];
-        Some(Self { scale: Scale::Small(small), offset, shift: [0; 2], anchor, thin: false, edges, level: 0 })
+        Self { scale: Scale::Small(small), offset, shift: [0; 2], anchor, thin: false, edges, level: 0 }
     }
 
     /// That of any triangle.

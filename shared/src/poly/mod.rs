@@ -33,6 +33,22 @@ pub trait Patch: Copy {
 
     /// A walker that stands on column `x`; its first step leads to `x - 1`.
     fn enter(&self, x: i32) -> Self::Walker;
+
+    /// Words that [`Self::keep`] takes.
+    const WORDS: usize = 0;
+
+    /// Writes all that it is to the first `words`; false if it cannot, or they are too few.
+    #[inline(always)]
+    fn keep(&self, _words: &mut [u32]) -> bool {
+        false
+    }
+
+    /// What has been kept.
+    #[inline(always)]
+    #[must_use]
+    fn kept(_words: &[u32]) -> Option<Self> {
+        None
+    }
 }
 
 /// Runs along a span from right to left.
@@ -60,6 +76,14 @@ impl Patch for Constant {
     #[inline(always)]
     fn enter(&self, _: i32) -> Self {
         Self
+    }
+    #[inline(always)]
+    fn keep(&self, _: &mut [u32]) -> bool {
+        true
+    }
+    #[inline(always)]
+    fn kept(_: &[u32]) -> Option<Self> {
+        Some(Self)
     }
 }
 
@@ -116,6 +140,20 @@ impl<A: Patch, B: Patch> Patch for (A, B) {
     #[inline(always)]
     fn enter(&self, x: i32) -> Self::Walker {
         (self.0.enter(x), self.1.enter(x))
+    }
+
+    const WORDS: usize = A::WORDS + B::WORDS;
+
+    #[inline(always)]
+    fn keep(&self, words: &mut [u32]) -> bool {
+        let Some((first, rest)) = words.split_at_mut_checked(A::WORDS) else { return false };
+        self.0.keep(first) && self.1.keep(rest)
+    }
+
+    #[inline(always)]
+    fn kept(words: &[u32]) -> Option<Self> {
+        let (first, rest) = words.split_at_checked(A::WORDS)?;
+        Some((A::kept(first)?, B::kept(rest)?))
     }
 }
 

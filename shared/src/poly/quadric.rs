@@ -39,19 +39,21 @@ impl<const CH: usize> Quadric<CH> {
     #[inline]
     #[must_use]
     pub fn fit<const BITS: u32>(basis: &Basis, nodes: [[i32; 6]; CH], extra: u32) -> Self {
-        Self(nodes.map(|nodes| {
+        let mut rows = [Row::default(); CH];
+        for (row, nodes) in rows.iter_mut().zip(nodes) {
             let [c, dx, dy, dxx, dxy, dyy] = basis.quadratic::<BITS>(nodes, extra);
             let x = basis.column();
             // From the anchor column to column 0: exact integer arithmetic modulo 2^32.
-            Row {
+            *row = Row {
                 c: c.wrapping_sub(x.wrapping_mul(dx.wrapping_sub(dxx.wrapping_mul(x)))),
                 c_down: dy.wrapping_add(dyy).wrapping_sub(dxy.wrapping_mul(x)),
                 c_down2: dyy.wrapping_mul(2),
                 dx: dx.wrapping_sub(dxx.wrapping_mul(x).wrapping_mul(2)),
                 dx_down: dxy,
                 dxx,
-            }
-        }))
+            };
+        }
+        Self(rows)
     }
 
     /// Adds `bias` to every channel.
@@ -86,6 +88,27 @@ impl<const CH: usize> Patch for Quadric<CH> {
             row.c_down = row.c_down.wrapping_add(row.c_down2);
             row.dx = row.dx.wrapping_add(row.dx_down);
         }
+    }
+
+    const WORDS: usize = 6 * CH;
+
+    #[inline(always)]
+    fn keep(&self, words: &mut [u32]) -> bool {
+        let (rows, _) = words.as_chunks_mut::<6>();
+        for (words, row) in rows.iter_mut().zip(&self.0) {
+            *words = [row.c, row.c_down, row.c_down2, row.dx, row.dx_down, row.dxx].map(|c| c as u32);
+        }
+        rows.len() >= CH
+    }
+
+    #[inline(always)]
+    fn kept(words: &[u32]) -> Option<Self> {
+        let (rows, _) = words.as_chunks::<6>();
+        let rows = rows.first_chunk::<CH>()?;
+        Some(Self(rows.map(|words| {
+            let [c, c_down, c_down2, dx, dx_down, dxx] = words.map(|c| c as i32);
+            Row { c, c_down, c_down2, dx, dx_down, dxx }
+        })))
     }
 
     #[inline(always)]

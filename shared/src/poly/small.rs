@@ -6,6 +6,7 @@
 //! modulo 2^32 however steep they are. Eight long products for depth and a quadratic, where the general way takes fifty.
 
 use crate::{
+    cull::is_small,
     format::SUBPIXEL,
     math::{
         product::{product, shifted, upper_dot},
@@ -14,8 +15,6 @@ use crate::{
     },
 };
 
-/// Bits of the sides of a small triangle in 1/16 pixel.
-const SMALL: u32 = 10;
 /// More fraction bits that values are walked with, at most.
 pub(super) const EXTRA: u32 = 16;
 /// Bits of the range of nodes between which a linear field may go.
@@ -30,33 +29,35 @@ pub(super) struct Small {
     inverse: i32,
     /// Zeros above it: 11 to 30.
     pub(super) zeros: u32,
-    /// Bits of the longest side: 1 to [`SMALL`].
+    /// Bits of the longest side: 1 to 10.
     pub(super) bits: u32,
 }
 
 impl Small {
-    /// That of a small and stout triangle by its edges from corner 0: not even nearly [`super::basis::MAX_THINNESS`].
+    /// That of a triangle by its edges from corner 0; `None` unless it is small and stout.
     #[inline(always)]
-    pub(super) fn new([[x1, y1], [x2, y2]]: [[i32; 2]; 2]) -> Option<Self> {
+    pub(super) fn new(edges: [[i32; 2]; 2]) -> Option<Self> {
+        let [[x1, y1], [x2, y2]] = edges;
+        let spread = |a: i32, b: i32| a.max(b).max(0).wrapping_sub(a.min(b).min(0)) as u32;
+        is_small(spread(x1, x2) | spread(y1, y2), area(edges)).then(|| Self::of(edges))
+    }
+
+    /// That of a triangle that is small and stout.
+    #[inline(always)]
+    pub(super) fn of(edges: [[i32; 2]; 2]) -> Self {
         // One less than the size where negative: -2^k counts as k bits.
         let size = |c: i32| (c ^ (c >> 31)) as u32;
-        let longest = size(x1) | size(y1) | size(x2) | size(y2);
-        let det = x1.wrapping_mul(y2).wrapping_sub(x2.wrapping_mul(y1));
-        if longest >= 1 << SMALL || det <= 1 {
-            return None;
-        }
-        let (bits, zeros) = (32 - leading_zeros(longest), leading_zeros(det as u32));
-        // 2^(2 bits) <= 128 det.
-        if 2 * bits + zeros > 38 {
-            return None;
-        }
+        let [[x1, y1], [x2, y2]] = edges;
+        let bits = 32 - leading_zeros(size(x1) | size(y1) | size(x2) | size(y2));
+        let area = area(edges) as u32;
+        let zeros = leading_zeros(area);
         // 24 bits, all of them: an area has at most 21.
-        let area = (det as u32) << ((zeros - 8) & 31);
+        let area = area << (zeros.wrapping_sub(8) & 31);
         // 2^40 / area to 15 bits, and what is missing of its product with the area in one word: one Newton step.
         let high = inverse(area >> 8);
         let rest = high.wrapping_mul(area).wrapping_neg() as i32;
         let more = (rest >> 11).wrapping_mul(high as i32) >> 19;
-        Some(Self { inverse: ((high << 10) as i32).wrapping_add(more), zeros, bits })
+        Self { inverse: ((high << 10) as i32).wrapping_add(more), zeros, bits }
     }
 
     /// `[c, dx, dy]` of the linear field through the corners' values, of at most [`LINEAR`] bits, at `offset` from corner 0
@@ -119,4 +120,10 @@ impl Small {
         let slope = |numerator: i32| shifted(product(numerator, inverse), self.zeros - 10);
         [slope(a * y2 - b * y1), slope(b * x1 - a * x2)]
     }
+}
+
+/// Twice the area between two edges, as far as a word holds it.
+#[inline(always)]
+fn area([[x1, y1], [x2, y2]]: [[i32; 2]; 2]) -> i32 {
+    x1.wrapping_mul(y2).wrapping_sub(x2.wrapping_mul(y1))
 }

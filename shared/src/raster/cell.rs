@@ -79,8 +79,8 @@ impl Cell {
 
 /// A cell in its place on the screen.
 #[derive(Clone, Copy, Debug)]
-pub struct Piece {
-    outline: Outline,
+pub struct Piece<'o> {
+    outline: &'o Outline,
     cell: Cell,
     /// Clockwise, [`FINE`] fraction bits.
     corners: [[i32; 2]; 3],
@@ -104,7 +104,7 @@ impl Outline {
     /// Where `cell` lies.
     #[inline]
     #[must_use]
-    pub fn piece(&self, cell: &Cell) -> Piece {
+    pub fn piece(&self, cell: &Cell) -> Piece<'_> {
         let finer = SPLITS.saturating_sub(cell.level);
         let place = |weights: [i32; 3]| {
             let along = |k: usize| {
@@ -114,7 +114,7 @@ impl Outline {
             [along(0), along(1)]
         };
         let corners = cell.corners().map(place);
-        Piece { outline: *self, cell: *cell, corners, rows: range(corners.map(|c| c[1])), columns: range(corners.map(|c| c[0])) }
+        Piece { outline: self, cell: *cell, corners, rows: range(corners.map(|c| c[1])), columns: range(corners.map(|c| c[0])) }
     }
 
     /// The triangle's depth on row 0; all its pieces share it.
@@ -124,7 +124,7 @@ impl Outline {
     }
 }
 
-impl Piece {
+impl Piece<'_> {
     /// Its box has a pixel in `band`.
     #[inline]
     #[must_use]
@@ -164,7 +164,7 @@ impl Piece {
         let [a, b, c] = self.corners;
         let (first, end) = (self.rows[0].max(band.top), self.rows[1].min(band.top.wrapping_add(band.rows)));
         let width = i64::from(band.width as i32);
-        let mut rows = Rows::new(band, first, Pair::default(), depth, patch, tone);
+        let mut rows = Rows::new(band, first, Pair::NONE, depth, patch, tone);
         rows.depth.jump(first);
         rows.patch.jump(first.wrapping_sub(basis.row()));
         rows.tone.start(first);
@@ -218,7 +218,7 @@ impl Piece {
             }
             columns
         };
-        let shape = Shape { outline: &self.outline, piece: Some(piece), corners: self.corners, bits: FINE };
+        let shape = Shape { outline: self.outline, piece: Some(piece), corners: self.corners, bits: FINE };
         shape.draw(basis, patch, tone, band, &mut owned)
     }
 }

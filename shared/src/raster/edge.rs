@@ -63,6 +63,9 @@ fn walked(sixteenths: i32) -> u32 {
 }
 
 impl Column {
+    /// No column.
+    pub const NONE: Self = Self { x: 0, step: 0 };
+
     /// Moves down `rows` rows.
     #[inline(always)]
     pub fn skip(&mut self, rows: i32) {

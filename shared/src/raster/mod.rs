@@ -5,6 +5,6 @@ pub mod area;
 pub mod cell;
 pub mod edge;
 pub mod fill;
-mod sides;
+pub(crate) mod sides;
 pub mod smooth;
 pub mod triangle;

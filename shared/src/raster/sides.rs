@@ -3,8 +3,8 @@
 use super::edge::{COLUMN, Column, Edge, NARROW, SHORT, first_centre};
 
 /// The sides of a row.
-#[derive(Clone, Copy, Debug, Default)]
-pub(super) struct Pair {
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Pair {
     pub(super) left: Column,
     pub(super) right: Column,
 }
@@ -16,11 +16,8 @@ impl Pair {
         (self.right.x >> COLUMN).wrapping_sub(self.left.x >> COLUMN)
     }
 
-    /// Another edge takes the place of the one that ends at the middle corner.
-    #[inline(always)]
-    fn turn(&mut self, corners: [[i32; 2]; 3], below: Column) {
-        *(if turns_right(corners) { &mut self.right } else { &mut self.left }) = below;
-    }
+    /// No columns.
+    pub(crate) const NONE: Self = Self { left: Column::NONE, right: Column::NONE };
 
     /// Moves down `rows` rows.
     #[inline(always)]
@@ -30,98 +27,118 @@ impl Pair {
     }
 }
 
-/// What is left of a triangle's rows in a band.
+/// The edge below the middle corner.
+#[derive(Clone, Copy, Debug)]
+struct Below {
+    column: Column,
+    /// It is on the right side.
+    right: bool,
+}
+
+/// A triangle's rows in a band.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Sides {
-    /// Those of the coming row.
+    /// Those of the first row.
     pub(super) pair: Pair,
-    /// The coming row, and where the rows end that its sides can be walked to.
+    /// The first row.
     pub(super) row: i32,
+    /// Where the rows end to which `pair` can be walked.
     pub(super) stop: i32,
     /// Where the rows end.
-    end: i32,
-    /// Takes the place of one of the sides of a small triangle at `stop`.
-    below: Column,
-    /// Walked from end to end: no corner beside the band, few rows and columns.
-    small: bool,
+    pub(super) end: i32,
+    /// The same of all bands.
+    low: i32,
+    /// Where the edge below the middle corner begins.
+    turn: i32,
+    /// They are walked from end to end.
+    simple: bool,
+    /// Takes the place of one of them at `stop` then.
+    below: Below,
 }
 
 impl Sides {
+    /// No row; all zeros.
+    pub(super) const NONE: Self = Self {
+        pair: Pair::NONE,
+        row: 0,
+        stop: 0,
+        end: 0,
+        low: 0,
+        turn: 0,
+        simple: false,
+        below: Below { column: Column::NONE, right: false },
+    };
+
     /// Of a triangle, its top corner first, clockwise, in the rows from `top` to `bottom` of a band of `width` columns.
-    #[inline(always)]
     pub(super) fn new(corners: [[i32; 2]; 3], [top, bottom]: [i32; 2], width: i32) -> Self {
+        let [[_, upper], [_, right], [_, left]] = corners;
+        let low = right.max(left);
+        if is_walkable(corners, width) && is_narrow(corners) && low - upper <= SHORT {
+            return Self::simple(corners, [top, bottom]);
+        }
+        let (row, end) = (first_centre(upper).max(top), first_centre(low).min(bottom));
+        let mut sides = Self { row, stop: row, end, low: end, ..Self::NONE };
+        (sides.stop, sides.pair) = sides.next_large(row, corners, width);
+        sides
+    }
+
+    /// The same of one that can be walked from end to end: no corner beside the band, few rows and columns.
+    #[inline(always)]
+    pub(super) fn simple(corners: [[i32; 2]; 3], [top, bottom]: [i32; 2]) -> Self {
         let [upper, right, left] = corners;
-        let (high, low) = (right[1].min(left[1]), right[1].max(left[1]));
         let first = first_centre(upper[1]);
-        let small = is_walkable(corners, width) && is_narrow(corners) && low - upper[1] <= SHORT;
-        let (row, stop, end) = (first.max(top), first_centre(high), first_centre(low).min(bottom));
-        if !small {
-            return Self::large(row, end, corners, width);
-        }
-        let mut sides = Self {
-            pair: Pair { left: Edge::new(upper, left).walk(), right: Edge::new(upper, right).walk() },
-            row,
-            stop: stop.min(end),
-            end,
-            below: if turns_right(corners) { Edge::new(right, left) } else { Edge::new(left, right) }.walk(),
-            small,
-        };
+        let (turn, low) = (first_centre(right[1].min(left[1])), first_centre(right[1].max(left[1])));
+        let mut pair = Pair { left: Edge::new(upper, left).walk(), right: Edge::new(upper, right).walk() };
+        let turns_right = turns_right(corners);
+        let mut column = if turns_right { Edge::new(right, left) } else { Edge::new(left, right) }.walk();
+        let row = first.max(top);
         if row > first {
-            sides.skip(row - first, stop, corners);
-        } else if stop <= first {
-            sides.turn(corners);
+            pair.skip(row.wrapping_sub(first));
+            column.skip(row.wrapping_sub(turn).max(0));
         }
-        sides
+        let end = low.min(bottom);
+        Self { pair, row, stop: turn.max(row).min(end), end, low, turn, simple: true, below: Below { column, right: turns_right } }
     }
 
-    #[cold]
-    #[inline(never)]
-    fn large(row: i32, end: i32, corners: [[i32; 2]; 3], width: i32) -> Self {
-        let mut sides = Self { pair: Pair::default(), row, stop: row, end, below: Column::default(), small: false };
-        sides.next_large(corners, width);
-        sides
-    }
-
-    /// The upper rows of a small triangle lie above the band; `turn` is the row of its middle corner.
-    #[cold]
-    #[inline(never)]
-    fn skip(&mut self, rows: i32, turn: i32, corners: [[i32; 2]; 3]) {
-        self.pair.skip(rows);
-        if self.row >= turn {
-            self.below.skip(self.row - turn);
-            self.turn(corners);
-        }
-    }
-
-    /// Below the middle corner of a small triangle.
+    /// Whether rows follow in the next band that can be walked to from here.
     #[inline(always)]
-    fn turn(&mut self, corners: [[i32; 2]; 3]) {
-        self.pair.turn(corners, self.below);
-        self.stop = self.end;
+    pub(super) fn goes_on(&self) -> bool {
+        self.low > self.end
     }
 
-    /// Goes on with the rows from `stop`, to which both sides have been walked: `pair`; false after the last ones.
+    /// Those that follow in the next band, as far as is known here; `pair` has been walked to the end.
     #[inline(always)]
-    pub(super) fn next(&mut self, pair: &mut Pair, corners: [[i32; 2]; 3], width: i32) -> bool {
-        self.row = self.stop;
-        if self.row >= self.end {
-            return false;
-        }
-        if self.small {
-            pair.turn(corners, self.below);
-            self.stop = self.end;
+    pub(super) fn below(&self, pair: Pair) -> Self {
+        // Before the middle corner's row, or where it is the band's end, the edge below is still to come.
+        Self { pair, row: self.end, turn: if self.stop < self.end { self.low } else { self.turn }, ..*self }
+    }
+
+    /// Ends them at row `bottom` of that band.
+    #[inline(always)]
+    pub(super) fn until(&mut self, bottom: i32) {
+        self.end = self.low.min(bottom);
+        self.stop = self.turn.max(self.row).min(self.end);
+    }
+
+    /// Goes on with the rows from `row`, to which both sides have been walked: `pair`; returns how far they can be walked now.
+    #[inline(always)]
+    pub(super) fn next(&self, row: i32, pair: &mut Pair, corners: [[i32; 2]; 3], width: i32) -> i32 {
+        let stop;
+        if self.simple {
+            let Below { column, right } = self.below;
+            *(if right { &mut pair.right } else { &mut pair.left }) = column;
+            stop = self.end;
         } else {
-            self.next_large(corners, width);
-            *pair = self.pair;
+            (stop, *pair) = self.next_large(row, corners, width);
         }
-        true
+        stop
     }
 
     /// The next rows of a triangle that is clipped, or large: as many as stay exact, or one.
     #[cold]
     #[inline(never)]
-    fn next_large(&mut self, corners: [[i32; 2]; 3], width: i32) {
-        let ([top, right, left], row) = (corners, self.row);
+    fn next_large(&self, row: i32, corners: [[i32; 2]; 3], width: i32) -> (i32, Pair) {
+        let [top, right, left] = corners;
         let middle = first_centre(right[1].min(left[1]));
         // Left of the middle corner's row both edges leave the top; below it, the side of that corner is another edge.
         let (stop, left, right) = if row < middle {
@@ -138,7 +155,7 @@ impl Sides {
         } else {
             (row + 1, Pair { left: by_itself(left), right: by_itself(right) })
         };
-        (self.stop, self.pair) = (stop.min(self.end), pair);
+        (stop.min(self.end), pair)
     }
 }
 

@@ -1,7 +1,7 @@
 //! One triangle into one band: edges, depth plane, and the rows between them.
 
 use super::{
-    edge::{COLUMN, first_centre},
+    edge::{COLUMN, COLUMNS, first_centre},
     fill::{Sight, fill},
     sides::{Pair, Sides},
     smooth::{Part, Shape},
@@ -10,7 +10,9 @@ use crate::{
     band::Band,
     cull::Extent,
     format::{CENTRE, DEPTH, DEPTH_NODE, DEPTH_WALK, SUBPIXEL},
+    math::product::HALVES,
     poly::{Constant, Patch, Walker, basis::Basis, plane::Plane},
+    relay::Relay,
     tone::Tone,
     vertex::ScreenVertex,
 };
@@ -26,6 +28,36 @@ pub struct Outline {
     pub turned: usize,
     /// Which of its pixels are drawn.
     pub part: Part,
+    /// Its rows in a band; without antialiasing.
+    course: Course,
+}
+
+/// A triangle's way through the rows of a band.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Course {
+    sides: Sides,
+    /// Standing on the first row, if it is known already.
+    pub(crate) nearness: Option<Plane<1>>,
+    /// For [`Relay`]; 0: it is not handed on.
+    pub(crate) key: u32,
+    /// By the band above: patches stand on the first row already.
+    handed_on: bool,
+}
+
+impl Course {
+    /// Through no row.
+    pub(crate) const NONE: Self = Self::of(Sides::NONE, 0);
+
+    #[inline(always)]
+    const fn of(sides: Sides, key: u32) -> Self {
+        Self { sides, nearness: None, key, handed_on: false }
+    }
+
+    /// The way on in the next band; `pair` and `nearness` have been walked to the end.
+    #[inline(always)]
+    pub(crate) fn next(&self, pair: Pair, nearness: Option<Plane<1>>) -> Self {
+        Self { sides: self.sides.below(pair), nearness, key: self.key, handed_on: true }
+    }
 }
 
 /// What steps from row to row.
@@ -48,6 +80,9 @@ pub(super) struct Rows<'b, D, P: Patch, T: Tone<<P::Walker as Walker>::Value>> {
     pub(super) patch: P,
     pub(super) tone: T,
 }
+
+/// All bits of the number of pixels in a row.
+const ROW: u32 = 2 * COLUMNS - 1;
 
 /// Columns and rows that a triangle can touch, half open.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -131,13 +166,44 @@ impl Bounds {
 
 impl Outline {
     /// Turns the corners until the top one is first; the order around the triangle stays.
-    #[inline]
+    #[inline(never)]
     #[must_use]
-    pub fn new(corners: [&ScreenVertex; 3], part: Part) -> Self {
-        let [a, b, c] = corners;
-        let turned = if b.y < a.y || c.y < a.y { if c.y < b.y { 2 } else { 1 } } else { 0 };
-        let [a, b, c] = turn(corners, turned);
-        Self { corners: [[a.x, a.y], [b.x, b.y], [c.x, c.y]], depth: [a.depth, b.depth, c.depth], turned, part }
+    pub fn new<C>(corners: [&ScreenVertex; 3], part: Part, band: &Band<'_, C>) -> Self {
+        let (turned, corners) = turned(corners);
+        let places = places(corners);
+        let sides = if part == Part::Centres { Sides::new(places, band.range(), band.width as i32) } else { Sides::NONE };
+        Self { corners: places, depth: depths(corners), turned, part, course: Course::of(sides, 0) }
+    }
+
+    /// The same without antialiasing, of a triangle that has been [`turned`] and whose sides can be walked from end to end.
+    #[inline(always)]
+    #[must_use]
+    pub(crate) fn simple<C>((turned, corners): (usize, [&ScreenVertex; 3]), key: u32, band: &Band<'_, C>) -> Self {
+        let places = places(corners);
+        let sides = Sides::simple(places, band.range());
+        Self { corners: places, depth: depths(corners), turned, part: Part::Centres, course: Course::of(sides, key) }
+    }
+
+    /// Of one that the band above handed on: nothing else is known of it.
+    #[inline(always)]
+    #[must_use]
+    pub(crate) fn handed_on<C>(course: Course, turned: usize, band: &Band<'_, C>) -> Self {
+        let mut outline = Self { corners: [[0; 2]; 3], depth: [0; 3], turned, part: Part::Centres, course };
+        outline.course.sides.until(band.range()[1]);
+        outline
+    }
+
+    /// No row lies in the band.
+    #[inline(always)]
+    #[must_use]
+    pub fn is_empty(&self) -> bool {
+        self.part == Part::Centres && self.course.sides.row >= self.course.sides.end
+    }
+
+    /// Works out depth, unless that is left to those who need it.
+    #[inline(always)]
+    pub(crate) fn see(&mut self, basis: &Basis) {
+        self.course.nearness = Some(self.plane(basis, self.course.sides.row));
     }
 
     /// Its grid is finer than the pixels' by 2 to this power.
@@ -160,7 +226,11 @@ impl Outline {
             let shape = Shape { outline: self, piece: None, corners: self.corners, bits: SUBPIXEL };
             return shape.draw(basis, patch, tone, band, &mut |_| [i32::MIN, i32::MAX]);
         }
-        self.walk(basis, |row| self.plane(basis, row), patch, tone, band)
+        let nearness = match self.course.nearness {
+            Some(nearness) => nearness,
+            None => self.late_plane(basis),
+        };
+        self.walk(basis, nearness, patch, tone, band)
     }
 
     /// As [`Self::draw`], without depth: where nothing else is, and without antialiasing.
@@ -172,46 +242,54 @@ impl Outline {
         tone: T,
         band: &mut Band<'_, T::Pixel>,
     ) -> u32 {
-        self.walk(basis, |_| Constant, patch, tone, band)
+        self.walk(basis, Constant, patch, tone, band)
     }
 
-    /// Walks down its sides; `depth` stands on the row that it is asked for.
+    /// Walks down its sides; `depth` stands on the first row.
     #[inline(always)]
     fn walk<D: Patch<Walker: Sight>, P: Patch, T: Tone<<P::Walker as Walker>::Value>>(
         &self,
         basis: &Basis,
-        depth: impl FnOnce(i32) -> D,
+        depth: D,
         patch: P,
         tone: T,
         band: &mut Band<'_, T::Pixel>,
     ) -> u32 {
-        let mut sides = self.sides(band);
-        if sides.row >= sides.stop {
-            return 0;
+        let sides = &self.course.sides;
+        let (mut row, mut stop) = (sides.row, sides.stop);
+        let mut rows = Rows::new(band, row, sides.pair, depth, patch, tone);
+        if !self.course.handed_on && row != basis.row() {
+            rows.patch.jump(row.wrapping_sub(basis.row()));
         }
-        let width = band.width as i32;
-        let mut rows = Rows::new(band, sides.row, sides.pair, depth(sides.row), patch, tone);
-        if sides.row != basis.row() {
-            rows.patch.jump(sides.row.wrapping_sub(basis.row()));
-        }
-        rows.tone.start(sides.row);
+        rows.tone.start(row);
         loop {
-            rows.height = sides.stop.wrapping_sub(sides.row) as u32;
-            rows.count = rows.sides.columns();
-            fill_rows(&mut rows);
-            if !sides.next(&mut rows.sides, self.corners, width) {
-                return rows.filled;
+            if row < stop {
+                rows.height = stop.wrapping_sub(row) as u32;
+                rows.count = rows.sides.columns();
+                fill_rows(&mut rows);
             }
+            if stop >= sides.end {
+                break;
+            }
+            row = stop;
+            stop = sides.next(row, &mut rows.sides, self.corners, rows.width as i32);
         }
+        let filled = rows.filled;
+        if self.course.key != 0 && sides.goes_on() {
+            let Rows { sides: pair, depth, patch, .. } = rows;
+            hand_on(&self.course, pair, &depth, &patch, &mut band.relay);
+        }
+        filled
     }
 
+    #[cold]
     #[inline(never)]
-    fn sides<C>(&self, band: &Band<'_, C>) -> Sides {
-        Sides::new(self.corners, [band.top, band.top.wrapping_add(band.rows)], band.width as i32)
+    fn late_plane(&self, basis: &Basis) -> Plane<1> {
+        self.plane(basis, self.course.sides.row)
     }
 
     /// Depth, standing on `row`.
-    #[inline(never)]
+    #[inline(always)]
     pub(super) fn plane(&self, basis: &Basis, row: i32) -> Plane<1> {
         let [a, b, c] = self.depth;
         let node = |depth: i32| (depth + (1 << (DEPTH - DEPTH_NODE - 1))) >> (DEPTH - DEPTH_NODE);
@@ -219,6 +297,25 @@ impl Outline {
         depth.jump(row.wrapping_sub(basis.row()));
         depth
     }
+}
+
+/// How many places on the top corner is, and the corners from there on.
+#[inline(always)]
+#[must_use]
+pub(crate) fn turned(corners: [&ScreenVertex; 3]) -> (usize, [&ScreenVertex; 3]) {
+    let [a, b, c] = corners;
+    let by = if b.y < a.y || c.y < a.y { if c.y < b.y { 2 } else { 1 } } else { 0 };
+    (by, turn(corners, by))
+}
+
+#[inline(always)]
+fn places([a, b, c]: [&ScreenVertex; 3]) -> [[i32; 2]; 3] {
+    [[a.x, a.y], [b.x, b.y], [c.x, c.y]]
+}
+
+#[inline(always)]
+fn depths([a, b, c]: [&ScreenVertex; 3]) -> [i32; 3] {
+    [a.depth, b.depth, c.depth]
 }
 
 /// The three of them, `by` places on.
@@ -232,16 +329,26 @@ pub fn turn<A: Copy>([a, b, c]: [A; 3], by: usize) -> [A; 3] {
     }
 }
 
+/// Hands a triangle on to the next band, walked to its first row there.
+#[inline(never)]
+fn hand_on<D: Patch, P: Patch>(course: &Course, pair: Pair, depth: &D, patch: &P, relay: &mut Relay<'_>) {
+    relay.put(|leg| leg.keep(course, pair, depth, patch));
+}
+
 /// Fills the rows to come; there is at least one.
 ///
 /// All that lives longer than a row stays in memory, behind one pointer that the compiler knows nothing of: measured, the pixel loop
 /// then owns the registers and comes out as by hand. `count` comes from there too, written a row earlier: derived in the row, the
-/// compiler would count in two registers instead of one.
+/// compiler would count in two registers instead of one. Armv6-M has so few that not even the pointer may stay in one.
 #[inline(never)]
 pub(super) fn fill_rows<D: Patch<Walker: Sight>, P: Patch, T: Tone<<P::Walker as Walker>::Value>>(mut rows: &mut Rows<'_, D, P, T>) {
     loop {
         rows = black_box(rows);
         rows.fill();
+        if HALVES {
+            rows = black_box(rows);
+        }
+        rows.step();
         rows.height = rows.height.wrapping_sub(1);
         if rows.height == 0 {
             return;
@@ -257,10 +364,16 @@ impl<'b, D: Patch<Walker: Sight>, P: Patch, T: Tone<<P::Walker as Walker>::Value
         Self { pixels: band.pixels, buffer: band.depth, width, start, sides, count: 0, height: 0, filled: 0, depth, patch, tone }
     }
 
-    /// Fills one row and steps to the next.
+    /// Fills one row; its sides step to the next.
     #[inline(always)]
     fn fill(&mut self) {
-        let count = self.count as usize;
+        // On Armv6-M one register is to count and to index two buffers: the compiler has to know that twice the number is no overflow.
+        let count = if HALVES { self.count & ROW } else { self.count } as usize;
+        // Measured: loops that leave no register free are shorter if pixels are counted behind them.
+        let late = !HALVES && P::WORDS > 6;
+        if !late {
+            self.filled = self.filled.wrapping_add(self.count);
+        }
         let (left, right) = ((self.sides.left.x >> COLUMN) as usize, self.sides.right.x >> COLUMN);
         self.sides.skip(1);
         self.count = self.sides.columns();
@@ -272,8 +385,15 @@ impl<'b, D: Patch<Walker: Sight>, P: Patch, T: Tone<<P::Walker as Walker>::Value
             && let Some(buffer) = D::Walker::depth(self.buffer, start..end)
         {
             fill(pixels, buffer, self.depth.enter(right as i32), self.patch.enter(right as i32), self.tone, left);
-            self.filled = self.filled.wrapping_add(count as u32);
+            if late {
+                self.filled = self.filled.wrapping_add(count as u32);
+            }
         }
+    }
+
+    /// Steps to the next row.
+    #[inline(always)]
+    fn step(&mut self) {
         self.depth.step_row();
         self.patch.step_row();
         self.tone.step_row();

@@ -38,7 +38,7 @@ pub(super) fn draw<C: Pixel>(facet: &Facet<'_>, shading: &Shading<'_, C>, fit: f
     let diffuse = |direction| Lobe { direction, parabolas: &one, power: None };
     let highlight = |direction| Lobe { direction, parabolas: &many, power: Some(&shading.palette.power) };
     if shading.lighting.is_constant() {
-        let arcs = arcs(facet.vertices.map(|vertex| wide(vertex.normal)));
+        let arcs = arcs(facet.vertices().map(|vertex| wide(vertex.normal)));
         let fit = |[towards, half]: [[i32; 3]; 2]| Bows { rows, arcs, lobes: [diffuse(towards), highlight(half)] };
         if let Some(constant) = shading.constant
             && let Some(gloss) = shading.gloss(Both)

@@ -18,27 +18,37 @@ use crate::{
     math::{
         power::PixelPower,
         product::{product, upper},
-        rsqrt::{Halves, QUARTER, rsqrt},
+        rsqrt::{Halves, LEAST, rsqrt},
     },
     palette::Reflection,
     pixel::Pixel,
+    poly::field::Nodes,
 };
 
 #[inline(never)]
 pub(super) fn draw<C: Pixel>(facet: &Facet<'_>, shading: &Shading<'_, C>, band: &mut Band<'_, C>) -> u32 {
-    let square = square(facet);
-    if is_curved(facet) {
+    let bends = facet.edges(facet.triangle.bend);
+    if is_curved(facet) || bends.iter().any(|&bend| bend >= 1 << SHORT) {
         let nodes = facet.six_linear_nodes();
-        return shading.draw_lit(facet, |source| shading.six_products(&nodes, source, |p| p), square, Rooted, band);
+        return shading.draw_lit(facet, |source| shading.six_products(&nodes, source, |p| p), square(facet), Rooted, band);
     }
-    let square = square.raised([(1 << 30) - QUARTER]);
+    // |N|² less what the table begins with, Q0.32.
+    let square = || {
+        let [ab, bc, ca] = bends;
+        let nodes = [0, 0, 0, -i32::from(ab), -i32::from(bc), -i32::from(ca)];
+        Nodes::<6, 1, SHORT>::new([nodes], 32 - BEND).raised([0u32.wrapping_sub(LEAST) as i32])
+    };
     let halves = Halves::get();
-    let fast = shading.draw_quotients::<true, _>(facet, square, |[square]| halves.rsqrt(signed(square)) as i32, band);
+    let fast = shading.draw_quotients::<true, _>(facet, square, |[square]| halves.rsqrt(square) as i32, band);
     fast.unwrap_or_else(|| {
         let nodes = facet.six_linear_nodes();
-        shading.draw_lit(facet, |source| shading.six_products(&nodes, source, |p| p), square, Tabled, band)
+        shading.draw_lit(facet, |source| shading.six_products(&nodes, source, |p| p), square(), Tabled, band)
     })
 }
+
+/// Bits of what edges lack of a unit length, unless their ends' normals are more than 90 degrees apart: so few that triangles are
+/// set up in words, see [`crate::poly::small`].
+const SHORT: u32 = BEND - 1;
 
 /// The interpolated normal may be shorter than half: the table of roots, and every fit of 1/|N|, end there.
 pub(super) fn is_curved(facet: &Facet<'_>) -> bool {
@@ -53,7 +63,7 @@ pub(super) fn square(facet: &Facet<'_>) -> Quadratic<1> {
     Quadratic::new([[0, 0, 0, ab, bc, ca]], EXTRA).raised([1 << 30])
 }
 
-/// One over the root of |N|² in [1/4, 1] from a table, by |N|² - 1/4.
+/// One over the root of |N|² in [1/4, 1] from a table, by |N|² less [`LEAST`].
 #[derive(Clone, Copy)]
 struct Tabled;
 
@@ -62,7 +72,7 @@ impl Form<[u32; 1], [u32; 2]> for Tabled {
 
     #[inline(always)]
     fn common(&self, [square]: [u32; 1]) -> i32 {
-        Halves::get().rsqrt(signed(square)) as i32
+        Halves::get().rsqrt(square) as i32
     }
 
     #[inline(always)]

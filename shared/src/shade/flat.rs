@@ -15,21 +15,29 @@ use crate::{
 #[inline(never)]
 pub(super) fn draw<C: Pixel>(facet: &Facet<'_>, shading: &Shading<'_, C>, band: &mut Band<'_, C>) -> u32 {
     let normal = wide(facet.triangle.normal);
-    let levels = match &shading.directions {
-        Some([towards, half]) => shading.palette.one_light([towards.cosine(normal), half.cosine(normal)]),
-        None => shading.levels(&centroid(facet, normal)),
+    let palette = shading.palette;
+    let colour = match &shading.directions {
+        Some([towards, half]) if !palette.three_channels && !shading.dither => {
+            palette.tint(palette.level([towards.cosine(normal), half.cosine(normal)]))
+        }
+        directions => {
+            let levels = match directions {
+                Some([towards, half]) => palette.one_light([towards.cosine(normal), half.cosine(normal)]),
+                None => shading.levels(&centroid(facet, normal)),
+            };
+            if shading.dither {
+                // A field without slope: dither changes from pixel to pixel all the same.
+                return shading.draw_levels::<3, RANGE>(facet, || [levels; 3], band);
+            }
+            palette.colour(levels)
+        }
     };
-    if shading.dither {
-        // A field without slope: dither changes from pixel to pixel all the same.
-        shading.draw_levels::<3, RANGE>(facet, [levels; 3], band)
-    } else {
-        facet.fill(Constant, Solid(shading.palette.colour(levels)), band)
-    }
+    facet.fill(Constant, Solid(colour), band)
 }
 
 /// The triangle's centroid, and the `normal` of its plane (Q2.14).
 fn centroid(facet: &Facet<'_>, normal: [i32; 3]) -> Node {
-    let [a, b, c] = facet.vertices;
+    let [a, b, c] = facet.vertices();
     let sum = add(wide(a.position), add(wide(b.position), wide(c.position)));
     Node { position: sum.map(|c| c / 3), normal: normal.map(|c| c << (30 - UNIT)) }
 }

@@ -77,7 +77,7 @@ impl<C: Pixel> Shading<'_, C> {
         V: Field<Value: Copy>,
         F: Form<K::Value, V::Value>,
     {
-        facet.draw((EachLight { sources: &self.lighting.sources, of }, common), self.lit(form), band)
+        facet.draw(|| (EachLight { sources: &self.lighting.sources, of }, common), self.lit(form), band)
     }
 
     /// [`Self::draw_lit`] for what knows nothing but its rows on the screen.

@@ -44,7 +44,7 @@ impl<C: Pixel> Shading<'_, C> {
         F: Form<K::Value, V::Value>,
     {
         match (self.gloss(form), self.lighting.sources.first()) {
-            (Some(gloss), Some(source)) => facet.draw((of(source), common), gloss, band),
+            (Some(gloss), Some(source)) => facet.draw(|| (of(source), common), gloss, band),
             _ => self.draw_lit(facet, of, common, form, band),
         }
     }

@@ -32,7 +32,7 @@ pub(super) fn draw<C: Pixel>(facet: &Facet<'_>, shading: &Shading<'_, C>, band: 
     // A near viewer is refused before drawing.
     let Viewer::Infinite(view) = shading.lighting.viewer else { return 0 };
     let edges = Edges::new(facet);
-    let (rows, normals) = (edges.rows(facet), facet.vertices.map(|vertex| wide(vertex.normal).map(|c| c << 16)));
+    let (rows, normals) = (edges.rows(facet), facet.vertices().map(|vertex| wide(vertex.normal).map(|c| c << 16)));
     if let Some([towards, _]) = shading.constant
         && let Some(gloss) = shading.gloss(One { lv: cosine(towards, view) })
     {

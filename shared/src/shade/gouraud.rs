@@ -10,5 +10,16 @@ use crate::{band::Band, pixel::Pixel};
 #[inline(never)]
 pub(super) fn draw<C: Pixel>(facet: &Facet<'_>, shading: &Shading<'_, C>, band: &mut Band<'_, C>) -> u32 {
     let [a, b, c] = facet.corners;
-    shading.draw_levels::<3, RANGE>(facet, [shading.corner_levels(a), shading.corner_levels(b), shading.corner_levels(c)], band)
+    draw_levels(|| [a.light, b.light, c.light], facet, shading, band)
+}
+
+/// Draws `facet` from the levels at its corners.
+#[inline(always)]
+pub(super) fn draw_levels<C: Pixel>(
+    levels: impl FnOnce() -> [[i32; 3]; 3],
+    facet: &Facet<'_>,
+    shading: &Shading<'_, C>,
+    band: &mut Band<'_, C>,
+) -> u32 {
+    shading.draw_levels::<3, RANGE>(facet, levels, band)
 }

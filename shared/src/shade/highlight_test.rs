@@ -16,7 +16,14 @@ use crate::{
 
 #[inline(never)]
 pub(super) fn draw<C: Pixel>(facet: &Facet<'_>, shading: &Shading<'_, C>, band: &mut Band<'_, C>) -> u32 {
-    if is_dark(facet, shading) { gouraud::draw(facet, shading, band) } else { phong::draw(facet, shading, band) }
+    if !is_dark(facet, shading) {
+        return phong::draw(facet, shading, band);
+    }
+    if shading.constant.is_none() {
+        return gouraud::draw(facet, shading, band);
+    }
+    let levels = || facet.corners.map(|corner| shading.palette.one_light([corner.light[0], corner.light[1]]));
+    gouraud::draw_levels(levels, facet, shading, band)
 }
 
 /// No light's highlight reaches a visible level anywhere on the triangle.

@@ -59,7 +59,6 @@ mod taylor_finite;
 use crate::poly::hyperbolic::Hyperbolic;
 use crate::{
     band::Band,
-    convex::Convex,
     format::{BIAS, LEVEL, RHO, WALK},
     math::product::product,
     palette::Palette,
@@ -91,16 +90,38 @@ pub(crate) struct Facet<'f> {
     pub(crate) outline: &'f Outline,
     pub(crate) basis: &'f Basis,
     pub(crate) corners: [&'f ScreenVertex; 3],
-    pub(crate) vertices: [&'f Vertex; 3],
     pub(crate) triangle: &'f Triangle,
-    /// Where triangles may overlap, if not everywhere.
-    pub(crate) convex: Option<&'f Convex>,
-    /// Of the corners, where it matters.
+    /// Those that the triangle's indices are of.
+    pub(crate) vertices: &'f [Vertex],
+    /// Others may overlap it.
+    pub(crate) contested: bool,
+    /// It is to be shaded in perspective, if that makes a difference.
     #[cfg(feature = "all-shaders")]
-    pub(crate) nearness: Option<[i32; 3]>,
+    pub(crate) perspective: bool,
+    /// Where the band above handed it on: its patch is there, and nothing is to be fitted.
+    pub(crate) place: Option<usize>,
 }
 
 impl Facet<'_> {
+    /// Its vertices, the top one first.
+    #[inline(always)]
+    fn vertices(&self) -> [&Vertex; 3] {
+        let [a, c, b] = self.triangle.corners;
+        // A stream that has been checked has them all.
+        let vertex = |corner: u16| self.vertices.get(usize::from(corner)).unwrap_or(&Vertex::ZERO);
+        turn([vertex(a), vertex(b), vertex(c)], self.outline.turned)
+    }
+
+    /// Nearness of its corners, if it is to be shaded in perspective.
+    #[cfg(feature = "all-shaders")]
+    #[inline(always)]
+    fn nearness(&self) -> Option<[i32; 3]> {
+        let [a, b, c] = self.corners;
+        let (a, b, c) = (a.depth, b.depth, c.depth);
+        // All of it equally far is all of it flat on the screen.
+        (self.perspective && !(a == b && b == c)).then_some([a, b, c])
+    }
+
     /// Constants of the stream's edges in the order of the corners here, which turn the other way.
     #[inline(always)]
     fn edges(&self, [ab, bc, ca]: [u16; 3]) -> [u16; 3] {
@@ -110,11 +131,17 @@ impl Facet<'_> {
     /// Draws it, without depth where that is possible and worth a loop of its own; returns the pixels in `band`.
     #[inline(always)]
     fn fill<P: Patch, T: Tone<<P::Walker as Walker>::Value>>(&self, patch: P, tone: T, band: &mut Band<'_, T::Pixel>) -> u32 {
-        if T::CHEAP && self.convex.is_some_and(|convex| !convex.contests(&self.outline.corners)) {
+        if T::CHEAP && !self.contested {
             self.outline.draw_alone(self.basis, patch, tone, band)
         } else {
             self.outline.draw(self.basis, patch, tone, band)
         }
+    }
+
+    /// What the band above handed on.
+    #[inline(always)]
+    fn kept<P: Patch, C>(&self, band: &Band<'_, C>) -> Option<P> {
+        band.relay.leg(self.place?)?.patch()
     }
 
     /// Nowhere on the triangle does the highlight of one constant light reach a visible level:
@@ -134,19 +161,62 @@ impl Facet<'_> {
 
 /// Some part of the screen that belongs to a triangle.
 trait Area {
-    /// Draws a field there; returns the pixels in `band`.
-    fn draw<F: Field, T: Tone<F::Value>>(&self, field: F, tone: T, band: &mut Band<'_, T::Pixel>) -> u32;
+    /// Draws a field there, which is asked for if it is not known already; returns the pixels in `band`.
+    fn draw<F: Field, T: Tone<F::Value>>(&self, field: impl FnOnce() -> F, tone: T, band: &mut Band<'_, T::Pixel>) -> u32;
+
+    /// The same, in the first of two tones or in the second.
+    fn draw_either<F: Field, T: Tone<F::Value>, U: Tone<F::Value, Pixel = T::Pixel>>(
+        &self,
+        field: impl FnOnce() -> F,
+        first: bool,
+        tones: (T, U),
+        band: &mut Band<'_, T::Pixel>,
+    ) -> u32;
 }
 
 /// The whole triangle, in perspective or without.
 impl Area for Facet<'_> {
     #[inline(always)]
-    fn draw<F: Field, T: Tone<F::Value>>(&self, field: F, tone: T, band: &mut Band<'_, T::Pixel>) -> u32 {
-        #[cfg(feature = "all-shaders")]
-        if let Some(nearness) = self.nearness {
-            return self.outline.draw(self.basis, Hyperbolic::new(self.basis, nearness, field.surface()), tone, band);
-        }
-        self.fill(field.fit(self.basis), tone, band)
+    fn draw<F: Field, T: Tone<F::Value>>(&self, field: impl FnOnce() -> F, tone: T, band: &mut Band<'_, T::Pixel>) -> u32 {
+        let patch = match self.kept(band) {
+            Some(patch) => patch,
+            None => {
+                let field = field();
+                #[cfg(feature = "all-shaders")]
+                if let Some(nearness) = self.nearness() {
+                    return self.outline.draw(self.basis, Hyperbolic::new(self.basis, nearness, field.surface()), tone, band);
+                }
+                field.fit(self.basis)
+            }
+        };
+        self.fill(patch, tone, band)
+    }
+
+    #[inline(always)]
+    fn draw_either<F: Field, T: Tone<F::Value>, U: Tone<F::Value, Pixel = T::Pixel>>(
+        &self,
+        field: impl FnOnce() -> F,
+        first: bool,
+        tones: (T, U),
+        band: &mut Band<'_, T::Pixel>,
+    ) -> u32 {
+        let patch = match self.kept(band) {
+            Some(patch) => patch,
+            None => {
+                let field = field();
+                #[cfg(feature = "all-shaders")]
+                if let Some(nearness) = self.nearness() {
+                    let patch = Hyperbolic::new(self.basis, nearness, field.surface());
+                    return if first {
+                        self.outline.draw(self.basis, patch, tones.0, band)
+                    } else {
+                        self.outline.draw(self.basis, patch, tones.1, band)
+                    };
+                }
+                field.fit(self.basis)
+            }
+        };
+        if first { self.fill(patch, tones.0, band) } else { self.fill(patch, tones.1, band) }
     }
 }
 
@@ -165,6 +235,22 @@ pub(crate) struct Shading<'f, C> {
     pub(crate) directions: Option<[Direction; 2]>,
 }
 
+/// The first channel. Written out, as far as it matters: `map` is a loop through memory at opt-level "s".
+#[inline(always)]
+fn first<const N: usize>(levels: [[i32; 3]; N]) -> [i32; N] {
+    let mut first = [0; N];
+    if let ([a, b, c], [[x, ..], [y, ..], [z, ..]]) = (first.as_mut_slice(), levels.as_slice()) {
+        (*a, *b, *c) = (*x, *y, *z);
+        return first;
+    }
+    levels.map(|[level, ..]| level)
+}
+
+/// Nodes of each channel.
+fn channels<const N: usize>(levels: [[i32; 3]; N]) -> [[i32; N]; 3] {
+    [levels.map(|[r, ..]| r), levels.map(|[_, g, _]| g), levels.map(|[.., b]| b)]
+}
+
 /// The bias of walked levels plus a rounding half, the same in all channels.
 fn lift<const CH: usize>(half: i32) -> [i32; CH] {
     [(BIAS << WALK).wrapping_add(half); CH]
@@ -172,6 +258,7 @@ fn lift<const CH: usize>(half: i32) -> [i32; CH] {
 
 impl<C: Pixel> Shading<'_, C> {
     /// Shades `facet` into `band`; returns its pixels there.
+    #[inline(always)]
     pub(crate) fn draw(&self, facet: &Facet<'_>, band: &mut Band<'_, C>) -> u32 {
         match self.shader {
             Shader::Flat => flat::draw(facet, self, band),
@@ -223,54 +310,51 @@ impl<C: Pixel> Shading<'_, C> {
         self.palette.levels(self.lighting.cosines(node.position, node.normal))
     }
 
-    /// Levels at a corner.
-    fn corner_levels(&self, corner: &ScreenVertex) -> [i32; 3] {
-        match self.constant {
-            Some(_) => self.palette.one_light([corner.light[0], corner.light[1]]),
-            None => corner.light,
-        }
-    }
-
     /// Draws one level or three, whichever the material needs, from those at `N` nodes, Q9.7 in a range narrower than
     /// 2^`BITS`.
     #[inline(always)]
-    fn draw_levels<const N: usize, const BITS: u32>(&self, area: &impl Area, levels: [[i32; 3]; N], band: &mut Band<'_, C>) -> u32
+    fn draw_levels<const N: usize, const BITS: u32>(
+        &self,
+        area: &impl Area,
+        levels: impl FnOnce() -> [[i32; 3]; N],
+        band: &mut Band<'_, C>,
+    ) -> u32
     where
         Nodes<N, 1, BITS>: Field<Value = [u32; 1]>,
         Nodes<N, 3, BITS>: Field<Value = [u32; 3]>,
     {
         if !self.palette.three_channels {
-            self.draw_one::<N, BITS>(area, levels.map(|[level, ..]| level), band)
+            self.draw_one::<N, BITS>(area, || first(levels()), band)
         } else {
-            self.draw_three::<N, BITS>(area, [levels.map(|[r, ..]| r), levels.map(|[_, g, _]| g), levels.map(|[.., b]| b)], band)
+            self.draw_three::<N, BITS>(area, levels, band)
         }
     }
 
     /// Draws one level by its nodes.
-    fn draw_one<const N: usize, const BITS: u32>(&self, area: &impl Area, nodes: [i32; N], band: &mut Band<'_, C>) -> u32
+    #[inline(always)]
+    fn draw_one<const N: usize, const BITS: u32>(&self, area: &impl Area, nodes: impl FnOnce() -> [i32; N], band: &mut Band<'_, C>) -> u32
     where
         Nodes<N, 1, BITS>: Field<Value = [u32; 1]>,
     {
-        let field = Nodes::<N, 1, BITS>::new([nodes], EXTRA);
-        if self.dither {
-            area.draw(field.raised(lift(0)), Dithered::new(self.palette.base), band)
-        } else {
-            area.draw(field.raised(lift(1 << (WALK - 1))), Ramp(&self.palette.ramp), band)
-        }
+        let half = if self.dither { 0 } else { 1 << (WALK - 1) };
+        let field = || Nodes::<N, 1, BITS>::new([nodes()], EXTRA).raised(lift(half));
+        area.draw_either(field, self.dither, (Dithered::new(self.palette.base), Ramp(&self.palette.ramp)), band)
     }
 
     /// Draws three levels by their nodes.
-    fn draw_three<const N: usize, const BITS: u32>(&self, area: &impl Area, nodes: [[i32; N]; 3], band: &mut Band<'_, C>) -> u32
+    #[inline(always)]
+    fn draw_three<const N: usize, const BITS: u32>(
+        &self,
+        area: &impl Area,
+        levels: impl FnOnce() -> [[i32; 3]; N],
+        band: &mut Band<'_, C>,
+    ) -> u32
     where
         Nodes<N, 3, BITS>: Field<Value = [u32; 3]>,
     {
-        let field = Nodes::<N, 3, BITS>::new(nodes, EXTRA);
-        if self.dither {
-            area.draw(field.raised(lift(0)), Dithered::new(self.palette.base), band)
-        } else {
-            // Half a step of each channel.
-            let half = C::DEPTH.map(|depth| (BIAS << WALK).wrapping_add(1 << (WALK + 7 - depth)));
-            area.draw(field.raised(half), Rgb(PhantomData), band)
-        }
+        // Half a step of each channel.
+        let half = C::DEPTH.map(|depth| if self.dither { 0 } else { 1 << (WALK + 7 - depth) });
+        let field = || Nodes::<N, 3, BITS>::new(channels(levels()), EXTRA).raised(half.map(|half| (BIAS << WALK).wrapping_add(half)));
+        area.draw_either(field, self.dither, (Dithered::new(self.palette.base), Rgb(PhantomData)), band)
     }
 }

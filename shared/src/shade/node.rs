@@ -27,7 +27,7 @@ pub(crate) struct Node {
 impl Facet<'_> {
     /// The corners, their normals as they stand.
     pub(super) fn corner_nodes(&self) -> [Node; 3] {
-        self.vertices.map(|vertex| Node { position: wide(vertex.position), normal: wide(vertex.normal).map(|c| c << FINER) })
+        self.vertices().map(|vertex| Node { position: wide(vertex.position), normal: wide(vertex.normal).map(|c| c << FINER) })
     }
 
     /// Corners and edge midpoints (01, 12, 20), unit normals.
@@ -57,8 +57,9 @@ impl Facet<'_> {
             let [a, b, c] = zip(v, weights, |v, weight| v.map(|c| c * weight));
             add(a, add(b, c))
         };
-        let position = mean(self.vertices.map(|vertex| wide(vertex.position)));
-        Node { position: position.map(|c| c >> bits), normal: normalise(mean(self.vertices.map(|vertex| wide(vertex.normal)))) }
+        let vertices = self.vertices();
+        let position = mean(vertices.map(|vertex| wide(vertex.position)));
+        Node { position: position.map(|c| c >> bits), normal: normalise(mean(vertices.map(|vertex| wide(vertex.normal)))) }
     }
 
     /// The point with the barycentric coordinates `weights / (3 2^bits)`; unit normal.
@@ -70,7 +71,7 @@ impl Facet<'_> {
 
     /// Position, and sum of the ends' normals (Q3.14), at the middle of each edge.
     fn sums(&self) -> [([i32; 3], [i32; 3]); 3] {
-        let [a, b, c] = self.vertices;
+        let [a, b, c] = self.vertices();
         [(a, b), (b, c), (c, a)].map(|(a, b)| {
             let position = add(wide(a.position), wide(b.position)).map(|c| c >> 1);
             (position, add(wide(a.normal), wide(b.normal)))

@@ -34,8 +34,8 @@ pub(super) fn draw_by<C: Pixel, F>(facet: &Facet<'_>, shading: &Shading<'_, C>, 
 where
     F: Form<[u32; 3], [u32; 3]>,
 {
-    let positions = facet.vertices.map(|vertex| wide(vertex.position));
-    let normals = fitted(facet.vertices.map(|vertex| wide(vertex.normal)));
+    let positions = facet.vertices().map(|vertex| wide(vertex.position));
+    let normals = fitted(facet.vertices().map(|vertex| wide(vertex.normal)));
     let view = fitted(match shading.lighting.viewer {
         Viewer::Infinite(towards) => [towards; 3],
         Viewer::Local(eye) => positions.map(|p| sub(eye, p)),

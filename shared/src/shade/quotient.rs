@@ -61,18 +61,21 @@ impl<C: Pixel> Shading<'_, C> {
     pub(super) fn draw_quotients<const EXACT: bool, F: Field>(
         &self,
         facet: &Facet<'_>,
-        length: F,
+        length: impl FnOnce() -> F,
         half_reciprocal: impl Fn(F::Value) -> i32 + Copy,
         band: &mut Band<'_, C>,
     ) -> Option<u32> {
         let levels = self.one_light()?;
         let steps = Quotients::new(&self.palette.power);
-        let [a, b, c] = facet.corners.map(|corner| corner.light);
-        let light = [levels.node(a[0], NODE), levels.node(b[0], NODE), levels.node(c[0], NODE)];
-        let half = [steps.node(a[1]), steps.node(b[1]), steps.node(c[1])];
-        // Two planes of one channel: the compiler makes a loop of one plane of two, and keeps it in memory.
-        let light = Nodes::<3, 1, RANGE>::new([light], LEVEL - NODE);
-        let half = Nodes::<3, 1, STEPS>::new([half], steps::EXTRA);
-        Some(facet.draw(((light, half), length), Quotient::<_, _, EXACT> { levels, steps, half_reciprocal }, band))
+        let field = || {
+            let [a, b, c] = facet.corners.map(|corner| corner.light);
+            let light = [levels.node(a[0], NODE), levels.node(b[0], NODE), levels.node(c[0], NODE)];
+            let half = [steps.node(a[1]), steps.node(b[1]), steps.node(c[1])];
+            // Two planes of one channel: the compiler makes a loop of one plane of two, and keeps it in memory.
+            let light = Nodes::<3, 1, RANGE>::new([light], LEVEL - NODE);
+            let half = Nodes::<3, 1, STEPS>::new([half], steps::EXTRA);
+            ((light, half), length())
+        };
+        Some(facet.draw(field, Quotient::<_, _, EXACT> { levels, steps, half_reciprocal }, band))
     }
 }

@@ -25,10 +25,10 @@ pub(super) fn draw<C: Pixel>(facet: &Facet<'_>, shading: &Shading<'_, C>, band: 
     if duff::is_curved(facet) {
         return duff::draw(facet, shading, band);
     }
-    let length = length(facet);
+    let length = || length(facet);
     shading.draw_quotients::<false, _>(facet, length, |[length]| signed(length), band).unwrap_or_else(|| {
         let nodes = facet.six_linear_nodes();
-        shading.draw_lit(facet, |source| shading.six_products(&nodes, source, |p| p), length, Scaled, band)
+        shading.draw_lit(facet, |source| shading.six_products(&nodes, source, |p| p), length(), Scaled, band)
     })
 }
 

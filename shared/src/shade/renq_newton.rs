@@ -33,10 +33,10 @@ pub(super) fn draw<C: Pixel>(facet: &Facet<'_>, shading: &Shading<'_, C>, band: 
 
 /// Shades with the steps of `form`.
 fn draw_by<C: Pixel, const STEPS: usize>(facet: &Facet<'_>, shading: &Shading<'_, C>, form: Newton<STEPS>, band: &mut Band<'_, C>) -> u32 {
-    let lengths = (renq::length(facet), duff::square(facet));
+    let lengths = || (renq::length(facet), duff::square(facet));
     shading.draw_quotients::<false, _>(facet, lengths, |lengths| form.half_reciprocal(lengths), band).unwrap_or_else(|| {
         let nodes = facet.six_linear_nodes();
-        shading.draw_lit(facet, |source| shading.six_products(&nodes, source, |p| p), lengths, form, band)
+        shading.draw_lit(facet, |source| shading.six_products(&nodes, source, |p| p), lengths(), form, band)
     })
 }
 

@@ -12,17 +12,16 @@ use crate::{band::Band, palette::Palette, pixel::Pixel};
 pub(super) fn draw<C: Pixel>(facet: &Facet<'_>, shading: &Shading<'_, C>, band: &mut Band<'_, C>) -> u32 {
     let palette = shading.palette;
     if !palette.three_channels {
-        let nodes = match shading.constant {
+        let nodes = || match shading.constant {
             Some(_) => one_level(facet, palette),
             None => lit(facet, shading).map(|[level, ..]| level),
         };
         shading.draw_one::<6, RANGE>(facet, nodes, band)
     } else {
-        let nodes = match shading.constant {
+        let nodes = || match shading.constant {
             Some(_) => zip_six(facet.six_cosines(0), facet.six_cosines(1), |l, h| palette.levels(core::iter::once([l, h]))),
             None => lit(facet, shading),
         };
-        let nodes = [nodes.map(|[r, ..]| r), nodes.map(|[_, g, _]| g), nodes.map(|[.., b]| b)];
         shading.draw_three::<6, RANGE>(facet, nodes, band)
     }
 }

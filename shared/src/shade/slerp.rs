@@ -31,7 +31,7 @@ use crate::{
 #[inline(never)]
 pub(super) fn draw<C: Pixel>(facet: &Facet<'_>, shading: &Shading<'_, C>, band: &mut Band<'_, C>) -> u32 {
     let edges = Edges::new(facet);
-    let (rows, arcs) = (edges.rows(facet), arcs(facet.vertices.map(|vertex| wide(vertex.normal))));
+    let (rows, arcs) = (edges.rows(facet), arcs(facet.vertices().map(|vertex| wide(vertex.normal))));
     if let Some(along) = shading.constant
         && let Some(gloss) = shading.gloss(One)
     {

@@ -25,16 +25,32 @@ pub(super) struct Cells<'a, 'f, C> {
 }
 
 /// A cell on the screen, ready for fitting.
-struct Part {
-    piece: Piece,
+struct Part<'p> {
+    piece: &'p Piece<'p>,
     basis: Basis,
     depth: Plane<1>,
 }
 
-impl Area for Part {
+impl Area for Part<'_> {
     #[inline(always)]
-    fn draw<F: Field, T: Tone<F::Value>>(&self, field: F, tone: T, band: &mut Band<'_, T::Pixel>) -> u32 {
-        self.piece.draw(&self.basis, self.depth, field.fit(&self.basis), tone, band)
+    fn draw<F: Field, T: Tone<F::Value>>(&self, field: impl FnOnce() -> F, tone: T, band: &mut Band<'_, T::Pixel>) -> u32 {
+        self.piece.draw(&self.basis, self.depth, field().fit(&self.basis), tone, band)
+    }
+
+    #[inline(always)]
+    fn draw_either<F: Field, T: Tone<F::Value>, U: Tone<F::Value, Pixel = T::Pixel>>(
+        &self,
+        field: impl FnOnce() -> F,
+        first: bool,
+        tones: (T, U),
+        band: &mut Band<'_, T::Pixel>,
+    ) -> u32 {
+        let patch = field().fit(&self.basis);
+        if first {
+            self.piece.draw(&self.basis, self.depth, patch, tones.0, band)
+        } else {
+            self.piece.draw(&self.basis, self.depth, patch, tones.1, band)
+        }
     }
 }
 
@@ -82,7 +98,7 @@ impl<'a, 'f, C: Pixel> Cells<'a, 'f, C> {
 
     /// Light at the triangle's corners.
     pub(super) fn corners(&self) -> [Levels; 3] {
-        self.facet.corners.map(|corner| self.shading.corner_levels(corner))
+        self.facet.corners.map(|corner| corner.light)
     }
 
     /// Light at the triangle's corners and edge midpoints.
@@ -128,25 +144,26 @@ impl<'a, 'f, C: Pixel> Cells<'a, 'f, C> {
         differ(fitted, exact.map(|level| 9 * level), 9 * tolerance)
     }
 
-    /// `cell`, unless nothing of it may be seen in `band`.
-    fn part(&self, cell: &Cell, band: &Band<'_, C>) -> Option<Part> {
-        let piece = self.facet.outline.piece(cell);
+    /// `piece`, unless nothing of it may be seen in `band`.
+    fn part<'p>(&self, piece: &'p Piece<'p>, band: &Band<'_, C>) -> Option<Part<'p>> {
         piece.meets(band).then(|| Part { piece, basis: piece.basis(&self.basis), depth: self.depth })
     }
 
     /// Draws `cell` linear between its corners.
     #[inline(never)]
     pub(super) fn linear(&self, cell: &Cell, corners: &[Levels; 3], band: &mut Band<'_, C>) -> u32 {
-        let Some(part) = self.part(cell, band) else { return 0 };
-        self.shading.draw_levels::<3, BITS>(&part, *corners, band)
+        let piece = self.facet.outline.piece(cell);
+        let Some(part) = self.part(&piece, band) else { return 0 };
+        self.shading.draw_levels::<3, BITS>(&part, || *corners, band)
     }
 
     /// Draws `cell` quadratic between its nodes.
     #[inline(never)]
     pub(super) fn quadratic(&self, cell: &Cell, six: &Six, band: &mut Band<'_, C>) -> u32 {
-        let Some(part) = self.part(cell, band) else { return 0 };
+        let piece = self.facet.outline.piece(cell);
+        let Some(part) = self.part(&piece, band) else { return 0 };
         let ([a, b, c], [ab, bc, ca]) = (six.corners, six.middles);
-        self.shading.draw_levels::<6, BITS>(&part, [a, b, c, ab, bc, ca], band)
+        self.shading.draw_levels::<6, BITS>(&part, || [a, b, c, ab, bc, ca], band)
     }
 
     /// Draws `cell` linear between the corners of the parts that `depth` splits make of it; `corners` is its own light.
@@ -195,9 +212,11 @@ mod tests {
         };
         let screen = [[0, 0], [160, 90], [20, 200]].map(|[x, y]| ScreenVertex { x, y, depth: 0, light: [0; 3], state: State::Ready });
         let [a, b, c] = &screen;
-        let outline = Outline::new([a, b, c], crate::raster::smooth::Part::Centres);
+        let band =
+            Band::<u8> { pixels: &mut [], depth: &mut [], width: 0, top: 0, rows: 0, blend: None, relay: crate::relay::Relay::default() };
+        let outline = Outline::new([a, b, c], crate::raster::smooth::Part::Centres, &band);
         let basis = Basis::small(outline.corners).unwrap();
-        let triangle = Triangle::new_zeroed();
+        let triangle = Triangle { corners: [0, 2, 1], ..Triangle::new_zeroed() };
         for _ in 0..1_000 {
             let mut vertex = || Vertex { position: [random(), random(), random()], normal: [random(), random(), random()] };
             let [p, q, r, s] = [vertex(), vertex(), vertex(), vertex()];
@@ -205,13 +224,15 @@ mod tests {
                 outline: &outline,
                 basis: &basis,
                 corners: [a, b, c],
-                vertices,
                 triangle: &triangle,
-                convex: None,
-                nearness: None,
+                vertices,
+                contested: true,
+                perspective: false,
+                place: None,
             };
-            let one = facet([&p, &q, &r]);
-            for (k, other) in [[&q, &p, &s], [&s, &q, &p], [&p, &s, &q]].map(facet).iter().enumerate() {
+            let corners = [[p, q, r], [q, p, s], [s, q, p], [p, s, q]];
+            let [one, others @ ..] = corners.each_ref().map(|corners| facet(corners.as_slice()));
+            for (k, other) in others.iter().enumerate() {
                 for bits in 0..=5 {
                     for w in 0..=1 << bits {
                         let v = (1 << bits) - w;

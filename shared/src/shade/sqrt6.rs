@@ -35,16 +35,19 @@ pub(super) fn draw<C: Pixel>(facet: &Facet<'_>, shading: &Shading<'_, C>, band: 
         let cosines = facet.six_cosines(0);
         let is_bright = is_bright(cosines);
         if is_bright && facet.is_dark(shading.palette) {
-            return shading.draw_one::<6, RANGE>(facet, shading.palette.six_matte(cosines), band);
+            return shading.draw_one::<6, RANGE>(facet, || shading.palette.six_matte(cosines), band);
         }
-        let roots = map_six(facet.six_cosines(1), root);
+        let roots = || map_six(facet.six_cosines(1), root);
         if let Some(levels) = shading.one_light().filter(|levels| is_bright && levels.is_within()) {
             let defects = Defects::new(&shading.palette.power);
-            let light = Nodes::<6, 1, RANGE>::new([map_six(cosines, |cosine| levels.node(cosine, LEVEL))], WALK - LEVEL);
-            let half = Nodes::<6, 1, BITS>::new([map_six(roots, |root| defects.node(root))], EXTRA).raised([defects.half()]);
-            return facet.draw((light, half), Defective { levels, defects }, band);
+            let field = || {
+                let light = Nodes::<6, 1, RANGE>::new([map_six(cosines, |cosine| levels.node(cosine, LEVEL))], WALK - LEVEL);
+                let half = Nodes::<6, 1, BITS>::new([map_six(roots(), |root| defects.node(root))], EXTRA).raised([defects.half()]);
+                (light, half)
+            };
+            return facet.draw(field, Defective { levels, defects }, band);
         }
-        return facet.draw(((quadratic([cosines]), quadratic([roots])), Constant), gloss, band);
+        return facet.draw(|| ((quadratic([cosines]), quadratic([roots()])), Constant), gloss, band);
     }
     let nodes = facet.six_nodes();
     let fit = |source: &_| shading.six_products(&nodes, source, |[light, half]| [light, root(half)]);

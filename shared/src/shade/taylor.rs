@@ -50,7 +50,7 @@ pub(super) fn draw_by<C: Pixel>(
     band: &mut Band<'_, C>,
     directions: impl Fn(&Source) -> [Series; 2],
 ) -> u32 {
-    let normal = Series::new(facet.vertices.map(|vertex| wide(vertex.normal).map(|c| c << (VECTOR - UNIT))));
+    let normal = Series::new(facet.vertices().map(|vertex| wide(vertex.normal).map(|c| c << (VECTOR - UNIT))));
     let fit = |source: &Source| {
         let values = directions(source).map(|direction| expansions(&normal, &direction));
         let largest = values.as_flattened().iter().fold(0, |m, v| v.unsigned_abs().max(m));

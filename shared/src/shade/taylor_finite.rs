@@ -20,7 +20,7 @@ use crate::{
 
 #[inline(never)]
 pub(super) fn draw<C: Pixel>(facet: &Facet<'_>, shading: &Shading<'_, C>, band: &mut Band<'_, C>) -> u32 {
-    let positions = facet.vertices.map(|vertex| wide(vertex.position));
+    let positions = facet.vertices().map(|vertex| wide(vertex.position));
     let shortened = |v: [i32; 3], bits: u32| v.map(|c| c >> (COSINE - VECTOR + bits));
     let viewer = positions.map(|position| shortened(shading.lighting.viewer.towards(position), 1));
     taylor::draw_by(facet, shading, band, |source| {

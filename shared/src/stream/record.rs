@@ -166,6 +166,11 @@ pub struct Vertex {
     pub normal: [i16; 3],
 }
 
+impl Vertex {
+    /// No vertex.
+    pub const ZERO: Self = Self { position: [0; 3], normal: [0; 3] };
+}
+
 /// Three vertices and all that does not depend on camera or light.
 ///
 /// Seen from its front side the vertices run counter-clockwise in object space

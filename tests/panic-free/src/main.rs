@@ -22,7 +22,7 @@ fn panic(_: &core::panic::PanicInfo<'_>) -> ! {
 
 fn draw<C: Pixel>(
     bytes: &[u8],
-    workspace: &mut Workspace<C, 600, 600, 9600, 2, 2400>,
+    workspace: &mut Workspace<C, 600, 600, 9600, 2, 40, 2400>,
     pixels: &mut [C],
     size: u32,
     options: u32,
@@ -41,8 +41,8 @@ fn draw<C: Pixel>(
 #[unsafe(no_mangle)]
 pub extern "C" fn _start(
     bytes: &'static &'static [u8],
-    colour: &'static mut Workspace<Rgb565, 600, 600, 9600, 2, 2400>,
-    grey: &'static mut Workspace<Gray4, 600, 600, 9600, 2, 2400>,
+    colour: &'static mut Workspace<Rgb565, 600, 600, 9600, 2, 40, 2400>,
+    grey: &'static mut Workspace<Gray4, 600, 600, 9600, 2, 40, 2400>,
     pixels: &'static mut ([Rgb565; 9600], [Gray4; 9600]),
     size: u32,
     options: u32,

@@ -1,7 +1,10 @@
 //! Our figures beside theirs.
 
 use super::{Frame, PEERS, SCENE};
-use crate::bench::{Measurement, Processor};
+use crate::{
+    bench::{Measurement, Processor},
+    board::budget::PICO,
+};
 use anyhow::{Context, Result, bail};
 
 /// Where a row's figures come from.
@@ -72,13 +75,13 @@ impl Table {
 
     /// What has to be known of its columns.
     #[must_use]
-    pub fn note(&self) -> Option<&'static str> {
-        self.processors.contains(&Processor::CortexM0Plus).then_some(PICO)
+    pub fn note(&self) -> Option<String> {
+        let rows = PICO.rows;
+        self.processors
+            .contains(&Processor::CortexM0Plus)
+            .then(|| format!("cortex-m0plus: ours on the Pico in bands of {rows} rows, theirs as ARMv6-M code on a Cortex-M3 in one band"))
     }
 }
-
-/// What has to be known of the Cortex-M0+.
-const PICO: &str = "cortex-m0plus: ours on the Pico in bands of 40 rows, theirs as ARMv6-M code on a Cortex-M3 in one band";
 
 /// Figures that were measured once.
 fn earlier(processors: &[Processor]) -> Result<Vec<Row>> {

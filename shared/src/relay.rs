@@ -1,0 +1,101 @@
+//! What a band hands on to the next: triangles that reach across its lower border, on the row where they left off.
+//!
+//! All that is walked is walked exactly, modulo 2^32: going on from there makes the same pixels as setting up anew. Bands draw
+//! triangles in the order of the stream, so that what one hands on the next takes in the same order: a queue. A triangle that finds it
+//! full is set up anew.
+
+use crate::{
+    poly::{Patch, plane::Plane},
+    raster::{sides::Pair, triangle::Course},
+};
+
+/// Words of a quadratic in three channels.
+const WORDS: usize = 18;
+
+/// A triangle on its way to the next band.
+#[derive(Clone, Copy, Debug)]
+pub struct Leg {
+    /// Its key is that of the triangle's entry in its list; 0 is of none.
+    pub(crate) course: Course,
+    /// What its patch keeps.
+    words: [u32; WORDS],
+}
+
+impl Leg {
+    /// Of no triangle; all zeros, as memory in a `static` should be.
+    pub const EMPTY: Self = Self { course: Course::NONE, words: [0; WORDS] };
+
+    /// Keeps what has been walked to the end of `course`; false if there is no way to.
+    #[inline(always)]
+    pub(crate) fn keep<D: Patch, P: Patch>(&mut self, course: &Course, pair: Pair, depth: &D, patch: &P) -> bool {
+        let mut plane = [0; 3];
+        let nearness = if D::WORDS > 0 && depth.keep(&mut plane) { Plane::kept(&plane) } else { None };
+        self.course = course.next(pair, nearness);
+        patch.keep(&mut self.words)
+    }
+
+    /// The patch as it was kept.
+    #[inline(always)]
+    pub(crate) fn patch<P: Patch>(&self) -> Option<P> {
+        P::kept(&self.words)
+    }
+}
+
+/// Where a queue stands between two bands.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Queued {
+    first: usize,
+    count: usize,
+}
+
+/// The queue of one frame.
+#[derive(Debug, Default)]
+pub struct Relay<'a> {
+    legs: &'a mut [Leg],
+    queued: Queued,
+}
+
+impl<'a> Relay<'a> {
+    /// The queue that stands like this.
+    #[must_use]
+    pub fn new(legs: &'a mut [Leg], queued: Queued) -> Self {
+        Self { legs, queued }
+    }
+
+    /// Where it stands.
+    #[must_use]
+    pub fn queued(&self) -> Queued {
+        self.queued
+    }
+
+    /// Takes the first one, if it is the triangle with this `key`: the place of its leg, which stays as it is until another is put.
+    #[inline(always)]
+    pub(crate) fn take(&mut self, key: u32) -> Option<usize> {
+        let Queued { first, count } = self.queued;
+        if count == 0 || self.legs.get(first)?.course.key != key {
+            return None;
+        }
+        self.queued = Queued { first: if first + 1 < self.legs.len() { first + 1 } else { 0 }, count: count - 1 };
+        Some(first)
+    }
+
+    /// The leg at a place.
+    #[inline(always)]
+    pub(crate) fn leg(&self, place: usize) -> Option<&Leg> {
+        self.legs.get(place)
+    }
+
+    /// Puts a leg at the end, if there is room and `fill` says so.
+    #[inline(always)]
+    pub(crate) fn put(&mut self, fill: impl FnOnce(&mut Leg) -> bool) {
+        let (Queued { first, count }, length) = (self.queued, self.legs.len());
+        let place = first.wrapping_add(count);
+        let place = if place < length { place } else { place.wrapping_sub(length) };
+        if count < length
+            && let Some(leg) = self.legs.get_mut(place)
+            && fill(leg)
+        {
+            self.queued.count = count + 1;
+        }
+    }
+}
