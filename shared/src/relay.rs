@@ -99,3 +99,33 @@ impl<'a> Relay<'a> {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn legs_come_out_in_the_order_they_went_in() {
+        let mut legs = [Leg::EMPTY; 3];
+        let mut relay = Relay::new(&mut legs, Queued::default());
+        let mut put = |relay: &mut Relay<'_>, key, fits| {
+            relay.put(|leg| {
+                leg.course.key = key;
+                fits
+            });
+        };
+        assert_eq!(relay.take(1), None, "nothing is there");
+        // One cannot be kept, and the last one finds no room.
+        for (key, fits) in [(1, true), (3, false), (5, true), (7, true), (9, true)] {
+            put(&mut relay, key, fits);
+        }
+        assert_eq!(relay.take(5), None, "not its turn");
+        assert_eq!(relay.take(1), Some(0));
+        // The next band hands it on again: behind the others, around the end.
+        put(&mut relay, 1, true);
+        let queued = relay.queued();
+        let mut relay = Relay::new(&mut legs, queued);
+        assert_eq!([5, 7, 9, 1].map(|key| relay.take(key)), [Some(1), Some(2), None, Some(0)]);
+        assert_eq!(relay.take(1), None, "it is empty again");
+    }
+}

@@ -8,7 +8,10 @@ use embedded_graphics::{
 use microphong::{
     Memory, Picture, Renderer, Shader, Stats, Stream, bin::Entry, palette::Palette, relay::Leg, render::check, vertex::ScreenVertex,
 };
-use microphong_sim::scene;
+use microphong_sim::{
+    render::{self, Style},
+    scene,
+};
 
 /// A frame with room for so many vertices, triangles, and triangles that are handed on, in bands of so many rows.
 fn frame(stream: Stream<'_>, size: Size, shader: Shader, [vertices, triangles, legs]: [usize; 3], rows: u32) -> (Vec<Rgb565>, Stats) {
@@ -73,4 +76,24 @@ fn a_display_is_filled_once() {
     assert_eq!(display.affected_area().size, Size::new(64, 64));
     let lit = (0..64 * 64).filter(|i| display.get_pixel(Point::new(i % 64, i / 64)).unwrap().luma() > 64).count();
     assert!((1000..4000).contains(&lit), "{lit}");
+}
+
+/// Handed on from band to band, triangles look as if they were drawn at once: in one channel or three, dithered, without depth, in
+/// perspective.
+#[test]
+fn what_is_handed_on_looks_the_same_in_every_style() {
+    let size = Size::new(240, 180);
+    for name in ["bunny", "torus", "peer-sphere-convex", "dodecahedron", "sphere-690"] {
+        let scene = scene::load(name).unwrap();
+        let stream = scene.stream.parse().unwrap();
+        for style in [false, true].into_iter().flat_map(|dither| [false, true].map(|perspective_correct| (dither, perspective_correct))) {
+            let (dither, perspective_correct) = style;
+            for shader in Shader::ALL.into_iter().filter(|&shader| check(&stream, shader, perspective_correct).is_ok()) {
+                let style = Style { dither, perspective_correct, ..shader.into() };
+                let draw = |rows| render::frame::<Rgb565>(stream, size, style, rows, 3).unwrap();
+                let (whole, banded) = (draw(size.height), draw(11));
+                assert!(whole == banded, "{name}, {style:?}");
+            }
+        }
+    }
 }
