@@ -154,15 +154,29 @@ impl<C: Pixel> Palette<C> {
     #[must_use]
     pub fn six_matte(&self, [a, b, c, ab, bc, ca]: [i32; 6]) -> [i32; 6] {
         let [gains, ..] = &self.gains;
-        let (ambient, diffuse) = (self.ambient[0] as u32, u32::from(gains.diffuse[0]));
-        // Rounded as by `reflected`.
-        let base = (ambient << 15) + (1 << 14);
-        let matte = |cosine: i32| ((base + diffuse * (cosine.max(0) as u32 >> (COSINE - 15))) >> 15) as i32;
-        if ambient + diffuse <= FULL as u32 {
+        let matte = |cosine| self.matte(cosine);
+        if self.ambient[0] + i32::from(gains.diffuse[0]) <= FULL {
             return [matte(a), matte(b), matte(c), matte(ab), matte(bc), matte(ca)];
         }
-        let matte = |cosine| matte(cosine).min(FULL);
+        let matte = |cosine| self.matte(cosine).min(FULL);
         [matte(a), matte(b), matte(c), matte(ab), matte(bc), matte(ca)]
+    }
+
+    /// [`Self::level`] at six nodes.
+    #[inline]
+    #[must_use]
+    pub fn six(&self, [a, b, c, ab, bc, ca]: [i32; 6], [i, j, k, ij, jk, ki]: [i32; 6]) -> [i32; 6] {
+        let [gains, ..] = &self.gains;
+        let level = |diffuse, half| (self.matte(diffuse) + reflected((0, gains.specular[0]), 0, self.power.at(half))).min(FULL);
+        [level(a, i), level(b, j), level(c, k), level(ab, ij), level(bc, jk), level(ca, ki)]
+    }
+
+    /// Level without highlight and not clamped; rounded as by [`reflected`].
+    #[inline(always)]
+    fn matte(&self, cosine: i32) -> i32 {
+        let [gains, ..] = &self.gains;
+        let base = ((self.ambient[0] as u32) << 15) + (1 << 14);
+        ((base + u32::from(gains.diffuse[0]) * (cosine.max(0) as u32 >> (COSINE - 15))) >> 15) as i32
     }
 
     /// Levels under one light, Q9.7 in [0, 255], from `[N·L, N·H]` (Q2.30).

@@ -108,7 +108,7 @@ mod tests {
     fn legs_come_out_in_the_order_they_went_in() {
         let mut legs = [Leg::EMPTY; 3];
         let mut relay = Relay::new(&mut legs, Queued::default());
-        let mut put = |relay: &mut Relay<'_>, key, fits| {
+        let put = |relay: &mut Relay<'_>, key, fits| {
             relay.put(|leg| {
                 leg.course.key = key;
                 fits

@@ -30,11 +30,7 @@ pub(super) fn draw<C: Pixel>(facet: &Facet<'_>, shading: &Shading<'_, C>, band: 
 #[inline(always)]
 fn one_level<C: Pixel>(facet: &Facet<'_>, palette: &Palette<C>) -> [i32; 6] {
     let light = facet.six_cosines(0);
-    if facet.is_dark(palette) {
-        palette.six_matte(light)
-    } else {
-        zip_six(light, facet.six_cosines(1), |light, half| palette.level([light, half]))
-    }
+    if facet.is_dark(palette) { palette.six_matte(light) } else { palette.six(light, facet.six_cosines(1)) }
 }
 
 /// Node levels under any lights: corners are lit already, midpoints are lit here.
