@@ -135,16 +135,14 @@ impl Bins {
     pub fn retire(&mut self, entries: &mut [Entry], bottom: u32) {
         let mut previous = NONE;
         let mut link = self.active;
-        while let Some(&entry) = linked(link).and_then(|index| entries.get(index)) {
-            if u32::from(entry.bottom) <= bottom {
-                match linked(previous).and_then(|index| entries.get_mut(index)) {
-                    Some(previous) => previous.next = entry.next,
-                    None => self.active = entry.next,
-                }
-            } else {
+        while let Some(entry) = at(entries, link) {
+            let next = entry.next;
+            if u32::from(entry.bottom) > bottom {
                 previous = link;
+            } else {
+                append(entries, &mut self.active, previous, next);
             }
-            link = entry.next;
+            link = next;
         }
     }
 }
@@ -155,26 +153,37 @@ fn linked(link: u16) -> Option<usize> {
     link.checked_sub(1).map(usize::from)
 }
 
+/// The entry that a link leads to.
+#[inline(always)]
+fn at(entries: &[Entry], link: u16) -> Option<&Entry> {
+    linked(link).and_then(|index| entries.get(index))
+}
+
+/// Makes `link` follow `tail`, the last entry of the list that starts at `head`.
+#[inline(always)]
+fn append(entries: &mut [Entry], head: &mut u16, tail: u16, link: u16) {
+    match linked(tail).and_then(|index| entries.get_mut(index)) {
+        Some(tail) => tail.next = link,
+        None => *head = link,
+    }
+}
+
 /// Two lists in the order of the stream into one; returns its head. What is left of one when the other ends stays as it is.
 fn merge(entries: &mut [Entry], mut a: u16, mut b: u16) -> u16 {
-    let mut head = NONE;
-    let mut tail = NONE;
-    loop {
-        let entry = |link| linked(link).and_then(|index| entries.get(index)).copied();
-        let (link, rest) = match (entry(a), entry(b)) {
-            (Some(x), Some(y)) if x.key <= y.key => (a, Some((&mut a, x.next))),
-            (Some(_), Some(y)) => (b, Some((&mut b, y.next))),
-            (None, _) => (b, None),
-            (_, None) => (a, None),
-        };
-        match linked(tail).and_then(|index| entries.get_mut(index)) {
-            Some(tail) => tail.next = link,
-            None => head = link,
-        }
-        let Some((list, next)) = rest else { return head };
-        *list = next;
+    let (mut head, mut tail) = (NONE, NONE);
+    let (mut first, mut second) = (at(entries, a).copied(), at(entries, b).copied());
+    while let (Some(x), Some(y)) = (first, second) {
+        let link = if x.key <= y.key { a } else { b };
+        append(entries, &mut head, tail, link);
         tail = link;
+        if x.key <= y.key {
+            (a, first) = (x.next, at(entries, x.next).copied());
+        } else {
+            (b, second) = (y.next, at(entries, y.next).copied());
+        }
     }
+    append(entries, &mut head, tail, if first.is_some() { a } else { b });
+    head
 }
 
 #[cfg(test)]
