@@ -94,11 +94,10 @@ impl Convex {
         self.contested.get_mut(rows).unwrap_or_default().iter_mut().for_each(|row| *row |= columns);
     }
 
-    /// Whether others may overlap a triangle, its top corner first; all that may show their front have been seen.
+    /// Whether others may overlap a triangle with these least and largest columns and rows; all that may show their front have been seen.
     #[inline(never)]
     #[must_use]
-    pub fn contests(&self, [[x0, top], [x1, y1], [x2, y2]]: &[[i32; 2]; 3]) -> bool {
-        let (columns, rows) = ([*x0.min(x1).min(x2), *x0.max(x1).max(x2)], [*top, *y1.max(y2)]);
+    pub fn contests(&self, columns: [i32; 2], rows: [i32; 2]) -> bool {
         if !self.is_inside(columns, rows) {
             return true;
         }

@@ -12,7 +12,9 @@ use crate::{
         triangle::{Bounds, Outline, turn, turned},
     },
     render::{Stage, Viewport},
-    shade::{Facet, Shading},
+    bin::Entry,
+    shade::{Any, Facet, Method, Shading, duff, flat, gouraud, six_point},
+    shader::Shader,
     stream::record::{Triangle, Vertex},
     vertex::{ScreenVertex, State},
 };
@@ -41,6 +43,64 @@ struct Face<'f> {
 }
 
 impl<C: Pixel> Drawing<'_, C> {
+    /// Draws the triangle of `entry` and those that follow it in the same mesh, up to `end`; returns their pixels in `band`, and the first
+    /// entry of another mesh.
+    pub(crate) fn run<'e>(
+        &self,
+        triangles: &[Triangle],
+        entry: &'e Entry,
+        active: &mut impl Iterator<Item = &'e Entry>,
+        end: u32,
+        band: &mut Band<'_, C>,
+    ) -> (u32, Option<&'e Entry>) {
+        match self.shading.shader {
+            Shader::Flat if self.is_plain() => self.each::<flat::Plain>(triangles, entry, active, end, band),
+            Shader::Gouraud if self.is_plain() => self.each::<gouraud::Plain>(triangles, entry, active, end, band),
+            Shader::Phong if self.is_plain() => self.each::<duff::Plain>(triangles, entry, active, end, band),
+            #[cfg(feature = "all-shaders")]
+            Shader::Sqrt6 if self.is_plain() => self.each::<crate::shade::sqrt6::Plain>(triangles, entry, active, end, band),
+            Shader::SixPoint if self.is_plain() => self.each::<six_point::Plain>(triangles, entry, active, end, band),
+            _ => self.each::<Any>(triangles, entry, active, end, band),
+        }
+    }
+
+    fn is_plain(&self) -> bool {
+        #[cfg(feature = "all-shaders")]
+        if self.perspective {
+            return false;
+        }
+        self.shading.is_plain()
+    }
+
+    #[inline(never)]
+    fn each<'e, M: Method>(
+        &self,
+        triangles: &[Triangle],
+        mut entry: &'e Entry,
+        active: &mut impl Iterator<Item = &'e Entry>,
+        end: u32,
+        band: &mut Band<'_, C>,
+    ) -> (u32, Option<&'e Entry>) {
+        let mut pixels = 0u32;
+        loop {
+            // A stream that has been checked has it.
+            if let Some(triangle) = triangles.get(entry.triangle() as usize) {
+                let drawn = if !entry.is_simple() {
+                    self.draw(triangle, band)
+                } else if let Some(place) = band.relay.take(entry.key()) {
+                    self.go_on::<M>(triangle, place, band)
+                } else {
+                    self.draw_simple::<M>(triangle, entry.key(), band).unwrap_or_else(|| self.draw(triangle, band))
+                };
+                pixels = pixels.saturating_add(drawn);
+            }
+            match active.next() {
+                Some(other) if other.triangle() < end => entry = other,
+                other => return (pixels, other),
+            }
+        }
+    }
+
     /// Draws `triangle`; returns its pixels in `band`.
     #[inline(never)]
     pub(crate) fn draw(&self, triangle: &Triangle, band: &mut Band<'_, C>) -> u32 {
@@ -52,12 +112,12 @@ impl<C: Pixel> Drawing<'_, C> {
 
     /// The same of a triangle that [`Viewport::is_simple`], by its `key` in [`crate::relay`].
     #[inline(never)]
-    pub(crate) fn draw_simple(&self, triangle: &Triangle, key: u32, band: &mut Band<'_, C>) -> u32 {
-        let Some(corners) = self.corners(triangle) else { return 0 };
+    fn draw_simple<M: Method>(&self, triangle: &Triangle, key: u32, band: &mut Band<'_, C>) -> Option<u32> {
+        let corners = self.corners(triangle)?;
         let (by, corners) = turned(corners);
         let mut outline = Outline::simple((by, corners), key, band);
         if outline.is_empty() {
-            return 0;
+            return Some(0);
         }
         let basis = Basis::simple(outline.corners);
         let contested = self.contested(&outline);
@@ -72,15 +132,15 @@ impl<C: Pixel> Drawing<'_, C> {
             vertices: self.vertices,
             contested,
             #[cfg(feature = "all-shaders")]
-            perspective: self.perspective,
+            perspective: M::ANY && self.perspective,
             place: None,
         };
-        self.shading.draw(&facet, band)
+        M::draw(&facet, &self.shading, band)
     }
 
     /// The same of a triangle that the band above handed on to `place`.
     #[inline(never)]
-    pub(crate) fn go_on(&self, triangle: &Triangle, place: usize, band: &mut Band<'_, C>) -> u32 {
+    fn go_on<M: Method>(&self, triangle: &Triangle, place: usize, band: &mut Band<'_, C>) -> u32 {
         let (Some(leg), Some(corners)) = (band.relay.leg(place), self.corners(triangle)) else { return 0 };
         let (by, corners) = turned(corners);
         let facet = Facet {
@@ -94,7 +154,7 @@ impl<C: Pixel> Drawing<'_, C> {
             perspective: false,
             place: Some(place),
         };
-        self.shading.draw(&facet, band)
+        M::draw(&facet, &self.shading, band).unwrap_or_default()
     }
 
     /// Corners on the screen; `None` if one is not kept.
@@ -107,7 +167,8 @@ impl<C: Pixel> Drawing<'_, C> {
     /// Others may overlap a triangle.
     #[inline(always)]
     fn contested(&self, outline: &Outline) -> bool {
-        self.convex.is_none_or(|convex| convex.contests(&outline.corners))
+        let [[x0, top], [x1, y1], [x2, y2]] = outline.corners;
+        self.convex.is_none_or(|convex| convex.contests([x0.min(x1).min(x2), x0.max(x1).max(x2)], [top, y1.max(y2)]))
     }
 
     /// The visible box of `triangle`; `None` if it shows its back, or no pixel can belong to it.

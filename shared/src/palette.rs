@@ -163,7 +163,7 @@ impl<C: Pixel> Palette<C> {
     }
 
     /// [`Self::level`] at six nodes.
-    #[inline]
+    #[inline(always)]
     #[must_use]
     pub fn six(&self, [a, b, c, ab, bc, ca]: [i32; 6], [i, j, k, ij, jk, ki]: [i32; 6]) -> [i32; 6] {
         let [gains, ..] = &self.gains;

@@ -6,7 +6,7 @@
 
 use crate::{
     poly::{Patch, plane::Plane},
-    raster::{sides::Pair, triangle::Course},
+    raster::triangle::Course,
 };
 
 /// Words of a quadratic in three channels.
@@ -27,10 +27,10 @@ impl Leg {
 
     /// Keeps what has been walked to the end of `course`; false if there is no way to.
     #[inline(always)]
-    pub(crate) fn keep<D: Patch, P: Patch>(&mut self, course: &Course, pair: Pair, depth: &D, patch: &P) -> bool {
+    pub(crate) fn keep<D: Patch, P: Patch>(&mut self, course: Course, depth: &D, patch: &P) -> bool {
         let mut plane = [0; 3];
         let nearness = if D::WORDS > 0 && depth.keep(&mut plane) { Plane::kept(&plane) } else { None };
-        self.course = course.next(pair, nearness);
+        self.course = course.at(nearness);
         patch.keep(&mut self.words)
     }
 

@@ -517,28 +517,14 @@ impl<C: Pixel> Frame<'_, '_, C> {
         let mut pixels = 0u32;
         let mut active = self.bins.active(memory.bins);
         let mut next = active.next();
-        while let Some(mut entry) = next {
+        while let Some(entry) = next {
             // A stream that has been checked has both.
             let Some(mesh) = self.mesh(entry.triangle()) else { break };
             let Some(drawing) = self.drawing(mesh) else { break };
             let end = mesh.first_triangle.saturating_add(mesh.triangles);
-            loop {
-                if let Some(triangle) = stream.triangles.get(entry.triangle() as usize) {
-                    let drawn = if !entry.is_simple() {
-                        drawing.draw(triangle, band)
-                    } else if let Some(place) = band.relay.take(entry.key()) {
-                        drawing.go_on(triangle, place, band)
-                    } else {
-                        drawing.draw_simple(triangle, entry.key(), band)
-                    };
-                    pixels = pixels.saturating_add(drawn);
-                }
-                next = active.next();
-                match next {
-                    Some(other) if other.triangle() < end => entry = other,
-                    _ => break,
-                }
-            }
+            let (drawn, rest) = drawing.run(stream.triangles, entry, &mut active, end, band);
+            pixels = pixels.saturating_add(drawn);
+            next = rest;
         }
         pixels
     }

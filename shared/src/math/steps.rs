@@ -37,6 +37,13 @@ impl<'a> Quotients<'a> {
         upper_by_half_word(cosine, self.factor) >> (24 - NODE - 16)
     }
 
+    /// The entry of small cosines.
+    #[inline(always)]
+    #[must_use]
+    pub fn least(&self) -> u32 {
+        self.table[SIZE - 1].into()
+    }
+
     /// The entry nearest to the upper half of a numerator, walked with [`EXTRA`] more bits, times half a reciprocal length (Q2.30).
     /// Error: [`super::power::NEAREST_ERROR`], and 1/100 of a step.
     #[inline(always)]

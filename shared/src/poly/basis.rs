@@ -199,7 +199,7 @@ impl Basis {
     #[must_use]
     pub fn parted(&self) -> Self {
         match self.scale {
-            Scale::Small(small) => Self { scale: Scale::Part(self.mantissas(small)), ..*self },
+            Scale::Small(small) => Self { scale: Scale::Part(Self::mantissas(self.edges, small)), ..*self },
             _ => *self,
         }
     }
@@ -222,7 +222,7 @@ impl Basis {
     #[inline(always)]
     fn gradients(&self) -> Gradients {
         match self.scale {
-            Scale::Small(small) => self.mantissas(small),
+            Scale::Small(small) => Self::mantissas(self.edges, small),
             #[cfg(feature = "all-shaders")]
             Scale::Part(gradients) => gradients,
             Scale::Any(gradients) => gradients,
@@ -231,8 +231,7 @@ impl Basis {
 
     /// Those of a small triangle: no shift of what they are multiplied with goes to the right.
     #[inline(never)]
-    fn mantissas(&self, Small { zeros, bits, .. }: Small) -> Gradients {
-        let [[x1, y1], [x2, y2]] = self.edges;
+    fn mantissas([[x1, y1], [x2, y2]]: [[i32; 2]; 2], Small { zeros, bits, .. }: Small) -> Gradients {
         let det = x1.wrapping_mul(y2).wrapping_sub(x2.wrapping_mul(y1));
         // 1 / det = r 2^(zeros - 62); coordinates are at most 2^bits, so mantissas c r 2^(zeros - 58 + exponent) at most 2^30.
         let r = recip((det as u32) << (zeros & 31)).min(i32::MAX as u32) as i32;
@@ -252,7 +251,7 @@ impl Basis {
             Scale::Small(small) if BITS <= small::LINEAR && extra <= small::EXTRA => {
                 small.linear(self.edges, self.subpixels(), nodes, extra)
             }
-            Scale::Small(small) => self.linear_small::<BITS>(self.mantissas(small), nodes, extra),
+            Scale::Small(small) => self.linear_small::<BITS>(Self::mantissas(self.edges, small), nodes, extra),
             #[cfg(feature = "all-shaders")]
             Scale::Part(gradients) => self.linear_small::<BITS>(gradients, nodes, extra),
             Scale::Any(_) => self.linear_any(nodes, extra),
@@ -276,7 +275,7 @@ impl Basis {
 
     #[cold]
     #[inline(never)]
-    fn linear_any(&self, nodes: [i32; 3], extra: u32) -> [i32; 3] {
+    fn linear_any(self, nodes: [i32; 3], extra: u32) -> [i32; 3] {
         let [c, dx, dy] = self.plane(nodes, extra);
         let [c, dx, dy, ..] = self.round([c, dx, dy, 0, 0, 0]);
         [c, dx, dy]
@@ -315,10 +314,14 @@ impl Basis {
             Scale::Small(small) if BITS <= small::QUADRATIC && extra == small::EXTRA => {
                 match small.quadratic(self.edges, self.subpixels(), nodes) {
                     Some(fitted) => fitted,
-                    None => self.quadratic_any::<BITS>(nodes, extra),
+                    None => {
+                        // Taken apart and put together: what comes back in memory is not to make the others go there.
+                        let [c, dx, dy, dxx, dxy, dyy] = self.quadratic_any::<BITS>(nodes, extra);
+                        [c, dx, dy, dxx, dxy, dyy]
+                    }
                 }
             }
-            Scale::Small(small) => self.quadratic_small::<BITS>(self.mantissas(small), nodes, extra),
+            Scale::Small(small) => self.quadratic_small::<BITS>(Self::mantissas(self.edges, small), nodes, extra),
             #[cfg(feature = "all-shaders")]
             Scale::Part(gradients) => self.quadratic_small::<BITS>(gradients, nodes, extra),
             Scale::Any(_) => self.quadratic_any::<BITS>(nodes, extra),
@@ -353,7 +356,7 @@ impl Basis {
 
     #[cold]
     #[inline(never)]
-    fn quadratic_any<const BITS: u32>(&self, nodes: [i32; 6], extra: u32) -> [i32; 6] {
+    fn quadratic_any<const BITS: u32>(self, nodes: [i32; 6], extra: u32) -> [i32; 6] {
         let [i0, i1, i2, i01, i12, i20] = nodes;
         if self.thin {
             // In 1/16 pixel, in a part of the triangle as much finer as it is smaller: all exact.

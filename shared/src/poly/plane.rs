@@ -38,7 +38,7 @@ impl<const CH: usize> Plane<CH> {
     }
 
     /// Adds `bias` to every channel.
-    #[inline]
+    #[inline(always)]
     #[must_use]
     pub fn raised(mut self, bias: [i32; CH]) -> Self {
         for (row, bias) in self.0.iter_mut().zip(bias) {

@@ -1,6 +1,6 @@
 //! Quadratic fields.
 
-use super::{Patch, Walker, basis::Basis};
+use super::{Patch, Walker, basis::Basis, small::QUADRATIC};
 
 /// `c + dx x + dy y + dxx x² + dxy x y + dyy y²` in each of `CH` channels, standing on one row.
 #[derive(Clone, Copy, Debug)]
@@ -36,9 +36,20 @@ impl<const CH: usize> Quadric<CH> {
     /// [`super::basis::MAX_THINNESS`]; nothing beyond. Levels on triangles of up to 64 pixels: 2^9 (1 + S) units more, 0.001 LSB at 16
     /// pixels.
     /// Source: Szirmay-Kalos et al.; Vlasic 2002, 4.2; change of basis without his divisions.
-    #[inline]
+    #[inline(always)]
     #[must_use]
     pub fn fit<const BITS: u32>(basis: &Basis, nodes: [[i32; 6]; CH], extra: u32) -> Self {
+        if BITS <= QUADRATIC { Self::through::<BITS>(basis, nodes, extra) } else { Self::long::<BITS>(basis, nodes, extra) }
+    }
+
+    /// By the long way in any case: a call is a small share of it.
+    #[inline(never)]
+    fn long<const BITS: u32>(basis: &Basis, nodes: [[i32; 6]; CH], extra: u32) -> Self {
+        Self::through::<BITS>(basis, nodes, extra)
+    }
+
+    #[inline(always)]
+    fn through<const BITS: u32>(basis: &Basis, nodes: [[i32; 6]; CH], extra: u32) -> Self {
         let mut rows = [Row::default(); CH];
         for (row, nodes) in rows.iter_mut().zip(nodes) {
             let [c, dx, dy, dxx, dxy, dyy] = basis.quadratic::<BITS>(nodes, extra);
@@ -57,7 +68,7 @@ impl<const CH: usize> Quadric<CH> {
     }
 
     /// Adds `bias` to every channel.
-    #[inline]
+    #[inline(always)]
     #[must_use]
     pub fn raised(mut self, bias: [i32; CH]) -> Self {
         for (row, bias) in self.0.iter_mut().zip(bias) {

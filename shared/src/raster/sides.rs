@@ -137,7 +137,7 @@ impl Sides {
     /// The next rows of a triangle that is clipped, or large: as many as stay exact, or one.
     #[cold]
     #[inline(never)]
-    fn next_large(&self, row: i32, corners: [[i32; 2]; 3], width: i32) -> (i32, Pair) {
+    fn next_large(self, row: i32, corners: [[i32; 2]; 3], width: i32) -> (i32, Pair) {
         let [top, right, left] = corners;
         let middle = first_centre(right[1].min(left[1]));
         // Left of the middle corner's row both edges leave the top; below it, the side of that corner is another edge.

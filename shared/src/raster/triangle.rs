@@ -53,10 +53,16 @@ impl Course {
         Self { sides, nearness: None, key, handed_on: false }
     }
 
-    /// The way on in the next band; `pair` and `nearness` have been walked to the end.
+    /// The way on in the next band, but for nearness; `pair` has been walked to the end.
     #[inline(always)]
-    pub(crate) fn next(&self, pair: Pair, nearness: Option<Plane<1>>) -> Self {
-        Self { sides: self.sides.below(pair), nearness, key: self.key, handed_on: true }
+    fn next(&self, pair: Pair) -> Self {
+        Self { sides: self.sides.below(pair), nearness: None, key: self.key, handed_on: true }
+    }
+
+    /// The same with this nearness.
+    #[inline(always)]
+    pub(crate) fn at(self, nearness: Option<Plane<1>>) -> Self {
+        Self { nearness, ..self }
     }
 }
 
@@ -228,7 +234,7 @@ impl Outline {
         }
         let nearness = match self.course.nearness {
             Some(nearness) => nearness,
-            None => self.late_plane(basis),
+            None => self.late_plane(*basis),
         };
         self.walk(basis, nearness, patch, tone, band)
     }
@@ -277,15 +283,15 @@ impl Outline {
         let filled = rows.filled;
         if self.course.key != 0 && sides.goes_on() {
             let Rows { sides: pair, depth, patch, .. } = rows;
-            hand_on(&self.course, pair, &depth, &patch, &mut band.relay);
+            hand_on(self.course.next(pair), &depth, &patch, &mut band.relay);
         }
         filled
     }
 
     #[cold]
     #[inline(never)]
-    fn late_plane(&self, basis: &Basis) -> Plane<1> {
-        self.plane(basis, self.course.sides.row)
+    fn late_plane(self, basis: Basis) -> Plane<1> {
+        self.plane(&basis, self.course.sides.row)
     }
 
     /// Depth, standing on `row`.
@@ -331,8 +337,8 @@ pub fn turn<A: Copy>([a, b, c]: [A; 3], by: usize) -> [A; 3] {
 
 /// Hands a triangle on to the next band, walked to its first row there.
 #[inline(never)]
-fn hand_on<D: Patch, P: Patch>(course: &Course, pair: Pair, depth: &D, patch: &P, relay: &mut Relay<'_>) {
-    relay.put(|leg| leg.keep(course, pair, depth, patch));
+fn hand_on<D: Patch, P: Patch>(course: Course, depth: &D, patch: &P, relay: &mut Relay<'_>) {
+    relay.put(|leg| leg.keep(course, depth, patch));
 }
 
 /// Fills the rows to come; there is at least one.

@@ -9,7 +9,7 @@
 //! Domain: any lights; with near lights as good as six points are.
 
 use super::{
-    Facet, Shading,
+    Facet, Method, Shading,
     form::{EXTRA, Form, NODE, Quadratic, signed},
 };
 use crate::{
@@ -27,23 +27,38 @@ use crate::{
 
 #[inline(never)]
 pub(super) fn draw<C: Pixel>(facet: &Facet<'_>, shading: &Shading<'_, C>, band: &mut Band<'_, C>) -> u32 {
-    let bends = facet.edges(facet.triangle.bend);
-    if is_curved(facet) || bends.iter().any(|&bend| bend >= 1 << SHORT) {
-        let nodes = facet.six_linear_nodes();
-        return shading.draw_lit(facet, |source| shading.six_products(&nodes, source, |p| p), square(facet), Rooted, band);
+    if let Some(pixels) = Plain::draw(facet, shading, band) {
+        return pixels;
     }
-    // |N|² less what the table begins with, Q0.32.
-    let square = || {
-        let [ab, bc, ca] = bends;
-        let nodes = [0, 0, 0, -i32::from(ab), -i32::from(bc), -i32::from(ca)];
-        Nodes::<6, 1, SHORT>::new([nodes], 32 - BEND).raised([0u32.wrapping_sub(LEAST) as i32])
-    };
-    let halves = Halves::get();
-    let fast = shading.draw_quotients::<true, _>(facet, square, |[square]| halves.rsqrt(square) as i32, band);
-    fast.unwrap_or_else(|| {
-        let nodes = facet.six_linear_nodes();
-        shading.draw_lit(facet, |source| shading.six_products(&nodes, source, |p| p), square(), Tabled, band)
-    })
+    let nodes = facet.six_linear_nodes();
+    let of = |source: &_| shading.six_products(&nodes, source, |p| p);
+    match tabled(facet) {
+        Some(square) => shading.draw_lit(facet, of, square, Tabled, band),
+        None => shading.draw_lit(facet, of, square(facet), Rooted, band),
+    }
+}
+
+/// Under one light, on one channel.
+pub(crate) struct Plain;
+
+impl Method for Plain {
+    #[inline(always)]
+    fn draw<C: Pixel>(facet: &Facet<'_>, shading: &Shading<'_, C>, band: &mut Band<'_, C>) -> Option<u32> {
+        let square = tabled(facet)?;
+        let halves = Halves::get();
+        shading.draw_quotients::<true, _>(facet, || square, |[square]| halves.rsqrt(square) as i32, band)
+    }
+}
+
+/// |N|² less what the table of roots begins with, Q0.32; `None` if some of it is not in the table.
+#[inline(always)]
+fn tabled(facet: &Facet<'_>) -> Option<Nodes<6, 1, SHORT>> {
+    let [ab, bc, ca] = facet.edges(facet.triangle.bend);
+    if is_curved(facet) || ab.max(bc).max(ca) >= 1 << SHORT {
+        return None;
+    }
+    let nodes = [0, 0, 0, -i32::from(ab), -i32::from(bc), -i32::from(ca)];
+    Some(Nodes::new([nodes], 32 - BEND).raised([0u32.wrapping_sub(LEAST) as i32]))
 }
 
 /// Bits of what edges lack of a unit length, unless their ends' normals are more than 90 degrees apart: so few that triangles are

@@ -2,7 +2,7 @@
 //!
 //! Cost: nothing per pixel; one evaluation of the lights per triangle. Not continuous across edges.
 
-use super::{Facet, RANGE, Shading, node::Node};
+use super::{Facet, Method, RANGE, Shading, node::Node};
 use crate::{
     band::Band,
     format::UNIT,
@@ -33,6 +33,19 @@ pub(super) fn draw<C: Pixel>(facet: &Facet<'_>, shading: &Shading<'_, C>, band: 
         }
     };
     facet.fill(Constant, Solid(colour), band)
+}
+
+/// Under one light, on one channel.
+pub(crate) struct Plain;
+
+impl Method for Plain {
+    #[inline(always)]
+    fn draw<C: Pixel>(facet: &Facet<'_>, shading: &Shading<'_, C>, band: &mut Band<'_, C>) -> Option<u32> {
+        let normal = wide(facet.triangle.normal);
+        let [towards, half] = shading.directions.as_ref()?;
+        let level = shading.palette.level([towards.cosine(normal), half.cosine(normal)]);
+        Some(facet.fill(Constant, Solid(shading.palette.tint(level)), band))
+    }
 }
 
 /// The triangle's centroid, and the `normal` of its plane (Q2.14).

@@ -4,13 +4,24 @@
 //! most 255 ks n (1 - c)/(1 + 2c) for the highlight and 255 kd 1.165 (1 - c)/(1 + 2c)
 //! for diffuse light, c the smallest cosine between two corners' normals.
 
-use super::{Facet, RANGE, Shading};
+use super::{Facet, Method, RANGE, Shading};
 use crate::{band::Band, pixel::Pixel};
 
 #[inline(never)]
 pub(super) fn draw<C: Pixel>(facet: &Facet<'_>, shading: &Shading<'_, C>, band: &mut Band<'_, C>) -> u32 {
     let [a, b, c] = facet.corners;
     draw_levels(|| [a.light, b.light, c.light], facet, shading, band)
+}
+
+/// Under one light, on one channel.
+pub(crate) struct Plain;
+
+impl Method for Plain {
+    #[inline(always)]
+    fn draw<C: Pixel>(facet: &Facet<'_>, shading: &Shading<'_, C>, band: &mut Band<'_, C>) -> Option<u32> {
+        let [a, b, c] = facet.corners;
+        Some(shading.draw_plain::<3, RANGE>(facet, || [a.light[0], b.light[0], c.light[0]], band))
+    }
 }
 
 /// Draws `facet` from the levels at its corners.

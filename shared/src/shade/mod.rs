@@ -6,16 +6,16 @@ mod angular;
 mod blinn;
 #[cfg(feature = "all-shaders")]
 mod cubic;
-mod duff;
+pub(crate) mod duff;
 #[cfg(feature = "all-shaders")]
 mod environment;
-mod flat;
+pub(crate) mod flat;
 mod form;
 #[cfg(feature = "all-shaders")]
 mod gloss;
 #[cfg(feature = "all-shaders")]
 mod goldman;
-mod gouraud;
+pub(crate) mod gouraud;
 #[cfg(feature = "all-shaders")]
 mod gouraud4;
 #[cfg(feature = "all-shaders")]
@@ -25,7 +25,7 @@ mod hybrid;
 mod node;
 #[cfg(feature = "all-shaders")]
 mod parabola;
-mod phong;
+pub(crate) mod phong;
 #[cfg(feature = "all-shaders")]
 mod phong_rv;
 #[cfg(feature = "all-shaders")]
@@ -39,7 +39,7 @@ mod renq;
 mod renq_newton;
 #[cfg(feature = "all-shaders")]
 mod scanline;
-mod six_point;
+pub(crate) mod six_point;
 #[cfg(feature = "all-shaders")]
 mod six_point_adaptive;
 #[cfg(feature = "all-shaders")]
@@ -49,7 +49,7 @@ mod slerp;
 #[cfg(feature = "all-shaders")]
 mod split;
 #[cfg(feature = "all-shaders")]
-mod sqrt6;
+pub(crate) mod sqrt6;
 #[cfg(feature = "all-shaders")]
 mod taylor;
 #[cfg(feature = "all-shaders")]
@@ -220,6 +220,27 @@ impl Area for Facet<'_> {
     }
 }
 
+/// A method in the loop over the triangles of one mesh.
+pub(crate) trait Method {
+    /// Whatever there is to draw.
+    const ANY: bool = false;
+
+    /// Shades `facet`, of a simple triangle, into `band`; returns its pixels there, or `None` if it takes the long way.
+    fn draw<C: Pixel>(facet: &Facet<'_>, shading: &Shading<'_, C>, band: &mut Band<'_, C>) -> Option<u32>;
+}
+
+/// Any of them, on whatever there is: looked up at each triangle.
+pub(crate) struct Any;
+
+impl Method for Any {
+    const ANY: bool = true;
+
+    #[inline(always)]
+    fn draw<C: Pixel>(facet: &Facet<'_>, shading: &Shading<'_, C>, band: &mut Band<'_, C>) -> Option<u32> {
+        Some(shading.draw(facet, band))
+    }
+}
+
 /// What all triangles of one material have in common in one frame.
 pub(crate) struct Shading<'f, C> {
     pub(crate) shader: Shader,
@@ -257,6 +278,11 @@ fn lift<const CH: usize>(half: i32) -> [i32; CH] {
 }
 
 impl<C: Pixel> Shading<'_, C> {
+    /// One level says it all: one constant light on a material of one channel, without dither.
+    pub(crate) fn is_plain(&self) -> bool {
+        self.constant.is_some() && !self.palette.three_channels && !self.dither
+    }
+
     /// Shades `facet` into `band`; returns its pixels there.
     #[inline(always)]
     pub(crate) fn draw(&self, facet: &Facet<'_>, band: &mut Band<'_, C>) -> u32 {
@@ -339,6 +365,16 @@ impl<C: Pixel> Shading<'_, C> {
         let half = if self.dither { 0 } else { 1 << (WALK - 1) };
         let field = || Nodes::<N, 1, BITS>::new([nodes()], EXTRA).raised(lift(half));
         area.draw_either(field, self.dither, (Dithered::new(self.palette.base), Ramp(&self.palette.ramp)), band)
+    }
+
+    /// Draws one level by its nodes, without dither.
+    #[inline(always)]
+    fn draw_plain<const N: usize, const BITS: u32>(&self, area: &impl Area, nodes: impl FnOnce() -> [i32; N], band: &mut Band<'_, C>) -> u32
+    where
+        Nodes<N, 1, BITS>: Field<Value = [u32; 1]>,
+    {
+        let field = || Nodes::<N, 1, BITS>::new([nodes()], EXTRA).raised(lift(1 << (WALK - 1)));
+        area.draw(field, Ramp(&self.palette.ramp), band)
     }
 
     /// Draws three levels by their nodes.

@@ -10,6 +10,7 @@ use crate::{
         rsqrt::rsqrt_wide,
         vector::{add, dot, wide, zip},
     },
+    stream::record::Vertex,
 };
 
 /// Fraction bits of a [`Node`]'s normal that a vertex's has not.
@@ -71,11 +72,7 @@ impl Facet<'_> {
 
     /// Position, and sum of the ends' normals (Q3.14), at the middle of each edge.
     fn sums(&self) -> [([i32; 3], [i32; 3]); 3] {
-        let [a, b, c] = self.vertices();
-        [(a, b), (b, c), (c, a)].map(|(a, b)| {
-            let position = add(wide(a.position), wide(b.position)).map(|c| c >> 1);
-            (position, add(wide(a.normal), wide(b.normal)))
-        })
+        sums(self.vertices())
     }
 
     /// 1/|Ni+Nj| of the edges 01, 12, 20, [`EDGE`] fraction bits, less than 2^31.
@@ -83,24 +80,11 @@ impl Facet<'_> {
     pub(super) fn rsums(&self) -> [u32; 3] {
         let [ab, bc, ca] = self.edges(self.triangle.rsum);
         if ab.max(bc).max(ca) == u16::MAX {
-            return self.wide_rsums();
+            let [ab, bc, ca] = wide_rsums(self.vertices(), [ab, bc, ca]);
+            return [ab, bc, ca];
         }
         let rsum = |excess: u16| (1 << (EDGE - 1)) + u32::from(excess);
         [rsum(ab), rsum(bc), rsum(ca)]
-    }
-
-    /// [`Self::rsums`] where a stream's 16 bits do not hold all of them.
-    #[cold]
-    #[inline(never)]
-    fn wide_rsums(&self) -> [u32; 3] {
-        let given = self.edges(self.triangle.rsum);
-        zip(self.sums(), given, |(_, sum), given| {
-            if given < u16::MAX {
-                return (1 << (EDGE - 1)) + u32::from(given);
-            }
-            let (mantissa, exponent) = rsqrt_wide(dot(sum, sum).max(1) as u64);
-            ((u64::from(mantissa) << (UNIT + EDGE)) >> exponent).min(i32::MAX as u64) as u32
-        })
     }
 
     /// N·L (`which` is 0) or N·H (1), Q2.30, at the six nodes under one constant light: at midpoints it follows from that
@@ -114,6 +98,27 @@ impl Facet<'_> {
         let middle = |a: i32, b: i32, rsum: u32| (product((a >> 1) + (b >> 1), rsum as i32) >> (EDGE - 1)) as i32;
         [a, b, c, middle(a, b, ab), middle(b, c, bc), middle(c, a, ca)]
     }
+}
+
+/// Position, and sum of the ends' normals (Q3.14), at the middle of each edge between these.
+fn sums([a, b, c]: [&Vertex; 3]) -> [([i32; 3], [i32; 3]); 3] {
+    [(a, b), (b, c), (c, a)].map(|(a, b)| {
+        let position = add(wide(a.position), wide(b.position)).map(|c| c >> 1);
+        (position, add(wide(a.normal), wide(b.normal)))
+    })
+}
+
+/// [`Facet::rsums`] where the 16 bits that are `given` do not hold all of them.
+#[cold]
+#[inline(never)]
+fn wide_rsums(vertices: [&Vertex; 3], given: [u16; 3]) -> [u32; 3] {
+    zip(sums(vertices), given, |(_, sum), given| {
+        if given < u16::MAX {
+            return (1 << (EDGE - 1)) + u32::from(given);
+        }
+        let (mantissa, exponent) = rsqrt_wide(dot(sum, sum).max(1) as u64);
+        ((u64::from(mantissa) << (UNIT + EDGE)) >> exponent).min(i32::MAX as u64) as u32
+    })
 }
 
 /// `f` of each value at six nodes. Written out: `map` is a loop through memory at opt-level "s".

@@ -11,8 +11,11 @@ use crate::{
     },
     palette::Levels,
     pixel::Pixel,
-    poly::field::{Field, Nodes},
-    tone::Tone,
+    poly::{
+        Constant,
+        field::{Field, Nodes},
+    },
+    tone::{Solid, Tone},
 };
 
 /// Fraction bits of a diffuse level at a node: as much of one as the ramp takes, in either direction, is [`RANGE`] bits.
@@ -43,10 +46,39 @@ impl<C: Pixel, V, R: Fn(V) -> i32 + Copy, const EXACT: bool> Tone<(([u32; 1], [u
     #[inline(always)]
     fn tone(&self, (([light], [half]), length): (([u32; 1], [u32; 1]), V), _: usize) -> C {
         let half_reciprocal = (self.half_reciprocal)(length);
-        let diffuse = upper(light as i32, half_reciprocal).max(0);
-        let diffuse = if EXACT { diffuse } else { diffuse.min(self.levels.node(1 << COSINE, PIXEL)) } as u32;
+        let diffuse = self.levels.quotient::<EXACT>(light, half_reciprocal);
         let highlight = self.steps.at(upper(half as i32, half_reciprocal));
         self.levels.colour::<PIXEL>(diffuse, highlight)
+    }
+}
+
+/// The same where there is no highlight.
+#[derive(Clone, Copy)]
+struct Matte<'a, C, R, const EXACT: bool> {
+    levels: Levels<'a, C>,
+    /// The highlight's entry.
+    floor: u32,
+    half_reciprocal: R,
+}
+
+impl<C: Pixel, V, R: Fn(V) -> i32 + Copy, const EXACT: bool> Tone<([u32; 1], V)> for Matte<'_, C, R, EXACT> {
+    type Pixel = C;
+
+    const CHEAP: bool = true;
+
+    #[inline(always)]
+    fn tone(&self, ([light], length): ([u32; 1], V), _: usize) -> C {
+        let diffuse = self.levels.quotient::<EXACT>(light, (self.half_reciprocal)(length));
+        self.levels.colour::<PIXEL>(diffuse, self.floor)
+    }
+}
+
+impl<C: Pixel> Levels<'_, C> {
+    /// The diffuse level of a numerator times half a reciprocal length.
+    #[inline(always)]
+    fn quotient<const EXACT: bool>(&self, light: u32, half_reciprocal: i32) -> u32 {
+        let diffuse = upper(light as i32, half_reciprocal).max(0);
+        (if EXACT { diffuse } else { diffuse.min(self.node(1 << COSINE, PIXEL)) }) as u32
     }
 }
 
@@ -67,14 +99,18 @@ impl<C: Pixel> Shading<'_, C> {
     ) -> Option<u32> {
         let levels = self.one_light()?;
         let steps = Quotients::new(&self.palette.power);
+        let [a, b, c] = facet.corners;
+        let light = || Nodes::<3, 1, RANGE>::new([[levels.node(a.light[0], NODE), levels.node(b.light[0], NODE), levels.node(c.light[0], NODE)]], LEVEL - NODE);
+        if facet.is_dark(self.palette) {
+            if a.light[0].max(b.light[0]).max(c.light[0]) <= 0 {
+                return Some(facet.draw(|| Constant, Solid(levels.colour::<PIXEL>(0, steps.least())), band));
+            }
+            return Some(facet.draw(|| (light(), length()), Matte::<_, _, EXACT> { levels, floor: steps.least(), half_reciprocal }, band));
+        }
         let field = || {
-            let [a, b, c] = facet.corners.map(|corner| corner.light);
-            let light = [levels.node(a[0], NODE), levels.node(b[0], NODE), levels.node(c[0], NODE)];
-            let half = [steps.node(a[1]), steps.node(b[1]), steps.node(c[1])];
+            let half = [steps.node(a.light[1]), steps.node(b.light[1]), steps.node(c.light[1])];
             // Two planes of one channel: the compiler makes a loop of one plane of two, and keeps it in memory.
-            let light = Nodes::<3, 1, RANGE>::new([light], LEVEL - NODE);
-            let half = Nodes::<3, 1, STEPS>::new([half], steps::EXTRA);
-            ((light, half), length())
+            ((light(), Nodes::<3, 1, STEPS>::new([half], steps::EXTRA)), length())
         };
         Some(facet.draw(field, Quotient::<_, _, EXACT> { levels, steps, half_reciprocal }, band))
     }

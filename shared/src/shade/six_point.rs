@@ -5,7 +5,7 @@
 //! same midpoint. Good for wide highlights or fine meshes; a highlight narrower
 //! than a triangle is flattened.
 
-use super::{Facet, RANGE, Shading, node::zip_six};
+use super::{Facet, Method, RANGE, Shading, node::zip_six};
 use crate::{band::Band, palette::Palette, pixel::Pixel};
 
 #[inline(never)]
@@ -23,6 +23,16 @@ pub(super) fn draw<C: Pixel>(facet: &Facet<'_>, shading: &Shading<'_, C>, band: 
             None => lit(facet, shading),
         };
         shading.draw_three::<6, RANGE>(facet, nodes, band)
+    }
+}
+
+/// Under one light, on one channel.
+pub(crate) struct Plain;
+
+impl Method for Plain {
+    #[inline(always)]
+    fn draw<C: Pixel>(facet: &Facet<'_>, shading: &Shading<'_, C>, band: &mut Band<'_, C>) -> Option<u32> {
+        Some(shading.draw_plain::<6, RANGE>(facet, || one_level(facet, shading.palette), band))
     }
 }
 

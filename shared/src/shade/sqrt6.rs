@@ -10,7 +10,7 @@
 //! Domain: any lights; coarse triangles near a light need splitting.
 
 use super::{
-    Area, Facet, RANGE, Shading,
+    Area, Facet, Method, RANGE, Shading,
     form::{BITS, EXTRA, Form, quadratic, signed},
     node::map_six,
 };
@@ -31,27 +31,42 @@ const LOWEST: i32 = ONE / 4;
 
 #[inline(never)]
 pub(super) fn draw<C: Pixel>(facet: &Facet<'_>, shading: &Shading<'_, C>, band: &mut Band<'_, C>) -> u32 {
-    if let Some(gloss) = shading.gloss(Squared) {
-        let cosines = facet.six_cosines(0);
-        let is_bright = is_bright(cosines);
-        if is_bright && facet.is_dark(shading.palette) {
-            return shading.draw_one::<6, RANGE>(facet, || shading.palette.six_matte(cosines), band);
+    if shading.is_plain()
+        && let Some(pixels) = Plain::draw(facet, shading, band)
+    {
+        return pixels;
+    }
+    let nodes = facet.six_nodes();
+    let fit = |source: &_| shading.six_products(&nodes, source, |[light, half]| [light, root(half)]);
+    shading.draw_lit(facet, fit, Constant, Squared, band)
+}
+
+/// Under one light, on one channel.
+pub(crate) struct Plain;
+
+impl Method for Plain {
+    #[inline(always)]
+    fn draw<C: Pixel>(facet: &Facet<'_>, shading: &Shading<'_, C>, band: &mut Band<'_, C>) -> Option<u32> {
+        let (palette, cosines) = (shading.palette, facet.six_cosines(0));
+        let lit = Lit::of(cosines);
+        if lit != Lit::Partly && facet.is_dark(palette) {
+            return Some(shading.draw_plain::<6, RANGE>(facet, || palette.six_matte(cosines), band));
         }
         let roots = || map_six(facet.six_cosines(1), root);
-        if let Some(levels) = shading.one_light().filter(|levels| is_bright && levels.is_within()) {
-            let defects = Defects::new(&shading.palette.power);
+        if lit == Lit::Everywhere
+            && let Some(levels) = shading.one_light().filter(Levels::is_within)
+        {
+            let defects = Defects::new(&palette.power);
             let field = || {
                 let light = Nodes::<6, 1, RANGE>::new([map_six(cosines, |cosine| levels.node(cosine, LEVEL))], WALK - LEVEL);
                 let half = Nodes::<6, 1, BITS>::new([map_six(roots(), |root| defects.node(root))], EXTRA).raised([defects.half()]);
                 (light, half)
             };
-            return facet.draw(field, Defective { levels, defects }, band);
+            return Some(facet.draw(field, Defective { levels, defects }, band));
         }
-        return facet.draw(|| ((quadratic([cosines]), quadratic([roots()])), Constant), gloss, band);
+        let gloss = shading.gloss(Squared)?;
+        Some(facet.draw(|| ((quadratic([cosines]), quadratic([roots()])), Constant), gloss, band))
     }
-    let nodes = facet.six_nodes();
-    let fit = |source: &_| shading.six_products(&nodes, source, |[light, half]| [light, root(half)]);
-    shading.draw_lit(facet, fit, Constant, Squared, band)
 }
 
 /// Level and what the root of N·H lacks of 1.
@@ -72,11 +87,28 @@ impl<C: Pixel> Tone<([u32; 1], [u32; 1])> for Defective<'_, C> {
     }
 }
 
-/// Whether the quadratic through these nodes is positive everywhere: it leaves the middle of its nodes' range by at most 5/3
-/// of half the range (its Lebesgue constant). The level may be fitted then instead of the cosine, which is not clamped.
-fn is_bright([a, b, c, ab, bc, ca]: [i32; 6]) -> bool {
-    let (least, most) = (a.min(b).min(c).min(ab).min(bc).min(ca), a.max(b).max(c).max(ab).max(bc).max(ca));
-    least >= most >> 2 && least > 0
+/// Where the quadratic through N·L is positive.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Lit {
+    Everywhere,
+    Nowhere,
+    Partly,
+}
+
+impl Lit {
+    /// By its nodes: it leaves the middle of their range by at most 5/3 of half the range (its Lebesgue constant). Unless it changes its
+    /// sign the level may be fitted instead of the cosine, which is not clamped.
+    #[inline(always)]
+    fn of([a, b, c, ab, bc, ca]: [i32; 6]) -> Self {
+        let (least, most) = (a.min(b).min(c).min(ab).min(bc).min(ca), a.max(b).max(c).max(ab).max(bc).max(ca));
+        if least > 0 && least >= most >> 2 {
+            Self::Everywhere
+        } else if most < 0 && most <= least >> 2 {
+            Self::Nowhere
+        } else {
+            Self::Partly
+        }
+    }
 }
 
 /// sqrt(w) for w >= 1/4, w + 1/4 below: of one slope where they meet. Q2.30.
