@@ -348,6 +348,22 @@ fn hand_on<D: Patch, P: Patch>(course: Course, depth: &D, patch: &P, relay: &mut
 /// compiler would count in two registers instead of one. Armv6-M has so few that not even the pointer may stay in one.
 #[inline(never)]
 pub(super) fn fill_rows<D: Patch<Walker: Sight>, P: Patch, T: Tone<<P::Walker as Walker>::Value>>(mut rows: &mut Rows<'_, D, P, T>) {
+    if HALVES || cfg!(not(target_arch = "arm")) {
+        let Rows { width, start, sides, count, height, filled, depth, patch, tone, .. } = *rows;
+        let mut state =
+            Rows { pixels: &mut *rows.pixels, buffer: &mut *rows.buffer, width, start, sides, count, height, filled, depth, patch, tone };
+        loop {
+            state.fill();
+            state.step();
+            state.height = state.height.wrapping_sub(1);
+            if state.height == 0 {
+                break;
+            }
+        }
+        let Rows { start, sides, count, filled, depth, patch, tone, .. } = state;
+        (rows.start, rows.sides, rows.count, rows.filled, rows.depth, rows.patch, rows.tone) = (start, sides, count, filled, depth, patch, tone);
+        return;
+    }
     loop {
         rows = black_box(rows);
         rows.fill();
