@@ -348,20 +348,8 @@ fn hand_on<D: Patch, P: Patch>(course: Course, depth: &D, patch: &P, relay: &mut
 /// compiler would count in two registers instead of one. Armv6-M has so few that not even the pointer may stay in one.
 #[inline(never)]
 pub(super) fn fill_rows<D: Patch<Walker: Sight>, P: Patch, T: Tone<<P::Walker as Walker>::Value>>(mut rows: &mut Rows<'_, D, P, T>) {
-    if HALVES || cfg!(not(target_arch = "arm")) {
-        let Rows { width, start, sides, count, height, filled, depth, patch, tone, .. } = *rows;
-        let mut state =
-            Rows { pixels: &mut *rows.pixels, buffer: &mut *rows.buffer, width, start, sides, count, height, filled, depth, patch, tone };
-        loop {
-            state.fill();
-            state.step();
-            state.height = state.height.wrapping_sub(1);
-            if state.height == 0 {
-                break;
-            }
-        }
-        let Rows { start, sides, count, filled, depth, patch, tone, .. } = state;
-        (rows.start, rows.sides, rows.count, rows.filled, rows.depth, rows.patch, rows.tone) = (start, sides, count, filled, depth, patch, tone);
+    if Rows::<D, P, T>::LOCAL {
+        rows.fill_here();
         return;
     }
     loop {
@@ -379,6 +367,12 @@ pub(super) fn fill_rows<D: Patch<Walker: Sight>, P: Patch, T: Tone<<P::Walker as
 }
 
 impl<'b, D: Patch<Walker: Sight>, P: Patch, T: Tone<<P::Walker as Walker>::Value>> Rows<'b, D, P, T> {
+    /// Whether rows are filled in a copy: where registers are few or many, or nothing is walked.
+    const LOCAL: bool = HALVES || cfg!(not(target_arch = "arm")) || P::WORDS == 0;
+
+    /// Whether pixels are counted a row ahead there, so that what is counted need not wait for the pixel loop.
+    const AHEAD: bool = Self::LOCAL && cfg!(target_arch = "arm") && P::WORDS <= 6;
+
     /// No rows yet, from `row` of the band on.
     #[inline(always)]
     pub(super) fn new(band: &'b mut Band<'_, T::Pixel>, row: i32, sides: Pair, depth: D, patch: P, tone: T) -> Self {
@@ -393,7 +387,7 @@ impl<'b, D: Patch<Walker: Sight>, P: Patch, T: Tone<<P::Walker as Walker>::Value
         let count = if HALVES { self.count & ROW } else { self.count } as usize;
         // Measured: loops that leave no register free are shorter if pixels are counted behind them.
         let late = !HALVES && P::WORDS > 6;
-        if !late {
+        if !Self::AHEAD && !late {
             self.filled = self.filled.wrapping_add(self.count);
         }
         let (left, right) = ((self.sides.left.x >> COLUMN) as usize, self.sides.right.x >> COLUMN);
@@ -407,10 +401,36 @@ impl<'b, D: Patch<Walker: Sight>, P: Patch, T: Tone<<P::Walker as Walker>::Value
             && let Some(buffer) = D::Walker::depth(self.buffer, start..end)
         {
             fill(pixels, buffer, self.depth.enter(right as i32), self.patch.enter(right as i32), self.tone, left);
-            if late {
+            if !Self::AHEAD && late {
                 self.filled = self.filled.wrapping_add(count as u32);
             }
         }
+    }
+
+    /// [`fill_rows`] in a copy that is nobody else's.
+    #[inline(always)]
+    fn fill_here(&mut self) {
+        let Rows { width, start, sides, count, height, filled, depth, patch, tone, .. } = *self;
+        let (pixels, buffer) = (&mut *self.pixels, &mut *self.buffer);
+        let mut rows = Rows { pixels, buffer, width, start, sides, count, height, filled, depth, patch, tone };
+        let ahead = |count: u32| if Self::AHEAD { count } else { 0 };
+        rows.filled = rows.filled.wrapping_add(ahead(rows.count));
+        loop {
+            if !HALVES && cfg!(target_arch = "arm") {
+                rows.count = black_box(rows.count);
+            }
+            rows.fill();
+            rows.step();
+            rows.filled = rows.filled.wrapping_add(ahead(rows.count));
+            rows.height = rows.height.wrapping_sub(1);
+            if rows.height == 0 {
+                break;
+            }
+        }
+        // Without that of the row behind the last.
+        self.filled = rows.filled.wrapping_sub(ahead(rows.count));
+        let Rows { start, sides, depth, patch, tone, .. } = rows;
+        (self.start, self.sides, self.depth, self.patch, self.tone) = (start, sides, depth, patch, tone);
     }
 
     /// Steps to the next row.
