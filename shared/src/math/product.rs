@@ -34,6 +34,13 @@ pub fn upper_by_half_word(a: i32, b: i32) -> i32 {
     if HALVES { by_half_word(a, b >> 16) } else { ((i64::from(a) * i64::from(b)) >> 32) as i32 }
 }
 
+/// `a b / 2^16`, rounded down.
+#[inline(always)]
+#[must_use]
+pub fn by_fraction(a: i32, b: u16) -> i32 {
+    if HALVES { by_half_word(a, b.into()) } else { ((i64::from(a) * i64::from(b)) >> 16) as i32 }
+}
+
 /// `(a x + b y) / 2^32`, rounded down; `x` and `y` are multiples of 2^16.
 #[inline(always)]
 #[must_use]
@@ -88,7 +95,7 @@ fn unsigned_by_halves(a: u32, b: u32) -> u64 {
     u64::from(upper) << 32 | u64::from(a.wrapping_mul(b))
 }
 
-/// `a b / 2^16`, rounded down; `b` is at most 15 bits.
+/// `a b / 2^16`, rounded down; `b` is at most 16 bits, without a sign.
 #[inline(always)]
 fn by_half_word(a: i32, b: i32) -> i32 {
     let (low, high) = split(a);
@@ -115,8 +122,10 @@ mod tests {
         assert_eq!(whole_by_halves(a, b), whole, "{a} {b}");
         assert_eq!(upper_by_halves(a, b), (whole >> 32) as i32, "{a} {b}");
         assert_eq!(unsigned_by_halves(a as u32, b as u32), u64::from(a as u32) * u64::from(b as u32), "{a} {b}");
+        let fraction = b as u16;
+        assert_eq!(i64::from(by_half_word(a, fraction.into())), (i64::from(a) * i64::from(fraction)) >> 16, "{a} {fraction}");
+        assert_eq!(by_fraction(a, fraction), by_half_word(a, fraction.into()));
         let (factor, product) = (b & 0x7FFF, i64::from(a) * i64::from(b & 0x7FFF));
-        assert_eq!(i64::from(by_half_word(a, factor)), product >> 16, "{a} {factor}");
         assert_eq!(i64::from(upper_by_half_word(a, factor << 16)), product >> 16, "{a} {factor}");
     }
 

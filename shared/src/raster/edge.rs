@@ -12,11 +12,11 @@
 
 use crate::{
     format::{CENTRE, SUBPIXEL},
-    math::quotient::{LARGEST, quotient},
+    math::quotient::{LARGEST, SLOPE, slope},
 };
 
 /// Fraction bits of a walked column.
-pub const COLUMN: u32 = 21;
+pub const COLUMN: u32 = SLOPE;
 
 /// Columns that a walked column can tell apart: no viewport is wider.
 pub const COLUMNS: u32 = 1 << (32 - COLUMN);
@@ -100,7 +100,7 @@ impl Edge {
     #[inline]
     #[must_use]
     pub fn walk(&self) -> Column {
-        let step = quotient(self.dx << COLUMN, self.dy.max(1));
+        let step = slope(self.dx, self.dy.max(1));
         // From the start to the first centre, less than a row: step down / 16, rounded down.
         let down = CENTRE.wrapping_sub(self.y) & (2 * CENTRE - 1);
         let across = (step >> SUBPIXEL).wrapping_mul(down).wrapping_add((step & (2 * CENTRE - 1)).wrapping_mul(down) >> SUBPIXEL);

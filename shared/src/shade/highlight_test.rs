@@ -35,7 +35,7 @@ fn is_dark<C: Pixel>(facet: &Facet<'_>, shading: &Shading<'_, C>) -> bool {
     let corners = facet.corner_nodes();
     shading.lighting.is_constant()
         && shading.lighting.sources.iter().all(|source| match *source {
-            Source::Directional { half, .. } => corners.iter().all(|corner| i64::from(cosine(corner.normal, half)) < limit),
+            Source::Directional { half, .. } => corners.iter().all(|corner| cosine(corner.normal, half) < limit),
             Source::Point(_) => false,
         })
 }

@@ -60,7 +60,7 @@ use crate::poly::hyperbolic::Hyperbolic;
 use crate::{
     band::Band,
     format::{BIAS, LEVEL, RHO, WALK},
-    math::product::product,
+    math::product::by_fraction,
     palette::Palette,
     pixel::Pixel,
     poly::{
@@ -149,13 +149,13 @@ impl Facet<'_> {
     #[inline(always)]
     fn is_dark<C: Pixel>(&self, palette: &Palette<C>) -> bool {
         let [a, b, c] = self.corners;
-        i64::from(a.light[1].max(b.light[1]).max(c.light[1])) < self.dark_below(palette)
+        a.light[1].max(b.light[1]).max(c.light[1]) < self.dark_below(palette)
     }
 
     /// Where N·H, linear between the corners, is smaller, N·H over |N| is too small for a highlight; Q2.30.
     #[inline(always)]
-    fn dark_below<C: Pixel>(&self, palette: &Palette<C>) -> i64 {
-        product(palette.dark_below(), self.triangle.rho.into()) >> RHO
+    fn dark_below<C: Pixel>(&self, palette: &Palette<C>) -> i32 {
+        by_fraction(palette.dark_below(), self.triangle.rho) << (16 - RHO)
     }
 }
 

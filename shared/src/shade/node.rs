@@ -6,7 +6,7 @@ use crate::math::vector::normalise;
 use crate::{
     format::{EDGE, UNIT},
     math::{
-        product::product,
+        product::{by_fraction, product},
         rsqrt::rsqrt_wide,
         vector::{add, dot, wide, zip},
     },
@@ -93,9 +93,16 @@ impl Facet<'_> {
     pub(super) fn six_cosines(&self, which: usize) -> [i32; 6] {
         let [a, b, c] = self.corners;
         let (a, b, c) = (a.light[which], b.light[which], c.light[which]);
-        let [ab, bc, ca] = self.rsums();
-        // Half of both.
-        let middle = |a: i32, b: i32, rsum: u32| (product((a >> 1) + (b >> 1), rsum as i32) >> (EDGE - 1)) as i32;
+        let [ab, bc, ca] = self.edges(self.triangle.rsum);
+        if ab.max(bc).max(ca) == u16::MAX {
+            let [ab, bc, ca] = wide_middles(self.vertices(), [ab, bc, ca], [a, b, c]);
+            return [a, b, c, ab, bc, ca];
+        }
+        // What exceeds 1/2 adds as much of half of both, halved.
+        let middle = |a: i32, b: i32, excess: u16| {
+            let mean = (a >> 1) + (b >> 1);
+            mean + by_fraction(mean, excess)
+        };
         [a, b, c, middle(a, b, ab), middle(b, c, bc), middle(c, a, ca)]
     }
 }
@@ -126,6 +133,14 @@ fn wide_rsums(vertices: [&Vertex; 3], given: [u16; 3]) -> [u32; 3] {
 #[inline(always)]
 pub(super) fn map_six<A, R>([a, b, c, d, e, g]: [A; 6], f: impl Fn(A) -> R) -> [R; 6] {
     [f(a), f(b), f(c), f(d), f(e), f(g)]
+}
+
+/// [`Facet::six_cosines`] at the midpoints, from those at corners, where the 16 bits that are `given` do not hold all of the edges' constants.
+#[cold]
+#[inline(never)]
+fn wide_middles(vertices: [&Vertex; 3], given: [u16; 3], [a, b, c]: [i32; 3]) -> [i32; 3] {
+    let middle = |(a, b): (i32, i32), rsum: u32| (product((a >> 1) + (b >> 1), rsum as i32) >> (EDGE - 1)) as i32;
+    zip([(a, b), (b, c), (c, a)], wide_rsums(vertices, given), middle)
 }
 
 /// `f` of each pair of values at six nodes. Written out: `map` is a loop through memory at opt-level "s".
