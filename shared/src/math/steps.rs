@@ -80,6 +80,13 @@ impl<'a> Defects<'a> {
         upper_by_half_word((1 << 30) - cosine, self.factor) >> 5
     }
 
+    /// The entry of large defects.
+    #[inline(always)]
+    #[must_use]
+    pub fn most(&self) -> u32 {
+        self.table[SIZE - 1].into()
+    }
+
     /// Half a step, added to a walked defect: the entry below is the nearest then.
     #[inline(always)]
     #[must_use]

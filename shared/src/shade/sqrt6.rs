@@ -48,17 +48,27 @@ impl Method for Plain {
     #[inline(always)]
     fn draw<C: Pixel>(facet: &Facet<'_>, shading: &Shading<'_, C>, band: &mut Band<'_, C>) -> Option<u32> {
         let (palette, cosines) = (shading.palette, facet.six_cosines(0));
-        let lit = Lit::of(cosines);
-        if lit != Lit::Partly && facet.is_dark(palette) {
+        let (lit, is_dark) = (Lit::of(cosines), facet.is_dark(palette));
+        if is_dark && matches!(lit, Lit::Everywhere | Lit::Nowhere) {
             return Some(shading.draw_plain::<6, RANGE>(facet, || palette.six_matte(cosines), band));
         }
         let roots = || map_six(facet.six_cosines(1), root);
-        if lit == Lit::Everywhere
-            && let Some(levels) = shading.one_light().filter(Levels::is_within)
+        let defects = Defects::new(&palette.power);
+        let levels = shading.one_light().filter(Levels::is_within);
+        let light = |levels: Levels<'_, C>| {
+            Nodes::<6, 1, RANGE>::new([map_six(cosines, |cosine| levels.node(cosine, LEVEL))], WALK - LEVEL)
+        };
+        if is_dark
+            && lit == Lit::Partly
+            && let Some(levels) = levels
         {
-            let defects = Defects::new(&palette.power);
+            return Some(facet.draw(|| light(levels), Clamped { levels, floor: defects.most() }, band));
+        }
+        if lit == Lit::Everywhere
+            && let Some(levels) = levels
+        {
             let field = || {
-                let light = Nodes::<6, 1, RANGE>::new([map_six(cosines, |cosine| levels.node(cosine, LEVEL))], WALK - LEVEL);
+                let light = light(levels);
                 let half = Nodes::<6, 1, BITS>::new([map_six(roots(), |root| defects.node(root))], EXTRA).raised([defects.half()]);
                 (light, half)
             };
@@ -87,12 +97,33 @@ impl<C: Pixel> Tone<([u32; 1], [u32; 1])> for Defective<'_, C> {
     }
 }
 
+/// Level of diffuse light, negative where there is none.
+#[derive(Clone, Copy)]
+struct Clamped<'a, C> {
+    levels: Levels<'a, C>,
+    /// The highlight's entry.
+    floor: u32,
+}
+
+impl<C: Pixel> Tone<[u32; 1]> for Clamped<'_, C> {
+    type Pixel = C;
+
+    const CHEAP: bool = true;
+
+    #[inline(always)]
+    fn tone(&self, [light]: [u32; 1], _: usize) -> C {
+        self.levels.colour::<WALK>(signed(light).max(0) as u32, self.floor)
+    }
+}
+
 /// Where the quadratic through N·L is positive.
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum Lit {
     Everywhere,
     Nowhere,
     Partly,
+    /// Partly, and nodes differ by more than 1: levels by more than [`RANGE`].
+    Steeply,
 }
 
 impl Lit {
@@ -105,8 +136,10 @@ impl Lit {
             Self::Everywhere
         } else if most < 0 && most <= least >> 2 {
             Self::Nowhere
-        } else {
+        } else if most.saturating_sub(least) <= ONE {
             Self::Partly
+        } else {
+            Self::Steeply
         }
     }
 }
