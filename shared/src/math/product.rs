@@ -41,6 +41,18 @@ pub fn by_fraction(a: i32, b: u16) -> i32 {
     if HALVES { by_half_word(a, b.into()) } else { ((i64::from(a) * i64::from(b)) >> 16) as i32 }
 }
 
+/// The same of a number without a sign.
+#[inline(always)]
+#[must_use]
+pub fn unsigned_by_fraction(a: u32, b: u16) -> u32 {
+    let factor = u32::from(b);
+    if HALVES {
+        (a >> 16).wrapping_mul(factor).wrapping_add((a & 0xFFFF).wrapping_mul(factor) >> 16)
+    } else {
+        ((u64::from(a) * u64::from(b)) >> 16) as u32
+    }
+}
+
 /// `(a x + b y) / 2^32`, rounded down; `x` and `y` are multiples of 2^16.
 #[inline(always)]
 #[must_use]

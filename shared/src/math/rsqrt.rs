@@ -1,6 +1,6 @@
 //! Reciprocal square root.
 
-use super::product::unsigned_product;
+use super::product::{unsigned_by_fraction, unsigned_product, upper};
 
 /// First guesses for [`rsqrt`], indexed by the argument's upper eight bits (64..=255), Q0.16.
 static SEED: [u16; 192] = {
@@ -35,6 +35,30 @@ pub fn rsqrt(m: u32) -> u32 {
 
 /// Largest error of [`rsqrt`], in units of its result.
 pub const ERROR: f64 = 8.0;
+
+/// sqrt(w), Q2.30, for `w` in [1/4, 1), Q2.30.
+///
+/// The table's reciprocal root y, one Newton step y + y (1 - m y²) / 2 in few bits, then one of the root itself: s + s (1 - s/sqrt(w)) / 2
+/// (Goldschmidt 1964). Error: at most [`ROOT_ERROR`], in 2^-30 (tests::root_error).
+#[inline]
+#[must_use]
+pub fn sqrt(w: i32) -> i32 {
+    let m = (w as u32) << 2;
+    let seed = SEED.get((m >> 24).wrapping_sub(64) as usize).copied().unwrap_or(0);
+    let seed = u32::from(seed);
+    let square = (seed.wrapping_mul(seed).wrapping_add(1 << 15) >> 16) as u16;
+    // What m y² lacks of 1, Q2.30: less than 2^23.
+    let lack = (1i32 << 30).wrapping_sub(unsigned_by_fraction(m, square) as i32);
+    let y = (seed << 14).wrapping_add(((seed as i32).wrapping_mul(lack >> 9) >> 8) as u32) as i32;
+    // sqrt(w) = 2 w / sqrt(4 w).
+    let s = upper(w << 1, y) << 2;
+    // What s / sqrt(w) lacks of 1, Q5.27: less than 2^13.
+    let lack = (1 << 27) - upper(s, y);
+    s + ((s >> 15).wrapping_mul(lack) >> 13)
+}
+
+/// Largest error of [`sqrt`], in units of its result.
+pub const ROOT_ERROR: f64 = 4.0;
 
 /// 1/(2 sqrt(x)) in Q2.30 at x = k/4096.
 const fn half_root(k: u128) -> u32 {
@@ -116,6 +140,16 @@ mod tests {
             m += 65_521;
         }
         assert!(worst <= ERROR, "{worst}");
+    }
+
+    #[test]
+    fn root_error() {
+        let mut worst = 0f64;
+        for w in ((1i32 << 28)..1 << 30).step_by(509).chain((1 << 30) - 1_000..1 << 30) {
+            let exact = (f64::from(w) * 2f64.powi(30)).sqrt();
+            worst = worst.max((f64::from(sqrt(w)) - exact).abs());
+        }
+        assert!(worst <= ROOT_ERROR, "{worst}");
     }
 
     #[test]

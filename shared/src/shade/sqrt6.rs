@@ -17,7 +17,7 @@ use super::{
 use crate::{
     band::Band,
     format::{LEVEL, WALK},
-    math::{power::PixelPower, product::product, rsqrt::rsqrt, steps::Defects},
+    math::{power::PixelPower, rsqrt::sqrt, steps::Defects},
     palette::{Levels, Reflection},
     pixel::Pixel,
     poly::{Constant, field::Nodes},
@@ -149,9 +149,7 @@ fn root(w: i32) -> i32 {
     if w < LOWEST {
         return w + LOWEST;
     }
-    // sqrt(w) = 2 w / sqrt(4 w), 4 w in [1, 4).
-    let w = w.min(ONE - 1);
-    (product(w, rsqrt((w as u32) << 2) as i32) >> 29) as i32
+    sqrt(w.min(ONE - 1))
 }
 
 /// The inverse of [`root`] at the pixel.
