@@ -251,6 +251,9 @@ impl Basis {
             Scale::Small(small) if BITS <= small::LINEAR && extra <= small::EXTRA => {
                 small.linear(self.edges, self.subpixels(), nodes, extra)
             }
+            Scale::Small(small) if BITS <= small::LONG && small::LONG_EXTRA.contains(&extra) => {
+                small.long_linear(self.edges, self.subpixels(), nodes, extra)
+            }
             Scale::Small(small) => self.linear_small::<BITS>(Self::mantissas(self.edges, small), nodes, extra),
             #[cfg(feature = "all-shaders")]
             Scale::Part(gradients) => self.linear_small::<BITS>(gradients, nodes, extra),
@@ -319,6 +322,12 @@ impl Basis {
                         let [c, dx, dy, dxx, dxy, dyy] = self.quadratic_any::<BITS>(nodes, extra);
                         [c, dx, dy, dxx, dxy, dyy]
                     }
+                }
+            }
+            Scale::Small(small) if BITS <= small::LONG && small::LONG_EXTRA.contains(&extra) => {
+                match small.long_quadratic(self.edges, self.subpixels(), nodes, extra) {
+                    Some(fitted) => fitted,
+                    None => self.quadratic_any::<BITS>(nodes, extra),
                 }
             }
             Scale::Small(small) => self.quadratic_small::<BITS>(Self::mantissas(self.edges, small), nodes, extra),

@@ -9,7 +9,7 @@ use crate::{
     cull::is_small,
     format::SUBPIXEL,
     math::{
-        product::{product, shifted, upper_dot},
+        product::{product, rounded, shifted, upper_dot},
         quotient::inverse,
         zeros::leading_zeros,
     },
@@ -21,6 +21,12 @@ pub(super) const EXTRA: u32 = 16;
 pub(super) const LINEAR: u32 = 20;
 /// Bits of the range of nodes between which a quadratic may go.
 pub(super) const QUADRATIC: u32 = 15;
+/// Bits of the range of nodes between which fields of [`LONG_EXTRA`] may go.
+pub(super) const LONG: u32 = 26;
+/// More fraction bits that they are walked with.
+pub(super) const LONG_EXTRA: [u32; 2] = [5, 6];
+/// Bits of a second derivative that their way to the anchor has room for.
+const LONG_BEND: u32 = 27;
 
 /// Twice the area of a small triangle, ready to divide by.
 #[derive(Clone, Copy, Debug)]
@@ -80,14 +86,13 @@ impl Small {
         let [[x1, y1], [x2, y2]] = edges;
         // Sides take all of a word but its sign. Second differences take as much of one as leaves room for their products with two
         // sides, or for what then is a whole number.
-        let (side, second) = (|c: i32| c << (31 - self.bits), (28 - QUADRATIC - self.bits).min(self.bits + 1));
+        let second = (28 - QUADRATIC - self.bits).min(self.bits + 1);
         let (ss, st, tt) = (ss << second, st << second, tt << second);
         // Times the area: one factor of the chain rule, then the other, and the area once more.
         let (sx, tx) = (ss * y2 - st * y1, st * y2 - tt * y1);
         let (sy, ty) = (st * x1 - ss * x2, tt * x1 - st * x2);
-        let (x1, y1, x2, y2) = (side(x1), side(y1), side(x2), side(y2));
-        // 1 / area² = square 2^(2 zeros - 85).
-        let square = (product(self.inverse, self.inverse) >> 31) as i32;
+        let [[x1, y1], [x2, y2]] = self.sides(edges);
+        let square = self.square();
         let left = (2 * self.zeros + self.bits + EXTRA - 44) - second;
         // Bits that a word has no room for.
         let mut steep = 0;
@@ -110,6 +115,85 @@ impl Small {
         let dx = first.wrapping_add(across);
         let dy = dy.wrapping_add(down.wrapping_add(xy.wrapping_mul(ox)).wrapping_mul(2));
         Some([c, dx << SUBPIXEL, dy << SUBPIXEL, dxx, dxy.wrapping_mul(2), dyy])
+    }
+
+    /// As [`Self::linear`], nodes of at most [`LONG`] bits, with [`LONG_EXTRA`].
+    #[inline(always)]
+    pub(super) fn long_linear(&self, edges: [[i32; 2]; 2], offset: [i32; 2], [i0, i1, i2]: [i32; 3], extra: u32) -> [i32; 3] {
+        let [dx, dy] = self.long_slopes(edges, [i1 - i0, i2 - i0], extra);
+        let c = (i0 << extra).wrapping_add(dx.wrapping_mul(offset[0])).wrapping_add(dy.wrapping_mul(offset[1]));
+        [c, dx << SUBPIXEL, dy << SUBPIXEL]
+    }
+
+    /// As [`Self::quadratic`], nodes of at most [`LONG`] bits, with [`LONG_EXTRA`]; `None` if a second derivative has more than
+    /// [`LONG_BEND`] bits.
+    #[inline(always)]
+    pub(super) fn long_quadratic(
+        &self,
+        edges: [[i32; 2]; 2],
+        [ox, oy]: [i32; 2],
+        [i0, i1, i2, i01, i12, i20]: [i32; 6],
+        extra: u32,
+    ) -> Option<[i32; 6]> {
+        let left = (2 * (self.bits + self.zeros)).wrapping_add(extra).wrapping_sub(45);
+        if left > LONG_BEND - 1 {
+            return None;
+        }
+        let [dx, dy] = self.long_slopes(edges, [4 * i01 - 3 * i0 - i1, 4 * i20 - 3 * i0 - i2], extra);
+        // Half the matrix of second derivatives by s and t, as large as words can be added.
+        let half = |difference: i32| difference << (31 - LONG - 2);
+        let (ss, st, tt) = (half(i0 + i1 - 2 * i01), half(i0 - i01 - i20 + i12), half(i0 + i2 - 2 * i20));
+        // One factor of the chain rule, then the other, then the area twice.
+        let [[x1, y1], [x2, y2]] = self.sides(edges);
+        let (sx, tx) = (upper_dot([ss, -st], [y2, y1]), upper_dot([st, -tt], [y2, y1]));
+        let (sy, ty) = (upper_dot([st, -ss], [x1, x2]), upper_dot([tt, -st], [x1, x2]));
+        let square = self.square();
+        let mut steep = 0;
+        let mut bend = |a: i32, b: i32, x: i32, y: i32| {
+            let product = product(upper_dot([a, b], [x, y]), square);
+            let (upper, room) = ((product >> 32) as i32, left + 32 - LONG_BEND);
+            steep |= (upper << (room & 31) >> (room & 31)) ^ upper;
+            shifted(product, left)
+        };
+        let (dxx, dxy, dyy) = (bend(sx, -tx, y2, y1), bend(-sx, tx, x2, x1), bend(-sy, ty, x2, x1));
+        if steep != 0 {
+            return None;
+        }
+        // To the anchor, less than a pixel away.
+        let by = |c: i32, way: i32| c.wrapping_mul(way) >> SUBPIXEL;
+        let (across, mixed, down) = (by(dxx, ox), by(dxy, oy), by(dyy, oy));
+        let c = (i0 << extra)
+            .wrapping_add(dx.wrapping_mul(ox))
+            .wrapping_add(dy.wrapping_mul(oy))
+            .wrapping_add(by(across + 2 * mixed, ox))
+            .wrapping_add(by(down, oy));
+        let dx = (dx << SUBPIXEL).wrapping_add(2 * (across + mixed));
+        let dy = (dy << SUBPIXEL).wrapping_add(2 * (down + by(dxy, ox)));
+        Some([c, dx, dy, dxx, dxy.wrapping_mul(2), dyy])
+    }
+
+    /// As [`Self::slopes`], of at most [`LONG`] and two more bits, with [`LONG_EXTRA`].
+    #[inline(always)]
+    fn long_slopes(&self, edges: [[i32; 2]; 2], [a, b]: [i32; 2], extra: u32) -> [i32; 2] {
+        // What is shifted here is not shifted below.
+        let up = extra - LONG_EXTRA[0];
+        let (a, b) = (a << up, b << up);
+        let [[x1, y1], [x2, y2]] = self.sides(edges);
+        let slope = |numerator: i32| rounded(product(numerator, self.inverse), self.bits + self.zeros - 20);
+        [slope(upper_dot([a, -b], [y2, y1])), slope(upper_dot([b, -a], [x1, x2]))]
+    }
+
+    /// Edges that take all of a word but its sign.
+    #[inline(always)]
+    fn sides(&self, [[x1, y1], [x2, y2]]: [[i32; 2]; 2]) -> [[i32; 2]; 2] {
+        let side = |c: i32| c << (31 - self.bits);
+        [[side(x1), side(y1)], [side(x2), side(y2)]]
+    }
+
+    /// 1 / area² = `square` 2^(2 zeros - 85).
+    #[inline(always)]
+    fn square(&self) -> i32 {
+        (product(self.inverse, self.inverse) >> 31) as i32
     }
 
     /// Derivatives along x and y of `a s + b t` per 1/16 pixel, with `extra` more fraction bits.
