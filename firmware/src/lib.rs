@@ -21,6 +21,7 @@ pub mod st7789;
 use failure::Failure;
 pub use picture::error_picture;
 
+use core::ops::Range;
 use embedded_graphics::prelude::*;
 use embedded_graphics::primitives::Rectangle;
 use microphong::{
@@ -74,9 +75,10 @@ fn animate<D: Display>(
 ) -> Result<core::convert::Infallible, Failure> {
     let stream = Stream::parse(stream::bytes())?;
     let mut renderer = Renderer::new(stream, display.size(), memory)?;
+    let whole = 0..display.size().height;
     for number in 0..u32::from(stream.header.frames) {
         let mut crc = PictureCrc::default();
-        let (stats, last) = draw(display, &mut renderer, number, &mut bands, None, |pixels| check(&mut crc, pixels));
+        let (stats, last) = draw(display, &mut renderer, number, &mut bands, None, &mut whole.clone(), |pixels| check(&mut crc, pixels));
         if let Some(area) = last {
             let pixels = part(bands[0], area);
             display.send(area, pixels, || check(&mut crc, pixels));
@@ -98,10 +100,10 @@ fn animate<D: Display>(
     defmt::info!("stack {=usize} bytes", stack::used());
     display.end();
     // All has been checked: from now on at full speed.
-    let mut last = None;
+    let (mut last, mut shown) = (None, whole);
     loop {
         for number in 0..u32::from(stream.header.frames) {
-            (_, last) = draw(display, &mut renderer, number, &mut bands, last, |_| ());
+            (_, last) = draw(display, &mut renderer, number, &mut bands, last, &mut shown, |_| ());
         }
     }
 }
@@ -115,31 +117,31 @@ fn check<C: Pixel>(crc: &mut PictureCrc, pixels: &[C]) {
 /// Draws one frame: while a band is on its way to the display, `look` sees it and the next one is drawn.
 ///
 /// `last` is the band of the frame before that is still to be sent; the last one of this frame is returned likewise. Both lie in
-/// the first of the `bands`.
+/// the first of the `bands`. The display shows nothing but background outside the rows `shown`: what is so in this frame too is not drawn.
 fn draw<D: Display>(
     display: &mut D,
     renderer: &mut Renderer<'_, D::Color>,
     number: u32,
     bands: &mut [&mut [D::Color]; 2],
     last: Option<Rectangle>,
+    shown: &mut Range<u32>,
     mut look: impl FnMut(&[D::Color]),
 ) -> (Stats, Option<Rectangle>) {
     display.begin();
-    let bottom = display.size().height as i32;
     let [front, back] = bands;
     let (mut frame, mut next) = match last {
         Some(area) => {
-            let started = display.send(area, part(front, area), move || start(renderer, number, back));
+            let started = display.send(area, part(front, area), move || start(renderer, number, shown, back));
             display.present();
             started
         }
-        None => start(renderer, number, back),
+        None => start(renderer, number, shown, back),
     };
     loop {
         bands.swap(0, 1);
         let [front, back] = bands;
         match next {
-            Some(area) if area.top_left.y + (area.size.height as i32) < bottom => {
+            Some(area) if !frame.is_complete() => {
                 let pixels = part(front, area);
                 next = display.send(area, pixels, || {
                     look(pixels);
@@ -151,9 +153,17 @@ fn draw<D: Display>(
     }
 }
 
-/// Begins a frame and draws its first band.
-fn start<'r, 'a, C: Pixel>(renderer: &'r mut Renderer<'a, C>, number: u32, band: &mut [C]) -> (Frame<'r, 'a, C>, Option<Rectangle>) {
+/// Begins a frame and draws its first band; `shown` is as for [`draw`], and becomes what it will be after this frame.
+fn start<'r, 'a, C: Pixel>(
+    renderer: &'r mut Renderer<'a, C>,
+    number: u32,
+    shown: &mut Range<u32>,
+    band: &mut [C],
+) -> (Frame<'r, 'a, C>, Option<Rectangle>) {
     let mut frame = renderer.frame(number);
+    let rows = frame.rows();
+    frame.limit(rows.start.min(shown.start)..rows.end.max(shown.end));
+    *shown = rows;
     let area = frame.next_band(band);
     (frame, area)
 }

@@ -5,7 +5,7 @@
 //! and drops a triangle below its last row. Lists are in the order of the
 //! stream, so the picture does not depend on the height of the bands.
 
-use core::{iter, num::NonZeroU32};
+use core::{iter, num::NonZeroU32, ops::Range};
 
 /// Bins of a frame; the rows are shared out among them.
 pub const BINS: usize = 64;
@@ -61,6 +61,9 @@ pub struct Bins {
     overflow: bool,
     /// Bins that `active` has taken over.
     reached: usize,
+    /// First row of the highest triangle, and one past the last row of the lowest.
+    top: u32,
+    bottom: u32,
     /// 1 over the rows of a bin, Q1.20.
     bins_per_row: u32,
 }
@@ -76,6 +79,8 @@ impl Bins {
             count: 0,
             overflow: false,
             reached: 0,
+            top: height,
+            bottom: 0,
             bins_per_row: (1 << 20) / NonZeroU32::new(height.div_ceil(BINS as u32).max(band_rows)).unwrap_or(NonZeroU32::MIN) + 1,
         }
     }
@@ -98,6 +103,8 @@ impl Bins {
                 *entry = Entry { key: triangle << 1 | u32::from(simple), bottom: bottom as u16, next: *head };
                 *head = link;
                 self.count = link;
+                self.top = self.top.min(top);
+                self.bottom = self.bottom.max(bottom);
             }
             _ => self.overflow = true,
         }
@@ -107,6 +114,12 @@ impl Bins {
     #[must_use]
     pub fn count(&self) -> Option<u16> {
         (!self.overflow).then_some(self.count)
+    }
+
+    /// From the first row of the highest triangle to the last one of the lowest.
+    #[must_use]
+    pub fn rows(&self) -> Range<u32> {
+        self.top.min(self.bottom)..self.bottom
     }
 
     /// Takes over the lists of all bins that start above row `bottom`.

@@ -2,6 +2,7 @@
 
 use crate::{
     band::Band,
+    bin::Entry,
     clip,
     convex::Convex,
     cull::Extent,
@@ -12,7 +13,6 @@ use crate::{
         triangle::{Bounds, Outline, turn, turned},
     },
     render::{Stage, Viewport},
-    bin::Entry,
     shade::{Any, Facet, Method, Shading, duff, flat, gouraud, six_point},
     shader::Shader,
     stream::record::{Triangle, Vertex},

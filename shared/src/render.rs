@@ -21,7 +21,7 @@ use crate::{
     stream::record::{Mesh, Triangle, Vertex},
     vertex::{ScreenVertex, State, View},
 };
-use core::fmt;
+use core::{fmt, ops::Range};
 use embedded_graphics_core::{
     geometry::{Point, Size},
     primitives::Rectangle,
@@ -319,7 +319,9 @@ impl<'a, C: Pixel> Renderer<'a, C> {
             bins: Bins::new(self.size.height, self.band_rows()),
             binned: false,
             queued: Queued::default(),
+            rows: 0..self.size.height,
             top: 0,
+            bottom: self.size.height,
             stats: Stats { triangles: self.stream.triangles.len() as u32, ..Stats::default() },
             renderer: self,
         };
@@ -374,7 +376,12 @@ pub struct Frame<'r, 'a, C> {
     binned: bool,
     /// What the last band has handed on.
     queued: Queued,
+    /// Those that triangles may reach.
+    rows: Range<u32>,
+    /// First row of the next band.
     top: u32,
+    /// One past the last row to be drawn.
+    bottom: u32,
     stats: Stats,
 }
 
@@ -386,7 +393,7 @@ impl<C: Pixel> Frame<'_, '_, C> {
     pub fn next_band(&mut self, pixels: &mut [C]) -> Option<Rectangle> {
         let size = self.renderer.size;
         let fit = u32::try_from(pixels.len()).unwrap_or(u32::MAX).checked_div(size.width)?;
-        let rows = self.renderer.band_rows().min(size.height.saturating_sub(self.top)).min(fit);
+        let rows = self.renderer.band_rows().min(self.bottom.saturating_sub(self.top)).min(fit);
         if rows == 0 {
             return None;
         }
@@ -394,6 +401,25 @@ impl<C: Pixel> Frame<'_, '_, C> {
         self.draw(pixels.get_mut(..(rows * size.width) as usize)?, rows);
         self.top += rows;
         Some(area)
+    }
+
+    /// Rows that have anything but background, and maybe some that have not.
+    #[must_use]
+    pub fn rows(&self) -> Range<u32> {
+        self.rows.clone()
+    }
+
+    /// Draws no other than these `rows`; to be called before the first band. What a display shows of the frame before and what this one
+    /// has, see [`Self::rows`], is all that must be drawn and sent: the rest is background already.
+    pub fn limit(&mut self, rows: Range<u32>) {
+        let height = self.renderer.size.height;
+        (self.top, self.bottom) = (rows.start.min(height), rows.end.min(height));
+    }
+
+    /// No band follows.
+    #[must_use]
+    pub fn is_complete(&self) -> bool {
+        self.top >= self.bottom
     }
 
     /// Counts so far; complete after the last band.
@@ -408,7 +434,7 @@ impl<C: Pixel> Frame<'_, '_, C> {
     fn prepare(&mut self) {
         // A copy, which stays in registers.
         let facing = self.facing;
-        let Self { renderer, view, lighting, directions, convex, bins, stats, .. } = self;
+        let Self { renderer, view, lighting, directions, convex, bins, stats, rows, .. } = self;
         let viewport = renderer.viewport();
         let Renderer { stream, memory: Memory { vertices: cache, bins: entries, palettes, .. }, shader, size, .. } = &mut **renderer;
         let entries = &mut **entries;
@@ -456,6 +482,7 @@ impl<C: Pixel> Frame<'_, '_, C> {
         if let Some(count) = bins.count() {
             self.binned = true;
             (stats.passes, stats.drawn) = (1, count.into());
+            *rows = bins.rows();
         }
     }
 
@@ -492,7 +519,7 @@ impl<C: Pixel> Frame<'_, '_, C> {
         let (pixels, drawn) = if self.binned {
             self.bins.advance(self.renderer.memory.bins, bottom);
             let pixels = self.draw_binned(&mut band);
-            if bottom < self.renderer.size.height {
+            if bottom < self.bottom {
                 self.bins.retire(self.renderer.memory.bins, bottom);
             }
             (pixels, 0)

@@ -97,3 +97,54 @@ fn what_is_handed_on_looks_the_same_in_every_style() {
         }
     }
 }
+
+#[test]
+fn rows_without_triangles_need_not_be_drawn_again() {
+    let size = Size::new(200, 150);
+    let (width, rows) = (size.width as usize, 16);
+    for name in ["teapot", "triangle", "dodecahedron"] {
+        let scene = scene::load(name).unwrap();
+        let stream = scene.stream.parse().unwrap();
+        for triangles in [stream.triangles.len(), 3] {
+            let mut vertices = vec![ScreenVertex::EMPTY; stream.vertices.len()];
+            let mut bins = vec![Entry::EMPTY; triangles];
+            let mut legs = vec![Leg::EMPTY; 20];
+            let (mut depth, mut palettes) = (vec![0; width * rows], vec![Palette::empty(); stream.materials.len()]);
+            let memory = Memory {
+                vertices: &mut vertices,
+                bins: &mut bins,
+                depth: &mut depth,
+                palettes: &mut palettes,
+                samples: &mut [],
+                legs: &mut legs,
+            };
+            let mut renderer = Renderer::new(stream, size, memory).unwrap();
+            let mut band = vec![Rgb565::RED; width * rows];
+            let mut display = vec![Rgb565::RED; width * size.height as usize];
+            let (mut shown, mut saved) = (0..size.height, 0);
+            for number in [0, 7, 30, 31, 60] {
+                let mut whole = Vec::new();
+                let mut frame = renderer.frame(number);
+                while let Some(area) = frame.next_band(&mut band) {
+                    whole.extend_from_slice(&band[..(area.size.width * area.size.height) as usize]);
+                }
+                let stats = frame.stats();
+                let mut frame = renderer.frame(number);
+                let reached = frame.rows();
+                frame.limit(reached.start.min(shown.start)..reached.end.max(shown.end));
+                shown = reached;
+                while !frame.is_complete() {
+                    let area = frame.next_band(&mut band).unwrap();
+                    let (start, count) = (area.top_left.y as usize * width, width * area.size.height as usize);
+                    display[start..start + count].copy_from_slice(&band[..count]);
+                    saved += count;
+                }
+                assert_eq!(frame.next_band(&mut band), None);
+                assert_eq!(frame.stats().pixels, stats.pixels);
+                assert!(display == whole, "{name}, frame {number}");
+            }
+            let saved = 5 * display.len() - saved;
+            assert_eq!(saved > 0, triangles >= stream.triangles.len(), "{name}, room for {triangles} triangles: {saved} pixels saved");
+        }
+    }
+}

@@ -100,7 +100,12 @@ impl<C: Pixel> Shading<'_, C> {
         let levels = self.one_light()?;
         let steps = Quotients::new(&self.palette.power);
         let [a, b, c] = facet.corners;
-        let light = || Nodes::<3, 1, RANGE>::new([[levels.node(a.light[0], NODE), levels.node(b.light[0], NODE), levels.node(c.light[0], NODE)]], LEVEL - NODE);
+        let light = || {
+            Nodes::<3, 1, RANGE>::new(
+                [[levels.node(a.light[0], NODE), levels.node(b.light[0], NODE), levels.node(c.light[0], NODE)]],
+                LEVEL - NODE,
+            )
+        };
         if facet.is_dark(self.palette) {
             if a.light[0].max(b.light[0]).max(c.light[0]) <= 0 {
                 return Some(facet.draw(|| Constant, Solid(levels.colour::<PIXEL>(0, steps.least())), band));

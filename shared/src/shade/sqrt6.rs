@@ -55,9 +55,8 @@ impl Method for Plain {
         let roots = || map_six(facet.six_cosines(1), root);
         let defects = Defects::new(&palette.power);
         let levels = shading.one_light().filter(Levels::is_within);
-        let light = |levels: Levels<'_, C>| {
-            Nodes::<6, 1, RANGE>::new([map_six(cosines, |cosine| levels.node(cosine, LEVEL))], WALK - LEVEL)
-        };
+        let light =
+            |levels: Levels<'_, C>| Nodes::<6, 1, RANGE>::new([map_six(cosines, |cosine| levels.node(cosine, LEVEL))], WALK - LEVEL);
         if is_dark
             && lit == Lit::Partly
             && let Some(levels) = levels
