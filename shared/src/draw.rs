@@ -111,7 +111,9 @@ impl<C: Pixel> Drawing<'_, C> {
     }
 
     /// The same of a triangle that [`Viewport::is_simple`], by its `key` in [`crate::relay`].
-    #[inline(never)]
+    // Armv6-M reaches little of a large stack frame: a call of its own there.
+    #[cfg_attr(all(target_arch = "arm", not(target_has_atomic = "32")), inline(never))]
+    #[cfg_attr(not(all(target_arch = "arm", not(target_has_atomic = "32"))), inline(always))]
     fn draw_simple<M: Method>(&self, triangle: &Triangle, key: u32, band: &mut Band<'_, C>) -> Option<u32> {
         let corners = self.corners(triangle)?;
         let (by, corners) = turned(corners);

@@ -393,7 +393,9 @@ impl<C: Pixel> Frame<'_, '_, C> {
     pub fn next_band(&mut self, pixels: &mut [C]) -> Option<Rectangle> {
         let size = self.renderer.size;
         let fit = u32::try_from(pixels.len()).unwrap_or(u32::MAX).checked_div(size.width)?;
-        let rows = self.renderer.band_rows().min(self.bottom.saturating_sub(self.top)).min(fit);
+        // Bands end where bins end.
+        let band_rows = self.renderer.band_rows();
+        let rows = band_rows.saturating_sub(self.top.checked_rem(band_rows)?).min(self.bottom.saturating_sub(self.top)).min(fit);
         if rows == 0 {
             return None;
         }
