@@ -135,14 +135,16 @@ impl Small {
         [i0, i1, i2, i01, i12, i20]: [i32; 6],
         extra: u32,
     ) -> Option<[i32; 6]> {
-        let left = (2 * (self.bits + self.zeros)).wrapping_add(extra).wrapping_sub(45);
+        // A quarter of the matrix of second derivatives by s and t, made as large as words can be added.
+        let (ss, st, tt) = (i0 + i1 - 2 * i01, i0 - i01 - i20 + i12, i0 + i2 - 2 * i20);
+        let most = 2 * (self.bits + self.zeros) + extra - 43;
+        let up = room([ss, st, tt]).min(most);
+        let left = most + 1 - up;
         if left > LONG_BEND - 1 {
             return None;
         }
+        let (ss, st, tt) = (ss << up, st << up, tt << up);
         let [dx, dy] = self.long_slopes(edges, [4 * i01 - 3 * i0 - i1, 4 * i20 - 3 * i0 - i2], extra);
-        // Half the matrix of second derivatives by s and t, as large as words can be added.
-        let half = |difference: i32| difference << (31 - LONG - 2);
-        let (ss, st, tt) = (half(i0 + i1 - 2 * i01), half(i0 - i01 - i20 + i12), half(i0 + i2 - 2 * i20));
         // One factor of the chain rule, then the other, then the area twice.
         let [[x1, y1], [x2, y2]] = self.sides(edges);
         let (sx, tx) = (upper_dot([ss, -st], [y2, y1]), upper_dot([st, -tt], [y2, y1]));
@@ -175,11 +177,12 @@ impl Small {
     /// As [`Self::slopes`], of at most [`LONG`] and two more bits, with [`LONG_EXTRA`].
     #[inline(always)]
     fn long_slopes(&self, edges: [[i32; 2]; 2], [a, b]: [i32; 2], extra: u32) -> [i32; 2] {
-        // What is shifted here is not shifted below.
-        let up = extra - LONG_EXTRA[0];
+        // As large as words can be added, for they are rounded next.
+        let most = self.bits + self.zeros + extra - 26;
+        let up = room([a, b, 0]).min(most);
         let (a, b) = (a << up, b << up);
         let [[x1, y1], [x2, y2]] = self.sides(edges);
-        let slope = |numerator: i32| rounded(product(numerator, self.inverse), self.bits + self.zeros - 20);
+        let slope = |numerator: i32| rounded(product(numerator, self.inverse), most + 1 - up);
         [slope(upper_dot([a, -b], [y2, y1])), slope(upper_dot([b, -a], [x1, x2]))]
     }
 
@@ -204,6 +207,13 @@ impl Small {
         let slope = |numerator: i32| shifted(product(numerator, inverse), self.zeros - 10);
         [slope(a * y2 - b * y1), slope(b * x1 - a * x2)]
     }
+}
+
+/// How far these may all be shifted to stay within 2^30, or nearly so far.
+#[inline(always)]
+fn room([a, b, c]: [i32; 3]) -> u32 {
+    let size = |c: i32| (c ^ (c >> 31)) as u32;
+    leading_zeros((size(a) | size(b) | size(c)) >> 8) - 10
 }
 
 /// Twice the area between two edges, as far as a word holds it.
