@@ -56,14 +56,15 @@ impl<C: Pixel> Drawing<'_, C> {
         match self.shading.shader {
             Shader::Flat if self.is_plain() => self.each::<flat::Plain>(triangles, entry, active, end, band),
             Shader::Gouraud if self.is_plain() => self.each::<gouraud::Plain>(triangles, entry, active, end, band),
+            Shader::SixPoint if self.is_plain() => self.each::<six_point::Plain>(triangles, entry, active, end, band),
             Shader::Phong if self.is_plain() => self.each::<duff::Plain>(triangles, entry, active, end, band),
             #[cfg(feature = "all-shaders")]
             Shader::Sqrt6 if self.is_plain() => self.each::<crate::shade::sqrt6::Plain>(triangles, entry, active, end, band),
-            Shader::SixPoint if self.is_plain() => self.each::<six_point::Plain>(triangles, entry, active, end, band),
             _ => self.each::<Any>(triangles, entry, active, end, band),
         }
     }
 
+    /// There is a shorter way for some methods: see [`Shading::is_plain`].
     fn is_plain(&self) -> bool {
         #[cfg(feature = "all-shaders")]
         if self.perspective {
@@ -72,6 +73,7 @@ impl<C: Pixel> Drawing<'_, C> {
         self.shading.is_plain()
     }
 
+    /// [`Self::run`] for one method, whose way through a simple triangle is compiled into the loop.
     #[inline(never)]
     fn each<'e, M: Method>(
         &self,

@@ -306,3 +306,69 @@ fn planes_stay_within_the_bound_even_on_slivers() {
     }
     println!("worst error {worst:.2} of the bound");
 }
+
+/// What fields of 26 bits on small triangles cost for each pixel of the way from the anchor, in units of the walked format.
+const LONG_SMALL: f64 = 16.0;
+/// Set-up error of a plane of 26 bits on a triangle as long as high, in units of its nodes.
+const LONG_LINEAR: f64 = 1.0 / 8.0;
+/// Set-up error of a quadratic of 26 bits on a triangle as long as high, in units of its nodes.
+const LONG_QUADRATIC: f64 = 1.0;
+
+#[test]
+fn fields_of_26_bits_stay_within_the_bound_on_small_triangles() {
+    let mut random = Random(TestRng::from_seed(RngAlgorithm::ChaCha, &[6; 32]));
+    let (mut triangles, mut worst) = (0, [0f64; 2]);
+    for i in 0..200_000 {
+        // From a pixel to 64.
+        let reach = 16 << (i % 7);
+        let mut corners = [0; 3].map(|_| [2000 + random.pick(-reach / 2..reach / 2), 2000 + random.pick(-reach / 2..reach / 2)]);
+        if side(corners[0], corners[1], corners[2]) < 0 {
+            corners.swap(1, 2);
+        }
+        let Some(basis) = Basis::small(corners) else { continue };
+        triangles += 1;
+        let case = Case { width: 320, height: 240, corners };
+        let longest2 = (0..3).map(|k| square(corners[k], corners[(k + 1) % 3])).fold(0.0, f64::max);
+        let thinness = longest2 / side(corners[0], corners[1], corners[2]) as f64;
+        // Nodes that differ by a lot, or by little.
+        let range = 1 << random.pick(1..27);
+        let least = random.pick(-(1 << 25)..(1 << 25) + 1 - range / 2);
+        let nodes: [i32; 6] = std::array::from_fn(|_| least + random.pick(0..range / 2 + 1));
+        let [a, b, c, ..] = nodes;
+        let extra = 5 + i as u32 / 7 % 2;
+        let mut plane = Plane::<1>::fit::<26>(&basis, [[a, b, c]], extra);
+        let mut quadric = Quadric::<1>::fit::<26>(&basis, [nodes], extra);
+        let (first, end) = (corners.iter().map(|c| c[1]).min().unwrap() >> 4, (corners.iter().map(|c| c[1]).max().unwrap() >> 4) + 1);
+        let mut at = basis.row();
+        for row in first..end {
+            let columns = span(&case, row);
+            plane.jump(row - at);
+            quadric.jump(row - at);
+            at = row;
+            let (mut linear, mut quadratic) = (plane.enter(columns.end), quadric.enter(columns.end));
+            for x in columns.rev() {
+                linear.step();
+                quadratic.step();
+                let b = barycentric(corners, [x * 16 + 8, row * 16 + 8]);
+                let n = nodes.map(f64::from);
+                let straight = (0..3).map(|k| b[k] * n[k]).sum::<f64>();
+                let curved = (0..3).map(|k| b[k] * (2.0 * b[k] - 1.0) * n[k]).sum::<f64>()
+                    + 4.0 * (b[0] * b[1] * n[3] + b[1] * b[2] * n[4] + b[2] * b[0] * n[5]);
+                let distance = f64::from((x - basis.column()).abs() + (row - basis.row()).abs());
+                let units = f64::from(1 << extra);
+                for (k, walked, exact, part) in [
+                    (0, linear.value(), straight, LONG_LINEAR * thinness),
+                    (1, quadratic.value(), curved, LONG_QUADRATIC * thinness * thinness),
+                ] {
+                    let error = (f64::from(walked[0] as i32) - exact * units).abs();
+                    let error = error.min((error - 2f64.powi(32)).abs());
+                    let bound = 0.5 * (1.0 + distance + distance * distance) + LONG_SMALL * (1.0 + distance) + part * units;
+                    worst[k] = worst[k].max(error / bound);
+                    assert!(error <= bound, "triangle {i} {corners:?}, pixel {x},{row}: error {error}, bound {bound}, {thinness}, {range}");
+                }
+            }
+        }
+    }
+    println!("{triangles} triangles; worst error of planes {:.2}, of quadratics {:.2} of the bound", worst[0], worst[1]);
+    assert!(triangles >= 100_000);
+}

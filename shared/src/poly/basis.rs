@@ -251,7 +251,7 @@ impl Basis {
             Scale::Small(small) if BITS <= small::LINEAR && extra <= small::EXTRA => {
                 small.linear(self.edges, self.subpixels(), nodes, extra)
             }
-            Scale::Small(small) if BITS <= small::LONG && small::LONG_EXTRA.contains(&extra) => {
+            Scale::Small(small) if BITS <= small::LONG && extra >= small::LONG_EXTRA => {
                 small.long_linear(self.edges, self.subpixels(), nodes, extra)
             }
             Scale::Small(small) => self.linear_small::<BITS>(Self::mantissas(self.edges, small), nodes, extra),
@@ -324,7 +324,7 @@ impl Basis {
                     }
                 }
             }
-            Scale::Small(small) if BITS <= small::LONG && small::LONG_EXTRA.contains(&extra) => {
+            Scale::Small(small) if BITS <= small::LONG && extra >= small::LONG_EXTRA => {
                 match small.long_quadratic(self.edges, self.subpixels(), nodes, extra) {
                     Some(fitted) => fitted,
                     None => self.quadratic_any::<BITS>(nodes, extra),

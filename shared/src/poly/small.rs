@@ -1,9 +1,11 @@
-//! Levels on small triangles: sums of products in one word, before they meet the triangle's area.
+//! Small triangles: sums of products in one word, before they meet the triangle's area.
 //!
 //! A triangle of up to 64 pixels has sides of few bits, and so have light levels. The numerator of a first derivative is then an
 //! integer of one word, exact, that of a second one is rounded once to a word; each meets the inverse of the area, or its square, in one
 //! product. First derivatives are kept per 1/16 pixel: the way from corner 0 to the centre of its pixel is whole steps of these, exact
 //! modulo 2^32 however steep they are. Eight long products for depth and a quadratic, where the general way takes fifty.
+//!
+//! Cosines have more bits. Their differences, made as large as words allow, times sides of half a word are rounded to words as well.
 
 use crate::{
     cull::is_small,
@@ -21,10 +23,10 @@ pub(super) const EXTRA: u32 = 16;
 pub(super) const LINEAR: u32 = 20;
 /// Bits of the range of nodes between which a quadratic may go.
 pub(super) const QUADRATIC: u32 = 15;
-/// Bits of the range of nodes between which fields of [`LONG_EXTRA`] may go.
+/// Bits of the range of nodes between which fields with [`LONG_EXTRA`] may go.
 pub(super) const LONG: u32 = 26;
-/// More fraction bits that they are walked with.
-pub(super) const LONG_EXTRA: [u32; 2] = [5, 6];
+/// More fraction bits that they are walked with, at least.
+pub(super) const LONG_EXTRA: u32 = 5;
 /// Bits of a second derivative that their way to the anchor has room for.
 const LONG_BEND: u32 = 27;
 
@@ -92,7 +94,8 @@ impl Small {
         let (sx, tx) = (ss * y2 - st * y1, st * y2 - tt * y1);
         let (sy, ty) = (st * x1 - ss * x2, tt * x1 - st * x2);
         let [[x1, y1], [x2, y2]] = self.sides(edges);
-        let square = self.square();
+        // 1 / area² = square 2^(2 zeros - 85).
+        let square = (product(self.inverse, self.inverse) >> 31) as i32;
         let left = (2 * self.zeros + self.bits + EXTRA - 44) - second;
         // Bits that a word has no room for.
         let mut steep = 0;
@@ -117,7 +120,7 @@ impl Small {
         Some([c, dx << SUBPIXEL, dy << SUBPIXEL, dxx, dxy.wrapping_mul(2), dyy])
     }
 
-    /// As [`Self::linear`], nodes of at most [`LONG`] bits, with [`LONG_EXTRA`].
+    /// As [`Self::linear`], nodes of at most [`LONG`] bits, with at least [`LONG_EXTRA`].
     #[inline(always)]
     pub(super) fn long_linear(&self, edges: [[i32; 2]; 2], offset: [i32; 2], [i0, i1, i2]: [i32; 3], extra: u32) -> [i32; 3] {
         let [dx, dy] = self.long_slopes(edges, [i1 - i0, i2 - i0], extra);
@@ -125,7 +128,7 @@ impl Small {
         [c, dx << SUBPIXEL, dy << SUBPIXEL]
     }
 
-    /// As [`Self::quadratic`], nodes of at most [`LONG`] bits, with [`LONG_EXTRA`]; `None` if a second derivative has more than
+    /// As [`Self::quadratic`], nodes of at most [`LONG`] bits, with at least [`LONG_EXTRA`]; `None` if a second derivative has more than
     /// [`LONG_BEND`] bits.
     #[inline(always)]
     pub(super) fn long_quadratic(
@@ -137,7 +140,7 @@ impl Small {
     ) -> Option<[i32; 6]> {
         // A quarter of the matrix of second derivatives by s and t, made as large as words can be added.
         let (ss, st, tt) = (i0 + i1 - 2 * i01, i0 - i01 - i20 + i12, i0 + i2 - 2 * i20);
-        let most = 2 * (self.bits + self.zeros) + extra - 43;
+        let most = 2 * (self.bits + self.zeros) + extra - 47;
         let up = room([ss, st, tt]).min(most);
         let left = most + 1 - up;
         if left > LONG_BEND - 1 {
@@ -149,13 +152,14 @@ impl Small {
         let [[x1, y1], [x2, y2]] = self.sides(edges);
         let (sx, tx) = (upper_dot([ss, -st], [y2, y1]), upper_dot([st, -tt], [y2, y1]));
         let (sy, ty) = (upper_dot([st, -ss], [x1, x2]), upper_dot([tt, -st], [x1, x2]));
-        let square = self.square();
+        // 1 / area² = square 2^(2 zeros - 89).
+        let square = (product(self.inverse, self.inverse) >> 27) as i32;
         let mut steep = 0;
         let mut bend = |a: i32, b: i32, x: i32, y: i32| {
             let product = product(upper_dot([a, b], [x, y]), square);
             let (upper, room) = ((product >> 32) as i32, left + 32 - LONG_BEND);
             steep |= (upper << (room & 31) >> (room & 31)) ^ upper;
-            shifted(product, left)
+            rounded(product, left)
         };
         let (dxx, dxy, dyy) = (bend(sx, -tx, y2, y1), bend(-sx, tx, x2, x1), bend(-sy, ty, x2, x1));
         if steep != 0 {
@@ -174,7 +178,7 @@ impl Small {
         Some([c, dx, dy, dxx, dxy.wrapping_mul(2), dyy])
     }
 
-    /// As [`Self::slopes`], of at most [`LONG`] and two more bits, with [`LONG_EXTRA`].
+    /// As [`Self::slopes`], of at most [`LONG`] and two more bits, with at least [`LONG_EXTRA`].
     #[inline(always)]
     fn long_slopes(&self, edges: [[i32; 2]; 2], [a, b]: [i32; 2], extra: u32) -> [i32; 2] {
         // As large as words can be added, for they are rounded next.
@@ -191,12 +195,6 @@ impl Small {
     fn sides(&self, [[x1, y1], [x2, y2]]: [[i32; 2]; 2]) -> [[i32; 2]; 2] {
         let side = |c: i32| c << (31 - self.bits);
         [[side(x1), side(y1)], [side(x2), side(y2)]]
-    }
-
-    /// 1 / area² = `square` 2^(2 zeros - 85).
-    #[inline(always)]
-    fn square(&self) -> i32 {
-        (product(self.inverse, self.inverse) >> 31) as i32
     }
 
     /// Derivatives along x and y of `a s + b t` per 1/16 pixel, with `extra` more fraction bits.

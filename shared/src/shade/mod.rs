@@ -222,7 +222,8 @@ impl Area for Facet<'_> {
 
 /// A method in the loop over the triangles of one mesh.
 pub(crate) trait Method {
-    /// Whatever there is to draw.
+    /// In perspective, too.
+    #[cfg(feature = "all-shaders")]
     const ANY: bool = false;
 
     /// Shades `facet`, of a simple triangle, into `band`; returns its pixels there, or `None` if it takes the long way.
@@ -233,6 +234,7 @@ pub(crate) trait Method {
 pub(crate) struct Any;
 
 impl Method for Any {
+    #[cfg(feature = "all-shaders")]
     const ANY: bool = true;
 
     #[inline(always)]
