@@ -368,7 +368,7 @@ pub(super) fn fill_rows<D: Patch<Walker: Sight>, P: Patch, T: Tone<<P::Walker as
 
 impl<'b, D: Patch<Walker: Sight>, P: Patch, T: Tone<<P::Walker as Walker>::Value>> Rows<'b, D, P, T> {
     /// Whether rows are filled in a copy: where registers are few or many, or nothing is walked.
-    const LOCAL: bool = HALVES || cfg!(not(target_arch = "arm")) || P::WORDS == 0;
+    const LOCAL: bool = HALVES || cfg!(not(target_arch = "arm")) || size_of::<P>() == 0;
 
     /// Whether pixels are counted a row ahead there, so that what is counted need not wait for the pixel loop.
     const AHEAD: bool = Self::LOCAL && cfg!(target_arch = "arm") && P::WORDS <= 6;
