@@ -122,41 +122,30 @@ impl Bins {
         self.top.min(self.bottom)..self.bottom
     }
 
-    /// Takes over the lists of all bins that start above row `bottom`.
-    pub fn advance(&mut self, entries: &mut [Entry], bottom: u32) {
+    /// Takes over the lists of all bins that start above row `bottom`, and drops what ends at row `top` or above, as far as it comes by.
+    pub fn advance(&mut self, entries: &mut [Entry], [top, bottom]: [u32; 2]) {
         let last = self.of(bottom.saturating_sub(1));
         while self.reached <= last {
             if let Some(&head) = self.heads.get(self.reached) {
-                self.active = merge(entries, self.active, head);
+                self.active = merge(entries, self.active, head, top);
             }
             self.reached += 1;
         }
     }
 
-    /// The active entries in the order of the stream.
+    /// The active entries that reach below row `top`, in the order of the stream.
     #[inline(always)]
-    pub fn active<'e>(&self, entries: &'e [Entry]) -> impl Iterator<Item = &'e Entry> + use<'e> {
+    pub fn active<'e>(&self, entries: &'e [Entry], top: u32) -> impl Iterator<Item = &'e Entry> + use<'e> {
         let mut link = self.active;
         iter::from_fn(move || {
-            let entry = linked(link).and_then(|index| entries.get(index))?;
-            link = entry.next;
-            Some(entry)
-        })
-    }
-
-    /// Drops active entries that end at row `bottom` or above.
-    pub fn retire(&mut self, entries: &mut [Entry], bottom: u32) {
-        let mut previous = NONE;
-        let mut link = self.active;
-        while let Some(entry) = at(entries, link) {
-            let next = entry.next;
-            if u32::from(entry.bottom) > bottom {
-                previous = link;
-            } else {
-                append(entries, &mut self.active, previous, next);
+            loop {
+                let entry = linked(link).and_then(|index| entries.get(index))?;
+                link = entry.next;
+                if u32::from(entry.bottom) > top {
+                    return Some(entry);
+                }
             }
-            link = next;
-        }
+        })
     }
 }
 
@@ -181,11 +170,16 @@ fn append(entries: &mut [Entry], head: &mut u16, tail: u16, link: u16) {
     }
 }
 
-/// Two lists in the order of the stream into one; returns its head. What is left of one when the other ends stays as it is.
-fn merge(entries: &mut [Entry], mut a: u16, mut b: u16) -> u16 {
+/// Two lists in the order of the stream into one, the first without what ends at row `top` or above; returns its head. What is left of
+/// one when the other ends stays as it is.
+fn merge(entries: &mut [Entry], mut a: u16, mut b: u16, top: u32) -> u16 {
     let (mut head, mut tail) = (NONE, NONE);
     let (mut first, mut second) = (at(entries, a).copied(), at(entries, b).copied());
     while let (Some(x), Some(y)) = (first, second) {
+        if u32::from(x.bottom) <= top {
+            (a, first) = (x.next, at(entries, x.next).copied());
+            continue;
+        }
         let link = if x.key <= y.key { a } else { b };
         append(entries, &mut head, tail, link);
         tail = link;
@@ -218,13 +212,14 @@ mod tests {
             let mut top = 0;
             while top < HEIGHT {
                 let bottom = (top + band).min(HEIGHT);
-                bins.advance(&mut entries, bottom);
+                bins.advance(&mut entries, [top, bottom]);
                 let mut seen = [false; 100];
                 let mut last = None;
-                for entry in bins.active(&entries) {
+                for entry in bins.active(&entries, top) {
                     let triangle = entry.triangle();
                     assert_eq!(entry.is_simple(), triangle % 3 == 0);
                     assert!(last < Some(triangle));
+                    assert!(rows(triangle).1 > top, "it has ended");
                     seen[triangle as usize] = true;
                     last = Some(triangle);
                 }
@@ -232,7 +227,6 @@ mod tests {
                     let (first, end) = rows(i);
                     assert!(seen[i as usize] || end <= top || first >= bottom, "band {band}, rows {top}..{bottom}, triangle {i}");
                 }
-                bins.retire(&mut entries, bottom);
                 top = bottom;
             }
         }

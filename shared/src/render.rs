@@ -519,11 +519,8 @@ impl<C: Pixel> Frame<'_, '_, C> {
         let mut band = Band { pixels, depth: lent, width, top: self.top as i32, rows: rows as i32, blend, relay };
         band.clear(self.renderer.background);
         let (pixels, drawn) = if self.binned {
-            self.bins.advance(self.renderer.memory.bins, bottom);
+            self.bins.advance(self.renderer.memory.bins, [self.top, bottom]);
             let pixels = self.draw_binned(&mut band);
-            if bottom < self.bottom {
-                self.bins.retire(self.renderer.memory.bins, bottom);
-            }
             (pixels, 0)
         } else {
             self.stats.passes += 1;
@@ -544,7 +541,7 @@ impl<C: Pixel> Frame<'_, '_, C> {
     fn draw_binned(&self, band: &mut Band<'_, C>) -> u32 {
         let Renderer { stream, memory, .. } = &*self.renderer;
         let mut pixels = 0u32;
-        let mut active = self.bins.active(memory.bins);
+        let mut active = self.bins.active(memory.bins, self.top);
         let mut next = active.next();
         while let Some(entry) = next {
             // A stream that has been checked has both.
