@@ -2,7 +2,7 @@
 //!
 //! Each triangle is stored once, in the list of the first bin it touches; the
 //! list of *active* triangles takes over a bin's list when drawing reaches it,
-//! and drops a triangle below its last row. Lists are in the order of the
+//! and drops there what has ended. Lists are in the order of the
 //! stream, so the picture does not depend on the height of the bands.
 
 use core::{iter, num::NonZeroU32, ops::Range};

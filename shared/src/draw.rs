@@ -143,7 +143,7 @@ impl<C: Pixel> Drawing<'_, C> {
     }
 
     /// The same of a triangle that the band above handed on to `place`.
-    #[inline(never)]
+    #[inline(always)]
     fn go_on<M: Method>(&self, triangle: &Triangle, place: usize, band: &mut Band<'_, C>) -> u32 {
         let (Some(leg), Some(corners)) = (band.relay.leg(place), self.corners(triangle)) else { return 0 };
         let (by, corners) = turned(corners);

@@ -116,6 +116,8 @@ impl Sides {
     /// Ends them at row `bottom` of that band.
     #[inline(always)]
     pub(super) fn until(&mut self, bottom: i32) {
+        // Others are not handed on: what is known is not asked again.
+        self.simple = true;
         self.end = self.low.min(bottom);
         self.stop = self.turn.max(self.row).min(self.end);
     }

@@ -196,6 +196,7 @@ impl Outline {
     pub(crate) fn handed_on<C>(course: Course, turned: usize, band: &Band<'_, C>) -> Self {
         let mut outline = Self { corners: [[0; 2]; 3], depth: [0; 3], turned, part: Part::Centres, course };
         outline.course.sides.until(band.range()[1]);
+        outline.course.handed_on = true;
         outline
     }
 
