@@ -13,10 +13,14 @@ use crate::{
         triangle::{Bounds, Outline, turn, turned},
     },
     render::{Stage, Viewport},
-    shade::{Any, Facet, Method, Shading, duff, flat, gouraud, six_point},
-    shader::Shader,
+    shade::{Any, Facet, Method, Shading},
     stream::record::{Triangle, Vertex},
     vertex::{ScreenVertex, State},
+};
+#[cfg(feature = "fast-loops")]
+use crate::{
+    shade::{duff, flat, gouraud, six_point},
+    shader::Shader,
 };
 
 /// What the triangles of one mesh have in common in one frame.
@@ -54,17 +58,22 @@ impl<C: Pixel> Drawing<'_, C> {
         band: &mut Band<'_, C>,
     ) -> (u32, Option<&'e Entry>) {
         match self.shading.shader {
+            #[cfg(feature = "fast-loops")]
             Shader::Flat if self.is_plain() => self.each::<flat::Plain>(triangles, entry, active, end, band),
+            #[cfg(feature = "fast-loops")]
             Shader::Gouraud if self.is_plain() => self.each::<gouraud::Plain>(triangles, entry, active, end, band),
+            #[cfg(feature = "fast-loops")]
             Shader::SixPoint if self.is_plain() => self.each::<six_point::Plain>(triangles, entry, active, end, band),
+            #[cfg(feature = "fast-loops")]
             Shader::Phong if self.is_plain() => self.each::<duff::Plain>(triangles, entry, active, end, band),
-            #[cfg(feature = "all-shaders")]
+            #[cfg(all(feature = "fast-loops", feature = "all-shaders"))]
             Shader::Sqrt6 if self.is_plain() => self.each::<crate::shade::sqrt6::Plain>(triangles, entry, active, end, band),
             _ => self.each::<Any>(triangles, entry, active, end, band),
         }
     }
 
     /// There is a shorter way for some methods: see [`Shading::is_plain`].
+    #[cfg(feature = "fast-loops")]
     fn is_plain(&self) -> bool {
         #[cfg(feature = "all-shaders")]
         if self.perspective {

@@ -2,7 +2,9 @@
 //!
 //! Cost: nothing per pixel; one evaluation of the lights per triangle. Not continuous across edges.
 
-use super::{Facet, Method, RANGE, Shading, node::Node};
+#[cfg(feature = "fast-loops")]
+use super::Method;
+use super::{Facet, RANGE, Shading, node::Node};
 use crate::{
     band::Band,
     format::UNIT,
@@ -36,8 +38,10 @@ pub(super) fn draw<C: Pixel>(facet: &Facet<'_>, shading: &Shading<'_, C>, band: 
 }
 
 /// Under one light, on one channel.
+#[cfg(feature = "fast-loops")]
 pub(crate) struct Plain;
 
+#[cfg(feature = "fast-loops")]
 impl Method for Plain {
     #[inline(always)]
     fn draw<C: Pixel>(facet: &Facet<'_>, shading: &Shading<'_, C>, band: &mut Band<'_, C>) -> Option<u32> {

@@ -4,7 +4,9 @@
 //! most 255 ks n (1 - c)/(1 + 2c) for the highlight and 255 kd 1.165 (1 - c)/(1 + 2c)
 //! for diffuse light, c the smallest cosine between two corners' normals.
 
-use super::{Facet, Method, RANGE, Shading};
+#[cfg(feature = "fast-loops")]
+use super::Method;
+use super::{Facet, RANGE, Shading};
 use crate::{band::Band, pixel::Pixel};
 
 #[inline(never)]
@@ -14,8 +16,10 @@ pub(super) fn draw<C: Pixel>(facet: &Facet<'_>, shading: &Shading<'_, C>, band: 
 }
 
 /// Under one light, on one channel.
+#[cfg(feature = "fast-loops")]
 pub(crate) struct Plain;
 
+#[cfg(feature = "fast-loops")]
 impl Method for Plain {
     #[inline(always)]
     fn draw<C: Pixel>(facet: &Facet<'_>, shading: &Shading<'_, C>, band: &mut Band<'_, C>) -> Option<u32> {

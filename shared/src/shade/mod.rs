@@ -281,6 +281,7 @@ fn lift<const CH: usize>(half: i32) -> [i32; CH] {
 
 impl<C: Pixel> Shading<'_, C> {
     /// One level says it all: one constant light on a material of one channel, without dither.
+    #[cfg(any(feature = "fast-loops", feature = "all-shaders"))]
     pub(crate) fn is_plain(&self) -> bool {
         self.constant.is_some() && !self.palette.three_channels && !self.dither
     }
@@ -370,6 +371,7 @@ impl<C: Pixel> Shading<'_, C> {
     }
 
     /// Draws one level by its nodes, without dither.
+    #[cfg(any(feature = "fast-loops", feature = "all-shaders"))]
     #[inline(always)]
     fn draw_plain<const N: usize, const BITS: u32>(&self, area: &impl Area, nodes: impl FnOnce() -> [i32; N], band: &mut Band<'_, C>) -> u32
     where

@@ -5,7 +5,9 @@
 //! same midpoint. Good for wide highlights or fine meshes; a highlight narrower
 //! than a triangle is flattened.
 
-use super::{Facet, Method, RANGE, Shading, node::zip_six};
+#[cfg(feature = "fast-loops")]
+use super::Method;
+use super::{Facet, RANGE, Shading, node::zip_six};
 use crate::{band::Band, palette::Palette, pixel::Pixel};
 
 #[inline(never)]
@@ -27,8 +29,10 @@ pub(super) fn draw<C: Pixel>(facet: &Facet<'_>, shading: &Shading<'_, C>, band: 
 }
 
 /// Under one light, on one channel.
+#[cfg(feature = "fast-loops")]
 pub(crate) struct Plain;
 
+#[cfg(feature = "fast-loops")]
 impl Method for Plain {
     #[inline(always)]
     fn draw<C: Pixel>(facet: &Facet<'_>, shading: &Shading<'_, C>, band: &mut Band<'_, C>) -> Option<u32> {
