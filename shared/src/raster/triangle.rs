@@ -344,9 +344,10 @@ fn hand_on<D: Patch, P: Patch>(course: Course, depth: &D, patch: &P, relay: &mut
 
 /// Fills the rows to come; there is at least one.
 ///
-/// All that lives longer than a row stays in memory, behind one pointer that the compiler knows nothing of: measured, the pixel loop
-/// then owns the registers and comes out as by hand. `count` comes from there too, written a row earlier: derived in the row, the
-/// compiler would count in two registers instead of one. Armv6-M has so few that not even the pointer may stay in one.
+/// On Armv7-M all that lives longer than a row stays in memory, behind one pointer that the compiler knows nothing of: measured, the
+/// pixel loop then owns the registers and comes out as by hand. `count` comes from there too, written a row earlier: derived in the row,
+/// the compiler would count in two registers instead of one. Where registers are few or many, or nothing is walked, a copy on the stack
+/// is shorter.
 #[inline(never)]
 pub(super) fn fill_rows<D: Patch<Walker: Sight>, P: Patch, T: Tone<<P::Walker as Walker>::Value>>(mut rows: &mut Rows<'_, D, P, T>) {
     if Rows::<D, P, T>::LOCAL {
@@ -356,9 +357,6 @@ pub(super) fn fill_rows<D: Patch<Walker: Sight>, P: Patch, T: Tone<<P::Walker as
     loop {
         rows = black_box(rows);
         rows.fill();
-        if HALVES {
-            rows = black_box(rows);
-        }
         rows.step();
         rows.height = rows.height.wrapping_sub(1);
         if rows.height == 0 {
@@ -368,7 +366,7 @@ pub(super) fn fill_rows<D: Patch<Walker: Sight>, P: Patch, T: Tone<<P::Walker as
 }
 
 impl<'b, D: Patch<Walker: Sight>, P: Patch, T: Tone<<P::Walker as Walker>::Value>> Rows<'b, D, P, T> {
-    /// Whether rows are filled in a copy: where registers are few or many, or nothing is walked.
+    /// Whether rows are filled in a copy, see [`fill_rows`].
     const LOCAL: bool = HALVES || cfg!(not(target_arch = "arm")) || size_of::<P>() == 0;
 
     /// Whether pixels are counted a row ahead there, so that what is counted need not wait for the pixel loop.
@@ -408,7 +406,7 @@ impl<'b, D: Patch<Walker: Sight>, P: Patch, T: Tone<<P::Walker as Walker>::Value
         }
     }
 
-    /// [`fill_rows`] in a copy that is nobody else's.
+    /// Fills them in a copy that is nobody else's.
     #[inline(always)]
     fn fill_here(&mut self) {
         let Rows { width, start, sides, count, height, filled, depth, patch, tone, .. } = *self;

@@ -121,7 +121,7 @@ enum Lit {
     Everywhere,
     Nowhere,
     Partly,
-    /// Partly, and nodes differ by more than 1: levels by more than [`RANGE`].
+    /// Partly, and nodes differ by more than 1, levels by more than [`RANGE`], or it may leave [-1, 1], where levels would wrap.
     Steeply,
 }
 
@@ -135,7 +135,7 @@ impl Lit {
             Self::Everywhere
         } else if most < 0 && most <= least >> 2 {
             Self::Nowhere
-        } else if most.saturating_sub(least) <= ONE {
+        } else if most.saturating_sub(least) <= ONE && (most - (least >> 2)).max((most >> 2).saturating_sub(least)) <= 3 * (ONE / 4) {
             Self::Partly
         } else {
             Self::Steeply
@@ -177,5 +177,37 @@ impl Form<(), ([u32; 1], [u32; 1])> for Squared {
     #[inline(always)]
     fn reflect(&self, light: usize, (): &(), ([l], [h]): ([u32; 1], [u32; 1]), power: PixelPower<'_>) -> Reflection {
         self.reflect(light, &(), [l, h], power)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    proptest! {
+        #![proptest_config(ProptestConfig::with_cases(2_000))]
+        #[test]
+        fn quadratics_are_where_their_nodes_say(
+            centre in -1.0f64..1.0,
+            spread in prop_oneof![0.0f64..0.5, 0.0f64..1.0],
+            parts in prop::array::uniform6(prop_oneof![Just(-1.0f64), Just(1.0), -1.0f64..1.0]),
+        ) {
+            let nodes = parts.map(|part| ((centre + part * spread).clamp(-1.0, 1.0) * f64::from(ONE)) as i32);
+            let lit = Lit::of(nodes);
+            for (s, t) in (0..=20).flat_map(|s| (0..=20 - s).map(move |t| (f64::from(s) / 20.0, f64::from(t) / 20.0))) {
+                let b = [1.0 - s - t, s, t];
+                let n = nodes.map(|node| f64::from(node) / f64::from(ONE));
+                let value = (0..3).map(|k| b[k] * (2.0 * b[k] - 1.0) * n[k]).sum::<f64>()
+                    + 4.0 * (b[0] * b[1] * n[3] + b[1] * b[2] * n[4] + b[2] * b[0] * n[5]);
+                let holds = match lit {
+                    Lit::Everywhere => value > 0.0,
+                    Lit::Nowhere => value < 0.0,
+                    Lit::Partly => value.abs() <= 1.0,
+                    Lit::Steeply => true,
+                };
+                prop_assert!(holds, "{nodes:?} at {s} {t}: {value}");
+            }
+        }
     }
 }
