@@ -2,10 +2,10 @@
 //!
 //! Each triangle is stored once, in the list of the first bin it touches; the
 //! list of *active* triangles takes over a bin's list when drawing reaches it,
-//! and drops there what has ended. Lists are in the order of the
+//! and drops a triangle below its last row. Lists are in the order of the
 //! stream, so the picture does not depend on the height of the bands.
 
-use core::{iter, num::NonZeroU32, ops::Range};
+use core::{num::NonZeroU32, ops::Range};
 
 /// Bins of a frame; the rows are shared out among them.
 pub const BINS: usize = 64;
@@ -122,30 +122,61 @@ impl Bins {
         self.top.min(self.bottom)..self.bottom
     }
 
-    /// Takes over the lists of all bins that start above row `bottom`, and drops what ends at row `top` or above, as far as it comes by.
-    pub fn advance(&mut self, entries: &mut [Entry], [top, bottom]: [u32; 2]) {
+    /// The triangles of the band that ends at row `bottom`; the next band is to be told what is left of them, by [`Self::take_over`].
+    pub fn band<'e>(&mut self, entries: &'e mut [Entry], bottom: u32) -> Walk<'e> {
         let last = self.of(bottom.saturating_sub(1));
+        let mut fresh = NONE;
         while self.reached <= last {
             if let Some(&head) = self.heads.get(self.reached) {
-                self.active = merge(entries, self.active, head, top);
+                fresh = if fresh == NONE { head } else { merge(entries, [fresh, head]) };
             }
             self.reached += 1;
         }
+        Walk { entries, lists: [self.active, fresh], head: NONE, tail: NONE, bottom }
     }
 
-    /// The active entries that reach below row `top`, in the order of the stream.
+    /// What is left of a band's triangles for the next one.
+    pub fn take_over(&mut self, walk: Walk<'_>) {
+        self.active = walk.end();
+    }
+}
+
+/// The triangles of a band in the order of the stream: those that reach down from above, and those that start here, merged on the way.
+/// What reaches below the band is left over.
+#[derive(Debug)]
+pub struct Walk<'e> {
+    entries: &'e mut [Entry],
+    lists: [u16; 2],
+    /// Of those that are left over.
+    head: u16,
+    tail: u16,
+    bottom: u32,
+}
+
+impl Iterator for Walk<'_> {
+    type Item = Entry;
+
     #[inline(always)]
-    pub fn active<'e>(&self, entries: &'e [Entry], top: u32) -> impl Iterator<Item = &'e Entry> + use<'e> {
-        let mut link = self.active;
-        iter::from_fn(move || {
-            loop {
-                let entry = linked(link).and_then(|index| entries.get(index))?;
-                link = entry.next;
-                if u32::from(entry.bottom) > top {
-                    return Some(entry);
-                }
-            }
-        })
+    fn next(&mut self) -> Option<Entry> {
+        // Entries are put in from the last triangle to the first: of two lists the later entry comes first in the stream.
+        let [active, fresh] = &mut self.lists;
+        let link = (*active).max(*fresh);
+        let entry = *linked(link).and_then(|index| self.entries.get(index))?;
+        *(if link == *active { active } else { fresh }) = entry.next;
+        if u32::from(entry.bottom) > self.bottom {
+            append(self.entries, &mut self.head, self.tail, link);
+            self.tail = link;
+        }
+        Some(entry)
+    }
+}
+
+impl Walk<'_> {
+    /// The head of what is left over.
+    fn end(mut self) -> u16 {
+        while self.next().is_some() {}
+        append(self.entries, &mut self.head, self.tail, NONE);
+        self.head
     }
 }
 
@@ -153,12 +184,6 @@ impl Bins {
 #[inline(always)]
 fn linked(link: u16) -> Option<usize> {
     link.checked_sub(1).map(usize::from)
-}
-
-/// The entry that a link leads to.
-#[inline(always)]
-fn at(entries: &[Entry], link: u16) -> Option<&Entry> {
-    linked(link).and_then(|index| entries.get(index))
 }
 
 /// Makes `link` follow `tail`, the last entry of the list that starts at `head`.
@@ -170,27 +195,9 @@ fn append(entries: &mut [Entry], head: &mut u16, tail: u16, link: u16) {
     }
 }
 
-/// Two lists in the order of the stream into one, the first without what ends at row `top` or above; returns its head. What is left of
-/// one when the other ends stays as it is.
-fn merge(entries: &mut [Entry], mut a: u16, mut b: u16, top: u32) -> u16 {
-    let (mut head, mut tail) = (NONE, NONE);
-    let (mut first, mut second) = (at(entries, a).copied(), at(entries, b).copied());
-    while let (Some(x), Some(y)) = (first, second) {
-        if u32::from(x.bottom) <= top {
-            (a, first) = (x.next, at(entries, x.next).copied());
-            continue;
-        }
-        let link = if x.key <= y.key { a } else { b };
-        append(entries, &mut head, tail, link);
-        tail = link;
-        if x.key <= y.key {
-            (a, first) = (x.next, at(entries, x.next).copied());
-        } else {
-            (b, second) = (y.next, at(entries, y.next).copied());
-        }
-    }
-    append(entries, &mut head, tail, if first.is_some() { a } else { b });
-    head
+/// Two lists in the order of the stream into one; returns its head.
+fn merge(entries: &mut [Entry], lists: [u16; 2]) -> u16 {
+    Walk { entries, lists, head: NONE, tail: NONE, bottom: 0 }.end()
 }
 
 #[cfg(test)]
@@ -212,10 +219,10 @@ mod tests {
             let mut top = 0;
             while top < HEIGHT {
                 let bottom = (top + band).min(HEIGHT);
-                bins.advance(&mut entries, [top, bottom]);
                 let mut seen = [false; 100];
                 let mut last = None;
-                for entry in bins.active(&entries, top) {
+                let mut walk = bins.band(&mut entries, bottom);
+                for entry in walk.by_ref() {
                     let triangle = entry.triangle();
                     assert_eq!(entry.is_simple(), triangle % 3 == 0);
                     assert!(last < Some(triangle));
@@ -223,6 +230,7 @@ mod tests {
                     seen[triangle as usize] = true;
                     last = Some(triangle);
                 }
+                bins.take_over(walk);
                 for i in 0..100 {
                     let (first, end) = rows(i);
                     assert!(seen[i as usize] || end <= top || first >= bottom, "band {band}, rows {top}..{bottom}, triangle {i}");

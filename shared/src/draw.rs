@@ -2,7 +2,7 @@
 
 use crate::{
     band::Band,
-    bin::Entry,
+    bin::{Entry, Walk},
     clip,
     convex::Convex,
     cull::Extent,
@@ -49,26 +49,26 @@ struct Face<'f> {
 impl<C: Pixel> Drawing<'_, C> {
     /// Draws the triangle of `entry` and those that follow it in the same mesh, up to `end`; returns their pixels in `band`, and the first
     /// entry of another mesh.
-    pub(crate) fn run<'e>(
+    pub(crate) fn run(
         &self,
         triangles: &[Triangle],
-        entry: &'e Entry,
-        active: &mut impl Iterator<Item = &'e Entry>,
+        entry: Entry,
+        walk: &mut Walk<'_>,
         end: u32,
         band: &mut Band<'_, C>,
-    ) -> (u32, Option<&'e Entry>) {
+    ) -> (u32, Option<Entry>) {
         match self.shading.shader {
             #[cfg(feature = "fast-loops")]
-            Shader::Flat if self.is_plain() => self.each::<flat::Plain>(triangles, entry, active, end, band),
+            Shader::Flat if self.is_plain() => self.each::<flat::Plain>(triangles, entry, walk, end, band),
             #[cfg(feature = "fast-loops")]
-            Shader::Gouraud if self.is_plain() => self.each::<gouraud::Plain>(triangles, entry, active, end, band),
+            Shader::Gouraud if self.is_plain() => self.each::<gouraud::Plain>(triangles, entry, walk, end, band),
             #[cfg(feature = "fast-loops")]
-            Shader::SixPoint if self.is_plain() => self.each::<six_point::Plain>(triangles, entry, active, end, band),
+            Shader::SixPoint if self.is_plain() => self.each::<six_point::Plain>(triangles, entry, walk, end, band),
             #[cfg(feature = "fast-loops")]
-            Shader::Phong if self.is_plain() => self.each::<duff::Plain>(triangles, entry, active, end, band),
+            Shader::Phong if self.is_plain() => self.each::<duff::Plain>(triangles, entry, walk, end, band),
             #[cfg(all(feature = "fast-loops", feature = "all-shaders"))]
-            Shader::Sqrt6 if self.is_plain() => self.each::<crate::shade::sqrt6::Plain>(triangles, entry, active, end, band),
-            _ => self.each::<Any>(triangles, entry, active, end, band),
+            Shader::Sqrt6 if self.is_plain() => self.each::<crate::shade::sqrt6::Plain>(triangles, entry, walk, end, band),
+            _ => self.each::<Any>(triangles, entry, walk, end, band),
         }
     }
 
@@ -84,14 +84,14 @@ impl<C: Pixel> Drawing<'_, C> {
 
     /// [`Self::run`] for one method, whose way through a simple triangle is compiled into the loop.
     #[inline(never)]
-    fn each<'e, M: Method>(
+    fn each<M: Method>(
         &self,
         triangles: &[Triangle],
-        mut entry: &'e Entry,
-        active: &mut impl Iterator<Item = &'e Entry>,
+        mut entry: Entry,
+        walk: &mut Walk<'_>,
         end: u32,
         band: &mut Band<'_, C>,
-    ) -> (u32, Option<&'e Entry>) {
+    ) -> (u32, Option<Entry>) {
         let mut pixels = 0u32;
         loop {
             // A stream that has been checked has it.
@@ -105,7 +105,7 @@ impl<C: Pixel> Drawing<'_, C> {
                 };
                 pixels = pixels.saturating_add(drawn);
             }
-            match active.next() {
+            match walk.next() {
                 Some(other) if other.triangle() < end => entry = other,
                 other => return (pixels, other),
             }

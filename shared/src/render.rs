@@ -3,7 +3,7 @@
 use crate::{
     Shader, Stream,
     band::{Band, Blend},
-    bin::{Bins, Entry},
+    bin::{Bins, Entry, Walk},
     clip,
     convex::Convex,
     cull::{Extent, Facing},
@@ -519,8 +519,11 @@ impl<C: Pixel> Frame<'_, '_, C> {
         let mut band = Band { pixels, depth: lent, width, top: self.top as i32, rows: rows as i32, blend, relay };
         band.clear(self.renderer.background);
         let (pixels, drawn) = if self.binned {
-            self.bins.advance(self.renderer.memory.bins, [self.top, bottom]);
-            let pixels = self.draw_binned(&mut band);
+            let entries = core::mem::take(&mut self.renderer.memory.bins);
+            let mut walk = self.bins.band(entries, bottom);
+            let pixels = self.draw_binned(&mut walk, &mut band);
+            self.bins.take_over(walk);
+            self.renderer.memory.bins = entries;
             (pixels, 0)
         } else {
             self.stats.passes += 1;
@@ -537,18 +540,17 @@ impl<C: Pixel> Frame<'_, '_, C> {
         self.renderer.memory.samples = samples;
     }
 
-    /// Draws the triangles that lie in `band`; returns their pixels there.
-    fn draw_binned(&self, band: &mut Band<'_, C>) -> u32 {
-        let Renderer { stream, memory, .. } = &*self.renderer;
+    /// Draws the triangles of `band`; returns their pixels there.
+    fn draw_binned(&self, walk: &mut Walk<'_>, band: &mut Band<'_, C>) -> u32 {
+        let stream = &self.renderer.stream;
         let mut pixels = 0u32;
-        let mut active = self.bins.active(memory.bins, self.top);
-        let mut next = active.next();
+        let mut next = walk.next();
         while let Some(entry) = next {
             // A stream that has been checked has both.
             let Some(mesh) = self.mesh(entry.triangle()) else { break };
             let Some(drawing) = self.drawing(mesh) else { break };
             let end = mesh.first_triangle.saturating_add(mesh.triangles);
-            let (drawn, rest) = drawing.run(stream.triangles, entry, &mut active, end, band);
+            let (drawn, rest) = drawing.run(stream.triangles, entry, walk, end, band);
             pixels = pixels.saturating_add(drawn);
             next = rest;
         }
