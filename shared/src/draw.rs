@@ -157,12 +157,12 @@ impl<C: Pixel> Drawing<'_, C> {
         let (Some(leg), Some(corners)) = (band.relay.leg(place), self.corners(triangle)) else { return 0 };
         let (by, corners) = turned(corners);
         let facet = Facet {
-            outline: &Outline::handed_on(leg.course, by, band),
+            outline: &Outline::handed_on(leg, by, band),
             basis: &Basis::NONE,
             corners,
             triangle,
             vertices: self.vertices,
-            contested: leg.course.nearness.is_some(),
+            contested: leg.nearness.is_some(),
             #[cfg(feature = "all-shaders")]
             perspective: false,
             place: Some(place),

@@ -6,7 +6,7 @@
 
 use crate::{
     poly::{Patch, plane::Plane},
-    raster::triangle::Course,
+    raster::sides::Rest,
 };
 
 /// Words of a quadratic in three channels.
@@ -15,22 +15,25 @@ const WORDS: usize = 18;
 /// A triangle on its way to the next band.
 #[derive(Clone, Copy, Debug)]
 pub struct Leg {
-    /// Its key is that of the triangle's entry in its list; 0 is of none.
-    pub(crate) course: Course,
+    /// That of the triangle's entry in its list; 0 is of none.
+    pub(crate) key: u32,
+    pub(crate) rest: Rest,
+    /// Standing on the next band's first row, if it is known.
+    pub(crate) nearness: Option<Plane<1>>,
     /// What its patch keeps.
     words: [u32; WORDS],
 }
 
 impl Leg {
     /// Of no triangle; all zeros, as memory in a `static` should be.
-    pub const EMPTY: Self = Self { course: Course::NONE, words: [0; WORDS] };
+    pub const EMPTY: Self = Self { key: 0, rest: Rest::NONE, nearness: None, words: [0; WORDS] };
 
-    /// Keeps what has been walked to the end of `course`; false if there is no way to.
+    /// Keeps what has been walked to the end of a band; false if there is no way to.
     #[inline(always)]
-    pub(crate) fn keep<D: Patch, P: Patch>(&mut self, course: Course, depth: &D, patch: &P) -> bool {
+    pub(crate) fn keep<D: Patch, P: Patch>(&mut self, (key, rest): (u32, Rest), depth: &D, patch: &P) -> bool {
         let mut plane = [0; 3];
-        let nearness = if D::WORDS > 0 && depth.keep(&mut plane) { Plane::kept(&plane) } else { None };
-        self.course = course.at(nearness);
+        self.nearness = if D::WORDS > 0 && depth.keep(&mut plane) { Plane::kept(&plane) } else { None };
+        (self.key, self.rest) = (key, rest);
         patch.keep(&mut self.words)
     }
 
@@ -72,7 +75,7 @@ impl<'a> Relay<'a> {
     #[inline(always)]
     pub(crate) fn take(&mut self, key: u32) -> Option<usize> {
         let Queued { first, count } = self.queued;
-        if count == 0 || self.legs.get(first)?.course.key != key {
+        if count == 0 || self.legs.get(first)?.key != key {
             return None;
         }
         self.queued = Queued { first: if first + 1 < self.legs.len() { first + 1 } else { 0 }, count: count - 1 };
@@ -110,7 +113,7 @@ mod tests {
         let mut relay = Relay::new(&mut legs, Queued::default());
         let put = |relay: &mut Relay<'_>, key, fits| {
             relay.put(|leg| {
-                leg.course.key = key;
+                leg.key = key;
                 fits
             });
         };

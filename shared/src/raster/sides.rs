@@ -35,6 +35,29 @@ struct Below {
     right: bool,
 }
 
+/// Sides that go on below a band, as [`Sides`] has them.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Rest {
+    /// Those of the next band's first row.
+    pair: Pair,
+    low: i32,
+    turn: i32,
+    below: Below,
+}
+
+impl Rest {
+    /// Of no triangle; all zeros.
+    pub(crate) const NONE: Self = Self { pair: Pair::NONE, low: 0, turn: 0, below: Below { column: Column::NONE, right: false } };
+
+    /// The sides in the rows from `top` to `bottom` of the next band.
+    #[inline(always)]
+    pub(super) fn sides(self, [top, bottom]: [i32; 2]) -> Sides {
+        let Self { pair, low, turn, below } = self;
+        let end = low.min(bottom);
+        Sides { pair, row: top, stop: turn.max(top).min(end), end, low, turn, simple: true, below }
+    }
+}
+
 /// A triangle's rows in a band.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Sides {
@@ -106,20 +129,11 @@ impl Sides {
         self.low > self.end
     }
 
-    /// Those that follow in the next band, as far as is known here; `pair` has been walked to the end.
+    /// What follows in the next band; `pair` has been walked to the end.
     #[inline(always)]
-    pub(super) fn below(&self, pair: Pair) -> Self {
+    pub(super) fn rest(&self, pair: Pair) -> Rest {
         // Before the middle corner's row, or where it is the band's end, the edge below is still to come.
-        Self { pair, row: self.end, turn: if self.stop < self.end { self.low } else { self.turn }, ..*self }
-    }
-
-    /// Ends them at row `bottom` of that band.
-    #[inline(always)]
-    pub(super) fn until(&mut self, bottom: i32) {
-        // Others are not handed on: what is known is not asked again.
-        self.simple = true;
-        self.end = self.low.min(bottom);
-        self.stop = self.turn.max(self.row).min(self.end);
+        Rest { pair, low: self.low, turn: if self.stop < self.end { self.low } else { self.turn }, below: self.below }
     }
 
     /// Goes on with the rows from `row`, to which both sides have been walked: `pair`; returns how far they can be walked now.

@@ -3,7 +3,7 @@
 use super::{
     edge::{COLUMN, COLUMNS, first_centre},
     fill::{Sight, fill},
-    sides::{Pair, Sides},
+    sides::{Pair, Rest, Sides},
     smooth::{Part, Shape},
 };
 use crate::{
@@ -12,7 +12,7 @@ use crate::{
     format::{CENTRE, DEPTH, DEPTH_NODE, DEPTH_WALK, SUBPIXEL},
     math::product::HALVES,
     poly::{Constant, Patch, Walker, basis::Basis, plane::Plane},
-    relay::Relay,
+    relay::{Leg, Relay},
     tone::Tone,
     vertex::ScreenVertex,
 };
@@ -34,35 +34,20 @@ pub struct Outline {
 
 /// A triangle's way through the rows of a band.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Course {
+struct Course {
     sides: Sides,
     /// Standing on the first row, if it is known already.
-    pub(crate) nearness: Option<Plane<1>>,
+    nearness: Option<Plane<1>>,
     /// For [`Relay`]; 0: it is not handed on.
-    pub(crate) key: u32,
+    key: u32,
     /// By the band above: patches stand on the first row already.
     handed_on: bool,
 }
 
 impl Course {
-    /// Through no row.
-    pub(crate) const NONE: Self = Self::of(Sides::NONE, 0);
-
     #[inline(always)]
     const fn of(sides: Sides, key: u32) -> Self {
         Self { sides, nearness: None, key, handed_on: false }
-    }
-
-    /// The way on in the next band, but for nearness; `pair` has been walked to the end.
-    #[inline(always)]
-    fn next(&self, pair: Pair) -> Self {
-        Self { sides: self.sides.below(pair), nearness: None, key: self.key, handed_on: true }
-    }
-
-    /// The same with this nearness.
-    #[inline(always)]
-    pub(crate) fn at(self, nearness: Option<Plane<1>>) -> Self {
-        Self { nearness, ..self }
     }
 }
 
@@ -193,11 +178,9 @@ impl Outline {
     /// Of one that the band above handed on: nothing else is known of it.
     #[inline(always)]
     #[must_use]
-    pub(crate) fn handed_on<C>(course: Course, turned: usize, band: &Band<'_, C>) -> Self {
-        let mut outline = Self { corners: [[0; 2]; 3], depth: [0; 3], turned, part: Part::Centres, course };
-        outline.course.sides.until(band.range()[1]);
-        outline.course.handed_on = true;
-        outline
+    pub(crate) fn handed_on<C>(leg: &Leg, turned: usize, band: &Band<'_, C>) -> Self {
+        let course = Course { sides: leg.rest.sides(band.range()), nearness: leg.nearness, key: leg.key, handed_on: true };
+        Self { corners: [[0; 2]; 3], depth: [0; 3], turned, part: Part::Centres, course }
     }
 
     /// No row lies in the band.
@@ -284,7 +267,7 @@ impl Outline {
         let filled = rows.filled;
         if self.course.key != 0 && sides.goes_on() {
             let Rows { sides: pair, depth, patch, .. } = rows;
-            hand_on(self.course.next(pair), &depth, &patch, &mut band.relay);
+            hand_on((self.course.key, sides.rest(pair)), &depth, &patch, &mut band.relay);
         }
         filled
     }
@@ -338,8 +321,8 @@ pub fn turn<A: Copy>([a, b, c]: [A; 3], by: usize) -> [A; 3] {
 
 /// Hands a triangle on to the next band, walked to its first row there.
 #[inline(never)]
-fn hand_on<D: Patch, P: Patch>(course: Course, depth: &D, patch: &P, relay: &mut Relay<'_>) {
-    relay.put(|leg| leg.keep(course, depth, patch));
+fn hand_on<D: Patch, P: Patch>((key, rest): (u32, Rest), depth: &D, patch: &P, relay: &mut Relay<'_>) {
+    relay.put(|leg| leg.keep((key, rest), depth, patch));
 }
 
 /// Fills the rows to come; there is at least one.
