@@ -15,6 +15,9 @@ pub trait Tone<V>: Copy {
     /// So few instructions that a test of depth would be a large share of them: worth a loop without one.
     const CHEAP: bool = false;
 
+    /// Tells it from other tones of the same method, where that is worth knowing when a band hands a triangle on.
+    const MARK: u8 = 0;
+
     /// The colour at column `x` of the current row.
     fn tone(&self, value: V, x: usize) -> Self::Pixel;
 

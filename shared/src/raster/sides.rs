@@ -41,7 +41,8 @@ pub(crate) struct Rest {
     /// Those of the next band's first row.
     pair: Pair,
     low: i32,
-    turn: i32,
+    /// A row, not above the viewport; in the upper half, what is to be remembered of the tone: one word for both.
+    turn: u32,
     below: Below,
 }
 
@@ -49,11 +50,18 @@ impl Rest {
     /// Of no triangle; all zeros.
     pub(crate) const NONE: Self = Self { pair: Pair::NONE, low: 0, turn: 0, below: Below { column: Column::NONE, right: false } };
 
+    /// The tone's mark.
+    #[cfg(feature = "all-shaders")]
+    #[inline(always)]
+    pub(crate) fn mark(&self) -> u8 {
+        (self.turn >> 16) as u8
+    }
+
     /// The sides in the rows from `top` to `bottom` of the next band.
     #[inline(always)]
     pub(super) fn sides(self, [top, bottom]: [i32; 2]) -> Sides {
         let Self { pair, low, turn, below } = self;
-        let end = low.min(bottom);
+        let (turn, end) = ((turn & 0xFFFF) as i32, low.min(bottom));
         Sides { pair, row: top, stop: turn.max(top).min(end), end, low, turn, simple: true, below }
     }
 }
@@ -129,11 +137,12 @@ impl Sides {
         self.low > self.end
     }
 
-    /// What follows in the next band; `pair` has been walked to the end.
+    /// What follows in the next band; `pair` has been walked to the end. `mark` is the tone's, see [`crate::tone::Tone::MARK`].
     #[inline(always)]
-    pub(super) fn rest(&self, pair: Pair) -> Rest {
+    pub(super) fn rest(&self, pair: Pair, mark: u8) -> Rest {
         // Before the middle corner's row, or where it is the band's end, the edge below is still to come.
-        Rest { pair, low: self.low, turn: if self.stop < self.end { self.low } else { self.turn }, below: self.below }
+        let turn = if self.stop < self.end { self.low } else { self.turn };
+        Rest { pair, low: self.low, turn: turn as u32 | u32::from(mark) << 16, below: self.below }
     }
 
     /// Goes on with the rows from `row`, to which both sides have been walked: `pair`; returns how far they can be walked now.

@@ -267,7 +267,7 @@ impl Outline {
         let filled = rows.filled;
         if self.course.key != 0 && sides.goes_on() {
             let Rows { sides: pair, depth, patch, .. } = rows;
-            hand_on((self.course.key, sides.rest(pair)), &depth, &patch, &mut band.relay);
+            hand_on((self.course.key, sides.rest(pair, T::MARK)), &depth, &patch, &mut band.relay);
         }
         filled
     }

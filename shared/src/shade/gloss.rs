@@ -15,6 +15,8 @@ impl<C: Pixel, K, V, F: Form<K, V>> Tone<(V, K)> for Gloss<'_, C, F> {
 
     const CHEAP: bool = true;
 
+    const MARK: u8 = 3;
+
     #[inline(always)]
     fn tone(&self, (fields, common): (V, K), _: usize) -> C {
         self.glossy.colour(self.form.reflect(0, &self.form.common(common), fields, self.glossy.power))

@@ -144,6 +144,13 @@ impl Facet<'_> {
         band.relay.leg(self.place?)?.patch()
     }
 
+    /// That of the tone in which the band above handed it on.
+    #[cfg(feature = "all-shaders")]
+    #[inline(always)]
+    fn mark<C>(&self, band: &Band<'_, C>) -> Option<u8> {
+        Some(band.relay.leg(self.place?)?.rest.mark())
+    }
+
     /// Nowhere on the triangle does the highlight of one constant light reach a visible level:
     /// N·H is linear and |N| at least rho.
     #[inline(always)]

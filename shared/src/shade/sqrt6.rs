@@ -21,9 +21,11 @@ use crate::{
     palette::{Levels, Reflection},
     pixel::Pixel,
     poly::{Constant, field::Nodes},
-    tone::Tone,
+    tone::{Ramp, Tone},
 };
 
+/// Any other mark.
+const GLOSSY: u8 = u8::MAX;
 /// One, Q2.30.
 const ONE: i32 = 1 << 30;
 /// Below this cosine the root is continued by a line.
@@ -47,25 +49,29 @@ pub(crate) struct Plain;
 impl Method for Plain {
     #[inline(always)]
     fn draw<C: Pixel>(facet: &Facet<'_>, shading: &Shading<'_, C>, band: &mut Band<'_, C>) -> Option<u32> {
-        let (palette, cosines) = (shading.palette, facet.six_cosines(0));
-        let (lit, is_dark) = (Lit::of(cosines), facet.is_dark(palette));
-        if is_dark && matches!(lit, Lit::Everywhere | Lit::Nowhere) {
+        let (palette, mark) = (shading.palette, facet.mark(band));
+        let levels = shading.one_light().filter(Levels::is_within);
+        // What was handed on has been decided, and needs no nodes.
+        let cosines = if mark.is_none() { facet.six_cosines(0) } else { [0; 6] };
+        let mark = mark.unwrap_or_else(|| match (facet.is_dark(palette), Lit::of(cosines)) {
+            (true, Lit::Everywhere | Lit::Nowhere) => Ramp::<C>::MARK,
+            (true, Lit::Partly) if levels.is_some() => Clamped::<C>::MARK,
+            (_, Lit::Everywhere) if levels.is_some() => Defective::<C>::MARK,
+            _ => GLOSSY,
+        });
+        if mark == Ramp::<C>::MARK {
             return Some(shading.draw_plain::<6, RANGE>(facet, || palette.six_matte(cosines), band));
         }
         let roots = || map_six(facet.six_cosines(1), root);
         let defects = Defects::new(&palette.power);
-        let levels = shading.one_light().filter(Levels::is_within);
         let light =
             |levels: Levels<'_, C>| Nodes::<6, 1, RANGE>::new([map_six(cosines, |cosine| levels.node(cosine, LEVEL))], WALK - LEVEL);
-        if is_dark
-            && lit == Lit::Partly
-            && let Some(levels) = levels
-        {
+        if mark == Clamped::<C>::MARK {
+            let levels = levels?;
             return Some(facet.draw(|| light(levels), Clamped { levels, floor: defects.most() }, band));
         }
-        if lit == Lit::Everywhere
-            && let Some(levels) = levels
-        {
+        if mark == Defective::<C>::MARK {
+            let levels = levels?;
             let field = || {
                 let light = light(levels);
                 let half = Nodes::<6, 1, BITS>::new([map_six(roots(), |root| defects.node(root))], EXTRA).raised([defects.half()]);
@@ -90,6 +96,8 @@ impl<C: Pixel> Tone<([u32; 1], [u32; 1])> for Defective<'_, C> {
 
     const CHEAP: bool = true;
 
+    const MARK: u8 = 2;
+
     #[inline(always)]
     fn tone(&self, ([light], [defect]): ([u32; 1], [u32; 1]), _: usize) -> C {
         self.levels.colour::<WALK>(light, self.defects.at(signed(defect)))
@@ -108,6 +116,8 @@ impl<C: Pixel> Tone<[u32; 1]> for Clamped<'_, C> {
     type Pixel = C;
 
     const CHEAP: bool = true;
+
+    const MARK: u8 = 1;
 
     #[inline(always)]
     fn tone(&self, [light]: [u32; 1], _: usize) -> C {
