@@ -310,7 +310,7 @@ fn planes_stay_within_the_bound_even_on_slivers() {
 /// What fields of 26 bits on small triangles cost for each pixel of the way from the anchor, in units of the walked format.
 const LONG_SMALL: f64 = 16.0;
 /// Set-up error of a plane of 26 bits on a triangle as long as high, in units of its nodes.
-const LONG_LINEAR: f64 = 1.0 / 8.0;
+const LONG_LINEAR: f64 = 1.0 / 16.0;
 /// Set-up error of a quadratic of 26 bits on a triangle as long as high, in units of its nodes.
 const LONG_QUADRATIC: f64 = 1.0;
 
@@ -356,13 +356,13 @@ fn fields_of_26_bits_stay_within_the_bound_on_small_triangles() {
                     + 4.0 * (b[0] * b[1] * n[3] + b[1] * b[2] * n[4] + b[2] * b[0] * n[5]);
                 let distance = f64::from((x - basis.column()).abs() + (row - basis.row()).abs());
                 let units = f64::from(1 << extra);
-                for (k, walked, exact, part) in [
-                    (0, linear.value(), straight, LONG_LINEAR * thinness),
-                    (1, quadratic.value(), curved, LONG_QUADRATIC * thinness * thinness),
+                for (k, walked, exact, part, far) in [
+                    (0, linear.value(), straight, LONG_LINEAR * thinness, 0.0),
+                    (1, quadratic.value(), curved, LONG_QUADRATIC * thinness * thinness, distance * distance),
                 ] {
                     let error = (f64::from(walked[0] as i32) - exact * units).abs();
                     let error = error.min((error - 2f64.powi(32)).abs());
-                    let bound = 0.5 * (1.0 + distance + distance * distance) + LONG_SMALL * (1.0 + distance) + part * units;
+                    let bound = 0.5 * (1.0 + distance + far) + LONG_SMALL * (1.0 + distance) + part * units;
                     worst[k] = worst[k].max(error / bound);
                     assert!(error <= bound, "triangle {i} {corners:?}, pixel {x},{row}: error {error}, bound {bound}, {thinness}, {range}");
                 }

@@ -128,6 +128,13 @@ impl Power {
         self.floor.into()
     }
 
+    /// The entry that the pixel loop takes for small cosines.
+    #[inline(always)]
+    #[must_use]
+    pub fn least(&self) -> u32 {
+        self.table[SIZE - 1].into()
+    }
+
     /// Smallest cosine, Q2.30, whose power is not taken as 0.
     #[must_use]
     pub fn dark_below(&self) -> i32 {

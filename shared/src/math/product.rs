@@ -45,12 +45,7 @@ pub fn by_fraction(a: i32, b: u16) -> i32 {
 #[inline(always)]
 #[must_use]
 pub fn unsigned_by_fraction(a: u32, b: u16) -> u32 {
-    let factor = u32::from(b);
-    if HALVES {
-        (a >> 16).wrapping_mul(factor).wrapping_add((a & 0xFFFF).wrapping_mul(factor) >> 16)
-    } else {
-        ((u64::from(a) * u64::from(b)) >> 16) as u32
-    }
+    if HALVES { unsigned_by_half_word(a, b.into()) } else { ((u64::from(a) * u64::from(b)) >> 16) as u32 }
 }
 
 /// `(a x + b y) / 2^32`, rounded down; `x` and `y` are multiples of 2^16.
@@ -114,6 +109,12 @@ fn by_half_word(a: i32, b: i32) -> i32 {
     high.wrapping_mul(b).wrapping_add((low.wrapping_mul(b) as u32 >> 16) as i32)
 }
 
+/// The same of a number without a sign.
+#[inline(always)]
+fn unsigned_by_half_word(a: u32, b: u32) -> u32 {
+    (a >> 16).wrapping_mul(b).wrapping_add((a & 0xFFFF).wrapping_mul(b) >> 16)
+}
+
 /// `(a x + b y) / 2^16`, rounded down; `x` and `y` are half words.
 #[inline(always)]
 fn dot_by_halves([a, b]: [i32; 2], [x, y]: [i32; 2]) -> i32 {
@@ -137,6 +138,9 @@ mod tests {
         let fraction = b as u16;
         assert_eq!(i64::from(by_half_word(a, fraction.into())), (i64::from(a) * i64::from(fraction)) >> 16, "{a} {fraction}");
         assert_eq!(by_fraction(a, fraction), by_half_word(a, fraction.into()));
+        let whole = (u64::from(a as u32) * u64::from(fraction)) >> 16;
+        assert_eq!(u64::from(unsigned_by_half_word(a as u32, fraction.into())), whole, "{a} {fraction}");
+        assert_eq!(u64::from(unsigned_by_fraction(a as u32, fraction)), whole);
         let (factor, product) = (b & 0x7FFF, i64::from(a) * i64::from(b & 0x7FFF));
         assert_eq!(i64::from(upper_by_half_word(a, factor << 16)), product >> 16, "{a} {factor}");
     }

@@ -37,13 +37,6 @@ impl<'a> Quotients<'a> {
         upper_by_half_word(cosine, self.factor) >> (24 - NODE - 16)
     }
 
-    /// The entry of small cosines.
-    #[inline(always)]
-    #[must_use]
-    pub fn least(&self) -> u32 {
-        self.table[SIZE - 1].into()
-    }
-
     /// The entry nearest to the upper half of a numerator, walked with [`EXTRA`] more bits, times half a reciprocal length (Q2.30).
     /// Error: [`super::power::NEAREST_ERROR`], and 1/100 of a step.
     #[inline(always)]
@@ -78,13 +71,6 @@ impl<'a> Defects<'a> {
     #[must_use]
     pub fn node(&self, cosine: i32) -> i32 {
         upper_by_half_word((1 << 30) - cosine, self.factor) >> 5
-    }
-
-    /// The entry of large defects.
-    #[inline(always)]
-    #[must_use]
-    pub fn most(&self) -> u32 {
-        self.table[SIZE - 1].into()
     }
 
     /// Half a step, added to a walked defect: the entry below is the nearest then.

@@ -398,6 +398,7 @@ impl<'b, D: Patch<Walker: Sight>, P: Patch, T: Tone<<P::Walker as Walker>::Value
         let ahead = |count: u32| if Self::AHEAD { count } else { 0 };
         rows.filled = rows.filled.wrapping_add(ahead(rows.count));
         loop {
+            // Not to be counted in two registers.
             if !HALVES && cfg!(target_arch = "arm") {
                 rows.count = black_box(rows.count);
             }

@@ -3,6 +3,9 @@
 use super::{Area, Facet, Shading, form::Form};
 use crate::{band::Band, palette::Glossy, pixel::Pixel, poly::field::Field, scene::Source, tone::Tone};
 
+/// The tone's, see [`Tone::MARK`].
+pub(super) const MARK: u8 = 3;
+
 /// A form under one light on a material of one channel.
 #[derive(Clone, Copy)]
 pub(super) struct Gloss<'a, C, F> {
@@ -15,7 +18,7 @@ impl<C: Pixel, K, V, F: Form<K, V>> Tone<(V, K)> for Gloss<'_, C, F> {
 
     const CHEAP: bool = true;
 
-    const MARK: u8 = 3;
+    const MARK: u8 = MARK;
 
     #[inline(always)]
     fn tone(&self, (fields, common): (V, K), _: usize) -> C {

@@ -107,10 +107,11 @@ impl<C: Pixel> Shading<'_, C> {
             )
         };
         if facet.is_dark(self.palette) {
+            let floor = self.palette.power.least();
             if a.light[0].max(b.light[0]).max(c.light[0]) <= 0 {
-                return Some(facet.draw(|| Constant, Solid(levels.colour::<PIXEL>(0, steps.least())), band));
+                return Some(facet.draw(|| Constant, Solid(levels.colour::<PIXEL>(0, floor)), band));
             }
-            return Some(facet.draw(|| (light(), length()), Matte::<_, _, EXACT> { levels, floor: steps.least(), half_reciprocal }, band));
+            return Some(facet.draw(|| (light(), length()), Matte::<_, _, EXACT> { levels, floor, half_reciprocal }, band));
         }
         let field = || {
             let half = [steps.node(a.light[1]), steps.node(b.light[1]), steps.node(c.light[1])];

@@ -12,6 +12,7 @@
 use super::{
     Area, Facet, Method, RANGE, Shading,
     form::{BITS, EXTRA, Form, quadratic, signed},
+    gloss,
     node::map_six,
 };
 use crate::{
@@ -24,8 +25,6 @@ use crate::{
     tone::{Ramp, Tone},
 };
 
-/// Any other mark.
-const GLOSSY: u8 = u8::MAX;
 /// One, Q2.30.
 const ONE: i32 = 1 << 30;
 /// Below this cosine the root is continued by a line.
@@ -57,7 +56,7 @@ impl Method for Plain {
             (true, Lit::Everywhere | Lit::Nowhere) => Ramp::<C>::MARK,
             (true, Lit::Partly) if levels.is_some() => Clamped::<C>::MARK,
             (_, Lit::Everywhere) if levels.is_some() => Defective::<C>::MARK,
-            _ => GLOSSY,
+            _ => gloss::MARK,
         });
         if mark == Ramp::<C>::MARK {
             return Some(shading.draw_plain::<6, RANGE>(facet, || palette.six_matte(cosines), band));
@@ -68,7 +67,7 @@ impl Method for Plain {
             |levels: Levels<'_, C>| Nodes::<6, 1, RANGE>::new([map_six(cosines, |cosine| levels.node(cosine, LEVEL))], WALK - LEVEL);
         if mark == Clamped::<C>::MARK {
             let levels = levels?;
-            return Some(facet.draw(|| light(levels), Clamped { levels, floor: defects.most() }, band));
+            return Some(facet.draw(|| light(levels), Clamped { levels, floor: palette.power.least() }, band));
         }
         if mark == Defective::<C>::MARK {
             let levels = levels?;
