@@ -1,14 +1,18 @@
-//! Angles, in radians: sine and cosine, polar coordinates.
+//! Sine, cosine and polar coordinates, with angles in radians.
 
-/// Fraction bits of an angle: Q4.28 in [-8, 8).
+/// Fraction bits of an angle in radians, Q4.28: [-8, 8).
 pub const ANGLE: u32 = 28;
 
-/// A quarter of a turn, pi/2.
+/// A quarter of a turn, pi/2, Q4.28.
 const QUARTER: i32 = 421_657_428;
 
-/// `[sine, cosine]`, Q2.30, of any angle.
+/// Largest error of [`sin_cos`]: 1.25 units of its last place.
+pub const ERROR: f64 = 1.25 / (1u32 << 30) as f64;
+
+/// `[sine, cosine]`, Q2.30, of an angle in radians, Q4.28.
 ///
-/// Reduced to an eighth of a turn, then Taylor's series up to the 11th and 12th power. Error: at most [`ERROR`] (tests::sines).
+/// Domain: every `i32`. Error: at most [`ERROR`] (tests::sines). Source: the series of Taylor (1715) up to the 11th and 12th power,
+/// after reduction of the angle to an eighth of a turn.
 #[inline]
 #[must_use]
 pub fn sin_cos(angle: i32) -> [i32; 2] {
@@ -35,19 +39,16 @@ pub fn sin_cos(angle: i32) -> [i32; 2] {
     }
 }
 
-/// Error of [`sin_cos`].
-pub const ERROR: f64 = 1.0 / (1u32 << 29) as f64;
+/// Iterations of [`polar`].
+const ITERATIONS: usize = 28;
 
-/// Turns of [`polar`].
-const TURNS: usize = 28;
-
-/// Arc tangents of 2^-i, Q3.29.
-static TANGENTS: [i32; TURNS] = {
-    let mut table = [0; TURNS];
+/// Arc tangents of 2^-i in radians, Q3.29.
+static ARC_TANGENTS: [i32; ITERATIONS] = {
+    let mut table = [0; ITERATIONS];
     // pi/4: half a quarter, with one more bit.
     table[0] = QUARTER;
     let mut i = 1;
-    while i < TURNS {
+    while i < ITERATIONS {
         // x - x³/3 + x⁵/5 ... in Q0.60.
         let (mut sum, mut power, mut k) = (0i64, (1i64 << 60) >> i, 1);
         while power > 0 {
@@ -61,10 +62,14 @@ static TANGENTS: [i32; TURNS] = {
     table
 };
 
-/// Radius (same format as `x` and `y`) and angle in [-pi, pi] of the point `[x, y]`; `[0, 0]` of the origin.
+/// Largest error of an angle from [`polar`], in radians, and of a radius relative to itself.
+pub const POLAR_ERROR: f64 = 3.0 / (1u32 << 26) as f64;
+
+/// `[radius, angle]` of the point `[x, y]`; `[0, 0]` for the origin.
 ///
-/// Turned to the x axis in ever smaller steps (CORDIC; Volder 1959).
-/// Error: at most [`POLAR_ERROR`] of the radius, and of the angle (tests::polar).
+/// The radius has the format of `x` and `y`, the angle is in radians, Q4.28, from -pi to pi. Domain: every `i32`; a radius that does
+/// not fit is the largest `i32`. Error: at most [`POLAR_ERROR`] of the angle, and of the radius relative to itself, which is then
+/// rounded down to an integer (tests::polar). Source: Volder (1959), CORDIC in its vectoring mode.
 #[inline]
 #[must_use]
 pub fn polar([x, y]: [i32; 2]) -> [i32; 2] {
@@ -72,14 +77,14 @@ pub fn polar([x, y]: [i32; 2]) -> [i32; 2] {
     if largest == 0 {
         return [0; 2];
     }
-    // Below 2^29: the turns lengthen by 1.65, the diagonal by 1.42.
+    // Below 2^29: the iterations lengthen a vector 1.65 times, and its diagonal is up to 1.42 times as long as its sides.
     let zeros = largest.leading_zeros();
     let fit = |c: i32| if zeros >= 3 { c.wrapping_shl(zeros - 3) } else { c >> (3 - zeros) };
     let (x, y) = (fit(x), fit(y));
     let half = if y < 0 { -2 * QUARTER } else { 2 * QUARTER };
     let (mut x, mut y, mut angle) = if x < 0 { (-x, -y, half) } else { (x, y, 0) };
     let mut turned = 0;
-    for (i, tangent) in TANGENTS.iter().enumerate() {
+    for (i, tangent) in ARC_TANGENTS.iter().enumerate() {
         let (dx, dy) = (x >> i, y >> i);
         if y > 0 {
             (x, y, turned) = (x + dy, y - dx, turned + tangent);
@@ -88,15 +93,12 @@ pub fn polar([x, y]: [i32; 2]) -> [i32; 2] {
         }
     }
     angle += (turned + 1) >> (29 - ANGLE);
-    // 1/1.646760258, Q0.32.
-    const SHORTEN: i64 = 2_608_131_496;
-    let radius = (i64::from(x) * SHORTEN) >> 32;
+    // One over the gain of the iterations, 1/1.646760258, Q0.32.
+    const INVERSE_GAIN: i64 = 2_608_131_496;
+    let radius = (i64::from(x) * INVERSE_GAIN) >> 32;
     let radius = if zeros >= 3 { radius >> (zeros - 3) } else { radius << (3 - zeros) };
     [radius.min(i32::MAX.into()) as i32, angle]
 }
-
-/// Error of [`polar`].
-pub const POLAR_ERROR: f64 = 1.0 / (1u32 << 24) as f64;
 
 #[cfg(test)]
 mod tests {
@@ -105,7 +107,7 @@ mod tests {
     #[test]
     fn sines() {
         let mut worst = 0f64;
-        for angle in (i32::MIN..i32::MAX).step_by(40_009) {
+        for angle in (i32::MIN..i32::MAX).step_by(4_001) {
             let exact = f64::from(angle) / f64::from(1 << ANGLE);
             let [sine, cosine] = sin_cos(angle).map(|c| f64::from(c) / f64::from(1 << 30));
             worst = worst.max((sine - exact.sin()).abs()).max((cosine - exact.cos()).abs());
@@ -116,13 +118,13 @@ mod tests {
     #[test]
     fn polar() {
         let (mut radius, mut angle) = (0f64, 0f64);
-        for seed in 1..200_000i32 {
-            let c = |k: i32| seed.wrapping_mul(k).wrapping_mul(seed ^ 77) >> (seed % 12);
-            let [x, y] = [c(1_664_525), c(22_695_477)];
+        for seed in 1..1_000_000i32 {
+            let c = |k: i32, shift: i32| seed.wrapping_mul(k).wrapping_mul(seed ^ 77) >> (seed / shift % 12);
+            let [x, y] = [c(1_664_525, 1), c(22_695_477, 12)];
             let (exact, [r, a]) = (f64::from(x).hypot(f64::from(y)), super::polar([x, y]));
             let to = f64::from(y).atan2(f64::from(x));
             if exact < f64::from(i32::MAX) {
-                // A radius is cut off to an integer.
+                // Rounding a radius down to an integer costs up to 1.
                 radius = radius.max(((f64::from(r) - exact).abs() - 1.0) / exact);
             }
             angle = angle.max((f64::from(a) / f64::from(1 << ANGLE) - to).abs());

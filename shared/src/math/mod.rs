@@ -1,4 +1,8 @@
-//! Integer mathematics, one function a file: method, domain, error and the test that proves it.
+//! Integer mathematics.
+//!
+//! Formats are written Qm.f: m integer bits, the sign included, and f fraction bits. Each function states its meaning, format, domain,
+//! error and source. A bound on an error is a constant next to the function, and the test that the documentation names asserts that
+//! very constant. "Exact" says that the result is the integer that the formula gives, for every argument of the domain.
 
 #[cfg(feature = "all-shaders")]
 pub mod angle;
@@ -14,7 +18,9 @@ pub mod vector;
 pub mod wide;
 pub mod zeros;
 
-/// `value / 2^bits` rounded to nearest; for negative `bits` a left shift that wraps.
+/// `value / 2^bits`, rounded to nearest, halves up; for negative `bits` a left shift that wraps modulo 2^64.
+///
+/// Domain: `value + 2^(bits - 1)` fits 64 bits. Above 62 bits, and below -63, the result is 0. Exact (tests::scaling).
 #[inline(always)]
 #[must_use]
 pub fn scale(value: i64, bits: i32) -> i64 {
@@ -29,7 +35,9 @@ pub fn scale(value: i64, bits: i32) -> i64 {
     }
 }
 
-/// [`scale`] in 128 bits; `bits` is at most 126.
+/// `value / 2^bits`, rounded to nearest, halves up, in 128 bits; for negative `bits` a left shift that wraps modulo 2^128.
+///
+/// Domain: `bits` is -127 to 126, and `value + 2^(bits - 1)` fits 128 bits. Exact (tests::scaling).
 #[inline(never)]
 #[must_use]
 pub fn scale_wide(value: i128, bits: i32) -> i128 {
@@ -38,5 +46,28 @@ pub fn scale_wide(value: i128, bits: i32) -> i128 {
         value.wrapping_add(1 << (bits - 1)) >> bits
     } else {
         value.wrapping_shl(bits.unsigned_abs())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn scaling() {
+        for value in [0, 1, -1, 5, -5, 0x1234_5678_9ABC, -0x1234_5678_9ABC, (1 << 62) - 1, -(1 << 62)] {
+            for bits in 1..63 {
+                let nearest = (i128::from(value) + (1 << (bits - 1))).div_euclid(1 << bits);
+                assert_eq!(i128::from(scale(value, bits)), nearest, "{value} {bits}");
+                assert_eq!(scale_wide(value.into(), bits), nearest, "{value} {bits}");
+                assert_eq!(scale_wide(i128::from(value) << 63, bits + 63), nearest, "{value} {bits}");
+            }
+            for bits in 0..64u32 {
+                let left = i128::from(value) << bits;
+                assert_eq!(scale(value, -(bits as i32)), left as i64, "{value} -{bits}");
+                assert_eq!(scale_wide(value.into(), -(bits as i32)), left, "{value} -{bits}");
+            }
+            assert_eq!([scale(value, 63), scale(value, -64)], [0; 2]);
+        }
     }
 }

@@ -2,65 +2,75 @@
 
 use super::{product::product, rsqrt::rsqrt_wide};
 
-/// Dot product of two vectors in 64 bits.
+/// Dot product of two vectors, in the product of their formats. Domain: the sum fits 64 bits, as for components below 2^30. Exact.
 #[inline(always)]
 #[must_use]
 pub fn dot(a: [i32; 3], b: [i32; 3]) -> i64 {
     product(a[0], b[0]) + product(a[1], b[1]) + product(a[2], b[2])
 }
 
-/// A vertex normal or position as `i32`. Written out: `map` is a loop through memory at opt-level "s".
+/// A vertex normal or position as `i32`, in its format.
+///
+/// It is written out because `map` is a loop through memory at opt-level "s".
 #[inline(always)]
 #[must_use]
 pub fn wide([x, y, z]: [i16; 3]) -> [i32; 3] {
     [x.into(), y.into(), z.into()]
 }
 
-/// Dot product of two vectors whose product fits 32 bits.
+/// Dot product of two vectors, in the product of their formats. Domain: the sum fits 32 bits; else it wraps modulo 2^32. Exact.
 #[inline(always)]
 #[must_use]
 pub fn narrow_dot([a0, a1, a2]: [i32; 3], [b0, b1, b2]: [i32; 3]) -> i32 {
     a0.wrapping_mul(b0).wrapping_add(a1.wrapping_mul(b1)).wrapping_add(a2.wrapping_mul(b2))
 }
 
-/// `f` of each pair of components. Written out: no index, so no check of one.
+/// `f` of each pair of components.
+///
+/// It is written out so that there is no index, and no check of one.
 #[inline(always)]
 #[must_use]
 pub fn zip<A, B, R>([a0, a1, a2]: [A; 3], [b0, b1, b2]: [B; 3], f: impl Fn(A, B) -> R) -> [R; 3] {
     [f(a0, b0), f(a1, b1), f(a2, b2)]
 }
 
-/// Rows of a matrix to columns, or the other way.
+/// The transpose of a matrix.
 #[inline(always)]
 #[must_use]
 pub fn transposed<A>([[a, b, c], [d, e, f], [g, h, i]]: [[A; 3]; 3]) -> [[A; 3]; 3] {
     [[a, d, g], [b, e, h], [c, f, i]]
 }
 
-/// `a - b`; the caller's ranges keep it from overflowing.
+/// `a - b`, in their format. Domain: the caller's ranges keep it from overflowing; else it wraps modulo 2^32.
 #[inline(always)]
 #[must_use]
 pub fn sub(a: [i32; 3], b: [i32; 3]) -> [i32; 3] {
     zip(a, b, i32::wrapping_sub)
 }
 
-/// `a + b`; the caller's ranges keep it from overflowing.
+/// `a + b`, in their format. Domain: the caller's ranges keep it from overflowing; else it wraps modulo 2^32.
 #[inline(always)]
 #[must_use]
 pub fn add(a: [i32; 3], b: [i32; 3]) -> [i32; 3] {
     zip(a, b, i32::wrapping_add)
 }
 
-/// Cross product of two vectors in 64 bits.
+/// Cross product of two vectors, in the product of their formats. Domain: components above -2^31. Exact.
 #[must_use]
 pub fn cross([a0, a1, a2]: [i32; 3], [b0, b1, b2]: [i32; 3]) -> [i64; 3] {
     let minor = |a: i32, b: i32, c: i32, d: i32| product(a, d) - product(b, c);
     [minor(a1, a2, b1, b2), minor(a2, a0, b2, b0), minor(a0, a1, b0, b1)]
 }
 
+/// Largest error of the length of a vector from [`normalise`].
+pub const LENGTH_ERROR: f64 = 4.0 / (1u32 << 30) as f64;
+/// Largest error of a component of a vector from [`normalise`].
+pub const COMPONENT_ERROR: f64 = 5.0 / (1u32 << 30) as f64;
+
 /// The unit vector along `v`, Q2.30; zero stays zero.
 ///
-/// `v` is first shifted to 30 bits, so its length does not matter. Error of the length: at most 2^-27 (tests::length).
+/// Domain: every vector of `i32`, in any format: it is first shifted to 30 bits. Error: at most [`LENGTH_ERROR`] of the length, and
+/// [`COMPONENT_ERROR`] of a component (tests::unit). Source: a product with the reciprocal root of the squared length.
 #[must_use]
 pub fn normalise(v: [i32; 3]) -> [i32; 3] {
     let largest = v.iter().fold(0, |m, c| m | c.unsigned_abs());
@@ -79,18 +89,29 @@ mod tests {
     use super::*;
 
     #[test]
-    fn length() {
-        let mut worst = 0f64;
-        for seed in 1..20_000i32 {
-            let c = |k: i32| seed.wrapping_mul(k).wrapping_mul(seed ^ 77) >> (seed % 25);
-            let v = [c(1_664_525), c(22_695_477), c(1_103_515_245)];
-            if v.iter().all(|c| c.unsigned_abs() < 4) {
-                continue;
-            }
-            let unit = normalise(v).map(|c| f64::from(c) / 2f64.powi(30));
-            let length = unit.iter().map(|c| c * c).sum::<f64>().sqrt();
-            worst = worst.max((length - 1.0).abs());
+    fn unit() {
+        let (mut length, mut component) = (0f64, 0f64);
+        let mut check = |v: [i32; 3]| {
+            let size = |v: [f64; 3]| v.iter().map(|c| c * c).sum::<f64>().sqrt();
+            let (real, unit) = (v.map(f64::from), normalise(v).map(|c| f64::from(c) / f64::from(1 << 30)));
+            length = length.max((size(unit) - 1.0).abs());
+            component = (0..3).map(|k| (unit[k] - real[k] / size(real)).abs()).fold(component, f64::max);
+        };
+        for seed in 1..300_000i32 {
+            // Long and short vectors, and components of different size.
+            let c = |k: i32, shift: i32| seed.wrapping_mul(k).wrapping_mul(seed ^ 77) >> (seed / shift % 31);
+            let even = [c(1_664_525, 1), c(22_695_477, 1), c(1_103_515_245, 1)];
+            let uneven = [c(1_664_525, 1), c(22_695_477, 31), c(1_103_515_245, 961)];
+            [even, uneven].into_iter().filter(|&v| v != [0; 3]).for_each(&mut check);
         }
-        assert!(worst < 2f64.powi(-27), "{worst}");
+        for i in 1..21 * 21 * 21 {
+            check([i % 21, i / 21 % 21, i / 441]);
+        }
+        let ends = [i32::MIN, i32::MAX, 1 << 29, 1, 0];
+        for i in 0..124 {
+            check([ends[i % 5], ends[i / 5 % 5], ends[i / 25]]);
+        }
+        assert_eq!(normalise([0; 3]), [0; 3]);
+        assert!(length <= LENGTH_ERROR && component <= COMPONENT_ERROR, "{length:e} {component:e}");
     }
 }
