@@ -1,8 +1,8 @@
-//! Reciprocal square root.
+//! Square root and reciprocal square root.
 
 use super::product::{unsigned_by_fraction, unsigned_product, upper};
 
-/// First guesses for [`rsqrt`], indexed by the argument's upper eight bits (64..=255), Q0.16.
+/// First estimates of 1/sqrt(m), Q0.16, by the upper eight bits (64..=255) of `m`, Q2.30.
 static SEED: [u16; 192] = {
     let mut table = [0; 192];
     let mut i = 0;
@@ -15,10 +15,13 @@ static SEED: [u16; 192] = {
     table
 };
 
-/// 1/sqrt(m) in Q2.30 for `m` in [1, 4), unsigned Q2.30: between 2^29 and 2^30.
+/// Largest error of [`rsqrt`] relative to its result: two and a half units of a result of 1.
+pub const ERROR: f64 = 2.5 / (1u64 << 30) as f64;
+
+/// Reciprocal square root 1/sqrt(m), Q2.30: from 1/2 to just below 1.
 ///
-/// Table of 192 entries and two Newton steps, y (3 - m y²) / 2.
-/// Error: at most [`ERROR`] relative, in 2^-30 (tests::error).
+/// Domain: `m` in [1, 4), unsigned Q2.30; less counts as 1. Error: at most [`ERROR`] relative (tests::error; measured on every
+/// argument). Source: a table of 192 entries, and two steps of the method of Newton, y (3 - m y²) / 2.
 #[inline]
 #[must_use]
 pub fn rsqrt(m: u32) -> u32 {
@@ -33,13 +36,14 @@ pub fn rsqrt(m: u32) -> u32 {
     y
 }
 
-/// Largest error of [`rsqrt`], in units of its result.
-pub const ERROR: f64 = 8.0;
+/// Largest error of [`sqrt`]: 4.25 units of its last place.
+pub const ROOT_ERROR: f64 = 4.25 / (1u64 << 30) as f64;
 
-/// sqrt(w), Q2.30, for `w` in [1/4, 1), Q2.30.
+/// Square root of `w`, Q2.30.
 ///
-/// The table's reciprocal root y, one Newton step y + y (1 - m y²) / 2 in few bits, then one of the root itself: s + s (1 - s/sqrt(w)) / 2
-/// (Goldschmidt 1964). Error: at most [`ROOT_ERROR`], in 2^-30 (tests::root_error).
+/// Domain: `w` in [1/4, 1), Q2.30. Error: at most [`ROOT_ERROR`] (tests::root_error; measured on every argument).
+/// Source: the reciprocal root y of the table, one step of the method of Newton y + y (1 - m y²) / 2 in few bits, then one for the root
+/// itself: s + s (1 - s/sqrt(w)) / 2 (Goldschmidt 1964).
 #[inline]
 #[must_use]
 pub fn sqrt(w: i32) -> i32 {
@@ -47,31 +51,29 @@ pub fn sqrt(w: i32) -> i32 {
     let seed = SEED.get((m >> 24).wrapping_sub(64) as usize).copied().unwrap_or(0);
     let seed = u32::from(seed);
     let square = (seed.wrapping_mul(seed).wrapping_add(1 << 15) >> 16) as u16;
-    // What m y² lacks of 1, Q2.30: less than 2^23.
-    let lack = (1i32 << 30).wrapping_sub(unsigned_by_fraction(m, square) as i32);
-    let y = (seed << 14).wrapping_add(((seed as i32).wrapping_mul(lack >> 9) >> 8) as u32) as i32;
+    // The residual 1 - m y², Q2.30: less than 2^23.
+    let residual = (1i32 << 30).wrapping_sub(unsigned_by_fraction(m, square) as i32);
+    let y = (seed << 14).wrapping_add(((seed as i32).wrapping_mul(residual >> 9) >> 8) as u32) as i32;
     // sqrt(w) = 2 w / sqrt(4 w).
     let s = upper(w << 1, y) << 2;
-    // What s / sqrt(w) lacks of 1, Q5.27: less than 2^13.
-    let lack = (1 << 27) - upper(s, y);
-    s + ((s >> 15).wrapping_mul(lack) >> 13)
+    // The residual 1 - s / sqrt(w), Q5.27: less than 2^13.
+    let residual = (1 << 27) - upper(s, y);
+    s + ((s >> 15).wrapping_mul(residual) >> 13)
 }
 
-/// Largest error of [`sqrt`], in units of its result.
-pub const ROOT_ERROR: f64 = 4.0;
-
-/// 1/(2 sqrt(x)) in Q2.30 at x = k/4096.
+/// Half the reciprocal root, 1/(2 sqrt(x)), in Q2.30 at x = k/4096.
 const fn half_root(k: u128) -> u32 {
     // 2^30 / (2 sqrt(k / 4096)) = sqrt(2^70 / k).
     ((1u128 << 70) / k).isqrt() as u32
 }
 
-/// Knots of [`Halves::rsqrt`] at x = (510 + i)/2048, Q2.30, but for their lower ten bits: these say how much less it is 1/1024 of the
-/// way to the next one. As many as eleven bits can tell apart.
+/// Knots of [`Halves::rsqrt`] at x = (510 + i)/2048: the value at the knot, Q2.30, in the upper 22 bits, and the slope in the lower ten,
+/// by which the value falls in 1/1024 of an interval. There are as many knots as eleven bits can index.
 ///
-/// Knots are lower by half of what chords lie above the curve, and by half a place between knots, for places are cut off, and take half
-/// of what rounding the slope comes to at its end; their lower bits, which count as well, are rounded to the nearest.
-static HALVES: Halves = Halves({
+/// A knot is lowered to balance the error: by half of the distance of the chord above the curve, and by half a step between knots, since
+/// positions are rounded down. It takes half of what rounding the slope adds up to at the end of the interval. The slope bits are part
+/// of the value that is read, so the sum of both is rounded to nearest.
+static TABLE: Halves = Halves({
     let mut table = [0; 2048];
     let mut i = 0;
     while i < 2048 {
@@ -87,23 +89,26 @@ static HALVES: Halves = Halves({
     table
 });
 
-/// The least argument of [`Halves::rsqrt`], Q0.32: 2^-10 less than a quarter, as much as walking may err there.
+/// The least x that [`Halves::rsqrt`] takes, Q0.32: 2^-10 less than a quarter, as much as forward differences may err there.
 pub const LEAST: u32 = (1 << 30) - (1 << 22);
 
-/// The table of 1/(2 sqrt(x)) for x in [1/4, 1] and a little around: for the pixel loop, where its address had better come from memory.
+/// Table of half the reciprocal root, 1/(2 sqrt(x)), for x in [1/4, 1] and a little around, for the pixel loop.
+///
+/// The loop takes a reference to it, so that the address of the table is loaded once instead of being built at every pixel.
 #[derive(Debug)]
 pub struct Halves([u32; 2048]);
 
 impl Halves {
-    /// There is one.
+    /// The table, which is constant.
     #[must_use]
     pub fn get() -> &'static Self {
-        &HALVES
+        &TABLE
     }
 
-    /// 1/(2 sqrt(x)) in Q2.30 for `x` in [1/4, 1] by linear interpolation; `above` is x less [`LEAST`], Q0.32.
+    /// Half the reciprocal root, 1/(2 sqrt(x)), Q2.30; `above` is x - [`LEAST`], unsigned Q0.32.
     ///
-    /// Error: at most [`HALF_ERROR`] relative (tests::half_error). Arguments outside give something in range.
+    /// Domain: x in [1/4, 1]. Error: at most [`HALF_ERROR`] relative; from [`LEAST`] to 1/4, and above 1, at most [`OUTSIDE_ERROR`]
+    /// (tests::half_error, on every argument). Source: linear interpolation with balanced error, our own.
     #[inline(always)]
     #[must_use]
     pub fn rsqrt(&self, above: u32) -> u32 {
@@ -113,10 +118,17 @@ impl Halves {
     }
 }
 
-/// Relative error of [`Halves::rsqrt`]: a quarter LSB at exponent 1024.
+/// Largest error of [`Halves::rsqrt`] relative to its result: 0.4 of 1/255 on a highlight of exponent 1024.
 pub const HALF_ERROR: f64 = 1.5e-6;
+/// Largest error of [`Halves::rsqrt`] outside its domain, relative to its result: 2^-10, since slopes below 1/4 take more than ten bits.
+pub const OUTSIDE_ERROR: f64 = 1.0 / 1024.0;
 
-/// 1/sqrt(x) for any x > 0, as a mantissa from [`rsqrt`] and an exponent: `mantissa * 2^-exponent`.
+/// Largest error of [`rsqrt_wide`] relative to its result.
+pub const WIDE_ERROR: f64 = 2.75 / (1u64 << 30) as f64;
+
+/// Reciprocal square root 1/sqrt(x) as `(mantissa, exponent)`: mantissa 2^-exponent, with the mantissa of [`rsqrt`], 2^29 to 2^30.
+///
+/// Domain: x from 1; 0 counts as 1. Error: at most [`WIDE_ERROR`] relative (tests::wide). Source: [`rsqrt`] of the upper 32 bits.
 #[inline]
 #[must_use]
 pub fn rsqrt_wide(x: u64) -> (u32, u32) {
@@ -133,43 +145,49 @@ mod tests {
     #[test]
     fn error() {
         let mut worst = 0f64;
-        let mut m = 1u64 << 30;
-        while m < 1 << 32 {
-            let exact = 2f64.powi(30) / (m as f64 / 2f64.powi(30)).sqrt();
-            worst = worst.max((f64::from(rsqrt(m as u32)) - exact).abs());
-            m += 65_521;
+        // One argument in so many, and the worst of all.
+        for m in ((1u32 << 30)..=u32::MAX).step_by(4_093).chain([4_286_772_629]) {
+            let exact = 2f64.powi(30) / (f64::from(m) / 2f64.powi(30)).sqrt();
+            worst = worst.max((f64::from(rsqrt(m)) / exact - 1.0).abs());
         }
-        assert!(worst <= ERROR, "{worst}");
+        assert!(worst <= ERROR, "{worst:e}");
     }
 
     #[test]
     fn root_error() {
         let mut worst = 0f64;
-        for w in ((1i32 << 28)..1 << 30).step_by(509).chain((1 << 30) - 1_000..1 << 30) {
-            let exact = (f64::from(w) * 2f64.powi(30)).sqrt();
-            worst = worst.max((f64::from(sqrt(w)) - exact).abs());
+        // One argument in so many, the largest ones, and the worst of all.
+        for w in ((1i32 << 28)..1 << 30).step_by(509).chain((1 << 30) - 1_000..1 << 30).chain([276_831_811]) {
+            let exact = (f64::from(w) / 2f64.powi(30)).sqrt();
+            worst = worst.max((f64::from(sqrt(w)) / 2f64.powi(30) - exact).abs());
         }
-        assert!(worst <= ROOT_ERROR, "{worst}");
+        assert!(worst <= ROOT_ERROR, "{worst:e}");
     }
 
     #[test]
     fn half_error() {
-        let mut worst = 0f64;
-        for x in ((1u32 << 28)..=1 << 30).step_by(4_093) {
-            let exact = 2f64.powi(29) / (f64::from(x) / 2f64.powi(30)).sqrt();
-            // One is 2^32, which wraps.
-            worst = worst.max((f64::from(Halves::get().rsqrt((x << 2).wrapping_sub(LEAST))) / exact - 1.0).abs());
+        let (mut inside, mut outside) = (0f64, 0f64);
+        // The lower eleven bits do not count, so the ends of such an interval have its largest errors.
+        for x in (0..1u64 << 21).flat_map(|i| [i << 11, (i << 11) + 2047]).map(|above| above + u64::from(LEAST)).chain([1 << 32]) {
+            let exact = 2f64.powi(29) / (x as f64 / 2f64.powi(32)).sqrt();
+            let error = (f64::from(Halves::get().rsqrt((x - u64::from(LEAST)) as u32)) / exact - 1.0).abs();
+            let worst = if (1 << 30..=1 << 32).contains(&x) { &mut inside } else { &mut outside };
+            *worst = worst.max(error);
         }
-        assert!(worst <= HALF_ERROR, "{worst}");
+        assert!(inside <= HALF_ERROR && outside <= OUTSIDE_ERROR, "{inside:e} {outside:e}");
     }
 
     #[test]
     fn wide() {
-        for x in [1u64, 2, 3, 4, 100, 65_535, 1 << 20, (1 << 40) + 12_345, 1 << 60, u64::MAX] {
+        let mut worst = 0f64;
+        let ends = (0..64).flat_map(|bit| [1u64 << bit, (1 << bit) + 1, u64::MAX >> bit]);
+        let between = (1..200_000u64).map(|k| k.wrapping_mul(0x9E37_79B9_7F4A_7C15) >> (k % 63)).filter(|&x| x > 0);
+        // The worst argument of `rsqrt`, with all bits below it.
+        for x in (1..1 << 16).chain(ends).chain(between).chain([4_286_772_629 << 32 | 0xFFFF_FFFF]) {
             let (m, e) = rsqrt_wide(x);
             let got = f64::from(m) / 2f64.powi(e as i32);
-            let exact = 1.0 / (x as f64).sqrt();
-            assert!((got / exact - 1.0).abs() < 1e-7, "{x}: {got} {exact}");
+            worst = worst.max((got * (x as f64).sqrt() - 1.0).abs());
         }
+        assert!(worst <= WIDE_ERROR, "{worst:e}");
     }
 }
