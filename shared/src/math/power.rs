@@ -1,4 +1,4 @@
-//! The highlight's power function, x^n, from a table.
+//! The power function of the highlight, x^n, from a table.
 
 use crate::{
     format::{COSINE, PIXEL_COSINE},
@@ -6,37 +6,38 @@ use crate::{
 };
 use core::num::{NonZeroU32, NonZeroU64};
 
-/// Intervals of the table.
+/// Intervals of the table; it has one entry more.
 pub(super) const SIZE: usize = 2048;
 
-/// x^n on [1 - 8/n, 1] in 2048 intervals (on [0, 1] for n < 8); below that it is less than e^-8 and taken as 0.
+/// Lookup table of the highlight's power function `floor + full x^n`, unsigned Q0.16, in 2048 intervals.
 ///
-/// Restricting the domain makes the error independent of n (Bishop & Weimer 1986
-/// use the whole of [0, 1], where the error grows with n). Entries are unsigned Q0.16, or multiples of such above a floor.
+/// Domain: n from 1 to 1024. The table covers x in [1 - 8/n, 1], or [0, 1] for n < 8; below that x^n is less than e^-8 and taken as 0.
+/// Error: [`ERROR`] with interpolation, [`NEAREST_ERROR`] for the nearest entry. Source: Bishop & Weimer (1986), whose table covers the
+/// whole of [0, 1], so that its error grows with n; the restricted domain, which makes the error independent of n, is our own.
 #[derive(Clone, Copy, Debug)]
 pub struct Power {
     pub(super) table: [u16; SIZE + 1],
-    /// 4 max(n, 8): 1 - x times 64 of it is an index.
+    /// 4 max(n, 8), where n is the exponent of the argument: 1 - x times 64 of it is an index.
     pub(super) scale: u32,
-    /// What every entry has more.
+    /// The value of entries where the power is 0, unsigned Q0.16.
     floor: u16,
 }
 
-/// What is raised to a power, as a function of what a table is looked up by.
+/// The base that is raised to a power, as a function of the argument x by which the table is indexed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Base {
     /// x.
     Itself,
-    /// The root of x.
+    /// The square root of x.
     Root,
     /// The fourth root of x.
     FourthRoot,
-    /// x², continued by a line of the same slope below 1/2: x - 1/4.
+    /// x², continued below 1/2 by its tangent there: x - 1/4.
     Square,
 }
 
 impl Base {
-    /// How often the root is taken.
+    /// How often the square root is taken.
     const fn roots(self) -> u32 {
         match self {
             Self::Itself | Self::Square => 0,
@@ -46,24 +47,28 @@ impl Base {
     }
 }
 
-/// [`Base::Square`] of `x`, Q2.30.
+/// [`Base::Square`] of `x`, Q2.30, rounded down.
+///
+/// Domain: `x` from -7/4 to just below √2, so that the result fits. Error: less than 1 unit of the last place (tests::squares).
 #[must_use]
 pub fn square(x: i32) -> i32 {
     if x >= 1 << (COSINE - 1) { (product(x, x) >> COSINE) as i32 } else { x - (1 << (COSINE - 2)) }
 }
 
-/// Four times the exponent up to which the whole domain is used.
+/// Four times the exponent up to which the table covers the whole of [0, 1].
 const WHOLE: NonZeroU32 = NonZeroU32::new(4 * 8).unwrap();
 
-/// Fraction bits of an entry.
+/// Fraction bits of an entry, unsigned Q0.16.
 pub const POWER: u32 = 16;
 
 impl Power {
-    /// An empty table, for static memory: all zeros, so that it takes no flash.
+    /// An empty table for static memory. It is all zeros, so that it takes no flash.
     pub const EMPTY: Self = Self { table: [0; SIZE + 1], scale: 0, floor: 0 };
 
-    /// Computes the table of `floor + full base^n`, `n` from 1 to 1024, in integers: the same bits on every machine.
-    /// `floor + full` is at most 2^16.
+    /// Computes the table of `floor + full base^n`, in integers: the bits are the same on every machine.
+    ///
+    /// Domain: `n` is 1 to 1024, at least 2 for [`Base::Root`] and 4 for [`Base::FourthRoot`]; `full` and `floor` are unsigned Q0.16, their
+    /// sum at most 1. Source: binary exponentiation in Q1.31.
     pub fn fill(&mut self, n: u16, base: Base, full: u32, floor: u16) {
         let n4 = u32::from(n) << 2;
         let scale = WHOLE.max(NonZeroU32::new(if base == Base::Square { n4 << 1 } else { n4 >> base.roots() }).unwrap_or(WHOLE));
@@ -95,16 +100,17 @@ impl Power {
         }
     }
 
-    /// 1 - cosine in table steps with 12 fraction bits; beyond the table for small cosines.
+    /// Table index of a cosine (Q2.30), unsigned Q20.12: 1 - cosine in steps of the table. It is past the end for small cosines.
     #[inline(always)]
     fn position(&self, cosine: i32) -> u32 {
-        let defect = (1i32 << COSINE).saturating_sub(cosine).max(0) as u32;
-        // defect * 4 n / 32 * 2048 / 2^30, with 12 fraction bits.
-        u32::try_from(unsigned_product(defect, self.scale) >> (COSINE - 18)).unwrap_or(u32::MAX)
+        let below = (1i32 << COSINE).saturating_sub(cosine).max(0) as u32;
+        // (1 - cosine) * 4 n / 32 * 2048 / 2^30, with 12 fraction bits.
+        u32::try_from(unsigned_product(below, self.scale) >> (COSINE - 18)).unwrap_or(u32::MAX)
     }
 
-    /// cosine^n, unsigned Q0.16, by linear interpolation, without the floor; `cosine` in Q2.30.
-    /// Error: at most [`ERROR`] of full intensity (tests::error).
+    /// `full cosine^n`, unsigned Q0.16, without the floor, by linear interpolation.
+    ///
+    /// Domain: every `cosine`, Q2.30; above 1 counts as 1. Error: at most [`ERROR`] of full intensity (tests::error).
     #[must_use]
     pub fn at(&self, cosine: i32) -> u32 {
         let position = self.position(cosine);
@@ -115,34 +121,34 @@ impl Power {
         }
     }
 
-    /// The table for the pixel loop: entry `((top - cosine) * factor) >> 37` is the nearest to `cosine`, Q5.27.
+    /// The table for the pixel loop, where the entry nearest to a cosine, Q5.27, is number `((top - cosine) * factor) >> 37`.
     #[must_use]
     pub fn pixel(&self) -> PixelPower<'_> {
         let scale = NonZeroU32::new(self.scale).unwrap_or(WHOLE);
         PixelPower { table: &self.table, top: (1 << PIXEL_COSINE) + ((1 << 20) / scale) as i32, factor: (scale.get() << 16) as i32 }
     }
 
-    /// What every entry has more.
+    /// The value of entries where the power is 0, unsigned Q0.16.
     #[must_use]
     pub fn floor(&self) -> u32 {
         self.floor.into()
     }
 
-    /// The entry that the pixel loop takes for small cosines.
+    /// The entry that the pixel loop takes for small cosines, unsigned Q0.16.
     #[inline(always)]
     #[must_use]
     pub fn least(&self) -> u32 {
         self.table[SIZE - 1].into()
     }
 
-    /// Smallest cosine, Q2.30, whose power is not taken as 0.
+    /// The cosine, Q2.30, at which the table ends: the power of smaller ones is taken as 0.
     #[must_use]
     pub fn dark_below(&self) -> i32 {
         (1i32 << COSINE) - ((32u64 << COSINE) / NonZeroU64::from(NonZeroU32::new(self.scale).unwrap_or(WHOLE))) as i32
     }
 }
 
-/// The nearest entry: one product, one load.
+/// Lookup of the nearest entry in a pixel loop: one product and one load.
 #[derive(Clone, Copy, Debug)]
 pub struct PixelPower<'a> {
     table: &'a [u16; SIZE + 1],
@@ -151,7 +157,9 @@ pub struct PixelPower<'a> {
 }
 
 impl PixelPower<'_> {
-    /// cosine^n, unsigned Q0.16, with the floor; `cosine` in Q5.27. Error: [`NEAREST_ERROR`].
+    /// `floor + full cosine^n`, unsigned Q0.16, from the nearest entry.
+    ///
+    /// Domain: `cosine` in Q5.27 such that 1 - cosine fits it. Error: at most [`NEAREST_ERROR`] (tests::error).
     #[inline(always)]
     #[must_use]
     pub fn at(&self, cosine: i32) -> u32 {
@@ -161,10 +169,11 @@ impl PixelPower<'_> {
     }
 }
 
-/// Error of [`Power::at`]: the cut at e^-8 and rounding to 16 bits, together 0.09 LSB.
-pub const ERROR: f64 = 3.6e-4;
-/// Error of [`PixelPower::at`]: half a step of the table, 0.5 LSB.
-pub const NEAREST_ERROR: f64 = 2.1e-3;
+/// Largest error of [`Power::at`], as a share of full intensity: the cut at e^-8, and rounding to 16 bits. It is 0.09 of 1/255.
+pub const ERROR: f64 = 3.4e-4;
+/// Largest error of [`PixelPower::at`], as a share of full intensity: half a step of the table where its slope is largest. It is 0.51
+/// of 1/255.
+pub const NEAREST_ERROR: f64 = 2.0e-3;
 
 #[cfg(test)]
 mod tests {
@@ -172,30 +181,44 @@ mod tests {
 
     #[test]
     fn error() {
-        for n in [1u16, 2, 5, 7, 8, 9, 20, 50, 128, 500, 1024] {
-            for base in [Base::Itself, Base::Root, Base::FourthRoot, Base::Square] {
+        // The largest errors are next to entries, and half way between two of them.
+        let positions = || (0..SIZE + 12).flat_map(|i| [0.0, 0.498, 0.4999, 0.5001, 0.502, 0.999].map(|f| i as f64 + f));
+        for n in (1..12).chain([20, 50, 127, 128, 500, 1023, 1024]) {
+            for (base, (full, floor)) in [Base::Itself, Base::Root, Base::FourthRoot, Base::Square]
+                .into_iter()
+                .flat_map(|base| [(1 << 16, 0), (40_000, 20_000)].map(|range| (base, range)))
+            {
                 if n >> base.roots() == 0 {
                     continue;
                 }
                 let mut power = Power::EMPTY;
-                power.fill(n, base, 1 << 16, 0);
+                power.fill(n, base, full, floor);
                 let (mut at, mut nearest) = (0f64, 0f64);
-                for i in 0..200_000u32 {
-                    let cosine = (1 << 30) - (i * 5_368) as i32;
+                let step = 2f64.powi(30) - f64::from(power.dark_below());
+                for position in positions() {
+                    let cosine = (2f64.powi(30) - (step / SIZE as f64 * position).floor()) as i32;
                     let x = f64::from(cosine) / 2f64.powi(30);
                     let x = match base {
                         Base::Square if x >= 0.5 => x * x,
                         Base::Square => (x - 0.25).max(0.0),
                         _ => x.max(0.0).powf(1.0 / f64::from(1 << base.roots())),
                     };
-                    let exact = x.powi(n.into());
-                    at = at.max((f64::from(power.at(cosine)) / 65_536.0 - exact).abs());
-                    nearest = nearest.max((f64::from(power.pixel().at(cosine >> 3)) / 65_536.0 - exact).abs());
+                    let exact = f64::from(full) * x.powi(n.into());
+                    at = at.max((f64::from(power.at(cosine)) - exact).abs() / 65_536.0);
+                    nearest = nearest.max((f64::from(power.pixel().at(cosine >> 3)) - f64::from(floor) - exact).abs() / 65_536.0);
                 }
                 assert!(at <= ERROR, "n = {n}, {base:?}: {at}");
                 assert!(nearest <= NEAREST_ERROR, "n = {n}, {base:?}: {nearest}");
-                assert_eq!(power.at(power.dark_below() - (1 << 15)), 0, "n = {n}, {base:?}");
+                assert_eq!(power.at(power.dark_below() - 1), 0, "n = {n}, {base:?}");
             }
+        }
+    }
+
+    #[test]
+    fn squares() {
+        for x in (-(7i64 << 28)..1_518_500_249).step_by(10_007).chain([1_518_500_249]) {
+            let exact = if x >= 1 << 29 { (x * x) >> COSINE } else { x - (1 << 28) };
+            assert_eq!(i64::from(square(x as i32)), exact, "{x}");
         }
     }
 }

@@ -1,44 +1,48 @@
-//! The highlight's table, by what is walked as its steps: the factor that turns a cosine into an index is multiplied in at the
-//! nodes, not at every pixel.
+//! Lookup in the highlight's table by quantities that are interpolated in steps of the table.
+//!
+//! The factor that turns a cosine into an index of the table is applied at the nodes of an interpolation, not at every pixel.
 
 use super::{
     power::{Power, SIZE},
     product::upper_by_half_word,
 };
 
-/// Bits of a node that a step takes.
+/// Fraction bits of a node, in steps of the table.
 const NODE: u32 = 7;
-/// Fraction bits that a walked numerator has more.
+/// Fraction bits that an interpolated numerator has beyond those of a node.
 pub const EXTRA: u32 = 5;
-/// Bits of a quotient that a step takes: its reciprocal length, Q2.30, is halved.
+/// Fraction bits of a quotient, in steps of the table: the reciprocal length, Q2.30, is halved, and the upper half of the product taken.
 const STEP: u32 = NODE + EXTRA - 3;
 
-/// Entries by quotients: a cosine is a walked numerator over a length.
+/// Lookup by a quotient: the cosine is an interpolated numerator over a length.
 #[derive(Clone, Copy, Debug)]
 pub struct Quotients<'a> {
     table: &'a [u16; SIZE + 1],
-    /// Steps from cosine 0 to 1, and half of one.
+    /// Steps from cosine 0 to 1, and half of one for rounding, with [`STEP`] fraction bits.
     top: i32,
-    /// Steps of a node for a cosine, in the upper half.
+    /// Steps of the table per unit of cosine, in the upper half word.
     factor: i32,
 }
 
 impl<'a> Quotients<'a> {
-    /// Those of `power`, for a base that is no square: so that nodes fit 26 bits.
+    /// Lookup in the table of `power`. Domain: its base is not [`super::power::Base::Square`], so that nodes fit 26 bits.
     #[must_use]
     pub fn new(power: &'a Power) -> Self {
         Self { table: &power.table, top: ((power.scale << 6 << STEP) + (1 << (STEP - 1))) as i32, factor: (power.scale << 16) as i32 }
     }
 
-    /// The node of a numerator, Q2.30: in steps, Q19.7, rounded down.
+    /// The node of a numerator, Q2.30: the numerator in steps of the table, Q19.7, rounded down. Domain: within ±2.
     #[inline(always)]
     #[must_use]
     pub fn node(&self, cosine: i32) -> i32 {
         upper_by_half_word(cosine, self.factor) >> (24 - NODE - 16)
     }
 
-    /// The entry nearest to the upper half of a numerator, walked with [`EXTRA`] more bits, times half a reciprocal length (Q2.30).
-    /// Error: [`super::power::NEAREST_ERROR`], and 1/100 of a step.
+    /// The entry nearest to a quotient, unsigned Q0.16.
+    ///
+    /// `quotient` is the upper half of the product of the numerator, in the format of a node with [`EXTRA`] more fraction bits, and half the
+    /// reciprocal length, Q2.30. Domain: every quotient that fits; small ones take the last entry. Error: at most
+    /// [`super::power::NEAREST_ERROR`] for lengths of 1/2 to 1 (tests::entries_are_the_nearest). Source: our own.
     #[inline(always)]
     #[must_use]
     pub fn at(&self, quotient: i32) -> u32 {
@@ -47,18 +51,18 @@ impl<'a> Quotients<'a> {
     }
 }
 
-/// Entries by defects: what a cosine lacks of 1.
+/// Lookup by a defect: 1 - cosine.
 #[derive(Clone, Copy, Debug)]
 pub struct Defects<'a> {
     table: &'a [u16; SIZE + 1],
-    /// A defect times the factor is an index, this many places to the left.
+    /// Fraction bits of an index in the product of a defect and the factor.
     shift: u32,
-    /// 1/2 to 1, Q1.31: 15 bits of it.
+    /// The factor, 1/2 to 1, Q1.31, of which 15 bits count.
     factor: i32,
 }
 
 impl<'a> Defects<'a> {
-    /// Those of `power`.
+    /// Lookup in the table of `power`.
     #[must_use]
     pub fn new(power: &'a Power) -> Self {
         // Scales are 2^5 to 2^13.
@@ -66,21 +70,24 @@ impl<'a> Defects<'a> {
         Self { table: &power.table, shift: 9 + up, factor: (power.scale << up << 16) as i32 }
     }
 
-    /// The node of a cosine, Q2.30: the defect times a factor of 1/2 to 1, Q2.24, rounded down.
+    /// The node of a cosine, Q2.30: 1 - cosine times a factor of 1/2 to 1, Q2.24, rounded down. Domain: above -1.
     #[inline(always)]
     #[must_use]
     pub fn node(&self, cosine: i32) -> i32 {
         upper_by_half_word((1 << 30) - cosine, self.factor) >> 5
     }
 
-    /// Half a step, added to a walked defect: the entry below is the nearest then.
+    /// Half a step of the table, Q2.30. Added to an interpolated defect, it makes the entry below the nearest one.
     #[inline(always)]
     #[must_use]
     pub fn half(&self) -> i32 {
         1 << (self.shift - 1)
     }
 
-    /// The entry of a walked defect, Q2.30. Error: [`super::power::NEAREST_ERROR`].
+    /// The entry nearest to a defect, unsigned Q0.16.
+    ///
+    /// `defect` is in the format of a node with 6 more fraction bits, Q2.30, with [`Self::half`] added. Domain: every `i32`; large ones take
+    /// the last entry. Error: at most [`super::power::NEAREST_ERROR`] (tests::entries_are_the_nearest). Source: our own.
     #[inline(always)]
     #[must_use]
     pub fn at(&self, defect: i32) -> u32 {
@@ -93,29 +100,34 @@ mod tests {
     use super::*;
     use crate::math::power::{Base, NEAREST_ERROR};
 
-    /// Largest error of `at` against x^n, `cosines` from 1 down.
-    fn error(n: u16, at: impl Fn(i32) -> u32) -> f64 {
-        let error = |i: u32| {
-            let cosine = (1 << 30) - (i * 5_368) as i32;
+    /// Largest error of `at` against x^n: next to entries, and half way between two of them.
+    fn error(n: u16, power: &Power, at: impl Fn(i32) -> u32) -> f64 {
+        let step = (2f64.powi(30) - f64::from(power.dark_below())) / SIZE as f64;
+        let error = |position: f64| {
+            let cosine = (2f64.powi(30) - (step * position).floor()) as i32;
             let exact = (f64::from(cosine) / 2f64.powi(30)).max(0.0).powi(n.into());
             (f64::from(at(cosine)) / 65_536.0 - exact).abs()
         };
-        (0..200_000).map(error).fold(0.0, f64::max)
+        let positions = (0..SIZE + 12).flat_map(|i| [0.0, 0.498, 0.4999, 0.5001, 0.502, 0.999].map(|f| i as f64 + f));
+        positions.map(error).fold(0.0, f64::max)
     }
 
     #[test]
     fn entries_are_the_nearest() {
-        for n in [1u16, 2, 5, 7, 8, 9, 20, 50, 128, 500, 1024] {
+        for n in (1..12).chain([20, 50, 127, 128, 500, 1023, 1024]) {
             let mut power = Power::EMPTY;
             power.fill(n, Base::Itself, 1 << 16, 0);
             let quotients = Quotients::new(&power);
-            // Half a reciprocal length of 1/2.
-            let walked = |cosine| (i64::from(quotients.node(cosine)) << EXTRA << 29 >> 32) as i32;
-            let worst = error(n, |cosine| quotients.at(walked(cosine)));
-            assert!(worst <= NEAREST_ERROR * 1.02, "quotients, n = {n}: {worst}");
+            for length in [1.0, 0.9, 0.77, 0.6, 0.5] {
+                let half_reciprocal = (f64::from(1 << 29) / length) as i64;
+                let numerator = |cosine: i32| (f64::from(cosine) * length).round() as i32;
+                let quotient = |cosine| ((i64::from(quotients.node(numerator(cosine))) << EXTRA) * half_reciprocal >> 32) as i32;
+                let worst = error(n, &power, |cosine| quotients.at(quotient(cosine)));
+                assert!(worst <= NEAREST_ERROR, "quotients, n = {n}, length {length}: {worst}");
+            }
             let defects = Defects::new(&power);
-            let worst = error(n, |cosine| defects.at((defects.node(cosine) << 6) + defects.half()));
-            assert!(worst <= NEAREST_ERROR * 1.01, "defects, n = {n}: {worst}");
+            let worst = error(n, &power, |cosine| defects.at((defects.node(cosine) << 6) + defects.half()));
+            assert!(worst <= NEAREST_ERROR, "defects, n = {n}: {worst}");
         }
     }
 }
