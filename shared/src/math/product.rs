@@ -1,61 +1,69 @@
 //! Products of two words.
 //!
-//! Most machines multiply 32 by 32 bits into 64 in one instruction. Armv6-M has none: a 64-bit product is a call of 40 instructions
-//! there, and four products of half words are less than half of that. The bits are the same.
+//! Most machines multiply 32 by 32 bits into 64 in one instruction. Armv6-M has no such instruction: a 64-bit product is a call of 40
+//! instructions there, and four products of half words take less than half of that. Both ways give the same bits.
+//!
+//! All of these functions are exact: tests::halves_where_they_carry and the property tests compare them with 64-bit integers.
 
-/// Armv6-M, told by what else it has not got.
+/// Whether 64-bit products are made of half words: on Armv6-M, which is recognised by its lack of atomic instructions.
 pub(crate) const HALVES: bool = cfg!(all(target_arch = "arm", not(target_has_atomic = "32")));
 
-/// `a b`.
+/// Product `a b` in 64 bits, in the product of the formats. Domain: every `i32`. Exact.
 #[inline(always)]
 #[must_use]
 pub fn product(a: i32, b: i32) -> i64 {
     if HALVES { whole_by_halves(a, b) } else { i64::from(a) * i64::from(b) }
 }
 
-/// `a b`, unsigned.
+/// Unsigned product `a b` in 64 bits, in the product of the formats. Domain: every `u32`. Exact.
 #[inline(always)]
 #[must_use]
 pub fn unsigned_product(a: u32, b: u32) -> u64 {
     if HALVES { unsigned_by_halves(a, b) } else { u64::from(a) * u64::from(b) }
 }
 
-/// `a b / 2^32`, rounded down.
+/// Upper half of a product: `a b / 2^32`, rounded down. Domain: every `i32`. Exact.
+///
+/// Source: Knuth, The Art of Computer Programming 4.3.1, Algorithm M; Warren, Hacker's Delight 8-2.
 #[inline(always)]
 #[must_use]
 pub fn upper(a: i32, b: i32) -> i32 {
     if HALVES { upper_by_halves(a, b) } else { ((i64::from(a) * i64::from(b)) >> 32) as i32 }
 }
 
-/// `a b / 2^32`, rounded down, for the pixel loop; `b` is a multiple of 2^16.
+/// Upper half of a product, for the pixel loop: `a b / 2^32`, rounded down. Domain: `b` is a multiple of 2^16. Exact.
 #[inline(always)]
 #[must_use]
 pub fn upper_by_half_word(a: i32, b: i32) -> i32 {
     if HALVES { by_half_word(a, b >> 16) } else { ((i64::from(a) * i64::from(b)) >> 32) as i32 }
 }
 
-/// `a b / 2^16`, rounded down.
+/// Product with a fraction: `a b / 2^16`, rounded down, in the format of `a`. Domain: `b` is unsigned Q0.16. Exact.
 #[inline(always)]
 #[must_use]
 pub fn by_fraction(a: i32, b: u16) -> i32 {
     if HALVES { by_half_word(a, b.into()) } else { ((i64::from(a) * i64::from(b)) >> 16) as i32 }
 }
 
-/// The same of a number without a sign.
+/// Product of an unsigned number with a fraction: `a b / 2^16`, rounded down, in the format of `a`. Domain: `b` is unsigned Q0.16. Exact.
 #[inline(always)]
 #[must_use]
 pub fn unsigned_by_fraction(a: u32, b: u16) -> u32 {
     if HALVES { unsigned_by_half_word(a, b.into()) } else { ((u64::from(a) * u64::from(b)) >> 16) as u32 }
 }
 
-/// `(a x + b y) / 2^32`, rounded down; `x` and `y` are multiples of 2^16.
+/// Upper half of a dot product: `(a x + b y) / 2^32`, rounded down.
+///
+/// Domain: `a` and `b` within ±2^30, `x` and `y` multiples of 2^16, so that the sum fits 63 bits. Exact (tests::dots_make_the_same).
 #[inline(always)]
 #[must_use]
 pub fn upper_dot([a, b]: [i32; 2], [x, y]: [i32; 2]) -> i32 {
     if HALVES { dot_by_halves([a, b], [x >> 16, y >> 16]) } else { ((product(a, x) + product(b, y)) >> 32) as i32 }
 }
 
-/// The bits of a `product` above 2^(32 - `left`), rounded to nearest, modulo 2^32; `left` is less than 32.
+/// `product / 2^(32 - left)`, rounded to nearest, halves up, modulo 2^32.
+///
+/// Domain: `left` is less than 32. Exact (tests::shifts_make_the_same).
 #[inline(always)]
 #[must_use]
 pub fn rounded(product: i64, left: u32) -> i32 {
@@ -64,7 +72,9 @@ pub fn rounded(product: i64, left: u32) -> i32 {
     (upper.wrapping_shl(left) | (lower >> 1).wrapping_shr(31 - left)) as i32
 }
 
-/// The bits of a `product` above 2^(32 - `left`), rounded down, modulo 2^32; `left` is 1 to 31.
+/// `product / 2^(32 - left)`, rounded down, modulo 2^32.
+///
+/// Domain: `left` is 1 to 31. Exact (tests::shifts_make_the_same).
 #[inline(always)]
 #[must_use]
 pub fn shifted(product: i64, left: u32) -> i32 {
@@ -72,7 +82,7 @@ pub fn shifted(product: i64, left: u32) -> i32 {
     (upper.wrapping_shl(left) | lower.wrapping_shr(32 - left)) as i32
 }
 
-/// Lower half, unsigned, and upper half.
+/// `(lower, upper)` half of a word; the lower one is unsigned.
 #[inline(always)]
 fn split(a: i32) -> (i32, i32) {
     (a & 0xFFFF, a >> 16)
@@ -86,14 +96,15 @@ fn upper_by_halves(a: i32, b: i32) -> i32 {
     ah.wrapping_mul(bh).wrapping_add(high).wrapping_add(al.wrapping_mul(bh).wrapping_add(low) >> 16)
 }
 
-/// A call of its own: what is multiplied at set-up is worth less than its flash.
+/// The whole product from half words. It is never inlined: products at set-up are few, and flash is worth more there than time.
 #[inline(never)]
 fn whole_by_halves(a: i32, b: i32) -> i64 {
     i64::from(upper_by_halves(a, b)) << 32 | i64::from(a.wrapping_mul(b) as u32)
 }
 
-/// From signed factors, each too small by 2^32 where its first bit is set. (Half words without a sign the compiler knows for what they
-/// are, and calls its own product.)
+/// The unsigned product from the signed one, in which each factor is too small by 2^32 where its first bit is set.
+///
+/// Products of unsigned half words would be shorter, but the compiler recognises the pattern and calls its own 64-bit product.
 #[inline(never)]
 fn unsigned_by_halves(a: u32, b: u32) -> u64 {
     let (signed_a, signed_b) = (a as i32, b as i32);
@@ -109,7 +120,7 @@ fn by_half_word(a: i32, b: i32) -> i32 {
     high.wrapping_mul(b).wrapping_add((low.wrapping_mul(b) as u32 >> 16) as i32)
 }
 
-/// The same of a number without a sign.
+/// `a b / 2^16`, rounded down, of an unsigned `a`; `b` is at most 16 bits, without a sign.
 #[inline(always)]
 fn unsigned_by_half_word(a: u32, b: u32) -> u32 {
     (a >> 16).wrapping_mul(b).wrapping_add((a & 0xFFFF).wrapping_mul(b) >> 16)
@@ -119,7 +130,7 @@ fn unsigned_by_half_word(a: u32, b: u32) -> u32 {
 #[inline(always)]
 fn dot_by_halves([a, b]: [i32; 2], [x, y]: [i32; 2]) -> i32 {
     let ((al, ah), (bl, bh)) = (split(a), split(b));
-    // What the lower halves come to, halved again: the sum of both would not fit.
+    // Products of the lower halves are split again: the sum of two of them would not fit.
     let ((l, h), (m, i)) = (split(al.wrapping_mul(x)), split(bl.wrapping_mul(y)));
     let carried = h.wrapping_add(i).wrapping_add((l + m) >> 16);
     ah.wrapping_mul(x).wrapping_add(bh.wrapping_mul(y)).wrapping_add(carried)

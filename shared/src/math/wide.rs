@@ -1,11 +1,11 @@
-//! Integers of 128 bits whose products are calls.
+//! Integers of 128 bits whose products are function calls.
 //!
-//! Written out, one product takes a hundred instructions on a 32-bit machine; formulas with forty of them are for
-//! rare triangles and must not fill the flash.
+//! Inlined, one product takes a hundred instructions on a 32-bit machine. Formulas with forty products serve rare triangles only, and
+//! must not fill the flash.
 
 use core::ops::{Add, Mul, Neg, Sub};
 
-/// An integer of 128 bits; it wraps.
+/// An integer of 128 bits. Sums, differences and products are exact modulo 2^128.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Wide(pub i128);
 
@@ -62,7 +62,8 @@ impl Neg for Wide {
 }
 
 impl Wide {
-    /// Quotient, rounded down, and remainder of a division by a positive number; zeros for others.
+    /// `(quotient, remainder)`: the quotient is rounded down, so the remainder is not negative. Domain: the divisor is positive; for
+    /// others the result is zeros. Exact (tests::divisions).
     #[inline(never)]
     #[must_use]
     pub fn divided(self, divisor: Self) -> (Self, Self) {
@@ -71,10 +72,27 @@ impl Wide {
         (Self(quotient), Self(rest))
     }
 
-    /// Times 2^`bits`, `bits` below 128.
+    /// The number times 2^`bits`, modulo 2^128. Domain: `bits` is less than 128. Exact.
     #[inline(never)]
     #[must_use]
     pub fn shifted(self, bits: u32) -> Self {
         Self(self.0.wrapping_shl(bits))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    proptest! {
+        #[test]
+        fn divisions(value: i128, divisor in 1..i128::MAX, bits in 0..127u32) {
+            let divisor = (divisor >> bits).max(1);
+            let (Wide(quotient), Wide(rest)) = Wide(value).divided(Wide(divisor));
+            prop_assert!(0 <= rest && rest < divisor);
+            prop_assert_eq!(quotient.wrapping_mul(divisor).wrapping_add(rest), value);
+            prop_assert_eq!(Wide(value).divided(Wide(-divisor)), (Wide(0), Wide(0)));
+        }
     }
 }

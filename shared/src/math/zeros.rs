@@ -1,10 +1,10 @@
-//! Leading zeros.
+//! Count of leading zeros.
 //!
 //! Most machines count them in one instruction; Armv6-M has none, and a table is quicker than its library.
 
 use super::product::HALVES;
 
-/// Of numbers of six bits, the zeros above them in these.
+/// Leading zeros of a number in a field of six bits.
 static ZEROS: [u8; 64] = {
     let mut table = [6; 64];
     let mut i = 1u8;
@@ -15,7 +15,10 @@ static ZEROS: [u8; 64] = {
     table
 };
 
-/// Zeros above the first bit of `x`, which is less than 2^24.
+/// Count of leading zeros of `x` in 32 bits.
+///
+/// Domain: `x` is less than 2^24. Exact (tests::zeros_are_counted, on every argument).
+/// Source: a table of six bits at a time, where the machine has no instruction for it (Warren, Hacker's Delight 5-3).
 #[inline(always)]
 #[must_use]
 pub fn leading_zeros(x: u32) -> u32 {
@@ -37,7 +40,7 @@ mod tests {
 
     #[test]
     fn zeros_are_counted() {
-        for x in (0..1 << 12).chain((1 << 12..1 << 24).step_by(97)).chain((12..24).flat_map(|bit| [(1 << bit) - 1, 1 << bit])) {
+        for x in 0..1 << 24 {
             assert_eq!(by_table(x), x.leading_zeros(), "{x}");
         }
     }
