@@ -15,9 +15,9 @@ use micromath::F32Ext;
 pub enum Source {
     /// Unit vector towards it, Q2.30, and the unit half vector between it and an infinite viewer.
     Directional {
-        /// L.
+        /// The unit vector towards the light, L.
         towards: [i32; 3],
-        /// H; not used with a local viewer.
+        /// The unit half vector, H; a local viewer makes no use of it.
         half: [i32; 3],
     },
     /// Position, Q18.14.
@@ -55,7 +55,7 @@ impl Pose {
         Self { rotation, translation: camera.translation }
     }
 
-    /// A direction of eye space in object space; same format.
+    /// A direction of eye space in object space, in the format of `v`, rounded down.
     #[must_use]
     pub fn to_object(&self, v: [i32; 3]) -> [i32; 3] {
         transposed(self.rotation).map(|column| (dot(column, v) >> ROTATION) as i32)
@@ -68,7 +68,11 @@ impl Pose {
     }
 }
 
-/// `rotation` times the rotation by `frame / period` of a turn about `axis`: Rodrigues' formula, row by row.
+/// `rotation` times the rotation by `frame / period` of a turn about `axis`, all Q2.30.
+///
+/// Domain: `rotation` is a rotation matrix and `axis` a unit vector, to within rounding. Error: at most [`ORBIT_ERROR`] of the angle;
+/// at most [`ROTATION_ERROR`] of the dot products of rows (tests::rotations_stay_rotations). Source: the formula of
+/// Rodrigues (1840), row by row.
 fn turned(rotation: [[i32; 3]; 3], axis: [i32; 3], frame: u32, period: u32) -> [[i32; 3]; 3] {
     let (sin, cos) = sin_cos(frame, period);
     let limit = 1i64 << ROTATION;
@@ -79,11 +83,18 @@ fn turned(rotation: [[i32; 3]; 3], axis: [i32; 3], frame: u32, period: u32) -> [
     })
 }
 
+/// Largest difference between an orbit's angle in a frame and `frame / period` of a turn, in radians: 0.063 degrees.
+pub const ORBIT_ERROR: f64 = 1.1e-3;
+/// Largest difference between 1 and the root of sine² + cosine² of an orbit's angle: two units of Q2.30.
+pub const CIRCLE_ERROR: f64 = 2.0 / (1u32 << 30) as f64;
+/// Largest change of the dot products of a matrix's rows, 1 and 0 for an exact rotation, when an orbit turns it: 24 units of Q2.30.
+pub const ROTATION_ERROR: f64 = 24.0 / (1u32 << 30) as f64;
+
 /// Sine and cosine of `frame / period` of a turn, Q2.30.
 ///
-/// micromath's polynomial is off by up to 1e-3 but the same on every machine; two
-/// Newton steps put the pair back on the unit circle (tests::unit_circle), so a
-/// rotation stays one. The angle keeps the error: an orbit may run 0.1 degrees ahead.
+/// Domain: `frame` is less than `period`, which is at most 65,535. Error: at most [`ORBIT_ERROR`] of the angle, [`CIRCLE_ERROR`] of the
+/// distance from the origin (tests::unit_circle). Source: the polynomials of micromath, which give the same bits on every machine, and
+/// two steps of the method of Newton that put the pair back on the unit circle, so that a rotation stays one.
 fn sin_cos(frame: u32, period: u32) -> (i64, i64) {
     let angle = frame as f32 / period as f32 * core::f32::consts::TAU;
     let one = (1u32 << ROTATION) as f32;
@@ -100,9 +111,9 @@ fn sin_cos(frame: u32, period: u32) -> (i64, i64) {
 /// All lights of one frame.
 #[derive(Clone, Debug)]
 pub struct Lighting {
-    /// In the stream's order.
+    /// All lights, in the order of the stream.
     pub sources: heapless::Vec<Source, MAX_LIGHTS>,
-    /// For highlights.
+    /// Where highlights are seen from.
     pub viewer: Viewer,
     /// The axes of the eye, to the right, up, and towards the viewer: unit vectors, Q2.30.
     pub axes: [[i32; 3]; 3],
@@ -188,14 +199,16 @@ impl Viewer {
     }
 }
 
-/// The product of two vectors no longer than 1, all Q2.30.
+/// Cosine of the angle between two unit vectors, Q2.30, rounded down: their dot product.
+///
+/// Domain: vectors no longer than 1, Q2.30. Error: less than 1 unit of the last place.
 #[inline]
 #[must_use]
 pub fn cosine(a: [i32; 3], b: [i32; 3]) -> i32 {
     (dot(a, b) >> COSINE) as i32
 }
 
-/// A unit vector for products with vertex normals: its components, Q2.30, in an upper and a lower part of [`UNIT`] bits.
+/// A unit vector for products with vertex normals: each component, Q2.30, is kept as an upper part and a lower part of [`UNIT`] bits.
 #[derive(Clone, Copy, Debug)]
 pub struct Direction {
     upper: [i32; 3],
@@ -203,13 +216,15 @@ pub struct Direction {
 }
 
 impl Direction {
-    /// Of `v`, Q2.30.
+    /// Splits the unit vector `v`, Q2.30.
     #[must_use]
     pub fn new(v: [i32; 3]) -> Self {
         Self { upper: v.map(|c| c >> UNIT), lower: v.map(|c| c & ((1 << UNIT) - 1)) }
     }
 
-    /// [`cosine`] of this and a vertex normal, [`crate::format::Unit`]: the same bits, from products of 32 bits.
+    /// Cosine of the angle to a vertex normal, Q2.30: the bits of [`cosine`], from products of 32 bits.
+    ///
+    /// Domain: `normal` is no longer than 1, [`crate::format::Unit`]. Exact (tests::vertex_cosines_are_the_same_bits).
     #[inline(always)]
     #[must_use]
     pub fn cosine(&self, normal: [i32; 3]) -> i32 {
@@ -217,7 +232,7 @@ impl Direction {
     }
 }
 
-/// Unit half vector.
+/// The unit half vector between two unit vectors, Q2.30; zero if they are opposite. Source: Blinn (1977).
 fn half(towards: [i32; 3], viewer: [i32; 3]) -> [i32; 3] {
     normalise(add(towards.map(|c| c >> 1), viewer.map(|c| c >> 1)))
 }
@@ -250,14 +265,38 @@ mod tests {
 
     #[test]
     fn unit_circle() {
-        for period in [1u32, 2, 3, 7, 36, 120, 1000, 65_535] {
-            for frame in (0..period).step_by(1 + period as usize / 1000) {
+        let (mut circle, mut orbit) = (0f64, 0f64);
+        for period in (1..700).chain([2048, 4096, 65_535]) {
+            for frame in 0..period {
                 let (sin, cos) = sin_cos(frame, period);
                 let (s, c) = (sin as f64 / 2f64.powi(30), cos as f64 / 2f64.powi(30));
-                assert!((s * s + c * c - 1.0).abs() < 1e-8, "{frame}/{period}: {s} {c}");
-                let angle = f64::from(frame) / f64::from(period) * core::f64::consts::TAU;
-                assert!((angle.sin() - s).abs() < 2e-3 && (angle.cos() - c).abs() < 2e-3, "{frame}/{period}: {s} {c}");
+                let (sin, cos) = (f64::from(frame) / f64::from(period) * core::f64::consts::TAU).sin_cos();
+                circle = circle.max((s.hypot(c) - 1.0).abs());
+                // The angle between the two points of the circle.
+                orbit = orbit.max((s * cos - c * sin).atan2(c * cos + s * sin).abs());
             }
         }
+        assert!(circle <= CIRCLE_ERROR && orbit <= ORBIT_ERROR, "{circle:e} {orbit:e}");
+    }
+
+    #[test]
+    fn rotations_stay_rotations() {
+        let mut worst = 0f64;
+        for seed in (1..20_000i32).filter(|&seed| seed != 77) {
+            let c = |k: i32| seed.wrapping_mul(k).wrapping_mul(seed ^ 77);
+            let x = normalise([c(1_664_525), c(22_695_477), c(1_103_515_245)]);
+            let across = |a: [i32; 3], b: [i32; 3]| normalise(cross(a, b).map(|c| (c >> 31) as i32));
+            let y = across(x, normalise([c(69_069), c(134_775_813), c(48_271)]));
+            let axis = normalise([c(134_775_813), c(48_271), c(69_069)]);
+            // Neither matrix is exact: turning must leave its products as they are.
+            let rotation = [x, y, across(x, y)];
+            let turned = turned(rotation, axis, seed.unsigned_abs() % 97, 97);
+            let [before, after] = [rotation, turned].map(|rows| rows.map(|row| row.map(|c| f64::from(c) / 2f64.powi(30))));
+            for (i, j) in (0..3).flat_map(|i| (0..3).map(move |j| (i, j))) {
+                let product = |rows: [[f64; 3]; 3]| rows[i].iter().zip(rows[j]).map(|(a, b)| a * b).sum::<f64>();
+                worst = worst.max((product(after) - product(before)).abs());
+            }
+        }
+        assert!(worst <= ROTATION_ERROR, "{worst:e}");
     }
 }
