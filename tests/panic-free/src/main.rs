@@ -1,4 +1,4 @@
-//! The whole core, from bytes to pixels, with a panic handler that cannot be linked.
+//! The whole core, from bytes to pixels in every format of a board, with a panic handler that cannot be linked.
 //!
 //! `cargo build --release --target thumbv7m-none-eabi` fails with *undefined symbol: a_panic_can_be_reached*
 //! if the optimised code holds a panic.
@@ -9,7 +9,10 @@ use embedded_graphics_core::{
     geometry::Size,
     pixelcolor::{Gray4, Rgb565},
 };
-use microphong::{Renderer, Shader, Stats, Stream, Workspace, pixel::Pixel};
+use microphong::{
+    Renderer, Shader, Stream, Workspace,
+    pixel::{PictureCrc, Pixel, Rgb565Be},
+};
 
 unsafe extern "C" {
     safe fn a_panic_can_be_reached() -> !;
@@ -20,36 +23,57 @@ fn panic(_: &core::panic::PanicInfo<'_>) -> ! {
     a_panic_can_be_reached()
 }
 
-fn draw<C: Pixel>(
-    bytes: &[u8],
-    workspace: &mut Workspace<C, 600, 600, 9600, 2, 40, 2400>,
-    pixels: &mut [C],
-    size: u32,
-    options: u32,
-) -> Option<Stats> {
-    let mut renderer = Renderer::new(Stream::parse(bytes).ok()?, Size::new(size, size), workspace.memory()).ok()?;
-    renderer.set_shader(*Shader::ALL.get(options as usize & 31)?).ok()?;
-    renderer.set_dither(options & 32 != 0);
-    renderer.set_antialias(options & 64 != 0).ok()?;
-    renderer.set_perspective_correct(options & 128 != 0).ok()?;
-    let mut frame = renderer.frame(options >> 8);
-    while frame.next_band(pixels).is_some() {}
-    Some(frame.stats())
+/// Pixels of a band.
+const BAND: usize = 9600;
+
+/// The memory that a board draws pictures of one pixel format in.
+pub struct Buffers<C> {
+    workspace: Workspace<C, 600, 600, BAND, 2, 40, 2400>,
+    band: [C; BAND],
 }
 
-/// Arguments come from outside, so nothing is known at compile time.
+/// What to draw, and how: none of it is known at compile time.
+#[derive(Clone, Copy)]
+#[repr(C)]
+pub struct Request {
+    stream: &'static [u8],
+    size: [u32; 2],
+    /// The method, by its index.
+    shader: usize,
+    number: u32,
+    dither: bool,
+    antialias: bool,
+    perspective: bool,
+}
+
+/// One frame, band by band, as a board draws it: its checksum and its count of pixels.
+fn draw<C: Pixel>(request: Request, buffers: &mut Buffers<C>) -> Option<u32> {
+    let [width, height] = request.size;
+    let mut renderer = Renderer::new(Stream::parse(request.stream).ok()?, Size::new(width, height), buffers.workspace.memory()).ok()?;
+    renderer.set_shader(*Shader::ALL.get(request.shader)?).ok()?;
+    renderer.set_dither(request.dither);
+    #[cfg(feature = "all")]
+    renderer.set_antialias(request.antialias).ok()?;
+    renderer.set_perspective_correct(request.perspective).ok()?;
+    let mut frame = renderer.frame(request.number);
+    let mut crc = PictureCrc::default();
+    while frame.next_band(&mut buffers.band).is_some() {
+        crc.update(&buffers.band);
+    }
+    Some(crc.finish() ^ frame.stats().pixels)
+}
+
+/// Arguments come from outside, so nothing is known at compile time. Formats are those of the boards.
 #[unsafe(no_mangle)]
 pub extern "C" fn _start(
-    bytes: &'static &'static [u8],
-    colour: &'static mut Workspace<Rgb565, 600, 600, 9600, 2, 40, 2400>,
-    grey: &'static mut Workspace<Gray4, 600, 600, 9600, 2, 40, 2400>,
-    pixels: &'static mut ([Rgb565; 9600], [Gray4; 9600]),
-    size: u32,
-    options: u32,
+    request: &'static Request,
+    rgb565: &'static mut Buffers<Rgb565>,
+    rgb565_be: &'static mut Buffers<Rgb565Be>,
+    gray4: &'static mut Buffers<Gray4>,
 ) -> u32 {
     if cfg!(feature = "with-a-panic") {
-        return u32::from(bytes[size as usize]);
+        return u32::from(request.stream[request.shader]);
     }
-    let a = draw(bytes, colour, &mut pixels.0, size, options).map_or(0, |stats| stats.pixels);
-    a + draw(bytes, grey, &mut pixels.1, size, options).map_or(0, |stats| stats.pixels)
+    let checksums = [draw(*request, rgb565), draw(*request, rgb565_be), draw(*request, gray4)];
+    checksums.into_iter().flatten().fold(0, |all, one| all ^ one)
 }
