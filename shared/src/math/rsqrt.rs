@@ -183,7 +183,7 @@ mod tests {
         let ends = (0..64).flat_map(|bit| [1u64 << bit, (1 << bit) + 1, u64::MAX >> bit]);
         let between = (1..200_000u64).map(|k| k.wrapping_mul(0x9E37_79B9_7F4A_7C15) >> (k % 63)).filter(|&x| x > 0);
         // The worst argument of `rsqrt`, with all bits below it.
-        for x in (1..1 << 16).chain(ends).chain(between).chain([4_286_772_629 << 32 | 0xFFFF_FFFF]) {
+        for x in (1..1 << 16).chain(ends).chain(between).chain([(4_286_772_629 << 32) | 0xFFFF_FFFF]) {
             let (m, e) = rsqrt_wide(x);
             let got = f64::from(m) / 2f64.powi(e as i32);
             worst = worst.max((got * (x as f64).sqrt() - 1.0).abs());

@@ -121,7 +121,7 @@ mod tests {
             for length in [1.0, 0.9, 0.77, 0.6, 0.5] {
                 let half_reciprocal = (f64::from(1 << 29) / length) as i64;
                 let numerator = |cosine: i32| (f64::from(cosine) * length).round() as i32;
-                let quotient = |cosine| ((i64::from(quotients.node(numerator(cosine))) << EXTRA) * half_reciprocal >> 32) as i32;
+                let quotient = |cosine| (((i64::from(quotients.node(numerator(cosine))) << EXTRA) * half_reciprocal) >> 32) as i32;
                 let worst = error(n, &power, |cosine| quotients.at(quotient(cosine)));
                 assert!(worst <= NEAREST_ERROR, "quotients, n = {n}, length {length}: {worst}");
             }
