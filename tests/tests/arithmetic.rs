@@ -1,4 +1,4 @@
-//! Integers against the same method in 64-bit floating point: every method, every scene, all around.
+//! Integers against the same method in 64-bit floating point: every method, every pixel of every scene, all around.
 
 use embedded_graphics::prelude::Size;
 use microphong::{
@@ -17,15 +17,21 @@ use microphong_sim::{
 use std::{sync::Mutex, thread};
 use zerocopy::IntoBytes;
 
-/// Largest difference allowed, in 1/255.
-const LIMIT: f64 = 0.5;
-/// Frames of the orbit.
-const FRAMES: u32 = 36;
-/// One in so many pixels is compared, other ones in each frame; all of them if `MICROPHONG_ALL=1`.
-const SAMPLE: usize = 5;
+/// Largest difference of a method without decisions, in 1/255: the table of highlights, above all.
+const ERROR: f64 = 0.30;
+/// Largest difference of a method that decides by a threshold, in 1/255.
+const DECIDING_ERROR: f64 = 0.48;
+/// Largest difference of any method on materials that are lifted above white, in 1/255.
+const BRIGHT_ERROR: f64 = 0.30;
+/// Frames of the orbit. Errors differ more from pixel to pixel than from frame to frame, so all pixels of few frames are compared.
+const FRAMES: u32 = 18;
+/// Frames of the orbit if `MICROPHONG_ALL=1`.
+const ALL_FRAMES: u32 = 36;
 /// How far integers may be off where a method compares levels with a threshold, at most twice the error of the table of
 /// highlights. Several decisions shape a triangle, and each may fall its own way.
 const LEANS: [f64; 9] = [0.0, -0.01, 0.01, -0.03, 0.03, -0.07, 0.07, -0.14, 0.14];
+/// A larger difference, in 1/255, of a method that decides is compared with what it makes of other decisions.
+const UNDECIDED: f64 = 0.25;
 /// Where a pixel's centre lies on the border of two parts of a triangle, either may show.
 const NUDGE: f64 = 1e-6;
 
@@ -42,14 +48,14 @@ fn difference(drawn: [f64; 3], exact: [f64; 3]) -> f64 {
 }
 
 /// Largest difference in one frame of each method, before the output format rounds.
-fn errors(scene: &Scene, number: u32, every: usize) -> Vec<f64> {
+fn errors(scene: &Scene, number: u32) -> Vec<f64> {
     let stream = scene.stream.parse().unwrap();
     let frame = Frame::new(stream, scene.size, number);
     let visible = frame.visible();
-    Shader::ALL.iter().map(|&shader| error(scene, &frame, &visible, shader, number, every)).collect()
+    Shader::ALL.iter().map(|&shader| error(scene, &frame, &visible, shader, number)).collect()
 }
 
-fn error(scene: &Scene, frame: &Frame, visible: &[Vec<u32>], shader: Shader, number: u32, every: usize) -> f64 {
+fn error(scene: &Scene, frame: &Frame, visible: &[Vec<u32>], shader: Shader, number: u32) -> f64 {
     let leans: &[f64] = if decides(shader.name()) { &LEANS } else { &[0.0] };
     let shades: Option<Vec<_>> = leans.iter().map(|&lean| shades(frame, shader, lean)).collect();
     let Some(shades) = shades else { return 0.0 };
@@ -59,7 +65,7 @@ fn error(scene: &Scene, frame: &Frame, visible: &[Vec<u32>], shader: Shader, num
     for (i, (levels, candidates)) in drawn.iter().zip(visible).enumerate() {
         // A face that is seen edge-on may be culled in object space, and yet rounded corners give it a pixel.
         edge_on += usize::from(levels.is_none() && !candidates.is_empty());
-        let Some(levels) = levels.filter(|_| (i + number as usize).is_multiple_of(every)) else { continue };
+        let Some(levels) = *levels else { continue };
         assert!(!candidates.is_empty(), "{} {}: pixel {i}", scene.name, shader.name());
         let centre = [i as u32 % scene.size.0, i as u32 / scene.size.0].map(|c| f64::from(c) + 0.5);
         let at = |x: f64, y: f64, leans: usize| {
@@ -68,7 +74,7 @@ fn error(scene: &Scene, frame: &Frame, visible: &[Vec<u32>], shader: Shader, num
             all.map(|shade| difference(levels, shade(point))).fold(f64::MAX, f64::min)
         };
         let mut error = at(0.0, 0.0, 1);
-        if error > LIMIT / 2.0 && decides(shader.name()) {
+        if error > UNDECIDED && decides(shader.name()) {
             let around = [(0.0, 0.0), (NUDGE, NUDGE), (NUDGE, -NUDGE), (-NUDGE, NUDGE), (-NUDGE, -NUDGE)];
             error = around.map(|(x, y)| at(x, y, leans.len())).into_iter().fold(error, f64::min);
         }
@@ -80,9 +86,9 @@ fn error(scene: &Scene, frame: &Frame, visible: &[Vec<u32>], shader: Shader, num
 
 #[test]
 fn integers_follow_their_method() {
-    let every = if std::env::var_os("MICROPHONG_ALL").is_some_and(|v| v == "1") { 1 } else { SAMPLE };
+    let frames = if std::env::var_os("MICROPHONG_ALL").is_some_and(|v| v == "1") { ALL_FRAMES } else { FRAMES };
     let scenes: Vec<Scene> = scene::NAMES.iter().map(|name| scene::load(name).unwrap()).collect();
-    let jobs = Mutex::new(scenes.iter().flat_map(|scene| (0..FRAMES).map(move |k| (scene, k))));
+    let jobs = Mutex::new(scenes.iter().flat_map(|scene| (0..frames).map(move |k| (scene, k))));
     let worst = Mutex::new(vec![(0.0, ""); Shader::ALL.len()]);
     thread::scope(|scope| {
         for _ in 0..thread::available_parallelism().map_or(1, usize::from) {
@@ -91,7 +97,7 @@ fn integers_follow_their_method() {
                     let job = jobs.lock().unwrap().next();
                     let Some((scene, k)) = job else { break };
                     let period = scene.stream.parse().unwrap().header.camera.period.max(1);
-                    let errors = errors(scene, k * u32::from(period) / FRAMES, every);
+                    let errors = errors(scene, k * u32::from(period) / frames);
                     for (worst, error) in worst.lock().unwrap().iter_mut().zip(errors) {
                         if error > worst.0 {
                             *worst = (error, &scene.name);
@@ -105,7 +111,10 @@ fn integers_follow_their_method() {
     for (shader, (error, place)) in Shader::ALL.iter().zip(&worst) {
         println!("{:20} {error:.3} LSB at most, on {place}", shader.name());
     }
-    assert!(worst.iter().all(|&(error, _)| error <= LIMIT), "a method is more than {LIMIT} LSB off");
+    for (shader, (error, place)) in Shader::ALL.iter().zip(&worst) {
+        let limit = if decides(shader.name()) { DECIDING_ERROR } else { ERROR };
+        assert!(*error <= limit, "{}: {error} LSB on {place}, at most {limit} are allowed", shader.name());
+    }
 }
 
 /// A light brighter than full, on a material that it lifts above white.
@@ -129,8 +138,8 @@ fn bright_lights_are_clamped_at_the_end() {
     }
     seal(&mut bytes);
     scene.stream = StreamBytes::from(&bytes[..]);
-    for (shader, error) in Shader::ALL.iter().zip(errors(&scene, 7, 1)) {
+    for (shader, error) in Shader::ALL.iter().zip(errors(&scene, 7)) {
         println!("{:20} {error:.3} LSB at most", shader.name());
-        assert!(error <= LIMIT, "{}: {error} LSB", shader.name());
+        assert!(error <= BRIGHT_ERROR, "{}: {error} LSB", shader.name());
     }
 }
