@@ -1,11 +1,12 @@
 //! Walked polynomials against exact ones, with the bounds that the documentation promises.
 //!
-//! Walking costs 2^-24 (1 + S + S²) LSB, S the columns plus rows between pixel and anchor: coefficients are rounded
-//! once, there. The anchor is the middle of what is drawn, or the top corner of triangles below 128 pixels, so S is at most
+//! Walking costs [`WALKED_QUADRATIC`] (1 + S + S²), S the columns plus rows between pixel and anchor: coefficients are rounded
+//! once, there; a plane costs [`WALKED_LINEAR`] (1 + S). The anchor is the middle of what is drawn, or the top corner of triangles below 128 pixels, so S is at most
 //! half the width plus half the height of the screen, or 256. Set-up costs more the thinner the triangle: with k its
 //! length over its height, [`QUADRATIC`] k² and [`LINEAR`] k, a part of the nodes' range; slivers' quadratics are
 //! fitted exactly. On triangles below 64 pixels first derivatives are rounded per 1/16 pixel, which costs up to
-//! [`SMALL_QUADRATIC`] and [`SMALL_LINEAR`] times 1 + S more. Cubics cost 2^-54 (1 + S + S² + S³) LSB and [`CUBIC`] k: they are set up in 128 bits.
+//! [`SMALL_QUADRATIC`] and [`SMALL_LINEAR`] times 1 + S more. Cubics are set up in 128 bits: they cost
+//! [`WALKED_CUBIC`] (1 + S + S² + S³), [`CUT`] and [`CUBIC`] k.
 
 use microphong::{
     format::{BIAS, LEVEL, WALK},
@@ -23,18 +24,26 @@ use proptest::{
 };
 use std::ops::Range;
 
+/// Error of a walked quadratic for each squared pixel of the way from the anchor, LSB.
+const WALKED_QUADRATIC: f64 = 1.0 / (1u64 << 24) as f64;
+/// Error of a walked plane for each pixel of the way from the anchor, LSB.
+const WALKED_LINEAR: f64 = 1.0 / (1u64 << 23) as f64;
+/// Error of a walked cubic for each cubed pixel of the way from the anchor, LSB.
+const WALKED_CUBIC: f64 = 1.0 / (1u64 << 54) as f64;
+/// Error of a cubic's value by the bits that are cut off, LSB.
+const CUT: f64 = 1.0 / (1u64 << 23) as f64;
+
 /// Set-up error of a quadratic on a triangle as long as high, LSB.
 const QUADRATIC: f64 = 255.0 / (1u64 << 22) as f64;
 /// Set-up error of a cubic on a triangle as long as high, LSB.
 const CUBIC: f64 = 255.0 / (1u64 << 22) as f64;
 /// Set-up error of a plane on a triangle as long as high, LSB.
 const LINEAR: f64 = 255.0 / (1u64 << 28) as f64;
-
-/// The same where nodes have 20 bits, such as those of depth.
+/// Set-up error of a plane whose nodes have 20 bits, as those of depth, on a triangle as long as high, LSB.
 const LINEAR_FINER: f64 = 255.0 / (1u64 << 22) as f64;
-/// What first derivatives of a quadratic on a small triangle cost for each pixel of the way from the anchor, LSB.
+/// Error by the first derivatives of a quadratic on a small triangle, for each pixel of the way from the anchor, LSB.
 const SMALL_QUADRATIC: f64 = 1.0 / (1u64 << 14) as f64;
-/// What those of a plane cost, LSB.
+/// Error by the first derivatives of a plane on a small triangle, for each pixel of the way from the anchor, LSB.
 const SMALL_LINEAR: f64 = 1.0 / (1u64 << 19) as f64;
 /// Up to this far from its first corner, 1/16 pixel, a triangle is small.
 const SMALL: i64 = 1 << 10;
@@ -173,7 +182,7 @@ fn quadratics_of_100_000_random_triangles_stay_within_the_bound() {
                 // Values wrap: 341 LSB is as far from 0 as -171.
                 let error = error.min((error - 512.0).abs());
                 let distance = f64::from((x - basis.column()).abs() + (row - basis.row()).abs());
-                let walking = 2f64.powi(-24) * (1.0 + distance + distance * distance);
+                let walking = WALKED_QUADRATIC * (1.0 + distance + distance * distance);
                 // Half a unit of each second derivative; products with the offset are cut, which costs a first
                 // derivative three units more, and the value five.
                 let moving = 2f64.powi(-36) * (11.0 + 7.0 * moved + moved * moved);
@@ -248,7 +257,7 @@ fn cubics_stay_within_the_bound() {
                 let error = (f64::from(walked) / f64::from(1 << WALK) - exact).abs();
                 let distance = f64::from((x - basis.column()).abs() + (row - basis.row()).abs());
                 // The last bits are cut off.
-                let bound = 2f64.powi(-23) + 2f64.powi(-54) * (1.0 + distance + distance.powi(2) + distance.powi(3)) + setup;
+                let bound = CUT + WALKED_CUBIC * (1.0 + distance + distance.powi(2) + distance.powi(3)) + setup;
                 worst[kind] = (worst[kind].0.max(error), worst[kind].1.max(error / bound));
                 assert!(error <= bound, "triangle {i} {c:?}, pixel {x},{row}: error {error}, bound {bound}");
             }
@@ -298,7 +307,7 @@ fn planes_stay_within_the_bound_even_on_slivers() {
                 let error = (f64::from(walked as i32) / f64::from(1 << WALK) - exact).abs();
                 let distance = f64::from((x - basis.column()).abs() + (row - basis.row()).abs());
                 let small = if reach(case.corners) <= SMALL { SMALL_LINEAR * (1.0 + distance) } else { 0.0 };
-                let bound = 2f64.powi(-23) * (1.0 + distance) + setup * thinness + small;
+                let bound = WALKED_LINEAR * (1.0 + distance) + setup * thinness + small;
                 worst = worst.max(error / bound);
                 assert!(error <= bound, "triangle {i} {:?}, pixel {x},{row}: error {error}, bound {bound}", case.corners);
             }
@@ -307,7 +316,7 @@ fn planes_stay_within_the_bound_even_on_slivers() {
     println!("worst error {worst:.2} of the bound");
 }
 
-/// What fields of 26 bits on small triangles cost for each pixel of the way from the anchor, in units of the walked format.
+/// Error of a field of 26 bits on a small triangle, for each pixel of the way from the anchor, in units of the walked format.
 const LONG_SMALL: f64 = 16.0;
 /// Set-up error of a plane of 26 bits on a triangle as long as high, in units of its nodes.
 const LONG_LINEAR: f64 = 1.0 / 16.0;
