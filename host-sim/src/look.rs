@@ -118,6 +118,7 @@ impl Look {
             background: self.background,
             viewer: if self.local_viewer { VIEWER_LOCAL } else { VIEWER_INFINITE },
             ambient: gains(self.ambient),
+            radius: radius(parts),
             camera: camera(&self.view),
             ..Header::new_zeroed()
         };
@@ -151,6 +152,13 @@ impl Look {
 /// `x` with `bits` fraction bits; the check of the stream catches what does not fit.
 fn fixed(x: f64, bits: u32) -> i32 {
     (x * f64::from(bits).exp2()).round() as i32
+}
+
+/// Of the ball about the origin that holds all vertices, rounded up.
+fn radius(parts: &[Part]) -> u16 {
+    let vertices = parts.iter().flat_map(|part| &part.vertices);
+    let squares = vertices.map(|vertex| vertex.position.iter().map(|&c| f64::from(c).powi(2)).sum());
+    squares.fold(0.0, f64::max).sqrt().ceil() as u16
 }
 
 fn gains(colour: V3) -> [u16; 3] {

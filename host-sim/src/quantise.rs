@@ -6,7 +6,7 @@ use crate::{
     vector::{V3, add, cross, dot, length, scale, sub, unit},
 };
 use microphong::{
-    format::{BEND, EDGE, RHO, UNIT},
+    format::{BEND, EDGE, INVERSE_ALTITUDE, RHO, UNIT},
     stream::record::{Triangle, Vertex},
 };
 use std::collections::HashMap;
@@ -15,9 +15,9 @@ use std::collections::HashMap;
 const ONE: f64 = (1 << UNIT) as f64;
 /// Corners are 16-bit indices.
 const MAX_VERTICES: usize = u16::MAX as usize;
-/// Farthest eye that a stream can ask for: 16 units along each axis.
-const FARTHEST: f64 = 16.0 * 1.733;
-/// Units in the last place by which the renderer's own eye position, rounded, may be off along a normal.
+/// Farthest eye that a stream can ask for: 16 units along each axis, of a rotation that is one only nearly.
+const FARTHEST: f64 = 16.0 * 1.8;
+/// Units in the last place for what `offset` itself may be off: points of the plane just beyond [`FARTHEST`] take 0.6.
 const EYE_SLACK: f64 = 4.0;
 
 /// Records of one mesh, indices from 0.
@@ -106,6 +106,9 @@ fn triangle(corners: [Vertex; 3]) -> Option<Triangle> {
     let sums = [0, 1, 2].map(|k| length(add(normals[k], normals[(k + 1) % 3])));
     let least = cosine.iter().copied().fold(1.0, f64::min);
     let quantised = normal(plane);
+    let [ab, bc, ca] = [sub(b, a), sub(c, b), sub(a, c)];
+    let longest = [ab, bc, ca].map(length).into_iter().fold(0.0, f64::max);
+    let altitude = length(cross(ab, ca)) / longest / ONE;
     Some(Triangle {
         corners: [0; 3],
         // From floating point to 16 bits: both saturate.
@@ -114,6 +117,8 @@ fn triangle(corners: [Vertex; 3]) -> Option<Triangle> {
         rho: (((1.0 + 2.0 * least) / 3.0).max(0.0).sqrt() * one(RHO)).min(one(RHO)) as u16,
         normal: quantised,
         offset: offset(plane, dot(plane, a) / ONE, quantised),
+        // Rounded up, with what floating point rounds down; saturates.
+        inverse_altitude: (one(INVERSE_ALTITUDE) / altitude * (1.0 + 1e-12)).ceil() as u16,
     })
 }
 

@@ -58,6 +58,8 @@ pub const EDGE: u32 = 17;
 pub const BEND: u32 = 16;
 /// Fraction bits of the least length of the interpolated normal, unsigned Q1.15.
 pub const RHO: u32 = 15;
+/// Fraction bits of a triangle's inverse altitude, unsigned Q14.2.
+pub const INVERSE_ALTITUDE: u32 = 2;
 /// Entries of a table of colours: the 256 levels and [`BIAS`] guards at each end.
 pub const RAMP: usize = 512;
 /// Lights in one scene.

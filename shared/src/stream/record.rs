@@ -11,7 +11,7 @@ compile_error!("streams are read in place and are little-endian");
 /// First four bytes of every stream.
 pub const MAGIC: [u8; 4] = *b"mTRI";
 /// The version of the format that this core reads and the host writes.
-pub const VERSION: u16 = 2;
+pub const VERSION: u16 = 3;
 
 /// How a stream starts. The arrays follow in the order of the counts.
 #[derive(FromBytes, IntoBytes, Immutable, KnownLayout, Clone, Copy, Debug, PartialEq, Eq)]
@@ -45,8 +45,8 @@ pub struct Header {
     pub viewer: u8,
     /// Light that is there without lights, per channel, [`crate::format::Gain`]; times the material's ambient colour.
     pub ambient: [u16; 3],
-    /// Must be 0.
-    pub reserved: u16,
+    /// All vertices lie in the ball of this radius about the origin, unsigned Q2.14.
+    pub radius: u16,
     /// Where the scene is seen from.
     pub camera: Camera,
 }
@@ -193,4 +193,8 @@ pub struct Triangle {
     /// Distance of the plane from the origin, [`crate::format::Unit`], rounded down such that every point with
     /// `normal · p` below it sees the back.
     pub offset: i16,
+    /// 1 over the least altitude, twice the area over the longest side, of the triangle of the stored corners, unsigned Q14.2, in 1/units:
+    /// at least 1, rounded up, 65535 where that is too little. It tells how far the triangle must face away before no rounding of
+    /// corners on the screen can turn it to the front, see [`crate::cull`].
+    pub inverse_altitude: u16,
 }
