@@ -65,7 +65,7 @@ fn solid_angle([a, b, c]: [V3; 3]) -> f64 {
 
 /// Rounding has turned no plane by more than 2^-[`LEAN`] rad.
 fn leans_little(faces: &[Face], part: &Part) -> bool {
-    let rounded = part.triangles.iter().map(|t| normal(t.corners.map(|v| part.vertices[usize::from(v)].position.map(f64::from))));
+    let rounded = part.triangles.iter().map(|t| normal(t.corners.map(|v| part.vertices[usize::from(v)].position().map(f64::from))));
     faces.len() == part.triangles.len()
         && faces.iter().zip(rounded).all(|(face, rounded)| rounded.is_some_and(|n| length(sub(n, face.normal)) < (-f64::from(LEAN)).exp2()))
 }

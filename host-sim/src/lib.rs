@@ -9,6 +9,7 @@ pub mod image;
 pub mod level;
 pub mod look;
 pub mod mesh;
+pub mod number;
 pub mod obj;
 pub mod oracle;
 pub mod output;

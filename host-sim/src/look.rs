@@ -2,14 +2,15 @@
 
 use crate::{
     bytes::StreamBytes,
+    number::{above, nearest},
     quantise::Part,
-    vector::{V3, scale, unit},
+    vector::{V3, length, scale, unit},
     view::{Projection, View},
 };
 use anyhow::{Context, Result};
 use microphong::{
     Shader,
-    format::{ROTATION, UNIT},
+    format::{Gain, Radius},
     stream::{
         self, MAX_GAIN,
         record::{
@@ -117,7 +118,8 @@ impl Look {
             triangles: u32::try_from(triangles).context("too many triangles for one stream; simplify the mesh")?,
             background: self.background,
             viewer: if self.local_viewer { VIEWER_LOCAL } else { VIEWER_INFINITE },
-            ambient: gains(self.ambient),
+            ambient: self.ambient.map(gain).map(Gain::to_bits),
+            radius: radius(parts).to_bits(),
             camera: camera(&self.view),
             ..Header::new_zeroed()
         };
@@ -148,38 +150,34 @@ impl Look {
     }
 }
 
-/// `x` with `bits` fraction bits; the check of the stream catches what does not fit.
-fn fixed(x: f64, bits: u32) -> i32 {
-    (x * f64::from(bits).exp2()).round() as i32
+/// Of the ball about the origin that holds all vertices, rounded up.
+fn radius(parts: &[Part]) -> Radius {
+    let vertices = parts.iter().flat_map(|part| &part.vertices);
+    let farthest = vertices.map(|vertex| length(vertex.position().map(f64::from))).fold(0.0, f64::max);
+    above(farthest)
 }
 
-fn gains(colour: V3) -> [u16; 3] {
-    colour.map(|c| fixed(c, UNIT).clamp(0, MAX_GAIN.into()) as u16)
+fn gain(x: f64) -> Gain {
+    nearest::<Gain>(x).min(Gain::from_bits(MAX_GAIN))
 }
 
 fn material(surface: &Surface) -> Material {
     let Surface { ambient, diffuse, specular, exponent } = *surface;
-    Material { ambient: gains(ambient), diffuse: gains(diffuse), specular: gains(specular), exponent }
+    Material::new(ambient.map(gain), diffuse.map(gain), specular.map(gain), exponent)
 }
 
 fn light(lamp: &Lamp) -> Light {
-    let (vector, colour, kind) = match *lamp {
-        Lamp::Distant(direction, colour) => (unit(direction).unwrap_or(KEY), colour, DIRECTIONAL),
-        Lamp::Near(position, colour) => (position, colour, POINT),
+    let (kind, vector, colour) = match *lamp {
+        Lamp::Distant(direction, colour) => (DIRECTIONAL, unit(direction).unwrap_or(KEY), colour),
+        Lamp::Near(position, colour) => (POINT, position, colour),
     };
-    Light { vector: vector.map(|c| fixed(c, UNIT)), colour: gains(colour), kind, space: EYE_SPACE }
+    Light::new(kind, EYE_SPACE, vector.map(nearest), colour.map(gain))
 }
 
 fn camera(view: &View) -> Camera {
-    Camera {
-        rotation: view.rotation.map(|row| row.map(|c| fixed(c, ROTATION))),
-        translation: view.translation.map(|c| fixed(c, UNIT)),
-        axis: view.axis.map(|c| fixed(c, ROTATION)),
-        period: view.period,
-        projection: if view.projection == Projection::Perspective { PERSPECTIVE } else { ORTHOGRAPHIC },
-        reserved: 0,
-        focal: fixed(view.focal, 16) as u32,
-        near: fixed(view.near, UNIT),
-        far: fixed(view.far, UNIT),
-    }
+    let projection = if view.projection == Projection::Perspective { PERSPECTIVE } else { ORTHOGRAPHIC };
+    let rotation = view.rotation.map(|row| row.map(nearest));
+    let depths = [view.near, view.far].map(nearest);
+    Camera::new(projection, rotation, view.translation.map(nearest), nearest(view.focal), depths)
+        .orbiting(view.axis.map(nearest), view.period)
 }

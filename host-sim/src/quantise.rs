@@ -3,10 +3,12 @@
 use crate::{
     convex::is_closed_convex,
     mesh::Mesh,
+    number::{above, below, nearest},
     vector::{V3, add, cross, dot, length, scale, sub, unit},
 };
 use microphong::{
-    format::{BEND, EDGE, RHO, UNIT},
+    fixed::types::U0F16,
+    format::{Bend, InverseAltitude, Rho, UNIT, Unit},
     stream::record::{Triangle, Vertex},
 };
 use std::collections::HashMap;
@@ -15,10 +17,10 @@ use std::collections::HashMap;
 const ONE: f64 = (1 << UNIT) as f64;
 /// Corners are 16-bit indices.
 const MAX_VERTICES: usize = u16::MAX as usize;
-/// Farthest eye that a stream can ask for: 16 units along each axis.
-const FARTHEST: f64 = 16.0 * 1.733;
-/// Units in the last place by which the renderer's own eye position, rounded, may be off along a normal.
-const EYE_SLACK: f64 = 4.0;
+/// Farthest eye that a stream can ask for: 16 units along each axis, of a rotation that is one only nearly.
+const FARTHEST: f64 = 16.0 * 1.8;
+/// For what `offset` itself may be off: points of the plane just beyond [`FARTHEST`] take 0.6 units in the last place.
+const EYE_SLACK: f64 = 4.0 / ONE;
 
 /// Records of one mesh, indices from 0.
 #[derive(Clone, Debug, Default)]
@@ -36,8 +38,7 @@ pub struct Part {
 /// Also counts triangles that had an area before the rounding, but not after it.
 #[must_use]
 pub fn quantise(mesh: &Mesh) -> (Vec<Part>, usize) {
-    let vertices: Vec<Vertex> =
-        mesh.positions.iter().zip(&mesh.normals).map(|(&p, &n)| Vertex { position: position(p), normal: normal(n) }).collect();
+    let vertices: Vec<Vertex> = mesh.positions.iter().zip(&mesh.normals).map(|(&p, &n)| Vertex::new(p.map(nearest), normal(n))).collect();
     let mut parts = vec![Part::default()];
     let mut index: HashMap<usize, u16> = HashMap::new();
     let mut dropped = 0;
@@ -67,10 +68,6 @@ pub fn quantise(mesh: &Mesh) -> (Vec<Part>, usize) {
     (parts, dropped)
 }
 
-fn position(p: V3) -> [i16; 3] {
-    p.map(|c| (c * ONE).round() as i16)
-}
-
 /// The lattice point for a unit vector whose length is nearest to one, among the 27 around it.
 ///
 /// An error of the length enters a highlight as many times as its exponent
@@ -78,42 +75,42 @@ fn position(p: V3) -> [i16; 3] {
 /// Near an axis all neighbours have nearly the same length: there the error
 /// can reach half a unit in the last place, 3.1e-5.
 #[must_use]
-pub fn normal(n: V3) -> [i16; 3] {
+pub fn normal(n: V3) -> [Unit; 3] {
     let exact = scale(n, ONE);
     let centre = exact.map(f64::round);
     let neighbours = (0..27).map(|k| add(centre, [(k % 3 - 1) as f64, (k / 3 % 3 - 1) as f64, (k / 9 - 1) as f64]));
     let cost = |p: V3| ((length(p) - ONE).abs(), length(sub(p, exact)));
     let better = |a: V3, b: V3| if cost(b) < cost(a) { b } else { a };
-    neighbours.fold(centre, better).map(|c| c as i16)
+    scale(neighbours.fold(centre, better), 1.0 / ONE).map(nearest)
 }
 
-/// One with `bits` fraction bits.
-fn one(bits: u32) -> f64 {
-    f64::from(bits).exp2()
-}
-
-fn widen(v: [i16; 3]) -> V3 {
+fn widen(v: [Unit; 3]) -> V3 {
     v.map(f64::from)
 }
 
 /// All that does not depend on camera or light; `None` without an area. Corners are left at 0.
 fn triangle(corners: [Vertex; 3]) -> Option<Triangle> {
-    let [a, b, c] = corners.map(|v| widen(v.position));
+    let [a, b, c] = corners.map(|v| widen(v.position()));
     // Exact: 16-bit differences, and sums of a few of their products.
     let plane = unit(cross(sub(b, a), sub(c, a)))?;
-    let normals = corners.map(|v| unit(widen(v.normal)).unwrap_or([0.0, 0.0, 1.0]));
+    let normals = corners.map(|v| unit(widen(v.normal())).unwrap_or([0.0, 0.0, 1.0]));
     let cosine = [0, 1, 2].map(|k| dot(normals[k], normals[(k + 1) % 3]).clamp(-1.0, 1.0));
     let sums = [0, 1, 2].map(|k| length(add(normals[k], normals[(k + 1) % 3])));
     let least = cosine.iter().copied().fold(1.0, f64::min);
     let quantised = normal(plane);
+    let [ab, bc, ca] = [sub(b, a), sub(c, b), sub(a, c)];
+    let longest = [ab, bc, ca].map(length).into_iter().fold(0.0, f64::max);
+    let altitude = length(cross(ab, ca)) / longest;
     Some(Triangle {
         corners: [0; 3],
-        // From floating point to 16 bits: both saturate.
-        rsum: sums.map(|s| ((1.0 / s - 0.5) * one(EDGE)).round() as u16),
-        bend: cosine.map(|c| ((1.0 - c) / 2.0 * one(BEND)).round() as u16),
-        rho: (((1.0 + 2.0 * least) / 3.0).max(0.0).sqrt() * one(RHO)).min(one(RHO)) as u16,
-        normal: quantised,
-        offset: offset(plane, dot(plane, a) / ONE, quantised),
+        // Its bits are those of twice as much with one fraction bit less, for which there is a type.
+        rsum: sums.map(|s| nearest::<U0F16>(2.0 / s - 1.0).to_bits()),
+        bend: cosine.map(|c| nearest::<Bend>((1.0 - c) / 2.0).to_bits()),
+        rho: below::<Rho>(((1.0 + 2.0 * least) / 3.0).max(0.0).sqrt().min(1.0)).to_bits(),
+        normal: quantised.map(Unit::to_bits),
+        offset: offset(plane, dot(plane, a), quantised).to_bits(),
+        // With what floating point may have rounded down.
+        inverse_altitude: above::<InverseAltitude>((1.0 + 1e-12) / altitude).to_bits(),
     })
 }
 
@@ -125,10 +122,10 @@ fn triangle(corners: [Vertex; 3]) -> Option<Triangle> {
 /// written as `along · plane + across`, that value is
 /// `along · distance - |across| · sqrt(FARTHEST² - distance²)`. The
 /// renderer's eye is rounded as well, which takes [`EYE_SLACK`] more.
-fn offset(plane: V3, distance: f64, quantised: [i16; 3]) -> i16 {
+fn offset(plane: V3, distance: f64, quantised: [Unit; 3]) -> Unit {
     let rounded = widen(quantised);
     let along = dot(rounded, plane);
     let across = length(sub(rounded, scale(plane, along)));
     let reach = (FARTHEST * FARTHEST - distance * distance).max(0.0).sqrt();
-    (along * distance - across * reach - EYE_SLACK).floor() as i16
+    below(along * distance - across * reach - EYE_SLACK)
 }

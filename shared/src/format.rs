@@ -1,19 +1,31 @@
 //! The number formats of the core, all of them, in one place.
 //!
-//! `Qm.f` has `m` integer bits (sign included) and `f` fraction bits. Formats
-//! that cross an interface are `fixed` types; inside the loops a value is a
+//! `Qm.f` has `m` integer bits (sign included) and `f` fraction bits. What crosses an interface is a number of the crate [`fixed`]:
+//! its type says format and domain, and conversions from floating point round to the nearest. Inside the loops a value is a
 //! plain integer whose fraction bits are one of the constants below.
 
-use fixed::types::{I2F14, I18F14, U2F14};
+use fixed::types::{I2F14, I2F30, I18F14, I28F4, U0F16, U1F15, U2F14, U14F2, U16F16};
 
-/// Screen coordinate, pixels, in sixteenths: pixel centres lie at 8/16.
-pub type Subpixel = fixed::types::I28F4;
-/// Component of a position or of a unit normal in object space, Q2.14 in [-2, 2).
+/// Screen coordinate, pixels, Q28.4: pixel centres lie at 8/16. Corners are rounded to the nearest sixteenth.
+pub type Subpixel = I28F4;
+/// Component of a position, in units of object space, or of a unit normal; Q2.14 in [-2, 2).
 pub type Unit = I2F14;
-/// Distance in object space, Q18.14.
+/// Distance or coordinate in units of object space, Q18.14; streams use [-32, 32].
 pub type Length = I18F14;
-/// Reflectance or light colour of one channel, Q2.14 in [0, 4); 1 is full.
+/// Radius in units of object space, unsigned Q2.14 in [0, 4).
+pub type Radius = U2F14;
+/// Reflectance or light colour of one channel, 1 is full; unsigned Q2.14 in [0, 4), of which streams use [0, 2].
 pub type Gain = U2F14;
+/// Entry of a rotation matrix or component of a unit axis, Q2.30 in [-1, 1].
+pub type Rotation = I2F30;
+/// Focal length in half sides of the viewport, unsigned Q16.16; streams use [1/16, 16].
+pub type Focal = U16F16;
+/// The edge constant 1 - |N1+N2|²/4, unsigned Q0.16 in [0, 1).
+pub type Bend = U0F16;
+/// Least length of an interpolated normal, unsigned Q1.15 in [0, 1].
+pub type Rho = U1F15;
+/// 1 over the least altitude of a triangle, in 1/units of object space, unsigned Q14.2 in [0, 16384).
+pub type InverseAltitude = U14F2;
 
 /// Fraction bits of [`Subpixel`].
 pub const SUBPIXEL: u32 = 4;
@@ -25,7 +37,7 @@ pub const SPLITS: u32 = 6;
 pub const FINE: u32 = SUBPIXEL + SPLITS;
 /// Fraction bits of [`Unit`], [`Length`] and [`Gain`].
 pub const UNIT: u32 = 14;
-/// Fraction bits of rotation matrices.
+/// Fraction bits of [`Rotation`].
 pub const ROTATION: u32 = 30;
 /// Fraction bits of a dot product of unit vectors, N·L or N·H: Q2.30.
 pub const COSINE: u32 = 30;
@@ -54,10 +66,12 @@ pub const FINER: u32 = 4;
 pub const PIXEL_COSINE: u32 = 27;
 /// Fraction bits of the edge constant 1/|N1+N2|, unsigned Q1.17 in [1/2, 1); a stream stores what exceeds 1/2.
 pub const EDGE: u32 = 17;
-/// Fraction bits of the edge constant 1 - |N1+N2|²/4, unsigned Q0.16.
+/// Fraction bits of [`Bend`].
 pub const BEND: u32 = 16;
-/// Fraction bits of the least length of the interpolated normal, unsigned Q1.15.
+/// Fraction bits of [`Rho`].
 pub const RHO: u32 = 15;
+/// Fraction bits of [`InverseAltitude`].
+pub const INVERSE_ALTITUDE: u32 = 2;
 /// Entries of a table of colours: the 256 levels and [`BIAS`] guards at each end.
 pub const RAMP: usize = 512;
 /// Lights in one scene.

@@ -46,6 +46,7 @@ pub mod tone;
 pub mod vertex;
 
 pub use display::Picture;
+pub use fixed;
 pub use render::{Frame, Memory, Renderer, SetupError, Stats, Workspace};
 pub use shader::Shader;
 pub use stream::{Stream, StreamError};

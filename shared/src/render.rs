@@ -309,9 +309,10 @@ impl<'a, C: Pixel> Renderer<'a, C> {
         let pose = Pose::new(camera, number);
         let lighting = Lighting::new(&self.stream, &pose);
         let constant = lighting.constant();
+        let view = View::new(camera, &pose, self.size);
         let mut frame = Frame {
-            view: View::new(camera, &pose, self.size),
-            facing: Facing::new(camera, &pose),
+            facing: Facing::new(&view, self.stream.header.radius),
+            view,
             lighting,
             constant,
             directions: constant.map(|constant| constant.map(Direction::new)),

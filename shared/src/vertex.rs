@@ -6,7 +6,7 @@ use crate::{
         product::{product, upper},
         recip::recip,
         scale,
-        vector::{add, narrow_dot, wide},
+        vector::{add, cross, narrow_dot, wide},
     },
     scene::Pose,
     stream::record::{Camera, PERSPECTIVE},
@@ -157,6 +157,47 @@ impl View {
         ([self.centre[0] + x, self.centre[1] - y, depth.min(NEAREST)], within)
     }
 
+    /// Rays meet in the eye.
+    #[must_use]
+    pub fn is_perspective(&self) -> bool {
+        matches!(self.projection, Projection::Perspective { .. })
+    }
+
+    /// In object space the eye, Q18.14, or under parallel rays the direction towards the viewer, Q2.14: exactly where
+    /// [`Self::to_eye`], whose rounding down is half a unit in the last place on average, has it.
+    #[must_use]
+    pub fn viewer(&self) -> [i32; 3] {
+        // Cramer's rule: the columns of the adjugate matrix, Q.28, over the determinant, Q.42.
+        let [a, b, c] = self.rotation;
+        let columns = [cross(b, c), cross(c, a), cross(a, b)];
+        let determinant: i64 = c.iter().zip(columns[2]).map(|(&c, k)| i64::from(c) * k).sum();
+        // Homogeneous, Q.15. Below 2^20 in size: all sums, and what they are shifted to, stay below 2^62.
+        let from = if self.is_perspective() { self.translation.map(|c| 2 * i64::from(c) - 1) } else { [0, 0, 1 << 15] };
+        let along = |k: usize| columns.iter().zip(from).map(|(column, t)| column.get(k).unwrap_or(&0) * t).sum::<i64>();
+        // A rotation's determinant is not 0.
+        [0, 1, 2].map(|k| (-along(k) << 13).checked_div(determinant).unwrap_or(0) as i32)
+    }
+
+    /// No vertex of a mesh in the ball of `radius` about the origin is farther from the eye than this, Q18.14; one under
+    /// parallel rays. Includes a 32nd to spare, since a rotation is one only nearly.
+    #[must_use]
+    pub fn reach(&self, radius: u16) -> u32 {
+        let [x, y, z] = self.translation.map(i32::unsigned_abs);
+        let reach = if self.is_perspective() { x + y + z + u32::from(radius) } else { 1 << UNIT };
+        reach + (reach >> 5) + 1
+    }
+
+    /// How far rounding may move a vertex as far from the eye as `reach`, Q.30.
+    ///
+    /// In eye space that is half a unit in the last place along each axis, √3/2 = 0.87 in all; on the screen along both axes half of
+    /// 1/16 pixel, with 2^-7 to spare for the arithmetic on the way: √2 · 65/128 = 0.72 of 1/16 pixel. With room for a rotation that
+    /// is one only nearly they are one unit and 25/32.
+    #[must_use]
+    pub fn displacement(&self, reach: u32) -> u64 {
+        let pixel = ((25 * u64::from(reach)) << (30 + 16 - UNIT - 5)).checked_div(self.focal.unsigned_abs());
+        pixel.unwrap_or(u64::from(u32::MAX)).saturating_add(1 + (1 << (30 - UNIT))).min(u64::from(u32::MAX))
+    }
+
     /// How far rounding may move a point of a mesh that is marked as [`crate::stream::record::CLOSED_CONVEX`] along x or y, seen in a viewport of
     /// `size` pixels behind the near plane; `times` that, 1/16 pixel, rounded up.
     #[must_use]
@@ -188,7 +229,7 @@ impl View {
             _ => y,
         };
         // along * focal / z <= GUARD, z being 1 without perspective.
-        let z = if matches!(self.projection, Projection::Perspective { .. }) { z } else { 1 << UNIT };
+        let z = if self.is_perspective() { z } else { 1 << UNIT };
         ((i64::from(GUARD) * z) << 16) - along * self.focal
     }
 }
@@ -228,6 +269,39 @@ pub const PLANES: usize = 5;
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::stream::record::ORTHOGRAPHIC;
+
+    /// The eye is the point that goes to the origin, the direction towards the viewer the one that goes to -z.
+    #[test]
+    fn viewer_inverts_the_way_to_eye_space() {
+        for number in 0..50 {
+            let one = 1 << ROTATION;
+            let mut camera = Camera {
+                rotation: [[one, 0, 0], [0, one, 0], [0, 0, -one]],
+                translation: [3_000 - 977 * number, 12_345, 50_000 + 4_001 * number],
+                axis: [619_925_131, 619_925_131, 619_925_131],
+                period: 50,
+                projection: PERSPECTIVE,
+                reserved: 0,
+                focal: 1 << 17,
+                near: 1 << 12,
+                far: 1 << 18,
+            };
+            let pose = Pose::new(&camera, number as u32);
+            let exact = |view: &View, last: f64| {
+                let viewer = view.viewer().map(i64::from);
+                [0, 1, 2].map(|k| {
+                    let along: i64 = view.rotation[k].iter().zip(viewer).map(|(&r, v)| i64::from(r) * v).sum();
+                    along as f64 / 16_384.0 + last * (f64::from(pose.translation[k]) - 0.5)
+                })
+            };
+            let eye = exact(&View::new(&camera, &pose, Size::new(64, 64)), 1.0);
+            assert!(eye.iter().all(|c| c.abs() < 1.8), "{number}: {eye:?}");
+            camera.projection = ORTHOGRAPHIC;
+            let [x, y, z] = exact(&View::new(&camera, &pose, Size::new(64, 64)), 0.0);
+            assert!(x.abs() < 1.8 && y.abs() < 1.8 && (z + 16_384.0).abs() < 1.8, "{number}: {x} {y} {z}");
+        }
+    }
 
     /// Screen coordinates are right to 1/16 pixel wherever the near plane lies.
     #[test]

@@ -4,7 +4,6 @@ use super::{Outcome, report};
 use anyhow::{Context, Result};
 use microphong::{
     Stream,
-    format::{EDGE, UNIT},
     stream::record::{CLOSED_CONVEX, EYE_SPACE, Header, Light, Material, Mesh, PERSPECTIVE, POINT, Triangle, VIEWER_LOCAL, Vertex},
 };
 use microphong_sim::bytes::StreamBytes;
@@ -90,7 +89,7 @@ fn exponents(stream: &Stream<'_>) -> String {
 
 fn lights(stream: &Stream<'_>) -> String {
     let kind = |light: &Light| {
-        let [x, y, z] = light.vector.map(|c| f64::from(c) / f64::from(1 << UNIT));
+        let [x, y, z] = light.vector().map(f64::from);
         let kind = if light.kind == POINT { "at" } else { "towards" };
         let space = if light.space == EYE_SPACE { "eye" } else { "object" };
         format!("{kind} ({x:.2}, {y:.2}, {z:.2}) of {space} space")
@@ -100,6 +99,6 @@ fn lights(stream: &Stream<'_>) -> String {
 
 /// How strongly normals vary within a triangle: the shorter they get between the corners, the harder it is to shade.
 fn bend(stream: &Stream<'_>) -> String {
-    let least = stream.triangles.iter().map(|t| t.rho).min().unwrap_or_default();
-    format!("interpolated normals at least {:.3} long", f64::from(least) / f64::from(1 << EDGE))
+    let least = stream.triangles.iter().map(Triangle::rho).min().unwrap_or_default();
+    format!("interpolated normals at least {least:.3} long")
 }

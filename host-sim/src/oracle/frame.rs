@@ -5,7 +5,7 @@ use crate::vector::{V3, add, apply, cross, dot, length, scale, sub, unit};
 use embedded_graphics_core::geometry::Size;
 use microphong::{
     Stream,
-    format::{DEPTH, RHO, ROTATION, SUBPIXEL, UNIT},
+    format::{DEPTH, Gain, ROTATION, SUBPIXEL, UNIT},
     scene::Pose,
     stream::record::{self, DIRECTIONAL, EYE_SPACE, PERSPECTIVE, VIEWER_LOCAL},
     vertex::View,
@@ -58,9 +58,9 @@ fn real<const N: usize>(v: [i32; N], bits: u32) -> [f64; N] {
     v.map(|c| f64::from(c) / f64::from(bits).exp2())
 }
 
-/// Reflectance or light, from a stream's fixed point.
-fn gain(colour: [u16; 3]) -> V3 {
-    real(colour.map(i32::from), UNIT)
+/// Reflectance or light.
+fn gain(colour: [Gain; 3]) -> V3 {
+    colour.map(f64::from)
 }
 
 /// The vector `v`, of any length but zero, with length one; a vector without direction becomes zero.
@@ -84,22 +84,22 @@ impl Frame {
         let local = stream.header.viewer == VIEWER_LOCAL && camera.projection == PERSPECTIVE;
         let viewer = if local { Place::Near(to_object(scale(translation, -1.0))) } else { Place::Far(towards) };
         let lights = stream.lights.iter().map(|light| {
-            let vector = real(light.vector, UNIT);
+            let vector = light.vector().map(f64::from);
             let place = match (light.kind, light.space) {
                 (DIRECTIONAL, EYE_SPACE) => Place::Far(direction(to_object(vector))),
                 (DIRECTIONAL, _) => Place::Far(direction(vector)),
                 (_, EYE_SPACE) => Place::Near(to_object(sub(vector, translation))),
                 _ => Place::Near(vector),
             };
-            Light { place, colour: gain(light.colour) }
+            Light { place, colour: gain(light.colour()) }
         });
-        let around = gain(stream.header.ambient);
+        let around = gain(stream.header.ambient());
         let materials = stream.materials.iter().map(|material| {
-            let ambient = gain(material.ambient);
+            let ambient = gain(material.ambient());
             Material {
                 ambient: [0, 1, 2].map(|k| ambient[k] * around[k]),
-                diffuse: gain(material.diffuse),
-                specular: gain(material.specular),
+                diffuse: gain(material.diffuse()),
+                specular: gain(material.specular()),
                 exponent: material.exponent.into(),
             }
         });
@@ -141,7 +141,7 @@ fn facet(stream: Stream<'_>, mesh: &record::Mesh, triangle: &record::Triangle, i
     // Streams list corners counter-clockwise.
     let [a, b, c] = triangle.corners;
     let vertices = [a, c, b].map(|corner| mesh.first_vertex as usize + usize::from(corner));
-    let mut corners = [record::Vertex { position: [0; 3], normal: [0; 3] }; 3];
+    let mut corners = [record::Vertex::ZERO; 3];
     let mut places = [[0; 3]; 3];
     for k in 0..3 {
         corners[k] = *stream.vertices.get(vertices[k])?;
@@ -157,10 +157,10 @@ fn facet(stream: Stream<'_>, mesh: &record::Mesh, triangle: &record::Triangle, i
         nearness: places.map(|[_, _, depth]| f64::from(depth) / f64::from(DEPTH).exp2()),
         shares: [1.0; 3],
         vertices,
-        normals: corners.map(|v| real(v.normal.map(i32::from), UNIT)),
-        positions: corners.map(|v| real(v.position.map(i32::from), UNIT)),
-        plane: real(triangle.normal.map(i32::from), UNIT),
-        rho: f64::from(triangle.rho) / f64::from(RHO).exp2(),
+        normals: corners.map(|v| v.normal().map(f64::from)),
+        positions: corners.map(|v| v.position().map(f64::from)),
+        plane: triangle.normal().map(f64::from),
+        rho: f64::from(triangle.rho()),
         material: mesh.material.into(),
         id,
     })

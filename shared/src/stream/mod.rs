@@ -205,7 +205,7 @@ impl<'a> Stream<'a> {
         let header = self.header;
         field(usize::from(header.shader) < Shader::ALL.len(), "shader", 0)?;
         field(header.frames > 0, "frames", 0)?;
-        field(header.reserved == 0 && header.camera.reserved == 0, "reserved", 0)?;
+        field(header.camera.reserved == 0, "reserved", 0)?;
         field(header.viewer <= VIEWER_LOCAL, "viewer", 0)?;
         field(!self.meshes.is_empty(), "meshes", 0)?;
         field(self.lights.len() <= MAX_LIGHTS, "lights", 0)?;
@@ -240,11 +240,14 @@ impl<'a> Stream<'a> {
         for (i, vertex) in self.vertices.iter().enumerate() {
             let square: i64 = vertex.normal.iter().map(|&c| i64::from(c) * i64::from(c)).sum();
             field(is_one(square, 2 * UNIT), "vertex normal", i)?;
+            let square: i64 = vertex.position.iter().map(|&c| i64::from(c) * i64::from(c)).sum();
+            field(square <= i64::from(header.radius) * i64::from(header.radius), "vertex position", i)?;
         }
         for (i, triangle) in self.triangles.iter().enumerate() {
             let square: i64 = triangle.normal.iter().map(|&c| i64::from(c) * i64::from(c)).sum();
             field(is_one(square, 2 * UNIT), "triangle normal", i)?;
             field(triangle.rho <= 1 << RHO, "triangle rho", i)?;
+            field(triangle.inverse_altitude > 0, "triangle altitude", i)?;
         }
         Ok(())
     }

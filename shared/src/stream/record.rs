@@ -2,7 +2,11 @@
 //!
 //! Little-endian, no padding, read in place. Host and core share these types,
 //! so there is one definition of the format.
+//!
+//! Fields are plain integers, as they are read in place. Each has a method of its name that gives its value as a number of the
+//! crate [`fixed`], and `new` makes a record of such numbers; [`crate::Stream::parse`] checks what does not follow from the type.
 
+use crate::format::{Bend, Focal, Gain, InverseAltitude, Length, Radius, Rho, Rotation, Unit};
 use zerocopy::{FromBytes, Immutable, IntoBytes, KnownLayout};
 
 #[cfg(target_endian = "big")]
@@ -11,7 +15,7 @@ compile_error!("streams are read in place and are little-endian");
 /// First four bytes of every stream.
 pub const MAGIC: [u8; 4] = *b"mTRI";
 /// The version of the format that this core reads and the host writes.
-pub const VERSION: u16 = 2;
+pub const VERSION: u16 = 3;
 
 /// How a stream starts. The arrays follow in the order of the counts.
 #[derive(FromBytes, IntoBytes, Immutable, KnownLayout, Clone, Copy, Debug, PartialEq, Eq)]
@@ -25,9 +29,9 @@ pub struct Header {
     pub shader: u16,
     /// Bytes in the whole stream, this header included.
     pub length: u32,
-    /// CRC-32 (ISO-HDLC) of all other bytes.
+    /// CRC-32 (ISO-HDLC: polynomial 04C11DB7, reflected) of all other bytes.
     pub crc: u32,
-    /// Number of [`Mesh`] records.
+    /// Number of [`Mesh`] records, at least 1.
     pub meshes: u16,
     /// Number of [`Material`] records.
     pub materials: u16,
@@ -43,12 +47,26 @@ pub struct Header {
     pub background: [u8; 3],
     /// [`VIEWER_INFINITE`] or [`VIEWER_LOCAL`].
     pub viewer: u8,
-    /// Light that is there without lights, per channel, [`crate::format::Gain`]; times the material's ambient colour.
+    /// Light that is there without lights, red, green, blue, [`Gain`] at most 2; it counts times the material's ambient colour.
     pub ambient: [u16; 3],
-    /// Must be 0.
-    pub reserved: u16,
+    /// No vertex lies farther from the origin of object space, [`Radius`], rounded up.
+    pub radius: u16,
     /// Where the scene is seen from.
     pub camera: Camera,
+}
+
+impl Header {
+    /// Light that is there without lights.
+    #[must_use]
+    pub fn ambient(&self) -> [Gain; 3] {
+        self.ambient.map(Gain::from_bits)
+    }
+
+    /// Of the ball about the origin that holds all vertices.
+    #[must_use]
+    pub fn radius(&self) -> Radius {
+        Radius::from_bits(self.radius)
+    }
 }
 
 /// Highlights use one direction to the eye for the whole scene: cheaper, and constant H for directional lights.
@@ -63,26 +81,86 @@ pub const VIEWER_LOCAL: u8 = 1;
 #[derive(FromBytes, IntoBytes, Immutable, KnownLayout, Clone, Copy, Debug, PartialEq, Eq)]
 #[repr(C)]
 pub struct Camera {
-    /// Rows of the rotation from object to eye space in frame 0, Q2.30, orthonormal, determinant -1:
-    /// object space is right-handed, eye space left-handed.
+    /// Rows of the rotation from object to eye space in frame 0, [`Rotation`] in [-1, 1]: orthonormal, squared lengths to 1/256 and
+    /// products to 1/4096; determinant -1, for object space is right-handed, eye space left-handed.
     pub rotation: [[i32; 3]; 3],
-    /// Translation, [`crate::format::Length`].
+    /// Where the origin of object space lies in eye space, [`Length`] in [-16, 16].
     pub translation: [i32; 3],
-    /// Unit axis of the orbit in object space, Q2.30.
+    /// Axis of the orbit in object space, [`Rotation`] in [-1, 1], squared length 1 to 1/256.
     pub axis: [i32; 3],
-    /// Frames per revolution; 0 stands still.
+    /// Frames per revolution; 0 stands still. The angle is right to 0.1 degrees.
     pub period: u16,
     /// [`PERSPECTIVE`] or [`ORTHOGRAPHIC`].
     pub projection: u8,
     /// Must be 0.
     pub reserved: u8,
-    /// Perspective: half of the viewport's smaller side is seen under the slope `1 / focal`, Q16.16.
+    /// [`Focal`] in [1/16, 16]. Perspective: half of the viewport's smaller side is seen under the slope `1 / focal`.
     /// Orthographic: half of the viewport's smaller side shows `1 / focal` units.
     pub focal: u32,
-    /// Nearest distance drawn, [`crate::format::Length`], at least 1/64.
+    /// Nearest depth drawn, along z of eye space, [`Length`] in [1/64, 16).
     pub near: i32,
-    /// Orthographic only: farthest distance drawn, [`crate::format::Length`].
+    /// Orthographic only: farthest depth drawn, [`Length`], above `near` and at most 32.
     pub far: i32,
+}
+
+impl Camera {
+    /// A camera that stands still and draws what lies between two depths; `projection` is [`PERSPECTIVE`] or [`ORTHOGRAPHIC`].
+    #[must_use]
+    pub fn new(projection: u8, rotation: [[Rotation; 3]; 3], translation: [Length; 3], focal: Focal, [near, far]: [Length; 2]) -> Self {
+        Self {
+            rotation: rotation.map(|row| row.map(Rotation::to_bits)),
+            translation: translation.map(Length::to_bits),
+            axis: [Rotation::ZERO, Rotation::ONE, Rotation::ZERO].map(Rotation::to_bits),
+            period: 0,
+            projection,
+            reserved: 0,
+            focal: focal.to_bits(),
+            near: near.to_bits(),
+            far: far.to_bits(),
+        }
+    }
+
+    /// The same camera, once around `axis` in `period` frames.
+    #[must_use]
+    pub fn orbiting(self, axis: [Rotation; 3], period: u16) -> Self {
+        Self { axis: axis.map(Rotation::to_bits), period, ..self }
+    }
+
+    /// Rows of the rotation from object to eye space in frame 0.
+    #[must_use]
+    pub fn rotation(&self) -> [[Rotation; 3]; 3] {
+        self.rotation.map(|row| row.map(Rotation::from_bits))
+    }
+
+    /// Where the origin of object space lies in eye space.
+    #[must_use]
+    pub fn translation(&self) -> [Length; 3] {
+        self.translation.map(Length::from_bits)
+    }
+
+    /// Unit axis of the orbit in object space.
+    #[must_use]
+    pub fn axis(&self) -> [Rotation; 3] {
+        self.axis.map(Rotation::from_bits)
+    }
+
+    /// Over half of the viewport's smaller side, the distance from which it is seen, or one unit.
+    #[must_use]
+    pub fn focal(&self) -> Focal {
+        Focal::from_bits(self.focal)
+    }
+
+    /// Nearest depth drawn.
+    #[must_use]
+    pub fn near(&self) -> Length {
+        Length::from_bits(self.near)
+    }
+
+    /// Farthest depth drawn by an orthographic camera.
+    #[must_use]
+    pub fn far(&self) -> Length {
+        Length::from_bits(self.far)
+    }
 }
 
 /// Rays meet in the eye.
@@ -116,10 +194,10 @@ pub struct Mesh {
 /// - By that rounding no triangle has leaned by more than 2^-[`LEAN`] rad.
 pub const CLOSED_CONVEX: u16 = 1;
 
-/// See [`CLOSED_CONVEX`].
+/// How far a triangle of a [`CLOSED_CONVEX`] mesh may have leaned: 2^-6 rad, 0.9 degrees.
 pub const LEAN: u32 = 6;
 
-/// Colours in [`crate::format::Gain`], red, green, blue.
+/// Colours in [`Gain`], at most 2, red, green, blue.
 #[derive(FromBytes, IntoBytes, Immutable, KnownLayout, Clone, Copy, Debug, PartialEq, Eq)]
 #[repr(C)]
 pub struct Material {
@@ -129,22 +207,70 @@ pub struct Material {
     pub diffuse: [u16; 3],
     /// Share of each light that is reflected in the highlight.
     pub specular: [u16; 3],
-    /// Exponent of N·H, 1 to 1024.
+    /// Exponent of N·H in the highlight (Blinn 1977), or of R·V in place of it (Phong 1975): 1 to 1024.
     pub exponent: u16,
+}
+
+impl Material {
+    /// A material; see the fields.
+    #[must_use]
+    pub fn new(ambient: [Gain; 3], diffuse: [Gain; 3], specular: [Gain; 3], exponent: u16) -> Self {
+        let [ambient, diffuse, specular] = [ambient, diffuse, specular].map(|colour| colour.map(Gain::to_bits));
+        Self { ambient, diffuse, specular, exponent }
+    }
+
+    /// Share of the ambient light that is reflected.
+    #[must_use]
+    pub fn ambient(&self) -> [Gain; 3] {
+        self.ambient.map(Gain::from_bits)
+    }
+
+    /// Share of each light that is reflected evenly.
+    #[must_use]
+    pub fn diffuse(&self) -> [Gain; 3] {
+        self.diffuse.map(Gain::from_bits)
+    }
+
+    /// Share of each light that is reflected in the highlight.
+    #[must_use]
+    pub fn specular(&self) -> [Gain; 3] {
+        self.specular.map(Gain::from_bits)
+    }
 }
 
 /// A light without fall-off.
 #[derive(FromBytes, IntoBytes, Immutable, KnownLayout, Clone, Copy, Debug, PartialEq, Eq)]
 #[repr(C)]
 pub struct Light {
-    /// Directional: unit vector towards the light, Q18.14. Point: its position, [`crate::format::Length`].
+    /// [`Length`] in [-16, 16]. Directional: vector towards the light, squared length 1 to 1/256; the renderer normalises it. Point: the
+    /// light's position.
     pub vector: [i32; 3],
-    /// Colour, [`crate::format::Gain`].
+    /// Red, green, blue, [`Gain`] at most 2.
     pub colour: [u16; 3],
     /// [`DIRECTIONAL`] or [`POINT`].
     pub kind: u8,
     /// [`OBJECT_SPACE`] or [`EYE_SPACE`].
     pub space: u8,
+}
+
+impl Light {
+    /// A light; `kind` is [`DIRECTIONAL`] or [`POINT`], `space` [`OBJECT_SPACE`] or [`EYE_SPACE`].
+    #[must_use]
+    pub fn new(kind: u8, space: u8, vector: [Length; 3], colour: [Gain; 3]) -> Self {
+        Self { vector: vector.map(Length::to_bits), colour: colour.map(Gain::to_bits), kind, space }
+    }
+
+    /// Directional: unit vector towards the light. Point: its position.
+    #[must_use]
+    pub fn vector(&self) -> [Length; 3] {
+        self.vector.map(Length::from_bits)
+    }
+
+    /// Red, green, blue.
+    #[must_use]
+    pub fn colour(&self) -> [Gain; 3] {
+        self.colour.map(Gain::from_bits)
+    }
 }
 
 /// Infinitely far.
@@ -156,19 +282,38 @@ pub const OBJECT_SPACE: u8 = 0;
 /// The light stays with the camera.
 pub const EYE_SPACE: u8 = 1;
 
-/// Position and unit normal, both [`crate::format::Unit`].
+/// Position and unit normal.
 #[derive(FromBytes, IntoBytes, Immutable, KnownLayout, Clone, Copy, Debug, PartialEq, Eq)]
 #[repr(C)]
 pub struct Vertex {
-    /// Object space.
+    /// In object space, [`Unit`] in [-2, 2), rounded to the nearest: right to 3.1e-5, half a step, along each axis.
     pub position: [i16; 3],
-    /// Unit length to 3.1e-5, half a step: of the lattice points around it the one of the best length.
+    /// Unit normal in object space, [`Unit`] in [-1, 1] and hardly beyond: of the lattice points around it the one of the best length.
+    /// That is 1 to 3.1e-5, half a step, as written; readers take squared lengths of 1 to 1/256.
     pub normal: [i16; 3],
 }
 
 impl Vertex {
     /// No vertex.
     pub const ZERO: Self = Self { position: [0; 3], normal: [0; 3] };
+
+    /// A vertex at `position` with a unit normal.
+    #[must_use]
+    pub fn new(position: [Unit; 3], normal: [Unit; 3]) -> Self {
+        Self { position: position.map(Unit::to_bits), normal: normal.map(Unit::to_bits) }
+    }
+
+    /// In object space.
+    #[must_use]
+    pub fn position(&self) -> [Unit; 3] {
+        self.position.map(Unit::from_bits)
+    }
+
+    /// Unit normal in object space.
+    #[must_use]
+    pub fn normal(&self) -> [Unit; 3] {
+        self.normal.map(Unit::from_bits)
+    }
 }
 
 /// Three vertices and all that does not depend on camera or light.
@@ -180,17 +325,53 @@ impl Vertex {
 pub struct Triangle {
     /// Indices relative to the mesh's first vertex.
     pub corners: [u16; 3],
-    /// Per edge 1/|Ni+Nj| - 1/2, unsigned Q0.17: normalises the normal at the midpoint.
-    /// 65535 where the normals are 120 degrees apart or more: then the renderer works it out.
+    /// Per edge 1/|Ni+Nj| - 1/2, unsigned Q0.17 in [0, 1/2), rounded to the nearest: normalises the sum of the ends' normals at the
+    /// midpoint. 65535 where the normals are 120 degrees apart or more: then the renderer works it out.
     pub rsum: [u16; 3],
-    /// Per edge 1 - |Ni+Nj|²/4 = (1 - Ni·Nj)/2, unsigned Q0.16, 65535 at most:
+    /// Per edge 1 - |Ni+Nj|²/4 = (1 - Ni·Nj)/2, [`Bend`] in [0, 1], rounded to the nearest, 65535 at most:
     /// what the squared length of the interpolated normal lacks to 1 at the midpoint.
     pub bend: [u16; 3],
-    /// Lower bound of the interpolated normal's length on the triangle, sqrt((1 + 2 min Ni·Nj)/3), unsigned Q1.15, rounded down.
+    /// Lower bound of the interpolated normal's length on the triangle, sqrt((1 + 2 min Ni·Nj)/3), [`Rho`] in [0, 1], rounded down.
     pub rho: u16,
-    /// Unit normal of the plane, [`crate::format::Unit`].
+    /// Unit normal of the plane in object space, [`Unit`], rounded as that of a vertex.
     pub normal: [i16; 3],
-    /// Distance of the plane from the origin, [`crate::format::Unit`], rounded down such that every point with
+    /// Distance of the plane from the origin, [`Unit`] in [-2, 2), rounded down such that every point a camera can be at with
     /// `normal · p` below it sees the back.
     pub offset: i16,
+    /// 1 over the least altitude of the stored corners, longest side over twice the area, [`InverseAltitude`] in 1/units, rounded up, so
+    /// at least one step; 65535 where that is too little. It tells how far the triangle must face away before no rounding of
+    /// corners can turn it to the front, see [`crate::cull`].
+    pub inverse_altitude: u16,
+}
+
+impl Triangle {
+    /// Per edge 1 - |Ni+Nj|²/4.
+    #[must_use]
+    pub fn bend(&self) -> [Bend; 3] {
+        self.bend.map(Bend::from_bits)
+    }
+
+    /// Lower bound of the interpolated normal's length.
+    #[must_use]
+    pub fn rho(&self) -> Rho {
+        Rho::from_bits(self.rho)
+    }
+
+    /// Unit normal of the plane.
+    #[must_use]
+    pub fn normal(&self) -> [Unit; 3] {
+        self.normal.map(Unit::from_bits)
+    }
+
+    /// Distance of the plane from the origin.
+    #[must_use]
+    pub fn offset(&self) -> Unit {
+        Unit::from_bits(self.offset)
+    }
+
+    /// 1 over the least altitude.
+    #[must_use]
+    pub fn inverse_altitude(&self) -> InverseAltitude {
+        InverseAltitude::from_bits(self.inverse_altitude)
+    }
 }
