@@ -1,8 +1,12 @@
 //! Command line: what the user may say, and what comes of it.
 
+#[cfg(any(test, not(feature = "boards")))]
+mod absent;
+#[cfg(feature = "boards")]
 mod bench;
 mod compare;
 mod convert;
+#[cfg(feature = "boards")]
 mod growth;
 mod inspect;
 mod papers;
@@ -10,7 +14,11 @@ mod parse;
 mod render;
 mod report;
 mod scenes;
+#[cfg(feature = "boards")]
 mod verify;
+
+#[cfg(not(feature = "boards"))]
+use absent::{bench, growth, verify};
 
 use clap::{Parser, Subcommand};
 use microphong_sim::scene;
