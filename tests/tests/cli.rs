@@ -141,6 +141,25 @@ fn wrong_usage_is_told_from_failure() {
     place.fails(&[], 2, &["Usage"]);
 }
 
+/// The command works wherever it lies; what compiles firmware says where it looked for the sources.
+#[test]
+fn the_command_can_be_moved() {
+    let place = Place::new();
+    let moved = place.0.path().join("moved");
+    fs::copy(program(), &moved).expect("a copy of the program");
+    let run = |arguments: &[&str]| {
+        let mut command = Command::new(&moved);
+        command.args(arguments).current_dir(place.0.path()).env("MICROPHONG_SOURCES", "nowhere").output().expect("the program")
+    };
+    assert!(run(&["render", "teapot", "--size", "64x48"]).status.success());
+    for arguments in [&["verify", "--board", "pico"][..], &["bench"], &["growth"], &["bench", "--peers", "--board", "x86-64"]] {
+        let output = run(arguments);
+        let stderr = String::from_utf8_lossy(&output.stderr);
+        assert_eq!(output.status.code(), Some(1), "{arguments:?}: {stderr}");
+        assert!(stderr.contains("nowhere, which MICROPHONG_SOURCES names"), "{arguments:?}: {stderr}");
+    }
+}
+
 /// A small valid stream.
 fn good() -> Vec<u8> {
     scene::load("sphere-40").expect("built-in scene").stream.as_bytes().to_vec()

@@ -1,6 +1,6 @@
 //! Compiles the firmware for a board.
 
-use crate::Board;
+use crate::{Board, sources::sources};
 use anyhow::{Context, Result, ensure};
 use std::{
     env,
@@ -26,17 +26,7 @@ pub fn firmware(board: Board) -> Result<PathBuf> {
     Ok(output.join(board.target()).join("release").join(board.name()))
 }
 
-/// The folder of the sources.
-///
-/// # Errors
-/// When they have been moved.
-pub fn sources() -> Result<PathBuf> {
-    let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("../..");
-    root.canonicalize()
-        .with_context(|| format!("cannot find the sources in {}: they must lie where this program was compiled", root.display()))
-}
-
-/// Builds the workspace in `directory` into `output`; `what` is its name in an error.
+/// Builds the workspace in `directory` into `output`; `what` is its name in messages.
 ///
 /// # Errors
 /// When the compiler is missing, or the program does not compile.

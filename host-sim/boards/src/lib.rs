@@ -8,6 +8,7 @@ pub mod elf;
 mod log;
 mod pico;
 mod qemu;
+pub mod sources;
 pub mod verify;
 
 use anyhow::{Context, Result};

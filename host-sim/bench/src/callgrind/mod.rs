@@ -9,7 +9,7 @@ mod split;
 use super::{Measurement, Processor, Stages};
 use anyhow::{Context, Result, anyhow, ensure};
 use microphong::Shader;
-use microphong_boards::build::{release, sources};
+use microphong_boards::{build::release, sources::sources};
 use profile::Profile;
 use std::{
     ffi::OsString,

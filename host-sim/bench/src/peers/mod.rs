@@ -14,9 +14,10 @@ use embedded_graphics_core::{
 use microphong::Shader;
 use microphong_boards::{
     Board, INSTRUCTIONS_PER_TICK,
-    build::{install_target, release, sources},
+    build::{install_target, release},
     clocked,
     elf::Elf,
+    sources::sources,
 };
 use microphong_render::{render, scene::Scene};
 use serde::Serialize;
