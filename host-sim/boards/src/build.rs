@@ -31,6 +31,7 @@ pub fn firmware(board: Board) -> Result<PathBuf> {
 /// # Errors
 /// When the compiler is missing, or the program does not compile.
 pub fn release(directory: &Path, arguments: &[&str], output: &Path, what: &str) -> Result<()> {
+    log::info!("compiling {what}");
     let status = Command::new(env::var_os("CARGO").unwrap_or_else(|| "cargo".into()))
         .current_dir(directory)
         .args(["build", "--quiet", "--release", "--target-dir"])

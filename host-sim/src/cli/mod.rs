@@ -80,6 +80,7 @@ enum Outcome {
 
 /// Runs the command line.
 pub(crate) fn main() -> ExitCode {
+    report::start();
     let result = match Arguments::parse().command {
         Command::Convert(arguments) => convert::run(&arguments),
         Command::Inspect(arguments) => inspect::run(&arguments),
