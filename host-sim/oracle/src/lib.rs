@@ -1,6 +1,6 @@
 //! Every shading method in 64-bit floating point, written a second time.
 //!
-//! The core shades in integers; this module says what it should come to. The two share no shading code: from the core
+//! The core shades in integers; this package says what it should come to. The two share no shading code: from the core
 //! come the parsed records of a stream, the pose of a frame, and where a corner lies on the screen. All else is the
 //! methods' definition, one file each, as plain as formulas allow.
 
