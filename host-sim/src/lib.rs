@@ -1,24 +1,9 @@
-//! The simulator as a library: what the `microphong` command is made of.
+//! The simulator as a library: what the `microphong` command is made of, each part a package of its own.
 
-pub mod bench;
-pub mod board;
-pub mod bytes;
-pub mod compare;
-pub mod convex;
-pub mod image;
-pub mod level;
-pub mod look;
-pub mod mesh;
-pub mod number;
-pub mod obj;
-pub mod oracle;
-pub mod output;
-mod page;
-pub mod papers;
-pub mod quantise;
-pub mod render;
-pub mod scene;
-pub mod shapes;
-pub mod vector;
-pub mod verify;
-pub mod view;
+#[cfg(feature = "boards")]
+pub use microphong_bench as bench;
+#[cfg(feature = "boards")]
+pub use microphong_boards::{self as board, verify};
+pub use microphong_compare::{self as compare, level};
+pub use microphong_oracle::{self as oracle, papers};
+pub use microphong_render::{bytes, convex, image, look, mesh, number, obj, output, quantise, render, scene, shapes, vector, view};

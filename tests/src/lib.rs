@@ -37,6 +37,12 @@ pub fn program() -> &'static Path {
     &PROGRAM
 }
 
+/// Whether a command has said nothing on stderr but what takes long.
+#[must_use]
+pub fn only_announces(stderr: &str) -> bool {
+    stderr.lines().all(|line| line.ends_with(" ..."))
+}
+
 /// The same stream, its first mesh not marked as closed and convex: all of it is drawn with depth.
 #[must_use]
 pub fn unmarked(stream: &StreamBytes) -> StreamBytes {

@@ -65,7 +65,7 @@ fn costs_have_not_grown() {
     let recorded = baseline::read(&path).unwrap();
     let changes = baseline::changes(&recorded, &baseline::measure(&recorded, || ()).unwrap());
     let (grown, shrunk): (Vec<_>, Vec<_>) = changes.iter().partition(|change| change.percent() > 0.0);
-    let renew = "renew the file: cargo run --release -- bench --renew tests/baselines/costs.csv";
+    let renew = "renew the file: cargo run --release --features boards -- bench --renew tests/baselines/costs.csv";
     for change in shrunk.iter().chain(&grown) {
         println!("{change}");
     }

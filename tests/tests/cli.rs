@@ -6,7 +6,7 @@ use microphong_sim::{
     render::{self, Format, Settings, Style},
     scene,
 };
-use microphong_tests::program;
+use microphong_tests::{only_announces, program};
 use std::{
     fs,
     path::Path,
@@ -59,7 +59,7 @@ impl Place {
         let output = self.run(arguments);
         let stderr = String::from_utf8_lossy(&output.stderr);
         assert!(output.status.success(), "{arguments:?}: {stderr}");
-        assert!(stderr.is_empty(), "{arguments:?}: {stderr}");
+        assert!(only_announces(&stderr), "{arguments:?}: {stderr}");
         String::from_utf8(output.stdout).expect("text")
     }
 }
@@ -139,6 +139,25 @@ fn wrong_usage_is_told_from_failure() {
     place.fails(&["bench", "triangle", "--peers"], 2, &["peer-sphere"]);
     place.fails(&["paint"], 2, &["paint"]);
     place.fails(&[], 2, &["Usage"]);
+}
+
+/// The command works wherever it lies; what compiles firmware says where it looked for the sources.
+#[test]
+fn the_command_can_be_moved() {
+    let place = Place::new();
+    let moved = place.0.path().join("moved");
+    fs::copy(program(), &moved).expect("a copy of the program");
+    let run = |arguments: &[&str]| {
+        let mut command = Command::new(&moved);
+        command.args(arguments).current_dir(place.0.path()).env("MICROPHONG_SOURCES", "nowhere").output().expect("the program")
+    };
+    assert!(run(&["render", "teapot", "--size", "64x48"]).status.success());
+    for arguments in [&["verify", "--board", "pico"][..], &["bench"], &["growth"], &["bench", "--peers", "--board", "x86-64"]] {
+        let output = run(arguments);
+        let stderr = String::from_utf8_lossy(&output.stderr);
+        assert_eq!(output.status.code(), Some(1), "{arguments:?}: {stderr}");
+        assert!(stderr.contains("nowhere, which MICROPHONG_SOURCES names"), "{arguments:?}: {stderr}");
+    }
 }
 
 /// A small valid stream.

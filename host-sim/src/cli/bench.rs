@@ -3,8 +3,7 @@
 use super::{
     Outcome, Usage, growth,
     parse::{self, Several},
-    report,
-    verify::load,
+    report, scenes,
 };
 use anyhow::Result;
 use microphong::{Shader, render::check};
@@ -40,7 +39,7 @@ pub(crate) struct Arguments {
     shader: Several<Shader>,
     /// Boards, separated by commas: mps2-an385 (Cortex-M3), mps2-an386 (Cortex-M4F), pico (Cortex-M0+), x86-64 (this computer);
     /// or all.
-    #[arg(long, value_name = "B,...", default_value = "mps2-an385", value_parser = parse::processors)]
+    #[arg(long, value_name = "B,...", default_value = "mps2-an385", value_parser = processors)]
     board: Several<Processor>,
     /// Print one JSON object per frame.
     #[arg(long)]
@@ -86,6 +85,11 @@ Stages:
 
 Exit codes: 0 done; 1 failed, or something has become dearer; 2 wrong usage.";
 
+/// Processors, by their boards.
+fn processors(text: &str) -> Result<Several<Processor>, String> {
+    parse::several(text, &Processor::ALL, |text| parse::among(text, &Processor::ALL, Processor::board_name))
+}
+
 pub(crate) fn run(arguments: &Arguments) -> Result<Outcome> {
     if let Some(path) = &arguments.check {
         return compare(path);
@@ -95,7 +99,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome> {
     }
     let mut scenes = Vec::new();
     for name in &arguments.scenes {
-        scenes.extend(load(name)?);
+        scenes.extend(scenes::load(name)?);
     }
     let Several { values: shaders, all } = &arguments.shader;
     let wanted = |scene: &Scene| {
@@ -108,7 +112,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome> {
     let common = arguments.peers.then(|| common(&scenes)).transpose()?;
     let others: Vec<_> = arguments.board.values.iter().copied().filter(|&board| common.is_some() && peers::possible(board)).collect();
     let steps = scenes.iter().map(|(_, wanted)| wanted.len()).sum::<usize>() + 1 + others.len();
-    let bar = report::progress(steps as u64, "counting");
+    let bar = report::progress(steps as u64, "counting instructions");
     let bench = Bench::new(&arguments.board.values)?;
     bar.inc(1);
     let mut all = Vec::new();
@@ -169,7 +173,7 @@ fn beside(table: &Table) -> Result<()> {
 /// What a file lists, as recorded and as measured now.
 fn again(path: &Path) -> Result<[Vec<baseline::Entry>; 2]> {
     let recorded = baseline::read(path)?;
-    let bar = report::progress(recorded.len() as u64, "counting");
+    let bar = report::progress(recorded.len() as u64, "counting instructions");
     let measured = baseline::measure(&recorded, || bar.inc(1))?;
     bar.finish_and_clear();
     Ok([recorded, measured])

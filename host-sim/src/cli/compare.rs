@@ -3,8 +3,7 @@
 use super::{
     Outcome,
     parse::{self, Several},
-    report,
-    verify::load,
+    report, scenes,
 };
 use anyhow::{Context, Result};
 use microphong::{Shader, render::check};
@@ -101,7 +100,7 @@ struct Row {
 }
 
 pub(crate) fn run(arguments: &Arguments) -> Result<Outcome> {
-    let scenes = scenes(arguments)?;
+    let scenes = chosen(arguments)?;
     let Several { values: shaders, all } = &arguments.shader;
     if !all {
         for scene in &scenes {
@@ -113,7 +112,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome> {
         }
     }
     let mut page = arguments.report.as_deref().map(Page::create).transpose()?;
-    let bar = report::progress((scenes.len() * shaders.len()) as u64, "comparing");
+    let bar = report::progress((scenes.len() * shaders.len()) as u64, "comparing methods");
     for scene in &scenes {
         let stream = scene.stream.parse().with_context(|| scene.name.clone())?;
         let size = arguments.size.unwrap_or(scene.size);
@@ -149,10 +148,10 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome> {
 }
 
 /// The scenes with the exponent that was asked for.
-fn scenes(arguments: &Arguments) -> Result<Vec<Scene>> {
+fn chosen(arguments: &Arguments) -> Result<Vec<Scene>> {
     let mut scenes = Vec::new();
     for name in &arguments.scenes {
-        for mut scene in load(name)? {
+        for mut scene in scenes::load(name)? {
             if let Some(exponent) = arguments.exponent {
                 let bytes = with_exponent(scene.stream.as_bytes(), exponent).with_context(|| scene.name.clone())?;
                 scene.stream = StreamBytes::from(bytes.as_slice());

@@ -21,7 +21,7 @@ use microphong_sim::bench::{
 #[command(after_help = EXAMPLES)]
 pub(crate) struct Arguments {
     /// What to vary: triangles, pixels, lights, bands, separated by commas, or all.
-    #[arg(default_value = "all", value_name = "WHAT,...", value_parser = parse::sweeps)]
+    #[arg(default_value = "all", value_name = "WHAT,...", value_parser = sweeps)]
     sweep: Several<Sweep>,
     /// Shading methods, separated by commas, or all.
     #[arg(long, default_value = "gouraud,six-point,sqrt6,phong", value_name = "S,...", value_parser = parse::shaders)]
@@ -41,6 +41,11 @@ triangles  100 to 100,000 on 40,000 pixels
 pixels     1,000 to 1,000,000 of 512 triangles
 lights     1 to 8, 968 triangles on 40,000 pixels
 bands      1 to 24 in which the same picture is drawn";
+
+/// What grows, by name.
+fn sweeps(text: &str) -> Result<Several<Sweep>, String> {
+    parse::several(text, &Sweep::ALL, |text| parse::among(text, &Sweep::ALL, Sweep::name))
+}
 
 pub(crate) fn run(arguments: &Arguments) -> Result<Outcome> {
     let points = count(&arguments.sweep.values, &arguments.shader.values)?;

@@ -1,8 +1,12 @@
 //! Command line: what the user may say, and what comes of it.
 
+#[cfg(any(test, not(feature = "boards")))]
+mod absent;
+#[cfg(feature = "boards")]
 mod bench;
 mod compare;
 mod convert;
+#[cfg(feature = "boards")]
 mod growth;
 mod inspect;
 mod papers;
@@ -10,7 +14,11 @@ mod parse;
 mod render;
 mod report;
 mod scenes;
+#[cfg(feature = "boards")]
 mod verify;
+
+#[cfg(not(feature = "boards"))]
+use absent::{bench, growth, verify};
 
 use clap::{Parser, Subcommand};
 use microphong_sim::scene;
@@ -72,6 +80,7 @@ enum Outcome {
 
 /// Runs the command line.
 pub(crate) fn main() -> ExitCode {
+    report::start();
     let result = match Arguments::parse().command {
         Command::Convert(arguments) => convert::run(&arguments),
         Command::Inspect(arguments) => inspect::run(&arguments),

@@ -31,7 +31,7 @@ Examples:
 
 pub(crate) fn run(arguments: &Arguments) -> Result<Outcome> {
     let topics = &arguments.only.values;
-    let bar = report::progress(topics.len() as u64 + 1, "computing");
+    let bar = report::progress(topics.len() as u64 + 1, "computing claims");
     let mut counts = [0; Verdict::ALL.len()];
     for &topic in topics {
         bar.inc(1);

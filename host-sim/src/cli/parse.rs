@@ -2,9 +2,6 @@
 
 use microphong::{Shader, render::MAX_SIDE};
 use microphong_sim::{
-    bench::Processor,
-    bench::growth::Sweep,
-    board::Board,
     papers::Topic,
     render::Format,
     vector::V3,
@@ -27,7 +24,7 @@ pub(crate) struct Several<T> {
 }
 
 /// `all`, or values separated by commas.
-fn several<T: Copy + PartialEq>(text: &str, all: &[T], one: impl Fn(&str) -> Result<T, String>) -> Result<Several<T>, String> {
+pub(crate) fn several<T: Copy + PartialEq>(text: &str, all: &[T], one: impl Fn(&str) -> Result<T, String>) -> Result<Several<T>, String> {
     if text == "all" {
         return Ok(Several { values: all.to_vec(), all: true });
     }
@@ -41,16 +38,6 @@ fn several<T: Copy + PartialEq>(text: &str, all: &[T], one: impl Fn(&str) -> Res
     Ok(Several { values, all: false })
 }
 
-/// Boards by name.
-pub(crate) fn boards(text: &str) -> Result<Several<Board>, String> {
-    several(text, &Board::ALL, |text| among(text, &Board::ALL, Board::name))
-}
-
-/// What `bench` measures, by its boards.
-pub(crate) fn processors(text: &str) -> Result<Several<Processor>, String> {
-    several(text, &Processor::ALL, |text| among(text, &Processor::ALL, Processor::board_name))
-}
-
 /// Shading methods by name.
 pub(crate) fn shaders(text: &str) -> Result<Several<Shader>, String> {
     several(text, &Shader::ALL, shader)
@@ -59,11 +46,6 @@ pub(crate) fn shaders(text: &str) -> Result<Several<Shader>, String> {
 /// Papers by name.
 pub(crate) fn topics(text: &str) -> Result<Several<Topic>, String> {
     several(text, &Topic::ALL, |text| among(text, &Topic::ALL, Topic::name))
-}
-
-/// What grows, by name.
-pub(crate) fn sweeps(text: &str) -> Result<Several<Sweep>, String> {
-    several(text, &Sweep::ALL, |text| among(text, &Sweep::ALL, Sweep::name))
 }
 
 /// A shading method by name.

@@ -103,7 +103,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome> {
     };
     check(&stream, settings.style.shader, settings.style.perspective_correct).with_context(|| scene.name.clone())?;
     let mut writer = Writer::start(&target, settings.size, frames)?;
-    let bar = report::progress(frames.into(), "drawing");
+    let bar = report::progress(frames.into(), "drawing frames");
     let mut lines = Vec::new();
     for number in 0..frames {
         let picture = render::picture(stream, &settings, arguments.first.wrapping_add(number)).with_context(|| scene.name.clone())?;

@@ -1,9 +1,13 @@
 //! What a command prints: results on stdout, errors and progress on stderr.
 
 use anyhow::{Context, Result};
-use indicatif::{ProgressBar, ProgressStyle};
+use indicatif::{MultiProgress, ProgressBar, ProgressStyle};
+use log::{LevelFilter, Log, Metadata, Record};
 use serde::Serialize;
-use std::io::Write;
+use std::{io::Write, sync::LazyLock, time::Duration};
+
+/// All bars, which make room for what else is printed.
+static BARS: LazyLock<MultiProgress> = LazyLock::new(MultiProgress::new);
 
 /// Prints one line; a closed pipe is an error, not a panic.
 pub(crate) fn line(text: &str) -> Result<()> {
@@ -21,16 +25,48 @@ pub(crate) fn failure(error: &anyhow::Error) {
     let _ = writeln!(std::io::stderr().lock(), "error: {error:#}");
 }
 
-/// A bar on stderr for `count` steps; silent for a single step, and when stderr is no terminal.
+/// A bar on stderr for `count` steps; a line when stderr is no terminal. Silent for a single step.
 pub(crate) fn progress(count: u64, what: &'static str) -> ProgressBar {
     if count < 2 {
         return ProgressBar::hidden();
     }
-    let bar = ProgressBar::new(count);
-    if let Ok(style) = ProgressStyle::with_template("{msg} {wide_bar} {pos}/{len} {eta}") {
+    if BARS.is_hidden() {
+        log::info!("{what}, {count} steps");
+    }
+    let bar = BARS.add(ProgressBar::new(count));
+    if let Ok(style) = ProgressStyle::with_template("{msg} {wide_bar} {pos}/{len} {elapsed}, {eta} to go") {
         bar.set_style(style);
     }
+    // A single step may take long.
+    bar.enable_steady_tick(Duration::from_secs(1));
     bar.with_message(what)
+}
+
+/// Prints what takes long, when it starts, on stderr.
+struct Announcer;
+
+impl Log for Announcer {
+    fn enabled(&self, metadata: &Metadata<'_>) -> bool {
+        // Libraries have more to say than anybody wants to know.
+        metadata.target().starts_with("microphong")
+    }
+
+    fn log(&self, record: &Record<'_>) {
+        if self.enabled(record.metadata()) {
+            // Nobody left to tell when stderr is closed.
+            let _ = BARS.suspend(|| writeln!(std::io::stderr().lock(), "{} ...", record.args()));
+        }
+    }
+
+    fn flush(&self) {}
+}
+
+/// From now on, long work announces itself.
+pub(crate) fn start() {
+    // Fails where it has been called before: then it need not.
+    if log::set_logger(&Announcer).is_ok() {
+        log::set_max_level(LevelFilter::Info);
+    }
 }
 
 /// 12345 as 12,345.

@@ -1,8 +1,8 @@
 //! `microphong scenes`.
 
-use super::{Outcome, report};
+use super::{Outcome, Usage, report};
 use anyhow::Result;
-use microphong_sim::scene;
+use microphong_sim::scene::{self, NAMES, Scene};
 use serde::Serialize;
 
 /// List the built-in scenes.
@@ -20,7 +20,7 @@ struct Line {
 }
 
 pub(crate) fn run(arguments: &Arguments) -> Result<Outcome> {
-    for scene in scene::NAMES {
+    for scene in NAMES {
         let description = scene::description(scene);
         if arguments.json {
             report::json(&Line { scene, description })?;
@@ -29,4 +29,15 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome> {
         }
     }
     Ok(Outcome::Done)
+}
+
+/// A scene by name or from a file, or all that are built in.
+pub(super) fn load(name: &str) -> Result<Vec<Scene>> {
+    if name == "all" {
+        return NAMES.iter().map(|name| scene::load(name)).collect();
+    }
+    match scene::load(name) {
+        Err(error) if error.is::<scene::Unknown>() => Err(Usage(format!("{error}, or all")).into()),
+        other => Ok(vec![other?]),
+    }
 }

@@ -1,15 +1,15 @@
 //! `microphong verify`.
 
 use super::{
-    Outcome, Usage,
+    Outcome,
     parse::{self, Several},
-    report,
+    report, scenes,
 };
 use anyhow::{Context, Result, bail};
 use microphong::{Shader, render::check};
 use microphong_sim::{
     board::Board,
-    scene::{self, NAMES, Scene},
+    scene::Scene,
     verify::{self, Report, Request},
 };
 use std::path::PathBuf;
@@ -19,7 +19,7 @@ use std::path::PathBuf;
 #[command(after_help = EXAMPLES)]
 pub(crate) struct Arguments {
     /// Boards, separated by commas: pico, lm3s6965evb, mps2-an385, mps2-an386; or all.
-    #[arg(long, value_parser = parse::boards)]
+    #[arg(long, value_parser = boards)]
     board: Several<Board>,
     /// A .tri or .obj file, a built-in scene, or all built-in scenes.
     #[arg(long, default_value = "teapot")]
@@ -45,8 +45,13 @@ Examples:
 
 Exit codes: 0 all pixels are equal; 1 some differ, or a board failed; 2 wrong usage.";
 
+/// Boards by name.
+fn boards(text: &str) -> Result<Several<Board>, String> {
+    parse::several(text, &Board::ALL, |text| parse::among(text, &Board::ALL, Board::name))
+}
+
 pub(crate) fn run(arguments: &Arguments) -> Result<Outcome> {
-    let scenes = load(&arguments.scene)?;
+    let scenes = scenes::load(&arguments.scene)?;
     let boards = &arguments.board.values;
     let shaders = &arguments.shader;
     // Of all methods those that the board has and that can shade the scene.
@@ -61,7 +66,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome> {
         }
     }
     let count = runs.len();
-    let bar = report::progress(count as u64 + 1, "verifying");
+    let bar = report::progress(count as u64 + 1, "verifying pictures");
     let (mut differ, mut failed) = (0, 0);
     let mut built: Option<(Board, PathBuf)> = None;
     for (board, scene, shader) in runs {
@@ -98,16 +103,6 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome> {
         bail!("{failed} of {count} comparisons failed");
     }
     Ok(if differ > 0 { Outcome::Differences } else { Outcome::Done })
-}
-
-pub(super) fn load(name: &str) -> Result<Vec<Scene>> {
-    if name == "all" {
-        return NAMES.iter().map(|name| scene::load(name)).collect();
-    }
-    match scene::load(name) {
-        Err(error) if error.is::<scene::Unknown>() => Err(Usage(format!("{error}, or all")).into()),
-        other => Ok(vec![other?]),
-    }
 }
 
 fn text(result: &Report, artefacts: &std::path::Path) -> Result<()> {

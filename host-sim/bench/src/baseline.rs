@@ -1,0 +1,176 @@
+//! What frames cost when somebody last looked, in a file that is kept with the sources.
+//!
+//! One line per frame: board, scene, method, instructions, bytes of flash. The lines choose what is measured: to add a frame, add
+//! a line with any numbers and renew the file.
+
+use super::{Bench, Measurement, Processor};
+use anyhow::{Context, Result};
+use microphong::Shader;
+use microphong_render::scene;
+use std::{fmt, fs, path::Path};
+
+/// Growth of instructions or flash that is let pass, in percent. A shrinkage of more asks to renew the file, or it would hide later growth.
+pub const TOLERANCE: f64 = 1.0;
+
+const HEAD: &str = "board,scene,shader,instructions,flash_bytes";
+
+/// One line.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Entry {
+    /// Who executes.
+    pub processor: Processor,
+    /// The scene's name.
+    pub scene: String,
+    /// The method.
+    pub shader: Shader,
+    /// Of the frame, without clearing and transfer.
+    pub instructions: u64,
+    /// Of the method, see [`Measurement::flash_bytes`].
+    pub flash_bytes: u64,
+}
+
+impl Entry {
+    fn parse(line: &str) -> Result<Self> {
+        let words: Vec<_> = line.split(',').map(str::trim).collect();
+        let [board, scene, shader, instructions, flash_bytes] = words[..] else {
+            anyhow::bail!("{} words instead of those of `{HEAD}`", words.len());
+        };
+        let processor = Processor::ALL.into_iter().find(|processor| processor.board_name() == board);
+        let shader = Shader::ALL.into_iter().find(|other| other.name() == shader).with_context(|| format!("no method {shader}"))?;
+        Ok(Self {
+            processor: processor.with_context(|| format!("no board {board}"))?,
+            scene: scene.to_owned(),
+            shader,
+            instructions: instructions.parse().with_context(|| format!("`{instructions}` is no number"))?,
+            flash_bytes: flash_bytes.parse().with_context(|| format!("`{flash_bytes}` is no number"))?,
+        })
+    }
+
+    /// The same frame as it is now.
+    #[must_use]
+    fn renewed(&self, now: &Measurement) -> Self {
+        Self { instructions: now.instructions, flash_bytes: now.flash_bytes.unwrap_or(0), ..self.clone() }
+    }
+}
+
+impl fmt::Display for Entry {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self { processor, scene, shader, instructions, flash_bytes } = self;
+        write!(f, "{},{scene},{},{instructions},{flash_bytes}", processor.board_name(), shader.name())
+    }
+}
+
+/// A figure that has changed by more than its tolerance.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Change {
+    /// Which frame.
+    pub entry: Entry,
+    /// Of what.
+    pub what: &'static str,
+    /// As recorded.
+    pub was: u64,
+    /// As measured.
+    pub is: u64,
+}
+
+impl Change {
+    /// Percent; positive is growth.
+    #[must_use]
+    pub fn percent(&self) -> f64 {
+        (self.is as f64 - self.was as f64) / self.was.max(1) as f64 * 100.0
+    }
+}
+
+impl fmt::Display for Change {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Entry { processor, scene, shader, .. } = &self.entry;
+        let (shader, cpu, Self { what, was, is, .. }) = (shader.name(), processor.name(), self);
+        write!(f, "{shader} on {cpu}, {scene}: {what} {was} -> {is} ({:+.2} %)", self.percent())
+    }
+}
+
+/// Changes between lines and what was measured for them.
+#[must_use]
+pub fn changes(recorded: &[Entry], measured: &[Entry]) -> Vec<Change> {
+    let pairs = recorded.iter().zip(measured).flat_map(|(entry, now)| {
+        let instructions = ("instructions", entry.instructions, now.instructions);
+        let flash = ("bytes of flash", entry.flash_bytes, now.flash_bytes);
+        [instructions, flash].map(|(what, was, is)| Change { entry: entry.clone(), what, was, is })
+    });
+    pairs.filter(|change| change.percent().abs() > TOLERANCE).collect()
+}
+
+/// Reads a file.
+///
+/// # Errors
+/// Names file and line.
+pub fn read(path: &Path) -> Result<Vec<Entry>> {
+    let text = fs::read_to_string(path).with_context(|| format!("cannot read {}", path.display()))?;
+    let lines = (1..).zip(text.lines()).filter(|(_, line)| !line.trim().is_empty() && *line != HEAD);
+    lines.map(|(number, line)| Entry::parse(line).with_context(|| format!("{}, line {number}", path.display()))).collect()
+}
+
+/// Writes a file.
+///
+/// # Errors
+/// When it cannot be written.
+pub fn write(path: &Path, entries: &[Entry]) -> Result<()> {
+    let lines: Vec<_> = std::iter::once(HEAD.to_owned()).chain(entries.iter().map(Entry::to_string)).collect();
+    fs::write(path, lines.join("\n") + "\n").with_context(|| format!("cannot write {}", path.display()))
+}
+
+/// Measures again what the lines say, in their order.
+///
+/// # Errors
+/// When a scene is unknown or a board fails.
+pub fn measure(entries: &[Entry], tick: impl Fn() + Sync) -> Result<Vec<Entry>> {
+    let mut processors: Vec<_> = entries.iter().map(|entry| entry.processor).collect();
+    processors.sort_unstable();
+    processors.dedup();
+    let bench = Bench::new(&processors)?;
+    let mut names: Vec<_> = entries.iter().map(|entry| &entry.scene).collect();
+    names.sort_unstable();
+    names.dedup();
+    let mut measured = entries.to_vec();
+    for name in names {
+        let (places, wanted): (Vec<_>, Vec<_>) = (0..)
+            .zip(entries)
+            .filter(|(_, entry)| entry.scene == *name)
+            .map(|(place, entry)| (place, (entry.processor, entry.shader)))
+            .unzip();
+        let now = bench.measure(&scene::load(name)?, &wanted, &tick)?;
+        for (place, now) in places.into_iter().zip(&now) {
+            let entry: &mut Entry = measured.get_mut::<usize>(place).context("a line that was not there")?;
+            *entry = entry.renewed(now);
+        }
+    }
+    Ok(measured)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{Entry, changes};
+
+    #[test]
+    fn growth_beyond_the_tolerance_is_named() {
+        let old = Entry::parse("mps2-an385,teapot,flat,1000,2000").unwrap();
+        assert_eq!(old.to_string(), "mps2-an385,teapot,flat,1000,2000");
+        let changes = |instructions, flash_bytes| {
+            let now = Entry { instructions, flash_bytes, ..old.clone() };
+            changes(std::slice::from_ref(&old), &[now]).iter().map(ToString::to_string).collect::<Vec<_>>()
+        };
+        assert!(changes(1010, 2020).is_empty());
+        assert_eq!(changes(1011, 2020), ["flat on cortex-m3, teapot: instructions 1000 -> 1011 (+1.10 %)"]);
+        assert_eq!(changes(1010, 2021), ["flat on cortex-m3, teapot: bytes of flash 2000 -> 2021 (+1.05 %)"]);
+    }
+
+    #[test]
+    fn damaged_lines_say_what_is_wrong() {
+        for (line, message) in
+            [("pico,teapot,flat,1", "4 words"), ("pico,teapot,flat,x,1", "`x` is no number"), ("pi,teapot,flat,1,1", "no board pi")]
+        {
+            let error = format!("{:#}", Entry::parse(line).unwrap_err());
+            assert!(error.contains(message), "{error}");
+        }
+    }
+}

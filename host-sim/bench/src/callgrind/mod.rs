@@ -1,0 +1,133 @@
+//! The host's processor counts: callgrind executes `host-sim/frame`, which draws frames as the firmware does on its boards.
+//!
+//! Not by a harness for benchmarks, as gungraun: that starts valgrind once per benchmark, which takes longer than a frame,
+//! and reports a frame's sum, of which the stages are wanted.
+
+mod profile;
+mod split;
+
+use super::{Measurement, Processor, Stages};
+use anyhow::{Context, Result, anyhow, ensure};
+use microphong::Shader;
+use microphong_boards::{build::release, sources::sources};
+use profile::Profile;
+use std::{
+    ffi::OsString,
+    fs,
+    io::ErrorKind,
+    path::{Path, PathBuf},
+    process::Command,
+};
+
+/// One frame to be counted.
+#[derive(Clone, Copy, Debug)]
+pub struct Frame {
+    /// Width and height of the picture.
+    pub size: (u32, u32),
+    /// Rows of a band.
+    pub band_rows: u32,
+    /// Method.
+    pub shader: Shader,
+}
+
+/// What a frame took.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Count {
+    /// Instructions.
+    pub stages: Stages,
+    /// Triangles drawn.
+    pub triangles: u64,
+    /// Rows of triangles.
+    pub spans: u64,
+    /// Pixels of all drawn triangles.
+    pub pixels: u64,
+}
+
+impl Count {
+    /// The same as a measurement of frame 0 of `scene`.
+    #[must_use]
+    pub fn measurement(&self, scene: &str, shader: Shader) -> Measurement {
+        let instructions = self.stages.drawing();
+        let instr_per_pixel = instructions as f64 / self.pixels.max(1) as f64;
+        Measurement {
+            board: Processor::X86_64,
+            cpu: Processor::X86_64.name(),
+            scene: scene.to_owned(),
+            shader: shader.name(),
+            instructions,
+            cycles: None,
+            pixels: self.pixels,
+            triangles: self.triangles,
+            spans: self.spans,
+            instr_per_pixel: (instr_per_pixel * 100.0).round() / 100.0,
+            by_stage: self.stages,
+            ram_bytes: None,
+            flash_bytes: None,
+            max_lsb: None,
+            rmse_lsb: None,
+            flash_own_bytes: None,
+            firmware_bytes: None,
+            timing: None,
+        }
+    }
+}
+
+/// Compiles the program that draws, with the flags that the firmware is compiled with, and returns its path.
+///
+/// # Errors
+/// When this is no x86-64 computer, or the program does not compile.
+pub fn build() -> Result<PathBuf> {
+    ensure!(cfg!(target_arch = "x86_64"), "instructions of x86-64 are counted on such computers only; choose another board");
+    let root = sources()?;
+    let output = root.join("target/firmware");
+    release(&root.join("host-sim/frame"), &[], &output, "the program that draws for callgrind")?;
+    Ok(output.join("release/frame"))
+}
+
+/// Draws frame 0 of `stream` in all these ways and counts.
+///
+/// # Errors
+/// When valgrind is missing, or the scene cannot be drawn in one of these ways.
+pub fn count(program: &Path, stream: &[u8], frames: &[Frame]) -> Result<Vec<Count>> {
+    let directory = tempfile::Builder::new().prefix("mphong").tempdir().context("cannot create a temporary directory")?;
+    let stream_file = directory.path().join("stream");
+    fs::write(&stream_file, stream).with_context(|| format!("cannot write {}", stream_file.display()))?;
+    let arguments = |&Frame { size: (width, height), band_rows, shader }: &Frame| -> [OsString; 4] {
+        [stream_file.clone().into(), format!("{width}x{height}").into(), band_rows.to_string().into(), shader.name().into()]
+    };
+    let (stats, profiles) = profiles(program, &frames.iter().map(arguments).collect::<Vec<_>>())?;
+    ensure!(stats.lines().count() == frames.len(), "callgrind has drawn {} of {} frames", stats.lines().count(), frames.len());
+    let counts = stats.lines().zip(&profiles).map(|(line, profile)| {
+        let (stages, spans) = split::stages(profile)?;
+        let figures: Vec<u64> = line.split(' ').map(str::parse).collect::<Result<_, _>>()?;
+        let [triangles, pixels] = figures[..] else { return Err(anyhow!("a frame of {line:?}")) };
+        Ok(Count { stages, triangles, spans, pixels })
+    });
+    counts.collect()
+}
+
+/// What `program` prints, and a profile of each frame that it draws: of what `counted_frame` does within `dumped_frame`.
+pub(super) fn profiles<const N: usize>(program: &Path, frames: &[[OsString; N]]) -> Result<(String, Vec<Profile>)> {
+    let directory = tempfile::Builder::new().prefix("mphong").tempdir().context("cannot create a temporary directory")?;
+    let profile = directory.path().join("profile");
+    let mut valgrind = Command::new("valgrind");
+    valgrind
+        .args(["--tool=callgrind", "--quiet", "--demangle=no", "--dump-instr=yes", "--dump-line=no", "--collect-jumps=yes"])
+        .args(["--compress-strings=no", "--compress-pos=no", "--zero-before=*counted_frame*", "--dump-after=*dumped_frame*"])
+        .arg(format!("--callgrind-out-file={}", profile.display()))
+        .arg(program)
+        .args(frames.as_flattened());
+    let output = valgrind.output().map_err(|error| match error.kind() {
+        ErrorKind::NotFound => anyhow!("valgrind is not installed; `apt-get install -y --no-install-recommends valgrind`"),
+        _ => anyhow!("cannot start valgrind: {error}"),
+    })?;
+    let messages = String::from_utf8_lossy(&output.stderr);
+    ensure!(output.status.success(), "callgrind could not count: {}", messages.trim());
+    // It numbers what it writes from 1; without number is what came behind the last frame.
+    let profiles = (1..=frames.len()).map(|number| {
+        let path = profile.with_extension(number.to_string());
+        let text = fs::read_to_string(&path).with_context(|| format!("callgrind has not written {}", path.display()))?;
+        Profile::parse(&text)
+    });
+    Ok((String::from_utf8_lossy(&output.stdout).into_owned(), profiles.collect::<Result<_>>()?))
+}

@@ -1,0 +1,173 @@
+//! What a frame costs, in instructions, stage by stage: exact, because an emulated board executes the firmware itself, and callgrind
+//! the same on the host. And how wrong the very same frame is.
+
+pub mod baseline;
+pub mod break_even;
+pub mod callgrind;
+pub mod family;
+pub mod flash;
+pub mod growth;
+pub mod measurement;
+mod nest;
+pub mod page;
+pub mod pareto;
+pub mod peers;
+pub mod processor;
+pub mod stage;
+
+use anyhow::{Context, Result};
+use flash::Graph;
+pub use measurement::{Measurement, Timing};
+use microphong::{Shader, render::check};
+use microphong_boards::{self as boards, Board, elf::Elf, verify};
+use microphong_compare::Reference;
+use microphong_render::scene::Scene;
+pub use processor::Processor;
+use rayon::prelude::*;
+use stage::Meter;
+pub use stage::Stages;
+use std::path::PathBuf;
+
+/// Cycles of the Pico in a second.
+pub const PICO_HZ: f64 = 125e6;
+
+/// A board's firmware, ready to be measured with any scene and method.
+#[derive(Debug)]
+struct Firmware {
+    board: Board,
+    elf: Elf,
+    meter: Meter,
+    graph: Graph,
+}
+
+/// Processors, ready to measure frames.
+#[derive(Debug)]
+pub struct Bench {
+    firmware: Vec<(Processor, Firmware)>,
+    /// The program that draws on the host.
+    host: Option<PathBuf>,
+}
+
+impl Bench {
+    /// Builds what the processors execute.
+    ///
+    /// # Errors
+    /// When a firmware does not compile.
+    pub fn new(processors: &[Processor]) -> Result<Self> {
+        let boards = processors.iter().filter(|processor| processor.board().is_some());
+        let built = boards.map(|&processor| Ok((processor, Firmware::build(processor)?)));
+        let host = processors.contains(&Processor::X86_64).then(callgrind::build).transpose()?;
+        Ok(Self { firmware: built.collect::<Result<_>>()?, host })
+    }
+
+    /// Measures frame 0 of `scene` by each of the `wanted` methods on each of the processors, several at a time, and calls `tick` after
+    /// each.
+    ///
+    /// # Errors
+    /// When a method cannot shade the scene, or a board fails.
+    pub fn measure(&self, scene: &Scene, wanted: &[(Processor, Shader)], tick: impl Fn() + Sync) -> Result<Vec<Measurement>> {
+        let stream = scene.stream.parse()?;
+        let mut sizes: Vec<_> = wanted.iter().map(|(processor, _)| processor.size()).collect();
+        sizes.sort_unstable();
+        sizes.dedup();
+        let mut frames: Vec<_> = wanted.iter().map(|(processor, shader)| (processor.size(), shader.name(), *shader)).collect();
+        frames.sort_unstable_by_key(|&(size, name, _)| (size, name));
+        frames.dedup_by_key(|&mut (size, name, _)| (size, name));
+        let references = sizes.into_par_iter().map(|size| Ok((size, Reference::new(stream, size, 0)?)));
+        let references: Vec<_> = references.collect::<Result<_>>()?;
+        let errors = frames.into_par_iter().map(|(size, name, shader)| {
+            check(&stream, shader, false)?;
+            let reference = references.iter().find(|(of, _)| *of == size);
+            let (_, reference) = reference.context("a size without a reference")?;
+            Ok((size, name, reference.total(shader)?))
+        });
+        let errors: Vec<_> = errors.collect::<Result<_>>()?;
+        let counted = self.count(scene, wanted, &tick)?;
+        let measured = wanted.par_iter().map(|&(processor, shader)| {
+            let counted = counted.iter().find(|m| processor == Processor::X86_64 && m.shader == shader.name());
+            let mut measurement = match counted {
+                Some(measurement) => measurement.clone(),
+                None => {
+                    let firmware = self.firmware.iter().find(|(of, _)| *of == processor);
+                    let (_, firmware) = firmware.with_context(|| format!("no firmware for {}", processor.name()))?;
+                    let measured = firmware.measure(processor, scene, shader);
+                    tick();
+                    measured.with_context(|| format!("{}, {}, {}", processor.board_name(), scene.name, shader.name()))?
+                }
+            };
+            let error = errors.iter().find(|(size, name, _)| *size == processor.size() && *name == shader.name());
+            if let Some((.., error)) = error {
+                measurement.max_lsb = Some(rounded(error.max, 1e4));
+                measurement.rmse_lsb = Some(rounded(error.rmse, 1e4));
+            }
+            Ok(measurement)
+        });
+        measured.collect()
+    }
+
+    /// Those of the `wanted` frames that the host draws; many in one process, which takes long to start.
+    fn count(&self, scene: &Scene, wanted: &[(Processor, Shader)], tick: impl Fn() + Sync) -> Result<Vec<Measurement>> {
+        let Some(program) = &self.host else { return Ok(Vec::new()) };
+        let (size, band_rows) = (Processor::X86_64.size(), Processor::X86_64.size().1);
+        let wanted = wanted.iter().filter(|(processor, _)| *processor == Processor::X86_64);
+        let frames: Vec<_> = wanted.map(|&(_, shader)| callgrind::Frame { size, band_rows, shader }).collect();
+        let share = frames.len().div_ceil(rayon::current_num_threads()).max(1);
+        let counted = frames.par_chunks(share).map(|frames| {
+            let counts = callgrind::count(program, scene.stream.as_bytes(), frames).with_context(|| format!("x86-64, {}", scene.name))?;
+            frames.iter().for_each(|_| tick());
+            Ok(frames.iter().zip(counts).map(|(frame, count)| count.measurement(&scene.name, frame.shader)).collect::<Vec<_>>())
+        });
+        Ok(counted.collect::<Result<Vec<_>>>()?.concat())
+    }
+}
+
+impl Firmware {
+    fn build(processor: Processor) -> Result<Self> {
+        let board = processor.board().with_context(|| format!("{} has no firmware", processor.name()))?;
+        let elf = Elf::read(&verify::build(board)?)?;
+        Ok(Self { board, meter: Meter::new(&elf)?, graph: Graph::new(&elf)?, elf })
+    }
+
+    fn measure(&self, processor: Processor, scene: &Scene, shader: Shader) -> Result<Measurement> {
+        let elf = self.elf.with_stream(&verify::prepare(scene.stream.as_bytes(), shader, 1)?)?;
+        let mut meter = self.meter.clone();
+        let ranges = meter.ranges();
+        let watched = boards::watch(self.board, &elf, &ranges, |address, cycles| meter.step(address, cycles))?;
+        let tally = meter.tally();
+        let log = &watched.recording;
+        let (instructions, pixels) = (tally.instructions.drawing(), log.figure("pixels")?);
+        let flash = self.graph.flash(shader)?;
+        let timing = watched.time.map(|time| Timing {
+            frame_cycles: time.all,
+            render_cycles: tally.cycles.drawing() + tally.cycles.clear,
+            wire_cycles: time.wire,
+            idle_cycles: tally.idle,
+            frames_per_second: rounded(PICO_HZ / time.all.max(1) as f64, 10.0),
+        });
+        Ok(Measurement {
+            board: processor,
+            cpu: processor.name(),
+            scene: scene.name.clone(),
+            shader: shader.name(),
+            instructions,
+            cycles: watched.time.map(|_| tally.cycles.drawing()),
+            pixels,
+            triangles: log.figure("drawn")?,
+            spans: tally.spans,
+            instr_per_pixel: rounded(instructions as f64 / pixels.max(1) as f64, 100.0),
+            by_stage: tally.instructions,
+            ram_bytes: Some(elf.ram_bytes()? + log.stack_bytes().context("the firmware has not logged its use of the stack")?),
+            flash_bytes: Some(flash.alone),
+            max_lsb: None,
+            rmse_lsb: None,
+            flash_own_bytes: Some(flash.own),
+            firmware_bytes: Some(elf.flash_bytes()?.saturating_sub(u64::from(scene.stream.parse()?.header.length))),
+            timing,
+        })
+    }
+}
+
+/// To parts of one as many as `parts`.
+fn rounded(value: f64, parts: f64) -> f64 {
+    (value * parts).round() / parts
+}

@@ -1,0 +1,61 @@
+//! What instructions are counted on.
+
+use microphong_boards::Board;
+
+/// A processor that frames are measured on.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub enum Processor {
+    /// On the board `mps2-an385`.
+    CortexM3,
+    /// On the board `mps2-an386`.
+    CortexM4F,
+    /// On the board `pico`.
+    CortexM0Plus,
+    /// The host's.
+    X86_64,
+}
+
+impl Processor {
+    /// All that can be measured.
+    pub const ALL: [Self; 4] = [Self::CortexM3, Self::CortexM4F, Self::CortexM0Plus, Self::X86_64];
+
+    /// The processor's name.
+    #[must_use]
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::CortexM3 => "cortex-m3",
+            Self::CortexM4F => "cortex-m4f",
+            Self::CortexM0Plus => "cortex-m0plus",
+            Self::X86_64 => "x86-64",
+        }
+    }
+
+    /// The board that it sits on; `None` for the host's.
+    #[must_use]
+    pub const fn board(self) -> Option<Board> {
+        match self {
+            Self::CortexM3 => Some(Board::Mps2An385),
+            Self::CortexM4F => Some(Board::Mps2An386),
+            Self::CortexM0Plus => Some(Board::Pico),
+            Self::X86_64 => None,
+        }
+    }
+
+    /// The name on the command line: the board's; of the host its architecture.
+    #[must_use]
+    pub const fn board_name(self) -> &'static str {
+        match self.board() {
+            Some(board) => board.name(),
+            None => self.name(),
+        }
+    }
+
+    /// Width and height of the frame that is measured: the board's display; for the host that of the Cortex-M3's.
+    #[must_use]
+    pub const fn size(self) -> (u32, u32) {
+        match self.board() {
+            Some(board) => board.size(),
+            None => Board::Mps2An385.size(),
+        }
+    }
+}

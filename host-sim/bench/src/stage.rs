@@ -1,0 +1,274 @@
+//! The stages of a frame, told apart by the functions that are executed.
+
+use super::nest::Nest;
+use anyhow::{Context, Result, ensure};
+use microphong_boards::elf::Elf;
+use serde::Serialize;
+use std::{
+    iter::Sum,
+    ops::{Add, Range},
+};
+
+/// Instructions, or cycles, of one frame by stage.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
+pub struct Stages {
+    /// Vertices: transformation and light.
+    pub vertex: u64,
+    /// Triangles that face away or lie off screen told apart, the others binned.
+    pub cull: u64,
+    /// Per drawn triangle and band: nodes, fits, edges.
+    pub setup: u64,
+    /// Per row of a triangle: stepping, slices, the start of the walkers.
+    pub span: u64,
+    /// The inner loop.
+    pub pixel: u64,
+    /// Pixels on their way to the display. Not part of [`Self::drawing`].
+    pub transfer: u64,
+    /// Background and depth of the band cleared. Not part of [`Self::drawing`].
+    pub clear: u64,
+    /// Once a frame: camera, lights, views.
+    pub frame: u64,
+}
+
+impl Stages {
+    /// All that draws: without clearing and transfer.
+    #[must_use]
+    pub fn drawing(&self) -> u64 {
+        self.vertex + self.cull + self.setup + self.span + self.pixel + self.frame
+    }
+}
+
+/// What a function does, or whatever its caller does.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Part {
+    Frame,
+    Vertex,
+    Cull,
+    Setup,
+    /// Span and inner loop.
+    Row,
+    Clear,
+    Transfer,
+    /// The processor has nothing to do until the transfer has ended.
+    Idle,
+    /// Not part of a frame, but it may call what is.
+    Outside,
+    /// Not part of a frame; a loop that would take long to watch.
+    Unwatched,
+    Callers,
+}
+
+/// Parts of functions by what their names contain; the first that fits counts. Names as the compiler writes them, so that this
+/// is the one place to follow when functions move.
+const TABLE: [(&str, Part); 17] = [
+    ("microphong::raster::triangle::fill_rows", Part::Row),
+    ("microphong::band::Band<C>::clear", Part::Clear),
+    ("microphong::render::Renderer<C>::frame", Part::Frame),
+    ("microphong::render::Stage<C>::transform", Part::Vertex),
+    ("microphong::render::Frame<C>::prepare", Part::Cull),
+    ("microphong::bin::Bins", Part::Cull),
+    ("microphong::render::Frame<C>::draw", Part::Setup),
+    // Of the host's program, which has no display.
+    ("frame::counted_frame", Part::Frame),
+    ("Framebuffer::blit", Part::Transfer),
+    ("as microphong_firmware::Display>::send", Part::Transfer),
+    ("microphong_firmware::st7789::wait", Part::Idle),
+    ("microphong_firmware::check", Part::Unwatched),
+    ("microphong_firmware::stack", Part::Unwatched),
+    ("microphong::stream", Part::Unwatched),
+    ("Reset", Part::Unwatched),
+    ("microphong_firmware::animate", Part::Outside),
+    ("microphong::render::Renderer<C>::set_shader", Part::Outside),
+];
+
+/// Without these the table has fallen behind the source.
+const NEEDED: [Part; 6] = [Part::Row, Part::Clear, Part::Frame, Part::Vertex, Part::Cull, Part::Setup];
+
+/// The part of the function with this name.
+pub(super) fn part(name: &str) -> Part {
+    TABLE.iter().find(|(text, _)| name.contains(text)).map_or(Part::Callers, |&(_, part)| part)
+}
+
+#[derive(Clone, Debug)]
+struct Function {
+    range: Range<u32>,
+    part: Part,
+}
+
+/// Instructions and cycles.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+struct Cost {
+    instructions: u64,
+    cycles: u64,
+}
+
+impl Add for Cost {
+    type Output = Self;
+
+    fn add(self, other: Self) -> Self {
+        Self { instructions: self.instructions + other.instructions, cycles: self.cycles + other.cycles }
+    }
+}
+
+impl Sum for Cost {
+    fn sum<I: Iterator<Item = Self>>(costs: I) -> Self {
+        costs.fold(Self::default(), Add::add)
+    }
+}
+
+/// At an address of a row's function: how often it was executed, what it cost with all that it called, and where it went on.
+#[derive(Clone, Debug, Default)]
+struct Site {
+    count: u64,
+    cost: Cost,
+    next: Vec<usize>,
+}
+
+/// Follows a program instruction by instruction and books each to a stage.
+#[derive(Clone, Debug)]
+pub struct Meter {
+    /// In the order of addresses.
+    functions: Vec<Function>,
+    /// The function of each half-word from `base` on, and one more than all for none.
+    owners: Vec<u16>,
+    base: u32,
+    /// Functions that have been entered and not left, and the part that each plays.
+    calls: Vec<(u16, Part)>,
+    /// By [`Part`].
+    costs: [Cost; Part::Callers as usize + 1],
+    /// Like `owners`.
+    sites: Vec<Site>,
+    /// The last instruction in a row's own function, as an index of `sites`.
+    site: usize,
+}
+
+/// A frame as it was followed.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Tally {
+    /// Instructions.
+    pub instructions: Stages,
+    /// Cycles.
+    pub cycles: Stages,
+    /// Cycles in which nothing was to be done.
+    pub idle: u64,
+    /// Rows of triangles.
+    pub spans: u64,
+}
+
+impl Meter {
+    /// A meter for this program.
+    ///
+    /// # Errors
+    /// When it is stripped, or its functions have other names than the table has.
+    pub fn new(elf: &Elf) -> Result<Self> {
+        let mut functions: Vec<_> = elf.functions()?.into_iter().map(|(name, range)| Function { part: part(&name), range }).collect();
+        functions.sort_by_key(|function| (function.range.start, function.range.end));
+        functions.dedup_by_key(|function| function.range.start);
+        for part in NEEDED {
+            let found = functions.iter().any(|function| function.part == part);
+            ensure!(found, "the firmware has no function for the stage {part:?}: the table in {} has fallen behind", file!());
+        }
+        let base = functions.first().context("the firmware has no functions")?.range.start;
+        let end = functions.iter().map(|function| function.range.end).max().unwrap_or(base);
+        let mut owners = vec![u16::MAX; (end - base).div_ceil(2) as usize];
+        for (index, function) in (0..).zip(&functions) {
+            let range = (function.range.start - base) as usize / 2..(function.range.end - base) as usize / 2;
+            owners.get_mut(range).context("functions overlap")?.fill(index);
+        }
+        let sites = vec![Site::default(); owners.len()];
+        Ok(Self { functions, owners, base, calls: Vec::new(), costs: Default::default(), sites, site: 0 })
+    }
+
+    /// The addresses that must be watched, in few pieces.
+    #[must_use]
+    pub fn ranges(&self) -> Vec<Range<u32>> {
+        let mut pieces: Vec<Range<u32>> = Vec::new();
+        let mut after_unwatched = true;
+        for function in &self.functions {
+            let unwatched = function.part == Part::Unwatched;
+            match pieces.last_mut() {
+                _ if unwatched => {}
+                Some(last) if !after_unwatched => last.end = last.end.max(function.range.end),
+                _ => pieces.push(function.range.clone()),
+            }
+            after_unwatched = unwatched;
+        }
+        pieces
+    }
+
+    /// An instruction at `address` has been executed.
+    #[inline]
+    pub fn step(&mut self, address: u32, cycles: u64) {
+        let index = (address.wrapping_sub(self.base) / 2) as usize;
+        let Some(&owner) = self.owners.get(index) else { return };
+        if self.calls.last().is_none_or(|&(function, _)| function != owner) {
+            self.enter(owner, address);
+        }
+        let Some(&(function, part)) = self.calls.last() else { return };
+        let cost = Cost { instructions: 1, cycles };
+        if part == Part::Row {
+            if let Some(Function { range, part: Part::Row }) = self.functions.get(usize::from(function)) {
+                if address != range.start && !self.sites[self.site].next.contains(&index) {
+                    self.sites[self.site].next.push(index);
+                }
+                self.site = index;
+                self.sites[index].count += 1;
+            }
+            let site = &mut self.sites[self.site];
+            site.cost = site.cost + cost;
+        } else {
+            let sum = &mut self.costs[part as usize];
+            *sum = *sum + cost;
+        }
+    }
+
+    /// Another function goes on: called if at its start, else returned to.
+    fn enter(&mut self, owner: u16, address: u32) {
+        let Some(function) = self.functions.get(usize::from(owner)) else { return };
+        if address != function.range.start
+            && let Some(depth) = self.calls.iter().rposition(|&(caller, _)| caller == owner)
+        {
+            self.calls.truncate(depth + 1);
+            return;
+        }
+        let caller = self.calls.last().map_or(Part::Outside, |&(_, part)| part);
+        self.calls.push((owner, if function.part == Part::Callers { caller } else { function.part }));
+    }
+
+    /// What has been counted.
+    #[must_use]
+    pub fn tally(&self) -> Tally {
+        let (mut span, mut pixel, mut spans) = (Cost::default(), Cost::default(), 0);
+        for function in self.functions.iter().filter(|function| function.part == Part::Row) {
+            let place = |address: u32| (address - self.base) as usize / 2;
+            let (start, end) = (place(function.range.start), place(function.range.end));
+            let sites = || self.sites[start..end].iter().zip(start as u64..);
+            let ways = sites().flat_map(|(site, index)| site.next.iter().map(move |&next| (index, next as u64)));
+            let nest = Nest::new(start as u64, ways, |index| self.sites[index as usize].count);
+            for (site, index) in sites() {
+                let sum = if nest.inner.contains(&index) { &mut pixel } else { &mut span };
+                *sum = *sum + site.cost;
+            }
+            spans += nest.rows;
+        }
+        let stages = |of: fn(Cost) -> u64| {
+            let part = |part: Part| of(self.costs[part as usize]);
+            Stages {
+                vertex: part(Part::Vertex),
+                cull: part(Part::Cull),
+                setup: part(Part::Setup),
+                span: of(span),
+                pixel: of(pixel),
+                transfer: part(Part::Transfer),
+                clear: part(Part::Clear),
+                frame: part(Part::Frame),
+            }
+        };
+        Tally {
+            instructions: stages(|cost| cost.instructions),
+            cycles: stages(|cost| cost.cycles),
+            idle: self.costs[Part::Idle as usize].cycles,
+            spans,
+        }
+    }
+}

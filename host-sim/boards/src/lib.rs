@@ -1,0 +1,197 @@
+//! The boards, each emulated down to its display, so that the very program that is flashed can be checked.
+
+// The firmware's own file: the numbers exist once.
+#[path = "../../../firmware/src/budget.rs"]
+pub mod budget;
+pub mod build;
+pub mod elf;
+mod log;
+mod pico;
+mod qemu;
+pub mod sources;
+pub mod verify;
+
+use anyhow::{Context, Result};
+use budget::Budget;
+use elf::Elf;
+use microphong::Shader;
+pub use pico::FrameTime;
+pub use qemu::{Blocks, INSTRUCTIONS_PER_TICK, clocked, trace};
+use serde::{Serialize, Serializer};
+use std::fmt;
+use std::ops::Range;
+
+/// A board that the firmware runs on.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub enum Board {
+    /// Raspberry Pi Pico, ST7789 panel of 240x240 pixels.
+    Pico,
+    /// TI LM3S6965 evaluation board, OLED of 128x64 pixels with 16 greys.
+    Lm3s6965evb,
+    /// Arm MPS2 with a Cortex-M3, frame buffer of 320x240 pixels.
+    Mps2An385,
+    /// Arm MPS2 with a Cortex-M4F, frame buffer of 320x240 pixels.
+    Mps2An386,
+}
+
+/// How a board's pixels are stored.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Format {
+    /// Five, six and five bits of red, green and blue.
+    Rgb565,
+    /// The same with the high byte first in the firmware's memory.
+    Rgb565Be,
+    /// Sixteen greys.
+    Gray4,
+}
+
+impl Board {
+    /// All boards.
+    pub const ALL: [Self; 4] = [Self::Pico, Self::Lm3s6965evb, Self::Mps2An385, Self::Mps2An386];
+
+    /// The name on the command line, of the firmware's feature and of its program.
+    #[must_use]
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Pico => "pico",
+            Self::Lm3s6965evb => "lm3s6965evb",
+            Self::Mps2An385 => "mps2-an385",
+            Self::Mps2An386 => "mps2-an386",
+        }
+    }
+
+    /// The target that its firmware is compiled for.
+    #[must_use]
+    pub const fn target(self) -> &'static str {
+        match self {
+            Self::Pico => "thumbv6m-none-eabi",
+            Self::Lm3s6965evb | Self::Mps2An385 => "thumbv7m-none-eabi",
+            Self::Mps2An386 => "thumbv7em-none-eabihf",
+        }
+    }
+
+    /// The sizes that its firmware is built with.
+    #[must_use]
+    pub const fn budget(self) -> Budget {
+        match self {
+            Self::Pico => budget::PICO,
+            Self::Lm3s6965evb => budget::LM3S6965EVB,
+            Self::Mps2An385 | Self::Mps2An386 => budget::MPS2,
+        }
+    }
+
+    /// Width and height of its display.
+    #[must_use]
+    pub const fn size(self) -> (u32, u32) {
+        let budget = self.budget();
+        (budget.width as u32, budget.height as u32)
+    }
+
+    /// Whether its firmware has room for the method.
+    #[must_use]
+    pub fn has(self, shader: Shader) -> bool {
+        self != Self::Lm3s6965evb || Shader::BASIC.contains(&shader)
+    }
+
+    /// How it stores a pixel.
+    #[must_use]
+    pub const fn format(self) -> Format {
+        match self {
+            Self::Pico => Format::Rgb565Be,
+            Self::Lm3s6965evb => Format::Gray4,
+            Self::Mps2An385 | Self::Mps2An386 => Format::Rgb565,
+        }
+    }
+}
+
+impl fmt::Display for Board {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(self.name())
+    }
+}
+
+impl Serialize for Board {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        serializer.serialize_str(self.name())
+    }
+}
+
+/// What a board showed and said.
+#[derive(Clone, Debug, Default)]
+pub struct Recording {
+    /// Pixels of each picture, row by row from the top, as the display stores them.
+    pub pictures: Vec<Vec<u32>>,
+    /// The log, line by line.
+    pub log: Vec<String>,
+}
+
+impl Recording {
+    /// The failure that the firmware reported, if any: then the last picture shows it.
+    #[must_use]
+    pub fn failure(&self) -> Option<&str> {
+        self.log.iter().find_map(|line| line.strip_prefix("error: "))
+    }
+
+    /// Checksums that the firmware worked out, one per frame.
+    #[must_use]
+    pub fn checksums(&self) -> Vec<u32> {
+        let checksum = |line: &String| {
+            let mut words = line.strip_prefix("frame ")?.split_whitespace();
+            words.find(|&word| word == "crc")?;
+            u32::from_str_radix(words.next()?, 16).ok()
+        };
+        self.log.iter().filter_map(checksum).collect()
+    }
+
+    /// What the firmware has counted under this name in its last frame.
+    ///
+    /// # Errors
+    /// When it has not logged that.
+    pub fn figure(&self, name: &str) -> Result<u64> {
+        let frame = self.log.iter().rev().find_map(|line| line.strip_prefix("frame "));
+        let mut words = frame.unwrap_or_default().split_whitespace();
+        let value = words.find(|&word| word == name).and_then(|_| words.next()?.parse().ok());
+        value.with_context(|| format!("the firmware has not logged {name}; {}", log::tail(&self.log)))
+    }
+
+    /// Bytes of stack that the firmware has used, by its own account.
+    #[must_use]
+    pub fn stack_bytes(&self) -> Option<u64> {
+        self.log.iter().rev().find_map(|line| line.strip_prefix("stack ")?.strip_suffix(" bytes")?.parse().ok())
+    }
+}
+
+/// Runs `elf` on `board` until it has shown all `frames` frames of its stream or has reported a failure.
+///
+/// # Errors
+/// When the program crashes, falls silent or drives its display wrongly.
+pub fn run(board: Board, elf: &Elf, frames: usize) -> Result<Recording> {
+    match board {
+        Board::Pico => pico::run(elf, frames),
+        Board::Lm3s6965evb | Board::Mps2An385 | Board::Mps2An386 => qemu::run(board, elf),
+    }
+}
+
+/// A frame of which every instruction was watched.
+#[derive(Clone, Debug, Default)]
+pub struct Watched {
+    /// What the firmware said; no pictures.
+    pub recording: Recording,
+    /// How long the frame took, where time is modelled.
+    pub time: Option<FrameTime>,
+}
+
+/// Runs `elf`, whose stream must have a single frame, and hands address and cycles of each instruction of one frame to `visit`. In QEMU
+/// those in `ranges` and without cycles; on the Pico all, of a frame that follows another.
+///
+/// # Errors
+/// When the program crashes, falls silent or drives its display wrongly.
+pub fn watch(board: Board, elf: &Elf, ranges: &[Range<u32>], mut visit: impl FnMut(u32, u64)) -> Result<Watched> {
+    let (recording, time) = match board {
+        Board::Pico => pico::watch(elf, visit).map(|(recording, time)| (recording, Some(time)))?,
+        Board::Lm3s6965evb | Board::Mps2An385 | Board::Mps2An386 => {
+            (trace(board, elf, ranges, Blocks::Whole, |address| visit(address, 0))?, None)
+        }
+    };
+    Ok(Watched { recording, time })
+}

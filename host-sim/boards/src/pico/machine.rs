@@ -1,0 +1,121 @@
+//! Processor and bus, from reset.
+
+use super::{Board, bus::Bus, cycles, panel::Panel, rtt::Rtt};
+use crate::elf::Elf;
+use anyhow::{Context, Result, ensure};
+use rp2040_emu::{Bus as Chip, core::CortexM0Plus};
+
+/// Memory map.
+const FLASH: u32 = 0x1000_0000;
+const FLASH_SIZE: usize = 2 << 20;
+/// Bytes of the second stage of the boot loader, its checksum included; the vector table follows.
+const BOOT2: usize = 0x100;
+
+/// Instructions between looks at the log: it has room for more than those can write.
+const LOG_INTERVAL: u64 = 1024;
+
+/// An RP2040 with its second processor asleep, as after reset.
+pub(super) struct Machine {
+    core: CortexM0Plus,
+    bus: Bus,
+    rtt: Rtt,
+    steps: u64,
+}
+
+impl Machine {
+    /// Flashes `elf` and does what the mask ROM does: checks the boot loader's second stage and goes to the program.
+    pub(super) fn new(elf: &Elf) -> Result<Self> {
+        let mut flash = vec![0xFF; FLASH_SIZE];
+        for segment in elf.segments()? {
+            let start = segment.address.wrapping_sub(FLASH) as usize;
+            let place = flash.get_mut(start..).and_then(|rest| rest.get_mut(..segment.bytes.len()));
+            let place = place.with_context(|| format!("the segment at {:#010x} does not lie in flash", segment.address))?;
+            place.copy_from_slice(segment.bytes);
+        }
+        let word = |at: usize| u32::from_le_bytes([flash[at], flash[at + 1], flash[at + 2], flash[at + 3]]);
+        let (stored, computed) = (word(BOOT2 - 4), boot_checksum(&flash[..BOOT2 - 4]));
+        ensure!(
+            stored == computed,
+            "the boot loader's second stage has checksum {stored:08x} instead of {computed:08x}: the chip would refuse it"
+        );
+
+        let mut chip = Chip::new();
+        chip.load_flash(&flash);
+        chip.ppb[0].vtor = FLASH + BOOT2 as u32;
+        let mut core = CortexM0Plus::with_id(0);
+        core.regs.msp = word(BOOT2);
+        core.regs.r[13] = word(BOOT2);
+        core.regs.set_pc(word(BOOT2 + 4) & !1);
+        // Thumb state.
+        core.regs.xpsr = 1 << 24;
+        let (rtt, _) = elf.symbol("_SEGGER_RTT")?;
+        Ok(Self { core, bus: Bus::new(chip, Panel::new(Board::Pico.size())), rtt: Rtt(rtt), steps: 0 })
+    }
+
+    /// Executes one instruction; tells where, and how many cycles it took.
+    pub(super) fn step(&mut self) -> Result<(u32, u64)> {
+        let pc = self.pc();
+        let memory = &self.bus.chip.memory;
+        // The core fetches it again; this is to look up its time.
+        let instruction = if pc >> 28 == 1 { memory.xip_read16(pc & 0xFF_FFFF) } else { memory.sram_read16(pc & 0xFF_FFFF) };
+        self.bus.fast = false;
+        self.bus.wait = 0;
+        self.core.step(&mut self.bus);
+        self.steps += 1;
+        // Time goes on while the core waits for an event; here it just looks again.
+        self.bus.chip.wfe_waiting[0] = false;
+        let taken = self.pc() != pc.wrapping_add(2);
+        let cycles = cycles::of(instruction, taken, self.bus.fast, self.bus.wait);
+        self.bus.cycle += cycles;
+        self.bus.chip.advance_lazy_scheduled(cycles);
+        // Nobody reads this list, which would grow for ever.
+        self.bus.chip.pending_cache_invalidations.clear();
+        self.bus.tick();
+        ensure!(!self.core.is_in_hardfault(), "the firmware crashed (HardFault) at {pc:#010x}; look it up with `addr2line -e ELF {pc:#x}`");
+        Ok((pc, cycles))
+    }
+
+    /// It is time to take the log.
+    pub(super) fn log_is_due(&self) -> bool {
+        self.steps.is_multiple_of(LOG_INTERVAL)
+    }
+
+    pub(super) fn take_log(&mut self) -> Vec<u8> {
+        self.rtt.drain(&mut self.bus.chip)
+    }
+
+    pub(super) fn pc(&self) -> u32 {
+        self.core.regs.pc()
+    }
+
+    pub(super) fn cycle(&self) -> u64 {
+        self.bus.cycle
+    }
+
+    /// Cycles in which bits went over the wire to the panel, up to the last complete byte.
+    pub(super) fn wire(&self) -> u64 {
+        self.bus.wire()
+    }
+
+    pub(super) fn led(&self) -> bool {
+        self.bus.led()
+    }
+
+    /// Whether the panel shows a whole picture, and was driven well.
+    pub(super) fn check_panel(&self) -> Result<()> {
+        self.bus.panel.check()
+    }
+
+    /// What the panel shows. The next picture is counted from here.
+    pub(super) fn picture(&mut self) -> Vec<u32> {
+        self.bus.panel.next_picture();
+        self.bus.panel.picture()
+    }
+}
+
+/// CRC-32/MPEG-2, bit by bit.
+fn boot_checksum(bytes: &[u8]) -> u32 {
+    bytes.iter().fold(!0, |crc, &byte| {
+        (0..8).fold(crc ^ u32::from(byte) << 24, |crc, _| if crc >> 31 == 1 { crc << 1 ^ 0x04C1_1DB7 } else { crc << 1 })
+    })
+}

@@ -1,0 +1,233 @@
+//! The proof: a board's own firmware draws a scene on the board's emulated display, and every pixel must be the host's.
+
+use crate::{Board, Format, Recording, budget::Budget, build::firmware, elf::Elf};
+use anyhow::{Context, Result, anyhow, bail, ensure};
+use embedded_graphics_core::{
+    geometry::Size,
+    pixelcolor::{Gray4, Rgb565},
+};
+use microphong::{
+    Memory, Renderer, Shader, Stats, Stream, Workspace,
+    pixel::{PictureCrc, Pixel, Rgb565Be},
+    relay::Leg,
+    stream::{record::Header, seal},
+};
+use microphong_render::{bytes::StreamBytes, image};
+use serde::{Serialize, Serializer};
+use std::{
+    fs,
+    path::{Path, PathBuf},
+};
+use zerocopy::{FromBytes, IntoBytes};
+
+/// What to compare.
+#[derive(Clone, Debug)]
+pub struct Request {
+    /// The board that draws.
+    pub board: Board,
+    /// The scene's name in reports.
+    pub scene: String,
+    /// The stream that the host draws.
+    pub stream: Vec<u8>,
+    /// The stream that the firmware is given, if another: how tests make sure that a difference is found.
+    pub firmware_stream: Option<Vec<u8>>,
+    /// The method that both use.
+    pub shader: Shader,
+    /// Frames to compare, from the first.
+    pub frames: u16,
+}
+
+/// What came out of it.
+#[derive(Clone, Debug, Serialize)]
+pub struct Report {
+    /// The board that drew.
+    pub board: Board,
+    /// The scene's name.
+    pub scene: String,
+    /// The method that both used.
+    #[serde(serialize_with = "shader_name")]
+    pub shader: Shader,
+    /// Frames compared.
+    pub frames: u16,
+    /// Pixels compared, of all frames.
+    pub pixels: u64,
+    /// Of them, those that are not the same.
+    pub differing: u64,
+    /// RAM for the firmware's variables.
+    pub ram_bytes: u64,
+    /// Flash for code, constants, initial values and the stream.
+    pub flash_bytes: u64,
+    /// Stack that the firmware has used.
+    pub stack_bytes: u64,
+}
+
+fn shader_name<S: Serializer>(shader: &Shader, serializer: S) -> Result<S::Ok, S::Error> {
+    serializer.serialize_str(shader.name())
+}
+
+/// Compiles the firmware of `board` and returns the ELF's path. One ELF serves any number of runs.
+///
+/// # Errors
+/// When the target or the compiler is missing, or the firmware does not compile.
+pub fn build(board: Board) -> Result<PathBuf> {
+    firmware(board)
+}
+
+/// Runs `elf` on the board with the requested stream in it, and compares what its display shows with what the host draws.
+///
+/// Where they differ, `board.png`, `host.png` and `difference.png` of the first such frame go to the directory `artefacts`.
+///
+/// # Errors
+/// When the firmware does not get that far: it crashes, falls silent, reports a failure or drives its display wrongly; or when the
+/// stream cannot be drawn.
+pub fn run(request: &Request, elf: &Path, artefacts: &Path) -> Result<Report> {
+    let context = || format!("{} on {} with {}", request.scene, request.board, request.shader.name());
+    compare(request, elf, artefacts).with_context(context)
+}
+
+fn compare(request: &Request, elf: &Path, artefacts: &Path) -> Result<Report> {
+    let Request { board, shader, .. } = request;
+    ensure!(board.has(*shader), "the firmware of {board} has no {} shading: there is no room for it", shader.name());
+    let frames = usize::from(request.frames);
+    let host_stream = StreamBytes::from(prepare(&request.stream, request.shader, request.frames)?.as_slice());
+    let board_stream = prepare(request.firmware_stream.as_ref().unwrap_or(&request.stream), request.shader, request.frames)?;
+    let elf = Elf::read(elf)?.with_stream(&board_stream)?;
+
+    let stream = host_stream.parse()?;
+    let budget = request.board.budget();
+    let host = match request.board.format() {
+        Format::Rgb565 => draw::<Rgb565>(stream, budget, frames),
+        Format::Rgb565Be => draw::<Rgb565Be>(stream, budget, frames),
+        Format::Gray4 => draw::<Gray4>(stream, budget, frames),
+    }?;
+    let recording = crate::run(request.board, &elf, frames)?;
+    check_log(&recording, frames)?;
+
+    let mut differing = 0;
+    for (number, (picture, shown)) in host.iter().zip(&recording.pictures).enumerate() {
+        ensure!(picture.pixels.len() == shown.len(), "frame {number} has {} pixels, not {}", shown.len(), picture.pixels.len());
+        let wrong = picture.pixels.iter().zip(shown).filter(|(a, b)| a != b).count() as u64;
+        if wrong > 0 && differing == 0 {
+            keep(request.board, &picture.pixels, shown, artefacts)?;
+        }
+        differing += wrong;
+        // Equal pixels on the display under another checksum or other counts: the firmware did not show what it drew.
+        let expected = picture.line(number, request.shader);
+        ensure!(
+            wrong > 0 || recording.log.contains(&expected),
+            "frame {number} is right on the display, but the firmware did not log `{expected}`; {}",
+            log_tail(&recording)
+        );
+    }
+    Ok(Report {
+        board: request.board,
+        scene: request.scene.clone(),
+        shader: request.shader,
+        frames: request.frames,
+        pixels: host.iter().map(|picture| picture.pixels.len() as u64).sum(),
+        differing,
+        ram_bytes: elf.ram_bytes()?,
+        flash_bytes: elf.flash_bytes()?,
+        stack_bytes: recording.stack_bytes().context("the firmware has not logged its use of the stack")?,
+    })
+}
+
+/// The stream with the requested method and number of frames in its header.
+///
+/// # Errors
+/// When `stream` is shorter than its header says.
+pub fn prepare(stream: &[u8], shader: Shader, frames: u16) -> Result<Vec<u8>> {
+    let (mut header, _) = Header::read_from_prefix(stream).map_err(|_| anyhow!("the stream is shorter than its header"))?;
+    header.shader = Shader::ALL.iter().position(|&other| other == shader).context("a method without a number")? as u16;
+    header.frames = frames;
+    let length = header.length as usize;
+    let mut bytes = stream.get(..length).with_context(|| format!("the stream has {} bytes, not {length}", stream.len()))?.to_vec();
+    let header = header.as_bytes();
+    bytes.get_mut(..header.len()).context("the stream's length is less than its header's")?.copy_from_slice(header);
+    seal(&mut bytes);
+    Ok(bytes)
+}
+
+/// The firmware must have drawn all frames, and said so.
+fn check_log(recording: &Recording, frames: usize) -> Result<()> {
+    if let Some(failure) = recording.failure() {
+        bail!("the firmware reports: {failure}");
+    }
+    let (shown, logged) = (recording.pictures.len(), recording.checksums().len());
+    ensure!(shown == frames && logged >= frames, "the firmware has shown {shown} and logged {logged} of {frames} frames");
+    Ok(())
+}
+
+/// A frame as the host draws it.
+struct Picture {
+    pixels: Vec<u32>,
+    checksum: u32,
+    stats: Stats,
+}
+
+impl Picture {
+    /// What the firmware must log of this frame.
+    fn line(&self, number: usize, shader: Shader) -> String {
+        let Stats { triangles, culled, drawn, pixels, .. } = self.stats;
+        let (name, crc) = (shader.name(), self.checksum);
+        format!("frame {number} shader {name} crc {crc:08x} triangles {triangles} culled {culled} drawn {drawn} pixels {pixels}")
+    }
+}
+
+/// The last lines that the firmware logged.
+fn log_tail(recording: &Recording) -> String {
+    let lines = &recording.log;
+    format!("its last lines: {}", lines.get(lines.len().saturating_sub(3)..).unwrap_or_default().join(" / "))
+}
+
+/// Draws with as much memory as the firmware has, in as many bands.
+fn draw<C: Pixel>(stream: Stream<'_>, budget: Budget, frames: usize) -> Result<Vec<Picture>> {
+    let black = C::pack([0; 3]);
+    // One entry of each kind, to fill the memory with.
+    let mut blank = Workspace::<C, 1, 1, 1, 1>::new(black);
+    let blank = blank.memory();
+    let mut vertices = vec![blank.vertices[0]; budget.vertices];
+    let mut bins = vec![blank.bins[0]; budget.triangles];
+    let mut depth = vec![0; budget.band()];
+    let mut palettes = vec![blank.palettes[0]; budget.materials];
+    let mut legs = vec![Leg::EMPTY; budget.legs];
+    let memory =
+        Memory { vertices: &mut vertices, bins: &mut bins, depth: &mut depth, palettes: &mut palettes, samples: &mut [], legs: &mut legs };
+    let size = Size::new(budget.width as u32, budget.height as u32);
+    let mut renderer = Renderer::new(stream, size, memory).context("the board cannot draw this stream")?;
+    let mut band = vec![black; budget.band()];
+    let pictures = (0..frames as u32).map(|number| {
+        let mut pixels = Vec::with_capacity(budget.width * budget.height);
+        let mut checksum = PictureCrc::default();
+        let mut frame = renderer.frame(number);
+        while let Some(area) = frame.next_band(&mut band) {
+            let drawn = &band[..(area.size.width * area.size.height) as usize];
+            checksum.update(drawn);
+            pixels.extend(drawn.iter().map(|pixel| pixel.bits()));
+        }
+        Picture { pixels, checksum: checksum.finish(), stats: frame.stats() }
+    });
+    Ok(pictures.collect())
+}
+
+/// Writes both pictures, and white where they differ.
+fn keep(board: Board, host: &[u32], shown: &[u32], directory: &Path) -> Result<()> {
+    fs::create_dir_all(directory).with_context(|| format!("cannot create {}", directory.display()))?;
+    let (width, height) = board.size();
+    let rgb = |pixels: &[u32]| pixels.iter().flat_map(|&pixel| visible(board.format(), pixel)).collect::<Vec<_>>();
+    let difference: Vec<_> = host.iter().zip(shown).flat_map(|(a, b)| [if a == b { 0 } else { 255 }; 3]).collect();
+    for (name, bytes) in [("board.png", rgb(shown)), ("host.png", rgb(host)), ("difference.png", difference)] {
+        image::write_png(&directory.join(name), width, height, &bytes)?;
+    }
+    Ok(())
+}
+
+/// A stored pixel in 8-bit red, green and blue.
+fn visible(format: Format, pixel: u32) -> [u8; 3] {
+    match format {
+        Format::Gray4 => [image::replicate(pixel & 0xF, 4); 3],
+        Format::Rgb565 | Format::Rgb565Be => {
+            [(11, 5), (5, 6), (0, 5)].map(|(shift, bits)| image::replicate(pixel >> shift & ((1 << bits) - 1), bits))
+        }
+    }
+}

@@ -1,0 +1,30 @@
+//! What all reports share: one HTML file with its style and its scripts inside.
+
+use maud::{DOCTYPE, Markup, PreEscaped, html};
+
+/// For drawings outside of pages, too.
+pub const COLOURS: &str = include_str!("colours.css");
+const STYLE: &str = include_str!("style.css");
+const SORT: &str = include_str!("sort.js");
+
+/// A page with a style and a script of its own beside those of all. `head` stands under the title.
+#[must_use]
+pub fn document(title: &str, [style, script]: [&str; 2], head: &Markup, body: &Markup) -> Markup {
+    html! {
+        (DOCTYPE)
+        html lang="en" {
+            head {
+                meta charset="utf-8";
+                meta name="viewport" content="width=device-width, initial-scale=1";
+                meta name="color-scheme" content="light dark";
+                title { (title) }
+                style { (PreEscaped(COLOURS)) (PreEscaped(STYLE)) (PreEscaped(style)) }
+            }
+            body {
+                header { h1 { (title) } (head) }
+                main { (body) }
+                script { (PreEscaped(SORT)) (PreEscaped(script)) }
+            }
+        }
+    }
+}

@@ -1,0 +1,53 @@
+//! A picture of light levels, before any pixel format rounds them: what errors are measured on.
+
+use anyhow::Result;
+use embedded_graphics_core::geometry::Size;
+use microphong::{
+    Stream,
+    format::{BIAS, RAMP, WALK},
+    pixel::Pixel,
+};
+use microphong_render::render::{self, Style};
+
+/// A pixel that keeps its levels as they come; `None` is background.
+#[derive(Clone, Copy, Debug)]
+struct Fine(Option<[u32; 3]>);
+
+impl Pixel for Fine {
+    const GRAY: bool = false;
+    const DEPTH: [u32; 3] = [8; 3];
+    const BYTES: usize = 3;
+
+    fn pack(_: [u8; 3]) -> Self {
+        Self(None)
+    }
+
+    fn channels(self) -> [u8; 3] {
+        [0; 3]
+    }
+
+    fn bits(self) -> u32 {
+        0
+    }
+
+    fn ramped<const BITS: u32>(_: &[Self; RAMP], level: u32) -> Self {
+        Self(Some([level << (WALK - BITS); 3]))
+    }
+
+    fn mixed(levels: [u32; 3]) -> Self {
+        Self(Some(levels))
+    }
+}
+
+/// Levels of red, green and blue, 255 is full, row by row from the top; `None` where nothing is drawn.
+///
+/// Where the renderer walks one level for all channels it stands in all three; it is that of the brightest channel.
+///
+/// # Errors
+/// When `size` is out of range, or the scene cannot be drawn in this style.
+pub fn picture(stream: Stream<'_>, size: Size, style: impl Into<Style>, number: u32) -> Result<Vec<Option<[f64; 3]>>> {
+    let (pixels, _) = render::frame::<Fine>(stream, size, style, size.height, number)?;
+    // The half that rounds, and the guards below black.
+    let level = |walked: u32| ((f64::from(walked) - f64::from(1 << (WALK - 1))) / f64::from(1 << WALK) - f64::from(BIAS)).clamp(0.0, 255.0);
+    Ok(pixels.into_iter().map(|Fine(levels)| levels.map(|levels| levels.map(level))).collect())
+}

@@ -1,0 +1,315 @@
+//! What methods make of a scene, measured against Phong shading in f64.
+//!
+//! Two errors add up in a picture: that of the method, which approximates, and that of its arithmetic, which rounds.
+//! The oracle draws each method in f64, so the two can be told apart.
+
+pub mod costs;
+pub mod document;
+mod edges;
+pub mod exponent;
+pub mod figures;
+pub mod level;
+pub mod page;
+mod samples;
+
+use anyhow::{Context, Result};
+use costs::Costs;
+use edges::Edges;
+pub use edges::Jumps;
+use embedded_graphics_core::{geometry::Size, pixelcolor::Rgb888};
+use figures::Spread;
+use microphong::{Shader, Stream, palette::Palette, render::check, shader::Highlight};
+use microphong_oracle::{self as oracle, Frame, Levels};
+use microphong_render::render::{self, Format, Settings, Style};
+use samples::Samples;
+use std::ops::Range;
+
+/// How far a threshold may be off in another arithmetic, LSB: at most twice the error of the table of highlights. Several
+/// decisions shape a triangle, and each may fall its own way.
+const LEANS: [f64; 9] = [0.0, -0.01, 0.01, -0.03, 0.03, -0.07, 0.07, -0.14, 0.14];
+
+/// One frame of a scene and its Phong shading: what methods are measured against.
+#[derive(Debug)]
+pub struct Reference<'s> {
+    stream: Stream<'s>,
+    number: u32,
+    perspective_correct: bool,
+    frame: Frame,
+    /// Per material: the core draws it in one channel.
+    one_channel: Vec<bool>,
+    /// Per pixel where its candidates start, and at last where they end.
+    starts: Vec<usize>,
+    /// The facet of each candidate.
+    facets: Vec<usize>,
+    /// All candidates of all pixels.
+    samples: Samples,
+    /// Phong's levels of each candidate.
+    phong: Vec<Levels>,
+    edges: Edges,
+    window: Window,
+    row: u32,
+}
+
+/// A part of the picture.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Window {
+    /// From left to right.
+    pub columns: Range<u32>,
+    /// From top to bottom.
+    pub rows: Range<u32>,
+}
+
+/// A method's picture of a frame, and how good it is. Errors are in LSB: 255 is full.
+#[derive(Clone, Debug)]
+pub struct Comparison {
+    /// The method.
+    pub shader: Shader,
+    /// Errors of the integer picture, before an output format rounds it: against Phong in f64.
+    pub total: Spread,
+    /// Errors of the method in f64, against Phong in f64.
+    pub method: Spread,
+    /// Errors of the integer picture against the method in f64.
+    pub arithmetic: Spread,
+    /// See [`figures::colour_correctness`]; of pixels rounded to 8 bits.
+    pub colour_correctness: f64,
+    /// See [`figures::psnr`]; of pixels rounded to 8 bits.
+    pub psnr: f64,
+    /// See [`figures::similarity`]; of the [`Reference::window`], rounded to 8 bits.
+    pub similarity: f64,
+    /// Of the method in f64.
+    pub jumps: Jumps,
+    /// Operations.
+    pub costs: Costs,
+    /// Pixels compared.
+    pub pixels: usize,
+    /// Pixels that only one of the pictures covers: where triangles had to be clipped.
+    pub unmatched: usize,
+    /// The picture in 8 bits per channel, row by row from the top.
+    pub picture: Vec<[u8; 3]>,
+    /// Per pixel the error against Phong with its sign; of the channel that is off most.
+    pub errors: Vec<Option<f64>>,
+    /// Per pixel the level of the brightest channel.
+    pub levels: Vec<Option<f64>>,
+}
+
+impl<'s> Reference<'s> {
+    /// Frame `number` on a picture of `size` pixels.
+    ///
+    /// # Errors
+    /// When no pixel shows a triangle.
+    pub fn new(stream: Stream<'s>, size: (u32, u32), number: u32) -> Result<Self> {
+        Self::of(stream, Frame::new(stream, size, number), number, false)
+    }
+
+    /// [`Self::new`], perspective-correct: Phong, and all that is compared with it.
+    ///
+    /// # Errors
+    /// When no pixel shows a triangle.
+    pub fn perspective_correct(stream: Stream<'s>, size: (u32, u32), number: u32) -> Result<Self> {
+        Self::of(stream, Frame::perspective_correct(stream, size, number), number, true)
+    }
+
+    fn of(stream: Stream<'s>, frame: Frame, number: u32, perspective_correct: bool) -> Result<Self> {
+        let size = frame.size;
+        let (mut starts, mut facets, mut points) = (vec![0], Vec::new(), Vec::new());
+        let mut shown = vec![false; frame.facets.len()];
+        for (pixel, candidates) in (0..).zip(frame.visible()) {
+            let [x, y] = [pixel % size.0, pixel / size.0].map(|c| f64::from(c) + 0.5);
+            for facet in candidates {
+                let facet = facet as usize;
+                facets.push(facet);
+                points.push((facet, [x, y]));
+                if let Some(shown) = shown.get_mut(facet) {
+                    *shown = true;
+                }
+            }
+            starts.push(facets.len());
+        }
+        let samples = Samples::new(&frame, points);
+        let phong = samples.shade(&frame, Shader::Phong.name(), 0.0)?;
+        let edges = Edges::new(&frame, |facet| shown.get(facet) == Some(&true));
+        let one_channel = stream.materials.iter().map(|material| {
+            let mut palette = Palette::<Rgb888>::empty();
+            palette.fill(stream.header, material, stream.lights, Highlight::Half, false);
+            !palette.three_channels
+        });
+        let one_channel = one_channel.collect();
+        let (window, row) = ends(&starts, &phong, size).context("no pixel shows a triangle")?;
+        Ok(Self { stream, number, perspective_correct, frame, one_channel, starts, facets, samples, phong, edges, window, row })
+    }
+
+    /// Width and height of the picture.
+    #[must_use]
+    pub fn size(&self) -> (u32, u32) {
+        self.frame.size
+    }
+
+    /// The rectangle around all that is drawn, with a little space.
+    #[must_use]
+    pub fn window(&self) -> &Window {
+        &self.window
+    }
+
+    /// The row through the highlight.
+    #[must_use]
+    pub fn row(&self) -> u32 {
+        self.row
+    }
+
+    /// Phong's level of the brightest channel; `None` is background.
+    #[must_use]
+    pub fn level(&self, x: u32, y: u32) -> Option<f64> {
+        self.nearest(y as usize * self.frame.size.0 as usize + x as usize).map(|sample| brightest(self.phong[sample]))
+    }
+
+    /// Phong's picture in 8 bits per channel, row by row from the top.
+    #[must_use]
+    pub fn picture(&self) -> Vec<[u8; 3]> {
+        let pixels = 0..self.starts.len() - 1;
+        pixels.map(|pixel| self.nearest(pixel).map_or(self.stream.header.background, |sample| rounded(self.phong[sample]))).collect()
+    }
+
+    fn candidates(&self, pixel: usize) -> Range<usize> {
+        match self.starts.get(pixel..) {
+            Some(&[start, end, ..]) => start..end,
+            _ => 0..0,
+        }
+    }
+
+    fn nearest(&self, pixel: usize) -> Option<usize> {
+        self.candidates(pixel).next()
+    }
+
+    /// How far levels are from those of candidate `sample`: in the channel that is off most.
+    fn error(&self, sample: usize, of: Levels, from: Levels) -> f64 {
+        let material = self.facets.get(sample).and_then(|&facet| self.frame.facets.get(facet)).map_or(0, |facet| facet.material);
+        if self.one_channel.get(material) == Some(&true) {
+            brightest(of) - brightest(from)
+        } else {
+            let errors: Levels = std::array::from_fn(|k| of[k] - from[k]);
+            errors.into_iter().fold(0.0, |worst, error| if error.abs() <= f64::abs(worst) { worst } else { error })
+        }
+    }
+
+    /// The candidate of a pixel that levels are closest to, and how far they are off: of triangles at the same depth the integers may
+    /// show any.
+    fn best(&self, pixel: usize, level: Levels) -> Option<(usize, f64)> {
+        let errors = self.candidates(pixel).map(|sample| (sample, self.error(sample, level, self.phong[sample])));
+        errors.min_by(|a, b| a.1.abs().total_cmp(&b.1.abs()))
+    }
+
+    /// [`Comparison::total`] alone, which is quick.
+    ///
+    /// # Errors
+    /// Those of [`Self::compare`].
+    pub fn total(&self, shader: Shader) -> Result<Spread> {
+        let size = Size::new(self.frame.size.0, self.frame.size.1);
+        let style = Style { perspective_correct: self.perspective_correct, ..shader.into() };
+        let levels = level::picture(self.stream, size, style, self.number)?;
+        let errors: Vec<_> = (0..).zip(levels).filter_map(|(pixel, level)| Some(self.best(pixel, level?)?.1)).collect();
+        Spread::of(&errors).with_context(|| format!("{} has drawn nothing", shader.name()))
+    }
+
+    /// Draws the frame by a method and measures it.
+    ///
+    /// # Errors
+    /// When the method cannot draw this scene, see [`microphong::render::check`], or draws none of its pixels.
+    pub fn compare(&self, shader: Shader) -> Result<Comparison> {
+        let perspective_correct = self.perspective_correct;
+        check(&self.stream, shader, perspective_correct)?;
+        let name = shader.name();
+        let size = Size::new(self.frame.size.0, self.frame.size.1);
+        let style = Style { shader, perspective_correct, antialias: false, dither: false };
+        let integers = level::picture(self.stream, size, style, self.number)?;
+        let settings = Settings { size, style, band_rows: size.height, format: Format::Rgb888 };
+        let picture = render::picture(self.stream, &settings, self.number)?.rgb.as_chunks::<3>().0.to_vec();
+        let leans = if oracle::decides(name) { &LEANS[..] } else { &LEANS[..1] };
+        let reals: Vec<_> = leans.iter().map(|&lean| self.samples.shade(&self.frame, name, lean)).collect::<Result<_, _>>()?;
+
+        let mut errors = vec![None; integers.len()];
+        let (mut total, mut method, mut arithmetic) = (Vec::new(), Vec::new(), Vec::new());
+        let mut target = vec![self.stream.header.background; integers.len()];
+        let (mut pairs, mut unmatched) = (Vec::new(), 0);
+        for (pixel, &level) in integers.iter().enumerate() {
+            let candidates = self.candidates(pixel);
+            let (Some(level), Some(nearest)) = (level, self.nearest(pixel)) else {
+                unmatched += usize::from(level.is_some() || !candidates.is_empty());
+                continue;
+            };
+            let Some((sample, error)) = self.best(pixel, level) else { continue };
+            errors[pixel] = Some(error);
+            total.push(error);
+            method.push(self.error(nearest, reals[0][nearest], self.phong[nearest]));
+            let same = reals.iter().flat_map(|real| candidates.clone().map(|sample| self.error(sample, level, real[sample]).abs()));
+            arithmetic.push(same.min_by(f64::total_cmp).unwrap_or(f64::NAN));
+            target[pixel] = rounded(self.phong[sample]);
+            pairs.push([picture[pixel], target[pixel]]);
+        }
+        let spread = |errors: &[f64]| Spread::of(errors).with_context(|| format!("{name} has drawn nothing"));
+        let window = &self.window;
+        let (drawn, wanted) = (window.cut(&picture, size.width), window.cut(&target, size.width));
+        Ok(Comparison {
+            shader,
+            total: spread(&total)?,
+            method: spread(&method)?,
+            arithmetic: spread(&arithmetic)?,
+            colour_correctness: figures::colour_correctness(&pairs),
+            psnr: figures::psnr(&pairs),
+            similarity: figures::similarity(window.width(), window.height(), [&drawn, &wanted])?,
+            jumps: self.edges.jumps(&self.frame, name)?,
+            costs: costs::of(name).with_context(|| format!("the operations of {name} have not been counted"))?,
+            pixels: pairs.len(),
+            unmatched,
+            picture,
+            errors,
+            levels: integers.into_iter().map(|level| level.map(brightest)).collect(),
+        })
+    }
+}
+
+impl Window {
+    /// Pixels from left to right.
+    #[must_use]
+    pub fn width(&self) -> u32 {
+        self.columns.end - self.columns.start
+    }
+
+    /// Pixels from top to bottom.
+    #[must_use]
+    pub fn height(&self) -> u32 {
+        self.rows.end - self.rows.start
+    }
+
+    /// The window's part of a picture that is `width` wide, row by row from the top.
+    #[must_use]
+    pub fn cut<T: Copy>(&self, picture: &[T], width: u32) -> Vec<T> {
+        let columns = self.columns.start as usize..self.columns.end as usize;
+        let rows = picture.chunks_exact(width as usize).skip(self.rows.start as usize).take(self.height() as usize);
+        rows.flat_map(|row| row.get(columns.clone()).unwrap_or_default()).copied().collect()
+    }
+}
+
+/// Pixels left free around what is drawn.
+const SPACE: u32 = 4;
+
+/// The rectangle around all pixels that show something, and the row through the middle of the brightest.
+fn ends(starts: &[usize], phong: &[Levels], (width, height): (u32, u32)) -> Option<(Window, u32)> {
+    let shown: Vec<_> = (0..).zip(starts.array_windows()).filter(|(_, [start, end])| start < end).collect();
+    let level = |&(_, [start, _]): &(u32, &[usize; 2])| phong.get(*start).copied().map_or(0.0, brightest);
+    let most = shown.iter().map(level).fold(0.0, f64::max);
+    let bright: Vec<_> = shown.iter().filter(|pixel| level(pixel) >= most - 0.5).collect();
+    let row = bright.get(bright.len() / 2)?.0 / width;
+    let range = |of: fn(u32, u32) -> u32, limit: u32| {
+        let places = || shown.iter().map(|(pixel, _)| of(*pixel, width));
+        Some(places().min()?.saturating_sub(SPACE)..(places().max()? + 1 + SPACE).min(limit))
+    };
+    Some((Window { columns: range(|pixel, width| pixel % width, width)?, rows: range(|pixel, width| pixel / width, height)? }, row))
+}
+
+fn brightest(levels: Levels) -> f64 {
+    levels.into_iter().fold(0.0, f64::max)
+}
+
+fn rounded(levels: Levels) -> [u8; 3] {
+    levels.map(|level| level.round() as u8)
+}

@@ -1,0 +1,155 @@
+//! The report: one HTML file with everything in it.
+
+mod chart;
+mod picture;
+mod scale;
+mod table;
+
+use super::{Comparison, Reference};
+use crate::document::document;
+use anyhow::{Context, Result};
+use maud::{Markup, html};
+use microphong::Shader;
+use microphong_render::output::Output;
+use rayon::prelude::*;
+use std::{
+    fs,
+    io::Write,
+    path::{Path, PathBuf},
+};
+
+const STYLE: &str = include_str!("style.css");
+
+/// A page under construction.
+#[derive(Debug)]
+pub struct Page {
+    output: Output,
+    scenes: Vec<(String, Markup)>,
+}
+
+/// What came of a method on a scene: its figures, or why there are none.
+pub type Outcome<'a> = (Shader, Result<&'a Comparison, &'a str>);
+
+impl Page {
+    /// Starts `index.html` in `directory`, which is made if it is not there.
+    ///
+    /// # Errors
+    /// When the directory cannot be made or written.
+    pub fn create(directory: &Path) -> Result<Self> {
+        fs::create_dir_all(directory).with_context(|| format!("cannot create the directory {}", directory.display()))?;
+        Ok(Self { output: Output::create(&directory.join("index.html"))?, scenes: Vec::new() })
+    }
+
+    /// Adds a scene and its methods.
+    ///
+    /// # Errors
+    /// When a picture cannot be encoded.
+    pub fn add(&mut self, name: &str, exponent: Option<u16>, reference: &Reference<'_>, outcomes: &[Outcome<'_>]) -> Result<()> {
+        let section = section(self.scenes.len(), name, exponent, reference, outcomes)?;
+        self.scenes.push((name.to_owned(), section));
+        Ok(())
+    }
+
+    /// Writes the page and returns where it is.
+    ///
+    /// # Errors
+    /// When it cannot be written; then there is none.
+    pub fn finish(mut self) -> Result<PathBuf> {
+        let path = self.output.path().to_owned();
+        let page = page(&self.scenes).into_string();
+        self.output.write_all(page.as_bytes()).with_context(|| format!("cannot write {}", path.display()))?;
+        self.output.finish()?;
+        Ok(path)
+    }
+}
+
+fn page(scenes: &[(String, Markup)]) -> Markup {
+    let head = html! {
+        p {
+            "Each method's integer picture against Phong shading in 64-bit floating point: the normal interpolated, normalised and "
+            "lit at every pixel. Errors are in LSB, steps of which 255 are full level, before an output format rounds."
+        }
+        @if scenes.len() > 1 {
+            nav aria-label="Scenes" { ul { @for (index, (name, _)) in scenes.iter().enumerate() { li { a href={ "#scene-" (index) } { (name) } } } } }
+        }
+    };
+    document("Shading methods compared", [STYLE, ""], &head, &html! { @for (_, section) in scenes { (section) } })
+}
+
+fn section(index: usize, name: &str, exponent: Option<u16>, reference: &Reference<'_>, outcomes: &[Outcome<'_>]) -> Result<Markup> {
+    let (width, height) = reference.size();
+    let window = reference.window();
+    let truth = picture::rgb(window, &window.cut(&reference.picture(), width))?;
+    let anchor = |shader: Shader| format!("scene-{index}-{}", shader.name());
+    // Encoding pictures takes longer than all else here.
+    let entry = |&(shader, result): &Outcome<'_>| result.map_or(Ok(html! {}), |c| entry(&anchor(shader), name, reference, c));
+    let entries = outcomes.par_iter().map(entry).collect::<Result<Vec<_>>>()?;
+    Ok(html! {
+        section.scene id={ "scene-" (index) } {
+            h2 { (name) }
+            p.facts {
+                (width) "×" (height) " pixels, "
+                @match exponent { Some(exponent) => { "exponent " (exponent) } None => { "several exponents" } }
+            }
+            (table::table(name, outcomes, anchor))
+            div.key {
+                figure.truth {
+                    img src=(truth) width=(window.width()) height=(window.height()) alt={ (name) " by Phong shading in floating point" };
+                    figcaption { "What all are measured against: Phong shading in floating point" }
+                }
+                div.legends {
+                    figure { (scale::signed(&format!("errors-{index}"))) figcaption { "Signed error, LSB: blue is too dark, red too bright. The scale is logarithmic beyond a quarter LSB." } }
+                    figure {
+                        (scale::amplified())
+                        figcaption { "Amplified difference of 8-bit pixels, LSB: 255 (d/255)" sup { "1/10" } " of each channel (Vlasic 2002). It shows a single step." }
+                    }
+                    p.note { "Curves run along row " (reference.row()) ", through the highlight." }
+                }
+            }
+            @for entry in &entries { (entry) }
+        }
+    })
+}
+
+fn entry(anchor: &str, scene: &str, reference: &Reference<'_>, comparison: &Comparison) -> Result<Markup> {
+    let (width, _) = reference.size();
+    let window = reference.window();
+    let name = comparison.shader.name();
+    let drawn = window.cut(&comparison.picture, width);
+    let rendering = picture::rgb(window, &drawn)?;
+    let amplified = picture::amplified(window, &drawn, &window.cut(&reference.picture(), width))?;
+    let signed = picture::signed(window, &window.cut(&comparison.errors, width))?;
+    let panel = |class: &str, source: &str, alt: &str, caption: &str| {
+        html! {
+            figure {
+                img class=(class) src=(source) width=(window.width()) height=(window.height()) alt=(alt);
+                figcaption { (caption) }
+            }
+        }
+    };
+    let total = comparison.total;
+    Ok(html! {
+        article.method id=(anchor) {
+            h3 { (name) }
+            p.facts { "largest error " (number(total.max)) ", root mean square " (number(total.rmse)) " LSB" }
+            div.panels {
+                (panel("picture", &rendering, &format!("{scene} by {name}"), "rendering"))
+                (panel("amplified", &amplified, &format!("where {name} differs from Phong shading, amplified"), "difference, amplified"))
+                (panel("signed", &signed, &format!("error of {name} with its sign"), "error with its sign"))
+                figure { (chart::scanline(reference, comparison)) figcaption { "along row " (reference.row()) } }
+            }
+        }
+    })
+}
+
+/// A number with as many places as mean something.
+fn number(value: f64) -> String {
+    let places = if value.abs() >= 99.95 {
+        0
+    } else if value.abs() >= 9.995 {
+        1
+    } else {
+        2
+    };
+    format!("{value:.places$}")
+}

@@ -1,0 +1,54 @@
+//! Points of the screen, each on a facet, and what a method in f64 makes of them.
+
+use microphong_oracle::{self as oracle, Frame, Levels, Unsupported};
+use rayon::prelude::*;
+
+/// A point of the screen, and its place in the result.
+type Point = (usize, [f64; 2]);
+
+/// Points on facets. A method is set up once per facet, whatever the order of its points.
+#[derive(Clone, Debug)]
+pub(super) struct Samples {
+    /// Per facet that has any: its index, and the points.
+    by_facet: Vec<(usize, Vec<Point>)>,
+    count: usize,
+}
+
+impl Samples {
+    /// Points, each on the facet of that index.
+    #[must_use]
+    pub(super) fn new(frame: &Frame, points: impl IntoIterator<Item = (usize, [f64; 2])>) -> Self {
+        let mut by_facet: Vec<_> = (0..frame.facets.len()).map(|facet| (facet, Vec::new())).collect();
+        let mut count = 0;
+        for (place, (facet, point)) in points.into_iter().enumerate() {
+            count = place + 1;
+            if let Some((_, points)) = by_facet.get_mut(facet) {
+                points.push((place, point));
+            }
+        }
+        by_facet.retain(|(_, points)| !points.is_empty());
+        Self { by_facet, count }
+    }
+
+    /// The levels at all points, in the order in which they came.
+    ///
+    /// # Errors
+    /// When there is no such method, or when it cannot draw this frame.
+    pub(super) fn shade(&self, frame: &Frame, method: &str, lean: f64) -> Result<Vec<Levels>, Unsupported> {
+        let shaded: Vec<Vec<Levels>> = self
+            .by_facet
+            .par_iter()
+            .map(|(facet, points)| {
+                let shade = oracle::method(method, frame, &frame.facets[*facet], lean)?;
+                Ok(points.iter().map(|&(_, point)| shade(point)).collect())
+            })
+            .collect::<Result<_, _>>()?;
+        let mut levels = vec![[0.0; 3]; self.count];
+        for ((_, points), shaded) in self.by_facet.iter().zip(shaded) {
+            for (&(place, _), at) in points.iter().zip(shaded) {
+                levels[place] = at;
+            }
+        }
+        Ok(levels)
+    }
+}

@@ -1,0 +1,239 @@
+//! The triangles of one frame that face the viewer, where they lie on the screen, and what shines on them.
+
+use super::light::{Light, Material, Place};
+use embedded_graphics_core::geometry::Size;
+use microphong::{
+    Stream,
+    format::{DEPTH, Gain, ROTATION, SUBPIXEL, UNIT},
+    scene::Pose,
+    stream::record::{self, DIRECTIONAL, EYE_SPACE, PERSPECTIVE, VIEWER_LOCAL},
+    vertex::View,
+};
+use microphong_render::vector::{V3, add, apply, cross, dot, length, scale, sub, unit};
+
+/// All that a picture of one frame depends on, in object space.
+#[derive(Clone, Debug)]
+pub struct Frame {
+    /// Width and height in pixels.
+    pub size: (u32, u32),
+    /// Front faces that are not empty, in the stream's order.
+    pub facets: Vec<Facet>,
+    /// All lights.
+    pub lights: Vec<Light>,
+    /// Where highlights are seen from.
+    pub viewer: Place,
+    /// The axes of the eye: to the right, up, and towards the viewer.
+    pub axes: [V3; 3],
+    /// In the stream's order.
+    pub materials: Vec<Material>,
+}
+
+/// One triangle.
+#[derive(Clone, Debug)]
+pub struct Facet {
+    /// Corners in pixels, clockwise on a screen whose y runs down.
+    pub screen: [[f64; 2]; 3],
+    /// Nearness of the corners: 1 at the near plane, 0 far away, linear on the screen.
+    pub nearness: [f64; 3],
+    /// What a corner's share of the screen counts for in space: 1, or its nearness where perspective is corrected.
+    pub shares: [f64; 3],
+    /// Which vertices of the whole scene the corners are: neighbours share them.
+    pub vertices: [usize; 3],
+    /// Normals of the corners as they are stored: of unit length but for their rounding.
+    pub normals: [V3; 3],
+    /// Corners in object space.
+    pub positions: [V3; 3],
+    /// Unit normal of the plane.
+    pub plane: V3,
+    /// No interpolated normal is shorter.
+    pub rho: f64,
+    /// Index of the material.
+    pub material: usize,
+    /// Index of the triangle in the stream.
+    pub id: u32,
+}
+
+/// From a stream's fixed point.
+fn real<const N: usize>(v: [i32; N], bits: u32) -> [f64; N] {
+    v.map(|c| f64::from(c) / f64::from(bits).exp2())
+}
+
+/// Reflectance or light.
+fn gain(colour: [Gain; 3]) -> V3 {
+    colour.map(f64::from)
+}
+
+/// The vector `v`, of any length but zero, with length one; a vector without direction becomes zero.
+pub(super) fn direction(v: V3) -> V3 {
+    unit(v).unwrap_or_default()
+}
+
+impl Frame {
+    /// Frame `number` of a stream on a picture of `size` pixels.
+    ///
+    /// Triangles that cross the near plane or leave the guard band are left out: clipping makes new corners.
+    #[must_use]
+    pub fn new(stream: Stream<'_>, size: (u32, u32), number: u32) -> Self {
+        let camera = &stream.header.camera;
+        let pose = Pose::new(camera, number);
+        let view = View::new(camera, &pose, Size::new(size.0, size.1));
+        let [right, up, away] = pose.rotation.map(|row| real(row, ROTATION));
+        let to_object = |v: V3| add(add(scale(right, v[0]), scale(up, v[1])), scale(away, v[2]));
+        let translation = real(pose.translation, UNIT);
+        let towards = direction(scale(away, -1.0));
+        let local = stream.header.viewer == VIEWER_LOCAL && camera.projection == PERSPECTIVE;
+        let viewer = if local { Place::Near(to_object(scale(translation, -1.0))) } else { Place::Far(towards) };
+        let lights = stream.lights.iter().map(|light| {
+            let vector = light.vector().map(f64::from);
+            let place = match (light.kind, light.space) {
+                (DIRECTIONAL, EYE_SPACE) => Place::Far(direction(to_object(vector))),
+                (DIRECTIONAL, _) => Place::Far(direction(vector)),
+                (_, EYE_SPACE) => Place::Near(to_object(sub(vector, translation))),
+                _ => Place::Near(vector),
+            };
+            Light { place, colour: gain(light.colour()) }
+        });
+        let around = gain(stream.header.ambient());
+        let materials = stream.materials.iter().map(|material| {
+            let ambient = gain(material.ambient());
+            Material {
+                ambient: [0, 1, 2].map(|k| ambient[k] * around[k]),
+                diffuse: gain(material.diffuse()),
+                specular: gain(material.specular()),
+                exponent: material.exponent.into(),
+            }
+        });
+        let facets = stream.meshes.iter().flat_map(|mesh| {
+            let view = &view;
+            let triangles = stream.triangles_of(mesh).unwrap_or_default();
+            (mesh.first_triangle..).zip(triangles).filter_map(move |(id, triangle)| facet(stream, mesh, triangle, id, view))
+        });
+        Self {
+            size,
+            facets: facets.collect(),
+            lights: lights.collect(),
+            viewer,
+            axes: [direction(right), direction(up), towards],
+            materials: materials.collect(),
+        }
+    }
+
+    /// [`Self::new`], but methods take the point of the triangle that is seen, not the one that parts the triangle of the
+    /// screen in the same way. With parallel rays it is the same point.
+    #[must_use]
+    pub fn perspective_correct(stream: Stream<'_>, size: (u32, u32), number: u32) -> Self {
+        let mut frame = Self::new(stream, size, number);
+        if stream.is_perspective() {
+            frame.facets.iter_mut().for_each(|facet| facet.shares = facet.nearness);
+        }
+        frame
+    }
+
+    /// Whether lights and viewer are all infinitely far: N·L and N·H then depend on the normal alone.
+    #[must_use]
+    pub fn is_constant(&self) -> bool {
+        self.lights.iter().map(|light| light.place).chain([self.viewer]).all(|place| matches!(place, Place::Far(_)))
+    }
+}
+
+/// One record on the screen; `None` if it shows its back, is empty there, or has to be clipped.
+fn facet(stream: Stream<'_>, mesh: &record::Mesh, triangle: &record::Triangle, id: u32, view: &View) -> Option<Facet> {
+    // Streams list corners counter-clockwise.
+    let [a, b, c] = triangle.corners;
+    let vertices = [a, c, b].map(|corner| mesh.first_vertex as usize + usize::from(corner));
+    let mut corners = [record::Vertex::ZERO; 3];
+    let mut places = [[0; 3]; 3];
+    for k in 0..3 {
+        corners[k] = *stream.vertices.get(vertices[k])?;
+        let (place, inside) = view.project(view.to_eye(corners[k].position));
+        places[k] = inside.then_some(place)?;
+    }
+    let [p, q, r] = places.map(|[x, y, _]| [i64::from(x), i64::from(y)]);
+    if (q[0] - p[0]) * (r[1] - p[1]) - (q[1] - p[1]) * (r[0] - p[0]) <= 0 {
+        return None;
+    }
+    Some(Facet {
+        screen: places.map(|[x, y, _]| real([x, y], SUBPIXEL)),
+        nearness: places.map(|[_, _, depth]| f64::from(depth) / f64::from(DEPTH).exp2()),
+        shares: [1.0; 3],
+        vertices,
+        normals: corners.map(|v| v.normal().map(f64::from)),
+        positions: corners.map(|v| v.position().map(f64::from)),
+        plane: triangle.normal().map(f64::from),
+        rho: f64::from(triangle.rho()),
+        material: mesh.material.into(),
+        id,
+    })
+}
+
+impl Facet {
+    /// Affine coordinates of the corners.
+    pub(super) const CORNERS: [V3; 3] = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
+    /// Affine coordinates of the centroid.
+    pub(super) const CENTRE: V3 = [1.0 / 3.0; 3];
+
+    /// A triangle that comes from no stream. `screen` runs clockwise (y down), and so do the other corners.
+    #[must_use]
+    pub fn new(screen: [[f64; 2]; 3], vertices: [usize; 3], normals: [V3; 3], positions: [V3; 3]) -> Self {
+        let [a, b, c] = positions;
+        let least = [0, 1, 2].map(|k| dot(normals[k], normals[(k + 1) % 3])).into_iter().fold(1.0, f64::min);
+        Self {
+            screen,
+            nearness: [0.5; 3],
+            shares: [1.0; 3],
+            vertices,
+            normals,
+            positions,
+            plane: direction(cross(sub(c, a), sub(b, a))),
+            rho: ((1.0 + 2.0 * least) / 3.0).max(0.0).sqrt(),
+            material: 0,
+            id: 0,
+        }
+    }
+
+    /// Affine coordinates of what is seen in a point of the screen: the corners' shares, which sum up to one.
+    #[must_use]
+    pub fn weights(&self, p: [f64; 2]) -> V3 {
+        let [flat, shares] = [self.flat_weights(p), self.shares];
+        let parts = [0, 1, 2].map(|k| flat[k] * shares[k]);
+        let whole: f64 = parts.iter().sum();
+        parts.map(|part| part / whole)
+    }
+
+    /// Affine coordinates of a point on the screen.
+    #[must_use]
+    pub fn flat_weights(&self, p: [f64; 2]) -> V3 {
+        let [a, b, c] = self.screen;
+        let area = |p: [f64; 2], q: [f64; 2], r: [f64; 2]| (q[0] - p[0]) * (r[1] - p[1]) - (q[1] - p[1]) * (r[0] - p[0]);
+        let whole = area(a, b, c);
+        [area(p, b, c), area(p, c, a), area(p, a, b)].map(|part| part / whole)
+    }
+
+    /// The linearly interpolated normal, shorter than one between the corners.
+    #[must_use]
+    pub fn normal(&self, weights: V3) -> V3 {
+        mixed(&self.normals, weights)
+    }
+
+    /// The point of the triangle in object space.
+    #[must_use]
+    pub fn position(&self, weights: V3) -> V3 {
+        mixed(&self.positions, weights)
+    }
+
+    /// The normal that a node of a polynomial has: a corner's as it stands, all others of unit length.
+    pub(super) fn node(&self, weights: V3) -> V3 {
+        let normal = self.normal(weights);
+        if weights.contains(&1.0) { normal } else { direction(normal) }
+    }
+
+    /// Length of the interpolated normal at the midpoint of the edge from corner `i` to `j`.
+    pub(super) fn middle(&self, i: usize, j: usize) -> f64 {
+        length(add(self.normals[i], self.normals[j])) / 2.0
+    }
+}
+
+/// Sum of three vectors, weighted.
+pub(super) fn mixed(v: &[V3; 3], weights: V3) -> V3 {
+    apply(&[[v[0][0], v[1][0], v[2][0]], [v[0][1], v[1][1], v[2][1]], [v[0][2], v[1][2], v[2][2]]], weights)
+}

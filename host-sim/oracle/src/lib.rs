@@ -1,0 +1,26 @@
+//! Every shading method in 64-bit floating point, written a second time.
+//!
+//! The core shades in integers; this package says what it should come to. The two share no shading code: from the core
+//! come the parsed records of a stream, the pose of a frame, and where a corner lies on the screen. All else is the
+//! methods' definition, one file each, as plain as formulas allow.
+
+mod frame;
+mod light;
+mod method;
+pub mod papers;
+mod poly;
+mod scanline;
+mod visible;
+
+pub use frame::{Facet, Frame};
+pub use light::{Light, Material, Place, phong};
+pub(crate) use method::angular;
+pub use method::{NAMES, Unsupported, decides, method};
+pub(crate) use poly::{SIX, TEN, cubic, quadratic, sum};
+
+/// Red, green and blue; 255 is full. Clamped to [0, 255].
+pub type Levels = [f64; 3];
+
+/// The shading of one triangle, at any point of the screen; pixel centres lie at .5. A little outside the triangle it
+/// goes on smoothly.
+pub type Shade<'f> = Box<dyn Fn([f64; 2]) -> Levels + 'f>;

@@ -1,0 +1,45 @@
+//! Six-point fits of N·L and of a root of N·H: a root bends less than the cosine near the highlight.
+
+use crate::{
+    Facet, Frame, Shade,
+    poly::{SIX, blend, quadratic},
+};
+
+/// `sqrt(w)` from 1/4 upwards, continued by its tangent.
+fn root(w: f64) -> f64 {
+    if w >= 0.25 { w.sqrt() } else { w + 0.25 }
+}
+
+/// The inverse of [`root`].
+fn square(z: f64) -> f64 {
+    if z >= 0.5 { z * z } else { z - 0.25 }
+}
+
+pub(super) fn shade<'f>(frame: &'f Frame, facet: &'f Facet) -> Shade<'f> {
+    let fit = |light| {
+        SIX.map(|node| {
+            let [diffuse, half] = frame.cosines(light, facet.position(node), facet.node(node));
+            [diffuse, root(half)]
+        })
+    };
+    let fits: Vec<_> = frame.lights.iter().map(fit).collect();
+    Box::new(move |p| {
+        let weights = quadratic(facet.weights(p));
+        let cosines = fits.iter().map(|fit| blend(&weights, fit)).map(|[diffuse, half]| [diffuse, square(half)]);
+        frame.lit(facet, cosines)
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn square_undoes_root_and_both_are_smooth() {
+        for w in (-100..=100).map(|k| f64::from(k) / 100.0) {
+            assert!((square(root(w)) - w).abs() < 1e-12, "{w}");
+        }
+        let slope = |w: f64| (root(w + 1e-6) - root(w)) / 1e-6;
+        assert!((slope(0.25 - 1e-6) - 1.0).abs() < 1e-5 && (slope(0.25) - 1.0).abs() < 1e-5);
+    }
+}

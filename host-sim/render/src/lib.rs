@@ -1,0 +1,16 @@
+//! From a mesh to its picture: scenes, the triangle streams that boards draw, and what the core renderer makes of them.
+
+pub mod bytes;
+pub mod convex;
+pub mod image;
+pub mod look;
+pub mod mesh;
+pub mod number;
+pub mod obj;
+pub mod output;
+pub mod quantise;
+pub mod render;
+pub mod scene;
+pub mod shapes;
+pub mod vector;
+pub mod view;

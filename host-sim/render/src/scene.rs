@@ -1,0 +1,223 @@
+//! Scenes by name or from a file.
+
+use crate::{
+    bytes::StreamBytes,
+    look::{Lamp, Look, Surface},
+    mesh::{self, Mesh, Report},
+    obj,
+    quantise::quantise,
+    shapes,
+    vector::{V3, product, rotation},
+    view::{Up, View},
+};
+use anyhow::{Context, Result};
+use std::{f64::consts::TAU, fmt, fs, path::Path};
+
+/// Something to draw.
+#[derive(Clone, Debug)]
+pub struct Scene {
+    /// The built-in's name, or the file's without directory and ending.
+    pub name: String,
+    /// Mesh, materials, lights and camera.
+    pub stream: StreamBytes,
+    /// Width and height that suit it.
+    pub size: (u32, u32),
+}
+
+/// Names of the built-in scenes.
+pub const NAMES: [&str; 10] =
+    ["teapot", "bunny", "sphere-168", "sphere-374", "sphere-690", "peer-sphere", "sphere-40", "dodecahedron", "torus", "triangle"];
+
+const PEER: &str = "peer-sphere";
+
+/// `peer-sphere`, and marked as convex: drawn without depth. Not one of [`NAMES`], for it shows the same.
+pub const CONVEX: &str = "peer-sphere-convex";
+
+/// What a built-in scene shows; empty for other names.
+#[must_use]
+pub fn description(name: &str) -> &'static str {
+    match name {
+        "teapot" => "Utah teapot in copper, one key light",
+        "bunny" => "Stanford bunny in porcelain, a warm key light and a weak blue fill light",
+        "sphere-168" => "sphere of 168 triangles, parallel rays",
+        "sphere-374" => "sphere of 374 triangles, parallel rays",
+        "sphere-690" => "sphere of 690 triangles, parallel rays",
+        PEER => "sphere of 720 triangles on 43,800 pixels, for comparison with other renderers; as peer-sphere-convex without depth",
+        "sphere-40" => "sphere of 40 triangles, near point light, local viewer",
+        "dodecahedron" => "dodecahedron with a sphere's normals, near point light, local viewer",
+        "torus" => "torus of 3,750 triangles, blue with a white highlight",
+        "triangle" => "one bulged triangle, point light close in front",
+        _ => "",
+    }
+}
+
+/// A name that is neither a built-in scene nor a file.
+#[derive(Debug)]
+pub struct Unknown(String);
+
+impl fmt::Display for Unknown {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "unknown scene {:?}; name a .tri or .obj file, or one of: {}", self.0, NAMES.join(", "))
+    }
+}
+
+impl std::error::Error for Unknown {}
+
+/// Size for scenes from files.
+pub const SIZE: (u32, u32) = (640, 480);
+/// Frames in which a scene turns once.
+pub const ORBIT: u16 = 120;
+/// Distance of the eye from an object of radius 1.
+pub const DISTANCE: f64 = 4.0;
+/// Free border, a share of the picture.
+pub const MARGIN: f64 = 0.06;
+/// Copper, a little towards gold.
+pub const COPPER: V3 = [1.0, 0.62, 0.33];
+
+const TEAPOT: &str = include_str!("../../../tests/meshes/teapot.obj");
+const BUNNY: &str = include_str!("../../../tests/meshes/bunny.obj");
+
+/// Loads a built-in scene, a `.tri` or an `.obj` file.
+///
+/// # Errors
+/// [`Unknown`] when `name_or_path` is neither; else what is wrong with the file.
+pub fn load(name_or_path: &str) -> Result<Scene> {
+    if NAMES.contains(&name_or_path) || name_or_path == CONVEX {
+        let (stream, size) = built_in(name_or_path)?;
+        return Ok(Scene { name: name_or_path.to_owned(), stream, size });
+    }
+    let path = Path::new(name_or_path);
+    let ending = path.extension().map(|e| e.to_ascii_lowercase());
+    let stream = match ending.as_deref().and_then(|e| e.to_str()) {
+        Some("tri") => StreamBytes::read(path)?,
+        Some("obj") => {
+            let (mesh, _) = read_obj(path, false)?;
+            // The same as `convert` without options.
+            let view = View::orbit(Up::Y, 0.5, 0.35, DISTANCE, ORBIT).fit(&mesh.positions, SQUARE, MARGIN);
+            Look::new(default_surface(), view).stream(&quantise(&mesh).0).with_context(|| path.display().to_string())?
+        }
+        _ => return Err(Unknown(name_or_path.to_owned()).into()),
+    };
+    let name = path.file_stem().unwrap_or(path.as_os_str()).to_string_lossy().into_owned();
+    Ok(Scene { name, stream, size: SIZE })
+}
+
+/// Material of meshes from files.
+#[must_use]
+pub fn default_surface() -> Surface {
+    Surface::metal(COPPER, [0.1, 0.5, 0.4], 30)
+}
+
+/// Reads and welds an OBJ file.
+///
+/// # Errors
+/// Names the file and the line.
+pub fn read_obj(path: &Path, turn: bool) -> Result<(Mesh, Report)> {
+    let bytes = fs::read(path).with_context(|| format!("cannot read {}", path.display()))?;
+    let soup = obj::parse(&String::from_utf8_lossy(&bytes)).with_context(|| path.display().to_string())?;
+    mesh::weld(&soup, turn).with_context(|| path.display().to_string())
+}
+
+fn welded(text: &str) -> Result<Mesh> {
+    Ok(mesh::weld(&obj::parse(text)?, false)?.0)
+}
+
+fn built_in(name: &str) -> Result<(StreamBytes, (u32, u32))> {
+    let (mesh, look, size) = match name {
+        "teapot" => teapot()?,
+        "bunny" => bunny()?,
+        "sphere-168" => ball(12, 8),
+        "sphere-374" => ball(17, 12),
+        "sphere-690" => ball(23, 16),
+        PEER | CONVEX => peer_sphere(),
+        "sphere-40" => (shapes::sphere(5, 5, 0.0), near_light([0.9, 0.92, 1.0], tilted(0.5, 0.35)), SQUARE),
+        "dodecahedron" => (shapes::dodecahedron(), near_light([0.75, 1.0, 0.6], tilted(0.3, 0.2)), SQUARE),
+        "torus" => torus(),
+        "triangle" => triangle(),
+        _ => return Err(Unknown(name.to_owned()).into()),
+    };
+    let (mut parts, _) = quantise(&mesh);
+    if name == PEER {
+        // The other renderers test depth.
+        parts.iter_mut().for_each(|part| part.closed_convex = false);
+    }
+    Ok((look.stream(&parts)?, size))
+}
+
+type Parts = (Mesh, Look, (u32, u32));
+
+/// What fits a square fits displays of every shape.
+const SQUARE: (u32, u32) = (256, 256);
+
+fn teapot() -> Result<Parts> {
+    let mesh = welded(TEAPOT)?;
+    let view = View::orbit(Up::Y, 0.45, 0.3, DISTANCE, ORBIT).fit(&mesh.positions, SQUARE, MARGIN);
+    let mut look = Look::new(Surface::metal(COPPER, [0.1, 0.52, 0.38], 30), view);
+    // Low enough that the highlight lies on the belly, not on the lid alone.
+    look.lamps = vec![Lamp::Distant([-0.5, 0.28, -0.8], [1.0; 3])];
+    Ok((mesh, look, SIZE))
+}
+
+fn bunny() -> Result<Parts> {
+    let size = (480, 480);
+    let mesh = welded(BUNNY)?;
+    let view = View::orbit(Up::Y, 0.25, 0.15, DISTANCE, ORBIT).fit(&mesh.positions, size, MARGIN);
+    let mut look = Look::new(Surface::plastic([0.92, 0.89, 0.84], [0.1, 0.68, 0.2], 24), view);
+    look.lamps = vec![Lamp::Distant([-0.5, 0.6, -0.6], [1.0, 0.95, 0.86]), Lamp::Distant([0.9, 0.05, -0.25], [0.16, 0.24, 0.4])];
+    Ok((mesh, look, size))
+}
+
+/// The spheres of Szirmay-Kalos's comparison.
+fn ball(meridians: usize, bands: usize) -> Parts {
+    let view = tilted(0.5, 0.35).parallel().focal(0.92);
+    let mut look = Look::new(Surface::metal([1.0; 3], [0.08, 0.47, 0.45], 20), view);
+    look.lamps = vec![Lamp::Distant([-0.4, 0.5, -0.77], [1.0; 3])];
+    (shapes::sphere(meridians, bands, 0.0), look, SQUARE)
+}
+
+/// The scene that other renderers were measured with: geometry, camera and light are theirs.
+fn peer_sphere() -> Parts {
+    // Their pole is y, the first meridian 0.3 from z towards x; the pole then leans to the eye by 0.55.
+    let pole_up = [[0.0, 1.0, 0.0], [0.0, 0.0, 1.0], [1.0, 0.0, 0.0]];
+    let lean = rotation([1.0, 0.0, 0.0], 0.55);
+    let mesh = shapes::turned(shapes::sphere(24, 16, 0.3), &product(&lean, &pole_up));
+    let mut view = View::orbit(Up::Y, 0.0, 0.0, 3.0, ORBIT).focal(2.8);
+    view.near = 1.75;
+    let mut look = Look::new(Surface::metal([1.0; 3], [0.1, 0.45, 0.45], 50), view);
+    look.lamps = vec![Lamp::Distant([0.394_055_24, 0.472_866_29, -0.788_110_48], [1.0; 3])];
+    (mesh, look, (320, 240))
+}
+
+fn near_light(colour: V3, view: View) -> Look {
+    let mut look = Look::new(Surface::metal(colour, [0.08, 0.47, 0.45], 20), view.focal(3.5));
+    look.lamps = vec![Lamp::Near([-0.9, 1.0, DISTANCE - 2.0], [1.0; 3])];
+    look.local_viewer = true;
+    look
+}
+
+fn torus() -> Parts {
+    let size = (320, 320);
+    let mesh = shapes::torus(75, 25);
+    let view = tilted(0.7, 0.4).parallel().fit(&mesh.positions, size, MARGIN);
+    let mut look = Look::new(Surface::plastic([0.25, 0.5, 0.95], [0.12, 0.75, 0.45], 20), view);
+    look.lamps = vec![Lamp::Distant([-0.4, 0.5, -0.77], [1.0; 3])];
+    (mesh, look, size)
+}
+
+/// Turns about the line of sight: it has no back to show.
+fn triangle() -> Parts {
+    let upright = rotation([0.0, 1.0, 0.0], 0.0);
+    let view = View::facing(upright, 3.0, [0.0, 0.0, 1.0], ORBIT);
+    let mesh = shapes::bulged_triangle();
+    let view = view.fit(&mesh.positions, SQUARE, MARGIN);
+    let mut look = Look::new(Surface::metal([1.0; 3], [0.06, 0.44, 0.5], 20), view);
+    look.lamps = vec![Lamp::Near([0.1, -0.15, 2.0], [1.0; 3])];
+    look.local_viewer = true;
+    (mesh, look, SQUARE)
+}
+
+/// Turned about the vertical by `turn`, then towards the eye by `tilt`.
+fn tilted(tilt: f64, turn: f64) -> View {
+    let rows = product(&rotation([1.0, 0.0, 0.0], tilt), &rotation([0.0, 1.0, 0.0], turn % TAU));
+    View::facing(rows, DISTANCE, [0.0, 1.0, 0.0], ORBIT)
+}

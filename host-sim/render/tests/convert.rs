@@ -1,0 +1,222 @@
+//! What a converted mesh promises to the renderer.
+
+use microphong::{
+    Shader, Stream,
+    stream::record::{CLOSED_CONVEX, Triangle},
+};
+use microphong_render::{
+    look::{Look, Surface},
+    mesh, obj,
+    quantise::{normal, quantise},
+    scene,
+    vector::{V3, add, cross, dot, length, scale, sub, unit},
+    view::{Up, View},
+};
+use std::collections::HashMap;
+
+fn wide(v: [i16; 3]) -> V3 {
+    v.map(|c| f64::from(c) / 16384.0)
+}
+
+/// Calls `check` with every built-in scene's stream, a triangle, and the positions and unit normals of its corners.
+fn each_triangle(mut check: impl FnMut(&str, &Stream<'_>, &Triangle, [V3; 3], [V3; 3])) {
+    for name in scene::NAMES {
+        let scene = scene::load(name).unwrap();
+        let stream = scene.stream.parse().unwrap();
+        for mesh in stream.meshes {
+            let vertices = stream.vertices_of(mesh).unwrap();
+            for triangle in stream.triangles_of(mesh).unwrap() {
+                let corners = triangle.corners.map(|c| vertices[usize::from(c)]);
+                let normals = corners.map(|c| unit(wide(c.normal)).unwrap());
+                check(name, &stream, triangle, corners.map(|c| wide(c.position)), normals);
+            }
+        }
+    }
+}
+
+/// A deterministic stand-in for chance, in [-1, 1).
+fn noise(seed: &mut u64) -> f64 {
+    *seed = seed.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+    (*seed >> 11) as f64 / (1u64 << 52) as f64 - 1.0
+}
+
+/// Half a unit in the last place: near an axis the lattice has nothing better.
+const WORST: f64 = 0.5 / 16384.0 + 1e-9;
+
+#[test]
+fn normals_have_unit_length() {
+    let (mut seed, mut over, count) = (1, 0, 100_000);
+    for _ in 0..count {
+        let Some(exact) = unit([0, 1, 2].map(|_| noise(&mut seed))) else { continue };
+        let quantised = normal(exact).map(f64::from);
+        let error = (length(quantised) - 1.0).abs();
+        assert!(error <= WORST, "{exact:?}: {error:e}");
+        assert!(length(sub(quantised, exact)) < 2.6 / 16384.0);
+        over += usize::from(error > 2e-5);
+    }
+    assert!(over * 500 < count, "{over} of {count} normals are off by more than 2e-5");
+}
+
+#[test]
+fn normals_of_scenes_have_unit_length() {
+    for name in scene::NAMES {
+        let scene = scene::load(name).unwrap();
+        let stream = scene.stream.parse().unwrap();
+        let errors = stream.vertices.iter().map(|v| (length(wide(v.normal)) - 1.0).abs());
+        let worst = errors.fold(0.0, f64::max);
+        assert!(worst <= WORST, "{name}: {worst:e}");
+    }
+}
+
+#[test]
+fn edge_constants_follow_their_definition() {
+    each_triangle(|name, _, triangle, _, normals| {
+        let mut least: f64 = 1.0;
+        for k in 0..3 {
+            let (a, b) = (normals[k], normals[(k + 1) % 3]);
+            let sum = length(add(a, b));
+            let rsum = ((1.0 / sum - 0.5) * 131_072.0).min(65535.0);
+            assert!((f64::from(triangle.rsum[k]) - rsum).abs() <= 0.5001, "{name}");
+            let bend = ((1.0 - (sum / 2.0).powi(2)) * 65_536.0).min(65535.0);
+            assert!((f64::from(triangle.bend[k]) - bend).abs() <= 0.5001, "{name}");
+            least = least.min(dot(a, b));
+        }
+        let rho = ((1.0 + 2.0 * least) / 3.0).max(0.0).sqrt() * 32768.0;
+        let below = rho - f64::from(triangle.rho);
+        assert!((-1e-6..1.000_001).contains(&below), "{name}: rho {rho}, stored {}", triangle.rho);
+        // It is a bound: no point of the triangle has a shorter normal.
+        for (u, v) in [(1.0, 1.0), (1.0, 2.0), (3.0, 1.0), (0.0, 1.0), (5.0, 0.5)] {
+            let blend = add(add(scale(normals[0], u), scale(normals[1], v)), normals[2]);
+            assert!(length(blend) / (u + v + 1.0) * 32768.0 + 1e-6 >= f64::from(triangle.rho), "{name}");
+        }
+    });
+}
+
+#[test]
+fn culling_never_removes_a_front() {
+    let mut seed = 7;
+    let mut removed = 0;
+    each_triangle(|name, _, triangle, [a, b, c], _| {
+        let plane = cross(sub(b, a), sub(c, a));
+        for distance in [1.1, 3.0, 16.0] {
+            for _ in 0..20 {
+                let eye = scale([0, 1, 2].map(|_| noise(&mut seed)), distance);
+                // Near the plane, where it is close: moved onto it, and a little to the front.
+                let height = dot(plane, sub(eye, a)) / dot(plane, plane);
+                for eye in [eye, sub(eye, scale(plane, height * (1.0 - 1e-9)))] {
+                    let culled = dot(wide(triangle.normal), eye) < f64::from(triangle.offset) / 16384.0;
+                    assert!(!culled || dot(plane, sub(eye, a)) <= 0.0, "{name}: {triangle:?} from {eye:?}");
+                    removed += usize::from(culled);
+                }
+            }
+        }
+    });
+    assert!(removed > 0);
+}
+
+#[test]
+fn backs_are_culled() {
+    each_triangle(|name, _, triangle, [a, b, c], _| {
+        let front = unit(cross(sub(b, a), sub(c, a))).unwrap();
+        assert!(dot(front, wide(triangle.normal)) > 0.999, "{name}");
+        let eye = add(a, scale(front, -0.02));
+        assert!(dot(wide(triangle.normal), eye) < f64::from(triangle.offset) / 16384.0, "{name}");
+    });
+}
+
+#[test]
+fn closed_meshes_face_outward() {
+    let mut volumes: HashMap<String, f64> = HashMap::new();
+    each_triangle(|name, stream, triangle, [a, b, c], _| {
+        *volumes.entry(name.to_owned()).or_default() += dot(a, cross(b, c)) / 6.0;
+        if stream.meshes[0].flags & CLOSED_CONVEX != 0 {
+            assert!(dot(wide(triangle.normal), add(a, add(b, c))) > 0.0, "{name}");
+        }
+    });
+    for name in ["bunny", "sphere-168", "sphere-374", "sphere-690", "peer-sphere", "sphere-40", "dodecahedron", "torus"] {
+        assert!(volumes[name] > 0.0, "{name}");
+    }
+}
+
+#[test]
+fn convex_scenes_are_known() {
+    for name in scene::NAMES.into_iter().chain([scene::CONVEX]) {
+        let scene = scene::load(name).unwrap();
+        let stream = scene.stream.parse().unwrap();
+        let convex = stream.meshes.iter().all(|m| m.flags & CLOSED_CONVEX != 0);
+        let expected = name.contains("sphere") && name != "peer-sphere" || name == "dodecahedron";
+        assert_eq!(convex, expected, "{name}");
+    }
+}
+
+#[test]
+fn corners_turn_counter_clockwise_on_the_screen() {
+    // Right is +x and up is +y for an eye in front: the sign of the whole chain from object space to the screen.
+    let view = View::orbit(Up::Y, 0.0, 0.0, 4.0, 0);
+    let near = |a: V3, b: V3| length(sub(a, b)) < 1e-12;
+    assert!(near(view.eye_space([1.0, 0.0, 0.0], 0.0), [1.0, 0.0, 4.0]));
+    assert!(near(view.eye_space([0.0, 1.0, 0.0], 0.0), [0.0, 1.0, 4.0]));
+    assert!(near(view.eye_space([0.0, 0.0, 1.0], 0.0), [0.0, 0.0, 3.0]));
+    let view = View::orbit(Up::Z, 0.0, 0.0, 4.0, 0);
+    assert!(near(view.eye_space([0.0, 0.0, 1.0], 0.0), [0.0, 1.0, 4.0]));
+    assert!(near(view.eye_space([0.0, -1.0, 0.0], 0.0), [0.0, 0.0, 3.0]));
+}
+
+#[test]
+fn peer_sphere_is_the_measured_one() {
+    let scene = scene::load("peer-sphere").unwrap();
+    let stream = scene.stream.parse().unwrap();
+    assert_eq!((stream.vertices.len(), stream.triangles.len(), scene.size), (362, 720, (320, 240)));
+    let near = |a: V3, b: V3| length(sub(a, b)) < 1e-4;
+    assert!(near(wide(stream.vertices[0].position), [0.0, 0.852_524_5, 0.522_687_2]));
+    assert!(near(wide(stream.vertices[1].position), [0.057_653_1, 0.738_726_7, 0.671_534_8]));
+    assert!(near(wide(stream.vertices[25].position), [0.113_090_7, 0.596_54, 0.794_575_7]));
+    let mut fronts = 0;
+    each_triangle(|name, _, _, [a, b, c], _| {
+        let front = dot(cross(sub(b, a), sub(c, a)), sub([0.0, 0.0, 3.0], a)) > 0.0;
+        fronts += usize::from(name == "peer-sphere" && front);
+    });
+    assert_eq!(fronts, 242);
+}
+
+#[test]
+fn doubled_vertices_weld_and_inside_out_surfaces_turn() {
+    // A tetrahedron, each face with vertices of its own, wound clockwise; one face twice as a line.
+    let points = ["0 0 0", "1 0 0", "0 1 0", "0 0 1"];
+    let mut text = String::new();
+    for face in [[0, 1, 2], [0, 3, 1], [0, 2, 3], [1, 3, 2], [1, 1, 2]] {
+        face.iter().for_each(|&p| text += &format!("v {}\n", points[p]));
+        text += "f -3 -2 -1\n";
+    }
+    let (mesh, report) = mesh::weld(&obj::parse(&text).unwrap(), false).unwrap();
+    assert_eq!((mesh.positions.len(), mesh.triangles.len()), (4, 4));
+    assert_eq!((report.welded, report.degenerate, report.own_normals, report.turned), (11, 1, false, true));
+    let (parts, dropped) = quantise(&mesh);
+    assert_eq!((parts.len(), dropped, parts[0].closed_convex), (1, 0, true));
+    for (p, n) in mesh.positions.iter().zip(&mesh.normals) {
+        assert!(dot(*p, *n) > 0.0);
+    }
+}
+
+#[test]
+fn large_meshes_are_split() {
+    let side = 300;
+    let mut mesh = mesh::Mesh::default();
+    for y in 0..side {
+        for x in 0..side {
+            let place = |i: usize| i as f64 / side as f64 - 0.5;
+            mesh.positions.push([place(x), place(y), 0.0]);
+            mesh.normals.push([0.0, 0.0, 1.0]);
+            if x + 1 < side && y + 1 < side {
+                let at = y * side + x;
+                mesh.triangles.extend([[at, at + 1, at + side + 1], [at, at + side + 1, at + side]]);
+            }
+        }
+    }
+    let (parts, dropped) = quantise(&mesh);
+    assert_eq!((parts.len(), dropped), (2, 0));
+    assert_eq!(parts.iter().map(|p| p.triangles.len()).sum::<usize>(), mesh.triangles.len());
+    let view = View::orbit(Up::Y, 0.0, 0.0, 4.0, 8);
+    let stream = Look { shader: Shader::Phong, ..Look::new(Surface::metal([1.0; 3], [0.1, 0.5, 0.4], 20), view) }.stream(&parts).unwrap();
+    assert_eq!(stream.parse().unwrap().shader(), Shader::Phong);
+}

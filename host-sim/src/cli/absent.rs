@@ -1,0 +1,59 @@
+//! Commands that this build was compiled without: they are listed, and say how to get them.
+
+use super::{Outcome, Usage};
+use anyhow::Result;
+use std::ffi::OsString;
+
+/// A command that needs the feature `boards`, under its own name.
+#[cfg(not(feature = "boards"))]
+macro_rules! absent {
+    ($($name:ident: $about:literal;)*) => {$(
+        pub(super) mod $name {
+            #[derive(clap::Args)]
+            #[command(about = concat!($about, " (not in this build; call it to see how to get it)"), disable_help_flag = true)]
+            pub(crate) struct Arguments {
+                #[arg(hide = true, trailing_var_arg = true, allow_hyphen_values = true)]
+                arguments: Vec<std::ffi::OsString>,
+            }
+
+            pub(crate) fn run(Arguments { arguments }: &Arguments) -> anyhow::Result<super::Outcome> {
+                super::refuse(stringify!($name), arguments)
+            }
+        }
+    )*};
+}
+
+#[cfg(not(feature = "boards"))]
+absent! {
+    verify: "Draw scenes with a board's own firmware, emulated, and compare every pixel with this computer";
+    bench: "Count the instructions that processors take for one frame";
+    growth: "Count how the cost of a frame grows with triangles, pixels, lights and bands";
+}
+
+/// Names the command that does what was asked for.
+fn refuse(name: &str, arguments: &[OsString]) -> Result<Outcome> {
+    let mut command = format!("cargo run --release --features boards -- {name}");
+    for argument in arguments.iter().map(|argument| argument.to_string_lossy()) {
+        command.push(' ');
+        if argument.contains(char::is_whitespace) {
+            command.push_str(&format!("{argument:?}"));
+        } else {
+            command.push_str(&argument);
+        }
+    }
+    Err(Usage(format!("this build has no `{name}`: it was compiled without emulated boards; in the sources, run\n  {command}")).into())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_command_that_has_it_is_named() {
+        let arguments = ["--board", "pico", "--scene", "my mesh.tri"].map(OsString::from);
+        let error = refuse("verify", &arguments).err().expect("an error");
+        assert!(error.is::<Usage>());
+        let command = "cargo run --release --features boards -- verify --board pico --scene \"my mesh.tri\"";
+        assert!(error.to_string().ends_with(command), "{error}");
+    }
+}

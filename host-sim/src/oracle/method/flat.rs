@@ -1,9 +1,0 @@
-//! One colour per triangle: that of its plane at its centroid.
-
-use crate::oracle::{Facet, Frame, Shade};
-
-pub(super) fn shade<'f>(frame: &'f Frame, facet: &'f Facet) -> Shade<'f> {
-    let centre = facet.position(Facet::CENTRE);
-    let levels = frame.lit(facet, frame.lights.iter().map(|light| frame.cosines(light, centre, facet.plane)));
-    Box::new(move |_| levels)
-}
