@@ -1,7 +1,7 @@
 //! Why there is no picture, in words that fit a small display.
 
 use core::fmt::Write;
-use microphong::{SetupError, StreamError};
+use microphong::{RenderError, StreamError};
 
 /// What kept the frame loop from starting.
 #[derive(Clone, Copy, Debug)]
@@ -9,7 +9,7 @@ pub(crate) enum Failure {
     /// The bytes in flash cannot be drawn.
     Stream(StreamError),
     /// The stream asks for more than this board has.
-    Setup(SetupError),
+    Setup(RenderError),
 }
 
 impl From<StreamError> for Failure {
@@ -18,8 +18,8 @@ impl From<StreamError> for Failure {
     }
 }
 
-impl From<SetupError> for Failure {
-    fn from(error: SetupError) -> Self {
+impl From<RenderError> for Failure {
+    fn from(error: RenderError) -> Self {
         Self::Setup(error)
     }
 }

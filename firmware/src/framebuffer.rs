@@ -9,7 +9,7 @@ use embedded_graphics::{
 };
 
 /// Pixels of the frame buffer.
-pub const LENGTH: usize = MPS2.width * MPS2.height;
+pub const LENGTH: usize = MPS2.layout.width * MPS2.height;
 
 /// Rows from the top, two bytes a pixel, little-endian.
 #[derive(Debug)]
@@ -25,7 +25,7 @@ impl Framebuffer {
     fn blit(&mut self, area: Rectangle, pixels: &[Rgb565]) {
         let (left, top) = (area.top_left.x as usize, area.top_left.y as usize);
         let width = area.size.width as usize;
-        let rows = self.0.chunks_exact_mut(MPS2.width).skip(top).map(|row| &mut row[left..left + width]);
+        let rows = self.0.chunks_exact_mut(MPS2.layout.width).skip(top).map(|row| &mut row[left..left + width]);
         for (row, source) in rows.zip(pixels.chunks_exact(width)) {
             for (to, from) in row.iter_mut().zip(source) {
                 *to = from.into_storage();
@@ -36,7 +36,7 @@ impl Framebuffer {
 
 impl OriginDimensions for Framebuffer {
     fn size(&self) -> Size {
-        Size::new(MPS2.width as u32, MPS2.height as u32)
+        Size::new(MPS2.layout.width as u32, MPS2.height as u32)
     }
 }
 
@@ -48,7 +48,7 @@ impl DrawTarget for Framebuffer {
         let area = self.bounding_box();
         for Pixel(point, colour) in pixels {
             if area.contains(point) {
-                self.0[point.y as usize * MPS2.width + point.x as usize] = colour.into_storage();
+                self.0[point.y as usize * MPS2.layout.width + point.x as usize] = colour.into_storage();
             }
         }
         Ok(())
@@ -56,7 +56,7 @@ impl DrawTarget for Framebuffer {
 
     fn fill_solid(&mut self, area: &Rectangle, colour: Rgb565) -> Result<(), Infallible> {
         let area = area.intersection(&self.bounding_box());
-        let row = [colour; MPS2.width];
+        let row = [colour; MPS2.layout.width];
         for y in area.rows() {
             let line = Rectangle::new(Point::new(area.top_left.x, y), Size::new(area.size.width, 1));
             self.blit(line, &row[..area.size.width as usize]);
@@ -100,8 +100,10 @@ impl Display for Framebuffer {
 macro_rules! framebuffer_board {
     () => {
         use ::embedded_graphics::pixelcolor::{Rgb565, RgbColor};
-        use ::microphong::Workspace;
-        use ::microphong_firmware::{budget::MPS2, framebuffer, run};
+        use ::microphong::Layout;
+        use ::microphong_firmware::{budget::MPS2, framebuffer, run, shaders::every};
+
+        const LAYOUT: Layout = MPS2.layout;
 
         /// The host finds it by this name.
         #[unsafe(no_mangle)]
@@ -109,20 +111,13 @@ macro_rules! framebuffer_board {
 
         #[::cortex_m_rt::entry]
         fn main() -> ! {
-            static mut BANDS: [[Rgb565; MPS2.band()]; 2] = [[Rgb565::BLACK; MPS2.band()]; 2];
-            static mut WORKSPACE: Workspace<
-                Rgb565,
-                { MPS2.vertices },
-                { MPS2.triangles },
-                { MPS2.band() },
-                { MPS2.materials },
-                { MPS2.legs },
-            > = Workspace::new(Rgb565::BLACK);
+            static mut BANDS: [[Rgb565; LAYOUT.band()]; 2] = [[Rgb565::BLACK; LAYOUT.band()]; 2];
+            static mut MEMORY: [u64; LAYOUT.words::<Rgb565>()] = [0; LAYOUT.words::<Rgb565>()];
 
             // SAFETY: nothing else in the program names it, and `main` runs once.
-            let memory = unsafe { &mut *(&raw mut FRAMEBUFFER) };
+            let picture = unsafe { &mut *(&raw mut FRAMEBUFFER) };
             let [front, back] = BANDS;
-            run(&mut framebuffer::Framebuffer::new(memory), WORKSPACE.memory(), [front, back])
+            run(&mut framebuffer::Framebuffer::new(picture), &LAYOUT, MEMORY, [front, back], every())
         }
     };
 }

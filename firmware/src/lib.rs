@@ -8,6 +8,8 @@ mod failure;
 mod picture;
 #[cfg(feature = "semihosting")]
 mod semihosting;
+#[cfg(feature = "literature")]
+pub mod shaders;
 mod stack;
 mod stream;
 
@@ -22,10 +24,9 @@ use failure::Failure;
 pub use picture::error_picture;
 
 use core::ops::Range;
-use embedded_graphics::prelude::*;
-use embedded_graphics::primitives::Rectangle;
+use embedded_graphics::{prelude::*, primitives::Rectangle};
 use microphong::{
-    Frame, Memory, Renderer, Stats, Stream,
+    Frame, Layout, Renderer, Shader, Stats, Stream,
     pixel::{PictureCrc, Pixel},
 };
 use panic_probe as _;
@@ -58,8 +59,15 @@ pub trait Display {
 }
 
 /// Draws the frames of the stream in flash, again and again. Two pixel buffers, so that one can be drawn while the other is sent.
-pub fn run<D: Display>(display: &mut D, memory: Memory<'_, D::Color>, bands: [&mut [D::Color]; 2]) -> ! {
-    let Err(failure) = animate(display, memory, bands);
+/// `shaders` are the methods that the board has.
+pub fn run<D: Display>(
+    display: &mut D,
+    layout: &Layout,
+    memory: &mut [u64],
+    bands: [&mut [D::Color]; 2],
+    shaders: &[Shader<D::Color>],
+) -> ! {
+    let Err(failure) = animate(display, layout, memory, bands, shaders);
     let message = failure.message();
     display.fail(&message);
     // The host reads this line, and then the display: in this order.
@@ -70,11 +78,16 @@ pub fn run<D: Display>(display: &mut D, memory: Memory<'_, D::Color>, bands: [&m
 /// Returns only if it cannot start.
 fn animate<D: Display>(
     display: &mut D,
-    memory: Memory<'_, D::Color>,
+    layout: &Layout,
+    memory: &mut [u64],
     mut bands: [&mut [D::Color]; 2],
+    shaders: &[Shader<D::Color>],
 ) -> Result<core::convert::Infallible, Failure> {
     let stream = Stream::parse(stream::bytes())?;
-    let mut renderer = Renderer::new(stream, display.size(), memory)?;
+    let mut renderer = Renderer::new(stream, display.size(), layout, memory, shaders)?;
+    for band in &bands {
+        renderer.check_band(band)?;
+    }
     let whole = 0..display.size().height;
     for number in 0..u32::from(stream.header.frames) {
         let mut crc = PictureCrc::default();
@@ -87,7 +100,7 @@ fn animate<D: Display>(
         defmt::info!(
             "frame {=u32} shader {=str} crc {=u32:08x} triangles {=u32} culled {=u32} drawn {=u32} pixels {=u32}",
             number,
-            renderer.shader().name(),
+            renderer.shader().facts().name,
             crc.finish(),
             stats.triangles,
             stats.culled,
@@ -145,7 +158,7 @@ fn draw<D: Display>(
                 let pixels = part(front, area);
                 next = display.send(area, pixels, || {
                     look(pixels);
-                    frame.next_band(back)
+                    draw_next(&mut frame, back)
                 });
             }
             _ => return (frame.stats(), next),
@@ -164,8 +177,13 @@ fn start<'r, 'a, C: Pixel>(
     let rows = frame.rows();
     frame.limit(rows.start.min(shown.start)..rows.end.max(shown.end));
     *shown = rows;
-    let area = frame.next_band(band);
+    let area = draw_next(&mut frame, band);
     (frame, area)
+}
+
+/// Draws the next band; bands have been checked before the first frame.
+fn draw_next<C: Pixel>(frame: &mut Frame<'_, '_, C>, band: &mut [C]) -> Option<Rectangle> {
+    frame.next_band(band).unwrap_or_default()
 }
 
 /// The pixels of `area` in a band.

@@ -8,7 +8,7 @@ use embedded_graphics::{
     primitives::Rectangle,
 };
 
-const WIDTH: usize = LM3S6965EVB.width;
+const WIDTH: usize = LM3S6965EVB.layout.width;
 const HEIGHT: usize = LM3S6965EVB.height;
 
 /// Registers, by address; names as in the chip's data sheet.

@@ -56,7 +56,7 @@ impl St7789 {
         let Ok(device) = ExclusiveDevice::new(&mut self.bus, &mut self.select, Delay);
         let interface = SpiInterface::new(device, &mut self.data, &mut buffer);
         let builder = Builder::new(ST7789, interface)
-            .display_size(PICO.width as u16, PICO.height as u16)
+            .display_size(PICO.layout.width as u16, PICO.height as u16)
             .invert_colors(ColorInversion::Inverted)
             .reset_pin(&mut self.reset);
         let Ok(mut panel) = builder.init(&mut Delay) else {
@@ -98,7 +98,7 @@ impl Display for St7789 {
     type Color = Rgb565Be;
 
     fn size(&self) -> Size {
-        Size::new(PICO.width as u32, PICO.height as u32)
+        Size::new(PICO.layout.width as u32, PICO.height as u32)
     }
 
     fn begin(&mut self) {

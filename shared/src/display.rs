@@ -1,19 +1,18 @@
 //! Frames onto embedded-graphics displays: whole bands, never single pixels.
 
-use crate::{Frame, Renderer, Stats, pixel::Pixel};
+use crate::{Frame, Renderer, Stats, error::RenderError, pixel::Pixel};
 use core::cell::RefCell;
 use embedded_graphics_core::{Drawable, draw_target::DrawTarget, pixelcolor::PixelColor};
 
 impl<C: Pixel + PixelColor> Frame<'_, '_, C> {
     /// Draws all bands of the frame, handing each to `target` in one `fill_contiguous`.
     ///
-    /// `band` should hold a band: `width * band_rows` pixels. With less, bands get fewer rows; with less than one row,
-    /// nothing is drawn.
+    /// `band` holds a row at least.
     ///
     /// # Errors
     /// The display's.
-    pub fn draw_to<D: DrawTarget<Color = C>>(mut self, target: &mut D, band: &mut [C]) -> Result<Stats, D::Error> {
-        while let Some(area) = self.next_band(band) {
+    fn draw_to<D: DrawTarget<Color = C>>(mut self, target: &mut D, band: &mut [C]) -> Result<Stats, D::Error> {
+        while let Ok(Some(area)) = self.next_band(band) {
             target.fill_contiguous(&area, band.iter().copied().take((area.size.width * area.size.height) as usize))?;
         }
         Ok(self.stats())
@@ -22,15 +21,20 @@ impl<C: Pixel + PixelColor> Frame<'_, '_, C> {
 
 /// One frame as a [`Drawable`], to be drawn like any other shape of embedded-graphics. Its output is the frame's [`Stats`].
 #[derive(Debug)]
-pub struct Picture<'r, 'a, C> {
+pub struct Picture<'r, 'a, C: Pixel> {
     parts: RefCell<(&'r mut Renderer<'a, C>, &'r mut [C])>,
     number: u32,
 }
 
 impl<'r, 'a, C: Pixel> Picture<'r, 'a, C> {
-    /// Frame `number` of `renderer`, drawn by way of `band`, see [`Frame::draw_to`].
-    pub fn new(renderer: &'r mut Renderer<'a, C>, band: &'r mut [C], number: u32) -> Self {
-        Self { parts: RefCell::new((renderer, band)), number }
+    /// Frame `number` of `renderer`, drawn by way of `band`: as many pixels as [`crate::Layout::band`] says; with less, bands get fewer
+    /// rows.
+    ///
+    /// # Errors
+    /// When `band` does not hold one row.
+    pub fn new(renderer: &'r mut Renderer<'a, C>, band: &'r mut [C], number: u32) -> Result<Self, RenderError> {
+        renderer.check_band(band)?;
+        Ok(Self { parts: RefCell::new((renderer, band)), number })
     }
 }
 

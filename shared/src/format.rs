@@ -76,3 +76,5 @@ pub const INVERSE_ALTITUDE: u32 = 2;
 pub const RAMP: usize = 512;
 /// Lights in one scene.
 pub const MAX_LIGHTS: usize = 8;
+/// Light of three channels at a pixel, Q24.8 in 1/255 of full intensity, in [0, 255]. One channel stands in the first place.
+pub type Intensity = [i32; 3];

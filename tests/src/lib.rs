@@ -4,7 +4,7 @@ use microphong::stream::{
     record::{CLOSED_CONVEX, Header, Mesh},
     seal,
 };
-use microphong_sim::bytes::StreamBytes;
+use microphong_sim::{bytes::StreamBytes, shader::Shader};
 use serde_json::Value;
 use std::{
     mem::{offset_of, size_of},
@@ -35,6 +35,18 @@ pub fn program() -> &'static Path {
             .expect("the program's path")
     });
     &PROGRAM
+}
+
+/// The methods that all others are compared with.
+pub const BASIC: [Shader; 4] = [Shader::FLAT, Shader::GOURAUD, Shader::SIX_POINT, Shader::PHONG];
+
+/// The method with this name.
+///
+/// # Panics
+/// When there is none.
+#[must_use]
+pub fn named(name: &str) -> Shader {
+    Shader::ALL.into_iter().find(|shader| shader.name() == name).unwrap_or_else(|| panic!("no method is named {name}"))
 }
 
 /// Whether a command has said nothing on stderr but what takes long.

@@ -5,19 +5,16 @@ use embedded_graphics::{
     prelude::*,
 };
 use microphong::{
-    Memory, Renderer, SetupError, Shader, Stats, Stream,
-    bin::Entry,
-    format::{BIAS, RAMP},
-    palette::Palette,
+    Layout, RenderError, Renderer, Stats, Stream,
+    coverage::area::Contour,
+    format::{BIAS, Intensity, RAMP},
     pixel::Pixel,
-    raster::area::Contour,
-    sample::Sample,
-    vertex::ScreenVertex,
 };
 use microphong_sim::{
     oracle::{self, Frame},
     render::{self, Style},
     scene,
+    shader::Shader,
 };
 use proptest::{
     prelude::Rng,
@@ -196,12 +193,22 @@ fn coverages_of_a_patch_add_up_to_one() {
 struct White(u8);
 
 impl Pixel for White {
+    type Stored = u8;
+
     const GRAY: bool = true;
     const DEPTH: [u32; 3] = [8; 3];
     const BYTES: usize = 1;
 
     fn pack([luma, ..]: [u8; 3]) -> Self {
         Self(luma)
+    }
+
+    fn stored(self) -> u8 {
+        self.0
+    }
+
+    fn from_stored(stored: u8) -> Self {
+        Self(stored)
     }
 
     fn channels(self) -> [u8; 3] {
@@ -212,9 +219,13 @@ impl Pixel for White {
         self.0.into()
     }
 
-    fn ramped<const BITS: u32>(_: &[Self; RAMP], level: u32) -> Self {
+    fn ramped<const BITS: u32>(_: &[u8; RAMP], level: u32) -> Self {
         // No level is so far from what it should be that it wraps.
         assert!(i64::from(level >> BITS) < i64::from(BIAS) * 4);
+        Self(255)
+    }
+
+    fn rounded(_: Intensity) -> Self {
         Self(255)
     }
 
@@ -269,7 +280,7 @@ fn meshes_have_no_seams_and_smooth_outlines() {
         let stream = scene.stream.parse().unwrap();
         let size = Size::new(200, 160);
         for number in [0, 7, 23, 41] {
-            let (pixels, _) = render::frame::<White>(stream, size, smooth(Shader::Gouraud), 160, number).unwrap();
+            let (pixels, _) = render::frame::<White>(stream, size, smooth(Shader::GOURAUD), 160, number).unwrap();
             let ground = f64::from(pixels[0].0);
             let counts = silhouette(&Frame::new(stream, (200, 160), number));
             let (mut worst, mut square, mut edge, mut seams, mut inside, mut deepest) = (0f64, 0.0, 0u32, 0, 0, 0);
@@ -369,8 +380,8 @@ fn pictures_are_like_supersampled_ones() {
                 shader.name()
             );
             // Steep highlights of a pixel or two, and surfaces that cut each other; at the rim of its map an environment is steepest.
-            let (rms, tail) = match (shader, name) {
-                (Shader::Environment, _) => (1.3, 20.0),
+            let (rms, tail) = match (shader.name(), name) {
+                ("environment", _) => (1.3, 20.0),
                 (_, "teapot") => (1.0, 13.0),
                 (_, "bunny") => (0.55, 6.0),
                 _ => (0.4, 3.5),
@@ -383,24 +394,15 @@ fn pictures_are_like_supersampled_ones() {
 /// A frame with room for so many vertices and triangles, in bands of so many rows.
 fn frame(stream: Stream<'_>, shader: Shader, vertices: usize, triangles: usize, rows: u32) -> (Vec<Rgb565>, Stats) {
     let size = Size::new(150, 110);
-    let (mut vertices, mut bins) = (vec![ScreenVertex::EMPTY; vertices], vec![Entry::EMPTY; triangles]);
-    // The samples decide how many rows a band has.
-    let (mut depth, mut samples) = (vec![0; 150 * 110], vec![Sample::EMPTY; (150 * rows) as usize]);
-    let mut palettes = vec![Palette::empty(); stream.materials.len()];
-    let memory = Memory {
-        vertices: &mut vertices,
-        bins: &mut bins,
-        depth: &mut depth,
-        palettes: &mut palettes,
-        samples: &mut samples,
-        legs: &mut [],
-    };
-    let mut renderer = Renderer::with_shader(stream, size, memory, shader).unwrap();
+    let layout = Layout::new(150, rows as usize).vertices(vertices).triangles(triangles).materials(stream.materials.len());
+    let layout = layout.active_triangles(0).antialias(true);
+    let mut memory = vec![0; layout.words::<Rgb565>()];
+    let mut renderer = Renderer::with_shader(stream, size, &layout, &mut memory, shader.on()).unwrap();
     renderer.set_antialias(true).unwrap();
     let mut band = vec![Rgb565::RED; 150 * 110];
     let mut pixels = Vec::new();
     let mut frame = renderer.frame(5);
-    while let Some(area) = frame.next_band(&mut band) {
+    while let Some(area) = frame.next_band(&mut band).unwrap() {
         assert!(area.size.height <= rows);
         pixels.extend_from_slice(&band[..(area.size.width * area.size.height) as usize]);
     }
@@ -414,7 +416,7 @@ fn neither_bands_nor_overflow_change_a_pixel() {
         let stream = scene.stream.parse().unwrap();
         let (vertices, triangles) = (stream.vertices.len(), stream.triangles.len());
         for shader in Shader::ALL.into_iter() {
-            if shader.needs_constant_light() && !stream.is_constant() {
+            if !shader.facts().near_lights && !stream.is_constant() {
                 continue;
             }
             let (whole, stats) = frame(stream, shader, vertices, triangles, 110);
@@ -431,13 +433,12 @@ fn neither_bands_nor_overflow_change_a_pixel() {
 fn memory_that_is_missing_is_named() {
     let scene = scene::load("triangle").unwrap();
     let stream: Stream<'_> = scene.stream.parse().unwrap();
-    let (mut depth, mut palettes) = ([0; 64], [Palette::<Rgb565>::empty()]);
-    let mut samples = [Sample::EMPTY; 31];
-    let memory =
-        Memory { vertices: &mut [], bins: &mut [], depth: &mut depth, palettes: &mut palettes, samples: &mut samples, legs: &mut [] };
-    let mut renderer = Renderer::new(stream, Size::new(32, 8), memory).unwrap();
-    assert_eq!(renderer.set_antialias(true), Err(SetupError::Samples { need: 32 }));
-    assert_eq!(renderer.set_antialias(true).unwrap_err().to_string(), "antialiasing needs 32 samples at least, one row");
+    let layout = Layout::new(32, 2).vertices(0).triangles(0).active_triangles(0);
+    let mut memory = vec![0; layout.words::<Rgb565>()];
+    let mut renderer = Renderer::<Rgb565>::new(stream, Size::new(32, 8), &layout, &mut memory, &Shader::ALL.map(Shader::on)).unwrap();
+    assert_eq!(renderer.set_antialias(true), Err(RenderError::NoSamples));
+    let text = renderer.set_antialias(true).unwrap_err().to_string();
+    assert_eq!(text, "antialiasing needs memory of its own; ask for it by Layout::antialias");
     assert_eq!(renderer.set_antialias(false), Ok(()));
     assert_eq!(renderer.band_rows(), 2, "still without");
 }

@@ -1,18 +1,16 @@
 //! Integers against the same method in 64-bit floating point: every method, every pixel of every scene, all around.
 
 use embedded_graphics::prelude::Size;
-use microphong::{
-    Shader,
-    stream::{
-        record::{Light, Material},
-        seal,
-    },
+use microphong::stream::{
+    record::{Light, Material},
+    seal,
 };
 use microphong_sim::{
     bytes::StreamBytes,
     level,
     oracle::{Frame, Shade, decides, method},
     scene::{self, Scene},
+    shader::Shader,
 };
 use std::{sync::Mutex, thread};
 use zerocopy::IntoBytes;

@@ -5,28 +5,24 @@ use embedded_graphics::{
     pixelcolor::{Gray8, Rgb565},
     prelude::*,
 };
-use microphong::{
-    Memory, Picture, Renderer, Shader, Stats, Stream, bin::Entry, palette::Palette, relay::Leg, render::check, vertex::ScreenVertex,
-};
+use microphong::{Layout, Picture, RenderError, Renderer, Stats, Stream, error::MAX_SIDE, renderer::check};
 use microphong_sim::{
     render::{self, Style},
     scene,
+    shader::Shader,
 };
+use microphong_tests::named;
 
 /// A frame with room for so many vertices, triangles, and triangles that are handed on, in bands of so many rows.
-fn frame(stream: Stream<'_>, size: Size, shader: Shader, [vertices, triangles, legs]: [usize; 3], rows: u32) -> (Vec<Rgb565>, Stats) {
-    let mut vertices = vec![ScreenVertex::EMPTY; vertices];
-    let mut bins = vec![Entry::EMPTY; triangles];
-    let mut depth = vec![0; (size.width * rows) as usize];
-    let mut palettes = vec![Palette::empty(); stream.materials.len()];
-    let mut legs = vec![Leg::EMPTY; legs];
-    let memory =
-        Memory { vertices: &mut vertices, bins: &mut bins, depth: &mut depth, palettes: &mut palettes, samples: &mut [], legs: &mut legs };
-    let mut renderer = Renderer::with_shader(stream, size, memory, shader).unwrap();
-    let mut band = vec![Rgb565::RED; (size.width * rows) as usize];
+fn frame(stream: Stream<'_>, size: Size, shader: Shader, [vertices, triangles, active]: [usize; 3], rows: u32) -> (Vec<Rgb565>, Stats) {
+    let layout = Layout::new(size.width as usize, rows as usize).vertices(vertices).triangles(triangles);
+    let layout = layout.materials(stream.materials.len()).active_triangles(active);
+    let mut memory = vec![0; layout.words::<Rgb565>()];
+    let mut renderer = Renderer::with_shader(stream, size, &layout, &mut memory, shader.on()).unwrap();
+    let mut band = vec![Rgb565::RED; layout.band()];
     let mut pixels = Vec::new();
     let mut frame = renderer.frame(5);
-    while let Some(area) = frame.next_band(&mut band) {
+    while let Some(area) = frame.next_band(&mut band).unwrap() {
         pixels.extend_from_slice(&band[..(area.size.width * area.size.height) as usize]);
     }
     (pixels, frame.stats())
@@ -39,12 +35,12 @@ fn neither_bands_nor_overflow_change_a_pixel() {
         let scene = scene::load(name).unwrap();
         let stream = scene.stream.parse().unwrap();
         let (vertices, triangles) = (stream.vertices.len(), stream.triangles.len());
-        for shader in Shader::ALL.into_iter().filter(|&shader| check(&stream, shader, false).is_ok()) {
+        for shader in Shader::ALL.into_iter().filter(|&shader| check(&stream, shader.facts(), false).is_ok()) {
             let (whole, stats) = frame(stream, size, shader, [vertices, triangles, 0], size.height);
             assert_eq!((stats.passes, stats.uncached), (1, 0));
-            for (rows, legs) in [(1, triangles), (7, 40), (7, 3), (16, triangles), (16, 0), (64, 1)] {
-                let (pixels, banded) = frame(stream, size, shader, [vertices, triangles, legs], rows);
-                assert!(pixels == whole, "{name}, {}: bands of {rows} rows, {legs} handed on", shader.name());
+            for (rows, active) in [(1, triangles), (7, 40), (7, 3), (16, triangles), (16, 0), (64, 1)] {
+                let (pixels, banded) = frame(stream, size, shader, [vertices, triangles, active], rows);
+                assert!(pixels == whole, "{name}, {}: bands of {rows} rows, {active} handed on", shader.name());
                 assert_eq!(banded, stats);
             }
             for (vertices, triangles, rows) in [(0, triangles, 50), (vertices / 2, triangles, 16), (vertices, 3, 16), (7, 0, 40)] {
@@ -62,16 +58,12 @@ fn a_display_is_filled_once() {
     // The mock display panics on a pixel that is drawn twice or lies outside.
     let scene = scene::load("sphere-168").unwrap();
     let stream = scene.stream.parse().unwrap();
-    let mut vertices = vec![ScreenVertex::EMPTY; stream.vertices.len()];
-    let mut bins = vec![Entry::EMPTY; stream.triangles.len()];
-    let (mut depth, mut palettes) = ([0; 64 * 10], [Palette::<Gray8>::empty()]);
-    let mut legs = [Leg::EMPTY; 8];
-    let memory =
-        Memory { vertices: &mut vertices, bins: &mut bins, depth: &mut depth, palettes: &mut palettes, samples: &mut [], legs: &mut legs };
-    let mut renderer = Renderer::new(stream, Size::new(64, 64), memory).unwrap();
+    let layout = Layout::new(64, 10).vertices(stream.vertices.len()).triangles(stream.triangles.len()).active_triangles(8);
+    let mut memory = vec![0; layout.words::<Gray8>()];
+    let mut renderer = Renderer::new(stream, Size::new(64, 64), &layout, &mut memory, &Shader::ALL.map(Shader::on)).unwrap();
     let mut band = [Gray8::BLACK; 64 * 10];
     let mut display = MockDisplay::<Gray8>::new();
-    let stats = Picture::new(&mut renderer, &mut band, 0).draw(&mut display).unwrap();
+    let stats = Picture::new(&mut renderer, &mut band, 0).unwrap().draw(&mut display).unwrap();
     assert!(stats.drawn > 50);
     assert_eq!(display.affected_area().size, Size::new(64, 64));
     let lit = (0..64 * 64).filter(|i| display.get_pixel(Point::new(i % 64, i / 64)).unwrap().luma() > 64).count();
@@ -88,7 +80,7 @@ fn what_is_handed_on_looks_the_same_in_every_style() {
         let stream = scene.stream.parse().unwrap();
         for style in [false, true].into_iter().flat_map(|dither| [false, true].map(|perspective_correct| (dither, perspective_correct))) {
             let (dither, perspective_correct) = style;
-            for shader in Shader::ALL.into_iter().filter(|&shader| check(&stream, shader, perspective_correct).is_ok()) {
+            for shader in Shader::ALL.into_iter().filter(|&shader| check(&stream, shader.facts(), perspective_correct).is_ok()) {
                 let style = Style { dither, perspective_correct, ..shader.into() };
                 let draw = |rows| render::frame::<Rgb565>(stream, size, style, rows, 3).unwrap();
                 let (whole, banded) = (draw(size.height), draw(11));
@@ -106,26 +98,17 @@ fn rows_without_triangles_need_not_be_drawn_again() {
         let scene = scene::load(name).unwrap();
         let stream = scene.stream.parse().unwrap();
         for triangles in [stream.triangles.len(), 3] {
-            let mut vertices = vec![ScreenVertex::EMPTY; stream.vertices.len()];
-            let mut bins = vec![Entry::EMPTY; triangles];
-            let mut legs = vec![Leg::EMPTY; 20];
-            let (mut depth, mut palettes) = (vec![0; width * rows], vec![Palette::empty(); stream.materials.len()]);
-            let memory = Memory {
-                vertices: &mut vertices,
-                bins: &mut bins,
-                depth: &mut depth,
-                palettes: &mut palettes,
-                samples: &mut [],
-                legs: &mut legs,
-            };
-            let mut renderer = Renderer::new(stream, size, memory).unwrap();
+            let layout = Layout::new(width, rows).vertices(stream.vertices.len()).triangles(triangles);
+            let layout = layout.materials(stream.materials.len()).active_triangles(20);
+            let mut memory = vec![0; layout.words::<Rgb565>()];
+            let mut renderer = Renderer::new(stream, size, &layout, &mut memory, &Shader::ALL.map(Shader::on)).unwrap();
             let mut band = vec![Rgb565::RED; width * rows];
             let mut display = vec![Rgb565::RED; width * size.height as usize];
             let (mut shown, mut saved) = (0..size.height, 0);
             for number in [0, 7, 30, 31, 60] {
                 let mut whole = Vec::new();
                 let mut frame = renderer.frame(number);
-                while let Some(area) = frame.next_band(&mut band) {
+                while let Some(area) = frame.next_band(&mut band).unwrap() {
                     whole.extend_from_slice(&band[..(area.size.width * area.size.height) as usize]);
                 }
                 let stats = frame.stats();
@@ -134,12 +117,12 @@ fn rows_without_triangles_need_not_be_drawn_again() {
                 frame.limit(reached.start.min(shown.start)..reached.end.max(shown.end));
                 shown = reached;
                 while !frame.is_complete() {
-                    let area = frame.next_band(&mut band).unwrap();
+                    let area = frame.next_band(&mut band).unwrap().unwrap();
                     let (start, count) = (area.top_left.y as usize * width, width * area.size.height as usize);
                     display[start..start + count].copy_from_slice(&band[..count]);
                     saved += count;
                 }
-                assert_eq!(frame.next_band(&mut band), None);
+                assert_eq!(frame.next_band(&mut band), Ok(None));
                 assert_eq!(frame.stats().pixels, stats.pixels);
                 assert!(display == whole, "{name}, frame {number}");
             }
@@ -147,4 +130,115 @@ fn rows_without_triangles_need_not_be_drawn_again() {
             assert_eq!(saved > 0, triangles >= stream.triangles.len(), "{name}, room for {triangles} triangles: {saved} pixels saved");
         }
     }
+}
+
+/// Memory may be longer than needed, and hold whatever was there before: a frame is the same, and the one after it, too.
+#[test]
+fn what_was_in_the_memory_does_not_matter() {
+    let size = Size::new(100, 70);
+    for name in ["teapot", "torus", "sphere-40"] {
+        let scene = scene::load(name).unwrap();
+        let stream = scene.stream.parse().unwrap();
+        for shader in Shader::ALL.into_iter().filter(|&shader| check(&stream, shader.facts(), false).is_ok()) {
+            for antialias in [false, true] {
+                let layout = Layout::new(100, 16).materials(stream.materials.len()).active_triangles(20).antialias(antialias);
+                // Too little of it, and enough.
+                for layout in [layout.vertices(50).triangles(30), layout.vertices(4096).triangles(4096)] {
+                    let draw = |before: u64, more: usize| {
+                        let mut memory = vec![before; layout.words::<Rgb565>() + more];
+                        let mut renderer = Renderer::with_shader(stream, size, &layout, &mut memory, shader.on()).unwrap();
+                        renderer.set_antialias(antialias).unwrap();
+                        let mut band = vec![Rgb565::RED; layout.band()];
+                        let mut pixels = Vec::new();
+                        for number in [3, 40] {
+                            let mut frame = renderer.frame(number);
+                            while let Some(area) = frame.next_band(&mut band).unwrap() {
+                                pixels.extend_from_slice(&band[..(area.size.width * area.size.height) as usize]);
+                            }
+                        }
+                        pixels
+                    };
+                    let clean = draw(0, 0);
+                    for (before, more) in [(u64::MAX, 0), (0x0123_4567_89AB_CDEF, 5)] {
+                        assert!(draw(before, more) == clean, "{name}, {}, {layout:?}: {before:x}", shader.name());
+                    }
+                }
+            }
+        }
+    }
+}
+
+#[test]
+fn a_slice_shorter_than_a_band_gets_fewer_rows() {
+    let size = Size::new(90, 70);
+    let scene = scene::load("torus").unwrap();
+    let stream = scene.stream.parse().unwrap();
+    let (whole, stats) = frame(stream, size, Shader::SIX_POINT, [stream.vertices.len(), stream.triangles.len(), 20], 16);
+    let layout = Layout::new(90, 16).vertices(stream.vertices.len()).triangles(stream.triangles.len()).active_triangles(20);
+    let mut memory = vec![0; layout.words::<Rgb565>()];
+    let mut renderer = Renderer::with_shader(stream, size, &layout, &mut memory, Shader::SIX_POINT.on()).unwrap();
+    // Less than two rows, rows that do not go into a band's, and other ones each time.
+    for lengths in [&[179, 179][..], &[5 * 90, 5 * 90], &[7 * 90 + 1, 90, 16 * 90]] {
+        let mut frame = renderer.frame(5);
+        let mut pixels = Vec::new();
+        for &length in lengths.iter().cycle() {
+            let mut band = vec![Rgb565::RED; length];
+            let Some(area) = frame.next_band(&mut band).unwrap() else { break };
+            assert!(area.top_left == Point::new(0, (pixels.len() / 90) as i32) && (area.size.width * area.size.height) as usize <= length);
+            pixels.extend_from_slice(&band[..(area.size.width * area.size.height) as usize]);
+        }
+        assert!(pixels == whole, "{lengths:?}");
+        assert_eq!(frame.stats(), stats);
+    }
+}
+
+#[test]
+fn what_does_not_fit_is_named() {
+    let scene = scene::load("torus").unwrap();
+    let stream: Stream<'_> = scene.stream.parse().unwrap();
+    let near = scene::load("sphere-40").unwrap();
+    let (size, layout) = (Size::new(64, 48), Layout::new(64, 10));
+    let words = layout.words::<Rgb565>();
+    let new = |size: Size, layout: Layout, words: usize| {
+        Renderer::<Rgb565>::with_shader(stream, size, &layout, &mut vec![0; words], Shader::FLAT.on()).map(drop)
+    };
+    assert_eq!(new(size, layout, words), Ok(()));
+    let refused = [
+        (new(Size::new(0, 48), layout, words), RenderError::Size { width: 0, height: 48 }, "0x48"),
+        (new(Size::new(64, 0), layout, words), RenderError::Size { width: 64, height: 0 }, "64x0"),
+        (new(Size::new(64, MAX_SIDE + 1), layout, words), RenderError::Size { width: 64, height: MAX_SIDE + 1 }, "1 to"),
+        (new(Size::new(63, 48), layout, words), RenderError::Layout { width: 63 }, "63 columns"),
+        (new(size, Layout { rows: 0, ..layout }, words), RenderError::Layout { width: 64 }, "no row"),
+        (new(size, layout, words - 1), RenderError::Memory { need: words }, "Layout::words"),
+        (new(size, layout, 0), RenderError::Memory { need: words }, "Layout::words"),
+        (new(size, layout.materials(0), words), RenderError::Materials { need: stream.materials.len() }, "materials"),
+    ];
+    for (result, error, text) in refused {
+        assert_eq!(result, Err(error));
+        assert!(error.to_string().contains(text), "{error}");
+    }
+
+    let mut memory = vec![0; words];
+    let method = stream.header.shader;
+    let others: Vec<_> = Shader::ALL.into_iter().filter(|shader| shader.facts().id != method).map(Shader::on).collect();
+    for shaders in [&others[..], &[]] {
+        let missing = Renderer::<Rgb565>::new(stream, size, &layout, &mut memory, shaders).map(drop);
+        assert_eq!(missing, Err(RenderError::Missing { method }));
+        assert!(missing.unwrap_err().to_string().contains(&format!("number {method}")));
+    }
+    let near = near.stream.parse().unwrap();
+    let mut renderer = Renderer::<Rgb565>::with_shader(near, size, &layout, &mut memory, Shader::PHONG.on()).unwrap();
+    assert_eq!(renderer.set_shader(named("slerp").on()), Err(RenderError::Light { shader: "slerp" }));
+    assert_eq!(renderer.shader().facts(), Shader::PHONG.facts());
+
+    let mut pixels = [Rgb565::RED; 64];
+    for length in [0, 63] {
+        let short = &mut pixels[..length];
+        assert_eq!(renderer.check_band(short), Err(RenderError::Band { need: 64 }));
+        assert_eq!(Picture::new(&mut renderer, short, 0).map(drop), Err(RenderError::Band { need: 64 }));
+        assert_eq!(renderer.frame(0).next_band(short), Err(RenderError::Band { need: 64 }));
+        assert!(short.iter().all(|&pixel| pixel == Rgb565::RED));
+    }
+    assert_eq!(renderer.check_band(&pixels), Ok(()));
+    assert_eq!(renderer.frame(0).next_band(&mut pixels).map(|area| area.map(|area| area.size)), Ok(Some(Size::new(64, 1))));
 }

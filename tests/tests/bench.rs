@@ -1,11 +1,13 @@
 //! What `bench` counts is exact, the same each time, and has not grown since somebody last looked.
 
-use microphong::Shader;
 use microphong_sim::{
     bench::{Bench, Processor, baseline, stage::Meter},
     board::{Blocks, elf::Elf, trace},
-    scene, verify,
+    scene,
+    shader::Shader,
+    verify,
 };
+use microphong_tests::named;
 use std::{collections::BTreeMap, path::Path};
 
 /// QEMU logs blocks of instructions; one by one it executes the same, address by address.
@@ -14,7 +16,7 @@ fn blocks_are_the_instructions_in_them() {
     let board = Processor::CortexM3.board().unwrap();
     let scene = scene::load("sphere-40").unwrap();
     let elf = Elf::read(&verify::build(board).unwrap()).unwrap();
-    let elf = elf.with_stream(&verify::prepare(scene.stream.as_bytes(), Shader::Duff, 1).unwrap()).unwrap();
+    let elf = elf.with_stream(&verify::prepare(scene.stream.as_bytes(), named("duff"), 1).unwrap()).unwrap();
     let ranges = Meter::new(&elf).unwrap().ranges();
     let executed = [Blocks::Whole, Blocks::Single].map(|blocks| {
         let mut counts = BTreeMap::<u32, u64>::new();
@@ -40,7 +42,7 @@ fn counts_repeat() {
     let bench = Bench::new(&processors).unwrap();
     let scene = scene::load("sphere-168").unwrap();
     let wanted: Vec<_> =
-        processors.iter().flat_map(|&processor| [Shader::Gouraud, Shader::Renq].map(|shader| (processor, shader))).collect();
+        processors.iter().flat_map(|&processor| [Shader::GOURAUD, Shader::RENQ].map(|shader| (processor, shader))).collect();
     let [first, second] = [(); 2].map(|()| bench.measure(&scene, &wanted, || ()).unwrap());
     assert_eq!(first, second);
     for found in first {

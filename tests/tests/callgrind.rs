@@ -1,10 +1,11 @@
 //! Counts of x86-64 by callgrind: the same in every run, in any company, and of the whole frame.
 
-use microphong::Shader;
 use microphong_sim::{
     bench::callgrind::{Frame, build, count},
     scene,
+    shader::Shader,
 };
+use microphong_tests::named;
 
 const SIZE: (u32, u32) = (320, 240);
 
@@ -17,7 +18,7 @@ fn two_runs_count_the_same() {
     let program = build().expect("the program that draws");
     let scene = scene::load("teapot").expect("a scene");
     let stream = scene.stream.as_bytes();
-    let frames = [Shader::Flat, Shader::SixPoint, Shader::Phong].map(frame);
+    let frames = [Shader::FLAT, Shader::SIX_POINT, Shader::PHONG].map(frame);
     let first = count(&program, stream, &frames).expect("counts");
     // Elsewhere in the process, too.
     let mut reversed = count(&program, stream, &[frames[2], frames[1], frames[0]]).expect("counts");
@@ -39,6 +40,6 @@ fn two_runs_count_the_same() {
 fn what_cannot_be_drawn_is_named() {
     let program = build().expect("the program that draws");
     let near = scene::load("sphere-40").expect("a scene");
-    let error = count(&program, near.stream.as_bytes(), &[frame(Shader::Slerp)]).expect_err("it needs distant lights");
+    let error = count(&program, near.stream.as_bytes(), &[frame(named("slerp"))]).expect_err("it needs distant lights");
     assert!(format!("{error:#}").contains("directional lights"), "{error:#}");
 }

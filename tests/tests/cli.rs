@@ -1,10 +1,11 @@
 //! Wrong input of every kind: the message names the file and the place, the exit code says whose fault it is, nothing is left behind.
 
-use microphong::{Shader, Stream, StreamError, render::check, stream};
+use microphong::{Stream, StreamError, renderer::check, stream};
 use microphong_sim::{
     bytes::StreamBytes,
     render::{self, Format, Settings, Style},
     scene,
+    shader::Shader,
 };
 use microphong_tests::{only_announces, program};
 use std::{
@@ -234,7 +235,7 @@ fn sealed_nonsense_is_refused_or_drawn_but_never_crashes() {
             let all = at < stream.header.length as usize - size_of_val(stream.vertices) - size_of_val(stream.triangles);
             let shaders = if all { &Shader::ALL[..] } else { &Shader::ALL[at % Shader::ALL.len()..][..1] };
             // A bit may have made a far light near, which some methods refuse.
-            for &shader in shaders.iter().filter(|&&shader| check(&stream, shader, false).is_ok()) {
+            for &shader in shaders.iter().filter(|&&shader| check(&stream, shader.facts(), false).is_ok()) {
                 let style = Style { dither: true, antialias: at % 2 == 0, ..shader.into() };
                 let settings = Settings { size: (40, 30).into(), style, band_rows: 8, format: Format::Rgb565 };
                 let picture = render::picture(stream, &settings, 1).expect("a stream that passed the check can be drawn");
@@ -314,6 +315,24 @@ fn cameras_that_mirror_or_skew_are_refused() {
         stream::seal(&mut bad);
         assert_eq!(parse(&bad), Err(StreamError::Field { name: "camera rotation", record: 0 }));
     }
+}
+
+/// Streams may name methods that other programs have.
+#[test]
+fn methods_that_are_not_here_are_named() {
+    use microphong::stream::record::Header;
+    use zerocopy::{FromBytes, IntoBytes};
+    let mut other = good();
+    let mut header = Header::read_from_prefix(&other).expect("a header").0;
+    header.shader = 40_000;
+    other[..size_of::<Header>()].copy_from_slice(header.as_bytes());
+    stream::seal(&mut other);
+    let place = Place::new();
+    place.file("other.tri", &other);
+    place.fails(&["render", "other.tri"], 1, &["other", "40000", "--shader"]);
+    assert!(place.succeeds(&["inspect", "other.tri"]).contains("shader number 40000"));
+    let line = place.succeeds(&["render", "other.tri", "--shader", "phong", "--size", "33x17", "--json"]);
+    assert_eq!(serde_json::from_str::<serde_json::Value>(&line).expect("JSON")["shader"], "phong");
 }
 
 /// A table that fits 100 columns, or one object per claim of the papers asked for.

@@ -5,10 +5,10 @@ use embedded_graphics::{
     prelude::{RgbColor, Size},
 };
 use microphong::{
-    Shader, Stream,
+    Stream,
     stream::{record::Header, seal},
 };
-use microphong_sim::{bytes::StreamBytes, render, scene};
+use microphong_sim::{bytes::StreamBytes, render, scene, shader::Shader};
 use zerocopy::{FromBytes, IntoBytes};
 
 type V3 = [f64; 3];

@@ -1,10 +1,10 @@
 //! `microphong compare`: what it prints, what it refuses, and the page that it writes.
 
-use microphong::Shader;
 use microphong_sim::{
     bytes::StreamBytes,
     compare::{Reference, exponent::with_exponent},
     image, oracle, scene,
+    shader::Shader,
 };
 use microphong_tests::{only_announces, program};
 use serde_json::Value;
@@ -125,7 +125,7 @@ fn among_all_an_impossible_method_says_why() {
     let objects = objects(&succeeds(directory.path(), &["sphere-40", "--size", "64x64", "--json"]));
     assert_eq!(objects.iter().map(|o| o["shader"].as_str()).collect::<Vec<_>>(), Shader::ALL.map(|s| Some(s.name())));
     for (object, shader) in objects.iter().zip(Shader::ALL) {
-        if shader.needs_constant_light() {
+        if !shader.facts().near_lights {
             assert!(object["reason"].as_str().is_some_and(|reason| reason.contains("directional")), "{object}");
             assert!(FIGURES.iter().all(|figure| object[figure].is_null()), "{object}");
         }
@@ -167,7 +167,7 @@ fn figures_are_those_of_pictures_compared_by_hand() {
     let stream = bytes.parse().expect("a stream");
     let (size, number) = ((120, 90), 3);
     let reference = Reference::new(stream, size, number).expect("something to see");
-    let comparison = reference.compare(Shader::Gouraud).expect("a comparison");
+    let comparison = reference.compare(Shader::GOURAUD).expect("a comparison");
 
     // One white triangle: no pixel is in doubt, and all channels are equal.
     let frame = oracle::Frame::new(stream, size, number);
@@ -205,12 +205,12 @@ fn jumps_of_the_prototypes() {
     let reference = Reference::new(scene.stream.parse().expect("a stream"), scene.size, 0).expect("something to see");
     let jumps = |shader| reference.compare(shader).expect("a comparison").jumps;
     // Flat shading jumps and has no slope; all others are continuous, and Gouraud's slope breaks.
-    let flat = jumps(Shader::Flat);
+    let flat = jumps(Shader::FLAT);
     assert!(flat.level > 30.0 && flat.slope == 0.0, "{flat:?}");
-    for shader in [Shader::Gouraud, Shader::SixPoint, Shader::Phong] {
+    for shader in [Shader::GOURAUD, Shader::SIX_POINT, Shader::PHONG] {
         assert!(jumps(shader).level < 0.01, "{}", shader.name());
     }
-    assert!(jumps(Shader::Gouraud).slope > 1.0);
+    assert!(jumps(Shader::GOURAUD).slope > 1.0);
 }
 
 #[test]
@@ -218,9 +218,9 @@ fn pictures_are_those_of_the_renderer() {
     let scene = scene::load("torus").expect("a built-in scene");
     let stream = scene.stream.parse().expect("a stream");
     let reference = Reference::new(stream, (64, 64), 0).expect("something to see");
-    let comparison = reference.compare(Shader::SixPoint).expect("a comparison");
+    let comparison = reference.compare(Shader::SIX_POINT).expect("a comparison");
     let size = embedded_graphics::geometry::Size::new(64, 64);
     let (pixels, _) =
-        microphong_sim::render::frame::<embedded_graphics::pixelcolor::Rgb888>(stream, size, Shader::SixPoint, 16, 0).expect("a picture");
+        microphong_sim::render::frame::<embedded_graphics::pixelcolor::Rgb888>(stream, size, Shader::SIX_POINT, 16, 0).expect("a picture");
     assert_eq!(comparison.picture.as_flattened(), image::rgb_bytes(&pixels));
 }

@@ -1,14 +1,16 @@
 //! Without depth where it cannot matter, a closed convex mesh looks the same, pixel by pixel; and no other mesh is drawn so.
 
 use embedded_graphics::{pixelcolor::Rgb888, prelude::Size};
-use microphong::{Shader, render::check, stream::record::CLOSED_CONVEX};
+use microphong::{renderer::check, stream::record::CLOSED_CONVEX};
 use microphong_sim::{
     bytes::StreamBytes,
     look::{Lamp, Look, Surface},
     mesh::Mesh,
     quantise::quantise,
     render::{self, Style},
-    scene, shapes,
+    scene,
+    shader::Shader,
+    shapes,
     vector::{V3, add, cross, dot, length, product, rotation, scale, sub, unit},
     view::{Up, View},
 };
@@ -43,7 +45,7 @@ fn convex_scenes_look_the_same() {
         assert!(is_marked(&stream), "{name}");
         for (width, height, rows) in [(320, 240, 240), (47, 61, 1), (16, 16, 5), (640, 480, 20), (1001, 200, 64)] {
             // Flat shading shows best which triangle a pixel has.
-            let differing = difference(&stream, Size::new(width, height), Shader::Flat, rows, (0..120).step_by(7));
+            let differing = difference(&stream, Size::new(width, height), Shader::FLAT, rows, (0..120).step_by(7));
             assert_eq!(differing, 0, "{name} at {width}x{height}");
         }
     }
@@ -57,7 +59,7 @@ fn every_method_looks_the_same() {
             for (perspective_correct, antialias, dither) in
                 [(false, false, false), (false, false, true), (true, false, false), (false, true, false)]
             {
-                if check(&parsed, shader, perspective_correct).is_ok() {
+                if check(&parsed, shader.facts(), perspective_correct).is_ok() {
                     let style = Style { shader, perspective_correct, antialias, dither };
                     assert_eq!(difference(&stream, Size::new(120, 90), style, 16, [3, 62].into_iter()), 0, "{name}, {style:?}");
                 }
@@ -257,7 +259,7 @@ fn convex_bodies_look_the_same() {
             all.set(all.get() + 1);
             without_depth.set(without_depth.get() + usize::from(is_marked(&stream)));
             let frames = [number, (number + 23) % 50].into_iter();
-            prop_assert_eq!(difference(&stream, Size::new(width, height), Shader::Flat, rows, frames), 0);
+            prop_assert_eq!(difference(&stream, Size::new(width, height), Shader::FLAT, rows, frames), 0);
             Ok(())
         })
         .unwrap();

@@ -10,13 +10,8 @@
 
 use microphong::{
     format::{BIAS, LEVEL, WALK},
-    poly::{
-        Patch, Walker,
-        basis::{Basis, MAX_THINNESS},
-        cubic::Cubic,
-        plane::Plane,
-        quadric::Quadric,
-    },
+    interpolate::{Patch, Walker, cubic::Cubic, plane::Plane, quadric::Quadric},
+    setup::gradients::{Gradients, MAX_THINNESS},
 };
 use proptest::{
     prelude::Rng,
@@ -145,23 +140,23 @@ fn quadratics_of_100_000_random_triangles_stay_within_the_bound() {
         if visible[0] >= visible[2] || visible[1] >= visible[3] {
             continue;
         }
-        let Some(basis) = Basis::new(c, visible) else { continue };
+        let Some(gradients) = Gradients::new(c, visible) else { continue };
         triangles += 1;
         let nodes: [i32; 6] = std::array::from_fn(|_| random.pick(0..255 << LEVEL));
-        let mut patch = Quadric::<1>::fit::<15>(&basis, [nodes], WALK - LEVEL);
+        let mut patch = Quadric::<1>::fit::<15>(&gradients, [nodes], WALK - LEVEL);
         // Longest edge over the height on it.
         let longest2 = (0..3).map(|k| square(c[k], c[(k + 1) % 3])).fold(0.0, f64::max);
         let thinness = longest2 / side(c[0], c[1], c[2]) as f64;
-        // The basis measures from its first corner.
+        // Gradients are measured from its first corner.
         let extent = reach(c);
         let sliver = extent * extent > side(c[0], c[1], c[2]) * MAX_THINNESS;
         slivers += u32::from(sliver);
         let setup = if sliver { 0.0 } else { QUADRATIC * thinness * thinness };
         // Coefficients move from the first corner to the anchor with twelve more bits.
         let top = c[0].map(|c| c >> 4);
-        let moved = f64::from((basis.column() - top[0]).abs() + (basis.row() - top[1]).abs());
+        let moved = f64::from((gradients.column() - top[0]).abs() + (gradients.row() - top[1]).abs());
         let rows = [visible[1], visible[3] - 1, random.pick(visible[1]..visible[3])];
-        let mut at = basis.row();
+        let mut at = gradients.row();
         for row in rows {
             let columns = span(&case, row);
             if columns.is_empty() {
@@ -181,7 +176,7 @@ fn quadratics_of_100_000_random_triangles_stay_within_the_bound() {
                 let error = (f64::from(walked as i32) / f64::from(1 << WALK) - exact).abs();
                 // Values wrap: 341 LSB is as far from 0 as -171.
                 let error = error.min((error - 512.0).abs());
-                let distance = f64::from((x - basis.column()).abs() + (row - basis.row()).abs());
+                let distance = f64::from((x - gradients.column()).abs() + (row - gradients.row()).abs());
                 let walking = WALKED_QUADRATIC * (1.0 + distance + distance * distance);
                 // Half a unit of each second derivative; products with the offset are cut, which costs a first
                 // derivative three units more, and the value five.
@@ -221,10 +216,10 @@ fn cubics_stay_within_the_bound() {
         if across.is_empty() || down.is_empty() {
             continue;
         }
-        let Some(basis) = Basis::new(c, [across.start, down.start, across.end, down.end]) else { continue };
+        let Some(gradients) = Gradients::new(c, [across.start, down.start, across.end, down.end]) else { continue };
         triangles += 1;
         let nodes: [i32; 10] = std::array::from_fn(|_| random.pick(0..255 << LEVEL));
-        let mut patch = Cubic::<1>::fit(&basis, [nodes], WALK - LEVEL).raised([BIAS << WALK]);
+        let mut patch = Cubic::<1>::fit(&gradients, [nodes], WALK - LEVEL).biased([BIAS << WALK]);
         // Longest edge over the height on it.
         let longest2 = (0..3).map(|k| square(c[k], c[(k + 1) % 3])).fold(0.0, f64::max);
         let thinness = longest2 / side(c[0], c[1], c[2]) as f64;
@@ -232,7 +227,7 @@ fn cubics_stay_within_the_bound() {
         let sliver = extent * extent > side(c[0], c[1], c[2]) * MAX_THINNESS;
         slivers += u32::from(sliver);
         let setup = if sliver { 0.0 } else { CUBIC * thinness };
-        let mut at = basis.row();
+        let mut at = gradients.row();
         for row in [down.start, down.end - 1, random.pick(down)] {
             let columns = span(&case, row);
             if columns.is_empty() {
@@ -255,7 +250,7 @@ fn cubics_stay_within_the_bound() {
                 // Clamped to what a walked level can hold.
                 let exact = (exact + f64::from(BIAS)).clamp(0.0, 512.0);
                 let error = (f64::from(walked) / f64::from(1 << WALK) - exact).abs();
-                let distance = f64::from((x - basis.column()).abs() + (row - basis.row()).abs());
+                let distance = f64::from((x - gradients.column()).abs() + (row - gradients.row()).abs());
                 // The last bits are cut off.
                 let bound = CUT + WALKED_CUBIC * (1.0 + distance + distance.powi(2) + distance.powi(3)) + setup;
                 worst[kind] = (worst[kind].0.max(error), worst[kind].1.max(error / bound));
@@ -279,7 +274,7 @@ fn planes_stay_within_the_bound_even_on_slivers() {
         if side(case.corners[0], case.corners[1], case.corners[2]) < 0 {
             case.corners.swap(1, 2);
         }
-        let Some(basis) = Basis::new(case.corners, [0, 0, case.width, case.height]) else { continue };
+        let Some(gradients) = Gradients::new(case.corners, [0, 0, case.width, case.height]) else { continue };
         // Levels with as many bits as nodes have, or with four more.
         let finer = 4 * (i as u32 / 6 % 2);
         let nodes: [i32; 3] = std::array::from_fn(|_| random.pick(0..255 << (LEVEL + finer)));
@@ -287,10 +282,10 @@ fn planes_stay_within_the_bound_even_on_slivers() {
         let size = f64::from(extent(0).max(extent(1)));
         let thinness = size * size / side(case.corners[0], case.corners[1], case.corners[2]) as f64;
         let (mut plane, setup) = match finer {
-            0 => (Plane::<1>::fit::<15>(&basis, [nodes], WALK - LEVEL), LINEAR),
-            _ => (Plane::<1>::fit::<20>(&basis, [nodes], WALK - LEVEL - finer), LINEAR_FINER),
+            0 => (Plane::<1>::fit::<15>(&gradients, [nodes], WALK - LEVEL), LINEAR),
+            _ => (Plane::<1>::fit::<20>(&gradients, [nodes], WALK - LEVEL - finer), LINEAR_FINER),
         };
-        let mut at = basis.row();
+        let mut at = gradients.row();
         for row in 0..case.height {
             let columns = span(&case, row);
             if columns.is_empty() {
@@ -305,7 +300,7 @@ fn planes_stay_within_the_bound_even_on_slivers() {
                 let b = barycentric(case.corners, [x * 16 + 8, row * 16 + 8]);
                 let exact: f64 = (0..3).map(|k| b[k] * f64::from(nodes[k] << (4 - finer)) / 2048.0).sum();
                 let error = (f64::from(walked as i32) / f64::from(1 << WALK) - exact).abs();
-                let distance = f64::from((x - basis.column()).abs() + (row - basis.row()).abs());
+                let distance = f64::from((x - gradients.column()).abs() + (row - gradients.row()).abs());
                 let small = if reach(case.corners) <= SMALL { SMALL_LINEAR * (1.0 + distance) } else { 0.0 };
                 let bound = WALKED_LINEAR * (1.0 + distance) + setup * thinness + small;
                 worst = worst.max(error / bound);
@@ -334,7 +329,7 @@ fn fields_of_26_bits_stay_within_the_bound_on_small_triangles() {
         if side(corners[0], corners[1], corners[2]) < 0 {
             corners.swap(1, 2);
         }
-        let Some(basis) = Basis::small(corners) else { continue };
+        let Some(gradients) = Gradients::small(corners) else { continue };
         triangles += 1;
         let case = Case { width: 320, height: 240, corners };
         let longest2 = (0..3).map(|k| square(corners[k], corners[(k + 1) % 3])).fold(0.0, f64::max);
@@ -345,10 +340,10 @@ fn fields_of_26_bits_stay_within_the_bound_on_small_triangles() {
         let nodes: [i32; 6] = std::array::from_fn(|_| least + random.pick(0..range / 2 + 1));
         let [a, b, c, ..] = nodes;
         let extra = 5 + i as u32 / 7 % 2;
-        let mut plane = Plane::<1>::fit::<26>(&basis, [[a, b, c]], extra);
-        let mut quadric = Quadric::<1>::fit::<26>(&basis, [nodes], extra);
+        let mut plane = Plane::<1>::fit::<26>(&gradients, [[a, b, c]], extra);
+        let mut quadric = Quadric::<1>::fit::<26>(&gradients, [nodes], extra);
         let (first, end) = (corners.iter().map(|c| c[1]).min().unwrap() >> 4, (corners.iter().map(|c| c[1]).max().unwrap() >> 4) + 1);
-        let mut at = basis.row();
+        let mut at = gradients.row();
         for row in first..end {
             let columns = span(&case, row);
             plane.jump(row - at);
@@ -363,7 +358,7 @@ fn fields_of_26_bits_stay_within_the_bound_on_small_triangles() {
                 let straight = (0..3).map(|k| b[k] * n[k]).sum::<f64>();
                 let curved = (0..3).map(|k| b[k] * (2.0 * b[k] - 1.0) * n[k]).sum::<f64>()
                     + 4.0 * (b[0] * b[1] * n[3] + b[1] * b[2] * n[4] + b[2] * b[0] * n[5]);
-                let distance = f64::from((x - basis.column()).abs() + (row - basis.row()).abs());
+                let distance = f64::from((x - gradients.column()).abs() + (row - gradients.row()).abs());
                 let units = f64::from(1 << extra);
                 for (k, walked, exact, part, far) in [
                     (0, linear.value(), straight, LONG_LINEAR * thinness, 0.0),

@@ -3,12 +3,13 @@
 //! `MICROPHONG_BLESS=1 cargo test -p microphong-tests golden` makes what is drawn now the standard.
 //! Where a picture differs, target/golden holds it and a picture of the differences.
 
-use microphong::Shader;
 use microphong_sim::{
     image,
     render::{self, Format, Settings},
     scene,
+    shader::Shader,
 };
+use microphong_tests::BASIC;
 use std::{
     fs::{self, File},
     io::BufReader,
@@ -71,7 +72,7 @@ fn check(name: &str, shader: Shader, bless: bool) -> Option<String> {
 fn golden() {
     let bless = std::env::var_os("MICROPHONG_BLESS").is_some_and(|v| v == "1");
     let pairs = scene::NAMES.iter().flat_map(|&name| Shader::ALL.map(|shader| (name, shader)));
-    let pairs = pairs.filter(|(name, shader)| *name == ONE || Shader::BASIC.contains(shader));
+    let pairs = pairs.filter(|(name, shader)| *name == ONE || BASIC.contains(shader));
     let wrong: Vec<_> = pairs.filter_map(|(name, shader)| check(name, shader, bless)).collect();
     assert!(wrong.is_empty(), "{}", wrong.join("\n"));
 }

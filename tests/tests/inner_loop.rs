@@ -1,10 +1,11 @@
 //! The inner loops stay at the limit of the machine: instructions counted in an emulated Cortex-M3.
 
-use microphong::Shader;
 use microphong_sim::{
     bench::{Bench, Processor},
     scene,
+    shader::Shader,
 };
+use microphong_tests::named;
 
 /// A depth-tested quadratic takes 13 instructions a pixel, as many as written by hand; a plane one fewer, a
 /// constant 9. A root and two products make it 36, two quadratics and the highlight's table 26, but 33 and 21 on
@@ -12,14 +13,14 @@ use microphong_sim::{
 #[test]
 fn loops_are_as_short_as_by_hand() {
     let limits = [
-        (Shader::Flat, 9),
-        (Shader::Gouraud, 12),
-        (Shader::SixPoint, 13),
-        (Shader::Phong, 33),
-        (Shader::Sqrt6, 21),
+        (Shader::FLAT, 9),
+        (Shader::GOURAUD, 12),
+        (Shader::SIX_POINT, 13),
+        (Shader::PHONG, 33),
+        (Shader::SQRT6, 21),
         // The same loops, on parts of triangles.
-        (Shader::Gouraud4, 12),
-        (Shader::SixPointCentre, 13),
+        (named("gouraud4"), 12),
+        (named("six-point-centre"), 13),
     ];
     check("peer-sphere", &limits);
 }
@@ -28,7 +29,7 @@ fn loops_are_as_short_as_by_hand() {
 /// where it is tested all the same.
 #[test]
 fn convex_meshes_need_no_depth() {
-    check(scene::CONVEX, &[(Shader::Flat, 5), (Shader::Gouraud, 7), (Shader::SixPoint, 8)]);
+    check(scene::CONVEX, &[(Shader::FLAT, 5), (Shader::GOURAUD, 7), (Shader::SIX_POINT, 8)]);
 }
 
 fn check(scene: &str, limits: &[(Shader, u32)]) {

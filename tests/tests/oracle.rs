@@ -8,12 +8,12 @@ use embedded_graphics::{
     prelude::{RgbColor, Size},
 };
 use microphong::{
-    Shader, Stream,
-    scene::Pose,
+    Stream,
+    geometry::{pose::Pose, projection::View},
     stream::record::{DIRECTIONAL, EYE_SPACE, PERSPECTIVE, Triangle, VIEWER_LOCAL},
-    vertex::View,
 };
-use microphong_sim::{render, scene};
+use microphong_sim::{render, scene, shader::Shader};
+use microphong_tests::BASIC;
 
 type V3 = [f64; 3];
 
@@ -125,7 +125,7 @@ fn errors(name: &str, shader: Shader, number: u32) -> (f64, f64, usize) {
 fn phong_is_exact_but_for_rounding() {
     for name in scene::NAMES {
         for number in [0, 17] {
-            let (_, rmse, over) = errors(name, Shader::Phong, number);
+            let (_, rmse, over) = errors(name, Shader::PHONG, number);
             // Rounding alone makes 0.289 in one channel. In three the worst counts, and a coloured material that is
             // walked in one channel is rounded twice. Where two surfaces are equally near, 16 bits of depth may
             // choose the other one.
@@ -139,7 +139,7 @@ fn phong_is_exact_but_for_rounding() {
 #[test]
 fn better_methods_are_better() {
     for name in ["sphere-168", "sphere-690", "torus", "bunny"] {
-        let [flat, gouraud, six, phong] = Shader::BASIC.map(|shader| errors(name, shader, 0).1);
+        let [flat, gouraud, six, phong] = BASIC.map(|shader| errors(name, shader, 0).1);
         assert!(flat > gouraud && gouraud > six && six >= phong, "{name}: {flat} {gouraud} {six} {phong}");
     }
 }

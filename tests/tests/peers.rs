@@ -1,7 +1,6 @@
 //! Other renderers draw the frame that microphong is measured with, and need more instructions for it.
 
 use embedded_graphics::{geometry::Size, pixelcolor::Rgb565, prelude::*};
-use microphong::Shader;
 use microphong_sim::{
     bench::{
         Processor, callgrind,
@@ -9,6 +8,7 @@ use microphong_sim::{
     },
     board::{Blocks, Board, trace},
     render, scene,
+    shader::Shader,
 };
 use std::slice;
 
@@ -24,7 +24,7 @@ fn they_draw_the_same_frame() {
     let scene = scene::load(SCENE).unwrap();
     let stream = scene.stream.parse().unwrap();
     let (width, height) = scene.size;
-    let (ours, stats) = render::frame::<Rgb565>(stream, Size::new(width, height), Shader::Phong, height, 0).unwrap();
+    let (ours, stats) = render::frame::<Rgb565>(stream, Size::new(width, height), Shader::PHONG, height, 0).unwrap();
     // The sphere touches no corner.
     let level = brightness(&ours, ours[0]);
     for ((_, picture), peer) in peers::draw(&scene).unwrap().iter().zip(PEERS) {
@@ -49,7 +49,7 @@ fn ours_costs_less() {
     }
 
     let (size, band_rows) = (Processor::X86_64.size(), Processor::X86_64.size().1);
-    let frames = [Shader::Flat, Shader::Gouraud, Shader::Phong].map(|shader| callgrind::Frame { size, band_rows, shader });
+    let frames = [Shader::FLAT, Shader::GOURAUD, Shader::PHONG].map(|shader| callgrind::Frame { size, band_rows, shader });
     let counts = callgrind::count(&callgrind::build().unwrap(), scene.stream.as_bytes(), &frames).unwrap();
     let ours: Vec<_> = counts.iter().zip(frames).map(|(count, frame)| count.measurement(SCENE, frame.shader)).collect();
     for peer in &host {

@@ -1,7 +1,7 @@
 //! Interpolation in perspective: right to the arithmetic, and no different where there is no perspective.
 
 use embedded_graphics::{pixelcolor::Rgb888, prelude::Size};
-use microphong::{Memory, Renderer, SetupError, Shader, bin::Entry, palette::Palette, render::check, vertex::ScreenVertex};
+use microphong::{Layout, RenderError, Renderer, renderer::check};
 use microphong_sim::{
     level,
     look::{Lamp, Look, Surface},
@@ -10,6 +10,7 @@ use microphong_sim::{
     quantise::quantise,
     render::{self, Style},
     scene::{self, Scene},
+    shader::Shader,
     shapes,
     vector::{V3, product, rotation, unit},
     view::View,
@@ -117,7 +118,7 @@ fn integers_follow_the_perspective() {
                     let frame = Frame::perspective_correct(stream, scene.size, number);
                     for (k, &shader) in Shader::ALL.iter().enumerate() {
                         // Where a picture without perspective is right, others compare it.
-                        if check(&stream, shader, true).is_err() || !shader.has_perspective() || !stream.is_perspective() {
+                        if check(&stream, shader.facts(), true).is_err() || !shader.facts().perspective || !stream.is_perspective() {
                             continue;
                         }
                         let picture = level::picture(stream, size(scene), correct(shader), number).unwrap();
@@ -132,7 +133,7 @@ fn integers_follow_the_perspective() {
         }
     });
     let worst = worst.into_inner().unwrap();
-    for (shader, (error, place)) in Shader::ALL.iter().zip(&worst).filter(|(shader, _)| shader.has_perspective()) {
+    for (shader, (error, place)) in Shader::ALL.iter().zip(&worst).filter(|(shader, _)| shader.facts().perspective) {
         println!("{:20} {error:.3} LSB at most, on {place}", shader.name());
     }
     assert!(worst.iter().all(|&(error, _)| error <= LIMIT), "a method is more than {LIMIT} LSB off");
@@ -152,7 +153,7 @@ fn correction_comes_closer_to_the_truth() {
         let ratio = ratio.fold(0.0, f64::max);
         assert!(ratio > 3.0, "{}: depths 1 to {ratio}", scene.name);
         println!("{}: depths 1 to {ratio:.1}", scene.name);
-        for shader in Shader::ALL.into_iter().filter(|&shader| check(&stream, shader, true).is_ok() && shader != Shader::Flat) {
+        for shader in Shader::ALL.into_iter().filter(|&shader| check(&stream, shader.facts(), true).is_ok() && shader != Shader::FLAT) {
             let [affine, correct] = [shader.into(), correct(shader)].map(|method| {
                 let picture = level::picture(stream, size(&scene), method, 0).unwrap();
                 errors(&scene, &frame, &picture, shader.name(), 1, 0)
@@ -170,7 +171,7 @@ fn parallel_rays_make_no_difference() {
         let scene = scene::load(name).unwrap();
         let stream = scene.stream.parse().unwrap();
         assert!(!stream.is_perspective());
-        for shader in Shader::ALL.into_iter().filter(|&shader| check(&stream, shader, false).is_ok()) {
+        for shader in Shader::ALL.into_iter().filter(|&shader| check(&stream, shader.facts(), false).is_ok()) {
             let size = Size::new(100, 80);
             let (plain, stats) = render::frame::<Rgb888>(stream, size, shader, 16, 7).unwrap();
             let correct = render::frame::<Rgb888>(stream, size, correct(shader), 16, 7).unwrap();
@@ -183,7 +184,7 @@ fn parallel_rays_make_no_difference() {
 fn bands_change_nothing() {
     for scene in close_scenes() {
         let stream = scene.stream.parse().unwrap();
-        for shader in Shader::ALL.into_iter().filter(|&shader| check(&stream, shader, true).is_ok()) {
+        for shader in Shader::ALL.into_iter().filter(|&shader| check(&stream, shader.facts(), true).is_ok()) {
             for dither in [false, true] {
                 let frame = |rows| {
                     let style = Style { dither, ..correct(shader) };
@@ -205,7 +206,7 @@ fn flat_stays_flat() {
         let stream = scene.stream.parse().unwrap();
         for dither in [false, true] {
             let draw = |style: Style| render::frame::<Rgb888>(stream, size(&scene), Style { dither, ..style }, 16, 5).unwrap();
-            assert!(draw(Shader::Flat.into()) == draw(correct(Shader::Flat)), "{}", scene.name);
+            assert!(draw(Shader::FLAT.into()) == draw(correct(Shader::FLAT)), "{}", scene.name);
         }
     }
 }
@@ -214,26 +215,23 @@ fn flat_stays_flat() {
 fn what_cannot_be_corrected_is_refused() {
     let scene = scene::load("teapot").unwrap();
     let stream = scene.stream.parse().unwrap();
-    let mut vertices = [ScreenVertex::EMPTY; 1];
-    let mut bins = [Entry::EMPTY; 1];
-    let (mut depth, mut palettes) = ([0; 64], [Palette::<Rgb888>::empty()]);
-    let memory =
-        Memory { vertices: &mut vertices, bins: &mut bins, depth: &mut depth, palettes: &mut palettes, samples: &mut [], legs: &mut [] };
-    let mut renderer = Renderer::new(stream, Size::new(64, 64), memory).unwrap();
+    let layout = Layout::new(64, 1).vertices(1).triangles(1).active_triangles(0);
+    let mut memory = vec![0; layout.words::<Rgb888>()];
+    let mut renderer = Renderer::<Rgb888>::new(stream, Size::new(64, 64), &layout, &mut memory, &Shader::ALL.map(Shader::on)).unwrap();
     let mut refused = Vec::new();
     for shader in Shader::ALL {
         renderer.set_perspective_correct(false).unwrap();
-        renderer.set_shader(shader).unwrap();
+        renderer.set_shader(shader.on()).unwrap();
         let result = renderer.set_perspective_correct(true);
-        assert_eq!(result.is_ok(), shader.has_perspective(), "{}", shader.name());
+        assert_eq!(result.is_ok(), shader.facts().perspective, "{}", shader.name());
         if let Err(error) = result {
-            assert_eq!(error, SetupError::Perspective { shader: shader.name() });
+            assert_eq!(error, RenderError::Perspective { shader: shader.name() });
             assert_eq!(error.to_string(), format!("{} shading has no perspective-correct form", shader.name()));
             // The other way round: the method in use stays.
-            renderer.set_shader(Shader::Phong).unwrap();
+            renderer.set_shader(Shader::PHONG.on()).unwrap();
             renderer.set_perspective_correct(true).unwrap();
-            assert_eq!(renderer.set_shader(shader), Err(error));
-            assert_eq!(renderer.shader(), Shader::Phong);
+            assert_eq!(renderer.set_shader(shader.on()), Err(error));
+            assert_eq!(renderer.shader().facts(), Shader::PHONG.facts());
             refused.push(shader);
         }
     }

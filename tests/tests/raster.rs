@@ -4,16 +4,14 @@
 //! the rasterizer, which walks edges.
 
 use microphong::{
-    band::Band,
-    cull::Extent,
-    poly::{Constant, basis::Basis},
-    raster::{
-        smooth::Part,
-        triangle::{Bounds, Outline},
+    geometry::{
+        cull::Extent,
+        projection::{ScreenVertex, State},
+        viewport::Bounds,
     },
-    relay::Relay,
-    tone::Solid,
-    vertex::{ScreenVertex, State},
+    interpolate::Constant,
+    raster::{active::ActiveTriangles, band::Band, pixel_shader::Solid, triangle::ScreenTriangle},
+    setup::gradients::Gradients,
 };
 use proptest::{
     prelude::Rng,
@@ -70,7 +68,7 @@ impl Random {
 }
 
 fn vertex([x, y]: [i32; 2]) -> ScreenVertex {
-    ScreenVertex { x, y, depth: 1 << 27, light: [0; 3], state: State::Ready }
+    ScreenVertex { x, y, depth: 1 << 27, light: [0; 3], state: State::READY }
 }
 
 /// Adds to `counts` the pixels that the core draws for a triangle, band by band; returns how many it says they are.
@@ -89,12 +87,12 @@ fn draw(corners: Corners, band_rows: usize, counts: &mut [u8]) -> u32 {
             top: top as i32,
             rows: rows as i32,
             blend: None,
-            relay: Relay::default(),
+            active: ActiveTriangles::default(),
         };
-        let outline = Outline::new(corners, Part::Centres, &band);
-        let visible = Bounds::new(&Extent::new(outline.corners)).clipped(WIDTH as i32, HEIGHT as i32).sides();
-        let Some(basis) = Basis::new(outline.corners, visible) else { return 0 };
-        drawn += outline.draw(&basis, Constant, Solid(1), &mut band);
+        let screen = ScreenTriangle::new(corners, [WIDTH, top, top + rows].map(|side| side as i32));
+        let visible = Bounds::new(&Extent::new(screen.corners)).clipped(WIDTH as i32, HEIGHT as i32).sides();
+        let Some(gradients) = Gradients::new(screen.corners, visible) else { return 0 };
+        drawn += screen.draw(&gradients, Constant, Solid(1), &mut band);
         for (count, pixel) in counts[top * WIDTH..].iter_mut().zip(&pixels) {
             *count += pixel;
         }
@@ -181,11 +179,8 @@ fn fans_are_watertight() {
 #[test]
 fn closed_convex_meshes_cover_each_pixel_once() {
     use embedded_graphics::{pixelcolor::Rgb888, prelude::*};
-    use microphong::{
-        Shader,
-        stream::{record::Header, seal},
-    };
-    use microphong_sim::{bytes::StreamBytes, render, scene};
+    use microphong::stream::{record::Header, seal};
+    use microphong_sim::{bytes::StreamBytes, render, scene, shader::Shader};
     use zerocopy::{FromBytes, IntoBytes};
 
     for name in ["sphere-168", "sphere-374", "sphere-690", "peer-sphere", "sphere-40", "dodecahedron"] {
@@ -198,7 +193,7 @@ fn closed_convex_meshes_cover_each_pixel_once() {
         let bytes = StreamBytes::from(bytes.as_slice());
         for number in [0, 7, 40] {
             let size = Size::new(320, 240);
-            let (pixels, stats) = render::frame::<Rgb888>(bytes.parse().unwrap(), size, Shader::Flat, 16, number).unwrap();
+            let (pixels, stats) = render::frame::<Rgb888>(bytes.parse().unwrap(), size, Shader::FLAT, 16, number).unwrap();
             let covered: Vec<bool> = pixels.iter().map(|&pixel| pixel != Rgb888::MAGENTA).collect();
             let count = covered.iter().filter(|&&covered| covered).count();
             assert_eq!(stats.pixels as usize, count, "{name}, frame {number}: pixels drawn twice");
@@ -216,7 +211,7 @@ fn closed_convex_meshes_cover_each_pixel_once() {
 #[test]
 fn closed_meshes_are_entered_as_often_as_left() {
     use embedded_graphics::prelude::Size;
-    use microphong::{scene::Pose, vertex::View};
+    use microphong::geometry::{pose::Pose, projection::View};
     use microphong_sim::scene;
 
     for name in ["torus", "sphere-690", "peer-sphere", "sphere-40", "dodecahedron"] {

@@ -1,19 +1,18 @@
 //! The scanline methods where they are hard: normals far apart, hardly apart, and sharp highlights on wide rows.
 
 use embedded_graphics::geometry::Size;
-use microphong::{
-    Shader,
-    stream::{
-        record::{Material, Vertex},
-        seal,
-    },
+use microphong::stream::{
+    record::{Material, Vertex},
+    seal,
 };
 use microphong_sim::{
     bytes::StreamBytes,
     level,
     oracle::{Frame, method},
     scene,
+    shader::Shader,
 };
+use microphong_tests::named;
 use zerocopy::{FromBytes, Immutable, IntoBytes};
 
 /// Changes `count` records that start at byte `start`.
@@ -67,7 +66,7 @@ fn rows_keep_to_their_method_where_they_are_hard() {
         ("dull", changed("sphere-168", 4, |_, normal| normal), 200),
     ];
     for (what, stream, side) in &scenes {
-        for shader in [Shader::Goldman, Shader::Slerp, Shader::Angular, Shader::AngularOriginal] {
+        for shader in ["goldman", "slerp", "angular", "angular-original"].map(named) {
             assert_eq!(wrong(stream, *side, shader), 0, "{what}, {}", shader.name());
         }
     }

@@ -1,28 +1,39 @@
 //! Methods that split triangles: they cover what the others cover, pixel by pixel. What they shade: see `arithmetic`.
 
-use embedded_graphics::{pixelcolor::Gray8, prelude::Size};
-use microphong::{
-    Shader,
-    band::Band,
-    cull::Extent,
-    poly::{Constant, basis::Basis},
-    raster::{
-        cell::Cell,
-        smooth::Part,
-        triangle::{Bounds, Outline},
-    },
-    relay::Relay,
-    tone::Solid,
-    vertex::{ScreenVertex, State},
+use embedded_graphics::{
+    pixelcolor::Gray8,
+    prelude::{GrayColor, Size},
 };
-use microphong_sim::{level, render, scene};
+use microphong::{
+    antialias::PixelSet,
+    format::RAMP,
+    geometry::{
+        cull::Extent,
+        projection::{ScreenVertex, State},
+        viewport::Bounds,
+    },
+    interpolate::{Constant, plane::Plane},
+    lighting::materials::{MaterialTables, Reflectance},
+    method::Uniform,
+    raster::{
+        active::ActiveTriangles,
+        band::Band,
+        canvas::{BandCanvas, Canvas, Shaded},
+        pixel_shader::Solid,
+        triangle::ScreenTriangle,
+    },
+    setup::gradients::Gradients,
+};
+use microphong_literature::sub_triangle::{ScreenSubTriangle, SubTriangle};
+use microphong_sim::{level, render, scene, shader::Shader};
+use microphong_tests::named;
 use proptest::{
     prelude::Rng,
     test_runner::{RngAlgorithm, TestRng},
 };
 use std::ops::Range;
 
-const SPLITTING: [Shader; 4] = [Shader::Gouraud4, Shader::PseudoPhong, Shader::SixPointCentre, Shader::SixPointAdaptive];
+const SPLITTING: [&str; 4] = ["gouraud4", "pseudo-phong", "six-point-centre", "six-point-adaptive"];
 
 const WIDTH: usize = 96;
 const HEIGHT: usize = 80;
@@ -35,28 +46,35 @@ impl Random {
     }
 }
 
-/// Draws `cell`, or its parts if it is split `depth` times more: all of them, or by chance.
-fn draw(outline: &Outline, cell: &Cell, depth: u32, random: &mut Option<&mut Random>, whole: &Shared<'_>, band: &mut Band<'_, u8>) -> u32 {
-    let piece = outline.piece(cell);
-    if !piece.meets(band) {
-        return 0;
-    }
-    if depth == 0 || random.as_mut().is_some_and(|random| random.pick(0..3) == 0) {
-        return piece.draw(&piece.basis(whole.basis), *whole.depth, Constant, Solid(1), band);
-    }
-    cell.split().iter().map(|part| draw(outline, part, depth - 1, random, whole, band)).sum()
+/// What all parts of a triangle share.
+struct Whole<'a> {
+    screen: &'a ScreenTriangle,
+    gradients: &'a Gradients,
+    depth: Plane<1>,
 }
 
-struct Shared<'a> {
-    basis: &'a microphong::poly::basis::Basis,
-    depth: &'a microphong::poly::plane::Plane<1>,
+impl Whole<'_> {
+    /// Draws `part`, or its own parts until they are of this `level`: all of them, or by chance.
+    fn draw(&self, part: &SubTriangle, level: u32, random: &mut Option<&mut Random>, canvas: &mut dyn Canvas) -> u32 {
+        let place = ScreenSubTriangle::new(self.screen, PixelSet::Centres, part);
+        if !place.meets(canvas) {
+            return 0;
+        }
+        if part.level() == level || random.as_mut().is_some_and(|random| random.pick(0..3) == 0) {
+            let mut shaded = Shaded { patch: Constant, shader: Uniform([0; 3]) };
+            return place.draw(place.gradients(self.gradients).row(), self.depth, &mut shaded, canvas);
+        }
+        part.split().iter().map(|part| self.draw(part, level, random, canvas)).sum()
+    }
 }
 
 #[test]
-fn cells_of_random_triangles_cover_each_pixel_once() {
+fn parts_of_random_triangles_cover_each_pixel_once() {
     let mut random = Random(TestRng::from_seed(RngAlgorithm::ChaCha, &[7; 32]));
     let (w, h) = (WIDTH as i32 * 16, HEIGHT as i32 * 16);
     let (mut triangles, mut covered) = (0, 0u64);
+    // Every level is the same colour.
+    let tables = MaterialTables::<Gray8> { ramp: &[1; RAMP], reflectance: &Reflectance::EMPTY };
     for i in 0..12_000 {
         let corners = match i % 5 {
             0 => [0; 3].map(|_| [random.pick(0..w), random.pick(0..h)]),
@@ -66,18 +84,16 @@ fn cells_of_random_triangles_cover_each_pixel_once() {
             }
             2 => [0; 3].map(|_| [random.pick(-w..2 * w), random.pick(-h..2 * h)]),
             3 => [0; 3].map(|_| [random.pick(-65_536..65_536), random.pick(-65_536..65_536)]),
-            // Corners, and with them many corners of cells, on pixel centres.
+            // Corners, and with them many corners of parts, on pixel centres.
             _ => [0; 3].map(|_| [random.pick(-4..100) * 16 + 8, random.pick(-4..84) * 16 + 8]),
         };
-        let [a, b, c] = corners.map(|[x, y]| ScreenVertex { x, y, depth: 1 << 27, light: [0; 3], state: State::Ready });
+        let [a, b, c] = corners.map(|[x, y]| ScreenVertex { x, y, depth: 1 << 27, light: [0; 3], state: State::READY });
         let corners = if Extent::new(corners).area < 0 { [&a, &c, &b] } else { [&a, &b, &c] };
-        let nowhere = Band::<u8> { pixels: &mut [], depth: &mut [], width: WIDTH, top: 0, rows: 0, blend: None, relay: Relay::default() };
-        let outline = Outline::new(corners, Part::Centres, &nowhere);
-        let Some(basis) = Basis::new(outline.corners, Bounds::new(&Extent::new(outline.corners)).clipped(w / 16, h / 16).sides()) else {
-            continue;
-        };
-        let depth = outline.depth(&basis);
-        let mut pictures = [[0u8; WIDTH * HEIGHT]; 2];
+        let nowhere = ScreenTriangle::new(corners, [WIDTH as i32, 0, 0]);
+        let visible = Bounds::new(&Extent::new(nowhere.corners)).clipped(w / 16, h / 16).sides();
+        let Some(gradients) = Gradients::new(nowhere.corners, visible) else { continue };
+        let whole = Whole { screen: &nowhere, gradients: &gradients, depth: nowhere.plane(&gradients, 0) };
+        let mut pictures = [[Gray8::BLACK; WIDTH * HEIGHT]; 2];
         let mut drawn = [0; 2];
         let rows = [HEIGHT, 7, 16, 1][i % 4];
         // The same splits in every band.
@@ -86,7 +102,7 @@ fn cells_of_random_triangles_cover_each_pixel_once() {
             let rows = rows.min(HEIGHT - top);
             for (k, picture) in pictures.iter_mut().enumerate() {
                 let mut depth_rows = vec![0u16; rows * WIDTH];
-                let mut pixels = vec![0u8; rows * WIDTH];
+                let mut pixels = vec![Gray8::BLACK; rows * WIDTH];
                 let mut band = Band {
                     pixels: &mut pixels,
                     depth: &mut depth_rows,
@@ -94,14 +110,16 @@ fn cells_of_random_triangles_cover_each_pixel_once() {
                     top: top as i32,
                     rows: rows as i32,
                     blend: None,
-                    relay: Relay::default(),
+                    active: ActiveTriangles::default(),
                 };
                 drawn[k] += if k == 0 {
-                    Outline::new(corners, Part::Centres, &band).draw(&basis, Constant, Solid(1), &mut band)
+                    let screen = ScreenTriangle::new(corners, [WIDTH, top, top + rows].map(|side| side as i32));
+                    screen.draw(&gradients, Constant, Solid(Gray8::new(1)), &mut band)
                 } else {
                     let mut chance = Random(TestRng::from_seed(RngAlgorithm::ChaCha, &[seed; 4].concat()));
                     let mut chance = (i % 3 > 0 && rows == HEIGHT).then_some(&mut chance);
-                    draw(&outline, &Cell::WHOLE, (i % 7) as u32, &mut chance, &Shared { basis: &basis, depth: &depth }, &mut band)
+                    let mut canvas = BandCanvas { band: &mut band, tables, dither: false };
+                    whole.draw(&SubTriangle::WHOLE, (i % 7) as u32, &mut chance, &mut canvas)
                 };
                 picture[top * WIDTH..][..rows * WIDTH].copy_from_slice(&pixels);
             }
@@ -129,8 +147,8 @@ fn parts_cover_what_triangles_cover() {
                 let (_, stats) = render::frame::<Gray8>(stream, size, shader, 16, number).unwrap();
                 (covered, stats)
             };
-            let gouraud = draw(Shader::Gouraud);
-            for shader in SPLITTING {
+            let gouraud = draw(Shader::GOURAUD);
+            for shader in SPLITTING.map(named) {
                 // The number of pixels counts those that are hidden later, and any that were drawn twice.
                 assert!(draw(shader) == gouraud, "{name}, {}, frame {number}", shader.name());
             }

@@ -1,15 +1,13 @@
 //! The flashable firmware of every board, run on its emulated display and compared with the host, pixel by pixel.
 
-use microphong::{
-    Shader,
-    stream::{
-        record::{Triangle, Vertex},
-        seal,
-    },
+use microphong::stream::{
+    record::{Triangle, Vertex},
+    seal,
 };
 use microphong_sim::{
     board::{self, Board, elf::Elf},
     scene,
+    shader::Shader,
     verify::{self, Request},
 };
 use std::{error::Error, mem::offset_of};
@@ -33,7 +31,7 @@ fn matrix(board: Board) -> Result {
     let directory = tempfile::tempdir()?;
     let elf = verify::build(board)?;
     for scene in ["teapot", "bunny", "sphere-690", "sphere-40", "dodecahedron", "triangle"] {
-        for shader in Shader::BASIC {
+        for shader in Shader::CORE.into_iter().filter(|&shader| board.has(shader)) {
             let report = verify::run(&request(board, scene, shader)?, &elf, directory.path())?;
             println!("{}", serde_json::to_string(&report)?);
             assert_eq!(report.differing, 0, "{board} {scene} {}", shader.name());
@@ -82,7 +80,7 @@ fn bent(scene: &str) -> Result<Vec<u8>> {
 /// One flipped bit of one normal in the firmware's stream must be found, and pictures of it kept.
 fn flipped_bit(board: Board) -> Result {
     let directory = tempfile::tempdir()?;
-    let request = Request { firmware_stream: Some(bent("triangle")?), ..request(board, "triangle", Shader::SixPoint)? };
+    let request = Request { firmware_stream: Some(bent("triangle")?), ..request(board, "triangle", Shader::SIX_POINT)? };
     let report = verify::run(&request, &verify::build(board)?, directory.path())?;
     assert!(report.differing > 0, "{board}: a bent normal went unnoticed");
     for name in ["board.png", "host.png", "difference.png"] {

@@ -9,13 +9,12 @@ use embedded_graphics::{
     prelude::{RgbColor, Size},
 };
 use microphong::{
-    Shader, Stream,
-    scene::Pose,
+    Stream,
+    geometry::{pose::Pose, projection::View},
     stream::{
         record::{Header, Triangle},
         seal,
     },
-    vertex::View,
 };
 use microphong_sim::{
     bytes::StreamBytes,
@@ -23,7 +22,9 @@ use microphong_sim::{
     mesh::Mesh,
     quantise::quantise,
     render::{self, Style},
-    scene, shapes,
+    scene,
+    shader::Shader,
+    shapes,
     view::{self, Up},
 };
 use std::{sync::Mutex, thread};
@@ -192,7 +193,7 @@ fn closed_meshes_have_no_holes() {
             Case::star(6, 200, 0.02, 1.0, parallel, 120),
         ]);
     }
-    assert_eq!(missing(&cases, Shader::Flat.into()), 0);
+    assert_eq!(missing(&cases, Shader::FLAT.into()), 0);
 }
 
 /// The holes that this is about: with the planes alone, and next to nothing for rounded corners, thin triangles are culled that
@@ -201,17 +202,17 @@ fn closed_meshes_have_no_holes() {
 fn planes_alone_would_leave_holes() {
     let bunny = scene::load("bunny").unwrap().stream;
     let mut bytes = bunny.as_bytes().to_vec();
-    let triangles = bytes.len() - bunny.parse().unwrap().triangles.len() * size_of::<Triangle>();
+    let triangles = bytes.len() - size_of_val(bunny.parse().unwrap().triangles);
     for record in bytes[triangles..].chunks_mut(size_of::<Triangle>()) {
         let thick = Triangle { inverse_altitude: 1, ..Triangle::read_from_bytes(record).unwrap() };
         record.copy_from_slice(thick.as_bytes());
     }
     let case = Case::new("bunny of thick triangles", &StreamBytes::from(&bytes[..]), 480);
-    assert!(differences(&case, Shader::Flat.into(), 59).0 > 0);
+    assert!(differences(&case, Shader::FLAT.into(), 59).0 > 0);
 }
 
 #[test]
 fn antialiasing_leaves_no_holes() {
     let cases = [Case::scene("torus", 120), Case::star(60, 40, 0.05, 0.1, false, 100), Case::star(6, 100, 0.02, 1.0, true, 60)];
-    assert_eq!(missing(&cases, Style { antialias: true, ..Shader::Flat.into() }), 0);
+    assert_eq!(missing(&cases, Style { antialias: true, ..Shader::FLAT.into() }), 0);
 }

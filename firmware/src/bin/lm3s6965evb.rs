@@ -3,22 +3,20 @@
 #![no_main]
 
 use embedded_graphics::pixelcolor::{Gray4, GrayColor};
-use microphong::Workspace;
-use microphong_firmware::{budget::LM3S6965EVB as BUDGET, run, ssd0323::Ssd0323};
+use microphong::{Layout, Shader};
+use microphong_firmware::{budget::LM3S6965EVB, run, ssd0323::Ssd0323};
+
+/// The methods for which there is flash beside a scene.
+const SHADERS: [Shader<Gray4>; 3] = [Shader::FLAT, Shader::GOURAUD, Shader::SIX_POINT];
+
+const LAYOUT: Layout = LM3S6965EVB.layout;
 
 #[cortex_m_rt::entry]
 fn main() -> ! {
     static mut PICTURE: [u8; Ssd0323::BYTES] = [0; Ssd0323::BYTES];
-    static mut BANDS: [[Gray4; BUDGET.band()]; 2] = [[Gray4::BLACK; BUDGET.band()]; 2];
-    static mut WORKSPACE: Workspace<
-        Gray4,
-        { BUDGET.vertices },
-        { BUDGET.triangles },
-        { BUDGET.band() },
-        { BUDGET.materials },
-        { BUDGET.legs },
-    > = Workspace::new(Gray4::BLACK);
+    static mut BANDS: [[Gray4; LAYOUT.band()]; 2] = [[Gray4::BLACK; LAYOUT.band()]; 2];
+    static mut MEMORY: [u64; LAYOUT.words::<Gray4>()] = [0; LAYOUT.words::<Gray4>()];
 
     let [front, back] = BANDS;
-    run(&mut Ssd0323::start(PICTURE), WORKSPACE.memory(), [front, back])
+    run(&mut Ssd0323::start(PICTURE), &LAYOUT, MEMORY, [front, back], &SHADERS)
 }

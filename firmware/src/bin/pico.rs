@@ -8,8 +8,8 @@ use embassy_rp::{
     peripherals::DMA_CH0,
     spi::{self, Spi},
 };
-use microphong::{Workspace, pixel::Rgb565Be};
-use microphong_firmware::{budget::PICO, run, st7789::St7789};
+use microphong::pixel::Rgb565Be;
+use microphong_firmware::{budget::PICO, run, shaders::every, st7789::St7789};
 
 bind_interrupts!(struct Interrupts {
     DMA_IRQ_0 => dma::InterruptHandler<DMA_CH0>;
@@ -20,9 +20,8 @@ const SPI_HZ: u32 = 62_500_000;
 
 #[cortex_m_rt::entry]
 fn main() -> ! {
-    static mut BANDS: [[Rgb565Be; PICO.band()]; 2] = [[Rgb565Be::BLACK; PICO.band()]; 2];
-    static mut WORKSPACE: Workspace<Rgb565Be, { PICO.vertices }, { PICO.triangles }, { PICO.band() }, { PICO.materials }, { PICO.legs }> =
-        Workspace::new(Rgb565Be::BLACK);
+    static mut BANDS: [[Rgb565Be; PICO.layout.band()]; 2] = [[Rgb565Be::BLACK; PICO.layout.band()]; 2];
+    static mut MEMORY: [u64; PICO.layout.words::<Rgb565Be>()] = [0; PICO.layout.words::<Rgb565Be>()];
 
     let pins = embassy_rp::init(Default::default());
     let mut config = spi::Config::default();
@@ -37,5 +36,5 @@ fn main() -> ! {
     };
     display.start(None);
     let [front, back] = BANDS;
-    run(&mut display, WORKSPACE.memory(), [front, back])
+    run(&mut display, &PICO.layout, MEMORY, [front, back], every())
 }

@@ -5,8 +5,7 @@
 
 use super::{Bench, Measurement, Processor};
 use anyhow::{Context, Result};
-use microphong::Shader;
-use microphong_render::scene;
+use microphong_render::{scene, shader::Shader};
 use std::{fmt, fs, path::Path};
 
 /// Growth of instructions or flash that is let pass, in percent. A shrinkage of more asks to renew the file, or it would hide later growth.

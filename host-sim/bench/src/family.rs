@@ -1,6 +1,6 @@
 //! Methods that are alike: one colour in charts.
 
-use microphong::Shader;
+use microphong_render::shader::Shader;
 
 /// What a method walks along a span, and what it makes of that at each pixel.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
@@ -25,16 +25,14 @@ impl Family {
 
     /// The family of a method.
     #[must_use]
-    pub const fn of(shader: Shader) -> Self {
-        match shader {
-            Shader::Flat | Shader::Gouraud | Shader::Gouraud4 | Shader::PseudoPhong => Self::Linear,
-            Shader::SixPoint | Shader::SixPointCentre | Shader::SixPointAdaptive | Shader::Cubic => Self::Curved,
-            Shader::Taylor | Shader::TaylorFinite | Shader::Sqrt6 | Shader::Renq | Shader::RenqNewton => Self::Cosine,
-            Shader::Environment | Shader::Blinn | Shader::QuadraticBlinn => Self::Map,
-            Shader::Goldman | Shader::Slerp | Shader::Angular | Shader::AngularOriginal | Shader::Hybrid | Shader::HybridOriginal => {
-                Self::Angle
-            }
-            Shader::Phong | Shader::PhongRv | Shader::Duff | Shader::HighlightTest => Self::Vector,
+    pub fn of(shader: Shader) -> Self {
+        match shader.name() {
+            "flat" | "gouraud" | "gouraud4" | "pseudo-phong" => Self::Linear,
+            "six-point" | "six-point-centre" | "six-point-adaptive" | "cubic" => Self::Curved,
+            "taylor" | "taylor-finite" | "sqrt6" | "renq" | "renq-newton" => Self::Cosine,
+            "environment" | "blinn" | "quadratic-blinn" => Self::Map,
+            "goldman" | "slerp" | "angular" | "angular-original" | "hybrid" | "hybrid-original" => Self::Angle,
+            _ => Self::Vector,
         }
     }
 

@@ -8,8 +8,8 @@
 //! seen.
 
 use anyhow::{Context, Result};
-use microphong::Shader;
 use microphong_boards::elf::Elf;
+use microphong_render::shader::Shader;
 use std::collections::BTreeSet;
 
 /// Bytes of code and constants.
@@ -28,8 +28,8 @@ pub struct Graph {
     needs: Vec<BTreeSet<usize>>,
     /// Nobody needs them: the program starts there.
     roots: Vec<usize>,
-    /// Entries of the methods.
-    methods: Vec<(Shader, usize)>,
+    /// The functions of each method by which it is entered.
+    methods: Vec<(Shader, BTreeSet<usize>)>,
 }
 
 impl Graph {
@@ -58,12 +58,12 @@ impl Graph {
         }
         let wanted: BTreeSet<usize> = needs.iter().flatten().copied().collect();
         let roots = (0..functions.len()).filter(|node| !wanted.contains(node)).collect();
-        let method = |&shader: &Shader| {
-            let module = shader.name().trim_end_matches("-original").replace('-', "_");
-            let name = format!("microphong::shade::{module}::draw");
-            Some((shader, functions.iter().position(|(other, _)| *other == name)?))
+        let entries = |&shader: &Shader| {
+            let name = type_name(shader);
+            let entries = functions.iter().zip(0..).filter(|((other, _), _)| names(other, &name)).map(|(_, node)| node).collect();
+            (shader, entries)
         };
-        let methods = Shader::ALL.iter().filter_map(method).collect();
+        let methods = Shader::ALL.iter().map(entries).collect();
         Ok(Self { sizes: nodes.iter().map(|range| range.len() as u64).collect(), needs, roots, methods })
     }
 
@@ -72,12 +72,13 @@ impl Graph {
     /// # Errors
     /// When its entry is no function of its own.
     pub fn flash(&self, shader: Shader) -> Result<Flash> {
-        let entry = self.methods.iter().find(|(other, _)| *other == shader);
-        let (_, entry) = entry.with_context(|| format!("the firmware has no function shade::...::draw for {}", shader.name()))?;
-        let entries: BTreeSet<usize> = self.methods.iter().map(|&(_, entry)| entry).collect();
-        let mut taken = self.reached(self.roots.iter().copied(), &entries);
-        let alone = &self.reached([*entry], &taken) - &taken;
-        taken.extend(self.reached(entries.iter().copied().filter(|other| other != entry), &taken));
+        let entries = self.methods.iter().find(|(other, _)| *other == shader).map(|(_, entries)| entries);
+        let entries = entries.filter(|entries| !entries.is_empty());
+        let entries = entries.with_context(|| format!("the firmware has no function that is compiled for {}", shader.name()))?;
+        let all: BTreeSet<usize> = self.methods.iter().flat_map(|(_, entries)| entries).copied().collect();
+        let mut taken = self.reached(self.roots.iter().copied(), &all);
+        let alone = &self.reached(entries.iter().copied(), &taken) - &taken;
+        taken.extend(self.reached(all.iter().copied().filter(|other| !entries.contains(other)), &taken));
         let own = &alone - &taken;
         let size = |nodes: &BTreeSet<usize>| nodes.iter().filter_map(|&node| self.sizes.get(node)).sum();
         Ok(Flash { alone: size(&alone), own: size(&own) })
@@ -94,4 +95,21 @@ impl Graph {
         }
         reached
     }
+}
+
+/// The type that is the method, as symbols name it.
+fn type_name(shader: Shader) -> String {
+    let word = |word: &str| word[..1].to_uppercase() + &word[1..];
+    let name: String = shader.name().split('-').map(word).collect();
+    let module = shader.name().trim_end_matches("-original").replace('-', "_");
+    if Shader::CORE.contains(&shader) {
+        format!("microphong::method::{module}::{name}")
+    } else {
+        format!("microphong_literature::{module}::{name}")
+    }
+}
+
+/// Whether a symbol names a type, and not just one whose name begins with its name.
+fn names(symbol: &str, name: &str) -> bool {
+    symbol.match_indices(name).any(|(at, _)| !symbol[at + name.len()..].starts_with(|next: char| next.is_alphanumeric()))
 }

@@ -5,12 +5,13 @@
 
 use super::{Stages, callgrind};
 use anyhow::Result;
-use microphong::Shader;
 use microphong_render::{
     bytes::StreamBytes,
     look::{Lamp, Look, Surface},
     quantise::quantise,
-    scene, shapes,
+    scene,
+    shader::Shader,
+    shapes,
     view::View,
 };
 use rayon::prelude::*;
@@ -58,7 +59,7 @@ fn name<S: Serializer>(shader: &Shader, serializer: S) -> Result<S::Ok, S::Error
 }
 
 /// Methods that are swept unless others are asked for: one of each kind.
-pub const SHADERS: [Shader; 4] = [Shader::Gouraud, Shader::SixPoint, Shader::Sqrt6, Shader::Phong];
+pub const SHADERS: [Shader; 4] = [Shader::GOURAUD, Shader::SIX_POINT, Shader::SQRT6, Shader::PHONG];
 
 /// Cells along a side, for 100, 200, 500 and so on to 100,000 triangles.
 const CELLS: [usize; 10] = [7, 10, 16, 22, 32, 50, 71, 100, 158, 223];

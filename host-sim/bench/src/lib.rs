@@ -18,10 +18,10 @@ pub mod stage;
 use anyhow::{Context, Result};
 use flash::Graph;
 pub use measurement::{Measurement, Timing};
-use microphong::{Shader, render::check};
+use microphong::renderer::check;
 use microphong_boards::{self as boards, Board, elf::Elf, verify};
 use microphong_compare::Reference;
-use microphong_render::scene::Scene;
+use microphong_render::{scene::Scene, shader::Shader};
 pub use processor::Processor;
 use rayon::prelude::*;
 use stage::Meter;
@@ -76,7 +76,7 @@ impl Bench {
         let references = sizes.into_par_iter().map(|size| Ok((size, Reference::new(stream, size, 0)?)));
         let references: Vec<_> = references.collect::<Result<_>>()?;
         let errors = frames.into_par_iter().map(|(size, name, shader)| {
-            check(&stream, shader, false)?;
+            check(&stream, shader.facts(), false)?;
             let reference = references.iter().find(|(of, _)| *of == size);
             let (_, reference) = reference.context("a size without a reference")?;
             Ok((size, name, reference.total(shader)?))

@@ -2,7 +2,7 @@
 
 use super::nest::Nest;
 use anyhow::{Context, Result, ensure};
-use microphong_boards::elf::Elf;
+use microphong_boards::elf::{Elf, short_name};
 use serde::Serialize;
 use std::{
     iter::Sum,
@@ -60,25 +60,28 @@ pub(super) enum Part {
 
 /// Parts of functions by what their names contain; the first that fits counts. Names as the compiler writes them, so that this
 /// is the one place to follow when functions move.
-const TABLE: [(&str, Part); 17] = [
+const TABLE: [(&str, Part); 20] = [
     ("microphong::raster::triangle::fill_rows", Part::Row),
-    ("microphong::band::Band<C>::clear", Part::Clear),
-    ("microphong::render::Renderer<C>::frame", Part::Frame),
-    ("microphong::render::Stage<C>::transform", Part::Vertex),
-    ("microphong::render::Frame<C>::prepare", Part::Cull),
-    ("microphong::bin::Bins", Part::Cull),
-    ("microphong::render::Frame<C>::draw", Part::Setup),
+    ("as microphong::raster::canvas::SpanShader::span", Part::Row),
+    ("microphong::raster::band::Band::clear", Part::Clear),
+    ("microphong::renderer::Renderer::frame", Part::Frame),
+    ("microphong::frame::Frame::new", Part::Frame),
+    ("microphong::mesh::vertices::VertexStage::transform", Part::Vertex),
+    ("microphong::frame::Frame::prepare", Part::Cull),
+    ("microphong::geometry::bin::Bins", Part::Cull),
+    ("microphong::frame::Frame::draw", Part::Setup),
+    ("microphong::mesh::MeshPass", Part::Setup),
     // Of the host's program, which has no display.
     ("frame::counted_frame", Part::Frame),
     ("Framebuffer::blit", Part::Transfer),
-    ("as microphong_firmware::Display>::send", Part::Transfer),
+    ("as microphong_firmware::Display::send", Part::Transfer),
     ("microphong_firmware::st7789::wait", Part::Idle),
     ("microphong_firmware::check", Part::Unwatched),
     ("microphong_firmware::stack", Part::Unwatched),
     ("microphong::stream", Part::Unwatched),
     ("Reset", Part::Unwatched),
     ("microphong_firmware::animate", Part::Outside),
-    ("microphong::render::Renderer<C>::set_shader", Part::Outside),
+    ("microphong::renderer::Renderer::set_shader", Part::Outside),
 ];
 
 /// Without these the table has fallen behind the source.
@@ -86,6 +89,7 @@ const NEEDED: [Part; 6] = [Part::Row, Part::Clear, Part::Frame, Part::Vertex, Pa
 
 /// The part of the function with this name.
 pub(super) fn part(name: &str) -> Part {
+    let name = short_name(name);
     TABLE.iter().find(|(text, _)| name.contains(text)).map_or(Part::Callers, |&(_, part)| part)
 }
 

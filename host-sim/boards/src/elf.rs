@@ -32,6 +32,28 @@ const OFFSET: usize = 4;
 const FILE_SIZE: usize = 16;
 const MEMORY_SIZE: usize = 20;
 
+/// The name of a function without what it is compiled for: `<a::B<C>>::d::<E>` is `a::B::d`.
+#[must_use]
+pub fn short_name(name: &str) -> String {
+    // `<type>` and `<type as trait>` at the start, or after a space or another of these, are part of the name; other brackets are not.
+    let (mut short, mut kept, mut dropped) = (String::new(), 0u32, 0u32);
+    let mut before = ' ';
+    for c in name.chars() {
+        match c {
+            '<' if dropped == 0 && matches!(before, ' ' | '<') => kept += 1,
+            '<' => dropped += 1,
+            '>' if before == '-' && dropped > 0 => {}
+            '>' if dropped > 0 => dropped -= 1,
+            '>' if kept > 0 => kept -= 1,
+            c if dropped == 0 => short.push(c),
+            _ => {}
+        }
+        before = c;
+    }
+    // Arguments of a function leave nothing behind their colons.
+    short.replace("::::", "::").trim_end_matches("::").to_owned()
+}
+
 impl Elf {
     /// Reads the file at `path`.
     ///
@@ -214,5 +236,23 @@ impl Elf {
             bytes[header + field..][..4].copy_from_slice(&(value as u32).to_le_bytes());
         }
         Ok(Self { bytes })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn names_without_what_they_are_compiled_for() {
+        for (name, short) in [
+            ("a::b", "a::b"),
+            ("<a::B<c::D>>::e", "a::B::e"),
+            ("a::b::<c::D<3>, fn(u8) -> u8>", "a::b"),
+            ("<a::B<C, D> as e::F<G>>::h::<I>", "a::B as e::F::h"),
+            ("<a::B>::c::<D>::{closure#0}", "a::B::c::{closure#0}"),
+        ] {
+            assert_eq!(short_name(name), short);
+        }
     }
 }

@@ -14,12 +14,11 @@ pub mod verify;
 use anyhow::{Context, Result};
 use budget::Budget;
 use elf::Elf;
-use microphong::Shader;
+use microphong_render::shader::Shader;
 pub use pico::FrameTime;
 pub use qemu::{Blocks, INSTRUCTIONS_PER_TICK, clocked, trace};
 use serde::{Serialize, Serializer};
-use std::fmt;
-use std::ops::Range;
+use std::{fmt, ops::Range};
 
 /// A board that the firmware runs on.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
@@ -84,13 +83,13 @@ impl Board {
     #[must_use]
     pub const fn size(self) -> (u32, u32) {
         let budget = self.budget();
-        (budget.width as u32, budget.height as u32)
+        (budget.layout.width as u32, budget.height as u32)
     }
 
     /// Whether its firmware has room for the method.
     #[must_use]
     pub fn has(self, shader: Shader) -> bool {
-        self != Self::Lm3s6965evb || Shader::BASIC.contains(&shader)
+        self != Self::Lm3s6965evb || [Shader::FLAT, Shader::GOURAUD, Shader::SIX_POINT].contains(&shader)
     }
 
     /// How it stores a pixel.

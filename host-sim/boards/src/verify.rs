@@ -7,12 +7,11 @@ use embedded_graphics_core::{
     pixelcolor::{Gray4, Rgb565},
 };
 use microphong::{
-    Memory, Renderer, Shader, Stats, Stream, Workspace,
+    Renderer, Stats, Stream,
     pixel::{PictureCrc, Pixel, Rgb565Be},
-    relay::Leg,
     stream::{record::Header, seal},
 };
-use microphong_render::{bytes::StreamBytes, image};
+use microphong_render::{bytes::StreamBytes, image, shader::Shader};
 use serde::{Serialize, Serializer};
 use std::{
     fs,
@@ -138,7 +137,7 @@ fn compare(request: &Request, elf: &Path, artefacts: &Path) -> Result<Report> {
 /// When `stream` is shorter than its header says.
 pub fn prepare(stream: &[u8], shader: Shader, frames: u16) -> Result<Vec<u8>> {
     let (mut header, _) = Header::read_from_prefix(stream).map_err(|_| anyhow!("the stream is shorter than its header"))?;
-    header.shader = Shader::ALL.iter().position(|&other| other == shader).context("a method without a number")? as u16;
+    header.shader = shader.facts().id;
     header.frames = frames;
     let length = header.length as usize;
     let mut bytes = stream.get(..length).with_context(|| format!("the stream has {} bytes, not {length}", stream.len()))?.to_vec();
@@ -182,32 +181,24 @@ fn log_tail(recording: &Recording) -> String {
 
 /// Draws with as much memory as the firmware has, in as many bands.
 fn draw<C: Pixel>(stream: Stream<'_>, budget: Budget, frames: usize) -> Result<Vec<Picture>> {
-    let black = C::pack([0; 3]);
-    // One entry of each kind, to fill the memory with.
-    let mut blank = Workspace::<C, 1, 1, 1, 1>::new(black);
-    let blank = blank.memory();
-    let mut vertices = vec![blank.vertices[0]; budget.vertices];
-    let mut bins = vec![blank.bins[0]; budget.triangles];
-    let mut depth = vec![0; budget.band()];
-    let mut palettes = vec![blank.palettes[0]; budget.materials];
-    let mut legs = vec![Leg::EMPTY; budget.legs];
-    let memory =
-        Memory { vertices: &mut vertices, bins: &mut bins, depth: &mut depth, palettes: &mut palettes, samples: &mut [], legs: &mut legs };
-    let size = Size::new(budget.width as u32, budget.height as u32);
-    let mut renderer = Renderer::new(stream, size, memory).context("the board cannot draw this stream")?;
-    let mut band = vec![black; budget.band()];
+    let Budget { height, layout } = budget;
+    let size = Size::new(layout.width as u32, height as u32);
+    let mut memory = vec![0; layout.words::<C>()];
+    let shaders = Shader::ALL.map(Shader::on);
+    let mut renderer = Renderer::new(stream, size, &layout, &mut memory, &shaders).context("the board cannot draw this stream")?;
+    let mut band = vec![C::pack([0; 3]); layout.band()];
     let pictures = (0..frames as u32).map(|number| {
-        let mut pixels = Vec::with_capacity(budget.width * budget.height);
+        let mut pixels = Vec::with_capacity(layout.width * height);
         let mut checksum = PictureCrc::default();
         let mut frame = renderer.frame(number);
-        while let Some(area) = frame.next_band(&mut band) {
+        while let Some(area) = frame.next_band(&mut band)? {
             let drawn = &band[..(area.size.width * area.size.height) as usize];
             checksum.update(drawn);
             pixels.extend(drawn.iter().map(|pixel| pixel.bits()));
         }
-        Picture { pixels, checksum: checksum.finish(), stats: frame.stats() }
+        Ok(Picture { pixels, checksum: checksum.finish(), stats: frame.stats() })
     });
-    Ok(pictures.collect())
+    pictures.collect()
 }
 
 /// Writes both pictures, and white where they differ.

@@ -4,7 +4,7 @@ use anyhow::Result;
 use embedded_graphics_core::geometry::Size;
 use microphong::{
     Stream,
-    format::{BIAS, RAMP, WALK},
+    format::{BIAS, Intensity, RAMP, WALK},
     pixel::Pixel,
 };
 use microphong_render::render::{self, Style};
@@ -14,11 +14,22 @@ use microphong_render::render::{self, Style};
 struct Fine(Option<[u32; 3]>);
 
 impl Pixel for Fine {
+    /// Tables of colours are not looked at.
+    type Stored = u8;
+
     const GRAY: bool = false;
     const DEPTH: [u32; 3] = [8; 3];
     const BYTES: usize = 3;
 
     fn pack(_: [u8; 3]) -> Self {
+        Self(None)
+    }
+
+    fn stored(self) -> u8 {
+        0
+    }
+
+    fn from_stored(_: u8) -> Self {
         Self(None)
     }
 
@@ -30,8 +41,12 @@ impl Pixel for Fine {
         0
     }
 
-    fn ramped<const BITS: u32>(_: &[Self; RAMP], level: u32) -> Self {
+    fn ramped<const BITS: u32>(_: &[u8; RAMP], level: u32) -> Self {
         Self(Some([level << (WALK - BITS); 3]))
+    }
+
+    fn rounded(intensity: Intensity) -> Self {
+        Self(Some(intensity.map(|level| ((level as u32) << (WALK - 8)) + ((BIAS as u32) << WALK) + (1 << (WALK - 1)))))
     }
 
     fn mixed(levels: [u32; 3]) -> Self {

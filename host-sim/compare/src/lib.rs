@@ -3,7 +3,6 @@
 //! Two errors add up in a picture: that of the method, which approximates, and that of its arithmetic, which rounds.
 //! The oracle draws each method in f64, so the two can be told apart.
 
-pub mod costs;
 pub mod document;
 mod edges;
 pub mod exponent;
@@ -13,14 +12,22 @@ pub mod page;
 mod samples;
 
 use anyhow::{Context, Result};
-use costs::Costs;
 use edges::Edges;
 pub use edges::Jumps;
 use embedded_graphics_core::{geometry::Size, pixelcolor::Rgb888};
 use figures::Spread;
-use microphong::{Shader, Stream, palette::Palette, render::check, shader::Highlight};
+use microphong::{
+    Stream,
+    lighting::materials::Reflectance,
+    method::{Costs, Highlight},
+    pixel::Pixel,
+    renderer::check,
+};
 use microphong_oracle::{self as oracle, Frame, Levels};
-use microphong_render::render::{self, Format, Settings, Style};
+use microphong_render::{
+    render::{self, Format, Settings, Style},
+    shader::Shader,
+};
 use samples::Samples;
 use std::ops::Range;
 
@@ -126,12 +133,12 @@ impl<'s> Reference<'s> {
             starts.push(facets.len());
         }
         let samples = Samples::new(&frame, points);
-        let phong = samples.shade(&frame, Shader::Phong.name(), 0.0)?;
+        let phong = samples.shade(&frame, Shader::PHONG.name(), 0.0)?;
         let edges = Edges::new(&frame, |facet| shown.get(facet) == Some(&true));
         let one_channel = stream.materials.iter().map(|material| {
-            let mut palette = Palette::<Rgb888>::empty();
-            palette.fill(stream.header, material, stream.lights, Highlight::Half, false);
-            !palette.three_channels
+            let mut reflectance = Box::new(Reflectance::EMPTY);
+            reflectance.fill(stream.header, material, stream.lights, (Highlight::Half, false), (Rgb888::DEPTH, Rgb888::GRAY));
+            !reflectance.three_channels()
         });
         let one_channel = one_channel.collect();
         let (window, row) = ends(&starts, &phong, size).context("no pixel shows a triangle")?;
@@ -213,10 +220,10 @@ impl<'s> Reference<'s> {
     /// Draws the frame by a method and measures it.
     ///
     /// # Errors
-    /// When the method cannot draw this scene, see [`microphong::render::check`], or draws none of its pixels.
+    /// When the method cannot draw this scene, see [`microphong::renderer::check`], or draws none of its pixels.
     pub fn compare(&self, shader: Shader) -> Result<Comparison> {
         let perspective_correct = self.perspective_correct;
-        check(&self.stream, shader, perspective_correct)?;
+        check(&self.stream, shader.facts(), perspective_correct)?;
         let name = shader.name();
         let size = Size::new(self.frame.size.0, self.frame.size.1);
         let style = Style { shader, perspective_correct, antialias: false, dither: false };
@@ -257,7 +264,7 @@ impl<'s> Reference<'s> {
             psnr: figures::psnr(&pairs),
             similarity: figures::similarity(window.width(), window.height(), [&drawn, &wanted])?,
             jumps: self.edges.jumps(&self.frame, name)?,
-            costs: costs::of(name).with_context(|| format!("the operations of {name} have not been counted"))?,
+            costs: shader.facts().costs,
             pixels: pairs.len(),
             unmatched,
             picture,

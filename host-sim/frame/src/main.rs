@@ -3,8 +3,12 @@
 //! Arguments come in groups of four, one for each frame: a stream's file, the picture's size as `320x240`, the rows of a
 //! band, and a method. Only [`counted_frame`] is counted.
 
-use embedded_graphics_core::{geometry::Size, pixelcolor::Rgb565};
-use microphong::{Memory, Renderer, Shader, Stats, Stream, Workspace, pixel::Pixel, relay::Leg};
+use embedded_graphics_core::{
+    geometry::Size,
+    pixelcolor::{Rgb565, RgbColor},
+};
+use microphong::{Layout, Renderer, Shader, Stats, Stream};
+use microphong_literature::ALL;
 use std::{env, error::Error, fs, hint::black_box, process::ExitCode};
 use zerocopy::IntoBytes;
 
@@ -12,7 +16,7 @@ use zerocopy::IntoBytes;
 #[inline(never)]
 fn counted_frame(renderer: &mut Renderer<'_, Rgb565>, band: &mut [Rgb565]) -> Stats {
     let mut frame = renderer.frame(0);
-    while frame.next_band(band).is_some() {}
+    while let Ok(Some(_)) = frame.next_band(band) {}
     frame.stats()
 }
 
@@ -29,21 +33,18 @@ fn draw(path: &str, size: Size, rows: u32, shader: &str) -> Result<(), Box<dyn E
     let mut words = vec![0u32; bytes.len().div_ceil(4)];
     words.as_mut_bytes()[..bytes.len()].copy_from_slice(&bytes);
     let stream = Stream::parse(&words.as_bytes()[..bytes.len()])?;
-    let shader = Shader::ALL.into_iter().find(|method| method.name() == shader).ok_or("no such method")?;
-
-    // One entry of each kind, to fill the memory with.
-    let mut blank = Workspace::<Rgb565, 1, 1, 1, 1>::new(Rgb565::pack([0; 3]));
-    let blank = blank.memory();
-    let pixels = size.width as usize * rows as usize;
-    let mut vertices = vec![blank.vertices[0]; stream.vertices.len()];
-    let mut bins = vec![blank.bins[0]; stream.triangles.len()];
-    let mut palettes = vec![blank.palettes[0]; stream.materials.len()];
-    let mut depth = vec![0; pixels];
-    let mut band = vec![Rgb565::pack([0; 3]); pixels];
-    let mut legs = vec![Leg::EMPTY; stream.triangles.len()];
-    let memory =
-        Memory { vertices: &mut vertices, bins: &mut bins, depth: &mut depth, palettes: &mut palettes, samples: &mut [], legs: &mut legs };
-    let stats = dumped_frame(&mut Renderer::with_shader(stream, size, memory, shader)?, &mut band);
+    let literature = ALL.into_iter().map(Shader::new);
+    let shader = Shader::ALL.into_iter().chain(literature).find(|method| method.facts().name == shader).ok_or("no such method")?;
+    let layout = Layout::new(size.width as usize, rows as usize)
+        .vertices(stream.vertices.len())
+        .triangles(stream.triangles.len())
+        .materials(stream.materials.len())
+        .active_triangles(stream.triangles.len());
+    let mut memory = vec![0; layout.words::<Rgb565>()];
+    let mut band = vec![Rgb565::BLACK; layout.band()];
+    let mut renderer = Renderer::with_shader(stream, size, &layout, &mut memory, shader)?;
+    renderer.check_band(&band)?;
+    let stats = dumped_frame(&mut renderer, &mut band);
     println!("{} {}", stats.drawn, stats.pixels);
     Ok(())
 }

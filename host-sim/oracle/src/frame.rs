@@ -5,9 +5,11 @@ use embedded_graphics_core::geometry::Size;
 use microphong::{
     Stream,
     format::{DEPTH, Gain, ROTATION, SUBPIXEL, UNIT},
-    scene::Pose,
-    stream::record::{self, DIRECTIONAL, EYE_SPACE, PERSPECTIVE, VIEWER_LOCAL},
-    vertex::View,
+    geometry::{pose::Pose, projection::View},
+    stream::{
+        record,
+        record::{DIRECTIONAL, EYE_SPACE, PERSPECTIVE, VIEWER_LOCAL},
+    },
 };
 use microphong_render::vector::{V3, add, apply, cross, dot, length, scale, sub, unit};
 

@@ -4,7 +4,8 @@ use alloc::vec::Vec;
 use microphong::{
     Stream,
     format::{COSINE, ROTATION, UNIT},
-    scene::{Lighting, Pose},
+    geometry::pose::Pose,
+    lighting::lights::Lighting,
 };
 
 /// One grey mesh under one directional light, seen from infinity as far as highlights go: what all peers can draw.

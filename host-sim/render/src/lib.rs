@@ -11,6 +11,7 @@ pub mod output;
 pub mod quantise;
 pub mod render;
 pub mod scene;
+pub mod shader;
 pub mod shapes;
 pub mod vector;
 pub mod view;

@@ -4,15 +4,16 @@ use crate::{
     bytes::StreamBytes,
     number::{above, nearest},
     quantise::Part,
+    shader::Shader,
     vector::{V3, length, scale, unit},
     view::{Projection, View},
 };
 use anyhow::{Context, Result};
 use microphong::{
-    Shader,
     format::{Gain, Radius},
+    stream,
     stream::{
-        self, MAX_GAIN,
+        MAX_GAIN,
         record::{
             CLOSED_CONVEX, Camera, DIRECTIONAL, EYE_SPACE, Header, Light, MAGIC, Material, Mesh, ORTHOGRAPHIC, PERSPECTIVE, POINT, VERSION,
             VIEWER_INFINITE, VIEWER_LOCAL,
@@ -93,7 +94,7 @@ impl Look {
             ambient: [1.0; 3],
             background: BACKGROUND,
             local_viewer: false,
-            shader: Shader::SixPoint,
+            shader: Shader::SIX_POINT,
             view,
             frames: view.period.max(1),
         }
@@ -109,7 +110,7 @@ impl Look {
         let mut header = Header {
             magic: MAGIC,
             version: VERSION,
-            shader: Shader::ALL.iter().position(|&s| s == self.shader).unwrap_or_default() as u16,
+            shader: self.shader.facts().id,
             meshes: u16::try_from(parts.len()).context("too many meshes for one stream; simplify the mesh")?,
             materials: 1,
             lights: self.lamps.len() as u16,

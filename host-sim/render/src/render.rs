@@ -1,16 +1,14 @@
 //! The core renderer with as much memory as a scene wants.
 
-use crate::image;
+use crate::{image, shader::Shader};
 use anyhow::{Context, Result};
 use embedded_graphics_core::{
     geometry::Size,
     pixelcolor::{Gray4, Gray8, Rgb565, Rgb888},
 };
 use microphong::{
-    Memory, Renderer, Shader, Stats, Stream, Workspace,
+    Layout, Renderer, Stats, Stream,
     pixel::{PictureCrc, Pixel},
-    relay::Leg,
-    sample::Sample,
 };
 
 /// How a scene is drawn.
@@ -33,6 +31,16 @@ impl From<Shader> for Style {
     }
 }
 
+/// Room for all of a stream.
+#[must_use]
+pub fn layout(stream: &Stream<'_>, size: Size, band_rows: u32) -> Layout {
+    Layout::new(size.width as usize, band_rows as usize)
+        .vertices(stream.vertices.len())
+        .triangles(stream.triangles.len())
+        .materials(stream.materials.len())
+        .active_triangles(if band_rows < size.height { stream.triangles.len() } else { 0 })
+}
+
 /// Draws frame `number` and returns its pixels row by row from the top.
 ///
 /// Bands have `band_rows` rows, at most the picture's; the picture does not depend on it.
@@ -41,32 +49,17 @@ impl From<Shader> for Style {
 /// When `size` is out of range, or the scene cannot be drawn in this style.
 pub fn frame<C: Pixel>(stream: Stream<'_>, size: Size, style: impl Into<Style>, band_rows: u32, number: u32) -> Result<(Vec<C>, Stats)> {
     let style = style.into();
-    // One entry of each kind, to fill the memory with.
-    let mut blank = Workspace::<C, 1, 1, 1, 1>::new(C::pack([0; 3]));
-    let blank = blank.memory();
     let rows = band_rows.clamp(1, size.height.max(1));
-    let mut vertices = vec![blank.vertices[0]; stream.vertices.len()];
-    let mut bins = vec![blank.bins[0]; stream.triangles.len()];
-    let mut depth = vec![0; size.width as usize * rows as usize];
-    let mut palettes = vec![blank.palettes[0]; stream.materials.len()];
-    let mut samples = vec![Sample::EMPTY; if style.antialias { depth.len() } else { 0 }];
-    let mut legs = vec![Leg::EMPTY; if rows < size.height { stream.triangles.len() } else { 0 }];
-    let memory = Memory {
-        vertices: &mut vertices,
-        bins: &mut bins,
-        depth: &mut depth,
-        palettes: &mut palettes,
-        samples: &mut samples,
-        legs: &mut legs,
-    };
-    let mut renderer = Renderer::with_shader(stream, size, memory, style.shader)?;
+    let layout = layout(&stream, size, rows).antialias(style.antialias);
+    let mut memory = vec![0; layout.words::<C>()];
+    let mut renderer = Renderer::with_shader(stream, size, &layout, &mut memory, style.shader.on())?;
     renderer.set_perspective_correct(style.perspective_correct)?;
     renderer.set_dither(style.dither);
     renderer.set_antialias(style.antialias)?;
     let mut pixels = Vec::with_capacity(size.width as usize * size.height as usize);
-    let mut band = vec![C::pack([0; 3]); size.width as usize * rows as usize];
+    let mut band = vec![C::pack([0; 3]); layout.band()];
     let mut frame = renderer.frame(number);
-    while let Some(area) = frame.next_band(&mut band) {
+    while let Some(area) = frame.next_band(&mut band)? {
         let count = area.size.width as usize * area.size.height as usize;
         pixels.extend_from_slice(band.get(..count).context("the renderer filled more rows than a band has")?);
     }

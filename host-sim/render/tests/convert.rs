@@ -1,7 +1,7 @@
 //! What a converted mesh promises to the renderer.
 
 use microphong::{
-    Shader, Stream,
+    Stream,
     stream::record::{CLOSED_CONVEX, Triangle},
 };
 use microphong_render::{
@@ -9,6 +9,7 @@ use microphong_render::{
     mesh, obj,
     quantise::{normal, quantise},
     scene,
+    shader::Shader,
     vector::{V3, add, cross, dot, length, scale, sub, unit},
     view::{Up, View},
 };
@@ -217,6 +218,6 @@ fn large_meshes_are_split() {
     assert_eq!((parts.len(), dropped), (2, 0));
     assert_eq!(parts.iter().map(|p| p.triangles.len()).sum::<usize>(), mesh.triangles.len());
     let view = View::orbit(Up::Y, 0.0, 0.0, 4.0, 8);
-    let stream = Look { shader: Shader::Phong, ..Look::new(Surface::metal([1.0; 3], [0.1, 0.5, 0.4], 20), view) }.stream(&parts).unwrap();
-    assert_eq!(stream.parse().unwrap().shader(), Shader::Phong);
+    let stream = Look { shader: Shader::PHONG, ..Look::new(Surface::metal([1.0; 3], [0.1, 0.5, 0.4], 20), view) }.stream(&parts).unwrap();
+    assert_eq!(Shader::by_id(stream.parse().unwrap().header.shader), Some(Shader::PHONG));
 }

@@ -6,7 +6,7 @@ use super::{
     report, scenes,
 };
 use anyhow::Result;
-use microphong::{Shader, render::check};
+use microphong::renderer::check;
 use microphong_sim::{
     bench::{
         Bench, Measurement, PICO_HZ, Processor, Timing, baseline,
@@ -18,6 +18,7 @@ use microphong_sim::{
         },
     },
     scene::Scene,
+    shader::Shader,
 };
 use std::{
     iter,
@@ -103,7 +104,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome> {
     }
     let Several { values: shaders, all } = &arguments.shader;
     let wanted = |scene: &Scene| {
-        let possible = |shader| scene.stream.parse().is_ok_and(|stream| check(&stream, shader, false).is_ok());
+        let possible = |shader: Shader| scene.stream.parse().is_ok_and(|stream| check(&stream, shader.facts(), false).is_ok());
         let shaders: Vec<_> = shaders.iter().copied().filter(|&shader| !all || possible(shader)).collect();
         arguments.board.values.iter().flat_map(|&board| shaders.iter().map(move |&shader| (board, shader)).collect::<Vec<_>>()).collect()
     };

@@ -6,11 +6,12 @@ use super::{
     report, scenes,
 };
 use anyhow::{Context, Result};
-use microphong::{Shader, render::check};
+use microphong::renderer::check;
 use microphong_sim::{
     bytes::StreamBytes,
-    compare::{Comparison, Reference, costs, exponent::with_exponent, page::Page},
+    compare::{Comparison, Reference, exponent::with_exponent, page::Page},
     scene::Scene,
+    shader::Shader,
 };
 use rayon::prelude::*;
 use serde::Serialize;
@@ -82,11 +83,11 @@ struct Line<'a> {
     arithmetic_rmse_lsb: Option<f64>,
     method_max_lsb: Option<f64>,
     method_rmse_lsb: Option<f64>,
-    adds: Option<u32>,
-    multiplies: Option<u32>,
-    loads: Option<u32>,
-    setup: Option<u32>,
-    setup_row: Option<u32>,
+    adds: u32,
+    multiplies: u32,
+    loads: u32,
+    setup: u32,
+    setup_row: u32,
     pixels: Option<usize>,
     unmatched: Option<usize>,
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -107,7 +108,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome> {
             let stream = scene.stream.parse().with_context(|| scene.name.clone())?;
             shaders
                 .iter()
-                .try_for_each(|&shader| check(&stream, shader, arguments.perspective_correct))
+                .try_for_each(|&shader| check(&stream, shader.facts(), arguments.perspective_correct))
                 .with_context(|| scene.name.clone())?;
         }
     }
@@ -121,7 +122,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome> {
         let exponent = same(stream.materials.iter().map(|material| material.exponent));
         let row = |&shader: &Shader| {
             let compared =
-                check(&stream, shader, arguments.perspective_correct).map_err(Into::into).and_then(|()| reference.compare(shader));
+                check(&stream, shader.facts(), arguments.perspective_correct).map_err(Into::into).and_then(|()| reference.compare(shader));
             let result = match compared {
                 // Among all methods, one that cannot draw the scene does not hide the others.
                 Err(error) if *all => Err(format!("{error:#}")),
@@ -172,7 +173,7 @@ fn json(scene: &Scene, exponent: Option<u16>, rows: &[Row]) -> Result<()> {
     for Row { shader, result } in rows {
         let found = result.as_ref().ok();
         let figure = |of: fn(&Comparison) -> f64| found.map(of);
-        let costs = costs::of(shader.name());
+        let costs = shader.facts().costs;
         report::json(&Line {
             scene: &scene.name,
             shader: shader.name(),
@@ -189,11 +190,11 @@ fn json(scene: &Scene, exponent: Option<u16>, rows: &[Row]) -> Result<()> {
             arithmetic_rmse_lsb: figure(|c| c.arithmetic.rmse),
             method_max_lsb: figure(|c| c.method.max),
             method_rmse_lsb: figure(|c| c.method.rmse),
-            adds: costs.map(|c| c.adds),
-            multiplies: costs.map(|c| c.multiplies),
-            loads: costs.map(|c| c.loads),
-            setup: costs.map(|c| c.setup),
-            setup_row: costs.map(|c| c.row),
+            adds: costs.adds,
+            multiplies: costs.multiplies,
+            loads: costs.loads,
+            setup: costs.setup,
+            setup_row: costs.row,
             pixels: found.map(|c| c.pixels),
             unmatched: found.map(|c| c.unmatched),
             reason: result.as_ref().err().map(String::as_str),

@@ -2,12 +2,12 @@
 
 use super::{Outcome, Usage, parse, report};
 use anyhow::{Context, Result};
-use microphong::Shader;
 use microphong_sim::{
     look::{BACKGROUND, Look, Surface},
     output,
     quantise::quantise,
     scene::{self, COPPER, DISTANCE, MARGIN, ORBIT},
+    shader::Shader,
     vector::V3,
     view::{Projection, Up, View},
 };

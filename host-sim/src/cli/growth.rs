@@ -6,10 +6,12 @@ use super::{
     report,
 };
 use anyhow::Result;
-use microphong::Shader;
-use microphong_sim::bench::{
-    callgrind,
-    growth::{Point, Step, Sweep},
+use microphong_sim::{
+    bench::{
+        callgrind,
+        growth::{Point, Step, Sweep},
+    },
+    shader::Shader,
 };
 
 /// Count how the cost of a frame grows with triangles, pixels, lights and bands.

@@ -6,7 +6,7 @@ use microphong::{
     Stream,
     stream::record::{CLOSED_CONVEX, EYE_SPACE, Header, Light, Material, Mesh, PERSPECTIVE, POINT, Triangle, VIEWER_LOCAL, Vertex},
 };
-use microphong_sim::bytes::StreamBytes;
+use microphong_sim::{bytes::StreamBytes, shader::Shader};
 use serde::Serialize;
 use std::path::PathBuf;
 
@@ -75,7 +75,8 @@ fn text(file: &str, stream: &Stream<'_>) -> Result<()> {
     let orbit = if camera.period == 0 { "stands still".to_owned() } else { format!("one turn in {} frames", camera.period) };
     let viewer = if header.viewer == VIEWER_LOCAL { "local" } else { "infinite" };
     let frames = header.frames;
-    report::line(&format!("  {kind}, {viewer} viewer, {orbit}, {frames} frames, shader {}", stream.shader().name()))
+    let shader = Shader::by_id(header.shader).map_or_else(|| format!("number {}", header.shader), |shader| shader.name().to_owned());
+    report::line(&format!("  {kind}, {viewer} viewer, {orbit}, {frames} frames, shader {shader}"))
 }
 
 fn closed_convex(stream: &Stream<'_>) -> usize {

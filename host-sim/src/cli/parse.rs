@@ -1,9 +1,10 @@
 //! Values on the command line.
 
-use microphong::{Shader, render::MAX_SIDE};
+use microphong::error::MAX_SIDE;
 use microphong_sim::{
     papers::Topic,
     render::Format,
+    shader::Shader,
     vector::V3,
     view::{Projection, Up},
 };

@@ -3,11 +3,12 @@
 use super::{Outcome, Usage, parse, report};
 use anyhow::{Context, Result};
 use embedded_graphics_core::geometry::Size;
-use microphong::{Shader, render::check};
+use microphong::renderer::check;
 use microphong_sim::{
     image::{self, Film},
     render::{self, Format, Settings, Style},
     scene,
+    shader::Shader,
 };
 use serde::Serialize;
 use std::{
@@ -93,7 +94,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome> {
     let settings = Settings {
         size: Size::new(width, height),
         style: Style {
-            shader: arguments.shader.unwrap_or(stream.shader()),
+            shader: arguments.shader.map_or_else(|| Shader::of(&stream), Ok).with_context(|| scene.name.clone())?,
             perspective_correct: arguments.perspective_correct,
             antialias: arguments.antialias,
             dither: arguments.dither,
@@ -101,7 +102,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome> {
         band_rows: arguments.band_rows,
         format: arguments.format,
     };
-    check(&stream, settings.style.shader, settings.style.perspective_correct).with_context(|| scene.name.clone())?;
+    check(&stream, settings.style.shader.facts(), settings.style.perspective_correct).with_context(|| scene.name.clone())?;
     let mut writer = Writer::start(&target, settings.size, frames)?;
     let bar = report::progress(frames.into(), "drawing frames");
     let mut lines = Vec::new();

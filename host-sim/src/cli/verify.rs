@@ -6,10 +6,11 @@ use super::{
     report, scenes,
 };
 use anyhow::{Context, Result, bail};
-use microphong::{Shader, render::check};
+use microphong::renderer::check;
 use microphong_sim::{
     board::Board,
     scene::Scene,
+    shader::Shader,
     verify::{self, Report, Request},
 };
 use std::path::PathBuf;
@@ -56,7 +57,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome> {
     let shaders = &arguments.shader;
     // Of all methods those that the board has and that can shade the scene.
     let wanted = |board: Board, scene: &Scene, shader: Shader| {
-        let possible = scene.stream.parse().is_ok_and(|stream| check(&stream, shader, false).is_ok());
+        let possible = scene.stream.parse().is_ok_and(|stream| check(&stream, shader.facts(), false).is_ok());
         !shaders.all || board.has(shader) && possible
     };
     let mut runs = Vec::new();

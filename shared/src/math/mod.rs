@@ -4,19 +4,12 @@
 //! error and source. A bound on an error is a constant next to the function, and the test that the documentation names asserts that
 //! very constant. "Exact" says that the result is the integer that the formula gives, for every argument of the domain.
 
-#[cfg(feature = "all-shaders")]
-pub mod angle;
-#[cfg(feature = "all-shaders")]
-pub mod arc;
 pub mod power;
-pub mod product;
-pub mod quotient;
 pub mod recip;
 pub mod rsqrt;
 pub mod steps;
 pub mod vector;
 pub mod wide;
-pub mod zeros;
 
 /// `value / 2^bits`, rounded to nearest, halves up; for negative `bits` a left shift that wraps modulo 2^64.
 ///

@@ -1,26 +1,28 @@
 //! The power function of the highlight, x^n, from a table.
 
 use crate::{
+    arch::product::{product, unsigned_product, upper_by_half_word},
     format::{COSINE, PIXEL_COSINE},
-    math::product::{product, unsigned_product, upper_by_half_word},
 };
 use core::num::{NonZeroU32, NonZeroU64};
+use zerocopy::{FromBytes, Immutable, IntoBytes, KnownLayout};
 
 /// Intervals of the table; it has one entry more.
-pub(super) const SIZE: usize = 2048;
+pub(crate) const SIZE: usize = 2048;
 
 /// Lookup table of the highlight's power function `floor + full x^n`, unsigned Q0.16, in 2048 intervals.
 ///
 /// Domain: n from 1 to 1024. The table covers x in [1 - 8/n, 1], or [0, 1] for n < 8; below that x^n is less than e^-8 and taken as 0.
 /// Error: [`ERROR`] with interpolation, [`NEAREST_ERROR`] for the nearest entry. Source: Bishop & Weimer (1986), whose table covers the
 /// whole of [0, 1], so that its error grows with n; the restricted domain, which makes the error independent of n, is our own.
-#[derive(Clone, Copy, Debug)]
+#[derive(FromBytes, IntoBytes, Immutable, KnownLayout, Clone, Copy, Debug)]
+#[repr(C)]
 pub struct Power {
-    pub(super) table: [u16; SIZE + 1],
     /// 4 max(n, 8), where n is the exponent of the argument: 1 - x times 64 of it is an index.
-    pub(super) scale: u32,
+    pub(crate) scale: u32,
     /// The value of entries where the power is 0, unsigned Q0.16.
     floor: u16,
+    pub(crate) table: [u16; SIZE + 1],
 }
 
 /// The base that is raised to a power, as a function of the argument x by which the table is indexed.
@@ -143,7 +145,7 @@ impl Power {
 
     /// The cosine, Q2.30, at which the table ends: the power of smaller ones is taken as 0.
     #[must_use]
-    pub fn dark_below(&self) -> i32 {
+    pub fn highlight_threshold(&self) -> i32 {
         (1i32 << COSINE) - ((32u64 << COSINE) / NonZeroU64::from(NonZeroU32::new(self.scale).unwrap_or(WHOLE))) as i32
     }
 }
@@ -194,7 +196,7 @@ mod tests {
                 let mut power = Power::EMPTY;
                 power.fill(n, base, full, floor);
                 let (mut at, mut nearest) = (0f64, 0f64);
-                let step = 2f64.powi(30) - f64::from(power.dark_below());
+                let step = 2f64.powi(30) - f64::from(power.highlight_threshold());
                 for position in positions() {
                     let cosine = (2f64.powi(30) - (step / SIZE as f64 * position).floor()) as i32;
                     let x = f64::from(cosine) / 2f64.powi(30);
@@ -209,7 +211,7 @@ mod tests {
                 }
                 assert!(at <= ERROR, "n = {n}, {base:?}: {at}");
                 assert!(nearest <= NEAREST_ERROR, "n = {n}, {base:?}: {nearest}");
-                assert_eq!(power.at(power.dark_below() - 1), 0, "n = {n}, {base:?}");
+                assert_eq!(power.at(power.highlight_threshold() - 1), 0, "n = {n}, {base:?}");
             }
         }
     }

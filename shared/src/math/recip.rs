@@ -1,6 +1,6 @@
 //! Reciprocal of a normalised integer, and division by a fixed-point number.
 
-use super::{
+use crate::arch::{
     product::{product, unsigned_product},
     quotient::inverse,
 };
@@ -26,12 +26,10 @@ pub fn recip(d: u32) -> u32 {
 }
 
 /// Largest error of [`Divisor::divide`] relative to its result, before that is rounded down to an integer.
-#[cfg(feature = "all-shaders")]
 pub const DIVIDE_ERROR: f64 = 2.25 / (1u32 << 30) as f64;
 
 /// A positive number to divide by, from Q2.30.
-#[cfg(feature = "all-shaders")]
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, Default)]
 pub struct Divisor {
     /// [`recip`] of the number, shifted left until its first bit is set.
     inverse: u32,
@@ -39,7 +37,6 @@ pub struct Divisor {
     zeros: u32,
 }
 
-#[cfg(feature = "all-shaders")]
 impl Divisor {
     /// The divisor `x`, unsigned Q2.30; 0 counts as the smallest number, 2^-30.
     #[inline(always)]
@@ -84,7 +81,6 @@ mod tests {
         assert!(low <= f64::from(ERROR) && high <= 1.0, "{low} {high}");
     }
 
-    #[cfg(feature = "all-shaders")]
     #[test]
     fn divisions() {
         let mut worst = 0f64;

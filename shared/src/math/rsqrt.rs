@@ -1,6 +1,6 @@
 //! Square root and reciprocal square root.
 
-use super::product::{unsigned_by_fraction, unsigned_product, upper};
+use crate::arch::product::{unsigned_by_fraction, unsigned_product, upper};
 
 /// First estimates of 1/sqrt(m), Q0.16, by the upper eight bits (64..=255) of `m`, Q2.30.
 static SEED: [u16; 192] = {

@@ -2,9 +2,9 @@
 //!
 //! The factor that turns a cosine into an index of the table is applied at the nodes of an interpolation, not at every pixel.
 
-use super::{
-    power::{Power, SIZE},
-    product::upper_by_half_word,
+use crate::{
+    arch::product::upper_by_half_word,
+    math::power::{Power, SIZE},
 };
 
 /// Fraction bits of a node, in steps of the table.
@@ -25,7 +25,7 @@ pub struct Quotients<'a> {
 }
 
 impl<'a> Quotients<'a> {
-    /// Lookup in the table of `power`. Domain: its base is not [`super::power::Base::Square`], so that nodes fit 26 bits.
+    /// Lookup in the table of `power`. Domain: its base is not [`crate::math::power::Base::Square`], so that nodes fit 26 bits.
     #[must_use]
     pub fn new(power: &'a Power) -> Self {
         Self { table: &power.table, top: ((power.scale << 6 << STEP) + (1 << (STEP - 1))) as i32, factor: (power.scale << 16) as i32 }
@@ -42,7 +42,7 @@ impl<'a> Quotients<'a> {
     ///
     /// `quotient` is the upper half of the product of the numerator, in the format of a node with [`EXTRA`] more fraction bits, and half the
     /// reciprocal length, Q2.30. Domain: every quotient that fits; small ones take the last entry. Error: at most
-    /// [`super::power::NEAREST_ERROR`] for lengths of 1/2 to 1 (tests::entries_are_the_nearest). Source: our own.
+    /// [`crate::math::power::NEAREST_ERROR`] for lengths of 1/2 to 1 (tests::entries_are_the_nearest). Source: our own.
     #[inline(always)]
     #[must_use]
     pub fn at(&self, quotient: i32) -> u32 {
@@ -87,7 +87,7 @@ impl<'a> Defects<'a> {
     /// The entry nearest to a defect, unsigned Q0.16.
     ///
     /// `defect` is in the format of a node with 6 more fraction bits, Q2.30, with [`Self::half`] added. Domain: every `i32`; large ones take
-    /// the last entry. Error: at most [`super::power::NEAREST_ERROR`] (tests::entries_are_the_nearest). Source: our own.
+    /// the last entry. Error: at most [`crate::math::power::NEAREST_ERROR`] (tests::entries_are_the_nearest). Source: our own.
     #[inline(always)]
     #[must_use]
     pub fn at(&self, defect: i32) -> u32 {
@@ -102,7 +102,7 @@ mod tests {
 
     /// Largest error of `at` against x^n: next to entries, and half way between two of them.
     fn error(n: u16, power: &Power, at: impl Fn(i32) -> u32) -> f64 {
-        let step = (2f64.powi(30) - f64::from(power.dark_below())) / SIZE as f64;
+        let step = (2f64.powi(30) - f64::from(power.highlight_threshold())) / SIZE as f64;
         let error = |position: f64| {
             let cosine = (2f64.powi(30) - (step * position).floor()) as i32;
             let exact = (f64::from(cosine) / 2f64.powi(30)).max(0.0).powi(n.into());

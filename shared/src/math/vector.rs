@@ -1,6 +1,6 @@
 //! Dot products and unit vectors.
 
-use super::{product::product, rsqrt::rsqrt_wide};
+use crate::{arch::product::product, math::rsqrt::rsqrt_wide};
 
 /// Dot product of two vectors, in the product of their formats. Domain: the sum fits 64 bits, as for components below 2^30. Exact.
 #[inline(always)]

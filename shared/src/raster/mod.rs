@@ -1,10 +1,8 @@
 //! Which pixels a triangle covers, and the loops that fill them.
 
-pub mod area;
-#[cfg(feature = "all-shaders")]
-pub mod cell;
-pub mod edge;
-pub mod fill;
-pub(crate) mod sides;
-pub mod smooth;
+pub mod active;
+pub mod band;
+pub mod canvas;
+pub mod pixel_shader;
+pub mod span;
 pub mod triangle;

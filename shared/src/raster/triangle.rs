@@ -1,169 +1,92 @@
 //! One triangle into one band: edges, depth plane, and the rows between them.
 
-use super::{
-    edge::{COLUMN, COLUMNS, first_centre},
-    fill::{Sight, fill},
-    sides::{Pair, Rest, Sides},
-    smooth::{Part, Shape},
-};
 use crate::{
-    band::Band,
-    cull::Extent,
-    format::{CENTRE, DEPTH, DEPTH_NODE, DEPTH_WALK, SUBPIXEL},
-    math::product::HALVES,
-    poly::{Constant, Patch, Walker, basis::Basis, plane::Plane},
-    relay::{Leg, Relay},
-    tone::Tone,
-    vertex::ScreenVertex,
+    arch::product::HALVES,
+    format::{DEPTH, DEPTH_NODE, DEPTH_WALK},
+    geometry::projection::ScreenVertex,
+    interpolate::{Constant, Patch, Walker, plane::Plane},
+    raster::{
+        active::{ActiveTriangle, ActiveTriangles},
+        band::Band,
+        canvas::{Canvas, SpanShader},
+        pixel_shader::PixelShader,
+        span::{DepthTest, fill},
+    },
+    setup::{
+        edge::{COLUMN, COLUMNS},
+        edge_walker::{EdgeState, EdgeWalker, LeftRight},
+        gradients::Gradients,
+    },
 };
 use core::hint::black_box;
 
 /// A triangle on the screen, its top corner first, clockwise on a screen whose y runs down.
 #[derive(Clone, Copy, Debug)]
-pub struct Outline {
+pub struct ScreenTriangle {
     /// `[x, y]`, 1/16 pixel.
     pub corners: [[i32; 2]; 3],
-    pub(super) depth: [i32; 3],
+    pub(crate) depth: [i32; 3],
     /// Which of the mesh's corners is the top one.
     pub turned: usize,
-    /// Which of its pixels are drawn.
-    pub part: Part,
     /// Its rows in a band; without antialiasing.
-    course: Course,
+    course: RowRange,
 }
 
 /// A triangle's way through the rows of a band.
 #[derive(Clone, Copy, Debug)]
-struct Course {
-    sides: Sides,
+struct RowRange {
+    sides: EdgeWalker,
     /// Standing on the first row, if it is known already.
-    nearness: Option<Plane<1>>,
-    /// For [`Relay`]; 0: it is not handed on.
+    inv_depth: Option<Plane<1>>,
+    /// For [`ActiveTriangles`]; 0: it is not handed on.
     key: u32,
     /// By the band above: patches stand on the first row already.
-    handed_on: bool,
+    resumed: bool,
 }
 
-impl Course {
+impl RowRange {
     #[inline(always)]
-    const fn of(sides: Sides, key: u32) -> Self {
-        Self { sides, nearness: None, key, handed_on: false }
+    const fn of(sides: EdgeWalker, key: u32) -> Self {
+        Self { sides, inv_depth: None, key, resumed: false }
     }
 }
 
 /// What steps from row to row.
-pub(super) struct Rows<'b, D, P: Patch, T: Tone<<P::Walker as Walker>::Value>> {
+pub(crate) struct Rows<'b, D, P: Patch, T: PixelShader<<P::Walker as Walker>::Value>> {
     /// Pixels and nearness of the band, as many of each in a row as it is wide.
-    pub(super) pixels: &'b mut [T::Pixel],
-    pub(super) buffer: &'b mut [u16],
-    pub(super) width: usize,
+    pub(crate) pixels: &'b mut [T::Pixel],
+    pub(crate) buffer: &'b mut [u16],
+    pub(crate) width: usize,
     /// Where the coming row starts in them.
-    pub(super) start: usize,
-    pub(super) sides: Pair,
+    pub(crate) start: usize,
+    pub(crate) sides: LeftRight,
     /// Pixels of the coming row.
-    pub(super) count: u32,
+    pub(crate) count: u32,
     /// Rows to come.
-    pub(super) height: u32,
+    pub(crate) height: u32,
     /// Pixels of the rows that are done.
-    pub(super) filled: u32,
+    pub(crate) filled: u32,
     /// Depth at column 0, unless nothing is hidden.
-    pub(super) depth: D,
-    pub(super) patch: P,
-    pub(super) tone: T,
+    pub(crate) depth: D,
+    pub(crate) patch: P,
+    pub(crate) shader: T,
 }
 
 /// All bits of the number of pixels in a row.
 const ROW: u32 = 2 * COLUMNS - 1;
 
-/// Columns and rows that a triangle can touch, half open.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Bounds {
-    /// First column.
-    pub left: i32,
-    /// First row.
-    pub top: i32,
-    /// One past the last column.
-    pub right: i32,
-    /// One past the last row.
-    pub bottom: i32,
-}
+impl ScreenTriangle {
+    /// None at all.
+    pub(crate) const NONE: Self = Self { corners: [[0; 2]; 3], depth: [0; 3], turned: 0, course: RowRange::of(EdgeWalker::NONE, 0) };
 
-impl Bounds {
-    /// Of a triangle: pixels whose centres its box contains.
-    #[inline(always)]
-    #[must_use]
-    pub fn new(extent: &Extent) -> Self {
-        Self {
-            left: first_centre(extent.left),
-            top: first_centre(extent.top),
-            right: first_centre(extent.right),
-            bottom: first_centre(extent.bottom),
-        }
-    }
-
-    /// Of corners: pixels that their box touches.
-    #[must_use]
-    pub fn touched(corners: impl Iterator<Item = [i32; 3]>) -> Self {
-        let none = Self { left: i32::MAX, top: i32::MAX, right: i32::MIN, bottom: i32::MIN };
-        // A centre as far beyond the box as it can be.
-        let reach = |c: i32| [first_centre(c - (CENTRE - 1)), first_centre(c + CENTRE)];
-        corners.fold(none, |bounds, [x, y, _]| {
-            let ([left, right], [top, bottom]) = (reach(x), reach(y));
-            Self {
-                left: bounds.left.min(left),
-                top: bounds.top.min(top),
-                right: bounds.right.max(right),
-                bottom: bounds.bottom.max(bottom),
-            }
-        })
-    }
-
-    /// Of one point `[x, y, _]`.
-    #[must_use]
-    pub fn at([x, y, _]: [i32; 3]) -> Self {
-        Self { left: first_centre(x), top: first_centre(y), right: first_centre(x), bottom: first_centre(y) }
-    }
-
-    /// Grows until `point` lies inside.
-    pub fn include(&mut self, point: [i32; 3]) {
-        let other = Self::at(point);
-        self.left = self.left.min(other.left);
-        self.top = self.top.min(other.top);
-        self.right = self.right.max(other.right);
-        self.bottom = self.bottom.max(other.bottom);
-    }
-
-    /// Without what lies outside a viewport.
-    #[inline(always)]
-    #[must_use]
-    pub fn clipped(self, width: i32, height: i32) -> Self {
-        Self { left: self.left.max(0), top: self.top.max(0), right: self.right.min(width), bottom: self.bottom.min(height) }
-    }
-
-    /// `[left, top, right, bottom]`.
-    #[inline(always)]
-    #[must_use]
-    pub fn sides(self) -> [i32; 4] {
-        [self.left, self.top, self.right, self.bottom]
-    }
-
-    /// No pixel at all.
-    #[inline(always)]
-    #[must_use]
-    pub fn is_empty(&self) -> bool {
-        self.left >= self.right || self.top >= self.bottom
-    }
-}
-
-impl Outline {
     /// Turns the corners until the top one is first; the order around the triangle stays.
     #[inline(never)]
     #[must_use]
-    pub fn new<C>(corners: [&ScreenVertex; 3], part: Part, band: &Band<'_, C>) -> Self {
+    pub fn new(corners: [&ScreenVertex; 3], [width, top, bottom]: [i32; 3]) -> Self {
         let (turned, corners) = turned(corners);
         let places = places(corners);
-        let sides = if part == Part::Centres { Sides::new(places, band.range(), band.width as i32) } else { Sides::NONE };
-        Self { corners: places, depth: depths(corners), turned, part, course: Course::of(sides, 0) }
+        let sides = EdgeWalker::new(places, [top, bottom], width);
+        Self { corners: places, depth: depths(corners), turned, course: RowRange::of(sides, 0) }
     }
 
     /// The same without antialiasing, of a triangle that has been [`turned`] and whose sides can be walked from end to end.
@@ -171,87 +94,116 @@ impl Outline {
     #[must_use]
     pub(crate) fn simple<C>((turned, corners): (usize, [&ScreenVertex; 3]), key: u32, band: &Band<'_, C>) -> Self {
         let places = places(corners);
-        let sides = Sides::simple(places, band.range());
-        Self { corners: places, depth: depths(corners), turned, part: Part::Centres, course: Course::of(sides, key) }
+        let sides = EdgeWalker::simple(places, band.range());
+        Self { corners: places, depth: depths(corners), turned, course: RowRange::of(sides, key) }
     }
 
     /// Of one that the band above handed on: nothing else is known of it.
     #[inline(always)]
     #[must_use]
-    pub(crate) fn handed_on<C>(leg: &Leg, turned: usize, band: &Band<'_, C>) -> Self {
-        let course = Course { sides: leg.rest.sides(band.range()), nearness: leg.nearness, key: leg.key, handed_on: true };
-        Self { corners: [[0; 2]; 3], depth: [0; 3], turned, part: Part::Centres, course }
+    pub(crate) fn resumed<C>(active_triangle: &ActiveTriangle, turned: usize, band: &Band<'_, C>) -> Self {
+        let course = RowRange {
+            sides: active_triangle.rest.sides(band.range()),
+            inv_depth: active_triangle.inv_depth(),
+            key: active_triangle.key,
+            resumed: true,
+        };
+        Self { corners: [[0; 2]; 3], depth: [0; 3], turned, course }
     }
 
     /// No row lies in the band.
     #[inline(always)]
     #[must_use]
     pub fn is_empty(&self) -> bool {
-        self.part == Part::Centres && self.course.sides.row >= self.course.sides.end
+        self.course.sides.row >= self.course.sides.end
     }
 
     /// Works out depth, unless that is left to those who need it.
     #[inline(always)]
-    pub(crate) fn see(&mut self, basis: &Basis) {
-        self.course.nearness = Some(self.plane(basis, self.course.sides.row));
-    }
-
-    /// Its grid is finer than the pixels' by 2 to this power.
-    #[inline]
-    #[must_use]
-    pub fn finer(&self) -> u32 {
-        if let Part::Rim(finer) = self.part { finer } else { 0 }
+    pub(crate) fn set_up_depth(&mut self, gradients: &Gradients) {
+        self.course.inv_depth = Some(self.plane(gradients, self.course.sides.row));
     }
 
     /// Draws the rows that lie in `band` and returns how many pixels they have.
     #[inline(always)]
-    pub fn draw<P: Patch, T: Tone<<P::Walker as Walker>::Value>>(
+    pub fn draw<P: Patch, T: PixelShader<<P::Walker as Walker>::Value>>(
         &self,
-        basis: &Basis,
+        gradients: &Gradients,
         patch: P,
-        tone: T,
+        shader: T,
         band: &mut Band<'_, T::Pixel>,
     ) -> u32 {
-        if cfg!(feature = "antialias") && self.part != Part::Centres {
-            let shape = Shape { outline: self, piece: None, corners: self.corners, bits: SUBPIXEL };
-            return shape.draw(basis, patch, tone, band, &mut |_| [i32::MIN, i32::MAX]);
-        }
-        let nearness = match self.course.nearness {
-            Some(nearness) => nearness,
-            None => self.late_plane(*basis),
+        let inv_depth = match self.course.inv_depth {
+            Some(inv_depth) => inv_depth,
+            None => self.late_plane(*gradients),
         };
-        self.walk(basis, nearness, patch, tone, band)
+        self.walk(gradients, inv_depth, patch, shader, band)
     }
 
-    /// As [`Self::draw`], without depth: where nothing else is, and without antialiasing.
+    /// As [`Self::draw`], without depth: where nothing else is.
     #[inline(always)]
-    pub fn draw_alone<P: Patch, T: Tone<<P::Walker as Walker>::Value>>(
+    pub fn draw_alone<P: Patch, T: PixelShader<<P::Walker as Walker>::Value>>(
         &self,
-        basis: &Basis,
+        gradients: &Gradients,
         patch: P,
-        tone: T,
+        shader: T,
         band: &mut Band<'_, T::Pixel>,
     ) -> u32 {
-        self.walk(basis, Constant, patch, tone, band)
+        self.walk(gradients, Constant, patch, shader, band)
+    }
+
+    /// Of one whose rows are not walked: it is drawn by areas.
+    #[inline(never)]
+    #[must_use]
+    pub fn without_rows(corners: [&ScreenVertex; 3]) -> Self {
+        let (turned, corners) = turned(corners);
+        Self { corners: places(corners), depth: depths(corners), turned, course: RowRange::of(EdgeWalker::NONE, 0) }
+    }
+
+    /// Draws the rows that lie in `canvas` the general way and returns how many pixels they have; `shader` stands on the anchor's row.
+    #[inline(never)]
+    pub fn draw_spans(&self, gradients: &Gradients, shader: &mut dyn SpanShader, canvas: &mut dyn Canvas) -> u32 {
+        let sides = &self.course.sides;
+        let (mut row, mut stop, mut pair) = (sides.row, sides.stop, sides.pair);
+        let mut depth = self.plane(gradients, row);
+        shader.jump(row.wrapping_sub(gradients.row()));
+        let [width, ..] = canvas.bounds();
+        let mut pixels = 0u32;
+        loop {
+            while row < stop {
+                let (end, count) = ((pair.right.x >> COLUMN) as i32, pair.columns());
+                if count > 0 {
+                    canvas.draw_row(row, end, count as usize, depth.enter(end), shader);
+                    pixels = pixels.wrapping_add(count);
+                }
+                pair.skip(1);
+                depth.step_row();
+                shader.step_row();
+                row += 1;
+            }
+            if stop >= sides.end {
+                return pixels;
+            }
+            stop = sides.next(row, &mut pair, self.corners, width);
+        }
     }
 
     /// Walks down its sides; `depth` stands on the first row.
     #[inline(always)]
-    fn walk<D: Patch<Walker: Sight>, P: Patch, T: Tone<<P::Walker as Walker>::Value>>(
+    fn walk<D: Patch<Walker: DepthTest>, P: Patch, T: PixelShader<<P::Walker as Walker>::Value>>(
         &self,
-        basis: &Basis,
+        gradients: &Gradients,
         depth: D,
         patch: P,
-        tone: T,
+        shader: T,
         band: &mut Band<'_, T::Pixel>,
     ) -> u32 {
         let sides = &self.course.sides;
         let (mut row, mut stop) = (sides.row, sides.stop);
-        let mut rows = Rows::new(band, row, sides.pair, depth, patch, tone);
-        if !self.course.handed_on && row != basis.row() {
-            rows.patch.jump(row.wrapping_sub(basis.row()));
+        let mut rows = Rows::new(band, row, sides.pair, depth, patch, shader);
+        if !self.course.resumed && row != gradients.row() {
+            rows.patch.jump(row.wrapping_sub(gradients.row()));
         }
-        rows.tone.start(row);
         loop {
             if row < stop {
                 rows.height = stop.wrapping_sub(row) as u32;
@@ -267,24 +219,24 @@ impl Outline {
         let filled = rows.filled;
         if self.course.key != 0 && sides.goes_on() {
             let Rows { sides: pair, depth, patch, .. } = rows;
-            hand_on((self.course.key, sides.rest(pair, T::MARK)), &depth, &patch, &mut band.relay);
+            hand_on((self.course.key, sides.rest(pair, T::ID)), &depth, &patch, &mut band.active);
         }
         filled
     }
 
     #[cold]
     #[inline(never)]
-    fn late_plane(self, basis: Basis) -> Plane<1> {
-        self.plane(&basis, self.course.sides.row)
+    fn late_plane(self, gradients: Gradients) -> Plane<1> {
+        self.plane(&gradients, self.course.sides.row)
     }
 
     /// Depth, standing on `row`.
     #[inline(always)]
-    pub(super) fn plane(&self, basis: &Basis, row: i32) -> Plane<1> {
+    pub fn plane(&self, gradients: &Gradients, row: i32) -> Plane<1> {
         let [a, b, c] = self.depth;
         let node = |depth: i32| (depth + (1 << (DEPTH - DEPTH_NODE - 1))) >> (DEPTH - DEPTH_NODE);
-        let mut depth = Plane::fit::<DEPTH_NODE>(basis, [[node(a), node(b), node(c)]], 16 + DEPTH_WALK - DEPTH_NODE);
-        depth.jump(row.wrapping_sub(basis.row()));
+        let mut depth = Plane::fit::<DEPTH_NODE>(gradients, [[node(a), node(b), node(c)]], 16 + DEPTH_WALK - DEPTH_NODE);
+        depth.jump(row.wrapping_sub(gradients.row()));
         depth
     }
 }
@@ -321,8 +273,8 @@ pub fn turn<A: Copy>([a, b, c]: [A; 3], by: usize) -> [A; 3] {
 
 /// Hands a triangle on to the next band, walked to its first row there.
 #[inline(never)]
-fn hand_on<D: Patch, P: Patch>((key, rest): (u32, Rest), depth: &D, patch: &P, relay: &mut Relay<'_>) {
-    relay.put(|leg| leg.keep((key, rest), depth, patch));
+fn hand_on<D: Patch, P: Patch>((key, rest): (u32, EdgeState), depth: &D, patch: &P, active: &mut ActiveTriangles<'_>) {
+    active.put(|active_triangle| active_triangle.keep((key, rest), depth, patch));
 }
 
 /// Fills the rows to come; there is at least one.
@@ -332,7 +284,9 @@ fn hand_on<D: Patch, P: Patch>((key, rest): (u32, Rest), depth: &D, patch: &P, r
 /// the compiler would count in two registers instead of one. Where registers are few or many, or nothing is walked, a copy on the stack
 /// is shorter.
 #[inline(never)]
-pub(super) fn fill_rows<D: Patch<Walker: Sight>, P: Patch, T: Tone<<P::Walker as Walker>::Value>>(mut rows: &mut Rows<'_, D, P, T>) {
+pub(crate) fn fill_rows<D: Patch<Walker: DepthTest>, P: Patch, T: PixelShader<<P::Walker as Walker>::Value>>(
+    mut rows: &mut Rows<'_, D, P, T>,
+) {
     if Rows::<D, P, T>::LOCAL {
         rows.fill_here();
         return;
@@ -348,7 +302,7 @@ pub(super) fn fill_rows<D: Patch<Walker: Sight>, P: Patch, T: Tone<<P::Walker as
     }
 }
 
-impl<'b, D: Patch<Walker: Sight>, P: Patch, T: Tone<<P::Walker as Walker>::Value>> Rows<'b, D, P, T> {
+impl<'b, D: Patch<Walker: DepthTest>, P: Patch, T: PixelShader<<P::Walker as Walker>::Value>> Rows<'b, D, P, T> {
     /// Whether rows are filled in a copy, see [`fill_rows`].
     const LOCAL: bool = HALVES || cfg!(not(target_arch = "arm")) || size_of::<P>() == 0;
 
@@ -357,9 +311,9 @@ impl<'b, D: Patch<Walker: Sight>, P: Patch, T: Tone<<P::Walker as Walker>::Value
 
     /// No rows yet, from `row` of the band on.
     #[inline(always)]
-    pub(super) fn new(band: &'b mut Band<'_, T::Pixel>, row: i32, sides: Pair, depth: D, patch: P, tone: T) -> Self {
+    pub(crate) fn new(band: &'b mut Band<'_, T::Pixel>, row: i32, sides: LeftRight, depth: D, patch: P, shader: T) -> Self {
         let (width, start) = (band.width, band.start(row));
-        Self { pixels: band.pixels, buffer: band.depth, width, start, sides, count: 0, height: 0, filled: 0, depth, patch, tone }
+        Self { pixels: band.pixels, buffer: band.depth, width, start, sides, count: 0, height: 0, filled: 0, depth, patch, shader }
     }
 
     /// Fills one row; its sides step to the next.
@@ -382,7 +336,7 @@ impl<'b, D: Patch<Walker: Sight>, P: Patch, T: Tone<<P::Walker as Walker>::Value
             && let Some(pixels) = self.pixels.get_mut(start..end)
             && let Some(buffer) = D::Walker::depth(self.buffer, start..end)
         {
-            fill(pixels, buffer, self.depth.enter(right as i32), self.patch.enter(right as i32), self.tone, left);
+            fill(pixels, buffer, self.depth.enter(right as i32), self.patch.enter(right as i32), self.shader);
             if !Self::AHEAD && late {
                 self.filled = self.filled.wrapping_add(count as u32);
             }
@@ -392,9 +346,9 @@ impl<'b, D: Patch<Walker: Sight>, P: Patch, T: Tone<<P::Walker as Walker>::Value
     /// Fills them in a copy that is nobody else's.
     #[inline(always)]
     fn fill_here(&mut self) {
-        let Rows { width, start, sides, count, height, filled, depth, patch, tone, .. } = *self;
+        let Rows { width, start, sides, count, height, filled, depth, patch, shader, .. } = *self;
         let (pixels, buffer) = (&mut *self.pixels, &mut *self.buffer);
-        let mut rows = Rows { pixels, buffer, width, start, sides, count, height, filled, depth, patch, tone };
+        let mut rows = Rows { pixels, buffer, width, start, sides, count, height, filled, depth, patch, shader };
         let ahead = |count: u32| if Self::AHEAD { count } else { 0 };
         rows.filled = rows.filled.wrapping_add(ahead(rows.count));
         loop {
@@ -412,8 +366,8 @@ impl<'b, D: Patch<Walker: Sight>, P: Patch, T: Tone<<P::Walker as Walker>::Value
         }
         // Without that of the row behind the last.
         self.filled = rows.filled.wrapping_sub(ahead(rows.count));
-        let Rows { start, sides, depth, patch, tone, .. } = rows;
-        (self.start, self.sides, self.depth, self.patch, self.tone) = (start, sides, depth, patch, tone);
+        let Rows { start, sides, depth, patch, shader, .. } = rows;
+        (self.start, self.sides, self.depth, self.patch, self.shader) = (start, sides, depth, patch, shader);
     }
 
     /// Steps to the next row.
@@ -421,6 +375,5 @@ impl<'b, D: Patch<Walker: Sight>, P: Patch, T: Tone<<P::Walker as Walker>::Value
     fn step(&mut self) {
         self.depth.step_row();
         self.patch.step_row();
-        self.tone.step_row();
     }
 }

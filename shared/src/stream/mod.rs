@@ -8,7 +8,6 @@ pub mod record;
 use crate::{
     format::{MAX_LIGHTS, RHO, ROTATION, UNIT},
     math::vector::{cross, dot},
-    shader::Shader,
 };
 use core::{fmt, ops::Range};
 use record::{
@@ -203,7 +202,6 @@ impl<'a> Stream<'a> {
     /// The ranges that the renderer's arithmetic relies on.
     fn check(&self) -> Result<(), StreamError> {
         let header = self.header;
-        field(usize::from(header.shader) < Shader::ALL.len(), "shader", 0)?;
         field(header.frames > 0, "frames", 0)?;
         field(header.camera.reserved == 0, "reserved", 0)?;
         field(header.viewer <= VIEWER_LOCAL, "viewer", 0)?;
@@ -295,12 +293,6 @@ impl<'a> Stream<'a> {
     #[must_use]
     pub fn triangles_of(&self, mesh: &Mesh) -> Option<&'a [Triangle]> {
         self.triangles.get(mesh.first_triangle as usize..)?.get(..mesh.triangles as usize)
-    }
-
-    /// The method that the stream asks for.
-    #[must_use]
-    pub fn shader(&self) -> Shader {
-        Shader::ALL.get(usize::from(self.header.shader)).copied().unwrap_or_default()
     }
 }
 

@@ -25,7 +25,7 @@ pub struct Header {
     pub magic: [u8; 4],
     /// [`VERSION`].
     pub version: u16,
-    /// Shading method to use unless the caller names one: index into [`crate::Shader::ALL`].
+    /// Shading method to use unless the caller names one: its [`crate::method::Facts::id`].
     pub shader: u16,
     /// Bytes in the whole stream, this header included.
     pub length: u32,
@@ -186,7 +186,7 @@ pub struct Mesh {
     pub flags: u16,
 }
 
-/// The mesh is closed and convex, so its front faces never hide one another; see [`crate::convex`]. It promises:
+/// The mesh is closed and convex, so its front faces never hide one another; see [`crate::geometry::depth_elision`]. It promises:
 ///
 /// - The mesh is one closed surface, all of its triangles counter-clockwise seen from outside.
 /// - Each vertex is a corner of a convex body, in the ball of radius one about the origin, with coordinates rounded to the
@@ -340,7 +340,7 @@ pub struct Triangle {
     pub offset: i16,
     /// 1 over the least altitude of the stored corners, longest side over twice the area, [`InverseAltitude`] in 1/units, rounded up, so
     /// at least one step; 65535 where that is too little. It tells how far the triangle must face away before no rounding of
-    /// corners can turn it to the front, see [`crate::cull`].
+    /// corners can turn it to the front, see [`crate::geometry::cull`].
     pub inverse_altitude: u16,
 }
 

@@ -10,9 +10,11 @@ use embedded_graphics_core::{
     pixelcolor::{Gray4, Rgb565},
 };
 use microphong::{
-    Renderer, Shader, Stream, Workspace,
+    Layout, Renderer, Shader, Stream,
     pixel::{PictureCrc, Pixel, Rgb565Be},
 };
+
+use microphong_literature::ALL;
 
 unsafe extern "C" {
     safe fn a_panic_can_be_reached() -> !;
@@ -25,10 +27,14 @@ fn panic(_: &core::panic::PanicInfo<'_>) -> ! {
 
 /// Pixels of a band.
 const BAND: usize = 9600;
+/// Room for a small scene, antialiased.
+const LAYOUT: Layout = Layout::new(240, 40).vertices(600).triangles(600).materials(2).antialias(cfg!(feature = "all"));
+/// Enough in every pixel format: those with the largest pixels take most.
+const WORDS: usize = LAYOUT.words::<Rgb565>();
 
 /// The memory that a board draws pictures of one pixel format in.
-pub struct Buffers<C> {
-    workspace: Workspace<C, 600, 600, BAND, 2, 40, 2400>,
+pub struct Buffers<C: Pixel> {
+    memory: [u64; WORDS],
     band: [C; BAND],
 }
 
@@ -49,15 +55,17 @@ pub struct Request {
 /// One frame, band by band, as a board draws it: its checksum and its count of pixels.
 fn draw<C: Pixel>(request: Request, buffers: &mut Buffers<C>) -> Option<u32> {
     let [width, height] = request.size;
-    let mut renderer = Renderer::new(Stream::parse(request.stream).ok()?, Size::new(width, height), buffers.workspace.memory()).ok()?;
-    renderer.set_shader(*Shader::ALL.get(request.shader)?).ok()?;
+    let literature = Shader::new(*ALL.get(request.shader / 8)?);
+    let shader = Shader::ALL.get(request.shader).copied().unwrap_or(literature);
+    let stream = Stream::parse(request.stream).ok()?;
+    let mut renderer = Renderer::with_shader(stream, Size::new(width, height), &LAYOUT, &mut buffers.memory, shader).ok()?;
     renderer.set_dither(request.dither);
     #[cfg(feature = "all")]
     renderer.set_antialias(request.antialias).ok()?;
     renderer.set_perspective_correct(request.perspective).ok()?;
     let mut frame = renderer.frame(request.number);
     let mut crc = PictureCrc::default();
-    while frame.next_band(&mut buffers.band).is_some() {
+    while frame.next_band(&mut buffers.band).ok()?.is_some() {
         crc.update(&buffers.band);
     }
     Some(crc.finish() ^ frame.stats().pixels)

@@ -8,8 +8,8 @@ mod split;
 
 use super::{Measurement, Processor, Stages};
 use anyhow::{Context, Result, anyhow, ensure};
-use microphong::Shader;
 use microphong_boards::{build::release, sources::sources};
+use microphong_render::shader::Shader;
 use profile::Profile;
 use std::{
     ffi::OsString,

@@ -87,14 +87,14 @@ mod tests {
 
     /// A frame that draws two triangles of three rows and 45 pixels; `memcpy` works for whoever calls it.
     const TEXT: &str = "\
-fn=microphong::render::Stage<C>::transform
+fn=microphong::mesh::vertices::VertexStage::transform
 0x1 50
 cfn=memcpy
 calls=1 0x90
 0x2 5
-fn=microphong::render::Frame<C>::draw
+fn=microphong::frame::Frame<C>::draw
 0x3 20
-cfn=microphong::band::Band<C>::clear
+cfn=microphong::raster::band::Band<C>::clear
 calls=1 0x80
 0x4 1000
 cfn=helper
@@ -116,7 +116,7 @@ cfn=memcpy
 calls=45 0x90
 0x62 88
 0x63 45
-cfn=microphong::shade::tone
+cfn=microphong::method::quotient::tone
 calls=45 0xa0
 0x63 444
 jcnd=39/45 0x62
@@ -124,9 +124,9 @@ jcnd=39/45 0x62
 0x64 6
 jcnd=4/6 0x61
 0x64
-fn=microphong::shade::tone
+fn=microphong::method::quotient::tone
 0xa0 444
-fn=microphong::band::Band<C>::clear
+fn=microphong::raster::band::Band<C>::clear
 0x80 1000
 fn=memcpy
 0x90 107
@@ -145,7 +145,7 @@ totals: 1731
 
     #[test]
     fn a_frame_without_rows_is_an_error() {
-        let profile = Profile::parse("fn=microphong::render::Frame<C>::draw\n0x3 20\n").expect("a profile");
+        let profile = Profile::parse("fn=microphong::frame::Frame<C>::draw\n0x3 20\n").expect("a profile");
         assert!(stages(&profile).is_err());
     }
 }

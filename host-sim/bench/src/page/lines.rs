@@ -6,7 +6,7 @@ use crate::{
     growth::{Point, Sweep},
 };
 use maud::{Markup, html};
-use microphong::Shader;
+use microphong_render::shader::Shader;
 
 const SIZE: (f64, f64) = (480.0, 300.0);
 const LEFT: f64 = 44.0;

@@ -223,7 +223,7 @@ fn chart(measurements: &[Measurement]) -> Markup {
 mod tests {
     use super::*;
     use crate::Stages;
-    use microphong::Shader;
+    use microphong_render::shader::Shader;
 
     fn measured() -> Vec<Measurement> {
         let frame = |scene: &str, board: Processor, shader: Shader, index: u64| {

@@ -6,7 +6,7 @@ use super::{
 };
 use crate::{Measurement, Processor, family::Family, pareto};
 use maud::{Markup, html};
-use microphong::Shader;
+use microphong_render::shader::Shader;
 
 /// A panel's size.
 pub(super) const SIZE: (f64, f64) = (480.0, 380.0);

@@ -8,7 +8,7 @@ use crate::{
     peers::table::{self, Table},
 };
 use maud::{Markup, html};
-use microphong::Shader;
+use microphong_render::shader::Shader;
 
 /// The method that others are to be cheaper than.
 const PHONG: &str = "phong";

@@ -11,7 +11,6 @@ use embedded_graphics_core::{
     geometry::Size,
     pixelcolor::{Rgb565, RgbColor, raw::RawU16},
 };
-use microphong::Shader;
 use microphong_boards::{
     Board, INSTRUCTIONS_PER_TICK,
     build::{install_target, release},
@@ -19,7 +18,7 @@ use microphong_boards::{
     elf::Elf,
     sources::sources,
 };
-use microphong_render::{render, scene::Scene};
+use microphong_render::{render, scene::Scene, shader::Shader};
 use serde::Serialize;
 use std::{ffi::OsString, fs, path::PathBuf};
 
@@ -107,7 +106,7 @@ pub fn measure(processor: Processor, scene: &Scene) -> Result<Vec<Frame>> {
         Some(board) => on_board(processor, board, scene)?,
     };
     let (width, height) = processor.size();
-    let (_, ours) = render::frame::<Rgb565>(scene.stream.parse()?, Size::new(width, height), Shader::Flat, height, 0)?;
+    let (_, ours) = render::frame::<Rgb565>(scene.stream.parse()?, Size::new(width, height), Shader::FLAT, height, 0)?;
     for frame in &frames {
         let more = frame.pixels as f64 / f64::from(ours.pixels) - 1.0;
         ensure!(more.abs() < COVERAGE, "{} covers {} pixels, microphong {}: not the same frame", frame.shader, frame.pixels, ours.pixels);

@@ -74,7 +74,7 @@ impl Table {
     /// What has to be known of its columns.
     #[must_use]
     pub fn note(&self) -> Option<String> {
-        let rows = PICO.rows;
+        let rows = PICO.layout.rows;
         self.processors
             .contains(&Processor::CortexM0Plus)
             .then(|| format!("cortex-m0plus: ours on the Pico in bands of {rows} rows, theirs as ARMv6-M code on a Cortex-M3 in one band"))

@@ -9,8 +9,7 @@ use super::{Comparison, Reference};
 use crate::document::document;
 use anyhow::{Context, Result};
 use maud::{Markup, html};
-use microphong::Shader;
-use microphong_render::output::Output;
+use microphong_render::{output::Output, shader::Shader};
 use rayon::prelude::*;
 use std::{
     fs,

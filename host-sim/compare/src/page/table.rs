@@ -3,7 +3,7 @@
 use super::Outcome;
 use crate::Comparison;
 use maud::{Markup, html};
-use microphong::Shader;
+use microphong_render::shader::Shader;
 
 /// A column of numbers: its heading, what it means, its places, and where its value comes from.
 type Column = (&'static str, &'static str, usize, fn(&Comparison) -> f64);

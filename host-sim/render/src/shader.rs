@@ -1,0 +1,116 @@
+//! Shading methods, chosen at run time: those of the core and those of the literature.
+
+use anyhow::{Context, Result};
+use microphong::{
+    Stream,
+    method::{Facts, Method, flat::Flat, gouraud::Gouraud, phong::Phong, renq_newton::RenqNewton, six_point::SixPoint, sqrt6::Sqrt6},
+    pixel::Pixel,
+};
+use microphong_literature as literature;
+use std::fmt;
+
+/// A shading method in no pixel format yet.
+#[derive(Clone, Copy)]
+pub struct Shader(&'static dyn Method);
+
+impl Shader {
+    /// One colour per triangle.
+    pub const FLAT: Self = Self(&Flat);
+    /// Lit at the corners, linear in between.
+    pub const GOURAUD: Self = Self(&Gouraud);
+    /// Lit at corners and edge midpoints, quadratic in between.
+    pub const SIX_POINT: Self = Self(&SixPoint);
+    /// Normals interpolated and normalised at every pixel.
+    pub const PHONG: Self = Self(&Phong);
+    /// The root of N·H quadratic, squared and raised at the pixel.
+    pub const SQRT6: Self = Self(&Sqrt6);
+    /// Linear numerators times a quadratic reciprocal length.
+    pub const RENQ: Self = Self(&literature::Renq);
+    /// Linear numerators times a quadratic reciprocal length, made exact by Newton's iteration.
+    pub const RENQ_NEWTON: Self = Self(&RenqNewton);
+
+    /// Every method, in the order of their numbers.
+    pub const ALL: [Self; 26] = {
+        let [a, b, c, d, e, f, g, h, i, j, k, l, m, n, o, p, q, r, s, t] = literature::ALL;
+        [
+            Self::FLAT,
+            Self::GOURAUD,
+            Self::SIX_POINT,
+            Self::PHONG,
+            Self(a),
+            Self(b),
+            Self(c),
+            Self(d),
+            Self(e),
+            Self(f),
+            Self(g),
+            Self(h),
+            Self(i),
+            Self(j),
+            Self(k),
+            Self(l),
+            Self(m),
+            Self(n),
+            Self(o),
+            Self(p),
+            Self(q),
+            Self(r),
+            Self(s),
+            Self::SQRT6,
+            Self(t),
+            Self::RENQ_NEWTON,
+        ]
+    };
+
+    /// The methods that the core itself has.
+    pub const CORE: [Self; 6] = [Self::FLAT, Self::GOURAUD, Self::SIX_POINT, Self::PHONG, Self::SQRT6, Self::RENQ_NEWTON];
+
+    /// The method with this number in streams.
+    #[must_use]
+    pub fn by_id(id: u16) -> Option<Self> {
+        Self::ALL.into_iter().find(|shader| shader.facts().id == id)
+    }
+
+    /// The method that a stream asks for.
+    ///
+    /// # Errors
+    /// When it is none of those that there are here.
+    pub fn of(stream: &Stream<'_>) -> Result<Self> {
+        let id = stream.header.shader;
+        Self::by_id(id)
+            .with_context(|| format!("the stream asks for shading method number {id}, which is none of these; name one by --shader"))
+    }
+
+    /// What is known of the method.
+    #[must_use]
+    pub fn facts(self) -> &'static Facts {
+        self.0.facts()
+    }
+
+    /// The name on the command line and in logs.
+    #[must_use]
+    pub fn name(self) -> &'static str {
+        self.facts().name
+    }
+
+    /// The method for a pixel format: with loops of its own if it has any.
+    #[must_use]
+    pub fn on<C: Pixel>(self) -> microphong::Shader<C> {
+        let id = self.facts().id;
+        microphong::Shader::ALL.into_iter().find(|shader| shader.facts().id == id).unwrap_or(microphong::Shader::new(self.0))
+    }
+}
+
+impl PartialEq for Shader {
+    fn eq(&self, other: &Self) -> bool {
+        self.facts().id == other.facts().id
+    }
+}
+
+impl Eq for Shader {}
+
+impl fmt::Debug for Shader {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(self.name())
+    }
+}

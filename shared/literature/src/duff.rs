@@ -1,0 +1,39 @@
+//! Duff's form (Duff 1979; see Bishop & Weimer 1986): linear N·L and N·H over the root of a quadratic.
+//!
+//! Under a constant light N·L and N·H are exactly linear and |N|² exactly quadratic over a triangle, so only
+//! the reciprocal root is approximated, by a table of 1,537 knots. Near lights and viewers have numerators that
+//! are not linear: there they are the quadratics through six points.
+//!
+//! Cost: 4 additions a pixel, a root from a table, 2 products and the highlight's table; 2 or 4 additions and
+//! 2 products more per light. Error: that of the tables, [`microphong::math::power::NEAREST_ERROR`] of the highlight above all.
+//! Domain: any lights; with near lights as good as six points are.
+
+use microphong::{
+    method::{Costs, Facts, Highlight, Method, Shading, TriangleSetup, VertexLight, duff},
+    raster::canvas::Canvas,
+};
+
+static FACTS: Facts = Facts {
+    name: "duff",
+    id: 10,
+    source: "Duff 1979",
+    vertex_light: VertexLight::Cosines,
+    highlight: Highlight::Half,
+    highlight_levels: true,
+    near_lights: true,
+    perspective: true,
+    costs: Costs::new(6, 3, 2, 60),
+};
+
+/// Duff's form of Phong shading.
+pub struct Duff;
+
+impl Method for Duff {
+    fn facts(&self) -> &'static Facts {
+        &FACTS
+    }
+
+    fn shade(&self, setup: &TriangleSetup<'_>, shading: &Shading<'_>, canvas: &mut dyn Canvas) -> u32 {
+        duff::shade(setup, shading, canvas)
+    }
+}

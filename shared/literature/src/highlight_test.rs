@@ -1,0 +1,67 @@
+//! Phong shading where a highlight can be, Gouraud shading elsewhere.
+//!
+//! N·H is linear under constant light, and no interpolated normal is shorter than rho: N·H over |N| is at most the
+//! largest of the corners over rho. Where that stays below the cosine whose power is taken as 0, for each light,
+//! only diffuse light is left, and it changes slowly. Near lights have no such bound at a fair price: Phong everywhere.
+//!
+//! Cost: three comparisons a triangle and light, then that of [`microphong::method::gouraud`] or [`microphong::method::phong`]. Not continuous where
+//! the two meet. Error against Phong: Gouraud's of diffuse light. Domain: any lights.
+
+use microphong::{
+    lighting::{
+        lights::{Source, cosine},
+        materials::Highlight,
+    },
+    method::{Costs, Facts, Method, RANGE, Shading, TriangleSetup, VertexLight, gouraud::Gouraud, phong::Phong},
+    raster::canvas::Canvas,
+};
+
+static FACTS: Facts = Facts {
+    name: "highlight-test",
+    id: 7,
+    source: "Szirmay-Kalos et al. 2000",
+    vertex_light: VertexLight::CosinesOrLevels,
+    highlight: Highlight::Half,
+    highlight_levels: true,
+    near_lights: true,
+    perspective: true,
+    costs: Costs::new(11, 12, 2, 35),
+};
+
+/// Phong shading where a highlight can be.
+pub struct HighlightTest;
+
+impl Method for HighlightTest {
+    fn facts(&self) -> &'static Facts {
+        &FACTS
+    }
+
+    fn shade(&self, setup: &TriangleSetup<'_>, shading: &Shading<'_>, canvas: &mut dyn Canvas) -> u32 {
+        draw(setup, shading, canvas)
+    }
+}
+
+fn draw(setup: &TriangleSetup<'_>, shading: &Shading<'_>, canvas: &mut dyn Canvas) -> u32 {
+    if !has_no_highlight(setup, shading) {
+        return Phong.shade(setup, shading, canvas);
+    }
+    if shading.constant.is_none() {
+        return Gouraud.shade(setup, shading, canvas);
+    }
+    let levels = setup.corners.map(|corner| shading.reflectance.one_light([corner.light[0], corner.light[1]]));
+    shading.draw_levels::<3, RANGE>(setup, levels, canvas)
+}
+
+/// No light's highlight reaches a visible level anywhere on the triangle.
+fn has_no_highlight(setup: &TriangleSetup<'_>, shading: &Shading<'_>) -> bool {
+    if shading.constant.is_some() {
+        return setup.has_no_highlight(shading.reflectance);
+    }
+    let limit = setup.highlight_threshold(shading.reflectance);
+    let corners = setup.corner_nodes();
+    shading.lighting.is_constant()
+        && shading.lighting.sources.iter().all(|source| match *source {
+            Source::Directional { half, .. } => corners.iter().all(|corner| cosine(corner.normal, half) < limit),
+            Source::Point(_) => false,
+        })
+}

@@ -1,0 +1,59 @@
+//! Pseudo-Phong shading: Gouraud's on triangles a few pixels large.
+//!
+//! A triangle is split into 4^k copies of itself, k at most 6 and the least for
+//! which no edge is longer than 8 pixels, each lit at its corners with the
+//! interpolated, normalised normal. What Phong shading on machines that only know
+//! Gouraud's amounts to. Cost: one addition a pixel and channel, but a light and a
+//! set-up for every 32 pixels or fewer. Neighbours may be split unequally, then
+//! they meet in chords of the same curve.
+
+use crate::{split::SubTriangles, sub_triangle::SubTriangle};
+use microphong::{
+    format::{SPLITS, SUBPIXEL},
+    lighting::materials::Highlight,
+    method::{Costs, Facts, Method, Shading, TriangleSetup, VertexLight},
+    raster::canvas::Canvas,
+};
+
+/// Logarithm of the longest edge of a part, 8 pixels in 1/16 pixel.
+const LONGEST: u32 = 3 + SUBPIXEL;
+
+static FACTS: Facts = Facts {
+    name: "pseudo-phong",
+    id: 6,
+    source: "Szirmay-Kalos et al. 2000",
+    vertex_light: VertexLight::Levels,
+    highlight: Highlight::Half,
+    highlight_levels: false,
+    near_lights: true,
+    perspective: false,
+    costs: Costs::new(1, 0, 0, 520),
+};
+
+/// Gouraud shading of small parts.
+pub struct PseudoPhong;
+
+impl Method for PseudoPhong {
+    fn facts(&self) -> &'static Facts {
+        &FACTS
+    }
+
+    fn shade(&self, setup: &TriangleSetup<'_>, shading: &Shading<'_>, canvas: &mut dyn Canvas) -> u32 {
+        draw(setup, shading, canvas)
+    }
+}
+
+fn draw(setup: &TriangleSetup<'_>, shading: &Shading<'_>, canvas: &mut dyn Canvas) -> u32 {
+    let cells = SubTriangles::new(setup, shading);
+    cells.linear_parts(&SubTriangle::WHOLE, &cells.corners(), splits(setup), canvas)
+}
+
+/// How often the triangle is split.
+fn splits(setup: &TriangleSetup<'_>) -> u32 {
+    let ([a, b, c], finer) = (setup.corners, setup.pixels.finer());
+    let longest = [(a, b), (b, c), (c, a)].into_iter().fold(0, |longest, (a, b)| {
+        let (x, y) = (i64::from(a.x) - i64::from(b.x), i64::from(a.y) - i64::from(b.y));
+        longest.max(x * x + y * y)
+    });
+    (0..SPLITS).find(|k| longest <= 1 << (2 * (LONGEST + finer + k))).unwrap_or(SPLITS)
+}

@@ -1,0 +1,73 @@
+//! The six-point quadratic, split where it misses the centre (Szirmay-Kalos et al. 2000).
+//!
+//! As printed: a triangle is split into four, three times at most, while the
+//! quadratic differs from the light at its centroid by more than 2 LSB in any
+//! channel. A highlight beside the centre is not noticed, and neighbours that
+//! decide differently do not meet: the surface cracks by up to 100 LSB.
+//! [`crate::six_point_adaptive`] does neither. Cost: two additions a pixel and
+//! channel; one more light a triangle, and nine a split.
+
+use crate::{
+    split::{Six, SubTriangles, corners, edges},
+    sub_triangle::SubTriangle,
+};
+use microphong::{
+    format::LEVEL,
+    lighting::materials::Highlight,
+    method::{Costs, Facts, Method, Shading, TriangleSetup, VertexLight},
+    raster::canvas::Canvas,
+};
+
+/// What the quadratic may be wrong by at the centre, Q9.7.
+pub const CENTRE: i32 = 2 << LEVEL;
+/// How often a triangle is split at most.
+pub const DEPTH: u32 = 3;
+
+static FACTS: Facts = Facts {
+    name: "six-point-centre",
+    id: 14,
+    source: "Szirmay-Kalos et al. 2000",
+    vertex_light: VertexLight::Levels,
+    highlight: Highlight::Half,
+    highlight_levels: false,
+    near_lights: true,
+    perspective: false,
+    costs: Costs::new(2, 0, 0, 175),
+};
+
+/// Six-point shading, split as printed.
+pub struct SixPointCentre;
+
+impl Method for SixPointCentre {
+    fn facts(&self) -> &'static Facts {
+        &FACTS
+    }
+
+    fn shade(&self, setup: &TriangleSetup<'_>, shading: &Shading<'_>, canvas: &mut dyn Canvas) -> u32 {
+        draw(setup, shading, canvas)
+    }
+}
+
+fn draw(setup: &TriangleSetup<'_>, shading: &Shading<'_>, canvas: &mut dyn Canvas) -> u32 {
+    let cells = SubTriangles::new(setup, shading);
+    parts(&cells, &SubTriangle::WHOLE, &cells.six(), DEPTH, canvas)
+}
+
+/// Draws a cell by its nodes, or its parts if it has to be split; `depth` is how often it may be, once at least.
+#[inline(never)]
+fn parts(cells: &SubTriangles<'_, '_>, sub_triangle: &SubTriangle, six: &Six, depth: u32, canvas: &mut dyn Canvas) -> u32 {
+    if !cells.meets(sub_triangle, canvas) {
+        return 0;
+    }
+    if !cells.misses_centre(sub_triangle, six, CENTRE) {
+        return cells.quadratic(sub_triangle, six, canvas);
+    }
+    let halves = [0, 1, 2].map(|k| cells.quarters(sub_triangle, k));
+    let cuts = cells.cuts(sub_triangle);
+    let mut pixels = 0;
+    for (k, part) in sub_triangle.split().iter().enumerate() {
+        let six = Six { corners: corners(six.corners, six.middles, k), middles: edges(halves, cuts, k) };
+        pixels += if depth > 1 { parts(cells, part, &six, depth - 1, canvas) } else { cells.quadratic(part, &six, canvas) };
+    }
+    pixels
+}

@@ -1,0 +1,234 @@
+//! What the methods share that split a triangle into cells and shade each by itself.
+
+use crate::sub_triangle::{ScreenSubTriangle, SubTriangle};
+use microphong::{
+    interpolate::{field::Field, plane::Plane},
+    math::vector::{add, zip},
+    method::{Area, Shading, TriangleSetup},
+    raster::canvas::{Canvas, IntensityShader, Shaded},
+    setup::gradients::Gradients,
+};
+
+/// Light of three channels, Q9.7.
+pub type Levels = [i32; 3];
+
+/// Nodes are in [0, 255], those on a parabola a little outside.
+const BITS: u32 = 16;
+
+/// A triangle that is drawn cell by cell.
+pub struct SubTriangles<'a, 'f> {
+    setup: &'a TriangleSetup<'f>,
+    shading: &'a Shading<'f>,
+    gradients: Gradients,
+    depth: Plane<1>,
+}
+
+/// A cell on the screen, ready for fitting.
+struct Part<'p> {
+    part: &'p ScreenSubTriangle<'p>,
+    gradients: Gradients,
+    depth: Plane<1>,
+}
+
+impl Area for Part<'_> {
+    fn draw<F: Field, S: IntensityShader<F::Value>>(&self, field: &F, shader: S, canvas: &mut dyn Canvas) -> u32 {
+        let mut shaded = Shaded { patch: field.fit(&self.gradients), shader };
+        self.part.draw(self.gradients.row(), self.depth, &mut shaded, canvas)
+    }
+}
+
+/// Light at the corners of a cell and at the middles of its edges 01, 12, 20.
+#[derive(Clone, Copy)]
+pub struct Six {
+    /// At the corners.
+    pub corners: [Levels; 3],
+    /// At the middles of the edges.
+    pub middles: [Levels; 3],
+}
+
+/// What the edges of part `k` of [`SubTriangle::split`] have of what is known at the halves of a cell's edges 01, 12, 20, and at
+/// the edges that cut off its corners 0, 1, 2.
+#[inline]
+pub fn edges<A: Copy>(halves: [[A; 2]; 3], cuts: [A; 3], k: usize) -> [A; 3] {
+    let [[ab, ba], [bc, cb], [ca, ac]] = halves;
+    let [a, b, c] = cuts;
+    match k {
+        0 => [ab, a, ac],
+        1 => [ba, bc, b],
+        2 => [c, cb, ca],
+        _ => [c, a, b],
+    }
+}
+
+/// What the corners of part `k` of [`SubTriangle::split`] have of what is known at a cell's corners and edge middles.
+#[inline]
+pub fn corners<A: Copy>([a, b, c]: [A; 3], [ab, bc, ca]: [A; 3], k: usize) -> [A; 3] {
+    match k {
+        0 => [a, ab, ca],
+        1 => [ab, b, bc],
+        2 => [ca, bc, c],
+        _ => [bc, ca, ab],
+    }
+}
+
+impl<'a, 'f> SubTriangles<'a, 'f> {
+    /// The parts of a triangle.
+    pub fn new(setup: &'a TriangleSetup<'f>, shading: &'a Shading<'f>) -> Self {
+        Self { setup, shading, gradients: setup.gradients.parted(), depth: setup.screen.plane(setup.gradients, 0) }
+    }
+
+    /// Whether anything of `sub_triangle` may be seen in `band`.
+    pub fn meets(&self, sub_triangle: &SubTriangle, canvas: &dyn Canvas) -> bool {
+        ScreenSubTriangle::new(self.setup.screen, self.setup.pixels, sub_triangle).meets(canvas)
+    }
+
+    /// Light at the triangle's corners.
+    pub fn corners(&self) -> [Levels; 3] {
+        self.setup.corners.map(|corner| corner.light)
+    }
+
+    /// Light at the triangle's corners and edge midpoints.
+    pub fn six(&self) -> Six {
+        Six { corners: self.corners(), middles: self.middles(&SubTriangle::WHOLE) }
+    }
+
+    /// Light at a point with the barycentric coordinates `weights / 2^bits`.
+    fn light(&self, weights: [i32; 3], bits: u32) -> Levels {
+        self.shading.levels(&self.setup.node(weights, bits))
+    }
+
+    /// Light at the middles of the edges 01, 12, 20.
+    pub fn middles(&self, sub_triangle: &SubTriangle) -> [Levels; 3] {
+        let [a, b, c] = sub_triangle.corners();
+        [[a, b], [b, c], [c, a]].map(|[a, b]| self.light(add(a, b), sub_triangle.level() + 1))
+    }
+
+    /// Light on edge `k` at a quarter and three quarters of the way.
+    pub fn quarters(&self, sub_triangle: &SubTriangle, k: usize) -> [Levels; 2] {
+        let [a, b, c] = sub_triangle.corners();
+        let [a, b] = match k {
+            0 => [a, b],
+            1 => [b, c],
+            _ => [c, a],
+        };
+        [[a, b], [b, a]].map(|[near, far]| self.light(zip(near, far, |n, f| 3 * n + f), sub_triangle.level() + 2))
+    }
+
+    /// Light in the middle of the edges that cut off the corners 0, 1, 2 when `sub_triangle` is split.
+    pub fn cuts(&self, sub_triangle: &SubTriangle) -> [Levels; 3] {
+        let [a, b, c] = sub_triangle.corners();
+        [[a, b, c], [b, c, a], [c, a, b]].map(|[a, b, c]| self.light(add(add(a, a), add(b, c)), sub_triangle.level() + 2))
+    }
+
+    /// Whether the quadratic through `six` misses the light in the centre of `sub_triangle` by more than `tolerance` in any channel.
+    pub fn misses_centre(&self, sub_triangle: &SubTriangle, six: &Six, tolerance: i32) -> bool {
+        let [a, b, c] = sub_triangle.corners();
+        let exact = self.shading.levels(&self.setup.third(add(a, add(b, c)), sub_triangle.level()));
+        let sum = |[a, b, c]: [Levels; 3]| add(a, add(b, c));
+        // Lagrange's weights are -1/9 and 4/9.
+        let fitted = zip(sum(six.middles), sum(six.corners), |m, c| 4 * m - c);
+        differ(fitted, exact.map(|level| 9 * level), 9 * tolerance)
+    }
+
+    /// `part`, unless nothing of it may be seen in `band`.
+    fn part<'p>(&self, part: &'p ScreenSubTriangle<'p>, canvas: &dyn Canvas) -> Option<Part<'p>> {
+        part.meets(canvas).then(|| Part { part, gradients: part.gradients(&self.gradients), depth: self.depth })
+    }
+
+    /// Draws `sub_triangle` linear between its corners.
+    #[inline(never)]
+    pub fn linear(&self, sub_triangle: &SubTriangle, corners: &[Levels; 3], canvas: &mut dyn Canvas) -> u32 {
+        let part = ScreenSubTriangle::new(self.setup.screen, self.setup.pixels, sub_triangle);
+        let Some(part) = self.part(&part, canvas) else { return 0 };
+        self.shading.draw_levels::<3, BITS>(&part, *corners, canvas)
+    }
+
+    /// Draws `sub_triangle` quadratic between its nodes.
+    #[inline(never)]
+    pub fn quadratic(&self, sub_triangle: &SubTriangle, six: &Six, canvas: &mut dyn Canvas) -> u32 {
+        let part = ScreenSubTriangle::new(self.setup.screen, self.setup.pixels, sub_triangle);
+        let Some(part) = self.part(&part, canvas) else { return 0 };
+        let ([a, b, c], [ab, bc, ca]) = (six.corners, six.middles);
+        self.shading.draw_levels::<6, BITS>(&part, [a, b, c, ab, bc, ca], canvas)
+    }
+
+    /// Draws `sub_triangle` linear between the corners of the parts that `depth` splits make of it; `corners` is its own light.
+    ///
+    /// Each split lights three points, so a part costs the light of one. Parts outside the band cost nothing.
+    #[inline(never)]
+    pub fn linear_parts(&self, sub_triangle: &SubTriangle, corners: &[Levels; 3], depth: u32, canvas: &mut dyn Canvas) -> u32 {
+        if depth == 0 {
+            return self.linear(sub_triangle, corners, canvas);
+        }
+        if !self.meets(sub_triangle, canvas) {
+            return 0;
+        }
+        let middles = self.middles(sub_triangle);
+        let mut pixels = 0;
+        for (k, part) in sub_triangle.split().iter().enumerate() {
+            pixels += self.linear_parts(part, &self::corners(*corners, middles, k), depth - 1, canvas);
+        }
+        pixels
+    }
+}
+
+/// Whether two lights differ by more than `tolerance` in any channel.
+pub fn differ(a: Levels, b: Levels, tolerance: i32) -> bool {
+    zip(a, b, |a, b| a.abs_diff(b) > tolerance.unsigned_abs()).contains(&true)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use microphong::{
+        geometry::projection::{ScreenVertex, State},
+        raster::triangle::ScreenTriangle,
+        stream::record::{Triangle, Vertex},
+    };
+    use zerocopy::FromZeros;
+
+    /// Points of an edge by the weights of its ends are the same, bit for bit, in both triangles that share it,
+    /// whichever corners its ends are there and whatever lies opposite: so both light and split it alike.
+    #[test]
+    fn neighbours_agree_on_their_edge() {
+        let mut state = 1u64;
+        let mut random = || {
+            state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+            (state >> 48) as i16 / 2
+        };
+        let screen = [[0, 0], [160, 90], [20, 200]].map(|[x, y]| ScreenVertex { x, y, depth: 0, light: [0; 3], state: State::READY });
+        let [a, b, c] = &screen;
+        let screen = ScreenTriangle::new([a, b, c], [0; 3]);
+        let gradients = Gradients::small(screen.corners).unwrap();
+        let triangle = Triangle { corners: [0, 2, 1], ..Triangle::new_zeroed() };
+        for _ in 0..1_000 {
+            let mut vertex = || Vertex { position: [random(), random(), random()], normal: [random(), random(), random()] };
+            let [p, q, r, s] = [vertex(), vertex(), vertex(), vertex()];
+            let setup = |vertices| TriangleSetup {
+                screen: &screen,
+                gradients: &gradients,
+                corners: [a, b, c],
+                triangle: &triangle,
+                vertices,
+                turned: 0,
+                needs_depth_test: true,
+                perspective: false,
+                pixels: microphong::antialias::PixelSet::Centres,
+                place: None,
+            };
+            let corners = [[p, q, r], [q, p, s], [s, q, p], [p, s, q]];
+            let [one, others @ ..] = corners.each_ref().map(|corners| setup(corners.as_slice()));
+            for (k, other) in others.iter().enumerate() {
+                for bits in 0..=5 {
+                    for w in 0..=1 << bits {
+                        let v = (1 << bits) - w;
+                        let node = one.node([v, w, 0], bits);
+                        // Split once more or less, it is the same point.
+                        let same = other.node([[w, v, 0], [0, w, v], [v, 0, w]][k].map(|w| 2 * w), bits + 1);
+                        assert_eq!((node.position, node.normal), (same.position, same.normal));
+                    }
+                }
+            }
+        }
+    }
+}

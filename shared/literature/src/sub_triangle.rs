@@ -1,0 +1,267 @@
+//! Parts of a triangle, for methods that shade it piece by piece.
+//!
+//! A triangle split at the midpoints of its edges falls into four copies of half its
+//! size, the one in the middle turned by 180 degrees; these can be split again. The
+//! corners of all these *cells* are exact in the finer coordinates used here, so
+//! their edges lie exactly on the triangle's edges and on each other. The top-left
+//! rule then gives every pixel of the triangle to one cell: no crack, no overlap,
+//! and no pixel more or less than the triangle has.
+
+use microphong::{
+    antialias::{PixelSet, Shape, coarse},
+    coverage::area::Contour,
+    format::{FINE, SPLITS, SUBPIXEL},
+    interpolate::{Patch, plane::Plane},
+    math::vector::zip,
+    raster::{
+        canvas::{Canvas, SpanShader},
+        triangle::ScreenTriangle,
+    },
+    setup::gradients::{Gradients, NEAR},
+};
+
+/// From a pixel's border to its centre.
+const CENTRE: i32 = 1 << (FINE - 1);
+
+/// The place of a part of a triangle: its corner `k` has the barycentric coordinates `origin` plus or minus 1 at
+/// coordinate `k`, all over 2^`level`.
+#[derive(Clone, Copy, Debug)]
+pub struct SubTriangle {
+    level: u32,
+    origin: [i32; 3],
+    turned: bool,
+}
+
+impl SubTriangle {
+    /// The triangle itself.
+    pub const WHOLE: Self = Self { level: 0, origin: [0; 3], turned: false };
+
+    /// How often the triangle was split: barycentric coordinates are over 2 to this power.
+    #[inline(always)]
+    #[must_use]
+    pub fn level(&self) -> u32 {
+        self.level
+    }
+
+    fn sign(&self) -> i32 {
+        if self.turned { -1 } else { 1 }
+    }
+
+    /// Barycentric coordinates of the corners.
+    #[inline]
+    #[must_use]
+    pub fn corners(&self) -> [[i32; 3]; 3] {
+        let ([a, b, c], sign) = (self.origin, self.sign());
+        [[a + sign, b, c], [a, b + sign, c], [a, b, c + sign]]
+    }
+
+    /// The four cells between corners and edge midpoints. Cell `k` < 3 keeps corner `k` in its place; corner `k` of the
+    /// last one is the midpoint of the edge opposite.
+    #[inline]
+    #[must_use]
+    pub fn split(&self) -> [Self; 4] {
+        let ([a, b, c], sign) = (self.origin.map(|c| c * 2), self.sign());
+        let sub_triangle = |origin, turned| Self { level: self.level + 1, origin, turned };
+        [
+            sub_triangle([a + sign, b, c], self.turned),
+            sub_triangle([a, b + sign, c], self.turned),
+            sub_triangle([a, b, c + sign], self.turned),
+            sub_triangle([a + sign, b + sign, c + sign], !self.turned),
+        ]
+    }
+}
+
+/// A cell in its place on the screen.
+#[derive(Clone, Copy, Debug)]
+pub struct ScreenSubTriangle<'o> {
+    screen: &'o ScreenTriangle,
+    pixels: PixelSet,
+    sub_triangle: SubTriangle,
+    /// Clockwise, [`FINE`] fraction bits.
+    corners: [[i32; 2]; 3],
+    /// Its first row and the one after its last, on the grid of the corners.
+    rows: [i32; 2],
+    /// Likewise.
+    columns: [i32; 2],
+}
+
+/// First row whose centre is not above `c`, or column whose centre is not left of it.
+fn first_centre(c: i32) -> i32 {
+    c.wrapping_add(CENTRE - 1) >> FINE
+}
+
+/// The half-open range of centres between the least and the largest of three coordinates.
+fn range([a, b, c]: [i32; 3]) -> [i32; 2] {
+    [first_centre(a.min(b).min(c)), first_centre(a.max(b).max(c))]
+}
+
+impl<'o> ScreenSubTriangle<'o> {
+    /// Where `sub_triangle` lies, and which of its pixels are drawn.
+    #[inline]
+    #[must_use]
+    pub fn new(screen: &'o ScreenTriangle, pixels: PixelSet, sub_triangle: &SubTriangle) -> Self {
+        let finer = SPLITS.saturating_sub(sub_triangle.level);
+        let place = |weights: [i32; 3]| {
+            let along = |k: usize| {
+                let [a, b, c] = zip(screen.corners, weights, |corner, weight| corner[k].wrapping_mul(weight));
+                a.wrapping_add(b).wrapping_add(c) << finer
+            };
+            [along(0), along(1)]
+        };
+        let corners = sub_triangle.corners().map(place);
+        Self {
+            screen,
+            pixels,
+            sub_triangle: *sub_triangle,
+            corners,
+            rows: range(corners.map(|c| c[1])),
+            columns: range(corners.map(|c| c[0])),
+        }
+    }
+}
+
+impl ScreenSubTriangle<'_> {
+    /// Its box has a pixel in `canvas`.
+    #[inline]
+    #[must_use]
+    pub fn meets(&self, canvas: &dyn Canvas) -> bool {
+        let ([top, bottom], [left, right]) = match self.pixels {
+            PixelSet::Centres | PixelSet::Inner => (self.rows, self.columns),
+            // A pixel that it touches has one of the finer places, or has it next to it.
+            PixelSet::Edge(finer) => {
+                let touched = |[from, to]: [i32; 2]| [(from >> finer).wrapping_sub(1), (to >> finer).wrapping_add(2)];
+                (touched(self.rows), touched(self.columns))
+            }
+        };
+        let [width, first, end] = canvas.bounds();
+        top.max(first) < bottom.min(end) && left.max(0) < right.min(width)
+    }
+
+    /// For fitting on it, from the triangle's.
+    #[must_use]
+    pub fn gradients(&self, triangle: &Gradients) -> Gradients {
+        let extent = |[from, to]: [i32; 2]| to.wrapping_sub(from);
+        let near = extent(self.rows).max(extent(self.columns)) < NEAR / 2;
+        triangle.part(self.corners[0], self.sub_triangle.level, self.sub_triangle.turned, near)
+    }
+
+    /// Draws the rows that lie in `canvas` and returns how many pixels they have. `shader` stands on row `anchor`, `depth` is the
+    /// triangle's on row 0.
+    pub fn draw(&self, anchor: i32, mut depth: Plane<1>, shader: &mut dyn SpanShader, canvas: &mut dyn Canvas) -> u32 {
+        if self.pixels != PixelSet::Centres {
+            return self.smooth(anchor, shader, canvas);
+        }
+        let [a, b, c] = self.corners;
+        let [width, top, bottom] = canvas.bounds();
+        let (first, end) = (self.rows[0].max(top), self.rows[1].min(bottom));
+        depth.jump(first);
+        shader.jump(first.wrapping_sub(anchor));
+        let mut lines = [Line::new(a, b, first), Line::new(b, c, first), Line::new(c, a, first)];
+        let mut pixels = 0u32;
+        for row in first..end {
+            let (mut left, mut right) = (0, i64::from(width));
+            for line in &mut lines {
+                match line.side {
+                    Side::Left => left = left.max(line.column),
+                    Side::Right => right = right.min(line.column),
+                    Side::None => {}
+                }
+                line.step_row();
+            }
+            if left < right {
+                let count = right.saturating_sub(left) as usize;
+                canvas.draw_row(row, right as i32, count, depth.enter(right as i32), shader);
+                pixels = pixels.wrapping_add(count as u32);
+            }
+            depth.step_row();
+            shader.step_row();
+        }
+        pixels
+    }
+
+    /// [`Self::draw`] with antialiasing.
+    #[inline(never)]
+    fn smooth(&self, anchor: i32, shader: &dyn SpanShader, canvas: &mut dyn Canvas) -> u32 {
+        // Corners of a piece have only so many fraction bits as it was split more.
+        let (bits, level) = (FINE - SUBPIXEL, self.sub_triangle.level.min(SPLITS));
+        let part =
+            Contour::new(self.corners.map(|c| coarse(c, self.pixels.finer(), bits).map(|c| c >> (SPLITS - level))), SUBPIXEL + level);
+        let [a, b, c] = self.corners;
+        let mut owned = |row: i32| {
+            let mut columns = [i32::MIN, i32::MAX];
+            if (self.rows[0]..self.rows[1]).contains(&row) {
+                for line in [Line::new(a, b, row), Line::new(b, c, row), Line::new(c, a, row)] {
+                    let column = line.column as i32;
+                    match line.side {
+                        Side::Left => columns[0] = columns[0].max(column),
+                        Side::Right => columns[1] = columns[1].min(column),
+                        Side::None => {}
+                    }
+                }
+            } else {
+                columns = [0; 2];
+            }
+            columns
+        };
+        let shape = Shape { screen: self.screen, pixels: self.pixels, part: Some(part), corners: self.corners, bits: FINE };
+        shape.draw(anchor, shader, canvas, &mut owned)
+    }
+}
+
+/// Where the inside is not.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Side {
+    /// Left of an edge that runs up.
+    Left,
+    /// Right of an edge that runs down.
+    Right,
+    /// A level edge bounds rows, not columns.
+    None,
+}
+
+/// The straight line through an edge, walked down exactly, quotient and remainder apart.
+#[derive(Clone, Copy, Debug)]
+struct Line {
+    side: Side,
+    /// First column whose centre is not left of the line.
+    column: i64,
+    /// What rounding up added, as the numerator over `whole`.
+    rest: i64,
+    column_step: i64,
+    rest_step: i64,
+    whole: i64,
+}
+
+impl Line {
+    /// Through the edge from `a` to `b`, standing on `row`.
+    #[inline]
+    fn new(a: [i32; 2], b: [i32; 2], row: i32) -> Self {
+        let (side, [x, y], lower) = match b[1].cmp(&a[1]) {
+            core::cmp::Ordering::Less => (Side::Left, b, a),
+            core::cmp::Ordering::Greater => (Side::Right, a, b),
+            core::cmp::Ordering::Equal => (Side::None, a, b),
+        };
+        let (dx, dy) = (lower[0].wrapping_sub(x), lower[1].wrapping_sub(y).max(1));
+        let whole = i64::from(dy) << FINE;
+        let down = (row << FINE).wrapping_add(CENTRE).wrapping_sub(y);
+        let column = i64::from(x.wrapping_sub(CENTRE)) * i64::from(dy) + i64::from(dx) * i64::from(down) + whole - 1;
+        Self {
+            side,
+            column: column.div_euclid(whole),
+            rest: column.rem_euclid(whole),
+            column_step: dx.div_euclid(dy).into(),
+            rest_step: i64::from(dx.rem_euclid(dy)) << FINE,
+            whole,
+        }
+    }
+
+    #[inline(always)]
+    fn step_row(&mut self) {
+        self.column += self.column_step;
+        self.rest += self.rest_step;
+        if self.rest >= self.whole {
+            self.rest -= self.whole;
+            self.column += 1;
+        }
+    }
+}

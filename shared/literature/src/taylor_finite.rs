@@ -1,0 +1,56 @@
+//! N·L and N·H by their Taylor quadratics about the centroid, near lights and viewer included (Bishop & Weimer 1986,
+//! finite eye).
+//!
+//! The directions L, and L + V for H, are linear between the corners; the rest is [`crate::taylor`]'s. The centroid's |L|
+//! counts as 1/16 at least, and |L + V| as 1/8.
+//!
+//! Cost and error as there, and those of directions that are not linear: useless on coarse meshes with near lights.
+//! Domain: any lights.
+
+use crate::{
+    taylor,
+    taylor::{Series, VECTOR},
+};
+use microphong::{
+    format::COSINE,
+    lighting::materials::Highlight,
+    math::vector::{add, wide},
+    method::{Costs, Facts, Method, Shading, TriangleSetup, VertexLight},
+    raster::canvas::Canvas,
+};
+
+static FACTS: Facts = Facts {
+    name: "taylor-finite",
+    id: 12,
+    source: "Bishop & Weimer 1986",
+    vertex_light: VertexLight::None,
+    highlight: Highlight::Half,
+    highlight_levels: false,
+    near_lights: true,
+    perspective: true,
+    costs: Costs::new(5, 0, 1, 550),
+};
+
+/// Taylor quadratics for any lights.
+pub struct TaylorFinite;
+
+impl Method for TaylorFinite {
+    fn facts(&self) -> &'static Facts {
+        &FACTS
+    }
+
+    fn shade(&self, setup: &TriangleSetup<'_>, shading: &Shading<'_>, canvas: &mut dyn Canvas) -> u32 {
+        draw(setup, shading, canvas)
+    }
+}
+
+fn draw(setup: &TriangleSetup<'_>, shading: &Shading<'_>, canvas: &mut dyn Canvas) -> u32 {
+    let positions = setup.vertices().map(|vertex| wide(vertex.position));
+    let shortened = |v: [i32; 3], bits: u32| v.map(|c| c >> (COSINE - VECTOR + bits));
+    let viewer = positions.map(|position| shortened(shading.lighting.viewer.towards(position), 1));
+    taylor::draw_by(setup, shading, canvas, |source| {
+        let towards = positions.map(|position| source.towards(position));
+        let ([a, b, c], [va, vb, vc]) = (towards.map(|towards| shortened(towards, 1)), viewer);
+        [Series::new(towards.map(|towards| shortened(towards, 0))), Series::new([add(a, va), add(b, vb), add(c, vc)])]
+    })
+}

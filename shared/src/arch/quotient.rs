@@ -1,0 +1,109 @@
+//! Quotients of words.
+//!
+//! Armv6-M has no division: a quotient is a call of 200 instructions there. A product with a reciprocal from a table takes a quarter of
+//! that, and a correction by the remainder makes it exact, so both ways give the same bits (Granlund & Montgomery 1994).
+
+use crate::arch::product::HALVES;
+
+/// Largest divisor of [`slope`].
+pub const LARGEST: usize = 1424;
+
+/// Reciprocals 2^32 / d, rounded down, by d; 2^32 - 1 for 1.
+static INVERSES: [u32; LARGEST + 1] = {
+    let mut table = [u32::MAX; LARGEST + 1];
+    let mut d = 2;
+    while d <= LARGEST {
+        table[d] = ((1u64 << 32) / d as u64) as u32;
+        d += 1;
+    }
+    table
+};
+
+/// Fraction bits of a [`slope`].
+pub const SLOPE: u32 = 21;
+
+/// Slope n / d, rounded down, with [`SLOPE`] fraction bits: `n 2^21 / d`.
+///
+/// Domain: `n` is -1023 to 1023, `d` is 1 to [`LARGEST`]; other arguments give a number without meaning. Exact
+/// (tests::every_slope_is_exact, on every argument). Source: a reciprocal from a table, corrected by the remainder.
+#[inline(always)]
+#[must_use]
+pub fn slope(n: i32, d: i32) -> i32 {
+    if HALVES { by_table(n, d) } else { (n << SLOPE).div_euclid(d.max(1)) }
+}
+
+#[inline(never)]
+fn by_table(n: i32, d: i32) -> i32 {
+    let (size, divisor) = (n.unsigned_abs(), d as u32);
+    let inverse = INVERSES.get(d as usize).copied().unwrap_or(0);
+    // The upper half of n 2^21 inverse, by halves of the inverse. Less than n 2^21 / 2^32 is missing: too small by one at most.
+    let estimate = (size.wrapping_mul(inverse >> 16) << (SLOPE - 16)).wrapping_add(size.wrapping_mul(inverse & 0xFFFF) >> (32 - SLOPE));
+    let rest = (size << SLOPE).wrapping_sub(estimate.wrapping_mul(divisor));
+    let (exact, rest) = if rest >= divisor { (estimate.wrapping_add(1), rest.wrapping_sub(divisor)) } else { (estimate, rest) };
+    match (n < 0, rest) {
+        (false, _) => exact as i32,
+        (true, 0) => exact.wrapping_neg() as i32,
+        (true, _) => !exact as i32,
+    }
+}
+
+/// First estimates of 2^31 / d, at the middle of each interval of 128, for `d` from 2^15.
+static SEEDS: [u16; 256] = {
+    let mut table = [0; 256];
+    let mut i = 0;
+    while i < 256 {
+        table[i] = ((1u32 << 31) / ((i as u32 + 256) * 128 + 64)) as u16;
+        i += 1;
+    }
+    table
+};
+
+/// Reciprocal `(2^32 - 1) / d`, rounded down: 1/x with 17 fraction bits for x in [1, 2), where `d` is x in Q1.15.
+///
+/// Domain: `d` is 2^15 to 2^16 - 1. Exact (tests::every_inverse_is_exact, on every argument). Source: one step of the method of Newton
+/// from a table, corrected by the remainder.
+#[inline(always)]
+#[must_use]
+pub fn inverse(d: u32) -> u32 {
+    // Setting the bit, which is set, shows the compiler that the divisor is not 0.
+    if HALVES { inverse_by_table(d) } else { u32::MAX / (d | 1 << 15) }
+}
+
+#[inline(always)]
+fn inverse_by_table(d: u32) -> u32 {
+    // One step: 2 s (1 + e) with the residual e = 1 - s d / 2^31, less than 2^-8.
+    let seed = u32::from(SEEDS[(d >> 7 & 0xFF) as usize]);
+    let error = (1u32 << 31).wrapping_sub(seed.wrapping_mul(d)) as i32;
+    let step = (seed as i32).wrapping_mul(error >> 8) >> 22;
+    // Too small by 1 to 4.
+    let mut quotient = (2 * seed).wrapping_add(step as u32).wrapping_sub(3);
+    let mut rest = u32::MAX.wrapping_sub(quotient.wrapping_mul(d));
+    for _ in 0..4 {
+        if rest >= d {
+            rest = rest.wrapping_sub(d);
+            quotient = quotient.wrapping_add(1);
+        }
+    }
+    quotient
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_inverse_is_exact() {
+        for d in 1 << 15..1 << 16 {
+            assert_eq!(inverse_by_table(d), u32::MAX / d, "{d}");
+        }
+    }
+
+    #[test]
+    fn every_slope_is_exact() {
+        for d in 1..=LARGEST as i32 {
+            for n in -1023..1024 {
+                assert_eq!(by_table(n, d), (n << SLOPE).div_euclid(d), "{n} / {d}");
+            }
+        }
+    }
+}

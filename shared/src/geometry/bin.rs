@@ -1,0 +1,244 @@
+//! Triangles sorted by the rows they start in, once per frame.
+//!
+//! Each triangle is stored once, in the list of the first bin it touches; the
+//! list of *active* triangles takes over a bin's list when drawing reaches it,
+//! and drops a triangle below its last row. Lists are in the order of the
+//! stream, so the picture does not depend on the height of the bands.
+
+use core::{num::NonZeroU32, ops::Range};
+use zerocopy::{FromBytes, Immutable, IntoBytes, KnownLayout};
+
+/// Bins of a frame; the rows are shared out among them.
+pub const BINS: usize = 64;
+
+/// The end of a list: links are one more than the index that they lead to, so that empty memory is all zeros.
+const NONE: u16 = 0;
+
+/// A triangle in a list.
+#[derive(FromBytes, IntoBytes, Immutable, KnownLayout, Clone, Copy, Debug)]
+#[repr(C)]
+pub struct Entry {
+    /// Twice the index in the stream, and 1 more if it is simple: lists are in this order.
+    key: u32,
+    /// One past its last row.
+    bottom: u16,
+    /// The entry behind it.
+    next: u16,
+}
+
+impl Entry {
+    /// Nothing yet.
+    pub const EMPTY: Self = Self { key: 0, bottom: 0, next: NONE };
+
+    /// Index in the stream.
+    #[inline(always)]
+    #[must_use]
+    pub fn triangle(&self) -> u32 {
+        self.key >> 1
+    }
+
+    /// Different from that of all others, and not 0 if it is simple.
+    #[inline(always)]
+    #[must_use]
+    pub fn key(&self) -> u32 {
+        self.key
+    }
+
+    /// What was said of it, see [`Bins::push`].
+    #[inline(always)]
+    #[must_use]
+    pub fn is_word_sized(&self) -> bool {
+        self.key & 1 != 0
+    }
+}
+
+/// The heads of all lists.
+#[derive(Clone, Debug)]
+pub struct Bins {
+    heads: [u16; BINS],
+    active: u16,
+    /// Entries in use.
+    count: u16,
+    /// Some triangle found no room.
+    overflow: bool,
+    /// Bins that `active` has taken over.
+    reached: usize,
+    /// First row of the highest triangle, and one past the last row of the lowest.
+    top: u32,
+    bottom: u32,
+    /// 1 over the rows of a bin, Q1.20.
+    bins_per_row: u32,
+}
+
+impl Bins {
+    /// Empty lists for a viewport of `height` rows that is drawn `band_rows` at a time: a bin is at least a band, so that
+    /// each band merges one list.
+    #[must_use]
+    pub fn new(height: u32, band_rows: u32) -> Self {
+        Self {
+            heads: [NONE; BINS],
+            active: NONE,
+            count: 0,
+            overflow: false,
+            reached: 0,
+            top: height,
+            bottom: 0,
+            bins_per_row: (1 << 20) / NonZeroU32::new(height.div_ceil(BINS as u32).max(band_rows)).unwrap_or(NonZeroU32::MIN) + 1,
+        }
+    }
+
+    /// The bin of a row below 2048: a product is cheaper than a quotient. In a bin of more than 512 rows it may be one too
+    /// high, both when triangles are put there and when they are taken.
+    #[inline(always)]
+    fn of(&self, row: u32) -> usize {
+        (row.wrapping_mul(self.bins_per_row) >> 20) as usize
+    }
+
+    /// Puts a triangle that covers rows `top .. bottom` in front of its list, and remembers whether it is `simple`. Called from the last
+    /// triangle to the first.
+    #[inline(always)]
+    pub fn push(&mut self, entries: &mut [Entry], triangle: u32, simple: bool, [top, bottom]: [u32; 2]) {
+        let bin = self.of(top);
+        let link = self.count.wrapping_add(1);
+        match (self.heads.get_mut(bin), entries.get_mut(usize::from(self.count))) {
+            (Some(head), Some(entry)) if link != NONE => {
+                *entry = Entry { key: triangle << 1 | u32::from(simple), bottom: bottom as u16, next: *head };
+                *head = link;
+                self.count = link;
+                self.top = self.top.min(top);
+                self.bottom = self.bottom.max(bottom);
+            }
+            _ => self.overflow = true,
+        }
+    }
+
+    /// Triangles in all lists; `None` if they did not find room.
+    #[must_use]
+    pub fn count(&self) -> Option<u16> {
+        (!self.overflow).then_some(self.count)
+    }
+
+    /// From the first row of the highest triangle to the last one of the lowest.
+    #[must_use]
+    pub fn rows(&self) -> Range<u32> {
+        self.top.min(self.bottom)..self.bottom
+    }
+
+    /// The triangles of the band that ends at row `bottom`; the next band is to be told what is left of them, by [`Self::take_over`].
+    pub fn band<'e>(&mut self, entries: &'e mut [Entry], bottom: u32) -> Walk<'e> {
+        let last = self.of(bottom.saturating_sub(1));
+        let mut fresh = NONE;
+        while self.reached <= last {
+            if let Some(&head) = self.heads.get(self.reached) {
+                fresh = if fresh == NONE { head } else { merge(entries, [fresh, head]) };
+            }
+            self.reached += 1;
+        }
+        Walk { entries, lists: [self.active, fresh], head: NONE, tail: NONE, bottom }
+    }
+
+    /// What is left of a band's triangles for the next one.
+    pub fn take_over(&mut self, walk: Walk<'_>) {
+        self.active = walk.end();
+    }
+}
+
+/// The triangles of a band in the order of the stream: those that reach down from above, and those that start here, merged on the way.
+/// What reaches below the band is left over.
+#[derive(Debug)]
+pub struct Walk<'e> {
+    entries: &'e mut [Entry],
+    lists: [u16; 2],
+    /// Of those that are left over.
+    head: u16,
+    tail: u16,
+    bottom: u32,
+}
+
+impl Iterator for Walk<'_> {
+    type Item = Entry;
+
+    #[inline(always)]
+    fn next(&mut self) -> Option<Entry> {
+        // Entries are put in from the last triangle to the first: of two lists the later entry comes first in the stream.
+        let [active, fresh] = &mut self.lists;
+        let link = (*active).max(*fresh);
+        let entry = *linked(link).and_then(|index| self.entries.get(index))?;
+        *(if link == *active { active } else { fresh }) = entry.next;
+        if u32::from(entry.bottom) > self.bottom {
+            append(self.entries, &mut self.head, self.tail, link);
+            self.tail = link;
+        }
+        Some(entry)
+    }
+}
+
+impl Walk<'_> {
+    /// The head of what is left over.
+    fn end(mut self) -> u16 {
+        while self.next().is_some() {}
+        append(self.entries, &mut self.head, self.tail, NONE);
+        self.head
+    }
+}
+
+/// The index that a link leads to.
+#[inline(always)]
+fn linked(link: u16) -> Option<usize> {
+    link.checked_sub(1).map(usize::from)
+}
+
+/// Makes `link` follow `tail`, the last entry of the list that starts at `head`.
+#[inline(always)]
+fn append(entries: &mut [Entry], head: &mut u16, tail: u16, link: u16) {
+    match linked(tail).and_then(|index| entries.get_mut(index)) {
+        Some(tail) => tail.next = link,
+        None => *head = link,
+    }
+}
+
+/// Two lists in the order of the stream into one; returns its head.
+fn merge(entries: &mut [Entry], lists: [u16; 2]) -> u16 {
+    Walk { entries, lists, head: NONE, tail: NONE, bottom: 0 }.end()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_triangle_is_active_on_its_rows_and_in_order() {
+        const HEIGHT: u32 = 240;
+        let mut entries = [Entry::EMPTY; 100];
+        let rows = |i: u32| (i * 37 % 200, (i * 37 % 200 + 1 + i * 11 % 60).min(HEIGHT));
+        for band in [1, 7, 10, 40, 240] {
+            let mut bins = Bins::new(HEIGHT, band.min(10));
+            for i in (0..100).rev() {
+                let (top, bottom) = rows(i as u32);
+                bins.push(&mut entries, i as u32, i % 3 == 0, [top, bottom]);
+            }
+            assert_eq!(bins.count(), Some(100));
+            let mut top = 0;
+            while top < HEIGHT {
+                let bottom = (top + band).min(HEIGHT);
+                let mut seen = [false; 100];
+                let mut last = None;
+                let mut walk = bins.band(&mut entries, bottom);
+                for entry in walk.by_ref() {
+                    let triangle = entry.triangle();
+                    assert_eq!(entry.is_word_sized(), triangle % 3 == 0);
+                    assert!(last < Some(triangle));
+                    assert!(rows(triangle).1 > top, "it has ended");
+                    seen[triangle as usize] = true;
+                    last = Some(triangle);
+                }
+                bins.take_over(walk);
+                for i in 0..100 {
+                    let (first, end) = rows(i);
+                    assert!(seen[i as usize] || end <= top || first >= bottom, "band {band}, rows {top}..{bottom}, triangle {i}");
+                }
+                top = bottom;
+            }
+        }
+    }
+}

@@ -1,0 +1,95 @@
+//! Triangles that cross the near plane or leave the guard band, cut in eye space.
+//!
+//! Rare, so it may cost: vertices are transformed anew and lit with the
+//! interpolated normal. Both neighbours of an edge cut it at the same point,
+//! from its inner to its outer end: no crack opens.
+
+use crate::{
+    format::{BEND, EDGE, UNIT},
+    geometry::projection::{PLANES, View},
+    math::{
+        rsqrt::rsqrt_wide,
+        vector::{add, dot, normalise, wide, zip},
+    },
+    stream::record::{Triangle, Vertex},
+};
+use heapless::Vec;
+
+/// Corners of a triangle cut by five planes.
+const CORNERS: usize = 3 + PLANES;
+
+/// A corner of the cut polygon.
+#[derive(Clone, Copy, Debug)]
+struct Corner {
+    eye: [i32; 3],
+    position: [i32; 3],
+    normal: [i32; 3],
+}
+
+/// A corner after the cut: the object-space vertex and its place in eye space.
+#[derive(Clone, Copy, Debug)]
+pub struct Cut {
+    /// Position and unit normal.
+    pub vertex: Vertex,
+    /// Eye space, Q18.14.
+    pub eye: [i32; 3],
+}
+
+/// The part of a triangle that can be projected: a fan around its first corner; empty if there is none.
+#[must_use]
+pub fn clip(view: &View, vertices: [&Vertex; 3]) -> Vec<Cut, CORNERS> {
+    let mut polygon = Vec::<Corner, CORNERS>::new();
+    for v in vertices {
+        let _ = polygon.push(Corner { eye: view.to_eye(v.position), position: wide(v.position), normal: wide(v.normal) });
+    }
+    for plane in 0..PLANES {
+        let mut cut = Vec::new();
+        for (i, a) in polygon.iter().enumerate() {
+            let b = polygon.get(i + 1).or(polygon.first()).unwrap_or(a);
+            let (da, db) = (view.distance(a.eye, plane), view.distance(b.eye, plane));
+            // A convex polygon gains at most one corner per plane: there is room.
+            if da >= 0 {
+                let _ = cut.push(*a);
+            }
+            if (da >= 0) != (db >= 0) {
+                let _ = cut.push(if da >= 0 { between(a, b, da, db) } else { between(b, a, db, da) });
+            }
+        }
+        polygon = cut;
+    }
+    let mut cuts = Vec::new();
+    for corner in &polygon {
+        let normal = normalise(corner.normal).map(|c| ((c + (1 << 15)) >> 16) as i16);
+        let _ = cuts.push(Cut { vertex: Vertex { position: corner.position.map(|c| c as i16), normal }, eye: corner.eye });
+    }
+    cuts
+}
+
+/// Where the way from `inner` (distance `di` >= 0) to `outer` (`d_o` < 0) meets the plane.
+fn between(inner: &Corner, outer: &Corner, di: i64, d_o: i64) -> Corner {
+    // 22 bits of the ratio, without overflow.
+    let whole = di.saturating_sub(d_o).max(1);
+    let spare = 23u32.saturating_sub(whole.leading_zeros());
+    let t = ((di >> spare) << 22) / (whole >> spare).max(1);
+    let mix = |a, b| zip(a, b, |a: i32, b: i32| (i64::from(a) + (((i64::from(b) - i64::from(a)) * t) >> 22)) as i32);
+    Corner { eye: mix(inner.eye, outer.eye), position: mix(inner.position, outer.position), normal: mix(inner.normal, outer.normal) }
+}
+
+/// The record of one triangle of the fan, cut from `whole`: indices and edge constants are of the new `corners`, which turn
+/// clockwise on the screen, against the order of a record.
+#[must_use]
+pub fn record(whole: &Triangle, corners: &[Vertex; 3]) -> Triangle {
+    let [a, b, c] = corners.map(|corner| wide(corner.normal));
+    let edges = [edge(c, a), edge(b, c), edge(a, b)];
+    Triangle { corners: [0, 2, 1], rsum: edges.map(|(rsum, _)| rsum), bend: edges.map(|(_, bend)| bend), ..*whole }
+}
+
+/// 1/|a + b| - 1/2 and 1 - |a + b|²/4 of two unit normals, as in a record.
+fn edge(a: [i32; 3], b: [i32; 3]) -> (u16, u16) {
+    let sum = add(a, b);
+    let square = dot(sum, sum).max(1) as u64;
+    let (mantissa, exponent) = rsqrt_wide(square);
+    let rsum = ((u64::from(mantissa) << (UNIT + EDGE)) >> exponent).saturating_sub(1 << (EDGE - 1));
+    let bend = (1u64 << BEND).saturating_sub(square >> (2 * UNIT + 2 - BEND));
+    (rsum.min(u64::from(u16::MAX)) as u16, bend.min(u64::from(u16::MAX)) as u16)
+}

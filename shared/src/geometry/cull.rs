@@ -1,0 +1,176 @@
+//! Triangles that face away, told apart in object space: four products, no vertex touched. Those that it lets through are
+//! told apart by their extent on the screen.
+//!
+//! What is drawn has rounded corners, in eye space and on the screen, and rounding may turn a thin triangle that faces away to
+//! the front. If it were culled, a closed mesh would have a hole there: its neighbours leave those pixels to it. So a triangle
+//! is culled only where no rounding can turn it:
+//!
+//! Write `a` for the triangle's least altitude, `D` for a distance from the eye that no vertex exceeds, and `r` for how far
+//! rounding moves a corner in object space at most; a rounded corner is taken for the point where the ray through its place on
+//! the screen has the depth that the corner was rounded to. Move the corners along straight lines to the rounded ones. If the
+//! triangle turns over, then on the way it is seen edge-on: some plane through the eye passes within `r` of each exact corner.
+//! A triangle is in no direction narrower than `a`.
+//!
+//! - If that plane meets the exact triangle, in `q`, distances from it span at most `2 r` on the triangle, so the planes meet
+//!   under an angle whose sine is at most `2 r / a`. The eye, in the one plane and at most `D` from `q`, is no
+//!   higher over the other one than `2 r D / a`.
+//! - Else distances from it span less than `r`. Let `q` be the triangle's point nearest to the eye. It lies within `r` of
+//!   that plane, so the eye is no higher than `r + r |q| / a`. The triangle lies in a ball of radius `D` about the eye, no
+//!   point of it nearer than `q`, so in a ball of radius `sqrt(D² - q²)`: there `a` is at most 1.5 such radii. Hence
+//!   `a + |q| <= 1.81 D`, and the height is below `2 r D / a` again.
+//!
+//! Parallel rays have a direction instead of the eye. The plane then contains it, and the product of direction and unit normal
+//! is no larger than the angle's sine: the same with `D = 1`, since a direction has length one.
+//!
+//! So the eye of a triangle that is culled lies lower than `-2 r D / a`. A frame has one `r D`, a record has `1 / a`. Where
+//! `1 / a` is too large for a record, the slack is still almost `2 D`, for `r` is no less than the last place of a coordinate:
+//! no eye is as low as that.
+//!
+//! The promise is about triangles that are drawn whole. One that is clipped is decided by its own plane too, but it is drawn in
+//! parts, which may be thinner than it is: one of them may turn over and be lost.
+
+use crate::{
+    arch::{product::product, zeros::leading_zeros},
+    format::{INVERSE_ALTITUDE, UNIT},
+    geometry::projection::View,
+    math::vector::{narrow_dot, wide},
+    stream::record::{LEAN, Triangle},
+};
+
+/// Where the camera is, as planes see it.
+#[derive(Clone, Copy, Debug)]
+pub struct Facing {
+    /// Perspective: the eye; parallel rays: the direction towards the viewer; Q.10.
+    vector: [i32; 3],
+    /// Takes a plane's offset to the dot product's format; 0 for parallel rays, to which it does not matter.
+    offset_scale: i32,
+    /// `2 r D`, by which heights may be off for each unit of [`Triangle::inverse_altitude`], Q.16.
+    slack: i32,
+    /// `D`, Q18.14.
+    reach: i32,
+}
+
+/// Fraction bits of `vector`: the dot product with a unit normal then fits 32 bits.
+const EYE: u32 = 10;
+
+/// Fraction bits of a height: the slack of any triangle then fits 32 bits.
+const HEIGHT: u32 = 18;
+
+/// Fraction bits of `slack`.
+const PER_ALTITUDE: u32 = HEIGHT - INVERSE_ALTITUDE;
+
+/// Largest `slack`: with the largest [`Triangle::inverse_altitude`] and a height it stays below 2^31.
+const MAX_SLACK: u64 = (1 << 14) - 1;
+
+/// What rounding of eye and normal may add up to, as a height: 2^-9 of a unit.
+///
+/// The eye is off by at most 15.6 units in the last place of a [`crate::format::Unit`]: √3 times half a step of
+/// [`EYE`] and one of 2^-14. A unit normal is off by at most 2.6, √3 times one and a half: under parallel rays that adds up, in
+/// perspective [`Triangle::offset`] makes up for it. A height is rounded down by less than one. 2^-9 is 32 of these units.
+const SLACK: i32 = 1 << (HEIGHT - 9);
+
+impl Facing {
+    /// For the camera of one frame and a mesh in the ball of `radius` about the origin, [`crate::stream::record::Header::radius`].
+    #[must_use]
+    pub fn new(view: &View, radius: u16) -> Self {
+        let (vector, reach) = (view.viewer(), view.reach(radius));
+        let offset_scale = if view.is_perspective() { 1 << EYE } else { 0 };
+        // 2 r D, from Q.30 and Q.14, rounded up.
+        let slack = ((2 * view.displacement(reach) * u64::from(reach)) >> (30 + UNIT - PER_ALTITUDE)) + 1;
+        if slack > MAX_SLACK {
+            // So few pixels that any triangle may turn over: all heights are 0.
+            return Self { vector: [0; 3], offset_scale: 0, slack: 0, reach: 0 };
+        }
+        let vector = vector.map(|c| (c + (1 << (UNIT - EYE - 1))) >> (UNIT - EYE));
+        Self { vector, offset_scale, slack: slack as i32, reach: reach as i32 }
+    }
+
+    /// Whether `triangle` may show its front. Errs on the side of true: the signed area on the screen decides.
+    #[inline(always)]
+    #[must_use]
+    pub fn may_face(&self, triangle: &Triangle) -> bool {
+        self.height(triangle) >= Self::FRONT
+    }
+
+    /// Least [`Self::height`] above triangles that may show their front.
+    pub(crate) const FRONT: i32 = -SLACK;
+
+    /// How high the eye lies above the plane of `triangle`, or as much higher as makes up for its rounded corners.
+    #[inline(always)]
+    #[must_use]
+    pub(crate) fn height(&self, triangle: &Triangle) -> i32 {
+        let plane = i32::from(triangle.offset).wrapping_mul(self.offset_scale);
+        let height = narrow_dot(self.vector, wide(triangle.normal)).wrapping_sub(plane) >> (EYE + UNIT - HEIGHT);
+        height.wrapping_add(self.slack.wrapping_mul(triangle.inverse_altitude.into()))
+    }
+
+    /// Least [`Self::height`] above triangles that might show their front if their plane leaned as [`crate::stream::record::CLOSED_CONVEX`] allows.
+    #[must_use]
+    pub(crate) fn leaning(&self) -> i32 {
+        // An angle of 2^-LEAN, seen from as far as any vertex is.
+        Self::FRONT - ((self.reach << (HEIGHT - UNIT)) >> LEAN)
+    }
+}
+
+/// What a triangle takes up on the screen.
+#[derive(Clone, Copy, Debug)]
+pub struct Extent {
+    /// Least column, 1/16 pixel.
+    pub left: i32,
+    /// Largest column.
+    pub right: i32,
+    /// Least row.
+    pub top: i32,
+    /// Largest row.
+    pub bottom: i32,
+    /// Twice the signed area, 1/256 pixel², as far as 32 bits hold it; positive seen from the front.
+    pub area: i32,
+}
+
+impl Extent {
+    /// Of corners `[x, y]` that run clockwise seen from the front.
+    #[inline(always)]
+    #[must_use]
+    pub fn new([[x0, y0], [x1, y1], [x2, y2]]: [[i32; 2]; 3]) -> Self {
+        let (left, right) = (x0.min(x1).min(x2), x0.max(x1).max(x2));
+        let (top, bottom) = (y0.min(y1).min(y2), y0.max(y1).max(y2));
+        let (x1, y1, x2, y2) = (x1 - x0, y1 - y0, x2 - x0, y2 - y0);
+        // Products of 64 bits are calls on an M0+.
+        let area = if (right - left) | (bottom - top) < 1 << 15 { x1 * y2 - x2 * y1 } else { large_area([x1, y1], [x2, y2]) };
+        Self { left, right, top, bottom, area }
+    }
+
+    /// Small and stout, see [`fits_words`].
+    #[inline(always)]
+    #[must_use]
+    pub(crate) fn fits_words(&self) -> bool {
+        fits_words(((self.right - self.left) | (self.bottom - self.top)) as u32, self.area)
+    }
+
+    /// Its longest side is no longer: the larger of width and height and half of the other, since
+    /// x² + y² <= (x + y/2)² where y <= x.
+    #[inline(always)]
+    #[must_use]
+    pub fn length(&self) -> i32 {
+        let (width, height) = (self.right - self.left, self.bottom - self.top);
+        width.max(height) + ((width.min(height) + 1) >> 1)
+    }
+}
+
+/// Bits of the sides of a small triangle, 1/16 pixel.
+const SMALL: u32 = 10;
+
+/// Whether a triangle is so small and stout, not even nearly [`crate::setup::gradients::MAX_THINNESS`], that its polynomials are set up in
+/// words: by its box's width or height, whichever is larger or both in one, and twice its area.
+#[inline(always)]
+pub(crate) fn fits_words(size: u32, area: i32) -> bool {
+    // 2^(2 bits) <= 128 area.
+    size < 1 << SMALL && area > 1 && 64 - 2 * leading_zeros(size) + leading_zeros(area as u32) <= 38
+}
+
+#[cold]
+#[inline(never)]
+fn large_area([x1, y1]: [i32; 2], [x2, y2]: [i32; 2]) -> i32 {
+    let area = product(x1, y2) - product(x2, y1);
+    area.clamp(i32::MIN.into(), i32::MAX.into()) as i32
+}

@@ -1,0 +1,121 @@
+//! Where a closed convex mesh needs no depth.
+//!
+//! The front faces of a convex body do not hide one another: seen exactly, no pixel belongs to two. What is drawn is not
+//! that exact picture `G` but `F`, whose corners are rounded, in the mesh, in eye space, and on the screen; each coordinate is
+//! moved by at most `d` ([`View::moved`]). So a triangle that is thinner than it is moved may turn over, or let its neighbours
+//! overlap. A triangle is *thick* if it lies in the viewport and is at least `3 d` thick in `F`. Those that are not, and that
+//! may show their front in `G`, *contest* the cells of a coarse grid that lie within `3 d` of their box. A triangle whose
+//! box lies in no contested cell is drawn without depth, all others are drawn with it, and the picture is the same:
+//!
+//! No pixel of a triangle `T` that is drawn without depth belongs to another one that is drawn. Suppose that the pixel `p`
+//! belongs to `T'` as well. Neither contests its cell, so both are thick. On a thick triangle the displacement `G - F`, linear
+//! and no longer than √2 d at the corners, has a slope below 1: 2 √2 d over 3 d. So it turns in `G` as it does in `F`, and
+//! both show their front in `G`. Let `q` and `q'` be the points that `F` takes to `p` on `T` and `T'`, seen in `G`: each is within
+//! `d` of `p` along x and y. The outline of a convex body is convex, so all of the segment from `q` to `q'` is covered by front
+//! faces. Each of them has in `F` a point within `2 d` of `p`, so it is thick, or it would contest the cell of `p`. Along the
+//! segment therefore the way from `G` to `F` is continuous and, its slope differing from one by less than one, never goes back: it
+//! takes `q` and `q'` to one `p` only if they are one point. This lies on an edge or corner that `T` and `T'` share, of which
+//! the top-left rule gives `p` to one.
+//!
+//! What this takes for granted, [`CLOSED_CONVEX`] promises: that a convex body lies so near to the mesh, and how far planes
+//! lean that were computed from rounded corners. Depth has one more effect, it hides what is farther than all else: no pixel
+//! is as far as that.
+
+use crate::{
+    format::{SUBPIXEL, UNIT},
+    geometry::{cull::Extent, projection::View},
+    stream::{
+        Stream,
+        record::{CLOSED_CONVEX, Mesh, PERSPECTIVE},
+    },
+};
+use core::ops::RangeInclusive;
+use embedded_graphics_core::geometry::Size;
+
+/// Rows and columns of the grid.
+const CELLS: u32 = u32::BITS;
+
+/// Thicker triangles than this are told from none, 1/16 pixel: everything is contested.
+const THICKEST: u32 = 1 << 12;
+
+/// How far the far plane has to lie behind the body, [`crate::format::Length`]: nothing is then as far as an empty depth buffer.
+const BEHIND: i32 = 1 << (UNIT - 6);
+
+/// Where triangles may overlap.
+#[derive(Clone, Debug)]
+pub struct DepthElision {
+    /// Of thick triangles, 1/16 pixel.
+    thickness: i32,
+    /// Of the viewport, 1/16 pixel.
+    size: [i32; 2],
+    /// Cells per 1/16 pixel, Q.16.
+    scale: [i32; 2],
+    /// Contested cells, a row each.
+    needs_depth_test: [u32; CELLS as usize],
+}
+
+impl DepthElision {
+    /// For one frame; `None` if the scene is not just one closed convex mesh, or seen from too near.
+    #[must_use]
+    pub fn new(stream: &Stream<'_>, view: &View, size: Size) -> Option<Self> {
+        let [Mesh { flags, .. }] = stream.meshes else { return None };
+        let camera = &stream.header.camera;
+        let thickness = view.moved(size, 3);
+        // The body lies within one unit of its origin.
+        let is_seen = camera.projection == PERSPECTIVE || camera.translation[2] + (1 << UNIT) + BEHIND <= camera.far;
+        let size = [size.width, size.height].map(|side| (side << SUBPIXEL) as i32);
+        (flags & CLOSED_CONVEX != 0 && is_seen && thickness < THICKEST).then_some(Self {
+            thickness: thickness as i32,
+            size,
+            // The last coordinate lies in the last cell.
+            scale: size.map(|side| ((CELLS << 16) as i32).checked_div(side + 1).unwrap_or(0)),
+            needs_depth_test: [0; CELLS as usize],
+        })
+    }
+
+    /// Takes notice of a triangle that may show its front.
+    #[inline(always)]
+    pub fn set_up_depth(&mut self, extent: &Extent) {
+        let inside = self.is_inside([extent.left, extent.right], [extent.top, extent.bottom]);
+        // It is at least as thick as twice its area over its length.
+        if !inside || extent.area.unsigned_abs() < (self.thickness * extent.length()) as u32 {
+            self.contest(extent);
+        }
+    }
+
+    #[inline(never)]
+    fn contest(&mut self, extent: &Extent) {
+        let ([width, height], around) = (self.size, self.thickness);
+        // `clamp` panics if the ends are in the wrong order.
+        let columns = [extent.left - around, extent.right + around].map(|x| x.max(0).min(width));
+        let rows = [extent.top - around, extent.bottom + around].map(|y| y.max(0).min(height));
+        let (rows, columns) = self.cells(columns, rows);
+        self.needs_depth_test.get_mut(rows).unwrap_or_default().iter_mut().for_each(|row| *row |= columns);
+    }
+
+    /// Whether others may overlap a triangle with these least and largest columns and rows; all that may show their front have been seen.
+    #[inline(never)]
+    #[must_use]
+    pub fn needs_depth_test(&self, columns: [i32; 2], rows: [i32; 2]) -> bool {
+        if !self.is_inside(columns, rows) {
+            return true;
+        }
+        let (rows, columns) = self.cells(columns, rows);
+        self.needs_depth_test.get(rows).is_none_or(|rows| rows.iter().any(|row| row & columns != 0))
+    }
+
+    #[inline(always)]
+    fn is_inside(&self, [left, right]: [i32; 2], [top, bottom]: [i32; 2]) -> bool {
+        let [width, height] = self.size;
+        left | top | (width - right) | (height - bottom) >= 0
+    }
+
+    /// Rows and columns of the grid that a box in the viewport touches.
+    #[inline(always)]
+    fn cells(&self, columns: [i32; 2], rows: [i32; 2]) -> (RangeInclusive<usize>, u32) {
+        let [across, down] = self.scale;
+        let [left, right] = columns.map(|x| (x * across) as u32 >> 16);
+        let [top, bottom] = rows.map(|y| (y * down) as usize >> 16);
+        (top..=bottom, (u32::MAX << (left & 31)) & (u32::MAX >> ((CELLS - 1).wrapping_sub(right) & 31)))
+    }
+}

@@ -1,0 +1,9 @@
+//! Object space to the screen, and what need not be drawn.
+
+pub mod bin;
+pub mod clip;
+pub mod cull;
+pub mod depth_elision;
+pub mod pose;
+pub mod projection;
+pub mod viewport;

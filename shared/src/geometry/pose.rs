@@ -1,0 +1,126 @@
+//! Where the camera of a frame is.
+
+use crate::{
+    format::ROTATION,
+    math::vector::{cross, dot, transposed, zip},
+    stream::record::Camera,
+};
+use micromath::F32Ext;
+
+/// The camera of one frame.
+#[derive(Clone, Copy, Debug)]
+pub struct Pose {
+    /// Object to eye space, Q2.30.
+    pub rotation: [[i32; 3]; 3],
+    /// Added after rotation, Q18.14.
+    pub translation: [i32; 3],
+}
+
+impl Pose {
+    /// The camera's pose in frame `number`.
+    #[must_use]
+    pub fn new(camera: &Camera, number: u32) -> Self {
+        let mut rotation = camera.rotation;
+        if let Some(frame) = number.checked_rem(camera.period.into())
+            && frame != 0
+        {
+            rotation = turned(rotation, camera.axis, frame, camera.period.into());
+        }
+        Self { rotation, translation: camera.translation }
+    }
+
+    /// A direction of eye space in object space, in the format of `v`, rounded down.
+    #[must_use]
+    pub fn to_object(&self, v: [i32; 3]) -> [i32; 3] {
+        transposed(self.rotation).map(|column| (dot(column, v) >> ROTATION) as i32)
+    }
+
+    /// The eye in object space, Q18.14.
+    #[must_use]
+    pub fn eye(&self) -> [i32; 3] {
+        self.to_object(self.translation.map(|c| -c))
+    }
+}
+
+/// `rotation` times the rotation by `frame / period` of a turn about `axis`, all Q2.30.
+///
+/// Domain: `rotation` is a rotation matrix and `axis` a unit vector, to within rounding. Error: at most [`ORBIT_ERROR`] of the angle;
+/// at most [`ROTATION_ERROR`] of the dot products of rows (tests::rotations_stay_rotations). Source: the formula of
+/// Rodrigues (1840), row by row.
+fn turned(rotation: [[i32; 3]; 3], axis: [i32; 3], frame: u32, period: u32) -> [[i32; 3]; 3] {
+    let (sin, cos) = sin_cos(frame, period);
+    let limit = 1i64 << ROTATION;
+    rotation.map(|row| {
+        let along = ((dot(row, axis) >> ROTATION) * (limit - cos)) >> ROTATION;
+        let turned = zip(row, axis, |r, a| i64::from(r) * cos + along * i64::from(a));
+        zip(turned, cross(row, axis), |t, c| ((t + (c >> ROTATION) * sin) >> ROTATION).clamp(-limit, limit) as i32)
+    })
+}
+
+/// Largest difference between an orbit's angle in a frame and `frame / period` of a turn, in radians: 0.063 degrees.
+pub const ORBIT_ERROR: f64 = 1.1e-3;
+/// Largest difference between 1 and the root of sine² + cosine² of an orbit's angle: two units of Q2.30.
+pub const CIRCLE_ERROR: f64 = 2.0 / (1u32 << 30) as f64;
+/// Largest change of the dot products of a matrix's rows, 1 and 0 for an exact rotation, when an orbit turns it: 24 units of Q2.30.
+pub const ROTATION_ERROR: f64 = 24.0 / (1u32 << 30) as f64;
+
+/// Sine and cosine of `frame / period` of a turn, Q2.30.
+///
+/// Domain: `frame` is less than `period`, which is at most 65,535. Error: at most [`ORBIT_ERROR`] of the angle, [`CIRCLE_ERROR`] of the
+/// distance from the origin (tests::unit_circle). Source: the polynomials of micromath, which give the same bits on every machine, and
+/// two steps of the method of Newton that put the pair back on the unit circle, so that a rotation stays one.
+fn sin_cos(frame: u32, period: u32) -> (i64, i64) {
+    let angle = frame as f32 / period as f32 * core::f32::consts::TAU;
+    let one = (1u32 << ROTATION) as f32;
+    let (mut sin, mut cos) = ((F32Ext::sin(angle) * one) as i64, (F32Ext::cos(angle) * one) as i64);
+    for _ in 0..2 {
+        let square = (sin * sin + cos * cos) >> ROTATION;
+        let factor = ((3 << ROTATION) - square) >> 1;
+        sin = (sin * factor) >> ROTATION;
+        cos = (cos * factor) >> ROTATION;
+    }
+    (sin, cos)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::math::vector::normalise;
+
+    #[test]
+    fn unit_circle() {
+        let (mut circle, mut orbit) = (0f64, 0f64);
+        for period in (1..700).chain([2048, 4096, 65_535]) {
+            for frame in 0..period {
+                let (sin, cos) = sin_cos(frame, period);
+                let (s, c) = (sin as f64 / 2f64.powi(30), cos as f64 / 2f64.powi(30));
+                let (sin, cos) = (f64::from(frame) / f64::from(period) * core::f64::consts::TAU).sin_cos();
+                circle = circle.max((s.hypot(c) - 1.0).abs());
+                // The angle between the two points of the circle.
+                orbit = orbit.max((s * cos - c * sin).atan2(c * cos + s * sin).abs());
+            }
+        }
+        assert!(circle <= CIRCLE_ERROR && orbit <= ORBIT_ERROR, "{circle:e} {orbit:e}");
+    }
+
+    #[test]
+    fn rotations_stay_rotations() {
+        let mut worst = 0f64;
+        for seed in (1..20_000i32).filter(|&seed| seed != 77) {
+            let c = |k: i32| seed.wrapping_mul(k).wrapping_mul(seed ^ 77);
+            let x = normalise([c(1_664_525), c(22_695_477), c(1_103_515_245)]);
+            let across = |a: [i32; 3], b: [i32; 3]| normalise(cross(a, b).map(|c| (c >> 31) as i32));
+            let y = across(x, normalise([c(69_069), c(134_775_813), c(48_271)]));
+            let axis = normalise([c(134_775_813), c(48_271), c(69_069)]);
+            // Neither matrix is exact: turning must leave its products as they are.
+            let rotation = [x, y, across(x, y)];
+            let turned = turned(rotation, axis, seed.unsigned_abs() % 97, 97);
+            let [before, after] = [rotation, turned].map(|rows| rows.map(|row| row.map(|c| f64::from(c) / 2f64.powi(30))));
+            for (i, j) in (0..3).flat_map(|i| (0..3).map(move |j| (i, j))) {
+                let product = |rows: [[f64; 3]; 3]| rows[i].iter().zip(rows[j]).map(|(a, b)| a * b).sum::<f64>();
+                worst = worst.max((product(after) - product(before)).abs());
+            }
+        }
+        assert!(worst <= ROTATION_ERROR, "{worst:e}");
+    }
+}

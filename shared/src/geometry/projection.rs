@@ -1,0 +1,346 @@
+//! Object space to the screen.
+
+use crate::{
+    arch::product::{product, upper},
+    format::{DEPTH, ROTATION, SUBPIXEL, UNIT},
+    geometry::pose::Pose,
+    math::{
+        recip::recip,
+        scale,
+        vector::{add, cross, narrow_dot, wide},
+    },
+    stream::record::{Camera, PERSPECTIVE},
+};
+use embedded_graphics_core::geometry::Size;
+use zerocopy::{FromBytes, Immutable, IntoBytes, KnownLayout};
+
+/// A vertex on the screen, with what its light comes to.
+#[derive(FromBytes, IntoBytes, Immutable, KnownLayout, Clone, Copy, Debug)]
+#[repr(C)]
+pub struct ScreenVertex {
+    /// Column, 1/16 pixel.
+    pub x: i32,
+    /// Row, 1/16 pixel, downwards.
+    pub y: i32,
+    /// Nearness, Q0.28.
+    pub depth: i32,
+    /// `[N·L, N·H, -]` in Q2.30 under one constant light, else light levels in Q9.7.
+    pub light: [i32; 3],
+    /// What is known of it in this frame.
+    pub state: State,
+}
+
+/// What is known of a cached vertex in this frame.
+#[derive(FromBytes, IntoBytes, Immutable, KnownLayout, Clone, Copy, Debug, PartialEq, Eq)]
+#[repr(transparent)]
+pub struct State(u32);
+
+impl State {
+    /// No triangle that faces the camera has asked for it.
+    pub const IDLE: Self = Self(0);
+    /// Position and light are those of this frame.
+    pub const READY: Self = Self(1);
+    /// In front of the near plane or beyond the guard band: its triangles are clipped.
+    pub const OUTSIDE: Self = Self(2);
+}
+
+/// Largest distance from the viewport's centre that screen coordinates may have, in 1/16 pixel.
+///
+/// Twice the widest viewport: triangles that only cross its border are not clipped but walked.
+pub const GUARD: i32 = 4096 << SUBPIXEL;
+
+/// How far a coordinate in eye space may lie from that of a convex body, but for a shift of them all, in units of its last
+/// place: half by its own rounding, and √3 times 0.86 by that in the mesh.
+const MOVED: u32 = 2;
+
+/// Nearness of a vertex at the near plane, Q0.28: less than one, so that rounding cannot wrap it.
+const NEAREST: i32 = (1 << DEPTH) - (1 << 10);
+
+/// One frame's way from object space to the screen.
+#[derive(Clone, Copy, Debug)]
+pub struct View {
+    /// Q2.14: positions have no more.
+    rotation: [[i32; 3]; 3],
+    translation: [i32; 3],
+    /// Centre of the viewport, 1/16 pixel.
+    centre: [i32; 2],
+    projection: Projection,
+    /// Half of the viewport's smaller side, in 1/16 pixel, times the focal length, Q.16.
+    focal: i64,
+    near: i32,
+}
+
+#[derive(Clone, Copy, Debug)]
+enum Projection {
+    Perspective {
+        /// [`View::focal`] as a mantissa of 31 bits.
+        focal: i32,
+        /// Fraction bits of the mantissa.
+        exponent: u32,
+        /// [`View::near`] as a mantissa of 31 bits.
+        near: i32,
+        /// How far it is shifted, for depth in the upper half of its product with 1/z.
+        depth_shift: u32,
+    },
+    Orthographic {
+        far: i32,
+        /// Nearness per unit of distance, Q.14.
+        inv_depth: i64,
+    },
+}
+
+impl View {
+    /// The view of `pose` on a viewport of `size` pixels.
+    #[must_use]
+    pub fn new(camera: &Camera, pose: &Pose, size: Size) -> Self {
+        let round = |c: i32| (c + (1 << (ROTATION - UNIT - 1))) >> (ROTATION - UNIT);
+        let smaller = size.width.min(size.height);
+        let focal = (i64::from(smaller) << (SUBPIXEL - 1)) * i64::from(camera.focal);
+        let near = camera.near.max(1);
+        let projection = if camera.projection == PERSPECTIVE {
+            let bits = 64 - focal.leading_zeros();
+            // focal is Q.16; at 31 bits its fraction bits are these.
+            let exponent = 16 + 31 - bits;
+            let focal = if bits > 31 { focal >> (bits - 31) } else { focal << (31 - bits) } as i32;
+            let shift = near.leading_zeros() - 1;
+            Projection::Perspective { focal, exponent, near: near << shift, depth_shift: shift + 30 - DEPTH }
+        } else {
+            let inv_depth = ((NEAREST as i64) << UNIT) / i64::from((camera.far - near).max(1));
+            Projection::Orthographic { far: camera.far, inv_depth }
+        };
+        Self {
+            rotation: pose.rotation.map(|row| row.map(round)),
+            translation: pose.translation,
+            centre: [(size.width << (SUBPIXEL - 1)) as i32, (size.height << (SUBPIXEL - 1)) as i32],
+            projection,
+            focal,
+            near,
+        }
+    }
+
+    /// Object to eye space, Q18.14.
+    #[inline(always)]
+    #[must_use]
+    pub fn to_eye(&self, position: [i16; 3]) -> [i32; 3] {
+        let [x, y, z] = self.rotation;
+        let along = |row| narrow_dot(row, wide(position)) >> UNIT;
+        add([along(x), along(y), along(z)], self.translation)
+    }
+
+    /// Eye space to `[x, y, inv_depth]` on the screen, and whether it lies behind the near plane and within the
+    /// guard band. What does not is moved there: only clipping, which rounds, may use it then.
+    #[inline(always)]
+    #[must_use]
+    pub fn project(&self, eye: [i32; 3]) -> ([i32; 3], bool) {
+        let [x, y, z] = eye;
+        let (behind, z) = (z >= self.near, z.max(self.near));
+        let (x, y, depth) = match self.projection {
+            Projection::Perspective { focal, exponent, near, depth_shift } => {
+                // 1/z = r 2^(zeros - 62), relative error 2^-29 wherever the near plane lies.
+                let zeros = z.leading_zeros();
+                let r = recip((z as u32) << (zeros & 31)) as i32;
+                // c focal is below 2^(21 + 31); 31 bits of it times r stay below 2^62.
+                let shift = 41 - zeros + exponent;
+                let place = |c: i32| shifted(product((product(c, focal) >> 21) as i32, r), shift);
+                // Behind the near plane z has no more leading zeros than `near`: the shift is positive.
+                let depth = upper(near, r) >> ((depth_shift - zeros) & 31);
+                (place(x), place(y), depth)
+            }
+            Projection::Orthographic { far, inv_depth } => {
+                let place = |c: i32| saturated((i64::from(c) * self.focal + (1 << (UNIT + 15))) >> (UNIT + 16));
+                (place(x), place(y), saturated((i64::from(far - z) * inv_depth) >> UNIT).max(0))
+            }
+        };
+        let inside = |c: i32| c.wrapping_add(GUARD) as u32 <= 2 * GUARD as u32;
+        let within = behind && inside(x) && inside(y);
+        let [x, y] = if within { [x, y] } else { [limited(x), limited(y)] };
+        ([self.centre[0] + x, self.centre[1] - y, depth.min(NEAREST)], within)
+    }
+
+    /// Rays meet in the eye.
+    #[must_use]
+    pub fn is_perspective(&self) -> bool {
+        matches!(self.projection, Projection::Perspective { .. })
+    }
+
+    /// In object space the eye, Q18.14, or under parallel rays the direction towards the viewer, Q2.14: exactly where
+    /// [`Self::to_eye`], whose rounding down is half a unit in the last place on average, has it.
+    #[must_use]
+    pub fn viewer(&self) -> [i32; 3] {
+        // Cramer's rule: the columns of the adjugate matrix, Q.28, over the determinant, Q.42.
+        let [a, b, c] = self.rotation;
+        let columns = [cross(b, c), cross(c, a), cross(a, b)];
+        let determinant: i64 = c.iter().zip(columns[2]).map(|(&c, k)| i64::from(c) * k).sum();
+        // Homogeneous, Q.15. Below 2^20 in size: all sums, and what they are shifted to, stay below 2^62.
+        let from = if self.is_perspective() { self.translation.map(|c| 2 * i64::from(c) - 1) } else { [0, 0, 1 << 15] };
+        let along = |k: usize| columns.iter().zip(from).map(|(column, t)| column.get(k).unwrap_or(&0) * t).sum::<i64>();
+        // A rotation's determinant is not 0.
+        [0, 1, 2].map(|k| (-along(k) << 13).checked_div(determinant).unwrap_or(0) as i32)
+    }
+
+    /// No vertex of a mesh in the ball of `radius` about the origin is farther from the eye than this, Q18.14; one under
+    /// parallel rays. Includes a 32nd to spare, since a rotation is one only nearly.
+    #[must_use]
+    pub fn reach(&self, radius: u16) -> u32 {
+        let [x, y, z] = self.translation.map(i32::unsigned_abs);
+        let reach = if self.is_perspective() { x + y + z + u32::from(radius) } else { 1 << UNIT };
+        reach + (reach >> 5) + 1
+    }
+
+    /// How far rounding may move a vertex as far from the eye as `reach`, Q.30.
+    ///
+    /// In eye space that is half a unit in the last place along each axis, √3/2 = 0.87 in all; on the screen along both axes half of
+    /// 1/16 pixel, with 2^-7 to spare for the arithmetic on the way: √2 · 65/128 = 0.72 of 1/16 pixel. With room for a rotation that
+    /// is one only nearly they are one unit and 25/32.
+    #[must_use]
+    pub fn displacement(&self, reach: u32) -> u64 {
+        let pixel = ((25 * u64::from(reach)) << (30 + 16 - UNIT - 5)).checked_div(self.focal.unsigned_abs());
+        pixel.unwrap_or(u64::from(u32::MAX)).saturating_add(1 + (1 << (30 - UNIT))).min(u64::from(u32::MAX))
+    }
+
+    /// How far rounding may move a point of a mesh that is marked as [`crate::stream::record::CLOSED_CONVEX`] along x or y, seen in a viewport of
+    /// `size` pixels behind the near plane; `times` that, 1/16 pixel, rounded up.
+    #[must_use]
+    pub fn moved(&self, size: Size, times: u32) -> u32 {
+        let focal = (self.focal >> 16) as u32;
+        let within = times.wrapping_mul(MOVED).wrapping_mul(match self.projection {
+            // Aside by focal / z, and in depth by as much as the point lies aside.
+            Projection::Perspective { .. } => focal.wrapping_add(size.width.max(size.height) << (SUBPIXEL - 1)),
+            Projection::Orthographic { .. } => focal,
+        });
+        let unit = match self.projection {
+            Projection::Perspective { .. } => self.near.unsigned_abs(),
+            Projection::Orthographic { .. } => 1 << UNIT,
+        };
+        // On the screen it is rounded to the nearest, with 2^-7 to spare for the arithmetic on the way.
+        let rounded = times.wrapping_mul(65).div_ceil(128);
+        within.checked_div(unit).map_or(u32::MAX, |within| within.saturating_add(1).saturating_add(rounded))
+    }
+
+    /// How far `eye` lies on the inner side of a clip plane (near, then the guard band's left, right, bottom, top); negative outside.
+    #[must_use]
+    pub fn distance(&self, eye: [i32; 3], plane: usize) -> i64 {
+        let [x, y, z] = eye.map(i64::from);
+        let along = match plane {
+            0 => return z - i64::from(self.near),
+            1 => -x,
+            2 => x,
+            3 => -y,
+            _ => y,
+        };
+        // along * focal / z <= GUARD, z being 1 without perspective.
+        let z = if self.is_perspective() { z } else { 1 << UNIT };
+        ((i64::from(GUARD) * z) << 16) - along * self.focal
+    }
+}
+
+/// `value / 2^bits` rounded to nearest, as far as 32 bits hold it.
+#[inline(always)]
+fn shifted(value: i64, bits: u32) -> i32 {
+    match bits.checked_sub(33) {
+        Some(bits) => (((value >> 32) as i32 >> (bits & 31)) + 1) >> 1,
+        None => slightly_shifted(value, bits),
+    }
+}
+
+/// The same where not all of the lower half is shifted out: very near things.
+#[cold]
+#[inline(never)]
+fn slightly_shifted(value: i64, bits: u32) -> i32 {
+    saturated(scale(value, bits as i32))
+}
+
+/// Moved to the guard band.
+#[cold]
+#[inline(never)]
+fn limited(c: i32) -> i32 {
+    c.clamp(-GUARD, GUARD)
+}
+
+/// The nearest that 32 bits hold.
+#[inline(always)]
+fn saturated(value: i64) -> i32 {
+    value.clamp(i32::MIN.into(), i32::MAX.into()) as i32
+}
+
+/// Number of clip planes of [`View::distance`].
+pub const PLANES: usize = 5;
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::stream::record::ORTHOGRAPHIC;
+
+    /// The eye is the point that goes to the origin, the direction towards the viewer the one that goes to -z.
+    #[test]
+    fn viewer_inverts_the_way_to_eye_space() {
+        for number in 0..50 {
+            let one = 1 << ROTATION;
+            let mut camera = Camera {
+                rotation: [[one, 0, 0], [0, one, 0], [0, 0, -one]],
+                translation: [3_000 - 977 * number, 12_345, 50_000 + 4_001 * number],
+                axis: [619_925_131, 619_925_131, 619_925_131],
+                period: 50,
+                projection: PERSPECTIVE,
+                reserved: 0,
+                focal: 1 << 17,
+                near: 1 << 12,
+                far: 1 << 18,
+            };
+            let pose = Pose::new(&camera, number as u32);
+            let exact = |view: &View, last: f64| {
+                let viewer = view.viewer().map(i64::from);
+                [0, 1, 2].map(|k| {
+                    let along: i64 = view.rotation[k].iter().zip(viewer).map(|(&r, v)| i64::from(r) * v).sum();
+                    along as f64 / 16_384.0 + last * (f64::from(pose.translation[k]) - 0.5)
+                })
+            };
+            let eye = exact(&View::new(&camera, &pose, Size::new(64, 64)), 1.0);
+            assert!(eye.iter().all(|c| c.abs() < 1.8), "{number}: {eye:?}");
+            camera.projection = ORTHOGRAPHIC;
+            let [x, y, z] = exact(&View::new(&camera, &pose, Size::new(64, 64)), 0.0);
+            assert!(x.abs() < 1.8 && y.abs() < 1.8 && (z + 16_384.0).abs() < 1.8, "{number}: {x} {y} {z}");
+        }
+    }
+
+    /// Screen coordinates are right to 1/16 pixel wherever the near plane lies.
+    #[test]
+    fn projection_keeps_its_precision() {
+        let one = 1 << ROTATION;
+        let pose = Pose { rotation: [[one, 0, 0], [0, one, 0], [0, 0, -one]], translation: [0; 3] };
+        for near in [1 << 8, 1 << 12, 3 << 13, 5 << 14] {
+            for focal in [1u32 << 12, 1 << 16, 140_000, 16 << 16] {
+                let camera = Camera {
+                    rotation: pose.rotation,
+                    translation: [0; 3],
+                    axis: [0, one, 0],
+                    period: 0,
+                    projection: PERSPECTIVE,
+                    reserved: 0,
+                    focal,
+                    near,
+                    far: 0,
+                };
+                let view = View::new(&camera, &pose, Size::new(640, 480));
+                for k in 0..2_000i32 {
+                    let eye = [
+                        (k * 7_919) % 90_000 - 45_000,
+                        (k * 104_729) % 90_000 - 45_000,
+                        near + k.wrapping_mul(1_299_709).rem_euclid(200_000),
+                    ];
+                    let place = |c: i32| f64::from(c) / f64::from(eye[2]) * f64::from(focal) / 65_536.0 * 240.0 * 16.0;
+                    let exact = [320.0 * 16.0 + place(eye[0]), 240.0 * 16.0 - place(eye[1])];
+                    let ([x, y, depth], inside) = view.project(eye);
+                    if inside {
+                        assert!(
+                            (f64::from(x) - exact[0]).abs() <= 0.51 && (f64::from(y) - exact[1]).abs() <= 0.51,
+                            "{eye:?}: {x} {y} {exact:?}"
+                        );
+                        let inv_depth = f64::from(near) / f64::from(eye[2]) * 2f64.powi(DEPTH as i32);
+                        assert!((f64::from(depth) - inv_depth).abs() <= 1_025.0, "{eye:?}: {depth} {inv_depth}");
+                    }
+                }
+            }
+        }
+    }
+}

@@ -1,0 +1,156 @@
+//! The viewport, and the pixels of it that a triangle can touch.
+
+use crate::{
+    format::{CENTRE, SUBPIXEL},
+    geometry::{
+        clip,
+        cull::Extent,
+        projection::{ScreenVertex, View},
+    },
+    stream::record::Vertex,
+};
+
+/// First row whose centre is not above `y`, or column whose centre is not left of it (1/16 pixel).
+#[inline(always)]
+#[must_use]
+pub fn first_centre(y: i32) -> i32 {
+    y.wrapping_add(CENTRE - 1) >> SUBPIXEL
+}
+
+/// Columns and rows that a triangle can touch, half open.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Bounds {
+    /// First column.
+    pub left: i32,
+    /// First row.
+    pub top: i32,
+    /// One past the last column.
+    pub right: i32,
+    /// One past the last row.
+    pub bottom: i32,
+}
+
+impl Bounds {
+    /// Of a triangle: pixels whose centres its box contains.
+    #[inline(always)]
+    #[must_use]
+    pub fn new(extent: &Extent) -> Self {
+        Self {
+            left: first_centre(extent.left),
+            top: first_centre(extent.top),
+            right: first_centre(extent.right),
+            bottom: first_centre(extent.bottom),
+        }
+    }
+
+    /// Of corners: pixels that their box touches.
+    #[must_use]
+    pub fn touched(corners: impl Iterator<Item = [i32; 3]>) -> Self {
+        let none = Self { left: i32::MAX, top: i32::MAX, right: i32::MIN, bottom: i32::MIN };
+        // A centre as far beyond the box as it can be.
+        let reach = |c: i32| [first_centre(c - (CENTRE - 1)), first_centre(c + CENTRE)];
+        corners.fold(none, |bounds, [x, y, _]| {
+            let ([left, right], [top, bottom]) = (reach(x), reach(y));
+            Self {
+                left: bounds.left.min(left),
+                top: bounds.top.min(top),
+                right: bounds.right.max(right),
+                bottom: bounds.bottom.max(bottom),
+            }
+        })
+    }
+
+    /// Of one point `[x, y, _]`.
+    #[must_use]
+    pub fn at([x, y, _]: [i32; 3]) -> Self {
+        Self { left: first_centre(x), top: first_centre(y), right: first_centre(x), bottom: first_centre(y) }
+    }
+
+    /// Grows until `point` lies inside.
+    pub fn include(&mut self, point: [i32; 3]) {
+        let other = Self::at(point);
+        self.left = self.left.min(other.left);
+        self.top = self.top.min(other.top);
+        self.right = self.right.max(other.right);
+        self.bottom = self.bottom.max(other.bottom);
+    }
+
+    /// Without what lies outside a viewport.
+    #[inline(always)]
+    #[must_use]
+    pub fn clipped(self, width: i32, height: i32) -> Self {
+        Self { left: self.left.max(0), top: self.top.max(0), right: self.right.min(width), bottom: self.bottom.min(height) }
+    }
+
+    /// `[left, top, right, bottom]`.
+    #[inline(always)]
+    #[must_use]
+    pub fn sides(self) -> [i32; 4] {
+        [self.left, self.top, self.right, self.bottom]
+    }
+
+    /// No pixel at all.
+    #[inline(always)]
+    #[must_use]
+    pub fn is_empty(&self) -> bool {
+        self.left >= self.right || self.top >= self.bottom
+    }
+}
+
+/// A viewport, as culling sees it.
+#[derive(Clone, Copy)]
+pub struct Viewport {
+    /// Columns.
+    pub width: i32,
+    /// Rows.
+    pub height: i32,
+    /// Pixels are weighed by areas: a triangle can touch more of them.
+    pub antialiased: bool,
+}
+
+impl Viewport {
+    /// The visible box of a triangle; `None` if it shows its back, or no pixel can belong to it.
+    #[inline(always)]
+    pub fn bounds(self, extent: &Extent) -> Option<Bounds> {
+        if extent.area <= 0 {
+            return None;
+        }
+        self.visible(if self.antialiased {
+            Bounds::touched([[extent.left, extent.top, 0], [extent.right, extent.bottom, 0]].into_iter())
+        } else {
+            Bounds::new(extent)
+        })
+    }
+
+    /// A triangle whose corners are kept, small and not beside the viewport: there is a shorter way to draw it.
+    #[inline(always)]
+    pub fn is_word_sized(self, extent: &Extent) -> bool {
+        !self.antialiased && extent.left >= 0 && extent.right < self.width << SUBPIXEL && extent.fits_words()
+    }
+
+    /// The visible box of what clipping leaves of a triangle.
+    #[cold]
+    #[inline(never)]
+    pub fn clipped_bounds(self, view: &View, vertices: [&Vertex; 3]) -> Option<Bounds> {
+        let polygon = clip::clip(view, vertices);
+        let mut corners = polygon.iter().map(|cut| view.project(cut.eye).0);
+        if self.antialiased {
+            return self.visible(Bounds::touched(corners));
+        }
+        let mut bounds = Bounds::at(corners.next()?);
+        corners.for_each(|corner| bounds.include(corner));
+        self.visible(bounds)
+    }
+
+    /// The visible box of a triangle, on a grid finer by 2 to the power `finer`.
+    pub fn box_of(self, corners: [&ScreenVertex; 3], finer: u32) -> [i32; 4] {
+        let extent = Extent::new(corners.map(|corner| [corner.x, corner.y]));
+        Bounds::new(&extent).clipped(self.width << finer, self.height << finer).sides()
+    }
+
+    #[inline(always)]
+    fn visible(self, bounds: Bounds) -> Option<Bounds> {
+        let bounds = bounds.clipped(self.width, self.height);
+        (!bounds.is_empty()).then_some(bounds)
+    }
+}

@@ -1,0 +1,104 @@
+//! Cubic fields.
+//!
+//! Third differences add up with the third power of the distance, so coefficients have [`FINER`] more fraction bits than
+//! the walked format, in 64 bits.
+
+use crate::{
+    interpolate::{Patch, Walker},
+    setup::{
+        gradients::Gradients,
+        terms::{Terms, moved},
+    },
+};
+
+/// Fraction bits of a coefficient that a walked value has not. Nine integer bits of the walked format become eleven:
+/// values a factor of two outside of it are clamped, not wrapped.
+pub const FINER: u32 = 30;
+
+/// A cubic in each of `CH` channels, standing on one row.
+#[derive(Clone, Copy, Debug)]
+pub struct Cubic<const CH: usize>([Terms<i64>; CH]);
+
+impl<const CH: usize> Default for Cubic<CH> {
+    fn default() -> Self {
+        Self([Terms::default(); CH])
+    }
+}
+
+impl<const CH: usize> Cubic<CH> {
+    /// The cubic through ten nodes per channel: corners 0, 1, 2; the thirds of the edges 01, 12, 20, each time the one
+    /// nearer to the edge's start first; the centroid.
+    ///
+    /// Nodes lie in a range narrower than 2^15; values are walked with `extra` more fraction bits.
+    /// Error: at most 1 + 2^-31 (1 + S + S² + S³) units of the walked format, S the distance in columns plus rows from the
+    /// anchor, and for set-up 2^-22 k of the nodes' range, k the length over the height; nothing for set-up where k is
+    /// beyond [`crate::setup::gradients::MAX_THINNESS`].
+    /// Source: Vlasic 2002, 4.2; change of basis without his divisions.
+    #[must_use]
+    pub fn fit(gradients: &Gradients, nodes: [[i32; 10]; CH], extra: u32) -> Self {
+        // From the anchor column to column 0: exact integer arithmetic modulo 2^64.
+        let back = i64::from(gradients.column());
+        let step = |a: i64, b: i64| a.wrapping_sub(b.wrapping_mul(back));
+        Self(nodes.map(|nodes| gradients.cubic(nodes, extra + FINER).moved_across(step)))
+    }
+
+    /// Adds `bias` to every channel.
+    #[must_use]
+    pub fn biased(mut self, bias: [i32; CH]) -> Self {
+        for (Terms([c, ..], ..), bias) in self.0.iter_mut().zip(bias) {
+            *c = c.wrapping_add(i64::from(bias) << FINER);
+        }
+        self
+    }
+}
+
+impl<const CH: usize> Patch for Cubic<CH> {
+    type Walker = Cubical<CH>;
+
+    fn jump(&mut self, rows: i32) {
+        let rows = i64::from(rows);
+        self.0 = self.0.map(|terms| terms.moved_down(|a, b| a.wrapping_add(b.wrapping_mul(rows))));
+    }
+
+    #[inline(always)]
+    fn step_row(&mut self) {
+        for terms in &mut self.0 {
+            *terms = terms.moved_down(i64::wrapping_add);
+        }
+    }
+
+    #[inline(always)]
+    fn enter(&self, x: i32) -> Cubical<CH> {
+        let x = i64::from(x);
+        let step = |a: i64, b: i64| a.wrapping_add(b.wrapping_mul(x));
+        Cubical(self.0.map(|Terms([c, ..], [dx, ..], [dxx, _], [dxxx])| {
+            let [c, dx, dxx, dxxx] = moved([c, dx, dxx, dxxx], &step);
+            // Differences towards x - 1.
+            let d3 = dxxx.wrapping_mul(-6);
+            [c, dxx.wrapping_sub(dx).wrapping_sub(dxxx), dxx.wrapping_mul(2).wrapping_add(d3), d3]
+        }))
+    }
+}
+
+/// Walks a [`Cubic`]: three additions of 64 bits a pixel and channel. Value, and first to third difference.
+#[derive(Clone, Copy, Debug)]
+pub struct Cubical<const CH: usize>([[i64; 4]; CH]);
+
+impl<const CH: usize> Walker for Cubical<CH> {
+    type Value = [u32; CH];
+
+    #[inline(always)]
+    fn step(&mut self) {
+        for [value, d1, d2, d3] in &mut self.0 {
+            *value = value.wrapping_add(*d1);
+            *d1 = d1.wrapping_add(*d2);
+            *d2 = d2.wrapping_add(*d3);
+        }
+    }
+
+    /// Clamped: through ten nodes a cubic overshoots their range by more than the guards of a walked level.
+    #[inline(always)]
+    fn value(&self) -> [u32; CH] {
+        self.0.map(|[value, ..]| (value >> FINER).clamp(0, u32::MAX.into()) as u32)
+    }
+}

@@ -1,0 +1,217 @@
+//! What a method interpolates, whichever way it gets from the corners to the pixels.
+//!
+//! A field knows values at nodes of a triangle, not where they lie on the screen. [`Field::fit`] makes it a polynomial of
+//! the screen's coordinates, to be walked by additions; [`Field::surface`] one of the place in the triangle, for
+//! [`crate::interpolate::perspective`].
+
+use crate::{
+    interpolate::{
+        Constant, Held, Patch, Walker,
+        cubic::Cubic,
+        perspective::{Point, SHARE, Surface},
+        plane::Plane,
+        quadric::Quadric,
+    },
+    setup::gradients::Gradients,
+};
+
+/// Values all over a triangle.
+pub trait Field {
+    /// What it has at a point.
+    type Value;
+    /// It on the screen, without perspective.
+    type Patch: Patch<Walker: Walker<Value = Self::Value> + Copy> + Default;
+    /// It on the triangle.
+    type Surface: Surface<Value = Self::Value> + Default;
+
+    /// Spreads it evenly over the triangle that `gradients` stands for.
+    fn fit(&self, gradients: &Gradients) -> Self::Patch;
+
+    /// Spreads it evenly over the triangle in space.
+    fn surface(&self) -> Self::Surface;
+}
+
+/// The polynomial through three, six or ten nodes in each of `CH` channels: see [`Plane::fit`], [`Quadric::fit`] (of which
+/// `BITS` is) and [`Cubic::fit`].
+#[derive(Clone, Copy, Debug)]
+pub struct Nodes<const N: usize, const CH: usize, const BITS: u32 = 32> {
+    pub(crate) values: [[i32; N]; CH],
+    pub(crate) extra: u32,
+    pub(crate) bias: [i32; CH],
+}
+
+impl<const N: usize, const CH: usize, const BITS: u32> Nodes<N, CH, BITS> {
+    /// Through `values[channel][k]` at node `k`, taken with `extra` more fraction bits than they have.
+    #[inline(always)]
+    #[must_use]
+    pub fn new(values: [[i32; N]; CH], extra: u32) -> Self {
+        Self { values, extra, bias: [0; CH] }
+    }
+
+    /// Plus `bias` in every channel.
+    #[inline(always)]
+    #[must_use]
+    pub fn biased(self, bias: [i32; CH]) -> Self {
+        Self { bias, ..self }
+    }
+}
+
+impl<const N: usize, const CH: usize, const BITS: u32> Default for Nodes<N, CH, BITS> {
+    fn default() -> Self {
+        Self::new([[0; N]; CH], 0)
+    }
+}
+
+impl<const CH: usize, const BITS: u32> Field for Nodes<3, CH, BITS> {
+    type Value = [u32; CH];
+    type Patch = Plane<CH>;
+    type Surface = Self;
+
+    #[inline(always)]
+    fn fit(&self, gradients: &Gradients) -> Plane<CH> {
+        Plane::fit::<BITS>(gradients, self.values, self.extra).biased(self.bias)
+    }
+
+    fn surface(&self) -> Self {
+        *self
+    }
+}
+
+impl<const CH: usize, const BITS: u32> Field for Nodes<6, CH, BITS> {
+    type Value = [u32; CH];
+    type Patch = Quadric<CH>;
+    type Surface = Self;
+
+    #[inline(always)]
+    fn fit(&self, gradients: &Gradients) -> Quadric<CH> {
+        Quadric::fit::<BITS>(gradients, self.values, self.extra).biased(self.bias)
+    }
+
+    fn surface(&self) -> Self {
+        *self
+    }
+}
+
+impl<const CH: usize, const BITS: u32> Field for Nodes<10, CH, BITS> {
+    type Value = [u32; CH];
+    type Patch = Cubic<CH>;
+    type Surface = Self;
+
+    fn fit(&self, gradients: &Gradients) -> Cubic<CH> {
+        Cubic::fit(gradients, self.values, self.extra).biased(self.bias)
+    }
+
+    fn surface(&self) -> Self {
+        *self
+    }
+}
+
+impl Field for Constant {
+    type Value = ();
+    type Patch = Self;
+    type Surface = Self;
+
+    #[inline(always)]
+    fn fit(&self, _: &Gradients) -> Self {
+        Self
+    }
+
+    fn surface(&self) -> Self {
+        Self
+    }
+}
+
+impl Surface for Constant {
+    type Value = ();
+
+    fn at(&self, _: &Point) {}
+}
+
+impl<T: Copy + Default> Field for Held<T> {
+    type Value = T;
+    type Patch = Self;
+    type Surface = Self;
+
+    #[inline(always)]
+    fn fit(&self, _: &Gradients) -> Self {
+        *self
+    }
+
+    fn surface(&self) -> Self {
+        *self
+    }
+}
+
+impl<T: Copy> Surface for Held<T> {
+    type Value = T;
+
+    fn at(&self, _: &Point) -> T {
+        self.0
+    }
+}
+
+/// Two fields side by side.
+impl<A: Field, B: Field> Field for (A, B) {
+    type Value = (A::Value, B::Value);
+    type Patch = (A::Patch, B::Patch);
+    type Surface = (A::Surface, B::Surface);
+
+    #[inline(always)]
+    fn fit(&self, gradients: &Gradients) -> Self::Patch {
+        (self.0.fit(gradients), self.1.fit(gradients))
+    }
+
+    fn surface(&self) -> Self::Surface {
+        (self.0.surface(), self.1.surface())
+    }
+}
+
+impl<A: Surface, B: Surface> Surface for (A, B) {
+    type Value = (A::Value, B::Value);
+
+    #[inline(always)]
+    fn at(&self, point: &Point) -> Self::Value {
+        (self.0.at(point), self.1.at(point))
+    }
+}
+
+impl<const N: usize, const CH: usize, const BITS: u32> Nodes<N, CH, BITS> {
+    /// The nodes' sum, weighted in Q2.30.
+    #[inline(always)]
+    fn blend(&self, weights: [i32; N]) -> [i64; CH] {
+        let mut values = self.bias.map(i64::from);
+        for (value, nodes) in values.iter_mut().zip(&self.values) {
+            let sum = nodes.iter().zip(weights).map(|(&node, weight)| i64::from(node) * i64::from(weight)).sum::<i64>();
+            *value += sum >> SHARE.saturating_sub(self.extra);
+        }
+        values
+    }
+}
+
+impl<const CH: usize, const BITS: u32> Surface for Nodes<3, CH, BITS> {
+    type Value = [u32; CH];
+
+    #[inline(always)]
+    fn at(&self, point: &Point) -> [u32; CH] {
+        self.blend(point.0).map(|value| value as u32)
+    }
+}
+
+impl<const CH: usize, const BITS: u32> Surface for Nodes<6, CH, BITS> {
+    type Value = [u32; CH];
+
+    #[inline(always)]
+    fn at(&self, point: &Point) -> [u32; CH] {
+        self.blend(point.six()).map(|value| value as u32)
+    }
+}
+
+impl<const CH: usize, const BITS: u32> Surface for Nodes<10, CH, BITS> {
+    type Value = [u32; CH];
+
+    /// Clamped as a walked cubic is.
+    #[inline(always)]
+    fn at(&self, point: &Point) -> [u32; CH] {
+        self.blend(point.ten()).map(|value| value.clamp(0, u32::MAX.into()) as u32)
+    }
+}

@@ -1,0 +1,182 @@
+//! Polynomials over a triangle: fitted once, then walked by additions.
+//!
+//! `Gradients` turns node values into derivatives, [`plane::Plane`], [`quadric::Quadric`] and
+//! [`cubic::Cubic`] hold them as integers for the rows of a triangle, and
+//! their walkers run along one span. Coefficients are rounded once; every later
+//! step is exact modulo 2^32 (2^64), so neither rows, nor bands, nor clipping change a
+//! bit of a value, and nothing drifts.
+//!
+//! Methods say what they interpolate by [`field`]s; [`perspective`] interpolates the same in perspective.
+
+pub mod cubic;
+pub mod field;
+pub mod perspective;
+pub mod plane;
+pub mod quadric;
+
+/// A polynomial of one triangle, standing on one row.
+pub trait Patch: Copy {
+    /// What runs along a span of that row.
+    type Walker: Walker;
+
+    /// Moves down `rows` rows, exactly.
+    fn jump(&mut self, rows: i32);
+
+    /// Moves down one row.
+    fn step_row(&mut self);
+
+    /// A walker that stands on column `x`; its first step leads to `x - 1`.
+    fn enter(&self, x: i32) -> Self::Walker;
+
+    /// Words that [`Self::keep`] takes.
+    const WORDS: usize = 0;
+
+    /// Writes all that it is to the first `words`; false if it cannot, or they are too few.
+    #[inline(always)]
+    fn keep(&self, _words: &mut [u32]) -> bool {
+        false
+    }
+
+    /// What has been kept.
+    #[inline(always)]
+    #[must_use]
+    fn kept(_words: &[u32]) -> Option<Self> {
+        None
+    }
+}
+
+/// `f` of each channel. Written out, since at opt-level "s" a loop over channels goes through memory.
+#[inline(always)]
+pub(crate) fn each_channel<const CH: usize>(mut f: impl FnMut(usize)) {
+    match CH {
+        1 => f(0),
+        2 => (f(0), f(1)).0,
+        3 => {
+            f(0);
+            f(1);
+            f(2);
+        }
+        _ => (0..CH).for_each(f),
+    }
+}
+
+/// Runs along a span from right to left.
+pub trait Walker {
+    /// What it has at a pixel.
+    type Value;
+
+    /// Moves one pixel to the left.
+    fn step(&mut self);
+
+    /// The value at the current pixel.
+    fn value(&self) -> Self::Value;
+}
+
+/// The same everywhere.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Constant;
+
+impl Patch for Constant {
+    type Walker = Self;
+    #[inline(always)]
+    fn jump(&mut self, _: i32) {}
+    #[inline(always)]
+    fn step_row(&mut self) {}
+    #[inline(always)]
+    fn enter(&self, _: i32) -> Self {
+        Self
+    }
+    #[inline(always)]
+    fn keep(&self, _: &mut [u32]) -> bool {
+        true
+    }
+    #[inline(always)]
+    fn kept(_: &[u32]) -> Option<Self> {
+        Some(Self)
+    }
+}
+
+impl Walker for Constant {
+    type Value = ();
+    #[inline(always)]
+    fn step(&mut self) {}
+    #[inline(always)]
+    fn value(&self) {}
+}
+
+/// A value that goes along with a polynomial, the same everywhere.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Held<T>(pub T);
+
+impl<T: Copy> Patch for Held<T> {
+    type Walker = Self;
+    #[inline(always)]
+    fn jump(&mut self, _: i32) {}
+    #[inline(always)]
+    fn step_row(&mut self) {}
+    #[inline(always)]
+    fn enter(&self, _: i32) -> Self {
+        *self
+    }
+}
+
+impl<T: Copy> Walker for Held<T> {
+    type Value = T;
+    #[inline(always)]
+    fn step(&mut self) {}
+    #[inline(always)]
+    fn value(&self) -> T {
+        self.0
+    }
+}
+
+/// Two polynomials side by side.
+impl<A: Patch, B: Patch> Patch for (A, B) {
+    type Walker = (A::Walker, B::Walker);
+
+    #[inline(always)]
+    fn jump(&mut self, rows: i32) {
+        self.0.jump(rows);
+        self.1.jump(rows);
+    }
+
+    #[inline(always)]
+    fn step_row(&mut self) {
+        self.0.step_row();
+        self.1.step_row();
+    }
+
+    #[inline(always)]
+    fn enter(&self, x: i32) -> Self::Walker {
+        (self.0.enter(x), self.1.enter(x))
+    }
+
+    const WORDS: usize = A::WORDS + B::WORDS;
+
+    #[inline(always)]
+    fn keep(&self, words: &mut [u32]) -> bool {
+        let Some((first, rest)) = words.split_at_mut_checked(A::WORDS) else { return false };
+        self.0.keep(first) && self.1.keep(rest)
+    }
+
+    #[inline(always)]
+    fn kept(words: &[u32]) -> Option<Self> {
+        let (first, rest) = words.split_at_checked(A::WORDS)?;
+        Some((A::kept(first)?, B::kept(rest)?))
+    }
+}
+
+impl<A: Walker, B: Walker> Walker for (A, B) {
+    type Value = (A::Value, B::Value);
+
+    #[inline(always)]
+    fn step(&mut self) {
+        self.0.step();
+        self.1.step();
+    }
+
+    #[inline(always)]
+    fn value(&self) -> Self::Value {
+        (self.0.value(), self.1.value())
+    }
+}

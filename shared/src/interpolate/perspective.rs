@@ -1,0 +1,157 @@
+//! Interpolation in perspective (Blinn 1992; Heckbert and Moreton 1991).
+//!
+//! What is linear over a triangle in space is not so on the screen, but its quotient by the distance is, and so is one
+//! over the distance: the nearness w. With the shares b of the corners in a point of the screen, their shares in the point
+//! of the triangle that is seen there are b w / Σ b w. A polynomial of degree d in these is a quotient of two polynomials
+//! of that degree on the screen. Instead of its numerator, whose node values shrink with w^d and with them its precision,
+//! the three linear numerators of the shares are walked, whatever is interpolated, and it is worked out at the pixel.
+//!
+//! Cost: 3 additions of 64 bits a step; at each pixel that is seen a reciprocal, 2 products, and Lagrange's weights of the
+//! nodes: none for planes, 6 products for quadratics, 15 for cubics, and then a product per node and channel.
+//! Set-up: three planes instead of a fit of each channel.
+
+use crate::{
+    interpolate::{Patch, Walker},
+    math::recip::recip,
+    setup::gradients::Gradients,
+};
+
+/// Fraction bits of shares: a Q2.30 holds them.
+pub(crate) const SHARE: u32 = 30;
+/// One, as a share.
+const ONE: i64 = 1 << SHARE;
+
+/// A place in a triangle: its shares of the corners, Q2.30, that sum up to one.
+#[derive(Clone, Copy, Debug)]
+pub struct Point(pub(crate) [i32; 3]);
+
+/// Values on a triangle, at any place.
+pub trait Surface: Copy {
+    /// What it has at a place.
+    type Value;
+
+    /// The value at `point`.
+    fn at(&self, point: &Point) -> Self::Value;
+}
+
+/// A surface in perspective, standing on one row.
+#[derive(Clone, Copy, Debug)]
+pub struct PerspectivePatch<S> {
+    /// Numerators of the shares of corners 1 and 2, and their common denominator.
+    rows: [Row; 3],
+    surface: S,
+}
+
+/// `c + dx x + dy y`, see [`Gradients::fine`].
+#[derive(Clone, Copy, Debug)]
+struct Row {
+    /// Value at column 0 of the current row.
+    c: i64,
+    dx: i64,
+    dy: i64,
+}
+
+impl<S: Surface> PerspectivePatch<S> {
+    /// `surface` on the triangle whose corners have this nearness, all of them more than nothing.
+    ///
+    /// Error of shares, against those of the same corners: at most 2^-28 k / r, with k the length over the height of the
+    /// triangle, and r the least nearness over the largest.
+    #[must_use]
+    pub fn new(gradients: &Gradients, inv_depth: [i32; 3], surface: S) -> Self {
+        // A common factor cancels out: the largest nearness just below 1.
+        let zeros = inv_depth.iter().fold(1, |m, w| m | w).leading_zeros();
+        let [a, b, c] = inv_depth.map(|w| w.wrapping_shl(zeros.saturating_sub(2)));
+        let row = |nodes| {
+            let [c, dx, dy] = gradients.fine(nodes);
+            Row { c: c.wrapping_sub(dx.wrapping_mul(gradients.column().into())), dx, dy }
+        };
+        Self { rows: [row([0, b, 0]), row([0, 0, c]), row([a, b, c])], surface }
+    }
+}
+
+impl<S> PerspectivePatch<S> {
+    /// Another surface on the same triangle.
+    #[must_use]
+    pub fn with<T>(&self, surface: T) -> PerspectivePatch<T> {
+        PerspectivePatch { rows: self.rows, surface }
+    }
+}
+
+impl<S: Surface> Patch for PerspectivePatch<S> {
+    type Walker = PerspectiveWalker<S>;
+
+    fn jump(&mut self, rows: i32) {
+        for row in &mut self.rows {
+            row.c = row.c.wrapping_add(row.dy.wrapping_mul(rows.into()));
+        }
+    }
+
+    fn step_row(&mut self) {
+        for row in &mut self.rows {
+            row.c = row.c.wrapping_add(row.dy);
+        }
+    }
+
+    fn enter(&self, x: i32) -> PerspectiveWalker<S> {
+        let walked = self.rows.map(|row| (row.c.wrapping_add(row.dx.wrapping_mul(x.into())), row.dx));
+        PerspectiveWalker { value: walked.map(|(value, _)| value), step: walked.map(|(_, step)| step), surface: self.surface }
+    }
+}
+
+/// Walks a [`PerspectivePatch`].
+#[derive(Clone, Copy, Debug)]
+pub struct PerspectiveWalker<S> {
+    value: [i64; 3],
+    step: [i64; 3],
+    surface: S,
+}
+
+impl<S: Surface> Walker for PerspectiveWalker<S> {
+    type Value = S::Value;
+
+    #[inline(always)]
+    fn step(&mut self) {
+        for (value, step) in self.value.iter_mut().zip(self.step) {
+            *value = value.wrapping_sub(step);
+        }
+    }
+
+    #[inline(always)]
+    fn value(&self) -> S::Value {
+        let [s, t, whole] = self.value;
+        self.surface.at(&Point::new(s, t, whole))
+    }
+}
+
+impl Point {
+    /// With the shares `s` and `t` of `whole` for corners 1 and 2.
+    #[inline(always)]
+    fn new(s: i64, t: i64, whole: i64) -> Self {
+        // All of them moved up until `whole` fills 32 bits, and the numerators 30: recip is 2^62 over it.
+        let zeros = whole.max(1).leading_zeros();
+        let inverse = i64::from(recip((whole.wrapping_shl(zeros) as u64 >> 32) as u32));
+        let share = |part: i64| (((part.wrapping_shl(zeros.saturating_sub(2)) >> 32) * inverse) >> SHARE) as i32;
+        let (s, t) = (share(s), share(t));
+        Self([(ONE as i32).wrapping_sub(s).wrapping_sub(t), s, t])
+    }
+
+    /// Lagrange's weights of corners and edge midpoints, b (2b - 1) and 4 b b'.
+    #[inline(always)]
+    pub(crate) fn six(&self) -> [i32; 6] {
+        let [a, b, c] = self.0.map(i64::from);
+        let corner = |u: i64| ((u * (2 * u - ONE)) >> SHARE) as i32;
+        let edge = |u: i64, v: i64| ((u * v) >> (SHARE - 2)) as i32;
+        [corner(a), corner(b), corner(c), edge(a, b), edge(b, c), edge(c, a)]
+    }
+
+    /// Lagrange's weights of ten nodes, in the order of [`crate::interpolate::cubic::Cubic::fit`].
+    #[inline(always)]
+    pub(crate) fn ten(&self) -> [i32; 10] {
+        let [a, b, c] = self.0.map(i64::from);
+        let times = |u: i64, v: i64| (u * v) >> SHARE;
+        let corner = |u: i64| (times(times(u, 3 * u - ONE), 3 * u - 2 * ONE) >> 1) as i32;
+        let edge = |near: i64, far: i64| ((9 * times(times(near, far), 3 * near - ONE)) >> 1) as i32;
+        let centre = (27 * times(times(a, b), c)) as i32;
+        [corner(a), corner(b), corner(c), edge(a, b), edge(b, a), edge(b, c), edge(c, b), edge(c, a), edge(a, c), centre]
+    }
+}

@@ -1,0 +1,431 @@
+//! What a material makes of the scene's lights, worked out once: [`Reflectance`] in light, [`MaterialTables`] in colours.
+
+use crate::{
+    arch::product::upper,
+    format::{BIAS, COSINE, Intensity, LEVEL, MAX_LIGHTS, PIXEL_COSINE, RAMP, UNIT, WALK},
+    math::{
+        power::{Base, POWER, Power, square},
+        vector::zip,
+    },
+    pixel::{Pixel, dither::quantise},
+    stream::record::{Header, Light, Material},
+};
+use zerocopy::{FromBytes, Immutable, IntoBytes, KnownLayout};
+
+/// Largest level of a node, Q9.7.
+pub const FULL: i32 = 255 << LEVEL;
+
+/// What is raised to the exponent `n` of a material, such that highlights have the same width by all methods.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Highlight {
+    /// (N·H)^n (Blinn 1977).
+    #[default]
+    Half,
+    /// ((N·H)²)^(n/2).
+    HalfSquared,
+    /// (z²)^n of z = sqrt(N·H).
+    Root,
+    /// (R·V)^(n/4): with L, N and V in a plane the angle of R and V is twice that of N and H (Phong 1975).
+    Reflected,
+}
+
+impl Highlight {
+    /// What of it is raised to the material's exponent.
+    #[must_use]
+    pub const fn base(self) -> Base {
+        match self {
+            Self::Half => Base::Itself,
+            Self::HalfSquared => Base::Root,
+            Self::Root => Base::Square,
+            Self::Reflected => Base::FourthRoot,
+        }
+    }
+}
+
+/// Light levels that one light adds at cosine 1, per channel, in Q9.7.
+#[derive(FromBytes, IntoBytes, Immutable, KnownLayout, Clone, Copy, Debug)]
+#[repr(C)]
+pub struct Gains {
+    diffuse: [u16; 3],
+    specular: [u16; 3],
+}
+
+/// A material under the scene's lights, whatever the pixel format: the gains of each light, and the table of highlights.
+#[derive(FromBytes, IntoBytes, Immutable, KnownLayout, Clone, Copy, Debug)]
+#[repr(C)]
+pub struct Reflectance {
+    /// x^exponent.
+    pub power: Power,
+    /// Level without lights, Q9.7.
+    ambient: [i32; 3],
+    highlight_threshold: i32,
+    /// Bits of each channel of the pixel format.
+    depth: [u32; 3],
+    gains: [Gains; MAX_LIGHTS],
+    /// Channels at full level for dither, Q0.8 scaled to the output's depth.
+    base: [u16; 3],
+    /// Not 0: see [`Self::three_channels`].
+    three_channels: u8,
+    /// Not 0: see [`Self::holds_levels`].
+    holds_levels: u8,
+}
+
+/// A material in the colours of a pixel format.
+#[derive(Debug)]
+pub struct MaterialTables<'a, C: Pixel> {
+    /// Colour of each level, if one level says it all.
+    pub ramp: &'a [C::Stored; RAMP],
+    /// What it reflects.
+    pub reflectance: &'a Reflectance,
+}
+
+impl<C: Pixel> Clone for MaterialTables<'_, C> {
+    fn clone(&self) -> Self {
+        *self
+    }
+}
+
+impl<C: Pixel> Copy for MaterialTables<'_, C> {}
+
+/// A colour as products of gains, Q4.28.
+type Colour = [u32; 3];
+
+fn product(a: [u16; 3], b: [u16; 3]) -> Colour {
+    zip(a, b, |a, b| u32::from(a) * u32::from(b))
+}
+
+/// Rec. 601 luma in all three channels.
+fn luma([r, g, b]: Colour) -> Colour {
+    [(r >> 8) * 77 + (g >> 8) * 150 + (b >> 8) * 29; 3]
+}
+
+fn largest(colour: Colour) -> u32 {
+    colour.into_iter().fold(0, u32::max)
+}
+
+/// Whether `colour` is a multiple of `base`, to 1/1024 of its largest channel.
+fn along(colour: Colour, base: Colour) -> bool {
+    let (a, b) = (u64::from(largest(colour)), u64::from(largest(base)));
+    zip(colour, base, |c, d| (u64::from(c) * b).abs_diff(u64::from(d) * a) <= (a * b) >> 10) == [true; 3]
+}
+
+impl Reflectance {
+    /// Nothing yet; all zeros, which takes no flash in static memory.
+    pub const EMPTY: Self = Self {
+        base: [0; 3],
+        power: Power::EMPTY,
+        three_channels: 0,
+        ambient: [0; 3],
+        gains: [Gains { diffuse: [0; 3], specular: [0; 3] }; MAX_LIGHTS],
+        highlight_threshold: 0,
+        holds_levels: 0,
+        depth: [0; 3],
+    };
+
+    /// Works out `material` under `lights`, for a method with these highlights and a pixel format with so many bits a channel, `grey` or
+    /// not. Where one level says it all, and it may, the highlight's table `holds_levels` instead of shares.
+    pub fn fill(
+        &mut self,
+        header: &Header,
+        material: &Material,
+        lights: &[Light],
+        (highlight, holds_levels): (Highlight, bool),
+        (depth, grey): ([u32; 3], bool),
+    ) {
+        let tint = |colour: Colour| if grey { luma(colour) } else { colour };
+        let ambient = tint(product(header.ambient, material.ambient));
+        let diffuse = |light: &Light| tint(product(light.colour, material.diffuse));
+        let specular = |light: &Light| tint(product(light.colour, material.specular));
+        // The brightest of all terms sets the base colour; the others may be multiples of it.
+        let terms = || lights.iter().flat_map(|light| [diffuse(light), specular(light)]).chain([ambient]);
+        let base = terms().max_by_key(|&term| largest(term)).unwrap_or([0; 3]);
+        let one_channel = terms().all(|term| along(term, base));
+        self.depth = depth;
+        self.three_channels = u8::from(!one_channel);
+        let levels = |colour: Colour| -> [u16; 3] { if one_channel { [level(largest(colour), 8); 3] } else { zip(colour, depth, level) } };
+        self.ambient = levels(ambient).map(i32::from);
+        for (gains, light) in self.gains.iter_mut().zip(lights) {
+            *gains = Gains { diffuse: levels(diffuse(light)), specular: levels(specular(light)) };
+        }
+        let holds_levels = holds_levels && one_channel && lights.len() == 1 && self.fits();
+        self.holds_levels = holds_levels.into();
+        let [one, ..] = &mut self.gains;
+        let (mut full, mut floor) = (1 << POWER, 0);
+        if holds_levels {
+            (full, floor) = (one.specular[0].into(), Self::biased(self.ambient[0]) as u16);
+            // The remaining specular gain is 65535/65536.
+            one.specular = [u16::MAX; 3];
+        }
+        self.power.fill(material.exponent, highlight.base(), full, floor);
+        self.highlight_threshold = match highlight.base() {
+            Base::Square => square(self.power.highlight_threshold()),
+            _ => self.power.highlight_threshold(),
+        };
+        // Share of each channel in the base colour, scaled to what the output can show.
+        let whole = u64::from(largest(base).max(1));
+        self.base = zip(base, depth, |channel, depth| {
+            let full = ((1u64 << depth) - 1) << (8 - depth);
+            ((u64::from(channel) * full * 256 + whole * 255 / 2) / (whole * 255)) as u16
+        });
+    }
+
+    /// One walked level is not enough: the material has colours that are no multiples of one another.
+    #[inline(always)]
+    #[must_use]
+    pub fn three_channels(&self) -> bool {
+        self.three_channels != 0
+    }
+
+    /// The table of highlights holds levels: what a highlight adds to the only light, on top of the level without lights.
+    #[inline(always)]
+    #[must_use]
+    pub fn holds_levels(&self) -> bool {
+        self.holds_levels != 0
+    }
+
+    /// Smallest N·H, Q2.30, whose highlight counts, see [`Power::highlight_threshold`].
+    #[must_use]
+    pub fn highlight_threshold(&self) -> i32 {
+        self.highlight_threshold
+    }
+
+    /// The level of a material of one channel under one light, Q9.7 in [0, 255], from `[N·L, N·H]` (Q2.30).
+    #[inline(never)]
+    #[must_use]
+    pub fn level(&self, [diffuse, half]: [i32; 2]) -> i32 {
+        let [gains, ..] = &self.gains;
+        let light = reflected((gains.diffuse[0], gains.specular[0]), diffuse, self.power.at(half));
+        (self.ambient[0] + light).min(FULL)
+    }
+
+    /// [`Self::level`] at six nodes where there is no highlight.
+    #[inline]
+    #[must_use]
+    pub fn six_diffuse(&self, [a, b, c, ab, bc, ca]: [i32; 6]) -> [i32; 6] {
+        let [gains, ..] = &self.gains;
+        let diffuse_level = |cosine| self.diffuse_level(cosine);
+        if self.ambient[0] + i32::from(gains.diffuse[0]) <= FULL {
+            return [diffuse_level(a), diffuse_level(b), diffuse_level(c), diffuse_level(ab), diffuse_level(bc), diffuse_level(ca)];
+        }
+        let diffuse_level = |cosine| self.diffuse_level(cosine).min(FULL);
+        [diffuse_level(a), diffuse_level(b), diffuse_level(c), diffuse_level(ab), diffuse_level(bc), diffuse_level(ca)]
+    }
+
+    /// [`Self::level`] at six nodes.
+    #[inline(always)]
+    #[must_use]
+    pub fn six(&self, [a, b, c, ab, bc, ca]: [i32; 6], [i, j, k, ij, jk, ki]: [i32; 6]) -> [i32; 6] {
+        let [gains, ..] = &self.gains;
+        let level = |diffuse, half| (self.diffuse_level(diffuse) + reflected((0, gains.specular[0]), 0, self.power.at(half))).min(FULL);
+        [level(a, i), level(b, j), level(c, k), level(ab, ij), level(bc, jk), level(ca, ki)]
+    }
+
+    /// Level without highlight and not clamped; rounded as by [`reflected`].
+    #[inline(always)]
+    fn diffuse_level(&self, cosine: i32) -> i32 {
+        let [gains, ..] = &self.gains;
+        let base = ((self.ambient[0] as u32) << 15) + (1 << 14);
+        ((base + u32::from(gains.diffuse[0]) * (cosine.max(0) as u32 >> (COSINE - 15))) >> 15) as i32
+    }
+
+    /// Levels under one light, Q9.7 in [0, 255], from `[N·L, N·H]` (Q2.30).
+    #[inline]
+    #[must_use]
+    pub fn one_light(&self, cosines: [i32; 2]) -> [i32; 3] {
+        if self.three_channels() { self.levels(core::iter::once(cosines)) } else { [self.level(cosines); 3] }
+    }
+
+    /// Levels at a point, Q9.7 in [0, 255], from the cosines `[N·L, N·H]` (Q2.30) of each light.
+    #[inline]
+    #[must_use]
+    pub fn levels(&self, cosines: impl Iterator<Item = [i32; 2]>) -> [i32; 3] {
+        let mut levels = self.ambient;
+        for (gains, [diffuse, half]) in self.gains.iter().zip(cosines) {
+            let power = self.power.at(half);
+            self.add(&mut levels, gains, diffuse, power);
+        }
+        levels.map(|level| level.min(FULL))
+    }
+
+    /// Levels without lights, Q9.7.
+    #[inline(always)]
+    #[must_use]
+    pub fn ambient(&self) -> [i32; 3] {
+        self.ambient
+    }
+
+    /// What the material makes of light number `light`.
+    #[inline(always)]
+    #[must_use]
+    pub fn gains(&self, light: usize) -> Gains {
+        self.gains.get(light).copied().unwrap_or(Gains { diffuse: [0; 3], specular: [0; 3] })
+    }
+
+    /// Adds what a light sends, N·L (Q5.27) and the highlight (Q0.16), to the levels of a pixel, Q9.7.
+    #[inline(always)]
+    pub fn add_light(&self, levels: &mut [i32; 3], gains: Gains, Reflection { diffuse, highlight }: Reflection) {
+        // What approximations lift above 1 counts as 1.
+        let diffuse = diffuse.min(1 << PIXEL_COSINE) << (COSINE - PIXEL_COSINE);
+        self.add(levels, &gains, diffuse, highlight);
+    }
+
+    #[inline(always)]
+    fn add(&self, levels: &mut [i32; 3], gains: &Gains, diffuse: i32, power: u32) {
+        let light = |level: i32, gains| level.saturating_add(reflected(gains, diffuse, power));
+        if !self.three_channels() {
+            *levels = [light(levels[0], (gains.diffuse[0], gains.specular[0])); 3];
+        } else {
+            let ([r, g, b], [dr, dg, db], [sr, sg, sb]) = (*levels, gains.diffuse, gains.specular);
+            *levels = [light(r, (dr, sr)), light(g, (dg, sg)), light(b, (db, sb))];
+        }
+    }
+
+    /// A level, Q9.7, with bias and rounding half of the ramp's index.
+    fn biased(level: i32) -> u32 {
+        (level + (BIAS << LEVEL) + (1 << (LEVEL - 1))) as u32
+    }
+
+    /// One light on one channel is at most what the ramp takes.
+    fn fits(&self) -> bool {
+        let [gains, ..] = &self.gains;
+        let sum = self.ambient[0] as u32 + u32::from(gains.diffuse[0]) + u32::from(gains.specular[0]);
+        sum < (RAMP as u32 - BIAS as u32 - 1) << LEVEL
+    }
+
+    /// The channels of an intensity in the pixel format, with a [`crate::pixel::dither::threshold`] in place of rounding.
+    #[inline]
+    #[must_use]
+    pub fn dithered(&self, intensity: Intensity, threshold: u32) -> [u8; 3] {
+        let [level, ..] = intensity;
+        let scaled = if self.three_channels() {
+            intensity.map(|level| level as u32)
+        } else {
+            self.base.map(|base| (level as u32 * u32::from(base)) >> 8)
+        };
+        quantise(scaled, self.depth, threshold)
+    }
+}
+
+/// Fills the table of colours of a material.
+pub fn fill_ramp<C: Pixel>(ramp: &mut [C::Stored; RAMP], reflectance: &Reflectance) {
+    for (i, stored) in ramp.iter_mut().enumerate() {
+        let level = (i as i32 - BIAS).clamp(0, 255) as u32;
+        let mut channels = [0; 3];
+        for (channel, (base, depth)) in channels.iter_mut().zip(reflectance.base.into_iter().zip(C::DEPTH)) {
+            let step = 1 << (16 - depth);
+            *channel = ((level * u32::from(base) + step / 2) / step).min((1 << depth) - 1) as u8;
+        }
+        *stored = C::pack(channels).stored();
+    }
+}
+
+impl<'a, C: Pixel> MaterialTables<'a, C> {
+    /// What it takes to walk levels of one light on a material of one channel, if the highlight's table holds levels.
+    #[must_use]
+    pub fn levels_of_one(&self) -> Option<Levels<'a, C>> {
+        let Reflectance { gains: [gains, ..], .. } = self.reflectance;
+        self.reflectance.holds_levels().then(|| Levels { ramp: self.ramp, diffuse: gains.diffuse[0] })
+    }
+
+    /// The colour of three levels, Q9.7, rounded.
+    #[inline(always)]
+    #[must_use]
+    pub fn colour(&self, levels: [i32; 3]) -> C {
+        if !self.reflectance.three_channels() {
+            return self.tint(levels[0]);
+        }
+        C::mixed(zip(levels, C::DEPTH, |level, depth| walked(level, LEVEL + 7 - depth)))
+    }
+
+    /// The colour of a level, Q9.7, of a material of one channel, rounded.
+    #[inline(always)]
+    #[must_use]
+    pub fn tint(&self, level: i32) -> C {
+        C::ramped::<WALK>(self.ramp, walked(level, LEVEL - 1))
+    }
+
+    /// The colour of an intensity, rounded.
+    #[inline]
+    #[must_use]
+    pub fn shown(&self, intensity: Intensity) -> C {
+        let [level, ..] = intensity;
+        if self.reflectance.three_channels() { C::rounded(intensity) } else { self.tint(level >> 1) }
+    }
+
+    /// The colour of an intensity, with a [`crate::pixel::dither::threshold`] in place of rounding.
+    #[inline]
+    #[must_use]
+    pub fn dithered(&self, intensity: Intensity, threshold: u32) -> C {
+        C::pack(self.reflectance.dithered(intensity, threshold))
+    }
+}
+
+/// What one light sends from a pixel to the viewer, before the material's gains.
+#[derive(Clone, Copy, Debug)]
+pub struct Reflection {
+    /// N·L, Q5.27; negative where the light is behind the surface.
+    pub diffuse: i32,
+    /// The highlight, a power of a cosine, unsigned Q0.16.
+    pub highlight: u32,
+}
+
+/// One light on a material of one channel, its levels walked: what its highlight adds, and all that is the same everywhere, is in
+/// the highlight's table.
+#[derive(Debug)]
+pub struct Levels<'a, C: Pixel> {
+    ramp: &'a [C::Stored; RAMP],
+    /// Level at cosine 1, Q9.7.
+    diffuse: u16,
+}
+
+impl<C: Pixel> Clone for Levels<'_, C> {
+    fn clone(&self) -> Self {
+        *self
+    }
+}
+
+impl<C: Pixel> Copy for Levels<'_, C> {}
+
+impl<C: Pixel> Levels<'_, C> {
+    /// The diffuse level at a node, in Q10 with `bits` more, at most 20, rounded down; `cosine` in Q2.30.
+    #[inline(always)]
+    #[must_use]
+    pub fn node(&self, cosine: i32, bits: u32) -> i32 {
+        upper(cosine, i32::from(self.diffuse) << 15) >> (COSINE + LEVEL - 17 - bits)
+    }
+
+    /// No diffuse level is above 255.
+    #[inline(always)]
+    #[must_use]
+    pub fn is_within(&self) -> bool {
+        i32::from(self.diffuse) <= FULL
+    }
+
+    /// The colour of a walked diffuse level, not negative, Q9.`BITS`, and the highlight's entry.
+    #[inline(always)]
+    #[must_use]
+    pub fn colour<const BITS: u32>(&self, diffuse: u32, highlight: u32) -> C {
+        C::ramped::<BITS>(self.ramp, diffuse.wrapping_add(highlight << (BITS - LEVEL)))
+    }
+}
+
+/// A level, Q9.7, as it is walked, with half a step: the guards at the ramp's ends are not reached.
+#[inline(always)]
+fn walked(level: i32, half: u32) -> u32 {
+    ((level + (BIAS << LEVEL) + (1 << half)) as u32) << (WALK - LEVEL)
+}
+
+/// Level, Q9.7, that the gains `(diffuse, specular)` make of N·L (Q2.30) and a power of N·H (Q0.16).
+#[inline(always)]
+fn reflected((diffuse, specular): (u16, u16), cosine: i32, power: u32) -> i32 {
+    let cosine = cosine.max(0) as u32 >> (COSINE - 15);
+    let diffuse = (u32::from(diffuse) * cosine + (1 << 14)) >> 15;
+    let specular = (u32::from(specular) * power + (1 << (POWER - 1))) >> POWER;
+    (diffuse + specular) as i32
+}
+
+/// A product of two gains (Q4.28, 1 is full) as a level in Q9.7 whose upper `depth` bits are the channel.
+fn level(product: u32, depth: u32) -> u16 {
+    let full = ((1u64 << depth) - 1) << (8 - depth + LEVEL);
+    ((u64::from(product) * full + (1 << (2 * UNIT - 1))) >> (2 * UNIT)).min(u64::from(u16::MAX)) as u16
+}

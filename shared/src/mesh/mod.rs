@@ -1,0 +1,266 @@
+//! The triangles of one mesh, each set up and shaded into a band.
+
+pub(crate) mod vertices;
+
+use crate::{
+    antialias,
+    antialias::PixelSet,
+    geometry::{
+        bin::{Entry, Walk},
+        clip,
+        cull::Extent,
+        depth_elision::DepthElision,
+        projection::{ScreenVertex, State},
+        viewport::{Bounds, Viewport},
+    },
+    lighting::materials::MaterialTables,
+    mesh::vertices::VertexStage,
+    method::{General, Loops, Method, Shading, TriangleSetup},
+    pixel::Pixel,
+    raster::{
+        band::Band,
+        canvas::BandCanvas,
+        triangle::{ScreenTriangle, turn, turned},
+    },
+    setup::gradients::Gradients,
+    stream::record::{Triangle, Vertex},
+};
+
+/// What the triangles of one mesh have in common in one frame.
+pub(crate) struct MeshPass<'f, C: Pixel> {
+    pub(crate) method: &'static dyn Method,
+    pub(crate) shading: Shading<'f>,
+    pub(crate) tables: MaterialTables<'f, C>,
+    pub(crate) dither: bool,
+    pub(crate) stage: VertexStage<'f>,
+    /// Where triangles may overlap, if not everywhere.
+    pub(crate) convex: Option<&'f DepthElision>,
+    pub(crate) vertices: &'f [Vertex],
+    /// Those on the screen, as far as they are kept.
+    pub(crate) kept: &'f [ScreenVertex],
+    pub(crate) viewport: Viewport,
+    /// Interpolation in perspective, where it matters.
+    pub(crate) perspective: bool,
+}
+
+/// A triangle, its corners turning clockwise on the screen.
+struct MeshTriangle<'f> {
+    corners: [&'f ScreenVertex; 3],
+    triangle: &'f Triangle,
+    /// Those that its indices are of.
+    vertices: &'f [Vertex],
+}
+
+impl<C: Pixel> MeshPass<'_, C> {
+    /// Draws the triangle of `entry` and those that follow it in the same mesh, up to `end`, by the loops `L` where they take one; returns
+    /// their pixels in `band`, and the first entry of another mesh.
+    #[inline(never)]
+    pub(crate) fn run<L: Loops>(
+        &self,
+        triangles: &[Triangle],
+        mut entry: Entry,
+        walk: &mut Walk<'_>,
+        end: u32,
+        band: &mut Band<'_, C>,
+    ) -> (u32, Option<Entry>) {
+        let mut pixels = 0u32;
+        loop {
+            // A stream that has been checked has it.
+            if let Some(triangle) = triangles.get(entry.triangle() as usize) {
+                let drawn = if !entry.is_word_sized() {
+                    self.draw::<L>(triangle, band)
+                } else if let Some(place) = band.active.take(entry.key()) {
+                    self.resume::<L>(triangle, place, band)
+                } else {
+                    // A triangle that the loops do not take is set up anew: handing it over would keep its set-up in memory for all.
+                    self.draw_word_sized::<L>(triangle, entry.key(), band).unwrap_or_else(|| self.draw::<General>(triangle, band))
+                };
+                pixels = pixels.saturating_add(drawn);
+            }
+            match walk.next() {
+                Some(other) if other.triangle() < end => entry = other,
+                other => return (pixels, other),
+            }
+        }
+    }
+
+    /// Shades `setup` by the loops `L` if they take it, else the general way.
+    #[inline(always)]
+    fn shade<L: Loops>(&self, setup: &TriangleSetup<'_>, band: &mut Band<'_, C>) -> u32 {
+        match L::draw(setup, &self.shading, self.tables, band) {
+            Some(pixels) => pixels,
+            None => self.shade_generally(setup, band),
+        }
+    }
+
+    #[inline(never)]
+    fn shade_generally(&self, setup: &TriangleSetup<'_>, band: &mut Band<'_, C>) -> u32 {
+        self.method.shade(setup, &self.shading, &mut BandCanvas { band, tables: self.tables, dither: self.dither })
+    }
+
+    /// Draws `triangle`; returns its pixels in `band`.
+    #[inline(never)]
+    pub(crate) fn draw<L: Loops>(&self, triangle: &Triangle, band: &mut Band<'_, C>) -> u32 {
+        match self.corners(triangle).filter(is_ready) {
+            Some(corners) => self.face::<L>(&MeshTriangle { corners, triangle, vertices: self.vertices }, band),
+            None => self.other::<L>(triangle, band),
+        }
+    }
+
+    /// Draws a triangle that [`Viewport::is_word_sized`], by its `key` in [`crate::raster::active`]; `None` if the loops do not take it.
+    // Armv6-M reaches little of a large stack frame: a call of its own there.
+    #[cfg_attr(all(target_arch = "arm", not(target_has_atomic = "32")), inline(never))]
+    #[cfg_attr(not(all(target_arch = "arm", not(target_has_atomic = "32"))), inline(always))]
+    fn draw_word_sized<L: Loops>(&self, triangle: &Triangle, key: u32, band: &mut Band<'_, C>) -> Option<u32> {
+        let corners = self.corners(triangle)?;
+        let (by, corners) = turned(corners);
+        let mut screen = ScreenTriangle::simple((by, corners), key, band);
+        if screen.is_empty() {
+            return Some(0);
+        }
+        let gradients = Gradients::simple(screen.corners);
+        let needs_depth_test = self.needs_depth_test(&screen);
+        if needs_depth_test {
+            screen.set_up_depth(&gradients);
+        }
+        let perspective = self.perspective;
+        let pixels = PixelSet::Centres;
+        let setup = TriangleSetup {
+            screen: &screen,
+            gradients: &gradients,
+            corners,
+            triangle,
+            vertices: self.vertices,
+            turned: by,
+            needs_depth_test,
+            perspective,
+            pixels,
+            place: None,
+        };
+        if L::GENERAL { Some(self.shade_generally(&setup, band)) } else { L::draw(&setup, &self.shading, self.tables, band) }
+    }
+
+    /// The same of a triangle that the band above handed on to `place`.
+    #[inline(always)]
+    fn resume<L: Loops>(&self, triangle: &Triangle, place: usize, band: &mut Band<'_, C>) -> u32 {
+        let (Some(active_triangle), Some(corners)) = (band.active.active_triangle(place), self.corners(triangle)) else { return 0 };
+        let (by, corners) = turned(corners);
+        let setup = TriangleSetup {
+            screen: &ScreenTriangle::resumed(active_triangle, by, band),
+            gradients: &Gradients::NONE,
+            corners,
+            triangle,
+            vertices: self.vertices,
+            turned: by,
+            needs_depth_test: active_triangle.inv_depth().is_some(),
+            perspective: false,
+            pixels: PixelSet::Centres,
+            place: Some(place),
+        };
+        // What loops have handed on they take again.
+        L::draw(&setup, &self.shading, self.tables, band).unwrap_or_default()
+    }
+
+    /// Corners on the screen; `None` if one is not kept.
+    #[inline(always)]
+    fn corners(&self, triangle: &Triangle) -> Option<[&ScreenVertex; 3]> {
+        let [a, c, b] = triangle.corners;
+        Some([self.kept.get(usize::from(a))?, self.kept.get(usize::from(b))?, self.kept.get(usize::from(c))?])
+    }
+
+    /// Others may overlap a triangle.
+    #[inline(always)]
+    fn needs_depth_test(&self, screen: &ScreenTriangle) -> bool {
+        let [[x0, top], [x1, y1], [x2, y2]] = screen.corners;
+        self.convex.is_none_or(|convex| convex.needs_depth_test([x0.min(x1).min(x2), x0.max(x1).max(x2)], [top, y1.max(y2)]))
+    }
+
+    /// The visible box of `triangle`; `None` if it shows its back, or no pixel can belong to it.
+    pub(crate) fn bounds(&self, triangle: &Triangle) -> Option<Bounds> {
+        match self.corners(triangle).filter(is_ready) {
+            Some([a, b, c]) => self.viewport.bounds(&Extent::new([[a.x, a.y], [b.x, b.y], [c.x, c.y]])),
+            None => self.stage.bounds(self.viewport, self.vertices, triangle),
+        }
+    }
+
+    /// Draws a triangle whose corners are not kept, or not on the screen.
+    #[cold]
+    #[inline(never)]
+    fn other<L: Loops>(&self, triangle: &Triangle, band: &mut Band<'_, C>) -> u32 {
+        let [a, c, b] = triangle.corners.map(|corner| self.vertices.get(usize::from(corner)));
+        let (Some(a), Some(b), Some(c)) = (a, b, c) else { return 0 };
+        let vertices = [a, b, c];
+        let [a, b, c] = &vertices.map(|vertex| self.stage.transform(vertex));
+        if is_ready(&[a, b, c]) {
+            return self.face::<L>(&MeshTriangle { corners: [a, b, c], triangle, vertices: self.vertices }, band);
+        }
+        // The fan that clipping leaves.
+        let polygon = clip::clip(self.stage.view, vertices);
+        let place = |cut: &clip::Cut| {
+            let ([x, y, depth], _) = self.stage.view.project(cut.eye);
+            ScreenVertex { x, y, depth, ..self.stage.transform(&cut.vertex) }
+        };
+        let Some((first, rest)) = polygon.split_first() else { return 0 };
+        let mut pixels = 0;
+        for pair in rest.windows(2) {
+            if let [second, third] = pair {
+                let vertices = [first.vertex, second.vertex, third.vertex];
+                let corners = [&place(first), &place(second), &place(third)];
+                pixels +=
+                    self.face::<L>(&MeshTriangle { corners, triangle: &clip::record(triangle, &vertices), vertices: &vertices }, band);
+            }
+        }
+        pixels
+    }
+
+    fn face<L: Loops>(&self, face: &MeshTriangle<'_>, band: &mut Band<'_, C>) -> u32 {
+        if cfg!(feature = "antialias") && self.viewport.antialiased {
+            self.smooth::<L>(face, band)
+        } else {
+            self.part::<L>(PixelSet::Centres, face, band)
+        }
+    }
+
+    /// Draws the pixels wholly inside, then the others that it touches, with its corners on a finer grid.
+    #[cold]
+    #[inline(never)]
+    fn smooth<L: Loops>(&self, face: &MeshTriangle<'_>, band: &mut Band<'_, C>) -> u32 {
+        let finer = antialias::finer(face.corners);
+        let [a, b, c] = &face.corners.map(|corner| antialias::refined(corner, finer));
+        self.part::<L>(PixelSet::Inner, face, band)
+            + self.part::<L>(PixelSet::Edge(finer), &MeshTriangle { corners: [a, b, c], ..*face }, band)
+    }
+
+    /// Sets up a triangle and draws part of its pixels.
+    fn part<L: Loops>(&self, pixels: PixelSet, face: &MeshTriangle<'_>, band: &mut Band<'_, C>) -> u32 {
+        let screen = if pixels == PixelSet::Centres {
+            let [top, bottom] = band.range();
+            let screen = ScreenTriangle::new(face.corners, [band.width as i32, top, bottom]);
+            if screen.is_empty() {
+                return 0;
+            }
+            screen
+        } else {
+            ScreenTriangle::without_rows(face.corners)
+        };
+        let Some(gradients) = Gradients::new(screen.corners, self.viewport.box_of(face.corners, pixels.finer())) else { return 0 };
+        let setup = TriangleSetup {
+            screen: &screen,
+            gradients: &gradients,
+            corners: turn(face.corners, screen.turned),
+            turned: screen.turned,
+            triangle: face.triangle,
+            vertices: face.vertices,
+            needs_depth_test: self.needs_depth_test(&screen),
+            perspective: self.perspective,
+            pixels,
+            place: None,
+        };
+        self.shade::<L>(&setup, band)
+    }
+}
+
+#[inline(always)]
+fn is_ready([a, b, c]: &[&ScreenVertex; 3]) -> bool {
+    a.state == State::READY && b.state == State::READY && c.state == State::READY
+}

@@ -1,0 +1,85 @@
+//! The vertices of one mesh, taken to the screen and lit.
+
+use crate::{
+    format::UNIT,
+    geometry::{
+        cull::Extent,
+        projection::{ScreenVertex, State, View},
+        viewport::{Bounds, Viewport},
+    },
+    lighting::{
+        lights::{Direction, Lighting},
+        materials::Reflectance,
+    },
+    math::vector::wide,
+    method::VertexLight,
+    stream::record::{Triangle, Vertex},
+};
+
+/// What takes the vertices of one mesh to the screen in one frame.
+pub(crate) struct VertexStage<'f> {
+    pub(crate) view: &'f View,
+    pub(crate) lighting: &'f Lighting,
+    /// See [`Lighting::constant`].
+    pub(crate) constant: Option<&'f [Direction; 2]>,
+    pub(crate) reflectance: &'f Reflectance,
+    /// What the method wants to know of it at vertices.
+    pub(crate) light: VertexLight,
+}
+
+impl VertexStage<'_> {
+    /// The corners' `[x, y]` on the screen, turning clockwise, against the stream's order; `None` if one is not kept or off
+    /// the screen.
+    #[inline(always)]
+    pub(crate) fn corners(&self, cached: &mut [ScreenVertex], vertices: &[Vertex], triangle: &Triangle) -> Option<[[i32; 2]; 3]> {
+        let [a, b, c] = triangle.corners;
+        let mut place = |corner| self.place(cached, vertices, corner);
+        Some([place(a)?, place(c)?, place(b)?])
+    }
+
+    /// Where `corner` is on the screen; it is transformed when it is first asked for.
+    #[inline(always)]
+    fn place(&self, cached: &mut [ScreenVertex], vertices: &[Vertex], corner: u16) -> Option<[i32; 2]> {
+        let screen = cached.get_mut(usize::from(corner))?;
+        if screen.state != State::READY {
+            if screen.state == State::IDLE {
+                *screen = self.transform(vertices.get(usize::from(corner))?);
+            }
+            if screen.state != State::READY {
+                return None;
+            }
+        }
+        Some([screen.x, screen.y])
+    }
+
+    /// Transforms a vertex, and lights it if the method needs that.
+    #[inline(never)]
+    pub(crate) fn transform(&self, vertex: &Vertex) -> ScreenVertex {
+        let ([x, y, depth], inside) = self.view.project(self.view.to_eye(vertex.position));
+        let normal = wide(vertex.normal);
+        let light = match (self.light, self.constant) {
+            (VertexLight::None, _) | (VertexLight::Cosines, None) => [0; 3],
+            (light, Some([towards, half])) => {
+                let [diffuse, half] = [towards.cosine(normal), half.cosine(normal)];
+                if light == VertexLight::Levels { self.reflectance.one_light([diffuse, half]) } else { [diffuse, half, 0] }
+            }
+            (_, None) => self.reflectance.levels(self.lighting.cosines(wide(vertex.position), normal.map(|c| c << (30 - UNIT)))),
+        };
+        ScreenVertex { x, y, depth, light, state: if inside { State::READY } else { State::OUTSIDE } }
+    }
+
+    /// The visible box of a triangle that has a corner off the screen, or one that is not kept.
+    #[cold]
+    #[inline(never)]
+    pub(crate) fn bounds(&self, viewport: Viewport, vertices: &[Vertex], triangle: &Triangle) -> Option<Bounds> {
+        let [a, b, c] = triangle.corners.map(|corner| vertices.get(usize::from(corner)));
+        // Against the stream's order.
+        let vertices = [a?, c?, b?];
+        let corners = vertices.map(|vertex| self.transform(vertex));
+        if corners.iter().all(|corner| corner.state == State::READY) {
+            viewport.bounds(&Extent::new(corners.map(|corner| [corner.x, corner.y])))
+        } else {
+            viewport.clipped_bounds(self.view, vertices)
+        }
+    }
+}

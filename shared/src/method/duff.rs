@@ -1,0 +1,169 @@
+//! Duff's form (Duff 1979; see Bishop & Weimer 1986): linear N·L and N·H over the root of a quadratic.
+//!
+//! Under a constant light N·L and N·H are exactly linear and |N|² exactly quadratic over a triangle, so only
+//! the reciprocal root is approximated, by a table of 1,537 knots. Near lights and viewers have numerators that
+//! are not linear: there they are the quadratics through six points.
+//!
+//! Cost: 4 additions a pixel, a root from a table, 2 products and the highlight's table; 2 or 4 additions and
+//! 2 products more per light. Error: that of the tables, [`crate::math::power::NEAREST_ERROR`] of the highlight above all.
+//! Domain: any lights; with near lights as good as six points are.
+
+use crate::{
+    arch::product::{product, upper},
+    format::{BEND, RHO},
+    interpolate::field::{Field, Nodes},
+    lighting::materials::{MaterialTables, Reflection},
+    math::{
+        power::PixelPower,
+        rsqrt::{Halves, LEAST, rsqrt},
+    },
+    method::{
+        Loops, Shading, Style, TriangleSetup,
+        form::{EXTRA, LightingModel, NODE, Quadratic, signed},
+        quotient,
+    },
+    pixel::Pixel,
+    raster::{band::Band, canvas::Canvas},
+};
+
+/// Shades by linear numerators over a root, under lights that are the same everywhere.
+pub fn shade_constant(setup: &TriangleSetup<'_>, shading: &Shading<'_>, canvas: &mut dyn Canvas) -> u32 {
+    match tabled(setup) {
+        Some(square) => draw_constant(setup, shading, square, Tabled, canvas),
+        None => draw_constant(setup, shading, square(setup), Rooted, canvas),
+    }
+}
+
+/// Shades by linear numerators over a root, or under near lights by quadratic ones.
+pub fn shade(setup: &TriangleSetup<'_>, shading: &Shading<'_>, canvas: &mut dyn Canvas) -> u32 {
+    if shading.lighting.is_constant() {
+        return shade_constant(setup, shading, canvas);
+    }
+    draw_products(setup, shading, square(setup), Rooted, canvas)
+}
+
+/// Shades by `model` from `common` and N·L and N·H of each light, normals not normalised, which are linear under constant lights.
+fn draw_constant<K: Field, F>(setup: &TriangleSetup<'_>, shading: &Shading<'_>, common: K, model: F, canvas: &mut dyn Canvas) -> u32
+where
+    F: LightingModel<K::Value, [u32; 2]>,
+{
+    shading.draw_lit(setup, |source| shading.constant_products(setup, source), common, model, canvas)
+}
+
+/// Shades by `model` from `common` and N·L and N·H of each light, normals not normalised: linear under constant lights, else quadratics
+/// through six points.
+pub fn draw_products<K: Field, F>(setup: &TriangleSetup<'_>, shading: &Shading<'_>, common: K, model: F, canvas: &mut dyn Canvas) -> u32
+where
+    F: LightingModel<K::Value, [u32; 2]>,
+{
+    if shading.lighting.is_constant() {
+        return draw_constant(setup, shading, common, model, canvas);
+    }
+    let nodes = setup.six_linear_nodes();
+    shading.draw_lit(setup, |source| shading.six_products(&nodes, source, |p| p), common, model, canvas)
+}
+
+/// The loops under one light.
+pub(crate) struct Duff;
+
+impl Loops for Duff {
+    fn take(style: Style) -> bool {
+        style.one_light && !style.smoothed && !style.perspective
+    }
+
+    #[inline(always)]
+    fn draw<C: Pixel>(setup: &TriangleSetup<'_>, _: &Shading<'_>, tables: MaterialTables<'_, C>, band: &mut Band<'_, C>) -> Option<u32> {
+        let square = tabled(setup)?;
+        let halves = Halves::get();
+        quotient::draw::<true, _, C>(setup, || square, |[square]| halves.rsqrt(square) as i32, tables, band)
+    }
+}
+
+/// |N|² less what the table of roots begins with, Q0.32; `None` if some of it is not in the table.
+#[inline(always)]
+fn tabled(setup: &TriangleSetup<'_>) -> Option<Nodes<6, 1, SHORT>> {
+    let [ab, bc, ca] = setup.edges(setup.triangle.bend);
+    if is_curved(setup) || ab.max(bc).max(ca) >= 1 << SHORT {
+        return None;
+    }
+    let nodes = [0, 0, 0, -i32::from(ab), -i32::from(bc), -i32::from(ca)];
+    Some(Nodes::new([nodes], 32 - BEND).biased([0u32.wrapping_sub(LEAST) as i32]))
+}
+
+/// Bits of what edges lack of a unit length, unless their ends' normals are more than 90 degrees apart: so few that triangles are
+/// set up in words, see [`crate::setup::word_sized`].
+const SHORT: u32 = BEND - 1;
+
+/// The interpolated normal may be shorter than half: the table of roots, and every fit of 1/|N|, end there.
+pub fn is_curved(setup: &TriangleSetup<'_>) -> bool {
+    setup.triangle.rho < 1 << (RHO - 1)
+}
+
+/// |N|², Q2.30: exactly quadratic.
+#[inline(always)]
+pub fn square(setup: &TriangleSetup<'_>) -> Quadratic<1> {
+    // |N|² - 1 is zero at the corners.
+    let [ab, bc, ca] = setup.edges(setup.triangle.bend).map(|bend| -(i32::from(bend) << (NODE - BEND)));
+    Quadratic::new([[0, 0, 0, ab, bc, ca]], EXTRA).biased([1 << 30])
+}
+
+/// One over the root of |N|² in [1/4, 1] from a table, by |N|² less [`LEAST`].
+#[derive(Clone, Copy)]
+struct Tabled;
+
+impl LightingModel<[u32; 1], [u32; 2]> for Tabled {
+    type Common = i32;
+
+    #[inline(always)]
+    fn common(&self, [square]: [u32; 1]) -> i32 {
+        Halves::get().rsqrt(square) as i32
+    }
+
+    #[inline(always)]
+    fn reflect(&self, _: usize, &half_root: &i32, [light, half]: [u32; 2], power: PixelPower<'_>) -> Reflection {
+        // Upper half of Q2.30 times Q2.30, and half of a root: Q5.27.
+        let over = |cosine: u32| upper(signed(cosine), half_root);
+        Reflection { diffuse: over(light), highlight: power.at(over(half)) }
+    }
+}
+
+/// One over the root of any |N|².
+#[derive(Clone, Copy)]
+pub struct Rooted;
+
+impl LightingModel<[u32; 1], [u32; 2]> for Rooted {
+    type Common = Root;
+
+    fn common(&self, [square]: [u32; 1]) -> Root {
+        Root::of(square)
+    }
+
+    fn reflect(&self, _: usize, root: &Root, fields: [u32; 2], power: PixelPower<'_>) -> Reflection {
+        let [diffuse, half] = fields.map(|cosine| root.divide(signed(cosine)) >> 3);
+        Reflection { diffuse, highlight: power.at(half) }
+    }
+}
+
+/// 1/sqrt(x): mantissa in Q2.30 and the power of two to multiply it by.
+#[derive(Clone, Copy, Default)]
+pub struct Root {
+    mantissa: u32,
+    shift: u32,
+}
+
+impl Root {
+    /// Of `x` in Q2.30, (0, 2].
+    #[inline(always)]
+    pub fn of(x: u32) -> Self {
+        let shift = x.max(1).leading_zeros() & !1;
+        // x = m 2^-shift, m in [1, 4): the root's exponent is half of it.
+        Self { mantissa: rsqrt(x << (shift & 31)), shift: shift / 2 }
+    }
+
+    /// `value / sqrt(x)`, Q2.30 each; at most 2 by saturation.
+    #[inline(always)]
+    pub fn divide(self, value: i32) -> i32 {
+        let product = product(value, self.mantissa as i32) >> (30 - self.shift);
+        product.clamp(i32::MIN.into(), i32::MAX.into()) as i32
+    }
+}

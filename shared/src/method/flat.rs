@@ -1,0 +1,83 @@
+//! Flat shading: one colour per triangle, lit at its centroid with the plane's normal.
+//!
+//! Cost: nothing per pixel; one evaluation of the lights per triangle. Not continuous across edges.
+
+use crate::{
+    format::UNIT,
+    interpolate::Constant,
+    lighting::materials::{Highlight, MaterialTables},
+    math::vector::{add, wide},
+    method::{Costs, Facts, Loops, Method, Shading, Style, TriangleSetup, Uniform, VertexLight, node::Node, of_levels},
+    pixel::Pixel,
+    raster::{
+        band::Band,
+        canvas::{Canvas, Shaded},
+        pixel_shader::Solid,
+    },
+};
+
+static FACTS: Facts = Facts {
+    name: "flat",
+    id: 0,
+    source: "",
+    vertex_light: VertexLight::None,
+    highlight: Highlight::Half,
+    highlight_levels: false,
+    near_lights: true,
+    perspective: true,
+    costs: Costs::new(0, 0, 0, 5),
+};
+
+/// Flat shading.
+pub struct Flat;
+
+impl Method for Flat {
+    fn facts(&self) -> &'static Facts {
+        &FACTS
+    }
+
+    fn shade(&self, setup: &TriangleSetup<'_>, shading: &Shading<'_>, canvas: &mut dyn Canvas) -> u32 {
+        let shader = Uniform(of_levels(levels(setup, shading)));
+        setup.draw_spans(&mut Shaded { patch: Constant, shader }, canvas)
+    }
+}
+
+impl Loops for Flat {
+    fn take(style: Style) -> bool {
+        !style.smoothed
+    }
+
+    #[inline(always)]
+    fn draw<C: Pixel>(
+        setup: &TriangleSetup<'_>,
+        shading: &Shading<'_>,
+        tables: MaterialTables<'_, C>,
+        band: &mut Band<'_, C>,
+    ) -> Option<u32> {
+        let colour = match &shading.directions {
+            Some([towards, half]) if !shading.reflectance.three_channels() => {
+                let normal = wide(setup.triangle.normal);
+                tables.tint(shading.reflectance.level([towards.cosine(normal), half.cosine(normal)]))
+            }
+            _ => tables.colour(levels(&setup.for_lighting(), shading)),
+        };
+        Some(setup.fill(|| Constant, Solid(colour), band))
+    }
+}
+
+/// Levels at the centroid with the plane's normal.
+#[inline(never)]
+fn levels(setup: &TriangleSetup<'_>, shading: &Shading<'_>) -> [i32; 3] {
+    let normal = wide(setup.triangle.normal);
+    match &shading.directions {
+        Some([towards, half]) => shading.reflectance.one_light([towards.cosine(normal), half.cosine(normal)]),
+        None => shading.levels(&centroid(setup, normal)),
+    }
+}
+
+/// The triangle's centroid, and the `normal` of its plane (Q2.14).
+fn centroid(setup: &TriangleSetup<'_>, normal: [i32; 3]) -> Node {
+    let [a, b, c] = setup.vertices();
+    let sum = add(wide(a.position), add(wide(b.position), wide(c.position)));
+    Node { position: sum.map(|c| c / 3), normal: normal.map(|c| c << (30 - UNIT)) }
+}

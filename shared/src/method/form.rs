@@ -1,0 +1,224 @@
+//! From fields that are walked per light to what each light sends, and on to a pixel.
+
+use crate::{
+    format::{COSINE, MAX_LIGHTS},
+    interpolate::{
+        Patch, Walker,
+        field::{Field, Nodes},
+        perspective::PerspectivePatch,
+    },
+    lighting::{
+        lights::{Source, cosine},
+        materials::{FULL, Reflectance, Reflection},
+    },
+    math::power::PixelPower,
+    method::{Shading, TriangleSetup, node::Node, of_levels},
+    raster::canvas::{CHUNK, Canvas, SpanShader, SpanTarget},
+};
+
+/// Fraction bits of a field at a node; walked with [`COSINE`].
+pub const NODE: u32 = 24;
+/// Fraction bits that a walked field has more.
+pub const EXTRA: u32 = COSINE - NODE;
+/// Nodes of fields are in [-2, 2].
+pub const BITS: u32 = NODE + 2;
+
+/// What a method makes of its fields at a pixel: `V` is walked for each light, `K` once for all of them.
+pub trait LightingModel<K, V>: Copy {
+    /// What is worked out once for all lights.
+    type Common: Copy + Default;
+
+    /// Works it out.
+    fn common(&self, common: K) -> Self::Common;
+
+    /// What light number `light` sends.
+    fn reflect(&self, light: usize, common: &Self::Common, fields: V, power: PixelPower<'_>) -> Reflection;
+}
+
+/// Shades a triangle under any lights on any material: one light after the other over a run of pixels, so that each loop knows one light.
+struct Lit<'a, K, P, F> {
+    reflectance: &'a Reflectance,
+    model: F,
+    /// What all lights share.
+    common: K,
+    /// What is walked for each light, as many as there are.
+    lights: [P; MAX_LIGHTS],
+    count: usize,
+}
+
+impl<'a, K: Patch, P: Patch, F> Lit<'a, K, P, F> {
+    /// The patch that `fit` makes for each of the lights; `zero` stands in for those that there are not.
+    #[inline(always)]
+    fn new(shading: &Shading<'a>, (zero, fit): (P, impl Fn(&Source) -> P), common: K, model: F) -> Self {
+        let sources = &shading.lighting.sources;
+        let mut lit = Self { reflectance: shading.reflectance, model, common, lights: [zero; MAX_LIGHTS], count: sources.len() };
+        for (patch, source) in lit.lights.iter_mut().zip(sources) {
+            *patch = fit(source);
+        }
+        lit
+    }
+
+    fn lights(&self) -> impl Iterator<Item = &P> {
+        self.lights.iter().take(self.count)
+    }
+}
+
+/// `patch`, `rows` rows below.
+#[inline(always)]
+fn below<P: Patch>(patch: &P, rows: i32) -> P {
+    let mut patch = *patch;
+    if rows != 0 {
+        patch.jump(rows);
+    }
+    patch
+}
+
+impl<K, P, F> SpanShader for Lit<'_, K, P, F>
+where
+    K: Patch,
+    P: Patch,
+    F: LightingModel<<K::Walker as Walker>::Value, <P::Walker as Walker>::Value>,
+{
+    fn span(&self, rows: i32, end: i32, count: usize, target: &mut dyn SpanTarget) {
+        let mut common = below(&self.common, rows).enter(end);
+        let (power, floor) = (self.reflectance.power.pixel(), self.reflectance.power.floor());
+        let mut shared = [F::Common::default(); CHUNK];
+        let mut levels = [[0; 3]; CHUNK];
+        let ambient = self.reflectance.ambient();
+        let mut first = count;
+        while first > 0 {
+            let run = first.min(CHUNK);
+            // Of the column that the run's walkers enter.
+            let entry = end.wrapping_sub((count - first) as i32);
+            first -= run;
+            let visible = target.visible(first, run);
+            // Counted down, and the index cut off: no bounds are left to check.
+            let mut k = run;
+            while k > 0 {
+                k -= 1;
+                common.step();
+                if visible & (1 << k) != 0 {
+                    shared[k % CHUNK] = self.model.common(common.value());
+                    levels[k % CHUNK] = ambient;
+                }
+            }
+            if visible == 0 {
+                continue;
+            }
+            for (light, patch) in self.lights().enumerate() {
+                let gains = self.reflectance.gains(light);
+                let mut walker = below(patch, rows).enter(entry);
+                let mut k = run;
+                while k > 0 {
+                    k -= 1;
+                    walker.step();
+                    if visible & (1 << k) != 0 {
+                        let mut reflection = self.model.reflect(light, &shared[k % CHUNK], walker.value(), power);
+                        reflection.highlight = reflection.highlight.saturating_sub(floor);
+                        self.reflectance.add_light(&mut levels[k % CHUNK], gains, reflection);
+                    }
+                }
+            }
+            for level in levels.iter_mut().take(run) {
+                let [r, g, b] = *level;
+                *level = of_levels([r.min(FULL), g.min(FULL), b.min(FULL)]);
+            }
+            target.put(first, visible, &levels);
+        }
+    }
+
+    fn jump(&mut self, rows: i32) {
+        self.common.jump(rows);
+        self.lights.iter_mut().take(self.count).for_each(|patch| patch.jump(rows));
+    }
+
+    fn step_row(&mut self) {
+        self.common.step_row();
+        self.lights.iter_mut().take(self.count).for_each(P::step_row);
+    }
+}
+
+impl Shading<'_> {
+    /// Draws `common` and the field `of` each light, by `model`.
+    pub fn draw_lit<K, V, F>(
+        &self,
+        setup: &TriangleSetup<'_>,
+        of: impl Fn(&Source) -> V,
+        common: K,
+        model: F,
+        canvas: &mut dyn Canvas,
+    ) -> u32
+    where
+        K: Field,
+        V: Field,
+        F: LightingModel<K::Value, V::Value>,
+    {
+        let gradients = setup.gradients;
+        if cfg!(feature = "perspective")
+            && let Some(inv_depth) = setup.inv_depth()
+        {
+            let zero = PerspectivePatch::new(gradients, inv_depth, V::Surface::default());
+            let lights = (zero, |source: &Source| zero.with(of(source).surface()));
+            return self.draw_rows(setup, lights, zero.with(common.surface()), model, canvas);
+        }
+        self.draw_rows(setup, (V::Patch::default(), |source: &Source| of(source).fit(gradients)), common.fit(gradients), model, canvas)
+    }
+
+    /// [`Self::draw_lit`] for what knows nothing but its rows on the screen.
+    pub fn draw_rows<K, P, F>(
+        &self,
+        setup: &TriangleSetup<'_>,
+        lights: (P, impl Fn(&Source) -> P),
+        common: K,
+        model: F,
+        canvas: &mut dyn Canvas,
+    ) -> u32
+    where
+        K: Patch,
+        P: Patch,
+        F: LightingModel<<K::Walker as Walker>::Value, <P::Walker as Walker>::Value>,
+    {
+        setup.draw_spans(&mut Lit::new(self, lights, common, model), canvas)
+    }
+
+    /// The planes through N·L and N·H of a light that is the same everywhere, normals not normalised: exact.
+    pub fn constant_products(&self, setup: &TriangleSetup<'_>, source: &Source) -> Linear<2> {
+        let [towards, half] = self.lighting.directions(source, [0; 3]);
+        linear([setup.corner_cosines(towards), setup.corner_cosines(half)])
+    }
+
+    /// The quadratics through N·L and N·H of a light at six nodes; `map` is applied to both.
+    pub fn six_products(&self, nodes: &[Node; 6], source: &Source, map: impl Fn([i32; 2]) -> [i32; 2]) -> Quadratic<2> {
+        let values = nodes.map(|node| map(self.lighting.directions(source, node.position).map(|direction| cosine(node.normal, direction))));
+        quadratic([values.map(|[light, _]| light), values.map(|[_, half]| half)])
+    }
+}
+
+/// A field through three nodes.
+pub type Linear<const CH: usize> = Nodes<3, CH, BITS>;
+/// A field through six nodes.
+pub type Quadratic<const CH: usize> = Nodes<6, CH, BITS>;
+
+/// The quadratics through six nodes in Q2.30.
+#[inline]
+pub fn quadratic<const CH: usize>(nodes: [[i32; 6]; CH]) -> Quadratic<CH> {
+    Nodes::new(rounded(nodes), EXTRA)
+}
+
+/// The planes through three nodes in Q2.30.
+#[inline]
+pub fn linear<const CH: usize>(nodes: [[i32; 3]; CH]) -> Linear<CH> {
+    Nodes::new(rounded(nodes), EXTRA)
+}
+
+/// From Q2.30 to [`NODE`] fraction bits.
+#[inline(always)]
+fn rounded<const N: usize, const CH: usize>(nodes: [[i32; N]; CH]) -> [[i32; N]; CH] {
+    nodes.map(|nodes| nodes.map(|node| (node + (1 << (EXTRA - 1))) >> EXTRA))
+}
+
+/// A walked field in Q2.30, signed.
+#[inline(always)]
+pub fn signed(field: u32) -> i32 {
+    field as i32
+}

@@ -1,0 +1,362 @@
+//! The shading methods, one file each: what it fits, and what it makes of it at a pixel.
+//!
+//! A method is a [`Method`]: its [`Facts`], and how it shades a triangle in intensities, whatever the scene, by the general way of
+//! [`crate::raster::canvas`]. The common methods also have loops: for everyday styles, compiled
+//! for each pixel format.
+
+pub mod duff;
+pub mod facts;
+pub mod flat;
+pub mod form;
+pub mod gouraud;
+pub mod node;
+pub mod phong;
+pub mod quotient;
+pub mod renq;
+pub mod renq_newton;
+pub mod six_point;
+pub mod sqrt6;
+
+pub use crate::lighting::materials::Highlight;
+use crate::{
+    antialias::{PixelSet, Shape},
+    arch::product::by_fraction,
+    format::{BIAS, Intensity, LEVEL, RHO, SUBPIXEL, WALK},
+    geometry::projection::ScreenVertex,
+    interpolate::{
+        Patch, Walker,
+        field::{Field, Nodes},
+        perspective::PerspectivePatch,
+    },
+    lighting::{
+        lights::{Direction, Lighting},
+        materials::{MaterialTables, Reflectance},
+    },
+    pixel::Pixel,
+    raster::{
+        active::ActiveTriangle,
+        band::Band,
+        canvas::{Canvas, IntensityShader, Shaded, SpanShader},
+        pixel_shader::{PixelShader, Ramp, Rgb},
+        triangle::{ScreenTriangle, turn},
+    },
+    setup::gradients::Gradients,
+    stream::record::{Triangle, Vertex},
+};
+use core::marker::PhantomData;
+pub use facts::{Costs, Facts, VertexLight};
+
+/// A shading method.
+pub trait Method: Sync {
+    /// What is known of it.
+    fn facts(&self) -> &'static Facts;
+
+    /// Shades `setup` in intensities into `canvas`; returns its pixels there.
+    fn shade(&self, setup: &TriangleSetup<'_>, shading: &Shading<'_>, canvas: &mut dyn Canvas) -> u32;
+}
+
+/// How the triangles of a mesh are drawn, decided once for all of them.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Style {
+    /// One intensity says it all, and the table of highlights holds levels of the only light.
+    pub(crate) one_light: bool,
+    /// Thresholds in place of rounding, or pixels weighed by areas.
+    pub(crate) smoothed: bool,
+    /// Interpolation in perspective.
+    pub(crate) perspective: bool,
+}
+
+/// A method that has loops of its own for some styles, compiled for each pixel format.
+pub(crate) trait Loops {
+    /// None of its own.
+    const GENERAL: bool = false;
+
+    /// Whether it has for this one.
+    fn take(style: Style) -> bool;
+
+    /// Shades `setup` into `band` and returns its pixels there; `None` if this triangle has to go the general way.
+    fn draw<C: Pixel>(
+        setup: &TriangleSetup<'_>,
+        shading: &Shading<'_>,
+        tables: MaterialTables<'_, C>,
+        band: &mut Band<'_, C>,
+    ) -> Option<u32>;
+}
+
+/// No loops but those of the general way.
+pub(crate) struct General;
+
+impl Loops for General {
+    const GENERAL: bool = true;
+
+    fn take(_: Style) -> bool {
+        true
+    }
+
+    #[inline(always)]
+    fn draw<C: Pixel>(_: &TriangleSetup<'_>, _: &Shading<'_>, _: MaterialTables<'_, C>, _: &mut Band<'_, C>) -> Option<u32> {
+        None
+    }
+}
+
+/// Fraction bits that a walked level has more than a node's.
+const EXTRA: u32 = WALK - LEVEL;
+/// Bits of the range of levels at nodes: they are in [0, 255] in Q9.7.
+pub const RANGE: u32 = LEVEL + 8;
+
+/// A triangle ready to be shaded; all triples start with its top corner.
+pub struct TriangleSetup<'f> {
+    /// Its place on the screen, and its edges.
+    pub screen: &'f ScreenTriangle,
+    /// By which polynomials are fitted to it.
+    pub gradients: &'f Gradients,
+    /// Its corners on the screen, with what their light comes to.
+    pub corners: [&'f ScreenVertex; 3],
+    /// Its record in the stream.
+    pub triangle: &'f Triangle,
+    /// The vertices to which the record's indices lead.
+    pub vertices: &'f [Vertex],
+    /// How many places on from the stream's first corner the top one is.
+    pub turned: usize,
+    /// Others may overlap it.
+    pub needs_depth_test: bool,
+    /// It is to be shaded in perspective, if that makes a difference.
+    pub perspective: bool,
+    /// Which of its pixels are drawn.
+    pub pixels: PixelSet,
+    /// Where the band above handed it on: its patch is there, and nothing is to be fitted.
+    pub place: Option<usize>,
+}
+
+impl TriangleSetup<'_> {
+    /// What lighting wants to know of it, in memory of its own: edges and gradients, which a function that is called could not tell from
+    /// what it is given, then stay in registers.
+    #[inline(always)]
+    #[must_use]
+    pub(crate) fn for_lighting(&self) -> TriangleSetup<'_> {
+        TriangleSetup { screen: &ScreenTriangle::NONE, gradients: &Gradients::NONE, ..*self }
+    }
+
+    /// Its vertices, the top one first.
+    #[inline(always)]
+    pub fn vertices(&self) -> [&Vertex; 3] {
+        let [a, c, b] = self.triangle.corners;
+        // A stream that has been checked has them all.
+        let vertex = |corner: u16| self.vertices.get(usize::from(corner)).unwrap_or(&Vertex::ZERO);
+        turn([vertex(a), vertex(b), vertex(c)], self.turned)
+    }
+
+    /// Nearness of its corners, if it is to be shaded in perspective.
+    #[inline(always)]
+    pub fn inv_depth(&self) -> Option<[i32; 3]> {
+        let [a, b, c] = self.corners;
+        let (a, b, c) = (a.depth, b.depth, c.depth);
+        // All of it equally far is all of it flat on the screen.
+        (self.perspective && !(a == b && b == c)).then_some([a, b, c])
+    }
+
+    /// Constants of the stream's edges in the order of the corners here, which turn the other way.
+    #[inline(always)]
+    pub fn edges(&self, [ab, bc, ca]: [u16; 3]) -> [u16; 3] {
+        turn([ca, bc, ab], self.turned)
+    }
+
+    /// Draws it, without depth where that is possible and worth a loop of its own; returns the pixels in `band`. `patch` is asked for
+    /// unless the band above has handed it on.
+    #[inline(always)]
+    pub(crate) fn fill<P: Patch, T: PixelShader<<P::Walker as Walker>::Value>>(
+        &self,
+        patch: impl FnOnce() -> P,
+        shader: T,
+        band: &mut Band<'_, T::Pixel>,
+    ) -> u32 {
+        let patch = match self.place.and_then(|place| band.active.active_triangle(place)).and_then(ActiveTriangle::patch) {
+            Some(patch) => patch,
+            None => patch(),
+        };
+        if T::CHEAP && !self.needs_depth_test {
+            self.screen.draw_alone(self.gradients, patch, shader, band)
+        } else {
+            self.screen.draw(self.gradients, patch, shader, band)
+        }
+    }
+
+    /// The [`PixelShader::ID`] with which the band above handed it on.
+    #[inline(always)]
+    pub(crate) fn resumed<C>(&self, band: &Band<'_, C>) -> Option<u8> {
+        Some(band.active.active_triangle(self.place?)?.rest.shader)
+    }
+
+    /// Draws it as `shader`, which stands on the anchor's row, shades it; returns the pixels in `canvas`.
+    pub fn draw_spans(&self, shader: &mut dyn SpanShader, canvas: &mut dyn Canvas) -> u32 {
+        if cfg!(feature = "antialias") && self.pixels != PixelSet::Centres {
+            let Self { screen, pixels, .. } = *self;
+            let shape = Shape { screen, pixels, part: None, corners: screen.corners, bits: SUBPIXEL };
+            return shape.draw(self.gradients.row(), shader, canvas, &mut |_| [i32::MIN, i32::MAX]);
+        }
+        self.screen.draw_spans(self.gradients, shader, canvas)
+    }
+
+    /// Nowhere on the triangle does the highlight of one constant light reach a visible level:
+    /// N·H is linear and |N| at least rho.
+    #[inline(always)]
+    pub fn has_no_highlight(&self, reflectance: &Reflectance) -> bool {
+        let [a, b, c] = self.corners;
+        a.light[1].max(b.light[1]).max(c.light[1]) < self.highlight_threshold(reflectance)
+    }
+
+    /// Where N·H, linear between the corners, is smaller, N·H over |N| is too small for a highlight; Q2.30.
+    #[inline(always)]
+    pub fn highlight_threshold(&self, reflectance: &Reflectance) -> i32 {
+        by_fraction(reflectance.highlight_threshold(), self.triangle.rho) << (16 - RHO)
+    }
+}
+
+/// Some part of the screen that belongs to a triangle.
+pub trait Area {
+    /// Shades a field there; returns the pixels in `canvas`.
+    fn draw<F: Field, S: IntensityShader<F::Value>>(&self, field: &F, shader: S, canvas: &mut dyn Canvas) -> u32;
+}
+
+/// The whole triangle, in perspective or without.
+impl Area for TriangleSetup<'_> {
+    fn draw<F: Field, S: IntensityShader<F::Value>>(&self, field: &F, shader: S, canvas: &mut dyn Canvas) -> u32 {
+        if cfg!(feature = "perspective")
+            && let Some(inv_depth) = self.inv_depth()
+        {
+            let patch = PerspectivePatch::new(self.gradients, inv_depth, field.surface());
+            return self.draw_spans(&mut Shaded { patch, shader }, canvas);
+        }
+        self.draw_spans(&mut Shaded { patch: field.fit(self.gradients), shader }, canvas)
+    }
+}
+
+/// What all triangles of one material have in common in one frame.
+#[derive(Clone, Copy)]
+pub struct Shading<'f> {
+    /// What the material makes of light.
+    pub reflectance: &'f Reflectance,
+    /// The lights.
+    pub lighting: &'f Lighting,
+    /// The material's exponent.
+    pub exponent: u16,
+    /// L and H if they are constant, see [`Lighting::constant`].
+    pub constant: Option<[[i32; 3]; 2]>,
+    /// The same, for products with vertex normals.
+    pub directions: Option<[Direction; 2]>,
+}
+
+/// The first channel. Written out, as far as it matters: `map` is a loop through memory at opt-level "s".
+#[inline(always)]
+fn first<const N: usize>(levels: [[i32; 3]; N]) -> [i32; N] {
+    let mut first = [0; N];
+    if let ([a, b, c], [[x, ..], [y, ..], [z, ..]]) = (first.as_mut_slice(), levels.as_slice()) {
+        (*a, *b, *c) = (*x, *y, *z);
+        return first;
+    }
+    levels.map(|[level, ..]| level)
+}
+
+/// Nodes of each channel.
+fn channels<const N: usize>(levels: [[i32; 3]; N]) -> [[i32; N]; 3] {
+    // One loop: `map` of arrays goes through memory at opt-level "s".
+    let mut channels = [[0; N]; 3];
+    let [reds, greens, blues] = &mut channels;
+    for (((red, green), blue), [r, g, b]) in reds.iter_mut().zip(greens).zip(blues).zip(levels) {
+        (*red, *green, *blue) = (r, g, b);
+    }
+    channels
+}
+
+/// The bias of walked levels plus a rounding half.
+const fn bias(half: i32) -> i32 {
+    (BIAS << WALK).wrapping_add(half)
+}
+
+impl Shading<'_> {
+    /// Draws one level or three, whichever the material needs, from those at `N` nodes, Q9.7 in a range narrower than
+    /// 2^`BITS`.
+    pub fn draw_levels<const N: usize, const BITS: u32>(&self, area: &impl Area, levels: [[i32; 3]; N], canvas: &mut dyn Canvas) -> u32
+    where
+        Nodes<N, 1, BITS>: Field<Value = [u32; 1]>,
+        Nodes<N, 3, BITS>: Field<Value = [u32; 3]>,
+    {
+        if self.reflectance.three_channels() {
+            area.draw(&Nodes::<N, 3, BITS>::new(channels(levels), EXTRA).biased([bias(0); 3]), Walked, canvas)
+        } else {
+            area.draw(&Nodes::<N, 1, BITS>::new([first(levels)], EXTRA).biased([bias(0)]), Walked, canvas)
+        }
+    }
+
+    /// [`Self::draw_levels`] by loops of their own: one level under the table of colours.
+    #[inline(always)]
+    fn fill_one<const N: usize, C: Pixel>(
+        setup: &TriangleSetup<'_>,
+        nodes: impl FnOnce() -> [i32; N],
+        tables: MaterialTables<'_, C>,
+        band: &mut Band<'_, C>,
+    ) -> u32
+    where
+        Nodes<N, 1, RANGE>: Field<Value = [u32; 1]>,
+    {
+        let patch = || Nodes::<N, 1, RANGE>::new([nodes()], EXTRA).biased([bias(1 << (WALK - 1))]).fit(setup.gradients);
+        setup.fill(patch, Ramp(tables.ramp), band)
+    }
+
+    /// [`Self::draw_levels`] by loops of their own: three levels.
+    #[inline(always)]
+    fn fill_three<const N: usize, C: Pixel>(
+        setup: &TriangleSetup<'_>,
+        levels: impl FnOnce() -> [[i32; 3]; N],
+        band: &mut Band<'_, C>,
+    ) -> u32
+    where
+        Nodes<N, 3, RANGE>: Field<Value = [u32; 3]>,
+    {
+        // Half a step of each channel.
+        let bias = C::DEPTH.map(|depth| bias(1 << (WALK + 7 - depth)));
+        let patch = || Nodes::<N, 3, RANGE>::new(channels(levels()), EXTRA).biased(bias).fit(setup.gradients);
+        setup.fill(patch, Rgb(PhantomData), band)
+    }
+}
+
+/// The same intensity everywhere.
+#[derive(Clone, Copy, Debug)]
+pub struct Uniform(pub Intensity);
+
+impl IntensityShader<()> for Uniform {
+    fn shade(&self, (): ()) -> Intensity {
+        self.0
+    }
+}
+
+/// Walked levels as they are.
+#[derive(Clone, Copy, Debug)]
+pub struct Walked;
+
+/// A biased, walked level as an intensity.
+#[inline(always)]
+fn intensity(walked: u32) -> i32 {
+    ((walked >> (WALK - 8)) as i32 - (BIAS << 8)).clamp(0, 255 << 8)
+}
+
+/// Levels in Q9.7, at most 255, as an intensity.
+#[inline(always)]
+#[must_use]
+pub fn of_levels(levels: [i32; 3]) -> Intensity {
+    levels.map(|level| level.max(0) << 1)
+}
+
+impl IntensityShader<[u32; 1]> for Walked {
+    #[inline(always)]
+    fn shade(&self, [level]: [u32; 1]) -> Intensity {
+        [intensity(level); 3]
+    }
+}
+
+impl IntensityShader<[u32; 3]> for Walked {
+    #[inline(always)]
+    fn shade(&self, levels: [u32; 3]) -> Intensity {
+        levels.map(intensity)
+    }
+}

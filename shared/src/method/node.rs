@@ -1,0 +1,168 @@
+//! Points of a triangle where its light is worked out.
+
+use crate::{
+    arch::product::{by_fraction, product},
+    format::{EDGE, UNIT},
+    lighting::lights::{Direction, cosine},
+    math::{
+        rsqrt::rsqrt_wide,
+        vector::{add, dot, normalise, wide, zip},
+    },
+    method::{Shading, TriangleSetup},
+    stream::record::Vertex,
+};
+
+/// Fraction bits of a [`Node`]'s normal that a vertex's has not.
+const FINER: u32 = 30 - UNIT;
+
+/// A point of a triangle and the normal there.
+#[derive(Clone, Copy, Debug)]
+pub struct Node {
+    /// Object space, Q18.14.
+    pub position: [i32; 3],
+    /// Q2.30.
+    pub normal: [i32; 3],
+}
+
+impl Shading<'_> {
+    /// Levels at a point, Q9.7.
+    pub fn levels(&self, node: &Node) -> [i32; 3] {
+        if let Some([towards, half]) = self.constant {
+            return self.reflectance.one_light([cosine(node.normal, towards), cosine(node.normal, half)]);
+        }
+        self.reflectance.levels(self.lighting.cosines(node.position, node.normal))
+    }
+}
+
+impl TriangleSetup<'_> {
+    /// The corners, their normals as they stand.
+    pub fn corner_nodes(&self) -> [Node; 3] {
+        self.vertices().map(|vertex| Node { position: wide(vertex.position), normal: wide(vertex.normal).map(|c| c << FINER) })
+    }
+
+    /// Corners and edge midpoints (01, 12, 20), unit normals.
+    pub fn six_nodes(&self) -> [Node; 6] {
+        let (sums, rsums) = (self.sums(), self.rsums());
+        let middle = |k: usize| {
+            let (position, sum) = sums[k];
+            let rsum = rsums[k] as i32;
+            // Q3.14 times Q1.17: one bit more than wanted.
+            Node { position, normal: sum.map(|c| (product(c, rsum) >> (UNIT + EDGE - 30)) as i32) }
+        };
+        let [a, b, c] = self.corner_nodes();
+        [a, b, c, middle(0), middle(1), middle(2)]
+    }
+
+    /// Corners and edge midpoints (01, 12, 20), the normals linear between the corners.
+    pub fn six_linear_nodes(&self) -> [Node; 6] {
+        let [ab, bc, ca] = self.sums().map(|(position, sum)| Node { position, normal: sum.map(|c| c << (FINER - 1)) });
+        let [a, b, c] = self.corner_nodes();
+        [a, b, c, ab, bc, ca]
+    }
+
+    /// The point with the barycentric coordinates `weights / 2^bits`, which are not negative; unit normal.
+    pub fn node(&self, weights: [i32; 3], bits: u32) -> Node {
+        let mean = |v: [[i32; 3]; 3]| {
+            let [a, b, c] = zip(v, weights, |v, weight| v.map(|c| c * weight));
+            add(a, add(b, c))
+        };
+        let vertices = self.vertices();
+        let position = mean(vertices.map(|vertex| wide(vertex.position)));
+        Node { position: position.map(|c| c >> bits), normal: normalise(mean(vertices.map(|vertex| wide(vertex.normal)))) }
+    }
+
+    /// The point with the barycentric coordinates `weights / (3 2^bits)`; unit normal.
+    pub fn third(&self, weights: [i32; 3], bits: u32) -> Node {
+        let node = self.node(weights, bits);
+        Node { position: node.position.map(|c| c / 3), ..node }
+    }
+
+    /// Position, and sum of the ends' normals (Q3.14), at the middle of each edge.
+    fn sums(&self) -> [([i32; 3], [i32; 3]); 3] {
+        sums(self.vertices())
+    }
+
+    /// 1/|Ni+Nj| of the edges 01, 12, 20, [`EDGE`] fraction bits, less than 2^31.
+    #[inline(always)]
+    pub fn rsums(&self) -> [u32; 3] {
+        let [ab, bc, ca] = self.edges(self.triangle.rsum);
+        if ab.max(bc).max(ca) == u16::MAX {
+            let [ab, bc, ca] = wide_rsums(self.vertices(), [ab, bc, ca]);
+            return [ab, bc, ca];
+        }
+        let rsum = |excess: u16| (1 << (EDGE - 1)) + u32::from(excess);
+        [rsum(ab), rsum(bc), rsum(ca)]
+    }
+
+    /// N·L (`which` is 0) or N·H (1), Q2.30, at the six nodes under one constant light, from what is known at the vertices.
+    #[inline(always)]
+    pub fn six_cosines(&self, which: usize) -> [i32; 6] {
+        let [a, b, c] = self.corners;
+        self.six_from([a.light[which], b.light[which], c.light[which]])
+    }
+
+    /// A cosine at the six nodes under a light that is the same everywhere: at midpoints it follows from that at the corners, Q2.30.
+    #[inline(always)]
+    pub fn six_from(&self, [a, b, c]: [i32; 3]) -> [i32; 6] {
+        let [ab, bc, ca] = self.edges(self.triangle.rsum);
+        if ab.max(bc).max(ca) == u16::MAX {
+            let [ab, bc, ca] = wide_middles(self.vertices(), [ab, bc, ca], [a, b, c]);
+            return [a, b, c, ab, bc, ca];
+        }
+        // What exceeds 1/2 adds as much of half of both, halved.
+        let middle = |a: i32, b: i32, excess: u16| {
+            let mean = (a >> 1) + (b >> 1);
+            mean + by_fraction(mean, excess)
+        };
+        [a, b, c, middle(a, b, ab), middle(b, c, bc), middle(c, a, ca)]
+    }
+
+    /// The cosines of the corners' normals with a unit vector, Q2.30.
+    #[inline]
+    pub fn corner_cosines(&self, direction: [i32; 3]) -> [i32; 3] {
+        let direction = Direction::new(direction);
+        let [a, b, c] = self.vertices();
+        [direction.cosine(wide(a.normal)), direction.cosine(wide(b.normal)), direction.cosine(wide(c.normal))]
+    }
+}
+
+/// Position, and sum of the ends' normals (Q3.14), at the middle of each edge between these.
+fn sums([a, b, c]: [&Vertex; 3]) -> [([i32; 3], [i32; 3]); 3] {
+    [(a, b), (b, c), (c, a)].map(|(a, b)| {
+        let position = add(wide(a.position), wide(b.position)).map(|c| c >> 1);
+        (position, add(wide(a.normal), wide(b.normal)))
+    })
+}
+
+/// [`TriangleSetup::rsums`] where the 16 bits that are `given` do not hold all of them.
+#[cold]
+#[inline(never)]
+fn wide_rsums(vertices: [&Vertex; 3], given: [u16; 3]) -> [u32; 3] {
+    zip(sums(vertices), given, |(_, sum), given| {
+        if given < u16::MAX {
+            return (1 << (EDGE - 1)) + u32::from(given);
+        }
+        let (mantissa, exponent) = rsqrt_wide(dot(sum, sum).max(1) as u64);
+        ((u64::from(mantissa) << (UNIT + EDGE)) >> exponent).min(i32::MAX as u64) as u32
+    })
+}
+
+/// `f` of each value at six nodes. Written out: `map` is a loop through memory at opt-level "s".
+#[inline(always)]
+pub fn map_six<A, R>([a, b, c, d, e, g]: [A; 6], f: impl Fn(A) -> R) -> [R; 6] {
+    [f(a), f(b), f(c), f(d), f(e), f(g)]
+}
+
+/// [`TriangleSetup::six_cosines`] at the midpoints, from those at corners, where the 16 bits that are `given` do not hold all of the edges' constants.
+#[cold]
+#[inline(never)]
+fn wide_middles(vertices: [&Vertex; 3], given: [u16; 3], [a, b, c]: [i32; 3]) -> [i32; 3] {
+    let middle = |(a, b): (i32, i32), rsum: u32| (product((a >> 1) + (b >> 1), rsum as i32) >> (EDGE - 1)) as i32;
+    zip([(a, b), (b, c), (c, a)], wide_rsums(vertices, given), middle)
+}
+
+/// `f` of each pair of values at six nodes. Written out: `map` is a loop through memory at opt-level "s".
+#[inline(always)]
+pub fn zip_six<A, B, R>([a0, a1, a2, a3, a4, a5]: [A; 6], [b0, b1, b2, b3, b4, b5]: [B; 6], f: impl Fn(A, B) -> R) -> [R; 6] {
+    [f(a0, b0), f(a1, b1), f(a2, b2), f(a3, b3), f(a4, b4), f(a5, b5)]
+}

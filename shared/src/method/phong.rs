@@ -1,0 +1,155 @@
+//! Per-pixel Phong shading (Phong 1975), highlights by the half vector (Blinn 1977): the honest yardstick.
+//!
+//! Normals, lights and viewer are linear over the screen, so every dot product
+//! between them is linear or exactly quadratic and can be walked; only the roots
+//! that normalise are taken at each pixel. Under one constant light that is [`crate::method::duff`].
+//!
+//! Cost: one constant light as `duff`; otherwise 6 additions and 2 roots, and 6 additions and 2 roots more for each light.
+//! Error: that of the tables, [`crate::math::power::NEAREST_ERROR`] of the highlight above all. Domain: any lights and viewer.
+
+use crate::{
+    format::COSINE,
+    lighting::{
+        lights::{Source, Viewer},
+        materials::{Highlight, MaterialTables, Reflection},
+    },
+    math::{
+        power::PixelPower,
+        vector::{add, dot, sub, wide},
+    },
+    method::{
+        Costs, Facts, Loops, Method, Shading, Style, TriangleSetup, VertexLight,
+        duff::{self, Duff, Root},
+        form::{LightingModel, quadratic, signed},
+    },
+    pixel::Pixel,
+    raster::{band::Band, canvas::Canvas},
+};
+
+static FACTS: Facts = Facts {
+    name: "phong",
+    id: 3,
+    source: "Phong 1975; Blinn 1977",
+    vertex_light: VertexLight::Cosines,
+    highlight: Highlight::Half,
+    highlight_levels: true,
+    near_lights: true,
+    perspective: true,
+    costs: Costs::new(11, 12, 2, 30),
+};
+
+/// Phong shading at every pixel.
+pub struct Phong;
+
+impl Method for Phong {
+    fn facts(&self) -> &'static Facts {
+        &FACTS
+    }
+
+    fn shade(&self, setup: &TriangleSetup<'_>, shading: &Shading<'_>, canvas: &mut dyn Canvas) -> u32 {
+        if shading.lighting.is_constant() { duff::shade_constant(setup, shading, canvas) } else { draw_by(setup, shading, Blinn, canvas) }
+    }
+}
+
+impl Loops for Phong {
+    fn take(style: Style) -> bool {
+        Duff::take(style)
+    }
+
+    #[inline(always)]
+    fn draw<C: Pixel>(
+        setup: &TriangleSetup<'_>,
+        shading: &Shading<'_>,
+        tables: MaterialTables<'_, C>,
+        band: &mut Band<'_, C>,
+    ) -> Option<u32> {
+        Duff::draw(setup, shading, tables, band)
+    }
+}
+
+/// Shades by walked products of vectors.
+pub fn draw_by<F>(setup: &TriangleSetup<'_>, shading: &Shading<'_>, form: F, canvas: &mut dyn Canvas) -> u32
+where
+    F: LightingModel<[u32; 3], [u32; 3]>,
+{
+    let positions = setup.vertices().map(|vertex| wide(vertex.position));
+    let normals = fitted(setup.vertices().map(|vertex| wide(vertex.normal)));
+    let view = fitted(match shading.lighting.viewer {
+        Viewer::Infinite(towards) => [towards; 3],
+        Viewer::Local(eye) => positions.map(|p| sub(eye, p)),
+    });
+    let common = quadratic([product(&normals, &normals), product(&view, &view), product(&normals, &view)]);
+    let fit = |source: &Source| {
+        let towards = fitted(match *source {
+            Source::Directional { towards, .. } => [towards; 3],
+            Source::Point(position) => positions.map(|p| sub(position, p)),
+        });
+        quadratic([product(&normals, &towards), product(&towards, &towards), product(&view, &towards)])
+    };
+    shading.draw_lit(setup, fit, common, form, canvas)
+}
+
+/// A vector at the three corners, all shifted alike such that the longest is just below 1, in fractions of 28 bits.
+fn fitted(vectors: [[i32; 3]; 3]) -> [[i32; 3]; 3] {
+    let largest = vectors.as_flattened().iter().fold(1, |m, c| m | c.unsigned_abs());
+    // The largest component below 2^27: lengths below 2^28, dot products of two fit 56 bits.
+    let zeros = largest.leading_zeros();
+    vectors.map(|v| v.map(|c| if zeros >= 5 { c << (zeros - 5) } else { c >> (5 - zeros) }))
+}
+
+/// Six nodes of the product of two linear vector fields (fractions of 28 bits each), Q2.30.
+fn product(a: &[[i32; 3]; 3], b: &[[i32; 3]; 3]) -> [i32; 6] {
+    let ([a0, a1, a2], [b0, b1, b2]) = (*a, *b);
+    let corner = |a, b| (dot(a, b) >> (56 - COSINE)) as i32;
+    let middle = |a, c, b, d| (dot(add(a, c), add(b, d)) >> (58 - COSINE)) as i32;
+    [corner(a0, b0), corner(a1, b1), corner(a2, b2), middle(a0, a1, b0, b1), middle(a1, a2, b1, b2), middle(a2, a0, b2, b0)]
+}
+
+/// What all lights share at a pixel: the unit normal's and viewer's share of each product.
+#[derive(Clone, Copy, Default)]
+pub struct Common {
+    /// One over the length of the normal.
+    pub normal: Root,
+    /// One over the distance of the viewer.
+    pub view: Root,
+    /// N·V, the normal not normalised, Q2.30.
+    pub nv: i32,
+}
+
+impl Common {
+    /// From walked N·N, V·V, N·V.
+    pub fn new([nn, vv, nv]: [u32; 3]) -> Self {
+        let (normal, view) = (Root::of(nn), Root::of(vv));
+        Self { normal, view, nv: view.divide(signed(nv)) }
+    }
+
+    /// N·L (the normal not normalised) and L·V from walked N·L, L·L, V·L.
+    pub fn light(&self, [nl, ll, vl]: [u32; 3]) -> [i32; 2] {
+        let light = Root::of(ll);
+        [light.divide(signed(nl)), self.view.divide(light.divide(signed(vl)))]
+    }
+}
+
+/// Highlights by the half vector.
+#[derive(Clone, Copy)]
+struct Blinn;
+
+impl LightingModel<[u32; 3], [u32; 3]> for Blinn {
+    type Common = Common;
+
+    fn common(&self, products: [u32; 3]) -> Common {
+        Common::new(products)
+    }
+
+    fn reflect(&self, _: usize, common: &Common, products: [u32; 3], power: PixelPower<'_>) -> Reflection {
+        let [nl, vl] = common.light(products);
+        // N·(L + V) / |L + V| with |L + V|² = 2 + 2 L·V: half of either, so that both stay in range.
+        let length = Root::of((1i32 << 30).saturating_add(vl).max(1) as u32);
+        let sum = (((i64::from(nl) + i64::from(common.nv)) >> 1) * SQRT_2) >> 30;
+        let nh = length.divide(sum.clamp(i32::MIN.into(), i32::MAX.into()) as i32);
+        Reflection { diffuse: common.normal.divide(nl) >> 3, highlight: power.at(common.normal.divide(nh) >> 3) }
+    }
+}
+
+/// Square root of two, Q2.30.
+const SQRT_2: i64 = 1_518_500_250;

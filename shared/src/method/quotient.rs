@@ -1,0 +1,131 @@
+//! One constant light on a material of one channel, by linear numerators over a length: level and highlight are walked in the units
+//! of their tables, so that a pixel takes one product for each.
+
+use crate::{
+    arch::product::upper,
+    format::COSINE,
+    interpolate::{
+        Constant,
+        field::{Field, Nodes},
+    },
+    lighting::materials::{Levels, MaterialTables},
+    math::{steps, steps::Quotients},
+    method::TriangleSetup,
+    pixel::Pixel,
+    raster::{
+        band::Band,
+        pixel_shader::{PixelShader, Solid},
+    },
+};
+
+/// Fraction bits of a diffuse level at a node: as much of one as the ramp takes, in either direction, is [`RANGE`] bits.
+const NODE: u32 = 10;
+/// Bits of what diffuse levels at nodes differ by.
+const RANGE: u32 = 20;
+/// Fraction bits that it is walked with.
+const LEVEL: u32 = 22;
+/// Fraction bits of a level at a pixel: of the upper half of its product with half a reciprocal length, Q2.30.
+const PIXEL: u32 = LEVEL - 3;
+/// Bits of what steps at nodes differ by.
+const STEPS: u32 = 26;
+
+/// What numerators and a length come to; `R` makes half a reciprocal length, Q2.30, of what is walked for it. One that is not `EXACT`
+/// may lift cosines above 1, which then count as 1.
+struct Quotient<'a, C: Pixel, R, const EXACT: bool> {
+    levels: Levels<'a, C>,
+    steps: Quotients<'a>,
+    half_reciprocal: R,
+}
+
+impl<C: Pixel, R: Copy, const EXACT: bool> Clone for Quotient<'_, C, R, EXACT> {
+    fn clone(&self) -> Self {
+        *self
+    }
+}
+
+impl<C: Pixel, R: Copy, const EXACT: bool> Copy for Quotient<'_, C, R, EXACT> {}
+
+impl<C: Pixel, V, R: Fn(V) -> i32 + Copy, const EXACT: bool> PixelShader<(([u32; 1], [u32; 1]), V)> for Quotient<'_, C, R, EXACT> {
+    type Pixel = C;
+
+    const CHEAP: bool = true;
+
+    #[inline(always)]
+    fn shader(&self, (([light], [half]), length): (([u32; 1], [u32; 1]), V)) -> C {
+        let half_reciprocal = (self.half_reciprocal)(length);
+        let diffuse = self.levels.quotient::<EXACT>(light, half_reciprocal);
+        let highlight = self.steps.at(upper(half as i32, half_reciprocal));
+        self.levels.colour::<PIXEL>(diffuse, highlight)
+    }
+}
+
+/// The same where there is no highlight.
+struct Matte<'a, C: Pixel, R, const EXACT: bool> {
+    levels: Levels<'a, C>,
+    /// The highlight's entry.
+    floor: u32,
+    half_reciprocal: R,
+}
+
+impl<C: Pixel, R: Copy, const EXACT: bool> Clone for Matte<'_, C, R, EXACT> {
+    fn clone(&self) -> Self {
+        *self
+    }
+}
+
+impl<C: Pixel, R: Copy, const EXACT: bool> Copy for Matte<'_, C, R, EXACT> {}
+
+impl<C: Pixel, V, R: Fn(V) -> i32 + Copy, const EXACT: bool> PixelShader<([u32; 1], V)> for Matte<'_, C, R, EXACT> {
+    type Pixel = C;
+
+    const CHEAP: bool = true;
+
+    #[inline(always)]
+    fn shader(&self, ([light], length): ([u32; 1], V)) -> C {
+        let diffuse = self.levels.quotient::<EXACT>(light, (self.half_reciprocal)(length));
+        self.levels.colour::<PIXEL>(diffuse, self.floor)
+    }
+}
+
+impl<C: Pixel> Levels<'_, C> {
+    /// The diffuse level of a numerator times half a reciprocal length.
+    #[inline(always)]
+    fn quotient<const EXACT: bool>(&self, light: u32, half_reciprocal: i32) -> u32 {
+        let diffuse = upper(light as i32, half_reciprocal).max(0);
+        (if EXACT { diffuse } else { diffuse.min(self.node(1 << COSINE, PIXEL)) }) as u32
+    }
+}
+
+/// Draws `setup` under one constant light on a material of one channel, if that is all there is and the method's table is made for it;
+/// `EXACT` or not, `half_reciprocal` makes half a reciprocal length, Q2.30, of the walked `length`.
+#[inline(always)]
+pub(super) fn draw<const EXACT: bool, F: Field, C: Pixel>(
+    setup: &TriangleSetup<'_>,
+    length: impl FnOnce() -> F,
+    half_reciprocal: impl Fn(F::Value) -> i32 + Copy,
+    tables: MaterialTables<'_, C>,
+    band: &mut Band<'_, C>,
+) -> Option<u32> {
+    let levels = tables.levels_of_one()?;
+    let reflectance = tables.reflectance;
+    let steps = Quotients::new(&reflectance.power);
+    let [a, b, c] = setup.corners;
+    let light = || {
+        let nodes = [levels.node(a.light[0], NODE), levels.node(b.light[0], NODE), levels.node(c.light[0], NODE)];
+        Nodes::<3, 1, RANGE>::new([nodes], LEVEL - NODE).fit(setup.gradients)
+    };
+    if setup.has_no_highlight(reflectance) {
+        let floor = reflectance.power.least();
+        if a.light[0].max(b.light[0]).max(c.light[0]) <= 0 {
+            return Some(setup.fill(|| Constant, Solid(levels.colour::<PIXEL>(0, floor)), band));
+        }
+        let patch = || (light(), length().fit(setup.gradients));
+        return Some(setup.fill(patch, Matte::<_, _, EXACT> { levels, floor, half_reciprocal }, band));
+    }
+    let patch = || {
+        let half = [steps.node(a.light[1]), steps.node(b.light[1]), steps.node(c.light[1])];
+        // Two planes of one channel: the compiler makes a loop of one plane of two, and keeps it in memory.
+        ((light(), Nodes::<3, 1, STEPS>::new([half], steps::EXTRA).fit(setup.gradients)), length().fit(setup.gradients))
+    };
+    Some(setup.fill(patch, Quotient::<_, _, EXACT> { levels, steps, half_reciprocal }, band))
+}

@@ -1,0 +1,54 @@
+//! Quadratic renormalisation: linear N·L and N·H times the six-point quadratic of 1/|N|.
+//!
+//! 1/|N| is 1 at the corners and 2/|Ni+Nj| at the edges' midpoints whatever the pose, so its nodes are constants of the
+//! mesh and no midpoint is lit. With near lights the numerators are quadratics through six points.
+//!
+//! Cost: 4 additions a pixel, 2 products and the highlight's table; 2 or 4 additions and 2 products more per light.
+//! Continuous. Error against Phong: 255 ks n w^n 0.0125 (e/rho)^4, w the largest N·H/|N|, e the longest |Ni-Nj|, rho
+//! the least |N|: 3 LSB at worst on a sphere of 168 triangles, 0.3 on one of 690 (exponent 50, ks 1/2).
+//! Domain: any lights; where |N| falls below 1/2, [`crate::method::duff`]'s root takes over.
+
+use crate::{
+    arch::product::upper,
+    format::EDGE,
+    lighting::materials::Reflection,
+    math::power::PixelPower,
+    method::{
+        TriangleSetup,
+        form::{EXTRA, LightingModel, NODE, Quadratic, signed},
+    },
+};
+
+/// Half the quadratic through 1/|N| at six nodes, Q2.30.
+#[inline(always)]
+pub fn length(setup: &TriangleSetup<'_>) -> Quadratic<1> {
+    // 1/|Ni+Nj| - 1/2, zero at the corners.
+    let node = |rsum: u32| (rsum.wrapping_sub(1 << (EDGE - 1)) << (NODE - EDGE)) as i32;
+    let [ab, bc, ca] = setup.rsums();
+    Quadratic::new([[0, 0, 0, node(ab), node(bc), node(ca)]], EXTRA).biased([1 << 29])
+}
+
+/// Numerators times a reciprocal length.
+#[derive(Clone, Copy)]
+pub struct Scaled;
+
+impl LightingModel<[u32; 1], [u32; 2]> for Scaled {
+    /// 1/(2|N|), Q2.30.
+    type Common = i32;
+
+    #[inline(always)]
+    fn common(&self, [length]: [u32; 1]) -> i32 {
+        signed(length)
+    }
+
+    #[inline(always)]
+    fn reflect(&self, _: usize, &length: &i32, [light, half]: [u32; 2], power: PixelPower<'_>) -> Reflection {
+        Reflection { diffuse: over(signed(light), length), highlight: power.at(over(signed(half), length)) }
+    }
+}
+
+/// A numerator times half a reciprocal length, Q2.30 each: the upper half is a cosine in Q5.27.
+#[inline(always)]
+fn over(cosine: i32, half: i32) -> i32 {
+    upper(cosine, half)
+}

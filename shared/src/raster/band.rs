@@ -1,0 +1,84 @@
+//! A strip of the picture and its depth: the only memory that drawing writes.
+
+use crate::{coverage::sample::Sample, pixel::Pixel, raster::active::ActiveTriangles};
+
+/// Rows `top .. top + rows` of the viewport.
+#[derive(Debug)]
+pub struct Band<'a, C> {
+    /// Row by row.
+    pub pixels: &'a mut [C],
+    /// Nearness per pixel: 0 is infinitely far.
+    pub depth: &'a mut [u16],
+    /// Pixels in a row.
+    pub width: usize,
+    /// First row.
+    pub top: i32,
+    /// Number of rows.
+    pub rows: i32,
+    /// For antialiasing: takes the place of `depth`, and of `pixels` until [`Self::resolve`].
+    pub blend: Option<Blend<'a>>,
+    /// What the band above handed on, and this one does.
+    pub active: ActiveTriangles<'a>,
+}
+
+/// Where antialiasing gathers what it knows of each pixel.
+#[derive(Debug)]
+pub struct Blend<'a> {
+    /// Row by row.
+    pub samples: &'a mut [Sample],
+}
+
+impl<C: Pixel> Band<'_, C> {
+    /// Turns what antialiasing has gathered into pixels.
+    #[inline(never)]
+    pub fn resolve(&mut self, background: C) {
+        if let Some(blend) = &self.blend {
+            let background = background.channels();
+            for (pixel, sample) in self.pixels.iter_mut().zip(blend.samples.iter()) {
+                *pixel = C::pack(sample.resolve(background));
+            }
+        }
+    }
+}
+
+impl<C> Band<'_, C> {
+    /// Background everywhere, infinitely far.
+    #[inline(never)]
+    pub fn clear(&mut self, background: C)
+    where
+        C: Copy,
+    {
+        match &mut self.blend {
+            Some(blend) => blend.samples.fill(Sample::EMPTY),
+            None => {
+                fill(self.pixels, background);
+                fill(self.depth, 0);
+            }
+        }
+    }
+
+    /// Its first row, and the one behind its last.
+    #[inline(always)]
+    pub(crate) fn range(&self) -> [i32; 2] {
+        [self.top, self.top.wrapping_add(self.rows)]
+    }
+
+    /// Index of the first pixel of `row`.
+    #[inline(always)]
+    #[must_use]
+    pub fn start(&self, row: i32) -> usize {
+        (row.wrapping_sub(self.top) as usize).wrapping_mul(self.width)
+    }
+}
+
+/// As `slice::fill`, eight at a time: the compiler does not unroll it at opt-level "s".
+#[inline(always)]
+fn fill<T: Copy>(slice: &mut [T], value: T) {
+    let (eights, rest) = slice.as_chunks_mut::<8>();
+    for eight in eights {
+        let [a, b, c, d, e, f, g, h] = eight;
+        (*a, *b, *c, *d) = (value, value, value, value);
+        (*e, *f, *g, *h) = (value, value, value, value);
+    }
+    rest.fill(value);
+}

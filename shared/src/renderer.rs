@@ -1,0 +1,169 @@
+//! The frames of one stream.
+
+use crate::{
+    Stream,
+    error::{MAX_SIDE, RenderError},
+    frame::{Frame, RenderState},
+    lighting::materials::fill_ramp,
+    memory::{Layout, Memory},
+    method::Facts,
+    pixel::Pixel,
+    shader::Shader,
+};
+use embedded_graphics_core::geometry::Size;
+
+/// Draws the frames of one stream.
+#[derive(Debug)]
+pub struct Renderer<'a, C: Pixel> {
+    state: RenderState<'a, C>,
+}
+
+impl<'a, C: Pixel> Renderer<'a, C> {
+    /// A renderer for a viewport of `size` pixels, with that one of `shaders` which the stream asks for. `memory` has as many words as
+    /// [`Layout::words`] says; what is in it does not matter.
+    ///
+    /// # Errors
+    /// When `size` is out of range or not the layout's, `memory` too small, or the method is not there or cannot shade the scene.
+    pub fn new(stream: Stream<'a>, size: Size, layout: &Layout, memory: &'a mut [u64], shaders: &[Shader<C>]) -> Result<Self, RenderError> {
+        let method = stream.header.shader;
+        let shader = shaders.iter().find(|shader| shader.facts().id == method).ok_or(RenderError::Missing { method })?;
+        Self::with_shader(stream, size, layout, memory, *shader)
+    }
+
+    /// As [`Self::new`], with another method than the stream's.
+    ///
+    /// # Errors
+    /// As [`Self::new`].
+    pub fn with_shader(
+        stream: Stream<'a>,
+        size: Size,
+        layout: &Layout,
+        memory: &'a mut [u64],
+        shader: Shader<C>,
+    ) -> Result<Self, RenderError> {
+        let (width, height) = (size.width, size.height);
+        if !(1..=MAX_SIDE).contains(&width) || !(1..=MAX_SIDE).contains(&height) {
+            return Err(RenderError::Size { width, height });
+        }
+        if layout.width != width as usize || layout.rows == 0 {
+            return Err(RenderError::Layout { width });
+        }
+        if layout.materials < stream.materials.len() {
+            return Err(RenderError::Materials { need: stream.materials.len() });
+        }
+        let need = layout.words::<C>();
+        let memory = Memory::new(layout, memory).ok_or(RenderError::Memory { need })?;
+        let background = background(stream.header.background);
+        let state = RenderState { stream, size, memory, shader, dither: false, perspective_correct: false, antialias: false, background };
+        let mut renderer = Self { state };
+        renderer.set_shader(shader)?;
+        Ok(renderer)
+    }
+
+    /// Uses `shader` instead of the one that the stream asks for. Works out the materials, so it takes a moment.
+    ///
+    /// # Errors
+    /// When this build has not got the method, or it cannot shade this scene; the method in use stays.
+    pub fn set_shader(&mut self, shader: Shader<C>) -> Result<(), RenderError> {
+        let facts = shader.facts();
+        check(&self.state.stream, facts, self.state.perspective_correct)?;
+        self.state.shader = shader;
+        let RenderState { stream, memory: Memory { reflectances, ramps, .. }, .. } = &mut self.state;
+        for ((reflectance, ramp), material) in reflectances.iter_mut().zip(ramps.iter_mut()).zip(stream.materials) {
+            let highlight = (facts.highlight, facts.highlight_levels);
+            reflectance.fill(stream.header, material, stream.lights, highlight, (C::DEPTH, C::GRAY));
+            fill_ramp::<C>(ramp, reflectance);
+        }
+        Ok(())
+    }
+
+    /// The method in use.
+    #[must_use]
+    pub fn shader(&self) -> Shader<C> {
+        self.state.shader
+    }
+
+    /// Interpolation in perspective on or off; off at first. Without it triangles are shaded as if they were flat on the
+    /// screen, which shows where one of them reaches from near to far. Parallel rays make no difference.
+    ///
+    /// # Errors
+    /// When this build, or the method in use, cannot do it; all stays as it was.
+    pub fn set_perspective_correct(&mut self, on: bool) -> Result<(), RenderError> {
+        if on && !cfg!(feature = "perspective") {
+            return Err(RenderError::NoPerspective);
+        }
+        check(&self.state.stream, self.state.shader.facts(), on)?;
+        self.state.perspective_correct = on;
+        Ok(())
+    }
+
+    /// 4x4 ordered dither on or off; off at first.
+    pub fn set_dither(&mut self, dither: bool) {
+        self.state.dither = dither;
+    }
+
+    /// Antialiasing by exact areas on or off, see [`crate::antialias`]; off at first.
+    ///
+    /// # Errors
+    /// When the memory has no room for it, or this build has not got the feature `antialias`; it stays off then.
+    pub fn set_antialias(&mut self, antialias: bool) -> Result<(), RenderError> {
+        self.state.antialias = false;
+        if antialias && !cfg!(feature = "antialias") {
+            return Err(RenderError::Antialias);
+        }
+        if antialias && self.state.memory.samples.is_empty() {
+            return Err(RenderError::NoSamples);
+        }
+        self.state.antialias = antialias;
+        Ok(())
+    }
+
+    /// The viewport.
+    #[must_use]
+    pub fn size(&self) -> Size {
+        self.state.size
+    }
+
+    /// Rows of a band; the last one of a frame may have fewer.
+    #[must_use]
+    pub fn band_rows(&self) -> u32 {
+        self.state.band_rows()
+    }
+
+    /// Whether a slice of pixels can be a band.
+    ///
+    /// # Errors
+    /// When it does not hold one row.
+    pub fn check_band(&self, pixels: &[C]) -> Result<(), RenderError> {
+        let need = self.state.size.width as usize;
+        if pixels.len() < need { Err(RenderError::Band { need }) } else { Ok(()) }
+    }
+
+    /// Places camera and lights, transforms vertices, culls and bins triangles for frame `number` (modulo the orbit).
+    #[inline(never)]
+    pub fn frame(&mut self, number: u32) -> Frame<'_, 'a, C> {
+        Frame::new(&mut self.state, number)
+    }
+}
+
+/// Whether a method can shade a stream, in perspective or without.
+///
+/// # Errors
+/// When it cannot.
+pub fn check(stream: &Stream<'_>, facts: &Facts, perspective_correct: bool) -> Result<(), RenderError> {
+    if !facts.near_lights && !stream.is_constant() {
+        return Err(RenderError::Light { shader: facts.name });
+    }
+    if perspective_correct && stream.is_perspective() && !facts.perspective {
+        return Err(RenderError::Perspective { shader: facts.name });
+    }
+    Ok(())
+}
+
+/// A colour of 8 bits per channel in the output's format, grey by its luma.
+fn background<C: Pixel>([r, g, b]: [u8; 3]) -> C {
+    let luma = ((u32::from(r) * 77 + u32::from(g) * 150 + u32::from(b) * 29) >> 8) as u8;
+    let [r, g, b] = if C::GRAY { [luma; 3] } else { [r, g, b] };
+    let [dr, dg, db] = C::DEPTH;
+    C::pack([r >> (8 - dr), g >> (8 - dg), b >> (8 - db)])
+}

@@ -1,0 +1,162 @@
+//! Edges of a triangle against pixel centres: the top-left rule, exactly.
+//!
+//! A pixel belongs to a triangle if its centre lies inside, or on a left or top
+//! edge. Both edges of a span ask the same question, *which is the first column
+//! whose centre is not left of me*, so spans are half open and neighbours that
+//! share an edge share its answer: no gap, no pixel twice.
+//!
+//! ```text
+//!   centres   +   +   +   +      x = 2.5 on a left edge:  column 2 is in
+//!   column    0   1   2   3      x = 2.5 on a right edge: column 2 is out
+//! ```
+
+use zerocopy::{FromBytes, Immutable, IntoBytes, KnownLayout};
+
+use crate::{
+    arch::quotient::{LARGEST, SLOPE, slope},
+    format::{CENTRE, SUBPIXEL},
+};
+
+/// Fraction bits of a walked column.
+pub const COLUMN: u32 = SLOPE;
+
+/// Columns that a walked column can tell apart: no viewport is wider.
+pub const COLUMNS: u32 = 1 << (32 - COLUMN);
+
+/// Heights up to here, in 1/16 pixel, are walked from end to end: 89 rows.
+pub const SHORT: i32 = 89 << SUBPIXEL;
+const _: () = assert!(SHORT as usize <= LARGEST);
+
+/// Widths up to here, in 1/16 pixel, fit a word with [`COLUMN`] fraction bits: 64 columns.
+pub const NARROW: i32 = (1 << (31 - COLUMN)) - 1;
+
+/// Heights from here on, in 1/16 pixel, are not walked but divided anew on each row.
+const TALL: i32 = 1 << (32 - COLUMN);
+
+/// An edge from an upper to a lower point, 1/16 pixel.
+#[derive(Clone, Copy, Debug)]
+pub struct Edge {
+    x: i32,
+    y: i32,
+    dx: i32,
+    dy: i32,
+}
+
+/// A column that is stepped from row to row.
+#[derive(FromBytes, IntoBytes, Immutable, KnownLayout, Clone, Copy, Debug, Default)]
+#[repr(C)]
+pub struct EdgeX {
+    /// Unsigned Q11.21, such that the integer part is the first column not left of the edge.
+    pub x: u32,
+    /// Added for the next row.
+    pub step: u32,
+}
+
+/// A place in 1/16 pixel as one that is walked. All ones below the integer part turn its floor into a ceiling.
+#[inline(always)]
+fn walked(sixteenths: i32) -> u32 {
+    ((sixteenths << (COLUMN - SUBPIXEL)) as u32).wrapping_add((1 << COLUMN) - 1)
+}
+
+impl EdgeX {
+    /// No column.
+    pub const NONE: Self = Self { x: 0, step: 0 };
+
+    /// Moves down `rows` rows.
+    #[inline(always)]
+    pub fn skip(&mut self, rows: i32) {
+        self.x = self.x.wrapping_add(self.step.wrapping_mul(rows as u32));
+    }
+}
+
+impl Edge {
+    /// From `upper` to `lower`, each `[x, y]` in 1/16 pixel.
+    #[inline(always)]
+    #[must_use]
+    pub fn new(upper: [i32; 2], lower: [i32; 2]) -> Self {
+        Self { x: upper[0], y: upper[1], dx: lower[0].wrapping_sub(upper[0]), dy: lower[1].wrapping_sub(upper[1]) }
+    }
+
+    /// First column whose centre is not left of the edge at the centre of `row`: any edge, any row.
+    #[inline]
+    #[must_use]
+    pub fn column(&self, row: i32) -> i32 {
+        let dy = i64::from(self.dy.max(1));
+        let t = i64::from((row << SUBPIXEL) + CENTRE) - i64::from(self.y);
+        let numerator = i64::from(self.x - CENTRE) * dy + i64::from(self.dx) * t;
+        // Ceiling of numerator / (16 dy).
+        -(-numerator).div_euclid(dy << SUBPIXEL) as i32
+    }
+
+    /// The column at the centre of its first row, ready to be stepped to its end. Only for edges of at most [`SHORT`]
+    /// and [`NARROW`], whose columns lie in [0, [`COLUMNS`]).
+    ///
+    /// A true position is a multiple of 1/(256 h) columns, h the height in rows. The start is too small by less than
+    /// 2 · 2^-21 and each step by less than 2^-21, so in row n the integer part is right while (n + 3) 256 h < 2^21.
+    #[inline]
+    #[must_use]
+    pub fn walk(&self) -> EdgeX {
+        let step = slope(self.dx, self.dy.max(1));
+        // From the start to the first centre, less than a row: step down / 16, rounded down.
+        let down = CENTRE.wrapping_sub(self.y) & (2 * CENTRE - 1);
+        let across = (step >> SUBPIXEL).wrapping_mul(down).wrapping_add((step & (2 * CENTRE - 1)).wrapping_mul(down) >> SUBPIXEL);
+        EdgeX { x: walked(self.x.wrapping_sub(CENTRE)).wrapping_add(across as u32), step: step as u32 }
+    }
+
+    /// How many rows of an edge that is not short a walked column stays exact, 0 if it cannot be walked.
+    ///
+    /// As in [`Self::walk`], but the start is too small by less than 2^-21.
+    #[inline(always)]
+    #[must_use]
+    pub fn exact_rows(&self) -> i32 {
+        if self.dy < TALL { (1 << (COLUMN + SUBPIXEL - 8)) / self.dy.max(1) - 2 } else { 0 }
+    }
+
+    /// The column at the centre of `row`, ready to be stepped. Only for edges with `exact_rows() > 0`
+    /// whose columns lie in [0, [`COLUMNS`]), and rows of the edge.
+    #[must_use]
+    pub fn walk_from(&self, row: i32) -> EdgeX {
+        let dy = self.dy.max(1) as u32;
+        let whole = self.dx.div_euclid(self.dy.max(1));
+        let rest = self.dx.wrapping_sub(whole.wrapping_mul(self.dy.max(1))) as u32;
+        let t = (row << SUBPIXEL).wrapping_add(CENTRE).wrapping_sub(self.y) as u32;
+        // dx t / dy = whole t + rest t / dy, split so that every product fits 32 bits.
+        let part = rest.wrapping_mul(t);
+        let (quotient, rest_t) = (part / dy, part % dy);
+        let sixteenths = (self.x - CENTRE).wrapping_add(whole.wrapping_mul(t as i32)).wrapping_add(quotient as i32);
+        EdgeX {
+            x: walked(sixteenths).wrapping_add((rest_t << (COLUMN - SUBPIXEL)) / dy),
+            step: ((whole << COLUMN) as u32).wrapping_add((rest << COLUMN) / dy),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::geometry::viewport::first_centre;
+    use proptest::prelude::*;
+
+    proptest! {
+        #![proptest_config(ProptestConfig::with_cases(20_000))]
+        #[test]
+        fn walked_columns_are_the_exact_ones(
+            x0 in 0i32..32_000,
+            dx in prop_oneof![-32_000i32..32_000, -1030i32..1030],
+            y0 in -3000i32..3000,
+            height in 1i32..2048,
+        ) {
+            let edge = Edge::new([x0, y0], [(x0 + dx).clamp(0, 32_000), y0 + height]);
+            let (mut row, end) = (first_centre(y0), first_centre(y0 + height));
+            while row < end {
+                let (mut column, rows) =
+                    if height <= SHORT && edge.dx.abs() <= NARROW { (edge.walk(), end - row) } else { (edge.walk_from(row), edge.exact_rows()) };
+                for row in row..end.min(row + rows) {
+                    prop_assert_eq!((column.x >> COLUMN) as i32, edge.column(row).rem_euclid(1 << 11));
+                    column.skip(1);
+                }
+                row += rows;
+            }
+        }
+    }
+}

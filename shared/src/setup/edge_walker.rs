@@ -1,0 +1,220 @@
+//! The sides of a triangle, in pieces in which both are walked.
+
+use zerocopy::{FromBytes, Immutable, IntoBytes, KnownLayout};
+
+use crate::{
+    geometry::viewport::first_centre,
+    setup::edge::{COLUMN, Edge, EdgeX, NARROW, SHORT},
+};
+
+/// The sides of a row.
+#[derive(FromBytes, IntoBytes, Immutable, KnownLayout, Clone, Copy, Debug)]
+#[repr(C)]
+pub(crate) struct LeftRight {
+    pub(crate) left: EdgeX,
+    pub(crate) right: EdgeX,
+}
+
+impl LeftRight {
+    /// Columns between them.
+    #[inline(always)]
+    pub(crate) fn columns(&self) -> u32 {
+        (self.right.x >> COLUMN).wrapping_sub(self.left.x >> COLUMN)
+    }
+
+    /// No columns.
+    pub(crate) const NONE: Self = Self { left: EdgeX::NONE, right: EdgeX::NONE };
+
+    /// Moves down `rows` rows.
+    #[inline(always)]
+    pub(crate) fn skip(&mut self, rows: i32) {
+        self.left.skip(rows);
+        self.right.skip(rows);
+    }
+}
+
+/// The edge below the middle corner.
+#[derive(Clone, Copy, Debug)]
+struct LowerEdge {
+    column: EdgeX,
+    /// It is on the right side.
+    right: bool,
+}
+
+/// Sides that go on below a band, as [`EdgeWalker`] has them.
+#[derive(FromBytes, IntoBytes, Immutable, KnownLayout, Clone, Copy, Debug)]
+#[repr(C)]
+pub(crate) struct EdgeState {
+    /// The sides of the next band's first row.
+    pair: LeftRight,
+    /// The edge below the middle corner, and the row where it begins.
+    column: EdgeX,
+    turn: i32,
+    low: i32,
+    /// Not 0: that edge is on the right side.
+    right: u8,
+    /// The pixel shader, see [`crate::raster::pixel_shader::PixelShader::ID`].
+    pub(crate) shader: u8,
+    /// Nothing: no byte is left undefined.
+    unused: u16,
+}
+
+impl EdgeState {
+    /// Of no triangle; all zeros.
+    pub(crate) const NONE: Self = Self { pair: LeftRight::NONE, column: EdgeX::NONE, turn: 0, low: 0, right: 0, shader: 0, unused: 0 };
+
+    /// The sides in the rows from `top` to `bottom` of the next band.
+    #[inline(always)]
+    pub(crate) fn sides(self, [top, bottom]: [i32; 2]) -> EdgeWalker {
+        let Self { pair, column, turn, low, right, .. } = self;
+        let end = low.min(bottom);
+        EdgeWalker {
+            pair,
+            row: top,
+            stop: turn.max(top).min(end),
+            end,
+            low,
+            turn,
+            simple: true,
+            below: LowerEdge { column, right: right != 0 },
+        }
+    }
+}
+
+/// A triangle's rows in a band.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct EdgeWalker {
+    /// Those of the first row.
+    pub(crate) pair: LeftRight,
+    /// The first row.
+    pub(crate) row: i32,
+    /// Where the rows end to which `pair` can be walked.
+    pub(crate) stop: i32,
+    /// Where the rows end.
+    pub(crate) end: i32,
+    /// The same of all bands.
+    low: i32,
+    /// Where the edge below the middle corner begins.
+    turn: i32,
+    /// They are walked from end to end.
+    simple: bool,
+    /// Takes the place of one of them at `stop` then.
+    below: LowerEdge,
+}
+
+impl EdgeWalker {
+    /// No row; all zeros.
+    pub(crate) const NONE: Self = Self {
+        pair: LeftRight::NONE,
+        row: 0,
+        stop: 0,
+        end: 0,
+        low: 0,
+        turn: 0,
+        simple: false,
+        below: LowerEdge { column: EdgeX::NONE, right: false },
+    };
+
+    /// Of a triangle, its top corner first, clockwise, in the rows from `top` to `bottom` of a band of `width` columns.
+    pub(crate) fn new(corners: [[i32; 2]; 3], [top, bottom]: [i32; 2], width: i32) -> Self {
+        let [[_, upper], [_, right], [_, left]] = corners;
+        let low = right.max(left);
+        if is_walkable(corners, width) && is_narrow(corners) && low - upper <= SHORT {
+            return Self::simple(corners, [top, bottom]);
+        }
+        let (row, end) = (first_centre(upper).max(top), first_centre(low).min(bottom));
+        let mut sides = Self { row, stop: row, end, low: end, ..Self::NONE };
+        (sides.stop, sides.pair) = sides.next_large(row, corners, width);
+        sides
+    }
+
+    /// The same of one that can be walked from end to end: no corner beside the band, few rows and columns.
+    #[inline(always)]
+    pub(crate) fn simple(corners: [[i32; 2]; 3], [top, bottom]: [i32; 2]) -> Self {
+        let [upper, right, left] = corners;
+        let first = first_centre(upper[1]);
+        let (turn, low) = (first_centre(right[1].min(left[1])), first_centre(right[1].max(left[1])));
+        let mut pair = LeftRight { left: Edge::new(upper, left).walk(), right: Edge::new(upper, right).walk() };
+        let turns_right = turns_right(corners);
+        let mut column = if turns_right { Edge::new(right, left) } else { Edge::new(left, right) }.walk();
+        let row = first.max(top);
+        if row > first {
+            pair.skip(row.wrapping_sub(first));
+            column.skip(row.wrapping_sub(turn).max(0));
+        }
+        let end = low.min(bottom);
+        Self { pair, row, stop: turn.max(row).min(end), end, low, turn, simple: true, below: LowerEdge { column, right: turns_right } }
+    }
+
+    /// Whether rows follow in the next band that can be walked to from here.
+    #[inline(always)]
+    pub(crate) fn goes_on(&self) -> bool {
+        self.low > self.end
+    }
+
+    /// What follows in the next band; `pair` has been walked to the end. `shader` is the [`crate::raster::pixel_shader::PixelShader::ID`].
+    #[inline(always)]
+    pub(crate) fn rest(&self, pair: LeftRight, shader: u8) -> EdgeState {
+        // Before the middle corner's row, or where it is the band's end, the edge below is still to come.
+        let turn = if self.stop < self.end { self.low } else { self.turn };
+        EdgeState { pair, column: self.below.column, turn, low: self.low, right: self.below.right.into(), shader, unused: 0 }
+    }
+
+    /// Goes on with the rows from `row`, to which both sides have been walked: `pair`; returns how far they can be walked now.
+    #[inline(always)]
+    pub(crate) fn next(&self, row: i32, pair: &mut LeftRight, corners: [[i32; 2]; 3], width: i32) -> i32 {
+        let stop;
+        if self.simple {
+            let LowerEdge { column, right } = self.below;
+            *(if right { &mut pair.right } else { &mut pair.left }) = column;
+            stop = self.end;
+        } else {
+            (stop, *pair) = self.next_large(row, corners, width);
+        }
+        stop
+    }
+
+    /// The next rows of a triangle that is clipped, or large: as many as stay exact, or one.
+    #[cold]
+    #[inline(never)]
+    fn next_large(self, row: i32, corners: [[i32; 2]; 3], width: i32) -> (i32, LeftRight) {
+        let [top, right, left] = corners;
+        let middle = first_centre(right[1].min(left[1]));
+        // Left of the middle corner's row both edges leave the top; below it, the side of that corner is another edge.
+        let (stop, left, right) = if row < middle {
+            (middle, Edge::new(top, left), Edge::new(top, right))
+        } else if turns_right(corners) {
+            (self.end, Edge::new(top, left), Edge::new(right, left))
+        } else {
+            (self.end, Edge::new(left, right), Edge::new(top, right))
+        };
+        let exact = if is_walkable(corners, width) { left.exact_rows().min(right.exact_rows()) } else { 0 };
+        let by_itself = |edge: Edge| EdgeX { x: (edge.column(row).max(0).min(width) as u32) << COLUMN, step: 0 };
+        let (stop, pair) = if exact > 0 {
+            (stop.min(row + exact), LeftRight { left: left.walk_from(row), right: right.walk_from(row) })
+        } else {
+            (row + 1, LeftRight { left: by_itself(left), right: by_itself(right) })
+        };
+        (stop.min(self.end), pair)
+    }
+}
+
+/// No corner lies beside the band.
+#[inline(always)]
+fn is_walkable([[a, _], [b, _], [c, _]]: [[i32; 2]; 3], width: i32) -> bool {
+    let inside = |x: i32| (x as u32) < (width as u32) << 4;
+    inside(a) && inside(b) && inside(c)
+}
+
+/// Every edge can be walked in one word.
+#[inline(always)]
+fn is_narrow([[a, _], [b, _], [c, _]]: [[i32; 2]; 3]) -> bool {
+    let narrow = |from: i32, to: i32| (to.wrapping_sub(from).wrapping_add(NARROW) as u32) <= 2 * NARROW as u32;
+    narrow(a, b) && narrow(b, c) && narrow(c, a)
+}
+
+/// The corner in the middle is on the right side.
+#[inline(always)]
+fn turns_right([_, right, left]: [[i32; 2]; 3]) -> bool {
+    right[1] < left[1]
+}

@@ -1,0 +1,470 @@
+//! From values at the nodes of a triangle to derivatives on the screen.
+//!
+//! With corner 0 as the origin, `s` and `t` are the barycentric coordinates of
+//! corners 1 and 2. Their gradients are 30-bit mantissas with one
+//! exponent, so tiny and huge triangles lose nothing. The derivatives of a
+//! quadratic in (s, t) with respect to (x, y) follow by the chain rule, which is
+//! well conditioned where the printed formulas divide by zero
+//! (Szirmay-Kalos et al.; see their T3..T5).
+//!
+//! Triangles that are small take shorter ways: in words where nodes have few bits, and mantissas of one word elsewhere.
+
+use crate::{
+    arch::product::{product, rounded},
+    format::{CENTRE, FINE, SPLITS, SUBPIXEL},
+    math::{recip::recip, scale, scale_wide, wide::Wide},
+    setup::{sliver::Sliver, terms::Terms, word_sized, word_sized::Small},
+};
+
+/// More fraction bits than the walked format, while coefficients move to the anchor.
+pub const GUARD: i32 = 12;
+
+/// Farther than this from the first corner, in columns plus rows, the anchor moves to the middle of what is drawn.
+pub const NEAR: i32 = 256;
+
+/// Length over height beyond which quadratic fields are fitted by exact fractions.
+///
+/// The error of the fast way grows with the square of this ratio: at most 2^-22 of the nodes' range at 1, 2^-8 here.
+pub const MAX_THINNESS: i64 = 128;
+
+/// Largest exponent of a small triangle's gradients: no shift of what they are multiplied with goes to the right.
+const LARGEST: u32 = 33;
+/// Smallest one: no shift to the left drops all.
+const LEAST: i32 = 20;
+
+/// The screen geometry of a triangle, ready to fit polynomials.
+///
+/// The *anchor* is the pixel to which coefficients are rounded; errors grow with
+/// the distance from it. It is the pixel at corner 0 for small triangles, and the
+/// middle of the visible part for large ones.
+#[derive(Clone, Copy, Debug)]
+pub struct Gradients {
+    scale: Scale,
+    /// From corner 0 to the centre of its pixel, [`FINE`] fraction bits.
+    offset: [i32; 2],
+    /// From that pixel to the anchor, in pixels.
+    shift: [i32; 2],
+    /// The anchor.
+    anchor: [i32; 2],
+    /// Longer than [`MAX_THINNESS`] times its height.
+    thin: bool,
+    /// Corners 1 and 2 from corner 0, in 1/16 pixel, of a part of the triangle 2^`level` times finer.
+    edges: [[i32; 2]; 2],
+    /// How often the triangle was split.
+    level: u32,
+}
+
+/// What edges are divided by to become gradients, or the gradients.
+#[derive(Clone, Copy, Debug)]
+enum Scale {
+    /// Words of 32 bits are enough, see [`Gradients::small`].
+    Small(Small),
+    /// The same of a part of such a triangle.
+    Part(Slopes),
+    Any(Slopes),
+}
+
+/// Gradients of s and t per pixel: mantissas, all with the exponent `exponent`.
+#[derive(Clone, Copy, Debug)]
+struct Slopes {
+    s: [i32; 2],
+    t: [i32; 2],
+    exponent: i32,
+}
+
+/// Columns and rows that are drawn, half open: `[left, top, right, bottom]`.
+pub type Visible = [i32; 4];
+
+impl Gradients {
+    /// The basis of the triangle with `corners` in 1/16 pixel, clockwise on a screen
+    /// whose y runs down; `None` if it has no area or runs the other way.
+    #[must_use]
+    pub fn new(corners: [[i32; 2]; 3], visible: Visible) -> Option<Self> {
+        Self::small(corners).or_else(|| Self::any(corners, visible))
+    }
+
+    /// That of a small and stout triangle: of up to 64 pixels, and not even nearly [`MAX_THINNESS`].
+    #[inline(always)]
+    #[must_use]
+    pub fn small(corners: [[i32; 2]; 3]) -> Option<Self> {
+        let (_, edges) = edges(corners);
+        Some(Self::of_small(corners, Small::new(edges)?))
+    }
+
+    /// Of a triangle on which nothing is to be fitted.
+    pub(crate) const NONE: Self = Self {
+        scale: Scale::Any(Slopes { s: [0; 2], t: [0; 2], exponent: 0 }),
+        offset: [0; 2],
+        shift: [0; 2],
+        anchor: [0; 2],
+        thin: false,
+        edges: [[0; 2]; 2],
+        level: 0,
+    };
+
+    /// That of a triangle of which is known that [`Self::small`] takes it.
+    #[inline(always)]
+    #[must_use]
+    pub(crate) fn simple(corners: [[i32; 2]; 3]) -> Self {
+        let (_, edges) = edges(corners);
+        Self::of_small(corners, Small::of(edges))
+    }
+
+    #[inline(always)]
+    fn of_small(corners: [[i32; 2]; 3], small: Small) -> Self {
+        let ([x0, y0], edges) = edges(corners);
+        let anchor = [x0 >> SUBPIXEL, (y0 + CENTRE - 1) >> SUBPIXEL];
+        let offset = [((anchor[0] << SUBPIXEL) + CENTRE - x0) << SPLITS, ((anchor[1] << SUBPIXEL) + CENTRE - y0) << SPLITS];
+        Self { scale: Scale::Small(small), offset, shift: [0; 2], anchor, thin: false, edges, level: 0 }
+    }
+
+    /// That of any triangle.
+    #[cold]
+    #[inline(never)]
+    #[must_use]
+    pub fn any(corners: [[i32; 2]; 3], visible: Visible) -> Option<Self> {
+        let ([x0, y0], edges) = edges(corners);
+        let [[x1, y1], [x2, y2]] = edges;
+        let det = i64::from(x1) * i64::from(y2) - i64::from(x2) * i64::from(y1);
+        if det <= 0 {
+            return None;
+        }
+        // 1 / det = r 2^(zeros - 94), r = 2^62 / (det's upper 32 bits): relative error 2^-29.
+        let zeros = det.leading_zeros() as i32;
+        let r = i64::from(recip(((det << (zeros & 63)) >> 32) as u32 | 1 << 31));
+        let size = x1.unsigned_abs() | y1.unsigned_abs() | x2.unsigned_abs() | y2.unsigned_abs();
+        let extent = x1.unsigned_abs().max(y1.unsigned_abs()).max(x2.unsigned_abs()).max(y2.unsigned_abs());
+        // r < 2^31, coordinates < 2^(32 - lz): mantissas below 2^30.
+        let drop = 33 - size.leading_zeros() as i32;
+        let mantissa = |c: i32| scale(i64::from(c) * r, drop) as i32;
+        let pixel = [x0 >> SUBPIXEL, (y0 + CENTRE - 1) >> SUBPIXEL];
+        let middle = [(visible[0] + visible[2]) >> 1, (visible[1] + visible[3]) >> 1];
+        let shift = [middle[0].wrapping_sub(pixel[0]), middle[1].wrapping_sub(pixel[1])];
+        let reach = size.min(1 << 20) as i32 >> (SUBPIXEL - 1);
+        let shift = if reach <= NEAR { [0; 2] } else { shift };
+        let gradients = Slopes {
+            s: [mantissa(y2), mantissa(x2.wrapping_neg())],
+            t: [mantissa(y1.wrapping_neg()), mantissa(x1)],
+            // gradient per pixel = 16 c / det = mantissa 2^(drop + 4 + zeros - 94)
+            exponent: 90 - zeros - drop,
+        };
+        Some(Self {
+            scale: Scale::Any(gradients),
+            offset: [(pixel[0] << SUBPIXEL) + CENTRE - x0, (pixel[1] << SUBPIXEL) + CENTRE - y0].map(|c| c << SPLITS),
+            shift,
+            anchor: [pixel[0].wrapping_add(shift[0]), pixel[1].wrapping_add(shift[1])],
+            edges,
+            level: 0,
+            thin: i64::from(extent) * i64::from(extent) > det.saturating_mul(MAX_THINNESS),
+        })
+    }
+
+    /// The basis of a part of the triangle: its copy, 2^`level` times smaller, with corner 0 at `corner` ([`FINE`] fraction
+    /// bits), turned by 180 degrees or not. Exact: a copy's gradients are the triangle's, times ±2^`level`.
+    ///
+    /// A part that is not `near` its corner everywhere has the triangle's anchor.
+    #[must_use]
+    pub fn part(&self, corner: [i32; 2], level: u32, turned: bool, near: bool) -> Self {
+        let gradient = |g: [i32; 2]| if turned { g.map(i32::wrapping_neg) } else { g };
+        let pixel = corner.map(|c| c >> FINE);
+        let centre = |k: usize| (pixel[k] << FINE).wrapping_add(1 << (FINE - 1)).wrapping_sub(corner[k]);
+        let anchor = if near { pixel } else { self.anchor };
+        let Slopes { s, t, exponent } = self.gradients();
+        let gradients = Slopes { s: gradient(s), t: gradient(t), exponent: exponent - level as i32 };
+        let fits_words = near && gradients.exponent >= LEAST && !matches!(self.scale, Scale::Any(_));
+        Self {
+            scale: if fits_words { Scale::Part(gradients) } else { Scale::Any(gradients) },
+            offset: [centre(0), centre(1)],
+            shift: [anchor[0].wrapping_sub(pixel[0]), anchor[1].wrapping_sub(pixel[1])],
+            anchor,
+            thin: self.thin,
+            edges: self.edges.map(gradient),
+            level,
+        }
+    }
+
+    /// The same, ready to be asked for many parts.
+    #[must_use]
+    pub fn parted(&self) -> Self {
+        match self.scale {
+            Scale::Small(small) => Self { scale: Scale::Part(Self::mantissas(self.edges, small)), ..*self },
+            _ => *self,
+        }
+    }
+
+    /// Column of the anchor.
+    #[inline(always)]
+    #[must_use]
+    pub fn column(&self) -> i32 {
+        self.anchor[0]
+    }
+
+    /// Row of the anchor.
+    #[inline(always)]
+    #[must_use]
+    pub fn row(&self) -> i32 {
+        self.anchor[1]
+    }
+
+    /// Gradients of s and t.
+    #[inline(always)]
+    fn gradients(&self) -> Slopes {
+        match self.scale {
+            Scale::Small(small) => Self::mantissas(self.edges, small),
+            Scale::Part(gradients) => gradients,
+            Scale::Any(gradients) => gradients,
+        }
+    }
+
+    /// Those of a small triangle: no shift of what they are multiplied with goes to the right.
+    #[inline(never)]
+    fn mantissas([[x1, y1], [x2, y2]]: [[i32; 2]; 2], Small { zeros, bits, .. }: Small) -> Slopes {
+        let det = x1.wrapping_mul(y2).wrapping_sub(x2.wrapping_mul(y1));
+        // 1 / det = r 2^(zeros - 62); coordinates are at most 2^bits, so mantissas c r 2^(zeros - 58 + exponent) at most 2^30.
+        let r = recip((det as u32) << (zeros & 31)).min(i32::MAX as u32) as i32;
+        let exponent = (57 - zeros - bits).min(LARGEST);
+        let up = zeros + exponent - 26;
+        let mantissa = |c: i32| ((product(c << up, r) + (1 << 31)) >> 32) as i32;
+
+        let (s, t) = ([mantissa(y2), -mantissa(x2)], [-mantissa(y1), mantissa(x1)]);
+        Slopes { s, t, exponent: exponent as i32 }
+    }
+
+    /// `[c, dx, dy]` of the linear field through the corners' values in a range of 2^`BITS`, at the anchor.
+    #[inline(always)]
+    #[must_use]
+    pub fn linear<const BITS: u32>(&self, nodes: [i32; 3], extra: u32) -> [i32; 3] {
+        match self.scale {
+            Scale::Small(small) if BITS <= word_sized::LINEAR && extra <= word_sized::EXTRA => {
+                small.linear(self.edges, self.subpixels(), nodes, extra)
+            }
+            Scale::Small(small) if BITS <= word_sized::LONG && extra >= word_sized::LONG_EXTRA => {
+                small.long_linear(self.edges, self.subpixels(), nodes, extra)
+            }
+            Scale::Small(small) => self.linear_small::<BITS>(Self::mantissas(self.edges, small), nodes, extra),
+            Scale::Part(gradients) => self.linear_small::<BITS>(gradients, nodes, extra),
+            Scale::Any(_) => self.linear_any(nodes, extra),
+        }
+    }
+
+    /// From corner 0 to the centre of its pixel, in 1/16 pixel; of a whole triangle.
+    #[inline(always)]
+    fn subpixels(&self) -> [i32; 2] {
+        [self.offset[0] >> SPLITS, self.offset[1] >> SPLITS]
+    }
+
+    #[inline(always)]
+    fn linear_small<const BITS: u32>(&self, gradients: Slopes, [i0, i1, i2]: [i32; 3], extra: u32) -> [i32; 3] {
+        // Differences are below 2^BITS.
+        let up = 30 - BITS;
+        let left = extra + BITS + 2 - gradients.exponent as u32;
+        let [c, dx, dy] = Mantissas::new(gradients, self.offset).products((i1 - i0) << up, (i2 - i0) << up);
+        [(i0 << extra).wrapping_add(rounded(c, left)), rounded(dx, left), rounded(dy, left)]
+    }
+
+    #[cold]
+    #[inline(never)]
+    fn linear_any(self, nodes: [i32; 3], extra: u32) -> [i32; 3] {
+        let [c, dx, dy] = self.plane(nodes, extra);
+        let [c, dx, dy, ..] = self.round([c, dx, dy, 0, 0, 0]);
+        [c, dx, dy]
+    }
+
+    /// `[c, dx, dy]` of the linear field through the corners' values, at the anchor, with [`GUARD`] more fraction bits.
+    #[must_use]
+    pub fn fine(&self, nodes: [i32; 3]) -> [i64; 3] {
+        let [c, dx, dy] = self.plane(nodes, 0);
+        let [x, y] = self.shift.map(i64::from);
+        [c.wrapping_add(dx.wrapping_mul(x)).wrapping_add(dy.wrapping_mul(y)), dx, dy]
+    }
+
+    /// `[c, dx, dy]` of the linear field through the corners' values, in the pixel at corner 0, with `GUARD` more bits than
+    /// walked.
+    #[inline(always)]
+    fn plane(&self, nodes: [i32; 3], extra: u32) -> [i64; 3] {
+        let (c, dx, dy) = self.slopes(nodes[0], nodes[1].wrapping_sub(nodes[0]).into(), nodes[2].wrapping_sub(nodes[0]).into(), extra);
+        [c.wrapping_add(along(dx, self.offset[0])).wrapping_add(along(dy, self.offset[1])), dx, dy]
+    }
+
+    /// Value at corner 0 and derivatives along x and y of `c0 + c1 s + c2 t`, with `GUARD` more bits than walked.
+    #[inline(always)]
+    fn slopes(&self, c0: i32, c1: i64, c2: i64, extra: u32) -> (i64, i64, i64) {
+        let Slopes { s, t, exponent } = self.gradients();
+        let bits = exponent - extra as i32 - GUARD;
+        let along = |s: i32, t: i32| scale(c1.wrapping_mul(s.into()).wrapping_add(c2.wrapping_mul(t.into())), bits);
+        (i64::from(c0).wrapping_shl(extra + GUARD as u32), along(s[0], t[0]), along(s[1], t[1]))
+    }
+
+    /// `[c, dx, dy, dxx, dxy, dyy]` of the quadratic through six nodes in a range of 2^`BITS`, at the anchor.
+    #[inline(always)]
+    #[must_use]
+    pub fn quadratic<const BITS: u32>(&self, nodes: [i32; 6], extra: u32) -> [i32; 6] {
+        match self.scale {
+            Scale::Small(small) if BITS <= word_sized::QUADRATIC && extra == word_sized::EXTRA => {
+                match small.quadratic(self.edges, self.subpixels(), nodes) {
+                    Some(fitted) => fitted,
+                    None => {
+                        // Taken apart and put together: what comes back in memory is not to make the others go there.
+                        let [c, dx, dy, dxx, dxy, dyy] = self.quadratic_any::<BITS>(nodes, extra);
+                        [c, dx, dy, dxx, dxy, dyy]
+                    }
+                }
+            }
+            Scale::Small(small) if BITS <= word_sized::LONG && extra >= word_sized::LONG_EXTRA => {
+                match small.long_quadratic(self.edges, self.subpixels(), nodes, extra) {
+                    Some(fitted) => fitted,
+                    None => self.quadratic_any::<BITS>(nodes, extra),
+                }
+            }
+            Scale::Small(small) => self.quadratic_small::<BITS>(Self::mantissas(self.edges, small), nodes, extra),
+            Scale::Part(gradients) => self.quadratic_small::<BITS>(gradients, nodes, extra),
+            Scale::Any(_) => self.quadratic_any::<BITS>(nodes, extra),
+        }
+    }
+
+    #[inline(always)]
+    fn quadratic_small<const BITS: u32>(&self, gradients: Slopes, [i0, i1, i2, i01, i12, i20]: [i32; 6], extra: u32) -> [i32; 6] {
+        let mantissas = Mantissas::new(gradients, self.offset);
+        let exponent = gradients.exponent as u32;
+        // First and second differences are below 2^(BITS + 2).
+        let up = 28 - BITS;
+        let (once, twice) = (extra + BITS + 4 - exponent, extra + BITS + 35 - 2 * exponent);
+        let [c, dx, dy] = mantissas.products((4 * i01 - 3 * i0 - i1) << up, (4 * i20 - 3 * i0 - i2) << up);
+        // Half the matrix of second derivatives: [[ss, st], [st, tt]].
+        let half = |difference: i32| difference << (up + 1);
+        let (ss, st, tt) = (half(i0 + i1 - 2 * i01), half(i0 - i01 - i20 + i12), half(i0 + i2 - 2 * i20));
+        // One factor of the chain rule, then the other.
+        let ([s, sx, sy], [t, tx, ty]) = (mantissas.products(ss, st), mantissas.products(st, tt));
+        let [bend, bend_x, bend_y] = mantissas.products(twice_upper(s), twice_upper(t));
+        let ([_, dxx, dxy], [_, _, dyy]) =
+            (mantissas.products(twice_upper(sx), twice_upper(tx)), mantissas.products(twice_upper(sy), twice_upper(ty)));
+        [
+            (i0 << extra).wrapping_add(rounded(c, once)).wrapping_add(rounded(bend, twice)),
+            rounded(dx, once).wrapping_add(rounded(bend_x, twice).wrapping_mul(2)),
+            rounded(dy, once).wrapping_add(rounded(bend_y, twice).wrapping_mul(2)),
+            rounded(dxx, twice),
+            rounded(dxy, twice).wrapping_mul(2),
+            rounded(dyy, twice),
+        ]
+    }
+
+    #[cold]
+    #[inline(never)]
+    fn quadratic_any<const BITS: u32>(self, nodes: [i32; 6], extra: u32) -> [i32; 6] {
+        let [i0, i1, i2, i01, i12, i20] = nodes;
+        if self.thin {
+            // In 1/16 pixel, in a part of the triangle as much finer as it is smaller: all exact.
+            let offset = self.offset.map(|c| c >> (SPLITS - self.level));
+            let sliver = Sliver { edges: self.edges, offset, bits: SUBPIXEL + self.level };
+            return self.round(sliver.quadratic(nodes, extra + GUARD as u32));
+        }
+        let (c, dx, dy) = self.slopes(i0, (4 * i01 - 3 * i0 - i1).into(), (4 * i20 - 3 * i0 - i2).into(), extra);
+        // Half the matrix of second derivatives: [[ss, st], [st, tt]].
+        let ss = i64::from(2 * (i0 + i1 - 2 * i01));
+        let st = i64::from(2 * (i0 - i01 - i20 + i12));
+        let tt = i64::from(2 * (i0 + i2 - 2 * i20));
+        // One factor of the chain rule, then the other. Second differences are below 2^(BITS + 2): two products
+        // with mantissas stay below 2^(BITS + 33), less these bits below 2^31.
+        let less = BITS as i32 + 2;
+        let Slopes { s, t, exponent } = self.gradients();
+        let once = |a: i64, b: i64, k: usize| scale(a * i64::from(s[k]) + b * i64::from(t[k]), less);
+        let (sx, tx, sy, ty) = (once(ss, st, 0), once(st, tt, 0), once(ss, st, 1), once(st, tt, 1));
+        let bits = 2 * exponent - less - extra as i32 - GUARD;
+        let twice = |a: i64, b: i64, k: usize| scale(a * i64::from(s[k]) + b * i64::from(t[k]), bits);
+        let (dxx, dyy) = (twice(sx, tx, 0), twice(sy, ty, 1));
+        let dxy = twice(sx, tx, 1).wrapping_mul(2);
+        // From the corner to its pixel's centre, at most a pixel away.
+        let [ox, oy] = self.offset;
+        let (bend_x, mixed, bend_y) = (along(dxx, ox), along(dxy, oy), along(dyy, oy));
+        let c = c.wrapping_add(along(dx + bend_x + mixed, ox)).wrapping_add(along(dy + bend_y, oy));
+        let dx = dx.wrapping_add(2 * bend_x).wrapping_add(mixed);
+        let dy = dy.wrapping_add(2 * bend_y).wrapping_add(along(dxy, ox));
+        self.round([c, dx, dy, dxx, dxy, dyy])
+    }
+
+    /// The terms of the cubic through ten nodes in a range of 2^15, at the anchor; by powers of x, then of y.
+    ///
+    /// In 128 bits all is exact but the gradients, and one rounding of each coefficient.
+    #[must_use]
+    pub fn cubic(&self, nodes: [i32; 10], extra: u32) -> Terms<i64> {
+        let fraction = extra + GUARD as u32;
+        let terms = if self.thin {
+            let sliver = Sliver { edges: self.edges, offset: self.offset.map(|c| c >> SPLITS), bits: SUBPIXEL };
+            let by = |k: usize| move |a: Wide, b: Wide| a + b * Wide::from(self.shift[k]);
+            sliver.cubic(nodes, fraction).moved_across(by(0)).moved_down(by(1))
+        } else {
+            // With three mantissas terms stay below 2^114, moved below 2^124.
+            let Slopes { s, t, exponent } = self.gradients();
+            let terms = Terms::of(nodes.map(Wide::from), s.map(Wide::from), t.map(Wide::from));
+            let scaled = terms.map(|c, degree| Wide(scale_wide(c.0, degree as i32 * exponent + 2 - fraction as i32)));
+            // From the corner to the anchor.
+            let way = |k: usize| Wide(i128::from(self.offset[k]) + (i128::from(self.shift[k]) << FINE));
+            let by = |k: usize| move |a: Wide, b: Wide| a + Wide((b * way(k)).0 >> FINE);
+            scaled.moved_across(by(0)).moved_down(by(1))
+        };
+        terms.map(|c, _| scale_wide(c.0, GUARD) as i64)
+    }
+
+    /// Moves coefficients from corner 0's pixel to the anchor, exactly, and rounds them to the walked format.
+    #[inline]
+    fn round(&self, [c, dx, dy, dxx, dxy, dyy]: [i64; 6]) -> [i32; 6] {
+        let done = |v: i64| scale(v, GUARD) as i32;
+        if self.shift == [0; 2] {
+            return [done(c), done(dx), done(dy), done(dxx), done(dxy), done(dyy)];
+        }
+        let [x, y] = self.shift.map(i64::from);
+        let m = i64::wrapping_mul;
+        let bend_x = m(dxx, x).wrapping_add(m(dxy, y));
+        let bend_y = m(dyy, y);
+        let c = c.wrapping_add(m(dx.wrapping_add(bend_x), x)).wrapping_add(m(dy.wrapping_add(bend_y), y));
+        let dx = dx.wrapping_add(bend_x).wrapping_add(m(dxx, x));
+        let dy = dy.wrapping_add(bend_y).wrapping_add(bend_y).wrapping_add(m(dxy, x));
+        [done(c), done(dx), done(dy), done(dxx), done(dxy), done(dyy)]
+    }
+}
+
+/// The first corner, and the edges from it to the others.
+#[inline(always)]
+fn edges([[x0, y0], [x1, y1], [x2, y2]]: [[i32; 2]; 3]) -> ([i32; 2], [[i32; 2]; 2]) {
+    ([x0, y0], [[x1.wrapping_sub(x0), y1.wrapping_sub(y0)], [x2.wrapping_sub(x0), y2.wrapping_sub(y0)]])
+}
+
+/// Gradients of s and t, and s and t at the anchor of a small triangle, all with one exponent.
+struct Mantissas {
+    gradients: Slopes,
+    at: [i32; 2],
+}
+
+impl Mantissas {
+    /// `offset` leads from corner 0 to the anchor.
+    #[inline(always)]
+    fn new(gradients: Slopes, offset: [i32; 2]) -> Self {
+        Self { at: [at(gradients.s, offset), at(gradients.t, offset)], gradients }
+    }
+
+    /// Of `a s + b t`: the value at the anchor, and the derivatives along x and y; `a` and `b` are at most 2^30.
+    #[inline(always)]
+    fn products(&self, a: i32, b: i32) -> [i64; 3] {
+        let Slopes { s, t, .. } = self.gradients;
+        let along = |s: i32, t: i32| product(a, s) + product(b, t);
+        [along(self.at[0], self.at[1]), along(s[0], t[0]), along(s[1], t[1])]
+    }
+}
+
+/// The upper half of a product, rounded to nearest, times 2.
+#[inline(always)]
+fn twice_upper(product: i64) -> i32 {
+    ((product.wrapping_add(1 << 31) >> 32) as i32) << 1
+}
+
+/// What `gradient` comes to at `offset`, which is at most a pixel away ([`FINE`] fraction bits).
+#[inline(always)]
+fn at(gradient: [i32; 2], offset: [i32; 2]) -> i32 {
+    ((product(gradient[0], offset[0]) + product(gradient[1], offset[1])) >> FINE) as i32
+}
+
+/// `gradient` times `offset`, [`FINE`] fraction bits.
+#[inline(always)]
+fn along(gradient: i64, offset: i32) -> i64 {
+    gradient.wrapping_mul(offset.into()) >> FINE
+}
