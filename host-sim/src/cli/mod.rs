@@ -75,6 +75,7 @@ impl std::error::Error for Usage {}
 /// What a command ends with when nothing went wrong.
 enum Outcome {
     Done,
+    #[cfg_attr(not(feature = "boards"), expect(dead_code, reason = "only commands for boards compare"))]
     Differences,
 }
 
