@@ -95,13 +95,13 @@ impl Display for Framebuffer {
     }
 }
 
-/// Memory and start of a board with such a display; a macro, as the statics of `main` must be written in it.
+/// Memory and start of a board with such a display and these methods; a macro, as the statics of `main` must be written in it.
 #[macro_export]
 macro_rules! framebuffer_board {
-    () => {
+    ($shaders:expr) => {
         use ::embedded_graphics::pixelcolor::{Rgb565, RgbColor};
         use ::microphong::Layout;
-        use ::microphong_firmware::{budget::MPS2, framebuffer, run, shaders::every};
+        use ::microphong_firmware::{budget::MPS2, framebuffer, run};
 
         const LAYOUT: Layout = MPS2.layout;
 
@@ -117,7 +117,7 @@ macro_rules! framebuffer_board {
             // SAFETY: nothing else in the program names it, and `main` runs once.
             let picture = unsafe { &mut *(&raw mut FRAMEBUFFER) };
             let [front, back] = BANDS;
-            run(&mut framebuffer::Framebuffer::new(picture), &LAYOUT, MEMORY, [front, back], every())
+            run(&mut framebuffer::Framebuffer::new(picture), &LAYOUT, MEMORY, [front, back], $shaders)
         }
     };
 }

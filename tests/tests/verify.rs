@@ -1,11 +1,14 @@
 //! The flashable firmware of every board, run on its emulated display and compared with the host, pixel by pixel.
 
-use microphong::stream::{
-    record::{Triangle, Vertex},
-    seal,
+use microphong::{
+    method::{Canvas, Facts, Method, Shading, TriangleSetup, gouraud::Gouraud},
+    stream::{
+        record::{Triangle, Vertex},
+        seal,
+    },
 };
 use microphong_sim::{
-    board::{self, Board, elf::Elf},
+    board::{self, Board, build::program, elf::Elf},
     scene,
     shader::Shader,
     verify::{self, Request},
@@ -106,6 +109,35 @@ fn damaged_stream(board: Board) -> Result {
     let background = picture.last().copied().expect("a pixel");
     let text = picture.iter().filter(|&&pixel| pixel != background).count();
     assert!((100..picture.len() / 4).contains(&text), "{board}: {text} pixels of text");
+    Ok(())
+}
+
+#[path = "../../examples/own_method.rs"]
+#[expect(dead_code, reason = "the example's `main`")]
+mod own_method;
+
+/// [`own_method::Cartoon`] without its steps, under the same name and number.
+struct Smooth;
+
+impl Method for Smooth {
+    fn facts(&self) -> &'static Facts {
+        own_method::Cartoon.facts()
+    }
+
+    fn shade(&self, setup: &TriangleSetup<'_>, shading: &Shading<'_>, canvas: &mut dyn Canvas) -> u32 {
+        Gouraud.shade(setup, shading, canvas)
+    }
+}
+
+/// A method that is no part of microphong draws the same on a board and here; another in its place is found.
+#[test]
+fn a_method_of_a_users_own_is_the_hosts() -> Result {
+    let directory = tempfile::tempdir()?;
+    let board = Board::Mps2An385;
+    let elf = program(board, "own-method")?;
+    let run = |shader| -> Result<_> { Ok(verify::run(&request(board, "teapot", shader)?, &elf, directory.path())?) };
+    assert_eq!(run(Shader::new(&own_method::Cartoon))?.differing, 0);
+    assert!(run(Shader::new(&Smooth))?.differing > 1000, "another method went unnoticed");
     Ok(())
 }
 

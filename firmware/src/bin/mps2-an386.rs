@@ -2,4 +2,4 @@
 #![no_std]
 #![no_main]
 
-microphong_firmware::framebuffer_board!();
+microphong_firmware::framebuffer_board!(::microphong_firmware::shaders::every());

@@ -10,20 +10,28 @@ use std::{
 
 /// Builds the firmware of `board` and returns the ELF's path.
 ///
+/// # Errors
+/// When the target or the compiler is missing, or the firmware does not compile.
+pub fn firmware(board: Board) -> Result<PathBuf> {
+    program(board, board.name())
+}
+
+/// Builds a program of the package `firmware` for `board` and returns the ELF's path.
+///
 /// All boards, and whatever else is compiled for them, share a target directory, so that dependencies are compiled once.
 ///
 /// # Errors
 /// When the target or the compiler is missing, or the firmware does not compile.
-pub fn firmware(board: Board) -> Result<PathBuf> {
+pub fn program(board: Board, name: &str) -> Result<PathBuf> {
     let root = sources()?;
     let directory = root.join("firmware");
     install_target(board.target(), &directory)?;
 
     let output = root.join("target/firmware");
-    let what = format!("the firmware for {board}");
-    let arguments = ["--no-default-features", "--features", board.name(), "--bin", board.name(), "--target", board.target()];
+    let what = if name == board.name() { format!("the firmware for {board}") } else { format!("{name} for {board}") };
+    let arguments = ["--no-default-features", "--features", board.name(), "--bin", name, "--target", board.target()];
     release(&directory, &arguments, &output, &what)?;
-    Ok(output.join(board.target()).join("release").join(board.name()))
+    Ok(output.join(board.target()).join("release").join(name))
 }
 
 /// Builds the workspace in `directory` into `output`; `what` is its name in messages.

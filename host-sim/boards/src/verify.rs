@@ -95,9 +95,9 @@ fn compare(request: &Request, elf: &Path, artefacts: &Path) -> Result<Report> {
     let stream = host_stream.parse()?;
     let budget = request.board.budget();
     let host = match request.board.format() {
-        Format::Rgb565 => draw::<Rgb565>(stream, budget, frames),
-        Format::Rgb565Be => draw::<Rgb565Be>(stream, budget, frames),
-        Format::Gray4 => draw::<Gray4>(stream, budget, frames),
+        Format::Rgb565 => draw::<Rgb565>(stream, request.shader, budget, frames),
+        Format::Rgb565Be => draw::<Rgb565Be>(stream, request.shader, budget, frames),
+        Format::Gray4 => draw::<Gray4>(stream, request.shader, budget, frames),
     }?;
     let recording = crate::run(request.board, &elf, frames)?;
     check_log(&recording, frames)?;
@@ -180,11 +180,11 @@ fn log_tail(recording: &Recording) -> String {
 }
 
 /// Draws with as much memory as the firmware has, in as many bands.
-fn draw<C: Pixel>(stream: Stream<'_>, budget: Budget, frames: usize) -> Result<Vec<Picture>> {
+fn draw<C: Pixel>(stream: Stream<'_>, shader: Shader, budget: Budget, frames: usize) -> Result<Vec<Picture>> {
     let Budget { height, layout } = budget;
     let size = Size::new(layout.width as u32, height as u32);
     let mut memory = vec![0; layout.words::<C>()];
-    let shaders = Shader::ALL.map(Shader::on);
+    let shaders = [shader.on()];
     let mut renderer = Renderer::new(stream, size, &layout, &mut memory, &shaders).context("the board cannot draw this stream")?;
     let mut band = vec![C::pack([0; 3]); layout.band()];
     let pictures = (0..frames as u32).map(|number| {

@@ -65,6 +65,12 @@ impl Shader {
     /// The methods that the core itself has.
     pub const CORE: [Self; 6] = [Self::FLAT, Self::GOURAUD, Self::SIX_POINT, Self::PHONG, Self::SQRT6, Self::RENQ_NEWTON];
 
+    /// A method that is none of these.
+    #[must_use]
+    pub const fn new(method: &'static dyn Method) -> Self {
+        Self(method)
+    }
+
     /// The method with this number in streams.
     #[must_use]
     pub fn by_id(id: u16) -> Option<Self> {

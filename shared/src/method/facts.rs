@@ -30,6 +30,20 @@ pub struct Facts {
 impl Facts {
     /// The first number that is never given to a method of microphong.
     pub const FIRST_FREE: u16 = 0x8000;
+
+    /// What most methods of your own say, `Facts { name: "mine", ..Facts::OWN }`: levels at vertices, any lights, perspective. Operations
+    /// are not counted.
+    pub const OWN: Self = Self {
+        name: "own",
+        id: Self::FIRST_FREE,
+        source: "",
+        vertex_light: VertexLight::Levels,
+        highlight: Highlight::Half,
+        highlight_levels: false,
+        near_lights: true,
+        perspective: true,
+        costs: Costs::new(0, 0, 0, 0),
+    };
 }
 
 /// Operations of a method's formulas, counted by hand; `microphong bench` counts instructions.

@@ -17,11 +17,10 @@ pub mod renq_newton;
 pub mod six_point;
 pub mod sqrt6;
 
-pub use crate::lighting::materials::Highlight;
 use crate::{
     antialias::{PixelSet, Shape},
     arch::product::by_fraction,
-    format::{BIAS, Intensity, LEVEL, RHO, SUBPIXEL, WALK},
+    format::{BIAS, LEVEL, RHO, SUBPIXEL, WALK},
     geometry::projection::ScreenVertex,
     interpolate::{
         Patch, Walker,
@@ -36,12 +35,17 @@ use crate::{
     raster::{
         active::ActiveTriangle,
         band::Band,
-        canvas::{Canvas, IntensityShader, Shaded, SpanShader},
+        canvas::{Shaded, SpanShader},
         pixel_shader::{PixelShader, Ramp, Rgb},
         triangle::{ScreenTriangle, turn},
     },
     setup::gradients::Gradients,
     stream::record::{Triangle, Vertex},
+};
+pub use crate::{
+    format::Intensity,
+    lighting::materials::Highlight,
+    raster::canvas::{Canvas, IntensityShader},
 };
 use core::marker::PhantomData;
 pub use facts::{Costs, Facts, VertexLight};
@@ -266,6 +270,12 @@ fn channels<const N: usize>(levels: [[i32; 3]; N]) -> [[i32; N]; 3] {
         (*red, *green, *blue) = (r, g, b);
     }
     channels
+}
+
+/// Levels at `N` nodes, Q9.7, to be interpolated in three channels; [`Walked`] makes an intensity of what arrives at a pixel.
+#[must_use]
+pub fn levels_at<const N: usize>(levels: [[i32; 3]; N]) -> Nodes<N, 3, RANGE> {
+    Nodes::new(channels(levels), EXTRA).biased([bias(0); 3])
 }
 
 /// The bias of walked levels plus a rounding half.

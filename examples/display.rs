@@ -11,7 +11,7 @@ const LAYOUT: Layout = Layout::new(240, 40);
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
     // Read in place: on a microcontroller the mesh stays in flash.
-    let stream = Stream::parse(include_stream!("../../firmware/teapot.tri"))?;
+    let stream = Stream::parse(include_stream!("../firmware/teapot.tri"))?;
     let mut memory = vec![0; LAYOUT.words::<Rgb565>()];
     let mut band = [Rgb565::BLACK; LAYOUT.band()];
 
