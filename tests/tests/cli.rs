@@ -2,6 +2,7 @@
 
 use microphong::{Stream, StreamError, renderer::check, stream};
 use microphong_sim::{
+    board::Board,
     bytes::StreamBytes,
     render::{self, Format, Settings, Style},
     scene,
@@ -140,6 +141,20 @@ fn wrong_usage_is_told_from_failure() {
     place.fails(&["bench", "triangle", "--peers"], 2, &["peer-sphere"]);
     place.fails(&["paint"], 2, &["paint"]);
     place.fails(&[], 2, &["Usage"]);
+}
+
+/// The help of `convert` names the methods of the core, first those that every board has.
+#[test]
+fn help_names_the_methods_of_boards() {
+    let help = Place::new().succeeds(&["convert", "--help"]).split_whitespace().collect::<Vec<_>>().join(" ");
+    let names = Shader::CORE.map(Shader::name).join(", ");
+    assert!(help.contains(&format!("asks for: {names}, or one of the literature")), "{help}");
+    for board in Board::ALL {
+        let has = Shader::ALL.into_iter().filter(|&shader| board.has(shader));
+        let expected = if board == Board::Lm3s6965evb { &Shader::CORE[..3] } else { &Shader::ALL };
+        assert!(has.eq(expected.iter().copied()), "{board}");
+    }
+    assert!(help.contains("The board lm3s6965evb has the first three, the others have all"), "{help}");
 }
 
 /// The command works wherever it lies; what compiles firmware says where it looked for the sources.

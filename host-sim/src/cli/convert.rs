@@ -34,7 +34,8 @@ pub(crate) struct Arguments {
     /// Turn the surface inside out, for meshes whose faces wind clockwise; closed ones are turned without asking.
     #[arg(long)]
     flip: bool,
-    /// Shading method: flat, gouraud, six-point or phong.
+    /// Shading method that the stream asks for: flat, gouraud, six-point, phong, sqrt6, renq-newton, or one of the literature, as
+    /// `microphong compare` lists them. The board lm3s6965evb has the first three, the others have all.
     #[arg(long, default_value = "six-point", value_parser = parse::shader)]
     shader: Shader,
     /// Colour of the surface, RRGGBB; copper unless given.
