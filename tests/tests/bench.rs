@@ -1,14 +1,14 @@
 //! What `bench` counts is exact, the same each time, and has not grown since somebody last looked.
 
 use microphong_sim::{
-    bench::{Bench, Processor, baseline, stage::Meter},
+    bench::{Bench, Processor, baseline, renewal::Growth, stage::Meter},
     board::{Blocks, elf::Elf, trace},
     scene,
     shader::Shader,
     verify,
 };
-use microphong_tests::named;
-use std::{collections::BTreeMap, path::Path};
+use microphong_tests::{named, program};
+use std::{collections::BTreeMap, fs, path::Path, process::Command};
 
 /// QEMU logs blocks of instructions; one by one it executes the same, address by address.
 #[test]
@@ -65,9 +65,13 @@ fn counts_repeat() {
 fn costs_have_not_grown() {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("baselines/costs.csv");
     let recorded = baseline::read(&path).unwrap();
-    let changes = baseline::changes(&recorded, &baseline::measure(&recorded, || ()).unwrap());
+    let measured = baseline::measure(&recorded, || ()).unwrap();
+    let changes = baseline::changes(&recorded, &measured);
+    let growth = Growth::of(&path, &measured).unwrap().expect("the costs of a release lie beside the recorded ones");
+    assert!(growth.frames > 50, "only {} frames of the release are still measured", growth.frames);
+    println!("{growth}");
     let (grown, shrunk): (Vec<_>, Vec<_>) = changes.iter().partition(|change| change.percent() > 0.0);
-    let renew = "renew the file: cargo run --release --features boards -- bench --renew tests/baselines/costs.csv";
+    let renew = "renew the file: cargo run --release --features boards -- bench --renew tests/baselines/costs.csv --reason \"...\"";
     for change in shrunk.iter().chain(&grown) {
         println!("{change}");
     }
@@ -75,5 +79,29 @@ fn costs_have_not_grown() {
         println!("{} costs have shrunk, which would hide later growth: {renew}", shrunk.len());
     }
     let list: Vec<_> = grown.iter().map(|change| change.to_string()).collect();
-    assert!(grown.is_empty(), "{} costs have grown:\n{}\nif that is meant, {renew}", grown.len(), list.join("\n"));
+    assert!(grown.is_empty(), "{} costs have grown:\n{}\n{growth}\nif that is meant, {renew}", grown.len(), list.join("\n"));
+}
+
+/// Renewed costs are those that are measured, with the reason beside them; what has not changed needs none.
+#[test]
+fn renewal_keeps_the_reason() {
+    let directory = tempfile::tempdir().unwrap();
+    let [costs, release, reasons] = ["costs.csv", "costs-0.1.0.csv", "costs-reasons.md"].map(|name| directory.path().join(name));
+    fs::write(&costs, "mps2-an385,triangle,flat,1000,0\n").unwrap();
+    fs::copy(&costs, &release).unwrap();
+    let run = |arguments: &[&str]| {
+        let output = Command::new(program()).arg("bench").args(arguments).current_dir(directory.path()).output().unwrap();
+        assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+        String::from_utf8(output.stdout).unwrap()
+    };
+    let renewed = run(&["--renew", "costs.csv", "--reason", "Triangles are flat."]);
+    assert!(renewed.contains("since 0.1.0, mean of 1 frames: instructions +"), "{renewed}");
+    let text = fs::read_to_string(&reasons).unwrap();
+    assert!(text.ends_with(" | +0.00 | Triangles are flat. |\n"), "{text}");
+    let [recorded] = &baseline::read(&costs).unwrap()[..] else { panic!("one frame") };
+    assert!(recorded.instructions > 1000 && recorded.flash_bytes > 1000, "{recorded}");
+
+    assert!(run(&["--renew", "costs.csv", "--reason", "None."]).contains("nothing to renew"));
+    assert_eq!(fs::read_to_string(&reasons).unwrap(), text);
+    assert!(run(&["--check", "costs.csv"]).starts_with("1 frames cost what they did\nsince 0.1.0"));
 }

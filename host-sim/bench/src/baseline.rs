@@ -1,7 +1,7 @@
 //! What frames cost when somebody last looked, in a file that is kept with the sources.
 //!
 //! One line per frame: board, scene, method, instructions, bytes of flash. The lines choose what is measured: to add a frame, add
-//! a line with any numbers and renew the file.
+//! a line with zeros and renew the file.
 
 use super::{Bench, Measurement, Processor};
 use anyhow::{Context, Result};
@@ -9,7 +9,7 @@ use microphong_render::{scene, shader::Shader};
 use std::{fmt, fs, path::Path};
 
 /// Growth of instructions or flash that is let pass, in percent. A shrinkage of more asks to renew the file, or it would hide later growth.
-pub const TOLERANCE: f64 = 1.0;
+pub const TOLERANCE: f64 = 0.2;
 
 const HEAD: &str = "board,scene,shader,instructions,flash_bytes";
 
@@ -29,7 +29,7 @@ pub struct Entry {
 }
 
 impl Entry {
-    fn parse(line: &str) -> Result<Self> {
+    pub(super) fn parse(line: &str) -> Result<Self> {
         let words: Vec<_> = line.split(',').map(str::trim).collect();
         let [board, scene, shader, instructions, flash_bytes] = words[..] else {
             anyhow::bail!("{} words instead of those of `{HEAD}`", words.len());
@@ -43,6 +43,12 @@ impl Entry {
             instructions: instructions.parse().with_context(|| format!("`{instructions}` is no number"))?,
             flash_bytes: flash_bytes.parse().with_context(|| format!("`{flash_bytes}` is no number"))?,
         })
+    }
+
+    /// Whether both are about the same frame.
+    #[must_use]
+    pub fn same_frame(&self, other: &Self) -> bool {
+        (self.processor, &self.scene, self.shader) == (other.processor, &other.scene, other.shader)
     }
 
     /// The same frame as it is now.
@@ -59,7 +65,7 @@ impl fmt::Display for Entry {
     }
 }
 
-/// A figure that has changed by more than its tolerance.
+/// A figure that has changed.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Change {
     /// Which frame.
@@ -90,13 +96,19 @@ impl fmt::Display for Change {
 
 /// Changes between lines and what was measured for them.
 #[must_use]
-pub fn changes(recorded: &[Entry], measured: &[Entry]) -> Vec<Change> {
+pub fn changed(recorded: &[Entry], measured: &[Entry]) -> Vec<Change> {
     let pairs = recorded.iter().zip(measured).flat_map(|(entry, now)| {
         let instructions = ("instructions", entry.instructions, now.instructions);
         let flash = ("bytes of flash", entry.flash_bytes, now.flash_bytes);
         [instructions, flash].map(|(what, was, is)| Change { entry: entry.clone(), what, was, is })
     });
-    pairs.filter(|change| change.percent().abs() > TOLERANCE).collect()
+    pairs.filter(|change| change.is != change.was).collect()
+}
+
+/// Those of them that are beyond the [`TOLERANCE`].
+#[must_use]
+pub fn changes(recorded: &[Entry], measured: &[Entry]) -> Vec<Change> {
+    changed(recorded, measured).into_iter().filter(|change| change.percent().abs() > TOLERANCE).collect()
 }
 
 /// Reads a file.
@@ -158,9 +170,9 @@ mod tests {
             let now = Entry { instructions, flash_bytes, ..old.clone() };
             changes(std::slice::from_ref(&old), &[now]).iter().map(ToString::to_string).collect::<Vec<_>>()
         };
-        assert!(changes(1010, 2020).is_empty());
-        assert_eq!(changes(1011, 2020), ["flat on cortex-m3, teapot: instructions 1000 -> 1011 (+1.10 %)"]);
-        assert_eq!(changes(1010, 2021), ["flat on cortex-m3, teapot: bytes of flash 2000 -> 2021 (+1.05 %)"]);
+        assert!(changes(1002, 2004).is_empty());
+        assert_eq!(changes(1003, 2004), ["flat on cortex-m3, teapot: instructions 1000 -> 1003 (+0.30 %)"]);
+        assert_eq!(changes(1002, 1995), ["flat on cortex-m3, teapot: bytes of flash 2000 -> 1995 (-0.25 %)"]);
     }
 
     #[test]

@@ -13,6 +13,7 @@ pub mod page;
 pub mod pareto;
 pub mod peers;
 pub mod processor;
+pub mod renewal;
 pub mod stage;
 
 use anyhow::{Context, Result};

@@ -16,6 +16,7 @@ use microphong_sim::{
             self,
             table::{Table, short},
         },
+        renewal::{self, Growth},
     },
     scene::Scene,
     shader::Shader,
@@ -51,12 +52,20 @@ pub(crate) struct Arguments {
     /// Also measure other renderers on the scene peer-sphere, on the boards mps2-an385, mps2-an386 and x86-64.
     #[arg(long)]
     peers: bool,
-    /// Measure the frames that FILE lists, and fail where one costs over 1 % more instructions or flash than recorded there.
+    /// Measure the frames that FILE lists, and fail where one costs over 0.2 % more instructions or flash than recorded there.
     #[arg(long, value_name = "FILE", conflicts_with_all = ["scenes", "shader", "board", "json", "report", "peers"])]
     check: Option<PathBuf>,
-    /// Measure the frames that FILE lists, and record what they cost.
-    #[arg(long, value_name = "FILE", conflicts_with_all = ["scenes", "shader", "board", "json", "report", "peers", "check"])]
+    /// Measure the frames that FILE lists, and record what they cost; a --reason is needed.
+    #[arg(
+        long,
+        value_name = "FILE",
+        requires = "reason",
+        conflicts_with_all = ["scenes", "shader", "board", "json", "report", "peers", "check"]
+    )]
     renew: Option<PathBuf>,
+    /// Why costs have changed, in a sentence: --renew of costs.csv adds it to costs-reasons.md.
+    #[arg(long, value_name = "TEXT", requires = "renew", value_parser = parse::reason)]
+    reason: Option<String>,
 }
 
 const EXAMPLES: &str = "\
@@ -68,7 +77,8 @@ Examples:
   microphong bench --shader all --board all --report bench    the chart, as a page
   microphong bench --peers --board mps2-an385,mps2-an386,x86-64    beside other renderers
   microphong bench --check tests/baselines/costs.csv     has anything become dearer?
-  microphong bench --renew tests/baselines/costs.csv     it has, and for a reason
+  microphong bench --renew tests/baselines/costs.csv --reason \"Thin triangles no longer flicker.\"
+                                                         it has, and this is why
 
 Stages:
   frame     once a frame: camera, lights
@@ -95,8 +105,8 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome> {
     if let Some(path) = &arguments.check {
         return compare(path);
     }
-    if let Some(path) = &arguments.renew {
-        return renew(path);
+    if let (Some(path), Some(reason)) = (&arguments.renew, &arguments.reason) {
+        return renew(path, reason);
     }
     let mut scenes = Vec::new();
     for name in &arguments.scenes {
@@ -186,7 +196,7 @@ fn compare(path: &Path) -> Result<Outcome> {
     changes.iter().try_for_each(|change| report::line(&change.to_string()))?;
     let grown = changes.iter().filter(|change| change.percent() > 0.0).count();
     let shrunk = changes.len() - grown;
-    let renew = format!("if that is meant, renew the file: microphong bench --renew {}", path.display());
+    let renew = format!("if that is meant, renew the file: microphong bench --renew {} --reason \"...\"", path.display());
     if grown > 0 {
         report::line(&format!("{grown} of {} costs have grown by more than {} %; {renew}", 2 * recorded.len(), baseline::TOLERANCE))?;
     } else if shrunk > 0 {
@@ -194,15 +204,27 @@ fn compare(path: &Path) -> Result<Outcome> {
     } else {
         report::line(&format!("{} frames cost what they did", recorded.len()))?;
     }
+    grown_since(path, &measured)?;
     Ok(if grown > 0 { Outcome::Differences } else { Outcome::Done })
 }
 
-fn renew(path: &Path) -> Result<Outcome> {
+fn renew(path: &Path, reason: &str) -> Result<Outcome> {
     let [recorded, measured] = again(path)?;
-    baseline::changes(&recorded, &measured).iter().try_for_each(|change| report::line(&change.to_string()))?;
-    baseline::write(path, &measured)?;
-    report::line(&format!("{} frames recorded in {}", measured.len(), path.display()))?;
+    if recorded == measured {
+        report::line(&format!("{} frames cost exactly what is recorded: nothing to renew", recorded.len()))?;
+    } else {
+        baseline::changes(&recorded, &measured).iter().try_for_each(|change| report::line(&change.to_string()))?;
+        let reasons = renewal::renew(path, [&recorded, &measured], reason)?;
+        report::line(&format!("{} frames recorded in {}, the reason in {}", measured.len(), path.display(), reasons.display()))?;
+        report::line(&format!("mean of all frames: {}", renewal::Total::between(&recorded, &measured)))?;
+    }
+    grown_since(path, &measured)?;
     Ok(Outcome::Done)
+}
+
+/// The tolerance lets small growth pass each time; this shows what it has come to.
+fn grown_since(path: &Path, now: &[baseline::Entry]) -> Result<()> {
+    Growth::of(path, now)?.iter().try_for_each(|growth| report::line(&growth.to_string()))
 }
 
 fn text(m: &Measurement) -> Result<()> {

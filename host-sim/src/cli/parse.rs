@@ -96,6 +96,12 @@ pub(crate) fn share(text: &str) -> Result<f64, String> {
     text.parse().ok().filter(|share| (0.0..=2.0).contains(share)).ok_or_else(|| "a number from 0 to 2 is needed".to_owned())
 }
 
+/// A sentence that somebody else will understand.
+#[cfg(feature = "boards")]
+pub(crate) fn reason(text: &str) -> Result<String, String> {
+    Some(text.trim().to_owned()).filter(|text| !text.is_empty()).ok_or_else(|| "a reason is needed, in a sentence".to_owned())
+}
+
 /// Degrees, any finite number.
 pub(crate) fn degrees(text: &str) -> Result<f64, String> {
     text.parse().ok().filter(|angle: &f64| angle.is_finite()).ok_or_else(|| "a number of degrees is needed".to_owned())

@@ -1,0 +1,172 @@
+//! What has become of recorded costs: how much they have changed in all, since which release, and why somebody has renewed them.
+//!
+//! Beside a file `costs.csv` of [`baseline`] lie `costs-0.1.0.csv`, the same frames at that release, which nobody renews, and
+//! `costs-reasons.md`, a line for each renewal. A tolerance lets small growth pass each time; the first of the two shows the sum.
+
+use super::{
+    baseline::{self, Change, Entry, changed},
+    rounded,
+};
+use anyhow::{Context, Result, ensure};
+use std::{
+    fmt, fs,
+    path::{Path, PathBuf},
+};
+
+/// The release whose costs are kept.
+pub const RELEASE: &str = "0.1.0";
+
+/// The change of all frames together, in percent: the geometric mean, in which each frame weighs the same.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Total {
+    /// Of instructions.
+    pub instructions: f64,
+    /// Of flash.
+    pub flash: f64,
+}
+
+impl Total {
+    /// The change from the figures `old` to those that the same frames have among `new`.
+    #[must_use]
+    pub fn between(old: &[Entry], new: &[Entry]) -> Self {
+        let pairs = || old.iter().filter_map(|entry| Some((entry, new.iter().find(|now| entry.same_frame(now))?)));
+        Self {
+            instructions: mean(pairs().map(|(was, is)| (was.instructions, is.instructions))),
+            flash: mean(pairs().map(|(was, is)| (was.flash_bytes, is.flash_bytes))),
+        }
+    }
+}
+
+/// Without figures that are zero: those of frames that are still to be recorded.
+fn mean(pairs: impl Iterator<Item = (u64, u64)>) -> f64 {
+    let logarithms: Vec<_> = pairs.filter(|&(was, is)| was > 0 && is > 0).map(|(was, is)| (is as f64 / was as f64).ln()).collect();
+    let mean = logarithms.iter().sum::<f64>() / logarithms.len().max(1) as f64;
+    // As it is shown; plus zero, or almost nothing might be shown as -0.
+    rounded(mean.exp_m1() * 100.0, 100.0) + 0.0
+}
+
+impl fmt::Display for Total {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "instructions {:+.2} %, flash {:+.2} %", self.instructions, self.flash)
+    }
+}
+
+/// The growth since [`RELEASE`].
+#[derive(Clone, Debug, PartialEq)]
+pub struct Growth {
+    /// How many frames of the release are still measured.
+    pub frames: usize,
+    /// Of all of them.
+    pub total: Total,
+    /// The single figure that has grown the most, if any has.
+    pub most: Option<Change>,
+}
+
+impl Growth {
+    /// From the figures of the release to those of today.
+    #[must_use]
+    pub fn between(release: &[Entry], now: &[Entry]) -> Self {
+        let (old, new): (Vec<_>, Vec<_>) =
+            release.iter().filter_map(|old| Some((old.clone(), now.iter().find(|now| old.same_frame(now))?.clone()))).unzip();
+        let grown = changed(&old, &new).into_iter().filter(|change| change.is > change.was);
+        let most = grown.max_by(|a, b| a.percent().total_cmp(&b.percent()));
+        Self { frames: old.len(), total: Total::between(&old, &new), most }
+    }
+
+    /// The growth of what is recorded in the file at `path`; `None` if it has no figures of the release beside it.
+    ///
+    /// # Errors
+    /// When those cannot be read.
+    pub fn of(path: &Path, now: &[Entry]) -> Result<Option<Self>> {
+        let release = beside(path, &format!("{RELEASE}.csv"))?;
+        release.exists().then(|| Ok(Self::between(&baseline::read(&release)?, now))).transpose()
+    }
+}
+
+impl fmt::Display for Growth {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "since {RELEASE}, mean of {} frames: {}", self.frames, self.total)?;
+        self.most.iter().try_for_each(|most| write!(f, "; most: {most}"))
+    }
+}
+
+/// `costs-NAME` for `costs.csv`.
+fn beside(path: &Path, name: &str) -> Result<PathBuf> {
+    let stem = path.file_stem().with_context(|| format!("{} is no file", path.display()))?;
+    Ok(path.with_file_name(format!("{}-{name}", stem.to_string_lossy())))
+}
+
+const HEAD: &str = "\
+# Why costs were renewed
+
+A line for each renewal, the newest last, which `microphong bench --renew` adds: the change of all frames together in percent, their
+geometric mean, and the reason.
+
+| instructions | flash | reason |
+|---|---|---|
+";
+
+/// Records the `new` figures in the file at `path`, and beside it why they are not the `old` ones. Returns where the reason stands.
+///
+/// # Errors
+/// When a file cannot be written, or there is no reason.
+pub fn renew(path: &Path, [old, new]: [&[Entry]; 2], reason: &str) -> Result<PathBuf> {
+    // A line, and a cell of a table.
+    let reason = reason.split_whitespace().collect::<Vec<_>>().join(" ").replace('|', "\\|");
+    ensure!(!reason.is_empty(), "a reason is needed");
+    let target = beside(path, "reasons.md")?;
+    let before = if target.exists() { fs::read_to_string(&target) } else { Ok(HEAD.to_owned()) };
+    let before = before.with_context(|| format!("cannot read {}", target.display()))?;
+    let Total { instructions, flash } = Total::between(old, new);
+    let text = format!("{}\n| {instructions:+.2} | {flash:+.2} | {reason} |\n", before.trim_end());
+    baseline::write(path, new)?;
+    fs::write(&target, text).with_context(|| format!("cannot write {}", target.display()))?;
+    Ok(target)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn entries(lines: &[&str]) -> Vec<Entry> {
+        lines.iter().map(|line| Entry::parse(line).unwrap()).collect()
+    }
+
+    #[test]
+    fn each_frame_weighs_the_same() {
+        let old = entries(&["pico,teapot,flat,1000,200", "pico,teapot,phong,100000,200", "pico,bunny,flat,0,0"]);
+        let new = entries(&["pico,bunny,flat,5,5", "pico,teapot,flat,2000,200", "pico,teapot,phong,50000,242"]);
+        // Twice as much and half as much; once 21 % more; what was not measured before does not count.
+        assert_eq!(Total::between(&old, &new).to_string(), "instructions +0.00 %, flash +10.00 %");
+        assert_eq!(Total::between(&[], &new), Total::default());
+    }
+
+    #[test]
+    fn growth_since_the_release_adds_up() {
+        let release = entries(&["pico,teapot,flat,1000,200", "pico,gone,flat,1,1"]);
+        let now = entries(&["pico,teapot,flat,1010,200", "pico,added,flat,7,7"]);
+        let most = "; most: flat on cortex-m0plus, teapot: instructions 1000 -> 1010 (+1.00 %)";
+        let growth = Growth::between(&release, &now).to_string();
+        assert_eq!(growth, format!("since 0.1.0, mean of 1 frames: instructions +1.00 %, flash +0.00 %{most}"));
+        assert_eq!(Growth::between(&release, &release).most, None);
+    }
+
+    #[test]
+    fn reasons_are_added_line_by_line() {
+        let directory = tempfile::tempdir().unwrap();
+        let path = directory.path().join("costs.csv");
+        let [first, second] = [["pico,teapot,flat,1000,200"], ["pico,teapot,flat,1100,199"]].map(|lines| entries(&lines));
+        assert_eq!(Growth::of(&path, &first).unwrap(), None);
+        let reasons = renew(&path, [&first, &second], "sharper a|b").unwrap();
+        assert_eq!(reasons, directory.path().join("costs-reasons.md"));
+        renew(&path, [&second, &first], " two\nlines ").unwrap();
+        let expected = format!("{HEAD}| +10.00 | -0.50 | sharper a\\|b |\n| -9.09 | +0.50 | two lines |\n");
+        assert_eq!(fs::read_to_string(reasons).unwrap(), expected);
+        assert_eq!(baseline::read(&path).unwrap(), first);
+
+        renew(&path, [&first, &second], " ").unwrap_err();
+        assert_eq!(baseline::read(&path).unwrap(), first);
+        baseline::write(&directory.path().join("costs-0.1.0.csv"), &first).unwrap();
+        assert_eq!(Growth::of(&path, &second).unwrap(), Some(Growth::between(&first, &second)));
+    }
+}
