@@ -329,7 +329,7 @@ impl<C: Pixel> Frame<'_, '_, C> {
                 let bottom = band.top + band.rows;
                 drawn += u32::from((band.top..bottom).contains(&bounds.top));
                 if bounds.bottom > band.top && bounds.top < bottom {
-                    pixels = pixels.saturating_add((loops.draw)(&drawing, triangle, band));
+                    pixels = pixels.saturating_add(drawing.draw(loops.draw, triangle, band));
                 }
             }
         }

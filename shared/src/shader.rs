@@ -2,7 +2,7 @@
 
 use crate::{
     geometry::bin::{Entry, Walk},
-    mesh::MeshPass,
+    mesh::{DrawTriangle, MeshPass},
     method::{
         Facts, General, Loops, Method, Style, flat::Flat, gouraud::Gouraud, phong::Phong, renq_newton::RenqNewton, six_point::SixPoint,
         sqrt6::Sqrt6,
@@ -29,8 +29,8 @@ type Run<C> = fn(&MeshPass<'_, C>, &[Triangle], Entry, &mut Walk<'_>, u32, &mut 
 pub(crate) struct TriangleLoops<C: Pixel> {
     /// The triangles of a mesh that lie in a band.
     pub(crate) run: Run<C>,
-    /// One triangle, see [`MeshPass::draw`].
-    pub(crate) draw: fn(&MeshPass<'_, C>, &Triangle, &mut Band<'_, C>) -> u32,
+    /// One triangle.
+    pub(crate) draw: DrawTriangle<C>,
 }
 
 impl<C: Pixel> Clone for TriangleLoops<C> {
@@ -43,10 +43,7 @@ impl<C: Pixel> Copy for TriangleLoops<C> {}
 
 impl<C: Pixel> TriangleLoops<C> {
     const fn of<L: Loops>() -> Self {
-        Self {
-            run: |drawing, triangles, entry, walk, end, band| drawing.run::<L>(triangles, entry, walk, end, band),
-            draw: |drawing, triangle, band| drawing.draw::<L>(triangle, band),
-        }
+        Self { run: |drawing, triangles, entry, walk, end, band| drawing.run::<L>(triangles, entry, walk, end, band), draw: L::draw }
     }
 }
 

@@ -58,15 +58,21 @@ impl<S: Surface> PerspectivePatch<S> {
     /// triangle, and r the least nearness over the largest.
     #[must_use]
     pub fn new(gradients: &Gradients, inv_depth: [i32; 3], surface: S) -> Self {
-        // A common factor cancels out: the largest nearness just below 1.
-        let zeros = inv_depth.iter().fold(1, |m, w| m | w).leading_zeros();
-        let [a, b, c] = inv_depth.map(|w| w.wrapping_shl(zeros.saturating_sub(2)));
-        let row = |nodes| {
-            let [c, dx, dy] = gradients.fine(nodes);
-            Row { c: c.wrapping_sub(dx.wrapping_mul(gradients.column().into())), dx, dy }
-        };
-        Self { rows: [row([0, b, 0]), row([0, 0, c]), row([a, b, c])], surface }
+        Self { rows: rows(gradients, inv_depth), surface }
     }
+}
+
+/// What the shares of corners with this nearness are quotients of.
+#[inline(never)]
+fn rows(gradients: &Gradients, inv_depth: [i32; 3]) -> [Row; 3] {
+    // A common factor cancels out: the largest nearness just below 1.
+    let zeros = inv_depth.iter().fold(1, |m, w| m | w).leading_zeros();
+    let [a, b, c] = inv_depth.map(|w| w.wrapping_shl(zeros.saturating_sub(2)));
+    let row = |nodes| {
+        let [c, dx, dy] = gradients.fine(nodes);
+        Row { c: c.wrapping_sub(dx.wrapping_mul(gradients.column().into())), dx, dy }
+    };
+    [row([0, b, 0]), row([0, 0, c]), row([a, b, c])]
 }
 
 impl<S> PerspectivePatch<S> {

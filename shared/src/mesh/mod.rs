@@ -43,6 +43,9 @@ pub(crate) struct MeshPass<'f, C: Pixel> {
     pub(crate) perspective: bool,
 }
 
+/// See [`Loops::draw`].
+pub(crate) type DrawTriangle<C> = fn(&TriangleSetup<'_>, &Shading<'_>, MaterialTables<'_, C>, &mut Band<'_, C>) -> Option<u32>;
+
 /// A triangle, its corners turning clockwise on the screen.
 struct MeshTriangle<'f> {
     corners: [&'f ScreenVertex; 3],
@@ -67,13 +70,11 @@ impl<C: Pixel> MeshPass<'_, C> {
         loop {
             // A stream that has been checked has it.
             if let Some(triangle) = triangles.get(entry.triangle() as usize) {
-                let drawn = if !entry.is_word_sized() {
-                    self.draw::<L>(triangle, band)
-                } else if let Some(place) = band.active.take(entry.key()) {
-                    self.resume::<L>(triangle, place, band)
+                let drawn = if L::GENERAL || !entry.is_word_sized() {
+                    self.draw(L::draw, triangle, band)
                 } else {
                     // A triangle that the loops do not take is set up anew: handing it over would keep its set-up in memory for all.
-                    self.draw_word_sized::<L>(triangle, entry.key(), band).unwrap_or_else(|| self.draw::<General>(triangle, band))
+                    self.draw_word_sized::<L>(triangle, entry.key(), band).unwrap_or_else(|| self.draw(General::draw, triangle, band))
                 };
                 pixels = pixels.saturating_add(drawn);
             }
@@ -84,26 +85,17 @@ impl<C: Pixel> MeshPass<'_, C> {
         }
     }
 
-    /// Shades `setup` by the loops `L` if they take it, else the general way.
-    #[inline(always)]
-    fn shade<L: Loops>(&self, setup: &TriangleSetup<'_>, band: &mut Band<'_, C>) -> u32 {
-        match L::draw(setup, &self.shading, self.tables, band) {
-            Some(pixels) => pixels,
-            None => self.shade_generally(setup, band),
-        }
-    }
-
     #[inline(never)]
     fn shade_generally(&self, setup: &TriangleSetup<'_>, band: &mut Band<'_, C>) -> u32 {
         self.method.shade(setup, &self.shading, &mut BandCanvas { band, tables: self.tables, dither: self.dither })
     }
 
-    /// Draws `triangle`; returns its pixels in `band`.
+    /// Draws `triangle`, of whatever size, by `loops` if they take it; returns its pixels in `band`.
     #[inline(never)]
-    pub(crate) fn draw<L: Loops>(&self, triangle: &Triangle, band: &mut Band<'_, C>) -> u32 {
+    pub(crate) fn draw(&self, loops: DrawTriangle<C>, triangle: &Triangle, band: &mut Band<'_, C>) -> u32 {
         match self.corners(triangle).filter(is_ready) {
-            Some(corners) => self.face::<L>(&MeshTriangle { corners, triangle, vertices: self.vertices }, band),
-            None => self.other::<L>(triangle, band),
+            Some(corners) => self.face(loops, &MeshTriangle { corners, triangle, vertices: self.vertices }, band),
+            None => self.other(loops, triangle, band),
         }
     }
 
@@ -112,19 +104,24 @@ impl<C: Pixel> MeshPass<'_, C> {
     #[cfg_attr(all(target_arch = "arm", not(target_has_atomic = "32")), inline(never))]
     #[cfg_attr(not(all(target_arch = "arm", not(target_has_atomic = "32"))), inline(always))]
     fn draw_word_sized<L: Loops>(&self, triangle: &Triangle, key: u32, band: &mut Band<'_, C>) -> Option<u32> {
-        let corners = self.corners(triangle)?;
-        let (by, corners) = turned(corners);
-        let mut screen = ScreenTriangle::simple((by, corners), key, band);
-        if screen.is_empty() {
-            return Some(0);
+        let (by, corners) = turned(self.corners(triangle)?);
+        let place = band.active.take(key);
+        let (screen, gradients, needs_depth_test);
+        if let Some(active_triangle) = place.and_then(|place| band.active.active_triangle(place)) {
+            (screen, gradients) = (ScreenTriangle::resumed(active_triangle, by, band), Gradients::NONE);
+            needs_depth_test = active_triangle.inv_depth().is_some();
+        } else {
+            let mut new = ScreenTriangle::simple((by, corners), key, band);
+            if new.is_empty() {
+                return Some(0);
+            }
+            gradients = Gradients::simple(new.corners);
+            needs_depth_test = self.needs_depth_test(&new);
+            if needs_depth_test {
+                new.set_up_depth(&gradients);
+            }
+            screen = new;
         }
-        let gradients = Gradients::simple(screen.corners);
-        let needs_depth_test = self.needs_depth_test(&screen);
-        if needs_depth_test {
-            screen.set_up_depth(&gradients);
-        }
-        let perspective = self.perspective;
-        let pixels = PixelSet::Centres;
         let setup = TriangleSetup {
             screen: &screen,
             gradients: &gradients,
@@ -133,32 +130,11 @@ impl<C: Pixel> MeshPass<'_, C> {
             vertices: self.vertices,
             turned: by,
             needs_depth_test,
-            perspective,
-            pixels,
-            place: None,
-        };
-        if L::GENERAL { Some(self.shade_generally(&setup, band)) } else { L::draw(&setup, &self.shading, self.tables, band) }
-    }
-
-    /// The same of a triangle that the band above handed on to `place`.
-    #[inline(always)]
-    fn resume<L: Loops>(&self, triangle: &Triangle, place: usize, band: &mut Band<'_, C>) -> u32 {
-        let (Some(active_triangle), Some(corners)) = (band.active.active_triangle(place), self.corners(triangle)) else { return 0 };
-        let (by, corners) = turned(corners);
-        let setup = TriangleSetup {
-            screen: &ScreenTriangle::resumed(active_triangle, by, band),
-            gradients: &Gradients::NONE,
-            corners,
-            triangle,
-            vertices: self.vertices,
-            turned: by,
-            needs_depth_test: active_triangle.inv_depth().is_some(),
-            perspective: false,
+            perspective: self.perspective,
             pixels: PixelSet::Centres,
-            place: Some(place),
+            place,
         };
-        // What loops have handed on they take again.
-        L::draw(&setup, &self.shading, self.tables, band).unwrap_or_default()
+        L::draw(&setup, &self.shading, self.tables, band)
     }
 
     /// Corners on the screen; `None` if one is not kept.
@@ -186,13 +162,13 @@ impl<C: Pixel> MeshPass<'_, C> {
     /// Draws a triangle whose corners are not kept, or not on the screen.
     #[cold]
     #[inline(never)]
-    fn other<L: Loops>(&self, triangle: &Triangle, band: &mut Band<'_, C>) -> u32 {
+    fn other(&self, loops: DrawTriangle<C>, triangle: &Triangle, band: &mut Band<'_, C>) -> u32 {
         let [a, c, b] = triangle.corners.map(|corner| self.vertices.get(usize::from(corner)));
         let (Some(a), Some(b), Some(c)) = (a, b, c) else { return 0 };
         let vertices = [a, b, c];
         let [a, b, c] = &vertices.map(|vertex| self.stage.transform(vertex));
         if is_ready(&[a, b, c]) {
-            return self.face::<L>(&MeshTriangle { corners: [a, b, c], triangle, vertices: self.vertices }, band);
+            return self.face(loops, &MeshTriangle { corners: [a, b, c], triangle, vertices: self.vertices }, band);
         }
         // The fan that clipping leaves.
         let polygon = clip::clip(self.stage.view, vertices);
@@ -207,43 +183,48 @@ impl<C: Pixel> MeshPass<'_, C> {
                 let vertices = [first.vertex, second.vertex, third.vertex];
                 let corners = [&place(first), &place(second), &place(third)];
                 pixels +=
-                    self.face::<L>(&MeshTriangle { corners, triangle: &clip::record(triangle, &vertices), vertices: &vertices }, band);
+                    self.face(loops, &MeshTriangle { corners, triangle: &clip::record(triangle, &vertices), vertices: &vertices }, band);
             }
         }
         pixels
     }
 
-    fn face<L: Loops>(&self, face: &MeshTriangle<'_>, band: &mut Band<'_, C>) -> u32 {
+    fn face(&self, loops: DrawTriangle<C>, face: &MeshTriangle<'_>, band: &mut Band<'_, C>) -> u32 {
         if cfg!(feature = "antialias") && self.viewport.antialiased {
-            self.smooth::<L>(face, band)
+            self.smooth(loops, face, band)
         } else {
-            self.part::<L>(PixelSet::Centres, face, band)
+            self.part(loops, PixelSet::Centres, face, band)
         }
     }
 
     /// Draws the pixels wholly inside, then the others that it touches, with its corners on a finer grid.
     #[cold]
     #[inline(never)]
-    fn smooth<L: Loops>(&self, face: &MeshTriangle<'_>, band: &mut Band<'_, C>) -> u32 {
+    fn smooth(&self, loops: DrawTriangle<C>, face: &MeshTriangle<'_>, band: &mut Band<'_, C>) -> u32 {
         let finer = antialias::finer(face.corners);
         let [a, b, c] = &face.corners.map(|corner| antialias::refined(corner, finer));
-        self.part::<L>(PixelSet::Inner, face, band)
-            + self.part::<L>(PixelSet::Edge(finer), &MeshTriangle { corners: [a, b, c], ..*face }, band)
+        self.part(loops, PixelSet::Inner, face, band)
+            + self.part(loops, PixelSet::Edge(finer), &MeshTriangle { corners: [a, b, c], ..*face }, band)
     }
 
     /// Sets up a triangle and draws part of its pixels.
-    fn part<L: Loops>(&self, pixels: PixelSet, face: &MeshTriangle<'_>, band: &mut Band<'_, C>) -> u32 {
-        let screen = if pixels == PixelSet::Centres {
+    fn part(&self, loops: DrawTriangle<C>, pixels: PixelSet, face: &MeshTriangle<'_>, band: &mut Band<'_, C>) -> u32 {
+        let width = band.width as i32;
+        let by_rows = pixels == PixelSet::Centres;
+        let screen = if by_rows {
             let [top, bottom] = band.range();
-            let screen = ScreenTriangle::new(face.corners, [band.width as i32, top, bottom]);
-            if screen.is_empty() {
-                return 0;
-            }
-            screen
+            ScreenTriangle::new(face.corners, [width, top, bottom])
         } else {
             ScreenTriangle::without_rows(face.corners)
         };
+        if by_rows && screen.is_empty() {
+            return 0;
+        }
         let Some(gradients) = Gradients::new(screen.corners, self.viewport.box_of(face.corners, pixels.finer())) else { return 0 };
+        // Most of the slivers of a fine mesh lie between the centres of pixels.
+        if by_rows && gradients.is_thin() && screen.covers_nothing(width) {
+            return 0;
+        }
         let setup = TriangleSetup {
             screen: &screen,
             gradients: &gradients,
@@ -256,7 +237,7 @@ impl<C: Pixel> MeshPass<'_, C> {
             pixels,
             place: None,
         };
-        self.shade::<L>(&setup, band)
+        loops(&setup, &self.shading, self.tables, band).unwrap_or_else(|| self.shade_generally(&setup, band))
     }
 }
 

@@ -12,14 +12,17 @@ use crate::{
     arch::product::{product, upper},
     format::{BEND, RHO},
     interpolate::field::{Field, Nodes},
-    lighting::materials::{MaterialTables, Reflection},
+    lighting::{
+        lights::Source,
+        materials::{MaterialTables, Reflection},
+    },
     math::{
         power::PixelPower,
         rsqrt::{Halves, LEAST, rsqrt},
     },
     method::{
         Loops, Shading, Style, TriangleSetup,
-        form::{EXTRA, LightingModel, NODE, Quadratic, signed},
+        form::{EXTRA, LightingModel, NODE, Quadratic, fitted, signed},
         quotient,
     },
     pixel::Pixel,
@@ -29,8 +32,12 @@ use crate::{
 /// Shades by linear numerators over a root, under lights that are the same everywhere.
 pub fn shade_constant(setup: &TriangleSetup<'_>, shading: &Shading<'_>, canvas: &mut dyn Canvas) -> u32 {
     match tabled(setup) {
-        Some(square) => draw_constant(setup, shading, square, Tabled, canvas),
-        None => draw_constant(setup, shading, square(setup), Rooted, canvas),
+        // The faster root is worth its code where nothing else is done at a pixel.
+        Some(square) if setup.inv_depth().is_none() => {
+            let fit = |source: &Source| fitted(&shading.constant_products(setup, source), setup.gradients);
+            shading.draw_rows(setup, (Default::default(), fit), fitted(&square, setup.gradients), Tabled, canvas)
+        }
+        _ => draw_constant(setup, shading, square(setup), Rooted, canvas),
     }
 }
 

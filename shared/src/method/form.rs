@@ -14,6 +14,7 @@ use crate::{
     math::power::PixelPower,
     method::{Shading, TriangleSetup, node::Node, of_levels},
     raster::canvas::{CHUNK, Canvas, SpanShader, SpanTarget},
+    setup::gradients::Gradients,
 };
 
 /// Fraction bits of a field at a node; walked with [`COSINE`].
@@ -61,6 +62,12 @@ impl<'a, K: Patch, P: Patch, F> Lit<'a, K, P, F> {
     fn lights(&self) -> impl Iterator<Item = &P> {
         self.lights.iter().take(self.count)
     }
+}
+
+/// [`Field::fit`], the code of which all methods share.
+#[inline(never)]
+pub(crate) fn fitted<F: Field>(field: &F, gradients: &Gradients) -> F::Patch {
+    field.fit(gradients)
 }
 
 /// `patch`, `rows` rows below.
@@ -161,7 +168,13 @@ impl Shading<'_> {
             let lights = (zero, |source: &Source| zero.with(of(source).surface()));
             return self.draw_rows(setup, lights, zero.with(common.surface()), model, canvas);
         }
-        self.draw_rows(setup, (V::Patch::default(), |source: &Source| of(source).fit(gradients)), common.fit(gradients), model, canvas)
+        self.draw_rows(
+            setup,
+            (V::Patch::default(), |source: &Source| fitted(&of(source), gradients)),
+            fitted(&common, gradients),
+            model,
+            canvas,
+        )
     }
 
     /// [`Self::draw_lit`] for what knows nothing but its rows on the screen.

@@ -174,8 +174,12 @@ impl TriangleSetup<'_> {
         shader: T,
         band: &mut Band<'_, T::Pixel>,
     ) -> u32 {
-        let patch = match self.place.and_then(|place| band.active.active_triangle(place)).and_then(ActiveTriangle::patch) {
-            Some(patch) => patch,
+        let patch = match self.place {
+            Some(place) => match band.active.active_triangle(place).and_then(ActiveTriangle::patch) {
+                Some(patch) => patch,
+                // What cannot be kept is not handed on.
+                None => return 0,
+            },
             None => patch(),
         };
         if T::CHEAP && !self.needs_depth_test {

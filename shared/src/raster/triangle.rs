@@ -118,6 +118,26 @@ impl ScreenTriangle {
         self.course.sides.row >= self.course.sides.end
     }
 
+    /// No pixel's centre lies in it, among the rows of the band, which is `width` columns wide.
+    #[must_use]
+    pub(crate) fn covers_nothing(&self, width: i32) -> bool {
+        let sides = &self.course.sides;
+        let (mut row, mut stop, mut pair) = (sides.row, sides.stop, sides.pair);
+        loop {
+            while row < stop {
+                if pair.columns() > 0 {
+                    return false;
+                }
+                pair.skip(1);
+                row += 1;
+            }
+            if stop >= sides.end {
+                return true;
+            }
+            stop = sides.next(row, &mut pair, self.corners, width);
+        }
+    }
+
     /// Works out depth, unless that is left to those who need it.
     #[inline(always)]
     pub(crate) fn set_up_depth(&mut self, gradients: &Gradients) {

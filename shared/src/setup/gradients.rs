@@ -192,6 +192,13 @@ impl Gradients {
         }
     }
 
+    /// Fitting a quadratic to it takes exact fractions, several thousand instructions.
+    #[inline(always)]
+    #[must_use]
+    pub(crate) fn is_thin(&self) -> bool {
+        self.thin
+    }
+
     /// Column of the anchor.
     #[inline(always)]
     #[must_use]
@@ -305,7 +312,7 @@ impl Gradients {
                     Some(fitted) => fitted,
                     None => {
                         // Taken apart and put together: what comes back in memory is not to make the others go there.
-                        let [c, dx, dy, dxx, dxy, dyy] = self.quadratic_any::<BITS>(nodes, extra);
+                        let [c, dx, dy, dxx, dxy, dyy] = self.quadratic_any(BITS, nodes, extra);
                         [c, dx, dy, dxx, dxy, dyy]
                     }
                 }
@@ -313,22 +320,22 @@ impl Gradients {
             Scale::Small(small) if BITS <= word_sized::LONG && extra >= word_sized::LONG_EXTRA => {
                 match small.long_quadratic(self.edges, self.subpixels(), nodes, extra) {
                     Some(fitted) => fitted,
-                    None => self.quadratic_any::<BITS>(nodes, extra),
+                    None => self.quadratic_any(BITS, nodes, extra),
                 }
             }
-            Scale::Small(small) => self.quadratic_small::<BITS>(Self::mantissas(self.edges, small), nodes, extra),
-            Scale::Part(gradients) => self.quadratic_small::<BITS>(gradients, nodes, extra),
-            Scale::Any(_) => self.quadratic_any::<BITS>(nodes, extra),
+            Scale::Small(_) | Scale::Part(_) => self.quadratic_small(BITS, nodes, extra),
+            Scale::Any(_) => self.quadratic_any(BITS, nodes, extra),
         }
     }
 
-    #[inline(always)]
-    fn quadratic_small<const BITS: u32>(&self, gradients: Slopes, [i0, i1, i2, i01, i12, i20]: [i32; 6], extra: u32) -> [i32; 6] {
+    #[inline(never)]
+    fn quadratic_small(&self, bits: u32, [i0, i1, i2, i01, i12, i20]: [i32; 6], extra: u32) -> [i32; 6] {
+        let gradients = self.gradients();
         let mantissas = Mantissas::new(gradients, self.offset);
         let exponent = gradients.exponent as u32;
-        // First and second differences are below 2^(BITS + 2).
-        let up = 28 - BITS;
-        let (once, twice) = (extra + BITS + 4 - exponent, extra + BITS + 35 - 2 * exponent);
+        // First and second differences are below 2^(bits + 2).
+        let up = 28 - bits;
+        let (once, twice) = (extra + bits + 4 - exponent, extra + bits + 35 - 2 * exponent);
         let [c, dx, dy] = mantissas.products((4 * i01 - 3 * i0 - i1) << up, (4 * i20 - 3 * i0 - i2) << up);
         // Half the matrix of second derivatives: [[ss, st], [st, tt]].
         let half = |difference: i32| difference << (up + 1);
@@ -350,7 +357,7 @@ impl Gradients {
 
     #[cold]
     #[inline(never)]
-    fn quadratic_any<const BITS: u32>(self, nodes: [i32; 6], extra: u32) -> [i32; 6] {
+    fn quadratic_any(self, range: u32, nodes: [i32; 6], extra: u32) -> [i32; 6] {
         let [i0, i1, i2, i01, i12, i20] = nodes;
         if self.thin {
             // In 1/16 pixel, in a part of the triangle as much finer as it is smaller: all exact.
@@ -363,9 +370,9 @@ impl Gradients {
         let ss = i64::from(2 * (i0 + i1 - 2 * i01));
         let st = i64::from(2 * (i0 - i01 - i20 + i12));
         let tt = i64::from(2 * (i0 + i2 - 2 * i20));
-        // One factor of the chain rule, then the other. Second differences are below 2^(BITS + 2): two products
-        // with mantissas stay below 2^(BITS + 33), less these bits below 2^31.
-        let less = BITS as i32 + 2;
+        // One factor of the chain rule, then the other. Second differences are below 2^(range + 2): two products
+        // with mantissas stay below 2^(range + 33), less these bits below 2^31.
+        let less = range as i32 + 2;
         let Slopes { s, t, exponent } = self.gradients();
         let once = |a: i64, b: i64, k: usize| scale(a * i64::from(s[k]) + b * i64::from(t[k]), less);
         let (sx, tx, sy, ty) = (once(ss, st, 0), once(st, tt, 0), once(ss, st, 1), once(st, tt, 1));

@@ -29,21 +29,22 @@ impl Sliver {
         let [[x1, y1], [x2, y2]] = self.edges.map(|edge| edge.map(Wide::from));
         let [ox, oy] = self.offset.map(Wide::from);
         let det = x1 * y2 - x2 * y1;
-        // The anchor's barycentric coordinates and their gradients per unit, all times det.
-        let (s, t) = (y2 * ox - x2 * oy, x1 * oy - y1 * ox);
-        let (sx, sy, tx, ty) = (y2, -x2, -y1, x1);
+        // The quadratic in barycentric coordinates s and t as a symmetric form of (s, t, 1), times 2.
+        let matrix = [[2 * ss, st, c1], [st, 2 * tt, c2], [c1, c2, 2 * i0]];
+        // The anchor's coordinates and their gradients per unit, all times det.
+        let (at, x, y) = ([y2 * ox - x2 * oy, x1 * oy - y1 * ox, det], [y2, -y1, Wide(0)], [-x2, x1, Wide(0)]);
         // At most 2^29 · 2^56 · 2^28 · 2^13: within 128 bits. The divisor is not 0: the triangle has an area.
         let divisor = det * det;
         let half = Wide(divisor.0 >> 1);
-        let over = |numerator: Wide, order: u32| (numerator.shifted(extra + order * self.bits) + half).divided(divisor).0.0 as i64;
-        let along = |ds: Wide, dt: Wide| (c1 * ds + c2 * dt) * det + 2 * ss * s * ds + st * (s * dt + t * ds) + 2 * tt * t * dt;
+        let over = |numerator: i128, order: u32| (Wide(numerator).shifted(extra + order * self.bits) + half).divided(divisor).0.0 as i64;
+        let form = |a, b| form(&matrix, a, b).0;
         [
-            over(i0 * det * det + (c1 * s + c2 * t) * det + ss * s * s + st * s * t + tt * t * t, 0),
-            over(along(sx, tx), 1),
-            over(along(sy, ty), 1),
-            over(ss * sx * sx + st * sx * tx + tt * tx * tx, 2),
-            over(2 * ss * sx * sy + st * (sx * ty + sy * tx) + 2 * tt * tx * ty, 2),
-            over(ss * sy * sy + st * sy * ty + tt * ty * ty, 2),
+            over(form(&at, &at) >> 1, 0),
+            over(form(&x, &at), 1),
+            over(form(&y, &at), 1),
+            over(form(&x, &x) >> 1, 2),
+            over(form(&x, &y), 2),
+            over(form(&y, &y) >> 1, 2),
         ]
     }
 
@@ -69,4 +70,11 @@ impl Sliver {
         let at_anchor = common.moved_across(|a, b| a + b * ox).moved_down(|a, b| a + b * oy);
         at_anchor.map(|c, degree| over(c, extra + degree * self.bits))
     }
+}
+
+/// `a` times `matrix` times `b`.
+#[inline(never)]
+fn form(matrix: &[[Wide; 3]; 3], a: &[Wide; 3], b: &[Wide; 3]) -> Wide {
+    let product = |a: &[Wide; 3], b: &[Wide; 3]| a.iter().zip(b).fold(Wide(0), |sum, (&a, &b)| sum + a * b);
+    matrix.iter().zip(a).fold(Wide(0), |sum, (row, &a)| sum + a * product(row, b))
 }
