@@ -48,6 +48,8 @@ pub struct Stats {
     pub passes: u32,
     /// Vertices that did not fit and were transformed by each triangle that uses them.
     pub uncached: u32,
+    /// How often a triangle that reaches into the next band found no room to be handed on, and was set up anew there.
+    pub set_up_anew: u32,
 }
 
 /// What a renderer keeps from frame to frame.
@@ -293,6 +295,7 @@ impl<C: Pixel> Frame<'_, '_, C> {
             band.resolve(self.state.background);
         }
         self.queue = band.active.queue();
+        self.stats.set_up_anew = self.stats.set_up_anew.saturating_add(band.active.overflow());
         self.state.memory.active_triangles = active_triangles;
         self.state.memory.depth = depth;
         self.state.memory.samples = samples;

@@ -41,7 +41,9 @@ fn neither_bands_nor_overflow_change_a_pixel() {
             for (rows, active) in [(1, triangles), (7, 40), (7, 3), (16, triangles), (16, 0), (64, 1)] {
                 let (pixels, banded) = frame(stream, size, shader, [vertices, triangles, active], rows);
                 assert!(pixels == whole, "{name}, {}: bands of {rows} rows, {active} handed on", shader.name());
-                assert_eq!(banded, stats);
+                assert_eq!(Stats { set_up_anew: 0, ..banded }, stats);
+                assert!(active < triangles || banded.set_up_anew == 0, "there is room for all");
+                assert!(active > 3 || shader != Shader::FLAT || banded.set_up_anew > 0, "the overflow is counted");
             }
             for (vertices, triangles, rows) in [(0, triangles, 50), (vertices / 2, triangles, 16), (vertices, 3, 16), (7, 0, 40)] {
                 let (pixels, tight) = frame(stream, size, shader, [vertices, triangles, 10], rows);
@@ -188,7 +190,9 @@ fn a_slice_shorter_than_a_band_gets_fewer_rows() {
             pixels.extend_from_slice(&band[..(area.size.width * area.size.height) as usize]);
         }
         assert!(pixels == whole, "{lengths:?}");
-        assert_eq!(frame.stats(), stats);
+        // Shorter bands hand more triangles on, and find the queue full more often.
+        assert!(frame.stats().set_up_anew >= stats.set_up_anew);
+        assert_eq!(Stats { set_up_anew: stats.set_up_anew, ..frame.stats() }, stats);
     }
 }
 

@@ -66,13 +66,21 @@ pub struct QueueState {
 pub struct ActiveTriangles<'a> {
     active_triangles: &'a mut [ActiveTriangle],
     queue: QueueState,
+    /// Triangles that have found it full.
+    overflow: u32,
 }
 
 impl<'a> ActiveTriangles<'a> {
     /// The queue that stands like this.
     #[must_use]
     pub fn new(active_triangles: &'a mut [ActiveTriangle], queue: QueueState) -> Self {
-        Self { active_triangles, queue }
+        Self { active_triangles, queue, overflow: 0 }
+    }
+
+    /// Triangles of this band that have found it full.
+    #[must_use]
+    pub fn overflow(&self) -> u32 {
+        self.overflow
     }
 
     /// Where it stands.
@@ -104,8 +112,9 @@ impl<'a> ActiveTriangles<'a> {
         let (QueueState { first, count }, length) = (self.queue, self.active_triangles.len());
         let place = first.wrapping_add(count);
         let place = if place < length { place } else { place.wrapping_sub(length) };
-        if count < length
-            && let Some(active_triangle) = self.active_triangles.get_mut(place)
+        if count >= length {
+            self.overflow = self.overflow.saturating_add(1);
+        } else if let Some(active_triangle) = self.active_triangles.get_mut(place)
             && fill(active_triangle)
         {
             self.queue.count = count + 1;
