@@ -175,7 +175,7 @@ impl Shape<'_> {
     /// pixels they are. `shader` stands on row `anchor` of its grid.
     #[cold]
     #[inline(never)]
-    pub fn draw(&self, anchor: i32, shader: &dyn SpanShader, canvas: &mut dyn Canvas, owned: &mut dyn FnMut(i32) -> [i32; 2]) -> u32 {
+    pub fn draw(&self, anchor: i32, shader: &mut dyn SpanShader, canvas: &mut dyn Canvas, owned: &mut dyn FnMut(i32) -> [i32; 2]) -> u32 {
         let [width, top, bottom] = canvas.bounds();
         let (inner, finer) = (self.pixels == PixelSet::Inner, self.pixels.finer());
         let corners = self.screen.corners.map(|corner| coarse(corner, finer, 0));
@@ -186,7 +186,7 @@ impl Shape<'_> {
         let [first, end] = drawn.rows();
         let mut pixels = 0;
         // Shades the pixels of a place and hands them to the closure with their columns.
-        let shade = |place: Place, put: &mut dyn FnMut(i32, Intensity)| {
+        let mut shade = |place: Place, put: &mut dyn FnMut(i32, Intensity)| {
             let end = place.at[1].wrapping_add(place.count);
             let mut target = EachPixel { column: place.column, put };
             shader.span(place.at[0].wrapping_sub(anchor), end, place.count as usize, &mut target);

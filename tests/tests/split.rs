@@ -61,7 +61,7 @@ impl Whole<'_> {
             return 0;
         }
         if part.level() == level || random.as_mut().is_some_and(|random| random.pick(0..3) == 0) {
-            let mut shaded = Shaded { patch: Constant, shader: Uniform([0; 3]) };
+            let mut shaded = Shaded::new(Constant, Uniform([0; 3]));
             return place.draw(place.gradients(self.gradients).row(), self.depth, &mut shaded, canvas);
         }
         part.split().iter().map(|part| self.draw(part, level, random, canvas)).sum()

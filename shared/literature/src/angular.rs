@@ -90,15 +90,14 @@ fn draw(setup: &TriangleSetup<'_>, shading: &Shading<'_>, fit: fn(u16) -> Parabo
         let arcs = arcs(setup.vertices().map(|vertex| wide(vertex.normal)));
         let fit = |[towards, half]: [[i32; 3]; 2]| Bows { rows, arcs, lobes: [diffuse(towards), highlight(half)] };
         let of = |source: &Source| fit(shading.lighting.directions(source, [0; 3]));
-        shading.draw_rows(setup, (fit([[0; 3]; 2]), of), Constant, Both, canvas)
+        shading.draw_rows(setup, of, Constant, Both, canvas)
     } else {
         let fit = |source: &Source| {
             let [l, h] = turned(setup, shading.lighting, source);
             let bows = |turned: Turned, lobe| Bows { rows, arcs: arcs(turned.normals), lobes: [lobe] };
             (bows(l, diffuse(l.direction)), bows(h, highlight(h.direction)))
         };
-        let none = |lobe| Bows { rows, arcs: [Arc::ZERO; 3], lobes: [lobe] };
-        shading.draw_rows(setup, ((none(diffuse([0; 3])), none(highlight([0; 3]))), fit), Constant, Both, canvas)
+        shading.draw_rows(setup, fit, Constant, Both, canvas)
     }
 }
 

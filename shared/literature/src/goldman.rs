@@ -58,7 +58,7 @@ fn draw(setup: &TriangleSetup<'_>, shading: &Shading<'_>, canvas: &mut dyn Canva
     // The normal itself: its products with the axes.
     let one = 1 << 30;
     let chords = Chords { rows, normals, along: [[one, 0, 0], [0, one, 0], [0, 0, one]] };
-    shading.draw_rows(setup, (Constant, |_| Constant), chords, Many { lighting: shading.lighting, view }, canvas)
+    shading.draw_rows(setup, |_| Constant, chords, Many { lighting: shading.lighting, view }, canvas)
 }
 
 /// Normals along rows, multiplied by `M` vectors.

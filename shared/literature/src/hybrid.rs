@@ -12,7 +12,7 @@ use crate::{
     scanline::{Edges, Rows},
 };
 use microphong::{
-    interpolate::{Constant, Patch, field::Field, quadric::Quadric},
+    interpolate::{Constant, Patch, field::Field},
     lighting::{
         lights::{Source, cosine},
         materials::{Highlight, Reflection},
@@ -96,7 +96,7 @@ fn draw(setup: &TriangleSetup<'_>, shading: &Shading<'_>, fit: fn(u16) -> Parabo
         };
         (diffuse, highlight)
     };
-    shading.draw_rows(setup, ((Quadric::default(), constant([0; 3])), fit), Constant, Both, canvas)
+    shading.draw_rows(setup, fit, Constant, Both, canvas)
 }
 
 /// Highlights along the rows.

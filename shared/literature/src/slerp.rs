@@ -59,7 +59,7 @@ fn draw(setup: &TriangleSetup<'_>, shading: &Shading<'_>, canvas: &mut dyn Canva
     // The normal itself: its products with the axes.
     let one = 1 << 30;
     let arcs = Arcs { rows, arcs, along: [[one, 0, 0], [0, one, 0], [0, 0, one]] };
-    shading.draw_rows(setup, (Constant, |_| Constant), arcs, Many(shading.lighting), canvas)
+    shading.draw_rows(setup, |_| Constant, arcs, Many(shading.lighting), canvas)
 }
 
 /// The arcs along the three edges between normals of any length.

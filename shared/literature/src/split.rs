@@ -32,7 +32,7 @@ struct Part<'p> {
 
 impl Area for Part<'_> {
     fn draw<F: Field, S: IntensityShader<F::Value>>(&self, field: &F, shader: S, canvas: &mut dyn Canvas) -> u32 {
-        let mut shaded = Shaded { patch: field.fit(&self.gradients), shader };
+        let mut shaded = Shaded::new(field.fit(&self.gradients), shader);
         self.part.draw(self.gradients.row(), self.depth, &mut shaded, canvas)
     }
 }

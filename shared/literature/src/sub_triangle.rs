@@ -181,7 +181,7 @@ impl ScreenSubTriangle<'_> {
 
     /// [`Self::draw`] with antialiasing.
     #[inline(never)]
-    fn smooth(&self, anchor: i32, shader: &dyn SpanShader, canvas: &mut dyn Canvas) -> u32 {
+    fn smooth(&self, anchor: i32, shader: &mut dyn SpanShader, canvas: &mut dyn Canvas) -> u32 {
         // Corners of a piece have only so many fraction bits as it was split more.
         let (bits, level) = (FINE - SUBPIXEL, self.sub_triangle.level.min(SPLITS));
         let part =

@@ -35,7 +35,7 @@ pub fn shade_constant(setup: &TriangleSetup<'_>, shading: &Shading<'_>, canvas: 
         // The faster root is worth its code where nothing else is done at a pixel.
         Some(square) if setup.inv_depth().is_none() => {
             let fit = |source: &Source| fitted(&shading.constant_products(setup, source), setup.gradients);
-            shading.draw_rows(setup, (Default::default(), fit), fitted(&square, setup.gradients), Tabled, canvas)
+            shading.draw_rows(setup, fit, fitted(&square, setup.gradients), Tabled, canvas)
         }
         _ => draw_constant(setup, shading, square(setup), Rooted, canvas),
     }

@@ -38,7 +38,7 @@ impl Method for Flat {
 
     fn shade(&self, setup: &TriangleSetup<'_>, shading: &Shading<'_>, canvas: &mut dyn Canvas) -> u32 {
         let shader = Uniform(of_levels(levels(setup, shading)));
-        setup.draw_spans(&mut Shaded { patch: Constant, shader }, canvas)
+        setup.draw_spans(&mut Shaded::new(Constant, shader), canvas)
     }
 }
 

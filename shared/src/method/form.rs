@@ -37,30 +37,34 @@ pub trait LightingModel<K, V>: Copy {
 }
 
 /// Shades a triangle under any lights on any material: one light after the other over a run of pixels, so that each loop knows one light.
-struct Lit<'a, K, P, F> {
+struct Lit<'a, K, P, F, S> {
     reflectance: &'a Reflectance,
     model: F,
     /// What all lights share.
     common: K,
     /// What is walked for each light, as many as there are.
-    lights: [P; MAX_LIGHTS],
-    count: usize,
+    lights: heapless::Vec<P, MAX_LIGHTS>,
+    power: PixelPower<'a>,
+    /// A run of pixels: what all lights share, and the sum of them. Both are written before they are read, and cleared once a triangle
+    /// instead of once a span.
+    shared: [S; CHUNK],
+    levels: [[i32; 3]; CHUNK],
 }
 
-impl<'a, K: Patch, P: Patch, F> Lit<'a, K, P, F> {
-    /// The patch that `fit` makes for each of the lights; `zero` stands in for those that there are not.
+impl<'a, K: Patch, P: Patch, F, S: Copy + Default> Lit<'a, K, P, F, S> {
+    /// The patch that `fit` makes for each of the lights.
     #[inline(always)]
-    fn new(shading: &Shading<'a>, (zero, fit): (P, impl Fn(&Source) -> P), common: K, model: F) -> Self {
-        let sources = &shading.lighting.sources;
-        let mut lit = Self { reflectance: shading.reflectance, model, common, lights: [zero; MAX_LIGHTS], count: sources.len() };
-        for (patch, source) in lit.lights.iter_mut().zip(sources) {
-            *patch = fit(source);
+    fn new(shading: &Shading<'a>, fit: impl Fn(&Source) -> P, common: K, model: F) -> Self {
+        let reflectance = shading.reflectance;
+        Self {
+            reflectance,
+            model,
+            common,
+            lights: shading.lighting.sources.iter().map(fit).collect(),
+            power: reflectance.power.pixel(),
+            shared: [S::default(); CHUNK],
+            levels: [[0; 3]; CHUNK],
         }
-        lit
-    }
-
-    fn lights(&self) -> impl Iterator<Item = &P> {
-        self.lights.iter().take(self.count)
     }
 }
 
@@ -80,18 +84,17 @@ fn below<P: Patch>(patch: &P, rows: i32) -> P {
     patch
 }
 
-impl<K, P, F> SpanShader for Lit<'_, K, P, F>
+impl<K, P, F> SpanShader for Lit<'_, K, P, F, F::Common>
 where
     K: Patch,
     P: Patch,
     F: LightingModel<<K::Walker as Walker>::Value, <P::Walker as Walker>::Value>,
 {
-    fn span(&self, rows: i32, end: i32, count: usize, target: &mut dyn SpanTarget) {
-        let mut common = below(&self.common, rows).enter(end);
-        let (power, floor) = (self.reflectance.power.pixel(), self.reflectance.power.floor());
-        let mut shared = [F::Common::default(); CHUNK];
-        let mut levels = [[0; 3]; CHUNK];
-        let ambient = self.reflectance.ambient();
+    fn span(&mut self, rows: i32, end: i32, count: usize, target: &mut dyn SpanTarget) {
+        let Self { reflectance, model, common, lights, power, shared, levels } = self;
+        let mut common = below(common, rows).enter(end);
+        let floor = reflectance.power.floor();
+        let ambient = reflectance.ambient();
         let mut first = count;
         while first > 0 {
             let run = first.min(CHUNK);
@@ -105,24 +108,24 @@ where
                 k -= 1;
                 common.step();
                 if visible & (1 << k) != 0 {
-                    shared[k % CHUNK] = self.model.common(common.value());
+                    shared[k % CHUNK] = model.common(common.value());
                     levels[k % CHUNK] = ambient;
                 }
             }
             if visible == 0 {
                 continue;
             }
-            for (light, patch) in self.lights().enumerate() {
-                let gains = self.reflectance.gains(light);
+            for (light, patch) in lights.iter().enumerate() {
+                let gains = reflectance.gains(light);
                 let mut walker = below(patch, rows).enter(entry);
                 let mut k = run;
                 while k > 0 {
                     k -= 1;
                     walker.step();
                     if visible & (1 << k) != 0 {
-                        let mut reflection = self.model.reflect(light, &shared[k % CHUNK], walker.value(), power);
+                        let mut reflection = model.reflect(light, &shared[k % CHUNK], walker.value(), *power);
                         reflection.highlight = reflection.highlight.saturating_sub(floor);
-                        self.reflectance.add_light(&mut levels[k % CHUNK], gains, reflection);
+                        reflectance.add_light(&mut levels[k % CHUNK], gains, reflection);
                     }
                 }
             }
@@ -130,18 +133,18 @@ where
                 let [r, g, b] = *level;
                 *level = of_levels([r.min(FULL), g.min(FULL), b.min(FULL)]);
             }
-            target.put(first, visible, &levels);
+            target.put(first, visible, levels);
         }
     }
 
     fn jump(&mut self, rows: i32) {
         self.common.jump(rows);
-        self.lights.iter_mut().take(self.count).for_each(|patch| patch.jump(rows));
+        self.lights.iter_mut().for_each(|patch| patch.jump(rows));
     }
 
     fn step_row(&mut self) {
         self.common.step_row();
-        self.lights.iter_mut().take(self.count).for_each(P::step_row);
+        self.lights.iter_mut().for_each(P::step_row);
     }
 }
 
@@ -164,24 +167,17 @@ impl Shading<'_> {
         if cfg!(feature = "perspective")
             && let Some(inv_depth) = setup.inv_depth()
         {
-            let zero = PerspectivePatch::new(gradients, inv_depth, V::Surface::default());
-            let lights = (zero, |source: &Source| zero.with(of(source).surface()));
-            return self.draw_rows(setup, lights, zero.with(common.surface()), model, canvas);
+            let common = PerspectivePatch::new(gradients, inv_depth, common.surface());
+            return self.draw_rows(setup, |source| common.with(of(source).surface()), common, model, canvas);
         }
-        self.draw_rows(
-            setup,
-            (V::Patch::default(), |source: &Source| fitted(&of(source), gradients)),
-            fitted(&common, gradients),
-            model,
-            canvas,
-        )
+        self.draw_rows(setup, |source| fitted(&of(source), gradients), fitted(&common, gradients), model, canvas)
     }
 
     /// [`Self::draw_lit`] for what knows nothing but its rows on the screen.
     pub fn draw_rows<K, P, F>(
         &self,
         setup: &TriangleSetup<'_>,
-        lights: (P, impl Fn(&Source) -> P),
+        of: impl Fn(&Source) -> P,
         common: K,
         model: F,
         canvas: &mut dyn Canvas,
@@ -191,7 +187,7 @@ impl Shading<'_> {
         P: Patch,
         F: LightingModel<<K::Walker as Walker>::Value, <P::Walker as Walker>::Value>,
     {
-        setup.draw_spans(&mut Lit::new(self, lights, common, model), canvas)
+        setup.draw_spans(&mut Lit::new(self, of, common, model), canvas)
     }
 
     /// The planes through N·L and N·H of a light that is the same everywhere, normals not normalised: exact.

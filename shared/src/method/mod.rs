@@ -233,9 +233,9 @@ impl Area for TriangleSetup<'_> {
             && let Some(inv_depth) = self.inv_depth()
         {
             let patch = PerspectivePatch::new(self.gradients, inv_depth, field.surface());
-            return self.draw_spans(&mut Shaded { patch, shader }, canvas);
+            return self.draw_spans(&mut Shaded::new(patch, shader), canvas);
         }
-        self.draw_spans(&mut Shaded { patch: field.fit(self.gradients), shader }, canvas)
+        self.draw_spans(&mut Shaded::new(field.fit(self.gradients), shader), canvas)
     }
 }
 

@@ -23,7 +23,7 @@ pub const CHUNK: usize = 16;
 pub trait SpanShader {
     /// Shades the `count` pixels to the left of column `end`, from right to left, on the row that lies `rows` rows below the one it
     /// stands on, and puts them into `target`.
-    fn span(&self, rows: i32, end: i32, count: usize, target: &mut dyn SpanTarget);
+    fn span(&mut self, rows: i32, end: i32, count: usize, target: &mut dyn SpanTarget);
 
     /// Moves down `rows` rows.
     fn jump(&mut self, rows: i32);
@@ -51,13 +51,22 @@ pub trait IntensityShader<V> {
 #[derive(Clone, Copy, Debug)]
 pub struct Shaded<P, S> {
     /// What is walked.
-    pub patch: P,
+    patch: P,
     /// What is made of it.
-    pub shader: S,
+    shader: S,
+    /// A run of pixels. It is written before it is read, and cleared once a triangle instead of once a span.
+    intensities: [Intensity; CHUNK],
+}
+
+impl<P, S> Shaded<P, S> {
+    /// `shader` makes intensities of what is walked along `patch`.
+    pub fn new(patch: P, shader: S) -> Self {
+        Self { patch, shader, intensities: [[0; 3]; CHUNK] }
+    }
 }
 
 impl<P: Patch, S: IntensityShader<<P::Walker as Walker>::Value>> SpanShader for Shaded<P, S> {
-    fn span(&self, rows: i32, end: i32, count: usize, target: &mut dyn SpanTarget) {
+    fn span(&mut self, rows: i32, end: i32, count: usize, target: &mut dyn SpanTarget) {
         let mut walker = if rows == 0 {
             self.patch.enter(end)
         } else {
@@ -65,7 +74,7 @@ impl<P: Patch, S: IntensityShader<<P::Walker as Walker>::Value>> SpanShader for 
             patch.jump(rows);
             patch.enter(end)
         };
-        let mut intensities = [[0; 3]; CHUNK];
+        let intensities = &mut self.intensities;
         let mut first = count;
         while first > 0 {
             let run = first.min(CHUNK);
@@ -81,7 +90,7 @@ impl<P: Patch, S: IntensityShader<<P::Walker as Walker>::Value>> SpanShader for 
                 }
             }
             if visible != 0 {
-                target.put(first, visible, &intensities);
+                target.put(first, visible, intensities);
             }
         }
     }
@@ -102,7 +111,7 @@ pub trait Canvas {
 
     /// Draws the `count` pixels of `row` to the left of column `end` as `shader`, which stands on this row, shades them, where
     /// `inv_depth`, which stands on column `end`, is nearer than what is there.
-    fn draw_row(&mut self, row: i32, end: i32, count: usize, inv_depth: Linear<1>, shader: &dyn SpanShader);
+    fn draw_row(&mut self, row: i32, end: i32, count: usize, inv_depth: Linear<1>, shader: &mut dyn SpanShader);
 
     /// Adds a part of a surface to a pixel, for antialiasing.
     fn add(&mut self, column: i32, row: i32, layer: Layer);
@@ -127,7 +136,7 @@ impl<C: Pixel> Canvas for BandCanvas<'_, '_, C> {
         [self.band.width as i32, top, bottom]
     }
 
-    fn draw_row(&mut self, row: i32, end: i32, count: usize, inv_depth: Linear<1>, shader: &dyn SpanShader) {
+    fn draw_row(&mut self, row: i32, end: i32, count: usize, inv_depth: Linear<1>, shader: &mut dyn SpanShader) {
         let stop = self.band.start(row).wrapping_add(end as usize);
         let start = stop.wrapping_sub(count);
         if let (Some(pixels), Some(depth)) = (self.band.pixels.get_mut(start..stop), self.band.depth.get_mut(start..stop)) {
