@@ -14,7 +14,7 @@
 //! it, two for the centroid, and entering the patch there. Set-up and lights are worked out twice.
 
 use crate::{
-    coverage::{area::Contour, sample::Layer},
+    coverage::{area::TriangleCoverage, sample::Layer},
     format::{CENTRE, DEPTH, FINER, Intensity, SUBPIXEL},
     geometry::projection::ScreenVertex,
     raster::{
@@ -65,9 +65,9 @@ pub fn coarse(corner: [i32; 2], finer: u32, more: u32) -> [i32; 2] {
     corner.map(|c| (c - centre + (centre << finer)) >> finer)
 }
 
-/// Nearness of a triangle's plane over a pixel.
-struct Slant {
-    /// Nearness at corner 0 and its derivatives per pixel, Q0.32.
+/// Inverse depth of a triangle's plane over a pixel.
+struct DepthRange {
+    /// Inverse depth at corner 0 and its derivatives per pixel, Q0.32.
     start: i64,
     dx: i64,
     dy: i64,
@@ -76,10 +76,10 @@ struct Slant {
     range: [i64; 2],
 }
 
-/// Fraction bits of nearness here that [`DEPTH`] has not.
+/// Fraction bits of inverse depth here that [`DEPTH`] has not.
 const MORE: u32 = 32 - DEPTH;
 
-impl Slant {
+impl DepthRange {
     fn new([[x0, y0], [x1, y1], [x2, y2]]: [[i32; 2]; 3], depth: [i32; 3]) -> Self {
         let [x1, y1, x2, y2] = [x1 - x0, y1 - y0, x2 - x0, y2 - y0].map(i64::from);
         let [z0, z1, z2] = depth.map(i64::from);
@@ -119,7 +119,7 @@ pub struct Shape<'o> {
     /// What is drawn of it.
     pub pixels: PixelSet,
     /// What is drawn of it, if not all.
-    pub part: Option<Contour>,
+    pub part: Option<TriangleCoverage>,
     /// Corners of what is drawn, on the finer grid.
     pub corners: [[i32; 2]; 3],
     /// Fraction bits of these corners.
@@ -179,9 +179,9 @@ impl Shape<'_> {
         let [width, top, bottom] = canvas.bounds();
         let (inner, finer) = (self.pixels == PixelSet::Inner, self.pixels.finer());
         let corners = self.screen.corners.map(|corner| coarse(corner, finer, 0));
-        let whole = Contour::new(corners, SUBPIXEL);
+        let whole = TriangleCoverage::new(corners, SUBPIXEL);
         let drawn = self.part.unwrap_or(whole);
-        let slant = Slant::new(corners, self.screen.depth);
+        let depth = DepthRange::new(corners, self.screen.depth);
         let inside = Inside::new(self.corners, self.bits);
         let [first, end] = drawn.rows();
         let mut pixels = 0;
@@ -200,7 +200,7 @@ impl Shape<'_> {
                 if from < to {
                     shade(Place { at: [row, from], column: from, count: to - from }, &mut |column, intensity| {
                         let colour = canvas.channels(intensity, column, row);
-                        canvas.add(column, row, Layer::whole(slant.range(column, row), colour));
+                        canvas.add(column, row, Layer::whole(depth.range(column, row), colour));
                     });
                     pixels += (to - from) as u32;
                 }
@@ -219,7 +219,7 @@ impl Shape<'_> {
                     let at = inside.nearest([place(row, fragment.centroid[1]), place(column, fragment.centroid[0])]);
                     shade(Place { at, column, count: 1 }, &mut |column, intensity| {
                         let colour = canvas.channels(intensity, column, row);
-                        canvas.add(column, row, Layer::new(slant.range(column, row), coverage, fragment.mask, colour));
+                        canvas.add(column, row, Layer::new(depth.range(column, row), coverage, fragment.mask, colour));
                     });
                     pixels += 1;
                 }

@@ -21,9 +21,9 @@ pub type Rotation = I2F30;
 /// Focal length in half sides of the viewport, unsigned Q16.16; streams use [1/16, 16].
 pub type Focal = U16F16;
 /// The edge constant 1 - |N1+N2|²/4, unsigned Q0.16 in [0, 1).
-pub type Bend = U0F16;
+pub type Haversine = U0F16;
 /// Least length of an interpolated normal, unsigned Q1.15 in [0, 1].
-pub type Rho = U1F15;
+pub type NormalLength = U1F15;
 /// 1 over the least altitude of a triangle, in 1/units of object space, unsigned Q14.2 in [0, 16384).
 pub type InverseAltitude = U14F2;
 
@@ -65,11 +65,11 @@ pub const FINER: u32 = 4;
 /// Fraction bits of a cosine in the pixel loop: Q5.27, so that sums and overshoots fit.
 pub const PIXEL_COSINE: u32 = 27;
 /// Fraction bits of the edge constant 1/|N1+N2|, unsigned Q1.17 in [1/2, 1); a stream stores what exceeds 1/2.
-pub const EDGE: u32 = 17;
-/// Fraction bits of [`Bend`].
-pub const BEND: u32 = 16;
-/// Fraction bits of [`Rho`].
-pub const RHO: u32 = 15;
+pub const INVERSE_SUM_LENGTH: u32 = 17;
+/// Fraction bits of [`Haversine`].
+pub const HAVERSINE: u32 = 16;
+/// Fraction bits of [`NormalLength`].
+pub const NORMAL_LENGTH: u32 = 15;
 /// Fraction bits of [`InverseAltitude`].
 pub const INVERSE_ALTITUDE: u32 = 2;
 /// Entries of a table of colours: the 256 levels and [`BIAS`] guards at each end.

@@ -95,7 +95,7 @@ pub struct Frame<'r, 'a, C: Pixel> {
     /// The same, for products with vertex normals.
     directions: Option<[Direction; 2]>,
     /// Where triangles may overlap, if not everywhere.
-    convex: Option<DepthElision>,
+    depth_elision: Option<DepthElision>,
     bins: Bins,
     /// All triangles found room in the bins.
     binned: bool,
@@ -125,7 +125,7 @@ impl<'r, 'a, C: Pixel> Frame<'r, 'a, C> {
             lighting,
             constant,
             directions: constant.map(|constant| constant.map(Direction::new)),
-            convex: None,
+            depth_elision: None,
             bins: Bins::new(state.size.height, state.band_rows()),
             binned: false,
             queue: QueueState::default(),
@@ -197,14 +197,14 @@ impl<C: Pixel> Frame<'_, '_, C> {
     fn prepare(&mut self) {
         // A copy, which stays in registers.
         let facing = self.facing;
-        let Self { state, view, lighting, directions, convex, bins, stats, rows, .. } = self;
+        let Self { state, view, lighting, directions, depth_elision, bins, stats, rows, .. } = self;
         let viewport = state.viewport();
         let RenderState { stream, memory: Memory { vertices: cache, bins: entries, reflectances, .. }, shader, size, .. } = &mut **state;
         let entries = &mut **entries;
         if !viewport.antialiased {
-            *convex = DepthElision::new(stream, view, *size);
+            *depth_elision = DepthElision::new(stream, view, *size);
         }
-        let leaning = if convex.is_some() { facing.leaning() } else { Facing::FRONT };
+        let leaning = if depth_elision.is_some() { facing.leaning() } else { Facing::FRONT };
         cache.iter_mut().take(stream.vertices.len()).for_each(|vertex| vertex.state = State::IDLE);
         for mesh in stream.meshes.iter().rev() {
             let (vertices, triangles) = (stream.vertices_of(mesh).unwrap_or_default(), stream.triangles_of(mesh).unwrap_or_default());
@@ -219,25 +219,25 @@ impl<C: Pixel> Frame<'_, '_, C> {
                 if height < leaning {
                     continue;
                 }
-                let mut simple = false;
+                let mut word_sized = false;
                 let bounds = match stage.corners(cached, vertices, triangle) {
                     Some(corners) => {
                         let extent = Extent::new(corners);
-                        if let Some(convex) = convex {
-                            convex.set_up_depth(&extent);
+                        if let Some(elision) = depth_elision {
+                            elision.include(&extent);
                         }
-                        simple = viewport.is_word_sized(&extent);
+                        word_sized = viewport.is_word_sized(&extent);
                         viewport.bounds(&extent)
                     }
                     None => {
-                        *convex = None;
+                        *depth_elision = None;
                         stage.bounds(viewport, vertices, triangle)
                     }
                 };
                 if let Some(Bounds { top, bottom, .. }) = bounds
                     && height >= Facing::FRONT
                 {
-                    bins.push(entries, first + rest.len() as u32, simple, [top as u32, bottom as u32]);
+                    bins.push(entries, first + rest.len() as u32, word_sized, [top as u32, bottom as u32]);
                 }
             }
         }
@@ -348,7 +348,7 @@ impl<C: Pixel> Frame<'_, '_, C> {
         let perspective = self.state.perspective_correct && stream.is_perspective();
         let style = Style {
             one_light: reflectance.holds_levels() && self.constant.is_some(),
-            smoothed: *dither || self.state.antialiased(),
+            dithered_or_antialiased: *dither || self.state.antialiased(),
             perspective,
         };
         let drawing = MeshPass {
@@ -363,9 +363,9 @@ impl<C: Pixel> Frame<'_, '_, C> {
             tables: MaterialTables { ramp, reflectance },
             dither: *dither,
             stage: self.stage(mesh)?,
-            convex: self.convex.as_ref(),
+            depth_elision: self.depth_elision.as_ref(),
             vertices: stream.vertices_of(mesh)?,
-            kept: memory.vertices.get(mesh.first_vertex as usize..).unwrap_or_default(),
+            cached: memory.vertices.get(mesh.first_vertex as usize..).unwrap_or_default(),
             viewport: self.state.viewport(),
             perspective,
         };

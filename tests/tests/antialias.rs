@@ -6,7 +6,7 @@ use embedded_graphics::{
 };
 use microphong::{
     Layout, RenderError, Renderer, Stats, Stream,
-    coverage::area::Contour,
+    coverage::area::TriangleCoverage,
     format::{BIAS, Intensity, RAMP},
     pixel::Pixel,
 };
@@ -55,7 +55,7 @@ fn area([a, b, c]: Corners) -> i64 {
 
 /// Coverage and centroid (16 bits each) of every pixel that a triangle touches, by the core.
 fn coverage(corners: Corners, bits: u32) -> BTreeMap<[i32; 2], (i32, [i32; 2])> {
-    let contour = Contour::new(corners, bits);
+    let contour = TriangleCoverage::new(corners, bits);
     let mut covered = BTreeMap::new();
     let [top, bottom] = contour.rows();
     for y in top..bottom {
@@ -330,8 +330,8 @@ fn supersampled(frame: &Frame, method: &str, ground: [f64; 3]) -> Vec<[f64; 3]> 
                     (b[0] - a[0]) * (p[1] - a[1]) - (b[1] - a[1]) * (p[0] - a[0]) >= 0.0
                 });
                 let point = &mut points[y as usize * columns + x as usize];
-                if inside && facet.nearness_at(p) > point.0 {
-                    *point = (facet.nearness_at(p), shade(p).map(|level| level.clamp(0.0, 255.0)));
+                if inside && facet.inv_depth_at(p) > point.0 {
+                    *point = (facet.inv_depth_at(p), shade(p).map(|level| level.clamp(0.0, 255.0)));
                 }
             }
         }
@@ -451,7 +451,7 @@ fn inner_pixels_stay() {
     let mut inner = vec![false; 160 * 120];
     for facet in &Frame::new(stream, (160, 120), 3).facets {
         let corners = facet.screen.map(|corner| corner.map(|c| (c * 16.0) as i32));
-        let contour = Contour::new(corners, 4);
+        let contour = TriangleCoverage::new(corners, 4);
         let [top, bottom] = contour.rows();
         for y in top..bottom {
             let [start, stop] = contour.row(y).inner;

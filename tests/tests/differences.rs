@@ -329,7 +329,7 @@ fn fields_of_26_bits_stay_within_the_bound_on_small_triangles() {
         if side(corners[0], corners[1], corners[2]) < 0 {
             corners.swap(1, 2);
         }
-        let Some(gradients) = Gradients::small(corners) else { continue };
+        let Some(gradients) = Gradients::if_word_sized(corners) else { continue };
         triangles += 1;
         let case = Case { width: 320, height: 240, corners };
         let longest2 = (0..3).map(|k| square(corners[k], corners[(k + 1) % 3])).fold(0.0, f64::max);

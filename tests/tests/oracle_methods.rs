@@ -77,7 +77,7 @@ fn parallel_normals_have_a_closed_form() {
 fn moved(facet: &Facet, order: [usize; 3], place: impl Fn([f64; 2]) -> [f64; 2]) -> Facet {
     Facet {
         screen: order.map(|k| place(facet.screen[k])),
-        nearness: order.map(|k| facet.nearness[k]),
+        inv_depth: order.map(|k| facet.inv_depth[k]),
         vertices: order.map(|k| facet.vertices[k]),
         normals: order.map(|k| facet.normals[k]),
         positions: order.map(|k| facet.positions[k]),

@@ -147,7 +147,7 @@ fn correction_comes_closer_to_the_truth() {
         let stream = scene.stream.parse().unwrap();
         let frame = Frame::perspective_correct(stream, scene.size, 0);
         let ratio = frame.facets.iter().map(|f| {
-            let (least, most) = f.nearness.iter().fold((f64::MAX, 0.0f64), |(l, m), &n| (l.min(n), m.max(n)));
+            let (least, most) = f.inv_depth.iter().fold((f64::MAX, 0.0f64), |(l, m), &n| (l.min(n), m.max(n)));
             most / least
         });
         let ratio = ratio.fold(0.0, f64::max);

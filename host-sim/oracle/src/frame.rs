@@ -35,9 +35,9 @@ pub struct Frame {
 pub struct Facet {
     /// Corners in pixels, clockwise on a screen whose y runs down.
     pub screen: [[f64; 2]; 3],
-    /// Nearness of the corners: 1 at the near plane, 0 far away, linear on the screen.
-    pub nearness: [f64; 3],
-    /// What a corner's share of the screen counts for in space: 1, or its nearness where perspective is corrected.
+    /// Inverse depth of the corners: 1 at the near plane, 0 far away, linear on the screen.
+    pub inv_depth: [f64; 3],
+    /// What a corner's share of the screen counts for in space: 1, or its inverse depth where perspective is corrected.
     pub shares: [f64; 3],
     /// Which vertices of the whole scene the corners are: neighbours share them.
     pub vertices: [usize; 3],
@@ -48,7 +48,7 @@ pub struct Facet {
     /// Unit normal of the plane.
     pub plane: V3,
     /// No interpolated normal is shorter.
-    pub rho: f64,
+    pub min_normal_length: f64,
     /// Index of the material.
     pub material: usize,
     /// Index of the triangle in the stream.
@@ -126,7 +126,7 @@ impl Frame {
     pub fn perspective_correct(stream: Stream<'_>, size: (u32, u32), number: u32) -> Self {
         let mut frame = Self::new(stream, size, number);
         if stream.is_perspective() {
-            frame.facets.iter_mut().for_each(|facet| facet.shares = facet.nearness);
+            frame.facets.iter_mut().for_each(|facet| facet.shares = facet.inv_depth);
         }
         frame
     }
@@ -156,13 +156,13 @@ fn facet(stream: Stream<'_>, mesh: &record::Mesh, triangle: &record::Triangle, i
     }
     Some(Facet {
         screen: places.map(|[x, y, _]| real([x, y], SUBPIXEL)),
-        nearness: places.map(|[_, _, depth]| f64::from(depth) / f64::from(DEPTH).exp2()),
+        inv_depth: places.map(|[_, _, depth]| f64::from(depth) / f64::from(DEPTH).exp2()),
         shares: [1.0; 3],
         vertices,
         normals: corners.map(|v| v.normal().map(f64::from)),
         positions: corners.map(|v| v.position().map(f64::from)),
         plane: triangle.normal().map(f64::from),
-        rho: f64::from(triangle.rho()),
+        min_normal_length: f64::from(triangle.min_normal_length()),
         material: mesh.material.into(),
         id,
     })
@@ -181,13 +181,13 @@ impl Facet {
         let least = [0, 1, 2].map(|k| dot(normals[k], normals[(k + 1) % 3])).into_iter().fold(1.0, f64::min);
         Self {
             screen,
-            nearness: [0.5; 3],
+            inv_depth: [0.5; 3],
             shares: [1.0; 3],
             vertices,
             normals,
             positions,
             plane: direction(cross(sub(c, a), sub(b, a))),
-            rho: ((1.0 + 2.0 * least) / 3.0).max(0.0).sqrt(),
+            min_normal_length: ((1.0 + 2.0 * least) / 3.0).max(0.0).sqrt(),
             material: 0,
             id: 0,
         }

@@ -2,7 +2,7 @@
 
 use super::frame::{Facet, Frame};
 
-/// Nearness that 16 bits, truncated, cannot be relied on to tell apart.
+/// Inverse depth that 16 bits, truncated, cannot be relied on to tell apart.
 const SLACK: f64 = 2.0 / 65_536.0;
 
 /// Steps per pixel in which edges are compared. Corners on multiples of 1/16 are exact, and so is all that follows.
@@ -18,7 +18,7 @@ impl Frame {
         for (index, facet) in (0..).zip(&self.facets) {
             for [x, y] in facet.pixels(self.size) {
                 let at = &mut near[y as usize * width as usize + x as usize];
-                at.push((facet.nearness_at([f64::from(x) + 0.5, f64::from(y) + 0.5]), index));
+                at.push((facet.inv_depth_at([f64::from(x) + 0.5, f64::from(y) + 0.5]), index));
             }
         }
         near.into_iter().map(contenders).collect()
@@ -29,14 +29,14 @@ impl Frame {
 fn contenders(mut at: Vec<(f64, u32)>) -> Vec<u32> {
     at.sort_by(|a, b| b.0.total_cmp(&a.0));
     let nearest = at.first().map_or(0.0, |first| first.0);
-    at.into_iter().take_while(|&(nearness, _)| nearest - nearness <= SLACK).map(|(_, index)| index).collect()
+    at.into_iter().take_while(|&(inv_depth, _)| nearest - inv_depth <= SLACK).map(|(_, index)| index).collect()
 }
 
 impl Facet {
-    /// Nearness at a point of the screen.
+    /// Inverse depth at a point of the screen.
     #[must_use]
-    pub fn nearness_at(&self, p: [f64; 2]) -> f64 {
-        self.flat_weights(p).iter().zip(self.nearness).map(|(w, n)| w * n).sum()
+    pub fn inv_depth_at(&self, p: [f64; 2]) -> f64 {
+        self.flat_weights(p).iter().zip(self.inv_depth).map(|(w, n)| w * n).sum()
     }
 
     /// The pixels whose centres lie inside, or on a left or top edge.
@@ -68,8 +68,8 @@ fn covers(corners: &[[i64; 2]; 3], pixel: [u32; 2]) -> bool {
 mod tests {
     use super::*;
 
-    fn facet(screen: [[f64; 2]; 3], nearness: f64) -> Facet {
-        Facet { nearness: [nearness; 3], ..Facet::new(screen, [0, 1, 2], [[0.0, 0.0, 1.0]; 3], [[0.0; 3]; 3]) }
+    fn facet(screen: [[f64; 2]; 3], inv_depth: f64) -> Facet {
+        Facet { inv_depth: [inv_depth; 3], ..Facet::new(screen, [0, 1, 2], [[0.0, 0.0, 1.0]; 3], [[0.0; 3]; 3]) }
     }
 
     /// A fan around a pixel centre, spokes through other centres: every pixel of the square belongs to exactly one part.
@@ -102,7 +102,7 @@ mod tests {
     fn the_nearest_comes_first_and_equals_stay() {
         let square = [[0.0, 0.0], [8.0, 0.0], [0.0, 8.0]];
         let step = 1.0 / 65_536.0;
-        let facets = [0.25, 0.5, 0.5 + step, 0.5, 0.5 - 4.0 * step].map(|nearness| facet(square, nearness));
+        let facets = [0.25, 0.5, 0.5 + step, 0.5, 0.5 - 4.0 * step].map(|inv_depth| facet(square, inv_depth));
         let axes = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
         let viewer = crate::Place::Far(axes[2]);
         let frame = Frame { size: (8, 8), facets: facets.to_vec(), lights: Vec::new(), viewer, axes, materials: Vec::new() };

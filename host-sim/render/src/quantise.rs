@@ -8,7 +8,7 @@ use crate::{
 };
 use microphong::{
     fixed::types::U0F16,
-    format::{Bend, InverseAltitude, Rho, UNIT, Unit},
+    format::{Haversine, InverseAltitude, NormalLength, UNIT, Unit},
     stream::record::{Triangle, Vertex},
 };
 use std::collections::HashMap;
@@ -104,9 +104,9 @@ fn triangle(corners: [Vertex; 3]) -> Option<Triangle> {
     Some(Triangle {
         corners: [0; 3],
         // Its bits are those of twice as much with one fraction bit less, for which there is a type.
-        rsum: sums.map(|s| nearest::<U0F16>(2.0 / s - 1.0).to_bits()),
-        bend: cosine.map(|c| nearest::<Bend>((1.0 - c) / 2.0).to_bits()),
-        rho: below::<Rho>(((1.0 + 2.0 * least) / 3.0).max(0.0).sqrt().min(1.0)).to_bits(),
+        inverse_sum_length: sums.map(|s| nearest::<U0F16>(2.0 / s - 1.0).to_bits()),
+        haversine: cosine.map(|c| nearest::<Haversine>((1.0 - c) / 2.0).to_bits()),
+        min_normal_length: below::<NormalLength>(((1.0 + 2.0 * least) / 3.0).max(0.0).sqrt().min(1.0)).to_bits(),
         normal: quantised.map(Unit::to_bits),
         offset: offset(plane, dot(plane, a), quantised).to_bits(),
         // With what floating point may have rounded down.

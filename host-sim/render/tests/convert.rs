@@ -76,19 +76,19 @@ fn edge_constants_follow_their_definition() {
         for k in 0..3 {
             let (a, b) = (normals[k], normals[(k + 1) % 3]);
             let sum = length(add(a, b));
-            let rsum = ((1.0 / sum - 0.5) * 131_072.0).min(65535.0);
-            assert!((f64::from(triangle.rsum[k]) - rsum).abs() <= 0.5001, "{name}");
-            let bend = ((1.0 - (sum / 2.0).powi(2)) * 65_536.0).min(65535.0);
-            assert!((f64::from(triangle.bend[k]) - bend).abs() <= 0.5001, "{name}");
+            let inverse_sum_length = ((1.0 / sum - 0.5) * 131_072.0).min(65535.0);
+            assert!((f64::from(triangle.inverse_sum_length[k]) - inverse_sum_length).abs() <= 0.5001, "{name}");
+            let haversine = ((1.0 - (sum / 2.0).powi(2)) * 65_536.0).min(65535.0);
+            assert!((f64::from(triangle.haversine[k]) - haversine).abs() <= 0.5001, "{name}");
             least = least.min(dot(a, b));
         }
-        let rho = ((1.0 + 2.0 * least) / 3.0).max(0.0).sqrt() * 32768.0;
-        let below = rho - f64::from(triangle.rho);
-        assert!((-1e-6..1.000_001).contains(&below), "{name}: rho {rho}, stored {}", triangle.rho);
+        let length_bound = ((1.0 + 2.0 * least) / 3.0).max(0.0).sqrt() * 32768.0;
+        let below = length_bound - f64::from(triangle.min_normal_length);
+        assert!((-1e-6..1.000_001).contains(&below), "{name}: normal length {length_bound}, stored {}", triangle.min_normal_length);
         // It is a bound: no point of the triangle has a shorter normal.
         for (u, v) in [(1.0, 1.0), (1.0, 2.0), (3.0, 1.0), (0.0, 1.0), (5.0, 0.5)] {
             let blend = add(add(scale(normals[0], u), scale(normals[1], v)), normals[2]);
-            assert!(length(blend) / (u + v + 1.0) * 32768.0 + 1e-6 >= f64::from(triangle.rho), "{name}");
+            assert!(length(blend) / (u + v + 1.0) * 32768.0 + 1e-6 >= f64::from(triangle.min_normal_length), "{name}");
         }
     });
 }

@@ -100,6 +100,6 @@ fn lights(stream: &Stream<'_>) -> String {
 
 /// How strongly normals vary within a triangle: the shorter they get between the corners, the harder it is to shade.
 fn bend(stream: &Stream<'_>) -> String {
-    let least = stream.triangles.iter().map(Triangle::rho).min().unwrap_or_default();
+    let least = stream.triangles.iter().map(Triangle::min_normal_length).min().unwrap_or_default();
     format!("interpolated normals at least {least:.3} long")
 }

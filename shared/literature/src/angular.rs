@@ -22,11 +22,11 @@ use microphong::{
         materials::{Highlight, Reflection},
     },
     math::{
-        power::PixelPower,
+        highlight_lut::CosineLookup,
         recip::Divisor,
         vector::{add, cross, dot, wide, zip},
     },
-    method::{Costs, Facts, Method, Shading, TriangleSetup, VertexLight, form::LightingModel},
+    method::{Costs, Facts, Method, Shading, TriangleSetup, VertexLight, lighting_model::LightingModel},
     raster::canvas::Canvas,
 };
 
@@ -84,18 +84,18 @@ impl Method for AngularOriginal {
 fn draw(setup: &TriangleSetup<'_>, shading: &Shading<'_>, fit: fn(u16) -> Parabolas, canvas: &mut dyn Canvas) -> u32 {
     let (edges, [one, many]) = (Edges::new(setup), [1, shading.exponent].map(fit));
     let rows = edges.rows(setup);
-    let diffuse = |direction| Lobe { direction, parabolas: &one, power: None };
-    let highlight = |direction| Lobe { direction, parabolas: &many, power: Some(&shading.reflectance.power) };
+    let diffuse = |direction| Lobe { direction, parabolas: &one, lut: None };
+    let highlight = |direction| Lobe { direction, parabolas: &many, lut: Some(&shading.reflectance.highlight_lut) };
     if shading.lighting.is_constant() {
         let arcs = arcs(setup.vertices().map(|vertex| wide(vertex.normal)));
-        let fit = |[towards, half]: [[i32; 3]; 2]| Bows { rows, arcs, lobes: [diffuse(towards), highlight(half)] };
+        let fit = |[towards, half]: [[i32; 3]; 2]| LobesOnRows { rows, arcs, lobes: [diffuse(towards), highlight(half)] };
         let of = |source: &Source| fit(shading.lighting.directions(source, [0; 3]));
         shading.draw_rows(setup, of, Constant, Both, canvas)
     } else {
         let fit = |source: &Source| {
             let [l, h] = turned(setup, shading.lighting, source);
-            let bows = |turned: Turned, lobe| Bows { rows, arcs: arcs(turned.normals), lobes: [lobe] };
-            (bows(l, diffuse(l.direction)), bows(h, highlight(h.direction)))
+            let on_rows = |turned: Turned, lobe| LobesOnRows { rows, arcs: arcs(turned.normals), lobes: [lobe] };
+            (on_rows(l, diffuse(l.direction)), on_rows(h, highlight(h.direction)))
         };
         shading.draw_rows(setup, fit, Constant, Both, canvas)
     }
@@ -136,14 +136,14 @@ fn turn(normal: [i32; 3], from: [i32; 3], to: [i32; 3]) -> [i32; 3] {
 
 /// Powers of cosines along the rows, of one normal and `M` directions.
 #[derive(Clone, Copy)]
-struct Bows<'f, const M: usize> {
+struct LobesOnRows<'f, const M: usize> {
     rows: Rows<'f>,
     arcs: [Arc; 3],
     lobes: [Lobe<'f>; M],
 }
 
-impl<const M: usize> Patch for Bows<'_, M> {
-    type Walker = Pieces<M>;
+impl<const M: usize> Patch for LobesOnRows<'_, M> {
+    type Walker = PiecewiseQuadratics<M>;
 
     fn jump(&mut self, rows: i32) {
         self.rows.jump(rows);
@@ -153,19 +153,19 @@ impl<const M: usize> Patch for Bows<'_, M> {
         self.rows.jump(1);
     }
 
-    fn enter(&self, x: i32) -> Pieces<M> {
+    fn enter(&self, x: i32) -> PiecewiseQuadratics<M> {
         let span = self.rows.span(x);
         let [l, r] = span.ends.map(|end| end.of(self.arcs).at(end.along));
         let arc = Arc::new(l, r);
-        span.enter(Pieces(self.lobes.map(|lobe| lobe.along(&arc, r, &span))))
+        span.enter(PiecewiseQuadratics(self.lobes.map(|lobe| lobe.along(&arc, r, &span))))
     }
 }
 
 /// Walks `M` of them.
 #[derive(Clone, Copy)]
-struct Pieces<const M: usize>([PiecewiseQuadratic; M]);
+struct PiecewiseQuadratics<const M: usize>([PiecewiseQuadratic; M]);
 
-impl<const M: usize> Walker for Pieces<M> {
+impl<const M: usize> Walker for PiecewiseQuadratics<M> {
     type Value = [i32; M];
 
     #[inline(always)]
@@ -175,7 +175,7 @@ impl<const M: usize> Walker for Pieces<M> {
 
     #[inline(always)]
     fn value(&self) -> [i32; M] {
-        self.0.map(|bow| bow.value())
+        self.0.map(|quadratic| quadratic.value())
     }
 }
 
@@ -190,7 +190,7 @@ impl LightingModel<(), [i32; 2]> for Both {
     fn common(&self, (): ()) {}
 
     #[inline(always)]
-    fn reflect(&self, _: usize, (): &(), [diffuse, highlight]: [i32; 2], _: PixelPower<'_>) -> Reflection {
+    fn reflect(&self, _: usize, (): &(), [diffuse, highlight]: [i32; 2], _: CosineLookup<'_>) -> Reflection {
         Reflection { diffuse: diffuse >> 3, highlight: (highlight >> 14) as u32 }
     }
 }
@@ -200,7 +200,7 @@ impl LightingModel<(), ([i32; 1], [i32; 1])> for Both {
 
     fn common(&self, (): ()) {}
 
-    fn reflect(&self, light: usize, common: &(), ([diffuse], [highlight]): ([i32; 1], [i32; 1]), power: PixelPower<'_>) -> Reflection {
-        self.reflect(light, common, [diffuse, highlight], power)
+    fn reflect(&self, light: usize, common: &(), ([diffuse], [highlight]): ([i32; 1], [i32; 1]), lut: CosineLookup<'_>) -> Reflection {
+        self.reflect(light, common, [diffuse, highlight], lut)
     }
 }

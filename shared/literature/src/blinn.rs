@@ -17,12 +17,12 @@ use microphong::{
         materials::{Highlight, Reflection},
     },
     math::{
-        power::PixelPower,
+        highlight_lut::CosineLookup,
         vector::{cross, normalise, zip},
     },
     method::{
         Costs, Facts, Method, Shading, TriangleSetup, VertexLight,
-        form::{LightingModel, linear, signed},
+        lighting_model::{LightingModel, linear, signed},
         node::Node,
     },
     raster::canvas::Canvas,
@@ -116,10 +116,10 @@ impl LightingModel<(), [u32; 3]> for Across {
     fn common(&self, (): ()) {}
 
     #[inline(always)]
-    fn reflect(&self, _: usize, (): &(), [diffuse, u, v]: [u32; 3], power: PixelPower<'_>) -> Reflection {
+    fn reflect(&self, _: usize, (): &(), [diffuse, u, v]: [u32; 3], lut: CosineLookup<'_>) -> Reflection {
         // Q4.60 to Q5.27.
         let square = |c: u32| i64::from(signed(c)) * i64::from(signed(c));
         let squares = ((square(u) + square(v)) >> (2 * COSINE - PIXEL_COSINE)) as i32;
-        Reflection { diffuse: signed(diffuse) >> 3, highlight: power.at((1 << PIXEL_COSINE) - squares) }
+        Reflection { diffuse: signed(diffuse) >> 3, highlight: lut.at((1 << PIXEL_COSINE) - squares) }
     }
 }

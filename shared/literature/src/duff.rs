@@ -5,7 +5,7 @@
 //! are not linear: there they are the quadratics through six points.
 //!
 //! Cost: 4 additions a pixel, a root from a table, 2 products and the highlight's table; 2 or 4 additions and
-//! 2 products more per light. Error: that of the tables, [`microphong::math::power::NEAREST_ERROR`] of the highlight above all.
+//! 2 products more per light. Error: that of the tables, [`microphong::math::highlight_lut::NEAREST_ERROR`] of the highlight above all.
 //! Domain: any lights; with near lights as good as six points are.
 
 use microphong::{

@@ -19,13 +19,13 @@ use microphong::{
         materials::{Highlight, Reflection},
     },
     math::{
-        power::PixelPower,
+        highlight_lut::CosineLookup,
         vector::{dot, normalise, zip},
     },
     method::{
         Costs, Facts, Method, Shading, TriangleSetup, VertexLight,
         duff::Root,
-        form::{LightingModel, linear, signed},
+        lighting_model::{LightingModel, linear, signed},
         node::Node,
     },
     raster::canvas::Canvas,
@@ -117,7 +117,7 @@ impl LightingModel<[u32; 2], ([u32; 1], [i32; 3])> for Mirror {
     }
 
     #[inline(always)]
-    fn reflect(&self, _: usize, mirrored: &[i32; 3], ([diffuse], towards): ([u32; 1], [i32; 3]), power: PixelPower<'_>) -> Reflection {
-        Reflection { diffuse: signed(diffuse) >> 3, highlight: power.at((dot(*mirrored, towards) >> (COSINE + 3)) as i32) }
+    fn reflect(&self, _: usize, mirrored: &[i32; 3], ([diffuse], towards): ([u32; 1], [i32; 3]), lut: CosineLookup<'_>) -> Reflection {
+        Reflection { diffuse: signed(diffuse) >> 3, highlight: lut.at((dot(*mirrored, towards) >> (COSINE + 3)) as i32) }
     }
 }

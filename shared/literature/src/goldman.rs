@@ -17,11 +17,11 @@ use microphong::{
         materials::{Highlight, Reflection},
     },
     math::{
-        power::PixelPower,
+        highlight_lut::CosineLookup,
         recip::Divisor,
         vector::{dot, normalise, wide},
     },
-    method::{Costs, Facts, Method, Shading, TriangleSetup, VertexLight, form::LightingModel},
+    method::{Costs, Facts, Method, Shading, TriangleSetup, VertexLight, lighting_model::LightingModel},
     raster::canvas::Canvas,
 };
 
@@ -89,7 +89,7 @@ impl<const M: usize> Patch for Chords<'_, M> {
         span.enter(Chord {
             t: t as i32,
             step: span.step,
-            bend: (((1 << 30) - (dot(l, r) >> 30)) >> 1) as i32,
+            haversine: (((1 << 30) - (dot(l, r) >> 30)) >> 1) as i32,
             length: 1 << 30,
             inverse: Divisor::new(1 << 30),
             square: 1 << 30,
@@ -106,7 +106,7 @@ struct Chord<const M: usize> {
     t: i32,
     step: i32,
     /// A quarter of the squared distance between the ends' normals, Q2.30.
-    bend: i32,
+    haversine: i32,
     /// |N| by Newton's iteration, and 1/|N|.
     length: i32,
     inverse: Divisor,
@@ -129,7 +129,7 @@ impl<const M: usize> Walker for Chord<M> {
         }
         // t (1 - t), at most a quarter.
         let between = (i64::from(self.t) * i64::from((1i32 << 30).wrapping_sub(self.t))) >> 30;
-        self.square = (1 << 30) - ((between.wrapping_mul(self.bend.into())) >> 28) as i32;
+        self.square = (1 << 30) - ((between.wrapping_mul(self.haversine.into())) >> 28) as i32;
         self.length = ((i64::from(self.length) + i64::from(self.inverse.divide(self.square))) >> 1) as i32;
         self.inverse = Divisor::new(self.length.max(1) as u32);
     }
@@ -142,11 +142,11 @@ impl<const M: usize> Walker for Chord<M> {
 
 /// N·L and R·V from N·L and N·V of a normal that is not normalised, and L·V.
 #[inline(always)]
-fn reflect([nl, nv]: [i32; 2], lv: i32, inverse: Divisor, square: Divisor, power: PixelPower<'_>) -> Reflection {
+fn reflect([nl, nv]: [i32; 2], lv: i32, inverse: Divisor, square: Divisor, lut: CosineLookup<'_>) -> Reflection {
     // The product is divided, not a factor: it is at most |N|².
     let both = square.divide(((i64::from(nl) * i64::from(nv)) >> 30) as i32);
     let mirrored = if i64::from(nl) + i64::from(nv) > 0 { (2 * i64::from(both) - i64::from(lv)) >> 3 } else { -1 };
-    Reflection { diffuse: inverse.divide(nl) >> 3, highlight: power.at(mirrored as i32) }
+    Reflection { diffuse: inverse.divide(nl) >> 3, highlight: lut.at(mirrored as i32) }
 }
 
 /// Any lights; the products are the normal.
@@ -163,11 +163,11 @@ impl LightingModel<([i32; 3], Divisor, i32), ()> for Many<'_> {
         (normal, inverse, Divisor::new(square.max(1) as u32))
     }
 
-    fn reflect(&self, light: usize, &(normal, inverse, square): &Self::Common, (): (), power: PixelPower<'_>) -> Reflection {
+    fn reflect(&self, light: usize, &(normal, inverse, square): &Self::Common, (): (), lut: CosineLookup<'_>) -> Reflection {
         let Some(&Source::Directional { towards, .. }) = self.lighting.sources.get(light) else {
             return Reflection { diffuse: 0, highlight: 0 };
         };
         let products = [towards, self.view].map(|v| cosine(normal, v));
-        reflect(products, cosine(towards, self.view), inverse, square, power)
+        reflect(products, cosine(towards, self.view), inverse, square, lut)
     }
 }

@@ -1,7 +1,7 @@
 //! Phong shading where a highlight can be, Gouraud shading elsewhere.
 //!
-//! N·H is linear under constant light, and no interpolated normal is shorter than rho: N·H over |N| is at most the
-//! largest of the corners over rho. Where that stays below the cosine whose power is taken as 0, for each light,
+//! N·H is linear under constant light, and no interpolated normal is shorter than r: N·H over |N| is at most the
+//! largest of the corners over r. Where that stays below the cosine whose power is taken as 0, for each light,
 //! only diffuse light is left, and it changes slowly. Near lights have no such bound at a fair price: Phong everywhere.
 //!
 //! Cost: three comparisons a triangle and light, then that of [`microphong::method::gouraud`] or [`microphong::method::phong`]. Not continuous where

@@ -17,10 +17,10 @@ use microphong::{
         lights::{Source, cosine},
         materials::{Highlight, Reflection},
     },
-    math::{power::PixelPower, vector::normalise},
+    math::{highlight_lut::CosineLookup, vector::normalise},
     method::{
         Costs, Facts, Method, Shading, TriangleSetup, VertexLight,
-        form::{LightingModel, quadratic, signed},
+        lighting_model::{LightingModel, quadratic, signed},
     },
     raster::canvas::Canvas,
 };
@@ -80,7 +80,7 @@ fn draw(setup: &TriangleSetup<'_>, shading: &Shading<'_>, fit: fn(u16) -> Parabo
     let (edges, parabolas) = (Edges::new(setup), fit(shading.exponent));
     let rows = edges.rows(setup);
     let bows = |Turned { normals, direction }| {
-        let lobe = Lobe { direction, parabolas: &parabolas, power: Some(&shading.reflectance.power) };
+        let lobe = Lobe { direction, parabolas: &parabolas, lut: Some(&shading.reflectance.highlight_lut) };
         Bows { rows, normals, lobe }
     };
     let constant = |direction| bows(Turned { normals: setup.corner_nodes().map(|node| node.normal), direction });
@@ -136,7 +136,7 @@ impl LightingModel<(), ([u32; 1], i32)> for Both {
     fn common(&self, (): ()) {}
 
     #[inline(always)]
-    fn reflect(&self, _: usize, (): &(), ([diffuse], highlight): ([u32; 1], i32), _: PixelPower<'_>) -> Reflection {
+    fn reflect(&self, _: usize, (): &(), ([diffuse], highlight): ([u32; 1], i32), _: CosineLookup<'_>) -> Reflection {
         Reflection { diffuse: signed(diffuse) >> 3, highlight: (highlight >> 14) as u32 }
     }
 }

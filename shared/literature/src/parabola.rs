@@ -8,7 +8,7 @@ use crate::{angle::polar, arc::Arc, scanline::Span};
 use core::num::NonZeroU64;
 use microphong::{
     interpolate::Walker,
-    math::{power::Power, vector::dot},
+    math::{highlight_lut::HighlightLut, vector::dot},
 };
 
 /// Fraction bits of angles in units of b: Q8.24.
@@ -70,14 +70,14 @@ pub struct Lobe<'f> {
     /// The parabolas that stand for the power.
     pub parabolas: &'f Parabolas,
     /// None: the cosine itself.
-    pub power: Option<&'f Power>,
+    pub lut: Option<&'f HighlightLut>,
 }
 
 impl Lobe<'_> {
     /// The power of a cosine, Q0.16.
     fn biased(&self, cosine: i32) -> i32 {
-        match self.power {
-            Some(power) => power.at(cosine) as i32,
+        match self.lut {
+            Some(lut) => lut.at(cosine) as i32,
             None => cosine.clamp(0, 1 << 30) >> 14,
         }
     }

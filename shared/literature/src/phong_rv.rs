@@ -8,8 +8,8 @@
 
 use microphong::{
     lighting::materials::{Highlight, Reflection},
-    math::power::PixelPower,
-    method::{Costs, Facts, Method, Shading, TriangleSetup, VertexLight, form::LightingModel, phong, phong::Common},
+    math::highlight_lut::CosineLookup,
+    method::{Costs, Facts, Method, Shading, TriangleSetup, VertexLight, lighting_model::LightingModel, phong, phong::Common},
     raster::canvas::Canvas,
 };
 
@@ -54,10 +54,10 @@ impl LightingModel<[u32; 3], [u32; 3]> for Mirrored {
         Common { nv: common.normal.divide(common.nv), ..common }
     }
 
-    fn reflect(&self, _: usize, common: &Common, products: [u32; 3], power: PixelPower<'_>) -> Reflection {
+    fn reflect(&self, _: usize, common: &Common, products: [u32; 3], lut: CosineLookup<'_>) -> Reflection {
         let [nl, lv] = common.light(products);
         let nl = common.normal.divide(nl);
-        Reflection { diffuse: nl >> 3, highlight: power.at(mirrored(nl, common.nv, lv)) }
+        Reflection { diffuse: nl >> 3, highlight: lut.at(mirrored(nl, common.nv, lv)) }
     }
 }
 

@@ -7,7 +7,7 @@ use crate::blinn::{Across, coordinates};
 use microphong::{
     interpolate::Constant,
     lighting::{lights::Source, materials::Highlight},
-    method::{Costs, Facts, Method, Shading, TriangleSetup, VertexLight, form::quadratic},
+    method::{Costs, Facts, Method, Shading, TriangleSetup, VertexLight, lighting_model::quadratic},
     raster::canvas::Canvas,
 };
 

@@ -21,10 +21,10 @@ use microphong::{
         materials::{Highlight, Reflection},
     },
     math::{
-        power::PixelPower,
+        highlight_lut::CosineLookup,
         vector::{dot, normalise, wide},
     },
-    method::{Costs, Facts, Method, Shading, TriangleSetup, VertexLight, form::LightingModel},
+    method::{Costs, Facts, Method, Shading, TriangleSetup, VertexLight, lighting_model::LightingModel},
     raster::canvas::Canvas,
 };
 
@@ -143,11 +143,11 @@ impl LightingModel<[i32; 3], ()> for Many<'_> {
         normal
     }
 
-    fn reflect(&self, light: usize, &normal: &[i32; 3], (): (), power: PixelPower<'_>) -> Reflection {
+    fn reflect(&self, light: usize, &normal: &[i32; 3], (): (), lut: CosineLookup<'_>) -> Reflection {
         let Some(&Source::Directional { towards, half }) = self.0.sources.get(light) else {
             return Reflection { diffuse: 0, highlight: 0 };
         };
         let [diffuse, half] = [towards, half].map(|v| cosine(normal, v) >> 3);
-        Reflection { diffuse, highlight: power.at(half) }
+        Reflection { diffuse, highlight: lut.at(half) }
     }
 }

@@ -9,7 +9,7 @@
 
 use microphong::{
     antialias::{PixelSet, Shape, coarse},
-    coverage::area::Contour,
+    coverage::area::TriangleCoverage,
     format::{FINE, SPLITS, SUBPIXEL},
     interpolate::{Patch, plane::Plane},
     math::vector::zip,
@@ -184,8 +184,10 @@ impl ScreenSubTriangle<'_> {
     fn smooth(&self, anchor: i32, shader: &mut dyn SpanShader, canvas: &mut dyn Canvas) -> u32 {
         // Corners of a piece have only so many fraction bits as it was split more.
         let (bits, level) = (FINE - SUBPIXEL, self.sub_triangle.level.min(SPLITS));
-        let part =
-            Contour::new(self.corners.map(|c| coarse(c, self.pixels.finer(), bits).map(|c| c >> (SPLITS - level))), SUBPIXEL + level);
+        let part = TriangleCoverage::new(
+            self.corners.map(|c| coarse(c, self.pixels.finer(), bits).map(|c| c >> (SPLITS - level))),
+            SUBPIXEL + level,
+        );
         let [a, b, c] = self.corners;
         let mut owned = |row: i32| {
             let mut columns = [i32::MIN, i32::MAX];

@@ -21,13 +21,13 @@ use microphong::{
         materials::{Highlight, Reflection},
     },
     math::{
-        power::PixelPower,
+        highlight_lut::CosineLookup,
         rsqrt::rsqrt_wide,
         vector::{add, dot, sub, wide},
     },
     method::{
         Costs, Facts, Method, Shading, TriangleSetup, VertexLight,
-        form::{EXTRA, LightingModel, NODE, Quadratic, signed},
+        lighting_model::{EXTRA, LightingModel, NODE, Quadratic, signed},
     },
     raster::canvas::Canvas,
 };
@@ -143,11 +143,11 @@ impl LightingModel<(), ([u32; 2], u32)> for Clamped {
     fn common(&self, (): ()) {}
 
     #[inline(always)]
-    fn reflect(&self, _: usize, (): &(), (fields, shift): ([u32; 2], u32), power: PixelPower<'_>) -> Reflection {
+    fn reflect(&self, _: usize, (): &(), (fields, shift): ([u32; 2], u32), lut: CosineLookup<'_>) -> Reflection {
         let limit = (1 << COSINE) >> shift;
         let clamped = |cosine: u32| (signed(cosine).clamp(-limit, limit) << shift) >> 3;
         let [diffuse, half] = fields;
         let (diffuse, half) = (clamped(diffuse), clamped(half));
-        Reflection { diffuse, highlight: power.at(half) }
+        Reflection { diffuse, highlight: lut.at(half) }
     }
 }

@@ -31,13 +31,13 @@ struct Edge {
 
 /// A triangle's edges.
 #[derive(Clone, Copy, Debug)]
-pub struct Contour {
+pub struct TriangleCoverage {
     edges: [Edge; 3],
     /// Fraction bits of coordinates, at most 10.
     bits: u32,
 }
 
-impl Contour {
+impl TriangleCoverage {
     /// Of a triangle, clockwise on a screen whose y runs down, with coordinates of `bits` fraction bits: at least 4 and at
     /// most 10, differences below 2^18.
     #[must_use]
@@ -63,19 +63,19 @@ impl Contour {
     /// What lies in `row`.
     #[must_use]
     pub fn row(&self, row: i32) -> Row {
-        let portions = self.edges.map(|edge| Portion::new(&edge, row, self.bits));
-        let mut row = Row { portions, columns: [i32::MAX, i32::MIN], inner: [i32::MIN, i32::MAX] };
+        let segments = self.edges.map(|edge| EdgeSegment::new(&edge, row, self.bits));
+        let mut row = Row { segments, columns: [i32::MAX, i32::MIN], inner: [i32::MIN, i32::MAX] };
         let mut heights = [0; 2];
-        for portion in portions.iter().filter(|portion| portion.height > 0) {
-            let whole = portion.dy << self.bits;
-            // Columns that the portion touches, half open; one that it only meets at a border is not touched.
-            let (first, end) = (portion.low.div_euclid(whole.max(1)) as i32, -(-portion.high).div_euclid(whole.max(1)) as i32);
+        for segment in segments.iter().filter(|segment| segment.height > 0) {
+            let whole = segment.dy << self.bits;
+            // Columns that the segment touches, half open; one that it only meets at a border is not touched.
+            let (first, end) = (segment.low.div_euclid(whole.max(1)) as i32, -(-segment.high).div_euclid(whole.max(1)) as i32);
             row.columns = [row.columns[0].min(first), row.columns[1].max(end)];
-            if portion.left {
-                heights[0] += portion.height;
+            if segment.left {
+                heights[0] += segment.height;
                 row.inner[0] = row.inner[0].max(end);
             } else {
-                heights[1] += portion.height;
+                heights[1] += segment.height;
                 row.inner[1] = row.inner[1].min(first);
             }
         }
@@ -90,7 +90,7 @@ impl Contour {
 
 /// What an edge has in one row.
 #[derive(Clone, Copy, Debug)]
-struct Portion {
+struct EdgeSegment {
     height: i64,
     /// Columns of the left and right end, over `dy`.
     low: i64,
@@ -108,7 +108,7 @@ struct Portion {
     entry: i64,
 }
 
-impl Portion {
+impl EdgeSegment {
     fn new(edge: &Edge, row: i32, bits: u32) -> Self {
         let top = i64::from(row) << bits;
         let (from, to) = (edge.y.max(top), (edge.y + edge.dy).min(top + (1 << bits)));
@@ -220,7 +220,7 @@ struct Area {
 /// A triangle in one row of pixels.
 #[derive(Clone, Copy, Debug)]
 pub struct Row {
-    portions: [Portion; 3],
+    segments: [EdgeSegment; 3],
     /// Columns that it touches, half open.
     pub columns: [i32; 2],
     /// Columns that it covers wholly.
@@ -241,16 +241,16 @@ pub struct Fragment {
 impl Row {
     /// Stands on `column`.
     pub fn enter(&mut self, column: i32) {
-        self.portions.iter_mut().for_each(|portion| portion.enter(column));
+        self.segments.iter_mut().for_each(|segment| segment.enter(column));
     }
 
     /// What is covered of `column`, where it stands; steps to the next one.
     pub fn step(&mut self, column: i32) -> Fragment {
         let (mut sum, mut mask) = (Area::default(), 0);
-        for portion in self.portions.iter_mut().filter(|portion| portion.height > 0) {
-            let area = portion.area(column);
-            mask ^= portion.mask(column);
-            let add = |to: &mut i64, part: i64| *to += if portion.left { part } else { -part };
+        for segment in self.segments.iter_mut().filter(|segment| segment.height > 0) {
+            let area = segment.area(column);
+            mask ^= segment.mask(column);
+            let add = |to: &mut i64, part: i64| *to += if segment.left { part } else { -part };
             add(&mut sum.coverage, area.coverage);
             add(&mut sum.size, area.size);
             add(&mut sum.x, area.x);

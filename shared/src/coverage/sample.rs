@@ -24,7 +24,7 @@ const WHOLE: u32 = 1 << COVERAGE;
 #[derive(FromBytes, IntoBytes, Immutable, KnownLayout, Clone, Copy, Debug, PartialEq, Eq)]
 #[repr(C)]
 pub struct Layer {
-    /// Range of nearness.
+    /// Range of inverse depth.
     pub near: u16,
     /// Its far end.
     pub far: u16,

@@ -18,7 +18,7 @@ const NONE: u16 = 0;
 #[derive(FromBytes, IntoBytes, Immutable, KnownLayout, Clone, Copy, Debug)]
 #[repr(C)]
 pub struct Entry {
-    /// Twice the index in the stream, and 1 more if it is simple: lists are in this order.
+    /// Twice the index in the stream, and 1 more if it is word-sized: lists are in this order.
     key: u32,
     /// One past its last row.
     bottom: u16,
@@ -37,7 +37,7 @@ impl Entry {
         self.key >> 1
     }
 
-    /// Different from that of all others, and not 0 if it is simple.
+    /// Different from that of all others, and not 0 if it is word-sized.
     #[inline(always)]
     #[must_use]
     pub fn key(&self) -> u32 {
@@ -94,15 +94,15 @@ impl Bins {
         (row.wrapping_mul(self.bins_per_row) >> 20) as usize
     }
 
-    /// Puts a triangle that covers rows `top .. bottom` in front of its list, and remembers whether it is `simple`. Called from the last
+    /// Puts a triangle that covers rows `top .. bottom` in front of its list, and remembers whether it is `word_sized`. Called from the last
     /// triangle to the first.
     #[inline(always)]
-    pub fn push(&mut self, entries: &mut [Entry], triangle: u32, simple: bool, [top, bottom]: [u32; 2]) {
+    pub fn push(&mut self, entries: &mut [Entry], triangle: u32, word_sized: bool, [top, bottom]: [u32; 2]) {
         let bin = self.of(top);
         let link = self.count.wrapping_add(1);
         match (self.heads.get_mut(bin), entries.get_mut(usize::from(self.count))) {
             (Some(head), Some(entry)) if link != NONE => {
-                *entry = Entry { key: triangle << 1 | u32::from(simple), bottom: bottom as u16, next: *head };
+                *entry = Entry { key: triangle << 1 | u32::from(word_sized), bottom: bottom as u16, next: *head };
                 *head = link;
                 self.count = link;
                 self.top = self.top.min(top);

@@ -5,7 +5,7 @@
 //! from its inner to its outer end: no crack opens.
 
 use crate::{
-    format::{BEND, EDGE, UNIT},
+    format::{HAVERSINE, INVERSE_SUM_LENGTH, UNIT},
     geometry::projection::{PLANES, View},
     math::{
         rsqrt::rsqrt_wide,
@@ -81,7 +81,12 @@ fn between(inner: &Corner, outer: &Corner, di: i64, d_o: i64) -> Corner {
 pub fn record(whole: &Triangle, corners: &[Vertex; 3]) -> Triangle {
     let [a, b, c] = corners.map(|corner| wide(corner.normal));
     let edges = [edge(c, a), edge(b, c), edge(a, b)];
-    Triangle { corners: [0, 2, 1], rsum: edges.map(|(rsum, _)| rsum), bend: edges.map(|(_, bend)| bend), ..*whole }
+    Triangle {
+        corners: [0, 2, 1],
+        inverse_sum_length: edges.map(|(inverse, _)| inverse),
+        haversine: edges.map(|(_, haversine)| haversine),
+        ..*whole
+    }
 }
 
 /// 1/|a + b| - 1/2 and 1 - |a + b|²/4 of two unit normals, as in a record.
@@ -89,7 +94,7 @@ fn edge(a: [i32; 3], b: [i32; 3]) -> (u16, u16) {
     let sum = add(a, b);
     let square = dot(sum, sum).max(1) as u64;
     let (mantissa, exponent) = rsqrt_wide(square);
-    let rsum = ((u64::from(mantissa) << (UNIT + EDGE)) >> exponent).saturating_sub(1 << (EDGE - 1));
-    let bend = (1u64 << BEND).saturating_sub(square >> (2 * UNIT + 2 - BEND));
-    (rsum.min(u64::from(u16::MAX)) as u16, bend.min(u64::from(u16::MAX)) as u16)
+    let inverse = ((u64::from(mantissa) << (UNIT + INVERSE_SUM_LENGTH)) >> exponent).saturating_sub(1 << (INVERSE_SUM_LENGTH - 1));
+    let haversine = (1u64 << HAVERSINE).saturating_sub(square >> (2 * UNIT + 2 - HAVERSINE));
+    (inverse.min(u64::from(u16::MAX)) as u16, haversine.min(u64::from(u16::MAX)) as u16)
 }

@@ -158,14 +158,14 @@ impl Extent {
 }
 
 /// Bits of the sides of a small triangle, 1/16 pixel.
-const SMALL: u32 = 10;
+const WORD_SIDE: u32 = 10;
 
 /// Whether a triangle is so small and stout, not even nearly [`crate::setup::gradients::MAX_THINNESS`], that its polynomials are set up in
 /// words: by its box's width or height, whichever is larger or both in one, and twice its area.
 #[inline(always)]
 pub(crate) fn fits_words(size: u32, area: i32) -> bool {
     // 2^(2 bits) <= 128 area.
-    size < 1 << SMALL && area > 1 && 64 - 2 * leading_zeros(size) + leading_zeros(area as u32) <= 38
+    size < 1 << WORD_SIDE && area > 1 && 64 - 2 * leading_zeros(size) + leading_zeros(area as u32) <= 38
 }
 
 #[cold]

@@ -51,7 +51,7 @@ pub struct DepthElision {
     /// Cells per 1/16 pixel, Q.16.
     scale: [i32; 2],
     /// Contested cells, a row each.
-    needs_depth_test: [u32; CELLS as usize],
+    marked: [u32; CELLS as usize],
 }
 
 impl DepthElision {
@@ -69,28 +69,28 @@ impl DepthElision {
             size,
             // The last coordinate lies in the last cell.
             scale: size.map(|side| ((CELLS << 16) as i32).checked_div(side + 1).unwrap_or(0)),
-            needs_depth_test: [0; CELLS as usize],
+            marked: [0; CELLS as usize],
         })
     }
 
     /// Takes notice of a triangle that may show its front.
     #[inline(always)]
-    pub fn set_up_depth(&mut self, extent: &Extent) {
+    pub fn include(&mut self, extent: &Extent) {
         let inside = self.is_inside([extent.left, extent.right], [extent.top, extent.bottom]);
         // It is at least as thick as twice its area over its length.
         if !inside || extent.area.unsigned_abs() < (self.thickness * extent.length()) as u32 {
-            self.contest(extent);
+            self.mark(extent);
         }
     }
 
     #[inline(never)]
-    fn contest(&mut self, extent: &Extent) {
+    fn mark(&mut self, extent: &Extent) {
         let ([width, height], around) = (self.size, self.thickness);
         // `clamp` panics if the ends are in the wrong order.
         let columns = [extent.left - around, extent.right + around].map(|x| x.max(0).min(width));
         let rows = [extent.top - around, extent.bottom + around].map(|y| y.max(0).min(height));
         let (rows, columns) = self.cells(columns, rows);
-        self.needs_depth_test.get_mut(rows).unwrap_or_default().iter_mut().for_each(|row| *row |= columns);
+        self.marked.get_mut(rows).unwrap_or_default().iter_mut().for_each(|row| *row |= columns);
     }
 
     /// Whether others may overlap a triangle with these least and largest columns and rows; all that may show their front have been seen.
@@ -101,7 +101,7 @@ impl DepthElision {
             return true;
         }
         let (rows, columns) = self.cells(columns, rows);
-        self.needs_depth_test.get(rows).is_none_or(|rows| rows.iter().any(|row| row & columns != 0))
+        self.marked.get(rows).is_none_or(|rows| rows.iter().any(|row| row & columns != 0))
     }
 
     #[inline(always)]

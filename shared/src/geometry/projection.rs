@@ -22,7 +22,7 @@ pub struct ScreenVertex {
     pub x: i32,
     /// Row, 1/16 pixel, downwards.
     pub y: i32,
-    /// Nearness, Q0.28.
+    /// Inverse depth, Q0.28.
     pub depth: i32,
     /// `[N·L, N·H, -]` in Q2.30 under one constant light, else light levels in Q9.7.
     pub light: [i32; 3],
@@ -53,7 +53,7 @@ pub const GUARD: i32 = 4096 << SUBPIXEL;
 /// place: half by its own rounding, and √3 times 0.86 by that in the mesh.
 const MOVED: u32 = 2;
 
-/// Nearness of a vertex at the near plane, Q0.28: less than one, so that rounding cannot wrap it.
+/// Inverse depth of a vertex at the near plane, Q0.28: less than one, so that rounding cannot wrap it.
 const NEAREST: i32 = (1 << DEPTH) - (1 << 10);
 
 /// One frame's way from object space to the screen.
@@ -84,7 +84,7 @@ enum Projection {
     },
     Orthographic {
         far: i32,
-        /// Nearness per unit of distance, Q.14.
+        /// Inverse depth per unit of distance, Q.14.
         inv_depth: i64,
     },
 }

@@ -28,19 +28,19 @@ pub trait Patch: Copy {
     /// A walker that stands on column `x`; its first step leads to `x - 1`.
     fn enter(&self, x: i32) -> Self::Walker;
 
-    /// Words that [`Self::keep`] takes.
+    /// Words that [`Self::save`] takes.
     const WORDS: usize = 0;
 
     /// Writes all that it is to the first `words`; false if it cannot, or they are too few.
     #[inline(always)]
-    fn keep(&self, _words: &mut [u32]) -> bool {
+    fn save(&self, _words: &mut [u32]) -> bool {
         false
     }
 
     /// What has been kept.
     #[inline(always)]
     #[must_use]
-    fn kept(_words: &[u32]) -> Option<Self> {
+    fn load(_words: &[u32]) -> Option<Self> {
         None
     }
 }
@@ -87,11 +87,11 @@ impl Patch for Constant {
         Self
     }
     #[inline(always)]
-    fn keep(&self, _: &mut [u32]) -> bool {
+    fn save(&self, _: &mut [u32]) -> bool {
         true
     }
     #[inline(always)]
-    fn kept(_: &[u32]) -> Option<Self> {
+    fn load(_: &[u32]) -> Option<Self> {
         Some(Self)
     }
 }
@@ -154,15 +154,15 @@ impl<A: Patch, B: Patch> Patch for (A, B) {
     const WORDS: usize = A::WORDS + B::WORDS;
 
     #[inline(always)]
-    fn keep(&self, words: &mut [u32]) -> bool {
+    fn save(&self, words: &mut [u32]) -> bool {
         let Some((first, rest)) = words.split_at_mut_checked(A::WORDS) else { return false };
-        self.0.keep(first) && self.1.keep(rest)
+        self.0.save(first) && self.1.save(rest)
     }
 
     #[inline(always)]
-    fn kept(words: &[u32]) -> Option<Self> {
+    fn load(words: &[u32]) -> Option<Self> {
         let (first, rest) = words.split_at_checked(A::WORDS)?;
-        Some((A::kept(first)?, B::kept(rest)?))
+        Some((A::load(first)?, B::load(rest)?))
     }
 }
 

@@ -1,7 +1,7 @@
 //! Interpolation in perspective (Blinn 1992; Heckbert and Moreton 1991).
 //!
 //! What is linear over a triangle in space is not so on the screen, but its quotient by the distance is, and so is one
-//! over the distance: the nearness w. With the shares b of the corners in a point of the screen, their shares in the point
+//! over the distance: the inverse depth w. With the shares b of the corners in a point of the screen, their shares in the point
 //! of the triangle that is seen there are b w / Σ b w. A polynomial of degree d in these is a quotient of two polynomials
 //! of that degree on the screen. Instead of its numerator, whose node values shrink with w^d and with them its precision,
 //! the three linear numerators of the shares are walked, whatever is interpolated, and it is worked out at the pixel.
@@ -52,20 +52,20 @@ struct Row {
 }
 
 impl<S: Surface> PerspectivePatch<S> {
-    /// `surface` on the triangle whose corners have this nearness, all of them more than nothing.
+    /// `surface` on the triangle whose corners have this inverse depth, all of them more than nothing.
     ///
     /// Error of shares, against those of the same corners: at most 2^-28 k / r, with k the length over the height of the
-    /// triangle, and r the least nearness over the largest.
+    /// triangle, and r the least inverse depth over the largest.
     #[must_use]
     pub fn new(gradients: &Gradients, inv_depth: [i32; 3], surface: S) -> Self {
         Self { rows: rows(gradients, inv_depth), surface }
     }
 }
 
-/// What the shares of corners with this nearness are quotients of.
+/// What the shares of corners with this inverse depth are quotients of.
 #[inline(never)]
 fn rows(gradients: &Gradients, inv_depth: [i32; 3]) -> [Row; 3] {
-    // A common factor cancels out: the largest nearness just below 1.
+    // A common factor cancels out: the largest inverse depth just below 1.
     let zeros = inv_depth.iter().fold(1, |m, w| m | w).leading_zeros();
     let [a, b, c] = inv_depth.map(|w| w.wrapping_shl(zeros.saturating_sub(2)));
     let row = |nodes| {

@@ -75,7 +75,7 @@ impl<const CH: usize> Patch for Plane<CH> {
     const WORDS: usize = 3 * CH;
 
     #[inline(always)]
-    fn keep(&self, words: &mut [u32]) -> bool {
+    fn save(&self, words: &mut [u32]) -> bool {
         let (rows, _) = words.as_chunks_mut::<3>();
         for (words, row) in rows.iter_mut().zip(&self.0) {
             *words = [row.c as u32, row.dx as u32, row.dy as u32];
@@ -84,7 +84,7 @@ impl<const CH: usize> Patch for Plane<CH> {
     }
 
     #[inline(always)]
-    fn kept(words: &[u32]) -> Option<Self> {
+    fn load(words: &[u32]) -> Option<Self> {
         let (rows, _) = words.as_chunks::<3>();
         let rows = rows.first_chunk::<CH>()?;
         Some(Self(rows.map(|[c, dx, dy]| Row { c: c as i32, dx: dx as i32, dy: dy as i32 })))

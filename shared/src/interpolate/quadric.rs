@@ -104,7 +104,7 @@ impl<const CH: usize> Patch for Quadric<CH> {
     const WORDS: usize = 6 * CH;
 
     #[inline(always)]
-    fn keep(&self, words: &mut [u32]) -> bool {
+    fn save(&self, words: &mut [u32]) -> bool {
         let (rows, _) = words.as_chunks_mut::<6>();
         for (words, row) in rows.iter_mut().zip(&self.0) {
             *words = [row.c, row.c_down, row.c_down2, row.dx, row.dx_down, row.dxx].map(|c| c as u32);
@@ -113,7 +113,7 @@ impl<const CH: usize> Patch for Quadric<CH> {
     }
 
     #[inline(always)]
-    fn kept(words: &[u32]) -> Option<Self> {
+    fn load(words: &[u32]) -> Option<Self> {
         let (rows, _) = words.as_chunks::<6>();
         let rows = rows.first_chunk::<CH>()?;
         Some(Self(rows.map(|words| {
@@ -135,10 +135,10 @@ impl<const CH: usize> Patch for Quadric<CH> {
         let mut walker = Quadratic { value: [0; CH], d1: [0; CH], d2: [0; CH] };
         each_channel::<CH>(|c| {
             let row = &self.0[c];
-            let bend = row.dxx.wrapping_mul(x);
-            walker.value[c] = row.c.wrapping_add(row.dx.wrapping_add(bend).wrapping_mul(x)) as u32;
+            let quadratic = row.dxx.wrapping_mul(x);
+            walker.value[c] = row.c.wrapping_add(row.dx.wrapping_add(quadratic).wrapping_mul(x)) as u32;
             // V(x - 1) - V(x) = dxx - dx - 2 dxx x.
-            walker.d1[c] = row.dxx.wrapping_sub(row.dx).wrapping_sub(bend.wrapping_mul(2)) as u32;
+            walker.d1[c] = row.dxx.wrapping_sub(row.dx).wrapping_sub(quadratic.wrapping_mul(2)) as u32;
             walker.d2[c] = row.dxx.wrapping_mul(2) as u32;
         });
         walker

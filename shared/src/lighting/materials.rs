@@ -4,7 +4,7 @@ use crate::{
     arch::product::upper,
     format::{BIAS, COSINE, Intensity, LEVEL, MAX_LIGHTS, PIXEL_COSINE, RAMP, UNIT, WALK},
     math::{
-        power::{Base, POWER, Power, square},
+        highlight_lut::{Base, ENTRY, HighlightLut, square},
         vector::zip,
     },
     pixel::{Pixel, dither::quantise},
@@ -55,7 +55,7 @@ pub struct Gains {
 #[repr(C)]
 pub struct Reflectance {
     /// x^exponent.
-    pub power: Power,
+    pub highlight_lut: HighlightLut,
     /// Level without lights, Q9.7.
     ambient: [i32; 3],
     highlight_threshold: i32,
@@ -113,7 +113,7 @@ impl Reflectance {
     /// Nothing yet; all zeros, which takes no flash in static memory.
     pub const EMPTY: Self = Self {
         base: [0; 3],
-        power: Power::EMPTY,
+        highlight_lut: HighlightLut::EMPTY,
         three_channels: 0,
         ambient: [0; 3],
         gains: [Gains { diffuse: [0; 3], specular: [0; 3] }; MAX_LIGHTS],
@@ -150,16 +150,16 @@ impl Reflectance {
         let holds_levels = holds_levels && one_channel && lights.len() == 1 && self.fits();
         self.holds_levels = holds_levels.into();
         let [one, ..] = &mut self.gains;
-        let (mut full, mut floor) = (1 << POWER, 0);
+        let (mut full, mut floor) = (1 << ENTRY, 0);
         if holds_levels {
             (full, floor) = (one.specular[0].into(), Self::biased(self.ambient[0]) as u16);
             // The remaining specular gain is 65535/65536.
             one.specular = [u16::MAX; 3];
         }
-        self.power.fill(material.exponent, highlight.base(), full, floor);
+        self.highlight_lut.fill(material.exponent, highlight.base(), full, floor);
         self.highlight_threshold = match highlight.base() {
-            Base::Square => square(self.power.highlight_threshold()),
-            _ => self.power.highlight_threshold(),
+            Base::Square => square(self.highlight_lut.highlight_threshold()),
+            _ => self.highlight_lut.highlight_threshold(),
         };
         // Share of each channel in the base colour, scaled to what the output can show.
         let whole = u64::from(largest(base).max(1));
@@ -183,7 +183,7 @@ impl Reflectance {
         self.holds_levels != 0
     }
 
-    /// Smallest N·H, Q2.30, whose highlight counts, see [`Power::highlight_threshold`].
+    /// Smallest N·H, Q2.30, whose highlight counts, see [`HighlightLut::highlight_threshold`].
     #[must_use]
     pub fn highlight_threshold(&self) -> i32 {
         self.highlight_threshold
@@ -194,7 +194,7 @@ impl Reflectance {
     #[must_use]
     pub fn level(&self, [diffuse, half]: [i32; 2]) -> i32 {
         let [gains, ..] = &self.gains;
-        let light = reflected((gains.diffuse[0], gains.specular[0]), diffuse, self.power.at(half));
+        let light = reflected((gains.diffuse[0], gains.specular[0]), diffuse, self.highlight_lut.at(half));
         (self.ambient[0] + light).min(FULL)
     }
 
@@ -216,7 +216,8 @@ impl Reflectance {
     #[must_use]
     pub fn six(&self, [a, b, c, ab, bc, ca]: [i32; 6], [i, j, k, ij, jk, ki]: [i32; 6]) -> [i32; 6] {
         let [gains, ..] = &self.gains;
-        let level = |diffuse, half| (self.diffuse_level(diffuse) + reflected((0, gains.specular[0]), 0, self.power.at(half))).min(FULL);
+        let level =
+            |diffuse, half| (self.diffuse_level(diffuse) + reflected((0, gains.specular[0]), 0, self.highlight_lut.at(half))).min(FULL);
         [level(a, i), level(b, j), level(c, k), level(ab, ij), level(bc, jk), level(ca, ki)]
     }
 
@@ -241,8 +242,8 @@ impl Reflectance {
     pub fn levels(&self, cosines: impl Iterator<Item = [i32; 2]>) -> [i32; 3] {
         let mut levels = self.ambient;
         for (gains, [diffuse, half]) in self.gains.iter().zip(cosines) {
-            let power = self.power.at(half);
-            self.add(&mut levels, gains, diffuse, power);
+            let highlight = self.highlight_lut.at(half);
+            self.add(&mut levels, gains, diffuse, highlight);
         }
         levels.map(|level| level.min(FULL))
     }
@@ -270,8 +271,8 @@ impl Reflectance {
     }
 
     #[inline(always)]
-    fn add(&self, levels: &mut [i32; 3], gains: &Gains, diffuse: i32, power: u32) {
-        let light = |level: i32, gains| level.saturating_add(reflected(gains, diffuse, power));
+    fn add(&self, levels: &mut [i32; 3], gains: &Gains, diffuse: i32, highlight: u32) {
+        let light = |level: i32, gains| level.saturating_add(reflected(gains, diffuse, highlight));
         if !self.three_channels() {
             *levels = [light(levels[0], (gains.diffuse[0], gains.specular[0])); 3];
         } else {
@@ -322,9 +323,9 @@ pub fn fill_ramp<C: Pixel>(ramp: &mut [C::Stored; RAMP], reflectance: &Reflectan
 impl<'a, C: Pixel> MaterialTables<'a, C> {
     /// What it takes to walk levels of one light on a material of one channel, if the highlight's table holds levels.
     #[must_use]
-    pub fn levels_of_one(&self) -> Option<Levels<'a, C>> {
+    pub fn one_light_ramp(&self) -> Option<OneLightRamp<'a, C>> {
         let Reflectance { gains: [gains, ..], .. } = self.reflectance;
-        self.reflectance.holds_levels().then(|| Levels { ramp: self.ramp, diffuse: gains.diffuse[0] })
+        self.reflectance.holds_levels().then(|| OneLightRamp { ramp: self.ramp, diffuse: gains.diffuse[0] })
     }
 
     /// The colour of three levels, Q9.7, rounded.
@@ -372,21 +373,21 @@ pub struct Reflection {
 /// One light on a material of one channel, its levels walked: what its highlight adds, and all that is the same everywhere, is in
 /// the highlight's table.
 #[derive(Debug)]
-pub struct Levels<'a, C: Pixel> {
+pub struct OneLightRamp<'a, C: Pixel> {
     ramp: &'a [C::Stored; RAMP],
     /// Level at cosine 1, Q9.7.
     diffuse: u16,
 }
 
-impl<C: Pixel> Clone for Levels<'_, C> {
+impl<C: Pixel> Clone for OneLightRamp<'_, C> {
     fn clone(&self) -> Self {
         *self
     }
 }
 
-impl<C: Pixel> Copy for Levels<'_, C> {}
+impl<C: Pixel> Copy for OneLightRamp<'_, C> {}
 
-impl<C: Pixel> Levels<'_, C> {
+impl<C: Pixel> OneLightRamp<'_, C> {
     /// The diffuse level at a node, in Q10 with `bits` more, at most 20, rounded down; `cosine` in Q2.30.
     #[inline(always)]
     #[must_use]
@@ -417,10 +418,10 @@ fn walked(level: i32, half: u32) -> u32 {
 
 /// Level, Q9.7, that the gains `(diffuse, specular)` make of N·L (Q2.30) and a power of N·H (Q0.16).
 #[inline(always)]
-fn reflected((diffuse, specular): (u16, u16), cosine: i32, power: u32) -> i32 {
+fn reflected((diffuse, specular): (u16, u16), cosine: i32, highlight: u32) -> i32 {
     let cosine = cosine.max(0) as u32 >> (COSINE - 15);
     let diffuse = (u32::from(diffuse) * cosine + (1 << 14)) >> 15;
-    let specular = (u32::from(specular) * power + (1 << (POWER - 1))) >> POWER;
+    let specular = (u32::from(specular) * highlight + (1 << (ENTRY - 1))) >> ENTRY;
     (diffuse + specular) as i32
 }
 

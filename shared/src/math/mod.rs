@@ -4,10 +4,10 @@
 //! error and source. A bound on an error is a constant next to the function, and the test that the documentation names asserts that
 //! very constant. "Exact" says that the result is the integer that the formula gives, for every argument of the domain.
 
-pub mod power;
+pub mod highlight_lookup;
+pub mod highlight_lut;
 pub mod recip;
 pub mod rsqrt;
-pub mod steps;
 pub mod vector;
 pub mod wide;
 

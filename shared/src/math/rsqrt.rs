@@ -67,13 +67,13 @@ const fn half_root(k: u128) -> u32 {
     ((1u128 << 70) / k).isqrt() as u32
 }
 
-/// Knots of [`Halves::rsqrt`] at x = (510 + i)/2048: the value at the knot, Q2.30, in the upper 22 bits, and the slope in the lower ten,
+/// Knots of [`HalfRsqrt::rsqrt`] at x = (510 + i)/2048: the value at the knot, Q2.30, in the upper 22 bits, and the slope in the lower ten,
 /// by which the value falls in 1/1024 of an interval. There are as many knots as eleven bits can index.
 ///
 /// A knot is lowered to balance the error: by half of the distance of the chord above the curve, and by half a step between knots, since
 /// positions are rounded down. It takes half of what rounding the slope adds up to at the end of the interval. The slope bits are part
 /// of the value that is read, so the sum of both is rounded to nearest.
-static TABLE: Halves = Halves({
+static TABLE: HalfRsqrt = HalfRsqrt({
     let mut table = [0; 2048];
     let mut i = 0;
     while i < 2048 {
@@ -89,16 +89,16 @@ static TABLE: Halves = Halves({
     table
 });
 
-/// The least x that [`Halves::rsqrt`] takes, Q0.32: 2^-10 less than a quarter, as much as forward differences may err there.
+/// The least x that [`HalfRsqrt::rsqrt`] takes, Q0.32: 2^-10 less than a quarter, as much as forward differences may err there.
 pub const LEAST: u32 = (1 << 30) - (1 << 22);
 
 /// Table of half the reciprocal root, 1/(2 sqrt(x)), for x in [1/4, 1] and a little around, for the pixel loop.
 ///
 /// The loop takes a reference to it, so that the address of the table is loaded once instead of being built at every pixel.
 #[derive(Debug)]
-pub struct Halves([u32; 2048]);
+pub struct HalfRsqrt([u32; 2048]);
 
-impl Halves {
+impl HalfRsqrt {
     /// The table, which is constant.
     #[must_use]
     pub fn get() -> &'static Self {
@@ -118,9 +118,9 @@ impl Halves {
     }
 }
 
-/// Largest error of [`Halves::rsqrt`] relative to its result: 0.4 of 1/255 on a highlight of exponent 1024.
+/// Largest error of [`HalfRsqrt::rsqrt`] relative to its result: 0.4 of 1/255 on a highlight of exponent 1024.
 pub const HALF_ERROR: f64 = 1.5e-6;
-/// Largest error of [`Halves::rsqrt`] outside its domain, relative to its result: 2^-10, since slopes below 1/4 take more than ten bits.
+/// Largest error of [`HalfRsqrt::rsqrt`] outside its domain, relative to its result: 2^-10, since slopes below 1/4 take more than ten bits.
 pub const OUTSIDE_ERROR: f64 = 1.0 / 1024.0;
 
 /// Largest error of [`rsqrt_wide`] relative to its result.
@@ -170,7 +170,7 @@ mod tests {
         // The lower eleven bits do not count, so the ends of such an interval have its largest errors.
         for x in (0..1u64 << 21).flat_map(|i| [i << 11, (i << 11) + 2047]).map(|above| above + u64::from(LEAST)).chain([1 << 32]) {
             let exact = 2f64.powi(29) / (x as f64 / 2f64.powi(32)).sqrt();
-            let error = (f64::from(Halves::get().rsqrt((x - u64::from(LEAST)) as u32)) / exact - 1.0).abs();
+            let error = (f64::from(HalfRsqrt::get().rsqrt((x - u64::from(LEAST)) as u32)) / exact - 1.0).abs();
             let worst = if (1 << 30..=1 << 32).contains(&x) { &mut inside } else { &mut outside };
             *worst = worst.max(error);
         }

@@ -34,10 +34,10 @@ pub(crate) struct MeshPass<'f, C: Pixel> {
     pub(crate) dither: bool,
     pub(crate) stage: VertexStage<'f>,
     /// Where triangles may overlap, if not everywhere.
-    pub(crate) convex: Option<&'f DepthElision>,
+    pub(crate) depth_elision: Option<&'f DepthElision>,
     pub(crate) vertices: &'f [Vertex],
     /// Those on the screen, as far as they are kept.
-    pub(crate) kept: &'f [ScreenVertex],
+    pub(crate) cached: &'f [ScreenVertex],
     pub(crate) viewport: Viewport,
     /// Interpolation in perspective, where it matters.
     pub(crate) perspective: bool,
@@ -94,8 +94,8 @@ impl<C: Pixel> MeshPass<'_, C> {
     #[inline(never)]
     pub(crate) fn draw(&self, loops: DrawTriangle<C>, triangle: &Triangle, band: &mut Band<'_, C>) -> u32 {
         match self.corners(triangle).filter(is_ready) {
-            Some(corners) => self.face(loops, &MeshTriangle { corners, triangle, vertices: self.vertices }, band),
-            None => self.other(loops, triangle, band),
+            Some(corners) => self.draw_placed(loops, &MeshTriangle { corners, triangle, vertices: self.vertices }, band),
+            None => self.draw_transformed_anew(loops, triangle, band),
         }
     }
 
@@ -111,11 +111,11 @@ impl<C: Pixel> MeshPass<'_, C> {
             (screen, gradients) = (ScreenTriangle::resumed(active_triangle, by, band), Gradients::NONE);
             needs_depth_test = active_triangle.inv_depth().is_some();
         } else {
-            let mut new = ScreenTriangle::simple((by, corners), key, band);
+            let mut new = ScreenTriangle::word_sized((by, corners), key, band);
             if new.is_empty() {
                 return Some(0);
             }
-            gradients = Gradients::simple(new.corners);
+            gradients = Gradients::word_sized(new.corners);
             needs_depth_test = self.needs_depth_test(&new);
             if needs_depth_test {
                 new.set_up_depth(&gradients);
@@ -141,14 +141,14 @@ impl<C: Pixel> MeshPass<'_, C> {
     #[inline(always)]
     fn corners(&self, triangle: &Triangle) -> Option<[&ScreenVertex; 3]> {
         let [a, c, b] = triangle.corners;
-        Some([self.kept.get(usize::from(a))?, self.kept.get(usize::from(b))?, self.kept.get(usize::from(c))?])
+        Some([self.cached.get(usize::from(a))?, self.cached.get(usize::from(b))?, self.cached.get(usize::from(c))?])
     }
 
     /// Others may overlap a triangle.
     #[inline(always)]
     fn needs_depth_test(&self, screen: &ScreenTriangle) -> bool {
         let [[x0, top], [x1, y1], [x2, y2]] = screen.corners;
-        self.convex.is_none_or(|convex| convex.needs_depth_test([x0.min(x1).min(x2), x0.max(x1).max(x2)], [top, y1.max(y2)]))
+        self.depth_elision.is_none_or(|elision| elision.needs_depth_test([x0.min(x1).min(x2), x0.max(x1).max(x2)], [top, y1.max(y2)]))
     }
 
     /// The visible box of `triangle`; `None` if it shows its back, or no pixel can belong to it.
@@ -162,13 +162,13 @@ impl<C: Pixel> MeshPass<'_, C> {
     /// Draws a triangle whose corners are not kept, or not on the screen.
     #[cold]
     #[inline(never)]
-    fn other(&self, loops: DrawTriangle<C>, triangle: &Triangle, band: &mut Band<'_, C>) -> u32 {
+    fn draw_transformed_anew(&self, loops: DrawTriangle<C>, triangle: &Triangle, band: &mut Band<'_, C>) -> u32 {
         let [a, c, b] = triangle.corners.map(|corner| self.vertices.get(usize::from(corner)));
         let (Some(a), Some(b), Some(c)) = (a, b, c) else { return 0 };
         let vertices = [a, b, c];
         let [a, b, c] = &vertices.map(|vertex| self.stage.transform(vertex));
         if is_ready(&[a, b, c]) {
-            return self.face(loops, &MeshTriangle { corners: [a, b, c], triangle, vertices: self.vertices }, band);
+            return self.draw_placed(loops, &MeshTriangle { corners: [a, b, c], triangle, vertices: self.vertices }, band);
         }
         // The fan that clipping leaves.
         let polygon = clip::clip(self.stage.view, vertices);
@@ -182,45 +182,48 @@ impl<C: Pixel> MeshPass<'_, C> {
             if let [second, third] = pair {
                 let vertices = [first.vertex, second.vertex, third.vertex];
                 let corners = [&place(first), &place(second), &place(third)];
-                pixels +=
-                    self.face(loops, &MeshTriangle { corners, triangle: &clip::record(triangle, &vertices), vertices: &vertices }, band);
+                pixels += self.draw_placed(
+                    loops,
+                    &MeshTriangle { corners, triangle: &clip::record(triangle, &vertices), vertices: &vertices },
+                    band,
+                );
             }
         }
         pixels
     }
 
-    fn face(&self, loops: DrawTriangle<C>, face: &MeshTriangle<'_>, band: &mut Band<'_, C>) -> u32 {
+    fn draw_placed(&self, loops: DrawTriangle<C>, placed: &MeshTriangle<'_>, band: &mut Band<'_, C>) -> u32 {
         if cfg!(feature = "antialias") && self.viewport.antialiased {
-            self.smooth(loops, face, band)
+            self.draw_antialiased(loops, placed, band)
         } else {
-            self.part(loops, PixelSet::Centres, face, band)
+            self.draw_pixels(loops, PixelSet::Centres, placed, band)
         }
     }
 
     /// Draws the pixels wholly inside, then the others that it touches, with its corners on a finer grid.
     #[cold]
     #[inline(never)]
-    fn smooth(&self, loops: DrawTriangle<C>, face: &MeshTriangle<'_>, band: &mut Band<'_, C>) -> u32 {
-        let finer = antialias::finer(face.corners);
-        let [a, b, c] = &face.corners.map(|corner| antialias::refined(corner, finer));
-        self.part(loops, PixelSet::Inner, face, band)
-            + self.part(loops, PixelSet::Edge(finer), &MeshTriangle { corners: [a, b, c], ..*face }, band)
+    fn draw_antialiased(&self, loops: DrawTriangle<C>, placed: &MeshTriangle<'_>, band: &mut Band<'_, C>) -> u32 {
+        let finer = antialias::finer(placed.corners);
+        let [a, b, c] = &placed.corners.map(|corner| antialias::refined(corner, finer));
+        self.draw_pixels(loops, PixelSet::Inner, placed, band)
+            + self.draw_pixels(loops, PixelSet::Edge(finer), &MeshTriangle { corners: [a, b, c], ..*placed }, band)
     }
 
     /// Sets up a triangle and draws part of its pixels.
-    fn part(&self, loops: DrawTriangle<C>, pixels: PixelSet, face: &MeshTriangle<'_>, band: &mut Band<'_, C>) -> u32 {
+    fn draw_pixels(&self, loops: DrawTriangle<C>, pixels: PixelSet, placed: &MeshTriangle<'_>, band: &mut Band<'_, C>) -> u32 {
         let width = band.width as i32;
         let by_rows = pixels == PixelSet::Centres;
         let screen = if by_rows {
             let [top, bottom] = band.range();
-            ScreenTriangle::new(face.corners, [width, top, bottom])
+            ScreenTriangle::new(placed.corners, [width, top, bottom])
         } else {
-            ScreenTriangle::without_rows(face.corners)
+            ScreenTriangle::without_rows(placed.corners)
         };
         if by_rows && screen.is_empty() {
             return 0;
         }
-        let Some(gradients) = Gradients::new(screen.corners, self.viewport.box_of(face.corners, pixels.finer())) else { return 0 };
+        let Some(gradients) = Gradients::new(screen.corners, self.viewport.box_of(placed.corners, pixels.finer())) else { return 0 };
         // Most of the slivers of a fine mesh lie between the centres of pixels.
         if by_rows && gradients.is_thin() && screen.covers_nothing(width) {
             return 0;
@@ -228,10 +231,10 @@ impl<C: Pixel> MeshPass<'_, C> {
         let setup = TriangleSetup {
             screen: &screen,
             gradients: &gradients,
-            corners: turn(face.corners, screen.turned),
+            corners: turn(placed.corners, screen.turned),
             turned: screen.turned,
-            triangle: face.triangle,
-            vertices: face.vertices,
+            triangle: placed.triangle,
+            vertices: placed.vertices,
             needs_depth_test: self.needs_depth_test(&screen),
             perspective: self.perspective,
             pixels,

@@ -5,24 +5,24 @@
 //! are not linear: there they are the quadratics through six points.
 //!
 //! Cost: 4 additions a pixel, a root from a table, 2 products and the highlight's table; 2 or 4 additions and
-//! 2 products more per light. Error: that of the tables, [`crate::math::power::NEAREST_ERROR`] of the highlight above all.
+//! 2 products more per light. Error: that of the tables, [`crate::math::highlight_lut::NEAREST_ERROR`] of the highlight above all.
 //! Domain: any lights; with near lights as good as six points are.
 
 use crate::{
     arch::product::{product, upper},
-    format::{BEND, RHO},
+    format::{HAVERSINE, NORMAL_LENGTH},
     interpolate::field::{Field, Nodes},
     lighting::{
         lights::Source,
         materials::{MaterialTables, Reflection},
     },
     math::{
-        power::PixelPower,
-        rsqrt::{Halves, LEAST, rsqrt},
+        highlight_lut::CosineLookup,
+        rsqrt::{HalfRsqrt, LEAST, rsqrt},
     },
     method::{
         Loops, Shading, Style, TriangleSetup,
-        form::{EXTRA, LightingModel, NODE, Quadratic, fitted, signed},
+        lighting_model::{EXTRA, LightingModel, NODE, Quadratic, fitted, signed},
         quotient,
     },
     pixel::Pixel,
@@ -75,42 +75,42 @@ pub(crate) struct Duff;
 
 impl Loops for Duff {
     fn take(style: Style) -> bool {
-        style.one_light && !style.smoothed && !style.perspective
+        style.one_light && !style.dithered_or_antialiased && !style.perspective
     }
 
     #[inline(always)]
     fn draw<C: Pixel>(setup: &TriangleSetup<'_>, _: &Shading<'_>, tables: MaterialTables<'_, C>, band: &mut Band<'_, C>) -> Option<u32> {
         let square = tabled(setup)?;
-        let halves = Halves::get();
+        let halves = HalfRsqrt::get();
         quotient::draw::<true, _, C>(setup, || square, |[square]| halves.rsqrt(square) as i32, tables, band)
     }
 }
 
 /// |N|² less what the table of roots begins with, Q0.32; `None` if some of it is not in the table.
 #[inline(always)]
-fn tabled(setup: &TriangleSetup<'_>) -> Option<Nodes<6, 1, SHORT>> {
-    let [ab, bc, ca] = setup.edges(setup.triangle.bend);
-    if is_curved(setup) || ab.max(bc).max(ca) >= 1 << SHORT {
+fn tabled(setup: &TriangleSetup<'_>) -> Option<Nodes<6, 1, HAVERSINE_RANGE>> {
+    let [ab, bc, ca] = setup.edges(setup.triangle.haversine);
+    if is_curved(setup) || ab.max(bc).max(ca) >= 1 << HAVERSINE_RANGE {
         return None;
     }
     let nodes = [0, 0, 0, -i32::from(ab), -i32::from(bc), -i32::from(ca)];
-    Some(Nodes::new([nodes], 32 - BEND).biased([0u32.wrapping_sub(LEAST) as i32]))
+    Some(Nodes::new([nodes], 32 - HAVERSINE).biased([0u32.wrapping_sub(LEAST) as i32]))
 }
 
 /// Bits of what edges lack of a unit length, unless their ends' normals are more than 90 degrees apart: so few that triangles are
 /// set up in words, see [`crate::setup::word_sized`].
-const SHORT: u32 = BEND - 1;
+const HAVERSINE_RANGE: u32 = HAVERSINE - 1;
 
 /// The interpolated normal may be shorter than half: the table of roots, and every fit of 1/|N|, end there.
 pub fn is_curved(setup: &TriangleSetup<'_>) -> bool {
-    setup.triangle.rho < 1 << (RHO - 1)
+    setup.triangle.min_normal_length < 1 << (NORMAL_LENGTH - 1)
 }
 
 /// |N|², Q2.30: exactly quadratic.
 #[inline(always)]
 pub fn square(setup: &TriangleSetup<'_>) -> Quadratic<1> {
     // |N|² - 1 is zero at the corners.
-    let [ab, bc, ca] = setup.edges(setup.triangle.bend).map(|bend| -(i32::from(bend) << (NODE - BEND)));
+    let [ab, bc, ca] = setup.edges(setup.triangle.haversine).map(|haversine| -(i32::from(haversine) << (NODE - HAVERSINE)));
     Quadratic::new([[0, 0, 0, ab, bc, ca]], EXTRA).biased([1 << 30])
 }
 
@@ -123,14 +123,14 @@ impl LightingModel<[u32; 1], [u32; 2]> for Tabled {
 
     #[inline(always)]
     fn common(&self, [square]: [u32; 1]) -> i32 {
-        Halves::get().rsqrt(square) as i32
+        HalfRsqrt::get().rsqrt(square) as i32
     }
 
     #[inline(always)]
-    fn reflect(&self, _: usize, &half_root: &i32, [light, half]: [u32; 2], power: PixelPower<'_>) -> Reflection {
+    fn reflect(&self, _: usize, &half_root: &i32, [light, half]: [u32; 2], lut: CosineLookup<'_>) -> Reflection {
         // Upper half of Q2.30 times Q2.30, and half of a root: Q5.27.
         let over = |cosine: u32| upper(signed(cosine), half_root);
-        Reflection { diffuse: over(light), highlight: power.at(over(half)) }
+        Reflection { diffuse: over(light), highlight: lut.at(over(half)) }
     }
 }
 
@@ -145,9 +145,9 @@ impl LightingModel<[u32; 1], [u32; 2]> for Rooted {
         Root::of(square)
     }
 
-    fn reflect(&self, _: usize, root: &Root, fields: [u32; 2], power: PixelPower<'_>) -> Reflection {
+    fn reflect(&self, _: usize, root: &Root, fields: [u32; 2], lut: CosineLookup<'_>) -> Reflection {
         let [diffuse, half] = fields.map(|cosine| root.divide(signed(cosine)) >> 3);
-        Reflection { diffuse, highlight: power.at(half) }
+        Reflection { diffuse, highlight: lut.at(half) }
     }
 }
 

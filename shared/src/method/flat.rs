@@ -44,7 +44,7 @@ impl Method for Flat {
 
 impl Loops for Flat {
     fn take(style: Style) -> bool {
-        !style.smoothed
+        !style.dithered_or_antialiased
     }
 
     #[inline(always)]

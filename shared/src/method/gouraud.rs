@@ -39,7 +39,7 @@ impl Method for Gouraud {
 
 impl Loops for Gouraud {
     fn take(style: Style) -> bool {
-        !style.smoothed && !style.perspective
+        !style.dithered_or_antialiased && !style.perspective
     }
 
     #[inline(always)]

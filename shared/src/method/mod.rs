@@ -7,8 +7,8 @@
 pub mod duff;
 pub mod facts;
 pub mod flat;
-pub mod form;
 pub mod gouraud;
+pub mod lighting_model;
 pub mod node;
 pub mod phong;
 pub mod quotient;
@@ -20,7 +20,7 @@ pub mod sqrt6;
 use crate::{
     antialias::{PixelSet, Shape},
     arch::product::by_fraction,
-    format::{BIAS, LEVEL, RHO, SUBPIXEL, WALK},
+    format::{BIAS, LEVEL, NORMAL_LENGTH, SUBPIXEL, WALK},
     geometry::projection::ScreenVertex,
     interpolate::{
         Patch, Walker,
@@ -65,7 +65,7 @@ pub(crate) struct Style {
     /// One intensity says it all, and the table of highlights holds levels of the only light.
     pub(crate) one_light: bool,
     /// Thresholds in place of rounding, or pixels weighed by areas.
-    pub(crate) smoothed: bool,
+    pub(crate) dithered_or_antialiased: bool,
     /// Interpolation in perspective.
     pub(crate) perspective: bool,
 }
@@ -150,7 +150,7 @@ impl TriangleSetup<'_> {
         turn([vertex(a), vertex(b), vertex(c)], self.turned)
     }
 
-    /// Nearness of its corners, if it is to be shaded in perspective.
+    /// Inverse depth of its corners, if it is to be shaded in perspective.
     #[inline(always)]
     pub fn inv_depth(&self) -> Option<[i32; 3]> {
         let [a, b, c] = self.corners;
@@ -192,7 +192,7 @@ impl TriangleSetup<'_> {
     /// The [`PixelShader::ID`] with which the band above handed it on.
     #[inline(always)]
     pub(crate) fn resumed<C>(&self, band: &Band<'_, C>) -> Option<u8> {
-        Some(band.active.active_triangle(self.place?)?.rest.shader)
+        Some(band.active.active_triangle(self.place?)?.edges.shader)
     }
 
     /// Draws it as `shader`, which stands on the anchor's row, shades it; returns the pixels in `canvas`.
@@ -206,7 +206,7 @@ impl TriangleSetup<'_> {
     }
 
     /// Nowhere on the triangle does the highlight of one constant light reach a visible level:
-    /// N·H is linear and |N| at least rho.
+    /// N·H is linear and |N| at least [`Triangle::min_normal_length`].
     #[inline(always)]
     pub fn has_no_highlight(&self, reflectance: &Reflectance) -> bool {
         let [a, b, c] = self.corners;
@@ -216,7 +216,7 @@ impl TriangleSetup<'_> {
     /// Where N·H, linear between the corners, is smaller, N·H over |N| is too small for a highlight; Q2.30.
     #[inline(always)]
     pub fn highlight_threshold(&self, reflectance: &Reflectance) -> i32 {
-        by_fraction(reflectance.highlight_threshold(), self.triangle.rho) << (16 - RHO)
+        by_fraction(reflectance.highlight_threshold(), self.triangle.min_normal_length) << (16 - NORMAL_LENGTH)
     }
 }
 

@@ -2,7 +2,7 @@
 
 use crate::{
     arch::product::{by_fraction, product},
-    format::{EDGE, UNIT},
+    format::{INVERSE_SUM_LENGTH, UNIT},
     lighting::lights::{Direction, cosine},
     math::{
         rsqrt::rsqrt_wide,
@@ -42,12 +42,12 @@ impl TriangleSetup<'_> {
 
     /// Corners and edge midpoints (01, 12, 20), unit normals.
     pub fn six_nodes(&self) -> [Node; 6] {
-        let (sums, rsums) = (self.sums(), self.rsums());
+        let (sums, inverses) = (self.sums(), self.inverse_sum_lengths());
         let middle = |k: usize| {
             let (position, sum) = sums[k];
-            let rsum = rsums[k] as i32;
+            let inverse = inverses[k] as i32;
             // Q3.14 times Q1.17: one bit more than wanted.
-            Node { position, normal: sum.map(|c| (product(c, rsum) >> (UNIT + EDGE - 30)) as i32) }
+            Node { position, normal: sum.map(|c| (product(c, inverse) >> (UNIT + INVERSE_SUM_LENGTH - 30)) as i32) }
         };
         let [a, b, c] = self.corner_nodes();
         [a, b, c, middle(0), middle(1), middle(2)]
@@ -82,16 +82,16 @@ impl TriangleSetup<'_> {
         sums(self.vertices())
     }
 
-    /// 1/|Ni+Nj| of the edges 01, 12, 20, [`EDGE`] fraction bits, less than 2^31.
+    /// 1/|Ni+Nj| of the edges 01, 12, 20, [`INVERSE_SUM_LENGTH`] fraction bits, less than 2^31.
     #[inline(always)]
-    pub fn rsums(&self) -> [u32; 3] {
-        let [ab, bc, ca] = self.edges(self.triangle.rsum);
+    pub fn inverse_sum_lengths(&self) -> [u32; 3] {
+        let [ab, bc, ca] = self.edges(self.triangle.inverse_sum_length);
         if ab.max(bc).max(ca) == u16::MAX {
-            let [ab, bc, ca] = wide_rsums(self.vertices(), [ab, bc, ca]);
+            let [ab, bc, ca] = wide_inverse_sum_lengths(self.vertices(), [ab, bc, ca]);
             return [ab, bc, ca];
         }
-        let rsum = |excess: u16| (1 << (EDGE - 1)) + u32::from(excess);
-        [rsum(ab), rsum(bc), rsum(ca)]
+        let inverse = |excess: u16| (1 << (INVERSE_SUM_LENGTH - 1)) + u32::from(excess);
+        [inverse(ab), inverse(bc), inverse(ca)]
     }
 
     /// N·L (`which` is 0) or N·H (1), Q2.30, at the six nodes under one constant light, from what is known at the vertices.
@@ -104,7 +104,7 @@ impl TriangleSetup<'_> {
     /// A cosine at the six nodes under a light that is the same everywhere: at midpoints it follows from that at the corners, Q2.30.
     #[inline(always)]
     pub fn six_from(&self, [a, b, c]: [i32; 3]) -> [i32; 6] {
-        let [ab, bc, ca] = self.edges(self.triangle.rsum);
+        let [ab, bc, ca] = self.edges(self.triangle.inverse_sum_length);
         if ab.max(bc).max(ca) == u16::MAX {
             let [ab, bc, ca] = wide_middles(self.vertices(), [ab, bc, ca], [a, b, c]);
             return [a, b, c, ab, bc, ca];
@@ -134,16 +134,16 @@ fn sums([a, b, c]: [&Vertex; 3]) -> [([i32; 3], [i32; 3]); 3] {
     })
 }
 
-/// [`TriangleSetup::rsums`] where the 16 bits that are `given` do not hold all of them.
+/// [`TriangleSetup::inverse_sum_lengths`] where the 16 bits that are `given` do not hold all of them.
 #[cold]
 #[inline(never)]
-fn wide_rsums(vertices: [&Vertex; 3], given: [u16; 3]) -> [u32; 3] {
+fn wide_inverse_sum_lengths(vertices: [&Vertex; 3], given: [u16; 3]) -> [u32; 3] {
     zip(sums(vertices), given, |(_, sum), given| {
         if given < u16::MAX {
-            return (1 << (EDGE - 1)) + u32::from(given);
+            return (1 << (INVERSE_SUM_LENGTH - 1)) + u32::from(given);
         }
         let (mantissa, exponent) = rsqrt_wide(dot(sum, sum).max(1) as u64);
-        ((u64::from(mantissa) << (UNIT + EDGE)) >> exponent).min(i32::MAX as u64) as u32
+        ((u64::from(mantissa) << (UNIT + INVERSE_SUM_LENGTH)) >> exponent).min(i32::MAX as u64) as u32
     })
 }
 
@@ -157,8 +157,8 @@ pub fn map_six<A, R>([a, b, c, d, e, g]: [A; 6], f: impl Fn(A) -> R) -> [R; 6] {
 #[cold]
 #[inline(never)]
 fn wide_middles(vertices: [&Vertex; 3], given: [u16; 3], [a, b, c]: [i32; 3]) -> [i32; 3] {
-    let middle = |(a, b): (i32, i32), rsum: u32| (product((a >> 1) + (b >> 1), rsum as i32) >> (EDGE - 1)) as i32;
-    zip([(a, b), (b, c), (c, a)], wide_rsums(vertices, given), middle)
+    let middle = |(a, b): (i32, i32), inverse: u32| (product((a >> 1) + (b >> 1), inverse as i32) >> (INVERSE_SUM_LENGTH - 1)) as i32;
+    zip([(a, b), (b, c), (c, a)], wide_inverse_sum_lengths(vertices, given), middle)
 }
 
 /// `f` of each pair of values at six nodes. Written out: `map` is a loop through memory at opt-level "s".

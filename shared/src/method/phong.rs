@@ -5,7 +5,7 @@
 //! that normalise are taken at each pixel. Under one constant light that is [`crate::method::duff`].
 //!
 //! Cost: one constant light as `duff`; otherwise 6 additions and 2 roots, and 6 additions and 2 roots more for each light.
-//! Error: that of the tables, [`crate::math::power::NEAREST_ERROR`] of the highlight above all. Domain: any lights and viewer.
+//! Error: that of the tables, [`crate::math::highlight_lut::NEAREST_ERROR`] of the highlight above all. Domain: any lights and viewer.
 
 use crate::{
     format::COSINE,
@@ -14,13 +14,13 @@ use crate::{
         materials::{Highlight, MaterialTables, Reflection},
     },
     math::{
-        power::PixelPower,
+        highlight_lut::CosineLookup,
         vector::{add, dot, sub, wide},
     },
     method::{
         Costs, Facts, Loops, Method, Shading, Style, TriangleSetup, VertexLight,
         duff::{self, Duff, Root},
-        form::{LightingModel, quadratic, signed},
+        lighting_model::{LightingModel, quadratic, signed},
     },
     pixel::Pixel,
     raster::{band::Band, canvas::Canvas},
@@ -68,7 +68,7 @@ impl Loops for Phong {
 }
 
 /// Shades by walked products of vectors.
-pub fn draw_by<F>(setup: &TriangleSetup<'_>, shading: &Shading<'_>, form: F, canvas: &mut dyn Canvas) -> u32
+pub fn draw_by<F>(setup: &TriangleSetup<'_>, shading: &Shading<'_>, model: F, canvas: &mut dyn Canvas) -> u32
 where
     F: LightingModel<[u32; 3], [u32; 3]>,
 {
@@ -86,7 +86,7 @@ where
         });
         quadratic([product(&normals, &towards), product(&towards, &towards), product(&view, &towards)])
     };
-    shading.draw_lit(setup, fit, common, form, canvas)
+    shading.draw_lit(setup, fit, common, model, canvas)
 }
 
 /// A vector at the three corners, all shifted alike such that the longest is just below 1, in fractions of 28 bits.
@@ -141,13 +141,13 @@ impl LightingModel<[u32; 3], [u32; 3]> for Blinn {
         Common::new(products)
     }
 
-    fn reflect(&self, _: usize, common: &Common, products: [u32; 3], power: PixelPower<'_>) -> Reflection {
+    fn reflect(&self, _: usize, common: &Common, products: [u32; 3], lut: CosineLookup<'_>) -> Reflection {
         let [nl, vl] = common.light(products);
         // N·(L + V) / |L + V| with |L + V|² = 2 + 2 L·V: half of either, so that both stay in range.
         let length = Root::of((1i32 << 30).saturating_add(vl).max(1) as u32);
         let sum = (((i64::from(nl) + i64::from(common.nv)) >> 1) * SQRT_2) >> 30;
         let nh = length.divide(sum.clamp(i32::MIN.into(), i32::MAX.into()) as i32);
-        Reflection { diffuse: common.normal.divide(nl) >> 3, highlight: power.at(common.normal.divide(nh) >> 3) }
+        Reflection { diffuse: common.normal.divide(nl) >> 3, highlight: lut.at(common.normal.divide(nh) >> 3) }
     }
 }
 

@@ -8,8 +8,8 @@ use crate::{
         Constant,
         field::{Field, Nodes},
     },
-    lighting::materials::{Levels, MaterialTables},
-    math::{steps, steps::Quotients},
+    lighting::materials::{MaterialTables, OneLightRamp},
+    math::{highlight_lookup, highlight_lookup::QuotientLookup},
     method::TriangleSetup,
     pixel::Pixel,
     raster::{
@@ -31,63 +31,63 @@ const STEPS: u32 = 26;
 
 /// What numerators and a length come to; `R` makes half a reciprocal length, Q2.30, of what is walked for it. One that is not `EXACT`
 /// may lift cosines above 1, which then count as 1.
-struct Quotient<'a, C: Pixel, R, const EXACT: bool> {
-    levels: Levels<'a, C>,
-    steps: Quotients<'a>,
+struct OneLight<'a, C: Pixel, R, const EXACT: bool> {
+    ramp: OneLightRamp<'a, C>,
+    lookup: QuotientLookup<'a>,
     half_reciprocal: R,
 }
 
-impl<C: Pixel, R: Copy, const EXACT: bool> Clone for Quotient<'_, C, R, EXACT> {
+impl<C: Pixel, R: Copy, const EXACT: bool> Clone for OneLight<'_, C, R, EXACT> {
     fn clone(&self) -> Self {
         *self
     }
 }
 
-impl<C: Pixel, R: Copy, const EXACT: bool> Copy for Quotient<'_, C, R, EXACT> {}
+impl<C: Pixel, R: Copy, const EXACT: bool> Copy for OneLight<'_, C, R, EXACT> {}
 
-impl<C: Pixel, V, R: Fn(V) -> i32 + Copy, const EXACT: bool> PixelShader<(([u32; 1], [u32; 1]), V)> for Quotient<'_, C, R, EXACT> {
+impl<C: Pixel, V, R: Fn(V) -> i32 + Copy, const EXACT: bool> PixelShader<(([u32; 1], [u32; 1]), V)> for OneLight<'_, C, R, EXACT> {
     type Pixel = C;
 
     const CHEAP: bool = true;
 
     #[inline(always)]
-    fn shader(&self, (([light], [half]), length): (([u32; 1], [u32; 1]), V)) -> C {
+    fn shade(&self, (([light], [half]), length): (([u32; 1], [u32; 1]), V)) -> C {
         let half_reciprocal = (self.half_reciprocal)(length);
-        let diffuse = self.levels.quotient::<EXACT>(light, half_reciprocal);
-        let highlight = self.steps.at(upper(half as i32, half_reciprocal));
-        self.levels.colour::<PIXEL>(diffuse, highlight)
+        let diffuse = self.ramp.quotient::<EXACT>(light, half_reciprocal);
+        let highlight = self.lookup.at(upper(half as i32, half_reciprocal));
+        self.ramp.colour::<PIXEL>(diffuse, highlight)
     }
 }
 
 /// The same where there is no highlight.
-struct Matte<'a, C: Pixel, R, const EXACT: bool> {
-    levels: Levels<'a, C>,
+struct DiffuseOnly<'a, C: Pixel, R, const EXACT: bool> {
+    ramp: OneLightRamp<'a, C>,
     /// The highlight's entry.
     floor: u32,
     half_reciprocal: R,
 }
 
-impl<C: Pixel, R: Copy, const EXACT: bool> Clone for Matte<'_, C, R, EXACT> {
+impl<C: Pixel, R: Copy, const EXACT: bool> Clone for DiffuseOnly<'_, C, R, EXACT> {
     fn clone(&self) -> Self {
         *self
     }
 }
 
-impl<C: Pixel, R: Copy, const EXACT: bool> Copy for Matte<'_, C, R, EXACT> {}
+impl<C: Pixel, R: Copy, const EXACT: bool> Copy for DiffuseOnly<'_, C, R, EXACT> {}
 
-impl<C: Pixel, V, R: Fn(V) -> i32 + Copy, const EXACT: bool> PixelShader<([u32; 1], V)> for Matte<'_, C, R, EXACT> {
+impl<C: Pixel, V, R: Fn(V) -> i32 + Copy, const EXACT: bool> PixelShader<([u32; 1], V)> for DiffuseOnly<'_, C, R, EXACT> {
     type Pixel = C;
 
     const CHEAP: bool = true;
 
     #[inline(always)]
-    fn shader(&self, ([light], length): ([u32; 1], V)) -> C {
-        let diffuse = self.levels.quotient::<EXACT>(light, (self.half_reciprocal)(length));
-        self.levels.colour::<PIXEL>(diffuse, self.floor)
+    fn shade(&self, ([light], length): ([u32; 1], V)) -> C {
+        let diffuse = self.ramp.quotient::<EXACT>(light, (self.half_reciprocal)(length));
+        self.ramp.colour::<PIXEL>(diffuse, self.floor)
     }
 }
 
-impl<C: Pixel> Levels<'_, C> {
+impl<C: Pixel> OneLightRamp<'_, C> {
     /// The diffuse level of a numerator times half a reciprocal length.
     #[inline(always)]
     fn quotient<const EXACT: bool>(&self, light: u32, half_reciprocal: i32) -> u32 {
@@ -106,26 +106,26 @@ pub(super) fn draw<const EXACT: bool, F: Field, C: Pixel>(
     tables: MaterialTables<'_, C>,
     band: &mut Band<'_, C>,
 ) -> Option<u32> {
-    let levels = tables.levels_of_one()?;
+    let ramp = tables.one_light_ramp()?;
     let reflectance = tables.reflectance;
-    let steps = Quotients::new(&reflectance.power);
+    let lookup = QuotientLookup::new(&reflectance.highlight_lut);
     let [a, b, c] = setup.corners;
     let light = || {
-        let nodes = [levels.node(a.light[0], NODE), levels.node(b.light[0], NODE), levels.node(c.light[0], NODE)];
+        let nodes = [ramp.node(a.light[0], NODE), ramp.node(b.light[0], NODE), ramp.node(c.light[0], NODE)];
         Nodes::<3, 1, RANGE>::new([nodes], LEVEL - NODE).fit(setup.gradients)
     };
     if setup.has_no_highlight(reflectance) {
-        let floor = reflectance.power.least();
+        let floor = reflectance.highlight_lut.least();
         if a.light[0].max(b.light[0]).max(c.light[0]) <= 0 {
-            return Some(setup.fill(|| Constant, Solid(levels.colour::<PIXEL>(0, floor)), band));
+            return Some(setup.fill(|| Constant, Solid(ramp.colour::<PIXEL>(0, floor)), band));
         }
         let patch = || (light(), length().fit(setup.gradients));
-        return Some(setup.fill(patch, Matte::<_, _, EXACT> { levels, floor, half_reciprocal }, band));
+        return Some(setup.fill(patch, DiffuseOnly::<_, _, EXACT> { ramp, floor, half_reciprocal }, band));
     }
     let patch = || {
-        let half = [steps.node(a.light[1]), steps.node(b.light[1]), steps.node(c.light[1])];
+        let half = [lookup.node(a.light[1]), lookup.node(b.light[1]), lookup.node(c.light[1])];
         // Two planes of one channel: the compiler makes a loop of one plane of two, and keeps it in memory.
-        ((light(), Nodes::<3, 1, STEPS>::new([half], steps::EXTRA).fit(setup.gradients)), length().fit(setup.gradients))
+        ((light(), Nodes::<3, 1, STEPS>::new([half], highlight_lookup::EXTRA).fit(setup.gradients)), length().fit(setup.gradients))
     };
-    Some(setup.fill(patch, Quotient::<_, _, EXACT> { levels, steps, half_reciprocal }, band))
+    Some(setup.fill(patch, OneLight::<_, _, EXACT> { ramp, lookup, half_reciprocal }, band))
 }

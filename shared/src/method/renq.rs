@@ -4,18 +4,18 @@
 //! mesh and no midpoint is lit. With near lights the numerators are quadratics through six points.
 //!
 //! Cost: 4 additions a pixel, 2 products and the highlight's table; 2 or 4 additions and 2 products more per light.
-//! Continuous. Error against Phong: 255 ks n w^n 0.0125 (e/rho)^4, w the largest N·H/|N|, e the longest |Ni-Nj|, rho
+//! Continuous. Error against Phong: 255 ks n w^n 0.0125 (e/r)^4, w the largest N·H/|N|, e the longest |Ni-Nj|, r
 //! the least |N|: 3 LSB at worst on a sphere of 168 triangles, 0.3 on one of 690 (exponent 50, ks 1/2).
 //! Domain: any lights; where |N| falls below 1/2, [`crate::method::duff`]'s root takes over.
 
 use crate::{
     arch::product::upper,
-    format::EDGE,
+    format::INVERSE_SUM_LENGTH,
     lighting::materials::Reflection,
-    math::power::PixelPower,
+    math::highlight_lut::CosineLookup,
     method::{
         TriangleSetup,
-        form::{EXTRA, LightingModel, NODE, Quadratic, signed},
+        lighting_model::{EXTRA, LightingModel, NODE, Quadratic, signed},
     },
 };
 
@@ -23,8 +23,8 @@ use crate::{
 #[inline(always)]
 pub fn length(setup: &TriangleSetup<'_>) -> Quadratic<1> {
     // 1/|Ni+Nj| - 1/2, zero at the corners.
-    let node = |rsum: u32| (rsum.wrapping_sub(1 << (EDGE - 1)) << (NODE - EDGE)) as i32;
-    let [ab, bc, ca] = setup.rsums();
+    let node = |inverse: u32| (inverse.wrapping_sub(1 << (INVERSE_SUM_LENGTH - 1)) << (NODE - INVERSE_SUM_LENGTH)) as i32;
+    let [ab, bc, ca] = setup.inverse_sum_lengths();
     Quadratic::new([[0, 0, 0, node(ab), node(bc), node(ca)]], EXTRA).biased([1 << 29])
 }
 
@@ -42,8 +42,8 @@ impl LightingModel<[u32; 1], [u32; 2]> for Scaled {
     }
 
     #[inline(always)]
-    fn reflect(&self, _: usize, &length: &i32, [light, half]: [u32; 2], power: PixelPower<'_>) -> Reflection {
-        Reflection { diffuse: over(signed(light), length), highlight: power.at(over(signed(half), length)) }
+    fn reflect(&self, _: usize, &length: &i32, [light, half]: [u32; 2], lut: CosineLookup<'_>) -> Reflection {
+        Reflection { diffuse: over(signed(light), length), highlight: lut.at(over(signed(half), length)) }
     }
 }
 

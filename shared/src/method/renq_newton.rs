@@ -9,13 +9,13 @@
 
 use crate::{
     arch::product::upper,
-    format::RHO,
+    format::NORMAL_LENGTH,
     lighting::materials::{Highlight, MaterialTables, Reflection},
-    math::power::PixelPower,
+    math::highlight_lut::CosineLookup,
     method::{
         Costs, Facts, Loops, Method, Shading, Style, TriangleSetup, VertexLight, duff,
         duff::Duff,
-        form::{LightingModel, signed},
+        lighting_model::{LightingModel, signed},
         quotient, renq,
     },
     pixel::Pixel,
@@ -64,7 +64,7 @@ impl Loops for RenqNewton {
         band: &mut Band<'_, C>,
     ) -> Option<u32> {
         // Strongly curved triangles, rare: a root for each pixel.
-        if duff::is_curved(setup) || needs_two(setup.triangle.rho, shading.exponent) {
+        if duff::is_curved(setup) || needs_two(setup.triangle.min_normal_length, shading.exponent) {
             return None;
         }
         let lengths = || (renq::length(setup), duff::square(setup));
@@ -72,11 +72,11 @@ impl Loops for RenqNewton {
     }
 }
 
-/// Whether one step may leave more than 0.1 LSB: 255 n 1.5 delta² > 0.1 with delta = 0.02 e⁴ and e² = 3 (1 - rho²).
-fn needs_two(rho: u16, exponent: u16) -> bool {
+/// Whether one step may leave more than 0.1 LSB: 255 n 1.5 delta² > 0.1 with delta = 0.02 e⁴ and e² = 3 (1 - r²).
+fn needs_two(min_length: u16, exponent: u16) -> bool {
     // e² in Q2.30; 255 · 1.5 · 0.02² = 0.153.
-    let rho = u64::from(rho);
-    let chord2 = 3 * ((1u64 << 30) - ((rho * rho) >> (2 * RHO - 30)));
+    let length = u64::from(min_length);
+    let chord2 = 3 * ((1u64 << 30) - ((length * length) >> (2 * NORMAL_LENGTH - 30)));
     let chord4 = (chord2 * chord2) >> 32;
     // e⁸ in Q.26, and 0.1 / 0.153 in Q.26.
     ((chord4 * chord4) >> 30) * u64::from(exponent) > LIMIT
@@ -116,7 +116,7 @@ impl<const STEPS: usize> LightingModel<([u32; 1], [u32; 1]), [u32; 2]> for Newto
     }
 
     #[inline(always)]
-    fn reflect(&self, light: usize, length: &i32, fields: [u32; 2], power: PixelPower<'_>) -> Reflection {
-        renq::Scaled.reflect(light, length, fields, power)
+    fn reflect(&self, light: usize, length: &i32, fields: [u32; 2], lut: CosineLookup<'_>) -> Reflection {
+        renq::Scaled.reflect(light, length, fields, lut)
     }
 }

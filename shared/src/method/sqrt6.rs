@@ -15,11 +15,11 @@ use crate::{
         Constant,
         field::{Field, Nodes},
     },
-    lighting::materials::{Highlight, Levels, MaterialTables, Reflection},
-    math::{power::PixelPower, rsqrt::sqrt, steps::Defects},
+    lighting::materials::{Highlight, MaterialTables, OneLightRamp, Reflection},
+    math::{highlight_lookup::DefectLookup, highlight_lut::CosineLookup, rsqrt::sqrt},
     method::{
         Costs, Facts, Loops, Method, RANGE, Shading, Style, TriangleSetup, VertexLight,
-        form::{BITS, EXTRA, LightingModel, quadratic, signed},
+        lighting_model::{BITS, EXTRA, LightingModel, quadratic, signed},
         node::map_six,
     },
     pixel::Pixel,
@@ -71,22 +71,22 @@ impl Method for Sqrt6 {
 
 impl Loops for Sqrt6 {
     fn take(style: Style) -> bool {
-        style.one_light && !style.smoothed && !style.perspective
+        style.one_light && !style.dithered_or_antialiased && !style.perspective
     }
 
     #[inline(always)]
     fn draw<C: Pixel>(setup: &TriangleSetup<'_>, _: &Shading<'_>, tables: MaterialTables<'_, C>, band: &mut Band<'_, C>) -> Option<u32> {
         let (reflectance, resumed) = (tables.reflectance, setup.resumed(band));
-        let levels = tables.levels_of_one()?;
+        let ramp = tables.one_light_ramp()?;
         // What was handed on has been decided, and needs no nodes.
         let cosines = if resumed.is_none() { setup.six_cosines(0) } else { [0; 6] };
         let id = match resumed {
             Some(id) => id,
-            None => match (setup.has_no_highlight(reflectance), Lit::of(cosines)) {
-                (true, Lit::Everywhere | Lit::Nowhere) => Ramp::<C>::ID,
-                _ if !levels.is_within() => return None,
-                (true, Lit::Partly) => DiffuseOnly::<C>::ID,
-                (false, Lit::Everywhere | Lit::Partly) => OneLight::<C>::ID,
+            None => match (setup.has_no_highlight(reflectance), DiffuseSign::of(cosines)) {
+                (true, DiffuseSign::Everywhere | DiffuseSign::Nowhere) => Ramp::<C>::ID,
+                _ if !ramp.is_within() => return None,
+                (true, DiffuseSign::Partly) => DiffuseOnly::<C>::ID,
+                (false, DiffuseSign::Everywhere | DiffuseSign::Partly) => OneLight::<C>::ID,
                 _ => return None,
             },
         };
@@ -94,25 +94,25 @@ impl Loops for Sqrt6 {
             return Some(Shading::fill_one(setup, || reflectance.six_diffuse(cosines), tables, band));
         }
         let light = || {
-            let nodes = map_six(cosines, |cosine| levels.node(cosine, LEVEL));
+            let nodes = map_six(cosines, |cosine| ramp.node(cosine, LEVEL));
             Nodes::<6, 1, RANGE>::new([nodes], WALK - LEVEL).fit(setup.gradients)
         };
         if id == DiffuseOnly::<C>::ID {
-            return Some(setup.fill(light, DiffuseOnly { levels, floor: reflectance.power.least() }, band));
+            return Some(setup.fill(light, DiffuseOnly { ramp, floor: reflectance.highlight_lut.least() }, band));
         }
-        let defects = Defects::new(&reflectance.power);
+        let lookup = DefectLookup::new(&reflectance.highlight_lut);
         let patch = || {
-            let half = [map_six(map_six(setup.six_cosines(1), root), |root| defects.node(root))];
-            (light(), Nodes::<6, 1, BITS>::new(half, EXTRA).biased([defects.half()]).fit(setup.gradients))
+            let half = [map_six(map_six(setup.six_cosines(1), root), |root| lookup.node(root))];
+            (light(), Nodes::<6, 1, BITS>::new(half, EXTRA).biased([lookup.half()]).fit(setup.gradients))
         };
-        Some(setup.fill(patch, OneLight { levels, defects }, band))
+        Some(setup.fill(patch, OneLight { ramp, lookup }, band))
     }
 }
 
 /// Level and what the root of N·H lacks of 1.
 struct OneLight<'a, C: Pixel> {
-    levels: Levels<'a, C>,
-    defects: Defects<'a>,
+    ramp: OneLightRamp<'a, C>,
+    lookup: DefectLookup<'a>,
 }
 
 impl<C: Pixel> Clone for OneLight<'_, C> {
@@ -131,14 +131,14 @@ impl<C: Pixel> PixelShader<([u32; 1], [u32; 1])> for OneLight<'_, C> {
     const ID: u8 = 2;
 
     #[inline(always)]
-    fn shader(&self, ([light], [defect]): ([u32; 1], [u32; 1])) -> C {
-        self.levels.colour::<WALK>(signed(light).max(0) as u32, self.defects.at(signed(defect)))
+    fn shade(&self, ([light], [defect]): ([u32; 1], [u32; 1])) -> C {
+        self.ramp.colour::<WALK>(signed(light).max(0) as u32, self.lookup.at(signed(defect)))
     }
 }
 
 /// Level of diffuse light, negative where there is none.
 struct DiffuseOnly<'a, C: Pixel> {
-    levels: Levels<'a, C>,
+    ramp: OneLightRamp<'a, C>,
     /// The highlight's entry.
     floor: u32,
 }
@@ -159,14 +159,14 @@ impl<C: Pixel> PixelShader<[u32; 1]> for DiffuseOnly<'_, C> {
     const ID: u8 = 1;
 
     #[inline(always)]
-    fn shader(&self, [light]: [u32; 1]) -> C {
-        self.levels.colour::<WALK>(signed(light).max(0) as u32, self.floor)
+    fn shade(&self, [light]: [u32; 1]) -> C {
+        self.ramp.colour::<WALK>(signed(light).max(0) as u32, self.floor)
     }
 }
 
 /// Where the quadratic through N·L is positive.
 #[derive(Clone, Copy, PartialEq, Eq)]
-enum Lit {
+enum DiffuseSign {
     Everywhere,
     Nowhere,
     Partly,
@@ -174,7 +174,7 @@ enum Lit {
     Steeply,
 }
 
-impl Lit {
+impl DiffuseSign {
     /// By its nodes: it leaves the middle of their range by at most 5/3 of half the range (its Lebesgue constant). Unless it changes its
     /// sign the level may be fitted instead of the cosine, which is not clamped.
     #[inline(always)]
@@ -211,9 +211,9 @@ impl LightingModel<(), [u32; 2]> for Squared {
     fn common(&self, (): ()) {}
 
     #[inline(always)]
-    fn reflect(&self, _: usize, (): &(), [light, half]: [u32; 2], power: PixelPower<'_>) -> Reflection {
+    fn reflect(&self, _: usize, (): &(), [light, half]: [u32; 2], lut: CosineLookup<'_>) -> Reflection {
         // The table squares.
-        Reflection { diffuse: signed(light) >> 3, highlight: power.at(signed(half) >> 3) }
+        Reflection { diffuse: signed(light) >> 3, highlight: lut.at(signed(half) >> 3) }
     }
 }
 
@@ -231,17 +231,17 @@ mod tests {
             parts in prop::array::uniform6(prop_oneof![Just(-1.0f64), Just(1.0), -1.0f64..1.0]),
         ) {
             let nodes = parts.map(|part| ((centre + part * spread).clamp(-1.0, 1.0) * f64::from(ONE)) as i32);
-            let lit = Lit::of(nodes);
+            let lit = DiffuseSign::of(nodes);
             for (s, t) in (0..=20).flat_map(|s| (0..=20 - s).map(move |t| (f64::from(s) / 20.0, f64::from(t) / 20.0))) {
                 let b = [1.0 - s - t, s, t];
                 let n = nodes.map(|node| f64::from(node) / f64::from(ONE));
                 let value = (0..3).map(|k| b[k] * (2.0 * b[k] - 1.0) * n[k]).sum::<f64>()
                     + 4.0 * (b[0] * b[1] * n[3] + b[1] * b[2] * n[4] + b[2] * b[0] * n[5]);
                 let holds = match lit {
-                    Lit::Everywhere => value > 0.0,
-                    Lit::Nowhere => value < 0.0,
-                    Lit::Partly => value.abs() <= 1.0,
-                    Lit::Steeply => true,
+                    DiffuseSign::Everywhere => value > 0.0,
+                    DiffuseSign::Nowhere => value < 0.0,
+                    DiffuseSign::Partly => value.abs() <= 1.0,
+                    DiffuseSign::Steeply => true,
                 };
                 prop_assert!(holds, "{nodes:?} at {s} {t}: {value}");
             }

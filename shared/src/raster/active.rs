@@ -20,7 +20,7 @@ const WORDS: usize = 18;
 pub struct ActiveTriangle {
     /// That of the triangle's entry in its list; 0 is of none.
     pub(crate) key: u32,
-    pub(crate) rest: EdgeState,
+    pub(crate) edges: EdgeState,
     /// Not 0: the depth is known.
     has_depth: u32,
     /// The depth, standing on the next band's first row.
@@ -31,26 +31,26 @@ pub struct ActiveTriangle {
 
 impl ActiveTriangle {
     /// Of no triangle; all zeros, as memory in a `static` should be.
-    pub const EMPTY: Self = Self { key: 0, rest: EdgeState::NONE, has_depth: 0, depth: [0; 3], words: [0; WORDS] };
+    pub const EMPTY: Self = Self { key: 0, edges: EdgeState::NONE, has_depth: 0, depth: [0; 3], words: [0; WORDS] };
 
     /// Keeps what has been walked to the end of a band; false if there is no way to.
     #[inline(always)]
-    pub(crate) fn keep<D: Patch, P: Patch>(&mut self, (key, rest): (u32, EdgeState), depth: &D, patch: &P) -> bool {
-        self.has_depth = u32::from(D::WORDS > 0 && depth.keep(&mut self.depth));
-        (self.key, self.rest) = (key, rest);
-        patch.keep(&mut self.words)
+    pub(crate) fn save<D: Patch, P: Patch>(&mut self, (key, edges): (u32, EdgeState), depth: &D, patch: &P) -> bool {
+        self.has_depth = u32::from(D::WORDS > 0 && depth.save(&mut self.depth));
+        (self.key, self.edges) = (key, edges);
+        patch.save(&mut self.words)
     }
 
     /// The depth, if it is known.
     #[inline(always)]
     pub(crate) fn inv_depth(&self) -> Option<Plane<1>> {
-        if self.has_depth != 0 { Plane::kept(&self.depth) } else { None }
+        if self.has_depth != 0 { Plane::load(&self.depth) } else { None }
     }
 
     /// The patch as it was kept.
     #[inline(always)]
     pub(crate) fn patch<P: Patch>(&self) -> Option<P> {
-        P::kept(&self.words)
+        P::load(&self.words)
     }
 }
 

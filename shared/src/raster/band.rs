@@ -7,7 +7,7 @@ use crate::{coverage::sample::Sample, pixel::Pixel, raster::active::ActiveTriang
 pub struct Band<'a, C> {
     /// Row by row.
     pub pixels: &'a mut [C],
-    /// Nearness per pixel: 0 is infinitely far.
+    /// Inverse depth per pixel: 0 is infinitely far.
     pub depth: &'a mut [u16],
     /// Pixels in a row.
     pub width: usize,

@@ -18,7 +18,7 @@ pub trait PixelShader<V>: Copy {
     const ID: u8 = 0;
 
     /// The colour of a value.
-    fn shader(&self, value: V) -> Self::Pixel;
+    fn shade(&self, value: V) -> Self::Pixel;
 }
 
 /// One colour.
@@ -31,7 +31,7 @@ impl<C: Copy> PixelShader<()> for Solid<C> {
     const CHEAP: bool = true;
 
     #[inline(always)]
-    fn shader(&self, (): ()) -> C {
+    fn shade(&self, (): ()) -> C {
         self.0
     }
 }
@@ -54,7 +54,7 @@ impl<C: Pixel> PixelShader<[u32; 1]> for Ramp<'_, C> {
     const CHEAP: bool = true;
 
     #[inline(always)]
-    fn shader(&self, [level]: [u32; 1]) -> C {
+    fn shade(&self, [level]: [u32; 1]) -> C {
         C::ramped::<WALK>(self.0, level)
     }
 }
@@ -67,7 +67,7 @@ impl<C: Pixel> PixelShader<[u32; 3]> for Rgb<C> {
     type Pixel = C;
 
     #[inline(always)]
-    fn shader(&self, levels: [u32; 3]) -> C {
+    fn shade(&self, levels: [u32; 3]) -> C {
         C::mixed(levels)
     }
 }

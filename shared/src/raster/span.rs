@@ -15,7 +15,7 @@ pub trait DepthTest: Walker {
     fn passes(&self, depth: &mut [u16], i: usize) -> bool;
 }
 
-/// A nearness to be tested; what is stored of it is the upper half.
+/// An inverse depth to be tested; what is stored of it is the upper half.
 impl DepthTest for Linear<1> {
     #[inline(always)]
     fn depth(depth: &mut [u16], pixels: Range<usize>) -> Option<&mut [u16]> {
@@ -49,17 +49,17 @@ impl DepthTest for Constant {
 
 /// Shades the pixels of one span from right to left where they are seen.
 ///
-/// `sight` and `walker` stand one pixel right of the span. They step first and the index counts down
+/// `test` and `walker` stand one pixel right of the span. They step first and the index counts down
 /// to zero: the loop ends on its own subtraction, and every slice is checked
 /// once, before it.
 ///
-/// Head-room: nearness and the walked values wrap freely; at a pixel centre inside
+/// Head-room: inverse depth and the walked values wrap freely; at a pixel centre inside
 /// the triangle they are back in range (see [`crate::interpolate`]).
 #[inline(always)]
 pub fn fill<S: DepthTest, W: Walker, T: PixelShader<W::Value>>(
     pixels: &mut [T::Pixel],
     depth: &mut [u16],
-    mut sight: S,
+    mut test: S,
     mut walker: W,
     shader: T,
 ) {
@@ -67,10 +67,10 @@ pub fn fill<S: DepthTest, W: Walker, T: PixelShader<W::Value>>(
     let Some(depth) = S::depth(depth, 0..i) else { return };
     while i > 0 {
         i -= 1;
-        sight.step();
+        test.step();
         walker.step();
-        if sight.passes(depth, i) {
-            pixels[i] = shader.shader(walker.value());
+        if test.passes(depth, i) {
+            pixels[i] = shader.shade(walker.value());
         }
     }
 }

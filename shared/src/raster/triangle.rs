@@ -29,7 +29,7 @@ pub struct ScreenTriangle {
     /// Which of the mesh's corners is the top one.
     pub turned: usize,
     /// Its rows in a band; without antialiasing.
-    course: RowRange,
+    rows: RowRange,
 }
 
 /// A triangle's way through the rows of a band.
@@ -53,7 +53,7 @@ impl RowRange {
 
 /// What steps from row to row.
 pub(crate) struct Rows<'b, D, P: Patch, T: PixelShader<<P::Walker as Walker>::Value>> {
-    /// Pixels and nearness of the band, as many of each in a row as it is wide.
+    /// Pixels and inverse depth of the band, as many of each in a row as it is wide.
     pub(crate) pixels: &'b mut [T::Pixel],
     pub(crate) buffer: &'b mut [u16],
     pub(crate) width: usize,
@@ -77,7 +77,7 @@ const ROW: u32 = 2 * COLUMNS - 1;
 
 impl ScreenTriangle {
     /// None at all.
-    pub(crate) const NONE: Self = Self { corners: [[0; 2]; 3], depth: [0; 3], turned: 0, course: RowRange::of(EdgeWalker::NONE, 0) };
+    pub(crate) const NONE: Self = Self { corners: [[0; 2]; 3], depth: [0; 3], turned: 0, rows: RowRange::of(EdgeWalker::NONE, 0) };
 
     /// Turns the corners until the top one is first; the order around the triangle stays.
     #[inline(never)]
@@ -86,42 +86,42 @@ impl ScreenTriangle {
         let (turned, corners) = turned(corners);
         let places = places(corners);
         let sides = EdgeWalker::new(places, [top, bottom], width);
-        Self { corners: places, depth: depths(corners), turned, course: RowRange::of(sides, 0) }
+        Self { corners: places, depth: depths(corners), turned, rows: RowRange::of(sides, 0) }
     }
 
     /// The same without antialiasing, of a triangle that has been [`turned`] and whose sides can be walked from end to end.
     #[inline(always)]
     #[must_use]
-    pub(crate) fn simple<C>((turned, corners): (usize, [&ScreenVertex; 3]), key: u32, band: &Band<'_, C>) -> Self {
+    pub(crate) fn word_sized<C>((turned, corners): (usize, [&ScreenVertex; 3]), key: u32, band: &Band<'_, C>) -> Self {
         let places = places(corners);
-        let sides = EdgeWalker::simple(places, band.range());
-        Self { corners: places, depth: depths(corners), turned, course: RowRange::of(sides, key) }
+        let sides = EdgeWalker::end_to_end(places, band.range());
+        Self { corners: places, depth: depths(corners), turned, rows: RowRange::of(sides, key) }
     }
 
     /// Of one that the band above handed on: nothing else is known of it.
     #[inline(always)]
     #[must_use]
     pub(crate) fn resumed<C>(active_triangle: &ActiveTriangle, turned: usize, band: &Band<'_, C>) -> Self {
-        let course = RowRange {
-            sides: active_triangle.rest.sides(band.range()),
+        let rows = RowRange {
+            sides: active_triangle.edges.walker(band.range()),
             inv_depth: active_triangle.inv_depth(),
             key: active_triangle.key,
             resumed: true,
         };
-        Self { corners: [[0; 2]; 3], depth: [0; 3], turned, course }
+        Self { corners: [[0; 2]; 3], depth: [0; 3], turned, rows }
     }
 
     /// No row lies in the band.
     #[inline(always)]
     #[must_use]
     pub fn is_empty(&self) -> bool {
-        self.course.sides.row >= self.course.sides.end
+        self.rows.sides.row >= self.rows.sides.end
     }
 
     /// No pixel's centre lies in it, among the rows of the band, which is `width` columns wide.
     #[must_use]
     pub(crate) fn covers_nothing(&self, width: i32) -> bool {
-        let sides = &self.course.sides;
+        let sides = &self.rows.sides;
         let (mut row, mut stop, mut pair) = (sides.row, sides.stop, sides.pair);
         loop {
             while row < stop {
@@ -141,7 +141,7 @@ impl ScreenTriangle {
     /// Works out depth, unless that is left to those who need it.
     #[inline(always)]
     pub(crate) fn set_up_depth(&mut self, gradients: &Gradients) {
-        self.course.inv_depth = Some(self.plane(gradients, self.course.sides.row));
+        self.rows.inv_depth = Some(self.plane(gradients, self.rows.sides.row));
     }
 
     /// Draws the rows that lie in `band` and returns how many pixels they have.
@@ -153,7 +153,7 @@ impl ScreenTriangle {
         shader: T,
         band: &mut Band<'_, T::Pixel>,
     ) -> u32 {
-        let inv_depth = match self.course.inv_depth {
+        let inv_depth = match self.rows.inv_depth {
             Some(inv_depth) => inv_depth,
             None => self.late_plane(*gradients),
         };
@@ -177,13 +177,13 @@ impl ScreenTriangle {
     #[must_use]
     pub fn without_rows(corners: [&ScreenVertex; 3]) -> Self {
         let (turned, corners) = turned(corners);
-        Self { corners: places(corners), depth: depths(corners), turned, course: RowRange::of(EdgeWalker::NONE, 0) }
+        Self { corners: places(corners), depth: depths(corners), turned, rows: RowRange::of(EdgeWalker::NONE, 0) }
     }
 
     /// Draws the rows that lie in `canvas` the general way and returns how many pixels they have; `shader` stands on the anchor's row.
     #[inline(never)]
     pub fn draw_spans(&self, gradients: &Gradients, shader: &mut dyn SpanShader, canvas: &mut dyn Canvas) -> u32 {
-        let sides = &self.course.sides;
+        let sides = &self.rows.sides;
         let (mut row, mut stop, mut pair) = (sides.row, sides.stop, sides.pair);
         let mut depth = self.plane(gradients, row);
         shader.jump(row.wrapping_sub(gradients.row()));
@@ -218,10 +218,10 @@ impl ScreenTriangle {
         shader: T,
         band: &mut Band<'_, T::Pixel>,
     ) -> u32 {
-        let sides = &self.course.sides;
+        let sides = &self.rows.sides;
         let (mut row, mut stop) = (sides.row, sides.stop);
         let mut rows = Rows::new(band, row, sides.pair, depth, patch, shader);
-        if !self.course.resumed && row != gradients.row() {
+        if !self.rows.resumed && row != gradients.row() {
             rows.patch.jump(row.wrapping_sub(gradients.row()));
         }
         loop {
@@ -237,9 +237,9 @@ impl ScreenTriangle {
             stop = sides.next(row, &mut rows.sides, self.corners, rows.width as i32);
         }
         let filled = rows.filled;
-        if self.course.key != 0 && sides.goes_on() {
+        if self.rows.key != 0 && sides.goes_on() {
             let Rows { sides: pair, depth, patch, .. } = rows;
-            hand_on((self.course.key, sides.rest(pair, T::ID)), &depth, &patch, &mut band.active);
+            save_active((self.rows.key, sides.state(pair, T::ID)), &depth, &patch, &mut band.active);
         }
         filled
     }
@@ -247,7 +247,7 @@ impl ScreenTriangle {
     #[cold]
     #[inline(never)]
     fn late_plane(self, gradients: Gradients) -> Plane<1> {
-        self.plane(&gradients, self.course.sides.row)
+        self.plane(&gradients, self.rows.sides.row)
     }
 
     /// Depth, standing on `row`.
@@ -293,8 +293,8 @@ pub fn turn<A: Copy>([a, b, c]: [A; 3], by: usize) -> [A; 3] {
 
 /// Hands a triangle on to the next band, walked to its first row there.
 #[inline(never)]
-fn hand_on<D: Patch, P: Patch>((key, rest): (u32, EdgeState), depth: &D, patch: &P, active: &mut ActiveTriangles<'_>) {
-    active.put(|active_triangle| active_triangle.keep((key, rest), depth, patch));
+fn save_active<D: Patch, P: Patch>((key, edges): (u32, EdgeState), depth: &D, patch: &P, active: &mut ActiveTriangles<'_>) {
+    active.put(|active_triangle| active_triangle.save((key, edges), depth, patch));
 }
 
 /// Fills the rows to come; there is at least one.

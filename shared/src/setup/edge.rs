@@ -24,14 +24,14 @@ pub const COLUMN: u32 = SLOPE;
 pub const COLUMNS: u32 = 1 << (32 - COLUMN);
 
 /// Heights up to here, in 1/16 pixel, are walked from end to end: 89 rows.
-pub const SHORT: i32 = 89 << SUBPIXEL;
-const _: () = assert!(SHORT as usize <= LARGEST);
+pub const MAX_STEPPED_HEIGHT: i32 = 89 << SUBPIXEL;
+const _: () = assert!(MAX_STEPPED_HEIGHT as usize <= LARGEST);
 
 /// Widths up to here, in 1/16 pixel, fit a word with [`COLUMN`] fraction bits: 64 columns.
-pub const NARROW: i32 = (1 << (31 - COLUMN)) - 1;
+pub const MAX_STEPPED_WIDTH: i32 = (1 << (31 - COLUMN)) - 1;
 
 /// Heights from here on, in 1/16 pixel, are not walked but divided anew on each row.
-const TALL: i32 = 1 << (32 - COLUMN);
+const MIN_DIVIDED_HEIGHT: i32 = 1 << (32 - COLUMN);
 
 /// An edge from an upper to a lower point, 1/16 pixel.
 #[derive(Clone, Copy, Debug)]
@@ -88,8 +88,8 @@ impl Edge {
         -(-numerator).div_euclid(dy << SUBPIXEL) as i32
     }
 
-    /// The column at the centre of its first row, ready to be stepped to its end. Only for edges of at most [`SHORT`]
-    /// and [`NARROW`], whose columns lie in [0, [`COLUMNS`]).
+    /// The column at the centre of its first row, ready to be stepped to its end. Only for edges of at most [`MAX_STEPPED_HEIGHT`]
+    /// and [`MAX_STEPPED_WIDTH`], whose columns lie in [0, [`COLUMNS`]).
     ///
     /// A true position is a multiple of 1/(256 h) columns, h the height in rows. The start is too small by less than
     /// 2 · 2^-21 and each step by less than 2^-21, so in row n the integer part is right while (n + 3) 256 h < 2^21.
@@ -109,7 +109,7 @@ impl Edge {
     #[inline(always)]
     #[must_use]
     pub fn exact_rows(&self) -> i32 {
-        if self.dy < TALL { (1 << (COLUMN + SUBPIXEL - 8)) / self.dy.max(1) - 2 } else { 0 }
+        if self.dy < MIN_DIVIDED_HEIGHT { (1 << (COLUMN + SUBPIXEL - 8)) / self.dy.max(1) - 2 } else { 0 }
     }
 
     /// The column at the centre of `row`, ready to be stepped. Only for edges with `exact_rows() > 0`
@@ -149,8 +149,8 @@ mod tests {
             let edge = Edge::new([x0, y0], [(x0 + dx).clamp(0, 32_000), y0 + height]);
             let (mut row, end) = (first_centre(y0), first_centre(y0 + height));
             while row < end {
-                let (mut column, rows) =
-                    if height <= SHORT && edge.dx.abs() <= NARROW { (edge.walk(), end - row) } else { (edge.walk_from(row), edge.exact_rows()) };
+                let is_stepped = height <= MAX_STEPPED_HEIGHT && edge.dx.abs() <= MAX_STEPPED_WIDTH;
+                let (mut column, rows) = if is_stepped { (edge.walk(), end - row) } else { (edge.walk_from(row), edge.exact_rows()) };
                 for row in row..end.min(row + rows) {
                     prop_assert_eq!((column.x >> COLUMN) as i32, edge.column(row).rem_euclid(1 << 11));
                     column.skip(1);

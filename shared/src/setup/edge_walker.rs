@@ -4,7 +4,7 @@ use zerocopy::{FromBytes, Immutable, IntoBytes, KnownLayout};
 
 use crate::{
     geometry::viewport::first_centre,
-    setup::edge::{COLUMN, Edge, EdgeX, NARROW, SHORT},
+    setup::edge::{COLUMN, Edge, EdgeX, MAX_STEPPED_HEIGHT, MAX_STEPPED_WIDTH},
 };
 
 /// The sides of a row.
@@ -65,7 +65,7 @@ impl EdgeState {
 
     /// The sides in the rows from `top` to `bottom` of the next band.
     #[inline(always)]
-    pub(crate) fn sides(self, [top, bottom]: [i32; 2]) -> EdgeWalker {
+    pub(crate) fn walker(self, [top, bottom]: [i32; 2]) -> EdgeWalker {
         let Self { pair, column, turn, low, right, .. } = self;
         let end = low.min(bottom);
         EdgeWalker {
@@ -75,7 +75,7 @@ impl EdgeState {
             end,
             low,
             turn,
-            simple: true,
+            end_to_end: true,
             below: LowerEdge { column, right: right != 0 },
         }
     }
@@ -97,7 +97,7 @@ pub(crate) struct EdgeWalker {
     /// Where the edge below the middle corner begins.
     turn: i32,
     /// They are walked from end to end.
-    simple: bool,
+    end_to_end: bool,
     /// Takes the place of one of them at `stop` then.
     below: LowerEdge,
 }
@@ -111,7 +111,7 @@ impl EdgeWalker {
         end: 0,
         low: 0,
         turn: 0,
-        simple: false,
+        end_to_end: false,
         below: LowerEdge { column: EdgeX::NONE, right: false },
     };
 
@@ -119,8 +119,8 @@ impl EdgeWalker {
     pub(crate) fn new(corners: [[i32; 2]; 3], [top, bottom]: [i32; 2], width: i32) -> Self {
         let [[_, upper], [_, right], [_, left]] = corners;
         let low = right.max(left);
-        if is_walkable(corners, width) && is_narrow(corners) && low - upper <= SHORT {
-            return Self::simple(corners, [top, bottom]);
+        if is_walkable(corners, width) && is_steppable(corners) && low - upper <= MAX_STEPPED_HEIGHT {
+            return Self::end_to_end(corners, [top, bottom]);
         }
         let (row, end) = (first_centre(upper).max(top), first_centre(low).min(bottom));
         let mut sides = Self { row, stop: row, end, low: end, ..Self::NONE };
@@ -130,7 +130,7 @@ impl EdgeWalker {
 
     /// The same of one that can be walked from end to end: no corner beside the band, few rows and columns.
     #[inline(always)]
-    pub(crate) fn simple(corners: [[i32; 2]; 3], [top, bottom]: [i32; 2]) -> Self {
+    pub(crate) fn end_to_end(corners: [[i32; 2]; 3], [top, bottom]: [i32; 2]) -> Self {
         let [upper, right, left] = corners;
         let first = first_centre(upper[1]);
         let (turn, low) = (first_centre(right[1].min(left[1])), first_centre(right[1].max(left[1])));
@@ -143,7 +143,7 @@ impl EdgeWalker {
             column.skip(row.wrapping_sub(turn).max(0));
         }
         let end = low.min(bottom);
-        Self { pair, row, stop: turn.max(row).min(end), end, low, turn, simple: true, below: LowerEdge { column, right: turns_right } }
+        Self { pair, row, stop: turn.max(row).min(end), end, low, turn, end_to_end: true, below: LowerEdge { column, right: turns_right } }
     }
 
     /// Whether rows follow in the next band that can be walked to from here.
@@ -154,7 +154,7 @@ impl EdgeWalker {
 
     /// What follows in the next band; `pair` has been walked to the end. `shader` is the [`crate::raster::pixel_shader::PixelShader::ID`].
     #[inline(always)]
-    pub(crate) fn rest(&self, pair: LeftRight, shader: u8) -> EdgeState {
+    pub(crate) fn state(&self, pair: LeftRight, shader: u8) -> EdgeState {
         // Before the middle corner's row, or where it is the band's end, the edge below is still to come.
         let turn = if self.stop < self.end { self.low } else { self.turn };
         EdgeState { pair, column: self.below.column, turn, low: self.low, right: self.below.right.into(), shader, unused: 0 }
@@ -164,7 +164,7 @@ impl EdgeWalker {
     #[inline(always)]
     pub(crate) fn next(&self, row: i32, pair: &mut LeftRight, corners: [[i32; 2]; 3], width: i32) -> i32 {
         let stop;
-        if self.simple {
+        if self.end_to_end {
             let LowerEdge { column, right } = self.below;
             *(if right { &mut pair.right } else { &mut pair.left }) = column;
             stop = self.end;
@@ -208,8 +208,8 @@ fn is_walkable([[a, _], [b, _], [c, _]]: [[i32; 2]; 3], width: i32) -> bool {
 
 /// Every edge can be walked in one word.
 #[inline(always)]
-fn is_narrow([[a, _], [b, _], [c, _]]: [[i32; 2]; 3]) -> bool {
-    let narrow = |from: i32, to: i32| (to.wrapping_sub(from).wrapping_add(NARROW) as u32) <= 2 * NARROW as u32;
+fn is_steppable([[a, _], [b, _], [c, _]]: [[i32; 2]; 3]) -> bool {
+    let narrow = |from: i32, to: i32| (to.wrapping_sub(from).wrapping_add(MAX_STEPPED_WIDTH) as u32) <= 2 * MAX_STEPPED_WIDTH as u32;
     narrow(a, b) && narrow(b, c) && narrow(c, a)
 }
 

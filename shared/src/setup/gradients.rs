@@ -13,7 +13,7 @@ use crate::{
     arch::product::{product, rounded},
     format::{CENTRE, FINE, SPLITS, SUBPIXEL},
     math::{recip::recip, scale, scale_wide, wide::Wide},
-    setup::{sliver::Sliver, terms::Terms, word_sized, word_sized::Small},
+    setup::{sliver::Sliver, terms::Terms, word_sized, word_sized::WordSized},
 };
 
 /// More fraction bits than the walked format, while coefficients move to the anchor.
@@ -57,8 +57,8 @@ pub struct Gradients {
 /// What edges are divided by to become gradients, or the gradients.
 #[derive(Clone, Copy, Debug)]
 enum Scale {
-    /// Words of 32 bits are enough, see [`Gradients::small`].
-    Small(Small),
+    /// Words of 32 bits are enough, see [`Gradients::if_word_sized`].
+    WordSized(WordSized),
     /// The same of a part of such a triangle.
     Part(Slopes),
     Any(Slopes),
@@ -80,15 +80,15 @@ impl Gradients {
     /// whose y runs down; `None` if it has no area or runs the other way.
     #[must_use]
     pub fn new(corners: [[i32; 2]; 3], visible: Visible) -> Option<Self> {
-        Self::small(corners).or_else(|| Self::any(corners, visible))
+        Self::if_word_sized(corners).or_else(|| Self::any(corners, visible))
     }
 
     /// That of a small and stout triangle: of up to 64 pixels, and not even nearly [`MAX_THINNESS`].
     #[inline(always)]
     #[must_use]
-    pub fn small(corners: [[i32; 2]; 3]) -> Option<Self> {
+    pub fn if_word_sized(corners: [[i32; 2]; 3]) -> Option<Self> {
         let (_, edges) = edges(corners);
-        Some(Self::of_small(corners, Small::new(edges)?))
+        Some(Self::from_area(corners, WordSized::new(edges)?))
     }
 
     /// Of a triangle on which nothing is to be fitted.
@@ -102,20 +102,20 @@ impl Gradients {
         level: 0,
     };
 
-    /// That of a triangle of which is known that [`Self::small`] takes it.
+    /// That of a triangle of which is known that [`Self::if_word_sized`] takes it.
     #[inline(always)]
     #[must_use]
-    pub(crate) fn simple(corners: [[i32; 2]; 3]) -> Self {
+    pub(crate) fn word_sized(corners: [[i32; 2]; 3]) -> Self {
         let (_, edges) = edges(corners);
-        Self::of_small(corners, Small::of(edges))
+        Self::from_area(corners, WordSized::of(edges))
     }
 
     #[inline(always)]
-    fn of_small(corners: [[i32; 2]; 3], small: Small) -> Self {
+    fn from_area(corners: [[i32; 2]; 3], area: WordSized) -> Self {
         let ([x0, y0], edges) = edges(corners);
         let anchor = [x0 >> SUBPIXEL, (y0 + CENTRE - 1) >> SUBPIXEL];
         let offset = [((anchor[0] << SUBPIXEL) + CENTRE - x0) << SPLITS, ((anchor[1] << SUBPIXEL) + CENTRE - y0) << SPLITS];
-        Self { scale: Scale::Small(small), offset, shift: [0; 2], anchor, thin: false, edges, level: 0 }
+        Self { scale: Scale::WordSized(area), offset, shift: [0; 2], anchor, thin: false, edges, level: 0 }
     }
 
     /// That of any triangle.
@@ -187,7 +187,7 @@ impl Gradients {
     #[must_use]
     pub fn parted(&self) -> Self {
         match self.scale {
-            Scale::Small(small) => Self { scale: Scale::Part(Self::mantissas(self.edges, small)), ..*self },
+            Scale::WordSized(area) => Self { scale: Scale::Part(Self::mantissas(self.edges, area)), ..*self },
             _ => *self,
         }
     }
@@ -217,7 +217,7 @@ impl Gradients {
     #[inline(always)]
     fn gradients(&self) -> Slopes {
         match self.scale {
-            Scale::Small(small) => Self::mantissas(self.edges, small),
+            Scale::WordSized(area) => Self::mantissas(self.edges, area),
             Scale::Part(gradients) => gradients,
             Scale::Any(gradients) => gradients,
         }
@@ -225,7 +225,7 @@ impl Gradients {
 
     /// Those of a small triangle: no shift of what they are multiplied with goes to the right.
     #[inline(never)]
-    fn mantissas([[x1, y1], [x2, y2]]: [[i32; 2]; 2], Small { zeros, bits, .. }: Small) -> Slopes {
+    fn mantissas([[x1, y1], [x2, y2]]: [[i32; 2]; 2], WordSized { zeros, bits, .. }: WordSized) -> Slopes {
         let det = x1.wrapping_mul(y2).wrapping_sub(x2.wrapping_mul(y1));
         // 1 / det = r 2^(zeros - 62); coordinates are at most 2^bits, so mantissas c r 2^(zeros - 58 + exponent) at most 2^30.
         let r = recip((det as u32) << (zeros & 31)).min(i32::MAX as u32) as i32;
@@ -242,14 +242,14 @@ impl Gradients {
     #[must_use]
     pub fn linear<const BITS: u32>(&self, nodes: [i32; 3], extra: u32) -> [i32; 3] {
         match self.scale {
-            Scale::Small(small) if BITS <= word_sized::LINEAR && extra <= word_sized::EXTRA => {
-                small.linear(self.edges, self.subpixels(), nodes, extra)
+            Scale::WordSized(area) if BITS <= word_sized::LINEAR && extra <= word_sized::EXTRA => {
+                area.linear(self.edges, self.subpixels(), nodes, extra)
             }
-            Scale::Small(small) if BITS <= word_sized::LONG && extra >= word_sized::LONG_EXTRA => {
-                small.long_linear(self.edges, self.subpixels(), nodes, extra)
+            Scale::WordSized(area) if BITS <= word_sized::LONG && extra >= word_sized::LONG_EXTRA => {
+                area.long_linear(self.edges, self.subpixels(), nodes, extra)
             }
-            Scale::Small(small) => self.linear_small::<BITS>(Self::mantissas(self.edges, small), nodes, extra),
-            Scale::Part(gradients) => self.linear_small::<BITS>(gradients, nodes, extra),
+            Scale::WordSized(area) => self.linear_by_mantissas::<BITS>(Self::mantissas(self.edges, area), nodes, extra),
+            Scale::Part(gradients) => self.linear_by_mantissas::<BITS>(gradients, nodes, extra),
             Scale::Any(_) => self.linear_any(nodes, extra),
         }
     }
@@ -261,7 +261,7 @@ impl Gradients {
     }
 
     #[inline(always)]
-    fn linear_small<const BITS: u32>(&self, gradients: Slopes, [i0, i1, i2]: [i32; 3], extra: u32) -> [i32; 3] {
+    fn linear_by_mantissas<const BITS: u32>(&self, gradients: Slopes, [i0, i1, i2]: [i32; 3], extra: u32) -> [i32; 3] {
         // Differences are below 2^BITS.
         let up = 30 - BITS;
         let left = extra + BITS + 2 - gradients.exponent as u32;
@@ -307,8 +307,8 @@ impl Gradients {
     #[must_use]
     pub fn quadratic<const BITS: u32>(&self, nodes: [i32; 6], extra: u32) -> [i32; 6] {
         match self.scale {
-            Scale::Small(small) if BITS <= word_sized::QUADRATIC && extra == word_sized::EXTRA => {
-                match small.quadratic(self.edges, self.subpixels(), nodes) {
+            Scale::WordSized(area) if BITS <= word_sized::QUADRATIC && extra == word_sized::EXTRA => {
+                match area.quadratic(self.edges, self.subpixels(), nodes) {
                     Some(fitted) => fitted,
                     None => {
                         // Taken apart and put together: what comes back in memory is not to make the others go there.
@@ -317,19 +317,19 @@ impl Gradients {
                     }
                 }
             }
-            Scale::Small(small) if BITS <= word_sized::LONG && extra >= word_sized::LONG_EXTRA => {
-                match small.long_quadratic(self.edges, self.subpixels(), nodes, extra) {
+            Scale::WordSized(area) if BITS <= word_sized::LONG && extra >= word_sized::LONG_EXTRA => {
+                match area.long_quadratic(self.edges, self.subpixels(), nodes, extra) {
                     Some(fitted) => fitted,
                     None => self.quadratic_any(BITS, nodes, extra),
                 }
             }
-            Scale::Small(_) | Scale::Part(_) => self.quadratic_small(BITS, nodes, extra),
+            Scale::WordSized(_) | Scale::Part(_) => self.quadratic_by_mantissas(BITS, nodes, extra),
             Scale::Any(_) => self.quadratic_any(BITS, nodes, extra),
         }
     }
 
     #[inline(never)]
-    fn quadratic_small(&self, bits: u32, [i0, i1, i2, i01, i12, i20]: [i32; 6], extra: u32) -> [i32; 6] {
+    fn quadratic_by_mantissas(&self, bits: u32, [i0, i1, i2, i01, i12, i20]: [i32; 6], extra: u32) -> [i32; 6] {
         let gradients = self.gradients();
         let mantissas = Mantissas::new(gradients, self.offset);
         let exponent = gradients.exponent as u32;

@@ -1,4 +1,4 @@
-//! Small triangles: sums of products in one word, before they meet the triangle's area.
+//! Word-sized triangles: sums of products in one word, before they meet the triangle's area.
 //!
 //! A triangle of up to 64 pixels has sides of few bits, and so have light levels. The numerator of a first derivative is then an
 //! integer of one word, exact, that of a second one is rounded once to a word; each meets the inverse of the area, or its square, in one
@@ -28,11 +28,11 @@ pub(crate) const LONG: u32 = 26;
 /// More fraction bits that they are walked with, at least.
 pub(crate) const LONG_EXTRA: u32 = 5;
 /// Bits of a second derivative that their way to the anchor has room for.
-const LONG_BEND: u32 = 27;
+const LONG_SECOND: u32 = 27;
 
 /// Twice the area of a small triangle, ready to divide by.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Small {
+pub(crate) struct WordSized {
     /// 1 / area = `inverse` 2^(`zeros` - 58).
     inverse: i32,
     /// Zeros above it: 11 to 30.
@@ -41,7 +41,7 @@ pub(crate) struct Small {
     pub(crate) bits: u32,
 }
 
-impl Small {
+impl WordSized {
     /// That of a triangle by its edges from corner 0; `None` unless it is small and stout.
     #[inline(always)]
     pub(crate) fn new(edges: [[i32; 2]; 2]) -> Option<Self> {
@@ -99,13 +99,13 @@ impl Small {
         let left = (2 * self.zeros + self.bits + EXTRA - 44) - second;
         // Bits that a word has no room for.
         let mut steep = 0;
-        let mut bend = |a: i32, b: i32, x: i32, y: i32| {
+        let mut derivative = |a: i32, b: i32, x: i32, y: i32| {
             let product = product(upper_dot([a, b], [x, y]), square);
             let upper = (product >> 32) as i32;
             steep |= (upper << (left & 31) >> (left & 31)) ^ upper;
             shifted(product, left)
         };
-        let (dxx, dxy, dyy) = (bend(sx, -tx, y2, y1), bend(-sx, tx, x2, x1), bend(-sy, ty, x2, x1));
+        let (dxx, dxy, dyy) = (derivative(sx, -tx, y2, y1), derivative(-sx, tx, x2, x1), derivative(-sy, ty, x2, x1));
         if steep != 0 {
             return None;
         }
@@ -129,7 +129,7 @@ impl Small {
     }
 
     /// As [`Self::quadratic`], nodes of at most [`LONG`] bits, with at least [`LONG_EXTRA`]; `None` if a second derivative has more than
-    /// [`LONG_BEND`] bits.
+    /// [`LONG_SECOND`] bits.
     #[inline(always)]
     pub(crate) fn long_quadratic(
         &self,
@@ -143,7 +143,7 @@ impl Small {
         let most = 2 * (self.bits + self.zeros) + extra - 47;
         let up = room([ss, st, tt]).min(most);
         let left = most + 1 - up;
-        if left > LONG_BEND - 1 {
+        if left > LONG_SECOND - 1 {
             return None;
         }
         let (ss, st, tt) = (ss << up, st << up, tt << up);
@@ -155,13 +155,13 @@ impl Small {
         // 1 / area² = square 2^(2 zeros - 89).
         let square = (product(self.inverse, self.inverse) >> 27) as i32;
         let mut steep = 0;
-        let mut bend = |a: i32, b: i32, x: i32, y: i32| {
+        let mut derivative = |a: i32, b: i32, x: i32, y: i32| {
             let product = product(upper_dot([a, b], [x, y]), square);
-            let (upper, room) = ((product >> 32) as i32, left + 32 - LONG_BEND);
+            let (upper, room) = ((product >> 32) as i32, left + 32 - LONG_SECOND);
             steep |= (upper << (room & 31) >> (room & 31)) ^ upper;
             rounded(product, left)
         };
-        let (dxx, dxy, dyy) = (bend(sx, -tx, y2, y1), bend(-sx, tx, x2, x1), bend(-sy, ty, x2, x1));
+        let (dxx, dxy, dyy) = (derivative(sx, -tx, y2, y1), derivative(-sx, tx, x2, x1), derivative(-sy, ty, x2, x1));
         if steep != 0 {
             return None;
         }

@@ -6,7 +6,7 @@
 pub mod record;
 
 use crate::{
-    format::{MAX_LIGHTS, RHO, ROTATION, UNIT},
+    format::{MAX_LIGHTS, NORMAL_LENGTH, ROTATION, UNIT},
     math::vector::{cross, dot},
 };
 use core::{fmt, ops::Range};
@@ -244,7 +244,7 @@ impl<'a> Stream<'a> {
         for (i, triangle) in self.triangles.iter().enumerate() {
             let square: i64 = triangle.normal.iter().map(|&c| i64::from(c) * i64::from(c)).sum();
             field(is_one(square, 2 * UNIT), "triangle normal", i)?;
-            field(triangle.rho <= 1 << RHO, "triangle rho", i)?;
+            field(triangle.min_normal_length <= 1 << NORMAL_LENGTH, "triangle normal length", i)?;
             field(triangle.inverse_altitude > 0, "triangle altitude", i)?;
         }
         Ok(())

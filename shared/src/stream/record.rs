@@ -6,7 +6,7 @@
 //! Fields are plain integers, as they are read in place. Each has a method of its name that gives its value as a number of the
 //! crate [`fixed`], and `new` makes a record of such numbers; [`crate::Stream::parse`] checks what does not follow from the type.
 
-use crate::format::{Bend, Focal, Gain, InverseAltitude, Length, Radius, Rho, Rotation, Unit};
+use crate::format::{Focal, Gain, Haversine, InverseAltitude, Length, NormalLength, Radius, Rotation, Unit};
 use zerocopy::{FromBytes, Immutable, IntoBytes, KnownLayout};
 
 #[cfg(target_endian = "big")]
@@ -327,12 +327,12 @@ pub struct Triangle {
     pub corners: [u16; 3],
     /// Per edge 1/|Ni+Nj| - 1/2, unsigned Q0.17 in [0, 1/2), rounded to the nearest: normalises the sum of the ends' normals at the
     /// midpoint. 65535 where the normals are 120 degrees apart or more: then the renderer works it out.
-    pub rsum: [u16; 3],
-    /// Per edge 1 - |Ni+Nj|²/4 = (1 - Ni·Nj)/2, [`Bend`] in [0, 1], rounded to the nearest, 65535 at most:
+    pub inverse_sum_length: [u16; 3],
+    /// Per edge 1 - |Ni+Nj|²/4 = (1 - Ni·Nj)/2, [`Haversine`] in [0, 1], rounded to the nearest, 65535 at most:
     /// what the squared length of the interpolated normal lacks to 1 at the midpoint.
-    pub bend: [u16; 3],
-    /// Lower bound of the interpolated normal's length on the triangle, sqrt((1 + 2 min Ni·Nj)/3), [`Rho`] in [0, 1], rounded down.
-    pub rho: u16,
+    pub haversine: [u16; 3],
+    /// Lower bound of the interpolated normal's length on the triangle, sqrt((1 + 2 min Ni·Nj)/3), [`NormalLength`] in [0, 1], rounded down.
+    pub min_normal_length: u16,
     /// Unit normal of the plane in object space, [`Unit`], rounded as that of a vertex.
     pub normal: [i16; 3],
     /// Distance of the plane from the origin, [`Unit`] in [-2, 2), rounded down such that every point a camera can be at with
@@ -347,14 +347,14 @@ pub struct Triangle {
 impl Triangle {
     /// Per edge 1 - |Ni+Nj|²/4.
     #[must_use]
-    pub fn bend(&self) -> [Bend; 3] {
-        self.bend.map(Bend::from_bits)
+    pub fn haversine(&self) -> [Haversine; 3] {
+        self.haversine.map(Haversine::from_bits)
     }
 
     /// Lower bound of the interpolated normal's length.
     #[must_use]
-    pub fn rho(&self) -> Rho {
-        Rho::from_bits(self.rho)
+    pub fn min_normal_length(&self) -> NormalLength {
+        NormalLength::from_bits(self.min_normal_length)
     }
 
     /// Unit normal of the plane.

@@ -4,7 +4,7 @@ use super::gouraud;
 use crate::{Facet, Frame, Shade, light::phong};
 use microphong_render::vector::dot;
 
-/// The largest N·H on a triangle is at most the corners' largest over rho, the least length of an interpolated normal.
+/// The largest N·H on a triangle is at most the corners' largest over r, the least length of an interpolated normal.
 /// A triangle on which it stays below `1 - 8/e` for every light counts as dark: to the power of e that is less than
 /// exp(-8), a twelfth of a level.
 ///
@@ -15,6 +15,6 @@ pub(super) fn shade<'f>(frame: &'f Frame, facet: &'f Facet, lean: f64) -> Shade<
         let half = frame.rays(light, facet.positions[0]).half;
         facet.normals.map(|normal| dot(normal, half))
     });
-    let dark = largest.fold(f64::MIN, f64::max) <= facet.rho * threshold + lean / 255.0;
+    let dark = largest.fold(f64::MIN, f64::max) <= facet.min_normal_length * threshold + lean / 255.0;
     if frame.is_constant() && dark { gouraud::shade(frame, facet) } else { phong(frame, facet) }
 }

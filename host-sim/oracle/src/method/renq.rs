@@ -53,7 +53,7 @@ pub(super) fn shade<'f>(frame: &'f Frame, facet: &'f Facet) -> Shade<'f> {
     let (numerators, reciprocals, squares) = (Numerators::new(frame, facet), reciprocals(facet), squares(facet));
     Box::new(move |p| {
         let weights = quadratic(facet.weights(p));
-        let scale = if facet.rho < CURVED { rsqrt(sum(&weights, &squares)) } else { sum(&weights, &reciprocals) };
+        let scale = if facet.min_normal_length < CURVED { rsqrt(sum(&weights, &squares)) } else { sum(&weights, &reciprocals) };
         numerators.lit(&weights, scale)
     })
 }

@@ -9,20 +9,21 @@ use crate::{
 /// What one step may leave, in levels.
 const ENOUGH: f64 = 0.1;
 
-/// `m (3 - D m²) / 2`, once or twice; the exact root where normals differ so much that rho < 1/2.
+/// `m (3 - D m²) / 2`, once or twice; the exact root where normals differ so much that interpolated ones get shorter than 1/2.
 ///
 /// Newton's step leaves 1.5 δ² of a relative error δ; that of the fit is at most 0.02 c⁴, c the longest chord between
-/// normals, c² = 3 (1 - rho²). A highlight multiplies it by its exponent.
+/// normals, c² = 3 (1 - r²). A highlight multiplies it by its exponent.
 pub(super) fn shade<'f>(frame: &'f Frame, facet: &'f Facet) -> Shade<'f> {
     let (numerators, reciprocals, squares) = (Numerators::new(frame, facet), reciprocals(facet), squares(facet));
-    let delta = 0.02 * (3.0 * (1.0 - facet.rho * facet.rho)).powi(2);
+    let delta = 0.02 * (3.0 * (1.0 - facet.min_normal_length * facet.min_normal_length)).powi(2);
     let left = 255.0 * frame.material(facet).exponent * 1.5 * delta * delta;
     let steps = if left > ENOUGH { 2 } else { 1 };
     Box::new(move |p| {
         let weights = quadratic(facet.weights(p));
         let square = sum(&weights, &squares);
         let newton = |m: f64| m * (3.0 - square * m * m) / 2.0;
-        let scale = if facet.rho < CURVED { rsqrt(square) } else { (0..steps).fold(sum(&weights, &reciprocals), |m, _| newton(m)) };
+        let scale =
+            if facet.min_normal_length < CURVED { rsqrt(square) } else { (0..steps).fold(sum(&weights, &reciprocals), |m, _| newton(m)) };
         numerators.lit(&weights, scale)
     })
 }

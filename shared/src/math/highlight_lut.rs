@@ -17,7 +17,7 @@ pub(crate) const SIZE: usize = 2048;
 /// whole of [0, 1], so that its error grows with n; the restricted domain, which makes the error independent of n, is our own.
 #[derive(FromBytes, IntoBytes, Immutable, KnownLayout, Clone, Copy, Debug)]
 #[repr(C)]
-pub struct Power {
+pub struct HighlightLut {
     /// 4 max(n, 8), where n is the exponent of the argument: 1 - x times 64 of it is an index.
     pub(crate) scale: u32,
     /// The value of entries where the power is 0, unsigned Q0.16.
@@ -61,9 +61,9 @@ pub fn square(x: i32) -> i32 {
 const WHOLE: NonZeroU32 = NonZeroU32::new(4 * 8).unwrap();
 
 /// Fraction bits of an entry, unsigned Q0.16.
-pub const POWER: u32 = 16;
+pub const ENTRY: u32 = 16;
 
-impl Power {
+impl HighlightLut {
     /// An empty table for static memory. It is all zeros, so that it takes no flash.
     pub const EMPTY: Self = Self { table: [0; SIZE + 1], scale: 0, floor: 0 };
 
@@ -125,9 +125,9 @@ impl Power {
 
     /// The table for the pixel loop, where the entry nearest to a cosine, Q5.27, is number `((top - cosine) * factor) >> 37`.
     #[must_use]
-    pub fn pixel(&self) -> PixelPower<'_> {
+    pub fn by_cosine(&self) -> CosineLookup<'_> {
         let scale = NonZeroU32::new(self.scale).unwrap_or(WHOLE);
-        PixelPower { table: &self.table, top: (1 << PIXEL_COSINE) + ((1 << 20) / scale) as i32, factor: (scale.get() << 16) as i32 }
+        CosineLookup { table: &self.table, top: (1 << PIXEL_COSINE) + ((1 << 20) / scale) as i32, factor: (scale.get() << 16) as i32 }
     }
 
     /// The value of entries where the power is 0, unsigned Q0.16.
@@ -152,13 +152,13 @@ impl Power {
 
 /// Lookup of the nearest entry in a pixel loop: one product and one load.
 #[derive(Clone, Copy, Debug)]
-pub struct PixelPower<'a> {
+pub struct CosineLookup<'a> {
     table: &'a [u16; SIZE + 1],
     top: i32,
     factor: i32,
 }
 
-impl PixelPower<'_> {
+impl CosineLookup<'_> {
     /// `floor + full cosine^n`, unsigned Q0.16, from the nearest entry.
     ///
     /// Domain: `cosine` in Q5.27 such that 1 - cosine fits it. Error: at most [`NEAREST_ERROR`] (tests::error).
@@ -171,9 +171,9 @@ impl PixelPower<'_> {
     }
 }
 
-/// Largest error of [`Power::at`], as a share of full intensity: the cut at e^-8, and rounding to 16 bits. It is 0.09 of 1/255.
+/// Largest error of [`HighlightLut::at`], as a share of full intensity: the cut at e^-8, and rounding to 16 bits. It is 0.09 of 1/255.
 pub const ERROR: f64 = 3.4e-4;
-/// Largest error of [`PixelPower::at`], as a share of full intensity: half a step of the table where its slope is largest. It is 0.51
+/// Largest error of [`CosineLookup::at`], as a share of full intensity: half a step of the table where its slope is largest. It is 0.51
 /// of 1/255.
 pub const NEAREST_ERROR: f64 = 2.0e-3;
 
@@ -193,10 +193,10 @@ mod tests {
                 if n >> base.roots() == 0 {
                     continue;
                 }
-                let mut power = Power::EMPTY;
-                power.fill(n, base, full, floor);
+                let mut lut = HighlightLut::EMPTY;
+                lut.fill(n, base, full, floor);
                 let (mut at, mut nearest) = (0f64, 0f64);
-                let step = 2f64.powi(30) - f64::from(power.highlight_threshold());
+                let step = 2f64.powi(30) - f64::from(lut.highlight_threshold());
                 for position in positions() {
                     let cosine = (2f64.powi(30) - (step / SIZE as f64 * position).floor()) as i32;
                     let x = f64::from(cosine) / 2f64.powi(30);
@@ -206,12 +206,12 @@ mod tests {
                         _ => x.max(0.0).powf(1.0 / f64::from(1 << base.roots())),
                     };
                     let exact = f64::from(full) * x.powi(n.into());
-                    at = at.max((f64::from(power.at(cosine)) - exact).abs() / 65_536.0);
-                    nearest = nearest.max((f64::from(power.pixel().at(cosine >> 3)) - f64::from(floor) - exact).abs() / 65_536.0);
+                    at = at.max((f64::from(lut.at(cosine)) - exact).abs() / 65_536.0);
+                    nearest = nearest.max((f64::from(lut.by_cosine().at(cosine >> 3)) - f64::from(floor) - exact).abs() / 65_536.0);
                 }
                 assert!(at <= ERROR, "n = {n}, {base:?}: {at}");
                 assert!(nearest <= NEAREST_ERROR, "n = {n}, {base:?}: {nearest}");
-                assert_eq!(power.at(power.highlight_threshold() - 1), 0, "n = {n}, {base:?}");
+                assert_eq!(lut.at(lut.highlight_threshold() - 1), 0, "n = {n}, {base:?}");
             }
         }
     }

@@ -4,7 +4,7 @@
 
 use crate::{
     arch::product::upper_by_half_word,
-    math::power::{Power, SIZE},
+    math::highlight_lut::{HighlightLut, SIZE},
 };
 
 /// Fraction bits of a node, in steps of the table.
@@ -16,7 +16,7 @@ const STEP: u32 = NODE + EXTRA - 3;
 
 /// Lookup by a quotient: the cosine is an interpolated numerator over a length.
 #[derive(Clone, Copy, Debug)]
-pub struct Quotients<'a> {
+pub struct QuotientLookup<'a> {
     table: &'a [u16; SIZE + 1],
     /// Steps from cosine 0 to 1, and half of one for rounding, with [`STEP`] fraction bits.
     top: i32,
@@ -24,11 +24,11 @@ pub struct Quotients<'a> {
     factor: i32,
 }
 
-impl<'a> Quotients<'a> {
-    /// Lookup in the table of `power`. Domain: its base is not [`crate::math::power::Base::Square`], so that nodes fit 26 bits.
+impl<'a> QuotientLookup<'a> {
+    /// Lookup in the table of `lut`. Domain: its base is not [`crate::math::highlight_lut::Base::Square`], so that nodes fit 26 bits.
     #[must_use]
-    pub fn new(power: &'a Power) -> Self {
-        Self { table: &power.table, top: ((power.scale << 6 << STEP) + (1 << (STEP - 1))) as i32, factor: (power.scale << 16) as i32 }
+    pub fn new(lut: &'a HighlightLut) -> Self {
+        Self { table: &lut.table, top: ((lut.scale << 6 << STEP) + (1 << (STEP - 1))) as i32, factor: (lut.scale << 16) as i32 }
     }
 
     /// The node of a numerator, Q2.30: the numerator in steps of the table, Q19.7, rounded down. Domain: within ±2.
@@ -42,7 +42,7 @@ impl<'a> Quotients<'a> {
     ///
     /// `quotient` is the upper half of the product of the numerator, in the format of a node with [`EXTRA`] more fraction bits, and half the
     /// reciprocal length, Q2.30. Domain: every quotient that fits; small ones take the last entry. Error: at most
-    /// [`crate::math::power::NEAREST_ERROR`] for lengths of 1/2 to 1 (tests::entries_are_the_nearest). Source: our own.
+    /// [`crate::math::highlight_lut::NEAREST_ERROR`] for lengths of 1/2 to 1 (tests::entries_are_the_nearest). Source: our own.
     #[inline(always)]
     #[must_use]
     pub fn at(&self, quotient: i32) -> u32 {
@@ -53,7 +53,7 @@ impl<'a> Quotients<'a> {
 
 /// Lookup by a defect: 1 - cosine.
 #[derive(Clone, Copy, Debug)]
-pub struct Defects<'a> {
+pub struct DefectLookup<'a> {
     table: &'a [u16; SIZE + 1],
     /// Fraction bits of an index in the product of a defect and the factor.
     shift: u32,
@@ -61,13 +61,13 @@ pub struct Defects<'a> {
     factor: i32,
 }
 
-impl<'a> Defects<'a> {
-    /// Lookup in the table of `power`.
+impl<'a> DefectLookup<'a> {
+    /// Lookup in the table of `lut`.
     #[must_use]
-    pub fn new(power: &'a Power) -> Self {
+    pub fn new(lut: &'a HighlightLut) -> Self {
         // Scales are 2^5 to 2^13.
-        let up = power.scale.max(1).leading_zeros().saturating_sub(17);
-        Self { table: &power.table, shift: 9 + up, factor: (power.scale << up << 16) as i32 }
+        let up = lut.scale.max(1).leading_zeros().saturating_sub(17);
+        Self { table: &lut.table, shift: 9 + up, factor: (lut.scale << up << 16) as i32 }
     }
 
     /// The node of a cosine, Q2.30: 1 - cosine times a factor of 1/2 to 1, Q2.24, rounded down. Domain: above -1.
@@ -87,7 +87,7 @@ impl<'a> Defects<'a> {
     /// The entry nearest to a defect, unsigned Q0.16.
     ///
     /// `defect` is in the format of a node with 6 more fraction bits, Q2.30, with [`Self::half`] added. Domain: every `i32`; large ones take
-    /// the last entry. Error: at most [`crate::math::power::NEAREST_ERROR`] (tests::entries_are_the_nearest). Source: our own.
+    /// the last entry. Error: at most [`crate::math::highlight_lut::NEAREST_ERROR`] (tests::entries_are_the_nearest). Source: our own.
     #[inline(always)]
     #[must_use]
     pub fn at(&self, defect: i32) -> u32 {
@@ -98,11 +98,11 @@ impl<'a> Defects<'a> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::math::power::{Base, NEAREST_ERROR};
+    use crate::math::highlight_lut::{Base, NEAREST_ERROR};
 
     /// Largest error of `at` against x^n: next to entries, and half way between two of them.
-    fn error(n: u16, power: &Power, at: impl Fn(i32) -> u32) -> f64 {
-        let step = (2f64.powi(30) - f64::from(power.highlight_threshold())) / SIZE as f64;
+    fn error(n: u16, lut: &HighlightLut, at: impl Fn(i32) -> u32) -> f64 {
+        let step = (2f64.powi(30) - f64::from(lut.highlight_threshold())) / SIZE as f64;
         let error = |position: f64| {
             let cosine = (2f64.powi(30) - (step * position).floor()) as i32;
             let exact = (f64::from(cosine) / 2f64.powi(30)).max(0.0).powi(n.into());
@@ -115,18 +115,18 @@ mod tests {
     #[test]
     fn entries_are_the_nearest() {
         for n in (1..12).chain([20, 50, 127, 128, 500, 1023, 1024]) {
-            let mut power = Power::EMPTY;
-            power.fill(n, Base::Itself, 1 << 16, 0);
-            let quotients = Quotients::new(&power);
+            let mut lut = HighlightLut::EMPTY;
+            lut.fill(n, Base::Itself, 1 << 16, 0);
+            let quotients = QuotientLookup::new(&lut);
             for length in [1.0, 0.9, 0.77, 0.6, 0.5] {
                 let half_reciprocal = (f64::from(1 << 29) / length) as i64;
                 let numerator = |cosine: i32| (f64::from(cosine) * length).round() as i32;
                 let quotient = |cosine| (((i64::from(quotients.node(numerator(cosine))) << EXTRA) * half_reciprocal) >> 32) as i32;
-                let worst = error(n, &power, |cosine| quotients.at(quotient(cosine)));
+                let worst = error(n, &lut, |cosine| quotients.at(quotient(cosine)));
                 assert!(worst <= NEAREST_ERROR, "quotients, n = {n}, length {length}: {worst}");
             }
-            let defects = Defects::new(&power);
-            let worst = error(n, &power, |cosine| defects.at((defects.node(cosine) << 6) + defects.half()));
+            let defects = DefectLookup::new(&lut);
+            let worst = error(n, &lut, |cosine| defects.at((defects.node(cosine) << 6) + defects.half()));
             assert!(worst <= NEAREST_ERROR, "defects, n = {n}: {worst}");
         }
     }

@@ -11,7 +11,7 @@ use crate::{
         lights::{Source, cosine},
         materials::{FULL, Reflectance, Reflection},
     },
-    math::power::PixelPower,
+    math::highlight_lut::CosineLookup,
     method::{Shading, TriangleSetup, node::Node, of_levels},
     raster::canvas::{CHUNK, Canvas, SpanShader, SpanTarget},
     setup::gradients::Gradients,
@@ -33,25 +33,25 @@ pub trait LightingModel<K, V>: Copy {
     fn common(&self, common: K) -> Self::Common;
 
     /// What light number `light` sends.
-    fn reflect(&self, light: usize, common: &Self::Common, fields: V, power: PixelPower<'_>) -> Reflection;
+    fn reflect(&self, light: usize, common: &Self::Common, fields: V, lut: CosineLookup<'_>) -> Reflection;
 }
 
 /// Shades a triangle under any lights on any material: one light after the other over a run of pixels, so that each loop knows one light.
-struct Lit<'a, K, P, F, S> {
+struct ManyLights<'a, K, P, F, S> {
     reflectance: &'a Reflectance,
     model: F,
     /// What all lights share.
     common: K,
     /// What is walked for each light, as many as there are.
     lights: heapless::Vec<P, MAX_LIGHTS>,
-    power: PixelPower<'a>,
+    lut: CosineLookup<'a>,
     /// A run of pixels: what all lights share, and the sum of them. Both are written before they are read, and cleared once a triangle
     /// instead of once a span.
     shared: [S; CHUNK],
     levels: [[i32; 3]; CHUNK],
 }
 
-impl<'a, K: Patch, P: Patch, F, S: Copy + Default> Lit<'a, K, P, F, S> {
+impl<'a, K: Patch, P: Patch, F, S: Copy + Default> ManyLights<'a, K, P, F, S> {
     /// The patch that `fit` makes for each of the lights.
     #[inline(always)]
     fn new(shading: &Shading<'a>, fit: impl Fn(&Source) -> P, common: K, model: F) -> Self {
@@ -61,7 +61,7 @@ impl<'a, K: Patch, P: Patch, F, S: Copy + Default> Lit<'a, K, P, F, S> {
             model,
             common,
             lights: shading.lighting.sources.iter().map(fit).collect(),
-            power: reflectance.power.pixel(),
+            lut: reflectance.highlight_lut.by_cosine(),
             shared: [S::default(); CHUNK],
             levels: [[0; 3]; CHUNK],
         }
@@ -84,16 +84,16 @@ fn below<P: Patch>(patch: &P, rows: i32) -> P {
     patch
 }
 
-impl<K, P, F> SpanShader for Lit<'_, K, P, F, F::Common>
+impl<K, P, F> SpanShader for ManyLights<'_, K, P, F, F::Common>
 where
     K: Patch,
     P: Patch,
     F: LightingModel<<K::Walker as Walker>::Value, <P::Walker as Walker>::Value>,
 {
     fn span(&mut self, rows: i32, end: i32, count: usize, target: &mut dyn SpanTarget) {
-        let Self { reflectance, model, common, lights, power, shared, levels } = self;
+        let Self { reflectance, model, common, lights, lut, shared, levels } = self;
         let mut common = below(common, rows).enter(end);
-        let floor = reflectance.power.floor();
+        let floor = reflectance.highlight_lut.floor();
         let ambient = reflectance.ambient();
         let mut first = count;
         while first > 0 {
@@ -123,7 +123,7 @@ where
                     k -= 1;
                     walker.step();
                     if visible & (1 << k) != 0 {
-                        let mut reflection = model.reflect(light, &shared[k % CHUNK], walker.value(), *power);
+                        let mut reflection = model.reflect(light, &shared[k % CHUNK], walker.value(), *lut);
                         reflection.highlight = reflection.highlight.saturating_sub(floor);
                         reflectance.add_light(&mut levels[k % CHUNK], gains, reflection);
                     }
@@ -187,7 +187,7 @@ impl Shading<'_> {
         P: Patch,
         F: LightingModel<<K::Walker as Walker>::Value, <P::Walker as Walker>::Value>,
     {
-        setup.draw_spans(&mut Lit::new(self, of, common, model), canvas)
+        setup.draw_spans(&mut ManyLights::new(self, of, common, model), canvas)
     }
 
     /// The planes through N·L and N·H of a light that is the same everywhere, normals not normalised: exact.
