@@ -1,17 +1,17 @@
 //! Antialiasing by the exact area that a triangle covers of each pixel (after Disselkoen 1991, section 9).
 //!
-//! A triangle is drawn in two parts. Pixels wholly inside are shaded as ever, at their centres. The pixels of its *edge*
-//! are shaded at the centroid of what it covers of them: for an intensity that is linear over the pixel, coverage times
-//! that value *is* the integral. To reach centroids with polynomials that stand on pixels, the method shades a copy of the
-//! triangle on a grid up to 2^[`FINER`] times finer. So every method takes part as it is.
+//! A triangle is drawn in two parts. Pixels wholly inside are shaded at their centres, as without antialiasing. The pixels of its *edge*
+//! are shaded at the centroid of the part that it covers: for an intensity that is linear over the pixel, coverage times that value *is*
+//! the integral. To reach centroids with polynomials that stand on pixels, the method shades a copy of the triangle on a grid up to
+//! 2^[`FINER`] times finer. No method needs code for antialiasing.
 //!
-//! Exact are coverage, to less than three units of 2^-16 of a pixel, and the sum of coverages over a patch, to the last
-//! bit (see [`crate::coverage::area`]). Rounded are the centroid, to half a place of the finer grid, and with it the intensity; left
-//! out is the curvature of the intensity within a pixel, I''/24 in a whole one. A triangle too thin for the finer grid is
-//! shaded beyond its edge by a quarter of itself at most, else at its nearest corner.
+//! Coverage is exact to less than three units of 2^-16 of a pixel, and the sum of coverages over a closed patch to the last bit (see
+//! [`crate::coverage::area`]). The centroid is rounded to half a place of the finer grid, and the intensity with it; the curvature of the
+//! intensity within a pixel is left out, I''/24 in a whole one. A triangle too thin for the finer grid is shaded beyond its edge by a
+//! quarter of itself at most, else at its nearest corner.
 //!
-//! Cost: an inner pixel one layer of a [`Sample`](crate::coverage::sample::Sample) more; a edge pixel one to three divisions of 64 bits for each edge in
-//! it, two for the centroid, and entering the patch there. Set-up and lights are worked out twice.
+//! Cost: one layer of a [`Sample`](crate::coverage::sample::Sample) for an inner pixel; for an edge pixel one to three divisions of 64 bits
+//! for each edge in it, two for the centroid, and entering the patch there. Set-up and lights are worked out twice.
 
 use crate::{
     coverage::{area::TriangleCoverage, sample::Layer},
@@ -26,24 +26,24 @@ use crate::{
 /// Which pixels of a triangle are drawn.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum PixelSet {
-    /// Those whose centres lie inside: no antialiasing.
+    /// Pixels whose centres lie inside: no antialiasing.
     Centres,
-    /// Those that it covers wholly.
+    /// Pixels that the triangle covers wholly.
     Inner,
-    /// The others that it touches, on a grid finer by 2 to this power.
+    /// Pixels that the triangle covers in part, shaded on a grid finer by 2 to this power.
     Edge(u32),
 }
 
 impl PixelSet {
-    /// The grid is finer than the pixels' by 2 to this power.
+    /// The power of 2 by which the grid is finer than that of the pixels.
     #[must_use]
     pub fn finer(self) -> u32 {
         if let Self::Edge(finer) = self { finer } else { 0 }
     }
 }
 
-/// How much finer the grid of a triangle's edge is: the less, the larger the triangle, for polynomials lose precision far
-/// from their anchor.
+/// How much finer the grid is on which a triangle's edge pixels are shaded. Larger triangles get coarser grids, because polynomials lose
+/// precision far from their anchor.
 #[must_use]
 pub fn finer(corners: [&ScreenVertex; 3]) -> u32 {
     let extent = |[a, b, c]: [i32; 3]| a.max(b).max(c).abs_diff(a.min(b).min(c));
@@ -52,27 +52,27 @@ pub fn finer(corners: [&ScreenVertex; 3]) -> u32 {
     (7 + FINER).saturating_sub(32 - size.leading_zeros()).min(FINER)
 }
 
-/// On a grid `finer` by a power of two, with centres of pixels on centres of the finer ones.
+/// `corner` on a grid that is finer by 2 to the power `finer`. Centres of pixels stay centres.
 #[must_use]
 pub fn refined(corner: &ScreenVertex, finer: u32) -> ScreenVertex {
     let place = |c: i32| (c << finer) + CENTRE - (CENTRE << finer);
     ScreenVertex { x: place(corner.x), y: place(corner.y), ..*corner }
 }
 
-/// Back from [`refined`], with `more` fraction bits.
+/// The inverse of [`refined`], with `more` fraction bits.
 pub fn coarse(corner: [i32; 2], finer: u32, more: u32) -> [i32; 2] {
     let centre = CENTRE << more;
     corner.map(|c| (c - centre + (centre << finer)) >> finer)
 }
 
-/// Inverse depth of a triangle's plane over a pixel.
+/// Least and largest inverse depth of a triangle within a pixel.
 struct DepthRange {
     /// Inverse depth at corner 0 and its derivatives per pixel, Q0.32.
     start: i64,
     dx: i64,
     dy: i64,
     corner: [i64; 2],
-    /// Of all corners.
+    /// Least and largest inverse depth of the corners.
     range: [i64; 2],
 }
 
@@ -85,7 +85,7 @@ impl DepthRange {
         let [z0, z1, z2] = depth.map(i64::from);
         let (z1, z2) = (z1 - z0, z2 - z0);
         let det = (x1 * y2 - x2 * y1).max(1);
-        // Steeper than all depth in a pixel is as good as that.
+        // A slope of the whole depth range per pixel is as good as any steeper one.
         let slope = |numerator: i64| ((numerator << (MORE + SUBPIXEL)) / det).clamp(-1 << 32, 1 << 32);
         Self {
             start: z0 << MORE,
@@ -96,7 +96,7 @@ impl DepthRange {
         }
     }
 
-    /// The near and the far end of what may be in a pixel, as a depth buffer keeps it, and a little more for rounding.
+    /// The nearest and the farthest inverse depth in a pixel, in the format of a depth buffer, one unit wider on each side for rounding.
     fn range(&self, column: i32, row: i32) -> [u16; 2] {
         let [x, y] = [column, row].map(|c| i64::from((c << SUBPIXEL) + CENTRE));
         let half = (self.dx.abs() + self.dy.abs()) >> 1;
@@ -116,11 +116,11 @@ impl DepthRange {
 pub struct Shape<'o> {
     /// The triangle.
     pub screen: &'o ScreenTriangle,
-    /// What is drawn of it.
+    /// Which of its pixels are drawn.
     pub pixels: PixelSet,
-    /// What is drawn of it, if not all.
+    /// The part that is drawn, if not the whole triangle.
     pub part: Option<TriangleCoverage>,
-    /// Corners of what is drawn, on the finer grid.
+    /// Corners of the part that is drawn, on the finer grid.
     pub corners: [[i32; 2]; 3],
     /// Fraction bits of these corners.
     pub bits: u32,
@@ -141,14 +141,14 @@ impl Inside {
         Self { corners, bits, area: side(a, b, c) }
     }
 
-    /// The centre of a place lies inside, or beyond an edge by less than a quarter of the triangle.
+    /// Whether the centre of a place lies inside, or beyond an edge by less than a quarter of the triangle.
     fn takes(&self, [row, column]: [i32; 2]) -> bool {
         let [x, y] = [column, row].map(|c| (i64::from(c) << self.bits) + (1 << (self.bits - 1)));
         let [a, b, c] = self.corners;
         [(a, b), (b, c), (c, a)].iter().all(|&(from, to)| 4 * side(from, to, [x, y]) + self.area >= 0)
     }
 
-    /// The place itself, or one beside it, or that of the nearest corner.
+    /// The nearest place where the polynomials may be evaluated: `at` itself, a neighbour of it, or the place of the nearest corner.
     fn nearest(&self, at: [i32; 2]) -> [i32; 2] {
         const BESIDE: [[i32; 2]; 9] = [[0, 0], [0, -1], [0, 1], [-1, 0], [1, 0], [-1, -1], [-1, 1], [1, -1], [1, 1]];
         let beside = BESIDE.iter().map(|[y, x]| [at[0] + y, at[1] + x]).find(|&place| self.takes(place));
@@ -163,7 +163,7 @@ fn side(from: [i64; 2], to: [i64; 2], p: [i64; 2]) -> i64 {
     (to[0] - from[0]) * (p[1] - from[1]) - (to[1] - from[1]) * (p[0] - from[0])
 }
 
-/// Where a span of pixels is shaded: row and column on the patch's grid, first column and their number on the screen.
+/// Where a span is shaded: row and column on the grid of the patch, first column and number of pixels on the screen.
 struct Place {
     at: [i32; 2],
     column: i32,
@@ -171,8 +171,8 @@ struct Place {
 }
 
 impl Shape<'_> {
-    /// Adds the outline's [`PixelSet`] to `canvas`, of inner pixels only those that `owned` takes in a row; returns how many
-    /// pixels they are. `shader` stands on row `anchor` of its grid.
+    /// Adds the pixels of the shape's [`PixelSet`] to `canvas` and returns how many there are. Inner pixels are drawn only within the
+    /// columns that `owned` gives for a row. `shader` stands on row `anchor` of its grid.
     #[cold]
     #[inline(never)]
     pub fn draw(&self, anchor: i32, shader: &mut dyn SpanShader, canvas: &mut dyn Canvas, owned: &mut dyn FnMut(i32) -> [i32; 2]) -> u32 {

@@ -1,4 +1,4 @@
-//! Frames onto embedded-graphics displays: whole bands, never single pixels.
+//! Frames drawn to embedded-graphics displays, in whole bands and never in single pixels.
 
 use crate::{Frame, Renderer, Stats, error::RenderError, pixel::Pixel};
 use core::cell::RefCell;
@@ -7,10 +7,9 @@ use embedded_graphics_core::{Drawable, draw_target::DrawTarget, pixelcolor::Pixe
 impl<C: Pixel + PixelColor> Frame<'_, '_, C> {
     /// Draws all bands of the frame, handing each to `target` in one `fill_contiguous`.
     ///
-    /// `band` holds a row at least.
+    /// `band` holds at least one row.
     ///
-    /// # Errors
-    /// The display's.
+    /// # Errors The display's.
     fn draw_to<D: DrawTarget<Color = C>>(mut self, target: &mut D, band: &mut [C]) -> Result<Stats, D::Error> {
         while let Ok(Some(area)) = self.next_band(band) {
             target.fill_contiguous(&area, band.iter().copied().take((area.size.width * area.size.height) as usize))?;
@@ -27,7 +26,7 @@ pub struct Picture<'r, 'a, C: Pixel> {
 }
 
 impl<'r, 'a, C: Pixel> Picture<'r, 'a, C> {
-    /// Frame `number` of `renderer`, drawn by way of `band`: as many pixels as [`crate::Layout::band`] says; with less, bands get fewer
+    /// Frame `number` of `renderer`. `band` should hold as many pixels as [`crate::Layout::band`] says; a shorter one makes bands of fewer
     /// rows.
     ///
     /// # Errors
@@ -43,7 +42,7 @@ impl<C: Pixel + PixelColor> Drawable for Picture<'_, '_, C> {
     type Output = Stats;
 
     fn draw<D: DrawTarget<Color = C>>(&self, target: &mut D) -> Result<Stats, D::Error> {
-        // Only a display that draws this very picture from within its own `fill_contiguous` could find it borrowed.
+        // The picture is borrowed already only if a display draws it from within its own `fill_contiguous`.
         match self.parts.try_borrow_mut() {
             Ok(mut parts) => {
                 let (renderer, band) = &mut *parts;

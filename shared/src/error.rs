@@ -1,4 +1,4 @@
-//! What keeps a renderer from drawing.
+//! Why a renderer cannot draw.
 
 use crate::setup::edge::COLUMNS;
 use core::fmt;
@@ -43,7 +43,7 @@ pub enum RenderError {
     Antialias,
     /// None of the program's methods is the one that the stream asks for.
     Missing {
-        /// Its number, see [`crate::method::Facts::id`].
+        /// The number of the missing method, see [`crate::method::Facts::id`].
         method: u16,
     },
     /// Interpolation in perspective is not part of this build.

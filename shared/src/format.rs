@@ -1,8 +1,8 @@
-//! The number formats of the core, all of them, in one place.
+//! All number formats of the core.
 //!
-//! `Qm.f` has `m` integer bits (sign included) and `f` fraction bits. What crosses an interface is a number of the crate [`fixed`]:
-//! its type says format and domain, and conversions from floating point round to the nearest. Inside the loops a value is a
-//! plain integer whose fraction bits are one of the constants below.
+//! `Qm.f` has `m` integer bits (sign included) and `f` fraction bits. Numbers at interfaces are types of the crate [`fixed`]: the type says
+//! format and domain, and conversions from floating point round to the nearest. Inside the loops a value is a plain integer whose fraction
+//! bits are one of the constants below.
 
 use fixed::types::{I2F14, I2F30, I18F14, I28F4, U0F16, U1F15, U2F14, U14F2, U16F16};
 
@@ -20,7 +20,7 @@ pub type Gain = U2F14;
 pub type Rotation = I2F30;
 /// Focal length in half sides of the viewport, unsigned Q16.16; streams use [1/16, 16].
 pub type Focal = U16F16;
-/// The edge constant 1 - |N1+N2|²/4, unsigned Q0.16 in [0, 1).
+/// Haversine of the angle between two unit normals, (1 - N1·N2)/2 = 1 - |N1+N2|²/4; unsigned Q0.16 in [0, 1).
 pub type Haversine = U0F16;
 /// Least length of an interpolated normal, unsigned Q1.15 in [0, 1].
 pub type NormalLength = U1F15;
@@ -31,9 +31,9 @@ pub type InverseAltitude = U14F2;
 pub const SUBPIXEL: u32 = 4;
 /// Sixteenths of a pixel from its corner to its centre.
 pub const CENTRE: i32 = 1 << (SUBPIXEL - 1);
-/// How often a triangle is split at most.
+/// Largest number of times that a triangle is split.
 pub const SPLITS: u32 = 6;
-/// Fraction bits of a screen coordinate within a triangle: corners of its parts are exact, however often it is split.
+/// Fraction bits of a screen coordinate within a triangle, so that corners of parts are exact however often it is split.
 pub const FINE: u32 = SUBPIXEL + SPLITS;
 /// Fraction bits of [`Unit`], [`Length`] and [`Gain`].
 pub const UNIT: u32 = 14;
@@ -45,7 +45,7 @@ pub const COSINE: u32 = 30;
 pub const LEVEL: u32 = 7;
 /// Fraction bits of a level while it is walked along a span: unsigned Q9.23.
 pub const WALK: u32 = 23;
-/// Added to every walked level: 0..=127 are below black, 128..=383 the 256 levels, 384..=511 above white.
+/// The bias of walked levels: 0..=127 are below black, 128..=383 the 256 levels, 384..=511 above white.
 ///
 /// The six-point quadratic overshoots its nodes' range by at most 5/3 of its
 /// half width (its Lebesgue constant), so nodes in [0, 255] stay in [-85, 340].
@@ -58,13 +58,14 @@ pub const DEPTH_NODE: u32 = 20;
 pub const DEPTH_WALK: u32 = 16;
 /// Fraction bits of the area that a triangle covers of a pixel: Q1.16, 1 is the whole pixel.
 pub const COVERAGE: u32 = 16;
-/// Surfaces in one pixel that antialiasing tells apart.
+/// Number of surfaces in one pixel that antialiasing tells apart.
 pub const LAYERS: usize = 3;
-/// Places of a partly covered pixel where it can be shaded, in each direction: at most 2 to this power.
+/// Places along each axis of a pixel where antialiasing can shade it: 2 to this power at most.
 pub const FINER: u32 = 4;
 /// Fraction bits of a cosine in the pixel loop: Q5.27, so that sums and overshoots fit.
 pub const PIXEL_COSINE: u32 = 27;
-/// Fraction bits of the edge constant 1/|N1+N2|, unsigned Q1.17 in [1/2, 1); a stream stores what exceeds 1/2.
+/// Fraction bits of the reciprocal length of the sum of two unit normals, 1/|N1+N2|, unsigned Q1.17 in [1/2, 1); a stream stores its excess
+/// over 1/2.
 pub const INVERSE_SUM_LENGTH: u32 = 17;
 /// Fraction bits of [`Haversine`].
 pub const HAVERSINE: u32 = 16;
@@ -74,7 +75,7 @@ pub const NORMAL_LENGTH: u32 = 15;
 pub const INVERSE_ALTITUDE: u32 = 2;
 /// Entries of a table of colours: the 256 levels and [`BIAS`] guards at each end.
 pub const RAMP: usize = 512;
-/// Lights in one scene.
+/// Largest number of lights in one scene.
 pub const MAX_LIGHTS: usize = 8;
 /// Light of three channels at a pixel, Q24.8 in 1/255 of full intensity, in [0, 255]. One channel stands in the first place.
 pub type Intensity = [i32; 3];

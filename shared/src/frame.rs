@@ -32,15 +32,15 @@ use embedded_graphics_core::{
     primitives::Rectangle,
 };
 
-/// What a frame took.
+/// Counts of one frame: triangles, pixels, and what did not fit into memory.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Stats {
     /// Triangles in the stream.
     pub triangles: u32,
-    /// The others: they face away, or no pixel centre of the viewport lies in their box.
+    /// Triangles that face away, or whose bounding box contains no pixel centre of the viewport.
     pub culled: u32,
-    /// Triangles that are handed to the rasterizer: their box contains a pixel centre of the viewport.
+    /// Triangles that are drawn: they face the camera, and their bounding box contains a pixel centre of the viewport.
     pub drawn: u32,
     /// Pixels of all drawn triangles, those hidden by depth included; stays at its largest value instead of overflowing.
     pub pixels: u32,
@@ -48,7 +48,7 @@ pub struct Stats {
     pub passes: u32,
     /// Vertices that did not fit and were transformed by each triangle that uses them.
     pub uncached: u32,
-    /// How often a triangle that reaches into the next band found no room to be handed on, and was set up anew there.
+    /// How often a triangle that reaches into the next band found no room among the active triangles, and was set up anew there.
     pub set_up_anew: u32,
 }
 
@@ -92,16 +92,16 @@ pub struct Frame<'r, 'a, C: Pixel> {
     lighting: Lighting,
     /// See [`Lighting::constant`].
     constant: Option<[[i32; 3]; 2]>,
-    /// The same, for products with vertex normals.
+    /// [`Self::constant`], split for products with vertex normals.
     directions: Option<[Direction; 2]>,
-    /// Where triangles may overlap, if not everywhere.
+    /// Where triangles may overlap; `None` if they may do so everywhere.
     depth_elision: Option<DepthElision>,
     bins: Bins,
     /// All triangles found room in the bins.
     binned: bool,
-    /// What the last band has handed on.
+    /// Active triangles that the last band has saved.
     queue: QueueState,
-    /// Those that triangles may reach.
+    /// Rows that triangles may reach.
     rows: Range<u32>,
     /// First row of the next band.
     top: u32,
@@ -166,33 +166,33 @@ impl<C: Pixel> Frame<'_, '_, C> {
         Ok(Some(area))
     }
 
-    /// Rows that have anything but background, and maybe some that have not.
+    /// The rows that triangles can reach; all other rows are background.
     #[must_use]
     pub fn rows(&self) -> Range<u32> {
         self.rows.clone()
     }
 
-    /// Draws no other than these `rows`; to be called before the first band. What a display shows of the frame before and what this one
-    /// has, see [`Self::rows`], is all that must be drawn and sent: the rest is background already.
+    /// Draws only these `rows`; to be called before the first band. It is enough to draw and send the rows that triangles reach in this
+    /// frame or reached in the frame before, see [`Self::rows`]: a display that shows the frame before has background in all others.
     pub fn limit(&mut self, rows: Range<u32>) {
         let height = self.state.size.height;
         (self.top, self.bottom) = (rows.start.min(height), rows.end.min(height));
     }
 
-    /// No band follows.
+    /// Whether the last band has been drawn.
     #[must_use]
     pub fn is_complete(&self) -> bool {
         self.top >= self.bottom
     }
 
-    /// Counts so far; complete after the last band.
+    /// The counts so far; they are complete after the last band.
     #[must_use]
     pub fn stats(&self) -> Stats {
         Stats { culled: self.stats.triangles.saturating_sub(self.stats.drawn), ..self.stats }
     }
 
-    /// Everything that happens once: which triangles face the camera, where their vertices are, which rows they start in.
-    /// From the last triangle to the first, as [`Bins::push`] wants it.
+    /// Does what happens once a frame: culls triangles, transforms their vertices, and puts them into the bins of the rows that they start
+    /// in. Triangles are taken from the last to the first, in the order that [`Bins::push`] needs.
     #[inline(never)]
     fn prepare(&mut self) {
         // A copy, which stays in registers.
@@ -249,7 +249,7 @@ impl<C: Pixel> Frame<'_, '_, C> {
         }
     }
 
-    /// What takes vertices of `mesh` to the screen.
+    /// The stage that transforms and lights the vertices of `mesh`.
     fn stage(&self, mesh: &Mesh) -> Option<VertexStage<'_>> {
         let Self { state, view, lighting, directions, .. } = self;
         let light = state.shader.facts().vertex_light;
@@ -259,7 +259,7 @@ impl<C: Pixel> Frame<'_, '_, C> {
 
     /// The mesh of triangle `id`.
     fn mesh(&self, id: u32) -> Option<&'_ Mesh> {
-        // The meshes follow one another: the last one that does not start behind the triangle.
+        // Meshes follow one another without a gap, so this is the last one that does not start behind the triangle.
         self.state.stream.meshes.iter().rev().find(|mesh| mesh.first_triangle <= id && mesh.triangles > 0)
     }
 
@@ -307,7 +307,7 @@ impl<C: Pixel> Frame<'_, '_, C> {
         let mut pixels = 0u32;
         let mut next = walk.next();
         while let Some(entry) = next {
-            // A stream that has been checked has both.
+            // A checked stream has both.
             let Some(mesh) = self.mesh(entry.triangle()) else { break };
             let Some((drawing, loops)) = self.drawing(mesh) else { break };
             let end = mesh.first_triangle.saturating_add(mesh.triangles);
@@ -328,7 +328,7 @@ impl<C: Pixel> Frame<'_, '_, C> {
             let Some((drawing, loops)) = self.drawing(mesh) else { continue };
             for triangle in stream.triangles_of(mesh).unwrap_or_default().iter().filter(|triangle| self.facing.may_face(triangle)) {
                 let Some(bounds) = drawing.bounds(triangle) else { continue };
-                // Counted in the band where it starts.
+                // A triangle is counted in the band where it starts.
                 let bottom = band.top + band.rows;
                 drawn += u32::from((band.top..bottom).contains(&bounds.top));
                 if bounds.bottom > band.top && bounds.top < bottom {
@@ -339,7 +339,7 @@ impl<C: Pixel> Frame<'_, '_, C> {
         (pixels, drawn)
     }
 
-    /// What it takes to draw the triangles of `mesh`.
+    /// What the triangles of `mesh` have in common, and the loops that draw them.
     #[inline(never)]
     fn drawing(&self, mesh: &Mesh) -> Option<(MeshPass<'_, C>, TriangleLoops<C>)> {
         let RenderState { stream, memory, shader, dither, .. } = &*self.state;

@@ -1,4 +1,4 @@
-//! The memory that rendering takes: one configuration says how much of what, and works out all sizes.
+//! The memory of a renderer: one configuration from which all sizes follow.
 
 use crate::{
     coverage::sample::Sample,
@@ -10,7 +10,7 @@ use crate::{
 };
 use zerocopy::{FromBytes, Immutable, IntoBytes, KnownLayout};
 
-/// How much a renderer is to have room for.
+/// What a renderer has room for.
 ///
 /// ```
 /// use embedded_graphics_core::pixelcolor::Rgb565;
@@ -24,59 +24,60 @@ use zerocopy::{FromBytes, Immutable, IntoBytes, KnownLayout};
 pub struct Layout {
     /// Columns of the picture.
     pub width: usize,
-    /// Rows that are drawn at once: more rows take more memory, fewer rows more time.
+    /// Rows of a band, which are drawn at once: more rows take more memory, fewer rows more time.
     pub rows: usize,
-    /// Vertices of the stream that are kept in a frame; those beyond are transformed anew by each triangle.
+    /// Vertices that are kept in a frame. If the stream has more, each triangle transforms the remaining ones anew.
     pub vertices: usize,
-    /// Triangles that face the camera and are kept in a frame; if there are more, each band walks all of the stream.
+    /// Triangles facing the camera that are kept in a frame. If there are more, each band walks the whole stream.
     pub triangles: usize,
     /// Materials of the stream.
     pub materials: usize,
-    /// Triangles that one band hands on to the next, 128 bytes each; those beyond are set up anew there.
+    /// Triangles that are kept from one band to the next, 128 bytes each. If more cross a border, the next band sets up the remaining ones
+    /// anew.
     pub active_triangles: usize,
-    /// Antialiasing, 72 bytes a pixel of a band.
+    /// Whether there is room for antialiasing, 72 bytes for each pixel of a band.
     pub antialias: bool,
 }
 
 impl Layout {
-    /// For pictures of `width` columns, drawn `rows` at once; streams of 1,024 vertices, 1,024 triangles and one material; 48 triangles
-    /// across a band's border; no antialiasing.
+    /// A layout for pictures of `width` columns in bands of `rows` rows. It has room for 1,024 vertices, 1,024 triangles, one material and
+    /// 48 triangles across the border of a band, and none for antialiasing.
     #[must_use]
     pub const fn new(width: usize, rows: usize) -> Self {
         Self { width, rows, vertices: 1024, triangles: 1024, materials: 1, active_triangles: 48, antialias: false }
     }
 
-    /// With room for so many vertices.
+    /// Changes how many vertices there is room for.
     #[must_use]
     pub const fn vertices(self, vertices: usize) -> Self {
         Self { vertices, ..self }
     }
 
-    /// With room for so many triangles.
+    /// Changes how many triangles there is room for.
     #[must_use]
     pub const fn triangles(self, triangles: usize) -> Self {
         Self { triangles, ..self }
     }
 
-    /// With room for so many materials.
+    /// Changes how many materials there is room for.
     #[must_use]
     pub const fn materials(self, materials: usize) -> Self {
         Self { materials, ..self }
     }
 
-    /// With room for so many triangles across a band's border.
+    /// Changes how many triangles across the border of a band there is room for.
     #[must_use]
     pub const fn active_triangles(self, active_triangles: usize) -> Self {
         Self { active_triangles, ..self }
     }
 
-    /// With room for antialiasing.
+    /// Changes whether there is room for antialiasing.
     #[must_use]
     pub const fn antialias(self, antialias: bool) -> Self {
         Self { antialias, ..self }
     }
 
-    /// Pixels of a band: what a buffer for pixels has to hold.
+    /// Pixels of a band: the length of the buffer that a program draws into.
     #[must_use]
     pub const fn band(&self) -> usize {
         self.width * self.rows
@@ -86,8 +87,7 @@ impl Layout {
         if self.antialias { self.band() } else { 0 }
     }
 
-    /// Words of 64 bits that a renderer of this layout takes in the pixel format `C`: the length of the slice that
-    /// [`crate::Renderer::new`] wants.
+    /// Words of 64 bits that a renderer of this layout takes in the pixel format `C`: the length of the slice for [`crate::Renderer::new`].
     #[must_use]
     pub const fn words<C: Pixel>(&self) -> usize {
         let bytes = padded(self.vertices * size_of::<ScreenVertex>())
@@ -100,19 +100,19 @@ impl Layout {
         bytes / size_of::<u64>()
     }
 
-    /// Bytes that a renderer of this layout takes in the pixel format `C`, its band of pixels not included.
+    /// Bytes that a renderer of this layout takes in the pixel format `C`, without the band of pixels.
     #[must_use]
     pub const fn bytes<C: Pixel>(&self) -> usize {
         self.words::<C>() * size_of::<u64>()
     }
 }
 
-/// Each part begins where a word does.
+/// Each part of the memory begins at a multiple of a word.
 const fn padded(bytes: usize) -> usize {
     bytes.next_multiple_of(size_of::<u64>())
 }
 
-/// The memory of a renderer, taken apart.
+/// The memory of a renderer, divided into its parts.
 #[derive(Debug)]
 pub(crate) struct Memory<'a, C: Pixel> {
     /// Transformed vertices.
@@ -121,17 +121,17 @@ pub(crate) struct Memory<'a, C: Pixel> {
     pub(crate) bins: &'a mut [Entry],
     /// Depth of one band.
     pub(crate) depth: &'a mut [u16],
-    /// One per material, and its table of colours.
+    /// One for each material, as in `ramps`, the tables of colours.
     pub(crate) reflectances: &'a mut [Reflectance],
     pub(crate) ramps: &'a mut [[C::Stored; RAMP]],
-    /// For antialiasing.
+    /// Samples for antialiasing; empty without it.
     pub(crate) samples: &'a mut [Sample],
-    /// What bands hand on to the next.
+    /// Triangles that are kept from one band to the next.
     pub(crate) active_triangles: &'a mut [ActiveTriangle],
 }
 
 impl<'a, C: Pixel> Memory<'a, C> {
-    /// Takes `words` apart; `None` if they are fewer than [`Layout::words`].
+    /// Divides `words`; `None` if there are fewer than [`Layout::words`] says.
     pub(crate) fn new(layout: &Layout, words: &'a mut [u64]) -> Option<Self> {
         let bytes = words.as_mut_bytes();
         let (vertices, bytes) = take(bytes, layout.vertices)?;
@@ -145,7 +145,7 @@ impl<'a, C: Pixel> Memory<'a, C> {
     }
 }
 
-/// `count` values from the front, and the bytes behind them.
+/// Takes `count` values from the front; returns them and the bytes behind them.
 fn take<T: FromBytes + IntoBytes + Immutable + KnownLayout>(bytes: &mut [u8], count: usize) -> Option<(&mut [T], &mut [u8])> {
     let (part, rest) = bytes.split_at_mut_checked(padded(count.checked_mul(size_of::<T>())?))?;
     let (values, _) = <[T]>::mut_from_prefix_with_elems(part, count).ok()?;

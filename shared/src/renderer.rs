@@ -19,21 +19,21 @@ pub struct Renderer<'a, C: Pixel> {
 }
 
 impl<'a, C: Pixel> Renderer<'a, C> {
-    /// A renderer for a viewport of `size` pixels, with that one of `shaders` which the stream asks for. `memory` has as many words as
-    /// [`Layout::words`] says; what is in it does not matter.
+    /// A renderer for a viewport of `size` pixels, with the one of `shaders` that the stream asks for. `memory` has as many words as
+    /// [`Layout::words`] says; its contents do not matter.
     ///
-    /// # Errors
-    /// When `size` is out of range or not the layout's, `memory` too small, or the method is not there or cannot shade the scene.
+    /// # Errors When `size` is out of range or not that of the layout, `memory` is too small, or the method is missing or cannot shade the
+    /// scene.
     pub fn new(stream: Stream<'a>, size: Size, layout: &Layout, memory: &'a mut [u64], shaders: &[Shader<C>]) -> Result<Self, RenderError> {
         let method = stream.header.shader;
         let shader = shaders.iter().find(|shader| shader.facts().id == method).ok_or(RenderError::Missing { method })?;
         Self::with_shader(stream, size, layout, memory, *shader)
     }
 
-    /// As [`Self::new`], with another method than the stream's.
+    /// A renderer with the method `shader`, whatever method the stream asks for; otherwise as [`Self::new`].
     ///
     /// # Errors
-    /// As [`Self::new`].
+    /// Those of [`Self::new`], except that no method can be missing.
     pub fn with_shader(
         stream: Stream<'a>,
         size: Size,
@@ -60,10 +60,9 @@ impl<'a, C: Pixel> Renderer<'a, C> {
         Ok(renderer)
     }
 
-    /// Uses `shader` instead of the one that the stream asks for. Works out the materials, so it takes a moment.
+    /// Changes the shading method. All tables of the materials are computed anew, so it takes a moment.
     ///
-    /// # Errors
-    /// When this build has not got the method, or it cannot shade this scene; the method in use stays.
+    /// # Errors When the method cannot shade this scene; the method in use stays.
     pub fn set_shader(&mut self, shader: Shader<C>) -> Result<(), RenderError> {
         let facts = shader.facts();
         check(&self.state.stream, facts, self.state.perspective_correct)?;
@@ -83,11 +82,10 @@ impl<'a, C: Pixel> Renderer<'a, C> {
         self.state.shader
     }
 
-    /// Interpolation in perspective on or off; off at first. Without it triangles are shaded as if they were flat on the
-    /// screen, which shows where one of them reaches from near to far. Parallel rays make no difference.
+    /// Turns interpolation in perspective on or off; it is off at first. Without it, light is interpolated linearly on the screen, which
+    /// shows where a triangle reaches from near to far. It makes no difference to orthographic cameras.
     ///
-    /// # Errors
-    /// When this build, or the method in use, cannot do it; all stays as it was.
+    /// # Errors When this build or the method in use cannot interpolate in perspective; nothing changes then.
     pub fn set_perspective_correct(&mut self, on: bool) -> Result<(), RenderError> {
         if on && !cfg!(feature = "perspective") {
             return Err(RenderError::NoPerspective);
@@ -97,15 +95,14 @@ impl<'a, C: Pixel> Renderer<'a, C> {
         Ok(())
     }
 
-    /// 4x4 ordered dither on or off; off at first.
+    /// Turns 4x4 ordered dither on or off; it is off at first.
     pub fn set_dither(&mut self, dither: bool) {
         self.state.dither = dither;
     }
 
-    /// Antialiasing by exact areas on or off, see [`crate::antialias`]; off at first.
+    /// Turns antialiasing by exact areas on or off; it is off at first.
     ///
-    /// # Errors
-    /// When the memory has no room for it, or this build has not got the feature `antialias`; it stays off then.
+    /// # Errors When the memory has no room for it, or this build lacks the feature `antialias`; it stays off then.
     pub fn set_antialias(&mut self, antialias: bool) -> Result<(), RenderError> {
         self.state.antialias = false;
         if antialias && !cfg!(feature = "antialias") {
@@ -118,22 +115,21 @@ impl<'a, C: Pixel> Renderer<'a, C> {
         Ok(())
     }
 
-    /// The viewport.
+    /// The size of the viewport.
     #[must_use]
     pub fn size(&self) -> Size {
         self.state.size
     }
 
-    /// Rows of a band; the last one of a frame may have fewer.
+    /// Rows of a band; the last band of a frame may have fewer.
     #[must_use]
     pub fn band_rows(&self) -> u32 {
         self.state.band_rows()
     }
 
-    /// Whether a slice of pixels can be a band.
+    /// Checks that a slice of pixels can be a band.
     ///
-    /// # Errors
-    /// When it does not hold one row.
+    /// # Errors When it does not hold one row of the picture.
     pub fn check_band(&self, pixels: &[C]) -> Result<(), RenderError> {
         let need = self.state.size.width as usize;
         if pixels.len() < need { Err(RenderError::Band { need }) } else { Ok(()) }
@@ -146,7 +142,7 @@ impl<'a, C: Pixel> Renderer<'a, C> {
     }
 }
 
-/// Whether a method can shade a stream, in perspective or without.
+/// Checks that a method can shade a stream, with interpolation in perspective or without.
 ///
 /// # Errors
 /// When it cannot.
@@ -160,7 +156,7 @@ pub fn check(stream: &Stream<'_>, facts: &Facts, perspective_correct: bool) -> R
     Ok(())
 }
 
-/// A colour of 8 bits per channel in the output's format, grey by its luma.
+/// A colour of 8 bits per channel in the pixel format; grey formats get its luma.
 fn background<C: Pixel>([r, g, b]: [u8; 3]) -> C {
     let luma = ((u32::from(r) * 77 + u32::from(g) * 150 + u32::from(b) * 29) >> 8) as u8;
     let [r, g, b] = if C::GRAY { [luma; 3] } else { [r, g, b] };

@@ -1,4 +1,4 @@
-//! A shading method, ready to be drawn in a pixel format.
+//! A shading method together with the loops that draw it in one pixel format.
 
 use crate::{
     geometry::bin::{Entry, Walk},
@@ -13,23 +13,23 @@ use crate::{
 };
 use core::fmt;
 
-/// A shading method in the pixel format `C`: a program has the code of those that it names, and no other.
+/// A shading method in the pixel format `C`. A program contains the code of the methods that it names, and of no others.
 #[derive(Clone, Copy)]
 pub struct Shader<C: Pixel> {
     method: &'static dyn Method,
-    /// Whether the loops below are for this style; else the general ones are.
+    /// Whether `loops` can draw this style; if not, the general way does.
     take: fn(Style) -> bool,
     pub(crate) loops: TriangleLoops<C>,
 }
 
-/// [`MeshPass::run`] by the loops of one method.
+/// The type of [`MeshPass::run`] with the loops of one method.
 type Run<C> = fn(&MeshPass<'_, C>, &[Triangle], Entry, &mut Walk<'_>, u32, &mut Band<'_, C>) -> (u32, Option<Entry>);
 
-/// Loops over triangles.
+/// What draws triangles by the loops of one method.
 pub(crate) struct TriangleLoops<C: Pixel> {
-    /// The triangles of a mesh that lie in a band.
+    /// Draws the triangles of a mesh that lie in a band.
     pub(crate) run: Run<C>,
-    /// One triangle.
+    /// Draws one triangle.
     pub(crate) draw: DrawTriangle<C>,
 }
 
@@ -64,7 +64,7 @@ impl<C: Pixel> Shader<C> {
     /// Every method of this crate.
     pub const ALL: [Self; 6] = [Self::FLAT, Self::GOURAUD, Self::SIX_POINT, Self::PHONG, Self::SQRT6, Self::RENQ_NEWTON];
 
-    /// Any other method, of your own or of the crate `microphong-literature`.
+    /// A method of your own, or of the crate `microphong-literature`.
     #[must_use]
     pub const fn new(method: &'static dyn Method) -> Self {
         Self { method, take: General::take, loops: TriangleLoops::of::<General>() }
@@ -74,7 +74,7 @@ impl<C: Pixel> Shader<C> {
         Self { method, take: M::take, loops: TriangleLoops::of::<M>() }
     }
 
-    /// The loops for a style.
+    /// The loops that draw a style.
     pub(crate) fn loops(&self, style: Style) -> TriangleLoops<C> {
         if (self.take)(style) { self.loops } else { TriangleLoops::of::<General>() }
     }

@@ -13,7 +13,7 @@ use microphong_sim::{
 };
 use microphong_tests::named;
 
-/// A frame with room for so many vertices, triangles, and triangles that are handed on, in bands of so many rows.
+/// A frame with room for so many vertices, triangles, and active triangles, in bands of so many rows.
 fn frame(stream: Stream<'_>, size: Size, shader: Shader, [vertices, triangles, active]: [usize; 3], rows: u32) -> (Vec<Rgb565>, Stats) {
     let layout = Layout::new(size.width as usize, rows as usize).vertices(vertices).triangles(triangles);
     let layout = layout.materials(stream.materials.len()).active_triangles(active);
@@ -40,7 +40,7 @@ fn neither_bands_nor_overflow_change_a_pixel() {
             assert_eq!((stats.passes, stats.uncached), (1, 0));
             for (rows, active) in [(1, triangles), (7, 40), (7, 3), (16, triangles), (16, 0), (64, 1)] {
                 let (pixels, banded) = frame(stream, size, shader, [vertices, triangles, active], rows);
-                assert!(pixels == whole, "{name}, {}: bands of {rows} rows, {active} handed on", shader.name());
+                assert!(pixels == whole, "{name}, {}: bands of {rows} rows, {active} active triangles", shader.name());
                 assert_eq!(Stats { set_up_anew: 0, ..banded }, stats);
                 assert!(active < triangles || banded.set_up_anew == 0, "there is room for all");
                 assert!(active > 3 || shader != Shader::FLAT || banded.set_up_anew > 0, "the overflow is counted");
@@ -72,10 +72,10 @@ fn a_display_is_filled_once() {
     assert!((1000..4000).contains(&lit), "{lit}");
 }
 
-/// Handed on from band to band, triangles look as if they were drawn at once: in one channel or three, dithered, without depth, in
+/// Continued from band to band, triangles look as if they were drawn at once: in one channel or three, dithered, without depth, in
 /// perspective.
 #[test]
-fn what_is_handed_on_looks_the_same_in_every_style() {
+fn active_triangles_look_the_same_in_every_style() {
     let size = Size::new(240, 180);
     for name in ["bunny", "torus", "peer-sphere-convex", "dodecahedron", "sphere-690"] {
         let scene = scene::load(name).unwrap();
@@ -190,7 +190,7 @@ fn a_slice_shorter_than_a_band_gets_fewer_rows() {
             pixels.extend_from_slice(&band[..(area.size.width * area.size.height) as usize]);
         }
         assert!(pixels == whole, "{lengths:?}");
-        // Shorter bands hand more triangles on, and find the queue full more often.
+        // Shorter bands have more active triangles, and find the queue full more often.
         assert!(frame.stats().set_up_anew >= stats.set_up_anew);
         assert_eq!(Stats { set_up_anew: stats.set_up_anew, ..frame.stats() }, stats);
     }

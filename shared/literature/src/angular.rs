@@ -110,7 +110,7 @@ pub struct Turned {
     pub direction: [i32; 3],
 }
 
-/// For L and for H of a light.
+/// [`Turned`] for L and for H of a light.
 pub fn turned(setup: &TriangleSetup<'_>, lighting: &Lighting, source: &Source) -> [Turned; 2] {
     let nodes = setup.corner_nodes();
     let [a, b, c] = nodes.map(|node| node.position);
@@ -134,7 +134,7 @@ fn turn(normal: [i32; 3], from: [i32; 3], to: [i32; 3]) -> [i32; 3] {
     zip(sum, axis, |s, k| (s.wrapping_add(i64::from(k) * i64::from(along)) >> 30) as i32)
 }
 
-/// Powers of cosines along the rows, of one normal and `M` directions.
+/// Powers of cosines along rows, between one normal and `M` directions.
 #[derive(Clone, Copy)]
 struct LobesOnRows<'f, const M: usize> {
     rows: Rows<'f>,
@@ -161,7 +161,7 @@ impl<const M: usize> Patch for LobesOnRows<'_, M> {
     }
 }
 
-/// Walks `M` of them.
+/// Walks the lobes of `M` directions.
 #[derive(Clone, Copy)]
 struct PiecewiseQuadratics<const M: usize>([PiecewiseQuadratic; M]);
 

@@ -37,6 +37,6 @@ impl Method for Gouraud4 {
 }
 
 fn draw(setup: &TriangleSetup<'_>, shading: &Shading<'_>, canvas: &mut dyn Canvas) -> u32 {
-    let cells = SubTriangles::new(setup, shading);
-    cells.linear_parts(&SubTriangle::WHOLE, &cells.corners(), 1, canvas)
+    let sub_triangles = SubTriangles::new(setup, shading);
+    sub_triangles.linear_parts(&SubTriangle::WHOLE, &sub_triangles.corners(), 1, canvas)
 }

@@ -4,8 +4,8 @@
 //! largest of the corners over r. Where that stays below the cosine whose power is taken as 0, for each light,
 //! only diffuse light is left, and it changes slowly. Near lights have no such bound at a fair price: Phong everywhere.
 //!
-//! Cost: three comparisons a triangle and light, then that of [`microphong::method::gouraud`] or [`microphong::method::phong`]. Not continuous where
-//! the two meet. Error against Phong: Gouraud's of diffuse light. Domain: any lights.
+//! Cost: three comparisons a triangle and light, then that of [`microphong::method::gouraud`] or [`microphong::method::phong`]. Not
+//! continuous where the two meet. Error against Phong: Gouraud's of diffuse light. Domain: any lights.
 
 use microphong::{
     lighting::{

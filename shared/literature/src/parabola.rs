@@ -69,7 +69,7 @@ pub struct Lobe<'f> {
     pub direction: [i32; 3],
     /// The parabolas that stand for the power.
     pub parabolas: &'f Parabolas,
-    /// None: the cosine itself.
+    /// The lookup table of the power; `None` for the cosine itself.
     pub lut: Option<&'f HighlightLut>,
 }
 
@@ -122,13 +122,13 @@ pub struct PiecewiseQuadratic {
     /// The angle from the peak in units of b, Q8.24, and what a pixel adds to it.
     place: i32,
     step: i32,
-    /// Left of it another piece begins.
+    /// The place to the left of which another piece begins.
     limit: i32,
     /// Q2.30, and its differences.
     value: i32,
     first: i32,
     second: i32,
-    /// At the peak, Q2.30.
+    /// The value at the peak, Q2.30.
     height: i32,
     /// Half the width of the middle piece.
     a: i32,

@@ -44,8 +44,8 @@ impl Method for PseudoPhong {
 }
 
 fn draw(setup: &TriangleSetup<'_>, shading: &Shading<'_>, canvas: &mut dyn Canvas) -> u32 {
-    let cells = SubTriangles::new(setup, shading);
-    cells.linear_parts(&SubTriangle::WHOLE, &cells.corners(), splits(setup), canvas)
+    let sub_triangles = SubTriangles::new(setup, shading);
+    sub_triangles.linear_parts(&SubTriangle::WHOLE, &sub_triangles.corners(), splits(setup), canvas)
 }
 
 /// How often the triangle is split.

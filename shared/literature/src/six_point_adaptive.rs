@@ -52,11 +52,11 @@ impl Method for SixPointAdaptive {
 }
 
 fn draw(setup: &TriangleSetup<'_>, shading: &Shading<'_>, canvas: &mut dyn Canvas) -> u32 {
-    let cells = SubTriangles::new(setup, shading);
-    parts(&cells, &SubTriangle::WHOLE, &cells.six(), [false; 3], DEPTH, canvas)
+    let sub_triangles = SubTriangles::new(setup, shading);
+    parts(&sub_triangles, &SubTriangle::WHOLE, &sub_triangles.six(), [false; 3], DEPTH, canvas)
 }
 
-/// The edges of a cell, halved.
+/// The edges of a sub-triangle, halved.
 struct Halves {
     /// The middle of the first half of each edge, and of the second.
     middles: [[Levels; 2]; 3],
@@ -64,44 +64,48 @@ struct Halves {
     fits: [bool; 3],
 }
 
-/// Draws a cell by its nodes, or its parts if it has to be split; `depth` is how often it may be, once at least.
+/// Draws a sub-triangle by its nodes, or its parts if it has to be split; `depth` is how often it may be, once at least.
 /// `locked` edges lie on one that was not split.
 #[inline(never)]
 fn parts(
-    cells: &SubTriangles<'_, '_>,
+    sub_triangles: &SubTriangles<'_, '_>,
     sub_triangle: &SubTriangle,
     six: &Six,
     locked: [bool; 3],
     depth: u32,
     canvas: &mut dyn Canvas,
 ) -> u32 {
-    if !cells.meets(sub_triangle, canvas) {
+    if !sub_triangles.meets(sub_triangle, canvas) {
         return 0;
     }
-    let Halves { middles, fits } = halves(cells, sub_triangle, six, locked);
-    if fits == [true; 3] && !cells.misses_centre(sub_triangle, six, CENTRE) {
-        return cells.quadratic(sub_triangle, six, canvas);
+    let Halves { middles, fits } = halves(sub_triangles, sub_triangle, six, locked);
+    if fits == [true; 3] && !sub_triangles.misses_centre(sub_triangle, six, CENTRE) {
+        return sub_triangles.quadratic(sub_triangle, six, canvas);
     }
-    let cuts = cells.cuts(sub_triangle);
+    let cuts = sub_triangles.cuts(sub_triangle);
     let mut pixels = 0;
     for (k, part) in sub_triangle.split().iter().enumerate() {
         let six = Six { corners: corners(six.corners, six.middles, k), middles: edges(middles, cuts, k) };
         let locked = edges(fits.map(|fits| [fits; 2]), [false; 3], k);
-        pixels += if depth > 1 { parts(cells, part, &six, locked, depth - 1, canvas) } else { cells.quadratic(part, &six, canvas) };
+        pixels += if depth > 1 {
+            parts(sub_triangles, part, &six, locked, depth - 1, canvas)
+        } else {
+            sub_triangles.quadratic(part, &six, canvas)
+        };
     }
     pixels
 }
 
 /// A call of its own: what it needs is off the stack before parts are drawn.
 #[inline(never)]
-fn halves(cells: &SubTriangles<'_, '_>, sub_triangle: &SubTriangle, six: &Six, locked: [bool; 3]) -> Halves {
+fn halves(sub_triangles: &SubTriangles<'_, '_>, sub_triangle: &SubTriangle, six: &Six, locked: [bool; 3]) -> Halves {
     let [a, b, c] = six.corners;
     let [ab, bc, ca] = six.middles;
     let [lock_ab, lock_bc, lock_ca] = locked;
     let half = |k: usize, locked: bool, a: Levels, middle: Levels, b: Levels| {
         let parabola @ [near, far] = [eighths(a, middle, b), eighths(b, middle, a)];
         if !locked {
-            let lit @ [p, q] = cells.quarters(sub_triangle, k);
+            let lit @ [p, q] = sub_triangles.quarters(sub_triangle, k);
             let misses = |fitted: Levels, exact: Levels| differ(fitted, exact.map(|level| 8 * level), 8 * EDGE);
             if misses(near, p) || misses(far, q) {
                 return (lit, false);

@@ -49,25 +49,25 @@ impl Method for SixPointCentre {
 }
 
 fn draw(setup: &TriangleSetup<'_>, shading: &Shading<'_>, canvas: &mut dyn Canvas) -> u32 {
-    let cells = SubTriangles::new(setup, shading);
-    parts(&cells, &SubTriangle::WHOLE, &cells.six(), DEPTH, canvas)
+    let sub_triangles = SubTriangles::new(setup, shading);
+    parts(&sub_triangles, &SubTriangle::WHOLE, &sub_triangles.six(), DEPTH, canvas)
 }
 
-/// Draws a cell by its nodes, or its parts if it has to be split; `depth` is how often it may be, once at least.
+/// Draws a sub-triangle by its nodes, or its parts if it has to be split; `depth` is how often it may be, once at least.
 #[inline(never)]
-fn parts(cells: &SubTriangles<'_, '_>, sub_triangle: &SubTriangle, six: &Six, depth: u32, canvas: &mut dyn Canvas) -> u32 {
-    if !cells.meets(sub_triangle, canvas) {
+fn parts(sub_triangles: &SubTriangles<'_, '_>, sub_triangle: &SubTriangle, six: &Six, depth: u32, canvas: &mut dyn Canvas) -> u32 {
+    if !sub_triangles.meets(sub_triangle, canvas) {
         return 0;
     }
-    if !cells.misses_centre(sub_triangle, six, CENTRE) {
-        return cells.quadratic(sub_triangle, six, canvas);
+    if !sub_triangles.misses_centre(sub_triangle, six, CENTRE) {
+        return sub_triangles.quadratic(sub_triangle, six, canvas);
     }
-    let halves = [0, 1, 2].map(|k| cells.quarters(sub_triangle, k));
-    let cuts = cells.cuts(sub_triangle);
+    let halves = [0, 1, 2].map(|k| sub_triangles.quarters(sub_triangle, k));
+    let cuts = sub_triangles.cuts(sub_triangle);
     let mut pixels = 0;
     for (k, part) in sub_triangle.split().iter().enumerate() {
         let six = Six { corners: corners(six.corners, six.middles, k), middles: edges(halves, cuts, k) };
-        pixels += if depth > 1 { parts(cells, part, &six, depth - 1, canvas) } else { cells.quadratic(part, &six, canvas) };
+        pixels += if depth > 1 { parts(sub_triangles, part, &six, depth - 1, canvas) } else { sub_triangles.quadratic(part, &six, canvas) };
     }
     pixels
 }

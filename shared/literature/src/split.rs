@@ -1,4 +1,4 @@
-//! What the methods share that split a triangle into cells and shade each by itself.
+//! What the methods share that split a triangle into sub-triangles and shade each by itself.
 
 use crate::sub_triangle::{ScreenSubTriangle, SubTriangle};
 use microphong::{
@@ -15,7 +15,7 @@ pub type Levels = [i32; 3];
 /// Nodes are in [0, 255], those on a parabola a little outside.
 const BITS: u32 = 16;
 
-/// A triangle that is drawn cell by cell.
+/// A triangle that is drawn sub-triangle by sub-triangle.
 pub struct SubTriangles<'a, 'f> {
     setup: &'a TriangleSetup<'f>,
     shading: &'a Shading<'f>,
@@ -23,7 +23,7 @@ pub struct SubTriangles<'a, 'f> {
     depth: Plane<1>,
 }
 
-/// A cell on the screen, ready for fitting.
+/// A sub-triangle on the screen, ready for fitting.
 struct Part<'p> {
     part: &'p ScreenSubTriangle<'p>,
     gradients: Gradients,
@@ -37,17 +37,17 @@ impl Area for Part<'_> {
     }
 }
 
-/// Light at the corners of a cell and at the middles of its edges 01, 12, 20.
+/// Light at the corners of a sub-triangle and at the middles of its edges 01, 12, 20.
 #[derive(Clone, Copy)]
 pub struct Six {
-    /// At the corners.
+    /// Levels at the corners.
     pub corners: [Levels; 3],
-    /// At the middles of the edges.
+    /// Levels at the middles of the edges.
     pub middles: [Levels; 3],
 }
 
-/// What the edges of part `k` of [`SubTriangle::split`] have of what is known at the halves of a cell's edges 01, 12, 20, and at
-/// the edges that cut off its corners 0, 1, 2.
+/// Selects the values at the edges of part `k` of [`SubTriangle::split`] from those at the halves of the edges 01, 12, 20 of the whole, and
+/// at the edges that cut off its corners 0, 1, 2.
 #[inline]
 pub fn edges<A: Copy>(halves: [[A; 2]; 3], cuts: [A; 3], k: usize) -> [A; 3] {
     let [[ab, ba], [bc, cb], [ca, ac]] = halves;
@@ -60,7 +60,7 @@ pub fn edges<A: Copy>(halves: [[A; 2]; 3], cuts: [A; 3], k: usize) -> [A; 3] {
     }
 }
 
-/// What the corners of part `k` of [`SubTriangle::split`] have of what is known at a cell's corners and edge middles.
+/// Selects the values at the corners of part `k` of [`SubTriangle::split`] from those at the corners and edge middles of the whole.
 #[inline]
 pub fn corners<A: Copy>([a, b, c]: [A; 3], [ab, bc, ca]: [A; 3], k: usize) -> [A; 3] {
     match k {

@@ -2,9 +2,9 @@
 //!
 //! A triangle split at the midpoints of its edges falls into four copies of half its
 //! size, the one in the middle turned by 180 degrees; these can be split again. The
-//! corners of all these *cells* are exact in the finer coordinates used here, so
+//! corners of all these *sub-triangles* are exact in the finer coordinates used here, so
 //! their edges lie exactly on the triangle's edges and on each other. The top-left
-//! rule then gives every pixel of the triangle to one cell: no crack, no overlap,
+//! rule then gives every pixel of the triangle to one sub-triangle: no crack, no overlap,
 //! and no pixel more or less than the triangle has.
 
 use microphong::{
@@ -55,7 +55,7 @@ impl SubTriangle {
         [[a + sign, b, c], [a, b + sign, c], [a, b, c + sign]]
     }
 
-    /// The four cells between corners and edge midpoints. Cell `k` < 3 keeps corner `k` in its place; corner `k` of the
+    /// The four sub-triangles between corners and edge midpoints. Sub-triangle `k` < 3 keeps corner `k` in its place; corner `k` of the
     /// last one is the midpoint of the edge opposite.
     #[inline]
     #[must_use]
@@ -71,7 +71,7 @@ impl SubTriangle {
     }
 }
 
-/// A cell in its place on the screen.
+/// A sub-triangle on the screen.
 #[derive(Clone, Copy, Debug)]
 pub struct ScreenSubTriangle<'o> {
     screen: &'o ScreenTriangle,
@@ -79,9 +79,9 @@ pub struct ScreenSubTriangle<'o> {
     sub_triangle: SubTriangle,
     /// Clockwise, [`FINE`] fraction bits.
     corners: [[i32; 2]; 3],
-    /// Its first row and the one after its last, on the grid of the corners.
+    /// First row, and one past the last, on the grid of the corners.
     rows: [i32; 2],
-    /// Likewise.
+    /// First column, and one past the last, on the grid of the corners.
     columns: [i32; 2],
 }
 

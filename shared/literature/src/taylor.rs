@@ -89,14 +89,14 @@ pub fn draw_by(
 /// A vector that is linear over the triangle, divided by its length at the centroid.
 #[derive(Clone, Copy)]
 pub struct Series {
-    /// At the centroid, Q8.24.
+    /// The vector at the centroid, Q8.24.
     centre: [i32; 3],
-    /// What corners and midpoints (01, 12, 20) have more, Q8.24.
+    /// The differences to it at corners and midpoints (01, 12, 20), Q8.24.
     away: [[i32; 3]; 6],
 }
 
 impl Series {
-    /// Of the vectors at the corners, no longer than 1, in fractions of [`VECTOR`] bits.
+    /// The series of the vectors at the corners, no longer than 1, in fractions of [`VECTOR`] bits.
     pub fn new(corners: [[i32; 3]; 3]) -> Self {
         /// Square of three times the least length at the centroid, 1/16.
         const LEAST: u64 = (3 << (VECTOR - 4)) * (3 << (VECTOR - 4));
@@ -109,7 +109,7 @@ impl Series {
         Self { centre: scaled(sum), away: [a, b, c, middle(a, b), middle(b, c), middle(c, a)] }
     }
 
-    /// Of a unit vector, Q2.30, that is the same everywhere.
+    /// The series of a constant unit vector, Q2.30.
     fn constant(v: [i32; 3]) -> Self {
         Self { centre: v.map(|c| c >> (COSINE - NODE)), away: [[0; 3]; 6] }
     }

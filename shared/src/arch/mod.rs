@@ -1,4 +1,4 @@
-//! What processors do differently: each operation is written as short as the processor at hand can do it, with the same result on all.
+//! Operations that processors do differently: each is as short as the processor at hand allows, with the same result on all.
 
 pub mod product;
 pub mod quotient;

@@ -1,7 +1,7 @@
 //! Products of two words.
 //!
-//! Most machines multiply 32 by 32 bits into 64 in one instruction. Armv6-M has no such instruction: a 64-bit product is a call of 40
-//! instructions there, and four products of half words take less than half of that. Both ways give the same bits.
+//! Most machines multiply 32 by 32 bits into 64 in one instruction. On Armv6-M a 64-bit product is a call of 40 instructions, and four
+//! products of half words take less than half of that. Both ways give the same bits.
 //!
 //! All of these functions are exact: tests::halves_where_they_carry and the property tests compare them with 64-bit integers.
 

@@ -1,6 +1,6 @@
 //! Count of leading zeros.
 //!
-//! Most machines count them in one instruction; Armv6-M has none, and a table is quicker than its library.
+//! Most machines count leading zeros in one instruction. Armv6-M has none, and a table is faster than its library.
 
 use crate::arch::product::HALVES;
 

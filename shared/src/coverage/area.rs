@@ -1,15 +1,15 @@
 //! How much of a pixel a triangle covers: areas under edges, summed with a sign.
 //!
-//! An edge leaves to its right the area `F(c + 1) - F(c)` of column `c`, where `F(c)` is the integral of
-//! `max(c - x, 0)` over the part of the edge in one row: half a square between its ends, linear beyond them, so one
-//! division of exact integers. A triangle covers what its left edges leave less what its right edges do.
+//! An edge leaves to its right the area `F(c + 1) - F(c)` of column `c`, where `F(c)` is the integral of `max(c - x, 0)` over the part of
+//! the edge in one row: half a square between its ends, linear beyond them, so one division of exact integers. The coverage of a triangle
+//! is the sum of these areas over its left edges minus that over its right edges.
 //!
 //! `F` is the exact integral rounded down, and it depends on nothing but the edge from its upper to its lower end.
 //! So the two triangles at an edge get contributions that cancel to the last bit: in a closed patch the coverages of
 //! any pixel add up to exactly one. A single coverage differs from the exact one by less than three units.
 //!
-//! The centroid of what is covered follows from first moments, summed likewise, but rounded: to about 2^-16 pixel over
-//! the coverage.
+//! The centroid of the covered part follows from first moments, which are summed in the same way but rounded: its error is about 2^-16
+//! pixel over the coverage.
 
 use crate::format::COVERAGE;
 
@@ -23,13 +23,13 @@ struct Edge {
     x: i64,
     y: i64,
     dx: i64,
-    /// Not negative.
+    /// Never negative.
     dy: i64,
     /// The triangle lies to its right.
     left: bool,
 }
 
-/// A triangle's edges.
+/// The edges of a triangle, from which its coverage of pixels follows.
 #[derive(Clone, Copy, Debug)]
 pub struct TriangleCoverage {
     edges: [Edge; 3],
@@ -38,8 +38,8 @@ pub struct TriangleCoverage {
 }
 
 impl TriangleCoverage {
-    /// Of a triangle, clockwise on a screen whose y runs down, with coordinates of `bits` fraction bits: at least 4 and at
-    /// most 10, differences below 2^18.
+    /// The coverage of a triangle with these corners, clockwise on a screen whose y runs down. Coordinates have `bits` fraction bits, 4 to
+    /// 10, and differ by less than 2^18.
     #[must_use]
     pub fn new([a, b, c]: [[i32; 2]; 3], bits: u32) -> Self {
         let edge = |start: [i32; 2], end: [i32; 2]| {
@@ -51,7 +51,7 @@ impl TriangleCoverage {
         Self { edges: [edge(a, b), edge(b, c), edge(c, a)], bits: bits.clamp(4, 10) }
     }
 
-    /// The rows that it touches, half open.
+    /// The rows that the triangle touches, half open.
     #[must_use]
     pub fn rows(&self) -> [i32; 2] {
         let [a, b, c] = self.edges;
@@ -60,7 +60,7 @@ impl TriangleCoverage {
         [(top >> self.bits) as i32, ((bottom + (1 << self.bits) - 1) >> self.bits) as i32]
     }
 
-    /// What lies in `row`.
+    /// The part of the triangle in `row`.
     #[must_use]
     pub fn row(&self, row: i32) -> Row {
         let segments = self.edges.map(|edge| EdgeSegment::new(&edge, row, self.bits));
@@ -68,7 +68,7 @@ impl TriangleCoverage {
         let mut heights = [0; 2];
         for segment in segments.iter().filter(|segment| segment.height > 0) {
             let whole = segment.dy << self.bits;
-            // Columns that the segment touches, half open; one that it only meets at a border is not touched.
+            // Columns that the segment touches, half open; a column that it only meets at the border is not touched.
             let (first, end) = (segment.low.div_euclid(whole.max(1)) as i32, -(-segment.high).div_euclid(whole.max(1)) as i32);
             row.columns = [row.columns[0].min(first), row.columns[1].max(end)];
             if segment.left {
@@ -88,7 +88,7 @@ impl TriangleCoverage {
     }
 }
 
-/// What an edge has in one row.
+/// The part of an edge in one row of pixels.
 #[derive(Clone, Copy, Debug)]
 struct EdgeSegment {
     height: i64,
@@ -101,7 +101,7 @@ struct EdgeSegment {
     left: bool,
     /// The left and the right end in the row, [`PLACE`] fraction bits.
     ends: [[i64; 2]; 2],
-    /// Where it crosses the rows of points of a [`Mask`]; far right those that it does not.
+    /// Where the segment crosses the rows of points of a [`Mask`]; far to the right for rows that it does not cross.
     crossings: [i64; 4],
     /// `F` at the current column, and the height at which the edge enters it.
     integral: i64,
@@ -118,7 +118,7 @@ impl EdgeSegment {
         let ends @ [[x0, y0], [x1, y1]] = [end(l), end(r)];
         let crossing = |k: i64| {
             let y = (2 * k + 1) << (PLACE - 3);
-            // Half open, as any fill of neighbours.
+            // Half open, so that neighbours share out the points.
             let crossed = y0.min(y1) <= y && y < y0.max(y1);
             let height = if y1 > y0 { (y - y0, y1 - y0) } else { (y0 - y, y0 - y1) };
             if crossed { x0 + (height.0 * (x1 - x0)).div_euclid(height.1.max(1)) } else { i64::MAX >> 2 }
@@ -154,7 +154,7 @@ impl EdgeSegment {
         }
     }
 
-    /// The height at which it crosses a vertical line.
+    /// The height at which the segment crosses the vertical line at `x`.
     fn crossing(&self, x: i64) -> i64 {
         let [[x0, y0], [x1, y1]] = self.ends;
         if x <= x0 {
@@ -171,13 +171,14 @@ impl EdgeSegment {
         self.entry = self.crossing(i64::from(column) << PLACE);
     }
 
-    /// The area of `column` to its right; steps to the next column.
+    /// The area of `column` to the right of the segment; steps to the next column.
     fn area(&mut self, column: i32) -> Area {
         let border = i64::from(column) << PLACE;
         let [[x0, y0], [x1, _]] = self.ends;
         let (next, leave) = (self.integral(column + 1), self.crossing(border + ONE));
         let [a, b] = [border, border + ONE].map(|x| (x.max(x0).min(x1) - border).clamp(0, ONE));
-        // Beside the part that passed on the left, the whole width; beside the part in the column, what it leaves.
+        // Where the segment has passed on the left, the area is as wide as the column; where it crosses the column, it is what lies to its
+        // right.
         let (beside, within) = ((self.entry - y0).abs(), (leave - self.entry).abs());
         let rest = within * (2 * ONE - a - b);
         let area = Area {
@@ -191,7 +192,7 @@ impl EdgeSegment {
         area
     }
 
-    /// The points of `column` to its right.
+    /// The points of `column` to the right of the segment.
     fn mask(&self, column: i32) -> Mask {
         let border = i64::from(column) << PLACE;
         let [a, b, c, d] = self.crossings.map(|x| {
@@ -203,15 +204,15 @@ impl EdgeSegment {
     }
 }
 
-/// Which of 8 x 4 points of a pixel are covered: tells where in it an area lies. Neighbours share out the points.
+/// Which of 8 x 4 points of a pixel are covered, to tell where in the pixel an area lies. Neighbours share out the points.
 pub type Mask = u32;
 
 /// An area and its moments about the upper left corner of a pixel.
 #[derive(Clone, Copy, Debug, Default)]
 struct Area {
-    /// Rounded the same way on both sides of every edge.
+    /// The area, rounded alike on both sides of every edge.
     coverage: i64,
-    /// Twice the area and twice its first moments, 32 and 48 fraction bits.
+    /// Twice the area, 32 fraction bits, and twice its first moments `x` and `y`, 48 fraction bits.
     size: i64,
     x: i64,
     y: i64,
@@ -221,30 +222,30 @@ struct Area {
 #[derive(Clone, Copy, Debug)]
 pub struct Row {
     segments: [EdgeSegment; 3],
-    /// Columns that it touches, half open.
+    /// Columns that the triangle touches, half open.
     pub columns: [i32; 2],
-    /// Columns that it covers wholly.
+    /// Columns that the triangle covers wholly, half open.
     pub inner: [i32; 2],
 }
 
 /// What a triangle covers of a pixel.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Fragment {
-    /// Area, [`COVERAGE`] fraction bits; rounding may leave a negative one of two units at most.
+    /// The area, [`COVERAGE`] fraction bits; by rounding it may be negative, -2 units at least.
     pub coverage: i32,
-    /// Where it lies.
+    /// Where the area lies in the pixel.
     pub mask: Mask,
-    /// Its centroid from the centre of the pixel, to the right and down, 16 fraction bits.
+    /// The centroid relative to the centre of the pixel, to the right and down, 16 fraction bits.
     pub centroid: [i32; 2],
 }
 
 impl Row {
-    /// Stands on `column`.
+    /// Moves to `column`.
     pub fn enter(&mut self, column: i32) {
         self.segments.iter_mut().for_each(|segment| segment.enter(column));
     }
 
-    /// What is covered of `column`, where it stands; steps to the next one.
+    /// The covered part of `column`, to which the row has been moved; steps to the next column.
     pub fn step(&mut self, column: i32) -> Fragment {
         let (mut sum, mut mask) = (Area::default(), 0);
         for segment in self.segments.iter_mut().filter(|segment| segment.height > 0) {
@@ -256,7 +257,7 @@ impl Row {
             add(&mut sum.x, area.x);
             add(&mut sum.y, area.y);
         }
-        // Nothing but rounding where the area is not positive.
+        // An area that is not positive is rounding alone.
         let place = |moment: i64| if sum.size > 0 { (moment / sum.size.max(1)).clamp(0, ONE) - ONE / 2 } else { 0 };
         Fragment { coverage: sum.coverage as i32, mask, centroid: [place(sum.x), place(sum.y)].map(|c| c as i32) }
     }

@@ -1,4 +1,4 @@
-//! What is seen through one pixel: parts of surfaces, one behind the other (after Carpenter's A-buffer, 1984).
+//! The surfaces that are seen through one pixel, one behind the other (after Carpenter's A-buffer, 1984).
 //!
 //! Fragments whose ranges of depth touch are parts of one surface, a *layer*: their coverages add up. A layer lies over
 //! those behind it. How much of them it hides is judged by a mask of points: surfaces that fill a pixel together, such as
@@ -24,15 +24,15 @@ const WHOLE: u32 = 1 << COVERAGE;
 #[derive(FromBytes, IntoBytes, Immutable, KnownLayout, Clone, Copy, Debug, PartialEq, Eq)]
 #[repr(C)]
 pub struct Layer {
-    /// Range of inverse depth.
+    /// The nearest inverse depth of the layer in the pixel.
     pub near: u16,
-    /// Its far end.
+    /// The farthest inverse depth of the layer in the pixel.
     pub far: u16,
-    /// [`COVERAGE`] fraction bits, at most one; 0: there is none.
+    /// The covered area, [`COVERAGE`] fraction bits, at most one pixel; 0 if there is no layer.
     pub coverage: u32,
-    /// Where it lies.
+    /// Where the covered area lies in the pixel.
     pub mask: Mask,
-    /// Channels times coverage.
+    /// Red, green and blue, times the coverage.
     pub light: [u32; 3],
 }
 
@@ -59,9 +59,9 @@ impl Layer {
         self.near >= other.far && other.near >= self.far
     }
 
-    /// Adds a part of the same surface, or of one that cuts it.
+    /// Adds a fragment of the same surface, or of one that cuts it.
     fn join(&mut self, part: &Self) {
-        // Both cover this much; the nearer one is seen.
+        // Both surfaces cover the excess; the nearer one is seen there.
         let excess = (self.coverage + part.coverage).saturating_sub(WHOLE);
         let lead = |near: u16, far: u16| u64::from(near.saturating_sub(far));
         let (lead, behind) = (lead(self.near, part.far), lead(part.near, self.far));
@@ -78,7 +78,7 @@ impl Layer {
         }
     }
 
-    /// Covers so much less.
+    /// Reduces the coverage by `lost`.
     fn hide(&mut self, lost: u32) {
         if lost > 0 {
             let left = u64::from(self.coverage.saturating_sub(lost));
@@ -88,7 +88,7 @@ impl Layer {
         }
     }
 
-    /// With what is seen of the layer behind it.
+    /// This layer together with the visible part of the layer behind it.
     fn over(mut self, behind: Self) -> Self {
         let left = u64::from(WHOLE.saturating_sub(self.coverage));
         let whole = u64::from(behind.coverage);
@@ -99,7 +99,7 @@ impl Layer {
         } else if points > 0 {
             (whole * u64::from(free) / u64::from(points.max(1))).min(left)
         } else {
-            // Too little for any point: as likely hidden as not.
+            // The layer behind covers no point. It counts as hidden in proportion to the area that this one covers.
             (whole * left) >> COVERAGE
         };
         self.coverage += seen as u32;
@@ -116,18 +116,18 @@ impl Layer {
 #[derive(FromBytes, IntoBytes, Immutable, KnownLayout, Clone, Copy, Debug)]
 #[repr(C)]
 pub struct Sample {
-    /// The nearest first, then those behind, then none.
+    /// The layers from the nearest to the farthest, then empty ones.
     layers: [Layer; LAYERS],
 }
 
 impl Sample {
-    /// Nothing but background.
+    /// A sample with nothing but background.
     pub const EMPTY: Self = Self { layers: [Layer::NONE; LAYERS] };
 
-    /// Adds a part of a surface.
+    /// Adds a fragment of a surface.
     #[inline(never)]
     pub fn add(&mut self, mut part: Layer) {
-        // It may connect layers that did not touch: each that joins is looked at once, and the range has grown for the next.
+        // A fragment may connect layers that did not touch. Each layer that joins widens its range, so all others are looked at again.
         let mut joined = true;
         while joined {
             joined = false;
@@ -168,7 +168,7 @@ impl Sample {
         }
     }
 
-    /// The colour of all layers over the background's.
+    /// The colour of all layers over the background.
     #[must_use]
     pub fn resolve(&self, background: [u8; 3]) -> [u8; 3] {
         let layers = self.layers.iter().copied().filter(|layer| layer.coverage > 0);

@@ -18,7 +18,7 @@ const NONE: u16 = 0;
 #[derive(FromBytes, IntoBytes, Immutable, KnownLayout, Clone, Copy, Debug)]
 #[repr(C)]
 pub struct Entry {
-    /// Twice the index in the stream, and 1 more if it is word-sized: lists are in this order.
+    /// Twice the index of the triangle in the stream, plus 1 if the triangle is word-sized. Lists are in this order.
     key: u32,
     /// One past its last row.
     bottom: u16,
@@ -27,24 +27,24 @@ pub struct Entry {
 }
 
 impl Entry {
-    /// Nothing yet.
+    /// An entry before it is used; all zeros.
     pub const EMPTY: Self = Self { key: 0, bottom: 0, next: NONE };
 
-    /// Index in the stream.
+    /// Index of the triangle in the stream.
     #[inline(always)]
     #[must_use]
     pub fn triangle(&self) -> u32 {
         self.key >> 1
     }
 
-    /// Different from that of all others, and not 0 if it is word-sized.
+    /// A number that no other entry has, and that is not 0 if the triangle is word-sized.
     #[inline(always)]
     #[must_use]
     pub fn key(&self) -> u32 {
         self.key
     }
 
-    /// What was said of it, see [`Bins::push`].
+    /// Whether the triangle was pushed as word-sized, see [`Bins::push`].
     #[inline(always)]
     #[must_use]
     pub fn is_word_sized(&self) -> bool {
@@ -52,21 +52,21 @@ impl Entry {
     }
 }
 
-/// The heads of all lists.
+/// The triangles of one frame, in one list for each bin and one of active triangles.
 #[derive(Clone, Debug)]
 pub struct Bins {
     heads: [u16; BINS],
     active: u16,
     /// Entries in use.
     count: u16,
-    /// Some triangle found no room.
+    /// Whether some triangle found no room.
     overflow: bool,
     /// Bins that `active` has taken over.
     reached: usize,
     /// First row of the highest triangle, and one past the last row of the lowest.
     top: u32,
     bottom: u32,
-    /// 1 over the rows of a bin, Q1.20.
+    /// The reciprocal of the rows of a bin, Q1.20, rounded up.
     bins_per_row: u32,
 }
 
@@ -87,15 +87,15 @@ impl Bins {
         }
     }
 
-    /// The bin of a row below 2048: a product is cheaper than a quotient. In a bin of more than 512 rows it may be one too
-    /// high, both when triangles are put there and when they are taken.
+    /// The bin of a row below 2048, by a product, which is cheaper than a quotient. With bins of more than 512 rows the result may be one
+    /// too high, alike when triangles are put there and when they are taken.
     #[inline(always)]
     fn of(&self, row: u32) -> usize {
         (row.wrapping_mul(self.bins_per_row) >> 20) as usize
     }
 
-    /// Puts a triangle that covers rows `top .. bottom` in front of its list, and remembers whether it is `word_sized`. Called from the last
-    /// triangle to the first.
+    /// Puts a triangle that covers rows `top .. bottom` in front of its list, and remembers whether it is `word_sized`. Triangles are
+    /// pushed from the last to the first.
     #[inline(always)]
     pub fn push(&mut self, entries: &mut [Entry], triangle: u32, word_sized: bool, [top, bottom]: [u32; 2]) {
         let bin = self.of(top);
@@ -112,19 +112,19 @@ impl Bins {
         }
     }
 
-    /// Triangles in all lists; `None` if they did not find room.
+    /// Number of triangles in all lists; `None` if some found no room.
     #[must_use]
     pub fn count(&self) -> Option<u16> {
         (!self.overflow).then_some(self.count)
     }
 
-    /// From the first row of the highest triangle to the last one of the lowest.
+    /// The rows from the top of the highest triangle to the bottom of the lowest.
     #[must_use]
     pub fn rows(&self) -> Range<u32> {
         self.top.min(self.bottom)..self.bottom
     }
 
-    /// The triangles of the band that ends at row `bottom`; the next band is to be told what is left of them, by [`Self::take_over`].
+    /// The triangles of the band that ends at row `bottom`. Afterwards [`Self::take_over`] keeps those that reach into the next band.
     pub fn band<'e>(&mut self, entries: &'e mut [Entry], bottom: u32) -> Walk<'e> {
         let last = self.of(bottom.saturating_sub(1));
         let mut fresh = NONE;
@@ -137,19 +137,19 @@ impl Bins {
         Walk { entries, lists: [self.active, fresh], head: NONE, tail: NONE, bottom }
     }
 
-    /// What is left of a band's triangles for the next one.
+    /// Keeps the triangles of a band that reach into the next one.
     pub fn take_over(&mut self, walk: Walk<'_>) {
         self.active = walk.end();
     }
 }
 
 /// The triangles of a band in the order of the stream: those that reach down from above, and those that start here, merged on the way.
-/// What reaches below the band is left over.
+/// Triangles that reach below the band are collected in a list for the next one.
 #[derive(Debug)]
 pub struct Walk<'e> {
     entries: &'e mut [Entry],
     lists: [u16; 2],
-    /// Of those that are left over.
+    /// Head of the list of triangles that reach below the band; `tail` is its last entry.
     head: u16,
     tail: u16,
     bottom: u32,
@@ -174,7 +174,7 @@ impl Iterator for Walk<'_> {
 }
 
 impl Walk<'_> {
-    /// The head of what is left over.
+    /// Walks to the end; returns the head of the list of triangles that reach below the band.
     fn end(mut self) -> u16 {
         while self.next().is_some() {}
         append(self.entries, &mut self.head, self.tail, NONE);
@@ -197,7 +197,7 @@ fn append(entries: &mut [Entry], head: &mut u16, tail: u16, link: u16) {
     }
 }
 
-/// Two lists in the order of the stream into one; returns its head.
+/// Merges two lists in the order of the stream; returns the head of the merged list.
 fn merge(entries: &mut [Entry], lists: [u16; 2]) -> u16 {
     Walk { entries, lists, head: NONE, tail: NONE, bottom: 0 }.end()
 }

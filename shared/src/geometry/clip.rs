@@ -1,8 +1,7 @@
 //! Triangles that cross the near plane or leave the guard band, cut in eye space.
 //!
-//! Rare, so it may cost: vertices are transformed anew and lit with the
-//! interpolated normal. Both neighbours of an edge cut it at the same point,
-//! from its inner to its outer end: no crack opens.
+//! Clipping is rare, so it may be slow: vertices are transformed anew and lit with the interpolated normal. Both neighbours of an edge cut
+//! it at the same point, from its inner to its outer end: no crack opens.
 
 use crate::{
     format::{HAVERSINE, INVERSE_SUM_LENGTH, UNIT},
@@ -65,9 +64,9 @@ pub fn clip(view: &View, vertices: [&Vertex; 3]) -> Vec<Cut, CORNERS> {
     cuts
 }
 
-/// Where the way from `inner` (distance `di` >= 0) to `outer` (`d_o` < 0) meets the plane.
+/// The point where the line from `inner` (distance `di` >= 0) to `outer` (`d_o` < 0) meets the plane.
 fn between(inner: &Corner, outer: &Corner, di: i64, d_o: i64) -> Corner {
-    // 22 bits of the ratio, without overflow.
+    // The ratio with 22 fraction bits, without overflow.
     let whole = di.saturating_sub(d_o).max(1);
     let spare = 23u32.saturating_sub(whole.leading_zeros());
     let t = ((di >> spare) << 22) / (whole >> spare).max(1);
@@ -89,7 +88,7 @@ pub fn record(whole: &Triangle, corners: &[Vertex; 3]) -> Triangle {
     }
 }
 
-/// 1/|a + b| - 1/2 and 1 - |a + b|²/4 of two unit normals, as in a record.
+/// `inverse_sum_length` and `haversine` of the edge between two unit normals, see [`Triangle`].
 fn edge(a: [i32; 3], b: [i32; 3]) -> (u16, u16) {
     let sum = add(a, b);
     let square = dot(sum, sum).max(1) as u64;

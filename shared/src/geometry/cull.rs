@@ -1,5 +1,5 @@
-//! Triangles that face away, told apart in object space: four products, no vertex touched. Those that it lets through are
-//! told apart by their extent on the screen.
+//! Triangles that face away, told apart in object space: four products, no vertex touched. The rest are culled by their extent on the
+//! screen.
 //!
 //! What is drawn has rounded corners, in eye space and on the screen, and rounding may turn a thin triangle that faces away to
 //! the front. If it were culled, a closed mesh would have a hole there: its neighbours leave those pixels to it. So a triangle
@@ -37,12 +37,12 @@ use crate::{
     stream::record::{LEAN, Triangle},
 };
 
-/// Where the camera is, as planes see it.
+/// The position of the camera, against which the planes of triangles are tested.
 #[derive(Clone, Copy, Debug)]
 pub struct Facing {
     /// Perspective: the eye; parallel rays: the direction towards the viewer; Q.10.
     vector: [i32; 3],
-    /// Takes a plane's offset to the dot product's format; 0 for parallel rays, to which it does not matter.
+    /// Factor from the format of a plane's offset to that of the dot product; 0 for parallel rays, which do not depend on the offset.
     offset_scale: i32,
     /// `2 r D`, by which heights may be off for each unit of [`Triangle::inverse_altitude`], Q.16.
     slack: i32,
@@ -62,7 +62,7 @@ const PER_ALTITUDE: u32 = HEIGHT - INVERSE_ALTITUDE;
 /// Largest `slack`: with the largest [`Triangle::inverse_altitude`] and a height it stays below 2^31.
 const MAX_SLACK: u64 = (1 << 14) - 1;
 
-/// What rounding of eye and normal may add up to, as a height: 2^-9 of a unit.
+/// The largest error of a height by rounding of eye and normal: 2^-9 of a unit.
 ///
 /// The eye is off by at most 15.6 units in the last place of a [`crate::format::Unit`]: √3 times half a step of
 /// [`EYE`] and one of 2^-14. A unit normal is off by at most 2.6, √3 times one and a half: under parallel rays that adds up, in
@@ -78,7 +78,7 @@ impl Facing {
         // 2 r D, from Q.30 and Q.14, rounded up.
         let slack = ((2 * view.displacement(reach) * u64::from(reach)) >> (30 + UNIT - PER_ALTITUDE)) + 1;
         if slack > MAX_SLACK {
-            // So few pixels that any triangle may turn over: all heights are 0.
+            // There are so few pixels that any triangle may turn over: all heights are 0.
             return Self { vector: [0; 3], offset_scale: 0, slack: 0, reach: 0 };
         }
         let vector = vector.map(|c| (c + (1 << (UNIT - EYE - 1))) >> (UNIT - EYE));
@@ -95,7 +95,7 @@ impl Facing {
     /// Least [`Self::height`] above triangles that may show their front.
     pub(crate) const FRONT: i32 = -SLACK;
 
-    /// How high the eye lies above the plane of `triangle`, or as much higher as makes up for its rounded corners.
+    /// The height of the eye above the plane of `triangle`, plus the slack that makes up for its rounded corners.
     #[inline(always)]
     #[must_use]
     pub(crate) fn height(&self, triangle: &Triangle) -> i32 {
@@ -104,7 +104,8 @@ impl Facing {
         height.wrapping_add(self.slack.wrapping_mul(triangle.inverse_altitude.into()))
     }
 
-    /// Least [`Self::height`] above triangles that might show their front if their plane leaned as [`crate::stream::record::CLOSED_CONVEX`] allows.
+    /// Least [`Self::height`] above triangles that might show their front if their plane leaned as [`crate::stream::record::CLOSED_CONVEX`]
+    /// allows.
     #[must_use]
     pub(crate) fn leaning(&self) -> i32 {
         // An angle of 2^-LEAN, seen from as far as any vertex is.
@@ -112,7 +113,7 @@ impl Facing {
     }
 }
 
-/// What a triangle takes up on the screen.
+/// The bounding box and area of a triangle on the screen.
 #[derive(Clone, Copy, Debug)]
 pub struct Extent {
     /// Least column, 1/16 pixel.
@@ -128,7 +129,7 @@ pub struct Extent {
 }
 
 impl Extent {
-    /// Of corners `[x, y]` that run clockwise seen from the front.
+    /// The extent of corners `[x, y]` that run clockwise seen from the front.
     #[inline(always)]
     #[must_use]
     pub fn new([[x0, y0], [x1, y1], [x2, y2]]: [[i32; 2]; 3]) -> Self {
@@ -140,15 +141,14 @@ impl Extent {
         Self { left, right, top, bottom, area }
     }
 
-    /// Small and stout, see [`fits_words`].
+    /// Whether the triangle is word-sized, see [`fits_words`].
     #[inline(always)]
     #[must_use]
     pub(crate) fn fits_words(&self) -> bool {
         fits_words(((self.right - self.left) | (self.bottom - self.top)) as u32, self.area)
     }
 
-    /// Its longest side is no longer: the larger of width and height and half of the other, since
-    /// x² + y² <= (x + y/2)² where y <= x.
+    /// An upper bound of the longest side: the larger of width and height plus half of the other, since x² + y² <= (x + y/2)² where y <= x.
     #[inline(always)]
     #[must_use]
     pub fn length(&self) -> i32 {
@@ -157,11 +157,11 @@ impl Extent {
     }
 }
 
-/// Bits of the sides of a small triangle, 1/16 pixel.
+/// Bits of the sides of a word-sized triangle, 1/16 pixel.
 const WORD_SIDE: u32 = 10;
 
-/// Whether a triangle is so small and stout, not even nearly [`crate::setup::gradients::MAX_THINNESS`], that its polynomials are set up in
-/// words: by its box's width or height, whichever is larger or both in one, and twice its area.
+/// Whether a triangle is word-sized: so small, and so far from [`crate::setup::gradients::MAX_THINNESS`], that its polynomials are set up
+/// in words. `size` is the larger of width and height of its bounding box, or the bitwise or of both; `area` is twice its area.
 #[inline(always)]
 pub(crate) fn fits_words(size: u32, area: i32) -> bool {
     // 2^(2 bits) <= 128 area.

@@ -1,25 +1,23 @@
-//! Where a closed convex mesh needs no depth.
+//! Which triangles of a closed convex mesh need no depth test.
 //!
-//! The front faces of a convex body do not hide one another: seen exactly, no pixel belongs to two. What is drawn is not
-//! that exact picture `G` but `F`, whose corners are rounded, in the mesh, in eye space, and on the screen; each coordinate is
-//! moved by at most `d` ([`View::moved`]). So a triangle that is thinner than it is moved may turn over, or let its neighbours
-//! overlap. A triangle is *thick* if it lies in the viewport and is at least `3 d` thick in `F`. Those that are not, and that
-//! may show their front in `G`, *contest* the cells of a coarse grid that lie within `3 d` of their box. A triangle whose
-//! box lies in no contested cell is drawn without depth, all others are drawn with it, and the picture is the same:
+//! The front faces of a convex body do not hide one another: seen exactly, no pixel belongs to two. What is drawn is not that exact picture
+//! `G` but `F`, whose corners are rounded, in the mesh, in eye space, and on the screen; each coordinate is moved by at most `d`
+//! ([`View::moved`]). So a triangle that is thinner than it is moved may turn over, or let its neighbours overlap. A triangle is *thick* if
+//! it lies in the viewport and is at least `3 d` thick in `F`. A triangle that is not thick, and may show its front in `G`, *marks* the
+//! cells of a coarse grid that lie within `3 d` of its bounding box. A triangle whose box touches no marked cell is drawn without depth
+//! test, all others are drawn with it, and the picture is the same:
 //!
-//! No pixel of a triangle `T` that is drawn without depth belongs to another one that is drawn. Suppose that the pixel `p`
-//! belongs to `T'` as well. Neither contests its cell, so both are thick. On a thick triangle the displacement `G - F`, linear
-//! and no longer than √2 d at the corners, has a slope below 1: 2 √2 d over 3 d. So it turns in `G` as it does in `F`, and
-//! both show their front in `G`. Let `q` and `q'` be the points that `F` takes to `p` on `T` and `T'`, seen in `G`: each is within
-//! `d` of `p` along x and y. The outline of a convex body is convex, so all of the segment from `q` to `q'` is covered by front
-//! faces. Each of them has in `F` a point within `2 d` of `p`, so it is thick, or it would contest the cell of `p`. Along the
-//! segment therefore the way from `G` to `F` is continuous and, its slope differing from one by less than one, never goes back: it
-//! takes `q` and `q'` to one `p` only if they are one point. This lies on an edge or corner that `T` and `T'` share, of which
-//! the top-left rule gives `p` to one.
+//! No pixel of a triangle `T` that is drawn without depth belongs to another one that is drawn. Suppose that the pixel `p` belongs to `T'`
+//! as well. Neither marks its cell, so both are thick. On a thick triangle the displacement `G - F`, linear and no longer than √2 d at the
+//! corners, has a slope below 1: 2 √2 d over 3 d. So it turns in `G` as it does in `F`, and both show their front in `G`. Let `q` and `q'`
+//! be the points that `F` takes to `p` on `T` and `T'`, seen in `G`: each is within `d` of `p` along x and y. The outline of a convex body
+//! is convex, so all of the segment from `q` to `q'` is covered by front faces. Each of them has in `F` a point within `2 d` of `p`, so it
+//! is thick, or it would mark the cell of `p`. Along the segment therefore the way from `G` to `F` is continuous and, its slope differing
+//! from one by less than one, never goes back: it takes `q` and `q'` to one `p` only if they are one point. This lies on an edge or corner
+//! that `T` and `T'` share, of which the top-left rule gives `p` to one.
 //!
-//! What this takes for granted, [`CLOSED_CONVEX`] promises: that a convex body lies so near to the mesh, and how far planes
-//! lean that were computed from rounded corners. Depth has one more effect, it hides what is farther than all else: no pixel
-//! is as far as that.
+//! The assumptions are what [`CLOSED_CONVEX`] promises: how near a convex body lies to the mesh, and how far planes lean that were computed
+//! from rounded corners. An empty depth buffer also hides what is infinitely far: no pixel of the mesh is.
 
 use crate::{
     format::{SUBPIXEL, UNIT},
@@ -35,27 +33,27 @@ use embedded_graphics_core::geometry::Size;
 /// Rows and columns of the grid.
 const CELLS: u32 = u32::BITS;
 
-/// Thicker triangles than this are told from none, 1/16 pixel: everything is contested.
+/// Threshold of thickness, 1/16 pixel, from which every triangle is depth-tested.
 const THICKEST: u32 = 1 << 12;
 
-/// How far the far plane has to lie behind the body, [`crate::format::Length`]: nothing is then as far as an empty depth buffer.
+/// Least distance of the far plane behind the body, [`crate::format::Length`], so that no pixel is as far as an empty depth buffer.
 const BEHIND: i32 = 1 << (UNIT - 6);
 
-/// Where triangles may overlap.
+/// The cells of the screen where triangles may overlap.
 #[derive(Clone, Debug)]
 pub struct DepthElision {
-    /// Of thick triangles, 1/16 pixel.
+    /// Least thickness of a thick triangle, 1/16 pixel.
     thickness: i32,
-    /// Of the viewport, 1/16 pixel.
+    /// Width and height of the viewport, 1/16 pixel.
     size: [i32; 2],
     /// Cells per 1/16 pixel, Q.16.
     scale: [i32; 2],
-    /// Contested cells, a row each.
+    /// Marked cells, a word for each row of the grid.
     marked: [u32; CELLS as usize],
 }
 
 impl DepthElision {
-    /// For one frame; `None` if the scene is not just one closed convex mesh, or seen from too near.
+    /// A grid without marks for one frame; `None` if the scene is not just one closed convex mesh, or is seen from too near.
     #[must_use]
     pub fn new(stream: &Stream<'_>, view: &View, size: Size) -> Option<Self> {
         let [Mesh { flags, .. }] = stream.meshes else { return None };
@@ -73,11 +71,11 @@ impl DepthElision {
         })
     }
 
-    /// Takes notice of a triangle that may show its front.
+    /// Takes account of a triangle that may show its front: marks the cells around it unless it is thick.
     #[inline(always)]
     pub fn include(&mut self, extent: &Extent) {
         let inside = self.is_inside([extent.left, extent.right], [extent.top, extent.bottom]);
-        // It is at least as thick as twice its area over its length.
+        // The thickness is at least twice the area over the length.
         if !inside || extent.area.unsigned_abs() < (self.thickness * extent.length()) as u32 {
             self.mark(extent);
         }
@@ -93,7 +91,8 @@ impl DepthElision {
         self.marked.get_mut(rows).unwrap_or_default().iter_mut().for_each(|row| *row |= columns);
     }
 
-    /// Whether others may overlap a triangle with these least and largest columns and rows; all that may show their front have been seen.
+    /// Whether other triangles may overlap one whose columns and rows lie between these. To be called once all triangles have been
+    /// included.
     #[inline(never)]
     #[must_use]
     pub fn needs_depth_test(&self, columns: [i32; 2], rows: [i32; 2]) -> bool {

@@ -1,4 +1,4 @@
-//! Object space to the screen, and what need not be drawn.
+//! The way from object space to the screen, and which triangles need not be drawn.
 
 pub mod bin;
 pub mod clip;

@@ -1,4 +1,4 @@
-//! Where the camera of a frame is.
+//! Position and rotation of the camera in one frame.
 
 use crate::{
     format::ROTATION,

@@ -1,4 +1,4 @@
-//! Object space to the screen.
+//! Projection of object space to the screen.
 
 use crate::{
     arch::product::{product, upper},
@@ -14,7 +14,7 @@ use crate::{
 use embedded_graphics_core::geometry::Size;
 use zerocopy::{FromBytes, Immutable, IntoBytes, KnownLayout};
 
-/// A vertex on the screen, with what its light comes to.
+/// A lit vertex on the screen.
 #[derive(FromBytes, IntoBytes, Immutable, KnownLayout, Clone, Copy, Debug)]
 #[repr(C)]
 pub struct ScreenVertex {
@@ -26,21 +26,21 @@ pub struct ScreenVertex {
     pub depth: i32,
     /// `[N·L, N·H, -]` in Q2.30 under one constant light, else light levels in Q9.7.
     pub light: [i32; 3],
-    /// What is known of it in this frame.
+    /// Whether position and light are those of this frame.
     pub state: State,
 }
 
-/// What is known of a cached vertex in this frame.
+/// The state of a cached vertex in this frame.
 #[derive(FromBytes, IntoBytes, Immutable, KnownLayout, Clone, Copy, Debug, PartialEq, Eq)]
 #[repr(transparent)]
 pub struct State(u32);
 
 impl State {
-    /// No triangle that faces the camera has asked for it.
+    /// The vertex is not transformed: no triangle that faces the camera has used it.
     pub const IDLE: Self = Self(0);
     /// Position and light are those of this frame.
     pub const READY: Self = Self(1);
-    /// In front of the near plane or beyond the guard band: its triangles are clipped.
+    /// The vertex lies in front of the near plane or beyond the guard band: its triangles are clipped.
     pub const OUTSIDE: Self = Self(2);
 }
 
@@ -49,17 +49,17 @@ impl State {
 /// Twice the widest viewport: triangles that only cross its border are not clipped but walked.
 pub const GUARD: i32 = 4096 << SUBPIXEL;
 
-/// How far a coordinate in eye space may lie from that of a convex body, but for a shift of them all, in units of its last
-/// place: half by its own rounding, and √3 times 0.86 by that in the mesh.
+/// Largest distance of a coordinate in eye space from that of the exact convex body, up to a common shift, in units of its last place: 1/2
+/// by its own rounding, and √3 times 0.86 by rounding in the mesh.
 const MOVED: u32 = 2;
 
 /// Inverse depth of a vertex at the near plane, Q0.28: less than one, so that rounding cannot wrap it.
 const NEAREST: i32 = (1 << DEPTH) - (1 << 10);
 
-/// One frame's way from object space to the screen.
+/// The transformation from object space to the screen in one frame.
 #[derive(Clone, Copy, Debug)]
 pub struct View {
-    /// Q2.14: positions have no more.
+    /// Object to eye space, Q2.14, as exact as positions are.
     rotation: [[i32; 3]; 3],
     translation: [i32; 3],
     /// Centre of the viewport, 1/16 pixel.
@@ -79,7 +79,7 @@ enum Projection {
         exponent: u32,
         /// [`View::near`] as a mantissa of 31 bits.
         near: i32,
-        /// How far it is shifted, for depth in the upper half of its product with 1/z.
+        /// The shift that puts depth into the upper half of the product of `near` and 1/z.
         depth_shift: u32,
     },
     Orthographic {
@@ -127,8 +127,8 @@ impl View {
         add([along(x), along(y), along(z)], self.translation)
     }
 
-    /// Eye space to `[x, y, inv_depth]` on the screen, and whether it lies behind the near plane and within the
-    /// guard band. What does not is moved there: only clipping, which rounds, may use it then.
+    /// Eye space to `[x, y, inv_depth]` on the screen, and whether the point lies behind the near plane and within the guard band. Other
+    /// points are moved there; only clipping, which rounds, may use them.
     #[inline(always)]
     #[must_use]
     pub fn project(&self, eye: [i32; 3]) -> ([i32; 3], bool) {
@@ -157,14 +157,14 @@ impl View {
         ([self.centre[0] + x, self.centre[1] - y, depth.min(NEAREST)], within)
     }
 
-    /// Rays meet in the eye.
+    /// Whether the camera is perspective, so that rays meet in the eye.
     #[must_use]
     pub fn is_perspective(&self) -> bool {
         matches!(self.projection, Projection::Perspective { .. })
     }
 
-    /// In object space the eye, Q18.14, or under parallel rays the direction towards the viewer, Q2.14: exactly where
-    /// [`Self::to_eye`], whose rounding down is half a unit in the last place on average, has it.
+    /// The eye in object space, Q18.14, or the direction towards the viewer under parallel rays, Q2.14. It is consistent with
+    /// [`Self::to_eye`], whose rounding down is half a unit in the last place on average.
     #[must_use]
     pub fn viewer(&self) -> [i32; 3] {
         // Cramer's rule: the columns of the adjugate matrix, Q.28, over the determinant, Q.42.
@@ -178,8 +178,8 @@ impl View {
         [0, 1, 2].map(|k| (-along(k) << 13).checked_div(determinant).unwrap_or(0) as i32)
     }
 
-    /// No vertex of a mesh in the ball of `radius` about the origin is farther from the eye than this, Q18.14; one under
-    /// parallel rays. Includes a 32nd to spare, since a rotation is one only nearly.
+    /// Upper bound of the distance between the eye and a vertex of a mesh in the ball of `radius` about the origin, Q18.14; 1 under
+    /// parallel rays. It includes 1/32 to spare, since a rotation is rounded.
     #[must_use]
     pub fn reach(&self, radius: u16) -> u32 {
         let [x, y, z] = self.translation.map(i32::unsigned_abs);
@@ -189,22 +189,22 @@ impl View {
 
     /// How far rounding may move a vertex as far from the eye as `reach`, Q.30.
     ///
-    /// In eye space that is half a unit in the last place along each axis, √3/2 = 0.87 in all; on the screen along both axes half of
-    /// 1/16 pixel, with 2^-7 to spare for the arithmetic on the way: √2 · 65/128 = 0.72 of 1/16 pixel. With room for a rotation that
-    /// is one only nearly they are one unit and 25/32.
+    /// In eye space that is half a unit in the last place along each axis, √3/2 = 0.87 in all; on the screen along both axes half of 1/16
+    /// pixel, with 2^-7 to spare for the arithmetic on the way: √2 · 65/128 = 0.72 of 1/16 pixel. With room for a rotation that is rounded
+    /// they are one unit and 25/32.
     #[must_use]
     pub fn displacement(&self, reach: u32) -> u64 {
         let pixel = ((25 * u64::from(reach)) << (30 + 16 - UNIT - 5)).checked_div(self.focal.unsigned_abs());
         pixel.unwrap_or(u64::from(u32::MAX)).saturating_add(1 + (1 << (30 - UNIT))).min(u64::from(u32::MAX))
     }
 
-    /// How far rounding may move a point of a mesh that is marked as [`crate::stream::record::CLOSED_CONVEX`] along x or y, seen in a viewport of
-    /// `size` pixels behind the near plane; `times` that, 1/16 pixel, rounded up.
+    /// How far rounding may move a point of a mesh that is marked as [`crate::stream::record::CLOSED_CONVEX`] along x or y, seen in a
+    /// viewport of `size` pixels behind the near plane; `times` that, 1/16 pixel, rounded up.
     #[must_use]
     pub fn moved(&self, size: Size, times: u32) -> u32 {
         let focal = (self.focal >> 16) as u32;
         let within = times.wrapping_mul(MOVED).wrapping_mul(match self.projection {
-            // Aside by focal / z, and in depth by as much as the point lies aside.
+            // The point moves sideways by focal / z, and for its depth by as much as it lies off the axis.
             Projection::Perspective { .. } => focal.wrapping_add(size.width.max(size.height) << (SUBPIXEL - 1)),
             Projection::Orthographic { .. } => focal,
         });
@@ -212,7 +212,7 @@ impl View {
             Projection::Perspective { .. } => self.near.unsigned_abs(),
             Projection::Orthographic { .. } => 1 << UNIT,
         };
-        // On the screen it is rounded to the nearest, with 2^-7 to spare for the arithmetic on the way.
+        // Screen coordinates are rounded to the nearest, with 2^-7 to spare for the arithmetic before.
         let rounded = times.wrapping_mul(65).div_ceil(128);
         within.checked_div(unit).map_or(u32::MAX, |within| within.saturating_add(1).saturating_add(rounded))
     }
@@ -243,21 +243,21 @@ fn shifted(value: i64, bits: u32) -> i32 {
     }
 }
 
-/// The same where not all of the lower half is shifted out: very near things.
+/// [`shifted`] where a part of the lower half remains, as for very near points.
 #[cold]
 #[inline(never)]
 fn slightly_shifted(value: i64, bits: u32) -> i32 {
     saturated(scale(value, bits as i32))
 }
 
-/// Moved to the guard band.
+/// Clamps a coordinate to the guard band.
 #[cold]
 #[inline(never)]
 fn limited(c: i32) -> i32 {
     c.clamp(-GUARD, GUARD)
 }
 
-/// The nearest that 32 bits hold.
+/// The nearest value that 32 bits hold.
 #[inline(always)]
 fn saturated(value: i64) -> i32 {
     value.clamp(i32::MIN.into(), i32::MAX.into()) as i32

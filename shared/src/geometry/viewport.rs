@@ -31,7 +31,7 @@ pub struct Bounds {
 }
 
 impl Bounds {
-    /// Of a triangle: pixels whose centres its box contains.
+    /// The pixels whose centres the bounding box of a triangle contains.
     #[inline(always)]
     #[must_use]
     pub fn new(extent: &Extent) -> Self {
@@ -43,11 +43,11 @@ impl Bounds {
         }
     }
 
-    /// Of corners: pixels that their box touches.
+    /// The pixels that the bounding box of `corners` touches.
     #[must_use]
     pub fn touched(corners: impl Iterator<Item = [i32; 3]>) -> Self {
         let none = Self { left: i32::MAX, top: i32::MAX, right: i32::MIN, bottom: i32::MIN };
-        // A centre as far beyond the box as it can be.
+        // A touched pixel's centre lies up to half a pixel beyond the box.
         let reach = |c: i32| [first_centre(c - (CENTRE - 1)), first_centre(c + CENTRE)];
         corners.fold(none, |bounds, [x, y, _]| {
             let ([left, right], [top, bottom]) = (reach(x), reach(y));
@@ -60,13 +60,13 @@ impl Bounds {
         })
     }
 
-    /// Of one point `[x, y, _]`.
+    /// The empty bounds at one point `[x, y, _]`.
     #[must_use]
     pub fn at([x, y, _]: [i32; 3]) -> Self {
         Self { left: first_centre(x), top: first_centre(y), right: first_centre(x), bottom: first_centre(y) }
     }
 
-    /// Grows until `point` lies inside.
+    /// Extends the bounds to `point`.
     pub fn include(&mut self, point: [i32; 3]) {
         let other = Self::at(point);
         self.left = self.left.min(other.left);
@@ -75,7 +75,7 @@ impl Bounds {
         self.bottom = self.bottom.max(other.bottom);
     }
 
-    /// Without what lies outside a viewport.
+    /// The part within a viewport of this size.
     #[inline(always)]
     #[must_use]
     pub fn clipped(self, width: i32, height: i32) -> Self {
@@ -89,7 +89,7 @@ impl Bounds {
         [self.left, self.top, self.right, self.bottom]
     }
 
-    /// No pixel at all.
+    /// Whether there is no pixel.
     #[inline(always)]
     #[must_use]
     pub fn is_empty(&self) -> bool {
@@ -97,19 +97,19 @@ impl Bounds {
     }
 }
 
-/// A viewport, as culling sees it.
+/// The size of the picture, and which pixels of it a triangle can touch.
 #[derive(Clone, Copy)]
 pub struct Viewport {
     /// Columns.
     pub width: i32,
     /// Rows.
     pub height: i32,
-    /// Pixels are weighed by areas: a triangle can touch more of them.
+    /// Whether pixels are weighted by covered areas, so that a triangle can touch more of them.
     pub antialiased: bool,
 }
 
 impl Viewport {
-    /// The visible box of a triangle; `None` if it shows its back, or no pixel can belong to it.
+    /// The visible bounding box of a triangle; `None` if it shows its back, or no pixel can belong to it.
     #[inline(always)]
     pub fn bounds(self, extent: &Extent) -> Option<Bounds> {
         if extent.area <= 0 {
@@ -122,13 +122,13 @@ impl Viewport {
         })
     }
 
-    /// A triangle whose corners are kept, small and not beside the viewport: there is a shorter way to draw it.
+    /// Whether a triangle with cached corners is word-sized, and not beside the viewport: it is then set up in words.
     #[inline(always)]
     pub fn is_word_sized(self, extent: &Extent) -> bool {
         !self.antialiased && extent.left >= 0 && extent.right < self.width << SUBPIXEL && extent.fits_words()
     }
 
-    /// The visible box of what clipping leaves of a triangle.
+    /// The visible bounding box of the part that clipping leaves of a triangle.
     #[cold]
     #[inline(never)]
     pub fn clipped_bounds(self, view: &View, vertices: [&Vertex; 3]) -> Option<Bounds> {
@@ -142,7 +142,7 @@ impl Viewport {
         self.visible(bounds)
     }
 
-    /// The visible box of a triangle, on a grid finer by 2 to the power `finer`.
+    /// The visible bounding box of a triangle, on a grid that is finer by 2 to the power `finer`.
     pub fn box_of(self, corners: [&ScreenVertex; 3], finer: u32) -> [i32; 4] {
         let extent = Extent::new(corners.map(|corner| [corner.x, corner.y]));
         Bounds::new(&extent).clipped(self.width << finer, self.height << finer).sides()

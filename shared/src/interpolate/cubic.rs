@@ -11,8 +11,8 @@ use crate::{
     },
 };
 
-/// Fraction bits of a coefficient that a walked value has not. Nine integer bits of the walked format become eleven:
-/// values a factor of two outside of it are clamped, not wrapped.
+/// Fraction bits that a coefficient has beyond those of a walked value. Nine integer bits of the walked format become eleven, so that
+/// values outside of it by a factor of two are clamped and not wrapped.
 pub const FINER: u32 = 30;
 
 /// A cubic in each of `CH` channels, standing on one row.
@@ -36,7 +36,7 @@ impl<const CH: usize> Cubic<CH> {
     /// Source: Vlasic 2002, 4.2; change of basis without his divisions.
     #[must_use]
     pub fn fit(gradients: &Gradients, nodes: [[i32; 10]; CH], extra: u32) -> Self {
-        // From the anchor column to column 0: exact integer arithmetic modulo 2^64.
+        // The move from the anchor column to column 0 is exact, modulo 2^64.
         let back = i64::from(gradients.column());
         let step = |a: i64, b: i64| a.wrapping_sub(b.wrapping_mul(back));
         Self(nodes.map(|nodes| gradients.cubic(nodes, extra + FINER).moved_across(step)))
@@ -96,7 +96,7 @@ impl<const CH: usize> Walker for Cubical<CH> {
         }
     }
 
-    /// Clamped: through ten nodes a cubic overshoots their range by more than the guards of a walked level.
+    /// The value is clamped, because a cubic overshoots the range of its ten nodes by more than the guards of a walked level.
     #[inline(always)]
     fn value(&self) -> [u32; CH] {
         self.0.map(|[value, ..]| (value >> FINER).clamp(0, u32::MAX.into()) as u32)

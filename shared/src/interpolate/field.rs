@@ -1,4 +1,4 @@
-//! What a method interpolates, whichever way it gets from the corners to the pixels.
+//! What a method interpolates, on the screen or in perspective.
 //!
 //! A field knows values at nodes of a triangle, not where they lie on the screen. [`Field::fit`] makes it a polynomial of
 //! the screen's coordinates, to be walked by additions; [`Field::surface`] one of the place in the triangle, for
@@ -15,19 +15,19 @@ use crate::{
     setup::gradients::Gradients,
 };
 
-/// Values all over a triangle.
+/// A quantity that varies over a triangle.
 pub trait Field {
-    /// What it has at a point.
+    /// The value at a point.
     type Value;
-    /// It on the screen, without perspective.
+    /// The field as a polynomial on the screen, without perspective.
     type Patch: Patch<Walker: Walker<Value = Self::Value> + Copy> + Default;
-    /// It on the triangle.
+    /// The field as a polynomial of the place in the triangle.
     type Surface: Surface<Value = Self::Value> + Default;
 
-    /// Spreads it evenly over the triangle that `gradients` stands for.
+    /// Fits the polynomial on the screen, on the triangle of `gradients`.
     fn fit(&self, gradients: &Gradients) -> Self::Patch;
 
-    /// Spreads it evenly over the triangle in space.
+    /// The polynomial on the triangle in space.
     fn surface(&self) -> Self::Surface;
 }
 
@@ -48,7 +48,7 @@ impl<const N: usize, const CH: usize, const BITS: u32> Nodes<N, CH, BITS> {
         Self { values, extra, bias: [0; CH] }
     }
 
-    /// Plus `bias` in every channel.
+    /// The field plus `bias` in every channel.
     #[inline(always)]
     #[must_use]
     pub fn biased(self, bias: [i32; CH]) -> Self {
@@ -176,7 +176,7 @@ impl<A: Surface, B: Surface> Surface for (A, B) {
 }
 
 impl<const N: usize, const CH: usize, const BITS: u32> Nodes<N, CH, BITS> {
-    /// The nodes' sum, weighted in Q2.30.
+    /// The sum of the nodes with these weights, Q2.30.
     #[inline(always)]
     fn blend(&self, weights: [i32; N]) -> [i64; CH] {
         let mut values = self.bias.map(i64::from);
@@ -209,7 +209,7 @@ impl<const CH: usize, const BITS: u32> Surface for Nodes<6, CH, BITS> {
 impl<const CH: usize, const BITS: u32> Surface for Nodes<10, CH, BITS> {
     type Value = [u32; CH];
 
-    /// Clamped as a walked cubic is.
+    /// The value is clamped, as that of a walked cubic.
     #[inline(always)]
     fn at(&self, point: &Point) -> [u32; CH] {
         self.blend(point.ten()).map(|value| value.clamp(0, u32::MAX.into()) as u32)

@@ -16,7 +16,7 @@ pub mod quadric;
 
 /// A polynomial of one triangle, standing on one row.
 pub trait Patch: Copy {
-    /// What runs along a span of that row.
+    /// The walker along a span of that row.
     type Walker: Walker;
 
     /// Moves down `rows` rows, exactly.
@@ -28,16 +28,16 @@ pub trait Patch: Copy {
     /// A walker that stands on column `x`; its first step leads to `x - 1`.
     fn enter(&self, x: i32) -> Self::Walker;
 
-    /// Words that [`Self::save`] takes.
+    /// Number of words that [`Self::save`] writes.
     const WORDS: usize = 0;
 
-    /// Writes all that it is to the first `words`; false if it cannot, or they are too few.
+    /// Writes the polynomial to the first of `words`; false if it cannot be saved, or there are too few.
     #[inline(always)]
     fn save(&self, _words: &mut [u32]) -> bool {
         false
     }
 
-    /// What has been kept.
+    /// The polynomial that has been saved in `words`.
     #[inline(always)]
     #[must_use]
     fn load(_words: &[u32]) -> Option<Self> {
@@ -62,7 +62,7 @@ pub(crate) fn each_channel<const CH: usize>(mut f: impl FnMut(usize)) {
 
 /// Runs along a span from right to left.
 pub trait Walker {
-    /// What it has at a pixel.
+    /// The value at a pixel.
     type Value;
 
     /// Moves one pixel to the left.
@@ -72,7 +72,7 @@ pub trait Walker {
     fn value(&self) -> Self::Value;
 }
 
-/// The same everywhere.
+/// A polynomial without a value, for methods that interpolate nothing.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Constant;
 
@@ -104,7 +104,7 @@ impl Walker for Constant {
     fn value(&self) {}
 }
 
-/// A value that goes along with a polynomial, the same everywhere.
+/// A value that is the same everywhere, as a polynomial.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Held<T>(pub T);
 

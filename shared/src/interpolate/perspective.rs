@@ -1,10 +1,10 @@
 //! Interpolation in perspective (Blinn 1992; Heckbert and Moreton 1991).
 //!
-//! What is linear over a triangle in space is not so on the screen, but its quotient by the distance is, and so is one
-//! over the distance: the inverse depth w. With the shares b of the corners in a point of the screen, their shares in the point
-//! of the triangle that is seen there are b w / Σ b w. A polynomial of degree d in these is a quotient of two polynomials
-//! of that degree on the screen. Instead of its numerator, whose node values shrink with w^d and with them its precision,
-//! the three linear numerators of the shares are walked, whatever is interpolated, and it is worked out at the pixel.
+//! A quantity that is linear over a triangle in space is not linear on the screen, but its quotient by the distance is, and so is the
+//! inverse depth w. If b are the barycentric coordinates of a point on the screen, those of the point in the triangle that is seen there
+//! are b w / Σ b w. A polynomial of degree d in these is a quotient of two polynomials of that degree on the screen. The node values of its
+//! numerator shrink with w^d, and its precision with them. So the three linear numerators of the barycentric coordinates are walked
+//! instead, whatever is interpolated, and the polynomial is evaluated at the pixel.
 //!
 //! Cost: 3 additions of 64 bits a step; at each pixel that is seen a reciprocal, 2 products, and Lagrange's weights of the
 //! nodes: none for planes, 6 products for quadratics, 15 for cubics, and then a product per node and channel.
@@ -16,18 +16,18 @@ use crate::{
     setup::gradients::Gradients,
 };
 
-/// Fraction bits of shares: a Q2.30 holds them.
+/// Fraction bits of barycentric coordinates, Q2.30.
 pub(crate) const SHARE: u32 = 30;
-/// One, as a share.
+/// One, as a barycentric coordinate.
 const ONE: i64 = 1 << SHARE;
 
-/// A place in a triangle: its shares of the corners, Q2.30, that sum up to one.
+/// A point of a triangle, by its barycentric coordinates, Q2.30, whose sum is one.
 #[derive(Clone, Copy, Debug)]
 pub struct Point(pub(crate) [i32; 3]);
 
-/// Values on a triangle, at any place.
+/// A quantity that can be evaluated at any point of a triangle.
 pub trait Surface: Copy {
-    /// What it has at a place.
+    /// The value at a point.
     type Value;
 
     /// The value at `point`.
@@ -37,7 +37,7 @@ pub trait Surface: Copy {
 /// A surface in perspective, standing on one row.
 #[derive(Clone, Copy, Debug)]
 pub struct PerspectivePatch<S> {
-    /// Numerators of the shares of corners 1 and 2, and their common denominator.
+    /// Numerators of the barycentric coordinates of corners 1 and 2, and their common denominator.
     rows: [Row; 3],
     surface: S,
 }
@@ -52,20 +52,20 @@ struct Row {
 }
 
 impl<S: Surface> PerspectivePatch<S> {
-    /// `surface` on the triangle whose corners have this inverse depth, all of them more than nothing.
+    /// `surface` on the triangle whose corners have this inverse depth, all of them positive.
     ///
-    /// Error of shares, against those of the same corners: at most 2^-28 k / r, with k the length over the height of the
-    /// triangle, and r the least inverse depth over the largest.
+    /// Error of barycentric coordinates: at most 2^-28 k / r, with k the length over the height of the triangle, and r the least inverse
+    /// depth over the largest.
     #[must_use]
     pub fn new(gradients: &Gradients, inv_depth: [i32; 3], surface: S) -> Self {
         Self { rows: rows(gradients, inv_depth), surface }
     }
 }
 
-/// What the shares of corners with this inverse depth are quotients of.
+/// The linear functions whose quotients are the barycentric coordinates, for corners with this inverse depth.
 #[inline(never)]
 fn rows(gradients: &Gradients, inv_depth: [i32; 3]) -> [Row; 3] {
-    // A common factor cancels out: the largest inverse depth just below 1.
+    // A common factor cancels out, so the largest inverse depth is scaled to just below 1.
     let zeros = inv_depth.iter().fold(1, |m, w| m | w).leading_zeros();
     let [a, b, c] = inv_depth.map(|w| w.wrapping_shl(zeros.saturating_sub(2)));
     let row = |nodes| {
@@ -130,10 +130,10 @@ impl<S: Surface> Walker for PerspectiveWalker<S> {
 }
 
 impl Point {
-    /// With the shares `s` and `t` of `whole` for corners 1 and 2.
+    /// The point with the barycentric coordinates `s / whole` and `t / whole` of corners 1 and 2.
     #[inline(always)]
     fn new(s: i64, t: i64, whole: i64) -> Self {
-        // All of them moved up until `whole` fills 32 bits, and the numerators 30: recip is 2^62 over it.
+        // All are shifted up until `whole` fills 32 bits, and the numerators 30; the reciprocal of `whole` is 2^62 over it.
         let zeros = whole.max(1).leading_zeros();
         let inverse = i64::from(recip((whole.wrapping_shl(zeros) as u64 >> 32) as u32));
         let share = |part: i64| (((part.wrapping_shl(zeros.saturating_sub(2)) >> 32) * inverse) >> SHARE) as i32;

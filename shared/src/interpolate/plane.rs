@@ -24,11 +24,12 @@ struct Row {
 }
 
 impl<const CH: usize> Plane<CH> {
-    /// The field with value `nodes[channel][k]` at corner `k`, all of them in a range narrower than 2^`BITS`; walked with `extra` more fraction bits than the nodes have.
+    /// The field with value `nodes[channel][k]` at corner `k`, all of them in a range narrower than 2^`BITS`; walked with `extra` more
+    /// fraction bits than the nodes have.
     ///
-    /// Error: at most 2^-1 (1 + S) units of the walked format, S the distance in
-    /// columns plus rows from the basis' anchor (see [`Gradients`]). On triangles of up to 64 pixels: 2^4 (1 + S) units more. Set-up
-    /// costs at most 2^-22 k of the nodes' range, k the length over the height.
+    /// Error: at most 2^-1 (1 + S) units of the walked format, S the distance in columns plus rows from the anchor (see [`Gradients`]). On
+    /// triangles of up to 64 pixels: 2^4 (1 + S) units more. Set-up costs at most 2^-22 k of the nodes' range, k the length over the
+    /// height.
     #[inline(always)]
     #[must_use]
     pub fn fit<const BITS: u32>(gradients: &Gradients, nodes: [[i32; 3]; CH], extra: u32) -> Self {

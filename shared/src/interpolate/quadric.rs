@@ -15,7 +15,7 @@ impl<const CH: usize> Default for Quadric<CH> {
     }
 }
 
-/// One channel, x measured from column 0: what a row needs, and how it changes from row to row.
+/// One channel, with x measured from column 0: the polynomial on one row, and how it changes from row to row.
 #[derive(Clone, Copy, Debug, Default)]
 struct Row {
     /// Value at column 0.
@@ -47,7 +47,7 @@ impl<const CH: usize> Quadric<CH> {
             let [c, dx, dy, dxx, dxy, dyy] =
                 if BITS <= QUADRATIC { gradients.quadratic::<BITS>(nodes, extra) } else { long::<BITS>(gradients, nodes, extra) };
             let x = gradients.column();
-            // From the anchor column to column 0: exact integer arithmetic modulo 2^32.
+            // The move from the anchor column to column 0 is exact, modulo 2^32.
             *row = Row {
                 c: c.wrapping_sub(x.wrapping_mul(dx.wrapping_sub(dxx.wrapping_mul(x)))),
                 c_down: dy.wrapping_add(dyy).wrapping_sub(dxy.wrapping_mul(x)),
@@ -71,7 +71,7 @@ impl<const CH: usize> Quadric<CH> {
     }
 }
 
-/// One channel by the long way: a call is a small share of it.
+/// Fits one channel outside of words, in a function of its own, since a call is a small share of the cost.
 #[inline(never)]
 fn long<const BITS: u32>(gradients: &Gradients, nodes: [i32; 6], extra: u32) -> [i32; 6] {
     gradients.quadratic::<BITS>(nodes, extra)

@@ -1,4 +1,4 @@
-//! The lights of one frame, moved into object space: once per frame, instead of every normal out of it.
+//! The lights of one frame in object space. They are moved there once a frame, so that no normal needs to be rotated.
 
 use crate::{
     format::{COSINE, MAX_LIGHTS, UNIT},
@@ -13,23 +13,23 @@ use crate::{
 /// A light in object space.
 #[derive(Clone, Copy, Debug)]
 pub enum Source {
-    /// Unit vector towards it, Q2.30, and the unit half vector between it and an infinite viewer.
+    /// A light that is infinitely far, by unit vectors, Q2.30.
     Directional {
         /// The unit vector towards the light, L.
         towards: [i32; 3],
-        /// The unit half vector, H; a local viewer makes no use of it.
+        /// The unit half vector H between L and an infinite viewer; unused under a local viewer.
         half: [i32; 3],
     },
-    /// Position, Q18.14.
+    /// A light or viewer at this position, Q18.14.
     Point([i32; 3]),
 }
 
 /// Where highlights are seen from, in object space.
 #[derive(Clone, Copy, Debug)]
 pub enum Viewer {
-    /// Unit vector towards it, Q2.30.
+    /// A viewer that is infinitely far, by the unit vector towards it, Q2.30.
     Infinite([i32; 3]),
-    /// Position, Q18.14.
+    /// A light or viewer at this position, Q18.14.
     Local([i32; 3]),
 }
 
@@ -42,7 +42,7 @@ pub struct Lighting {
     pub viewer: Viewer,
     /// The axes of the eye, to the right, up, and towards the viewer: unit vectors, Q2.30.
     pub axes: [[i32; 3]; 3],
-    /// The eye in these axes, seen from the object's origin, Q18.14: as exact as the camera, unlike a [`Viewer::Local`].
+    /// The eye in these axes, relative to the origin of object space, Q18.14. It is as exact as the camera, unlike [`Viewer::Local`].
     pub eye: [i32; 3],
 }
 
@@ -67,8 +67,8 @@ impl Lighting {
         Self { sources, viewer, axes: [right, up, towards_eye], eye: [-x, -y, z] }
     }
 
-    /// The two directions that matter if there is just one light, directional, under an infinite viewer:
-    /// then N·L and N·H are linear in N, which every method can use.
+    /// L and H, if there is just one light, directional, under an infinite viewer. N·L and N·H are then linear in N, which every method can
+    /// use.
     #[must_use]
     pub fn constant(&self) -> Option<[[i32; 3]; 2]> {
         match (self.sources.as_slice(), self.viewer) {
@@ -94,7 +94,7 @@ impl Lighting {
         }
     }
 
-    /// All lights are directional and the viewer is infinitely far: L and H are the same everywhere.
+    /// Whether all lights are directional and the viewer is infinitely far, so that L and H are the same everywhere.
     #[must_use]
     pub fn is_constant(&self) -> bool {
         let directional = self.sources.iter().all(|source| matches!(source, Source::Directional { .. }));

@@ -1,4 +1,4 @@
-//! What a material makes of the scene's lights, worked out once: [`Reflectance`] in light, [`MaterialTables`] in colours.
+//! What a material reflects of the lights of a scene, computed once: [`Reflectance`] in levels, [`MaterialTables`] in colours.
 
 use crate::{
     arch::product::upper,
@@ -15,7 +15,7 @@ use zerocopy::{FromBytes, Immutable, IntoBytes, KnownLayout};
 /// Largest level of a node, Q9.7.
 pub const FULL: i32 = 255 << LEVEL;
 
-/// What is raised to the exponent `n` of a material, such that highlights have the same width by all methods.
+/// The quantity that is raised to the exponent `n` of a material, such that highlights are equally wide by all methods.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Highlight {
     /// (N·H)^n (Blinn 1977).
@@ -30,7 +30,7 @@ pub enum Highlight {
 }
 
 impl Highlight {
-    /// What of it is raised to the material's exponent.
+    /// The function of the quantity by which a [`HighlightLut`] is indexed that is raised to the exponent.
     #[must_use]
     pub const fn base(self) -> Base {
         match self {
@@ -50,13 +50,13 @@ pub struct Gains {
     specular: [u16; 3],
 }
 
-/// A material under the scene's lights, whatever the pixel format: the gains of each light, and the table of highlights.
+/// A material under the lights of a scene: the gains of each light, and the lookup table of highlights.
 #[derive(FromBytes, IntoBytes, Immutable, KnownLayout, Clone, Copy, Debug)]
 #[repr(C)]
 pub struct Reflectance {
-    /// x^exponent.
+    /// The lookup table of highlights.
     pub highlight_lut: HighlightLut,
-    /// Level without lights, Q9.7.
+    /// The levels of ambient light, Q9.7.
     ambient: [i32; 3],
     highlight_threshold: i32,
     /// Bits of each channel of the pixel format.
@@ -64,18 +64,18 @@ pub struct Reflectance {
     gains: [Gains; MAX_LIGHTS],
     /// Channels at full level for dither, Q0.8 scaled to the output's depth.
     base: [u16; 3],
-    /// Not 0: see [`Self::three_channels`].
+    /// Not 0 if [`Self::three_channels`].
     three_channels: u8,
-    /// Not 0: see [`Self::holds_levels`].
+    /// Not 0 if [`Self::holds_levels`].
     holds_levels: u8,
 }
 
 /// A material in the colours of a pixel format.
 #[derive(Debug)]
 pub struct MaterialTables<'a, C: Pixel> {
-    /// Colour of each level, if one level says it all.
+    /// Colour of each level, for a material of one channel.
     pub ramp: &'a [C::Stored; RAMP],
-    /// What it reflects.
+    /// What the material reflects, in levels.
     pub reflectance: &'a Reflectance,
 }
 
@@ -110,7 +110,7 @@ fn along(colour: Colour, base: Colour) -> bool {
 }
 
 impl Reflectance {
-    /// Nothing yet; all zeros, which takes no flash in static memory.
+    /// A reflectance before it is filled; all zeros, which takes no flash in static memory.
     pub const EMPTY: Self = Self {
         base: [0; 3],
         highlight_lut: HighlightLut::EMPTY,
@@ -122,8 +122,9 @@ impl Reflectance {
         depth: [0; 3],
     };
 
-    /// Works out `material` under `lights`, for a method with these highlights and a pixel format with so many bits a channel, `grey` or
-    /// not. Where one level says it all, and it may, the highlight's table `holds_levels` instead of shares.
+    /// Computes the reflectance of `material` under `lights`, for a method with these highlights and a pixel format with `depth` bits a
+    /// channel, `grey` or not. If the method allows it, and there is one channel and one light, the table of highlights `holds_levels`
+    /// instead of fractions.
     pub fn fill(
         &mut self,
         header: &Header,
@@ -169,14 +170,14 @@ impl Reflectance {
         });
     }
 
-    /// One walked level is not enough: the material has colours that are no multiples of one another.
+    /// Whether three levels are walked instead of one, because the colours of the material are no multiples of one another.
     #[inline(always)]
     #[must_use]
     pub fn three_channels(&self) -> bool {
         self.three_channels != 0
     }
 
-    /// The table of highlights holds levels: what a highlight adds to the only light, on top of the level without lights.
+    /// Whether the table of highlights holds levels: those that the highlight of the only light adds, plus the ambient level.
     #[inline(always)]
     #[must_use]
     pub fn holds_levels(&self) -> bool {
@@ -198,7 +199,7 @@ impl Reflectance {
         (self.ambient[0] + light).min(FULL)
     }
 
-    /// [`Self::level`] at six nodes where there is no highlight.
+    /// [`Self::level`] at six nodes without a highlight.
     #[inline]
     #[must_use]
     pub fn six_diffuse(&self, [a, b, c, ab, bc, ca]: [i32; 6]) -> [i32; 6] {
@@ -221,7 +222,7 @@ impl Reflectance {
         [level(a, i), level(b, j), level(c, k), level(ab, ij), level(bc, jk), level(ca, ki)]
     }
 
-    /// Level without highlight and not clamped; rounded as by [`reflected`].
+    /// The level without highlight, not clamped, rounded as by [`reflected`].
     #[inline(always)]
     fn diffuse_level(&self, cosine: i32) -> i32 {
         let [gains, ..] = &self.gains;
@@ -248,14 +249,14 @@ impl Reflectance {
         levels.map(|level| level.min(FULL))
     }
 
-    /// Levels without lights, Q9.7.
+    /// The levels of ambient light, Q9.7.
     #[inline(always)]
     #[must_use]
     pub fn ambient(&self) -> [i32; 3] {
         self.ambient
     }
 
-    /// What the material makes of light number `light`.
+    /// The gains of light number `light`.
     #[inline(always)]
     #[must_use]
     pub fn gains(&self, light: usize) -> Gains {
@@ -265,7 +266,7 @@ impl Reflectance {
     /// Adds what a light sends, N·L (Q5.27) and the highlight (Q0.16), to the levels of a pixel, Q9.7.
     #[inline(always)]
     pub fn add_light(&self, levels: &mut [i32; 3], gains: Gains, Reflection { diffuse, highlight }: Reflection) {
-        // What approximations lift above 1 counts as 1.
+        // Approximations may exceed 1, which counts as 1.
         let diffuse = diffuse.min(1 << PIXEL_COSINE) << (COSINE - PIXEL_COSINE);
         self.add(levels, &gains, diffuse, highlight);
     }
@@ -286,7 +287,7 @@ impl Reflectance {
         (level + (BIAS << LEVEL) + (1 << (LEVEL - 1))) as u32
     }
 
-    /// One light on one channel is at most what the ramp takes.
+    /// Whether all levels of one light on one channel lie within the ramp.
     fn fits(&self) -> bool {
         let [gains, ..] = &self.gains;
         let sum = self.ambient[0] as u32 + u32::from(gains.diffuse[0]) + u32::from(gains.specular[0]);
@@ -321,7 +322,7 @@ pub fn fill_ramp<C: Pixel>(ramp: &mut [C::Stored; RAMP], reflectance: &Reflectan
 }
 
 impl<'a, C: Pixel> MaterialTables<'a, C> {
-    /// What it takes to walk levels of one light on a material of one channel, if the highlight's table holds levels.
+    /// The table of colours with the only light's gain, if the table of highlights holds levels.
     #[must_use]
     pub fn one_light_ramp(&self) -> Option<OneLightRamp<'a, C>> {
         let Reflectance { gains: [gains, ..], .. } = self.reflectance;
@@ -361,7 +362,7 @@ impl<'a, C: Pixel> MaterialTables<'a, C> {
     }
 }
 
-/// What one light sends from a pixel to the viewer, before the material's gains.
+/// The light that is reflected at a pixel, before the gains of the material.
 #[derive(Clone, Copy, Debug)]
 pub struct Reflection {
     /// N·L, Q5.27; negative where the light is behind the surface.
@@ -370,12 +371,12 @@ pub struct Reflection {
     pub highlight: u32,
 }
 
-/// One light on a material of one channel, its levels walked: what its highlight adds, and all that is the same everywhere, is in
-/// the highlight's table.
+/// The table of colours of a material of one channel under one light, ready for the pixel loop: the diffuse level is walked, and the table
+/// of highlights holds the levels of highlight and ambient light.
 #[derive(Debug)]
 pub struct OneLightRamp<'a, C: Pixel> {
     ramp: &'a [C::Stored; RAMP],
-    /// Level at cosine 1, Q9.7.
+    /// The diffuse level at cosine 1, Q9.7.
     diffuse: u16,
 }
 
@@ -388,21 +389,21 @@ impl<C: Pixel> Clone for OneLightRamp<'_, C> {
 impl<C: Pixel> Copy for OneLightRamp<'_, C> {}
 
 impl<C: Pixel> OneLightRamp<'_, C> {
-    /// The diffuse level at a node, in Q10 with `bits` more, at most 20, rounded down; `cosine` in Q2.30.
+    /// The diffuse level at a node of this cosine (Q2.30), in Q10 with `bits` more, at most 20, rounded down.
     #[inline(always)]
     #[must_use]
     pub fn node(&self, cosine: i32, bits: u32) -> i32 {
         upper(cosine, i32::from(self.diffuse) << 15) >> (COSINE + LEVEL - 17 - bits)
     }
 
-    /// No diffuse level is above 255.
+    /// Whether no diffuse level is above 255.
     #[inline(always)]
     #[must_use]
     pub fn is_within(&self) -> bool {
         i32::from(self.diffuse) <= FULL
     }
 
-    /// The colour of a walked diffuse level, not negative, Q9.`BITS`, and the highlight's entry.
+    /// The colour of a walked diffuse level, not negative, Q9.`BITS`, plus an entry of the table of highlights.
     #[inline(always)]
     #[must_use]
     pub fn colour<const BITS: u32>(&self, diffuse: u32, highlight: u32) -> C {
@@ -410,13 +411,13 @@ impl<C: Pixel> OneLightRamp<'_, C> {
     }
 }
 
-/// A level, Q9.7, as it is walked, with half a step: the guards at the ramp's ends are not reached.
+/// A level, Q9.7, as a biased index of the ramp with a rounding half.
 #[inline(always)]
 fn walked(level: i32, half: u32) -> u32 {
     ((level + (BIAS << LEVEL) + (1 << half)) as u32) << (WALK - LEVEL)
 }
 
-/// Level, Q9.7, that the gains `(diffuse, specular)` make of N·L (Q2.30) and a power of N·H (Q0.16).
+/// The level, Q9.7, of light reflected with the gains `(diffuse, specular)`, for N·L (Q2.30) and a highlight (Q0.16).
 #[inline(always)]
 fn reflected((diffuse, specular): (u16, u16), cosine: i32, highlight: u32) -> i32 {
     let cosine = cosine.max(0) as u32 >> (COSINE - 15);

@@ -1,4 +1,4 @@
-//! The lights of one frame, and what materials make of them.
+//! The lights of one frame, and what materials reflect of them.
 
 pub mod lights;
 pub mod materials;

@@ -1,6 +1,6 @@
-//! Lookup in the highlight's table by quantities that are interpolated in steps of the table.
+//! Lookup in the highlight's table by quantities that are interpolated in steps of the table, see [`HighlightLut`].
 //!
-//! The factor that turns a cosine into an index of the table is applied at the nodes of an interpolation, not at every pixel.
+//! The factor that turns a cosine into an index is applied at the nodes of the interpolation, and not at every pixel.
 
 use crate::{
     arch::product::upper_by_half_word,
@@ -40,8 +40,8 @@ impl<'a> QuotientLookup<'a> {
 
     /// The entry nearest to a quotient, unsigned Q0.16.
     ///
-    /// `quotient` is the upper half of the product of the numerator, in the format of a node with [`EXTRA`] more fraction bits, and half the
-    /// reciprocal length, Q2.30. Domain: every quotient that fits; small ones take the last entry. Error: at most
+    /// `quotient` is the upper half of the product of the numerator, in the format of a node with [`EXTRA`] more fraction bits, and half
+    /// the reciprocal length, Q2.30. Domain: every quotient that fits; small ones take the last entry. Error: at most
     /// [`crate::math::highlight_lut::NEAREST_ERROR`] for lengths of 1/2 to 1 (tests::entries_are_the_nearest). Source: our own.
     #[inline(always)]
     #[must_use]
@@ -86,8 +86,8 @@ impl<'a> DefectLookup<'a> {
 
     /// The entry nearest to a defect, unsigned Q0.16.
     ///
-    /// `defect` is in the format of a node with 6 more fraction bits, Q2.30, with [`Self::half`] added. Domain: every `i32`; large ones take
-    /// the last entry. Error: at most [`crate::math::highlight_lut::NEAREST_ERROR`] (tests::entries_are_the_nearest). Source: our own.
+    /// `defect` is in the format of a node with 6 more fraction bits, Q2.30, with [`Self::half`] added. Domain: every `i32`; large ones
+    /// take the last entry. Error: at most [`crate::math::highlight_lut::NEAREST_ERROR`] (tests::entries_are_the_nearest). Source: our own.
     #[inline(always)]
     #[must_use]
     pub fn at(&self, defect: i32) -> u32 {

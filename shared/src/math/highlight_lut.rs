@@ -1,4 +1,4 @@
-//! The power function of the highlight, x^n, from a table.
+//! The lookup table of the highlight, x^n.
 
 use crate::{
     arch::product::{product, unsigned_product, upper_by_half_word},
@@ -18,7 +18,7 @@ pub(crate) const SIZE: usize = 2048;
 #[derive(FromBytes, IntoBytes, Immutable, KnownLayout, Clone, Copy, Debug)]
 #[repr(C)]
 pub struct HighlightLut {
-    /// 4 max(n, 8), where n is the exponent of the argument: 1 - x times 64 of it is an index.
+    /// 4 max(n, 8), where n is the exponent of the argument: an index is (1 - x) times 64 times this.
     pub(crate) scale: u32,
     /// The value of entries where the power is 0, unsigned Q0.16.
     floor: u16,
@@ -94,7 +94,7 @@ impl HighlightLut {
             }
             *entry = (u64::from(floor) + ((result * u64::from(full) + (1 << 30)) >> 31)).min(0xffff) as u16;
         }
-        // The lowest entry is what everything below the domain gets, in the pixel loop the one above it.
+        // Everything below the domain gets the lowest entry; in the pixel loop, the one above it.
         let [.., lower, lowest] = &mut self.table;
         *lowest = floor;
         if scale > WHOLE {
@@ -102,7 +102,7 @@ impl HighlightLut {
         }
     }
 
-    /// Table index of a cosine (Q2.30), unsigned Q20.12: 1 - cosine in steps of the table. It is past the end for small cosines.
+    /// Position of a cosine (Q2.30) in the table, unsigned Q20.12: 1 - cosine in steps of the table. Small cosines lie past the end.
     #[inline(always)]
     fn position(&self, cosine: i32) -> u32 {
         let below = (1i32 << COSINE).saturating_sub(cosine).max(0) as u32;
@@ -123,7 +123,7 @@ impl HighlightLut {
         }
     }
 
-    /// The table for the pixel loop, where the entry nearest to a cosine, Q5.27, is number `((top - cosine) * factor) >> 37`.
+    /// Lookup of the nearest entry by a cosine. The entry nearest to a cosine, Q5.27, is number `((top - cosine) * factor) >> 37`.
     #[must_use]
     pub fn by_cosine(&self) -> CosineLookup<'_> {
         let scale = NonZeroU32::new(self.scale).unwrap_or(WHOLE);
@@ -150,7 +150,7 @@ impl HighlightLut {
     }
 }
 
-/// Lookup of the nearest entry in a pixel loop: one product and one load.
+/// Lookup of the nearest entry by a cosine, for pixel loops: one product and one load.
 #[derive(Clone, Copy, Debug)]
 pub struct CosineLookup<'a> {
     table: &'a [u16; SIZE + 1],

@@ -99,7 +99,7 @@ pub const LEAST: u32 = (1 << 30) - (1 << 22);
 pub struct HalfRsqrt([u32; 2048]);
 
 impl HalfRsqrt {
-    /// The table, which is constant.
+    /// The table; there is only one.
     #[must_use]
     pub fn get() -> &'static Self {
         &TABLE

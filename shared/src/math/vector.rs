@@ -11,7 +11,7 @@ pub fn dot(a: [i32; 3], b: [i32; 3]) -> i64 {
 
 /// A vertex normal or position as `i32`, in its format.
 ///
-/// It is written out because `map` is a loop through memory at opt-level "s".
+/// The components are written out because `map` is a loop through memory at opt-level "s".
 #[inline(always)]
 #[must_use]
 pub fn wide([x, y, z]: [i16; 3]) -> [i32; 3] {
@@ -27,7 +27,7 @@ pub fn narrow_dot([a0, a1, a2]: [i32; 3], [b0, b1, b2]: [i32; 3]) -> i32 {
 
 /// `f` of each pair of components.
 ///
-/// It is written out so that there is no index, and no check of one.
+/// The components are written out so that no index is checked.
 #[inline(always)]
 #[must_use]
 pub fn zip<A, B, R>([a0, a1, a2]: [A; 3], [b0, b1, b2]: [B; 3], f: impl Fn(A, B) -> R) -> [R; 3] {

@@ -1,4 +1,4 @@
-//! The triangles of one mesh, each set up and shaded into a band.
+//! Draws the triangles of one mesh into a band: each is set up and shaded.
 
 pub(crate) mod vertices;
 
@@ -26,37 +26,37 @@ use crate::{
     stream::record::{Triangle, Vertex},
 };
 
-/// What the triangles of one mesh have in common in one frame.
+/// What all triangles of one mesh have in common in one frame.
 pub(crate) struct MeshPass<'f, C: Pixel> {
     pub(crate) method: &'static dyn Method,
     pub(crate) shading: Shading<'f>,
     pub(crate) tables: MaterialTables<'f, C>,
     pub(crate) dither: bool,
     pub(crate) stage: VertexStage<'f>,
-    /// Where triangles may overlap, if not everywhere.
+    /// Where triangles may overlap; `None` if they may do so everywhere.
     pub(crate) depth_elision: Option<&'f DepthElision>,
     pub(crate) vertices: &'f [Vertex],
-    /// Those on the screen, as far as they are kept.
+    /// The cached vertices on the screen.
     pub(crate) cached: &'f [ScreenVertex],
     pub(crate) viewport: Viewport,
-    /// Interpolation in perspective, where it matters.
+    /// Whether light is interpolated in perspective.
     pub(crate) perspective: bool,
 }
 
 /// See [`Loops::draw`].
 pub(crate) type DrawTriangle<C> = fn(&TriangleSetup<'_>, &Shading<'_>, MaterialTables<'_, C>, &mut Band<'_, C>) -> Option<u32>;
 
-/// A triangle, its corners turning clockwise on the screen.
+/// A triangle whose corners run clockwise on the screen.
 struct MeshTriangle<'f> {
     corners: [&'f ScreenVertex; 3],
     triangle: &'f Triangle,
-    /// Those that its indices are of.
+    /// The vertices that the triangle's indices lead to.
     vertices: &'f [Vertex],
 }
 
 impl<C: Pixel> MeshPass<'_, C> {
-    /// Draws the triangle of `entry` and those that follow it in the same mesh, up to `end`, by the loops `L` where they take one; returns
-    /// their pixels in `band`, and the first entry of another mesh.
+    /// Draws the triangle of `entry` and all that follow in the same mesh, whose triangles end at `end`, by the loops `L` where they can.
+    /// Returns the number of pixels in `band`, and the first entry of another mesh.
     #[inline(never)]
     pub(crate) fn run<L: Loops>(
         &self,
@@ -68,12 +68,13 @@ impl<C: Pixel> MeshPass<'_, C> {
     ) -> (u32, Option<Entry>) {
         let mut pixels = 0u32;
         loop {
-            // A stream that has been checked has it.
+            // A checked stream has every triangle.
             if let Some(triangle) = triangles.get(entry.triangle() as usize) {
                 let drawn = if L::GENERAL || !entry.is_word_sized() {
                     self.draw(L::draw, triangle, band)
                 } else {
-                    // A triangle that the loops do not take is set up anew: handing it over would keep its set-up in memory for all.
+                    // A triangle that the loops decline is set up anew: if its set-up were passed on, that of all triangles would be kept
+                    // in memory.
                     self.draw_word_sized::<L>(triangle, entry.key(), band).unwrap_or_else(|| self.draw(General::draw, triangle, band))
                 };
                 pixels = pixels.saturating_add(drawn);
@@ -90,7 +91,7 @@ impl<C: Pixel> MeshPass<'_, C> {
         self.method.shade(setup, &self.shading, &mut BandCanvas { band, tables: self.tables, dither: self.dither })
     }
 
-    /// Draws `triangle`, of whatever size, by `loops` if they take it; returns its pixels in `band`.
+    /// Draws a triangle of any size, by `loops` if they can; returns the number of its pixels in `band`.
     #[inline(never)]
     pub(crate) fn draw(&self, loops: DrawTriangle<C>, triangle: &Triangle, band: &mut Band<'_, C>) -> u32 {
         match self.corners(triangle).filter(is_ready) {
@@ -99,8 +100,9 @@ impl<C: Pixel> MeshPass<'_, C> {
         }
     }
 
-    /// Draws a triangle that [`Viewport::is_word_sized`], by its `key` in [`crate::raster::active`]; `None` if the loops do not take it.
-    // Armv6-M reaches little of a large stack frame: a call of its own there.
+    /// Draws a word-sized triangle, see [`Viewport::is_word_sized`]; `key` identifies it among active triangles. `None` if the loops
+    /// decline it.
+    // Instructions of Armv6-M reach little of a large stack frame, so this is a call there.
     #[cfg_attr(all(target_arch = "arm", not(target_has_atomic = "32")), inline(never))]
     #[cfg_attr(not(all(target_arch = "arm", not(target_has_atomic = "32"))), inline(always))]
     fn draw_word_sized<L: Loops>(&self, triangle: &Triangle, key: u32, band: &mut Band<'_, C>) -> Option<u32> {
@@ -137,21 +139,21 @@ impl<C: Pixel> MeshPass<'_, C> {
         L::draw(&setup, &self.shading, self.tables, band)
     }
 
-    /// Corners on the screen; `None` if one is not kept.
+    /// The cached corners on the screen; `None` if one is not cached.
     #[inline(always)]
     fn corners(&self, triangle: &Triangle) -> Option<[&ScreenVertex; 3]> {
         let [a, c, b] = triangle.corners;
         Some([self.cached.get(usize::from(a))?, self.cached.get(usize::from(b))?, self.cached.get(usize::from(c))?])
     }
 
-    /// Others may overlap a triangle.
+    /// Whether other triangles may overlap this one.
     #[inline(always)]
     fn needs_depth_test(&self, screen: &ScreenTriangle) -> bool {
         let [[x0, top], [x1, y1], [x2, y2]] = screen.corners;
         self.depth_elision.is_none_or(|elision| elision.needs_depth_test([x0.min(x1).min(x2), x0.max(x1).max(x2)], [top, y1.max(y2)]))
     }
 
-    /// The visible box of `triangle`; `None` if it shows its back, or no pixel can belong to it.
+    /// The visible bounding box of `triangle`; `None` if it shows its back, or no pixel can belong to it.
     pub(crate) fn bounds(&self, triangle: &Triangle) -> Option<Bounds> {
         match self.corners(triangle).filter(is_ready) {
             Some([a, b, c]) => self.viewport.bounds(&Extent::new([[a.x, a.y], [b.x, b.y], [c.x, c.y]])),
@@ -159,7 +161,8 @@ impl<C: Pixel> MeshPass<'_, C> {
         }
     }
 
-    /// Draws a triangle whose corners are not kept, or not on the screen.
+    /// Draws a triangle that has a corner that is not cached, or not on the screen: transforms all three, and clips the triangle if need
+    /// be.
     #[cold]
     #[inline(never)]
     fn draw_transformed_anew(&self, loops: DrawTriangle<C>, triangle: &Triangle, band: &mut Band<'_, C>) -> u32 {
@@ -200,7 +203,7 @@ impl<C: Pixel> MeshPass<'_, C> {
         }
     }
 
-    /// Draws the pixels wholly inside, then the others that it touches, with its corners on a finer grid.
+    /// Draws the pixels wholly inside, then the edge pixels, with the corners on a finer grid.
     #[cold]
     #[inline(never)]
     fn draw_antialiased(&self, loops: DrawTriangle<C>, placed: &MeshTriangle<'_>, band: &mut Band<'_, C>) -> u32 {
@@ -210,7 +213,7 @@ impl<C: Pixel> MeshPass<'_, C> {
             + self.draw_pixels(loops, PixelSet::Edge(finer), &MeshTriangle { corners: [a, b, c], ..*placed }, band)
     }
 
-    /// Sets up a triangle and draws part of its pixels.
+    /// Sets up a triangle and draws the pixels of the set `pixels`.
     fn draw_pixels(&self, loops: DrawTriangle<C>, pixels: PixelSet, placed: &MeshTriangle<'_>, band: &mut Band<'_, C>) -> u32 {
         let width = band.width as i32;
         let by_rows = pixels == PixelSet::Centres;

@@ -1,4 +1,4 @@
-//! The vertices of one mesh, taken to the screen and lit.
+//! The vertices of one mesh, transformed to the screen and lit.
 
 use crate::{
     format::UNIT,
@@ -16,20 +16,20 @@ use crate::{
     stream::record::{Triangle, Vertex},
 };
 
-/// What takes the vertices of one mesh to the screen in one frame.
+/// The vertex stage of one mesh in one frame.
 pub(crate) struct VertexStage<'f> {
     pub(crate) view: &'f View,
     pub(crate) lighting: &'f Lighting,
     /// See [`Lighting::constant`].
     pub(crate) constant: Option<&'f [Direction; 2]>,
     pub(crate) reflectance: &'f Reflectance,
-    /// What the method wants to know of it at vertices.
+    /// The light that the method needs at vertices.
     pub(crate) light: VertexLight,
 }
 
 impl VertexStage<'_> {
-    /// The corners' `[x, y]` on the screen, turning clockwise, against the stream's order; `None` if one is not kept or off
-    /// the screen.
+    /// The corners `[x, y]` on the screen, clockwise, which is against the order of the stream; `None` if one is not cached or needs
+    /// clipping.
     #[inline(always)]
     pub(crate) fn corners(&self, cached: &mut [ScreenVertex], vertices: &[Vertex], triangle: &Triangle) -> Option<[[i32; 2]; 3]> {
         let [a, b, c] = triangle.corners;
@@ -37,7 +37,7 @@ impl VertexStage<'_> {
         Some([place(a)?, place(c)?, place(b)?])
     }
 
-    /// Where `corner` is on the screen; it is transformed when it is first asked for.
+    /// The position of `corner` on the screen; it is transformed at its first use.
     #[inline(always)]
     fn place(&self, cached: &mut [ScreenVertex], vertices: &[Vertex], corner: u16) -> Option<[i32; 2]> {
         let screen = cached.get_mut(usize::from(corner))?;
@@ -68,12 +68,12 @@ impl VertexStage<'_> {
         ScreenVertex { x, y, depth, light, state: if inside { State::READY } else { State::OUTSIDE } }
     }
 
-    /// The visible box of a triangle that has a corner off the screen, or one that is not kept.
+    /// The visible bounding box of a triangle with a corner that is not cached or needs clipping.
     #[cold]
     #[inline(never)]
     pub(crate) fn bounds(&self, viewport: Viewport, vertices: &[Vertex], triangle: &Triangle) -> Option<Bounds> {
         let [a, b, c] = triangle.corners.map(|corner| vertices.get(usize::from(corner)));
-        // Against the stream's order.
+        // Clockwise, which is against the order of the stream.
         let vertices = [a?, c?, b?];
         let corners = vertices.map(|vertex| self.transform(vertex));
         if corners.iter().all(|corner| corner.state == State::READY) {

@@ -32,7 +32,7 @@ use crate::{
 /// Shades by linear numerators over a root, under lights that are the same everywhere.
 pub fn shade_constant(setup: &TriangleSetup<'_>, shading: &Shading<'_>, canvas: &mut dyn Canvas) -> u32 {
     match tabled(setup) {
-        // The faster root is worth its code where nothing else is done at a pixel.
+        // The faster root is worth its code only where little else is done at a pixel.
         Some(square) if setup.inv_depth().is_none() => {
             let fit = |source: &Source| fitted(&shading.constant_products(setup, source), setup.gradients);
             shading.draw_rows(setup, fit, fitted(&square, setup.gradients), Tabled, canvas)
@@ -86,7 +86,7 @@ impl Loops for Duff {
     }
 }
 
-/// |N|² less what the table of roots begins with, Q0.32; `None` if some of it is not in the table.
+/// The field |N|² minus [`LEAST`], Q0.32; `None` if |N|² leaves the table of roots.
 #[inline(always)]
 fn tabled(setup: &TriangleSetup<'_>) -> Option<Nodes<6, 1, HAVERSINE_RANGE>> {
     let [ab, bc, ca] = setup.edges(setup.triangle.haversine);
@@ -97,11 +97,11 @@ fn tabled(setup: &TriangleSetup<'_>) -> Option<Nodes<6, 1, HAVERSINE_RANGE>> {
     Some(Nodes::new([nodes], 32 - HAVERSINE).biased([0u32.wrapping_sub(LEAST) as i32]))
 }
 
-/// Bits of what edges lack of a unit length, unless their ends' normals are more than 90 degrees apart: so few that triangles are
-/// set up in words, see [`crate::setup::word_sized`].
+/// Bits of the haversine of an edge whose normals are at most 90 degrees apart. They are so few that triangles are set up in words, see
+/// [`crate::setup::word_sized`].
 const HAVERSINE_RANGE: u32 = HAVERSINE - 1;
 
-/// The interpolated normal may be shorter than half: the table of roots, and every fit of 1/|N|, end there.
+/// Whether the interpolated normal may be shorter than 1/2, where the table of roots and every fit of 1/|N| end.
 pub fn is_curved(setup: &TriangleSetup<'_>) -> bool {
     setup.triangle.min_normal_length < 1 << (NORMAL_LENGTH - 1)
 }
@@ -114,7 +114,7 @@ pub fn square(setup: &TriangleSetup<'_>) -> Quadratic<1> {
     Quadratic::new([[0, 0, 0, ab, bc, ca]], EXTRA).biased([1 << 30])
 }
 
-/// One over the root of |N|² in [1/4, 1] from a table, by |N|² less [`LEAST`].
+/// Normalises by 1/|N| from a table, for |N|² in [1/4, 1]; |N|² minus [`LEAST`] is walked.
 #[derive(Clone, Copy)]
 struct Tabled;
 
@@ -134,7 +134,7 @@ impl LightingModel<[u32; 1], [u32; 2]> for Tabled {
     }
 }
 
-/// One over the root of any |N|².
+/// Normalises by 1/|N| from [`Root`], for any |N|².
 #[derive(Clone, Copy)]
 pub struct Rooted;
 
@@ -159,7 +159,7 @@ pub struct Root {
 }
 
 impl Root {
-    /// Of `x` in Q2.30, (0, 2].
+    /// The reciprocal root of `x` in Q2.30, (0, 2].
     #[inline(always)]
     pub fn of(x: u32) -> Self {
         let shift = x.max(1).leading_zeros() & !1;

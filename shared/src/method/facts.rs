@@ -1,29 +1,29 @@
-//! What is known of a shading method, beside its name.
+//! The facts about a shading method.
 
 use crate::lighting::materials::Highlight;
 
-/// What is known of a method; it stands in the method's own file.
+/// The facts about a method, which stand in its own file.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Facts {
     /// The name on the command line and in logs.
     pub name: &'static str,
-    /// The number by which a stream names it. It never changes, and no two methods of one program may share it; numbers from
+    /// The number by which a stream names the method. It never changes, and no two methods of one program may share it; numbers from
     /// [`Facts::FIRST_FREE`] on are free for methods of your own.
     pub id: u16,
-    /// Where it comes from: author and year.
+    /// Author and year of the source.
     pub source: &'static str,
-    /// What it wants to know of the light at vertices.
+    /// The light that the method needs at vertices.
     pub vertex_light: VertexLight,
-    /// What it raises to the material's exponent.
+    /// The quantity that is raised to the exponent of the material.
     pub highlight: Highlight,
-    /// The table of highlights may hold levels: the method uses it for nothing else.
+    /// Whether the table of highlights may hold levels, because the method looks up nothing else in it.
     pub highlight_levels: bool,
-    /// It can shade under near lights and for a near viewer.
+    /// Whether the method can shade under near lights and for a near viewer.
     pub near_lights: bool,
-    /// It can interpolate in perspective: it interpolates over whole triangles, not along their rows on the screen, and does not split
-    /// them there.
+    /// Whether the method can interpolate in perspective: it then interpolates over whole triangles, and neither along rows of the screen
+    /// nor over parts that are split there.
     pub perspective: bool,
-    /// Operations of its formulas.
+    /// Operations of the method's formulas.
     pub costs: Costs,
 }
 
@@ -31,7 +31,7 @@ impl Facts {
     /// The first number that is never given to a method of microphong.
     pub const FIRST_FREE: u16 = 0x8000;
 
-    /// What most methods of your own say, `Facts { name: "mine", ..Facts::OWN }`: levels at vertices, any lights, perspective. Operations
+    /// Facts of most methods of your own, `Facts { name: "mine", ..Facts::OWN }`: levels at vertices, any lights, perspective; operations
     /// are not counted.
     pub const OWN: Self = Self {
         name: "own",
@@ -67,20 +67,20 @@ pub struct Costs {
 }
 
 impl Costs {
-    /// Of a method that does nothing per row.
+    /// Operations of a method without work per row.
     #[must_use]
     pub const fn new(adds: u32, multiplies: u32, loads: u32, setup: u32) -> Self {
         Self { adds, multiplies, loads, setup, row: 0 }
     }
 
-    /// With so many operations per row.
+    /// Adds operations per row.
     #[must_use]
     pub const fn per_row(self, row: u32) -> Self {
         Self { row, ..self }
     }
 }
 
-/// What is worked out once for all triangles that share a vertex.
+/// The light at a vertex that is computed once for all triangles around it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum VertexLight {
     /// Nothing.

@@ -1,4 +1,4 @@
-//! From fields that are walked per light to what each light sends, and on to a pixel.
+//! Lighting models: how the fields that are interpolated for each light become reflected light at a pixel.
 
 use crate::{
     format::{COSINE, MAX_LIGHTS},
@@ -19,20 +19,20 @@ use crate::{
 
 /// Fraction bits of a field at a node; walked with [`COSINE`].
 pub const NODE: u32 = 24;
-/// Fraction bits that a walked field has more.
+/// Fraction bits that a walked field has beyond those of a node.
 pub const EXTRA: u32 = COSINE - NODE;
-/// Nodes of fields are in [-2, 2].
+/// Bits of the range of nodes, which lie in [-2, 2].
 pub const BITS: u32 = NODE + 2;
 
-/// What a method makes of its fields at a pixel: `V` is walked for each light, `K` once for all of them.
+/// How a method computes the light at a pixel from the fields that it interpolates: `V` for each light, and `K` once for all lights.
 pub trait LightingModel<K, V>: Copy {
-    /// What is worked out once for all lights.
+    /// The result that all lights share.
     type Common: Copy + Default;
 
-    /// Works it out.
+    /// Computes what all lights share.
     fn common(&self, common: K) -> Self::Common;
 
-    /// What light number `light` sends.
+    /// The reflection of light number `light`.
     fn reflect(&self, light: usize, common: &Self::Common, fields: V, lut: CosineLookup<'_>) -> Reflection;
 }
 
@@ -40,19 +40,19 @@ pub trait LightingModel<K, V>: Copy {
 struct ManyLights<'a, K, P, F, S> {
     reflectance: &'a Reflectance,
     model: F,
-    /// What all lights share.
+    /// The field that all lights share.
     common: K,
-    /// What is walked for each light, as many as there are.
+    /// The field of each light.
     lights: heapless::Vec<P, MAX_LIGHTS>,
     lut: CosineLookup<'a>,
-    /// A run of pixels: what all lights share, and the sum of them. Both are written before they are read, and cleared once a triangle
-    /// instead of once a span.
+    /// For a run of pixels, what all lights share, and `levels`, the sum of all lights. Both are written before they are read, and so
+    /// cleared once a triangle and not once a span.
     shared: [S; CHUNK],
     levels: [[i32; 3]; CHUNK],
 }
 
 impl<'a, K: Patch, P: Patch, F, S: Copy + Default> ManyLights<'a, K, P, F, S> {
-    /// The patch that `fit` makes for each of the lights.
+    /// Fits a patch for each light by `fit`.
     #[inline(always)]
     fn new(shading: &Shading<'a>, fit: impl Fn(&Source) -> P, common: K, model: F) -> Self {
         let reflectance = shading.reflectance;
@@ -68,13 +68,13 @@ impl<'a, K: Patch, P: Patch, F, S: Copy + Default> ManyLights<'a, K, P, F, S> {
     }
 }
 
-/// [`Field::fit`], the code of which all methods share.
+/// [`Field::fit`] in a function of its own, so that all methods share its code.
 #[inline(never)]
 pub(crate) fn fitted<F: Field>(field: &F, gradients: &Gradients) -> F::Patch {
     field.fit(gradients)
 }
 
-/// `patch`, `rows` rows below.
+/// A copy of `patch`, moved down `rows` rows.
 #[inline(always)]
 fn below<P: Patch>(patch: &P, rows: i32) -> P {
     let mut patch = *patch;
@@ -98,7 +98,7 @@ where
         let mut first = count;
         while first > 0 {
             let run = first.min(CHUNK);
-            // Of the column that the run's walkers enter.
+            // The column that the walkers of the run enter.
             let entry = end.wrapping_sub((count - first) as i32);
             first -= run;
             let visible = target.visible(first, run);
@@ -149,7 +149,7 @@ where
 }
 
 impl Shading<'_> {
-    /// Draws `common` and the field `of` each light, by `model`.
+    /// Draws a triangle by `model`, with the field `common` for all lights and the field `of` each light.
     pub fn draw_lit<K, V, F>(
         &self,
         setup: &TriangleSetup<'_>,
@@ -173,7 +173,7 @@ impl Shading<'_> {
         self.draw_rows(setup, |source| fitted(&of(source), gradients), fitted(&common, gradients), model, canvas)
     }
 
-    /// [`Self::draw_lit`] for what knows nothing but its rows on the screen.
+    /// [`Self::draw_lit`] with patches in place of fields, for methods that interpolate along rows of the screen.
     pub fn draw_rows<K, P, F>(
         &self,
         setup: &TriangleSetup<'_>,
@@ -190,7 +190,7 @@ impl Shading<'_> {
         setup.draw_spans(&mut ManyLights::new(self, of, common, model), canvas)
     }
 
-    /// The planes through N·L and N·H of a light that is the same everywhere, normals not normalised: exact.
+    /// The planes through N·L and N·H of a constant light, normals not normalised, which are exact.
     pub fn constant_products(&self, setup: &TriangleSetup<'_>, source: &Source) -> Linear<2> {
         let [towards, half] = self.lighting.directions(source, [0; 3]);
         linear([setup.corner_cosines(towards), setup.corner_cosines(half)])

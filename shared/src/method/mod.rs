@@ -1,8 +1,9 @@
-//! The shading methods, one file each: what it fits, and what it makes of it at a pixel.
+//! The shading methods, one file each.
 //!
-//! A method is a [`Method`]: its [`Facts`], and how it shades a triangle in intensities, whatever the scene, by the general way of
-//! [`crate::raster::canvas`]. The common methods also have loops: for everyday styles, compiled
-//! for each pixel format.
+//! A [`Method`] is its [`Facts`], and how it shades a triangle of any scene in intensities. It interpolates fields over the triangle and
+//! computes an intensity from their values at each pixel, by an [`IntensityShader`] or, light by light, by a
+//! [`lighting_model::LightingModel`]. A [`Canvas`] tests depth and stores colours. The methods of this crate also have loops that are
+//! compiled for each pixel format, for the common styles.
 
 pub mod duff;
 pub mod facts;
@@ -52,19 +53,19 @@ pub use facts::{Costs, Facts, VertexLight};
 
 /// A shading method.
 pub trait Method: Sync {
-    /// What is known of it.
+    /// The facts about the method.
     fn facts(&self) -> &'static Facts;
 
-    /// Shades `setup` in intensities into `canvas`; returns its pixels there.
+    /// Shades the triangle `setup` into `canvas`; returns the number of its pixels there.
     fn shade(&self, setup: &TriangleSetup<'_>, shading: &Shading<'_>, canvas: &mut dyn Canvas) -> u32;
 }
 
-/// How the triangles of a mesh are drawn, decided once for all of them.
+/// How the triangles of a mesh are drawn, which is decided once for all of them.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Style {
-    /// One intensity says it all, and the table of highlights holds levels of the only light.
+    /// One channel under one constant light, with a table of highlights that holds levels.
     pub(crate) one_light: bool,
-    /// Thresholds in place of rounding, or pixels weighed by areas.
+    /// Dither or antialiasing.
     pub(crate) dithered_or_antialiased: bool,
     /// Interpolation in perspective.
     pub(crate) perspective: bool,
@@ -72,13 +73,13 @@ pub(crate) struct Style {
 
 /// A method that has loops of its own for some styles, compiled for each pixel format.
 pub(crate) trait Loops {
-    /// None of its own.
+    /// Whether there are no loops but those of the general way.
     const GENERAL: bool = false;
 
-    /// Whether it has for this one.
+    /// Whether there are loops for `style`.
     fn take(style: Style) -> bool;
 
-    /// Shades `setup` into `band` and returns its pixels there; `None` if this triangle has to go the general way.
+    /// Shades `setup` into `band` and returns the number of its pixels there; `None` if the triangle has to be drawn the general way.
     fn draw<C: Pixel>(
         setup: &TriangleSetup<'_>,
         shading: &Shading<'_>,
@@ -103,70 +104,70 @@ impl Loops for General {
     }
 }
 
-/// Fraction bits that a walked level has more than a node's.
+/// Fraction bits that a walked level has beyond those of a node.
 const EXTRA: u32 = WALK - LEVEL;
 /// Bits of the range of levels at nodes: they are in [0, 255] in Q9.7.
 pub const RANGE: u32 = LEVEL + 8;
 
 /// A triangle ready to be shaded; all triples start with its top corner.
 pub struct TriangleSetup<'f> {
-    /// Its place on the screen, and its edges.
+    /// The corners, edges and depth on the screen.
     pub screen: &'f ScreenTriangle,
-    /// By which polynomials are fitted to it.
+    /// The gradients by which polynomials are fitted to the triangle.
     pub gradients: &'f Gradients,
-    /// Its corners on the screen, with what their light comes to.
+    /// The lit corners on the screen.
     pub corners: [&'f ScreenVertex; 3],
-    /// Its record in the stream.
+    /// The triangle's record in the stream.
     pub triangle: &'f Triangle,
     /// The vertices to which the record's indices lead.
     pub vertices: &'f [Vertex],
-    /// How many places on from the stream's first corner the top one is.
+    /// Number of places from the stream's first corner to the top one.
     pub turned: usize,
-    /// Others may overlap it.
+    /// Whether other triangles may overlap this one.
     pub needs_depth_test: bool,
-    /// It is to be shaded in perspective, if that makes a difference.
+    /// Whether light is interpolated in perspective.
     pub perspective: bool,
-    /// Which of its pixels are drawn.
+    /// Which pixels of the triangle are drawn.
     pub pixels: PixelSet,
-    /// Where the band above handed it on: its patch is there, and nothing is to be fitted.
+    /// Index of the active triangle that the band above has saved: its patch is loaded, and nothing is fitted.
     pub place: Option<usize>,
 }
 
 impl TriangleSetup<'_> {
-    /// What lighting wants to know of it, in memory of its own: edges and gradients, which a function that is called could not tell from
-    /// what it is given, then stay in registers.
+    /// A copy without edges and gradients, for functions that light the triangle: since these are not passed, the compiler keeps them in
+    /// registers.
     #[inline(always)]
     #[must_use]
     pub(crate) fn for_lighting(&self) -> TriangleSetup<'_> {
         TriangleSetup { screen: &ScreenTriangle::NONE, gradients: &Gradients::NONE, ..*self }
     }
 
-    /// Its vertices, the top one first.
+    /// The vertices, the top one first.
     #[inline(always)]
     pub fn vertices(&self) -> [&Vertex; 3] {
         let [a, c, b] = self.triangle.corners;
-        // A stream that has been checked has them all.
+        // A checked stream has all vertices.
         let vertex = |corner: u16| self.vertices.get(usize::from(corner)).unwrap_or(&Vertex::ZERO);
         turn([vertex(a), vertex(b), vertex(c)], self.turned)
     }
 
-    /// Inverse depth of its corners, if it is to be shaded in perspective.
+    /// Inverse depth of the corners; `None` unless light is interpolated in perspective and that makes a difference.
     #[inline(always)]
     pub fn inv_depth(&self) -> Option<[i32; 3]> {
         let [a, b, c] = self.corners;
         let (a, b, c) = (a.depth, b.depth, c.depth);
-        // All of it equally far is all of it flat on the screen.
+        // If all corners are equally far, interpolation on the screen is the same.
         (self.perspective && !(a == b && b == c)).then_some([a, b, c])
     }
 
-    /// Constants of the stream's edges in the order of the corners here, which turn the other way.
+    /// Constants of the stream's edges in the order of the corners here, which run the other way around.
     #[inline(always)]
     pub fn edges(&self, [ab, bc, ca]: [u16; 3]) -> [u16; 3] {
         turn([ca, bc, ab], self.turned)
     }
 
-    /// Draws it, without depth where that is possible and worth a loop of its own; returns the pixels in `band`. `patch` is asked for
-    /// unless the band above has handed it on.
+    /// Draws the triangle, without depth test where that is possible and worth a loop; returns the number of pixels in `band`. `patch` is
+    /// called unless the band above has saved a patch.
     #[inline(always)]
     pub(crate) fn fill<P: Patch, T: PixelShader<<P::Walker as Walker>::Value>>(
         &self,
@@ -177,7 +178,7 @@ impl TriangleSetup<'_> {
         let patch = match self.place {
             Some(place) => match band.active.active_triangle(place).and_then(ActiveTriangle::patch) {
                 Some(patch) => patch,
-                // What cannot be kept is not handed on.
+                // Active triangles have patches that can be saved.
                 None => return 0,
             },
             None => patch(),
@@ -189,13 +190,13 @@ impl TriangleSetup<'_> {
         }
     }
 
-    /// The [`PixelShader::ID`] with which the band above handed it on.
+    /// The [`PixelShader::ID`] that the band above has saved; `None` if the triangle is not active.
     #[inline(always)]
     pub(crate) fn resumed<C>(&self, band: &Band<'_, C>) -> Option<u8> {
         Some(band.active.active_triangle(self.place?)?.edges.shader)
     }
 
-    /// Draws it as `shader`, which stands on the anchor's row, shades it; returns the pixels in `canvas`.
+    /// Draws the triangle by `shader`, which stands on the anchor's row; returns the number of pixels in `canvas`.
     pub fn draw_spans(&self, shader: &mut dyn SpanShader, canvas: &mut dyn Canvas) -> u32 {
         if cfg!(feature = "antialias") && self.pixels != PixelSet::Centres {
             let Self { screen, pixels, .. } = *self;
@@ -205,24 +206,24 @@ impl TriangleSetup<'_> {
         self.screen.draw_spans(self.gradients, shader, canvas)
     }
 
-    /// Nowhere on the triangle does the highlight of one constant light reach a visible level:
-    /// N·H is linear and |N| at least [`Triangle::min_normal_length`].
+    /// Whether the highlight of one constant light reaches a visible level nowhere on the triangle: N·H is linear and |N| at least
+    /// [`Triangle::min_normal_length`].
     #[inline(always)]
     pub fn has_no_highlight(&self, reflectance: &Reflectance) -> bool {
         let [a, b, c] = self.corners;
         a.light[1].max(b.light[1]).max(c.light[1]) < self.highlight_threshold(reflectance)
     }
 
-    /// Where N·H, linear between the corners, is smaller, N·H over |N| is too small for a highlight; Q2.30.
+    /// Threshold of N·H, linear between the corners, below which N·H over |N| is too small for a highlight; Q2.30.
     #[inline(always)]
     pub fn highlight_threshold(&self, reflectance: &Reflectance) -> i32 {
         by_fraction(reflectance.highlight_threshold(), self.triangle.min_normal_length) << (16 - NORMAL_LENGTH)
     }
 }
 
-/// Some part of the screen that belongs to a triangle.
+/// An area of the screen over which fields can be interpolated.
 pub trait Area {
-    /// Shades a field there; returns the pixels in `canvas`.
+    /// Interpolates `field` over the area and shades it by `shader`; returns the number of pixels in `canvas`.
     fn draw<F: Field, S: IntensityShader<F::Value>>(&self, field: &F, shader: S, canvas: &mut dyn Canvas) -> u32;
 }
 
@@ -239,22 +240,22 @@ impl Area for TriangleSetup<'_> {
     }
 }
 
-/// What all triangles of one material have in common in one frame.
+/// Material and lights of the triangles of one mesh in one frame.
 #[derive(Clone, Copy)]
 pub struct Shading<'f> {
-    /// What the material makes of light.
+    /// What the material reflects.
     pub reflectance: &'f Reflectance,
     /// The lights.
     pub lighting: &'f Lighting,
     /// The material's exponent.
     pub exponent: u16,
-    /// L and H if they are constant, see [`Lighting::constant`].
+    /// L and H of the only light, if they are constant, see [`Lighting::constant`].
     pub constant: Option<[[i32; 3]; 2]>,
-    /// The same, for products with vertex normals.
+    /// [`Self::constant`], split for products with vertex normals.
     pub directions: Option<[Direction; 2]>,
 }
 
-/// The first channel. Written out, as far as it matters: `map` is a loop through memory at opt-level "s".
+/// The first channel of each node. The first three are written out because `map` is a loop through memory at opt-level "s".
 #[inline(always)]
 fn first<const N: usize>(levels: [[i32; 3]; N]) -> [i32; N] {
     let mut first = [0; N];
@@ -265,7 +266,7 @@ fn first<const N: usize>(levels: [[i32; 3]; N]) -> [i32; N] {
     levels.map(|[level, ..]| level)
 }
 
-/// Nodes of each channel.
+/// The nodes of each channel.
 fn channels<const N: usize>(levels: [[i32; 3]; N]) -> [[i32; N]; 3] {
     // One loop: `map` of arrays goes through memory at opt-level "s".
     let mut channels = [[0; N]; 3];
@@ -276,7 +277,7 @@ fn channels<const N: usize>(levels: [[i32; 3]; N]) -> [[i32; N]; 3] {
     channels
 }
 
-/// Levels at `N` nodes, Q9.7, to be interpolated in three channels; [`Walked`] makes an intensity of what arrives at a pixel.
+/// The field through levels at `N` nodes, Q9.7, in three channels; [`Walked`] turns its values into intensities.
 #[must_use]
 pub fn levels_at<const N: usize>(levels: [[i32; 3]; N]) -> Nodes<N, 3, RANGE> {
     Nodes::new(channels(levels), EXTRA).biased([bias(0); 3])
@@ -288,8 +289,8 @@ const fn bias(half: i32) -> i32 {
 }
 
 impl Shading<'_> {
-    /// Draws one level or three, whichever the material needs, from those at `N` nodes, Q9.7 in a range narrower than
-    /// 2^`BITS`.
+    /// Interpolates the levels at `N` nodes over `area`, in one channel or three, as the material needs. Levels are Q9.7, in a range
+    /// narrower than 2^`BITS`.
     pub fn draw_levels<const N: usize, const BITS: u32>(&self, area: &impl Area, levels: [[i32; 3]; N], canvas: &mut dyn Canvas) -> u32
     where
         Nodes<N, 1, BITS>: Field<Value = [u32; 1]>,
@@ -302,7 +303,7 @@ impl Shading<'_> {
         }
     }
 
-    /// [`Self::draw_levels`] by loops of their own: one level under the table of colours.
+    /// [`Self::draw_levels`] by loops of a method: one level, which is an index of the table of colours.
     #[inline(always)]
     fn fill_one<const N: usize, C: Pixel>(
         setup: &TriangleSetup<'_>,
@@ -317,7 +318,7 @@ impl Shading<'_> {
         setup.fill(patch, Ramp(tables.ramp), band)
     }
 
-    /// [`Self::draw_levels`] by loops of their own: three levels.
+    /// [`Self::draw_levels`] by loops of a method: three levels.
     #[inline(always)]
     fn fill_three<const N: usize, C: Pixel>(
         setup: &TriangleSetup<'_>,
@@ -334,7 +335,7 @@ impl Shading<'_> {
     }
 }
 
-/// The same intensity everywhere.
+/// Shades every pixel with one intensity.
 #[derive(Clone, Copy, Debug)]
 pub struct Uniform(pub Intensity);
 
@@ -344,17 +345,17 @@ impl IntensityShader<()> for Uniform {
     }
 }
 
-/// Walked levels as they are.
+/// Shades by walked levels as they are.
 #[derive(Clone, Copy, Debug)]
 pub struct Walked;
 
-/// A biased, walked level as an intensity.
+/// The intensity of a biased, walked level.
 #[inline(always)]
 fn intensity(walked: u32) -> i32 {
     ((walked >> (WALK - 8)) as i32 - (BIAS << 8)).clamp(0, 255 << 8)
 }
 
-/// Levels in Q9.7, at most 255, as an intensity.
+/// The intensity of levels in Q9.7, at most 255.
 #[inline(always)]
 #[must_use]
 pub fn of_levels(levels: [i32; 3]) -> Intensity {

@@ -1,4 +1,4 @@
-//! Points of a triangle where its light is worked out.
+//! Points of a triangle where light is computed.
 
 use crate::{
     arch::product::{by_fraction, product},
@@ -12,7 +12,7 @@ use crate::{
     stream::record::Vertex,
 };
 
-/// Fraction bits of a [`Node`]'s normal that a vertex's has not.
+/// Fraction bits that the normal of a [`Node`] has beyond those of a vertex.
 const FINER: u32 = 30 - UNIT;
 
 /// A point of a triangle and the normal there.
@@ -35,7 +35,7 @@ impl Shading<'_> {
 }
 
 impl TriangleSetup<'_> {
-    /// The corners, their normals as they stand.
+    /// The corners, with their normals as stored.
     pub fn corner_nodes(&self) -> [Node; 3] {
         self.vertices().map(|vertex| Node { position: wide(vertex.position), normal: wide(vertex.normal).map(|c| c << FINER) })
     }
@@ -94,14 +94,14 @@ impl TriangleSetup<'_> {
         [inverse(ab), inverse(bc), inverse(ca)]
     }
 
-    /// N·L (`which` is 0) or N·H (1), Q2.30, at the six nodes under one constant light, from what is known at the vertices.
+    /// N·L (`which` is 0) or N·H (1), Q2.30, at the six nodes under one constant light, from the values at the vertices.
     #[inline(always)]
     pub fn six_cosines(&self, which: usize) -> [i32; 6] {
         let [a, b, c] = self.corners;
         self.six_from([a.light[which], b.light[which], c.light[which]])
     }
 
-    /// A cosine at the six nodes under a light that is the same everywhere: at midpoints it follows from that at the corners, Q2.30.
+    /// A cosine, Q2.30, at the six nodes under a constant light: at midpoints it follows from the cosines at corners.
     #[inline(always)]
     pub fn six_from(&self, [a, b, c]: [i32; 3]) -> [i32; 6] {
         let [ab, bc, ca] = self.edges(self.triangle.inverse_sum_length);
@@ -109,7 +109,7 @@ impl TriangleSetup<'_> {
             let [ab, bc, ca] = wide_middles(self.vertices(), [ab, bc, ca], [a, b, c]);
             return [a, b, c, ab, bc, ca];
         }
-        // What exceeds 1/2 adds as much of half of both, halved.
+        // The mean times twice the inverse length: the part above 1/2 adds its share of the mean.
         let middle = |a: i32, b: i32, excess: u16| {
             let mean = (a >> 1) + (b >> 1);
             mean + by_fraction(mean, excess)
@@ -126,7 +126,7 @@ impl TriangleSetup<'_> {
     }
 }
 
-/// Position, and sum of the ends' normals (Q3.14), at the middle of each edge between these.
+/// Position, and sum of the ends' normals (Q3.14), at the middle of each edge between three vertices.
 fn sums([a, b, c]: [&Vertex; 3]) -> [([i32; 3], [i32; 3]); 3] {
     [(a, b), (b, c), (c, a)].map(|(a, b)| {
         let position = add(wide(a.position), wide(b.position)).map(|c| c >> 1);
@@ -134,7 +134,7 @@ fn sums([a, b, c]: [&Vertex; 3]) -> [([i32; 3], [i32; 3]); 3] {
     })
 }
 
-/// [`TriangleSetup::inverse_sum_lengths`] where the 16 bits that are `given` do not hold all of them.
+/// [`TriangleSetup::inverse_sum_lengths`] where the 16 bits of a record (`given`) do not hold all of them.
 #[cold]
 #[inline(never)]
 fn wide_inverse_sum_lengths(vertices: [&Vertex; 3], given: [u16; 3]) -> [u32; 3] {
@@ -147,13 +147,13 @@ fn wide_inverse_sum_lengths(vertices: [&Vertex; 3], given: [u16; 3]) -> [u32; 3]
     })
 }
 
-/// `f` of each value at six nodes. Written out: `map` is a loop through memory at opt-level "s".
+/// `f` of each value at six nodes, written out because `map` is a loop through memory at opt-level "s".
 #[inline(always)]
 pub fn map_six<A, R>([a, b, c, d, e, g]: [A; 6], f: impl Fn(A) -> R) -> [R; 6] {
     [f(a), f(b), f(c), f(d), f(e), f(g)]
 }
 
-/// [`TriangleSetup::six_cosines`] at the midpoints, from those at corners, where the 16 bits that are `given` do not hold all of the edges' constants.
+/// [`TriangleSetup::six_cosines`] at the midpoints, where the 16 bits of a record (`given`) do not hold all constants of edges.
 #[cold]
 #[inline(never)]
 fn wide_middles(vertices: [&Vertex; 3], given: [u16; 3], [a, b, c]: [i32; 3]) -> [i32; 3] {
@@ -161,7 +161,7 @@ fn wide_middles(vertices: [&Vertex; 3], given: [u16; 3], [a, b, c]: [i32; 3]) ->
     zip([(a, b), (b, c), (c, a)], wide_inverse_sum_lengths(vertices, given), middle)
 }
 
-/// `f` of each pair of values at six nodes. Written out: `map` is a loop through memory at opt-level "s".
+/// `f` of each pair of values at six nodes, written out because `map` is a loop through memory at opt-level "s".
 #[inline(always)]
 pub fn zip_six<A, B, R>([a0, a1, a2, a3, a4, a5]: [A; 6], [b0, b1, b2, b3, b4, b5]: [B; 6], f: impl Fn(A, B) -> R) -> [R; 6] {
     [f(a0, b0), f(a1, b1), f(a2, b2), f(a3, b3), f(a4, b4), f(a5, b5)]

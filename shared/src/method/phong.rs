@@ -1,4 +1,4 @@
-//! Per-pixel Phong shading (Phong 1975), highlights by the half vector (Blinn 1977): the honest yardstick.
+//! Per-pixel Phong shading (Phong 1975), highlights by the half vector (Blinn 1977).
 //!
 //! Normals, lights and viewer are linear over the screen, so every dot product
 //! between them is linear or exactly quadratic and can be walked; only the roots
@@ -105,7 +105,7 @@ fn product(a: &[[i32; 3]; 3], b: &[[i32; 3]; 3]) -> [i32; 6] {
     [corner(a0, b0), corner(a1, b1), corner(a2, b2), middle(a0, a1, b0, b1), middle(a1, a2, b1, b2), middle(a2, a0, b2, b0)]
 }
 
-/// What all lights share at a pixel: the unit normal's and viewer's share of each product.
+/// What all lights share at a pixel: the factors that normalise normal and viewer.
 #[derive(Clone, Copy, Default)]
 pub struct Common {
     /// One over the length of the normal.

@@ -18,19 +18,19 @@ use crate::{
     },
 };
 
-/// Fraction bits of a diffuse level at a node: as much of one as the ramp takes, in either direction, is [`RANGE`] bits.
+/// Fraction bits of a diffuse level at a node: the levels of a ramp, with a sign, then have [`RANGE`] bits.
 const NODE: u32 = 10;
-/// Bits of what diffuse levels at nodes differ by.
+/// Bits of the range of diffuse levels at nodes.
 const RANGE: u32 = 20;
-/// Fraction bits that it is walked with.
+/// Fraction bits of a walked diffuse level.
 const LEVEL: u32 = 22;
-/// Fraction bits of a level at a pixel: of the upper half of its product with half a reciprocal length, Q2.30.
+/// Fraction bits of a level at a pixel, which is the upper half of the product of a walked level and half a reciprocal length, Q2.30.
 const PIXEL: u32 = LEVEL - 3;
-/// Bits of what steps at nodes differ by.
+/// Bits of the range of numerators at nodes, in steps of the table.
 const STEPS: u32 = 26;
 
-/// What numerators and a length come to; `R` makes half a reciprocal length, Q2.30, of what is walked for it. One that is not `EXACT`
-/// may lift cosines above 1, which then count as 1.
+/// Diffuse light and highlight from numerators and a length. `R` computes half a reciprocal length, Q2.30, from walked values. Unless it is
+/// `EXACT`, cosines may exceed 1 and then count as 1.
 struct OneLight<'a, C: Pixel, R, const EXACT: bool> {
     ramp: OneLightRamp<'a, C>,
     lookup: QuotientLookup<'a>,
@@ -59,10 +59,10 @@ impl<C: Pixel, V, R: Fn(V) -> i32 + Copy, const EXACT: bool> PixelShader<(([u32;
     }
 }
 
-/// The same where there is no highlight.
+/// Diffuse light from a numerator and a length, where there is no highlight.
 struct DiffuseOnly<'a, C: Pixel, R, const EXACT: bool> {
     ramp: OneLightRamp<'a, C>,
-    /// The highlight's entry.
+    /// The entry of the table where there is no highlight.
     floor: u32,
     half_reciprocal: R,
 }
@@ -96,8 +96,8 @@ impl<C: Pixel> OneLightRamp<'_, C> {
     }
 }
 
-/// Draws `setup` under one constant light on a material of one channel, if that is all there is and the method's table is made for it;
-/// `EXACT` or not, `half_reciprocal` makes half a reciprocal length, Q2.30, of the walked `length`.
+/// Draws `setup` under one constant light on a material of one channel; `None` if the table of highlights does not hold levels.
+/// `half_reciprocal` computes half a reciprocal length, Q2.30, from the walked field `length`, `EXACT` or not.
 #[inline(always)]
 pub(super) fn draw<const EXACT: bool, F: Field, C: Pixel>(
     setup: &TriangleSetup<'_>,
@@ -124,7 +124,7 @@ pub(super) fn draw<const EXACT: bool, F: Field, C: Pixel>(
     }
     let patch = || {
         let half = [lookup.node(a.light[1]), lookup.node(b.light[1]), lookup.node(c.light[1])];
-        // Two planes of one channel: the compiler makes a loop of one plane of two, and keeps it in memory.
+        // Two planes of one channel, because the compiler keeps one plane of two channels in memory.
         ((light(), Nodes::<3, 1, STEPS>::new([half], highlight_lookup::EXTRA).fit(setup.gradients)), length().fit(setup.gradients))
     };
     Some(setup.fill(patch, OneLight::<_, _, EXACT> { ramp, lookup, half_reciprocal }, band))

@@ -46,7 +46,7 @@ impl Method for RenqNewton {
         if duff::is_curved(setup) {
             return duff::shade(setup, shading, canvas);
         }
-        // Two steps where one might do: the general way has one loop.
+        // Always two steps, although one is often enough: so the general way needs one loop.
         duff::draw_products(setup, shading, (renq::length(setup), duff::square(setup)), Newton::<2>, canvas)
     }
 }

@@ -78,7 +78,7 @@ impl Loops for Sqrt6 {
     fn draw<C: Pixel>(setup: &TriangleSetup<'_>, _: &Shading<'_>, tables: MaterialTables<'_, C>, band: &mut Band<'_, C>) -> Option<u32> {
         let (reflectance, resumed) = (tables.reflectance, setup.resumed(band));
         let ramp = tables.one_light_ramp()?;
-        // What was handed on has been decided, and needs no nodes.
+        // The pixel shader of an active triangle has been chosen, and no nodes are needed.
         let cosines = if resumed.is_none() { setup.six_cosines(0) } else { [0; 6] };
         let id = match resumed {
             Some(id) => id,
@@ -109,7 +109,7 @@ impl Loops for Sqrt6 {
     }
 }
 
-/// Level and what the root of N·H lacks of 1.
+/// One light: a walked diffuse level, and a highlight by 1 minus the root of N·H.
 struct OneLight<'a, C: Pixel> {
     ramp: OneLightRamp<'a, C>,
     lookup: DefectLookup<'a>,
@@ -136,10 +136,10 @@ impl<C: Pixel> PixelShader<([u32; 1], [u32; 1])> for OneLight<'_, C> {
     }
 }
 
-/// Level of diffuse light, negative where there is none.
+/// Diffuse light alone: a walked level, negative where there is no light.
 struct DiffuseOnly<'a, C: Pixel> {
     ramp: OneLightRamp<'a, C>,
-    /// The highlight's entry.
+    /// The entry of the table where there is no highlight.
     floor: u32,
 }
 
@@ -164,19 +164,20 @@ impl<C: Pixel> PixelShader<[u32; 1]> for DiffuseOnly<'_, C> {
     }
 }
 
-/// Where the quadratic through N·L is positive.
+/// The sign of the quadratic through N·L over a triangle, as far as it decides how levels are walked.
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum DiffuseSign {
     Everywhere,
     Nowhere,
     Partly,
-    /// Partly, and nodes differ by more than 1, levels by more than [`RANGE`], or it may leave [-1, 1], where levels would wrap.
+    /// Positive in part, but nodes differ by more than 1, so that levels exceed [`RANGE`], or the quadratic may leave [-1, 1], so that
+    /// levels wrap.
     Steeply,
 }
 
 impl DiffuseSign {
-    /// By its nodes: it leaves the middle of their range by at most 5/3 of half the range (its Lebesgue constant). Unless it changes its
-    /// sign the level may be fitted instead of the cosine, which is not clamped.
+    /// The sign by the nodes: a quadratic leaves the middle of their range by at most 5/3 of half the range (its Lebesgue constant). Unless
+    /// it changes its sign, the clamped level can be fitted instead of the cosine.
     #[inline(always)]
     fn of([a, b, c, ab, bc, ca]: [i32; 6]) -> Self {
         let (least, most) = (a.min(b).min(c).min(ab).min(bc).min(ca), a.max(b).max(c).max(ab).max(bc).max(ca));
@@ -192,7 +193,7 @@ impl DiffuseSign {
     }
 }
 
-/// sqrt(w) for w >= 1/4, w + 1/4 below: of one slope where they meet. Q2.30.
+/// sqrt(w) for w >= 1/4, and w + 1/4 below, with the same slope at 1/4; Q2.30.
 fn root(w: i32) -> i32 {
     if w < LOWEST {
         return w + LOWEST;
@@ -212,7 +213,7 @@ impl LightingModel<(), [u32; 2]> for Squared {
 
     #[inline(always)]
     fn reflect(&self, _: usize, (): &(), [light, half]: [u32; 2], lut: CosineLookup<'_>) -> Reflection {
-        // The table squares.
+        // The table squares its argument.
         Reflection { diffuse: signed(light) >> 3, highlight: lut.at(signed(half) >> 3) }
     }
 }

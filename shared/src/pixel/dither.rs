@@ -10,7 +10,7 @@ pub fn threshold(x: usize, y: usize) -> u32 {
     BAYER[y & 3][x & 3].into()
 }
 
-/// Channels of `depth` bits from such in unsigned Q8.8, scaled to the output's depth, under a [`threshold`].
+/// Channels of `depth` bits from channels in unsigned Q8.8 that are scaled to that depth, with a [`threshold`] in place of rounding.
 #[inline(always)]
 #[must_use]
 pub fn quantise(channels: [u32; 3], depth: [u32; 3], threshold: u32) -> [u8; 3] {

@@ -14,7 +14,7 @@ use zerocopy::{FromBytes, Immutable, IntoBytes, KnownLayout};
 
 /// A format that the renderer can draw.
 pub trait Pixel: Copy + 'static {
-    /// What tables of colours keep of a pixel.
+    /// The form in which tables of colours store a pixel.
     type Stored: FromBytes + IntoBytes + Immutable + KnownLayout + Copy + core::fmt::Debug;
 
     /// One channel instead of three.
@@ -27,13 +27,13 @@ pub trait Pixel: Copy + 'static {
     /// Packs channel values of [`Self::DEPTH`] bits; a grey format looks at the first.
     fn pack(channels: [u8; 3]) -> Self;
 
-    /// What tables of colours keep.
+    /// The pixel as tables of colours store it.
     fn stored(self) -> Self::Stored;
 
-    /// The pixel that was stored.
+    /// The pixel from its stored form.
     fn from_stored(stored: Self::Stored) -> Self;
 
-    /// What was packed.
+    /// The channel values that were packed.
     fn channels(self) -> [u8; 3];
 
     /// The value that the display is sent, independent of byte order in memory.
@@ -186,15 +186,14 @@ impl Pixel for Gray4 {
     }
 }
 
-/// RGB565 with the high byte first in memory, as serial displays want it: a
-/// band can be handed to the bus as it is, without a copy. The renderer gets
-/// the order for nothing, its colours come from tables.
+/// RGB565 with the high byte first in memory, as serial displays want it: a band can be handed to the bus as it is, without a copy. The
+/// order costs nothing, since colours come from tables.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, FromBytes, IntoBytes, Immutable, KnownLayout)]
 #[repr(transparent)]
 pub struct Rgb565Be(u16);
 
 impl Rgb565Be {
-    /// No light.
+    /// Black.
     pub const BLACK: Self = Self(0);
 }
 
@@ -234,7 +233,7 @@ impl Pixel for Rgb565Be {
 #[derive(Clone)]
 pub struct PictureCrc(crc::Digest<'static, u32, crc::Table<1>>);
 
-/// One kilobyte of table: a picture is checked every frame.
+/// A table of one kilobyte, since a picture is checked every frame.
 static PICTURE: crc::Crc<u32, crc::Table<1>> = crc::Crc::<u32, crc::Table<1>>::new(&crc::CRC_32_ISO_HDLC);
 
 impl Default for PictureCrc {

@@ -1,8 +1,7 @@
-//! What a band hands on to the next: triangles that reach across its lower border, on the row where they left off.
+//! Active triangles: those that reach across the lower border of a band, saved on the row where the next band continues.
 //!
-//! All that is walked is walked exactly, modulo 2^32: going on from there makes the same pixels as setting up anew. Bands draw
-//! triangles in the order of the stream, so that what one hands on the next takes in the same order: a queue. A triangle that finds it
-//! full is set up anew.
+//! Edges and polynomials are stepped exactly, modulo 2^32, so continuing them gives the same pixels as setting up anew. All bands draw
+//! triangles in the order of the stream, so active triangles form a queue. If the queue is full, the next band sets up the triangle anew.
 
 use zerocopy::{FromBytes, Immutable, IntoBytes, KnownLayout};
 
@@ -14,26 +13,26 @@ use crate::{
 /// Words of a quadratic in three channels.
 const WORDS: usize = 18;
 
-/// A triangle on its way to the next band.
+/// A triangle whose drawing the next band continues.
 #[derive(FromBytes, IntoBytes, Immutable, KnownLayout, Clone, Copy, Debug)]
 #[repr(C)]
 pub struct ActiveTriangle {
-    /// That of the triangle's entry in its list; 0 is of none.
+    /// The key of the triangle's entry, see [`crate::geometry::bin::Entry::key`]; 0 if there is no triangle.
     pub(crate) key: u32,
     pub(crate) edges: EdgeState,
-    /// Not 0: the depth is known.
+    /// Not 0 if the depth has been saved.
     has_depth: u32,
-    /// The depth, standing on the next band's first row.
+    /// The plane of depth, on the first row of the next band.
     depth: [u32; 3],
-    /// What its patch keeps.
+    /// The saved patch.
     words: [u32; WORDS],
 }
 
 impl ActiveTriangle {
-    /// Of no triangle; all zeros, as memory in a `static` should be.
+    /// No triangle; all zeros, which takes no flash in static memory.
     pub const EMPTY: Self = Self { key: 0, edges: EdgeState::NONE, has_depth: 0, depth: [0; 3], words: [0; WORDS] };
 
-    /// Keeps what has been walked to the end of a band; false if there is no way to.
+    /// Saves what has been stepped to the end of a band; false if the patch cannot be saved.
     #[inline(always)]
     pub(crate) fn save<D: Patch, P: Patch>(&mut self, (key, edges): (u32, EdgeState), depth: &D, patch: &P) -> bool {
         self.has_depth = u32::from(D::WORDS > 0 && depth.save(&mut self.depth));
@@ -41,55 +40,55 @@ impl ActiveTriangle {
         patch.save(&mut self.words)
     }
 
-    /// The depth, if it is known.
+    /// The plane of depth; `None` if the triangle is drawn without depth test.
     #[inline(always)]
     pub(crate) fn inv_depth(&self) -> Option<Plane<1>> {
         if self.has_depth != 0 { Plane::load(&self.depth) } else { None }
     }
 
-    /// The patch as it was kept.
+    /// The saved patch.
     #[inline(always)]
     pub(crate) fn patch<P: Patch>(&self) -> Option<P> {
         P::load(&self.words)
     }
 }
 
-/// Where a queue stands between two bands.
+/// First entry and length of the queue, between two bands.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct QueueState {
     first: usize,
     count: usize,
 }
 
-/// The queue of one frame.
+/// The queue of active triangles.
 #[derive(Debug, Default)]
 pub struct ActiveTriangles<'a> {
     active_triangles: &'a mut [ActiveTriangle],
     queue: QueueState,
-    /// Triangles that have found it full.
+    /// Number of triangles that found the queue full.
     overflow: u32,
 }
 
 impl<'a> ActiveTriangles<'a> {
-    /// The queue that stands like this.
+    /// The queue in this state.
     #[must_use]
     pub fn new(active_triangles: &'a mut [ActiveTriangle], queue: QueueState) -> Self {
         Self { active_triangles, queue, overflow: 0 }
     }
 
-    /// Triangles of this band that have found it full.
+    /// Number of triangles of this band that found the queue full.
     #[must_use]
     pub fn overflow(&self) -> u32 {
         self.overflow
     }
 
-    /// Where it stands.
+    /// The state of the queue.
     #[must_use]
     pub fn queue(&self) -> QueueState {
         self.queue
     }
 
-    /// Takes the first one, if it is the triangle with this `key`: the place of its leg, which stays as it is until another is put.
+    /// Takes the first triangle off the queue if it has this `key`; returns its index. The entry stays valid until another triangle is put.
     #[inline(always)]
     pub(crate) fn take(&mut self, key: u32) -> Option<usize> {
         let QueueState { first, count } = self.queue;
@@ -100,13 +99,13 @@ impl<'a> ActiveTriangles<'a> {
         Some(first)
     }
 
-    /// The leg at a place.
+    /// The active triangle at an index.
     #[inline(always)]
     pub(crate) fn active_triangle(&self, place: usize) -> Option<&ActiveTriangle> {
         self.active_triangles.get(place)
     }
 
-    /// Puts a leg at the end, if there is room and `fill` says so.
+    /// Puts a triangle at the end of the queue, if there is room and `fill` returns true.
     #[inline(always)]
     pub(crate) fn put(&mut self, fill: impl FnOnce(&mut ActiveTriangle) -> bool) {
         let (QueueState { first, count }, length) = (self.queue, self.active_triangles.len());

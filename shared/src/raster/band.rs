@@ -1,11 +1,11 @@
-//! A strip of the picture and its depth: the only memory that drawing writes.
+//! A band: some rows of the picture and their depth, the only memory that drawing writes.
 
 use crate::{coverage::sample::Sample, pixel::Pixel, raster::active::ActiveTriangles};
 
 /// Rows `top .. top + rows` of the viewport.
 #[derive(Debug)]
 pub struct Band<'a, C> {
-    /// Row by row.
+    /// All pixels, row by row.
     pub pixels: &'a mut [C],
     /// Inverse depth per pixel: 0 is infinitely far.
     pub depth: &'a mut [u16],
@@ -15,21 +15,21 @@ pub struct Band<'a, C> {
     pub top: i32,
     /// Number of rows.
     pub rows: i32,
-    /// For antialiasing: takes the place of `depth`, and of `pixels` until [`Self::resolve`].
+    /// Samples for antialiasing, which take the place of `depth`, and of `pixels` until [`Self::resolve`].
     pub blend: Option<Blend<'a>>,
-    /// What the band above handed on, and this one does.
+    /// Active triangles that the band above has saved, and those that this band saves.
     pub active: ActiveTriangles<'a>,
 }
 
-/// Where antialiasing gathers what it knows of each pixel.
+/// The samples in which antialiasing collects the surfaces of each pixel.
 #[derive(Debug)]
 pub struct Blend<'a> {
-    /// Row by row.
+    /// All pixels, row by row.
     pub samples: &'a mut [Sample],
 }
 
 impl<C: Pixel> Band<'_, C> {
-    /// Turns what antialiasing has gathered into pixels.
+    /// Turns samples into pixels.
     #[inline(never)]
     pub fn resolve(&mut self, background: C) {
         if let Some(blend) = &self.blend {
@@ -42,7 +42,7 @@ impl<C: Pixel> Band<'_, C> {
 }
 
 impl<C> Band<'_, C> {
-    /// Background everywhere, infinitely far.
+    /// Fills the band with background, infinitely far.
     #[inline(never)]
     pub fn clear(&mut self, background: C)
     where
@@ -57,7 +57,7 @@ impl<C> Band<'_, C> {
         }
     }
 
-    /// Its first row, and the one behind its last.
+    /// The first row, and one past the last.
     #[inline(always)]
     pub(crate) fn range(&self) -> [i32; 2] {
         [self.top, self.top.wrapping_add(self.rows)]
@@ -71,7 +71,7 @@ impl<C> Band<'_, C> {
     }
 }
 
-/// As `slice::fill`, eight at a time: the compiler does not unroll it at opt-level "s".
+/// Fills a slice, eight values at a time, because the compiler does not unroll `slice::fill` at opt-level "s".
 #[inline(always)]
 fn fill<T: Copy>(slice: &mut [T], value: T) {
     let (eights, rest) = slice.as_chunks_mut::<8>();

@@ -1,11 +1,11 @@
-//! The general way from a triangle to its pixels, the same code for every method and every style.
+//! The general way from a triangle to its pixels: code that all methods and styles share.
 //!
 //! A [`SpanShader`] shades a row of pixels in [`Intensity`], which knows nothing of pixel formats; a [`Canvas`] tests depth, turns
-//! intensities into colours and stores them, and knows nothing of methods. So methods and pixel formats are compiled once each, not once
-//! for each pair. Whatever a method has no loop of its own for (see [`crate::method`]) goes this way: many lights, near lights, dither,
-//! antialiasing, interpolation in perspective.
+//! intensities into colours and stores them, and knows nothing of methods. So each method and each pixel format is compiled once, and not
+//! each pair. Whatever a method has no loop for (see [`crate::method`]) is drawn this way: many lights, near lights, dither, antialiasing,
+//! interpolation in perspective.
 //!
-//! Cost: several times that of a loop of its own for a simple method, little more for one that takes a hundred instructions a pixel.
+//! Cost: several times that of a method's loop for a method of few instructions a pixel, little more for one of a hundred.
 
 use crate::{
     coverage::sample::Layer,
@@ -32,34 +32,35 @@ pub trait SpanShader {
     fn step_row(&mut self);
 }
 
-/// What takes the pixels of a span, in runs from right to left.
+/// Receives the pixels of a span, in runs from right to left.
 pub trait SpanTarget {
-    /// Which of the `count` pixels, at most [`CHUNK`], from number `first` of the span on are seen: bit k is that of pixel `first + k`.
+    /// Which of `count` pixels, at most [`CHUNK`], from number `first` of the span on pass the depth test: bit k stands for pixel `first +
+    /// k`.
     fn visible(&mut self, first: usize, count: usize) -> u32;
 
-    /// Takes the intensities of the pixels from number `first` on that are `visible`, as the latest [`Self::visible`] has said.
+    /// Stores the intensities of the pixels from number `first` on that are `visible`, by the latest result of [`Self::visible`].
     fn put(&mut self, first: usize, visible: u32, intensities: &[Intensity; CHUNK]);
 }
 
-/// Makes an intensity of what is walked.
+/// Computes an intensity from walked values.
 pub trait IntensityShader<V> {
     /// The intensity of the pixel with this value.
     fn shade(&self, value: V) -> Intensity;
 }
 
-/// A polynomial and what is made of its values.
+/// A polynomial and the shader of its values.
 #[derive(Clone, Copy, Debug)]
 pub struct Shaded<P, S> {
-    /// What is walked.
+    /// The polynomial that is walked.
     patch: P,
-    /// What is made of it.
+    /// What turns its values into intensities.
     shader: S,
-    /// A run of pixels. It is written before it is read, and cleared once a triangle instead of once a span.
+    /// The intensities of a run of pixels. They are written before they are read, and so cleared once a triangle and not once a span.
     intensities: [Intensity; CHUNK],
 }
 
 impl<P, S> Shaded<P, S> {
-    /// `shader` makes intensities of what is walked along `patch`.
+    /// Shades the values of `patch` by `shader`.
     pub fn new(patch: P, shader: S) -> Self {
         Self { patch, shader, intensities: [[0; 3]; CHUNK] }
     }
@@ -104,29 +105,29 @@ impl<P: Patch, S: IntensityShader<<P::Walker as Walker>::Value>> SpanShader for 
     }
 }
 
-/// Where triangles are drawn: a band of the picture.
+/// The target of drawing: a band of the picture, in some pixel format.
 pub trait Canvas {
-    /// Columns, first row, and the row behind the last.
+    /// Number of columns, first row, and one past the last row.
     fn bounds(&self) -> [i32; 3];
 
-    /// Draws the `count` pixels of `row` to the left of column `end` as `shader`, which stands on this row, shades them, where
-    /// `inv_depth`, which stands on column `end`, is nearer than what is there.
+    /// Draws the `count` pixels of `row` to the left of column `end` by `shader`, which stands on this row, where `inv_depth`, which stands
+    /// on column `end`, passes the depth test.
     fn draw_row(&mut self, row: i32, end: i32, count: usize, inv_depth: Linear<1>, shader: &mut dyn SpanShader);
 
-    /// Adds a part of a surface to a pixel, for antialiasing.
+    /// Adds a layer to a pixel, for antialiasing.
     fn add(&mut self, column: i32, row: i32, layer: Layer);
 
-    /// The channels that an intensity has in the pixel format.
+    /// The channels of an intensity in the pixel format.
     fn channels(&self, intensity: Intensity, column: i32, row: i32) -> [u8; 3];
 }
 
 /// A band in a pixel format.
 pub struct BandCanvas<'c, 'b, C: Pixel> {
-    /// Where pixels go.
+    /// The band that is drawn into.
     pub band: &'c mut Band<'b, C>,
-    /// Their colours.
+    /// The colours of the material.
     pub tables: MaterialTables<'c, C>,
-    /// A threshold that changes from pixel to pixel takes the place of rounding.
+    /// Whether dither takes the place of rounding.
     pub dither: bool,
 }
 
@@ -169,11 +170,11 @@ impl<C: Pixel> Canvas for BandCanvas<'_, '_, C> {
 struct Row<'r, C: Pixel> {
     pixels: &'r mut [C],
     depth: &'r mut [u16],
-    /// Stands on the column behind those that are still to be tested.
+    /// The depth, which stands on the column right of the pixels that are still to be tested.
     inv_depth: Linear<1>,
     tables: MaterialTables<'r, C>,
     dither: bool,
-    /// Of the first pixel.
+    /// Column of the first pixel.
     column: usize,
     row: usize,
 }
@@ -207,11 +208,11 @@ impl<C: Pixel> SpanTarget for Row<'_, C> {
     }
 }
 
-/// A span of antialiased pixels, all of them seen; `put` takes each with its column.
+/// A span of antialiased pixels, all visible; `put` takes each with its column.
 pub struct EachPixel<F> {
-    /// Of the first pixel.
+    /// Column of the first pixel.
     pub column: i32,
-    /// Takes a column and its intensity.
+    /// Receives a column and its intensity.
     pub put: F,
 }
 

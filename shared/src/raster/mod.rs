@@ -1,4 +1,4 @@
-//! Which pixels a triangle covers, and the loops that fill them.
+//! Bands, active triangles, and the loops that fill rows.
 
 pub mod active;
 pub mod band;

@@ -1,4 +1,4 @@
-//! From walked values to pixels, in loops that are compiled for one method and one pixel format.
+//! Pixel shaders: walked values to pixels, in loops that are compiled for one method and one pixel format.
 
 use crate::{
     format::{RAMP, WALK},
@@ -8,20 +8,20 @@ use core::marker::PhantomData;
 
 /// Turns the value at one pixel into its colour.
 pub trait PixelShader<V>: Copy {
-    /// What is stored.
+    /// The pixel that is stored.
     type Pixel;
 
-    /// So few instructions that a test of depth would be a large share of them: worth a loop without one.
+    /// Whether the shader has so few instructions that a loop without depth test is worth its code.
     const CHEAP: bool = false;
 
-    /// Tells it from other tones of the same method: a band that hands a triangle on says by it which one it is drawn in.
+    /// Number of the shader among those of its method, which is saved with an active triangle.
     const ID: u8 = 0;
 
     /// The colour of a value.
     fn shade(&self, value: V) -> Self::Pixel;
 }
 
-/// One colour.
+/// One colour for all pixels.
 #[derive(Clone, Copy, Debug)]
 pub struct Solid<C>(pub C);
 
@@ -36,7 +36,7 @@ impl<C: Copy> PixelShader<()> for Solid<C> {
     }
 }
 
-/// One walked level under a table of colours; the guards at both ends clamp for nothing.
+/// One walked level, which is an index of a table of colours; guards at both ends of the table take the place of a clamp.
 #[derive(Debug)]
 pub struct Ramp<'a, C: Pixel>(pub &'a [C::Stored; RAMP]);
 

@@ -1,4 +1,4 @@
-//! The inner loop.
+//! The inner loop over the pixels of a span.
 
 use crate::{
     interpolate::{Constant, Walker, plane::Linear},
@@ -6,16 +6,16 @@ use crate::{
 };
 use core::ops::Range;
 
-/// Decides whether a pixel is seen.
+/// A depth test that is walked along a span.
 pub trait DepthTest: Walker {
-    /// What it needs of the depth buffer for these pixels.
+    /// The part of the depth buffer that the test needs for these pixels.
     fn depth(depth: &mut [u16], pixels: Range<usize>) -> Option<&mut [u16]>;
 
-    /// Whether pixel `i` of `depth` is seen, which then is as deep as this.
+    /// Whether pixel `i` of `depth` passes the test; if so, its depth is stored.
     fn passes(&self, depth: &mut [u16], i: usize) -> bool;
 }
 
-/// An inverse depth to be tested; what is stored of it is the upper half.
+/// The test of an inverse depth, of which the upper half is stored.
 impl DepthTest for Linear<1> {
     #[inline(always)]
     fn depth(depth: &mut [u16], pixels: Range<usize>) -> Option<&mut [u16]> {
@@ -34,7 +34,7 @@ impl DepthTest for Linear<1> {
     }
 }
 
-/// Nothing hides it.
+/// No test: every pixel passes.
 impl DepthTest for Constant {
     #[inline(always)]
     fn depth(_: &mut [u16], _: Range<usize>) -> Option<&mut [u16]> {
@@ -47,7 +47,7 @@ impl DepthTest for Constant {
     }
 }
 
-/// Shades the pixels of one span from right to left where they are seen.
+/// Shades the pixels of one span that pass the depth test, from right to left.
 ///
 /// `test` and `walker` stand one pixel right of the span. They step first and the index counts down
 /// to zero: the loop ends on its own subtraction, and every slice is checked

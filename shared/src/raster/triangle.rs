@@ -1,4 +1,4 @@
-//! One triangle into one band: edges, depth plane, and the rows between them.
+//! Draws one triangle into one band: edges, plane of depth, and the rows between the edges.
 
 use crate::{
     arch::product::HALVES,
@@ -26,21 +26,21 @@ pub struct ScreenTriangle {
     /// `[x, y]`, 1/16 pixel.
     pub corners: [[i32; 2]; 3],
     pub(crate) depth: [i32; 3],
-    /// Which of the mesh's corners is the top one.
+    /// Index of the top corner in the order of the mesh.
     pub turned: usize,
-    /// Its rows in a band; without antialiasing.
+    /// The rows of the triangle in a band; unused with antialiasing.
     rows: RowRange,
 }
 
-/// A triangle's way through the rows of a band.
+/// The rows of a triangle in a band, from its first one on.
 #[derive(Clone, Copy, Debug)]
 struct RowRange {
     sides: EdgeWalker,
-    /// Standing on the first row, if it is known already.
+    /// The plane of depth on the first row, if it is known already.
     inv_depth: Option<Plane<1>>,
-    /// For [`ActiveTriangles`]; 0: it is not handed on.
+    /// The key among [`ActiveTriangles`]; 0 if the triangle is not saved for the next band.
     key: u32,
-    /// By the band above: patches stand on the first row already.
+    /// Whether the band above has saved the triangle, so that patches stand on the first row already.
     resumed: bool,
 }
 
@@ -51,13 +51,13 @@ impl RowRange {
     }
 }
 
-/// What steps from row to row.
+/// The state that steps from row to row.
 pub(crate) struct Rows<'b, D, P: Patch, T: PixelShader<<P::Walker as Walker>::Value>> {
-    /// Pixels and inverse depth of the band, as many of each in a row as it is wide.
+    /// Pixels and depth buffer of the band, `width` of each in a row.
     pub(crate) pixels: &'b mut [T::Pixel],
     pub(crate) buffer: &'b mut [u16],
     pub(crate) width: usize,
-    /// Where the coming row starts in them.
+    /// Index of the first pixel of the coming row.
     pub(crate) start: usize,
     pub(crate) sides: LeftRight,
     /// Pixels of the coming row.
@@ -66,7 +66,7 @@ pub(crate) struct Rows<'b, D, P: Patch, T: PixelShader<<P::Walker as Walker>::Va
     pub(crate) height: u32,
     /// Pixels of the rows that are done.
     pub(crate) filled: u32,
-    /// Depth at column 0, unless nothing is hidden.
+    /// The plane of depth, or [`Constant`] without a depth test.
     pub(crate) depth: D,
     pub(crate) patch: P,
     pub(crate) shader: T,
@@ -76,7 +76,7 @@ pub(crate) struct Rows<'b, D, P: Patch, T: PixelShader<<P::Walker as Walker>::Va
 const ROW: u32 = 2 * COLUMNS - 1;
 
 impl ScreenTriangle {
-    /// None at all.
+    /// No triangle.
     pub(crate) const NONE: Self = Self { corners: [[0; 2]; 3], depth: [0; 3], turned: 0, rows: RowRange::of(EdgeWalker::NONE, 0) };
 
     /// Turns the corners until the top one is first; the order around the triangle stays.
@@ -89,7 +89,7 @@ impl ScreenTriangle {
         Self { corners: places, depth: depths(corners), turned, rows: RowRange::of(sides, 0) }
     }
 
-    /// The same without antialiasing, of a triangle that has been [`turned`] and whose sides can be walked from end to end.
+    /// A word-sized triangle that has been [`turned`]: its edges can be stepped from end to end.
     #[inline(always)]
     #[must_use]
     pub(crate) fn word_sized<C>((turned, corners): (usize, [&ScreenVertex; 3]), key: u32, band: &Band<'_, C>) -> Self {
@@ -98,7 +98,7 @@ impl ScreenTriangle {
         Self { corners: places, depth: depths(corners), turned, rows: RowRange::of(sides, key) }
     }
 
-    /// Of one that the band above handed on: nothing else is known of it.
+    /// A triangle that the band above has saved; corners and depth of corners are not known.
     #[inline(always)]
     #[must_use]
     pub(crate) fn resumed<C>(active_triangle: &ActiveTriangle, turned: usize, band: &Band<'_, C>) -> Self {
@@ -111,14 +111,14 @@ impl ScreenTriangle {
         Self { corners: [[0; 2]; 3], depth: [0; 3], turned, rows }
     }
 
-    /// No row lies in the band.
+    /// Whether no row lies in the band.
     #[inline(always)]
     #[must_use]
     pub fn is_empty(&self) -> bool {
         self.rows.sides.row >= self.rows.sides.end
     }
 
-    /// No pixel's centre lies in it, among the rows of the band, which is `width` columns wide.
+    /// Whether the triangle contains no centre of a pixel within the rows of the band, which is `width` columns wide.
     #[must_use]
     pub(crate) fn covers_nothing(&self, width: i32) -> bool {
         let sides = &self.rows.sides;
@@ -138,13 +138,13 @@ impl ScreenTriangle {
         }
     }
 
-    /// Works out depth, unless that is left to those who need it.
+    /// Computes the plane of depth now; otherwise it is computed when the triangle is drawn.
     #[inline(always)]
     pub(crate) fn set_up_depth(&mut self, gradients: &Gradients) {
         self.rows.inv_depth = Some(self.plane(gradients, self.rows.sides.row));
     }
 
-    /// Draws the rows that lie in `band` and returns how many pixels they have.
+    /// Draws the rows that lie in `band`; returns how many pixels they have.
     #[inline(always)]
     pub fn draw<P: Patch, T: PixelShader<<P::Walker as Walker>::Value>>(
         &self,
@@ -160,7 +160,7 @@ impl ScreenTriangle {
         self.walk(gradients, inv_depth, patch, shader, band)
     }
 
-    /// As [`Self::draw`], without depth: where nothing else is.
+    /// Draws the rows that lie in `band` without a depth test, for triangles that no other overlaps; returns how many pixels they have.
     #[inline(always)]
     pub fn draw_alone<P: Patch, T: PixelShader<<P::Walker as Walker>::Value>>(
         &self,
@@ -172,7 +172,7 @@ impl ScreenTriangle {
         self.walk(gradients, Constant, patch, shader, band)
     }
 
-    /// Of one whose rows are not walked: it is drawn by areas.
+    /// A triangle without rows, which is drawn by areas for antialiasing.
     #[inline(never)]
     #[must_use]
     pub fn without_rows(corners: [&ScreenVertex; 3]) -> Self {
@@ -180,7 +180,7 @@ impl ScreenTriangle {
         Self { corners: places(corners), depth: depths(corners), turned, rows: RowRange::of(EdgeWalker::NONE, 0) }
     }
 
-    /// Draws the rows that lie in `canvas` the general way and returns how many pixels they have; `shader` stands on the anchor's row.
+    /// Draws the rows that lie in `canvas` the general way; returns how many pixels they have. `shader` stands on the anchor's row.
     #[inline(never)]
     pub fn draw_spans(&self, gradients: &Gradients, shader: &mut dyn SpanShader, canvas: &mut dyn Canvas) -> u32 {
         let sides = &self.rows.sides;
@@ -208,7 +208,7 @@ impl ScreenTriangle {
         }
     }
 
-    /// Walks down its sides; `depth` stands on the first row.
+    /// Draws row by row down the edges; `depth` stands on the first row.
     #[inline(always)]
     fn walk<D: Patch<Walker: DepthTest>, P: Patch, T: PixelShader<<P::Walker as Walker>::Value>>(
         &self,
@@ -250,7 +250,7 @@ impl ScreenTriangle {
         self.plane(&gradients, self.rows.sides.row)
     }
 
-    /// Depth, standing on `row`.
+    /// The plane of depth, standing on `row`.
     #[inline(always)]
     pub fn plane(&self, gradients: &Gradients, row: i32) -> Plane<1> {
         let [a, b, c] = self.depth;
@@ -261,7 +261,7 @@ impl ScreenTriangle {
     }
 }
 
-/// How many places on the top corner is, and the corners from there on.
+/// Index of the top corner, and the corners from there on.
 #[inline(always)]
 #[must_use]
 pub(crate) fn turned(corners: [&ScreenVertex; 3]) -> (usize, [&ScreenVertex; 3]) {
@@ -280,7 +280,7 @@ fn depths([a, b, c]: [&ScreenVertex; 3]) -> [i32; 3] {
     [a.depth, b.depth, c.depth]
 }
 
-/// The three of them, `by` places on.
+/// Rotates three values by `by` places.
 #[inline(always)]
 #[must_use]
 pub fn turn<A: Copy>([a, b, c]: [A; 3], by: usize) -> [A; 3] {
@@ -291,7 +291,7 @@ pub fn turn<A: Copy>([a, b, c]: [A; 3], by: usize) -> [A; 3] {
     }
 }
 
-/// Hands a triangle on to the next band, walked to its first row there.
+/// Saves a triangle for the next band, stepped to its first row there.
 #[inline(never)]
 fn save_active<D: Patch, P: Patch>((key, edges): (u32, EdgeState), depth: &D, patch: &P, active: &mut ActiveTriangles<'_>) {
     active.put(|active_triangle| active_triangle.save((key, edges), depth, patch));
@@ -299,10 +299,10 @@ fn save_active<D: Patch, P: Patch>((key, edges): (u32, EdgeState), depth: &D, pa
 
 /// Fills the rows to come; there is at least one.
 ///
-/// On Armv7-M all that lives longer than a row stays in memory, behind one pointer that the compiler knows nothing of: measured, the
-/// pixel loop then owns the registers and comes out as by hand. `count` comes from there too, written a row earlier: derived in the row,
-/// the compiler would count in two registers instead of one. Where registers are few or many, or nothing is walked, a copy on the stack
-/// is shorter.
+/// On Armv7-M everything that lives longer than a row stays in memory, behind one pointer that is opaque to the compiler: by measurement
+/// the pixel loop then has all registers. `count` is read from there too, written a row earlier: if it were derived in the row, the
+/// compiler would count in two registers instead of one. On other processors, or where nothing is walked, a copy on the stack takes fewer
+/// instructions.
 #[inline(never)]
 pub(crate) fn fill_rows<D: Patch<Walker: DepthTest>, P: Patch, T: PixelShader<<P::Walker as Walker>::Value>>(
     mut rows: &mut Rows<'_, D, P, T>,
@@ -326,22 +326,23 @@ impl<'b, D: Patch<Walker: DepthTest>, P: Patch, T: PixelShader<<P::Walker as Wal
     /// Whether rows are filled in a copy, see [`fill_rows`].
     const LOCAL: bool = HALVES || cfg!(not(target_arch = "arm")) || size_of::<P>() == 0;
 
-    /// Whether pixels are counted a row ahead there, so that what is counted need not wait for the pixel loop.
+    /// Whether pixels are counted a row ahead in that copy, so that the count need not be kept during the pixel loop.
     const AHEAD: bool = Self::LOCAL && cfg!(target_arch = "arm") && P::WORDS <= 6;
 
-    /// No rows yet, from `row` of the band on.
+    /// The state before the first row, which is `row` of the band.
     #[inline(always)]
     pub(crate) fn new(band: &'b mut Band<'_, T::Pixel>, row: i32, sides: LeftRight, depth: D, patch: P, shader: T) -> Self {
         let (width, start) = (band.width, band.start(row));
         Self { pixels: band.pixels, buffer: band.depth, width, start, sides, count: 0, height: 0, filled: 0, depth, patch, shader }
     }
 
-    /// Fills one row; its sides step to the next.
+    /// Fills one row and steps the edges to the next.
     #[inline(always)]
     fn fill(&mut self) {
-        // On Armv6-M one register is to count and to index two buffers: the compiler has to know that twice the number is no overflow.
+        // On Armv6-M one register counts and indexes both buffers, for which the compiler has to know that twice the count does not
+        // overflow.
         let count = if HALVES { self.count & ROW } else { self.count } as usize;
-        // Measured: loops that leave no register free are shorter if pixels are counted behind them.
+        // By measurement, loops that leave no register free are shorter if pixels are counted after them.
         let late = !HALVES && P::WORDS > 6;
         if !Self::AHEAD && !late {
             self.filled = self.filled.wrapping_add(self.count);
@@ -363,7 +364,7 @@ impl<'b, D: Patch<Walker: DepthTest>, P: Patch, T: PixelShader<<P::Walker as Wal
         }
     }
 
-    /// Fills them in a copy that is nobody else's.
+    /// Fills all rows in a local copy.
     #[inline(always)]
     fn fill_here(&mut self) {
         let Rows { width, start, sides, count, height, filled, depth, patch, shader, .. } = *self;
@@ -372,7 +373,7 @@ impl<'b, D: Patch<Walker: DepthTest>, P: Patch, T: PixelShader<<P::Walker as Wal
         let ahead = |count: u32| if Self::AHEAD { count } else { 0 };
         rows.filled = rows.filled.wrapping_add(ahead(rows.count));
         loop {
-            // Not to be counted in two registers.
+            // This keeps the compiler from counting in two registers.
             if !HALVES && cfg!(target_arch = "arm") {
                 rows.count = black_box(rows.count);
             }
@@ -384,7 +385,7 @@ impl<'b, D: Patch<Walker: DepthTest>, P: Patch, T: PixelShader<<P::Walker as Wal
                 break;
             }
         }
-        // Without that of the row behind the last.
+        // The count of the row behind the last is taken back.
         self.filled = rows.filled.wrapping_sub(ahead(rows.count));
         let Rows { start, sides, depth, patch, shader, .. } = rows;
         (self.start, self.sides, self.depth, self.patch, self.shader) = (start, sides, depth, patch, shader);

@@ -1,9 +1,8 @@
 //! Edges of a triangle against pixel centres: the top-left rule, exactly.
 //!
-//! A pixel belongs to a triangle if its centre lies inside, or on a left or top
-//! edge. Both edges of a span ask the same question, *which is the first column
-//! whose centre is not left of me*, so spans are half open and neighbours that
-//! share an edge share its answer: no gap, no pixel twice.
+//! A pixel belongs to a triangle if its centre lies inside, or on a left or top edge. Both edges of a span ask the same question, *which is
+//! the first column whose centre is not left of me*, so spans are half open, and neighbours get one answer along their common edge: no gap,
+//! no pixel twice.
 //!
 //! ```text
 //!   centres   +   +   +   +      x = 2.5 on a left edge:  column 2 is in
@@ -17,20 +16,20 @@ use crate::{
     format::{CENTRE, SUBPIXEL},
 };
 
-/// Fraction bits of a walked column.
+/// Fraction bits of a stepped column.
 pub const COLUMN: u32 = SLOPE;
 
-/// Columns that a walked column can tell apart: no viewport is wider.
+/// Number of columns that a stepped column can tell apart: no viewport is wider.
 pub const COLUMNS: u32 = 1 << (32 - COLUMN);
 
-/// Heights up to here, in 1/16 pixel, are walked from end to end: 89 rows.
+/// Largest height of an edge that is stepped from end to end, in 1/16 pixel: 89 rows.
 pub const MAX_STEPPED_HEIGHT: i32 = 89 << SUBPIXEL;
 const _: () = assert!(MAX_STEPPED_HEIGHT as usize <= LARGEST);
 
-/// Widths up to here, in 1/16 pixel, fit a word with [`COLUMN`] fraction bits: 64 columns.
+/// Largest width of an edge that fits a word with [`COLUMN`] fraction bits, in 1/16 pixel: 64 columns.
 pub const MAX_STEPPED_WIDTH: i32 = (1 << (31 - COLUMN)) - 1;
 
-/// Heights from here on, in 1/16 pixel, are not walked but divided anew on each row.
+/// Least height of an edge whose column is divided anew on each row, in 1/16 pixel.
 const MIN_DIVIDED_HEIGHT: i32 = 1 << (32 - COLUMN);
 
 /// An edge from an upper to a lower point, 1/16 pixel.
@@ -52,7 +51,7 @@ pub struct EdgeX {
     pub step: u32,
 }
 
-/// A place in 1/16 pixel as one that is walked. All ones below the integer part turn its floor into a ceiling.
+/// A coordinate in 1/16 pixel in the format of a stepped column. All ones below the integer part turn its floor into a ceiling.
 #[inline(always)]
 fn walked(sixteenths: i32) -> u32 {
     ((sixteenths << (COLUMN - SUBPIXEL)) as u32).wrapping_add((1 << COLUMN) - 1)
@@ -70,14 +69,14 @@ impl EdgeX {
 }
 
 impl Edge {
-    /// From `upper` to `lower`, each `[x, y]` in 1/16 pixel.
+    /// The edge from `upper` to `lower`, each `[x, y]` in 1/16 pixel.
     #[inline(always)]
     #[must_use]
     pub fn new(upper: [i32; 2], lower: [i32; 2]) -> Self {
         Self { x: upper[0], y: upper[1], dx: lower[0].wrapping_sub(upper[0]), dy: lower[1].wrapping_sub(upper[1]) }
     }
 
-    /// First column whose centre is not left of the edge at the centre of `row`: any edge, any row.
+    /// First column whose centre is not left of the edge at the centre of `row`, for any edge and any row.
     #[inline]
     #[must_use]
     pub fn column(&self, row: i32) -> i32 {
@@ -103,9 +102,9 @@ impl Edge {
         EdgeX { x: walked(self.x.wrapping_sub(CENTRE)).wrapping_add(across as u32), step: step as u32 }
     }
 
-    /// How many rows of an edge that is not short a walked column stays exact, 0 if it cannot be walked.
+    /// Number of rows over which a stepped column of a larger edge stays exact; 0 if the edge cannot be stepped.
     ///
-    /// As in [`Self::walk`], but the start is too small by less than 2^-21.
+    /// The bound is that of [`Self::walk`], except that the start is too small by less than 2^-21.
     #[inline(always)]
     #[must_use]
     pub fn exact_rows(&self) -> i32 {

@@ -1,4 +1,4 @@
-//! The sides of a triangle, in pieces in which both are walked.
+//! The left and right side of a triangle, stepped from row to row.
 
 use zerocopy::{FromBytes, Immutable, IntoBytes, KnownLayout};
 
@@ -7,7 +7,7 @@ use crate::{
     setup::edge::{COLUMN, Edge, EdgeX, MAX_STEPPED_HEIGHT, MAX_STEPPED_WIDTH},
 };
 
-/// The sides of a row.
+/// The columns where a row begins and ends.
 #[derive(FromBytes, IntoBytes, Immutable, KnownLayout, Clone, Copy, Debug)]
 #[repr(C)]
 pub(crate) struct LeftRight {
@@ -16,13 +16,13 @@ pub(crate) struct LeftRight {
 }
 
 impl LeftRight {
-    /// Columns between them.
+    /// Number of columns in the row.
     #[inline(always)]
     pub(crate) fn columns(&self) -> u32 {
         (self.right.x >> COLUMN).wrapping_sub(self.left.x >> COLUMN)
     }
 
-    /// No columns.
+    /// A row without columns.
     pub(crate) const NONE: Self = Self { left: EdgeX::NONE, right: EdgeX::NONE };
 
     /// Moves down `rows` rows.
@@ -37,33 +37,33 @@ impl LeftRight {
 #[derive(Clone, Copy, Debug)]
 struct LowerEdge {
     column: EdgeX,
-    /// It is on the right side.
+    /// Whether the edge is on the right side.
     right: bool,
 }
 
-/// Sides that go on below a band, as [`EdgeWalker`] has them.
+/// The state of an [`EdgeWalker`] at the end of a band, for the next one.
 #[derive(FromBytes, IntoBytes, Immutable, KnownLayout, Clone, Copy, Debug)]
 #[repr(C)]
 pub(crate) struct EdgeState {
-    /// The sides of the next band's first row.
+    /// Begin and end of the next band's first row.
     pair: LeftRight,
-    /// The edge below the middle corner, and the row where it begins.
+    /// The edge below the middle corner, and the row `turn` where it begins; `low` is one past the last row of the triangle.
     column: EdgeX,
     turn: i32,
     low: i32,
-    /// Not 0: that edge is on the right side.
+    /// Not 0 if that edge is on the right side.
     right: u8,
     /// The pixel shader, see [`crate::raster::pixel_shader::PixelShader::ID`].
     pub(crate) shader: u8,
-    /// Nothing: no byte is left undefined.
+    /// Padding, so that no byte is undefined.
     unused: u16,
 }
 
 impl EdgeState {
-    /// Of no triangle; all zeros.
+    /// The state of no triangle; all zeros.
     pub(crate) const NONE: Self = Self { pair: LeftRight::NONE, column: EdgeX::NONE, turn: 0, low: 0, right: 0, shader: 0, unused: 0 };
 
-    /// The sides in the rows from `top` to `bottom` of the next band.
+    /// The edges in the rows from `top` to `bottom` of the next band.
     #[inline(always)]
     pub(crate) fn walker(self, [top, bottom]: [i32; 2]) -> EdgeWalker {
         let Self { pair, column, turn, low, right, .. } = self;
@@ -81,29 +81,29 @@ impl EdgeState {
     }
 }
 
-/// A triangle's rows in a band.
+/// The edges of a triangle within the rows of a band.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct EdgeWalker {
-    /// Those of the first row.
+    /// Begin and end of the first row.
     pub(crate) pair: LeftRight,
     /// The first row.
     pub(crate) row: i32,
-    /// Where the rows end to which `pair` can be walked.
+    /// One past the last row to which `pair` can be stepped.
     pub(crate) stop: i32,
-    /// Where the rows end.
+    /// One past the last row in the band.
     pub(crate) end: i32,
-    /// The same of all bands.
+    /// One past the last row of the triangle, in any band.
     low: i32,
-    /// Where the edge below the middle corner begins.
+    /// First row of the edge below the middle corner.
     turn: i32,
-    /// They are walked from end to end.
+    /// Whether all edges are stepped from end to end.
     end_to_end: bool,
-    /// Takes the place of one of them at `stop` then.
+    /// The edge that replaces one of `pair` at `stop`, if edges are stepped from end to end.
     below: LowerEdge,
 }
 
 impl EdgeWalker {
-    /// No row; all zeros.
+    /// Edges without rows; all zeros.
     pub(crate) const NONE: Self = Self {
         pair: LeftRight::NONE,
         row: 0,
@@ -115,7 +115,7 @@ impl EdgeWalker {
         below: LowerEdge { column: EdgeX::NONE, right: false },
     };
 
-    /// Of a triangle, its top corner first, clockwise, in the rows from `top` to `bottom` of a band of `width` columns.
+    /// The edges of a triangle, its top corner first, clockwise, in the rows from `top` to `bottom` of a band of `width` columns.
     pub(crate) fn new(corners: [[i32; 2]; 3], [top, bottom]: [i32; 2], width: i32) -> Self {
         let [[_, upper], [_, right], [_, left]] = corners;
         let low = right.max(left);
@@ -128,7 +128,8 @@ impl EdgeWalker {
         sides
     }
 
-    /// The same of one that can be walked from end to end: no corner beside the band, few rows and columns.
+    /// The edges of a triangle that can be stepped from end to end: no corner lies beside the band, and height and width are at most
+    /// [`MAX_STEPPED_HEIGHT`] and [`MAX_STEPPED_WIDTH`].
     #[inline(always)]
     pub(crate) fn end_to_end(corners: [[i32; 2]; 3], [top, bottom]: [i32; 2]) -> Self {
         let [upper, right, left] = corners;
@@ -146,21 +147,21 @@ impl EdgeWalker {
         Self { pair, row, stop: turn.max(row).min(end), end, low, turn, end_to_end: true, below: LowerEdge { column, right: turns_right } }
     }
 
-    /// Whether rows follow in the next band that can be walked to from here.
+    /// Whether rows follow in the next band to which the edges can be stepped.
     #[inline(always)]
     pub(crate) fn goes_on(&self) -> bool {
         self.low > self.end
     }
 
-    /// What follows in the next band; `pair` has been walked to the end. `shader` is the [`crate::raster::pixel_shader::PixelShader::ID`].
+    /// The state for the next band; `pair` has been stepped to the end. `shader` is the [`crate::raster::pixel_shader::PixelShader::ID`].
     #[inline(always)]
     pub(crate) fn state(&self, pair: LeftRight, shader: u8) -> EdgeState {
-        // Before the middle corner's row, or where it is the band's end, the edge below is still to come.
+        // If the band ends at or above the middle corner, the lower edge is still to come.
         let turn = if self.stop < self.end { self.low } else { self.turn };
         EdgeState { pair, column: self.below.column, turn, low: self.low, right: self.below.right.into(), shader, unused: 0 }
     }
 
-    /// Goes on with the rows from `row`, to which both sides have been walked: `pair`; returns how far they can be walked now.
+    /// Continues with the rows from `row`, to which `pair` has been stepped; returns one past the last row to which it can be stepped now.
     #[inline(always)]
     pub(crate) fn next(&self, row: i32, pair: &mut LeftRight, corners: [[i32; 2]; 3], width: i32) -> i32 {
         let stop;
@@ -174,13 +175,13 @@ impl EdgeWalker {
         stop
     }
 
-    /// The next rows of a triangle that is clipped, or large: as many as stay exact, or one.
+    /// The next rows of a large triangle, or of one beside the band: as many as stay exact, or one.
     #[cold]
     #[inline(never)]
     fn next_large(self, row: i32, corners: [[i32; 2]; 3], width: i32) -> (i32, LeftRight) {
         let [top, right, left] = corners;
         let middle = first_centre(right[1].min(left[1]));
-        // Left of the middle corner's row both edges leave the top; below it, the side of that corner is another edge.
+        // Above the middle corner both edges leave the top corner; below it, an edge from the middle corner replaces one of them.
         let (stop, left, right) = if row < middle {
             (middle, Edge::new(top, left), Edge::new(top, right))
         } else if turns_right(corners) {
@@ -199,21 +200,21 @@ impl EdgeWalker {
     }
 }
 
-/// No corner lies beside the band.
+/// Whether no corner lies beside the band.
 #[inline(always)]
 fn is_walkable([[a, _], [b, _], [c, _]]: [[i32; 2]; 3], width: i32) -> bool {
     let inside = |x: i32| (x as u32) < (width as u32) << 4;
     inside(a) && inside(b) && inside(c)
 }
 
-/// Every edge can be walked in one word.
+/// Whether the width of every edge fits one word.
 #[inline(always)]
 fn is_steppable([[a, _], [b, _], [c, _]]: [[i32; 2]; 3]) -> bool {
     let narrow = |from: i32, to: i32| (to.wrapping_sub(from).wrapping_add(MAX_STEPPED_WIDTH) as u32) <= 2 * MAX_STEPPED_WIDTH as u32;
     narrow(a, b) && narrow(b, c) && narrow(c, a)
 }
 
-/// The corner in the middle is on the right side.
+/// Whether the middle corner is on the right side.
 #[inline(always)]
 fn turns_right([_, right, left]: [[i32; 2]; 3]) -> bool {
     right[1] < left[1]

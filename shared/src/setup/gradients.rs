@@ -7,7 +7,7 @@
 //! well conditioned where the printed formulas divide by zero
 //! (Szirmay-Kalos et al.; see their T3..T5).
 //!
-//! Triangles that are small take shorter ways: in words where nodes have few bits, and mantissas of one word elsewhere.
+//! Word-sized triangles take shorter ways: in words where nodes have few bits, and by mantissas of one word elsewhere.
 
 use crate::{
     arch::product::{product, rounded},
@@ -16,10 +16,11 @@ use crate::{
     setup::{sliver::Sliver, terms::Terms, word_sized, word_sized::WordSized},
 };
 
-/// More fraction bits than the walked format, while coefficients move to the anchor.
+/// Fraction bits beyond those of the walked format, while coefficients move to the anchor.
 pub const GUARD: i32 = 12;
 
-/// Farther than this from the first corner, in columns plus rows, the anchor moves to the middle of what is drawn.
+/// Largest extent of a triangle, in columns plus rows, whose anchor is the pixel at its first corner. The anchor of a larger one is the
+/// middle of its visible part.
 pub const NEAR: i32 = 256;
 
 /// Length over height beyond which quadratic fields are fitted by exact fractions.
@@ -27,9 +28,9 @@ pub const NEAR: i32 = 256;
 /// The error of the fast way grows with the square of this ratio: at most 2^-22 of the nodes' range at 1, 2^-8 here.
 pub const MAX_THINNESS: i64 = 128;
 
-/// Largest exponent of a small triangle's gradients: no shift of what they are multiplied with goes to the right.
+/// Largest exponent of a word-sized triangle's gradients, so that no shift of a product goes to the right.
 const LARGEST: u32 = 33;
-/// Smallest one: no shift to the left drops all.
+/// Smallest exponent of a word-sized triangle's gradients, so that no shift to the left drops all bits.
 const LEAST: i32 = 20;
 
 /// The screen geometry of a triangle, ready to fit polynomials.
@@ -46,7 +47,7 @@ pub struct Gradients {
     shift: [i32; 2],
     /// The anchor.
     anchor: [i32; 2],
-    /// Longer than [`MAX_THINNESS`] times its height.
+    /// Whether the triangle is longer than [`MAX_THINNESS`] times its height.
     thin: bool,
     /// Corners 1 and 2 from corner 0, in 1/16 pixel, of a part of the triangle 2^`level` times finer.
     edges: [[i32; 2]; 2],
@@ -54,12 +55,12 @@ pub struct Gradients {
     level: u32,
 }
 
-/// What edges are divided by to become gradients, or the gradients.
+/// Either the reciprocal of the area, from which the gradients follow, or the gradients themselves.
 #[derive(Clone, Copy, Debug)]
 enum Scale {
-    /// Words of 32 bits are enough, see [`Gradients::if_word_sized`].
+    /// The reciprocal area of a word-sized triangle, see [`Gradients::if_word_sized`].
     WordSized(WordSized),
-    /// The same of a part of such a triangle.
+    /// Gradients of a part of a word-sized triangle.
     Part(Slopes),
     Any(Slopes),
 }
@@ -76,14 +77,15 @@ struct Slopes {
 pub type Visible = [i32; 4];
 
 impl Gradients {
-    /// The basis of the triangle with `corners` in 1/16 pixel, clockwise on a screen
-    /// whose y runs down; `None` if it has no area or runs the other way.
+    /// The gradients of the triangle with `corners` in 1/16 pixel, clockwise on a screen whose y runs down; `None` if it has no area or
+    /// runs the other way.
     #[must_use]
     pub fn new(corners: [[i32; 2]; 3], visible: Visible) -> Option<Self> {
         Self::if_word_sized(corners).or_else(|| Self::any(corners, visible))
     }
 
-    /// That of a small and stout triangle: of up to 64 pixels, and not even nearly [`MAX_THINNESS`].
+    /// The gradients of a word-sized triangle; `None` for any other. A triangle is word-sized if it is at most 64 pixels wide and high, and
+    /// far from [`MAX_THINNESS`].
     #[inline(always)]
     #[must_use]
     pub fn if_word_sized(corners: [[i32; 2]; 3]) -> Option<Self> {
@@ -91,7 +93,7 @@ impl Gradients {
         Some(Self::from_area(corners, WordSized::new(edges)?))
     }
 
-    /// Of a triangle on which nothing is to be fitted.
+    /// The gradients of a triangle on which nothing is fitted.
     pub(crate) const NONE: Self = Self {
         scale: Scale::Any(Slopes { s: [0; 2], t: [0; 2], exponent: 0 }),
         offset: [0; 2],
@@ -102,7 +104,7 @@ impl Gradients {
         level: 0,
     };
 
-    /// That of a triangle of which is known that [`Self::if_word_sized`] takes it.
+    /// The gradients of a triangle that is known to be word-sized.
     #[inline(always)]
     #[must_use]
     pub(crate) fn word_sized(corners: [[i32; 2]; 3]) -> Self {
@@ -118,7 +120,7 @@ impl Gradients {
         Self { scale: Scale::WordSized(area), offset, shift: [0; 2], anchor, thin: false, edges, level: 0 }
     }
 
-    /// That of any triangle.
+    /// The gradients of any triangle; `None` if it has no area or runs the other way.
     #[cold]
     #[inline(never)]
     #[must_use]
@@ -159,8 +161,8 @@ impl Gradients {
         })
     }
 
-    /// The basis of a part of the triangle: its copy, 2^`level` times smaller, with corner 0 at `corner` ([`FINE`] fraction
-    /// bits), turned by 180 degrees or not. Exact: a copy's gradients are the triangle's, times ±2^`level`.
+    /// The gradients of a part of the triangle: its copy, 2^`level` times smaller, with corner 0 at `corner` ([`FINE`] fraction bits),
+    /// turned by 180 degrees or not. Exact: a copy's gradients are the triangle's, times ±2^`level`.
     ///
     /// A part that is not `near` its corner everywhere has the triangle's anchor.
     #[must_use]
@@ -183,7 +185,7 @@ impl Gradients {
         }
     }
 
-    /// The same, ready to be asked for many parts.
+    /// These gradients in the form from which many parts are taken fast.
     #[must_use]
     pub fn parted(&self) -> Self {
         match self.scale {
@@ -192,7 +194,7 @@ impl Gradients {
         }
     }
 
-    /// Fitting a quadratic to it takes exact fractions, several thousand instructions.
+    /// Whether fitting a quadratic takes exact fractions, which are several thousand instructions.
     #[inline(always)]
     #[must_use]
     pub(crate) fn is_thin(&self) -> bool {
@@ -223,7 +225,7 @@ impl Gradients {
         }
     }
 
-    /// Those of a small triangle: no shift of what they are multiplied with goes to the right.
+    /// Gradients of a word-sized triangle, with an exponent of at most [`LARGEST`].
     #[inline(never)]
     fn mantissas([[x1, y1], [x2, y2]]: [[i32; 2]; 2], WordSized { zeros, bits, .. }: WordSized) -> Slopes {
         let det = x1.wrapping_mul(y2).wrapping_sub(x2.wrapping_mul(y1));
@@ -254,7 +256,7 @@ impl Gradients {
         }
     }
 
-    /// From corner 0 to the centre of its pixel, in 1/16 pixel; of a whole triangle.
+    /// From corner 0 to the centre of its pixel, in 1/16 pixel, for a triangle that is not a part.
     #[inline(always)]
     fn subpixels(&self) -> [i32; 2] {
         [self.offset[0] >> SPLITS, self.offset[1] >> SPLITS]
@@ -311,7 +313,8 @@ impl Gradients {
                 match area.quadratic(self.edges, self.subpixels(), nodes) {
                     Some(fitted) => fitted,
                     None => {
-                        // Taken apart and put together: what comes back in memory is not to make the others go there.
+                        // Rebuild the array, so that the result of this rare path, which is returned in memory, does not force the fast
+                        // path onto the stack.
                         let [c, dx, dy, dxx, dxy, dyy] = self.quadratic_any(BITS, nodes, extra);
                         [c, dx, dy, dxx, dxy, dyy]
                     }
@@ -436,20 +439,20 @@ fn edges([[x0, y0], [x1, y1], [x2, y2]]: [[i32; 2]; 3]) -> ([i32; 2], [[i32; 2];
     ([x0, y0], [[x1.wrapping_sub(x0), y1.wrapping_sub(y0)], [x2.wrapping_sub(x0), y2.wrapping_sub(y0)]])
 }
 
-/// Gradients of s and t, and s and t at the anchor of a small triangle, all with one exponent.
+/// Gradients of s and t, and s and t at the anchor of a word-sized triangle, all with one exponent.
 struct Mantissas {
     gradients: Slopes,
     at: [i32; 2],
 }
 
 impl Mantissas {
-    /// `offset` leads from corner 0 to the anchor.
+    /// Gradients, and s and t at the anchor; `offset` leads there from corner 0.
     #[inline(always)]
     fn new(gradients: Slopes, offset: [i32; 2]) -> Self {
         Self { at: [at(gradients.s, offset), at(gradients.t, offset)], gradients }
     }
 
-    /// Of `a s + b t`: the value at the anchor, and the derivatives along x and y; `a` and `b` are at most 2^30.
+    /// The value of `a s + b t` at the anchor, and its derivatives along x and y; `a` and `b` are at most 2^30.
     #[inline(always)]
     fn products(&self, a: i32, b: i32) -> [i64; 3] {
         let Slopes { s, t, .. } = self.gradients;
@@ -464,7 +467,7 @@ fn twice_upper(product: i64) -> i32 {
     ((product.wrapping_add(1 << 31) >> 32) as i32) << 1
 }
 
-/// What `gradient` comes to at `offset`, which is at most a pixel away ([`FINE`] fraction bits).
+/// The product of `gradient` and `offset`, which is at most a pixel ([`FINE`] fraction bits).
 #[inline(always)]
 fn at(gradient: [i32; 2], offset: [i32; 2]) -> i32 {
     ((product(gradient[0], offset[0]) + product(gradient[1], offset[1])) >> FINE) as i32

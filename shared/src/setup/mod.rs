@@ -1,4 +1,4 @@
-//! What is worked out once for a triangle: its edges, to be walked from row to row, and the gradients by which polynomials are fitted.
+//! The set-up of a triangle: its edges, which are stepped from row to row, and the gradients by which polynomials are fitted.
 
 pub mod edge;
 pub(crate) mod edge_walker;

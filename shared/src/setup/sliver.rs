@@ -1,11 +1,11 @@
 //! Quadratics and cubics on very thin triangles, by exact fractions.
 //!
-//! Across a sliver a polynomial bends so sharply that its derivatives on the screen cancel one another; any that are
-//! rounded before they meet lose the value. Here nothing is rounded before the last division. Slow, and rare.
+//! Across a sliver a polynomial bends so sharply that its derivatives on the screen cancel one another; any that are rounded before they
+//! meet lose the value. Here nothing is rounded before the last division, which is slow but rarely needed.
 
 use crate::{math::wide::Wide, setup::terms::Terms};
 
-/// A triangle from its first corner: the two edges that leave it, and where values are wanted.
+/// A triangle by the two edges that leave its first corner, and the anchor relative to that corner.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Sliver {
     /// Fraction bits of all coordinates.

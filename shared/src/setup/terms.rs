@@ -2,7 +2,7 @@
 
 use crate::math::wide::Wide;
 
-/// By powers of the first variable, each list by powers of the second.
+/// Coefficients of a cubic: one array for each power of the first variable, in the order of powers of the second.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Terms<T>(pub [T; 4], pub [T; 3], pub [T; 2], pub [T; 1]);
 
@@ -60,7 +60,7 @@ impl<T: Copy> Terms<T> {
         Self(moved(cubic, &step), moved_quadratic(quadratic, &step), [step(linear[0], linear[1]), linear[1]], constant)
     }
 
-    /// The variables change places.
+    /// The terms with the variables exchanged.
     fn transposed(self) -> Self {
         let Self([c, y, yy, yyy], [x, xy, xyy], [xx, xxy], [xxx]) = self;
         Self([c, x, xx, xxx], [y, xy, xxy], [yy, xyy], [yyy])

@@ -1,6 +1,6 @@
 //! Word-sized triangles: sums of products in one word, before they meet the triangle's area.
 //!
-//! A triangle of up to 64 pixels has sides of few bits, and so have light levels. The numerator of a first derivative is then an
+//! A triangle of up to 64 pixels has sides of few bits, and light levels have few bits too. The numerator of a first derivative is then an
 //! integer of one word, exact, that of a second one is rounded once to a word; each meets the inverse of the area, or its square, in one
 //! product. First derivatives are kept per 1/16 pixel: the way from corner 0 to the centre of its pixel is whole steps of these, exact
 //! modulo 2^32 however steep they are. Eight long products for depth and a quadratic, where the general way takes fifty.
@@ -17,32 +17,32 @@ use crate::{
     geometry::cull::fits_words,
 };
 
-/// More fraction bits that values are walked with, at most.
+/// Largest number of fraction bits that walked values have beyond those of nodes.
 pub(crate) const EXTRA: u32 = 16;
-/// Bits of the range of nodes between which a linear field may go.
+/// Bits of the range of nodes of a linear field.
 pub(crate) const LINEAR: u32 = 20;
-/// Bits of the range of nodes between which a quadratic may go.
+/// Bits of the range of nodes of a quadratic.
 pub(crate) const QUADRATIC: u32 = 15;
-/// Bits of the range of nodes between which fields with [`LONG_EXTRA`] may go.
+/// Bits of the range of nodes of fields that are walked with [`LONG_EXTRA`].
 pub(crate) const LONG: u32 = 26;
-/// More fraction bits that they are walked with, at least.
+/// Least number of fraction bits that walked values of fields of [`LONG`] bits have beyond those of nodes.
 pub(crate) const LONG_EXTRA: u32 = 5;
-/// Bits of a second derivative that their way to the anchor has room for.
+/// Largest number of bits of a second derivative of such a field, by room for the move to the anchor.
 const LONG_SECOND: u32 = 27;
 
-/// Twice the area of a small triangle, ready to divide by.
+/// Twice the area of a word-sized triangle, ready to divide by.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct WordSized {
     /// 1 / area = `inverse` 2^(`zeros` - 58).
     inverse: i32,
-    /// Zeros above it: 11 to 30.
+    /// Leading zeros of the area: 11 to 30.
     pub(crate) zeros: u32,
     /// Bits of the longest side: 1 to 10.
     pub(crate) bits: u32,
 }
 
 impl WordSized {
-    /// That of a triangle by its edges from corner 0; `None` unless it is small and stout.
+    /// The area of a triangle by its edges from corner 0; `None` unless it is word-sized.
     #[inline(always)]
     pub(crate) fn new(edges: [[i32; 2]; 2]) -> Option<Self> {
         let [[x1, y1], [x2, y2]] = edges;
@@ -50,16 +50,16 @@ impl WordSized {
         fits_words(spread(x1, x2) | spread(y1, y2), area(edges)).then(|| Self::of(edges))
     }
 
-    /// That of a triangle that is small and stout.
+    /// The area of a triangle that is known to be word-sized.
     #[inline(always)]
     pub(crate) fn of(edges: [[i32; 2]; 2]) -> Self {
-        // One less than the size where negative: -2^k counts as k bits.
+        // Negative numbers count one less than their size, so that -2^k has k bits.
         let size = |c: i32| (c ^ (c >> 31)) as u32;
         let [[x1, y1], [x2, y2]] = edges;
         let bits = 32 - leading_zeros(size(x1) | size(y1) | size(x2) | size(y2));
         let area = area(edges) as u32;
         let zeros = leading_zeros(area);
-        // 24 bits, all of them: an area has at most 21.
+        // The area, which has at most 21 bits, shifted to 24.
         let area = area << (zeros.wrapping_sub(8) & 31);
         // 2^40 / area to 15 bits, and what is missing of its product with the area in one word: one Newton step.
         let high = inverse(area >> 8);
@@ -73,7 +73,7 @@ impl WordSized {
     #[inline(always)]
     pub(crate) fn linear(&self, edges: [[i32; 2]; 2], offset: [i32; 2], [i0, i1, i2]: [i32; 3], extra: u32) -> [i32; 3] {
         let [dx, dy] = self.slopes(edges, [i1 - i0, i2 - i0], extra);
-        // All of it in 1/16 pixel, where corner 0 and the centre of its pixel are whole steps apart, and exact modulo 2^32.
+        // In 1/16 pixel, corner 0 and the centre of its pixel are whole steps apart, so the move is exact modulo 2^32.
         let c = (i0 << extra).wrapping_add(dx.wrapping_mul(offset[0])).wrapping_add(dy.wrapping_mul(offset[1]));
         [c, dx << SUBPIXEL, dy << SUBPIXEL]
     }
@@ -97,7 +97,7 @@ impl WordSized {
         // 1 / area² = square 2^(2 zeros - 85).
         let square = (product(self.inverse, self.inverse) >> 31) as i32;
         let left = (2 * self.zeros + self.bits + EXTRA - 44) - second;
-        // Bits that a word has no room for.
+        // Collects the bits that do not fit a word.
         let mut steep = 0;
         let mut derivative = |a: i32, b: i32, x: i32, y: i32| {
             let product = product(upper_dot([a, b], [x, y]), square);
@@ -120,7 +120,7 @@ impl WordSized {
         Some([c, dx << SUBPIXEL, dy << SUBPIXEL, dxx, dxy.wrapping_mul(2), dyy])
     }
 
-    /// As [`Self::linear`], nodes of at most [`LONG`] bits, with at least [`LONG_EXTRA`].
+    /// [`Self::linear`] for nodes of at most [`LONG`] bits, walked with at least [`LONG_EXTRA`].
     #[inline(always)]
     pub(crate) fn long_linear(&self, edges: [[i32; 2]; 2], offset: [i32; 2], [i0, i1, i2]: [i32; 3], extra: u32) -> [i32; 3] {
         let [dx, dy] = self.long_slopes(edges, [i1 - i0, i2 - i0], extra);
@@ -128,8 +128,8 @@ impl WordSized {
         [c, dx << SUBPIXEL, dy << SUBPIXEL]
     }
 
-    /// As [`Self::quadratic`], nodes of at most [`LONG`] bits, with at least [`LONG_EXTRA`]; `None` if a second derivative has more than
-    /// [`LONG_SECOND`] bits.
+    /// [`Self::quadratic`] for nodes of at most [`LONG`] bits, walked with at least [`LONG_EXTRA`]; `None` if a second derivative has more
+    /// than [`LONG_SECOND`] bits.
     #[inline(always)]
     pub(crate) fn long_quadratic(
         &self,
@@ -178,10 +178,10 @@ impl WordSized {
         Some([c, dx, dy, dxx, dxy.wrapping_mul(2), dyy])
     }
 
-    /// As [`Self::slopes`], of at most [`LONG`] and two more bits, with at least [`LONG_EXTRA`].
+    /// [`Self::slopes`] for differences of at most [`LONG`] + 2 bits, with at least [`LONG_EXTRA`].
     #[inline(always)]
     fn long_slopes(&self, edges: [[i32; 2]; 2], [a, b]: [i32; 2], extra: u32) -> [i32; 2] {
-        // As large as words can be added, for they are rounded next.
+        // Shifted up as far as sums fit a word, since the products are rounded next.
         let most = self.bits + self.zeros + extra - 26;
         let up = room([a, b, 0]).min(most);
         let (a, b) = (a << up, b << up);
@@ -190,7 +190,7 @@ impl WordSized {
         [slope(upper_dot([a, -b], [y2, y1])), slope(upper_dot([b, -a], [x1, x2]))]
     }
 
-    /// Edges that take all of a word but its sign.
+    /// Edges shifted up to all bits of a word but the sign.
     #[inline(always)]
     fn sides(&self, [[x1, y1], [x2, y2]]: [[i32; 2]; 2]) -> [[i32; 2]; 2] {
         let side = |c: i32| c << (31 - self.bits);
@@ -200,14 +200,14 @@ impl WordSized {
     /// Derivatives along x and y of `a s + b t` per 1/16 pixel, with `extra` more fraction bits.
     #[inline(always)]
     fn slopes(&self, [[x1, y1], [x2, y2]]: [[i32; 2]; 2], [a, b]: [i32; 2], extra: u32) -> [i32; 2] {
-        // As many bits of the inverse as a shift by less than a word leaves room for.
+        // The inverse with as many bits as a shift by less than a word leaves room for.
         let inverse = self.inverse >> (EXTRA - extra);
         let slope = |numerator: i32| shifted(product(numerator, inverse), self.zeros - 10);
         [slope(a * y2 - b * y1), slope(b * x1 - a * x2)]
     }
 }
 
-/// How far these may all be shifted to stay within 2^30, or nearly so far.
+/// A shift by which all three stay within 2^30; the largest one, or nearly.
 #[inline(always)]
 fn room([a, b, c]: [i32; 3]) -> u32 {
     let size = |c: i32| (c ^ (c >> 31)) as u32;

@@ -1,7 +1,7 @@
-//! Bytes to a checked view of meshes, materials, lights and camera.
+//! Triangle streams: bytes become a checked view of meshes, materials, lights and camera.
 //!
-//! [`Stream::parse`] checks everything once: length, checksum, every index and
-//! every range. What it returns can be drawn without a further check failing.
+//! [`Stream::parse`] checks everything once: length, checksum, every index and every range. The arithmetic of rendering relies on these
+//! checks and repeats none of them.
 
 pub mod record;
 
@@ -30,24 +30,24 @@ macro_rules! include_stream {
     }};
 }
 
-/// A checked stream; borrows the bytes it was parsed from.
+/// A checked stream, which borrows the bytes that it was parsed from.
 #[derive(Clone, Copy, Debug)]
 pub struct Stream<'a> {
     /// Counts, camera, background.
     pub header: &'a Header,
     /// Runs of vertices and triangles.
     pub meshes: &'a [Mesh],
-    /// Colours and exponents.
+    /// Colours and exponents of all materials.
     pub materials: &'a [Material],
-    /// All lights shine on all meshes.
+    /// The lights, each of which shines on all meshes.
     pub lights: &'a [Light],
-    /// Of all meshes.
+    /// Vertices of all meshes.
     pub vertices: &'a [Vertex],
-    /// Of all meshes.
+    /// Triangles of all meshes.
     pub triangles: &'a [Triangle],
 }
 
-/// Why bytes are not a stream.
+/// Why bytes are not a valid stream.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub enum StreamError {
@@ -62,19 +62,19 @@ pub enum StreamError {
     },
     /// The first four bytes are not [`MAGIC`].
     Magic,
-    /// Another version of the format.
+    /// The bytes have another version of the format.
     Version {
         /// Version found.
         found: u16,
     },
-    /// The bytes are not those that were written.
+    /// The checksum does not match: the bytes have changed since they were written.
     Checksum {
         /// CRC in the header.
         stored: u32,
         /// CRC of the bytes.
         computed: u32,
     },
-    /// The length does not follow from the counts.
+    /// The length does not match the counts.
     Length {
         /// Bytes that the counts ask for.
         need: u32,
@@ -118,7 +118,7 @@ pub const CRC: crc::Crc<u32, crc::NoTable> = crc::Crc::<u32, crc::NoTable>::new(
 /// Offset of the stored checksum.
 const CRC_AT: Range<usize> = 12..16;
 
-/// Checksum of a stream: of all its bytes but the checksum's own.
+/// Checksum of a stream, over all its bytes but those of the checksum.
 fn checksum(bytes: &[u8]) -> u32 {
     let mut digest = CRC.digest();
     digest.update(bytes.get(..CRC_AT.start).unwrap_or_default());
@@ -162,8 +162,7 @@ pub fn length(header: &Header) -> Option<u32> {
 impl<'a> Stream<'a> {
     /// Checks `bytes` once and for all. Bytes behind the stream's own length are ignored.
     ///
-    /// # Errors
-    /// The first thing found wrong, with its place.
+    /// # Errors The first fault that is found, with its place.
     pub fn parse(bytes: &'a [u8]) -> Result<Self, StreamError> {
         let have = bytes.len() as u32;
         let truncated = |need| StreamError::Truncated { need, have };
@@ -270,14 +269,14 @@ impl<'a> Stream<'a> {
         field(camera.projection == PERSPECTIVE || depth, "camera far", 0)
     }
 
-    /// All lights are directional and the viewer is infinitely far.
+    /// Whether all lights are directional and the viewer is infinitely far.
     #[must_use]
     pub fn is_constant(&self) -> bool {
         let infinite = self.header.viewer == VIEWER_INFINITE || self.header.camera.projection == ORTHOGRAPHIC;
         infinite && self.lights.iter().all(|light| light.kind == DIRECTIONAL)
     }
 
-    /// Rays meet in the eye.
+    /// Whether the camera is perspective, so that rays meet in the eye.
     #[must_use]
     pub fn is_perspective(&self) -> bool {
         self.header.camera.projection == PERSPECTIVE

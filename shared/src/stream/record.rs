@@ -17,7 +17,7 @@ pub const MAGIC: [u8; 4] = *b"mTRI";
 /// The version of the format that this core reads and the host writes.
 pub const VERSION: u16 = 3;
 
-/// How a stream starts. The arrays follow in the order of the counts.
+/// The start of a stream. The arrays follow in the order of the counts.
 #[derive(FromBytes, IntoBytes, Immutable, KnownLayout, Clone, Copy, Debug, PartialEq, Eq)]
 #[repr(C)]
 pub struct Header {
@@ -47,22 +47,22 @@ pub struct Header {
     pub background: [u8; 3],
     /// [`VIEWER_INFINITE`] or [`VIEWER_LOCAL`].
     pub viewer: u8,
-    /// Light that is there without lights, red, green, blue, [`Gain`] at most 2; it counts times the material's ambient colour.
+    /// Ambient light, red, green, blue, [`Gain`] at most 2; it is multiplied by the ambient colour of a material.
     pub ambient: [u16; 3],
     /// No vertex lies farther from the origin of object space, [`Radius`], rounded up.
     pub radius: u16,
-    /// Where the scene is seen from.
+    /// The camera.
     pub camera: Camera,
 }
 
 impl Header {
-    /// Light that is there without lights.
+    /// Ambient light.
     #[must_use]
     pub fn ambient(&self) -> [Gain; 3] {
         self.ambient.map(Gain::from_bits)
     }
 
-    /// Of the ball about the origin that holds all vertices.
+    /// Radius of the ball about the origin that contains all vertices.
     #[must_use]
     pub fn radius(&self) -> Radius {
         Radius::from_bits(self.radius)
@@ -120,7 +120,7 @@ impl Camera {
         }
     }
 
-    /// The same camera, once around `axis` in `period` frames.
+    /// This camera, which orbits once around `axis` in `period` frames.
     #[must_use]
     pub fn orbiting(self, axis: [Rotation; 3], period: u16) -> Self {
         Self { axis: axis.map(Rotation::to_bits), period, ..self }
@@ -144,7 +144,7 @@ impl Camera {
         self.axis.map(Rotation::from_bits)
     }
 
-    /// Over half of the viewport's smaller side, the distance from which it is seen, or one unit.
+    /// Perspective: the distance of the eye from the viewport over half of its smaller side. Orthographic: one unit over that half side.
     #[must_use]
     pub fn focal(&self) -> Focal {
         Focal::from_bits(self.focal)
@@ -163,9 +163,9 @@ impl Camera {
     }
 }
 
-/// Rays meet in the eye.
+/// A perspective camera: rays meet in the eye.
 pub const PERSPECTIVE: u8 = 0;
-/// Rays are parallel.
+/// An orthographic camera: rays are parallel.
 pub const ORTHOGRAPHIC: u8 = 1;
 
 /// A run of vertices and triangles with one material. The meshes follow one another without a gap.
@@ -273,9 +273,9 @@ impl Light {
     }
 }
 
-/// Infinitely far.
+/// A directional light, infinitely far.
 pub const DIRECTIONAL: u8 = 0;
-/// At a position.
+/// A point light, at a position.
 pub const POINT: u8 = 1;
 /// The light stays with the object.
 pub const OBJECT_SPACE: u8 = 0;
@@ -288,13 +288,13 @@ pub const EYE_SPACE: u8 = 1;
 pub struct Vertex {
     /// In object space, [`Unit`] in [-2, 2), rounded to the nearest: right to 3.1e-5, half a step, along each axis.
     pub position: [i16; 3],
-    /// Unit normal in object space, [`Unit`] in [-1, 1] and hardly beyond: of the lattice points around it the one of the best length.
-    /// That is 1 to 3.1e-5, half a step, as written; readers take squared lengths of 1 to 1/256.
+    /// Unit normal in object space, [`Unit`] in [-1, 1] and hardly beyond, rounded to the lattice point nearby whose length is nearest to
+    /// 1. The length is 1 to 3.1e-5, half a step, as written; readers accept squared lengths of 1 to 1/256.
     pub normal: [i16; 3],
 }
 
 impl Vertex {
-    /// No vertex.
+    /// A vertex of zeros.
     pub const ZERO: Self = Self { position: [0; 3], normal: [0; 3] };
 
     /// A vertex at `position` with a unit normal.
@@ -303,7 +303,7 @@ impl Vertex {
         Self { position: position.map(Unit::to_bits), normal: normal.map(Unit::to_bits) }
     }
 
-    /// In object space.
+    /// Position in object space.
     #[must_use]
     pub fn position(&self) -> [Unit; 3] {
         self.position.map(Unit::from_bits)
@@ -316,7 +316,7 @@ impl Vertex {
     }
 }
 
-/// Three vertices and all that does not depend on camera or light.
+/// Three vertices, and the constants that depend on neither camera nor light.
 ///
 /// Seen from its front side the vertices run counter-clockwise in object space
 /// (right-handed). Edge `k` joins corner `k` and corner `k + 1`.
@@ -325,13 +325,15 @@ impl Vertex {
 pub struct Triangle {
     /// Indices relative to the mesh's first vertex.
     pub corners: [u16; 3],
-    /// Per edge 1/|Ni+Nj| - 1/2, unsigned Q0.17 in [0, 1/2), rounded to the nearest: normalises the sum of the ends' normals at the
-    /// midpoint. 65535 where the normals are 120 degrees apart or more: then the renderer works it out.
+    /// Per edge the reciprocal length of the sum of the normals at its ends, minus its least value: 1/|Ni+Nj| - 1/2, unsigned Q0.17 in [0,
+    /// 1/2), rounded to the nearest. It normalises the sum at the midpoint. 65535 where the normals are 120 degrees apart or more, for
+    /// which the renderer computes it.
     pub inverse_sum_length: [u16; 3],
-    /// Per edge 1 - |Ni+Nj|²/4 = (1 - Ni·Nj)/2, [`Haversine`] in [0, 1], rounded to the nearest, 65535 at most:
-    /// what the squared length of the interpolated normal lacks to 1 at the midpoint.
+    /// Per edge the haversine of the angle between the normals at its ends, (1 - Ni·Nj)/2 = 1 - |Ni+Nj|²/4, [`Haversine`] in [0, 1],
+    /// rounded to the nearest, 65535 at most. The squared length of the interpolated normal at the midpoint is 1 minus this.
     pub haversine: [u16; 3],
-    /// Lower bound of the interpolated normal's length on the triangle, sqrt((1 + 2 min Ni·Nj)/3), [`NormalLength`] in [0, 1], rounded down.
+    /// Lower bound of the interpolated normal's length on the triangle, sqrt((1 + 2 min Ni·Nj)/3), [`NormalLength`] in [0, 1], rounded
+    /// down.
     pub min_normal_length: u16,
     /// Unit normal of the plane in object space, [`Unit`], rounded as that of a vertex.
     pub normal: [i16; 3],
@@ -345,7 +347,7 @@ pub struct Triangle {
 }
 
 impl Triangle {
-    /// Per edge 1 - |Ni+Nj|²/4.
+    /// Per edge the haversine of the angle between the normals at its ends.
     #[must_use]
     pub fn haversine(&self) -> [Haversine; 3] {
         self.haversine.map(Haversine::from_bits)
