@@ -1,59 +1,104 @@
 //! Phong-quality shading of triangle meshes on microcontrollers, by integer forward differences.
 //!
-//! Per-pixel normalisation and powers are replaced by polynomials that are walked with integer additions.
-//! The way of the data, each module using only those above it (tests/tests/layers.rs reads the imports):
+//! ```no_run
+//! use embedded_graphics_core::{Drawable, draw_target::DrawTarget, geometry::OriginDimensions, pixelcolor::Rgb565, prelude::RgbColor};
+//! use microphong::{Layout, Picture, Renderer, Shader, Stream};
+//!
+//! /// Pictures 240 pixels wide, drawn 40 rows at a time.
+//! const LAYOUT: Layout = Layout::new(240, 40);
+//!
+//! /// Draws all frames of a mesh file, such as `include_stream!("mesh.tri")`, on any display of embedded-graphics.
+//! fn animate<D>(display: &mut D, file: &[u8]) -> Result<(), D::Error>
+//! where
+//!     D: DrawTarget<Color = Rgb565> + OriginDimensions,
+//! {
+//!     // A microcontroller has both in a `static`; nothing is allocated.
+//!     let mut memory = [0; LAYOUT.words::<Rgb565>()];
+//!     let mut band = [Rgb565::BLACK; LAYOUT.band()];
+//!
+//!     let stream = Stream::parse(file).expect("the file is damaged");
+//!     // The program contains the code of these two shading methods and of no others.
+//!     let shaders = [Shader::GOURAUD, Shader::SIX_POINT];
+//!     let mut renderer = Renderer::new(stream, display.size(), &LAYOUT, &mut memory, &shaders).expect("the layout fits the display");
+//!     for number in 0..u32::from(stream.header.frames) {
+//!         Picture::new(&mut renderer, &mut band, number).expect("a band has a row").draw(display)?;
+//!     }
+//!     Ok(())
+//! }
+//! ```
+//!
+//! The command `microphong convert mesh.obj -o mesh.tri`, from the repository of this crate, makes such a file.
+//!
+//! Per-pixel normalisation and powers are replaced by polynomials that are walked with integer additions. The modules follow the way of the
+//! data, each using only those above it (tests/tests/layers.rs reads the imports). The interface is the crate's root, [`stream`], [`pixel`]
+//! and [`method`]. All other modules are no part of it and may change in any release: those that are public are so for microphong's own
+//! tests, tools and `microphong-literature` alone.
 //!
 //! | module | what it does |
 //! |---|---|
-//! | [`format`](mod@format) | names every number format |
-//! | [`arch`] | wide products, quotients and counts of zeros, as short as each processor can |
-//! | [`math`] | reciprocal, root, power, vectors, in integers |
+//! | `format` | names every number format |
+//! | `arch` | wide products, quotients and counts of zeros, as short as each processor can |
+//! | `math` | reciprocal, root, lookup table of highlights, vectors, in integers |
 //! | [`pixel`] | pixel formats and ordered dither |
 //! | [`stream`] | bytes in flash to a checked view of meshes, lights and camera |
-//! | [`geometry`] | object space to the screen, and what need not be drawn |
-//! | [`lighting`] | lights, and what materials make of them |
-//! | [`setup`] | edges and gradients of a triangle |
-//! | [`interpolate`] | polynomials, fitted to a triangle and walked by additions |
-//! | [`coverage`] | exact areas of pixels, and what is seen through one |
-//! | [`raster`] | bands, active triangles, and the loops that fill rows |
-//! | [`antialias`] | pixels on the edges of triangles |
-//! | [`method`] | the shading methods |
-//! | [`mesh`] | the triangles of one mesh in one frame |
-//! | [`shader`] | a method, ready to be drawn in a pixel format |
-//! | [`error`] | what keeps a renderer from drawing |
-//! | [`memory`] | the memory that rendering takes |
-//! | [`frame`] | one frame, band by band |
-//! | [`renderer`] | the frames of one stream |
-//! | [`display`] | frames onto embedded-graphics displays |
+//! | `geometry` | object space to the screen, and what need not be drawn |
+//! | `lighting` | lights, and what materials reflect of them |
+//! | `setup` | edges and gradients of a triangle |
+//! | `interpolate` | polynomials, fitted to a triangle and walked by additions |
+//! | `coverage` | exact areas of pixels, and what is seen through one |
+//! | `raster` | bands, active triangles, and the loops that fill rows |
+//! | `antialias` | pixels on the edges of triangles |
+//! | [`method`] | the shading methods, and what a method of your own needs |
+//! | `mesh` | the triangles of one mesh in one frame |
+//! | `shader` | a method together with its loops: [`Shader`] |
+//! | `error` | why a renderer cannot draw: [`RenderError`] |
+//! | `memory` | the memory that rendering takes: [`Layout`] |
+//! | `frame` | one frame, band by band: [`Frame`] |
+//! | `renderer` | the frames of one stream: [`Renderer`] |
+//! | `display` | frames onto embedded-graphics displays: [`Picture`] |
 #![no_std]
 #![forbid(unsafe_code)]
 
-pub mod antialias;
-pub mod arch;
-pub mod coverage;
-pub mod display;
-pub mod error;
-pub mod format;
-pub mod frame;
-pub mod geometry;
-pub mod interpolate;
-pub mod lighting;
-pub mod math;
-pub mod memory;
-pub mod mesh;
+mod arch;
+mod display;
+mod error;
+mod frame;
+mod memory;
+mod mesh;
 pub mod method;
 pub mod pixel;
-pub mod raster;
-pub mod renderer;
-pub mod setup;
-pub mod shader;
+mod shader;
 pub mod stream;
 
+// No part of the interface: public for the tests, tools and other packages of this repository alone.
+#[doc(hidden)]
+pub mod antialias;
+#[doc(hidden)]
+pub mod coverage;
+#[doc(hidden)]
+pub mod format;
+#[doc(hidden)]
+pub mod geometry;
+#[doc(hidden)]
+pub mod interpolate;
+#[doc(hidden)]
+pub mod lighting;
+#[doc(hidden)]
+pub mod math;
+#[doc(hidden)]
+pub mod raster;
+#[doc(hidden)]
+pub mod renderer;
+#[doc(hidden)]
+pub mod setup;
+
 pub use display::Picture;
-pub use error::RenderError;
+pub use error::{MAX_SIDE, RenderError};
 pub use fixed;
 pub use frame::{Frame, Stats};
 pub use memory::Layout;
+#[doc(inline)]
 pub use renderer::Renderer;
 pub use shader::Shader;
+#[doc(inline)]
 pub use stream::{Stream, StreamError};

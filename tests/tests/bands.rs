@@ -5,7 +5,7 @@ use embedded_graphics::{
     pixelcolor::{Gray8, Rgb565},
     prelude::*,
 };
-use microphong::{Layout, Picture, RenderError, Renderer, Stats, Stream, error::MAX_SIDE, renderer::check};
+use microphong::{Layout, MAX_SIDE, Picture, RenderError, Renderer, Stats, Stream, renderer::check};
 use microphong_sim::{
     render::{self, Style},
     scene,

@@ -214,9 +214,9 @@ fn module(file: &str) -> Module {
     file.split('/').filter(|name| !name.is_empty()).map(str::to_owned).collect()
 }
 
-/// `` [`name`] `` or `` [`name`](elsewhere) `` in the first column of the table.
+/// The name in the first column of the table: `` `name` ``, `` [`name`] `` or `` [`name`](elsewhere) ``.
 fn entry(line: &str) -> Option<String> {
-    let row = line.strip_prefix("//! | [`")?;
+    let row = line.strip_prefix("//! | ")?.trim_start_matches('[').strip_prefix('`')?;
     Some(row.split_once('`')?.0.to_owned())
 }
 

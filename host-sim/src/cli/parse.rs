@@ -1,6 +1,6 @@
 //! Values on the command line.
 
-use microphong::error::MAX_SIDE;
+use microphong::MAX_SIDE;
 use microphong_sim::{
     papers::Topic,
     render::Format,

@@ -16,18 +16,14 @@ use crate::{
     slerp::arcs,
 };
 use microphong::{
-    interpolate::{Constant, Patch, Walker},
-    lighting::{
-        lights::{Lighting, Source},
-        materials::{Highlight, Reflection},
-    },
     math::{
-        highlight_lut::CosineLookup,
         recip::Divisor,
         vector::{add, cross, dot, wide, zip},
     },
-    method::{Costs, Facts, Method, Shading, TriangleSetup, VertexLight, lighting_model::LightingModel},
-    raster::canvas::Canvas,
+    method::{
+        Canvas, Constant, CosineLookup, Costs, Facts, Highlight, Lighting, LightingModel, Method, Patch, Reflection, Shading, Source,
+        TriangleSetup, VertexLight, Walker,
+    },
 };
 
 static FACTS: Facts = Facts {

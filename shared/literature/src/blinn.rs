@@ -11,21 +11,12 @@
 
 use microphong::{
     format::{COSINE, PIXEL_COSINE},
-    interpolate::Constant,
-    lighting::{
-        lights::{Lighting, Source, cosine},
-        materials::{Highlight, Reflection},
-    },
-    math::{
-        highlight_lut::CosineLookup,
-        vector::{cross, normalise, zip},
-    },
+    lighting::lights::cosine,
+    math::vector::{cross, normalise, zip},
     method::{
-        Costs, Facts, Method, Shading, TriangleSetup, VertexLight,
-        lighting_model::{LightingModel, linear, signed},
-        node::Node,
+        Canvas, Constant, CosineLookup, Costs, Facts, Highlight, Lighting, LightingModel, Method, Node, Reflection, Shading, Source,
+        TriangleSetup, VertexLight, linear, signed,
     },
-    raster::canvas::Canvas,
 };
 
 static FACTS: Facts = Facts {

@@ -3,11 +3,7 @@
 //! Cost: three additions of 64 bits a pixel and channel; ten points to light. Continuous: both neighbours light the
 //! same thirds. A third to a half of the error of [`microphong::method::six_point`]. Domain: any lights.
 
-use microphong::{
-    lighting::materials::Highlight,
-    method::{Costs, Facts, Method, RANGE, Shading, TriangleSetup, VertexLight},
-    raster::canvas::Canvas,
-};
+use microphong::method::{Canvas, Costs, Facts, Highlight, Method, RANGE, Shading, TriangleSetup, VertexLight};
 
 static FACTS: Facts = Facts {
     name: "cubic",

@@ -8,10 +8,7 @@
 //! 2 products more per light. Error: that of the tables, [`microphong::math::highlight_lut::NEAREST_ERROR`] of the highlight above all.
 //! Domain: any lights; with near lights as good as six points are.
 
-use microphong::{
-    method::{Costs, Facts, Highlight, Method, Shading, TriangleSetup, VertexLight, duff},
-    raster::canvas::Canvas,
-};
+use microphong::method::{Canvas, Costs, Facts, Highlight, Method, Shading, TriangleSetup, VertexLight, duff};
 
 static FACTS: Facts = Facts {
     name: "duff",

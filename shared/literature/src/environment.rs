@@ -13,22 +13,12 @@
 
 use microphong::{
     format::COSINE,
-    interpolate::Held,
-    lighting::{
-        lights::{Lighting, Source, Viewer, cosine},
-        materials::{Highlight, Reflection},
-    },
-    math::{
-        highlight_lut::CosineLookup,
-        vector::{dot, normalise, zip},
-    },
+    lighting::lights::cosine,
+    math::vector::{dot, normalise, zip},
     method::{
-        Costs, Facts, Method, Shading, TriangleSetup, VertexLight,
-        duff::Root,
-        lighting_model::{LightingModel, linear, signed},
-        node::Node,
+        Canvas, CosineLookup, Costs, Facts, Held, Highlight, Lighting, LightingModel, Method, Node, Reflection, Shading, Source,
+        TriangleSetup, VertexLight, Viewer, duff::Root, linear, signed,
     },
-    raster::canvas::Canvas,
 };
 
 /// One, Q2.30.

@@ -11,18 +11,15 @@
 
 use crate::scanline::{Edges, Rows};
 use microphong::{
-    interpolate::{Constant, Patch, Walker},
-    lighting::{
-        lights::{Lighting, Source, Viewer, cosine},
-        materials::{Highlight, Reflection},
-    },
+    lighting::lights::cosine,
     math::{
-        highlight_lut::CosineLookup,
         recip::Divisor,
         vector::{dot, normalise, wide},
     },
-    method::{Costs, Facts, Method, Shading, TriangleSetup, VertexLight, lighting_model::LightingModel},
-    raster::canvas::Canvas,
+    method::{
+        Canvas, Constant, CosineLookup, Costs, Facts, Highlight, Lighting, LightingModel, Method, Patch, Reflection, Shading, Source,
+        TriangleSetup, VertexLight, Viewer, Walker,
+    },
 };
 
 static FACTS: Facts = Facts {

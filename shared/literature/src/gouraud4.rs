@@ -5,11 +5,7 @@
 //! Gouraud's set-up a triangle. Continuous. A quarter of Gouraud's error.
 
 use crate::{split::SubTriangles, sub_triangle::SubTriangle};
-use microphong::{
-    lighting::materials::Highlight,
-    method::{Costs, Facts, Method, Shading, TriangleSetup, VertexLight},
-    raster::canvas::Canvas,
-};
+use microphong::method::{Canvas, Costs, Facts, Highlight, Method, Shading, TriangleSetup, VertexLight};
 
 static FACTS: Facts = Facts {
     name: "gouraud4",

@@ -8,12 +8,8 @@
 //! continuous where the two meet. Error against Phong: Gouraud's of diffuse light. Domain: any lights.
 
 use microphong::{
-    lighting::{
-        lights::{Source, cosine},
-        materials::Highlight,
-    },
-    method::{Costs, Facts, Method, RANGE, Shading, TriangleSetup, VertexLight, gouraud::Gouraud, phong::Phong},
-    raster::canvas::Canvas,
+    lighting::lights::cosine,
+    method::{Canvas, Costs, Facts, Highlight, Method, RANGE, Shading, Source, TriangleSetup, VertexLight, gouraud::Gouraud, phong::Phong},
 };
 
 static FACTS: Facts = Facts {

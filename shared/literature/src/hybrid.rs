@@ -12,17 +12,12 @@ use crate::{
     scanline::{Edges, Rows},
 };
 use microphong::{
-    interpolate::{Constant, Patch, field::Field},
-    lighting::{
-        lights::{Source, cosine},
-        materials::{Highlight, Reflection},
-    },
-    math::{highlight_lut::CosineLookup, vector::normalise},
+    lighting::lights::cosine,
+    math::vector::normalise,
     method::{
-        Costs, Facts, Method, Shading, TriangleSetup, VertexLight,
-        lighting_model::{LightingModel, quadratic, signed},
+        Canvas, Constant, CosineLookup, Costs, Facts, Field, Highlight, LightingModel, Method, Patch, Reflection, Shading, Source,
+        TriangleSetup, VertexLight, quadratic, signed,
     },
-    raster::canvas::Canvas,
 };
 
 static FACTS: Facts = Facts {

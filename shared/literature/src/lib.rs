@@ -1,7 +1,8 @@
 //! The shading methods of the literature, each in integers and in a file of its own, for [`microphong`].
 //!
-//! They are written against microphong's public interface alone: what is here, any program can bring as well. A program takes a method
-//! by naming it, `Shader::new(&microphong_literature::Cubic)`, and has the code of no other.
+//! Each is a [`microphong::method::Method`], as any program can bring. For arithmetic, and to split triangles or to work along rows, they
+//! also use modules of microphong that are public but no part of its interface. A program takes a method by naming it,
+//! `Shader::new(&microphong_literature::Cubic)`, and has the code of no other.
 #![no_std]
 #![forbid(unsafe_code)]
 

@@ -7,8 +7,8 @@
 use crate::{angle::polar, arc::Arc, scanline::Span};
 use core::num::NonZeroU64;
 use microphong::{
-    interpolate::Walker,
     math::{highlight_lut::HighlightLut, vector::dot},
+    method::Walker,
 };
 
 /// Fraction bits of angles in units of b: Q8.24.

@@ -6,11 +6,9 @@
 //! Cost: 6 additions and 2 roots, and for each light 6 additions, a root and 4 products. Domain: any lights and viewer.
 //! Error against the half vector: that of the model.
 
-use microphong::{
-    lighting::materials::{Highlight, Reflection},
-    math::highlight_lut::CosineLookup,
-    method::{Costs, Facts, Method, Shading, TriangleSetup, VertexLight, lighting_model::LightingModel, phong, phong::Common},
-    raster::canvas::Canvas,
+use microphong::method::{
+    Canvas, CosineLookup, Costs, Facts, Highlight, LightingModel, Method, Reflection, Shading, TriangleSetup, VertexLight, phong,
+    phong::Common,
 };
 
 static FACTS: Facts = Facts {

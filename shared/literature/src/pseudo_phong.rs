@@ -10,9 +10,7 @@
 use crate::{split::SubTriangles, sub_triangle::SubTriangle};
 use microphong::{
     format::{SPLITS, SUBPIXEL},
-    lighting::materials::Highlight,
-    method::{Costs, Facts, Method, Shading, TriangleSetup, VertexLight},
-    raster::canvas::Canvas,
+    method::{Canvas, Costs, Facts, Highlight, Method, Shading, TriangleSetup, VertexLight},
 };
 
 /// Logarithm of the longest edge of a part, 8 pixels in 1/16 pixel.

@@ -4,12 +4,7 @@
 //! sphere of 168 triangles, 0.4 on one of 690 (exponent 50, ks 1/2). Domain: any lights, see [`crate::blinn`].
 
 use crate::blinn::{Across, coordinates};
-use microphong::{
-    interpolate::Constant,
-    lighting::{lights::Source, materials::Highlight},
-    method::{Costs, Facts, Method, Shading, TriangleSetup, VertexLight, lighting_model::quadratic},
-    raster::canvas::Canvas,
-};
+use microphong::method::{Canvas, Constant, Costs, Facts, Highlight, Method, Shading, Source, TriangleSetup, VertexLight, quadratic};
 
 static FACTS: Facts = Facts {
     name: "quadratic-blinn",

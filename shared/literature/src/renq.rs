@@ -8,12 +8,9 @@
 //! the least |N|: 3 LSB at worst on a sphere of 168 triangles, 0.3 on one of 690 (exponent 50, ks 1/2).
 //! Domain: any lights; where |N| falls below 1/2, [`microphong::method::duff`]'s root takes over.
 
-use microphong::{
-    method::{
-        Costs, Facts, Highlight, Method, Shading, TriangleSetup, VertexLight, duff,
-        renq::{Scaled, length},
-    },
-    raster::canvas::Canvas,
+use microphong::method::{
+    Canvas, Costs, Facts, Highlight, Method, Shading, TriangleSetup, VertexLight, duff,
+    renq::{Scaled, length},
 };
 
 static FACTS: Facts = Facts {

@@ -6,9 +6,8 @@
 
 use microphong::{
     format::{CENTRE, SUBPIXEL},
-    interpolate::Walker,
     math::{recip::recip, vector::zip},
-    method::TriangleSetup,
+    method::{TriangleSetup, Walker},
 };
 
 /// The edges of a triangle: 0 from its top to its right corner, 1 on to its left one, 2 back to the top.

@@ -17,10 +17,8 @@ use crate::{
 };
 use microphong::{
     format::LEVEL,
-    lighting::materials::Highlight,
     math::vector::zip,
-    method::{Costs, Facts, Method, Shading, TriangleSetup, VertexLight},
-    raster::canvas::Canvas,
+    method::{Canvas, Costs, Facts, Highlight, Method, Shading, TriangleSetup, VertexLight},
 };
 
 /// What an edge's parabola may be wrong by at its quarters, Q9.7.

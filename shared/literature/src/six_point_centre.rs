@@ -13,9 +13,7 @@ use crate::{
 };
 use microphong::{
     format::LEVEL,
-    lighting::materials::Highlight,
-    method::{Costs, Facts, Method, Shading, TriangleSetup, VertexLight},
-    raster::canvas::Canvas,
+    method::{Canvas, Costs, Facts, Highlight, Method, Shading, TriangleSetup, VertexLight},
 };
 
 /// What the quadratic may be wrong by at the centre, Q9.7.

@@ -15,17 +15,12 @@ use crate::{
     scanline::{Edges, Rows},
 };
 use microphong::{
-    interpolate::{Constant, Patch, Walker},
-    lighting::{
-        lights::{Lighting, Source, cosine},
-        materials::{Highlight, Reflection},
+    lighting::lights::cosine,
+    math::vector::{dot, normalise, wide},
+    method::{
+        Canvas, Constant, CosineLookup, Costs, Facts, Highlight, Lighting, LightingModel, Method, Patch, Reflection, Shading, Source,
+        TriangleSetup, VertexLight, Walker,
     },
-    math::{
-        highlight_lut::CosineLookup,
-        vector::{dot, normalise, wide},
-    },
-    method::{Costs, Facts, Method, Shading, TriangleSetup, VertexLight, lighting_model::LightingModel},
-    raster::canvas::Canvas,
 };
 
 static FACTS: Facts = Facts {

@@ -2,10 +2,10 @@
 
 use crate::sub_triangle::{ScreenSubTriangle, SubTriangle};
 use microphong::{
-    interpolate::{field::Field, plane::Plane},
+    interpolate::plane::Plane,
     math::vector::{add, zip},
-    method::{Area, Shading, TriangleSetup},
-    raster::canvas::{Canvas, IntensityShader, Shaded},
+    method::{Area, Canvas, Field, IntensityShader, Shading, TriangleSetup},
+    raster::canvas::Shaded,
     setup::gradients::Gradients,
 };
 

@@ -11,12 +11,10 @@ use microphong::{
     antialias::{PixelSet, Shape, coarse},
     coverage::area::TriangleCoverage,
     format::{FINE, SPLITS, SUBPIXEL},
-    interpolate::{Patch, plane::Plane},
+    interpolate::plane::Plane,
     math::vector::zip,
-    raster::{
-        canvas::{Canvas, SpanShader},
-        triangle::ScreenTriangle,
-    },
+    method::{Canvas, Patch},
+    raster::{canvas::SpanShader, triangle::ScreenTriangle},
     setup::gradients::{Gradients, NEAR},
 };
 

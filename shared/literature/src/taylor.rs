@@ -15,21 +15,16 @@
 
 use microphong::{
     format::{COSINE, UNIT},
-    interpolate::{Constant, Held},
-    lighting::{
-        lights::Source,
-        materials::{Highlight, Reflection},
-    },
     math::{
-        highlight_lut::CosineLookup,
         rsqrt::rsqrt_wide,
         vector::{add, dot, sub, wide},
     },
     method::{
-        Costs, Facts, Method, Shading, TriangleSetup, VertexLight,
-        lighting_model::{EXTRA, LightingModel, NODE, Quadratic, signed},
+        Canvas, Constant, CosineLookup, Costs, Facts, Held, Highlight, LightingModel, Method, Quadratic, Reflection, Shading, Source,
+        TriangleSetup, VertexLight,
+        lighting_model::{EXTRA, NODE},
+        signed,
     },
-    raster::canvas::Canvas,
 };
 
 /// Fraction bits of the vectors that [`Series::new`] takes.

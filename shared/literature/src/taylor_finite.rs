@@ -13,10 +13,8 @@ use crate::{
 };
 use microphong::{
     format::COSINE,
-    lighting::materials::Highlight,
     math::vector::{add, wide},
-    method::{Costs, Facts, Method, Shading, TriangleSetup, VertexLight},
-    raster::canvas::Canvas,
+    method::{Canvas, Costs, Facts, Highlight, Method, Shading, TriangleSetup, VertexLight},
 };
 
 static FACTS: Facts = Facts {

@@ -6,7 +6,7 @@
 use crate::arch::product::HALVES;
 
 /// Largest divisor of [`slope`].
-pub const LARGEST: usize = 1424;
+pub(crate) const LARGEST: usize = 1424;
 
 /// Reciprocals 2^32 / d, rounded down, by d; 2^32 - 1 for 1.
 static INVERSES: [u32; LARGEST + 1] = {
@@ -20,7 +20,7 @@ static INVERSES: [u32; LARGEST + 1] = {
 };
 
 /// Fraction bits of a [`slope`].
-pub const SLOPE: u32 = 21;
+pub(crate) const SLOPE: u32 = 21;
 
 /// Slope n / d, rounded down, with [`SLOPE`] fraction bits: `n 2^21 / d`.
 ///
@@ -28,7 +28,7 @@ pub const SLOPE: u32 = 21;
 /// (tests::every_slope_is_exact, on every argument). Source: a reciprocal from a table, corrected by the remainder.
 #[inline(always)]
 #[must_use]
-pub fn slope(n: i32, d: i32) -> i32 {
+pub(crate) fn slope(n: i32, d: i32) -> i32 {
     if HALVES { by_table(n, d) } else { (n << SLOPE).div_euclid(d.max(1)) }
 }
 
@@ -64,7 +64,7 @@ static SEEDS: [u16; 256] = {
 /// from a table, corrected by the remainder.
 #[inline(always)]
 #[must_use]
-pub fn inverse(d: u32) -> u32 {
+pub(crate) fn inverse(d: u32) -> u32 {
     // Setting the bit, which is set, shows the compiler that the divisor is not 0.
     if HALVES { inverse_by_table(d) } else { u32::MAX / (d | 1 << 15) }
 }

@@ -21,7 +21,7 @@ static ZEROS: [u8; 64] = {
 /// Source: a table of six bits at a time, where the machine has no instruction for it (Warren, Hacker's Delight 5-3).
 #[inline(always)]
 #[must_use]
-pub fn leading_zeros(x: u32) -> u32 {
+pub(crate) fn leading_zeros(x: u32) -> u32 {
     if HALVES { by_table(x) } else { x.leading_zeros() }
 }
 

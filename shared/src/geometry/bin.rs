@@ -9,7 +9,7 @@ use core::{num::NonZeroU32, ops::Range};
 use zerocopy::{FromBytes, Immutable, IntoBytes, KnownLayout};
 
 /// Bins of a frame; the rows are shared out among them.
-pub const BINS: usize = 64;
+pub(crate) const BINS: usize = 64;
 
 /// The end of a list: links are one more than the index that they lead to, so that empty memory is all zeros.
 const NONE: u16 = 0;
@@ -17,7 +17,7 @@ const NONE: u16 = 0;
 /// A triangle in a list.
 #[derive(FromBytes, IntoBytes, Immutable, KnownLayout, Clone, Copy, Debug)]
 #[repr(C)]
-pub struct Entry {
+pub(crate) struct Entry {
     /// Twice the index of the triangle in the stream, plus 1 if the triangle is word-sized. Lists are in this order.
     key: u32,
     /// One past its last row.
@@ -27,34 +27,35 @@ pub struct Entry {
 }
 
 impl Entry {
-    /// An entry before it is used; all zeros.
-    pub const EMPTY: Self = Self { key: 0, bottom: 0, next: NONE };
+    /// An entry of zeros.
+    #[cfg(test)]
+    pub(crate) const EMPTY: Self = Self { key: 0, bottom: 0, next: NONE };
 
     /// Index of the triangle in the stream.
     #[inline(always)]
     #[must_use]
-    pub fn triangle(&self) -> u32 {
+    pub(crate) fn triangle(&self) -> u32 {
         self.key >> 1
     }
 
     /// A number that no other entry has, and that is not 0 if the triangle is word-sized.
     #[inline(always)]
     #[must_use]
-    pub fn key(&self) -> u32 {
+    pub(crate) fn key(&self) -> u32 {
         self.key
     }
 
     /// Whether the triangle was pushed as word-sized, see [`Bins::push`].
     #[inline(always)]
     #[must_use]
-    pub fn is_word_sized(&self) -> bool {
+    pub(crate) fn is_word_sized(&self) -> bool {
         self.key & 1 != 0
     }
 }
 
 /// The triangles of one frame, in one list for each bin and one of active triangles.
 #[derive(Clone, Debug)]
-pub struct Bins {
+pub(crate) struct Bins {
     heads: [u16; BINS],
     active: u16,
     /// Entries in use.
@@ -74,7 +75,7 @@ impl Bins {
     /// Empty lists for a viewport of `height` rows that is drawn `band_rows` at a time: a bin is at least a band, so that
     /// each band merges one list.
     #[must_use]
-    pub fn new(height: u32, band_rows: u32) -> Self {
+    pub(crate) fn new(height: u32, band_rows: u32) -> Self {
         Self {
             heads: [NONE; BINS],
             active: NONE,
@@ -97,7 +98,7 @@ impl Bins {
     /// Puts a triangle that covers rows `top .. bottom` in front of its list, and remembers whether it is `word_sized`. Triangles are
     /// pushed from the last to the first.
     #[inline(always)]
-    pub fn push(&mut self, entries: &mut [Entry], triangle: u32, word_sized: bool, [top, bottom]: [u32; 2]) {
+    pub(crate) fn push(&mut self, entries: &mut [Entry], triangle: u32, word_sized: bool, [top, bottom]: [u32; 2]) {
         let bin = self.of(top);
         let link = self.count.wrapping_add(1);
         match (self.heads.get_mut(bin), entries.get_mut(usize::from(self.count))) {
@@ -114,18 +115,18 @@ impl Bins {
 
     /// Number of triangles in all lists; `None` if some found no room.
     #[must_use]
-    pub fn count(&self) -> Option<u16> {
+    pub(crate) fn count(&self) -> Option<u16> {
         (!self.overflow).then_some(self.count)
     }
 
     /// The rows from the top of the highest triangle to the bottom of the lowest.
     #[must_use]
-    pub fn rows(&self) -> Range<u32> {
+    pub(crate) fn rows(&self) -> Range<u32> {
         self.top.min(self.bottom)..self.bottom
     }
 
     /// The triangles of the band that ends at row `bottom`. Afterwards [`Self::take_over`] keeps those that reach into the next band.
-    pub fn band<'e>(&mut self, entries: &'e mut [Entry], bottom: u32) -> Walk<'e> {
+    pub(crate) fn band<'e>(&mut self, entries: &'e mut [Entry], bottom: u32) -> Walk<'e> {
         let last = self.of(bottom.saturating_sub(1));
         let mut fresh = NONE;
         while self.reached <= last {
@@ -138,7 +139,7 @@ impl Bins {
     }
 
     /// Keeps the triangles of a band that reach into the next one.
-    pub fn take_over(&mut self, walk: Walk<'_>) {
+    pub(crate) fn take_over(&mut self, walk: Walk<'_>) {
         self.active = walk.end();
     }
 }
@@ -146,7 +147,7 @@ impl Bins {
 /// The triangles of a band in the order of the stream: those that reach down from above, and those that start here, merged on the way.
 /// Triangles that reach below the band are collected in a list for the next one.
 #[derive(Debug)]
-pub struct Walk<'e> {
+pub(crate) struct Walk<'e> {
     entries: &'e mut [Entry],
     lists: [u16; 2],
     /// Head of the list of triangles that reach below the band; `tail` is its last entry.

@@ -27,7 +27,7 @@ struct Corner {
 
 /// A corner after the cut: the object-space vertex and its place in eye space.
 #[derive(Clone, Copy, Debug)]
-pub struct Cut {
+pub(crate) struct Cut {
     /// Position and unit normal.
     pub vertex: Vertex,
     /// Eye space, Q18.14.
@@ -36,7 +36,7 @@ pub struct Cut {
 
 /// The part of a triangle that can be projected: a fan around its first corner; empty if there is none.
 #[must_use]
-pub fn clip(view: &View, vertices: [&Vertex; 3]) -> Vec<Cut, CORNERS> {
+pub(crate) fn clip(view: &View, vertices: [&Vertex; 3]) -> Vec<Cut, CORNERS> {
     let mut polygon = Vec::<Corner, CORNERS>::new();
     for v in vertices {
         let _ = polygon.push(Corner { eye: view.to_eye(v.position), position: wide(v.position), normal: wide(v.normal) });
@@ -77,7 +77,7 @@ fn between(inner: &Corner, outer: &Corner, di: i64, d_o: i64) -> Corner {
 /// The record of one triangle of the fan, cut from `whole`: indices and edge constants are of the new `corners`, which turn
 /// clockwise on the screen, against the order of a record.
 #[must_use]
-pub fn record(whole: &Triangle, corners: &[Vertex; 3]) -> Triangle {
+pub(crate) fn record(whole: &Triangle, corners: &[Vertex; 3]) -> Triangle {
     let [a, b, c] = corners.map(|corner| wide(corner.normal));
     let edges = [edge(c, a), edge(b, c), edge(a, b)];
     Triangle {

@@ -41,7 +41,7 @@ const BEHIND: i32 = 1 << (UNIT - 6);
 
 /// The cells of the screen where triangles may overlap.
 #[derive(Clone, Debug)]
-pub struct DepthElision {
+pub(crate) struct DepthElision {
     /// Least thickness of a thick triangle, 1/16 pixel.
     thickness: i32,
     /// Width and height of the viewport, 1/16 pixel.
@@ -55,7 +55,7 @@ pub struct DepthElision {
 impl DepthElision {
     /// A grid without marks for one frame; `None` if the scene is not just one closed convex mesh, or is seen from too near.
     #[must_use]
-    pub fn new(stream: &Stream<'_>, view: &View, size: Size) -> Option<Self> {
+    pub(crate) fn new(stream: &Stream<'_>, view: &View, size: Size) -> Option<Self> {
         let [Mesh { flags, .. }] = stream.meshes else { return None };
         let camera = &stream.header.camera;
         let thickness = view.moved(size, 3);
@@ -73,7 +73,7 @@ impl DepthElision {
 
     /// Takes account of a triangle that may show its front: marks the cells around it unless it is thick.
     #[inline(always)]
-    pub fn include(&mut self, extent: &Extent) {
+    pub(crate) fn include(&mut self, extent: &Extent) {
         let inside = self.is_inside([extent.left, extent.right], [extent.top, extent.bottom]);
         // The thickness is at least twice the area over the length.
         if !inside || extent.area.unsigned_abs() < (self.thickness * extent.length()) as u32 {
@@ -95,7 +95,7 @@ impl DepthElision {
     /// included.
     #[inline(never)]
     #[must_use]
-    pub fn needs_depth_test(&self, columns: [i32; 2], rows: [i32; 2]) -> bool {
+    pub(crate) fn needs_depth_test(&self, columns: [i32; 2], rows: [i32; 2]) -> bool {
         if !self.is_inside(columns, rows) {
             return true;
         }

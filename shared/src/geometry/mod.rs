@@ -1,9 +1,9 @@
 //! The way from object space to the screen, and which triangles need not be drawn.
 
-pub mod bin;
-pub mod clip;
+pub(crate) mod bin;
+pub(crate) mod clip;
 pub mod cull;
-pub mod depth_elision;
+pub(crate) mod depth_elision;
 pub mod pose;
 pub mod projection;
 pub mod viewport;

@@ -10,13 +10,13 @@ use crate::{
 /// Fraction bits of a node, in steps of the table.
 const NODE: u32 = 7;
 /// Fraction bits that an interpolated numerator has beyond those of a node.
-pub const EXTRA: u32 = 5;
+pub(crate) const EXTRA: u32 = 5;
 /// Fraction bits of a quotient, in steps of the table: the reciprocal length, Q2.30, is halved, and the upper half of the product taken.
 const STEP: u32 = NODE + EXTRA - 3;
 
 /// Lookup by a quotient: the cosine is an interpolated numerator over a length.
 #[derive(Clone, Copy, Debug)]
-pub struct QuotientLookup<'a> {
+pub(crate) struct QuotientLookup<'a> {
     table: &'a [u16; SIZE + 1],
     /// Steps from cosine 0 to 1, and half of one for rounding, with [`STEP`] fraction bits.
     top: i32,
@@ -27,14 +27,14 @@ pub struct QuotientLookup<'a> {
 impl<'a> QuotientLookup<'a> {
     /// Lookup in the table of `lut`. Domain: its base is not [`crate::math::highlight_lut::Base::Square`], so that nodes fit 26 bits.
     #[must_use]
-    pub fn new(lut: &'a HighlightLut) -> Self {
+    pub(crate) fn new(lut: &'a HighlightLut) -> Self {
         Self { table: &lut.table, top: ((lut.scale << 6 << STEP) + (1 << (STEP - 1))) as i32, factor: (lut.scale << 16) as i32 }
     }
 
     /// The node of a numerator, Q2.30: the numerator in steps of the table, Q19.7, rounded down. Domain: within ±2.
     #[inline(always)]
     #[must_use]
-    pub fn node(&self, cosine: i32) -> i32 {
+    pub(crate) fn node(&self, cosine: i32) -> i32 {
         upper_by_half_word(cosine, self.factor) >> (24 - NODE - 16)
     }
 
@@ -45,7 +45,7 @@ impl<'a> QuotientLookup<'a> {
     /// [`crate::math::highlight_lut::NEAREST_ERROR`] for lengths of 1/2 to 1 (tests::entries_are_the_nearest). Source: our own.
     #[inline(always)]
     #[must_use]
-    pub fn at(&self, quotient: i32) -> u32 {
+    pub(crate) fn at(&self, quotient: i32) -> u32 {
         // One instruction shifts and clamps, and nothing is left to check.
         self.table[(self.top.wrapping_sub(quotient) >> STEP).clamp(0, SIZE as i32 - 1) as usize].into()
     }
@@ -53,7 +53,7 @@ impl<'a> QuotientLookup<'a> {
 
 /// Lookup by a defect: 1 - cosine.
 #[derive(Clone, Copy, Debug)]
-pub struct DefectLookup<'a> {
+pub(crate) struct DefectLookup<'a> {
     table: &'a [u16; SIZE + 1],
     /// Fraction bits of an index in the product of a defect and the factor.
     shift: u32,
@@ -64,7 +64,7 @@ pub struct DefectLookup<'a> {
 impl<'a> DefectLookup<'a> {
     /// Lookup in the table of `lut`.
     #[must_use]
-    pub fn new(lut: &'a HighlightLut) -> Self {
+    pub(crate) fn new(lut: &'a HighlightLut) -> Self {
         // Scales are 2^5 to 2^13.
         let up = lut.scale.max(1).leading_zeros().saturating_sub(17);
         Self { table: &lut.table, shift: 9 + up, factor: (lut.scale << up << 16) as i32 }
@@ -73,14 +73,14 @@ impl<'a> DefectLookup<'a> {
     /// The node of a cosine, Q2.30: 1 - cosine times a factor of 1/2 to 1, Q2.24, rounded down. Domain: above -1.
     #[inline(always)]
     #[must_use]
-    pub fn node(&self, cosine: i32) -> i32 {
+    pub(crate) fn node(&self, cosine: i32) -> i32 {
         upper_by_half_word((1 << 30) - cosine, self.factor) >> 5
     }
 
     /// Half a step of the table, Q2.30. Added to an interpolated defect, it makes the entry below the nearest one.
     #[inline(always)]
     #[must_use]
-    pub fn half(&self) -> i32 {
+    pub(crate) fn half(&self) -> i32 {
         1 << (self.shift - 1)
     }
 
@@ -90,7 +90,7 @@ impl<'a> DefectLookup<'a> {
     /// take the last entry. Error: at most [`crate::math::highlight_lut::NEAREST_ERROR`] (tests::entries_are_the_nearest). Source: our own.
     #[inline(always)]
     #[must_use]
-    pub fn at(&self, defect: i32) -> u32 {
+    pub(crate) fn at(&self, defect: i32) -> u32 {
         self.table[(defect >> (self.shift & 31)).clamp(0, SIZE as i32 - 1) as usize].into()
     }
 }

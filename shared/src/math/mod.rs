@@ -4,12 +4,12 @@
 //! error and source. A bound on an error is a constant next to the function, and the test that the documentation names asserts that
 //! very constant. "Exact" says that the result is the integer that the formula gives, for every argument of the domain.
 
-pub mod highlight_lookup;
+pub(crate) mod highlight_lookup;
 pub mod highlight_lut;
 pub mod recip;
 pub mod rsqrt;
 pub mod vector;
-pub mod wide;
+pub(crate) mod wide;
 
 /// `value / 2^bits`, rounded to nearest, halves up; for negative `bits` a left shift that wraps modulo 2^64.
 ///

@@ -1,37 +1,41 @@
 //! The shading methods, one file each.
 //!
 //! A [`Method`] is its [`Facts`], and how it shades a triangle of any scene in intensities. It interpolates fields over the triangle and
-//! computes an intensity from their values at each pixel, by an [`IntensityShader`] or, light by light, by a
-//! [`lighting_model::LightingModel`]. A [`Canvas`] tests depth and stores colours. The methods of this crate also have loops that are
-//! compiled for each pixel format, for the common styles.
+//! computes an intensity from their values at each pixel, by an [`IntensityShader`] or, light by light, by a [`LightingModel`]. A
+//! [`Canvas`] tests depth and stores colours. The methods of this crate also have loops that are compiled for each pixel format, for the
+//! common styles.
 
+mod facts;
+mod quotient;
+
+// No part of the interface: public for the tests, tools and other packages of this repository alone.
+#[doc(hidden)]
 pub mod duff;
-pub mod facts;
+#[doc(hidden)]
 pub mod flat;
+#[doc(hidden)]
 pub mod gouraud;
+#[doc(hidden)]
 pub mod lighting_model;
+#[doc(hidden)]
 pub mod node;
+#[doc(hidden)]
 pub mod phong;
-pub mod quotient;
+#[doc(hidden)]
 pub mod renq;
+#[doc(hidden)]
 pub mod renq_newton;
+#[doc(hidden)]
 pub mod six_point;
+#[doc(hidden)]
 pub mod sqrt6;
 
 use crate::{
     antialias::{PixelSet, Shape},
     arch::product::by_fraction,
     format::{BIAS, LEVEL, NORMAL_LENGTH, SUBPIXEL, WALK},
-    geometry::projection::ScreenVertex,
-    interpolate::{
-        Patch, Walker,
-        field::{Field, Nodes},
-        perspective::PerspectivePatch,
-    },
-    lighting::{
-        lights::{Direction, Lighting},
-        materials::{MaterialTables, Reflectance},
-    },
+    interpolate::perspective::PerspectivePatch,
+    lighting::{lights::Direction, materials::MaterialTables},
     pixel::Pixel,
     raster::{
         active::ActiveTriangle,
@@ -43,13 +47,27 @@ use crate::{
     setup::gradients::Gradients,
     stream::record::{Triangle, Vertex},
 };
+#[doc(inline)]
 pub use crate::{
     format::Intensity,
-    lighting::materials::Highlight,
+    geometry::projection::ScreenVertex,
+    interpolate::{
+        Constant, Held, Patch, Walker,
+        field::{Field, Nodes},
+    },
+    lighting::{
+        lights::{Lighting, Source, Viewer},
+        materials::{Highlight, Reflectance, Reflection},
+    },
+    math::highlight_lut::CosineLookup,
     raster::canvas::{Canvas, IntensityShader},
 };
 use core::marker::PhantomData;
 pub use facts::{Costs, Facts, VertexLight};
+#[doc(inline)]
+pub use lighting_model::{LightingModel, Linear, Quadratic, linear, quadratic, signed};
+#[doc(inline)]
+pub use node::Node;
 
 /// A shading method.
 pub trait Method: Sync {
@@ -112,8 +130,10 @@ pub const RANGE: u32 = LEVEL + 8;
 /// A triangle ready to be shaded; all triples start with its top corner.
 pub struct TriangleSetup<'f> {
     /// The corners, edges and depth on the screen.
+    #[doc(hidden)]
     pub screen: &'f ScreenTriangle,
     /// The gradients by which polynomials are fitted to the triangle.
+    #[doc(hidden)]
     pub gradients: &'f Gradients,
     /// The lit corners on the screen.
     pub corners: [&'f ScreenVertex; 3],
@@ -128,8 +148,10 @@ pub struct TriangleSetup<'f> {
     /// Whether light is interpolated in perspective.
     pub perspective: bool,
     /// Which pixels of the triangle are drawn.
+    #[doc(hidden)]
     pub pixels: PixelSet,
     /// Index of the active triangle that the band above has saved: its patch is loaded, and nothing is fitted.
+    #[doc(hidden)]
     pub place: Option<usize>,
 }
 
@@ -197,6 +219,7 @@ impl TriangleSetup<'_> {
     }
 
     /// Draws the triangle by `shader`, which stands on the anchor's row; returns the number of pixels in `canvas`.
+    #[doc(hidden)]
     pub fn draw_spans(&self, shader: &mut dyn SpanShader, canvas: &mut dyn Canvas) -> u32 {
         if cfg!(feature = "antialias") && self.pixels != PixelSet::Centres {
             let Self { screen, pixels, .. } = *self;
@@ -252,6 +275,7 @@ pub struct Shading<'f> {
     /// L and H of the only light, if they are constant, see [`Lighting::constant`].
     pub constant: Option<[[i32; 3]; 2]>,
     /// [`Self::constant`], split for products with vertex normals.
+    #[doc(hidden)]
     pub directions: Option<[Direction; 2]>,
 }
 

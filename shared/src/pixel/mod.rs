@@ -1,5 +1,6 @@
 //! Pixel formats: how a colour of 8 bits per channel becomes what a display stores.
 
+#[doc(hidden)]
 pub mod dither;
 
 use crate::format::{BIAS, Intensity, RAMP, WALK};

@@ -105,19 +105,24 @@ impl<P: Patch, S: IntensityShader<<P::Walker as Walker>::Value>> SpanShader for 
     }
 }
 
-/// The target of drawing: a band of the picture, in some pixel format.
+/// The target of drawing: a band of the picture, in some pixel format. A method passes it on to what draws, such as
+/// [`crate::method::Area::draw`].
 pub trait Canvas {
     /// Number of columns, first row, and one past the last row.
+    #[doc(hidden)]
     fn bounds(&self) -> [i32; 3];
 
     /// Draws the `count` pixels of `row` to the left of column `end` by `shader`, which stands on this row, where `inv_depth`, which stands
     /// on column `end`, passes the depth test.
+    #[doc(hidden)]
     fn draw_row(&mut self, row: i32, end: i32, count: usize, inv_depth: Linear<1>, shader: &mut dyn SpanShader);
 
     /// Adds a layer to a pixel, for antialiasing.
+    #[doc(hidden)]
     fn add(&mut self, column: i32, row: i32, layer: Layer);
 
     /// The channels of an intensity in the pixel format.
+    #[doc(hidden)]
     fn channels(&self, intensity: Intensity, column: i32, row: i32) -> [u8; 3];
 }
 

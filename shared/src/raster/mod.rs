@@ -4,5 +4,5 @@ pub mod active;
 pub mod band;
 pub mod canvas;
 pub mod pixel_shader;
-pub mod span;
+pub(crate) mod span;
 pub mod triangle;

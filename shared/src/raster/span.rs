@@ -7,7 +7,7 @@ use crate::{
 use core::ops::Range;
 
 /// A depth test that is walked along a span.
-pub trait DepthTest: Walker {
+pub(crate) trait DepthTest: Walker {
     /// The part of the depth buffer that the test needs for these pixels.
     fn depth(depth: &mut [u16], pixels: Range<usize>) -> Option<&mut [u16]>;
 
@@ -56,7 +56,7 @@ impl DepthTest for Constant {
 /// Head-room: inverse depth and the walked values wrap freely; at a pixel centre inside
 /// the triangle they are back in range (see [`crate::interpolate`]).
 #[inline(always)]
-pub fn fill<S: DepthTest, W: Walker, T: PixelShader<W::Value>>(
+pub(crate) fn fill<S: DepthTest, W: Walker, T: PixelShader<W::Value>>(
     pixels: &mut [T::Pixel],
     depth: &mut [u16],
     mut test: S,

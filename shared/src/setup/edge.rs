@@ -17,24 +17,24 @@ use crate::{
 };
 
 /// Fraction bits of a stepped column.
-pub const COLUMN: u32 = SLOPE;
+pub(crate) const COLUMN: u32 = SLOPE;
 
 /// Number of columns that a stepped column can tell apart: no viewport is wider.
-pub const COLUMNS: u32 = 1 << (32 - COLUMN);
+pub(crate) const COLUMNS: u32 = 1 << (32 - COLUMN);
 
 /// Largest height of an edge that is stepped from end to end, in 1/16 pixel: 89 rows.
-pub const MAX_STEPPED_HEIGHT: i32 = 89 << SUBPIXEL;
+pub(crate) const MAX_STEPPED_HEIGHT: i32 = 89 << SUBPIXEL;
 const _: () = assert!(MAX_STEPPED_HEIGHT as usize <= LARGEST);
 
 /// Largest width of an edge that fits a word with [`COLUMN`] fraction bits, in 1/16 pixel: 64 columns.
-pub const MAX_STEPPED_WIDTH: i32 = (1 << (31 - COLUMN)) - 1;
+pub(crate) const MAX_STEPPED_WIDTH: i32 = (1 << (31 - COLUMN)) - 1;
 
 /// Least height of an edge whose column is divided anew on each row, in 1/16 pixel.
 const MIN_DIVIDED_HEIGHT: i32 = 1 << (32 - COLUMN);
 
 /// An edge from an upper to a lower point, 1/16 pixel.
 #[derive(Clone, Copy, Debug)]
-pub struct Edge {
+pub(crate) struct Edge {
     x: i32,
     y: i32,
     dx: i32,
@@ -44,7 +44,7 @@ pub struct Edge {
 /// A column that is stepped from row to row.
 #[derive(FromBytes, IntoBytes, Immutable, KnownLayout, Clone, Copy, Debug, Default)]
 #[repr(C)]
-pub struct EdgeX {
+pub(crate) struct EdgeX {
     /// Unsigned Q11.21, such that the integer part is the first column not left of the edge.
     pub x: u32,
     /// Added for the next row.
@@ -59,11 +59,11 @@ fn walked(sixteenths: i32) -> u32 {
 
 impl EdgeX {
     /// No column.
-    pub const NONE: Self = Self { x: 0, step: 0 };
+    pub(crate) const NONE: Self = Self { x: 0, step: 0 };
 
     /// Moves down `rows` rows.
     #[inline(always)]
-    pub fn skip(&mut self, rows: i32) {
+    pub(crate) fn skip(&mut self, rows: i32) {
         self.x = self.x.wrapping_add(self.step.wrapping_mul(rows as u32));
     }
 }
@@ -72,14 +72,14 @@ impl Edge {
     /// The edge from `upper` to `lower`, each `[x, y]` in 1/16 pixel.
     #[inline(always)]
     #[must_use]
-    pub fn new(upper: [i32; 2], lower: [i32; 2]) -> Self {
+    pub(crate) fn new(upper: [i32; 2], lower: [i32; 2]) -> Self {
         Self { x: upper[0], y: upper[1], dx: lower[0].wrapping_sub(upper[0]), dy: lower[1].wrapping_sub(upper[1]) }
     }
 
     /// First column whose centre is not left of the edge at the centre of `row`, for any edge and any row.
     #[inline]
     #[must_use]
-    pub fn column(&self, row: i32) -> i32 {
+    pub(crate) fn column(&self, row: i32) -> i32 {
         let dy = i64::from(self.dy.max(1));
         let t = i64::from((row << SUBPIXEL) + CENTRE) - i64::from(self.y);
         let numerator = i64::from(self.x - CENTRE) * dy + i64::from(self.dx) * t;
@@ -94,7 +94,7 @@ impl Edge {
     /// 2 · 2^-21 and each step by less than 2^-21, so in row n the integer part is right while (n + 3) 256 h < 2^21.
     #[inline]
     #[must_use]
-    pub fn walk(&self) -> EdgeX {
+    pub(crate) fn walk(&self) -> EdgeX {
         let step = slope(self.dx, self.dy.max(1));
         // From the start to the first centre, less than a row: step down / 16, rounded down.
         let down = CENTRE.wrapping_sub(self.y) & (2 * CENTRE - 1);
@@ -107,14 +107,14 @@ impl Edge {
     /// The bound is that of [`Self::walk`], except that the start is too small by less than 2^-21.
     #[inline(always)]
     #[must_use]
-    pub fn exact_rows(&self) -> i32 {
+    pub(crate) fn exact_rows(&self) -> i32 {
         if self.dy < MIN_DIVIDED_HEIGHT { (1 << (COLUMN + SUBPIXEL - 8)) / self.dy.max(1) - 2 } else { 0 }
     }
 
     /// The column at the centre of `row`, ready to be stepped. Only for edges with `exact_rows() > 0`
     /// whose columns lie in [0, [`COLUMNS`]), and rows of the edge.
     #[must_use]
-    pub fn walk_from(&self, row: i32) -> EdgeX {
+    pub(crate) fn walk_from(&self, row: i32) -> EdgeX {
         let dy = self.dy.max(1) as u32;
         let whole = self.dx.div_euclid(self.dy.max(1));
         let rest = self.dx.wrapping_sub(whole.wrapping_mul(self.dy.max(1))) as u32;

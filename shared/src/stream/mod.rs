@@ -113,6 +113,7 @@ impl fmt::Display for StreamError {
 impl core::error::Error for StreamError {}
 
 /// CRC-32 (ISO-HDLC), the checksum of streams and of pictures. The small table: flash is dearer than the time of one check.
+#[doc(hidden)]
 pub const CRC: crc::Crc<u32, crc::NoTable> = crc::Crc::<u32, crc::NoTable>::new(&crc::CRC_32_ISO_HDLC);
 
 /// Offset of the stored checksum.
@@ -127,6 +128,7 @@ fn checksum(bytes: &[u8]) -> u32 {
 }
 
 /// Writes the checksum that `bytes` should have into their header: the last step of a writer.
+#[doc(hidden)]
 pub fn seal(bytes: &mut [u8]) {
     let crc = checksum(bytes);
     if let Some(stored) = bytes.get_mut(CRC_AT) {
@@ -146,6 +148,7 @@ fn take<'a, T: FromBytes + Immutable + KnownLayout>(bytes: &mut &'a [u8], count:
 }
 
 /// Bytes of a stream with these counts; `None` beyond 4 GiB.
+#[doc(hidden)]
 #[must_use]
 pub fn length(header: &Header) -> Option<u32> {
     let sizes = [

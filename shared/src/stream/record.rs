@@ -6,7 +6,8 @@
 //! Fields are plain integers, as they are read in place. Each has a method of its name that gives its value as a number of the
 //! crate [`fixed`], and `new` makes a record of such numbers; [`crate::Stream::parse`] checks what does not follow from the type.
 
-use crate::format::{Focal, Gain, Haversine, InverseAltitude, Length, NormalLength, Radius, Rotation, Unit};
+#[doc(inline)]
+pub use crate::format::{Focal, Gain, Haversine, InverseAltitude, Length, NormalLength, Radius, Rotation, Unit};
 use zerocopy::{FromBytes, Immutable, IntoBytes, KnownLayout};
 
 #[cfg(target_endian = "big")]
@@ -186,7 +187,7 @@ pub struct Mesh {
     pub flags: u16,
 }
 
-/// The mesh is closed and convex, so its front faces never hide one another; see [`crate::geometry::depth_elision`]. It promises:
+/// The mesh is closed and convex, so its front faces never hide one another; see `geometry/depth_elision.rs`. It promises:
 ///
 /// - The mesh is one closed surface, all of its triangles counter-clockwise seen from outside.
 /// - Each vertex is a corner of a convex body, in the ball of radius one about the origin, with coordinates rounded to the
