@@ -53,6 +53,13 @@ pub enum RenderError {
         /// The method's name.
         shader: &'static str,
     },
+    /// The method raises a root of its own to a share of the exponent, which is less than 1 here.
+    Exponent {
+        /// The method's name.
+        shader: &'static str,
+        /// Smallest exponent of a material that it can shade.
+        least: u16,
+    },
     /// The method cannot interpolate in perspective.
     Perspective {
         /// The method's name.
@@ -74,6 +81,9 @@ impl fmt::Display for RenderError {
             Self::NoPerspective => f.write_str("this build cannot interpolate in perspective; build it with the feature perspective"),
             Self::Light { shader } => {
                 write!(f, "{shader} shading needs directional lights and an infinitely far viewer; this scene has near ones")
+            }
+            Self::Exponent { shader, least } => {
+                write!(f, "{shader} shading needs materials whose exponent is {least} or more; give the material a larger one")
             }
             Self::Perspective { shader } => write!(f, "{shader} shading has no perspective-correct form"),
         }

@@ -150,6 +150,10 @@ pub fn check(stream: &Stream<'_>, facts: &Facts, perspective_correct: bool) -> R
     if !facts.near_lights && !stream.is_constant() {
         return Err(RenderError::Light { shader: facts.name });
     }
+    let least = facts.highlight.least_exponent();
+    if stream.materials.iter().any(|material| material.exponent < least) {
+        return Err(RenderError::Exponent { shader: facts.name, least });
+    }
     if perspective_correct && stream.is_perspective() && !facts.perspective {
         return Err(RenderError::Perspective { shader: facts.name });
     }

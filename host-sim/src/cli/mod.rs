@@ -14,6 +14,7 @@ mod parse;
 mod render;
 mod report;
 mod scenes;
+mod stress;
 #[cfg(feature = "boards")]
 mod verify;
 
@@ -44,6 +45,7 @@ Examples:
   microphong growth                                count how that grows with triangles, pixels, lights, bands
   microphong compare teapot --report comparison    measure all methods against Phong shading
   microphong papers --only vlasic                  compute again what a paper claims
+  microphong stress --seconds 60                   look for scenes that are drawn wrong
 
 Exit codes: 0 done; 1 failed, or pictures differ; 2 wrong usage.";
 
@@ -58,6 +60,7 @@ enum Command {
     Compare(compare::Arguments),
     Papers(papers::Arguments),
     Scenes(scenes::Arguments),
+    Stress(stress::Arguments),
 }
 
 /// Wrong usage that the argument parser cannot see: exit code 2.
@@ -75,7 +78,6 @@ impl std::error::Error for Usage {}
 /// What a command ends with when nothing went wrong.
 enum Outcome {
     Done,
-    #[cfg_attr(not(feature = "boards"), expect(dead_code, reason = "only commands for boards compare"))]
     Differences,
 }
 
@@ -92,6 +94,7 @@ pub(crate) fn main() -> ExitCode {
         Command::Compare(arguments) => compare::run(&arguments),
         Command::Papers(arguments) => papers::run(&arguments),
         Command::Scenes(arguments) => scenes::run(&arguments),
+        Command::Stress(arguments) => stress::run(&arguments),
     };
     let error = match result {
         Ok(Outcome::Done) => return ExitCode::SUCCESS,

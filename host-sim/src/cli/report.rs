@@ -25,6 +25,12 @@ pub(crate) fn failure(error: &anyhow::Error) {
     let _ = writeln!(std::io::stderr().lock(), "error: {error:#}");
 }
 
+/// Prints a line on stderr.
+pub(crate) fn error(text: &str) {
+    // Nobody left to tell when stderr is closed.
+    let _ = BARS.suspend(|| writeln!(std::io::stderr().lock(), "{text}"));
+}
+
 /// A bar on stderr for `count` steps; a line when stderr is no terminal. Silent for a single step.
 pub(crate) fn progress(count: u64, what: &'static str) -> ProgressBar {
     if count < 2 {

@@ -130,15 +130,17 @@ impl<S: Surface> Walker for PerspectiveWalker<S> {
 }
 
 impl Point {
-    /// The point with the barycentric coordinates `s / whole` and `t / whole` of corners 1 and 2.
+    /// The point with the barycentric coordinates `s / whole` and `t / whole` of corners 1 and 2, moved into the triangle: beside a sliver,
+    /// where one over the distance nears zero, quotients would grow without end.
     #[inline(always)]
     fn new(s: i64, t: i64, whole: i64) -> Self {
         // All are shifted up until `whole` fills 32 bits, and the numerators 30; the reciprocal of `whole` is 2^62 over it.
         let zeros = whole.max(1).leading_zeros();
         let inverse = i64::from(recip((whole.wrapping_shl(zeros) as u64 >> 32) as u32));
-        let share = |part: i64| (((part.wrapping_shl(zeros.saturating_sub(2)) >> 32) * inverse) >> SHARE) as i32;
-        let (s, t) = (share(s), share(t));
-        Self([(ONE as i32).wrapping_sub(s).wrapping_sub(t), s, t])
+        let coordinate = |part: i64, most: i64| (((part.wrapping_shl(zeros.saturating_sub(2)) >> 32) * inverse) >> SHARE).clamp(0, most);
+        let s = coordinate(s, ONE);
+        let t = coordinate(t, ONE - s);
+        Self([ONE - s - t, s, t].map(|coordinate| coordinate as i32))
     }
 
     /// Lagrange's weights of corners and edge midpoints, b (2b - 1) and 4 b b'.

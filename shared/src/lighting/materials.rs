@@ -40,6 +40,12 @@ impl Highlight {
             Self::Reflected => Base::FourthRoot,
         }
     }
+
+    /// Smallest exponent of a material: what is raised is raised to 1 then.
+    #[must_use]
+    pub const fn least_exponent(self) -> u16 {
+        1 << self.base().roots()
+    }
 }
 
 /// Light levels that one light adds at cosine 1, per channel, in Q9.7.

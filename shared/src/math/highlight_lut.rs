@@ -40,7 +40,7 @@ pub enum Base {
 
 impl Base {
     /// How often the square root is taken.
-    const fn roots(self) -> u32 {
+    pub(crate) const fn roots(self) -> u32 {
         match self {
             Self::Itself | Self::Square => 0,
             Self::Root => 1,

@@ -1,0 +1,135 @@
+//! `microphong stress`.
+
+use super::{
+    Outcome, Usage,
+    parse::{self, Several},
+    report,
+};
+use anyhow::{Context, Result};
+use microphong_sim::stress::{self, Failure, Family, Summary};
+use std::{
+    fs,
+    path::{Path, PathBuf},
+    time::{Duration, Instant},
+};
+
+/// Look for scenes that are drawn wrong, by random cases and exact oracles.
+///
+/// Each family makes cases of one kind and judges them by means that share no code with the renderer. The first case that fails is
+/// made as small as it can be, written as a stream, and the command that draws it is printed. Case N of a seed is the same in every run.
+#[derive(clap::Args)]
+#[command(after_help = EXAMPLES)]
+pub(crate) struct Arguments {
+    /// Seconds to go on, shared by the families.
+    #[arg(long, default_value_t = 10.0, value_name = "N", value_parser = seconds)]
+    seconds: f64,
+    /// Cases of each family, instead of seconds.
+    #[arg(long, value_name = "N", conflicts_with = "seconds")]
+    cases: Option<u64>,
+    /// Which cases: another seed makes others. A random one unless given.
+    #[arg(long, value_name = "S")]
+    seed: Option<u64>,
+    /// First case of each family: the number of a failure, with `--cases 1`, finds it again.
+    #[arg(long, default_value_t = 0, value_name = "N")]
+    first: u64,
+    /// Families, separated by commas, or all.
+    #[arg(long, default_value = "all", value_name = "NAME,...", value_parser = families)]
+    only: Several<&'static str>,
+    /// Where streams of failures are written.
+    #[arg(long, default_value = ".", value_name = "FOLDER")]
+    artefacts: PathBuf,
+    /// Print one JSON object per family.
+    #[arg(long)]
+    json: bool,
+}
+
+const EXAMPLES: &str = "\
+Examples:
+  microphong stress                                  ten seconds of everything
+  microphong stress --seconds 3600 --seed 7          an hour
+  microphong stress --only arithmetic,sameness       two families
+  microphong stress --only coverage --seed 7 --first 4711 --cases 1    one case again
+
+Families:
+  coverage     a triangle covers the pixels whose centres lie in it
+  watertight   whole scenes, culling included: no pixel is missing, none too many
+  arithmetic   integers shade as the same method does in 64-bit floating point
+  walks        forward differences over 4,096 columns and 2,047 rows are exact
+  drift        poses of any of 2^32 frames are as exact as that of the first
+  sameness     neither bands nor memory change a picture
+  hostile      damaged streams are refused or drawn, without a panic
+
+Overflows are seen by a build that looks for them: cargo run --profile stress -- stress";
+
+fn seconds(text: &str) -> Result<f64, String> {
+    text.parse().ok().filter(|&seconds: &f64| seconds > 0.0 && seconds <= 1e7).ok_or_else(|| "a number of seconds is needed".into())
+}
+
+fn families(text: &str) -> Result<Several<&'static str>, String> {
+    let names: Vec<_> = stress::families().iter().map(|family| family.name()).collect();
+    parse::several(text, &names, |text| parse::among(text, &names, |name| name))
+}
+
+pub(crate) fn run(arguments: &Arguments) -> Result<Outcome> {
+    if !arguments.artefacts.is_dir() {
+        return Err(Usage(format!("{} is no folder; name one that is there, with --artefacts", arguments.artefacts.display())).into());
+    }
+    let seed = arguments.seed.unwrap_or_else(|| {
+        std::time::SystemTime::now().duration_since(std::time::UNIX_EPOCH).map_or(0, |time| time.as_nanos() as u64 % 1_000_000)
+    });
+    let families: Vec<_> = stress::families().into_iter().filter(|family| arguments.only.values.contains(&family.name())).collect();
+    if !arguments.json {
+        report::line(&format!("seed {seed}"))?;
+    }
+    let mut failed = false;
+    for family in &families {
+        let summary = look(&**family, arguments, seed, arguments.seconds / families.len() as f64)?;
+        if arguments.json {
+            report::json(&summary)?;
+        } else {
+            report::line(&text(&summary))?;
+        }
+        if let Some(failure) = &summary.first {
+            failed = true;
+            tell(family.name(), seed, failure, &arguments.artefacts)?;
+        }
+    }
+    Ok(if failed { Outcome::Differences } else { Outcome::Done })
+}
+
+/// Runs one family, with a bar.
+fn look(family: &dyn Family, arguments: &Arguments, seed: u64, seconds: f64) -> Result<Summary> {
+    let begin = Instant::now();
+    let bar = report::progress(arguments.cases.unwrap_or((seconds * 10.0) as u64 + 2), family.name());
+    let clock = |count: u64| {
+        let gone = begin.elapsed();
+        bar.set_position(if arguments.cases.is_some() { count } else { (gone.as_secs_f64() * 10.0) as u64 });
+        arguments.cases.map_or(gone < Duration::from_secs_f64(seconds), |cases| count < cases)
+    };
+    let summary = stress::run(family, seed, arguments.first, &clock);
+    bar.finish_and_clear();
+    Ok(summary)
+}
+
+fn text(summary: &Summary) -> String {
+    let Summary { family, cases, skipped, worst, limit, unit, failures, .. } = summary;
+    let figure = match (worst, limit) {
+        (Some(worst), Some(limit)) => format!(", worst {worst:.3e} of at most {limit:.3e} {unit}"),
+        _ => String::new(),
+    };
+    let verdict = if *failures == 0 { "all right" } else { "WRONG" };
+    format!("{family:11} {:>12} cases ({} made none): {verdict}{figure}", report::grouped(*cases), report::grouped(*skipped))
+}
+
+/// Writes the stream of a failure, and says how to see it.
+fn tell(family: &str, seed: u64, failure: &Failure, folder: &Path) -> Result<()> {
+    let Failure { number, what, case } = failure;
+    report::error(&format!("{family}, case {number} of seed {seed}: {what}"));
+    if let Some(case) = case {
+        let file = folder.join(format!("{family}-{seed}-{number}.tri"));
+        fs::write(&file, case.stream.as_bytes()).with_context(|| format!("cannot write {}", file.display()))?;
+        report::error(&format!("  its scene, as small as it can be: {}", case.command(&file)));
+    }
+    report::error(&format!("  again: microphong stress --only {family} --seed {seed} --first {number} --cases 1"));
+    Ok(())
+}

@@ -1,0 +1,108 @@
+//! Integers against the same method in 64-bit floating point, on every pixel.
+
+use crate::{
+    Family, Verdict,
+    case::Case,
+    random::Random,
+    scenes::{self, Wishes},
+};
+use microphong_compare::level;
+use microphong_oracle::{Frame, Shade, decides, method};
+use microphong_render::{render::Style, shader::Shader};
+
+/// Largest difference of any method, in 1/255 of full intensity.
+pub const LIMIT: f64 = 0.5;
+/// How far integers may be off where a method compares levels with a threshold, at most twice the error of the table of
+/// highlights. Several decisions shape a triangle, and each may fall its own way.
+const LEANS: [f64; 9] = [0.0, -0.01, 0.01, -0.03, 0.03, -0.07, 0.07, -0.14, 0.14];
+/// A larger difference, in 1/255, of a method that decides is compared with what it makes of other decisions.
+const UNDECIDED: f64 = 0.25;
+/// Where a pixel's centre lies on the border of two parts of a triangle, either may show.
+const NUDGE: f64 = 1e-6;
+
+/// Random scenes, by a random method.
+pub struct Arithmetic;
+
+impl Family for Arithmetic {
+    fn name(&self) -> &'static str {
+        "arithmetic"
+    }
+
+    fn about(&self) -> &'static str {
+        "integers shade every pixel as the same method does in floating point"
+    }
+
+    fn limit(&self) -> Option<(f64, &'static str)> {
+        Some((LIMIT, "of 255"))
+    }
+
+    fn check(&self, random: &mut Random) -> Verdict {
+        let Some(case) = scenes::case(random, Wishes { closed: false, unclipped: true, triangles: 200 }) else { return Verdict::skipped() };
+        let case = Case { style: Style { antialias: false, dither: false, ..case.style }, ..case };
+        match error(&case) {
+            Some(error) => Verdict::of(error, LIMIT, Some(case)),
+            None => Verdict::skipped(),
+        }
+    }
+
+    fn fails(&self, case: &Case) -> bool {
+        error(case).is_some_and(|error| error > LIMIT)
+    }
+}
+
+/// All of a method's triangles in one frame, in floating point; `None` if the method cannot shade them.
+fn shades<'f>(frame: &'f Frame, shader: Shader, lean: f64) -> Option<Vec<Shade<'f>>> {
+    frame.facets.iter().map(|facet| method(shader.name(), frame, facet, lean).ok()).collect()
+}
+
+/// Difference of levels; one level for all channels is that of the brightest.
+fn difference(drawn: [f64; 3], exact: [f64; 3]) -> f64 {
+    let all = (0..3).map(|k| (drawn[k] - exact[k]).abs()).fold(0.0, f64::max);
+    let one = drawn[0] == drawn[1] && drawn[1] == drawn[2];
+    if one { all.min((drawn[0] - exact.into_iter().fold(0.0, f64::max)).abs()) } else { all }
+}
+
+/// Largest difference of a frame, in 1/255, before the output format rounds; infinite where a pixel is missing. `None` if the method
+/// cannot draw it, or a triangle is clipped.
+#[must_use]
+pub fn error(case: &Case) -> Option<f64> {
+    let (stream, size) = (case.stream.parse().ok()?, (case.size[0], case.size[1]));
+    let frame = if case.style.perspective_correct {
+        Frame::perspective_correct(stream, size, case.frame)
+    } else {
+        Frame::new(stream, size, case.frame)
+    };
+    of(case, &frame, &frame.visible())
+}
+
+/// [`error`], if the frame is known already, and what may be seen at each of its pixels.
+#[must_use]
+pub fn of(case: &Case, frame: &Frame, visible: &[Vec<u32>]) -> Option<f64> {
+    let (stream, shader) = (case.stream.parse().ok()?, case.style.shader);
+    let leans: &[f64] = if decides(shader.name()) { &LEANS } else { &[0.0] };
+    let shades: Option<Vec<_>> = leans.iter().map(|&lean| shades(frame, shader, lean)).collect();
+    let shades = shades?;
+    let drawn = level::picture(stream, case.pixels(), case.style, case.frame).ok()?;
+    let mut worst = 0f64;
+    for (i, (levels, candidates)) in drawn.iter().zip(visible).enumerate() {
+        let levels = match *levels {
+            Some(levels) if !candidates.is_empty() => levels,
+            None if candidates.is_empty() => continue,
+            // Coverage differs.
+            _ => return Some(f64::INFINITY),
+        };
+        let centre = [i as u32 % case.size[0], i as u32 / case.size[0]].map(|c| f64::from(c) + 0.5);
+        let at = |x: f64, y: f64, leans: usize| {
+            let point = [centre[0] + x, centre[1] + y];
+            let all = candidates.iter().flat_map(|&c| shades.iter().take(leans).map(move |shades| &shades[c as usize]));
+            all.map(|shade| difference(levels, shade(point))).fold(f64::MAX, f64::min)
+        };
+        let mut error = at(0.0, 0.0, 1);
+        if error > UNDECIDED && decides(shader.name()) {
+            let around = [(0.0, 0.0), (NUDGE, NUDGE), (NUDGE, -NUDGE), (-NUDGE, NUDGE), (-NUDGE, -NUDGE)];
+            error = around.map(|(x, y)| at(x, y, leans.len())).into_iter().fold(error, f64::min);
+        }
+        worst = worst.max(error);
+    }
+    Some(worst)
+}

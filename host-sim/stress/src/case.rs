@@ -1,0 +1,66 @@
+//! One scene and how it is drawn: all that it takes to see a failure again.
+
+use anyhow::Result;
+use embedded_graphics_core::geometry::Size;
+use microphong_render::{
+    bytes::StreamBytes,
+    render::{Format, Picture, Settings, Style, picture},
+    shader::Shader,
+};
+use std::path::Path;
+
+/// A frame of a scene, and how it is drawn.
+#[derive(Clone, Debug)]
+pub struct Case {
+    /// The scene.
+    pub stream: StreamBytes,
+    /// Of the picture.
+    pub size: [u32; 2],
+    /// The frame of the orbit.
+    pub frame: u32,
+    /// Method and its options.
+    pub style: Style,
+    /// Pixel format.
+    pub format: Format,
+    /// Rows drawn at a time.
+    pub band_rows: u32,
+}
+
+impl Case {
+    /// A stream as it is drawn unless something else is wanted.
+    #[must_use]
+    pub fn new(stream: StreamBytes) -> Self {
+        Self { stream, size: [64, 48], frame: 0, style: Shader::FLAT.into(), format: Format::Rgb888, band_rows: 16 }
+    }
+
+    /// Width and height as the core takes them.
+    #[must_use]
+    pub fn pixels(&self) -> Size {
+        Size::new(self.size[0], self.size[1])
+    }
+
+    /// Draws it.
+    ///
+    /// # Errors
+    /// When the stream is not valid, or the method cannot draw it in this style.
+    pub fn draw(&self) -> Result<Picture> {
+        let settings = Settings { size: self.pixels(), style: self.style, band_rows: self.band_rows, format: self.format };
+        picture(self.stream.parse()?, &settings, self.frame)
+    }
+
+    /// The command that draws it, if its stream lies in `file`.
+    #[must_use]
+    pub fn command(&self, file: &Path) -> String {
+        let [width, height] = self.size;
+        let Self { style, format, band_rows, frame, .. } = self;
+        let options =
+            [(style.perspective_correct, " --perspective-correct"), (style.dither, " --dither"), (style.antialias, " --antialias")];
+        let options: String = options.iter().filter(|(on, _)| *on).map(|(_, text)| *text).collect();
+        format!(
+            "microphong render {} --shader {} --size {width}x{height} --format {} --band-rows {band_rows} --first {frame}{options}",
+            file.display(),
+            style.shader.name(),
+            format.name(),
+        )
+    }
+}

@@ -1,0 +1,63 @@
+//! Orbits over all 2^32 frames: nothing accumulates.
+
+use crate::{Family, Verdict, random::Random};
+use microphong::{
+    geometry::pose::{ORBIT_ERROR, Pose, ROTATION_ERROR},
+    stream::record::{Camera, PERSPECTIVE},
+};
+use microphong_render::vector::{V3, apply, dot, length, product, rotation, sub};
+use std::f64::consts::TAU;
+
+/// Frames of random orbits.
+pub struct Drift;
+
+/// Largest error of a rotation's entries: that of the angle, and what a camera's rounded matrix is off.
+pub const LIMIT: f64 = ORBIT_ERROR + 4.0 * ROTATION_ERROR;
+
+impl Family for Drift {
+    fn name(&self) -> &'static str {
+        "drift"
+    }
+
+    fn about(&self) -> &'static str {
+        "the pose of any of 2^32 frames is as exact as that of the first, and a rotation"
+    }
+
+    fn limit(&self) -> Option<(f64, &'static str)> {
+        Some((LIMIT, "radians"))
+    }
+
+    fn check(&self, random: &mut Random) -> Verdict {
+        let (start, axis) = (rotation(random.direction(), random.between(0.0, TAU)), random.direction());
+        let fixed = |c: f64| (c * f64::from(1 << 30)).round() as i32;
+        let camera = Camera {
+            rotation: start.map(|row| row.map(fixed)),
+            translation: [0, 0, 3 << 14],
+            axis: axis.map(fixed),
+            period: random.pick(1..65_536) as u16,
+            projection: PERSPECTIVE,
+            reserved: 0,
+            focal: 1 << 16,
+            near: 1 << 14,
+            far: 0,
+        };
+        let frame = random.bits() as u32;
+        let pose = Pose::new(&camera, frame);
+        let turn = f64::from(frame % u32::from(camera.period)) / f64::from(camera.period) * TAU;
+        let exact = product(&start, &rotation(axis, turn));
+        let rows: [V3; 3] = pose.rotation.map(|row| row.map(|c| f64::from(c) / f64::from(1 << 30)));
+        let mut worst = 0f64;
+        for point in [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]] {
+            worst = worst.max(length(sub(apply(&rows, point), apply(&exact, point))));
+        }
+        for (i, j) in (0..3).flat_map(|i| (0..3).map(move |j| (i, j))) {
+            let square = dot(rows[i], rows[j]) - f64::from(u8::from(i == j));
+            worst = worst.max(square.abs());
+        }
+        let mut verdict = Verdict::of(worst, LIMIT, None);
+        if let Some(what) = &mut verdict.failure {
+            *what += &format!(" in frame {frame} of an orbit of {} about {axis:?}", camera.period);
+        }
+        verdict
+    }
+}

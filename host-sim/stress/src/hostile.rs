@@ -1,0 +1,50 @@
+//! Bytes that nobody meant: streams with bytes flipped, cut off, sealed again.
+
+use crate::{
+    Family, Verdict,
+    case::Case,
+    random::Random,
+    scenes::{self, Wishes},
+};
+use microphong::stream::seal;
+use microphong_render::bytes::StreamBytes;
+
+/// Damaged streams of random scenes.
+pub struct Hostile;
+
+impl Family for Hostile {
+    fn name(&self) -> &'static str {
+        "hostile"
+    }
+
+    fn about(&self) -> &'static str {
+        "a damaged stream is refused, or drawn without a panic or an overflow"
+    }
+
+    fn check(&self, random: &mut Random) -> Verdict {
+        let Some(case) = scenes::case(random, Wishes { closed: false, unclipped: false, triangles: 60 }) else { return Verdict::skipped() };
+        let mut bytes = case.stream.as_bytes().to_vec();
+        for _ in 0..random.pick(0..6) {
+            let at = random.pick(0..bytes.len() as i32) as usize;
+            bytes[at] = match random.pick(0..3) {
+                0 => bytes[at] ^ (1 << random.pick(0..8)),
+                1 => random.among(&[0, 1, 0x7F, 0x80, 0xFF]),
+                _ => random.bits() as u8,
+            };
+        }
+        if random.once_in(8) {
+            bytes.truncate(random.pick(0..bytes.len() as i32 + 1) as usize);
+        }
+        if !random.once_in(8) {
+            seal(&mut bytes);
+        }
+        let case = Case { stream: StreamBytes::from(&bytes[..]), ..case };
+        // Kept before it is drawn: a panic must not lose it.
+        let failure = crate::guarded(|| drop(case.draw())).err();
+        Verdict { failure, case: Some(case), ..Verdict::default() }
+    }
+
+    fn fails(&self, case: &Case) -> bool {
+        crate::guarded(|| drop(case.draw())).is_err()
+    }
+}

@@ -1,0 +1,93 @@
+//! One picture, drawn in several ways: by bands of any height, with little memory or much, twice by the same renderer.
+
+use crate::{
+    Family, Verdict,
+    case::Case,
+    random::Random,
+    scenes::{self, Wishes},
+};
+use anyhow::{Result, ensure};
+use embedded_graphics_core::pixelcolor::Rgb565;
+use microphong::{Layout, Renderer, Stats};
+use microphong_render::render;
+
+/// Random scenes in random styles.
+pub struct Sameness;
+
+impl Family for Sameness {
+    fn name(&self) -> &'static str {
+        "sameness"
+    }
+
+    fn about(&self) -> &'static str {
+        "neither bands nor memory, neither limits nor what was drawn before change a pixel or a count"
+    }
+
+    fn check(&self, random: &mut Random) -> Verdict {
+        let Some(case) = scenes::case(random, Wishes { closed: false, unclipped: false, triangles: 600 }) else {
+            return Verdict::skipped();
+        };
+        match differs(&case) {
+            Ok(what) => Verdict { failure: what, case: Some(case), ..Verdict::default() },
+            // The method cannot draw this scene in this style.
+            Err(_) => Verdict::skipped(),
+        }
+    }
+
+    fn fails(&self, case: &Case) -> bool {
+        differs(case).is_ok_and(|what| what.is_some())
+    }
+}
+
+/// In what the ways of drawing a case differ.
+fn differs(case: &Case) -> Result<Option<String>> {
+    let stream = case.stream.parse()?;
+    let whole = render::frame::<Rgb565>(stream, case.pixels(), case.style, case.size[1], case.frame)?;
+    let (vertices, triangles) = (stream.vertices.len(), stream.triangles.len());
+    let room = |rows: u32, [vertices, triangles, active]: [usize; 3]| {
+        Layout::new(case.size[0] as usize, rows.clamp(1, case.size[1]) as usize)
+            .vertices(vertices)
+            .triangles(triangles)
+            .materials(stream.materials.len())
+            .active_triangles(active)
+            .antialias(case.style.antialias)
+    };
+    let ways = [
+        ("its bands", room(case.band_rows, [vertices, triangles, triangles])),
+        ("bands of one row, and no triangle handed on", room(1, [vertices, triangles, 0])),
+        ("little memory", room(case.band_rows, [vertices / 2, triangles / 3, 2])),
+    ];
+    for (name, layout) in ways {
+        for (pixels, stats) in twice(case, layout)? {
+            if pixels != whole.0 {
+                let differ = pixels.iter().zip(&whole.0).filter(|(a, b)| a != b).count();
+                return Ok(Some(format!("{name}: {differ} of {} pixels differ", pixels.len())));
+            }
+            if [stats.drawn, stats.pixels, stats.culled] != [whole.1.drawn, whole.1.pixels, whole.1.culled] {
+                return Ok(Some(format!("{name}: {stats:?} in place of {:?}", whole.1)));
+            }
+        }
+    }
+    Ok(None)
+}
+
+/// Draws a frame, another one, and the first again, in memory that is not clean.
+fn twice(case: &Case, layout: Layout) -> Result<[(Vec<Rgb565>, Stats); 2]> {
+    let mut memory = vec![0x0123_4567_89AB_CDEF; layout.words::<Rgb565>()];
+    let mut renderer = Renderer::with_shader(case.stream.parse()?, case.pixels(), &layout, &mut memory, case.style.shader.on())?;
+    renderer.set_perspective_correct(case.style.perspective_correct)?;
+    renderer.set_antialias(case.style.antialias)?;
+    renderer.set_dither(case.style.dither);
+    let mut draw = |number| -> Result<(Vec<Rgb565>, Stats)> {
+        let (mut pixels, mut band) = (Vec::new(), vec![Rgb565::default(); layout.band()]);
+        let mut frame = renderer.frame(number);
+        while let Some(area) = frame.next_band(&mut band)? {
+            pixels.extend_from_slice(&band[..(area.size.width * area.size.height) as usize]);
+        }
+        ensure!(frame.is_complete(), "a frame ends before its last row");
+        Ok((pixels, frame.stats()))
+    };
+    let first = draw(case.frame)?;
+    draw(case.frame.wrapping_add(1))?;
+    Ok([first, draw(case.frame)?])
+}

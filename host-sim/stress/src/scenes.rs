@@ -1,0 +1,151 @@
+//! Random scenes: meshes, materials, lights and cameras that renderers get wrong.
+
+use crate::{case::Case, random::Random};
+use microphong_render::{
+    look::{Lamp, Look, Surface},
+    mesh::Mesh,
+    quantise::quantise,
+    render::{Format, Style},
+    shader::Shader,
+    shapes,
+    vector::{V3, add, rotation, scale, unit},
+    view::{Projection, View},
+};
+
+/// What a scene may have.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Wishes {
+    /// The mesh is closed: nobody may see its inside, nor through it.
+    pub closed: bool,
+    /// All of it lies before the near plane and within the picture's guard band.
+    pub unclipped: bool,
+    /// Triangles at most, about.
+    pub triangles: i32,
+}
+
+/// A random scene, drawn in a random way by a method that can; `None` if it would not make a valid stream.
+pub fn case(random: &mut Random, wishes: Wishes) -> Option<Case> {
+    let mesh = if wishes.closed || random.once_in(3) { body(random, wishes.triangles) } else { soup(random, wishes.triangles.min(40)) };
+    let look = look(random, &mesh, wishes);
+    let stream = look.stream(&quantise(&mesh).0).ok()?;
+    let style = Style {
+        shader: random.among(&Shader::ALL),
+        perspective_correct: random.once_in(4),
+        antialias: random.once_in(4),
+        dither: random.once_in(4),
+    };
+    let case = Case {
+        size: [random.pick(1..160) as u32, random.pick(1..120) as u32],
+        frame: if random.once_in(3) { 0 } else { random.bits() as u32 },
+        style,
+        format: random.among(&Format::ALL),
+        band_rows: random.pick(1..64) as u32,
+        ..Case::new(stream)
+    };
+    Some(case)
+}
+
+/// A closed body.
+fn body(random: &mut Random, triangles: i32) -> Mesh {
+    let mut mesh = match random.pick(0..5) {
+        0 => shapes::dodecahedron(),
+        1 => {
+            let around = random.pick(3..(triangles / 12).max(5)) as usize;
+            shapes::torus(around, random.pick(3..8) as usize)
+        }
+        _ => {
+            let meridians = random.pick(3..(triangles / 8).max(5)) as usize;
+            shapes::sphere(meridians, random.pick(2..8) as usize, 0.1)
+        }
+    };
+    let flat = if random.once_in(2) { 1.0 } else { random.octaves(0.01, 1.0) };
+    let rough = if random.once_in(2) { 0.0 } else { random.between(0.0, 0.4) };
+    for position in &mut mesh.positions {
+        let radius = 1.0 - rough * random.between(0.0, 1.0);
+        *position = [position[0] * radius, position[1] * radius, position[2] * radius * flat];
+    }
+    mesh
+}
+
+/// Triangles without a neighbour: slivers, tiny and huge ones, with normals that fit their planes or do not.
+fn soup(random: &mut Random, triangles: i32) -> Mesh {
+    let mut mesh = Mesh::default();
+    for _ in 0..random.pick(1..triangles.max(2)) {
+        let centre = scale(random.direction(), random.between(0.0, 0.9));
+        let size = random.octaves(0.001, 1.0);
+        let thin = if random.once_in(3) { random.octaves(0.001, 1.0) } else { 1.0 };
+        let (along, across) = (scale(random.direction(), size), scale(random.direction(), size * thin));
+        let corners = [add(centre, along), add(centre, scale(along, -1.0)), add(centre, across)];
+        let facing = random.direction();
+        let spread = random.among(&[0.0, 0.1, 0.5, 1.0, 3.0]);
+        let first = mesh.positions.len();
+        for corner in corners {
+            mesh.positions.push(corner.map(|c| c.clamp(-1.0, 1.0)));
+            let normal = add(facing, scale(random.direction(), spread));
+            mesh.normals.push(unit(normal).unwrap_or(facing));
+        }
+        // Some have normals that are opposite to one another.
+        if random.once_in(8) {
+            let opposite = mesh.normals[first].map(|c| -c);
+            mesh.normals[first + 1] = opposite;
+        }
+        mesh.triangles.push([first, first + 1, first + 2]);
+    }
+    mesh
+}
+
+fn colour(random: &mut Random) -> V3 {
+    match random.pick(0..4) {
+        0 => [1.0; 3],
+        1 => [0.0, 0.0, random.between(0.0, 1.0)],
+        _ => [(); 3].map(|()| random.between(0.0, 1.0)),
+    }
+}
+
+fn surface(random: &mut Random) -> Surface {
+    let exponent = if random.once_in(3) { random.among(&[1, 2, 3, 4, 7, 8, 512, 1023, 1024]) } else { random.octaves(1.0, 1025.0) as u16 };
+    let shares = [random.between(0.0, 0.3), random.between(0.0, 1.0), random.between(0.0, 1.0)];
+    let colour = colour(random);
+    match random.pick(0..3) {
+        0 => Surface::metal([1.0; 3], shares, exponent),
+        1 => Surface::metal(colour, shares, exponent),
+        _ => Surface::plastic(colour, shares, exponent),
+    }
+}
+
+/// Material, lights and camera.
+fn look(random: &mut Random, mesh: &Mesh, wishes: Wishes) -> Look {
+    let axis = random.direction();
+    let turned = rotation(random.direction(), random.between(0.0, std::f64::consts::TAU));
+    let distance = if wishes.unclipped { random.between(2.0, 8.0) } else { random.octaves(0.2, 12.0) };
+    let period = random.among(&[0, 1, 7, 120, 65_535]);
+    let mut view = View::facing(turned, distance, axis, period);
+    if random.once_in(3) {
+        view = view.parallel();
+    }
+    if wishes.unclipped {
+        view = view.fit(&mesh.positions, (64, 48), 1.05);
+    } else {
+        view = view.focal(random.octaves(0.1, 12.0));
+        view.near = match view.projection {
+            Projection::Perspective => random.octaves(1.0 / 32.0, distance.max(0.1)),
+            Projection::Orthographic => view.near,
+        };
+    }
+    let mut look = Look::new(surface(random), view);
+    let lamps = if random.once_in(2) { 1 } else { random.pick(0..9) };
+    look.lamps = (0..lamps)
+        .map(|_| {
+            let colour = colour(random);
+            if random.once_in(3) {
+                let place = scale(random.direction(), random.octaves(0.05, 8.0));
+                Lamp::Near(add(place, view.translation), colour)
+            } else {
+                Lamp::Distant(random.direction(), colour)
+            }
+        })
+        .collect();
+    look.local_viewer = random.once_in(3);
+    look.background = random.among(&[[0; 3], [255; 3], [26, 28, 32]]);
+    look
+}

@@ -1,0 +1,132 @@
+//! Whole scenes, culling included: a pixel is drawn if its centre lies in a triangle that shows its front on the screen, and else it is
+//! not.
+//!
+//! Corners are where the core rounds them to. Which pixels a triangle covers is decided by three edge functions in 64-bit integers, and
+//! nothing is culled before.
+
+use crate::{
+    Family, Verdict,
+    case::Case,
+    random::Random,
+    scenes::{self, Wishes},
+};
+use embedded_graphics_core::{
+    geometry::Size,
+    pixelcolor::{Rgb888, RgbColor},
+};
+use microphong::{
+    Stream,
+    geometry::{pose::Pose, projection::View},
+    stream::{record::Header, seal},
+};
+use microphong_render::{bytes::StreamBytes, render, shader::Shader};
+use zerocopy::{FromBytes, IntoBytes};
+
+/// What no pixel of a mesh looks like: no light is stronger in green than in nothing.
+pub const BACKGROUND: Rgb888 = Rgb888::MAGENTA;
+
+/// Scenes that are wholly seen.
+pub struct Watertight;
+
+impl Family for Watertight {
+    fn name(&self) -> &'static str {
+        "watertight"
+    }
+
+    fn about(&self) -> &'static str {
+        "a pixel is drawn if and only if its centre lies in a triangle that shows its front"
+    }
+
+    fn limit(&self) -> Option<(f64, &'static str)> {
+        Some((0.0, "pixels missing or too many"))
+    }
+
+    fn check(&self, random: &mut Random) -> Verdict {
+        let Some(case) = scenes::case(random, Wishes { closed: false, unclipped: true, triangles: 800 }) else { return Verdict::skipped() };
+        let case = Case { stream: on_background(&case.stream), style: Shader::FLAT.into(), ..case };
+        match differences(&case) {
+            Some((missing, extra)) => Verdict::of((missing + extra) as f64, 0.0, Some(case)),
+            None => Verdict::skipped(),
+        }
+    }
+
+    fn fails(&self, case: &Case) -> bool {
+        differences(case).is_some_and(|(missing, extra)| missing + extra > 0)
+    }
+}
+
+/// A stream on [`BACKGROUND`].
+#[must_use]
+pub fn on_background(stream: &StreamBytes) -> StreamBytes {
+    let mut bytes = stream.as_bytes().to_vec();
+    if let Ok((mut header, _)) = Header::read_from_prefix(&bytes) {
+        header.background = [BACKGROUND.r(), BACKGROUND.g(), BACKGROUND.b()];
+        bytes[..size_of::<Header>()].copy_from_slice(header.as_bytes());
+    }
+    seal(&mut bytes);
+    StreamBytes::from(&bytes[..])
+}
+
+/// Pixels that are covered and not drawn, and, without antialiasing, that are drawn and not covered; `None` if a vertex is clipped.
+#[must_use]
+pub fn differences(case: &Case) -> Option<(usize, usize)> {
+    let stream = case.stream.parse().ok()?;
+    let counts = covered(&stream, case.size, case.frame)?;
+    let (pixels, _) = render::frame::<Rgb888>(stream, case.pixels(), case.style, case.band_rows, case.frame).ok()?;
+    let count =
+        |wanted: [bool; 2]| pixels.iter().zip(&counts).filter(|&(&pixel, &count)| [count > 0, pixel != BACKGROUND] == wanted).count();
+    let extra = if case.style.antialias { 0 } else { count([false, true]) };
+    Some((count([true, false]), extra))
+}
+
+/// How many triangles that show their front cover the centre of each pixel; `None` if a vertex is clipped.
+#[must_use]
+pub fn covered(stream: &Stream<'_>, size: [u32; 2], number: u32) -> Option<Vec<u8>> {
+    let camera = &stream.header.camera;
+    let view = View::new(camera, &Pose::new(camera, number), Size::new(size[0], size[1]));
+    let mut counts = vec![0u8; (size[0] * size[1]) as usize];
+    for mesh in stream.meshes {
+        let place = |position| {
+            let ([x, y, _], inside) = view.project(view.to_eye(position));
+            inside.then_some([x.into(), y.into()])
+        };
+        let places: Option<Vec<[i64; 2]>> = stream.vertices_of(mesh)?.iter().map(|vertex| place(vertex.position)).collect();
+        let places = places?;
+        for triangle in stream.triangles_of(mesh)? {
+            // Clockwise with y down, against the stream's order.
+            let [a, c, b] = triangle.corners.map(|corner| places[usize::from(corner)]);
+            cover([a, b, c], size, &mut counts);
+        }
+    }
+    Some(counts)
+}
+
+fn cover(corners: [[i64; 2]; 3], size: [u32; 2], counts: &mut [u8]) {
+    let [a, b, c] = corners;
+    if cross(a, b, c) <= 0 {
+        return;
+    }
+    // Pixels whose centres, at 8/16, lie in the box.
+    let range = |k: usize| {
+        let (low, high) = (a[k].min(b[k]).min(c[k]), a[k].max(b[k]).max(c[k]));
+        (low + 7).div_euclid(16).max(0)..((high - 8).div_euclid(16) + 1).min(size[k].into())
+    };
+    for y in range(1) {
+        for x in range(0) {
+            let centre = [x, y].map(|c| 16 * c + 8);
+            let inside = (0..3).all(|k| {
+                let (from, to) = (corners[k], corners[(k + 1) % 3]);
+                // A left edge runs up, a top edge to the right: they own their points.
+                let owned = to[1] < from[1] || to[1] == from[1] && to[0] > from[0];
+                cross(from, to, centre) >= i64::from(!owned)
+            });
+            let count = &mut counts[y as usize * size[0] as usize + x as usize];
+            *count = count.saturating_add(u8::from(inside));
+        }
+    }
+}
+
+/// Twice the area of a triangle, positive if it runs clockwise with y down.
+fn cross(a: [i64; 2], b: [i64; 2], c: [i64; 2]) -> i64 {
+    (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0])
+}
