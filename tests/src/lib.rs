@@ -63,3 +63,24 @@ pub fn unmarked(stream: &StreamBytes) -> StreamBytes {
     seal(&mut bytes);
     StreamBytes::from(bytes.as_slice())
 }
+
+/// The seed of random cases: `MICROPHONG_SEED`, else 1; printed, so that a failure can be found again.
+#[must_use]
+pub fn seed() -> u64 {
+    let seed = variable("MICROPHONG_SEED").unwrap_or(1);
+    println!("MICROPHONG_SEED={seed}");
+    seed
+}
+
+/// How many random cases: `count` times `MICROPHONG_CASES`, else `count`.
+#[must_use]
+pub fn cases(count: u64) -> u64 {
+    let count = count * variable("MICROPHONG_CASES").unwrap_or(1).max(1);
+    println!("{count} cases");
+    count
+}
+
+fn variable(name: &str) -> Option<u64> {
+    let text = std::env::var(name).ok()?;
+    Some(text.parse().unwrap_or_else(|_| panic!("{name}={text} is no whole number")))
+}

@@ -1,16 +1,15 @@
 //! Integers against the same method in 64-bit floating point: every method, every pixel of every scene, all around.
 
-use embedded_graphics::prelude::Size;
 use microphong::stream::{
     record::{Light, Material},
     seal,
 };
 use microphong_sim::{
     bytes::StreamBytes,
-    level,
-    oracle::{Frame, Shade, decides, method},
+    oracle::{Frame, decides},
     scene::{self, Scene},
     shader::Shader,
+    stress::{arithmetic, case::Case},
 };
 use std::{sync::Mutex, thread};
 use zerocopy::IntoBytes;
@@ -25,26 +24,6 @@ const BRIGHT_ERROR: f64 = 0.30;
 const FRAMES: u32 = 18;
 /// Frames of the orbit if `MICROPHONG_ALL=1`.
 const ALL_FRAMES: u32 = 36;
-/// How far integers may be off where a method compares levels with a threshold, at most twice the error of the table of
-/// highlights. Several decisions shape a triangle, and each may fall its own way.
-const LEANS: [f64; 9] = [0.0, -0.01, 0.01, -0.03, 0.03, -0.07, 0.07, -0.14, 0.14];
-/// A larger difference, in 1/255, of a method that decides is compared with what it makes of other decisions.
-const UNDECIDED: f64 = 0.25;
-/// Where a pixel's centre lies on the border of two parts of a triangle, either may show.
-const NUDGE: f64 = 1e-6;
-
-/// All of a method's triangles in one frame, in floating point; `None` if the method cannot shade them.
-fn shades<'f>(frame: &'f Frame, shader: Shader, lean: f64) -> Option<Vec<Shade<'f>>> {
-    frame.facets.iter().map(|facet| method(shader.name(), frame, facet, lean).ok()).collect()
-}
-
-/// Difference of levels; one level for all channels is that of the brightest.
-fn difference(drawn: [f64; 3], exact: [f64; 3]) -> f64 {
-    let all = (0..3).map(|k| (drawn[k] - exact[k]).abs()).fold(0.0, f64::max);
-    let one = drawn[0] == drawn[1] && drawn[1] == drawn[2];
-    if one { all.min((drawn[0] - exact.into_iter().fold(0.0, f64::max)).abs()) } else { all }
-}
-
 /// Largest difference in one frame of each method, before the output format rounds.
 fn errors(scene: &Scene, number: u32) -> Vec<f64> {
     let stream = scene.stream.parse().unwrap();
@@ -54,31 +33,9 @@ fn errors(scene: &Scene, number: u32) -> Vec<f64> {
 }
 
 fn error(scene: &Scene, frame: &Frame, visible: &[Vec<u32>], shader: Shader, number: u32) -> f64 {
-    let leans: &[f64] = if decides(shader.name()) { &LEANS } else { &[0.0] };
-    let shades: Option<Vec<_>> = leans.iter().map(|&lean| shades(frame, shader, lean)).collect();
-    let Some(shades) = shades else { return 0.0 };
-    let size = Size::new(scene.size.0, scene.size.1);
-    let drawn = level::picture(scene.stream.parse().unwrap(), size, shader, number).unwrap();
-    let (mut worst, mut missing) = (0f64, 0);
-    for (i, (levels, candidates)) in drawn.iter().zip(visible).enumerate() {
-        missing += usize::from(levels.is_none() && !candidates.is_empty());
-        let Some(levels) = *levels else { continue };
-        assert!(!candidates.is_empty(), "{} {}: pixel {i}", scene.name, shader.name());
-        let centre = [i as u32 % scene.size.0, i as u32 / scene.size.0].map(|c| f64::from(c) + 0.5);
-        let at = |x: f64, y: f64, leans: usize| {
-            let point = [centre[0] + x, centre[1] + y];
-            let all = candidates.iter().flat_map(|&c| shades.iter().take(leans).map(move |shades| &shades[c as usize]));
-            all.map(|shade| difference(levels, shade(point))).fold(f64::MAX, f64::min)
-        };
-        let mut error = at(0.0, 0.0, 1);
-        if error > UNDECIDED && decides(shader.name()) {
-            let around = [(0.0, 0.0), (NUDGE, NUDGE), (NUDGE, -NUDGE), (-NUDGE, NUDGE), (-NUDGE, -NUDGE)];
-            error = around.map(|(x, y)| at(x, y, leans.len())).into_iter().fold(error, f64::min);
-        }
-        worst = worst.max(error);
-    }
-    assert!(missing == 0, "{} {}: {missing} pixels are missing", scene.name, shader.name());
-    worst
+    let case = Case { size: [scene.size.0, scene.size.1], frame: number, style: shader.into(), ..Case::new(scene.stream.clone()) };
+    // A method that cannot draw the scene makes no error.
+    arithmetic::of(&case, frame, visible).unwrap_or(0.0)
 }
 
 #[test]

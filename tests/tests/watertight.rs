@@ -4,27 +4,17 @@
 //! integers, and nothing is culled before. Where culling trusts the plane of a triangle that rounding has turned to the front,
 //! the background shows through.
 
-use embedded_graphics::{
-    pixelcolor::Rgb888,
-    prelude::{RgbColor, Size},
-};
-use microphong::{
-    Stream,
-    geometry::{pose::Pose, projection::View},
-    stream::{
-        record::{Header, Triangle},
-        seal,
-    },
-};
+use microphong::stream::record::Triangle;
 use microphong_sim::{
     bytes::StreamBytes,
     look::Look,
     mesh::Mesh,
     quantise::quantise,
-    render::{self, Style},
+    render::Style,
     scene,
     shader::Shader,
     shapes,
+    stress::{self, watertight},
     view::{self, Up},
 };
 use std::{sync::Mutex, thread};
@@ -32,9 +22,6 @@ use zerocopy::{FromBytes, IntoBytes};
 
 /// Frames of a whole turn.
 const FRAMES: u32 = 120;
-
-/// What no pixel of a mesh looks like.
-const BACKGROUND: Rgb888 = Rgb888::MAGENTA;
 
 /// A mesh and the side of the square that it is drawn on.
 struct Case {
@@ -44,14 +31,8 @@ struct Case {
 }
 
 impl Case {
-    /// `stream` on [`BACKGROUND`].
     fn new(name: &str, stream: &StreamBytes, side: u32) -> Self {
-        let mut bytes = stream.as_bytes().to_vec();
-        let mut header = Header::read_from_prefix(&bytes).unwrap().0;
-        header.background = [BACKGROUND.r(), BACKGROUND.g(), BACKGROUND.b()];
-        bytes[..size_of::<Header>()].copy_from_slice(header.as_bytes());
-        seal(&mut bytes);
-        Self { name: name.to_owned(), stream: StreamBytes::from(&bytes[..]), side }
+        Self { name: name.to_owned(), stream: watertight::on_background(stream), side }
     }
 
     fn scene(name: &str, side: u32) -> Self {
@@ -86,68 +67,11 @@ fn noise(i: u32) -> f64 {
     f64::from((mixed ^ mixed >> 15).wrapping_mul(0x85EB_CA6B) >> 8) / f64::from(1 << 24)
 }
 
-/// How many triangles that show their front cover the centre of each pixel.
-fn covered(stream: &Stream<'_>, side: u32, number: u32) -> Vec<u8> {
-    let camera = &stream.header.camera;
-    let view = View::new(camera, &Pose::new(camera, number), Size::new(side, side));
-    let mut counts = vec![0u8; (side * side) as usize];
-    for mesh in stream.meshes {
-        let places: Vec<[i64; 2]> = stream
-            .vertices_of(mesh)
-            .unwrap()
-            .iter()
-            .map(|vertex| {
-                let ([x, y, _], inside) = view.project(view.to_eye(vertex.position));
-                assert!(inside, "a vertex is clipped");
-                [x.into(), y.into()]
-            })
-            .collect();
-        for triangle in stream.triangles_of(mesh).unwrap() {
-            // Clockwise with y down, against the stream's order.
-            let [a, c, b] = triangle.corners.map(|corner| places[usize::from(corner)]);
-            cover([a, b, c], side, &mut counts);
-        }
-    }
-    counts
-}
-
-fn cover(corners: [[i64; 2]; 3], side: u32, counts: &mut [u8]) {
-    let [a, b, c] = corners;
-    if cross(a, b, c) <= 0 {
-        return;
-    }
-    // Pixels whose centres, at 8/16, lie in the box.
-    let range = |k: usize| {
-        let (low, high) = (a[k].min(b[k]).min(c[k]), a[k].max(b[k]).max(c[k]));
-        (low + 7).div_euclid(16).max(0)..((high - 8).div_euclid(16) + 1).min(side.into())
-    };
-    for y in range(1) {
-        for x in range(0) {
-            let centre = [x, y].map(|c| 16 * c + 8);
-            let inside = (0..3).all(|k| {
-                let (from, to) = (corners[k], corners[(k + 1) % 3]);
-                // A left edge runs up, a top edge to the right: they own their points.
-                let owned = to[1] < from[1] || to[1] == from[1] && to[0] > from[0];
-                cross(from, to, centre) >= i64::from(!owned)
-            });
-            counts[y as usize * side as usize + x as usize] += u8::from(inside);
-        }
-    }
-}
-
-/// Twice the area of a triangle, positive if it runs clockwise with y down.
-fn cross(a: [i64; 2], b: [i64; 2], c: [i64; 2]) -> i64 {
-    (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0])
-}
-
 /// Pixels of one frame that are covered and not drawn, and that are drawn and not covered.
 fn differences(case: &Case, style: Style, number: u32) -> (usize, usize) {
-    let stream = case.stream.parse().unwrap();
-    let (pixels, _) = render::frame::<Rgb888>(stream, Size::new(case.side, case.side), style, 64, number).unwrap();
-    let counts = covered(&stream, case.side, number);
-    let count =
-        |wanted: [bool; 2]| pixels.iter().zip(&counts).filter(|&(&pixel, &count)| [count > 0, pixel != BACKGROUND] == wanted).count();
-    (count([true, false]), count([false, true]))
+    let stream = case.stream.clone();
+    let frame = stress::case::Case { size: [case.side; 2], frame: number, style, band_rows: 64, ..stress::case::Case::new(stream) };
+    watertight::differences(&frame).expect("no vertex is clipped")
 }
 
 /// Covered pixels that are not drawn, in all frames of all cases; without antialiasing no others are drawn either.

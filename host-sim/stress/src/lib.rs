@@ -8,6 +8,7 @@ pub mod arithmetic;
 pub mod case;
 pub mod coverage;
 pub mod drift;
+pub mod fuzz;
 pub mod hostile;
 pub mod random;
 pub mod sameness;

@@ -1,0 +1,97 @@
+//! What the fuzz targets do with their bytes; the tests do the same with the committed corpus, without a fuzzer.
+//!
+//! Whatever the bytes are, nothing may panic, and no sum or product may overflow.
+
+use crate::case::Case;
+use microphong::stream::{record::Header, seal};
+use microphong_render::{
+    bytes::StreamBytes,
+    mesh, obj,
+    render::{Format, Style},
+    shader::Shader,
+};
+
+/// What is done with a fuzzer's bytes.
+pub type Target = fn(&[u8]);
+
+/// The targets, by name.
+pub const TARGETS: [(&str, Target); 3] = [("raw", raw), ("structured", structured), ("obj", obj)];
+
+/// How a frame is drawn, by the first of the fuzzer's bytes.
+const CHOICES: usize = 8;
+
+/// `bytes` as a file that somebody hands to the command: nearly all are refused.
+pub fn raw(bytes: &[u8]) {
+    let stream = StreamBytes::from(bytes);
+    if stream.parse().is_ok() {
+        draw(Case::new(stream));
+    }
+}
+
+/// `bytes` behind a header that is right, in a stream that is sealed: what is refused is refused for what it holds.
+pub fn structured(bytes: &[u8]) {
+    if let Some(case) = case(bytes) {
+        draw(case);
+    }
+}
+
+/// What [`structured`] draws: the first bytes choose how, the others are the stream. `None` if they make none.
+#[must_use]
+pub fn case(bytes: &[u8]) -> Option<Case> {
+    let (choices, rest) = bytes.split_first_chunk::<CHOICES>()?;
+    let mut bytes = rest.to_vec();
+    if bytes.len() < size_of::<Header>() {
+        return None;
+    }
+    // Magic, version and length are not worth a fuzzer's time.
+    bytes[..6].copy_from_slice(b"mTRI\x03\0");
+    let length = (bytes.len() as u32).to_le_bytes();
+    bytes[8..12].copy_from_slice(&length);
+    seal(&mut bytes);
+    let stream = StreamBytes::from(&bytes[..]);
+    stream.parse().ok()?;
+    let [shader, style, format, width, height, rows, low, high] = *choices;
+    let style = Style {
+        shader: Shader::ALL[usize::from(shader) % Shader::ALL.len()],
+        perspective_correct: style & 1 != 0,
+        antialias: style & 2 != 0,
+        dither: style & 4 != 0,
+    };
+    Some(Case {
+        size: [width, height].map(|side| u32::from(side % 64) + 1),
+        frame: u32::from_le_bytes([low, high, low, high]),
+        style,
+        format: Format::ALL[usize::from(format) % Format::ALL.len()],
+        band_rows: u32::from(rows % 64) + 1,
+        ..Case::new(stream)
+    })
+}
+
+/// `bytes` as the text of an OBJ file, on to a mesh.
+pub fn obj(bytes: &[u8]) {
+    if let Ok(soup) = obj::parse(&String::from_utf8_lossy(bytes)) {
+        drop(mesh::weld(&soup, true));
+    }
+}
+
+/// Draws a frame small enough that thousands are drawn in a second; what cannot be drawn is refused.
+fn draw(case: Case) {
+    // A fuzzer's million triangles show no more than its hundred.
+    if case.stream.parse().is_ok_and(|stream| stream.triangles.len() <= 256) {
+        drop(case.draw());
+    }
+}
+
+/// `structured`'s bytes for a case: seeds of the corpus.
+#[must_use]
+pub fn seed(case: &Case) -> Vec<u8> {
+    let index = |shader: Shader| Shader::ALL.iter().position(|&other| other == shader).unwrap_or(0) as u8;
+    let Style { shader, perspective_correct, antialias, dither } = case.style;
+    let style = u8::from(perspective_correct) | u8::from(antialias) << 1 | u8::from(dither) << 2;
+    let format = Format::ALL.iter().position(|&other| other == case.format).unwrap_or(0) as u8;
+    let [width, height] = case.size.map(|side| ((side - 1) % 64) as u8);
+    let [low, high, ..] = case.frame.to_le_bytes();
+    let mut bytes = vec![index(shader), style, format, width, height, ((case.band_rows - 1) % 64) as u8, low, high];
+    bytes.extend_from_slice(case.stream.as_bytes());
+    bytes
+}
