@@ -259,8 +259,10 @@ impl<C: Pixel> Frame<'_, '_, C> {
 
     /// The mesh of triangle `id`.
     fn mesh(&self, id: u32) -> Option<&'_ Mesh> {
-        // Meshes follow one another without a gap, so this is the last one that does not start behind the triangle.
-        self.state.stream.meshes.iter().rev().find(|mesh| mesh.first_triangle <= id && mesh.triangles > 0)
+        // Meshes follow one another without a gap, so this is the last one that does not start behind the triangle. A stream may have
+        // 65,535 meshes: they are searched by halves.
+        let meshes = self.state.stream.meshes;
+        meshes.get(meshes.partition_point(|mesh| mesh.first_triangle <= id).wrapping_sub(1))
     }
 
     /// Clears a band of `rows` rows and draws what falls into it.
