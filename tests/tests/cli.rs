@@ -115,6 +115,108 @@ fn missing_files_and_unwritable_outputs() {
     place.fails(&["render", "triangle", "-o", "good.obj/frames/"], 1, &["good.obj/frames"]);
 }
 
+/// Links, devices and pipes stay what they are.
+#[cfg(unix)]
+#[test]
+fn only_regular_files_are_replaced() {
+    use std::os::unix::fs::{FileTypeExt, symlink};
+    let place = Place::new();
+    place.file("good.obj", TETRAHEDRON);
+    let at = |name: &str| place.0.path().join(name);
+    place.succeeds(&["convert", "good.obj", "-o", "real.tri"]);
+    let stream = fs::read(at("real.tri")).expect("stream");
+
+    // A link to a link to a file that is there, or not there yet; in a folder of its own, to which paths in links are relative.
+    fs::create_dir(at("folder")).expect("folder");
+    symlink("folder/next", at("link")).expect("link");
+    symlink("../far.tri", at("folder/next")).expect("link");
+    for before in [None, Some("old")] {
+        before.iter().for_each(|old| fs::write(at("far.tri"), old).expect("scratch file"));
+        place.succeeds(&["convert", "good.obj", "-o", "link"]);
+        assert!(at("link").is_symlink() && at("folder/next").is_symlink() && !at("far.tri").is_symlink());
+        assert_eq!(fs::read(at("far.tri")).expect("stream"), stream);
+    }
+    symlink("no/such.tri", at("astray")).expect("link");
+    symlink("circle", at("circle")).expect("link");
+    place.fails(&["convert", "good.obj", "-o", "astray"], 1, &["astray", "No such file or directory"]);
+    place.fails(&["convert", "good.obj", "-o", "circle"], 1, &["circle", "symbolic links"]);
+    symlink("good.obj", at("same")).expect("link");
+    place.fails(&["convert", "good.obj", "-o", "same"], 2, &["same", "overwrite"]);
+
+    // By a link, so that a mistake does not replace the computer's own device.
+    symlink("/dev/full", at("full")).expect("link");
+    for command in [["convert", "good.obj", "-o", "full"], ["render", "good.obj", "-o", "full"]] {
+        place.fails(&command, 1, &["cannot write full", "No space left"]);
+        assert!(at("full").is_symlink() && fs::metadata(at("full")).expect("device").file_type().is_char_device());
+    }
+
+    assert!(Command::new("mkfifo").arg(at("pipe")).status().expect("mkfifo").success());
+    let read = std::thread::spawn({
+        let pipe = at("pipe");
+        move || fs::read(pipe)
+    });
+    place.succeeds(&["convert", "good.obj", "-o", "pipe"]);
+    assert_eq!(read.join().expect("a reader").expect("the pipe"), stream);
+    assert!(fs::metadata(at("pipe")).expect("pipe").file_type().is_fifo());
+}
+
+/// Then what is said of the file goes to stderr.
+#[cfg(target_os = "linux")]
+#[test]
+fn standard_output_may_be_the_file() {
+    let place = Place::new();
+    place.file("good.obj", TETRAHEDRON).succeeds(&["convert", "good.obj"]);
+    let output = place.run(&["convert", "good.obj", "-o", "/proc/self/fd/1"]);
+    assert!(output.status.success());
+    assert_eq!(output.stdout, fs::read(place.0.path().join("good.tri")).expect("stream"));
+    assert!(String::from_utf8_lossy(&output.stderr).contains("4 triangles"));
+    place.succeeds(&["render", "good.obj", "--size", "33x17", "-o", "good.png"]);
+    let file = fs::File::create(place.0.path().join("redirected.png")).expect("scratch file");
+    let render = ["render", "good.obj", "--size", "33x17", "-o", "/proc/self/fd/1", "--json"];
+    let status = Command::new(program()).args(render).current_dir(place.0.path()).stdout(file).stderr(std::process::Stdio::null()).status();
+    assert!(status.expect("the program").success());
+    assert_eq!(fs::read(place.0.path().join("redirected.png")).ok(), fs::read(place.0.path().join("good.png")).ok());
+}
+
+#[cfg(target_os = "linux")]
+#[test]
+fn a_full_standard_output_is_a_failure() {
+    let place = Place::new();
+    for arguments in
+        [&["scenes"][..], &["scenes", "--json"], &["papers", "--only", "goldman"], &["--help"], &["render", "--help"], &["--version"]]
+    {
+        let full = fs::File::options().write(true).open("/dev/full").expect("device");
+        let output = Command::new(program()).args(arguments).current_dir(place.0.path()).stdout(full).output().expect("the program");
+        let stderr = String::from_utf8_lossy(&output.stderr);
+        assert_eq!(output.status.code(), Some(1), "{arguments:?}: {stderr}");
+        assert!(stderr.contains("cannot write to standard output: No space left"), "{arguments:?}: {stderr}");
+    }
+}
+
+/// Whatever ends it: a file has no name before it is complete.
+#[cfg(target_os = "linux")]
+#[test]
+fn interrupted_commands_leave_nothing_behind() {
+    use std::io::{BufRead, BufReader};
+    let place = Place::new();
+    place.file("old.apng", "old");
+    for (signal, name) in ["INT", "TERM", "HUP", "KILL"].into_iter().flat_map(|signal| [(signal, "old.apng"), (signal, "new.apng")]) {
+        let before = place.files();
+        let mut command = Command::new(program());
+        command.args(["render", "torus", "--frames", "65535", "-o", name]).current_dir(place.0.path()).stderr(std::process::Stdio::piped());
+        let mut child = command.spawn().expect("the program");
+        let mut line = String::new();
+        BufReader::new(child.stderr.as_mut().expect("stderr")).read_line(&mut line).expect("a line");
+        assert!(line.starts_with("drawing frames"), "{line}");
+        std::thread::sleep(std::time::Duration::from_millis(50));
+        assert_eq!(child.try_wait().expect("a state"), None, "it still draws");
+        assert!(Command::new("kill").args(["-s", signal, &child.id().to_string()]).status().expect("kill").success());
+        assert_eq!(child.wait().expect("an end").code(), None, "SIG{signal}");
+        assert_eq!(place.files(), before, "SIG{signal}");
+        assert_eq!(fs::read(place.0.path().join("old.apng")).expect("the old file"), b"old");
+    }
+}
+
 #[test]
 fn wrong_usage_is_told_from_failure() {
     let place = Place::new();
@@ -165,7 +267,8 @@ fn help_names_the_methods_of_boards() {
 fn the_command_can_be_moved() {
     let place = Place::new();
     let moved = place.0.path().join("moved");
-    fs::copy(program(), &moved).expect("a copy of the program");
+    // By another process: one that is started meanwhile, by another test, would hold the copy open for writing, and it could not run.
+    assert!(Command::new("cp").arg(program()).arg(&moved).status().expect("cp").success());
     let run = |arguments: &[&str]| {
         let mut command = Command::new(&moved);
         command.args(arguments).current_dir(place.0.path()).env("MICROPHONG_SOURCES", "nowhere").output().expect("the program")

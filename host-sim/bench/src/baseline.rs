@@ -5,7 +5,7 @@
 
 use super::{Bench, Measurement, Processor};
 use anyhow::{Context, Result};
-use microphong_render::{scene, shader::Shader};
+use microphong_render::{output, scene, shader::Shader};
 use std::{fmt, fs, path::Path};
 
 /// Growth of instructions or flash that is let pass, in percent. A shrinkage of more asks to renew the file, or it would hide later growth.
@@ -127,7 +127,7 @@ pub fn read(path: &Path) -> Result<Vec<Entry>> {
 /// When it cannot be written.
 pub fn write(path: &Path, entries: &[Entry]) -> Result<()> {
     let lines: Vec<_> = std::iter::once(HEAD.to_owned()).chain(entries.iter().map(Entry::to_string)).collect();
-    fs::write(path, lines.join("\n") + "\n").with_context(|| format!("cannot write {}", path.display()))
+    output::write(path, (lines.join("\n") + "\n").as_bytes())
 }
 
 /// Measures again what the lines say, in their order.

@@ -8,6 +8,7 @@ use super::{
     rounded,
 };
 use anyhow::{Context, Result, ensure};
+use microphong_render::output;
 use std::{
     fmt, fs,
     path::{Path, PathBuf},
@@ -120,7 +121,7 @@ pub fn renew(path: &Path, [old, new]: [&[Entry]; 2], reason: &str) -> Result<Pat
     let Total { instructions, flash } = Total::between(old, new);
     let text = format!("{}\n| {instructions:+.2} | {flash:+.2} | {reason} |\n", before.trim_end());
     baseline::write(path, new)?;
-    fs::write(&target, text).with_context(|| format!("cannot write {}", target.display()))?;
+    output::write(&target, text.as_bytes())?;
     Ok(target)
 }
 

@@ -1,17 +1,26 @@
 //! Files that are there whole or not at all.
+//!
+//! A file has no name while it is written: whatever ends the program, nothing of it stays. Linux gives a complete file its name at once.
+//! Where an older file has that name, it takes two calls, first a name beside it; elsewhere the file is copied to that name. Only an end in
+//! that moment leaves what begins with `.microphong-`.
 
 use anyhow::{Context, Result};
 use std::{
-    io::{BufWriter, Write},
+    fs::{self, File},
+    io::{self, BufWriter, Error, ErrorKind, IntoInnerError, Seek, Write},
     path::{Path, PathBuf},
 };
-use tempfile::NamedTempFile;
 
 /// A file under construction: it takes its name when it is complete, and is gone when it never is.
+///
+/// A link keeps its name, and the file that it points to is replaced. Devices, pipes and standard output stay what they are and take the
+/// bytes as they come.
 #[derive(Debug)]
 pub struct Output {
     path: PathBuf,
-    file: BufWriter<NamedTempFile>,
+    file: BufWriter<File>,
+    /// The name that the file will have; `None` if it is written directly.
+    name: Option<PathBuf>,
 }
 
 impl Output {
@@ -20,24 +29,20 @@ impl Output {
     /// # Errors
     /// When the directory is not there or cannot be written, or `path` is a directory.
     pub fn create(path: &Path) -> Result<Self> {
-        let remedy = || format!("cannot write {}; name a file in a directory that exists and may be written", path.display());
-        if path.is_dir() {
-            return Err(std::io::Error::from(std::io::ErrorKind::IsADirectory)).with_context(remedy);
-        }
-        let directory = path.parent().filter(|d| !d.as_os_str().is_empty()).unwrap_or(Path::new("."));
-        let mut builder = tempfile::Builder::new();
-        builder.prefix(".microphong-");
-        #[cfg(unix)]
-        {
-            use std::os::unix::fs::PermissionsExt;
-            // As any other new file: the user's mask decides.
-            builder.permissions(std::fs::Permissions::from_mode(0o666));
-        }
-        let file = builder.tempfile_in(directory).with_context(remedy)?;
-        Ok(Self { path: path.to_owned(), file: BufWriter::new(file) })
+        let started = place(path).and_then(|place| match place {
+            Place::Directly(file) => Ok((file, None)),
+            Place::Name(name) => {
+                // What is wrong with the directory, in the system's own words.
+                fs::metadata(directory(&name))?;
+                Ok((tempfile::tempfile_in(directory(&name)).map_err(without_path)?, Some(name)))
+            }
+        });
+        let (file, name) = started
+            .with_context(|| format!("cannot write {}; name a file in a directory that exists and may be written", path.display()))?;
+        Ok(Self { path: path.to_owned(), file: BufWriter::new(file), name })
     }
 
-    /// The name that the file will have.
+    /// The name that was asked for.
     #[must_use]
     pub fn path(&self) -> &Path {
         &self.path
@@ -48,19 +53,21 @@ impl Output {
     /// # Errors
     /// When the last bytes cannot be written or the name cannot be taken.
     pub fn finish(self) -> Result<()> {
-        let failed = || format!("cannot write {}", self.path.display());
-        let file = self.file.into_inner().map_err(std::io::IntoInnerError::into_error).with_context(failed)?;
-        file.persist(&self.path).map_err(|e| e.error).with_context(failed)?;
-        Ok(())
+        let Self { path, file, name } = self;
+        let end = || {
+            let mut file = file.into_inner().map_err(IntoInnerError::into_error)?;
+            name.map_or(Ok(()), |name| take(&mut file, &name))
+        };
+        end().with_context(|| format!("cannot write {}", path.display()))
     }
 }
 
 impl Write for Output {
-    fn write(&mut self, bytes: &[u8]) -> std::io::Result<usize> {
+    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
         self.file.write(bytes)
     }
 
-    fn flush(&mut self) -> std::io::Result<()> {
+    fn flush(&mut self) -> io::Result<()> {
         self.file.flush()
     }
 }
@@ -73,4 +80,108 @@ pub fn write(path: &Path, bytes: &[u8]) -> Result<()> {
     let mut output = Output::create(path)?;
     output.write_all(bytes).with_context(|| format!("cannot write {}", path.display()))?;
     output.finish()
+}
+
+/// Whether `path` is a name of standard output.
+#[must_use]
+pub fn is_stdout(path: &Path) -> bool {
+    cfg!(unix) && ["/dev/stdout", "/dev/fd/1", "/proc/self/fd/1"].iter().any(|&name| path == Path::new(name))
+}
+
+/// How a file is written.
+enum Place {
+    /// Under this name, where a regular file is or nothing.
+    Name(PathBuf),
+    /// Into what is there.
+    Directly(File),
+}
+
+fn place(path: &Path) -> io::Result<Place> {
+    #[cfg(unix)]
+    if is_stdout(path) {
+        use std::os::fd::AsFd;
+        // Not opened again: the same place in the same file, and sockets cannot be opened.
+        return Ok(Place::Directly(io::stdout().as_fd().try_clone_to_owned()?.into()));
+    }
+    match fs::metadata(path) {
+        Ok(known) if known.is_dir() => Err(ErrorKind::IsADirectory.into()),
+        Ok(known) if known.is_file() => Ok(Place::Name(path.canonicalize()?)),
+        Ok(_) => Ok(Place::Directly(File::options().write(true).open(path)?)),
+        Err(error) if error.kind() == ErrorKind::NotFound => Ok(Place::Name(pointed_to(path))),
+        Err(error) => Err(error),
+    }
+}
+
+/// What a link to nothing points to; `path` itself if it is none. There are no circles: those are not nothing.
+fn pointed_to(path: &Path) -> PathBuf {
+    fs::read_link(path).map_or_else(|_| path.to_owned(), |next| pointed_to(&directory(path).join(next)))
+}
+
+fn directory(path: &Path) -> &Path {
+    path.parent().filter(|directory| !directory.as_os_str().is_empty()).unwrap_or(Path::new("."))
+}
+
+/// The error alone: it names a file that nobody asked for.
+fn without_path(error: Error) -> Error {
+    error.kind().into()
+}
+
+/// Gives `file` its name.
+fn take(file: &mut File, name: &Path) -> io::Result<()> {
+    if link(file, name).is_ok() {
+        return Ok(());
+    }
+    // It is in use, and only a file that has a name can take the place of another.
+    let linked = |path: &Path| {
+        link(file, path).or_else(|error| if error.kind() == ErrorKind::AlreadyExists { Err(error) } else { copy(file, path) })
+    };
+    let named = tempfile::Builder::new().prefix(".microphong-").make_in(directory(name), linked).map_err(without_path)?;
+    named.persist(name).map_err(|error| error.error)?;
+    Ok(())
+}
+
+/// Gives a file without a name one that nothing has.
+#[cfg(target_os = "linux")]
+fn link(file: &File, name: &Path) -> io::Result<()> {
+    use rustix::fs::{AtFlags, CWD, linkat};
+    use std::os::fd::AsRawFd;
+    let own = format!("/proc/self/fd/{}", file.as_raw_fd());
+    Ok(linkat(CWD, own, CWD, name, AtFlags::SYMLINK_FOLLOW)?)
+}
+
+#[cfg(not(target_os = "linux"))]
+fn link(_: &File, _: &Path) -> io::Result<()> {
+    Err(ErrorKind::Unsupported.into())
+}
+
+/// What [`link`] does, where there is no such thing.
+fn copy(mut file: &File, name: &Path) -> io::Result<()> {
+    let mut named = File::create_new(name)?;
+    file.rewind()?;
+    let copied = io::copy(&mut file, &mut named).map(|_| ());
+    if copied.is_err() {
+        // The error is reported, and not that of removing what it has left.
+        let _ = fs::remove_file(name);
+    }
+    copied
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A file that had a name and lost it gets no other by a link, as on file systems without files that never had one.
+    #[test]
+    fn what_cannot_be_linked_is_copied() {
+        let directory = tempfile::tempdir().unwrap();
+        let name = directory.path().join("whole");
+        for text in ["new", "newer"] {
+            let (mut file, own_name) = tempfile::NamedTempFile::new_in(directory.path()).unwrap().into_parts();
+            own_name.close().unwrap();
+            file.write_all(text.as_bytes()).unwrap();
+            take(&mut file, &name).unwrap();
+            assert_eq!(fs::read_to_string(&name).unwrap(), text);
+            assert_eq!(fs::read_dir(directory.path()).unwrap().count(), 1);
+        }
+    }
 }

@@ -124,6 +124,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome> {
         ..Look::new(surface(arguments), view.fit(&mesh.positions, arguments.size, MARGIN))
     };
     let bytes = look.stream(&parts).with_context(place)?;
+    report::leave_to(&target);
     output::write(&target, bytes.as_bytes())?;
     let line = Line {
         mesh: &source.to_string_lossy(),

@@ -21,6 +21,7 @@ mod verify;
 #[cfg(not(feature = "boards"))]
 use absent::{bench, growth, verify};
 
+use anyhow::{Context, Result};
 use clap::{Parser, Subcommand};
 use microphong_sim::scene;
 use std::process::ExitCode;
@@ -84,17 +85,14 @@ enum Outcome {
 /// Runs the command line.
 pub(crate) fn main() -> ExitCode {
     report::start();
-    let result = match Arguments::parse().command {
-        Command::Convert(arguments) => convert::run(&arguments),
-        Command::Inspect(arguments) => inspect::run(&arguments),
-        Command::Render(arguments) => render::run(&arguments),
-        Command::Verify(arguments) => verify::run(&arguments),
-        Command::Bench(arguments) => bench::run(&arguments),
-        Command::Growth(arguments) => growth::run(&arguments),
-        Command::Compare(arguments) => compare::run(&arguments),
-        Command::Papers(arguments) => papers::run(&arguments),
-        Command::Scenes(arguments) => scenes::run(&arguments),
-        Command::Stress(arguments) => stress::run(&arguments),
+    let result = match Arguments::try_parse() {
+        Ok(arguments) => run(arguments.command),
+        Err(wrong) if wrong.use_stderr() => {
+            // Nobody left to tell when stderr is closed.
+            let _ = wrong.print();
+            return ExitCode::from(2);
+        }
+        Err(help) => help.print().map(|()| Outcome::Done).context("cannot write to standard output"),
     };
     let error = match result {
         Ok(Outcome::Done) => return ExitCode::SUCCESS,
@@ -109,4 +107,19 @@ pub(crate) fn main() -> ExitCode {
     report::failure(&error);
     let usage = error.is::<Usage>() || error.is::<scene::Unknown>();
     if usage { ExitCode::from(2) } else { ExitCode::FAILURE }
+}
+
+fn run(command: Command) -> Result<Outcome> {
+    match command {
+        Command::Convert(arguments) => convert::run(&arguments),
+        Command::Inspect(arguments) => inspect::run(&arguments),
+        Command::Render(arguments) => render::run(&arguments),
+        Command::Verify(arguments) => verify::run(&arguments),
+        Command::Bench(arguments) => bench::run(&arguments),
+        Command::Growth(arguments) => growth::run(&arguments),
+        Command::Compare(arguments) => compare::run(&arguments),
+        Command::Papers(arguments) => papers::run(&arguments),
+        Command::Scenes(arguments) => scenes::run(&arguments),
+        Command::Stress(arguments) => stress::run(&arguments),
+    }
 }

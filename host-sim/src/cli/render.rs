@@ -6,6 +6,7 @@ use embedded_graphics_core::geometry::Size;
 use microphong::renderer::check;
 use microphong_sim::{
     image::{self, Film},
+    output,
     render::{self, Format, Settings, Style},
     scene,
     shader::Shader,
@@ -103,6 +104,9 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome> {
         format: arguments.format,
     };
     check(&stream, settings.style.shader.facts(), settings.style.perspective_correct).with_context(|| scene.name.clone())?;
+    if let Target::File(path) = &target {
+        report::leave_to(path);
+    }
     let mut writer = Writer::start(&target, settings.size, frames)?;
     let bar = report::progress(frames.into(), "drawing frames");
     let mut lines = Vec::new();
@@ -142,12 +146,13 @@ enum Target {
 }
 
 impl Target {
-    /// What `path` asks for, by its ending.
+    /// What `path` asks for, by its ending, or because there is a device or a pipe.
     fn of(path: &Path, frames: u32) -> Result<Self, Usage> {
         let slash = path.to_string_lossy().ends_with(std::path::is_separator);
         let ending = path.extension().map(|e| e.to_string_lossy().to_ascii_lowercase());
         match ending.as_deref() {
             _ if slash || path.is_dir() => Ok(Self::Directory(path.to_owned())),
+            _ if path.exists() && !path.is_file() || output::is_stdout(path) => Ok(Self::File(path.to_owned())),
             Some("apng") => Ok(Self::File(path.to_owned())),
             Some("png") if frames == 1 => Ok(Self::File(path.to_owned())),
             Some("png") => Err(Usage(format!("{}: {frames} frames do not fit a .png; name an .apng file or a directory", path.display()))),

@@ -3,14 +3,34 @@
 use anyhow::{Context, Result};
 use indicatif::{MultiProgress, ProgressBar, ProgressStyle};
 use log::{LevelFilter, Log, Metadata, Record};
+use microphong_sim::output;
 use serde::Serialize;
-use std::{io::Write, sync::LazyLock, time::Duration};
+use std::{
+    io::Write,
+    path::Path,
+    sync::{
+        LazyLock,
+        atomic::{AtomicBool, Ordering},
+    },
+    time::Duration,
+};
 
 /// All bars, which make room for what else is printed.
 static BARS: LazyLock<MultiProgress> = LazyLock::new(MultiProgress::new);
 
+/// Whether standard output is the file that the command writes.
+static TAKEN: AtomicBool = AtomicBool::new(false);
+
+/// From now on, results go to stderr if `output` is standard output: they are not part of that file.
+pub(crate) fn leave_to(output: &Path) {
+    TAKEN.store(output::is_stdout(output), Ordering::Relaxed);
+}
+
 /// Prints one line; a closed pipe is an error, not a panic.
 pub(crate) fn line(text: &str) -> Result<()> {
+    if TAKEN.load(Ordering::Relaxed) {
+        return writeln!(std::io::stderr().lock(), "{text}").context("cannot write to standard error");
+    }
     writeln!(std::io::stdout().lock(), "{text}").context("cannot write to standard output")
 }
 

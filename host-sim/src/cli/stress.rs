@@ -5,10 +5,12 @@ use super::{
     parse::{self, Several},
     report,
 };
-use anyhow::{Context, Result};
-use microphong_sim::stress::{self, Failure, Family, Summary};
+use anyhow::Result;
+use microphong_sim::{
+    output,
+    stress::{self, Failure, Family, Summary},
+};
 use std::{
-    fs,
     path::{Path, PathBuf},
     time::{Duration, Instant},
 };
@@ -127,7 +129,7 @@ fn tell(family: &str, seed: u64, failure: &Failure, folder: &Path) -> Result<()>
     report::error(&format!("{family}, case {number} of seed {seed}: {what}"));
     if let Some(case) = case {
         let file = folder.join(format!("{family}-{seed}-{number}.tri"));
-        fs::write(&file, case.stream.as_bytes()).with_context(|| format!("cannot write {}", file.display()))?;
+        output::write(&file, case.stream.as_bytes())?;
         report::error(&format!("  its scene, as small as it can be: {}", case.command(&file)));
     }
     report::error(&format!("  again: microphong stress --only {family} --seed {seed} --first {number} --cases 1"));
