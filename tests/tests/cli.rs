@@ -85,6 +85,12 @@ fn bad_meshes_are_refused_with_their_line() {
         ("v 0 0 0\nv 1 0 0\nv 0 1 0\n", "no faces"),
         ("v 1 1 1\nf 1 1 1\n", "one point"),
         ("v 0 0 0\nv 1 0 0\nv 2 0 0\nf 1 2 3\n", "degenerate"),
+        ("v 0 0 0\nv 1 1 1\nv 3 3 3\nv 2 2 2\nf 1 2 3 4\n", "degenerate"),
+        ("v 0 0 0\rv 1 0 0\rv 0 1e999 0\rf 1 2 3\r", "line 3"),
+        ("\u{FEFF}v 0 0\r\n", "line 1"),
+        ("v 0 0 0\nv 1e-200 0 0\nv 0 1e-200 0\nf 1 2 3\n", "only 1e-200 across"),
+        ("v 0 0 0\nv 5e-324 0 0\nv 0 5e-324 0\nf 1 2 3\n", "scale it up"),
+        ("v 1e9 0 0\nv 1000000000.0001 0 0\nv 1e9 1e-4 0\nf 1 2 3\n", "move it to the origin"),
     ];
     let place = Place::new();
     for (text, words) in cases {
@@ -92,8 +98,67 @@ fn bad_meshes_are_refused_with_their_line() {
         place.fails(&["convert", "bad.obj", "-o", "out.tri"], 1, &["bad.obj", words]);
         place.fails(&["render", "bad.obj"], 1, &["bad.obj", words]);
     }
-    place.file("bad.obj", [0xFF, 0xFE, 0, b'\n', b'f', b' ', 0x80]);
+    place.file("bad.obj", [0xFF, 0, b'\n', b'f', b' ', 0x80]);
     place.fails(&["convert", "bad.obj"], 1, &["bad.obj", "line 2"]);
+}
+
+/// With the remedy, whatever the file is called.
+#[test]
+fn other_formats_are_named() {
+    let mut binary_stl = [&b"solid is how some programs begin these, too"[..], &[0; 37], &1u32.to_le_bytes(), &[0; 50]].concat();
+    let place = Place::new();
+    place.file("full.stl", &binary_stl).fails(&["convert", "full.stl"], 1, &["full.stl", "STL"]);
+    binary_stl[..5].fill(b' ');
+    let cases: [(&str, &[u8]); 9] = [
+        ("STL", b"solid part\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\n"),
+        ("STL", &binary_stl),
+        ("PLY", b"ply\nformat ascii 1.0\n"),
+        ("PLY", b"ply\r\nformat binary_little_endian 1.0\r\n"),
+        ("glTF", b"glTF\x02\0\0\0"),
+        ("glTF", b"\xEF\xBB\xBF \n{\"asset\": {\"version\": \"2.0\"}}"),
+        ("FBX", b"Kaydara FBX Binary  \0"),
+        ("Blender", b"BLENDER-v300"),
+        ("UTF-16", b"\xFF\xFEv\0 \x000\0"),
+    ];
+    for (format, bytes) in cases {
+        for file in ["in.obj", "in.mesh", "in"] {
+            place.file(file, bytes);
+            let remedy = if format == "UTF-16" { "UTF-8".to_owned() } else { format!("assimp export {file} ") };
+            place.fails(&["convert", file, "-o", "out.tri"], 1, &[file, format, &remedy]);
+            place.fails(&["render", file], 1, &[file, format, &remedy]);
+        }
+    }
+    for (file, format) in
+        [("a.stl", "STL"), ("a.PLY", "PLY"), ("a.gltf", "glTF"), ("a.glb", "glTF"), ("a.dae", "COLLADA"), ("a.3mf", "3MF")]
+    {
+        place.file(file, "of this we know the ending alone");
+        place.fails(&["convert", file], 1, &[file, format, &format!("assimp export {file} a.obj")]);
+        place.fails(&["compare", file], 1, &[file, format, "Blender"]);
+    }
+    place.file("a.txt", TETRAHEDRON).fails(&["render", "a.txt"], 2, &["unknown scene", "a.txt", ".obj"]);
+    place.fails(&["render", "none.stl"], 2, &["none.stl", ".obj"]);
+}
+
+/// Ends of lines and a byte order mark make no difference.
+#[test]
+fn text_of_every_kind_is_the_same_mesh() {
+    let place = Place::new();
+    place.file("plain.obj", TETRAHEDRON).succeeds(&["convert", "plain.obj"]);
+    let stream = |name: &str| fs::read(place.0.path().join(name)).expect("stream");
+    for end in ["\n", "\r\n", "\r"] {
+        place.file("other.obj", format!("\u{FEFF}{}", TETRAHEDRON.replace('\n', end))).succeeds(&["convert", "other.obj"]);
+        assert_eq!(stream("other.tri"), stream("plain.tri"), "{end:?}");
+    }
+}
+
+#[test]
+fn polygons_that_cross_themselves_are_told() {
+    let place = Place::new();
+    place.file("tie.obj", "v 0 0 0\nv 2 2 0\nv 2 0 0\nv 0 1 0\nf 1 2 3 4\n");
+    assert!(place.succeeds(&["convert", "tie.obj"]).contains("1 polygon crosses itself"));
+    let line = place.succeeds(&["convert", "tie.obj", "--json"]);
+    assert_eq!(serde_json::from_str::<serde_json::Value>(&line).expect("JSON")["crossed"], 1);
+    assert!(!place.file("good.obj", TETRAHEDRON).succeeds(&["convert", "good.obj"]).contains("cross"));
 }
 
 #[test]

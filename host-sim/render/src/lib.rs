@@ -2,12 +2,14 @@
 
 pub mod bytes;
 pub mod convex;
+mod foreign;
 pub mod image;
 pub mod look;
 pub mod mesh;
 pub mod number;
 pub mod obj;
 pub mod output;
+pub mod polygon;
 pub mod quantise;
 pub mod render;
 pub mod scene;

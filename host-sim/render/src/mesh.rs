@@ -1,6 +1,9 @@
 //! Polygon soup to a welded mesh of triangles.
 
-use crate::vector::{V3, add, cross, dot, length, scale, sub, unit};
+use crate::{
+    polygon::{cut, newell},
+    vector::{V3, add, cross, dot, length, scale, sub, unit},
+};
 use anyhow::{Result, bail};
 use std::collections::HashMap;
 
@@ -44,14 +47,20 @@ pub struct Report {
     pub degenerate: usize,
     /// The file's own normals were used.
     pub own_normals: bool,
+    /// Polygons whose outlines cross themselves: their triangles are an attempt.
+    pub crossed: usize,
     /// The closed surface was inside out and has been turned.
     pub turned: bool,
 }
 
 /// Positions nearer than this share of the mesh's radius are one.
-const WELD: f64 = 1e-6;
+pub(crate) const WELD: f64 = 1e-6;
+/// Smaller meshes would vanish when squared.
+const SMALLEST: f64 = 1e-100;
+/// A smaller share of the distance from the origin has too few of the 53 bits of a coordinate left for the 15 of a stream.
+const FARTHEST: f64 = 1e-11;
 
-/// Welds, computes missing normals, cuts polygons into fans of triangles, centres and scales to a sphere of radius 1.
+/// Welds, computes missing normals, cuts polygons into triangles, centres and scales to a sphere of radius 1.
 ///
 /// # Errors
 /// When nothing is left to draw.
@@ -62,7 +71,9 @@ pub fn weld(soup: &Soup, turn: bool) -> Result<(Mesh, Report)> {
     let positions = fit_sphere(soup)?;
     let places = merge(&positions);
     let mut report = Report { welded: merged(soup, &places), own_normals: has_normals(soup), ..Report::default() };
-    let mut mesh = if report.own_normals { with_own_normals(soup, &positions, &places) } else { smooth(soup, &positions, &places) };
+    let (mut mesh, crossed) =
+        if report.own_normals { with_own_normals(soup, &positions, &places) } else { smooth(soup, &positions, &places) };
+    report.crossed = crossed;
     let before = mesh.triangles.len();
     drop_degenerate(&mut mesh);
     report.degenerate = before - mesh.triangles.len();
@@ -87,11 +98,19 @@ fn fit_sphere(soup: &Soup) -> Result<Vec<V3>> {
     let used = || soup.faces.iter().flatten().map(|c| soup.positions[c.position]);
     let low = used().fold([f64::INFINITY; 3], |m, p| [0, 1, 2].map(|k| f64::min(m[k], p[k])));
     let high = used().fold([f64::NEG_INFINITY; 3], |m, p| [0, 1, 2].map(|k| f64::max(m[k], p[k])));
-    let centre = scale(add(low, high), 0.5);
-    let radius = used().map(|p| length(sub(p, centre))).fold(0.0, f64::max);
-    let Some(inverse) = Some(1.0 / radius).filter(|i| i.is_finite()) else {
+    let across = sub(high, low).into_iter().fold(0.0, f64::max);
+    let far = used().flatten().map(f64::abs).fold(0.0, f64::max);
+    if across == 0.0 {
         bail!("all vertices lie in one point; nothing is left to draw");
-    };
+    }
+    if across < SMALLEST {
+        bail!("the mesh is only {across:e} across, which is too little to compute with; scale it up, to about 1");
+    }
+    if across < far * FARTHEST {
+        bail!("the mesh is {across:e} across and {far:e} away from the origin: its coordinates have too few digits; move it to the origin");
+    }
+    let centre = scale(add(low, high), 0.5);
+    let inverse = 1.0 / used().map(|p| length(sub(p, centre))).fold(0.0, f64::max);
     // Positions that no face uses may lie anywhere: they are pulled in, not looked at.
     Ok(soup.positions.iter().map(|&p| scale(sub(p, centre), inverse).map(|c| c.clamp(-1.0, 1.0))).collect())
 }
@@ -125,7 +144,9 @@ fn has_normals(soup: &Soup) -> bool {
     soup.faces.iter().flatten().all(|c| c.normal.is_some_and(|n| unit(soup.normals[n]).is_some()))
 }
 
-fn with_own_normals(soup: &Soup, positions: &[V3], places: &[usize]) -> Mesh {
+/// Also counts polygons that cross themselves.
+fn with_own_normals(soup: &Soup, positions: &[V3], places: &[usize]) -> (Mesh, usize) {
+    let mut crossed = 0;
     let mut mesh = Mesh::default();
     let mut vertices: HashMap<(usize, [i32; 3]), usize> = HashMap::new();
     for face in &soup.faces {
@@ -143,40 +164,36 @@ fn with_own_normals(soup: &Soup, positions: &[V3], places: &[usize]) -> Mesh {
                 })
             })
             .collect();
-        mesh.triangles.extend(fan(&corners));
+        let points: Vec<V3> = corners.iter().map(|&c| mesh.positions[c]).collect();
+        let cut = cut(&points);
+        mesh.triangles.extend(cut.triangles.iter().map(|t| t.map(|k| corners[k])));
+        crossed += usize::from(cut.crossed);
     }
-    mesh
+    (mesh, crossed)
 }
 
-/// One normal per place: the sum of its polygons' area vectors.
-fn smooth(soup: &Soup, positions: &[V3], places: &[usize]) -> Mesh {
+/// One normal per place: the sum of its polygons' area vectors. Also counts polygons that cross themselves.
+fn smooth(soup: &Soup, positions: &[V3], places: &[usize]) -> (Mesh, usize) {
+    let mut crossed = 0;
     let mut sums = vec![[0.0; 3]; positions.len()];
     let mut any: Vec<Option<V3>> = vec![None; positions.len()];
     let mut triangles = Vec::new();
     for face in &soup.faces {
         let corners: Vec<usize> = face.iter().map(|c| places[c.position]).collect();
-        let area = newell(corners.iter().map(|&c| positions[c]));
+        let points: Vec<V3> = corners.iter().map(|&c| positions[c]).collect();
+        let area = newell(&points);
         for &c in &corners {
             sums[c] = add(sums[c], area);
             any[c] = any[c].or(unit(area));
         }
-        triangles.extend(fan(&corners));
+        let cut = cut(&points);
+        triangles.extend(cut.triangles.iter().map(|t| t.map(|k| corners[k])));
+        crossed += usize::from(cut.crossed);
     }
     // Faces back to back cancel; then any one of them is as good as the other.
     let direction = |(sum, any): (&V3, &Option<V3>)| if length(*sum) > 1e-14 { unit(*sum) } else { *any }.unwrap_or([0.0, 0.0, 1.0]);
     let normals = sums.iter().zip(&any).map(direction).collect();
-    Mesh { positions: positions.to_vec(), normals, triangles }
-}
-
-/// Newell's formula: twice the area of a polygon, times its normal, exact for planar polygons and a mean for others.
-pub fn newell(points: impl Iterator<Item = V3> + Clone) -> V3 {
-    let next = points.clone().skip(1).chain(points.clone().take(1));
-    points.zip(next).fold([0.0; 3], |sum, (a, b)| add(sum, cross(a, b)))
-}
-
-/// A convex polygon as triangles around its first corner.
-fn fan(corners: &[usize]) -> impl Iterator<Item = [usize; 3]> {
-    (1..corners.len().saturating_sub(1)).map(|k| [corners[0], corners[k], corners[k + 1]])
+    (Mesh { positions: positions.to_vec(), normals, triangles }, crossed)
 }
 
 fn drop_degenerate(mesh: &mut Mesh) {

@@ -8,7 +8,7 @@ use anyhow::{Context, Result, bail};
 /// Larger coordinates would overflow when squared.
 const LARGEST: f64 = 1e100;
 
-/// Parses the text of an OBJ file.
+/// Parses the text of an OBJ file. Lines end in LF, CR or both; a byte order mark is passed over.
 ///
 /// # Errors
 /// Names the line, and what is wrong with it.
@@ -16,7 +16,8 @@ pub fn parse(text: &str) -> Result<Soup> {
     let mut soup = Soup::default();
     // Faces may name vertices that follow: indices are checked at the end, by line.
     let mut lines = Vec::new();
-    for (number, line) in logical_lines(text) {
+    let text = text.strip_prefix('\u{FEFF}').unwrap_or(text).replace("\r\n", "\n").replace('\r', "\n");
+    for (number, line) in logical_lines(&text) {
         let mut words = line.split_whitespace();
         match words.next() {
             Some("v") => soup.positions.push(vector(words).with_context(|| format!("line {number}: vertex"))?),
@@ -114,6 +115,16 @@ mod tests {
     }
 
     #[test]
+    fn every_end_of_line_and_a_byte_order_mark() {
+        let text = "v 0 0 0\nv 1 0 0\nv 0 1 0\n\nf 1 2 \\\n3\nf 1 2 4\n";
+        for end in ["\n", "\r\n", "\r"] {
+            let text = format!("\u{FEFF}{}", text.replace('\n', end));
+            assert_eq!(format!("{:#}", parse(&text).unwrap_err()), "line 7: face: vertex 4 is out of range; the file has 3", "{end:?}");
+            assert_eq!(parse(text.strip_suffix(&format!("f 1 2 4{end}")).unwrap()).unwrap().positions.len(), 3, "{end:?}");
+        }
+    }
+
+    #[test]
     fn errors_name_the_line() {
         for (text, line) in [
             ("v 0 0 0\nv nan 0 0\n", "line 2"),
@@ -123,6 +134,8 @@ mod tests {
             ("v 1 2 3\nf 0 1 1", "line 2"),
             ("v 1 2 3\nf 1//1 1//1 1//2", "line 2"),
             ("v 1e200 2 3", "line 1"),
+            ("v 1 2 3\nv 0 -1e999 0", "line 2"),
+            ("v 1 2 3\r\rvn 0 -inf 0", "line 3"),
         ] {
             let error = format!("{:#}", parse(text).unwrap_err());
             assert!(error.contains(line), "{text:?}: {error}");

@@ -2,6 +2,7 @@
 
 use crate::{
     bytes::StreamBytes,
+    foreign,
     look::{Lamp, Look, Surface},
     mesh::{self, Mesh, Report},
     obj,
@@ -96,7 +97,12 @@ pub fn load(name_or_path: &str) -> Result<Scene> {
             let view = View::orbit(Up::Y, 0.5, 0.35, DISTANCE, ORBIT).fit(&mesh.positions, SQUARE, MARGIN);
             Look::new(default_surface(), view).stream(&quantise(&mesh).0).with_context(|| path.display().to_string())?
         }
-        _ => return Err(Unknown(name_or_path.to_owned()).into()),
+        _ => {
+            if path.is_file() {
+                foreign::refuse(path, &read(path)?)?;
+            }
+            return Err(Unknown(name_or_path.to_owned()).into());
+        }
     };
     let name = path.file_stem().unwrap_or(path.as_os_str()).to_string_lossy().into_owned();
     Ok(Scene { name, stream, size: SIZE })
@@ -113,9 +119,14 @@ pub fn default_surface() -> Surface {
 /// # Errors
 /// Names the file and the line.
 pub fn read_obj(path: &Path, turn: bool) -> Result<(Mesh, Report)> {
-    let bytes = fs::read(path).with_context(|| format!("cannot read {}", path.display()))?;
+    let bytes = read(path)?;
+    foreign::refuse(path, &bytes)?;
     let soup = obj::parse(&String::from_utf8_lossy(&bytes)).with_context(|| path.display().to_string())?;
     mesh::weld(&soup, turn).with_context(|| path.display().to_string())
+}
+
+fn read(path: &Path) -> Result<Vec<u8>> {
+    fs::read(path).with_context(|| format!("cannot read {}", path.display()))
 }
 
 fn welded(text: &str) -> Result<Mesh> {

@@ -43,11 +43,9 @@ pub fn length(a: V3) -> f64 {
 #[must_use]
 pub fn unit(a: V3) -> Option<V3> {
     let largest = a.iter().fold(0.0f64, |m, c| m.max(c.abs()));
-    if largest == 0.0 || !largest.is_finite() {
-        return None;
-    }
-    // Scaled first: the square of a tiny component would vanish.
-    let a = scale(a, 1.0 / largest);
+    // Scaled first: the square of a tiny component would vanish. What has no reciprocal is as good as zero.
+    let inverse = Some(1.0 / largest).filter(|&inverse| inverse > 0.0 && inverse.is_finite())?;
+    let a = scale(a, inverse);
     Some(scale(a, 1.0 / length(a)))
 }
 

@@ -199,6 +199,35 @@ fn doubled_vertices_weld_and_inside_out_surfaces_turn() {
     }
 }
 
+/// A beam with the section of a C, whose concave ends would cover its gap as fans. Wherever the outline begins, with normals or without.
+#[test]
+fn concave_polygons_keep_their_gaps() {
+    let outline = [[0, 0], [3, 0], [3, 1], [1, 1], [1, 2], [3, 2], [3, 3], [0, 3]];
+    for (first, normals) in (0..outline.len()).flat_map(|first| [(first, false), (first, true)]) {
+        let corner = |k: usize, top: bool| {
+            let index = 2 * ((k + first) % 8) + usize::from(top) + 1;
+            if normals { format!(" {index}//1") } else { format!(" {index}") }
+        };
+        let mut text = "vn 0 0 1\n".to_owned();
+        outline.iter().for_each(|[x, y]| text += &format!("v {x} {y} 0\nv {x} {y} 1\n"));
+        text += &format!("f{}\n", (0..8).map(|k| corner(k, true)).collect::<String>());
+        text += &format!("f{}\n", (0..8).rev().map(|k| corner(k, false)).collect::<String>());
+        for k in 0..8 {
+            text += &format!("f{}{}{}{}\n", corner(k, false), corner(k + 1, false), corner(k + 1, true), corner(k, true));
+        }
+        let (mesh, report) = mesh::weld(&obj::parse(&text).unwrap(), false).unwrap();
+        assert_eq!((report.crossed, report.degenerate, report.turned, report.own_normals), (0, 0, false, normals));
+        assert_eq!(mesh.triangles.len(), 2 * 6 + 16);
+        let corners = |t: &[usize; 3]| t.map(|v| mesh.positions[v]);
+        let doubled = |[a, b, c]: [V3; 3]| length(cross(sub(b, a), sub(c, a)));
+        let scale = length([1.5, 1.5, 0.5]);
+        // Two ends of 7 each, and an outline of 16 times 1.
+        let area: f64 = mesh.triangles.iter().map(|t| doubled(corners(t)) / 2.0).sum::<f64>() * scale * scale;
+        let volume: f64 = mesh.triangles.iter().map(corners).map(|[a, b, c]| dot(a, cross(b, c)) / 6.0).sum::<f64>() * scale.powi(3);
+        assert!((area - 30.0).abs() < 1e-9 && (volume - 7.0).abs() < 1e-9, "{first}: area {area}, volume {volume}");
+    }
+}
+
 #[test]
 fn large_meshes_are_split() {
     let side = 300;

@@ -17,8 +17,8 @@ use std::path::PathBuf;
 /// Convert a Wavefront OBJ mesh to a stream for a board's flash.
 ///
 /// Normals come from the file when every corner has one, else from the
-/// polygons around each vertex. Polygons become fans of triangles. The mesh is
-/// centred and scaled to a sphere of radius 1. One closed convex mesh is marked as
+/// polygons around each vertex. Polygons, concave ones as well, are cut into triangles.
+/// The mesh is centred and scaled to a sphere of radius 1. One closed convex mesh is marked as
 /// such: it is drawn without depth, and looks the same.
 #[derive(clap::Args)]
 #[command(after_help = EXAMPLES)]
@@ -96,6 +96,7 @@ struct Line<'a> {
     triangles: usize,
     welded: usize,
     degenerate: usize,
+    crossed: usize,
     own_normals: bool,
     turned: bool,
     closed_convex: bool,
@@ -134,6 +135,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome> {
         triangles: parts.iter().map(|p| p.triangles.len()).sum(),
         welded: report.welded,
         degenerate: report.degenerate + lost,
+        crossed: report.crossed,
         own_normals: report.own_normals,
         turned: report.turned,
         closed_convex: parts.iter().all(|part| part.closed_convex),
@@ -165,5 +167,11 @@ fn text(line: &Line<'_>) -> Result<()> {
     let turned = if line.turned { ", surface turned inside out" } else { "" };
     let (welded, degenerate) = (count(line.welded), count(line.degenerate));
     let convex = if line.closed_convex { ", closed and convex" } else { "" };
-    report::line(&format!("  {welded} vertices welded, {degenerate} degenerate triangles dropped, {normals}{turned}{convex}"))
+    report::line(&format!("  {welded} vertices welded, {degenerate} degenerate triangles dropped, {normals}{turned}{convex}"))?;
+    let crossed = match line.crossed {
+        0 => return Ok(()),
+        1 => "1 polygon crosses itself; split it".to_owned(),
+        several => format!("{} polygons cross themselves; split them", count(several)),
+    };
+    report::line(&format!("  {crossed}, or look whether the picture is as it should be"))
 }

@@ -2,7 +2,7 @@
 
 use super::{Claim, Random, Source, Topic, Verdict, direction, largest};
 use microphong_render::{
-    mesh::newell,
+    polygon::newell,
     vector::{V3, add, cross, dot, length, scale, sub},
 };
 
@@ -142,10 +142,10 @@ fn polygon() -> Claim {
     let mut random = Random(94);
     let x = random.direction();
     let y = direction(cross(x, random.direction()));
-    let points = (0..6).map(|k| {
+    let points = [0, 1, 2, 3, 4, 5].map(|k| {
         let (s, c) = (f64::from(k) * 60f64.to_radians()).sin_cos();
         add(scale(x, 2.0 * c), scale(y, 2.0 * s))
     });
     let area = 1.5 * 3f64.sqrt() * 4.0;
-    OTHERS.identity("Newell's normal is twice the area long", (length(newell(points)) / (2.0 * area) - 1.0).abs(), "Right as printed.")
+    OTHERS.identity("Newell's normal is twice the area long", (length(newell(&points)) / (2.0 * area) - 1.0).abs(), "Right as printed.")
 }

@@ -1,0 +1,65 @@
+//! Files that are no OBJ: recognised, so that an error can say what they are and what helps.
+
+use anyhow::{Result, bail};
+use std::path::Path;
+
+/// What other formats are called, by the ending of their files.
+const ENDINGS: [(&str, &str); 10] = [
+    ("stl", "STL"),
+    ("ply", "PLY"),
+    ("gltf", "glTF"),
+    ("glb", "glTF"),
+    ("fbx", "FBX"),
+    ("dae", "COLLADA"),
+    ("3ds", "3DS"),
+    ("3mf", "3MF"),
+    ("off", "OFF"),
+    ("blend", "Blender"),
+];
+
+/// Passes what may be an OBJ file.
+///
+/// # Errors
+/// Names the file, its format, and what makes an OBJ of it.
+pub(crate) fn refuse(path: &Path, bytes: &[u8]) -> Result<()> {
+    let name = path.display();
+    if [b"\xFF\xFE", b"\xFE\xFF"].iter().any(|mark| bytes.starts_with(*mark)) {
+        bail!("{name}: text in UTF-16; save it as UTF-8 or ASCII");
+    }
+    if let Some(format) = by_content(bytes).or_else(|| by_ending(path)) {
+        let obj = path.with_extension("obj");
+        let obj = if obj == path { path.with_extension("new.obj") } else { obj };
+        bail!(
+            "{name}: a mesh in the format {format}; OBJ is needed: export it as OBJ, for example with Blender, or run\n  assimp export {name} {}",
+            obj.display()
+        );
+    }
+    Ok(())
+}
+
+fn by_content(bytes: &[u8]) -> Option<&'static str> {
+    let text = bytes.strip_prefix(b"\xEF\xBB\xBF").unwrap_or(bytes).trim_ascii_start();
+    let starts: [(&[u8], &str); 7] = [
+        (b"glTF", "glTF"),
+        // JSON.
+        (b"{", "glTF"),
+        (b"solid", "STL"),
+        (b"ply\n", "PLY"),
+        (b"ply\r", "PLY"),
+        (b"Kaydara FBX", "FBX"),
+        (b"BLENDER", "Blender"),
+    ];
+    let start = starts.iter().find(|(start, _)| text.starts_with(start)).map(|&(_, format)| format);
+    start.or_else(|| is_binary_stl(bytes).then_some("STL"))
+}
+
+/// A head of 80 bytes, the number of triangles, and 50 bytes for each. Text never is: its number would be too large.
+fn is_binary_stl(bytes: &[u8]) -> bool {
+    let count = bytes.get(80..).and_then(|rest| rest.first_chunk()).map(|&count| u32::from_le_bytes(count));
+    count.is_some_and(|count| bytes.len() as u64 == 84 + 50 * u64::from(count))
+}
+
+fn by_ending(path: &Path) -> Option<&'static str> {
+    let ending = path.extension()?.to_str()?;
+    ENDINGS.iter().find(|(known, _)| ending.eq_ignore_ascii_case(known)).map(|&(_, format)| format)
+}
