@@ -105,6 +105,8 @@ fn index(word: &str, count: usize, what: &str) -> Result<usize> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::{mesh, quantise::quantise};
+    use proptest::prelude::*;
 
     #[test]
     fn polygons_negative_indices_and_continued_lines() {
@@ -139,6 +141,52 @@ mod tests {
         ] {
             let error = format!("{:#}", parse(text).unwrap_err());
             assert!(error.contains(line), "{text:?}: {error}");
+        }
+    }
+
+    /// Words that mean something, and some that might be taken for them.
+    fn word() -> impl Strategy<Value = String> {
+        let number = prop_oneof![
+            (-3i64..8).prop_map(|n| n.to_string()),
+            any::<f64>().prop_map(|n| n.to_string()),
+            any::<i64>().prop_map(|n| n.to_string()),
+            (-1.0..1.0).prop_map(|n| format!("{n:e}")),
+        ];
+        let known = prop::sample::select(vec!["v", "vn", "f", "#", "\\", "nan", "1e-200", "1//1", "-1/2/-3", "2//", "/", "\u{FEFF}", "é"]);
+        prop_oneof![3 => number, 1 => known.prop_map(str::to_owned)]
+    }
+
+    /// Lines that are mostly well formed, so that meshes of them come to be welded.
+    fn line() -> impl Strategy<Value = String> {
+        let words = |count| prop::collection::vec(word(), count).prop_map(|words| words.join(" "));
+        let vertex = || prop::array::uniform3(-9i32..9).prop_map(|[x, y, z]| format!("{x} {y} {z}"));
+        let index = prop_oneof![3 => 1i64..9, 1 => -8i64..0];
+        let face = prop::collection::vec(index, 3..9).prop_map(|face| face.iter().map(i64::to_string).collect::<Vec<_>>().join(" "));
+        prop_oneof![
+            40 => vertex().prop_map(|vertex| format!("v {vertex}")),
+            4 => vertex().prop_map(|normal| format!("vn {normal}")),
+            12 => face.prop_map(|face| format!("f {face}")),
+            1 => words(0..6),
+        ]
+    }
+
+    proptest! {
+        /// Whatever is in a file, it is a mesh of finite numbers, or an error.
+        #[test]
+        fn no_text_is_too_much(lines in prop::collection::vec(line(), 0..40), end in prop::sample::select(vec!["\n", "\r\n", "\r"])) {
+            if let Ok((mesh, _)) = parse(&lines.join(end)).and_then(|soup| mesh::weld(&soup, false)) {
+                prop_assert!(mesh.positions.iter().chain(&mesh.normals).flatten().all(|c| c.abs() < 1.0 + 1e-9));
+                prop_assert!(mesh.triangles.iter().flatten().all(|&v| v < mesh.positions.len()));
+                let (parts, dropped) = quantise(&mesh);
+                prop_assert_eq!(parts.iter().map(|part| part.triangles.len()).sum::<usize>() + dropped, mesh.triangles.len());
+            }
+        }
+
+        #[test]
+        fn any_characters_may_come(text in any::<String>(), words in prop::collection::vec(word(), 0..60)) {
+            // An error is as good as a mesh.
+            let _ = parse(&text);
+            let _ = parse(&words.join(" ").replace("# ", "\n"));
         }
     }
 }
