@@ -56,15 +56,20 @@ impl<'a, K: Patch, P: Patch, F, S: Copy + Default> ManyLights<'a, K, P, F, S> {
     #[inline(always)]
     fn new(shading: &Shading<'a>, fit: impl Fn(&Source) -> P, common: K, model: F) -> Self {
         let reflectance = shading.reflectance;
-        Self {
+        let mut new = Self {
             reflectance,
             model,
             common,
-            lights: shading.lighting.sources.iter().map(fit).collect(),
+            lights: heapless::Vec::new(),
             lut: reflectance.highlight_lut.by_cosine(),
             shared: [S::default(); CHUNK],
             levels: [[0; 3]; CHUNK],
+        };
+        for source in &shading.lighting.sources {
+            // There is room for as many lights as a frame has.
+            let _ = new.lights.push(fit(source));
         }
+        new
     }
 }
 
