@@ -1,12 +1,29 @@
 //! Random cases of every family, and that each family sees what is wrong.
 
-use microphong_sim::stress::{self, Family, Verdict, case::Case, fuzz, random::Random, scenes};
+use embedded_graphics::pixelcolor::{Rgb565, RgbColor};
+use microphong::{
+    geometry::pose::Pose,
+    interpolate::{Patch, plane::Plane},
+    setup::gradients::Gradients,
+    stream::{
+        record::{Material, Triangle},
+        seal,
+    },
+};
+use microphong_sim::{
+    bytes::StreamBytes,
+    oracle::Frame,
+    render,
+    shader::Shader,
+    stress::{self, Family, Verdict, arithmetic, case::Case, coverage, drift, fuzz, random::Random, sameness, scenes, walks, watertight},
+};
 use microphong_tests::{cases, seed};
 use std::{
     fs,
     path::Path,
     time::{Duration, Instant},
 };
+use zerocopy::{FromBytes, IntoBytes};
 
 /// How long all families together look for failures; `MICROPHONG_CASES` multiplies it.
 const SECONDS: u64 = 60;
@@ -118,4 +135,107 @@ fn seeds_are_drawn() {
         drawn += 1;
     }
     assert!(drawn > 40, "{drawn}");
+}
+
+/// A sphere under one light, with a highlight.
+fn sphere() -> Case {
+    let stream = microphong_sim::scene::load("sphere-168").unwrap().stream;
+    Case { size: [80, 60], frame: 3, style: Shader::PHONG.into(), ..Case::new(stream) }
+}
+
+/// One pixel more or less, one count more: coverage is wrong.
+#[test]
+fn coverage_sees_a_wrong_pixel() {
+    let (corners, rows) = ([[100, 90], [900, 400], [150, 1000]], 16);
+    let mut counts = vec![0; coverage::WIDTH * coverage::HEIGHT];
+    let drawn = coverage::draw(corners, rows, &mut counts);
+    assert_eq!(coverage::judge(corners, rows, &counts, drawn), None);
+    assert!(coverage::judge(corners, rows, &counts, drawn + 1).is_some());
+    for pixel in [30 * coverage::WIDTH + 15, 0] {
+        counts[pixel] ^= 1;
+        assert!(coverage::judge(corners, rows, &counts, drawn).is_some(), "pixel {pixel}");
+        counts[pixel] ^= 1;
+    }
+}
+
+/// Triangles that are said to be thick lose what rounding turns to the front.
+#[test]
+fn watertight_sees_holes() {
+    let bunny = microphong_sim::scene::load("bunny").unwrap().stream;
+    let case = Case { size: [480; 2], frame: 59, style: Shader::FLAT.into(), ..Case::new(watertight::on_background(&bunny)) };
+    assert_eq!(watertight::differences(&case), Some((0, 0)));
+    let mut bytes = case.stream.as_bytes().to_vec();
+    let triangles = bytes.len() - size_of_val(bunny.parse().unwrap().triangles);
+    for record in bytes[triangles..].chunks_mut(size_of::<Triangle>()) {
+        let thick = Triangle { inverse_altitude: 1, ..Triangle::read_from_bytes(record).unwrap() };
+        record.copy_from_slice(thick.as_bytes());
+    }
+    seal(&mut bytes);
+    assert!(watertight::Watertight.fails(&Case { stream: StreamBytes::from(&bytes[..]), ..case }));
+}
+
+/// An exponent of 51 is no exponent of 50.
+#[test]
+fn arithmetic_sees_another_exponent() {
+    let case = sphere();
+    let mut bytes = case.stream.as_bytes().to_vec();
+    let stream = case.stream.parse().unwrap();
+    let at = stream.materials.as_ptr() as usize - case.stream.as_bytes().as_ptr() as usize;
+    let [material] = stream.materials else { panic!("one material") };
+    let sharper = Material { exponent: material.exponent + 1, ..*material };
+    bytes[at..][..size_of::<Material>()].copy_from_slice(sharper.as_bytes());
+    seal(&mut bytes);
+    let other = StreamBytes::from(&bytes[..]);
+    for (stream, right) in [(&case.stream, true), (&other, false)] {
+        let frame = Frame::new(stream.parse().unwrap(), (80, 60), case.frame);
+        let error = arithmetic::of(&case, &frame, &frame.visible()).unwrap();
+        assert_eq!(error <= arithmetic::LIMIT, right, "{error}");
+    }
+}
+
+/// A plane whose steps are one unit of the last place too large.
+#[test]
+fn walks_see_a_unit_of_the_last_place() {
+    #[derive(Clone, Copy)]
+    struct Steep(Plane<1>, i32);
+    impl Patch for Steep {
+        type Walker = <Plane<1> as Patch>::Walker;
+        fn jump(&mut self, rows: i32) {
+            self.0.jump(rows);
+        }
+        fn step_row(&mut self) {
+            self.0.step_row();
+            self.0 = self.0.biased([self.1]);
+        }
+        fn enter(&self, x: i32) -> Self::Walker {
+            self.0.enter(x)
+        }
+    }
+    let gradients = Gradients::new([[0, 0], [400, 100], [50, 700]], [0, 0, 96, 80]).unwrap();
+    let plane = Plane::fit::<15>(&gradients, [[1000, 20_000, 300]], 16);
+    assert!(!walks::drifts(Steep(plane, 0), 7, 9));
+    assert!(walks::drifts(Steep(plane, 1), 7, 9));
+}
+
+/// The pose of the frame after.
+#[test]
+fn drift_sees_the_next_frame() {
+    let case = sphere();
+    let camera = case.stream.parse().unwrap().header.camera;
+    let rows = |number| Pose::new(&camera, number).rotation.map(|row| row.map(|c| f64::from(c) / f64::from(1 << 30)));
+    assert!(drift::error(&Pose::new(&camera, 5), &rows(5)) <= drift::LIMIT);
+    assert!(drift::error(&Pose::new(&camera, 6), &rows(5)) > drift::LIMIT);
+}
+
+/// A pixel, or a count, of another picture.
+#[test]
+fn sameness_sees_a_pixel_and_a_count() {
+    let case = sphere();
+    let (mut pixels, mut stats) = render::frame::<Rgb565>(case.stream.parse().unwrap(), case.pixels(), case.style, 60, 3).unwrap();
+    let whole = (pixels.clone(), stats);
+    assert_eq!(sameness::unequal((&pixels, &stats), (&whole.0, &whole.1)), None);
+    pixels[80 * 30 + 40] = Rgb565::RED;
+    assert!(sameness::unequal((&pixels, &stats), (&whole.0, &whole.1)).is_some());
+    stats.pixels += 1;
+    assert!(sameness::unequal((&whole.0, &stats), (&whole.0, &whole.1)).is_some());
 }

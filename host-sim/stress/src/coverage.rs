@@ -53,6 +53,12 @@ impl Family for Coverage {
 pub fn wrong(corners: Corners, rows: usize) -> Option<String> {
     let mut counts = vec![0u8; WIDTH * HEIGHT];
     let drawn = draw(corners, rows, &mut counts);
+    judge(corners, rows, &counts, drawn)
+}
+
+/// What is wrong if each pixel of the picture is drawn as often as `counts` says, and `drawn` pixels are counted.
+#[must_use]
+pub fn judge(corners: Corners, rows: usize, counts: &[u8], drawn: u32) -> Option<String> {
     let mut expected = 0;
     for (k, &count) in counts.iter().enumerate() {
         let inside = covers(corners, centre(k));

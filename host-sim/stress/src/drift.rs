@@ -44,20 +44,26 @@ impl Family for Drift {
         let frame = random.bits() as u32;
         let pose = Pose::new(&camera, frame);
         let turn = f64::from(frame % u32::from(camera.period)) / f64::from(camera.period) * TAU;
-        let exact = product(&start, &rotation(axis, turn));
-        let rows: [V3; 3] = pose.rotation.map(|row| row.map(|c| f64::from(c) / f64::from(1 << 30)));
-        let mut worst = 0f64;
-        for point in [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]] {
-            worst = worst.max(length(sub(apply(&rows, point), apply(&exact, point))));
-        }
-        for (i, j) in (0..3).flat_map(|i| (0..3).map(move |j| (i, j))) {
-            let square = dot(rows[i], rows[j]) - f64::from(u8::from(i == j));
-            worst = worst.max(square.abs());
-        }
+        let worst = error(&pose, &product(&start, &rotation(axis, turn)));
         let mut verdict = Verdict::of(worst, LIMIT, None);
         if let Some(what) = &mut verdict.failure {
             *what += &format!(" in frame {frame} of an orbit of {} about {axis:?}", camera.period);
         }
         verdict
     }
+}
+
+/// How far a pose is off these rows, and off a rotation.
+#[must_use]
+pub fn error(pose: &Pose, exact: &[V3; 3]) -> f64 {
+    let rows: [V3; 3] = pose.rotation.map(|row| row.map(|c| f64::from(c) / f64::from(1 << 30)));
+    let mut worst = 0f64;
+    for point in [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]] {
+        worst = worst.max(length(sub(apply(&rows, point), apply(exact, point))));
+    }
+    for (i, j) in (0..3).flat_map(|i| (0..3).map(move |j| (i, j))) {
+        let square = dot(rows[i], rows[j]) - f64::from(u8::from(i == j));
+        worst = worst.max(square.abs());
+    }
+    worst
 }

@@ -59,16 +59,24 @@ fn differs(case: &Case) -> Result<Option<String>> {
     ];
     for (name, layout) in ways {
         for (pixels, stats) in twice(case, layout)? {
-            if pixels != whole.0 {
-                let differ = pixels.iter().zip(&whole.0).filter(|(a, b)| a != b).count();
-                return Ok(Some(format!("{name}: {differ} of {} pixels differ", pixels.len())));
-            }
-            if [stats.drawn, stats.pixels, stats.culled] != [whole.1.drawn, whole.1.pixels, whole.1.culled] {
-                return Ok(Some(format!("{name}: {stats:?} in place of {:?}", whole.1)));
+            let what = unequal((&pixels, &stats), (&whole.0, &whole.1));
+            if let Some(what) = what {
+                return Ok(Some(format!("{name}: {what}")));
             }
         }
     }
     Ok(None)
+}
+
+/// In what one picture and its counts differ from another.
+#[must_use]
+pub fn unequal((pixels, stats): (&[Rgb565], &Stats), (whole, expected): (&[Rgb565], &Stats)) -> Option<String> {
+    let differ = pixels.iter().zip(whole).filter(|(a, b)| a != b).count() + pixels.len().abs_diff(whole.len());
+    if differ > 0 {
+        return Some(format!("{differ} of {} pixels differ", whole.len()));
+    }
+    let counts = |stats: &Stats| [stats.drawn, stats.pixels, stats.culled];
+    (counts(stats) != counts(expected)).then(|| format!("{stats:?} in place of {expected:?}"))
 }
 
 /// Draws a frame, another one, and the first again, in memory that is not clean.

@@ -50,7 +50,7 @@ impl Family for Walks {
 }
 
 /// Whether steps and jumps end at different values.
-fn drifts<P: Patch<Walker: Walker<Value: PartialEq>>>(patch: P, rows: i32, columns: i32) -> bool {
+pub fn drifts<P: Patch<Walker: Walker<Value: PartialEq>>>(patch: P, rows: i32, columns: i32) -> bool {
     let (mut stepped, mut jumped) = (patch, patch);
     // Each step is taken: what is known of their sum is what is to be tested.
     (0..rows).for_each(|_| black_box(&mut stepped).step_row());

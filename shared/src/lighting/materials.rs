@@ -96,6 +96,7 @@ impl<C: Pixel> Copy for MaterialTables<'_, C> {}
 /// A colour as products of gains, Q4.28.
 type Colour = [u32; 3];
 
+#[inline(never)]
 fn product(a: [u16; 3], b: [u16; 3]) -> Colour {
     zip(a, b, |a, b| u32::from(a) * u32::from(b))
 }
@@ -110,6 +111,7 @@ fn largest(colour: Colour) -> u32 {
 }
 
 /// Whether `colour` is a multiple of `base`, to 1/1024 of its largest channel.
+#[inline(never)]
 fn along(colour: Colour, base: Colour) -> bool {
     let (a, b) = (u64::from(largest(colour)), u64::from(largest(base)));
     zip(colour, base, |c, d| (u64::from(c) * b).abs_diff(u64::from(d) * a) <= (a * b) >> 10) == [true; 3]
@@ -139,20 +141,25 @@ impl Reflectance {
         (highlight, holds_levels): (Highlight, bool),
         (depth, grey): ([u32; 3], bool),
     ) {
-        let tint = |colour: Colour| if grey { luma(colour) } else { colour };
-        let ambient = tint(product(header.ambient, material.ambient));
-        let diffuse = |light: &Light| tint(product(light.colour, material.diffuse));
-        let specular = |light: &Light| tint(product(light.colour, material.specular));
+        // What each light adds at most, diffuse and specular, and the ambient term.
+        let mut terms = heapless::Vec::<Colour, { 2 * MAX_LIGHTS + 1 }>::new();
+        let lit = lights.iter().flat_map(|light| [(light.colour, material.diffuse), (light.colour, material.specular)]);
+        for (light, reflectance) in lit.chain([(header.ambient, material.ambient)]) {
+            let colour = product(light, reflectance);
+            // There is room for the terms of as many lights as a stream has.
+            let _ = terms.push(if grey { luma(colour) } else { colour });
+        }
         // The brightest of all terms sets the base colour; the others may be multiples of it.
-        let terms = || lights.iter().flat_map(|light| [diffuse(light), specular(light)]).chain([ambient]);
-        let base = terms().max_by_key(|&term| largest(term)).unwrap_or([0; 3]);
-        let one_channel = terms().all(|term| along(term, base));
+        let base = terms.iter().fold([0; 3], |base, &term| if largest(term) >= largest(base) { term } else { base });
+        let one_channel = terms.iter().all(|&term| along(term, base));
         self.depth = depth;
         self.three_channels = u8::from(!one_channel);
         let levels = |colour: Colour| -> [u16; 3] { if one_channel { [level(largest(colour), 8); 3] } else { zip(colour, depth, level) } };
-        self.ambient = levels(ambient).map(i32::from);
-        for (gains, light) in self.gains.iter_mut().zip(lights) {
-            *gains = Gains { diffuse: levels(diffuse(light)), specular: levels(specular(light)) };
+        self.ambient = levels(terms.last().copied().unwrap_or_default()).map(i32::from);
+        for (gains, terms) in self.gains.iter_mut().zip(terms.chunks_exact(2)) {
+            if let &[diffuse, specular] = terms {
+                *gains = Gains { diffuse: levels(diffuse), specular: levels(specular) };
+            }
         }
         let holds_levels = holds_levels && one_channel && lights.len() == 1 && self.fits();
         self.holds_levels = holds_levels.into();
@@ -433,6 +440,7 @@ fn reflected((diffuse, specular): (u16, u16), cosine: i32, highlight: u32) -> i3
 }
 
 /// A product of two gains (Q4.28, 1 is full) as a level in Q9.7 whose upper `depth` bits are the channel.
+#[inline(never)]
 fn level(product: u32, depth: u32) -> u16 {
     let full = ((1u64 << depth) - 1) << (8 - depth + LEVEL);
     ((u64::from(product) * full + (1 << (2 * UNIT - 1))) >> (2 * UNIT)).min(u64::from(u16::MAX)) as u16
