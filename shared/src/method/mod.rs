@@ -365,7 +365,9 @@ pub struct Uniform(pub Intensity);
 
 impl IntensityShader<()> for Uniform {
     fn shade(&self, (): ()) -> Intensity {
-        self.0
+        // One by one: as a whole they would be moved by a function for memory that may overlap.
+        let Self([r, g, b]) = *self;
+        [r, g, b]
     }
 }
 

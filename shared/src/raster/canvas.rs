@@ -87,9 +87,7 @@ impl<P: Patch, S: IntensityShader<<P::Walker as Walker>::Value>> SpanShader for 
                 k -= 1;
                 walker.step();
                 if visible & (1 << k) != 0 {
-                    // One by one: as a whole they would be moved by a function for memory that may overlap.
-                    let [r, g, b] = self.shader.shade(walker.value());
-                    intensities[k % CHUNK] = [r, g, b];
+                    intensities[k % CHUNK] = self.shader.shade(walker.value());
                 }
             }
             if visible != 0 {
