@@ -1,7 +1,7 @@
 //! Cross-checks of whole programs; see the files in `tests/`.
 
 use microphong::stream::{
-    record::{CLOSED_CONVEX, Header, Mesh},
+    record::{CLOSED_CONVEX, Header, Mesh, Triangle},
     seal,
 };
 use microphong_sim::{bytes::StreamBytes, shader::Shader};
@@ -12,6 +12,7 @@ use std::{
     process::Command,
     sync::LazyLock,
 };
+use zerocopy::FromBytes;
 
 /// The command `microphong`; built here, because a package's tests build only the package's own programs.
 ///
@@ -62,6 +63,20 @@ pub fn unmarked(stream: &StreamBytes) -> StreamBytes {
     bytes[size_of::<Header>() + offset_of!(Mesh, flags)] &= !CLOSED_CONVEX as u8;
     seal(&mut bytes);
     StreamBytes::from(bytes.as_slice())
+}
+
+/// The same stream, its triangles said to be so thick that rounding their corners turns none of them.
+#[must_use]
+pub fn thick(stream: &StreamBytes) -> StreamBytes {
+    let mut bytes = stream.as_bytes().to_vec();
+    let triangles = bytes.len() - stream.parse().map_or(0, |stream| size_of_val(stream.triangles));
+    for record in bytes[triangles..].chunks_mut(size_of::<Triangle>()) {
+        if let Ok(triangle) = Triangle::mut_from_bytes(record) {
+            triangle.inverse_altitude = 1;
+        }
+    }
+    seal(&mut bytes);
+    StreamBytes::from(&bytes[..])
 }
 
 /// The seed of random cases: `MICROPHONG_SEED`, else 1; printed, so that a failure can be found again.

@@ -13,6 +13,7 @@ use microphong::{
     interpolate::{Patch, Walker, cubic::Cubic, plane::Plane, quadric::Quadric},
     setup::gradients::{Gradients, MAX_THINNESS},
 };
+use microphong_sim::stress::coverage::side;
 use proptest::{
     prelude::Rng,
     test_runner::{RngAlgorithm, TestRng},
@@ -82,11 +83,6 @@ fn case(random: &mut Random, kind: usize) -> Case {
         _ => [0; 3].map(|_| [random.pick(0..w), random.pick(0..h)]),
     };
     Case { width, height, corners }
-}
-
-fn side(a: [i32; 2], b: [i32; 2], p: [i32; 2]) -> i64 {
-    let d = |p: [i32; 2], k: usize| i64::from(p[k]) - i64::from(a[k]);
-    d(b, 0) * d(p, 1) - d(b, 1) * d(p, 0)
 }
 
 /// Squared distance.

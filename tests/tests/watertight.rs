@@ -4,7 +4,6 @@
 //! integers, and nothing is culled before. Where culling trusts the plane of a triangle that rounding has turned to the front,
 //! the background shows through.
 
-use microphong::stream::record::Triangle;
 use microphong_sim::{
     bytes::StreamBytes,
     look::Look,
@@ -17,8 +16,8 @@ use microphong_sim::{
     stress::{self, watertight},
     view::{self, Up},
 };
+use microphong_tests::thick;
 use std::{sync::Mutex, thread};
-use zerocopy::{FromBytes, IntoBytes};
 
 /// Frames of a whole turn.
 const FRAMES: u32 = 120;
@@ -124,14 +123,7 @@ fn closed_meshes_have_no_holes() {
 /// show their front.
 #[test]
 fn planes_alone_would_leave_holes() {
-    let bunny = scene::load("bunny").unwrap().stream;
-    let mut bytes = bunny.as_bytes().to_vec();
-    let triangles = bytes.len() - size_of_val(bunny.parse().unwrap().triangles);
-    for record in bytes[triangles..].chunks_mut(size_of::<Triangle>()) {
-        let thick = Triangle { inverse_altitude: 1, ..Triangle::read_from_bytes(record).unwrap() };
-        record.copy_from_slice(thick.as_bytes());
-    }
-    let case = Case::new("bunny of thick triangles", &StreamBytes::from(&bytes[..]), 480);
+    let case = Case::new("bunny of thick triangles", &thick(&scene::load("bunny").unwrap().stream), 480);
     assert!(differences(&case, Shader::FLAT.into(), 59).0 > 0);
 }
 

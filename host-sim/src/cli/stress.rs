@@ -20,7 +20,7 @@ use std::{
 /// Each family makes cases of one kind and judges them by means that share no code with the renderer. The first case that fails is
 /// made as small as it can be, written as a stream, and the command that draws it is printed. Case N of a seed is the same in every run.
 #[derive(clap::Args)]
-#[command(after_help = EXAMPLES)]
+#[command(after_help = after_help())]
 pub(crate) struct Arguments {
     /// Seconds to go on, shared by the families.
     #[arg(long, default_value_t = 10.0, value_name = "N", value_parser = seconds)]
@@ -52,16 +52,14 @@ Examples:
   microphong stress --only arithmetic,sameness       two families
   microphong stress --only coverage --seed 7 --first 4711 --cases 1    one case again
 
-Families:
-  coverage     a triangle covers the pixels whose centres lie in it
-  watertight   whole scenes, culling included: no pixel is missing, none too many
-  arithmetic   integers shade as the same method does in 64-bit floating point
-  walks        forward differences over 4,096 columns and 2,047 rows are exact
-  drift        poses of any of 2^32 frames are as exact as that of the first
-  sameness     neither bands nor memory change a picture
-  hostile      damaged streams are refused or drawn, without a panic
-
 Overflows are seen by a build that looks for them: cargo run --profile stress -- stress";
+
+/// The examples, and what each family asserts.
+fn after_help() -> String {
+    let families = stress::families();
+    let lines: Vec<_> = families.iter().map(|family| format!("  {:11} {}", family.name(), family.about())).collect();
+    format!("{EXAMPLES}\n\nFamilies:\n{}", lines.join("\n"))
+}
 
 fn seconds(text: &str) -> Result<f64, String> {
     text.parse().ok().filter(|&seconds: &f64| seconds > 0.0 && seconds <= 1e7).ok_or_else(|| "a number of seconds is needed".into())
@@ -102,10 +100,10 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome> {
 /// Runs one family, with a bar.
 fn look(family: &dyn Family, arguments: &Arguments, seed: u64, seconds: f64) -> Result<Summary> {
     let begin = Instant::now();
-    let bar = report::progress(arguments.cases.unwrap_or((seconds * 10.0) as u64 + 2), family.name());
+    let bar = report::progress(arguments.cases.unwrap_or(seconds.ceil() as u64), family.name());
     let clock = |count: u64| {
         let gone = begin.elapsed();
-        bar.set_position(if arguments.cases.is_some() { count } else { (gone.as_secs_f64() * 10.0) as u64 });
+        bar.set_position(if arguments.cases.is_some() { count } else { gone.as_secs() });
         arguments.cases.map_or(gone < Duration::from_secs_f64(seconds), |cases| count < cases)
     };
     let summary = stress::run(family, seed, arguments.first, &clock);

@@ -3,13 +3,17 @@
 //! Whatever the bytes are, nothing may panic, and no sum or product may overflow.
 
 use crate::case::Case;
-use microphong::stream::{record::Header, seal};
+use microphong::stream::{
+    record::{Header, MAGIC, VERSION},
+    seal,
+};
 use microphong_render::{
     bytes::StreamBytes,
     mesh, obj,
     render::{Format, Style},
     shader::Shader,
 };
+use zerocopy::FromBytes;
 
 /// What is done with a fuzzer's bytes.
 pub type Target = fn(&[u8]);
@@ -40,13 +44,10 @@ pub fn structured(bytes: &[u8]) {
 pub fn case(bytes: &[u8]) -> Option<Case> {
     let (choices, rest) = bytes.split_first_chunk::<CHOICES>()?;
     let mut bytes = rest.to_vec();
-    if bytes.len() < size_of::<Header>() {
-        return None;
-    }
     // Magic, version and length are not worth a fuzzer's time.
-    bytes[..6].copy_from_slice(b"mTRI\x03\0");
-    let length = (bytes.len() as u32).to_le_bytes();
-    bytes[8..12].copy_from_slice(&length);
+    let length = bytes.len() as u32;
+    let (header, _) = Header::mut_from_prefix(&mut bytes).ok()?;
+    (header.magic, header.version, header.length) = (MAGIC, VERSION, length);
     seal(&mut bytes);
     let stream = StreamBytes::from(&bytes[..]);
     stream.parse().ok()?;

@@ -130,28 +130,17 @@ pub struct Failure {
     pub case: Option<Case>,
 }
 
-/// When to stop.
-pub trait Clock: Sync {
-    /// Whether another case is to be run, after this `count`; it is called once for each.
-    fn goes_on(&self, count: u64) -> bool;
-}
-
-impl<F: Fn(u64) -> bool + Sync> Clock for F {
-    fn goes_on(&self, count: u64) -> bool {
-        self(count)
-    }
-}
-
-/// Runs cases from number `first` on of `family` on all processors until `clock` stops it, or one fails.
+/// Runs cases of `family` from number `first` on, on all processors, as long as none fails and `goes_on` after so many, which is asked before
+/// each.
 #[must_use]
-pub fn run(family: &dyn Family, seed: u64, first: u64, clock: &dyn Clock) -> Summary {
+pub fn run(family: &dyn Family, seed: u64, first: u64, goes_on: &(dyn Fn(u64) -> bool + Sync)) -> Summary {
     quiet();
     let (next, stop) = (AtomicU64::new(0), AtomicBool::new(false));
     let work = || {
         let (mut cases, mut skipped, mut worst, mut failures) = (0, 0, 0f64, Vec::new());
         while !stop.load(Ordering::Relaxed) {
             let count = next.fetch_add(1, Ordering::Relaxed);
-            if !clock.goes_on(count) {
+            if !goes_on(count) {
                 break;
             }
             let number = first.wrapping_add(count);

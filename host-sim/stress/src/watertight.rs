@@ -7,6 +7,7 @@
 use crate::{
     Family, Verdict,
     case::Case,
+    coverage::{Corners, covers, side},
     random::Random,
     scenes::{self, Wishes},
 };
@@ -22,7 +23,7 @@ use microphong::{
 use microphong_render::{bytes::StreamBytes, render, shader::Shader};
 use zerocopy::{FromBytes, IntoBytes};
 
-/// What no pixel of a mesh looks like: no light is stronger in green than in nothing.
+/// A colour that none of the scenes shows, so that what is not drawn can be told: red and blue in full, without green.
 pub const BACKGROUND: Rgb888 = Rgb888::MAGENTA;
 
 /// Scenes that are wholly seen.
@@ -88,9 +89,9 @@ pub fn covered(stream: &Stream<'_>, size: [u32; 2], number: u32) -> Option<Vec<u
     for mesh in stream.meshes {
         let place = |position| {
             let ([x, y, _], inside) = view.project(view.to_eye(position));
-            inside.then_some([x.into(), y.into()])
+            inside.then_some([x, y])
         };
-        let places: Option<Vec<[i64; 2]>> = stream.vertices_of(mesh)?.iter().map(|vertex| place(vertex.position)).collect();
+        let places: Option<Vec<[i32; 2]>> = stream.vertices_of(mesh)?.iter().map(|vertex| place(vertex.position)).collect();
         let places = places?;
         for triangle in stream.triangles_of(mesh)? {
             // Clockwise with y down, against the stream's order.
@@ -101,32 +102,20 @@ pub fn covered(stream: &Stream<'_>, size: [u32; 2], number: u32) -> Option<Vec<u
     Some(counts)
 }
 
-fn cover(corners: [[i64; 2]; 3], size: [u32; 2], counts: &mut [u8]) {
+fn cover(corners: Corners, size: [u32; 2], counts: &mut [u8]) {
     let [a, b, c] = corners;
-    if cross(a, b, c) <= 0 {
+    if side(a, b, c) <= 0 {
         return;
     }
     // Pixels whose centres, at 8/16, lie in the box.
     let range = |k: usize| {
         let (low, high) = (a[k].min(b[k]).min(c[k]), a[k].max(b[k]).max(c[k]));
-        (low + 7).div_euclid(16).max(0)..((high - 8).div_euclid(16) + 1).min(size[k].into())
+        (low + 7).div_euclid(16).max(0)..((high - 8).div_euclid(16) + 1).min(size[k] as i32)
     };
     for y in range(1) {
         for x in range(0) {
-            let centre = [x, y].map(|c| 16 * c + 8);
-            let inside = (0..3).all(|k| {
-                let (from, to) = (corners[k], corners[(k + 1) % 3]);
-                // A left edge runs up, a top edge to the right: they own their points.
-                let owned = to[1] < from[1] || to[1] == from[1] && to[0] > from[0];
-                cross(from, to, centre) >= i64::from(!owned)
-            });
             let count = &mut counts[y as usize * size[0] as usize + x as usize];
-            *count = count.saturating_add(u8::from(inside));
+            *count = count.saturating_add(u8::from(covers(corners, [x, y].map(|c| 16 * c + 8))));
         }
     }
-}
-
-/// Twice the area of a triangle, positive if it runs clockwise with y down.
-fn cross(a: [i64; 2], b: [i64; 2], c: [i64; 2]) -> i64 {
-    (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0])
 }
