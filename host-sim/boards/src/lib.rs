@@ -89,7 +89,7 @@ impl Board {
     /// Whether its firmware has room for the method.
     #[must_use]
     pub fn has(self, shader: Shader) -> bool {
-        self != Self::Lm3s6965evb || [Shader::FLAT, Shader::GOURAUD, Shader::SIX_POINT].contains(&shader)
+        self != Self::Lm3s6965evb || [Shader::FLAT, Shader::GOURAUD, Shader::SIX_POINT, Shader::PHONG].contains(&shader)
     }
 
     /// How it stores a pixel.

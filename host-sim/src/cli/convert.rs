@@ -35,7 +35,7 @@ pub(crate) struct Arguments {
     #[arg(long)]
     flip: bool,
     /// Shading method that the stream asks for: flat, gouraud, six-point, phong, sqrt6, renq-newton, or one of the literature, as
-    /// `microphong compare` lists them. The board lm3s6965evb has the first three, the others have all.
+    /// `microphong compare` lists them. The board lm3s6965evb has the first four, the others have all.
     #[arg(long, default_value = "six-point", value_parser = parse::shader)]
     shader: Shader,
     /// Colour of the surface, RRGGBB; copper unless given.
