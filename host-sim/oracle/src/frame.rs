@@ -1,6 +1,6 @@
 //! The triangles of one frame that face the viewer, where they lie on the screen, and what shines on them.
 
-use super::light::{Light, Material, Place};
+use super::scene::{Light, Material, Place, direction};
 use embedded_graphics_core::geometry::Size;
 use microphong::{
     Stream,
@@ -11,7 +11,7 @@ use microphong::{
         record::{DIRECTIONAL, EYE_SPACE, PERSPECTIVE, VIEWER_LOCAL},
     },
 };
-use microphong_render::vector::{V3, add, apply, cross, dot, length, scale, sub, unit};
+use microphong_render::vector::{V3, add, apply, cross, dot, length, scale, sub};
 
 /// All that a picture of one frame depends on, in object space.
 #[derive(Clone, Debug)]
@@ -63,11 +63,6 @@ fn real<const N: usize>(v: [i32; N], bits: u32) -> [f64; N] {
 /// Reflectance or light.
 fn gain(colour: [Gain; 3]) -> V3 {
     colour.map(f64::from)
-}
-
-/// The vector `v`, of any length but zero, with length one; a vector without direction becomes zero.
-pub(super) fn direction(v: V3) -> V3 {
-    unit(v).unwrap_or_default()
 }
 
 impl Frame {

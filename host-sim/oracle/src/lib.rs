@@ -10,13 +10,15 @@ mod method;
 pub mod papers;
 mod poly;
 mod scanline;
+mod scene;
 mod visible;
 
 pub use frame::{Facet, Frame};
-pub use light::{Light, Material, Place, phong};
+pub use light::phong;
 pub(crate) use method::angular;
 pub use method::{NAMES, Unsupported, decides, method};
 pub(crate) use poly::{SIX, TEN, cubic, quadratic, sum};
+pub use scene::{Light, Material, Place};
 
 /// Red, green and blue; 255 is full. Clamped to [0, 255].
 pub type Levels = [f64; 3];

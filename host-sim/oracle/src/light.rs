@@ -1,52 +1,11 @@
-//! What a point of a surface reflects: lights, materials, and Phong's sum over them.
+//! What a point of a surface reflects: Phong's sum over the lights.
 
 use super::{
     Levels, Shade,
-    frame::{Facet, Frame, direction},
+    frame::{Facet, Frame},
+    scene::{Light, Material, direction},
 };
-use microphong_render::vector::{V3, add, dot, sub};
-
-/// Where a light or a viewer is, object space.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Place {
-    /// Infinitely far: the unit vector towards it.
-    Far(V3),
-    /// At a position.
-    Near(V3),
-}
-
-impl Place {
-    /// Unit vector from `position` towards it.
-    #[must_use]
-    pub fn from(&self, position: V3) -> V3 {
-        match *self {
-            Self::Far(towards) => towards,
-            Self::Near(place) => direction(sub(place, position)),
-        }
-    }
-}
-
-/// A light without fall-off.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Light {
-    /// Where it is.
-    pub place: Place,
-    /// Red, green, blue; 1 is full.
-    pub colour: V3,
-}
-
-/// How a surface reflects light; per channel, 1 is all of it.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Material {
-    /// What is there without lights.
-    pub ambient: V3,
-    /// Evenly.
-    pub diffuse: V3,
-    /// In the highlight.
-    pub specular: V3,
-    /// Of the highlight: larger is smaller.
-    pub exponent: f64,
-}
+use microphong_render::vector::{V3, add, dot};
 
 /// The unit vectors that shading is made of.
 #[derive(Clone, Copy, Debug)]

@@ -4,23 +4,25 @@
 
 use crate::{
     mesh::{Mesh, is_closed},
-    quantise::Part,
     vector::{V3, cross, dot, length, scale, sub, unit},
 };
-use microphong::{format::UNIT, stream::record::LEAN};
+use microphong::{
+    format::UNIT,
+    stream::record::{LEAN, Triangle, Vertex},
+};
 use std::f64::consts::PI;
 
 /// What a file's decimals may add to a convex body, in units of the last place. That there is an exactly convex one as near
 /// as this is taken for granted; the renderer has 0.36 to spare.
 const SLACK: f64 = 0.25;
 
-/// Whether `mesh` is closed and convex, and `part`, its rounded copy, has all of its triangles with hardly leaning planes.
+/// Whether `mesh` is closed and convex, and its rounded copy, `vertices` and `triangles`, has all of its triangles with hardly leaning planes.
 ///
 /// Looks at the mesh before rounding: after it, every other flat quadrilateral has a dent.
 #[must_use]
-pub fn is_closed_convex(mesh: &Mesh, part: &Part) -> bool {
-    let Some(triangles) = solid(mesh) else { return false };
-    is_closed(mesh) && is_small(mesh) && surrounds(&triangles) && leans_little(&triangles, part) && is_convex(mesh, &triangles)
+pub fn is_closed_convex(mesh: &Mesh, vertices: &[Vertex], triangles: &[Triangle]) -> bool {
+    let Some(faces) = solid(mesh) else { return false };
+    is_closed(mesh) && is_small(mesh) && surrounds(&faces) && leans_little(&faces, vertices, triangles) && is_convex(mesh, &faces)
 }
 
 /// A triangle's corners and normal.
@@ -64,9 +66,9 @@ fn solid_angle([a, b, c]: [V3; 3]) -> f64 {
 }
 
 /// Rounding has turned no plane by more than 2^-[`LEAN`] rad.
-fn leans_little(faces: &[Face], part: &Part) -> bool {
-    let rounded = part.triangles.iter().map(|t| normal(t.corners.map(|v| part.vertices[usize::from(v)].position().map(f64::from))));
-    faces.len() == part.triangles.len()
+fn leans_little(faces: &[Face], vertices: &[Vertex], triangles: &[Triangle]) -> bool {
+    let rounded = triangles.iter().map(|t| normal(t.corners.map(|v| vertices[usize::from(v)].position().map(f64::from))));
+    faces.len() == triangles.len()
         && faces.iter().zip(rounded).all(|(face, rounded)| rounded.is_some_and(|n| length(sub(n, face.normal)) < (-f64::from(LEAN)).exp2()))
 }
 

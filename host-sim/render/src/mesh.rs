@@ -1,7 +1,7 @@
 //! Polygon soup to a welded mesh of triangles.
 
 use crate::{
-    polygon::{cut, newell},
+    polygon::{WELD, cut, newell},
     vector::{V3, add, cross, dot, length, scale, sub, unit},
 };
 use anyhow::{Result, bail};
@@ -53,8 +53,6 @@ pub struct Report {
     pub turned: bool,
 }
 
-/// Positions nearer than this share of the mesh's radius are one.
-pub(crate) const WELD: f64 = 1e-6;
 /// Smaller meshes would vanish when squared.
 const SMALLEST: f64 = 1e-100;
 /// A smaller share of the distance from the origin has too few of the 53 bits of a coordinate left for the 15 of a stream.

@@ -3,12 +3,12 @@
 //! Convex ones become fans around their first corner. All others are projected onto the plane whose normal Newell's formula gives, and
 //! cut by ear clipping: David Eberly, Triangulation by Ear Clipping, 2002, as the library earcut has it.
 
-use crate::{
-    mesh::WELD,
-    vector::{V3, add, cross, dot, length, sub, unit},
-};
+use crate::vector::{V3, add, cross, dot, length, sub, unit};
 use earcut::Earcut;
 use std::f64::consts::PI;
+
+/// Positions nearer than this share of the mesh's radius are one.
+pub(crate) const WELD: f64 = 1e-6;
 
 /// A polygon in triangles, which name its corners.
 #[derive(Clone, Debug, Default, PartialEq)]

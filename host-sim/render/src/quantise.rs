@@ -63,7 +63,7 @@ pub fn quantise(mesh: &Mesh) -> (Vec<Part>, usize) {
     }
     parts.retain(|part| !part.triangles.is_empty());
     if let ([part], 0) = (&mut parts[..], dropped) {
-        part.closed_convex = is_closed_convex(mesh, part);
+        part.closed_convex = is_closed_convex(mesh, &part.vertices, &part.triangles);
     }
     (parts, dropped)
 }

@@ -3,9 +3,9 @@
 
 use crate::{
     Facet, Frame, Light, Shade,
-    frame::direction,
     poly::{SIX, quadratic, sum},
     scanline::{End, Span},
+    scene::direction,
 };
 use microphong_render::vector::{V3, add, cross, dot, scale};
 

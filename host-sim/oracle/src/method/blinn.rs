@@ -3,9 +3,9 @@
 use super::environment::diffuse;
 use crate::{
     Facet, Frame, Light, Shade,
-    frame::direction,
     light::highlight,
     poly::{SIX, blend, quadratic as quadratic_weights, sum},
+    scene::direction,
 };
 use microphong_render::vector::{V3, cross, dot, scale, sub};
 

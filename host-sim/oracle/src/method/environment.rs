@@ -2,9 +2,9 @@
 
 use crate::{
     Facet, Frame, Place, Shade,
-    frame::direction,
     light::highlight,
     poly::{blend, sum},
+    scene::direction,
 };
 use microphong_render::vector::{V3, add, apply, dot, scale, sub};
 

@@ -3,9 +3,9 @@
 
 use crate::{
     Facet, Frame, Shade,
-    frame::direction,
     light::reflection,
     scanline::{Span, lerp},
+    scene::direction,
 };
 use microphong_render::vector::{dot, length as length_of};
 

@@ -2,8 +2,8 @@
 
 use crate::{
     Facet, Frame, Shade,
-    frame::direction,
-    light::{Light, reflection},
+    light::reflection,
+    scene::{Light, direction},
 };
 use microphong_render::vector::dot;
 

@@ -2,8 +2,8 @@
 
 use crate::{
     Facet, Frame, Shade,
-    frame::direction,
     scanline::{Span, slerp},
+    scene::direction,
 };
 use microphong_render::vector::dot;
 

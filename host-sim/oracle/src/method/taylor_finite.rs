@@ -71,7 +71,7 @@ mod tests {
     fn constant_directions_give_the_simpler_expansion() {
         for (x, y) in [(0.0, 0.0), (0.3, -0.2), (-0.5, 0.4)] {
             let m = change(NORMALS, x, y);
-            let simple = taylor::expansion(crate::frame::direction(TOWARDS[0]), NORMALS[0], m);
+            let simple = taylor::expansion(crate::scene::direction(TOWARDS[0]), NORMALS[0], m);
             assert!((expansion([NORMALS[0], m], [TOWARDS[0], [0.0; 3]]) - simple).abs() < 1e-12);
         }
     }
@@ -79,7 +79,7 @@ mod tests {
     /// The vector that is linear in between is L + V, both of unit length, not H.
     #[test]
     fn the_sum_of_light_and_view_is_interpolated() {
-        let normals = [[-0.3, -0.2, 1.0], [0.35, -0.1, 1.0], [0.0, 0.4, 1.0]].map(crate::frame::direction);
+        let normals = [[-0.3, -0.2, 1.0], [0.35, -0.1, 1.0], [0.0, 0.4, 1.0]].map(crate::scene::direction);
         let positions = [[-0.8, -0.6, 0.0], [0.1, 0.9, 0.0], [0.8, -0.4, 0.0]];
         let facet = Facet::new([[10.0, 90.0], [40.0, 5.0], [95.0, 70.0]], [0, 1, 2], normals, positions);
         let glossy = Material { ambient: [0.0; 3], diffuse: [0.0; 3], specular: [1.0; 3], exponent: 1.0 };
