@@ -11,10 +11,7 @@ use crate::{
         projection::{State, View},
         viewport::{Bounds, Viewport},
     },
-    lighting::{
-        lights::{Direction, Lighting},
-        materials::MaterialTables,
-    },
+    lighting::{lights::Lighting, materials::MaterialTables},
     memory::Memory,
     mesh::{MeshPass, vertices::VertexStage},
     method::{Shading, Style},
@@ -92,8 +89,6 @@ pub struct Frame<'r, 'a, C: Pixel> {
     lighting: Lighting,
     /// See [`Lighting::constant`].
     constant: Option<[[i32; 3]; 2]>,
-    /// [`Self::constant`], split for products with vertex normals.
-    directions: Option<[Direction; 2]>,
     /// Where triangles may overlap; `None` if they may do so everywhere.
     depth_elision: Option<DepthElision>,
     bins: Bins,
@@ -124,7 +119,6 @@ impl<'r, 'a, C: Pixel> Frame<'r, 'a, C> {
             view,
             lighting,
             constant,
-            directions: constant.map(|constant| constant.map(Direction::new)),
             depth_elision: None,
             bins: Bins::new(state.size.height, state.band_rows()),
             binned: false,
@@ -197,7 +191,7 @@ impl<C: Pixel> Frame<'_, '_, C> {
     fn prepare(&mut self) {
         // A copy, which stays in registers.
         let facing = self.facing;
-        let Self { state, view, lighting, directions, depth_elision, bins, stats, rows, .. } = self;
+        let Self { state, view, lighting, constant, depth_elision, bins, stats, rows, .. } = self;
         let viewport = state.viewport();
         let RenderState { stream, memory: Memory { vertices: cache, bins: entries, reflectances, .. }, shader, size, .. } = &mut **state;
         let entries = &mut **entries;
@@ -210,7 +204,7 @@ impl<C: Pixel> Frame<'_, '_, C> {
             let (vertices, triangles) = (stream.vertices_of(mesh).unwrap_or_default(), stream.triangles_of(mesh).unwrap_or_default());
             let Some(reflectance) = reflectances.get(usize::from(mesh.material)) else { continue };
             let light = shader.facts().vertex_light;
-            let stage = VertexStage { view, lighting, constant: directions.as_ref(), reflectance, light };
+            let stage = VertexStage { view, lighting, constant: constant.as_ref(), reflectance, light };
             let cached = cache.get_mut(mesh.first_vertex as usize..).unwrap_or_default();
             let (first, mut rest) = (mesh.first_triangle, triangles);
             while let [before @ .., triangle] = rest {
@@ -251,10 +245,10 @@ impl<C: Pixel> Frame<'_, '_, C> {
 
     /// The stage that transforms and lights the vertices of `mesh`.
     fn stage(&self, mesh: &Mesh) -> Option<VertexStage<'_>> {
-        let Self { state, view, lighting, directions, .. } = self;
+        let Self { state, view, lighting, constant, .. } = self;
         let light = state.shader.facts().vertex_light;
         let reflectance = state.memory.reflectances.get(usize::from(mesh.material))?;
-        Some(VertexStage { view, lighting, constant: directions.as_ref(), reflectance, light })
+        Some(VertexStage { view, lighting, constant: constant.as_ref(), reflectance, light })
     }
 
     /// The mesh of triangle `id`.
@@ -360,7 +354,6 @@ impl<C: Pixel> Frame<'_, '_, C> {
                 lighting: &self.lighting,
                 exponent: stream.materials.get(material)?.exponent,
                 constant: self.constant,
-                directions: self.directions,
             },
             tables: MaterialTables { ramp, reflectance },
             dither: *dither,

@@ -41,7 +41,7 @@ fn draw(setup: &TriangleSetup<'_>, shading: &Shading<'_>, canvas: &mut dyn Canva
     if !has_no_highlight(setup, shading) {
         return Phong.shade(setup, shading, canvas);
     }
-    if shading.constant.is_none() {
+    if !shading.vertices_have_cosines() {
         return Gouraud.shade(setup, shading, canvas);
     }
     let levels = setup.corners.map(|corner| shading.reflectance.one_light([corner.light[0], corner.light[1]]));
@@ -50,7 +50,7 @@ fn draw(setup: &TriangleSetup<'_>, shading: &Shading<'_>, canvas: &mut dyn Canva
 
 /// No light's highlight reaches a visible level anywhere on the triangle.
 fn has_no_highlight(setup: &TriangleSetup<'_>, shading: &Shading<'_>) -> bool {
-    if shading.constant.is_some() {
+    if shading.vertices_have_cosines() {
         return setup.has_no_highlight(shading.reflectance);
     }
     let limit = setup.highlight_threshold(shading.reflectance);

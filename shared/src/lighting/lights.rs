@@ -1,6 +1,7 @@
 //! The lights of one frame in object space. They are moved there once a frame, so that no normal needs to be rotated.
 
 use crate::{
+    arch::product::{HALVES, by_fraction},
     format::{COSINE, MAX_LIGHTS, UNIT},
     geometry::pose::Pose,
     math::vector::{add, dot, narrow_dot, normalise, sub},
@@ -44,6 +45,8 @@ pub struct Lighting {
     pub axes: [[i32; 3]; 3],
     /// The eye in these axes, relative to the origin of object space, Q18.14. It is as exact as the camera, unlike [`Viewer::Local`].
     pub eye: [i32; 3],
+    /// See [`Self::is_constant`].
+    constant: bool,
 }
 
 impl Lighting {
@@ -64,7 +67,9 @@ impl Lighting {
             let _ = sources.push(source(light, pose, towards_eye));
         }
         let [x, y, z] = pose.translation;
-        Self { sources, viewer, axes: [right, up, towards_eye], eye: [-x, -y, z] }
+        let directional = sources.iter().all(|source| matches!(source, Source::Directional { .. }));
+        let constant = directional && matches!(viewer, Viewer::Infinite(_));
+        Self { sources, viewer, axes: [right, up, towards_eye], eye: [-x, -y, z], constant }
     }
 
     /// L and H, if there is just one light, directional, under an infinite viewer. N·L and N·H are then linear in N, which every method can
@@ -95,10 +100,10 @@ impl Lighting {
     }
 
     /// Whether all lights are directional and the viewer is infinitely far, so that L and H are the same everywhere.
+    #[inline(always)]
     #[must_use]
     pub fn is_constant(&self) -> bool {
-        let directional = self.sources.iter().all(|source| matches!(source, Source::Directional { .. }));
-        directional && matches!(self.viewer, Viewer::Infinite(_))
+        self.constant
     }
 }
 
@@ -133,27 +138,56 @@ pub fn cosine(a: [i32; 3], b: [i32; 3]) -> i32 {
     (dot(a, b) >> COSINE) as i32
 }
 
-/// A unit vector for products with vertex normals: each component, Q2.30, is kept as an upper part and a lower part of [`UNIT`] bits.
-#[derive(Clone, Copy, Debug)]
-pub struct Direction {
-    upper: [i32; 3],
-    lower: [i32; 3],
+/// The dot product of a vector no longer than 2^`BITS` and a unit vector, Q2.30, in the format of the former with its `BITS` bits taken
+/// off: rounded down. Exact, from products of 32 bits where longer ones are calls.
+#[inline(always)]
+fn scaled_dot<const BITS: u32>(v: [i32; 3], unit: [i32; 3]) -> i32 {
+    if !HALVES {
+        return (dot(v, unit) >> BITS) as i32;
+    }
+    let [x, y, z] = unit;
+    let lower = |c: i32| c & ((1 << BITS) - 1);
+    let upper = narrow_dot(v, [x >> BITS, y >> BITS, z >> BITS]);
+    upper.wrapping_add(narrow_dot(v, [lower(x), lower(y), lower(z)]) >> BITS)
 }
 
-impl Direction {
-    /// Splits the unit vector `v`, Q2.30.
-    #[must_use]
-    pub fn new(v: [i32; 3]) -> Self {
-        Self { upper: v.map(|c| c >> UNIT), lower: v.map(|c| c & ((1 << UNIT) - 1)) }
-    }
+/// [`cosine`] of a vertex normal, [`crate::format::Unit`], and a unit vector: the same bits, sooner.
+#[inline(always)]
+#[must_use]
+pub fn vertex_cosine(normal: [i32; 3], direction: [i32; 3]) -> i32 {
+    scaled_dot::<UNIT>(normal, direction)
+}
 
-    /// Cosine of the angle to a vertex normal, Q2.30: the bits of [`cosine`], from products of 32 bits.
-    ///
-    /// Domain: `normal` is no longer than 1, [`crate::format::Unit`]. Exact (tests::vertex_cosines_are_the_same_bits).
+/// A unit normal half-way between two vertices, or at one of them: half the sum of two vertex normals, times a factor.
+#[derive(Clone, Copy, Debug)]
+pub struct MeanNormal {
+    /// The sum, Q3.14.
+    sum: [i32; 3],
+    /// The factor less one, Q0.16: [`crate::stream::record::Triangle::inverse_sum_length`].
+    excess: u16,
+}
+
+impl MeanNormal {
+    /// Half-way between two vertex normals, with the factor of their edge in the stream.
     #[inline(always)]
     #[must_use]
-    pub fn cosine(&self, normal: [i32; 3]) -> i32 {
-        narrow_dot(normal, self.upper).wrapping_add(narrow_dot(normal, self.lower) >> UNIT)
+    pub fn new(a: [i32; 3], b: [i32; 3], excess: u16) -> Self {
+        Self { sum: add(a, b), excess }
+    }
+
+    /// A vertex normal, or that of a triangle's plane.
+    #[inline(always)]
+    #[must_use]
+    pub fn at(normal: [i32; 3]) -> Self {
+        Self::new(normal, normal, 0)
+    }
+
+    /// Cosine of the angle to a unit vector, Q2.30. At a vertex the bits of [`vertex_cosine`].
+    #[inline(always)]
+    #[must_use]
+    pub fn cosine(&self, direction: [i32; 3]) -> i32 {
+        let mean = scaled_dot::<{ UNIT + 1 }>(self.sum, direction);
+        mean.wrapping_add(by_fraction(mean, self.excess))
     }
 }
 
@@ -184,7 +218,9 @@ mod tests {
             let c = |k: i32| seed.wrapping_mul(k).wrapping_mul(seed ^ 77);
             let direction = normalise([c(1_664_525), c(22_695_477), c(1_103_515_245)]);
             let normal = normalise([c(69_069), c(134_775_813), c(48_271)]).map(|c| c >> 16);
-            assert_eq!(Direction::new(direction).cosine(normal), cosine(normal.map(|c| c << 16), direction), "{direction:?} {normal:?}");
+            let exact = cosine(normal.map(|c| c << 16), direction);
+            assert_eq!(vertex_cosine(normal, direction), exact, "{direction:?} {normal:?}");
+            assert_eq!(MeanNormal::at(normal).cosine(direction), exact, "{direction:?} {normal:?}");
         }
     }
 }

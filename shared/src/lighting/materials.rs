@@ -3,6 +3,7 @@
 use crate::{
     arch::product::upper,
     format::{BIAS, COSINE, Intensity, LEVEL, MAX_LIGHTS, PIXEL_COSINE, RAMP, UNIT, WALK},
+    lighting::lights::{MeanNormal, Source},
     math::{
         highlight_lut::{Base, ENTRY, HighlightLut, square},
         vector::zip,
@@ -260,6 +261,25 @@ impl Reflectance {
             self.add(&mut levels, gains, diffuse, highlight);
         }
         levels.map(|level| level.min(FULL))
+    }
+
+    /// Levels under lights that are the same everywhere, Q9.7 in [0, 255]: the bits of [`Self::levels`].
+    #[inline(never)]
+    #[must_use]
+    pub fn constant_levels(&self, sources: &[Source], normal: &MeanNormal) -> [i32; 3] {
+        let [mut r, mut g, mut b] = self.ambient;
+        for (source, gains) in sources.iter().zip(&self.gains) {
+            if let Source::Directional { towards, half } = *source {
+                let (diffuse, highlight) = (normal.cosine(towards), self.highlight_lut.at(normal.cosine(half)));
+                let ([dr, dg, db], [sr, sg, sb]) = (gains.diffuse, gains.specular);
+                r += reflected((dr, sr), diffuse, highlight);
+                if self.three_channels() {
+                    g += reflected((dg, sg), diffuse, highlight);
+                    b += reflected((db, sb), diffuse, highlight);
+                }
+            }
+        }
+        if self.three_channels() { [r.min(FULL), g.min(FULL), b.min(FULL)] } else { [r.min(FULL); 3] }
     }
 
     /// The levels of ambient light, Q9.7.

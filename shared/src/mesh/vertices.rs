@@ -8,7 +8,7 @@ use crate::{
         viewport::{Bounds, Viewport},
     },
     lighting::{
-        lights::{Direction, Lighting},
+        lights::{Lighting, MeanNormal, vertex_cosine},
         materials::Reflectance,
     },
     math::vector::wide,
@@ -21,7 +21,7 @@ pub(crate) struct VertexStage<'f> {
     pub(crate) view: &'f View,
     pub(crate) lighting: &'f Lighting,
     /// See [`Lighting::constant`].
-    pub(crate) constant: Option<&'f [Direction; 2]>,
+    pub(crate) constant: Option<&'f [[i32; 3]; 2]>,
     pub(crate) reflectance: &'f Reflectance,
     /// The light that the method needs at vertices.
     pub(crate) light: VertexLight,
@@ -59,11 +59,12 @@ impl VertexStage<'_> {
         let normal = wide(vertex.normal);
         let light = match (self.light, self.constant) {
             (VertexLight::None, _) | (VertexLight::Cosines, None) => [0; 3],
-            (light, Some([towards, half])) => {
-                let [diffuse, half] = [towards.cosine(normal), half.cosine(normal)];
-                if light == VertexLight::Levels { self.reflectance.one_light([diffuse, half]) } else { [diffuse, half, 0] }
+            (light, Some([towards, half])) if light == VertexLight::Cosines || !self.reflectance.three_channels() => {
+                let cosines = [vertex_cosine(normal, *towards), vertex_cosine(normal, *half)];
+                if light == VertexLight::Levels { [self.reflectance.level(cosines); 3] } else { [cosines[0], cosines[1], 0] }
             }
-            (_, None) => self.reflectance.levels(self.lighting.cosines(wide(vertex.position), normal.map(|c| c << (30 - UNIT)))),
+            _ if self.lighting.is_constant() => self.reflectance.constant_levels(&self.lighting.sources, &MeanNormal::at(normal)),
+            _ => self.reflectance.levels(self.lighting.cosines(wide(vertex.position), normal.map(|c| c << (30 - UNIT)))),
         };
         ScreenVertex { x, y, depth, light, state: if inside { State::READY } else { State::OUTSIDE } }
     }

@@ -87,7 +87,7 @@ pub enum VertexLight {
     None,
     /// `[N·L, N·H]` under one constant light, else nothing.
     Cosines,
-    /// `[N·L, N·H]` under one constant light, else levels.
+    /// `[N·L, N·H]` under one constant light on a material of one channel, else levels.
     CosinesOrLevels,
     /// Levels.
     Levels,

@@ -5,7 +5,10 @@
 use crate::{
     format::UNIT,
     interpolate::Constant,
-    lighting::materials::{Highlight, MaterialTables},
+    lighting::{
+        lights::{MeanNormal, vertex_cosine},
+        materials::{Highlight, MaterialTables},
+    },
     math::vector::{add, wide},
     method::{Costs, Facts, Loops, Method, Shading, Style, TriangleSetup, Uniform, VertexLight, node::Node, of_levels},
     pixel::Pixel,
@@ -54,10 +57,10 @@ impl Loops for Flat {
         tables: MaterialTables<'_, C>,
         band: &mut Band<'_, C>,
     ) -> Option<u32> {
-        let colour = match &shading.directions {
+        let colour = match shading.constant {
             Some([towards, half]) if !shading.reflectance.three_channels() => {
                 let normal = wide(setup.triangle.normal);
-                tables.tint(shading.reflectance.level([towards.cosine(normal), half.cosine(normal)]))
+                tables.tint(shading.reflectance.level([vertex_cosine(normal, towards), vertex_cosine(normal, half)]))
             }
             _ => tables.colour(levels(&setup.for_lighting(), shading)),
         };
@@ -69,10 +72,10 @@ impl Loops for Flat {
 #[inline(never)]
 fn levels(setup: &TriangleSetup<'_>, shading: &Shading<'_>) -> [i32; 3] {
     let normal = wide(setup.triangle.normal);
-    match &shading.directions {
-        Some([towards, half]) => shading.reflectance.one_light([towards.cosine(normal), half.cosine(normal)]),
-        None => shading.levels(&centroid(setup, normal)),
+    if shading.lighting.is_constant() {
+        return shading.reflectance.constant_levels(&shading.lighting.sources, &MeanNormal::at(normal));
     }
+    shading.levels(&centroid(setup, normal))
 }
 
 /// The triangle's centroid, and the `normal` of its plane (Q2.14).

@@ -35,7 +35,7 @@ use crate::{
     arch::product::by_fraction,
     format::{BIAS, LEVEL, NORMAL_LENGTH, SUBPIXEL, WALK},
     interpolate::perspective::PerspectivePatch,
-    lighting::{lights::Direction, materials::MaterialTables},
+    lighting::materials::MaterialTables,
     pixel::Pixel,
     raster::{
         active::ActiveTriangle,
@@ -274,9 +274,6 @@ pub struct Shading<'f> {
     pub exponent: u16,
     /// L and H of the only light, if they are constant, see [`Lighting::constant`].
     pub constant: Option<[[i32; 3]; 2]>,
-    /// [`Self::constant`], split for products with vertex normals.
-    #[doc(hidden)]
-    pub directions: Option<[Direction; 2]>,
 }
 
 /// The first channel of each node. The first three are written out because `map` is a loop through memory at opt-level "s".
@@ -313,6 +310,13 @@ const fn bias(half: i32) -> i32 {
 }
 
 impl Shading<'_> {
+    /// Whether vertices have [`VertexLight::Cosines`] where the method asks for [`VertexLight::CosinesOrLevels`].
+    #[inline(always)]
+    #[must_use]
+    pub fn vertices_have_cosines(&self) -> bool {
+        self.constant.is_some() && !self.reflectance.three_channels()
+    }
+
     /// Interpolates the levels at `N` nodes over `area`, in one channel or three, as the material needs. Levels are Q9.7, in a range
     /// narrower than 2^`BITS`.
     pub fn draw_levels<const N: usize, const BITS: u32>(&self, area: &impl Area, levels: [[i32; 3]; N], canvas: &mut dyn Canvas) -> u32
@@ -346,7 +350,7 @@ impl Shading<'_> {
     #[inline(always)]
     fn fill_three<const N: usize, C: Pixel>(
         setup: &TriangleSetup<'_>,
-        levels: impl FnOnce() -> [[i32; 3]; N],
+        channels: impl FnOnce() -> [[i32; N]; 3],
         band: &mut Band<'_, C>,
     ) -> u32
     where
@@ -354,7 +358,7 @@ impl Shading<'_> {
     {
         // Half a step of each channel.
         let bias = C::DEPTH.map(|depth| bias(1 << (WALK + 7 - depth)));
-        let patch = || Nodes::<N, 3, RANGE>::new(channels(levels()), EXTRA).biased(bias).fit(setup.gradients);
+        let patch = || Nodes::<N, 3, RANGE>::new(channels(), EXTRA).biased(bias).fit(setup.gradients);
         setup.fill(patch, Rgb(PhantomData), band)
     }
 }

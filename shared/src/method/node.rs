@@ -3,7 +3,7 @@
 use crate::{
     arch::product::{by_fraction, product},
     format::{INVERSE_SUM_LENGTH, UNIT},
-    lighting::lights::{Direction, cosine},
+    lighting::lights::{MeanNormal, cosine, vertex_cosine},
     math::{
         rsqrt::rsqrt_wide,
         vector::{add, dot, normalise, wide, zip},
@@ -31,6 +31,21 @@ impl Shading<'_> {
             return self.reflectance.one_light([cosine(node.normal, towards), cosine(node.normal, half)]);
         }
         self.reflectance.levels(self.lighting.cosines(node.position, node.normal))
+    }
+}
+
+impl Shading<'_> {
+    /// Levels at the midpoints of the edges 01, 12, 20, Q9.7.
+    #[inline(never)]
+    pub fn middle_levels(&self, setup: &TriangleSetup<'_>) -> [[i32; 3]; 3] {
+        if self.lighting.is_constant()
+            && let Some([ab, bc, ca]) = &setup.middle_normals()
+        {
+            let levels = |normal| self.reflectance.constant_levels(&self.lighting.sources, normal);
+            return [levels(ab), levels(bc), levels(ca)];
+        }
+        let [.., ab, bc, ca] = setup.six_nodes();
+        [self.levels(&ab), self.levels(&bc), self.levels(&ca)]
     }
 }
 
@@ -120,9 +135,18 @@ impl TriangleSetup<'_> {
     /// The cosines of the corners' normals with a unit vector, Q2.30.
     #[inline]
     pub fn corner_cosines(&self, direction: [i32; 3]) -> [i32; 3] {
-        let direction = Direction::new(direction);
         let [a, b, c] = self.vertices();
-        [direction.cosine(wide(a.normal)), direction.cosine(wide(b.normal)), direction.cosine(wide(c.normal))]
+        let cosine = |vertex: &Vertex| vertex_cosine(wide(vertex.normal), direction);
+        [cosine(a), cosine(b), cosine(c)]
+    }
+
+    /// The normals at the midpoints of the edges 01, 12, 20; `None` if the record does not hold the factors of all.
+    #[inline(always)]
+    fn middle_normals(&self) -> Option<[MeanNormal; 3]> {
+        let [ab, bc, ca] = self.edges(self.triangle.inverse_sum_length);
+        let [a, b, c] = self.vertices();
+        let (a, b, c) = (wide(a.normal), wide(b.normal), wide(c.normal));
+        (ab.max(bc).max(ca) != u16::MAX).then(|| [MeanNormal::new(a, b, ab), MeanNormal::new(b, c, bc), MeanNormal::new(c, a, ca)])
     }
 }
 

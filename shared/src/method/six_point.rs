@@ -7,7 +7,7 @@
 
 use crate::{
     lighting::materials::{Highlight, MaterialTables, Reflectance},
-    method::{Costs, Facts, Loops, Method, RANGE, Shading, Style, TriangleSetup, VertexLight, node::zip_six},
+    method::{Costs, Facts, Loops, Method, RANGE, Shading, Style, TriangleSetup, VertexLight, channels, first, node::zip_six},
     pixel::Pixel,
     raster::{band::Band, canvas::Canvas},
 };
@@ -54,7 +54,7 @@ impl Loops for SixPoint {
         } else {
             let nodes = || match shading.constant {
                 Some(_) => one_level(setup, shading.reflectance),
-                None => lit(&setup.for_lighting(), shading).map(|[level, ..]| level),
+                None => first(lit(&setup.for_lighting(), shading)),
             };
             Shading::fill_one(setup, nodes, tables, band)
         })
@@ -63,16 +63,16 @@ impl Loops for SixPoint {
 
 #[inline(always)]
 fn three<C: Pixel>(setup: &TriangleSetup<'_>, shading: &Shading<'_>, band: &mut Band<'_, C>) -> u32 {
-    Shading::fill_three(setup, || levels(&setup.for_lighting(), shading), band)
+    Shading::fill_three(setup, || channels(lit(&setup.for_lighting(), shading)), band)
 }
 
 /// Levels at the six nodes.
 #[inline(never)]
 fn levels(setup: &TriangleSetup<'_>, shading: &Shading<'_>) -> [[i32; 3]; 6] {
-    match shading.constant {
-        Some(_) => zip_six(setup.six_cosines(0), setup.six_cosines(1), |l, h| shading.reflectance.one_light([l, h])),
-        None => lit(setup, shading),
+    if shading.vertices_have_cosines() {
+        return zip_six(setup.six_cosines(0), setup.six_cosines(1), |l, h| [shading.reflectance.level([l, h]); 3]);
     }
+    lit(setup, shading)
 }
 
 /// Levels of a material of one channel at the six nodes under one constant light.
@@ -83,9 +83,9 @@ fn one_level(setup: &TriangleSetup<'_>, reflectance: &Reflectance) -> [i32; 6] {
 }
 
 /// Node levels under any lights: corners are lit already, midpoints are lit here.
-#[inline(never)]
+#[inline(always)]
 fn lit(setup: &TriangleSetup<'_>, shading: &Shading<'_>) -> [[i32; 3]; 6] {
-    let [a, b, c] = setup.corners.map(|corner| corner.light);
-    let [.., ab, bc, ca] = setup.six_nodes();
-    [a, b, c, shading.levels(&ab), shading.levels(&bc), shading.levels(&ca)]
+    let [a, b, c] = setup.corners;
+    let [ab, bc, ca] = shading.middle_levels(setup);
+    [a.light, b.light, c.light, ab, bc, ca]
 }
