@@ -139,7 +139,7 @@ fn quadratics_of_100_000_random_triangles_stay_within_the_bound() {
         let Some(gradients) = Gradients::new(c, visible) else { continue };
         triangles += 1;
         let nodes: [i32; 6] = std::array::from_fn(|_| random.pick(0..255 << LEVEL));
-        let mut patch = Quadric::<1>::fit::<15>(&gradients, [nodes], WALK - LEVEL);
+        let mut patch = Quadric::<1>::fit::<15>(&gradients, &[nodes], WALK - LEVEL, [0]);
         // Longest edge over the height on it.
         let longest2 = (0..3).map(|k| square(c[k], c[(k + 1) % 3])).fold(0.0, f64::max);
         let thinness = longest2 / side(c[0], c[1], c[2]) as f64;
@@ -215,7 +215,7 @@ fn cubics_stay_within_the_bound() {
         let Some(gradients) = Gradients::new(c, [across.start, down.start, across.end, down.end]) else { continue };
         triangles += 1;
         let nodes: [i32; 10] = std::array::from_fn(|_| random.pick(0..255 << LEVEL));
-        let mut patch = Cubic::<1>::fit(&gradients, [nodes], WALK - LEVEL).biased([BIAS << WALK]);
+        let mut patch = Cubic::<1>::fit(&gradients, &[nodes], WALK - LEVEL, [BIAS << WALK]);
         // Longest edge over the height on it.
         let longest2 = (0..3).map(|k| square(c[k], c[(k + 1) % 3])).fold(0.0, f64::max);
         let thinness = longest2 / side(c[0], c[1], c[2]) as f64;
@@ -278,8 +278,8 @@ fn planes_stay_within_the_bound_even_on_slivers() {
         let size = f64::from(extent(0).max(extent(1)));
         let thinness = size * size / side(case.corners[0], case.corners[1], case.corners[2]) as f64;
         let (mut plane, setup) = match finer {
-            0 => (Plane::<1>::fit::<15>(&gradients, [nodes], WALK - LEVEL), LINEAR),
-            _ => (Plane::<1>::fit::<20>(&gradients, [nodes], WALK - LEVEL - finer), LINEAR_FINER),
+            0 => (Plane::<1>::fit::<15>(&gradients, &[nodes], WALK - LEVEL, [0]), LINEAR),
+            _ => (Plane::<1>::fit::<20>(&gradients, &[nodes], WALK - LEVEL - finer, [0]), LINEAR_FINER),
         };
         let mut at = gradients.row();
         for row in 0..case.height {
@@ -336,8 +336,8 @@ fn fields_of_26_bits_stay_within_the_bound_on_small_triangles() {
         let nodes: [i32; 6] = std::array::from_fn(|_| least + random.pick(0..range / 2 + 1));
         let [a, b, c, ..] = nodes;
         let extra = 5 + i as u32 / 7 % 2;
-        let mut plane = Plane::<1>::fit::<26>(&gradients, [[a, b, c]], extra);
-        let mut quadric = Quadric::<1>::fit::<26>(&gradients, [nodes], extra);
+        let mut plane = Plane::<1>::fit::<26>(&gradients, &[[a, b, c]], extra, [0]);
+        let mut quadric = Quadric::<1>::fit::<26>(&gradients, &[nodes], extra, [0]);
         let (first, end) = (corners.iter().map(|c| c[1]).min().unwrap() >> 4, (corners.iter().map(|c| c[1]).max().unwrap() >> 4) + 1);
         let mut at = gradients.row();
         for row in first..end {

@@ -195,14 +195,14 @@ fn walks_see_a_unit_of_the_last_place() {
         }
         fn step_row(&mut self) {
             self.0.step_row();
-            self.0 = self.0.biased([self.1]);
+            self.0.jump(self.1);
         }
         fn enter(&self, x: i32) -> Self::Walker {
             self.0.enter(x)
         }
     }
     let gradients = Gradients::new([[0, 0], [400, 100], [50, 700]], [0, 0, 96, 80]).unwrap();
-    let plane = Plane::fit::<15>(&gradients, [[1000, 20_000, 300]], 16);
+    let plane = Plane::fit::<15>(&gradients, &[[1000, 20_000, 300]], 16, [0]);
     assert!(!walks::drifts(Steep(plane, 0), 7, 9));
     assert!(walks::drifts(Steep(plane, 1), 7, 9));
 }

@@ -39,9 +39,9 @@ impl Family for Walks {
         let (three, six, ten) = ([(); 3].map(|()| nodes()), [(); 6].map(|()| nodes()), [(); 10].map(|()| nodes()));
         let (row, column) = (random.pick(1..ROWS + 1), random.pick(1..COLUMNS + 1));
         let wrong = [
-            ("plane", drifts(Plane::<1>::fit::<15>(&gradients, [three], 16), row, column)),
-            ("quadratic", drifts(Quadric::<1>::fit::<15>(&gradients, [six], 16), row, column)),
-            ("cubic", drifts(Cubic::<1>::fit(&gradients, [ten], 16), row, column)),
+            ("plane", drifts(Plane::<1>::fit::<15>(&gradients, &[three], 16, [0]), row, column)),
+            ("quadratic", drifts(Quadric::<1>::fit::<15>(&gradients, &[six], 16, [0]), row, column)),
+            ("cubic", drifts(Cubic::<1>::fit(&gradients, &[ten], 16, [0]), row, column)),
         ];
         let failure =
             wrong.iter().find(|(_, wrong)| *wrong).map(|(name, _)| format!("{name} on {corners:?}, {row} rows, {column} columns"));

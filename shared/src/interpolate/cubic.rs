@@ -35,20 +35,15 @@ impl<const CH: usize> Cubic<CH> {
     /// beyond [`crate::setup::gradients::MAX_THINNESS`].
     /// Source: Vlasic 2002, 4.2; change of basis without his divisions.
     #[must_use]
-    pub fn fit(gradients: &Gradients, nodes: [[i32; 10]; CH], extra: u32) -> Self {
+    pub fn fit(gradients: &Gradients, nodes: &[[i32; 10]; CH], extra: u32, bias: [i32; CH]) -> Self {
         // The move from the anchor column to column 0 is exact, modulo 2^64.
         let back = i64::from(gradients.column());
         let step = |a: i64, b: i64| a.wrapping_sub(b.wrapping_mul(back));
-        Self(nodes.map(|nodes| gradients.cubic(nodes, extra + FINER).moved_across(step)))
-    }
-
-    /// Adds `bias` to every channel.
-    #[must_use]
-    pub fn biased(mut self, bias: [i32; CH]) -> Self {
-        for (Terms([c, ..], ..), bias) in self.0.iter_mut().zip(bias) {
+        let mut terms = nodes.map(|nodes| gradients.cubic(nodes, extra + FINER).moved_across(step));
+        for (Terms([c, ..], ..), bias) in terms.iter_mut().zip(bias) {
             *c = c.wrapping_add(i64::from(bias) << FINER);
         }
-        self
+        Self(terms)
     }
 }
 

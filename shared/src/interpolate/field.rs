@@ -69,7 +69,7 @@ impl<const CH: usize, const BITS: u32> Field for Nodes<3, CH, BITS> {
 
     #[inline(always)]
     fn fit(&self, gradients: &Gradients) -> Plane<CH> {
-        Plane::fit::<BITS>(gradients, self.values, self.extra).biased(self.bias)
+        Plane::fit::<BITS>(gradients, &self.values, self.extra, self.bias)
     }
 
     fn surface(&self) -> Self {
@@ -84,7 +84,7 @@ impl<const CH: usize, const BITS: u32> Field for Nodes<6, CH, BITS> {
 
     #[inline(always)]
     fn fit(&self, gradients: &Gradients) -> Quadric<CH> {
-        Quadric::fit::<BITS>(gradients, self.values, self.extra).biased(self.bias)
+        Quadric::fit::<BITS>(gradients, &self.values, self.extra, self.bias)
     }
 
     fn surface(&self) -> Self {
@@ -98,7 +98,7 @@ impl<const CH: usize, const BITS: u32> Field for Nodes<10, CH, BITS> {
     type Surface = Self;
 
     fn fit(&self, gradients: &Gradients) -> Cubic<CH> {
-        Cubic::fit(gradients, self.values, self.extra).biased(self.bias)
+        Cubic::fit(gradients, &self.values, self.extra, self.bias)
     }
 
     fn surface(&self) -> Self {

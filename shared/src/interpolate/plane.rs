@@ -25,30 +25,21 @@ struct Row {
 
 impl<const CH: usize> Plane<CH> {
     /// The field with value `nodes[channel][k]` at corner `k`, all of them in a range narrower than 2^`BITS`; walked with `extra` more
-    /// fraction bits than the nodes have.
+    /// fraction bits than the nodes have, `bias` added.
     ///
     /// Error: at most 2^-1 (1 + S) units of the walked format, S the distance in columns plus rows from the anchor (see [`Gradients`]). On
     /// triangles of up to 64 pixels: 2^4 (1 + S) units more. Set-up costs at most 2^-22 k of the nodes' range, k the length over the
     /// height.
     #[inline(always)]
     #[must_use]
-    pub fn fit<const BITS: u32>(gradients: &Gradients, nodes: [[i32; 3]; CH], extra: u32) -> Self {
+    pub fn fit<const BITS: u32>(gradients: &Gradients, nodes: &[[i32; 3]; CH], extra: u32, bias: [i32; CH]) -> Self {
         let mut rows = [Row::default(); CH];
-        for (row, nodes) in rows.iter_mut().zip(nodes) {
+        for ((row, nodes), bias) in rows.iter_mut().zip(*nodes).zip(bias) {
             let [c, dx, dy] = gradients.linear::<BITS>(nodes, extra);
-            *row = Row { c: c.wrapping_sub(dx.wrapping_mul(gradients.column())), dx, dy };
+            // The move from the anchor column to column 0 is exact, modulo 2^32.
+            *row = Row { c: c.wrapping_sub(dx.wrapping_mul(gradients.column())).wrapping_add(bias), dx, dy };
         }
         Self(rows)
-    }
-
-    /// Adds `bias` to every channel.
-    #[inline(always)]
-    #[must_use]
-    pub fn biased(mut self, bias: [i32; CH]) -> Self {
-        for (row, bias) in self.0.iter_mut().zip(bias) {
-            row.c = row.c.wrapping_add(bias);
-        }
-        self
     }
 }
 

@@ -30,44 +30,46 @@ struct Row {
     dxx: i32,
 }
 
+impl Row {
+    /// See [`Quadric::fit`].
+    #[inline(always)]
+    fn fit<const BITS: u32>(gradients: &Gradients, nodes: [i32; 6], extra: u32, bias: i32) -> Self {
+        let [c, dx, dy, dxx, dxy, dyy] =
+            if BITS <= QUADRATIC { gradients.quadratic::<BITS>(nodes, extra) } else { long::<BITS>(gradients, nodes, extra) };
+        let x = gradients.column();
+        // The move from the anchor column to column 0 is exact, modulo 2^32.
+        Self {
+            c: c.wrapping_sub(x.wrapping_mul(dx.wrapping_sub(dxx.wrapping_mul(x)))).wrapping_add(bias),
+            c_down: dy.wrapping_add(dyy).wrapping_sub(dxy.wrapping_mul(x)),
+            c_down2: dyy.wrapping_mul(2),
+            dx: dx.wrapping_sub(dxx.wrapping_mul(x).wrapping_mul(2)),
+            dx_down: dxy,
+            dxx,
+        }
+    }
+}
+
 impl<const CH: usize> Quadric<CH> {
     /// The quadratic through six nodes per channel: corners 0, 1, 2, then the midpoints of the edges 01, 12, 20.
     ///
     /// All nodes lie in a range narrower than 2^`BITS`; values are walked with `extra` more
-    /// fraction bits. Error: at most 2^-1 (1 + S + S²) units of the walked format, S the distance in columns plus rows
+    /// fraction bits, `bias` added. Error: at most 2^-1 (1 + S + S²) units of the walked format, S the distance in columns plus rows
     /// from the anchor, and for set-up 2^-22 k² of the nodes' range, k the length over the height, up to
     /// [`crate::setup::gradients::MAX_THINNESS`]; nothing beyond. On triangles of up to 64 pixels: 2^4 (1 + S) units more, of levels
     /// 2^9 (1 + S), 0.001 LSB at 16 pixels.
     /// Source: Szirmay-Kalos et al.; Vlasic 2002, 4.2; change of basis without his divisions.
     #[inline(always)]
     #[must_use]
-    pub fn fit<const BITS: u32>(gradients: &Gradients, nodes: [[i32; 6]; CH], extra: u32) -> Self {
+    pub fn fit<const BITS: u32>(gradients: &Gradients, nodes: &[[i32; 6]; CH], extra: u32, bias: [i32; CH]) -> Self {
         let mut rows = [Row::default(); CH];
-        for (row, nodes) in rows.iter_mut().zip(nodes) {
-            let [c, dx, dy, dxx, dxy, dyy] =
-                if BITS <= QUADRATIC { gradients.quadratic::<BITS>(nodes, extra) } else { long::<BITS>(gradients, nodes, extra) };
-            let x = gradients.column();
-            // The move from the anchor column to column 0 is exact, modulo 2^32.
-            *row = Row {
-                c: c.wrapping_sub(x.wrapping_mul(dx.wrapping_sub(dxx.wrapping_mul(x)))),
-                c_down: dy.wrapping_add(dyy).wrapping_sub(dxy.wrapping_mul(x)),
-                c_down2: dyy.wrapping_mul(2),
-                dx: dx.wrapping_sub(dxx.wrapping_mul(x).wrapping_mul(2)),
-                dx_down: dxy,
-                dxx,
-            };
+        if CH == 1 {
+            for ((to, nodes), bias) in rows.iter_mut().zip(*nodes).zip(bias) {
+                *to = Row::fit::<BITS>(gradients, nodes, extra, bias);
+            }
+        } else {
+            each_channel::<CH>(|c| rows[c] = Row::fit::<BITS>(gradients, nodes[c], extra, bias[c]));
         }
         Self(rows)
-    }
-
-    /// Adds `bias` to every channel.
-    #[inline(always)]
-    #[must_use]
-    pub fn biased(mut self, bias: [i32; CH]) -> Self {
-        for (row, bias) in self.0.iter_mut().zip(bias) {
-            row.c = row.c.wrapping_add(bias);
-        }
-        self
     }
 }
 

@@ -276,17 +276,6 @@ pub struct Shading<'f> {
     pub constant: Option<[[i32; 3]; 2]>,
 }
 
-/// The first channel of each node. The first three are written out because `map` is a loop through memory at opt-level "s".
-#[inline(always)]
-fn first<const N: usize>(levels: [[i32; 3]; N]) -> [i32; N] {
-    let mut first = [0; N];
-    if let ([a, b, c], [[x, ..], [y, ..], [z, ..]]) = (first.as_mut_slice(), levels.as_slice()) {
-        (*a, *b, *c) = (*x, *y, *z);
-        return first;
-    }
-    levels.map(|[level, ..]| level)
-}
-
 /// The nodes of each channel.
 fn channels<const N: usize>(levels: [[i32; 3]; N]) -> [[i32; N]; 3] {
     // One loop: `map` of arrays goes through memory at opt-level "s".
@@ -324,10 +313,24 @@ impl Shading<'_> {
         Nodes<N, 1, BITS>: Field<Value = [u32; 1]>,
         Nodes<N, 3, BITS>: Field<Value = [u32; 3]>,
     {
+        self.draw_channels::<N, BITS>(area, &channels(levels), canvas)
+    }
+
+    /// [`Self::draw_levels`] with the nodes of each channel.
+    pub(crate) fn draw_channels<const N: usize, const BITS: u32>(
+        &self,
+        area: &impl Area,
+        channels: &[[i32; N]; 3],
+        canvas: &mut dyn Canvas,
+    ) -> u32
+    where
+        Nodes<N, 1, BITS>: Field<Value = [u32; 1]>,
+        Nodes<N, 3, BITS>: Field<Value = [u32; 3]>,
+    {
         if self.reflectance.three_channels() {
-            area.draw(&Nodes::<N, 3, BITS>::new(channels(levels), EXTRA).biased([bias(0); 3]), Walked, canvas)
+            area.draw(&Nodes::<N, 3, BITS>::new(*channels, EXTRA).biased([bias(0); 3]), Walked, canvas)
         } else {
-            area.draw(&Nodes::<N, 1, BITS>::new([first(levels)], EXTRA).biased([bias(0)]), Walked, canvas)
+            area.draw(&Nodes::<N, 1, BITS>::new([channels[0]], EXTRA).biased([bias(0)]), Walked, canvas)
         }
     }
 

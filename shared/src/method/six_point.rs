@@ -7,7 +7,7 @@
 
 use crate::{
     lighting::materials::{Highlight, MaterialTables, Reflectance},
-    method::{Costs, Facts, Loops, Method, RANGE, Shading, Style, TriangleSetup, VertexLight, channels, first, node::zip_six},
+    method::{Costs, Facts, Loops, Method, RANGE, Shading, Style, TriangleSetup, VertexLight},
     pixel::Pixel,
     raster::{band::Band, canvas::Canvas},
 };
@@ -33,7 +33,7 @@ impl Method for SixPoint {
     }
 
     fn shade(&self, setup: &TriangleSetup<'_>, shading: &Shading<'_>, canvas: &mut dyn Canvas) -> u32 {
-        shading.draw_levels::<6, RANGE>(setup, levels(setup, shading), canvas)
+        shading.draw_channels::<6, RANGE>(setup, &levels(setup, shading), canvas)
     }
 }
 
@@ -54,7 +54,7 @@ impl Loops for SixPoint {
         } else {
             let nodes = || match shading.constant {
                 Some(_) => one_level(setup, shading.reflectance),
-                None => first(lit(&setup.for_lighting(), shading)),
+                None => lit(&setup.for_lighting(), shading)[0],
             };
             Shading::fill_one(setup, nodes, tables, band)
         })
@@ -63,16 +63,13 @@ impl Loops for SixPoint {
 
 #[inline(always)]
 fn three<C: Pixel>(setup: &TriangleSetup<'_>, shading: &Shading<'_>, band: &mut Band<'_, C>) -> u32 {
-    Shading::fill_three(setup, || channels(lit(&setup.for_lighting(), shading)), band)
+    Shading::fill_three(setup, || lit(&setup.for_lighting(), shading), band)
 }
 
-/// Levels at the six nodes.
+/// Levels at the six nodes, in three channels.
 #[inline(never)]
-fn levels(setup: &TriangleSetup<'_>, shading: &Shading<'_>) -> [[i32; 3]; 6] {
-    if shading.vertices_have_cosines() {
-        return zip_six(setup.six_cosines(0), setup.six_cosines(1), |l, h| [shading.reflectance.level([l, h]); 3]);
-    }
-    lit(setup, shading)
+fn levels(setup: &TriangleSetup<'_>, shading: &Shading<'_>) -> [[i32; 6]; 3] {
+    if shading.vertices_have_cosines() { [one_level(setup, shading.reflectance); 3] } else { lit(setup, shading) }
 }
 
 /// Levels of a material of one channel at the six nodes under one constant light.
@@ -84,8 +81,8 @@ fn one_level(setup: &TriangleSetup<'_>, reflectance: &Reflectance) -> [i32; 6] {
 
 /// Node levels under any lights: corners are lit already, midpoints are lit here.
 #[inline(always)]
-fn lit(setup: &TriangleSetup<'_>, shading: &Shading<'_>) -> [[i32; 3]; 6] {
-    let [a, b, c] = setup.corners;
-    let [ab, bc, ca] = shading.middle_levels(setup);
-    [a.light, b.light, c.light, ab, bc, ca]
+fn lit(setup: &TriangleSetup<'_>, shading: &Shading<'_>) -> [[i32; 6]; 3] {
+    let ([r0, g0, b0], [r1, g1, b1], [r2, g2, b2]) = (setup.corners[0].light, setup.corners[1].light, setup.corners[2].light);
+    let [[r3, g3, b3], [r4, g4, b4], [r5, g5, b5]] = shading.middle_levels(setup);
+    [[r0, r1, r2, r3, r4, r5], [g0, g1, g2, g3, g4, g5], [b0, b1, b2, b3, b4, b5]]
 }

@@ -255,7 +255,7 @@ impl ScreenTriangle {
     pub fn plane(&self, gradients: &Gradients, row: i32) -> Plane<1> {
         let [a, b, c] = self.depth;
         let node = |depth: i32| (depth + (1 << (DEPTH - DEPTH_NODE - 1))) >> (DEPTH - DEPTH_NODE);
-        let mut depth = Plane::fit::<DEPTH_NODE>(gradients, [[node(a), node(b), node(c)]], 16 + DEPTH_WALK - DEPTH_NODE);
+        let mut depth = Plane::fit::<DEPTH_NODE>(gradients, &[[node(a), node(b), node(c)]], 16 + DEPTH_WALK - DEPTH_NODE, [0]);
         depth.jump(row.wrapping_sub(gradients.row()));
         depth
     }
