@@ -8,7 +8,7 @@ use microphong::{
     },
 };
 use microphong_sim::{
-    board::{self, Board, build::program, elf::Elf},
+    board::{self, Board, Until, build::program, elf::Elf},
     scene,
     shader::Shader,
     verify::{self, Request},
@@ -99,7 +99,7 @@ fn damaged_stream(board: Board) -> Result {
         *last ^= 1;
     }
     let elf = Elf::read(&verify::build(board)?)?.with_stream(&bytes)?;
-    let recording = board::run(board, &elf, 1)?;
+    let recording = board::run(board, &elf, Until::LastFrame(1))?;
     let failure = recording.failure().expect("a line that starts with `error: `");
     assert!(failure.contains("checksum"), "{board}: {failure}");
     assert!(recording.checksums().is_empty(), "{board}: frames of a damaged stream");

@@ -206,6 +206,14 @@ impl Elf {
         Ok(sections.map(|section| section.sh_size).sum())
     }
 
+    /// Addresses of the memory that the firmware takes its stream from.
+    ///
+    /// # Errors
+    /// When the program has none.
+    pub fn stream_memory(&self) -> Result<Range<u32>> {
+        Ok(self.symbol("__stream_start")?.0..self.symbol("__stream_end")?.0)
+    }
+
     /// The same program with `stream` in place of its own: the new bytes go to the end of the file, and the segment points there.
     ///
     /// Section headers still describe the old stream; loaders look at segments only.
@@ -213,8 +221,7 @@ impl Elf {
     /// # Errors
     /// When the stream does not fit the board, or the program has no place for one.
     pub fn with_stream(&self, stream: &[u8]) -> Result<Self> {
-        let (start, _) = self.symbol("__stream_start")?;
-        let (end, _) = self.symbol("__stream_end")?;
+        let Range { start, end } = self.stream_memory()?;
         let room = (end - start) as usize;
         ensure!(
             stream.len() <= room,

@@ -92,6 +92,15 @@ impl Board {
         self != Self::Lm3s6965evb || [Shader::FLAT, Shader::GOURAUD, Shader::SIX_POINT, Shader::PHONG].contains(&shader)
     }
 
+    /// What a byte of the memory for streams is before anything is written there: erased flash, but QEMU begins with zeros.
+    #[must_use]
+    pub const fn blank(self) -> u8 {
+        match self {
+            Self::Pico => 0xFF,
+            Self::Lm3s6965evb | Self::Mps2An385 | Self::Mps2An386 => 0,
+        }
+    }
+
     /// How it stores a pixel.
     #[must_use]
     pub const fn format(self) -> Format {
@@ -113,6 +122,15 @@ impl Serialize for Board {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
         serializer.serialize_str(self.name())
     }
+}
+
+/// When a run ends, unless the firmware reports a failure before.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Until {
+    /// The first frame has been shown, however many the stream has.
+    FirstFrame,
+    /// All frames of the stream, so many, have been shown, and the firmware has measured its stack.
+    LastFrame(usize),
 }
 
 /// What a board showed and said.
@@ -160,14 +178,14 @@ impl Recording {
     }
 }
 
-/// Runs `elf` on `board` until it has shown all `frames` frames of its stream or has reported a failure.
+/// Runs `elf` on `board` to the end that `until` names, or until it has reported a failure.
 ///
 /// # Errors
 /// When the program crashes, falls silent or drives its display wrongly.
-pub fn run(board: Board, elf: &Elf, frames: usize) -> Result<Recording> {
+pub fn run(board: Board, elf: &Elf, until: Until) -> Result<Recording> {
     match board {
-        Board::Pico => pico::run(elf, frames),
-        Board::Lm3s6965evb | Board::Mps2An385 | Board::Mps2An386 => qemu::run(board, elf),
+        Board::Pico => pico::run(elf, until),
+        Board::Lm3s6965evb | Board::Mps2An385 | Board::Mps2An386 => qemu::run(board, elf, until),
     }
 }
 

@@ -1,13 +1,13 @@
 //! The proof: a board's own firmware draws a scene on the board's emulated display, and every pixel must be the host's.
 
-use crate::{Board, Format, Recording, budget::Budget, build::firmware, elf::Elf};
+use crate::{Board, Format, Recording, Until, budget::Budget, build::firmware, elf::Elf};
 use anyhow::{Context, Result, anyhow, bail, ensure};
 use embedded_graphics_core::{
     geometry::Size,
     pixelcolor::{Gray4, Rgb565},
 };
 use microphong::{
-    Renderer, Stats, Stream,
+    RenderError, Renderer, Stats, Stream,
     pixel::{PictureCrc, Pixel, Rgb565Be},
     stream::{record::Header, seal},
 };
@@ -93,13 +93,8 @@ fn compare(request: &Request, elf: &Path, artefacts: &Path) -> Result<Report> {
     let elf = Elf::read(elf)?.with_stream(&board_stream)?;
 
     let stream = host_stream.parse()?;
-    let budget = request.board.budget();
-    let host = match request.board.format() {
-        Format::Rgb565 => draw::<Rgb565>(stream, request.shader, budget, frames),
-        Format::Rgb565Be => draw::<Rgb565Be>(stream, request.shader, budget, frames),
-        Format::Gray4 => draw::<Gray4>(stream, request.shader, budget, frames),
-    }?;
-    let recording = crate::run(request.board, &elf, frames)?;
+    let host = draw(*board, stream, &[*shader], frames).context("the board cannot draw this stream")?;
+    let recording = crate::run(request.board, &elf, Until::LastFrame(frames))?;
     check_log(&recording, frames)?;
 
     let mut differing = 0;
@@ -111,7 +106,7 @@ fn compare(request: &Request, elf: &Path, artefacts: &Path) -> Result<Report> {
         }
         differing += wrong;
         // Equal pixels on the display under another checksum or other counts: the firmware did not show what it drew.
-        let expected = picture.line(number, request.shader);
+        let expected = picture.line(number);
         ensure!(
             wrong > 0 || recording.log.contains(&expected),
             "frame {number} is right on the display, but the firmware did not log `{expected}`; {}",
@@ -158,17 +153,21 @@ fn check_log(recording: &Recording, frames: usize) -> Result<()> {
 }
 
 /// A frame as the host draws it.
-struct Picture {
-    pixels: Vec<u32>,
+#[derive(Clone, Debug)]
+pub struct Picture {
+    /// Row by row from the top, as the board stores them.
+    pub pixels: Vec<u32>,
+    shader: &'static str,
     checksum: u32,
     stats: Stats,
 }
 
 impl Picture {
     /// What the firmware must log of this frame.
-    fn line(&self, number: usize, shader: Shader) -> String {
+    #[must_use]
+    pub fn line(&self, number: usize) -> String {
         let Stats { triangles, culled, drawn, pixels, .. } = self.stats;
-        let (name, crc) = (shader.name(), self.checksum);
+        let (name, crc) = (self.shader, self.checksum);
         format!("frame {number} shader {name} crc {crc:08x} triangles {triangles} culled {culled} drawn {drawn} pixels {pixels}")
     }
 }
@@ -179,13 +178,35 @@ fn log_tail(recording: &Recording) -> String {
     format!("its last lines: {}", lines.get(lines.len().saturating_sub(3)..).unwrap_or_default().join(" / "))
 }
 
+/// What a board must show that finds `bytes` in the whole of its memory for streams: the first frame, or this message.
+///
+/// # Errors
+/// The message.
+pub fn first_frame(board: Board, bytes: &[u8]) -> Result<Picture, String> {
+    let bytes = StreamBytes::from(bytes);
+    let stream = bytes.parse().map_err(|error| format!("stream: {error}"))?;
+    let shaders: Vec<_> = Shader::ALL.into_iter().filter(|&shader| board.has(shader)).collect();
+    let mut pictures = draw(board, stream, &shaders, 1).map_err(|error| format!("setup: {error}"))?;
+    Ok(pictures.remove(0))
+}
+
+/// Draws in the board's format.
+fn draw(board: Board, stream: Stream<'_>, shaders: &[Shader], frames: usize) -> Result<Vec<Picture>, RenderError> {
+    match board.format() {
+        Format::Rgb565 => draw_in::<Rgb565>(stream, shaders, board.budget(), frames),
+        Format::Rgb565Be => draw_in::<Rgb565Be>(stream, shaders, board.budget(), frames),
+        Format::Gray4 => draw_in::<Gray4>(stream, shaders, board.budget(), frames),
+    }
+}
+
 /// Draws with as much memory as the firmware has, in as many bands.
-fn draw<C: Pixel>(stream: Stream<'_>, shader: Shader, budget: Budget, frames: usize) -> Result<Vec<Picture>> {
+fn draw_in<C: Pixel>(stream: Stream<'_>, shaders: &[Shader], budget: Budget, frames: usize) -> Result<Vec<Picture>, RenderError> {
     let Budget { height, layout } = budget;
     let size = Size::new(layout.width as u32, height as u32);
     let mut memory = vec![0; layout.words::<C>()];
-    let shaders = [shader.on()];
-    let mut renderer = Renderer::new(stream, size, &layout, &mut memory, &shaders).context("the board cannot draw this stream")?;
+    let shaders: Vec<_> = shaders.iter().map(|shader| shader.on()).collect();
+    let mut renderer = Renderer::new(stream, size, &layout, &mut memory, &shaders)?;
+    let shader = renderer.shader().facts().name;
     let mut band = vec![C::pack([0; 3]); layout.band()];
     let pictures = (0..frames as u32).map(|number| {
         let mut pixels = Vec::with_capacity(layout.width * height);
@@ -196,7 +217,7 @@ fn draw<C: Pixel>(stream: Stream<'_>, shader: Shader, budget: Budget, frames: us
             checksum.update(drawn);
             pixels.extend(drawn.iter().map(|pixel| pixel.bits()));
         }
-        Ok(Picture { pixels, checksum: checksum.finish(), stats: frame.stats() })
+        Ok(Picture { pixels, shader, checksum: checksum.finish(), stats: frame.stats() })
     });
     pictures.collect()
 }

@@ -39,9 +39,15 @@ pub fn structured(bytes: &[u8]) {
     }
 }
 
-/// What [`structured`] draws: the first bytes choose how, the others are the stream. `None` if they make none.
+/// What [`structured`] draws; `None` if the bytes make no valid stream.
 #[must_use]
 pub fn case(bytes: &[u8]) -> Option<Case> {
+    sealed(bytes).filter(|case| case.stream.parse().is_ok())
+}
+
+/// The first bytes choose how to draw, the others are the stream, valid or not, behind a header that is right. `None` if they are too few.
+#[must_use]
+pub fn sealed(bytes: &[u8]) -> Option<Case> {
     let (choices, rest) = bytes.split_first_chunk::<CHOICES>()?;
     let mut bytes = rest.to_vec();
     // Magic, version and length are not worth a fuzzer's time.
@@ -50,7 +56,6 @@ pub fn case(bytes: &[u8]) -> Option<Case> {
     (header.magic, header.version, header.length) = (MAGIC, VERSION, length);
     seal(&mut bytes);
     let stream = StreamBytes::from(&bytes[..]);
-    stream.parse().ok()?;
     let [shader, style, format, width, height, rows, low, high] = *choices;
     let style = Style {
         shader: Shader::ALL[usize::from(shader) % Shader::ALL.len()],

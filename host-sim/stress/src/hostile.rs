@@ -12,6 +12,28 @@ use microphong_render::bytes::StreamBytes;
 /// Damaged streams of random scenes.
 pub struct Hostile;
 
+/// A random scene, its stream with bytes flipped, cut off, sealed again: each of them or not. `None` if there is no such scene.
+#[must_use]
+pub fn damaged(random: &mut Random) -> Option<Case> {
+    let case = scenes::case(random, Wishes { closed: false, unclipped: false, triangles: 60 })?;
+    let mut bytes = case.stream.as_bytes().to_vec();
+    for _ in 0..random.pick(0..6) {
+        let at = random.pick(0..bytes.len() as i32) as usize;
+        bytes[at] = match random.pick(0..3) {
+            0 => bytes[at] ^ (1 << random.pick(0..8)),
+            1 => random.among(&[0, 1, 0x7F, 0x80, 0xFF]),
+            _ => random.bits() as u8,
+        };
+    }
+    if random.once_in(8) {
+        bytes.truncate(random.pick(0..bytes.len() as i32 + 1) as usize);
+    }
+    if !random.once_in(8) {
+        seal(&mut bytes);
+    }
+    Some(Case { stream: StreamBytes::from(&bytes[..]), ..case })
+}
+
 impl Family for Hostile {
     fn name(&self) -> &'static str {
         "hostile"
@@ -22,23 +44,7 @@ impl Family for Hostile {
     }
 
     fn check(&self, random: &mut Random) -> Verdict {
-        let Some(case) = scenes::case(random, Wishes { closed: false, unclipped: false, triangles: 60 }) else { return Verdict::skipped() };
-        let mut bytes = case.stream.as_bytes().to_vec();
-        for _ in 0..random.pick(0..6) {
-            let at = random.pick(0..bytes.len() as i32) as usize;
-            bytes[at] = match random.pick(0..3) {
-                0 => bytes[at] ^ (1 << random.pick(0..8)),
-                1 => random.among(&[0, 1, 0x7F, 0x80, 0xFF]),
-                _ => random.bits() as u8,
-            };
-        }
-        if random.once_in(8) {
-            bytes.truncate(random.pick(0..bytes.len() as i32 + 1) as usize);
-        }
-        if !random.once_in(8) {
-            seal(&mut bytes);
-        }
-        let case = Case { stream: StreamBytes::from(&bytes[..]), ..case };
+        let Some(case) = damaged(random) else { return Verdict::skipped() };
         // Kept before it is drawn: a panic must not lose it.
         let failure = crate::guarded(|| drop(case.draw())).err();
         Verdict { failure, case: Some(case), ..Verdict::default() }

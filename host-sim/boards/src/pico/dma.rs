@@ -102,6 +102,11 @@ pub(super) struct Dma {
 }
 
 impl Dma {
+    /// No channel has anything to do.
+    pub(super) fn idle(&self) -> bool {
+        !self.channels.iter().any(Channel::busy)
+    }
+
     /// A channel has made all its transfers. Tells which interrupts that raises.
     pub(super) fn end(&mut self, index: usize) -> [bool; 2] {
         let channel = &mut self.channels[index];

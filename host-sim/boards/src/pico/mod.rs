@@ -11,24 +11,24 @@ mod panel;
 mod rtt;
 mod spi;
 
-use super::{Board, Recording, elf::Elf, log};
+use super::{Board, Recording, Until, elf::Elf, log};
 use anyhow::{Context, Result, bail, ensure};
 use machine::Machine;
 
 /// Cycles that a run may take: 16 s of the board's time for the set-up, and as many for every frame.
 const PATIENCE: u64 = 2_000_000_000;
 
-/// Runs the firmware until it has shown `frames` frames, measured its stack and shown the first frame again, or has reported a failure.
-pub(super) fn run(elf: &Elf, frames: usize) -> Result<Recording> {
+/// Runs the firmware until it has shown its first frame; or all frames, measured its stack and shown the first frame again.
+pub(super) fn run(elf: &Elf, until: Until) -> Result<Recording> {
     let mut machine = Machine::new(elf)?;
     let mut decoder = log::Decoder::new(elf)?;
     let mut recording = Recording::default();
-    let outcome = play(&mut machine, &mut decoder, frames, &mut recording);
+    let outcome = play(&mut machine, &mut decoder, until, &mut recording);
     outcome.with_context(|| format!("{} emulated; {}", Board::Pico, log::tail(&recording.log)))?;
     Ok(recording)
 }
 
-fn play(machine: &mut Machine, decoder: &mut log::Decoder, frames: usize, recording: &mut Recording) -> Result<()> {
+fn play(machine: &mut Machine, decoder: &mut log::Decoder, until: Until, recording: &mut Recording) -> Result<()> {
     let (mut led, mut again) = (false, false);
     let mut deadline = PATIENCE;
     loop {
@@ -45,7 +45,7 @@ fn play(machine: &mut Machine, decoder: &mut log::Decoder, frames: usize, record
             decoder.push(&machine.take_log(), |line| recording.log.push(line));
             match recording.pictures.first() {
                 // All have been checked, and the first one has been drawn again at full speed: only where it changes.
-                Some(first) if recording.pictures.len() == frames => {
+                Some(first) if until == Until::LastFrame(recording.pictures.len()) => {
                     again = true;
                     ensure!(machine.picture() == *first, "the first picture is another one when it is drawn at full speed");
                 }
@@ -56,7 +56,11 @@ fn play(machine: &mut Machine, decoder: &mut log::Decoder, frames: usize, record
         led = lit;
 
         let failed = !recording.pictures.is_empty() && recording.failure().is_some();
-        if failed || again && recording.stack_bytes().is_some() {
+        let ended = match until {
+            Until::FirstFrame => !recording.pictures.is_empty(),
+            Until::LastFrame(_) => again && recording.stack_bytes().is_some(),
+        };
+        if failed || ended {
             return Ok(());
         }
         ensure!(

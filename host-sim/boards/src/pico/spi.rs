@@ -32,6 +32,11 @@ pub(super) struct Spi {
 }
 
 impl Spi {
+    /// Nothing is on the wire.
+    pub(super) fn idle(&self) -> bool {
+        self.done.is_none()
+    }
+
     /// There is room for a word.
     pub(super) fn ready(&self) -> bool {
         self.transmit.len() < DEPTH

@@ -6,7 +6,7 @@ mod trace;
 
 pub use trace::{Blocks, trace};
 
-use super::{Board, Recording, elf::Elf, log};
+use super::{Board, Recording, Until, elf::Elf, log};
 use anyhow::{Context, Result, anyhow, bail};
 use qmp::Qmp;
 use screen::Screen;
@@ -114,8 +114,8 @@ fn read_lines(mut output: ChildStdout, mut decoder: log::Decoder) -> Receiver<St
     lines
 }
 
-/// Runs the firmware to its end.
-pub(super) fn run(board: Board, elf: &Elf) -> Result<Recording> {
+/// Runs the firmware to its end, or to the end of its first frame.
+pub(super) fn run(board: Board, elf: &Elf, until: Until) -> Result<Recording> {
     // A socket's path must be short, so no directory of the repository's.
     let directory = tempfile::Builder::new().prefix("mphong").tempdir().context("cannot create a temporary directory")?;
     let program = directory.path().join("firmware.elf");
@@ -127,7 +127,7 @@ pub(super) fn run(board: Board, elf: &Elf) -> Result<Recording> {
     let mut machine = machine(board, &program);
     machine.arg("-qmp").arg(format!("unix:{},server=on,wait=off", socket.display()));
     let mut emulator = Emulator::start(machine, log::Decoder::new(elf)?)?;
-    let outcome = play(&mut emulator, &socket, &screen, directory.path(), &mut recording);
+    let outcome = play(&mut emulator, &socket, &screen, until, directory.path(), &mut recording);
     outcome.with_context(|| format!("{board} in QEMU; {}", log::tail(&recording.log)))?;
     Ok(recording)
 }
@@ -157,7 +157,7 @@ pub fn clocked(board: Board, elf: &Elf) -> Result<Vec<String>> {
     }
 }
 
-fn play(emulator: &mut Emulator, socket: &Path, screen: &Screen, directory: &Path, recording: &mut Recording) -> Result<()> {
+fn play(emulator: &mut Emulator, socket: &Path, screen: &Screen, until: Until, directory: &Path, recording: &mut Recording) -> Result<()> {
     let mut qmp = Qmp::connect(socket)?;
     while let Some(line) = emulator.line()? {
         let shown = line.starts_with("frame ") || line.starts_with("error: ");
@@ -165,6 +165,9 @@ fn play(emulator: &mut Emulator, socket: &Path, screen: &Screen, directory: &Pat
         if shown {
             // The picture is complete by now, and the firmware waits.
             recording.pictures.push(screen.picture(&mut qmp, directory)?);
+            if until == Until::FirstFrame && recording.failure().is_none() {
+                return Ok(());
+            }
             emulator.release()?;
         }
     }

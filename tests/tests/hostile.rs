@@ -1,0 +1,296 @@
+//! Whatever lies in a board's flash in place of a stream: the firmware draws the host's picture, bit for bit, or says why there is none,
+//! on its display and in its log. It never hangs.
+//!
+//! The streams are those of the fuzzers' corpus, random ones of `microphong stress` with bytes damaged, and some whose values are the
+//! largest and smallest that the format has, or one beyond. Each takes the stream's place in the one program of a board.
+
+use embedded_graphics::{
+    pixelcolor::BinaryColor,
+    prelude::{DrawTarget, OriginDimensions, Pixel, Size},
+};
+use microphong::{
+    format::MAX_LIGHTS,
+    stream::{
+        self, MAX_EXPONENT, MAX_FOCAL, MAX_GAIN, MAX_LENGTH, MIN_FOCAL, MIN_NEAR,
+        record::{Header, Light, Material, Mesh, ORTHOGRAPHIC, POINT, Triangle, Vertex},
+    },
+};
+use microphong_sim::{
+    board::{self, Board, Recording, Until, elf::Elf},
+    bytes::StreamBytes,
+    scene,
+    shader::Shader,
+    stress::{case::Case, fuzz, hostile, random::Random},
+    verify,
+};
+use microphong_tests::{cases, seed};
+use std::{collections::HashSet, convert::Infallible, error::Error, fs, path::Path};
+use zerocopy::IntoBytes;
+
+#[path = "../../firmware/src/picture.rs"]
+#[expect(unreachable_pub, reason = "the firmware's own file")]
+mod picture;
+
+type Result<T = ()> = std::result::Result<T, Box<dyn Error>>;
+
+/// Random streams that are damaged; `MICROPHONG_CASES` multiplies it.
+const DAMAGED: u64 = 24;
+
+/// Bytes in place of a stream, and what they are.
+type Named = (String, Vec<u8>);
+
+/// The corpus of the fuzzers that make streams.
+fn corpus(board: Board) -> Result<Vec<Named>> {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../fuzz/corpus");
+    let mut streams = Vec::new();
+    for target in ["raw", "structured"] {
+        for entry in fs::read_dir(folder.join(target))? {
+            let path = entry?.path();
+            let bytes = fs::read(&path)?;
+            let bytes = if target == "raw" { bytes } else { fuzz::sealed(&bytes).map(|case| drawable(board, case)).unwrap_or(bytes) };
+            streams.push((path.display().to_string(), bytes));
+        }
+    }
+    Ok(streams)
+}
+
+/// Damaged streams of random scenes.
+fn damaged(board: Board) -> Vec<Named> {
+    let seed = seed();
+    let numbered = (0..).filter_map(|number| Some((number, hostile::damaged(&mut Random::new(seed, number))?)));
+    let named = numbered.map(|(number, case)| (format!("hostile {number} of seed {seed}"), drawable(board, case)));
+    named.take(cases(DAMAGED) as usize).collect()
+}
+
+/// The case's stream, to be drawn by the case's method if it can be drawn and the board has that method.
+fn drawable(board: Board, case: Case) -> Vec<u8> {
+    let shader = if board.has(case.style.shader) { case.style.shader } else { Shader::SIX_POINT };
+    let prepared = case.stream.parse().ok().and_then(|stream| verify::prepare(case.stream.as_bytes(), shader, stream.header.frames).ok());
+    prepared.unwrap_or_else(|| case.stream.as_bytes().to_vec())
+}
+
+/// A stream in parts that can be changed.
+struct Parts {
+    header: Header,
+    meshes: Vec<Mesh>,
+    materials: Vec<Material>,
+    lights: Vec<Light>,
+    vertices: Vec<Vertex>,
+    triangles: Vec<Triangle>,
+}
+
+impl Parts {
+    fn of(stream: &StreamBytes) -> Result<Self> {
+        let stream = stream.parse()?;
+        Ok(Self {
+            header: *stream.header,
+            meshes: stream.meshes.to_vec(),
+            materials: stream.materials.to_vec(),
+            lights: stream.lights.to_vec(),
+            vertices: stream.vertices.to_vec(),
+            triangles: stream.triangles.to_vec(),
+        })
+    }
+
+    /// The stream, whose counts and length are right, but for what `lie` makes of its header.
+    fn stream(mut self, lie: fn(&mut Header)) -> Vec<u8> {
+        let header = &mut self.header;
+        (header.meshes, header.materials, header.lights) =
+            (self.meshes.len() as u16, self.materials.len() as u16, self.lights.len() as u16);
+        (header.vertices, header.triangles) = (self.vertices.len() as u32, self.triangles.len() as u32);
+        header.length = stream::length(header).unwrap_or(u32::MAX);
+        lie(header);
+        let mut bytes = self.header.as_bytes().to_vec();
+        for records in
+            [self.meshes.as_bytes(), self.materials.as_bytes(), self.lights.as_bytes(), self.vertices.as_bytes(), self.triangles.as_bytes()]
+        {
+            bytes.extend_from_slice(records);
+        }
+        stream::seal(&mut bytes);
+        bytes
+    }
+}
+
+/// What to do with something, and what comes of it.
+type Change<T> = (&'static str, fn(&mut T));
+
+/// Values at the ends of their ranges, and beyond them.
+const LIMITS: [Change<Parts>; 17] = [
+    ("least focal length", |parts| parts.header.camera.focal = MIN_FOCAL),
+    ("largest focal length", |parts| parts.header.camera.focal = MAX_FOCAL),
+    ("too large a focal length", |parts| parts.header.camera.focal = MAX_FOCAL + 1),
+    ("camera in the middle of the mesh", |parts| {
+        parts.header.camera.translation = [0; 3];
+        parts.header.camera.near = MIN_NEAR;
+    }),
+    ("mesh as far as can be", |parts| parts.header.camera.translation = [-MAX_LENGTH, MAX_LENGTH, MAX_LENGTH]),
+    ("mesh too far", |parts| parts.header.camera.translation[2] = MAX_LENGTH + 1),
+    ("parallel rays, farthest plane", |parts| {
+        let camera = &mut parts.header.camera;
+        (camera.projection, camera.near, camera.far) = (ORTHOGRAPHIC, MIN_NEAR, 2 * MAX_LENGTH);
+    }),
+    ("broadest highlight", |parts| parts.materials[0].exponent = 1),
+    ("sharpest highlight", |parts| parts.materials[0].exponent = MAX_EXPONENT),
+    ("too sharp a highlight", |parts| parts.materials[0].exponent = MAX_EXPONENT + 1),
+    ("all as bright as can be, under near lights", |parts| {
+        let bright = [MAX_GAIN; 3];
+        parts.header.ambient = bright;
+        parts.materials[0] = Material { ambient: bright, diffuse: bright, specular: bright, ..parts.materials[0] };
+        let light = Light { vector: [MAX_LENGTH, 0, -MAX_LENGTH], colour: bright, kind: POINT, ..parts.lights[0] };
+        parts.lights = vec![light; MAX_LIGHTS];
+    }),
+    ("too many lights", |parts| parts.lights = vec![parts.lights[0]; MAX_LIGHTS + 1]),
+    ("more materials than any board has room for", |parts| parts.materials = vec![parts.materials[0]; 100]),
+    ("an unknown method", |parts| parts.header.shader = u16::MAX),
+    ("no light", |parts| parts.lights.clear()),
+    ("no triangle", |parts| {
+        parts.triangles.clear();
+        parts.meshes[0].triangles = 0;
+    }),
+    ("no mesh", |parts| {
+        (parts.meshes, parts.vertices, parts.triangles) = (Vec::new(), Vec::new(), Vec::new());
+    }),
+];
+
+/// What a header may claim.
+const LIES: [Change<Header>; 6] = [
+    ("a length of 4 GiB", |header| header.length = u32::MAX),
+    ("a length of nothing", |header| header.length = 0),
+    ("too many vertices", |header| header.vertices = u32::MAX),
+    ("a triangle more", |header| header.triangles += 1),
+    ("a triangle and its bytes more", |header| {
+        header.triangles += 1;
+        header.length += size_of::<Triangle>() as u32;
+    }),
+    ("another version", |header| header.version += 1),
+];
+
+/// Streams at the limits of the format.
+fn limits() -> Result<Vec<Named>> {
+    let base = scene::load("dodecahedron")?.stream;
+    let mut streams = vec![("no bytes".to_owned(), Vec::new()), ("a lone magic".to_owned(), stream::record::MAGIC.to_vec())];
+    for (name, change) in LIMITS {
+        let mut parts = Parts::of(&base)?;
+        change(&mut parts);
+        streams.push((name.to_owned(), parts.stream(|_| ())));
+    }
+    for (name, lie) in LIES {
+        streams.push((format!("header that claims {name}"), Parts::of(&base)?.stream(lie)));
+    }
+    Ok(streams)
+}
+
+/// A display that remembers where there is ink.
+struct Ink {
+    size: Size,
+    pixels: HashSet<usize>,
+}
+
+impl OriginDimensions for Ink {
+    fn size(&self) -> Size {
+        self.size
+    }
+}
+
+impl DrawTarget for Ink {
+    type Color = BinaryColor;
+    type Error = Infallible;
+
+    fn draw_iter<I: IntoIterator<Item = Pixel<BinaryColor>>>(&mut self, pixels: I) -> std::result::Result<(), Infallible> {
+        for Pixel(point, colour) in pixels {
+            if (0..self.size.width as i32).contains(&point.x) && (0..self.size.height as i32).contains(&point.y) {
+                let at = point.y as usize * self.size.width as usize + point.x as usize;
+                if colour.is_on() {
+                    self.pixels.insert(at)
+                } else {
+                    self.pixels.remove(&at)
+                };
+            }
+        }
+        Ok(())
+    }
+}
+
+/// Whether `picture` shows `message` and nothing else, in one colour on another.
+fn shows(board: Board, picture: &[u32], message: &str) -> bool {
+    let (width, height) = board.size();
+    let mut expected = Ink { size: Size::new(width, height), pixels: HashSet::new() };
+    let Ok(()) = picture::error_picture(&mut expected, BinaryColor::Off, BinaryColor::On, message);
+    let Some(paper) = picture.last() else { return false };
+    let ink: HashSet<usize> = picture.iter().enumerate().filter(|(_, pixel)| *pixel != paper).map(|(at, _)| at).collect();
+    let colours: HashSet<u32> = picture.iter().copied().collect();
+    ink == expected.pixels && colours.len() == 2
+}
+
+/// What a board shows and says that has `bytes` for a stream.
+fn run(board: Board, elf: &Elf, bytes: &[u8]) -> Result<Recording> {
+    Ok(board::run(board, &elf.with_stream(bytes)?, Until::FirstFrame)?)
+}
+
+/// Whether the board drew a picture. An error if that was wrong.
+fn judge(board: Board, elf: &Elf, bytes: &[u8], Recording { pictures, log }: &Recording) -> Result<bool> {
+    let mut flash = vec![board.blank(); elf.stream_memory()?.len()];
+    flash[..bytes.len()].copy_from_slice(bytes);
+    let [shown] = &pictures[..] else { return Err(format!("{} pictures; {log:?}", pictures.len()).into()) };
+    match verify::first_frame(board, &flash) {
+        Ok(expected) if log.contains(&expected.line(0)) && *shown == expected.pixels => Ok(true),
+        Ok(expected) => Err(format!("not the host's picture, {}: {log:?}", expected.line(0)).into()),
+        Err(message) if log.contains(&format!("error: {message}")) && shows(board, shown, &message) => Ok(false),
+        Err(message) => Err(format!("not the message `{message}`: {log:?}").into()),
+    }
+}
+
+/// All streams on one board.
+fn board(board: Board) -> Result {
+    let elf = Elf::read(&verify::build(board)?)?;
+    let (mut drawn, mut refused, mut wrong) = (0, 0, Vec::new());
+    for (name, bytes) in corpus(board)?.into_iter().chain(damaged(board)).chain(limits()?) {
+        match run(board, &elf, &bytes).and_then(|recording| judge(board, &elf, &bytes, &recording)) {
+            Ok(true) => drawn += 1,
+            Ok(false) => refused += 1,
+            Err(error) => wrong.push(format!("{name}: {error:#}")),
+        }
+    }
+    println!("{board}: {drawn} streams drawn, {refused} refused");
+    assert!(wrong.is_empty(), "{board}:\n{}", wrong.join("\n"));
+    assert!(drawn > 30 && refused > 15, "{board}: {drawn} drawn, {refused} refused: too few of a kind");
+    Ok(())
+}
+
+/// A picture of another stream, or the message of another error, is wrong.
+#[test]
+fn what_belongs_to_another_stream_is_noticed() -> Result {
+    let board = Board::Mps2An385;
+    let elf = Elf::read(&verify::build(board)?)?;
+    let scene = |name| -> Result<Vec<u8>> { Ok(scene::load(name)?.stream.as_bytes().to_vec()) };
+    let mut short = scene("triangle")?;
+    short[8] = 0xFF;
+    let streams = [scene("dodecahedron")?, scene("triangle")?, Vec::new(), short];
+    let recordings = streams.iter().map(|bytes| run(board, &elf, bytes)).collect::<Result<Vec<_>>>()?;
+    for (i, bytes) in streams.iter().enumerate() {
+        for (k, recording) in recordings.iter().enumerate() {
+            assert_eq!(judge(board, &elf, bytes, recording).ok(), (i == k).then_some(i < 2), "stream {i}, recording {k}");
+        }
+    }
+    Ok(())
+}
+
+#[test]
+fn pico() -> Result {
+    board(Board::Pico)
+}
+
+#[test]
+fn lm3s6965evb() -> Result {
+    board(Board::Lm3s6965evb)
+}
+
+#[test]
+fn mps2_an385() -> Result {
+    board(Board::Mps2An385)
+}
+
+#[test]
+fn mps2_an386() -> Result {
+    board(Board::Mps2An386)
+}
