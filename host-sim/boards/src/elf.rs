@@ -116,9 +116,17 @@ impl Elf {
         let elf = self.parsed()?;
         let section = elf.section_headers.iter().find(|section| elf.shdr_strtab.get_at(section.sh_name) == Some(".rodata"));
         let range = section.context("the firmware has no section .rodata")?.vm_range();
-        let mut objects = self.symbols(STT_OBJECT)?;
+        let mut objects = self.objects()?;
         objects.retain(|(_, object)| range.contains(&(object.start as usize)));
         Ok(objects)
+    }
+
+    /// Names and addresses of all constants and variables that have a symbol.
+    ///
+    /// # Errors
+    /// When the file is damaged.
+    pub fn objects(&self) -> Result<Vec<(String, Range<u32>)>> {
+        self.symbols(STT_OBJECT)
     }
 
     fn symbols(&self, kind: u8) -> Result<Vec<(String, Range<u32>)>> {

@@ -54,6 +54,8 @@ pub(super) struct Bus {
     pub(super) fast: bool,
     /// Since last cleared: cycles that slow peripherals have added.
     pub(super) wait: u64,
+    /// The cycle that the chip's own peripherals have reached.
+    noticed: u64,
     spi: Spi,
     dma: Dma,
     /// A DMA channel waits for room in the serial port.
@@ -62,7 +64,7 @@ pub(super) struct Bus {
 
 impl Bus {
     pub(super) fn new(chip: Chip, panel: Panel) -> Self {
-        Self { chip, panel, cycle: 0, fast: false, wait: 0, spi: Spi::default(), dma: Dma::default(), waiting: false }
+        Self { chip, panel, cycle: 0, fast: false, wait: 0, noticed: 0, spi: Spi::default(), dma: Dma::default(), waiting: false }
     }
 
     fn pin(&self, number: u32) -> bool {
@@ -171,6 +173,11 @@ impl Bus {
 
     /// Counts what an access costs.
     fn note(&mut self, address: u32) {
+        if address >> 28 == 4 {
+            // The chip's own peripherals look at their time only when they are looked at.
+            self.chip.advance_lazy_scheduled(self.cycle - self.noticed);
+            self.noticed = self.cycle;
+        }
         match address >> 28 {
             0xD => self.fast = true,
             // Who looks at the clock while nothing is on its way waits for a time to come: it comes in larger steps.

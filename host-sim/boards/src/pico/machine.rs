@@ -3,7 +3,7 @@
 use super::{Board, bus::Bus, cycles, panel::Panel, rtt::Rtt};
 use crate::elf::Elf;
 use anyhow::{Context, Result, ensure};
-use rp2040_emu::{Bus as Chip, core::CortexM0Plus};
+use rp2040_emu::{Bus as Chip, core::CortexM0Plus, memory::SRAM_SIZE};
 
 /// Memory map.
 const FLASH: u32 = 0x1000_0000;
@@ -67,7 +67,6 @@ impl Machine {
         let taken = self.pc() != pc.wrapping_add(2);
         let cycles = cycles::of(instruction, taken, self.bus.fast, self.bus.wait);
         self.bus.cycle += cycles;
-        self.bus.chip.advance_lazy_scheduled(cycles);
         // Nobody reads this list, which would grow for ever.
         self.bus.chip.pending_cache_invalidations.clear();
         self.bus.tick();
@@ -106,9 +105,13 @@ impl Machine {
         self.bus.panel.check()
     }
 
-    /// What the panel shows. The next picture is counted from here.
-    pub(super) fn picture(&mut self) -> Vec<u32> {
-        self.bus.panel.next_picture();
+    /// The contents of all RAM.
+    pub(super) fn ram(&self) -> Vec<u8> {
+        (0..SRAM_SIZE as u32).map(|offset| self.bus.chip.memory.sram_read8(offset)).collect()
+    }
+
+    /// What the panel shows.
+    pub(super) fn picture(&self) -> Vec<u32> {
         self.bus.panel.picture()
     }
 }

@@ -15,59 +15,96 @@ use super::{Board, Recording, Until, elf::Elf, log};
 use anyhow::{Context, Result, bail, ensure};
 use machine::Machine;
 
-/// Cycles that a run may take: 16 s of the board's time for the set-up, and as many for every frame.
+/// Cycles that a picture may take: 16 s of the board's time.
 const PATIENCE: u64 = 2_000_000_000;
+
+/// A Pico that runs its firmware from picture to picture.
+pub struct Pico {
+    machine: Machine,
+    decoder: log::Decoder,
+    log: Vec<String>,
+    /// The board's light, which goes on when a picture is complete.
+    lit: bool,
+}
+
+impl Pico {
+    /// A board with `elf` in its flash, just switched on.
+    ///
+    /// # Errors
+    /// When the program is not one for this board.
+    pub fn new(elf: &Elf) -> Result<Self> {
+        Ok(Self { machine: Machine::new(elf)?, decoder: log::Decoder::new(elf)?, log: Vec::new(), lit: false })
+    }
+
+    /// Runs until the panel shows its next picture, a frame or the message of a failure.
+    ///
+    /// # Errors
+    /// When the program crashes, falls silent or drives its panel wrongly.
+    pub fn next_picture(&mut self) -> Result<()> {
+        self.watch_next_picture(|_, _| ())
+    }
+
+    /// The same, and hands address and cycles of each instruction to `visit`.
+    fn watch_next_picture(&mut self, visit: impl FnMut(u32, u64)) -> Result<()> {
+        let outcome = self.proceed(visit);
+        outcome.with_context(|| format!("{} emulated; {}", Board::Pico, log::tail(&self.log)))
+    }
+
+    fn proceed(&mut self, mut visit: impl FnMut(u32, u64)) -> Result<()> {
+        let deadline = self.machine.cycle() + PATIENCE;
+        while self.machine.cycle() < deadline {
+            let step = self.machine.step();
+            let completes = !self.lit && self.machine.led();
+            self.lit = self.machine.led();
+            // Also after a crash: its cause is in the log.
+            if step.is_err() || completes || self.machine.log_is_due() {
+                self.decoder.push(&self.machine.take_log(), |line| self.log.push(line));
+            }
+            let (address, cycles) = step?;
+            if completes {
+                return self.machine.check_panel();
+            }
+            visit(address, cycles);
+        }
+        bail!("the firmware has not finished a picture in {PATIENCE} cycles (at {:#010x}): it hangs", self.machine.pc())
+    }
+
+    /// What the panel shows.
+    #[must_use]
+    pub fn picture(&self) -> Vec<u32> {
+        self.machine.picture()
+    }
+
+    /// What the firmware has logged.
+    #[must_use]
+    pub fn log(&self) -> &[String] {
+        &self.log
+    }
+
+    /// All of the memory that programs can write.
+    #[must_use]
+    pub fn ram(&self) -> Vec<u8> {
+        self.machine.ram()
+    }
+}
 
 /// Runs the firmware until it has shown its first frame; or all frames, measured its stack and shown the first frame again.
 pub(super) fn run(elf: &Elf, until: Until) -> Result<Recording> {
-    let mut machine = Machine::new(elf)?;
-    let mut decoder = log::Decoder::new(elf)?;
+    let mut pico = Pico::new(elf)?;
     let mut recording = Recording::default();
-    let outcome = play(&mut machine, &mut decoder, until, &mut recording);
-    outcome.with_context(|| format!("{} emulated; {}", Board::Pico, log::tail(&recording.log)))?;
-    Ok(recording)
-}
-
-fn play(machine: &mut Machine, decoder: &mut log::Decoder, until: Until, recording: &mut Recording) -> Result<()> {
-    let (mut led, mut again) = (false, false);
-    let mut deadline = PATIENCE;
     loop {
-        let step = machine.step();
-        // Also after a crash: its cause is in the log.
-        if step.is_err() || machine.log_is_due() {
-            decoder.push(&machine.take_log(), |line| recording.log.push(line));
+        pico.next_picture()?;
+        recording.log = pico.log().to_vec();
+        let picture = pico.picture();
+        // All have been checked, and the first one has been drawn again at full speed: only where it changes.
+        if until == Until::LastFrame(recording.pictures.len()) && recording.failure().is_none() {
+            ensure!(recording.pictures.first() == Some(&picture), "the first picture is another one when it is drawn at full speed");
+            return Ok(recording);
         }
-        step?;
-
-        let lit = machine.led();
-        if lit && !led {
-            machine.check_panel()?;
-            decoder.push(&machine.take_log(), |line| recording.log.push(line));
-            match recording.pictures.first() {
-                // All have been checked, and the first one has been drawn again at full speed: only where it changes.
-                Some(first) if until == Until::LastFrame(recording.pictures.len()) => {
-                    again = true;
-                    ensure!(machine.picture() == *first, "the first picture is another one when it is drawn at full speed");
-                }
-                _ => recording.pictures.push(machine.picture()),
-            }
-            deadline = machine.cycle() + PATIENCE;
+        recording.pictures.push(picture);
+        if until == Until::FirstFrame || recording.failure().is_some() {
+            return Ok(recording);
         }
-        led = lit;
-
-        let failed = !recording.pictures.is_empty() && recording.failure().is_some();
-        let ended = match until {
-            Until::FirstFrame => !recording.pictures.is_empty(),
-            Until::LastFrame(_) => again && recording.stack_bytes().is_some(),
-        };
-        if failed || ended {
-            return Ok(());
-        }
-        ensure!(
-            machine.cycle() < deadline,
-            "the firmware has not finished a frame in {PATIENCE} cycles (at {:#010x}): it hangs",
-            machine.pc()
-        );
     }
 }
 
@@ -81,47 +118,16 @@ pub struct FrameTime {
 }
 
 /// Runs the firmware until it has checked all frames, and on through the next one, whose instructions and their cycles go to `visit`.
-pub(super) fn watch(elf: &Elf, mut visit: impl FnMut(u32, u64)) -> Result<(Recording, FrameTime)> {
-    let mut machine = Machine::new(elf)?;
-    let mut decoder = log::Decoder::new(elf)?;
-    let mut recording = Recording::default();
-    let outcome = follow(&mut machine, &mut decoder, &mut recording, &mut visit);
-    let time = outcome.with_context(|| format!("{} emulated; {}", Board::Pico, log::tail(&recording.log)))?;
-    Ok((recording, time))
-}
-
-fn follow(
-    machine: &mut Machine,
-    decoder: &mut log::Decoder,
-    recording: &mut Recording,
-    visit: &mut impl FnMut(u32, u64),
-) -> Result<FrameTime> {
-    let mut start = None;
-    let mut led = false;
-    let mut shown = 0;
-    let deadline = 2 * PATIENCE;
-    while machine.cycle() < deadline {
-        let step = machine.step();
-        if step.is_err() || machine.log_is_due() {
-            decoder.push(&machine.take_log(), |line| recording.log.push(line));
-            if let Some(failure) = recording.failure() {
-                bail!("the firmware reports: {failure}");
-            }
-        }
-        let (address, cycles) = step?;
-        // The light goes on when a frame is complete, and its next one begun.
-        let completes = !led && machine.led();
-        led = machine.led();
-        shown += u32::from(completes);
-        match start {
-            Some(FrameTime { all, wire }) if completes => {
-                return Ok(FrameTime { all: machine.cycle() - all, wire: machine.wire() - wire });
-            }
-            Some(_) => visit(address, cycles),
-            // The first frame is checked, while the second one is drawn nothing is on its way yet.
-            None if completes && shown == 2 => start = Some(FrameTime { all: machine.cycle(), wire: machine.wire() }),
-            None => {}
-        }
+pub(super) fn watch(elf: &Elf, visit: impl FnMut(u32, u64)) -> Result<(Recording, FrameTime)> {
+    let mut pico = Pico::new(elf)?;
+    // The first frame is checked, while the second one is drawn nothing is on its way yet.
+    pico.next_picture()?;
+    pico.next_picture()?;
+    let recording = Recording { log: pico.log().to_vec(), ..Recording::default() };
+    if let Some(failure) = recording.failure() {
+        bail!("the firmware reports: {failure}");
     }
-    bail!("the firmware has not shown three frames in {deadline} cycles: it hangs")
+    let (cycle, wire) = (pico.machine.cycle(), pico.machine.wire());
+    pico.watch_next_picture(visit)?;
+    Ok((recording, FrameTime { all: pico.machine.cycle() - cycle, wire: pico.machine.wire() - wire }))
 }

@@ -158,9 +158,4 @@ impl Panel {
     pub(super) fn picture(&self) -> Vec<u32> {
         self.pixels.iter().map(|&pixel| pixel.into()).collect()
     }
-
-    /// Starts to count the pixels of the next picture.
-    pub(super) fn next_picture(&mut self) {
-        self.written = 0;
-    }
 }
