@@ -1,6 +1,6 @@
 //! A display that is nothing but memory: 320x240 RGB565, which the host reads while the program waits.
 
-use crate::{Display, budget::MPS2, error_picture, semihosting};
+use crate::{Display, Failure, budget::MPS2, error_picture, semihosting};
 use core::convert::Infallible;
 use embedded_graphics::{
     pixelcolor::{IntoStorage, Rgb565, RgbColor},
@@ -77,8 +77,9 @@ impl Display for Framebuffer {
         meanwhile()
     }
 
-    fn present(&mut self) {
+    fn present(&mut self) -> Result<(), Failure> {
         semihosting::wait_for_host();
+        Ok(())
     }
 
     fn end(&mut self) {

@@ -20,7 +20,7 @@ pub mod ssd0323;
 #[cfg(feature = "pico")]
 pub mod st7789;
 
-use failure::Failure;
+pub use failure::Failure;
 pub use picture::error_picture;
 
 use core::ops::Range;
@@ -42,11 +42,14 @@ pub trait Display {
     /// A new frame begins to be drawn; the last band of the one before may still be to be sent.
     fn begin(&mut self) {}
 
-    /// Shows the pixels of `area`, row by row, and does `meanwhile`, at the same time if the board can.
+    /// Shows the pixels of `area`, row by row, and does `meanwhile`, at the same time if the board can. [`Self::present`] tells what fails.
     fn send<R>(&mut self, area: Rectangle, pixels: &[Self::Color], meanwhile: impl FnOnce() -> R) -> R;
 
     /// All of a frame has been sent.
-    fn present(&mut self);
+    ///
+    /// # Errors
+    /// When the display has not taken all of it.
+    fn present(&mut self) -> Result<(), Failure>;
 
     /// All frames of the stream have been shown; they start again when this returns.
     fn end(&mut self) {}
@@ -68,14 +71,22 @@ pub fn run<D: Display>(
     shaders: &[Shader<D::Color>],
 ) -> ! {
     let Err(failure) = animate(display, layout, memory, bands, shaders);
+    stop(display, failure)
+}
+
+/// Shows and logs why there is no picture. A call of its own, so that drawing needs no stack for it.
+#[inline(never)]
+pub fn stop<D: Display>(display: &mut D, failure: Failure) -> ! {
     let message = failure.message();
+    // Should the display hang, too, the log has it all the same.
+    defmt::warn!("no picture: {=str}", message.as_str());
     display.fail(&message);
     // The host reads this line, and then the display: in this order.
     defmt::error!("error: {=str}", message.as_str());
     display.halt()
 }
 
-/// Returns only if it cannot start.
+/// Returns only if it cannot start or go on.
 fn animate<D: Display>(
     display: &mut D,
     layout: &Layout,
@@ -91,7 +102,7 @@ fn animate<D: Display>(
     let whole = 0..display.size().height;
     for number in 0..u32::from(stream.header.frames) {
         let mut crc = PictureCrc::default();
-        let (stats, last) = draw(display, &mut renderer, number, &mut bands, None, &mut whole.clone(), |pixels| check(&mut crc, pixels));
+        let (stats, last) = draw(display, &mut renderer, number, &mut bands, None, &mut whole.clone(), |pixels| check(&mut crc, pixels))?;
         if let Some(area) = last {
             let pixels = part(bands[0], area);
             display.send(area, pixels, || check(&mut crc, pixels));
@@ -107,7 +118,7 @@ fn animate<D: Display>(
             stats.drawn,
             stats.pixels
         );
-        display.present();
+        display.present()?;
     }
     // The host reads this line: keep its form.
     defmt::info!("stack {=usize} bytes", stack::used());
@@ -116,7 +127,7 @@ fn animate<D: Display>(
     let (mut last, mut shown) = (None, whole);
     loop {
         for number in 0..u32::from(stream.header.frames) {
-            (_, last) = draw(display, &mut renderer, number, &mut bands, last, &mut shown, |_| ());
+            (_, last) = draw(display, &mut renderer, number, &mut bands, last, &mut shown, |_| ())?;
         }
     }
 }
@@ -139,13 +150,13 @@ fn draw<D: Display>(
     last: Option<Rectangle>,
     shown: &mut Range<u32>,
     mut look: impl FnMut(&[D::Color]),
-) -> (Stats, Option<Rectangle>) {
+) -> Result<(Stats, Option<Rectangle>), Failure> {
     display.begin();
     let [front, back] = bands;
     let (mut frame, mut next) = match last {
         Some(area) => {
             let started = display.send(area, part(front, area), move || start(renderer, number, shown, back));
-            display.present();
+            display.present()?;
             started
         }
         None => start(renderer, number, shown, back),
@@ -161,7 +172,7 @@ fn draw<D: Display>(
                     draw_next(&mut frame, back)
                 });
             }
-            _ => return (frame.stats(), next),
+            _ => return Ok((frame.stats(), next)),
         }
     }
 }

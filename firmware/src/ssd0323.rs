@@ -1,6 +1,6 @@
 //! The OLED of the LM3S6965 evaluation board: an SSD0323 on the first serial port, 128x64 pixels of 4 bits.
 
-use crate::{Display, budget::LM3S6965EVB, error_picture, semihosting};
+use crate::{Display, Failure, budget::LM3S6965EVB, error_picture, semihosting};
 use core::convert::Infallible;
 use embedded_graphics::{
     pixelcolor::{Gray4, GrayColor},
@@ -182,8 +182,9 @@ impl Display for Ssd0323 {
         meanwhile()
     }
 
-    fn present(&mut self) {
+    fn present(&mut self) -> Result<(), Failure> {
         semihosting::wait_for_host();
+        Ok(())
     }
 
     fn end(&mut self) {

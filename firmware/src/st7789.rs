@@ -1,17 +1,17 @@
 //! An ST7789 panel of 240x240 pixels on the RP2040's second serial port, fed by DMA.
 
-use crate::{Display, budget::PICO, error_picture};
+use crate::{Display, Failure, budget::PICO, error_picture};
 use core::{
     future::Future,
-    pin::pin,
+    pin::{Pin, pin},
     task::{Context, Waker},
 };
 use defmt_rtt as _;
-use embassy_futures::block_on;
 use embassy_rp::{
     gpio::Output,
     peripherals::SPI1,
     spi::{Async, Spi},
+    watchdog::Watchdog,
 };
 use embassy_time::{Delay, Duration, Instant, block_for};
 use embedded_graphics::{
@@ -33,7 +33,13 @@ mod command {
     pub(super) const WRITE_MEMORY: u8 = 0x2C;
 }
 
-/// The panel's wires.
+/// Half of the peripherals' clock, the fastest that the port can do.
+pub const SPI_HZ: u32 = 62_500_000;
+
+/// How long the program may go on without a sign of life, of which each band is one: nearly the longest that the watchdog can wait.
+pub const SIGN_OF_LIFE: Duration = Duration::from_secs(8);
+
+/// The panel's wires, and what sees to it that something is shown.
 pub struct St7789 {
     /// Clock and data.
     pub bus: Spi<'static, SPI1, Async>,
@@ -47,11 +53,16 @@ pub struct St7789 {
     pub backlight: Output<'static>,
     /// The board's own light: goes out when a frame begins to be drawn, and on when one is complete.
     pub led: Output<'static>,
+    /// Starts the program anew that hangs.
+    pub watchdog: Watchdog,
+    /// What the panel has not taken, if there is anything: then nothing else is sent, and no frame shown.
+    pub failure: Option<Failure>,
 }
 
 impl St7789 {
     /// Resets and sets up the panel, and writes `message` on it if there is one.
     pub fn start(&mut self, message: Option<&str>) {
+        self.watchdog.feed(SIGN_OF_LIFE);
         let mut buffer = [0; 480];
         let Ok(device) = ExclusiveDevice::new(&mut self.bus, &mut self.select, Delay);
         let interface = SpiInterface::new(device, &mut self.data, &mut buffer);
@@ -87,11 +98,21 @@ impl St7789 {
     }
 }
 
-/// The display is slower than the drawing. A call of its own, so that its time can be told from the rest.
+/// The display is slower than the drawing. A call of its own, so that its time can be told from the rest. False if the time is over.
 #[inline(never)]
-fn wait(transfer: impl Future) {
-    // Sending has no failure that the driver could see.
-    let _ = block_on(transfer);
+fn wait(mut transfer: Pin<&mut impl Future>, deadline: Instant) -> bool {
+    let mut context = Context::from_waker(Waker::noop());
+    while transfer.as_mut().poll(&mut context).is_pending() {
+        if Instant::now() > deadline {
+            return false;
+        }
+    }
+    true
+}
+
+/// Microseconds in which so many bytes must have been sent: twice as long as they are on the wire, and 1 ms.
+const fn limit(bytes: u32) -> u32 {
+    2 * (8 * bytes / (SPI_HZ / 1_000_000)) + 1_000
 }
 
 impl Display for St7789 {
@@ -102,11 +123,16 @@ impl Display for St7789 {
     }
 
     fn begin(&mut self) {
+        self.watchdog.feed(SIGN_OF_LIFE);
         self.led.set_low();
     }
 
     #[inline(never)]
     fn send<R>(&mut self, area: Rectangle, pixels: &[Rgb565Be], meanwhile: impl FnOnce() -> R) -> R {
+        self.watchdog.feed(SIGN_OF_LIFE);
+        if self.failure.is_some() {
+            return meanwhile();
+        }
         let range = |start: i32, length: u32| {
             let [a, b] = (start as u16).to_be_bytes();
             let [c, d] = (start as u16 + length as u16 - 1).to_be_bytes();
@@ -116,13 +142,17 @@ impl Display for St7789 {
         self.command(command::SET_COLUMNS, &range(area.top_left.x, area.size.width));
         self.command(command::SET_ROWS, &range(area.top_left.y, area.size.height));
         self.command(command::WRITE_MEMORY, &[]);
+        let bytes = size_of_val(pixels) as u32;
+        let limit = limit(bytes);
+        // Where the block ends, DMA is stopped that has not ended.
         let result = {
             let mut transfer = pin!(self.bus.write(pixels.as_bytes()));
             // The first poll starts the DMA; then the processor is free.
             let started = transfer.as_mut().poll(&mut Context::from_waker(Waker::noop()));
+            let deadline = Instant::now() + Duration::from_micros(limit.into());
             let result = meanwhile();
-            if started.is_pending() {
-                wait(transfer);
+            if started.is_pending() && !wait(transfer, deadline) {
+                self.failure = Some(Failure::Transfer { bytes, limit });
             }
             result
         };
@@ -130,8 +160,14 @@ impl Display for St7789 {
         result
     }
 
-    fn present(&mut self) {
-        self.led.set_high();
+    fn present(&mut self) -> Result<(), Failure> {
+        match self.failure {
+            Some(failure) => Err(failure),
+            None => {
+                self.led.set_high();
+                Ok(())
+            }
+        }
     }
 
     fn fail(&mut self, message: &str) {
@@ -141,6 +177,7 @@ impl Display for St7789 {
     /// Blinks.
     fn halt(&mut self) -> ! {
         loop {
+            self.watchdog.feed(SIGN_OF_LIFE);
             self.led.toggle();
             block_for(Duration::from_millis(250));
         }

@@ -1,5 +1,7 @@
 //! Cross-checks of whole programs; see the files in `tests/`.
 
+pub mod message;
+
 use microphong::stream::{
     record::{CLOSED_CONVEX, Header, Mesh, Triangle},
     seal,

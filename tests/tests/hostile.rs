@@ -4,10 +4,6 @@
 //! The streams are those of the fuzzers' corpus, random ones of `microphong stress` with bytes damaged, and some whose values are the
 //! largest and smallest that the format has, or one beyond. Each takes the stream's place in the one program of a board.
 
-use embedded_graphics::{
-    pixelcolor::BinaryColor,
-    prelude::{DrawTarget, OriginDimensions, Pixel, Size},
-};
 use microphong::{
     format::MAX_LIGHTS,
     stream::{
@@ -23,13 +19,9 @@ use microphong_sim::{
     stress::{case::Case, fuzz, hostile, random::Random},
     verify,
 };
-use microphong_tests::{cases, seed};
-use std::{collections::HashSet, convert::Infallible, error::Error, fs, path::Path};
+use microphong_tests::{cases, message, seed};
+use std::{error::Error, fs, path::Path};
 use zerocopy::IntoBytes;
-
-#[path = "../../firmware/src/picture.rs"]
-#[expect(unreachable_pub, reason = "the firmware's own file")]
-mod picture;
 
 type Result<T = ()> = std::result::Result<T, Box<dyn Error>>;
 
@@ -180,48 +172,6 @@ fn limits() -> Result<Vec<Named>> {
     Ok(streams)
 }
 
-/// A display that remembers where there is ink.
-struct Ink {
-    size: Size,
-    pixels: HashSet<usize>,
-}
-
-impl OriginDimensions for Ink {
-    fn size(&self) -> Size {
-        self.size
-    }
-}
-
-impl DrawTarget for Ink {
-    type Color = BinaryColor;
-    type Error = Infallible;
-
-    fn draw_iter<I: IntoIterator<Item = Pixel<BinaryColor>>>(&mut self, pixels: I) -> std::result::Result<(), Infallible> {
-        for Pixel(point, colour) in pixels {
-            if (0..self.size.width as i32).contains(&point.x) && (0..self.size.height as i32).contains(&point.y) {
-                let at = point.y as usize * self.size.width as usize + point.x as usize;
-                if colour.is_on() {
-                    self.pixels.insert(at)
-                } else {
-                    self.pixels.remove(&at)
-                };
-            }
-        }
-        Ok(())
-    }
-}
-
-/// Whether `picture` shows `message` and nothing else, in one colour on another.
-fn shows(board: Board, picture: &[u32], message: &str) -> bool {
-    let (width, height) = board.size();
-    let mut expected = Ink { size: Size::new(width, height), pixels: HashSet::new() };
-    let Ok(()) = picture::error_picture(&mut expected, BinaryColor::Off, BinaryColor::On, message);
-    let Some(paper) = picture.last() else { return false };
-    let ink: HashSet<usize> = picture.iter().enumerate().filter(|(_, pixel)| *pixel != paper).map(|(at, _)| at).collect();
-    let colours: HashSet<u32> = picture.iter().copied().collect();
-    ink == expected.pixels && colours.len() == 2
-}
-
 /// What a board shows and says that has `bytes` for a stream.
 fn run(board: Board, elf: &Elf, bytes: &[u8]) -> Result<Recording> {
     Ok(board::run(board, &elf.with_stream(bytes)?, Until::FirstFrame)?)
@@ -235,7 +185,7 @@ fn judge(board: Board, elf: &Elf, bytes: &[u8], Recording { pictures, log }: &Re
     match verify::first_frame(board, &flash) {
         Ok(expected) if log.contains(&expected.line(0)) && *shown == expected.pixels => Ok(true),
         Ok(expected) => Err(format!("not the host's picture, {}: {log:?}", expected.line(0)).into()),
-        Err(message) if log.contains(&format!("error: {message}")) && shows(board, shown, &message) => Ok(false),
+        Err(message) if log.contains(&format!("error: {message}")) && message::is_shown(board, shown, &message) => Ok(false),
         Err(message) => Err(format!("not the message `{message}`: {log:?}").into()),
     }
 }

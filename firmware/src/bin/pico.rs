@@ -7,16 +7,21 @@ use embassy_rp::{
     gpio::{Level, Output},
     peripherals::DMA_CH0,
     spi::{self, Spi},
+    watchdog::{ResetReason, Watchdog},
 };
 use microphong::pixel::Rgb565Be;
-use microphong_firmware::{budget::PICO, run, shaders::every, st7789::St7789};
+use microphong_firmware::{
+    Failure,
+    budget::PICO,
+    run,
+    shaders::every,
+    st7789::{SIGN_OF_LIFE, SPI_HZ, St7789},
+    stop,
+};
 
 bind_interrupts!(struct Interrupts {
     DMA_IRQ_0 => dma::InterruptHandler<DMA_CH0>;
 });
-
-/// Half of the peripherals' clock, the fastest that the port can do.
-const SPI_HZ: u32 = 62_500_000;
 
 #[cortex_m_rt::entry]
 fn main() -> ! {
@@ -33,7 +38,16 @@ fn main() -> ! {
         reset: Output::new(pins.PIN_12, Level::High),
         backlight: Output::new(pins.PIN_13, Level::Low),
         led: Output::new(pins.PIN_25, Level::Low),
+        watchdog: Watchdog::new(pins.WATCHDOG),
+        failure: None,
     };
+    let hung = display.watchdog.reset_reason() == Some(ResetReason::TimedOut);
+    // Who looks at the program by a debug probe may take their time.
+    display.watchdog.pause_on_debug(true);
+    display.watchdog.start(SIGN_OF_LIFE);
+    if hung {
+        stop(&mut display, Failure::Hang);
+    }
     display.start(None);
     let [front, back] = BANDS;
     run(&mut display, &PICO.layout, MEMORY, [front, back], every())

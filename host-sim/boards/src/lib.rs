@@ -15,7 +15,7 @@ use anyhow::{Context, Result};
 use budget::Budget;
 use elf::Elf;
 use microphong_render::shader::Shader;
-pub use pico::{FrameTime, Pico};
+pub use pico::{Fault, FrameTime, Pico};
 pub use qemu::{Blocks, INSTRUCTIONS_PER_TICK, clocked, trace};
 use serde::{Serialize, Serializer};
 use std::{fmt, ops::Range};

@@ -1,9 +1,11 @@
 //! What the processor sees: the crate's bus, with our serial port and DMA at their addresses, and the panel behind them.
 
 use super::{
+    Fault,
     dma::{CHANNELS, Dma, PACED_BY_SPI1, UNPACED},
     panel::Panel,
     spi::Spi,
+    watchdog::{self, Watchdog},
 };
 use rp2040_emu::{
     Bus as Chip,
@@ -15,9 +17,11 @@ use std::mem;
 /// Addresses of our peripherals; each appears four times: plain, toggling, setting and clearing bits.
 const SPI1: u32 = 0x4004_0000;
 const DMA: u32 = 0x5000_0000;
+const WATCHDOG: u32 = 0x4005_8000;
 const PERIPHERAL: u32 = !0x3FFF;
 
-/// The lower half of the timer's count of microseconds, and how far time goes on where the program only waits: 0.1 ms.
+/// The lower half of the timer's count of microseconds, and how far time goes on where the program only waits, for a time or in vain:
+/// 0.1 ms.
 const CLOCK: u32 = 0x4005_4028;
 const CLOCK_STEP: u64 = 12_500;
 
@@ -34,12 +38,14 @@ const LED: u32 = 25;
 enum Device {
     Spi,
     Dma,
+    Watchdog,
 }
 
 fn device(address: u32) -> Option<Device> {
     match address & PERIPHERAL {
         SPI1 => Some(Device::Spi),
         DMA => Some(Device::Dma),
+        WATCHDOG if address & 0xFFF < watchdog::SIZE => Some(Device::Watchdog),
         _ => None,
     }
 }
@@ -58,13 +64,49 @@ pub(super) struct Bus {
     noticed: u64,
     spi: Spi,
     dma: Dma,
+    watchdog: Watchdog,
     /// A DMA channel waits for room in the serial port.
     waiting: bool,
 }
 
 impl Bus {
     pub(super) fn new(chip: Chip, panel: Panel) -> Self {
-        Self { chip, panel, cycle: 0, fast: false, wait: 0, noticed: 0, spi: Spi::default(), dma: Dma::default(), waiting: false }
+        Self {
+            chip,
+            panel,
+            cycle: 0,
+            fast: false,
+            wait: 0,
+            noticed: 0,
+            spi: Spi::default(),
+            dma: Dma::default(),
+            watchdog: Watchdog::default(),
+            waiting: false,
+        }
+    }
+
+    /// The program has not been heard of for too long.
+    pub(super) fn hangs(&self) -> bool {
+        self.watchdog.expired(self.cycle)
+    }
+
+    /// What the watchdog does: the whole chip begins anew. The panel stays as it is, and time goes on.
+    pub(super) fn reset(&mut self, chip: Chip) {
+        (self.chip, self.noticed, self.waiting) = (chip, self.cycle, false);
+        (self.spi, self.dma, self.watchdog) = (Spi::default(), Dma::default(), Watchdog::after_reset());
+    }
+
+    /// Breaks something.
+    pub(super) fn inject(&mut self, fault: Fault) {
+        match fault {
+            Fault::DmaStalls => self.dma.stalled = true,
+            Fault::SpiHangs => self.spi.hung = true,
+        }
+    }
+
+    /// Nobody speaks to the panel.
+    pub(super) fn quiet(&self) -> bool {
+        self.spi.idle() && self.dma.idle() && self.pin(SELECT)
     }
 
     fn pin(&self, number: u32) -> bool {
@@ -100,6 +142,9 @@ impl Bus {
     /// Makes the DMA transfers that can be made at cycle `now`.
     fn transfer(&mut self, now: u64) {
         self.waiting = false;
+        if self.dma.stalled {
+            return;
+        }
         for index in 0..CHANNELS {
             while self.dma.channels[index].busy() && self.dma.channels[index].count > 0 {
                 let channel = self.dma.channels[index];
@@ -142,8 +187,14 @@ impl Bus {
 
     fn read_device(&mut self, device: Device, address: u32) -> u32 {
         match device {
-            Device::Spi => self.spi.read(address & 0xFFC),
+            Device::Spi => {
+                if self.spi.hung {
+                    self.wait += CLOCK_STEP;
+                }
+                self.spi.read(address & 0xFFC)
+            }
             Device::Dma => self.dma.read(address & 0xFFC),
+            Device::Watchdog => self.watchdog.read(address & 0xFFC),
         }
     }
 
@@ -162,6 +213,7 @@ impl Bus {
         };
         match device {
             Device::Spi => self.spi.write(address & 0xFFC, value, self.cycle),
+            Device::Watchdog => self.watchdog.write(address & 0xFFC, value, self.cycle),
             Device::Dma => {
                 if self.dma.write(address & 0xFFC, value, written) {
                     self.transfer(self.cycle);

@@ -99,6 +99,8 @@ pub(super) struct Dma {
     ended: u32,
     /// Of them, those that raise each of the two interrupts.
     enabled: [u32; 2],
+    /// It moves nothing, and ends nothing.
+    pub(super) stalled: bool,
 }
 
 impl Dma {

@@ -1,6 +1,6 @@
 //! Processor and bus, from reset.
 
-use super::{Board, bus::Bus, cycles, panel::Panel, rtt::Rtt};
+use super::{Board, Fault, bus::Bus, cycles, panel::Panel, rtt::Rtt};
 use crate::elf::Elf;
 use anyhow::{Context, Result, ensure};
 use rp2040_emu::{Bus as Chip, core::CortexM0Plus, memory::SRAM_SIZE};
@@ -16,6 +16,7 @@ const LOG_INTERVAL: u64 = 1024;
 
 /// An RP2040 with its second processor asleep, as after reset.
 pub(super) struct Machine {
+    flash: Vec<u8>,
     core: CortexM0Plus,
     bus: Bus,
     rtt: Rtt,
@@ -32,24 +33,15 @@ impl Machine {
             let place = place.with_context(|| format!("the segment at {:#010x} does not lie in flash", segment.address))?;
             place.copy_from_slice(segment.bytes);
         }
-        let word = |at: usize| u32::from_le_bytes([flash[at], flash[at + 1], flash[at + 2], flash[at + 3]]);
-        let (stored, computed) = (word(BOOT2 - 4), boot_checksum(&flash[..BOOT2 - 4]));
+        let (stored, computed) = (word(&flash, BOOT2 - 4), boot_checksum(&flash[..BOOT2 - 4]));
         ensure!(
             stored == computed,
             "the boot loader's second stage has checksum {stored:08x} instead of {computed:08x}: the chip would refuse it"
         );
 
-        let mut chip = Chip::new();
-        chip.load_flash(&flash);
-        chip.ppb[0].vtor = FLASH + BOOT2 as u32;
-        let mut core = CortexM0Plus::with_id(0);
-        core.regs.msp = word(BOOT2);
-        core.regs.r[13] = word(BOOT2);
-        core.regs.set_pc(word(BOOT2 + 4) & !1);
-        // Thumb state.
-        core.regs.xpsr = 1 << 24;
+        let (core, chip) = booted(&flash);
         let (rtt, _) = elf.symbol("_SEGGER_RTT")?;
-        Ok(Self { core, bus: Bus::new(chip, Panel::new(Board::Pico.size())), rtt: Rtt(rtt), steps: 0 })
+        Ok(Self { flash, core, bus: Bus::new(chip, Panel::new(Board::Pico.size())), rtt: Rtt(rtt), steps: 0 })
     }
 
     /// Executes one instruction; tells where, and how many cycles it took.
@@ -71,6 +63,11 @@ impl Machine {
         self.bus.chip.pending_cache_invalidations.clear();
         self.bus.tick();
         ensure!(!self.core.is_in_hardfault(), "the firmware crashed (HardFault) at {pc:#010x}; look it up with `addr2line -e ELF {pc:#x}`");
+        if self.bus.hangs() {
+            let (core, chip) = booted(&self.flash);
+            self.core = core;
+            self.bus.reset(chip);
+        }
         Ok((pc, cycles))
     }
 
@@ -105,6 +102,15 @@ impl Machine {
         self.bus.panel.check()
     }
 
+    pub(super) fn inject(&mut self, fault: Fault) {
+        self.bus.inject(fault);
+    }
+
+    /// Nobody speaks to the panel.
+    pub(super) fn quiet(&self) -> bool {
+        self.bus.quiet()
+    }
+
     /// The contents of all RAM.
     pub(super) fn ram(&self) -> Vec<u8> {
         (0..SRAM_SIZE as u32).map(|offset| self.bus.chip.memory.sram_read8(offset)).collect()
@@ -114,6 +120,24 @@ impl Machine {
     pub(super) fn picture(&self) -> Vec<u32> {
         self.bus.panel.picture()
     }
+}
+
+/// Processor and chip when the boot loader has gone to the program in `flash`.
+fn booted(flash: &[u8]) -> (CortexM0Plus, Chip) {
+    let mut chip = Chip::new();
+    chip.load_flash(flash);
+    chip.ppb[0].vtor = FLASH + BOOT2 as u32;
+    let mut core = CortexM0Plus::with_id(0);
+    core.regs.msp = word(flash, BOOT2);
+    core.regs.r[13] = word(flash, BOOT2);
+    core.regs.set_pc(word(flash, BOOT2 + 4) & !1);
+    // Thumb state.
+    core.regs.xpsr = 1 << 24;
+    (core, chip)
+}
+
+fn word(flash: &[u8], at: usize) -> u32 {
+    u32::from_le_bytes([flash[at], flash[at + 1], flash[at + 2], flash[at + 3]])
 }
 
 /// CRC-32/MPEG-2, bit by bit.

@@ -10,6 +10,7 @@ mod machine;
 mod panel;
 mod rtt;
 mod spi;
+mod watchdog;
 
 use super::{Board, Recording, Until, elf::Elf, log};
 use anyhow::{Context, Result, bail, ensure};
@@ -17,6 +18,15 @@ use machine::Machine;
 
 /// Cycles that a picture may take: 16 s of the board's time.
 const PATIENCE: u64 = 2_000_000_000;
+
+/// What can break.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Fault {
+    /// DMA moves no more data, so that no transfer ends.
+    DmaStalls,
+    /// The serial port is busy with a word for ever. A reset mends it.
+    SpiHangs,
+}
 
 /// A Pico that runs its firmware from picture to picture.
 pub struct Pico {
@@ -73,6 +83,17 @@ impl Pico {
     #[must_use]
     pub fn picture(&self) -> Vec<u32> {
         self.machine.picture()
+    }
+
+    /// Breaks something from now on.
+    pub fn inject(&mut self, fault: Fault) {
+        self.machine.inject(fault);
+    }
+
+    /// Whether nobody speaks to the panel: it is not selected, and neither port nor DMA has anything to do.
+    #[must_use]
+    pub fn quiet(&self) -> bool {
+        self.machine.quiet()
     }
 
     /// What the firmware has logged.

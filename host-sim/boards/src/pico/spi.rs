@@ -29,6 +29,8 @@ pub(super) struct Spi {
     done: Option<u64>,
     /// Cycles that sending took, of all words so far.
     pub(super) busy: u64,
+    /// The word on the wire never ends.
+    pub(super) hung: bool,
 }
 
 impl Spi {
@@ -66,7 +68,7 @@ impl Spi {
 
     /// The word whose last bit was sent at or before `now`, and when that was.
     pub(super) fn sent(&mut self, now: u64) -> Option<(u16, u64)> {
-        let done = self.done.filter(|&done| done <= now)?;
+        let done = self.done.filter(|&done| done <= now && !self.hung)?;
         self.done = None;
         let word = self.transmit.pop_front()?;
         self.busy += self.duration();

@@ -1,0 +1,57 @@
+//! The watchdog: starts the chip anew unless the program sets its count again in time.
+
+/// Offsets of registers; those behind them are the chip's.
+mod register {
+    pub(super) const CONTROL: u32 = 0x0;
+    pub(super) const LOAD: u32 = 0x4;
+    pub(super) const REASON: u32 = 0x8;
+}
+
+/// Bytes of registers.
+pub(super) const SIZE: u32 = 0xC;
+
+const ENABLE: u32 = 1 << 30;
+/// The count has 24 bits and runs down by two in a microsecond (erratum RP2040-E1).
+const COUNT: u32 = 0xFF_FFFF;
+const CYCLES_PER_COUNT: f64 = 125.0 / 2.0;
+/// The reason of the last reset: time was over.
+const TIME_OUT: u32 = 1;
+
+/// Registers, and the cycle in which time is over.
+#[derive(Default)]
+pub(super) struct Watchdog {
+    control: u32,
+    count: u32,
+    reason: u32,
+    deadline: Option<u64>,
+}
+
+impl Watchdog {
+    /// As it is after it has started the chip anew.
+    pub(super) fn after_reset() -> Self {
+        Self { reason: TIME_OUT, ..Self::default() }
+    }
+
+    /// Time is over.
+    pub(super) fn expired(&self, now: u64) -> bool {
+        self.deadline.is_some_and(|deadline| deadline <= now)
+    }
+
+    pub(super) fn read(&self, offset: u32) -> u32 {
+        match offset {
+            register::CONTROL => self.control,
+            register::REASON => self.reason,
+            _ => 0,
+        }
+    }
+
+    pub(super) fn write(&mut self, offset: u32, value: u32, now: u64) {
+        match offset {
+            register::CONTROL => self.control = value & !COUNT,
+            register::LOAD => self.count = value & COUNT,
+            _ => return,
+        }
+        let end = now + (f64::from(self.count) * CYCLES_PER_COUNT) as u64;
+        self.deadline = (self.control & ENABLE != 0).then_some(end);
+    }
+}

@@ -1,0 +1,76 @@
+//! What the Pico's firmware does when the board fails: it says so, on the panel and in the log, and comes to rest. It never falls silent.
+
+use microphong_sim::{
+    board::{Board, Fault, Pico, elf::Elf},
+    scene,
+    shader::Shader,
+    verify,
+};
+use microphong_tests::message;
+use std::error::Error;
+
+type Result<T = ()> = std::result::Result<T, Box<dyn Error>>;
+
+/// Frames of the scene: the firmware checks them first, and then draws them at full speed.
+const FRAMES: u16 = 2;
+
+/// A Pico that has shown so many pictures.
+fn after(pictures: usize) -> Result<Pico> {
+    let stream = verify::prepare(scene::load("dodecahedron")?.stream.as_bytes(), Shader::SIX_POINT, FRAMES)?;
+    let mut pico = Pico::new(&Elf::read(&verify::build(Board::Pico)?)?.with_stream(&stream)?)?;
+    for _ in 0..pictures {
+        pico.next_picture()?;
+    }
+    Ok(pico)
+}
+
+/// Lines of the log that begin like this, without it.
+fn lines<'p>(pico: &'p Pico, begin: &str) -> Vec<&'p str> {
+    pico.log().iter().filter_map(|line| line.strip_prefix(begin)).collect()
+}
+
+/// The next picture is this message, the only one that was logged, and it stays: the light blinks on for half a minute.
+fn ends_in(pico: &mut Pico, expected: &str) -> Result {
+    pico.next_picture()?;
+    for blink in 0..60 {
+        assert_eq!(lines(pico, "error: "), [expected], "blink {blink}: {:?}", pico.log());
+        assert!(message::is_shown(Board::Pico, &pico.picture(), expected), "blink {blink}: the panel does not show `{expected}`");
+        assert!(pico.quiet(), "blink {blink}: the panel is still spoken to");
+        pico.next_picture()?;
+    }
+    Ok(())
+}
+
+#[test]
+fn dma_that_never_ends_is_reported() -> Result {
+    // Before the first band, between frames that are checked, and when frames are only drawn: then fewer rows than a band's 36 are sent
+    // where there was nothing but background before. A row takes 62 us on the wire.
+    for (shown, rows) in [(0, 36), (1, 36), (usize::from(FRAMES) + 2, 17)] {
+        let mut pico = after(shown)?;
+        pico.inject(Fault::DmaStalls);
+        let bytes = rows * 240 * 2;
+        let limit = 2 * (8 * bytes / 62) + 1000;
+        let expected = format!("display: {bytes} bytes were not sent within {limit} us; switch the board off and on");
+        ends_in(&mut pico, &expected)?;
+        assert_eq!(lines(&pico, "no picture: "), [expected]);
+    }
+    Ok(())
+}
+
+/// No command gets to the panel any more: the watchdog starts the board anew, which mends the port here.
+#[test]
+fn a_port_that_hangs_is_reported_after_a_reset() -> Result {
+    let mut pico = after(1)?;
+    pico.inject(Fault::SpiHangs);
+    ends_in(&mut pico, "watchdog: the program hung and was started anew; switch the board off and on")?;
+    Ok(())
+}
+
+/// The watchdog does not bite who works: a board that nothing happens to shows frames and no message.
+#[test]
+fn a_sound_board_is_left_alone() -> Result {
+    let mut pico = after(20)?;
+    pico.next_picture()?;
+    assert!(lines(&pico, "error: ").is_empty() && lines(&pico, "no picture: ").is_empty(), "{:?}", pico.log());
+    Ok(())
+}
