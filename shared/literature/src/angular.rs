@@ -16,10 +16,7 @@ use crate::{
     slerp::arcs,
 };
 use microphong::{
-    math::{
-        recip::Divisor,
-        vector::{add, cross, dot, wide, zip},
-    },
+    math::vector::{add, dot, normalise, wide, zip},
     method::{
         Canvas, Constant, CosineLookup, Costs, Facts, Highlight, Lighting, LightingModel, Method, Patch, Reflection, Shading, Source,
         TriangleSetup, VertexLight, Walker,
@@ -119,15 +116,23 @@ pub fn turned(setup: &TriangleSetup<'_>, lighting: &Lighting, source: &Source) -
     ]
 }
 
-/// `normal` turned as the unit vector `from` turns to `to`: N c + k x N + k (k·N)/(1 + c), where k = from x to and
-/// c = from·to.
+/// Largest error of a component of [`turn`], times the length of the sum of its two directions.
+pub const TURN_ERROR: f64 = 24.0 / (1u32 << 30) as f64;
+
+/// `normal` turned as the unit vector `from` turns to `to`: by half a turn about `from`, then by half a turn about the middle between both.
+///
+/// Domain: vectors of Q2.30, `normal` at most of unit length; `from` and `to` are not opposite, as every axis would turn one to the other.
+/// Error: at most [`TURN_ERROR`] over |from + to| (tests::turns). Source: two half turns make one turn, by twice the angle between their
+/// axes (Rodrigues 1840).
 fn turn(normal: [i32; 3], from: [i32; 3], to: [i32; 3]) -> [i32; 3] {
-    let axis = cross(from, to).map(|c| (c >> 30) as i32);
-    let c = dot(from, to) >> 30;
-    let along = Divisor::new(((1 << 30) + c).max(1) as u32).divide((dot(axis, normal) >> 30) as i32);
-    let [straight, around] = [normal.map(|n| i64::from(n).wrapping_mul(c)), cross(axis, normal)];
-    let sum = zip(straight, around, i64::wrapping_add);
-    zip(sum, axis, |s, k| (s.wrapping_add(i64::from(k) * i64::from(along)) >> 30) as i32)
+    let middle = normalise(zip(from, to, |f, t| (f >> 1) + (t >> 1)));
+    half_turn(half_turn(normal, from), middle)
+}
+
+/// `v` after half a turn about the unit vector `axis`: 2 axis (axis·v) - v.
+fn half_turn(v: [i32; 3], axis: [i32; 3]) -> [i32; 3] {
+    let twice = dot(axis, v) >> 29;
+    zip(v, axis, |v, a| ((i64::from(a) * twice - (i64::from(v) << 30)) >> 30) as i32)
 }
 
 /// Powers of cosines along rows, between one normal and `M` directions.
@@ -198,5 +203,36 @@ impl LightingModel<(), ([i32; 1], [i32; 1])> for Both {
 
     fn reflect(&self, light: usize, common: &(), ([diffuse], [highlight]): ([i32; 1], [i32; 1]), lut: CosineLookup<'_>) -> Reflection {
         self.reflect(light, common, [diffuse, highlight], lut)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn turns() {
+        let real = |v: [i32; 3]| v.map(|c| f64::from(c) / f64::from(1 << 30));
+        let product = |a: [f64; 3], b: [f64; 3]| a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+        let mut worst = 0f64;
+        for seed in 1..100_000i32 {
+            let c = |k: i32| seed.wrapping_mul(k).wrapping_mul(seed ^ 77) >> 2;
+            let [normal, from, other] = [
+                [c(1_664_525), c(22_695_477), c(1_103_515_245)],
+                [c(69_069), c(134_775_813), c(214_013)],
+                [c(48_271), c(16_807), c(40_692)],
+            ]
+            .map(normalise);
+            // From any angle between the two to almost half a turn.
+            let to = normalise(zip(other, from, |o, f| (o >> (seed % 20)) - (f >> (if seed % 20 == 0 { 31 } else { 1 }))));
+            let ([n, f, t], turned) = ([normal, from, to].map(real), real(turn(normal, from, to)));
+            let middle = [0, 1, 2].map(|k| f[k] + t[k]);
+            let square = product(middle, middle);
+            // f·n and the middle's product with the first half turn.
+            let half = [0, 1, 2].map(|k| 2.0 * product(f, n) * f[k] / product(f, f) - n[k]);
+            let exact = [0, 1, 2].map(|k| 2.0 * product(middle, half) * middle[k] / square - half[k]);
+            worst = (0..3).map(|k| (turned[k] - exact[k]).abs() * square.sqrt()).fold(worst, f64::max);
+        }
+        assert!(worst <= TURN_ERROR, "{:.2} units", worst * f64::from(1 << 30));
     }
 }
