@@ -213,17 +213,25 @@ impl Reflectance {
         (self.ambient[0] + light).min(FULL)
     }
 
+    /// The levels without highlight at six nodes of these cosines, not clamped, Q9.7.
+    #[inline(always)]
+    #[must_use]
+    pub fn six_diffuse(&self, [a, b, c, ab, bc, ca]: [i32; 6]) -> [i32; 6] {
+        let level = |cosine| self.diffuse_level(cosine);
+        [level(a), level(b), level(c), level(ab), level(bc), level(ca)]
+    }
+
     /// [`Self::level`] at six nodes without a highlight.
     #[inline]
     #[must_use]
-    pub fn six_diffuse(&self, [a, b, c, ab, bc, ca]: [i32; 6]) -> [i32; 6] {
+    pub fn six_diffuse_clamped(&self, cosines: [i32; 6]) -> [i32; 6] {
         let [gains, ..] = &self.gains;
-        let diffuse_level = |cosine| self.diffuse_level(cosine);
         if self.ambient[0] + i32::from(gains.diffuse[0]) <= FULL {
-            return [diffuse_level(a), diffuse_level(b), diffuse_level(c), diffuse_level(ab), diffuse_level(bc), diffuse_level(ca)];
+            return self.six_diffuse(cosines);
         }
-        let diffuse_level = |cosine| self.diffuse_level(cosine).min(FULL);
-        [diffuse_level(a), diffuse_level(b), diffuse_level(c), diffuse_level(ab), diffuse_level(bc), diffuse_level(ca)]
+        let [a, b, c, ab, bc, ca] = cosines;
+        let level = |cosine| self.diffuse_level(cosine).min(FULL);
+        [level(a), level(b), level(c), level(ab), level(bc), level(ca)]
     }
 
     /// [`Self::level`] at six nodes.

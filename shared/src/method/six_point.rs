@@ -76,7 +76,7 @@ fn levels(setup: &TriangleSetup<'_>, shading: &Shading<'_>) -> [[i32; 6]; 3] {
 #[inline(always)]
 fn one_level(setup: &TriangleSetup<'_>, reflectance: &Reflectance) -> [i32; 6] {
     let light = setup.six_cosines(0);
-    if setup.has_no_highlight(reflectance) { reflectance.six_diffuse(light) } else { reflectance.six(light, setup.six_cosines(1)) }
+    if setup.has_no_highlight(reflectance) { reflectance.six_diffuse_clamped(light) } else { reflectance.six(light, setup.six_cosines(1)) }
 }
 
 /// Node levels under any lights: corners are lit already, midpoints are lit here.

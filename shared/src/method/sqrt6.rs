@@ -83,8 +83,9 @@ impl Loops for Sqrt6 {
         let id = match resumed {
             Some(id) => id,
             None => match (setup.has_no_highlight(reflectance), DiffuseSign::of(cosines)) {
-                (true, DiffuseSign::Everywhere | DiffuseSign::Nowhere) => Ramp::<C>::ID,
+                (true, DiffuseSign::Nowhere) => Ramp::<C>::ID,
                 _ if !ramp.is_within() => return None,
+                (true, DiffuseSign::Everywhere) => Ramp::<C>::ID,
                 (true, DiffuseSign::Partly) => DiffuseOnly::<C>::ID,
                 (false, DiffuseSign::Everywhere | DiffuseSign::Partly) => OneLight::<C>::ID,
                 _ => return None,
@@ -177,7 +178,7 @@ enum DiffuseSign {
 
 impl DiffuseSign {
     /// The sign by the nodes: a quadratic leaves the middle of their range by at most 5/3 of half the range (its Lebesgue constant). Unless
-    /// it changes its sign, the clamped level can be fitted instead of the cosine.
+    /// it changes its sign, the level that is 0 where the cosine is negative can be fitted instead of the cosine.
     #[inline(always)]
     fn of([a, b, c, ab, bc, ca]: [i32; 6]) -> Self {
         let (least, most) = (a.min(b).min(c).min(ab).min(bc).min(ca), a.max(b).max(c).max(ab).max(bc).max(ca));
