@@ -317,7 +317,7 @@ fn supersampled(frame: &Frame, method: &str, ground: [f64; 3]) -> Vec<[f64; 3]> 
     let columns = (width * SIDE) as usize;
     let mut points = vec![(f64::MIN, ground); columns * (height * SIDE) as usize];
     for facet in &frame.facets {
-        let shade = oracle::method(method, frame, facet, 0.0).unwrap();
+        let shade = oracle::method(method, frame, facet).unwrap();
         let range = |k: usize, end: u32| {
             let (low, high) = facet.screen.iter().fold((f64::MAX, f64::MIN), |(low, high), c| (low.min(c[k]), high.max(c[k])));
             (low * f64::from(SIDE) - 1.0) as u32..((high * f64::from(SIDE) + 1.0) as u32).min(end * SIDE)
@@ -353,7 +353,7 @@ fn pictures_are_like_supersampled_ones() {
         let stream: Stream<'_> = scene.stream.parse().unwrap();
         let frame = Frame::new(stream, (width, height), 5);
         for shader in Shader::ALL.into_iter() {
-            if oracle::method(shader.name(), &frame, &frame.facets[0], 0.0).is_err() {
+            if oracle::method(shader.name(), &frame, &frame.facets[0]).is_err() {
                 continue;
             }
             let size = Size::new(width, height);

@@ -173,7 +173,7 @@ fn figures_are_those_of_pictures_compared_by_hand() {
     let frame = oracle::Frame::new(stream, size, number);
     let facet = &frame.facets[0];
     let phong = oracle::phong(&frame, facet);
-    let gouraud = oracle::method("gouraud", &frame, facet, 0.0).expect("a method for every scene");
+    let gouraud = oracle::method("gouraud", &frame, facet).expect("a method for every scene");
     let (mut worst, mut square, mut off, mut count) = (0.0f64, 0.0, 0.0, 0.0);
     let (mut left, mut right) = (u32::MAX, 0);
     for [x, y] in facet.pixels(size) {

@@ -116,7 +116,7 @@ fn facets(mesh: &Mesh, rows: &[V3; 3], side: f64) -> Vec<Facet> {
 
 /// Largest and root mean square difference to Phong.
 fn errors(frame: &Frame, name: &str) -> Measured {
-    errors_of(frame, |facet| method(name, frame, facet, 0.0).unwrap())
+    errors_of(frame, |facet| method(name, frame, facet).unwrap())
 }
 
 /// Likewise, of any shading.
@@ -207,7 +207,7 @@ fn only_some_methods_jump_at_edges() {
 
 /// Largest difference of the light on both sides of an edge that two triangles share, slivers left out.
 fn jump(frame: &Frame, name: &str) -> f64 {
-    let shades: Vec<_> = frame.facets.iter().map(|facet| method(name, frame, facet, 0.0).unwrap()).collect();
+    let shades: Vec<_> = frame.facets.iter().map(|facet| method(name, frame, facet).unwrap()).collect();
     let mut worst = 0f64;
     for (i, one) in frame.facets.iter().enumerate() {
         for (j, other) in frame.facets.iter().enumerate().skip(i + 1) {

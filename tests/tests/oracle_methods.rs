@@ -1,7 +1,7 @@
 //! The oracle by itself: closed forms, symmetries, continuity.
 
 use microphong_sim::{
-    oracle::{Facet, Frame, Levels, Light, Material, NAMES, Place, Unsupported, decides, method, phong},
+    oracle::{Facet, Frame, Levels, Light, Material, NAMES, Place, Unsupported, decides, method, outcomes, phong},
     scene,
     vector::{V3, add, dot, unit},
 };
@@ -57,7 +57,7 @@ fn parallel_normals_have_a_closed_form() {
             let half = (degrees / 2.0).to_radians().cos().powf(exponent);
             let reflected = cos.powf(exponent / 4.0);
             for name in NAMES {
-                let shade = method(name, &frame, &frame.facets[0], 0.0).unwrap();
+                let shade = method(name, &frame, &frame.facets[0]).unwrap();
                 let highlight = if REFLECTED.contains(&name) { reflected } else { half };
                 let material = &frame.materials[0];
                 let exact = [0, 1, 2].map(|k| {
@@ -92,7 +92,7 @@ fn unchanged(order: [usize; 3], place: impl Fn([f64; 2]) -> [f64; 2], except: &[
         for facet in frame.facets.iter().step_by(3) {
             let changed = moved(facet, order, &place);
             for name in NAMES.into_iter().filter(|name| !except.contains(name)) {
-                let (Ok(one), Ok(other)) = (method(name, &frame, facet, 0.0), method(name, &frame, &changed, 0.0)) else { continue };
+                let (Ok(one), Ok(other)) = (method(name, &frame, facet), method(name, &frame, &changed)) else { continue };
                 // Not on the edges: an end of a row may be above or below a corner by its last digit.
                 let [x, y] = [0, 1].map(|k| facet.screen.iter().map(|corner| corner[k]).sum::<f64>() / 3.0);
                 for p in points(facet).map(|[px, py]| [x + (px - x) * 0.98, y + (py - y) * 0.98]) {
@@ -132,7 +132,7 @@ fn newton_and_roots_give_phong() {
         }
         for name in ["renq-newton", "duff"] {
             let worst = frame.facets.iter().map(|facet| {
-                let (shade, exact) = (method(name, &frame, facet, 0.0).unwrap(), phong(&frame, facet));
+                let (shade, exact) = (method(name, &frame, facet).unwrap(), phong(&frame, facet));
                 facet.pixels(frame.size).map(|p| p.map(|c| f64::from(c) + 0.5)).map(|p| distance(shade(p), exact(p))).fold(0.0, f64::max)
             });
             let worst = worst.fold(0.0, f64::max);
@@ -146,7 +146,7 @@ fn newton_and_roots_give_phong() {
 fn both_expansions_agree_under_constant_light() {
     let frame = frame("sphere-168", 3);
     for facet in &frame.facets {
-        let [one, other] = ["taylor", "taylor-finite"].map(|name| method(name, &frame, facet, 0.0).unwrap());
+        let [one, other] = ["taylor", "taylor-finite"].map(|name| method(name, &frame, facet).unwrap());
         points(facet).for_each(|p| assert!(distance(one(p), other(p)) < 1e-6));
     }
 }
@@ -164,7 +164,7 @@ fn edges_do_not_show() {
                 let [a, b] = shared[..] else { continue };
                 edges += 1;
                 for name in NAMES.into_iter().filter(|name| jumps(name) && (*name == "slerp" || !ROWS.contains(name))) {
-                    let (Ok(left), Ok(right)) = (method(name, &frame, one, 0.0), method(name, &frame, other, 0.0)) else { continue };
+                    let (Ok(left), Ok(right)) = (method(name, &frame, one), method(name, &frame, other)) else { continue };
                     for k in 1..12 {
                         let p = [0, 1].map(|c| a[c] + (b[c] - a[c]) * f64::from(k) / 12.0);
                         let (l, r) = (left(p), right(p));
@@ -191,7 +191,7 @@ fn nothing_is_not_a_number() {
             for screen in [SCREEN, flat] {
                 let frame = single(Facet::new(screen, [0, 1, 2], normals, POSITIONS), light, viewer, 50.0);
                 for name in NAMES {
-                    let Ok(shade) = method(name, &frame, &frame.facets[0], 0.0) else { continue };
+                    let Ok(shade) = method(name, &frame, &frame.facets[0]) else { continue };
                     for p in points(&frame.facets[0]).map(|p| [p[0] + 0.25, p[1] - 0.25]) {
                         let levels = shade(p);
                         assert!(
@@ -206,14 +206,23 @@ fn nothing_is_not_a_number() {
 }
 
 #[test]
-fn thresholds_lean() {
+fn close_decisions_have_several_outcomes() {
     let frame = frame("sphere-168", 0);
     for name in NAMES {
-        let leans = frame.facets.iter().any(|facet| {
-            let [less, more] = [-1.5, 1.5].map(|lean| method(name, &frame, facet, lean).unwrap());
-            points(facet).any(|p| less(p) != more(p))
-        });
-        assert_eq!(leans, decides(name), "{name}");
+        let mut several = false;
+        for facet in &frame.facets {
+            let shade = method(name, &frame, facet).unwrap();
+            for p in points(facet) {
+                assert_eq!(outcomes(name, &frame, facet, p, 0.0).unwrap(), [shade(p)], "{name}");
+                // One such place is enough.
+                if !several {
+                    let outcomes = outcomes(name, &frame, facet, p, 0.5).unwrap();
+                    assert_eq!(outcomes[0], shade(p), "{name}");
+                    several = outcomes.iter().any(|&outcome| outcome != outcomes[0]);
+                }
+            }
+        }
+        assert_eq!(several, decides(name), "{name}");
     }
     assert!(!decides("no such method"));
 }
@@ -222,11 +231,11 @@ fn thresholds_lean() {
 fn near_lights_are_refused_by_name() {
     let frame = frame("sphere-40", 0);
     assert!(!frame.is_constant());
-    let refused: Vec<_> = NAMES.into_iter().filter(|name| method(name, &frame, &frame.facets[0], 0.0).is_err()).collect();
+    let refused: Vec<_> = NAMES.into_iter().filter(|name| method(name, &frame, &frame.facets[0]).is_err()).collect();
     assert_eq!(refused, ["taylor", "goldman", "slerp"]);
-    let reason = method("taylor", &frame, &frame.facets[0], 0.0).err().unwrap();
+    let reason = method("taylor", &frame, &frame.facets[0]).err().unwrap();
     assert!(reason.to_string().starts_with("taylor cannot draw point lights"), "{reason}");
-    let unknown = method("tylor", &frame, &frame.facets[0], 0.0).err().unwrap();
+    let unknown = method("tylor", &frame, &frame.facets[0]).err().unwrap();
     assert_eq!(unknown, Unsupported::Unknown("tylor".to_owned()));
 }
 
@@ -240,7 +249,7 @@ fn a_length_is_known_from_its_neighbour() {
         let mut frame = single(facet, TOWARDS_EYE, TOWARDS_EYE, 50.0);
         frame.materials[0] = Material { ambient: [0.0; 3], diffuse: [1.0; 3], specular: [0.0; 3], exponent: 50.0 };
         let facet = &frame.facets[0];
-        let (found, exact) = (method("goldman", &frame, facet, 0.0).unwrap(), phong(&frame, facet));
+        let (found, exact) = (method("goldman", &frame, facet).unwrap(), phong(&frame, facet));
         let errors = (0..width as u32).map(|x| [f64::from(x) + 0.5, 0.0]).map(|p| distance(found(p), exact(p)) / 255.0);
         let worst = errors.fold(0.0, f64::max);
         assert!((error / 20.0..error).contains(&worst), "{width}: {worst}");
@@ -255,7 +264,7 @@ fn pseudo_phong_counts_pixels() {
         // A right-angled triangle of the sides 3, 4, 5.
         let facet = Facet::new([[0.0, 0.0], [0.8 * longest, 0.0], [0.0, 0.6 * longest]], [0, 1, 2], normals, POSITIONS);
         let frame = single(facet, Place::Far(unit([-0.4, 0.5, 0.77]).unwrap()), TOWARDS_EYE, 50.0);
-        let shade = method(name, &frame, &frame.facets[0], 0.0).unwrap();
+        let shade = method(name, &frame, &frame.facets[0]).unwrap();
         [[0.3, 0.3], [0.1, 0.2], [0.21, 0.09], [0.5, 0.05]].map(|p| shade(p.map(|c| c * longest)))
     };
     for (longest, name) in [(7.999, "gouraud"), (8.001, "gouraud4"), (15.999, "gouraud4")] {
@@ -280,7 +289,7 @@ fn no_highlight_is_missed() {
     shiny.materials[0] = Material { ambient: [0.0; 3], diffuse: [0.0; 3], specular: [1.0; 3], exponent: 50.0 };
     let mut dark = 0;
     for (facet, bare) in frame.facets.iter().zip(&shiny.facets) {
-        let [tested, gouraud, exact] = ["highlight-test", "gouraud", "phong"].map(|name| method(name, &frame, facet, 0.0).unwrap());
+        let [tested, gouraud, exact] = ["highlight-test", "gouraud", "phong"].map(|name| method(name, &frame, facet).unwrap());
         if points(facet).all(|p| tested(p) == gouraud(p)) {
             dark += 1;
             points(facet).for_each(|p| assert!(phong(&shiny, bare)(p)[0] < 255.0 * (-8.0f64).exp(), "triangle {}", facet.id));
@@ -298,6 +307,6 @@ fn reflection_and_half_vector_agree_on_the_mirror_direction() {
     let light = unit([-0.4, 0.5, 0.77]).unwrap();
     let half = unit(add(light, [0.0, 0.0, 1.0])).unwrap();
     let frame = single(Facet::new(SCREEN, [0, 1, 2], [half; 3], POSITIONS), Place::Far(light), TOWARDS_EYE, 50.0);
-    let [blinn, reflected] = ["phong", "phong-rv"].map(|name| method(name, &frame, &frame.facets[0], 0.0).unwrap()([50.0, 50.0]));
+    let [blinn, reflected] = ["phong", "phong-rv"].map(|name| method(name, &frame, &frame.facets[0]).unwrap()([50.0, 50.0]));
     assert!(distance(blinn, reflected) < 1e-9 && dot(half, light) < 1.0);
 }

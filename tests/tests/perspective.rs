@@ -84,7 +84,7 @@ fn difference(levels: [f64; 3], exact: Levels) -> f64 {
 
 /// Largest difference, and its mean square, of a picture to what the oracle's `name` makes of `frame`.
 fn errors(scene: &Scene, frame: &Frame, picture: &[Option<[f64; 3]>], name: &str, every: usize, first: usize) -> (f64, f64) {
-    let shades: Vec<_> = frame.facets.iter().map(|facet| method(name, frame, facet, 0.0).unwrap()).collect();
+    let shades: Vec<_> = frame.facets.iter().map(|facet| method(name, frame, facet).unwrap()).collect();
     let (mut worst, mut squares, mut count) = (0f64, 0.0, 0);
     for (i, (levels, candidates)) in picture.iter().zip(frame.visible()).enumerate().skip(first % every).step_by(every) {
         let Some(levels) = *levels else { continue };

@@ -42,7 +42,7 @@ fn wrong(stream: &StreamBytes, side: u32, shader: Shader) -> usize {
     let stream = stream.parse().unwrap();
     let Ok(drawn) = level::picture(stream, Size::new(side, side), shader, 7) else { return 0 };
     let frame = Frame::new(stream, (side, side), 7);
-    let shades: Vec<_> = frame.facets.iter().map(|facet| method(shader.name(), &frame, facet, 0.0).unwrap()).collect();
+    let shades: Vec<_> = frame.facets.iter().map(|facet| method(shader.name(), &frame, facet).unwrap()).collect();
     let right = |i: usize, level: f64, facet: u32| {
         let exact = shades[facet as usize]([(i as u32 % side) as f64 + 0.5, (i as u32 / side) as f64 + 0.5]);
         // One level for all channels is that of the brightest.

@@ -64,7 +64,7 @@ impl Edges {
     /// # Errors
     /// When the method cannot draw this frame.
     pub(super) fn jumps(&self, frame: &Frame, method: &str) -> Result<Jumps, Unsupported> {
-        let levels = self.samples.shade(frame, method, 0.0)?;
+        let levels = self.samples.shade(frame, method)?;
         let mut jumps = Jumps::default();
         for [near, on, far_near, far_on] in levels.as_chunks::<4>().0 {
             jumps.level = jumps.level.max(largest(|k| near[k] - far_near[k]));

@@ -31,9 +31,8 @@ use microphong_render::{
 use samples::Samples;
 use std::ops::Range;
 
-/// How far a threshold may be off in another arithmetic, LSB: at most twice the error of the table of highlights. Several
-/// decisions shape a triangle, and each may fall its own way.
-const LEANS: [f64; 9] = [0.0, -0.01, 0.01, -0.03, 0.03, -0.07, 0.07, -0.14, 0.14];
+/// A larger difference, LSB, of a method that decides is compared with what it makes of other decisions.
+pub const UNDECIDED: f64 = 0.25;
 
 /// One frame of a scene and its Phong shading: what methods are measured against.
 #[derive(Debug)]
@@ -133,7 +132,7 @@ impl<'s> Reference<'s> {
             starts.push(facets.len());
         }
         let samples = Samples::new(&frame, points);
-        let phong = samples.shade(&frame, Shader::PHONG.name(), 0.0)?;
+        let phong = samples.shade(&frame, Shader::PHONG.name())?;
         let edges = Edges::new(&frame, |facet| shown.get(facet) == Some(&true));
         let one_channel = stream.materials.iter().map(|material| {
             let mut reflectance = Box::new(Reflectance::EMPTY);
@@ -205,6 +204,15 @@ impl<'s> Reference<'s> {
         errors.min_by(|a, b| a.1.abs().total_cmp(&b.1.abs()))
     }
 
+    /// All that a method may make of a candidate of a pixel, see [`oracle::outcomes`].
+    fn outcomes(&self, sample: usize, pixel: usize, name: &str) -> Vec<Levels> {
+        let width = self.frame.size.0 as usize;
+        let centre = [pixel % width, pixel / width].map(|c| c as f64 + 0.5);
+        let facet = self.facets.get(sample).and_then(|&facet| self.frame.facets.get(facet));
+        let outcomes = facet.and_then(|facet| oracle::outcomes(name, &self.frame, facet, centre, self.frame.undecided(facet)).ok());
+        outcomes.unwrap_or_default()
+    }
+
     /// [`Comparison::total`] alone, which is quick.
     ///
     /// # Errors
@@ -230,8 +238,7 @@ impl<'s> Reference<'s> {
         let integers = level::picture(self.stream, size, style, self.number)?;
         let settings = Settings { size, style, band_rows: size.height, format: Format::Rgb888 };
         let picture = render::picture(self.stream, &settings, self.number)?.rgb.as_chunks::<3>().0.to_vec();
-        let leans = if oracle::decides(name) { &LEANS[..] } else { &LEANS[..1] };
-        let reals: Vec<_> = leans.iter().map(|&lean| self.samples.shade(&self.frame, name, lean)).collect::<Result<_, _>>()?;
+        let real = self.samples.shade(&self.frame, name)?;
 
         let mut errors = vec![None; integers.len()];
         let (mut total, mut method, mut arithmetic) = (Vec::new(), Vec::new(), Vec::new());
@@ -246,9 +253,19 @@ impl<'s> Reference<'s> {
             let Some((sample, error)) = self.best(pixel, level) else { continue };
             errors[pixel] = Some(error);
             total.push(error);
-            method.push(self.error(nearest, reals[0][nearest], self.phong[nearest]));
-            let same = reals.iter().flat_map(|real| candidates.clone().map(|sample| self.error(sample, level, real[sample]).abs()));
-            arithmetic.push(same.min_by(f64::total_cmp).unwrap_or(f64::NAN));
+            method.push(self.error(nearest, real[nearest], self.phong[nearest]));
+            let same = |outcomes: &dyn Fn(usize) -> Vec<Levels>| {
+                let errors = candidates.clone().map(|sample| {
+                    let errors = outcomes(sample).into_iter().map(|real| self.error(sample, level, real).abs());
+                    errors.fold(f64::INFINITY, f64::min)
+                });
+                errors.fold(f64::INFINITY, f64::min)
+            };
+            let mut error = same(&|sample| vec![real[sample]]);
+            if error > UNDECIDED && oracle::decides(name) {
+                error = same(&|sample| self.outcomes(sample, pixel, name));
+            }
+            arithmetic.push(error);
             target[pixel] = rounded(self.phong[sample]);
             pairs.push([picture[pixel], target[pixel]]);
         }

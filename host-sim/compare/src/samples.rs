@@ -34,12 +34,12 @@ impl Samples {
     ///
     /// # Errors
     /// When there is no such method, or when it cannot draw this frame.
-    pub(super) fn shade(&self, frame: &Frame, method: &str, lean: f64) -> Result<Vec<Levels>, Unsupported> {
+    pub(super) fn shade(&self, frame: &Frame, method: &str) -> Result<Vec<Levels>, Unsupported> {
         let shaded: Vec<Vec<Levels>> = self
             .by_facet
             .par_iter()
             .map(|(facet, points)| {
-                let shade = oracle::method(method, frame, &frame.facets[*facet], lean)?;
+                let shade = oracle::method(method, frame, &frame.facets[*facet])?;
                 Ok(points.iter().map(|&(_, point)| shade(point)).collect())
             })
             .collect::<Result<_, _>>()?;

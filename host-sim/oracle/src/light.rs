@@ -5,7 +5,11 @@ use super::{
     frame::{Facet, Frame},
     scene::{Light, Material, direction},
 };
+use microphong::math::highlight_lut;
 use microphong_render::vector::{V3, add, dot};
+
+/// What rounding adds to the error of one light's level: of two gains, two products and a cosine of 15 bits, in levels of 7 fraction bits.
+const ROUNDING: f64 = 3.0 / 128.0;
 
 /// The unit vectors that shading is made of.
 #[derive(Clone, Copy, Debug)]
@@ -35,6 +39,35 @@ impl Frame {
     pub(super) fn material(&self, facet: &Facet) -> Material {
         let black = Material { ambient: [0.0; 3], diffuse: [0.0; 3], specular: [0.0; 3], exponent: 1.0 };
         self.materials.get(facet.material).copied().unwrap_or(black)
+    }
+
+    /// How far integers may be off, in levels, where a method compares light with an interpolation of it.
+    ///
+    /// Light at a point is off by the error of the table of highlights, and by the roundings of gains and cosines. The quadratic in the centre
+    /// weighs its six nodes by 5/3 in all, nodes on the parabola of an edge that is not split are up to 5/4 times as wrong as others, and what
+    /// they are compared with has an error of its own: 5/3 · 5/4 + 1 is 3.1.
+    #[must_use]
+    pub fn undecided(&self, facet: &Facet) -> f64 {
+        let specular = self.material(facet).specular;
+        let largest = |light: &Light| (0..3).map(|k| light.colour[k] * specular[k]).fold(0.0, f64::max);
+        self.lights.iter().map(|light| 3.1 * (255.0 * highlight_lut::ERROR * largest(light) + ROUNDING)).sum()
+    }
+
+    /// The channel that a facet is shaded in alone: the brightest, if all that its material reflects of any light has the same hue, to 1/1024
+    /// of the largest channel. Such a material is interpolated in one channel under a table of colours.
+    pub(super) fn only_channel(&self, facet: &Facet) -> Option<usize> {
+        let material = self.material(facet);
+        let product = |a: V3, b: V3| [0, 1, 2].map(|k| a[k] * b[k]);
+        let lit = self.lights.iter().flat_map(|light| [material.diffuse, material.specular].map(|gain| product(light.colour, gain)));
+        let colours: Vec<V3> = lit.chain([material.ambient]).collect();
+        let brightest = |colour: &V3| (0..3).max_by(|&i, &j| colour[i].total_cmp(&colour[j])).unwrap_or(0);
+        let largest = |colour: &V3| colour[brightest(colour)];
+        let base = colours.iter().max_by(|a, b| largest(a).total_cmp(&largest(b)))?;
+        let alike = |colour: &V3| {
+            let (a, b) = (largest(colour), largest(base));
+            (0..3).all(|k| (colour[k] * b - base[k] * a).abs() <= a * b / 1024.0)
+        };
+        colours.iter().all(alike).then(|| brightest(base))
     }
 
     /// `255 (ka + Σ colour (kd d + ks s))` over all lights, each with its `[d, s]`, d from 0 to 1: what approximation lifts above

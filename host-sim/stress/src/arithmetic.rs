@@ -6,17 +6,12 @@ use crate::{
     random::Random,
     scenes::{self, Wishes},
 };
-use microphong_compare::level;
-use microphong_oracle::{Frame, Shade, decides, method};
+use microphong_compare::{UNDECIDED, level};
+use microphong_oracle::{Frame, Levels, Shade, decides, method, outcomes};
 use microphong_render::{render::Style, shader::Shader};
 
 /// Largest difference of any method, in 1/255 of full intensity.
 pub const LIMIT: f64 = 0.5;
-/// How far integers may be off where a method compares levels with a threshold, at most twice the error of the table of
-/// highlights. Several decisions shape a triangle, and each may fall its own way.
-const LEANS: [f64; 9] = [0.0, -0.01, 0.01, -0.03, 0.03, -0.07, 0.07, -0.14, 0.14];
-/// A larger difference, in 1/255, of a method that decides is compared with what it makes of other decisions.
-const UNDECIDED: f64 = 0.25;
 /// Where a pixel's centre lies on the border of two parts of a triangle, either may show.
 const NUDGE: f64 = 1e-6;
 
@@ -71,8 +66,8 @@ fn excess(case: &Case) -> Option<f64> {
 }
 
 /// All of a method's triangles in one frame, in floating point; `None` if the method cannot shade them.
-fn shades<'f>(frame: &'f Frame, shader: Shader, lean: f64) -> Option<Vec<Shade<'f>>> {
-    frame.facets.iter().map(|facet| method(shader.name(), frame, facet, lean).ok()).collect()
+fn shades(frame: &Frame, shader: Shader) -> Option<Vec<Shade<'_>>> {
+    frame.facets.iter().map(|facet| method(shader.name(), frame, facet).ok()).collect()
 }
 
 /// Difference of levels; one level for all channels is that of the brightest.
@@ -99,9 +94,7 @@ pub fn error(case: &Case) -> Option<f64> {
 #[must_use]
 pub fn of(case: &Case, frame: &Frame, visible: &[Vec<u32>]) -> Option<f64> {
     let (stream, shader) = (case.stream.parse().ok()?, case.style.shader);
-    let leans: &[f64] = if decides(shader.name()) { &LEANS } else { &[0.0] };
-    let shades: Option<Vec<_>> = leans.iter().map(|&lean| shades(frame, shader, lean)).collect();
-    let shades = shades?;
+    let shades = shades(frame, shader)?;
     let drawn = level::picture(stream, case.pixels(), case.style, case.frame).ok()?;
     let mut worst = 0f64;
     for (i, (levels, candidates)) in drawn.iter().zip(visible).enumerate() {
@@ -112,15 +105,15 @@ pub fn of(case: &Case, frame: &Frame, visible: &[Vec<u32>]) -> Option<f64> {
             _ => return Some(f64::INFINITY),
         };
         let centre = [i as u32 % case.size[0], i as u32 / case.size[0]].map(|c| f64::from(c) + 0.5);
-        let at = |x: f64, y: f64, leans: usize| {
-            let point = [centre[0] + x, centre[1] + y];
-            let all = candidates.iter().flat_map(|&c| shades.iter().take(leans).map(move |shades| &shades[c as usize]));
-            all.map(|shade| difference(levels, shade(point))).fold(f64::MAX, f64::min)
-        };
-        let mut error = at(0.0, 0.0, 1);
+        let mut error = candidates.iter().map(|&c| difference(levels, shades[c as usize](centre))).fold(f64::MAX, f64::min);
         if error > UNDECIDED && decides(shader.name()) {
             let around = [(0.0, 0.0), (NUDGE, NUDGE), (NUDGE, -NUDGE), (-NUDGE, NUDGE), (-NUDGE, -NUDGE)];
-            error = around.map(|(x, y)| at(x, y, leans.len())).into_iter().fold(error, f64::min);
+            let facets = candidates.iter().map(|&c| &frame.facets[c as usize]);
+            for (facet, (x, y)) in facets.flat_map(|facet| around.map(|nudge| (facet, nudge))) {
+                let point = [centre[0] + x, centre[1] + y];
+                let outcomes: Vec<Levels> = outcomes(shader.name(), frame, facet, point, frame.undecided(facet)).ok()?;
+                error = outcomes.into_iter().map(|exact| difference(levels, exact)).fold(error, f64::min);
+            }
         }
         worst = worst.max(error);
     }

@@ -1,6 +1,6 @@
 //! Gouraud where no highlight can be, Phong elsewhere.
 
-use super::gouraud;
+use super::{Decide, gouraud};
 use crate::{Facet, Frame, Shade, light::phong};
 use microphong_render::vector::dot;
 
@@ -8,13 +8,16 @@ use microphong_render::vector::dot;
 /// A triangle on which it stays below `1 - 8/e` for every light counts as dark: to the power of e that is less than
 /// exp(-8), a twelfth of a level.
 ///
-/// Near lights or a near viewer: always Phong. `lean` counts in 1/255 of a cosine.
-pub(super) fn shade<'f>(frame: &'f Frame, facet: &'f Facet, lean: f64) -> Shade<'f> {
+/// Near lights or a near viewer: always Phong. What decides counts in 1/255 of a cosine.
+pub(super) fn shade<'f>(frame: &'f Frame, facet: &'f Facet, decide: &'f Decide<'f>) -> Shade<'f> {
+    if !frame.is_constant() {
+        return phong(frame, facet);
+    }
     let threshold = (1.0 - 8.0 / frame.material(facet).exponent.max(8.0)).max(0.0);
     let largest = frame.lights.iter().flat_map(|light| {
         let half = frame.rays(light, facet.positions[0]).half;
         facet.normals.map(|normal| dot(normal, half))
     });
-    let dark = largest.fold(f64::MIN, f64::max) <= facet.min_normal_length * threshold + lean / 255.0;
-    if frame.is_constant() && dark { gouraud::shade(frame, facet) } else { phong(frame, facet) }
+    let excess = largest.fold(f64::MIN, f64::max) - facet.min_normal_length * threshold;
+    if decide(255.0 * excess) { phong(frame, facet) } else { gouraud::shade(frame, facet) }
 }

@@ -22,11 +22,14 @@ mod sqrt6;
 mod taylor;
 mod taylor_finite;
 
-use super::{Facet, Frame, Shade, light::phong};
-use std::fmt;
+use super::{Facet, Frame, Levels, Shade, light::phong};
+use std::{cell::RefCell, fmt};
 
-/// A method's way to shade one triangle, its thresholds shifted by as many levels.
-type Build = for<'f> fn(&'f Frame, &'f Facet, f64) -> Shade<'f>;
+/// Whether a threshold is exceeded, given by how much.
+type Decide<'f> = dyn Fn(f64) -> bool + 'f;
+
+/// A method's way to shade one triangle, and to decide.
+type Build = for<'f> fn(&'f Frame, &'f Facet, &'f Decide<'f>) -> Shade<'f>;
 
 /// What is known of a method.
 struct Method {
@@ -128,25 +131,65 @@ fn find(name: &str) -> Option<&'static Method> {
     TABLE.iter().find(|method| method.name == name)
 }
 
+impl Method {
+    /// The method of this name, if it can draw this facet of this frame.
+    fn of(name: &str, frame: &Frame, facet: &Facet) -> Result<&'static Self, Unsupported> {
+        let method = find(name).ok_or_else(|| Unsupported::Unknown(name.to_owned()))?;
+        if method.constant && !frame.is_constant() {
+            return Err(Unsupported::Near(method.name));
+        }
+        if method.rows && facet.shares != [1.0; 3] {
+            return Err(Unsupported::Perspective(method.name));
+        }
+        Ok(method)
+    }
+}
+
 /// The shading of `facet` by a method.
-///
-/// `lean` shifts each threshold that the method decides by, in levels; 0 is the method itself. Two shadings that lean
-/// to either side tell where another arithmetic may decide otherwise.
 ///
 /// # Errors
 /// When there is no such method, or when it cannot draw this frame.
-pub fn method<'f>(name: &str, frame: &'f Frame, facet: &'f Facet, lean: f64) -> Result<Shade<'f>, Unsupported> {
-    let method = find(name).ok_or_else(|| Unsupported::Unknown(name.to_owned()))?;
-    if method.constant && !frame.is_constant() {
-        return Err(Unsupported::Near(method.name));
-    }
-    if method.rows && facet.shares != [1.0; 3] {
-        return Err(Unsupported::Perspective(method.name));
-    }
-    Ok((method.build)(frame, facet, lean))
+pub fn method<'f>(name: &str, frame: &'f Frame, facet: &'f Facet) -> Result<Shade<'f>, Unsupported> {
+    Ok((Method::of(name, frame, facet)?.build)(frame, facet, &|excess| excess > 0.0))
 }
 
-/// Whether the method takes decisions by a threshold, so that `lean` matters.
+/// All that a method may make of a point of `facet` in an arithmetic that is off by up to `margin` levels where it decides, see
+/// [`Frame::undecided`]: every combination of those decisions that are so close. The first is what the method itself makes of it.
+///
+/// # Errors
+/// When there is no such method, or when it cannot draw this frame.
+pub fn outcomes(name: &str, frame: &Frame, facet: &Facet, point: [f64; 2], margin: f64) -> Result<Vec<Levels>, Unsupported> {
+    let method = Method::of(name, frame, facet)?;
+    let mut outcomes = Vec::new();
+    // The close decisions on the way to an outcome: as they were taken, and whether that was the second time.
+    let mut close: Vec<(bool, bool)> = Vec::new();
+    loop {
+        let way = RefCell::new((std::mem::take(&mut close), 0));
+        let decide = |excess: f64| {
+            let exceeded = excess > 0.0;
+            if excess.abs() > margin {
+                return exceeded;
+            }
+            let (close, next) = &mut *way.borrow_mut();
+            *next += 1;
+            if let Some(&(taken, _)) = close.get(*next - 1) {
+                return taken;
+            }
+            close.push((exceeded, false));
+            exceeded
+        };
+        outcomes.push((method.build)(frame, facet, &decide)(point));
+        (close, _) = way.into_inner();
+        // The last one that was taken once is taken the other way.
+        while close.pop_if(|(_, again)| *again).is_some() {}
+        match close.last_mut() {
+            Some(last) => *last = (!last.0, true),
+            None => return Ok(outcomes),
+        }
+    }
+}
+
+/// Whether the method takes decisions by a threshold, so that it may have several [`outcomes`].
 #[must_use]
 pub fn decides(name: &str) -> bool {
     find(name).is_some_and(|method| method.decides)

@@ -4,10 +4,13 @@
 //! triangle is split if one of its edges is, or if its centre is not met; its parts on an edge that is not split take
 //! their values from the edge's parabola, and so do all smaller ones. No crack opens.
 
-use super::six_point_centre::{CENTRE, DEPTH, Tree, distance};
+use super::{
+    Decide,
+    six_point_centre::{CENTRE, DEPTH, distance},
+};
 use crate::{
     Facet, Frame, Levels, Shade,
-    poly::{blend, quadratic},
+    poly::{blend, quadratic, quarter},
     scanline::lerp,
 };
 use microphong_render::vector::V3;
@@ -39,22 +42,22 @@ impl Edge {
     }
 }
 
-/// Colours and thresholds of one triangle.
-struct Builder<C> {
+/// Colours of one triangle, and how it decides.
+struct Builder<'f, C> {
     colour: C,
-    lean: f64,
+    /// The channel that decides alone.
+    only: Option<usize>,
+    decide: &'f Decide<'f>,
 }
 
-pub(super) fn shade<'f>(frame: &'f Frame, facet: &'f Facet, lean: f64) -> Shade<'f> {
-    let builder = Builder { colour: |weights| frame.node(facet, weights), lean };
-    let [a, b, c] = Facet::CORNERS;
+pub(super) fn shade<'f>(frame: &'f Frame, facet: &'f Facet, decide: &'f Decide<'f>) -> Shade<'f> {
+    let builder = Builder { colour: |weights| frame.node(facet, weights), only: frame.only_channel(facet), decide };
     let colours = Facet::CORNERS.map(&builder.colour);
-    let edge = |i: usize, j: usize| builder.edge([Facet::CORNERS[i], Facet::CORNERS[j]], [colours[i], colours[j]]);
-    let tree = builder.build([a, b, c], [edge(0, 1), edge(1, 2), edge(2, 0)], DEPTH);
-    Box::new(move |p| tree.at(facet.weights(p)).map(|level| level.clamp(0.0, 255.0)))
+    let edges = [(0, 1), (1, 2), (2, 0)].map(|(i, j)| builder.edge([Facet::CORNERS[i], Facet::CORNERS[j]], [colours[i], colours[j]]));
+    Box::new(move |p| builder.at(Facet::CORNERS, edges, DEPTH, facet.weights(p)).map(|level| level.clamp(0.0, 255.0)))
 }
 
-impl<C: Fn(V3) -> Levels> Builder<C> {
+impl<C: Fn(V3) -> Levels> Builder<'_, C> {
     /// An edge that may be split, its middle seen for the first time.
     fn edge(&self, ends: [V3; 2], colours: [Levels; 2]) -> Edge {
         let middle = (self.colour)(lerp(ends[0], ends[1], 0.5));
@@ -63,7 +66,10 @@ impl<C: Fn(V3) -> Levels> Builder<C> {
 
     /// Whether the edge wants to be split.
     fn bends(&self, edge: &Edge) -> bool {
-        let misses = |u: f64| distance((self.colour)(lerp(edge.ends[0], edge.ends[1], u)), edge.parabola(u)) > EDGE + self.lean;
+        let misses = |u: f64| {
+            let colour = (self.colour)(lerp(edge.ends[0], edge.ends[1], u));
+            (self.decide)(distance(colour, edge.parabola(u), self.only) - EDGE)
+        };
         !edge.locked && (misses(0.25) || misses(0.75))
     }
 
@@ -79,21 +85,22 @@ impl<C: Fn(V3) -> Levels> Builder<C> {
         }
     }
 
-    /// The part between these corners, whose edges 0-1, 1-2 and 2-0 are given, split `depth` times at most.
-    fn build(&self, corners: [V3; 3], edges: [Edge; 3], depth: u32) -> Tree {
+    /// The colour at a point of the part between these corners, whose edges 0-1, 1-2 and 2-0 are given, split `depth` times at most.
+    fn at(&self, corners: [V3; 3], edges: [Edge; 3], depth: u32, weights: V3) -> Levels {
         let [p, q, r] = edges.map(|edge| edge.colours[0]);
         let [pq, qr, rp] = edges.map(|edge| edge.colours[1]);
         let nodes = [p, q, r, pq, qr, rp];
+        let whole = || blend(&quadratic(weights), &nodes);
         if depth == 0 {
-            return Tree::Whole(nodes);
+            return whole();
         }
         let bends = edges.map(|edge| self.bends(&edge));
         let centre = || {
             let fitted = blend(&quadratic(Facet::CENTRE), &nodes);
-            distance(fitted, (self.colour)(blend(&Facet::CENTRE, &corners))) > CENTRE + self.lean
+            (self.decide)(distance(fitted, (self.colour)(blend(&Facet::CENTRE, &corners)), self.only) - CENTRE)
         };
         if !bends.contains(&true) && !centre() {
-            return Tree::Whole(nodes);
+            return whole();
         }
         let [[p_pq, pq_q], [q_qr, qr_r], [r_rp, rp_p]] = [0, 1, 2].map(|k| self.halves(edges[k], bends[k]));
         let [a, b, c] = corners;
@@ -101,11 +108,13 @@ impl<C: Fn(V3) -> Levels> Builder<C> {
         // Around the middle part; its neighbours run along them the other way.
         let inner = [self.edge([ab, bc], [pq, qr]), self.edge([bc, ca], [qr, rp]), self.edge([ca, ab], [rp, pq])];
         let [beside_b, beside_c, beside_a] = inner.map(Edge::reversed);
-        Tree::Split(Box::new([
-            self.build([a, ab, ca], [p_pq, beside_a, rp_p], depth - 1),
-            self.build([ab, b, bc], [pq_q, q_qr, beside_b], depth - 1),
-            self.build([ca, bc, c], [beside_c, qr_r, r_rp], depth - 1),
-            self.build([ab, bc, ca], inner, depth - 1),
-        ]))
+        let (which, weights) = quarter(weights);
+        let (corners, edges) = match which {
+            0 => ([a, ab, ca], [p_pq, beside_a, rp_p]),
+            1 => ([ab, b, bc], [pq_q, q_qr, beside_b]),
+            2 => ([ca, bc, c], [beside_c, qr_r, r_rp]),
+            _ => ([ab, bc, ca], inner),
+        };
+        self.at(corners, edges, depth - 1, weights)
     }
 }

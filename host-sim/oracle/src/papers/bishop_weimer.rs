@@ -94,7 +94,7 @@ fn spread(degrees: f64) -> Result<[Claim; 2]> {
         for (worst, material) in worst.iter_mut().zip([grey(1.0, 0.0, 1.0), grey(0.0, 1.0, 50.0)]) {
             // Light and viewer in one direction: H is there too.
             let frame = frame(100, vec![facet.clone()], Place::Far(half), Place::Far(half), material);
-            let (shade, exact) = (method("taylor", &frame, &facet, 0.0)?, phong(&frame, &facet));
+            let (shade, exact) = (method("taylor", &frame, &facet)?, phong(&frame, &facet));
             *worst = worst.max(largest(points.iter().map(|&p| (shade(p)[0] - exact(p)[0]).abs())));
         }
     }

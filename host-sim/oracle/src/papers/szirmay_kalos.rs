@@ -74,7 +74,7 @@ fn sphere(meridians: usize, bands: usize, exponent: f64) -> Result<[Claim; 3]> {
 fn errors(frame: &Frame, name: &str) -> Result<[f64; 2]> {
     let (mut worst, mut square, mut count) = (0f64, 0.0, 0u32);
     for facet in &frame.facets {
-        let (shade, exact) = (method(name, frame, facet, 0.0)?, phong(frame, facet));
+        let (shade, exact) = (method(name, frame, facet)?, phong(frame, facet));
         for pixel in facet.pixels(frame.size) {
             let error = shade(centre(pixel))[0] - exact(centre(pixel))[0];
             worst = worst.max(error.abs());

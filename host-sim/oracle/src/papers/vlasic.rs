@@ -87,7 +87,7 @@ fn correctness(frame: &Frame, pixels: &[(usize, [u32; 2])]) -> Result<[f64; 6]> 
         let exact = phong(frame, facet);
         let exact: Vec<Levels> = part.iter().map(|pixel| exact(super::centre(pixel.1))).collect();
         for (sum, column) in sums.iter_mut().zip(&TABLE) {
-            let shade = method(column.method, frame, facet, 0.0)?;
+            let shade = method(column.method, frame, facet)?;
             for ((_, pixel), exact) in part.iter().zip(&exact) {
                 let levels = shade(super::centre(*pixel));
                 *sum += levels.iter().zip(exact).map(|(a, b)| (a.round() - b.round()).abs()).sum::<f64>();
