@@ -37,6 +37,9 @@ pub const SPLITS: u32 = 6;
 pub const FINE: u32 = SUBPIXEL + SPLITS;
 /// Fraction bits of [`Unit`], [`Length`] and [`Gain`].
 pub const UNIT: u32 = 14;
+/// Fraction bits of a point of object space where light is computed, and of a near light or viewer there: Q7.25. Streams keep them within
+/// 56 units, and next to a light each bit of their distance counts.
+pub const POSITION: u32 = 25;
 /// Fraction bits of [`Rotation`].
 pub const ROTATION: u32 = 30;
 /// Fraction bits of a dot product of unit vectors, N·L or N·H: Q2.30.

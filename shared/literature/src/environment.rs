@@ -12,7 +12,7 @@
 //! Domain: any lights; the highlights of near ones are wrong by design.
 
 use microphong::{
-    format::COSINE,
+    format::{COSINE, POSITION, UNIT},
     lighting::lights::cosine,
     math::vector::{dot, normalise, zip},
     method::{
@@ -70,9 +70,9 @@ fn coordinates(lighting: &Lighting, node: &Node) -> [i32; 2] {
     let normal = lighting.axes.map(|axis| cosine(axis, node.normal));
     let [x, y, z] = match lighting.viewer {
         Viewer::Infinite(_) => [0, 0, ONE],
-        Viewer::Local(_) => {
-            normalise_wide(zip(lighting.axes, lighting.eye, |axis, eye| (i64::from(eye) << COSINE) - dot(axis, node.position)))
-        }
+        Viewer::Local(_) => normalise_wide(zip(lighting.axes, lighting.eye, |axis, eye| {
+            (i64::from(eye) << (COSINE + POSITION - UNIT)) - dot(axis, node.position)
+        })),
     };
     // Half of W + (0, 0, 1), Q4.60: where it is small, all its bits count.
     let nv = i64::from(cosine(normal, [x, y, z]));

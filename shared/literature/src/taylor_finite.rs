@@ -13,7 +13,8 @@ use crate::{
 };
 use microphong::{
     format::COSINE,
-    math::vector::{add, wide},
+    lighting::lights::point,
+    math::vector::add,
     method::{Canvas, Costs, Facts, Highlight, Method, Shading, TriangleSetup, VertexLight},
 };
 
@@ -43,7 +44,7 @@ impl Method for TaylorFinite {
 }
 
 fn draw(setup: &TriangleSetup<'_>, shading: &Shading<'_>, canvas: &mut dyn Canvas) -> u32 {
-    let positions = setup.vertices().map(|vertex| wide(vertex.position));
+    let positions = setup.vertices().map(|vertex| point(vertex.position));
     let shortened = |v: [i32; 3], bits: u32| v.map(|c| c >> (COSINE - VECTOR + bits));
     let viewer = positions.map(|position| shortened(shading.lighting.viewer.towards(position), 1));
     taylor::draw_by(setup, shading, canvas, |source| {

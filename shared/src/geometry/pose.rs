@@ -1,7 +1,7 @@
 //! Position and rotation of the camera in one frame.
 
 use crate::{
-    format::ROTATION,
+    format::{POSITION, ROTATION, UNIT},
     math::vector::{cross, dot, transposed, zip},
     stream::record::Camera,
 };
@@ -35,10 +35,17 @@ impl Pose {
         transposed(self.rotation).map(|column| (dot(column, v) >> ROTATION) as i32)
     }
 
-    /// The eye in object space, Q18.14.
+    /// The point of object space at `v` of eye space, which is relative to the object's centre; from Q18.14 to [`POSITION`] fraction bits,
+    /// rounded down.
+    #[must_use]
+    pub fn point_to_object(&self, v: [i32; 3]) -> [i32; 3] {
+        transposed(self.rotation).map(|column| (dot(column, v) >> (ROTATION + UNIT - POSITION)) as i32)
+    }
+
+    /// The eye in object space, [`POSITION`] fraction bits.
     #[must_use]
     pub fn eye(&self) -> [i32; 3] {
-        self.to_object(self.translation.map(|c| -c))
+        self.point_to_object(self.translation.map(|c| -c))
     }
 }
 

@@ -2,9 +2,9 @@
 
 use crate::{
     arch::product::{HALVES, by_fraction},
-    format::{COSINE, MAX_LIGHTS, UNIT},
+    format::{COSINE, MAX_LIGHTS, POSITION, UNIT},
     geometry::pose::Pose,
-    math::vector::{add, dot, narrow_dot, normalise, sub},
+    math::vector::{add, dot, narrow_dot, normalise, sub, wide},
     stream::{
         Stream,
         record::{DIRECTIONAL, EYE_SPACE, Light, PERSPECTIVE, VIEWER_LOCAL},
@@ -21,7 +21,7 @@ pub enum Source {
         /// The unit half vector H between L and an infinite viewer; unused under a local viewer.
         half: [i32; 3],
     },
-    /// A light or viewer at this position, Q18.14.
+    /// A light at this position, Q7.25.
     Point([i32; 3]),
 }
 
@@ -30,7 +30,7 @@ pub enum Source {
 pub enum Viewer {
     /// A viewer that is infinitely far, by the unit vector towards it, Q2.30.
     Infinite([i32; 3]),
-    /// A light or viewer at this position, Q18.14.
+    /// A viewer at this position, Q7.25.
     Local([i32; 3]),
 }
 
@@ -43,7 +43,7 @@ pub struct Lighting {
     pub viewer: Viewer,
     /// The axes of the eye, to the right, up, and towards the viewer: unit vectors, Q2.30.
     pub axes: [[i32; 3]; 3],
-    /// The eye in these axes, relative to the origin of object space, Q18.14. It is as exact as the camera, unlike [`Viewer::Local`].
+    /// The eye in these axes, relative to the origin of object space, Q18.14: exact, unlike [`Viewer::Local`].
     pub eye: [i32; 3],
     /// See [`Self::is_constant`].
     constant: bool,
@@ -82,12 +82,12 @@ impl Lighting {
         }
     }
 
-    /// `[N·L, N·H]` of each light, Q2.30, at `position` (Q18.14) with the normal `normal` (Q2.30, at most unit length).
+    /// `[N·L, N·H]` of each light, Q2.30, at `position` (Q7.25) with the normal `normal` (Q2.30, at most unit length).
     pub fn cosines(&self, position: [i32; 3], normal: [i32; 3]) -> impl Iterator<Item = [i32; 2]> {
         self.sources.iter().map(move |source| self.directions(source, position).map(|direction| cosine(normal, direction)))
     }
 
-    /// The unit vectors L and H of a light at `position` (Q18.14), Q2.30.
+    /// The unit vectors L and H of a light at `position` (Q7.25), Q2.30.
     #[must_use]
     pub fn directions(&self, source: &Source, position: [i32; 3]) -> [[i32; 3]; 2] {
         match (*source, self.viewer) {
@@ -127,6 +127,14 @@ impl Viewer {
             Self::Local(eye) => normalise(sub(eye, position)),
         }
     }
+}
+
+/// The position of a vertex as a point where light is computed, Q7.25.
+#[inline(always)]
+#[must_use]
+pub fn point(position: [i16; 3]) -> [i32; 3] {
+    let [x, y, z] = wide(position);
+    [x << (POSITION - UNIT), y << (POSITION - UNIT), z << (POSITION - UNIT)]
 }
 
 /// Cosine of the angle between two unit vectors, Q2.30, rounded down: their dot product.
@@ -197,15 +205,14 @@ fn half(towards: [i32; 3], viewer: [i32; 3]) -> [i32; 3] {
 }
 
 fn source(light: &Light, pose: &Pose, towards_eye: [i32; 3]) -> Source {
-    let vector = if light.kind == DIRECTIONAL {
-        normalise(light.vector)
-    } else if light.space == EYE_SPACE {
-        sub(light.vector, pose.translation)
-    } else {
-        light.vector
-    };
-    let vector = if light.space == EYE_SPACE { pose.to_object(vector) } else { vector };
-    if light.kind == DIRECTIONAL { Source::Directional { towards: vector, half: half(vector, towards_eye) } } else { Source::Point(vector) }
+    if light.kind == DIRECTIONAL {
+        let vector = normalise(light.vector);
+        let towards = if light.space == EYE_SPACE { pose.to_object(vector) } else { vector };
+        return Source::Directional { towards, half: half(towards, towards_eye) };
+    }
+    let vector = light.vector;
+    let from_centre = || pose.point_to_object(sub(vector, pose.translation));
+    Source::Point(if light.space == EYE_SPACE { from_centre() } else { vector.map(|c| c << (POSITION - UNIT)) })
 }
 
 #[cfg(test)]

@@ -8,7 +8,7 @@ use crate::{
         viewport::{Bounds, Viewport},
     },
     lighting::{
-        lights::{Lighting, MeanNormal, vertex_cosine},
+        lights::{Lighting, MeanNormal, point, vertex_cosine},
         materials::Reflectance,
     },
     math::vector::wide,
@@ -64,7 +64,7 @@ impl VertexStage<'_> {
                 if light == VertexLight::Levels { [self.reflectance.level(cosines); 3] } else { [cosines[0], cosines[1], 0] }
             }
             _ if self.lighting.is_constant() => self.reflectance.constant_levels(&self.lighting.sources, &MeanNormal::at(normal)),
-            _ => self.reflectance.levels(self.lighting.cosines(wide(vertex.position), normal.map(|c| c << (30 - UNIT)))),
+            _ => self.reflectance.levels(self.lighting.cosines(point(vertex.position), normal.map(|c| c << (30 - UNIT)))),
         };
         ScreenVertex { x, y, depth, light, state: if inside { State::READY } else { State::OUTSIDE } }
     }

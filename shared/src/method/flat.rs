@@ -6,7 +6,7 @@ use crate::{
     format::UNIT,
     interpolate::Constant,
     lighting::{
-        lights::{MeanNormal, vertex_cosine},
+        lights::{MeanNormal, point, vertex_cosine},
         materials::{Highlight, MaterialTables},
     },
     math::vector::{add, wide},
@@ -81,6 +81,6 @@ fn levels(setup: &TriangleSetup<'_>, shading: &Shading<'_>) -> [i32; 3] {
 /// The triangle's centroid, and the `normal` of its plane (Q2.14).
 fn centroid(setup: &TriangleSetup<'_>, normal: [i32; 3]) -> Node {
     let [a, b, c] = setup.vertices();
-    let sum = add(wide(a.position), add(wide(b.position), wide(c.position)));
+    let sum = add(point(a.position), add(point(b.position), point(c.position)));
     Node { position: sum.map(|c| c / 3), normal: normal.map(|c| c << (30 - UNIT)) }
 }

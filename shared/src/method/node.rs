@@ -2,8 +2,8 @@
 
 use crate::{
     arch::product::{by_fraction, product},
-    format::{INVERSE_SUM_LENGTH, UNIT},
-    lighting::lights::{MeanNormal, cosine, vertex_cosine},
+    format::{INVERSE_SUM_LENGTH, POSITION, UNIT},
+    lighting::lights::{MeanNormal, cosine, point, vertex_cosine},
     math::{
         rsqrt::rsqrt_wide,
         vector::{add, dot, normalise, wide, zip},
@@ -18,7 +18,7 @@ const FINER: u32 = 30 - UNIT;
 /// A point of a triangle and the normal there.
 #[derive(Clone, Copy, Debug)]
 pub struct Node {
-    /// Object space, Q18.14.
+    /// Object space, Q7.25.
     pub position: [i32; 3],
     /// Q2.30.
     pub normal: [i32; 3],
@@ -52,7 +52,7 @@ impl Shading<'_> {
 impl TriangleSetup<'_> {
     /// The corners, with their normals as stored.
     pub fn corner_nodes(&self) -> [Node; 3] {
-        self.vertices().map(|vertex| Node { position: wide(vertex.position), normal: wide(vertex.normal).map(|c| c << FINER) })
+        self.vertices().map(|vertex| Node { position: point(vertex.position), normal: wide(vertex.normal).map(|c| c << FINER) })
     }
 
     /// Corners and edge midpoints (01, 12, 20), unit normals.
@@ -75,7 +75,7 @@ impl TriangleSetup<'_> {
         [a, b, c, ab, bc, ca]
     }
 
-    /// The point with the barycentric coordinates `weights / 2^bits`, which are not negative; unit normal.
+    /// The point with the barycentric coordinates `weights / 2^bits`, which are not negative, `bits` at most 11; unit normal.
     pub fn node(&self, weights: [i32; 3], bits: u32) -> Node {
         let mean = |v: [[i32; 3]; 3]| {
             let [a, b, c] = zip(v, weights, |v, weight| v.map(|c| c * weight));
@@ -83,7 +83,10 @@ impl TriangleSetup<'_> {
         };
         let vertices = self.vertices();
         let position = mean(vertices.map(|vertex| wide(vertex.position)));
-        Node { position: position.map(|c| c >> bits), normal: normalise(mean(vertices.map(|vertex| wide(vertex.normal)))) }
+        Node {
+            position: position.map(|c| c << (POSITION - UNIT - bits)),
+            normal: normalise(mean(vertices.map(|vertex| wide(vertex.normal)))),
+        }
     }
 
     /// The point with the barycentric coordinates `weights / (3 2^bits)`; unit normal.
@@ -153,7 +156,7 @@ impl TriangleSetup<'_> {
 /// Position, and sum of the ends' normals (Q3.14), at the middle of each edge between three vertices.
 fn sums([a, b, c]: [&Vertex; 3]) -> [([i32; 3], [i32; 3]); 3] {
     [(a, b), (b, c), (c, a)].map(|(a, b)| {
-        let position = add(wide(a.position), wide(b.position)).map(|c| c >> 1);
+        let position = add(wide(a.position), wide(b.position)).map(|c| c << (POSITION - UNIT - 1));
         (position, add(wide(a.normal), wide(b.normal)))
     })
 }

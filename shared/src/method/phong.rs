@@ -10,7 +10,7 @@
 use crate::{
     format::COSINE,
     lighting::{
-        lights::{Source, Viewer},
+        lights::{Source, Viewer, point},
         materials::{Highlight, MaterialTables, Reflection},
     },
     math::{
@@ -72,7 +72,7 @@ pub fn draw_by<F>(setup: &TriangleSetup<'_>, shading: &Shading<'_>, model: F, ca
 where
     F: LightingModel<[u32; 3], [u32; 3]>,
 {
-    let positions = setup.vertices().map(|vertex| wide(vertex.position));
+    let positions = setup.vertices().map(|vertex| point(vertex.position));
     let normals = fitted(setup.vertices().map(|vertex| wide(vertex.normal)));
     let view = fitted(match shading.lighting.viewer {
         Viewer::Infinite(towards) => [towards; 3],
