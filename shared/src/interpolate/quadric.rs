@@ -49,6 +49,14 @@ impl Row {
     }
 }
 
+impl Row {
+    /// [`Self::fit`] in a function of its own, for several channels.
+    #[inline(never)]
+    fn fitted<const BITS: u32>(gradients: &Gradients, nodes: [i32; 6], extra: u32, bias: i32) -> Self {
+        Self::fit::<BITS>(gradients, nodes, extra, bias)
+    }
+}
+
 impl<const CH: usize> Quadric<CH> {
     /// The quadratic through six nodes per channel: corners 0, 1, 2, then the midpoints of the edges 01, 12, 20.
     ///
@@ -67,7 +75,7 @@ impl<const CH: usize> Quadric<CH> {
                 *to = Row::fit::<BITS>(gradients, nodes, extra, bias);
             }
         } else {
-            each_channel::<CH>(|c| rows[c] = Row::fit::<BITS>(gradients, nodes[c], extra, bias[c]));
+            each_channel::<CH>(|c| rows[c] = Row::fitted::<BITS>(gradients, nodes[c], extra, bias[c]));
         }
         Self(rows)
     }
