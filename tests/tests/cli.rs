@@ -282,6 +282,61 @@ fn interrupted_commands_leave_nothing_behind() {
     }
 }
 
+/// Name and parent of a process that runs.
+#[cfg(target_os = "linux")]
+fn running(process: u32) -> Option<(String, u32)> {
+    let stat = fs::read_to_string(format!("/proc/{process}/stat")).ok()?;
+    // `17 (name) R 1 ...`; a process that has ended and is not forgotten yet has the state Z.
+    let (name, rest) = stat.split_once('(')?.1.rsplit_once(") ")?;
+    let (state, rest) = rest.split_once(' ')?;
+    let parent = rest.split(' ').next()?.parse().ok()?;
+    (state != "Z").then(|| (name.to_owned(), parent))
+}
+
+/// Neither the emulators that they have started nor files for them.
+#[cfg(target_os = "linux")]
+#[test]
+fn interrupted_emulations_leave_nothing_behind() {
+    use std::{
+        process::Stdio,
+        thread::sleep,
+        time::{Duration, Instant},
+    };
+    let commands: [(&[&str], &str); 3] = [
+        (&["verify", "--board", "lm3s6965evb", "--scene", "triangle", "--shader", "flat", "--frames", "2000"], "qemu-system-arm"),
+        (&["bench", "bunny", "--board", "mps2-an385", "--shader", "phong"], "qemu-system-arm"),
+        (&["bench", "bunny", "--board", "x86-64", "--shader", "phong"], "callgrind-amd64"),
+    ];
+    for (arguments, emulator) in commands {
+        for signal in ["INT", "TERM", "HUP", "KILL"] {
+            let place = Place::new();
+            let mut command = Command::new(program());
+            command.args(arguments).current_dir(place.0.path()).env("TMPDIR", place.0.path());
+            let mut child = command.stdout(Stdio::null()).stderr(Stdio::null()).spawn().expect("the program");
+            let wanted = Some((emulator.to_owned(), child.id()));
+            let found = loop {
+                assert_eq!(child.try_wait().expect("a state"), None, "{arguments:?} has not started {emulator}");
+                let processes = fs::read_dir("/proc").expect("processes");
+                let mut numbers = processes.filter_map(|entry| entry.ok()?.file_name().to_str()?.parse().ok());
+                match numbers.find(|&process| running(process) == wanted) {
+                    Some(process) => break process,
+                    None => sleep(Duration::from_millis(2)),
+                }
+            };
+            sleep(Duration::from_millis(50));
+            assert!(child.try_wait().expect("a state").is_none() && running(found) == wanted, "{arguments:?}: it still runs");
+            assert!(Command::new("kill").args(["-s", signal, &child.id().to_string()]).status().expect("kill").success());
+            assert_eq!(child.wait().expect("an end").code(), None, "{arguments:?}, SIG{signal}");
+            let end = Instant::now() + Duration::from_secs(10);
+            while running(found).is_some_and(|(name, _)| name == emulator) {
+                assert!(Instant::now() < end, "{arguments:?}, SIG{signal}: {emulator} still runs");
+                sleep(Duration::from_millis(2));
+            }
+            assert_eq!(place.files(), Vec::<String>::new(), "{arguments:?}, SIG{signal}");
+        }
+    }
+}
+
 #[test]
 fn wrong_usage_is_told_from_failure() {
     let place = Place::new();

@@ -4,6 +4,7 @@
 #[path = "../../../firmware/src/budget.rs"]
 pub mod budget;
 pub mod build;
+pub mod child;
 pub mod elf;
 mod log;
 mod pico;

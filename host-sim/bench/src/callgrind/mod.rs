@@ -8,12 +8,15 @@ mod split;
 
 use super::{Measurement, Processor, Stages};
 use anyhow::{Context, Result, anyhow, ensure};
-use microphong_boards::{build::release, sources::sources};
+use microphong_boards::{
+    build::release,
+    child::{Scratch, bound},
+    sources::sources,
+};
 use microphong_render::shader::Shader;
 use profile::Profile;
 use std::{
     ffi::OsString,
-    fs,
     io::ErrorKind,
     path::{Path, PathBuf},
     process::Command,
@@ -89,11 +92,9 @@ pub fn build() -> Result<PathBuf> {
 /// # Errors
 /// When valgrind is missing, or the scene cannot be drawn in one of these ways.
 pub fn count(program: &Path, stream: &[u8], frames: &[Frame]) -> Result<Vec<Count>> {
-    let directory = tempfile::Builder::new().prefix("mphong").tempdir().context("cannot create a temporary directory")?;
-    let stream_file = directory.path().join("stream");
-    fs::write(&stream_file, stream).with_context(|| format!("cannot write {}", stream_file.display()))?;
+    let stream = Scratch::new(stream)?;
     let arguments = |&Frame { size: (width, height), band_rows, shader }: &Frame| -> [OsString; 4] {
-        [stream_file.clone().into(), format!("{width}x{height}").into(), band_rows.to_string().into(), shader.name().into()]
+        [stream.path().into(), format!("{width}x{height}").into(), band_rows.to_string().into(), shader.name().into()]
     };
     let (stats, profiles) = profiles(program, &frames.iter().map(arguments).collect::<Vec<_>>())?;
     ensure!(stats.lines().count() == frames.len(), "callgrind has drawn {} of {} frames", stats.lines().count(), frames.len());
@@ -108,13 +109,13 @@ pub fn count(program: &Path, stream: &[u8], frames: &[Frame]) -> Result<Vec<Coun
 
 /// What `program` prints, and a profile of each frame that it draws: of what `counted_frame` does within `dumped_frame`.
 pub(super) fn profiles<const N: usize>(program: &Path, frames: &[[OsString; N]]) -> Result<(String, Vec<Profile>)> {
-    let directory = tempfile::Builder::new().prefix("mphong").tempdir().context("cannot create a temporary directory")?;
-    let profile = directory.path().join("profile");
+    let dumps = Scratch::new(&[])?;
     let mut valgrind = Command::new("valgrind");
-    valgrind
-        .args(["--tool=callgrind", "--quiet", "--demangle=no", "--dump-instr=yes", "--dump-line=no", "--collect-jumps=yes"])
+    bound(&mut valgrind)
+        // Without pipes for a debugger, which it leaves where it is ended.
+        .args(["--tool=callgrind", "--quiet", "--vgdb=no", "--demangle=no", "--dump-instr=yes", "--dump-line=no", "--collect-jumps=yes"])
         .args(["--compress-strings=no", "--compress-pos=no", "--zero-before=*counted_frame*", "--dump-after=*dumped_frame*"])
-        .arg(format!("--callgrind-out-file={}", profile.display()))
+        .args(["--combine-dumps=yes", &format!("--callgrind-out-file={}", dumps.path().display())])
         .arg(program)
         .args(frames.as_flattened());
     let output = valgrind.output().map_err(|error| match error.kind() {
@@ -123,11 +124,10 @@ pub(super) fn profiles<const N: usize>(program: &Path, frames: &[[OsString; N]])
     })?;
     let messages = String::from_utf8_lossy(&output.stderr);
     ensure!(output.status.success(), "callgrind could not count: {}", messages.trim());
-    // It numbers what it writes from 1; without number is what came behind the last frame.
-    let profiles = (1..=frames.len()).map(|number| {
-        let path = profile.with_extension(number.to_string());
-        let text = fs::read_to_string(&path).with_context(|| format!("callgrind has not written {}", path.display()))?;
-        Profile::parse(&text)
-    });
+    let text = String::from_utf8(dumps.read()?).context("callgrind's profiles are no text")?;
+    // Behind a common header; the last part is what came behind the last frame.
+    let parts: Vec<_> = text.split("\npart: ").skip(1).collect();
+    ensure!(parts.len() == frames.len() + 1, "callgrind has written {} profiles of {} frames", parts.len(), frames.len());
+    let profiles = parts[..frames.len()].iter().map(|part| Profile::parse(part));
     Ok((String::from_utf8_lossy(&output.stdout).into_owned(), profiles.collect::<Result<_>>()?))
 }

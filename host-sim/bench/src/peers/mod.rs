@@ -14,13 +14,14 @@ use embedded_graphics_core::{
 use microphong_boards::{
     Board, INSTRUCTIONS_PER_TICK,
     build::{install_target, release},
+    child::Scratch,
     clocked,
     elf::Elf,
     sources::sources,
 };
 use microphong_render::{render, scene::Scene, shader::Shader};
 use serde::Serialize;
-use std::{ffi::OsString, fs, path::PathBuf};
+use std::{ffi::OsString, path::PathBuf};
 
 /// The scene that is drawn: its mesh, camera and light are theirs.
 pub const SCENE: &str = "peer-sphere";
@@ -150,13 +151,13 @@ fn build(program: &str, target: Option<&str>) -> Result<PathBuf> {
 pub fn draw(scene: &Scene) -> Result<Vec<(u64, Picture)>> {
     ensure!(cfg!(target_arch = "x86_64"), "instructions of x86-64 are counted on such computers only; choose another board");
     let program = build("host", None)?;
-    let directory = tempfile::Builder::new().prefix("mphong").tempdir().context("cannot create a temporary directory")?;
-    let stream = directory.path().join("stream");
-    fs::write(&stream, scene.stream.as_bytes()).with_context(|| format!("cannot write {}", stream.display()))?;
-    let frames = PEERS.map(|peer| -> [OsString; 3] { [stream.clone().into(), peer.into(), directory.path().join(peer).into()] });
-    let (_, profiles) = callgrind::profiles(&program, &frames)?;
-    let drawn = profiles.iter().zip(frames).map(|(profile, [.., path])| {
-        let bytes = fs::read(&path).context("no picture by another renderer")?;
+    let stream = Scratch::new(scene.stream.as_bytes())?;
+    let pictures = PEERS.iter().map(|_| Scratch::new(&[])).collect::<Result<Vec<_>>>()?;
+    let frames =
+        PEERS.iter().zip(&pictures).map(|(peer, file)| -> [OsString; 3] { [stream.path().into(), peer.into(), file.path().into()] });
+    let (_, profiles) = callgrind::profiles(&program, &frames.collect::<Vec<_>>())?;
+    let drawn = profiles.iter().zip(&pictures).map(|(profile, file)| {
+        let bytes = file.read().context("no picture by another renderer")?;
         let (pixels, _) = bytes.as_chunks::<2>();
         let pixels = pixels.iter().map(|&pixel| RawU16::new(u16::from_le_bytes(pixel)).into());
         Ok((profile.total, Picture(pixels.collect())))

@@ -6,14 +6,17 @@ mod trace;
 
 pub use trace::{Blocks, trace};
 
-use super::{Board, Recording, Until, elf::Elf, log};
+use super::{
+    Board, Recording, Until,
+    child::{Scratch, bound},
+    elf::Elf,
+    log,
+};
 use anyhow::{Context, Result, anyhow, bail};
 use qmp::Qmp;
 use screen::Screen;
 use std::{
-    fs,
     io::{self, ErrorKind, Read, Write},
-    path::Path,
     process::{Child, ChildStdin, ChildStdout, Command, Stdio},
     sync::mpsc::{self, Receiver, RecvTimeoutError},
     thread,
@@ -28,13 +31,13 @@ const END: Duration = Duration::from_secs(20);
 const PANIC: i32 = 101;
 
 /// The command that runs `program` on `board`, without anything that looks at it.
-fn machine(board: Board, program: &Path) -> Command {
+fn machine(board: Board, program: &Scratch) -> Command {
     let mut machine = Command::new("qemu-system-arm");
-    machine
+    bound(&mut machine)
         .args(["-M", board.name(), "-display", "none", "-nodefaults", "-nic", "none", "-serial", "none", "-monitor", "none"])
         .args(["-chardev", "stdio,id=host,signal=off", "-semihosting-config", "enable=on,target=native,chardev=host"])
         .arg("-kernel")
-        .arg(program);
+        .arg(program.path());
     machine
 }
 
@@ -116,18 +119,14 @@ fn read_lines(mut output: ChildStdout, mut decoder: log::Decoder) -> Receiver<St
 
 /// Runs the firmware to its end, or to the end of its first frame.
 pub(super) fn run(board: Board, elf: &Elf, until: Until) -> Result<Recording> {
-    // A socket's path must be short, so no directory of the repository's.
-    let directory = tempfile::Builder::new().prefix("mphong").tempdir().context("cannot create a temporary directory")?;
-    let program = directory.path().join("firmware.elf");
-    fs::write(&program, elf.bytes()).with_context(|| format!("cannot write {}", program.display()))?;
-    let socket = directory.path().join("qmp");
+    let program = Scratch::new(elf.bytes())?;
     let screen = Screen::of(board, elf)?;
 
     let mut recording = Recording::default();
     let mut machine = machine(board, &program);
-    machine.arg("-qmp").arg(format!("unix:{},server=on,wait=off", socket.display()));
+    let qmp = Qmp::new(&mut machine)?;
     let mut emulator = Emulator::start(machine, log::Decoder::new(elf)?)?;
-    let outcome = play(&mut emulator, &socket, &screen, until, directory.path(), &mut recording);
+    let outcome = play(&mut emulator, qmp, &screen, until, &mut recording);
     outcome.with_context(|| format!("{board} in QEMU; {}", log::tail(&recording.log)))?;
     Ok(recording)
 }
@@ -141,9 +140,7 @@ pub const INSTRUCTIONS_PER_TICK: f64 = 40.0 / 256.0;
 /// # Errors
 /// When the program crashes, falls silent or fails.
 pub fn clocked(board: Board, elf: &Elf) -> Result<Vec<String>> {
-    let directory = tempfile::Builder::new().prefix("mphong").tempdir().context("cannot create a temporary directory")?;
-    let program = directory.path().join("program.elf");
-    fs::write(&program, elf.bytes()).with_context(|| format!("cannot write {}", program.display()))?;
+    let program = Scratch::new(elf.bytes())?;
     let mut machine = machine(board, &program);
     machine.args(["-icount", "shift=8,sleep=off"]);
     let mut emulator = Emulator::start(machine, log::Decoder::new(elf)?)?;
@@ -157,14 +154,14 @@ pub fn clocked(board: Board, elf: &Elf) -> Result<Vec<String>> {
     }
 }
 
-fn play(emulator: &mut Emulator, socket: &Path, screen: &Screen, until: Until, directory: &Path, recording: &mut Recording) -> Result<()> {
-    let mut qmp = Qmp::connect(socket)?;
+fn play(emulator: &mut Emulator, mut qmp: Qmp, screen: &Screen, until: Until, recording: &mut Recording) -> Result<()> {
+    qmp.greet()?;
     while let Some(line) = emulator.line()? {
         let shown = line.starts_with("frame ") || line.starts_with("error: ");
         recording.log.push(line);
         if shown {
             // The picture is complete by now, and the firmware waits.
-            recording.pictures.push(screen.picture(&mut qmp, directory)?);
+            recording.pictures.push(screen.picture(&mut qmp)?);
             if until == Until::FirstFrame && recording.failure().is_none() {
                 return Ok(());
             }

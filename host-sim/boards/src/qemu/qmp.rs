@@ -1,13 +1,13 @@
 //! QEMU's control socket: one JSON object per line.
 
+use crate::child::inherited;
 use anyhow::{Context, Result, bail};
 use serde_json::{Value, json};
 use std::{
-    io::{BufRead, BufReader, ErrorKind, Write},
+    io::{BufRead, BufReader, Write},
     os::unix::net::UnixStream,
-    path::Path,
-    thread::sleep,
-    time::{Duration, Instant},
+    process::Command,
+    time::Duration,
 };
 
 /// How long an answer may take.
@@ -19,23 +19,19 @@ pub(super) struct Qmp {
 }
 
 impl Qmp {
-    /// Waits until QEMU has made `socket`.
-    pub(super) fn connect(socket: &Path) -> Result<Self> {
-        let start = Instant::now();
-        let stream = loop {
-            match UnixStream::connect(socket) {
-                Ok(stream) => break stream,
-                Err(error) if matches!(error.kind(), ErrorKind::NotFound | ErrorKind::ConnectionRefused) && start.elapsed() < LIMIT => {
-                    sleep(Duration::from_millis(2));
-                }
-                Err(error) => return Err(error).context("cannot reach QEMU's control socket"),
-            }
-        };
-        stream.set_read_timeout(Some(LIMIT))?;
-        let mut qmp = Self { stream: BufReader::new(stream) };
-        qmp.receive().context("no greeting from QEMU")?;
-        qmp.command("qmp_capabilities", &json!({}))?;
-        Ok(qmp)
+    /// One to the emulator that `machine` starts: a pair of sockets that nobody else can find.
+    pub(super) fn new(machine: &mut Command) -> Result<Self> {
+        let (ours, theirs) = UnixStream::pair().context("cannot make QEMU's control socket")?;
+        ours.set_read_timeout(Some(LIMIT))?;
+        let descriptor = inherited(machine, theirs.into());
+        machine.args(["-chardev", &format!("socket,id=control,fd={descriptor}"), "-mon", "chardev=control,mode=control"]);
+        Ok(Self { stream: BufReader::new(ours) })
+    }
+
+    /// Waits until QEMU takes commands.
+    pub(super) fn greet(&mut self) -> Result<()> {
+        self.receive().context("no greeting from QEMU")?;
+        self.command("qmp_capabilities", &json!({}))
     }
 
     fn receive(&mut self) -> Result<Value> {

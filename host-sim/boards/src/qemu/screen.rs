@@ -1,9 +1,9 @@
 //! Reads a board's display: the OLED that QEMU draws, or a frame buffer in memory.
 
-use super::{Board, Elf, Qmp};
+use super::{Board, Elf, Qmp, Scratch};
 use anyhow::{Context, Result, ensure};
 use serde_json::json;
-use std::{fs, fs::File, io::BufReader, path::Path};
+use std::io::Cursor;
 
 /// Where the picture is.
 pub(super) enum Screen {
@@ -30,16 +30,17 @@ impl Screen {
     }
 
     /// The pixels as they are now.
-    pub(super) fn picture(&self, qmp: &mut Qmp, directory: &Path) -> Result<Vec<u32>> {
-        let path = directory.join("picture");
+    pub(super) fn picture(&self, qmp: &mut Qmp) -> Result<Vec<u32>> {
+        let file = Scratch::new(&[])?;
+        let path = file.path();
         match *self {
             Self::Oled => {
                 qmp.command("screendump", &json!({ "filename": path.to_string_lossy(), "format": "png" }))?;
-                read_oled(&path).context("QEMU's picture of the OLED")
+                read_oled(&file.read()?).context("QEMU's picture of the OLED")
             }
             Self::Memory { address, size } => {
                 qmp.command("pmemsave", &json!({ "val": address, "size": size, "filename": path.to_string_lossy() }))?;
-                let bytes = fs::read(&path).context("QEMU's copy of the frame buffer")?;
+                let bytes = file.read().context("QEMU's copy of the frame buffer")?;
                 ensure!(bytes.len() == size as usize, "QEMU's copy of the frame buffer has {} bytes, not {size}", bytes.len());
                 Ok(bytes.chunks_exact(2).map(|pair| u16::from_le_bytes([pair[0], pair[1]]).into()).collect())
             }
@@ -48,8 +49,8 @@ impl Screen {
 }
 
 /// Undoes the enlargement; all samples of a pixel must agree.
-fn read_oled(path: &Path) -> Result<Vec<u32>> {
-    let mut reader = png::Decoder::new(BufReader::new(File::open(path)?)).read_info()?;
+fn read_oled(file: &[u8]) -> Result<Vec<u32>> {
+    let mut reader = png::Decoder::new(Cursor::new(file)).read_info()?;
     let mut samples = vec![0; reader.output_buffer_size().context("a picture too large")?];
     let info = reader.next_frame(&mut samples)?;
     let (width, height) = Board::Lm3s6965evb.size();

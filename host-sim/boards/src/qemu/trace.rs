@@ -6,6 +6,7 @@
 use super::{
     super::{
         Board, Recording,
+        child::Scratch,
         elf::Elf,
         log::{Decoder, tail},
     },
@@ -15,7 +16,6 @@ use anyhow::{Context, Result, anyhow, bail, ensure};
 use std::{
     collections::HashMap,
     fmt::Write as _,
-    fs,
     io::{self, BufRead, BufReader, Read, Write},
     ops::Range,
     process::Stdio,
@@ -39,9 +39,7 @@ pub enum Blocks {
 /// When QEMU cannot be started or its log cannot be read.
 pub fn trace(board: Board, elf: &Elf, ranges: &[Range<u32>], blocks: Blocks, mut visit: impl FnMut(u32)) -> Result<Recording> {
     let mut decoder = Decoder::new(elf)?;
-    let directory = tempfile::Builder::new().prefix("mphong").tempdir().context("cannot create a temporary directory")?;
-    let program = directory.path().join("firmware.elf");
-    fs::write(&program, elf.without_symbols()?).with_context(|| format!("cannot write {}", program.display()))?;
+    let program = Scratch::new(&elf.without_symbols()?)?;
     let mut filter = String::new();
     for range in ranges {
         let separator = if filter.is_empty() { "" } else { "," };
