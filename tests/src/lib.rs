@@ -1,6 +1,7 @@
 //! Cross-checks of whole programs; see the files in `tests/`.
 
 pub mod message;
+pub mod phong;
 
 use microphong::stream::{
     record::{CLOSED_CONVEX, Header, Mesh, Triangle},

@@ -8,60 +8,17 @@ use embedded_graphics::{
     prelude::{RgbColor, Size},
 };
 use microphong::{
-    Stream,
     geometry::{pose::Pose, projection::View},
-    stream::record::{DIRECTIONAL, EYE_SPACE, PERSPECTIVE, Triangle, VIEWER_LOCAL},
+    stream::record::Triangle,
 };
 use microphong_sim::{render, scene, shader::Shader};
-use microphong_tests::BASIC;
-
-type V3 = [f64; 3];
-
-fn dot(a: V3, b: V3) -> f64 {
-    a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
-}
-
-fn unit(v: V3) -> V3 {
-    let length = dot(v, v).sqrt();
-    v.map(|c| c / length)
-}
+use microphong_tests::{
+    BASIC,
+    phong::{V3, light, real, unit},
+};
 
 fn combine(b: V3, v: [V3; 3]) -> V3 {
     [0, 1, 2].map(|k| b[0] * v[0][k] + b[1] * v[1][k] + b[2] * v[2][k])
-}
-
-/// From a stream's fixed point.
-fn real<const N: usize>(v: [i32; N], bits: i32) -> [f64; N] {
-    v.map(|c| f64::from(c) / 2f64.powi(bits))
-}
-
-/// Light of a point with a normal, per channel, 1 is full.
-fn light(stream: &Stream<'_>, rotation: [V3; 3], material: usize, position: V3, normal: V3) -> V3 {
-    let to_object = |v: V3| [0, 1, 2].map(|c| rotation[0][c] * v[0] + rotation[1][c] * v[1] + rotation[2][c] * v[2]);
-    let translation = real(stream.header.camera.translation, 14);
-    let eye = to_object(translation.map(|c| -c));
-    let local = stream.header.viewer == VIEWER_LOCAL && stream.header.camera.projection == PERSPECTIVE;
-    let view = if local { unit([0, 1, 2].map(|k| eye[k] - position[k])) } else { to_object([0.0, 0.0, -1.0]) };
-    let gain = |c: [u16; 3]| c.map(|c| f64::from(c) / 16_384.0);
-    let material = &stream.materials[material];
-    let (ambient, diffuse, specular) = (gain(material.ambient), gain(material.diffuse), gain(material.specular));
-    let around = gain(stream.header.ambient);
-    let mut sum = [0, 1, 2].map(|k| ambient[k] * around[k]);
-    for source in stream.lights {
-        let mut vector = real(source.vector, 14);
-        if source.space == EYE_SPACE {
-            let shift = if source.kind == DIRECTIONAL { [0.0; 3] } else { translation };
-            vector = to_object([0, 1, 2].map(|k| vector[k] - shift[k]));
-        }
-        let towards = if source.kind == DIRECTIONAL { unit(vector) } else { unit([0, 1, 2].map(|k| vector[k] - position[k])) };
-        let half = unit([0, 1, 2].map(|k| towards[k] + view[k]));
-        let colour = gain(source.colour);
-        let (d, s) = (dot(normal, towards).max(0.0), dot(normal, half).max(0.0).powi(material.exponent.into()));
-        for k in 0..3 {
-            sum[k] += colour[k] * (diffuse[k] * d + specular[k] * s);
-        }
-    }
-    sum
 }
 
 /// Largest and root mean square difference, in 1/255, of `shader` on a scene; the picture's own rounding is part of it.
