@@ -116,7 +116,7 @@ pub fn turned(setup: &TriangleSetup<'_>, lighting: &Lighting, source: &Source) -
     ]
 }
 
-/// Largest error of a component of [`turn`], times the length of the sum of its two directions.
+/// Largest error of a component of a normal that [`turned`] turns, times the length of the sum of the two directions.
 pub const TURN_ERROR: f64 = 24.0 / (1u32 << 30) as f64;
 
 /// `normal` turned as the unit vector `from` turns to `to`: by half a turn about `from`, then by half a turn about the middle between both.
