@@ -8,6 +8,7 @@ use microphong::stream::{
     seal,
 };
 use microphong_sim::{bytes::StreamBytes, shader::Shader};
+use proptest::test_runner::{Config, RngAlgorithm, TestRng, TestRunner};
 use serde_json::Value;
 use std::{
     mem::{offset_of, size_of},
@@ -96,6 +97,15 @@ pub fn cases(count: u64) -> u64 {
     let count = count * variable("MICROPHONG_CASES").unwrap_or(1).max(1);
     println!("{count} cases");
     count
+}
+
+/// What makes random cases by the strategies of proptest, with the same [`seed`] and so many [`cases`].
+#[must_use]
+pub fn runner(count: u64) -> TestRunner {
+    let mut bytes = [0; 32];
+    bytes[..8].copy_from_slice(&seed().to_le_bytes());
+    let config = Config { cases: cases(count) as u32, failure_persistence: None, ..Config::default() };
+    TestRunner::new_with_rng(config, TestRng::from_seed(RngAlgorithm::ChaCha, &bytes))
 }
 
 fn variable(name: &str) -> Option<u64> {

@@ -15,11 +15,9 @@ use microphong_sim::{
     render::{self, Style},
     scene,
     shader::Shader,
+    stress::random::Random,
 };
-use proptest::{
-    prelude::Rng,
-    test_runner::{RngAlgorithm, TestRng},
-};
+use microphong_tests::{cases, seed};
 use std::collections::BTreeMap;
 
 const WHOLE: i32 = 1 << 16;
@@ -30,21 +28,9 @@ fn smooth(shader: Shader) -> Style {
     Style { antialias: true, ..shader.into() }
 }
 
-/// Random numbers, the same in every run.
-struct Random(TestRng);
-
-impl Random {
-    fn new(seed: u8) -> Self {
-        Self(TestRng::from_seed(RngAlgorithm::ChaCha, &[seed; 32]))
-    }
-
-    fn pick(&mut self, range: std::ops::Range<i32>) -> i32 {
-        range.start + (self.0.next_u64() % (range.end - range.start) as u64) as i32
-    }
-
-    fn point(&mut self, side: i32) -> [i32; 2] {
-        [self.pick(-side..side), self.pick(-side..side)]
-    }
+/// A point in a square about the origin.
+fn point(random: &mut Random, side: i32) -> [i32; 2] {
+    [random.pick(-side..side), random.pick(-side..side)]
 }
 
 /// Positive clockwise, y running down.
@@ -103,21 +89,21 @@ fn clipped(corners: [[f64; 2]; 3]) -> (f64, [f64; 2]) {
 /// Triangles of every kind, tiny, thin and huge; coordinates of 4 to 10 fraction bits.
 #[test]
 fn coverage_is_the_exact_area() {
-    let mut random = Random::new(3);
+    let mut random = Random::new(seed(), 0);
     let (mut worst, mut apart, mut pixels) = (0f64, 0f64, 0u64);
-    for i in 0..30_000 {
+    for i in 0..cases(30_000) {
         let bits = 4 + random.pick(0..7) as u32;
         let mut corners = match i % 5 {
-            0 => [0; 3].map(|_| random.point(600)),
-            1 => [0; 3].map(|_| random.point(20)),
+            0 => [0; 3].map(|_| point(&mut random, 600)),
+            1 => [0; 3].map(|_| point(&mut random, 20)),
             2 => {
-                let (a, b) = (random.point(1500), random.point(1500));
+                let (a, b) = (point(&mut random, 1500), point(&mut random, 1500));
                 let middle = [(a[0] + b[0]) / 2, (a[1] + b[1]) / 2];
                 [a, b, [middle[0] + random.pick(-9..9), middle[1] + random.pick(-9..9)]]
             }
             // Corners and crossings on borders of pixels.
-            3 => [0; 3].map(|_| random.point(10).map(|c| c << bits)),
-            _ => [[0; 2]; 3].map(|_| random.point(if i % 1000 == 4 { 65_536 } else { 3000 })),
+            3 => [0; 3].map(|_| point(&mut random, 10).map(|c| c << bits)),
+            _ => [[0; 2]; 3].map(|_| point(&mut random, if i % 1000 == 4 { 65_536 } else { 3000 })),
         };
         if area(corners) < 0 {
             corners.swap(1, 2);
@@ -149,9 +135,9 @@ fn coverage_is_the_exact_area() {
 /// Closed patches: every pixel adds up to one, to the last bit.
 #[test]
 fn coverages_of_a_patch_add_up_to_one() {
-    let mut random = Random::new(4);
+    let mut random = Random::new(seed(), 1);
     const PIXELS: i32 = 24;
-    for i in 0..200 {
+    for i in 0..cases(200) as usize {
         // A net with jittered knots, from a quarter of a pixel to six pixels wide.
         let step = [4, 6, 12, 16, 24, 32, 48, 96][i % 8];
         let cells = PIXELS * 16 / step;

@@ -14,7 +14,7 @@ use microphong_sim::{
     vector::{V3, add, cross, dot, length, product, rotation, scale, sub, unit},
     view::{Up, View},
 };
-use microphong_tests::unmarked;
+use microphong_tests::{runner, unmarked};
 use proptest::prelude::*;
 use std::f64::consts::TAU;
 
@@ -247,7 +247,7 @@ fn views() -> impl Strategy<Value = View> {
 
 #[test]
 fn convex_bodies_look_the_same() {
-    let mut runner = proptest::test_runner::TestRunner::new(ProptestConfig::with_cases(3_000));
+    let mut runner = runner(3_000);
     let (all, without_depth) = (std::cell::Cell::new(0), std::cell::Cell::new(0));
     let sizes = (8u32..400, 8u32..400, 1u32..100);
     runner

@@ -13,11 +13,8 @@ use microphong::{
     interpolate::{Patch, Walker, cubic::Cubic, plane::Plane, quadric::Quadric},
     setup::gradients::{Gradients, MAX_THINNESS},
 };
-use microphong_sim::stress::coverage::side;
-use proptest::{
-    prelude::Rng,
-    test_runner::{RngAlgorithm, TestRng},
-};
+use microphong_sim::stress::{coverage::side, random::Random};
+use microphong_tests::{cases, seed};
 use std::ops::Range;
 
 /// Error of a walked quadratic for each squared pixel of the way from the anchor, LSB.
@@ -43,14 +40,6 @@ const SMALL_QUADRATIC: f64 = 1.0 / (1u64 << 14) as f64;
 const SMALL_LINEAR: f64 = 1.0 / (1u64 << 19) as f64;
 /// Up to this far from its first corner, 1/16 pixel, a triangle is small.
 const SMALL: i64 = 1 << 10;
-
-struct Random(TestRng);
-
-impl Random {
-    fn pick(&mut self, range: Range<i32>) -> i32 {
-        range.start + (self.0.next_u64() % (range.end - range.start) as u64) as i32
-    }
-}
 
 /// Screen and triangle, 1/16 pixel.
 struct Case {
@@ -120,10 +109,10 @@ fn span(case: &Case, row: i32) -> Range<i32> {
 
 #[test]
 fn quadratics_of_100_000_random_triangles_stay_within_the_bound() {
-    let mut random = Random(TestRng::from_seed(RngAlgorithm::ChaCha, &[3; 32]));
+    let mut random = Random::new(seed(), 3);
     let (mut triangles, mut slivers, mut pixels, mut longest) = (0, 0, 0u64, 0);
     let mut worst = [(0f64, 0f64); 6];
-    for i in 0..150_000 {
+    for i in 0..cases(150_000) as usize {
         let kind = i % 6;
         let mut case = case(&mut random, kind);
         if side(case.corners[0], case.corners[1], case.corners[2]) < 0 {
@@ -194,10 +183,10 @@ fn quadratics_of_100_000_random_triangles_stay_within_the_bound() {
 
 #[test]
 fn cubics_stay_within_the_bound() {
-    let mut random = Random(TestRng::from_seed(RngAlgorithm::ChaCha, &[5; 32]));
+    let mut random = Random::new(seed(), 5);
     let mut worst = [(0f64, 0f64); 6];
     let (mut triangles, mut slivers) = (0, 0);
-    for i in 0..150_000 {
+    for i in 0..cases(150_000) as usize {
         let kind = i % 6;
         let mut case = case(&mut random, kind);
         if side(case.corners[0], case.corners[1], case.corners[2]) < 0 {
@@ -263,9 +252,9 @@ fn cubics_stay_within_the_bound() {
 
 #[test]
 fn planes_stay_within_the_bound_even_on_slivers() {
-    let mut random = Random(TestRng::from_seed(RngAlgorithm::ChaCha, &[4; 32]));
+    let mut random = Random::new(seed(), 4);
     let mut worst = 0f64;
-    for i in 0..60_000 {
+    for i in 0..cases(60_000) as usize {
         let mut case = case(&mut random, [0, 1, 2, 2, 2, 5][i % 6]);
         if side(case.corners[0], case.corners[1], case.corners[2]) < 0 {
             case.corners.swap(1, 2);
@@ -316,9 +305,9 @@ const LONG_QUADRATIC: f64 = 1.0;
 
 #[test]
 fn fields_of_26_bits_stay_within_the_bound_on_small_triangles() {
-    let mut random = Random(TestRng::from_seed(RngAlgorithm::ChaCha, &[6; 32]));
+    let mut random = Random::new(seed(), 6);
     let (mut triangles, mut worst) = (0, [0f64; 2]);
-    for i in 0..200_000 {
+    for i in 0..cases(200_000) {
         // From a pixel to 64.
         let reach = 16 << (i % 7);
         let mut corners = [0; 3].map(|_| [2000 + random.pick(-reach / 2..reach / 2), 2000 + random.pick(-reach / 2..reach / 2)]);

@@ -25,26 +25,13 @@ use microphong::{
     setup::gradients::Gradients,
 };
 use microphong_literature::sub_triangle::{ScreenSubTriangle, SubTriangle};
-use microphong_sim::{level, render, scene, shader::Shader};
-use microphong_tests::named;
-use proptest::{
-    prelude::Rng,
-    test_runner::{RngAlgorithm, TestRng},
-};
-use std::ops::Range;
+use microphong_sim::{level, render, scene, shader::Shader, stress::random::Random};
+use microphong_tests::{cases, named, seed};
 
 const SPLITTING: [&str; 4] = ["gouraud4", "pseudo-phong", "six-point-centre", "six-point-adaptive"];
 
 const WIDTH: usize = 96;
 const HEIGHT: usize = 80;
-
-struct Random(TestRng);
-
-impl Random {
-    fn pick(&mut self, range: Range<i32>) -> i32 {
-        range.start + (self.0.next_u64() % (range.end - range.start) as u64) as i32
-    }
-}
 
 /// What all parts of a triangle share.
 struct Whole<'a> {
@@ -70,12 +57,13 @@ impl Whole<'_> {
 
 #[test]
 fn parts_of_random_triangles_cover_each_pixel_once() {
-    let mut random = Random(TestRng::from_seed(RngAlgorithm::ChaCha, &[7; 32]));
+    let mut random = Random::new(seed(), 0);
     let (w, h) = (WIDTH as i32 * 16, HEIGHT as i32 * 16);
     let (mut triangles, mut covered) = (0, 0u64);
     // Every level is the same colour.
     let tables = MaterialTables::<Gray8> { ramp: &[1; RAMP], reflectance: &Reflectance::EMPTY };
-    for i in 0..12_000 {
+    let cases = cases(12_000) as usize;
+    for i in 0..cases {
         let corners = match i % 5 {
             0 => [0; 3].map(|_| [random.pick(0..w), random.pick(0..h)]),
             1 => {
@@ -97,7 +85,7 @@ fn parts_of_random_triangles_cover_each_pixel_once() {
         let mut drawn = [0; 2];
         let rows = [HEIGHT, 7, 16, 1][i % 4];
         // The same splits in every band.
-        let seed = random.0.next_u64().to_le_bytes();
+        let splits = random.bits();
         for top in (0..HEIGHT).step_by(rows) {
             let rows = rows.min(HEIGHT - top);
             for (k, picture) in pictures.iter_mut().enumerate() {
@@ -116,7 +104,7 @@ fn parts_of_random_triangles_cover_each_pixel_once() {
                     let screen = ScreenTriangle::new(corners, [WIDTH, top, top + rows].map(|side| side as i32));
                     screen.draw(&gradients, Constant, Solid(Gray8::new(1)), &mut band)
                 } else {
-                    let mut chance = Random(TestRng::from_seed(RngAlgorithm::ChaCha, &[seed; 4].concat()));
+                    let mut chance = Random::new(splits, 0);
                     let mut chance = (i % 3 > 0 && rows == HEIGHT).then_some(&mut chance);
                     let mut canvas = BandCanvas { band: &mut band, tables, dither: false };
                     whole.draw(&SubTriangle::WHOLE, (i % 7) as u32, &mut chance, &mut canvas)
@@ -131,7 +119,7 @@ fn parts_of_random_triangles_cover_each_pixel_once() {
         covered += u64::from(drawn[0]);
     }
     println!("{triangles} triangles, {covered} pixels");
-    assert!(triangles > 11_000);
+    assert!(triangles > cases / 12 * 11);
 }
 
 #[test]
