@@ -43,7 +43,7 @@ fn counts_repeat() {
     let scene = scene::load("sphere-168").unwrap();
     let wanted: Vec<_> =
         processors.iter().flat_map(|&processor| [Shader::GOURAUD, Shader::RENQ].map(|shader| (processor, shader))).collect();
-    let [first, second] = [(); 2].map(|()| bench.measure(&scene, &wanted, || ()).unwrap());
+    let [first, second] = [(); 2].map(|()| bench.measure(&scene, &wanted, &|| ()).unwrap());
     assert_eq!(first, second);
     for found in first {
         let line = serde_json::to_string(&found).unwrap();
@@ -65,7 +65,7 @@ fn counts_repeat() {
 fn costs_have_not_grown() {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("baselines/costs.csv");
     let recorded = baseline::read(&path).unwrap();
-    let measured = baseline::measure(&recorded, || ()).unwrap();
+    let measured = baseline::measure(&recorded, &|| ()).unwrap();
     let changes = baseline::changes(&recorded, &measured);
     let growth = Growth::of(&path, &measured).unwrap().expect("the costs of a release lie beside the recorded ones");
     assert!(growth.frames > 50, "only {} frames of the release are still measured", growth.frames);

@@ -134,7 +134,7 @@ pub fn write(path: &Path, entries: &[Entry]) -> Result<()> {
 ///
 /// # Errors
 /// When a scene is unknown or a board fails.
-pub fn measure(entries: &[Entry], tick: impl Fn() + Sync) -> Result<Vec<Entry>> {
+pub fn measure(entries: &[Entry], tick: &(dyn Fn() + Sync)) -> Result<Vec<Entry>> {
     let mut processors: Vec<_> = entries.iter().map(|entry| entry.processor).collect();
     processors.sort_unstable();
     processors.dedup();
@@ -149,7 +149,7 @@ pub fn measure(entries: &[Entry], tick: impl Fn() + Sync) -> Result<Vec<Entry>> 
             .filter(|(_, entry)| entry.scene == *name)
             .map(|(place, entry)| (place, (entry.processor, entry.shader)))
             .unzip();
-        let now = bench.measure(&scene::load(name)?, &wanted, &tick)?;
+        let now = bench.measure(&scene::load(name)?, &wanted, tick)?;
         for (place, now) in places.into_iter().zip(&now) {
             let entry: &mut Entry = measured.get_mut::<usize>(place).context("a line that was not there")?;
             *entry = entry.renewed(now);

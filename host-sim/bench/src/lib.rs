@@ -66,7 +66,7 @@ impl Bench {
     ///
     /// # Errors
     /// When a method cannot shade the scene, or a board fails.
-    pub fn measure(&self, scene: &Scene, wanted: &[(Processor, Shader)], tick: impl Fn() + Sync) -> Result<Vec<Measurement>> {
+    pub fn measure(&self, scene: &Scene, wanted: &[(Processor, Shader)], tick: &(dyn Fn() + Sync)) -> Result<Vec<Measurement>> {
         let stream = scene.stream.parse()?;
         let mut sizes: Vec<_> = wanted.iter().map(|(processor, _)| processor.size()).collect();
         sizes.sort_unstable();
@@ -83,7 +83,7 @@ impl Bench {
             Ok((size, name, reference.total(shader)?))
         });
         let errors: Vec<_> = errors.collect::<Result<_>>()?;
-        let counted = self.count(scene, wanted, &tick)?;
+        let counted = self.count(scene, wanted, tick)?;
         let measured = wanted.par_iter().map(|&(processor, shader)| {
             let counted = counted.iter().find(|m| processor == Processor::X86_64 && m.shader == shader.name());
             let mut measurement = match counted {
@@ -107,7 +107,7 @@ impl Bench {
     }
 
     /// Those of the `wanted` frames that the host draws; many in one process, which takes long to start.
-    fn count(&self, scene: &Scene, wanted: &[(Processor, Shader)], tick: impl Fn() + Sync) -> Result<Vec<Measurement>> {
+    fn count(&self, scene: &Scene, wanted: &[(Processor, Shader)], tick: &(dyn Fn() + Sync)) -> Result<Vec<Measurement>> {
         let Some(program) = &self.host else { return Ok(Vec::new()) };
         let (size, band_rows) = (Processor::X86_64.size(), Processor::X86_64.size().1);
         let wanted = wanted.iter().filter(|(processor, _)| *processor == Processor::X86_64);

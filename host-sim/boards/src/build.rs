@@ -18,33 +18,30 @@ pub fn firmware(board: Board) -> Result<PathBuf> {
 
 /// Builds a program of the package `firmware` for `board` and returns the ELF's path.
 ///
-/// All boards, and whatever else is compiled for them, share a target directory, so that dependencies are compiled once.
-///
 /// # Errors
 /// When the target or the compiler is missing, or the firmware does not compile.
 pub fn program(board: Board, name: &str) -> Result<PathBuf> {
-    let root = sources()?;
-    let directory = root.join("firmware");
-    install_target(board.target(), &directory)?;
-
-    let output = root.join("target/firmware");
     let what = if name == board.name() { format!("the firmware for {board}") } else { format!("{name} for {board}") };
-    let arguments = ["--no-default-features", "--features", board.name(), "--bin", name, "--target", board.target()];
-    release(&directory, &arguments, &output, &what)?;
-    Ok(output.join(board.target()).join("release").join(name))
+    release(name, &format!("microphong-firmware/{board}"), board.target(), &what)
 }
 
-/// Builds the workspace in `directory` into `output`; `what` is its name in messages.
+/// Builds a program of the workspace `firmware` with these `features` and no others, and returns its path; `what` is its name in messages.
+///
+/// Features are those of the whole workspace, and the directory is the same for all programs: so dependencies are compiled once for each target.
 ///
 /// # Errors
-/// When the compiler is missing, or the program does not compile.
-pub fn release(directory: &Path, arguments: &[&str], output: &Path, what: &str) -> Result<()> {
+/// When the target or the compiler is missing, or the program does not compile.
+pub fn release(name: &str, features: &str, target: &str, what: &str) -> Result<PathBuf> {
+    let root = sources()?;
+    let directory = root.join("firmware");
+    install_target(target, &directory)?;
     log::info!("compiling {what}");
+    let output = root.join("target/firmware");
     let status = Command::new(env::var_os("CARGO").unwrap_or_else(|| "cargo".into()))
         .current_dir(directory)
-        .args(["build", "--quiet", "--release", "--target-dir"])
-        .arg(output)
-        .args(arguments)
+        .args(["build", "--quiet", "--release", "--workspace", "--no-default-features", "--features", features])
+        .args(["--bin", name, "--target", target, "--target-dir"])
+        .arg(&output)
         // They would take the place of the flags that the workspace asks for, and counts depend on those.
         .env_remove("RUSTFLAGS")
         .env_remove("CARGO_ENCODED_RUSTFLAGS")
@@ -52,7 +49,20 @@ pub fn release(directory: &Path, arguments: &[&str], output: &Path, what: &str) 
         .status()
         .context("cannot start cargo: install Rust from https://rustup.rs")?;
     ensure!(status.success(), "{what} did not compile; its messages are above");
-    Ok(())
+    Ok(output.join(target).join("release").join(name))
+}
+
+/// The target of this computer.
+///
+/// # Errors
+/// When the compiler is missing.
+pub fn host() -> Result<String> {
+    let rustc = Command::new("rustc")
+        .args(["--print", "host-tuple"])
+        .output()
+        .context("cannot start rustc: install Rust from https://rustup.rs")?;
+    ensure!(rustc.status.success(), "rustc does not name this computer's target: {}", String::from_utf8_lossy(&rustc.stderr).trim());
+    Ok(String::from_utf8_lossy(&rustc.stdout).trim().to_owned())
 }
 
 /// Adds `target` to the toolchain in use unless it is there.

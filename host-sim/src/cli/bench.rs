@@ -128,7 +128,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome> {
     bar.inc(1);
     let mut all = Vec::new();
     for (scene, wanted) in &scenes {
-        let measured = bench.measure(scene, wanted, || bar.inc(1))?;
+        let measured = bench.measure(scene, wanted, &|| bar.inc(1))?;
         bar.suspend(|| measured.iter().try_for_each(|m| if arguments.json { report::json(m) } else { text(m) }))?;
         all.extend(measured);
     }
@@ -185,7 +185,7 @@ fn beside(table: &Table) -> Result<()> {
 fn again(path: &Path) -> Result<[Vec<baseline::Entry>; 2]> {
     let recorded = baseline::read(path)?;
     let bar = report::progress(recorded.len() as u64, "counting instructions");
-    let measured = baseline::measure(&recorded, || bar.inc(1))?;
+    let measured = baseline::measure(&recorded, &|| bar.inc(1))?;
     bar.finish_and_clear();
     Ok([recorded, measured])
 }

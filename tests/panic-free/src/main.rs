@@ -1,7 +1,7 @@
 //! The whole core, from bytes to pixels in every format of a board, with a panic handler that cannot be linked.
 //!
-//! `cargo build --release --target thumbv7m-none-eabi` fails with *undefined symbol: a_panic_can_be_reached*
-//! if the optimised code holds a panic.
+//! `cargo build --release -p panic-free --features all --target thumbv7m-none-eabi`, in the folder `firmware`, fails with *undefined symbol:
+//! a_panic_can_be_reached* if the optimised code holds a panic.
 #![no_std]
 #![no_main]
 

@@ -9,9 +9,8 @@ mod split;
 use super::{Measurement, Processor, Stages};
 use anyhow::{Context, Result, anyhow, ensure};
 use microphong_boards::{
-    build::release,
+    build::{host, release},
     child::{Scratch, bound},
-    sources::sources,
 };
 use microphong_render::shader::Shader;
 use profile::Profile;
@@ -81,10 +80,7 @@ impl Count {
 /// When this is no x86-64 computer, or the program does not compile.
 pub fn build() -> Result<PathBuf> {
     ensure!(cfg!(target_arch = "x86_64"), "instructions of x86-64 are counted on such computers only; choose another board");
-    let root = sources()?;
-    let output = root.join("target/firmware");
-    release(&root.join("host-sim/frame"), &[], &output, "the program that draws for callgrind")?;
-    Ok(output.join("release/frame"))
+    release("frame", "", &host()?, "the program that draws for callgrind")
 }
 
 /// Draws frame 0 of `stream` in all these ways and counts.

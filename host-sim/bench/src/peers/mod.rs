@@ -1,6 +1,6 @@
 //! What other renderers need for the frame `peer-sphere`.
 //!
-//! Those of crates.io are drawn by `host-sim/peers`, a workspace of its own, and counted here: on the host by callgrind as microphong is,
+//! Those of crates.io are drawn by `host-sim/peers`, which nothing depends on, and counted here: on the host by callgrind as microphong is,
 //! on boards by QEMU's instruction clock. Figures of others were measured once.
 
 pub mod table;
@@ -13,11 +13,10 @@ use embedded_graphics_core::{
 };
 use microphong_boards::{
     Board, INSTRUCTIONS_PER_TICK,
-    build::{install_target, release},
+    build::{host, release},
     child::Scratch,
     clocked,
     elf::Elf,
-    sources::sources,
 };
 use microphong_render::{render, scene::Scene, shader::Shader};
 use serde::Serialize;
@@ -131,17 +130,9 @@ impl Picture {
     }
 }
 
-/// Compiles `host-sim/peers` for `target`, or for the host, and returns the program's path.
-fn build(program: &str, target: Option<&str>) -> Result<PathBuf> {
-    let root = sources()?;
-    let (directory, output) = (root.join("host-sim/peers"), root.join("target/firmware"));
-    let mut arguments = vec!["--features", program, "--bin", program];
-    if let Some(target) = target {
-        install_target(target, &directory)?;
-        arguments.extend(["--target", target]);
-    }
-    release(&directory, &arguments, &output, "the program with other renderers")?;
-    Ok(output.join(target.unwrap_or_default()).join("release").join(program))
+/// Compiles a program of `host-sim/peers`, which has a feature of its own, and returns its path.
+fn build(program: &str, target: &str) -> Result<PathBuf> {
+    release(program, &format!("peers/{program}"), target, "the program with other renderers")
 }
 
 /// Has all [`PEERS`] draw `scene` on the host: instructions and picture of each.
@@ -150,7 +141,7 @@ fn build(program: &str, target: Option<&str>) -> Result<PathBuf> {
 /// When something does not compile or run.
 pub fn draw(scene: &Scene) -> Result<Vec<(u64, Picture)>> {
     ensure!(cfg!(target_arch = "x86_64"), "instructions of x86-64 are counted on such computers only; choose another board");
-    let program = build("host", None)?;
+    let program = build("host", &host()?)?;
     let stream = Scratch::new(scene.stream.as_bytes())?;
     let pictures = PEERS.iter().map(|_| Scratch::new(&[])).collect::<Result<Vec<_>>>()?;
     let frames =
@@ -170,7 +161,7 @@ pub fn draw(scene: &Scene) -> Result<Vec<(u64, Picture)>> {
 /// # Errors
 /// When it does not compile.
 pub fn program(board: Board, scene: &Scene) -> Result<Elf> {
-    Elf::read(&build("mps2", Some(board.target()))?)?.with_stream(scene.stream.as_bytes())
+    Elf::read(&build("mps2", board.target())?)?.with_stream(scene.stream.as_bytes())
 }
 
 fn on_board(processor: Processor, board: Board, scene: &Scene) -> Result<Vec<Frame>> {
