@@ -39,10 +39,13 @@ fn area([a, b, c]: Corners) -> i64 {
     d(b, 0) * d(c, 1) - d(b, 1) * d(c, 0)
 }
 
-/// Coverage and centroid (16 bits each) of every pixel that a triangle touches, by the core.
-fn coverage(corners: Corners, bits: u32) -> BTreeMap<[i32; 2], (i32, [i32; 2])> {
+/// A pixel, with its coverage and centroid (16 bits each).
+type Covered = ([i32; 2], i32, [i32; 2]);
+
+/// Every pixel that a triangle touches, by the core.
+fn coverage(corners: Corners, bits: u32) -> Vec<Covered> {
     let contour = TriangleCoverage::new(corners, bits);
-    let mut covered = BTreeMap::new();
+    let mut covered = Vec::new();
     let [top, bottom] = contour.rows();
     for y in top..bottom {
         let mut row = contour.row(y);
@@ -51,7 +54,7 @@ fn coverage(corners: Corners, bits: u32) -> BTreeMap<[i32; 2], (i32, [i32; 2])> 
             let fragment = row.step(x);
             let inner = (row.inner[0]..row.inner[1]).contains(&x);
             assert!(!inner || fragment.coverage == WHOLE, "{corners:?}, {x} {y}: {fragment:?}");
-            covered.insert([x, y], (fragment.coverage, fragment.centroid));
+            covered.push(([x, y], fragment.coverage, fragment.centroid));
         }
     }
     covered
@@ -112,7 +115,7 @@ fn coverage_is_the_exact_area() {
         let covered = coverage(corners, bits);
         // Of the huge ones some pixels.
         let stride = covered.len() / 4000 + 1;
-        for (&[x, y], &(got, centroid)) in covered.iter().step_by(stride) {
+        for &([x, y], got, centroid) in covered.iter().step_by(stride) {
             let (exact, place) = clipped(real.map(|[u, v]| [u - f64::from(x), v - f64::from(y)]));
             let exact = exact * 65_536.0;
             worst = worst.max((f64::from(got) - exact).abs());
@@ -125,7 +128,7 @@ fn coverage_is_the_exact_area() {
             pixels += 1;
         }
         // Nothing is left out.
-        let sum: i64 = covered.values().map(|&(coverage, _)| i64::from(coverage)).sum();
+        let sum: i64 = covered.iter().map(|&(_, coverage, _)| i64::from(coverage)).sum();
         let whole = area(corners) as f64 / 2.0 / f64::from(1 << (2 * bits)) * 65_536.0;
         assert!((sum as f64 - whole).abs() <= 3.0 * covered.len() as f64 + 1.0, "{corners:?}/2^{bits}: {sum}, not {whole}");
     }
@@ -159,7 +162,7 @@ fn coverages_of_a_patch_add_up_to_one() {
                 let [a, b, c, d] = [[x, y], [x + 1, y], [x + 1, y + 1], [x, y + 1]].map(|k| knot[&k]);
                 let halves = if random.pick(0..2) == 0 { [[a, b, c], [a, c, d]] } else { [[a, b, d], [b, c, d]] };
                 for half in halves {
-                    for (pixel, (coverage, _)) in coverage(half, 4) {
+                    for (pixel, coverage, _) in coverage(half, 4) {
                         *sums.entry(pixel).or_default() += coverage;
                     }
                 }
@@ -296,35 +299,50 @@ fn meshes_have_no_seams_and_smooth_outlines() {
     }
 }
 
-/// Everything that is seen at 8 x 8 points of each pixel, in 64-bit floating point.
-fn supersampled(frame: &Frame, method: &str, ground: [f64; 3]) -> Vec<[f64; 3]> {
-    const SIDE: u32 = 8;
+/// Points of a pixel in each direction.
+const SIDE: u32 = 8;
+
+/// Which facet is seen at each of 8 x 8 points of each pixel, in 64-bit floating point.
+fn seen(frame: &Frame) -> Vec<Option<usize>> {
     let (width, height) = frame.size;
     let columns = (width * SIDE) as usize;
-    let mut points = vec![(f64::MIN, ground); columns * (height * SIDE) as usize];
-    for facet in &frame.facets {
-        let shade = oracle::method(method, frame, facet).unwrap();
+    let mut points = vec![(f64::MIN, None); columns * (height * SIDE) as usize];
+    for (number, facet) in frame.facets.iter().enumerate() {
         let range = |k: usize, end: u32| {
             let (low, high) = facet.screen.iter().fold((f64::MAX, f64::MIN), |(low, high), c| (low.min(c[k]), high.max(c[k])));
             (low * f64::from(SIDE) - 1.0) as u32..((high * f64::from(SIDE) + 1.0) as u32).min(end * SIDE)
         };
         for y in range(1, height) {
             for x in range(0, width) {
-                let p = [x, y].map(|c| (f64::from(c) + 0.5) / f64::from(SIDE));
+                let p = place(x, y);
                 let inside = (0..3).all(|i| {
                     let (a, b) = (facet.screen[i], facet.screen[(i + 1) % 3]);
                     (b[0] - a[0]) * (p[1] - a[1]) - (b[1] - a[1]) * (p[0] - a[0]) >= 0.0
                 });
                 let point = &mut points[y as usize * columns + x as usize];
                 if inside && facet.inv_depth_at(p) > point.0 {
-                    *point = (facet.inv_depth_at(p), shade(p).map(|level| level.clamp(0.0, 255.0)));
+                    *point = (facet.inv_depth_at(p), Some(number));
                 }
             }
         }
     }
+    points.into_iter().map(|(_, facet)| facet).collect()
+}
+
+/// Where a point lies, in pixels.
+fn place(x: u32, y: u32) -> [f64; 2] {
+    [x, y].map(|c| (f64::from(c) + 0.5) / f64::from(SIDE))
+}
+
+/// Means of what is `seen` in each pixel, in 64-bit floating point.
+fn supersampled(frame: &Frame, seen: &[Option<usize>], method: &str, ground: [f64; 3]) -> Vec<[f64; 3]> {
+    let (width, height) = frame.size;
+    let shades: Vec<_> = frame.facets.iter().map(|facet| oracle::method(method, frame, facet).unwrap()).collect();
     let mut pixels = vec![[0.0; 3]; (width * height) as usize];
-    for (i, (_, levels)) in points.iter().enumerate() {
-        let pixel = &mut pixels[i / columns / SIDE as usize * width as usize + i % columns / SIDE as usize];
+    for (point, facet) in (0..).zip(seen) {
+        let [x, y] = [point % (width * SIDE), point / (width * SIDE)];
+        let levels = facet.map_or(ground, |facet| shades[facet](place(x, y)).map(|level| level.clamp(0.0, 255.0)));
+        let pixel = &mut pixels[(y / SIDE * width + x / SIDE) as usize];
         *pixel = [0, 1, 2].map(|k| pixel[k] + levels[k] / f64::from(SIDE * SIDE));
     }
     pixels
@@ -338,6 +356,7 @@ fn pictures_are_like_supersampled_ones() {
         let scene = scene::load(name).unwrap();
         let stream: Stream<'_> = scene.stream.parse().unwrap();
         let frame = Frame::new(stream, (width, height), 5);
+        let seen = seen(&frame);
         for shader in Shader::ALL.into_iter() {
             if oracle::method(shader.name(), &frame, &frame.facets[0]).is_err() {
                 continue;
@@ -349,7 +368,7 @@ fn pictures_are_like_supersampled_ones() {
                 continue; // A name without a method yet.
             }
             let ground = [smooth[0].r(), smooth[0].g(), smooth[0].b()].map(f64::from);
-            let exact = supersampled(&frame, shader.name(), ground);
+            let exact = supersampled(&frame, &seen, shader.name(), ground);
             let errors = |pixels: &[Rgb888]| {
                 let error = |(pixel, exact): (&Rgb888, &[f64; 3])| {
                     let drawn = [pixel.r(), pixel.g(), pixel.b()].map(f64::from);

@@ -21,12 +21,12 @@ fn blocks_are_the_instructions_in_them() {
     let executed = [Blocks::Whole, Blocks::Single].map(|blocks| {
         let mut counts = BTreeMap::<u32, u64>::new();
         let mut sequence = 0_u64;
-        let visit = |address| {
+        let mut visit = |address| {
             *counts.entry(address).or_default() += 1;
             // The order matters as well.
             sequence = sequence.rotate_left(5).wrapping_mul(0x517C_C1B7_2722_0A95) ^ u64::from(address);
         };
-        trace(board, &elf, &ranges, blocks, visit).unwrap();
+        trace(board, &elf, &ranges, blocks, &mut visit).unwrap();
         (counts, sequence)
     });
     let [(blocks, _), _] = &executed;

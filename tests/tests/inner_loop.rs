@@ -35,7 +35,7 @@ fn convex_meshes_need_no_depth() {
 fn check(scene: &str, limits: &[(Shader, u32)]) {
     let wanted: Vec<_> = limits.iter().map(|&(shader, _)| (Processor::CortexM3, shader)).collect();
     let bench = Bench::new(&[Processor::CortexM3]).unwrap();
-    let measured = bench.measure(&scene::load(scene).unwrap(), &wanted, &|| ()).unwrap();
+    let measured = bench.count(&scene::load(scene).unwrap(), &wanted, &|| ()).unwrap();
     for (found, &(_, limit)) in measured.iter().zip(limits) {
         // Spans end on a branch that is not taken, so a few instructions of the loop may be counted with the span.
         let per_pixel = found.by_stage.pixel as f64 / found.pixels as f64;

@@ -78,7 +78,7 @@ fn the_clock_is_exact() {
     let start = functions.iter().map(|(_, range)| range.start).min().unwrap();
     let end = functions.iter().map(|(_, range)| range.end).max().unwrap();
     let (mut counts, mut inside) = (Vec::new(), false);
-    let visit = |address| {
+    let mut visit = |address| {
         if address == counted.start {
             counts.push(0);
             inside = true;
@@ -88,7 +88,7 @@ fn the_clock_is_exact() {
             *counts.last_mut().unwrap() += 1;
         }
     };
-    trace(board, &elf, slice::from_ref(&(start..end)), Blocks::Whole, visit).unwrap();
+    trace(board, &elf, slice::from_ref(&(start..end)), Blocks::Whole, &mut visit).unwrap();
     // The first draws nothing.
     let traced: Vec<u64> = counts[1..].iter().map(|count| count - counts[0]).collect();
     let clocked: Vec<u64> = peers::measure(processor, &scene).unwrap().iter().map(|frame| frame.instructions).collect();

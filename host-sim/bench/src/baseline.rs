@@ -149,7 +149,7 @@ pub fn measure(entries: &[Entry], tick: &(dyn Fn() + Sync)) -> Result<Vec<Entry>
             .filter(|(_, entry)| entry.scene == *name)
             .map(|(place, entry)| (place, (entry.processor, entry.shader)))
             .unzip();
-        let now = bench.measure(&scene::load(name)?, &wanted, tick)?;
+        let now = bench.count(&scene::load(name)?, &wanted, tick)?;
         for (place, now) in places.into_iter().zip(&now) {
             let entry: &mut Entry = measured.get_mut::<usize>(place).context("a line that was not there")?;
             *entry = entry.renewed(now);

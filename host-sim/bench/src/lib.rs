@@ -61,53 +61,63 @@ impl Bench {
         Ok(Self { firmware: built.collect::<Result<_>>()?, host })
     }
 
-    /// Measures frame 0 of `scene` by each of the `wanted` methods on each of the processors, several at a time, and calls `tick` after
-    /// each.
+    /// Measures frame 0 of `scene` by each of the `wanted` methods on each of the processors, with its error, several at a time, and calls
+    /// `tick` after each.
     ///
     /// # Errors
     /// When a method cannot shade the scene, or a board fails.
     pub fn measure(&self, scene: &Scene, wanted: &[(Processor, Shader)], tick: &(dyn Fn() + Sync)) -> Result<Vec<Measurement>> {
         let stream = scene.stream.parse()?;
+        let mut measured = self.count(scene, wanted, tick)?;
         let mut sizes: Vec<_> = wanted.iter().map(|(processor, _)| processor.size()).collect();
         sizes.sort_unstable();
         sizes.dedup();
+        let references = sizes.into_par_iter().map(|size| Ok((size, Reference::new(stream, size, 0)?)));
+        let references: Vec<_> = references.collect::<Result<_>>()?;
         let mut frames: Vec<_> = wanted.iter().map(|(processor, shader)| (processor.size(), shader.name(), *shader)).collect();
         frames.sort_unstable_by_key(|&(size, name, _)| (size, name));
         frames.dedup_by_key(|&mut (size, name, _)| (size, name));
-        let references = sizes.into_par_iter().map(|size| Ok((size, Reference::new(stream, size, 0)?)));
-        let references: Vec<_> = references.collect::<Result<_>>()?;
         let errors = frames.into_par_iter().map(|(size, name, shader)| {
-            check(&stream, shader.facts(), false)?;
             let reference = references.iter().find(|(of, _)| *of == size);
             let (_, reference) = reference.context("a size without a reference")?;
             Ok((size, name, reference.total(shader)?))
         });
         let errors: Vec<_> = errors.collect::<Result<_>>()?;
-        let counted = self.count(scene, wanted, tick)?;
-        let measured = wanted.par_iter().map(|&(processor, shader)| {
-            let counted = counted.iter().find(|m| processor == Processor::X86_64 && m.shader == shader.name());
-            let mut measurement = match counted {
-                Some(measurement) => measurement.clone(),
-                None => {
-                    let firmware = self.firmware.iter().find(|(of, _)| *of == processor);
-                    let (_, firmware) = firmware.with_context(|| format!("no firmware for {}", processor.name()))?;
-                    let measured = firmware.measure(processor, scene, shader);
-                    tick();
-                    measured.with_context(|| format!("{}, {}, {}", processor.board_name(), scene.name, shader.name()))?
-                }
-            };
+        for (measurement, (processor, shader)) in measured.iter_mut().zip(wanted) {
             let error = errors.iter().find(|(size, name, _)| *size == processor.size() && *name == shader.name());
             if let Some((.., error)) = error {
                 measurement.max_lsb = Some(rounded(error.max, 1e4));
                 measurement.rmse_lsb = Some(rounded(error.rmse, 1e4));
             }
-            Ok(measurement)
+        }
+        Ok(measured)
+    }
+
+    /// What [`Self::measure`] does, but for the errors.
+    ///
+    /// # Errors
+    /// When a method cannot shade the scene, or a board fails.
+    pub fn count(&self, scene: &Scene, wanted: &[(Processor, Shader)], tick: &(dyn Fn() + Sync)) -> Result<Vec<Measurement>> {
+        let stream = scene.stream.parse()?;
+        for (_, shader) in wanted {
+            check(&stream, shader.facts(), false)?;
+        }
+        let drawn = self.count_on_host(scene, wanted, tick)?;
+        let measured = wanted.par_iter().map(|&(processor, shader)| {
+            if let Some(measurement) = drawn.iter().find(|m| processor == Processor::X86_64 && m.shader == shader.name()) {
+                return Ok(measurement.clone());
+            }
+            let firmware = self.firmware.iter().find(|(of, _)| *of == processor);
+            let (_, firmware) = firmware.with_context(|| format!("no firmware for {}", processor.name()))?;
+            let measured = firmware.measure(processor, scene, shader);
+            tick();
+            measured.with_context(|| format!("{}, {}, {}", processor.board_name(), scene.name, shader.name()))
         });
         measured.collect()
     }
 
     /// Those of the `wanted` frames that the host draws; many in one process, which takes long to start.
-    fn count(&self, scene: &Scene, wanted: &[(Processor, Shader)], tick: &(dyn Fn() + Sync)) -> Result<Vec<Measurement>> {
+    fn count_on_host(&self, scene: &Scene, wanted: &[(Processor, Shader)], tick: &(dyn Fn() + Sync)) -> Result<Vec<Measurement>> {
         let Some(program) = &self.host else { return Ok(Vec::new()) };
         let (size, band_rows) = (Processor::X86_64.size(), Processor::X86_64.size().1);
         let wanted = wanted.iter().filter(|(processor, _)| *processor == Processor::X86_64);
@@ -133,7 +143,7 @@ impl Firmware {
         let elf = self.elf.with_stream(&verify::prepare(scene.stream.as_bytes(), shader, 1)?)?;
         let mut meter = self.meter.clone();
         let ranges = meter.ranges();
-        let watched = boards::watch(self.board, &elf, &ranges, |address, cycles| meter.step(address, cycles))?;
+        let watched = boards::watch(self.board, &elf, &ranges, &mut |address, cycles| meter.step(address, cycles))?;
         let tally = meter.tally();
         let log = &watched.recording;
         let (instructions, pixels) = (tally.instructions.drawing(), log.figure("pixels")?);

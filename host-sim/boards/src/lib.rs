@@ -204,11 +204,11 @@ pub struct Watched {
 ///
 /// # Errors
 /// When the program crashes, falls silent or drives its display wrongly.
-pub fn watch(board: Board, elf: &Elf, ranges: &[Range<u32>], mut visit: impl FnMut(u32, u64)) -> Result<Watched> {
+pub fn watch(board: Board, elf: &Elf, ranges: &[Range<u32>], visit: &mut dyn FnMut(u32, u64)) -> Result<Watched> {
     let (recording, time) = match board {
         Board::Pico => pico::watch(elf, visit).map(|(recording, time)| (recording, Some(time)))?,
         Board::Lm3s6965evb | Board::Mps2An385 | Board::Mps2An386 => {
-            (trace(board, elf, ranges, Blocks::Whole, |address| visit(address, 0))?, None)
+            (trace(board, elf, ranges, Blocks::Whole, &mut |address| visit(address, 0))?, None)
         }
     };
     Ok(Watched { recording, time })

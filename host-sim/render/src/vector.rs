@@ -4,42 +4,49 @@
 pub type V3 = [f64; 3];
 
 /// a + b.
+#[inline]
 #[must_use]
 pub fn add(a: V3, b: V3) -> V3 {
     [a[0] + b[0], a[1] + b[1], a[2] + b[2]]
 }
 
 /// a - b.
+#[inline]
 #[must_use]
 pub fn sub(a: V3, b: V3) -> V3 {
     [a[0] - b[0], a[1] - b[1], a[2] - b[2]]
 }
 
 /// a times s.
+#[inline]
 #[must_use]
 pub fn scale(a: V3, s: f64) -> V3 {
     a.map(|c| c * s)
 }
 
 /// Scalar product.
+#[inline]
 #[must_use]
 pub fn dot(a: V3, b: V3) -> f64 {
     a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
 }
 
 /// Vector product.
+#[inline]
 #[must_use]
 pub fn cross(a: V3, b: V3) -> V3 {
     [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
 }
 
 /// Length.
+#[inline]
 #[must_use]
 pub fn length(a: V3) -> f64 {
     dot(a, a).sqrt()
 }
 
 /// The unit vector along `a`; `None` for a vector without a direction.
+#[inline]
 #[must_use]
 pub fn unit(a: V3) -> Option<V3> {
     let largest = a.iter().fold(0.0f64, |m, c| m.max(c.abs()));
@@ -50,6 +57,7 @@ pub fn unit(a: V3) -> Option<V3> {
 }
 
 /// The matrix with these rows times `v`.
+#[inline]
 #[must_use]
 pub fn apply(rows: &[V3; 3], v: V3) -> V3 {
     rows.map(|row| dot(row, v))

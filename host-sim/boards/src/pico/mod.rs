@@ -51,16 +51,16 @@ impl Pico {
     /// # Errors
     /// When the program crashes, falls silent or drives its panel wrongly.
     pub fn next_picture(&mut self) -> Result<()> {
-        self.watch_next_picture(|_, _| ())
+        self.watch_next_picture(&mut |_, _| ())
     }
 
     /// The same, and hands address and cycles of each instruction to `visit`.
-    fn watch_next_picture(&mut self, visit: impl FnMut(u32, u64)) -> Result<()> {
+    fn watch_next_picture(&mut self, visit: &mut dyn FnMut(u32, u64)) -> Result<()> {
         let outcome = self.proceed(visit);
         outcome.with_context(|| format!("{} emulated; {}", Board::Pico, log::tail(&self.log)))
     }
 
-    fn proceed(&mut self, mut visit: impl FnMut(u32, u64)) -> Result<()> {
+    fn proceed(&mut self, visit: &mut dyn FnMut(u32, u64)) -> Result<()> {
         let deadline = self.machine.cycle() + PATIENCE;
         while self.machine.cycle() < deadline {
             let step = self.machine.step();
@@ -139,7 +139,7 @@ pub struct FrameTime {
 }
 
 /// Runs the firmware until it has checked all frames, and on through the next one, whose instructions and their cycles go to `visit`.
-pub(super) fn watch(elf: &Elf, visit: impl FnMut(u32, u64)) -> Result<(Recording, FrameTime)> {
+pub(super) fn watch(elf: &Elf, visit: &mut dyn FnMut(u32, u64)) -> Result<(Recording, FrameTime)> {
     let mut pico = Pico::new(elf)?;
     // The first frame is checked, while the second one is drawn nothing is on its way yet.
     pico.next_picture()?;

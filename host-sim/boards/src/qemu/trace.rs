@@ -37,7 +37,7 @@ pub enum Blocks {
 ///
 /// # Errors
 /// When QEMU cannot be started or its log cannot be read.
-pub fn trace(board: Board, elf: &Elf, ranges: &[Range<u32>], blocks: Blocks, mut visit: impl FnMut(u32)) -> Result<Recording> {
+pub fn trace(board: Board, elf: &Elf, ranges: &[Range<u32>], blocks: Blocks, visit: &mut dyn FnMut(u32)) -> Result<Recording> {
     let mut decoder = Decoder::new(elf)?;
     let program = Scratch::new(&elf.without_symbols()?)?;
     let mut filter = String::new();
@@ -69,10 +69,10 @@ pub fn trace(board: Board, elf: &Elf, ranges: &[Range<u32>], blocks: Blocks, mut
     let mut log = Log::default();
     let mut line = Vec::new();
     while output.read_until(b'\n', &mut line).context("cannot read QEMU's log")? > 0 {
-        log.line(&line, &mut visit)?;
+        log.line(&line, visit)?;
         line.clear();
     }
-    log.end(&mut visit);
+    log.end(visit);
     let status = process.wait()?;
     let messages = messages.join().map_err(|_| anyhow!("the reader of the firmware's log panicked"))?.context("no log from QEMU")?;
     let mut recording = Recording::default();
@@ -108,7 +108,7 @@ struct Log {
 }
 
 impl Log {
-    fn line(&mut self, line: &[u8], visit: &mut impl FnMut(u32)) -> Result<()> {
+    fn line(&mut self, line: &[u8], visit: &mut dyn FnMut(u32)) -> Result<()> {
         match line {
             // An instruction of a block: `0x00001234:  4281       cmp      r1, r0`.
             [b'0', b'x', address @ ..] => self.translated.push(hexadecimal(address).0 as u32),
@@ -134,9 +134,9 @@ impl Log {
     }
 
     /// The block last entered has run.
-    fn end(&mut self, visit: &mut impl FnMut(u32)) {
+    fn end(&mut self, visit: &mut dyn FnMut(u32)) {
         if let Some(block) = self.entered.take().and_then(|block| self.blocks.get(block)) {
-            block.iter().copied().for_each(visit);
+            block.iter().for_each(|&address| visit(address));
         }
     }
 }
