@@ -8,7 +8,7 @@ use microphong_render::{
     render::{Format, Style},
     shader::Shader,
     shapes,
-    vector::{V3, add, rotation, scale, unit},
+    vector::{V3, add, apply, rotation, scale, unit},
     view::{Projection, View},
 };
 
@@ -26,8 +26,13 @@ pub struct Wishes {
 /// A random scene, drawn in a random way by a method that can; `None` if it would not make a valid stream.
 pub fn case(random: &mut Random, wishes: Wishes) -> Option<Case> {
     let mesh = if wishes.closed || random.once_in(3) { body(random, wishes.triangles) } else { soup(random, wishes.triangles.min(40)) };
-    let look = look(random, &mesh, wishes);
-    let stream = look.stream(&quantise(&mesh).0).ok()?;
+    of(random, &mesh, wishes)
+}
+
+/// A random scene of `mesh`.
+pub fn of(random: &mut Random, mesh: &Mesh, wishes: Wishes) -> Option<Case> {
+    let look = look(random, mesh, wishes);
+    let stream = look.stream(&quantise(mesh).0).ok()?;
     let style = Style {
         shader: random.among(&Shader::ALL),
         perspective_correct: random.once_in(4),
@@ -70,6 +75,8 @@ fn body(random: &mut Random, triangles: i32) -> Mesh {
 /// Triangles without a neighbour: slivers, tiny and huge ones, with normals that fit their planes or do not.
 fn soup(random: &mut Random, triangles: i32) -> Mesh {
     let mut mesh = Mesh::default();
+    // In half of the scenes no two normals of a triangle are nearly opposite, so that shading is defined everywhere.
+    let wild = random.once_in(2);
     for _ in 0..random.pick(1..triangles.max(2)) {
         let centre = scale(random.direction(), random.between(0.0, 0.9));
         let size = random.octaves(0.001, 1.0);
@@ -77,7 +84,7 @@ fn soup(random: &mut Random, triangles: i32) -> Mesh {
         let (along, across) = (scale(random.direction(), size), scale(random.direction(), size * thin));
         let corners = [add(centre, along), add(centre, scale(along, -1.0)), add(centre, across)];
         let facing = random.direction();
-        let spread = random.among(&[0.0, 0.1, 0.5, 1.0, 3.0]);
+        let spread = if wild { random.among(&[0.0, 0.1, 0.5, 1.0, 3.0]) } else { random.among(&[0.0, 0.1, 0.5, 0.8]) };
         let first = mesh.positions.len();
         for corner in corners {
             mesh.positions.push(corner.map(|c| c.clamp(-1.0, 1.0)));
@@ -85,7 +92,7 @@ fn soup(random: &mut Random, triangles: i32) -> Mesh {
             mesh.normals.push(unit(normal).unwrap_or(facing));
         }
         // Some have normals that are opposite to one another.
-        if random.once_in(8) {
+        if wild && random.once_in(8) {
             let opposite = mesh.normals[first].map(|c| -c);
             mesh.normals[first + 1] = opposite;
         }
@@ -138,7 +145,13 @@ fn look(random: &mut Random, mesh: &Mesh, wishes: Wishes) -> Look {
         .map(|_| {
             let colour = colour(random);
             if random.once_in(3) {
-                let place = scale(random.direction(), random.octaves(0.05, 8.0));
+                // Somewhere around the mesh, or next to one of its vertices.
+                let place = if random.once_in(2) {
+                    scale(random.direction(), random.octaves(0.05, 8.0))
+                } else {
+                    let vertex = mesh.positions[random.pick(0..mesh.positions.len() as i32) as usize];
+                    add(apply(&view.rotation, vertex), scale(random.direction(), random.octaves(0.005, 0.5)))
+                };
                 Lamp::Near(add(place, view.translation), colour)
             } else {
                 Lamp::Distant(random.direction(), colour)
