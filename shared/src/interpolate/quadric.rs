@@ -63,8 +63,9 @@ impl<const CH: usize> Quadric<CH> {
     /// All nodes lie in a range narrower than 2^`BITS`; values are walked with `extra` more
     /// fraction bits, `bias` added. Error: at most 2^-1 (1 + S + S²) units of the walked format, S the distance in columns plus rows
     /// from the anchor, and for set-up 2^-22 k² of the nodes' range, k the length over the height, up to
-    /// [`crate::setup::gradients::MAX_THINNESS`]; nothing beyond. On triangles of up to 64 pixels: 2^4 (1 + S) units more, of levels
-    /// 2^9 (1 + S), 0.001 LSB at 16 pixels.
+    /// [`crate::setup::gradients::MAX_THINNESS`]; nothing beyond. For 26 bits these are 2^-25 k² and
+    /// [`crate::setup::gradients::MAX_FINE_THINNESS`]. On triangles of up to 64 pixels: 2^4 (1 + S) units more, of levels 2^9 (1 + S),
+    /// 0.001 LSB at 16 pixels.
     /// Source: Szirmay-Kalos et al.; Vlasic 2002, 4.2; change of basis without his divisions.
     #[inline(always)]
     #[must_use]

@@ -3,7 +3,10 @@
 //! Inlined, one product takes a hundred instructions on a 32-bit machine. Formulas with forty products serve rare triangles only, and
 //! must not fill the flash.
 
-use core::ops::{Add, Mul, Neg, Sub};
+use core::{
+    num::{NonZeroU32, NonZeroU64},
+    ops::{Add, Mul, Neg, Sub},
+};
 
 /// An integer of 128 bits. Sums, differences and products are exact modulo 2^128.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -67,9 +70,31 @@ impl Wide {
     #[inline(never)]
     #[must_use]
     pub fn divided(self, divisor: Self) -> (Self, Self) {
-        let quotient = if divisor.0 > 0 { self.0.checked_div_euclid(divisor.0).unwrap_or(0) } else { 0 };
-        let rest = if divisor.0 > 0 { self.0.wrapping_sub(quotient.wrapping_mul(divisor.0)) } else { 0 };
-        (Self(quotient), Self(rest))
+        if divisor.0 <= 0 {
+            return (Self(0), Self(0));
+        }
+        // One division: the remainder follows from the quotient.
+        let quotient = self.0.checked_div(divisor.0).unwrap_or(0);
+        let rest = self.0.wrapping_sub(quotient.wrapping_mul(divisor.0));
+        if rest < 0 { (Self(quotient.wrapping_sub(1)), Self(rest.wrapping_add(divisor.0))) } else { (Self(quotient), Self(rest)) }
+    }
+
+    /// The quotient by a word, rounded down, in long division by words: a quarter of the instructions of [`Self::divided`]. Exact
+    /// (tests::divisions).
+    #[inline(never)]
+    #[must_use]
+    pub fn over(self, divisor: NonZeroU32) -> Self {
+        let divisor = NonZeroU64::from(divisor);
+        // Of a negative number: what is left of its size is below it, so that its complement is divided.
+        let sign = (self.0 >> 127) as u128;
+        let size = self.0 as u128 ^ sign;
+        let (mut quotient, mut rest) = (0u128, 0u64);
+        for word in [96, 64, 32, 0] {
+            let part = rest << 32 | u64::from((size >> word) as u32);
+            quotient = quotient << 32 | u128::from(part / divisor);
+            rest = part % divisor;
+        }
+        Self((quotient ^ sign) as i128)
     }
 
     /// The number times 2^`bits`, modulo 2^128. Domain: `bits` is less than 128. Exact.
@@ -93,6 +118,8 @@ mod tests {
             prop_assert!(0 <= rest && rest < divisor);
             prop_assert_eq!(quotient.wrapping_mul(divisor).wrapping_add(rest), value);
             prop_assert_eq!(Wide(value).divided(Wide(-divisor)), (Wide(0), Wide(0)));
+            let word = NonZeroU32::new(divisor as u32).unwrap_or(NonZeroU32::MAX);
+            prop_assert_eq!(Wide(value).over(word), Wide(value.div_euclid(u32::from(word).into())));
         }
     }
 }

@@ -22,7 +22,7 @@ use crate::{
         canvas::BandCanvas,
         triangle::{ScreenTriangle, turn, turned},
     },
-    setup::gradients::Gradients,
+    setup::gradients::{Gradients, MAX_FINE_THINNESS},
     stream::record::{Triangle, Vertex},
 };
 
@@ -228,7 +228,7 @@ impl<C: Pixel> MeshPass<'_, C> {
         }
         let Some(gradients) = Gradients::new(screen.corners, self.viewport.box_of(placed.corners, pixels.finer())) else { return 0 };
         // Most of the slivers of a fine mesh lie between the centres of pixels.
-        if by_rows && gradients.is_thin() && screen.covers_nothing(width) {
+        if by_rows && gradients.is_thinner_than(MAX_FINE_THINNESS) && screen.covers_nothing(width) {
             return 0;
         }
         let setup = TriangleSetup {

@@ -27,6 +27,10 @@ pub const NEAR: i32 = 256;
 ///
 /// The error of the fast way grows with the square of this ratio: at most 2^-22 of the nodes' range at 1, 2^-8 here.
 pub const MAX_THINNESS: i64 = 128;
+/// The same for fields of more than [`word_sized::LINEAR`] bits, as cosines are, of which sharp highlights need all.
+///
+/// The error of the fast way is 2^-25 of the nodes' range at 1, and 2^-17 here.
+pub const MAX_FINE_THINNESS: i64 = 16;
 
 /// Largest exponent of a word-sized triangle's gradients, so that no shift of a product goes to the right.
 const LARGEST: u32 = 33;
@@ -47,8 +51,6 @@ pub struct Gradients {
     shift: [i32; 2],
     /// The anchor.
     anchor: [i32; 2],
-    /// Whether the triangle is longer than [`MAX_THINNESS`] times its height.
-    thin: bool,
     /// Corners 1 and 2 from corner 0, in 1/16 pixel, of a part of the triangle 2^`level` times finer.
     edges: [[i32; 2]; 2],
     /// How often the triangle was split.
@@ -99,7 +101,6 @@ impl Gradients {
         offset: [0; 2],
         shift: [0; 2],
         anchor: [0; 2],
-        thin: false,
         edges: [[0; 2]; 2],
         level: 0,
     };
@@ -117,7 +118,7 @@ impl Gradients {
         let ([x0, y0], edges) = edges(corners);
         let anchor = [x0 >> SUBPIXEL, (y0 + CENTRE - 1) >> SUBPIXEL];
         let offset = [((anchor[0] << SUBPIXEL) + CENTRE - x0) << SPLITS, ((anchor[1] << SUBPIXEL) + CENTRE - y0) << SPLITS];
-        Self { scale: Scale::WordSized(area), offset, shift: [0; 2], anchor, thin: false, edges, level: 0 }
+        Self { scale: Scale::WordSized(area), offset, shift: [0; 2], anchor, edges, level: 0 }
     }
 
     /// The gradients of any triangle; `None` if it has no area or runs the other way.
@@ -135,7 +136,6 @@ impl Gradients {
         let zeros = det.leading_zeros() as i32;
         let r = i64::from(recip(((det << (zeros & 63)) >> 32) as u32 | 1 << 31));
         let size = x1.unsigned_abs() | y1.unsigned_abs() | x2.unsigned_abs() | y2.unsigned_abs();
-        let extent = x1.unsigned_abs().max(y1.unsigned_abs()).max(x2.unsigned_abs()).max(y2.unsigned_abs());
         // r < 2^31, coordinates < 2^(32 - lz): mantissas below 2^30.
         let drop = 33 - size.leading_zeros() as i32;
         let mantissa = |c: i32| scale(i64::from(c) * r, drop) as i32;
@@ -157,7 +157,6 @@ impl Gradients {
             anchor: [pixel[0].wrapping_add(shift[0]), pixel[1].wrapping_add(shift[1])],
             edges,
             level: 0,
-            thin: i64::from(extent) * i64::from(extent) > det.saturating_mul(MAX_THINNESS),
         })
     }
 
@@ -179,7 +178,6 @@ impl Gradients {
             offset: [centre(0), centre(1)],
             shift: [anchor[0].wrapping_sub(pixel[0]), anchor[1].wrapping_sub(pixel[1])],
             anchor,
-            thin: self.thin,
             edges: self.edges.map(gradient),
             level,
         }
@@ -194,11 +192,12 @@ impl Gradients {
         }
     }
 
-    /// Whether fitting a quadratic takes exact fractions, which are several thousand instructions.
+    /// Whether the triangle is not word-sized and longer than `ratio` times its height, about: its longest side by columns or rows from
+    /// corner 0, squared, over twice its area.
     #[inline(always)]
     #[must_use]
-    pub(crate) fn is_thin(&self) -> bool {
-        self.thin
+    pub fn is_thinner_than(&self, ratio: i64) -> bool {
+        matches!(self.scale, Scale::Any(_)) && is_longer(self.edges, ratio)
     }
 
     /// Column of the anchor.
@@ -362,7 +361,8 @@ impl Gradients {
     #[inline(never)]
     fn quadratic_any(self, range: u32, nodes: [i32; 6], extra: u32) -> [i32; 6] {
         let [i0, i1, i2, i01, i12, i20] = nodes;
-        if self.thin {
+        let ratio = if range > word_sized::LINEAR { MAX_FINE_THINNESS } else { MAX_THINNESS };
+        if self.is_thinner_than(ratio) {
             // In 1/16 pixel, in a part of the triangle as much finer as it is smaller: all exact.
             let offset = self.offset.map(|c| c >> (SPLITS - self.level));
             let sliver = Sliver { edges: self.edges, offset, bits: SUBPIXEL + self.level };
@@ -398,7 +398,7 @@ impl Gradients {
     #[must_use]
     pub fn cubic(&self, nodes: [i32; 10], extra: u32) -> Terms<i64> {
         let fraction = extra + GUARD as u32;
-        let terms = if self.thin {
+        let terms = if self.is_thinner_than(MAX_THINNESS) {
             let sliver = Sliver { edges: self.edges, offset: self.offset.map(|c| c >> SPLITS), bits: SUBPIXEL };
             let by = |k: usize| move |a: Wide, b: Wide| a + b * Wide::from(self.shift[k]);
             sliver.cubic(nodes, fraction).moved_across(by(0)).moved_down(by(1))
@@ -437,6 +437,15 @@ impl Gradients {
 #[inline(always)]
 fn edges([[x0, y0], [x1, y1], [x2, y2]]: [[i32; 2]; 3]) -> ([i32; 2], [[i32; 2]; 2]) {
     ([x0, y0], [[x1.wrapping_sub(x0), y1.wrapping_sub(y0)], [x2.wrapping_sub(x0), y2.wrapping_sub(y0)]])
+}
+
+/// See [`Gradients::is_thinner_than`].
+#[cold]
+#[inline(never)]
+fn is_longer(edges: [[i32; 2]; 2], ratio: i64) -> bool {
+    let [[x1, y1], [x2, y2]] = edges.map(|edge| edge.map(i64::from));
+    let extent = x1.abs().max(y1.abs()).max(x2.abs()).max(y2.abs());
+    extent * extent > (x1 * y2 - x2 * y1).saturating_mul(ratio)
 }
 
 /// Gradients of s and t, and s and t at the anchor of a word-sized triangle, all with one exponent.

@@ -4,6 +4,7 @@
 //! meet lose the value. Here nothing is rounded before the last division, which is slow but rarely needed.
 
 use crate::{math::wide::Wide, setup::terms::Terms};
+use core::num::NonZeroU32;
 
 /// A triangle by the two edges that leave its first corner, and the anchor relative to that corner.
 #[derive(Clone, Copy, Debug)]
@@ -31,20 +32,22 @@ impl Sliver {
         let det = x1 * y2 - x2 * y1;
         // The quadratic in barycentric coordinates s and t as a symmetric form of (s, t, 1), times 2.
         let matrix = [[2 * ss, st, c1], [st, 2 * tt, c2], [c1, c2, 2 * i0]];
-        // The anchor's coordinates and their gradients per unit, all times det.
-        let (at, x, y) = ([y2 * ox - x2 * oy, x1 * oy - y1 * ox, det], [y2, -y1, Wide(0)], [-x2, x1, Wide(0)]);
-        // At most 2^29 · 2^56 · 2^28 · 2^13: within 128 bits. The divisor is not 0: the triangle has an area.
-        let divisor = det * det;
-        let half = Wide(divisor.0 >> 1);
-        let over = |numerator: i128, order: u32| (Wide(numerator).shifted(extra + order * self.bits) + half).divided(divisor).0.0 as i64;
-        let form = |a, b| form(&matrix, a, b).0;
+        // The anchor's coordinates and their gradients per unit, all times det; those of 1 are 0.
+        let (at, x, y) = ([y2 * ox - x2 * oy, x1 * oy - y1 * ox, det], [y2, -y1], [-x2, x1]);
+        let times = |v: &[Wide]| matrix.each_ref().map(|row| dot(row, v));
+        let (m_at, m_x, m_y) = (times(&at), times(&x), times(&y));
+        // Edges are below 2^17 and the triangle is thin, so 0 < det < 2^30. Nine terms of 2^29 and det², and 28 more bits: within 128 bits.
+        let half = Wide((det * det).0 >> 1);
+        let divisor = NonZeroU32::new(det.0 as u32).unwrap_or(NonZeroU32::MIN);
+        let over =
+            |numerator: i128, order: u32| (Wide(numerator).shifted(extra + order * self.bits) + half).over(divisor).over(divisor).0 as i64;
         [
-            over(form(&at, &at) >> 1, 0),
-            over(form(&x, &at), 1),
-            over(form(&y, &at), 1),
-            over(form(&x, &x) >> 1, 2),
-            over(form(&x, &y), 2),
-            over(form(&y, &y) >> 1, 2),
+            over(dot(&m_at, &at).0 >> 1, 0),
+            over(dot(&m_at, &x).0, 1),
+            over(dot(&m_at, &y).0, 1),
+            over(dot(&m_x, &x).0 >> 1, 2),
+            over(dot(&m_x, &y).0, 2),
+            over(dot(&m_y, &y).0 >> 1, 2),
         ]
     }
 
@@ -72,9 +75,8 @@ impl Sliver {
     }
 }
 
-/// `a` times `matrix` times `b`.
+/// Dot product; what the shorter one lacks is 0.
 #[inline(never)]
-fn form(matrix: &[[Wide; 3]; 3], a: &[Wide; 3], b: &[Wide; 3]) -> Wide {
-    let product = |a: &[Wide; 3], b: &[Wide; 3]| a.iter().zip(b).fold(Wide(0), |sum, (&a, &b)| sum + a * b);
-    matrix.iter().zip(a).fold(Wide(0), |sum, (row, &a)| sum + a * product(row, b))
+fn dot(a: &[Wide], b: &[Wide]) -> Wide {
+    a.iter().zip(b).fold(Wide(0), |sum, (&a, &b)| sum + a * b)
 }
