@@ -31,7 +31,7 @@
 
 use crate::{
     arch::{product::product, zeros::leading_zeros},
-    format::{INVERSE_ALTITUDE, UNIT},
+    format::{INVERSE_ALTITUDE, SUBPIXEL, UNIT},
     geometry::projection::View,
     math::vector::{narrow_dot, wide},
     stream::record::{LEAN, Triangle},
@@ -146,6 +146,14 @@ impl Extent {
     #[must_use]
     pub(crate) fn fits_words(&self) -> bool {
         fits_words(((self.right - self.left) | (self.bottom - self.top)) as u32, self.area)
+    }
+
+    /// Whether no pixel lies wholly inside: of a triangle that contains a square at most half is square, and its least altitude, which is its
+    /// least width, is at least the square's.
+    #[must_use]
+    pub fn contains_no_pixel(&self) -> bool {
+        let side = (self.right - self.left).max(self.bottom - self.top);
+        self.area < 4 << (2 * SUBPIXEL) || i64::from(self.area) < i64::from(side) << SUBPIXEL
     }
 
     /// An upper bound of the longest side: the larger of width and height plus half of the other, since x² + y² <= (x + y/2)² where y <= x.

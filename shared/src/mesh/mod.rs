@@ -209,8 +209,9 @@ impl<C: Pixel> MeshPass<'_, C> {
     fn draw_antialiased(&self, loops: DrawTriangle<C>, placed: &MeshTriangle<'_>, band: &mut Band<'_, C>) -> u32 {
         let finer = antialias::finer(placed.corners);
         let [a, b, c] = &placed.corners.map(|corner| antialias::refined(corner, finer));
-        self.draw_pixels(loops, PixelSet::Inner, placed, band)
-            + self.draw_pixels(loops, PixelSet::Edge(finer), &MeshTriangle { corners: [a, b, c], ..*placed }, band)
+        let is_narrow = Extent::new(placed.corners.map(|corner| [corner.x, corner.y])).contains_no_pixel();
+        let inner = if is_narrow { 0 } else { self.draw_pixels(loops, PixelSet::Inner, placed, band) };
+        inner + self.draw_pixels(loops, PixelSet::Edge(finer), &MeshTriangle { corners: [a, b, c], ..*placed }, band)
     }
 
     /// Sets up a triangle and draws the pixels of the set `pixels`.
