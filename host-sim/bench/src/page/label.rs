@@ -172,7 +172,6 @@ mod tests {
     }
 
     proptest! {
-        #![proptest_config(ProptestConfig::with_cases(64))]
         #[test]
         fn names_stay_inside_and_cover_no_other(places in prop::array::uniform26((10.0..420.0f64, 10.0..320.0f64)), crowded in 0usize..12) {
             let mut places = places;
