@@ -10,3 +10,12 @@ pub use microphong_render::{
     bytes, convex, image, look, mesh, number, obj, output, polygon, quantise, render, scene, shader, shapes, vector, view,
 };
 pub use microphong_stress as stress;
+
+/// Every family of random cases. Costs are counted by a build with boards.
+#[must_use]
+pub fn families() -> Vec<Box<dyn stress::Family>> {
+    let mut families = stress::families();
+    #[cfg(feature = "boards")]
+    families.push(Box::new(stress::cost::Cost(bench::callgrind::Counters::default())));
+    families
+}

@@ -7,7 +7,7 @@ use super::{
 };
 use anyhow::Result;
 use microphong_sim::{
-    output,
+    families, output,
     stress::{self, Failure, Family, Summary},
 };
 use std::{
@@ -35,7 +35,7 @@ pub(crate) struct Arguments {
     #[arg(long, default_value_t = 0, value_name = "N")]
     first: u64,
     /// Families, separated by commas, or all.
-    #[arg(long, default_value = "all", value_name = "NAME,...", value_parser = families)]
+    #[arg(long, default_value = "all", value_name = "NAME,...", value_parser = only)]
     only: Several<&'static str>,
     /// Where streams of failures are written.
     #[arg(long, default_value = ".", value_name = "FOLDER")]
@@ -54,19 +54,23 @@ Examples:
 
 Overflows are seen by a build that looks for them: cargo run --profile stress -- stress";
 
+/// What is said of the family that some builds lack.
+const WITHOUT_BOARDS: &str = "\n  cost        with --features boards: a frame takes no more instructions than are documented";
+
 /// The examples, and what each family asserts.
 fn after_help() -> String {
-    let families = stress::families();
+    let families = families();
     let lines: Vec<_> = families.iter().map(|family| format!("  {:11} {}", family.name(), family.about())).collect();
-    format!("{EXAMPLES}\n\nFamilies:\n{}", lines.join("\n"))
+    let missing = if cfg!(feature = "boards") { "" } else { WITHOUT_BOARDS };
+    format!("{EXAMPLES}\n\nFamilies:\n{}{missing}", lines.join("\n"))
 }
 
 fn seconds(text: &str) -> Result<f64, String> {
     text.parse().ok().filter(|&seconds: &f64| seconds > 0.0 && seconds <= 1e7).ok_or_else(|| "a number of seconds is needed".into())
 }
 
-fn families(text: &str) -> Result<Several<&'static str>, String> {
-    let names: Vec<_> = stress::families().iter().map(|family| family.name()).collect();
+fn only(text: &str) -> Result<Several<&'static str>, String> {
+    let names: Vec<_> = families().iter().map(|family| family.name()).collect();
     parse::several(text, &names, |text| parse::among(text, &names, |name| name))
 }
 
@@ -77,7 +81,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome> {
     let seed = arguments.seed.unwrap_or_else(|| {
         std::time::SystemTime::now().duration_since(std::time::UNIX_EPOCH).map_or(0, |time| time.as_nanos() as u64 % 1_000_000)
     });
-    let families: Vec<_> = stress::families().into_iter().filter(|family| arguments.only.values.contains(&family.name())).collect();
+    let families: Vec<_> = families().into_iter().filter(|family| arguments.only.values.contains(&family.name())).collect();
     if !arguments.json {
         report::line(&format!("seed {seed}"))?;
     }

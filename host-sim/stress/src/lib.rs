@@ -6,6 +6,7 @@
 
 pub mod arithmetic;
 pub mod case;
+pub mod cost;
 pub mod coverage;
 pub mod drift;
 pub mod fuzz;

@@ -100,7 +100,8 @@ fn lights(bytes: &StreamBytes, light: usize) -> Option<StreamBytes> {
     )
 }
 
-fn written(mut header: Header, arrays: &[&[u8]]) -> Option<StreamBytes> {
+/// The stream of this header and these arrays, in their order; `None` if it is not valid.
+pub(crate) fn written(mut header: Header, arrays: &[&[u8]]) -> Option<StreamBytes> {
     header.length = stream::length(&header)?;
     let mut bytes = header.as_bytes().to_vec();
     arrays.iter().for_each(|array| bytes.extend_from_slice(array));

@@ -3,8 +3,11 @@
 //! Not by a harness for benchmarks, as gungraun: that starts valgrind once per benchmark, which takes longer than a frame,
 //! and reports a frame's sum, of which the stages are wanted.
 
+mod counter;
 mod profile;
 mod split;
+
+pub use counter::Counters;
 
 use super::{Measurement, Processor, Stages};
 use anyhow::{Context, Result, anyhow, ensure};
@@ -16,7 +19,7 @@ use microphong_render::shader::Shader;
 use profile::Profile;
 use std::{
     ffi::OsString,
-    io::ErrorKind,
+    io::{self, ErrorKind},
     path::{Path, PathBuf},
     process::Command,
 };
@@ -103,21 +106,32 @@ pub fn count(program: &Path, stream: &[u8], frames: &[Frame]) -> Result<Vec<Coun
     counts.collect()
 }
 
-/// What `program` prints, and a profile of each frame that it draws: of what `counted_frame` does within `dumped_frame`.
-pub(super) fn profiles<const N: usize>(program: &Path, frames: &[[OsString; N]]) -> Result<(String, Vec<Profile>)> {
-    let dumps = Scratch::new(&[])?;
+/// `program` under callgrind, which writes a part into `dumps` behind each frame: what `counted_frame` does within `dumped_frame`.
+fn valgrind(program: &Path, dumps: &Scratch, options: &[&str]) -> Command {
     let mut valgrind = Command::new("valgrind");
     bound(&mut valgrind)
         // Without pipes for a debugger, which it leaves where it is ended.
-        .args(["--tool=callgrind", "--quiet", "--vgdb=no", "--demangle=no", "--dump-instr=yes", "--dump-line=no", "--collect-jumps=yes"])
-        .args(["--compress-strings=no", "--compress-pos=no", "--zero-before=*counted_frame*", "--dump-after=*dumped_frame*"])
+        .args(["--tool=callgrind", "--quiet", "--vgdb=no", "--demangle=no", "--dump-line=no", "--compress-strings=no", "--compress-pos=no"])
+        .args(["--zero-before=*counted_frame*", "--dump-after=*dumped_frame*"])
         .args(["--combine-dumps=yes", &format!("--callgrind-out-file={}", dumps.path().display())])
-        .arg(program)
-        .args(frames.as_flattened());
-    let output = valgrind.output().map_err(|error| match error.kind() {
+        .args(options)
+        .arg(program);
+    valgrind
+}
+
+/// What to do if it cannot be started.
+fn not_started(error: io::Error) -> anyhow::Error {
+    match error.kind() {
         ErrorKind::NotFound => anyhow!("valgrind is not installed; `apt-get install -y --no-install-recommends valgrind`"),
         _ => anyhow!("cannot start valgrind: {error}"),
-    })?;
+    }
+}
+
+/// What `program` prints, and a profile of each frame that it draws: of what `counted_frame` does within `dumped_frame`.
+pub(super) fn profiles<const N: usize>(program: &Path, frames: &[[OsString; N]]) -> Result<(String, Vec<Profile>)> {
+    let dumps = Scratch::new(&[])?;
+    let mut valgrind = valgrind(program, &dumps, &["--dump-instr=yes", "--collect-jumps=yes"]);
+    let output = valgrind.args(frames.as_flattened()).output().map_err(not_started)?;
     let messages = String::from_utf8_lossy(&output.stderr);
     ensure!(output.status.success(), "callgrind could not count: {}", messages.trim());
     let text = String::from_utf8(dumps.read()?).context("callgrind's profiles are no text")?;

@@ -1,0 +1,87 @@
+//! One frame, drawn by the core as a board draws it.
+
+use embedded_graphics_core::{
+    geometry::Size,
+    pixelcolor::{Rgb565, RgbColor},
+};
+use microphong::{Layout, Renderer, Shader, Stats, Stream};
+use microphong_literature::ALL;
+use std::{error::Error, fs, hint::black_box};
+use zerocopy::IntoBytes;
+
+/// Callgrind knows it by its name, and starts from zero where it begins.
+#[inline(never)]
+fn counted_frame(renderer: &mut Renderer<'_, Rgb565>, number: u32, band: &mut [Rgb565]) -> Stats {
+    let mut frame = renderer.frame(number);
+    while let Ok(Some(_)) = frame.next_band(band) {}
+    frame.stats()
+}
+
+/// Callgrind writes down what it has counted where this ends.
+#[inline(never)]
+fn dumped_frame(renderer: &mut Renderer<'_, Rgb565>, number: u32, band: &mut [Rgb565]) -> Stats {
+    black_box(counted_frame(renderer, number, band))
+}
+
+/// A frame that is wanted, and how it is to be drawn.
+pub(crate) struct Wanted<'w> {
+    /// The file of the stream.
+    path: &'w str,
+    size: Size,
+    /// Rows of a band.
+    rows: u32,
+    /// Name of the method.
+    shader: &'w str,
+    number: u32,
+    dither: bool,
+    antialias: bool,
+    perspective_correct: bool,
+}
+
+impl<'w> Wanted<'w> {
+    /// From words: a stream's file, the picture's size as `320x240`, the rows of a band, a method, and options.
+    pub(crate) fn parse(words: &[&'w str]) -> Result<Self, Box<dyn Error>> {
+        let [path, size, rows, shader, options @ ..] = words else { return Err("FILE WIDTHxHEIGHT ROWS METHOD are needed".into()) };
+        let (width, height) = size.split_once('x').ok_or("a size is WIDTHxHEIGHT")?;
+        let size = Size::new(width.parse()?, height.parse()?);
+        let rows = rows.parse()?;
+        let mut wanted = Self { path, size, rows, shader, number: 0, dither: false, antialias: false, perspective_correct: false };
+        for option in options {
+            match option.split_once('=').unwrap_or((option, "")) {
+                ("dither", "") => wanted.dither = true,
+                ("antialias", "") => wanted.antialias = true,
+                ("perspective-correct", "") => wanted.perspective_correct = true,
+                ("frame", number) => wanted.number = number.parse()?,
+                _ => return Err(format!("{option} is no option").into()),
+            }
+        }
+        Ok(wanted)
+    }
+
+    /// Draws it, and prints triangles drawn and pixels.
+    pub(crate) fn draw(&self) -> Result<(), Box<dyn Error>> {
+        let bytes = fs::read(self.path)?;
+        // Read in place, so the bytes must be aligned.
+        let mut words = vec![0u32; bytes.len().div_ceil(4)];
+        words.as_mut_bytes()[..bytes.len()].copy_from_slice(&bytes);
+        let stream = Stream::parse(&words.as_bytes()[..bytes.len()])?;
+        let literature = ALL.into_iter().map(Shader::new);
+        let shader = Shader::ALL.into_iter().chain(literature).find(|method| method.facts().name == self.shader);
+        let layout = Layout::new(self.size.width as usize, self.rows as usize)
+            .vertices(stream.vertices.len())
+            .triangles(stream.triangles.len())
+            .materials(stream.materials.len())
+            .active_triangles(stream.triangles.len())
+            .antialias(self.antialias);
+        let mut memory = vec![0; layout.words::<Rgb565>()];
+        let mut band = vec![Rgb565::BLACK; layout.band()];
+        let mut renderer = Renderer::with_shader(stream, self.size, &layout, &mut memory, shader.ok_or("no such method")?)?;
+        renderer.set_dither(self.dither);
+        renderer.set_antialias(self.antialias)?;
+        renderer.set_perspective_correct(self.perspective_correct)?;
+        renderer.check_band(&band)?;
+        let Stats { drawn, pixels, .. } = dumped_frame(&mut renderer, self.number, &mut band);
+        println!("{drawn} {pixels}");
+        Ok(())
+    }
+}

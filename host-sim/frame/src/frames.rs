@@ -1,0 +1,31 @@
+//! Draws frames for callgrind to count, one after the other as they are asked for, in every style.
+//!
+//! Each line of the standard input is a frame: a stream's file, the picture's size as `320x240`, the rows of a band, a method, and
+//! options. A line of the standard output answers it.
+
+mod draw;
+
+use draw::Wanted;
+use std::{error::Error, io, process::ExitCode};
+
+fn run() -> Result<(), Box<dyn Error>> {
+    for line in io::stdin().lines() {
+        let line = line?;
+        let words: Vec<_> = line.split(' ').collect();
+        // The next frame may be one that can be drawn.
+        if let Err(error) = Wanted::parse(&words).and_then(|wanted| wanted.draw()) {
+            println!("refused: {error}");
+        }
+    }
+    Ok(())
+}
+
+fn main() -> ExitCode {
+    match run() {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(error) => {
+            eprintln!("{error}");
+            ExitCode::FAILURE
+        }
+    }
+}
