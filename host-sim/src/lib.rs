@@ -11,11 +11,21 @@ pub use microphong_render::{
 };
 pub use microphong_stress as stress;
 
-/// Every family of random cases. Costs are counted by a build with boards.
+/// Every family of random cases.
 #[must_use]
 pub fn families() -> Vec<Box<dyn stress::Family>> {
     let mut families = stress::families();
-    #[cfg(feature = "boards")]
-    families.push(Box::new(stress::cost::Cost(bench::callgrind::Counters::default())));
+    families.extend(costs());
     families
+}
+
+/// Costs are counted by a build with boards.
+#[cfg(feature = "boards")]
+fn costs() -> Option<Box<dyn stress::Family>> {
+    Some(Box::new(stress::cost::Cost(bench::callgrind::Counters::default())))
+}
+
+#[cfg(not(feature = "boards"))]
+const fn costs() -> Option<Box<dyn stress::Family>> {
+    None
 }
