@@ -27,7 +27,7 @@ pub const NEAR: i32 = 256;
 ///
 /// The error of the fast way grows with the square of this ratio: at most 2^-22 of the nodes' range at 1, 2^-8 here.
 pub const MAX_THINNESS: i64 = 128;
-/// The same for fields of more than [`word_sized::LINEAR`] bits, as cosines are, of which sharp highlights need all.
+/// The same for fields of more than `word_sized::LINEAR` bits, as cosines are, of which sharp highlights need all.
 ///
 /// The error of the fast way is 2^-25 of the nodes' range at 1, and 2^-17 here.
 pub const MAX_FINE_THINNESS: i64 = 16;
