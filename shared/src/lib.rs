@@ -30,7 +30,7 @@
 //! The command `microphong convert mesh.obj -o mesh.tri`, from the repository of this crate, makes such a file.
 //!
 //! Per-pixel normalisation and powers are replaced by polynomials that are walked with integer additions. The modules follow the way of the
-//! data, each using only those above it (tests/tests/layers.rs reads the imports). The interface is the crate's root, [`stream`], [`pixel`]
+//! data, each using only those above it (tests/suite/layers.rs reads the imports). The interface is the crate's root, [`stream`], [`pixel`]
 //! and [`method`]. All other modules are no part of it and may change in any release: those that are public are so for microphong's own
 //! tests, tools and `microphong-literature` alone.
 //!

@@ -80,7 +80,7 @@ impl<C: Count> Cost<C> {
 /// What a vertex, a triangle, a row and a pixel take at most: of each method, without antialiasing and with it.
 ///
 /// Four times what the worst of 250 scenes of up to 320x240 pixels takes; of some thousand others, a few take up to 3.6 times as much.
-/// `cargo test -p microphong-tests --test stress costs -- --ignored --nocapture` counts anew and prints the table.
+/// `cargo test -p microphong-tests stress::costs -- --ignored --nocapture` counts anew and prints the table.
 pub const BOUNDS: [(&str, [u32; 4], [u32; 4]); 26] = [
     ("flat", [440, 1100, 1400, 130], [88, 960, 19000, 520]),
     ("gouraud", [2600, 1500, 720, 120], [2000, 1400, 19000, 500]),
