@@ -258,6 +258,14 @@ fn a_full_standard_output_is_a_failure() {
     }
 }
 
+/// The program, which signals end also where the tests run in the background and are deaf to some.
+#[cfg(target_os = "linux")]
+fn interruptible() -> Command {
+    let mut command = Command::new("env");
+    command.arg("--default-signal").arg(program());
+    command
+}
+
 /// Whatever ends it: a file has no name before it is complete.
 #[cfg(target_os = "linux")]
 #[test]
@@ -267,7 +275,7 @@ fn interrupted_commands_leave_nothing_behind() {
     place.file("old.apng", "old");
     for (signal, name) in ["INT", "TERM", "HUP", "KILL"].into_iter().flat_map(|signal| [(signal, "old.apng"), (signal, "new.apng")]) {
         let before = place.files();
-        let mut command = Command::new(program());
+        let mut command = interruptible();
         command.args(["render", "torus", "--frames", "65535", "-o", name]).current_dir(place.0.path()).stderr(std::process::Stdio::piped());
         let mut child = command.spawn().expect("the program");
         let mut line = String::new();
@@ -310,7 +318,7 @@ fn interrupted_emulations_leave_nothing_behind() {
     for (arguments, emulator) in commands {
         for signal in ["INT", "TERM", "HUP", "KILL"] {
             let place = Place::new();
-            let mut command = Command::new(program());
+            let mut command = interruptible();
             command.args(arguments).current_dir(place.0.path()).env("TMPDIR", place.0.path());
             let mut child = command.stdout(Stdio::null()).stderr(Stdio::null()).spawn().expect("the program");
             let wanted = Some((emulator.to_owned(), child.id()));
