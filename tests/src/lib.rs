@@ -1,4 +1,4 @@
-//! Cross-checks of whole programs; see the files in `tests/`.
+//! Cross-checks of whole programs; see the files in `suite/`.
 
 pub mod message;
 pub mod phong;

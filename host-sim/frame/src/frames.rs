@@ -1,11 +1,12 @@
 //! Draws frames for callgrind to count, one after the other as they are asked for, in every style.
 //!
 //! Each line of the standard input is a frame: a stream's file, the picture's size as `320x240`, the rows of a band, a method, and
-//! options. A line of the standard output answers it.
+//! options. A line of the standard output answers it: what was drawn, `refused` where the renderer cannot draw it in this style, or `failed`.
 
 mod draw;
 
 use draw::Wanted;
+use microphong::RenderError;
 use std::{error::Error, io, process::ExitCode};
 
 fn run() -> Result<(), Box<dyn Error>> {
@@ -14,7 +15,8 @@ fn run() -> Result<(), Box<dyn Error>> {
         let words: Vec<_> = line.split(' ').collect();
         // The next frame may be one that can be drawn.
         if let Err(error) = Wanted::parse(&words).and_then(|wanted| wanted.draw()) {
-            println!("refused: {error}");
+            let what = if error.is::<RenderError>() { "refused" } else { "failed" };
+            println!("{what}: {error}");
         }
     }
     Ok(())

@@ -72,15 +72,15 @@ impl<C: Count> Family for Cost<C> {
 impl<C: Count> Cost<C> {
     /// What a case takes, as a share of what is documented; `None` if it cannot be drawn.
     fn share(&self, case: &Case) -> Result<Option<f64>> {
-        let Some(instructions) = self.0.count(case)? else { return Ok(None) };
-        Ok(Work::of(case).map(|work| instructions as f64 / work.instructions(bound(case.style))))
+        let Some(work) = Work::of(case) else { return Ok(None) };
+        Ok(self.0.count(case)?.map(|instructions| instructions as f64 / work.instructions(bound(case.style))))
     }
 }
 
 /// What a vertex, a triangle, a row and a pixel take at most: of each method, without antialiasing and with it.
 ///
 /// Four times what the worst of 250 scenes of up to 320x240 pixels takes; of some thousand others, a few take up to 3.6 times as much.
-/// `cargo test -p microphong-tests stress::costs -- --ignored --nocapture` counts anew and prints the table.
+/// `cargo test -p microphong-tests stress::costs_are_counted_anew -- --ignored --nocapture` counts anew and prints the table.
 pub const BOUNDS: [(&str, [u32; 4], [u32; 4]); 26] = [
     ("flat", [440, 1100, 1400, 130], [88, 960, 19000, 520]),
     ("gouraud", [2600, 1500, 720, 120], [2000, 1400, 19000, 500]),

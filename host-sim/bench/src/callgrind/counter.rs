@@ -76,6 +76,7 @@ impl Counter {
         if answer.starts_with("refused") {
             return Ok(None);
         }
+        ensure!(!answer.starts_with("failed"), "the program that draws {}", answer.trim_end());
         let mut dumps = File::open(self.dumps.path()).context("cannot open what callgrind writes")?;
         dumps.seek(SeekFrom::Start(self.read))?;
         let mut profile = String::new();
