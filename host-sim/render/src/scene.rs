@@ -30,9 +30,15 @@ pub const NAMES: [&str; 10] =
     ["teapot", "bunny", "sphere-168", "sphere-374", "sphere-690", "peer-sphere", "sphere-40", "dodecahedron", "torus", "triangle"];
 
 const PEER: &str = "peer-sphere";
-
-/// `peer-sphere`, and marked as convex: drawn without depth. Not one of [`NAMES`], for it shows the same.
+/// `peer-sphere`, and marked as convex: drawn without depth.
 pub const CONVEX: &str = "peer-sphere-convex";
+/// `peer-sphere` in blue with a white highlight.
+pub const PLASTIC: &str = "peer-sphere-plastic";
+/// The same under two coloured lights.
+pub const LIGHTS: &str = "peer-sphere-lights";
+
+/// The sphere of `peer-sphere`, drawn otherwise. Not among [`NAMES`], for other scenes show as much.
+pub const VARIANTS: [&str; 3] = [CONVEX, PLASTIC, LIGHTS];
 
 /// What a built-in scene shows; empty for other names.
 #[must_use]
@@ -43,7 +49,10 @@ pub fn description(name: &str) -> &'static str {
         "sphere-168" => "sphere of 168 triangles, parallel rays",
         "sphere-374" => "sphere of 374 triangles, parallel rays",
         "sphere-690" => "sphere of 690 triangles, parallel rays",
-        PEER => "sphere of 720 triangles on 43,800 pixels, for comparison with other renderers; as peer-sphere-convex without depth",
+        PEER => "sphere of 720 triangles on 43,800 pixels, for comparison with other renderers",
+        CONVEX => "peer-sphere, drawn without depth",
+        PLASTIC => "peer-sphere in blue with a white highlight",
+        LIGHTS => "peer-sphere in blue with a white highlight, under a warm and a cold light",
         "sphere-40" => "sphere of 40 triangles, near point light, local viewer",
         "dodecahedron" => "dodecahedron with a sphere's normals, near point light, local viewer",
         "torus" => "torus of 3,750 triangles, blue with a white highlight",
@@ -58,7 +67,7 @@ pub struct Unknown(String);
 
 impl fmt::Display for Unknown {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "unknown scene {:?}; name a .tri or .obj file, or one of: {}", self.0, NAMES.join(", "))
+        write!(f, "unknown scene {:?}; name a .tri or .obj file, or one of: {}, {}", self.0, NAMES.join(", "), VARIANTS.join(", "))
     }
 }
 
@@ -74,6 +83,8 @@ pub const DISTANCE: f64 = 4.0;
 pub const MARGIN: f64 = 0.06;
 /// Copper, a little towards gold.
 pub const COPPER: V3 = [1.0, 0.62, 0.33];
+/// Blue, a little towards cyan.
+const BLUE: V3 = [0.25, 0.5, 0.95];
 
 const TEAPOT: &str = include_str!("../../../tests/meshes/teapot.obj");
 const BUNNY: &str = include_str!("../../../tests/meshes/bunny.obj");
@@ -83,7 +94,7 @@ const BUNNY: &str = include_str!("../../../tests/meshes/bunny.obj");
 /// # Errors
 /// [`Unknown`] when `name_or_path` is neither; else what is wrong with the file.
 pub fn load(name_or_path: &str) -> Result<Scene> {
-    if NAMES.contains(&name_or_path) || name_or_path == CONVEX {
+    if NAMES.contains(&name_or_path) || VARIANTS.contains(&name_or_path) {
         let (stream, size) = built_in(name_or_path)?;
         return Ok(Scene { name: name_or_path.to_owned(), stream, size });
     }
@@ -140,7 +151,9 @@ fn built_in(name: &str) -> Result<(StreamBytes, (u32, u32))> {
         "sphere-168" => ball(12, 8),
         "sphere-374" => ball(17, 12),
         "sphere-690" => ball(23, 16),
-        PEER | CONVEX => peer_sphere(),
+        PEER | CONVEX => peer_sphere(Surface::metal([1.0; 3], PEER_SHARES, PEER_EXPONENT), &[[1.0; 3]]),
+        PLASTIC => peer_sphere(Surface::plastic(BLUE, PEER_SHARES, PEER_EXPONENT), &[[1.0; 3]]),
+        LIGHTS => peer_sphere(Surface::plastic(BLUE, PEER_SHARES, PEER_EXPONENT), &[[1.0, 0.92, 0.8], [0.3, 0.4, 0.6]]),
         "sphere-40" => (shapes::sphere(5, 5, 0.0), near_light([0.9, 0.92, 1.0], tilted(0.5, 0.35)), SQUARE),
         "dodecahedron" => (shapes::dodecahedron(), near_light([0.75, 1.0, 0.6], tilted(0.3, 0.2)), SQUARE),
         "torus" => torus(),
@@ -148,7 +161,7 @@ fn built_in(name: &str) -> Result<(StreamBytes, (u32, u32))> {
         _ => return Err(Unknown(name.to_owned()).into()),
     };
     let (mut parts, _) = quantise(&mesh);
-    if name == PEER {
+    if name.starts_with(PEER) && name != CONVEX {
         // The other renderers test depth.
         parts.iter_mut().for_each(|part| part.closed_convex = false);
     }
@@ -186,16 +199,22 @@ fn ball(meridians: usize, bands: usize) -> Parts {
     (shapes::sphere(meridians, bands, 0.0), look, SQUARE)
 }
 
-/// The scene that other renderers were measured with: geometry, camera and light are theirs.
-fn peer_sphere() -> Parts {
+/// Shares of ambient, diffuse and specular light, and exponent, of the scene that other renderers were measured with.
+const PEER_SHARES: [f64; 3] = [0.1, 0.45, 0.45];
+const PEER_EXPONENT: u16 = 50;
+/// The first light is theirs, too.
+const PEER_LIGHTS: [V3; 2] = [[0.394_055_24, 0.472_866_29, -0.788_110_48], [-0.8, 0.1, -0.6]];
+
+/// The scene that other renderers were measured with: geometry and camera are theirs. Up to two lights have these colours.
+fn peer_sphere(surface: Surface, colours: &[V3]) -> Parts {
     // Their pole is y, the first meridian 0.3 from z towards x; the pole then leans to the eye by 0.55.
     let pole_up = [[0.0, 1.0, 0.0], [0.0, 0.0, 1.0], [1.0, 0.0, 0.0]];
     let lean = rotation([1.0, 0.0, 0.0], 0.55);
     let mesh = shapes::turned(shapes::sphere(24, 16, 0.3), &product(&lean, &pole_up));
     let mut view = View::orbit(Up::Y, 0.0, 0.0, 3.0, ORBIT).focal(2.8);
     view.near = 1.75;
-    let mut look = Look::new(Surface::metal([1.0; 3], [0.1, 0.45, 0.45], 50), view);
-    look.lamps = vec![Lamp::Distant([0.394_055_24, 0.472_866_29, -0.788_110_48], [1.0; 3])];
+    let mut look = Look::new(surface, view);
+    look.lamps = PEER_LIGHTS.iter().zip(colours).map(|(&towards, &colour)| Lamp::Distant(towards, colour)).collect();
     (mesh, look, (320, 240))
 }
 
@@ -210,7 +229,7 @@ fn torus() -> Parts {
     let size = (320, 320);
     let mesh = shapes::torus(75, 25);
     let view = tilted(0.7, 0.4).parallel().fit(&mesh.positions, size, MARGIN);
-    let mut look = Look::new(Surface::plastic([0.25, 0.5, 0.95], [0.12, 0.75, 0.45], 20), view);
+    let mut look = Look::new(Surface::plastic(BLUE, [0.12, 0.75, 0.45], 20), view);
     look.lamps = vec![Lamp::Distant([-0.4, 0.5, -0.77], [1.0; 3])];
     (mesh, look, size)
 }

@@ -2,7 +2,7 @@
 
 use super::{Outcome, Usage, report};
 use anyhow::Result;
-use microphong_sim::scene::{self, NAMES, Scene};
+use microphong_sim::scene::{self, NAMES, Scene, VARIANTS};
 use serde::Serialize;
 
 /// List the built-in scenes.
@@ -20,12 +20,12 @@ struct Line {
 }
 
 pub(crate) fn run(arguments: &Arguments) -> Result<Outcome> {
-    for scene in NAMES {
+    for scene in NAMES.into_iter().chain(VARIANTS) {
         let description = scene::description(scene);
         if arguments.json {
             report::json(&Line { scene, description })?;
         } else {
-            report::line(&format!("{scene:13} {description}"))?;
+            report::line(&format!("{scene:19} {description}"))?;
         }
     }
     Ok(Outcome::Done)
