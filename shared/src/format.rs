@@ -48,6 +48,9 @@ pub const COSINE: u32 = 30;
 pub const LEVEL: u32 = 7;
 /// Fraction bits of a level while it is walked along a span: unsigned Q9.23.
 pub const WALK: u32 = 23;
+/// Fraction bits of a level of one of three channels while it is walked: signed Q10.22. Its range takes all overshoots without a bias, so
+/// that one instruction of Armv7-M makes it a channel.
+pub const CHANNEL: u32 = 22;
 /// The bias of walked levels: 0..=127 are below black, 128..=383 the 256 levels, 384..=511 above white.
 ///
 /// The six-point quadratic overshoots its nodes' range by at most 5/3 of its

@@ -162,7 +162,8 @@ pub fn check(stream: &Stream<'_>, facts: &Facts, perspective_correct: bool) -> R
 
 /// A colour of 8 bits per channel in the pixel format; grey formats get its luma.
 fn background<C: Pixel>([r, g, b]: [u8; 3]) -> C {
-    let luma = ((u32::from(r) * 77 + u32::from(g) * 150 + u32::from(b) * 29) >> 8) as u8;
+    let [r, g, b] = [u32::from(r), u32::from(g), u32::from(b)];
+    let luma = (r * 77 + g * 150 + b * 29) >> 8;
     let [r, g, b] = if C::GRAY { [luma; 3] } else { [r, g, b] };
     let [dr, dg, db] = C::DEPTH;
     C::pack([r >> (8 - dr), g >> (8 - dg), b >> (8 - db)])

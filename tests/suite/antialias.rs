@@ -188,8 +188,8 @@ impl Pixel for White {
     const DEPTH: [u32; 3] = [8; 3];
     const BYTES: usize = 1;
 
-    fn pack([luma, ..]: [u8; 3]) -> Self {
-        Self(luma)
+    fn pack([luma, ..]: [u32; 3]) -> Self {
+        Self(luma as u8)
     }
 
     fn stored(self) -> u8 {
@@ -218,7 +218,7 @@ impl Pixel for White {
         Self(255)
     }
 
-    fn mixed(_: [u32; 3]) -> Self {
+    fn mixed(_: [i32; 3]) -> Self {
         Self(255)
     }
 }

@@ -4,7 +4,7 @@ use anyhow::Result;
 use embedded_graphics_core::geometry::Size;
 use microphong::{
     Stream,
-    format::{BIAS, Intensity, RAMP, WALK},
+    format::{BIAS, CHANNEL, Intensity, RAMP, WALK},
     pixel::Pixel,
 };
 use microphong_render::render::{self, Style};
@@ -21,7 +21,7 @@ impl Pixel for Fine {
     const DEPTH: [u32; 3] = [8; 3];
     const BYTES: usize = 3;
 
-    fn pack(_: [u8; 3]) -> Self {
+    fn pack(_: [u32; 3]) -> Self {
         Self(None)
     }
 
@@ -49,8 +49,10 @@ impl Pixel for Fine {
         Self(Some(intensity.map(|level| ((level as u32) << (WALK - 8)) + ((BIAS as u32) << WALK) + (1 << (WALK - 1)))))
     }
 
-    fn mixed(levels: [u32; 3]) -> Self {
-        Self(Some(levels))
+    fn mixed(levels: [i32; 3]) -> Self {
+        // Biased, and within what that leaves room for.
+        let level = |level: i32| level.clamp(-BIAS << CHANNEL, (2 * BIAS + 127) << CHANNEL) + (BIAS << CHANNEL);
+        Self(Some(levels.map(|walked| (level(walked) as u32) << (WALK - CHANNEL))))
     }
 }
 

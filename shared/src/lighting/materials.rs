@@ -2,7 +2,7 @@
 
 use crate::{
     arch::product::upper,
-    format::{BIAS, COSINE, Intensity, LEVEL, MAX_LIGHTS, PIXEL_COSINE, RAMP, UNIT, WALK},
+    format::{BIAS, CHANNEL, COSINE, Intensity, LEVEL, MAX_LIGHTS, PIXEL_COSINE, RAMP, UNIT, WALK},
     lighting::lights::{MeanNormal, Source},
     math::{
         highlight_lut::{Base, ENTRY, HighlightLut, square},
@@ -356,7 +356,7 @@ pub fn fill_ramp<C: Pixel>(ramp: &mut [C::Stored; RAMP], reflectance: &Reflectan
         let mut channels = [0; 3];
         for (channel, (base, depth)) in channels.iter_mut().zip(reflectance.base.into_iter().zip(C::DEPTH)) {
             let step = 1 << (16 - depth);
-            *channel = ((level * u32::from(base) + step / 2) / step).min((1 << depth) - 1) as u8;
+            *channel = ((level * u32::from(base) + step / 2) / step).min((1 << depth) - 1);
         }
         *stored = C::pack(channels).stored();
     }
@@ -377,14 +377,14 @@ impl<'a, C: Pixel> MaterialTables<'a, C> {
         if !self.reflectance.three_channels() {
             return self.tint(levels[0]);
         }
-        C::mixed(zip(levels, C::DEPTH, |level, depth| walked(level, LEVEL + 7 - depth)))
+        C::mixed(zip(levels, C::DEPTH, |level, depth| (level + (1 << (LEVEL + 7 - depth))) << (CHANNEL - LEVEL)))
     }
 
     /// The colour of a level, Q9.7, of a material of one channel, rounded.
     #[inline(always)]
     #[must_use]
     pub fn tint(&self, level: i32) -> C {
-        C::ramped::<WALK>(self.ramp, walked(level, LEVEL - 1))
+        C::ramped::<WALK>(self.ramp, Reflectance::biased(level) << (WALK - LEVEL))
     }
 
     /// The colour of an intensity, rounded.
@@ -399,7 +399,7 @@ impl<'a, C: Pixel> MaterialTables<'a, C> {
     #[inline]
     #[must_use]
     pub fn dithered(&self, intensity: Intensity, threshold: u32) -> C {
-        C::pack(self.reflectance.dithered(intensity, threshold))
+        C::pack(self.reflectance.dithered(intensity, threshold).map(u32::from))
     }
 }
 
@@ -450,12 +450,6 @@ impl<C: Pixel> OneLightRamp<'_, C> {
     pub fn colour<const BITS: u32>(&self, diffuse: u32, highlight: u32) -> C {
         C::ramped::<BITS>(self.ramp, diffuse.wrapping_add(highlight << (BITS - LEVEL)))
     }
-}
-
-/// A level, Q9.7, as a biased index of the ramp with a rounding half.
-#[inline(always)]
-fn walked(level: i32, half: u32) -> u32 {
-    ((level + (BIAS << LEVEL) + (1 << half)) as u32) << (WALK - LEVEL)
 }
 
 /// The level, Q9.7, of light reflected with the gains `(diffuse, specular)`, for N·L (Q2.30) and a highlight (Q0.16).

@@ -33,7 +33,7 @@ pub mod sqrt6;
 use crate::{
     antialias::{PixelSet, Shape},
     arch::product::by_fraction,
-    format::{BIAS, LEVEL, NORMAL_LENGTH, SUBPIXEL, WALK},
+    format::{BIAS, CHANNEL, LEVEL, NORMAL_LENGTH, SUBPIXEL, WALK},
     interpolate::perspective::PerspectivePatch,
     lighting::materials::MaterialTables,
     pixel::Pixel,
@@ -359,9 +359,8 @@ impl Shading<'_> {
     where
         Nodes<N, 3, RANGE>: Field<Value = [u32; 3]>,
     {
-        // Half a step of each channel.
-        let bias = C::DEPTH.map(|depth| bias(1 << (WALK + 7 - depth)));
-        let patch = || Nodes::<N, 3, RANGE>::new(channels(), EXTRA).biased(bias).fit(setup.gradients);
+        let half_steps = C::DEPTH.map(|depth| 1 << (CHANNEL + 7 - depth));
+        let patch = || Nodes::<N, 3, RANGE>::new(channels(), CHANNEL - LEVEL).biased(half_steps).fit(setup.gradients);
         setup.fill(patch, Rgb(PhantomData), band)
     }
 }

@@ -3,7 +3,7 @@
 #[doc(hidden)]
 pub mod dither;
 
-use crate::format::{BIAS, Intensity, RAMP, WALK};
+use crate::format::{CHANNEL, Intensity, RAMP};
 use embedded_graphics_core::{
     pixelcolor::{
         Gray4, Gray8, Rgb565, Rgb888,
@@ -26,7 +26,7 @@ pub trait Pixel: Copy + 'static {
     const BYTES: usize;
 
     /// Packs channel values of [`Self::DEPTH`] bits; a grey format looks at the first.
-    fn pack(channels: [u8; 3]) -> Self;
+    fn pack(channels: [u32; 3]) -> Self;
 
     /// The pixel as tables of colours store it.
     fn stored(self) -> Self::Stored;
@@ -49,18 +49,25 @@ pub trait Pixel: Copy + 'static {
     /// The colour of an intensity of three channels, rounded.
     #[inline]
     fn rounded(intensity: Intensity) -> Self {
-        let channel = |level: i32, depth: u32| (((level + (1 << (15 - depth))) >> 8).min(255) >> (8 - depth)) as u8;
+        let channel = |level: i32, depth: u32| ((level + (1 << (15 - depth))) >> 8).min(255) as u32 >> (8 - depth);
         let ([r, g, b], [dr, dg, db]) = (intensity, Self::DEPTH);
         Self::pack([channel(r, dr), channel(g, dg), channel(b, db)])
     }
 
-    /// The colour of three levels, biased and with [`WALK`] fraction bits, half a step of each channel included.
+    /// The colour of three levels with [`CHANNEL`] fraction bits, half a step of each channel included.
     #[inline(always)]
-    fn mixed([r, g, b]: [u32; 3]) -> Self {
-        let channel = |level: u32, depth: u32| (((level >> WALK) as i32 - BIAS).clamp(0, 255) >> (8 - depth)) as u8;
+    fn mixed([r, g, b]: [i32; 3]) -> Self {
+        // Armv7-M shifts and clamps by one instruction.
+        let channel = |level: i32, depth: u32| (level >> (CHANNEL + 8 - depth)).clamp(0, (1 << depth) - 1) as u32;
         let [dr, dg, db] = Self::DEPTH;
         Self::pack([channel(r, dr), channel(g, dg), channel(b, db)])
     }
+}
+
+/// Red, green and blue of 5, 6 and 5 bits, packed.
+#[inline(always)]
+fn rgb565([r, g, b]: [u32; 3]) -> u16 {
+    (r << 11 | g << 5 | b) as u16
 }
 
 impl Pixel for Rgb565 {
@@ -71,8 +78,8 @@ impl Pixel for Rgb565 {
     const BYTES: usize = 2;
 
     #[inline(always)]
-    fn pack([r, g, b]: [u8; 3]) -> Self {
-        Self::new(r, g, b)
+    fn pack(channels: [u32; 3]) -> Self {
+        RawU16::new(rgb565(channels)).into()
     }
 
     #[inline(always)]
@@ -102,8 +109,8 @@ impl Pixel for Rgb888 {
     const BYTES: usize = 3;
 
     #[inline(always)]
-    fn pack([r, g, b]: [u8; 3]) -> Self {
-        Self::new(r, g, b)
+    fn pack([r, g, b]: [u32; 3]) -> Self {
+        RawU24::new(r << 16 | g << 8 | b).into()
     }
 
     #[inline(always)]
@@ -133,8 +140,8 @@ impl Pixel for Gray8 {
     const BYTES: usize = 1;
 
     #[inline(always)]
-    fn pack([luma, ..]: [u8; 3]) -> Self {
-        Self::new(luma)
+    fn pack([luma, ..]: [u32; 3]) -> Self {
+        Self::new(luma as u8)
     }
 
     #[inline(always)]
@@ -164,8 +171,8 @@ impl Pixel for Gray4 {
     const BYTES: usize = 1;
 
     #[inline(always)]
-    fn pack([luma, ..]: [u8; 3]) -> Self {
-        Self::new(luma)
+    fn pack([luma, ..]: [u32; 3]) -> Self {
+        Self::new(luma as u8)
     }
 
     #[inline(always)]
@@ -206,8 +213,8 @@ impl Pixel for Rgb565Be {
     const BYTES: usize = 2;
 
     #[inline(always)]
-    fn pack([r, g, b]: [u8; 3]) -> Self {
-        Self((u16::from(r) << 11 | u16::from(g) << 5 | u16::from(b)).to_be())
+    fn pack(channels: [u32; 3]) -> Self {
+        Self(rgb565(channels).to_be())
     }
 
     #[inline(always)]

@@ -35,7 +35,7 @@ impl<C: Pixel> Band<'_, C> {
         if let Some(blend) = &self.blend {
             let background = background.channels();
             for (pixel, sample) in self.pixels.iter_mut().zip(blend.samples.iter()) {
-                *pixel = C::pack(sample.resolve(background));
+                *pixel = C::pack(sample.resolve(background).map(u32::from));
             }
         }
     }

@@ -59,7 +59,8 @@ impl<C: Pixel> PixelShader<[u32; 1]> for Ramp<'_, C> {
     }
 }
 
-/// Three walked levels, scaled so that their upper bits are the channels; half a step is in them already.
+/// Three walked levels with [`crate::format::CHANNEL`] fraction bits, scaled so that their upper bits are the channels; half a step is in
+/// them already.
 #[derive(Clone, Copy, Debug)]
 pub struct Rgb<C>(pub PhantomData<C>);
 
@@ -68,6 +69,7 @@ impl<C: Pixel> PixelShader<[u32; 3]> for Rgb<C> {
 
     #[inline(always)]
     fn shade(&self, levels: [u32; 3]) -> C {
-        C::mixed(levels)
+        let [r, g, b] = levels;
+        C::mixed([r as i32, g as i32, b as i32])
     }
 }

@@ -308,8 +308,8 @@ impl Gradients {
     #[must_use]
     pub fn quadratic<const BITS: u32>(&self, nodes: [i32; 6], extra: u32) -> [i32; 6] {
         match self.scale {
-            Scale::WordSized(area) if BITS <= word_sized::QUADRATIC && extra == word_sized::EXTRA => {
-                match area.quadratic(self.edges, self.subpixels(), nodes) {
+            Scale::WordSized(area) if BITS <= word_sized::QUADRATIC && extra <= word_sized::EXTRA => {
+                match area.quadratic(self.edges, self.subpixels(), nodes, extra) {
                     Some(fitted) => fitted,
                     None => {
                         // Rebuild the array, so that the result of this rare path, which is returned in memory, does not force the fast

@@ -79,10 +79,16 @@ impl WordSized {
     }
 
     /// `[c, dx, dy, dxx, dxy, dyy]` of the quadratic through six nodes, of at most [`QUADRATIC`] bits, at `offset` from corner 0
-    /// (1/16 pixel), with [`EXTRA`] more fraction bits; `None` if a second derivative does not fit a word.
+    /// (1/16 pixel), with `extra` more fraction bits, [`EXTRA`] or one less; `None` if a second derivative does not fit a word.
     #[inline(always)]
-    pub(crate) fn quadratic(&self, edges: [[i32; 2]; 2], [ox, oy]: [i32; 2], [i0, i1, i2, i01, i12, i20]: [i32; 6]) -> Option<[i32; 6]> {
-        let [dx, dy] = self.slopes(edges, [4 * i01 - 3 * i0 - i1, 4 * i20 - 3 * i0 - i2], EXTRA);
+    pub(crate) fn quadratic(
+        &self,
+        edges: [[i32; 2]; 2],
+        [ox, oy]: [i32; 2],
+        [i0, i1, i2, i01, i12, i20]: [i32; 6],
+        extra: u32,
+    ) -> Option<[i32; 6]> {
+        let [dx, dy] = self.slopes(edges, [4 * i01 - 3 * i0 - i1, 4 * i20 - 3 * i0 - i2], extra);
         // Half the matrix of second derivatives by s and t.
         let (ss, st, tt) = (2 * (i0 + i1 - 2 * i01), 2 * (i0 - i01 - i20 + i12), 2 * (i0 + i2 - 2 * i20));
         let [[x1, y1], [x2, y2]] = edges;
@@ -96,7 +102,7 @@ impl WordSized {
         let [[x1, y1], [x2, y2]] = self.sides(edges);
         // 1 / area² = square 2^(2 zeros - 85).
         let square = (product(self.inverse, self.inverse) >> 31) as i32;
-        let left = (2 * self.zeros + self.bits + EXTRA - 44) - second;
+        let left = (2 * self.zeros + self.bits + extra - 44) - second;
         // Collects the bits that do not fit a word.
         let mut steep = 0;
         let mut derivative = |a: i32, b: i32, x: i32, y: i32| {
@@ -114,7 +120,7 @@ impl WordSized {
         let (xx, xy, yy) = (fine(dxx), fine(dxy), fine(dyy));
         let (across, mixed, down) = (xx.wrapping_mul(ox), xy.wrapping_mul(oy).wrapping_mul(2), yy.wrapping_mul(oy));
         let first = dx.wrapping_add(across).wrapping_add(mixed);
-        let c = (i0 << EXTRA).wrapping_add(first.wrapping_mul(ox)).wrapping_add(dy.wrapping_add(down).wrapping_mul(oy));
+        let c = (i0 << extra).wrapping_add(first.wrapping_mul(ox)).wrapping_add(dy.wrapping_add(down).wrapping_mul(oy));
         let dx = first.wrapping_add(across);
         let dy = dy.wrapping_add(down.wrapping_add(xy.wrapping_mul(ox)).wrapping_mul(2));
         Some([c, dx << SUBPIXEL, dy << SUBPIXEL, dxx, dxy.wrapping_mul(2), dyy])
