@@ -343,7 +343,7 @@ impl<C: Pixel> Frame<'_, '_, C> {
         let (reflectance, ramp) = (memory.reflectances.get(material)?, memory.ramps.get(material)?);
         let perspective = self.state.perspective_correct && stream.is_perspective();
         let style = Style {
-            one_light: reflectance.holds_levels() && self.constant.is_some(),
+            one_light: reflectance.has_one_light() && self.constant.is_some(),
             dithered_or_antialiased: *dither || self.state.antialiased(),
             perspective,
         };

@@ -1,9 +1,11 @@
 //! What a material reflects of the lights of a scene, computed once: [`Reflectance`] in levels, [`MaterialTables`] in colours.
 
 use crate::{
-    arch::product::upper,
     format::{BIAS, CHANNEL, COSINE, Intensity, LEVEL, MAX_LIGHTS, PIXEL_COSINE, RAMP, UNIT, WALK},
-    lighting::lights::{MeanNormal, Source},
+    lighting::{
+        lights::{MeanNormal, Source},
+        one_light::{LARGEST, OneLightRamp, OneLightRgb, Sum, Sums},
+    },
     math::{
         highlight_lut::{Base, ENTRY, HighlightLut, square},
         vector::zip,
@@ -11,6 +13,7 @@ use crate::{
     pixel::{Pixel, dither::quantise},
     stream::record::{Header, Light, Material},
 };
+use core::marker::PhantomData;
 use zerocopy::{FromBytes, Immutable, IntoBytes, KnownLayout};
 
 /// Largest level of a node, Q9.7.
@@ -69,12 +72,14 @@ pub struct Reflectance {
     /// Bits of each channel of the pixel format.
     depth: [u32; 3],
     gains: [Gains; MAX_LIGHTS],
+    /// For [`OneLightRgb`].
+    sums: Sums,
     /// Channels at full level for dither, Q0.8 scaled to the output's depth.
     base: [u16; 3],
     /// Not 0 if [`Self::three_channels`].
     three_channels: u8,
-    /// Not 0 if [`Self::holds_levels`].
-    holds_levels: u8,
+    /// Not 0 if [`Self::has_one_light`].
+    one_light: u8,
 }
 
 /// A material in the colours of a pixel format.
@@ -126,8 +131,9 @@ impl Reflectance {
         three_channels: 0,
         ambient: [0; 3],
         gains: [Gains { diffuse: [0; 3], specular: [0; 3] }; MAX_LIGHTS],
+        sums: [Sum::EMPTY; 3],
         highlight_threshold: 0,
-        holds_levels: 0,
+        one_light: 0,
         depth: [0; 3],
     };
 
@@ -162,9 +168,13 @@ impl Reflectance {
                 *gains = Gains { diffuse: levels(diffuse), specular: levels(specular) };
             }
         }
-        let holds_levels = holds_levels && one_channel && lights.len() == 1 && self.fits();
-        self.holds_levels = holds_levels.into();
+        let one_light = holds_levels && lights.len() == 1 && self.fits();
+        let holds_levels = one_light && one_channel;
+        self.one_light = one_light.into();
         let [one, ..] = &mut self.gains;
+        for (k, sum) in self.sums.iter_mut().enumerate() {
+            *sum = Sum::new(self.ambient[k], one.diffuse[k], one.specular[k], depth[k]);
+        }
         let (mut full, mut floor) = (1 << ENTRY, 0);
         if holds_levels {
             (full, floor) = (one.specular[0].into(), Self::biased(self.ambient[0]) as u16);
@@ -195,7 +205,14 @@ impl Reflectance {
     #[inline(always)]
     #[must_use]
     pub fn holds_levels(&self) -> bool {
-        self.holds_levels != 0
+        self.has_one_light() && !self.three_channels()
+    }
+
+    /// Whether there is only one light, the method has loops for it, and its levels fit their formats.
+    #[inline(always)]
+    #[must_use]
+    pub fn has_one_light(&self) -> bool {
+        self.one_light != 0
     }
 
     /// Smallest N·H, Q2.30, whose highlight counts, see [`HighlightLut::highlight_threshold`].
@@ -328,11 +345,11 @@ impl Reflectance {
         (level + (BIAS << LEVEL) + (1 << (LEVEL - 1))) as u32
     }
 
-    /// Whether all levels of one light on one channel lie within the ramp.
+    /// Whether the levels of one light are no larger than [`LARGEST`].
     fn fits(&self) -> bool {
         let [gains, ..] = &self.gains;
-        let sum = self.ambient[0] as u32 + u32::from(gains.diffuse[0]) + u32::from(gains.specular[0]);
-        sum < (RAMP as u32 - BIAS as u32 - 1) << LEVEL
+        let sum = zip(zip(gains.diffuse, gains.specular, |a, b| u32::from(a) + u32::from(b)), self.ambient, |a, b| a + b as u32);
+        largest(sum) < LARGEST
     }
 
     /// The channels of an intensity in the pixel format, with a [`crate::pixel::dither::threshold`] in place of rounding.
@@ -364,10 +381,19 @@ pub fn fill_ramp<C: Pixel>(ramp: &mut [C::Stored; RAMP], reflectance: &Reflectan
 
 impl<'a, C: Pixel> MaterialTables<'a, C> {
     /// The table of colours with the only light's gain, if the table of highlights holds levels.
+    #[inline(always)]
     #[must_use]
     pub fn one_light_ramp(&self) -> Option<OneLightRamp<'a, C>> {
-        let Reflectance { gains: [gains, ..], .. } = self.reflectance;
-        self.reflectance.holds_levels().then(|| OneLightRamp { ramp: self.ramp, diffuse: gains.diffuse[0] })
+        let Reflectance { gains: [gains, ..], highlight_lut, .. } = self.reflectance;
+        let Self { ramp, .. } = *self;
+        self.reflectance.holds_levels().then(|| OneLightRamp { ramp, diffuse: gains.diffuse[0], floor: highlight_lut.least() })
+    }
+
+    /// The sums of three channels under the only light, if there is no table of colours.
+    #[inline(always)]
+    #[must_use]
+    pub fn one_light_rgb(&self) -> Option<OneLightRgb<'a, C>> {
+        (!C::GRAY && self.reflectance.three_channels()).then(|| OneLightRgb(&self.reflectance.sums, PhantomData))
     }
 
     /// The colour of three levels, Q9.7, rounded.
@@ -410,46 +436,6 @@ pub struct Reflection {
     pub diffuse: i32,
     /// The highlight, a power of a cosine, unsigned Q0.16.
     pub highlight: u32,
-}
-
-/// The table of colours of a material of one channel under one light, ready for the pixel loop: the diffuse level is walked, and the table
-/// of highlights holds the levels of highlight and ambient light.
-#[derive(Debug)]
-pub struct OneLightRamp<'a, C: Pixel> {
-    ramp: &'a [C::Stored; RAMP],
-    /// The diffuse level at cosine 1, Q9.7.
-    diffuse: u16,
-}
-
-impl<C: Pixel> Clone for OneLightRamp<'_, C> {
-    fn clone(&self) -> Self {
-        *self
-    }
-}
-
-impl<C: Pixel> Copy for OneLightRamp<'_, C> {}
-
-impl<C: Pixel> OneLightRamp<'_, C> {
-    /// The diffuse level at a node of this cosine (Q2.30), in Q10 with `bits` more, at most 20, rounded down.
-    #[inline(always)]
-    #[must_use]
-    pub fn node(&self, cosine: i32, bits: u32) -> i32 {
-        upper(cosine, i32::from(self.diffuse) << 15) >> (COSINE + LEVEL - 17 - bits)
-    }
-
-    /// Whether no diffuse level is above 255.
-    #[inline(always)]
-    #[must_use]
-    pub fn is_within(&self) -> bool {
-        i32::from(self.diffuse) <= FULL
-    }
-
-    /// The colour of a walked diffuse level, not negative, Q9.`BITS`, plus an entry of the table of highlights.
-    #[inline(always)]
-    #[must_use]
-    pub fn colour<const BITS: u32>(&self, diffuse: u32, highlight: u32) -> C {
-        C::ramped::<BITS>(self.ramp, diffuse.wrapping_add(highlight << (BITS - LEVEL)))
-    }
 }
 
 /// The level, Q9.7, of light reflected with the gains `(diffuse, specular)`, for N·L (Q2.30) and a highlight (Q0.16).

@@ -2,3 +2,4 @@
 
 pub mod lights;
 pub mod materials;
+pub mod one_light;

@@ -81,7 +81,7 @@ pub trait Method: Sync {
 /// How the triangles of a mesh are drawn, which is decided once for all of them.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Style {
-    /// One channel under one constant light, with a table of highlights that holds levels.
+    /// One constant light, whose levels fit the formats of [`crate::lighting::one_light`].
     pub(crate) one_light: bool,
     /// Dither or antialiasing.
     pub(crate) dithered_or_antialiased: bool,

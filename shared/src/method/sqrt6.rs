@@ -14,8 +14,12 @@ use crate::{
     interpolate::{
         Constant,
         field::{Field, Nodes},
+        quadric::Quadric,
     },
-    lighting::materials::{Highlight, MaterialTables, OneLightRamp, Reflection},
+    lighting::{
+        materials::{Highlight, MaterialTables, Reflection},
+        one_light::{OneLight, OneLightRgb, node},
+    },
     math::{highlight_lookup::DefectLookup, highlight_lut::CosineLookup, rsqrt::sqrt},
     method::{
         Costs, Facts, Loops, Method, RANGE, Shading, Style, TriangleSetup, VertexLight,
@@ -76,92 +80,112 @@ impl Loops for Sqrt6 {
 
     #[inline(always)]
     fn draw<C: Pixel>(setup: &TriangleSetup<'_>, _: &Shading<'_>, tables: MaterialTables<'_, C>, band: &mut Band<'_, C>) -> Option<u32> {
-        let (reflectance, resumed) = (tables.reflectance, setup.resumed(band));
-        let ramp = tables.one_light_ramp()?;
-        // The pixel shader of an active triangle has been chosen, and no nodes are needed.
-        let cosines = if resumed.is_none() { setup.six_cosines(0) } else { [0; 6] };
-        let id = match resumed {
-            Some(id) => id,
-            None => match (setup.has_no_highlight(reflectance), DiffuseSign::of(cosines)) {
-                (true, DiffuseSign::Nowhere) => Ramp::<C>::ID,
-                _ if !ramp.is_within() => return None,
-                (true, DiffuseSign::Everywhere) => Ramp::<C>::ID,
-                (true, DiffuseSign::Partly) => DiffuseOnly::<C>::ID,
-                (false, DiffuseSign::Everywhere | DiffuseSign::Partly) => OneLight::<C>::ID,
-                _ => return None,
-            },
-        };
-        if id == Ramp::<C>::ID {
-            return Some(Shading::fill_one(setup, || reflectance.six_diffuse(cosines), tables, band));
+        match tables.one_light_rgb() {
+            Some(rgb) => draw_rgb(setup, rgb, tables, band),
+            None => draw(setup, tables.one_light_ramp()?, tables, band),
         }
-        let light = || {
-            let nodes = map_six(cosines, |cosine| ramp.node(cosine, LEVEL));
-            Nodes::<6, 1, RANGE>::new([nodes], WALK - LEVEL).fit(setup.gradients)
-        };
-        if id == DiffuseOnly::<C>::ID {
-            return Some(setup.fill(light, DiffuseOnly { ramp, floor: reflectance.highlight_lut.least() }, band));
-        }
-        let lookup = DefectLookup::new(&reflectance.highlight_lut);
-        let patch = || {
-            let half = [map_six(map_six(setup.six_cosines(1), root), |root| lookup.node(root))];
-            (light(), Nodes::<6, 1, BITS>::new(half, EXTRA).biased([lookup.half()]).fit(setup.gradients))
-        };
-        Some(setup.fill(patch, OneLight { ramp, lookup }, band))
     }
 }
 
-/// One light: a walked diffuse level, and a highlight by 1 minus the root of N·H.
-struct OneLight<'a, C: Pixel> {
-    ramp: OneLightRamp<'a, C>,
+/// [`draw`] in three channels, once for triangles of all sizes: a call is a small share of what they take.
+#[inline(never)]
+fn draw_rgb<C: Pixel>(
+    setup: &TriangleSetup<'_>,
+    colours: OneLightRgb<'_, C>,
+    tables: MaterialTables<'_, C>,
+    band: &mut Band<'_, C>,
+) -> Option<u32> {
+    draw(setup, colours, tables, band)
+}
+
+/// Draws `setup` under one constant light in these `colours`; `None` if levels may leave the walked format.
+#[inline(always)]
+fn draw<C: Pixel, T: OneLight<Pixel = C>>(
+    setup: &TriangleSetup<'_>,
+    colours: T,
+    tables: MaterialTables<'_, C>,
+    band: &mut Band<'_, C>,
+) -> Option<u32> {
+    let (reflectance, resumed) = (tables.reflectance, setup.resumed(band));
+    // The pixel shader of an active triangle has been chosen, and no nodes are needed.
+    let cosines = if resumed.is_none() { setup.six_cosines(0) } else { [0; 6] };
+    let id = match resumed {
+        Some(id) => id,
+        None if !T::TABLED => {
+            if setup.has_no_highlight(reflectance) {
+                DiffuseOnly::<T>::ID
+            } else {
+                DiffuseAndHighlight::<T>::ID
+            }
+        }
+        None => match (setup.has_no_highlight(reflectance), DiffuseSign::of(cosines)) {
+            (true, DiffuseSign::Nowhere) => Ramp::<C>::ID,
+            _ if !colours.is_within() => return None,
+            (true, DiffuseSign::Everywhere) => Ramp::<C>::ID,
+            (true, DiffuseSign::Partly) => DiffuseOnly::<T>::ID,
+            (false, DiffuseSign::Everywhere | DiffuseSign::Partly) => DiffuseAndHighlight::<T>::ID,
+            _ => return None,
+        },
+    };
+    if T::TABLED && id == Ramp::<C>::ID {
+        return Some(Shading::fill_one(setup, || reflectance.six_diffuse(cosines), tables, band));
+    }
+    let full = colours.diffuse();
+    if id == DiffuseOnly::<T>::ID {
+        return Some(setup.fill(|| diffuse(setup, full, cosines), DiffuseOnly(colours), band));
+    }
+    let lookup = DefectLookup::new(&reflectance.highlight_lut);
+    let patch = || (diffuse(setup, full, cosines), highlight(setup, lookup));
+    Some(setup.fill(patch, DiffuseAndHighlight { colours, lookup }, band))
+}
+
+/// The diffuse level of a material with the level `full` at cosine 1, from the cosines at six nodes.
+#[inline(never)]
+fn diffuse(setup: &TriangleSetup<'_>, full: u16, cosines: [i32; 6]) -> Quadric<1> {
+    Nodes::<6, 1, RANGE>::new([map_six(cosines, |cosine| node(full, cosine, LEVEL))], WALK - LEVEL).fit(setup.gradients)
+}
+
+/// 1 minus the root of N·H, as the table of highlights is looked up by.
+#[inline(never)]
+fn highlight(setup: &TriangleSetup<'_>, lookup: DefectLookup<'_>) -> Quadric<1> {
+    let half = [map_six(map_six(setup.six_cosines(1), root), |root| lookup.node(root))];
+    Nodes::<6, 1, BITS>::new(half, EXTRA).biased([lookup.half()]).fit(setup.gradients)
+}
+
+/// A walked diffuse level, and a highlight by 1 minus the root of N·H.
+#[derive(Clone, Copy)]
+struct DiffuseAndHighlight<'a, T> {
+    colours: T,
     lookup: DefectLookup<'a>,
 }
 
-impl<C: Pixel> Clone for OneLight<'_, C> {
-    fn clone(&self) -> Self {
-        *self
-    }
-}
+impl<T: OneLight> PixelShader<([u32; 1], [u32; 1])> for DiffuseAndHighlight<'_, T> {
+    type Pixel = T::Pixel;
 
-impl<C: Pixel> Copy for OneLight<'_, C> {}
-
-impl<C: Pixel> PixelShader<([u32; 1], [u32; 1])> for OneLight<'_, C> {
-    type Pixel = C;
-
-    const CHEAP: bool = true;
+    const CHEAP: bool = T::TABLED;
 
     const ID: u8 = 2;
 
     #[inline(always)]
-    fn shade(&self, ([light], [defect]): ([u32; 1], [u32; 1])) -> C {
-        self.ramp.colour::<WALK>(signed(light).max(0) as u32, self.lookup.at(signed(defect)))
+    fn shade(&self, ([light], [defect]): ([u32; 1], [u32; 1])) -> T::Pixel {
+        self.colours.colour::<WALK>(signed(light), self.lookup.at(signed(defect)))
     }
 }
 
 /// Diffuse light alone: a walked level, negative where there is no light.
-struct DiffuseOnly<'a, C: Pixel> {
-    ramp: OneLightRamp<'a, C>,
-    /// The entry of the table where there is no highlight.
-    floor: u32,
-}
+#[derive(Clone, Copy)]
+struct DiffuseOnly<T>(T);
 
-impl<C: Pixel> Clone for DiffuseOnly<'_, C> {
-    fn clone(&self) -> Self {
-        *self
-    }
-}
+impl<T: OneLight> PixelShader<[u32; 1]> for DiffuseOnly<T> {
+    type Pixel = T::Pixel;
 
-impl<C: Pixel> Copy for DiffuseOnly<'_, C> {}
-
-impl<C: Pixel> PixelShader<[u32; 1]> for DiffuseOnly<'_, C> {
-    type Pixel = C;
-
-    const CHEAP: bool = true;
+    const CHEAP: bool = T::TABLED;
 
     const ID: u8 = 1;
 
     #[inline(always)]
-    fn shade(&self, [light]: [u32; 1]) -> C {
-        self.ramp.colour::<WALK>(signed(light).max(0) as u32, self.floor)
+    fn shade(&self, [light]: [u32; 1]) -> T::Pixel {
+        self.0.without_highlight::<WALK>(signed(light))
     }
 }
 

@@ -1,0 +1,166 @@
+//! The colours of a material under one constant light, for pixel loops: diffuse light is walked, the highlight looked up.
+
+use crate::{
+    arch::product::upper,
+    format::{BIAS, CHANNEL, COSINE, LEVEL, RAMP},
+    math::highlight_lut::ENTRY,
+    pixel::Pixel,
+};
+use core::marker::PhantomData;
+use zerocopy::{FromBytes, Immutable, IntoBytes, KnownLayout};
+
+/// The colour of a pixel from diffuse light and a highlight.
+pub trait OneLight: Copy {
+    /// The pixel that is stored.
+    type Pixel;
+
+    /// Whether a level alone is a colour, so that light without a highlight can be fitted and walked as one level.
+    const TABLED: bool;
+
+    /// The diffuse level at cosine 1, Q9.7: the unit in which diffuse light is walked.
+    fn diffuse(&self) -> u16;
+
+    /// The colour of a walked diffuse level, Q9.`BITS`, negative where there is no light, and an entry of the table of highlights.
+    fn colour<const BITS: u32>(&self, diffuse: i32, highlight: u32) -> Self::Pixel;
+
+    /// [`Self::colour`] where there is no highlight.
+    fn without_highlight<const BITS: u32>(&self, diffuse: i32) -> Self::Pixel;
+
+    /// Whether no diffuse level is above 255.
+    #[inline(always)]
+    fn is_within(&self) -> bool {
+        self.diffuse() <= 255 << LEVEL
+    }
+}
+
+/// The diffuse level of a node of this cosine (Q2.30), of a material with the level `full` (Q9.7) at cosine 1, in Q10 with `bits` fraction
+/// bits, at most 20, rounded down.
+#[inline(always)]
+pub fn node(full: u16, cosine: i32, bits: u32) -> i32 {
+    upper(cosine, i32::from(full) << 15) >> (COSINE + LEVEL - 17 - bits)
+}
+
+/// One channel: a table of colours, by diffuse level plus what the table of highlights holds, which are levels of highlight and ambient
+/// light.
+#[derive(Debug)]
+pub struct OneLightRamp<'a, C: Pixel> {
+    pub(super) ramp: &'a [C::Stored; RAMP],
+    pub(super) diffuse: u16,
+    /// The entry of the table of highlights where there is none.
+    pub(super) floor: u32,
+}
+
+impl<C: Pixel> Clone for OneLightRamp<'_, C> {
+    fn clone(&self) -> Self {
+        *self
+    }
+}
+
+impl<C: Pixel> Copy for OneLightRamp<'_, C> {}
+
+impl<C: Pixel> OneLight for OneLightRamp<'_, C> {
+    type Pixel = C;
+
+    const TABLED: bool = true;
+
+    #[inline(always)]
+    fn diffuse(&self) -> u16 {
+        self.diffuse
+    }
+
+    #[inline(always)]
+    fn colour<const BITS: u32>(&self, diffuse: i32, highlight: u32) -> C {
+        C::ramped::<BITS>(self.ramp, (diffuse.max(0) as u32).wrapping_add(highlight << (BITS - LEVEL)))
+    }
+
+    #[inline(always)]
+    fn without_highlight<const BITS: u32>(&self, diffuse: i32) -> C {
+        self.colour::<BITS>(diffuse, self.floor)
+    }
+}
+
+/// Three channels: sums of two products each, of the cosine and of the highlight with what the channel reflects of them.
+#[derive(Debug)]
+pub struct OneLightRgb<'a, C>(pub(super) &'a Sums, pub(super) PhantomData<C>);
+
+impl<C> Clone for OneLightRgb<'_, C> {
+    fn clone(&self) -> Self {
+        *self
+    }
+}
+
+impl<C> Copy for OneLightRgb<'_, C> {}
+
+/// What [`OneLightRgb`] adds up in each channel. In Q10.22 the sum of all three is below 2^31.
+pub type Sums = [Sum; 3];
+
+/// What one channel adds up.
+#[derive(FromBytes, IntoBytes, Immutable, KnownLayout, Clone, Copy, Debug)]
+#[repr(C)]
+pub struct Sum {
+    /// The level of ambient light, and half a step, Q10.22.
+    ambient: i32,
+    /// The level of diffuse light at cosine 1, Q9.7.
+    diffuse: i32,
+    /// The level of a whole highlight, Q9.6.
+    specular: i32,
+}
+
+/// Fraction bits of a cosine that is multiplied by a diffuse level.
+const FACTOR: u32 = CHANNEL - LEVEL;
+/// Fraction bits of a diffuse level of [`OneLightRgb`] at cosine 1, which is 2^7: cosines and their overshoots fit the walked format.
+const FULL: u32 = 7;
+
+impl Sum {
+    /// Before it is filled; all zeros.
+    pub(super) const EMPTY: Self = Self { ambient: 0, diffuse: 0, specular: 0 };
+
+    /// That of levels of ambient, diffuse and specular light, Q9.7, for a channel of `depth` bits.
+    pub(super) fn new(ambient: i32, diffuse: u16, specular: u16, depth: u32) -> Self {
+        Self {
+            ambient: (ambient + (1 << (LEVEL + 7 - depth))) << FACTOR,
+            diffuse: diffuse.into(),
+            specular: (i32::from(specular) + 1) >> 1,
+        }
+    }
+
+    /// The level, Q10.22, from a cosine, Q1.15, and a highlight, unsigned Q0.16.
+    #[inline(always)]
+    fn level(&self, cosine: i32, highlight: i32) -> i32 {
+        self.ambient.wrapping_add(self.diffuse.wrapping_mul(cosine)).wrapping_add(self.specular.wrapping_mul(highlight))
+    }
+}
+
+const _: () = assert!(ENTRY + LEVEL - 1 == CHANNEL);
+
+/// A walked diffuse level as a cosine from 0 to 1, Q1.15.
+#[inline(always)]
+fn cosine<const BITS: u32>(diffuse: i32) -> i32 {
+    // Armv7-M shifts and clamps by one instruction.
+    (diffuse >> (BITS + FULL - FACTOR)).clamp(0, (1 << FACTOR) - 1)
+}
+
+impl<C: Pixel> OneLight for OneLightRgb<'_, C> {
+    type Pixel = C;
+
+    const TABLED: bool = false;
+
+    #[inline(always)]
+    fn diffuse(&self) -> u16 {
+        1 << (FULL + LEVEL)
+    }
+
+    #[inline(always)]
+    fn colour<const BITS: u32>(&self, diffuse: i32, highlight: u32) -> C {
+        let (Self([r, g, b], _), cosine, highlight) = (self, cosine::<BITS>(diffuse), highlight as i32);
+        C::mixed([r.level(cosine, highlight), g.level(cosine, highlight), b.level(cosine, highlight)])
+    }
+
+    #[inline(always)]
+    fn without_highlight<const BITS: u32>(&self, diffuse: i32) -> C {
+        self.colour::<BITS>(diffuse, 0)
+    }
+}
+
+/// The largest sum of levels under one light that the formats here hold, Q9.7: one that a table of colours holds, too.
+pub(super) const LARGEST: u32 = (RAMP as u32 - BIAS as u32 - 1) << LEVEL;
