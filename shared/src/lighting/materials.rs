@@ -60,6 +60,39 @@ pub struct Gains {
     specular: [u16; 3],
 }
 
+impl Gains {
+    /// Those of no light.
+    const NONE: Self = Self { diffuse: [0; 3], specular: [0; 3] };
+}
+
+/// What one light adds to the levels of a pixel, per channel.
+#[derive(Clone, Copy, Debug)]
+pub struct Factors {
+    /// The diffuse level at cosine 1, Q9.7 less the bits of [`Reflectance::excess`].
+    diffuse: [i32; 3],
+    /// The level of a whole highlight, Q9.6 less these bits.
+    specular: [i32; 3],
+}
+
+impl Factors {
+    /// Adds a reflection to the levels of a pixel, in Q10.22 less the bits of [`Reflectance::excess`].
+    #[inline(always)]
+    pub fn add(&self, levels: &mut [i32; 3], reflection: Reflection) {
+        let [r, g, b] = *levels;
+        let [dr, dg, db] = self.levels(reflection);
+        *levels = [r.wrapping_add(dr), g.wrapping_add(dg), b.wrapping_add(db)];
+    }
+
+    #[inline(always)]
+    fn levels(&self, Reflection { diffuse, highlight }: Reflection) -> [i32; 3] {
+        // Approximations may exceed 1, which counts as 1. Armv7-M shifts and clamps by one instruction.
+        let cosine = (diffuse >> (PIXEL_COSINE - 15)).clamp(0, (1 << 15) - 1);
+        let level = |diffuse: i32, specular: i32| diffuse.wrapping_mul(cosine).wrapping_add(specular.wrapping_mul(highlight as i32));
+        let ([dr, dg, db], [sr, sg, sb]) = (self.diffuse, self.specular);
+        [level(dr, sr), level(dg, sg), level(db, sb)]
+    }
+}
+
 /// A material under the lights of a scene: the gains of each light, and the lookup table of highlights.
 #[derive(FromBytes, IntoBytes, Immutable, KnownLayout, Clone, Copy, Debug)]
 #[repr(C)]
@@ -72,6 +105,8 @@ pub struct Reflectance {
     /// Bits of each channel of the pixel format.
     depth: [u32; 3],
     gains: [Gains; MAX_LIGHTS],
+    /// Bits by which the sum of all lights may leave Q10.22, at most 5.
+    excess: u32,
     /// For [`OneLightRgb`].
     sums: Sums,
     /// Channels at full level for dither, Q0.8 scaled to the output's depth.
@@ -130,10 +165,11 @@ impl Reflectance {
         highlight_lut: HighlightLut::EMPTY,
         three_channels: 0,
         ambient: [0; 3],
-        gains: [Gains { diffuse: [0; 3], specular: [0; 3] }; MAX_LIGHTS],
+        gains: [Gains::NONE; MAX_LIGHTS],
         sums: [Sum::EMPTY; 3],
         highlight_threshold: 0,
         one_light: 0,
+        excess: 0,
         depth: [0; 3],
     };
 
@@ -168,7 +204,9 @@ impl Reflectance {
                 *gains = Gains { diffuse: levels(diffuse), specular: levels(specular) };
             }
         }
-        let one_light = holds_levels && lights.len() == 1 && self.fits();
+        let total = self.total(lights.len());
+        self.excess = (total >> (9 + LEVEL)).checked_ilog2().map_or(0, |bits| bits + 1);
+        let one_light = holds_levels && lights.len() == 1 && total < LARGEST;
         let holds_levels = one_light && one_channel;
         self.one_light = one_light.into();
         let [one, ..] = &mut self.gains;
@@ -314,19 +352,37 @@ impl Reflectance {
         self.ambient
     }
 
-    /// The gains of light number `light`.
+    /// What light number `light` adds at a pixel.
     #[inline(always)]
     #[must_use]
-    pub fn gains(&self, light: usize) -> Gains {
-        self.gains.get(light).copied().unwrap_or(Gains { diffuse: [0; 3], specular: [0; 3] })
+    pub fn factors(&self, light: usize) -> Factors {
+        let Gains { diffuse, specular } = self.gains.get(light).copied().unwrap_or(Gains::NONE);
+        let excess = self.excess;
+        let ([dr, dg, db], [sr, sg, sb]) = (diffuse, specular);
+        let (diffuse, specular) = (|gain: u16| i32::from(gain) >> excess, |gain: u16| (i32::from(gain) + 1) >> (1 + excess));
+        Factors { diffuse: [diffuse(dr), diffuse(dg), diffuse(db)], specular: [specular(sr), specular(sg), specular(sb)] }
     }
 
-    /// Adds what a light sends, N·L (Q5.27) and the highlight (Q0.16), to the levels of a pixel, Q9.7.
+    /// The sums to which [`Factors::add`] adds all lights: ambient light, less what the table of highlights holds where there is none.
+    #[must_use]
+    pub fn ambient_sums(&self, lights: usize) -> [i32; 3] {
+        // Intensities are rounded down, and so are cosines: half of their last place more.
+        let mut sums = self.ambient.map(|level| (level << (CHANNEL - LEVEL - self.excess)) + (1 << (CHANNEL - 9 - self.excess)));
+        for light in 0..lights {
+            let factors = self.factors(light);
+            let none = factors.levels(Reflection { diffuse: 0, highlight: self.highlight_lut.floor() });
+            sums = zip(sums, zip(factors.diffuse, none, |diffuse, none| (diffuse >> 1) - none), i32::wrapping_add);
+        }
+        sums
+    }
+
+    /// Makes intensities of sums of all lights.
     #[inline(always)]
-    pub fn add_light(&self, levels: &mut [i32; 3], gains: Gains, Reflection { diffuse, highlight }: Reflection) {
-        // Approximations may exceed 1, which counts as 1.
-        let diffuse = diffuse.min(1 << PIXEL_COSINE) << (COSINE - PIXEL_COSINE);
-        self.add(levels, &gains, diffuse, highlight);
+    pub fn intensities(&self) -> impl Fn([i32; 3]) -> Intensity + use<> {
+        let shift = (CHANNEL - 8 - self.excess) & 31;
+        // Armv7-M clamps by one instruction.
+        let intensity = move |sum: i32| (sum >> shift).clamp(0, (1 << 16) - 1);
+        move |[r, g, b]| [intensity(r), intensity(g), intensity(b)]
     }
 
     #[inline(always)]
@@ -345,17 +401,20 @@ impl Reflectance {
         (level + (BIAS << LEVEL) + (1 << (LEVEL - 1))) as u32
     }
 
-    /// Whether the levels of one light are no larger than [`LARGEST`].
-    fn fits(&self) -> bool {
-        let [gains, ..] = &self.gains;
-        let sum = zip(zip(gains.diffuse, gains.specular, |a, b| u32::from(a) + u32::from(b)), self.ambient, |a, b| a + b as u32);
-        largest(sum) < LARGEST
+    /// The largest level under that many lights, Q9.7 and more, and a half step of a channel.
+    fn total(&self, lights: usize) -> u32 {
+        let channel = |k: usize| {
+            let gains = self.gains.iter().take(lights).map(|gains| u32::from(gains.diffuse[k]) + u32::from(gains.specular[k]));
+            self.ambient[k] as u32 + gains.sum::<u32>() + (1 << (LEVEL + 7))
+        };
+        channel(0).max(channel(1)).max(channel(2))
     }
 
     /// The channels of an intensity in the pixel format, with a [`crate::pixel::dither::threshold`] in place of rounding.
     #[inline]
     #[must_use]
     pub fn dithered(&self, intensity: Intensity, threshold: u32) -> [u8; 3] {
+        let intensity = intensity.map(|level| level.min(255 << 8));
         let [level, ..] = intensity;
         let scaled = if self.three_channels() {
             intensity.map(|level| level as u32)

@@ -98,7 +98,7 @@ pub type Sums = [Sum; 3];
 #[derive(FromBytes, IntoBytes, Immutable, KnownLayout, Clone, Copy, Debug)]
 #[repr(C)]
 pub struct Sum {
-    /// The level of ambient light, and half a step, Q10.22.
+    /// The level of ambient light, and what rounds, Q10.22.
     ambient: i32,
     /// The level of diffuse light at cosine 1, Q9.7.
     diffuse: i32,
@@ -118,7 +118,8 @@ impl Sum {
     /// That of levels of ambient, diffuse and specular light, Q9.7, for a channel of `depth` bits.
     pub(super) fn new(ambient: i32, diffuse: u16, specular: u16, depth: u32) -> Self {
         Self {
-            ambient: (ambient + (1 << (LEVEL + 7 - depth))) << FACTOR,
+            // Cosines are rounded down: half of their last place more.
+            ambient: ((ambient + (1 << (LEVEL + 7 - depth))) << FACTOR) + (i32::from(diffuse) >> 1),
             diffuse: diffuse.into(),
             specular: (i32::from(specular) + 1) >> 1,
         }

@@ -9,10 +9,10 @@ use crate::{
     },
     lighting::{
         lights::{Source, cosine},
-        materials::{FULL, Reflectance, Reflection},
+        materials::{Reflectance, Reflection},
     },
     math::highlight_lut::CosineLookup,
-    method::{Shading, TriangleSetup, node::Node, of_levels},
+    method::{Shading, TriangleSetup, node::Node},
     raster::canvas::{CHUNK, Canvas, SpanShader, SpanTarget},
     setup::gradients::Gradients,
 };
@@ -45,7 +45,9 @@ struct ManyLights<'a, K, P, F, S> {
     /// The field of each light.
     lights: heapless::Vec<P, MAX_LIGHTS>,
     lut: CosineLookup<'a>,
-    /// For a run of pixels, what all lights share, and `levels`, the sum of all lights. Both are written before they are read, and so
+    /// Where the sums of all lights begin.
+    ambient: [i32; 3],
+    /// For a run of pixels, what all lights share, and `levels`, the sums of all lights. Both are written before they are read, and so
     /// cleared once a triangle and not once a span.
     shared: [S; CHUNK],
     levels: [[i32; 3]; CHUNK],
@@ -62,6 +64,7 @@ impl<'a, K: Patch, P: Patch, F, S: Copy + Default> ManyLights<'a, K, P, F, S> {
             common,
             lights: heapless::Vec::new(),
             lut: reflectance.highlight_lut.by_cosine(),
+            ambient: reflectance.ambient_sums(shading.lighting.sources.len()),
             shared: [S::default(); CHUNK],
             levels: [[0; 3]; CHUNK],
         };
@@ -96,10 +99,9 @@ where
     F: LightingModel<<K::Walker as Walker>::Value, <P::Walker as Walker>::Value>,
 {
     fn span(&mut self, rows: i32, end: i32, count: usize, target: &mut dyn SpanTarget) {
-        let Self { reflectance, model, common, lights, lut, shared, levels } = self;
+        let Self { reflectance, model, common, lights, lut, ambient, shared, levels } = self;
         let mut common = below(common, rows).enter(end);
-        let floor = reflectance.highlight_lut.floor();
-        let ambient = reflectance.ambient();
+        let intensity = reflectance.intensities();
         let mut first = count;
         while first > 0 {
             let run = first.min(CHUNK);
@@ -114,29 +116,28 @@ where
                 common.step();
                 if visible & (1 << k) != 0 {
                     shared[k % CHUNK] = model.common(common.value());
-                    levels[k % CHUNK] = ambient;
+                    let [r, g, b] = *ambient;
+                    levels[k % CHUNK] = [r, g, b];
                 }
             }
             if visible == 0 {
                 continue;
             }
             for (light, patch) in lights.iter().enumerate() {
-                let gains = reflectance.gains(light);
+                let factors = reflectance.factors(light);
                 let mut walker = below(patch, rows).enter(entry);
                 let mut k = run;
                 while k > 0 {
                     k -= 1;
                     walker.step();
                     if visible & (1 << k) != 0 {
-                        let mut reflection = model.reflect(light, &shared[k % CHUNK], walker.value(), *lut);
-                        reflection.highlight = reflection.highlight.saturating_sub(floor);
-                        reflectance.add_light(&mut levels[k % CHUNK], gains, reflection);
+                        factors.add(&mut levels[k % CHUNK], model.reflect(light, &shared[k % CHUNK], walker.value(), *lut));
                     }
                 }
             }
-            for level in levels.iter_mut().take(run) {
-                let [r, g, b] = *level;
-                *level = of_levels([r.min(FULL), g.min(FULL), b.min(FULL)]);
+            for sums in levels.iter_mut().take(run) {
+                let [r, g, b] = intensity(*sums);
+                *sums = [r, g, b];
             }
             target.put(first, visible, levels);
         }

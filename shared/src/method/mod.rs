@@ -384,7 +384,7 @@ pub struct Walked;
 /// The intensity of a biased, walked level.
 #[inline(always)]
 fn intensity(walked: u32) -> i32 {
-    ((walked >> (WALK - 8)) as i32 - (BIAS << 8)).clamp(0, 255 << 8)
+    ((walked >> (WALK - 8)) as i32 - (BIAS << 8)).clamp(0, (1 << 16) - 1)
 }
 
 /// The intensity of levels in Q9.7, at most 255.

@@ -49,7 +49,8 @@ pub trait Pixel: Copy + 'static {
     /// The colour of an intensity of three channels, rounded.
     #[inline]
     fn rounded(intensity: Intensity) -> Self {
-        let channel = |level: i32, depth: u32| ((level + (1 << (15 - depth))) >> 8).min(255) as u32 >> (8 - depth);
+        // Armv7-M shifts and clamps by one instruction.
+        let channel = |level: i32, depth: u32| ((level + (1 << (15 - depth))) >> (16 - depth)).clamp(0, (1 << depth) - 1) as u32;
         let ([r, g, b], [dr, dg, db]) = (intensity, Self::DEPTH);
         Self::pack([channel(r, dr), channel(g, dg), channel(b, db)])
     }

@@ -204,11 +204,27 @@ impl<C: Pixel> SpanTarget for Row<'_, C> {
     fn put(&mut self, first: usize, visible: u32, intensities: &[Intensity; CHUNK]) {
         let (tables, column, row) = (self.tables, self.column.wrapping_add(first), self.row);
         let pixels = self.pixels.get_mut(first..).unwrap_or_default();
-        for (k, pixel) in pixels.iter_mut().enumerate().take(CHUNK) {
-            if visible & (1 << k) != 0 {
-                let intensity = intensities[k % CHUNK];
-                *pixel = if self.dither { tables.dithered(intensity, threshold(column + k, row)) } else { tables.shown(intensity) };
-            }
+        // One loop for each way to make a colour: no pixel asks for it.
+        if self.dither {
+            put_each(pixels, visible, intensities, |k, intensity| tables.dithered(intensity, threshold(column.wrapping_add(k), row)));
+        } else if tables.reflectance.three_channels() {
+            put_each(pixels, visible, intensities, |_, intensity| C::rounded(intensity));
+        } else {
+            put_each(pixels, visible, intensities, |_, [level, ..]| tables.tint(level >> 1));
+        }
+    }
+}
+
+/// Stores the colours of the intensities that are `visible`, counted from the first of `pixels`.
+#[inline(always)]
+fn put_each<C>(pixels: &mut [C], mut visible: u32, intensities: &[Intensity; CHUNK], colour: impl Fn(usize, Intensity) -> C) {
+    for (k, (pixel, &intensity)) in pixels.iter_mut().zip(intensities).enumerate() {
+        if visible & 1 != 0 {
+            *pixel = colour(k, intensity);
+        }
+        visible >>= 1;
+        if visible == 0 {
+            return;
         }
     }
 }
