@@ -452,7 +452,7 @@ impl<'a, C: Pixel> MaterialTables<'a, C> {
     #[inline(always)]
     #[must_use]
     pub fn one_light_rgb(&self) -> Option<OneLightRgb<'a, C>> {
-        (!C::GRAY && self.reflectance.three_channels()).then(|| OneLightRgb(&self.reflectance.sums, PhantomData))
+        (!C::GRAY && self.reflectance.three_channels()).then_some(OneLightRgb(&self.reflectance.sums, PhantomData))
     }
 
     /// The colour of three levels, Q9.7, rounded.

@@ -43,37 +43,14 @@ struct ManyLights<'a, K, P, F, S> {
     /// The field that all lights share.
     common: K,
     /// The field of each light.
-    lights: heapless::Vec<P, MAX_LIGHTS>,
+    lights: &'a mut [P],
     lut: CosineLookup<'a>,
     /// Where the sums of all lights begin.
     ambient: [i32; 3],
     /// For a run of pixels, what all lights share, and `levels`, the sums of all lights. Both are written before they are read, and so
     /// cleared once a triangle and not once a span.
-    shared: [S; CHUNK],
-    levels: [[i32; 3]; CHUNK],
-}
-
-impl<'a, K: Patch, P: Patch, F, S: Copy + Default> ManyLights<'a, K, P, F, S> {
-    /// Fits a patch for each light by `fit`.
-    #[inline(always)]
-    fn new(shading: &Shading<'a>, fit: impl Fn(&Source) -> P, common: K, model: F) -> Self {
-        let reflectance = shading.reflectance;
-        let mut new = Self {
-            reflectance,
-            model,
-            common,
-            lights: heapless::Vec::new(),
-            lut: reflectance.highlight_lut.by_cosine(),
-            ambient: reflectance.ambient_sums(shading.lighting.sources.len()),
-            shared: [S::default(); CHUNK],
-            levels: [[0; 3]; CHUNK],
-        };
-        for source in &shading.lighting.sources {
-            // There is room for as many lights as a frame has.
-            let _ = new.lights.push(fit(source));
-        }
-        new
-    }
+    shared: &'a mut [S; CHUNK],
+    levels: &'a mut [[i32; 3]; CHUNK],
 }
 
 /// [`Field::fit`] in a function of its own, so that all methods share its code.
@@ -194,7 +171,16 @@ impl Shading<'_> {
         P: Patch,
         F: LightingModel<<K::Walker as Walker>::Value, <P::Walker as Walker>::Value>,
     {
-        setup.draw_spans(&mut ManyLights::new(self, of, common, model), canvas)
+        let reflectance = self.reflectance;
+        let mut lights = heapless::Vec::<P, MAX_LIGHTS>::new();
+        for source in &self.lighting.sources {
+            // There is room for as many lights as a frame has.
+            let _ = lights.push(of(source));
+        }
+        // Lent, since all of this would be copied if it were moved.
+        let (shared, levels) = (&mut [F::Common::default(); CHUNK], &mut [[0; 3]; CHUNK]);
+        let (lut, ambient) = (reflectance.highlight_lut.by_cosine(), reflectance.ambient_sums(lights.len()));
+        setup.draw_spans(&mut ManyLights { reflectance, model, common, lights: &mut lights, lut, ambient, shared, levels }, canvas)
     }
 
     /// The planes through N·L and N·H of a constant light, normals not normalised, which are exact.
