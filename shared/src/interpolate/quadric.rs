@@ -52,8 +52,8 @@ impl Row {
 impl Row {
     /// [`Self::fit`] in a function of its own, for several channels.
     #[inline(never)]
-    fn fitted<const BITS: u32>(gradients: &Gradients, nodes: [i32; 6], extra: u32, bias: i32) -> Self {
-        Self::fit::<BITS>(gradients, nodes, extra, bias)
+    fn fitted<const BITS: u32>(gradients: &Gradients, nodes: &[i32; 6], extra: u32, bias: i32) -> Self {
+        Self::fit::<BITS>(gradients, *nodes, extra, bias)
     }
 }
 
@@ -70,13 +70,12 @@ impl<const CH: usize> Quadric<CH> {
     #[inline(always)]
     #[must_use]
     pub fn fit<const BITS: u32>(gradients: &Gradients, nodes: &[[i32; 6]; CH], extra: u32, bias: [i32; CH]) -> Self {
+        if CH > 1 {
+            return Self(core::array::from_fn(|c| Row::fitted::<BITS>(gradients, &nodes[c], extra, bias[c])));
+        }
         let mut rows = [Row::default(); CH];
-        if CH == 1 {
-            for ((to, nodes), bias) in rows.iter_mut().zip(*nodes).zip(bias) {
-                *to = Row::fit::<BITS>(gradients, nodes, extra, bias);
-            }
-        } else {
-            each_channel::<CH>(|c| rows[c] = Row::fitted::<BITS>(gradients, nodes[c], extra, bias[c]));
+        for ((to, nodes), bias) in rows.iter_mut().zip(*nodes).zip(bias) {
+            *to = Row::fit::<BITS>(gradients, nodes, extra, bias);
         }
         Self(rows)
     }

@@ -206,7 +206,8 @@ impl Reflectance {
         }
         let total = self.total(lights.len());
         self.excess = (total >> (9 + LEVEL)).checked_ilog2().map_or(0, |bits| bits + 1);
-        let one_light = holds_levels && lights.len() == 1 && total < LARGEST;
+        let fits = if one_channel { total < LARGEST } else { self.excess == 0 };
+        let one_light = holds_levels && lights.len() == 1 && fits;
         let holds_levels = one_light && one_channel;
         self.one_light = one_light.into();
         let [one, ..] = &mut self.gains;
@@ -405,7 +406,7 @@ impl Reflectance {
     fn total(&self, lights: usize) -> u32 {
         let channel = |k: usize| {
             let gains = self.gains.iter().take(lights).map(|gains| u32::from(gains.diffuse[k]) + u32::from(gains.specular[k]));
-            self.ambient[k] as u32 + gains.sum::<u32>() + (1 << (LEVEL + 7))
+            self.ambient[k] as u32 + gains.sum::<u32>() + (1 << (LEVEL + 7 - self.depth[k]))
         };
         channel(0).max(channel(1)).max(channel(2))
     }

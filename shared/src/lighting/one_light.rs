@@ -163,5 +163,5 @@ impl<C: Pixel> OneLight for OneLightRgb<'_, C> {
     }
 }
 
-/// The largest sum of levels under one light that the formats here hold, Q9.7: one that a table of colours holds, too.
+/// Sums of levels below this are entries of a table of colours, Q9.7.
 pub(super) const LARGEST: u32 = (RAMP as u32 - BIAS as u32 - 1) << LEVEL;
