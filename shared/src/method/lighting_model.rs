@@ -9,7 +9,7 @@ use crate::{
     },
     lighting::{
         lights::{Source, cosine},
-        materials::{Reflectance, Reflection},
+        materials::{Factors, Reflectance, Reflection},
     },
     math::highlight_lut::CosineLookup,
     method::{Shading, TriangleSetup, node::Node},
@@ -42,8 +42,8 @@ struct ManyLights<'a, K, P, F, S> {
     model: F,
     /// The field that all lights share.
     common: K,
-    /// The field of each light.
-    lights: &'a mut [P],
+    /// The field of each light, and what the light adds.
+    lights: &'a mut [(P, Factors)],
     lut: CosineLookup<'a>,
     /// Where the sums of all lights begin.
     ambient: [i32; 3],
@@ -59,14 +59,15 @@ pub(crate) fn fitted<F: Field>(field: &F, gradients: &Gradients) -> F::Patch {
     field.fit(gradients)
 }
 
-/// A copy of `patch`, moved down `rows` rows.
+/// A walker that stands on column `x`, `rows` rows below `patch`.
 #[inline(always)]
-fn below<P: Patch>(patch: &P, rows: i32) -> P {
-    let mut patch = *patch;
-    if rows != 0 {
-        patch.jump(rows);
+fn enter<P: Patch>(patch: &P, rows: i32, x: i32) -> P::Walker {
+    if rows == 0 {
+        return patch.enter(x);
     }
-    patch
+    let mut patch = *patch;
+    patch.jump(rows);
+    patch.enter(x)
 }
 
 impl<K, P, F> SpanShader for ManyLights<'_, K, P, F, F::Common>
@@ -77,7 +78,7 @@ where
 {
     fn span(&mut self, rows: i32, end: i32, count: usize, target: &mut dyn SpanTarget) {
         let Self { reflectance, model, common, lights, lut, ambient, shared, levels } = self;
-        let mut common = below(common, rows).enter(end);
+        let mut common = enter(common, rows, end);
         let intensity = reflectance.intensities();
         let mut first = count;
         while first > 0 {
@@ -100,9 +101,8 @@ where
             if visible == 0 {
                 continue;
             }
-            for (light, patch) in lights.iter().enumerate() {
-                let factors = reflectance.factors(light);
-                let mut walker = below(patch, rows).enter(entry);
+            for (light, (patch, factors)) in lights.iter().enumerate() {
+                let mut walker = enter(patch, rows, entry);
                 let mut k = run;
                 while k > 0 {
                     k -= 1;
@@ -122,12 +122,12 @@ where
 
     fn jump(&mut self, rows: i32) {
         self.common.jump(rows);
-        self.lights.iter_mut().for_each(|patch| patch.jump(rows));
+        self.lights.iter_mut().for_each(|(patch, _)| patch.jump(rows));
     }
 
     fn step_row(&mut self) {
         self.common.step_row();
-        self.lights.iter_mut().for_each(P::step_row);
+        self.lights.iter_mut().for_each(|(patch, _)| patch.step_row());
     }
 }
 
@@ -172,10 +172,10 @@ impl Shading<'_> {
         F: LightingModel<<K::Walker as Walker>::Value, <P::Walker as Walker>::Value>,
     {
         let reflectance = self.reflectance;
-        let mut lights = heapless::Vec::<P, MAX_LIGHTS>::new();
-        for source in &self.lighting.sources {
+        let mut lights = heapless::Vec::<_, MAX_LIGHTS>::new();
+        for (light, source) in self.lighting.sources.iter().enumerate() {
             // There is room for as many lights as a frame has.
-            let _ = lights.push(of(source));
+            let _ = lights.push((of(source), reflectance.factors(light)));
         }
         // Lent, since all of this would be copied if it were moved.
         let (shared, levels) = (&mut [F::Common::default(); CHUNK], &mut [[0; 3]; CHUNK]);
