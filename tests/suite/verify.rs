@@ -19,7 +19,7 @@ type Result<T = ()> = std::result::Result<T, Box<dyn Error>>;
 
 const FRAMES: u16 = 3;
 /// Most RAM that variables and stack may take together with the teapot.
-const RAM: [(Board, u64); 2] = [(Board::Pico, 128 << 10), (Board::Lm3s6965evb, 64 << 10)];
+const RAM: [(Board, u64); 2] = [(Board::Pico, 240 << 10), (Board::Lm3s6965evb, 64 << 10)];
 
 fn stream(scene: &str) -> Result<Vec<u8>> {
     Ok(scene::load(scene)?.stream.as_bytes().to_vec())

@@ -40,6 +40,9 @@ pub const LIGHTS: &str = "peer-sphere-lights";
 /// The sphere of `peer-sphere`, drawn otherwise. Not among [`NAMES`], for other scenes show as much.
 pub const VARIANTS: [&str; 3] = [CONVEX, PLASTIC, LIGHTS];
 
+/// Ordinary scenes of all kinds, by which costs are judged.
+pub const PORTFOLIO: [&str; 6] = [PEER, PLASTIC, LIGHTS, "teapot", "torus", "bunny"];
+
 /// What a built-in scene shows; empty for other names.
 #[must_use]
 pub fn description(name: &str) -> &'static str {

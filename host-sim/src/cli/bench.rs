@@ -18,7 +18,7 @@ use microphong_sim::{
         },
         renewal::{self, Growth},
     },
-    scene::Scene,
+    scene::{self, Scene},
     shader::Shader,
 };
 use std::{
@@ -33,11 +33,12 @@ use std::{
 #[derive(clap::Args)]
 #[command(after_help = EXAMPLES)]
 pub(crate) struct Arguments {
-    /// .tri or .obj files, built-in scenes, or all built-in scenes.
-    #[arg(value_name = "SCENE", default_value = "peer-sphere")]
+    /// .tri or .obj files, built-in scenes, or all built-in scenes. The default is one of each ordinary kind: large triangles and
+    /// small ones, in one hue, in blue with a white highlight, and under two coloured lights.
+    #[arg(value_name = "SCENE", default_values = scene::PORTFOLIO)]
     scenes: Vec<String>,
     /// Shading methods, separated by commas, or all that can shade the scene.
-    #[arg(long, value_name = "S,...", default_value = "flat,gouraud,six-point,phong", value_parser = parse::shaders)]
+    #[arg(long, value_name = "S,...", default_value = "flat,gouraud,six-point,sqrt6,phong", value_parser = parse::shaders)]
     shader: Several<Shader>,
     /// Boards, separated by commas: mps2-an385 (Cortex-M3), mps2-an386 (Cortex-M4F), pico (Cortex-M0+), x86-64 (this computer);
     /// or all.
@@ -70,12 +71,12 @@ pub(crate) struct Arguments {
 
 const EXAMPLES: &str = "\
 Examples:
-  microphong bench                                       the frame that other renderers are measured with
-  microphong bench peer-sphere-convex                    the same, marked as convert marks it: without depth
+  microphong bench                                       ordinary scenes on a Cortex-M3
+  microphong bench peer-sphere-convex                    a mesh that convert marks as convex: without depth
   microphong bench teapot --board pico --shader sqrt6    frame time and frames per second of the Pico
   microphong bench all --shader all --board all --json   everything
-  microphong bench --shader all --board all --report bench    the chart, as a page
-  microphong bench --peers --board mps2-an385,mps2-an386,x86-64    beside other renderers
+  microphong bench peer-sphere --shader all --board all --report bench    the chart, as a page
+  microphong bench peer-sphere --peers --board mps2-an385,mps2-an386,x86-64    beside other renderers
   microphong bench --check tests/baselines/costs.csv     has anything become dearer?
   microphong bench --renew tests/baselines/costs.csv --reason \"Thin triangles no longer flicker.\"
                                                          it has, and this is why
