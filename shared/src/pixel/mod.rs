@@ -3,7 +3,10 @@
 #[doc(hidden)]
 pub mod dither;
 
-use crate::format::{CHANNEL, Intensity, RAMP};
+use crate::{
+    arch::product::HALVES,
+    format::{CHANNEL, Intensity, RAMP},
+};
 use embedded_graphics_core::{
     pixelcolor::{
         Gray4, Gray8, Rgb565, Rgb888,
@@ -58,9 +61,14 @@ pub trait Pixel: Copy + 'static {
     /// The colour of three levels with [`CHANNEL`] fraction bits, half a step of each channel included.
     #[inline(always)]
     fn mixed([r, g, b]: [i32; 3]) -> Self {
-        // Armv7-M shifts and clamps by one instruction.
-        let channel = |level: i32, depth: u32| (level >> (CHANNEL + 8 - depth)).clamp(0, (1 << depth) - 1) as u32;
+        let shifted = |level: i32, depth: u32| level >> (CHANNEL + 8 - depth);
         let [dr, dg, db] = Self::DEPTH;
+        // Armv6-M asks of all channels at once whether one is to be clamped.
+        if HALVES && ((r | g | b) as u32) < 256 << CHANNEL {
+            return Self::pack([shifted(r, dr) as u32, shifted(g, dg) as u32, shifted(b, db) as u32]);
+        }
+        // Armv7-M shifts and clamps by one instruction.
+        let channel = |level: i32, depth: u32| shifted(level, depth).clamp(0, (1 << depth) - 1) as u32;
         Self::pack([channel(r, dr), channel(g, dg), channel(b, db)])
     }
 }
