@@ -3,3 +3,6 @@
 pub(crate) mod product;
 pub(crate) mod quotient;
 pub(crate) mod zeros;
+
+/// Whether one instruction shifts a word and clamps it to an unsigned range (`USAT` of Armv7-M).
+pub(crate) const SATURATES: bool = cfg!(all(target_arch = "arm", target_has_atomic = "32"));

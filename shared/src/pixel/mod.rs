@@ -4,7 +4,7 @@
 pub mod dither;
 
 use crate::{
-    arch::product::HALVES,
+    arch::SATURATES,
     format::{CHANNEL, Intensity, RAMP},
 };
 use embedded_graphics_core::{
@@ -63,8 +63,8 @@ pub trait Pixel: Copy + 'static {
     fn mixed([r, g, b]: [i32; 3]) -> Self {
         let shifted = |level: i32, depth: u32| level >> (CHANNEL + 8 - depth);
         let [dr, dg, db] = Self::DEPTH;
-        // Armv6-M asks of all channels at once whether one is to be clamped.
-        if HALVES && ((r | g | b) as u32) < 256 << CHANNEL {
+        // Where clamping takes several instructions, all channels are asked at once whether one needs it.
+        if !SATURATES && ((r | g | b) as u32) < 256 << CHANNEL {
             return Self::pack([shifted(r, dr) as u32, shifted(g, dg) as u32, shifted(b, db) as u32]);
         }
         // Armv7-M shifts and clamps by one instruction.
