@@ -109,6 +109,8 @@ pub struct Reflectance {
     excess: u32,
     /// For [`OneLightRgb`].
     sums: Sums,
+    /// See [`Self::ambient_sums`].
+    ambient_sums: [i32; 3],
     /// Channels at full level for dither, Q0.8 scaled to the output's depth.
     base: [u16; 3],
     /// Not 0 if [`Self::three_channels`].
@@ -167,6 +169,7 @@ impl Reflectance {
         ambient: [0; 3],
         gains: [Gains::NONE; MAX_LIGHTS],
         sums: [Sum::EMPTY; 3],
+        ambient_sums: [0; 3],
         highlight_threshold: 0,
         one_light: 0,
         excess: 0,
@@ -221,6 +224,14 @@ impl Reflectance {
             one.specular = [u16::MAX; 3];
         }
         self.highlight_lut.fill(material.exponent, highlight.base(), full, floor);
+        // Intensities are rounded down, and so are cosines: half of their last place more.
+        let mut sums = self.ambient.map(|level| (level << (CHANNEL - LEVEL - self.excess)) + (1 << (CHANNEL - 9 - self.excess)));
+        for light in 0..lights.len() {
+            let factors = self.factors(light);
+            let none = factors.levels(Reflection { diffuse: 0, highlight: self.highlight_lut.floor() });
+            sums = zip(sums, zip(factors.diffuse, none, |diffuse, none| (diffuse >> 1) - none), i32::wrapping_add);
+        }
+        self.ambient_sums = sums;
         self.highlight_threshold = match highlight.base() {
             Base::Square => square(self.highlight_lut.highlight_threshold()),
             _ => self.highlight_lut.highlight_threshold(),
@@ -365,16 +376,10 @@ impl Reflectance {
     }
 
     /// The sums to which [`Factors::add`] adds all lights: ambient light, less what the table of highlights holds where there is none.
+    #[inline(always)]
     #[must_use]
-    pub fn ambient_sums(&self, lights: usize) -> [i32; 3] {
-        // Intensities are rounded down, and so are cosines: half of their last place more.
-        let mut sums = self.ambient.map(|level| (level << (CHANNEL - LEVEL - self.excess)) + (1 << (CHANNEL - 9 - self.excess)));
-        for light in 0..lights {
-            let factors = self.factors(light);
-            let none = factors.levels(Reflection { diffuse: 0, highlight: self.highlight_lut.floor() });
-            sums = zip(sums, zip(factors.diffuse, none, |diffuse, none| (diffuse >> 1) - none), i32::wrapping_add);
-        }
-        sums
+    pub fn ambient_sums(&self) -> [i32; 3] {
+        self.ambient_sums
     }
 
     /// Makes intensities of sums of all lights.

@@ -179,7 +179,7 @@ impl Shading<'_> {
         }
         // Lent, since all of this would be copied if it were moved.
         let (shared, levels) = (&mut [F::Common::default(); CHUNK], &mut [[0; 3]; CHUNK]);
-        let (lut, ambient) = (reflectance.highlight_lut.by_cosine(), reflectance.ambient_sums(lights.len()));
+        let (lut, ambient) = (reflectance.highlight_lut.by_cosine(), reflectance.ambient_sums());
         setup.draw_spans(&mut ManyLights { reflectance, model, common, lights: &mut lights, lut, ambient, shared, levels }, canvas)
     }
 
