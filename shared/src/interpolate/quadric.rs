@@ -70,12 +70,13 @@ impl<const CH: usize> Quadric<CH> {
     #[inline(always)]
     #[must_use]
     pub fn fit<const BITS: u32>(gradients: &Gradients, nodes: &[[i32; 6]; CH], extra: u32, bias: [i32; CH]) -> Self {
-        if CH > 1 {
-            return Self(core::array::from_fn(|c| Row::fitted::<BITS>(gradients, &nodes[c], extra, bias[c])));
-        }
         let mut rows = [Row::default(); CH];
-        for ((to, nodes), bias) in rows.iter_mut().zip(*nodes).zip(bias) {
-            *to = Row::fit::<BITS>(gradients, nodes, extra, bias);
+        if CH == 1 {
+            for ((to, nodes), bias) in rows.iter_mut().zip(*nodes).zip(bias) {
+                *to = Row::fit::<BITS>(gradients, nodes, extra, bias);
+            }
+        } else {
+            each_channel::<CH>(|c| rows[c] = Row::fitted::<BITS>(gradients, &nodes[c], extra, bias[c]));
         }
         Self(rows)
     }

@@ -409,11 +409,12 @@ impl Reflectance {
 
     /// The largest level under that many lights, Q9.7 and more, and a half step of a channel.
     fn total(&self, lights: usize) -> u32 {
-        let channel = |k: usize| {
-            let gains = self.gains.iter().take(lights).map(|gains| u32::from(gains.diffuse[k]) + u32::from(gains.specular[k]));
-            self.ambient[k] as u32 + gains.sum::<u32>() + (1 << (LEVEL + 7 - self.depth[k]))
-        };
-        channel(0).max(channel(1)).max(channel(2))
+        let mut total = zip(self.ambient, self.depth, |level, depth| level as u32 + (1 << (LEVEL + 7 - depth)));
+        for gains in self.gains.iter().take(lights) {
+            let light = zip(gains.diffuse, gains.specular, |diffuse, specular| u32::from(diffuse) + u32::from(specular));
+            total = zip(total, light, |total, light| total + light);
+        }
+        largest(total)
     }
 
     /// The channels of an intensity in the pixel format, with a [`crate::pixel::dither::threshold`] in place of rounding.
