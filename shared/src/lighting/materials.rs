@@ -4,7 +4,7 @@ use crate::{
     format::{BIAS, CHANNEL, COSINE, Intensity, LEVEL, MAX_LIGHTS, PIXEL_COSINE, RAMP, UNIT, WALK},
     lighting::{
         lights::{MeanNormal, Source},
-        one_light::{LARGEST, OneLightRamp, OneLightRgb, Sum, Sums},
+        one_light::{FACTOR, LARGEST, OneLightRamp, OneLightRgb, Sum, Sums},
     },
     math::{
         highlight_lut::{Base, ENTRY, HighlightLut, square},
@@ -86,7 +86,7 @@ impl Factors {
     #[inline(always)]
     fn levels(&self, Reflection { diffuse, highlight }: Reflection) -> [i32; 3] {
         // Approximations may exceed 1, which counts as 1. Armv7-M shifts and clamps by one instruction.
-        let cosine = (diffuse >> (PIXEL_COSINE - 15)).clamp(0, (1 << 15) - 1);
+        let cosine = (diffuse >> (PIXEL_COSINE - FACTOR)).clamp(0, (1 << FACTOR) - 1);
         let level = |diffuse: i32, specular: i32| diffuse.wrapping_mul(cosine).wrapping_add(specular.wrapping_mul(highlight as i32));
         let ([dr, dg, db], [sr, sg, sb]) = (self.diffuse, self.specular);
         [level(dr, sr), level(dg, sg), level(db, sb)]
@@ -225,7 +225,7 @@ impl Reflectance {
         }
         self.highlight_lut.fill(material.exponent, highlight.base(), full, floor);
         // Intensities are rounded down, and so are cosines: half of their last place more.
-        let mut sums = self.ambient.map(|level| (level << (CHANNEL - LEVEL - self.excess)) + (1 << (CHANNEL - 9 - self.excess)));
+        let mut sums = self.ambient.map(|level| (level << (FACTOR - self.excess)) + (1 << (CHANNEL - 9 - self.excess)));
         for light in 0..lights.len() {
             let factors = self.factors(light);
             let none = factors.levels(Reflection { diffuse: 0, highlight: self.highlight_lut.floor() });
@@ -455,7 +455,8 @@ impl<'a, C: Pixel> MaterialTables<'a, C> {
         self.reflectance.holds_levels().then(|| OneLightRamp { ramp, diffuse: gains.diffuse[0], floor: highlight_lut.least() })
     }
 
-    /// The sums of three channels under the only light, if there is no table of colours.
+    /// The sums of three channels under the only light, if the material has three. Domain: [`Reflectance::has_one_light`], by which
+    /// methods take their loops.
     #[inline(always)]
     #[must_use]
     pub fn one_light_rgb(&self) -> Option<OneLightRgb<'a, C>> {

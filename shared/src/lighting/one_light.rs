@@ -107,8 +107,8 @@ pub struct Sum {
 }
 
 /// Fraction bits of a cosine that is multiplied by a diffuse level.
-const FACTOR: u32 = CHANNEL - LEVEL;
-/// Fraction bits of a diffuse level of [`OneLightRgb`] at cosine 1, which is 2^7: cosines and their overshoots fit the walked format.
+pub(super) const FACTOR: u32 = CHANNEL - LEVEL;
+/// The diffuse level of [`OneLightRgb`] at cosine 1 is 2 to this power: half of the walked range, so that cosines and their overshoots fit.
 const FULL: u32 = 7;
 
 impl Sum {
