@@ -31,14 +31,14 @@
 //!
 //! Per-pixel normalisation and powers are replaced by polynomials that are walked with integer additions. The modules follow the way of the
 //! data, each using only those above it (tests/suite/layers.rs reads the imports). The interface is the crate's root, [`stream`], [`pixel`]
-//! and [`method`]. All other modules are no part of it and may change in any release: those that are public are so for microphong's own
-//! tests, tools and `microphong-literature` alone.
+//! and, for methods of your own, [`method`], [`math`] and [`format`](mod@format). All other modules are no part of it and may change in any
+//! release: those that are public are so for microphong's own tests and tools alone.
 //!
 //! | module | what it does |
 //! |---|---|
-//! | `format` | names every number format |
+//! | [`format`](mod@format) | names every number format |
 //! | `arch` | wide products, quotients and counts of zeros, as short as each processor can |
-//! | `math` | reciprocal, root, lookup table of highlights, vectors, in integers |
+//! | [`math`] | reciprocal, root, lookup table of highlights, vectors, in integers |
 //! | [`pixel`] | pixel formats and ordered dither |
 //! | [`stream`] | bytes in flash to a checked view of meshes, lights and camera |
 //! | `geometry` | object space to the screen, and what need not be drawn |
@@ -62,7 +62,9 @@
 mod arch;
 mod display;
 mod error;
+pub mod format;
 mod frame;
+pub mod math;
 mod memory;
 mod mesh;
 pub mod method;
@@ -76,15 +78,11 @@ pub mod antialias;
 #[doc(hidden)]
 pub mod coverage;
 #[doc(hidden)]
-pub mod format;
-#[doc(hidden)]
 pub mod geometry;
 #[doc(hidden)]
 pub mod interpolate;
 #[doc(hidden)]
 pub mod lighting;
-#[doc(hidden)]
-pub mod math;
 #[doc(hidden)]
 pub mod raster;
 #[doc(hidden)]

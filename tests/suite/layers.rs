@@ -1,5 +1,5 @@
 //! Modules of the core use those above them in the table of `shared/src/lib.rs` and no others, and no files of one folder import in a
-//! circle.
+//! circle. The crate of the literature names nothing that the core's documentation hides.
 //!
 //! Read are `use` declarations and paths that start at `crate`, `self` or `super`, or at a child of the module; not what is compiled for
 //! tests alone. A `pub use` of a child, in the file that declares it, names the child's items and uses none of them.
@@ -336,7 +336,39 @@ impl Core {
     }
 }
 
-/// The files of the core.
+/// Modules of microphong that its documentation hides, with their parents.
+fn hidden(sources: &[Source]) -> BTreeSet<Module> {
+    let declared = |(file, text): &Source| {
+        let mut after_hidden = false;
+        let mut found = Vec::new();
+        for line in text.lines() {
+            if let Some(name) = line.strip_prefix("pub mod ").and_then(|rest| rest.strip_suffix(';'))
+                && after_hidden
+            {
+                found.push([module(file), vec![name.to_owned()]].concat());
+            }
+            after_hidden = line == "#[doc(hidden)]";
+        }
+        found
+    };
+    sources.iter().flat_map(declared).collect()
+}
+
+/// Names of hidden modules in the sources of another crate, its tests apart.
+fn uses_of_hidden(hidden: &BTreeSet<Module>, sources: &[Source]) -> Faults {
+    let mut faults = Faults::new();
+    for (file, text) in sources {
+        for (path, _) in paths(&without_tests(&tokens(&bare(text))), &BTreeSet::from(["microphong"])) {
+            let Some(("microphong", inner)) = path.split_first().map(|(first, inner)| (first.as_str(), inner)) else { continue };
+            faults.extend(
+                hidden.iter().filter(|module| inner.starts_with(module)).map(|module| format!("{file} names {}", module.join("::"))),
+            );
+        }
+    }
+    faults
+}
+
+/// The files of a crate.
 fn core(directory: &Path) -> Vec<Source> {
     fn collect(directory: &Path, place: &str, sources: &mut Vec<Source>) {
         for entry in fs::read_dir(directory).expect("the core's sources") {
@@ -363,6 +395,25 @@ fn modules_use_those_above_them() {
     assert!(core.paths[&module("renderer.rs")].iter().any(|(path, _)| path.first().is_some_and(|name| name == "frame")));
     let faults = core.layers();
     assert!(faults.is_empty(), "{}", faults.join("\n"));
+}
+
+#[test]
+fn the_literature_uses_the_interface_alone() {
+    let shared = Path::new(env!("CARGO_MANIFEST_DIR")).join("../shared");
+    let hidden = hidden(&core(&shared.join("src")));
+    assert!(hidden.contains(&module("raster.rs")) && !hidden.contains(&module("method/mod.rs")), "{hidden:?}");
+    let literature = core(&shared.join("literature/src"));
+    assert!(literature.len() > 20, "{}", literature.len());
+    let faults = uses_of_hidden(&hidden, &literature);
+    assert!(faults.is_empty(), "{}", faults.join("\n"));
+    // In any way to write it.
+    for text in
+        ["use microphong::raster::canvas::Shaded;", "use microphong::{\n method, raster };", "fn f(_: microphong::raster::band::Band) {}"]
+    {
+        assert_eq!(uses_of_hidden(&hidden, &[("a.rs".to_owned(), text.to_owned())]), ["a.rs names raster"], "{text}");
+    }
+    let right = "use microphong::method::Canvas;\n#[cfg(test)]\nuse microphong::raster;";
+    assert_eq!(uses_of_hidden(&hidden, &[("a.rs".to_owned(), right.to_owned())]), Faults::new());
 }
 
 #[test]

@@ -14,7 +14,10 @@ use microphong::{
     },
     interpolate::{Constant, plane::Plane},
     lighting::materials::{MaterialTables, Reflectance},
-    method::Uniform,
+    method::{
+        Uniform,
+        sub_triangle::{ScreenSubTriangle, SubTriangle},
+    },
     raster::{
         active::ActiveTriangles,
         band::Band,
@@ -24,7 +27,6 @@ use microphong::{
     },
     setup::gradients::Gradients,
 };
-use microphong_literature::sub_triangle::{ScreenSubTriangle, SubTriangle};
 use microphong_sim::{level, render, scene, shader::Shader, stress::random::Random};
 use microphong_tests::{cases, named, seed};
 

@@ -11,11 +11,10 @@
 
 use microphong::{
     format::{COSINE, PIXEL_COSINE},
-    lighting::lights::cosine,
     math::vector::{cross, normalise, zip},
     method::{
         Canvas, Constant, CosineLookup, Costs, Facts, Highlight, Lighting, LightingModel, Method, Node, Reflection, Shading, Source,
-        TriangleSetup, VertexLight, linear, signed,
+        TriangleSetup, VertexLight, cosine, linear, signed,
     },
 };
 

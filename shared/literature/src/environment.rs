@@ -13,11 +13,10 @@
 
 use microphong::{
     format::{COSINE, POSITION, UNIT},
-    lighting::lights::cosine,
     math::vector::{dot, normalise, zip},
     method::{
         Canvas, CosineLookup, Costs, Facts, Held, Highlight, Lighting, LightingModel, Method, Node, Reflection, Shading, Source,
-        TriangleSetup, VertexLight, Viewer, duff::Root, linear, signed,
+        TriangleSetup, VertexLight, Viewer, cosine, duff::Root, linear, signed,
     },
 };
 

@@ -11,14 +11,13 @@
 
 use crate::scanline::{Edges, Rows};
 use microphong::{
-    lighting::lights::cosine,
     math::{
         recip::Divisor,
         vector::{dot, normalise, wide},
     },
     method::{
         Canvas, Constant, CosineLookup, Costs, Facts, Highlight, Lighting, LightingModel, Method, Patch, Reflection, Shading, Source,
-        TriangleSetup, VertexLight, Viewer, Walker,
+        TriangleSetup, VertexLight, Viewer, Walker, cosine,
     },
 };
 

@@ -7,9 +7,8 @@
 //! Cost: three comparisons a triangle and light, then that of [`microphong::method::gouraud`] or [`microphong::method::phong`]. Not
 //! continuous where the two meet. Error against Phong: Gouraud's of diffuse light. Domain: any lights.
 
-use microphong::{
-    lighting::lights::cosine,
-    method::{Canvas, Costs, Facts, Highlight, Method, RANGE, Shading, Source, TriangleSetup, VertexLight, gouraud::Gouraud, phong::Phong},
+use microphong::method::{
+    Canvas, Costs, Facts, Highlight, Method, RANGE, Shading, Source, TriangleSetup, VertexLight, cosine, gouraud::Gouraud, phong::Phong,
 };
 
 static FACTS: Facts = Facts {

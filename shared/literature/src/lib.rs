@@ -1,8 +1,7 @@
 //! The shading methods of the literature, each in integers and in a file of its own, for [`microphong`].
 //!
-//! Each is a [`microphong::method::Method`], as any program can bring. For arithmetic, and to split triangles or to work along rows, they
-//! also use modules of microphong that are public but no part of its interface. A program takes a method by naming it,
-//! `Shader::new(&microphong_literature::Cubic)`, and has the code of no other.
+//! Each is a [`microphong::method::Method`], as any program can bring: they use nothing of microphong but its interface. A program takes a
+//! method by naming it, `Shader::new(&microphong_literature::Cubic)`, and has the code of no other.
 #![no_std]
 #![forbid(unsafe_code)]
 
@@ -27,7 +26,6 @@ pub mod six_point_adaptive;
 pub mod six_point_centre;
 pub mod slerp;
 pub mod split;
-pub mod sub_triangle;
 pub mod taylor;
 pub mod taylor_finite;
 

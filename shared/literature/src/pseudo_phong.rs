@@ -7,10 +7,10 @@
 //! set-up for every 32 pixels or fewer. Neighbours may be split unequally, then
 //! they meet in chords of the same curve.
 
-use crate::{split::SubTriangles, sub_triangle::SubTriangle};
+use crate::split::SubTriangles;
 use microphong::{
     format::{SPLITS, SUBPIXEL},
-    method::{Canvas, Costs, Facts, Highlight, Method, Shading, TriangleSetup, VertexLight},
+    method::{Canvas, Costs, Facts, Highlight, Method, Shading, SubTriangle, TriangleSetup, VertexLight},
 };
 
 /// Logarithm of the longest edge of a part, 8 pixels in 1/16 pixel.
@@ -48,7 +48,7 @@ fn draw(setup: &TriangleSetup<'_>, shading: &Shading<'_>, canvas: &mut dyn Canva
 
 /// How often the triangle is split.
 fn splits(setup: &TriangleSetup<'_>) -> u32 {
-    let ([a, b, c], finer) = (setup.corners, setup.pixels.finer());
+    let ([a, b, c], finer) = (setup.corners, setup.finer());
     let longest = [(a, b), (b, c), (c, a)].into_iter().fold(0, |longest, (a, b)| {
         let (x, y) = (i64::from(a.x) - i64::from(b.x), i64::from(a.y) - i64::from(b.y));
         longest.max(x * x + y * y)

@@ -62,9 +62,9 @@ impl Edges {
         Self { edges, heights: [top[1], right[1], left[1]], area: first.inside(left) }
     }
 
-    /// The rows, starting with that of the facet's anchor.
+    /// The rows, starting with that on which shading begins.
     pub fn rows(&self, setup: &TriangleSetup<'_>) -> Rows<'_> {
-        Rows { edges: self, row: setup.gradients.row() }
+        Rows { edges: self, row: setup.first_row() }
     }
 }
 

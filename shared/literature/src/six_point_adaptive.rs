@@ -13,12 +13,11 @@
 use crate::{
     six_point_centre::{CENTRE, DEPTH},
     split::{Levels, Six, SubTriangles, corners, differ, edges},
-    sub_triangle::SubTriangle,
 };
 use microphong::{
     format::LEVEL,
     math::vector::zip,
-    method::{Canvas, Costs, Facts, Highlight, Method, Shading, TriangleSetup, VertexLight},
+    method::{Canvas, Costs, Facts, Highlight, Method, Shading, SubTriangle, TriangleSetup, VertexLight},
 };
 
 /// What an edge's parabola may be wrong by at its quarters, Q9.7.

@@ -7,13 +7,10 @@
 //! [`crate::six_point_adaptive`] does neither. Cost: two additions a pixel and
 //! channel; one more light a triangle, and nine a split.
 
-use crate::{
-    split::{Six, SubTriangles, corners, edges},
-    sub_triangle::SubTriangle,
-};
+use crate::split::{Six, SubTriangles, corners, edges};
 use microphong::{
     format::LEVEL,
-    method::{Canvas, Costs, Facts, Highlight, Method, Shading, TriangleSetup, VertexLight},
+    method::{Canvas, Costs, Facts, Highlight, Method, Shading, SubTriangle, TriangleSetup, VertexLight},
 };
 
 /// What the quadratic may be wrong by at the centre, Q9.7.

@@ -15,11 +15,10 @@ use crate::{
     scanline::{Edges, Rows},
 };
 use microphong::{
-    lighting::lights::cosine,
     math::vector::{dot, normalise, wide},
     method::{
         Canvas, Constant, CosineLookup, Costs, Facts, Highlight, Lighting, LightingModel, Method, Patch, Reflection, Shading, Source,
-        TriangleSetup, VertexLight, Walker,
+        TriangleSetup, VertexLight, Walker, cosine,
     },
 };
 

@@ -1,12 +1,8 @@
 //! What the methods share that split a triangle into sub-triangles and shade each by itself.
 
-use crate::sub_triangle::{ScreenSubTriangle, SubTriangle};
 use microphong::{
-    interpolate::plane::Plane,
     math::vector::{add, zip},
-    method::{Area, Canvas, Field, IntensityShader, Shading, TriangleSetup},
-    raster::canvas::Shaded,
-    setup::gradients::Gradients,
+    method::{Canvas, Parts, Shading, SubTriangle, TriangleSetup},
 };
 
 /// Light of three channels, Q9.7.
@@ -19,22 +15,7 @@ const BITS: u32 = 16;
 pub struct SubTriangles<'a, 'f> {
     setup: &'a TriangleSetup<'f>,
     shading: &'a Shading<'f>,
-    gradients: Gradients,
-    depth: Plane<1>,
-}
-
-/// A sub-triangle on the screen, ready for fitting.
-struct Part<'p> {
-    part: &'p ScreenSubTriangle<'p>,
-    gradients: Gradients,
-    depth: Plane<1>,
-}
-
-impl Area for Part<'_> {
-    fn draw<F: Field, S: IntensityShader<F::Value>>(&self, field: &F, shader: S, canvas: &mut dyn Canvas) -> u32 {
-        let mut shaded = Shaded::new(field.fit(&self.gradients), shader);
-        self.part.draw(self.gradients.row(), self.depth, &mut shaded, canvas)
-    }
+    parts: Parts<'f>,
 }
 
 /// Light at the corners of a sub-triangle and at the middles of its edges 01, 12, 20.
@@ -74,12 +55,12 @@ pub fn corners<A: Copy>([a, b, c]: [A; 3], [ab, bc, ca]: [A; 3], k: usize) -> [A
 impl<'a, 'f> SubTriangles<'a, 'f> {
     /// The parts of a triangle.
     pub fn new(setup: &'a TriangleSetup<'f>, shading: &'a Shading<'f>) -> Self {
-        Self { setup, shading, gradients: setup.gradients.parted(), depth: setup.screen.plane(setup.gradients, 0) }
+        Self { setup, shading, parts: setup.parts() }
     }
 
-    /// Whether anything of `sub_triangle` may be seen in `band`.
+    /// Whether anything of `sub_triangle` may be seen in `canvas`.
     pub fn meets(&self, sub_triangle: &SubTriangle, canvas: &dyn Canvas) -> bool {
-        ScreenSubTriangle::new(self.setup.screen, self.setup.pixels, sub_triangle).meets(canvas)
+        self.parts.meets(sub_triangle, canvas)
     }
 
     /// Light at the triangle's corners.
@@ -130,26 +111,17 @@ impl<'a, 'f> SubTriangles<'a, 'f> {
         differ(fitted, exact.map(|level| 9 * level), 9 * tolerance)
     }
 
-    /// `part`, unless nothing of it may be seen in `band`.
-    fn part<'p>(&self, part: &'p ScreenSubTriangle<'p>, canvas: &dyn Canvas) -> Option<Part<'p>> {
-        part.meets(canvas).then(|| Part { part, gradients: part.gradients(&self.gradients), depth: self.depth })
-    }
-
     /// Draws `sub_triangle` linear between its corners.
     #[inline(never)]
     pub fn linear(&self, sub_triangle: &SubTriangle, corners: &[Levels; 3], canvas: &mut dyn Canvas) -> u32 {
-        let part = ScreenSubTriangle::new(self.setup.screen, self.setup.pixels, sub_triangle);
-        let Some(part) = self.part(&part, canvas) else { return 0 };
-        self.shading.draw_levels::<3, BITS>(&part, *corners, canvas)
+        self.shading.draw_levels::<3, BITS>(&self.parts.part(sub_triangle), *corners, canvas)
     }
 
     /// Draws `sub_triangle` quadratic between its nodes.
     #[inline(never)]
     pub fn quadratic(&self, sub_triangle: &SubTriangle, six: &Six, canvas: &mut dyn Canvas) -> u32 {
-        let part = ScreenSubTriangle::new(self.setup.screen, self.setup.pixels, sub_triangle);
-        let Some(part) = self.part(&part, canvas) else { return 0 };
         let ([a, b, c], [ab, bc, ca]) = (six.corners, six.middles);
-        self.shading.draw_levels::<6, BITS>(&part, [a, b, c, ab, bc, ca], canvas)
+        self.shading.draw_levels::<6, BITS>(&self.parts.part(sub_triangle), [a, b, c, ab, bc, ca], canvas)
     }
 
     /// Draws `sub_triangle` linear between the corners of the parts that `depth` splits make of it; `corners` is its own light.
@@ -175,60 +147,4 @@ impl<'a, 'f> SubTriangles<'a, 'f> {
 /// Whether two lights differ by more than `tolerance` in any channel.
 pub fn differ(a: Levels, b: Levels, tolerance: i32) -> bool {
     zip(a, b, |a, b| a.abs_diff(b) > tolerance.unsigned_abs()).contains(&true)
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use microphong::{
-        geometry::projection::{ScreenVertex, State},
-        raster::triangle::ScreenTriangle,
-        stream::record::{Triangle, Vertex},
-    };
-    use zerocopy::FromZeros;
-
-    /// Points of an edge by the weights of its ends are the same, bit for bit, in both triangles that share it,
-    /// whichever corners its ends are there and whatever lies opposite: so both light and split it alike.
-    #[test]
-    fn neighbours_agree_on_their_edge() {
-        let mut state = 1u64;
-        let mut random = || {
-            state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
-            (state >> 48) as i16 / 2
-        };
-        let screen = [[0, 0], [160, 90], [20, 200]].map(|[x, y]| ScreenVertex { x, y, depth: 0, light: [0; 3], state: State::READY });
-        let [a, b, c] = &screen;
-        let screen = ScreenTriangle::new([a, b, c], [0; 3]);
-        let gradients = Gradients::if_word_sized(screen.corners).unwrap();
-        let triangle = Triangle { corners: [0, 2, 1], ..Triangle::new_zeroed() };
-        for _ in 0..1_000 {
-            let mut vertex = || Vertex { position: [random(), random(), random()], normal: [random(), random(), random()] };
-            let [p, q, r, s] = [vertex(), vertex(), vertex(), vertex()];
-            let setup = |vertices| TriangleSetup {
-                screen: &screen,
-                gradients: &gradients,
-                corners: [a, b, c],
-                triangle: &triangle,
-                vertices,
-                turned: 0,
-                needs_depth_test: true,
-                perspective: false,
-                pixels: microphong::antialias::PixelSet::Centres,
-                place: None,
-            };
-            let corners = [[p, q, r], [q, p, s], [s, q, p], [p, s, q]];
-            let [one, others @ ..] = corners.each_ref().map(|corners| setup(corners.as_slice()));
-            for (k, other) in others.iter().enumerate() {
-                for bits in 0..=5 {
-                    for w in 0..=1 << bits {
-                        let v = (1 << bits) - w;
-                        let node = one.node([v, w, 0], bits);
-                        // Split once more or less, it is the same point.
-                        let same = other.node([[w, v, 0], [0, w, v], [v, 0, w]][k].map(|w| 2 * w), bits + 1);
-                        assert_eq!((node.position, node.normal), (same.position, same.normal));
-                    }
-                }
-            }
-        }
-    }
 }

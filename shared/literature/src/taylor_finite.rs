@@ -13,9 +13,8 @@ use crate::{
 };
 use microphong::{
     format::COSINE,
-    lighting::lights::point,
     math::vector::add,
-    method::{Canvas, Costs, Facts, Highlight, Method, Shading, TriangleSetup, VertexLight},
+    method::{Canvas, Costs, Facts, Highlight, Method, Shading, TriangleSetup, VertexLight, point},
 };
 
 static FACTS: Facts = Facts {

@@ -157,7 +157,6 @@ impl Shading<'_> {
     }
 
     /// [`Self::draw_lit`] with patches in place of fields, for methods that interpolate along rows of the screen.
-    #[doc(hidden)]
     pub fn draw_rows<K, P, F>(
         &self,
         setup: &TriangleSetup<'_>,

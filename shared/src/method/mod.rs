@@ -5,30 +5,19 @@
 //! [`Canvas`] tests depth and stores colours. The methods of this crate also have loops that are compiled for each pixel format, for the
 //! common styles.
 
-mod facts;
-mod quotient;
-
-// No part of the interface: public for the tests, tools and other packages of this repository alone.
-#[doc(hidden)]
 pub mod duff;
-#[doc(hidden)]
+mod facts;
 pub mod flat;
-#[doc(hidden)]
 pub mod gouraud;
-#[doc(hidden)]
 pub mod lighting_model;
-#[doc(hidden)]
 pub mod node;
-#[doc(hidden)]
 pub mod phong;
-#[doc(hidden)]
+mod quotient;
 pub mod renq;
-#[doc(hidden)]
 pub mod renq_newton;
-#[doc(hidden)]
 pub mod six_point;
-#[doc(hidden)]
 pub mod sqrt6;
+pub mod sub_triangle;
 
 use crate::{
     antialias::{PixelSet, Shape},
@@ -56,7 +45,7 @@ pub use crate::{
         field::{Field, Nodes},
     },
     lighting::{
-        lights::{Lighting, Source, Viewer},
+        lights::{Lighting, Source, Viewer, cosine, point},
         materials::{Highlight, Reflectance, Reflection},
     },
     math::highlight_lut::CosineLookup,
@@ -68,6 +57,8 @@ pub use facts::{Costs, Facts, VertexLight};
 pub use lighting_model::{LightingModel, Linear, Quadratic, linear, quadratic, signed};
 #[doc(inline)]
 pub use node::Node;
+#[doc(inline)]
+pub use sub_triangle::{Part, Parts, SubTriangle};
 
 /// A shading method.
 pub trait Method: Sync {
@@ -130,11 +121,9 @@ pub const RANGE: u32 = LEVEL + 8;
 /// A triangle ready to be shaded; all triples start with its top corner.
 pub struct TriangleSetup<'f> {
     /// The corners, edges and depth on the screen.
-    #[doc(hidden)]
-    pub screen: &'f ScreenTriangle,
+    pub(crate) screen: &'f ScreenTriangle,
     /// The gradients by which polynomials are fitted to the triangle.
-    #[doc(hidden)]
-    pub gradients: &'f Gradients,
+    pub(crate) gradients: &'f Gradients,
     /// The lit corners on the screen.
     pub corners: [&'f ScreenVertex; 3],
     /// The triangle's record in the stream.
@@ -148,11 +137,9 @@ pub struct TriangleSetup<'f> {
     /// Whether light is interpolated in perspective.
     pub perspective: bool,
     /// Which pixels of the triangle are drawn.
-    #[doc(hidden)]
-    pub pixels: PixelSet,
+    pub(crate) pixels: PixelSet,
     /// Index of the active triangle that the band above has saved: its patch is loaded, and nothing is fitted.
-    #[doc(hidden)]
-    pub place: Option<usize>,
+    pub(crate) place: Option<usize>,
 }
 
 impl TriangleSetup<'_> {
@@ -218,9 +205,26 @@ impl TriangleSetup<'_> {
         Some(band.active.active_triangle(self.place?)?.edges.shader)
     }
 
-    /// Draws the triangle by `shader`, which stands on the anchor's row; returns the number of pixels in `canvas`.
-    #[doc(hidden)]
-    pub fn draw_spans(&self, shader: &mut dyn SpanShader, canvas: &mut dyn Canvas) -> u32 {
+    /// The polynomial of `field` on the screen, without perspective, for [`Shading::draw_rows`].
+    #[must_use]
+    pub fn fit<F: Field>(&self, field: &F) -> F::Patch {
+        field.fit(self.gradients)
+    }
+
+    /// The row of the screen on which patches stand when shading begins, in finer rows where antialiasing shades by them.
+    #[must_use]
+    pub fn first_row(&self) -> i32 {
+        self.gradients.row()
+    }
+
+    /// Logarithm of the number of places along each axis of a pixel where the triangle is shaded; 0 without antialiasing.
+    #[must_use]
+    pub fn finer(&self) -> u32 {
+        self.pixels.finer()
+    }
+
+    /// Draws the triangle by `shader`, which stands on [`Self::first_row`]; returns the number of pixels in `canvas`.
+    pub(crate) fn draw_spans(&self, shader: &mut dyn SpanShader, canvas: &mut dyn Canvas) -> u32 {
         if cfg!(feature = "antialias") && self.pixels != PixelSet::Centres {
             let Self { screen, pixels, .. } = *self;
             let shape = Shape { screen, pixels, part: None, corners: screen.corners, bits: SUBPIXEL };

@@ -193,3 +193,61 @@ fn wide_middles(vertices: [&Vertex; 3], given: [u16; 3], [a, b, c]: [i32; 3]) ->
 pub fn zip_six<A, B, R>([a0, a1, a2, a3, a4, a5]: [A; 6], [b0, b1, b2, b3, b4, b5]: [B; 6], f: impl Fn(A, B) -> R) -> [R; 6] {
     [f(a0, b0), f(a1, b1), f(a2, b2), f(a3, b3), f(a4, b4), f(a5, b5)]
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{
+        antialias::PixelSet,
+        geometry::projection::{ScreenVertex, State},
+        raster::triangle::ScreenTriangle,
+        setup::gradients::Gradients,
+        stream::record::Triangle,
+    };
+    use zerocopy::FromZeros;
+
+    /// Points of an edge by the weights of its ends are the same, bit for bit, in both triangles that share it,
+    /// whichever corners its ends are there and whatever lies opposite: so both light and split it alike.
+    #[test]
+    fn neighbours_agree_on_their_edge() {
+        let mut state = 1u64;
+        let mut random = || {
+            state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+            (state >> 48) as i16 / 2
+        };
+        let screen = [[0, 0], [160, 90], [20, 200]].map(|[x, y]| ScreenVertex { x, y, depth: 0, light: [0; 3], state: State::READY });
+        let [a, b, c] = &screen;
+        let screen = ScreenTriangle::new([a, b, c], [0; 3]);
+        let gradients = Gradients::if_word_sized(screen.corners).unwrap();
+        let triangle = Triangle { corners: [0, 2, 1], ..Triangle::new_zeroed() };
+        for _ in 0..1_000 {
+            let mut vertex = || Vertex { position: [random(), random(), random()], normal: [random(), random(), random()] };
+            let [p, q, r, s] = [vertex(), vertex(), vertex(), vertex()];
+            let setup = |vertices| TriangleSetup {
+                screen: &screen,
+                gradients: &gradients,
+                corners: [a, b, c],
+                triangle: &triangle,
+                vertices,
+                turned: 0,
+                needs_depth_test: true,
+                perspective: false,
+                pixels: PixelSet::Centres,
+                place: None,
+            };
+            let corners = [[p, q, r], [q, p, s], [s, q, p], [p, s, q]];
+            let [one, others @ ..] = corners.each_ref().map(|corners| setup(corners.as_slice()));
+            for (k, other) in others.iter().enumerate() {
+                for bits in 0..=5 {
+                    for w in 0..=1 << bits {
+                        let v = (1 << bits) - w;
+                        let node = one.node([v, w, 0], bits);
+                        // Split once more or less, it is the same point.
+                        let same = other.node([[w, v, 0], [0, w, v], [v, 0, w]][k].map(|w| 2 * w), bits + 1);
+                        assert_eq!((node.position, node.normal), (same.position, same.normal));
+                    }
+                }
+            }
+        }
+    }
+}

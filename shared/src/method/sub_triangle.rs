@@ -1,20 +1,21 @@
 //! Parts of a triangle, for methods that shade it piece by piece.
 //!
-//! A triangle split at the midpoints of its edges falls into four copies of half its
-//! size, the one in the middle turned by 180 degrees; these can be split again. The
-//! corners of all these *sub-triangles* are exact in the finer coordinates used here, so
-//! their edges lie exactly on the triangle's edges and on each other. The top-left
-//! rule then gives every pixel of the triangle to one sub-triangle: no crack, no overlap,
-//! and no pixel more or less than the triangle has.
+//! A triangle split at the midpoints of its edges falls into four copies of half its size, the one in the middle turned by 180 degrees;
+//! these can be split again. The corners of all these *sub-triangles* are exact in the finer coordinates used here, so their edges lie
+//! exactly on the triangle's edges and on each other. The top-left rule then gives every pixel of the triangle to one sub-triangle: no
+//! crack, no overlap, and no pixel more or less than the triangle has.
 
-use microphong::{
+use crate::{
     antialias::{PixelSet, Shape, coarse},
     coverage::area::TriangleCoverage,
     format::{FINE, SPLITS, SUBPIXEL},
-    interpolate::plane::Plane,
+    interpolate::{Patch, field::Field, plane::Plane},
     math::vector::zip,
-    method::{Canvas, Patch},
-    raster::{canvas::SpanShader, triangle::ScreenTriangle},
+    method::{Area, TriangleSetup},
+    raster::{
+        canvas::{Canvas, IntensityShader, Shaded, SpanShader},
+        triangle::ScreenTriangle,
+    },
     setup::gradients::{Gradients, NEAR},
 };
 
@@ -69,7 +70,58 @@ impl SubTriangle {
     }
 }
 
+/// What fields are fitted by to the parts of a triangle.
+pub struct Parts<'f> {
+    screen: &'f ScreenTriangle,
+    pixels: PixelSet,
+    gradients: Gradients,
+    depth: Plane<1>,
+}
+
+impl<'f> TriangleSetup<'f> {
+    /// The triangle, ready to be drawn part by part.
+    #[must_use]
+    pub fn parts(&self) -> Parts<'f> {
+        let Self { screen, pixels, .. } = *self;
+        Parts { screen, pixels, gradients: self.gradients.parted(), depth: screen.plane(self.gradients, 0) }
+    }
+}
+
+impl Parts<'_> {
+    /// Whether any pixel of the box around `sub_triangle` is in `canvas`.
+    #[must_use]
+    pub fn meets(&self, sub_triangle: &SubTriangle, canvas: &dyn Canvas) -> bool {
+        ScreenSubTriangle::new(self.screen, self.pixels, sub_triangle).meets(canvas)
+    }
+
+    /// The area of `sub_triangle`.
+    #[inline(always)]
+    #[must_use]
+    pub fn part<'p>(&'p self, sub_triangle: &'p SubTriangle) -> Part<'p> {
+        Part { whole: self, sub_triangle }
+    }
+}
+
+/// A part of a triangle, over which fields are interpolated by nodes of its own. If nothing of it is in the canvas, nothing is fitted.
+pub struct Part<'p> {
+    whole: &'p Parts<'p>,
+    sub_triangle: &'p SubTriangle,
+}
+
+impl Area for Part<'_> {
+    fn draw<F: Field, S: IntensityShader<F::Value>>(&self, field: &F, shader: S, canvas: &mut dyn Canvas) -> u32 {
+        let Parts { screen, pixels, gradients, depth } = self.whole;
+        let place = ScreenSubTriangle::new(screen, *pixels, self.sub_triangle);
+        if !place.meets(canvas) {
+            return 0;
+        }
+        let gradients = place.gradients(gradients);
+        place.draw(gradients.row(), *depth, &mut Shaded::new(field.fit(&gradients), shader), canvas)
+    }
+}
+
 /// A sub-triangle on the screen.
+#[doc(hidden)]
 #[derive(Clone, Copy, Debug)]
 pub struct ScreenSubTriangle<'o> {
     screen: &'o ScreenTriangle,
@@ -95,7 +147,7 @@ fn range([a, b, c]: [i32; 3]) -> [i32; 2] {
 
 impl<'o> ScreenSubTriangle<'o> {
     /// Where `sub_triangle` lies, and which of its pixels are drawn.
-    #[inline]
+    #[inline(never)]
     #[must_use]
     pub fn new(screen: &'o ScreenTriangle, pixels: PixelSet, sub_triangle: &SubTriangle) -> Self {
         let finer = SPLITS.saturating_sub(sub_triangle.level);
