@@ -79,9 +79,7 @@ impl<C: Count> Cost<C> {
 
 /// What a vertex, a triangle, a row and a pixel take at most: of each method, without antialiasing and with it.
 ///
-/// Four times what the worst of 250 scenes of up to 320x240 pixels takes; of some thousand others, a few take up to 3.6 times as much. One
-/// exception is known: case 11,127 of seed 1795384109, three triangles without light in bands of one row, takes 1.007 times the bound of
-/// `pseudo-phong`, which splits triangles again in each band.
+/// Four times what the worst of 250 scenes of up to 320x240 pixels takes; of some thousand others, a few take up to 3.6 times as much.
 /// `cargo test -p microphong-tests stress::costs_are_counted_anew -- --ignored --nocapture` counts anew and prints the table.
 pub const BOUNDS: [(&str, [u32; 4], [u32; 4]); 26] = [
     ("flat", [440, 1100, 1400, 130], [88, 960, 19000, 520]),

@@ -77,16 +77,14 @@ impl TriangleSetup<'_> {
 
     /// The point with the barycentric coordinates `weights / 2^bits`, which are not negative, `bits` at most 11; unit normal.
     pub fn node(&self, weights: [i32; 3], bits: u32) -> Node {
-        let mean = |v: [[i32; 3]; 3]| {
-            let [a, b, c] = zip(v, weights, |v, weight| v.map(|c| c * weight));
-            add(a, add(b, c))
+        let ([a, b, c], [u, v, w]) = (self.vertices(), weights);
+        let mean = |of: fn(&Vertex) -> [i16; 3]| {
+            let (a, b, c) = (wide(of(a)), wide(of(b)), wide(of(c)));
+            zip(zip(a, b, |a, b| a * u + b * v), c, |ab, c| ab + c * w)
         };
-        let vertices = self.vertices();
-        let position = mean(vertices.map(|vertex| wide(vertex.position)));
-        Node {
-            position: position.map(|c| c << (POSITION - UNIT - bits)),
-            normal: normalise(mean(vertices.map(|vertex| wide(vertex.normal)))),
-        }
+        let [x, y, z] = mean(|vertex| vertex.position);
+        let up = POSITION - UNIT - bits;
+        Node { position: [x << up, y << up, z << up], normal: normalise(mean(|vertex| vertex.normal)) }
     }
 
     /// The point with the barycentric coordinates `weights / (3 2^bits)`; unit normal.

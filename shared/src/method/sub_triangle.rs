@@ -151,21 +151,22 @@ impl<'o> ScreenSubTriangle<'o> {
     #[must_use]
     pub fn new(screen: &'o ScreenTriangle, pixels: PixelSet, sub_triangle: &SubTriangle) -> Self {
         let finer = SPLITS.saturating_sub(sub_triangle.level);
-        let place = |weights: [i32; 3]| {
-            let along = |k: usize| {
-                let [a, b, c] = zip(screen.corners, weights, |corner, weight| corner[k].wrapping_mul(weight));
-                a.wrapping_add(b).wrapping_add(c) << finer
-            };
-            [along(0), along(1)]
+        let (sign, [u, v, w]) = (sub_triangle.sign(), sub_triangle.origin);
+        // One coordinate of the corners, which lie around the point of the barycentric coordinates `origin`.
+        let along = |[a, b, c]: [i32; 3]| {
+            let around = a.wrapping_mul(u).wrapping_add(b.wrapping_mul(v)).wrapping_add(c.wrapping_mul(w));
+            let place = |corner: i32| around.wrapping_add(corner.wrapping_mul(sign)) << finer;
+            [place(a), place(b), place(c)]
         };
-        let corners = sub_triangle.corners().map(place);
+        let [[ax, ay], [bx, by], [cx, cy]] = screen.corners;
+        let (columns, rows) = (along([ax, bx, cx]), along([ay, by, cy]));
         Self {
             screen,
             pixels,
             sub_triangle: *sub_triangle,
-            corners,
-            rows: range(corners.map(|c| c[1])),
-            columns: range(corners.map(|c| c[0])),
+            corners: zip(columns, rows, |x, y| [x, y]),
+            rows: range(rows),
+            columns: range(columns),
         }
     }
 }
