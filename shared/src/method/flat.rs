@@ -17,6 +17,7 @@ use crate::{
         canvas::{Canvas, Shaded},
         pixel_shader::Solid,
     },
+    stream::record::{Triangle, Vertex},
 };
 
 static FACTS: Facts = Facts {
@@ -40,7 +41,7 @@ impl Method for Flat {
     }
 
     fn shade(&self, setup: &TriangleSetup<'_>, shading: &Shading<'_>, canvas: &mut dyn Canvas) -> u32 {
-        let shader = Uniform(of_levels(levels(setup, shading)));
+        let shader = Uniform(of_levels(levels(setup.triangle, setup.vertices, shading)));
         setup.draw_spans(&mut Shaded::new(Constant, shader), canvas)
     }
 }
@@ -62,7 +63,7 @@ impl Loops for Flat {
                 let normal = wide(setup.triangle.normal);
                 tables.tint(shading.reflectance.level([vertex_cosine(normal, towards), vertex_cosine(normal, half)]))
             }
-            _ => tables.colour(levels(&setup.for_lighting(), shading)),
+            _ => tables.colour(levels(setup.triangle, setup.vertices, shading)),
         };
         Some(setup.fill(|| Constant, Solid(colour), band))
     }
@@ -70,17 +71,18 @@ impl Loops for Flat {
 
 /// Levels at the centroid with the plane's normal.
 #[inline(never)]
-fn levels(setup: &TriangleSetup<'_>, shading: &Shading<'_>) -> [i32; 3] {
-    let normal = wide(setup.triangle.normal);
+fn levels(triangle: &Triangle, vertices: &[Vertex], shading: &Shading<'_>) -> [i32; 3] {
+    let normal = wide(triangle.normal);
     if shading.lighting.is_constant() {
         return shading.reflectance.constant_levels(&shading.lighting.sources, &MeanNormal::at(normal));
     }
-    shading.levels(&centroid(setup, normal))
+    shading.levels(&centroid(triangle, vertices, normal))
 }
 
 /// The triangle's centroid, and the `normal` of its plane (Q2.14).
-fn centroid(setup: &TriangleSetup<'_>, normal: [i32; 3]) -> Node {
-    let [a, b, c] = setup.vertices();
+fn centroid(triangle: &Triangle, vertices: &[Vertex], normal: [i32; 3]) -> Node {
+    // A checked stream has all vertices.
+    let [a, b, c] = triangle.corners.map(|corner| vertices.get(usize::from(corner)).unwrap_or(&Vertex::ZERO));
     let sum = add(point(a.position), add(point(b.position), point(c.position)));
     Node { position: sum.map(|c| c / 3), normal: normal.map(|c| c << (30 - UNIT)) }
 }
