@@ -345,7 +345,8 @@ impl Reflectance {
         let [mut r, mut g, mut b] = self.ambient;
         for (source, gains) in sources.iter().zip(&self.gains) {
             if let Source::Directional { towards, half } = *source {
-                let (diffuse, highlight) = (normal.cosine(towards), self.highlight_lut.at(normal.cosine(half)));
+                let (diffuse, half) = (normal.cosine(towards), normal.cosine(half));
+                let highlight = if half < self.highlight_threshold { 0 } else { self.highlight_lut.at(half) };
                 let ([dr, dg, db], [sr, sg, sb]) = (gains.diffuse, gains.specular);
                 r += reflected((dr, sr), diffuse, highlight);
                 if self.three_channels() {
