@@ -11,12 +11,12 @@ pub struct Quadric<const CH: usize>([Row; CH]);
 
 impl<const CH: usize> Default for Quadric<CH> {
     fn default() -> Self {
-        Self([Row::default(); CH])
+        Self::ZERO
     }
 }
 
 /// One channel, with x measured from column 0: the polynomial on one row, and how it changes from row to row.
-#[derive(Clone, Copy, Debug, Default)]
+#[derive(Clone, Copy, Debug)]
 struct Row {
     /// Value at column 0.
     c: i32,
@@ -58,6 +58,9 @@ impl Row {
 }
 
 impl<const CH: usize> Quadric<CH> {
+    /// A constant, so that no loop clears one channel after the other.
+    const ZERO: Self = Self([Row { c: 0, c_down: 0, c_down2: 0, dx: 0, dx_down: 0, dxx: 0 }; CH]);
+
     /// The quadratic through six nodes per channel: corners 0, 1, 2, then the midpoints of the edges 01, 12, 20.
     ///
     /// All nodes lie in a range narrower than 2^`BITS`; values are walked with `extra` more
@@ -70,15 +73,15 @@ impl<const CH: usize> Quadric<CH> {
     #[inline(always)]
     #[must_use]
     pub fn fit<const BITS: u32>(gradients: &Gradients, nodes: &[[i32; 6]; CH], extra: u32, bias: [i32; CH]) -> Self {
-        let mut rows = [Row::default(); CH];
+        let mut quadric = Self::ZERO;
         if CH == 1 {
-            for ((to, nodes), bias) in rows.iter_mut().zip(*nodes).zip(bias) {
+            for ((to, nodes), bias) in quadric.0.iter_mut().zip(*nodes).zip(bias) {
                 *to = Row::fit::<BITS>(gradients, nodes, extra, bias);
             }
         } else {
-            each_channel::<CH>(|c| rows[c] = Row::fitted::<BITS>(gradients, &nodes[c], extra, bias[c]));
+            each_channel::<CH>(|c| quadric.0[c] = Row::fitted::<BITS>(gradients, &nodes[c], extra, bias[c]));
         }
-        Self(rows)
+        quadric
     }
 }
 
