@@ -11,19 +11,32 @@ pub struct Plane<const CH: usize>([Row; CH]);
 
 impl<const CH: usize> Default for Plane<CH> {
     fn default() -> Self {
-        Self([Row::default(); CH])
+        Self::ZERO
     }
 }
 
 /// One channel: the value at column 0 of the current row, and the derivatives.
-#[derive(Clone, Copy, Debug, Default)]
+#[derive(Clone, Copy, Debug)]
 struct Row {
     c: i32,
     dx: i32,
     dy: i32,
 }
 
+impl Row {
+    /// See [`Plane::fit`].
+    #[inline(always)]
+    fn fit<const BITS: u32>(gradients: &Gradients, nodes: [i32; 3], extra: u32, bias: i32) -> Self {
+        let [c, dx, dy] = gradients.linear::<BITS>(nodes, extra);
+        // The move from the anchor column to column 0 is exact, modulo 2^32.
+        Self { c: c.wrapping_sub(dx.wrapping_mul(gradients.column())).wrapping_add(bias), dx, dy }
+    }
+}
+
 impl<const CH: usize> Plane<CH> {
+    /// A constant, so that no loop clears one channel after the other.
+    const ZERO: Self = Self([Row { c: 0, dx: 0, dy: 0 }; CH]);
+
     /// The field with value `nodes[channel][k]` at corner `k`, all of them in a range narrower than 2^`BITS`; walked with `extra` more
     /// fraction bits than the nodes have, `bias` added.
     ///
@@ -33,13 +46,18 @@ impl<const CH: usize> Plane<CH> {
     #[inline(always)]
     #[must_use]
     pub fn fit<const BITS: u32>(gradients: &Gradients, nodes: &[[i32; 3]; CH], extra: u32, bias: [i32; CH]) -> Self {
-        let mut rows = [Row::default(); CH];
-        for ((row, nodes), bias) in rows.iter_mut().zip(*nodes).zip(bias) {
-            let [c, dx, dy] = gradients.linear::<BITS>(nodes, extra);
-            // The move from the anchor column to column 0 is exact, modulo 2^32.
-            *row = Row { c: c.wrapping_sub(dx.wrapping_mul(gradients.column())).wrapping_add(bias), dx, dy };
+        let mut plane = Self::ZERO;
+        if CH == 1 {
+            for ((row, nodes), bias) in plane.0.iter_mut().zip(*nodes).zip(bias) {
+                *row = Row::fit::<BITS>(gradients, nodes, extra, bias);
+            }
+        } else {
+            // Several are not moved to the stack first.
+            for ((row, nodes), bias) in plane.0.iter_mut().zip(nodes).zip(bias) {
+                *row = Row::fit::<BITS>(gradients, *nodes, extra, bias);
+            }
         }
-        Self(rows)
+        plane
     }
 }
 
