@@ -273,7 +273,7 @@ impl<C: Pixel> Frame<'_, '_, C> {
         let active = ActiveTriangles::new(active_triangles, self.queue);
         let blend = self.state.antialiased().then(|| Blend { samples: samples.get_mut(..count).unwrap_or_default() });
         let mut band = Band { pixels, depth: lent, width, top: self.top as i32, rows: rows as i32, blend, active };
-        band.clear(self.state.background);
+        band.clear(self.state.background, self.rows.clone());
         let (pixels, drawn) = if self.binned {
             let entries = core::mem::take(&mut self.state.memory.bins);
             let mut walk = self.bins.band(entries, bottom);

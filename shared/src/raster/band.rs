@@ -1,6 +1,8 @@
 //! A band: some rows of the picture and their depth, the only memory that drawing writes.
 
 use crate::{coverage::sample::Sample, pixel::Pixel, raster::active::ActiveTriangles};
+use core::ops::Range;
+use zerocopy::{FromBytes, IntoBytes};
 
 /// Rows `top .. top + rows` of the viewport.
 #[derive(Debug)]
@@ -42,9 +44,9 @@ impl<C: Pixel> Band<'_, C> {
 }
 
 impl<C> Band<'_, C> {
-    /// Fills the band with background, infinitely far.
+    /// Fills the band with background, infinitely far in the rows that triangles can reach; nothing asks how far it is in others.
     #[inline(never)]
-    pub fn clear(&mut self, background: C)
+    pub fn clear(&mut self, background: C, reached: Range<u32>)
     where
         C: Copy,
     {
@@ -52,7 +54,9 @@ impl<C> Band<'_, C> {
             Some(blend) => blend.samples.fill(Sample::EMPTY),
             None => {
                 fill(self.pixels, background);
-                fill(self.depth, 0);
+                let within = |row: u32| (row as i32).max(self.top).min(self.top.wrapping_add(self.rows));
+                let (first, end) = (self.start(within(reached.start)), self.start(within(reached.end)));
+                clear_depth(self.depth.get_mut(first..end).unwrap_or_default());
             }
         }
     }
@@ -68,6 +72,15 @@ impl<C> Band<'_, C> {
     #[must_use]
     pub fn start(&self, row: i32) -> usize {
         (row.wrapping_sub(self.top) as usize).wrapping_mul(self.width)
+    }
+}
+
+/// Makes a depth buffer infinitely far, two pixels at a time.
+fn clear_depth(depth: &mut [u16]) {
+    match <[u32]>::mut_from_bytes(depth.as_mut_bytes()) {
+        Ok(pairs) => fill(pairs, 0),
+        // An odd number of pixels, or half a word off.
+        Err(_) => depth.fill(0),
     }
 }
 
