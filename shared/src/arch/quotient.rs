@@ -8,11 +8,15 @@ use crate::arch::product::HALVES;
 /// Largest divisor of [`slope`].
 pub(crate) const LARGEST: usize = 1424;
 
+/// Largest divisor in the table: edges of 32 rows. Few are higher, and the table with all of them would take three times the flash.
+const TABLED: usize = 512;
+const _: () = assert!(LARGEST.div_ceil(4) <= TABLED);
+
 /// Reciprocals 2^32 / d, rounded down, by d; 2^32 - 1 for 1.
-static INVERSES: [u32; LARGEST + 1] = {
-    let mut table = [u32::MAX; LARGEST + 1];
+static INVERSES: [u32; TABLED + 1] = {
+    let mut table = [u32::MAX; TABLED + 1];
     let mut d = 2;
-    while d <= LARGEST {
+    while d <= TABLED {
         table[d] = ((1u64 << 32) / d as u64) as u32;
         d += 1;
     }
@@ -35,15 +39,29 @@ pub(crate) fn slope(n: i32, d: i32) -> i32 {
 #[inline(never)]
 fn by_table(n: i32, d: i32) -> i32 {
     let (size, divisor) = (n.unsigned_abs(), d as u32);
-    let inverse = INVERSES.get(d as usize).copied().unwrap_or(0);
-    // The upper half of n 2^21 inverse, by halves of the inverse. Less than n 2^21 / 2^32 is missing: too small by one at most.
-    let estimate = (size.wrapping_mul(inverse >> 16) << (SLOPE - 16)).wrapping_add(size.wrapping_mul(inverse & 0xFFFF) >> (32 - SLOPE));
-    let rest = (size << SLOPE).wrapping_sub(estimate.wrapping_mul(divisor));
-    let (exact, rest) = if rest >= divisor { (estimate.wrapping_add(1), rest.wrapping_sub(divisor)) } else { (estimate, rest) };
+    let tabled = INVERSES.get(d as usize);
+    // Or that of the next multiple of four: too small by less than a hundredth.
+    let inverse = tabled.copied().unwrap_or_else(|| INVERSES.get(divisor.div_ceil(4) as usize).copied().unwrap_or(0) >> 2);
+    // The upper half of n 2^21 inverse, by halves of the inverse. Of a tabled inverse less than n 2^21 / 2^32 is missing: too small by one
+    // at most.
+    let mut quotient = (size.wrapping_mul(inverse >> 16) << (SLOPE - 16)).wrapping_add(size.wrapping_mul(inverse & 0xFFFF) >> (32 - SLOPE));
+    let mut rest = (size << SLOPE).wrapping_sub(quotient.wrapping_mul(divisor));
+    if tabled.is_none() {
+        for _ in 0..4 {
+            // All but a hundredth of what is missing, by the upper bits of the rest and of the inverse.
+            let more = (rest >> 10).wrapping_mul(inverse >> 8) >> 14;
+            quotient = quotient.wrapping_add(more);
+            rest = rest.wrapping_sub(more.wrapping_mul(divisor));
+        }
+    }
+    if rest >= divisor {
+        quotient = quotient.wrapping_add(1);
+        rest = rest.wrapping_sub(divisor);
+    }
     match (n < 0, rest) {
-        (false, _) => exact as i32,
-        (true, 0) => exact.wrapping_neg() as i32,
-        (true, _) => !exact as i32,
+        (false, _) => quotient as i32,
+        (true, 0) => quotient.wrapping_neg() as i32,
+        (true, _) => !quotient as i32,
     }
 }
 
