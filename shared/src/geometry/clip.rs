@@ -25,13 +25,13 @@ struct Corner {
     normal: [i32; 3],
 }
 
-/// A corner after the cut: the object-space vertex and its place in eye space.
+/// A corner after the cut: the object-space vertex and its place on the screen.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Cut {
     /// Position and unit normal.
     pub vertex: Vertex,
-    /// Eye space, Q18.14.
-    pub eye: [i32; 3],
+    /// `[x, y, inv_depth]`, see [`View::project`].
+    pub place: [i32; 3],
 }
 
 /// The part of a triangle that can be projected: a fan around its first corner; empty if there is none.
@@ -59,7 +59,8 @@ pub(crate) fn clip(view: &View, vertices: [&Vertex; 3]) -> Vec<Cut, CORNERS> {
     let mut cuts = Vec::new();
     for corner in &polygon {
         let normal = normalise(corner.normal).map(|c| ((c + (1 << 15)) >> 16) as i16);
-        let _ = cuts.push(Cut { vertex: Vertex { position: corner.position.map(|c| c as i16), normal }, eye: corner.eye });
+        let (place, _) = view.project(corner.eye);
+        let _ = cuts.push(Cut { vertex: Vertex { position: corner.position.map(|c| c as i16), normal }, place });
     }
     cuts
 }

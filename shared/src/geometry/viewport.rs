@@ -133,7 +133,7 @@ impl Viewport {
     #[inline(never)]
     pub fn clipped_bounds(self, view: &View, vertices: [&Vertex; 3]) -> Option<Bounds> {
         let polygon = clip::clip(view, vertices);
-        let mut corners = polygon.iter().map(|cut| view.project(cut.eye).0);
+        let mut corners = polygon.iter().map(|cut| cut.place);
         if self.antialiased {
             return self.visible(Bounds::touched(corners));
         }

@@ -31,6 +31,12 @@ impl Row {
         // The move from the anchor column to column 0 is exact, modulo 2^32.
         Self { c: c.wrapping_sub(dx.wrapping_mul(gradients.column())).wrapping_add(bias), dx, dy }
     }
+
+    /// [`Self::fit`] in a function of its own, for several channels.
+    #[inline(never)]
+    fn fitted<const BITS: u32>(gradients: &Gradients, nodes: &[i32; 3], extra: u32, bias: i32) -> Self {
+        Self::fit::<BITS>(gradients, *nodes, extra, bias)
+    }
 }
 
 impl<const CH: usize> Plane<CH> {
@@ -52,10 +58,7 @@ impl<const CH: usize> Plane<CH> {
                 *row = Row::fit::<BITS>(gradients, nodes, extra, bias);
             }
         } else {
-            // Several are not moved to the stack first.
-            for ((row, nodes), bias) in plane.0.iter_mut().zip(nodes).zip(bias) {
-                *row = Row::fit::<BITS>(gradients, *nodes, extra, bias);
-            }
+            each_channel::<CH>(|c| plane.0[c] = Row::fitted::<BITS>(gradients, &nodes[c], extra, bias[c]));
         }
         plane
     }

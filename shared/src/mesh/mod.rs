@@ -176,7 +176,7 @@ impl<C: Pixel> MeshPass<'_, C> {
         // The fan that clipping leaves.
         let polygon = clip::clip(self.stage.view, vertices);
         let place = |cut: &clip::Cut| {
-            let ([x, y, depth], _) = self.stage.view.project(cut.eye);
+            let [x, y, depth] = cut.place;
             ScreenVertex { x, y, depth, ..self.stage.transform(&cut.vertex) }
         };
         let Some((first, rest)) = polygon.split_first() else { return 0 };

@@ -5,10 +5,12 @@
 //! for diffuse light, c the smallest cosine between two corners' normals.
 
 use crate::{
+    interpolate::{field::Field, plane::Plane},
     lighting::materials::{Highlight, MaterialTables},
-    method::{Costs, Facts, Loops, Method, RANGE, Shading, Style, TriangleSetup, VertexLight},
+    method::{Costs, Facts, Loops, Method, RANGE, Shading, Style, TriangleSetup, VertexLight, level_field},
     pixel::Pixel,
-    raster::{band::Band, canvas::Canvas},
+    raster::{band::Band, canvas::Canvas, pixel_shader::Ramp},
+    setup::gradients::Gradients,
 };
 
 static FACTS: Facts = Facts {
@@ -53,9 +55,15 @@ impl Loops for Gouraud {
         Some(if !C::GRAY && shading.reflectance.three_channels() {
             three(setup, band)
         } else {
-            Shading::fill_one(setup, || [a.light[0], b.light[0], c.light[0]], tables, band)
+            setup.fill(|| one(setup.gradients, [a.light[0], b.light[0], c.light[0]]), Ramp(tables.ramp), band)
         })
     }
+}
+
+/// In a function of its own: by measurement, what draws the triangle has more registers then.
+#[inline(never)]
+fn one(gradients: &Gradients, levels: [i32; 3]) -> Plane<1> {
+    level_field(levels).fit(gradients)
 }
 
 #[inline(always)]

@@ -297,6 +297,12 @@ pub fn levels_at<const N: usize>(levels: [[i32; 3]; N]) -> Nodes<N, 3, RANGE> {
     Nodes::new(channels(levels), EXTRA).biased([bias(0); 3])
 }
 
+/// The field through levels at `N` nodes, Q9.7, as indices of the table of colours.
+#[inline(always)]
+fn level_field<const N: usize>(levels: [i32; N]) -> Nodes<N, 1, RANGE> {
+    Nodes::new([levels], EXTRA).biased([bias(1 << (WALK - 1))])
+}
+
 /// The bias of walked levels plus a rounding half.
 const fn bias(half: i32) -> i32 {
     (BIAS << WALK).wrapping_add(half)
@@ -349,8 +355,7 @@ impl Shading<'_> {
     where
         Nodes<N, 1, RANGE>: Field<Value = [u32; 1]>,
     {
-        let patch = || Nodes::<N, 1, RANGE>::new([nodes()], EXTRA).biased([bias(1 << (WALK - 1))]).fit(setup.gradients);
-        setup.fill(patch, Ramp(tables.ramp), band)
+        setup.fill(|| level_field(nodes()).fit(setup.gradients), Ramp(tables.ramp), band)
     }
 
     /// [`Self::draw_levels`] by loops of a method: three levels.

@@ -141,7 +141,7 @@ impl ScreenTriangle {
     /// Computes the plane of depth now; otherwise it is computed when the triangle is drawn.
     #[inline(always)]
     pub(crate) fn set_up_depth(&mut self, gradients: &Gradients) {
-        self.rows.inv_depth = Some(self.plane(gradients, self.rows.sides.row));
+        self.rows.inv_depth = Some(self.fit_depth(gradients, self.rows.sides.row));
     }
 
     /// Draws the rows that lie in `band`; returns how many pixels they have.
@@ -251,8 +251,13 @@ impl ScreenTriangle {
     }
 
     /// The plane of depth, standing on `row`.
-    #[inline(always)]
+    #[inline(never)]
     pub fn plane(&self, gradients: &Gradients, row: i32) -> Plane<1> {
+        self.fit_depth(gradients, row)
+    }
+
+    #[inline(always)]
+    fn fit_depth(&self, gradients: &Gradients, row: i32) -> Plane<1> {
         let [a, b, c] = self.depth;
         let node = |depth: i32| (depth + (1 << (DEPTH - DEPTH_NODE - 1))) >> (DEPTH - DEPTH_NODE);
         let mut depth = Plane::fit::<DEPTH_NODE>(gradients, &[[node(a), node(b), node(c)]], 16 + DEPTH_WALK - DEPTH_NODE, [0]);

@@ -249,8 +249,7 @@ impl Gradients {
             Scale::WordSized(area) if BITS <= word_sized::LONG && extra >= word_sized::LONG_EXTRA => {
                 area.long_linear(self.edges, self.subpixels(), nodes, extra)
             }
-            Scale::WordSized(area) => self.linear_by_mantissas::<BITS>(Self::mantissas(self.edges, area), nodes, extra),
-            Scale::Part(gradients) => self.linear_by_mantissas::<BITS>(gradients, nodes, extra),
+            Scale::WordSized(_) | Scale::Part(_) => self.linear_by_mantissas(BITS, nodes, extra),
             Scale::Any(_) => self.linear_any(nodes, extra),
         }
     }
@@ -261,11 +260,12 @@ impl Gradients {
         [self.offset[0] >> SPLITS, self.offset[1] >> SPLITS]
     }
 
-    #[inline(always)]
-    fn linear_by_mantissas<const BITS: u32>(&self, gradients: Slopes, [i0, i1, i2]: [i32; 3], extra: u32) -> [i32; 3] {
-        // Differences are below 2^BITS.
-        let up = 30 - BITS;
-        let left = extra + BITS + 2 - gradients.exponent as u32;
+    #[inline(never)]
+    fn linear_by_mantissas(self, bits: u32, [i0, i1, i2]: [i32; 3], extra: u32) -> [i32; 3] {
+        let gradients = self.gradients();
+        // Differences are below 2^bits.
+        let up = 30 - bits;
+        let left = extra + bits + 2 - gradients.exponent as u32;
         let [c, dx, dy] = Mantissas::new(gradients, self.offset).products((i1 - i0) << up, (i2 - i0) << up);
         [(i0 << extra).wrapping_add(rounded(c, left)), rounded(dx, left), rounded(dy, left)]
     }
