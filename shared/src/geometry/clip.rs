@@ -4,6 +4,7 @@
 //! it at the same point, from its inner to its outer end: no crack opens.
 
 use crate::{
+    arch::quotient::long,
     format::{HAVERSINE, INVERSE_SUM_LENGTH, UNIT},
     geometry::projection::{PLANES, View},
     math::{
@@ -70,7 +71,7 @@ fn between(inner: &Corner, outer: &Corner, di: i64, d_o: i64) -> Corner {
     // The ratio with 22 fraction bits, without overflow.
     let whole = di.saturating_sub(d_o).max(1);
     let spare = 23u32.saturating_sub(whole.leading_zeros());
-    let t = ((di >> spare) << 22) / (whole >> spare).max(1);
+    let t = long(((di >> spare) << 22) as u64, (whole >> spare) as u64) as i64;
     let mix = |a, b| zip(a, b, |a: i32, b: i32| (i64::from(a) + (((i64::from(b) - i64::from(a)) * t) >> 22)) as i32);
     Corner { eye: mix(inner.eye, outer.eye), position: mix(inner.position, outer.position), normal: mix(inner.normal, outer.normal) }
 }

@@ -1,7 +1,10 @@
 //! Projection of object space to the screen.
 
 use crate::{
-    arch::product::{product, upper},
+    arch::{
+        product::{product, upper},
+        quotient::long,
+    },
     format::{DEPTH, ROTATION, SUBPIXEL, UNIT},
     geometry::pose::Pose,
     math::{
@@ -105,7 +108,7 @@ impl View {
             let shift = near.leading_zeros() - 1;
             Projection::Perspective { focal, exponent, near: near << shift, depth_shift: shift + 30 - DEPTH }
         } else {
-            let inv_depth = ((NEAREST as i64) << UNIT) / i64::from((camera.far - near).max(1));
+            let inv_depth = long((NEAREST as u64) << UNIT, (camera.far - near).max(1) as u64) as i64;
             Projection::Orthographic { far: camera.far, inv_depth }
         };
         Self {
@@ -175,7 +178,11 @@ impl View {
         let from = if self.is_perspective() { self.translation.map(|c| 2 * i64::from(c) - 1) } else { [0, 0, 1 << 15] };
         let along = |k: usize| columns.iter().zip(from).map(|(column, t)| column.get(k).unwrap_or(&0) * t).sum::<i64>();
         // A rotation's determinant is not 0.
-        [0, 1, 2].map(|k| (-along(k) << 13).checked_div(determinant).unwrap_or(0) as i32)
+        [0, 1, 2].map(|k| {
+            let along = along(k) << 13;
+            let size = long(along.unsigned_abs(), determinant.unsigned_abs()) as i32;
+            if (along < 0) == (determinant < 0) { -size } else { size }
+        })
     }
 
     /// Upper bound of the distance between the eye and a vertex of a mesh in the ball of `radius` about the origin, Q18.14; 1 under
@@ -194,8 +201,9 @@ impl View {
     /// they are one unit and 25/32.
     #[must_use]
     pub fn displacement(&self, reach: u32) -> u64 {
-        let pixel = ((25 * u64::from(reach)) << (30 + 16 - UNIT - 5)).checked_div(self.focal.unsigned_abs());
-        pixel.unwrap_or(u64::from(u32::MAX)).saturating_add(1 + (1 << (30 - UNIT))).min(u64::from(u32::MAX))
+        // A focal length is not 0.
+        let pixel = long((25 * u64::from(reach)) << (30 + 16 - UNIT - 5), self.focal.unsigned_abs());
+        pixel.saturating_add(1 + (1 << (30 - UNIT))).min(u64::from(u32::MAX))
     }
 
     /// How far rounding may move a point of a mesh that is marked as [`crate::stream::record::CLOSED_CONVEX`] along x or y, seen in a

@@ -1,6 +1,7 @@
 //! What a material reflects of the lights of a scene, computed once: [`Reflectance`] in levels, [`MaterialTables`] in colours.
 
 use crate::{
+    arch::quotient::long,
     format::{BIAS, CHANNEL, COSINE, Intensity, LEVEL, MAX_LIGHTS, PIXEL_COSINE, RAMP, UNIT, WALK},
     lighting::{
         lights::{MeanNormal, Source},
@@ -240,7 +241,7 @@ impl Reflectance {
         let whole = u64::from(largest(base).max(1));
         self.base = zip(base, depth, |channel, depth| {
             let full = ((1u64 << depth) - 1) << (8 - depth);
-            ((u64::from(channel) * full * 256 + whole * 255 / 2) / (whole * 255)) as u16
+            long(u64::from(channel) * full * 256 + whole * 255 / 2, whole * 255) as u16
         });
     }
 

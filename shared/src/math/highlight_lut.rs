@@ -1,10 +1,13 @@
 //! The lookup table of the highlight, x^n.
 
 use crate::{
-    arch::product::{product, unsigned_product, upper_by_half_word},
+    arch::{
+        product::{product, unsigned_product, upper_by_half_word},
+        quotient::long,
+    },
     format::{COSINE, PIXEL_COSINE},
 };
-use core::num::{NonZeroU32, NonZeroU64};
+use core::num::NonZeroU32;
 use zerocopy::{FromBytes, Immutable, IntoBytes, KnownLayout};
 
 /// Intervals of the table; it has one entry more.
@@ -57,6 +60,24 @@ pub fn square(x: i32) -> i32 {
     if x >= 1 << (COSINE - 1) { (product(x, x) >> COSINE) as i32 } else { x - (1 << (COSINE - 2)) }
 }
 
+/// The square root of `x`, rounded down. Exact (tests::roots_are_exact).
+///
+/// Source: Hacker's Delight 11-1, bit by bit, with a fifth of the library's code. Few methods take roots, and only when a table is filled.
+#[inline(never)]
+fn root(x: u64) -> u64 {
+    let (mut rest, mut root, mut bit) = (x, 0, 1 << 62);
+    while bit > 0 {
+        let more = root + bit;
+        root >>= 1;
+        if rest >= more {
+            rest -= more;
+            root += bit;
+        }
+        bit >>= 2;
+    }
+    root
+}
+
 /// Four times the exponent up to which the table covers the whole of [0, 1].
 const WHOLE: NonZeroU32 = NonZeroU32::new(4 * 8).unwrap();
 
@@ -78,21 +99,22 @@ impl HighlightLut {
         self.floor = floor;
         for (i, entry) in self.table.iter_mut().enumerate() {
             // x = 1 - 8 i / (2048 max(n, 8)), Q1.31: products of two fit 64 bits.
-            let below = ((i as u64) << 25) / NonZeroU64::from(scale);
+            let below = long((i as u64) << 25, scale.get().into());
             let x = (1u64 << 31).saturating_sub(below);
             let x = match base {
                 Base::Square => (square((x >> 1) as i32).max(0) as u64) << 1,
-                _ => (0..base.roots()).fold(x, |x, _| (x << 31).isqrt()),
+                _ => (0..base.roots()).fold(x, |x, _| root(x << 31)),
             };
-            let (mut result, mut base, mut n) = (1u64 << 31, x, n);
+            let product = |a: u32, b: u32| (unsigned_product(a, b) >> 31) as u32;
+            let (mut result, mut base, mut n) = (1u32 << 31, x as u32, n);
             while n > 0 {
                 if n & 1 == 1 {
-                    result = (result * base) >> 31;
+                    result = product(result, base);
                 }
-                base = (base * base) >> 31;
+                base = product(base, base);
                 n >>= 1;
             }
-            *entry = (u64::from(floor) + ((result * u64::from(full) + (1 << 30)) >> 31)).min(0xffff) as u16;
+            *entry = (u64::from(floor) + ((unsigned_product(result, full) + (1 << 30)) >> 31)).min(0xffff) as u16;
         }
         // Everything below the domain gets the lowest entry; in the pixel loop, the one above it.
         let [.., lower, lowest] = &mut self.table;
@@ -146,7 +168,7 @@ impl HighlightLut {
     /// The cosine, Q2.30, at which the table ends: the power of smaller ones is taken as 0.
     #[must_use]
     pub fn highlight_threshold(&self) -> i32 {
-        (1i32 << COSINE) - ((32u64 << COSINE) / NonZeroU64::from(NonZeroU32::new(self.scale).unwrap_or(WHOLE))) as i32
+        (1i32 << COSINE) - long(32u64 << COSINE, NonZeroU32::new(self.scale).unwrap_or(WHOLE).get().into()) as i32
     }
 }
 
@@ -180,6 +202,12 @@ pub const NEAREST_ERROR: f64 = 2.0e-3;
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn roots_are_exact() {
+        let numbers = (0..64).flat_map(|bits| (0..1000u64).map(move |k| (k * 0x9E37_79B9_7F4A_7C15) >> bits));
+        numbers.chain([u64::MAX]).for_each(|x| assert_eq!(root(x), x.isqrt(), "{x}"));
+    }
 
     #[test]
     fn error() {

@@ -12,7 +12,7 @@
 use zerocopy::{FromBytes, Immutable, IntoBytes, KnownLayout};
 
 use crate::{
-    arch::quotient::{LARGEST, SLOPE, slope},
+    arch::quotient::{LARGEST, SLOPE, signed_long, slope},
     format::{CENTRE, SUBPIXEL},
 };
 
@@ -84,7 +84,7 @@ impl Edge {
         let t = i64::from((row << SUBPIXEL) + CENTRE) - i64::from(self.y);
         let numerator = i64::from(self.x - CENTRE) * dy + i64::from(self.dx) * t;
         // Ceiling of numerator / (16 dy).
-        -(-numerator).div_euclid(dy << SUBPIXEL) as i32
+        -signed_long(-numerator, (dy << SUBPIXEL) as u64) as i32
     }
 
     /// The column at the centre of its first row, ready to be stepped to its end. Only for edges of at most [`MAX_STEPPED_HEIGHT`]

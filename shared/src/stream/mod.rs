@@ -238,14 +238,11 @@ impl<'a> Stream<'a> {
         }
         field(next_vertex == header.vertices && next_triangle == header.triangles, "mesh coverage", self.meshes.len())?;
         for (i, vertex) in self.vertices.iter().enumerate() {
-            let square: i64 = vertex.normal.iter().map(|&c| i64::from(c) * i64::from(c)).sum();
-            field(is_one(square, 2 * UNIT), "vertex normal", i)?;
-            let square: i64 = vertex.position.iter().map(|&c| i64::from(c) * i64::from(c)).sum();
-            field(square <= i64::from(header.radius) * i64::from(header.radius), "vertex position", i)?;
+            field(is_one(square(vertex.normal).into(), 2 * UNIT), "vertex normal", i)?;
+            field(square(vertex.position) <= u32::from(header.radius) * u32::from(header.radius), "vertex position", i)?;
         }
         for (i, triangle) in self.triangles.iter().enumerate() {
-            let square: i64 = triangle.normal.iter().map(|&c| i64::from(c) * i64::from(c)).sum();
-            field(is_one(square, 2 * UNIT), "triangle normal", i)?;
+            field(is_one(square(triangle.normal).into(), 2 * UNIT), "triangle normal", i)?;
             field(triangle.min_normal_length <= 1 << NORMAL_LENGTH, "triangle normal length", i)?;
             field(triangle.inverse_altitude > 0, "triangle altitude", i)?;
         }
@@ -313,6 +310,12 @@ pub const MAX_FOCAL: u32 = 16 << 16;
 
 fn within(c: i32, limit: i32) -> bool {
     (-limit..=limit).contains(&c)
+}
+
+/// The squared length of a vector, exactly: each square is at most 2^30.
+fn square([x, y, z]: [i16; 3]) -> u32 {
+    let square = |c: i16| u32::from(c.unsigned_abs()) * u32::from(c.unsigned_abs());
+    square(x) + square(y) + square(z)
 }
 
 /// Whether `square`, with `bits` fraction bits, is 1 to 1/256.
