@@ -72,8 +72,17 @@ fn between(inner: &Corner, outer: &Corner, di: i64, d_o: i64) -> Corner {
     let whole = di.saturating_sub(d_o).max(1);
     let spare = 23u32.saturating_sub(whole.leading_zeros());
     let t = long(((di >> spare) << 22) as u64, (whole >> spare) as u64) as i64;
-    let mix = |a, b| zip(a, b, |a: i32, b: i32| (i64::from(a) + (((i64::from(b) - i64::from(a)) * t) >> 22)) as i32);
-    Corner { eye: mix(inner.eye, outer.eye), position: mix(inner.position, outer.position), normal: mix(inner.normal, outer.normal) }
+    Corner {
+        eye: mix(inner.eye, outer.eye, t),
+        position: mix(inner.position, outer.position, t),
+        normal: mix(inner.normal, outer.normal, t),
+    }
+}
+
+/// The vector at `t`, Q.22, on the way from `a` to `b`.
+#[inline(never)]
+fn mix(a: [i32; 3], b: [i32; 3], t: i64) -> [i32; 3] {
+    zip(a, b, |a, b| (i64::from(a) + (((i64::from(b) - i64::from(a)) * t) >> 22)) as i32)
 }
 
 /// The record of one triangle of the fan, cut from `whole`: indices and edge constants are of the new `corners`, which turn
