@@ -122,6 +122,12 @@ impl Viewport {
         })
     }
 
+    /// [`Self::bounds`] by the corners, for rare triangles.
+    #[inline(never)]
+    pub fn bounds_of(self, corners: [&ScreenVertex; 3]) -> Option<Bounds> {
+        self.bounds(&Extent::new(corners.map(|corner| [corner.x, corner.y])))
+    }
+
     /// Whether a triangle with cached corners is word-sized, and not beside the viewport: it is then set up in words.
     #[inline(always)]
     pub fn is_word_sized(self, extent: &Extent) -> bool {

@@ -1,7 +1,7 @@
 //! What a material reflects of the lights of a scene, computed once: [`Reflectance`] in levels, [`MaterialTables`] in colours.
 
 use crate::{
-    arch::quotient::long,
+    arch::{product::unsigned_product, quotient::long},
     format::{BIAS, CHANNEL, COSINE, Intensity, LEVEL, MAX_LIGHTS, PIXEL_COSINE, RAMP, UNIT, WALK},
     lighting::{
         lights::{MeanNormal, Source},
@@ -157,8 +157,9 @@ fn largest(colour: Colour) -> u32 {
 /// Whether `colour` is a multiple of `base`, to 1/1024 of its largest channel.
 #[inline(never)]
 fn along(colour: Colour, base: Colour) -> bool {
-    let (a, b) = (u64::from(largest(colour)), u64::from(largest(base)));
-    zip(colour, base, |c, d| (u64::from(c) * b).abs_diff(u64::from(d) * a) <= (a * b) >> 10) == [true; 3]
+    let (a, b) = (largest(colour), largest(base));
+    let most = unsigned_product(a, b) >> 10;
+    zip(colour, base, |c, d| unsigned_product(c, b).abs_diff(unsigned_product(d, a)) <= most) == [true; 3]
 }
 
 impl Reflectance {
@@ -237,12 +238,8 @@ impl Reflectance {
             Base::Square => square(self.highlight_lut.highlight_threshold()),
             _ => self.highlight_lut.highlight_threshold(),
         };
-        // Share of each channel in the base colour, scaled to what the output can show.
-        let whole = u64::from(largest(base).max(1));
-        self.base = zip(base, depth, |channel, depth| {
-            let full = ((1u64 << depth) - 1) << (8 - depth);
-            long(u64::from(channel) * full * 256 + whole * 255 / 2, whole * 255) as u16
-        });
+        let whole = largest(base).max(1);
+        self.base = zip(base, depth, |channel, depth| share(channel, whole, depth));
     }
 
     /// Whether three levels are walked instead of one, because the colours of the material are no multiples of one another.
@@ -514,6 +511,14 @@ fn reflected((diffuse, specular): (u16, u16), cosine: i32, highlight: u32) -> i3
     let diffuse = (u32::from(diffuse) * cosine + (1 << 14)) >> 15;
     let specular = (u32::from(specular) * highlight + (1 << (ENTRY - 1))) >> ENTRY;
     (diffuse + specular) as i32
+}
+
+/// The share of a channel in a colour whose largest is `whole`, Q0.8 scaled to what an output of `depth` bits can show.
+#[inline(never)]
+fn share(channel: u32, whole: u32, depth: u32) -> u16 {
+    let full = ((1 << depth) - 1) << (16 - depth);
+    let whole = u64::from(whole) * 255;
+    long(u64::from(channel) * full + whole / 2, whole) as u16
 }
 
 /// A product of two gains (Q4.28, 1 is full) as a level in Q9.7 whose upper `depth` bits are the channel.

@@ -156,7 +156,7 @@ impl<C: Pixel> MeshPass<'_, C> {
     /// The visible bounding box of `triangle`; `None` if it shows its back, or no pixel can belong to it.
     pub(crate) fn bounds(&self, triangle: &Triangle) -> Option<Bounds> {
         match self.corners(triangle).filter(is_ready) {
-            Some([a, b, c]) => self.viewport.bounds(&Extent::new([[a.x, a.y], [b.x, b.y], [c.x, c.y]])),
+            Some(corners) => self.viewport.bounds_of(corners),
             None => self.stage.bounds(self.viewport, self.vertices, triangle),
         }
     }

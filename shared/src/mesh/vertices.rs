@@ -3,7 +3,6 @@
 use crate::{
     format::UNIT,
     geometry::{
-        cull::Extent,
         projection::{ScreenVertex, State, View},
         viewport::{Bounds, Viewport},
     },
@@ -78,7 +77,7 @@ impl VertexStage<'_> {
         let vertices = [a?, c?, b?];
         let corners = vertices.map(|vertex| self.transform(vertex));
         if corners.iter().all(|corner| corner.state == State::READY) {
-            viewport.bounds(&Extent::new(corners.map(|corner| [corner.x, corner.y])))
+            viewport.bounds_of(corners.each_ref())
         } else {
             viewport.clipped_bounds(self.view, vertices)
         }

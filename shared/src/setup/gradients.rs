@@ -249,7 +249,15 @@ impl Gradients {
             Scale::WordSized(area) if BITS <= word_sized::LONG && extra >= word_sized::LONG_EXTRA => {
                 area.long_linear(self.edges, self.subpixels(), nodes, extra)
             }
-            Scale::WordSized(_) | Scale::Part(_) => self.linear_by_mantissas(BITS, nodes, extra),
+            _ => self.linear_otherwise(BITS, nodes, extra),
+        }
+    }
+
+    /// By value: were its address taken, the fast way would keep these gradients in memory.
+    #[inline(never)]
+    fn linear_otherwise(self, bits: u32, nodes: [i32; 3], extra: u32) -> [i32; 3] {
+        match self.scale {
+            Scale::WordSized(_) | Scale::Part(_) => self.linear_by_mantissas(bits, nodes, extra),
             Scale::Any(_) => self.linear_any(nodes, extra),
         }
     }
@@ -260,8 +268,7 @@ impl Gradients {
         [self.offset[0] >> SPLITS, self.offset[1] >> SPLITS]
     }
 
-    #[inline(never)]
-    fn linear_by_mantissas(self, bits: u32, [i0, i1, i2]: [i32; 3], extra: u32) -> [i32; 3] {
+    fn linear_by_mantissas(&self, bits: u32, [i0, i1, i2]: [i32; 3], extra: u32) -> [i32; 3] {
         let gradients = self.gradients();
         // Differences are below 2^bits.
         let up = 30 - bits;
@@ -270,9 +277,7 @@ impl Gradients {
         [(i0 << extra).wrapping_add(rounded(c, left)), rounded(dx, left), rounded(dy, left)]
     }
 
-    #[cold]
-    #[inline(never)]
-    fn linear_any(self, nodes: [i32; 3], extra: u32) -> [i32; 3] {
+    fn linear_any(&self, nodes: [i32; 3], extra: u32) -> [i32; 3] {
         let [c, dx, dy] = self.plane(nodes, extra);
         let [c, dx, dy, ..] = self.round([c, dx, dy, 0, 0, 0]);
         [c, dx, dy]
