@@ -3,7 +3,8 @@
 //! Armv6-M has no division: a quotient is a call of 200 instructions there. A product with a reciprocal from a table takes a quarter of
 //! that, and a correction by the remainder makes it exact, so both ways give the same bits (Granlund & Montgomery 1994).
 
-use crate::arch::product::HALVES;
+use crate::arch::product::{HALVES, unsigned_product};
+use core::num::NonZeroU32;
 
 /// Largest divisor of [`slope`].
 pub(crate) const LARGEST: usize = 1424;
@@ -136,12 +137,45 @@ pub(crate) fn signed_long(n: i64, d: u64) -> i64 {
     long((n ^ sign) as u64, d) as i64 ^ sign
 }
 
+/// `(quotient, remainder)` of the number with the words `upper` and `lower`, by a word above `upper`, so that the quotient fits one.
+/// Exact (tests::quotients_by_words_are_exact).
+///
+/// Source: Knuth, The Art of Computer Programming 4.3.1, Algorithm D; Warren, Hacker's Delight 9-3, in digits of half a word.
+#[inline(never)]
+#[must_use]
+pub(crate) fn by_word([upper, lower]: [u32; 2], divisor: NonZeroU32) -> (u32, u32) {
+    let up = divisor.leading_zeros();
+    let divisor = divisor.get() << up;
+    let number = (u64::from(upper) << 32 | u64::from(lower)) << up;
+    let (mut rest, mut quotient) = ((number >> 32) as u32, 0);
+    for half in [number as u32 >> 16, number as u32 & 0xFFFF] {
+        // By the upper half of the divisor, whose first bit is set, a digit is too large by two at most.
+        let mut digit = (rest / (divisor >> 16 | 1 << 15)).min(0xFFFF);
+        let mut left = (u64::from(rest) << 16 | u64::from(half)).wrapping_sub(unsigned_product(digit, divisor));
+        while (left as i64) < 0 {
+            digit -= 1;
+            left = left.wrapping_add(divisor.into());
+        }
+        (rest, quotient) = (left as u32, quotient << 16 | digit);
+    }
+    (quotient, rest >> up)
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
     use proptest::prelude::*;
 
     proptest! {
+        #[test]
+        fn quotients_by_words_are_exact(upper: u32, lower: u32, divisor: u32, bits in 0..32u32, close: bool) {
+            let divisor = (divisor >> bits).max(1);
+            let upper = if close { divisor - 1 } else { upper % divisor };
+            let number = u64::from(upper) << 32 | u64::from(lower);
+            let exact = ((number / u64::from(divisor)) as u32, (number % u64::from(divisor)) as u32);
+            prop_assert_eq!(by_word([upper, lower], NonZeroU32::new(divisor).unwrap()), exact);
+        }
+
         #[test]
         fn long_quotients_are_exact(n: u64, d: u64, few in 0..64u32, fewer in 0..64u32) {
             let (n, d) = (n >> few, d >> fewer);

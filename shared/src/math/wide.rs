@@ -3,8 +3,9 @@
 //! Inlined, one product takes a hundred instructions on a 32-bit machine. Formulas with forty products serve rare triangles only, and
 //! must not fill the flash.
 
+use crate::arch::quotient::by_word;
 use core::{
-    num::{NonZeroU32, NonZeroU64},
+    num::NonZeroU32,
     ops::{Add, Mul, Neg, Sub},
 };
 
@@ -84,15 +85,14 @@ impl Wide {
     #[inline(never)]
     #[must_use]
     pub fn over(self, divisor: NonZeroU32) -> Self {
-        let divisor = NonZeroU64::from(divisor);
         // Of a negative number: what is left of its size is below it, so that its complement is divided.
         let sign = (self.0 >> 127) as u128;
         let size = self.0 as u128 ^ sign;
-        let (mut quotient, mut rest) = (0u128, 0u64);
+        let (mut quotient, mut rest) = (0u128, 0);
         for word in [96, 64, 32, 0] {
-            let part = rest << 32 | u64::from((size >> word) as u32);
-            quotient = quotient << 32 | u128::from(part / divisor);
-            rest = part % divisor;
+            let digit;
+            (digit, rest) = by_word([rest, (size >> word) as u32], divisor);
+            quotient = quotient << 32 | u128::from(digit);
         }
         Self((quotient ^ sign) as i128)
     }
