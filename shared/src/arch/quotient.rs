@@ -107,11 +107,17 @@ fn inverse_by_table(d: u32) -> u32 {
 }
 
 /// Quotient `n / d` of long numbers, rounded down; 0 if `d` is 0. Exact (tests::long_quotients_are_exact).
+#[inline]
+#[must_use]
+pub(crate) fn long(n: u64, d: u64) -> u64 {
+    if cfg!(target_arch = "arm") { long_by_bits(n, d) } else { n.checked_div(d).unwrap_or(0) }
+}
+
+/// [`long`] where processors have no division of long numbers.
 ///
 /// Source: long division bit by bit, as many as the quotient has. It is for what is divided rarely: a tenth of the library's code.
 #[inline(never)]
-#[must_use]
-pub(crate) fn long(n: u64, d: u64) -> u64 {
+fn long_by_bits(n: u64, d: u64) -> u64 {
     let bits = d.leading_zeros().saturating_sub(n.leading_zeros());
     if d == 0 {
         return 0;
@@ -179,7 +185,7 @@ mod tests {
         #[test]
         fn long_quotients_are_exact(n: u64, d: u64, few in 0..64u32, fewer in 0..64u32) {
             let (n, d) = (n >> few, d >> fewer);
-            prop_assert_eq!(long(n, d), n.checked_div(d).unwrap_or(0));
+            prop_assert_eq!(long_by_bits(n, d), n.checked_div(d).unwrap_or(0));
             let (n, d) = (n as i64, d >> 1);
             prop_assert_eq!(signed_long(n, d), if d == 0 { n >> 63 } else { n.div_euclid(d as i64) });
         }
