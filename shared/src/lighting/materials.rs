@@ -79,15 +79,26 @@ impl Factors {
     /// Adds a reflection to the levels of a pixel, in Q10.22 less the bits of [`Reflectance::excess`].
     #[inline(always)]
     pub fn add(&self, levels: &mut [i32; 3], reflection: Reflection) {
-        let [r, g, b] = *levels;
-        let [dr, dg, db] = self.levels(reflection);
-        *levels = [r.wrapping_add(dr), g.wrapping_add(dg), b.wrapping_add(db)];
+        *levels = zip(*levels, self.levels(reflection), i32::wrapping_add);
+    }
+
+    /// [`Self::add`] of diffuse light alone.
+    #[inline(always)]
+    pub fn add_diffuse(&self, levels: &mut [i32; 3], diffuse: i32) {
+        let cosine = Self::cosine(diffuse);
+        *levels = zip(*levels, self.diffuse, |level, diffuse| level.wrapping_add(diffuse.wrapping_mul(cosine)));
+    }
+
+    /// A cosine, Q5.27, with the fraction bits of a factor. Approximations may exceed 1, which counts as 1. Armv7-M shifts and clamps by one
+    /// instruction.
+    #[inline(always)]
+    fn cosine(diffuse: i32) -> i32 {
+        (diffuse >> (PIXEL_COSINE - FACTOR)).clamp(0, (1 << FACTOR) - 1)
     }
 
     #[inline(always)]
     fn levels(&self, Reflection { diffuse, highlight }: Reflection) -> [i32; 3] {
-        // Approximations may exceed 1, which counts as 1. Armv7-M shifts and clamps by one instruction.
-        let cosine = (diffuse >> (PIXEL_COSINE - FACTOR)).clamp(0, (1 << FACTOR) - 1);
+        let cosine = Self::cosine(diffuse);
         let level = |diffuse: i32, specular: i32| diffuse.wrapping_mul(cosine).wrapping_add(specular.wrapping_mul(highlight as i32));
         let ([dr, dg, db], [sr, sg, sb]) = (self.diffuse, self.specular);
         [level(dr, sr), level(dg, sg), level(db, sb)]
@@ -379,6 +390,12 @@ impl Reflectance {
     #[must_use]
     pub fn ambient_sums(&self) -> [i32; 3] {
         self.ambient_sums
+    }
+
+    /// Adds to `sums` what [`Self::ambient_sums`] is less for a light: that which the table of highlights holds where there is none.
+    #[inline(always)]
+    pub fn add_no_highlight(&self, factors: &Factors, sums: &mut [i32; 3]) {
+        factors.add(sums, Reflection { diffuse: 0, highlight: self.highlight_lut.floor() });
     }
 
     /// Makes intensities of sums of all lights.

@@ -22,7 +22,7 @@ use crate::{
     },
     method::{
         Loops, Shading, Style, TriangleSetup,
-        lighting_model::{EXTRA, LightingModel, NODE, Quadratic, fitted, signed},
+        lighting_model::{EXTRA, LightingModel, Lit, NODE, Quadratic, linear, signed},
         quotient,
     },
     pixel::Pixel,
@@ -34,11 +34,27 @@ pub fn shade_constant(setup: &TriangleSetup<'_>, shading: &Shading<'_>, canvas: 
     match tabled(setup) {
         // The faster root is worth its code only where little else is done at a pixel.
         Some(square) if setup.inv_depth().is_none() => {
-            let fit = |source: &Source| fitted(&shading.constant_products(setup, source), setup.gradients);
-            shading.draw_rows(setup, fit, fitted(&square, setup.gradients), Tabled, canvas)
+            let threshold = setup.highlight_threshold(shading.reflectance);
+            let fit = |source: &Source| {
+                // Both are linear, so that corners tell.
+                let [towards, half] = shading.constant_cosines(setup, source);
+                if largest(half) >= threshold {
+                    Lit::Fully(linear([towards, half]))
+                } else if largest(towards) <= 0 {
+                    Lit::Nowhere
+                } else {
+                    Lit::Diffuse(linear([towards]))
+                }
+            };
+            shading.draw_lit_in_part(setup, fit, square, Tabled, canvas)
         }
         _ => draw_constant(setup, shading, square(setup), Rooted, canvas),
     }
+}
+
+/// The largest of three values.
+fn largest([a, b, c]: [i32; 3]) -> i32 {
+    a.max(b).max(c)
 }
 
 /// Shades by linear numerators over a root, or under near lights by quadratic ones.
@@ -118,7 +134,7 @@ pub fn square(setup: &TriangleSetup<'_>) -> Quadratic<1> {
 #[derive(Clone, Copy)]
 struct Tabled;
 
-impl LightingModel<[u32; 1], [u32; 2]> for Tabled {
+impl LightingModel<[u32; 1], [u32; 2], [u32; 1]> for Tabled {
     type Common = i32;
 
     #[inline(always)]
@@ -131,6 +147,11 @@ impl LightingModel<[u32; 1], [u32; 2]> for Tabled {
         // Upper half of Q2.30 times Q2.30, and half of a root: Q5.27.
         let over = |cosine: u32| upper(signed(cosine), half_root);
         Reflection { diffuse: over(light), highlight: lut.at(over(half)) }
+    }
+
+    #[inline(always)]
+    fn reflect_diffuse(&self, &half_root: &i32, [light]: [u32; 1]) -> i32 {
+        upper(signed(light), half_root)
     }
 }
 

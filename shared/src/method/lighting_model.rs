@@ -3,7 +3,7 @@
 use crate::{
     format::{COSINE, MAX_LIGHTS},
     interpolate::{
-        Patch, Walker,
+        Constant, Patch, Walker,
         field::{Field, Nodes},
         perspective::PerspectivePatch,
     },
@@ -24,8 +24,9 @@ pub const EXTRA: u32 = COSINE - NODE;
 /// Bits of the range of nodes, which lie in [-2, 2].
 pub const BITS: u32 = NODE + 2;
 
-/// How a method computes the light at a pixel from the fields that it interpolates: `V` for each light, and `K` once for all lights.
-pub trait LightingModel<K, V>: Copy {
+/// How a method computes the light at a pixel from the fields that it interpolates: `V` for each light, `D` for one without a highlight, and
+/// `K` once for all lights.
+pub trait LightingModel<K, V, D = ()>: Copy {
     /// The result that all lights share.
     type Common: Copy + Default;
 
@@ -34,16 +35,34 @@ pub trait LightingModel<K, V>: Copy {
 
     /// The reflection of light number `light`.
     fn reflect(&self, light: usize, common: &Self::Common, fields: V, lut: CosineLookup<'_>) -> Reflection;
+
+    /// The diffuse part of [`Self::reflect`], for a light without a highlight; methods that never tell these apart have none.
+    fn reflect_diffuse(&self, _: &Self::Common, _: D) -> i32 {
+        0
+    }
+}
+
+/// What one light does to a triangle, with the fields that a method interpolates for it.
+#[derive(Clone, Copy, Debug)]
+pub enum Lit<V, D> {
+    /// It adds nothing anywhere.
+    Nowhere,
+    /// It adds diffuse light, and no highlight that can be seen.
+    Diffuse(D),
+    /// It adds both.
+    Fully(V),
 }
 
 /// Shades a triangle under any lights on any material: one light after the other over a run of pixels, so that each loop knows one light.
-struct ManyLights<'a, K, P, F, S> {
+struct ManyLights<'a, K, P, D, F, S> {
     reflectance: &'a Reflectance,
     model: F,
     /// The field that all lights share.
     common: K,
-    /// The field of each light, and what the light adds.
-    lights: &'a mut [(P, Factors)],
+    /// The number and the field of each light that adds a highlight, and what it adds.
+    lights: &'a mut [(usize, P, Factors)],
+    /// The same of lights that add none.
+    diffuse: &'a mut [(D, Factors)],
     lut: CosineLookup<'a>,
     /// Where the sums of all lights begin.
     ambient: [i32; 3],
@@ -70,14 +89,15 @@ fn enter<P: Patch>(patch: &P, rows: i32, x: i32) -> P::Walker {
     patch.enter(x)
 }
 
-impl<K, P, F> SpanShader for ManyLights<'_, K, P, F, F::Common>
+impl<K, P, D, F> SpanShader for ManyLights<'_, K, P, D, F, F::Common>
 where
     K: Patch,
     P: Patch,
-    F: LightingModel<<K::Walker as Walker>::Value, <P::Walker as Walker>::Value>,
+    D: Patch,
+    F: LightingModel<<K::Walker as Walker>::Value, <P::Walker as Walker>::Value, <D::Walker as Walker>::Value>,
 {
     fn span(&mut self, rows: i32, end: i32, count: usize, target: &mut dyn SpanTarget) {
-        let Self { reflectance, model, common, lights, lut, ambient, shared, levels } = self;
+        let Self { reflectance, model, common, lights, diffuse, lut, ambient, shared, levels } = self;
         let mut common = enter(common, rows, end);
         let intensity = reflectance.intensities();
         let mut first = count;
@@ -101,14 +121,27 @@ where
             if visible == 0 {
                 continue;
             }
-            for (light, (patch, factors)) in lights.iter().enumerate() {
+            for (light, patch, factors) in lights.iter() {
                 let mut walker = enter(patch, rows, entry);
                 let mut k = run;
                 while k > 0 {
                     k -= 1;
                     walker.step();
                     if visible & (1 << k) != 0 {
-                        factors.add(&mut levels[k % CHUNK], model.reflect(light, &shared[k % CHUNK], walker.value(), *lut));
+                        factors.add(&mut levels[k % CHUNK], model.reflect(*light, &shared[k % CHUNK], walker.value(), *lut));
+                    }
+                }
+            }
+            if size_of::<<D::Walker as Walker>::Value>() > 0 {
+                for (patch, factors) in diffuse.iter() {
+                    let mut walker = enter(patch, rows, entry);
+                    let mut k = run;
+                    while k > 0 {
+                        k -= 1;
+                        walker.step();
+                        if visible & (1 << k) != 0 {
+                            factors.add_diffuse(&mut levels[k % CHUNK], model.reflect_diffuse(&shared[k % CHUNK], walker.value()));
+                        }
                     }
                 }
             }
@@ -122,12 +155,14 @@ where
 
     fn jump(&mut self, rows: i32) {
         self.common.jump(rows);
-        self.lights.iter_mut().for_each(|(patch, _)| patch.jump(rows));
+        self.lights.iter_mut().for_each(|(_, patch, _)| patch.jump(rows));
+        self.diffuse.iter_mut().for_each(|(patch, _)| patch.jump(rows));
     }
 
     fn step_row(&mut self) {
         self.common.step_row();
-        self.lights.iter_mut().for_each(|(patch, _)| patch.step_row());
+        self.lights.iter_mut().for_each(|(_, patch, _)| patch.step_row());
+        self.diffuse.iter_mut().for_each(|(patch, _)| patch.step_row());
     }
 }
 
@@ -146,14 +181,42 @@ impl Shading<'_> {
         V: Field,
         F: LightingModel<K::Value, V::Value>,
     {
+        self.draw_lit_in_part(setup, |source| Lit::<V, Constant>::Fully(of(source)), common, model, canvas)
+    }
+
+    /// [`Self::draw_lit`] by a method that tells lights apart by what they add to the triangle.
+    pub fn draw_lit_in_part<K, V, D, F>(
+        &self,
+        setup: &TriangleSetup<'_>,
+        of: impl Fn(&Source) -> Lit<V, D>,
+        common: K,
+        model: F,
+        canvas: &mut dyn Canvas,
+    ) -> u32
+    where
+        K: Field,
+        V: Field,
+        D: Field,
+        F: LightingModel<K::Value, V::Value, D::Value>,
+    {
         let gradients = setup.gradients;
         if cfg!(feature = "perspective")
             && let Some(inv_depth) = setup.inv_depth()
         {
             let common = PerspectivePatch::new(gradients, inv_depth, common.surface());
-            return self.draw_rows(setup, |source| common.with(of(source).surface()), common, model, canvas);
+            let of = |source: &Source| match of(source) {
+                Lit::Nowhere => Lit::Nowhere,
+                Lit::Diffuse(field) => Lit::Diffuse(common.with(field.surface())),
+                Lit::Fully(field) => Lit::Fully(common.with(field.surface())),
+            };
+            return self.draw_patches(setup, of, common, model, canvas);
         }
-        self.draw_rows(setup, |source| fitted(&of(source), gradients), fitted(&common, gradients), model, canvas)
+        let of = |source: &Source| match of(source) {
+            Lit::Nowhere => Lit::Nowhere,
+            Lit::Diffuse(field) => Lit::Diffuse(fitted(&field, gradients)),
+            Lit::Fully(field) => Lit::Fully(fitted(&field, gradients)),
+        };
+        self.draw_patches(setup, of, fitted(&common, gradients), model, canvas)
     }
 
     /// [`Self::draw_lit`] with patches in place of fields, for methods that interpolate along rows of the screen.
@@ -170,22 +233,56 @@ impl Shading<'_> {
         P: Patch,
         F: LightingModel<<K::Walker as Walker>::Value, <P::Walker as Walker>::Value>,
     {
+        self.draw_patches(setup, |source| Lit::<P, Constant>::Fully(of(source)), common, model, canvas)
+    }
+
+    fn draw_patches<K, P, D, F>(
+        &self,
+        setup: &TriangleSetup<'_>,
+        of: impl Fn(&Source) -> Lit<P, D>,
+        common: K,
+        model: F,
+        canvas: &mut dyn Canvas,
+    ) -> u32
+    where
+        K: Patch,
+        P: Patch,
+        D: Patch,
+        F: LightingModel<<K::Walker as Walker>::Value, <P::Walker as Walker>::Value, <D::Walker as Walker>::Value>,
+    {
         let reflectance = self.reflectance;
-        let mut lights = heapless::Vec::<_, MAX_LIGHTS>::new();
+        let (lut, mut ambient) = (reflectance.highlight_lut.by_cosine(), reflectance.ambient_sums());
+        let (mut lights, mut diffuse) = (heapless::Vec::<_, MAX_LIGHTS>::new(), heapless::Vec::<_, MAX_LIGHTS>::new());
         for (light, source) in self.lighting.sources.iter().enumerate() {
+            let factors = reflectance.factors(light);
             // There is room for as many lights as a frame has.
-            let _ = lights.push((of(source), reflectance.factors(light)));
+            match of(source) {
+                Lit::Fully(patch) => {
+                    let _ = lights.push((light, patch, factors));
+                    continue;
+                }
+                Lit::Diffuse(patch) => {
+                    let _ = diffuse.push((patch, factors));
+                }
+                Lit::Nowhere => {}
+            }
+            reflectance.add_no_highlight(&factors, &mut ambient);
         }
         // Lent, since all of this would be copied if it were moved.
         let (shared, levels) = (&mut [F::Common::default(); CHUNK], &mut [[0; 3]; CHUNK]);
-        let (lut, ambient) = (reflectance.highlight_lut.by_cosine(), reflectance.ambient_sums());
-        setup.draw_spans(&mut ManyLights { reflectance, model, common, lights: &mut lights, lut, ambient, shared, levels }, canvas)
+        let (lights, diffuse) = (&mut lights, &mut diffuse);
+        setup.draw_spans(&mut ManyLights { reflectance, model, common, lights, diffuse, lut, ambient, shared, levels }, canvas)
     }
 
     /// The planes through N·L and N·H of a constant light, normals not normalised, which are exact.
     pub fn constant_products(&self, setup: &TriangleSetup<'_>, source: &Source) -> Linear<2> {
+        linear(self.constant_cosines(setup, source))
+    }
+
+    /// N·L and N·H of a constant light at the corners, Q2.30.
+    pub fn constant_cosines(&self, setup: &TriangleSetup<'_>, source: &Source) -> [[i32; 3]; 2] {
         let [towards, half] = self.lighting.directions(source, [0; 3]);
-        linear([setup.corner_cosines(towards), setup.corner_cosines(half)])
+        [setup.corner_cosines(towards), setup.corner_cosines(half)]
     }
 
     /// The quadratics through N·L and N·H of a light at six nodes; `map` is applied to both.

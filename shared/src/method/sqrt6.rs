@@ -23,7 +23,7 @@ use crate::{
     math::{highlight_lookup::DefectLookup, highlight_lut::CosineLookup, rsqrt::sqrt},
     method::{
         Costs, Facts, Loops, Method, RANGE, Shading, Style, TriangleSetup, VertexLight,
-        lighting_model::{BITS, EXTRA, LightingModel, quadratic, signed},
+        lighting_model::{BITS, EXTRA, LightingModel, Lit, Quadratic, quadratic, signed},
         node::map_six,
     },
     pixel::Pixel,
@@ -61,15 +61,24 @@ impl Method for Sqrt6 {
 
     fn shade(&self, setup: &TriangleSetup<'_>, shading: &Shading<'_>, canvas: &mut dyn Canvas) -> u32 {
         if shading.lighting.is_constant() {
+            let threshold = setup.highlight_threshold(shading.reflectance);
             let fit = |source: &_| {
-                let [towards, half] = shading.lighting.directions(source, [0; 3]).map(|v| setup.six_from(setup.corner_cosines(v)));
-                quadratic([towards, map_six(half, root)])
+                let [towards, half] = shading.lighting.directions(source, [0; 3]);
+                let (towards, half) = (setup.six_from(setup.corner_cosines(towards)), setup.corner_cosines(half));
+                let [a, b, c] = half;
+                if a.max(b).max(c) >= threshold {
+                    Lit::Fully(quadratic([towards, map_six(setup.six_from(half), root)]))
+                } else if DiffuseSign::of(towards) == DiffuseSign::Nowhere {
+                    Lit::Nowhere
+                } else {
+                    Lit::Diffuse(quadratic([towards]))
+                }
             };
-            return shading.draw_lit(setup, fit, Constant, Squared, canvas);
+            return shading.draw_lit_in_part(setup, fit, Constant, Squared, canvas);
         }
         let nodes = setup.six_nodes();
-        let fit = |source: &_| shading.six_products(&nodes, source, |[light, half]| [light, root(half)]);
-        shading.draw_lit(setup, fit, Constant, Squared, canvas)
+        let fit = |source: &_| Lit::<_, Quadratic<1>>::Fully(shading.six_products(&nodes, source, |[light, half]| [light, root(half)]));
+        shading.draw_lit_in_part(setup, fit, Constant, Squared, canvas)
     }
 }
 
@@ -230,7 +239,7 @@ fn root(w: i32) -> i32 {
 #[derive(Clone, Copy)]
 struct Squared;
 
-impl LightingModel<(), [u32; 2]> for Squared {
+impl LightingModel<(), [u32; 2], [u32; 1]> for Squared {
     type Common = ();
 
     #[inline(always)]
@@ -240,6 +249,11 @@ impl LightingModel<(), [u32; 2]> for Squared {
     fn reflect(&self, _: usize, (): &(), [light, half]: [u32; 2], lut: CosineLookup<'_>) -> Reflection {
         // The table squares its argument.
         Reflection { diffuse: signed(light) >> 3, highlight: lut.at(signed(half) >> 3) }
+    }
+
+    #[inline(always)]
+    fn reflect_diffuse(&self, (): &(), [light]: [u32; 1]) -> i32 {
+        signed(light) >> 3
     }
 }
 
