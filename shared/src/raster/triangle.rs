@@ -374,8 +374,10 @@ impl<'b, D: Patch<Walker: DepthTest>, P: Patch, T: PixelShader<<P::Walker as Wal
     fn fill_here(&mut self) {
         let Rows { width, start, sides, count, height, filled, depth, patch, shader, .. } = *self;
         let pixels = &mut *self.pixels;
-        // Cut to the length of the pixels, it needs no test of its own in each row.
-        let Some(buffer) = D::Walker::depth(self.buffer, 0..pixels.len()) else { return };
+        // Cut to the length of the pixels, it needs no test of its own in each row. On x86-64, by measurement, that costs an instruction a
+        // pixel.
+        let length = if cfg!(target_arch = "arm") { pixels.len() } else { self.buffer.len() };
+        let Some(buffer) = D::Walker::depth(self.buffer, 0..length) else { return };
         let mut rows = Rows { pixels, buffer, width, start, sides, count, height, filled, depth, patch, shader };
         let ahead = |count: u32| if Self::AHEAD { count } else { 0 };
         rows.filled = rows.filled.wrapping_add(ahead(rows.count));
