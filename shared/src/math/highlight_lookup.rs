@@ -8,7 +8,7 @@ use crate::{
 };
 
 /// Fraction bits of a node, in steps of the table.
-const NODE: u32 = 7;
+const NODE: u32 = 6;
 /// Fraction bits that an interpolated numerator has beyond those of a node.
 pub(crate) const EXTRA: u32 = 5;
 /// Fraction bits of a quotient, in steps of the table: the reciprocal length, Q2.30, is halved, and the upper half of the product taken.
@@ -28,14 +28,14 @@ impl<'a> QuotientLookup<'a> {
     /// Lookup in the table of `lut`. Domain: its base is not [`crate::math::highlight_lut::Base::Square`], so that nodes fit 26 bits.
     #[must_use]
     pub(crate) fn new(lut: &'a HighlightLut) -> Self {
-        Self { table: &lut.table, top: ((lut.scale << 6 << STEP) + (1 << (STEP - 1))) as i32, factor: (lut.scale << 16) as i32 }
+        Self { table: &lut.table, top: ((lut.scale << 7 << STEP) + (1 << (STEP - 1))) as i32, factor: (lut.scale << 16) as i32 }
     }
 
-    /// The node of a numerator, Q2.30: the numerator in steps of the table, Q19.7, rounded down. Domain: within ±2.
+    /// The node of a numerator, Q2.30: the numerator in steps of the table, Q20.6, rounded down. Domain: within ±2.
     #[inline(always)]
     #[must_use]
     pub(crate) fn node(&self, cosine: i32) -> i32 {
-        upper_by_half_word(cosine, self.factor) >> (24 - NODE - 16)
+        upper_by_half_word(cosine, self.factor) >> (23 - NODE - 16)
     }
 
     /// The entry nearest to a quotient, unsigned Q0.16.
@@ -67,7 +67,7 @@ impl<'a> DefectLookup<'a> {
     pub(crate) fn new(lut: &'a HighlightLut) -> Self {
         // Scales are 2^5 to 2^13.
         let up = lut.scale.max(1).leading_zeros().saturating_sub(17);
-        Self { table: &lut.table, shift: 9 + up, factor: (lut.scale << up << 16) as i32 }
+        Self { table: &lut.table, shift: 8 + up, factor: (lut.scale << up << 16) as i32 }
     }
 
     /// The node of a cosine, Q2.30: 1 - cosine times a factor of 1/2 to 1, Q2.24, rounded down. Domain: above -1.
