@@ -178,12 +178,12 @@ fn draw<D: Display>(
 }
 
 /// Begins a frame and draws its first band; `shown` is as for [`draw`], and becomes what it will be after this frame.
-fn start<'r, 'a, C: Pixel>(
-    renderer: &'r mut Renderer<'a, C>,
+fn start<'r, C: Pixel>(
+    renderer: &'r mut Renderer<'_, C>,
     number: u32,
     shown: &mut Range<u32>,
     band: &mut [C],
-) -> (Frame<'r, 'a, C>, Option<Rectangle>) {
+) -> (Frame<'r, C>, Option<Rectangle>) {
     let mut frame = renderer.frame(number);
     let rows = frame.rows();
     frame.limit(rows.start.min(shown.start)..rows.end.max(shown.end));
@@ -193,7 +193,7 @@ fn start<'r, 'a, C: Pixel>(
 }
 
 /// Draws the next band; bands have been checked before the first frame.
-fn draw_next<C: Pixel>(frame: &mut Frame<'_, '_, C>, band: &mut [C]) -> Option<Rectangle> {
+fn draw_next<C: Pixel>(frame: &mut Frame<'_, C>, band: &mut [C]) -> Option<Rectangle> {
     frame.next_band(band).unwrap_or_default()
 }
 

@@ -4,7 +4,7 @@ use crate::{Frame, Renderer, Stats, error::RenderError, pixel::Pixel};
 use core::cell::RefCell;
 use embedded_graphics_core::{Drawable, draw_target::DrawTarget, pixelcolor::PixelColor};
 
-impl<C: Pixel + PixelColor> Frame<'_, '_, C> {
+impl<C: Pixel + PixelColor> Frame<'_, C> {
     /// Draws all bands of the frame, handing each to `target` in one `fill_contiguous`.
     ///
     /// `band` holds at least one row.

@@ -3,7 +3,7 @@
 use crate::{
     Stream,
     error::{MAX_SIDE, RenderError},
-    frame::{Frame, RenderState},
+    frame::{Frame, Settings},
     lighting::materials::fill_ramp,
     memory::{Layout, Memory},
     method::Facts,
@@ -15,7 +15,8 @@ use embedded_graphics_core::geometry::Size;
 /// Draws the frames of one stream.
 #[derive(Debug)]
 pub struct Renderer<'a, C: Pixel> {
-    state: RenderState<'a, C>,
+    settings: Settings<'a, C>,
+    memory: Memory<'a, C>,
 }
 
 impl<'a, C: Pixel> Renderer<'a, C> {
@@ -54,8 +55,8 @@ impl<'a, C: Pixel> Renderer<'a, C> {
         let need = layout.words::<C>();
         let memory = Memory::new(layout, memory).ok_or(RenderError::Memory { need })?;
         let background = background(stream.header.background);
-        let state = RenderState { stream, size, memory, shader, dither: false, perspective_correct: false, antialias: false, background };
-        let mut renderer = Self { state };
+        let settings = Settings { stream, size, shader, dither: false, perspective_correct: false, antialias: false, background };
+        let mut renderer = Self { settings, memory };
         renderer.set_shader(shader)?;
         Ok(renderer)
     }
@@ -65,9 +66,9 @@ impl<'a, C: Pixel> Renderer<'a, C> {
     /// # Errors When the method cannot shade this scene; the method in use stays.
     pub fn set_shader(&mut self, shader: Shader<C>) -> Result<(), RenderError> {
         let facts = shader.facts();
-        check(&self.state.stream, facts, self.state.perspective_correct)?;
-        self.state.shader = shader;
-        let RenderState { stream, memory: Memory { reflectances, ramps, .. }, .. } = &mut self.state;
+        check(&self.settings.stream, facts, self.settings.perspective_correct)?;
+        self.settings.shader = shader;
+        let (stream, Memory { reflectances, ramps, .. }) = (&self.settings.stream, &mut self.memory);
         for ((reflectance, ramp), material) in reflectances.iter_mut().zip(ramps.iter_mut()).zip(stream.materials) {
             let highlight = (facts.highlight, facts.highlight_levels);
             reflectance.fill(stream.header, material, stream.lights, highlight, (C::DEPTH, C::GRAY));
@@ -79,7 +80,7 @@ impl<'a, C: Pixel> Renderer<'a, C> {
     /// The method in use.
     #[must_use]
     pub fn shader(&self) -> Shader<C> {
-        self.state.shader
+        self.settings.shader
     }
 
     /// Turns interpolation in perspective on or off; it is off at first. Without it, light is interpolated linearly on the screen, which
@@ -90,55 +91,55 @@ impl<'a, C: Pixel> Renderer<'a, C> {
         if on && !cfg!(feature = "perspective") {
             return Err(RenderError::NoPerspective);
         }
-        check(&self.state.stream, self.state.shader.facts(), on)?;
-        self.state.perspective_correct = on;
+        check(&self.settings.stream, self.settings.shader.facts(), on)?;
+        self.settings.perspective_correct = on;
         Ok(())
     }
 
     /// Turns 4x4 ordered dither on or off; it is off at first.
     pub fn set_dither(&mut self, dither: bool) {
-        self.state.dither = dither;
+        self.settings.dither = dither;
     }
 
     /// Turns antialiasing by exact areas on or off; it is off at first.
     ///
     /// # Errors When the memory has no room for it, or this build lacks the feature `antialias`; it stays off then.
     pub fn set_antialias(&mut self, antialias: bool) -> Result<(), RenderError> {
-        self.state.antialias = false;
+        self.settings.antialias = false;
         if antialias && !cfg!(feature = "antialias") {
             return Err(RenderError::Antialias);
         }
-        if antialias && self.state.memory.samples.is_empty() {
+        if antialias && self.memory.samples.is_empty() {
             return Err(RenderError::NoSamples);
         }
-        self.state.antialias = antialias;
+        self.settings.antialias = antialias;
         Ok(())
     }
 
     /// The size of the viewport.
     #[must_use]
     pub fn size(&self) -> Size {
-        self.state.size
+        self.settings.size
     }
 
     /// Rows of a band; the last band of a frame may have fewer.
     #[must_use]
     pub fn band_rows(&self) -> u32 {
-        self.state.band_rows()
+        self.settings.band_rows(self.memory.depth.len(), self.memory.samples.len())
     }
 
     /// Checks that a slice of pixels can be a band.
     ///
     /// # Errors When it does not hold one row of the picture.
     pub fn check_band(&self, pixels: &[C]) -> Result<(), RenderError> {
-        let need = self.state.size.width as usize;
+        let need = self.settings.size.width as usize;
         if pixels.len() < need { Err(RenderError::Band { need }) } else { Ok(()) }
     }
 
     /// Places camera and lights, transforms vertices, culls and bins triangles for frame `number` (modulo the orbit).
     #[inline(never)]
-    pub fn frame(&mut self, number: u32) -> Frame<'_, 'a, C> {
-        Frame::new(&mut self.state, number)
+    pub fn frame(&mut self, number: u32) -> Frame<'_, C> {
+        Frame::new(&self.settings, &mut self.memory, number)
     }
 }
 

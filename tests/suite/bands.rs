@@ -5,13 +5,14 @@ use embedded_graphics::{
     pixelcolor::{Gray8, Rgb565},
     prelude::*,
 };
-use microphong::{Layout, MAX_SIDE, Picture, RenderError, Renderer, Stats, Stream, renderer::check};
+use microphong::{FramePart, Layout, MAX_SIDE, Picture, RenderError, Renderer, Stats, Stream, renderer::check};
 use microphong_sim::{
     render::{self, Style},
     scene,
     shader::Shader,
 };
 use microphong_tests::named;
+use std::thread;
 
 /// A frame with room for so many vertices, triangles, and active triangles, in bands of so many rows.
 fn frame(stream: Stream<'_>, size: Size, shader: Shader, [vertices, triangles, active]: [usize; 3], rows: u32) -> (Vec<Rgb565>, Stats) {
@@ -50,6 +51,49 @@ fn neither_bands_nor_overflow_change_a_pixel() {
                 assert!(pixels == whole, "{name}, {}: room for {vertices} vertices, {triangles} triangles", shader.name());
                 assert_eq!((tight.drawn, tight.pixels), (stats.drawn, stats.pixels), "nothing is lost");
                 assert!(tight.passes > 1 || tight.uncached > 0, "the overflow is counted");
+            }
+        }
+    }
+}
+
+/// Both parts of a frame, drawn at the same time by two threads: wherever it is divided, and where there is no room for that.
+#[test]
+fn two_parts_are_the_whole() {
+    let size = Size::new(200, 150);
+    for name in ["teapot", "torus", "peer-sphere-convex"] {
+        let scene = scene::load(name).unwrap();
+        let stream = scene.stream.parse().unwrap();
+        let (vertices, all) = (stream.vertices.len(), stream.triangles.len());
+        for shader in [Shader::FLAT, Shader::SIX_POINT, Shader::PHONG] {
+            let (whole, stats) = frame(stream, size, shader, [vertices, all, 0], size.height);
+            for (row, rows, triangles) in
+                [(75, 30, 2 * all), (1, 7, 2 * all), (149, 2, 2 * all), (0, 40, 2 * all), (75, 30, 100), (75, 1, all)]
+            {
+                let layout = Layout::new(200, rows).vertices(vertices).triangles(triangles).active_triangles(40);
+                let mut memory = vec![0; layout.words::<Rgb565>()];
+                let mut renderer = Renderer::with_shader(stream, size, &layout, &mut memory, shader.on()).unwrap();
+                let mut frame = renderer.frame(5).in_two(row);
+                let bands = thread::scope(|threads| {
+                    let draw = |mut part: FramePart<'_, '_, Rgb565>| {
+                        let (mut band, mut bands) = (vec![Rgb565::RED; layout.band()], Vec::new());
+                        while let Some(area) = part.next_band(&mut band).unwrap() {
+                            bands.push((area, band.clone()));
+                        }
+                        bands
+                    };
+                    frame.parts().map(|part| threads.spawn(move || draw(part))).map(|thread| thread.join().unwrap())
+                });
+                let lower = bands[1].iter().map(|(area, _)| area.size.height).sum::<u32>();
+                let divides = triangles == 2 * all && rows > 1;
+                assert_eq!(lower, if divides { size.height - row } else { 0 }, "the rows of the second part");
+                let mut pixels = Vec::new();
+                for (area, band) in bands.concat() {
+                    assert_eq!(area.top_left.y as usize * 200, pixels.len());
+                    pixels.extend_from_slice(&band[..(area.size.width * area.size.height) as usize]);
+                }
+                assert!(pixels == whole, "{name}, {}, divided at row {row} into bands of {rows} rows", shader.name());
+                let counts = |stats: Stats| (stats.drawn, stats.culled, stats.pixels);
+                assert_eq!(counts(frame.stats()), counts(stats));
             }
         }
     }

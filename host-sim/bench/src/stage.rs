@@ -60,16 +60,17 @@ pub(super) enum Part {
 
 /// Parts of functions by what their names contain; the first that fits counts. Names as the compiler writes them, so that this
 /// is the one place to follow when functions move.
-const TABLE: [(&str, Part); 20] = [
+const TABLE: [(&str, Part); 21] = [
     ("microphong::raster::triangle::fill_rows", Part::Row),
     ("as microphong::raster::canvas::SpanShader::span", Part::Row),
     ("microphong::raster::band::Band::clear", Part::Clear),
     ("microphong::renderer::Renderer::frame", Part::Frame),
     ("microphong::frame::Frame::new", Part::Frame),
     ("microphong::mesh::vertices::VertexStage::transform", Part::Vertex),
-    ("microphong::frame::Frame::prepare", Part::Cull),
+    ("microphong::frame::prepare", Part::Cull),
     ("microphong::geometry::bin::Bins", Part::Cull),
-    ("microphong::frame::Frame::draw", Part::Setup),
+    ("microphong::frame::part::Part::draw", Part::Setup),
+    ("microphong::frame::scene::Scene::drawing", Part::Setup),
     ("microphong::mesh::MeshPass", Part::Setup),
     // Of the host's program, which has no display.
     ("frame::counted_frame", Part::Frame),

@@ -53,22 +53,24 @@ impl Entry {
     }
 }
 
-/// The triangles of one frame, in one list for each bin and one of active triangles.
+/// The triangles of one frame, in one list for each bin and one of active triangles. In the order of memory, as instructions of Armv6-M
+/// reach little of a structure.
 #[derive(Clone, Debug)]
+#[repr(C)]
 pub(crate) struct Bins {
-    heads: [u16; BINS],
-    active: u16,
-    /// Entries in use.
-    count: u16,
-    /// Whether some triangle found no room.
-    overflow: bool,
-    /// Bins that `active` has taken over.
-    reached: usize,
+    /// The reciprocal of the rows of a bin, Q1.20, rounded up.
+    bins_per_row: u32,
     /// First row of the highest triangle, and one past the last row of the lowest.
     top: u32,
     bottom: u32,
-    /// The reciprocal of the rows of a bin, Q1.20, rounded up.
-    bins_per_row: u32,
+    /// Bins that `active` has taken over.
+    reached: usize,
+    /// Entries in use.
+    count: u16,
+    active: u16,
+    /// Whether some triangle found no room.
+    overflow: bool,
+    heads: [u16; BINS],
 }
 
 impl Bins {
@@ -136,6 +138,12 @@ impl Bins {
             self.reached += 1;
         }
         Walk { entries, lists: [self.active, fresh], head: NONE, tail: NONE, bottom }
+    }
+
+    /// Leaves out the triangles that end above `row`; to be called before the first band.
+    pub(crate) fn skip(&mut self, entries: &mut [Entry], row: u32) {
+        let walk = self.band(entries, row);
+        self.active = walk.end();
     }
 
     /// Keeps the triangles of a band that reach into the next one.

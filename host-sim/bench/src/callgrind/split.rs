@@ -92,7 +92,7 @@ fn=microphong::mesh::vertices::VertexStage::transform
 cfn=memcpy
 calls=1 0x90
 0x2 5
-fn=microphong::frame::Frame<C>::draw
+fn=microphong::frame::part::Part::draw
 0x3 20
 cfn=microphong::raster::band::Band<C>::clear
 calls=1 0x80
@@ -145,7 +145,7 @@ totals: 1731
 
     #[test]
     fn a_frame_without_rows_is_an_error() {
-        let profile = Profile::parse("fn=microphong::frame::Frame<C>::draw\n0x3 20\n").expect("a profile");
+        let profile = Profile::parse("fn=microphong::frame::part::Part::draw\n0x3 20\n").expect("a profile");
         assert!(stages(&profile).is_err());
     }
 }

@@ -1,0 +1,212 @@
+//! Rows of a frame, drawn band by band from the top. All that drawing writes belongs to them: two parts of a frame can be drawn at the
+//! same time.
+
+use crate::{
+    coverage::sample::Sample,
+    error::RenderError,
+    frame::scene::Scene,
+    geometry::bin::{Bins, Entry, Walk},
+    pixel::Pixel,
+    raster::{
+        active::{ActiveTriangle, ActiveTriangles, QueueState},
+        band::{Band, Blend},
+    },
+};
+use core::ops::Range;
+use embedded_graphics_core::{
+    geometry::{Point, Size},
+    primitives::Rectangle,
+};
+
+/// Counts of one frame: triangles, pixels, and what did not fit into memory.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+pub struct Stats {
+    /// Triangles in the stream.
+    pub triangles: u32,
+    /// Triangles that face away, or whose bounding box contains no pixel centre of the viewport.
+    pub culled: u32,
+    /// Triangles that are drawn: they face the camera, and their bounding box contains a pixel centre of the viewport.
+    pub drawn: u32,
+    /// Pixels of all drawn triangles, those hidden by depth included; stays at its largest value instead of overflowing.
+    pub pixels: u32,
+    /// Walks over the mesh: 1, or one per band when the bins overflow.
+    pub passes: u32,
+    /// Vertices that did not fit and were transformed by each triangle that uses them.
+    pub uncached: u32,
+    /// How often a triangle that reaches into the next band found no room among the active triangles, and was set up anew there.
+    pub set_up_anew: u32,
+}
+
+impl Stats {
+    /// Triangles that are not drawn are culled.
+    pub(crate) fn culled(self) -> Self {
+        Self { culled: self.triangles.saturating_sub(self.drawn), ..self }
+    }
+
+    /// Those of a frame whose rows are drawn in two parts: what happens once a frame is counted in the first.
+    pub(crate) fn and(self, lower: Self) -> Self {
+        let (pixels, set_up_anew) = (self.pixels.saturating_add(lower.pixels), self.set_up_anew.saturating_add(lower.set_up_anew));
+        Self { pixels, set_up_anew, ..self }
+    }
+}
+
+/// The rows that one processor draws, and the memory that it takes for them.
+#[derive(Debug)]
+pub(crate) struct Part<'r> {
+    pub(crate) bins: Bins,
+    /// Whether all triangles found room in the bins.
+    pub(crate) binned: bool,
+    pub(crate) entries: &'r mut [Entry],
+    /// Depth of one band.
+    pub(crate) depth: &'r mut [u16],
+    /// Samples of one band, for antialiasing; empty without it.
+    pub(crate) samples: &'r mut [Sample],
+    /// Triangles that are kept from one band to the next, and those that the last band has saved.
+    pub(crate) active_triangles: &'r mut [ActiveTriangle],
+    pub(crate) queue: QueueState,
+    /// Rows that triangles may reach.
+    pub(crate) rows: Range<u32>,
+    /// First row of the next band.
+    pub(crate) top: u32,
+    /// One past the last row to be drawn.
+    pub(crate) bottom: u32,
+    pub(crate) stats: Stats,
+}
+
+impl<'r> Part<'r> {
+    /// See [`crate::Frame::next_band`].
+    pub(crate) fn next_band<C: Pixel>(&mut self, scene: &Scene<'_, C>, pixels: &mut [C]) -> Result<Option<Rectangle>, RenderError> {
+        let width = scene.settings.size.width;
+        let fit = u32::try_from(pixels.len()).unwrap_or(u32::MAX).checked_div(width).unwrap_or(0);
+        if fit == 0 {
+            return Err(RenderError::Band { need: width as usize });
+        }
+        // Bands end where bins end.
+        let band_rows = scene.settings.band_rows(self.depth.len(), self.samples.len());
+        let into = self.top.checked_rem(band_rows).unwrap_or(0);
+        let rows = band_rows.saturating_sub(into).min(self.bottom.saturating_sub(self.top)).min(fit);
+        if rows == 0 {
+            return Ok(None);
+        }
+        let area = Rectangle::new(Point::new(0, self.top as i32), Size::new(width, rows));
+        self.draw(scene, pixels.get_mut(..(rows * width) as usize).unwrap_or_default(), rows);
+        self.top += rows;
+        Ok(Some(area))
+    }
+
+    /// The rows above `row`, and those from there on, `width` pixels wide: see [`crate::Frame::in_two`].
+    pub(crate) fn in_two(self, row: u32, width: usize) -> [Self; 2] {
+        let Self { bins, binned, entries, depth, samples, active_triangles, queue, rows, top, bottom, stats } = self;
+        let used = bins.count().map_or(usize::MAX, usize::from);
+        let fits = binned && used <= entries.len() / 2 && width <= depth.len() / 2;
+        let row = if fits { row.min(bottom).max(top) } else { bottom };
+        // Each processor links the triangles of its own rows, so both have a list of all of them.
+        let (entries, below) = halves(entries, if fits { used } else { usize::MAX });
+        below.iter_mut().zip(entries.iter()).for_each(|(below, entry)| *below = *entry);
+        let mut lower = bins.clone();
+        lower.skip(below, row);
+        let rows_of = |length: usize| if fits { (length / 2).checked_div(width).unwrap_or(0) * width } else { usize::MAX };
+        let (held, of_depth, of_samples) = (active_triangles.len() / 2, rows_of(depth.len()), rows_of(samples.len()));
+        let (active_triangles, active_below) = halves(active_triangles, held);
+        let (depth, depth_below) = halves(depth, of_depth);
+        let (samples, samples_below) = halves(samples, of_samples);
+        let below = Part {
+            bins: lower,
+            binned,
+            entries: below,
+            depth: depth_below,
+            samples: samples_below,
+            active_triangles: active_below,
+            queue,
+            rows: rows.clone(),
+            top: row,
+            bottom,
+            stats: Stats::default(),
+        };
+        [Part { bins, binned, entries, depth, samples, active_triangles, queue, rows, top, bottom: row, stats }, below]
+    }
+
+    /// Draws only these `rows`, at most `height`.
+    pub(crate) fn limit(&mut self, rows: Range<u32>, height: u32) {
+        (self.top, self.bottom) = (rows.start.min(height), rows.end.min(height));
+    }
+
+    /// Whether the last band has been drawn.
+    pub(crate) fn is_complete(&self) -> bool {
+        self.top >= self.bottom
+    }
+
+    /// Clears a band of `rows` rows and draws what falls into it.
+    #[inline(never)]
+    fn draw<C: Pixel>(&mut self, scene: &Scene<'_, C>, pixels: &mut [C], rows: u32) {
+        let width = scene.settings.size.width as usize;
+        let bottom = self.top + rows;
+        let count = width * rows as usize;
+        let active = ActiveTriangles::new(self.active_triangles, self.queue);
+        let depth = self.depth.get_mut(..count).unwrap_or_default();
+        let blend = scene.settings.antialiased().then(|| Blend { samples: self.samples.get_mut(..count).unwrap_or_default() });
+        let mut band = Band { pixels, depth, width, top: self.top as i32, rows: rows as i32, blend, active };
+        band.clear(scene.settings.background, self.rows.clone());
+        let (pixels, drawn) = if self.binned {
+            let mut walk = self.bins.band(self.entries, bottom);
+            let pixels = draw_binned(scene, &mut walk, &mut band);
+            self.bins.take_over(walk);
+            (pixels, 0)
+        } else {
+            self.stats.passes += 1;
+            draw_all(scene, &mut band)
+        };
+        self.stats.pixels = self.stats.pixels.saturating_add(pixels);
+        self.stats.drawn += drawn;
+        if scene.settings.antialiased() {
+            band.resolve(scene.settings.background);
+        }
+        self.queue = band.active.queue();
+        self.stats.set_up_anew = self.stats.set_up_anew.saturating_add(band.active.overflow());
+    }
+}
+
+/// The first `length` of some memory, or all if there are fewer, and the rest.
+fn halves<T>(memory: &mut [T], length: usize) -> (&mut [T], &mut [T]) {
+    let length = length.min(memory.len());
+    memory.split_at_mut_checked(length).unwrap_or_default()
+}
+
+/// Draws the triangles of `band`; returns their pixels there.
+fn draw_binned<C: Pixel>(scene: &Scene<'_, C>, walk: &mut Walk<'_>, band: &mut Band<'_, C>) -> u32 {
+    let stream = &scene.settings.stream;
+    let mut pixels = 0u32;
+    let mut next = walk.next();
+    while let Some(entry) = next {
+        // A checked stream has both.
+        let Some(mesh) = scene.mesh(entry.triangle()) else { break };
+        let Some((drawing, loops)) = scene.drawing(mesh) else { break };
+        let end = mesh.first_triangle.saturating_add(mesh.triangles);
+        let (drawn, rest) = (loops.run)(&drawing, stream.triangles, entry, walk, end, band);
+        pixels = pixels.saturating_add(drawn);
+        next = rest;
+    }
+    pixels
+}
+
+/// Draws all triangles into `band`; returns their pixels there, and how many of them start there.
+#[cold]
+#[inline(never)]
+fn draw_all<C: Pixel>(scene: &Scene<'_, C>, band: &mut Band<'_, C>) -> (u32, u32) {
+    let stream = &scene.settings.stream;
+    let (mut pixels, mut drawn) = (0u32, 0);
+    for mesh in stream.meshes {
+        let Some((drawing, loops)) = scene.drawing(mesh) else { continue };
+        for triangle in stream.triangles_of(mesh).unwrap_or_default().iter().filter(|triangle| scene.facing.may_face(triangle)) {
+            let Some(bounds) = drawing.bounds(triangle) else { continue };
+            // A triangle is counted in the band where it starts.
+            let bottom = band.top + band.rows;
+            drawn += u32::from((band.top..bottom).contains(&bounds.top));
+            if bounds.bottom > band.top && bounds.top < bottom {
+                pixels = pixels.saturating_add(drawing.draw(loops.draw, triangle, band));
+            }
+        }
+    }
+    (pixels, drawn)
+}

@@ -1,0 +1,118 @@
+//! What all rows of a frame have in common. It does not change while they are drawn, so two processors can read it at the same time.
+
+use crate::{
+    Stream,
+    format::RAMP,
+    geometry::{
+        cull::Facing,
+        depth_elision::DepthElision,
+        projection::{ScreenVertex, View},
+        viewport::Viewport,
+    },
+    lighting::{
+        lights::Lighting,
+        materials::{MaterialTables, Reflectance},
+    },
+    mesh::{MeshPass, vertices::VertexStage},
+    method::{Shading, Style},
+    pixel::Pixel,
+    shader::{Shader, TriangleLoops},
+    stream::record::Mesh,
+};
+use embedded_graphics_core::geometry::Size;
+
+/// What is drawn, and how, from frame to frame.
+#[derive(Debug)]
+pub(crate) struct Settings<'a, C: Pixel> {
+    pub(crate) stream: Stream<'a>,
+    pub(crate) size: Size,
+    pub(crate) shader: Shader<C>,
+    pub(crate) dither: bool,
+    pub(crate) perspective_correct: bool,
+    pub(crate) antialias: bool,
+    pub(crate) background: C,
+}
+
+impl<C: Pixel> Settings<'_, C> {
+    #[inline(always)]
+    pub(crate) fn antialiased(&self) -> bool {
+        cfg!(feature = "antialias") && self.antialias
+    }
+
+    /// Rows of a band for which there is room for depth, and for samples.
+    pub(crate) fn band_rows(&self, depth: usize, samples: usize) -> u32 {
+        let pixels = if self.antialiased() { depth.min(samples) } else { depth };
+        (pixels as u32).checked_div(self.size.width).unwrap_or(0).min(self.size.height)
+    }
+
+    pub(crate) fn viewport(&self) -> Viewport {
+        Viewport { width: self.size.width as i32, height: self.size.height as i32, antialiased: self.antialiased() }
+    }
+}
+
+/// One frame of a stream, its vertices on the screen.
+#[derive(Debug)]
+pub(crate) struct Scene<'r, C: Pixel> {
+    pub(crate) settings: &'r Settings<'r, C>,
+    pub(crate) view: View,
+    pub(crate) facing: Facing,
+    pub(crate) lighting: Lighting,
+    /// See [`Lighting::constant`].
+    pub(crate) constant: Option<[[i32; 3]; 2]>,
+    /// Where triangles may overlap; `None` if they may do so everywhere.
+    pub(crate) depth_elision: Option<DepthElision>,
+    pub(crate) vertices: &'r [ScreenVertex],
+    /// One for each material, as in `ramps`, the tables of colours.
+    pub(crate) reflectances: &'r [Reflectance],
+    pub(crate) ramps: &'r [[C::Stored; RAMP]],
+}
+
+impl<C: Pixel> Scene<'_, C> {
+    /// The stage that transforms and lights the vertices of `mesh`.
+    fn stage(&self, mesh: &Mesh) -> Option<VertexStage<'_>> {
+        let Self { settings, view, lighting, constant, .. } = self;
+        let light = settings.shader.facts().vertex_light;
+        let reflectance = self.reflectances.get(usize::from(mesh.material))?;
+        Some(VertexStage { view, lighting, constant: constant.as_ref(), reflectance, light })
+    }
+
+    /// The mesh of triangle `id`.
+    pub(crate) fn mesh(&self, id: u32) -> Option<&Mesh> {
+        // Meshes follow one another without a gap, so this is the last one that does not start behind the triangle. A stream may have
+        // 65,535 meshes: they are searched by halves.
+        let meshes = self.settings.stream.meshes;
+        meshes.get(meshes.partition_point(|mesh| mesh.first_triangle <= id).wrapping_sub(1))
+    }
+
+    /// What the triangles of `mesh` have in common, and the loops that draw them.
+    #[inline(never)]
+    pub(crate) fn drawing(&self, mesh: &Mesh) -> Option<(MeshPass<'_, C>, TriangleLoops<C>)> {
+        let Settings { stream, shader, dither, .. } = self.settings;
+        let material = usize::from(mesh.material);
+        let (reflectance, ramp) = (self.reflectances.get(material)?, self.ramps.get(material)?);
+        let perspective = self.settings.perspective_correct && stream.is_perspective();
+        let style = Style {
+            one_light: reflectance.has_one_light() && self.constant.is_some(),
+            dithered_or_antialiased: *dither || self.settings.antialiased(),
+            perspective,
+        };
+        let drawing = MeshPass {
+            method: shader.method(),
+            shading: Shading {
+                reflectance,
+                lighting: &self.lighting,
+                exponent: stream.materials.get(material)?.exponent,
+                constant: self.constant,
+            },
+            tables: MaterialTables { ramp, reflectance },
+            dither: *dither,
+            stage: self.stage(mesh)?,
+            depth_elision: self.depth_elision.as_ref(),
+            vertices: stream.vertices_of(mesh)?,
+            cached: self.vertices.get(mesh.first_vertex as usize..).unwrap_or_default(),
+            viewport: self.settings.viewport(),
+            perspective,
+        };
+        Some((drawing, shader.loops(style)))
+    }
+}
