@@ -1,6 +1,6 @@
 //! A display that is nothing but memory: 320x240 RGB565, which the host reads while the program waits.
 
-use crate::{Display, Failure, budget::MPS2, error_picture, semihosting};
+use crate::{Display, Failure, budget::MPS2, error_picture, painter::part, semihosting};
 use core::convert::Infallible;
 use embedded_graphics::{
     pixelcolor::{IntoStorage, Rgb565, RgbColor},
@@ -72,12 +72,12 @@ impl Display for Framebuffer {
         OriginDimensions::size(self)
     }
 
-    fn send<R>(&mut self, area: Rectangle, pixels: &[Rgb565], meanwhile: impl FnOnce() -> R) -> R {
-        self.blit(area, pixels);
-        meanwhile()
+    fn send(&mut self, area: Rectangle, band: &'static mut [Rgb565]) -> &'static mut [Rgb565] {
+        self.blit(area, part(band, area));
+        band
     }
 
-    fn present(&mut self) -> Result<(), Failure> {
+    fn finish(&mut self) -> Result<(), Failure> {
         semihosting::wait_for_host();
         Ok(())
     }
@@ -102,7 +102,7 @@ macro_rules! framebuffer_board {
     ($shaders:expr) => {
         use ::embedded_graphics::pixelcolor::{Rgb565, RgbColor};
         use ::microphong::Layout;
-        use ::microphong_firmware::{budget::MPS2, framebuffer, run};
+        use ::microphong_firmware::{OneCore, budget::MPS2, framebuffer, run};
 
         const LAYOUT: Layout = MPS2.layout;
 
@@ -112,13 +112,12 @@ macro_rules! framebuffer_board {
 
         #[::cortex_m_rt::entry]
         fn main() -> ! {
-            static mut BANDS: [[Rgb565; LAYOUT.band()]; 2] = [[Rgb565::BLACK; LAYOUT.band()]; 2];
+            static mut BAND: [Rgb565; LAYOUT.band()] = [Rgb565::BLACK; LAYOUT.band()];
             static mut MEMORY: [u64; LAYOUT.words::<Rgb565>()] = [0; LAYOUT.words::<Rgb565>()];
 
             // SAFETY: nothing else in the program names it, and `main` runs once.
             let picture = unsafe { &mut *(&raw mut FRAMEBUFFER) };
-            let [front, back] = BANDS;
-            run(&mut framebuffer::Framebuffer::new(picture), &LAYOUT, MEMORY, [front, back], $shaders)
+            run(&mut framebuffer::Framebuffer::new(picture), &mut OneCore { band: BAND }, &LAYOUT, MEMORY, $shaders)
         }
     };
 }

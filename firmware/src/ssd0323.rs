@@ -176,13 +176,13 @@ impl Display for Ssd0323 {
         OriginDimensions::size(self)
     }
 
-    fn send<R>(&mut self, area: Rectangle, pixels: &[Gray4], meanwhile: impl FnOnce() -> R) -> R {
-        let Ok(()) = self.fill_contiguous(&area, pixels.iter().copied());
+    fn send(&mut self, area: Rectangle, band: &'static mut [Gray4]) -> &'static mut [Gray4] {
+        let Ok(()) = self.fill_contiguous(&area, band.iter().copied());
         self.flush(area.top_left.y as usize, area.size.height as usize);
-        meanwhile()
+        band
     }
 
-    fn present(&mut self) -> Result<(), Failure> {
+    fn finish(&mut self) -> Result<(), Failure> {
         semihosting::wait_for_host();
         Ok(())
     }

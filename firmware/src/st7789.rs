@@ -1,16 +1,14 @@
 //! An ST7789 panel of 240x240 pixels on the RP2040's second serial port, fed by DMA.
 
-use crate::{Display, Failure, budget::PICO, error_picture};
-use core::{
-    future::Future,
-    pin::{Pin, pin},
-    task::{Context, Waker},
-};
+use crate::{Display, Failure, budget::PICO, error_picture, painter::part};
+use core::mem;
 use defmt_rtt as _;
 use embassy_rp::{
+    dma::Channel,
     gpio::Output,
+    pac::{self, dma::vals::TreqSel},
     peripherals::SPI1,
-    spi::{Async, Spi},
+    spi::{Blocking, Spi},
     watchdog::Watchdog,
 };
 use embassy_time::{Delay, Duration, Instant, block_for};
@@ -36,13 +34,24 @@ mod command {
 /// Half of the peripherals' clock, the fastest that the port can do.
 pub const SPI_HZ: u32 = 62_500_000;
 
+/// The DMA channel that sends, as its registers count it.
+const CHANNEL: u16 = 0;
+
 /// How long the program may go on without a sign of life, of which each band is one: nearly the longest that the watchdog can wait.
 pub const SIGN_OF_LIFE: Duration = Duration::from_secs(8);
 
 /// The panel's wires, and what sees to it that something is shown.
 pub struct St7789 {
     /// Clock and data.
-    pub bus: Spi<'static, SPI1, Async>,
+    pub bus: Spi<'static, SPI1, Blocking>,
+    /// What feeds the bus with bands.
+    pub channel: Channel<'static>,
+    /// The band that is being sent, or was the last one to be.
+    pub sent: &'static mut [Rgb565Be],
+    /// How many bytes are on their way, and until when they have to be there.
+    pub sending: Option<(u32, Instant)>,
+    /// Whether the band that is sent is the last one of a frame.
+    pub last: bool,
     /// Low while the panel is spoken to.
     pub select: Output<'static>,
     /// High for data, low for commands.
@@ -51,7 +60,7 @@ pub struct St7789 {
     pub reset: Output<'static>,
     /// High lights the panel.
     pub backlight: Output<'static>,
-    /// The board's own light: goes out when a frame begins to be drawn, and on when one is complete.
+    /// The board's own light: goes on when a frame is complete, and out when another one begins to be shown.
     pub led: Output<'static>,
     /// Starts the program anew that hangs.
     pub watchdog: Watchdog,
@@ -90,6 +99,22 @@ impl St7789 {
         self.write(arguments);
     }
 
+    /// Returns when nothing is on its way to the panel any more.
+    fn settle(&mut self) {
+        let Some((bytes, deadline)) = self.sending.take() else { return };
+        if wait(&self.channel, deadline) {
+            // What the port still holds.
+            let _ = self.bus.flush();
+            if mem::take(&mut self.last) {
+                self.led.set_high();
+            }
+        } else {
+            pac::DMA.chan_abort().write(|channels| channels.set_chan_abort(1 << CHANNEL));
+            self.failure = Some(Failure::Transfer { bytes, limit: limit(bytes) });
+        }
+        self.select.set_high();
+    }
+
     /// Returns when the bytes are on the wire, so that the data pin may change.
     fn write(&mut self, bytes: &[u8]) {
         // Sending has no failure that the driver could see.
@@ -100,9 +125,8 @@ impl St7789 {
 
 /// The display is slower than the drawing. A call of its own, so that its time can be told from the rest. False if the time is over.
 #[inline(never)]
-fn wait(mut transfer: Pin<&mut impl Future>, deadline: Instant) -> bool {
-    let mut context = Context::from_waker(Waker::noop());
-    while transfer.as_mut().poll(&mut context).is_pending() {
+fn wait(channel: &Channel<'_>, deadline: Instant) -> bool {
+    while channel.regs().ctrl_trig().read().busy() {
         if Instant::now() > deadline {
             return false;
         }
@@ -122,17 +146,19 @@ impl Display for St7789 {
         Size::new(PICO.layout.width as u32, PICO.height as u32)
     }
 
-    fn begin(&mut self) {
+    fn begin(&mut self) -> Result<(), Failure> {
         self.watchdog.feed(SIGN_OF_LIFE);
-        self.led.set_low();
+        self.failure.map_or(Ok(()), Err)
     }
 
     #[inline(never)]
-    fn send<R>(&mut self, area: Rectangle, pixels: &[Rgb565Be], meanwhile: impl FnOnce() -> R) -> R {
+    fn send(&mut self, area: Rectangle, band: &'static mut [Rgb565Be]) -> &'static mut [Rgb565Be] {
         self.watchdog.feed(SIGN_OF_LIFE);
+        self.settle();
         if self.failure.is_some() {
-            return meanwhile();
+            return band;
         }
+        self.led.set_low();
         let range = |start: i32, length: u32| {
             let [a, b] = (start as u16).to_be_bytes();
             let [c, d] = (start as u16 + length as u16 - 1).to_be_bytes();
@@ -142,35 +168,27 @@ impl Display for St7789 {
         self.command(command::SET_COLUMNS, &range(area.top_left.x, area.size.width));
         self.command(command::SET_ROWS, &range(area.top_left.y, area.size.height));
         self.command(command::WRITE_MEMORY, &[]);
-        let bytes = size_of_val(pixels) as u32;
-        let limit = limit(bytes);
-        // Where the block ends, DMA is stopped that has not ended.
-        let result = {
-            let mut transfer = pin!(self.bus.write(pixels.as_bytes()));
-            // The first poll starts the DMA; then the processor is free.
-            let started = transfer.as_mut().poll(&mut Context::from_waker(Waker::noop()));
-            let deadline = Instant::now() + Duration::from_micros(limit.into());
-            let result = meanwhile();
-            if started.is_pending() && !wait(transfer, deadline) {
-                self.failure = Some(Failure::Transfer { bytes, limit });
-            }
-            result
-        };
-        self.select.set_high();
-        result
+        let pixels = part(band, area).as_bytes();
+        let bytes = pixels.len() as u32;
+        self.sending = Some((bytes, Instant::now() + Duration::from_micros(limit(bytes).into())));
+        // SAFETY: the pixels are static and stay out of reach, in `sent`, until `settle` has seen the end of the transfer.
+        let transfer = unsafe { self.channel.write(pixels, pac::SPI1.dr().as_ptr().cast::<u8>(), TreqSel::SPI1_TX, false) };
+        // If dropped, it would end.
+        mem::forget(transfer);
+        mem::replace(&mut self.sent, band)
     }
 
-    fn present(&mut self) -> Result<(), Failure> {
-        match self.failure {
-            Some(failure) => Err(failure),
-            None => {
-                self.led.set_high();
-                Ok(())
-            }
-        }
+    fn present(&mut self) {
+        self.last = true;
+    }
+
+    fn finish(&mut self) -> Result<(), Failure> {
+        self.settle();
+        self.failure.map_or(Ok(()), Err)
     }
 
     fn fail(&mut self, message: &str) {
+        self.settle();
         self.start(Some(message));
     }
 

@@ -26,6 +26,8 @@ pub struct Layout {
     pub width: usize,
     /// Rows of a band, which are drawn at once: more rows take more memory, fewer rows more time.
     pub rows: usize,
+    /// Processors that draw at the same time, each a band of its own: see [`crate::Frame::in_two`].
+    pub processors: usize,
     /// Vertices that are kept in a frame. If the stream has more, each triangle transforms the remaining ones anew.
     pub vertices: usize,
     /// Triangles facing the camera that are kept in a frame. If there are more, each band walks the whole stream.
@@ -44,7 +46,13 @@ impl Layout {
     /// 48 triangles across the border of a band, and none for antialiasing.
     #[must_use]
     pub const fn new(width: usize, rows: usize) -> Self {
-        Self { width, rows, vertices: 1024, triangles: 1024, materials: 1, active_triangles: 48, antialias: false }
+        Self { width, rows, processors: 1, vertices: 1024, triangles: 1024, materials: 1, active_triangles: 48, antialias: false }
+    }
+
+    /// Changes how many processors draw at the same time: 1 or 2.
+    #[must_use]
+    pub const fn processors(self, processors: usize) -> Self {
+        Self { processors, ..self }
     }
 
     /// Changes how many vertices there is room for.
@@ -84,7 +92,7 @@ impl Layout {
     }
 
     const fn samples(&self) -> usize {
-        if self.antialias { self.band() } else { 0 }
+        if self.antialias { self.band() * self.processors } else { 0 }
     }
 
     /// Words of 64 bits that a renderer of this layout takes in the pixel format `C`: the length of the slice for [`crate::Renderer::new`].
@@ -96,7 +104,7 @@ impl Layout {
             + padded(self.materials * size_of::<Reflectance>())
             + padded(self.samples() * size_of::<Sample>())
             + padded(self.materials * size_of::<[C::Stored; RAMP]>())
-            + padded(self.band() * size_of::<u16>());
+            + padded(self.band() * self.processors * size_of::<u16>());
         bytes / size_of::<u64>()
     }
 
@@ -140,7 +148,7 @@ impl<'a, C: Pixel> Memory<'a, C> {
         let (reflectances, bytes) = take(bytes, layout.materials)?;
         let (samples, bytes) = take(bytes, layout.samples())?;
         let (ramps, bytes) = take(bytes, layout.materials)?;
-        let (depth, _) = take(bytes, layout.band())?;
+        let (depth, _) = take(bytes, layout.band() * layout.processors)?;
         Some(Self { vertices, bins, depth, reflectances, ramps, samples, active_triangles })
     }
 }

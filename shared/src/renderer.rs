@@ -46,7 +46,7 @@ impl<'a, C: Pixel> Renderer<'a, C> {
         if !(1..=MAX_SIDE).contains(&width) || !(1..=MAX_SIDE).contains(&height) {
             return Err(RenderError::Size { width, height });
         }
-        if layout.width != width as usize || layout.rows == 0 {
+        if layout.width != width as usize || layout.rows == 0 || layout.processors == 0 {
             return Err(RenderError::Layout { width });
         }
         if layout.materials < stream.materials.len() {
@@ -55,7 +55,9 @@ impl<'a, C: Pixel> Renderer<'a, C> {
         let need = layout.words::<C>();
         let memory = Memory::new(layout, memory).ok_or(RenderError::Memory { need })?;
         let background = background(stream.header.background);
-        let settings = Settings { stream, size, shader, dither: false, perspective_correct: false, antialias: false, background };
+        let processors = layout.processors as u32;
+        let settings =
+            Settings { stream, size, processors, shader, dither: false, perspective_correct: false, antialias: false, background };
         let mut renderer = Self { settings, memory };
         renderer.set_shader(shader)?;
         Ok(renderer)

@@ -24,7 +24,7 @@ const TURN: usize = 25;
 const EARLY: usize = 100;
 const LATE: usize = 10_000;
 
-/// What start-up code fills the stack with.
+/// What start-up code fills the first processor's stack with; that of the second one is all zeros.
 const PAINT: u32 = 0xCCCC_CCCC;
 /// Where RAM begins.
 const RAM: u32 = 0x2000_0000;
@@ -51,8 +51,8 @@ fn offsets(addresses: Range<u32>) -> Range<usize> {
 }
 
 /// Bytes of stack that have lost their paint.
-fn stack_used(stack: &[u8]) -> usize {
-    let clean = stack.chunks_exact(4).take_while(|word| **word == PAINT.to_le_bytes()).count();
+fn stack_used(stack: &[u8], paint: u32) -> usize {
+    let clean = stack.chunks_exact(4).take_while(|word| **word == paint.to_le_bytes()).count();
     stack.len() - 4 * clean
 }
 
@@ -63,7 +63,9 @@ fn ten_thousand_frames_use_up_nothing() -> Result {
     // What the renderer and the frame loop are given to write: all else is to stay as it is.
     let given: Vec<_> = elf.objects()?.into_iter().filter(|(name, _)| name.ends_with("::BANDS") || name.ends_with("::MEMORY")).collect();
     assert_eq!(given.len(), 2, "the firmware's memory is not where this test looks for it: {given:?}");
-    let given: Vec<_> = given.into_iter().map(|(_, addresses)| offsets(addresses)).chain([stack.clone()]).collect();
+    let second = elf.objects()?.into_iter().find(|(name, _)| name.ends_with("::SECOND_STACK")).map(|(_, addresses)| offsets(addresses));
+    let second = second.ok_or("the second processor's stack is not where this test looks for it")?;
+    let given: Vec<_> = given.into_iter().map(|(_, addresses)| offsets(addresses)).chain([stack.clone(), second.clone()]).collect();
 
     let mut pico = Pico::new(&elf)?;
     let mut turn: Vec<Vec<u32>> = Vec::new();
@@ -81,9 +83,11 @@ fn ten_thousand_frames_use_up_nothing() -> Result {
     let late = pico.ram();
     assert_eq!(turn.iter().collect::<HashSet<_>>().len(), TURN, "the scene does not move");
 
-    let [before, after] = [&early, &late].map(|ram| stack_used(&ram[stack.clone()]));
-    println!("stack: {before} bytes after {EARLY} frames, {after} after {LATE}; {:?}", pico.log().last());
-    assert!(before > 1000 && before == after, "stack: {before} bytes after {EARLY} frames, {after} after {LATE}");
+    for (stack, paint) in [(stack, PAINT), (second, 0)] {
+        let [before, after] = [&early, &late].map(|ram| stack_used(&ram[stack.clone()], paint));
+        println!("stack: {before} bytes after {EARLY} frames, {after} after {LATE}; {:?}", pico.log().last());
+        assert!(before > 1000 && before == after, "stack: {before} bytes after {EARLY} frames, {after} after {LATE}");
+    }
 
     let changed: Vec<_> = (0..late.len()).filter(|&at| early[at] != late[at] && !given.iter().any(|range| range.contains(&at))).collect();
     let objects = elf.objects()?;

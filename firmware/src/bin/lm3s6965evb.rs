@@ -4,7 +4,7 @@
 
 use embedded_graphics::pixelcolor::{Gray4, GrayColor};
 use microphong::{Layout, Shader};
-use microphong_firmware::{budget::LM3S6965EVB, run, ssd0323::Ssd0323};
+use microphong_firmware::{OneCore, budget::LM3S6965EVB, run, ssd0323::Ssd0323};
 
 /// The methods for which there is flash beside a scene.
 const SHADERS: [Shader<Gray4>; 4] = [Shader::FLAT, Shader::GOURAUD, Shader::SIX_POINT, Shader::PHONG];
@@ -14,9 +14,8 @@ const LAYOUT: Layout = LM3S6965EVB.layout;
 #[cortex_m_rt::entry]
 fn main() -> ! {
     static mut PICTURE: [u8; Ssd0323::BYTES] = [0; Ssd0323::BYTES];
-    static mut BANDS: [[Gray4; LAYOUT.band()]; 2] = [[Gray4::BLACK; LAYOUT.band()]; 2];
+    static mut BAND: [Gray4; LAYOUT.band()] = [Gray4::BLACK; LAYOUT.band()];
     static mut MEMORY: [u64; LAYOUT.words::<Gray4>()] = [0; LAYOUT.words::<Gray4>()];
 
-    let [front, back] = BANDS;
-    run(&mut Ssd0323::start(PICTURE), &LAYOUT, MEMORY, [front, back], &SHADERS)
+    run(&mut Ssd0323::start(PICTURE), &mut OneCore { band: BAND }, &LAYOUT, MEMORY, &SHADERS)
 }

@@ -2,14 +2,21 @@
 #![no_std]
 #![no_main]
 
+#[cfg(not(feature = "one-core"))]
+use embassy_rp::multicore::Stack;
 use embassy_rp::{
-    bind_interrupts, dma,
+    bind_interrupts,
+    dma::{self, Channel},
     gpio::{Level, Output},
     peripherals::DMA_CH0,
     spi::{self, Spi},
     watchdog::{ResetReason, Watchdog},
 };
 use microphong::pixel::Rgb565Be;
+#[cfg(feature = "one-core")]
+use microphong_firmware::OneCore;
+#[cfg(not(feature = "one-core"))]
+use microphong_firmware::second_core::{STACK, SecondCore, TwoCores};
 use microphong_firmware::{
     Failure,
     budget::PICO,
@@ -25,14 +32,22 @@ bind_interrupts!(struct Interrupts {
 
 #[cortex_m_rt::entry]
 fn main() -> ! {
-    static mut BANDS: [[Rgb565Be; PICO.layout.band()]; 2] = [[Rgb565Be::BLACK; PICO.layout.band()]; 2];
+    // Two processors draw one each, and one is sent.
+    static mut BANDS: [[Rgb565Be; PICO.layout.band()]; 3] = [[Rgb565Be::BLACK; PICO.layout.band()]; 3];
+    #[cfg(not(feature = "one-core"))]
+    static mut SECOND_STACK: Stack<STACK> = Stack::new();
     static mut MEMORY: [u64; PICO.layout.words::<Rgb565Be>()] = [0; PICO.layout.words::<Rgb565Be>()];
 
+    let [sent, bands @ ..] = BANDS;
     let pins = embassy_rp::init(Default::default());
     let mut config = spi::Config::default();
     config.frequency = SPI_HZ;
     let mut display = St7789 {
-        bus: Spi::new_txonly(pins.SPI1, pins.PIN_10, pins.PIN_11, pins.DMA_CH0, Interrupts, config),
+        bus: Spi::new_blocking_txonly(pins.SPI1, pins.PIN_10, pins.PIN_11, config),
+        channel: Channel::new(pins.DMA_CH0, Interrupts),
+        sent,
+        sending: None,
+        last: false,
         select: Output::new(pins.PIN_9, Level::High),
         data: Output::new(pins.PIN_8, Level::Low),
         reset: Output::new(pins.PIN_12, Level::High),
@@ -49,6 +64,10 @@ fn main() -> ! {
         stop(&mut display, Failure::Hang);
     }
     display.start(None);
-    let [front, back] = BANDS;
-    run(&mut display, &PICO.layout, MEMORY, [front, back], every())
+    #[cfg(not(feature = "one-core"))]
+    let mut painter =
+        TwoCores { bands: bands.each_mut().map(|band| &mut band[..]), second: SecondCore::start(pins.CORE1, SECOND_STACK), border: None };
+    #[cfg(feature = "one-core")]
+    let mut painter = OneCore { band: &mut bands[0] };
+    run(&mut display, &mut painter, &PICO.layout, MEMORY, every())
 }

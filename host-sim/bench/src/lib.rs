@@ -143,7 +143,7 @@ impl Firmware {
         let elf = self.elf.with_stream(&verify::prepare(scene.stream.as_bytes(), shader, 1)?)?;
         let mut meter = self.meter.clone();
         let ranges = meter.ranges();
-        let watched = boards::watch(self.board, &elf, &ranges, &mut |address, cycles| meter.step(address, cycles))?;
+        let watched = boards::watch(self.board, &elf, &ranges, &mut |executed| meter.step(executed))?;
         let tally = meter.tally();
         let log = &watched.recording;
         let (instructions, pixels) = (tally.instructions.drawing(), log.figure("pixels")?);

@@ -2,7 +2,10 @@
 
 use super::nest::Nest;
 use anyhow::{Context, Result, ensure};
-use microphong_boards::elf::{Elf, short_name};
+use microphong_boards::{
+    Executed,
+    elf::{Elf, short_name},
+};
 use serde::Serialize;
 use std::{
     iter::Sum,
@@ -60,7 +63,7 @@ pub(super) enum Part {
 
 /// Parts of functions by what their names contain; the first that fits counts. Names as the compiler writes them, so that this
 /// is the one place to follow when functions move.
-const TABLE: [(&str, Part); 21] = [
+const TABLE: [(&str, Part); 23] = [
     ("microphong::raster::triangle::fill_rows", Part::Row),
     ("as microphong::raster::canvas::SpanShader::span", Part::Row),
     ("microphong::raster::band::Band::clear", Part::Clear),
@@ -77,6 +80,9 @@ const TABLE: [(&str, Part); 21] = [
     ("Framebuffer::blit", Part::Transfer),
     ("as microphong_firmware::Display::send", Part::Transfer),
     ("microphong_firmware::st7789::wait", Part::Idle),
+    ("microphong_firmware::second_core::wait", Part::Idle),
+    // The other processor has the display.
+    ("embassy_rp::critical_section_impl", Part::Idle),
     ("microphong_firmware::check", Part::Unwatched),
     ("microphong_firmware::stack", Part::Unwatched),
     ("microphong::stream", Part::Unwatched),
@@ -137,12 +143,19 @@ pub struct Meter {
     /// The function of each half-word from `base` on, and one more than all for none.
     owners: Vec<u16>,
     base: u32,
-    /// Functions that have been entered and not left, and the part that each plays.
-    calls: Vec<(u16, Part)>,
+    /// Where each processor is.
+    cores: [Core; 2],
     /// By [`Part`].
     costs: [Cost; Part::Callers as usize + 1],
     /// Like `owners`.
     sites: Vec<Site>,
+}
+
+/// Where a processor is.
+#[derive(Clone, Debug, Default)]
+struct Core {
+    /// Functions that have been entered and not left, and the part that each plays.
+    calls: Vec<(u16, Part)>,
     /// The last instruction in a row's own function, as an index of `sites`.
     site: usize,
 }
@@ -181,7 +194,7 @@ impl Meter {
             owners.get_mut(range).context("functions overlap")?.fill(index);
         }
         let sites = vec![Site::default(); owners.len()];
-        Ok(Self { functions, owners, base, calls: Vec::new(), costs: Default::default(), sites, site: 0 })
+        Ok(Self { functions, owners, base, cores: Default::default(), costs: Default::default(), sites })
     }
 
     /// The addresses that must be watched, in few pieces.
@@ -201,43 +214,31 @@ impl Meter {
         pieces
     }
 
-    /// An instruction at `address` has been executed.
+    /// An instruction has been executed.
     #[inline]
-    pub fn step(&mut self, address: u32, cycles: u64) {
-        let index = (address.wrapping_sub(self.base) / 2) as usize;
-        let Some(&owner) = self.owners.get(index) else { return };
-        if self.calls.last().is_none_or(|&(function, _)| function != owner) {
-            self.enter(owner, address);
+    pub fn step(&mut self, Executed { core, address, cycles }: Executed) {
+        let Self { functions, owners, base, cores, costs, sites } = self;
+        let index = (address.wrapping_sub(*base) / 2) as usize;
+        let (Some(&owner), Some(Core { calls, site })) = (owners.get(index), cores.get_mut(core)) else { return };
+        if calls.last().is_none_or(|&(function, _)| function != owner) {
+            enter(functions, calls, owner, address);
         }
-        let Some(&(function, part)) = self.calls.last() else { return };
+        let Some(&(function, part)) = calls.last() else { return };
         let cost = Cost { instructions: 1, cycles };
         if part == Part::Row {
-            if let Some(Function { range, part: Part::Row }) = self.functions.get(usize::from(function)) {
-                if address != range.start && !self.sites[self.site].next.contains(&index) {
-                    self.sites[self.site].next.push(index);
+            if let Some(Function { range, part: Part::Row }) = functions.get(usize::from(function)) {
+                if address != range.start && !sites[*site].next.contains(&index) {
+                    sites[*site].next.push(index);
                 }
-                self.site = index;
-                self.sites[index].count += 1;
+                *site = index;
+                sites[index].count += 1;
             }
-            let site = &mut self.sites[self.site];
+            let site = &mut sites[*site];
             site.cost = site.cost + cost;
         } else {
-            let sum = &mut self.costs[part as usize];
+            let sum = &mut costs[part as usize];
             *sum = *sum + cost;
         }
-    }
-
-    /// Another function goes on: called if at its start, else returned to.
-    fn enter(&mut self, owner: u16, address: u32) {
-        let Some(function) = self.functions.get(usize::from(owner)) else { return };
-        if address != function.range.start
-            && let Some(depth) = self.calls.iter().rposition(|&(caller, _)| caller == owner)
-        {
-            self.calls.truncate(depth + 1);
-            return;
-        }
-        let caller = self.calls.last().map_or(Part::Outside, |&(_, part)| part);
-        self.calls.push((owner, if function.part == Part::Callers { caller } else { function.part }));
     }
 
     /// What has been counted.
@@ -276,4 +277,17 @@ impl Meter {
             spans,
         }
     }
+}
+
+/// Another function goes on: called if at its start, else returned to.
+fn enter(functions: &[Function], calls: &mut Vec<(u16, Part)>, owner: u16, address: u32) {
+    let Some(function) = functions.get(usize::from(owner)) else { return };
+    if address != function.range.start
+        && let Some(depth) = calls.iter().rposition(|&(caller, _)| caller == owner)
+    {
+        calls.truncate(depth + 1);
+        return;
+    }
+    let caller = calls.last().map_or(Part::Outside, |&(_, part)| part);
+    calls.push((owner, if function.part == Part::Callers { caller } else { function.part }));
 }

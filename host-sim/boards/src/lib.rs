@@ -199,16 +199,27 @@ pub struct Watched {
     pub time: Option<FrameTime>,
 }
 
-/// Runs `elf`, whose stream must have a single frame, and hands address and cycles of each instruction of one frame to `visit`. In QEMU
+/// An instruction that was executed.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Executed {
+    /// The processor of the board, from 0 on.
+    pub core: usize,
+    /// Where it stands.
+    pub address: u32,
+    /// How many cycles it took, where they are modelled.
+    pub cycles: u64,
+}
+
+/// Runs `elf`, whose stream must have a single frame, and hands each instruction of one frame to `visit`. In QEMU
 /// those in `ranges` and without cycles; on the Pico all, of a frame that follows another.
 ///
 /// # Errors
 /// When the program crashes, falls silent or drives its display wrongly.
-pub fn watch(board: Board, elf: &Elf, ranges: &[Range<u32>], visit: &mut dyn FnMut(u32, u64)) -> Result<Watched> {
+pub fn watch(board: Board, elf: &Elf, ranges: &[Range<u32>], visit: &mut dyn FnMut(Executed)) -> Result<Watched> {
     let (recording, time) = match board {
         Board::Pico => pico::watch(elf, visit).map(|(recording, time)| (recording, Some(time)))?,
         Board::Lm3s6965evb | Board::Mps2An385 | Board::Mps2An386 => {
-            (trace(board, elf, ranges, Blocks::Whole, &mut |address| visit(address, 0))?, None)
+            (trace(board, elf, ranges, Blocks::Whole, &mut |address| visit(Executed { core: 0, address, cycles: 0 }))?, None)
         }
     };
     Ok(Watched { recording, time })

@@ -1,8 +1,9 @@
 //! Instructions of a frame: at most so many for each vertex, triangle, row and pixel that it has.
 //!
-//! A frame of L lights takes at most (1 + L) (a vertices + b triangles + c rows + d pixels) instructions of x86-64, with the factors of
-//! [`BOUNDS`] and the counts of [`Work`]. A near light counts as several, and perspective as a factor. The counts follow from the scene
-//! alone, so whatever a renderer does more often than once for each of them is seen. Scenes are those that cost most for what they show.
+//! A frame of L lights, at least one, takes at most (1 + L) (a vertices + b triangles + c rows + d pixels) instructions of x86-64, with the
+//! factors of [`BOUNDS`] and the counts of [`Work`]. A near light counts as several, and perspective as a factor. The counts follow from the
+//! scene alone, so whatever a renderer does more often than once for each of them is seen. Scenes are those that cost most for what they
+//! show.
 
 use crate::{
     Family, Verdict,
@@ -140,7 +141,7 @@ pub fn bound(style: Style) -> Bound {
 /// What the cost of a frame may be proportional to.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Work {
-    /// Lights, and one more, but for near ones.
+    /// Lights, at least one, and one more, but for near ones.
     pub lights: u64,
     /// Lights whose direction, or that of the viewer, differs from pixel to pixel.
     pub near: u64,
@@ -171,7 +172,8 @@ impl Work {
         let is_local = stream.header.viewer == VIEWER_LOCAL;
         let near = stream.lights.iter().filter(|light| is_local || light.kind == POINT).count();
         let mut work = Self {
-            lights: 1 + (stream.lights.len() - near) as u64,
+            // Without light there is as much to do as under one, for there are still materials and splits.
+            lights: 1 + (stream.lights.len() - near).max(usize::from(near == 0)) as u64,
             near: near as u64,
             perspective: case.style.perspective_correct,
             vertices: stream.vertices.len() as u64,

@@ -46,7 +46,8 @@ impl<'r, C: Pixel> Frame<'r, C> {
         let constant = lighting.constant();
         let view = View::new(camera, &pose, size);
         let facing = Facing::new(&view, stream.header.radius);
-        let band_rows = settings.band_rows(depth.len(), samples.len());
+        // Bins as high as the bands of one processor.
+        let band_rows = settings.band_rows(depth.len(), samples.len()).checked_div(settings.processors).unwrap_or(0);
         let mut scene = Scene { settings, view, facing, lighting, constant, depth_elision: None, vertices: &[], reflectances, ramps };
         let mut part = Part {
             bins: Bins::new(size.height, band_rows),
@@ -101,8 +102,8 @@ impl<'r, C: Pixel> Frame<'r, C> {
     }
 
     /// Divides the frame, before its first band, into the rows above `row` and those from there on, for two processors to draw at the same
-    /// time. The memory for bands is divided as well, so bands have half as many rows. Where triangles take more than half of the room that
-    /// there is for them, the first part has all rows.
+    /// time. The memory for bands is divided as well: that of a layout for two [`crate::Layout::processors`] gives each its bands. Where
+    /// triangles take more than half of the room that there is for them, the first part has all rows.
     #[must_use]
     pub fn in_two(self, row: u32) -> FrameInTwo<'r, C> {
         let Self { scene, part } = self;

@@ -26,6 +26,8 @@ use embedded_graphics_core::geometry::Size;
 pub(crate) struct Settings<'a, C: Pixel> {
     pub(crate) stream: Stream<'a>,
     pub(crate) size: Size,
+    /// Processors that draw at the same time.
+    pub(crate) processors: u32,
     pub(crate) shader: Shader<C>,
     pub(crate) dither: bool,
     pub(crate) perspective_correct: bool,

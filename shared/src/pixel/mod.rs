@@ -248,29 +248,69 @@ impl Pixel for Rgb565Be {
 
 /// Checksum of a picture: CRC-32 over the pixels' values, low byte first, row by row from the top.
 #[derive(Clone)]
-pub struct PictureCrc(crc::Digest<'static, u32, crc::Table<1>>);
+pub struct PictureCrc {
+    digest: crc::Digest<'static, u32, crc::Table<1>>,
+    bytes: usize,
+}
 
 /// A table of one kilobyte, since a picture is checked every frame.
 static PICTURE: crc::Crc<u32, crc::Table<1>> = crc::Crc::<u32, crc::Table<1>>::new(&crc::CRC_32_ISO_HDLC);
 
 impl Default for PictureCrc {
     fn default() -> Self {
-        Self(PICTURE.digest())
+        Self { digest: PICTURE.digest(), bytes: 0 }
     }
 }
 
 impl PictureCrc {
+    /// The checksum of pixels that follow others, which are summed up elsewhere: see [`Self::append`].
+    #[must_use]
+    pub fn of_rest() -> Self {
+        Self { digest: PICTURE.digest_with_initial(0), bytes: 0 }
+    }
+
     /// Adds the next pixels.
     pub fn update<C: Pixel>(&mut self, pixels: &[C]) {
         for pixel in pixels {
             let bytes = pixel.bits().to_le_bytes();
-            self.0.update(&bytes[..C::BYTES]);
+            self.digest.update(&bytes[..C::BYTES]);
         }
+        self.bytes += pixels.len() * C::BYTES;
+    }
+
+    /// Adds the pixels of a sum that began as [`Self::of_rest`].
+    pub fn append(&mut self, rest: Self) {
+        // A checksum is linear: that of all bytes is that of the first ones, followed by zeros, plus that of the rest that follows zeros.
+        (0..rest.bytes).for_each(|_| self.digest.update(&[0]));
+        let register = self.clone().finish() ^ rest.digest.finalize();
+        self.digest = PICTURE.digest_with_initial(register.reverse_bits());
+        self.bytes += rest.bytes;
     }
 
     /// The checksum of all pixels so far.
     #[must_use]
     pub fn finish(self) -> u32 {
-        self.0.finalize()
+        self.digest.finalize()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn checksums_of_two_parts_make_that_of_the_whole() {
+        let pixels: [Rgb565Be; 100] = core::array::from_fn(|i| Rgb565Be(i as u16 * 2_477));
+        let mut whole = PictureCrc::default();
+        whole.update(&pixels);
+        for divided in [0, 1, 50, 99, 100] {
+            let (mut first, mut rest) = (PictureCrc::default(), PictureCrc::of_rest());
+            first.update(&pixels[..divided]);
+            rest.update(&pixels[divided..90.max(divided)]);
+            first.append(rest);
+            // It can go on.
+            first.update(&pixels[90.max(divided)..]);
+            assert_eq!(first.finish(), whole.clone().finish(), "divided at {divided}");
+        }
     }
 }

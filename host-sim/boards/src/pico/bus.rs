@@ -24,6 +24,8 @@ const PERIPHERAL: u32 = !0x3FFF;
 /// 0.1 ms.
 const CLOCK: u32 = 0x4005_4028;
 const CLOCK_STEP: u64 = 12_500;
+/// Cycles between two looks at the clock of one who waits.
+const LOOK: u64 = 200;
 
 /// The interrupt lines of the DMA controller start here.
 const DMA_INTERRUPT: u8 = 11;
@@ -62,6 +64,8 @@ pub(super) struct Bus {
     pub(super) wait: u64,
     /// The cycle that the chip's own peripherals have reached.
     noticed: u64,
+    /// When the program last looked at the clock.
+    looked: u64,
     spi: Spi,
     dma: Dma,
     watchdog: Watchdog,
@@ -78,6 +82,7 @@ impl Bus {
             fast: false,
             wait: 0,
             noticed: 0,
+            looked: 0,
             spi: Spi::default(),
             dma: Dma::default(),
             watchdog: Watchdog::default(),
@@ -227,13 +232,16 @@ impl Bus {
     fn note(&mut self, address: u32) {
         if address >> 28 == 4 {
             // The chip's own peripherals look at their time only when they are looked at.
-            self.chip.advance_lazy_scheduled(self.cycle - self.noticed);
-            self.noticed = self.cycle;
+            self.chip.advance_lazy_scheduled(self.cycle.saturating_sub(self.noticed));
+            self.noticed = self.noticed.max(self.cycle);
         }
         match address >> 28 {
             0xD => self.fast = true,
-            // Who looks at the clock while nothing is on its way waits for a time to come: it comes in larger steps.
-            0x4 if address == CLOCK && self.spi.idle() && self.dma.idle() => self.wait += CLOCK_STEP,
+            // Who looks at the clock again and again while nothing is on its way waits for a time to come: it comes in larger steps.
+            0x4 if address == CLOCK && self.spi.idle() && self.dma.idle() => {
+                self.wait += if self.cycle.saturating_sub(self.looked) < LOOK { CLOCK_STEP } else { 2 };
+                self.looked = self.cycle + self.wait;
+            }
             0x4 => self.wait += 2,
             _ => {}
         }
@@ -320,7 +328,7 @@ impl CoreBus for Bus {
     }
 
     fn active_core(&self) -> usize {
-        0
+        self.chip.active_core()
     }
 
     fn event_flag(&self, core: usize) -> bool {

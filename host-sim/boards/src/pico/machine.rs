@@ -1,6 +1,6 @@
 //! Processor and bus, from reset.
 
-use super::{Board, Fault, bus::Bus, cycles, panel::Panel, rtt::Rtt};
+use super::{Board, Executed, Fault, bus::Bus, cycles, panel::Panel, rtt::Rtt};
 use crate::elf::Elf;
 use anyhow::{Context, Result, ensure};
 use rp2040_emu::{Bus as Chip, core::CortexM0Plus, memory::SRAM_SIZE};
@@ -14,10 +14,20 @@ const BOOT2: usize = 0x100;
 /// Instructions between looks at the log: it has room for more than those can write.
 const LOG_INTERVAL: u64 = 1024;
 
-/// An RP2040 with its second processor asleep, as after reset.
+/// One of the chip's two processors.
+struct Core {
+    core: CortexM0Plus,
+    /// Processor cycles since the start.
+    cycle: u64,
+    /// Whether the program has started it.
+    runs: bool,
+}
+
+/// An RP2040. The processor that is behind the other goes on, so that what one writes the other reads at about the same time. That one waits
+/// for the other at a bank of memory is not modelled.
 pub(super) struct Machine {
     flash: Vec<u8>,
-    core: CortexM0Plus,
+    cores: [Core; 2],
     bus: Bus,
     rtt: Rtt,
     steps: u64,
@@ -39,36 +49,68 @@ impl Machine {
             "the boot loader's second stage has checksum {stored:08x} instead of {computed:08x}: the chip would refuse it"
         );
 
-        let (core, chip) = booted(&flash);
+        let (cores, chip) = booted(&flash, 0);
         let (rtt, _) = elf.symbol("_SEGGER_RTT")?;
-        Ok(Self { flash, core, bus: Bus::new(chip, Panel::new(Board::Pico.size())), rtt: Rtt(rtt), steps: 0 })
+        Ok(Self { flash, cores, bus: Bus::new(chip, Panel::new(Board::Pico.size())), rtt: Rtt(rtt), steps: 0 })
     }
 
-    /// Executes one instruction; tells where, and how many cycles it took.
-    pub(super) fn step(&mut self) -> Result<(u32, u64)> {
-        let pc = self.pc();
+    /// Executes one instruction of the processor that is behind.
+    pub(super) fn step(&mut self) -> Result<Executed> {
+        self.launch();
+        let [first, second] = &self.cores;
+        let number = usize::from(second.runs && !self.bus.chip.wfe_waiting[1] && second.cycle < first.cycle);
+        self.bus.chip.set_active_core(number);
+        let Core { core, cycle, .. } = &mut self.cores[number];
+        let pc = core.regs.pc();
         let memory = &self.bus.chip.memory;
         // The core fetches it again; this is to look up its time.
         let instruction = if pc >> 28 == 1 { memory.xip_read16(pc & 0xFF_FFFF) } else { memory.sram_read16(pc & 0xFF_FFFF) };
         self.bus.fast = false;
         self.bus.wait = 0;
-        self.core.step(&mut self.bus);
+        self.bus.cycle = *cycle;
+        core.step(&mut self.bus);
         self.steps += 1;
-        // Time goes on while the core waits for an event; here it just looks again.
+        // Time goes on while the first processor waits for an event; here it just looks again. The second one sleeps.
         self.bus.chip.wfe_waiting[0] = false;
-        let taken = self.pc() != pc.wrapping_add(2);
+        let taken = core.regs.pc() != pc.wrapping_add(2);
         let cycles = cycles::of(instruction, taken, self.bus.fast, self.bus.wait);
-        self.bus.cycle += cycles;
+        *cycle += cycles;
+        ensure!(
+            !core.is_in_hardfault(),
+            "the firmware crashed (HardFault of processor {number}) at {pc:#010x}; look it up with `addr2line -e ELF {pc:#x}`"
+        );
+        self.bus.cycle = self.cycle();
         // Nobody reads this list, which would grow for ever.
         self.bus.chip.pending_cache_invalidations.clear();
         self.bus.tick();
-        ensure!(!self.core.is_in_hardfault(), "the firmware crashed (HardFault) at {pc:#010x}; look it up with `addr2line -e ELF {pc:#x}`");
         if self.bus.hangs() {
-            let (core, chip) = booted(&self.flash);
-            self.core = core;
+            let (cores, chip) = booted(&self.flash, self.cycle());
+            self.cores = cores;
             self.bus.reset(chip);
         }
-        Ok((pc, cycles))
+        Ok(Executed { core: number, address: pc, cycles })
+    }
+
+    /// Lets the second processor begin or go on, if it is time.
+    fn launch(&mut self) {
+        let [first, second] = &mut self.cores;
+        let chip = &mut self.bus.chip;
+        if let Some(start) = chip.sio.take_pending_launch() {
+            // As the mask ROM does that it waits in.
+            chip.ppb[1].vtor = start.vtor;
+            second.core.regs.msp = start.sp;
+            second.core.regs.r[13] = start.sp;
+            second.core.regs.set_pc(start.entry & !1);
+            second.core.reset_control_for_launch();
+            second.core.wake();
+            chip.sio.set_handshake_armed(false);
+            (chip.event_flag[1], chip.wfe_waiting[1]) = (false, false);
+            (second.runs, second.cycle) = (true, first.cycle);
+        }
+        if chip.wfe_waiting[1] && chip.event_flag[1] {
+            (chip.event_flag[1], chip.wfe_waiting[1]) = (false, false);
+            second.cycle = second.cycle.max(first.cycle);
+        }
     }
 
     /// It is time to take the log.
@@ -81,11 +123,13 @@ impl Machine {
     }
 
     pub(super) fn pc(&self) -> u32 {
-        self.core.regs.pc()
+        self.cores[0].core.regs.pc()
     }
 
+    /// The cycle that both processors have reached.
     pub(super) fn cycle(&self) -> u64 {
-        self.bus.cycle
+        let [first, second] = &self.cores;
+        if second.runs && !self.bus.chip.wfe_waiting[1] { first.cycle.min(second.cycle) } else { first.cycle }
     }
 
     /// Cycles in which bits went over the wire to the panel, up to the last complete byte.
@@ -122,18 +166,18 @@ impl Machine {
     }
 }
 
-/// Processor and chip when the boot loader has gone to the program in `flash`.
-fn booted(flash: &[u8]) -> (CortexM0Plus, Chip) {
+/// Processors and chip when the boot loader has gone to the program in `flash`, at this cycle. The second processor waits for the first.
+fn booted(flash: &[u8], cycle: u64) -> ([Core; 2], Chip) {
     let mut chip = Chip::new();
     chip.load_flash(flash);
     chip.ppb[0].vtor = FLASH + BOOT2 as u32;
-    let mut core = CortexM0Plus::with_id(0);
+    let [mut core, second] = [0, 1].map(CortexM0Plus::with_id);
     core.regs.msp = word(flash, BOOT2);
     core.regs.r[13] = word(flash, BOOT2);
     core.regs.set_pc(word(flash, BOOT2 + 4) & !1);
     // Thumb state.
     core.regs.xpsr = 1 << 24;
-    (core, chip)
+    ([Core { core, cycle, runs: true }, Core { core: second, cycle, runs: false }], chip)
 }
 
 fn word(flash: &[u8], at: usize) -> u32 {

@@ -12,7 +12,7 @@ mod rtt;
 mod spi;
 mod watchdog;
 
-use super::{Board, Recording, Until, elf::Elf, log};
+use super::{Board, Executed, Recording, Until, elf::Elf, log};
 use anyhow::{Context, Result, bail, ensure};
 use machine::Machine;
 
@@ -51,16 +51,16 @@ impl Pico {
     /// # Errors
     /// When the program crashes, falls silent or drives its panel wrongly.
     pub fn next_picture(&mut self) -> Result<()> {
-        self.watch_next_picture(&mut |_, _| ())
+        self.watch_next_picture(&mut |_| ())
     }
 
     /// The same, and hands address and cycles of each instruction to `visit`.
-    fn watch_next_picture(&mut self, visit: &mut dyn FnMut(u32, u64)) -> Result<()> {
+    fn watch_next_picture(&mut self, visit: &mut dyn FnMut(Executed)) -> Result<()> {
         let outcome = self.proceed(visit);
         outcome.with_context(|| format!("{} emulated; {}", Board::Pico, log::tail(&self.log)))
     }
 
-    fn proceed(&mut self, visit: &mut dyn FnMut(u32, u64)) -> Result<()> {
+    fn proceed(&mut self, visit: &mut dyn FnMut(Executed)) -> Result<()> {
         let deadline = self.machine.cycle() + PATIENCE;
         while self.machine.cycle() < deadline {
             let step = self.machine.step();
@@ -70,11 +70,11 @@ impl Pico {
             if step.is_err() || completes || self.machine.log_is_due() {
                 self.decoder.push(&self.machine.take_log(), |line| self.log.push(line));
             }
-            let (address, cycles) = step?;
+            let step = step?;
             if completes {
                 return self.machine.check_panel();
             }
-            visit(address, cycles);
+            visit(step);
         }
         bail!("the firmware has not finished a picture in {PATIENCE} cycles (at {:#010x}): it hangs", self.machine.pc())
     }
@@ -139,7 +139,7 @@ pub struct FrameTime {
 }
 
 /// Runs the firmware until it has checked all frames, and on through the next one, whose instructions and their cycles go to `visit`.
-pub(super) fn watch(elf: &Elf, visit: &mut dyn FnMut(u32, u64)) -> Result<(Recording, FrameTime)> {
+pub(super) fn watch(elf: &Elf, visit: &mut dyn FnMut(Executed)) -> Result<(Recording, FrameTime)> {
     let mut pico = Pico::new(elf)?;
     // The first frame is checked, while the second one is drawn nothing is on its way yet.
     pico.next_picture()?;

@@ -1,0 +1,157 @@
+//! The RP2040's second processor, which draws the lower part of each frame.
+
+use crate::{
+    Display, Failure, Painter,
+    painter::{finished, rows},
+    stack::without_paint,
+};
+use core::{
+    cell::{Cell, RefCell},
+    mem,
+    ops::Range,
+    sync::atomic::{AtomicBool, Ordering},
+};
+use cortex_m::asm::{sev, wfe};
+use critical_section::Mutex;
+use embassy_rp::{
+    Peri,
+    multicore::{Stack, spawn_core1},
+    peripherals::CORE1,
+};
+use embassy_time::Instant;
+use embedded_graphics::primitives::Rectangle;
+use microphong::{
+    Frame, FramePart, RenderError, Stats,
+    pixel::{PictureCrc, Pixel},
+};
+
+/// Bytes of its stack.
+pub const STACK: usize = 10 << 10;
+
+/// What the second processor is to do.
+struct Job(*mut (dyn FnMut() + Send));
+
+// SAFETY: what it points to may be sent, and the processor that made it keeps away until the job is done.
+unsafe impl Send for Job {}
+
+static JOB: Mutex<Cell<Option<Job>>> = Mutex::new(Cell::new(None));
+static DONE: AtomicBool = AtomicBool::new(false);
+
+/// The second processor, waiting for something to do.
+pub struct SecondCore {
+    /// The lowest word of its stack.
+    stack: *const u32,
+}
+
+impl SecondCore {
+    /// Starts it.
+    pub fn start(core: Peri<'static, CORE1>, stack: &'static mut Stack<STACK>) -> Self {
+        let lowest = (&raw const stack.mem).cast();
+        spawn_core1(core, stack, || {
+            loop {
+                match critical_section::with(|cs| JOB.borrow(cs).take()) {
+                    Some(Job(job)) => {
+                        // SAFETY: `join` lends it, and does not go on before it is done.
+                        unsafe { (*job)() };
+                        DONE.store(true, Ordering::Release);
+                        sev();
+                    }
+                    None => wfe(),
+                }
+            }
+        });
+        Self { stack: lowest }
+    }
+
+    /// Does `here` on this processor and `there` on the second one, at the same time, and returns when both are done.
+    fn join<A, B: Send>(&mut self, here: impl FnOnce() -> A, there: impl FnOnce() -> B + Send) -> (A, Option<B>) {
+        let (mut there, mut result) = (Some(there), None);
+        let mut job = || result = there.take().map(|there| there());
+        let job: *mut (dyn FnMut() + Send + '_) = &mut job;
+        // SAFETY: only the lifetime changes. The job is done, and nobody has the pointer any more, when this function returns; a panic does
+        // not unwind, it ends the program.
+        let job = unsafe { mem::transmute::<*mut (dyn FnMut() + Send + '_), *mut (dyn FnMut() + Send + 'static)>(job) };
+        DONE.store(false, Ordering::Relaxed);
+        critical_section::with(|cs| JOB.borrow(cs).set(Some(Job(job))));
+        sev();
+        let outcome = here();
+        wait();
+        (outcome, result)
+    }
+}
+
+/// A call of its own, so that its time can be told from the rest.
+#[inline(never)]
+fn wait() {
+    while !DONE.load(Ordering::Acquire) {
+        wfe();
+    }
+}
+
+/// What a stack is filled with before it is used.
+const PAINT: u32 = 0;
+
+/// Both processors draw: one the upper rows, the other the lower ones. Each sends its own bands.
+pub struct TwoCores<C: 'static> {
+    /// The bands that they draw next.
+    pub bands: [&'static mut [C]; 2],
+    /// The second one.
+    pub second: SecondCore,
+    /// The first row of the lower part, such that both take equally long; `None` before the first frame.
+    pub border: Option<u32>,
+}
+
+impl<D> Painter<D> for TwoCores<D::Color>
+where
+    D: Display<Color: Pixel<Stored: Sync> + Send + Sync> + Send,
+{
+    fn draw(&mut self, display: &mut D, frame: Frame<'_, D::Color>, mut crc: Option<&mut PictureCrc>) -> Result<Stats, Failure> {
+        // What there is to do lies in the rows that triangles reach.
+        let Range { start, end } = frame.rows();
+        let border = self.border.unwrap_or(start.midpoint(end)).max(start).min(end);
+        let mut frame = frame.in_two(border);
+        let [upper, lower] = frame.parts();
+        let [above, below] = &mut self.bands;
+        let display = Mutex::new(RefCell::new(display));
+        let send = |area, band| critical_section::with(|cs| display.borrow_ref_mut(cs).send(area, band));
+        let mut rest = crc.is_some().then(PictureCrc::of_rest);
+        let (of_upper, of_lower) =
+            self.second.join(|| timed(upper, above, send, crc.as_deref_mut()), || timed(lower, below, send, rest.as_mut()));
+        let times = [of_upper?, of_lower.unwrap_or(Ok(0))?];
+        if let (Some(crc), Some(rest)) = (crc, rest) {
+            finished(crc, rest);
+        }
+        // Towards where both would take equally long if a row took as long as the others of its part. All of the way is too far, since most
+        // triangles lie in the middle; but the first border was a guess.
+        let [of_upper, of_lower] = times.map(|time| time as i32);
+        let each = |time: i32, rows: u32| (time << 4) / (rows.max(1) as i32);
+        let each = (each(of_upper, border - start) + each(of_lower, end - border)).max(1);
+        let way = if self.border.is_some() { 2 } else { 1 };
+        self.border = Some(border.saturating_add_signed(((of_lower - of_upper) << 4) / each / way));
+        Ok(frame.stats())
+    }
+
+    fn report(&self) {
+        // SAFETY: it is static, and readable RAM.
+        let used = unsafe { without_paint(self.second.stack, STACK / size_of::<u32>(), PAINT) };
+        defmt::info!("stack of the second processor {=usize} of {=usize} bytes", used, STACK);
+    }
+}
+
+/// Draws the rows of `part`, and returns how many microseconds that took, without the time in which bands wait to be sent.
+fn timed<C: Pixel>(
+    mut part: FramePart<'_, '_, C>,
+    band: &mut &'static mut [C],
+    send: impl FnMut(Rectangle, &'static mut [C]) -> &'static mut [C],
+    crc: Option<&mut PictureCrc>,
+) -> Result<u32, RenderError> {
+    let mut time = 0;
+    let next = |band: &mut [C]| {
+        let start = Instant::now();
+        let area = part.next_band(band);
+        time += start.elapsed().as_micros() as u32;
+        area
+    };
+    rows(next, band, send, crc)?;
+    Ok(time)
+}
