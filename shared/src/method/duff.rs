@@ -10,7 +10,7 @@
 
 use crate::{
     arch::product::{product, upper},
-    format::{HAVERSINE, NORMAL_LENGTH},
+    format::{HAVERSINE, NORMAL_LENGTH, UNIT},
     interpolate::field::{Field, Nodes},
     lighting::{
         lights::Source,
@@ -19,6 +19,7 @@ use crate::{
     math::{
         highlight_lut::CosineLookup,
         rsqrt::{HalfRsqrt, LEAST, rsqrt},
+        vector::{add, narrow_dot, wide},
     },
     method::{
         Loops, Shading, Style, TriangleSetup,
@@ -31,7 +32,7 @@ use crate::{
 
 /// Shades by linear numerators over a root, under lights that are the same everywhere.
 pub fn shade_constant(setup: &TriangleSetup<'_>, shading: &Shading<'_>, canvas: &mut dyn Canvas) -> u32 {
-    match tabled(setup) {
+    match tabled(setup).filter(|_| !is_steep(shading.exponent)) {
         // The faster root is worth its code only where little else is done at a pixel.
         Some(square) if setup.inv_depth().is_none() => {
             let threshold = setup.highlight_threshold(shading.reflectance);
@@ -48,7 +49,7 @@ pub fn shade_constant(setup: &TriangleSetup<'_>, shading: &Shading<'_>, canvas: 
             };
             shading.draw_lit_in_part(setup, fit, square, Tabled, canvas)
         }
-        _ => draw_constant(setup, shading, square(setup), Rooted, canvas),
+        _ => draw_constant(setup, shading, square(setup, shading.exponent), Rooted, canvas),
     }
 }
 
@@ -62,7 +63,7 @@ pub fn shade(setup: &TriangleSetup<'_>, shading: &Shading<'_>, canvas: &mut dyn 
     if shading.lighting.is_constant() {
         return shade_constant(setup, shading, canvas);
     }
-    draw_products(setup, shading, square(setup), Rooted, canvas)
+    draw_products(setup, shading, square(setup, shading.exponent), Rooted, canvas)
 }
 
 /// Shades by `model` from `common` and N·L and N·H of each light, normals not normalised, which are linear under constant lights.
@@ -95,7 +96,15 @@ impl Loops for Duff {
     }
 
     #[inline(always)]
-    fn draw<C: Pixel>(setup: &TriangleSetup<'_>, _: &Shading<'_>, tables: MaterialTables<'_, C>, band: &mut Band<'_, C>) -> Option<u32> {
+    fn draw<C: Pixel>(
+        setup: &TriangleSetup<'_>,
+        shading: &Shading<'_>,
+        tables: MaterialTables<'_, C>,
+        band: &mut Band<'_, C>,
+    ) -> Option<u32> {
+        if is_steep(shading.exponent) && !setup.has_no_highlight(tables.reflectance) {
+            return None;
+        }
         let square = tabled(setup)?;
         let halves = HalfRsqrt::get();
         quotient::draw::<true, _, C>(setup, || square, |[square]| halves.rsqrt(square) as i32, tables, band)
@@ -122,12 +131,36 @@ pub fn is_curved(setup: &TriangleSetup<'_>) -> bool {
     setup.triangle.min_normal_length < 1 << (NORMAL_LENGTH - 1)
 }
 
-/// |N|², Q2.30: exactly quadratic.
+/// Whether a highlight of this exponent is so steep that an error of 2^-17 in |N|² would show: it is 0.1 of 1/255 at 64, and grows with the
+/// exponent. The haversines of the stream have 16 fraction bits.
+pub fn is_steep(exponent: u16) -> bool {
+    exponent > 64
+}
+
+/// |N|², Q2.30: exactly quadratic, and for steep highlights exact.
 #[inline(always)]
-pub fn square(setup: &TriangleSetup<'_>) -> Quadratic<1> {
-    // |N|² - 1 is zero at the corners.
-    let [ab, bc, ca] = setup.edges(setup.triangle.haversine).map(|haversine| -(i32::from(haversine) << (NODE - HAVERSINE)));
-    Quadratic::new([[0, 0, 0, ab, bc, ca]], EXTRA).biased([1 << 30])
+pub fn square(setup: &TriangleSetup<'_>, exponent: u16) -> Quadratic<1> {
+    let nodes = if is_steep(exponent) {
+        exact(setup)
+    } else {
+        // |N|² - 1 is zero at the corners.
+        let [ab, bc, ca] = setup.edges(setup.triangle.haversine).map(|haversine| -(i32::from(haversine) << (NODE - HAVERSINE)));
+        [0, 0, 0, ab, bc, ca]
+    };
+    Quadratic::new([nodes], EXTRA).biased([1 << 30])
+}
+
+/// Six nodes of |N|² - 1 by the normals themselves, which are of unit length but for the rounding of their components.
+#[cold]
+#[inline(never)]
+fn exact(setup: &TriangleSetup<'_>) -> [i32; 6] {
+    let [a, b, c] = setup.vertices().map(|vertex| wide(vertex.normal));
+    let square = |v: [i32; 3]| narrow_dot(v, v);
+    // Products of normals have 28 fraction bits. Half-way between two, the normal is half their sum, and its square a quarter.
+    let node = |square: i32, bits: u32| (square.wrapping_sub(1 << bits).wrapping_add(1 << (bits - NODE - 1))) >> (bits - NODE);
+    let corner = |v: [i32; 3]| node(square(v), 2 * UNIT);
+    let middle = |a: [i32; 3], b: [i32; 3]| node(square(add(a, b)), 2 * UNIT + 2);
+    [corner(a), corner(b), corner(c), middle(a, b), middle(b, c), middle(c, a)]
 }
 
 /// Normalises by 1/|N| from a table, for |N|² in [1/4, 1]; |N|² minus [`LEAST`] is walked.
