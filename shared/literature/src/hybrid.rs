@@ -78,7 +78,7 @@ fn draw(setup: &TriangleSetup<'_>, shading: &Shading<'_>, fit: fn(u16) -> Parabo
         Bows { rows, normals, lobe }
     };
     let constant = |direction| bows(Turned { normals: setup.corner_nodes().map(|node| node.normal), direction });
-    let (nodes, is_constant) = (setup.six_nodes(), shading.lighting.is_constant());
+    let (nodes, is_constant) = (setup.six_nodes(shading.exponent), shading.lighting.is_constant());
     let fit = |source: &Source| {
         let diffuse = setup.fit(&quadratic([nodes.map(|node| cosine(node.normal, source.towards(node.position)))]));
         let highlight = if is_constant {

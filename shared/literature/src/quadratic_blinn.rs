@@ -32,7 +32,7 @@ impl Method for QuadraticBlinn {
 }
 
 fn draw(setup: &TriangleSetup<'_>, shading: &Shading<'_>, canvas: &mut dyn Canvas) -> u32 {
-    let nodes = setup.six_nodes();
+    let nodes = setup.six_nodes(shading.exponent);
     let fit = |source: &Source| quadratic(coordinates(shading.lighting, source, nodes));
     shading.draw_lit(setup, fit, Constant, Across, canvas)
 }

@@ -37,6 +37,6 @@ impl Method for Renq {
         if duff::is_curved(setup) {
             return duff::shade(setup, shading, canvas);
         }
-        duff::draw_products(setup, shading, length(setup), Scaled, canvas)
+        duff::draw_products(setup, shading, length(setup, shading.exponent), Scaled, canvas)
     }
 }

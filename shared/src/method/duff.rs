@@ -24,6 +24,7 @@ use crate::{
     method::{
         Loops, Shading, Style, TriangleSetup,
         lighting_model::{EXTRA, LightingModel, Lit, NODE, Quadratic, linear, signed},
+        node::is_steep,
         quotient,
     },
     pixel::Pixel,
@@ -129,12 +130,6 @@ const HAVERSINE_RANGE: u32 = HAVERSINE - 1;
 /// Whether the interpolated normal may be shorter than 1/2, where the table of roots and every fit of 1/|N| end.
 pub fn is_curved(setup: &TriangleSetup<'_>) -> bool {
     setup.triangle.min_normal_length < 1 << (NORMAL_LENGTH - 1)
-}
-
-/// Whether a highlight of this exponent is so steep that an error of 2^-17 in |N|² would show: it is 0.1 of 1/255 at 64, and grows with the
-/// exponent. The haversines of the stream have 16 fraction bits.
-pub fn is_steep(exponent: u16) -> bool {
-    exponent > 64
 }
 
 /// |N|², Q2.30: exactly quadratic, and for steep highlights exact.

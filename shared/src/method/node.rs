@@ -24,6 +24,13 @@ pub struct Node {
     pub normal: [i32; 3],
 }
 
+/// Whether a highlight of this exponent is so steep that the constants of edges, of which the stream has 16 fraction bits, would show: an
+/// error of 2^-17 in a cosine is 0.1 of 1/255 at 64, and grows with the exponent. What they stand for is then computed from the normals.
+#[must_use]
+pub fn is_steep(exponent: u16) -> bool {
+    exponent > 64
+}
+
 impl Shading<'_> {
     /// Levels at a point, Q9.7.
     pub fn levels(&self, node: &Node) -> [i32; 3] {
@@ -39,12 +46,13 @@ impl Shading<'_> {
     #[inline(never)]
     pub fn middle_levels(&self, setup: &TriangleSetup<'_>) -> [[i32; 3]; 3] {
         if self.lighting.is_constant()
+            && !is_steep(self.exponent)
             && let Some([ab, bc, ca]) = &setup.middle_normals()
         {
             let levels = |normal| self.reflectance.constant_levels(&self.lighting.sources, normal);
             return [levels(ab), levels(bc), levels(ca)];
         }
-        let [.., ab, bc, ca] = setup.six_nodes();
+        let [.., ab, bc, ca] = setup.six_nodes(self.exponent);
         [self.levels(&ab), self.levels(&bc), self.levels(&ca)]
     }
 }
@@ -55,16 +63,21 @@ impl TriangleSetup<'_> {
         self.vertices().map(|vertex| Node { position: point(vertex.position), normal: wide(vertex.normal).map(|c| c << FINER) })
     }
 
-    /// Corners and edge midpoints (01, 12, 20), unit normals.
-    pub fn six_nodes(&self) -> [Node; 6] {
-        let (sums, inverses) = (self.sums(), self.inverse_sum_lengths());
+    /// Corners and edge midpoints (01, 12, 20), unit normals, as exact as a highlight of this exponent needs them.
+    pub fn six_nodes(&self, exponent: u16) -> [Node; 6] {
+        let sums = self.sums();
+        let [a, b, c] = self.corner_nodes();
+        if is_steep(exponent) {
+            let [ab, bc, ca] = sums.map(|(position, sum)| Node { position, normal: normalise(sum) });
+            return [a, b, c, ab, bc, ca];
+        }
+        let inverses = self.inverse_sum_lengths();
         let middle = |k: usize| {
             let (position, sum) = sums[k];
             let inverse = inverses[k] as i32;
             // Q3.14 times Q1.17: one bit more than wanted.
             Node { position, normal: sum.map(|c| (product(c, inverse) >> (UNIT + INVERSE_SUM_LENGTH - 30)) as i32) }
         };
-        let [a, b, c] = self.corner_nodes();
         [a, b, c, middle(0), middle(1), middle(2)]
     }
 
@@ -110,11 +123,34 @@ impl TriangleSetup<'_> {
         [inverse(ab), inverse(bc), inverse(ca)]
     }
 
-    /// N·L (`which` is 0) or N·H (1), Q2.30, at the six nodes under one constant light, from the values at the vertices.
+    /// [`Self::inverse_sum_lengths`] with 24 fraction bits, those of [`crate::method::lighting_model::NODE`], from the normals: at most 1.
+    #[cold]
+    #[inline(never)]
+    pub fn fine_inverse_sum_lengths(&self) -> [u32; 3] {
+        self.sums().map(|(_, sum)| {
+            let (mantissa, exponent) = rsqrt_wide(dot(sum, sum).max(1) as u64);
+            mantissa.checked_shr(exponent.saturating_sub(UNIT + 24)).unwrap_or(0).min(1 << 24)
+        })
+    }
+
+    /// N·L, Q2.30, at the six nodes under one constant light, from the values at the vertices.
     #[inline(always)]
-    pub fn six_cosines(&self, which: usize) -> [i32; 6] {
+    pub fn six_diffuse(&self) -> [i32; 6] {
         let [a, b, c] = self.corners;
-        self.six_from([a.light[which], b.light[which], c.light[which]])
+        self.six_from([a.light[0], b.light[0], c.light[0]])
+    }
+
+    /// N·H, Q2.30, at the six nodes under one constant light, as exact as a highlight of this exponent needs it.
+    #[inline(always)]
+    pub fn six_half(&self, exponent: u16) -> [i32; 6] {
+        let [a, b, c] = self.corners;
+        self.six_half_from([a.light[1], b.light[1], c.light[1]], exponent)
+    }
+
+    /// [`Self::six_half`] of the values at corners.
+    #[inline(always)]
+    pub fn six_half_from(&self, corners: [i32; 3], exponent: u16) -> [i32; 6] {
+        if is_steep(exponent) { exact_six(self.vertices(), corners) } else { self.six_from(corners) }
     }
 
     /// A cosine, Q2.30, at the six nodes under a constant light: at midpoints it follows from the cosines at corners.
@@ -184,6 +220,18 @@ pub fn map_six<A, R>([a, b, c, d, e, g]: [A; 6], f: impl Fn(A) -> R) -> [R; 6] {
 fn wide_middles(vertices: [&Vertex; 3], given: [u16; 3], [a, b, c]: [i32; 3]) -> [i32; 3] {
     let middle = |(a, b): (i32, i32), inverse: u32| (product((a >> 1) + (b >> 1), inverse as i32) >> (INVERSE_SUM_LENGTH - 1)) as i32;
     zip([(a, b), (b, c), (c, a)], wide_inverse_sum_lengths(vertices, given), middle)
+}
+
+/// A cosine, Q2.30, at the six nodes, from those at corners, by the lengths of the sums of normals.
+#[cold]
+#[inline(never)]
+fn exact_six(vertices: [&Vertex; 3], [a, b, c]: [i32; 3]) -> [i32; 6] {
+    let [ab, bc, ca] = zip(sums(vertices), [(a, b), (b, c), (c, a)], |(_, sum), (a, b)| {
+        // 1/|Ni+Nj| is 2^(14 - exponent) times the mantissa.
+        let (mantissa, exponent) = rsqrt_wide(dot(sum, sum).max(1) as u64);
+        (product((a >> 1) + (b >> 1), mantissa as i32) >> (exponent.max(UNIT + 1) - UNIT - 1)) as i32
+    });
+    [a, b, c, ab, bc, ca]
 }
 
 /// `f` of each pair of values at six nodes, written out because `map` is a loop through memory at opt-level "s".

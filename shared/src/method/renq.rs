@@ -16,19 +16,25 @@ use crate::{
     method::{
         TriangleSetup,
         lighting_model::{EXTRA, LightingModel, NODE, Quadratic, signed},
+        node::is_steep,
     },
 };
 
 /// Half the quadratic through 1/|N| at six nodes, Q2.30.
 #[inline(always)]
-pub fn length(setup: &TriangleSetup<'_>) -> Quadratic<1> {
+pub fn length(setup: &TriangleSetup<'_>, exponent: u16) -> Quadratic<1> {
     // 1/|Ni+Nj| - 1/2, zero at the corners. It is at most 1/2 where the normal is as long as methods want it here; the record of a damaged
     // stream may say so of one that is shorter.
     let node = |inverse: u32| {
         (inverse.min(1 << INVERSE_SUM_LENGTH).wrapping_sub(1 << (INVERSE_SUM_LENGTH - 1)) << (NODE - INVERSE_SUM_LENGTH)) as i32
     };
-    let [ab, bc, ca] = setup.inverse_sum_lengths();
-    Quadratic::new([[0, 0, 0, node(ab), node(bc), node(ca)]], EXTRA).biased([1 << 29])
+    let [ab, bc, ca] = if is_steep(exponent) {
+        setup.fine_inverse_sum_lengths().map(|inverse| inverse as i32 - (1 << (NODE - 1)))
+    } else {
+        let [ab, bc, ca] = setup.inverse_sum_lengths();
+        [node(ab), node(bc), node(ca)]
+    };
+    Quadratic::new([[0, 0, 0, ab, bc, ca]], EXTRA).biased([1 << 29])
 }
 
 /// Numerators times a reciprocal length.

@@ -47,7 +47,13 @@ impl Method for RenqNewton {
             return duff::shade(setup, shading, canvas);
         }
         // Always two steps, although one is often enough: so the general way needs one loop.
-        duff::draw_products(setup, shading, (renq::length(setup), duff::square(setup, shading.exponent)), Newton::<2>, canvas)
+        duff::draw_products(
+            setup,
+            shading,
+            (renq::length(setup, shading.exponent), duff::square(setup, shading.exponent)),
+            Newton::<2>,
+            canvas,
+        )
     }
 }
 
@@ -67,7 +73,7 @@ impl Loops for RenqNewton {
         if duff::is_curved(setup) || needs_two(setup.triangle.min_normal_length, shading.exponent) {
             return None;
         }
-        let lengths = || (renq::length(setup), duff::square(setup, shading.exponent));
+        let lengths = || (renq::length(setup, shading.exponent), duff::square(setup, shading.exponent));
         quotient::draw::<false, _, C>(setup, lengths, |lengths| Newton::<1>.half_reciprocal(lengths), tables, band)
     }
 }

@@ -6,7 +6,7 @@
 //! than a triangle is flattened.
 
 use crate::{
-    lighting::materials::{Highlight, MaterialTables, Reflectance},
+    lighting::materials::{Highlight, MaterialTables},
     method::{Costs, Facts, Loops, Method, RANGE, Shading, Style, TriangleSetup, VertexLight},
     pixel::Pixel,
     raster::{band::Band, canvas::Canvas},
@@ -53,7 +53,7 @@ impl Loops for SixPoint {
             three(setup, shading, band)
         } else {
             let nodes = || match shading.constant {
-                Some(_) => one_level(setup, shading.reflectance),
+                Some(_) => one_level(setup, shading),
                 None => lit(&setup.for_lighting(), shading)[0],
             };
             Shading::fill_one(setup, nodes, tables, band)
@@ -69,14 +69,17 @@ fn three<C: Pixel>(setup: &TriangleSetup<'_>, shading: &Shading<'_>, band: &mut 
 /// Levels at the six nodes, in three channels.
 #[inline(never)]
 fn levels(setup: &TriangleSetup<'_>, shading: &Shading<'_>) -> [[i32; 6]; 3] {
-    if shading.vertices_have_cosines() { [one_level(setup, shading.reflectance); 3] } else { lit(setup, shading) }
+    if shading.vertices_have_cosines() { [one_level(setup, shading); 3] } else { lit(setup, shading) }
 }
 
 /// Levels of a material of one channel at the six nodes under one constant light.
 #[inline(always)]
-fn one_level(setup: &TriangleSetup<'_>, reflectance: &Reflectance) -> [i32; 6] {
-    let light = setup.six_cosines(0);
-    if setup.has_no_highlight(reflectance) { reflectance.six_diffuse_clamped(light) } else { reflectance.six(light, setup.six_cosines(1)) }
+fn one_level(setup: &TriangleSetup<'_>, shading: &Shading<'_>) -> [i32; 6] {
+    let (light, reflectance) = (setup.six_diffuse(), shading.reflectance);
+    if setup.has_no_highlight(reflectance) {
+        return reflectance.six_diffuse_clamped(light);
+    }
+    reflectance.six(light, setup.six_half(shading.exponent))
 }
 
 /// Node levels under any lights: corners are lit already, midpoints are lit here.

@@ -67,7 +67,7 @@ impl Method for Sqrt6 {
                 let (towards, half) = (setup.six_from(setup.corner_cosines(towards)), setup.corner_cosines(half));
                 let [a, b, c] = half;
                 if a.max(b).max(c) >= threshold {
-                    Lit::Fully(quadratic([towards, map_six(setup.six_from(half), root)]))
+                    Lit::Fully(quadratic([towards, map_six(setup.six_half_from(half, shading.exponent), root)]))
                 } else if DiffuseSign::of(towards) == DiffuseSign::Nowhere {
                     Lit::Nowhere
                 } else {
@@ -76,7 +76,7 @@ impl Method for Sqrt6 {
             };
             return shading.draw_lit_in_part(setup, fit, Constant, Squared, canvas);
         }
-        let nodes = setup.six_nodes();
+        let nodes = setup.six_nodes(shading.exponent);
         let fit = |source: &_| Lit::<_, Quadratic<1>>::Fully(shading.six_products(&nodes, source, |[light, half]| [light, root(half)]));
         shading.draw_lit_in_part(setup, fit, Constant, Squared, canvas)
     }
@@ -88,10 +88,15 @@ impl Loops for Sqrt6 {
     }
 
     #[inline(always)]
-    fn draw<C: Pixel>(setup: &TriangleSetup<'_>, _: &Shading<'_>, tables: MaterialTables<'_, C>, band: &mut Band<'_, C>) -> Option<u32> {
+    fn draw<C: Pixel>(
+        setup: &TriangleSetup<'_>,
+        shading: &Shading<'_>,
+        tables: MaterialTables<'_, C>,
+        band: &mut Band<'_, C>,
+    ) -> Option<u32> {
         match tables.one_light_rgb() {
-            Some(rgb) => draw_rgb(setup, rgb, tables, band),
-            None => draw(setup, tables.one_light_ramp()?, tables, band),
+            Some(rgb) => draw_rgb(setup, rgb, shading.exponent, tables, band),
+            None => draw(setup, tables.one_light_ramp()?, shading.exponent, tables, band),
         }
     }
 }
@@ -101,10 +106,11 @@ impl Loops for Sqrt6 {
 fn draw_rgb<C: Pixel>(
     setup: &TriangleSetup<'_>,
     colours: OneLightRgb<'_, C>,
+    exponent: u16,
     tables: MaterialTables<'_, C>,
     band: &mut Band<'_, C>,
 ) -> Option<u32> {
-    draw(setup, colours, tables, band)
+    draw(setup, colours, exponent, tables, band)
 }
 
 /// Draws `setup` under one constant light in these `colours`; `None` if levels may leave the walked format.
@@ -112,12 +118,13 @@ fn draw_rgb<C: Pixel>(
 fn draw<C: Pixel, T: OneLight<Pixel = C>>(
     setup: &TriangleSetup<'_>,
     colours: T,
+    exponent: u16,
     tables: MaterialTables<'_, C>,
     band: &mut Band<'_, C>,
 ) -> Option<u32> {
     let (reflectance, resumed) = (tables.reflectance, setup.resumed(band));
     // The pixel shader of an active triangle has been chosen, and no nodes are needed.
-    let cosines = if resumed.is_none() { setup.six_cosines(0) } else { [0; 6] };
+    let cosines = if resumed.is_none() { setup.six_diffuse() } else { [0; 6] };
     let id = match resumed {
         Some(id) => id,
         None if !T::TABLED => {
@@ -144,7 +151,7 @@ fn draw<C: Pixel, T: OneLight<Pixel = C>>(
         return Some(setup.fill(|| diffuse(setup, full, cosines), DiffuseOnly(colours), band));
     }
     let lookup = DefectLookup::new(&reflectance.highlight_lut);
-    let patch = || (diffuse(setup, full, cosines), highlight(setup, lookup));
+    let patch = || (diffuse(setup, full, cosines), highlight(setup, lookup, exponent));
     Some(setup.fill(patch, DiffuseAndHighlight { colours, lookup }, band))
 }
 
@@ -156,8 +163,8 @@ fn diffuse(setup: &TriangleSetup<'_>, full: u16, cosines: [i32; 6]) -> Quadric<1
 
 /// 1 minus the root of N·H, as the table of highlights is looked up by.
 #[inline(never)]
-fn highlight(setup: &TriangleSetup<'_>, lookup: DefectLookup<'_>) -> Quadric<1> {
-    let half = [map_six(map_six(setup.six_cosines(1), root), |root| lookup.node(root))];
+fn highlight(setup: &TriangleSetup<'_>, lookup: DefectLookup<'_>, exponent: u16) -> Quadric<1> {
+    let half = [map_six(map_six(setup.six_half(exponent), root), |root| lookup.node(root))];
     Nodes::<6, 1, BITS>::new(half, EXTRA).biased([lookup.half()]).fit(setup.gradients)
 }
 
