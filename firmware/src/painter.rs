@@ -50,13 +50,6 @@ pub(crate) fn rows<C: Pixel>(
     Ok(())
 }
 
-/// Adds what is below to the checksum of what is above. A call of its own, as [`check`].
-#[cfg(feature = "pico")]
-#[inline(never)]
-pub(crate) fn finished(crc: &mut PictureCrc, rest: PictureCrc) {
-    crc.append(rest);
-}
-
 /// The pixels of `area` in a band.
 pub(crate) fn part<C>(band: &[C], area: Rectangle) -> &[C] {
     &band[..(area.size.width * area.size.height) as usize]

@@ -1,10 +1,6 @@
 //! The RP2040's second processor, which draws the lower part of each frame.
 
-use crate::{
-    Display, Failure, Painter,
-    painter::{finished, rows},
-    stack::without_paint,
-};
+use crate::{Display, Failure, Painter, painter::rows, stack::without_paint};
 use core::{
     cell::{Cell, RefCell},
     mem,
@@ -119,7 +115,7 @@ where
             self.second.join(|| timed(upper, above, send, crc.as_deref_mut()), || timed(lower, below, send, rest.as_mut()));
         let times = [of_upper?, of_lower.unwrap_or(Ok(0))?];
         if let (Some(crc), Some(rest)) = (crc, rest) {
-            finished(crc, rest);
+            crc.append(rest);
         }
         // Towards where both would take equally long if a row took as long as the others of its part. All of the way is too far, since most
         // triangles lie in the middle; but the first border was a guess.

@@ -143,7 +143,7 @@ impl Bins {
     /// Leaves out the triangles that end above `row`; to be called before the first band.
     pub(crate) fn skip(&mut self, entries: &mut [Entry], row: u32) {
         let walk = self.band(entries, row);
-        self.active = walk.end();
+        self.take_over(walk);
     }
 
     /// Keeps the triangles of a band that reach into the next one.
