@@ -50,6 +50,8 @@ pub struct St7789 {
     pub sent: &'static mut [Rgb565Be],
     /// How many bytes are on their way, and until when they have to be there.
     pub sending: Option<(u32, Instant)>,
+    /// Whether a band of the frame that is drawn has been sent.
+    pub begun: bool,
     /// Whether the band that is sent is the last one of a frame.
     pub last: bool,
     /// Low while the panel is spoken to.
@@ -110,6 +112,8 @@ impl St7789 {
             }
         } else {
             pac::DMA.chan_abort().write(|channels| channels.set_chan_abort(1 << CHANNEL));
+            // What is under way arrives first.
+            while pac::DMA.chan_abort().read().chan_abort() != 0 {}
             self.failure = Some(Failure::Transfer { bytes, limit: limit(bytes) });
         }
         self.select.set_high();
@@ -158,6 +162,7 @@ impl Display for St7789 {
         if self.failure.is_some() {
             return band;
         }
+        self.begun = true;
         self.led.set_low();
         let range = |start: i32, length: u32| {
             let [a, b] = (start as u16).to_be_bytes();
@@ -179,7 +184,14 @@ impl Display for St7789 {
     }
 
     fn present(&mut self) {
-        self.last = true;
+        if mem::take(&mut self.begun) {
+            self.last = true;
+        } else {
+            // The frame looks like the one before and is complete when that is.
+            self.settle();
+            self.led.set_low();
+            self.led.set_high();
+        }
     }
 
     fn finish(&mut self) -> Result<(), Failure> {

@@ -1,5 +1,6 @@
 //! What the Pico's firmware does when the board fails: it says so, on the panel and in the log, and comes to rest. It never falls silent.
 
+use microphong::stream::{MAX_LENGTH, record::Header};
 use microphong_sim::{
     board::{Board, Fault, Pico, elf::Elf},
     scene,
@@ -8,6 +9,7 @@ use microphong_sim::{
 };
 use microphong_tests::message;
 use std::error::Error;
+use zerocopy::FromBytes;
 
 type Result<T = ()> = std::result::Result<T, Box<dyn Error>>;
 
@@ -16,7 +18,12 @@ const FRAMES: u16 = 2;
 
 /// A Pico that has shown so many pictures.
 fn after(pictures: usize) -> Result<Pico> {
-    let stream = verify::prepare(scene::load("dodecahedron")?.stream.as_bytes(), Shader::SIX_POINT, FRAMES)?;
+    after_of(scene::load("dodecahedron")?.stream.as_bytes(), pictures)
+}
+
+/// A Pico that has shown so many pictures of a stream.
+fn after_of(stream: &[u8], pictures: usize) -> Result<Pico> {
+    let stream = verify::prepare(stream, Shader::SIX_POINT, FRAMES)?;
     let mut pico = Pico::new(&Elf::read(&verify::build(Board::Pico)?)?.with_stream(&stream)?)?;
     for _ in 0..pictures {
         pico.next_picture()?;
@@ -76,5 +83,23 @@ fn a_sound_board_is_left_alone() -> Result {
     let mut pico = after(20)?;
     pico.next_picture()?;
     assert!(lines(&pico, "error: ").is_empty() && lines(&pico, "no picture: ").is_empty(), "{:?}", pico.log());
+    Ok(())
+}
+
+/// Frames that leave nothing to draw or to send are complete all the same: the light says so, and the panel keeps the background.
+#[test]
+fn nothing_in_view_is_shown() -> Result {
+    let mut stream = scene::load("dodecahedron")?.stream.as_bytes().to_vec();
+    let (header, _) = Header::mut_from_prefix(&mut stream).map_err(|_| "the stream is shorter than its header")?;
+    // Beyond the right edge.
+    header.camera.translation[0] = MAX_LENGTH;
+    let mut pico = after_of(&stream, 1)?;
+    let background = pico.picture();
+    assert!(background.iter().all(|pixel| *pixel == background[0]));
+    for frame in 1..20 {
+        pico.next_picture()?;
+        assert!(pico.picture() == background, "picture {frame}");
+    }
+    assert!(lines(&pico, "error: ").is_empty(), "{:?}", pico.log());
     Ok(())
 }

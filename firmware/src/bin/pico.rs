@@ -47,6 +47,7 @@ fn main() -> ! {
         channel: Channel::new(pins.DMA_CH0, Interrupts),
         sent,
         sending: None,
+        begun: false,
         last: false,
         select: Output::new(pins.PIN_9, Level::High),
         data: Output::new(pins.PIN_8, Level::Low),
