@@ -6,6 +6,7 @@ use std::{
     env,
     path::{Path, PathBuf},
     process::Command,
+    sync::Mutex,
 };
 
 /// Builds the firmware of `board` and returns the ELF's path.
@@ -70,6 +71,9 @@ pub fn host() -> Result<String> {
 /// # Errors
 /// When it cannot be added.
 pub fn install_target(target: &str, directory: &Path) -> Result<()> {
+    // Two that add a target at the same time fail.
+    static ADDING: Mutex<()> = Mutex::new(());
+    let _alone = ADDING.lock();
     let remedy = format!("run `rustup target add {target}`");
     let query = Command::new("rustc").current_dir(directory).args(["--print", "target-libdir", "--target", target]).output();
     let query = query.with_context(|| format!("cannot start rustc to look for the target {target}: {remedy}"))?;
