@@ -8,6 +8,7 @@
 //!
 //! Methods say what they interpolate by [`field`]s; [`perspective`] interpolates the same in perspective.
 
+pub mod by_column;
 pub mod cubic;
 pub mod field;
 pub mod perspective;

@@ -5,7 +5,7 @@ use crate::{
     format::{BIAS, CHANNEL, COSINE, Intensity, LEVEL, MAX_LIGHTS, PIXEL_COSINE, RAMP, UNIT, WALK},
     lighting::{
         lights::{MeanNormal, Source},
-        one_light::{FACTOR, LARGEST, OneLightRamp, OneLightRgb, Sum, Sums},
+        one_light::{FACTOR, LARGEST, OneLightRamp, OneLightRgb, Sum, Sums, TwoLightsRgb},
     },
     math::{
         highlight_lut::{Base, ENTRY, HighlightLut, square},
@@ -119,16 +119,16 @@ pub struct Reflectance {
     gains: [Gains; MAX_LIGHTS],
     /// Bits by which the sum of all lights may leave Q10.22, at most 5.
     excess: u32,
-    /// For [`OneLightRgb`].
-    sums: Sums,
+    /// For [`OneLightRgb`], of the first two lights, and of the first one again: two neighbours are both lights in either order.
+    sums: [Sums; 3],
     /// See [`Self::ambient_sums`].
     ambient_sums: [i32; 3],
     /// Channels at full level for dither, Q0.8 scaled to the output's depth.
     base: [u16; 3],
     /// Not 0 if [`Self::three_channels`].
     three_channels: u8,
-    /// Not 0 if [`Self::has_one_light`].
-    one_light: u8,
+    /// See [`Self::lights`].
+    lights: u8,
 }
 
 /// A material in the colours of a pixel format.
@@ -181,10 +181,10 @@ impl Reflectance {
         three_channels: 0,
         ambient: [0; 3],
         gains: [Gains::NONE; MAX_LIGHTS],
-        sums: [Sum::EMPTY; 3],
+        sums: [[Sum::EMPTY; 3]; 3],
         ambient_sums: [0; 3],
         highlight_threshold: 0,
-        one_light: 0,
+        lights: 0,
         excess: 0,
         depth: [0; 3],
     };
@@ -223,13 +223,17 @@ impl Reflectance {
         let total = self.total(lights.len());
         self.excess = (total >> (9 + LEVEL)).checked_ilog2().map_or(0, |bits| bits + 1);
         let fits = if one_channel { total < LARGEST } else { self.excess == 0 };
-        let one_light = holds_levels && lights.len() == 1 && fits;
-        let holds_levels = one_light && one_channel;
-        self.one_light = one_light.into();
-        let [one, ..] = &mut self.gains;
-        for (k, sum) in self.sums.iter_mut().enumerate() {
-            *sum = Sum::new(self.ambient[k], one.diffuse[k], one.specular[k], depth[k]);
+        let looped = holds_levels && fits && (lights.len() == 1 || lights.len() == 2 && !one_channel);
+        self.lights = if looped { lights.len() as u8 } else { 0 };
+        let holds_levels = looped && one_channel;
+        for (sums, gains) in self.sums.iter_mut().zip(&self.gains) {
+            for (k, sum) in sums.iter_mut().enumerate() {
+                *sum = Sum::new(self.ambient[k], gains.diffuse[k], gains.specular[k], depth[k]);
+            }
         }
+        let [first, _, again] = &mut self.sums;
+        *again = *first;
+        let [one, ..] = &mut self.gains;
         let (mut full, mut floor) = (1 << ENTRY, 0);
         if holds_levels {
             (full, floor) = (one.specular[0].into(), Self::biased(self.ambient[0]) as u16);
@@ -264,14 +268,14 @@ impl Reflectance {
     #[inline(always)]
     #[must_use]
     pub fn holds_levels(&self) -> bool {
-        self.has_one_light() && !self.three_channels()
+        self.lights() == 1 && !self.three_channels()
     }
 
-    /// Whether there is only one light, the method has loops for it, and its levels fit their formats.
+    /// Number of lights if the method has loops for so many, and their levels fit their formats; otherwise 0.
     #[inline(always)]
     #[must_use]
-    pub fn has_one_light(&self) -> bool {
-        self.one_light != 0
+    pub fn lights(&self) -> u8 {
+        self.lights
     }
 
     /// Smallest N·H, Q2.30, whose highlight counts, see [`HighlightLut::highlight_threshold`].
@@ -471,12 +475,20 @@ impl<'a, C: Pixel> MaterialTables<'a, C> {
         self.reflectance.holds_levels().then(|| OneLightRamp { ramp, diffuse: gains.diffuse[0], floor: highlight_lut.least() })
     }
 
-    /// The sums of three channels under the only light, if the material has three. Domain: [`Reflectance::has_one_light`], by which
-    /// methods take their loops.
+    /// The sums of three channels under the only light, if the material has three. Domain: [`Reflectance::lights`] is 1.
     #[inline(always)]
     #[must_use]
     pub fn one_light_rgb(&self) -> Option<OneLightRgb<'a, C>> {
-        (!C::GRAY && self.reflectance.three_channels()).then_some(OneLightRgb(&self.reflectance.sums, PhantomData))
+        let [sums, ..] = &self.reflectance.sums;
+        (!C::GRAY && self.reflectance.three_channels()).then_some(OneLightRgb(sums, PhantomData))
+    }
+
+    /// The sums of three channels under two lights in the order of the stream, and in the other, if [`Reflectance::lights`] is 2.
+    #[inline(always)]
+    #[must_use]
+    pub fn two_lights_rgb(&self) -> Option<[TwoLightsRgb<'a, C>; 2]> {
+        let (forth, back) = (self.reflectance.sums.first_chunk()?, self.reflectance.sums.last_chunk()?);
+        (!C::GRAY && self.reflectance.lights() == 2).then_some([TwoLightsRgb(forth, PhantomData), TwoLightsRgb(back, PhantomData)])
     }
 
     /// The colour of three levels, Q9.7, rounded.

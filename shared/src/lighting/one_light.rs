@@ -1,4 +1,4 @@
-//! The colours of a material under one constant light, for pixel loops: diffuse light is walked, the highlight looked up.
+//! The colours of a material under one or two constant lights, for pixel loops: diffuse light is walked, highlights are looked up.
 
 use crate::{
     arch::product::upper,
@@ -83,6 +83,11 @@ impl<C: Pixel> OneLight for OneLightRamp<'_, C> {
 #[derive(Debug)]
 pub struct OneLightRgb<'a, C>(pub(super) &'a Sums, pub(super) PhantomData<C>);
 
+/// Three channels under two lights: what [`OneLightRgb`] adds up under the first, and what the second one adds to it. The second cosine
+/// is rounded down, by at most 1/128 of a level.
+#[derive(Debug)]
+pub struct TwoLightsRgb<'a, C>(pub(super) &'a [Sums; 2], pub(super) PhantomData<C>);
+
 impl<C> Clone for OneLightRgb<'_, C> {
     fn clone(&self) -> Self {
         *self
@@ -90,6 +95,14 @@ impl<C> Clone for OneLightRgb<'_, C> {
 }
 
 impl<C> Copy for OneLightRgb<'_, C> {}
+
+impl<C> Clone for TwoLightsRgb<'_, C> {
+    fn clone(&self) -> Self {
+        *self
+    }
+}
+
+impl<C> Copy for TwoLightsRgb<'_, C> {}
 
 /// What [`OneLightRgb`] adds up in each channel. In Q10.22 the sum of all three is below 2^31.
 pub type Sums = [Sum; 3];
@@ -125,10 +138,16 @@ impl Sum {
         }
     }
 
+    /// What the light adds at a pixel, from a cosine, Q1.15, and a highlight, unsigned Q0.16; Q10.22.
+    #[inline(always)]
+    fn light(&self, cosine: i32, highlight: i32) -> i32 {
+        self.diffuse.wrapping_mul(cosine).wrapping_add(self.specular.wrapping_mul(highlight))
+    }
+
     /// The level, Q10.22, from a cosine, Q1.15, and a highlight, unsigned Q0.16.
     #[inline(always)]
     fn level(&self, cosine: i32, highlight: i32) -> i32 {
-        self.ambient.wrapping_add(self.diffuse.wrapping_mul(cosine)).wrapping_add(self.specular.wrapping_mul(highlight))
+        self.ambient.wrapping_add(self.light(cosine, highlight))
     }
 }
 
@@ -141,6 +160,11 @@ fn cosine<const BITS: u32>(diffuse: i32) -> i32 {
     (diffuse >> (BITS + FULL - FACTOR)).clamp(0, (1 << FACTOR) - 1)
 }
 
+impl<C> OneLightRgb<'_, C> {
+    /// See [`OneLight::diffuse`].
+    const DIFFUSE: u16 = 1 << (FULL + LEVEL);
+}
+
 impl<C: Pixel> OneLight for OneLightRgb<'_, C> {
     type Pixel = C;
 
@@ -148,7 +172,7 @@ impl<C: Pixel> OneLight for OneLightRgb<'_, C> {
 
     #[inline(always)]
     fn diffuse(&self) -> u16 {
-        1 << (FULL + LEVEL)
+        Self::DIFFUSE
     }
 
     #[inline(always)]
@@ -160,6 +184,30 @@ impl<C: Pixel> OneLight for OneLightRgb<'_, C> {
     #[inline(always)]
     fn without_highlight<const BITS: u32>(&self, diffuse: i32) -> C {
         self.colour::<BITS>(diffuse, 0)
+    }
+}
+
+impl<C: Pixel> TwoLightsRgb<'_, C> {
+    /// [`OneLight::diffuse`] of both lights.
+    #[inline(always)]
+    pub fn diffuse(&self) -> u16 {
+        OneLightRgb::<C>::DIFFUSE
+    }
+
+    /// The colour of a walked diffuse level and a highlight of each light, as [`OneLight::colour`].
+    #[inline(always)]
+    pub fn colour<const BITS: u32>(&self, [one, two]: [(i32, u32); 2]) -> C {
+        let Self([[r, g, b], [r2, g2, b2]], _) = self;
+        let (c, h, c2, h2) = (cosine::<BITS>(one.0), one.1 as i32, cosine::<BITS>(two.0), two.1 as i32);
+        let level = |first: &Sum, second: &Sum| first.level(c, h).wrapping_add(second.light(c2, h2));
+        C::mixed([level(r, r2), level(g, g2), level(b, b2)])
+    }
+
+    /// The colours of each light alone.
+    #[inline(always)]
+    pub fn each(&self) -> [OneLightRgb<'_, C>; 2] {
+        let [first, second] = self.0;
+        [OneLightRgb(first, PhantomData), OneLightRgb(second, PhantomData)]
     }
 }
 

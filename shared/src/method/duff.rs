@@ -22,7 +22,7 @@ use crate::{
         vector::{add, narrow_dot, wide},
     },
     method::{
-        Loops, Shading, Style, TriangleSetup,
+        Loops, Shading, Style, TriangleSetup, largest,
         lighting_model::{EXTRA, LightingModel, Lit, NODE, Quadratic, linear, signed},
         node::is_steep,
         quotient,
@@ -40,9 +40,9 @@ pub fn shade_constant(setup: &TriangleSetup<'_>, shading: &Shading<'_>, canvas: 
             let fit = |source: &Source| {
                 // Both are linear, so that corners tell.
                 let [towards, half] = shading.constant_cosines(setup, source);
-                if largest(half) >= threshold {
+                if largest(&half) >= threshold {
                     Lit::Fully(linear([towards, half]))
-                } else if largest(towards) <= 0 {
+                } else if largest(&towards) <= 0 {
                     Lit::Nowhere
                 } else {
                     Lit::Diffuse(linear([towards]))
@@ -52,11 +52,6 @@ pub fn shade_constant(setup: &TriangleSetup<'_>, shading: &Shading<'_>, canvas: 
         }
         _ => draw_constant(setup, shading, square(setup, shading.exponent), Rooted, canvas),
     }
-}
-
-/// The largest of three values.
-fn largest([a, b, c]: [i32; 3]) -> i32 {
-    a.max(b).max(c)
 }
 
 /// Shades by linear numerators over a root, or under near lights by quadratic ones.
@@ -88,12 +83,12 @@ where
     shading.draw_lit(setup, |source| shading.six_products(&nodes, source, |p| p), common, model, canvas)
 }
 
-/// The loops under one light.
+/// The loops under one light, or two.
 pub(crate) struct Duff;
 
 impl Loops for Duff {
     fn take(style: Style) -> bool {
-        style.one_light && !style.dithered_or_antialiased && !style.perspective
+        (1..=2).contains(&style.lights) && !style.dithered_or_antialiased && !style.perspective
     }
 
     #[inline(always)]
@@ -103,12 +98,18 @@ impl Loops for Duff {
         tables: MaterialTables<'_, C>,
         band: &mut Band<'_, C>,
     ) -> Option<u32> {
-        if is_steep(shading.exponent) && !setup.has_no_highlight(tables.reflectance) {
+        if is_steep(shading.exponent) && (tables.reflectance.lights() > 1 || !setup.has_no_highlight(tables.reflectance)) {
             return None;
         }
         let square = tabled(setup)?;
         let halves = HalfRsqrt::get();
-        quotient::draw::<true, _, C>(setup, || square, |[square]| halves.rsqrt(square) as i32, tables, band)
+        let half_reciprocal = |[square]: [u32; 1]| halves.rsqrt(square) as i32;
+        // One closure for both, or each would have loops of its own.
+        let length = || square;
+        if tables.reflectance.lights() == 2 {
+            return quotient::draw_two::<true, _, C>(setup, shading, length, half_reciprocal, tables, band);
+        }
+        quotient::draw::<true, _, C>(setup, length, half_reciprocal, tables, band)
     }
 }
 

@@ -73,5 +73,5 @@ fn three<C: Pixel>(setup: &TriangleSetup<'_>, band: &mut Band<'_, C>) -> u32 {
         let ([r0, g0, b0], [r1, g1, b1], [r2, g2, b2]) = (a.light, b.light, c.light);
         [[r0, r1, r2], [g0, g1, g2], [b0, b1, b2]]
     };
-    Shading::fill_three(setup, channels, band)
+    Shading::fill_three(setup, channels, |plane| plane, band)
 }

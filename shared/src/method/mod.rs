@@ -18,6 +18,7 @@ pub mod renq_newton;
 pub mod six_point;
 pub mod sqrt6;
 pub mod sub_triangle;
+mod two_lights;
 
 use crate::{
     antialias::{PixelSet, Shape},
@@ -72,8 +73,8 @@ pub trait Method: Sync {
 /// How the triangles of a mesh are drawn, which is decided once for all of them.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Style {
-    /// One constant light, whose levels fit the formats of [`crate::lighting::one_light`].
-    pub(crate) one_light: bool,
+    /// Number of constant lights, if their levels fit the formats of [`crate::lighting::one_light`]; otherwise 0.
+    pub(crate) lights: u8,
     /// Dither or antialiasing.
     pub(crate) dithered_or_antialiased: bool,
     /// Interpolation in perspective.
@@ -117,6 +118,15 @@ impl Loops for General {
 const EXTRA: u32 = WALK - LEVEL;
 /// Bits of the range of levels at nodes: they are in [0, 255] in Q9.7.
 pub const RANGE: u32 = LEVEL + 8;
+
+/// N·L and N·H of a constant light at the corners, Q2.30.
+pub(crate) type CornerCosines = [[i32; 3]; 2];
+
+/// The largest of three values.
+#[inline(always)]
+pub(crate) fn largest(&[a, b, c]: &[i32; 3]) -> i32 {
+    a.max(b).max(c)
+}
 
 /// A triangle ready to be shaded; all triples start with its top corner.
 pub struct TriangleSetup<'f> {
@@ -231,6 +241,14 @@ impl TriangleSetup<'_> {
             return shape.draw(self.gradients.row(), shader, canvas, &mut |_| [i32::MIN, i32::MAX]);
         }
         self.screen.draw_spans(self.gradients, shader, canvas)
+    }
+
+    /// What the vertices hold of [`VertexLight::Cosines`].
+    #[inline(always)]
+    #[must_use]
+    pub(crate) fn corner_lights(&self) -> CornerCosines {
+        let [a, b, c] = self.corners;
+        [[a.light[0], b.light[0], c.light[0]], [a.light[1], b.light[1], c.light[1]]]
     }
 
     /// Whether the highlight of one constant light reaches a visible level nowhere on the triangle: N·H is linear and |N| at least
@@ -358,18 +376,19 @@ impl Shading<'_> {
         setup.fill(|| level_field(nodes()).fit(setup.gradients), Ramp(tables.ramp), band)
     }
 
-    /// [`Self::draw_levels`] by loops of a method: three levels.
+    /// [`Self::draw_levels`] by loops of a method: three levels, whose polynomials are walked as `walked` says.
     #[inline(always)]
-    fn fill_three<const N: usize, C: Pixel>(
+    fn fill_three<const N: usize, C: Pixel, P: Patch<Walker: Walker<Value = [u32; 3]>>>(
         setup: &TriangleSetup<'_>,
         channels: impl FnOnce() -> [[i32; N]; 3],
+        walked: impl FnOnce(<Nodes<N, 3, RANGE> as Field>::Patch) -> P,
         band: &mut Band<'_, C>,
     ) -> u32
     where
-        Nodes<N, 3, RANGE>: Field<Value = [u32; 3]>,
+        Nodes<N, 3, RANGE>: Field,
     {
         let half_steps = C::DEPTH.map(|depth| 1 << (CHANNEL + 7 - depth));
-        let patch = || Nodes::<N, 3, RANGE>::new(channels(), CHANNEL - LEVEL).biased(half_steps).fit(setup.gradients);
+        let patch = || walked(Nodes::<N, 3, RANGE>::new(channels(), CHANNEL - LEVEL).biased(half_steps).fit(setup.gradients));
         setup.fill(patch, Rgb(PhantomData), band)
     }
 }

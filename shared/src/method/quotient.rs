@@ -1,4 +1,4 @@
-//! One constant light, by linear numerators over a length: level and highlight are walked in the units
+//! Constant lights, by linear numerators over a length: level and highlight are walked in the units
 //! of their tables, so that a pixel takes one product for each.
 
 use crate::{
@@ -6,15 +6,16 @@ use crate::{
     format::COSINE,
     interpolate::{
         Constant,
+        by_column::ByColumn,
         field::{Field, Nodes},
         plane::Plane,
     },
     lighting::{
         materials::MaterialTables,
-        one_light::{OneLight, OneLightRgb, node},
+        one_light::{OneLight, OneLightRgb, TwoLightsRgb, node},
     },
     math::{highlight_lookup, highlight_lookup::QuotientLookup},
-    method::TriangleSetup,
+    method::{CornerCosines, Shading, TriangleSetup, largest, lighting_model::fitted, two_lights::TwoLights},
     pixel::Pixel,
     raster::{
         band::Band,
@@ -32,6 +33,9 @@ const LEVEL: u32 = 22;
 const PIXEL: u32 = LEVEL - 3;
 /// Bits of the range of numerators at nodes, in steps of the table.
 const STEPS: u32 = 26;
+
+/// A walked value for each of two lights.
+type Walked<V> = (V, V);
 
 /// Diffuse light and highlight from numerators and a length. `R` computes half a reciprocal length, Q2.30, from walked values. Unless it is
 /// `EXACT`, cosines may exceed 1 and then count as 1.
@@ -52,7 +56,7 @@ impl<T: OneLight, V, R: Fn(V) -> i32 + Copy, const EXACT: bool> PixelShader<(([u
     #[inline(always)]
     fn shade(&self, (([light], [half]), length): (([u32; 1], [u32; 1]), V)) -> T::Pixel {
         let half_reciprocal = (self.half_reciprocal)(length);
-        let diffuse = quotient::<EXACT, T>(self.colours, light, half_reciprocal);
+        let diffuse = quotient::<EXACT>(self.colours.diffuse(), light, half_reciprocal);
         let highlight = self.lookup.at(upper(half as i32, half_reciprocal));
         self.colours.colour::<PIXEL>(diffuse, highlight)
     }
@@ -72,16 +76,62 @@ impl<T: OneLight, V, R: Fn(V) -> i32 + Copy, const EXACT: bool> PixelShader<([u3
 
     #[inline(always)]
     fn shade(&self, ([light], length): ([u32; 1], V)) -> T::Pixel {
-        let diffuse = quotient::<EXACT, T>(self.colours, light, (self.half_reciprocal)(length));
+        let diffuse = quotient::<EXACT>(self.colours.diffuse(), light, (self.half_reciprocal)(length));
         self.colours.without_highlight::<PIXEL>(diffuse)
     }
 }
 
-/// The diffuse level of a numerator times half a reciprocal length.
+/// [`DiffuseAndHighlight`] of two lights.
+impl<C: Pixel, V, R: Fn(V) -> i32 + Copy, const EXACT: bool> PixelShader<(Walked<([u32; 1], [u32; 1])>, V)>
+    for DiffuseAndHighlight<'_, TwoLightsRgb<'_, C>, R, EXACT>
+{
+    type Pixel = C;
+
+    #[inline(always)]
+    fn shade(&self, ((one, two), length): (Walked<([u32; 1], [u32; 1])>, V)) -> C {
+        let half_reciprocal = (self.half_reciprocal)(length);
+        let light = |([light], [half]): ([u32; 1], [u32; 1])| {
+            let diffuse = quotient::<EXACT>(self.colours.diffuse(), light, half_reciprocal);
+            (diffuse, self.lookup.at(upper(half as i32, half_reciprocal)))
+        };
+        self.colours.colour::<PIXEL>([light(one), light(two)])
+    }
+}
+
+/// [`DiffuseAndHighlight`] of two lights, of which the second has no highlight.
+impl<C: Pixel, V, R: Fn(V) -> i32 + Copy, const EXACT: bool> PixelShader<((([u32; 1], [u32; 1]), [u32; 1]), V)>
+    for DiffuseAndHighlight<'_, TwoLightsRgb<'_, C>, R, EXACT>
+{
+    type Pixel = C;
+
+    #[inline(always)]
+    fn shade(&self, ((([light], [half]), [other]), length): ((([u32; 1], [u32; 1]), [u32; 1]), V)) -> C {
+        let half_reciprocal = (self.half_reciprocal)(length);
+        let diffuse = |light| quotient::<EXACT>(self.colours.diffuse(), light, half_reciprocal);
+        let highlight = self.lookup.at(upper(half as i32, half_reciprocal));
+        self.colours.colour::<PIXEL>([(diffuse(light), highlight), (diffuse(other), 0)])
+    }
+}
+
+/// [`DiffuseOnly`] of two lights.
+impl<C: Pixel, V, R: Fn(V) -> i32 + Copy, const EXACT: bool> PixelShader<(Walked<[u32; 1]>, V)>
+    for DiffuseOnly<TwoLightsRgb<'_, C>, R, EXACT>
+{
+    type Pixel = C;
+
+    #[inline(always)]
+    fn shade(&self, (([one], [two]), length): (Walked<[u32; 1]>, V)) -> C {
+        let half_reciprocal = (self.half_reciprocal)(length);
+        let light = |light| (quotient::<EXACT>(self.colours.diffuse(), light, half_reciprocal), 0);
+        self.colours.colour::<PIXEL>([light(one), light(two)])
+    }
+}
+
+/// The diffuse level of a numerator times half a reciprocal length, of a material with the level `full` at cosine 1.
 #[inline(always)]
-fn quotient<const EXACT: bool, T: OneLight>(colours: T, light: u32, half_reciprocal: i32) -> i32 {
+fn quotient<const EXACT: bool>(full: u16, light: u32, half_reciprocal: i32) -> i32 {
     let diffuse = upper(light as i32, half_reciprocal);
-    if EXACT { diffuse } else { diffuse.min(node(colours.diffuse(), 1 << COSINE, PIXEL)) }
+    if EXACT { diffuse } else { diffuse.min(node(full, 1 << COSINE, PIXEL)) }
 }
 
 /// Draws `setup` under one constant light; `None` if its levels do not fit their formats. `half_reciprocal` computes half a reciprocal
@@ -94,9 +144,10 @@ pub(super) fn draw<const EXACT: bool, F: Field, C: Pixel>(
     tables: MaterialTables<'_, C>,
     band: &mut Band<'_, C>,
 ) -> Option<u32> {
+    let cosines = &setup.corner_lights();
     match tables.one_light_rgb() {
-        Some(rgb) => Some(draw_rgb::<EXACT, _, _>(setup, length, half_reciprocal, rgb, tables, band)),
-        None => Some(draw_in::<EXACT, _, _>(setup, length, half_reciprocal, tables.one_light_ramp()?, tables, band)),
+        Some(rgb) => Some(draw_rgb::<EXACT, _, _>(setup, cosines, length, half_reciprocal, rgb, tables, band)),
+        None => Some(draw_in::<EXACT, _, _>(setup, cosines, length, half_reciprocal, tables.one_light_ramp()?, tables, band)),
     }
 }
 
@@ -104,19 +155,52 @@ pub(super) fn draw<const EXACT: bool, F: Field, C: Pixel>(
 #[inline(never)]
 fn draw_rgb<const EXACT: bool, F: Field, C: Pixel>(
     setup: &TriangleSetup<'_>,
+    cosines: &CornerCosines,
     length: impl FnOnce() -> F,
     half_reciprocal: impl Fn(F::Value) -> i32 + Copy,
     colours: OneLightRgb<'_, C>,
     tables: MaterialTables<'_, C>,
     band: &mut Band<'_, C>,
 ) -> u32 {
-    draw_in::<EXACT, _, _>(setup, length, half_reciprocal, colours, tables, band)
+    draw_in::<EXACT, _, _>(setup, cosines, length, half_reciprocal, colours, tables, band)
+}
+
+/// [`draw`] under two constant lights. One that adds nothing to the triangle is left out.
+#[inline(never)]
+pub(super) fn draw_two<const EXACT: bool, F: Field, C: Pixel>(
+    setup: &TriangleSetup<'_>,
+    shading: &Shading<'_>,
+    length: impl FnOnce() -> F,
+    half_reciprocal: impl Fn(F::Value) -> i32 + Copy,
+    tables: MaterialTables<'_, C>,
+    band: &mut Band<'_, C>,
+) -> Option<u32> {
+    let TwoLights { colours, cosines: [first, second], highlights } = TwoLights::on(setup, shading, tables)?;
+    let ([one, two], full) = (colours.each(), colours.diffuse());
+    let is_dark = |[towards, _]: &CornerCosines| largest(towards) <= 0;
+    let lookup = QuotientLookup::new(&tables.reflectance.highlight_lut);
+    let shader = DiffuseAndHighlight::<_, _, EXACT> { colours, lookup, half_reciprocal };
+    let both = |[towards, half]: &CornerCosines| (plane(setup, full, towards), numerator(setup, lookup, half));
+    Some(match highlights {
+        0 | 1 if is_dark(&second) => draw_rgb::<EXACT, _, _>(setup, &first, length, half_reciprocal, one, tables, band),
+        0 if is_dark(&first) => draw_rgb::<EXACT, _, _>(setup, &second, length, half_reciprocal, two, tables, band),
+        0 => {
+            let patch = || ((plane(setup, full, &first[0]), plane(setup, full, &second[0])), fitted(&length(), setup.gradients));
+            setup.fill(patch, DiffuseOnly::<_, _, EXACT> { colours, half_reciprocal }, band)
+        }
+        1 => {
+            let patch = || (ByColumn((both(&first), plane(setup, full, &second[0]))), fitted(&length(), setup.gradients));
+            setup.fill(patch, shader, band)
+        }
+        _ => setup.fill(|| (ByColumn((both(&first), both(&second))), fitted(&length(), setup.gradients)), shader, band),
+    })
 }
 
 /// [`draw`] in these `colours`.
 #[inline(always)]
 fn draw_in<const EXACT: bool, F: Field, T: OneLight>(
     setup: &TriangleSetup<'_>,
+    cosines: &CornerCosines,
     length: impl FnOnce() -> F,
     half_reciprocal: impl Fn(F::Value) -> i32 + Copy,
     colours: T,
@@ -127,29 +211,48 @@ where
     T::Pixel: Pixel,
 {
     let (reflectance, full) = (tables.reflectance, colours.diffuse());
-    if setup.has_no_highlight(reflectance) {
-        let [a, b, c] = setup.corners;
-        if a.light[0].max(b.light[0]).max(c.light[0]) <= 0 {
+    let [towards, half] = cosines;
+    if largest(half) < setup.highlight_threshold(reflectance) {
+        if largest(towards) <= 0 {
             return setup.fill(|| Constant, Solid(colours.without_highlight::<PIXEL>(0)), band);
         }
-        return setup.fill(|| diffuse_patch(setup, full, length), DiffuseOnly::<_, _, EXACT> { colours, half_reciprocal }, band);
+        return setup.fill(|| diffuse_patch(setup, full, towards, length), DiffuseOnly::<_, _, EXACT> { colours, half_reciprocal }, band);
     }
     let lookup = QuotientLookup::new(&reflectance.highlight_lut);
-    setup.fill(|| patch(setup, full, lookup, length), DiffuseAndHighlight::<_, _, EXACT> { colours, lookup, half_reciprocal }, band)
+    let patch = || patch(setup, full, lookup, cosines, length);
+    setup.fill(patch, DiffuseAndHighlight::<_, _, EXACT> { colours, lookup, half_reciprocal }, band)
 }
 
 /// The numerator of diffuse light, of a material with the level `full` at cosine 1.
 #[inline(always)]
-fn diffuse(setup: &TriangleSetup<'_>, full: u16) -> Plane<1> {
-    let [a, b, c] = setup.corners;
-    let nodes = [node(full, a.light[0], NODE), node(full, b.light[0], NODE), node(full, c.light[0], NODE)];
+fn diffuse(setup: &TriangleSetup<'_>, full: u16, &[a, b, c]: &[i32; 3]) -> Plane<1> {
+    let nodes = [node(full, a, NODE), node(full, b, NODE), node(full, c, NODE)];
     Nodes::<3, 1, RANGE>::new([nodes], LEVEL - NODE).fit(setup.gradients)
+}
+
+/// [`diffuse`] in a function of its own.
+#[inline(never)]
+fn plane(setup: &TriangleSetup<'_>, full: u16, towards: &[i32; 3]) -> Plane<1> {
+    diffuse(setup, full, towards)
+}
+
+/// The numerator of the highlight.
+#[inline(always)]
+fn highlight(setup: &TriangleSetup<'_>, lookup: QuotientLookup<'_>, &[a, b, c]: &[i32; 3]) -> Plane<1> {
+    let half = [lookup.node(a), lookup.node(b), lookup.node(c)];
+    Nodes::<3, 1, STEPS>::new([half], highlight_lookup::EXTRA).fit(setup.gradients)
+}
+
+/// [`highlight`] in a function of its own.
+#[inline(never)]
+fn numerator(setup: &TriangleSetup<'_>, lookup: QuotientLookup<'_>, half: &[i32; 3]) -> Plane<1> {
+    highlight(setup, lookup, half)
 }
 
 /// The numerator of diffuse light, and the length.
 #[inline(never)]
-fn diffuse_patch<F: Field>(setup: &TriangleSetup<'_>, full: u16, length: impl FnOnce() -> F) -> (Plane<1>, F::Patch) {
-    (diffuse(setup, full), length().fit(setup.gradients))
+fn diffuse_patch<F: Field>(setup: &TriangleSetup<'_>, full: u16, towards: &[i32; 3], length: impl FnOnce() -> F) -> (Plane<1>, F::Patch) {
+    (diffuse(setup, full, towards), length().fit(setup.gradients))
 }
 
 /// The numerators of diffuse light and of the highlight, and the length.
@@ -158,11 +261,9 @@ fn patch<F: Field>(
     setup: &TriangleSetup<'_>,
     full: u16,
     lookup: QuotientLookup<'_>,
+    [towards, half]: &CornerCosines,
     length: impl FnOnce() -> F,
 ) -> ((Plane<1>, Plane<1>), F::Patch) {
-    let [a, b, c] = setup.corners;
-    let half = [lookup.node(a.light[1]), lookup.node(b.light[1]), lookup.node(c.light[1])];
     // Two planes of one channel, because the compiler keeps one plane of two channels in memory.
-    let half = Nodes::<3, 1, STEPS>::new([half], highlight_lookup::EXTRA).fit(setup.gradients);
-    ((diffuse(setup, full), half), length().fit(setup.gradients))
+    ((diffuse(setup, full, towards), highlight(setup, lookup, half)), length().fit(setup.gradients))
 }

@@ -14,7 +14,6 @@ use crate::{
     math::highlight_lut::CosineLookup,
     method::{
         Costs, Facts, Loops, Method, Shading, Style, TriangleSetup, VertexLight, duff,
-        duff::Duff,
         lighting_model::{LightingModel, signed},
         quotient, renq,
     },
@@ -59,7 +58,7 @@ impl Method for RenqNewton {
 
 impl Loops for RenqNewton {
     fn take(style: Style) -> bool {
-        Duff::take(style)
+        style.lights == 1 && !style.dithered_or_antialiased && !style.perspective
     }
 
     #[inline(always)]

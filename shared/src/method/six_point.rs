@@ -6,6 +6,7 @@
 //! than a triangle is flattened.
 
 use crate::{
+    interpolate::by_column::ByColumn,
     lighting::materials::{Highlight, MaterialTables},
     method::{Costs, Facts, Loops, Method, RANGE, Shading, Style, TriangleSetup, VertexLight},
     pixel::Pixel,
@@ -63,7 +64,7 @@ impl Loops for SixPoint {
 
 #[inline(always)]
 fn three<C: Pixel>(setup: &TriangleSetup<'_>, shading: &Shading<'_>, band: &mut Band<'_, C>) -> u32 {
-    Shading::fill_three(setup, || lit(&setup.for_lighting(), shading), band)
+    Shading::fill_three(setup, || lit(&setup.for_lighting(), shading), ByColumn, band)
 }
 
 /// Levels at the six nodes, in three channels.

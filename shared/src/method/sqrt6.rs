@@ -13,18 +13,20 @@ use crate::{
     format::{LEVEL, WALK},
     interpolate::{
         Constant,
+        by_column::ByColumn,
         field::{Field, Nodes},
         quadric::Quadric,
     },
     lighting::{
         materials::{Highlight, MaterialTables, Reflection},
-        one_light::{OneLight, OneLightRgb, node},
+        one_light::{OneLight, OneLightRgb, TwoLightsRgb, node},
     },
     math::{highlight_lookup::DefectLookup, highlight_lut::CosineLookup, rsqrt::sqrt},
     method::{
-        Costs, Facts, Loops, Method, RANGE, Shading, Style, TriangleSetup, VertexLight,
+        CornerCosines, Costs, Facts, Loops, Method, RANGE, Shading, Style, TriangleSetup, VertexLight, largest,
         lighting_model::{BITS, EXTRA, LightingModel, Lit, Quadratic, quadratic, signed},
         node::map_six,
+        two_lights::TwoLights,
     },
     pixel::Pixel,
     raster::{
@@ -84,7 +86,7 @@ impl Method for Sqrt6 {
 
 impl Loops for Sqrt6 {
     fn take(style: Style) -> bool {
-        style.one_light && !style.dithered_or_antialiased && !style.perspective
+        (1..=2).contains(&style.lights) && !style.dithered_or_antialiased && !style.perspective
     }
 
     #[inline(always)]
@@ -94,9 +96,11 @@ impl Loops for Sqrt6 {
         tables: MaterialTables<'_, C>,
         band: &mut Band<'_, C>,
     ) -> Option<u32> {
+        let corners = &setup.corner_lights();
         match tables.one_light_rgb() {
-            Some(rgb) => draw_rgb(setup, rgb, shading.exponent, tables, band),
-            None => draw(setup, tables.one_light_ramp()?, shading.exponent, tables, band),
+            Some(_) if tables.reflectance.lights() == 2 => draw_two(setup, shading, tables, band),
+            Some(rgb) => draw_rgb(setup, corners, rgb, shading.exponent, tables, band),
+            None => draw(setup, corners, tables.one_light_ramp()?, shading.exponent, tables, band),
         }
     }
 }
@@ -105,18 +109,45 @@ impl Loops for Sqrt6 {
 #[inline(never)]
 fn draw_rgb<C: Pixel>(
     setup: &TriangleSetup<'_>,
+    corners: &CornerCosines,
     colours: OneLightRgb<'_, C>,
     exponent: u16,
     tables: MaterialTables<'_, C>,
     band: &mut Band<'_, C>,
 ) -> Option<u32> {
-    draw(setup, colours, exponent, tables, band)
+    draw(setup, corners, colours, exponent, tables, band)
+}
+
+/// Draws `setup` under two constant lights in these `colours`. One that adds nothing to the triangle is left out.
+#[inline(never)]
+fn draw_two<C: Pixel>(
+    setup: &TriangleSetup<'_>,
+    shading: &Shading<'_>,
+    tables: MaterialTables<'_, C>,
+    band: &mut Band<'_, C>,
+) -> Option<u32> {
+    let TwoLights { colours, cosines: [first, second], highlights } = TwoLights::on(setup, shading, tables)?;
+    let ([one, two], full, exponent) = (colours.each(), colours.diffuse(), shading.exponent);
+    let (towards, other) = (setup.six_from(first[0]), setup.six_from(second[0]));
+    let is_dark = |cosines| DiffuseSign::of(cosines) == DiffuseSign::Nowhere;
+    let lookup = DefectLookup::new(&tables.reflectance.highlight_lut);
+    let shader = DiffuseAndHighlight { colours, lookup };
+    let diffuse = |cosines| diffuse(setup, full, cosines);
+    let highlight = |[_, half]: CornerCosines| highlight(setup, half, lookup, exponent);
+    Some(match highlights {
+        0 | 1 if is_dark(other) => return draw_rgb(setup, &first, one, exponent, tables, band),
+        0 if is_dark(towards) => return draw_rgb(setup, &second, two, exponent, tables, band),
+        0 => setup.fill(|| (diffuse(towards), diffuse(other)), DiffuseOnly(colours), band),
+        1 => setup.fill(|| ByColumn(((diffuse(towards), highlight(first)), diffuse(other))), shader, band),
+        _ => setup.fill(|| ByColumn(((diffuse(towards), highlight(first)), (diffuse(other), highlight(second)))), shader, band),
+    })
 }
 
 /// Draws `setup` under one constant light in these `colours`; `None` if levels may leave the walked format.
 #[inline(always)]
 fn draw<C: Pixel, T: OneLight<Pixel = C>>(
     setup: &TriangleSetup<'_>,
+    &[towards, half]: &CornerCosines,
     colours: T,
     exponent: u16,
     tables: MaterialTables<'_, C>,
@@ -124,17 +155,18 @@ fn draw<C: Pixel, T: OneLight<Pixel = C>>(
 ) -> Option<u32> {
     let (reflectance, resumed) = (tables.reflectance, setup.resumed(band));
     // The pixel shader of an active triangle has been chosen, and no nodes are needed.
-    let cosines = if resumed.is_none() { setup.six_diffuse() } else { [0; 6] };
+    let cosines = if resumed.is_none() { setup.six_from(towards) } else { [0; 6] };
+    let has_no_highlight = largest(&half) < setup.highlight_threshold(reflectance);
     let id = match resumed {
         Some(id) => id,
         None if !T::TABLED => {
-            if setup.has_no_highlight(reflectance) {
+            if has_no_highlight {
                 DiffuseOnly::<T>::ID
             } else {
                 DiffuseAndHighlight::<T>::ID
             }
         }
-        None => match (setup.has_no_highlight(reflectance), DiffuseSign::of(cosines)) {
+        None => match (has_no_highlight, DiffuseSign::of(cosines)) {
             (true, DiffuseSign::Nowhere) => Ramp::<C>::ID,
             _ if !colours.is_within() => return None,
             (true, DiffuseSign::Everywhere) => Ramp::<C>::ID,
@@ -151,7 +183,7 @@ fn draw<C: Pixel, T: OneLight<Pixel = C>>(
         return Some(setup.fill(|| diffuse(setup, full, cosines), DiffuseOnly(colours), band));
     }
     let lookup = DefectLookup::new(&reflectance.highlight_lut);
-    let patch = || (diffuse(setup, full, cosines), highlight(setup, lookup, exponent));
+    let patch = || (diffuse(setup, full, cosines), highlight(setup, half, lookup, exponent));
     Some(setup.fill(patch, DiffuseAndHighlight { colours, lookup }, band))
 }
 
@@ -161,10 +193,10 @@ fn diffuse(setup: &TriangleSetup<'_>, full: u16, cosines: [i32; 6]) -> Quadric<1
     Nodes::<6, 1, RANGE>::new([map_six(cosines, |cosine| node(full, cosine, LEVEL))], WALK - LEVEL).fit(setup.gradients)
 }
 
-/// 1 minus the root of N·H, as the table of highlights is looked up by.
+/// 1 minus the root of N·H, which is `half` at the corners, as the table of highlights is looked up by.
 #[inline(never)]
-fn highlight(setup: &TriangleSetup<'_>, lookup: DefectLookup<'_>, exponent: u16) -> Quadric<1> {
-    let half = [map_six(map_six(setup.six_half(exponent), root), |root| lookup.node(root))];
+fn highlight(setup: &TriangleSetup<'_>, half: [i32; 3], lookup: DefectLookup<'_>, exponent: u16) -> Quadric<1> {
+    let half = [map_six(map_six(setup.six_half_from(half, exponent), root), |root| lookup.node(root))];
     Nodes::<6, 1, BITS>::new(half, EXTRA).biased([lookup.half()]).fit(setup.gradients)
 }
 
@@ -188,6 +220,31 @@ impl<T: OneLight> PixelShader<([u32; 1], [u32; 1])> for DiffuseAndHighlight<'_, 
     }
 }
 
+/// [`DiffuseAndHighlight`] of two lights.
+impl<C: Pixel> PixelShader<(([u32; 1], [u32; 1]), ([u32; 1], [u32; 1]))> for DiffuseAndHighlight<'_, TwoLightsRgb<'_, C>> {
+    type Pixel = C;
+
+    const ID: u8 = 2;
+
+    #[inline(always)]
+    fn shade(&self, (one, two): (([u32; 1], [u32; 1]), ([u32; 1], [u32; 1]))) -> C {
+        let light = |([light], [defect]): ([u32; 1], [u32; 1])| (signed(light), self.lookup.at(signed(defect)));
+        self.colours.colour::<WALK>([light(one), light(two)])
+    }
+}
+
+/// [`DiffuseAndHighlight`] of two lights, of which the second has no highlight.
+impl<C: Pixel> PixelShader<(([u32; 1], [u32; 1]), [u32; 1])> for DiffuseAndHighlight<'_, TwoLightsRgb<'_, C>> {
+    type Pixel = C;
+
+    const ID: u8 = 3;
+
+    #[inline(always)]
+    fn shade(&self, (([light], [defect]), [other]): (([u32; 1], [u32; 1]), [u32; 1])) -> C {
+        self.colours.colour::<WALK>([(signed(light), self.lookup.at(signed(defect))), (signed(other), 0)])
+    }
+}
+
 /// Diffuse light alone: a walked level, negative where there is no light.
 #[derive(Clone, Copy)]
 struct DiffuseOnly<T>(T);
@@ -202,6 +259,18 @@ impl<T: OneLight> PixelShader<[u32; 1]> for DiffuseOnly<T> {
     #[inline(always)]
     fn shade(&self, [light]: [u32; 1]) -> T::Pixel {
         self.0.without_highlight::<WALK>(signed(light))
+    }
+}
+
+/// [`DiffuseOnly`] of two lights.
+impl<C: Pixel> PixelShader<([u32; 1], [u32; 1])> for DiffuseOnly<TwoLightsRgb<'_, C>> {
+    type Pixel = C;
+
+    const ID: u8 = 1;
+
+    #[inline(always)]
+    fn shade(&self, ([one], [two]): ([u32; 1], [u32; 1])) -> C {
+        self.0.colour::<WALK>([(signed(one), 0), (signed(two), 0)])
     }
 }
 

@@ -1,0 +1,33 @@
+//! Two constant lights on a triangle in three channels, for the loops of methods.
+
+use crate::{
+    lighting::{materials::MaterialTables, one_light::TwoLightsRgb},
+    method::{CornerCosines, Shading, TriangleSetup, largest},
+    pixel::Pixel,
+};
+
+/// Two lights on a triangle. If one of them has a highlight there that can be seen, it is the first.
+pub(super) struct TwoLights<'a, C> {
+    /// What the material reflects of them.
+    pub(super) colours: TwoLightsRgb<'a, C>,
+    /// Their cosines at the corners.
+    pub(super) cosines: [CornerCosines; 2],
+    /// How many of them have a highlight.
+    pub(super) highlights: u32,
+}
+
+impl<'a, C: Pixel> TwoLights<'a, C> {
+    /// The lights of `shading` on the triangle `setup`; `None` unless there are two that have loops.
+    #[inline(always)]
+    pub(super) fn on(setup: &TriangleSetup<'_>, shading: &Shading<'_>, tables: MaterialTables<'a, C>) -> Option<Self> {
+        let [forth, back] = tables.two_lights_rgb()?;
+        let [one, two] = shading.lighting.sources.as_slice() else { return None };
+        let (one, two) = (shading.constant_cosines(setup, one), shading.constant_cosines(setup, two));
+        let threshold = setup.highlight_threshold(tables.reflectance);
+        let highlit = |[_, half]: &CornerCosines| largest(half) >= threshold;
+        Some(match (highlit(&one), highlit(&two)) {
+            (false, true) => Self { colours: back, cosines: [two, one], highlights: 1 },
+            (first, second) => Self { colours: forth, cosines: [one, two], highlights: u32::from(first) + u32::from(second) },
+        })
+    }
+}
