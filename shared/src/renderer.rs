@@ -65,7 +65,8 @@ impl<'a, C: Pixel> Renderer<'a, C> {
 
     /// Changes the shading method. All tables of the materials are computed anew, so it takes a moment.
     ///
-    /// # Errors When the method cannot shade this scene; the method in use stays.
+    /// # Errors
+    /// When the method cannot shade this scene; the method in use stays.
     pub fn set_shader(&mut self, shader: Shader<C>) -> Result<(), RenderError> {
         let facts = shader.facts();
         check(&self.settings.stream, facts, self.settings.perspective_correct)?;
@@ -73,7 +74,7 @@ impl<'a, C: Pixel> Renderer<'a, C> {
         let (stream, Memory { reflectances, ramps, .. }) = (&self.settings.stream, &mut self.memory);
         for ((reflectance, ramp), material) in reflectances.iter_mut().zip(ramps.iter_mut()).zip(stream.materials) {
             let highlight = (facts.highlight, facts.highlight_levels);
-            reflectance.fill(stream.header, material, stream.lights, highlight, (C::DEPTH, C::GRAY));
+            reflectance.fill::<C>(stream.header, material, stream.lights, highlight);
             fill_ramp::<C>(ramp, reflectance);
         }
         Ok(())

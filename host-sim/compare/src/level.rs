@@ -13,23 +13,27 @@ use microphong_render::render::{self, Style};
 #[derive(Clone, Copy, Debug)]
 struct Fine(Option<[u32; 3]>);
 
+/// An entry of the table of colours of a material of one channel.
+const ONE_CHANNEL: [u32; 3] = [u32::MAX; 3];
+
 impl Pixel for Fine {
-    /// Tables of colours are not looked at.
-    type Stored = u8;
+    /// Levels of three channels, or [`ONE_CHANNEL`].
+    type Stored = [u32; 3];
 
     const GRAY: bool = false;
     const DEPTH: [u32; 3] = [8; 3];
+    const COARSE: bool = true;
     const BYTES: usize = 3;
 
     fn pack(_: [u32; 3]) -> Self {
         Self(None)
     }
 
-    fn stored(self) -> u8 {
-        0
+    fn stored(self) -> [u32; 3] {
+        self.0.unwrap_or(ONE_CHANNEL)
     }
 
-    fn from_stored(_: u8) -> Self {
+    fn from_stored(_: [u32; 3]) -> Self {
         Self(None)
     }
 
@@ -41,8 +45,17 @@ impl Pixel for Fine {
         0
     }
 
-    fn ramped<const BITS: u32>(_: &[u8; RAMP], level: u32) -> Self {
-        Self(Some([level << (WALK - BITS); 3]))
+    fn ramped<const BITS: u32>(ramp: &[[u32; 3]; RAMP], level: u32) -> Self {
+        let walked = level << (WALK - BITS);
+        // Between two entries of a table of colours: the level includes the half that rounds to the nearest.
+        let exact = walked.saturating_sub(1 << (WALK - 1));
+        let (entry, fraction) = ((exact >> WALK) as usize % RAMP, i64::from(exact & ((1 << WALK) - 1)));
+        let (here, next) = (ramp[entry], ramp[(entry + 1).min(RAMP - 1)]);
+        if here == ONE_CHANNEL {
+            return Self(Some([walked; 3]));
+        }
+        let between = |k: usize| (i64::from(here[k]) + (((i64::from(next[k]) - i64::from(here[k])) * fraction) >> WALK)) as u32;
+        Self(Some([between(0), between(1), between(2)]))
     }
 
     fn rounded(intensity: Intensity) -> Self {

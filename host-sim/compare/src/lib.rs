@@ -20,7 +20,6 @@ use microphong::{
     Stream,
     lighting::materials::Reflectance,
     method::{Costs, Highlight},
-    pixel::Pixel,
     renderer::check,
 };
 use microphong_oracle::{self as oracle, Frame, Levels};
@@ -136,7 +135,7 @@ impl<'s> Reference<'s> {
         let edges = Edges::new(&frame, |facet| shown.get(facet) == Some(&true));
         let one_channel = stream.materials.iter().map(|material| {
             let mut reflectance = Box::new(Reflectance::EMPTY);
-            reflectance.fill(stream.header, material, stream.lights, (Highlight::Half, false), (Rgb888::DEPTH, Rgb888::GRAY));
+            reflectance.fill::<Rgb888>(stream.header, material, stream.lights, (Highlight::Half, false));
             !reflectance.three_channels()
         });
         let one_channel = one_channel.collect();

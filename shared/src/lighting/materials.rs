@@ -123,10 +123,16 @@ pub struct Reflectance {
     sums: [Sums; 3],
     /// See [`Self::ambient_sums`].
     ambient_sums: [i32; 3],
+    /// Levels without diffuse light, and of diffuse light at cosine 1, in the channel by whose level the table of colours is indexed, Q9.7.
+    ramp: [i32; 2],
     /// Channels at full level for dither, Q0.8 scaled to the output's depth.
     base: [u16; 3],
     /// Not 0 if [`Self::three_channels`].
     three_channels: u8,
+    /// Not 0 if [`Self::has_ramp`].
+    has_ramp: u8,
+    /// Makes the size a multiple of words.
+    unused: [u8; 3],
     /// See [`Self::lights`].
     lights: u8,
 }
@@ -134,7 +140,8 @@ pub struct Reflectance {
 /// A material in the colours of a pixel format.
 #[derive(Debug)]
 pub struct MaterialTables<'a, C: Pixel> {
-    /// Colour of each level, for a material of one channel.
+    /// Colour of each level of a material of one channel. In three channels under one light, if [`Reflectance::has_ramp`], the colours
+    /// without a highlight, by the level of the channel that has most diffuse light.
     pub ramp: &'a [C::Stored; RAMP],
     /// What the material reflects, in levels.
     pub reflectance: &'a Reflectance,
@@ -179,34 +186,30 @@ impl Reflectance {
         base: [0; 3],
         highlight_lut: HighlightLut::EMPTY,
         three_channels: 0,
+        has_ramp: 0,
+        unused: [0; 3],
         ambient: [0; 3],
         gains: [Gains::NONE; MAX_LIGHTS],
         sums: [[Sum::EMPTY; 3]; 3],
         ambient_sums: [0; 3],
+        ramp: [0; 2],
         highlight_threshold: 0,
         lights: 0,
         excess: 0,
         depth: [0; 3],
     };
 
-    /// Computes the reflectance of `material` under `lights`, for a method with these highlights and a pixel format with `depth` bits a
-    /// channel, `grey` or not. If the method allows it, and there is one channel and one light, the table of highlights `holds_levels`
-    /// instead of fractions.
-    pub fn fill(
-        &mut self,
-        header: &Header,
-        material: &Material,
-        lights: &[Light],
-        (highlight, holds_levels): (Highlight, bool),
-        (depth, grey): ([u32; 3], bool),
-    ) {
+    /// Computes the reflectance of `material` under `lights`, for a method with these highlights and the pixel format `C`. If the method
+    /// allows it, and there is one channel and one light, the table of highlights `holds_levels` instead of fractions.
+    pub fn fill<C: Pixel>(&mut self, header: &Header, material: &Material, lights: &[Light], (highlight, holds_levels): (Highlight, bool)) {
+        let depth = C::DEPTH;
         // What each light adds at most, diffuse and specular, and the ambient term.
         let mut terms = heapless::Vec::<Colour, { 2 * MAX_LIGHTS + 1 }>::new();
         let lit = lights.iter().flat_map(|light| [(light.colour, material.diffuse), (light.colour, material.specular)]);
         for (light, reflectance) in lit.chain([(header.ambient, material.ambient)]) {
             let colour = product(light, reflectance);
             // There is room for the terms of as many lights as a stream has.
-            let _ = terms.push(if grey { luma(colour) } else { colour });
+            let _ = terms.push(if C::GRAY { luma(colour) } else { colour });
         }
         // The brightest of all terms sets the base colour; the others may be multiples of it.
         let base = terms.iter().fold([0; 3], |base, &term| if largest(term) >= largest(base) { term } else { base });
@@ -223,6 +226,11 @@ impl Reflectance {
         let total = self.total(lights.len());
         self.excess = (total >> (9 + LEVEL)).checked_ilog2().map_or(0, |bits| bits + 1);
         let fits = if one_channel { total < LARGEST } else { self.excess == 0 };
+        let (ambient, diffuse) = (self.ambient, self.gains[0].diffuse);
+        let within = zip(ambient, diffuse, |ambient, diffuse| ambient + i32::from(diffuse) <= FULL) == [true; 3];
+        self.has_ramp = u8::from(one_channel || C::COARSE && lights.len() == 1 && within);
+        let most = (1..3).fold(0, |most, k| if diffuse[k] > diffuse[most] { k } else { most });
+        self.ramp = [ambient[most], diffuse[most].into()];
         let looped = holds_levels && fits && (lights.len() == 1 || lights.len() == 2 && !one_channel);
         self.lights = if looped { lights.len() as u8 } else { 0 };
         let holds_levels = looped && one_channel;
@@ -264,6 +272,14 @@ impl Reflectance {
         self.three_channels != 0
     }
 
+    /// Whether all light without a highlight under one light is a level of the table of colours: in one channel, and in three unless one of
+    /// them exceeds 255 or the pixel format is finer than the table.
+    #[inline(always)]
+    #[must_use]
+    pub fn has_ramp(&self) -> bool {
+        self.has_ramp != 0
+    }
+
     /// Whether the table of highlights holds levels: those that the highlight of the only light adds, plus the ambient level.
     #[inline(always)]
     #[must_use]
@@ -293,43 +309,36 @@ impl Reflectance {
         (self.ambient[0] + light).min(FULL)
     }
 
-    /// The levels without highlight at six nodes of these cosines, not clamped, Q9.7.
+    /// The levels of the table of colours without highlight at six nodes of these cosines, under one light, not clamped, Q9.7. Domain:
+    /// [`Self::has_ramp`].
     #[inline(always)]
     #[must_use]
     pub fn six_diffuse(&self, [a, b, c, ab, bc, ca]: [i32; 6]) -> [i32; 6] {
-        let level = |cosine| self.diffuse_level(cosine);
+        let level = |cosine| diffuse_level(self.ramp, cosine);
         [level(a), level(b), level(c), level(ab), level(bc), level(ca)]
     }
 
-    /// [`Self::level`] at six nodes without a highlight.
+    /// [`Self::six_diffuse`], at most 255.
     #[inline]
     #[must_use]
     pub fn six_diffuse_clamped(&self, cosines: [i32; 6]) -> [i32; 6] {
-        let [gains, ..] = &self.gains;
-        if self.ambient[0] + i32::from(gains.diffuse[0]) <= FULL {
+        let [ambient, diffuse] = self.ramp;
+        if ambient + diffuse <= FULL {
             return self.six_diffuse(cosines);
         }
         let [a, b, c, ab, bc, ca] = cosines;
-        let level = |cosine| self.diffuse_level(cosine).min(FULL);
+        let level = |cosine| diffuse_level(self.ramp, cosine).min(FULL);
         [level(a), level(b), level(c), level(ab), level(bc), level(ca)]
     }
 
-    /// [`Self::level`] at six nodes.
+    /// The levels of a channel under one light, Q9.7 in [0, 255], at six nodes of these cosines and highlights (unsigned Q0.16).
     #[inline(always)]
     #[must_use]
-    pub fn six(&self, [a, b, c, ab, bc, ca]: [i32; 6], [i, j, k, ij, jk, ki]: [i32; 6]) -> [i32; 6] {
-        let [gains, ..] = &self.gains;
-        let level =
-            |diffuse, half| (self.diffuse_level(diffuse) + reflected((0, gains.specular[0]), 0, self.highlight_lut.at(half))).min(FULL);
+    pub fn six(&self, channel: usize, [a, b, c, ab, bc, ca]: [i32; 6], [i, j, k, ij, jk, ki]: [u32; 6]) -> [i32; 6] {
+        let ([gains, ..], n) = (&self.gains, channel % 3);
+        let (line, specular) = ([self.ambient[n], gains.diffuse[n].into()], gains.specular[n]);
+        let level = |cosine, highlight| (diffuse_level(line, cosine) + reflected((0, specular), 0, highlight)).min(FULL);
         [level(a, i), level(b, j), level(c, k), level(ab, ij), level(bc, jk), level(ca, ki)]
-    }
-
-    /// The level without highlight, not clamped, rounded as by [`reflected`].
-    #[inline(always)]
-    fn diffuse_level(&self, cosine: i32) -> i32 {
-        let [gains, ..] = &self.gains;
-        let base = ((self.ambient[0] as u32) << 15) + (1 << 14);
-        ((base + u32::from(gains.diffuse[0]) * (cosine.max(0) as u32 >> (COSINE - 15))) >> 15) as i32
     }
 
     /// Levels under one light, Q9.7 in [0, 255], from `[N·L, N·H]` (Q2.30).
@@ -452,8 +461,31 @@ impl Reflectance {
     }
 }
 
+/// The level without highlight for the levels of ambient light and of diffuse light at cosine 1, not clamped, rounded as by [`reflected`].
+#[inline(always)]
+fn diffuse_level([ambient, diffuse]: [i32; 2], cosine: i32) -> i32 {
+    let base = ((ambient as u32) << 15) + (1 << 14);
+    ((base + diffuse as u32 * (cosine.max(0) as u32 >> (COSINE - 15))) >> 15) as i32
+}
+
+/// The colour of three levels, Q9.7, rounded.
+#[inline(always)]
+fn mixed<C: Pixel>(levels: [i32; 3]) -> C {
+    C::mixed(zip(levels, C::DEPTH, |level, depth| (level + (1 << (LEVEL + 7 - depth))) << (CHANNEL - LEVEL)))
+}
+
 /// Fills the table of colours of a material.
 pub fn fill_ramp<C: Pixel>(ramp: &mut [C::Stored; RAMP], reflectance: &Reflectance) {
+    if reflectance.three_channels() {
+        let ([least, most], [gains, ..]) = (reflectance.ramp, &reflectance.gains);
+        for (i, stored) in ramp.iter_mut().enumerate() {
+            let more = ((i as i32 - BIAS) << LEVEL) - least;
+            // By the share of each channel in the one that has most.
+            let share = |level, diffuse: u16| level + (more * i32::from(diffuse)).checked_div(most).unwrap_or(0);
+            *stored = mixed::<C>(zip(reflectance.ambient, gains.diffuse, share)).stored();
+        }
+        return;
+    }
     for (i, stored) in ramp.iter_mut().enumerate() {
         let level = (i as i32 - BIAS).clamp(0, 255) as u32;
         let mut channels = [0; 3];
@@ -470,9 +502,18 @@ impl<'a, C: Pixel> MaterialTables<'a, C> {
     #[inline(always)]
     #[must_use]
     pub fn one_light_ramp(&self) -> Option<OneLightRamp<'a, C>> {
-        let Reflectance { gains: [gains, ..], highlight_lut, .. } = self.reflectance;
+        let Reflectance { ramp: [_, diffuse], highlight_lut, .. } = self.reflectance;
         let Self { ramp, .. } = *self;
-        self.reflectance.holds_levels().then(|| OneLightRamp { ramp, diffuse: gains.diffuse[0], floor: highlight_lut.least() })
+        self.reflectance.holds_levels().then(|| OneLightRamp { ramp, diffuse: *diffuse as u16, floor: highlight_lut.least() })
+    }
+
+    /// The table of colours of a triangle in three channels under the only light, where that has no highlight; `None` unless
+    /// [`Reflectance::has_ramp`].
+    #[inline(always)]
+    #[must_use]
+    pub fn diffuse_ramp(&self) -> Option<OneLightRamp<'a, C>> {
+        let (Self { ramp, .. }, [ambient, diffuse]) = (*self, self.reflectance.ramp);
+        self.reflectance.has_ramp().then(|| OneLightRamp { ramp, diffuse: diffuse as u16, floor: Reflectance::biased(ambient) })
     }
 
     /// The sums of three channels under the only light, if the material has three. Domain: [`Reflectance::lights`] is 1.
@@ -498,7 +539,7 @@ impl<'a, C: Pixel> MaterialTables<'a, C> {
         if !self.reflectance.three_channels() {
             return self.tint(levels[0]);
         }
-        C::mixed(zip(levels, C::DEPTH, |level, depth| (level + (1 << (LEVEL + 7 - depth))) << (CHANNEL - LEVEL)))
+        mixed(levels)
     }
 
     /// The colour of a level, Q9.7, of a material of one channel, rounded.

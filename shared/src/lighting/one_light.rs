@@ -23,9 +23,6 @@ pub trait OneLight: Copy {
     /// The colour of a walked diffuse level, Q9.`BITS`, negative where there is no light, and an entry of the table of highlights.
     fn colour<const BITS: u32>(&self, diffuse: i32, highlight: u32) -> Self::Pixel;
 
-    /// [`Self::colour`] where there is no highlight.
-    fn without_highlight<const BITS: u32>(&self, diffuse: i32) -> Self::Pixel;
-
     /// Whether no diffuse level is above 255.
     #[inline(always)]
     fn is_within(&self) -> bool {
@@ -40,13 +37,13 @@ pub fn node(full: u16, cosine: i32, bits: u32) -> i32 {
     upper(cosine, i32::from(full) << 15) >> (COSINE + LEVEL - 17 - bits)
 }
 
-/// One channel: a table of colours, by diffuse level plus what the table of highlights holds, which are levels of highlight and ambient
-/// light.
+/// A table of colours, by diffuse level plus what the table of highlights holds, which are levels of highlight and ambient light. In one
+/// channel all light is a level, in three that of one light without a highlight.
 #[derive(Debug)]
 pub struct OneLightRamp<'a, C: Pixel> {
     pub(super) ramp: &'a [C::Stored; RAMP],
     pub(super) diffuse: u16,
-    /// The entry of the table of highlights where there is none.
+    /// The level without diffuse light and highlight, as an entry of the table of highlights.
     pub(super) floor: u32,
 }
 
@@ -72,9 +69,12 @@ impl<C: Pixel> OneLight for OneLightRamp<'_, C> {
     fn colour<const BITS: u32>(&self, diffuse: i32, highlight: u32) -> C {
         C::ramped::<BITS>(self.ramp, (diffuse.max(0) as u32).wrapping_add(highlight << (BITS - LEVEL)))
     }
+}
 
+impl<C: Pixel> OneLightRamp<'_, C> {
+    /// [`OneLight::colour`] where there is no highlight.
     #[inline(always)]
-    fn without_highlight<const BITS: u32>(&self, diffuse: i32) -> C {
+    pub fn without_highlight<const BITS: u32>(&self, diffuse: i32) -> C {
         self.colour::<BITS>(diffuse, self.floor)
     }
 }
@@ -180,11 +180,6 @@ impl<C: Pixel> OneLight for OneLightRgb<'_, C> {
         let (Self([r, g, b], _), cosine, highlight) = (self, cosine::<BITS>(diffuse), highlight as i32);
         C::mixed([r.level(cosine, highlight), g.level(cosine, highlight), b.level(cosine, highlight)])
     }
-
-    #[inline(always)]
-    fn without_highlight<const BITS: u32>(&self, diffuse: i32) -> C {
-        self.colour::<BITS>(diffuse, 0)
-    }
 }
 
 impl<C: Pixel> TwoLightsRgb<'_, C> {
@@ -203,11 +198,11 @@ impl<C: Pixel> TwoLightsRgb<'_, C> {
         C::mixed([level(r, r2), level(g, g2), level(b, b2)])
     }
 
-    /// The colours of each light alone.
+    /// The colours of the first light alone.
     #[inline(always)]
-    pub fn each(&self) -> [OneLightRgb<'_, C>; 2] {
-        let [first, second] = self.0;
-        [OneLightRgb(first, PhantomData), OneLightRgb(second, PhantomData)]
+    pub fn first(&self) -> OneLightRgb<'_, C> {
+        let [first, _] = self.0;
+        OneLightRgb(first, PhantomData)
     }
 }
 

@@ -58,7 +58,7 @@ impl VertexStage<'_> {
         let normal = wide(vertex.normal);
         let light = match (self.light, self.constant) {
             (VertexLight::None, _) | (VertexLight::Cosines, None) => [0; 3],
-            (light, Some([towards, half])) if light == VertexLight::Cosines || !self.reflectance.three_channels() => {
+            (light, Some([towards, half])) if light != VertexLight::Levels || !self.reflectance.three_channels() => {
                 let cosines = [vertex_cosine(normal, *towards), vertex_cosine(normal, *half)];
                 if light == VertexLight::Levels { [self.reflectance.level(cosines); 3] } else { [cosines[0], cosines[1], 0] }
             }

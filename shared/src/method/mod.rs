@@ -331,7 +331,7 @@ impl Shading<'_> {
     #[inline(always)]
     #[must_use]
     pub fn vertices_have_cosines(&self) -> bool {
-        self.constant.is_some() && !self.reflectance.three_channels()
+        self.constant.is_some()
     }
 
     /// Interpolates the levels at `N` nodes over `area`, in one channel or three, as the material needs. Levels are Q9.7, in a range

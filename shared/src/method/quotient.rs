@@ -12,7 +12,7 @@ use crate::{
     },
     lighting::{
         materials::MaterialTables,
-        one_light::{OneLight, OneLightRgb, TwoLightsRgb, node},
+        one_light::{OneLight, OneLightRamp, OneLightRgb, TwoLightsRgb, node},
     },
     math::{highlight_lookup, highlight_lookup::QuotientLookup},
     method::{CornerCosines, Shading, TriangleSetup, largest, lighting_model::fitted, two_lights::TwoLights},
@@ -69,13 +69,13 @@ struct DiffuseOnly<T, R, const EXACT: bool> {
     half_reciprocal: R,
 }
 
-impl<T: OneLight, V, R: Fn(V) -> i32 + Copy, const EXACT: bool> PixelShader<([u32; 1], V)> for DiffuseOnly<T, R, EXACT> {
-    type Pixel = T::Pixel;
+impl<C: Pixel, V, R: Fn(V) -> i32 + Copy, const EXACT: bool> PixelShader<([u32; 1], V)> for DiffuseOnly<OneLightRamp<'_, C>, R, EXACT> {
+    type Pixel = C;
 
-    const CHEAP: bool = T::TABLED;
+    const CHEAP: bool = true;
 
     #[inline(always)]
-    fn shade(&self, ([light], length): ([u32; 1], V)) -> T::Pixel {
+    fn shade(&self, ([light], length): ([u32; 1], V)) -> C {
         let diffuse = quotient::<EXACT>(self.colours.diffuse(), light, (self.half_reciprocal)(length));
         self.colours.without_highlight::<PIXEL>(diffuse)
     }
@@ -145,10 +145,13 @@ pub(super) fn draw<const EXACT: bool, F: Field, C: Pixel>(
     band: &mut Band<'_, C>,
 ) -> Option<u32> {
     let cosines = &setup.corner_lights();
-    match tables.one_light_rgb() {
-        Some(rgb) => Some(draw_rgb::<EXACT, _, _>(setup, cosines, length, half_reciprocal, rgb, tables, band)),
-        None => Some(draw_in::<EXACT, _, _>(setup, cosines, length, half_reciprocal, tables.one_light_ramp()?, tables, band)),
-    }
+    let (rgb, has_no_highlight) = (tables.one_light_rgb(), largest(&cosines[1]) < setup.highlight_threshold(tables.reflectance));
+    let ramp = if rgb.is_some() { tables.diffuse_ramp() } else { Some(tables.one_light_ramp()?) };
+    Some(match (ramp, rgb) {
+        (Some(ramp), _) if has_no_highlight => draw_diffuse::<EXACT, _, _>(setup, &cosines[0], length, half_reciprocal, ramp, band),
+        (_, Some(rgb)) => draw_rgb::<EXACT, _, _>(setup, cosines, length, half_reciprocal, rgb, tables, band),
+        (ramp, None) => draw_in::<EXACT, _, _>(setup, cosines, length, half_reciprocal, ramp?, tables, band),
+    })
 }
 
 /// [`draw_in`] in three channels, once for triangles of all sizes: a call is a small share of what they take.
@@ -165,7 +168,7 @@ fn draw_rgb<const EXACT: bool, F: Field, C: Pixel>(
     draw_in::<EXACT, _, _>(setup, cosines, length, half_reciprocal, colours, tables, band)
 }
 
-/// [`draw`] under two constant lights. One that adds nothing to the triangle is left out.
+/// [`draw`] under two constant lights.
 #[inline(never)]
 pub(super) fn draw_two<const EXACT: bool, F: Field, C: Pixel>(
     setup: &TriangleSetup<'_>,
@@ -176,14 +179,13 @@ pub(super) fn draw_two<const EXACT: bool, F: Field, C: Pixel>(
     band: &mut Band<'_, C>,
 ) -> Option<u32> {
     let TwoLights { colours, cosines: [first, second], highlights } = TwoLights::on(setup, shading, tables)?;
-    let ([one, two], full) = (colours.each(), colours.diffuse());
+    let full = colours.diffuse();
     let is_dark = |[towards, _]: &CornerCosines| largest(towards) <= 0;
     let lookup = QuotientLookup::new(&tables.reflectance.highlight_lut);
     let shader = DiffuseAndHighlight::<_, _, EXACT> { colours, lookup, half_reciprocal };
     let both = |[towards, half]: &CornerCosines| (plane(setup, full, towards), numerator(setup, lookup, half));
     Some(match highlights {
-        0 | 1 if is_dark(&second) => draw_rgb::<EXACT, _, _>(setup, &first, length, half_reciprocal, one, tables, band),
-        0 if is_dark(&first) => draw_rgb::<EXACT, _, _>(setup, &second, length, half_reciprocal, two, tables, band),
+        1 if is_dark(&second) => draw_rgb::<EXACT, _, _>(setup, &first, length, half_reciprocal, colours.first(), tables, band),
         0 => {
             let patch = || ((plane(setup, full, &first[0]), plane(setup, full, &second[0])), fitted(&length(), setup.gradients));
             setup.fill(patch, DiffuseOnly::<_, _, EXACT> { colours, half_reciprocal }, band)
@@ -196,7 +198,7 @@ pub(super) fn draw_two<const EXACT: bool, F: Field, C: Pixel>(
     })
 }
 
-/// [`draw`] in these `colours`.
+/// [`draw`] in these `colours` of a triangle with a highlight.
 #[inline(always)]
 fn draw_in<const EXACT: bool, F: Field, T: OneLight>(
     setup: &TriangleSetup<'_>,
@@ -210,17 +212,26 @@ fn draw_in<const EXACT: bool, F: Field, T: OneLight>(
 where
     T::Pixel: Pixel,
 {
-    let (reflectance, full) = (tables.reflectance, colours.diffuse());
-    let [towards, half] = cosines;
-    if largest(half) < setup.highlight_threshold(reflectance) {
-        if largest(towards) <= 0 {
-            return setup.fill(|| Constant, Solid(colours.without_highlight::<PIXEL>(0)), band);
-        }
-        return setup.fill(|| diffuse_patch(setup, full, towards, length), DiffuseOnly::<_, _, EXACT> { colours, half_reciprocal }, band);
-    }
-    let lookup = QuotientLookup::new(&reflectance.highlight_lut);
-    let patch = || patch(setup, full, lookup, cosines, length);
+    let lookup = QuotientLookup::new(&tables.reflectance.highlight_lut);
+    let patch = || patch(setup, colours.diffuse(), lookup, cosines, length);
     setup.fill(patch, DiffuseAndHighlight::<_, _, EXACT> { colours, lookup, half_reciprocal }, band)
+}
+
+/// [`draw`] by a table of colours, of a triangle without a highlight.
+#[inline(always)]
+fn draw_diffuse<const EXACT: bool, F: Field, C: Pixel>(
+    setup: &TriangleSetup<'_>,
+    towards: &[i32; 3],
+    length: impl FnOnce() -> F,
+    half_reciprocal: impl Fn(F::Value) -> i32 + Copy,
+    colours: OneLightRamp<'_, C>,
+    band: &mut Band<'_, C>,
+) -> u32 {
+    if largest(towards) <= 0 {
+        return setup.fill(|| Constant, Solid(colours.without_highlight::<PIXEL>(0)), band);
+    }
+    let patch = || diffuse_patch(setup, colours.diffuse(), towards, length);
+    setup.fill(patch, DiffuseOnly::<_, _, EXACT> { colours, half_reciprocal }, band)
 }
 
 /// The numerator of diffuse light, of a material with the level `full` at cosine 1.

@@ -8,7 +8,7 @@
 use crate::{
     interpolate::by_column::ByColumn,
     lighting::materials::{Highlight, MaterialTables},
-    method::{Costs, Facts, Loops, Method, RANGE, Shading, Style, TriangleSetup, VertexLight},
+    method::{Costs, Facts, Loops, Method, RANGE, Shading, Style, TriangleSetup, VertexLight, node::map_six},
     pixel::Pixel,
     raster::{band::Band, canvas::Canvas},
 };
@@ -50,27 +50,53 @@ impl Loops for SixPoint {
         tables: MaterialTables<'_, C>,
         band: &mut Band<'_, C>,
     ) -> Option<u32> {
-        Some(if !C::GRAY && shading.reflectance.three_channels() {
-            three(setup, shading, band)
-        } else {
-            let nodes = || match shading.constant {
-                Some(_) => one_level(setup, shading),
-                None => lit(&setup.for_lighting(), shading)[0],
-            };
-            Shading::fill_one(setup, nodes, tables, band)
+        let three_channels = !C::GRAY && shading.reflectance.three_channels();
+        Some(match shading.constant {
+            Some(_) if three_channels => draw_rgb(setup, shading, tables, band),
+            Some(_) => Shading::fill_one(setup, || one_level(setup, shading), tables, band),
+            None if three_channels => Shading::fill_three(setup, || lit(&setup.for_lighting(), shading), ByColumn, band),
+            None => Shading::fill_one(setup, || lit(&setup.for_lighting(), shading)[0], tables, band),
         })
     }
 }
 
+/// Draws `setup` in three channels under one constant light: by the table of colours where there is no highlight.
+#[inline(never)]
+fn draw_rgb<C: Pixel>(setup: &TriangleSetup<'_>, shading: &Shading<'_>, tables: MaterialTables<'_, C>, band: &mut Band<'_, C>) -> u32 {
+    if setup.has_no_highlight(shading.reflectance) && shading.reflectance.has_ramp() {
+        return Shading::fill_one(setup, || shading.reflectance.six_diffuse_clamped(setup.six_diffuse()), tables, band);
+    }
+    Shading::fill_three(setup, || three_levels(setup, shading), ByColumn, band)
+}
+
+/// N·L (Q2.30) and the highlight (unsigned Q0.16) of one constant light at the six nodes.
 #[inline(always)]
-fn three<C: Pixel>(setup: &TriangleSetup<'_>, shading: &Shading<'_>, band: &mut Band<'_, C>) -> u32 {
-    Shading::fill_three(setup, || lit(&setup.for_lighting(), shading), ByColumn, band)
+fn reflected(setup: &TriangleSetup<'_>, shading: &Shading<'_>) -> ([i32; 6], [u32; 6]) {
+    let light = setup.six_diffuse();
+    if setup.has_no_highlight(shading.reflectance) {
+        return (light, [0; 6]);
+    }
+    (light, map_six(setup.six_half(shading.exponent), |half| shading.reflectance.highlight_lut.at(half)))
 }
 
 /// Levels at the six nodes, in three channels.
 #[inline(never)]
 fn levels(setup: &TriangleSetup<'_>, shading: &Shading<'_>) -> [[i32; 6]; 3] {
-    if shading.vertices_have_cosines() { [one_level(setup, shading); 3] } else { lit(setup, shading) }
+    if shading.constant.is_none() {
+        return lit(setup, shading);
+    }
+    if !shading.reflectance.three_channels() {
+        return [one_level(setup, shading); 3];
+    }
+    three_levels(setup, shading)
+}
+
+/// Levels of a material of three channels at the six nodes under one constant light.
+#[inline(never)]
+fn three_levels(setup: &TriangleSetup<'_>, shading: &Shading<'_>) -> [[i32; 6]; 3] {
+    let (cosines, highlights) = reflected(setup, shading);
+    let level = |channel| shading.reflectance.six(channel, cosines, highlights);
+    [level(0), level(1), level(2)]
 }
 
 /// Levels of a material of one channel at the six nodes under one constant light.
@@ -80,7 +106,7 @@ fn one_level(setup: &TriangleSetup<'_>, shading: &Shading<'_>) -> [i32; 6] {
     if setup.has_no_highlight(reflectance) {
         return reflectance.six_diffuse_clamped(light);
     }
-    reflectance.six(light, setup.six_half(shading.exponent))
+    reflectance.six(0, light, map_six(setup.six_half(shading.exponent), |half| reflectance.highlight_lut.at(half)))
 }
 
 /// Node levels under any lights: corners are lit already, midpoints are lit here.

@@ -19,7 +19,7 @@ use crate::{
     },
     lighting::{
         materials::{Highlight, MaterialTables, Reflection},
-        one_light::{OneLight, OneLightRgb, TwoLightsRgb, node},
+        one_light::{OneLight, OneLightRamp, OneLightRgb, TwoLightsRgb, node},
     },
     math::{highlight_lookup::DefectLookup, highlight_lut::CosineLookup, rsqrt::sqrt},
     method::{
@@ -96,11 +96,23 @@ impl Loops for Sqrt6 {
         tables: MaterialTables<'_, C>,
         band: &mut Band<'_, C>,
     ) -> Option<u32> {
-        let corners = &setup.corner_lights();
-        match tables.one_light_rgb() {
-            Some(_) if tables.reflectance.lights() == 2 => draw_two(setup, shading, tables, band),
-            Some(rgb) => draw_rgb(setup, corners, rgb, shading.exponent, tables, band),
-            None => draw(setup, corners, tables.one_light_ramp()?, shading.exponent, tables, band),
+        if tables.reflectance.lights() == 2 {
+            return draw_two(setup, shading, tables, band);
+        }
+        let (cosines, rgb) = (&setup.corner_lights(), tables.one_light_rgb());
+        let ramp = if rgb.is_some() { tables.diffuse_ramp() } else { Some(tables.one_light_ramp()?) };
+        let has_no_highlight = largest(&cosines[1]) < setup.highlight_threshold(tables.reflectance);
+        // What a table of colours declines in three channels has been drawn as if it had a highlight.
+        let declined = rgb.is_some() && setup.resumed(band) == Some(DiffuseAndHighlight::<OneLightRgb<'_, C>>::ID);
+        if let Some(ramp) = ramp.filter(|_| has_no_highlight && !declined) {
+            let drawn = draw_diffuse(setup, cosines, ramp, tables, band);
+            if drawn.is_some() || rgb.is_none() {
+                return drawn;
+            }
+        }
+        match rgb {
+            Some(rgb) => draw_rgb(setup, cosines, rgb, shading.exponent, tables, band),
+            None => draw(setup, cosines, ramp?, shading.exponent, tables, band),
         }
     }
 }
@@ -118,7 +130,7 @@ fn draw_rgb<C: Pixel>(
     draw(setup, corners, colours, exponent, tables, band)
 }
 
-/// Draws `setup` under two constant lights in these `colours`. One that adds nothing to the triangle is left out.
+/// Draws `setup` under two constant lights.
 #[inline(never)]
 fn draw_two<C: Pixel>(
     setup: &TriangleSetup<'_>,
@@ -127,7 +139,7 @@ fn draw_two<C: Pixel>(
     band: &mut Band<'_, C>,
 ) -> Option<u32> {
     let TwoLights { colours, cosines: [first, second], highlights } = TwoLights::on(setup, shading, tables)?;
-    let ([one, two], full, exponent) = (colours.each(), colours.diffuse(), shading.exponent);
+    let (full, exponent) = (colours.diffuse(), shading.exponent);
     let (towards, other) = (setup.six_from(first[0]), setup.six_from(second[0]));
     let is_dark = |cosines| DiffuseSign::of(cosines) == DiffuseSign::Nowhere;
     let lookup = DefectLookup::new(&tables.reflectance.highlight_lut);
@@ -135,15 +147,14 @@ fn draw_two<C: Pixel>(
     let diffuse = |cosines| diffuse(setup, full, cosines);
     let highlight = |[_, half]: CornerCosines| highlight(setup, half, lookup, exponent);
     Some(match highlights {
-        0 | 1 if is_dark(other) => return draw_rgb(setup, &first, one, exponent, tables, band),
-        0 if is_dark(towards) => return draw_rgb(setup, &second, two, exponent, tables, band),
+        1 if is_dark(other) => return draw_rgb(setup, &first, colours.first(), exponent, tables, band),
         0 => setup.fill(|| (diffuse(towards), diffuse(other)), DiffuseOnly(colours), band),
         1 => setup.fill(|| ByColumn(((diffuse(towards), highlight(first)), diffuse(other))), shader, band),
         _ => setup.fill(|| ByColumn(((diffuse(towards), highlight(first)), (diffuse(other), highlight(second)))), shader, band),
     })
 }
 
-/// Draws `setup` under one constant light in these `colours`; `None` if levels may leave the walked format.
+/// Draws `setup` with a highlight under one constant light in these `colours`; `None` if levels may leave the walked format.
 #[inline(always)]
 fn draw<C: Pixel, T: OneLight<Pixel = C>>(
     setup: &TriangleSetup<'_>,
@@ -153,38 +164,44 @@ fn draw<C: Pixel, T: OneLight<Pixel = C>>(
     tables: MaterialTables<'_, C>,
     band: &mut Band<'_, C>,
 ) -> Option<u32> {
-    let (reflectance, resumed) = (tables.reflectance, setup.resumed(band));
+    // No nodes are needed of an active triangle.
+    let cosines = if setup.resumed(band).is_none() { setup.six_from(towards) } else { [0; 6] };
+    if T::TABLED && setup.resumed(band).is_none() {
+        let sign = DiffuseSign::of(cosines);
+        if !colours.is_within() || sign == DiffuseSign::Nowhere || sign == DiffuseSign::Steeply {
+            return None;
+        }
+    }
+    let lookup = DefectLookup::new(&tables.reflectance.highlight_lut);
+    let patch = || (diffuse(setup, colours.diffuse(), cosines), highlight(setup, half, lookup, exponent));
+    Some(setup.fill(patch, DiffuseAndHighlight { colours, lookup }, band))
+}
+
+/// Draws `setup` without a highlight under one constant light by a table of colours; `None` if levels may leave the walked format.
+#[inline(always)]
+fn draw_diffuse<C: Pixel>(
+    setup: &TriangleSetup<'_>,
+    &[towards, _]: &CornerCosines,
+    colours: OneLightRamp<'_, C>,
+    tables: MaterialTables<'_, C>,
+    band: &mut Band<'_, C>,
+) -> Option<u32> {
+    let resumed = setup.resumed(band);
     // The pixel shader of an active triangle has been chosen, and no nodes are needed.
     let cosines = if resumed.is_none() { setup.six_from(towards) } else { [0; 6] };
-    let has_no_highlight = largest(&half) < setup.highlight_threshold(reflectance);
-    let id = match resumed {
-        Some(id) => id,
-        None if !T::TABLED => {
-            if has_no_highlight {
-                DiffuseOnly::<T>::ID
-            } else {
-                DiffuseAndHighlight::<T>::ID
-            }
-        }
-        None => match (has_no_highlight, DiffuseSign::of(cosines)) {
-            (true, DiffuseSign::Nowhere) => Ramp::<C>::ID,
-            _ if !colours.is_within() => return None,
-            (true, DiffuseSign::Everywhere) => Ramp::<C>::ID,
-            (true, DiffuseSign::Partly) => DiffuseOnly::<T>::ID,
-            (false, DiffuseSign::Everywhere | DiffuseSign::Partly) => DiffuseAndHighlight::<T>::ID,
-            _ => return None,
-        },
+    let id = match (resumed, DiffuseSign::of(cosines)) {
+        (Some(id), _) => id,
+        (None, DiffuseSign::Nowhere) => Ramp::<C>::ID,
+        (None, _) if !colours.is_within() => return None,
+        (None, DiffuseSign::Everywhere) => Ramp::<C>::ID,
+        (None, DiffuseSign::Partly) => DiffuseOnly::<OneLightRamp<'_, C>>::ID,
+        (None, DiffuseSign::Steeply) => return None,
     };
-    if T::TABLED && id == Ramp::<C>::ID {
-        return Some(Shading::fill_one(setup, || reflectance.six_diffuse(cosines), tables, band));
-    }
-    let full = colours.diffuse();
-    if id == DiffuseOnly::<T>::ID {
-        return Some(setup.fill(|| diffuse(setup, full, cosines), DiffuseOnly(colours), band));
-    }
-    let lookup = DefectLookup::new(&reflectance.highlight_lut);
-    let patch = || (diffuse(setup, full, cosines), highlight(setup, half, lookup, exponent));
-    Some(setup.fill(patch, DiffuseAndHighlight { colours, lookup }, band))
+    Some(if id == Ramp::<C>::ID {
+        Shading::fill_one(setup, || tables.reflectance.six_diffuse(cosines), tables, band)
+    } else {
+        setup.fill(|| diffuse(setup, colours.diffuse(), cosines), DiffuseOnly(colours), band)
+    })
 }
 
 /// The diffuse level of a material with the level `full` at cosine 1, from the cosines at six nodes.
@@ -249,15 +266,15 @@ impl<C: Pixel> PixelShader<(([u32; 1], [u32; 1]), [u32; 1])> for DiffuseAndHighl
 #[derive(Clone, Copy)]
 struct DiffuseOnly<T>(T);
 
-impl<T: OneLight> PixelShader<[u32; 1]> for DiffuseOnly<T> {
-    type Pixel = T::Pixel;
+impl<C: Pixel> PixelShader<[u32; 1]> for DiffuseOnly<OneLightRamp<'_, C>> {
+    type Pixel = C;
 
-    const CHEAP: bool = T::TABLED;
+    const CHEAP: bool = true;
 
     const ID: u8 = 1;
 
     #[inline(always)]
-    fn shade(&self, [light]: [u32; 1]) -> T::Pixel {
+    fn shade(&self, [light]: [u32; 1]) -> C {
         self.0.without_highlight::<WALK>(signed(light))
     }
 }

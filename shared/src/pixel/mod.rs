@@ -25,6 +25,11 @@ pub trait Pixel: Copy + 'static {
     const GRAY: bool;
     /// Bits of red, green and blue (or of grey, three times).
     const DEPTH: [u32; 3];
+    /// Whether channels have so few bits that light of several channels may be rounded to a level of 1/255 first.
+    const COARSE: bool = {
+        let [r, g, b] = Self::DEPTH;
+        r < 8 && g < 8 && b < 8
+    };
     /// Bytes that a pixel adds to the picture's checksum.
     const BYTES: usize;
 
