@@ -20,6 +20,8 @@ pub struct Shader<C: Pixel> {
     /// Whether `loops` can draw this style; if not, the general way does.
     take: fn(Style) -> bool,
     pub(crate) loops: TriangleLoops<C>,
+    /// Those for three channels.
+    three_channels: TriangleLoops<C>,
 }
 
 /// The type of [`MeshPass::run`] with the loops of one method.
@@ -67,16 +69,22 @@ impl<C: Pixel> Shader<C> {
     /// A method of your own, or of the crate `microphong-literature`.
     #[must_use]
     pub const fn new(method: &'static dyn Method) -> Self {
-        Self { method, take: General::take, loops: TriangleLoops::of::<General>() }
+        Self { method, take: General::take, loops: TriangleLoops::of::<General>(), three_channels: TriangleLoops::of::<General>() }
     }
 
     const fn with_loops<M: Method + Loops>(method: &'static M) -> Self {
-        Self { method, take: M::take, loops: TriangleLoops::of::<M>() }
+        // A grey format has one channel.
+        let three_channels = if C::GRAY { TriangleLoops::of::<M>() } else { TriangleLoops::of::<M::ThreeChannels>() };
+        Self { method, take: M::take, loops: TriangleLoops::of::<M>(), three_channels }
     }
 
     /// The loops that draw a style.
     pub(crate) fn loops(&self, style: Style) -> TriangleLoops<C> {
-        if (self.take)(style) { self.loops } else { TriangleLoops::of::<General>() }
+        match ((self.take)(style), style.three_channels) {
+            (true, false) => self.loops,
+            (true, true) => self.three_channels,
+            (false, _) => TriangleLoops::of::<General>(),
+        }
     }
 }
 

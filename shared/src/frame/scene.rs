@@ -94,6 +94,7 @@ impl<C: Pixel> Scene<'_, C> {
         let (reflectance, ramp) = (self.reflectances.get(material)?, self.ramps.get(material)?);
         let perspective = self.settings.perspective_correct && stream.is_perspective();
         let style = Style {
+            three_channels: reflectance.three_channels(),
             lights: if self.lighting.is_constant() { reflectance.lights() } else { 0 },
             dithered_or_antialiased: *dither || self.settings.antialiased(),
             perspective,

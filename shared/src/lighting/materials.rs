@@ -309,6 +309,32 @@ impl Reflectance {
         (self.ambient[0] + light).min(FULL)
     }
 
+    /// The highlight at N·H (Q2.30), unsigned Q0.16, 0 where none can be seen.
+    #[inline]
+    #[must_use]
+    pub fn highlight(&self, half: i32) -> u32 {
+        if half < self.highlight_threshold { 0 } else { self.highlight_lut.at(half) }
+    }
+
+    /// The level of the table of colours without highlight at N·L (Q2.30) under one light, Q9.7. Domain: [`Self::has_ramp`].
+    #[inline(always)]
+    #[must_use]
+    pub fn ramp_level(&self, cosine: i32) -> i32 {
+        diffuse_level(self.ramp, cosine)
+    }
+
+    /// Levels of three channels under one light, Q9.7 in [0, 255], from N·L (Q2.30) and a highlight (unsigned Q0.16).
+    #[inline(always)]
+    #[must_use]
+    pub fn reflection(&self, cosine: i32, highlight: u32) -> [i32; 3] {
+        let [gains, ..] = &self.gains;
+        let level = |n: usize| {
+            let (line, specular) = ([self.ambient[n], gains.diffuse[n].into()], gains.specular[n]);
+            (diffuse_level(line, cosine) + reflected((0, specular), 0, highlight)).min(FULL)
+        };
+        [level(0), level(1), level(2)]
+    }
+
     /// The levels of the table of colours without highlight at six nodes of these cosines, under one light, not clamped, Q9.7. Domain:
     /// [`Self::has_ramp`].
     #[inline(always)]
@@ -368,7 +394,7 @@ impl Reflectance {
         for (source, gains) in sources.iter().zip(&self.gains) {
             if let Source::Directional { towards, half } = *source {
                 let (diffuse, half) = (normal.cosine(towards), normal.cosine(half));
-                let highlight = if half < self.highlight_threshold { 0 } else { self.highlight_lut.at(half) };
+                let highlight = self.highlight(half);
                 let ([dr, dg, db], [sr, sg, sb]) = (gains.diffuse, gains.specular);
                 r += reflected((dr, sr), diffuse, highlight);
                 if self.three_channels() {

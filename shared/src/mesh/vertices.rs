@@ -60,7 +60,11 @@ impl VertexStage<'_> {
             (VertexLight::None, _) | (VertexLight::Cosines, None) => [0; 3],
             (light, Some([towards, half])) if light != VertexLight::Levels || !self.reflectance.three_channels() => {
                 let cosines = [vertex_cosine(normal, *towards), vertex_cosine(normal, *half)];
-                if light == VertexLight::Levels { [self.reflectance.level(cosines); 3] } else { [cosines[0], cosines[1], 0] }
+                match light {
+                    VertexLight::Cosines | VertexLight::CosinesOrLevels => [cosines[0], cosines[1], 0],
+                    _ if self.reflectance.three_channels() => [cosines[0], self.reflectance.highlight(cosines[1]) as i32, 0],
+                    _ => [self.reflectance.level(cosines); 3],
+                }
             }
             _ if self.lighting.is_constant() => self.reflectance.constant_levels(&self.lighting.sources, &MeanNormal::at(normal)),
             _ => self.reflectance.levels(self.lighting.cosines(point(vertex.position), normal.map(|c| c << (30 - UNIT)))),

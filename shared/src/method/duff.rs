@@ -87,6 +87,8 @@ where
 pub(crate) struct Duff;
 
 impl Loops for Duff {
+    type ThreeChannels = Self;
+
     fn take(style: Style) -> bool {
         (1..=2).contains(&style.lights) && !style.dithered_or_antialiased && !style.perspective
     }

@@ -87,8 +87,11 @@ pub enum VertexLight {
     None,
     /// `[N·L, N·H]` under one constant light, else nothing.
     Cosines,
-    /// `[N·L, N·H]` under one constant light on a material of one channel, else levels.
+    /// `[N·L, N·H]` under one constant light, else levels.
     CosinesOrLevels,
+    /// `[N·L, highlight]` under one constant light on a material of three channels, else levels. The highlight is unsigned Q0.16, and 0 where
+    /// none can be seen.
+    ReflectionOrLevels,
     /// Levels.
     Levels,
 }

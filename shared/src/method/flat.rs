@@ -47,6 +47,8 @@ impl Method for Flat {
 }
 
 impl Loops for Flat {
+    type ThreeChannels = Self;
+
     fn take(style: Style) -> bool {
         !style.dithered_or_antialiased
     }

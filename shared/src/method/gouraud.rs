@@ -5,9 +5,10 @@
 //! for diffuse light, c the smallest cosine between two corners' normals.
 
 use crate::{
+    geometry::projection::ScreenVertex,
     interpolate::{field::Field, plane::Plane},
-    lighting::materials::{Highlight, MaterialTables},
-    method::{Costs, Facts, Loops, Method, RANGE, Shading, Style, TriangleSetup, VertexLight, level_field},
+    lighting::materials::{Highlight, MaterialTables, Reflectance},
+    method::{Costs, Facts, Loops, Method, RANGE, Shading, Style, ThreeChannels, TriangleSetup, VertexLight, level_field},
     pixel::Pixel,
     raster::{band::Band, canvas::Canvas, pixel_shader::Ramp},
     setup::gradients::Gradients,
@@ -17,7 +18,7 @@ static FACTS: Facts = Facts {
     name: "gouraud",
     id: 1,
     source: "Gouraud 1971",
-    vertex_light: VertexLight::Levels,
+    vertex_light: VertexLight::ReflectionOrLevels,
     highlight: Highlight::Half,
     highlight_levels: false,
     near_lights: true,
@@ -34,14 +35,29 @@ impl Method for Gouraud {
     }
 
     fn shade(&self, setup: &TriangleSetup<'_>, shading: &Shading<'_>, canvas: &mut dyn Canvas) -> u32 {
-        let [a, b, c] = setup.corners;
-        shading.draw_levels::<3, RANGE>(setup, [a.light, b.light, c.light], canvas)
+        shading.draw_levels::<3, RANGE>(setup, corner_levels(setup, shading), canvas)
     }
 }
 
 impl Loops for Gouraud {
+    type ThreeChannels = ThreeChannels<Self>;
+
     fn take(style: Style) -> bool {
         !style.dithered_or_antialiased && !style.perspective
+    }
+
+    #[inline(always)]
+    fn draw<C: Pixel>(setup: &TriangleSetup<'_>, _: &Shading<'_>, tables: MaterialTables<'_, C>, band: &mut Band<'_, C>) -> Option<u32> {
+        let [a, b, c] = setup.corners;
+        Some(setup.fill(|| one(setup.gradients, [a.light[0], b.light[0], c.light[0]]), Ramp(tables.ramp), band))
+    }
+}
+
+impl Loops for ThreeChannels<Gouraud> {
+    type ThreeChannels = Self;
+
+    fn take(style: Style) -> bool {
+        Gouraud::take(style)
     }
 
     #[inline(always)]
@@ -51,12 +67,26 @@ impl Loops for Gouraud {
         tables: MaterialTables<'_, C>,
         band: &mut Band<'_, C>,
     ) -> Option<u32> {
-        let [a, b, c] = setup.corners;
-        Some(if !C::GRAY && shading.reflectance.three_channels() {
-            three(setup, band)
-        } else {
-            setup.fill(|| one(setup.gradients, [a.light[0], b.light[0], c.light[0]]), Ramp(tables.ramp), band)
-        })
+        let ([a, b, c], reflectance) = (setup.corners, shading.reflectance);
+        // Each of these is drawn by a call of its own: by measurement, what they have in common is set up sooner.
+        if shading.constant.is_none() {
+            let channels = || {
+                let ([r0, g0, b0], [r1, g1, b1], [r2, g2, b2]) = (a.light, b.light, c.light);
+                [[r0, r1, r2], [g0, g1, g2], [b0, b1, b2]]
+            };
+            return Some(Shading::fill_three(setup, channels, |plane| plane, band));
+        }
+        // By the table of colours where the light has no highlight.
+        if a.light[1] | b.light[1] | c.light[1] == 0 && reflectance.has_ramp() {
+            let level = |[cosine, ..]: [i32; 3]| reflectance.ramp_level(cosine);
+            let levels = [level(a.light), level(b.light), level(c.light)];
+            return Some(setup.fill(|| one(setup.gradients, levels), Ramp(tables.ramp), band));
+        }
+        let channels = || {
+            let [[r0, g0, b0], [r1, g1, b1], [r2, g2, b2]] = reflections([a, b, c], reflectance);
+            [[r0, r1, r2], [g0, g1, g2], [b0, b1, b2]]
+        };
+        Some(Shading::fill_three(setup, channels, |plane| plane, band))
     }
 }
 
@@ -66,12 +96,18 @@ fn one(gradients: &Gradients, levels: [i32; 3]) -> Plane<1> {
     level_field(levels).fit(gradients)
 }
 
-#[inline(always)]
-fn three<C: Pixel>(setup: &TriangleSetup<'_>, band: &mut Band<'_, C>) -> u32 {
+/// The levels at the corners.
+fn corner_levels(setup: &TriangleSetup<'_>, shading: &Shading<'_>) -> [[i32; 3]; 3] {
+    if shading.constant.is_some() && shading.reflectance.three_channels() {
+        return reflections(setup.corners, shading.reflectance);
+    }
     let [a, b, c] = setup.corners;
-    let channels = || {
-        let ([r0, g0, b0], [r1, g1, b1], [r2, g2, b2]) = (a.light, b.light, c.light);
-        [[r0, r1, r2], [g0, g1, g2], [b0, b1, b2]]
-    };
-    Shading::fill_three(setup, channels, |plane| plane, band)
+    [a.light, b.light, c.light]
+}
+
+/// The levels at corners whose light is [`VertexLight::ReflectionOrLevels`] of one constant light in three channels.
+#[inline(never)]
+fn reflections([a, b, c]: [&ScreenVertex; 3], reflectance: &Reflectance) -> [[i32; 3]; 3] {
+    let level = |[cosine, highlight, _]: [i32; 3]| reflectance.reflection(cosine, highlight as u32);
+    [level(a.light), level(b.light), level(c.light)]
 }

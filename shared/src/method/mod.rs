@@ -73,6 +73,8 @@ pub trait Method: Sync {
 /// How the triangles of a mesh are drawn, which is decided once for all of them.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Style {
+    /// Three channels in place of one.
+    pub(crate) three_channels: bool,
     /// Number of constant lights, if their levels fit the formats of [`crate::lighting::one_light`]; otherwise 0.
     pub(crate) lights: u8,
     /// Dither or antialiasing.
@@ -83,6 +85,9 @@ pub(crate) struct Style {
 
 /// A method that has loops of its own for some styles, compiled for each pixel format.
 pub(crate) trait Loops {
+    /// The loops in three channels, or these again.
+    type ThreeChannels: Loops;
+
     /// Whether there are no loops but those of the general way.
     const GENERAL: bool = false;
 
@@ -98,10 +103,15 @@ pub(crate) trait Loops {
     ) -> Option<u32>;
 }
 
+/// The loops of the method `M` in three channels, where it tells these apart.
+pub(crate) struct ThreeChannels<M>(PhantomData<M>);
+
 /// No loops but those of the general way.
 pub(crate) struct General;
 
 impl Loops for General {
+    type ThreeChannels = Self;
+
     const GENERAL: bool = true;
 
     fn take(_: Style) -> bool {

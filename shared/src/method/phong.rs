@@ -52,6 +52,8 @@ impl Method for Phong {
 }
 
 impl Loops for Phong {
+    type ThreeChannels = Self;
+
     fn take(style: Style) -> bool {
         Duff::take(style)
     }

@@ -57,6 +57,8 @@ impl Method for RenqNewton {
 }
 
 impl Loops for RenqNewton {
+    type ThreeChannels = Self;
+
     fn take(style: Style) -> bool {
         style.lights == 1 && !style.dithered_or_antialiased && !style.perspective
     }

@@ -39,6 +39,8 @@ impl Method for SixPoint {
 }
 
 impl Loops for SixPoint {
+    type ThreeChannels = Self;
+
     fn take(style: Style) -> bool {
         !style.dithered_or_antialiased && !style.perspective
     }

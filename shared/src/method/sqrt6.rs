@@ -85,6 +85,8 @@ impl Method for Sqrt6 {
 }
 
 impl Loops for Sqrt6 {
+    type ThreeChannels = Self;
+
     fn take(style: Style) -> bool {
         (1..=2).contains(&style.lights) && !style.dithered_or_antialiased && !style.perspective
     }
