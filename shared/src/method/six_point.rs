@@ -52,23 +52,26 @@ impl Loops for SixPoint {
         tables: MaterialTables<'_, C>,
         band: &mut Band<'_, C>,
     ) -> Option<u32> {
-        let three_channels = !C::GRAY && shading.reflectance.three_channels();
-        Some(match shading.constant {
-            Some(_) if three_channels => draw_rgb(setup, shading, tables, band),
-            Some(_) => Shading::fill_one(setup, || one_level(setup, shading), tables, band),
-            None if three_channels => Shading::fill_three(setup, || lit(&setup.for_lighting(), shading), ByColumn, band),
-            None => Shading::fill_one(setup, || lit(&setup.for_lighting(), shading)[0], tables, band),
-        })
+        let reflectance = shading.reflectance;
+        // One constant light without a highlight is one number also in three channels.
+        let one = C::GRAY
+            || !reflectance.three_channels()
+            || shading.constant.is_some() && reflectance.has_ramp() && setup.has_no_highlight(reflectance);
+        if !one {
+            return Some(draw_rgb(setup, shading, band));
+        }
+        let nodes = || match shading.constant {
+            Some(_) => one_level(setup, shading),
+            None => lit(&setup.for_lighting(), shading)[0],
+        };
+        Some(Shading::fill_one(setup, nodes, tables, band))
     }
 }
 
-/// Draws `setup` in three channels under one constant light: by the table of colours where there is no highlight.
+/// Draws `setup` in three channels.
 #[inline(never)]
-fn draw_rgb<C: Pixel>(setup: &TriangleSetup<'_>, shading: &Shading<'_>, tables: MaterialTables<'_, C>, band: &mut Band<'_, C>) -> u32 {
-    if setup.has_no_highlight(shading.reflectance) && shading.reflectance.has_ramp() {
-        return Shading::fill_one(setup, || shading.reflectance.six_diffuse_clamped(setup.six_diffuse()), tables, band);
-    }
-    Shading::fill_three(setup, || three_levels(setup, shading), ByColumn, band)
+fn draw_rgb<C: Pixel>(setup: &TriangleSetup<'_>, shading: &Shading<'_>, band: &mut Band<'_, C>) -> u32 {
+    Shading::fill_three(setup, || levels(&setup.for_lighting(), shading), ByColumn, band)
 }
 
 /// N·L (Q2.30) and the highlight (unsigned Q0.16) of one constant light at the six nodes.
