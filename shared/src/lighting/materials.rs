@@ -623,3 +623,45 @@ fn level(product: u32, depth: u32) -> u16 {
     let full = ((1u64 << depth) - 1) << (8 - depth + LEVEL);
     ((u64::from(product) * full + (1 << (2 * UNIT - 1))) >> (2 * UNIT)).min(u64::from(u16::MAX)) as u16
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use embedded_graphics_core::pixelcolor::{Rgb565, Rgb888};
+    use proptest::prelude::*;
+    use zerocopy::FromZeros;
+
+    /// The reflectance of a material under one light in the pixel format `C`.
+    fn reflectance<C: Pixel>(material: &Material, colour: [u16; 3]) -> Reflectance {
+        let (mut reflectance, mut header) = (Reflectance::EMPTY, Header::new_zeroed());
+        header.ambient = [1 << UNIT; 3];
+        reflectance.fill::<C>(&header, material, &[Light { colour, ..Light::new_zeroed() }], (Highlight::Half, false));
+        reflectance
+    }
+
+    proptest! {
+        #![proptest_config(ProptestConfig::with_cases(500))]
+        /// Without a highlight, the table of colours has the colour of three channels, or its neighbour.
+        #[test]
+        fn colours_without_a_highlight_lie_on_a_line(
+            ambient in prop::array::uniform3(0u16..1 << 13),
+            diffuse in prop::array::uniform3(0u16..1 << 13),
+            light in prop::array::uniform3(0u16..1 << UNIT),
+        ) {
+            let material = Material { ambient, diffuse, specular: [1 << 13; 3], exponent: 30 };
+            prop_assert!(!reflectance::<Rgb888>(&material, light).has_ramp() || !reflectance::<Rgb888>(&material, light).three_channels());
+            let reflectance = reflectance::<Rgb565>(&material, light);
+            prop_assume!(reflectance.three_channels());
+            prop_assert!(reflectance.has_ramp());
+            let mut ramp = [0; RAMP];
+            fill_ramp::<Rgb565>(&mut ramp, &reflectance);
+            let tables = MaterialTables::<Rgb565> { ramp: &ramp, reflectance: &reflectance };
+            for cosine in (-4..=64).map(|c| c << (COSINE - 6)) {
+                let exact = tables.colour(reflectance.reflection(cosine, 0)).channels();
+                let tabled = tables.tint(reflectance.ramp_level(cosine)).channels();
+                let differences = zip(exact, tabled, u8::abs_diff);
+                prop_assert!(largest(differences.map(u32::from)) <= 1, "{cosine}: {exact:?} {tabled:?}");
+            }
+        }
+    }
+}

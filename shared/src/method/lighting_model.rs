@@ -279,10 +279,12 @@ impl Shading<'_> {
         linear(self.constant_cosines(setup, source))
     }
 
-    /// N·L and N·H of a constant light at the corners, Q2.30.
+    /// N·L and N·H of a constant light at the corners, Q2.30. Domain: [`crate::method::Lighting::is_constant`].
     pub fn constant_cosines(&self, setup: &TriangleSetup<'_>, source: &Source) -> [[i32; 3]; 2] {
-        let [towards, half] = self.lighting.directions(source, [0; 3]);
-        [setup.corner_cosines(towards), setup.corner_cosines(half)]
+        match *source {
+            Source::Directional { towards, half } => [setup.corner_cosines(towards), setup.corner_cosines(half)],
+            Source::Point(_) => [[0; 3]; 2],
+        }
     }
 
     /// The quadratics through N·L and N·H of a light at six nodes; `map` is applied to both.
