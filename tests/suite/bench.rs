@@ -1,7 +1,7 @@
 //! What `bench` counts is exact, the same each time, and has not grown since somebody last looked.
 
 use microphong_sim::{
-    bench::{Bench, Processor, baseline, renewal::Growth, stage::Meter},
+    bench::{Bench, Processor, baseline, callgrind::Counters, renewal::Growth, stage::Meter, styles},
     board::{Blocks, elf::Elf, trace},
     scene,
     shader::Shader,
@@ -33,6 +33,21 @@ fn blocks_are_the_instructions_in_them() {
     println!("{} instructions at {} addresses", blocks.values().sum::<u64>(), blocks.len());
     assert!(blocks.values().sum::<u64>() > 1_000_000);
     assert!(executed[0] == executed[1], "blocks and single instructions differ");
+}
+
+/// Each style is counted as itself, in the order of their names: flat shading costs the same in perspective, but for the question, and what cannot be drawn has no
+/// count.
+#[test]
+fn styles_are_told_apart() {
+    let shaders = [Shader::FLAT, Shader::GOURAUD, named("gouraud4")];
+    let costs = styles::measure(&Counters::default(), &scene::load("dodecahedron").unwrap(), &shaders, &|| ()).unwrap();
+    let [flat, gouraud, split] = [0, 1, 2].map(|k: usize| costs[k].instructions);
+    println!("{:?}: {flat:?}, {gouraud:?}, {split:?}", styles::NAMES);
+    assert!(flat[0].unwrap().abs_diff(flat[3].unwrap()) < 100);
+    for [plain, others @ ..] in [flat, gouraud] {
+        assert!(others[..2].iter().all(|other| *other > plain), "dither and antialiasing");
+    }
+    assert!(gouraud[3] > gouraud[0] && gouraud[2] > gouraud[1] && split[3].is_none());
 }
 
 /// Two runs, each side by side with others, give the same to the instruction and cycle.

@@ -15,6 +15,7 @@ pub mod peers;
 pub mod processor;
 pub mod renewal;
 pub mod stage;
+pub mod styles;
 
 use anyhow::{Context, Result};
 use flash::Graph;

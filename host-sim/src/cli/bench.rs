@@ -10,6 +10,7 @@ use microphong::renderer::check;
 use microphong_sim::{
     bench::{
         Bench, Measurement, PICO_HZ, Processor, Timing, baseline,
+        callgrind::Counters,
         growth::{SHADERS, Sweep},
         page::Page,
         peers::{
@@ -17,6 +18,7 @@ use microphong_sim::{
             table::{Table, short},
         },
         renewal::{self, Growth},
+        styles::{self, StyleCosts},
     },
     scene::{self, Scene},
     shader::Shader,
@@ -53,15 +55,18 @@ pub(crate) struct Arguments {
     /// Also measure other renderers on the scene peer-sphere, on the boards mps2-an385, mps2-an386 and x86-64.
     #[arg(long)]
     peers: bool,
+    /// Count dither, antialiasing and interpolation in perspective beside the plain style instead, on this computer.
+    #[arg(long, conflicts_with_all = ["board", "report", "peers"])]
+    styles: bool,
     /// Measure the frames that FILE lists, and fail where one costs over 0.2 % more instructions or flash than recorded there.
-    #[arg(long, value_name = "FILE", conflicts_with_all = ["scenes", "shader", "board", "json", "report", "peers"])]
+    #[arg(long, value_name = "FILE", conflicts_with_all = ["scenes", "shader", "board", "json", "report", "peers", "styles"])]
     check: Option<PathBuf>,
     /// Measure the frames that FILE lists, and record what they cost; a --reason is needed.
     #[arg(
         long,
         value_name = "FILE",
         requires = "reason",
-        conflicts_with_all = ["scenes", "shader", "board", "json", "report", "peers", "check"]
+        conflicts_with_all = ["scenes", "shader", "board", "json", "report", "peers", "styles", "check"]
     )]
     renew: Option<PathBuf>,
     /// Why costs have changed, in a sentence: --renew of costs.csv adds it to costs-reasons.md.
@@ -77,6 +82,7 @@ Examples:
   microphong bench all --shader all --board all --json   everything
   microphong bench peer-sphere --shader all --board all --report bench    the chart, as a page
   microphong bench peer-sphere --peers --board mps2-an385,mps2-an386,x86-64    beside other renderers
+  microphong bench --styles                              what dither, antialiasing and perspective cost
   microphong bench --check tests/baselines/costs.csv     has anything become dearer?
   microphong bench --renew tests/baselines/costs.csv --reason \"Thin triangles no longer flicker.\"
                                                          it has, and this is why
@@ -116,7 +122,13 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome> {
     let Several { values: shaders, all } = &arguments.shader;
     let wanted = |scene: &Scene| {
         let possible = |shader: Shader| scene.stream.parse().is_ok_and(|stream| check(&stream, shader.facts(), false).is_ok());
-        let shaders: Vec<_> = shaders.iter().copied().filter(|&shader| !all || possible(shader)).collect();
+        shaders.iter().copied().filter(|&shader| !all || possible(shader)).collect::<Vec<_>>()
+    };
+    if arguments.styles {
+        return in_styles(&scenes, wanted, arguments.json);
+    }
+    let wanted = |scene: &Scene| {
+        let shaders = wanted(scene);
         arguments.board.values.iter().flat_map(|&board| shaders.iter().map(move |&shader| (board, shader)).collect::<Vec<_>>()).collect()
     };
     let scenes: Vec<(Scene, Vec<_>)> = scenes.into_iter().map(|scene| (wanted(&scene), scene)).map(|(w, s)| (s, w)).collect();
@@ -154,6 +166,31 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome> {
         }
     }
     Ok(Outcome::Done)
+}
+
+/// Counts `scenes` by the `wanted` methods in all styles.
+fn in_styles(scenes: &[Scene], wanted: impl Fn(&Scene) -> Vec<Shader>, json: bool) -> Result<Outcome> {
+    let bar = report::progress(scenes.iter().map(|scene| wanted(scene).len() as u64).sum(), "counting instructions");
+    let counters = Counters::default();
+    for scene in scenes {
+        let costs = styles::measure(&counters, scene, &wanted(scene), &|| bar.inc(1))?;
+        bar.suspend(|| costs.iter().try_for_each(|cost| if json { report::json(cost) } else { in_style(cost) }))?;
+    }
+    bar.finish_and_clear();
+    Ok(Outcome::Done)
+}
+
+fn in_style(cost: &StyleCosts) -> Result<()> {
+    let plain = cost.instructions[0].unwrap_or(0).max(1) as f64;
+    let figures = styles::NAMES.iter().zip(cost.instructions).map(|(name, count)| match count {
+        Some(count) => {
+            let per_pixel = count as f64 / f64::from(cost.pixels.max(1));
+            format!("{name} {per_pixel:.1} per pixel, {:.2} times", count as f64 / plain)
+        }
+        None => format!("{name} impossible"),
+    });
+    let figures = figures.collect::<Vec<_>>().join("; ").replacen(", 1.00 times", "", 1);
+    report::line(&format!("x86-64, {}, {}: {figures}", cost.scene, cost.shader))
 }
 
 /// The scene that other renderers draw.

@@ -503,6 +503,10 @@ fn mixed<C: Pixel>(levels: [i32; 3]) -> C {
 /// Fills the table of colours of a material.
 pub fn fill_ramp<C: Pixel>(ramp: &mut [C::Stored; RAMP], reflectance: &Reflectance) {
     if reflectance.three_channels() {
+        // Nobody looks at it then, and products might overflow.
+        if !reflectance.has_ramp() {
+            return;
+        }
         let ([least, most], [gains, ..]) = (reflectance.ramp, &reflectance.gains);
         for (i, stored) in ramp.iter_mut().enumerate() {
             let more = ((i as i32 - BIAS) << LEVEL) - least;
