@@ -12,13 +12,18 @@ use microphong_render::bytes::StreamBytes;
 /// Damaged streams of random scenes.
 pub struct Hostile;
 
+/// Bytes in which a stream usually has its header, materials and lights.
+const FRONT: usize = 256;
+
 /// A random scene, its stream with bytes flipped, cut off, sealed again: each of them or not. `None` if there is no such scene.
 #[must_use]
 pub fn damaged(random: &mut Random) -> Option<Case> {
     let case = scenes::case(random, Wishes { closed: false, unclipped: false, triangles: 60 })?;
     let mut bytes = case.stream.as_bytes().to_vec();
     for _ in 0..random.pick(0..6) {
-        let at = random.pick(0..bytes.len() as i32) as usize;
+        // Half of them where one byte changes the whole picture: most bytes are vertices.
+        let within = if random.once_in(2) { bytes.len().min(FRONT) } else { bytes.len() };
+        let at = random.pick(0..within as i32) as usize;
         bytes[at] = match random.pick(0..3) {
             0 => bytes[at] ^ (1 << random.pick(0..8)),
             1 => random.among(&[0, 1, 0x7F, 0x80, 0xFF]),
