@@ -18,13 +18,16 @@ use embedded_graphics_core::{
 use microphong::{
     Stream,
     geometry::{pose::Pose, projection::View},
-    stream::{record::Header, seal},
+    stream::{
+        record::{Header, Material, Mesh},
+        seal,
+    },
 };
 use microphong_render::{bytes::StreamBytes, render, shader::Shader};
-use zerocopy::{FromBytes, IntoBytes};
+use zerocopy::FromBytes;
 
-/// A colour that none of the scenes shows, so that what is not drawn can be told: red and blue in full, without green.
-pub const BACKGROUND: Rgb888 = Rgb888::MAGENTA;
+/// A colour that no scene shows, so that what is not drawn can be told: surfaces are black.
+const BACKGROUND: Rgb888 = Rgb888::MAGENTA;
 
 /// Scenes that are wholly seen.
 pub struct Watertight;
@@ -56,16 +59,25 @@ impl Family for Watertight {
     }
 }
 
-/// A stream on [`BACKGROUND`].
+/// A stream with black surfaces on [`BACKGROUND`].
 #[must_use]
 pub fn on_background(stream: &StreamBytes) -> StreamBytes {
     let mut bytes = stream.as_bytes().to_vec();
-    if let Ok((mut header, _)) = Header::read_from_prefix(&bytes) {
-        header.background = [BACKGROUND.r(), BACKGROUND.g(), BACKGROUND.b()];
-        bytes[..size_of::<Header>()].copy_from_slice(header.as_bytes());
-    }
+    blacken(&mut bytes);
     seal(&mut bytes);
     StreamBytes::from(&bytes[..])
+}
+
+/// Makes all materials black; `None` if the stream is shorter than its header says.
+fn blacken(bytes: &mut [u8]) -> Option<()> {
+    let (header, rest) = Header::mut_from_prefix(bytes).ok()?;
+    header.background = [BACKGROUND.r(), BACKGROUND.g(), BACKGROUND.b()];
+    let materials = rest.get_mut(size_of::<Mesh>() * usize::from(header.meshes)..)?;
+    let (materials, _) = <[Material]>::mut_from_prefix_with_elems(materials, header.materials.into()).ok()?;
+    for material in materials {
+        *material = Material { ambient: [0; 3], diffuse: [0; 3], specular: [0; 3], ..*material };
+    }
+    Some(())
 }
 
 /// Pixels that are covered and not drawn, and, without antialiasing, that are drawn and not covered; `None` if a vertex is clipped.
