@@ -243,8 +243,6 @@ impl<T: OneLight> PixelShader<([u32; 1], [u32; 1])> for DiffuseAndHighlight<'_, 
 impl<C: Pixel> PixelShader<(([u32; 1], [u32; 1]), ([u32; 1], [u32; 1]))> for DiffuseAndHighlight<'_, TwoLightsRgb<'_, C>> {
     type Pixel = C;
 
-    const ID: u8 = 2;
-
     #[inline(always)]
     fn shade(&self, (one, two): (([u32; 1], [u32; 1]), ([u32; 1], [u32; 1]))) -> C {
         let light = |([light], [defect]): ([u32; 1], [u32; 1])| (signed(light), self.lookup.at(signed(defect)));
@@ -255,8 +253,6 @@ impl<C: Pixel> PixelShader<(([u32; 1], [u32; 1]), ([u32; 1], [u32; 1]))> for Dif
 /// [`DiffuseAndHighlight`] of two lights, of which the second has no highlight.
 impl<C: Pixel> PixelShader<(([u32; 1], [u32; 1]), [u32; 1])> for DiffuseAndHighlight<'_, TwoLightsRgb<'_, C>> {
     type Pixel = C;
-
-    const ID: u8 = 3;
 
     #[inline(always)]
     fn shade(&self, (([light], [defect]), [other]): (([u32; 1], [u32; 1]), [u32; 1])) -> C {
@@ -284,8 +280,6 @@ impl<C: Pixel> PixelShader<[u32; 1]> for DiffuseOnly<OneLightRamp<'_, C>> {
 /// [`DiffuseOnly`] of two lights.
 impl<C: Pixel> PixelShader<([u32; 1], [u32; 1])> for DiffuseOnly<TwoLightsRgb<'_, C>> {
     type Pixel = C;
-
-    const ID: u8 = 1;
 
     #[inline(always)]
     fn shade(&self, ([one], [two]): ([u32; 1], [u32; 1])) -> C {
