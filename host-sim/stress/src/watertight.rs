@@ -59,7 +59,7 @@ impl Family for Watertight {
     }
 }
 
-/// A stream with black surfaces on [`BACKGROUND`].
+/// A stream with black surfaces on a background of another colour, so that what is not drawn can be told.
 #[must_use]
 pub fn on_background(stream: &StreamBytes) -> StreamBytes {
     let mut bytes = stream.as_bytes().to_vec();
