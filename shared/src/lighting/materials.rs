@@ -131,10 +131,10 @@ pub struct Reflectance {
     three_channels: u8,
     /// Not 0 if [`Self::has_ramp`].
     has_ramp: u8,
-    /// Makes the size a multiple of words.
-    unused: [u8; 3],
     /// See [`Self::lights`].
     lights: u8,
+    /// Makes the size a multiple of words.
+    unused: [u8; 3],
 }
 
 /// A material in the colours of a pixel format.
@@ -327,12 +327,15 @@ impl Reflectance {
     #[inline(always)]
     #[must_use]
     pub fn reflection(&self, cosine: i32, highlight: u32) -> [i32; 3] {
-        let [gains, ..] = &self.gains;
-        let level = |n: usize| {
-            let (line, specular) = ([self.ambient[n], gains.diffuse[n].into()], gains.specular[n]);
-            (diffuse_level(line, cosine) + reflected((0, specular), 0, highlight)).min(FULL)
-        };
-        [level(0), level(1), level(2)]
+        [self.channel(0, cosine, highlight), self.channel(1, cosine, highlight), self.channel(2, cosine, highlight)]
+    }
+
+    /// The level of a channel under one light, Q9.7 in [0, 255], from N·L (Q2.30) and a highlight (unsigned Q0.16).
+    #[inline(always)]
+    fn channel(&self, channel: usize, cosine: i32, highlight: u32) -> i32 {
+        let ([gains, ..], n) = (&self.gains, channel % 3);
+        let diffuse = diffuse_level([self.ambient[n], gains.diffuse[n].into()], cosine);
+        (diffuse + reflected((0, gains.specular[n]), 0, highlight)).min(FULL)
     }
 
     /// The levels of the table of colours without highlight at six nodes of these cosines, under one light, not clamped, Q9.7. Domain:
@@ -361,9 +364,7 @@ impl Reflectance {
     #[inline(always)]
     #[must_use]
     pub fn six(&self, channel: usize, [a, b, c, ab, bc, ca]: [i32; 6], [i, j, k, ij, jk, ki]: [u32; 6]) -> [i32; 6] {
-        let ([gains, ..], n) = (&self.gains, channel % 3);
-        let (line, specular) = ([self.ambient[n], gains.diffuse[n].into()], gains.specular[n]);
-        let level = |cosine, highlight| (diffuse_level(line, cosine) + reflected((0, specular), 0, highlight)).min(FULL);
+        let level = |cosine, highlight| self.channel(channel, cosine, highlight);
         [level(a, i), level(b, j), level(c, k), level(ab, ij), level(bc, jk), level(ca, ki)]
     }
 
