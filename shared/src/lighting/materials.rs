@@ -213,7 +213,9 @@ impl Reflectance {
         }
         // The brightest of all terms sets the base colour; the others may be multiples of it.
         let base = terms.iter().fold([0; 3], |base, &term| if largest(term) >= largest(base) { term } else { base });
-        let one_channel = terms.iter().all(|&term| along(term, base));
+        // A level of the table of colours is rounded before its colour is: pixel formats that would show it have greys alone in one channel.
+        let direction = if C::COARSE { base } else { [largest(base); 3] };
+        let one_channel = terms.iter().all(|&term| along(term, direction));
         self.depth = depth;
         self.three_channels = u8::from(!one_channel);
         let levels = |colour: Colour| -> [u16; 3] { if one_channel { [level(largest(colour), 8); 3] } else { zip(colour, depth, level) } };
