@@ -7,6 +7,7 @@ use crate::{
     arch::SATURATES,
     format::{CHANNEL, Intensity, RAMP},
 };
+use core::hint::black_box;
 use embedded_graphics_core::{
     pixelcolor::{
         Gray4, Gray8, Rgb565, Rgb888,
@@ -41,6 +42,12 @@ pub trait Pixel: Copy + 'static {
 
     /// The pixel from its stored form.
     fn from_stored(stored: Self::Stored) -> Self;
+
+    /// The pixel twice. Formats of half a word take both from one word, which some processors then store at once.
+    #[inline(always)]
+    fn pair(self) -> [Self; 2] {
+        [self; 2]
+    }
 
     /// The channel values that were packed.
     fn channels(self) -> [u8; 3];
@@ -84,6 +91,13 @@ fn rgb565([r, g, b]: [u32; 3]) -> u16 {
     (r << 11 | g << 5 | b) as u16
 }
 
+/// Both halves of a word, each of them `half`; the compiler must not know that they are the same.
+#[inline(always)]
+fn halves(half: u16) -> [u16; 2] {
+    let word = black_box(u32::from(half) * 0x1_0001);
+    [word as u16, (word >> 16) as u16]
+}
+
 impl Pixel for Rgb565 {
     type Stored = u16;
 
@@ -104,6 +118,12 @@ impl Pixel for Rgb565 {
     #[inline(always)]
     fn from_stored(stored: u16) -> Self {
         RawU16::new(stored).into()
+    }
+
+    #[inline(always)]
+    fn pair(self) -> [Self; 2] {
+        let [even, odd] = halves(self.stored());
+        [Self::from_stored(even), Self::from_stored(odd)]
     }
 
     fn channels(self) -> [u8; 3] {
@@ -239,6 +259,12 @@ impl Pixel for Rgb565Be {
     #[inline(always)]
     fn from_stored(stored: Self) -> Self {
         stored
+    }
+
+    #[inline(always)]
+    fn pair(self) -> [Self; 2] {
+        let [even, odd] = halves(self.0);
+        [Self(even), Self(odd)]
     }
 
     fn channels(self) -> [u8; 3] {

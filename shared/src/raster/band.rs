@@ -1,7 +1,7 @@
 //! A band: some rows of the picture and their depth, the only memory that drawing writes.
 
 use crate::{coverage::sample::Sample, pixel::Pixel, raster::active::ActiveTriangles};
-use core::ops::Range;
+use core::{hint::black_box, ops::Range};
 use zerocopy::{FromBytes, IntoBytes};
 
 /// Rows `top .. top + rows` of the viewport.
@@ -48,12 +48,12 @@ impl<C> Band<'_, C> {
     #[inline(never)]
     pub fn clear(&mut self, background: C, reached: Range<u32>)
     where
-        C: Copy,
+        C: Pixel,
     {
         match &mut self.blend {
             Some(blend) => blend.samples.fill(Sample::EMPTY),
             None => {
-                fill(self.pixels, background);
+                fill(self.pixels, background.pair());
                 let within = |row: u32| (row as i32).max(self.top).min(self.top.wrapping_add(self.rows));
                 let (first, end) = (self.start(within(reached.start)), self.start(within(reached.end)));
                 clear_depth(self.depth.get_mut(first..end).unwrap_or_default());
@@ -78,20 +78,20 @@ impl<C> Band<'_, C> {
 /// Makes a depth buffer infinitely far, two pixels at a time.
 fn clear_depth(depth: &mut [u16]) {
     match <[u32]>::mut_from_bytes(depth.as_mut_bytes()) {
-        Ok(pairs) => fill(pairs, 0),
+        // Were the value known, the compiler would call a function that takes longer.
+        Ok(pairs) => fill(pairs, [black_box(0); 2]),
         // An odd number of pixels, or half a word off.
         Err(_) => depth.fill(0),
     }
 }
 
-/// Fills a slice, eight values at a time, because the compiler does not unroll `slice::fill` at opt-level "s".
+/// Fills a slice with the same value twice, sixteen values at a time, because the compiler does not unroll `slice::fill` at opt-level "s".
 #[inline(always)]
-fn fill<T: Copy>(slice: &mut [T], value: T) {
-    let (eights, rest) = slice.as_chunks_mut::<8>();
-    for eight in eights {
-        let [a, b, c, d, e, f, g, h] = eight;
-        (*a, *b, *c, *d) = (value, value, value, value);
-        (*e, *f, *g, *h) = (value, value, value, value);
+fn fill<T: Copy>(slice: &mut [T], [even, odd]: [T; 2]) {
+    let (blocks, rest) = slice.as_chunks_mut::<16>();
+    for [a, b, c, d, e, f, g, h, i, j, k, l, m, n, o, p] in blocks {
+        (*a, *b, *c, *d, *e, *f, *g, *h) = (even, odd, even, odd, even, odd, even, odd);
+        (*i, *j, *k, *l, *m, *n, *o, *p) = (even, odd, even, odd, even, odd, even, odd);
     }
-    rest.fill(value);
+    rest.fill(even);
 }
