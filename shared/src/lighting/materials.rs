@@ -565,6 +565,20 @@ impl<'a, C: Pixel> MaterialTables<'a, C> {
         (!C::GRAY && self.reflectance.lights() == 2).then_some([TwoLightsRgb(forth, PhantomData), TwoLightsRgb(back, PhantomData)])
     }
 
+    /// The colour under one light from `[N·L, N·H]` (Q2.30).
+    #[inline(always)]
+    #[must_use]
+    pub fn one_light(&self, [cosine, half]: [i32; 2]) -> C {
+        let reflectance = self.reflectance;
+        if !reflectance.three_channels() {
+            return self.tint(reflectance.level([cosine, half]));
+        }
+        match reflectance.highlight(half) {
+            0 if reflectance.has_ramp() => self.tint(reflectance.ramp_level(cosine)),
+            highlight => mixed(reflectance.reflection(cosine, highlight)),
+        }
+    }
+
     /// The colour of three levels, Q9.7, rounded.
     #[inline(always)]
     #[must_use]

@@ -61,11 +61,11 @@ impl Loops for Flat {
         band: &mut Band<'_, C>,
     ) -> Option<u32> {
         let colour = match shading.constant {
-            Some([towards, half]) if !shading.reflectance.three_channels() => {
+            Some([towards, half]) => {
                 let normal = wide(setup.triangle.normal);
-                tables.tint(shading.reflectance.level([vertex_cosine(normal, towards), vertex_cosine(normal, half)]))
+                tables.one_light([vertex_cosine(normal, towards), vertex_cosine(normal, half)])
             }
-            _ => tables.colour(levels(setup.triangle, setup.vertices, shading)),
+            None => tables.colour(levels(setup.triangle, setup.vertices, shading)),
         };
         Some(setup.fill(|| Constant, Solid(colour), band))
     }
