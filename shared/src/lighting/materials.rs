@@ -389,24 +389,37 @@ impl Reflectance {
         levels.map(|level| level.min(FULL))
     }
 
-    /// Levels under lights that are the same everywhere, Q9.7 in [0, 255]: the bits of [`Self::levels`].
+    /// Levels under lights that are the same everywhere, Q9.7 in [0, 255].
     #[inline(never)]
     #[must_use]
     pub fn constant_levels(&self, sources: &[Source], normal: &MeanNormal) -> [i32; 3] {
-        let [mut r, mut g, mut b] = self.ambient;
-        for (source, gains) in sources.iter().zip(&self.gains) {
+        if sources.len() > 2 || self.excess != 0 {
+            return self.many_constant_levels(sources, normal);
+        }
+        let level = |ambient: i32| (ambient << FACTOR) + (1 << (FACTOR - 1));
+        let [r, g, b] = self.ambient;
+        let (mut r, mut g, mut b) = (level(r), level(g), level(b));
+        for (source, [red, green, blue]) in sources.iter().zip(&self.sums) {
             if let Source::Directional { towards, half } = *source {
-                let (diffuse, half) = (normal.cosine(towards), normal.cosine(half));
-                let highlight = self.highlight(half);
-                let ([dr, dg, db], [sr, sg, sb]) = (gains.diffuse, gains.specular);
-                r += reflected((dr, sr), diffuse, highlight);
-                if self.three_channels() {
-                    g += reflected((dg, sg), diffuse, highlight);
-                    b += reflected((db, sb), diffuse, highlight);
-                }
+                let cosine = normal.cosine(towards).max(0) >> (COSINE - FACTOR);
+                let highlight = self.highlight(normal.cosine(half)) as i32;
+                r = r.wrapping_add(red.light(cosine, highlight));
+                g = g.wrapping_add(green.light(cosine, highlight));
+                b = b.wrapping_add(blue.light(cosine, highlight));
             }
         }
-        if self.three_channels() { [r.min(FULL), g.min(FULL), b.min(FULL)] } else { [r.min(FULL); 3] }
+        [(r >> FACTOR).min(FULL), (g >> FACTOR).min(FULL), (b >> FACTOR).min(FULL)]
+    }
+
+    /// [`Self::constant_levels`] of sums that a word does not hold, or of more lights than there are sums for.
+    #[cold]
+    #[inline(never)]
+    fn many_constant_levels(&self, sources: &[Source], normal: &MeanNormal) -> [i32; 3] {
+        let cosines = sources.iter().map(|source| match *source {
+            Source::Directional { towards, half } => [normal.cosine(towards), normal.cosine(half)],
+            Source::Point(_) => [0; 2],
+        });
+        self.levels(cosines)
     }
 
     /// The levels of ambient light, Q9.7.

@@ -140,7 +140,7 @@ impl Sum {
 
     /// What the light adds at a pixel, from a cosine, Q1.15, and a highlight, unsigned Q0.16; Q10.22.
     #[inline(always)]
-    fn light(&self, cosine: i32, highlight: i32) -> i32 {
+    pub(super) fn light(&self, cosine: i32, highlight: i32) -> i32 {
         self.diffuse.wrapping_mul(cosine).wrapping_add(self.specular.wrapping_mul(highlight))
     }
 
