@@ -138,9 +138,39 @@ pub fn rsqrt_wide(x: u64) -> (u32, u32) {
     (rsqrt(m), 30 + (62 - shift.min(62)) / 2)
 }
 
+/// Largest error of [`HalfRsqrt::fine`] relative to its result.
+pub const FINE_ERROR: f64 = 2.25 / (1u64 << 30) as f64;
+
+impl HalfRsqrt {
+    /// Reciprocal square root 1/sqrt(m), Q2.30: from 1/2 to 1. Sooner than [`rsqrt`], for programs that have this table.
+    ///
+    /// Domain: `m` in [1, 4), unsigned Q2.30; less counts as 1. Error: at most [`FINE_ERROR`] relative (tests::fine_error). Source: [`Self::rsqrt`], and a step of the method of Newton, y + y (1 - m y²) / 2.
+    #[inline]
+    #[must_use]
+    pub fn fine(&self, m: u32) -> u32 {
+        let m = m.max(1 << 30);
+        // A quarter of m as Q0.32 has the bits of m.
+        let y = self.rsqrt(m.wrapping_sub(LEAST));
+        // The residual 1 - m y², Q0.32, of which words keep the sign: less than 2^15.
+        let residual = 0u32.wrapping_sub((unsigned_product((unsigned_product(m, y) >> 30) as u32, y) >> 28) as u32) as i32;
+        y.wrapping_add((((y >> 15) as i32).wrapping_mul(residual) >> 18) as u32)
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn fine_error() {
+        let mut worst = 0f64;
+        // Within an interval of the table's positions the error has its extremes at the ends.
+        for m in (1u32 << 30..=u32::MAX).step_by(1_021).chain((1u32 << 19..1 << 21).flat_map(|i| [i << 11, (i << 11) + 2047])) {
+            let exact = 2f64.powi(30) / (f64::from(m) / 2f64.powi(30)).sqrt();
+            worst = worst.max((f64::from(HalfRsqrt::get().fine(m)) / exact - 1.0).abs());
+        }
+        assert!(worst <= FINE_ERROR, "{worst:e}");
+    }
 
     #[test]
     fn error() {

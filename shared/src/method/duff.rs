@@ -18,7 +18,7 @@ use crate::{
     },
     math::{
         highlight_lut::CosineLookup,
-        rsqrt::{HalfRsqrt, LEAST, rsqrt},
+        rsqrt::{HalfRsqrt, LEAST},
         vector::{add, narrow_dot, wide},
     },
     method::{
@@ -216,13 +216,14 @@ impl Root {
     pub fn of(x: u32) -> Self {
         let shift = x.max(1).leading_zeros() & !1;
         // x = m 2^-shift, m in [1, 4): the root's exponent is half of it.
-        Self { mantissa: rsqrt(x << (shift & 31)), shift: shift / 2 }
+        Self { mantissa: HalfRsqrt::get().fine(x << (shift & 31)), shift: shift / 2 }
     }
 
-    /// `value / sqrt(x)`, Q2.30 each; at most 2 by saturation.
+    /// `value / sqrt(x)`, Q2.30 each, rounded down to as many bits as one over the root is below 1; at most 2 by saturation.
     #[inline(always)]
     pub fn divide(self, value: i32) -> i32 {
-        let product = product(value, self.mantissa as i32) >> (30 - self.shift);
-        product.clamp(i32::MIN.into(), i32::MAX.into()) as i32
+        let quotient = (product(value, self.mantissa as i32) >> 30) as i32;
+        let shifted = quotient.wrapping_shl(self.shift);
+        if shifted.wrapping_shr(self.shift) == quotient { shifted } else { i32::MAX ^ (quotient >> 31) }
     }
 }

@@ -145,13 +145,9 @@ impl LightingModel<[u32; 3], [u32; 3]> for Blinn {
 
     fn reflect(&self, _: usize, common: &Common, products: [u32; 3], lut: CosineLookup<'_>) -> Reflection {
         let [nl, vl] = common.light(products);
-        // N·(L + V) / |L + V| with |L + V|² = 2 + 2 L·V: half of either, so that both stay in range.
-        let length = Root::of((1i32 << 30).saturating_add(vl).max(1) as u32);
-        let sum = (((i64::from(nl) + i64::from(common.nv)) >> 1) * SQRT_2) >> 30;
-        let nh = length.divide(sum.clamp(i32::MIN.into(), i32::MAX.into()) as i32);
+        // N·(L + V) / |L + V| with |L + V|² = 2 + 2 L·V: half of the sum over half of its length.
+        let length = Root::of(((1 << 29) + (vl >> 1)).max(1) as u32);
+        let nh = length.divide((nl >> 1) + (common.nv >> 1));
         Reflection { diffuse: common.normal.divide(nl) >> 3, highlight: lut.at(common.normal.divide(nh) >> 3) }
     }
 }
-
-/// Square root of two, Q2.30.
-const SQRT_2: i64 = 1_518_500_250;
