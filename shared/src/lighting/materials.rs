@@ -4,8 +4,8 @@ use crate::{
     arch::{product::unsigned_product, quotient::long},
     format::{BIAS, CHANNEL, COSINE, Intensity, LEVEL, MAX_LIGHTS, PIXEL_COSINE, RAMP, UNIT, WALK},
     lighting::{
+        constant_lights::{FACTOR, LARGEST, OneLightRamp, OneLightRgb, Sum, Sums, TwoLightsRgb},
         lights::{MeanNormal, Source},
-        one_light::{FACTOR, LARGEST, OneLightRamp, OneLightRgb, Sum, Sums, TwoLightsRgb},
     },
     math::{
         highlight_lut::{Base, ENTRY, HighlightLut, square},

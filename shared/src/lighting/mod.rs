@@ -1,5 +1,5 @@
 //! The lights of one frame, and what materials reflect of them.
 
+pub mod constant_lights;
 pub mod lights;
 pub mod materials;
-pub mod one_light;

@@ -11,8 +11,8 @@ use crate::{
         plane::Plane,
     },
     lighting::{
+        constant_lights::{OneLight, OneLightRamp, OneLightRgb, TwoLightsRgb, node},
         materials::MaterialTables,
-        one_light::{OneLight, OneLightRamp, OneLightRgb, TwoLightsRgb, node},
     },
     math::{highlight_lookup, highlight_lookup::QuotientLookup},
     method::{CornerCosines, Shading, TriangleSetup, largest, lighting_model::fitted, two_lights::TwoLights},

@@ -18,8 +18,8 @@ use crate::{
         quadric::Quadric,
     },
     lighting::{
+        constant_lights::{OneLight, OneLightRamp, OneLightRgb, TwoLightsRgb, node},
         materials::{Highlight, MaterialTables, Reflection},
-        one_light::{OneLight, OneLightRamp, OneLightRgb, TwoLightsRgb, node},
     },
     math::{highlight_lookup::DefectLookup, highlight_lut::CosineLookup, rsqrt::sqrt},
     method::{
