@@ -4,7 +4,7 @@ use crate::{
     coverage::sample::Sample,
     format::RAMP,
     geometry::{bin::Entry, projection::ScreenVertex},
-    lighting::materials::Reflectance,
+    lighting::reflectance::Reflectance,
     pixel::Pixel,
     raster::active::ActiveTriangle,
 };

@@ -4,7 +4,7 @@ use crate::{
     Stream,
     error::{MAX_SIDE, RenderError},
     frame::{Frame, Settings},
-    lighting::materials::fill_ramp,
+    lighting::material_tables::fill_ramp,
     memory::{Layout, Memory},
     method::Facts,
     pixel::Pixel,

@@ -13,7 +13,7 @@ use microphong::{
         viewport::Bounds,
     },
     interpolate::{Constant, plane::Plane},
-    lighting::materials::{MaterialTables, Reflectance},
+    lighting::{material_tables::MaterialTables, reflectance::Reflectance},
     method::{
         Uniform,
         sub_triangle::{ScreenSubTriangle, SubTriangle},

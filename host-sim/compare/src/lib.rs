@@ -18,7 +18,7 @@ use embedded_graphics_core::{geometry::Size, pixelcolor::Rgb888};
 use figures::Spread;
 use microphong::{
     Stream,
-    lighting::materials::Reflectance,
+    lighting::reflectance::Reflectance,
     method::{Costs, Highlight},
     renderer::check,
 };

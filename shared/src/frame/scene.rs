@@ -9,10 +9,7 @@ use crate::{
         projection::{ScreenVertex, View},
         viewport::Viewport,
     },
-    lighting::{
-        lights::Lighting,
-        materials::{MaterialTables, Reflectance},
-    },
+    lighting::{lights::Lighting, material_tables::MaterialTables, reflectance::Reflectance},
     mesh::{MeshPass, vertices::VertexStage},
     method::{Shading, Style},
     pixel::Pixel,

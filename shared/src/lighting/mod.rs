@@ -2,4 +2,5 @@
 
 pub mod constant_lights;
 pub mod lights;
-pub mod materials;
+pub mod material_tables;
+pub mod reflectance;

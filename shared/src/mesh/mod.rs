@@ -13,7 +13,7 @@ use crate::{
         projection::{ScreenVertex, State},
         viewport::{Bounds, Viewport},
     },
-    lighting::materials::MaterialTables,
+    lighting::material_tables::MaterialTables,
     mesh::vertices::VertexStage,
     method::{General, Loops, Method, Shading, TriangleSetup},
     pixel::Pixel,

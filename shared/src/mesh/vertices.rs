@@ -8,7 +8,7 @@ use crate::{
     },
     lighting::{
         lights::{Lighting, MeanNormal, point, vertex_cosine},
-        materials::Reflectance,
+        reflectance::Reflectance,
     },
     math::vector::wide,
     method::VertexLight,

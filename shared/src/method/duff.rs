@@ -12,10 +12,7 @@ use crate::{
     arch::product::{product, upper},
     format::{HAVERSINE, NORMAL_LENGTH, UNIT},
     interpolate::field::{Field, Nodes},
-    lighting::{
-        lights::Source,
-        materials::{MaterialTables, Reflection},
-    },
+    lighting::{lights::Source, material_tables::MaterialTables, reflectance::Reflection},
     math::{
         highlight_lut::CosineLookup,
         rsqrt::{HalfRsqrt, LEAST},

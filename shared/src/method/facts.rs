@@ -1,6 +1,6 @@
 //! The facts about a shading method.
 
-use crate::lighting::materials::Highlight;
+use crate::lighting::reflectance::Highlight;
 
 /// The facts about a method, which stand in its own file.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -7,7 +7,8 @@ use crate::{
     interpolate::Constant,
     lighting::{
         lights::{MeanNormal, point, vertex_cosine},
-        materials::{Highlight, MaterialTables},
+        material_tables::MaterialTables,
+        reflectance::Highlight,
     },
     math::vector::{add, wide},
     method::{Costs, Facts, Loops, Method, Shading, Style, TriangleSetup, Uniform, VertexLight, node::Node, of_levels},

@@ -7,7 +7,10 @@
 use crate::{
     geometry::projection::ScreenVertex,
     interpolate::{field::Field, plane::Plane},
-    lighting::materials::{Highlight, MaterialTables, Reflectance},
+    lighting::{
+        material_tables::MaterialTables,
+        reflectance::{Highlight, Reflectance},
+    },
     method::{Costs, Facts, Loops, Method, RANGE, Shading, Style, ThreeChannels, TriangleSetup, VertexLight, level_field},
     pixel::Pixel,
     raster::{band::Band, canvas::Canvas, pixel_shader::Ramp},

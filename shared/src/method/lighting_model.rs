@@ -9,7 +9,7 @@ use crate::{
     },
     lighting::{
         lights::{Source, cosine},
-        materials::{Factors, Reflectance, Reflection},
+        reflectance::{Factors, Reflectance, Reflection},
     },
     math::highlight_lut::CosineLookup,
     method::{Shading, TriangleSetup, node::Node},

@@ -25,7 +25,7 @@ use crate::{
     arch::product::by_fraction,
     format::{BIAS, CHANNEL, LEVEL, NORMAL_LENGTH, SUBPIXEL, WALK},
     interpolate::perspective::PerspectivePatch,
-    lighting::materials::MaterialTables,
+    lighting::material_tables::MaterialTables,
     pixel::Pixel,
     raster::{
         active::ActiveTriangle,
@@ -47,7 +47,7 @@ pub use crate::{
     },
     lighting::{
         lights::{Lighting, Source, Viewer, cosine, point},
-        materials::{Highlight, Reflectance, Reflection},
+        reflectance::{Highlight, Reflectance, Reflection},
     },
     math::highlight_lut::CosineLookup,
     raster::canvas::{Canvas, IntensityShader},

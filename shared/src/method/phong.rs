@@ -11,7 +11,8 @@ use crate::{
     format::COSINE,
     lighting::{
         lights::{Source, Viewer, point},
-        materials::{Highlight, MaterialTables, Reflection},
+        material_tables::MaterialTables,
+        reflectance::{Highlight, Reflection},
     },
     math::{
         highlight_lut::CosineLookup,

@@ -12,7 +12,7 @@ use crate::{
     },
     lighting::{
         constant_lights::{OneLight, OneLightRamp, OneLightRgb, TwoLightsRgb, node},
-        materials::MaterialTables,
+        material_tables::MaterialTables,
     },
     math::{highlight_lookup, highlight_lookup::QuotientLookup},
     method::{CornerCosines, Shading, TriangleSetup, largest, lighting_model::fitted, two_lights::TwoLights},

@@ -11,7 +11,7 @@
 use crate::{
     arch::product::upper,
     format::INVERSE_SUM_LENGTH,
-    lighting::materials::Reflection,
+    lighting::reflectance::Reflection,
     math::highlight_lut::CosineLookup,
     method::{
         TriangleSetup,

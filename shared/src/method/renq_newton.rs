@@ -10,7 +10,10 @@
 use crate::{
     arch::product::upper,
     format::NORMAL_LENGTH,
-    lighting::materials::{Highlight, MaterialTables, Reflection},
+    lighting::{
+        material_tables::MaterialTables,
+        reflectance::{Highlight, Reflection},
+    },
     math::highlight_lut::CosineLookup,
     method::{
         Costs, Facts, Loops, Method, Shading, Style, TriangleSetup, VertexLight, duff,

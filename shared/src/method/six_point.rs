@@ -7,7 +7,7 @@
 
 use crate::{
     interpolate::by_column::ByColumn,
-    lighting::materials::{Highlight, MaterialTables},
+    lighting::{material_tables::MaterialTables, reflectance::Highlight},
     method::{Costs, Facts, Loops, Method, RANGE, Shading, Style, TriangleSetup, VertexLight, node::map_six},
     pixel::Pixel,
     raster::{band::Band, canvas::Canvas},

@@ -19,7 +19,8 @@ use crate::{
     },
     lighting::{
         constant_lights::{OneLight, OneLightRamp, OneLightRgb, TwoLightsRgb, node},
-        materials::{Highlight, MaterialTables, Reflection},
+        material_tables::MaterialTables,
+        reflectance::{Highlight, Reflection},
     },
     math::{highlight_lookup::DefectLookup, highlight_lut::CosineLookup, rsqrt::sqrt},
     method::{

@@ -1,7 +1,7 @@
 //! Two constant lights on a triangle in three channels, for the loops of methods.
 
 use crate::{
-    lighting::{constant_lights::TwoLightsRgb, materials::MaterialTables},
+    lighting::{constant_lights::TwoLightsRgb, material_tables::MaterialTables},
     method::{CornerCosines, Shading, TriangleSetup, largest},
     pixel::Pixel,
 };

@@ -11,7 +11,7 @@ use crate::{
     coverage::sample::Layer,
     format::Intensity,
     interpolate::{Patch, Walker, plane::Linear},
-    lighting::materials::MaterialTables,
+    lighting::material_tables::MaterialTables,
     pixel::{Pixel, dither::threshold},
     raster::band::{Band, Blend},
 };

@@ -1,10 +1,10 @@
-//! What a material reflects of the lights of a scene, computed once: [`Reflectance`] in levels, [`MaterialTables`] in colours.
+//! What a material reflects of the lights of a scene, in levels, computed once.
 
 use crate::{
     arch::{product::unsigned_product, quotient::long},
-    format::{BIAS, CHANNEL, COSINE, Intensity, LEVEL, MAX_LIGHTS, PIXEL_COSINE, RAMP, UNIT, WALK},
+    format::{BIAS, CHANNEL, COSINE, Intensity, LEVEL, MAX_LIGHTS, PIXEL_COSINE, UNIT},
     lighting::{
-        constant_lights::{FACTOR, LARGEST, OneLightRamp, OneLightRgb, Sum, Sums, TwoLightsRgb},
+        constant_lights::{FACTOR, LARGEST, Sum, Sums},
         lights::{MeanNormal, Source},
     },
     math::{
@@ -14,7 +14,6 @@ use crate::{
     pixel::{Pixel, dither::quantise},
     stream::record::{Header, Light, Material},
 };
-use core::marker::PhantomData;
 use zerocopy::{FromBytes, Immutable, IntoBytes, KnownLayout};
 
 /// Largest level of a node, Q9.7.
@@ -57,7 +56,7 @@ impl Highlight {
 #[derive(FromBytes, IntoBytes, Immutable, KnownLayout, Clone, Copy, Debug)]
 #[repr(C)]
 pub struct Gains {
-    diffuse: [u16; 3],
+    pub(super) diffuse: [u16; 3],
     specular: [u16; 3],
 }
 
@@ -112,21 +111,21 @@ pub struct Reflectance {
     /// The lookup table of highlights.
     pub highlight_lut: HighlightLut,
     /// The levels of ambient light, Q9.7.
-    ambient: [i32; 3],
+    pub(super) ambient: [i32; 3],
     highlight_threshold: i32,
     /// Bits of each channel of the pixel format.
     depth: [u32; 3],
-    gains: [Gains; MAX_LIGHTS],
+    pub(super) gains: [Gains; MAX_LIGHTS],
     /// Bits by which the sum of all lights may leave Q10.22, at most 5.
     excess: u32,
     /// For [`OneLightRgb`], of the first two lights, and of the first one again: two neighbours are both lights in either order.
-    sums: [Sums; 3],
+    pub(super) sums: [Sums; 3],
     /// See [`Self::ambient_sums`].
     ambient_sums: [i32; 3],
     /// Levels without diffuse light, and of diffuse light at cosine 1, in the channel by whose level the table of colours is indexed, Q9.7.
-    ramp: [i32; 2],
+    pub(super) ramp: [i32; 2],
     /// Channels at full level for dither, Q0.8 scaled to the output's depth.
-    base: [u16; 3],
+    pub(super) base: [u16; 3],
     /// Not 0 if [`Self::three_channels`].
     three_channels: u8,
     /// Not 0 if [`Self::has_ramp`].
@@ -136,24 +135,6 @@ pub struct Reflectance {
     /// Makes the size a multiple of words.
     unused: [u8; 3],
 }
-
-/// A material in the colours of a pixel format.
-#[derive(Debug)]
-pub struct MaterialTables<'a, C: Pixel> {
-    /// Colour of each level of a material of one channel. In three channels under one light, if [`Reflectance::has_ramp`], the colours
-    /// without a highlight, by the level of the channel that has most diffuse light.
-    pub ramp: &'a [C::Stored; RAMP],
-    /// What the material reflects, in levels.
-    pub reflectance: &'a Reflectance,
-}
-
-impl<C: Pixel> Clone for MaterialTables<'_, C> {
-    fn clone(&self) -> Self {
-        *self
-    }
-}
-
-impl<C: Pixel> Copy for MaterialTables<'_, C> {}
 
 /// A colour as products of gains, Q4.28.
 type Colour = [u32; 3];
@@ -474,7 +455,7 @@ impl Reflectance {
     }
 
     /// A level, Q9.7, with bias and rounding half of the ramp's index.
-    fn biased(level: i32) -> u32 {
+    pub(super) fn biased(level: i32) -> u32 {
         (level + (BIAS << LEVEL) + (1 << (LEVEL - 1))) as u32
     }
 
@@ -510,121 +491,6 @@ fn diffuse_level([ambient, diffuse]: [i32; 2], cosine: i32) -> i32 {
     ((base + diffuse as u32 * (cosine.max(0) as u32 >> (COSINE - 15))) >> 15) as i32
 }
 
-/// The colour of three levels, Q9.7, rounded.
-#[inline(always)]
-fn mixed<C: Pixel>(levels: [i32; 3]) -> C {
-    C::mixed(zip(levels, C::DEPTH, |level, depth| (level + (1 << (LEVEL + 7 - depth))) << (CHANNEL - LEVEL)))
-}
-
-/// Fills the table of colours of a material.
-pub fn fill_ramp<C: Pixel>(ramp: &mut [C::Stored; RAMP], reflectance: &Reflectance) {
-    if reflectance.three_channels() {
-        // Nobody looks at it then, and products might overflow.
-        if !reflectance.has_ramp() {
-            return;
-        }
-        let ([least, most], [gains, ..]) = (reflectance.ramp, &reflectance.gains);
-        for (i, stored) in ramp.iter_mut().enumerate() {
-            let more = ((i as i32 - BIAS) << LEVEL) - least;
-            // By the share of each channel in the one that has most.
-            let share = |level, diffuse: u16| level + (more * i32::from(diffuse)).checked_div(most).unwrap_or(0);
-            *stored = mixed::<C>(zip(reflectance.ambient, gains.diffuse, share)).stored();
-        }
-        return;
-    }
-    for (i, stored) in ramp.iter_mut().enumerate() {
-        let level = (i as i32 - BIAS).clamp(0, 255) as u32;
-        let mut channels = [0; 3];
-        for (channel, (base, depth)) in channels.iter_mut().zip(reflectance.base.into_iter().zip(C::DEPTH)) {
-            let step = 1 << (16 - depth);
-            *channel = ((level * u32::from(base) + step / 2) / step).min((1 << depth) - 1);
-        }
-        *stored = C::pack(channels).stored();
-    }
-}
-
-impl<'a, C: Pixel> MaterialTables<'a, C> {
-    /// The table of colours with the only light's gain, if the table of highlights holds levels.
-    #[inline(always)]
-    #[must_use]
-    pub fn one_light_ramp(&self) -> Option<OneLightRamp<'a, C>> {
-        let Reflectance { ramp: [_, diffuse], highlight_lut, .. } = self.reflectance;
-        let Self { ramp, .. } = *self;
-        self.reflectance.holds_levels().then(|| OneLightRamp { ramp, diffuse: *diffuse as u16, floor: highlight_lut.least() })
-    }
-
-    /// The table of colours of a triangle in three channels under the only light, where that has no highlight; `None` unless
-    /// [`Reflectance::has_ramp`].
-    #[inline(always)]
-    #[must_use]
-    pub fn diffuse_ramp(&self) -> Option<OneLightRamp<'a, C>> {
-        let (Self { ramp, .. }, [ambient, diffuse]) = (*self, self.reflectance.ramp);
-        self.reflectance.has_ramp().then(|| OneLightRamp { ramp, diffuse: diffuse as u16, floor: Reflectance::biased(ambient) })
-    }
-
-    /// The sums of three channels under the only light, if the material has three. Domain: [`Reflectance::lights`] is 1.
-    #[inline(always)]
-    #[must_use]
-    pub fn one_light_rgb(&self) -> Option<OneLightRgb<'a, C>> {
-        let [sums, ..] = &self.reflectance.sums;
-        (!C::GRAY && self.reflectance.three_channels()).then_some(OneLightRgb(sums, PhantomData))
-    }
-
-    /// The sums of three channels under two lights in the order of the stream, and in the other, if [`Reflectance::lights`] is 2.
-    #[inline(always)]
-    #[must_use]
-    pub fn two_lights_rgb(&self) -> Option<[TwoLightsRgb<'a, C>; 2]> {
-        let (forth, back) = (self.reflectance.sums.first_chunk()?, self.reflectance.sums.last_chunk()?);
-        (!C::GRAY && self.reflectance.lights() == 2).then_some([TwoLightsRgb(forth, PhantomData), TwoLightsRgb(back, PhantomData)])
-    }
-
-    /// The colour under one light from `[N·L, N·H]` (Q2.30).
-    #[inline(always)]
-    #[must_use]
-    pub fn one_light(&self, [cosine, half]: [i32; 2]) -> C {
-        let reflectance = self.reflectance;
-        if !reflectance.three_channels() {
-            return self.tint(reflectance.level([cosine, half]));
-        }
-        match reflectance.highlight(half) {
-            0 if reflectance.has_ramp() => self.tint(reflectance.ramp_level(cosine)),
-            highlight => mixed(reflectance.reflection(cosine, highlight)),
-        }
-    }
-
-    /// The colour of three levels, Q9.7, rounded.
-    #[inline(always)]
-    #[must_use]
-    pub fn colour(&self, levels: [i32; 3]) -> C {
-        if !self.reflectance.three_channels() {
-            return self.tint(levels[0]);
-        }
-        mixed(levels)
-    }
-
-    /// The colour of a level, Q9.7, of a material of one channel, rounded.
-    #[inline(always)]
-    #[must_use]
-    pub fn tint(&self, level: i32) -> C {
-        C::ramped::<WALK>(self.ramp, Reflectance::biased(level) << (WALK - LEVEL))
-    }
-
-    /// The colour of an intensity, rounded.
-    #[inline]
-    #[must_use]
-    pub fn shown(&self, intensity: Intensity) -> C {
-        let [level, ..] = intensity;
-        if self.reflectance.three_channels() { C::rounded(intensity) } else { self.tint(level >> 1) }
-    }
-
-    /// The colour of an intensity, with a [`crate::pixel::dither::threshold`] in place of rounding.
-    #[inline]
-    #[must_use]
-    pub fn dithered(&self, intensity: Intensity, threshold: u32) -> C {
-        C::pack(self.reflectance.dithered(intensity, threshold).map(u32::from))
-    }
-}
-
 /// The light that is reflected at a pixel, before the gains of the material.
 #[derive(Clone, Copy, Debug)]
 pub struct Reflection {
@@ -656,46 +522,4 @@ fn share(channel: u32, whole: u32, depth: u32) -> u16 {
 fn level(product: u32, depth: u32) -> u16 {
     let full = ((1u64 << depth) - 1) << (8 - depth + LEVEL);
     ((u64::from(product) * full + (1 << (2 * UNIT - 1))) >> (2 * UNIT)).min(u64::from(u16::MAX)) as u16
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use embedded_graphics_core::pixelcolor::{Rgb565, Rgb888};
-    use proptest::prelude::*;
-    use zerocopy::FromZeros;
-
-    /// The reflectance of a material under one light in the pixel format `C`.
-    fn reflectance<C: Pixel>(material: &Material, colour: [u16; 3]) -> Reflectance {
-        let (mut reflectance, mut header) = (Reflectance::EMPTY, Header::new_zeroed());
-        header.ambient = [1 << UNIT; 3];
-        reflectance.fill::<C>(&header, material, &[Light { colour, ..Light::new_zeroed() }], (Highlight::Half, false));
-        reflectance
-    }
-
-    proptest! {
-        #![proptest_config(ProptestConfig::with_cases(500))]
-        /// Without a highlight, the table of colours has the colour of three channels, or its neighbour.
-        #[test]
-        fn colours_without_a_highlight_lie_on_a_line(
-            ambient in prop::array::uniform3(0u16..1 << 13),
-            diffuse in prop::array::uniform3(0u16..1 << 13),
-            light in prop::array::uniform3(0u16..1 << UNIT),
-        ) {
-            let material = Material { ambient, diffuse, specular: [1 << 13; 3], exponent: 30 };
-            prop_assert!(!reflectance::<Rgb888>(&material, light).has_ramp() || !reflectance::<Rgb888>(&material, light).three_channels());
-            let reflectance = reflectance::<Rgb565>(&material, light);
-            prop_assume!(reflectance.three_channels());
-            prop_assert!(reflectance.has_ramp());
-            let mut ramp = [0; RAMP];
-            fill_ramp::<Rgb565>(&mut ramp, &reflectance);
-            let tables = MaterialTables::<Rgb565> { ramp: &ramp, reflectance: &reflectance };
-            for cosine in (-4..=64).map(|c| c << (COSINE - 6)) {
-                let exact = tables.colour(reflectance.reflection(cosine, 0)).channels();
-                let tabled = tables.tint(reflectance.ramp_level(cosine)).channels();
-                let differences = zip(exact, tabled, u8::abs_diff);
-                prop_assert!(largest(differences.map(u32::from)) <= 1, "{cosine}: {exact:?} {tabled:?}");
-            }
-        }
-    }
 }

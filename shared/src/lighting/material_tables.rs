@@ -1,0 +1,191 @@
+//! A material in the colours of a pixel format, computed once.
+
+use crate::{
+    format::{BIAS, CHANNEL, Intensity, LEVEL, RAMP, WALK},
+    lighting::{
+        constant_lights::{OneLightRamp, OneLightRgb, TwoLightsRgb},
+        reflectance::Reflectance,
+    },
+    math::vector::zip,
+    pixel::Pixel,
+};
+use core::marker::PhantomData;
+
+/// A material in the colours of a pixel format.
+#[derive(Debug)]
+pub struct MaterialTables<'a, C: Pixel> {
+    /// Colour of each level of a material of one channel. In three channels under one light, if [`Reflectance::has_ramp`], the colours
+    /// without a highlight, by the level of the channel that has most diffuse light.
+    pub ramp: &'a [C::Stored; RAMP],
+    /// What the material reflects, in levels.
+    pub reflectance: &'a Reflectance,
+}
+
+impl<C: Pixel> Clone for MaterialTables<'_, C> {
+    fn clone(&self) -> Self {
+        *self
+    }
+}
+
+impl<C: Pixel> Copy for MaterialTables<'_, C> {}
+
+/// The colour of three levels, Q9.7, rounded.
+#[inline(always)]
+fn mixed<C: Pixel>(levels: [i32; 3]) -> C {
+    C::mixed(zip(levels, C::DEPTH, |level, depth| (level + (1 << (LEVEL + 7 - depth))) << (CHANNEL - LEVEL)))
+}
+
+/// Fills the table of colours of a material.
+pub fn fill_ramp<C: Pixel>(ramp: &mut [C::Stored; RAMP], reflectance: &Reflectance) {
+    if reflectance.three_channels() {
+        // Nobody looks at it then, and products might overflow.
+        if !reflectance.has_ramp() {
+            return;
+        }
+        let ([least, most], [gains, ..]) = (reflectance.ramp, &reflectance.gains);
+        for (i, stored) in ramp.iter_mut().enumerate() {
+            let more = ((i as i32 - BIAS) << LEVEL) - least;
+            // By the share of each channel in the one that has most.
+            let share = |level, diffuse: u16| level + (more * i32::from(diffuse)).checked_div(most).unwrap_or(0);
+            *stored = mixed::<C>(zip(reflectance.ambient, gains.diffuse, share)).stored();
+        }
+        return;
+    }
+    for (i, stored) in ramp.iter_mut().enumerate() {
+        let level = (i as i32 - BIAS).clamp(0, 255) as u32;
+        let mut channels = [0; 3];
+        for (channel, (base, depth)) in channels.iter_mut().zip(reflectance.base.into_iter().zip(C::DEPTH)) {
+            let step = 1 << (16 - depth);
+            *channel = ((level * u32::from(base) + step / 2) / step).min((1 << depth) - 1);
+        }
+        *stored = C::pack(channels).stored();
+    }
+}
+
+impl<'a, C: Pixel> MaterialTables<'a, C> {
+    /// The table of colours with the only light's gain, if the table of highlights holds levels.
+    #[inline(always)]
+    #[must_use]
+    pub fn one_light_ramp(&self) -> Option<OneLightRamp<'a, C>> {
+        let Reflectance { ramp: [_, diffuse], highlight_lut, .. } = self.reflectance;
+        let Self { ramp, .. } = *self;
+        self.reflectance.holds_levels().then(|| OneLightRamp { ramp, diffuse: *diffuse as u16, floor: highlight_lut.least() })
+    }
+
+    /// The table of colours of a triangle in three channels under the only light, where that has no highlight; `None` unless
+    /// [`Reflectance::has_ramp`].
+    #[inline(always)]
+    #[must_use]
+    pub fn diffuse_ramp(&self) -> Option<OneLightRamp<'a, C>> {
+        let (Self { ramp, .. }, [ambient, diffuse]) = (*self, self.reflectance.ramp);
+        self.reflectance.has_ramp().then(|| OneLightRamp { ramp, diffuse: diffuse as u16, floor: Reflectance::biased(ambient) })
+    }
+
+    /// The sums of three channels under the only light, if the material has three. Domain: [`Reflectance::lights`] is 1.
+    #[inline(always)]
+    #[must_use]
+    pub fn one_light_rgb(&self) -> Option<OneLightRgb<'a, C>> {
+        let [sums, ..] = &self.reflectance.sums;
+        (!C::GRAY && self.reflectance.three_channels()).then_some(OneLightRgb(sums, PhantomData))
+    }
+
+    /// The sums of three channels under two lights in the order of the stream, and in the other, if [`Reflectance::lights`] is 2.
+    #[inline(always)]
+    #[must_use]
+    pub fn two_lights_rgb(&self) -> Option<[TwoLightsRgb<'a, C>; 2]> {
+        let (forth, back) = (self.reflectance.sums.first_chunk()?, self.reflectance.sums.last_chunk()?);
+        (!C::GRAY && self.reflectance.lights() == 2).then_some([TwoLightsRgb(forth, PhantomData), TwoLightsRgb(back, PhantomData)])
+    }
+
+    /// The colour under one light from `[N·L, N·H]` (Q2.30).
+    #[inline(always)]
+    #[must_use]
+    pub fn one_light(&self, [cosine, half]: [i32; 2]) -> C {
+        let reflectance = self.reflectance;
+        if !reflectance.three_channels() {
+            return self.tint(reflectance.level([cosine, half]));
+        }
+        match reflectance.highlight(half) {
+            0 if reflectance.has_ramp() => self.tint(reflectance.ramp_level(cosine)),
+            highlight => mixed(reflectance.reflection(cosine, highlight)),
+        }
+    }
+
+    /// The colour of three levels, Q9.7, rounded.
+    #[inline(always)]
+    #[must_use]
+    pub fn colour(&self, levels: [i32; 3]) -> C {
+        if !self.reflectance.three_channels() {
+            return self.tint(levels[0]);
+        }
+        mixed(levels)
+    }
+
+    /// The colour of a level, Q9.7, of a material of one channel, rounded.
+    #[inline(always)]
+    #[must_use]
+    pub fn tint(&self, level: i32) -> C {
+        C::ramped::<WALK>(self.ramp, Reflectance::biased(level) << (WALK - LEVEL))
+    }
+
+    /// The colour of an intensity, rounded.
+    #[inline]
+    #[must_use]
+    pub fn shown(&self, intensity: Intensity) -> C {
+        let [level, ..] = intensity;
+        if self.reflectance.three_channels() { C::rounded(intensity) } else { self.tint(level >> 1) }
+    }
+
+    /// The colour of an intensity, with a [`crate::pixel::dither::threshold`] in place of rounding.
+    #[inline]
+    #[must_use]
+    pub fn dithered(&self, intensity: Intensity, threshold: u32) -> C {
+        C::pack(self.reflectance.dithered(intensity, threshold).map(u32::from))
+    }
+}
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{
+        format::{COSINE, UNIT},
+        lighting::reflectance::Highlight,
+        stream::record::{Header, Light, Material},
+    };
+    use embedded_graphics_core::pixelcolor::{Rgb565, Rgb888};
+    use proptest::prelude::*;
+    use zerocopy::FromZeros;
+
+    /// The reflectance of a material under one light in the pixel format `C`.
+    fn reflectance<C: Pixel>(material: &Material, colour: [u16; 3]) -> Reflectance {
+        let (mut reflectance, mut header) = (Reflectance::EMPTY, Header::new_zeroed());
+        header.ambient = [1 << UNIT; 3];
+        reflectance.fill::<C>(&header, material, &[Light { colour, ..Light::new_zeroed() }], (Highlight::Half, false));
+        reflectance
+    }
+
+    proptest! {
+        #![proptest_config(ProptestConfig::with_cases(500))]
+        /// Without a highlight, the table of colours has the colour of three channels, or its neighbour.
+        #[test]
+        fn colours_without_a_highlight_lie_on_a_line(
+            ambient in prop::array::uniform3(0u16..1 << 13),
+            diffuse in prop::array::uniform3(0u16..1 << 13),
+            light in prop::array::uniform3(0u16..1 << UNIT),
+        ) {
+            let material = Material { ambient, diffuse, specular: [1 << 13; 3], exponent: 30 };
+            prop_assert!(!reflectance::<Rgb888>(&material, light).has_ramp() || !reflectance::<Rgb888>(&material, light).three_channels());
+            let reflectance = reflectance::<Rgb565>(&material, light);
+            prop_assume!(reflectance.three_channels());
+            prop_assert!(reflectance.has_ramp());
+            let mut ramp = [0; RAMP];
+            fill_ramp::<Rgb565>(&mut ramp, &reflectance);
+            let tables = MaterialTables::<Rgb565> { ramp: &ramp, reflectance: &reflectance };
+            for cosine in (-4..=64).map(|c| c << (COSINE - 6)) {
+                let exact = tables.colour(reflectance.reflection(cosine, 0)).channels();
+                let tabled = tables.tint(reflectance.ramp_level(cosine)).channels();
+                let differences = zip(exact, tabled, u8::abs_diff);
+                prop_assert!(differences.into_iter().all(|difference| difference <= 1), "{cosine}: {exact:?} {tabled:?}");
+            }
+        }
+    }
+}
