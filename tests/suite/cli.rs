@@ -368,7 +368,6 @@ fn wrong_usage_is_told_from_failure() {
     place.fails(&["convert", "good.obj", "-o", "good.obj"], 2, &["overwrite"]);
     place.fails(&["verify", "--board", "uno"], 2, &["uno", "pico"]);
     place.fails(&["verify", "--board", "pico", "--scene", "none"], 2, &["none", "teapot"]);
-    place.fails(&["bench", "triangle", "--peers"], 2, &["peer-sphere"]);
     place.fails(&["bench", "--renew", "costs.csv"], 2, &["--reason <TEXT>"]);
     place.fails(&["bench", "--renew", "costs.csv", "--reason", " "], 2, &["--reason", "a reason is needed"]);
     place.fails(&["bench", "--reason", "none"], 2, &["--renew <FILE>"]);

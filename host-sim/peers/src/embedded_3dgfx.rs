@@ -1,10 +1,12 @@
-//! [embedded-3dgfx](https://crates.io/crates/embedded-3dgfx): Lambert's light without highlights, corners on whole pixels.
+//! [embedded-3dgfx](https://crates.io/crates/embedded-3dgfx): one directional light, highlights on whole triangles alone, corners on whole
+//! pixels.
 
-use crate::{HEIGHT, Picture, WIDTH, scene::Scene};
+use crate::{Drawing, HEIGHT, Picture, WIDTH, scene::Scene};
 use alloc::{boxed::Box, vec};
 use core::convert::Infallible;
 use embedded_3dgfx::{
     Z_MAX_VALUE,
+    config::MaterialProfile,
     engine::K3dengine,
     pipeline::{
         command_buffer::CommandBuffer,
@@ -21,57 +23,66 @@ use embedded_graphics_core::{
 use nalgebra::{Point3, Vector3};
 
 /// One colour a triangle.
-pub(crate) fn flat(scene: &Scene) -> impl FnMut(&mut Picture) {
+pub(crate) fn flat(scene: &Scene) -> Drawing<'_> {
     drawing(scene, RenderMode::SolidLightDir(light(scene)))
 }
 
+/// One colour a triangle, with a highlight, which is white, and seen from where the eye is.
+pub(crate) fn flat_blinn_phong(scene: &Scene) -> Drawing<'_> {
+    let [_, specular_intensity, _] = scene.lights.first().map_or([0.0; 3], |light| light.specular);
+    drawing(scene, RenderMode::BlinnPhong { light_dir: light(scene), specular_intensity, shininess: scene.exponent.into() })
+}
+
 /// Light is worked out at the vertices.
-pub(crate) fn gouraud(scene: &Scene) -> impl FnMut(&mut Picture) {
+pub(crate) fn gouraud(scene: &Scene) -> Drawing<'_> {
     drawing(scene, RenderMode::GouraudLightDir(light(scene)))
 }
 
 /// It turns z round.
 fn light(scene: &Scene) -> Vector3<f32> {
-    let [x, y, z] = scene.towards;
+    let [x, y, z] = scene.lights.first().map_or([0.0; 3], |light| light.towards);
     Vector3::new(x, y, -z)
 }
 
 /// Room for the triangles of a frame.
-type Commands = CommandBuffer<1024>;
+type Commands = CommandBuffer<2048>;
 
-fn drawing(scene: &Scene, mode: RenderMode) -> impl FnMut(&mut Picture) {
+/// Its depth is f + 2n - 2fn/d at the distance d, between the distances n and f, rounded to whole numbers and never below zero: from 2n on it
+/// is of use.
+const FAR: f32 = 60_000.0;
+
+fn drawing(scene: &Scene, mode: RenderMode) -> Drawing<'_> {
+    let [x, y, z] = scene.eye;
     let mut engine = K3dengine::new(WIDTH as u16, HEIGHT as u16);
     // Whoever clears is not counted.
     engine.set_depth_clear_enabled(false);
-    engine.camera.set_position(eye(scene).into());
-    engine.camera.set_target(Point3::origin());
+    // Or there are no highlights.
+    engine.set_material_profile(MaterialProfile::SimpleSpecular);
+    engine.camera.set_position(Point3::new(x, y, z));
+    engine.camera.set_target(Point3::new(x, y, z - 1.0));
     engine.camera.set_fovy(2.0 * libm::atanf(1.0 / scene.focal));
+    engine.camera.set_near_far((z - scene.radius).max(scene.near) / 2.0, FAR);
 
     let geometry = Geometry::new(&scene.positions, &scene.faces).with_normals(&scene.face_normals).with_vertex_normals(&scene.normals);
     let mut mesh = K3dMesh::new(geometry);
-    mesh.set_color(grey(scene.surface.ambient + scene.surface.diffuse));
+    mesh.set_color(colour(scene));
     mesh.set_render_mode(mode);
 
     let mut commands = Box::new(Commands::new());
     let mut depth = vec![Z_MAX_VALUE; WIDTH * HEIGHT];
-    move |picture| {
+    Box::new(move |picture| {
         let mut frame = FrameCtx { zbuffer: &mut depth, width: WIDTH, height: HEIGHT };
         let drawn =
             engine.record([&mesh], &mut commands, None).and_then(|()| engine.execute(&mut Target(picture), &mut frame, &commands, None));
         drawn.expect("the buffers are large enough");
-    }
+    })
 }
 
-/// Where the camera is in object space.
-fn eye(scene: &Scene) -> [f32; 3] {
-    let column = |i: usize| -scene.rotation.iter().zip(scene.translation).map(|(row, t)| row[i] * t).sum::<f32>();
-    [0, 1, 2].map(column)
-}
-
-/// The colour of this share of full light.
-fn grey(share: f32) -> Rgb565 {
-    let level = |max: u8| (share * f32::from(max)) as u8;
-    Rgb565::new(level(Rgb565::MAX_R), level(Rgb565::MAX_G), level(Rgb565::MAX_B))
+/// What a face shows that is turned to the first light; a tenth of it is its ambient light.
+fn colour(scene: &Scene) -> Rgb565 {
+    let diffuse = scene.lights.first().map_or([0.0; 3], |light| light.diffuse);
+    let level = |channel: usize, max: u8| ((scene.ambient[channel] + diffuse[channel]).min(1.0) * f32::from(max)) as u8;
+    Rgb565::new(level(0, Rgb565::MAX_R), level(1, Rgb565::MAX_G), level(2, Rgb565::MAX_B))
 }
 
 /// Pixels in memory.

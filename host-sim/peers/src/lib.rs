@@ -1,4 +1,4 @@
-//! Other renderers draw the frame `peer-sphere`, each in the way that its documentation shows, for `microphong bench --peers`.
+//! Other renderers draw frames of microphong, each in the way that its documentation shows, for `microphong bench --peers`.
 //!
 //! Only [`counted_frame`] is counted: all that a renderer does for a frame but clearing. What stays the same from frame to frame is
 //! converted before: meshes, matrices, the light's direction.
@@ -12,6 +12,7 @@ pub mod scene;
 
 use alloc::boxed::Box;
 use core::hint::black_box;
+use retrofire::Shading;
 use scene::Scene;
 
 /// Columns of the picture.
@@ -22,6 +23,9 @@ pub const HEIGHT: usize = 240;
 /// Pixels from the top left on, row by row, as RGB565.
 pub type Picture = [u16; WIDTH * HEIGHT];
 
+/// Draws a frame on black: once, as depth is not cleared again.
+pub type Drawing<'s> = Box<dyn FnMut(&mut Picture) + 's>;
+
 /// A renderer and its way to shade.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Peer {
@@ -31,13 +35,21 @@ pub enum Peer {
     RetrofirePhong,
     /// One colour a triangle, `RenderMode::SolidLightDir`.
     Embedded3dgfxFlat,
+    /// One colour a triangle, `RenderMode::BlinnPhong`.
+    Embedded3dgfxFlatBlinnPhong,
     /// Light at the vertices, `RenderMode::GouraudLightDir`.
     Embedded3dgfxGouraud,
 }
 
 impl Peer {
     /// All of them.
-    pub const ALL: [Self; 4] = [Self::RetrofireGouraud, Self::RetrofirePhong, Self::Embedded3dgfxFlat, Self::Embedded3dgfxGouraud];
+    pub const ALL: [Self; 5] = [
+        Self::RetrofireGouraud,
+        Self::RetrofirePhong,
+        Self::Embedded3dgfxFlat,
+        Self::Embedded3dgfxFlatBlinnPhong,
+        Self::Embedded3dgfxGouraud,
+    ];
 
     /// The name that the host knows.
     #[must_use]
@@ -46,18 +58,20 @@ impl Peer {
             Self::RetrofireGouraud => "retrofire gouraud",
             Self::RetrofirePhong => "retrofire phong",
             Self::Embedded3dgfxFlat => "embedded-3dgfx flat",
+            Self::Embedded3dgfxFlatBlinnPhong => "embedded-3dgfx flat-blinn-phong",
             Self::Embedded3dgfxGouraud => "embedded-3dgfx gouraud",
         }
     }
 
-    /// Converts `scene`, and returns what draws a frame of it on black: once, as depth is not cleared again.
+    /// Converts `scene`, and returns what draws a frame of it; `None` if it has no shader for such lights and materials.
     #[must_use]
-    pub fn prepare(self, scene: &Scene) -> Box<dyn FnMut(&mut Picture) + '_> {
+    pub fn prepare(self, scene: &Scene) -> Option<Drawing<'_>> {
         match self {
-            Self::RetrofireGouraud => Box::new(retrofire::gouraud(scene)),
-            Self::RetrofirePhong => Box::new(retrofire::phong(scene)),
-            Self::Embedded3dgfxFlat => Box::new(embedded_3dgfx::flat(scene)),
-            Self::Embedded3dgfxGouraud => Box::new(embedded_3dgfx::gouraud(scene)),
+            Self::RetrofireGouraud => retrofire::drawing(scene, Shading::Gouraud),
+            Self::RetrofirePhong => retrofire::drawing(scene, Shading::Phong),
+            Self::Embedded3dgfxFlat => Some(embedded_3dgfx::flat(scene)),
+            Self::Embedded3dgfxFlatBlinnPhong => Some(embedded_3dgfx::flat_blinn_phong(scene)),
+            Self::Embedded3dgfxGouraud => Some(embedded_3dgfx::gouraud(scene)),
         }
     }
 }

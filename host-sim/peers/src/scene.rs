@@ -1,17 +1,20 @@
 //! A triangle stream in floating point, as other renderers want it.
 
 use alloc::vec::Vec;
+use core::array;
 use microphong::{
     Stream,
     format::{COSINE, ROTATION, UNIT},
     geometry::pose::Pose,
-    lighting::lights::Lighting,
+    lighting::lights::{Lighting, Source},
+    stream::record::{Camera, PERSPECTIVE},
 };
 
-/// One grey mesh under one directional light, seen from infinity as far as highlights go: what all peers can draw.
+/// One mesh under directional lights, seen from infinity as far as highlights go. It is turned as the camera sees it: x runs to the right, y
+/// up, z towards the eye.
 #[derive(Clone, Debug)]
 pub struct Scene {
-    /// Of the vertices, in object space.
+    /// Of the vertices.
     pub positions: Vec<[f32; 3]>,
     /// Of the vertices.
     pub normals: Vec<[f32; 3]>,
@@ -19,92 +22,101 @@ pub struct Scene {
     pub faces: Vec<[usize; 3]>,
     /// Of the faces.
     pub face_normals: Vec<[f32; 3]>,
-    /// Object to eye space: x to the right, y up, z away from the eye.
-    pub rotation: [[f32; 3]; 3],
-    /// Added after rotation.
-    pub translation: [f32; 3],
+    /// Radius of the ball about the origin that holds all vertices.
+    pub radius: f32,
+    /// Where the eye is, looking along -z.
+    pub eye: [f32; 3],
     /// Half of the picture's height is seen under the slope 1 / `focal`.
     pub focal: f32,
     /// Nearest distance drawn.
     pub near: f32,
-    /// Unit vector to the light, in object space.
+    /// What is always reflected, of full.
+    pub ambient: [f32; 3],
+    /// The lights, the brightest usually first.
+    pub lights: Vec<Light>,
+    /// The exponent of highlights.
+    pub exponent: u16,
+}
+
+/// A directional light, and how much of it the surface reflects.
+#[derive(Clone, Debug)]
+pub struct Light {
+    /// Unit vector to the light.
     pub towards: [f32; 3],
     /// Unit vector halfway between light and eye.
     pub half: [f32; 3],
-    /// How the surface reflects.
-    pub surface: Surface,
-}
-
-/// The exponent of highlights: a constant, as in a shader that is written for its scene, so that its power is a few products.
-const EXPONENT: u16 = 50;
-
-/// Shares of light, of full.
-#[derive(Clone, Copy, Debug)]
-pub struct Surface {
-    /// Always there.
-    pub ambient: f32,
     /// Times N·L.
-    pub diffuse: f32,
+    pub diffuse: [f32; 3],
     /// Times the power of N·H.
-    pub specular: f32,
+    pub specular: [f32; 3],
 }
+
+/// How far an eye is that sees nearly parallel rays: no corner moves by a quarter of a pixel of these pictures. Where they are parallel, 1 / z,
+/// by which peers test depth, is the same everywhere.
+const AFAR: f32 = 500.0;
 
 /// From fixed point with `bits` fraction bits.
 fn float<const N: usize>(v: [i32; N], bits: u32) -> [f32; N] {
     v.map(|c| c as f32 / (1u32 << bits) as f32)
 }
 
+/// From lengths, unit vectors and gains of a stream.
+fn wide<const N: usize, T: Into<i32>>(v: [T; N]) -> [f32; N] {
+    float(v.map(Into::into), UNIT)
+}
+
+fn product(a: [f32; 3], b: [f32; 3]) -> [f32; 3] {
+    array::from_fn(|channel| a[channel] * b[channel])
+}
+
 impl Scene {
-    /// Frame 0 of `stream`; `None` if it has more than one mesh or light, or another exponent than [`EXPONENT`].
+    /// Frame 0 of `stream`; `None` if it has more than one mesh or material, or light that is not the same everywhere.
     #[must_use]
     pub fn new(stream: &Stream<'_>) -> Option<Self> {
-        let pose = Pose::new(&stream.header.camera, 0);
-        let [towards, half] = Lighting::new(stream, &pose).constant()?;
-        let ([_], [light], [material]) = (stream.meshes, stream.lights, stream.materials) else { return None };
-        if material.exponent != EXPONENT {
-            return None;
-        }
-        let share = |of: [u16; 3], light: [u16; 3]| float([of[1].into()], UNIT)[0] * float([light[1].into()], UNIT)[0];
-        let wide = |v: [i16; 3]| float(v.map(i32::from), UNIT);
+        let ([_], [material]) = (stream.meshes, stream.materials) else { return None };
+        let camera = &stream.header.camera;
+        let pose = Pose::new(camera, 0);
+        let [right, up, away] = pose.rotation.map(|row| float(row, ROTATION));
+        let axes = [right, up, away.map(|c| -c)];
+        let turned = |v: [f32; 3]| axes.map(|axis| product(axis, v).into_iter().sum());
+        let lighting = Lighting::new(stream, &pose);
+        let sources = lighting.is_constant().then_some(&lighting.sources)?;
+        let lights = stream.lights.iter().zip(sources).filter_map(|(light, source)| {
+            let Source::Directional { towards, half } = *source else { return None };
+            let reflected = |share| product(wide(share), wide(light.colour));
+            Some(Light {
+                towards: turned(float(towards, COSINE)),
+                half: turned(float(half, COSINE)),
+                diffuse: reflected(material.diffuse),
+                specular: reflected(material.specular),
+            })
+        });
+        let (eye, focal) = eye(camera, wide(pose.translation));
         Some(Self {
-            positions: stream.vertices.iter().map(|vertex| wide(vertex.position)).collect(),
-            normals: stream.vertices.iter().map(|vertex| wide(vertex.normal)).collect(),
+            positions: stream.vertices.iter().map(|vertex| turned(wide(vertex.position))).collect(),
+            normals: stream.vertices.iter().map(|vertex| turned(wide(vertex.normal))).collect(),
             faces: stream.triangles.iter().map(|triangle| triangle.corners.map(usize::from)).collect(),
-            face_normals: stream.triangles.iter().map(|triangle| wide(triangle.normal)).collect(),
-            rotation: pose.rotation.map(|row| float(row, ROTATION)),
-            translation: float(pose.translation, UNIT),
-            focal: stream.header.camera.focal as f32 / 65536.0,
-            near: float([stream.header.camera.near], UNIT)[0],
-            towards: float(towards, COSINE),
-            half: float(half, COSINE),
-            surface: Surface {
-                ambient: share(material.ambient, stream.header.ambient),
-                diffuse: share(material.diffuse, light.colour),
-                specular: share(material.specular, light.colour),
-            },
+            face_normals: stream.triangles.iter().map(|triangle| turned(wide(triangle.normal))).collect(),
+            radius: wide([stream.header.radius])[0],
+            eye,
+            focal,
+            near: wide([camera.near])[0],
+            ambient: product(wide(material.ambient), wide(stream.header.ambient)),
+            lights: lights.collect(),
+            exponent: material.exponent,
         })
     }
-}
 
-impl Surface {
-    /// What is seen of full light where these are N·L and N·H.
+    /// How many channels differ: one, where everything is grey.
     #[must_use]
-    #[inline]
-    pub fn shade(&self, diffuse: f32, specular: f32) -> f32 {
-        self.ambient + self.diffuse * diffuse.max(0.0) + self.specular * power(specular.max(0.0), EXPONENT)
+    pub fn channels(&self) -> usize {
+        let grey = |[r, g, b]: [f32; 3]| r == g && g == b;
+        if grey(self.ambient) && self.lights.iter().all(|light| grey(light.diffuse) && grey(light.specular)) { 1 } else { 3 }
     }
 }
 
-/// By squaring.
-#[inline]
-fn power(mut base: f32, mut exponent: u16) -> f32 {
-    let mut result = 1.0;
-    while exponent > 0 {
-        if exponent & 1 != 0 {
-            result *= base;
-        }
-        base *= base;
-        exponent >>= 1;
-    }
-    result
+/// Where the eye is, and the focal length, for a camera whose rays meet in the eye; the object is at `translation` in eye space.
+fn eye(camera: &Camera, [x, y, z]: [f32; 3]) -> ([f32; 3], f32) {
+    let focal = camera.focal as f32 / 65536.0;
+    if camera.projection == PERSPECTIVE { ([-x, -y, z], focal) } else { ([-x, -y, AFAR], focal * AFAR) }
 }

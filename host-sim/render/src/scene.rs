@@ -29,7 +29,8 @@ pub struct Scene {
 pub const NAMES: [&str; 10] =
     ["teapot", "bunny", "sphere-168", "sphere-374", "sphere-690", "peer-sphere", "sphere-40", "dodecahedron", "torus", "triangle"];
 
-const PEER: &str = "peer-sphere";
+/// The sphere that renderers have been compared by.
+pub const PEER: &str = "peer-sphere";
 /// `peer-sphere`, and marked as convex: drawn without depth.
 pub const CONVEX: &str = "peer-sphere-convex";
 /// `peer-sphere` in blue with a white highlight.

@@ -1,7 +1,7 @@
 //! `microphong bench`.
 
 use super::{
-    Outcome, Usage, growth,
+    Outcome, growth,
     parse::{self, Several},
     report, scenes,
 };
@@ -14,7 +14,7 @@ use microphong_sim::{
         growth::{SHADERS, Sweep},
         page::Page,
         peers::{
-            self,
+            self, Program,
             table::{Table, short},
         },
         renewal::{self, Growth},
@@ -23,10 +23,7 @@ use microphong_sim::{
     scene::{self, Scene},
     shader::Shader,
 };
-use std::{
-    iter,
-    path::{Path, PathBuf},
-};
+use std::path::{Path, PathBuf};
 
 /// Count the instructions that processors take for one frame, stage by stage, beside the error of the same frame.
 ///
@@ -52,7 +49,7 @@ pub(crate) struct Arguments {
     /// Write DIR/index.html, run time against error, growth and break-even on one page, and DIR/chart.svg.
     #[arg(long, value_name = "DIR")]
     report: Option<PathBuf>,
-    /// Also measure other renderers on the scene peer-sphere, on the boards mps2-an385, mps2-an386 and x86-64.
+    /// Also measure other renderers on the same scenes, on the boards mps2-an385, mps2-an386 and x86-64, and print ours beside theirs.
     #[arg(long)]
     peers: bool,
     /// Count dither, antialiasing and interpolation in perspective beside the plain style instead, on this computer.
@@ -81,7 +78,7 @@ Examples:
   microphong bench teapot --board pico --shader sqrt6    frame time and frames per second of the Pico
   microphong bench all --shader all --board all --json   everything
   microphong bench peer-sphere --shader all --board all --report bench    the chart, as a page
-  microphong bench peer-sphere --peers --board mps2-an385,mps2-an386,x86-64    beside other renderers
+  microphong bench --peers --board mps2-an385,mps2-an386,x86-64    beside other renderers
   microphong bench --styles                              what dither, antialiasing and perspective cost
   microphong bench --check tests/baselines/costs.csv     has anything become dearer?
   microphong bench --renew tests/baselines/costs.csv --reason \"Thin triangles no longer flicker.\"
@@ -133,9 +130,9 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome> {
     };
     let scenes: Vec<(Scene, Vec<_>)> = scenes.into_iter().map(|scene| (wanted(&scene), scene)).map(|(w, s)| (s, w)).collect();
     let page = arguments.report.as_deref().map(Page::create).transpose()?;
-    let common = arguments.peers.then(|| common(&scenes)).transpose()?;
-    let others: Vec<_> = arguments.board.values.iter().copied().filter(|&board| common.is_some() && peers::possible(board)).collect();
-    let steps = scenes.iter().map(|(_, wanted)| wanted.len()).sum::<usize>() + 1 + others.len();
+    let common = if arguments.peers { drawable(&scenes)? } else { Vec::new() };
+    let boards: Vec<_> = arguments.board.values.iter().copied().filter(|&board| !common.is_empty() && peers::possible(board)).collect();
+    let steps = scenes.iter().map(|(_, wanted)| wanted.len()).sum::<usize>() + 1 + common.len() * boards.len();
     let bar = report::progress(steps as u64, "counting instructions");
     let bench = Bench::new(&arguments.board.values)?;
     bar.inc(1);
@@ -145,22 +142,21 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome> {
         bar.suspend(|| measured.iter().try_for_each(|m| if arguments.json { report::json(m) } else { text(m) }))?;
         all.extend(measured);
     }
-    let mut theirs = Vec::new();
-    for board in others {
-        let measured = common.map_or(Ok(Vec::new()), |scene| peers::measure(board, scene))?;
-        bar.inc(1);
-        if arguments.json {
-            bar.suspend(|| measured.iter().try_for_each(report::json))?;
+    let programs = boards.into_iter().map(Program::build).collect::<Result<Vec<_>>>()?;
+    let mut tables = Vec::new();
+    for scene in common {
+        let mut theirs = Vec::new();
+        for program in &programs {
+            theirs.extend(program.measure(scene)?);
+            bar.inc(1);
         }
-        theirs.extend(measured);
+        let table = Table::new(&scene.name, &all, &theirs, &arguments.board.values)?;
+        bar.suspend(|| if arguments.json { theirs.iter().try_for_each(report::json) } else { beside(&table) })?;
+        tables.push(table);
     }
     bar.finish_and_clear();
-    let table = common.map(|_| Table::new(&all, &theirs, &arguments.board.values)).transpose()?;
-    if let Some(table) = table.as_ref().filter(|_| !arguments.json) {
-        beside(table)?;
-    }
     if let Some(page) = page {
-        let path = page.finish(&all, table.as_ref(), &growth::count(&Sweep::ALL, &SHADERS)?)?;
+        let path = page.finish(&all, &tables, &growth::count(&Sweep::ALL, &SHADERS)?)?;
         if !arguments.json {
             report::line(&format!("report: {}", path.display()))?;
         }
@@ -193,25 +189,26 @@ fn in_style(cost: &StyleCosts) -> Result<()> {
     report::line(&format!("x86-64, {}, {}: {figures}", cost.scene, cost.shader))
 }
 
-/// The scene that other renderers draw.
-fn common<W>(scenes: &[(Scene, W)]) -> Result<&Scene> {
-    let found = scenes.iter().map(|(scene, _)| scene).find(|scene| scene.name == peers::SCENE);
-    found.ok_or_else(|| {
-        Usage(format!("other renderers are measured on the scene {0}; name it, too: bench {0} --peers", peers::SCENE)).into()
-    })
+/// The scenes that other renderers can draw; says why they cannot draw the others.
+fn drawable<W>(scenes: &[(Scene, W)]) -> Result<Vec<&Scene>> {
+    let mut drawable = Vec::new();
+    for (scene, _) in scenes {
+        match peers::obstacle(&scene.stream.parse()?)? {
+            Some(obstacle) => report::error(&format!("other renderers do not draw {}: {obstacle}", scene.name)),
+            None => drawable.push(scene),
+        }
+    }
+    Ok(drawable)
 }
 
 /// Ours beside theirs.
 fn beside(table: &Table) -> Result<()> {
-    report::line(&format!("{}, instructions per covered pixel", peers::SCENE))?;
+    report::line(&format!("{}, instructions per pixel", table.scene))?;
     let cells = |cells: Vec<String>| cells.iter().map(|cell| format!("{cell:>15}")).collect::<String>();
-    report::line(&format!("  {:28}{}", "", cells(table.processors.iter().map(|cpu| cpu.name().to_owned()).collect())))?;
-    for (row, before) in table.rows.iter().zip(iter::once(None).chain(table.rows.iter().map(Some))) {
-        let note = row.source.note();
-        if before.is_some_and(|before| before.source != row.source) && !note.is_empty() {
-            report::line(&format!("  {note}:"))?;
-        }
-        report::line(&format!("  {:28}{}", row.name, cells(row.figures.iter().map(|f| f.map_or("-".to_owned(), short)).collect())))?;
+    report::line(&format!("  {:32}{}", "", cells(table.processors.iter().map(|cpu| cpu.name().to_owned()).collect())))?;
+    for row in &table.rows {
+        let figures = cells(row.figures.iter().map(|f| f.map_or("-".to_owned(), short)).collect());
+        report::line(format!("  {:32}{figures}  {}", row.name, row.note).trim_end())?;
     }
     if let Some(note) = table.note() {
         report::line(&format!("  {note}"))?;

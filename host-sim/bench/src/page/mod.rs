@@ -10,12 +10,12 @@ use super::{
     Measurement, Processor,
     family::Family,
     growth::{Point, Sweep},
-    peers::{self, table::Table},
+    peers::table::Table,
 };
 use anyhow::{Context, Result};
 use maud::{Markup, PreEscaped, html};
 use microphong_compare::document::{COLOURS, document};
-use microphong_render::output::Output;
+use microphong_render::{output::Output, scene::PEER};
 use scatter::{Axes, Error};
 use std::{
     fs,
@@ -27,7 +27,7 @@ const CHART: &str = include_str!("chart.css");
 const STYLE: &str = include_str!("style.css");
 const SCRIPT: &str = include_str!("script.js");
 /// The scene that other renderers were measured with stands in front.
-const FIRST: &str = peers::SCENE;
+const FIRST: &str = PEER;
 
 /// A report under construction: `index.html` and `chart.svg`.
 #[derive(Debug)]
@@ -50,7 +50,7 @@ impl Page {
     ///
     /// # Errors
     /// When they cannot be written; then there are none.
-    pub fn finish(self, measurements: &[Measurement], peers: Option<&Table>, growth: &[Point]) -> Result<PathBuf> {
+    pub fn finish(self, measurements: &[Measurement], peers: &[Table], growth: &[Point]) -> Result<PathBuf> {
         let path = self.page.path().to_owned();
         let style = format!("{CHART}{STYLE}");
         for (mut file, text) in [(self.page, page(measurements, peers, growth, &style)), (self.chart, chart(measurements))] {
@@ -89,7 +89,7 @@ fn of_processor<'m>(measurements: &[&'m Measurement], processor: Processor) -> V
     measurements.iter().copied().filter(|m| m.board == processor).collect()
 }
 
-fn page(measurements: &[Measurement], peers: Option<&Table>, growth: &[Point], style: &str) -> Markup {
+fn page(measurements: &[Measurement], peers: &[Table], growth: &[Point], style: &str) -> Markup {
     let scenes = scenes(measurements);
     let head = html! {
         p {
@@ -115,12 +115,14 @@ fn page(measurements: &[Measurement], peers: Option<&Table>, growth: &[Point], s
     let chips = processors(&main);
     let body = html! {
         @for scene in &scenes { (section(scene, &of_scene(measurements, scene))) }
-        @if let Some(table) = peers {
+        @if !peers.is_empty() {
             section.scene {
                 h2 { "Beside other renderers" }
-                p.facts { "Instructions per covered pixel, scene " (FIRST) ", clearing and transfer excluded, everything else included." }
-                @if let Some(note) = table.note() { p.facts { (note) } }
-                (tables::peers(table))
+                p.facts { "Instructions per pixel, clearing and transfer excluded, everything else included." }
+                @for table in peers {
+                    @if let Some(note) = table.note() { p.facts { (note) } }
+                    (tables::peers(table))
+                }
             }
         }
         @if !growth.is_empty() {
@@ -263,7 +265,7 @@ mod tests {
     #[test]
     fn every_panel_shows_each_point_once() {
         let measurements = measured();
-        let text = page(&measurements, None, &[], "").into_string();
+        let text = page(&measurements, &[], &[], "").into_string();
         // Two scenes, two processors, two errors.
         assert_eq!(text.matches("<svg class=\"chart\"").count(), 8);
         for shader in Shader::ALL {
@@ -280,7 +282,7 @@ mod tests {
 
     #[test]
     fn nothing_is_fetched() {
-        let text = page(&measured(), None, &[], CHART).into_string();
+        let text = page(&measured(), &[], &[], CHART).into_string();
         assert!(!text.contains("http://") && !text.contains("https://") && !text.contains(" src="));
     }
 }

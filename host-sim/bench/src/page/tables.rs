@@ -135,9 +135,9 @@ pub(super) fn ratios(measurements: &[&Measurement], processors: &[Processor]) ->
 /// Other renderers beside ours.
 pub(super) fn peers(table: &Table) -> Markup {
     html! {
-        div.scroll tabindex="0" role="region" aria-label="Beside other renderers" {
+        div.scroll tabindex="0" role="region" aria-label={ "Beside other renderers, " (table.scene) } {
             table.sortable.narrow {
-                caption { "Instructions per covered pixel" }
+                caption { (table.scene) }
                 thead { tr {
                     th scope="col" data-sort="text" { "renderer, method" }
                     @for processor in &table.processors { th scope="col" data-sort="number" { (processor.name()) } }
@@ -148,7 +148,7 @@ pub(super) fn peers(table: &Table) -> Markup {
                         tr {
                             th scope="row" { (row.name) }
                             @for figure in &row.figures { td data-value=[*figure] { @if let Some(figure) = figure { (table::short(*figure)) } } }
-                            td.text.first { (row.source.note()) }
+                            td.text.first { (row.note) }
                         }
                     }
                 }

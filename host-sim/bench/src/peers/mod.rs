@@ -1,8 +1,9 @@
-//! What other renderers need for the frame `peer-sphere`.
+//! What other renderers need for the same frames.
 //!
 //! Those of crates.io are drawn by `host-sim/peers`, which nothing depends on, and counted here: on the host by callgrind as microphong is,
 //! on boards by QEMU's instruction clock. Figures of others were measured once.
 
+pub mod lack;
 pub mod table;
 
 use super::{Processor, callgrind, rounded};
@@ -11,6 +12,8 @@ use embedded_graphics_core::{
     geometry::Size,
     pixelcolor::{Rgb565, RgbColor, raw::RawU16},
 };
+use lack::Lack;
+use microphong::{Stream, geometry::pose::Pose, lighting::lights::Lighting, stream::record::Material};
 use microphong_boards::{
     Board, INSTRUCTIONS_PER_TICK,
     build::{host, release},
@@ -18,33 +21,62 @@ use microphong_boards::{
     clocked,
     elf::Elf,
 };
-use microphong_render::{render, scene::Scene, shader::Shader};
+use microphong_render::{
+    render,
+    scene::{self, PORTFOLIO, Scene},
+    shader::Shader,
+};
 use serde::Serialize;
-use std::{ffi::OsString, path::PathBuf};
+use std::{array, ffi::OsString, path::PathBuf};
 
-/// The scene that is drawn: its mesh, camera and light are theirs.
-pub const SCENE: &str = "peer-sphere";
+/// A renderer and its way to shade.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Peer {
+    /// The name that `host-sim/peers` has for it.
+    pub name: &'static str,
+    /// What it cannot draw.
+    lacks: &'static [Lack],
+}
 
-/// Renderers and methods, by the names that `host-sim/peers` has for them.
-pub const PEERS: [&str; 4] = ["retrofire gouraud", "retrofire phong", "embedded-3dgfx flat", "embedded-3dgfx gouraud"];
+/// All that are measured.
+pub const PEERS: [Peer; 5] = [
+    Peer { name: "retrofire gouraud", lacks: &[Lack::ParallelRays] },
+    Peer { name: "retrofire phong", lacks: &[Lack::ParallelRays] },
+    Peer { name: "embedded-3dgfx flat", lacks: &[Lack::ParallelRays, Lack::OtherLights, Lack::Ambient, Lack::Highlights] },
+    Peer {
+        name: "embedded-3dgfx flat-blinn-phong",
+        lacks: &[Lack::ParallelRays, Lack::OtherLights, Lack::Ambient, Lack::ColouredHighlights],
+    },
+    Peer { name: "embedded-3dgfx gouraud", lacks: &[Lack::ParallelRays, Lack::OtherLights, Lack::Ambient, Lack::Highlights] },
+];
+
+impl Peer {
+    /// What it leaves out of a scene.
+    #[must_use]
+    pub fn lacks(&self, stream: &Stream<'_>) -> Vec<Lack> {
+        self.lacks.iter().copied().filter(|lack| lack.concerns(stream)).collect()
+    }
+}
 
 /// By how much a picture may cover more or fewer pixels than ours, a share of ours.
 const COVERAGE: f64 = 0.02;
 
-/// One frame drawn by another renderer: a line of `bench --json`, with the same keys as a [`super::Measurement`].
+/// One frame drawn by another renderer: a line of `bench --json`, with the keys of a [`super::Measurement`] and `lacks`.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Frame {
     /// The board that drew; of the host its architecture.
     pub board: &'static str,
     /// Its processor.
     pub cpu: &'static str,
-    /// [`SCENE`].
-    pub scene: &'static str,
-    /// One of [`PEERS`].
+    /// The scene's name.
+    pub scene: String,
+    /// The name of one of [`PEERS`].
     pub shader: &'static str,
+    /// What is left out of the scene.
+    pub lacks: Vec<Lack>,
     /// Instructions of the frame, without clearing and transfer.
     pub instructions: u64,
-    /// Pixels of the picture that are not background.
+    /// Pixels that microphong draws for the same frame, hidden ones among them: all figures of a frame are per the same pixels.
     pub pixels: u64,
     /// Instructions per pixel, to a hundredth.
     pub instr_per_pixel: f64,
@@ -53,6 +85,9 @@ pub struct Frame {
     /// Checksum of the picture.
     #[serde(skip)]
     pub checksum: u32,
+    /// The picture; boards keep theirs.
+    #[serde(skip)]
+    pub picture: Option<Picture>,
 }
 
 /// What only our own firmware tells: null.
@@ -71,20 +106,13 @@ struct Unknown {
     timing: (),
 }
 
-impl Frame {
-    fn new(processor: Processor, shader: &'static str, instructions: u64, pixels: u64, checksum: u32) -> Self {
-        Self {
-            board: processor.board_name(),
-            cpu: processor.name(),
-            scene: SCENE,
-            shader,
-            instructions,
-            pixels,
-            instr_per_pixel: rounded(instructions as f64 / pixels.max(1) as f64, 100.0),
-            unknown: Unknown::default(),
-            checksum,
-        }
-    }
+/// What is counted of a frame.
+struct Count {
+    instructions: u64,
+    /// Pixels that are not background.
+    covered: u64,
+    checksum: u32,
+    picture: Option<Picture>,
 }
 
 /// Whether other renderers can be measured on it.
@@ -93,89 +121,183 @@ pub fn possible(processor: Processor) -> bool {
     matches!(processor.board(), None | Some(Board::Mps2An385 | Board::Mps2An386))
 }
 
-/// Has all [`PEERS`] draw `scene` on one processor, which must be a [`possible`] one.
+/// Why other renderers cannot draw a scene, if they cannot.
 ///
 /// # Errors
-/// When something does not compile or run, or a picture covers other pixels than ours.
-pub fn measure(processor: Processor, scene: &Scene) -> Result<Vec<Frame>> {
-    let frames = match processor.board() {
-        None => {
-            let drawn = draw(scene)?.into_iter().zip(PEERS);
-            drawn.map(|((instructions, p), peer)| Frame::new(processor, peer, instructions, p.covered(), p.checksum())).collect()
-        }
-        Some(board) => on_board(processor, board, scene)?,
-    };
-    let (width, height) = processor.size();
-    let (_, ours) = render::frame::<Rgb565>(scene.stream.parse()?, Size::new(width, height), Shader::FLAT, height, 0)?;
-    for frame in &frames {
-        let more = frame.pixels as f64 / f64::from(ours.pixels) - 1.0;
-        ensure!(more.abs() < COVERAGE, "{} covers {} pixels, microphong {}: not the same frame", frame.shader, frame.pixels, ours.pixels);
+/// When a built-in scene is damaged.
+pub fn obstacle(stream: &Stream<'_>) -> Result<Option<&'static str>> {
+    let lighting = Lighting::new(stream, &Pose::new(&stream.header.camera, 0));
+    if !lighting.is_constant() {
+        return Ok(Some("a light is near, or highlights are seen by a local viewer"));
     }
-    Ok(frames)
+    if stream.meshes.len() != 1 || stream.materials.len() != 1 {
+        return Ok(Some("it has several meshes or materials"));
+    }
+    for ordinary in PORTFOLIO {
+        if Shading::of(&scene::load(ordinary)?.stream.parse()?) == Shading::of(stream) {
+            return Ok(None);
+        }
+    }
+    Ok(Some("no ordinary scene has such colours, so many lights and that exponent, and shaders are compiled for ordinary scenes only"))
 }
 
-/// A picture on black.
-#[derive(Clone, Debug)]
-pub struct Picture(pub Vec<Rgb565>);
+/// What a shader is written for.
+#[derive(PartialEq)]
+struct Shading {
+    grey: bool,
+    lights: usize,
+    exponents: Vec<u16>,
+}
+
+impl Shading {
+    fn of(stream: &Stream<'_>) -> Self {
+        let grey = |material: &Material| {
+            let ambient = reflected(material.ambient, stream.header.ambient);
+            let lit =
+                stream.lights.iter().flat_map(|light| [material.diffuse, material.specular].map(|share| reflected(share, light.colour)));
+            lit.chain([ambient]).all(|[r, g, b]| r == g && g == b)
+        };
+        Self {
+            grey: stream.materials.iter().all(grey),
+            lights: stream.lights.len(),
+            exponents: stream.materials.iter().map(|material| material.exponent).collect(),
+        }
+    }
+}
+
+/// Light of a colour that is reflected by a share of each channel.
+fn reflected(share: [u16; 3], colour: [u16; 3]) -> [u32; 3] {
+    array::from_fn(|channel| u32::from(share[channel]) * u32::from(colour[channel]))
+}
+
+/// A picture and its background.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Picture {
+    /// Row by row from the top.
+    pub pixels: Vec<Rgb565>,
+    background: Rgb565,
+}
 
 impl Picture {
-    /// Pixels that are not black.
+    /// Frame 0 of `scene` by microphong, in the size of a processor's display, and the pixels that it took, hidden ones among them.
+    ///
+    /// # Errors
+    /// When the scene cannot be drawn by `shader`.
+    pub fn ours(scene: &Scene, processor: Processor, shader: Shader) -> Result<(Self, u64)> {
+        let (stream, (width, height)) = (scene.stream.parse()?, processor.size());
+        let (pixels, stats) = render::frame(stream, Size::new(width, height), shader, height, 0)?;
+        let [r, g, b] = stream.header.background;
+        Ok((Self { pixels, background: Rgb565::new(r >> 3, g >> 2, b >> 3) }, stats.pixels.into()))
+    }
+
+    /// What is not background.
+    pub fn object(&self) -> impl Iterator<Item = Rgb565> {
+        self.pixels.iter().copied().filter(|&pixel| pixel != self.background)
+    }
+
+    /// Pixels that are not background.
     #[must_use]
     pub fn covered(&self) -> u64 {
-        self.0.iter().filter(|&&pixel| pixel != Rgb565::BLACK).count() as u64
-    }
-
-    fn checksum(&self) -> u32 {
-        render::crc(&self.0)
+        self.object().count() as u64
     }
 }
 
-/// Compiles a program of `host-sim/peers`, which has a feature of its own, and returns its path.
-fn build(program: &str, target: &str) -> Result<PathBuf> {
-    release(program, &format!("peers/{program}"), target, "the program with other renderers")
+/// A program of `host-sim/peers`, which has all [`PEERS`] draw a frame.
+#[derive(Debug)]
+pub struct Program {
+    processor: Processor,
+    path: PathBuf,
 }
 
-/// Has all [`PEERS`] draw `scene` on the host: instructions and picture of each.
-///
-/// # Errors
-/// When something does not compile or run.
-pub fn draw(scene: &Scene) -> Result<Vec<(u64, Picture)>> {
-    ensure!(cfg!(target_arch = "x86_64"), "instructions of x86-64 are counted on such computers only; choose another board");
-    let program = build("host", &host()?)?;
-    let stream = Scratch::new(scene.stream.as_bytes())?;
-    let pictures = PEERS.iter().map(|_| Scratch::new(&[])).collect::<Result<Vec<_>>>()?;
-    let frames =
-        PEERS.iter().zip(&pictures).map(|(peer, file)| -> [OsString; 3] { [stream.path().into(), peer.into(), file.path().into()] });
-    let (_, profiles) = callgrind::profiles(&program, &frames.collect::<Vec<_>>())?;
-    let drawn = profiles.iter().zip(&pictures).map(|(profile, file)| {
-        let bytes = file.read().context("no picture by another renderer")?;
-        let (pixels, _) = bytes.as_chunks::<2>();
-        let pixels = pixels.iter().map(|&pixel| RawU16::new(u16::from_le_bytes(pixel)).into());
-        Ok((profile.total, Picture(pixels.collect())))
+impl Program {
+    /// Compiles it for a processor, which must be a [`possible`] one.
+    ///
+    /// # Errors
+    /// When it does not compile, or the host's instructions cannot be counted.
+    pub fn build(processor: Processor) -> Result<Self> {
+        ensure!(possible(processor), "other renderers are not measured on {}", processor.board_name());
+        let (program, target) = match processor.board() {
+            Some(board) => ("mps2", board.target().to_owned()),
+            None => {
+                ensure!(cfg!(target_arch = "x86_64"), "instructions of x86-64 are counted on such computers only; choose another board");
+                ("host", host()?)
+            }
+        };
+        let path = release(program, &format!("peers/{program}"), &target, "the program with other renderers")?;
+        Ok(Self { processor, path })
+    }
+
+    /// Has all [`PEERS`] draw frame 0 of `scene`, which must have no [`obstacle`].
+    ///
+    /// # Errors
+    /// When the program does not run, or a picture covers other pixels than ours.
+    pub fn measure(&self, scene: &Scene) -> Result<Vec<Frame>> {
+        let processor = self.processor;
+        let counts = match processor.board() {
+            Some(board) => on_board(board, &self.elf(scene)?)?,
+            None => self.on_host(scene)?,
+        };
+        let stream = scene.stream.parse()?;
+        let (ours, pixels) = Picture::ours(scene, processor, Shader::FLAT)?;
+        let frames = PEERS.into_iter().zip(counts).map(|(peer, Count { instructions, covered, checksum, picture })| {
+            let share = covered as f64 / ours.covered() as f64;
+            ensure!(
+                (share - 1.0).abs() < COVERAGE,
+                "{}, {}: {covered} pixels are covered, by microphong {}: not the same frame",
+                scene.name,
+                peer.name,
+                ours.covered()
+            );
+            Ok(Frame {
+                board: processor.board_name(),
+                cpu: processor.name(),
+                scene: scene.name.clone(),
+                shader: peer.name,
+                lacks: peer.lacks(&stream),
+                instructions,
+                pixels,
+                instr_per_pixel: rounded(instructions as f64 / pixels.max(1) as f64, 100.0),
+                unknown: Unknown::default(),
+                checksum,
+                picture,
+            })
+        });
+        frames.collect()
+    }
+
+    /// What a board executes to draw `scene`.
+    ///
+    /// # Errors
+    /// When the stream finds no room.
+    pub fn elf(&self, scene: &Scene) -> Result<Elf> {
+        Elf::read(&self.path)?.with_stream(scene.stream.as_bytes())
+    }
+
+    fn on_host(&self, scene: &Scene) -> Result<Vec<Count>> {
+        let stream = Scratch::new(scene.stream.as_bytes())?;
+        let pictures = PEERS.iter().map(|_| Scratch::new(&[])).collect::<Result<Vec<_>>>()?;
+        let frames = PEERS.iter().zip(&pictures);
+        let frames = frames.map(|(peer, file)| -> [OsString; 3] { [stream.path().into(), peer.name.into(), file.path().into()] });
+        let (_, profiles) = callgrind::profiles(&self.path, &frames.collect::<Vec<_>>())?;
+        let counts = profiles.iter().zip(&pictures).map(|(profile, file)| {
+            let bytes = file.read().context("no picture by another renderer")?;
+            let (pixels, _) = bytes.as_chunks::<2>();
+            let pixels: Vec<_> = pixels.iter().map(|&pixel| RawU16::new(u16::from_le_bytes(pixel)).into()).collect();
+            let (checksum, picture) = (render::crc(&pixels), Picture { pixels, background: Rgb565::BLACK });
+            Ok(Count { instructions: profile.total, covered: picture.covered(), checksum, picture: Some(picture) })
+        });
+        counts.collect()
+    }
+}
+
+fn on_board(board: Board, elf: &Elf) -> Result<Vec<Count>> {
+    let lines = clocked(board, elf)?;
+    let counts = PEERS.iter().map(|peer| {
+        let of_peer = |line: &String| line.strip_prefix("frame ")?.strip_prefix(peer.name)?.strip_prefix(" ").map(str::to_owned);
+        let line = lines.iter().find_map(of_peer).with_context(|| format!("{} has logged nothing", peer.name))?;
+        let figure = |name| line.split_whitespace().skip_while(|&word| word != name).nth(1).with_context(|| format!("no {name} in {line}"));
+        let instructions = (figure("ticks")?.parse::<f64>()? * INSTRUCTIONS_PER_TICK).round() as u64;
+        Ok(Count { instructions, covered: figure("pixels")?.parse()?, checksum: u32::from_str_radix(figure("crc")?, 16)?, picture: None })
     });
-    drawn.collect()
-}
-
-/// The program that has all [`PEERS`] draw `scene` on `board`.
-///
-/// # Errors
-/// When it does not compile.
-pub fn program(board: Board, scene: &Scene) -> Result<Elf> {
-    Elf::read(&build("mps2", board.target())?)?.with_stream(scene.stream.as_bytes())
-}
-
-fn on_board(processor: Processor, board: Board, scene: &Scene) -> Result<Vec<Frame>> {
-    ensure!(possible(processor), "other renderers are not measured on {board}");
-    let lines = clocked(board, &program(board, scene)?)?;
-    PEERS
-        .into_iter()
-        .map(|peer| {
-            let line =
-                lines.iter().find_map(|line| line.strip_prefix("frame ")?.strip_prefix(peer)).context("a renderer has logged nothing")?;
-            let figure =
-                |name| line.split_whitespace().skip_while(|&word| word != name).nth(1).with_context(|| format!("no {name} in {line}"));
-            let instructions = (figure("ticks")?.parse::<f64>()? * INSTRUCTIONS_PER_TICK).round() as u64;
-            Ok(Frame::new(processor, peer, instructions, figure("pixels")?.parse()?, u32::from_str_radix(figure("crc")?, 16)?))
-        })
-        .collect()
+    counts.collect()
 }

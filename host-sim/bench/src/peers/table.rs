@@ -1,46 +1,27 @@
 //! Our figures beside theirs.
 
-use super::{Frame, PEERS, SCENE};
+use super::{Frame, PEERS};
 use crate::{Measurement, Processor};
 use anyhow::{Context, Result, bail};
 use microphong_boards::budget::PICO;
-
-/// Where a row's figures come from.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Source {
-    /// microphong, measured now.
-    Ours,
-    /// Another renderer, measured now.
-    Peer,
-    /// Measured once.
-    Earlier,
-}
-
-impl Source {
-    /// What has to be known of such figures.
-    #[must_use]
-    pub const fn note(self) -> &'static str {
-        match self {
-            Self::Ours | Self::Peer => "",
-            Self::Earlier => "measured once, not by this command",
-        }
-    }
-}
+use microphong_render::scene::PEER;
 
 /// A renderer's method.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Row {
-    /// Where its figures come from.
-    pub source: Source,
     /// Renderer and method.
     pub name: String,
-    /// Instructions per covered pixel on each processor; `None` where nobody has measured.
+    /// Instructions per pixel on each processor; `None` where nobody has measured.
     pub figures: Vec<Option<f64>>,
+    /// What has to be known of these figures.
+    pub note: String,
 }
 
-/// Instructions per covered pixel of all renderers.
+/// Instructions per pixel of all renderers, for one scene.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Table {
+    /// The scene's name.
+    pub scene: String,
     /// The columns.
     pub processors: Vec<Processor>,
     /// Ours, those of crates.io, those measured once.
@@ -48,12 +29,12 @@ pub struct Table {
 }
 
 impl Table {
-    /// Whatever has been measured on these processors, and what was measured once.
+    /// Whatever has been measured of a scene on these processors, and what was measured once.
     ///
     /// # Errors
     /// When the file of earlier figures is damaged.
-    pub fn new(ours: &[Measurement], peers: &[Frame], processors: &[Processor]) -> Result<Self> {
-        let ours: Vec<_> = ours.iter().filter(|m| m.scene == SCENE).collect();
+    pub fn new(scene: &str, ours: &[Measurement], peers: &[Frame], processors: &[Processor]) -> Result<Self> {
+        let ours: Vec<_> = ours.iter().filter(|m| m.scene == scene).collect();
         let mut methods: Vec<&str> = Vec::new();
         for m in &ours {
             if !methods.contains(&m.shader) {
@@ -62,13 +43,17 @@ impl Table {
         }
         let own = methods.into_iter().map(|method| {
             let find = |&cpu: &Processor| ours.iter().find(|m| m.board == cpu && m.shader == method).map(|m| m.instr_per_pixel);
-            Row { source: Source::Ours, name: format!("microphong {method}"), figures: processors.iter().map(find).collect() }
+            Row { name: format!("microphong {method}"), figures: processors.iter().map(find).collect(), note: String::new() }
         });
-        let theirs = PEERS.into_iter().map(|peer| {
-            let find = |cpu: &Processor| peers.iter().find(|p| p.cpu == cpu.name() && p.shader == peer).map(|p| p.instr_per_pixel);
-            Row { source: Source::Peer, name: peer.to_owned(), figures: processors.iter().map(find).collect() }
+        let theirs = PEERS.iter().map(|peer| {
+            let frames: Vec<_> = peers.iter().filter(|p| p.scene == scene && p.shader == peer.name).collect();
+            let find = |cpu: &Processor| frames.iter().find(|p| p.cpu == cpu.name()).map(|p| p.instr_per_pixel);
+            let lacks: Vec<_> = frames.iter().take(1).flat_map(|frame| &frame.lacks).map(ToString::to_string).collect();
+            let note = if lacks.is_empty() { String::new() } else { format!("without {}", lacks.join(", ")) };
+            Row { name: peer.name.to_owned(), figures: processors.iter().map(find).collect(), note }
         });
-        Ok(Self { processors: processors.to_vec(), rows: own.chain(theirs).chain(earlier(processors)?).collect() })
+        let earlier = if scene == PEER { earlier(processors)? } else { Vec::new() };
+        Ok(Self { scene: scene.to_owned(), processors: processors.to_vec(), rows: own.chain(theirs).chain(earlier).collect() })
     }
 
     /// What has to be known of its columns.
@@ -95,7 +80,7 @@ fn earlier(processors: &[Processor]) -> Result<Vec<Row>> {
                 if field.is_empty() { Ok(None) } else { Ok(Some(field.parse()?)) }
             };
             let figures = processors.iter().map(figure).collect::<Result<_>>()?;
-            Ok(Row { source: Source::Earlier, name: format!("{renderer} ({language}) {method}"), figures })
+            Ok(Row { name: format!("{renderer} ({language}) {method}"), figures, note: "measured once, not by this command".to_owned() })
         })
         .collect()
 }

@@ -14,10 +14,11 @@ fn draw(stream: &str, peer: &str, picture: &str) -> Result<(), Box<dyn Error>> {
     let mut words = vec![0u32; bytes.len().div_ceil(4)];
     words.as_mut_bytes()[..bytes.len()].copy_from_slice(&bytes);
     let scene = Scene::new(&Stream::parse(&words.as_bytes()[..bytes.len()])?)
-        .ok_or("other renderers draw one mesh of one grey material under one light")?;
+        .ok_or("other renderers draw one mesh of one material under directional lights, without a local viewer")?;
     let peer = Peer::ALL.into_iter().find(|other| other.name() == peer).ok_or("no such peer")?;
     let mut pixels = Box::new([0; WIDTH * HEIGHT]);
-    dumped_frame(&mut *peer.prepare(&scene), &mut pixels);
+    let mut drawing = peer.prepare(&scene).ok_or("other renderers have no shader for these lights and materials")?;
+    dumped_frame(&mut *drawing, &mut pixels);
     fs::write(picture, pixels.iter().flat_map(|pixel| pixel.to_le_bytes()).collect::<Vec<_>>())?;
     Ok(())
 }
