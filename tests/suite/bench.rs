@@ -14,7 +14,7 @@ use std::{collections::BTreeMap, fs, path::Path, process::Command};
 #[test]
 fn blocks_are_the_instructions_in_them() {
     let board = Processor::CortexM3.board().unwrap();
-    let scene = scene::load("sphere-40").unwrap();
+    let scene = scene::load("sphere-168").unwrap();
     let elf = Elf::read(&verify::build(board).unwrap()).unwrap();
     let elf = elf.with_stream(&verify::prepare(scene.stream.as_bytes(), named("duff"), 1).unwrap()).unwrap();
     let ranges = Meter::new(&elf).unwrap().ranges();
