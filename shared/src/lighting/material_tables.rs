@@ -100,14 +100,16 @@ impl<'a, C: Pixel> MaterialTables<'a, C> {
     /// The colour under one light from `[N·L, N·H]` (Q2.30).
     #[inline(always)]
     #[must_use]
-    pub fn one_light(&self, [cosine, half]: [i32; 2]) -> C {
-        let reflectance = self.reflectance;
-        if !reflectance.three_channels() {
-            return self.tint(reflectance.level([cosine, half]));
-        }
-        match reflectance.highlight(half) {
-            0 if reflectance.has_ramp() => self.tint(reflectance.ramp_level(cosine)),
-            highlight => mixed(reflectance.reflection(cosine, highlight)),
+    pub fn one_light(&self, cosines: [i32; 2]) -> C {
+        if self.reflectance.three_channels() { self.one_light_mixed(cosines) } else { self.tint(self.reflectance.level(cosines)) }
+    }
+
+    /// [`Self::one_light`] in three channels.
+    #[inline(never)]
+    fn one_light_mixed(self, [cosine, half]: [i32; 2]) -> C {
+        match self.reflectance.highlight(half) {
+            0 if self.reflectance.has_ramp() => self.tint(self.reflectance.ramp_level(cosine)),
+            highlight => mixed(self.reflectance.reflection(cosine, highlight)),
         }
     }
 
