@@ -18,7 +18,8 @@ use std::{error::Error, mem::offset_of};
 
 type Result<T = ()> = std::result::Result<T, Box<dyn Error>>;
 
-const FRAMES: u16 = 3;
+/// The first frame, and one that follows another: rows that were background and still are are not sent again.
+const FRAMES: u16 = 2;
 /// Most RAM that variables and stack may take together with the teapot.
 const RAM: [(Board, u64); 2] = [(Board::Pico, 240 << 10), (Board::Lm3s6965evb, 64 << 10)];
 
