@@ -22,6 +22,7 @@ impl Pixel for Fine {
 
     const GRAY: bool = false;
     const DEPTH: [u32; 3] = [8; 3];
+    /// What errors are measured of is drawn as boards draw it.
     const COARSE: bool = true;
     const BYTES: usize = 3;
 

@@ -145,6 +145,7 @@ impl<'a, C: Pixel> MaterialTables<'a, C> {
         C::pack(self.reflectance.dithered(intensity, threshold).map(u32::from))
     }
 }
+
 #[cfg(test)]
 mod tests {
     use super::*;

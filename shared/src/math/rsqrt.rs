@@ -144,7 +144,8 @@ pub const FINE_ERROR: f64 = 2.25 / (1u64 << 30) as f64;
 impl HalfRsqrt {
     /// Reciprocal square root 1/sqrt(m), Q2.30: from 1/2 to 1. Sooner than [`rsqrt`], for programs that have this table.
     ///
-    /// Domain: `m` in [1, 4), unsigned Q2.30; less counts as 1. Error: at most [`FINE_ERROR`] relative (tests::fine_error). Source: [`Self::rsqrt`], and a step of the method of Newton, y + y (1 - m y²) / 2.
+    /// Domain: `m` in [1, 4), unsigned Q2.30; less counts as 1. Error: at most [`FINE_ERROR`] relative (tests::fine_error).
+    /// Source: [`Self::rsqrt`], and a step of the method of Newton, y + y (1 - m y²) / 2.
     #[inline]
     #[must_use]
     pub fn fine(&self, m: u32) -> u32 {

@@ -216,7 +216,8 @@ impl Root {
         Self { mantissa: HalfRsqrt::get().fine(x << (shift & 31)), shift: shift / 2 }
     }
 
-    /// `value / sqrt(x)`, Q2.30 each, rounded down to as many bits as one over the root is below 1; at most 2 by saturation.
+    /// `value / sqrt(x)`, Q2.30 each; at most 2 by saturation. Error: beside that of the root, less than 2/sqrt(x) units of the last place,
+    /// because the quotient is rounded down before it is shifted.
     #[inline(always)]
     pub fn divide(self, value: i32) -> i32 {
         let quotient = (product(value, self.mantissa as i32) >> 30) as i32;

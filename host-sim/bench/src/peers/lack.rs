@@ -39,26 +39,22 @@ impl Lack {
             }
         }
     }
+}
 
-    const fn name(self) -> &'static str {
-        match self {
+impl fmt::Display for Lack {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
             Self::ParallelRays => "parallel rays",
             Self::OtherLights => "lights but the first",
             Self::Ambient => "the given ambient light",
             Self::Highlights => "highlights",
             Self::ColouredHighlights => "coloured highlights",
-        }
-    }
-}
-
-impl fmt::Display for Lack {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(self.name())
+        })
     }
 }
 
 impl Serialize for Lack {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-        serializer.serialize_str(self.name())
+        serializer.collect_str(self)
     }
 }
