@@ -77,7 +77,7 @@ fn parts_of_random_triangles_cover_each_pixel_once() {
             // Corners, and with them many corners of parts, on pixel centres.
             _ => [0; 3].map(|_| [random.pick(-4..100) * 16 + 8, random.pick(-4..84) * 16 + 8]),
         };
-        let [a, b, c] = corners.map(|[x, y]| ScreenVertex { x, y, depth: 1 << 27, light: [0; 3], state: State::READY });
+        let [a, b, c] = corners.map(|[x, y]| ScreenVertex { x, y, depth: 1 << 27, light: [0; 4], state: State::READY });
         let corners = if Extent::new(corners).area < 0 { [&a, &c, &b] } else { [&a, &b, &c] };
         let nowhere = ScreenTriangle::new(corners, [WIDTH as i32, 0, 0]);
         let visible = Bounds::new(&Extent::new(nowhere.corners)).clipped(w / 16, h / 16).sides();

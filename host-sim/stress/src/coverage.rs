@@ -103,7 +103,7 @@ pub fn triangle(random: &mut Random) -> Corners {
 }
 
 fn vertex([x, y]: [i32; 2]) -> ScreenVertex {
-    ScreenVertex { x, y, depth: 1 << 27, light: [0; 3], state: State::READY }
+    ScreenVertex { x, y, depth: 1 << 27, light: [0; 4], state: State::READY }
 }
 
 /// Adds to `counts` the pixels that the core draws for a triangle, band by band; returns how many it says they are.

@@ -27,10 +27,20 @@ pub struct ScreenVertex {
     pub y: i32,
     /// Inverse depth, Q0.28.
     pub depth: i32,
-    /// `[N·L, N·H, -]` in Q2.30 under one constant light, else light levels in Q9.7.
-    pub light: [i32; 3],
+    /// What [`crate::method::VertexLight`] says: N·L and N·H of a constant light in Q2.30, and of a second one, or light levels in Q9.7.
+    pub light: [i32; 4],
     /// Whether position and light are those of this frame.
     pub state: State,
+}
+
+impl ScreenVertex {
+    /// Light levels, Q9.7, of a vertex that has these.
+    #[inline(always)]
+    #[must_use]
+    pub fn levels(&self) -> [i32; 3] {
+        let [r, g, b, _] = self.light;
+        [r, g, b]
+    }
 }
 
 /// The state of a cached vertex in this frame.

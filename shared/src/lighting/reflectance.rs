@@ -132,8 +132,10 @@ pub struct Reflectance {
     has_ramp: u8,
     /// See [`Self::lights`].
     lights: u8,
+    /// Not 0 if [`Self::has_two_lights`].
+    has_two_lights: u8,
     /// Makes the size a multiple of words.
-    unused: [u8; 3],
+    unused: [u8; 2],
 }
 
 /// A colour as products of gains, Q4.28.
@@ -168,7 +170,8 @@ impl Reflectance {
         highlight_lut: HighlightLut::EMPTY,
         three_channels: 0,
         has_ramp: 0,
-        unused: [0; 3],
+        has_two_lights: 0,
+        unused: [0; 2],
         ambient: [0; 3],
         gains: [Gains::NONE; MAX_LIGHTS],
         sums: [[Sum::EMPTY; 3]; 3],
@@ -216,6 +219,7 @@ impl Reflectance {
         self.ramp = [ambient[most], diffuse[most].into()];
         let looped = holds_levels && fits && (lights.len() == 1 || lights.len() == 2 && !one_channel);
         self.lights = if looped { lights.len() as u8 } else { 0 };
+        self.has_two_lights = u8::from(lights.len() == 2 && !one_channel && fits);
         let holds_levels = looped && one_channel;
         for (sums, gains) in self.sums.iter_mut().zip(&self.gains) {
             for (k, sum) in sums.iter_mut().enumerate() {
@@ -275,6 +279,13 @@ impl Reflectance {
     #[must_use]
     pub fn lights(&self) -> u8 {
         self.lights
+    }
+
+    /// Whether there are two lights on three channels, and their sums fit a word.
+    #[inline(always)]
+    #[must_use]
+    pub fn has_two_lights(&self) -> bool {
+        self.has_two_lights != 0
     }
 
     /// Smallest N·H, Q2.30, whose highlight counts, see [`HighlightLut::highlight_threshold`].
@@ -377,19 +388,19 @@ impl Reflectance {
         if sources.len() > 2 || self.excess != 0 {
             return self.many_constant_levels(sources, normal);
         }
-        let level = |ambient: i32| (ambient << FACTOR) + (1 << (FACTOR - 1));
-        let [r, g, b] = self.ambient;
-        let (mut r, mut g, mut b) = (level(r), level(g), level(b));
-        for (source, [red, green, blue]) in sources.iter().zip(&self.sums) {
+        let mut lit = [[0; 2]; 2];
+        for (lit, source) in lit.iter_mut().zip(sources) {
             if let Source::Directional { towards, half } = *source {
-                let cosine = normal.cosine(towards).max(0) >> (COSINE - FACTOR);
-                let highlight = self.highlight(normal.cosine(half)) as i32;
-                r = r.wrapping_add(red.light(cosine, highlight));
-                g = g.wrapping_add(green.light(cosine, highlight));
-                b = b.wrapping_add(blue.light(cosine, highlight));
+                *lit = [node_cosine(normal.cosine(towards)), self.highlight(normal.cosine(half)) as i32];
             }
         }
-        [(r >> FACTOR).min(FULL), (g >> FACTOR).min(FULL), (b >> FACTOR).min(FULL)]
+        let ([first, second, _], [[cosine, highlight], [other, other_highlight]]) = (&self.sums, lit);
+        let level = |ambient: i32, first: &Sum, second: &Sum| {
+            let sum = first.light(cosine, highlight).wrapping_add(second.light(other, other_highlight));
+            ((ambient << FACTOR) + (1 << (FACTOR - 1))).wrapping_add(sum) >> FACTOR
+        };
+        let ([r, g, b], [r1, g1, b1], [r2, g2, b2]) = (self.ambient, first, second);
+        [level(r, r1, r2).min(FULL), level(g, g1, g2).min(FULL), level(b, b1, b2).min(FULL)]
     }
 
     /// [`Self::constant_levels`] of sums that a word does not hold, or of more lights than there are sums for.
@@ -507,6 +518,12 @@ fn reflected((diffuse, specular): (u16, u16), cosine: i32, highlight: u32) -> i3
     let diffuse = (u32::from(diffuse) * cosine + (1 << 14)) >> 15;
     let specular = (u32::from(specular) * highlight + (1 << (ENTRY - 1))) >> ENTRY;
     (diffuse + specular) as i32
+}
+
+/// N·L of a node, Q2.30, as a factor of diffuse light, Q1.15: 0 where there is no light.
+#[inline(always)]
+fn node_cosine(cosine: i32) -> i32 {
+    cosine.max(0) >> (COSINE - FACTOR)
 }
 
 /// The share of a channel in a colour whose largest is `whole`, Q0.8 scaled to what an output of `depth` bits can show.

@@ -7,7 +7,7 @@ use crate::{
         viewport::{Bounds, Viewport},
     },
     lighting::{
-        lights::{Lighting, MeanNormal, point, vertex_cosine},
+        lights::{Lighting, MeanNormal, Source, point, vertex_cosine},
         reflectance::Reflectance,
     },
     math::vector::wide,
@@ -57,19 +57,44 @@ impl VertexStage<'_> {
         let ([x, y, depth], inside) = self.view.project(self.view.to_eye(vertex.position));
         let normal = wide(vertex.normal);
         let light = match (self.light, self.constant) {
-            (VertexLight::None, _) | (VertexLight::Cosines, None) => [0; 3],
+            (VertexLight::None, _) => [0; 4],
+            (VertexLight::Cosines, None) if self.has_two_lights() => self.cosines_of_two_lights(normal),
+            (VertexLight::Cosines, None) => [0; 4],
             (light, Some([towards, half])) if light != VertexLight::Levels || !self.reflectance.three_channels() => {
                 let cosines = [vertex_cosine(normal, *towards), vertex_cosine(normal, *half)];
                 match light {
-                    VertexLight::Cosines | VertexLight::CosinesOrLevels => [cosines[0], cosines[1], 0],
-                    _ if self.reflectance.three_channels() => [cosines[0], self.reflectance.highlight(cosines[1]) as i32, 0],
-                    _ => [self.reflectance.level(cosines); 3],
+                    VertexLight::Cosines | VertexLight::CosinesOrLevels => [cosines[0], cosines[1], 0, 0],
+                    _ if self.reflectance.three_channels() => [cosines[0], self.reflectance.highlight(cosines[1]) as i32, 0, 0],
+                    _ => [self.reflectance.level(cosines); 4],
                 }
             }
-            _ if self.lighting.is_constant() => self.reflectance.constant_levels(&self.lighting.sources, &MeanNormal::at(normal)),
-            _ => self.reflectance.levels(self.lighting.cosines(point(vertex.position), normal.map(|c| c << (30 - UNIT)))),
+            _ => {
+                let levels = if self.lighting.is_constant() {
+                    self.reflectance.constant_levels(&self.lighting.sources, &MeanNormal::at(normal))
+                } else {
+                    self.reflectance.levels(self.lighting.cosines(point(vertex.position), normal.map(|c| c << (30 - UNIT))))
+                };
+                [levels[0], levels[1], levels[2], 0]
+            }
         };
         ScreenVertex { x, y, depth, light, state: if inside { State::READY } else { State::OUTSIDE } }
+    }
+
+    /// Whether vertices have the cosines of two lights: both are constant, on a material of three channels.
+    #[inline(always)]
+    fn has_two_lights(&self) -> bool {
+        self.reflectance.has_two_lights() && self.lighting.is_constant()
+    }
+
+    /// N·L and N·H of one light, then of the other, Q2.30.
+    #[inline(always)]
+    fn cosines_of_two_lights(&self, normal: [i32; 3]) -> [i32; 4] {
+        let [Source::Directional { towards, half }, Source::Directional { towards: other, half: other_half }] =
+            self.lighting.sources.as_slice()
+        else {
+            return [0; 4];
+        };
+        [vertex_cosine(normal, *towards), vertex_cosine(normal, *half), vertex_cosine(normal, *other), vertex_cosine(normal, *other_half)]
     }
 
     /// The visible bounding box of a triangle with a corner that is not cached or needs clipping.

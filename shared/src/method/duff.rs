@@ -106,7 +106,7 @@ impl Loops for Duff {
         // One closure for both, or each would have loops of its own.
         let length = || square;
         if tables.reflectance.lights() == 2 {
-            return quotient::draw_two::<true, _, C>(setup, shading, length, half_reciprocal, tables, band);
+            return quotient::draw_two::<true, _, C>(setup, length, half_reciprocal, tables, band);
         }
         quotient::draw::<true, _, C>(setup, length, half_reciprocal, tables, band)
     }

@@ -85,7 +85,7 @@ impl Costs {
 pub enum VertexLight {
     /// Nothing.
     None,
-    /// `[N·L, N·H]` under one constant light, else nothing.
+    /// `[N·L, N·H]` under one constant light, those of both under two on a material of three channels, else nothing.
     Cosines,
     /// `[N·L, N·H]` under one constant light, else levels.
     CosinesOrLevels,

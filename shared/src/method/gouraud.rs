@@ -74,14 +74,14 @@ impl Loops for ThreeChannels<Gouraud> {
         // Each of these is drawn by a call of its own: by measurement, what they have in common is set up sooner.
         if shading.constant.is_none() {
             let channels = || {
-                let ([r0, g0, b0], [r1, g1, b1], [r2, g2, b2]) = (a.light, b.light, c.light);
+                let ([r0, g0, b0], [r1, g1, b1], [r2, g2, b2]) = (a.levels(), b.levels(), c.levels());
                 [[r0, r1, r2], [g0, g1, g2], [b0, b1, b2]]
             };
             return Some(Shading::fill_three(setup, channels, |plane| plane, band));
         }
         // By the table of colours where the light has no highlight.
         if a.light[1] | b.light[1] | c.light[1] == 0 && reflectance.has_ramp() {
-            let level = |[cosine, ..]: [i32; 3]| reflectance.ramp_level(cosine);
+            let level = |[cosine, ..]: [i32; 4]| reflectance.ramp_level(cosine);
             let levels = [level(a.light), level(b.light), level(c.light)];
             return Some(setup.fill(|| one(setup.gradients, levels), Ramp(tables.ramp), band));
         }
@@ -105,12 +105,12 @@ fn corner_levels(setup: &TriangleSetup<'_>, shading: &Shading<'_>) -> [[i32; 3];
         return reflections(setup.corners, shading.reflectance);
     }
     let [a, b, c] = setup.corners;
-    [a.light, b.light, c.light]
+    [a.levels(), b.levels(), c.levels()]
 }
 
 /// The levels at corners whose light is [`VertexLight::ReflectionOrLevels`] of one constant light in three channels.
 #[inline(never)]
 fn reflections([a, b, c]: [&ScreenVertex; 3], reflectance: &Reflectance) -> [[i32; 3]; 3] {
-    let level = |[cosine, highlight, _]: [i32; 3]| reflectance.reflection(cosine, highlight as u32);
+    let level = |[cosine, highlight, ..]: [i32; 4]| reflectance.reflection(cosine, highlight as u32);
     [level(a.light), level(b.light), level(c.light)]
 }

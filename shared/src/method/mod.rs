@@ -253,12 +253,20 @@ impl TriangleSetup<'_> {
         self.screen.draw_spans(self.gradients, shader, canvas)
     }
 
-    /// What the vertices hold of [`VertexLight::Cosines`].
+    /// What the vertices hold of [`VertexLight::Cosines`] of the first light.
     #[inline(always)]
     #[must_use]
     pub(crate) fn corner_lights(&self) -> CornerCosines {
         let [a, b, c] = self.corners;
         [[a.light[0], b.light[0], c.light[0]], [a.light[1], b.light[1], c.light[1]]]
+    }
+
+    /// What the vertices hold of [`VertexLight::Cosines`] of two lights. Domain: [`Reflectance::has_two_lights`], constant lights.
+    #[inline(always)]
+    #[must_use]
+    pub(crate) fn corners_of_two_lights(&self) -> [CornerCosines; 2] {
+        let [a, b, c] = self.corners;
+        [self.corner_lights(), [[a.light[2], b.light[2], c.light[2]], [a.light[3], b.light[3], c.light[3]]]]
     }
 
     /// Whether the highlight of one constant light reaches a visible level nowhere on the triangle: N·H is linear and |N| at least
@@ -397,7 +405,10 @@ impl Shading<'_> {
     where
         Nodes<N, 3, RANGE>: Field,
     {
-        let half_steps = C::DEPTH.map(|depth| 1 << (CHANNEL + 7 - depth));
+        let half_steps = const {
+            let [r, g, b] = C::DEPTH;
+            [1 << (CHANNEL + 7 - r), 1 << (CHANNEL + 7 - g), 1 << (CHANNEL + 7 - b)]
+        };
         let patch = || walked(Nodes::<N, 3, RANGE>::new(channels(), CHANNEL - LEVEL).biased(half_steps).fit(setup.gradients));
         setup.fill(patch, Rgb(PhantomData), band)
     }

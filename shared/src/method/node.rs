@@ -261,7 +261,7 @@ mod tests {
             state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
             (state >> 48) as i16 / 2
         };
-        let screen = [[0, 0], [160, 90], [20, 200]].map(|[x, y]| ScreenVertex { x, y, depth: 0, light: [0; 3], state: State::READY });
+        let screen = [[0, 0], [160, 90], [20, 200]].map(|[x, y]| ScreenVertex { x, y, depth: 0, light: [0; 4], state: State::READY });
         let [a, b, c] = &screen;
         let screen = ScreenTriangle::new([a, b, c], [0; 3]);
         let gradients = Gradients::if_word_sized(screen.corners).unwrap();

@@ -15,7 +15,7 @@ use crate::{
         material_tables::MaterialTables,
     },
     math::{highlight_lookup, highlight_lookup::QuotientLookup},
-    method::{CornerCosines, Shading, TriangleSetup, largest, lighting_model::fitted, two_lights::TwoLights},
+    method::{CornerCosines, TriangleSetup, largest, lighting_model::fitted, two_lights::TwoLights},
     pixel::Pixel,
     raster::{
         band::Band,
@@ -172,13 +172,12 @@ fn draw_rgb<const EXACT: bool, F: Field, C: Pixel>(
 #[inline(never)]
 pub(super) fn draw_two<const EXACT: bool, F: Field, C: Pixel>(
     setup: &TriangleSetup<'_>,
-    shading: &Shading<'_>,
     length: impl FnOnce() -> F,
     half_reciprocal: impl Fn(F::Value) -> i32 + Copy,
     tables: MaterialTables<'_, C>,
     band: &mut Band<'_, C>,
 ) -> Option<u32> {
-    let TwoLights { colours, cosines: [first, second], highlights } = TwoLights::on(setup, shading, tables)?;
+    let TwoLights { colours, cosines: [first, second], highlights } = TwoLights::on(setup, tables)?;
     let full = colours.diffuse();
     let is_dark = |[towards, _]: &CornerCosines| largest(towards) <= 0;
     let lookup = QuotientLookup::new(&tables.reflectance.highlight_lut);

@@ -141,7 +141,7 @@ fn draw_two<C: Pixel>(
     tables: MaterialTables<'_, C>,
     band: &mut Band<'_, C>,
 ) -> Option<u32> {
-    let TwoLights { colours, cosines: [first, second], highlights } = TwoLights::on(setup, shading, tables)?;
+    let TwoLights { colours, cosines: [first, second], highlights } = TwoLights::on(setup, tables)?;
     let (full, exponent) = (colours.diffuse(), shading.exponent);
     let (towards, other) = (setup.six_from(first[0]), setup.six_from(second[0]));
     let is_dark = |cosines| DiffuseSign::of(cosines) == DiffuseSign::Nowhere;

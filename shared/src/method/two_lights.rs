@@ -2,7 +2,7 @@
 
 use crate::{
     lighting::{constant_lights::TwoLightsRgb, material_tables::MaterialTables},
-    method::{CornerCosines, Shading, TriangleSetup, largest},
+    method::{CornerCosines, TriangleSetup, largest},
     pixel::Pixel,
 };
 
@@ -17,12 +17,11 @@ pub(super) struct TwoLights<'a, C> {
 }
 
 impl<'a, C: Pixel> TwoLights<'a, C> {
-    /// The lights of `shading` on the triangle `setup`; `None` unless there are two that have loops.
+    /// The lights on the triangle `setup`, whose vertices have [`crate::method::VertexLight::Cosines`]; `None` unless there are two that have loops.
     #[inline(always)]
-    pub(super) fn on(setup: &TriangleSetup<'_>, shading: &Shading<'_>, tables: MaterialTables<'a, C>) -> Option<Self> {
+    pub(super) fn on(setup: &TriangleSetup<'_>, tables: MaterialTables<'a, C>) -> Option<Self> {
         let [forth, back] = tables.two_lights_rgb()?;
-        let [one, two] = shading.lighting.sources.as_slice() else { return None };
-        let (one, two) = (shading.constant_cosines(setup, one), shading.constant_cosines(setup, two));
+        let [one, two] = setup.corners_of_two_lights();
         let threshold = setup.highlight_threshold(tables.reflectance);
         let highlit = |[_, half]: &CornerCosines| largest(half) >= threshold;
         Some(match (highlit(&one), highlit(&two)) {
