@@ -4,7 +4,6 @@ use crate::{Display, Failure, Painter, painter::rows, stack::without_paint};
 use core::{
     cell::{Cell, RefCell},
     mem,
-    ops::Range,
     sync::atomic::{AtomicBool, Ordering},
 };
 use cortex_m::asm::{sev, wfe};
@@ -93,8 +92,8 @@ pub struct TwoCores<C: 'static> {
     pub bands: [&'static mut [C]; 2],
     /// The second one.
     pub second: SecondCore,
-    /// The first row of the lower part, such that both take equally long; `None` before the first frame.
-    pub border: Option<u32>,
+    /// The share of the triangles that end in the upper part, of 2^16, such that both take equally long.
+    pub share: u16,
 }
 
 impl<D> Painter<D> for TwoCores<D::Color>
@@ -102,10 +101,8 @@ where
     D: Display<Color: Pixel<Stored: Sync> + Send + Sync> + Send,
 {
     fn draw(&mut self, display: &mut D, frame: Frame<'_, D::Color>, mut crc: Option<&mut PictureCrc>) -> Result<Stats, Failure> {
-        // What there is to do lies in the rows that triangles reach.
-        let Range { start, end } = frame.rows();
-        let border = self.border.unwrap_or(start.midpoint(end)).max(start).min(end);
-        let mut frame = frame.in_two(border);
+        let row = frame.row_at(self.share);
+        let mut frame = frame.in_two(row);
         let [upper, lower] = frame.parts();
         let [above, below] = &mut self.bands;
         let display = Mutex::new(RefCell::new(display));
@@ -117,13 +114,7 @@ where
         if let (Some(crc), Some(rest)) = (crc, rest) {
             crc.append(rest);
         }
-        // Towards where both would take equally long if a row took as long as the others of its part. All of the way is too far, since most
-        // triangles lie in the middle; but the first border was a guess.
-        let [of_upper, of_lower] = times.map(|time| time as i32);
-        let each = |time: i32, rows: u32| (time << 4) / (rows.max(1) as i32);
-        let each = (each(of_upper, border - start) + each(of_lower, end - border)).max(1);
-        let way = if self.border.is_some() { 2 } else { 1 };
-        self.border = Some(border.saturating_add_signed(((of_lower - of_upper) << 4) / each / way));
+        self.share = fair(self.share, times);
         Ok(frame.stats())
     }
 
@@ -134,20 +125,26 @@ where
     }
 }
 
-/// Draws the rows of `part`, and returns how many microseconds that took, without the time in which bands wait to be sent.
+/// The share, of 2^16, by which both parts would take equally long: the one that took longer gives half of the difference to the other, where
+/// each of its triangles takes as long as it took.
+fn fair(share: u16, [upper, lower]: [u32; 2]) -> u16 {
+    let given = |share: u32, time: u32, difference: u32| (u64::from(share) * u64::from(difference) / u64::from(2 * time.max(1))) as u32;
+    let share = u32::from(share);
+    let share = match upper.checked_sub(lower) {
+        Some(longer) => share - given(share, upper, longer),
+        None => share + given((1 << 16) - share, lower, lower - upper),
+    };
+    share.clamp(1 << 12, 15 << 12) as u16
+}
+
+/// Draws the rows of `part`, and returns how many microseconds that took.
 fn timed<C: Pixel>(
     mut part: FramePart<'_, '_, C>,
     band: &mut &'static mut [C],
     send: impl FnMut(Rectangle, &'static mut [C]) -> &'static mut [C],
     crc: Option<&mut PictureCrc>,
 ) -> Result<u32, RenderError> {
-    let mut time = 0;
-    let next = |band: &mut [C]| {
-        let start = Instant::now();
-        let area = part.next_band(band);
-        time += start.elapsed().as_micros() as u32;
-        area
-    };
-    rows(next, band, send, crc)?;
-    Ok(time)
+    let start = Instant::now();
+    rows(|band| part.next_band(band), band, send, crc)?;
+    Ok(start.elapsed().as_micros() as u32)
 }

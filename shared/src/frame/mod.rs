@@ -83,6 +83,13 @@ impl<'r, C: Pixel> Frame<'r, C> {
         self.part.rows.clone()
     }
 
+    /// The row above which a `share` of the triangles end, of 2^16: about where [`Self::in_two`] has to divide the frame for two processors
+    /// to share the work so.
+    #[must_use]
+    pub fn row_at(&self, share: u16) -> u32 {
+        self.part.bins.row_at(self.part.entries, share)
+    }
+
     /// Draws only these `rows`; to be called before the first band. It is enough to draw and send the rows that triangles reach in this
     /// frame or reached in the frame before, see [`Self::rows`]: a display that shows the frame before has background in all others.
     pub fn limit(&mut self, rows: Range<u32>) {

@@ -104,15 +104,13 @@ impl<'r> Part<'r> {
         // Each processor links the triangles of its own rows, so both have a list of all of them.
         let (entries, below) = halves(entries, if fits { used } else { usize::MAX });
         below.iter_mut().zip(entries.iter()).for_each(|(below, entry)| *below = *entry);
-        let mut lower = bins.clone();
-        lower.skip(below, row);
         let rows_of = |length: usize| if fits { (length / 2).checked_div(width).unwrap_or(0) * width } else { usize::MAX };
         let (held, of_depth, of_samples) = (active_triangles.len() / 2, rows_of(depth.len()), rows_of(samples.len()));
         let (active_triangles, active_below) = halves(active_triangles, held);
         let (depth, depth_below) = halves(depth, of_depth);
         let (samples, samples_below) = halves(samples, of_samples);
         let below = Part {
-            bins: lower,
+            bins: bins.clone(),
             binned,
             entries: below,
             depth: depth_below,
@@ -149,6 +147,7 @@ impl<'r> Part<'r> {
         let mut band = Band { pixels, depth, width, top: self.top as i32, rows: rows as i32, blend, active };
         band.clear(scene.settings.background, self.rows.clone());
         let (pixels, drawn) = if self.binned {
+            self.bins.skip(self.entries, self.top);
             let mut walk = self.bins.band(self.entries, bottom);
             let pixels = draw_binned(scene, &mut walk, &mut band);
             self.bins.take_over(walk);

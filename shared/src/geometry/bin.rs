@@ -127,6 +127,30 @@ impl Bins {
         self.top.min(self.bottom)..self.bottom
     }
 
+    /// The row above which a `share` of the triangles end, of 2^16: about where a frame has to be divided for two processors to share the
+    /// work so.
+    #[must_use]
+    pub(crate) fn row_at(&self, entries: &[Entry], share: u16) -> u32 {
+        let Range { start, end } = self.rows();
+        let step = NonZeroU32::new((end - start).div_ceil(BINS as u32)).unwrap_or(NonZeroU32::MIN);
+        let steps_per_row = (1 << 20) / step + 1;
+        let mut ends = [0u16; BINS];
+        for entry in entries.iter().take(self.count.into()) {
+            let last = u32::from(entry.bottom).saturating_sub(start + 1);
+            if let Some(ends) = ends.get_mut((last.wrapping_mul(steps_per_row) >> 20) as usize) {
+                *ends += 1;
+            }
+        }
+        let (mut wanted, mut row) = ((u32::from(self.count) * u32::from(share)) >> 16, start);
+        for ends in ends.map(u32::from) {
+            match NonZeroU32::new(ends) {
+                Some(ends) if wanted < ends.get() => return row + wanted * step.get() / ends,
+                _ => (wanted, row) = (wanted - ends, row + step.get()),
+            }
+        }
+        end
+    }
+
     /// The triangles of the band that ends at row `bottom`. Afterwards [`Self::take_over`] keeps those that reach into the next band.
     pub(crate) fn band<'e>(&mut self, entries: &'e mut [Entry], bottom: u32) -> Walk<'e> {
         let last = self.of(bottom.saturating_sub(1));
@@ -140,10 +164,12 @@ impl Bins {
         Walk { entries, lists: [self.active, fresh], head: NONE, tail: NONE, bottom }
     }
 
-    /// Leaves out the triangles that end above `row`; to be called before the first band.
+    /// Leaves out the triangles that end above `row`, where the first band begins; does nothing for any later band.
     pub(crate) fn skip(&mut self, entries: &mut [Entry], row: u32) {
-        let walk = self.band(entries, row);
-        self.take_over(walk);
+        if self.reached == 0 && row > 0 {
+            let walk = self.band(entries, row);
+            self.take_over(walk);
+        }
     }
 
     /// Keeps the triangles of a band that reach into the next one.
@@ -249,5 +275,22 @@ mod tests {
                 top = bottom;
             }
         }
+    }
+
+    /// Above the row of a share end so many triangles, but for those that end in the same 1/64 of the frame's rows.
+    #[test]
+    fn a_share_of_the_triangles_ends_above_its_row() {
+        let (mut entries, mut bins) = ([Entry::EMPTY; 400], Bins::new(240, 10));
+        let bottoms: [u32; 400] = core::array::from_fn(|i| 41 + (i as u32 * i as u32) % 151);
+        for (i, &bottom) in bottoms.iter().enumerate().rev() {
+            bins.push(&mut entries, i as u32, true, [40.min(bottom - 1), bottom]);
+        }
+        let step = (191u32 - 40).div_ceil(64);
+        for share in (0..=u16::MAX).step_by(1021) {
+            let (row, wanted) = (bins.row_at(&entries, share), 400 * usize::from(share) >> 16);
+            let above = |row: u32| bottoms.iter().filter(|&&bottom| bottom <= row).count();
+            assert!((above(row.saturating_sub(step))..=above(row + step)).contains(&wanted), "{share}: {row}, {wanted}");
+        }
+        assert_eq!(Bins::new(240, 10).row_at(&entries, 1 << 15), 0, "of no triangles");
     }
 }
