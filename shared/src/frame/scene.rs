@@ -92,7 +92,8 @@ impl<C: Pixel> Scene<'_, C> {
         let perspective = self.settings.perspective_correct && stream.is_perspective();
         let style = Style {
             three_channels: reflectance.three_channels(),
-            lights: if self.lighting.is_constant() { reflectance.lights() } else { 0 },
+            lights: if self.lighting.is_directional() { reflectance.lights() } else { 0 },
+            local_viewer: self.lighting.viewer.is_local(),
             dithered_or_antialiased: *dither || self.settings.antialiased(),
             perspective,
         };

@@ -45,8 +45,8 @@ pub struct Lighting {
     pub axes: [[i32; 3]; 3],
     /// The eye in these axes, relative to the origin of object space, Q18.14: exact, unlike [`Viewer::Local`].
     pub eye: [i32; 3],
-    /// See [`Self::is_constant`].
-    constant: bool,
+    /// See [`Self::is_directional`].
+    directional: bool,
 }
 
 impl Lighting {
@@ -68,8 +68,7 @@ impl Lighting {
         }
         let [x, y, z] = pose.translation;
         let directional = sources.iter().all(|source| matches!(source, Source::Directional { .. }));
-        let constant = directional && matches!(viewer, Viewer::Infinite(_));
-        Self { sources, viewer, axes: [right, up, towards_eye], eye: [-x, -y, z], constant }
+        Self { sources, viewer, axes: [right, up, towards_eye], eye: [-x, -y, z], directional }
     }
 
     /// L and H, if there is just one light, directional, under an infinite viewer. N·L and N·H are then linear in N, which every method can
@@ -103,7 +102,14 @@ impl Lighting {
     #[inline(always)]
     #[must_use]
     pub fn is_constant(&self) -> bool {
-        self.constant
+        self.directional && !self.viewer.is_local()
+    }
+
+    /// Whether all lights are directional.
+    #[inline(always)]
+    #[must_use]
+    pub fn is_directional(&self) -> bool {
+        self.directional
     }
 }
 
@@ -119,6 +125,13 @@ impl Source {
 }
 
 impl Viewer {
+    /// Whether the viewer is at a position.
+    #[inline(always)]
+    #[must_use]
+    pub fn is_local(&self) -> bool {
+        matches!(self, Self::Local(_))
+    }
+
     /// Unit vector from `position` towards the viewer, Q2.30.
     #[must_use]
     pub fn towards(&self, position: [i32; 3]) -> [i32; 3] {

@@ -19,7 +19,7 @@ use crate::{
         vector::{add, narrow_dot, wide},
     },
     method::{
-        Loops, Shading, Style, TriangleSetup, largest,
+        CornerCosines, Loops, Shading, Style, TriangleSetup, largest,
         lighting_model::{EXTRA, LightingModel, Lit, NODE, Quadratic, linear, signed},
         node::is_steep,
         quotient,
@@ -87,7 +87,7 @@ impl Loops for Duff {
     type ThreeChannels = Self;
 
     fn take(style: Style) -> bool {
-        (1..=2).contains(&style.lights) && !style.dithered_or_antialiased && !style.perspective
+        (1..=2).contains(&style.lights) && !style.local_viewer && !style.dithered_or_antialiased && !style.perspective
     }
 
     #[inline(always)]
@@ -97,24 +97,37 @@ impl Loops for Duff {
         tables: MaterialTables<'_, C>,
         band: &mut Band<'_, C>,
     ) -> Option<u32> {
-        if is_steep(shading.exponent) && (tables.reflectance.lights() > 1 || !setup.has_no_highlight(tables.reflectance)) {
-            return None;
-        }
-        let square = tabled(setup)?;
-        let halves = HalfRsqrt::get();
-        let half_reciprocal = |[square]: [u32; 1]| halves.rsqrt(square) as i32;
-        // One closure for both, or each would have loops of its own.
-        let length = || square;
-        if tables.reflectance.lights() == 2 {
-            return quotient::draw_two::<true, _, C>(setup, length, half_reciprocal, tables, band);
-        }
-        quotient::draw::<true, _, C>(setup, length, half_reciprocal, tables, band)
+        draw(setup, || setup.corner_lights(), shading, tables, band)
     }
+}
+
+/// [`Loops::draw`] under one light with the cosines `corners`, or two.
+#[inline(always)]
+pub(crate) fn draw<C: Pixel>(
+    setup: &TriangleSetup<'_>,
+    corners: impl Fn() -> CornerCosines,
+    shading: &Shading<'_>,
+    tables: MaterialTables<'_, C>,
+    band: &mut Band<'_, C>,
+) -> Option<u32> {
+    let reflectance = tables.reflectance;
+    if is_steep(shading.exponent) && (reflectance.lights() > 1 || largest(&corners()[1]) >= setup.highlight_threshold(reflectance)) {
+        return None;
+    }
+    let square = tabled(setup)?;
+    let halves = HalfRsqrt::get();
+    let half_reciprocal = |[square]: [u32; 1]| halves.rsqrt(square) as i32;
+    // One closure for both, or each would have loops of its own.
+    let length = || square;
+    if tables.reflectance.lights() == 2 {
+        return quotient::draw_two::<true, _, C>(setup, length, half_reciprocal, tables, band);
+    }
+    quotient::draw::<true, _, C>(setup, &corners(), length, half_reciprocal, tables, band)
 }
 
 /// The field |N|² minus [`LEAST`], Q0.32; `None` if |N|² leaves the table of roots.
 #[inline(always)]
-fn tabled(setup: &TriangleSetup<'_>) -> Option<Nodes<6, 1, HAVERSINE_RANGE>> {
+pub(crate) fn tabled(setup: &TriangleSetup<'_>) -> Option<Nodes<6, 1, HAVERSINE_RANGE>> {
     let [ab, bc, ca] = setup.edges(setup.triangle.haversine);
     if is_curved(setup) || ab.max(bc).max(ca) >= 1 << HAVERSINE_RANGE {
         return None;
@@ -125,7 +138,7 @@ fn tabled(setup: &TriangleSetup<'_>) -> Option<Nodes<6, 1, HAVERSINE_RANGE>> {
 
 /// Bits of the haversine of an edge whose normals are at most 90 degrees apart. They are so few that triangles are set up in words, see
 /// [`crate::setup::word_sized`].
-const HAVERSINE_RANGE: u32 = HAVERSINE - 1;
+pub(crate) const HAVERSINE_RANGE: u32 = HAVERSINE - 1;
 
 /// Whether the interpolated normal may be shorter than 1/2, where the table of roots and every fit of 1/|N| end.
 pub fn is_curved(setup: &TriangleSetup<'_>) -> bool {

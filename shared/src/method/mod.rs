@@ -10,6 +10,7 @@ mod facts;
 pub mod flat;
 pub mod gouraud;
 pub mod lighting_model;
+mod local_viewer;
 pub mod node;
 pub mod phong;
 mod quotient;
@@ -75,8 +76,10 @@ pub trait Method: Sync {
 pub(crate) struct Style {
     /// Three channels in place of one.
     pub(crate) three_channels: bool,
-    /// Number of constant lights, if their levels fit the formats of [`crate::lighting::one_light`]; otherwise 0.
+    /// Number of directional lights, if their levels fit the formats of [`crate::lighting::constant_lights`]; otherwise 0.
     pub(crate) lights: u8,
+    /// Whether highlights are seen from a position.
+    pub(crate) local_viewer: bool,
     /// Dither or antialiasing.
     pub(crate) dithered_or_antialiased: bool,
     /// Interpolation in perspective.

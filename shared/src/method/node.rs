@@ -2,7 +2,7 @@
 
 use crate::{
     arch::product::{by_fraction, product},
-    format::{INVERSE_SUM_LENGTH, POSITION, UNIT},
+    format::{COSINE, INVERSE_SUM_LENGTH, POSITION, UNIT},
     lighting::lights::{MeanNormal, cosine, point, vertex_cosine},
     math::{
         rsqrt::rsqrt_wide,
@@ -238,6 +238,18 @@ fn exact_six(vertices: [&Vertex; 3], [a, b, c]: [i32; 3]) -> [i32; 6] {
 #[inline(always)]
 pub fn zip_six<A, B, R>([a0, a1, a2, a3, a4, a5]: [A; 6], [b0, b1, b2, b3, b4, b5]: [B; 6], f: impl Fn(A, B) -> R) -> [R; 6] {
     [f(a0, b0), f(a1, b1), f(a2, b2), f(a3, b3), f(a4, b4), f(a5, b5)]
+}
+
+/// Fraction bits of the vectors of a [`field_product`].
+pub(super) const FRACTION: u32 = 28;
+
+/// Six nodes of the product of two linear vector fields ([`FRACTION`] fraction bits each), Q2.30.
+#[inline(never)]
+pub(super) fn field_product(a: &[[i32; 3]; 3], b: &[[i32; 3]; 3]) -> [i32; 6] {
+    let ([a0, a1, a2], [b0, b1, b2]) = (*a, *b);
+    let corner = |a, b| (dot(a, b) >> (2 * FRACTION - COSINE)) as i32;
+    let middle = |a, c, b, d| (dot(add(a, c), add(b, d)) >> (2 * FRACTION + 2 - COSINE)) as i32;
+    [corner(a0, b0), corner(a1, b1), corner(a2, b2), middle(a0, a1, b0, b1), middle(a1, a2, b1, b2), middle(a2, a0, b2, b0)]
 }
 
 #[cfg(test)]

@@ -2,13 +2,13 @@
 //!
 //! Normals, lights and viewer are linear over the screen, so every dot product
 //! between them is linear or exactly quadratic and can be walked; only the roots
-//! that normalise are taken at each pixel. Under one constant light that is [`crate::method::duff`].
+//! that normalise are taken at each pixel. Under one constant light that is [`crate::method::duff`], under one directional light and a local
+//! viewer `local_viewer`.
 //!
 //! Cost: one constant light as `duff`; otherwise 6 additions and 2 roots, and 6 additions and 2 roots more for each light.
 //! Error: that of the tables, [`crate::math::highlight_lut::NEAREST_ERROR`] of the highlight above all. Domain: any lights and viewer.
 
 use crate::{
-    format::COSINE,
     lighting::{
         lights::{Source, Viewer, point},
         material_tables::MaterialTables,
@@ -16,12 +16,14 @@ use crate::{
     },
     math::{
         highlight_lut::CosineLookup,
-        vector::{add, dot, sub, wide},
+        vector::{sub, wide},
     },
     method::{
         Costs, Facts, Loops, Method, Shading, Style, TriangleSetup, VertexLight,
         duff::{self, Duff, Root},
         lighting_model::{LightingModel, quadratic, signed},
+        local_viewer,
+        node::field_product,
     },
     pixel::Pixel,
     raster::{band::Band, canvas::Canvas},
@@ -56,7 +58,7 @@ impl Loops for Phong {
     type ThreeChannels = Self;
 
     fn take(style: Style) -> bool {
-        Duff::take(style)
+        Duff::take(style) || local_viewer::take(style)
     }
 
     #[inline(always)]
@@ -66,7 +68,14 @@ impl Loops for Phong {
         tables: MaterialTables<'_, C>,
         band: &mut Band<'_, C>,
     ) -> Option<u32> {
-        Duff::draw(setup, shading, tables, band)
+        let cosines = match shading.lighting.viewer {
+            Viewer::Infinite(_) => None,
+            Viewer::Local(eye) => match local_viewer::draw(setup, eye, shading, tables, band)? {
+                Ok(pixels) => return Some(pixels),
+                Err(cosines) => Some(cosines),
+            },
+        };
+        duff::draw(setup, || cosines.unwrap_or_else(|| setup.corner_lights()), shading, tables, band)
     }
 }
 
@@ -81,13 +90,13 @@ where
         Viewer::Infinite(towards) => [towards; 3],
         Viewer::Local(eye) => positions.map(|p| sub(eye, p)),
     });
-    let common = quadratic([product(&normals, &normals), product(&view, &view), product(&normals, &view)]);
+    let common = quadratic([field_product(&normals, &normals), field_product(&view, &view), field_product(&normals, &view)]);
     let fit = |source: &Source| {
         let towards = fitted(match *source {
             Source::Directional { towards, .. } => [towards; 3],
             Source::Point(position) => positions.map(|p| sub(position, p)),
         });
-        quadratic([product(&normals, &towards), product(&towards, &towards), product(&view, &towards)])
+        quadratic([field_product(&normals, &towards), field_product(&towards, &towards), field_product(&view, &towards)])
     };
     shading.draw_lit(setup, fit, common, model, canvas)
 }
@@ -98,14 +107,6 @@ fn fitted(vectors: [[i32; 3]; 3]) -> [[i32; 3]; 3] {
     // The largest component below 2^27: lengths below 2^28, dot products of two fit 56 bits.
     let zeros = largest.leading_zeros();
     vectors.map(|v| v.map(|c| if zeros >= 5 { c << (zeros - 5) } else { c >> (5 - zeros) }))
-}
-
-/// Six nodes of the product of two linear vector fields (fractions of 28 bits each), Q2.30.
-fn product(a: &[[i32; 3]; 3], b: &[[i32; 3]; 3]) -> [i32; 6] {
-    let ([a0, a1, a2], [b0, b1, b2]) = (*a, *b);
-    let corner = |a, b| (dot(a, b) >> (56 - COSINE)) as i32;
-    let middle = |a, c, b, d| (dot(add(a, c), add(b, d)) >> (58 - COSINE)) as i32;
-    [corner(a0, b0), corner(a1, b1), corner(a2, b2), middle(a0, a1, b0, b1), middle(a1, a2, b1, b2), middle(a2, a0, b2, b0)]
 }
 
 /// What all lights share at a pixel: the factors that normalise normal and viewer.

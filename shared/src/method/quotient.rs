@@ -134,17 +134,17 @@ fn quotient<const EXACT: bool>(full: u16, light: u32, half_reciprocal: i32) -> i
     if EXACT { diffuse } else { diffuse.min(node(full, 1 << COSINE, PIXEL)) }
 }
 
-/// Draws `setup` under one constant light; `None` if its levels do not fit their formats. `half_reciprocal` computes half a reciprocal
+/// Draws `setup` under one light with these `cosines`; `None` if its levels do not fit their formats. `half_reciprocal` computes half a reciprocal
 /// length, Q2.30, from the walked field `length`, `EXACT` or not.
 #[inline(always)]
 pub(super) fn draw<const EXACT: bool, F: Field, C: Pixel>(
     setup: &TriangleSetup<'_>,
+    cosines: &CornerCosines,
     length: impl FnOnce() -> F,
     half_reciprocal: impl Fn(F::Value) -> i32 + Copy,
     tables: MaterialTables<'_, C>,
     band: &mut Band<'_, C>,
 ) -> Option<u32> {
-    let cosines = &setup.corner_lights();
     let (rgb, has_no_highlight) = (tables.one_light_rgb(), largest(&cosines[1]) < setup.highlight_threshold(tables.reflectance));
     let ramp = if rgb.is_some() { tables.diffuse_ramp() } else { Some(tables.one_light_ramp()?) };
     Some(match (ramp, rgb) {

@@ -63,7 +63,7 @@ impl Loops for RenqNewton {
     type ThreeChannels = Self;
 
     fn take(style: Style) -> bool {
-        style.lights == 1 && !style.dithered_or_antialiased && !style.perspective
+        style.lights == 1 && !style.local_viewer && !style.dithered_or_antialiased && !style.perspective
     }
 
     #[inline(always)]
@@ -78,7 +78,7 @@ impl Loops for RenqNewton {
             return None;
         }
         let lengths = || (renq::length(setup, shading.exponent), duff::square(setup, shading.exponent));
-        quotient::draw::<false, _, C>(setup, lengths, |lengths| Newton::<1>.half_reciprocal(lengths), tables, band)
+        quotient::draw::<false, _, C>(setup, &setup.corner_lights(), lengths, |lengths| Newton::<1>.half_reciprocal(lengths), tables, band)
     }
 }
 

@@ -10,9 +10,6 @@ use crate::{
     setup::edge_walker::EdgeState,
 };
 
-/// Words of a quadratic in three channels.
-const WORDS: usize = 18;
-
 /// A triangle whose drawing the next band continues.
 #[derive(FromBytes, IntoBytes, Immutable, KnownLayout, Clone, Copy, Debug)]
 #[repr(C)]
@@ -25,12 +22,15 @@ pub struct ActiveTriangle {
     /// The plane of depth, on the first row of the next band.
     depth: [u32; 3],
     /// The saved patch.
-    words: [u32; WORDS],
+    words: [u32; Self::WORDS],
 }
 
 impl ActiveTriangle {
     /// No triangle; all zeros, which takes no flash in static memory.
-    pub const EMPTY: Self = Self { key: 0, edges: EdgeState::NONE, has_depth: 0, depth: [0; 3], words: [0; WORDS] };
+    pub const EMPTY: Self = Self { key: 0, edges: EdgeState::NONE, has_depth: 0, depth: [0; 3], words: [0; Self::WORDS] };
+
+    /// Words of a patch that can be saved: those of a quadratic in three channels.
+    pub(crate) const WORDS: usize = 18;
 
     /// Saves what has been stepped to the end of a band; false if the patch cannot be saved.
     #[inline(always)]

@@ -237,7 +237,7 @@ impl ScreenTriangle {
             stop = sides.next(row, &mut rows.sides, self.corners, rows.width as i32);
         }
         let filled = rows.filled;
-        if self.rows.key != 0 && sides.goes_on() {
+        if P::WORDS <= ActiveTriangle::WORDS && self.rows.key != 0 && sides.goes_on() {
             let Rows { sides: pair, depth, patch, .. } = rows;
             save_active((self.rows.key, sides.state(pair, T::ID)), &depth, &patch, &mut band.active);
         }
