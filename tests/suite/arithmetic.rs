@@ -1,7 +1,7 @@
 //! Integers against the same method in 64-bit floating point: every method, every pixel of every scene, all around.
 
 use microphong::stream::{
-    record::{Light, Material},
+    record::{Header, Light, Material, VIEWER_LOCAL},
     seal,
 };
 use microphong_sim::{
@@ -20,6 +20,8 @@ const ERROR: f64 = 0.30;
 const DECIDING_ERROR: f64 = 0.48;
 /// Largest difference of any method on materials that are lifted above white, in 1/255.
 const BRIGHT_ERROR: f64 = 0.30;
+/// Largest difference of Phong shading under a local viewer, in 1/255: at the exponent 1024, by what rounds at the nodes of the general way.
+const LOCAL_ERROR: f64 = 0.40;
 /// Frames of the orbit. Errors differ more from pixel to pixel than from frame to frame, so all pixels of few frames are compared; `stress`
 /// looks at other scenes for a minute.
 const FRAMES: u32 = 9;
@@ -96,5 +98,34 @@ fn bright_lights_are_clamped_at_the_end() {
     for (shader, error) in Shader::ALL.iter().zip(errors(&scene, 7)) {
         println!("{:20} {error:.3} LSB at most", shader.name());
         assert!(error <= BRIGHT_ERROR, "{}: {error} LSB", shader.name());
+    }
+}
+
+/// Directional light under a local viewer, for which methods may have loops, and highlights of all widths.
+#[test]
+fn local_viewers_are_as_exact() {
+    let phong = Shader::ALL.iter().copied().find(|shader| shader.name() == "phong").unwrap();
+    for name in ["teapot", "peer-sphere-plastic", "bunny"] {
+        for exponent in [1, 8, 9, 30, 64, 65, 300, 1024] {
+            let mut scene = scene::load(name).unwrap();
+            let mut bytes = scene.stream.as_bytes().to_vec();
+            let stream = scene.stream.parse().unwrap();
+            let place = |record: *const u8| record as usize - scene.stream.as_bytes().as_ptr() as usize;
+            let header = Header { viewer: VIEWER_LOCAL, ..*stream.header };
+            bytes[place((&raw const *stream.header).cast())..][..size_of::<Header>()].copy_from_slice(header.as_bytes());
+            for material in stream.materials {
+                let material_of = Material { exponent, ..*material };
+                bytes[place((&raw const *material).cast())..][..size_of::<Material>()].copy_from_slice(material_of.as_bytes());
+            }
+            seal(&mut bytes);
+            scene.stream = StreamBytes::from(&bytes[..]);
+            let stream = scene.stream.parse().unwrap();
+            for number in [0, 40] {
+                let frame = Frame::new(stream, scene.size, number);
+                let error = error(&scene, &frame, &frame.visible(), phong, number);
+                println!("{name:20} {exponent:5} {number:3} {error:.3} LSB");
+                assert!(error <= LOCAL_ERROR, "{name}, exponent {exponent}, frame {number}: {error} LSB");
+            }
+        }
     }
 }
