@@ -159,6 +159,17 @@ fn the_report_is_one_file_that_needs_no_other() {
     assert_eq!(page.matches("<table").count(), 2);
 }
 
+/// A coloured metal is walked in one channel, other materials in three: whichever it is, that is what errors are measured in.
+#[test]
+fn phong_is_as_exact_in_any_material() {
+    for name in ["teapot", "dodecahedron", "torus", "bunny", "peer-sphere-plastic"] {
+        let scene = scene::load(name).expect("a built-in scene");
+        let stream = scene.stream.parse().expect("a stream");
+        let error = Reference::new(stream, (80, 60), 0).expect("something to see").total(Shader::PHONG).expect("a comparison").max;
+        assert!(error < 0.5, "{name}: {error}");
+    }
+}
+
 #[test]
 fn figures_are_those_of_pictures_compared_by_hand() {
     let scene = scene::load("triangle").expect("a built-in scene");

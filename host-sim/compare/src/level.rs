@@ -5,7 +5,9 @@ use embedded_graphics_core::geometry::Size;
 use microphong::{
     Stream,
     format::{BIAS, CHANNEL, Intensity, RAMP, WALK},
+    method::{Highlight, Reflectance},
     pixel::Pixel,
+    stream::record::Material,
 };
 use microphong_render::render::{self, Style};
 
@@ -68,6 +70,14 @@ impl Pixel for Fine {
         let level = |level: i32| level.clamp(-BIAS << CHANNEL, (2 * BIAS + 127) << CHANNEL) + (BIAS << CHANNEL);
         Self(Some(levels.map(|walked| (level(walked) as u32) << (WALK - CHANNEL))))
     }
+}
+
+/// Whether [`picture`] walks one level for all channels of a material.
+#[must_use]
+pub fn is_one_channel(stream: &Stream<'_>, material: &Material) -> bool {
+    let mut reflectance = Box::new(Reflectance::EMPTY);
+    reflectance.fill::<Fine>(stream.header, material, stream.lights, (Highlight::Half, false));
+    !reflectance.three_channels()
 }
 
 /// Levels of red, green and blue, 255 is full, row by row from the top; `None` where nothing is drawn.

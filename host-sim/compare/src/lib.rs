@@ -14,14 +14,9 @@ mod samples;
 use anyhow::{Context, Result};
 use edges::Edges;
 pub use edges::Jumps;
-use embedded_graphics_core::{geometry::Size, pixelcolor::Rgb888};
+use embedded_graphics_core::geometry::Size;
 use figures::Spread;
-use microphong::{
-    Stream,
-    lighting::reflectance::Reflectance,
-    method::{Costs, Highlight},
-    renderer::check,
-};
+use microphong::{Stream, method::Costs, renderer::check};
 use microphong_oracle::{self as oracle, Frame, Levels};
 use microphong_render::{
     render::{self, Format, Settings, Style},
@@ -133,12 +128,7 @@ impl<'s> Reference<'s> {
         let samples = Samples::new(&frame, points);
         let phong = samples.shade(&frame, Shader::PHONG.name())?;
         let edges = Edges::new(&frame, |facet| shown.get(facet) == Some(&true));
-        let one_channel = stream.materials.iter().map(|material| {
-            let mut reflectance = Box::new(Reflectance::EMPTY);
-            reflectance.fill::<Rgb888>(stream.header, material, stream.lights, (Highlight::Half, false));
-            !reflectance.three_channels()
-        });
-        let one_channel = one_channel.collect();
+        let one_channel = stream.materials.iter().map(|material| level::is_one_channel(&stream, material)).collect();
         let (window, row) = ends(&starts, &phong, size).context("no pixel shows a triangle")?;
         Ok(Self { stream, number, perspective_correct, frame, one_channel, starts, facets, samples, phong, edges, window, row })
     }
