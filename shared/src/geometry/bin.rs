@@ -287,7 +287,7 @@ mod tests {
         }
         let step = (191u32 - 40).div_ceil(64);
         for share in (0..=u16::MAX).step_by(1021) {
-            let (row, wanted) = (bins.row_at(&entries, share), 400 * usize::from(share) >> 16);
+            let (row, wanted) = (bins.row_at(&entries, share), (400 * usize::from(share)) >> 16);
             let above = |row: u32| bottoms.iter().filter(|&&bottom| bottom <= row).count();
             assert!((above(row.saturating_sub(step))..=above(row + step)).contains(&wanted), "{share}: {row}, {wanted}");
         }
