@@ -93,7 +93,7 @@ pub mod setup;
 pub use display::Picture;
 pub use error::{MAX_SIDE, RenderError};
 pub use fixed;
-pub use frame::{Frame, FrameInTwo, FramePart, Stats};
+pub use frame::{Frame, FrameInTwo, FramePart, Preparation, PreparationPart, Stats};
 pub use memory::Layout;
 #[doc(inline)]
 pub use renderer::Renderer;

@@ -3,7 +3,7 @@
 use crate::{
     Stream,
     error::{MAX_SIDE, RenderError},
-    frame::{Frame, Settings},
+    frame::{Frame, Preparation, Seams, Settings},
     lighting::material_tables::fill_ramp,
     memory::{Layout, Memory},
     method::Facts,
@@ -17,6 +17,8 @@ use embedded_graphics_core::geometry::Size;
 pub struct Renderer<'a, C: Pixel> {
     settings: Settings<'a, C>,
     memory: Memory<'a, C>,
+    /// See [`Self::prepare`].
+    seams: Option<Seams>,
 }
 
 impl<'a, C: Pixel> Renderer<'a, C> {
@@ -53,12 +55,13 @@ impl<'a, C: Pixel> Renderer<'a, C> {
             return Err(RenderError::Materials { need: stream.materials.len() });
         }
         let need = layout.words::<C>();
-        let memory = Memory::new(layout, memory).ok_or(RenderError::Memory { need })?;
+        let mut memory = Memory::new(layout, memory).ok_or(RenderError::Memory { need })?;
         let background = background(stream.header.background);
         let processors = layout.processors as u32;
         let settings =
             Settings { stream, size, processors, shader, dither: false, perspective_correct: false, antialias: false, background };
-        let mut renderer = Self { settings, memory };
+        let seams = if layout.processors > 1 { Seams::new(&stream, &mut memory) } else { None };
+        let mut renderer = Self { settings, memory, seams };
         renderer.set_shader(shader)?;
         Ok(renderer)
     }
@@ -143,6 +146,14 @@ impl<'a, C: Pixel> Renderer<'a, C> {
     #[inline(never)]
     pub fn frame(&mut self, number: u32) -> Frame<'_, C> {
         Frame::new(&self.settings, &mut self.memory, number)
+    }
+
+    /// Begins frame `number` as [`Self::frame`] does, and leaves most of that to two processors: the part of the earlier triangles, which are
+    /// a `share` of all, of 2^16, and that of the later ones. The picture does not depend on it. The layout has to be one for two
+    /// [`Layout::processors`], and to have room for all triangles and vertices of the stream; else one part does everything.
+    pub fn prepare(&mut self, number: u32, share: u16) -> Preparation<'_, C> {
+        let division = self.seams.map(|seams| seams.division(&self.settings.stream, share)).unwrap_or_default();
+        Preparation::new(&self.settings, &mut self.memory, number, division)
     }
 }
 

@@ -7,9 +7,14 @@ use embedded_graphics::{
 };
 use microphong::{FramePart, Layout, MAX_SIDE, Picture, RenderError, Renderer, Stats, Stream, renderer::check};
 use microphong_sim::{
+    look::Look,
+    mesh::Mesh,
+    quantise::quantise,
     render::{self, Style},
     scene,
     shader::Shader,
+    shapes,
+    view::{Up, View},
 };
 use microphong_tests::named;
 use std::thread;
@@ -98,6 +103,99 @@ fn two_parts_are_the_whole() {
                 assert_eq!(counts(frame.stats()), counts(stats));
             }
         }
+    }
+}
+
+/// Frames of a stream, each prepared by two threads at the same time if there is a share for the earlier triangles.
+fn prepared(stream: Stream<'_>, shader: Shader, layout: &Layout, antialias: bool, share: Option<u16>) -> Vec<(Vec<Rgb565>, Stats)> {
+    let size = Size::new(layout.width as u32, 75);
+    let mut memory = vec![u64::MAX; layout.words::<Rgb565>()];
+    let mut renderer = Renderer::with_shader(stream, size, layout, &mut memory, shader.on()).unwrap();
+    renderer.set_antialias(antialias).unwrap();
+    let mut band = vec![Rgb565::RED; layout.band()];
+    let numbers = (0..stream.header.frames.into()).step_by(17);
+    let frames = numbers.map(|number| {
+        let mut frame = match share {
+            None => renderer.frame(number),
+            Some(share) => {
+                let mut preparation = renderer.prepare(number, share);
+                thread::scope(|threads| {
+                    preparation.parts().map(|part| threads.spawn(move || part.run())).map(|thread| thread.join().unwrap())
+                });
+                preparation.frame()
+            }
+        };
+        let mut pixels = Vec::new();
+        while let Some(area) = frame.next_band(&mut band).unwrap() {
+            pixels.extend_from_slice(&band[..(area.size.width * area.size.height) as usize]);
+        }
+        (pixels, frame.stats())
+    });
+    frames.collect()
+}
+
+/// Wherever the triangles are divided, and whatever vertices they share: of all scenes, of vertices that are numbered otherwise, of several
+/// meshes, with triangles that are clipped, and where there is too little room to divide anything.
+#[test]
+fn two_preparations_are_the_whole() {
+    let mut streams: Vec<_> = scene::NAMES.iter().chain(&scene::VARIANTS).map(|name| (*name, scene::load(name).unwrap().stream)).collect();
+    let mesh = shapes::torus(30, 20);
+    let look = |distance| Look::new(scene::default_surface(), View::orbit(Up::Y, 0.5, 0.35, distance, 120));
+    let (mut parts, _) = quantise(&mesh);
+    streams.extend([("far", look(4.0).stream(&parts).unwrap()), ("near", look(1.1).stream(&parts).unwrap())]);
+    let count = parts[0].vertices.len();
+    let at = |index: u16| usize::from(index) * 7919 % count;
+    let mut shuffled = parts[0].vertices.clone();
+    (0..count).for_each(|index| shuffled[at(index as u16)] = parts[0].vertices[index]);
+    parts[0].vertices = shuffled;
+    parts[0].triangles.iter_mut().for_each(|triangle| triangle.corners = triangle.corners.map(|corner| at(corner) as u16));
+    streams.push(("shuffled", look(4.0).stream(&parts).unwrap()));
+    let meshes =
+        mesh.triangles.chunks(170).map(|triangles| quantise(&Mesh { triangles: triangles.to_vec(), ..mesh.clone() }).0).collect::<Vec<_>>();
+    streams.push(("meshes", look(4.0).stream(&meshes.concat()).unwrap()));
+    for (name, stream) in &streams {
+        let stream = stream.parse().unwrap();
+        let (vertices, triangles) = (stream.vertices.len(), stream.triangles.len());
+        let layout = Layout::new(100, 80).processors(2).materials(stream.materials.len()).active_triangles(20).antialias(true);
+        for (room, fits) in [([vertices, triangles], true), ([vertices / 2, triangles], false), ([vertices, triangles / 3], false)] {
+            let layout = layout.vertices(room[0]).triangles(room[1]);
+            for (shader, antialias) in [(Shader::SIX_POINT, false), (Shader::FLAT, false), (Shader::GOURAUD, true)] {
+                let whole = prepared(stream, shader, &layout, antialias, None);
+                for share in [1 << 15, 0, 1 << 11, 20_000, u16::MAX].into_iter().take(if fits { 5 } else { 1 }) {
+                    let divided = prepared(stream, shader, &layout, antialias, Some(share));
+                    assert!(divided == whole, "{name}, {}, room for {room:?}, divided at {share}", shader.name());
+                }
+            }
+        }
+    }
+}
+
+/// What nobody has run is run in the end, once. Each part has its share, if there is room for all.
+#[test]
+fn a_preparation_is_complete() {
+    let scene = scene::load("torus").unwrap();
+    let stream: Stream<'_> = scene.stream.parse().unwrap();
+    let layout = Layout::new(100, 75).processors(2).vertices(stream.vertices.len()).triangles(stream.triangles.len());
+    let mut memory = vec![0; layout.words::<Rgb565>()];
+    let mut renderer = Renderer::<Rgb565>::with_shader(stream, Size::new(100, 75), &layout, &mut memory, Shader::SIX_POINT.on()).unwrap();
+    let drawn = renderer.frame(3).stats();
+    for runs in [[false, false], [true, false], [false, true], [true, true]] {
+        let mut preparation = renderer.prepare(3, 1 << 15);
+        preparation.parts().into_iter().zip(runs).filter(|(_, runs)| *runs).for_each(|(part, _)| part.run());
+        assert_eq!(preparation.frame().stats(), drawn);
+    }
+    let share_of = |layout: Layout, share| {
+        let mut memory = vec![0; layout.words::<Rgb565>()];
+        let mut renderer =
+            Renderer::<Rgb565>::with_shader(stream, Size::new(100, 75), &layout, &mut memory, Shader::SIX_POINT.on()).unwrap();
+        let [later, earlier] = renderer.prepare(0, share).parts().map(|part| part.triangles());
+        assert_eq!([earlier.start, earlier.end, later.end], [0, later.start, stream.triangles.len()]);
+        earlier.len()
+    };
+    assert_eq!(share_of(layout, 1 << 15), stream.triangles.len() / 2);
+    assert_eq!(share_of(layout, 1 << 13), stream.triangles.len() / 8);
+    for small in [layout.processors(1), layout.vertices(stream.vertices.len() - 1), layout.triangles(stream.triangles.len() - 1)] {
+        assert_eq!(share_of(small, 1 << 15), 0);
     }
 }
 

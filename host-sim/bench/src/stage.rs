@@ -63,14 +63,16 @@ pub(super) enum Part {
 
 /// Parts of functions by what their names contain; the first that fits counts. Names as the compiler writes them, so that this
 /// is the one place to follow when functions move.
-const TABLE: [(&str, Part); 23] = [
+const TABLE: [(&str, Part); 25] = [
     ("microphong::raster::triangle::fill_rows", Part::Row),
     ("as microphong::raster::canvas::SpanShader::span", Part::Row),
     ("microphong::raster::band::Band::clear", Part::Clear),
     ("microphong::renderer::Renderer::frame", Part::Frame),
+    ("microphong::renderer::Renderer::prepare", Part::Frame),
     ("microphong::frame::Frame::new", Part::Frame),
+    ("microphong::frame::preparation::Preparation::", Part::Frame),
     ("microphong::mesh::vertices::VertexStage::transform", Part::Vertex),
-    ("microphong::frame::prepare", Part::Cull),
+    ("microphong::frame::preparation::PreparationPart", Part::Cull),
     ("microphong::geometry::bin::Bins", Part::Cull),
     ("microphong::frame::part::Part::draw", Part::Setup),
     ("microphong::frame::scene::Scene::drawing", Part::Setup),

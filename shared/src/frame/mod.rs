@@ -1,28 +1,16 @@
 //! One frame: what happens before its rows are drawn, and how it is drawn in one part or in two.
 
 mod part;
+mod preparation;
 mod scene;
 
 pub use part::Stats;
+pub(crate) use preparation::Seams;
+pub use preparation::{Preparation, PreparationPart};
 pub(crate) use scene::Settings;
 
-use crate::{
-    error::RenderError,
-    geometry::{
-        bin::Bins,
-        cull::{Extent, Facing},
-        depth_elision::DepthElision,
-        pose::Pose,
-        projection::{ScreenVertex, State, View},
-        viewport::Bounds,
-    },
-    lighting::lights::Lighting,
-    memory::Memory,
-    mesh::vertices::VertexStage,
-    pixel::Pixel,
-    raster::active::QueueState,
-};
-use core::{hint::black_box, ops::Range};
+use crate::{error::RenderError, pixel::Pixel};
+use core::ops::Range;
 use embedded_graphics_core::primitives::Rectangle;
 use part::Part;
 use scene::Scene;
@@ -35,38 +23,6 @@ pub struct Frame<'r, C: Pixel> {
 }
 
 impl<'r, C: Pixel> Frame<'r, C> {
-    /// Frame `number` of a renderer.
-    #[inline(never)]
-    pub(crate) fn new(settings: &'r Settings<'r, C>, memory: &'r mut Memory<'_, C>, number: u32) -> Self {
-        let Memory { vertices, bins: entries, depth, reflectances, ramps, samples, active_triangles } = memory;
-        let (stream, size) = (&settings.stream, settings.size);
-        let camera = &stream.header.camera;
-        let pose = Pose::new(camera, number);
-        let lighting = Lighting::new(stream, &pose);
-        let constant = lighting.constant();
-        let view = View::new(camera, &pose, size);
-        let facing = Facing::new(&view, stream.header.radius);
-        // Bins as high as the bands of one processor.
-        let band_rows = settings.band_rows(depth.len(), samples.len()).checked_div(settings.processors).unwrap_or(0);
-        let mut scene = Scene { settings, view, facing, lighting, constant, depth_elision: None, vertices: &[], reflectances, ramps };
-        let mut part = Part {
-            bins: Bins::new(size.height, band_rows),
-            binned: false,
-            entries,
-            depth,
-            samples,
-            active_triangles,
-            queue: QueueState::default(),
-            rows: 0..size.height,
-            top: 0,
-            bottom: size.height,
-            stats: Stats { triangles: stream.triangles.len() as u32, ..Stats::default() },
-        };
-        prepare(&mut scene, vertices, &mut part);
-        scene.vertices = vertices;
-        Self { scene, part }
-    }
-
     /// Draws the next band into the front of `pixels`, row by row, and returns the area that it fills; `None` after the last.
     ///
     /// The first `area.size.width * area.size.height` entries of `pixels` are the band. A slice shorter than a band gets fewer rows.
@@ -155,65 +111,5 @@ impl<C: Pixel> FramePart<'_, '_, C> {
     /// When `pixels` does not hold one row.
     pub fn next_band(&mut self, pixels: &mut [C]) -> Result<Option<Rectangle>, RenderError> {
         self.part.next_band(self.scene, pixels)
-    }
-}
-
-/// Does what happens once a frame: culls triangles, transforms their vertices, and puts them into the bins of the rows that they start
-/// in. Triangles are taken from the last to the first, in the order that [`Bins::push`] needs.
-#[inline(never)]
-fn prepare<C: Pixel>(scene: &mut Scene<'_, C>, cache: &mut [ScreenVertex], part: &mut Part<'_>) {
-    // A copy, which stays in registers.
-    let facing = scene.facing;
-    let Scene { settings, view, lighting, constant, depth_elision, reflectances, .. } = scene;
-    let Settings { stream, size, shader, .. } = settings;
-    let viewport = settings.viewport();
-    let Part { bins, entries, stats, rows, binned, .. } = part;
-    // Reached by a pointer of its own, which is opaque to the compiler: instructions of Armv6-M reach little of a structure.
-    let (bins, entries) = (black_box(bins), &mut **entries);
-    if !viewport.antialiased {
-        *depth_elision = DepthElision::new(stream, view, *size);
-    }
-    let leaning = if depth_elision.is_some() { facing.leaning() } else { Facing::FRONT };
-    cache.iter_mut().take(stream.vertices.len()).for_each(|vertex| vertex.state = State::IDLE);
-    for mesh in stream.meshes.iter().rev() {
-        let (vertices, triangles) = (stream.vertices_of(mesh).unwrap_or_default(), stream.triangles_of(mesh).unwrap_or_default());
-        let Some(reflectance) = reflectances.get(usize::from(mesh.material)) else { continue };
-        let light = shader.facts().vertex_light;
-        let stage = VertexStage { view, lighting, constant: constant.as_ref(), reflectance, light };
-        let cached = cache.get_mut(mesh.first_vertex as usize..).unwrap_or_default();
-        let (first, mut rest) = (mesh.first_triangle, triangles);
-        while let [before @ .., triangle] = rest {
-            rest = before;
-            let height = facing.height(triangle);
-            if height < leaning {
-                continue;
-            }
-            let mut word_sized = false;
-            let bounds = match stage.corners(cached, vertices, triangle) {
-                Some(corners) => {
-                    let extent = Extent::new(corners);
-                    if let Some(elision) = depth_elision {
-                        elision.include(&extent);
-                    }
-                    word_sized = viewport.is_word_sized(&extent);
-                    viewport.bounds(&extent)
-                }
-                None => {
-                    *depth_elision = None;
-                    stage.bounds(viewport, vertices, triangle)
-                }
-            };
-            if let Some(Bounds { top, bottom, .. }) = bounds
-                && height >= Facing::FRONT
-            {
-                bins.push(entries, first + rest.len() as u32, word_sized, [top as u32, bottom as u32]);
-            }
-        }
-    }
-    stats.uncached = stream.vertices.len().saturating_sub(cache.len()) as u32;
-    if let Some(count) = bins.count() {
-        *binned = true;
-        (stats.passes, stats.drawn) = (1, count.into());
-        *rows = bins.rows();
     }
 }

@@ -167,7 +167,7 @@ impl<'r> Part<'r> {
 }
 
 /// The first `length` of some memory, or all if there are fewer, and the rest.
-fn halves<T>(memory: &mut [T], length: usize) -> (&mut [T], &mut [T]) {
+pub(super) fn halves<T>(memory: &mut [T], length: usize) -> (&mut [T], &mut [T]) {
     let length = length.min(memory.len());
     memory.split_at_mut_checked(length).unwrap_or_default()
 }

@@ -68,7 +68,7 @@ pub(crate) struct Scene<'r, C: Pixel> {
 
 impl<C: Pixel> Scene<'_, C> {
     /// The stage that transforms and lights the vertices of `mesh`.
-    fn stage(&self, mesh: &Mesh) -> Option<VertexStage<'_>> {
+    pub(super) fn stage(&self, mesh: &Mesh) -> Option<VertexStage<'_>> {
         let Self { settings, view, lighting, constant, .. } = self;
         let light = settings.shader.facts().vertex_light;
         let reflectance = self.reflectances.get(usize::from(mesh.material))?;

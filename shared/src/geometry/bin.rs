@@ -5,7 +5,7 @@
 //! and drops a triangle below its last row. Lists are in the order of the
 //! stream, so the picture does not depend on the height of the bands.
 
-use core::{num::NonZeroU32, ops::Range};
+use core::{array, cell::Cell, num::NonZeroU32, ops::Range};
 use zerocopy::{FromBytes, Immutable, IntoBytes, KnownLayout};
 
 /// Bins of a frame; the rows are shared out among them.
@@ -13,6 +13,9 @@ pub(crate) const BINS: usize = 64;
 
 /// The end of a list: links are one more than the index that they lead to, so that empty memory is all zeros.
 const NONE: u16 = 0;
+
+/// The end of the list of a bin that will be continued, plus the bin.
+const OPEN: u16 = 1 << 15;
 
 /// A triangle in a list.
 #[derive(FromBytes, IntoBytes, Immutable, KnownLayout, Clone, Copy, Debug)]
@@ -113,6 +116,30 @@ impl Bins {
             }
             _ => self.overflow = true,
         }
+    }
+
+    /// The same without triangles, and with lists whose ends name their bins, so that others can be appended by [`Self::join`]. For less than
+    /// 2^15 triangles.
+    #[must_use]
+    pub(crate) fn open(&self) -> Self {
+        Self { heads: array::from_fn(|bin| OPEN | bin as u16), ..self.clone() }
+    }
+
+    /// Puts the lists of `earlier` triangles of the stream before these. Their entries lie from index `first` on, where their links begin;
+    /// they are moved up to the others. Like all that is pushed later, they get the larger links.
+    pub(crate) fn join(&mut self, entries: &mut [Entry], earlier: &Self, first: usize) {
+        let Self { heads, count, .. } = *self;
+        let joined = |link| if link & OPEN == 0 { link + count } else { heads.get(usize::from(link & !OPEN)).copied().unwrap_or(NONE) };
+        let entries = Cell::from_mut(entries).as_slice_of_cells();
+        let (to, from) = (entries.get(count.into()..).unwrap_or_default(), entries.get(first..).unwrap_or_default());
+        for (to, from) in to.iter().zip(from).take(earlier.count.into()) {
+            let entry = from.get();
+            to.set(Entry { next: joined(entry.next), ..entry });
+        }
+        self.heads = earlier.heads.map(joined);
+        self.count = count + earlier.count;
+        self.overflow |= earlier.overflow;
+        (self.top, self.bottom) = (self.top.min(earlier.top), self.bottom.max(earlier.bottom));
     }
 
     /// Number of triangles in all lists; `None` if some found no room.

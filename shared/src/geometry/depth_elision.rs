@@ -91,6 +91,13 @@ impl DepthElision {
         self.marked.get_mut(rows).unwrap_or_default().iter_mut().for_each(|row| *row |= columns);
     }
 
+    /// Takes account of the triangles that `other` has included as well.
+    #[must_use]
+    pub(crate) fn and(mut self, other: &Self) -> Self {
+        self.marked.iter_mut().zip(other.marked).for_each(|(row, columns)| *row |= columns);
+        self
+    }
+
     /// Whether other triangles may overlap one whose columns and rows lie between these. To be called once all triangles have been
     /// included.
     #[inline(never)]
@@ -116,5 +123,25 @@ impl DepthElision {
         let [left, right] = columns.map(|x| (x * across) as u32 >> 16);
         let [top, bottom] = rows.map(|y| (y * down) as usize >> 16);
         (top..=bottom, (u32::MAX << (left & 31)) & (u32::MAX >> ((CELLS - 1).wrapping_sub(right) & 31)))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn two_halves_mark_what_the_whole_does() {
+        let size = [320, 240].map(|side| side << SUBPIXEL);
+        let none = DepthElision { thickness: 40, size, scale: size.map(|side| (CELLS << 16) as i32 / (side + 1)), marked: [0; 32] };
+        let [mut whole, mut earlier, mut later] = [none.clone(), none.clone(), none];
+        for k in 0..40 {
+            let (left, top) = (k * 997 % 4900, k * 613 % 3700);
+            let extent = Extent::new([[left, top], [left + 100, top], [left, top + 20 + k % 4 * 40]]);
+            whole.include(&extent);
+            if k < 17 { &mut earlier } else { &mut later }.include(&extent);
+        }
+        assert!(earlier.marked != whole.marked && later.marked != whole.marked);
+        assert_eq!(later.and(&earlier).marked, whole.marked);
     }
 }

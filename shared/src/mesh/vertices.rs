@@ -15,6 +15,15 @@ use crate::{
     stream::record::{Triangle, Vertex},
 };
 
+/// Column and row, 1/16 pixel, of a vertex that another processor transforms and lights.
+pub(crate) type SeamPlace = [i32; 2];
+
+/// No triangle that faces the camera has used the vertex; no place on the screen is as far away.
+pub(crate) const UNUSED: SeamPlace = [i32::MIN; 2];
+
+/// Triangles of the vertex are clipped.
+const CLIPPED: SeamPlace = [i32::MAX; 2];
+
 /// The vertex stage of one mesh in one frame.
 pub(crate) struct VertexStage<'f> {
     pub(crate) view: &'f View,
@@ -28,18 +37,57 @@ pub(crate) struct VertexStage<'f> {
 
 impl VertexStage<'_> {
     /// The corners `[x, y]` on the screen, clockwise, which is against the order of the stream; `None` if one is not cached or needs
-    /// clipping.
+    /// clipping. The mesh is `cached` from its vertex `first` on.
     #[inline(always)]
-    pub(crate) fn corners(&self, cached: &mut [ScreenVertex], vertices: &[Vertex], triangle: &Triangle) -> Option<[[i32; 2]; 3]> {
+    pub(crate) fn corners(
+        &self,
+        cached: &mut [ScreenVertex],
+        first: usize,
+        vertices: &[Vertex],
+        triangle: &Triangle,
+    ) -> Option<[[i32; 2]; 3]> {
         let [a, b, c] = triangle.corners;
-        let mut place = |corner| self.place(cached, vertices, corner);
+        let mut place = |corner| self.place(cached, first, vertices, corner);
         Some([place(a)?, place(c)?, place(b)?])
+    }
+
+    /// The same where vertices before `first` are cached by the other processor: this one keeps their places in `seam`.
+    #[inline(always)]
+    pub(crate) fn corners_at_seam(
+        &self,
+        cached: &mut [ScreenVertex],
+        seam: &mut [SeamPlace],
+        vertices: &[Vertex],
+        triangle: &Triangle,
+    ) -> Option<[[i32; 2]; 3]> {
+        let ([a, b, c], first) = (triangle.corners, seam.len());
+        let mut place = |corner| match seam.get_mut(usize::from(corner)) {
+            Some(place) => {
+                if *place == UNUSED {
+                    let ([x, y, _], inside) = self.view.project(self.view.to_eye(vertices.get(usize::from(corner))?.position));
+                    *place = if inside { [x, y] } else { CLIPPED };
+                }
+                (*place != CLIPPED).then_some(*place)
+            }
+            None => self.place(cached, first, vertices, corner),
+        };
+        Some([place(a)?, place(c)?, place(b)?])
+    }
+
+    /// Transforms the vertices whose places at the seam were used, where no triangle of the processor that caches them has used them.
+    #[inline(never)]
+    pub(crate) fn close_seam(&self, cached: &mut [ScreenVertex], seam: &[SeamPlace], vertices: &[Vertex]) {
+        for ((screen, place), vertex) in cached.iter_mut().zip(seam).zip(vertices) {
+            if screen.state == State::IDLE && *place != UNUSED {
+                *screen = self.transform(vertex);
+            }
+        }
     }
 
     /// The position of `corner` on the screen; it is transformed at its first use.
     #[inline(always)]
-    fn place(&self, cached: &mut [ScreenVertex], vertices: &[Vertex], corner: u16) -> Option<[i32; 2]> {
-        let screen = cached.get_mut(usize::from(corner))?;
+    fn place(&self, cached: &mut [ScreenVertex], first: usize, vertices: &[Vertex], corner: u16) -> Option<[i32; 2]> {
+        let screen = cached.get_mut(usize::from(corner).wrapping_sub(first))?;
         if screen.state != State::READY {
             if screen.state == State::IDLE {
                 *screen = self.transform(vertices.get(usize::from(corner))?);

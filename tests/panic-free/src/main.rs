@@ -10,7 +10,7 @@ use embedded_graphics_core::{
     pixelcolor::{Gray4, Rgb565},
 };
 use microphong::{
-    Layout, Renderer, Shader, Stream,
+    Layout, PreparationPart, Renderer, Shader, Stream,
     pixel::{PictureCrc, Pixel, Rgb565Be},
 };
 
@@ -28,7 +28,7 @@ fn panic(_: &core::panic::PanicInfo<'_>) -> ! {
 /// Pixels of a band.
 const BAND: usize = 9600;
 /// Room for a small scene, antialiased.
-const LAYOUT: Layout = Layout::new(240, 40).vertices(600).triangles(600).materials(2).antialias(cfg!(feature = "all"));
+const LAYOUT: Layout = Layout::new(240, 40).vertices(600).triangles(600).materials(2).processors(2).antialias(cfg!(feature = "all"));
 /// Enough in every pixel format: those with the largest pixels take most.
 const WORDS: usize = LAYOUT.words::<Rgb565>();
 
@@ -47,6 +47,8 @@ pub struct Request {
     /// The method, by its index.
     shader: usize,
     number: u32,
+    /// Where work is divided for two processors.
+    share: u16,
     dither: bool,
     antialias: bool,
     perspective: bool,
@@ -67,6 +69,16 @@ fn draw<C: Pixel>(request: Request, buffers: &mut Buffers<C>) -> Option<u32> {
     let mut crc = PictureCrc::default();
     while frame.next_band(&mut buffers.band).ok()?.is_some() {
         crc.update(&buffers.band);
+    }
+    let mut preparation = renderer.prepare(request.number, request.share);
+    preparation.parts().into_iter().for_each(PreparationPart::run);
+    let frame = preparation.frame();
+    let row = frame.row_at(request.share);
+    let mut frame = frame.in_two(row);
+    for mut part in frame.parts() {
+        while part.next_band(&mut buffers.band).ok()?.is_some() {
+            crc.update(&buffers.band);
+        }
     }
     Some(crc.finish() ^ frame.stats().pixels)
 }

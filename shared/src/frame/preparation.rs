@@ -1,0 +1,354 @@
+//! What happens once a frame, before its rows are drawn, in one go or in two halves: two processors can work at the same time.
+//!
+//! The triangles of the stream are divided, and the vertices as well: each is transformed, lit and kept by the processor of one half. As
+//! vertices are numbered by their first use in most streams, those that the earlier triangles do not use are the vertices from some number
+//! on, and belong to the later half. What remains is a seam: later triangles that use vertices of the earlier half. For them the places of
+//! these vertices on the screen are computed a second time, without light. When both are done, lists are joined, and where triangles at the
+//! seam alone use a vertex it is transformed. From then on, all is as if one processor had done it.
+
+use crate::{
+    frame::{
+        Frame,
+        part::{Part, Stats, halves},
+        scene::{Scene, Settings},
+    },
+    geometry::{
+        bin::{Bins, Entry},
+        cull::{Extent, Facing},
+        depth_elision::DepthElision,
+        pose::Pose,
+        projection::{ScreenVertex, State, View},
+        viewport::{Bounds, Viewport},
+    },
+    lighting::lights::Lighting,
+    memory::Memory,
+    mesh::vertices::{SeamPlace, UNUSED, VertexStage},
+    pixel::Pixel,
+    raster::active::QueueState,
+    stream::{
+        Stream,
+        record::{Triangle, Vertex},
+    },
+};
+use core::{hint::black_box, mem, ops::Range};
+use zerocopy::{FromBytes, IntoBytes};
+
+/// Places where the stream can be divided.
+const STEPS: usize = 32;
+
+/// For the triangles before each of [`STEPS`] places, which share out all triangles equally, one past the last vertex that they use.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Seams([u16; STEPS]);
+
+impl Seams {
+    /// `None` if the stream has few triangles, or more than [`Bins::join`] can join, or `memory` has not room for all of them, for all
+    /// vertices, and for any seam: what happens once a frame is then left to one processor.
+    pub(crate) fn new<C: Pixel>(stream: &Stream<'_>, memory: &mut Memory<'_, C>) -> Option<Self> {
+        let (triangles, vertices) = (stream.triangles.len(), stream.vertices.len());
+        let fits = triangles <= memory.bins.len() && vertices <= memory.vertices.len() && seam(memory.depth, vertices).len() == vertices;
+        if !fits || !(2 * STEPS..1 << 15).contains(&triangles) {
+            return None;
+        }
+        let (mut seams, mut vertex) = ([0; STEPS], 0);
+        for mesh in stream.meshes {
+            for (before, triangle) in (mesh.first_triangle as usize + 1..).zip(stream.triangles_of(mesh)?) {
+                vertex = triangle.corners.map(|corner| mesh.first_vertex + u32::from(corner) + 1).into_iter().fold(vertex, u32::max);
+                // The last of the triangles before a place remains.
+                if let Some(seam) = seams.get_mut((before * STEPS).div_ceil(triangles.max(1))) {
+                    *seam = u16::try_from(vertex).ok()?;
+                }
+            }
+        }
+        Some(Self(seams))
+    }
+
+    /// The place where a `share` of the triangles, of 2^16, lies before.
+    pub(crate) fn division(&self, stream: &Stream<'_>, share: u16) -> Division {
+        let step = (usize::from(share) * STEPS + (1 << 15)) >> 16;
+        let vertex = self.0.get(step).copied().map(usize::from);
+        vertex.map(|vertex| Division { triangle: stream.triangles.len() * step / STEPS, vertex }).unwrap_or_default()
+    }
+}
+
+/// Where the later half begins. By default it is the whole.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct Division {
+    triangle: usize,
+    /// One past the last vertex that the earlier triangles use.
+    vertex: usize,
+}
+
+/// Memory for the seam: until rows are drawn that of their depth is free. None if it is too little.
+fn seam(depth: &mut [u16], vertices: usize) -> &mut [SeamPlace] {
+    <[SeamPlace]>::mut_from_prefix_with_elems(depth.as_mut_bytes(), vertices).map(|(seam, _)| seam).unwrap_or_default()
+}
+
+/// A frame that is not ready to be drawn, see [`crate::Renderer::prepare`].
+#[derive(Debug)]
+pub struct Preparation<'r, C: Pixel> {
+    /// The lists of its part are those of the later triangles.
+    frame: Frame<'r, C>,
+    cache: &'r mut [ScreenVertex],
+    division: Division,
+    /// The lists of the earlier triangles.
+    earlier: Bins,
+    /// Of the later triangles and of the earlier ones.
+    depth_elisions: [Option<DepthElision>; 2],
+    is_done: [bool; 2],
+}
+
+/// A frame without triangles and vertices, room for vertices, and where triangles may overlap.
+type Empty<'r, C> = (Frame<'r, C>, &'r mut [ScreenVertex], Option<DepthElision>);
+
+impl<'r, C: Pixel> Frame<'r, C> {
+    /// Frame `number` of a renderer, prepared by one processor.
+    #[inline(never)]
+    pub(crate) fn new(settings: &'r Settings<'r, C>, memory: &'r mut Memory<'_, C>, number: u32) -> Self {
+        let (mut frame, cache, mut depth_elision) = Self::empty(settings, memory, number);
+        let Part { bins, entries, .. } = &mut frame.part;
+        let whole = PreparationPart {
+            scene: &frame.scene,
+            triangles: 0..settings.stream.triangles.len(),
+            cached: cache,
+            seam: &mut [],
+            entries,
+            bins,
+            depth_elision: &mut depth_elision,
+            is_done: &mut false,
+        };
+        whole.bin::<false>();
+        frame.complete(cache, depth_elision);
+        frame
+    }
+
+    #[inline(always)]
+    fn empty(settings: &'r Settings<'r, C>, memory: &'r mut Memory<'_, C>, number: u32) -> Empty<'r, C> {
+        let Memory { vertices: cache, bins: entries, depth, reflectances, ramps, samples, active_triangles } = memory;
+        let (stream, size) = (&settings.stream, settings.size);
+        let camera = &stream.header.camera;
+        let pose = Pose::new(camera, number);
+        let lighting = Lighting::new(stream, &pose);
+        let constant = lighting.constant();
+        let view = View::new(camera, &pose, size);
+        let facing = Facing::new(&view, stream.header.radius);
+        // Bins as high as the bands of one processor.
+        let band_rows = settings.band_rows(depth.len(), samples.len()).checked_div(settings.processors).unwrap_or(0);
+        let bins = Bins::new(size.height, band_rows);
+        let depth_elision = if settings.antialiased() { None } else { DepthElision::new(stream, &view, size) };
+        let uncached = stream.vertices.len().saturating_sub(cache.len()) as u32;
+        let scene = Scene { settings, view, facing, lighting, constant, depth_elision: None, vertices: &[], reflectances, ramps };
+        let part = Part {
+            bins,
+            binned: false,
+            entries,
+            depth,
+            samples,
+            active_triangles,
+            queue: QueueState::default(),
+            rows: 0..size.height,
+            top: 0,
+            bottom: size.height,
+            stats: Stats { triangles: stream.triangles.len() as u32, uncached, ..Stats::default() },
+        };
+        (Self { scene, part }, cache, depth_elision)
+    }
+
+    /// All triangles are in the bins, and `cache` has the vertices.
+    #[inline(always)]
+    fn complete(&mut self, cache: &'r [ScreenVertex], depth_elision: Option<DepthElision>) {
+        let Self { scene, part } = self;
+        (scene.vertices, scene.depth_elision) = (cache, depth_elision);
+        if let Some(count) = part.bins.count() {
+            part.binned = true;
+            (part.stats.passes, part.stats.drawn) = (1, count.into());
+            part.rows = part.bins.rows();
+        }
+    }
+}
+
+impl<'r, C: Pixel> Preparation<'r, C> {
+    #[inline(never)]
+    pub(crate) fn new(settings: &'r Settings<'r, C>, memory: &'r mut Memory<'_, C>, number: u32, division: Division) -> Self {
+        let (frame, cache, depth_elision) = Frame::empty(settings, memory, number);
+        let earlier = frame.part.bins.open();
+        Self { frame, cache, division, earlier, depth_elisions: [depth_elision.clone(), depth_elision], is_done: [false; 2] }
+    }
+
+    /// The later half of the work and the earlier one. If the layout is for one processor, or has too little room for the stream, the first
+    /// is all of it.
+    #[must_use]
+    pub fn parts(&mut self) -> [PreparationPart<'_, 'r, C>; 2] {
+        let Self { frame, cache, division: Division { triangle, vertex }, earlier: earlier_bins, depth_elisions, is_done } = self;
+        let ([later_elision, earlier_elision], [later_done, earlier_done]) = (depth_elisions, is_done);
+        let Frame { scene, part: Part { bins: later_bins, entries, depth, .. } } = frame;
+        let all = scene.settings.stream.triangles.len();
+        let (earlier_cached, later_cached) = halves(cache, *vertex);
+        // As many entries as triangles: none can be without.
+        let (later_entries, earlier_entries) = halves(entries, entries.len().saturating_sub(*triangle));
+        let later = PreparationPart {
+            scene,
+            triangles: *triangle..all,
+            cached: later_cached,
+            seam: seam(depth, *vertex),
+            entries: later_entries,
+            bins: later_bins,
+            depth_elision: later_elision,
+            is_done: later_done,
+        };
+        let earlier = PreparationPart {
+            scene,
+            triangles: 0..*triangle,
+            cached: earlier_cached,
+            seam: &mut [],
+            entries: earlier_entries,
+            bins: earlier_bins,
+            depth_elision: earlier_elision,
+            is_done: earlier_done,
+        };
+        [later, earlier]
+    }
+
+    /// The frame. Parts that have not run are done by this processor.
+    #[must_use]
+    #[inline(never)]
+    pub fn frame(mut self) -> Frame<'r, C> {
+        self.parts().into_iter().for_each(PreparationPart::run);
+        let Self { mut frame, cache, division: Division { triangle, vertex }, earlier, depth_elisions: [later, before], .. } = self;
+        let Frame { scene, part } = &mut frame;
+        if triangle > 0 {
+            close(scene, cache, seam(part.depth, vertex));
+            part.bins.join(part.entries, &earlier, part.entries.len() - triangle);
+        }
+        frame.complete(cache, later.zip(before).map(|(later, before)| later.and(&before)));
+        frame
+    }
+}
+
+/// Transforms the vertices that triangles at the seam use and no earlier ones.
+#[inline(never)]
+fn close<C: Pixel>(scene: &Scene<'_, C>, cache: &mut [ScreenVertex], seam: &[SeamPlace]) {
+    let stream = &scene.settings.stream;
+    for mesh in stream.meshes {
+        let first = mesh.first_vertex as usize;
+        if let (Some(seam), Some(cached), Some(vertices), Some(stage)) =
+            (seam.get(first..), cache.get_mut(first..), stream.vertices_of(mesh), scene.stage(mesh))
+        {
+            stage.close_seam(cached, seam, vertices);
+        }
+    }
+}
+
+/// One half of what happens once a frame.
+#[derive(Debug)]
+pub struct PreparationPart<'f, 'r, C: Pixel> {
+    scene: &'f Scene<'r, C>,
+    /// Indices of its triangles.
+    triangles: Range<usize>,
+    /// Its vertices, which follow those of the seam.
+    cached: &'f mut [ScreenVertex],
+    /// Places of vertices that belong to the other half.
+    seam: &'f mut [SeamPlace],
+    entries: &'f mut [Entry],
+    bins: &'f mut Bins,
+    depth_elision: &'f mut Option<DepthElision>,
+    is_done: &'f mut bool,
+}
+
+impl<C: Pixel> PreparationPart<'_, '_, C> {
+    /// The indices of its triangles in the stream; none if the other part does everything.
+    #[must_use]
+    pub fn triangles(&self) -> Range<usize> {
+        self.triangles.clone()
+    }
+
+    /// Does it, once.
+    pub fn run(self) {
+        if !mem::replace(self.is_done, true) {
+            self.bin::<true>();
+        }
+    }
+
+    /// Culls triangles, transforms their vertices, and puts them into the bins of the rows that they start in. Triangles are taken from the
+    /// last to the first, in the order that [`Bins::push`] needs. Unless the frame is `DIVIDED`, there is no seam.
+    #[inline(never)]
+    fn bin<const DIVIDED: bool>(self) {
+        let Self { scene, triangles: Range { start, end }, cached, seam, entries, bins, depth_elision, .. } = self;
+        // A copy, which stays in registers.
+        let facing = scene.facing;
+        let stream = &scene.settings.stream;
+        let viewport = scene.settings.viewport();
+        // Reached by a pointer of its own, which is opaque to the compiler: instructions of Armv6-M reach little of a structure.
+        let bins = black_box(bins);
+        let leaning = if depth_elision.is_some() { facing.leaning() } else { Facing::FRONT };
+        cached.iter_mut().take(stream.vertices.len().saturating_sub(seam.len())).for_each(|vertex| vertex.state = State::IDLE);
+        seam.fill(UNUSED);
+        for mesh in stream.meshes.iter().rev() {
+            let (vertices, triangles) = (stream.vertices_of(mesh).unwrap_or_default(), stream.triangles_of(mesh).unwrap_or_default());
+            let Some(stage) = scene.stage(mesh) else { continue };
+            let (first, first_vertex) = (mesh.first_triangle as usize, mesh.first_vertex as usize);
+            let [before, count] = [start, end].map(|index| index.saturating_sub(first).min(triangles.len()));
+            let mut rest = triangles.get(before..count).unwrap_or_default();
+            let id = (first + before) as u32;
+            let cached = cached.get_mut(first_vertex.saturating_sub(seam.len())..).unwrap_or_default();
+            let seam = seam.get_mut(first_vertex..).unwrap_or_default();
+            let first_cached = if DIVIDED { seam.len() } else { 0 };
+            while let [before @ .., triangle] = rest {
+                rest = before;
+                let height = facing.height(triangle);
+                if height < leaning {
+                    continue;
+                }
+                let mut push = |bounds, word_sized| {
+                    if let Some(Bounds { top, bottom, .. }) = bounds
+                        && height >= Facing::FRONT
+                    {
+                        bins.push(entries, id + rest.len() as u32, word_sized, [top as u32, bottom as u32]);
+                    }
+                };
+                let mut word_sized = false;
+                let bounds = match stage.corners(cached, first_cached, vertices, triangle) {
+                    Some(corners) => {
+                        let extent = Extent::new(corners);
+                        if let Some(elision) = depth_elision {
+                            elision.include(&extent);
+                        }
+                        word_sized = viewport.is_word_sized(&extent);
+                        viewport.bounds(&extent)
+                    }
+                    None if DIVIDED => {
+                        let (word_sized, bounds) =
+                            at_seam(&stage, (&mut *cached, &mut *seam), viewport, depth_elision, (vertices, triangle));
+                        push(bounds, word_sized);
+                        continue;
+                    }
+                    None => {
+                        *depth_elision = None;
+                        stage.bounds(viewport, vertices, triangle)
+                    }
+                };
+                push(bounds, word_sized);
+            }
+        }
+    }
+}
+
+/// Whether a triangle is word-sized, and its visible bounding box, where a corner belongs to the other half or needs clipping.
+#[cold]
+#[inline(never)]
+fn at_seam(
+    stage: &VertexStage<'_>,
+    (cached, seam): (&mut [ScreenVertex], &mut [SeamPlace]),
+    viewport: Viewport,
+    depth_elision: &mut Option<DepthElision>,
+    (vertices, triangle): (&[Vertex], &Triangle),
+) -> (bool, Option<Bounds>) {
+    let Some(corners) = stage.corners_at_seam(cached, seam, vertices, triangle) else {
+        *depth_elision = None;
+        return (false, stage.bounds(viewport, vertices, triangle));
+    };
+    let extent = Extent::new(corners);
+    if let Some(elision) = depth_elision {
+        elision.include(&extent);
+    }
+    (viewport.is_word_sized(&extent), viewport.bounds(&extent))
+}
