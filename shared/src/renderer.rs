@@ -37,6 +37,8 @@ impl<'a, C: Pixel> Renderer<'a, C> {
     ///
     /// # Errors
     /// Those of [`Self::new`], except that no method can be missing.
+    // Copies of it on the way stay off the stack of the frame loop.
+    #[inline(never)]
     pub fn with_shader(
         stream: Stream<'a>,
         size: Size,
