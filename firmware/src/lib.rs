@@ -110,7 +110,8 @@ fn animate<D: Display>(
     for number in 0..u32::from(stream.header.frames) {
         let mut crc = PictureCrc::default();
         display.begin()?;
-        let stats = painter.draw(display, renderer.frame(number), Some(&mut crc))?;
+        let frame = painter.prepare(&mut renderer, number);
+        let stats = painter.draw(display, frame, Some(&mut crc))?;
         // The host reads this line: keep its form.
         defmt::info!(
             "frame {=u32} shader {=str} crc {=u32:08x} triangles {=u32} culled {=u32} drawn {=u32} pixels {=u32}",
@@ -135,7 +136,7 @@ fn animate<D: Display>(
     loop {
         for number in 0..u32::from(stream.header.frames) {
             display.begin()?;
-            let mut frame = renderer.frame(number);
+            let mut frame = painter.prepare(&mut renderer, number);
             let rows = frame.rows();
             frame.limit(rows.start.min(shown.start)..rows.end.max(shown.end));
             shown = rows;

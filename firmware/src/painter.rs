@@ -4,12 +4,17 @@ use crate::{Display, Failure, check};
 use core::mem;
 use embedded_graphics::primitives::Rectangle;
 use microphong::{
-    Frame, RenderError, Stats,
+    Frame, RenderError, Renderer, Stats,
     pixel::{PictureCrc, Pixel},
 };
 
-/// What draws the rows of a frame: one processor or several.
+/// What prepares a frame and draws its rows: one processor or several.
 pub trait Painter<D: Display> {
+    /// Does what comes before the rows of frame `number`.
+    fn prepare<'r>(&mut self, renderer: &'r mut Renderer<'_, D::Color>, number: u32) -> Frame<'r, D::Color> {
+        renderer.frame(number)
+    }
+
     /// Draws `frame` onto `display`, and adds its pixels to a checksum if there is one.
     ///
     /// # Errors

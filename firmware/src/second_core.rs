@@ -1,4 +1,4 @@
-//! The RP2040's second processor, which draws the lower part of each frame.
+//! The RP2040's second processor, which prepares one half of each frame and draws its lower part.
 
 use crate::{Display, Failure, Painter, painter::rows, stack::without_paint};
 use core::{
@@ -16,7 +16,7 @@ use embassy_rp::{
 use embassy_time::Instant;
 use embedded_graphics::primitives::Rectangle;
 use microphong::{
-    Frame, FramePart, RenderError, Stats,
+    Frame, FramePart, RenderError, Renderer, Stats,
     pixel::{PictureCrc, Pixel},
 };
 
@@ -94,12 +94,22 @@ pub struct TwoCores<C: 'static> {
     pub second: SecondCore,
     /// The share of the triangles that end in the upper part, of 2^16, such that both take equally long.
     pub share: u16,
+    /// The share of the triangles that the second one prepares, of 2^16, such that both take equally long.
+    pub earlier: u16,
 }
 
 impl<D> Painter<D> for TwoCores<D::Color>
 where
     D: Display<Color: Pixel<Stored: Sync> + Send + Sync> + Send,
 {
+    fn prepare<'r>(&mut self, renderer: &'r mut Renderer<'_, D::Color>, number: u32) -> Frame<'r, D::Color> {
+        let mut preparation = renderer.prepare(number, self.earlier);
+        let [here, there] = preparation.parts().map(|part| || timed(|| part.run()));
+        let (((), later), earlier) = self.second.join(here, there);
+        self.earlier = fair(self.earlier, [earlier.map_or(0, |((), time)| time), later]);
+        preparation.frame()
+    }
+
     fn draw(&mut self, display: &mut D, frame: Frame<'_, D::Color>, mut crc: Option<&mut PictureCrc>) -> Result<Stats, Failure> {
         let row = frame.row_at(self.share);
         let mut frame = frame.in_two(row);
@@ -109,7 +119,7 @@ where
         let send = |area, band| critical_section::with(|cs| display.borrow_ref_mut(cs).send(area, band));
         let mut rest = crc.is_some().then(PictureCrc::of_rest);
         let (of_upper, of_lower) =
-            self.second.join(|| timed(upper, above, send, crc.as_deref_mut()), || timed(lower, below, send, rest.as_mut()));
+            self.second.join(|| draw(upper, above, send, crc.as_deref_mut()), || draw(lower, below, send, rest.as_mut()));
         let times = [of_upper?, of_lower.unwrap_or(Ok(0))?];
         if let (Some(crc), Some(rest)) = (crc, rest) {
             crc.append(rest);
@@ -137,14 +147,20 @@ fn fair(share: u16, [upper, lower]: [u32; 2]) -> u16 {
     share.clamp(1 << 12, 15 << 12) as u16
 }
 
+/// Does `work`, and returns how many microseconds that took.
+fn timed<T>(work: impl FnOnce() -> T) -> (T, u32) {
+    let start = Instant::now();
+    let result = work();
+    (result, start.elapsed().as_micros() as u32)
+}
+
 /// Draws the rows of `part`, and returns how many microseconds that took.
-fn timed<C: Pixel>(
+fn draw<C: Pixel>(
     mut part: FramePart<'_, '_, C>,
     band: &mut &'static mut [C],
     send: impl FnMut(Rectangle, &'static mut [C]) -> &'static mut [C],
     crc: Option<&mut PictureCrc>,
 ) -> Result<u32, RenderError> {
-    let start = Instant::now();
-    rows(|band| part.next_band(band), band, send, crc)?;
-    Ok(start.elapsed().as_micros() as u32)
+    let (result, time) = timed(|| rows(|band| part.next_band(band), band, send, crc));
+    result.map(|()| time)
 }

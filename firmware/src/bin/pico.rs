@@ -66,8 +66,12 @@ fn main() -> ! {
     }
     display.start(None);
     #[cfg(not(feature = "one-core"))]
-    let mut painter =
-        TwoCores { bands: bands.each_mut().map(|band| &mut band[..]), second: SecondCore::start(pins.CORE1, SECOND_STACK), share: 1 << 15 };
+    let mut painter = TwoCores {
+        bands: bands.each_mut().map(|band| &mut band[..]),
+        second: SecondCore::start(pins.CORE1, SECOND_STACK),
+        share: 1 << 15,
+        earlier: 1 << 15,
+    };
     #[cfg(feature = "one-core")]
     let mut painter = OneCore { band: &mut bands[0] };
     run(&mut display, &mut painter, &PICO.layout, MEMORY, every())
