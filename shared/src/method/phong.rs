@@ -70,6 +70,8 @@ impl Loops for Phong {
     ) -> Option<u32> {
         let cosines = match shading.lighting.viewer {
             Viewer::Infinite(_) => None,
+            // Boards with displays of greys have little flash: no loop there.
+            Viewer::Local(_) if C::GRAY => return None,
             Viewer::Local(eye) => match local_viewer::draw(setup, eye, shading, tables, band)? {
                 Ok(pixels) => return Some(pixels),
                 Err(cosines) => Some(cosines),
