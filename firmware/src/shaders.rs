@@ -1,5 +1,6 @@
 //! Every shading method, for boards with flash for all of them.
 
+use embedded_graphics::pixelcolor::Gray8;
 use microphong::{Shader, pixel::Pixel};
 use microphong_literature::ALL;
 
@@ -7,13 +8,12 @@ use microphong_literature::ALL;
 struct Every<C>(core::marker::PhantomData<C>);
 
 impl<C: Pixel> Every<C> {
-    const SHADERS: [Shader<C>; 26] = {
-        let [a, b, c, d, e, f] = Shader::ALL;
-        let mut shaders = [a; 26];
-        (shaders[1], shaders[2], shaders[3], shaders[4], shaders[5]) = (b, c, d, e, f);
+    const OWN: usize = Shader::<C>::ALL.len();
+    const SHADERS: [Shader<C>; Shader::<Gray8>::ALL.len() + ALL.len()] = {
+        let mut shaders = [Shader::FLAT; Shader::<Gray8>::ALL.len() + ALL.len()];
         let mut i = 0;
-        while i < ALL.len() {
-            shaders[6 + i] = Shader::new(ALL[i]);
+        while i < shaders.len() {
+            shaders[i] = if i < Self::OWN { Shader::<C>::ALL[i] } else { Shader::new(ALL[i - Self::OWN]) };
             i += 1;
         }
         shaders

@@ -4,10 +4,11 @@
 pub use microphong_bench as bench;
 #[cfg(feature = "boards")]
 pub use microphong_boards::{self as board, verify};
+pub use microphong_bounds as bounds;
 pub use microphong_compare::{self as compare, level};
 pub use microphong_oracle::{self as oracle, papers};
 pub use microphong_render::{
-    bytes, convex, image, look, mesh, number, obj, output, polygon, quantise, render, scene, shader, shapes, vector, view,
+    bytes, choices, convex, image, legend, look, mesh, number, obj, output, polygon, quantise, render, scene, shader, shapes, vector, view,
 };
 pub use microphong_stress as stress;
 

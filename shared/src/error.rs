@@ -53,6 +53,8 @@ pub enum RenderError {
         /// The method's name.
         shader: &'static str,
     },
+    /// The error budget is none of those from [`crate::format::LEAST_BUDGET`] to [`crate::format::LARGEST_BUDGET`].
+    Budget,
     /// The method raises a root of its own to a share of the exponent, which is less than 1 here.
     Exponent {
         /// The method's name.
@@ -77,6 +79,7 @@ impl fmt::Display for RenderError {
             Self::NoSamples => f.write_str("antialiasing needs memory of its own; ask for it by Layout::antialias"),
             Self::Band { need } => write!(f, "a band of pixels must hold a row of the picture, {need} pixels"),
             Self::Antialias => f.write_str("this build cannot antialias; build it with the feature antialias"),
+            Self::Budget => f.write_str("an error budget must be 1/2 to 16"),
             Self::Missing { method } => write!(f, "this program has no shading method number {method}, for which the stream asks"),
             Self::NoPerspective => f.write_str("this build cannot interpolate in perspective; build it with the feature perspective"),
             Self::Light { shader } => {

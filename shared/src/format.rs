@@ -4,7 +4,7 @@
 //! format and domain, and conversions from floating point round to the nearest. Inside the loops a value is a plain integer whose fraction
 //! bits are one of the constants below.
 
-use fixed::types::{I2F14, I2F30, I18F14, I28F4, U0F16, U1F15, U2F14, U14F2, U16F16};
+use fixed::types::{I2F14, I2F30, I18F14, I28F4, U0F16, U1F15, U2F14, U5F3, U14F2, U16F16};
 
 /// Screen coordinate, pixels, Q28.4: pixel centres lie at 8/16. Corners are rounded to the nearest sixteenth.
 pub type Subpixel = I28F4;
@@ -26,6 +26,14 @@ pub type Haversine = U0F16;
 pub type NormalLength = U1F15;
 /// 1 over the least altitude of a triangle, in 1/units of object space, unsigned Q14.2 in [0, 16384).
 pub type InverseAltitude = U14F2;
+
+/// How far a pixel may be off, in 1/255 of full intensity (LSB), unsigned Q5.3.
+pub type ErrorBudget = U5F3;
+
+/// Least error budget: 1/2.
+pub const LEAST_BUDGET: ErrorBudget = ErrorBudget::from_bits(1 << 2);
+/// Largest error budget: 16.
+pub const LARGEST_BUDGET: ErrorBudget = ErrorBudget::from_bits(16 << 3);
 
 /// Fraction bits of [`Subpixel`].
 pub const SUBPIXEL: u32 = 4;

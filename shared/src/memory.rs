@@ -5,6 +5,7 @@ use crate::{
     format::RAMP,
     geometry::{bin::Entry, projection::ScreenVertex},
     lighting::reflectance::Reflectance,
+    method::ErrorBounds,
     pixel::Pixel,
     raster::active::ActiveTriangle,
 };
@@ -18,7 +19,7 @@ use zerocopy::{FromBytes, Immutable, IntoBytes, KnownLayout};
 ///
 /// const LAYOUT: Layout = Layout::new(240, 40).vertices(1024).triangles(1024);
 /// static MEMORY: [u64; LAYOUT.words::<Rgb565>()] = [0; LAYOUT.words::<Rgb565>()];
-/// assert_eq!(LAYOUT.bytes::<Rgb565>(), 75_800);
+/// assert_eq!(LAYOUT.bytes::<Rgb565>(), 75_832);
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Layout {
@@ -102,6 +103,7 @@ impl Layout {
             + padded(self.triangles * size_of::<Entry>())
             + padded(self.active_triangles * size_of::<ActiveTriangle>())
             + padded(self.materials * size_of::<Reflectance>())
+            + padded(self.materials * size_of::<ErrorBounds>())
             + padded(self.samples() * size_of::<Sample>())
             + padded(self.materials * size_of::<[C::Stored; RAMP]>())
             + padded(self.band() * self.processors * size_of::<u16>());
@@ -132,6 +134,8 @@ pub(crate) struct Memory<'a, C: Pixel> {
     /// One for each material, as in `ramps`, the tables of colours.
     pub(crate) reflectances: &'a mut [Reflectance],
     pub(crate) ramps: &'a mut [[C::Stored; RAMP]],
+    /// What a method that keeps to a budget knows of each material.
+    pub(crate) error_bounds: &'a mut [ErrorBounds],
     /// Samples for antialiasing; empty without it.
     pub(crate) samples: &'a mut [Sample],
     /// Triangles that are kept from one band to the next.
@@ -146,10 +150,11 @@ impl<'a, C: Pixel> Memory<'a, C> {
         let (bins, bytes) = take(bytes, layout.triangles)?;
         let (active_triangles, bytes) = take(bytes, layout.active_triangles)?;
         let (reflectances, bytes) = take(bytes, layout.materials)?;
+        let (error_bounds, bytes) = take(bytes, layout.materials)?;
         let (samples, bytes) = take(bytes, layout.samples())?;
         let (ramps, bytes) = take(bytes, layout.materials)?;
         let (depth, _) = take(bytes, layout.band() * layout.processors)?;
-        Some(Self { vertices, bins, depth, reflectances, ramps, samples, active_triangles })
+        Some(Self { vertices, bins, depth, reflectances, ramps, error_bounds, samples, active_triangles })
     }
 }
 

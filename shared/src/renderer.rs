@@ -3,6 +3,7 @@
 use crate::{
     Stream,
     error::{MAX_SIDE, RenderError},
+    format::{ErrorBudget, LARGEST_BUDGET, LEAST_BUDGET, LEVEL},
     frame::{Frame, Preparation, Seams, Settings},
     lighting::material_tables::fill_ramp,
     memory::{Layout, Memory},
@@ -60,8 +61,17 @@ impl<'a, C: Pixel> Renderer<'a, C> {
         let mut memory = Memory::new(layout, memory).ok_or(RenderError::Memory { need })?;
         let background = background(stream.header.background);
         let processors = layout.processors as u32;
-        let settings =
-            Settings { stream, size, processors, shader, dither: false, perspective_correct: false, antialias: false, background };
+        let settings = Settings {
+            stream,
+            size,
+            processors,
+            shader,
+            dither: false,
+            perspective_correct: false,
+            antialias: false,
+            budget: level(stream.header.budget()),
+            background,
+        };
         let seams = if layout.processors > 1 { Seams::new(&stream, &mut memory) } else { None };
         let mut renderer = Self { settings, memory, seams };
         renderer.set_shader(shader)?;
@@ -76,11 +86,13 @@ impl<'a, C: Pixel> Renderer<'a, C> {
         let facts = shader.facts();
         check(&self.settings.stream, facts, self.settings.perspective_correct)?;
         self.settings.shader = shader;
-        let (stream, Memory { reflectances, ramps, .. }) = (&self.settings.stream, &mut self.memory);
-        for ((reflectance, ramp), material) in reflectances.iter_mut().zip(ramps.iter_mut()).zip(stream.materials) {
+        let (stream, Memory { reflectances, ramps, error_bounds, .. }) = (&self.settings.stream, &mut self.memory);
+        let tables = reflectances.iter_mut().zip(ramps.iter_mut()).zip(error_bounds.iter_mut());
+        for (((reflectance, ramp), bounds), material) in tables.zip(stream.materials) {
             let highlight = (facts.highlight, facts.highlight_levels);
             reflectance.fill::<C>(stream.header, material, stream.lights, highlight);
             fill_ramp::<C>(ramp, reflectance);
+            *bounds = shader.method().error_bounds(reflectance, material.exponent, stream.lights.len());
         }
         Ok(())
     }
@@ -101,6 +113,18 @@ impl<'a, C: Pixel> Renderer<'a, C> {
         }
         check(&self.settings.stream, self.settings.shader.facts(), on)?;
         self.settings.perspective_correct = on;
+        Ok(())
+    }
+
+    /// Changes how far a pixel may be off from Phong shading by the method [`Shader::AUTO`], in 1/255 of full intensity; at first it is what
+    /// the stream says.
+    ///
+    /// # Errors When it is less than [`LEAST_BUDGET`] or more than [`LARGEST_BUDGET`]; nothing changes then.
+    pub fn set_budget(&mut self, budget: ErrorBudget) -> Result<(), RenderError> {
+        if !(LEAST_BUDGET..=LARGEST_BUDGET).contains(&budget) {
+            return Err(RenderError::Budget);
+        }
+        self.settings.budget = level(budget);
         Ok(())
     }
 
@@ -157,6 +181,11 @@ impl<'a, C: Pixel> Renderer<'a, C> {
         let division = self.seams.map(|seams| seams.division(&self.settings.stream, share)).unwrap_or_default();
         Preparation::new(&self.settings, &mut self.memory, number, division)
     }
+}
+
+/// An error budget as a level, Q9.7.
+fn level(budget: ErrorBudget) -> u32 {
+    u32::from(budget.to_bits()) << (LEVEL - ErrorBudget::FRAC_NBITS)
 }
 
 /// Checks that a method can shade a stream, with interpolation in perspective or without.

@@ -2,10 +2,10 @@
 
 use crate::{
     geometry::bin::{Entry, Walk},
-    mesh::{DrawTriangle, MeshPass},
+    mesh::MeshPass,
     method::{
-        Facts, General, Loops, Method, Style, flat::Flat, gouraud::Gouraud, phong::Phong, renq_newton::RenqNewton, six_point::SixPoint,
-        sqrt6::Sqrt6,
+        DrawTriangle, Facts, General, Loops, Method, Style, auto::Auto, flat::Flat, gouraud::Gouraud, phong::Phong,
+        renq_newton::RenqNewton, six_point::SixPoint, sqrt6::Sqrt6,
     },
     pixel::Pixel,
     raster::band::Band,
@@ -63,8 +63,11 @@ impl<C: Pixel> Shader<C> {
     /// Linear numerators times a quadratic reciprocal length, made exact by Newton's iteration.
     pub const RENQ_NEWTON: Self = Self::with_loops(&RenqNewton);
 
+    /// For each triangle the cheapest method that stays within the error budget.
+    pub const AUTO: Self = Self::with_loops(&Auto);
+
     /// Every method of this crate.
-    pub const ALL: [Self; 6] = [Self::FLAT, Self::GOURAUD, Self::SIX_POINT, Self::PHONG, Self::SQRT6, Self::RENQ_NEWTON];
+    pub const ALL: [Self; 7] = [Self::FLAT, Self::GOURAUD, Self::SIX_POINT, Self::PHONG, Self::SQRT6, Self::RENQ_NEWTON, Self::AUTO];
 
     /// A method of your own, or of the crate `microphong-literature`.
     #[must_use]

@@ -33,7 +33,7 @@ pub fn light(stream: &Stream<'_>, rotation: [V3; 3], material: usize, position: 
     let to_object = |v: V3| [0, 1, 2].map(|c| rotation[0][c] * v[0] + rotation[1][c] * v[1] + rotation[2][c] * v[2]);
     let translation = real(stream.header.camera.translation, 14);
     let eye = to_object(translation.map(|c| -c));
-    let local = stream.header.viewer == VIEWER_LOCAL && stream.header.camera.projection == PERSPECTIVE;
+    let local = stream.header.camera.viewer == VIEWER_LOCAL && stream.header.camera.projection == PERSPECTIVE;
     let view = if local { unit([0, 1, 2].map(|k| eye[k] - position[k])) } else { to_object([0.0, 0.0, -1.0]) };
     let gain = |c: [u16; 3]| c.map(|c| f64::from(c) / 16_384.0);
     let material = &stream.materials[material];

@@ -1,7 +1,7 @@
 //! Integers against the same method in 64-bit floating point: every method, every pixel of every scene, all around.
 
 use microphong::stream::{
-    record::{Header, Light, Material, VIEWER_LOCAL},
+    record::{Header, Light, Material},
     seal,
 };
 use microphong_sim::{
@@ -111,7 +111,7 @@ fn local_viewers_are_as_exact() {
             let mut bytes = scene.stream.as_bytes().to_vec();
             let stream = scene.stream.parse().unwrap();
             let place = |record: *const u8| record as usize - scene.stream.as_bytes().as_ptr() as usize;
-            let header = Header { viewer: VIEWER_LOCAL, ..*stream.header };
+            let header = Header { camera: stream.header.camera.with_local_viewer(), ..*stream.header };
             bytes[place((&raw const *stream.header).cast())..][..size_of::<Header>()].copy_from_slice(header.as_bytes());
             for material in stream.materials {
                 let material_of = Material { exponent, ..*material };

@@ -136,7 +136,9 @@ fn integers_follow_the_perspective() {
     for (shader, (error, place)) in Shader::ALL.iter().zip(&worst).filter(|(shader, _)| shader.facts().perspective) {
         println!("{:20} {error:.3} LSB at most, on {place}", shader.name());
     }
-    assert!(worst.iter().all(|&(error, _)| error <= LIMIT), "a method is more than {LIMIT} LSB off");
+    // The oracle's `auto` is Phong shading, from which it may be off by its budget.
+    let limit = |shader: Shader| if shader == Shader::AUTO { 1.0 + LIMIT } else { LIMIT };
+    assert!(worst.iter().zip(Shader::ALL).all(|(&(error, _), shader)| error <= limit(shader)), "a method is more than {LIMIT} LSB off");
 }
 
 /// The triangles of the close scenes are what they are meant to be, and correction is worth it there: of each method against

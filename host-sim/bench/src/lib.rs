@@ -18,12 +18,13 @@ pub mod stage;
 pub mod styles;
 
 use anyhow::{Context, Result};
+use embedded_graphics_core::geometry::Size;
 use flash::Graph;
 pub use measurement::{Measurement, Timing};
 use microphong::renderer::check;
 use microphong_boards::{self as boards, Board, elf::Elf, verify};
 use microphong_compare::Reference;
-use microphong_render::{scene::Scene, shader::Shader};
+use microphong_render::{choices, scene::Scene, shader::Shader};
 pub use processor::Processor;
 use rayon::prelude::*;
 use stage::Meter;
@@ -62,8 +63,8 @@ impl Bench {
         Ok(Self { firmware: built.collect::<Result<_>>()?, host })
     }
 
-    /// Measures frame 0 of `scene` by each of the `wanted` methods on each of the processors, with its error, several at a time, and calls
-    /// `tick` after each.
+    /// Measures frame 0 of `scene` by each of the `wanted` methods on each of the processors, with its error and what `auto`
+    /// chooses, several at a time, and calls `tick` after each.
     ///
     /// # Errors
     /// When a method cannot shade the scene, or a board fails.
@@ -81,20 +82,22 @@ impl Bench {
         let errors = frames.into_par_iter().map(|(size, name, shader)| {
             let reference = references.iter().find(|(of, _)| *of == size);
             let (_, reference) = reference.context("a size without a reference")?;
-            Ok((size, name, reference.total(shader)?))
+            let choices = choices::by(shader, stream, Size::new(size.0, size.1), false, 0)?;
+            Ok((size, name, reference.total(shader)?, choices.unzip()))
         });
         let errors: Vec<_> = errors.collect::<Result<_>>()?;
         for (measurement, (processor, shader)) in measured.iter_mut().zip(wanted) {
-            let error = errors.iter().find(|(size, name, _)| *size == processor.size() && *name == shader.name());
-            if let Some((.., error)) = error {
+            let error = errors.iter().find(|(size, name, ..)| *size == processor.size() && *name == shader.name());
+            if let Some(&(.., error, (budget, choices))) = error {
                 measurement.max_lsb = Some(rounded(error.max, 1e4));
                 measurement.rmse_lsb = Some(rounded(error.rmse, 1e4));
+                (measurement.budget, measurement.choices) = (budget, choices);
             }
         }
         Ok(measured)
     }
 
-    /// What [`Self::measure`] does, but for the errors.
+    /// What [`Self::measure`] does, but for the errors and choices.
     ///
     /// # Errors
     /// When a method cannot shade the scene, or a board fails.
@@ -172,6 +175,8 @@ impl Firmware {
             flash_bytes: Some(flash.alone),
             max_lsb: None,
             rmse_lsb: None,
+            budget: None,
+            choices: None,
             flash_own_bytes: Some(flash.own),
             firmware_bytes: Some(elf.flash_bytes()?.saturating_sub(u64::from(scene.stream.parse()?.header.length))),
             timing,

@@ -1,6 +1,7 @@
 //! What one frame costs, and how wrong it is.
 
 use super::{processor::Processor, stage::Stages};
+use microphong_render::choices::Choices;
 use serde::{Serialize, Serializer};
 
 /// One frame of a scene, drawn by one method on one processor: a line of `bench --json`.
@@ -37,6 +38,10 @@ pub struct Measurement {
     pub max_lsb: Option<f64>,
     /// Root mean square of the same.
     pub rmse_lsb: Option<f64>,
+    /// How far a pixel may be off by the method `auto`, in 1/255; null for others.
+    pub budget: Option<f64>,
+    /// What `auto` chooses within it; null for others.
+    pub choices: Option<Choices>,
     /// Flash that no other method needs.
     pub flash_own_bytes: Option<u64>,
     /// Flash of the whole program with all its methods, without the stream.

@@ -19,6 +19,7 @@ use figures::Spread;
 use microphong::{Stream, method::Costs, renderer::check};
 use microphong_oracle::{self as oracle, Frame, Levels};
 use microphong_render::{
+    choices::{self, Choices},
     render::{self, Format, Settings, Style},
     shader::Shader,
 };
@@ -80,6 +81,10 @@ pub struct Comparison {
     pub jumps: Jumps,
     /// Operations.
     pub costs: Costs,
+    /// How far a pixel may be off, in 1/255, if the method is `auto`.
+    pub budget: Option<f64>,
+    /// What the method chooses, if it is `auto`.
+    pub choices: Option<Choices>,
     /// Pixels compared.
     pub pixels: usize,
     /// Pixels that only one of the pictures covers: where triangles had to be clipped.
@@ -228,6 +233,7 @@ impl<'s> Reference<'s> {
         let settings = Settings { size, style, band_rows: size.height, format: Format::Rgb888 };
         let picture = render::picture(self.stream, &settings, self.number)?.rgb.as_chunks::<3>().0.to_vec();
         let real = self.samples.shade(&self.frame, name)?;
+        let (budget, choices) = choices::by(shader, self.stream, size, perspective_correct, self.number)?.unzip();
 
         let mut errors = vec![None; integers.len()];
         let (mut total, mut method, mut arithmetic) = (Vec::new(), Vec::new(), Vec::new());
@@ -271,6 +277,8 @@ impl<'s> Reference<'s> {
             similarity: figures::similarity(window.width(), window.height(), [&drawn, &wanted])?,
             jumps: self.edges.jumps(&self.frame, name)?,
             costs: shader.facts().costs,
+            budget,
+            choices,
             pixels: pairs.len(),
             unmatched,
             picture,

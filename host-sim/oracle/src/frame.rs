@@ -78,7 +78,7 @@ impl Frame {
         let to_object = |v: V3| add(add(scale(right, v[0]), scale(up, v[1])), scale(away, v[2]));
         let translation = real(pose.translation, UNIT);
         let towards = direction(scale(away, -1.0));
-        let local = stream.header.viewer == VIEWER_LOCAL && camera.projection == PERSPECTIVE;
+        let local = camera.viewer == VIEWER_LOCAL && camera.projection == PERSPECTIVE;
         let viewer = if local { Place::Near(to_object(scale(translation, -1.0))) } else { Place::Far(towards) };
         let lights = stream.lights.iter().map(|light| {
             let vector = light.vector().map(f64::from);

@@ -1,9 +1,13 @@
 //! The bytes of a stream, aligned so that they can be read in place.
 
 use anyhow::{Context, Result, anyhow};
-use microphong::{Stream, StreamError};
+use microphong::{
+    Stream, StreamError,
+    format::ErrorBudget,
+    stream::{record::Header, seal},
+};
 use std::{fs, path::Path};
-use zerocopy::IntoBytes;
+use zerocopy::{FromBytes, IntoBytes};
 
 /// A stream in memory.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -39,6 +43,18 @@ impl StreamBytes {
     #[must_use]
     pub fn as_bytes(&self) -> &[u8] {
         &self.words.as_bytes()[..self.length]
+    }
+
+    /// Changes how far a pixel may be off by a method that keeps to a budget.
+    #[must_use]
+    pub fn with_budget(mut self, budget: ErrorBudget) -> Self {
+        let length = self.length;
+        let bytes = &mut self.words.as_mut_bytes()[..length];
+        if let Ok((header, _)) = Header::mut_from_prefix(bytes) {
+            header.budget = budget.to_bits();
+            seal(bytes);
+        }
+        self
     }
 
     /// The checked view of the bytes.

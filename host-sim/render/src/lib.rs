@@ -1,9 +1,11 @@
 //! From a mesh to its picture: scenes, the triangle streams that boards draw, and what the core renderer makes of them.
 
 pub mod bytes;
+pub mod choices;
 pub mod convex;
 mod foreign;
 pub mod image;
+pub mod legend;
 pub mod look;
 pub mod mesh;
 pub mod number;

@@ -10,13 +10,12 @@ use crate::{
 };
 use anyhow::{Context, Result};
 use microphong::{
-    format::{Gain, Radius},
+    format::{ErrorBudget, Gain, Radius},
     stream,
     stream::{
         MAX_GAIN,
         record::{
             CLOSED_CONVEX, Camera, DIRECTIONAL, EYE_SPACE, Header, Light, MAGIC, Material, Mesh, ORTHOGRAPHIC, PERSPECTIVE, POINT, VERSION,
-            VIEWER_INFINITE, VIEWER_LOCAL,
         },
     },
 };
@@ -71,6 +70,8 @@ pub struct Look {
     pub background: [u8; 3],
     /// Highlights see the eye where it is, not infinitely far.
     pub local_viewer: bool,
+    /// How far a pixel may be off by a method that keeps to a budget.
+    pub budget: ErrorBudget,
     /// Method unless another one is asked for.
     pub shader: Shader,
     /// Camera.
@@ -94,6 +95,7 @@ impl Look {
             ambient: [1.0; 3],
             background: BACKGROUND,
             local_viewer: false,
+            budget: ErrorBudget::ONE,
             shader: Shader::SIX_POINT,
             view,
             frames: view.period.max(1),
@@ -118,10 +120,10 @@ impl Look {
             vertices: u32::try_from(vertices).context("too many vertices for one stream; simplify the mesh")?,
             triangles: u32::try_from(triangles).context("too many triangles for one stream; simplify the mesh")?,
             background: self.background,
-            viewer: if self.local_viewer { VIEWER_LOCAL } else { VIEWER_INFINITE },
+            budget: self.budget.to_bits(),
             ambient: self.ambient.map(gain).map(Gain::to_bits),
             radius: radius(parts).to_bits(),
-            camera: camera(&self.view),
+            camera: if self.local_viewer { camera(&self.view).with_local_viewer() } else { camera(&self.view) },
             ..Header::new_zeroed()
         };
         header.length = stream::length(&header).context("the stream would be larger than 4 GiB; simplify the mesh")?;

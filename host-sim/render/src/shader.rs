@@ -3,7 +3,9 @@
 use anyhow::{Context, Result};
 use microphong::{
     Stream,
-    method::{Facts, Method, flat::Flat, gouraud::Gouraud, phong::Phong, renq_newton::RenqNewton, six_point::SixPoint, sqrt6::Sqrt6},
+    method::{
+        Facts, Method, auto::Auto, flat::Flat, gouraud::Gouraud, phong::Phong, renq_newton::RenqNewton, six_point::SixPoint, sqrt6::Sqrt6,
+    },
     pixel::Pixel,
 };
 use microphong_literature as literature;
@@ -29,8 +31,11 @@ impl Shader {
     /// Linear numerators times a quadratic reciprocal length, made exact by Newton's iteration.
     pub const RENQ_NEWTON: Self = Self(&RenqNewton);
 
+    /// For each triangle the cheapest method that stays within the error budget.
+    pub const AUTO: Self = Self(&Auto);
+
     /// Every method, in the order of their numbers.
-    pub const ALL: [Self; 26] = {
+    pub const ALL: [Self; 27] = {
         let [a, b, c, d, e, f, g, h, i, j, k, l, m, n, o, p, q, r, s, t] = literature::ALL;
         [
             Self::FLAT,
@@ -59,11 +64,12 @@ impl Shader {
             Self::SQRT6,
             Self(t),
             Self::RENQ_NEWTON,
+            Self::AUTO,
         ]
     };
 
     /// The methods that the core itself has.
-    pub const CORE: [Self; 6] = [Self::FLAT, Self::GOURAUD, Self::SIX_POINT, Self::PHONG, Self::SQRT6, Self::RENQ_NEWTON];
+    pub const CORE: [Self; 7] = [Self::FLAT, Self::GOURAUD, Self::SIX_POINT, Self::PHONG, Self::SQRT6, Self::RENQ_NEWTON, Self::AUTO];
 
     /// A method that is none of these.
     #[must_use]

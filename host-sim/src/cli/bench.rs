@@ -6,7 +6,7 @@ use super::{
     report, scenes,
 };
 use anyhow::Result;
-use microphong::renderer::check;
+use microphong::{format::ErrorBudget, renderer::check};
 use microphong_sim::{
     bench::{
         Bench, Measurement, PICO_HZ, Processor, Timing, baseline,
@@ -39,6 +39,9 @@ pub(crate) struct Arguments {
     /// Shading methods, separated by commas, or all that can shade the scene.
     #[arg(long, value_name = "S,...", default_value = "flat,gouraud,six-point,sqrt6,phong", value_parser = parse::shaders)]
     shader: Several<Shader>,
+    /// How far a pixel may be off from Phong shading by the method auto, in 1/255, 0.5 to 16; the scene's own unless given.
+    #[arg(long, value_name = "LSB", value_parser = parse::budget)]
+    budget: Option<ErrorBudget>,
     /// Boards, separated by commas: mps2-an385 (Cortex-M3), mps2-an386 (Cortex-M4F), pico (Cortex-M0+), x86-64 (this computer);
     /// or all.
     #[arg(long, value_name = "B,...", default_value = "mps2-an385", value_parser = processors)]
@@ -114,7 +117,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome> {
     }
     let mut scenes = Vec::new();
     for name in &arguments.scenes {
-        scenes.extend(scenes::load(name)?);
+        scenes.extend(scenes::load(name, arguments.budget)?);
     }
     let Several { values: shaders, all } = &arguments.shader;
     let wanted = |scene: &Scene| {
@@ -267,6 +270,7 @@ fn text(m: &Measurement) -> Result<()> {
     let [all, pixels, spans] = [m.instructions, m.pixels, m.spans].map(report::grouped);
     let error = m.max_lsb.zip(m.rmse_lsb).map_or(String::new(), |(max, rmse)| format!("; error {max:.2} at most, {rmse:.3} rms"));
     report::line(&format!("{} ({}), {}, {}: {all} instructions{error}", m.board.board_name(), m.cpu, m.scene, m.shader))?;
+    m.budget.zip(m.choices).iter().try_for_each(report::choices)?;
     let s = m.by_stage;
     let stages = [s.frame, s.vertex, s.cull, s.setup, s.span, s.pixel, s.clear, s.transfer].map(report::grouped);
     let [frame, vertex, cull, setup, span, pixel, clear, transfer] = stages;

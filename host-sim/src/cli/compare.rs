@@ -6,9 +6,10 @@ use super::{
     report, scenes,
 };
 use anyhow::{Context, Result};
-use microphong::renderer::check;
+use microphong::{format::ErrorBudget, renderer::check};
 use microphong_sim::{
     bytes::StreamBytes,
+    choices::Choices,
     compare::{Comparison, Reference, exponent::with_exponent, page::Page},
     scene::Scene,
     shader::Shader,
@@ -29,6 +30,9 @@ pub(crate) struct Arguments {
     /// Shading methods by name, separated by commas, or all.
     #[arg(long, default_value = "all", value_name = "S,...", value_parser = parse::shaders)]
     shader: Several<Shader>,
+    /// How far a pixel may be off from Phong shading by the method auto, in 1/255, 0.5 to 16; the scene's own unless given.
+    #[arg(long, value_name = "LSB", value_parser = parse::budget)]
+    budget: Option<ErrorBudget>,
     /// Exponent of all highlights; the scene's own unless given.
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
     exponent: Option<u16>,
@@ -88,6 +92,8 @@ struct Line<'a> {
     loads: u32,
     setup: u32,
     setup_row: u32,
+    budget: Option<f64>,
+    choices: Option<Choices>,
     pixels: Option<usize>,
     unmatched: Option<usize>,
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -152,7 +158,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome> {
 fn chosen(arguments: &Arguments) -> Result<Vec<Scene>> {
     let mut scenes = Vec::new();
     for name in &arguments.scenes {
-        for mut scene in scenes::load(name)? {
+        for mut scene in scenes::load(name, arguments.budget)? {
             if let Some(exponent) = arguments.exponent {
                 let bytes = with_exponent(scene.stream.as_bytes(), exponent).with_context(|| scene.name.clone())?;
                 scene.stream = StreamBytes::from(bytes.as_slice());
@@ -195,6 +201,8 @@ fn json(scene: &Scene, exponent: Option<u16>, rows: &[Row]) -> Result<()> {
             loads: costs.loads,
             setup: costs.setup,
             setup_row: costs.row,
+            budget: found.and_then(|c| c.budget),
+            choices: found.and_then(|c| c.choices),
             pixels: found.map(|c| c.pixels),
             unmatched: found.map(|c| c.unmatched),
             reason: result.as_ref().err().map(String::as_str),
@@ -237,7 +245,8 @@ fn text(scene: &Scene, exponent: Option<u16>, reference: &Reference<'_>, rows: &
                 c.costs.multiplies,
                 c.costs.loads,
                 c.costs.setup,
-            ))
+            ))?;
+            c.budget.zip(c.choices).iter().try_for_each(report::choices)
         }
     })
 }

@@ -2,6 +2,7 @@
 
 use super::{Outcome, Usage, parse, report};
 use anyhow::{Context, Result};
+use microphong::format::ErrorBudget;
 use microphong_sim::{
     look::{BACKGROUND, Look, Surface},
     output,
@@ -34,10 +35,13 @@ pub(crate) struct Arguments {
     /// Turn the surface inside out, for meshes whose faces wind clockwise; closed ones are turned without asking.
     #[arg(long)]
     flip: bool,
-    /// Shading method that the stream asks for: flat, gouraud, six-point, phong, sqrt6, renq-newton, or one of the literature, as
+    /// Shading method that the stream asks for: flat, gouraud, six-point, phong, sqrt6, renq-newton, auto, or one of the literature, as
     /// `microphong compare` lists them. The board lm3s6965evb has the first four, the others have all.
     #[arg(long, default_value = "six-point", value_parser = parse::shader)]
     shader: Shader,
+    /// How far a pixel may be off from Phong shading by the method auto, in 1/255, 0.5 to 16.
+    #[arg(long, value_name = "LSB", default_value = "1", value_parser = parse::budget)]
+    budget: ErrorBudget,
     /// Colour of the surface, RRGGBB; copper unless given.
     #[arg(long, value_name = "RRGGBB", value_parser = parse::colour)]
     colour: Option<V3>,
@@ -121,6 +125,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome> {
     let look = Look {
         background: arguments.background.unwrap_or(BACKGROUND),
         local_viewer: arguments.local_viewer,
+        budget: arguments.budget,
         shader: arguments.shader,
         ..Look::new(surface(arguments), view.fit(&mesh.positions, arguments.size, MARGIN))
     };

@@ -73,7 +73,7 @@ fn text(file: &str, stream: &Stream<'_>) -> Result<()> {
     let camera = &header.camera;
     let kind = if camera.projection == PERSPECTIVE { "perspective" } else { "parallel rays" };
     let orbit = if camera.period == 0 { "stands still".to_owned() } else { format!("one turn in {} frames", camera.period) };
-    let viewer = if header.viewer == VIEWER_LOCAL { "local" } else { "infinite" };
+    let viewer = if header.camera.viewer == VIEWER_LOCAL { "local" } else { "infinite" };
     let frames = header.frames;
     let shader = Shader::by_id(header.shader).map_or_else(|| format!("number {}", header.shader), |shader| shader.name().to_owned());
     report::line(&format!("  {kind}, {viewer} viewer, {orbit}, {frames} frames, shader {shader}"))

@@ -4,6 +4,7 @@
 mod absent;
 #[cfg(feature = "boards")]
 mod bench;
+mod bounds;
 mod compare;
 mod convert;
 #[cfg(feature = "boards")]
@@ -47,6 +48,7 @@ Examples:
   microphong compare teapot --report comparison    measure all methods against Phong shading
   microphong papers --only vlasic                  compute again what a paper claims
   microphong stress --seconds 60                   look for scenes that are drawn wrong
+  microphong bounds --check 10000                  look for larger errors than `auto` reckons with
 
 Exit codes: 0 done; 1 failed, or pictures differ; 2 wrong usage.";
 
@@ -59,6 +61,7 @@ enum Command {
     Bench(bench::Arguments),
     Growth(growth::Arguments),
     Compare(compare::Arguments),
+    Bounds(bounds::Arguments),
     Papers(papers::Arguments),
     Scenes(scenes::Arguments),
     Stress(stress::Arguments),
@@ -118,6 +121,7 @@ fn run(command: Command) -> Result<Outcome> {
         Command::Bench(arguments) => bench::run(&arguments),
         Command::Growth(arguments) => growth::run(&arguments),
         Command::Compare(arguments) => compare::run(&arguments),
+        Command::Bounds(arguments) => bounds::run(&arguments),
         Command::Papers(arguments) => papers::run(&arguments),
         Command::Scenes(arguments) => scenes::run(&arguments),
         Command::Stress(arguments) => stress::run(&arguments),

@@ -1,6 +1,9 @@
 //! Values on the command line.
 
-use microphong::MAX_SIDE;
+use microphong::{
+    MAX_SIDE,
+    format::{ErrorBudget, LARGEST_BUDGET, LEAST_BUDGET},
+};
 use microphong_sim::{
     papers::Topic,
     render::Format,
@@ -89,6 +92,14 @@ pub(crate) fn bytes(text: &str) -> Result<[u8; 3], String> {
 /// [`bytes`] with 1 for ff.
 pub(crate) fn colour(text: &str) -> Result<V3, String> {
     Ok(bytes(text)?.map(|c| f64::from(c) / 255.0))
+}
+
+/// An error budget in 1/255, 1/2 to 16.
+pub(crate) fn budget(text: &str) -> Result<ErrorBudget, String> {
+    let within = |budget: &f64| (f64::from(LEAST_BUDGET)..=f64::from(LARGEST_BUDGET)).contains(budget);
+    // Never more than was asked for.
+    let budget = text.parse().ok().filter(within).map(|budget: f64| ErrorBudget::from_num(budget));
+    budget.ok_or_else(|| format!("a number from {LEAST_BUDGET} to {LARGEST_BUDGET} is needed"))
 }
 
 /// A share of light, 0 to 2.

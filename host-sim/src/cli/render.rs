@@ -1,13 +1,14 @@
 //! `microphong render`.
 
-use super::{Outcome, Usage, parse, report};
+use super::{Outcome, Usage, parse, report, scenes};
 use anyhow::{Context, Result};
 use embedded_graphics_core::geometry::Size;
-use microphong::renderer::check;
+use microphong::{Stream, format::ErrorBudget, renderer::check};
 use microphong_sim::{
+    choices::{self, Choices},
     image::{self, Film},
-    output,
-    render::{self, Format, Settings, Style},
+    legend, output,
+    render::{self, Format, Picture, Settings, Style},
     scene,
     shader::Shader,
 };
@@ -26,6 +27,9 @@ pub(crate) struct Arguments {
     /// Shading method; the scene's own unless given. `microphong compare` shows what each is worth.
     #[arg(long, value_parser = parse::shader)]
     shader: Option<Shader>,
+    /// How far a pixel may be off from Phong shading by the method auto, in 1/255, 0.5 to 16; the scene's own unless given.
+    #[arg(long, value_name = "LSB", value_parser = parse::budget)]
+    budget: Option<ErrorBudget>,
     /// Size of the picture; the scene's own unless given, 640x480 for files.
     #[arg(long, value_name = "WxH", value_parser = parse::size)]
     size: Option<(u32, u32)>,
@@ -50,6 +54,10 @@ pub(crate) struct Arguments {
     /// Rows drawn at a time, as a board with little memory does; the picture is the same.
     #[arg(long, default_value_t = 16, value_parser = clap::value_parser!(u32).range(1..))]
     band_rows: u32,
+    /// Paint each triangle in the colour of what the method auto chooses for it, with a legend below the picture; colours are darker where
+    /// the picture is.
+    #[arg(long, value_name = "WHAT", conflicts_with_all = ["antialias", "dither", "band_rows"])]
+    show: Option<Show>,
     /// FILE.png, FILE.apng or a directory; SCENE.png (SCENE.apng for several frames) in the current directory unless given.
     #[arg(short, long)]
     output: Option<PathBuf>,
@@ -65,7 +73,14 @@ Examples:
   microphong render bunny --antialias
   microphong render mesh.tri --format gray4 --dither
   microphong render bunny --frames 120 -o bunny.apng
-  microphong render torus --frames 30 -o frames/";
+  microphong render torus --frames 30 -o frames/
+  microphong render teapot --show methods --budget 4";
+
+/// What a picture shows in place of its colours.
+#[derive(Clone, Copy, clap::ValueEnum)]
+enum Show {
+    Methods,
+}
 
 #[derive(Serialize)]
 struct Line<'a> {
@@ -80,12 +95,16 @@ struct Line<'a> {
     pixels: u32,
     crc: String,
     output: String,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    budget: Option<f64>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    choices: Option<Choices>,
 }
 
 pub(crate) fn run(arguments: &Arguments) -> Result<Outcome> {
     let frames = arguments.frames;
     let wanted = arguments.output.as_deref().map(|path| Target::of(path, frames)).transpose()?;
-    let scene = scene::load(&arguments.scene)?;
+    let scene = scenes::with_budget(scene::load(&arguments.scene)?, arguments.budget);
     let stream = scene.stream.parse().with_context(|| arguments.scene.clone())?;
     let target = wanted.unwrap_or_else(|| {
         let file = PathBuf::from(format!("{}.{}", scene.name, if frames > 1 { "apng" } else { "png" }));
@@ -95,7 +114,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome> {
     let settings = Settings {
         size: Size::new(width, height),
         style: Style {
-            shader: arguments.shader.map_or_else(|| Shader::of(&stream), Ok).with_context(|| scene.name.clone())?,
+            shader: method(arguments, &stream).with_context(|| scene.name.clone())?,
             perspective_correct: arguments.perspective_correct,
             antialias: arguments.antialias,
             dither: arguments.dither,
@@ -107,11 +126,13 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome> {
     if let Target::File(path) = &target {
         report::leave_to(path);
     }
-    let mut writer = Writer::start(&target, settings.size, frames)?;
+    let below = if arguments.show.is_some() { legend::HEIGHT } else { 0 };
+    let mut writer = Writer::start(&target, Size::new(width, height + below), frames)?;
     let bar = report::progress(frames.into(), "drawing frames");
     let mut lines = Vec::new();
     for number in 0..frames {
-        let picture = render::picture(stream, &settings, arguments.first.wrapping_add(number)).with_context(|| scene.name.clone())?;
+        let drawn = draw(arguments.show, stream, &settings, arguments.first.wrapping_add(number));
+        let (picture, choices) = drawn.with_context(|| scene.name.clone())?;
         let output = writer.add(number, &picture.rgb)?;
         let stats = picture.stats;
         bar.inc(1);
@@ -127,6 +148,8 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome> {
             pixels: stats.pixels,
             crc: format!("{:08x}", picture.crc),
             output: output.to_string_lossy().into_owned(),
+            budget: choices.map(|_| stream.header.budget().to_num()),
+            choices,
         });
     }
     writer.finish()?;
@@ -137,6 +160,26 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome> {
         text(line)?;
     }
     Ok(Outcome::Done)
+}
+
+/// The method that is asked for: where choices are shown, the one that chooses.
+fn method(arguments: &Arguments, stream: &Stream<'_>) -> Result<Shader> {
+    match (arguments.show, arguments.shader) {
+        (None, None) => Shader::of(stream),
+        (None, Some(shader)) => Ok(shader),
+        (Some(Show::Methods), Some(shader)) if shader != Shader::AUTO => {
+            Err(Usage(format!("--show methods shows what auto chooses; --shader {} chooses nothing", shader.name())).into())
+        }
+        (Some(Show::Methods), _) => Ok(Shader::AUTO),
+    }
+}
+
+/// Draws frame `number`, or what is to be shown in its place.
+fn draw(show: Option<Show>, stream: Stream<'_>, settings: &Settings, number: u32) -> Result<(Picture, Option<Choices>)> {
+    let Some(Show::Methods) = show else { return Ok((render::picture(stream, settings, number)?, None)) };
+    let (mut picture, choices) = choices::painted(stream, settings, number)?;
+    legend::add(&mut picture.rgb, settings.size.width, &choices);
+    Ok((picture, Some(choices)))
 }
 
 /// Where pictures go.
@@ -204,5 +247,6 @@ fn text(line: &Line<'_>) -> Result<()> {
     report::line(&format!("{}: {}, {}, {several}{}x{}", line.output, line.scene, line.shader, line.width, line.height))?;
     let last = if line.frames > 1 { "last frame: " } else { "" };
     let [triangles, culled, drawn, pixels] = [line.triangles, line.culled, line.drawn, line.pixels].map(|n| report::grouped(n.into()));
-    report::line(&format!("  {last}{triangles} triangles, {culled} culled, {drawn} drawn on {pixels} pixels, checksum {}", line.crc))
+    report::line(&format!("  {last}{triangles} triangles, {culled} culled, {drawn} drawn on {pixels} pixels, checksum {}", line.crc))?;
+    line.budget.zip(line.choices).iter().try_for_each(report::choices)
 }

@@ -3,7 +3,7 @@
 use anyhow::{Context, Result};
 use indicatif::{MultiProgress, ProgressBar, ProgressStyle};
 use log::{LevelFilter, Log, Metadata, Record};
-use microphong_sim::output;
+use microphong_sim::{choices::Choices, output};
 use serde::Serialize;
 use std::{
     io::Write,
@@ -37,6 +37,11 @@ pub(crate) fn line(text: &str) -> Result<()> {
 /// Prints one JSON object on a line.
 pub(crate) fn json(object: &impl Serialize) -> Result<()> {
     line(&serde_json::to_string(object)?)
+}
+
+/// Prints what the method auto chooses within a budget, in 1/255, below what it has come to.
+pub(crate) fn choices((budget, choices): &(f64, Choices)) -> Result<()> {
+    line(&format!("    budget {budget} LSB; {choices}"))
 }
 
 /// Prints an error with its causes.

@@ -2,6 +2,7 @@
 
 use super::{Outcome, Usage, report};
 use anyhow::Result;
+use microphong::format::ErrorBudget;
 use microphong_sim::scene::{self, NAMES, Scene, VARIANTS};
 use serde::Serialize;
 
@@ -31,13 +32,22 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome> {
     Ok(Outcome::Done)
 }
 
-/// A scene by name or from a file, or all that are built in.
-pub(super) fn load(name: &str) -> Result<Vec<Scene>> {
+/// A scene by name or from a file, or all that are built in; with another error budget if one is given.
+pub(super) fn load(name: &str, budget: Option<ErrorBudget>) -> Result<Vec<Scene>> {
+    let load = |name| Ok(with_budget(scene::load(name)?, budget));
     if name == "all" {
-        return NAMES.iter().map(|name| scene::load(name)).collect();
+        return NAMES.into_iter().map(load).collect();
     }
-    match scene::load(name) {
+    match load(name) {
         Err(error) if error.is::<scene::Unknown>() => Err(Usage(format!("{error}, or all")).into()),
         other => Ok(vec![other?]),
+    }
+}
+
+/// A scene with another error budget, if one is given.
+pub(super) fn with_budget(scene: Scene, budget: Option<ErrorBudget>) -> Scene {
+    match budget {
+        Some(budget) => Scene { stream: scene.stream.with_budget(budget), ..scene },
+        None => scene,
     }
 }

@@ -6,7 +6,7 @@ use super::{
     report, scenes,
 };
 use anyhow::{Context, Result, bail};
-use microphong::renderer::check;
+use microphong::{format::ErrorBudget, renderer::check};
 use microphong_sim::{
     board::Board,
     scene::Scene,
@@ -28,6 +28,9 @@ pub(crate) struct Arguments {
     /// Shading methods, separated by commas, or all that the board has room for.
     #[arg(long, default_value = "all", value_parser = parse::shaders)]
     shader: Several<Shader>,
+    /// How far a pixel may be off from Phong shading by the method auto, in 1/255, 0.5 to 16; the scene's own unless given.
+    #[arg(long, value_name = "LSB", value_parser = parse::budget)]
+    budget: Option<ErrorBudget>,
     /// Frames to compare, from the first.
     #[arg(long, default_value_t = 3, value_parser = clap::value_parser!(u16).range(1..))]
     frames: u16,
@@ -52,7 +55,7 @@ fn boards(text: &str) -> Result<Several<Board>, String> {
 }
 
 pub(crate) fn run(arguments: &Arguments) -> Result<Outcome> {
-    let scenes = scenes::load(&arguments.scene)?;
+    let scenes = scenes::load(&arguments.scene, arguments.budget)?;
     let boards = &arguments.board.values;
     let shaders = &arguments.shader;
     // Of all methods those that the board has and that can shade the scene.

@@ -34,9 +34,6 @@ impl Family for Arithmetic {
     fn check(&self, random: &mut Random) -> Verdict {
         let Some(case) = scenes::case(random, Wishes { closed: false, unclipped: true, triangles: 200 }) else { return Verdict::skipped() };
         let case = Case { style: Style { antialias: false, dither: false, ..case.style }, ..case };
-        if !is_defined(&case) {
-            return Verdict::skipped();
-        }
         match excess(&case) {
             Some(error) => Verdict::of(error, LIMIT, Some(case)),
             None => Verdict::skipped(),
@@ -44,7 +41,7 @@ impl Family for Arithmetic {
     }
 
     fn fails(&self, case: &Case) -> bool {
-        is_defined(case) && excess(case).is_some_and(|error| error > LIMIT)
+        excess(case).is_some_and(|error| error > LIMIT)
     }
 }
 
@@ -59,10 +56,17 @@ fn is_defined(case: &Case) -> bool {
     case.stream.parse().is_ok_and(|stream| stream.triangles.iter().all(|triangle| f64::from(triangle.min_normal_length()) >= OPPOSITE))
 }
 
-/// [`error`], less what many lights may add.
+/// [`error`], less what many lights may add; `None` also where shading is not defined.
 fn excess(case: &Case) -> Option<f64> {
+    excess_over(case, case.style.shader)
+}
+
+/// The same of the difference from the method `exact` in floating point.
+#[must_use]
+pub fn excess_over(case: &Case, exact: Shader) -> Option<f64> {
     let lights = case.stream.parse().ok()?.lights.len().max(1);
-    Some((error(case)? - PER_LIGHT * (lights - 1) as f64).max(0.0))
+    let error = if is_defined(case) { error(case, exact)? } else { return None };
+    Some((error - PER_LIGHT * (lights - 1) as f64).max(0.0))
 }
 
 /// All of a method's triangles in one frame, in floating point; `None` if the method cannot shade them.
@@ -77,23 +81,27 @@ fn difference(drawn: [f64; 3], exact: [f64; 3]) -> f64 {
     if one { all.min((drawn[0] - exact.into_iter().fold(0.0, f64::max)).abs()) } else { all }
 }
 
-/// Largest difference of a frame, in 1/255, before the output format rounds; infinite where a pixel is missing. `None` if the method
-/// cannot draw it, or a triangle is clipped.
-#[must_use]
-pub fn error(case: &Case) -> Option<f64> {
+/// Largest difference of a frame from the method `exact` in floating point, in 1/255, before the output format rounds; infinite where a
+/// pixel is missing. `None` if the method cannot draw it, or a triangle is clipped.
+fn error(case: &Case, exact: Shader) -> Option<f64> {
     let (stream, size) = (case.stream.parse().ok()?, (case.size[0], case.size[1]));
     let frame = if case.style.perspective_correct {
         Frame::perspective_correct(stream, size, case.frame)
     } else {
         Frame::new(stream, size, case.frame)
     };
-    of(case, &frame, &frame.visible())
+    difference_from(exact, case, &frame, &frame.visible())
 }
 
-/// [`error`], if the frame is known already, and what may be seen at each of its pixels.
+/// Largest difference of a frame from its method in floating point, if the frame is known already, and what may be seen at each of its
+/// pixels.
 #[must_use]
 pub fn of(case: &Case, frame: &Frame, visible: &[Vec<u32>]) -> Option<f64> {
-    let (stream, shader) = (case.stream.parse().ok()?, case.style.shader);
+    difference_from(case.style.shader, case, frame, visible)
+}
+
+fn difference_from(shader: Shader, case: &Case, frame: &Frame, visible: &[Vec<u32>]) -> Option<f64> {
+    let stream = case.stream.parse().ok()?;
     let shades = shades(frame, shader)?;
     let drawn = level::picture(stream, case.pixels(), case.style, case.frame).ok()?;
     let mut worst = 0f64;

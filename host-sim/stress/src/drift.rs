@@ -36,7 +36,7 @@ impl Family for Drift {
             axis: axis.map(fixed),
             period: random.pick(1..65_536) as u16,
             projection: PERSPECTIVE,
-            reserved: 0,
+            viewer: microphong::stream::record::VIEWER_INFINITE,
             focal: 1 << 16,
             near: 1 << 14,
             far: 0,

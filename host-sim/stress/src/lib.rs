@@ -5,6 +5,7 @@
 //! failure is found again by its seed and number.
 
 pub mod arithmetic;
+pub mod budget;
 pub mod case;
 pub mod cost;
 pub mod coverage;
@@ -89,6 +90,7 @@ pub fn families() -> Vec<Box<dyn Family>> {
         Box::new(coverage::Coverage),
         Box::new(watertight::Watertight),
         Box::new(arithmetic::Arithmetic),
+        Box::new(budget::Budget),
         Box::new(walks::Walks),
         Box::new(drift::Drift),
         Box::new(sameness::Sameness),

@@ -123,7 +123,7 @@ impl<'r, C: Pixel> Frame<'r, C> {
 
     #[inline(always)]
     fn empty(settings: &'r Settings<'r, C>, memory: &'r mut Memory<'_, C>, number: u32) -> Empty<'r, C> {
-        let Memory { vertices: cache, bins: entries, depth, reflectances, ramps, samples, active_triangles } = memory;
+        let Memory { vertices: cache, bins: entries, depth, reflectances, ramps, error_bounds, samples, active_triangles } = memory;
         let (stream, size) = (&settings.stream, settings.size);
         let camera = &stream.header.camera;
         let pose = Pose::new(camera, number);
@@ -136,7 +136,8 @@ impl<'r, C: Pixel> Frame<'r, C> {
         let bins = Bins::new(size.height, band_rows);
         let depth_elision = if settings.antialiased() { None } else { DepthElision::new(stream, &view, size) };
         let uncached = stream.vertices.len().saturating_sub(cache.len()) as u32;
-        let scene = Scene { settings, view, facing, lighting, constant, depth_elision: None, vertices: &[], reflectances, ramps };
+        let scene =
+            Scene { settings, view, facing, lighting, constant, depth_elision: None, vertices: &[], reflectances, ramps, error_bounds };
         let part = Part {
             bins,
             binned: false,

@@ -11,7 +11,7 @@ use crate::{
     },
     lighting::{lights::Lighting, material_tables::MaterialTables, reflectance::Reflectance},
     mesh::{MeshPass, vertices::VertexStage},
-    method::{Shading, Style},
+    method::{ErrorBounds, Shading, Style},
     pixel::Pixel,
     shader::{Shader, TriangleLoops},
     stream::record::Mesh,
@@ -29,6 +29,8 @@ pub(crate) struct Settings<'a, C: Pixel> {
     pub(crate) dither: bool,
     pub(crate) perspective_correct: bool,
     pub(crate) antialias: bool,
+    /// How far a pixel may be off by a method that keeps to a budget, in 1/255, Q9.7.
+    pub(crate) budget: u32,
     pub(crate) background: C,
 }
 
@@ -64,6 +66,8 @@ pub(crate) struct Scene<'r, C: Pixel> {
     /// One for each material, as in `ramps`, the tables of colours.
     pub(crate) reflectances: &'r [Reflectance],
     pub(crate) ramps: &'r [[C::Stored; RAMP]],
+    /// What a method that keeps to a budget knows of each material.
+    pub(crate) error_bounds: &'r [ErrorBounds],
 }
 
 impl<C: Pixel> Scene<'_, C> {
@@ -97,13 +101,17 @@ impl<C: Pixel> Scene<'_, C> {
             dithered_or_antialiased: *dither || self.settings.antialiased(),
             perspective,
         };
+        let exponent = stream.materials.get(material)?.exponent;
+        let error_bounds = self.error_bounds.get(material)?;
         let drawing = MeshPass {
             method: shader.method(),
             shading: Shading {
                 reflectance,
                 lighting: &self.lighting,
-                exponent: stream.materials.get(material)?.exponent,
+                exponent,
                 constant: self.constant,
+                error_bounds,
+                budget: self.settings.budget,
             },
             tables: MaterialTables { ramp, reflectance },
             dither: *dither,

@@ -56,7 +56,7 @@ impl Lighting {
         let header = stream.header;
         let [right, up, away] = pose.rotation;
         let towards_eye = away.map(|c| -c);
-        let viewer = if header.viewer == VIEWER_LOCAL && header.camera.projection == PERSPECTIVE {
+        let viewer = if header.camera.viewer == VIEWER_LOCAL && header.camera.projection == PERSPECTIVE {
             Viewer::Local(pose.eye())
         } else {
             Viewer::Infinite(towards_eye)

@@ -317,6 +317,14 @@ impl Reflectance {
         diffuse_level(self.ramp, cosine)
     }
 
+    /// The diffuse level at cosine 1 and the level of a whole highlight of a light, Q9.7, each in the channel where it is largest.
+    #[must_use]
+    pub fn largest_gains(&self, light: usize) -> [u32; 2] {
+        let Gains { diffuse, specular } = self.gains.get(light).copied().unwrap_or(Gains::NONE);
+        let most = |gains: [u16; 3]| largest(gains.map(u32::from));
+        [most(diffuse), if self.holds_levels() { self.highlight_lut.at(1 << COSINE) } else { most(specular) }]
+    }
+
     /// Levels of three channels under one light, Q9.7 in [0, 255], from N·L (Q2.30) and a highlight (unsigned Q0.16).
     #[inline(always)]
     #[must_use]
@@ -394,7 +402,21 @@ impl Reflectance {
                 *lit = [node_cosine(normal.cosine(towards)), self.highlight(normal.cosine(half)) as i32];
             }
         }
-        let ([first, second, _], [[cosine, highlight], [other, other_highlight]]) = (&self.sums, lit);
+        self.two_sums(lit)
+    }
+
+    /// Levels under two lights, Q9.7 in [0, 255], from N·L and N·H (Q2.30) of one, then of the other. Domain: [`Self::has_two_lights`].
+    #[inline]
+    #[must_use]
+    pub fn two_lights(&self, [towards, half, other, other_half]: [i32; 4]) -> [i32; 3] {
+        let lit = |towards, half| [node_cosine(towards), self.highlight(half) as i32];
+        self.two_sums([lit(towards, half), lit(other, other_half)])
+    }
+
+    /// Levels under two lights, Q9.7 in [0, 255], from a cosine, Q1.15, and a highlight, unsigned Q0.16, of each.
+    #[inline(always)]
+    fn two_sums(&self, [[cosine, highlight], [other, other_highlight]]: [[i32; 2]; 2]) -> [i32; 3] {
+        let [first, second, _] = &self.sums;
         let level = |ambient: i32, first: &Sum, second: &Sum| {
             let sum = first.light(cosine, highlight).wrapping_add(second.light(other, other_highlight));
             ((ambient << FACTOR) + (1 << (FACTOR - 1))).wrapping_add(sum) >> FACTOR

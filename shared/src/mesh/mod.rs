@@ -15,7 +15,7 @@ use crate::{
     },
     lighting::material_tables::MaterialTables,
     mesh::vertices::VertexStage,
-    method::{General, Loops, Method, Shading, TriangleSetup},
+    method::{DrawTriangle, General, Loops, Method, Shading, TriangleSetup},
     pixel::Pixel,
     raster::{
         band::Band,
@@ -42,9 +42,6 @@ pub(crate) struct MeshPass<'f, C: Pixel> {
     /// Whether light is interpolated in perspective.
     pub(crate) perspective: bool,
 }
-
-/// See [`Loops::draw`].
-pub(crate) type DrawTriangle<C> = fn(&TriangleSetup<'_>, &Shading<'_>, MaterialTables<'_, C>, &mut Band<'_, C>) -> Option<u32>;
 
 /// A triangle whose corners run clockwise on the screen.
 struct MeshTriangle<'f> {

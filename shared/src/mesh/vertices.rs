@@ -106,15 +106,10 @@ impl VertexStage<'_> {
         let normal = wide(vertex.normal);
         let light = match (self.light, self.constant) {
             (VertexLight::None, _) => [0; 4],
-            (VertexLight::Cosines, None) if self.has_two_lights() => self.cosines_of_two_lights(normal),
-            (VertexLight::Cosines, None) => [0; 4],
+            (VertexLight::Cosines | VertexLight::CosinesAndReflection, None) if self.has_two_lights() => self.cosines_of_two_lights(normal),
+            (VertexLight::Cosines | VertexLight::CosinesAndReflection, None) => [0; 4],
             (light, Some([towards, half])) if light != VertexLight::Levels || !self.reflectance.three_channels() => {
-                let cosines = [vertex_cosine(normal, *towards), vertex_cosine(normal, *half)];
-                match light {
-                    VertexLight::Cosines | VertexLight::CosinesOrLevels => [cosines[0], cosines[1], 0, 0],
-                    _ if self.reflectance.three_channels() => [cosines[0], self.reflectance.highlight(cosines[1]) as i32, 0, 0],
-                    _ => [self.reflectance.level(cosines); 4],
-                }
+                self.under_one_light(light, [vertex_cosine(normal, *towards), vertex_cosine(normal, *half)])
             }
             _ => {
                 let levels = if self.lighting.is_constant() {
@@ -126,6 +121,17 @@ impl VertexStage<'_> {
             }
         };
         ScreenVertex { x, y, depth, light, state: if inside { State::READY } else { State::OUTSIDE } }
+    }
+
+    /// The light of a vertex with these cosines of one constant light.
+    #[inline(always)]
+    fn under_one_light(&self, light: VertexLight, [towards, half]: [i32; 2]) -> [i32; 4] {
+        match light {
+            VertexLight::Cosines | VertexLight::CosinesOrLevels => [towards, half, 0, 0],
+            VertexLight::Levels => [self.reflectance.level([towards, half]); 4],
+            _ if self.reflectance.three_channels() => [towards, half, self.reflectance.highlight(half) as i32, 0],
+            _ => [towards, half, self.reflectance.level([towards, half]), 0],
+        }
     }
 
     /// Whether vertices have the cosines of two lights: both are constant, on a material of three channels.

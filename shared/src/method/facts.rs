@@ -89,9 +89,12 @@ pub enum VertexLight {
     Cosines,
     /// `[N·L, N·H]` under one constant light, else levels.
     CosinesOrLevels,
-    /// `[N·L, highlight]` under one constant light on a material of three channels, else levels. The highlight is unsigned Q0.16, and 0 where
+    /// `[N·L, N·H, highlight]` under one constant light on a material of three channels, else levels. The highlight is unsigned Q0.16, and 0 where
     /// none can be seen.
     ReflectionOrLevels,
+    /// `[N·L, N·H, r]` under one constant light, where r is the level of a material of one channel, and the highlight on one of three; else
+    /// as [`Self::Cosines`].
+    CosinesAndReflection,
     /// Levels.
     Levels,
 }

@@ -52,7 +52,7 @@ impl Loops for Gouraud {
     #[inline(always)]
     fn draw<C: Pixel>(setup: &TriangleSetup<'_>, _: &Shading<'_>, tables: MaterialTables<'_, C>, band: &mut Band<'_, C>) -> Option<u32> {
         let [a, b, c] = setup.corners;
-        Some(setup.fill(|| one(setup.gradients, [a.light[0], b.light[0], c.light[0]]), Ramp(tables.ramp), band))
+        Some(setup.fill(|| one(setup.gradients, [a.light[2], b.light[2], c.light[2]]), Ramp(tables.ramp), band))
     }
 }
 
@@ -80,7 +80,7 @@ impl Loops for ThreeChannels<Gouraud> {
             return Some(Shading::fill_three(setup, channels, |plane| plane, band));
         }
         // By the table of colours where the light has no highlight.
-        if a.light[1] | b.light[1] | c.light[1] == 0 && reflectance.has_ramp() {
+        if a.light[2] | b.light[2] | c.light[2] == 0 && reflectance.has_ramp() {
             let level = |[cosine, ..]: [i32; 4]| reflectance.ramp_level(cosine);
             let levels = [level(a.light), level(b.light), level(c.light)];
             return Some(setup.fill(|| one(setup.gradients, levels), Ramp(tables.ramp), band));
@@ -101,16 +101,21 @@ fn one(gradients: &Gradients, levels: [i32; 3]) -> Plane<1> {
 
 /// The levels at the corners.
 fn corner_levels(setup: &TriangleSetup<'_>, shading: &Shading<'_>) -> [[i32; 3]; 3] {
-    if shading.constant.is_some() && shading.reflectance.three_channels() {
-        return reflections(setup.corners, shading.reflectance);
+    if shading.constant.is_some() {
+        return reflected(setup, shading.reflectance);
     }
     let [a, b, c] = setup.corners;
     [a.levels(), b.levels(), c.levels()]
 }
 
+/// The levels at the corners under one constant light.
+pub(super) fn reflected(setup: &TriangleSetup<'_>, reflectance: &Reflectance) -> [[i32; 3]; 3] {
+    if reflectance.three_channels() { reflections(setup.corners, reflectance) } else { setup.corners.map(|corner| [corner.light[2]; 3]) }
+}
+
 /// The levels at corners whose light is [`VertexLight::ReflectionOrLevels`] of one constant light in three channels.
 #[inline(never)]
 fn reflections([a, b, c]: [&ScreenVertex; 3], reflectance: &Reflectance) -> [[i32; 3]; 3] {
-    let level = |[cosine, highlight, ..]: [i32; 4]| reflectance.reflection(cosine, highlight as u32);
+    let level = |[cosine, _, highlight, _]: [i32; 4]| reflectance.reflection(cosine, highlight as u32);
     [level(a.light), level(b.light), level(c.light)]
 }

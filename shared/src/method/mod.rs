@@ -5,10 +5,13 @@
 //! [`Canvas`] tests depth and stores colours. The methods of this crate also have loops that are compiled for each pixel format, for the
 //! common styles.
 
+pub mod auto;
 pub mod duff;
+pub mod error_bound;
 mod facts;
 pub mod flat;
 pub mod gouraud;
+pub mod highlight_error;
 pub mod lighting_model;
 mod local_viewer;
 pub mod node;
@@ -54,6 +57,7 @@ pub use crate::{
     raster::canvas::{Canvas, IntensityShader},
 };
 use core::marker::PhantomData;
+pub use error_bound::ErrorBounds;
 pub use facts::{Costs, Facts, VertexLight};
 #[doc(inline)]
 pub use lighting_model::{LightingModel, Linear, Quadratic, linear, quadratic, signed};
@@ -66,6 +70,11 @@ pub use sub_triangle::{Part, Parts, SubTriangle};
 pub trait Method: Sync {
     /// The facts about the method.
     fn facts(&self) -> &'static Facts;
+
+    /// Computes what a method needs to keep to an error budget, for a material of this exponent under so many lights: others need nothing.
+    fn error_bounds(&self, _reflectance: &Reflectance, _exponent: u16, _lights: usize) -> ErrorBounds {
+        ErrorBounds::EMPTY
+    }
 
     /// Shades the triangle `setup` into `canvas`; returns the number of its pixels there.
     fn shade(&self, setup: &TriangleSetup<'_>, shading: &Shading<'_>, canvas: &mut dyn Canvas) -> u32;
@@ -105,6 +114,9 @@ pub(crate) trait Loops {
         band: &mut Band<'_, C>,
     ) -> Option<u32>;
 }
+
+/// See [`Loops::draw`].
+pub(crate) type DrawTriangle<C> = fn(&TriangleSetup<'_>, &Shading<'_>, MaterialTables<'_, C>, &mut Band<'_, C>) -> Option<u32>;
 
 /// The loops of the method `M` in three channels, where it tells these apart.
 pub(crate) struct ThreeChannels<M>(PhantomData<M>);
@@ -317,6 +329,10 @@ pub struct Shading<'f> {
     pub exponent: u16,
     /// L and H of the only light, if they are constant, see [`Lighting::constant`].
     pub constant: Option<[[i32; 3]; 2]>,
+    /// See [`Method::error_bounds`].
+    pub error_bounds: &'f ErrorBounds,
+    /// How far a pixel may be off by a method that keeps to a budget, in 1/255, Q9.7.
+    pub budget: u32,
 }
 
 /// The nodes of each channel.

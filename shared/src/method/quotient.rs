@@ -134,8 +134,8 @@ fn quotient<const EXACT: bool>(full: u16, light: u32, half_reciprocal: i32) -> i
     if EXACT { diffuse } else { diffuse.min(node(full, 1 << COSINE, PIXEL)) }
 }
 
-/// Draws `setup` under one light with these `cosines`; `None` if its levels do not fit their formats. `half_reciprocal` computes half a reciprocal
-/// length, Q2.30, from the walked field `length`, `EXACT` or not.
+/// Draws `setup` under one light with these `cosines`; `None` if its levels do not fit their formats. `half_reciprocal` computes half a
+/// reciprocal length, Q2.30, from the walked field `length`, `EXACT` or not.
 #[inline(always)]
 pub(super) fn draw<const EXACT: bool, F: Field, C: Pixel>(
     setup: &TriangleSetup<'_>,

@@ -17,7 +17,8 @@ pub(super) struct TwoLights<'a, C> {
 }
 
 impl<'a, C: Pixel> TwoLights<'a, C> {
-    /// The lights on the triangle `setup`, whose vertices have [`crate::method::VertexLight::Cosines`]; `None` unless there are two that have loops.
+    /// The lights on the triangle `setup`, whose vertices have [`crate::method::VertexLight::Cosines`]; `None` unless there are two that have
+    /// loops.
     #[inline(always)]
     pub(super) fn on(setup: &TriangleSetup<'_>, tables: MaterialTables<'a, C>) -> Option<Self> {
         let [forth, back] = tables.two_lights_rgb()?;

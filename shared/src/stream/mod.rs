@@ -6,7 +6,7 @@
 pub mod record;
 
 use crate::{
-    format::{MAX_LIGHTS, NORMAL_LENGTH, ROTATION, UNIT},
+    format::{LARGEST_BUDGET, LEAST_BUDGET, MAX_LIGHTS, NORMAL_LENGTH, ROTATION, UNIT},
     math::vector::{cross, dot},
 };
 use core::{fmt, ops::Range};
@@ -205,8 +205,8 @@ impl<'a> Stream<'a> {
     fn check(&self) -> Result<(), StreamError> {
         let header = self.header;
         field(header.frames > 0, "frames", 0)?;
-        field(header.camera.reserved == 0, "reserved", 0)?;
-        field(header.viewer <= VIEWER_LOCAL, "viewer", 0)?;
+        field((LEAST_BUDGET..=LARGEST_BUDGET).contains(&header.budget()), "budget", 0)?;
+        field(header.camera.viewer <= VIEWER_LOCAL, "viewer", 0)?;
         field(!self.meshes.is_empty(), "meshes", 0)?;
         field(self.lights.len() <= MAX_LIGHTS, "lights", 0)?;
         self.check_camera()?;
@@ -272,7 +272,7 @@ impl<'a> Stream<'a> {
     /// Whether all lights are directional and the viewer is infinitely far.
     #[must_use]
     pub fn is_constant(&self) -> bool {
-        let infinite = self.header.viewer == VIEWER_INFINITE || self.header.camera.projection == ORTHOGRAPHIC;
+        let infinite = self.header.camera.viewer == VIEWER_INFINITE || self.header.camera.projection == ORTHOGRAPHIC;
         infinite && self.lights.iter().all(|light| light.kind == DIRECTIONAL)
     }
 

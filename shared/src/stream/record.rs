@@ -7,7 +7,7 @@
 //! crate [`fixed`], and `new` makes a record of such numbers; [`crate::Stream::parse`] checks what does not follow from the type.
 
 #[doc(inline)]
-pub use crate::format::{Focal, Gain, Haversine, InverseAltitude, Length, NormalLength, Radius, Rotation, Unit};
+pub use crate::format::{ErrorBudget, Focal, Gain, Haversine, InverseAltitude, Length, NormalLength, Radius, Rotation, Unit};
 use zerocopy::{FromBytes, Immutable, IntoBytes, KnownLayout};
 
 #[cfg(target_endian = "big")]
@@ -16,7 +16,7 @@ compile_error!("streams are read in place and are little-endian");
 /// First four bytes of every stream.
 pub const MAGIC: [u8; 4] = *b"mTRI";
 /// The version of the format that this core reads and the host writes.
-pub const VERSION: u16 = 3;
+pub const VERSION: u16 = 4;
 
 /// The start of a stream. The arrays follow in the order of the counts.
 #[derive(FromBytes, IntoBytes, Immutable, KnownLayout, Clone, Copy, Debug, PartialEq, Eq)]
@@ -46,8 +46,8 @@ pub struct Header {
     pub triangles: u32,
     /// Colour where no triangle is drawn: red, green, blue.
     pub background: [u8; 3],
-    /// [`VIEWER_INFINITE`] or [`VIEWER_LOCAL`].
-    pub viewer: u8,
+    /// How far a pixel may be off from Phong shading by a method that keeps to a budget, [`ErrorBudget`] from 1/2 to 16.
+    pub budget: u8,
     /// Ambient light, red, green, blue, [`Gain`] at most 2; it is multiplied by the ambient colour of a material.
     pub ambient: [u16; 3],
     /// No vertex lies farther from the origin of object space, [`Radius`], rounded up.
@@ -61,6 +61,12 @@ impl Header {
     #[must_use]
     pub fn ambient(&self) -> [Gain; 3] {
         self.ambient.map(Gain::from_bits)
+    }
+
+    /// How far a pixel may be off from Phong shading by a method that keeps to a budget, in 1/255 of full intensity.
+    #[must_use]
+    pub fn budget(&self) -> ErrorBudget {
+        ErrorBudget::from_bits(self.budget)
     }
 
     /// Radius of the ball about the origin that contains all vertices.
@@ -93,8 +99,8 @@ pub struct Camera {
     pub period: u16,
     /// [`PERSPECTIVE`] or [`ORTHOGRAPHIC`].
     pub projection: u8,
-    /// Must be 0.
-    pub reserved: u8,
+    /// [`VIEWER_INFINITE`] or [`VIEWER_LOCAL`].
+    pub viewer: u8,
     /// [`Focal`] in [1/16, 16]. Perspective: half of the viewport's smaller side is seen under the slope `1 / focal`.
     /// Orthographic: half of the viewport's smaller side shows `1 / focal` units.
     pub focal: u32,
@@ -114,11 +120,17 @@ impl Camera {
             axis: [Rotation::ZERO, Rotation::ONE, Rotation::ZERO].map(Rotation::to_bits),
             period: 0,
             projection,
-            reserved: 0,
+            viewer: VIEWER_INFINITE,
             focal: focal.to_bits(),
             near: near.to_bits(),
             far: far.to_bits(),
         }
+    }
+
+    /// This camera, near enough that highlights use the direction from each point to the eye.
+    #[must_use]
+    pub fn with_local_viewer(self) -> Self {
+        Self { viewer: VIEWER_LOCAL, ..self }
     }
 
     /// This camera, which orbits once around `axis` in `period` frames.

@@ -70,6 +70,8 @@ impl Count {
             flash_bytes: None,
             max_lsb: None,
             rmse_lsb: None,
+            budget: None,
+            choices: None,
             flash_own_bytes: None,
             firmware_bytes: None,
             timing: None,

@@ -246,6 +246,8 @@ mod tests {
                 flash_bytes: None,
                 max_lsb: Some(40.0 / (index + 1) as f64),
                 rmse_lsb: Some(10.0 / (index + 1) as f64),
+                budget: None,
+                choices: None,
                 flash_own_bytes: None,
                 firmware_bytes: None,
                 timing: None,

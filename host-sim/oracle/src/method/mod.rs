@@ -1,6 +1,7 @@
 //! The methods by name.
 
 pub(crate) mod angular;
+mod auto;
 mod blinn;
 mod cubic;
 mod duff;
@@ -63,7 +64,8 @@ const fn by_rows(method: Method) -> Method {
     Method { rows: true, ..method }
 }
 
-const METHODS: [Method; 26] = [
+const METHODS: [Method; 27] = [
+    deciding("auto", auto::shade),
     any("flat", |frame, facet, _| flat::shade(frame, facet)),
     any("gouraud", |frame, facet, _| gouraud::shade(frame, facet)),
     any("gouraud4", |frame, facet, _| gouraud4::shade(frame, facet)),

@@ -1,0 +1,46 @@
+//! One of four methods, whichever stays within an error budget.
+
+use super::{Decide, gouraud, six_point};
+use crate::{
+    Facet, Frame, Shade,
+    light::{highlight, phong},
+};
+
+/// An excess that is close to its threshold at every margin but 0.
+const CLOSE: f64 = -f64::MIN_POSITIVE;
+
+/// Which of them that is follows from bounds that only the core knows. What it is measured against is Phong shading, and each of the four
+/// counts as a decision that may fall either way: arithmetic is compared with all of them.
+///
+/// Near lights or a near viewer: always Phong.
+pub(super) fn shade<'f>(frame: &'f Frame, facet: &'f Facet, decide: &'f Decide<'f>) -> Shade<'f> {
+    if !frame.is_constant() || !decide(CLOSE) {
+        return phong(frame, facet);
+    }
+    match (decide(CLOSE), decide(CLOSE)) {
+        (false, false) => gouraud::shade(frame, facet),
+        (false, true) => six_point::shade(frame, facet),
+        (true, by_light) => solid(frame, facet, by_light),
+    }
+}
+
+/// One colour: that of the cosine and of the highlight half-way between their extremes at the corners, `by_light`, or half-way between the
+/// extremes of the corners' levels.
+fn solid<'f>(frame: &'f Frame, facet: &'f Facet, by_light: bool) -> Shade<'f> {
+    let middle = |values: [f64; 3]| {
+        let [least, most] = [f64::min, f64::max].map(|extreme| values.into_iter().reduce(extreme).unwrap_or(0.0));
+        0.5 * (least + most)
+    };
+    let levels = if by_light {
+        let exponent = frame.material(facet).exponent;
+        let reflected = frame.lights.iter().map(|light| {
+            let cosines = Facet::CORNERS.map(|corner| frame.cosines(light, facet.position(corner), facet.node(corner)));
+            [middle(cosines.map(|[diffuse, _]| diffuse.max(0.0))), middle(cosines.map(|[_, half]| highlight(half, exponent)))]
+        });
+        frame.levels(facet, reflected)
+    } else {
+        let [a, b, c] = Facet::CORNERS.map(|corner| frame.node(facet, corner));
+        [0, 1, 2].map(|k| middle([a[k], b[k], c[k]]))
+    };
+    Box::new(move |_| levels)
+}

@@ -1,0 +1,272 @@
+//! What the method `auto` chooses: how many triangles and pixels of a frame each way of shading draws, and a picture of them.
+//!
+//! The frame is drawn by a method that asks as `auto` does, remembers the answer, and leaves the rest to `auto`; its pixels remember what
+//! drew them. It is drawn in one band, so that no triangle is counted twice.
+
+use crate::{
+    image::{rgb_bytes, to_rgb},
+    render::{self, Format, Picture, Settings, Style},
+    shader::Shader,
+};
+use embedded_graphics_core::{
+    geometry::Size,
+    pixelcolor::{Gray4, Gray8, Rgb565, Rgb888},
+};
+use microphong::{
+    Stats, Stream,
+    format::{Intensity, RAMP},
+    method::{
+        Canvas, ErrorBounds, Facts, Method, Reflectance, Shading, TriangleSetup,
+        auto::{Auto, Choice, choose},
+    },
+    pixel::Pixel,
+};
+use serde::{Serialize, Serializer};
+use std::{cell::Cell, fmt, sync::LazyLock};
+
+/// A way of shading that `auto` chooses among.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Way {
+    /// One colour for all of the triangle.
+    OneColour,
+    /// Levels at the corners, linear in between.
+    Linear,
+    /// Levels at six nodes, quadratic in between.
+    Quadratic,
+    /// Phong shading.
+    Phong,
+}
+
+impl Way {
+    /// All of them, the cheapest first.
+    pub const ALL: [Self; 4] = [Self::OneColour, Self::Linear, Self::Quadratic, Self::Phong];
+
+    /// The name in texts and pictures.
+    #[must_use]
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::OneColour => "one colour",
+            Self::Linear => "linear",
+            Self::Quadratic => "quadratic",
+            Self::Phong => "Phong",
+        }
+    }
+
+    /// The colour in pictures, which the colour-blind tell from the others (Okabe & Ito 2002).
+    #[must_use]
+    pub const fn colour(self) -> [u8; 3] {
+        match self {
+            Self::OneColour => [86, 180, 233],
+            Self::Linear => [0, 158, 115],
+            Self::Quadratic => [240, 228, 66],
+            Self::Phong => [213, 94, 0],
+        }
+    }
+}
+
+impl From<Choice> for Way {
+    fn from(choice: Choice) -> Self {
+        match choice {
+            Choice::Solid(_) => Self::OneColour,
+            Choice::Linear => Self::Linear,
+            Choice::Quadratic => Self::Quadratic,
+            Choice::Phong => Self::Phong,
+        }
+    }
+}
+
+/// What is drawn in one way.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+pub struct Count {
+    /// Triangles that are shaded: of those drawn all but slivers between the centres of pixels. Where one is cut, each of its parts counts.
+    pub triangles: u32,
+    /// Pixels of these triangles, those hidden by depth included.
+    pub pixels: u32,
+}
+
+/// What is drawn in each way, in the order of [`Way::ALL`].
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Choices([Count; Way::ALL.len()]);
+
+impl Choices {
+    const NONE: Self = Self([Count { triangles: 0, pixels: 0 }; Way::ALL.len()]);
+
+    /// What is drawn in one way.
+    #[must_use]
+    pub const fn count(&self, way: Way) -> Count {
+        self.0[way as usize]
+    }
+
+    /// The percentage of all triangles, and of all pixels, that is drawn in one way.
+    #[must_use]
+    pub fn percent(&self, way: Way) -> [f64; 2] {
+        [|count: Count| count.triangles, |count: Count| count.pixels].map(|of| {
+            let all: u64 = Way::ALL.iter().map(|&way| u64::from(of(self.count(way)))).sum();
+            100.0 * f64::from(of(self.count(way))) / all.max(1) as f64
+        })
+    }
+
+    /// The same with one triangle more, which has so many pixels.
+    fn with_triangle(mut self, way: Way, pixels: u32) -> Self {
+        let count = &mut self.0[way as usize];
+        *count = Count { triangles: count.triangles + 1, pixels: count.pixels.saturating_add(pixels) };
+        self
+    }
+}
+
+/// A map from ways to counts.
+impl Serialize for Choices {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        serializer.collect_map(Way::ALL.map(|way| (way, self.count(way))))
+    }
+}
+
+/// The shares of all ways.
+impl fmt::Display for Choices {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let shares = |of: usize| Way::ALL.map(|way| format!("{} {:.1} %", way.name(), self.percent(way)[of])).join(", ");
+        write!(f, "triangles: {}; pixels: {}", shares(0), shares(1))
+    }
+}
+
+thread_local! {
+    /// What this thread has drawn of the frame.
+    static CHOICES: Cell<Choices> = const { Cell::new(Choices::NONE) };
+    /// The way of the triangle that this thread is shading.
+    static WAY: Cell<Option<Way>> = const { Cell::new(None) };
+}
+
+/// The method `auto`, which tells what it chooses.
+struct Telling;
+
+impl Method for Telling {
+    fn facts(&self) -> &'static Facts {
+        // Under a number of its own: the loops of `auto` would tell nothing.
+        static FACTS: LazyLock<Facts> = LazyLock::new(|| Facts { id: Facts::FIRST_FREE, ..*Auto.facts() });
+        &FACTS
+    }
+
+    fn error_bounds(&self, reflectance: &Reflectance, exponent: u16, lights: usize) -> ErrorBounds {
+        Auto.error_bounds(reflectance, exponent, lights)
+    }
+
+    fn shade(&self, setup: &TriangleSetup<'_>, shading: &Shading<'_>, canvas: &mut dyn Canvas) -> u32 {
+        let way = choose(setup, shading).into();
+        WAY.set(Some(way));
+        let pixels = Auto.shade(setup, shading, canvas);
+        WAY.set(None);
+        CHOICES.set(CHOICES.get().with_triangle(way, pixels));
+        pixels
+    }
+}
+
+/// A pixel of any format that knows in which way it was drawn; `None` is background.
+#[derive(Clone, Copy)]
+struct Traced<C> {
+    pixel: C,
+    way: Option<Way>,
+}
+
+impl<C: Pixel> Traced<C> {
+    /// A pixel of the triangle that is being shaded.
+    fn new(pixel: C) -> Self {
+        Self { pixel, way: WAY.get() }
+    }
+
+    /// The colour of the way, between three quarters of it and all, as the pixel is bright: that hints the shape.
+    fn painted(self) -> Rgb888 {
+        let shown = to_rgb(self.pixel).map(u32::from);
+        let Some(way) = self.way else { return Rgb888::pack(shown) };
+        let [r, g, b] = shown;
+        let brightness = (2 * r + 5 * g + b) / 8;
+        Rgb888::pack(way.colour().map(|channel| u32::from(channel) * (3 * 255 + brightness) / (4 * 255)))
+    }
+}
+
+impl<C: Pixel> Pixel for Traced<C> {
+    type Stored = C::Stored;
+
+    const GRAY: bool = C::GRAY;
+    const DEPTH: [u32; 3] = C::DEPTH;
+    const COARSE: bool = C::COARSE;
+    const BYTES: usize = C::BYTES;
+
+    fn pack(channels: [u32; 3]) -> Self {
+        Self::new(C::pack(channels))
+    }
+
+    fn stored(self) -> C::Stored {
+        self.pixel.stored()
+    }
+
+    fn from_stored(stored: C::Stored) -> Self {
+        Self::new(C::from_stored(stored))
+    }
+
+    fn channels(self) -> [u8; 3] {
+        self.pixel.channels()
+    }
+
+    fn bits(self) -> u32 {
+        self.pixel.bits()
+    }
+
+    fn ramped<const BITS: u32>(ramp: &[C::Stored; RAMP], level: u32) -> Self {
+        Self::new(C::ramped::<BITS>(ramp, level))
+    }
+
+    fn rounded(intensity: Intensity) -> Self {
+        Self::new(C::rounded(intensity))
+    }
+
+    fn mixed(levels: [i32; 3]) -> Self {
+        Self::new(C::mixed(levels))
+    }
+}
+
+/// Draws frame `number` by [`Telling`] in one band.
+fn told<C: Pixel>(stream: Stream<'_>, size: Size, perspective_correct: bool, number: u32) -> anyhow::Result<(Vec<C>, Stats, Choices)> {
+    let style = Style { perspective_correct, ..Shader::new(&Telling).into() };
+    CHOICES.set(Choices::NONE);
+    let (pixels, stats) = render::frame(stream, size, style, size.height, number)?;
+    Ok((pixels, stats, CHOICES.get()))
+}
+
+/// The error budget of a method, in 1/255, and what it chooses in frame `number` of a picture of 16 bits a pixel, as most boards draw it;
+/// `None` unless it is `auto`.
+///
+/// # Errors
+/// When `size` is out of range.
+pub fn by(
+    shader: Shader,
+    stream: Stream<'_>,
+    size: Size,
+    perspective_correct: bool,
+    number: u32,
+) -> anyhow::Result<Option<(f64, Choices)>> {
+    if shader != Shader::AUTO {
+        return Ok(None);
+    }
+    let (_, _, choices) = told::<Rgb565>(stream, size, perspective_correct, number)?;
+    Ok(Some((stream.header.budget().to_num(), choices)))
+}
+
+/// Draws frame `number` by `auto` in this size, format and perspective, each triangle painted in the colour of its way, in 8 bits per
+/// channel.
+///
+/// # Errors
+/// When the size is out of range.
+pub fn painted(stream: Stream<'_>, settings: &Settings, number: u32) -> anyhow::Result<(Picture, Choices)> {
+    fn paint<C: Pixel>(stream: Stream<'_>, s: &Settings, number: u32) -> anyhow::Result<(Picture, Choices)> {
+        let (pixels, stats, choices) = told::<Traced<C>>(stream, s.size, s.style.perspective_correct, number)?;
+        let painted: Vec<_> = pixels.into_iter().map(Traced::painted).collect();
+        Ok((Picture { rgb: rgb_bytes(&painted), crc: render::crc(&painted), stats }, choices))
+    }
+    match settings.format {
+        Format::Rgb565 => paint::<Rgb565>(stream, settings, number),
+        Format::Rgb888 => paint::<Rgb888>(stream, settings, number),
+        Format::Gray8 => paint::<Gray8>(stream, settings, number),
+        Format::Gray4 => paint::<Gray4>(stream, settings, number),
+    }
+}

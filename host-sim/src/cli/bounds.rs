@@ -1,0 +1,85 @@
+//! `microphong bounds`.
+
+use super::{Outcome, report};
+use anyhow::Result;
+use microphong::method::highlight_error::ERRORS;
+use microphong_sim::bounds::{Place, STEPS, source, table, worst};
+use serde::Serialize;
+
+/// Search for the largest errors of interpolated highlights, and write the table by which `auto` judges methods.
+///
+/// The table is a file of the core, shared/src/method/highlight_error/table.rs: the largest errors that were found, and a margin. With
+/// --check the table that is compiled in is searched for triangles that are off by more than it says.
+#[derive(clap::Args)]
+#[command(after_help = EXAMPLES)]
+pub(crate) struct Arguments {
+    /// Triangles that are tried for each entry and exponent: more take longer and find a little more.
+    #[arg(long, default_value_t = 2000, value_name = "N", value_parser = clap::value_parser!(u32).range(40..))]
+    effort: u32,
+    /// Which triangles.
+    #[arg(long, default_value_t = 1, value_name = "S")]
+    seed: u64,
+    /// Search as many places of the compiled table for larger errors, instead of writing one.
+    #[arg(long, value_name = "PLACES")]
+    check: Option<u64>,
+    /// Print one JSON object.
+    #[arg(long)]
+    json: bool,
+}
+
+const EXAMPLES: &str = "\
+Examples:
+  microphong bounds > shared/src/method/highlight_error/table.rs    five minutes on two processors
+  microphong bounds --check 100000 --effort 200 --seed 7            look for larger errors";
+
+/// The kinds of error, in the order of the table.
+const KINDS: [&str; 3] = ["linear, too dark", "linear, too bright", "quadratic"];
+
+#[derive(Serialize)]
+struct Line {
+    kind: &'static str,
+    places: u64,
+    exponent: u16,
+    size: f64,
+    column: usize,
+    error: f64,
+    entry: f64,
+}
+
+pub(crate) fn run(arguments: &Arguments) -> Result<Outcome> {
+    let Arguments { effort, seed, check, json } = *arguments;
+    if let Some(places) = check {
+        return search(places, effort, seed, json);
+    }
+    let bar = report::progress(STEPS, "searching rows");
+    let table = table(effort, seed, || bar.inc(1));
+    bar.finish_and_clear();
+    if json {
+        report::json(&table.as_slice().iter().map(|part| part.each_ref().map(|kind| kind.map(Vec::from))).collect::<Vec<_>>())?;
+    } else {
+        report::line(source(&table, effort, seed).trim_end())?;
+    }
+    Ok(Outcome::Done)
+}
+
+/// Searches places of the compiled table for errors of each kind that are larger than it says.
+fn search(places: u64, effort: u32, seed: u64, json: bool) -> Result<Outcome> {
+    let mut outcome = Outcome::Done;
+    for (number, kind) in KINDS.into_iter().enumerate() {
+        let Some((Place { exponent, size, column, .. }, [error, entry])) = worst(&ERRORS, number, places, effort, seed) else { continue };
+        if error > entry {
+            outcome = Outcome::Differences;
+        }
+        if json {
+            report::json(&Line { kind, places, exponent, size, column, error, entry })?;
+        } else {
+            let place = format!("exponent {exponent}, n e2 {size:.4}, column {column}");
+            report::line(&format!(
+                "{kind}: worst of {places} places {:.4} of its entry, {:.3} LSB ({place})",
+                error / entry,
+                255.0 * error
+            ))?;
+        }
+    }
+    Ok(outcome)
+}

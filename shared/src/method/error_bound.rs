@@ -1,0 +1,417 @@
+//! Upper bounds of what cheaper methods are off from Phong shading on one triangle, under constant lights.
+//!
+//! What a light reflects on a triangle is a function of the interpolated normal N, which is linear and shorter than the corners' unit
+//! normals: of the diffuse cosine N·L/|N|, and of the highlight (N·H/|N|)^n.
+//!
+//! - What interpolation is off from highlights stands in a table, [`crate::method::highlight_error`].
+//! - Diffuse light that is interpolated linearly is N·L instead of N·L/|N|: too dark by N·L (1/|N| - 1). |N|² is 1 less the sum of
+//!   b_i b_j |N_i - N_j|² over barycentric coordinates b, and that sum is at most the squared radius around the corners.
+//! - The quadratic through six points is off from diffuse light by its third derivative along lines, at most 3.01, times (e/ρ)³
+//!   `REMAINDER`. Here e is the longest distance between two corners' normals and ρ the least length of N; with h = e²/4, the
+//!   haversine, (e/ρ)² = 12 h / (3 - 4 h). Source: remainders of interpolation (Kowalewski 1932); the derivative is computed on a grid.
+//! - Diffuse light is clamped where N·L changes its sign, from p to -q. Linear interpolation of a clamped line is too bright by at most
+//!   p q/(p + q), no more than either of them or a fourth of their sum; the quadratic is off by 4/3 of the least of them over ρ, and by `KINK` of their sum over ρ.
+//! - Light above 255 has no bound.
+
+use crate::{
+    arch::product::{unsigned_product, upper},
+    format::{COSINE, HAVERSINE},
+    lighting::reflectance::{FULL, Reflectance},
+    method::{
+        CornerCosines,
+        highlight_error::{self, Kind, Place},
+        largest,
+    },
+    stream::record::Triangle,
+};
+use zerocopy::{FromBytes, Immutable, IntoBytes, KnownLayout};
+
+/// Largest remainder of the quadratic through six points, over the third derivative and (e/ρ)³: 0.0253.
+const REMAINDER: f64 = 0.0254;
+
+/// What the quadratic is off at most from clamped diffuse light, over ρ and the range of N·L: 0.0952 on a grid.
+const KINK: f64 = 0.1;
+
+/// Haversine of the widest edge on which bounds are finite: 60 degrees. Chords of convex functions below reach to here.
+const WIDEST: u32 = 1 << (HAVERSINE - 2);
+
+/// Most lights of a frame for which there are bounds.
+pub const MAX_LIGHTS: usize = 2;
+
+/// A light as a material reflects it, in the channel where it is strongest.
+#[derive(FromBytes, IntoBytes, Immutable, KnownLayout, Clone, Copy, Debug)]
+#[repr(C)]
+struct LightBounds {
+    /// The diffuse level at cosine 1, Q9.7.
+    diffuse: u32,
+    /// The level of a whole highlight, Q9.7.
+    specular: u32,
+}
+
+/// What bounds on the triangles of one material have in common.
+#[derive(FromBytes, IntoBytes, Immutable, KnownLayout, Clone, Copy, Debug)]
+#[repr(C)]
+pub struct ErrorBounds {
+    lights: [LightBounds; MAX_LIGHTS],
+    /// The level of ambient light, Q9.7.
+    ambient: u32,
+    /// N·H, Q2.30, below which no highlight can be seen.
+    threshold: i32,
+    exponent: u16,
+    /// The part of the table of errors for this exponent.
+    part: u8,
+    /// Not 0 if all lights together may exceed 255.
+    may_saturate: u8,
+}
+
+/// A number in Q16, rounded up.
+const fn share(x: f64) -> u32 {
+    (x * 65_536.0) as u32 + 1
+}
+
+/// `x` times a number in Q16, rounded up.
+#[inline(always)]
+fn times(x: u32, share: u32) -> u32 {
+    (unsigned_product(x, share) >> 16) as u32 + 1
+}
+
+/// `x` times a number in Q0.32, rounded up.
+#[inline(always)]
+fn fraction(x: u32, share: u32) -> u32 {
+    (unsigned_product(x, share) >> 32) as u32 + 1
+}
+
+impl ErrorBounds {
+    /// Before they are filled; all zeros.
+    pub const EMPTY: Self = Self {
+        lights: [LightBounds { diffuse: 0, specular: 0 }; MAX_LIGHTS],
+        ambient: 0,
+        threshold: 0,
+        exponent: 0,
+        part: 0,
+        may_saturate: 0,
+    };
+
+    /// Those of a material of this exponent under so many lights.
+    #[must_use]
+    pub fn new(reflectance: &Reflectance, exponent: u16, lights: usize) -> Self {
+        let light = |light| {
+            let [diffuse, specular] = if light < lights { reflectance.largest_gains(light) } else { [0; 2] };
+            LightBounds { diffuse, specular }
+        };
+        let lights = [light(0), light(1)];
+        let [r, g, b] = reflectance.ambient();
+        let ambient = r.max(g).max(b) as u32;
+        let sum = lights.iter().fold(ambient, |sum, light| sum + light.diffuse + light.specular);
+        Self {
+            lights,
+            ambient,
+            threshold: reflectance.highlight_threshold(),
+            exponent,
+            part: highlight_error::part(exponent),
+            may_saturate: u8::from(sum > FULL as u32),
+        }
+    }
+}
+
+/// How far the normals of a triangle lie apart.
+#[derive(Clone, Copy)]
+pub(crate) struct Curvature {
+    /// The haversine of the widest edge, and the squared radius around the corners, Q0.16.
+    h: u32,
+    around: u32,
+}
+
+impl Curvature {
+    /// That of a triangle; `None` if it is too large for any bound.
+    #[inline(always)]
+    #[must_use]
+    pub(crate) fn of(triangle: &Triangle) -> Option<Self> {
+        let [ab, bc, ca] = triangle.haversine;
+        // Haversines are rounded to the nearest.
+        let h = u32::from(ab.max(bc).max(ca)) + 1;
+        // h (1 + t/3), the squared radius around the corners.
+        let beyond = (u32::from(ab) + u32::from(bc) + u32::from(ca) + 3).saturating_sub(2 * h);
+        let around = h + ((beyond * share(1.0 / 3.0)) >> 16) + 1;
+        (h <= WIDEST).then_some(Self { h, around })
+    }
+
+    /// An upper bound of 1/|N| - 1, Q0.32: |N|² is at least 1 less the radius squared, r, and the chord r/2 (1 + 1.05 r) reaches to 1/3.
+    #[inline(always)]
+    fn shorter(self) -> u32 {
+        (self.around << 15) + self.around * ((self.around * 69) >> 7)
+    }
+
+    /// An upper bound, Q2.30, of a cosine whose numerator is linear and largest at a corner with this value, which is not negative.
+    #[inline(always)]
+    fn cosine(self, corner: i32) -> i32 {
+        // 1/ρ is at most 1 + 0.9 h, a chord, and normals are unit vectors to 2^-15; Q0.32.
+        let longer = self.h * share(0.9) + (4 << 16);
+        corner + upper(corner, longer as i32) + 1
+    }
+}
+
+/// How far N·L reaches above zero (`most`, Q2.30) and below it on a triangle, Q1.15, rounded up; `None` unless it does both.
+#[inline(always)]
+fn terminator(curvature: Curvature, &[a, b, c]: &[i32; 3], most: i32) -> Option<[u32; 2]> {
+    let least = a.min(b).min(c);
+    let up = |cosine: u32| (cosine >> (COSINE - 15)) + 1;
+    (least < 0).then(|| [up(curvature.cosine(most) as u32), up(least.unsigned_abs())])
+}
+
+impl ErrorBounds {
+    /// The place in the table of errors of the highlight of a light with these N·H at the corners; `None` where it cannot be seen.
+    #[inline(always)]
+    fn highlight(&self, curvature: Curvature, half: &[i32; 3]) -> Option<Place> {
+        let cosine = curvature.cosine(largest(half).max(0));
+        (cosine >= self.threshold).then(|| Place::new(self.part, curvature.h, cosine, self.exponent))
+    }
+
+    /// What a bound of linear interpolation between the corners leaves of a budget, in 1/255 of full intensity, Q9.7; `None` if it exceeds
+    /// the budget.
+    ///
+    /// Where it is lit, a diffuse surface is too dark: what makes it too bright takes from that. Highlights are judged first, because they
+    /// decide in most triangles where the answer is no.
+    #[inline(always)]
+    #[must_use]
+    pub(crate) fn left_by_linear(&self, budget: u32, curvature: Curvature, cosines: &[CornerCosines]) -> Option<u32> {
+        let [mut below, mut above] = [2u32; 2];
+        for (light, [_, half]) in self.lights.iter().zip(cosines) {
+            if let Some(place) = self.highlight(curvature, half) {
+                (below, above) =
+                    (below + place.error(Kind::LinearBelow, light.specular), above + place.error(Kind::LinearAbove, light.specular));
+                if below.max(above) > budget {
+                    return None;
+                }
+            }
+        }
+        let shorter = curvature.shorter();
+        for (light, [towards, _]) in self.lights.iter().zip(cosines) {
+            let most = largest(towards);
+            if most > 0 {
+                below += fraction(light.diffuse * ((most as u32 >> (COSINE - 16)) + 2), shorter) >> 16;
+                if let Some([light_side, dark_side]) = terminator(curvature, towards, most) {
+                    let gap = light_side.min(dark_side).min((light_side + dark_side + 3) >> 2);
+                    above += ((light.diffuse * gap) >> 15) + 1;
+                }
+            }
+        }
+        budget.checked_sub(below.max(above))
+    }
+
+    /// A bound of the quadratic through corners and midpoints of edges, in 1/255 of full intensity, Q9.7.
+    #[inline(never)]
+    #[must_use]
+    pub(crate) fn quadratic(&self, curvature: Curvature, cosines: &[CornerCosines]) -> u32 {
+        let h = curvature.h;
+        // 8 h^1.5 (1 + 3.35 h) times the remainder, by a chord, Q0.32; h^1.5 is in Q0.32 as well.
+        let shape = share(8.0 * REMAINDER) + ((h * share(8.0 * REMAINDER * 3.35)) >> 16) + 1;
+        let size = times(h * rooted(h), shape);
+        let mut bound = 0u32;
+        for (light, [towards, half]) in self.lights.iter().zip(cosines) {
+            let most = largest(towards);
+            if most > 0 {
+                bound += fraction(times(light.diffuse, share(3.01)), size);
+                if let Some([light_side, dark_side]) = terminator(curvature, towards, most) {
+                    // Over ρ, which is at least 0.81.
+                    let gap =
+                        times(light_side.min(dark_side), share(4.0 / 3.0 / 0.81)).min(times(light_side + dark_side, share(KINK / 0.81)));
+                    bound += ((light.diffuse * gap) >> 15) + 1;
+                }
+            }
+            if let Some(place) = self.highlight(curvature, half) {
+                bound += place.error(Kind::Quadratic, light.specular);
+            }
+        }
+        bound
+    }
+
+    /// Whether light may exceed 255 somewhere on the triangle: what is clamped at nodes is not clamped between them.
+    #[inline(never)]
+    #[must_use]
+    pub(crate) fn saturates(&self, curvature: Curvature, cosines: &[CornerCosines], reflectance: &Reflectance) -> bool {
+        let mut sum = self.ambient as i32;
+        for (light, [towards, half]) in self.lights.iter().zip(cosines) {
+            let [towards, half] = [towards, half].map(|cosines| curvature.cosine(largest(cosines).max(0)).min(1 << COSINE));
+            // The table of highlights is right to 2^-7 of the brightest.
+            let highlight = if half < self.threshold { 0 } else { self.share_of(light, reflectance, half) };
+            sum += (times(light.diffuse, (towards as u32 >> (COSINE - 16)) + 1) + highlight) as i32;
+        }
+        sum > FULL
+    }
+
+    /// The level of the highlight of a light at N·H (Q2.30), Q9.7, rounded up.
+    #[inline(always)]
+    fn share_of(&self, light: &LightBounds, reflectance: &Reflectance, half: i32) -> u32 {
+        let entry = reflectance.highlight_lut.at(half);
+        let level = if reflectance.holds_levels() { entry } else { (light.specular * entry) >> 16 };
+        level + (light.specular >> 7) + 2
+    }
+
+    /// The level of so much of a cosine (Q2.30) and of a highlight (unsigned Q0.16) under one light, Q9.7.
+    #[inline(always)]
+    #[must_use]
+    pub(crate) fn level(&self, cosine: i32, highlight: i32) -> u32 {
+        let [LightBounds { diffuse, specular }, _] = &self.lights;
+        let diffuse = (diffuse * (cosine as u32 >> (COSINE - 15))) >> 15;
+        diffuse + ((specular * highlight as u32) >> 16) + 2
+    }
+
+    /// The brightest level of such a cosine and highlight.
+    #[inline(always)]
+    #[must_use]
+    pub(crate) fn brightest(&self, cosine: i32, highlight: i32) -> i32 {
+        (self.ambient + self.level(cosine, highlight)) as i32
+    }
+
+    /// Whether light may exceed 255 anywhere.
+    #[inline(always)]
+    #[must_use]
+    pub(crate) fn may_saturate(&self) -> bool {
+        self.may_saturate != 0
+    }
+}
+
+/// The root of `x`, Q0.16, rounded up. Domain: 1 to 2^17. Error: 6 %.
+#[inline(always)]
+fn rooted(x: u32) -> u32 {
+    // x moved up by an even number of bits, to 2^30 at least: its root is below the entry.
+    let zeros = x.leading_zeros() & 30;
+    let root = ROOTS[(((x << zeros) >> 27) as usize).saturating_sub(8) % ROOTS.len()];
+    // The root of 2^16 x is that of x times 2^8.
+    ((u32::from(root) << 8) >> (zeros >> 1)) + 1
+}
+
+/// Roots of (k + 9) 2^27, rounded down from just below.
+static ROOTS: [u16; 24] = {
+    let mut roots = [0; 24];
+    let mut k = 0;
+    while k < 24 {
+        roots[k] = (((k as u64 + 9) << 27) - 1).isqrt() as u16;
+        k += 1;
+    }
+    roots
+};
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{
+        format::{LEVEL, UNIT},
+        lighting::{lights::vertex_cosine, reflectance::Highlight},
+        math::vector::wide,
+        stream::record::{Header, Light, Material},
+    };
+    use embedded_graphics_core::pixelcolor::Gray8;
+    use zerocopy::FromZeros;
+
+    /// Barycentric coordinates of the points where errors are taken are multiples of one over this.
+    const GRID: i32 = 12;
+
+    fn dot(a: [f64; 3], b: [f64; 3]) -> f64 {
+        a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
+    }
+
+    fn unit(v: [f64; 3]) -> [f64; 3] {
+        let length = dot(v, v).sqrt();
+        v.map(|c| c / length)
+    }
+
+    /// Random numbers from -1 to 1.
+    struct Random(u64);
+
+    impl Random {
+        fn next(&mut self) -> f64 {
+            self.0 = self.0.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+            (self.0 >> 11) as f64 / (1u64 << 52) as f64 - 1.0
+        }
+
+        fn direction(&mut self) -> [f64; 3] {
+            loop {
+                let v = [self.next(), self.next(), self.next()];
+                if (0.01..1.0).contains(&dot(v, v)) {
+                    return unit(v);
+                }
+            }
+        }
+    }
+
+    /// Largest errors of linear and quadratic interpolation of what lights reflect, each `[L, H]` with its levels at cosine 1 and of a whole
+    /// highlight.
+    fn errors(normals: [[f64; 3]; 3], lights: &[([[f64; 3]; 2], [f64; 2])], exponent: u16) -> [f64; 2] {
+        let at = |[u, v, w]: [f64; 3]| -> f64 {
+            let normal = unit([0, 1, 2].map(|k| u * normals[0][k] + v * normals[1][k] + w * normals[2][k]));
+            let light = |&([light, half], [diffuse, specular]): &([[f64; 3]; 2], [f64; 2])| {
+                diffuse * dot(normal, light).max(0.0) + specular * dot(normal, half).max(0.0).powi(exponent.into())
+            };
+            lights.iter().map(light).sum()
+        };
+        let [a, b, c] = [at([1.0, 0.0, 0.0]), at([0.0, 1.0, 0.0]), at([0.0, 0.0, 1.0])];
+        let [ab, bc, ca] = [at([0.5, 0.5, 0.0]), at([0.0, 0.5, 0.5]), at([0.5, 0.0, 0.5])];
+        let mut errors = [0f64; 2];
+        for (i, j) in (0..=GRID).flat_map(|i| (0..=GRID - i).map(move |j| (i, j))) {
+            let [u, v] = [i, j].map(|k| f64::from(k) / f64::from(GRID));
+            let w = 1.0 - u - v;
+            let corners = u * (2.0 * u - 1.0) * a + v * (2.0 * v - 1.0) * b + w * (2.0 * w - 1.0) * c;
+            let quadratic = corners + 4.0 * (u * v * ab + v * w * bc + w * u * ca);
+            let exact = at([u, v, w]);
+            errors = [errors[0].max((u * a + v * b + w * c - exact).abs()), errors[1].max((quadratic - exact).abs())];
+        }
+        errors
+    }
+
+    /// Random triangles under one light and under two, exponents 1 to 1024: no error exceeds its bound, and bounds are not far off.
+    #[test]
+    fn errors_stay_within_their_bounds() {
+        let mut random = Random(1);
+        let mut ratios = [const { heapless::Vec::<f64, 20_000>::new() }; 2];
+        for case in 0..20_000 {
+            let lights = 1 + case % 2;
+            let exponent = (1024f64.powf(0.5 + 0.5 * random.next()).max(1.0) as u16).min(1024);
+            let mut header = Header::new_zeroed();
+            header.ambient = [1 << UNIT; 3];
+            let gain = |x: f64| [(x * f64::from(1 << UNIT)) as u16; 3];
+            let shares = [0.2 + 0.2 * random.next(), 0.2 + 0.2 * random.next()];
+            let material = Material { ambient: [0; 3], diffuse: gain(shares[0]), specular: gain(shares[1]), exponent };
+            let mut reflectance = Reflectance::EMPTY;
+            let white = Light { colour: [1 << UNIT; 3], ..Light::new_zeroed() };
+            reflectance.fill::<Gray8>(&header, &material, &[white; 2][..lights], (Highlight::Half, false));
+            let bounds = ErrorBounds::new(&reflectance, exponent, lights);
+            let (facing, spread) = (random.direction(), 0.6f64.powf(1.0 + 4.0 * random.next().abs()));
+            let fixed = [(); 3].map(|()| {
+                let aside = random.direction();
+                unit([0, 1, 2].map(|k| facing[k] + spread * aside[k])).map(|c| (c * f64::from(1 << UNIT)).round() as i16)
+            });
+            let normals = fixed.map(|normal| unit(normal.map(f64::from)));
+            let haversine = |i: usize, j: usize| ((0.5 - 0.5 * dot(normals[i], normals[j])) * 65_536.0).round() as u16;
+            let triangle = Triangle { haversine: [haversine(0, 1), haversine(1, 2), haversine(2, 0)], ..Triangle::new_zeroed() };
+            let Some(curvature) = Curvature::of(&triangle) else { continue };
+            let directions = [(); 2].map(|()| {
+                let (light, aside) = (random.direction(), random.direction());
+                // Near the normals, where highlights are.
+                let near = 3.0 / f64::from(exponent).sqrt();
+                [light, unit([0, 1, 2].map(|k| facing[k] + near * aside[k]))]
+            });
+            let q30 = |v: [f64; 3]| v.map(|c| (c * f64::from(1 << COSINE)) as i32);
+            let cosines = directions.map(|pair| pair.map(|direction| fixed.map(|normal| vertex_cosine(wide(normal), q30(direction)))));
+            let gains = [0, 1].map(|light| reflectance.largest_gains(light).map(|level| f64::from(level) / f64::from(1 << LEVEL)));
+            let lit = [(directions[0], gains[0]), (directions[1], gains[1])];
+            let exact = errors(normals, &lit[..lights], exponent);
+            let linear = u32::MAX - bounds.left_by_linear(u32::MAX, curvature, &cosines[..lights]).unwrap();
+            let bound = [linear, bounds.quadratic(curvature, &cosines[..lights])];
+            for (k, ratios) in ratios.iter_mut().enumerate() {
+                // Highlights below e^-8 are not drawn, and nodes are rounded.
+                let dark: f64 = gains[..lights].iter().map(|[_, specular]| 4.0 / 3.0 * specular * f64::exp(-8.0)).sum();
+                let bound = f64::from(bound[k]) / f64::from(1 << LEVEL) + dark + 0.01;
+                assert!(exact[k] <= bound, "case {case}, exponent {exponent}, method {k}: {} of {bound}, {normals:?}", exact[k]);
+                if (0.2..8.0).contains(&exact[k]) {
+                    ratios.push(bound / exact[k]).unwrap();
+                }
+            }
+        }
+        for (ratios, most) in ratios.iter_mut().zip([4.0, 8.0]) {
+            ratios.sort_by(f64::total_cmp);
+            assert!(ratios.len() > 2_000 && ratios[ratios.len() / 2] < most, "{} of {}", ratios[ratios.len() / 2], ratios.len());
+        }
+    }
+}

@@ -1,0 +1,174 @@
+//! What the method `auto` chooses, as `render --show methods`, `compare` and `bench` tell it.
+
+use embedded_graphics::geometry::Size;
+use microphong_sim::{
+    bench::{Bench, Processor},
+    choices::{self, Choices, Way},
+    legend,
+    render::{Format, Settings},
+    scene,
+    shader::Shader,
+};
+use microphong_tests::{only_announces, program};
+use serde_json::Value;
+use std::{
+    collections::BTreeSet,
+    fs::File,
+    io::BufReader,
+    path::Path,
+    process::{Command, Output},
+};
+
+fn run(directory: &Path, arguments: &[&str]) -> Output {
+    Command::new(program()).args(arguments).current_dir(directory).output().expect("the program")
+}
+
+/// Runs the command, which must succeed, and returns its stdout.
+#[track_caller]
+fn succeeds(directory: &Path, arguments: &[&str]) -> String {
+    let output = run(directory, arguments);
+    let stderr = String::from_utf8_lossy(&output.stderr);
+    assert!(output.status.success() && only_announces(&stderr), "{arguments:?}: {stderr}");
+    String::from_utf8(output.stdout).expect("text")
+}
+
+#[track_caller]
+fn object(line: &str) -> Value {
+    serde_json::from_str(line).expect("an object")
+}
+
+/// The names of ways in JSON.
+const KEYS: [&str; 4] = ["one_colour", "linear", "quadratic", "phong"];
+
+/// The sum over all ways of a field of `choices`.
+#[track_caller]
+fn sum(object: &Value, field: &str) -> u64 {
+    KEYS.iter().map(|key| object["choices"][key][field].as_u64().expect("a count")).sum()
+}
+
+/// All pixels are counted, and all triangles that have any; a larger budget takes triangles from Phong shading.
+#[test]
+fn counts_add_up() {
+    let directory = tempfile::tempdir().expect("scratch directory");
+    for scene in ["torus", "sphere-40", "triangle"] {
+        let phong = ["0.5", "16"].map(|budget| {
+            let line = succeeds(directory.path(), &["render", scene, "--show", "methods", "--budget", budget, "--json"]);
+            let object = object(&line);
+            assert_eq!((&object["shader"], &object["budget"]), (&"auto".into(), &budget.parse::<f64>().expect("a number").into()));
+            let (triangles, drawn) = (sum(&object, "triangles"), object["drawn"].as_u64().expect("a count"));
+            assert!((drawn - drawn / 100..=drawn).contains(&triangles), "{triangles} triangles: {object}");
+            assert_eq!(Some(sum(&object, "pixels")), object["pixels"].as_u64());
+            object["choices"]["phong"]["triangles"].as_u64().expect("a count")
+        });
+        assert!(phong[1] < phong[0] || scene != "torus", "{scene}: {phong:?}");
+    }
+}
+
+/// Shares are of triangles, and of pixels.
+fn shares_are_100_percent(choices: &Choices) {
+    let sums = Way::ALL.iter().map(|&way| choices.percent(way)).fold([0.0; 2], |sum, percent| [sum[0] + percent[0], sum[1] + percent[1]]);
+    assert!(sums.iter().all(|sum| f64::abs(sum - 100.0) < 1e-9), "{sums:?}");
+}
+
+/// Whether `pixel` is this colour, darkened to three quarters at most.
+fn is_shade_of(pixel: [u8; 3], colour: [u8; 3]) -> bool {
+    let shade = |brightness: u32| colour.map(|channel| (u32::from(channel) * (3 * 255 + brightness) / (4 * 255)) as u8);
+    (0..=255).any(|brightness| shade(brightness) == pixel)
+}
+
+/// Every pixel is background or has the colour of a way; each way that is counted is seen, and no other; whatever the format.
+#[test]
+fn painted_pictures_have_the_colours_of_ways() {
+    let scene = scene::load("torus").expect("a built-in scene");
+    let stream = scene.stream.parse().expect("a stream");
+    for format in [Format::Rgb888, Format::Gray8] {
+        let size = Size::new(160, 160);
+        let settings = Settings { size, style: Shader::AUTO.into(), band_rows: 1, format };
+        let (picture, choices) = choices::painted(stream, &settings, 0).expect("a picture");
+        shares_are_100_percent(&choices);
+        let (mut seen, mut others) = ([false; 4], BTreeSet::new());
+        for &pixel in picture.rgb.as_chunks::<3>().0 {
+            match Way::ALL.iter().position(|way| is_shade_of(pixel, way.colour())) {
+                Some(way) => seen[way] = true,
+                None => _ = others.insert(pixel),
+            }
+        }
+        assert_eq!(others.len(), 1, "the background alone, not {others:?}");
+        assert_eq!(seen, Way::ALL.map(|way| choices.count(way).pixels > 0));
+    }
+}
+
+/// The legend lies below the picture, white and the four colours on black, in each frame.
+#[test]
+fn the_legend_is_below() {
+    let directory = tempfile::tempdir().expect("scratch directory");
+    let text = succeeds(directory.path(), &["render", "torus", "--show", "methods", "--size", "240x64", "--frames", "2", "-o", "f/"]);
+    assert!(text.contains("    budget 1 LSB; triangles: one colour "), "{text}");
+    let pictures = ["f/0000.png", "f/0001.png"].map(|name| {
+        let file = BufReader::new(File::open(directory.path().join(name)).expect("a picture"));
+        let mut reader = png::Decoder::new(file).read_info().expect("a picture");
+        assert_eq!((reader.info().width, reader.info().height), (240, 64 + legend::HEIGHT));
+        let mut rgb = vec![0; reader.output_buffer_size().expect("a size")];
+        reader.next_frame(&mut rgb).expect("a picture");
+        rgb
+    });
+    let colours: Vec<_> = [[0; 3], [255; 3]].into_iter().chain(Way::ALL.map(Way::colour)).collect();
+    for rgb in &pictures {
+        let below = &rgb.as_chunks::<3>().0[240 * 64..];
+        assert!(below.iter().all(|pixel| colours.contains(pixel)), "a colour that the legend does not have");
+        assert!(colours.iter().all(|colour| below.contains(colour)), "a colour that is missing");
+    }
+    assert_ne!(pictures[0], pictures[1]);
+}
+
+#[test]
+fn what_chooses_nothing_cannot_be_shown() {
+    let directory = tempfile::tempdir().expect("scratch directory");
+    let cases: [(&[&str], &[&str]); 5] = [
+        (&["--show", "methods", "--shader", "phong"], &["--show methods", "auto", "phong"]),
+        (&["--show", "methods", "--antialias"], &["--show", "--antialias"]),
+        (&["--show", "methods", "--dither"], &["--show", "--dither"]),
+        (&["--show", "methods", "--band-rows", "4"], &["--show", "--band-rows"]),
+        (&["--show", "edges"], &["--show", "methods"]),
+    ];
+    for (arguments, words) in cases {
+        let output = run(directory.path(), &[&["render", "triangle"], arguments].concat());
+        let stderr = String::from_utf8_lossy(&output.stderr);
+        assert_eq!(output.status.code(), Some(2), "{arguments:?}: {stderr}");
+        assert!(words.iter().all(|word| stderr.contains(word)) && output.stdout.is_empty(), "{arguments:?}: {stderr}");
+    }
+    assert_eq!(directory.path().read_dir().expect("scratch directory").count(), 0);
+    // What auto is asked for by name changes nothing, and other pictures say nothing of choices.
+    let show = |more: &[&str]| succeeds(directory.path(), &[&["render", "triangle", "--json"], more].concat());
+    assert_eq!(show(&["--show", "methods"]), show(&["--show", "methods", "--shader", "auto"]));
+    assert_eq!(object(&show(&["--shader", "auto"])).get("choices"), None);
+}
+
+/// `compare` tells what `render` tells, and of other methods nothing.
+#[test]
+fn compare_tells_choices() {
+    let directory = tempfile::tempdir().expect("scratch directory");
+    let arguments = ["compare", "torus", "--size", "80x80", "--budget", "2", "--shader", "gouraud,auto"];
+    let text = succeeds(directory.path(), &arguments);
+    let lines: Vec<_> = text.lines().map(|line| line.trim_start().split(' ').next()).collect();
+    assert_eq!(lines[2..], [Some("gouraud"), Some("auto"), Some("budget")], "{text}");
+    let objects: Vec<_> = succeeds(directory.path(), &[&arguments[..], &["--json"]].concat()).lines().map(object).collect();
+    let [gouraud, auto] = &objects[..] else { panic!("an object per method") };
+    assert!(gouraud["budget"].is_null() && gouraud["choices"].is_null(), "{gouraud}");
+    let shown = succeeds(directory.path(), &["render", "torus", "--size", "80x80", "--budget", "2", "--show", "methods", "--json"]);
+    let shown = object(&shown);
+    assert_eq!((&auto["budget"], &auto["choices"]), (&shown["budget"], &shown["choices"]));
+}
+
+/// So does `bench`.
+#[test]
+fn bench_tells_choices() {
+    let scene = scene::load("torus").expect("a built-in scene");
+    let bench = Bench::new(&[Processor::X86_64]).expect("a program");
+    let wanted = [Shader::GOURAUD, Shader::AUTO].map(|shader| (Processor::X86_64, shader));
+    let measured = bench.measure(&scene, &wanted, &|| ()).expect("measurements");
+    let [gouraud, auto] = [0, 1].map(|k: usize| object(&serde_json::to_string(&measured[k]).expect("JSON")));
+    assert!(gouraud["budget"].is_null() && gouraud["choices"].is_null(), "{gouraud}");
+    assert_eq!(auto["budget"], 1.0);
+    assert_eq!(Some(sum(&auto, "pixels")), auto["pixels"].as_u64(), "{auto}");
+}
