@@ -101,6 +101,8 @@ struct Unknown {
     flash_bytes: (),
     max_lsb: (),
     rmse_lsb: (),
+    budget: (),
+    choices: (),
     flash_own_bytes: (),
     firmware_bytes: (),
     timing: (),
