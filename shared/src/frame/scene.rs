@@ -96,8 +96,8 @@ impl<C: Pixel> Scene<'_, C> {
         let perspective = self.settings.perspective_correct && stream.is_perspective();
         let style = Style {
             three_channels: reflectance.three_channels(),
-            lights: if self.lighting.is_directional() { reflectance.lights() } else { 0 },
-            local_viewer: self.lighting.viewer.is_local(),
+            lights: if self.lighting.is_constant() { reflectance.lights() } else { 0 },
+            local_viewer: self.lighting.is_directional() && !self.lighting.is_constant() && reflectance.lights() == 1,
             dithered_or_antialiased: *dither || self.settings.antialiased(),
             perspective,
         };

@@ -85,9 +85,9 @@ pub trait Method: Sync {
 pub(crate) struct Style {
     /// Three channels in place of one.
     pub(crate) three_channels: bool,
-    /// Number of directional lights, if their levels fit the formats of [`crate::lighting::constant_lights`]; otherwise 0.
+    /// Number of constant lights, if their levels fit the formats of [`crate::lighting::constant_lights`]; otherwise 0.
     pub(crate) lights: u8,
-    /// Whether highlights are seen from a position.
+    /// One directional light under a local viewer, whose levels fit these formats.
     pub(crate) local_viewer: bool,
     /// Dither or antialiasing.
     pub(crate) dithered_or_antialiased: bool,
