@@ -17,11 +17,13 @@ pub enum Family {
     Angle,
     /// The vector, normalised or divided by its length at each pixel.
     Vector,
+    /// Any of these, for each triangle what an error budget allows.
+    Budget,
 }
 
 impl Family {
     /// All of them, from cheap to dear.
-    pub const ALL: [Self; 6] = [Self::Linear, Self::Curved, Self::Cosine, Self::Map, Self::Angle, Self::Vector];
+    pub const ALL: [Self; 7] = [Self::Linear, Self::Curved, Self::Cosine, Self::Map, Self::Angle, Self::Vector, Self::Budget];
 
     /// The family of a method.
     #[must_use]
@@ -32,6 +34,7 @@ impl Family {
             "taylor" | "taylor-finite" | "sqrt6" | "renq" | "renq-newton" => Self::Cosine,
             "environment" | "blinn" | "quadratic-blinn" => Self::Map,
             "goldman" | "slerp" | "angular" | "angular-original" | "hybrid" | "hybrid-original" => Self::Angle,
+            "auto" => Self::Budget,
             _ => Self::Vector,
         }
     }
@@ -46,6 +49,7 @@ impl Family {
             Self::Map => "reflection map",
             Self::Angle => "angles and rotation",
             Self::Vector => "vector at each pixel",
+            Self::Budget => "by an error budget",
         }
     }
 
@@ -58,6 +62,7 @@ impl Family {
             Self::Map => "map",
             Self::Angle => "angle",
             Self::Vector => "vector",
+            Self::Budget => "budget",
         }
     }
 }

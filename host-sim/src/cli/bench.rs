@@ -39,9 +39,10 @@ pub(crate) struct Arguments {
     /// Shading methods, separated by commas, or all that can shade the scene.
     #[arg(long, value_name = "S,...", default_value = "flat,gouraud,six-point,sqrt6,phong", value_parser = parse::shaders)]
     shader: Several<Shader>,
-    /// How far a pixel may be off from Phong shading by the method auto, in 1/255, 0.5 to 16; the scene's own unless given.
-    #[arg(long, value_name = "LSB", value_parser = parse::budget)]
-    budget: Option<ErrorBudget>,
+    /// How far a pixel may be off from Phong shading by the method auto, in 1/255, 0.5 to 16, several separated by commas; the scene's
+    /// own unless given.
+    #[arg(long, value_name = "LSB,...", value_delimiter = ',', value_parser = parse::budget)]
+    budget: Vec<ErrorBudget>,
     /// Boards, separated by commas: mps2-an385 (Cortex-M3), mps2-an386 (Cortex-M4F), pico (Cortex-M0+), x86-64 (this computer);
     /// or all.
     #[arg(long, value_name = "B,...", default_value = "mps2-an385", value_parser = processors)]
@@ -117,7 +118,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome> {
     }
     let mut scenes = Vec::new();
     for name in &arguments.scenes {
-        scenes.extend(scenes::load(name, arguments.budget)?);
+        scenes.extend(scenes::load(name, arguments.budget.first().copied())?);
     }
     let Several { values: shaders, all } = &arguments.shader;
     let wanted = |scene: &Scene| {
@@ -135,13 +136,20 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome> {
     let page = arguments.report.as_deref().map(Page::create).transpose()?;
     let common = if arguments.peers { drawable(&scenes)? } else { Vec::new() };
     let boards: Vec<_> = arguments.board.values.iter().copied().filter(|&board| !common.is_empty() && peers::possible(board)).collect();
-    let steps = scenes.iter().map(|(_, wanted)| wanted.len()).sum::<usize>() + 1 + common.len() * boards.len();
+    // What depends on the budget is measured once more for each that is left.
+    let others = arguments.budget.get(1..).unwrap_or_default();
+    let again = |wanted: &[(Processor, Shader)]| wanted.iter().copied().filter(|&(_, shader)| shader == Shader::AUTO).collect::<Vec<_>>();
+    let steps = scenes.iter().map(|(_, wanted)| wanted.len() + others.len() * again(wanted).len()).sum::<usize>();
+    let steps = steps + 1 + common.len() * boards.len();
     let bar = report::progress(steps as u64, "counting instructions");
     let bench = Bench::new(&arguments.board.values)?;
     bar.inc(1);
     let mut all = Vec::new();
     for (scene, wanted) in &scenes {
-        let measured = bench.measure(scene, wanted, &|| bar.inc(1))?;
+        let mut measured = bench.measure(scene, wanted, &|| bar.inc(1))?;
+        for &budget in others {
+            measured.extend(bench.measure(&scenes::with_budget(scene.clone(), Some(budget)), &again(wanted), &|| bar.inc(1))?);
+        }
         bar.suspend(|| measured.iter().try_for_each(|m| if arguments.json { report::json(m) } else { text(m) }))?;
         all.extend(measured);
     }

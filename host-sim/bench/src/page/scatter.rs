@@ -53,6 +53,8 @@ struct Point<'m> {
     measurement: &'m Measurement,
     family: Family,
     error: f64,
+    /// The method's name, and its error budget if it was measured with several.
+    name: String,
 }
 
 /// All panels of a scene have the same axes.
@@ -74,7 +76,12 @@ impl Axes {
         let point = |m: &&'m Measurement| {
             let shader = Shader::ALL.into_iter().find(|shader| shader.name() == m.shader)?;
             let error = self.error.of(m).filter(|error| *error > 0.0)?;
-            Some(Point { measurement: m, family: Family::of(shader), error })
+            let several = measurements.iter().filter(|other| other.shader == m.shader).count() > 1;
+            let name = match m.budget {
+                Some(budget) if several => format!("{} {budget}", m.shader),
+                _ => m.shader.to_owned(),
+            };
+            Some(Point { measurement: m, family: Family::of(shader), error, name })
         };
         measurements.iter().filter_map(point).collect()
     }
@@ -98,10 +105,11 @@ pub(super) fn drawing(processor: Processor, measurements: &[&Measurement], axes:
     let place = |p: &Point<'_>| (x.at(p.error), y.at(p.measurement.instr_per_pixel));
     let named = |index| {
         let point: &Point<'_> = points.get(index)?;
-        Some(Named { at: place(point), name: point.measurement.shader, bold: front.contains(&index) })
+        Some(Named { at: place(point), name: &point.name, bold: front.contains(&index) })
     };
     let names: Vec<_> = order().filter_map(named).collect();
     let stairs = stairs(&front.iter().filter_map(|&i| points.get(i)).map(place).collect::<Vec<_>>());
+    let curve: Vec<_> = points.iter().filter(|point| point.name != point.measurement.shader).map(place).collect();
     let steps: Vec<[(f64, f64); 2]> = stairs.array_windows().copied().collect();
     let labels = label::place(&names, &steps, [LEFT + 2.0, TOP, SIZE.0, BOTTOM - 2.0]);
     html! {
@@ -114,7 +122,10 @@ pub(super) fn drawing(processor: Processor, measurements: &[&Measurement], axes:
         }
         text x=(RIGHT) y="11" text-anchor="end" { "instructions per pixel" }
         text x=((LEFT + RIGHT) / 2.0) y=(SIZE.1 - 4.0) text-anchor="middle" { (error.label()) }
-        polyline.front points=(stairs.iter().map(|(x, y)| format!("{x:.1},{y:.1}")).collect::<Vec<_>>().join(" ")) {}
+        polyline.front points=(line(&stairs)) {}
+        @if !curve.is_empty() {
+            polyline.curve points=(line(&curve)) {}
+        }
         @for (index, label) in order().zip(&labels) {
             @if let Some(point) = points.get(index) {
                 @let (px, py) = place(point);
@@ -125,11 +136,16 @@ pub(super) fn drawing(processor: Processor, measurements: &[&Measurement], axes:
                         line.leader x1=(format!("{px:.1}")) y1=(format!("{py:.1}")) x2=(format!("{lx:.1}")) y2=(format!("{ly:.1}")) {}
                     }
                     circle cx=(format!("{px:.1}")) cy=(format!("{py:.1}")) r="3.6" {}
-                    text x=(format!("{:.1}", label.text.0)) y=(format!("{:.1}", label.text.1)) text-anchor=(label.anchor) { (m.shader) }
+                    text x=(format!("{:.1}", label.text.0)) y=(format!("{:.1}", label.text.1)) text-anchor=(label.anchor) { (point.name) }
                 }
             }
         }
     }
+}
+
+/// Points of a `polyline`.
+fn line(points: &[(f64, f64)]) -> String {
+    points.iter().map(|(x, y)| format!("{x:.1},{y:.1}")).collect::<Vec<_>>().join(" ")
 }
 
 /// The front as the corners of steps: each point is as exact as it gets until the next one can be paid for.
