@@ -109,7 +109,9 @@ pub(super) fn drawing(processor: Processor, measurements: &[&Measurement], axes:
     };
     let names: Vec<_> = order().filter_map(named).collect();
     let stairs = stairs(&front.iter().filter_map(|&i| points.get(i)).map(place).collect::<Vec<_>>());
-    let curve: Vec<_> = points.iter().filter(|point| point.name != point.measurement.shader).map(place).collect();
+    let mut curve: Vec<_> = points.iter().filter(|point| point.name != point.measurement.shader).map(place).collect();
+    // From left to right, whatever the order of the budgets.
+    curve.sort_by(|(one, _), (other, _)| one.total_cmp(other));
     let steps: Vec<[(f64, f64); 2]> = stairs.array_windows().copied().collect();
     let labels = label::place(&names, &steps, [LEFT + 2.0, TOP, SIZE.0, BOTTOM - 2.0]);
     html! {
