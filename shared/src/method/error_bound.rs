@@ -10,7 +10,8 @@
 //!   `REMAINDER`. Here e is the longest distance between two corners' normals and ρ the least length of N; with h = e²/4, the
 //!   haversine, (e/ρ)² = 12 h / (3 - 4 h). Source: remainders of interpolation (Kowalewski 1932); the derivative is computed on a grid.
 //! - Diffuse light is clamped where N·L changes its sign, from p to -q. Linear interpolation of a clamped line is too bright by at most
-//!   p q/(p + q), no more than either of them or a fourth of their sum; the quadratic is off by 4/3 of the least of them over ρ, and by `KINK` of their sum over ρ.
+//!   p q/(p + q), no more than either of them or a fourth of their sum; the quadratic is off by at most 4/3 of the least of them over ρ, and
+//!   by `KINK` of their sum over ρ.
 //! - Light above 255 has no bound.
 
 use crate::{
@@ -189,7 +190,8 @@ impl ErrorBounds {
         for (light, [towards, _]) in self.lights.iter().zip(cosines) {
             let most = largest(towards);
             if most > 0 {
-                below += fraction(light.diffuse * ((most as u32 >> (COSINE - 16)) + 2), shorter) >> 16;
+                // Q1.15: a level of 16 bits times one of 17 would not fit a word.
+                below += fraction(light.diffuse * ((most as u32 >> (COSINE - 15)) + 1), shorter) >> 15;
                 if let Some([light_side, dark_side]) = terminator(curvature, towards, most) {
                     let gap = light_side.min(dark_side).min((light_side + dark_side + 3) >> 2);
                     above += ((light.diffuse * gap) >> 15) + 1;
@@ -358,6 +360,28 @@ mod tests {
             errors = [errors[0].max((u * a + v * b + w * c - exact).abs()), errors[1].max((quadratic - exact).abs())];
         }
         errors
+    }
+
+    /// Materials and lights as bright as a stream may have them, lit from the front and across the terminator: no product overflows, and the
+    /// answers are no.
+    #[test]
+    fn brightest_materials_overflow_nothing() {
+        let mut reflectance = Reflectance::EMPTY;
+        let bright = [2 << UNIT; 3];
+        let material = Material { ambient: bright, diffuse: bright, specular: bright, exponent: 1024 };
+        let light = Light { colour: bright, ..Light::new_zeroed() };
+        reflectance.fill::<Gray8>(&Header { ambient: bright, ..Header::new_zeroed() }, &material, &[light; 2], (Highlight::Half, false));
+        let bounds = ErrorBounds::new(&reflectance, 1024, 2);
+        let one = (1 << COSINE) + (1 << (COSINE - UNIT));
+        for h in [0, 1, 4000, WIDEST as u16 - 1] {
+            let curvature = Curvature::of(&Triangle { haversine: [h; 3], ..Triangle::new_zeroed() }).unwrap();
+            for towards in [[one; 3], [one, one, -one], [one, -one, -one], [-one; 3]] {
+                let cosines = [[towards, [one; 3]]; 2];
+                let _ = (bounds.left_by_linear(u32::MAX, curvature, &cosines), bounds.quadratic(curvature, &cosines));
+                assert!(bounds.saturates(curvature, &cosines, &reflectance));
+                assert!(bounds.brightest(one, 0xffff) >= FULL);
+            }
+        }
     }
 
     /// Random triangles under one light and under two, exponents 1 to 1024: no error exceeds its bound, and bounds are not far off.
