@@ -93,8 +93,9 @@ pub mod setup;
 pub use display::Picture;
 pub use error::{MAX_SIDE, RenderError};
 pub use fixed;
-pub use frame::{Frame, FrameInTwo, FramePart, Preparation, PreparationPart, Stats};
+pub use frame::{Frame, FrameInTwo, FramePart, Preparation, PreparationPart, Skips, Stats};
 pub use memory::Layout;
+pub use raster::counts::Counts;
 #[doc(inline)]
 pub use renderer::Renderer;
 pub use shader::Shader;

@@ -71,6 +71,8 @@ impl<'a, C: Pixel> Renderer<'a, C> {
             antialias: false,
             budget: level(stream.header.budget()),
             background,
+            #[cfg(feature = "skips")]
+            skips: crate::frame::Skips::ALL,
         };
         let seams = if layout.processors > 1 { Seams::new(&stream, &mut memory) } else { None };
         let mut renderer = Self { settings, memory, seams };
@@ -94,7 +96,16 @@ impl<'a, C: Pixel> Renderer<'a, C> {
             fill_ramp::<C>(ramp, reflectance);
             *bounds = shader.method().error_bounds(reflectance, material.exponent, stream.lights.len());
         }
+        #[cfg(feature = "skips")]
+        self.set_skips(self.settings.skips);
         Ok(())
+    }
+
+    /// Changes what is left out because nobody can see it; at first, all that can be. The picture is the same.
+    #[cfg(feature = "skips")]
+    pub fn set_skips(&mut self, skips: crate::frame::Skips) {
+        self.settings.skips = skips;
+        self.memory.reflectances.iter_mut().for_each(|reflectance| reflectance.leave_out(skips.highlights, skips.lights));
     }
 
     /// The method in use.

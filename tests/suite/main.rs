@@ -29,6 +29,7 @@ mod peers;
 mod perspective;
 mod raster;
 mod scanlines;
+mod skips;
 mod split;
 mod stress;
 mod verify;

@@ -22,6 +22,7 @@ use microphong::{
         active::ActiveTriangles,
         band::Band,
         canvas::{BandCanvas, Canvas, Shaded},
+        counts::Counts,
         pixel_shader::Solid,
         triangle::ScreenTriangle,
     },
@@ -101,6 +102,7 @@ fn parts_of_random_triangles_cover_each_pixel_once() {
                     rows: rows as i32,
                     blend: None,
                     active: ActiveTriangles::default(),
+                    counts: Counts::default(),
                 };
                 drawn[k] += if k == 0 {
                     let screen = ScreenTriangle::new(corners, [WIDTH, top, top + rows].map(|side| side as i32));

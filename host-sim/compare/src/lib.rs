@@ -228,7 +228,7 @@ impl<'s> Reference<'s> {
         check(&self.stream, shader.facts(), perspective_correct)?;
         let name = shader.name();
         let size = Size::new(self.frame.size.0, self.frame.size.1);
-        let style = Style { shader, perspective_correct, antialias: false, dither: false };
+        let style = Style { perspective_correct, ..Style::from(shader) };
         let integers = level::picture(self.stream, size, style, self.number)?;
         let settings = Settings { size, style, band_rows: size.height, format: Format::Rgb888 };
         let picture = render::picture(self.stream, &settings, self.number)?.rgb.as_chunks::<3>().0.to_vec();

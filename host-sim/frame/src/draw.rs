@@ -4,7 +4,7 @@ use embedded_graphics_core::{
     geometry::Size,
     pixelcolor::{Rgb565, RgbColor},
 };
-use microphong::{Layout, Renderer, Shader, Stats, Stream};
+use microphong::{Layout, Renderer, Shader, Skips, Stats, Stream};
 use microphong_literature::ALL;
 use std::{error::Error, fs, hint::black_box};
 use zerocopy::IntoBytes;
@@ -36,6 +36,7 @@ pub(crate) struct Wanted<'w> {
     dither: bool,
     antialias: bool,
     perspective_correct: bool,
+    skips: Skips,
 }
 
 impl<'w> Wanted<'w> {
@@ -45,13 +46,18 @@ impl<'w> Wanted<'w> {
         let (width, height) = size.split_once('x').ok_or("a size is WIDTHxHEIGHT")?;
         let size = Size::new(width.parse()?, height.parse()?);
         let rows = rows.parse()?;
-        let mut wanted = Self { path, size, rows, shader, number: 0, dither: false, antialias: false, perspective_correct: false };
+        let (dither, antialias, perspective_correct) = (false, false, false);
+        let mut wanted = Self { path, size, rows, shader, number: 0, dither, antialias, perspective_correct, skips: Skips::ALL };
         for option in options {
             match option.split_once('=').unwrap_or((option, "")) {
                 ("dither", "") => wanted.dither = true,
                 ("antialias", "") => wanted.antialias = true,
                 ("perspective-correct", "") => wanted.perspective_correct = true,
                 ("frame", number) => wanted.number = number.parse()?,
+                ("with", name) => {
+                    let named = Skips::ALL_BUT.iter().find(|(skip, _)| *skip == name);
+                    wanted.skips = named.ok_or_else(|| format!("{name} is nothing that is left out"))?.1;
+                }
                 _ => return Err(format!("{option} is no option").into()),
             }
         }
@@ -79,6 +85,8 @@ impl<'w> Wanted<'w> {
         renderer.set_dither(self.dither);
         renderer.set_antialias(self.antialias)?;
         renderer.set_perspective_correct(self.perspective_correct)?;
+        #[cfg(feature = "styles")]
+        renderer.set_skips(self.skips);
         renderer.check_band(&band)?;
         let Stats { drawn, pixels, .. } = dumped_frame(&mut renderer, self.number, &mut band);
         println!("{drawn} {pixels}");

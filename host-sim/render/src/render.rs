@@ -7,7 +7,7 @@ use embedded_graphics_core::{
     pixelcolor::{Gray4, Gray8, Rgb565, Rgb888},
 };
 use microphong::{
-    Layout, Renderer, Stats, Stream,
+    Layout, Renderer, Skips, Stats, Stream,
     pixel::{PictureCrc, Pixel},
 };
 
@@ -22,12 +22,14 @@ pub struct Style {
     pub antialias: bool,
     /// Ordered dither.
     pub dither: bool,
+    /// What is left out because nobody can see it.
+    pub skips: Skips,
 }
 
 /// The method, and nothing else.
 impl From<Shader> for Style {
     fn from(shader: Shader) -> Self {
-        Self { shader, perspective_correct: false, antialias: false, dither: false }
+        Self { shader, perspective_correct: false, antialias: false, dither: false, skips: Skips::ALL }
     }
 }
 
@@ -55,6 +57,7 @@ pub fn frame<C: Pixel>(stream: Stream<'_>, size: Size, style: impl Into<Style>, 
     let mut renderer = Renderer::with_shader(stream, size, &layout, &mut memory, style.shader.on())?;
     renderer.set_perspective_correct(style.perspective_correct)?;
     renderer.set_dither(style.dither);
+    renderer.set_skips(style.skips);
     renderer.set_antialias(style.antialias)?;
     let mut pixels = Vec::with_capacity(size.width as usize * size.height as usize);
     let mut band = vec![C::pack([0; 3]); layout.band()];

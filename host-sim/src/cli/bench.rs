@@ -18,7 +18,7 @@ use microphong_sim::{
             table::{Table, short},
         },
         renewal::{self, Growth},
-        styles::{self, StyleCosts},
+        styles::{self, Named, StyleCosts},
     },
     scene::{self, Scene},
     shader::Shader,
@@ -59,15 +59,19 @@ pub(crate) struct Arguments {
     /// Count dither, antialiasing and interpolation in perspective beside the plain style instead, on this computer.
     #[arg(long, conflicts_with_all = ["board", "report", "peers"])]
     styles: bool,
+    /// Count with each thing that is left out of frames because nobody can see it beside frames without all of them instead, on this
+    /// computer.
+    #[arg(long, conflicts_with_all = ["board", "report", "peers", "styles"])]
+    skips: bool,
     /// Measure the frames that FILE lists, and fail where one costs over 0.2 % more instructions or flash than recorded there.
-    #[arg(long, value_name = "FILE", conflicts_with_all = ["scenes", "shader", "board", "json", "report", "peers", "styles"])]
+    #[arg(long, value_name = "FILE", conflicts_with_all = ["scenes", "shader", "board", "json", "report", "peers", "styles", "skips"])]
     check: Option<PathBuf>,
     /// Measure the frames that FILE lists, and record what they cost; a --reason is needed.
     #[arg(
         long,
         value_name = "FILE",
         requires = "reason",
-        conflicts_with_all = ["scenes", "shader", "board", "json", "report", "peers", "styles", "check"]
+        conflicts_with_all = ["scenes", "shader", "board", "json", "report", "peers", "styles", "skips", "check"]
     )]
     renew: Option<PathBuf>,
     /// Why costs have changed, in a sentence: --renew of costs.csv adds it to costs-reasons.md.
@@ -84,6 +88,7 @@ Examples:
   microphong bench peer-sphere --shader all --board all --report bench    the chart, as a page
   microphong bench --peers --board mps2-an385,mps2-an386,x86-64    beside other renderers
   microphong bench --styles                              what dither, antialiasing and perspective cost
+  microphong bench all --skips                           what is spared where nobody can see it
   microphong bench --check tests/baselines/costs.csv     has anything become dearer?
   microphong bench --renew tests/baselines/costs.csv --reason \"Thin triangles no longer flicker.\"
                                                          it has, and this is why
@@ -125,8 +130,9 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome> {
         let possible = |shader: Shader| scene.stream.parse().is_ok_and(|stream| check(&stream, shader.facts(), false).is_ok());
         shaders.iter().copied().filter(|&shader| !all || possible(shader)).collect::<Vec<_>>()
     };
-    if arguments.styles {
-        return in_styles(&scenes, wanted, arguments.json);
+    if arguments.styles || arguments.skips {
+        let styles = if arguments.styles { styles::STYLES } else { styles::SKIPS };
+        return in_styles(&scenes, wanted, styles, arguments.json);
     }
     let wanted = |scene: &Scene| {
         let shaders = wanted(scene);
@@ -175,12 +181,12 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome> {
     Ok(Outcome::Done)
 }
 
-/// Counts `scenes` by the `wanted` methods in all styles.
-fn in_styles(scenes: &[Scene], wanted: impl Fn(&Scene) -> Vec<Shader>, json: bool) -> Result<Outcome> {
+/// Counts `scenes` by the `wanted` methods in `styles`.
+fn in_styles(scenes: &[Scene], wanted: impl Fn(&Scene) -> Vec<Shader>, styles: &[Named], json: bool) -> Result<Outcome> {
     let bar = report::progress(scenes.iter().map(|scene| wanted(scene).len() as u64).sum(), "counting instructions");
     let counters = Counters::default();
     for scene in scenes {
-        let costs = styles::measure(&counters, scene, &wanted(scene), &|| bar.inc(1))?;
+        let costs = styles::measure(&counters, scene, &wanted(scene), styles, &|| bar.inc(1))?;
         bar.suspend(|| costs.iter().try_for_each(|cost| if json { report::json(cost) } else { in_style(cost) }))?;
     }
     bar.finish_and_clear();
@@ -189,10 +195,10 @@ fn in_styles(scenes: &[Scene], wanted: impl Fn(&Scene) -> Vec<Shader>, json: boo
 
 fn in_style(cost: &StyleCosts) -> Result<()> {
     let plain = cost.instructions[0].unwrap_or(0).max(1) as f64;
-    let figures = styles::NAMES.iter().zip(cost.instructions).map(|(name, count)| match count {
+    let figures = cost.styles.iter().zip(&cost.instructions).map(|(name, count)| match count {
         Some(count) => {
-            let per_pixel = count as f64 / f64::from(cost.pixels.max(1));
-            format!("{name} {per_pixel:.1} per pixel, {:.2} times", count as f64 / plain)
+            let (count, pixels) = (*count as f64, f64::from(cost.pixels.max(1)));
+            format!("{name} {:.1} per pixel, {:.2} times", count / pixels, count / plain)
         }
         None => format!("{name} impossible"),
     });

@@ -3,7 +3,7 @@
 use super::{Outcome, Usage, parse, report, scenes};
 use anyhow::{Context, Result};
 use embedded_graphics_core::geometry::Size;
-use microphong::{Stream, format::ErrorBudget, renderer::check};
+use microphong::{Skips, Stream, format::ErrorBudget, renderer::check};
 use microphong_sim::{
     choices::{self, Choices},
     image::{self, Film},
@@ -118,6 +118,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome> {
             perspective_correct: arguments.perspective_correct,
             antialias: arguments.antialias,
             dither: arguments.dither,
+            skips: Skips::ALL,
         },
         band_rows: arguments.band_rows,
         format: arguments.format,

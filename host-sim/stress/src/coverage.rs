@@ -11,7 +11,7 @@ use microphong::{
         viewport::Bounds,
     },
     interpolate::Constant,
-    raster::{active::ActiveTriangles, band::Band, pixel_shader::Solid, triangle::ScreenTriangle},
+    raster::{active::ActiveTriangles, band::Band, counts::Counts, pixel_shader::Solid, triangle::ScreenTriangle},
     setup::gradients::Gradients,
 };
 
@@ -123,6 +123,7 @@ pub fn draw(corners: Corners, band_rows: usize, counts: &mut [u8]) -> u32 {
             rows: rows as i32,
             blend: None,
             active: ActiveTriangles::default(),
+            counts: Counts::default(),
         };
         let screen = ScreenTriangle::new(corners, [WIDTH, top, top + rows].map(|side| side as i32));
         let visible = Bounds::new(&Extent::new(screen.corners)).clipped(WIDTH as i32, HEIGHT as i32).sides();

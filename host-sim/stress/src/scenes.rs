@@ -1,6 +1,7 @@
 //! Random scenes: meshes, materials, lights and cameras that renderers get wrong.
 
 use crate::{case::Case, random::Random};
+use microphong::Skips;
 use microphong_render::{
     look::{Lamp, Look, Surface},
     mesh::Mesh,
@@ -38,6 +39,7 @@ pub fn of(random: &mut Random, mesh: &Mesh, wishes: Wishes) -> Option<Case> {
         perspective_correct: random.once_in(4),
         antialias: random.once_in(4),
         dither: random.once_in(4),
+        skips: Skips::ALL,
     };
     let case = Case {
         size: [random.pick(1..160) as u32, random.pick(1..120) as u32],

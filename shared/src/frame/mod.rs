@@ -3,11 +3,13 @@
 mod part;
 mod preparation;
 mod scene;
+mod skips;
 
 pub use part::Stats;
 pub(crate) use preparation::Seams;
 pub use preparation::{Preparation, PreparationPart};
 pub(crate) use scene::Settings;
+pub use skips::Skips;
 
 use crate::{error::RenderError, pixel::Pixel};
 use core::ops::Range;

@@ -10,6 +10,7 @@ use crate::{
     raster::{
         active::{ActiveTriangle, ActiveTriangles, QueueState},
         band::{Band, Blend},
+        counts::Counts,
     },
 };
 use core::ops::Range;
@@ -18,7 +19,7 @@ use embedded_graphics_core::{
     primitives::Rectangle,
 };
 
-/// Counts of one frame: triangles, pixels, and what did not fit into memory.
+/// Counts of one frame: triangles, pixels, what was left out of them, and what did not fit into memory.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Stats {
@@ -36,6 +37,8 @@ pub struct Stats {
     pub uncached: u32,
     /// How often a triangle that reaches into the next band found no room among the active triangles, and was set up anew there.
     pub set_up_anew: u32,
+    /// How many triangles were drawn without something that could not be seen, and by what.
+    pub counts: Counts,
 }
 
 impl Stats {
@@ -47,7 +50,7 @@ impl Stats {
     /// Those of a frame whose rows are drawn in two parts: what happens once a frame is counted in the first.
     pub(crate) fn and(self, lower: Self) -> Self {
         let (pixels, set_up_anew) = (self.pixels.saturating_add(lower.pixels), self.set_up_anew.saturating_add(lower.set_up_anew));
-        Self { pixels, set_up_anew, ..self }
+        Self { pixels, set_up_anew, counts: self.counts.and(lower.counts), ..self }
     }
 }
 
@@ -144,7 +147,7 @@ impl<'r> Part<'r> {
         let active = ActiveTriangles::new(self.active_triangles, self.queue);
         let depth = self.depth.get_mut(..count).unwrap_or_default();
         let blend = scene.settings.antialiased().then(|| Blend { samples: self.samples.get_mut(..count).unwrap_or_default() });
-        let mut band = Band { pixels, depth, width, top: self.top as i32, rows: rows as i32, blend, active };
+        let mut band = Band { pixels, depth, width, top: self.top as i32, rows: rows as i32, blend, active, counts: Counts::default() };
         band.clear(scene.settings.background, self.rows.clone());
         let (pixels, drawn) = if self.binned {
             self.bins.skip(self.entries, self.top);
@@ -161,6 +164,7 @@ impl<'r> Part<'r> {
         if scene.settings.antialiased() {
             band.resolve(scene.settings.background);
         }
+        self.stats.counts = self.stats.counts.and(band.counts);
         self.queue = band.active.queue();
         self.stats.set_up_anew = self.stats.set_up_anew.saturating_add(band.active.overflow());
     }

@@ -130,11 +130,12 @@ impl<'r, C: Pixel> Frame<'r, C> {
         let lighting = Lighting::new(stream, &pose);
         let constant = lighting.constant();
         let view = View::new(camera, &pose, size);
-        let facing = Facing::new(&view, stream.header.radius);
+        let facing = if settings.skips().back_faces { Facing::new(&view, stream.header.radius) } else { Facing::ANY };
         // Bins as high as the bands of one processor.
         let band_rows = settings.band_rows(depth.len(), samples.len()).checked_div(settings.processors).unwrap_or(0);
         let bins = Bins::new(size.height, band_rows);
-        let depth_elision = if settings.antialiased() { None } else { DepthElision::new(stream, &view, size) };
+        let elides_depth = settings.skips().depth && !settings.antialiased();
+        let depth_elision = if elides_depth { DepthElision::new(stream, &view, size) } else { None };
         let uncached = stream.vertices.len().saturating_sub(cache.len()) as u32;
         let scene =
             Scene { settings, view, facing, lighting, constant, depth_elision: None, vertices: &[], reflectances, ramps, error_bounds };

@@ -3,6 +3,7 @@
 use crate::{
     Stream,
     format::RAMP,
+    frame::skips::Skips,
     geometry::{
         cull::Facing,
         depth_elision::DepthElision,
@@ -32,12 +33,23 @@ pub(crate) struct Settings<'a, C: Pixel> {
     /// How far a pixel may be off by a method that keeps to a budget, in 1/255, Q9.7.
     pub(crate) budget: u32,
     pub(crate) background: C,
+    #[cfg(feature = "skips")]
+    pub(crate) skips: Skips,
 }
 
 impl<C: Pixel> Settings<'_, C> {
     #[inline(always)]
     pub(crate) fn antialiased(&self) -> bool {
         cfg!(feature = "antialias") && self.antialias
+    }
+
+    /// What is left out.
+    #[inline(always)]
+    pub(crate) fn skips(&self) -> Skips {
+        #[cfg(feature = "skips")]
+        return self.skips;
+        #[cfg(not(feature = "skips"))]
+        Skips::ALL
     }
 
     /// Rows of a band for which there is room for depth, and for samples.
@@ -47,7 +59,12 @@ impl<C: Pixel> Settings<'_, C> {
     }
 
     pub(crate) fn viewport(&self) -> Viewport {
-        Viewport { width: self.size.width as i32, height: self.size.height as i32, antialiased: self.antialiased() }
+        Viewport {
+            width: self.size.width as i32,
+            height: self.size.height as i32,
+            antialiased: self.antialiased(),
+            all_touched: self.antialiased() || !self.skips().between_centres,
+        }
     }
 }
 

@@ -70,6 +70,9 @@ const MAX_SLACK: u64 = (1 << 14) - 1;
 const SLACK: i32 = 1 << (HEIGHT - 9);
 
 impl Facing {
+    /// All triangles may show their front: all heights are 0.
+    pub const ANY: Self = Self { vector: [0; 3], offset_scale: 0, slack: 0, reach: 0 };
+
     /// For the camera of one frame and a mesh in the ball of `radius` about the origin, [`crate::stream::record::Header::radius`].
     #[must_use]
     pub fn new(view: &View, radius: u16) -> Self {
@@ -78,8 +81,8 @@ impl Facing {
         // 2 r D, from Q.30 and Q.14, rounded up.
         let slack = ((2 * view.displacement(reach) * u64::from(reach)) >> (30 + UNIT - PER_ALTITUDE)) + 1;
         if slack > MAX_SLACK {
-            // There are so few pixels that any triangle may turn over: all heights are 0.
-            return Self { vector: [0; 3], offset_scale: 0, slack: 0, reach: 0 };
+            // There are so few pixels that any triangle may turn over.
+            return Self::ANY;
         }
         let vector = vector.map(|c| (c + (1 << (UNIT - EYE - 1))) >> (UNIT - EYE));
         Self { vector, offset_scale, slack: slack as i32, reach: reach as i32 }

@@ -106,6 +106,8 @@ pub struct Viewport {
     pub height: i32,
     /// Whether pixels are weighted by covered areas, so that a triangle can touch more of them.
     pub antialiased: bool,
+    /// Whether triangles are drawn that touch pixels and contain no centre of one.
+    pub all_touched: bool,
 }
 
 impl Viewport {
@@ -115,7 +117,7 @@ impl Viewport {
         if extent.area <= 0 {
             return None;
         }
-        self.visible(if self.antialiased {
+        self.visible(if self.all_touched {
             Bounds::touched([[extent.left, extent.top, 0], [extent.right, extent.bottom, 0]].into_iter())
         } else {
             Bounds::new(extent)
@@ -140,7 +142,7 @@ impl Viewport {
     pub fn clipped_bounds(self, view: &View, vertices: [&Vertex; 3]) -> Option<Bounds> {
         let polygon = clip::clip(view, vertices);
         let mut corners = polygon.iter().map(|cut| cut.place);
-        if self.antialiased {
+        if self.all_touched {
             return self.visible(Bounds::touched(corners));
         }
         let mut bounds = Bounds::at(corners.next()?);

@@ -128,11 +128,12 @@ impl Sum {
     /// Before it is filled; all zeros.
     pub(super) const EMPTY: Self = Self { ambient: 0, diffuse: 0, specular: 0 };
 
-    /// That of levels of ambient, diffuse and specular light, Q9.7, for a channel of `depth` bits.
-    pub(super) fn new(ambient: i32, diffuse: u16, specular: u16, depth: u32) -> Self {
+    /// That of levels of ambient, diffuse and specular light, Q9.7, for a channel of `depth` bits; `all` is the diffuse light of all lights.
+    pub(super) fn new(ambient: i32, [diffuse, all]: [u16; 2], specular: u16, depth: u32) -> Self {
         Self {
-            // Cosines are rounded down: half of their last place more.
-            ambient: ((ambient + (1 << (LEVEL + 7 - depth))) << FACTOR) + (i32::from(diffuse) >> 1),
+            // Cosines are rounded down: half of their last place more. Of all lights, so that it does not matter which of them is first, nor
+            // whether one is left out.
+            ambient: ((ambient + (1 << (LEVEL + 7 - depth))) << FACTOR) + (i32::from(all) >> 1),
             diffuse: diffuse.into(),
             specular: (i32::from(specular) + 1) >> 1,
         }

@@ -134,8 +134,8 @@ pub struct Reflectance {
     lights: u8,
     /// Not 0 if [`Self::has_two_lights`].
     has_two_lights: u8,
-    /// Makes the size a multiple of words.
-    unused: [u8; 2],
+    /// Not 0 if highlights, or lights, are computed where they cannot be seen, see [`Self::leave_out`].
+    computes_all: [u8; 2],
 }
 
 /// A colour as products of gains, Q4.28.
@@ -171,7 +171,7 @@ impl Reflectance {
         three_channels: 0,
         has_ramp: 0,
         has_two_lights: 0,
-        unused: [0; 2],
+        computes_all: [0; 2],
         ambient: [0; 3],
         gains: [Gains::NONE; MAX_LIGHTS],
         sums: [[Sum::EMPTY; 3]; 3],
@@ -221,9 +221,11 @@ impl Reflectance {
         self.lights = if looped { lights.len() as u8 } else { 0 };
         self.has_two_lights = u8::from(lights.len() == 2 && !one_channel && fits);
         let holds_levels = looped && one_channel;
+        let [one, two, ..] = &self.gains;
+        let all = zip(one.diffuse, if lights.len() > 1 { two.diffuse } else { [0; 3] }, u16::saturating_add);
         for (sums, gains) in self.sums.iter_mut().zip(&self.gains) {
             for (k, sum) in sums.iter_mut().enumerate() {
-                *sum = Sum::new(self.ambient[k], gains.diffuse[k], gains.specular[k], depth[k]);
+                *sum = Sum::new(self.ambient[k], [gains.diffuse[k], all[k]], gains.specular[k], depth[k]);
             }
         }
         let [first, _, again] = &mut self.sums;
@@ -292,6 +294,26 @@ impl Reflectance {
     #[must_use]
     pub fn highlight_threshold(&self) -> i32 {
         self.highlight_threshold
+    }
+
+    /// Changes whether highlights are left out of triangles where none can be seen, and lights of triangles that they do not reach.
+    #[cfg(feature = "skips")]
+    pub(crate) fn leave_out(&mut self, highlights: bool, lights: bool) {
+        self.computes_all = [highlights, lights].map(|left_out| u8::from(!left_out));
+    }
+
+    /// N·H, Q2.30, below which a highlight is left out: [`Self::highlight_threshold`] unless that is switched off.
+    #[inline(always)]
+    #[must_use]
+    pub(crate) fn faintest(&self) -> i32 {
+        if cfg!(feature = "skips") && self.computes_all[0] != 0 { i32::MIN } else { self.highlight_threshold }
+    }
+
+    /// N·L, Q2.30, up to which a light is left out: 0 unless that is switched off.
+    #[inline(always)]
+    #[must_use]
+    pub(crate) fn darkest(&self) -> i32 {
+        if cfg!(feature = "skips") && self.computes_all[1] != 0 { i32::MIN } else { 0 }
     }
 
     /// The level of a material of one channel under one light, Q9.7 in [0, 255], from `[N·L, N·H]` (Q2.30).

@@ -134,10 +134,7 @@ impl HighlightLut {
         }
         // Everything below the domain gets the lowest entry; in the pixel loop, the one above it.
         let [.., lower, lowest] = &mut self.table;
-        *lowest = floor;
-        if scale > WHOLE {
-            *lower = floor;
-        }
+        (*lowest, *lower) = (floor, floor);
     }
 
     /// Position of a cosine (Q2.30) in the table, unsigned Q20.12: 1 - cosine in steps of the table. Small cosines lie past the end.

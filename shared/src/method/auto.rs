@@ -27,6 +27,7 @@ use crate::{
     raster::{
         band::Band,
         canvas::{Canvas, Shaded},
+        counts::Counts,
         pixel_shader::Solid,
     },
 };
@@ -76,6 +77,21 @@ pub fn choose(setup: &TriangleSetup<'_>, shading: &Shading<'_>) -> Choice {
         return among(setup, shading, curvature, &setup.corners_of_two_lights(), |left| two_lights(setup, shading, left));
     }
     Choice::Phong
+}
+
+/// [`choose`], counted in a band whose first row is `top`.
+#[inline(always)]
+fn counted(setup: &TriangleSetup<'_>, shading: &Shading<'_>, top: i32, counts: &mut Counts) -> Choice {
+    let choice = choose(setup, shading);
+    let [solid, linear, quadratic, phong] = &mut counts.choices;
+    let count = match choice {
+        Choice::Solid(_) => solid,
+        Choice::Linear => linear,
+        Choice::Quadratic => quadratic,
+        Choice::Phong => phong,
+    };
+    setup.count(top, count, 1);
+    choice
 }
 
 /// [`choose`] with these `cosines` at the corners; `linear` chooses where linear interpolation leaves so much of the budget.
@@ -184,7 +200,8 @@ impl Method for Auto {
     }
 
     fn shade(&self, setup: &TriangleSetup<'_>, shading: &Shading<'_>, canvas: &mut dyn Canvas) -> u32 {
-        match (choose(setup, shading), shading.constant) {
+        let [_, top, _] = canvas.bounds();
+        match (counted(setup, shading, top, canvas.counts()), shading.constant) {
             (Choice::Solid(levels), _) => setup.draw_spans(&mut Shaded::new(Constant, Uniform(of_levels(levels))), canvas),
             (Choice::Linear, Some(_)) => shading.draw_levels::<3, RANGE>(setup, gouraud::reflected(setup, shading.reflectance), canvas),
             (Choice::Linear, None) => shading.draw_levels::<3, RANGE>(setup, corners_under_two(setup, shading), canvas),
@@ -209,7 +226,7 @@ impl Loops for Auto {
         tables: MaterialTables<'_, C>,
         band: &mut Band<'_, C>,
     ) -> Option<u32> {
-        match choose(setup, shading) {
+        match counted(setup, shading, band.top, &mut band.counts) {
             Choice::Solid(levels) => Some(setup.fill(|| Constant, Solid(tables.colour(levels)), band)),
             Choice::Linear => by::<Gouraud, _>(setup, shading, tables, band),
             Choice::Quadratic => by::<SixPoint, _>(setup, shading, tables, band),
@@ -232,7 +249,7 @@ impl Loops for ThreeChannels<Auto> {
         tables: MaterialTables<'_, C>,
         band: &mut Band<'_, C>,
     ) -> Option<u32> {
-        match (choose(setup, shading), shading.constant) {
+        match (counted(setup, shading, band.top, &mut band.counts), shading.constant) {
             (Choice::Solid(levels), _) => Some(setup.fill(|| Constant, Solid(tables.colour(levels)), band)),
             (Choice::Linear, Some(_)) => by::<ThreeChannels<Gouraud>, _>(setup, shading, tables, band),
             (Choice::Linear, None) => Some(Shading::fill_three(setup, || channels(corners_under_two(setup, shading)), |plane| plane, band)),

@@ -33,13 +33,13 @@ pub fn shade_constant(setup: &TriangleSetup<'_>, shading: &Shading<'_>, canvas: 
     match tabled(setup).filter(|_| !is_steep(shading.exponent)) {
         // The faster root is worth its code only where little else is done at a pixel.
         Some(square) if setup.inv_depth().is_none() => {
-            let threshold = setup.highlight_threshold(shading.reflectance);
+            let reflectance = shading.reflectance;
             let fit = |source: &Source| {
                 // Both are linear, so that corners tell.
                 let [towards, half] = shading.constant_cosines(setup, source);
-                if largest(&half) >= threshold {
+                if !setup.leaves_out_highlight(reflectance, &half) {
                     Lit::Fully(linear([towards, half]))
-                } else if largest(&towards) <= 0 {
+                } else if setup.leaves_out_light(reflectance, &towards) {
                     Lit::Nowhere
                 } else {
                     Lit::Diffuse(linear([towards]))

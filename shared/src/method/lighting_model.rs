@@ -253,6 +253,7 @@ impl Shading<'_> {
         let reflectance = self.reflectance;
         let (lut, mut ambient) = (reflectance.highlight_lut.by_cosine(), reflectance.ambient_sums());
         let (mut lights, mut diffuse) = (heapless::Vec::<_, MAX_LIGHTS>::new(), heapless::Vec::<_, MAX_LIGHTS>::new());
+        let (mut without_highlight, mut without_light) = (0, 0);
         for (light, source) in self.lighting.sources.iter().enumerate() {
             let factors = reflectance.factors(light);
             // There is room for as many lights as a frame has.
@@ -263,11 +264,15 @@ impl Shading<'_> {
                 }
                 Lit::Diffuse(patch) => {
                     let _ = diffuse.push((patch, factors));
+                    without_highlight += 1;
                 }
-                Lit::Nowhere => {}
+                Lit::Nowhere => without_light += 1,
             }
             reflectance.add_no_highlight(&factors, &mut ambient);
         }
+        let [_, top, _] = canvas.bounds();
+        setup.count(top, &mut canvas.counts().without_highlight, without_highlight);
+        setup.count(top, &mut canvas.counts().without_light, without_light);
         // Lent, since all of this would be copied if it were moved.
         let (shared, levels) = (&mut [F::Common::default(); CHUNK], &mut [[0; 3]; CHUNK]);
         let (lights, diffuse) = (&mut lights, &mut diffuse);

@@ -28,6 +28,7 @@ use crate::{
     antialias::{PixelSet, Shape},
     arch::product::by_fraction,
     format::{BIAS, CHANNEL, LEVEL, NORMAL_LENGTH, SUBPIXEL, WALK},
+    geometry::viewport::first_centre,
     interpolate::perspective::PerspectivePatch,
     lighting::material_tables::MaterialTables,
     pixel::Pixel,
@@ -38,7 +39,7 @@ use crate::{
         pixel_shader::{PixelShader, Ramp, Rgb},
         triangle::{ScreenTriangle, turn},
     },
-    setup::gradients::Gradients,
+    setup::gradients::{Gradients, MAX_FINE_THINNESS},
     stream::record::{Triangle, Vertex},
 };
 #[doc(inline)]
@@ -228,6 +229,7 @@ impl TriangleSetup<'_> {
             None => patch(),
         };
         if T::CHEAP && !self.needs_depth_test {
+            self.count(band.top, &mut band.counts.without_depth, 1);
             self.screen.draw_alone(self.gradients, patch, shader, band)
         } else {
             self.screen.draw(self.gradients, patch, shader, band)
@@ -290,6 +292,31 @@ impl TriangleSetup<'_> {
     pub fn has_no_highlight(&self, reflectance: &Reflectance) -> bool {
         let [a, b, c] = self.corners;
         a.light[1].max(b.light[1]).max(c.light[1]) < self.highlight_threshold(reflectance)
+    }
+
+    /// Whether the highlight of a constant light, whose N·H at the corners is `half`, is left out because it can be seen nowhere.
+    #[inline(always)]
+    pub(crate) fn leaves_out_highlight(&self, reflectance: &Reflectance, half: &[i32; 3]) -> bool {
+        largest(half) < by_fraction(reflectance.faintest(), self.triangle.min_normal_length) << (16 - NORMAL_LENGTH)
+    }
+
+    /// Whether a light whose N·L at the corners is `towards` is left out because it reaches the triangle nowhere.
+    #[inline(always)]
+    pub(crate) fn leaves_out_light(&self, reflectance: &Reflectance, towards: &[i32; 3]) -> bool {
+        largest(towards) <= reflectance.darkest()
+    }
+
+    /// Adds `number` to a count of the band whose first row is `top`, if the triangle begins there.
+    #[inline(always)]
+    pub(crate) fn count(&self, top: i32, count: &mut u32, number: u32) {
+        // Where the thinnest triangles begin, they may contain no pixel centre, and are not drawn.
+        if !cfg!(feature = "skips") || self.pixels != PixelSet::Centres || self.gradients.is_thinner_than(MAX_FINE_THINNESS) {
+            return;
+        }
+        let [first, ..] = self.corners;
+        if self.place.is_none() && first_centre(first.y).max(0) >= top {
+            *count = count.wrapping_add(number);
+        }
     }
 
     /// Threshold of N·H, linear between the corners, below which N·H over |N| is too small for a highlight; Q2.30.

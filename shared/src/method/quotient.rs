@@ -145,10 +145,15 @@ pub(super) fn draw<const EXACT: bool, F: Field, C: Pixel>(
     tables: MaterialTables<'_, C>,
     band: &mut Band<'_, C>,
 ) -> Option<u32> {
-    let (rgb, has_no_highlight) = (tables.one_light_rgb(), largest(&cosines[1]) < setup.highlight_threshold(tables.reflectance));
+    let rgb = tables.one_light_rgb();
+    // Without a highlight three channels are drawn by a table of colours, which rounds otherwise: that is no matter of leaving it out.
+    let has_no_highlight = match rgb {
+        Some(_) => largest(&cosines[1]) < setup.highlight_threshold(tables.reflectance),
+        None => setup.leaves_out_highlight(tables.reflectance, &cosines[1]),
+    };
     let ramp = if rgb.is_some() { tables.diffuse_ramp() } else { Some(tables.one_light_ramp()?) };
     Some(match (ramp, rgb) {
-        (Some(ramp), _) if has_no_highlight => draw_diffuse::<EXACT, _, _>(setup, &cosines[0], length, half_reciprocal, ramp, band),
+        (Some(ramp), _) if has_no_highlight => draw_diffuse::<EXACT, _, _>(setup, &cosines[0], length, half_reciprocal, ramp, tables, band),
         (_, Some(rgb)) => draw_rgb::<EXACT, _, _>(setup, cosines, length, half_reciprocal, rgb, tables, band),
         (ramp, None) => draw_in::<EXACT, _, _>(setup, cosines, length, half_reciprocal, ramp?, tables, band),
     })
@@ -179,12 +184,15 @@ pub(super) fn draw_two<const EXACT: bool, F: Field, C: Pixel>(
 ) -> Option<u32> {
     let TwoLights { colours, cosines: [first, second], highlights } = TwoLights::on(setup, tables)?;
     let full = colours.diffuse();
-    let is_dark = |[towards, _]: &CornerCosines| largest(towards) <= 0;
     let lookup = QuotientLookup::new(&tables.reflectance.highlight_lut);
     let shader = DiffuseAndHighlight::<_, _, EXACT> { colours, lookup, half_reciprocal };
     let both = |[towards, half]: &CornerCosines| (plane(setup, full, towards), numerator(setup, lookup, half));
+    setup.count(band.top, &mut band.counts.without_highlight, 2 - highlights);
     Some(match highlights {
-        1 if is_dark(&second) => draw_rgb::<EXACT, _, _>(setup, &first, length, half_reciprocal, colours.first(), tables, band),
+        1 if setup.leaves_out_light(tables.reflectance, &second[0]) => {
+            setup.count(band.top, &mut band.counts.without_light, 1);
+            draw_rgb::<EXACT, _, _>(setup, &first, length, half_reciprocal, colours.first(), tables, band)
+        }
         0 => {
             let patch = || ((plane(setup, full, &first[0]), plane(setup, full, &second[0])), fitted(&length(), setup.gradients));
             setup.fill(patch, DiffuseOnly::<_, _, EXACT> { colours, half_reciprocal }, band)
@@ -224,11 +232,14 @@ fn draw_diffuse<const EXACT: bool, F: Field, C: Pixel>(
     length: impl FnOnce() -> F,
     half_reciprocal: impl Fn(F::Value) -> i32 + Copy,
     colours: OneLightRamp<'_, C>,
+    tables: MaterialTables<'_, C>,
     band: &mut Band<'_, C>,
 ) -> u32 {
-    if largest(towards) <= 0 {
+    if setup.leaves_out_light(tables.reflectance, towards) {
+        setup.count(band.top, &mut band.counts.without_light, 1);
         return setup.fill(|| Constant, Solid(colours.without_highlight::<PIXEL>(0)), band);
     }
+    setup.count(band.top, &mut band.counts.without_highlight, 1);
     let patch = || diffuse_patch(setup, colours.diffuse(), towards, length);
     setup.fill(patch, DiffuseOnly::<_, _, EXACT> { colours, half_reciprocal }, band)
 }

@@ -68,8 +68,7 @@ impl Method for Sqrt6 {
             let fit = |source: &_| {
                 let [towards, half] = shading.lighting.directions(source, [0; 3]);
                 let (towards, half) = (setup.six_from(setup.corner_cosines(towards)), setup.corner_cosines(half));
-                let [a, b, c] = half;
-                if a.max(b).max(c) >= threshold {
+                if largest(&half) >= threshold {
                     Lit::Fully(quadratic([towards, map_six(setup.six_half_from(half, shading.exponent), root)]))
                 } else if DiffuseSign::of(towards) == DiffuseSign::Nowhere {
                     Lit::Nowhere
@@ -110,6 +109,7 @@ impl Loops for Sqrt6 {
         if let Some(ramp) = ramp.filter(|_| has_no_highlight && !declined) {
             let drawn = draw_diffuse(setup, cosines, ramp, tables, band);
             if drawn.is_some() || rgb.is_none() {
+                setup.count(band.top, &mut band.counts.without_highlight, 1);
                 return drawn;
             }
         }
@@ -149,8 +149,12 @@ fn draw_two<C: Pixel>(
     let shader = DiffuseAndHighlight { colours, lookup };
     let diffuse = |cosines| diffuse(setup, full, cosines);
     let highlight = |[_, half]: CornerCosines| highlight(setup, half, lookup, exponent);
+    setup.count(band.top, &mut band.counts.without_highlight, 2 - highlights);
     Some(match highlights {
-        1 if is_dark(other) => return draw_rgb(setup, &first, colours.first(), exponent, tables, band),
+        1 if is_dark(other) => {
+            setup.count(band.top, &mut band.counts.without_light, 1);
+            return draw_rgb(setup, &first, colours.first(), exponent, tables, band);
+        }
         0 => setup.fill(|| (diffuse(towards), diffuse(other)), DiffuseOnly(colours), band),
         1 => setup.fill(|| ByColumn(((diffuse(towards), highlight(first)), diffuse(other))), shader, band),
         _ => setup.fill(|| ByColumn(((diffuse(towards), highlight(first)), (diffuse(other), highlight(second)))), shader, band),

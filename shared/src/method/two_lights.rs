@@ -2,7 +2,7 @@
 
 use crate::{
     lighting::{constant_lights::TwoLightsRgb, material_tables::MaterialTables},
-    method::{CornerCosines, TriangleSetup, largest},
+    method::{CornerCosines, TriangleSetup},
     pixel::Pixel,
 };
 
@@ -23,8 +23,7 @@ impl<'a, C: Pixel> TwoLights<'a, C> {
     pub(super) fn on(setup: &TriangleSetup<'_>, tables: MaterialTables<'a, C>) -> Option<Self> {
         let [forth, back] = tables.two_lights_rgb()?;
         let [one, two] = setup.corners_of_two_lights();
-        let threshold = setup.highlight_threshold(tables.reflectance);
-        let highlit = |[_, half]: &CornerCosines| largest(half) >= threshold;
+        let highlit = |[_, half]: &CornerCosines| !setup.leaves_out_highlight(tables.reflectance, half);
         Some(match (highlit(&one), highlit(&two)) {
             (false, true) => Self { colours: back, cosines: [two, one], highlights: 1 },
             (first, second) => Self { colours: forth, cosines: [one, two], highlights: u32::from(first) + u32::from(second) },

@@ -1,6 +1,10 @@
 //! A band: some rows of the picture and their depth, the only memory that drawing writes.
 
-use crate::{coverage::sample::Sample, pixel::Pixel, raster::active::ActiveTriangles};
+use crate::{
+    coverage::sample::Sample,
+    pixel::Pixel,
+    raster::{active::ActiveTriangles, counts::Counts},
+};
 use core::{hint::black_box, ops::Range};
 use zerocopy::{FromBytes, IntoBytes};
 
@@ -21,6 +25,8 @@ pub struct Band<'a, C> {
     pub blend: Option<Blend<'a>>,
     /// Active triangles that the band above has saved, and those that this band saves.
     pub active: ActiveTriangles<'a>,
+    /// What was drawn.
+    pub counts: Counts,
 }
 
 /// The samples in which antialiasing collects the surfaces of each pixel.

@@ -13,7 +13,10 @@ use crate::{
     interpolate::{Patch, Walker, plane::Linear},
     lighting::material_tables::MaterialTables,
     pixel::{Pixel, dither::threshold},
-    raster::band::{Band, Blend},
+    raster::{
+        band::{Band, Blend},
+        counts::Counts,
+    },
 };
 
 /// Pixels that are shaded at a time.
@@ -112,6 +115,10 @@ pub trait Canvas {
     #[doc(hidden)]
     fn bounds(&self) -> [i32; 3];
 
+    /// What was drawn.
+    #[doc(hidden)]
+    fn counts(&mut self) -> &mut Counts;
+
     /// Draws the `count` pixels of `row` to the left of column `end` by `shader`, which stands on this row, where `inv_depth`, which stands
     /// on column `end`, passes the depth test.
     #[doc(hidden)]
@@ -140,6 +147,10 @@ impl<C: Pixel> Canvas for BandCanvas<'_, '_, C> {
     fn bounds(&self) -> [i32; 3] {
         let [top, bottom] = self.band.range();
         [self.band.width as i32, top, bottom]
+    }
+
+    fn counts(&mut self) -> &mut Counts {
+        &mut self.band.counts
     }
 
     fn draw_row(&mut self, row: i32, end: i32, count: usize, inv_depth: Linear<1>, shader: &mut dyn SpanShader) {

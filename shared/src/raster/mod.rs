@@ -3,6 +3,7 @@
 pub mod active;
 pub mod band;
 pub mod canvas;
+pub mod counts;
 pub mod pixel_shader;
 pub(crate) mod span;
 pub mod triangle;

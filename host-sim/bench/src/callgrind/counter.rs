@@ -3,6 +3,7 @@
 
 use super::{Profile, not_started, valgrind};
 use anyhow::{Context, Result, anyhow, ensure};
+use microphong::Skips;
 use microphong_boards::{
     build::{host, release},
     child::Scratch,
@@ -97,6 +98,9 @@ impl Drop for Counter {
 fn words(case: &Case) -> String {
     let Case { size: [width, height], frame, style, band_rows, .. } = case;
     let options = [(style.dither, " dither"), (style.antialias, " antialias"), (style.perspective_correct, " perspective-correct")];
-    let options: String = options.iter().filter(|(on, _)| *on).map(|(_, word)| *word).collect();
+    let mut options: String = options.iter().filter(|(on, _)| *on).map(|(_, word)| *word).collect();
+    if let Some((name, _)) = Skips::ALL_BUT.iter().find(|(_, skips)| *skips == style.skips) {
+        options += &format!(" with={name}");
+    }
     format!("{width}x{height} {band_rows} {} frame={frame}{options}", style.shader.name())
 }

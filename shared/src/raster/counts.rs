@@ -1,0 +1,31 @@
+//! Counts of triangles that are drawn.
+
+/// How many triangles were drawn without something, and by what. Each counts once, in the band where it begins; slivers do not count, nor do
+/// antialiased triangles. All are 0 unless the feature `skips` is on.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+pub struct Counts {
+    /// Without depth test.
+    pub without_depth: u32,
+    /// Without the highlight of a light, for each such light.
+    pub without_highlight: u32,
+    /// Without a light, for each such light.
+    pub without_light: u32,
+    /// By each choice of a method that chooses.
+    pub choices: [u32; 4],
+}
+
+impl Counts {
+    /// The sums of both.
+    #[must_use]
+    pub fn and(self, other: Self) -> Self {
+        let [one, linear, quadratic, exact] = self.choices;
+        let [a, b, c, d] = other.choices;
+        Self {
+            without_depth: self.without_depth.wrapping_add(other.without_depth),
+            without_highlight: self.without_highlight.wrapping_add(other.without_highlight),
+            without_light: self.without_light.wrapping_add(other.without_light),
+            choices: [one.wrapping_add(a), linear.wrapping_add(b), quadratic.wrapping_add(c), exact.wrapping_add(d)],
+        }
+    }
+}

@@ -1,0 +1,59 @@
+//! What is left out of frames because nobody can see it: the picture is the same with it, and the counts tell how much it was.
+
+use embedded_graphics::{pixelcolor::Rgb565, prelude::Size};
+use microphong::{Counts, Skips, Stats, renderer::check};
+use microphong_sim::{
+    bytes::StreamBytes,
+    render::{self, Style},
+    scene,
+    shader::Shader,
+};
+
+const SIZE: Size = Size::new(200, 150);
+
+/// Frame 5 of a stream, in bands, or in one.
+fn frame(stream: &StreamBytes, shader: Shader, skips: Skips, rows: u32) -> (Vec<Rgb565>, Stats) {
+    render::frame(stream.parse().unwrap(), SIZE, Style { skips, ..Style::from(shader) }, rows, 5).unwrap()
+}
+
+/// With each thing by itself, and with all of them, in every scene, by every method.
+#[test]
+fn pictures_are_the_same() {
+    for scene in scene::NAMES.into_iter().chain(scene::VARIANTS).map(|name| scene::load(name).unwrap()) {
+        let facts = scene.stream.parse().unwrap();
+        for shader in Shader::ALL.into_iter().filter(|shader| check(&facts, shader.facts(), false).is_ok()) {
+            let (plain, _) = frame(&scene.stream, shader, Skips::ALL, SIZE.height);
+            for (name, skips) in Skips::ALL_BUT.into_iter().chain([("everything", Skips::NONE)]) {
+                let (picture, stats) = frame(&scene.stream, shader, skips, SIZE.height);
+                let differing = picture.iter().zip(&plain).filter(|(a, b)| a != b).count();
+                assert_eq!(differing, 0, "{} by {} with {name}, {stats:?}", scene.name, shader.name());
+            }
+        }
+    }
+}
+
+/// Counts are not 0 where something is left out, 0 where it is not, and the same whatever the bands.
+#[test]
+fn counts_tell_what_is_left_out() {
+    let counts = |name: &str, shader, skips, rows| frame(&scene::load(name).unwrap().stream, shader, skips, rows).1.counts;
+    for (name, shader, but, count) in [
+        (scene::CONVEX, Shader::PHONG, "depth", (|counts| counts.without_depth) as fn(Counts) -> u32),
+        ("peer-sphere", Shader::PHONG, "highlights", |counts| counts.without_highlight),
+        ("torus", Shader::PHONG, "lights", |counts| counts.without_light),
+        ("bunny", Shader::PHONG, "highlights", |counts| counts.without_highlight),
+        ("bunny", Shader::PHONG, "lights", |counts| counts.without_light),
+    ] {
+        let (_, others) = Skips::ALL_BUT.into_iter().find(|(skip, _)| *skip == but).unwrap();
+        let [plain, with] = [Skips::ALL, others].map(|skips| count(counts(name, shader, skips, SIZE.height)));
+        println!("{name} by {}, {but}: {plain} left out", shader.name());
+        assert!(plain > 0 && with == 0, "{name}, {but}: {plain}, {with}");
+        for rows in [1, 7, 40] {
+            assert_eq!(count(counts(name, shader, Skips::ALL, rows)), plain, "{name}, {but}, bands of {rows}");
+        }
+    }
+    let (_, stats) = frame(&scene::load("torus").unwrap().stream, Shader::AUTO, Skips::ALL, 7);
+    println!("torus by auto: {:?} of {}", stats.counts.choices, stats.drawn);
+    let shaded: u32 = stats.counts.choices.iter().sum();
+    // Slivers between the centres of pixels are not shaded.
+    assert!(stats.counts.choices.iter().filter(|&&count| count > 0).count() > 2 && stats.drawn - shaded < stats.drawn / 20);
+}
