@@ -1,8 +1,9 @@
 //! `microphong compare`: what it prints, what it refuses, and the page that it writes.
 
+use microphong::format::ErrorBudget;
 use microphong_sim::{
     bytes::StreamBytes,
-    compare::{Reference, exponent::with_exponent},
+    compare::{Comparison, Reference, exponent::with_exponent},
     image, oracle, scene,
     shader::Shader,
 };
@@ -222,6 +223,25 @@ fn jumps_of_the_prototypes() {
         assert!(jumps(shader).level < 0.01, "{}", shader.name());
     }
     assert!(jumps(Shader::GOURAUD).slope > 1.0);
+}
+
+/// Neighbours that `auto` draws by different methods meet within twice the budget, as both are within it of the same Phong shading.
+#[test]
+fn neighbours_by_different_methods_meet_within_twice_the_budget() {
+    let mut largest = 0.0;
+    for name in scene::NAMES.iter().chain(&scene::VARIANTS) {
+        let scene = scene::load(name).expect("a built-in scene");
+        for budget in [1u8, 4] {
+            let stream = scene.stream.clone().with_budget(ErrorBudget::from_num(budget));
+            let reference = Reference::new(stream.parse().expect("a stream"), scene.size, 0).expect("something to see");
+            let Comparison { jumps, method, .. } = reference.compare(Shader::AUTO).expect("a comparison");
+            println!("{name:20} budget {budget}: jumps by {:.2} LSB, off by {:.2}", jumps.level, method.max);
+            assert!(jumps.level <= f64::from(2 * budget + 1), "{name}, budget {budget}: {jumps:?}");
+            largest = jumps.level.max(largest);
+        }
+    }
+    // There is something to see.
+    assert!(largest > 1.0, "{largest}");
 }
 
 #[test]
