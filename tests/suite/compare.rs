@@ -160,6 +160,22 @@ fn the_report_is_one_file_that_needs_no_other() {
     assert_eq!(page.matches("<table").count(), 2);
 }
 
+/// What `auto` chooses stands on the page as it is printed; other methods choose nothing.
+#[test]
+fn the_report_shows_choices() {
+    let directory = tempfile::tempdir().expect("scratch directory");
+    let text = succeeds(directory.path(), &["torus", "--shader", "gouraud,auto", "--size", "80x60", "--budget", "2", "--report", "page"]);
+    let line = text.lines().find(|line| line.contains("budget 2 LSB; ")).expect("a line");
+    let (triangles, pixels) = line.trim_start().trim_start_matches("budget 2 LSB; ").split_once("; ").expect("two lists");
+    let page = fs::read_to_string(directory.path().join("page/index.html")).expect("text");
+    for shares in [triangles, pixels] {
+        // Ways that draw nothing have no part of the bar.
+        let parts: Vec<_> = shares.split(", ").filter(|part| !part.ends_with(" 0.0 %")).collect();
+        assert_eq!(page.matches(&format!("title=\"{}", parts.join(", "))).count(), 1, "{shares}");
+    }
+    assert_eq!((page.matches("class=\"shares\"").count(), page.matches("class=\"ways\"").count()), (2, 1));
+}
+
 /// A coloured metal is walked in one channel, other materials in three: whichever it is, that is what errors are measured in.
 #[test]
 fn phong_is_as_exact_in_any_material() {
