@@ -36,10 +36,7 @@ fn main() -> Result<(), Box<dyn Error>> {
 
     let stream = env::var_os("MICROPHONG_STREAM").map_or_else(|| PathBuf::from(stream), PathBuf::from);
     let stream = fs::canonicalize(&stream).map_err(|e| {
-        format!(
-            "{}: {e}; name one in MICROPHONG_STREAM, as `microphong convert MESH.obj -o MESH.tri` makes them",
-            stream.display()
-        )
+        format!("{}: {e}; name one in MICROPHONG_STREAM, as `microphong convert MESH.obj -o MESH.tri` makes them", stream.display())
     })?;
     println!("cargo:rustc-env=STREAM_FILE={}", stream.display());
 
