@@ -28,7 +28,7 @@ fn allowed(budget: f64, lights: usize) -> f64 {
 /// Length of interpolated normals below which `auto` is compared with the core's own Phong shading, for the shorter they are, the more rounding
 /// decides where they point. Where `auto` may choose anything else, no two normals are more than 60 degrees apart, and none in between is
 /// shorter than 0.816.
-const SHORT: f64 = 0.8;
+pub const SHORT: f64 = 0.8;
 
 impl Family for Budget {
     fn name(&self) -> &'static str {
