@@ -16,8 +16,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let mut band = [Rgb565::BLACK; LAYOUT.band()];
 
     let mut display = SimulatorDisplay::<Rgb565>::new(Size::new(240, 240));
-    let shaders = [Shader::GOURAUD, Shader::SIX_POINT];
-    let mut renderer = Renderer::new(stream, display.size(), &LAYOUT, &mut memory, &shaders)?;
+    let mut renderer = Renderer::new(stream, display.size(), &LAYOUT, &mut memory, &[Shader::AUTO])?;
     let stats = Picture::new(&mut renderer, &mut band, 0)?.draw(&mut display)?;
 
     let file = std::env::args().nth(1).unwrap_or_else(|| "display.png".into());

@@ -12,10 +12,10 @@ pub use microphong_render::{
 };
 pub use microphong_stress as stress;
 
-/// Every family of random cases.
+/// Every family of random cases; with a `budget`, that of the same name keeps to it.
 #[must_use]
-pub fn families() -> Vec<Box<dyn stress::Family>> {
-    let mut families = stress::families();
+pub fn families(budget: Option<microphong::format::ErrorBudget>) -> Vec<Box<dyn stress::Family>> {
+    let mut families = stress::families(budget);
     families.extend(costs());
     families
 }

@@ -80,7 +80,9 @@ impl fmt::Display for RenderError {
             Self::Band { need } => write!(f, "a band of pixels must hold a row of the picture, {need} pixels"),
             Self::Antialias => f.write_str("this build cannot antialias; build it with the feature antialias"),
             Self::Budget => f.write_str("an error budget must be 1/2 to 16"),
-            Self::Missing { method } => write!(f, "this program has no shading method number {method}, for which the stream asks"),
+            Self::Missing { method } => {
+                write!(f, "this program has no shading method number {method}, for which the stream asks; convert it with another --shader")
+            }
             Self::NoPerspective => f.write_str("this build cannot interpolate in perspective; build it with the feature perspective"),
             Self::Light { shader } => {
                 write!(f, "{shader} shading needs directional lights and an infinitely far viewer; this scene has near ones")

@@ -17,8 +17,8 @@
 //!     let mut band = [Rgb565::BLACK; LAYOUT.band()];
 //!
 //!     let stream = Stream::parse(file).expect("the file is damaged");
-//!     // The program contains the code of these two shading methods and of no others.
-//!     let shaders = [Shader::GOURAUD, Shader::SIX_POINT];
+//!     // What `convert` asks for unless told otherwise. The program contains the code of the methods in this list and of no others.
+//!     let shaders = [Shader::AUTO];
 //!     let mut renderer = Renderer::new(stream, display.size(), &LAYOUT, &mut memory, &shaders).expect("the layout fits the display");
 //!     for number in 0..u32::from(stream.header.frames) {
 //!         Picture::new(&mut renderer, &mut band, number).expect("a band has a row").draw(display)?;

@@ -1,15 +1,26 @@
 //! What the method `auto` chooses, as `render --show methods`, `compare` and `bench` tell it.
 
 use embedded_graphics::geometry::Size;
+use microphong::stream::record::Triangle;
 use microphong_sim::{
     bench::{Bench, Processor},
     choices::{self, Choices, Way},
     legend,
+    look::{Look, Surface},
+    quantise::quantise,
     render::{Format, Settings},
-    scene,
+    scene::{self, Scene},
     shader::Shader,
+    shapes,
+    stress::{
+        budget::{self, Found},
+        case::Case,
+    },
+    vector::{add, unit},
+    view::{Up, View},
 };
 use microphong_tests::{only_announces, program};
+use rayon::prelude::*;
 use serde_json::Value;
 use std::{
     collections::BTreeSet,
@@ -158,6 +169,58 @@ fn compare_tells_choices() {
     let shown = succeeds(directory.path(), &["render", "torus", "--size", "80x80", "--budget", "2", "--show", "methods", "--json"]);
     let shown = object(&shown);
     assert_eq!((&auto["budget"], &auto["choices"]), (&shown["budget"], &shown["choices"]));
+}
+
+/// Frames of each scene's orbit.
+const FRAMES: u32 = 36;
+
+/// A torus of which some normals lean by up to 60 degrees, and some point the other way: creases, and normals between opposite ones that
+/// vanish.
+fn creased() -> Scene {
+    let mut mesh = shapes::torus(24, 12);
+    for (k, normal) in mesh.normals.iter_mut().enumerate() {
+        let aside = [[1.7, 0.0, 0.0], [0.0, 1.7, 0.0], [0.0, 0.0, 1.7]][k % 3];
+        *normal = match k % 7 {
+            0 => normal.map(|c| -c),
+            1 | 2 => unit(add(*normal, aside)).unwrap_or(*normal),
+            _ => *normal,
+        };
+    }
+    let view = View::orbit(Up::Y, 0.5, 0.35, 4.0, 120).fit(&mesh.positions, (256, 256), 0.06);
+    let look = Look::new(Surface::plastic([0.25, 0.5, 0.95], [0.1, 0.5, 0.4], 50), view);
+    Scene { name: "creased torus".to_owned(), stream: look.stream(&quantise(&mesh).0).expect("a stream"), size: (256, 256) }
+}
+
+/// All scenes, all around, within 1 of 255 and what arithmetic adds.
+#[test]
+fn all_frames_of_all_scenes_keep_the_budget() {
+    let scenes = scene::NAMES.iter().chain(&scene::VARIANTS).map(|name| scene::load(name).expect("a built-in scene"));
+    let scenes: Vec<_> = scenes.chain([creased()]).collect();
+    let opposite = |triangle: &Triangle| triangle.min_normal_length().to_bits() == 0;
+    let last = scenes.last().and_then(|scene| scene.stream.parse().ok()).expect("a stream");
+    assert!(last.triangles.iter().any(opposite), "normals that are opposite");
+    let worst: Vec<_> = scenes
+        .par_iter()
+        .map(|scene| {
+            let header = scene.stream.parse().expect("a stream").header;
+            assert_eq!(header.budget().to_num::<f64>(), 1.0);
+            let found: Vec<_> = (0..FRAMES)
+                .into_par_iter()
+                .map(|k| {
+                    let frame = k * u32::from(header.camera.period) / FRAMES;
+                    let case = Case { size: scene.size.into(), frame, style: Shader::AUTO.into(), ..Case::new(scene.stream.clone()) };
+                    budget::judge(&case).expect("a frame")
+                })
+                .collect();
+            let largest = |of: fn(&Found) -> f64| found.iter().map(of).fold(0.0, f64::max);
+            let [triangles, cheaper] = [|f: &Found| f.triangles, |f: &Found| f.cheaper].map(|of| found.iter().map(of).sum::<u64>());
+            (&scene.name, largest(|f| f.error), largest(|f| f.share), triangles, cheaper)
+        })
+        .collect();
+    for (name, error, share, triangles, cheaper) in &worst {
+        println!("{name:20} {error:.3} LSB at most, of {triangles} triangles {cheaper} not by phong");
+        assert!(*error <= 1.5 && *share <= 1.0, "{name}: {error} LSB");
+    }
 }
 
 /// So does `bench`.

@@ -376,6 +376,33 @@ fn wrong_usage_is_told_from_failure() {
     place.fails(&[], 2, &["Usage"]);
 }
 
+/// What is not asked for otherwise is `auto`, within 1 of 255.
+#[test]
+fn auto_is_the_default() {
+    let place = Place::new();
+    place.file("good.obj", TETRAHEDRON).succeeds(&["convert", "good.obj"]);
+    let bytes = StreamBytes::read(&place.0.path().join("good.tri")).expect("a stream");
+    let header = bytes.parse().expect("a stream").header;
+    assert_eq!((header.shader, header.budget().to_num::<f64>()), (Shader::AUTO.facts().id, 1.0));
+    for file in ["good.obj", "good.tri", "teapot"] {
+        let line = place.succeeds(&["render", file, "--size", "33x17", "--json"]);
+        assert_eq!(serde_json::from_str::<serde_json::Value>(&line).expect("JSON")["shader"], "auto", "{file}");
+    }
+    assert!(place.succeeds(&["inspect", "good.tri"]).contains("shader auto"));
+}
+
+/// One budget for the family that has one, and none where it is left out.
+#[test]
+fn stress_takes_a_budget() {
+    let place = Place::new();
+    let line = place.succeeds(&["stress", "--only", "budget", "--budget", "4", "--cases", "3", "--seed", "1", "--json"]);
+    let summary = serde_json::from_str::<serde_json::Value>(&line).expect("JSON");
+    assert_eq!(summary["cases"], 3);
+    assert!(summary["counts"]["triangles"].as_u64() > Some(3), "{line}");
+    place.fails(&["stress", "--budget", "0.4"], 2, &["--budget", "0.5 to 16"]);
+    place.fails(&["stress", "--only", "coverage", "--budget", "1"], 2, &["--budget", "--only"]);
+}
+
 /// The help of `convert` names the methods of the core, first those that every board has.
 #[test]
 fn help_names_the_methods_of_boards() {

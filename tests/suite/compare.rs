@@ -1,8 +1,9 @@
 //! `microphong compare`: what it prints, what it refuses, and the page that it writes.
 
+use microphong::format::ErrorBudget;
 use microphong_sim::{
     bytes::StreamBytes,
-    compare::{Reference, exponent::with_exponent},
+    compare::{Comparison, Reference, exponent::with_exponent},
     image, oracle, scene,
     shader::Shader,
 };
@@ -159,6 +160,22 @@ fn the_report_is_one_file_that_needs_no_other() {
     assert_eq!(page.matches("<table").count(), 2);
 }
 
+/// What `auto` chooses stands on the page as it is printed; other methods choose nothing.
+#[test]
+fn the_report_shows_choices() {
+    let directory = tempfile::tempdir().expect("scratch directory");
+    let text = succeeds(directory.path(), &["torus", "--shader", "gouraud,auto", "--size", "80x60", "--budget", "2", "--report", "page"]);
+    let line = text.lines().find(|line| line.contains("budget 2 LSB; ")).expect("a line");
+    let (triangles, pixels) = line.trim_start().trim_start_matches("budget 2 LSB; ").split_once("; ").expect("two lists");
+    let page = fs::read_to_string(directory.path().join("page/index.html")).expect("text");
+    for shares in [triangles, pixels] {
+        // Ways that draw nothing have no part of the bar.
+        let parts: Vec<_> = shares.split(", ").filter(|part| !part.ends_with(" 0.0 %")).collect();
+        assert_eq!(page.matches(&format!("title=\"{}", parts.join(", "))).count(), 1, "{shares}");
+    }
+    assert_eq!((page.matches("class=\"shares\"").count(), page.matches("class=\"ways\"").count()), (2, 1));
+}
+
 /// A coloured metal is walked in one channel, other materials in three: whichever it is, that is what errors are measured in.
 #[test]
 fn phong_is_as_exact_in_any_material() {
@@ -222,6 +239,25 @@ fn jumps_of_the_prototypes() {
         assert!(jumps(shader).level < 0.01, "{}", shader.name());
     }
     assert!(jumps(Shader::GOURAUD).slope > 1.0);
+}
+
+/// Neighbours that `auto` draws by different methods meet within twice the budget, as both are within it of the same Phong shading.
+#[test]
+fn neighbours_by_different_methods_meet_within_twice_the_budget() {
+    let mut largest = 0.0;
+    for name in scene::NAMES.iter().chain(&scene::VARIANTS) {
+        let scene = scene::load(name).expect("a built-in scene");
+        for budget in [1u8, 4] {
+            let stream = scene.stream.clone().with_budget(ErrorBudget::from_num(budget));
+            let reference = Reference::new(stream.parse().expect("a stream"), scene.size, 0).expect("something to see");
+            let Comparison { jumps, method, .. } = reference.compare(Shader::AUTO).expect("a comparison");
+            println!("{name:20} budget {budget}: jumps by {:.2} LSB, off by {:.2}", jumps.level, method.max);
+            assert!(jumps.level <= f64::from(2 * budget + 1), "{name}, budget {budget}: {jumps:?}");
+            largest = jumps.level.max(largest);
+        }
+    }
+    // There is something to see.
+    assert!(largest > 1.0, "{largest}");
 }
 
 #[test]

@@ -4,10 +4,12 @@
 //! Where a picture differs, target/golden holds it and a picture of the differences.
 
 use microphong_sim::{
+    board::Board,
     image,
     render::{self, Format, Settings},
     scene,
     shader::Shader,
+    verify,
 };
 use microphong_tests::BASIC;
 use std::{
@@ -68,9 +70,29 @@ fn check(name: &str, shader: Shader, bless: bool) -> Option<String> {
     Some(format!("{file}: {count} of {} pixels differ, see {}", drawn.len(), path.display()))
 }
 
+/// The streams that firmware is built with: the teapot as `render` draws it from its file, by a method that the board has.
+#[test]
+fn firmware_has_the_teapot() {
+    let scene = scene::load(&root().join("meshes/teapot.obj").to_string_lossy()).expect("a mesh");
+    let frames = scene.stream.parse().expect("a stream").header.frames;
+    for (file, board) in [("teapot.tri", Board::Pico), ("boards/lm3s6965evb.tri", Board::Lm3s6965evb)] {
+        let path = root().join("../firmware").join(file);
+        let stream = verify::prepare(scene.stream.as_bytes(), board.shader(), frames).expect("a stream");
+        if bless() {
+            fs::write(&path, &stream).expect("a stream for firmware");
+        }
+        assert!(fs::read(&path).ok() == Some(stream), "{file}: not what MICROPHONG_BLESS=1 would make it");
+    }
+}
+
+/// Whether what is drawn now is to be the standard.
+fn bless() -> bool {
+    std::env::var_os("MICROPHONG_BLESS").is_some_and(|v| v == "1")
+}
+
 #[test]
 fn golden() {
-    let bless = std::env::var_os("MICROPHONG_BLESS").is_some_and(|v| v == "1");
+    let bless = bless();
     let pairs = scene::NAMES.iter().flat_map(|&name| Shader::ALL.map(|shader| (name, shader)));
     let pairs = pairs.filter(|(name, shader)| *name == ONE || BASIC.contains(shader));
     let wrong: Vec<_> = pairs.filter_map(|(name, shader)| check(name, shader, bless)).collect();

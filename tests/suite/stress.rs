@@ -5,7 +5,10 @@ use microphong::{
     geometry::pose::Pose,
     interpolate::{Patch, plane::Plane},
     setup::gradients::Gradients,
-    stream::{record::Material, seal},
+    stream::{
+        record::{Material, POINT, VIEWER_LOCAL},
+        seal,
+    },
 };
 use microphong_sim::{
     bench::callgrind::Counters,
@@ -15,7 +18,7 @@ use microphong_sim::{
     render::{self, Style},
     shader::Shader,
     stress::{
-        self, Family, Verdict, arithmetic,
+        self, Family, Summary, Verdict, arithmetic, budget,
         case::Case,
         cost::{self, Bound, Cost, Count},
         coverage, drift, fuzz,
@@ -37,7 +40,7 @@ const SECONDS: u64 = 60;
 
 #[test]
 fn no_family_finds_a_failure() {
-    let (families, seed) = (families(), seed());
+    let (families, seed) = (families(None), seed());
     let share = Duration::from_secs(cases(SECONDS)) / families.len() as u32;
     let mut failures = Vec::new();
     for family in families {
@@ -45,7 +48,8 @@ fn no_family_finds_a_failure() {
         let _ = stress::judge(&*family, seed, 0);
         let begin = Instant::now();
         let summary = stress::run(&*family, seed, 0, &|_| begin.elapsed() < share);
-        println!("{:11} {:>10} cases, worst {:?} of {:?}", summary.family, summary.cases, summary.worst, summary.limit);
+        let Summary { family: name, cases, counts, worst, limit, .. } = &summary;
+        println!("{name:11} {cases:>10} cases, {counts:?}, worst {worst:?} of {limit:?}");
         assert!(summary.cases > 0, "{} judged nothing", summary.family);
         if let Some(failure) = summary.first {
             let again = format!("microphong stress --only {} --seed {seed} --first {} --cases 1", summary.family, failure.number);
@@ -193,6 +197,54 @@ fn arithmetic_sees_another_exponent() {
         let error = arithmetic::of(&case, &frame, &frame.visible()).unwrap();
         assert_eq!(error <= arithmetic::LIMIT, right, "{error}");
     }
+}
+
+/// Gouraud shading keeps to no budget.
+#[test]
+fn budget_sees_another_method() {
+    for (shader, right) in [(Shader::AUTO, true), (Shader::PHONG, true), (Shader::GOURAUD, false)] {
+        let found = budget::judge(&Case { style: shader.into(), ..sphere() }).unwrap();
+        assert_eq!(found.share <= 1.0, right, "{} {found:?}", shader.name());
+    }
+}
+
+/// Under near lights, where `auto` has to be Phong shading, any difference is one too many.
+#[test]
+fn budget_sees_what_is_not_phong_under_near_lights() {
+    let stream = microphong_sim::scene::load("dodecahedron").unwrap().stream;
+    for (shader, right) in [(Shader::AUTO, true), (Shader::RENQ, false)] {
+        let found = budget::judge(&Case { style: shader.into(), ..Case::new(stream.clone()) }).unwrap();
+        assert_eq!(found.share <= 1.0, right, "{} {found:?}", shader.name());
+    }
+}
+
+/// Whatever may be difficult for `auto` is among its cases, and it has something to choose.
+#[test]
+fn budget_has_scenes_of_all_kinds() {
+    let (mut lights, mut exponents) = ([0; 9], [0; 11]);
+    let (mut near, mut local, mut opposite, mut creased, mut triangles) = (0, 0, 0, 0, 0);
+    let mut judged = [0; 2];
+    for number in 0..300 {
+        let case = budget::case(&mut Random::new(5, number)).unwrap();
+        let stream = case.stream.parse().unwrap();
+        lights[stream.lights.len()] += 1;
+        exponents[stream.materials[0].exponent.ilog2() as usize] += 1;
+        near += usize::from(stream.lights.iter().any(|light| light.kind == POINT));
+        local += usize::from(stream.header.camera.viewer == VIEWER_LOCAL);
+        triangles += stream.triangles.len();
+        for length in stream.triangles.iter().map(|triangle| f64::from(triangle.min_normal_length())) {
+            opposite += usize::from(length < 1.0 / 64.0);
+            creased += usize::from((1.0 / 64.0..0.7).contains(&length));
+        }
+        let found = budget::judge(&case).unwrap();
+        judged = [judged[0] + found.triangles, judged[1] + found.cheaper];
+    }
+    println!("lights {lights:?}, exponents {exponents:?}, near {near}, local {local}");
+    println!("{triangles} triangles, {opposite} opposite, {creased} creased, judged {judged:?}");
+    assert!(lights[1..5].iter().chain(&exponents).all(|&scenes| scenes > 0) && near.min(local) > 20);
+    assert!(opposite > triangles / 100 && creased > triangles / 20);
+    // Pixels of half of them, and a seventh of these by a cheaper method.
+    assert!(judged[0] > triangles as u64 / 2 && judged[1] > judged[0] / 7);
 }
 
 /// A plane whose steps are one unit of the last place too large.

@@ -13,8 +13,9 @@ use microphong_sim::{
     shader::Shader,
     verify::{self, Request},
 };
+use microphong_tests::message;
 use rayon::prelude::*;
-use std::{error::Error, mem::offset_of};
+use std::{error::Error, fs, mem::offset_of, path::Path};
 
 type Result<T = ()> = std::result::Result<T, Box<dyn Error>>;
 
@@ -108,6 +109,31 @@ fn damaged_stream(board: Board) -> Result {
     Ok(())
 }
 
+/// As it is built, without another stream put into it, the firmware draws the teapot by a method that the board has.
+fn as_built(board: Board) -> Result {
+    let elf = Elf::read(&verify::build(board)?)?;
+    let recording = board::run(board, &elf, Until::FirstFrame)?;
+    let file = if board == Board::Lm3s6965evb { "boards/lm3s6965evb.tri" } else { "teapot.tri" };
+    let stream = fs::read(Path::new(env!("CARGO_MANIFEST_DIR")).join("../firmware").join(file))?;
+    let expected = verify::first_frame(board, &stream)?;
+    let line = expected.line(0);
+    assert!(line.contains(&format!(" shader {} ", board.shader().name())) && recording.log.contains(&line), "{line}: {:?}", recording.log);
+    assert!(recording.pictures.first() == Some(&expected.pixels), "{board}: not the host's teapot");
+    Ok(())
+}
+
+/// A stream for which the board has no method is refused in words that say what to do.
+#[test]
+fn a_missing_method_is_named() -> Result {
+    let board = Board::Lm3s6965evb;
+    let elf = Elf::read(&verify::build(board)?)?.with_stream(&stream("teapot")?)?;
+    let recording = board::run(board, &elf, Until::FirstFrame)?;
+    let failure = recording.failure().expect("a line that starts with `error: `");
+    assert!(failure.contains("no shading method number 26") && failure.contains("convert it with another --shader"), "{failure}");
+    assert!(message::is_shown(board, recording.pictures.last().expect("a picture"), failure), "the display does not show {failure:?}");
+    Ok(())
+}
+
 #[path = "../../examples/own_method.rs"]
 #[expect(dead_code, reason = "the example's `main`")]
 mod own_method;
@@ -159,6 +185,11 @@ macro_rules! boards {
             #[test]
             fn a_flipped_bit_is_found() -> Result {
                 flipped_bit($board)
+            }
+
+            #[test]
+            fn the_built_in_stream_is_drawn() -> Result {
+                as_built($board)
             }
 
             #[test]

@@ -82,8 +82,8 @@ impl Bench {
         let errors = frames.into_par_iter().map(|(size, name, shader)| {
             let reference = references.iter().find(|(of, _)| *of == size);
             let (_, reference) = reference.context("a size without a reference")?;
-            let choices = choices::by(shader, stream, Size::new(size.0, size.1), false, 0)?;
-            Ok((size, name, reference.total(shader)?, choices.unzip()))
+            let told = choices::by(shader, stream, Size::new(size.0, size.1), false, 0)?;
+            Ok((size, name, reference.total(shader)?, told.map(|told| (told.budget, told.choices)).unzip()))
         });
         let errors: Vec<_> = errors.collect::<Result<_>>()?;
         for (measurement, (processor, shader)) in measured.iter_mut().zip(wanted) {

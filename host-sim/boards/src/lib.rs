@@ -93,6 +93,12 @@ impl Board {
         self != Self::Lm3s6965evb || [Shader::FLAT, Shader::GOURAUD, Shader::SIX_POINT, Shader::PHONG].contains(&shader)
     }
 
+    /// The method of the stream that its firmware is built with.
+    #[must_use]
+    pub fn shader(self) -> Shader {
+        if self.has(Shader::AUTO) { Shader::AUTO } else { Shader::SIX_POINT }
+    }
+
     /// What a byte of the memory for streams is before anything is written there: erased flash, but QEMU begins with zeros.
     #[must_use]
     pub const fn blank(self) -> u8 {

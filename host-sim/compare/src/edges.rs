@@ -1,6 +1,6 @@
 //! Jumps across edges that two triangles share: cracks in the light, and Mach bands.
 
-use super::samples::Samples;
+use super::samples::{Method, Samples};
 use microphong_oracle::{Facet, Frame, Levels, Unsupported};
 use std::collections::HashMap;
 
@@ -63,7 +63,7 @@ impl Edges {
     ///
     /// # Errors
     /// When the method cannot draw this frame.
-    pub(super) fn jumps(&self, frame: &Frame, method: &str) -> Result<Jumps, Unsupported> {
+    pub(super) fn jumps<'f>(&self, frame: &'f Frame, method: &Method<'f, '_>) -> Result<Jumps, Unsupported> {
         let levels = self.samples.shade(frame, method)?;
         let mut jumps = Jumps::default();
         for [near, on, far_near, far_on] in levels.as_chunks::<4>().0 {

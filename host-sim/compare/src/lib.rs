@@ -17,7 +17,7 @@ pub use edges::Jumps;
 use embedded_graphics_core::geometry::Size;
 use figures::Spread;
 use microphong::{Stream, method::Costs, renderer::check};
-use microphong_oracle::{self as oracle, Frame, Levels};
+use microphong_oracle::{self as oracle, Facet, Frame, Levels};
 use microphong_render::{
     choices::{self, Choices},
     render::{self, Format, Settings, Style},
@@ -77,7 +77,7 @@ pub struct Comparison {
     pub psnr: f64,
     /// See [`figures::similarity`]; of the [`Reference::window`], rounded to 8 bits.
     pub similarity: f64,
-    /// Of the method in f64.
+    /// Of the method in f64; of `auto` by what it chooses for each triangle.
     pub jumps: Jumps,
     /// Operations.
     pub costs: Costs,
@@ -131,7 +131,7 @@ impl<'s> Reference<'s> {
             starts.push(facets.len());
         }
         let samples = Samples::new(&frame, points);
-        let phong = samples.shade(&frame, Shader::PHONG.name())?;
+        let phong = samples.shade(&frame, &|facet| Ok(oracle::phong(&frame, facet)))?;
         let edges = Edges::new(&frame, |facet| shown.get(facet) == Some(&true));
         let one_channel = stream.materials.iter().map(|material| level::is_one_channel(&stream, material)).collect();
         let (window, row) = ends(&starts, &phong, size).context("no pixel shows a triangle")?;
@@ -232,8 +232,13 @@ impl<'s> Reference<'s> {
         let integers = level::picture(self.stream, size, style, self.number)?;
         let settings = Settings { size, style, band_rows: size.height, format: Format::Rgb888 };
         let picture = render::picture(self.stream, &settings, self.number)?.rgb.as_chunks::<3>().0.to_vec();
-        let real = self.samples.shade(&self.frame, name)?;
-        let (budget, choices) = choices::by(shader, self.stream, size, perspective_correct, self.number)?.unzip();
+        let told = choices::by(shader, self.stream, size, perspective_correct, self.number)?;
+        // Of a method that chooses, what it has chosen for each triangle.
+        let chosen = |facet: &Facet| told.as_ref()?.ways.get(facet.id as usize).copied().flatten();
+        let shade = |facet| {
+            chosen(facet).map_or_else(|| oracle::method(name, &self.frame, facet), |way| Ok(oracle::chosen(&self.frame, facet, way)))
+        };
+        let real = self.samples.shade(&self.frame, &shade)?;
 
         let mut errors = vec![None; integers.len()];
         let (mut total, mut method, mut arithmetic) = (Vec::new(), Vec::new(), Vec::new());
@@ -275,10 +280,10 @@ impl<'s> Reference<'s> {
             colour_correctness: figures::colour_correctness(&pairs),
             psnr: figures::psnr(&pairs),
             similarity: figures::similarity(window.width(), window.height(), [&drawn, &wanted])?,
-            jumps: self.edges.jumps(&self.frame, name)?,
+            jumps: self.edges.jumps(&self.frame, &shade)?,
             costs: shader.facts().costs,
-            budget,
-            choices,
+            budget: told.as_ref().map(|told| told.budget),
+            choices: told.as_ref().map(|told| told.choices),
             pixels: pairs.len(),
             unmatched,
             picture,

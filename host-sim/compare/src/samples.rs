@@ -1,10 +1,13 @@
 //! Points of the screen, each on a facet, and what a method in f64 makes of them.
 
-use microphong_oracle::{self as oracle, Frame, Levels, Unsupported};
+use microphong_oracle::{Facet, Frame, Levels, Shade, Unsupported};
 use rayon::prelude::*;
 
 /// A point of the screen, and its place in the result.
 type Point = (usize, [f64; 2]);
+
+/// How a method shades a facet.
+pub(super) type Method<'f, 'm> = dyn Fn(&'f Facet) -> Result<Shade<'f>, Unsupported> + Sync + 'm;
 
 /// Points on facets. A method is set up once per facet, whatever the order of its points.
 #[derive(Clone, Debug)]
@@ -30,16 +33,16 @@ impl Samples {
         Self { by_facet, count }
     }
 
-    /// The levels at all points, in the order in which they came.
+    /// The levels at all points by a method that shades facets, in the order in which the points came.
     ///
     /// # Errors
-    /// When there is no such method, or when it cannot draw this frame.
-    pub(super) fn shade(&self, frame: &Frame, method: &str) -> Result<Vec<Levels>, Unsupported> {
+    /// Those of the method.
+    pub(super) fn shade<'f>(&self, frame: &'f Frame, method: &Method<'f, '_>) -> Result<Vec<Levels>, Unsupported> {
         let shaded: Vec<Vec<Levels>> = self
             .by_facet
             .par_iter()
             .map(|(facet, points)| {
-                let shade = oracle::method(method, frame, &frame.facets[*facet])?;
+                let shade = method(&frame.facets[*facet])?;
                 Ok(points.iter().map(|&(_, point)| shade(point)).collect())
             })
             .collect::<Result<_, _>>()?;

@@ -20,9 +20,14 @@ use microphong::{
         auto::{Auto, Choice, choose},
     },
     pixel::Pixel,
+    stream::record::Triangle,
 };
 use serde::{Serialize, Serializer};
-use std::{cell::Cell, fmt, sync::LazyLock};
+use std::{
+    cell::{Cell, RefCell},
+    fmt, ptr,
+    sync::LazyLock,
+};
 
 /// A way of shading that `auto` chooses among.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
@@ -130,9 +135,22 @@ impl fmt::Display for Choices {
     }
 }
 
+/// What `auto` makes of a frame.
+#[derive(Clone, Debug)]
+pub struct Told {
+    /// The error budget, in 1/255.
+    pub budget: f64,
+    /// How much it draws in each way.
+    pub choices: Choices,
+    /// Its way with each triangle of the stream; `None` if that is not drawn, or cut before.
+    pub ways: Vec<Option<Way>>,
+}
+
 thread_local! {
     /// What this thread has drawn of the frame.
     static CHOICES: Cell<Choices> = const { Cell::new(Choices::NONE) };
+    /// The same by triangles, whose records begin at this address.
+    static WAYS: RefCell<(usize, Vec<Option<Way>>)> = const { RefCell::new((0, Vec::new())) };
     /// The way of the triangle that this thread is shading.
     static WAY: Cell<Option<Way>> = const { Cell::new(None) };
 }
@@ -156,6 +174,13 @@ impl Method for Telling {
         WAY.set(Some(way));
         let pixels = Auto.shade(setup, shading, canvas);
         WAY.set(None);
+        WAYS.with_borrow_mut(|(first, ways)| {
+            // What is cut has a record of its own, elsewhere.
+            let distance = ptr::from_ref(setup.triangle).addr().wrapping_sub(*first);
+            if let Some(of) = ways.get_mut(distance / size_of::<Triangle>()) {
+                *of = Some(way);
+            }
+        });
         CHOICES.set(CHOICES.get().with_triangle(way, pixels));
         pixels
     }
@@ -229,27 +254,22 @@ impl<C: Pixel> Pixel for Traced<C> {
 fn told<C: Pixel>(stream: Stream<'_>, size: Size, perspective_correct: bool, number: u32) -> anyhow::Result<(Vec<C>, Stats, Choices)> {
     let style = Style { perspective_correct, ..Shader::new(&Telling).into() };
     CHOICES.set(Choices::NONE);
+    WAYS.set((stream.triangles.as_ptr().addr(), vec![None; stream.triangles.len()]));
     let (pixels, stats) = render::frame(stream, size, style, size.height, number)?;
     Ok((pixels, stats, CHOICES.get()))
 }
 
-/// The error budget of a method, in 1/255, and what it chooses in frame `number` of a picture of 16 bits a pixel, as most boards draw it;
-/// `None` unless it is `auto`.
+/// What a method chooses in frame `number` of a picture of 16 bits a pixel, as most boards draw it; `None` unless it is `auto`.
 ///
 /// # Errors
 /// When `size` is out of range.
-pub fn by(
-    shader: Shader,
-    stream: Stream<'_>,
-    size: Size,
-    perspective_correct: bool,
-    number: u32,
-) -> anyhow::Result<Option<(f64, Choices)>> {
+pub fn by(shader: Shader, stream: Stream<'_>, size: Size, perspective_correct: bool, number: u32) -> anyhow::Result<Option<Told>> {
     if shader != Shader::AUTO {
         return Ok(None);
     }
     let (_, _, choices) = told::<Rgb565>(stream, size, perspective_correct, number)?;
-    Ok(Some((stream.header.budget().to_num(), choices)))
+    let (_, ways) = WAYS.take();
+    Ok(Some(Told { budget: stream.header.budget().to_num(), choices, ways }))
 }
 
 /// Draws frame `number` by `auto` in this size, format and perspective, each triangle painted in the colour of its way, in 8 bits per

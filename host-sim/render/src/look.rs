@@ -96,7 +96,7 @@ impl Look {
             background: BACKGROUND,
             local_viewer: false,
             budget: ErrorBudget::ONE,
-            shader: Shader::SIX_POINT,
+            shader: Shader::AUTO,
             view,
             frames: view.period.max(1),
         }

@@ -65,7 +65,8 @@ Columns:
   arithmetic  of the integers against the method in floating point, largest
   colour      1 less the mean difference of 8-bit pixels; psnr in dB, of the same
   alike       structure and colour as the eye sees them, 1 is the same
-  edge, mach  largest jump of the level across an edge, and of its slope (LSB per pixel)
+  edge, mach  largest jump of the level across an edge that two triangles share, and of its slope (LSB per
+              pixel), in floating point; of auto by what it chooses for each of the two
   + * load    additions, multiplications and table look-ups per pixel, without those of perspective
   set-up      operations per triangle, and per row where there are any";
 

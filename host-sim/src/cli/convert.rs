@@ -37,7 +37,7 @@ pub(crate) struct Arguments {
     flip: bool,
     /// Shading method that the stream asks for: flat, gouraud, six-point, phong, sqrt6, renq-newton, auto, or one of the literature, as
     /// `microphong compare` lists them. The board lm3s6965evb has the first four, the others have all.
-    #[arg(long, default_value = "six-point", value_parser = parse::shader)]
+    #[arg(long, default_value = "auto", value_parser = parse::shader)]
     shader: Shader,
     /// How far a pixel may be off from Phong shading by the method auto, in 1/255, 0.5 to 16.
     #[arg(long, value_name = "LSB", default_value = "1", value_parser = parse::budget)]

@@ -6,12 +6,13 @@ use super::{
     report,
 };
 use anyhow::Result;
+use microphong::format::ErrorBudget;
 use microphong_sim::{
     families, output,
     stress::{self, Failure, Family, Summary},
 };
 use std::{
-    path::{Path, PathBuf},
+    path::PathBuf,
     time::{Duration, Instant},
 };
 
@@ -37,6 +38,9 @@ pub(crate) struct Arguments {
     /// Families, separated by commas, or all.
     #[arg(long, default_value = "all", value_name = "NAME,...", value_parser = only)]
     only: Several<&'static str>,
+    /// How far a pixel may be off in the family budget, in 1/255, 0.5 to 16; random ones unless given.
+    #[arg(long, value_name = "LSB", value_parser = parse::budget)]
+    budget: Option<ErrorBudget>,
     /// Where streams of failures are written.
     #[arg(long, default_value = ".", value_name = "FOLDER")]
     artefacts: PathBuf,
@@ -50,6 +54,7 @@ Examples:
   microphong stress                                  ten seconds of everything
   microphong stress --seconds 3600 --seed 7          an hour
   microphong stress --only arithmetic,sameness       two families
+  microphong stress --only budget --budget 1         auto against Phong shading, by one budget
   microphong stress --only coverage --seed 7 --first 4711 --cases 1    one case again
 
 Overflows are seen by a build that looks for them: cargo run --profile stress -- stress";
@@ -59,7 +64,7 @@ const WITHOUT_BOARDS: &str = "\n  cost        with --features boards: a frame ta
 
 /// The examples, and what each family asserts.
 fn after_help() -> String {
-    let families = families();
+    let families = families(None);
     let lines: Vec<_> = families.iter().map(|family| format!("  {:11} {}", family.name(), family.about())).collect();
     let missing = if cfg!(feature = "boards") { "" } else { WITHOUT_BOARDS };
     format!("{EXAMPLES}\n\nFamilies:\n{}{missing}", lines.join("\n"))
@@ -70,7 +75,7 @@ fn seconds(text: &str) -> Result<f64, String> {
 }
 
 fn only(text: &str) -> Result<Several<&'static str>, String> {
-    let names: Vec<_> = families().iter().map(|family| family.name()).collect();
+    let names: Vec<_> = families(None).iter().map(|family| family.name()).collect();
     parse::several(text, &names, |text| parse::among(text, &names, |name| name))
 }
 
@@ -78,10 +83,13 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome> {
     if !arguments.artefacts.is_dir() {
         return Err(Usage(format!("{} is no folder; name one that is there, with --artefacts", arguments.artefacts.display())).into());
     }
+    if arguments.budget.is_some() && !arguments.only.values.contains(&"budget") {
+        return Err(Usage("--budget is for the family budget, which --only leaves out".to_owned()).into());
+    }
     let seed = arguments.seed.unwrap_or_else(|| {
         std::time::SystemTime::now().duration_since(std::time::UNIX_EPOCH).map_or(0, |time| time.as_nanos() as u64 % 1_000_000)
     });
-    let families: Vec<_> = families().into_iter().filter(|family| arguments.only.values.contains(&family.name())).collect();
+    let families: Vec<_> = families(arguments.budget).into_iter().filter(|family| arguments.only.values.contains(&family.name())).collect();
     if !arguments.json {
         report::line(&format!("seed {seed}"))?;
     }
@@ -95,7 +103,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome> {
         }
         if let Some(failure) = &summary.first {
             failed = true;
-            tell(family.name(), seed, failure, &arguments.artefacts)?;
+            tell(family.name(), seed, failure, arguments)?;
         }
     }
     Ok(if failed { Outcome::Differences } else { Outcome::Done })
@@ -116,24 +124,26 @@ fn look(family: &dyn Family, arguments: &Arguments, seed: u64, seconds: f64) -> 
 }
 
 fn text(summary: &Summary) -> String {
-    let Summary { family, cases, skipped, worst, limit, unit, failures, .. } = summary;
+    let Summary { family, cases, skipped, counts, worst, limit, unit, failures, .. } = summary;
+    let counts: String = counts.iter().map(|(name, count)| format!(", {} {name}", report::grouped(*count))).collect();
     let figure = match (worst, limit) {
         (Some(worst), Some(limit)) => format!(", worst {worst:.3e} of at most {limit:.3e} {unit}"),
         _ => String::new(),
     };
     let verdict = if *failures == 0 { "all right" } else { "WRONG" };
-    format!("{family:11} {:>12} cases ({} made none): {verdict}{figure}", report::grouped(*cases), report::grouped(*skipped))
+    format!("{family:11} {:>12} cases ({} made none){counts}: {verdict}{figure}", report::grouped(*cases), report::grouped(*skipped))
 }
 
 /// Writes the stream of a failure, and says how to see it.
-fn tell(family: &str, seed: u64, failure: &Failure, folder: &Path) -> Result<()> {
+fn tell(family: &str, seed: u64, failure: &Failure, arguments: &Arguments) -> Result<()> {
     let Failure { number, what, case } = failure;
     report::error(&format!("{family}, case {number} of seed {seed}: {what}"));
     if let Some(case) = case {
-        let file = folder.join(format!("{family}-{seed}-{number}.tri"));
+        let file = arguments.artefacts.join(format!("{family}-{seed}-{number}.tri"));
         output::write(&file, case.stream.as_bytes())?;
         report::error(&format!("  its scene, as small as it can be: {}", case.command(&file)));
     }
-    report::error(&format!("  again: microphong stress --only {family} --seed {seed} --first {number} --cases 1"));
+    let budget = arguments.budget.map_or(String::new(), |budget| format!(" --budget {budget}"));
+    report::error(&format!("  again: microphong stress --only {family} --seed {seed} --first {number} --cases 1{budget}"));
     Ok(())
 }

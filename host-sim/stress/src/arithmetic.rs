@@ -46,7 +46,7 @@ impl Family for Arithmetic {
 }
 
 /// What each light beyond the first may add, in 1/255: the table of highlights is off by as much at low exponents, everywhere.
-const PER_LIGHT: f64 = 0.1;
+pub(crate) const PER_LIGHT: f64 = 0.1;
 /// Least length of interpolated normals. Where two normals of a triangle are nearly opposite, the normal between them vanishes, and
 /// rounding decides where it points: no arithmetic is exact there.
 const OPPOSITE: f64 = 1.0 / 64.0;
@@ -58,14 +58,8 @@ fn is_defined(case: &Case) -> bool {
 
 /// [`error`], less what many lights may add; `None` also where shading is not defined.
 fn excess(case: &Case) -> Option<f64> {
-    excess_over(case, case.style.shader)
-}
-
-/// The same of the difference from the method `exact` in floating point.
-#[must_use]
-pub fn excess_over(case: &Case, exact: Shader) -> Option<f64> {
     let lights = case.stream.parse().ok()?.lights.len().max(1);
-    let error = if is_defined(case) { error(case, exact)? } else { return None };
+    let error = if is_defined(case) { error(case)? } else { return None };
     Some((error - PER_LIGHT * (lights - 1) as f64).max(0.0))
 }
 
@@ -75,32 +69,29 @@ fn shades(frame: &Frame, shader: Shader) -> Option<Vec<Shade<'_>>> {
 }
 
 /// Difference of levels; one level for all channels is that of the brightest.
-fn difference(drawn: [f64; 3], exact: [f64; 3]) -> f64 {
+pub(crate) fn difference(drawn: [f64; 3], exact: [f64; 3]) -> f64 {
     let all = (0..3).map(|k| (drawn[k] - exact[k]).abs()).fold(0.0, f64::max);
     let one = drawn[0] == drawn[1] && drawn[1] == drawn[2];
     if one { all.min((drawn[0] - exact.into_iter().fold(0.0, f64::max)).abs()) } else { all }
 }
 
-/// Largest difference of a frame from the method `exact` in floating point, in 1/255, before the output format rounds; infinite where a
-/// pixel is missing. `None` if the method cannot draw it, or a triangle is clipped.
-fn error(case: &Case, exact: Shader) -> Option<f64> {
+/// Largest difference of a frame from its method in floating point, in 1/255, before the output format rounds; infinite where a pixel is
+/// missing. `None` if the method cannot draw it, or a triangle is clipped.
+fn error(case: &Case) -> Option<f64> {
     let (stream, size) = (case.stream.parse().ok()?, (case.size[0], case.size[1]));
     let frame = if case.style.perspective_correct {
         Frame::perspective_correct(stream, size, case.frame)
     } else {
         Frame::new(stream, size, case.frame)
     };
-    difference_from(exact, case, &frame, &frame.visible())
+    of(case, &frame, &frame.visible())
 }
 
 /// Largest difference of a frame from its method in floating point, if the frame is known already, and what may be seen at each of its
 /// pixels.
 #[must_use]
 pub fn of(case: &Case, frame: &Frame, visible: &[Vec<u32>]) -> Option<f64> {
-    difference_from(case.style.shader, case, frame, visible)
-}
-
-fn difference_from(shader: Shader, case: &Case, frame: &Frame, visible: &[Vec<u32>]) -> Option<f64> {
+    let shader = case.style.shader;
     let stream = case.stream.parse().ok()?;
     let shades = shades(frame, shader)?;
     let drawn = level::picture(stream, case.pixels(), case.style, case.frame).ok()?;

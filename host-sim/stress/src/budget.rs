@@ -5,15 +5,30 @@ use crate::{
     case::Case,
     random::Random,
     scenes::{self, Wishes},
+    tiles,
 };
-use microphong::format::ErrorBudget;
-use microphong_render::{render::Style, shader::Shader};
+use embedded_graphics_core::geometry::Size;
+use microphong::{
+    format::ErrorBudget,
+    method::{Canvas, Facts, Method, Shading, TriangleSetup, phong::Phong},
+};
+use microphong_compare::level;
+use microphong_oracle::{Frame, Shade, phong};
+use microphong_render::{render::Style, shader::Shader, vector::length};
+use std::{collections::HashMap, sync::LazyLock};
 
-/// Random scenes, by `auto` with a random budget.
-pub struct Budget;
+/// Random scenes, by `auto` with this budget, or random ones.
+pub struct Budget(pub Option<ErrorBudget>);
 
-/// What arithmetic may add to the budget, in 1/255.
-pub const ARITHMETIC: f64 = arithmetic::LIMIT;
+/// The largest error that is right, in 1/255, of so many lights: the budget and what arithmetic may add to Phong shading.
+fn allowed(budget: f64, lights: usize) -> f64 {
+    budget + arithmetic::LIMIT + arithmetic::PER_LIGHT * lights.saturating_sub(1) as f64
+}
+
+/// Length of interpolated normals below which `auto` is compared with the core's own Phong shading, for the shorter they are, the more rounding
+/// decides where they point. Where `auto` may choose anything else, no two normals are more than 60 degrees apart, and none in between is
+/// shorter than 0.816.
+pub const SHORT: f64 = 0.8;
 
 impl Family for Budget {
     fn name(&self) -> &'static str {
@@ -25,28 +40,107 @@ impl Family for Budget {
     }
 
     fn limit(&self) -> Option<(f64, &'static str)> {
-        Some((ARITHMETIC, "of 255 beyond the budget"))
+        Some((1.0, "of the budget and 0.5 of 255, and 0.1 for each light beyond the first"))
+    }
+
+    fn counts(&self) -> &'static [&'static str] {
+        &["triangles", "of them not by phong"]
     }
 
     fn check(&self, random: &mut Random) -> Verdict {
-        let wishes = Wishes { closed: false, unclipped: true, triangles: 200 };
-        let Some(case) = scenes::case(random, wishes) else { return Verdict::skipped() };
+        let Some(case) = case(random) else { return Verdict::skipped() };
         let budget = ErrorBudget::from_num(random.octaves(0.5, 16.0));
-        let style = Style { shader: Shader::AUTO, antialias: false, dither: false, ..case.style };
-        let case = Case { style, stream: case.stream.with_budget(budget), ..case };
-        match excess(&case) {
-            Some(error) => Verdict::of(error, ARITHMETIC, Some(case)),
+        let case = Case { stream: case.stream.with_budget(self.0.unwrap_or(budget)), ..case };
+        match judge(&case) {
+            Some(found) => Verdict { counts: vec![found.triangles, found.cheaper], ..Verdict::of(found.share, 1.0, Some(case)) },
             None => Verdict::skipped(),
         }
     }
 
     fn fails(&self, case: &Case) -> bool {
-        excess(case).is_some_and(|error| error > ARITHMETIC)
+        judge(case).is_some_and(|found| found.share > 1.0)
     }
 }
 
-/// How much more than its budget a frame is off, in 1/255; `None` if the oracle cannot tell.
-fn excess(case: &Case) -> Option<f64> {
-    let budget = f64::from(case.stream.parse().ok()?.header.budget());
-    Some((arithmetic::excess_over(case, Shader::PHONG)? - budget).max(0.0))
+/// Triangles side by side, or a scene of any kind that fills its picture; `None` if it would not make a valid stream.
+pub fn case(random: &mut Random) -> Option<Case> {
+    let case = if random.once_in(8) {
+        let wishes = Wishes { closed: false, unclipped: true, triangles: 200 };
+        let mesh = scenes::mesh(random, wishes);
+        let mut look = scenes::look(random, &mesh, wishes);
+        look.view = look.view.fit(&mesh.positions, (64, 48), 0.05);
+        scenes::drawn(random, &mesh, &look)?
+    } else {
+        let (mesh, look, size) = tiles::scene(random);
+        Case { size, ..scenes::drawn(random, &mesh, &look)? }
+    };
+    Some(Case { style: Style { shader: Shader::AUTO, antialias: false, dither: false, ..case.style }, ..case })
+}
+
+/// `phong` without loops of its own. Under near lights and for a near viewer `auto` has none, and those of `phong` round otherwise.
+struct General;
+
+impl Method for General {
+    fn facts(&self) -> &'static Facts {
+        static FACTS: LazyLock<Facts> = LazyLock::new(|| Facts { id: Facts::FIRST_FREE, ..*Phong.facts() });
+        &FACTS
+    }
+
+    fn shade(&self, setup: &TriangleSetup<'_>, shading: &Shading<'_>, canvas: &mut dyn Canvas) -> u32 {
+        Phong.shade(setup, shading, canvas)
+    }
+}
+
+/// What has come of a case.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Found {
+    /// The largest error, as a share of the one that is right; infinite where coverage differs, or where `auto` has to be `phong` and is not.
+    pub share: f64,
+    /// The same error in 1/255.
+    pub error: f64,
+    /// Triangles of which a pixel was judged.
+    pub triangles: u64,
+    /// Of them, those that `phong` draws otherwise.
+    pub cheaper: u64,
+}
+
+/// Compares a frame by `auto` with Phong shading. Under near lights, for a near viewer, and where normals are [`SHORT`], it has to be what the
+/// core's `phong` draws. `None` if it cannot be drawn.
+#[must_use]
+pub fn judge(case: &Case) -> Option<Found> {
+    let (stream, [width, height], number) = (case.stream.parse().ok()?, case.size, case.frame);
+    let of = if case.style.perspective_correct { Frame::perspective_correct } else { Frame::new };
+    let frame = of(stream, (width, height), number);
+    let picture = |shader| level::picture(stream, Size::new(width, height), Style { shader, ..case.style }, number).ok();
+    let (drawn, by_phong) =
+        (picture(case.style.shader)?, picture(if frame.is_constant() { Shader::PHONG } else { Shader::new(&General) })?);
+    let right = allowed(stream.header.budget().to_num(), frame.lights.len());
+    let mut shades: HashMap<u32, (Shade<'_>, bool)> = HashMap::new();
+    let mut worst = 0f64;
+    for (pixel, candidates) in (0..).zip(frame.visible()) {
+        let (levels, phongs) = match (drawn[pixel as usize], by_phong[pixel as usize]) {
+            (Some(levels), Some(phongs)) if !candidates.is_empty() => (levels, phongs),
+            (None, None) if candidates.is_empty() => continue,
+            _ => return Some(Found { share: f64::INFINITY, error: f64::INFINITY, triangles: 0, cheaper: 0 }),
+        };
+        let point = [pixel % width, pixel / width].map(|c| f64::from(c) + 0.5);
+        let same = levels == phongs;
+        let (mut error, mut is_clear) = (f64::INFINITY, frame.is_constant());
+        for &candidate in &candidates {
+            let facet = &frame.facets[candidate as usize];
+            let (shade, _) = shades.entry(candidate).or_insert_with(|| (phong(&frame, facet), false));
+            error = error.min(arithmetic::difference(levels, shade(point)));
+            is_clear &= length(facet.normal(facet.weights(point))) >= SHORT;
+        }
+        if let Some((_, cheaper)) = candidates.first().and_then(|nearest| shades.get_mut(nearest)) {
+            *cheaper |= !same;
+        }
+        worst = worst.max(match (is_clear, same) {
+            (true, _) => error,
+            (false, true) => 0.0,
+            (false, false) => f64::INFINITY,
+        });
+    }
+    let cheaper = shades.values().filter(|(_, cheaper)| *cheaper).count() as u64;
+    Some(Found { share: worst / right, error: worst, triangles: shades.len() as u64, cheaper })
 }

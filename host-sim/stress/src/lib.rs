@@ -16,12 +16,14 @@ pub mod random;
 pub mod sameness;
 pub mod scenes;
 pub mod shrink;
+pub mod tiles;
 pub mod walks;
 pub mod watertight;
 
 use case::Case;
+use microphong::format::ErrorBudget;
 use random::Random;
-use serde::Serialize;
+use serde::{Serialize, Serializer};
 use std::{
     any::Any,
     cell::Cell,
@@ -46,6 +48,11 @@ pub trait Family: Sync {
         None
     }
 
+    /// What [`Verdict::counts`] are numbers of.
+    fn counts(&self) -> &'static [&'static str] {
+        &[]
+    }
+
     /// Makes a case and judges it.
     fn check(&self, random: &mut Random) -> Verdict;
 
@@ -60,6 +67,8 @@ pub trait Family: Sync {
 pub struct Verdict {
     /// The figure that [`Family::limit`] limits.
     pub worst: f64,
+    /// How many of each of [`Family::counts`] were judged in this case.
+    pub counts: Vec<u64>,
     /// The random numbers made no case that can be judged.
     pub skipped: bool,
     /// What is wrong, if anything is.
@@ -79,18 +88,18 @@ impl Verdict {
     #[must_use]
     pub fn of(worst: f64, limit: f64, case: Option<Case>) -> Self {
         let failure = (worst > limit || worst.is_nan()).then(|| format!("{worst:.4}, at most {limit} is right"));
-        Self { worst, skipped: false, failure, case }
+        Self { worst, failure, case, ..Self::default() }
     }
 }
 
-/// Every family.
+/// Every family; with a `budget`, that of the same name keeps to it in all cases.
 #[must_use]
-pub fn families() -> Vec<Box<dyn Family>> {
+pub fn families(budget: Option<ErrorBudget>) -> Vec<Box<dyn Family>> {
     vec![
         Box::new(coverage::Coverage),
         Box::new(watertight::Watertight),
         Box::new(arithmetic::Arithmetic),
-        Box::new(budget::Budget),
+        Box::new(budget::Budget(budget)),
         Box::new(walks::Walks),
         Box::new(drift::Drift),
         Box::new(sameness::Sameness),
@@ -109,6 +118,9 @@ pub struct Summary {
     pub cases: u64,
     /// Random numbers that made no case.
     pub skipped: u64,
+    /// What was judged in these cases, if the family counts it: names and numbers.
+    #[serde(serialize_with = "as_map")]
+    pub counts: Vec<(&'static str, u64)>,
     /// The worst figure, and its limit.
     pub worst: Option<f64>,
     /// The largest figure that is right.
@@ -120,6 +132,11 @@ pub struct Summary {
     /// The first of them.
     #[serde(skip)]
     pub first: Option<Failure>,
+}
+
+/// Names and numbers as a map.
+fn as_map<S: Serializer>(counts: &[(&'static str, u64)], serializer: S) -> Result<S::Ok, S::Error> {
+    serializer.collect_map(counts.iter().copied())
 }
 
 /// A case that is wrong.
@@ -141,6 +158,7 @@ pub fn run(family: &dyn Family, seed: u64, first: u64, goes_on: &(dyn Fn(u64) ->
     let (next, stop) = (AtomicU64::new(0), AtomicBool::new(false));
     let work = || {
         let (mut cases, mut skipped, mut worst, mut failures) = (0, 0, 0f64, Vec::new());
+        let mut counts = vec![0; family.counts().len()];
         while !stop.load(Ordering::Relaxed) {
             let count = next.fetch_add(1, Ordering::Relaxed);
             if !goes_on(count) {
@@ -151,12 +169,13 @@ pub fn run(family: &dyn Family, seed: u64, first: u64, goes_on: &(dyn Fn(u64) ->
             cases += u64::from(!verdict.skipped);
             skipped += u64::from(verdict.skipped);
             worst = worst.max(verdict.worst);
+            counts.iter_mut().zip(&verdict.counts).for_each(|(sum, count)| *sum += count);
             if let Some(what) = verdict.failure {
                 stop.store(true, Ordering::Relaxed);
                 failures.push(Failure { number, what, case: verdict.case });
             }
         }
-        (cases, skipped, worst, failures)
+        (cases, skipped, counts, worst, failures)
     };
     let parts: Vec<_> = thread::scope(|scope| {
         let threads: Vec<_> = (0..thread::available_parallelism().map_or(1, usize::from)).map(|_| scope.spawn(work)).collect();
@@ -167,6 +186,7 @@ pub fn run(family: &dyn Family, seed: u64, first: u64, goes_on: &(dyn Fn(u64) ->
         seed,
         cases: 0,
         skipped: 0,
+        counts: family.counts().iter().map(|&name| (name, 0)).collect(),
         worst: None,
         limit: family.limit().map(|(limit, _)| limit),
         unit: family.limit().map_or("", |(_, unit)| unit),
@@ -174,9 +194,10 @@ pub fn run(family: &dyn Family, seed: u64, first: u64, goes_on: &(dyn Fn(u64) ->
         first: None,
     };
     let mut failures = Vec::new();
-    for (cases, skipped, worst, failed) in parts {
+    for (cases, skipped, counts, worst, failed) in parts {
         summary.cases += cases;
         summary.skipped += skipped;
+        summary.counts.iter_mut().zip(counts).for_each(|((_, sum), count)| *sum += count);
         if summary.limit.is_some() {
             summary.worst = Some(summary.worst.unwrap_or(0.0).max(worst));
         }

@@ -26,13 +26,23 @@ pub struct Wishes {
 
 /// A random scene, drawn in a random way by a method that can; `None` if it would not make a valid stream.
 pub fn case(random: &mut Random, wishes: Wishes) -> Option<Case> {
-    let mesh = if wishes.closed || random.once_in(3) { body(random, wishes.triangles) } else { soup(random, wishes.triangles.min(40)) };
+    let mesh = mesh(random, wishes);
     of(random, &mesh, wishes)
+}
+
+/// A random mesh.
+pub fn mesh(random: &mut Random, wishes: Wishes) -> Mesh {
+    if wishes.closed || random.once_in(3) { body(random, wishes.triangles) } else { soup(random, wishes.triangles.min(40)) }
 }
 
 /// A random scene of `mesh`.
 pub fn of(random: &mut Random, mesh: &Mesh, wishes: Wishes) -> Option<Case> {
     let look = look(random, mesh, wishes);
+    drawn(random, mesh, &look)
+}
+
+/// A scene, drawn in a random way.
+pub fn drawn(random: &mut Random, mesh: &Mesh, look: &Look) -> Option<Case> {
     let stream = look.stream(&quantise(mesh).0).ok()?;
     let style = Style {
         shader: random.among(&Shader::ALL),
@@ -103,7 +113,8 @@ fn soup(random: &mut Random, triangles: i32) -> Mesh {
     mesh
 }
 
-fn colour(random: &mut Random) -> V3 {
+/// A colour of a light or a surface.
+pub fn colour(random: &mut Random) -> V3 {
     match random.pick(0..4) {
         0 => [1.0; 3],
         1 => [0.0, 0.0, random.between(0.0, 1.0)],
@@ -123,7 +134,7 @@ fn surface(random: &mut Random) -> Surface {
 }
 
 /// Material, lights and camera.
-fn look(random: &mut Random, mesh: &Mesh, wishes: Wishes) -> Look {
+pub fn look(random: &mut Random, mesh: &Mesh, wishes: Wishes) -> Look {
     let axis = random.direction();
     let turned = rotation(random.direction(), random.between(0.0, std::f64::consts::TAU));
     let distance = if wishes.unclipped { random.between(2.0, 8.0) } else { random.octaves(0.2, 12.0) };

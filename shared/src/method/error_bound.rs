@@ -12,6 +12,7 @@
 //! - Diffuse light is clamped where N·L changes its sign, from p to -q. Linear interpolation of a clamped line is too bright by at most
 //!   p q/(p + q), no more than either of them or a fourth of their sum; the quadratic is off by at most 4/3 of the least of them over ρ, and
 //!   by `KINK` of their sum over ρ.
+//! - Normals of corners are unit vectors to 2^-15, and so are not those of Phong shading: highlights of large exponents tell.
 //! - Light above 255 has no bound.
 
 use crate::{
@@ -179,8 +180,9 @@ impl ErrorBounds {
         let [mut below, mut above] = [2u32; 2];
         for (light, [_, half]) in self.lights.iter().zip(cosines) {
             if let Some(place) = self.highlight(curvature, half) {
-                (below, above) =
-                    (below + place.error(Kind::LinearBelow, light.specular), above + place.error(Kind::LinearAbove, light.specular));
+                let corners = place.rounding(self.exponent, light.specular);
+                below += corners + place.error(Kind::LinearBelow, light.specular);
+                above += corners + place.error(Kind::LinearAbove, light.specular);
                 if below.max(above) > budget {
                     return None;
                 }
@@ -222,7 +224,7 @@ impl ErrorBounds {
                 }
             }
             if let Some(place) = self.highlight(curvature, half) {
-                bound += place.error(Kind::Quadratic, light.specular);
+                bound += place.rounding(self.exponent, light.specular) + place.error(Kind::Quadratic, light.specular);
             }
         }
         bound
@@ -339,16 +341,16 @@ mod tests {
     }
 
     /// Largest errors of linear and quadratic interpolation of what lights reflect, each `[L, H]` with its levels at cosine 1 and of a whole
-    /// highlight.
+    /// highlight. Corners are lit by their normals as they are stored.
     fn errors(normals: [[f64; 3]; 3], lights: &[([[f64; 3]; 2], [f64; 2])], exponent: u16) -> [f64; 2] {
-        let at = |[u, v, w]: [f64; 3]| -> f64 {
-            let normal = unit([0, 1, 2].map(|k| u * normals[0][k] + v * normals[1][k] + w * normals[2][k]));
+        let lit = |normal: [f64; 3]| -> f64 {
             let light = |&([light, half], [diffuse, specular]): &([[f64; 3]; 2], [f64; 2])| {
-                diffuse * dot(normal, light).max(0.0) + specular * dot(normal, half).max(0.0).powi(exponent.into())
+                diffuse * dot(normal, light).max(0.0) + specular * dot(normal, half).clamp(0.0, 1.0).powi(exponent.into())
             };
             lights.iter().map(light).sum()
         };
-        let [a, b, c] = [at([1.0, 0.0, 0.0]), at([0.0, 1.0, 0.0]), at([0.0, 0.0, 1.0])];
+        let at = |[u, v, w]: [f64; 3]| lit(unit([0, 1, 2].map(|k| u * normals[0][k] + v * normals[1][k] + w * normals[2][k])));
+        let [a, b, c] = normals.map(lit);
         let [ab, bc, ca] = [at([0.5, 0.5, 0.0]), at([0.0, 0.5, 0.5]), at([0.5, 0.0, 0.5])];
         let mut errors = [0f64; 2];
         for (i, j) in (0..=GRID).flat_map(|i| (0..=GRID - i).map(move |j| (i, j))) {
@@ -402,11 +404,20 @@ mod tests {
             reflectance.fill::<Gray8>(&header, &material, &[white; 2][..lights], (Highlight::Half, false));
             let bounds = ErrorBounds::new(&reflectance, exponent, lights);
             let (facing, spread) = (random.direction(), 0.6f64.powf(1.0 + 4.0 * random.next().abs()));
+            // As long as a mesh has them.
             let fixed = [(); 3].map(|()| {
-                let aside = random.direction();
-                unit([0, 1, 2].map(|k| facing[k] + spread * aside[k])).map(|c| (c * f64::from(1 << UNIT)).round() as i16)
+                loop {
+                    let aside = random.direction();
+                    let exact = unit([0, 1, 2].map(|k| facing[k] + spread * aside[k])).map(|c| c * f64::from(1 << UNIT));
+                    let rounded = exact.map(|c| c.round() as i16);
+                    let real = rounded.map(f64::from);
+                    if (dot(real, real).sqrt() - f64::from(1 << UNIT)).abs() <= 0.5 {
+                        break rounded;
+                    }
+                }
             });
-            let normals = fixed.map(|normal| unit(normal.map(f64::from)));
+            let stored = fixed.map(|normal| normal.map(|c| f64::from(c) / f64::from(1 << UNIT)));
+            let normals = stored.map(unit);
             let haversine = |i: usize, j: usize| ((0.5 - 0.5 * dot(normals[i], normals[j])) * 65_536.0).round() as u16;
             let triangle = Triangle { haversine: [haversine(0, 1), haversine(1, 2), haversine(2, 0)], ..Triangle::new_zeroed() };
             let Some(curvature) = Curvature::of(&triangle) else { continue };
@@ -420,7 +431,7 @@ mod tests {
             let cosines = directions.map(|pair| pair.map(|direction| fixed.map(|normal| vertex_cosine(wide(normal), q30(direction)))));
             let gains = [0, 1].map(|light| reflectance.largest_gains(light).map(|level| f64::from(level) / f64::from(1 << LEVEL)));
             let lit = [(directions[0], gains[0]), (directions[1], gains[1])];
-            let exact = errors(normals, &lit[..lights], exponent);
+            let exact = errors(stored, &lit[..lights], exponent);
             let linear = u32::MAX - bounds.left_by_linear(u32::MAX, curvature, &cosines[..lights]).unwrap();
             let bound = [linear, bounds.quadratic(curvature, &cosines[..lights])];
             for (k, ratios) in ratios.iter_mut().enumerate() {

@@ -225,7 +225,8 @@ fn chart(measurements: &[Measurement]) -> Markup {
 mod tests {
     use super::*;
     use crate::Stages;
-    use microphong_render::shader::Shader;
+    use embedded_graphics_core::geometry::Size;
+    use microphong_render::{choices, scene, shader::Shader};
 
     fn measured() -> Vec<Measurement> {
         let frame = |scene: &str, board: Processor, shader: Shader, index: u64| {
@@ -289,6 +290,22 @@ mod tests {
         // Two scenes, two processors, two errors.
         assert_eq!(text.matches("class=\"curve\"").count(), 8);
         assert_eq!([text.matches(">auto 1<").count(), text.matches(">auto 4<").count()], [8; 2]);
+    }
+
+    #[test]
+    fn what_auto_chooses_is_shown() {
+        assert!(!page(&measured(), &[], &[], "").into_string().contains("class=\"shares\""));
+        let scene = scene::load(PEER).expect("a built-in scene");
+        let told = choices::by(Shader::AUTO, scene.stream.parse().expect("a stream"), Size::new(320, 240), false, 0);
+        let told = told.expect("a picture").expect("what auto chooses");
+        let chosen = |m: Measurement| match m.shader {
+            "auto" => Measurement { budget: Some(told.budget), choices: Some(told.choices), ..m },
+            _ => m,
+        };
+        let text = page(&measured().into_iter().map(chosen).collect::<Vec<_>>(), &[], &[], "").into_string();
+        // Two scenes, two processors, triangles and pixels.
+        assert_eq!(text.matches("class=\"shares\"").count(), 8);
+        assert_eq!(text.matches("<td data-value=\"1\">1</td>").count(), 4, "budgets");
     }
 
     #[test]

@@ -8,6 +8,7 @@ use crate::{
     peers::table::{self, Table},
 };
 use maud::{Markup, html};
+use microphong_compare::document::choices::{key, shares};
 use microphong_render::shader::Shader;
 
 /// The method that others are to be cheaper than.
@@ -184,7 +185,9 @@ const COLUMNS: [Column; 18] = [
 
 /// Everything measured of a scene.
 pub(super) fn measurements(scene: &str, measurements: &[&Measurement]) -> Markup {
+    let chosen = measurements.iter().any(|m| m.choices.is_some());
     html! {
+        @if chosen { (key()) }
         div.scroll tabindex="0" role="region" aria-label={ "Measurements of " (scene) } {
             table.sortable {
                 caption { "All measurements of " (scene) }
@@ -192,6 +195,10 @@ pub(super) fn measurements(scene: &str, measurements: &[&Measurement]) -> Markup
                     th scope="col" data-sort="text" { "method" }
                     th scope="col" data-sort="text" { "processor" }
                     @for (heading, meaning, ..) in COLUMNS { th scope="col" data-sort="number" title=(meaning) { (heading) } }
+                    @if chosen {
+                        th scope="col" data-sort="number" title="how far a pixel may be off, in 1/255" { "budget" }
+                        th.first title="triangles above, their pixels below, by what shades them" { "chosen" }
+                    }
                 } }
                 tbody {
                     @for m in measurements {
@@ -201,6 +208,10 @@ pub(super) fn measurements(scene: &str, measurements: &[&Measurement]) -> Markup
                             @for (_, _, places, value) in COLUMNS {
                                 @let value = value(m);
                                 td data-value=[value] { @if let Some(value) = value { (number(value, places)) } }
+                            }
+                            @if chosen {
+                                td data-value=[m.budget] { @if let Some(budget) = m.budget { (budget) } }
+                                td.first { @if let Some(choices) = &m.choices { (shares(choices)) } }
                             }
                         }
                     }

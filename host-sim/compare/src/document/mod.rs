@@ -1,5 +1,7 @@
 //! What all reports share: one HTML file with its style and its scripts inside.
 
+pub mod choices;
+
 use maud::{DOCTYPE, Markup, PreEscaped, html};
 
 /// For drawings outside of pages, too.

@@ -6,7 +6,10 @@ mod scale;
 mod table;
 
 use super::{Comparison, Reference};
-use crate::document::document;
+use crate::document::{
+    choices::{key, shares},
+    document,
+};
 use anyhow::{Context, Result};
 use maud::{Markup, html};
 use microphong_render::{output::Output, shader::Shader};
@@ -131,6 +134,11 @@ fn entry(anchor: &str, scene: &str, reference: &Reference<'_>, comparison: &Comp
         article.method id=(anchor) {
             h3 { (name) }
             p.facts { "largest error " (number(total.max)) ", root mean square " (number(total.rmse)) " LSB" }
+            @if let Some((budget, choices)) = comparison.budget.zip(comparison.choices) {
+                p.facts { "within a budget of " (budget) " LSB: triangles above, their pixels below, by what shades them" }
+                (shares(&choices))
+                (key())
+            }
             div.panels {
                 (panel("picture", &rendering, &format!("{scene} by {name}"), "rendering"))
                 (panel("amplified", &amplified, &format!("where {name} differs from Phong shading, amplified"), "difference, amplified"))

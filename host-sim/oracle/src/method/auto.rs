@@ -5,6 +5,7 @@ use crate::{
     Facet, Frame, Shade,
     light::{highlight, phong},
 };
+use microphong_render::choices::Way;
 
 /// An excess that is close to its threshold at every margin but 0.
 const CLOSE: f64 = -f64::MIN_POSITIVE;
@@ -21,6 +22,18 @@ pub(super) fn shade<'f>(frame: &'f Frame, facet: &'f Facet, decide: &'f Decide<'
         (false, false) => gouraud::shade(frame, facet),
         (false, true) => six_point::shade(frame, facet),
         (true, by_light) => solid(frame, facet, by_light),
+    }
+}
+
+/// What is drawn in a way that is known.
+#[must_use]
+pub fn chosen<'f>(frame: &'f Frame, facet: &'f Facet, way: Way) -> Shade<'f> {
+    match way {
+        // Under one light in three channels the core has no levels at the corners, but a cosine and a highlight.
+        Way::OneColour => solid(frame, facet, frame.lights.len() == 1 && frame.only_channel(facet).is_none()),
+        Way::Linear => gouraud::shade(frame, facet),
+        Way::Quadratic => six_point::shade(frame, facet),
+        Way::Phong => phong(frame, facet),
     }
 }
 

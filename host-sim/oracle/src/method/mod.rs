@@ -24,6 +24,7 @@ mod taylor;
 mod taylor_finite;
 
 use super::{Facet, Frame, Levels, Shade, light::phong};
+pub use auto::chosen;
 use std::{cell::RefCell, fmt};
 
 /// Whether a threshold is exceeded, given by how much.

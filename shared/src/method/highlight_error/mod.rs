@@ -26,6 +26,9 @@ pub const COLUMNS_A_UNIT: u32 = 4;
 pub const LEAST_SIZE: f64 = 1.0 / 256.0;
 /// The least exponent of each part.
 pub const LEAST_EXPONENTS: [u16; 3] = [1, 5, 16];
+/// The largest exponent at which what rounding of normals does to the highlights at corners is left to what arithmetic may add: it is less than
+/// half an LSB.
+const EXACT: u16 = 64;
 /// Fraction bits of an entry, a share of the whole highlight.
 pub const SHARE: u32 = 15;
 
@@ -88,5 +91,16 @@ impl Place {
             }
             _ => u32::MAX >> 1,
         }
+    }
+
+    /// What corners may be off because their normals are longer or shorter than 1 by up to 2^-15, at an exponent above [`EXACT`]: by that
+    /// times the exponent of the brightest highlight on the triangle, w^n, which is no more than 2^-n(1 - w).
+    #[inline(always)]
+    #[must_use]
+    pub(crate) fn rounding(self, exponent: u16, specular: u32) -> u32 {
+        if exponent <= EXACT {
+            return 0;
+        }
+        ((specular * u32::from(exponent)) >> 15 >> (self.column as u32 / COLUMNS_A_UNIT)) + 1
     }
 }
