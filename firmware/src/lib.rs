@@ -29,7 +29,7 @@ pub use picture::error_picture;
 
 use embedded_graphics::{prelude::*, primitives::Rectangle};
 use microphong::{
-    Layout, Renderer, Shader, Stream,
+    Counts, Layout, Renderer, Shader, Stream,
     pixel::{PictureCrc, Pixel},
 };
 use panic_probe as _;
@@ -56,6 +56,11 @@ pub trait Display {
 
     /// All of a frame has been handed over.
     fn present(&mut self) {}
+
+    /// Microseconds since some time, if the board has a clock.
+    fn now(&self) -> Option<u64> {
+        None
+    }
 
     /// Returns when all that was handed over is shown.
     ///
@@ -107,11 +112,13 @@ fn animate<D: Display>(
 ) -> Result<core::convert::Infallible, Failure> {
     let stream = Stream::parse(stream::bytes())?;
     let mut renderer = Renderer::new(stream, display.size(), layout, memory, shaders)?;
+    let mut counts = Counts::default();
     for number in 0..u32::from(stream.header.frames) {
         let mut crc = PictureCrc::default();
         display.begin()?;
         let frame = painter.prepare(&mut renderer, number);
         let stats = painter.draw(display, frame, Some(&mut crc))?;
+        counts = counts.and(stats.counts);
         // The host reads this line: keep its form.
         defmt::info!(
             "frame {=u32} shader {=str} crc {=u32:08x} triangles {=u32} culled {=u32} drawn {=u32} pixels {=u32}",
@@ -127,6 +134,18 @@ fn animate<D: Display>(
         display.finish()?;
     }
     painter.report();
+    if cfg!(feature = "skips") {
+        let Counts { without_depth, without_highlight, without_light, choices: [one, linear, quadratic, phong] } = counts;
+        defmt::info!("triangles without depth {=u32}, highlights {=u32}, lights {=u32}", without_depth, without_highlight, without_light);
+        defmt::info!(
+            "budget {=u8}/8 of 255: triangles in one colour {=u32}, linear {=u32}, quadratic {=u32}, Phong {=u32}",
+            stream.header.budget,
+            one,
+            linear,
+            quadratic,
+            phong
+        );
+    }
     // The host reads this line: keep its form.
     defmt::info!("stack {=usize} bytes", stack::used());
     display.end();
@@ -134,6 +153,7 @@ fn animate<D: Display>(
     // this frame too is not drawn.
     let mut shown = 0..display.size().height;
     loop {
+        let start = display.now();
         for number in 0..u32::from(stream.header.frames) {
             display.begin()?;
             let mut frame = painter.prepare(&mut renderer, number);
@@ -142,6 +162,9 @@ fn animate<D: Display>(
             shown = rows;
             painter.draw(display, frame, None)?;
             display.present();
+        }
+        if let Some((start, end)) = start.zip(display.now()) {
+            defmt::info!("{=u16} frames in {=u64} us", stream.header.frames, end - start);
         }
     }
 }

@@ -150,6 +150,10 @@ impl Display for St7789 {
         Size::new(PICO.layout.width as u32, PICO.height as u32)
     }
 
+    fn now(&self) -> Option<u64> {
+        Some(Instant::now().as_micros())
+    }
+
     fn begin(&mut self) -> Result<(), Failure> {
         self.watchdog.feed(SIGN_OF_LIFE);
         self.failure.map_or(Ok(()), Err)

@@ -20,6 +20,8 @@ pub struct Renderer<'a, C: Pixel> {
     memory: Memory<'a, C>,
     /// See [`Self::prepare`].
     seams: Option<Seams>,
+    /// Where the camera was in the latest frame, unless a setting has changed since.
+    latest: Option<u32>,
 }
 
 impl<'a, C: Pixel> Renderer<'a, C> {
@@ -75,7 +77,7 @@ impl<'a, C: Pixel> Renderer<'a, C> {
             skips: crate::frame::Skips::ALL,
         };
         let seams = if layout.processors > 1 { Seams::new(&stream, &mut memory) } else { None };
-        let mut renderer = Self { settings, memory, seams };
+        let mut renderer = Self { settings, memory, seams, latest: None };
         renderer.set_shader(shader)?;
         Ok(renderer)
     }
@@ -87,7 +89,7 @@ impl<'a, C: Pixel> Renderer<'a, C> {
     pub fn set_shader(&mut self, shader: Shader<C>) -> Result<(), RenderError> {
         let facts = shader.facts();
         check(&self.settings.stream, facts, self.settings.perspective_correct)?;
-        self.settings.shader = shader;
+        (self.settings.shader, self.latest) = (shader, None);
         let (stream, Memory { reflectances, ramps, error_bounds, .. }) = (&self.settings.stream, &mut self.memory);
         let tables = reflectances.iter_mut().zip(ramps.iter_mut()).zip(error_bounds.iter_mut());
         for (((reflectance, ramp), bounds), material) in tables.zip(stream.materials) {
@@ -123,7 +125,7 @@ impl<'a, C: Pixel> Renderer<'a, C> {
             return Err(RenderError::NoPerspective);
         }
         check(&self.settings.stream, self.settings.shader.facts(), on)?;
-        self.settings.perspective_correct = on;
+        (self.settings.perspective_correct, self.latest) = (on, None);
         Ok(())
     }
 
@@ -135,13 +137,13 @@ impl<'a, C: Pixel> Renderer<'a, C> {
         if !(LEAST_BUDGET..=LARGEST_BUDGET).contains(&budget) {
             return Err(RenderError::Budget);
         }
-        self.settings.budget = level(budget);
+        (self.settings.budget, self.latest) = (level(budget), None);
         Ok(())
     }
 
     /// Turns 4x4 ordered dither on or off; it is off at first.
     pub fn set_dither(&mut self, dither: bool) {
-        self.settings.dither = dither;
+        (self.settings.dither, self.latest) = (dither, None);
     }
 
     /// Turns antialiasing by exact areas on or off; it is off at first.
@@ -155,7 +157,7 @@ impl<'a, C: Pixel> Renderer<'a, C> {
         if antialias && self.memory.samples.is_empty() {
             return Err(RenderError::NoSamples);
         }
-        self.settings.antialias = antialias;
+        (self.settings.antialias, self.latest) = (antialias, None);
         Ok(())
     }
 
@@ -179,9 +181,22 @@ impl<'a, C: Pixel> Renderer<'a, C> {
         if pixels.len() < need { Err(RenderError::Band { need }) } else { Ok(()) }
     }
 
+    /// Whether frame `number` is the same picture as the latest one, because the camera stands still or has come round, and no setting has
+    /// changed. Where the display still shows that, it need be neither drawn nor sent.
+    #[must_use]
+    pub fn is_latest(&self, number: u32) -> bool {
+        self.latest == Some(self.place(number))
+    }
+
+    /// Where the camera is in frame `number`: frames of one orbit differ.
+    fn place(&self, number: u32) -> u32 {
+        number.checked_rem(self.settings.stream.header.camera.period.into()).unwrap_or(0)
+    }
+
     /// Places camera and lights, transforms vertices, culls and bins triangles for frame `number` (modulo the orbit).
     #[inline(never)]
     pub fn frame(&mut self, number: u32) -> Frame<'_, C> {
+        self.latest = Some(self.place(number));
         Frame::new(&self.settings, &mut self.memory, number)
     }
 
@@ -189,6 +204,7 @@ impl<'a, C: Pixel> Renderer<'a, C> {
     /// a `share` of all, of 2^16, and that of the later ones. The picture does not depend on it. The layout has to be one for two
     /// [`Layout::processors`], and to have room for all triangles and vertices of the stream; else one part does everything.
     pub fn prepare(&mut self, number: u32, share: u16) -> Preparation<'_, C> {
+        self.latest = Some(self.place(number));
         let division = self.seams.map(|seams| seams.division(&self.settings.stream, share)).unwrap_or_default();
         Preparation::new(&self.settings, &mut self.memory, number, division)
     }

@@ -1,7 +1,7 @@
 //! What is left out of frames because nobody can see it: the picture is the same with it, and the counts tell how much it was.
 
 use embedded_graphics::{pixelcolor::Rgb565, prelude::Size};
-use microphong::{Counts, Skips, Stats, renderer::check};
+use microphong::{Counts, Layout, Renderer, Skips, Stats, Stream, format::ErrorBudget, renderer::check};
 use microphong_sim::{
     bytes::StreamBytes,
     render::{self, Style},
@@ -56,4 +56,46 @@ fn counts_tell_what_is_left_out() {
     let shaded: u32 = stats.counts.choices.iter().sum();
     // Slivers between the centres of pixels are not shaded.
     assert!(stats.counts.choices.iter().filter(|&&count| count > 0).count() > 2 && stats.drawn - shaded < stats.drawn / 20);
+}
+
+/// The renderer knows when a frame is the picture of the latest one: the camera stands still, or has come round. Settings change pictures.
+#[test]
+fn a_frame_like_the_latest_is_known() {
+    let scene = scene::load("sphere-168").unwrap();
+    let bytes = scene.stream.parse().unwrap();
+    let (mut standing, period) = (*bytes.header, u32::from(bytes.header.camera.period));
+    standing.camera.period = 0;
+    let standing = Stream { header: &standing, ..bytes };
+    let layout = Layout::new(64, 48).vertices(256).triangles(256).antialias(true);
+    for (stream, same, other) in [(bytes, [5 + period, 5 + 7 * period], Some(6)), (standing, [5, 6], None)] {
+        let mut memory = vec![0; layout.words::<Rgb565>()];
+        let mut renderer = Renderer::with_shader(stream, Size::new(64, 48), &layout, &mut memory, Shader::AUTO.on()).unwrap();
+        let mut draw = |renderer: &mut Renderer<'_, Rgb565>, number| {
+            let mut pixels = vec![Rgb565::default(); layout.band()];
+            renderer.frame(number).next_band(&mut pixels).unwrap();
+            pixels
+        };
+        assert!(!renderer.is_latest(5), "nothing has been drawn");
+        let picture = draw(&mut renderer, 5);
+        assert!(renderer.is_latest(5) && other.is_none_or(|other| !renderer.is_latest(other)));
+        for number in same {
+            assert!(renderer.is_latest(number), "{number}");
+            assert!(draw(&mut renderer, number) == picture, "{number}");
+        }
+        let settings: [fn(&mut Renderer<'_, Rgb565>); 5] = [
+            |renderer| renderer.set_shader(Shader::FLAT.on()).unwrap(),
+            |renderer| renderer.set_dither(true),
+            |renderer| renderer.set_antialias(true).unwrap(),
+            |renderer| renderer.set_perspective_correct(true).unwrap(),
+            |renderer| renderer.set_budget(ErrorBudget::from_num(3)).unwrap(),
+        ];
+        for set in settings {
+            set(&mut renderer);
+            assert!(!renderer.is_latest(5));
+            draw(&mut renderer, 5);
+            assert!(renderer.is_latest(5));
+        }
+        drop(renderer.prepare(6, 0));
+        assert!(renderer.is_latest(6));
+    }
 }
