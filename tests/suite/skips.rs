@@ -70,7 +70,7 @@ fn a_frame_like_the_latest_is_known() {
     for (stream, same, other) in [(bytes, [5 + period, 5 + 7 * period], Some(6)), (standing, [5, 6], None)] {
         let mut memory = vec![0; layout.words::<Rgb565>()];
         let mut renderer = Renderer::with_shader(stream, Size::new(64, 48), &layout, &mut memory, Shader::AUTO.on()).unwrap();
-        let mut draw = |renderer: &mut Renderer<'_, Rgb565>, number| {
+        let draw = |renderer: &mut Renderer<'_, Rgb565>, number| {
             let mut pixels = vec![Rgb565::default(); layout.band()];
             renderer.frame(number).next_band(&mut pixels).unwrap();
             pixels
