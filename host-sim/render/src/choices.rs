@@ -74,7 +74,7 @@ impl From<Choice> for Way {
     fn from(choice: Choice) -> Self {
         match choice {
             Choice::Solid(_) => Self::OneColour,
-            Choice::Linear => Self::Linear,
+            Choice::Linear | Choice::Between(_) => Self::Linear,
             Choice::Quadratic => Self::Quadratic,
             Choice::Phong => Self::Phong,
         }

@@ -57,8 +57,10 @@ const WORTH_QUADRATIC: [u32; 2] = [20, 60];
 pub enum Choice {
     /// One colour in the middle of these levels, Q9.7.
     Solid([i32; 3]),
-    /// Levels at the corners, linear in between.
+    /// Linear interpolation of what the vertices have, under one light.
     Linear,
+    /// Linear interpolation of these levels at the corners, Q9.7, under two lights.
+    Between([[i32; 3]; 3]),
     /// Levels at six nodes, quadratic in between.
     Quadratic,
     /// Phong shading.
@@ -86,7 +88,7 @@ fn counted(setup: &TriangleSetup<'_>, shading: &Shading<'_>, top: i32, counts: &
     let [solid, linear, quadratic, phong] = &mut counts.choices;
     let count = match choice {
         Choice::Solid(_) => solid,
-        Choice::Linear => linear,
+        Choice::Linear | Choice::Between(_) => linear,
         Choice::Quadratic => quadratic,
         Choice::Phong => phong,
     };
@@ -140,39 +142,33 @@ fn one_light(setup: &TriangleSetup<'_>, shading: &Shading<'_>, left: u32) -> Cho
     // The levels in one channel, the highlights in three.
     let [least, most] = extremes(&[a.light[2], b.light[2], c.light[2]]);
     if !reflectance.three_channels() {
-        return linear_or_less(most, ((most - least + 1) >> 1) as u32 <= left, || [(least + most) >> 1; 3]);
+        return linear_or_less(Choice::Linear, most, ((most - least + 1) >> 1) as u32 <= left, || [(least + most) >> 1; 3]);
     }
     let [dark, bright] = extremes(&[a.light[0], b.light[0], c.light[0]]);
     let (dark, bright) = (dark.max(0), bright.max(0));
     let brightest = if bounds.may_saturate() { bounds.brightest(bright, most) } else { 0 };
     let half = (bounds.level(bright - dark, most - least) >> 1) + 1;
-    linear_or_less(brightest, half <= left, || reflectance.reflection((dark + bright) >> 1, ((least + most) >> 1) as u32))
+    linear_or_less(Choice::Linear, brightest, half <= left, || reflectance.reflection((dark + bright) >> 1, ((least + most) >> 1) as u32))
 }
 
 /// [`one_light`] under two.
 #[inline(never)]
 fn two_lights(setup: &TriangleSetup<'_>, shading: &Shading<'_>, left: u32) -> Choice {
-    let [[r0, g0, b0], [r1, g1, b1], [r2, g2, b2]] = corners_under_two(setup, shading);
+    let levels = setup.corners.map(|corner| shading.reflectance.two_lights(corner.light));
+    let [[r0, g0, b0], [r1, g1, b1], [r2, g2, b2]] = levels;
     let ([r, r9], [g, g9], [b, b9]) = (extremes(&[r0, r1, r2]), extremes(&[g0, g1, g2]), extremes(&[b0, b1, b2]));
     let half = ((r9 - r).max(g9 - g).max(b9 - b) + 1) as u32 >> 1;
-    linear_or_less(r9.max(g9).max(b9), half <= left, || [(r + r9) >> 1, (g + g9) >> 1, (b + b9) >> 1])
+    linear_or_less(Choice::Between(levels), r9.max(g9).max(b9), half <= left, || [(r + r9) >> 1, (g + g9) >> 1, (b + b9) >> 1])
 }
 
 /// Phong shading if levels of the corners may have been clamped at 255, one colour if that `is_solid` enough, else linear interpolation.
 #[inline(always)]
-fn linear_or_less(brightest: i32, is_solid: bool, middle: impl FnOnce() -> [i32; 3]) -> Choice {
+fn linear_or_less(linear: Choice, brightest: i32, is_solid: bool, middle: impl FnOnce() -> [i32; 3]) -> Choice {
     match () {
         () if brightest >= FULL => Choice::Phong,
         () if is_solid => Choice::Solid(middle()),
-        () => Choice::Linear,
+        () => linear,
     }
-}
-
-/// Levels at the corners under two constant lights, Q9.7.
-#[inline(never)]
-fn corners_under_two(setup: &TriangleSetup<'_>, shading: &Shading<'_>) -> [[i32; 3]; 3] {
-    let [a, b, c] = setup.corners;
-    [a, b, c].map(|corner| shading.reflectance.two_lights(corner.light))
 }
 
 /// Levels at the six nodes under two constant lights, Q9.7, of each channel.
@@ -203,8 +199,8 @@ impl Method for Auto {
         let [_, top, _] = canvas.bounds();
         match (counted(setup, shading, top, canvas.counts()), shading.constant) {
             (Choice::Solid(levels), _) => setup.draw_spans(&mut Shaded::new(Constant, Uniform(of_levels(levels))), canvas),
-            (Choice::Linear, Some(_)) => shading.draw_levels::<3, RANGE>(setup, gouraud::reflected(setup, shading.reflectance), canvas),
-            (Choice::Linear, None) => shading.draw_levels::<3, RANGE>(setup, corners_under_two(setup, shading), canvas),
+            (Choice::Linear, _) => shading.draw_levels::<3, RANGE>(setup, gouraud::reflected(setup, shading.reflectance), canvas),
+            (Choice::Between(levels), _) => shading.draw_levels::<3, RANGE>(setup, levels, canvas),
             (Choice::Quadratic, Some(_)) => SixPoint.shade(setup, shading, canvas),
             (Choice::Quadratic, None) => shading.draw_channels::<6, RANGE>(setup, &six_under_two(setup, shading), canvas),
             (Choice::Phong, _) => Phong.shade(setup, shading, canvas),
@@ -228,7 +224,7 @@ impl Loops for Auto {
     ) -> Option<u32> {
         match counted(setup, shading, band.top, &mut band.counts) {
             Choice::Solid(levels) => Some(setup.fill(|| Constant, Solid(tables.colour(levels)), band)),
-            Choice::Linear => by::<Gouraud, _>(setup, shading, tables, band),
+            Choice::Linear | Choice::Between(_) => by::<Gouraud, _>(setup, shading, tables, band),
             Choice::Quadratic => by::<SixPoint, _>(setup, shading, tables, band),
             Choice::Phong => by::<Phong, _>(setup, shading, tables, band),
         }
@@ -251,8 +247,8 @@ impl Loops for ThreeChannels<Auto> {
     ) -> Option<u32> {
         match (counted(setup, shading, band.top, &mut band.counts), shading.constant) {
             (Choice::Solid(levels), _) => Some(setup.fill(|| Constant, Solid(tables.colour(levels)), band)),
-            (Choice::Linear, Some(_)) => by::<ThreeChannels<Gouraud>, _>(setup, shading, tables, band),
-            (Choice::Linear, None) => Some(Shading::fill_three(setup, || channels(corners_under_two(setup, shading)), |plane| plane, band)),
+            (Choice::Linear, _) => by::<ThreeChannels<Gouraud>, _>(setup, shading, tables, band),
+            (Choice::Between(levels), _) => Some(Shading::fill_three(setup, || channels(levels), |plane| plane, band)),
             (Choice::Quadratic, Some(_)) => by::<SixPoint, _>(setup, shading, tables, band),
             (Choice::Quadratic, None) => Some(Shading::fill_three(setup, || six_under_two(setup, shading), ByColumn, band)),
             (Choice::Phong, _) => by::<Phong, _>(setup, shading, tables, band),
