@@ -3,8 +3,9 @@
 use crate::{
     Stream,
     error::{MAX_SIDE, RenderError},
-    format::{ErrorBudget, LARGEST_BUDGET, LEAST_BUDGET, LEVEL},
+    format::{ErrorBudget, GeometricError, LARGEST_BUDGET, LEAST_BUDGET, LEVEL},
     frame::{Frame, Preparation, Seams, Settings},
+    geometry::detail::tolerance,
     lighting::material_tables::fill_ramp,
     memory::{Layout, Memory},
     method::Facts,
@@ -58,7 +59,7 @@ impl<'a, C: Pixel> Renderer<'a, C> {
             return Err(RenderError::Materials { need: stream.materials.len() });
         }
         let need = layout.words::<C>();
-        let mut memory = Memory::new(layout, memory).ok_or(RenderError::Memory { need })?;
+        let memory = Memory::new(layout, memory).ok_or(RenderError::Memory { need })?;
         let background = background(stream.header.background);
         let processors = layout.processors as u32;
         let settings = Settings {
@@ -71,9 +72,13 @@ impl<'a, C: Pixel> Renderer<'a, C> {
             antialias: false,
             budget: level(stream.header.budget()),
             background,
+            tolerance: GeometricError::ZERO,
+            triangles: 0,
+            closed_convex: false,
+            simplified: 0,
         };
-        let seams = if layout.processors > 1 { Seams::new(&stream, &mut memory) } else { None };
-        let mut renderer = Self { settings, memory, seams };
+        let mut renderer = Self { settings, memory, seams: None };
+        renderer.set_levels_of_detail(true);
         renderer.set_shader(shader)?;
         Ok(renderer)
     }
@@ -148,6 +153,16 @@ impl<'a, C: Pixel> Renderer<'a, C> {
         Ok(())
     }
 
+    /// Turns coarser levels of meshes on or off; they are on at first, and each mesh is drawn at the coarsest level that lies less than half
+    /// a pixel from it on the screen. Off, each is drawn as it is, which shows what they save. It makes no difference to streams without
+    /// levels.
+    pub fn set_levels_of_detail(&mut self, on: bool) {
+        let Self { settings, memory, seams } = self;
+        // The eye is as far from a stream's meshes in all frames, so that they are chosen once.
+        settings.set_tolerance(if on { tolerance(settings.stream.header, settings.size) } else { GeometricError::ZERO });
+        *seams = if settings.processors > 1 { Seams::new(settings, memory) } else { None };
+    }
+
     /// The size of the viewport.
     #[must_use]
     pub fn size(&self) -> Size {
@@ -178,7 +193,7 @@ impl<'a, C: Pixel> Renderer<'a, C> {
     /// a `share` of all, of 2^16, and that of the later ones. The picture does not depend on it. The layout has to be one for two
     /// [`Layout::processors`], and to have room for all triangles and vertices of the stream; else one part does everything.
     pub fn prepare(&mut self, number: u32, share: u16) -> Preparation<'_, C> {
-        let division = self.seams.map(|seams| seams.division(&self.settings.stream, share)).unwrap_or_default();
+        let division = self.seams.map(|seams| seams.division(&self.settings, share)).unwrap_or_default();
         Preparation::new(&self.settings, &mut self.memory, number, division)
     }
 }
