@@ -14,6 +14,8 @@ pub type Unit = I2F14;
 pub type Length = I18F14;
 /// Radius in units of object space, unsigned Q2.14 in [0, 4).
 pub type Radius = U2F14;
+/// How far two surfaces lie apart at most, in units of object space, unsigned Q2.14 in [0, 4).
+pub type GeometricError = U2F14;
 /// Reflectance or light colour of one channel, 1 is full; unsigned Q2.14 in [0, 4), of which streams use [0, 2].
 pub type Gain = U2F14;
 /// Entry of a rotation matrix or component of a unit axis, Q2.30 in [-1, 1].
@@ -43,7 +45,7 @@ pub const CENTRE: i32 = 1 << (SUBPIXEL - 1);
 pub const SPLITS: u32 = 6;
 /// Fraction bits of a screen coordinate within a triangle, so that corners of parts are exact however often it is split.
 pub const FINE: u32 = SUBPIXEL + SPLITS;
-/// Fraction bits of [`Unit`], [`Length`] and [`Gain`].
+/// Fraction bits of [`Unit`], [`Length`], [`GeometricError`] and [`Gain`].
 pub const UNIT: u32 = 14;
 /// Fraction bits of a point of object space where light is computed, and of a near light or viewer there: Q7.25. Streams keep them within
 /// 56 units, and next to a light each bit of their distance counts.

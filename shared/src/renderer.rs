@@ -3,8 +3,9 @@
 use crate::{
     Stream,
     error::{MAX_SIDE, RenderError},
-    format::{ErrorBudget, LARGEST_BUDGET, LEAST_BUDGET, LEVEL},
+    format::{ErrorBudget, GeometricError, LARGEST_BUDGET, LEAST_BUDGET, LEVEL},
     frame::{Frame, Preparation, Seams, Settings},
+    geometry::detail::tolerance,
     lighting::material_tables::fill_ramp,
     memory::{Layout, Memory},
     method::Facts,
@@ -60,7 +61,7 @@ impl<'a, C: Pixel> Renderer<'a, C> {
             return Err(RenderError::Materials { need: stream.materials.len() });
         }
         let need = layout.words::<C>();
-        let mut memory = Memory::new(layout, memory).ok_or(RenderError::Memory { need })?;
+        let memory = Memory::new(layout, memory).ok_or(RenderError::Memory { need })?;
         let background = background(stream.header.background);
         let processors = layout.processors as u32;
         let settings = Settings {
@@ -75,9 +76,13 @@ impl<'a, C: Pixel> Renderer<'a, C> {
             background,
             #[cfg(feature = "skips")]
             skips: crate::frame::Skips::ALL,
+            tolerance: GeometricError::ZERO,
+            triangles: 0,
+            closed_convex: false,
+            simplified: 0,
         };
-        let seams = if layout.processors > 1 { Seams::new(&stream, &mut memory) } else { None };
-        let mut renderer = Self { settings, memory, seams, latest: None };
+        let mut renderer = Self { settings, memory, seams: None, latest: None };
+        renderer.set_levels_of_detail(true);
         renderer.set_shader(shader)?;
         Ok(renderer)
     }
@@ -161,6 +166,17 @@ impl<'a, C: Pixel> Renderer<'a, C> {
         Ok(())
     }
 
+    /// Turns coarser levels of meshes on or off; they are on at first, and each mesh is drawn at the coarsest level that lies less than half
+    /// a pixel from it on the screen. Off, each is drawn as it is, which shows what they save. It makes no difference to streams without
+    /// levels.
+    pub fn set_levels_of_detail(&mut self, on: bool) {
+        let Self { settings, memory, seams, latest } = self;
+        *latest = None;
+        // The eye is as far from a stream's meshes in all frames, so that they are chosen once.
+        settings.set_tolerance(if on { tolerance(settings.stream.header, settings.size) } else { GeometricError::ZERO });
+        *seams = if settings.processors > 1 { Seams::new(settings, memory) } else { None };
+    }
+
     /// The size of the viewport.
     #[must_use]
     pub fn size(&self) -> Size {
@@ -205,7 +221,7 @@ impl<'a, C: Pixel> Renderer<'a, C> {
     /// [`Layout::processors`], and to have room for all triangles and vertices of the stream; else one part does everything.
     pub fn prepare(&mut self, number: u32, share: u16) -> Preparation<'_, C> {
         self.latest = Some(self.place(number));
-        let division = self.seams.map(|seams| seams.division(&self.settings.stream, share)).unwrap_or_default();
+        let division = self.seams.map(|seams| seams.division(&self.settings, share)).unwrap_or_default();
         Preparation::new(&self.settings, &mut self.memory, number, division)
     }
 }

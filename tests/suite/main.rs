@@ -20,6 +20,7 @@ mod hostile;
 mod independent;
 mod inner_loop;
 mod layers;
+mod levels;
 mod numerics;
 mod oracle;
 mod oracle_methods;

@@ -11,7 +11,10 @@ use microphong::{
         record::{DIRECTIONAL, EYE_SPACE, PERSPECTIVE, VIEWER_LOCAL},
     },
 };
-use microphong_render::vector::{V3, add, apply, cross, dot, length, scale, sub};
+use microphong_render::{
+    levels,
+    vector::{V3, add, apply, cross, dot, length, scale, sub},
+};
 
 /// All that a picture of one frame depends on, in object space.
 #[derive(Clone, Debug)]
@@ -68,6 +71,7 @@ fn gain(colour: [Gain; 3]) -> V3 {
 impl Frame {
     /// Frame `number` of a stream on a picture of `size` pixels.
     ///
+    /// Meshes have the levels of detail that the renderer draws: shading is judged, not simplification.
     /// Triangles that cross the near plane or leave the guard band are left out: clipping makes new corners.
     #[must_use]
     pub fn new(stream: Stream<'_>, size: (u32, u32), number: u32) -> Self {
@@ -100,7 +104,7 @@ impl Frame {
                 exponent: material.exponent.into(),
             }
         });
-        let facets = stream.meshes.iter().flat_map(|mesh| {
+        let facets = levels::drawn(&stream, Size::new(size.0, size.1)).flat_map(|mesh| {
             let view = &view;
             let triangles = stream.triangles_of(mesh).unwrap_or_default();
             (mesh.first_triangle..).zip(triangles).filter_map(move |(id, triangle)| facet(stream, mesh, triangle, id, view))

@@ -3,9 +3,11 @@
 pub mod bytes;
 pub mod choices;
 pub mod convex;
+pub mod distance;
 mod foreign;
 pub mod image;
 pub mod legend;
+pub mod levels;
 pub mod look;
 pub mod mesh;
 pub mod number;

@@ -9,8 +9,10 @@ use crate::{
     view::{Projection, View},
 };
 use anyhow::{Context, Result};
+use embedded_graphics_core::geometry::Size;
 use microphong::{
-    format::{ErrorBudget, Gain, Radius},
+    format::{ErrorBudget, Gain, GeometricError, Radius},
+    geometry::detail::tolerance,
     stream,
     stream::{
         MAX_GAIN,
@@ -102,18 +104,31 @@ impl Look {
         }
     }
 
+    /// How far a coarser level may lie from a mesh of these parts, if a picture of `size` pixels is to show it.
+    #[must_use]
+    pub fn tolerance(&self, parts: &[Part], size: (u32, u32)) -> GeometricError {
+        tolerance(&self.seen(parts), Size::new(size.0, size.1))
+    }
+
+    /// A header of which camera and radius are right.
+    fn seen(&self, parts: &[Part]) -> Header {
+        let camera = if self.local_viewer { camera(&self.view).with_local_viewer() } else { camera(&self.view) };
+        Header { camera, radius: radius(parts).to_bits(), ..Header::new_zeroed() }
+    }
+
     /// Packs mesh and look into a stream and checks the result.
     ///
     /// # Errors
     /// When the mesh does not fit a stream, or a value lies outside its range.
     pub fn stream(&self, parts: &[Part]) -> Result<StreamBytes> {
         let vertices: usize = parts.iter().map(|p| p.vertices.len()).sum();
-        let triangles: usize = parts.iter().map(|p| p.triangles.len()).sum();
+        let levels = || parts.iter().flat_map(Part::levels);
+        let triangles: usize = levels().map(|(triangles, ..)| triangles.len()).sum();
         let mut header = Header {
             magic: MAGIC,
             version: VERSION,
             shader: self.shader.facts().id,
-            meshes: u16::try_from(parts.len()).context("too many meshes for one stream; simplify the mesh")?,
+            meshes: u16::try_from(levels().count()).context("too many meshes for one stream; simplify the mesh")?,
             materials: 1,
             lights: self.lamps.len() as u16,
             frames: self.frames.max(1),
@@ -122,30 +137,32 @@ impl Look {
             background: self.background,
             budget: self.budget.to_bits(),
             ambient: self.ambient.map(gain).map(Gain::to_bits),
-            radius: radius(parts).to_bits(),
-            camera: if self.local_viewer { camera(&self.view).with_local_viewer() } else { camera(&self.view) },
-            ..Header::new_zeroed()
+            ..self.seen(parts)
         };
         header.length = stream::length(&header).context("the stream would be larger than 4 GiB; simplify the mesh")?;
         let mut bytes = header.as_bytes().to_vec();
         let (mut first_vertex, mut first_triangle) = (0, 0);
         for part in parts {
-            let mesh = Mesh {
-                first_vertex,
-                vertices: part.vertices.len() as u32,
-                first_triangle,
-                triangles: part.triangles.len() as u32,
-                material: 0,
-                flags: if part.closed_convex { CLOSED_CONVEX } else { 0 },
-            };
-            first_vertex += mesh.vertices;
-            first_triangle += mesh.triangles;
-            bytes.extend_from_slice(mesh.as_bytes());
+            let vertices = u16::try_from(part.vertices.len()).context("too many vertices for one mesh; simplify the mesh")?;
+            for (triangles, error, closed_convex) in part.levels() {
+                let mesh = Mesh {
+                    first_vertex,
+                    first_triangle,
+                    triangles: triangles.len() as u32,
+                    vertices,
+                    material: 0,
+                    error: error.to_bits(),
+                    flags: if closed_convex { CLOSED_CONVEX } else { 0 },
+                };
+                first_triangle += mesh.triangles;
+                bytes.extend_from_slice(mesh.as_bytes());
+            }
+            first_vertex += u32::from(vertices);
         }
         bytes.extend_from_slice(material(&self.surface).as_bytes());
         self.lamps.iter().for_each(|lamp| bytes.extend_from_slice(light(lamp).as_bytes()));
         parts.iter().for_each(|part| bytes.extend_from_slice(part.vertices.as_bytes()));
-        parts.iter().for_each(|part| bytes.extend_from_slice(part.triangles.as_bytes()));
+        levels().for_each(|(triangles, ..)| bytes.extend_from_slice(triangles.as_bytes()));
         stream::seal(&mut bytes);
         let bytes = StreamBytes::from(bytes.as_slice());
         bytes.parse().context("the stream would not be valid")?;

@@ -2,16 +2,17 @@
 
 use crate::{
     convex::is_closed_convex,
+    levels::Level,
     mesh::Mesh,
     number::{above, below, nearest},
     vector::{V3, add, cross, dot, length, scale, sub, unit},
 };
 use microphong::{
     fixed::types::U0F16,
-    format::{Haversine, InverseAltitude, NormalLength, UNIT, Unit},
+    format::{GeometricError, Haversine, InverseAltitude, NormalLength, UNIT, Unit},
     stream::record::{Triangle, Vertex},
 };
-use std::collections::HashMap;
+use std::{collections::HashMap, iter};
 
 /// One: a [`microphong::format::Unit`] in units of its last place.
 const ONE: f64 = (1 << UNIT) as f64;
@@ -31,6 +32,18 @@ pub struct Part {
     pub triangles: Vec<Triangle>,
     /// Closed and convex: front faces never hide one another.
     pub closed_convex: bool,
+    /// The vertex of the mesh that each of its vertices is a copy of.
+    pub sources: Vec<usize>,
+    /// Coarser levels, from fine to coarse, see [`crate::levels::add`].
+    pub coarser: Vec<Level>,
+}
+
+impl Part {
+    /// Triangles, error, and whether they are closed and convex, of all levels from fine to coarse.
+    pub fn levels(&self) -> impl Iterator<Item = (&[Triangle], GeometricError, bool)> {
+        let coarser = self.coarser.iter().map(|level| (&level.triangles[..], level.error, level.closed_convex));
+        iter::once((&self.triangles[..], GeometricError::ZERO, self.closed_convex)).chain(coarser)
+    }
 }
 
 /// Rounds a mesh to a stream's formats; more than 65,535 vertices become several parts.
@@ -43,7 +56,7 @@ pub fn quantise(mesh: &Mesh) -> (Vec<Part>, usize) {
     let mut index: HashMap<usize, u16> = HashMap::new();
     let mut dropped = 0;
     for corners in &mesh.triangles {
-        let Some(mut triangle) = triangle(corners.map(|v| vertices[v])) else {
+        let Some(mut triangle) = constants(corners.map(|v| vertices[v])) else {
             dropped += 1;
             continue;
         };
@@ -55,6 +68,7 @@ pub fn quantise(mesh: &Mesh) -> (Vec<Part>, usize) {
             triangle.corners = corners.map(|v| {
                 *index.entry(v).or_insert_with(|| {
                     part.vertices.push(vertices[v]);
+                    part.sources.push(v);
                     (part.vertices.len() - 1) as u16
                 })
             });
@@ -88,8 +102,13 @@ fn widen(v: [Unit; 3]) -> V3 {
     v.map(f64::from)
 }
 
+/// The record of a triangle on `vertices`; `None` without an area.
+pub(crate) fn record(vertices: &[Vertex], corners: [u16; 3]) -> Option<Triangle> {
+    Some(Triangle { corners, ..constants(corners.map(|corner| vertices[usize::from(corner)]))? })
+}
+
 /// All that does not depend on camera or light; `None` without an area. Corners are left at 0.
-fn triangle(corners: [Vertex; 3]) -> Option<Triangle> {
+fn constants(corners: [Vertex; 3]) -> Option<Triangle> {
     let [a, b, c] = corners.map(|v| widen(v.position()));
     // Exact: 16-bit differences, and sums of a few of their products.
     let plane = unit(cross(sub(b, a), sub(c, a)))?;

@@ -4,6 +4,7 @@ use super::{Outcome, Usage, parse, report};
 use anyhow::{Context, Result};
 use microphong::format::ErrorBudget;
 use microphong_sim::{
+    levels,
     look::{BACKGROUND, Look, Surface},
     output,
     quantise::quantise,
@@ -81,6 +82,10 @@ pub(crate) struct Arguments {
     /// Picture for which the camera is set up; others show the same with more border.
     #[arg(long, value_name = "WxH", default_value = "640x480", value_parser = parse::size)]
     size: (u32, u32),
+    /// Pictures that get a level of detail: as few triangles as lie less than half a pixel from the mesh there. A picture shows the coarsest
+    /// level that does so. Each takes flash for its triangles, 30 bytes; one that would save less than a tenth of them is left out.
+    #[arg(long, value_name = "WxH,...", value_delimiter = ',', value_parser = parse::size)]
+    lod: Vec<(u32, u32)>,
     /// Print one JSON object.
     #[arg(long)]
     json: bool,
@@ -89,6 +94,7 @@ pub(crate) struct Arguments {
 const EXAMPLES: &str = "\
 Examples:
   microphong convert teapot.obj -o teapot.tri
+  microphong convert bunny.obj --lod 240x240,128x128
   microphong convert part.obj --up z --colour 4080ff --plastic --exponent 60 --orbit 240";
 
 #[derive(Serialize)]
@@ -104,7 +110,16 @@ struct Line<'a> {
     own_normals: bool,
     turned: bool,
     closed_convex: bool,
+    levels: Vec<Level>,
     bytes: usize,
+}
+
+/// A coarser level of a mesh.
+#[derive(Serialize)]
+struct Level {
+    mesh: usize,
+    triangles: usize,
+    error: f64,
 }
 
 pub(crate) fn run(arguments: &Arguments) -> Result<Outcome> {
@@ -118,7 +133,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome> {
         return Err(Usage(format!("{} would overwrite the mesh; name another file with -o", target.display())).into());
     }
     let (mesh, report) = scene::read_obj(source, arguments.flip)?;
-    let (parts, lost) = quantise(&mesh);
+    let (mut parts, lost) = quantise(&mesh);
     let place = || source.display().to_string();
     let view = View::orbit(arguments.up, arguments.azimuth.to_radians(), arguments.elevation.to_radians(), DISTANCE, arguments.orbit);
     let view = if arguments.projection == Projection::Orthographic { view.parallel() } else { view };
@@ -129,6 +144,8 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome> {
         shader: arguments.shader,
         ..Look::new(surface(arguments), view.fit(&mesh.positions, arguments.size, MARGIN))
     };
+    let errors: Vec<_> = arguments.lod.iter().map(|&size| look.tolerance(&parts, size)).collect();
+    levels::add(&mesh, &mut parts, &errors).with_context(place)?;
     let bytes = look.stream(&parts).with_context(place)?;
     report::leave_to(&target);
     output::write(&target, bytes.as_bytes())?;
@@ -144,6 +161,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome> {
         own_normals: report.own_normals,
         turned: report.turned,
         closed_convex: parts.iter().all(|part| part.closed_convex),
+        levels: parts.iter().enumerate().flat_map(|(mesh, part)| part.coarser.iter().map(move |level| of(mesh, level))).collect(),
         bytes: bytes.as_bytes().len(),
     };
     if arguments.json {
@@ -152,6 +170,10 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome> {
         text(&line)?;
     }
     Ok(Outcome::Done)
+}
+
+fn of(mesh: usize, level: &levels::Level) -> Level {
+    Level { mesh, triangles: level.triangles.len(), error: level.error.into() }
 }
 
 fn surface(arguments: &Arguments) -> Surface {
@@ -173,6 +195,9 @@ fn text(line: &Line<'_>) -> Result<()> {
     let (welded, degenerate) = (count(line.welded), count(line.degenerate));
     let convex = if line.closed_convex { ", closed and convex" } else { "" };
     report::line(&format!("  {welded} vertices welded, {degenerate} degenerate triangles dropped, {normals}{turned}{convex}"))?;
+    for Level { triangles, error, .. } in &line.levels {
+        report::line(&format!("  a level of {} triangles, less than {error:.4} from the mesh", count(*triangles)))?;
+    }
     let crossed = match line.crossed {
         0 => return Ok(()),
         1 => "1 polygon crosses itself; split it".to_owned(),

@@ -2,8 +2,10 @@
 
 use super::{Outcome, report};
 use anyhow::{Context, Result};
+use embedded_graphics_core::geometry::Size;
 use microphong::{
-    Stream,
+    MAX_SIDE, Stream,
+    geometry::detail::tolerance,
     stream::record::{CLOSED_CONVEX, EYE_SPACE, Header, Light, Material, Mesh, PERSPECTIVE, POINT, Triangle, VIEWER_LOCAL, Vertex},
 };
 use microphong_sim::{bytes::StreamBytes, shader::Shader};
@@ -31,7 +33,20 @@ struct Line<'a> {
     triangles: usize,
     lights: usize,
     frames: u16,
+    levels: Vec<Level>,
     bytes: u32,
+}
+
+/// A coarser level of a mesh.
+#[derive(Serialize)]
+struct Level {
+    /// The mesh, without coarser levels counted from 0.
+    mesh: usize,
+    triangles: u32,
+    /// In units of object space.
+    error: f64,
+    /// Side of the largest square picture that it may be drawn in, pixels.
+    side: u32,
 }
 
 pub(crate) fn run(arguments: &Arguments) -> Result<Outcome> {
@@ -49,6 +64,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome> {
             triangles: stream.triangles.len(),
             lights: stream.lights.len(),
             frames: header.frames,
+            levels: levels(&stream),
             bytes: header.length,
         })?;
     } else {
@@ -70,6 +86,10 @@ fn text(file: &str, stream: &Stream<'_>) -> Result<()> {
     row("lights", stream.lights.len(), size_of::<Light>(), &lights(stream))?;
     row("vertices", stream.vertices.len(), size_of::<Vertex>(), "")?;
     row("triangles", stream.triangles.len(), size_of::<Triangle>(), &bend(stream))?;
+    for Level { triangles, error, side, .. } in levels(stream) {
+        let (triangles, flash) = (count(triangles as usize), count(triangles as usize * size_of::<Triangle>()));
+        report::line(&format!("  a level of {triangles} triangles, {flash} bytes, {error:.4} from the mesh: up to {side}x{side} pixels"))?;
+    }
     let camera = &header.camera;
     let kind = if camera.projection == PERSPECTIVE { "perspective" } else { "parallel rays" };
     let orbit = if camera.period == 0 { "stands still".to_owned() } else { format!("one turn in {} frames", camera.period) };
@@ -77,6 +97,22 @@ fn text(file: &str, stream: &Stream<'_>) -> Result<()> {
     let frames = header.frames;
     let shader = Shader::by_id(header.shader).map_or_else(|| format!("number {}", header.shader), |shader| shader.name().to_owned());
     report::line(&format!("  {kind}, {viewer} viewer, {orbit}, {frames} frames, shader {shader}"))
+}
+
+fn levels(stream: &Stream<'_>) -> Vec<Level> {
+    let mut meshes = 0usize;
+    let level = |record: &Mesh| {
+        meshes += usize::from(record.error == 0);
+        let is_drawn = |&side: &u32| tolerance(stream.header, Size::new(side, side)) >= record.error();
+        let side = (1..=MAX_SIDE).rev().find(is_drawn).unwrap_or(0);
+        (record.error > 0).then_some(Level {
+            mesh: meshes.saturating_sub(1),
+            triangles: record.triangles,
+            error: record.error().into(),
+            side,
+        })
+    };
+    stream.meshes.iter().filter_map(level).collect()
 }
 
 fn closed_convex(stream: &Stream<'_>) -> usize {

@@ -14,12 +14,13 @@ use crate::{
 };
 use anyhow::Result;
 use microphong::{
-    format::{Length, SUBPIXEL},
+    format::{GeometricError, Length, SUBPIXEL},
     geometry::{pose::Pose, projection::View},
     stream::record::{Camera, DIRECTIONAL, Header, Light, Mesh as Record, POINT, Triangle, VIEWER_INFINITE, VIEWER_LOCAL},
 };
 use microphong_render::{
     bytes::StreamBytes,
+    levels,
     mesh::Mesh,
     render::{Format, Style},
     shapes,
@@ -183,7 +184,7 @@ impl Work {
             pixels: width * height + TABLE * stream.materials.len() as u64,
         };
         let band = u64::from(case.band_rows);
-        for mesh in stream.meshes {
+        for mesh in levels::drawn(&stream, case.pixels()) {
             let vertices = stream.vertices_of(mesh)?;
             for triangle in stream.triangles_of(mesh)? {
                 let places = triangle.corners.map(|corner| view.project(view.to_eye(vertices[usize::from(corner)].position)));
@@ -295,7 +296,7 @@ fn sphere(random: &mut Random) -> Mesh {
 fn meshes_of_one(bytes: &StreamBytes) -> Option<StreamBytes> {
     let stream = bytes.parse().ok()?;
     let (mut meshes, mut vertices, mut triangles) = (Vec::new(), Vec::new(), Vec::new());
-    for mesh in stream.meshes {
+    for mesh in stream.meshes_within(GeometricError::ZERO) {
         let own = stream.vertices_of(mesh)?;
         for triangle in stream.triangles_of(mesh)? {
             let (first_vertex, first_triangle) = (vertices.len() as u32, triangles.len() as u32);

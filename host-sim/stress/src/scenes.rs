@@ -3,6 +3,7 @@
 use crate::{case::Case, random::Random};
 use microphong::Skips;
 use microphong_render::{
+    levels,
     look::{Lamp, Look, Surface},
     mesh::Mesh,
     quantise::quantise,
@@ -43,7 +44,13 @@ pub fn of(random: &mut Random, mesh: &Mesh, wishes: Wishes) -> Option<Case> {
 
 /// A scene, drawn in a random way.
 pub fn drawn(random: &mut Random, mesh: &Mesh, look: &Look) -> Option<Case> {
-    let stream = look.stream(&quantise(mesh).0).ok()?;
+    let (mut parts, _) = quantise(mesh);
+    // By their number and not by chance: what follows from a seed is what it was without levels.
+    if mesh.triangles.len().is_multiple_of(4) {
+        let errors = [(32, 32), (128, 96)].map(|size| look.tolerance(&parts, size));
+        levels::add(mesh, &mut parts, &errors).ok()?;
+    }
+    let stream = look.stream(&parts).ok()?;
     let style = Style {
         shader: random.among(&Shader::ALL),
         perspective_correct: random.once_in(4),

@@ -23,7 +23,7 @@ use microphong::{
         seal,
     },
 };
-use microphong_render::{bytes::StreamBytes, render, shader::Shader};
+use microphong_render::{bytes::StreamBytes, levels, render, shader::Shader};
 use zerocopy::FromBytes;
 
 /// A colour that no scene shows, so that what is not drawn can be told: surfaces are black.
@@ -98,7 +98,7 @@ pub fn covered(stream: &Stream<'_>, size: [u32; 2], number: u32) -> Option<Vec<u
     let camera = &stream.header.camera;
     let view = View::new(camera, &Pose::new(camera, number), Size::new(size[0], size[1]));
     let mut counts = vec![0u8; (size[0] * size[1]) as usize];
-    for mesh in stream.meshes {
+    for mesh in levels::drawn(stream, Size::new(size[0], size[1])) {
         let place = |position| {
             let ([x, y, _], inside) = view.project(view.to_eye(position));
             inside.then_some([x, y])

@@ -23,8 +23,10 @@ use embedded_graphics_core::{
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Stats {
-    /// Triangles in the stream.
+    /// Triangles of the meshes, each at the level that is drawn.
     pub triangles: u32,
+    /// Triangles that coarser levels have saved: those that the meshes as they are have more than the levels that are drawn.
+    pub simplified: u32,
     /// Triangles that face away, or whose bounding box contains no pixel centre of the viewport.
     pub culled: u32,
     /// Triangles that are drawn: they face the camera, and their bounding box contains a pixel centre of the viewport.
@@ -199,7 +201,7 @@ fn draw_binned<C: Pixel>(scene: &Scene<'_, C>, walk: &mut Walk<'_>, band: &mut B
 fn draw_all<C: Pixel>(scene: &Scene<'_, C>, band: &mut Band<'_, C>) -> (u32, u32) {
     let stream = &scene.settings.stream;
     let (mut pixels, mut drawn) = (0u32, 0);
-    for mesh in stream.meshes {
+    for mesh in scene.settings.meshes() {
         let Some((drawing, loops)) = scene.drawing(mesh) else { continue };
         for triangle in stream.triangles_of(mesh).unwrap_or_default().iter().filter(|triangle| scene.facing.may_face(triangle)) {
             let Some(bounds) = drawing.bounds(triangle) else { continue };

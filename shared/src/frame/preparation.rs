@@ -25,10 +25,7 @@ use crate::{
     mesh::vertices::{SeamPlace, UNUSED, VertexStage},
     pixel::Pixel,
     raster::active::QueueState,
-    stream::{
-        Stream,
-        record::{Triangle, Vertex},
-    },
+    stream::record::{Mesh, Triangle, Vertex},
 };
 use core::{hint::black_box, mem, ops::Range};
 use zerocopy::{FromBytes, IntoBytes};
@@ -43,15 +40,17 @@ pub(crate) struct Seams([u16; STEPS]);
 impl Seams {
     /// `None` if the stream has few triangles, or more than [`Bins::join`] can join, or `memory` has not room for all of them, for all
     /// vertices, and for any seam: what happens once a frame is then left to one processor.
-    pub(crate) fn new<C: Pixel>(stream: &Stream<'_>, memory: &mut Memory<'_, C>) -> Option<Self> {
-        let (triangles, vertices) = (stream.triangles.len(), stream.vertices.len());
+    pub(crate) fn new<C: Pixel>(settings: &Settings<'_, C>, memory: &mut Memory<'_, C>) -> Option<Self> {
+        let stream = &settings.stream;
+        let (triangles, vertices) = (settings.triangles as usize, stream.vertices.len());
         let fits = triangles <= memory.bins.len() && vertices <= memory.vertices.len() && seam(memory.depth, vertices).len() == vertices;
         if !fits || !(2 * STEPS..1 << 15).contains(&triangles) {
             return None;
         }
-        let (mut seams, mut vertex) = ([0; STEPS], 0);
-        for mesh in stream.meshes {
-            for (before, triangle) in (mesh.first_triangle as usize + 1..).zip(stream.triangles_of(mesh)?) {
+        let (mut seams, mut vertex, mut before) = ([0; STEPS], 0, 0);
+        for mesh in settings.meshes() {
+            for triangle in stream.triangles_of(mesh)? {
+                before += 1;
                 vertex = triangle.corners.map(|corner| mesh.first_vertex + u32::from(corner) + 1).into_iter().fold(vertex, u32::max);
                 // The last of the triangles before a place remains.
                 if let Some(seam) = seams.get_mut((before * STEPS).div_ceil(triangles.max(1))) {
@@ -63,10 +62,10 @@ impl Seams {
     }
 
     /// The place where a `share` of the triangles, of 2^16, lies before.
-    pub(crate) fn division(&self, stream: &Stream<'_>, share: u16) -> Division {
+    pub(crate) fn division<C: Pixel>(&self, settings: &Settings<'_, C>, share: u16) -> Division {
         let step = (usize::from(share) * STEPS + (1 << 15)) >> 16;
         let vertex = self.0.get(step).copied().map(usize::from);
-        vertex.map(|vertex| Division { triangle: stream.triangles.len() * step / STEPS, vertex }).unwrap_or_default()
+        vertex.map(|vertex| Division { triangle: settings.triangles as usize * step / STEPS, vertex }).unwrap_or_default()
     }
 }
 
@@ -108,7 +107,7 @@ impl<'r, C: Pixel> Frame<'r, C> {
         let Part { bins, entries, .. } = &mut frame.part;
         let whole = PreparationPart {
             scene: &frame.scene,
-            triangles: 0..settings.stream.triangles.len(),
+            triangles: 0..settings.triangles as usize,
             cached: cache,
             seam: &mut [],
             entries,
@@ -134,8 +133,8 @@ impl<'r, C: Pixel> Frame<'r, C> {
         // Bins as high as the bands of one processor.
         let band_rows = settings.band_rows(depth.len(), samples.len()).checked_div(settings.processors).unwrap_or(0);
         let bins = Bins::new(size.height, band_rows);
-        let elides_depth = settings.skips().depth && !settings.antialiased();
-        let depth_elision = if elides_depth { DepthElision::new(stream, &view, size) } else { None };
+        let elides = settings.closed_convex && settings.skips().depth && !settings.antialiased();
+        let depth_elision = if elides { DepthElision::new(camera, &view, size) } else { None };
         let uncached = stream.vertices.len().saturating_sub(cache.len()) as u32;
         let scene =
             Scene { settings, view, facing, lighting, constant, depth_elision: None, vertices: &[], reflectances, ramps, error_bounds };
@@ -150,7 +149,7 @@ impl<'r, C: Pixel> Frame<'r, C> {
             rows: 0..size.height,
             top: 0,
             bottom: size.height,
-            stats: Stats { triangles: stream.triangles.len() as u32, uncached, ..Stats::default() },
+            stats: Stats { triangles: settings.triangles, simplified: settings.simplified, uncached, ..Stats::default() },
         };
         (Self { scene, part }, cache, depth_elision)
     }
@@ -183,7 +182,7 @@ impl<'r, C: Pixel> Preparation<'r, C> {
         let Self { frame, cache, division: Division { triangle, vertex }, earlier: earlier_bins, depth_elisions, is_done } = self;
         let ([later_elision, earlier_elision], [later_done, earlier_done]) = (depth_elisions, is_done);
         let Frame { scene, part: Part { bins: later_bins, entries, depth, .. } } = frame;
-        let all = scene.settings.stream.triangles.len();
+        let all = scene.settings.triangles as usize;
         let (earlier_cached, later_cached) = halves(cache, *vertex);
         // As many entries as triangles: none can be without.
         let (later_entries, earlier_entries) = halves(entries, entries.len().saturating_sub(*triangle));
@@ -230,7 +229,7 @@ impl<'r, C: Pixel> Preparation<'r, C> {
 #[inline(never)]
 fn close<C: Pixel>(scene: &Scene<'_, C>, cache: &mut [ScreenVertex], seam: &[SeamPlace]) {
     let stream = &scene.settings.stream;
-    for mesh in stream.meshes {
+    for mesh in scene.settings.meshes() {
         let first = mesh.first_vertex as usize;
         if let (Some(seam), Some(cached), Some(vertices), Some(stage)) =
             (seam.get(first..), cache.get_mut(first..), stream.vertices_of(mesh), scene.stage(mesh))
@@ -244,7 +243,7 @@ fn close<C: Pixel>(scene: &Scene<'_, C>, cache: &mut [ScreenVertex], seam: &[Sea
 #[derive(Debug)]
 pub struct PreparationPart<'f, 'r, C: Pixel> {
     scene: &'f Scene<'r, C>,
-    /// Indices of its triangles.
+    /// Its triangles, counted from the first of those that are drawn at this level of detail.
     triangles: Range<usize>,
     /// Its vertices, which follow those of the seam.
     cached: &'f mut [ScreenVertex],
@@ -257,7 +256,7 @@ pub struct PreparationPart<'f, 'r, C: Pixel> {
 }
 
 impl<C: Pixel> PreparationPart<'_, '_, C> {
-    /// The indices of its triangles in the stream; none if the other part does everything.
+    /// Its triangles, counted from the first of all levels that are drawn; none if the other part does everything.
     #[must_use]
     pub fn triangles(&self) -> Range<usize> {
         self.triangles.clone()
@@ -273,63 +272,76 @@ impl<C: Pixel> PreparationPart<'_, '_, C> {
     /// Culls triangles, transforms their vertices, and puts them into the bins of the rows that they start in. Triangles are taken from the
     /// last to the first, in the order that [`Bins::push`] needs. Unless the frame is `DIVIDED`, there is no seam.
     #[inline(never)]
-    fn bin<const DIVIDED: bool>(self) {
+    fn bin<const DIVIDED: bool>(mut self) {
+        let settings = self.scene.settings;
+        self.cached
+            .iter_mut()
+            .take(settings.stream.vertices.len().saturating_sub(self.seam.len()))
+            .for_each(|vertex| vertex.state = State::IDLE);
+        self.seam.fill(UNUSED);
+        // Triangles of the meshes before.
+        let mut earlier = settings.triangles as usize;
+        for mesh in settings.meshes().rev() {
+            earlier = earlier.saturating_sub(mesh.triangles as usize);
+            self.bin_mesh::<DIVIDED>(mesh, earlier);
+        }
+    }
+
+    /// Does so with the triangles of `mesh` that belong to this half; `earlier` ones belong to meshes before it.
+    // A call, so that its loop has all registers.
+    #[inline(never)]
+    fn bin_mesh<const DIVIDED: bool>(&mut self, mesh: &Mesh, earlier: usize) {
         let Self { scene, triangles: Range { start, end }, cached, seam, entries, bins, depth_elision, .. } = self;
-        // A copy, which stays in registers.
-        let facing = scene.facing;
+        // A copy of which the compiler does not know where it is from: it stays in registers.
+        let facing = black_box(scene.facing);
         let stream = &scene.settings.stream;
         let viewport = scene.settings.viewport();
         // Reached by a pointer of its own, which is opaque to the compiler: instructions of Armv6-M reach little of a structure.
-        let bins = black_box(bins);
+        let (bins, depth_elision, entries) = (black_box(&mut **bins), &mut **depth_elision, &mut **entries);
         let leaning = if depth_elision.is_some() { facing.leaning() } else { Facing::FRONT };
-        cached.iter_mut().take(stream.vertices.len().saturating_sub(seam.len())).for_each(|vertex| vertex.state = State::IDLE);
-        seam.fill(UNUSED);
-        for mesh in stream.meshes.iter().rev() {
-            let (vertices, triangles) = (stream.vertices_of(mesh).unwrap_or_default(), stream.triangles_of(mesh).unwrap_or_default());
-            let Some(stage) = scene.stage(mesh) else { continue };
-            let (first, first_vertex) = (mesh.first_triangle as usize, mesh.first_vertex as usize);
-            let [before, count] = [start, end].map(|index| index.saturating_sub(first).min(triangles.len()));
-            let mut rest = triangles.get(before..count).unwrap_or_default();
-            let id = (first + before) as u32;
-            let cached = cached.get_mut(first_vertex.saturating_sub(seam.len())..).unwrap_or_default();
-            let seam = seam.get_mut(first_vertex..).unwrap_or_default();
-            let first_cached = if DIVIDED { seam.len() } else { 0 };
-            while let [before @ .., triangle] = rest {
-                rest = before;
-                let height = facing.height(triangle);
-                if height < leaning {
+        let (vertices, triangles) = (stream.vertices_of(mesh).unwrap_or_default(), stream.triangles_of(mesh).unwrap_or_default());
+        let Some(stage) = scene.stage(mesh) else { return };
+        let within = |index: usize| index.saturating_sub(earlier).min(triangles.len());
+        let before = if DIVIDED { within(*start) } else { 0 };
+        let mut rest = if DIVIDED { triangles.get(before..within(*end)).unwrap_or_default() } else { triangles };
+        let (id, first_vertex) = (mesh.first_triangle.wrapping_add(before as u32), mesh.first_vertex as usize);
+        let cached = cached.get_mut(first_vertex.saturating_sub(seam.len())..).unwrap_or_default();
+        let seam = seam.get_mut(first_vertex..).unwrap_or_default();
+        let first_cached = if DIVIDED { seam.len() } else { 0 };
+        while let [before @ .., triangle] = rest {
+            rest = before;
+            let height = facing.height(triangle);
+            if height < leaning {
+                continue;
+            }
+            let mut push = |bounds, word_sized| {
+                if let Some(Bounds { top, bottom, .. }) = bounds
+                    && height >= Facing::FRONT
+                {
+                    bins.push(entries, id + rest.len() as u32, word_sized, [top as u32, bottom as u32]);
+                }
+            };
+            let mut word_sized = false;
+            let bounds = match stage.corners(cached, first_cached, vertices, triangle) {
+                Some(corners) => {
+                    let extent = Extent::new(corners);
+                    if let Some(elision) = depth_elision {
+                        elision.include(&extent);
+                    }
+                    word_sized = viewport.is_word_sized(&extent);
+                    viewport.bounds(&extent)
+                }
+                None if DIVIDED => {
+                    let (word_sized, bounds) = at_seam(&stage, (&mut *cached, &mut *seam), viewport, depth_elision, (vertices, triangle));
+                    push(bounds, word_sized);
                     continue;
                 }
-                let mut push = |bounds, word_sized| {
-                    if let Some(Bounds { top, bottom, .. }) = bounds
-                        && height >= Facing::FRONT
-                    {
-                        bins.push(entries, id + rest.len() as u32, word_sized, [top as u32, bottom as u32]);
-                    }
-                };
-                let mut word_sized = false;
-                let bounds = match stage.corners(cached, first_cached, vertices, triangle) {
-                    Some(corners) => {
-                        let extent = Extent::new(corners);
-                        if let Some(elision) = depth_elision {
-                            elision.include(&extent);
-                        }
-                        word_sized = viewport.is_word_sized(&extent);
-                        viewport.bounds(&extent)
-                    }
-                    None if DIVIDED => {
-                        let (word_sized, bounds) =
-                            at_seam(&stage, (&mut *cached, &mut *seam), viewport, depth_elision, (vertices, triangle));
-                        push(bounds, word_sized);
-                        continue;
-                    }
-                    None => {
-                        *depth_elision = None;
-                        stage.bounds(viewport, vertices, triangle)
-                    }
-                };
-                push(bounds, word_sized);
-            }
+                None => {
+                    *depth_elision = None;
+                    stage.bounds(viewport, vertices, triangle)
+                }
+            };
+            push(bounds, word_sized);
         }
     }
 }

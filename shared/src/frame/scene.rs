@@ -2,7 +2,7 @@
 
 use crate::{
     Stream,
-    format::RAMP,
+    format::{GeometricError, RAMP},
     frame::skips::Skips,
     geometry::{
         cull::Facing,
@@ -15,7 +15,7 @@ use crate::{
     method::{ErrorBounds, Shading, Style},
     pixel::Pixel,
     shader::{Shader, TriangleLoops},
-    stream::record::Mesh,
+    stream::record::{CLOSED_CONVEX, Mesh},
 };
 use embedded_graphics_core::geometry::Size;
 
@@ -35,9 +35,33 @@ pub(crate) struct Settings<'a, C: Pixel> {
     pub(crate) background: C,
     #[cfg(feature = "skips")]
     pub(crate) skips: Skips,
+    /// Coarser levels of meshes may lie so far from them.
+    pub(crate) tolerance: GeometricError,
+    /// Triangles of the levels that are drawn.
+    pub(crate) triangles: u32,
+    /// They are those of one closed convex mesh.
+    pub(crate) closed_convex: bool,
+    /// Triangles that the meshes as they are have more.
+    pub(crate) simplified: u32,
 }
 
-impl<C: Pixel> Settings<'_, C> {
+impl<'a, C: Pixel> Settings<'a, C> {
+    /// Chooses the level of each mesh.
+    pub(crate) fn set_tolerance(&mut self, tolerance: GeometricError) {
+        let (mut meshes, mut triangles, mut flags) = (0u32, 0u32, CLOSED_CONVEX);
+        for mesh in self.stream.meshes_within(tolerance) {
+            (meshes, triangles, flags) = (meshes.wrapping_add(1), triangles.wrapping_add(mesh.triangles), flags & mesh.flags);
+        }
+        let as_they_are = self.stream.meshes.iter().filter(|mesh| mesh.error == 0).fold(0u32, |sum, mesh| sum.wrapping_add(mesh.triangles));
+        (self.tolerance, self.triangles, self.closed_convex) = (tolerance, triangles, meshes == 1 && flags != 0);
+        self.simplified = as_they_are.saturating_sub(triangles);
+    }
+
+    /// The meshes, each at the level that is drawn.
+    pub(crate) fn meshes(&self) -> impl DoubleEndedIterator<Item = &'a Mesh> + use<'a, C> {
+        self.stream.meshes_within(self.tolerance)
+    }
+
     #[inline(always)]
     pub(crate) fn antialiased(&self) -> bool {
         cfg!(feature = "antialias") && self.antialias

@@ -16,16 +16,13 @@
 //! from one by less than one, never goes back: it takes `q` and `q'` to one `p` only if they are one point. This lies on an edge or corner
 //! that `T` and `T'` share, of which the top-left rule gives `p` to one.
 //!
-//! The assumptions are what [`CLOSED_CONVEX`] promises: how near a convex body lies to the mesh, and how far planes lean that were computed
+//! The assumptions are what [`crate::stream::record::CLOSED_CONVEX`] promises: how near a convex body lies to the mesh, and how far planes lean that were computed
 //! from rounded corners. An empty depth buffer also hides what is infinitely far: no pixel of the mesh is.
 
 use crate::{
     format::{SUBPIXEL, UNIT},
     geometry::{cull::Extent, projection::View},
-    stream::{
-        Stream,
-        record::{CLOSED_CONVEX, Mesh, PERSPECTIVE},
-    },
+    stream::record::{Camera, PERSPECTIVE},
 };
 use core::ops::RangeInclusive;
 use embedded_graphics_core::geometry::Size;
@@ -53,16 +50,14 @@ pub(crate) struct DepthElision {
 }
 
 impl DepthElision {
-    /// A grid without marks for one frame; `None` if the scene is not just one closed convex mesh, or is seen from too near.
+    /// A grid without marks for one frame of a closed convex mesh and no other; `None` if it is seen from too near.
     #[must_use]
-    pub(crate) fn new(stream: &Stream<'_>, view: &View, size: Size) -> Option<Self> {
-        let [Mesh { flags, .. }] = stream.meshes else { return None };
-        let camera = &stream.header.camera;
+    pub(crate) fn new(camera: &Camera, view: &View, size: Size) -> Option<Self> {
         let thickness = view.moved(size, 3);
         // The body lies within one unit of its origin.
         let is_seen = camera.projection == PERSPECTIVE || camera.translation[2] + (1 << UNIT) + BEHIND <= camera.far;
         let size = [size.width, size.height].map(|side| (side << SUBPIXEL) as i32);
-        (flags & CLOSED_CONVEX != 0 && is_seen && thickness < THICKEST).then_some(Self {
+        (is_seen && thickness < THICKEST).then_some(Self {
             thickness: thickness as i32,
             size,
             // The last coordinate lies in the last cell.

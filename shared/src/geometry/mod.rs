@@ -4,6 +4,7 @@ pub(crate) mod bin;
 pub(crate) mod clip;
 pub mod cull;
 pub(crate) mod depth_elision;
+pub mod detail;
 pub mod pose;
 pub mod projection;
 pub mod viewport;

@@ -6,7 +6,7 @@
 pub mod record;
 
 use crate::{
-    format::{LARGEST_BUDGET, LEAST_BUDGET, MAX_LIGHTS, NORMAL_LENGTH, ROTATION, UNIT},
+    format::{GeometricError, LARGEST_BUDGET, LEAST_BUDGET, MAX_LIGHTS, NORMAL_LENGTH, ROTATION, UNIT},
     math::vector::{cross, dot},
 };
 use core::{fmt, ops::Range};
@@ -35,7 +35,7 @@ macro_rules! include_stream {
 pub struct Stream<'a> {
     /// Counts, camera, background.
     pub header: &'a Header,
-    /// Runs of vertices and triangles.
+    /// Runs of vertices and triangles, each mesh followed by its coarser levels.
     pub meshes: &'a [Mesh],
     /// Colours and exponents of all materials.
     pub materials: &'a [Material],
@@ -43,7 +43,7 @@ pub struct Stream<'a> {
     pub lights: &'a [Light],
     /// Vertices of all meshes.
     pub vertices: &'a [Vertex],
-    /// Triangles of all meshes.
+    /// Triangles of all meshes and of all of their levels.
     pub triangles: &'a [Triangle],
 }
 
@@ -207,7 +207,6 @@ impl<'a> Stream<'a> {
         field(header.frames > 0, "frames", 0)?;
         field((LEAST_BUDGET..=LARGEST_BUDGET).contains(&header.budget()), "budget", 0)?;
         field(header.camera.viewer <= VIEWER_LOCAL, "viewer", 0)?;
-        field(!self.meshes.is_empty(), "meshes", 0)?;
         field(self.lights.len() <= MAX_LIGHTS, "lights", 0)?;
         self.check_camera()?;
         for (i, material) in self.materials.iter().enumerate() {
@@ -224,16 +223,24 @@ impl<'a> Stream<'a> {
             field(light.kind == POINT || is_one(length(light.vector), 2 * UNIT), "light direction", i)?;
         }
         let (mut next_vertex, mut next_triangle) = (0, 0);
+        let Some(mut finer) = self.meshes.first() else { return field(false, "meshes", 0) };
         for (i, mesh) in self.meshes.iter().enumerate() {
-            field(mesh.first_vertex == next_vertex, "mesh first vertex", i)?;
+            // The first record has none before it, and so none that is finer than itself.
+            let is_level = mesh.error > 0;
+            let expected = if is_level { finer.first_vertex } else { next_vertex };
+            field(mesh.first_vertex == expected, "mesh first vertex", i)?;
+            let is_coarser = mesh.error > finer.error && mesh.vertices == finer.vertices && mesh.material == finer.material;
+            field(!is_level || is_coarser, "mesh level", i)?;
+            finer = mesh;
+            next_vertex = expected.saturating_add(mesh.vertices.into());
             field(mesh.first_triangle == next_triangle, "mesh first triangle", i)?;
-            (next_vertex, next_triangle) = (next_vertex.saturating_add(mesh.vertices), next_triangle.saturating_add(mesh.triangles));
+            next_triangle = next_triangle.saturating_add(mesh.triangles);
             field(usize::from(mesh.material) < self.materials.len(), "mesh material", i)?;
             field(self.vertices_of(mesh).is_some(), "mesh vertices", i)?;
             let triangles = self.triangles_of(mesh).ok_or(StreamError::Field { name: "mesh triangles", record: i as u32 })?;
             for (k, triangle) in triangles.iter().enumerate() {
                 let name = "triangle corner";
-                field(triangle.corners.iter().all(|&c| u32::from(c) < mesh.vertices), name, mesh.first_triangle as usize + k)?;
+                field(triangle.corners.iter().all(|&c| c < mesh.vertices), name, mesh.first_triangle as usize + k)?;
             }
         }
         field(next_vertex == header.vertices && next_triangle == header.triangles, "mesh coverage", self.meshes.len())?;
@@ -282,6 +289,12 @@ impl<'a> Stream<'a> {
         self.header.camera.projection == PERSPECTIVE
     }
 
+    /// Each mesh at the coarsest of its levels that lies no farther than `error` from the mesh as it is; at an error of 0 each as it is.
+    pub fn meshes_within(&self, error: GeometricError) -> impl DoubleEndedIterator<Item = &'a Mesh> + use<'a> {
+        let meshes = self.meshes;
+        (0..meshes.len()).filter_map(move |i| level(meshes, i, error.to_bits()))
+    }
+
     /// The vertices of `mesh`.
     #[must_use]
     pub fn vertices_of(&self, mesh: &Mesh) -> Option<&'a [Vertex]> {
@@ -293,6 +306,15 @@ impl<'a> Stream<'a> {
     pub fn triangles_of(&self, mesh: &Mesh) -> Option<&'a [Triangle]> {
         self.triangles.get(mesh.first_triangle as usize..)?.get(..mesh.triangles as usize)
     }
+}
+
+/// Record `i`, if it is the coarsest level of its mesh whose error is at most `error`.
+// A call: drawing walks meshes in several places, and triangles take the time.
+#[inline(never)]
+fn level(meshes: &[Mesh], i: usize, error: u16) -> Option<&Mesh> {
+    let coarser = |mesh: &Mesh| mesh.error > 0 && mesh.error <= error;
+    let is_coarsest = |mesh: &&Mesh| mesh.error <= error && !meshes.get(i.wrapping_add(1)).is_some_and(coarser);
+    meshes.get(i).filter(is_coarsest)
 }
 
 /// Largest exponent of a highlight.

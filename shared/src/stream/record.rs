@@ -7,7 +7,9 @@
 //! crate [`fixed`], and `new` makes a record of such numbers; [`crate::Stream::parse`] checks what does not follow from the type.
 
 #[doc(inline)]
-pub use crate::format::{ErrorBudget, Focal, Gain, Haversine, InverseAltitude, Length, NormalLength, Radius, Rotation, Unit};
+pub use crate::format::{
+    ErrorBudget, Focal, Gain, GeometricError, Haversine, InverseAltitude, Length, NormalLength, Radius, Rotation, Unit,
+};
 use zerocopy::{FromBytes, Immutable, IntoBytes, KnownLayout};
 
 #[cfg(target_endian = "big")]
@@ -16,7 +18,7 @@ compile_error!("streams are read in place and are little-endian");
 /// First four bytes of every stream.
 pub const MAGIC: [u8; 4] = *b"mTRI";
 /// The version of the format that this core reads and the host writes.
-pub const VERSION: u16 = 4;
+pub const VERSION: u16 = 5;
 
 /// The start of a stream. The arrays follow in the order of the counts.
 #[derive(FromBytes, IntoBytes, Immutable, KnownLayout, Clone, Copy, Debug, PartialEq, Eq)]
@@ -181,22 +183,37 @@ pub const PERSPECTIVE: u8 = 0;
 /// An orthographic camera: rays are parallel.
 pub const ORTHOGRAPHIC: u8 = 1;
 
-/// A run of vertices and triangles with one material. The meshes follow one another without a gap.
+/// A run of vertices and triangles with one material, or a coarser level of detail of the mesh before.
+///
+/// Meshes follow one another without a gap. Each may be followed by coarser levels of itself, from fine to coarse: fewer triangles on some
+/// of the same vertices, for pictures that are too small to show the difference. A frame has one level of each mesh, see
+/// [`crate::Stream::meshes_within`].
 #[derive(FromBytes, IntoBytes, Immutable, KnownLayout, Clone, Copy, Debug, PartialEq, Eq)]
 #[repr(C)]
 pub struct Mesh {
-    /// Index of its first [`Vertex`].
+    /// Index of its first [`Vertex`]; a coarser level has that of its mesh.
     pub first_vertex: u32,
-    /// Number of vertices.
-    pub vertices: u32,
     /// Index of its first [`Triangle`].
     pub first_triangle: u32,
     /// Number of triangles.
     pub triangles: u32,
-    /// Index of its [`Material`].
+    /// Number of vertices; a coarser level has that of its mesh.
+    pub vertices: u16,
+    /// Index of its [`Material`]; a coarser level has that of its mesh.
     pub material: u16,
-    /// Bit 0: [`CLOSED_CONVEX`].
+    /// 0 for a mesh as it is. For a coarser level, [`GeometricError`], rounded up and more than that of the level before: no point of its
+    /// triangles lies farther from the triangles of the mesh as it is, and no point of those farther from its own.
+    pub error: u16,
+    /// Bit 0: [`CLOSED_CONVEX`], of the triangles of this level.
     pub flags: u16,
+}
+
+impl Mesh {
+    /// How far this level lies from the mesh as it is; 0 for the mesh as it is.
+    #[must_use]
+    pub fn error(&self) -> GeometricError {
+        GeometricError::from_bits(self.error)
+    }
 }
 
 /// The mesh is closed and convex, so its front faces never hide one another; see `geometry/depth_elision.rs`. It promises:

@@ -1,0 +1,125 @@
+//! Levels of detail: coarser triangles on the vertices of a mesh.
+//!
+//! Edges are collapsed by a port of meshoptimizer, which moves no vertex: a level costs flash for its triangles alone. What the library says
+//! of its error is an estimate; the error that a stream has is measured here, between the rounded surfaces.
+
+use crate::{
+    convex::is_closed_convex,
+    distance::{Corners, hausdorff},
+    mesh::Mesh,
+    number::above,
+    quantise::{self, Part},
+};
+use anyhow::{Result, anyhow};
+use embedded_graphics_core::geometry::Size;
+use meshoptimizer_rs::{Attributes, Positions, SimplifyOptions, SimplifySettings, Workspace, simplify_with_attributes};
+use microphong::{
+    Stream,
+    format::GeometricError,
+    geometry::detail::tolerance,
+    stream::record::{self, Triangle, Vertex},
+};
+
+/// A coarser level of a part.
+#[derive(Clone, Debug)]
+pub struct Level {
+    /// Their corners count from the part's first vertex.
+    pub triangles: Vec<Triangle>,
+    /// No point of either surface lies farther from the other; more than 0, rounded up.
+    pub error: GeometricError,
+    /// Closed and convex: front faces never hide one another.
+    pub closed_convex: bool,
+}
+
+/// A level has at most this share of the triangles of the level before; flash for a smaller gain would be wasted.
+const GAIN: f64 = 0.9;
+/// How much the difference of unit normals counts beside distances, so that of two collapses as near to the mesh the one is taken that
+/// changes its light less. Ten times as much takes a third more triangles for the same error.
+const NORMALS: [f32; 3] = [0.05; 3];
+
+/// Gives each part of a mesh a coarser level for each of some errors, of the fewest triangles that keep to it.
+///
+/// A level that would save less than a tenth of the triangles is left out.
+///
+/// # Errors
+/// When the library refuses the mesh.
+pub fn add(mesh: &Mesh, parts: &mut [Part], errors: &[GeometricError]) -> Result<()> {
+    // Parts have borders in common, which stay without gaps at whatever levels are drawn.
+    let options = if parts.len() > 1 { SimplifyOptions::LOCK_BORDER } else { SimplifyOptions::EMPTY };
+    // An error of 0 is that of the mesh as it is.
+    let mut errors: Vec<_> = errors.iter().copied().filter(|&error| error > GeometricError::ZERO).collect();
+    errors.sort();
+    for part in parts {
+        for &error in &errors {
+            let (finer, least) =
+                part.coarser.last().map_or((part.triangles.len(), GeometricError::ZERO), |last| (last.triangles.len(), last.error));
+            let Some((triangles, error)) = fewest(part, finer, error, options)? else { continue };
+            if error > least && triangles.len() as f64 <= GAIN * finer as f64 {
+                let closed_convex = is_convex(mesh, part, &triangles);
+                part.coarser.push(Level { triangles, error, closed_convex });
+            }
+        }
+    }
+    Ok(())
+}
+
+/// About as few triangles, up to `most`, as lie within `error` of a part, and the error that they have; `None` if there are none.
+fn fewest(part: &Part, most: usize, error: GeometricError, options: SimplifyOptions) -> Result<Option<(Vec<Triangle>, GeometricError)>> {
+    let surface = corners(&part.vertices, &part.triangles);
+    let (mut too_few, mut enough, mut found) = (0, most, None);
+    while enough - too_few > 1 + enough / 64 {
+        let target = too_few.midpoint(enough);
+        let triangles: Vec<_> =
+            simplified(part, target, options)?.into_iter().filter_map(|corners| quantise::record(&part.vertices, corners)).collect();
+        let apart = hausdorff(&surface, &corners(&part.vertices, &triangles), [0.25, 1.0].map(|share| share * f64::from(error)));
+        let apart = apart.filter(|_| !triangles.is_empty());
+        let Some(apart) = apart else {
+            too_few = target;
+            continue;
+        };
+        // There may be more than asked for: then there cannot be fewer.
+        (too_few, enough) = (if triangles.len() > target { target } else { too_few }, target);
+        // Never 0, which is the error of the mesh as it is.
+        found = Some((triangles, above(apart)));
+    }
+    Ok(found)
+}
+
+/// The meshes of a stream, each at the level that a picture of `size` pixels shows.
+pub fn drawn<'a>(stream: &Stream<'a>, size: Size) -> impl DoubleEndedIterator<Item = &'a record::Mesh> + use<'a> {
+    stream.meshes_within(tolerance(stream.header, size))
+}
+
+/// About `target` triangles on vertices of `part`, as corners.
+fn simplified(part: &Part, target: usize, options: SimplifyOptions) -> Result<Vec<[u16; 3]>> {
+    let refused = |error| anyhow!("the mesh cannot be simplified: {error}");
+    let indices: Vec<u32> = part.triangles.iter().flat_map(|triangle| triangle.corners.map(u32::from)).collect();
+    let positions: Vec<[f32; 3]> = part.vertices.iter().map(|vertex| vertex.position().map(f32::from)).collect();
+    let normals: Vec<f32> = part.vertices.iter().flat_map(|vertex| vertex.normal().map(f32::from)).collect();
+    let positions = Positions::from_packed(&positions);
+    let normals = Attributes::from_interleaved(&normals, part.vertices.len(), NORMALS.len(), NORMALS.len(), 0).map_err(refused)?;
+    // The error is one that no mesh has: the number of triangles decides.
+    let settings = SimplifySettings { target_index_count: 3 * target, target_error: 1e6, options };
+    let mesh =
+        simplify_with_attributes(&indices, positions, normals, &NORMALS, None, settings, &mut Workspace::default()).map_err(refused)?;
+    Ok(mesh.indices.chunks_exact(3).map(|corners| [0, 1, 2].map(|k| corners[k] as u16)).collect())
+}
+
+fn corners(vertices: &[Vertex], triangles: &[Triangle]) -> Vec<Corners> {
+    triangles.iter().map(|triangle| triangle.corners.map(|corner| vertices[usize::from(corner)].position().map(f64::from))).collect()
+}
+
+/// Whether these triangles of a part are closed and convex; vertices that they leave out are no part of them.
+fn is_convex(mesh: &Mesh, part: &Part, triangles: &[Triangle]) -> bool {
+    let mut kept = Mesh::default();
+    let mut index = vec![None; part.vertices.len()];
+    for triangle in triangles {
+        kept.triangles.push(triangle.corners.map(usize::from).map(|corner| {
+            *index[corner].get_or_insert_with(|| {
+                kept.positions.push(mesh.positions[part.sources[corner]]);
+                kept.positions.len() - 1
+            })
+        }));
+    }
+    is_closed_convex(&kept, &part.vertices, triangles)
+}
