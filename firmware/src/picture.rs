@@ -31,12 +31,13 @@ fn split_line(text: &str, columns: usize) -> (&str, &str) {
     let Some((limit, _)) = text.char_indices().nth(columns) else {
         return (text, "");
     };
-    let (head, tail) = text.split_at(limit);
+    // `split_at` would bring 5 KB of code for its panic.
+    let (head, tail) = text.split_at_checked(limit).unwrap_or((text, ""));
     if tail.starts_with(' ') {
         return (head, tail.trim_start());
     }
     match head.rsplit_once(' ') {
-        Some((line, _)) => (line, text.split_at(line.len()).1.trim_start()),
+        Some((line, _)) => (line, text.get(line.len()..).unwrap_or("").trim_start()),
         None => (head, tail),
     }
 }
