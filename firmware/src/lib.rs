@@ -152,8 +152,8 @@ fn animate<D: Display>(
     // All has been checked: from now on at full speed. Outside of the rows `shown` the display shows nothing but background: what is so in
     // this frame too is not drawn.
     let mut shown = 0..display.size().height;
+    let mut start = display.now();
     loop {
-        let start = display.now();
         for number in 0..u32::from(stream.header.frames) {
             display.begin()?;
             let mut frame = painter.prepare(&mut renderer, number);
@@ -163,7 +163,8 @@ fn animate<D: Display>(
             painter.draw(display, frame, None)?;
             display.present();
         }
-        if let Some((start, end)) = start.zip(display.now()) {
+        // Once: what follows takes as long.
+        if let Some((start, end)) = start.take().zip(display.now()) {
             defmt::info!("{=u16} frames in {=u64} us", stream.header.frames, end - start);
         }
     }
