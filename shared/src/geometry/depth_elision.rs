@@ -16,8 +16,8 @@
 //! from one by less than one, never goes back: it takes `q` and `q'` to one `p` only if they are one point. This lies on an edge or corner
 //! that `T` and `T'` share, of which the top-left rule gives `p` to one.
 //!
-//! The assumptions are what [`crate::stream::record::CLOSED_CONVEX`] promises: how near a convex body lies to the mesh, and how far planes lean that were computed
-//! from rounded corners. An empty depth buffer also hides what is infinitely far: no pixel of the mesh is.
+//! The assumptions are what [`crate::stream::record::CLOSED_CONVEX`] promises: how near a convex body lies to the mesh, and how far planes
+//! lean that were computed from rounded corners. An empty depth buffer also hides what is infinitely far: no pixel of the mesh is.
 
 use crate::{
     format::{SUBPIXEL, UNIT},

@@ -67,6 +67,19 @@ pub enum Choice {
     Phong,
 }
 
+impl Choice {
+    /// How many triangles are drawn so.
+    fn count(self, counts: &mut Counts) -> &mut u32 {
+        let [solid, linear, quadratic, phong] = &mut counts.choices;
+        match self {
+            Self::Solid(_) => solid,
+            Self::Linear | Self::Between(_) => linear,
+            Self::Quadratic => quadratic,
+            Self::Phong => phong,
+        }
+    }
+}
+
 /// Chooses what draws a triangle.
 #[inline(never)]
 #[must_use]
@@ -79,21 +92,6 @@ pub fn choose(setup: &TriangleSetup<'_>, shading: &Shading<'_>) -> Choice {
         return among(setup, shading, curvature, &setup.corners_of_two_lights(), |left| two_lights(setup, shading, left));
     }
     Choice::Phong
-}
-
-/// [`choose`], counted in a band whose first row is `top`.
-#[inline(always)]
-fn counted(setup: &TriangleSetup<'_>, shading: &Shading<'_>, top: i32, counts: &mut Counts) -> Choice {
-    let choice = choose(setup, shading);
-    let [solid, linear, quadratic, phong] = &mut counts.choices;
-    let count = match choice {
-        Choice::Solid(_) => solid,
-        Choice::Linear | Choice::Between(_) => linear,
-        Choice::Quadratic => quadratic,
-        Choice::Phong => phong,
-    };
-    setup.count(top, count, 1);
-    choice
 }
 
 /// [`choose`] with these `cosines` at the corners; `linear` chooses where linear interpolation leaves so much of the budget.
@@ -196,8 +194,9 @@ impl Method for Auto {
     }
 
     fn shade(&self, setup: &TriangleSetup<'_>, shading: &Shading<'_>, canvas: &mut dyn Canvas) -> u32 {
-        let [_, top, _] = canvas.bounds();
-        match (counted(setup, shading, top, canvas.counts()), shading.constant) {
+        let choice = choose(setup, shading);
+        setup.count_on(canvas, |counts| choice.count(counts), 1);
+        match (choice, shading.constant) {
             (Choice::Solid(levels), _) => setup.draw_spans(&mut Shaded::new(Constant, Uniform(of_levels(levels))), canvas),
             (Choice::Linear, _) => shading.draw_levels::<3, RANGE>(setup, gouraud::reflected(setup, shading.reflectance), canvas),
             (Choice::Between(levels), _) => shading.draw_levels::<3, RANGE>(setup, levels, canvas),
@@ -222,7 +221,9 @@ impl Loops for Auto {
         tables: MaterialTables<'_, C>,
         band: &mut Band<'_, C>,
     ) -> Option<u32> {
-        match counted(setup, shading, band.top, &mut band.counts) {
+        let choice = choose(setup, shading);
+        setup.count(band.top, choice.count(&mut band.counts), 1);
+        match choice {
             Choice::Solid(levels) => Some(setup.fill(|| Constant, Solid(tables.colour(levels)), band)),
             Choice::Linear | Choice::Between(_) => by::<Gouraud, _>(setup, shading, tables, band),
             Choice::Quadratic => by::<SixPoint, _>(setup, shading, tables, band),
@@ -245,7 +246,9 @@ impl Loops for ThreeChannels<Auto> {
         tables: MaterialTables<'_, C>,
         band: &mut Band<'_, C>,
     ) -> Option<u32> {
-        match (counted(setup, shading, band.top, &mut band.counts), shading.constant) {
+        let choice = choose(setup, shading);
+        setup.count(band.top, choice.count(&mut band.counts), 1);
+        match (choice, shading.constant) {
             (Choice::Solid(levels), _) => Some(setup.fill(|| Constant, Solid(tables.colour(levels)), band)),
             (Choice::Linear, _) => by::<ThreeChannels<Gouraud>, _>(setup, shading, tables, band),
             (Choice::Between(levels), _) => Some(Shading::fill_three(setup, || channels(levels), |plane| plane, band)),

@@ -270,12 +270,8 @@ impl Shading<'_> {
             }
             reflectance.add_no_highlight(&factors, &mut ambient);
         }
-        // The compiler does not see that calls of a canvas can be left out.
-        if cfg!(feature = "skips") {
-            let [_, top, _] = canvas.bounds();
-            setup.count(top, &mut canvas.counts().without_highlight, without_highlight);
-            setup.count(top, &mut canvas.counts().without_light, without_light);
-        }
+        setup.count_on(canvas, |counts| &mut counts.without_highlight, without_highlight);
+        setup.count_on(canvas, |counts| &mut counts.without_light, without_light);
         // Lent, since all of this would be copied if it were moved.
         let (shared, levels) = (&mut [F::Common::default(); CHUNK], &mut [[0; 3]; CHUNK]);
         let (lights, diffuse) = (&mut lights, &mut diffuse);

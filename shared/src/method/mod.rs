@@ -36,6 +36,7 @@ use crate::{
         active::ActiveTriangle,
         band::Band,
         canvas::{Shaded, SpanShader},
+        counts::Counts,
         pixel_shader::{PixelShader, Ramp, Rgb},
         triangle::{ScreenTriangle, turn},
     },
@@ -297,7 +298,7 @@ impl TriangleSetup<'_> {
     /// Whether the highlight of a constant light, whose N·H at the corners is `half`, is left out because it can be seen nowhere.
     #[inline(always)]
     pub(crate) fn leaves_out_highlight(&self, reflectance: &Reflectance, half: &[i32; 3]) -> bool {
-        largest(half) < by_fraction(reflectance.faintest(), self.triangle.min_normal_length) << (16 - NORMAL_LENGTH)
+        largest(half) < self.before_division(reflectance.faintest())
     }
 
     /// Whether a light whose N·L at the corners is `towards` is left out because it reaches the triangle nowhere.
@@ -319,10 +320,26 @@ impl TriangleSetup<'_> {
         }
     }
 
+    /// [`Self::count`] in the band of `canvas`.
+    #[inline(always)]
+    pub(crate) fn count_on(&self, canvas: &mut dyn Canvas, count: impl FnOnce(&mut Counts) -> &mut u32, number: u32) {
+        // The compiler does not see that calls of a canvas can be left out.
+        if cfg!(feature = "skips") {
+            let [_, top, _] = canvas.bounds();
+            self.count(top, count(canvas.counts()), number);
+        }
+    }
+
     /// Threshold of N·H, linear between the corners, below which N·H over |N| is too small for a highlight; Q2.30.
     #[inline(always)]
     pub fn highlight_threshold(&self, reflectance: &Reflectance) -> i32 {
-        by_fraction(reflectance.highlight_threshold(), self.triangle.min_normal_length) << (16 - NORMAL_LENGTH)
+        self.before_division(reflectance.highlight_threshold())
+    }
+
+    /// What a cosine, Q2.30, is at least before it is divided by |N|, where N·H is linear and |N| at least [`Triangle::min_normal_length`].
+    #[inline(always)]
+    fn before_division(&self, cosine: i32) -> i32 {
+        by_fraction(cosine, self.triangle.min_normal_length) << (16 - NORMAL_LENGTH)
     }
 }
 
