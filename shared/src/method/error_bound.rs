@@ -21,7 +21,7 @@ use crate::{
     lighting::reflectance::{FULL, Reflectance},
     method::{
         CornerCosines,
-        highlight_error::{self, Kind, Place},
+        highlight_error::{self, Kind, Place, USUAL_EXPONENT},
         largest,
     },
     stream::record::Triangle,
@@ -48,6 +48,8 @@ struct LightBounds {
     diffuse: u32,
     /// The level of a whole highlight, Q9.7.
     specular: u32,
+    /// The same times [`USUAL_EXPONENT`] over the exponent, rounded up.
+    narrowed: u32,
 }
 
 /// What bounds on the triangles of one material have in common.
@@ -86,7 +88,7 @@ fn fraction(x: u32, share: u32) -> u32 {
 impl ErrorBounds {
     /// Before they are filled; all zeros.
     pub const EMPTY: Self = Self {
-        lights: [LightBounds { diffuse: 0, specular: 0 }; MAX_LIGHTS],
+        lights: [LightBounds { diffuse: 0, specular: 0, narrowed: 0 }; MAX_LIGHTS],
         ambient: 0,
         threshold: 0,
         exponent: 0,
@@ -99,7 +101,8 @@ impl ErrorBounds {
     pub fn new(reflectance: &Reflectance, exponent: u16, lights: usize) -> Self {
         let light = |light| {
             let [diffuse, specular] = if light < lights { reflectance.largest_gains(light) } else { [0; 2] };
-            LightBounds { diffuse, specular }
+            let narrowed = specular * u32::from(USUAL_EXPONENT) / u32::from(exponent.max(1)) + 1;
+            LightBounds { diffuse, specular, narrowed }
         };
         let lights = [light(0), light(1)];
         let [r, g, b] = reflectance.ambient();
@@ -144,12 +147,29 @@ impl Curvature {
         (self.around << 15) + self.around * ((self.around * 69) >> 7)
     }
 
+    /// The remainder of the quadratic through six points over the third derivative of what is interpolated, Q0.32.
+    #[inline(always)]
+    fn remainder(self) -> u32 {
+        let h = self.h;
+        // 8 h^1.5 (1 + 3.35 h) times the remainder, by a chord, Q0.32; h^1.5 is in Q0.32 as well.
+        let shape = share(8.0 * REMAINDER) + ((h * share(8.0 * REMAINDER * 3.35)) >> 16) + 1;
+        times(h * rooted(h), shape)
+    }
+
     /// An upper bound, Q2.30, of a cosine whose numerator is linear and largest at a corner with this value, which is not negative.
     #[inline(always)]
     fn cosine(self, corner: i32) -> i32 {
         // 1/ρ is at most 1 + 0.9 h, a chord, and normals are unit vectors to 2^-15; Q0.32.
         let longer = self.h * share(0.9) + (4 << 16);
         corner + upper(corner, longer as i32) + 1
+    }
+}
+
+impl LightBounds {
+    /// What the quadratic through diffuse light is off, where that is not clamped; see [`Curvature::remainder`].
+    #[inline(always)]
+    fn remainder(&self, of_curvature: u32) -> u32 {
+        fraction(times(self.diffuse, share(3.01)), of_curvature)
     }
 }
 
@@ -207,15 +227,12 @@ impl ErrorBounds {
     #[inline(never)]
     #[must_use]
     pub(crate) fn quadratic(&self, curvature: Curvature, cosines: &[CornerCosines]) -> u32 {
-        let h = curvature.h;
-        // 8 h^1.5 (1 + 3.35 h) times the remainder, by a chord, Q0.32; h^1.5 is in Q0.32 as well.
-        let shape = share(8.0 * REMAINDER) + ((h * share(8.0 * REMAINDER * 3.35)) >> 16) + 1;
-        let size = times(h * rooted(h), shape);
+        let remainder = curvature.remainder();
         let mut bound = 0u32;
         for (light, [towards, half]) in self.lights.iter().zip(cosines) {
             let most = largest(towards);
             if most > 0 {
-                bound += fraction(times(light.diffuse, share(3.01)), size);
+                bound += light.remainder(remainder);
                 if let Some([light_side, dark_side]) = terminator(curvature, towards, most) {
                     // Over ρ, which is at least 0.81.
                     let gap =
@@ -228,6 +245,20 @@ impl ErrorBounds {
             }
         }
         bound
+    }
+
+    /// A bound of the quadratics through cosines at corners and midpoints of edges, whose highlights are looked up at each pixel, in 1/255 of
+    /// full intensity, Q9.7. What is clamped at the pixel is no farther off than what is not.
+    #[inline(never)]
+    #[must_use]
+    pub(crate) fn cosines(&self, curvature: Curvature, cosines: &[CornerCosines]) -> u32 {
+        let remainder = curvature.remainder();
+        self.lights.iter().zip(cosines).fold(0u32, |bound, (light, [_, half])| {
+            let highlight = self
+                .highlight(curvature, half)
+                .map_or(0, |place| place.rounding(self.exponent, light.specular) + place.error_of_cosines(light.narrowed));
+            bound.saturating_add(light.remainder(remainder) + highlight)
+        })
     }
 
     /// Whether light may exceed 255 somewhere on the triangle: what is clamped at nodes is not clamped between them.
@@ -256,7 +287,7 @@ impl ErrorBounds {
     #[inline(always)]
     #[must_use]
     pub(crate) fn level(&self, cosine: i32, highlight: i32) -> u32 {
-        let [LightBounds { diffuse, specular }, _] = &self.lights;
+        let [LightBounds { diffuse, specular, .. }, _] = &self.lights;
         let diffuse = (diffuse * (cosine as u32 >> (COSINE - 15))) >> 15;
         diffuse + ((specular * highlight as u32) >> 16) + 2
     }
