@@ -35,12 +35,12 @@ fn blocks_are_the_instructions_in_them() {
     assert!(executed[0] == executed[1], "blocks and single instructions differ");
 }
 
-/// Each style is counted as itself, in the order of their names: flat shading costs the same in perspective, but for the question, and what cannot be drawn has no
-/// count.
+/// Each style is counted as itself, in the order of their names: flat shading costs the same in perspective, but for the question, and what
+/// cannot be drawn has no count.
 #[test]
 fn styles_are_told_apart() {
     let shaders = [Shader::FLAT, Shader::GOURAUD, named("gouraud4")];
-    let costs = styles::measure(&Counters::default(), &scene::load("dodecahedron").unwrap(), &shaders, styles::STYLES, &|| ()).unwrap();
+    let costs = styles::measure(&Counters::default(), &scene::load("dodecahedron").unwrap(), &shaders, styles::styles, &|| ()).unwrap();
     let [flat, gouraud, split]: [[Option<u64>; 4]; 3] = [0, 1, 2].map(|k: usize| costs[k].instructions.as_slice().try_into().unwrap());
     println!("{:?}: {flat:?}, {gouraud:?}, {split:?}", costs[0].styles);
     assert!(flat[0].unwrap().abs_diff(flat[3].unwrap()) < 100);

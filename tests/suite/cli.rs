@@ -535,6 +535,11 @@ fn convert_inspect_and_render_work_together() {
     assert_eq!((&inspected["vertices"], &inspected["frames"]), (&4.into(), &7.into()));
     let drawn = json(place.succeeds(&["render", "good.tri", "--size", "33x17", "--json"]));
     assert_eq!((&drawn["shader"], &drawn["output"]), (&"phong".into(), &"good.png".into()));
+    // What may take longer than a second announces itself, a single level too; what does not is silent.
+    for (lod, announced) in [(&[][..], ""), (&["--lod", "64x64"], "searching levels of detail, 2 steps ...\n")] {
+        let output = place.run(&[&["convert", "good.obj", "-o", "lod.tri"], lod].concat());
+        assert!(output.status.success() && output.stderr == announced.as_bytes(), "{lod:?}: {output:?}");
+    }
     assert_eq!(place.succeeds(&["render", "good.tri", "--size", "33x17", "--frames", "3", "-o", "f/", "--json"]).lines().count(), 3);
     assert_eq!(place.succeeds(&["render", "good.tri", "--size", "33x17", "--frames", "3", "-o", "f.apng"]).lines().count(), 2);
     let numbered = |name: &str| Path::new("f").join(name);

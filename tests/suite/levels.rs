@@ -27,7 +27,7 @@ use microphong_sim::{
     vector::V3,
     view::{Up, View},
 };
-use std::{error::Error, fs, iter};
+use std::{cell::Cell, error::Error, fs, iter};
 use zerocopy::FromBytes;
 
 type Result<T = ()> = std::result::Result<T, Box<dyn Error>>;
@@ -47,7 +47,7 @@ fn streams(name: &str, sides: &[u32]) -> Result<[StreamBytes; 2]> {
     let (mut parts, _) = quantise(&mesh);
     let without = look.stream(&parts)?;
     let errors: Vec<_> = sides.iter().map(|&side| look.tolerance(&parts, (side, side))).collect();
-    levels::add(&mesh, &mut parts, &errors)?;
+    levels::add(&mesh, &mut parts, &errors, &|| ())?;
     Ok([look.stream(&parts)?, without])
 }
 
@@ -170,7 +170,9 @@ fn levels_of_a_convex_body_are_marked_where_they_are_convex() -> Result {
         }
     }
     let (mut parts, _) = quantise(&mesh);
-    levels::add(&mesh, &mut parts, &[GeometricError::from_num(0.001)])?;
+    let steps = Cell::new(0);
+    levels::add(&mesh, &mut parts, &[GeometricError::from_num(0.001)], &|| steps.set(steps.get() + 1))?;
+    assert_eq!(steps.get(), parts.len(), "a step is a part at an error");
     let [part] = &parts[..] else { panic!("{} parts", parts.len()) };
     assert!(part.closed_convex);
     let [level] = &part.coarser[..] else { panic!("{} levels", part.coarser.len()) };

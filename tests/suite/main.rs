@@ -32,6 +32,7 @@ mod raster;
 mod scanlines;
 mod skips;
 mod split;
+mod still;
 mod stress;
 mod verify;
 mod watertight;

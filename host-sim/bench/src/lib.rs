@@ -144,7 +144,7 @@ impl Firmware {
     }
 
     fn measure(&self, processor: Processor, scene: &Scene, shader: Shader) -> Result<Measurement> {
-        let elf = self.elf.with_stream(&verify::prepare(scene.stream.as_bytes(), shader, 1)?)?;
+        let elf = self.elf.with_stream(&boards::watchable(self.board, scene.stream.as_bytes(), shader)?)?;
         let mut meter = self.meter.clone();
         let ranges = meter.ranges();
         let watched = boards::watch(self.board, &elf, &ranges, &mut |executed| meter.step(executed))?;

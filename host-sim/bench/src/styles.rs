@@ -13,30 +13,30 @@ use microphong_render::{
 use microphong_stress::{case::Case, cost::Count};
 use rayon::prelude::*;
 use serde::Serialize;
+use std::iter;
 
 /// A way of drawing, by name.
-pub type Named = (&'static str, fn(Style) -> Style);
+pub type Named = (String, Style);
 
-/// The plain style, dither, antialiasing and interpolation in perspective.
-pub const STYLES: &[Named] = &[
-    ("plain", |plain| plain),
-    ("dither", |plain| Style { dither: true, ..plain }),
-    ("antialias", |plain| Style { antialias: true, ..plain }),
-    ("perspective-correct", |plain| Style { perspective_correct: true, ..plain }),
-];
+/// The plain style of a method, dither, antialiasing and interpolation in perspective.
+#[must_use]
+pub fn styles(shader: Shader) -> Vec<Named> {
+    let plain = Style::from(shader);
+    let named = [
+        ("plain", plain),
+        ("dither", Style { dither: true, ..plain }),
+        ("antialias", Style { antialias: true, ..plain }),
+        ("perspective-correct", Style { perspective_correct: true, ..plain }),
+    ];
+    named.map(|(name, style)| (name.to_owned(), style)).into()
+}
 
-/// The plain style, and that with each thing that nobody can see, in the order of [`Skips::ALL_BUT`].
-pub const SKIPS: &[Named] = &[
-    ("plain", |plain| plain),
-    ("with back-faces", |plain| with(0, plain)),
-    ("with between-centres", |plain| with(1, plain)),
-    ("with depth", |plain| with(2, plain)),
-    ("with highlights", |plain| with(3, plain)),
-    ("with lights", |plain| with(4, plain)),
-];
-
-fn with(number: usize, plain: Style) -> Style {
-    Style { skips: Skips::ALL_BUT[number].1, ..plain }
+/// The plain style of a method, and that with each thing that nobody can see.
+#[must_use]
+pub fn skips(shader: Shader) -> Vec<Named> {
+    let plain = Style::from(shader);
+    let with = Skips::ALL_BUT.map(|(name, skips)| (format!("with {name}"), Style { skips, ..plain }));
+    iter::once(("plain".to_owned(), plain)).chain(with).collect()
 }
 
 /// A scene by one method in several styles.
@@ -49,12 +49,12 @@ pub struct StyleCosts {
     /// Pixels of all drawn triangles, in the plain style.
     pub pixels: u32,
     /// Names of the styles, the plain one first.
-    pub styles: Vec<&'static str>,
+    pub styles: Vec<String>,
     /// Instructions of the frame, clearing included, in each of them; `None` where the method cannot draw it.
     pub instructions: Vec<Option<u64>>,
 }
 
-/// Counts frame 0 of `scene` by `shaders` in `styles`; `tick` is called for each of them.
+/// Counts frame 0 of `scene` by `shaders`, each in its `styles`, the plain one first; `tick` is called for each method.
 ///
 /// # Errors
 /// When this is no x86-64 computer, valgrind is missing, or the scene cannot be drawn.
@@ -62,22 +62,21 @@ pub fn measure(
     counters: &Counters,
     scene: &Scene,
     shaders: &[Shader],
-    styles: &[Named],
+    styles: fn(Shader) -> Vec<Named>,
     tick: &(dyn Fn() + Sync),
 ) -> Result<Vec<StyleCosts>> {
     let (width, height) = Processor::X86_64.size();
     let stream = scene.stream.parse().with_context(|| scene.name.clone())?;
-    let names: Vec<_> = styles.iter().map(|(name, _)| *name).collect();
     let costs = shaders.par_iter().map(|&shader| {
-        let plain = Style::from(shader);
-        let (_, stats) = render::frame::<Rgb565Be>(stream, Size::new(width, height), plain, height, 0)?;
-        let count = |(_, style): &Named| {
-            let (stream, size, style) = (scene.stream.clone(), [width, height], style(plain));
+        let (_, stats) = render::frame::<Rgb565Be>(stream, Size::new(width, height), Style::from(shader), height, 0)?;
+        let (names, styles): (_, Vec<_>) = styles(shader).into_iter().unzip();
+        let count = |style| {
+            let (stream, size) = (scene.stream.clone(), [width, height]);
             counters.count(&Case { stream, size, frame: 0, style, format: Format::Rgb565, band_rows: height })
         };
-        let instructions = styles.iter().map(count).collect::<Result<_>>()?;
+        let instructions = styles.into_iter().map(count).collect::<Result<_>>()?;
         tick();
-        Ok(StyleCosts { scene: scene.name.clone(), shader: shader.name(), pixels: stats.pixels, styles: names.clone(), instructions })
+        Ok(StyleCosts { scene: scene.name.clone(), shader: shader.name(), pixels: stats.pixels, styles: names, instructions })
     });
     costs.collect()
 }

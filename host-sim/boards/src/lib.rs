@@ -167,12 +167,12 @@ impl Recording {
         self.log.iter().filter_map(checksum).collect()
     }
 
-    /// What the firmware has counted under this name in its last frame.
+    /// What the firmware has counted under this name in its first frame.
     ///
     /// # Errors
     /// When it has not logged that.
     pub fn figure(&self, name: &str) -> Result<u64> {
-        let frame = self.log.iter().rev().find_map(|line| line.strip_prefix("frame "));
+        let frame = self.log.iter().find_map(|line| line.strip_prefix("frame "));
         let mut words = frame.unwrap_or_default().split_whitespace();
         let value = words.find(|&word| word == name).and_then(|_| words.next()?.parse().ok());
         value.with_context(|| format!("the firmware has not logged {name}; {}", log::tail(&self.log)))
@@ -216,8 +216,22 @@ pub struct Executed {
     pub cycles: u64,
 }
 
-/// Runs `elf`, whose stream must have a single frame, and hands each instruction of one frame to `visit`. In QEMU
-/// those in `ranges` and without cycles; on the Pico all, of a frame that follows another.
+/// The stream as [`watch`] needs it: of frames by this method, the first of which is watched.
+///
+/// The Pico's is watched when it is drawn at full speed, which does not happen while the picture is shown already. It gets a second frame,
+/// which is turned by so little that it takes as long.
+///
+/// # Errors
+/// When `stream` is shorter than its header says.
+pub fn watchable(board: Board, stream: &[u8], shader: Shader) -> Result<Vec<u8>> {
+    match board {
+        Board::Pico => verify::with_header(&verify::prepare(stream, shader, 2)?, |header| header.camera.period = u16::MAX),
+        Board::Lm3s6965evb | Board::Mps2An385 | Board::Mps2An386 => verify::prepare(stream, shader, 1),
+    }
+}
+
+/// Runs `elf`, whose stream must be [`watchable`], and hands each instruction of its first frame to `visit`. In QEMU those in `ranges` and
+/// without cycles; on the Pico all, of a frame that follows another.
 ///
 /// # Errors
 /// When the program crashes, falls silent or drives its display wrongly.

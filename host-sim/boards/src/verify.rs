@@ -131,9 +131,16 @@ fn compare(request: &Request, elf: &Path, artefacts: &Path) -> Result<Report> {
 /// # Errors
 /// When `stream` is shorter than its header says.
 pub fn prepare(stream: &[u8], shader: Shader, frames: u16) -> Result<Vec<u8>> {
+    with_header(stream, |header| (header.shader, header.frames) = (shader.facts().id, frames))
+}
+
+/// The stream with something changed in its header.
+///
+/// # Errors
+/// When `stream` is shorter than its header says.
+pub fn with_header(stream: &[u8], change: impl FnOnce(&mut Header)) -> Result<Vec<u8>> {
     let (mut header, _) = Header::read_from_prefix(stream).map_err(|_| anyhow!("the stream is shorter than its header"))?;
-    header.shader = shader.facts().id;
-    header.frames = frames;
+    change(&mut header);
     let length = header.length as usize;
     let mut bytes = stream.get(..length).with_context(|| format!("the stream has {} bytes, not {length}", stream.len()))?.to_vec();
     let header = header.as_bytes();

@@ -39,11 +39,11 @@ const NORMALS: [f32; 3] = [0.05; 3];
 
 /// Gives each part of a mesh a coarser level for each of some errors, of the fewest triangles that keep to it.
 ///
-/// A level that would save less than a tenth of the triangles is left out.
+/// A level that would save less than a tenth of the triangles is left out. `tick` is called after each error of each part.
 ///
 /// # Errors
 /// When the library refuses the mesh.
-pub fn add(mesh: &Mesh, parts: &mut [Part], errors: &[GeometricError]) -> Result<()> {
+pub fn add(mesh: &Mesh, parts: &mut [Part], errors: &[GeometricError], tick: &dyn Fn()) -> Result<()> {
     // Parts have borders in common, which stay without gaps at whatever levels are drawn.
     let options = if parts.len() > 1 { SimplifyOptions::LOCK_BORDER } else { SimplifyOptions::EMPTY };
     // An error of 0 is that of the mesh as it is.
@@ -53,7 +53,9 @@ pub fn add(mesh: &Mesh, parts: &mut [Part], errors: &[GeometricError]) -> Result
         for &error in &errors {
             let (finer, least) =
                 part.coarser.last().map_or((part.triangles.len(), GeometricError::ZERO), |last| (last.triangles.len(), last.error));
-            let Some((triangles, error)) = fewest(part, finer, error, options)? else { continue };
+            let found = fewest(part, finer, error, options)?;
+            tick();
+            let Some((triangles, error)) = found else { continue };
             if error > least && triangles.len() as f64 <= GAIN * finer as f64 {
                 let closed_convex = is_convex(mesh, part, &triangles);
                 part.coarser.push(Level { triangles, error, closed_convex });

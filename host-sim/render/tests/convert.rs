@@ -228,6 +228,35 @@ fn concave_polygons_keep_their_gaps() {
     }
 }
 
+/// A mesh of a stream has 65,535 vertices, which is all that 16 bits can count, and not one more; the surface is the same.
+#[test]
+fn one_vertex_too_many_makes_another_mesh() {
+    // Triangles that share no vertex, one in each cell of a grid.
+    let (count, side) = (usize::from(u16::MAX) / 3, 150);
+    let mut mesh = mesh::Mesh::default();
+    for k in 0..=count {
+        let [x, y] = [k % side, k / side].map(|c| 1.4 * c as f64 / side as f64 - 0.7);
+        mesh.triangles.push([0, 1, 2].map(|corner| 3 * k + corner));
+        mesh.positions.extend([[x, y, 0.0], [x + 0.005, y, 0.0], [x, y + 0.005, 0.0]]);
+        mesh.normals.extend([[0.0, 0.0, 1.0]; 3]);
+    }
+    let look = Look::new(Surface::metal([1.0; 3], [0.1, 0.5, 0.4], 20), View::orbit(Up::Y, 0.0, 0.0, 4.0, 8));
+    for (triangles, expected) in [(count + 1, &[65_535, 3][..]), (count, &[65_535])] {
+        mesh.triangles.truncate(triangles);
+        let stream = look.stream(&quantise(&mesh).0).unwrap();
+        let stream = stream.parse().unwrap();
+        let vertices: Vec<_> = stream.meshes.iter().map(|mesh| mesh.vertices).collect();
+        assert_eq!(vertices, expected);
+        let corners = stream.meshes.iter().flat_map(|mesh| {
+            let vertices = stream.vertices_of(mesh).unwrap();
+            stream.triangles_of(mesh).unwrap().iter().map(|triangle| triangle.corners.map(|c| wide(vertices[usize::from(c)].position)))
+        });
+        let exact = mesh.triangles.iter().map(|corners| corners.map(|corner| mesh.positions[corner]));
+        assert!(corners.clone().count() == triangles);
+        assert!(corners.zip(exact).all(|(found, exact)| (0..3).all(|k| length(sub(found[k], exact[k])) < 1e-4)), "another surface");
+    }
+}
+
 #[test]
 fn large_meshes_are_split() {
     let side = 300;

@@ -131,7 +131,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome> {
         shaders.iter().copied().filter(|&shader| !all || possible(shader)).collect::<Vec<_>>()
     };
     if arguments.styles || arguments.skips {
-        let styles = if arguments.styles { styles::STYLES } else { styles::SKIPS };
+        let styles = if arguments.styles { styles::styles } else { styles::skips };
         return in_styles(&scenes, wanted, styles, arguments.json);
     }
     let wanted = |scene: &Scene| {
@@ -182,7 +182,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome> {
 }
 
 /// Counts `scenes` by the `wanted` methods in `styles`.
-fn in_styles(scenes: &[Scene], wanted: impl Fn(&Scene) -> Vec<Shader>, styles: &[Named], json: bool) -> Result<Outcome> {
+fn in_styles(scenes: &[Scene], wanted: impl Fn(&Scene) -> Vec<Shader>, styles: fn(Shader) -> Vec<Named>, json: bool) -> Result<Outcome> {
     let bar = report::progress(scenes.iter().map(|scene| wanted(scene).len() as u64).sum(), "counting instructions");
     let counters = Counters::default();
     for scene in scenes {

@@ -145,7 +145,10 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome> {
         ..Look::new(surface(arguments), view.fit(&mesh.positions, arguments.size, MARGIN))
     };
     let errors: Vec<_> = arguments.lod.iter().map(|&size| look.tolerance(&parts, size)).collect();
-    levels::add(&mesh, &mut parts, &errors).with_context(place)?;
+    // The stream is a step as well, so that a single level has a bar.
+    let bar = report::progress((parts.len() * errors.len()) as u64 + 1, "searching levels of detail");
+    levels::add(&mesh, &mut parts, &errors, &|| bar.inc(1)).with_context(place)?;
+    bar.finish_and_clear();
     let bytes = look.stream(&parts).with_context(place)?;
     report::leave_to(&target);
     output::write(&target, bytes.as_bytes())?;

@@ -48,7 +48,7 @@ pub fn drawn(random: &mut Random, mesh: &Mesh, look: &Look) -> Option<Case> {
     // By their number and not by chance: what follows from a seed is what it was without levels.
     if mesh.triangles.len().is_multiple_of(4) {
         let errors = [(32, 32), (128, 96)].map(|size| look.tolerance(&parts, size));
-        levels::add(mesh, &mut parts, &errors).ok()?;
+        levels::add(mesh, &mut parts, &errors, &|| ()).ok()?;
     }
     let stream = look.stream(&parts).ok()?;
     let style = Style {

@@ -12,7 +12,11 @@ mod rtt;
 mod spi;
 mod watchdog;
 
-use super::{Board, Executed, Recording, Until, elf::Elf, log};
+use super::{
+    Board, Executed, Recording, Until,
+    elf::{Elf, short_name},
+    log,
+};
 use anyhow::{Context, Result, bail, ensure};
 use machine::Machine;
 
@@ -51,16 +55,18 @@ impl Pico {
     /// # Errors
     /// When the program crashes, falls silent or drives its panel wrongly.
     pub fn next_picture(&mut self) -> Result<()> {
-        self.watch_next_picture(&mut |_| ())
-    }
-
-    /// The same, and hands address and cycles of each instruction to `visit`.
-    fn watch_next_picture(&mut self, visit: &mut dyn FnMut(Executed)) -> Result<()> {
-        let outcome = self.proceed(visit);
+        let outcome = self.proceed(|_, _, completes| completes, &mut |_| ()).and_then(|()| self.machine.check_panel());
         outcome.with_context(|| format!("{} emulated; {}", Board::Pico, log::tail(&self.log)))
     }
 
-    fn proceed(&mut self, visit: &mut dyn FnMut(Executed)) -> Result<()> {
+    /// Runs until the first processor comes to `address`, and hands each instruction on the way to `visit`.
+    fn come_to(&mut self, address: u32, visit: &mut dyn FnMut(Executed)) -> Result<()> {
+        let outcome = self.proceed(|machine, executed, _| executed.core == 0 && machine.pc() == address, visit);
+        outcome.with_context(|| format!("{} emulated; {}", Board::Pico, log::tail(&self.log)))
+    }
+
+    /// Executes instructions until one of them makes `ends` true, which is told whether it completes a picture.
+    fn proceed(&mut self, ends: impl Fn(&Machine, Executed, bool) -> bool, visit: &mut dyn FnMut(Executed)) -> Result<()> {
         let deadline = self.machine.cycle() + PATIENCE;
         while self.machine.cycle() < deadline {
             let step = self.machine.step();
@@ -70,11 +76,11 @@ impl Pico {
             if step.is_err() || completes || self.machine.log_is_due() {
                 self.decoder.push(&self.machine.take_log(), |line| self.log.push(line));
             }
-            let step = step?;
-            if completes {
-                return self.machine.check_panel();
+            let executed = step?;
+            visit(executed);
+            if ends(&self.machine, executed, completes) {
+                return Ok(());
             }
-            visit(step);
         }
         bail!("the firmware has not finished a picture in {PATIENCE} cycles (at {:#010x}): it hangs", self.machine.pc())
     }
@@ -94,6 +100,18 @@ impl Pico {
     #[must_use]
     pub fn quiet(&self) -> bool {
         self.machine.quiet()
+    }
+
+    /// Cycles since it was switched on.
+    #[must_use]
+    pub fn cycles(&self) -> u64 {
+        self.machine.cycle()
+    }
+
+    /// Cycles of them in which bits went over the wire to the panel.
+    #[must_use]
+    pub fn wire_cycles(&self) -> u64 {
+        self.machine.wire()
     }
 
     /// What the firmware has logged.
@@ -132,23 +150,33 @@ pub(super) fn run(elf: &Elf, until: Until) -> Result<Recording> {
 /// Cycles of one frame; 125 of them are a microsecond.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct FrameTime {
-    /// From the end of the one before to its own.
+    /// From its beginning to that of the next.
     pub all: u64,
     /// While bits went over the wire to the panel.
     pub wire: u64,
 }
 
-/// Runs the firmware until it has checked all frames, and on through the next one, whose instructions and their cycles go to `visit`.
+/// The function that begins a frame, in which both processors prepare it.
+const BEGIN: &str = "TwoCores as microphong_firmware::painter::Painter::prepare";
+
+/// Runs the firmware until it has checked its two frames and drawn them at full speed, and on through the first one, whose instructions and
+/// their cycles go to `visit`.
 pub(super) fn watch(elf: &Elf, visit: &mut dyn FnMut(Executed)) -> Result<(Recording, FrameTime)> {
+    let begin = elf.functions()?.into_iter().find(|(name, _)| short_name(name).ends_with(BEGIN));
+    let begin = begin.with_context(|| format!("the firmware has no function {BEGIN}"))?.1.start;
     let mut pico = Pico::new(elf)?;
-    // The first frame is checked, while the second one is drawn nothing is on its way yet.
-    pico.next_picture()?;
-    pico.next_picture()?;
+    // Both are checked, and the first one is drawn at full speed: when that begins, nothing is on its way yet. It is complete while the second
+    // one is drawn.
+    for _ in 0..3 {
+        pico.next_picture()?;
+    }
     let recording = Recording { log: pico.log().to_vec(), ..Recording::default() };
     if let Some(failure) = recording.failure() {
         bail!("the firmware reports: {failure}");
     }
+    // Not from picture to picture: a picture is complete when some of the next one has been drawn, more or less.
+    pico.come_to(begin, &mut |_| ())?;
     let (cycle, wire) = (pico.machine.cycle(), pico.machine.wire());
-    pico.watch_next_picture(visit)?;
+    pico.come_to(begin, visit)?;
     Ok((recording, FrameTime { all: pico.machine.cycle() - cycle, wire: pico.machine.wire() - wire }))
 }
