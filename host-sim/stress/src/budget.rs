@@ -65,15 +65,10 @@ impl Family for Budget {
 /// Triangles side by side, or a scene of any kind that fills its picture; `None` if it would not make a valid stream.
 pub fn case(random: &mut Random) -> Option<Case> {
     let case = if random.once_in(8) {
-        let wishes = Wishes { closed: false, unclipped: true, triangles: 200 };
-        let mesh = scenes::mesh(random, wishes);
-        let mut look = scenes::look(random, &mesh, wishes);
-        look.view = look.view.fit(&mesh.positions, (64, 48), 0.05);
-        scenes::drawn(random, &mesh, &look)?
+        scenes::case(random, Wishes { closed: false, unclipped: true, triangles: 200 })
     } else {
-        let (mesh, look, size) = tiles::scene(random);
-        Case { size, ..scenes::drawn(random, &mesh, &look)? }
-    };
+        tiles::case(random)
+    }?;
     Some(Case { style: Style { shader: Shader::AUTO, antialias: false, dither: false, ..case.style }, ..case })
 }
 
