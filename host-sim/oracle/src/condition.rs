@@ -46,6 +46,16 @@ impl Frame {
         f64::from(-bits).exp2()
     }
 
+    /// Whether rounding decides on which side of the horizon the half vector of a light is at a point: highlights by R·V, of low exponents,
+    /// begin there at once.
+    #[must_use]
+    pub fn is_at_horizon(&self, facet: &Facet, point: [f64; 2]) -> bool {
+        let (weights, unit) = (facet.weights(point), self.unit(self.material(facet).exponent));
+        let (position, normal) = (facet.position(weights), direction(facet.normal(weights)));
+        let half = |light| self.cosines(light, position, normal)[1].abs();
+        self.lights.iter().any(|light| half(light) < unit * self.condition(facet, weights, &light.place))
+    }
+
     /// By how many levels the light of a point changes at most, if cosines are off by what their condition number makes of rounding: by that
     /// of the point itself, or, if `whole`, the largest of the point and all nodes of the facet.
     #[must_use]

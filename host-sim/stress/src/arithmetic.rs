@@ -1,7 +1,7 @@
 //! Integers against the same method in 64-bit floating point, on every pixel.
 //!
-//! Where shading is well-conditioned every pixel keeps to [`LIMIT`]. Elsewhere rounding is magnified, and a pixel may be off by as much more as
-//! its light changes when cosines change by their rounding, times their condition number: [`Frame::sensitivity`].
+//! Where shading is well-conditioned every pixel keeps to [`LIMIT`]. Elsewhere rounding is magnified, and a pixel may be off by as much
+//! more as its light changes when cosines change by their rounding, times their condition number: [`Frame::sensitivity`].
 
 use crate::{
     Family, Verdict,
@@ -117,10 +117,12 @@ pub fn judge(case: &Case) -> Option<Found> {
     let frame = of(stream, size, case.frame);
     let lights = PER_LIGHT * frame.lights.len().saturating_sub(1) as f64;
     let divides = Divides::of(case.style.shader.name());
+    let mirrors = case.style.shader.name() == "phong-rv";
     let mut found = Found::default();
     for pixel in pixels(case, &frame, &frame.visible())? {
         let facets = pixel.errors.iter().map(|&(facet, _)| &frame.facets[facet as usize]);
         let sensitivity = match divides {
+            _ if mirrors && facets.clone().any(|facet| frame.is_at_horizon(facet, pixel.centre)) => f64::INFINITY,
             Divides::Nowhere => 0.0,
             _ => facets.map(|facet| frame.sensitivity(facet, pixel.centre, divides == Divides::AtNodes)).fold(0.0, f64::max),
         };

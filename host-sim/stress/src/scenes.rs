@@ -155,8 +155,8 @@ fn surface(random: &mut Random) -> Surface {
     }
 }
 
-/// Material, lights and camera for a picture of `size`. Where nothing may be clipped, most scenes fill their pictures, some are small, and some
-/// reach beyond the edges.
+/// Material, lights and camera for a picture of `size`. Where nothing may be clipped, most scenes fill their pictures, some are small, and
+/// some reach beyond the edges.
 pub fn look(random: &mut Random, mesh: &Mesh, size: [u32; 2], wishes: Wishes) -> Look {
     let axis = random.direction();
     // Mostly from where single triangles show their front.

@@ -39,8 +39,8 @@ const WIDTH: i32 = 200;
 /// Most pixels from top to bottom.
 const HEIGHT: i32 = 150;
 
-/// Triangles side by side on a plane that faces the viewer, under one to four lights, drawn in a random way; `None` if they would not make a
-/// valid stream.
+/// Triangles side by side on a plane that faces the viewer, under one to four lights, drawn in a random way; `None` if they would not make
+/// a valid stream.
 pub fn case(random: &mut Random) -> Option<Case> {
     let (mesh, look, size) = scene(random);
     scenes::drawn(random, &mesh, size, &look)
