@@ -100,8 +100,10 @@ enum Divides {
 
 impl Divides {
     /// A method that is not listed is judged strictly everywhere.
-    fn of(name: &str) -> Self {
+    fn of(name: &str, is_constant: bool) -> Self {
         match name {
+            // Near lights are no quotients of linear functions: it interpolates cosines.
+            "duff" if !is_constant => Self::AtNodes,
             "auto" | "duff" | "highlight-test" | "phong" | "phong-rv" => Self::AtPixels,
             "angular" | "angular-original" | "goldman" | "hybrid" | "hybrid-original" | "renq" | "renq-newton" | "slerp" => Self::AtNodes,
             _ => Self::Nowhere,
@@ -116,7 +118,7 @@ pub fn judge(case: &Case) -> Option<Found> {
     let of = if case.style.perspective_correct { Frame::perspective_correct } else { Frame::new };
     let frame = of(stream, size, case.frame);
     let lights = PER_LIGHT * frame.lights.len().saturating_sub(1) as f64;
-    let divides = Divides::of(case.style.shader.name());
+    let divides = Divides::of(case.style.shader.name(), frame.is_constant());
     let mirrors = case.style.shader.name() == "phong-rv";
     let mut found = Found::default();
     for pixel in pixels(case, &frame, &frame.visible())? {
