@@ -150,6 +150,34 @@ fn seeds_are_drawn() {
     assert!(drawn > 40, "{drawn}");
 }
 
+/// Random scenes cover their pictures: a family that draws nothing finds nothing.
+#[test]
+fn random_scenes_cover_pixels() {
+    let wishes = scenes::Wishes { closed: false, unclipped: true, triangles: 200 };
+    let shares = (0..300).filter_map(|number| {
+        let case = scenes::case(&mut Random::new(3, number), wishes)?;
+        let counts = watertight::covered(&case.stream.parse().ok()?, case.size, case.frame)?;
+        Some(counts.iter().filter(|&&count| count > 0).count() as f64 / counts.len() as f64)
+    });
+    let mut shares: Vec<f64> = shares.collect();
+    shares.sort_by(f64::total_cmp);
+    let quartiles = [1, 2, 3].map(|k| shares[shares.len() * k / 4]);
+    let empty = shares.iter().filter(|&&share| share == 0.0).count();
+    println!("{} scenes, {empty} of them empty, cover {quartiles:.3?} of their pictures", shares.len());
+    assert!(shares.len() > 250 && empty < shares.len() / 20 && quartiles[1] > 0.1);
+}
+
+/// Most pixels are well-conditioned: elsewhere a wrong pixel may pass.
+#[test]
+fn arithmetic_judges_nearly_all_pixels_strictly() {
+    let counts = (0..300).into_par_iter().map(|number| stress::judge(&arithmetic::Arithmetic, 3, number).counts);
+    let [pixels, leniently, not_judged] = counts
+        .filter_map(|counts| counts.try_into().ok())
+        .reduce(|| [0; 3], |a: [u64; 3], b: [u64; 3]| std::array::from_fn(|k| a[k] + b[k]));
+    println!("{pixels} pixels judged, {leniently} of them leniently, {not_judged} not");
+    assert!(pixels > 200_000 && 10 * (pixels - leniently) > 9 * (pixels + not_judged));
+}
+
 /// A sphere under one light, with a highlight.
 fn sphere() -> Case {
     let stream = microphong_sim::scene::load("sphere-168").unwrap().stream;
@@ -176,7 +204,8 @@ fn coverage_sees_a_wrong_pixel() {
 fn watertight_sees_holes() {
     let bunny = microphong_sim::scene::load("bunny").unwrap().stream;
     let case = Case { size: [480; 2], frame: 59, style: Shader::FLAT.into(), ..Case::new(watertight::on_background(&bunny)) };
-    assert_eq!(watertight::differences(&case), Some((0, 0)));
+    let found = watertight::judge(&case).unwrap();
+    assert!(found.covered > 10_000 && (found.missing, found.extra) == (0, 0), "{found:?}");
     assert!(watertight::Watertight.fails(&Case { stream: thick(&case.stream), ..case }));
 }
 

@@ -61,14 +61,15 @@ fn stream(mesh: &Mesh, parallel: bool) -> StreamBytes {
 }
 
 /// Pixels of one frame that are covered and not drawn, and that are drawn and not covered.
-fn differences(case: &Case, style: Style, number: u32) -> (usize, usize) {
+fn differences(case: &Case, style: Style, number: u32) -> (u64, u64) {
     let stream = case.stream.clone();
     let frame = stress::case::Case { size: [case.side; 2], frame: number, style, band_rows: 64, ..stress::case::Case::new(stream) };
-    watertight::differences(&frame).expect("no vertex is clipped")
+    let found = watertight::judge(&frame).expect("no vertex is clipped");
+    (found.missing, found.extra)
 }
 
 /// Covered pixels that are not drawn, in all frames of all cases; without antialiasing no others are drawn either.
-fn missing(cases: &[Case], style: Style) -> usize {
+fn missing(cases: &[Case], style: Style) -> u64 {
     let jobs = Mutex::new(cases.iter().flat_map(|case| (0..FRAMES).map(move |number| (case, number))));
     let missing = Mutex::new(0);
     thread::scope(|scope| {

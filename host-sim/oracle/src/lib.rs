@@ -4,6 +4,7 @@
 //! come the parsed records of a stream, the pose of a frame, and where a corner lies on the screen. All else is the
 //! methods' definition, one file each, as plain as formulas allow.
 
+mod condition;
 mod frame;
 mod light;
 mod method;

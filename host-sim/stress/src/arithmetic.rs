@@ -1,10 +1,14 @@
 //! Integers against the same method in 64-bit floating point, on every pixel.
+//!
+//! Where shading is well-conditioned every pixel keeps to [`LIMIT`]. Elsewhere rounding is magnified, and a pixel may be off by as much
+//! more as its light changes when cosines change by their rounding, times their condition number: [`Frame::sensitivity`].
 
 use crate::{
     Family, Verdict,
     case::Case,
     random::Random,
     scenes::{self, Wishes},
+    tiles,
 };
 use microphong_compare::{UNDECIDED, level};
 use microphong_oracle::{Frame, Levels, Shade, decides, method, outcomes};
@@ -28,39 +32,114 @@ impl Family for Arithmetic {
     }
 
     fn limit(&self) -> Option<(f64, &'static str)> {
-        Some((LIMIT, "of 255, less 0.1 for each light beyond the first"))
+        Some((LIMIT, "of 255, less 0.1 for each light beyond the first and what ill-conditioned pixels are sensitive to"))
+    }
+
+    fn counts(&self) -> &'static [&'static str] {
+        &["pixels", "of them leniently", "pixels not judged"]
     }
 
     fn check(&self, random: &mut Random) -> Verdict {
-        let Some(case) = scenes::case(random, Wishes { closed: false, unclipped: true, triangles: 200 }) else { return Verdict::skipped() };
-        let case = Case { style: Style { antialias: false, dither: false, ..case.style }, ..case };
-        match excess(&case) {
-            Some(error) => Verdict::of(error, LIMIT, Some(case)),
+        let Some(case) = case(random) else { return Verdict::skipped() };
+        match judge(&case) {
+            Some(found) => {
+                let counts = vec![found.strictly + found.leniently, found.leniently, found.not_judged];
+                Verdict { counts, ..Verdict::of(found.error, LIMIT, Some(case)) }
+            }
             None => Verdict::skipped(),
         }
     }
 
     fn fails(&self, case: &Case) -> bool {
-        excess(case).is_some_and(|error| error > LIMIT)
+        judge(case).is_some_and(|found| found.error > LIMIT)
     }
+}
+
+/// Triangles side by side, of all of which something is seen, or a scene of any kind; `None` if it would not make a valid stream.
+pub fn case(random: &mut Random) -> Option<Case> {
+    let case = if random.once_in(2) {
+        tiles::case(random)
+    } else {
+        scenes::case(random, Wishes { closed: false, unclipped: true, triangles: 200 })
+    }?;
+    Some(Case { style: Style { antialias: false, dither: false, ..case.style }, ..case })
 }
 
 /// What each light beyond the first may add, in 1/255: the table of highlights is off by as much at low exponents, everywhere.
 pub(crate) const PER_LIGHT: f64 = 0.1;
-/// Least length of interpolated normals. Where two normals of a triangle are nearly opposite, the normal between them vanishes, and
-/// rounding decides where it points: no arithmetic is exact there.
-const OPPOSITE: f64 = 1.0 / 64.0;
+/// Pixels that are less sensitive, in 1/255, are judged strictly.
+const STRICT: f64 = 0.25;
+/// Pixels that are more sensitive are not judged: where two normals of a triangle are nearly opposite, rounding decides where the normal
+/// between them points.
+const UNDEFINED: f64 = 64.0;
 
-/// Whether shading is defined on all triangles of a scene.
-fn is_defined(case: &Case) -> bool {
-    case.stream.parse().is_ok_and(|stream| stream.triangles.iter().all(|triangle| f64::from(triangle.min_normal_length()) >= OPPOSITE))
+/// What has come of a case.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Found {
+    /// The largest error in 1/255, less what many lights may add, and less the sensitivity of pixels that are judged leniently; infinite
+    /// where coverage differs.
+    pub error: f64,
+    /// Pixels that have to keep to [`LIMIT`].
+    pub strictly: u64,
+    /// Pixels that may be off by their sensitivity as well.
+    pub leniently: u64,
+    /// Pixels that may be anything.
+    pub not_judged: u64,
 }
 
-/// [`error`], less what many lights may add; `None` also where shading is not defined.
-fn excess(case: &Case) -> Option<f64> {
-    let lights = case.stream.parse().ok()?.lights.len().max(1);
-    let error = if is_defined(case) { error(case)? } else { return None };
-    Some((error - PER_LIGHT * (lights - 1) as f64).max(0.0))
+/// Where a method divides by lengths that may vanish.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Divides {
+    /// It interpolates light.
+    Nowhere,
+    /// At the pixel itself.
+    AtPixels,
+    /// At nodes or ends of rows, between which it interpolates cosines, lengths or angles.
+    AtNodes,
+}
+
+impl Divides {
+    /// A method that is not listed is judged strictly everywhere.
+    fn of(name: &str, is_constant: bool) -> Self {
+        match name {
+            // Near lights are no quotients of linear functions: it interpolates cosines.
+            "duff" if !is_constant => Self::AtNodes,
+            "auto" | "duff" | "highlight-test" | "phong" | "phong-rv" => Self::AtPixels,
+            "angular" | "angular-original" | "goldman" | "hybrid" | "hybrid-original" | "renq" | "renq-newton" | "slerp" => Self::AtNodes,
+            _ => Self::Nowhere,
+        }
+    }
+}
+
+/// Judges each pixel of a frame by its sensitivity; `None` if the method cannot draw it.
+#[must_use]
+pub fn judge(case: &Case) -> Option<Found> {
+    let (stream, size) = (case.stream.parse().ok()?, (case.size[0], case.size[1]));
+    let of = if case.style.perspective_correct { Frame::perspective_correct } else { Frame::new };
+    let frame = of(stream, size, case.frame);
+    let lights = PER_LIGHT * frame.lights.len().saturating_sub(1) as f64;
+    let divides = Divides::of(case.style.shader.name(), frame.is_constant());
+    let mirrors = case.style.shader.name() == "phong-rv";
+    let mut found = Found::default();
+    for pixel in pixels(case, &frame, &frame.visible())? {
+        let facets = pixel.errors.iter().map(|&(facet, _)| &frame.facets[facet as usize]);
+        let sensitivity = match divides {
+            _ if mirrors && facets.clone().any(|facet| frame.is_at_horizon(facet, pixel.centre)) => f64::INFINITY,
+            Divides::Nowhere => 0.0,
+            _ => facets.map(|facet| frame.sensitivity(facet, pixel.centre, divides == Divides::AtNodes)).fold(0.0, f64::max),
+        };
+        let more = if sensitivity < STRICT { 0.0 } else { sensitivity };
+        match sensitivity {
+            ..STRICT => found.strictly += 1,
+            STRICT..UNDEFINED => found.leniently += 1,
+            _ => {
+                found.not_judged += 1;
+                continue;
+            }
+        }
+        found.error = found.error.max(pixel.least() - lights - more);
+    }
+    Some(found)
 }
 
 /// All of a method's triangles in one frame, in floating point; `None` if the method cannot shade them.
@@ -76,45 +155,57 @@ pub(crate) fn difference(drawn: [f64; 3], exact: [f64; 3]) -> f64 {
 }
 
 /// Largest difference of a frame from its method in floating point, in 1/255, before the output format rounds; infinite where a pixel is
-/// missing. `None` if the method cannot draw it, or a triangle is clipped.
-fn error(case: &Case) -> Option<f64> {
-    let (stream, size) = (case.stream.parse().ok()?, (case.size[0], case.size[1]));
-    let frame = if case.style.perspective_correct {
-        Frame::perspective_correct(stream, size, case.frame)
-    } else {
-        Frame::new(stream, size, case.frame)
-    };
-    of(case, &frame, &frame.visible())
-}
-
-/// Largest difference of a frame from its method in floating point, if the frame is known already, and what may be seen at each of its
-/// pixels.
+/// missing. The frame is known already, and what may be seen at each of its pixels. `None` if the method cannot draw it.
 #[must_use]
 pub fn of(case: &Case, frame: &Frame, visible: &[Vec<u32>]) -> Option<f64> {
+    Some(pixels(case, frame, visible)?.iter().map(Pixel::least).fold(0.0, f64::max))
+}
+
+/// A pixel that is drawn or should be.
+struct Pixel {
+    /// On the screen.
+    centre: [f64; 2],
+    /// The facets that may be seen there, and how far the pixel is off from each, in 1/255; none where coverage differs.
+    errors: Vec<(u32, f64)>,
+}
+
+impl Pixel {
+    /// The error, if the facet is shown that fits best.
+    fn least(&self) -> f64 {
+        self.errors.iter().map(|&(_, error)| error).fold(f64::INFINITY, f64::min)
+    }
+}
+
+/// Compares all pixels of a frame with its method in floating point.
+fn pixels(case: &Case, frame: &Frame, visible: &[Vec<u32>]) -> Option<Vec<Pixel>> {
     let shader = case.style.shader;
     let stream = case.stream.parse().ok()?;
     let shades = shades(frame, shader)?;
     let drawn = level::picture(stream, case.pixels(), case.style, case.frame).ok()?;
-    let mut worst = 0f64;
+    let mut pixels = Vec::new();
     for (i, (levels, candidates)) in drawn.iter().zip(visible).enumerate() {
+        let centre = [i as u32 % case.size[0], i as u32 / case.size[0]].map(|c| f64::from(c) + 0.5);
         let levels = match *levels {
             Some(levels) if !candidates.is_empty() => levels,
             None if candidates.is_empty() => continue,
-            // Coverage differs.
-            _ => return Some(f64::INFINITY),
+            _ => {
+                pixels.push(Pixel { centre, errors: Vec::new() });
+                continue;
+            }
         };
-        let centre = [i as u32 % case.size[0], i as u32 / case.size[0]].map(|c| f64::from(c) + 0.5);
-        let mut error = candidates.iter().map(|&c| difference(levels, shades[c as usize](centre))).fold(f64::MAX, f64::min);
-        if error > UNDECIDED && decides(shader.name()) {
-            let around = [(0.0, 0.0), (NUDGE, NUDGE), (NUDGE, -NUDGE), (-NUDGE, NUDGE), (-NUDGE, -NUDGE)];
-            let facets = candidates.iter().map(|&c| &frame.facets[c as usize]);
-            for (facet, (x, y)) in facets.flat_map(|facet| around.map(|nudge| (facet, nudge))) {
-                let point = [centre[0] + x, centre[1] + y];
-                let outcomes: Vec<Levels> = outcomes(shader.name(), frame, facet, point, frame.undecided(facet)).ok()?;
-                error = outcomes.into_iter().map(|exact| difference(levels, exact)).fold(error, f64::min);
+        let errors = candidates.iter().map(|&c| (c, difference(levels, shades[c as usize](centre)))).collect();
+        let mut pixel = Pixel { centre, errors };
+        if pixel.least() > UNDECIDED && decides(shader.name()) {
+            for (facet, error) in &mut pixel.errors {
+                let facet = &frame.facets[*facet as usize];
+                for [x, y] in [[0.0, 0.0], [NUDGE, NUDGE], [NUDGE, -NUDGE], [-NUDGE, NUDGE], [-NUDGE, -NUDGE]] {
+                    let point = [centre[0] + x, centre[1] + y];
+                    let outcomes: Vec<Levels> = outcomes(shader.name(), frame, facet, point, frame.undecided(facet)).ok()?;
+                    *error = outcomes.into_iter().map(|exact| difference(levels, exact)).fold(*error, f64::min);
+                }
             }
         }
-        worst = worst.max(error);
+        pixels.push(pixel);
     }
-    Some(worst)
+    Some(pixels)
 }

@@ -244,24 +244,22 @@ fn touched(corners: [[i32; 2]; 3], size: [u64; 2]) -> (Range<u64>, u64) {
 pub fn case(random: &mut Random) -> Option<Case> {
     let wishes = Wishes { closed: false, unclipped: !random.once_in(4), triangles: 300 };
     let mesh = match random.pick(0..4) {
-        // Any scene of the other families.
-        0 => None,
+        // That of any scene of the other families.
+        0 => scenes::mesh(random, wishes),
         // Slivers across the picture: derivatives that cancel, edge pixels without inner ones.
-        1 => Some(triangles(random, 0.0005)),
+        1 => triangles(random, 0.0005),
         // Large triangles: much is set up, or split, for each row if bands have one.
-        2 => Some(triangles(random, 0.3)),
+        2 => triangles(random, 0.3),
         // Triangles down to less than a pixel.
-        _ => Some(sphere(random)),
+        _ => sphere(random),
     };
-    let case = match &mesh {
-        Some(mesh) => scenes::of(random, mesh, wishes),
-        None => scenes::case(random, wishes),
-    }?;
+    let width = random.octaves(1.0, 320.0);
+    let size = scenes::size(random, width);
+    let case = scenes::of(random, &mesh, size, wishes)?;
     // Every triangle in a mesh of its own: what is done for each mesh, or for each mesh in each band.
     let stream = if random.once_in(4) { meshes_of_one(&case.stream)? } else { case.stream };
-    let size = [320.0, 240.0].map(|most| random.octaves(1.0, most) as u32);
     let band_rows = if random.once_in(2) { random.pick(1..4) } else { random.pick(1..120) } as u32;
-    Some(Case { stream, size, band_rows: band_rows.min(size[1]), format: Format::Rgb565, ..case })
+    Some(Case { stream, band_rows: band_rows.min(size[1]), format: Format::Rgb565, ..case })
 }
 
 /// Large triangles, as high as `thin` times their length at least.
@@ -272,7 +270,7 @@ fn triangles(random: &mut Random, thin: f64) -> Mesh {
         let centre = scale(random.direction(), random.between(0.0, 0.5));
         let (facing, spread) = (random.direction(), random.between(0.0, 2.0));
         let first = mesh.positions.len();
-        for corner in [along, scale(along, -1.0), across] {
+        for corner in scenes::shown(random, [along, scale(along, -1.0), across]) {
             mesh.positions.push(add(centre, corner).map(|c| c.clamp(-1.0, 1.0)));
             mesh.normals.push(unit(add(facing, scale(random.direction(), spread))).unwrap_or(facing));
         }

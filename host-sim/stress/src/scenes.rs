@@ -10,9 +10,10 @@ use microphong_render::{
     render::{Format, Style},
     shader::Shader,
     shapes,
-    vector::{V3, add, apply, rotation, scale, unit},
+    vector::{V3, add, apply, cross, rotation, scale, sub, unit},
     view::{Projection, View},
 };
+use std::f64::consts::TAU;
 
 /// What a scene may have.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -25,10 +26,18 @@ pub struct Wishes {
     pub triangles: i32,
 }
 
-/// A random scene, drawn in a random way by a method that can; `None` if it would not make a valid stream.
+/// A random scene, drawn in a random way; `None` if it would not make a valid stream.
 pub fn case(random: &mut Random, wishes: Wishes) -> Option<Case> {
+    let width = random.between(1.0, 160.0);
+    let size = size(random, width);
     let mesh = mesh(random, wishes);
-    of(random, &mesh, wishes)
+    of(random, &mesh, size, wishes)
+}
+
+/// A picture so wide, and mostly about as high, so that what fits covers it.
+pub fn size(random: &mut Random, width: f64) -> [u32; 2] {
+    let height = width * if random.once_in(4) { random.octaves(0.1, 4.0) } else { random.between(0.6, 1.2) };
+    [width as u32, (height as u32).clamp(1, 240)]
 }
 
 /// A random mesh.
@@ -36,17 +45,17 @@ pub fn mesh(random: &mut Random, wishes: Wishes) -> Mesh {
     if wishes.closed || random.once_in(3) { body(random, wishes.triangles) } else { soup(random, wishes.triangles.min(40)) }
 }
 
-/// A random scene of `mesh`.
-pub fn of(random: &mut Random, mesh: &Mesh, wishes: Wishes) -> Option<Case> {
-    let look = look(random, mesh, wishes);
-    drawn(random, mesh, &look)
+/// A random scene of `mesh` on a picture of `size`.
+pub fn of(random: &mut Random, mesh: &Mesh, size: [u32; 2], wishes: Wishes) -> Option<Case> {
+    let look = look(random, mesh, size, wishes);
+    drawn(random, mesh, size, &look)
 }
 
-/// A scene, drawn in a random way.
-pub fn drawn(random: &mut Random, mesh: &Mesh, look: &Look) -> Option<Case> {
+/// A scene, drawn in a random way on a picture of `size`.
+pub fn drawn(random: &mut Random, mesh: &Mesh, size: [u32; 2], look: &Look) -> Option<Case> {
     let (mut parts, _) = quantise(mesh);
-    // By their number and not by chance: what follows from a seed is what it was without levels.
-    if mesh.triangles.len().is_multiple_of(4) {
+    // Seldom, and of small meshes: to make coarser levels of large ones takes longer than all else.
+    if random.once_in(8) && mesh.triangles.len() <= 128 {
         let errors = [(32, 32), (128, 96)].map(|size| look.tolerance(&parts, size));
         levels::add(mesh, &mut parts, &errors, &|| ()).ok()?;
     }
@@ -59,7 +68,7 @@ pub fn drawn(random: &mut Random, mesh: &Mesh, look: &Look) -> Option<Case> {
         skips: Skips::ALL,
     };
     let case = Case {
-        size: [random.pick(1..160) as u32, random.pick(1..120) as u32],
+        size,
         frame: if random.once_in(3) { 0 } else { random.bits() as u32 },
         style,
         format: random.among(&Format::ALL),
@@ -98,10 +107,10 @@ fn soup(random: &mut Random, triangles: i32) -> Mesh {
     let wild = random.once_in(2);
     for _ in 0..random.pick(1..triangles.max(2)) {
         let centre = scale(random.direction(), random.between(0.0, 0.9));
-        let size = random.octaves(0.001, 1.0);
+        let size = if random.once_in(2) { random.between(0.3, 1.0) } else { random.octaves(0.001, 1.0) };
         let thin = if random.once_in(3) { random.octaves(0.001, 1.0) } else { 1.0 };
         let (along, across) = (scale(random.direction(), size), scale(random.direction(), size * thin));
-        let corners = [add(centre, along), add(centre, scale(along, -1.0)), add(centre, across)];
+        let corners = shown(random, [add(centre, along), add(centre, scale(along, -1.0)), add(centre, across)]);
         let facing = random.direction();
         let spread = if wild { random.among(&[0.0, 0.1, 0.5, 1.0, 3.0]) } else { random.among(&[0.0, 0.1, 0.5, 0.8]) };
         let first = mesh.positions.len();
@@ -118,6 +127,12 @@ fn soup(random: &mut Random, triangles: i32) -> Mesh {
         mesh.triangles.push([first, first + 1, first + 2]);
     }
     mesh
+}
+
+/// A triangle that mostly shows its front to where z is positive, as [`look`] mostly sees it.
+pub fn shown(random: &mut Random, [a, b, c]: [V3; 3]) -> [V3; 3] {
+    let is_front = cross(sub(b, a), sub(c, a))[2] > 0.0;
+    if is_front || random.once_in(8) { [a, b, c] } else { [b, a, c] }
 }
 
 /// A colour of a light or a surface.
@@ -140,18 +155,25 @@ fn surface(random: &mut Random) -> Surface {
     }
 }
 
-/// Material, lights and camera.
-pub fn look(random: &mut Random, mesh: &Mesh, wishes: Wishes) -> Look {
+/// Material, lights and camera for a picture of `size`. Where nothing may be clipped, most scenes fill their pictures, some are small, and
+/// some reach beyond the edges.
+pub fn look(random: &mut Random, mesh: &Mesh, size: [u32; 2], wishes: Wishes) -> Look {
     let axis = random.direction();
-    let turned = rotation(random.direction(), random.between(0.0, std::f64::consts::TAU));
+    // Mostly from where single triangles show their front.
+    let turned = rotation(random.direction(), if random.once_in(4) { random.between(0.0, TAU) } else { random.between(0.0, 0.5) });
     let distance = if wishes.unclipped { random.between(2.0, 8.0) } else { random.octaves(0.2, 12.0) };
-    let period = random.among(&[0, 1, 7, 120, 65_535]);
+    let period = random.among(&[0, 0, 1, 7, 120, 65_535]);
     let mut view = View::facing(turned, distance, axis, period);
     if random.once_in(3) {
         view = view.parallel();
     }
     if wishes.unclipped {
-        view = view.fit(&mesh.positions, (64, 48), 1.05);
+        let filled = match random.pick(0..8) {
+            0 => random.octaves(0.05, 1.0),
+            1..4 => random.octaves(1.0, 4.0),
+            _ => 1.0,
+        };
+        view = view.fit(&mesh.positions, size.into(), 1.0 - filled);
     } else {
         view = view.focal(random.octaves(0.1, 12.0));
         view.near = match view.projection {

@@ -1,6 +1,10 @@
 //! Triangles side by side, all of them seen: of each there is something to judge, and no time goes into what is hidden.
 
-use crate::{random::Random, scenes};
+use crate::{
+    case::Case,
+    random::Random,
+    scenes::{self, Wishes},
+};
 use microphong_render::{
     look::{Lamp, Look},
     mesh::Mesh,
@@ -35,8 +39,15 @@ const WIDTH: i32 = 200;
 /// Most pixels from top to bottom.
 const HEIGHT: i32 = 150;
 
-/// Triangles side by side on a plane that faces the viewer, under one to four lights, and the size of their picture in pixels.
-pub fn scene(random: &mut Random) -> (Mesh, Look, [u32; 2]) {
+/// Triangles side by side on a plane that faces the viewer, under one to four lights, drawn in a random way; `None` if they would not make
+/// a valid stream.
+pub fn case(random: &mut Random) -> Option<Case> {
+    let (mesh, look, size) = scene(random);
+    scenes::drawn(random, &mesh, size, &look)
+}
+
+/// Triangles, what they look like, and the size of their picture in pixels.
+fn scene(random: &mut Random) -> (Mesh, Look, [u32; 2]) {
     let tile = random.octaves(4.0, 48.0) as i32;
     let [columns, rows] = [WIDTH, HEIGHT].map(|side| random.pick(1..side / tile + 1));
     let size = [columns, rows].map(|count| (count * tile) as u32);
@@ -56,8 +67,7 @@ pub fn scene(random: &mut Random) -> (Mesh, Look, [u32; 2]) {
         mesh.triangles.push([first, first + 1, first + 2]);
         kinds.push(kind);
     }
-    let wishes = scenes::Wishes { closed: false, unclipped: true, triangles: 1 };
-    let mut look = scenes::look(random, &mesh, wishes);
+    let mut look = scenes::look(random, &mesh, size, Wishes { closed: false, unclipped: true, triangles: 1 });
     let view = View::facing([[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]], random.between(2.0, 8.0), [0.0, 0.0, 1.0], 0);
     let view = if random.once_in(2) { view.parallel() } else { view };
     look.view = view.fit(&mesh.positions, size.into(), 0.01);

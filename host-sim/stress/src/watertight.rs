@@ -45,17 +45,21 @@ impl Family for Watertight {
         Some((0.0, "pixels missing or too many"))
     }
 
+    fn counts(&self) -> &'static [&'static str] {
+        &["covered pixels"]
+    }
+
     fn check(&self, random: &mut Random) -> Verdict {
         let Some(case) = scenes::case(random, Wishes { closed: false, unclipped: true, triangles: 800 }) else { return Verdict::skipped() };
         let case = Case { stream: on_background(&case.stream), style: Shader::FLAT.into(), ..case };
-        match differences(&case) {
-            Some((missing, extra)) => Verdict::of((missing + extra) as f64, 0.0, Some(case)),
+        match judge(&case) {
+            Some(found) => Verdict { counts: vec![found.covered], ..Verdict::of((found.missing + found.extra) as f64, 0.0, Some(case)) },
             None => Verdict::skipped(),
         }
     }
 
     fn fails(&self, case: &Case) -> bool {
-        differences(case).is_some_and(|(missing, extra)| missing + extra > 0)
+        judge(case).is_some_and(|found| found.missing + found.extra > 0)
     }
 }
 
@@ -80,16 +84,28 @@ fn blacken(bytes: &mut [u8]) -> Option<()> {
     Some(())
 }
 
-/// Pixels that are covered and not drawn, and, without antialiasing, that are drawn and not covered; `None` if a vertex is clipped.
+/// What has come of a case, in pixels.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Found {
+    /// Covered.
+    pub covered: u64,
+    /// Covered and not drawn.
+    pub missing: u64,
+    /// Drawn and not covered; not counted with antialiasing.
+    pub extra: u64,
+}
+
+/// Compares which pixels are drawn with which are covered; `None` if a vertex is clipped.
 #[must_use]
-pub fn differences(case: &Case) -> Option<(usize, usize)> {
+pub fn judge(case: &Case) -> Option<Found> {
     let stream = case.stream.parse().ok()?;
     let counts = covered(&stream, case.size, case.frame)?;
     let (pixels, _) = render::frame::<Rgb888>(stream, case.pixels(), case.style, case.band_rows, case.frame).ok()?;
-    let count =
-        |wanted: [bool; 2]| pixels.iter().zip(&counts).filter(|&(&pixel, &count)| [count > 0, pixel != BACKGROUND] == wanted).count();
-    let extra = if case.style.antialias { 0 } else { count([false, true]) };
-    Some((count([true, false]), extra))
+    let count = |wanted: [bool; 2]| {
+        pixels.iter().zip(&counts).filter(|&(&pixel, &count)| [count > 0, pixel != BACKGROUND] == wanted).count() as u64
+    };
+    let (missing, extra) = (count([true, false]), if case.style.antialias { 0 } else { count([false, true]) });
+    Some(Found { covered: count([true, true]) + missing, missing, extra })
 }
 
 /// How many triangles that show their front cover the centre of each pixel; `None` if a vertex is clipped.
