@@ -51,10 +51,11 @@ static FACTS: Facts = Facts {
 /// The cheapest method within the error budget.
 pub struct Auto;
 
-/// Pixels from which the quadratic takes fewer instructions than Phong shading, which is set up sooner: in one channel, and in three.
-const WORTH_QUADRATIC: [u32; 2] = [20, 60];
+/// Pixels from which the quadratic takes fewer instructions than Phong shading, which is set up sooner: in one channel, in three, and under
+/// two lights.
+const WORTH_QUADRATIC: [u32; 3] = [20, 60, 60];
 /// The same of quadratic cosines.
-const WORTH_COSINES: [u32; 2] = [40, 40];
+const WORTH_COSINES: [u32; 3] = [40, 40, 120];
 
 /// What draws a triangle.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -114,10 +115,10 @@ fn among(
     if let Some(left) = bounds.left_by_linear(budget, curvature, cosines) {
         return linear(left);
     }
-    let (pixels, channels) = (pixels(setup), usize::from(reflectance.three_channels()));
+    let (pixels, style) = (pixels(setup), usize::from(reflectance.three_channels()) + cosines.len() - 1);
     match () {
-        () if pixels >= WORTH_QUADRATIC[channels] && is_quadratic(shading, curvature, cosines) => Choice::Quadratic,
-        () if pixels >= WORTH_COSINES[channels] && bounds.cosines(curvature, cosines) <= budget => Choice::Cosines,
+        () if pixels >= WORTH_QUADRATIC[style] && is_quadratic(shading, curvature, cosines) => Choice::Quadratic,
+        () if pixels >= WORTH_COSINES[style] && bounds.cosines(curvature, cosines) <= budget => Choice::Cosines,
         () => Choice::Phong,
     }
 }
