@@ -256,7 +256,7 @@ impl ErrorBounds {
         self.lights.iter().zip(cosines).fold(0u32, |bound, (light, [_, half])| {
             let highlight = self
                 .highlight(curvature, half)
-                .map_or(0, |place| place.rounding(self.exponent, light.specular) + place.error_of_cosines(light.narrowed));
+                .map_or(0, |place| place.rounding(self.exponent, light.specular) + place.error_of_cosines(light.specular, light.narrowed));
             bound.saturating_add(light.remainder(remainder) + highlight)
         })
     }
@@ -371,26 +371,32 @@ mod tests {
         }
     }
 
-    /// Largest errors of linear and quadratic interpolation of what lights reflect, each `[L, H]` with its levels at cosine 1 and of a whole
-    /// highlight. Corners are lit by their normals as they are stored.
-    fn errors(normals: [[f64; 3]; 3], lights: &[([[f64; 3]; 2], [f64; 2])], exponent: u16) -> [f64; 2] {
-        let lit = |normal: [f64; 3]| -> f64 {
+    /// Largest errors of linear and quadratic interpolation of what lights reflect, and of quadratic interpolation of the cosines that they
+    /// reflect it by; each `[L, H]` with its levels at cosine 1 and of a whole highlight. Corners are lit by their normals as they are stored.
+    fn errors(normals: [[f64; 3]; 3], lights: &[([[f64; 3]; 2], [f64; 2])], exponent: u16) -> [f64; 3] {
+        let of = |cosine: &dyn Fn([f64; 3]) -> f64| -> f64 {
             let light = |&([light, half], [diffuse, specular]): &([[f64; 3]; 2], [f64; 2])| {
-                diffuse * dot(normal, light).max(0.0) + specular * dot(normal, half).clamp(0.0, 1.0).powi(exponent.into())
+                diffuse * cosine(light).max(0.0) + specular * cosine(half).clamp(0.0, 1.0).powi(exponent.into())
             };
             lights.iter().map(light).sum()
         };
-        let at = |[u, v, w]: [f64; 3]| lit(unit([0, 1, 2].map(|k| u * normals[0][k] + v * normals[1][k] + w * normals[2][k])));
-        let [a, b, c] = normals.map(lit);
-        let [ab, bc, ca] = [at([0.5, 0.5, 0.0]), at([0.0, 0.5, 0.5]), at([0.5, 0.0, 0.5])];
-        let mut errors = [0f64; 2];
+        let lit = |normal: [f64; 3]| of(&|direction| dot(normal, direction));
+        let between = |[u, v, w]: [f64; 3]| unit([0, 1, 2].map(|k| u * normals[0][k] + v * normals[1][k] + w * normals[2][k]));
+        let middles = [[0.5, 0.5, 0.0], [0.0, 0.5, 0.5], [0.5, 0.0, 0.5]].map(between);
+        let through = |b: [f64; 3], at: &dyn Fn([f64; 3]) -> f64| -> f64 {
+            let corners: f64 = (0..3).map(|k| b[k] * (2.0 * b[k] - 1.0) * at(normals[k])).sum();
+            corners + 4.0 * (0..3).map(|k| b[k] * b[(k + 1) % 3] * at(middles[k])).sum::<f64>()
+        };
+        let mut errors = [0f64; 3];
         for (i, j) in (0..=GRID).flat_map(|i| (0..=GRID - i).map(move |j| (i, j))) {
             let [u, v] = [i, j].map(|k| f64::from(k) / f64::from(GRID));
-            let w = 1.0 - u - v;
-            let corners = u * (2.0 * u - 1.0) * a + v * (2.0 * v - 1.0) * b + w * (2.0 * w - 1.0) * c;
-            let quadratic = corners + 4.0 * (u * v * ab + v * w * bc + w * u * ca);
-            let exact = at([u, v, w]);
-            errors = [errors[0].max((u * a + v * b + w * c - exact).abs()), errors[1].max((quadratic - exact).abs())];
+            let b = [u, v, 1.0 - u - v];
+            let linear: f64 = (0..3).map(|k| b[k] * lit(normals[k])).sum();
+            let by_cosines = of(&|direction| through(b, &|normal| dot(normal, direction)));
+            let exact = lit(between(b));
+            for (error, light) in errors.iter_mut().zip([linear, through(b, &lit), by_cosines]) {
+                *error = error.max((light - exact).abs());
+            }
         }
         errors
     }
@@ -411,6 +417,7 @@ mod tests {
             for towards in [[one; 3], [one, one, -one], [one, -one, -one], [-one; 3]] {
                 let cosines = [[towards, [one; 3]]; 2];
                 let _ = (bounds.left_by_linear(u32::MAX, curvature, &cosines), bounds.quadratic(curvature, &cosines));
+                let _ = bounds.cosines(curvature, &cosines);
                 assert!(bounds.saturates(curvature, &cosines, &reflectance));
                 assert!(bounds.brightest(one, 0xffff) >= FULL);
             }
@@ -421,7 +428,7 @@ mod tests {
     #[test]
     fn errors_stay_within_their_bounds() {
         let mut random = Random(1);
-        let mut ratios = [const { heapless::Vec::<f64, 20_000>::new() }; 2];
+        let mut ratios = [const { heapless::Vec::<f64, 20_000>::new() }; 3];
         for case in 0..20_000 {
             let lights = 1 + case % 2;
             let exponent = (1024f64.powf(0.5 + 0.5 * random.next()).max(1.0) as u16).min(1024);
@@ -464,7 +471,7 @@ mod tests {
             let lit = [(directions[0], gains[0]), (directions[1], gains[1])];
             let exact = errors(stored, &lit[..lights], exponent);
             let linear = u32::MAX - bounds.left_by_linear(u32::MAX, curvature, &cosines[..lights]).unwrap();
-            let bound = [linear, bounds.quadratic(curvature, &cosines[..lights])];
+            let bound = [linear, bounds.quadratic(curvature, &cosines[..lights]), bounds.cosines(curvature, &cosines[..lights])];
             for (k, ratios) in ratios.iter_mut().enumerate() {
                 // Highlights below e^-8 are not drawn, and nodes are rounded.
                 let dark: f64 = gains[..lights].iter().map(|[_, specular]| 4.0 / 3.0 * specular * f64::exp(-8.0)).sum();
@@ -475,7 +482,8 @@ mod tests {
                 }
             }
         }
-        for (ratios, most) in ratios.iter_mut().zip([4.0, 8.0]) {
+        // Of cosines, half of these triangles are wider than the table knows: there a bound is the whole highlight.
+        for (ratios, most) in ratios.iter_mut().zip([4.0, 8.0, 20.0]) {
             ratios.sort_by(f64::total_cmp);
             assert!(ratios.len() > 2_000 && ratios[ratios.len() / 2] < most, "{} of {}", ratios[ratios.len() / 2], ratios.len());
         }

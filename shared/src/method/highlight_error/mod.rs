@@ -101,17 +101,17 @@ impl Place {
         }
     }
 
-    /// The largest error of [`Kind::Cosines`], of a highlight with the level `narrowed` at its peak, Q9.7, times [`USUAL_EXPONENT`] over the
-    /// exponent.
+    /// The largest error of [`Kind::Cosines`], of a highlight with the level `specular` at its peak, and `narrowed`, the same times
+    /// [`USUAL_EXPONENT`] over the exponent; Q9.7. No error exceeds `specular`, because a power is between 0 and 1.
     #[inline(always)]
     #[must_use]
-    pub(crate) fn error_of_cosines(self, narrowed: u32) -> u32 {
+    pub(crate) fn error_of_cosines(self, specular: u32, narrowed: u32) -> u32 {
         match self.errors[Kind::Cosines as usize].get(self.row..) {
             Some([less, more, ..]) if more[self.column] < u16::MAX => {
                 let (less, more) = (u32::from(less[self.column]), u32::from(more[self.column]));
                 (unsigned_product(narrowed, less + (((more - less) * self.beyond) >> 16) + 1) >> SHARE) as u32 + 1
             }
-            _ => u32::MAX >> 1,
+            _ => specular,
         }
     }
 
