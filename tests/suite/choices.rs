@@ -49,7 +49,7 @@ fn object(line: &str) -> Value {
 }
 
 /// The names of ways in JSON.
-const KEYS: [&str; 4] = ["one_colour", "linear", "quadratic", "phong"];
+const KEYS: [&str; 5] = ["one_colour", "linear", "quadratic", "cosines", "phong"];
 
 /// The sum over all ways of a field of `choices`.
 #[track_caller]

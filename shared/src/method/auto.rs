@@ -1,9 +1,8 @@
 //! The cheapest of several methods that is guaranteed to stay within an error budget, chosen for each triangle.
 //!
 //! One colour, linear or quadratic interpolation of levels, or quadratic interpolation of cosines, where [`ErrorBounds`] allow it, else Phong
-//! shading. Near lights, a near viewer,
-//! and more than two lights are always shaded by Phong. The choice follows from constants of the mesh and from the cosines at the corners,
-//! in integers: it is the same on every machine.
+//! shading. Near lights, a near viewer, and more than two lights are always shaded by Phong. The choice follows from constants of the mesh
+//! and from the cosines at the corners, in integers: it is the same on every machine.
 //!
 //! Error against Phong: at most the budget, and what arithmetic adds to every method. Neighbours by the same method meet without a jump,
 //! others within twice the budget.
