@@ -49,7 +49,7 @@ fn object(line: &str) -> Value {
 }
 
 /// The names of ways in JSON.
-const KEYS: [&str; 4] = ["one_colour", "linear", "quadratic", "phong"];
+const KEYS: [&str; 5] = ["one_colour", "linear", "quadratic", "cosines", "phong"];
 
 /// The sum over all ways of a field of `choices`.
 #[track_caller]
@@ -97,7 +97,7 @@ fn painted_pictures_have_the_colours_of_ways() {
         let settings = Settings { size, style: Shader::AUTO.into(), band_rows: 1, format };
         let (picture, choices) = choices::painted(stream, &settings, 0).expect("a picture");
         shares_are_100_percent(&choices);
-        let (mut seen, mut others) = ([false; 4], BTreeSet::new());
+        let (mut seen, mut others) = ([false; Way::ALL.len()], BTreeSet::new());
         for &pixel in picture.rgb.as_chunks::<3>().0 {
             match Way::ALL.iter().position(|way| is_shade_of(pixel, way.colour())) {
                 Some(way) => seen[way] = true,
@@ -109,7 +109,7 @@ fn painted_pictures_have_the_colours_of_ways() {
     }
 }
 
-/// The legend lies below the picture, white and the four colours on black, in each frame.
+/// The legend lies below the picture, white and the colours of all ways on black, in each frame.
 #[test]
 fn the_legend_is_below() {
     let directory = tempfile::tempdir().expect("scratch directory");

@@ -10,7 +10,7 @@
 
 mod triangle;
 
-use microphong::method::highlight_error::{COLUMNS, COLUMNS_A_UNIT, Errors, KINDS, LEAST_EXPONENTS, LEAST_SIZE, ROWS, SHARE};
+use microphong::method::highlight_error::{COLUMNS, COLUMNS_A_UNIT, Errors, KINDS, Kind, LEAST_EXPONENTS, LEAST_SIZE, ROWS, SHARE};
 use microphong_stress::random::Random;
 use rayon::prelude::*;
 use std::fmt::Write;
@@ -25,8 +25,8 @@ pub type Table = [[Errors; KINDS]; LEAST_EXPONENTS.len()];
 /// Rows that are searched: half-way between those of the table, too.
 const SEARCHED: usize = 2 * ROWS - 1;
 
-/// Factors for what a search has not found: another one finds up to 1 % more of linear interpolation, and 8 % more of the quadratic.
-const MARGINS: [f64; KINDS] = [1.03, 1.03, 1.12];
+/// Factors for what a search has not found: another one finds up to 1 % more of linear interpolation, and 8 % more of quadratics.
+const MARGINS: [f64; KINDS] = [1.03, 1.03, 1.12, 1.12];
 
 /// Exponents that stand for a range.
 const EXPONENTS: [&[u16]; LEAST_EXPONENTS.len()] = [&[1, 2, 3, 4], &[5, 6, 7, 8, 10, 12, 15], &[16, 18, 24, 32, 50, 128, 1024]];
@@ -147,7 +147,7 @@ pub fn table(effort: u32, seed: u64, done: impl Fn() + Sync) -> Table {
             for column in 0..COLUMNS {
                 let entries = entries(column, kind, |row| found[kind][row][column] * MARGINS[kind]);
                 for (row, entry) in rows.iter_mut().zip(entries) {
-                    row[column] = (entry * f64::from(1 << SHARE)).ceil() as u16 + 1;
+                    row[column] = ((entry * f64::from(1 << SHARE)).ceil() as u16).saturating_add(1);
                 }
             }
         }
@@ -157,8 +157,12 @@ pub fn table(effort: u32, seed: u64, done: impl Fn() + Sync) -> Table {
 
 /// The entries of one column, such that a straight line between two rows does not pass below what was `found` between them.
 fn entries(column: usize, kind: usize, found: impl Fn(usize) -> f64) -> [f64; ROWS + 1] {
-    // What larger triangles are off at most: the brightest highlight, by the quadratic 4/3 of it.
-    let all = if kind + 1 == KINDS { 4.0 / 3.0 } else { 1.0 } * f64::exp(-depth_of(column));
+    // What larger triangles are off at most: the brightest highlight, by the quadratic 4/3 of it. Cosines are not judged there.
+    let all = match kind {
+        kind if kind == Kind::Cosines as usize => f64::INFINITY,
+        kind if kind == Kind::Quadratic as usize => 4.0 / 3.0 * f64::exp(-depth_of(column)),
+        _ => f64::exp(-depth_of(column)),
+    };
     let mut entries: [f64; ROWS + 1] = std::array::from_fn(|row| if row < ROWS { found(2 * row) } else { all });
     for row in 0..ROWS - 1 {
         let line = entries[row] + (f64::sqrt(2.0) - 1.0) * (entries[row + 1] - entries[row]);

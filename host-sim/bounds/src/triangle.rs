@@ -1,7 +1,8 @@
 //! A triangle of unit normals around the peak of a highlight, and what interpolation is off from its highlight.
 
-use microphong::method::highlight_error::KINDS;
+use microphong::method::highlight_error::{KINDS, USUAL_EXPONENT};
 use microphong_stress::random::Random;
+use std::array;
 
 /// Corners by their angles from the half vector, along two axes, times the root of the exponent: highlights of all exponents are about
 /// equally wide in them.
@@ -74,29 +75,36 @@ impl Triangle {
         })
     }
 
-    /// Largest errors of each kind for an exponent, over the whole highlight.
+    /// Largest errors of each kind for an exponent, over the whole highlight; that of [`microphong::method::highlight_error::Kind::Cosines`] times the exponent over
+    /// [`USUAL_EXPONENT`].
     #[must_use]
     pub fn errors(&self, exponent: u16) -> [f64; KINDS] {
         let n = f64::from(exponent);
         let normals = self.normals(n);
-        let at = |[a, b, c]: [f64; 3]| {
+        let cosine = |[a, b, c]: [f64; 3]| {
             let normal = [0, 1, 2].map(|k| a * normals[0][k] + b * normals[1][k] + c * normals[2][k]);
-            (normal[2] / dot(normal, normal).sqrt()).max(0.0).powf(n)
+            normal[2] / dot(normal, normal).sqrt()
         };
+        let raised = |cosine: f64| cosine.max(0.0).powf(n);
         let half = 0.5;
-        let [a, b, c] = [at([1.0, 0.0, 0.0]), at([0.0, 1.0, 0.0]), at([0.0, 0.0, 1.0])];
-        let [ab, bc, ca] = [at([half, half, 0.0]), at([0.0, half, half]), at([half, 0.0, half])];
+        let nodes = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0], [half, half, 0.0], [0.0, half, half], [half, 0.0, half]];
+        let cosines = nodes.map(cosine);
+        let levels = cosines.map(raised);
         let mut errors = [0f64; KINDS];
         for i in 0..=GRID {
             for j in 0..=GRID - i {
                 let [u, v] = [i, j].map(|k| f64::from(k) / f64::from(GRID));
                 let w = 1.0 - u - v;
-                let exact = at([u, v, w]);
-                let linear = u * a + v * b + w * c;
-                let corners = u * (2.0 * u - 1.0) * a + v * (2.0 * v - 1.0) * b + w * (2.0 * w - 1.0) * c;
-                let quadratic = corners + 4.0 * (u * v * ab + v * w * bc + w * u * ca);
-                let [below, above, either] = errors;
-                errors = [below.max(exact - linear), above.max(linear - exact), either.max((quadratic - exact).abs())];
+                let exact = raised(cosine([u, v, w]));
+                let linear = u * levels[0] + v * levels[1] + w * levels[2];
+                let quadratic = |[a, b, c, ab, bc, ca]: [f64; 6]| {
+                    let corners = u * (2.0 * u - 1.0) * a + v * (2.0 * v - 1.0) * b + w * (2.0 * w - 1.0) * c;
+                    corners + 4.0 * (u * v * ab + v * w * bc + w * u * ca)
+                };
+                // The table of highlights ends at 1.
+                let cosines = (raised(quadratic(cosines).min(1.0)) - exact).abs() * n / f64::from(USUAL_EXPONENT);
+                let found = [exact - linear, linear - exact, (quadratic(levels) - exact).abs(), cosines];
+                errors = array::from_fn(|kind| errors[kind].max(found[kind]));
             }
         }
         errors

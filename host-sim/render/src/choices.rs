@@ -39,13 +39,15 @@ pub enum Way {
     Linear,
     /// Levels at six nodes, quadratic in between.
     Quadratic,
+    /// Cosines at six nodes, quadratic in between, highlights looked up at the pixel.
+    Cosines,
     /// Phong shading.
     Phong,
 }
 
 impl Way {
     /// All of them, the cheapest first.
-    pub const ALL: [Self; 4] = [Self::OneColour, Self::Linear, Self::Quadratic, Self::Phong];
+    pub const ALL: [Self; 5] = [Self::OneColour, Self::Linear, Self::Quadratic, Self::Cosines, Self::Phong];
 
     /// The name in texts and pictures.
     #[must_use]
@@ -54,6 +56,7 @@ impl Way {
             Self::OneColour => "one colour",
             Self::Linear => "linear",
             Self::Quadratic => "quadratic",
+            Self::Cosines => "cosines",
             Self::Phong => "Phong",
         }
     }
@@ -65,6 +68,7 @@ impl Way {
             Self::OneColour => [86, 180, 233],
             Self::Linear => [0, 158, 115],
             Self::Quadratic => [240, 228, 66],
+            Self::Cosines => [204, 121, 167],
             Self::Phong => [213, 94, 0],
         }
     }
@@ -76,6 +80,7 @@ impl From<Choice> for Way {
             Choice::Solid(_) => Self::OneColour,
             Choice::Linear | Choice::Between(_) => Self::Linear,
             Choice::Quadratic => Self::Quadratic,
+            Choice::Cosines => Self::Cosines,
             Choice::Phong => Self::Phong,
         }
     }

@@ -33,7 +33,7 @@ Examples:
   microphong bounds --check 100000 --effort 200 --seed 7            look for larger errors";
 
 /// The kinds of error, in the order of the table.
-const KINDS: [&str; 3] = ["linear, too dark", "linear, too bright", "quadratic"];
+const KINDS: [&str; 4] = ["linear, too dark", "linear, too bright", "quadratic", "cosines"];
 
 #[derive(Serialize)]
 struct Line {

@@ -1,8 +1,8 @@
 //! The cheapest of several methods that is guaranteed to stay within an error budget, chosen for each triangle.
 //!
-//! One colour, linear or quadratic interpolation of levels where [`ErrorBounds`] allow it, else Phong shading. Near lights, a near viewer,
-//! and more than two lights are always shaded by Phong. The choice follows from constants of the mesh and from the cosines at the corners,
-//! in integers: it is the same on every machine.
+//! One colour, linear or quadratic interpolation of levels, or quadratic interpolation of cosines, where [`ErrorBounds`] allow it, else Phong
+//! shading. Near lights, a near viewer, and more than two lights are always shaded by Phong. The choice follows from constants of the mesh
+//! and from the cosines at the corners, in integers: it is the same on every machine.
 //!
 //! Error against Phong: at most the budget, and what arithmetic adds to every method. Neighbours by the same method meet without a jump,
 //! others within twice the budget.
@@ -22,6 +22,7 @@ use crate::{
         of_levels,
         phong::Phong,
         six_point::SixPoint,
+        sqrt6::SixCosines,
     },
     pixel::Pixel,
     raster::{
@@ -49,8 +50,11 @@ static FACTS: Facts = Facts {
 /// The cheapest method within the error budget.
 pub struct Auto;
 
-/// Pixels from which the quadratic takes fewer instructions than Phong shading, which is set up sooner: in one channel, and in three.
-const WORTH_QUADRATIC: [u32; 2] = [20, 60];
+/// Pixels from which the quadratic takes fewer instructions than Phong shading, which is set up sooner: in one channel, in three, and under
+/// two lights.
+const WORTH_QUADRATIC: [u32; 3] = [20, 60, 60];
+/// The same of quadratic cosines.
+const WORTH_COSINES: [u32; 3] = [40, 40, 120];
 
 /// What draws a triangle.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -63,6 +67,8 @@ pub enum Choice {
     Between([[i32; 3]; 3]),
     /// Levels at six nodes, quadratic in between.
     Quadratic,
+    /// Cosines at six nodes, quadratic in between, highlights looked up at the pixel.
+    Cosines,
     /// Phong shading.
     Phong,
 }
@@ -70,11 +76,12 @@ pub enum Choice {
 impl Choice {
     /// How many triangles are drawn so.
     fn count(self, counts: &mut Counts) -> &mut u32 {
-        let [solid, linear, quadratic, phong] = &mut counts.choices;
+        let [solid, linear, quadratic, cosines, phong] = &mut counts.choices;
         match self {
             Self::Solid(_) => solid,
             Self::Linear | Self::Between(_) => linear,
             Self::Quadratic => quadratic,
+            Self::Cosines => cosines,
             Self::Phong => phong,
         }
     }
@@ -107,8 +114,12 @@ fn among(
     if let Some(left) = bounds.left_by_linear(budget, curvature, cosines) {
         return linear(left);
     }
-    let worth = WORTH_QUADRATIC[usize::from(reflectance.three_channels())];
-    if pixels(setup) >= worth && is_quadratic(shading, curvature, cosines) { Choice::Quadratic } else { Choice::Phong }
+    let (pixels, style) = (pixels(setup), usize::from(reflectance.three_channels()) + cosines.len() - 1);
+    match () {
+        () if pixels >= WORTH_QUADRATIC[style] && is_quadratic(shading, curvature, cosines) => Choice::Quadratic,
+        () if pixels >= WORTH_COSINES[style] && bounds.cosines(curvature, cosines) <= budget => Choice::Cosines,
+        () => Choice::Phong,
+    }
 }
 
 /// Whether the quadratic is within the budget.
@@ -202,6 +213,7 @@ impl Method for Auto {
             (Choice::Between(levels), _) => shading.draw_levels::<3, RANGE>(setup, levels, canvas),
             (Choice::Quadratic, Some(_)) => SixPoint.shade(setup, shading, canvas),
             (Choice::Quadratic, None) => shading.draw_channels::<6, RANGE>(setup, &six_under_two(setup, shading), canvas),
+            (Choice::Cosines, _) => SixCosines::shade(setup, shading, canvas),
             (Choice::Phong, _) => Phong.shade(setup, shading, canvas),
         }
     }
@@ -227,6 +239,7 @@ impl Loops for Auto {
             Choice::Solid(levels) => Some(setup.fill(|| Constant, Solid(tables.colour(levels)), band)),
             Choice::Linear | Choice::Between(_) => by::<Gouraud, _>(setup, shading, tables, band),
             Choice::Quadratic => by::<SixPoint, _>(setup, shading, tables, band),
+            Choice::Cosines => by::<SixCosines, _>(setup, shading, tables, band),
             Choice::Phong => by::<Phong, _>(setup, shading, tables, band),
         }
     }
@@ -254,6 +267,7 @@ impl Loops for ThreeChannels<Auto> {
             (Choice::Between(levels), _) => Some(Shading::fill_three(setup, || channels(levels), |plane| plane, band)),
             (Choice::Quadratic, Some(_)) => by::<SixPoint, _>(setup, shading, tables, band),
             (Choice::Quadratic, None) => Some(Shading::fill_three(setup, || six_under_two(setup, shading), ByColumn, band)),
+            (Choice::Cosines, _) => by::<SixCosines, _>(setup, shading, tables, band),
             (Choice::Phong, _) => by::<Phong, _>(setup, shading, tables, band),
         }
     }

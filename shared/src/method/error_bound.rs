@@ -21,7 +21,7 @@ use crate::{
     lighting::reflectance::{FULL, Reflectance},
     method::{
         CornerCosines,
-        highlight_error::{self, Kind, Place},
+        highlight_error::{self, Kind, Place, USUAL_EXPONENT},
         largest,
     },
     stream::record::Triangle,
@@ -48,6 +48,8 @@ struct LightBounds {
     diffuse: u32,
     /// The level of a whole highlight, Q9.7.
     specular: u32,
+    /// The same times [`USUAL_EXPONENT`] over the exponent, rounded up.
+    narrowed: u32,
 }
 
 /// What bounds on the triangles of one material have in common.
@@ -86,7 +88,7 @@ fn fraction(x: u32, share: u32) -> u32 {
 impl ErrorBounds {
     /// Before they are filled; all zeros.
     pub const EMPTY: Self = Self {
-        lights: [LightBounds { diffuse: 0, specular: 0 }; MAX_LIGHTS],
+        lights: [LightBounds { diffuse: 0, specular: 0, narrowed: 0 }; MAX_LIGHTS],
         ambient: 0,
         threshold: 0,
         exponent: 0,
@@ -99,7 +101,8 @@ impl ErrorBounds {
     pub fn new(reflectance: &Reflectance, exponent: u16, lights: usize) -> Self {
         let light = |light| {
             let [diffuse, specular] = if light < lights { reflectance.largest_gains(light) } else { [0; 2] };
-            LightBounds { diffuse, specular }
+            let narrowed = specular * u32::from(USUAL_EXPONENT) / u32::from(exponent.max(1)) + 1;
+            LightBounds { diffuse, specular, narrowed }
         };
         let lights = [light(0), light(1)];
         let [r, g, b] = reflectance.ambient();
@@ -144,12 +147,29 @@ impl Curvature {
         (self.around << 15) + self.around * ((self.around * 69) >> 7)
     }
 
+    /// The remainder of the quadratic through six points over the third derivative of what is interpolated, Q0.32.
+    #[inline(always)]
+    fn remainder(self) -> u32 {
+        let h = self.h;
+        // 8 h^1.5 (1 + 3.35 h) times the remainder, by a chord, Q0.32; h^1.5 is in Q0.32 as well.
+        let shape = share(8.0 * REMAINDER) + ((h * share(8.0 * REMAINDER * 3.35)) >> 16) + 1;
+        times(h * rooted(h), shape)
+    }
+
     /// An upper bound, Q2.30, of a cosine whose numerator is linear and largest at a corner with this value, which is not negative.
     #[inline(always)]
     fn cosine(self, corner: i32) -> i32 {
         // 1/ρ is at most 1 + 0.9 h, a chord, and normals are unit vectors to 2^-15; Q0.32.
         let longer = self.h * share(0.9) + (4 << 16);
         corner + upper(corner, longer as i32) + 1
+    }
+}
+
+impl LightBounds {
+    /// What the quadratic through diffuse light is off, where that is not clamped; see [`Curvature::remainder`].
+    #[inline(always)]
+    fn remainder(&self, of_curvature: u32) -> u32 {
+        fraction(times(self.diffuse, share(3.01)), of_curvature)
     }
 }
 
@@ -207,15 +227,12 @@ impl ErrorBounds {
     #[inline(never)]
     #[must_use]
     pub(crate) fn quadratic(&self, curvature: Curvature, cosines: &[CornerCosines]) -> u32 {
-        let h = curvature.h;
-        // 8 h^1.5 (1 + 3.35 h) times the remainder, by a chord, Q0.32; h^1.5 is in Q0.32 as well.
-        let shape = share(8.0 * REMAINDER) + ((h * share(8.0 * REMAINDER * 3.35)) >> 16) + 1;
-        let size = times(h * rooted(h), shape);
+        let remainder = curvature.remainder();
         let mut bound = 0u32;
         for (light, [towards, half]) in self.lights.iter().zip(cosines) {
             let most = largest(towards);
             if most > 0 {
-                bound += fraction(times(light.diffuse, share(3.01)), size);
+                bound += light.remainder(remainder);
                 if let Some([light_side, dark_side]) = terminator(curvature, towards, most) {
                     // Over ρ, which is at least 0.81.
                     let gap =
@@ -228,6 +245,20 @@ impl ErrorBounds {
             }
         }
         bound
+    }
+
+    /// A bound of the quadratics through cosines at corners and midpoints of edges, whose highlights are looked up at each pixel, in 1/255 of
+    /// full intensity, Q9.7. What is clamped at the pixel is no farther off than what is not.
+    #[inline(never)]
+    #[must_use]
+    pub(crate) fn cosines(&self, curvature: Curvature, cosines: &[CornerCosines]) -> u32 {
+        let remainder = curvature.remainder();
+        self.lights.iter().zip(cosines).fold(0u32, |bound, (light, [_, half])| {
+            let highlight = self
+                .highlight(curvature, half)
+                .map_or(0, |place| place.rounding(self.exponent, light.specular) + place.error_of_cosines(light.specular, light.narrowed));
+            bound.saturating_add(light.remainder(remainder) + highlight)
+        })
     }
 
     /// Whether light may exceed 255 somewhere on the triangle: what is clamped at nodes is not clamped between them.
@@ -256,7 +287,7 @@ impl ErrorBounds {
     #[inline(always)]
     #[must_use]
     pub(crate) fn level(&self, cosine: i32, highlight: i32) -> u32 {
-        let [LightBounds { diffuse, specular }, _] = &self.lights;
+        let [LightBounds { diffuse, specular, .. }, _] = &self.lights;
         let diffuse = (diffuse * (cosine as u32 >> (COSINE - 15))) >> 15;
         diffuse + ((specular * highlight as u32) >> 16) + 2
     }
@@ -340,26 +371,32 @@ mod tests {
         }
     }
 
-    /// Largest errors of linear and quadratic interpolation of what lights reflect, each `[L, H]` with its levels at cosine 1 and of a whole
-    /// highlight. Corners are lit by their normals as they are stored.
-    fn errors(normals: [[f64; 3]; 3], lights: &[([[f64; 3]; 2], [f64; 2])], exponent: u16) -> [f64; 2] {
-        let lit = |normal: [f64; 3]| -> f64 {
+    /// Largest errors of linear and quadratic interpolation of what lights reflect, and of quadratic interpolation of the cosines that they
+    /// reflect it by; each `[L, H]` with its levels at cosine 1 and of a whole highlight. Corners are lit by their normals as they are stored.
+    fn errors(normals: [[f64; 3]; 3], lights: &[([[f64; 3]; 2], [f64; 2])], exponent: u16) -> [f64; 3] {
+        let of = |cosine: &dyn Fn([f64; 3]) -> f64| -> f64 {
             let light = |&([light, half], [diffuse, specular]): &([[f64; 3]; 2], [f64; 2])| {
-                diffuse * dot(normal, light).max(0.0) + specular * dot(normal, half).clamp(0.0, 1.0).powi(exponent.into())
+                diffuse * cosine(light).max(0.0) + specular * cosine(half).clamp(0.0, 1.0).powi(exponent.into())
             };
             lights.iter().map(light).sum()
         };
-        let at = |[u, v, w]: [f64; 3]| lit(unit([0, 1, 2].map(|k| u * normals[0][k] + v * normals[1][k] + w * normals[2][k])));
-        let [a, b, c] = normals.map(lit);
-        let [ab, bc, ca] = [at([0.5, 0.5, 0.0]), at([0.0, 0.5, 0.5]), at([0.5, 0.0, 0.5])];
-        let mut errors = [0f64; 2];
+        let lit = |normal: [f64; 3]| of(&|direction| dot(normal, direction));
+        let between = |[u, v, w]: [f64; 3]| unit([0, 1, 2].map(|k| u * normals[0][k] + v * normals[1][k] + w * normals[2][k]));
+        let middles = [[0.5, 0.5, 0.0], [0.0, 0.5, 0.5], [0.5, 0.0, 0.5]].map(between);
+        let through = |b: [f64; 3], at: &dyn Fn([f64; 3]) -> f64| -> f64 {
+            let corners: f64 = (0..3).map(|k| b[k] * (2.0 * b[k] - 1.0) * at(normals[k])).sum();
+            corners + 4.0 * (0..3).map(|k| b[k] * b[(k + 1) % 3] * at(middles[k])).sum::<f64>()
+        };
+        let mut errors = [0f64; 3];
         for (i, j) in (0..=GRID).flat_map(|i| (0..=GRID - i).map(move |j| (i, j))) {
             let [u, v] = [i, j].map(|k| f64::from(k) / f64::from(GRID));
-            let w = 1.0 - u - v;
-            let corners = u * (2.0 * u - 1.0) * a + v * (2.0 * v - 1.0) * b + w * (2.0 * w - 1.0) * c;
-            let quadratic = corners + 4.0 * (u * v * ab + v * w * bc + w * u * ca);
-            let exact = at([u, v, w]);
-            errors = [errors[0].max((u * a + v * b + w * c - exact).abs()), errors[1].max((quadratic - exact).abs())];
+            let b = [u, v, 1.0 - u - v];
+            let linear: f64 = (0..3).map(|k| b[k] * lit(normals[k])).sum();
+            let by_cosines = of(&|direction| through(b, &|normal| dot(normal, direction)));
+            let exact = lit(between(b));
+            for (error, light) in errors.iter_mut().zip([linear, through(b, &lit), by_cosines]) {
+                *error = error.max((light - exact).abs());
+            }
         }
         errors
     }
@@ -380,6 +417,7 @@ mod tests {
             for towards in [[one; 3], [one, one, -one], [one, -one, -one], [-one; 3]] {
                 let cosines = [[towards, [one; 3]]; 2];
                 let _ = (bounds.left_by_linear(u32::MAX, curvature, &cosines), bounds.quadratic(curvature, &cosines));
+                let _ = bounds.cosines(curvature, &cosines);
                 assert!(bounds.saturates(curvature, &cosines, &reflectance));
                 assert!(bounds.brightest(one, 0xffff) >= FULL);
             }
@@ -390,7 +428,7 @@ mod tests {
     #[test]
     fn errors_stay_within_their_bounds() {
         let mut random = Random(1);
-        let mut ratios = [const { heapless::Vec::<f64, 20_000>::new() }; 2];
+        let mut ratios = [const { heapless::Vec::<f64, 20_000>::new() }; 3];
         for case in 0..20_000 {
             let lights = 1 + case % 2;
             let exponent = (1024f64.powf(0.5 + 0.5 * random.next()).max(1.0) as u16).min(1024);
@@ -433,7 +471,7 @@ mod tests {
             let lit = [(directions[0], gains[0]), (directions[1], gains[1])];
             let exact = errors(stored, &lit[..lights], exponent);
             let linear = u32::MAX - bounds.left_by_linear(u32::MAX, curvature, &cosines[..lights]).unwrap();
-            let bound = [linear, bounds.quadratic(curvature, &cosines[..lights])];
+            let bound = [linear, bounds.quadratic(curvature, &cosines[..lights]), bounds.cosines(curvature, &cosines[..lights])];
             for (k, ratios) in ratios.iter_mut().enumerate() {
                 // Highlights below e^-8 are not drawn, and nodes are rounded.
                 let dark: f64 = gains[..lights].iter().map(|[_, specular]| 4.0 / 3.0 * specular * f64::exp(-8.0)).sum();
@@ -444,7 +482,8 @@ mod tests {
                 }
             }
         }
-        for (ratios, most) in ratios.iter_mut().zip([4.0, 8.0]) {
+        // Of cosines, half of these triangles are wider than the table knows: there a bound is the whole highlight.
+        for (ratios, most) in ratios.iter_mut().zip([4.0, 8.0, 20.0]) {
             ratios.sort_by(f64::total_cmp);
             assert!(ratios.len() > 2_000 && ratios[ratios.len() / 2] < most, "{} of {}", ratios[ratios.len() / 2], ratios.len());
         }

@@ -37,6 +37,9 @@ use crate::{
     },
 };
 
+/// Whether the quadratic goes through roots of N·H, for which the table of highlights is made, or through N·H itself.
+type IsRoot = bool;
+
 /// One, Q2.30.
 const ONE: i32 = 1 << 30;
 /// Below this cosine the root is continued by a line.
@@ -57,6 +60,9 @@ static FACTS: Facts = Facts {
 /// Six-point shading with a root of N·H.
 pub struct Sqrt6;
 
+/// The same by N·H itself, for a method whose table of highlights is that of [`Highlight::Half`]: set up sooner, and less accurate.
+pub(crate) struct SixCosines;
+
 impl Method for Sqrt6 {
     fn facts(&self) -> &'static Facts {
         &FACTS
@@ -64,24 +70,36 @@ impl Method for Sqrt6 {
 
     fn shade(&self, setup: &TriangleSetup<'_>, shading: &Shading<'_>, canvas: &mut dyn Canvas) -> u32 {
         if shading.lighting.is_constant() {
-            let threshold = setup.highlight_threshold(shading.reflectance);
-            let fit = |source: &_| {
-                let [towards, half] = shading.lighting.directions(source, [0; 3]);
-                let (towards, half) = (setup.six_from(setup.corner_cosines(towards)), setup.corner_cosines(half));
-                if largest(&half) >= threshold {
-                    Lit::Fully(quadratic([towards, map_six(setup.six_half_from(half, shading.exponent), root)]))
-                } else if DiffuseSign::of(towards) == DiffuseSign::Nowhere {
-                    Lit::Nowhere
-                } else {
-                    Lit::Diffuse(quadratic([towards]))
-                }
-            };
-            return shading.draw_lit_in_part(setup, fit, Constant, Squared, canvas);
+            return shade_constant::<true>(setup, shading, canvas);
         }
         let nodes = setup.six_nodes(shading.exponent);
         let fit = |source: &_| Lit::<_, Quadratic<1>>::Fully(shading.six_products(&nodes, source, |[light, half]| [light, root(half)]));
-        shading.draw_lit_in_part(setup, fit, Constant, Squared, canvas)
+        shading.draw_lit_in_part(setup, fit, Constant, AtPixel, canvas)
     }
+}
+
+impl SixCosines {
+    /// Shades the triangle `setup` under constant lights into `canvas`; returns the number of its pixels there.
+    pub(crate) fn shade(setup: &TriangleSetup<'_>, shading: &Shading<'_>, canvas: &mut dyn Canvas) -> u32 {
+        shade_constant::<false>(setup, shading, canvas)
+    }
+}
+
+/// [`Method::shade`] under constant lights.
+fn shade_constant<const ROOT: IsRoot>(setup: &TriangleSetup<'_>, shading: &Shading<'_>, canvas: &mut dyn Canvas) -> u32 {
+    let threshold = setup.highlight_threshold(shading.reflectance);
+    let fit = |source: &_| {
+        let [towards, half] = shading.lighting.directions(source, [0; 3]);
+        let (towards, half) = (setup.six_from(setup.corner_cosines(towards)), setup.corner_cosines(half));
+        if largest(&half) >= threshold {
+            Lit::Fully(quadratic([towards, map_six(setup.six_half_from(half, shading.exponent), walked::<ROOT>)]))
+        } else if DiffuseSign::of(towards) == DiffuseSign::Nowhere {
+            Lit::Nowhere
+        } else {
+            Lit::Diffuse(quadratic([towards]))
+        }
+    };
+    shading.draw_lit_in_part(setup, fit, Constant, AtPixel, canvas)
 }
 
 impl Loops for Sqrt6 {
@@ -98,31 +116,60 @@ impl Loops for Sqrt6 {
         tables: MaterialTables<'_, C>,
         band: &mut Band<'_, C>,
     ) -> Option<u32> {
-        if tables.reflectance.lights() == 2 {
-            return draw_two(setup, shading, tables, band);
+        draw_any::<true, C>(setup, shading, tables, band)
+    }
+}
+
+impl Loops for SixCosines {
+    type ThreeChannels = Self;
+
+    fn take(style: Style) -> bool {
+        Sqrt6::take(style)
+    }
+
+    #[inline(always)]
+    fn draw<C: Pixel>(
+        setup: &TriangleSetup<'_>,
+        shading: &Shading<'_>,
+        tables: MaterialTables<'_, C>,
+        band: &mut Band<'_, C>,
+    ) -> Option<u32> {
+        draw_any::<false, C>(setup, shading, tables, band)
+    }
+}
+
+/// [`Loops::draw`] under one light or two.
+#[inline(always)]
+fn draw_any<const ROOT: IsRoot, C: Pixel>(
+    setup: &TriangleSetup<'_>,
+    shading: &Shading<'_>,
+    tables: MaterialTables<'_, C>,
+    band: &mut Band<'_, C>,
+) -> Option<u32> {
+    if tables.reflectance.lights() == 2 {
+        return draw_two::<ROOT, C>(setup, shading, tables, band);
+    }
+    let (cosines, rgb) = (&setup.corner_lights(), tables.one_light_rgb());
+    let ramp = if rgb.is_some() { tables.diffuse_ramp() } else { Some(tables.one_light_ramp()?) };
+    let has_no_highlight = largest(&cosines[1]) < setup.highlight_threshold(tables.reflectance);
+    // What a table of colours declines in three channels has been drawn as if it had a highlight.
+    let declined = rgb.is_some() && setup.resumed(band) == Some(DiffuseAndHighlight::<OneLightRgb<'_, C>>::ID);
+    if let Some(ramp) = ramp.filter(|_| has_no_highlight && !declined) {
+        let drawn = draw_diffuse(setup, cosines, ramp, tables, band);
+        if drawn.is_some() || rgb.is_none() {
+            setup.count(band.top, &mut band.counts.without_highlight, 1);
+            return drawn;
         }
-        let (cosines, rgb) = (&setup.corner_lights(), tables.one_light_rgb());
-        let ramp = if rgb.is_some() { tables.diffuse_ramp() } else { Some(tables.one_light_ramp()?) };
-        let has_no_highlight = largest(&cosines[1]) < setup.highlight_threshold(tables.reflectance);
-        // What a table of colours declines in three channels has been drawn as if it had a highlight.
-        let declined = rgb.is_some() && setup.resumed(band) == Some(DiffuseAndHighlight::<OneLightRgb<'_, C>>::ID);
-        if let Some(ramp) = ramp.filter(|_| has_no_highlight && !declined) {
-            let drawn = draw_diffuse(setup, cosines, ramp, tables, band);
-            if drawn.is_some() || rgb.is_none() {
-                setup.count(band.top, &mut band.counts.without_highlight, 1);
-                return drawn;
-            }
-        }
-        match rgb {
-            Some(rgb) => draw_rgb(setup, cosines, rgb, shading.exponent, tables, band),
-            None => draw(setup, cosines, ramp?, shading.exponent, tables, band),
-        }
+    }
+    match rgb {
+        Some(rgb) => draw_rgb::<ROOT, C>(setup, cosines, rgb, shading.exponent, tables, band),
+        None => draw::<ROOT, C, _>(setup, cosines, ramp?, shading.exponent, tables, band),
     }
 }
 
 /// [`draw`] in three channels, once for triangles of all sizes: a call is a small share of what they take.
 #[inline(never)]
-fn draw_rgb<C: Pixel>(
+fn draw_rgb<const ROOT: IsRoot, C: Pixel>(
     setup: &TriangleSetup<'_>,
     corners: &CornerCosines,
     colours: OneLightRgb<'_, C>,
@@ -130,12 +177,12 @@ fn draw_rgb<C: Pixel>(
     tables: MaterialTables<'_, C>,
     band: &mut Band<'_, C>,
 ) -> Option<u32> {
-    draw(setup, corners, colours, exponent, tables, band)
+    draw::<ROOT, C, _>(setup, corners, colours, exponent, tables, band)
 }
 
 /// Draws `setup` under two constant lights.
 #[inline(never)]
-fn draw_two<C: Pixel>(
+fn draw_two<const ROOT: IsRoot, C: Pixel>(
     setup: &TriangleSetup<'_>,
     shading: &Shading<'_>,
     tables: MaterialTables<'_, C>,
@@ -148,12 +195,12 @@ fn draw_two<C: Pixel>(
     let lookup = DefectLookup::new(&tables.reflectance.highlight_lut);
     let shader = DiffuseAndHighlight { colours, lookup };
     let diffuse = |cosines| diffuse(setup, full, cosines);
-    let highlight = |[_, half]: CornerCosines| highlight(setup, half, lookup, exponent);
+    let highlight = |[_, half]: CornerCosines| highlight::<ROOT>(setup, half, lookup, exponent);
     setup.count(band.top, &mut band.counts.without_highlight, 2 - highlights);
     Some(match highlights {
         1 if is_dark(other) => {
             setup.count(band.top, &mut band.counts.without_light, 1);
-            return draw_rgb(setup, &first, colours.first(), exponent, tables, band);
+            return draw_rgb::<ROOT, C>(setup, &first, colours.first(), exponent, tables, band);
         }
         0 => setup.fill(|| (diffuse(towards), diffuse(other)), DiffuseOnly(colours), band),
         1 => setup.fill(|| ByColumn(((diffuse(towards), highlight(first)), diffuse(other))), shader, band),
@@ -163,7 +210,7 @@ fn draw_two<C: Pixel>(
 
 /// Draws `setup` with a highlight under one constant light in these `colours`; `None` if levels may leave the walked format.
 #[inline(always)]
-fn draw<C: Pixel, T: OneLight<Pixel = C>>(
+fn draw<const ROOT: IsRoot, C: Pixel, T: OneLight<Pixel = C>>(
     setup: &TriangleSetup<'_>,
     &[towards, half]: &CornerCosines,
     colours: T,
@@ -180,7 +227,7 @@ fn draw<C: Pixel, T: OneLight<Pixel = C>>(
         }
     }
     let lookup = DefectLookup::new(&tables.reflectance.highlight_lut);
-    let patch = || (diffuse(setup, colours.diffuse(), cosines), highlight(setup, half, lookup, exponent));
+    let patch = || (diffuse(setup, colours.diffuse(), cosines), highlight::<ROOT>(setup, half, lookup, exponent));
     Some(setup.fill(patch, DiffuseAndHighlight { colours, lookup }, band))
 }
 
@@ -217,10 +264,10 @@ fn diffuse(setup: &TriangleSetup<'_>, full: u16, cosines: [i32; 6]) -> Quadric<1
     Nodes::<6, 1, RANGE>::new([map_six(cosines, |cosine| node(full, cosine, LEVEL))], WALK - LEVEL).fit(setup.gradients)
 }
 
-/// 1 minus the root of N·H, which is `half` at the corners, as the table of highlights is looked up by.
+/// 1 minus the root of N·H, or minus N·H, which is `half` at the corners, as the table of highlights is looked up by.
 #[inline(never)]
-fn highlight(setup: &TriangleSetup<'_>, half: [i32; 3], lookup: DefectLookup<'_>, exponent: u16) -> Quadric<1> {
-    let half = [map_six(map_six(setup.six_half_from(half, exponent), root), |root| lookup.node(root))];
+fn highlight<const ROOT: IsRoot>(setup: &TriangleSetup<'_>, half: [i32; 3], lookup: DefectLookup<'_>, exponent: u16) -> Quadric<1> {
+    let half = [map_six(map_six(setup.six_half_from(half, exponent), walked::<ROOT>), |node| lookup.node(node))];
     Nodes::<6, 1, BITS>::new(half, EXTRA).biased([lookup.half()]).fit(setup.gradients)
 }
 
@@ -329,11 +376,17 @@ fn root(w: i32) -> i32 {
     sqrt(w.min(ONE - 1))
 }
 
-/// The inverse of [`root`] at the pixel.
-#[derive(Clone, Copy)]
-struct Squared;
+/// What is walked of N·H, Q2.30: its [`root`], or itself, but not below the lowest root, so that no polynomial wraps. That far from a
+/// highlight only triangles are clamped that are too large for any bound.
+fn walked<const ROOT: IsRoot>(w: i32) -> i32 {
+    if ROOT { root(w) } else { w.max(LOWEST - ONE) }
+}
 
-impl LightingModel<(), [u32; 2], [u32; 1]> for Squared {
+/// Looks up highlights at the pixel.
+#[derive(Clone, Copy)]
+struct AtPixel;
+
+impl LightingModel<(), [u32; 2], [u32; 1]> for AtPixel {
     type Common = ();
 
     #[inline(always)]
@@ -341,7 +394,7 @@ impl LightingModel<(), [u32; 2], [u32; 1]> for Squared {
 
     #[inline(always)]
     fn reflect(&self, _: usize, (): &(), [light, half]: [u32; 2], lut: CosineLookup<'_>) -> Reflection {
-        // The table squares its argument.
+        // The table squares its argument, if that is a root.
         Reflection { diffuse: signed(light) >> 3, highlight: lut.at(signed(half) >> 3) }
     }
 

@@ -12,20 +12,26 @@ pub struct Counts {
     /// Without a light, for each such light.
     pub without_light: u32,
     /// By each choice of a method that chooses.
-    pub choices: [u32; 4],
+    pub choices: [u32; 5],
 }
 
 impl Counts {
     /// The sums of both.
     #[must_use]
     pub fn and(self, other: Self) -> Self {
-        let [one, linear, quadratic, exact] = self.choices;
-        let [a, b, c, d] = other.choices;
+        let [one, linear, quadratic, cosines, exact] = self.choices;
+        let [a, b, c, d, e] = other.choices;
         Self {
             without_depth: self.without_depth.wrapping_add(other.without_depth),
             without_highlight: self.without_highlight.wrapping_add(other.without_highlight),
             without_light: self.without_light.wrapping_add(other.without_light),
-            choices: [one.wrapping_add(a), linear.wrapping_add(b), quadratic.wrapping_add(c), exact.wrapping_add(d)],
+            choices: [
+                one.wrapping_add(a),
+                linear.wrapping_add(b),
+                quadratic.wrapping_add(c),
+                cosines.wrapping_add(d),
+                exact.wrapping_add(e),
+            ],
         }
     }
 }

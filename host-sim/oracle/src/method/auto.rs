@@ -1,6 +1,6 @@
-//! One of four methods, whichever stays within an error budget.
+//! One of five methods, whichever stays within an error budget.
 
-use super::{Decide, gouraud, six_point};
+use super::{Decide, gouraud, six_point, sqrt6};
 use crate::{
     Facet, Frame, Shade,
     light::{highlight, phong},
@@ -10,7 +10,7 @@ use microphong_render::choices::Way;
 /// An excess that is close to its threshold at every margin but 0.
 const CLOSE: f64 = -f64::MIN_POSITIVE;
 
-/// Which of them that is follows from bounds that only the core knows. What it is measured against is Phong shading, and each of the four
+/// Which of them that is follows from bounds that only the core knows. What it is measured against is Phong shading, and each of the five
 /// counts as a decision that may fall either way: arithmetic is compared with all of them.
 ///
 /// Near lights or a near viewer: always Phong.
@@ -20,6 +20,7 @@ pub(super) fn shade<'f>(frame: &'f Frame, facet: &'f Facet, decide: &'f Decide<'
     }
     match (decide(CLOSE), decide(CLOSE)) {
         (false, false) => gouraud::shade(frame, facet),
+        (false, true) if decide(CLOSE) => sqrt6::by_cosines(frame, facet),
         (false, true) => six_point::shade(frame, facet),
         (true, by_light) => solid(frame, facet, by_light),
     }
@@ -33,6 +34,7 @@ pub fn chosen<'f>(frame: &'f Frame, facet: &'f Facet, way: Way) -> Shade<'f> {
         Way::OneColour => solid(frame, facet, frame.lights.len() == 1 && frame.only_channel(facet).is_none()),
         Way::Linear => gouraud::shade(frame, facet),
         Way::Quadratic => six_point::shade(frame, facet),
+        Way::Cosines => sqrt6::by_cosines(frame, facet),
         Way::Phong => phong(frame, facet),
     }
 }

@@ -16,16 +16,26 @@ fn square(z: f64) -> f64 {
 }
 
 pub(super) fn shade<'f>(frame: &'f Frame, facet: &'f Facet) -> Shade<'f> {
+    fitted(frame, facet, root, square)
+}
+
+/// The same through N·H itself.
+pub(super) fn by_cosines<'f>(frame: &'f Frame, facet: &'f Facet) -> Shade<'f> {
+    fitted(frame, facet, |w| w, |w| w)
+}
+
+/// N·H is interpolated as a function of it, and that undone.
+fn fitted<'f>(frame: &'f Frame, facet: &'f Facet, function: fn(f64) -> f64, inverse: fn(f64) -> f64) -> Shade<'f> {
     let fit = |light| {
         SIX.map(|node| {
             let [diffuse, half] = frame.cosines(light, facet.position(node), facet.node(node));
-            [diffuse, root(half)]
+            [diffuse, function(half)]
         })
     };
     let fits: Vec<_> = frame.lights.iter().map(fit).collect();
     Box::new(move |p| {
         let weights = quadratic(facet.weights(p));
-        let cosines = fits.iter().map(|fit| blend(&weights, fit)).map(|[diffuse, half]| [diffuse, square(half)]);
+        let cosines = fits.iter().map(|fit| blend(&weights, fit)).map(|[diffuse, half]| [diffuse, inverse(half)]);
         frame.lit(facet, cosines)
     })
 }

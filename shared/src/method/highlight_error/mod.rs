@@ -11,11 +11,14 @@
 
 mod table;
 
-use crate::format::{COSINE, HAVERSINE};
+use crate::{
+    arch::product::unsigned_product,
+    format::{COSINE, HAVERSINE},
+};
 pub use table::ERRORS;
 
 /// Errors that the table knows.
-pub const KINDS: usize = 3;
+pub const KINDS: usize = 4;
 /// Rows for octaves of n e².
 pub const ROWS: usize = 13;
 /// Columns, each a fourth of a unit of n (1 - w).
@@ -29,7 +32,9 @@ pub const LEAST_EXPONENTS: [u16; 3] = [1, 5, 16];
 /// The largest exponent at which what rounding of normals does to the highlights at corners is left to what arithmetic may add: it is less than
 /// half an LSB.
 const EXACT: u16 = 64;
-/// Fraction bits of an entry, a share of the whole highlight.
+/// The exponent for which errors of [`Kind::Cosines`] stand in the table as they are.
+pub const USUAL_EXPONENT: u16 = 16;
+/// Fraction bits of an entry, a share of the whole highlight; the largest entry stands for any error.
 pub const SHARE: u32 = 15;
 
 /// A kind of error.
@@ -41,6 +46,9 @@ pub enum Kind {
     LinearAbove,
     /// How far the quadratic through six points is off.
     Quadratic,
+    /// How far the power of the quadratic through N·H at six points is off, times the exponent over [`USUAL_EXPONENT`]: as highlights become
+    /// narrower, this error becomes smaller.
+    Cosines,
 }
 
 /// The errors of one kind, unsigned Q1.15, rounded up.
@@ -80,7 +88,7 @@ impl Place {
         Self { errors: ERRORS.get(usize::from(part)).unwrap_or(&ERRORS[0]), row, column: column % COLUMNS, beyond }
     }
 
-    /// The largest error of a kind, of a highlight with the level `specular` at its peak, Q9.7.
+    /// The largest error of a kind but [`Kind::Cosines`], of a highlight with the level `specular` at its peak, Q9.7.
     #[inline(always)]
     #[must_use]
     pub(crate) fn error(self, kind: Kind, specular: u32) -> u32 {
@@ -90,6 +98,20 @@ impl Place {
                 ((specular * (less + (((more - less) * self.beyond) >> 16) + 1)) >> SHARE) + 1
             }
             _ => u32::MAX >> 1,
+        }
+    }
+
+    /// The largest error of [`Kind::Cosines`], of a highlight with the level `specular` at its peak, and `narrowed`, the same times
+    /// [`USUAL_EXPONENT`] over the exponent; Q9.7. No error exceeds `specular`, because a power is between 0 and 1.
+    #[inline(always)]
+    #[must_use]
+    pub(crate) fn error_of_cosines(self, specular: u32, narrowed: u32) -> u32 {
+        match self.errors[Kind::Cosines as usize].get(self.row..) {
+            Some([less, more, ..]) if more[self.column] < u16::MAX => {
+                let (less, more) = (u32::from(less[self.column]), u32::from(more[self.column]));
+                (unsigned_product(narrowed, less + (((more - less) * self.beyond) >> 16) + 1) >> SHARE) as u32 + 1
+            }
+            _ => specular,
         }
     }
 
