@@ -64,10 +64,13 @@ impl<C: Pixel> Shader<C> {
     pub const RENQ_NEWTON: Self = Self::with_loops(&RenqNewton);
 
     /// For each triangle the cheapest method that stays within the error budget.
-    pub const AUTO: Self = Self::with_loops(&Auto);
+    pub const AUTO: Self = Self::with_loops(&Auto::<true>);
+    /// [`Shader::AUTO`] without quadratics: half of its flash, and as exact.
+    pub const AUTO_LINEAR: Self = Self::with_loops(&Auto::<false>);
 
     /// Every method of this crate.
-    pub const ALL: [Self; 7] = [Self::FLAT, Self::GOURAUD, Self::SIX_POINT, Self::PHONG, Self::SQRT6, Self::RENQ_NEWTON, Self::AUTO];
+    pub const ALL: [Self; 8] =
+        [Self::FLAT, Self::GOURAUD, Self::SIX_POINT, Self::PHONG, Self::SQRT6, Self::RENQ_NEWTON, Self::AUTO, Self::AUTO_LINEAR];
 
     /// A method of your own, or of the crate `microphong-literature`.
     #[must_use]

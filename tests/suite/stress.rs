@@ -231,7 +231,7 @@ fn arithmetic_sees_another_exponent() {
 /// Gouraud shading keeps to no budget.
 #[test]
 fn budget_sees_another_method() {
-    for (shader, right) in [(Shader::AUTO, true), (Shader::PHONG, true), (Shader::GOURAUD, false)] {
+    for (shader, right) in [(Shader::AUTO, true), (Shader::AUTO_LINEAR, true), (Shader::PHONG, true), (Shader::GOURAUD, false)] {
         let found = budget::judge(&Case { style: shader.into(), ..sphere() }).unwrap();
         assert_eq!(found.share <= 1.0, right, "{} {found:?}", shader.name());
     }

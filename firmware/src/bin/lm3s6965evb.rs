@@ -7,7 +7,7 @@ use microphong::{Layout, Shader};
 use microphong_firmware::{OneCore, budget::LM3S6965EVB, run, ssd0323::Ssd0323};
 
 /// The methods for which there is flash beside a scene.
-const SHADERS: [Shader<Gray4>; 4] = [Shader::FLAT, Shader::GOURAUD, Shader::SIX_POINT, Shader::PHONG];
+const SHADERS: [Shader<Gray4>; 4] = [Shader::FLAT, Shader::GOURAUD, Shader::PHONG, Shader::AUTO_LINEAR];
 
 const LAYOUT: Layout = LM3S6965EVB.layout;
 

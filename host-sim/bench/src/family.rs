@@ -34,7 +34,7 @@ impl Family {
             "taylor" | "taylor-finite" | "sqrt6" | "renq" | "renq-newton" => Self::Cosine,
             "environment" | "blinn" | "quadratic-blinn" => Self::Map,
             "goldman" | "slerp" | "angular" | "angular-original" | "hybrid" | "hybrid-original" => Self::Angle,
-            "auto" => Self::Budget,
+            "auto" | "auto-linear" => Self::Budget,
             _ => Self::Vector,
         }
     }

@@ -99,6 +99,9 @@ impl Graph {
 
 /// The type that is the method, as symbols name it.
 fn type_name(shader: Shader) -> String {
+    if shader.keeps_budget() {
+        return format!("microphong::method::auto::Auto<{}>", shader == Shader::AUTO);
+    }
     let word = |word: &str| word[..1].to_uppercase() + &word[1..];
     let name: String = shader.name().split('-').map(word).collect();
     let module = shader.name().trim_end_matches("-original").replace('-', "_");

@@ -90,13 +90,13 @@ impl Board {
     /// Whether its firmware has room for the method.
     #[must_use]
     pub fn has(self, shader: Shader) -> bool {
-        self != Self::Lm3s6965evb || [Shader::FLAT, Shader::GOURAUD, Shader::SIX_POINT, Shader::PHONG].contains(&shader)
+        self != Self::Lm3s6965evb || [Shader::FLAT, Shader::GOURAUD, Shader::PHONG, Shader::AUTO_LINEAR].contains(&shader)
     }
 
     /// The method of the stream that its firmware is built with.
     #[must_use]
     pub fn shader(self) -> Shader {
-        if self.has(Shader::AUTO) { Shader::AUTO } else { Shader::SIX_POINT }
+        if self.has(Shader::AUTO) { Shader::AUTO } else { Shader::AUTO_LINEAR }
     }
 
     /// What a byte of the memory for streams is before anything is written there: erased flash, but QEMU begins with zeros.

@@ -160,24 +160,24 @@ thread_local! {
     static WAY: Cell<Option<Way>> = const { Cell::new(None) };
 }
 
-/// The method `auto`, which tells what it chooses.
-struct Telling;
+/// The method `auto`, or `auto-linear`, which tells what it chooses.
+struct Telling<const QUADRATICS: bool>;
 
-impl Method for Telling {
+impl<const QUADRATICS: bool> Method for Telling<QUADRATICS> {
     fn facts(&self) -> &'static Facts {
         // Under a number of its own: the loops of `auto` would tell nothing.
-        static FACTS: LazyLock<Facts> = LazyLock::new(|| Facts { id: Facts::FIRST_FREE, ..*Auto.facts() });
+        static FACTS: LazyLock<Facts> = LazyLock::new(|| Facts { id: Facts::FIRST_FREE, ..*Auto::<true>.facts() });
         &FACTS
     }
 
     fn error_bounds(&self, reflectance: &Reflectance, exponent: u16, lights: usize) -> ErrorBounds {
-        Auto.error_bounds(reflectance, exponent, lights)
+        Auto::<QUADRATICS>.error_bounds(reflectance, exponent, lights)
     }
 
     fn shade(&self, setup: &TriangleSetup<'_>, shading: &Shading<'_>, canvas: &mut dyn Canvas) -> u32 {
-        let way = choose(setup, shading).into();
+        let way = choose::<QUADRATICS>(setup, shading).into();
         WAY.set(Some(way));
-        let pixels = Auto.shade(setup, shading, canvas);
+        let pixels = Auto::<QUADRATICS>.shade(setup, shading, canvas);
         WAY.set(None);
         WAYS.with_borrow_mut(|(first, ways)| {
             // What is cut has a record of its own, elsewhere.
@@ -255,36 +255,43 @@ impl<C: Pixel> Pixel for Traced<C> {
     }
 }
 
-/// Draws frame `number` by [`Telling`] in one band.
-fn told<C: Pixel>(stream: Stream<'_>, size: Size, perspective_correct: bool, number: u32) -> anyhow::Result<(Vec<C>, Stats, Choices)> {
-    let style = Style { perspective_correct, ..Shader::new(&Telling).into() };
+/// Draws frame `number` by [`Telling`] in the place of `shader`, in one band.
+fn told<C: Pixel>(
+    shader: Shader,
+    stream: Stream<'_>,
+    size: Size,
+    perspective_correct: bool,
+    number: u32,
+) -> anyhow::Result<(Vec<C>, Stats, Choices)> {
+    let telling: &'static dyn Method = if shader == Shader::AUTO { &Telling::<true> } else { &Telling::<false> };
+    let style = Style { perspective_correct, ..Shader::new(telling).into() };
     CHOICES.set(Choices::NONE);
     WAYS.set((stream.triangles.as_ptr().addr(), vec![None; stream.triangles.len()]));
     let (pixels, stats) = render::frame(stream, size, style, size.height, number)?;
     Ok((pixels, stats, CHOICES.get()))
 }
 
-/// What a method chooses in frame `number` of a picture of 16 bits a pixel, as most boards draw it; `None` unless it is `auto`.
+/// What a method chooses in frame `number` of a picture of 16 bits a pixel, as most boards draw it; `None` unless it keeps a budget.
 ///
 /// # Errors
 /// When `size` is out of range.
 pub fn by(shader: Shader, stream: Stream<'_>, size: Size, perspective_correct: bool, number: u32) -> anyhow::Result<Option<Told>> {
-    if shader != Shader::AUTO {
+    if !shader.keeps_budget() {
         return Ok(None);
     }
-    let (_, _, choices) = told::<Rgb565>(stream, size, perspective_correct, number)?;
+    let (_, _, choices) = told::<Rgb565>(shader, stream, size, perspective_correct, number)?;
     let (_, ways) = WAYS.take();
     Ok(Some(Told { budget: stream.header.budget().to_num(), choices, ways }))
 }
 
-/// Draws frame `number` by `auto` in this size, format and perspective, each triangle painted in the colour of its way, in 8 bits per
+/// Draws frame `number` by a method that keeps a budget, in this size, format and perspective, each triangle painted in the colour of its way, in 8 bits per
 /// channel.
 ///
 /// # Errors
 /// When the size is out of range.
 pub fn painted(stream: Stream<'_>, settings: &Settings, number: u32) -> anyhow::Result<(Picture, Choices)> {
     fn paint<C: Pixel>(stream: Stream<'_>, s: &Settings, number: u32) -> anyhow::Result<(Picture, Choices)> {
-        let (pixels, stats, choices) = told::<Traced<C>>(stream, s.size, s.style.perspective_correct, number)?;
+        let (pixels, stats, choices) = told::<Traced<C>>(s.style.shader, stream, s.size, s.style.perspective_correct, number)?;
         let painted: Vec<_> = pixels.into_iter().map(Traced::painted).collect();
         Ok((Picture { rgb: rgb_bytes(&painted), crc: render::crc(&painted), stats }, choices))
     }

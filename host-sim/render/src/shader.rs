@@ -32,10 +32,12 @@ impl Shader {
     pub const RENQ_NEWTON: Self = Self(&RenqNewton);
 
     /// For each triangle the cheapest method that stays within the error budget.
-    pub const AUTO: Self = Self(&Auto);
+    pub const AUTO: Self = Self(&Auto::<true>);
+    /// The same without quadratics.
+    pub const AUTO_LINEAR: Self = Self(&Auto::<false>);
 
     /// Every method, in the order of their numbers.
-    pub const ALL: [Self; 27] = {
+    pub const ALL: [Self; 28] = {
         let [a, b, c, d, e, f, g, h, i, j, k, l, m, n, o, p, q, r, s, t] = literature::ALL;
         [
             Self::FLAT,
@@ -65,11 +67,13 @@ impl Shader {
             Self(t),
             Self::RENQ_NEWTON,
             Self::AUTO,
+            Self::AUTO_LINEAR,
         ]
     };
 
     /// The methods that the core itself has.
-    pub const CORE: [Self; 7] = [Self::FLAT, Self::GOURAUD, Self::SIX_POINT, Self::PHONG, Self::SQRT6, Self::RENQ_NEWTON, Self::AUTO];
+    pub const CORE: [Self; 8] =
+        [Self::FLAT, Self::GOURAUD, Self::SIX_POINT, Self::PHONG, Self::SQRT6, Self::RENQ_NEWTON, Self::AUTO, Self::AUTO_LINEAR];
 
     /// A method that is none of these.
     #[must_use]
@@ -91,6 +95,12 @@ impl Shader {
         let id = stream.header.shader;
         Self::by_id(id)
             .with_context(|| format!("the stream asks for shading method number {id}, which is none of these; name one by --shader"))
+    }
+
+    /// Whether the method chooses by an error budget.
+    #[must_use]
+    pub fn keeps_budget(self) -> bool {
+        [Self::AUTO, Self::AUTO_LINEAR].contains(&self)
     }
 
     /// What is known of the method.

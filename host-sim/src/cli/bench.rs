@@ -39,7 +39,7 @@ pub(crate) struct Arguments {
     /// Shading methods, separated by commas, or all that can shade the scene.
     #[arg(long, value_name = "S,...", default_value = "flat,gouraud,six-point,sqrt6,phong", value_parser = parse::shaders)]
     shader: Several<Shader>,
-    /// How far a pixel may be off from Phong shading by the method auto, in 1/255, 0.5 to 16, several separated by commas; the scene's
+    /// How far a pixel may be off from Phong shading by auto or auto-linear, in 1/255, 0.5 to 16, several separated by commas; the scene's
     /// own unless given.
     #[arg(long, value_name = "LSB,...", value_delimiter = ',', value_parser = parse::budget)]
     budget: Vec<ErrorBudget>,
@@ -144,7 +144,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome> {
     let boards: Vec<_> = arguments.board.values.iter().copied().filter(|&board| !common.is_empty() && peers::possible(board)).collect();
     // What depends on the budget is measured once more for each that is left.
     let others = arguments.budget.get(1..).unwrap_or_default();
-    let again = |wanted: &[(Processor, Shader)]| wanted.iter().copied().filter(|&(_, shader)| shader == Shader::AUTO).collect::<Vec<_>>();
+    let again = |wanted: &[(Processor, Shader)]| wanted.iter().copied().filter(|&(_, shader)| shader.keeps_budget()).collect::<Vec<_>>();
     let steps = scenes.iter().map(|(_, wanted)| wanted.len() + others.len() * again(wanted).len()).sum::<usize>();
     let steps = steps + 1 + common.len() * boards.len();
     let bar = report::progress(steps as u64, "counting instructions");

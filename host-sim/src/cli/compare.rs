@@ -30,7 +30,7 @@ pub(crate) struct Arguments {
     /// Shading methods by name, separated by commas, or all.
     #[arg(long, default_value = "all", value_name = "S,...", value_parser = parse::shaders)]
     shader: Several<Shader>,
-    /// How far a pixel may be off from Phong shading by the method auto, in 1/255, 0.5 to 16; the scene's own unless given.
+    /// How far a pixel may be off from Phong shading by auto or auto-linear, in 1/255, 0.5 to 16; the scene's own unless given.
     #[arg(long, value_name = "LSB", value_parser = parse::budget)]
     budget: Option<ErrorBudget>,
     /// Exponent of all highlights; the scene's own unless given.

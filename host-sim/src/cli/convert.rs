@@ -36,11 +36,11 @@ pub(crate) struct Arguments {
     /// Turn the surface inside out, for meshes whose faces wind clockwise; closed ones are turned without asking.
     #[arg(long)]
     flip: bool,
-    /// Shading method that the stream asks for: flat, gouraud, six-point, phong, sqrt6, renq-newton, auto, or one of the literature, as
-    /// `microphong compare` lists them. The board lm3s6965evb has the first four, the others have all.
+    /// Shading method that the stream asks for: flat, gouraud, six-point, phong, sqrt6, renq-newton, auto, auto-linear, or one of the
+    /// literature, as `microphong compare` lists them. The board lm3s6965evb has flat, gouraud, phong and auto-linear, the others have all.
     #[arg(long, default_value = "auto", value_parser = parse::shader)]
     shader: Shader,
-    /// How far a pixel may be off from Phong shading by the method auto, in 1/255, 0.5 to 16.
+    /// How far a pixel may be off from Phong shading by auto or auto-linear, in 1/255, 0.5 to 16.
     #[arg(long, value_name = "LSB", default_value = "1", value_parser = parse::budget)]
     budget: ErrorBudget,
     /// Colour of the surface, RRGGBB; copper unless given.

@@ -27,7 +27,7 @@ pub(crate) struct Arguments {
     /// Shading method; the scene's own unless given. `microphong compare` shows what each is worth.
     #[arg(long, value_parser = parse::shader)]
     shader: Option<Shader>,
-    /// How far a pixel may be off from Phong shading by the method auto, in 1/255, 0.5 to 16; the scene's own unless given.
+    /// How far a pixel may be off from Phong shading by auto or auto-linear, in 1/255, 0.5 to 16; the scene's own unless given.
     #[arg(long, value_name = "LSB", value_parser = parse::budget)]
     budget: Option<ErrorBudget>,
     /// Size of the picture; the scene's own unless given, 640x480 for files.
@@ -168,10 +168,10 @@ fn method(arguments: &Arguments, stream: &Stream<'_>) -> Result<Shader> {
     match (arguments.show, arguments.shader) {
         (None, None) => Shader::of(stream),
         (None, Some(shader)) => Ok(shader),
-        (Some(Show::Methods), Some(shader)) if shader != Shader::AUTO => {
+        (Some(Show::Methods), Some(shader)) if !shader.keeps_budget() => {
             Err(Usage(format!("--show methods shows what auto chooses; --shader {} chooses nothing", shader.name())).into())
         }
-        (Some(Show::Methods), _) => Ok(Shader::AUTO),
+        (Some(Show::Methods), shader) => Ok(shader.unwrap_or(Shader::AUTO)),
     }
 }
 

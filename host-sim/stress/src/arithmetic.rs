@@ -104,7 +104,7 @@ impl Divides {
         match name {
             // Near lights are no quotients of linear functions: it interpolates cosines.
             "duff" if !is_constant => Self::AtNodes,
-            "auto" | "duff" | "highlight-test" | "phong" | "phong-rv" => Self::AtPixels,
+            "auto" | "auto-linear" | "duff" | "highlight-test" | "phong" | "phong-rv" => Self::AtPixels,
             "angular" | "angular-original" | "goldman" | "hybrid" | "hybrid-original" | "renq" | "renq-newton" | "slerp" => Self::AtNodes,
             _ => Self::Nowhere,
         }

@@ -103,7 +103,7 @@ const fn at_most(parts: [u32; PARTS], perspective: u32, near: u32) -> Bound {
 /// Six times what the worst of 250 scenes of up to 320x240 pixels takes: under lights and a viewer far away, and then in perspective and under
 /// near ones. A row of a triangle costs next to nothing of its own, because the pixels of its ends are counted among those it touches.
 /// `cargo test -p microphong-tests stress::costs_are_counted_anew -- --ignored --nocapture` counts anew and prints the table.
-pub const BOUNDS: [(&str, Bound, Bound); 27] = [
+pub const BOUNDS: [(&str, Bound, Bound); 28] = [
     ("flat", at_most([4000, 2900, 34, 60], 100, 2), at_most([5200, 12000, 2100, 1900], 100, 2)),
     ("gouraud", at_most([8100, 2700, 1, 71], 534, 2), at_most([12000, 15000, 1, 2000], 113, 1)),
     ("six-point", at_most([23000, 1500, 1, 140], 331, 3), at_most([22000, 22000, 1, 2100], 102, 2)),
@@ -131,6 +131,7 @@ pub const BOUNDS: [(&str, Bound, Bound); 27] = [
     ("renq", at_most([2200, 5900, 1, 270], 267, 4), at_most([16000, 18000, 77, 2200], 119, 3)),
     ("renq-newton", at_most([1900, 7400, 1, 290], 279, 4), at_most([25000, 20000, 500, 2300], 113, 2)),
     ("auto", at_most([5900, 4700, 1, 220], 364, 8), at_most([14000, 18000, 10, 2200], 118, 4)),
+    ("auto-linear", at_most([5900, 4700, 1, 220], 364, 8), at_most([14000, 18000, 10, 2200], 118, 4)),
 ];
 
 /// Those of a style.

@@ -47,8 +47,10 @@ static FACTS: Facts = Facts {
     costs: Costs::new(11, 12, 2, 30),
 };
 
-/// The cheapest method within the error budget.
-pub struct Auto;
+static FACTS_WITHOUT_QUADRATICS: Facts = Facts { name: "auto-linear", id: 27, ..FACTS };
+
+/// The cheapest method within the error budget. Among all, or without quadratics, which take half of the flash.
+pub struct Auto<const QUADRATICS: bool>;
 
 /// Pixels from which the quadratic takes fewer instructions than Phong shading, which is set up sooner: in one channel, in three, and under
 /// two lights.
@@ -90,20 +92,20 @@ impl Choice {
 /// Chooses what draws a triangle.
 #[inline(never)]
 #[must_use]
-pub fn choose(setup: &TriangleSetup<'_>, shading: &Shading<'_>) -> Choice {
+pub fn choose<const QUADRATICS: bool>(setup: &TriangleSetup<'_>, shading: &Shading<'_>) -> Choice {
     let Some(curvature) = Curvature::of(setup.triangle) else { return Choice::Phong };
     if shading.vertices_have_cosines() {
-        return among(setup, shading, curvature, &[setup.corner_lights()], |left| one_light(setup, shading, left));
+        return among::<QUADRATICS>(setup, shading, curvature, &[setup.corner_lights()], |left| one_light(setup, shading, left));
     }
     if shading.reflectance.has_two_lights() && shading.lighting.is_constant() {
-        return among(setup, shading, curvature, &setup.corners_of_two_lights(), |left| two_lights(setup, shading, left));
+        return among::<QUADRATICS>(setup, shading, curvature, &setup.corners_of_two_lights(), |left| two_lights(setup, shading, left));
     }
     Choice::Phong
 }
 
 /// [`choose`] with these `cosines` at the corners; `linear` chooses where linear interpolation leaves so much of the budget.
 #[inline(always)]
-fn among(
+fn among<const QUADRATICS: bool>(
     setup: &TriangleSetup<'_>,
     shading: &Shading<'_>,
     curvature: Curvature,
@@ -116,6 +118,7 @@ fn among(
     }
     let (pixels, style) = (pixels(setup), usize::from(reflectance.three_channels()) + cosines.len() - 1);
     match () {
+        () if !QUADRATICS => Choice::Phong,
         () if pixels >= WORTH_QUADRATIC[style] && is_quadratic(shading, curvature, cosines) => Choice::Quadratic,
         () if pixels >= WORTH_COSINES[style] && bounds.cosines(curvature, cosines) <= budget => Choice::Cosines,
         () => Choice::Phong,
@@ -195,9 +198,9 @@ fn six_under_two(setup: &TriangleSetup<'_>, shading: &Shading<'_>) -> [[i32; 6];
     nodes
 }
 
-impl Method for Auto {
+impl<const QUADRATICS: bool> Method for Auto<QUADRATICS> {
     fn facts(&self) -> &'static Facts {
-        &FACTS
+        if QUADRATICS { &FACTS } else { &FACTS_WITHOUT_QUADRATICS }
     }
 
     fn error_bounds(&self, reflectance: &Reflectance, exponent: u16, lights: usize) -> ErrorBounds {
@@ -205,21 +208,21 @@ impl Method for Auto {
     }
 
     fn shade(&self, setup: &TriangleSetup<'_>, shading: &Shading<'_>, canvas: &mut dyn Canvas) -> u32 {
-        let choice = choose(setup, shading);
+        let choice = choose::<QUADRATICS>(setup, shading);
         setup.count_on(canvas, |counts| choice.count(counts), 1);
         match (choice, shading.constant) {
             (Choice::Solid(levels), _) => setup.draw_spans(&mut Shaded::new(Constant, Uniform(of_levels(levels))), canvas),
             (Choice::Linear, _) => shading.draw_levels::<3, RANGE>(setup, gouraud::reflected(setup, shading.reflectance), canvas),
             (Choice::Between(levels), _) => shading.draw_levels::<3, RANGE>(setup, levels, canvas),
-            (Choice::Quadratic, Some(_)) => SixPoint.shade(setup, shading, canvas),
-            (Choice::Quadratic, None) => shading.draw_channels::<6, RANGE>(setup, &six_under_two(setup, shading), canvas),
-            (Choice::Cosines, _) => SixCosines::shade(setup, shading, canvas),
-            (Choice::Phong, _) => Phong.shade(setup, shading, canvas),
+            (Choice::Quadratic, Some(_)) if QUADRATICS => SixPoint.shade(setup, shading, canvas),
+            (Choice::Quadratic, None) if QUADRATICS => shading.draw_channels::<6, RANGE>(setup, &six_under_two(setup, shading), canvas),
+            (Choice::Cosines, _) if QUADRATICS => SixCosines::shade(setup, shading, canvas),
+            (Choice::Quadratic | Choice::Cosines | Choice::Phong, _) => Phong.shade(setup, shading, canvas),
         }
     }
 }
 
-impl Loops for Auto {
+impl<const QUADRATICS: bool> Loops for Auto<QUADRATICS> {
     type ThreeChannels = ThreeChannels<Self>;
 
     fn take(style: Style) -> bool {
@@ -233,23 +236,23 @@ impl Loops for Auto {
         tables: MaterialTables<'_, C>,
         band: &mut Band<'_, C>,
     ) -> Option<u32> {
-        let choice = choose(setup, shading);
+        let choice = choose::<QUADRATICS>(setup, shading);
         setup.count(band.top, choice.count(&mut band.counts), 1);
         match choice {
             Choice::Solid(levels) => Some(setup.fill(|| Constant, Solid(tables.colour(levels)), band)),
             Choice::Linear | Choice::Between(_) => by::<Gouraud, _>(setup, shading, tables, band),
-            Choice::Quadratic => by::<SixPoint, _>(setup, shading, tables, band),
-            Choice::Cosines => by::<SixCosines, _>(setup, shading, tables, band),
-            Choice::Phong => by::<Phong, _>(setup, shading, tables, band),
+            Choice::Quadratic if QUADRATICS => by::<SixPoint, _>(setup, shading, tables, band),
+            Choice::Cosines if QUADRATICS => by::<SixCosines, _>(setup, shading, tables, band),
+            Choice::Quadratic | Choice::Cosines | Choice::Phong => by::<Phong, _>(setup, shading, tables, band),
         }
     }
 }
 
-impl Loops for ThreeChannels<Auto> {
+impl<const QUADRATICS: bool> Loops for ThreeChannels<Auto<QUADRATICS>> {
     type ThreeChannels = Self;
 
     fn take(style: Style) -> bool {
-        Auto::take(style)
+        Auto::<QUADRATICS>::take(style)
     }
 
     #[inline(always)]
@@ -259,16 +262,16 @@ impl Loops for ThreeChannels<Auto> {
         tables: MaterialTables<'_, C>,
         band: &mut Band<'_, C>,
     ) -> Option<u32> {
-        let choice = choose(setup, shading);
+        let choice = choose::<QUADRATICS>(setup, shading);
         setup.count(band.top, choice.count(&mut band.counts), 1);
         match (choice, shading.constant) {
             (Choice::Solid(levels), _) => Some(setup.fill(|| Constant, Solid(tables.colour(levels)), band)),
             (Choice::Linear, _) => by::<ThreeChannels<Gouraud>, _>(setup, shading, tables, band),
             (Choice::Between(levels), _) => Some(Shading::fill_three(setup, || channels(levels), |plane| plane, band)),
-            (Choice::Quadratic, Some(_)) => by::<SixPoint, _>(setup, shading, tables, band),
-            (Choice::Quadratic, None) => Some(Shading::fill_three(setup, || six_under_two(setup, shading), ByColumn, band)),
-            (Choice::Cosines, _) => by::<SixCosines, _>(setup, shading, tables, band),
-            (Choice::Phong, _) => by::<Phong, _>(setup, shading, tables, band),
+            (Choice::Quadratic, Some(_)) if QUADRATICS => by::<SixPoint, _>(setup, shading, tables, band),
+            (Choice::Quadratic, None) if QUADRATICS => Some(Shading::fill_three(setup, || six_under_two(setup, shading), ByColumn, band)),
+            (Choice::Cosines, _) if QUADRATICS => by::<SixCosines, _>(setup, shading, tables, band),
+            (Choice::Quadratic | Choice::Cosines | Choice::Phong, _) => by::<Phong, _>(setup, shading, tables, band),
         }
     }
 }

@@ -14,12 +14,13 @@ const CLOSE: f64 = -f64::MIN_POSITIVE;
 /// counts as a decision that may fall either way: arithmetic is compared with all of them.
 ///
 /// Near lights or a near viewer: always Phong.
-pub(super) fn shade<'f>(frame: &'f Frame, facet: &'f Facet, decide: &'f Decide<'f>) -> Shade<'f> {
+pub(super) fn shade<'f, const QUADRATICS: bool>(frame: &'f Frame, facet: &'f Facet, decide: &'f Decide<'f>) -> Shade<'f> {
     if !frame.is_constant() || !decide(CLOSE) {
         return phong(frame, facet);
     }
     match (decide(CLOSE), decide(CLOSE)) {
         (false, false) => gouraud::shade(frame, facet),
+        (false, true) if !QUADRATICS => phong(frame, facet),
         (false, true) if decide(CLOSE) => sqrt6::by_cosines(frame, facet),
         (false, true) => six_point::shade(frame, facet),
         (true, by_light) => solid(frame, facet, by_light),

@@ -65,8 +65,9 @@ const fn by_rows(method: Method) -> Method {
     Method { rows: true, ..method }
 }
 
-const METHODS: [Method; 27] = [
-    deciding("auto", auto::shade),
+const METHODS: [Method; 28] = [
+    deciding("auto", auto::shade::<true>),
+    deciding("auto-linear", auto::shade::<false>),
     any("flat", |frame, facet, _| flat::shade(frame, facet)),
     any("gouraud", |frame, facet, _| gouraud::shade(frame, facet)),
     any("gouraud4", |frame, facet, _| gouraud4::shade(frame, facet)),
