@@ -280,16 +280,16 @@ mod tests {
 
     #[test]
     fn several_budgets_are_a_curve() {
-        let auto = |m: &Measurement| (m.shader == "auto").then(|| m.clone());
+        let auto = |m: &Measurement| m.shader.starts_with("auto").then(|| m.clone());
         let mut measurements = measured();
         assert!(!page(&measurements, &[], &[], "").into_string().contains("class=\"curve\""));
         let more = measurements.iter().filter_map(auto).map(|m| Measurement { budget: Some(4.0), instructions: m.instructions / 2, ..m });
         let one = measurements.iter().map(|m| Measurement { budget: auto(m).map(|_| 1.0), ..m.clone() });
         measurements = one.chain(more).collect();
         let text = page(&measurements, &[], &[], "").into_string();
-        // Two scenes, two processors, two errors.
-        assert_eq!(text.matches("class=\"curve\"").count(), 8);
-        assert_eq!([text.matches(">auto 1<").count(), text.matches(">auto 4<").count()], [8; 2]);
+        // Two methods, two scenes, two processors, two errors.
+        assert_eq!(text.matches("class=\"curve\"").count(), 16);
+        assert_eq!([">auto 1<", ">auto 4<", ">auto-linear 1<", ">auto-linear 4<"].map(|name| text.matches(name).count()), [8; 4]);
     }
 
     #[test]

@@ -7,6 +7,7 @@ use super::{
 use crate::{Measurement, Processor, family::Family, pareto};
 use maud::{Markup, html};
 use microphong_render::shader::Shader;
+use std::collections::BTreeMap;
 
 /// A panel's size.
 pub(super) const SIZE: (f64, f64) = (480.0, 380.0);
@@ -109,9 +110,13 @@ pub(super) fn drawing(processor: Processor, measurements: &[&Measurement], axes:
     };
     let names: Vec<_> = order().filter_map(named).collect();
     let stairs = stairs(&front.iter().filter_map(|&i| points.get(i)).map(place).collect::<Vec<_>>());
-    let mut curve: Vec<_> = points.iter().filter(|point| point.name != point.measurement.shader).map(place).collect();
+    // A curve for each method that is measured by several budgets.
+    let mut curves: BTreeMap<&str, Vec<_>> = BTreeMap::new();
+    for point in points.iter().filter(|point| point.name != point.measurement.shader) {
+        curves.entry(point.measurement.shader).or_default().push(place(point));
+    }
     // From left to right, whatever the order of the budgets.
-    curve.sort_by(|(one, _), (other, _)| one.total_cmp(other));
+    curves.values_mut().for_each(|curve| curve.sort_by(|(one, _), (other, _)| one.total_cmp(other)));
     let steps: Vec<[(f64, f64); 2]> = stairs.array_windows().copied().collect();
     let labels = label::place(&names, &steps, [LEFT + 2.0, TOP, SIZE.0, BOTTOM - 2.0]);
     html! {
@@ -125,8 +130,8 @@ pub(super) fn drawing(processor: Processor, measurements: &[&Measurement], axes:
         text x=(RIGHT) y="11" text-anchor="end" { "instructions per pixel" }
         text x=((LEFT + RIGHT) / 2.0) y=(SIZE.1 - 4.0) text-anchor="middle" { (error.label()) }
         polyline.front points=(line(&stairs)) {}
-        @if !curve.is_empty() {
-            polyline.curve points=(line(&curve)) {}
+        @for curve in curves.values() {
+            polyline.curve points=(line(curve)) {}
         }
         @for (index, label) in order().zip(&labels) {
             @if let Some(point) = points.get(index) {
