@@ -1,8 +1,8 @@
 //! The largest errors of interpolated highlights, found by search: the table by which the method `auto` judges others.
 //!
 //! What interpolation is off from a highlight (N·H/|N|)^n on a triangle depends on its three unit normals, seen from the half vector. Errors
-//! of all exponents n are about the same function of n e² and of n (1 - w), where e is the longest distance between two normals, and w the
-//! largest N·H at a corner over the least length of N. [`microphong::method::highlight_error`] says how the table is laid out.
+//! of all exponents n are about the same function of n (1 - ρ) and of n (1 - w), where ρ is the least length of N on the triangle, and w the
+//! largest N·H at a corner over ρ. [`microphong::method::highlight_error`] says how the table is laid out.
 //!
 //! An entry is the largest error that was found on any triangle that is at most as large and at least as far from the peak: of random ones,
 //! and of those found for neighbouring entries, moved as long as that makes the error larger. It is a maximum over what was tried, not a
@@ -10,7 +10,10 @@
 
 mod triangle;
 
-use microphong::method::highlight_error::{COLUMNS, COLUMNS_A_UNIT, Errors, KINDS, Kind, LEAST_EXPONENTS, LEAST_SIZE, ROWS, SHARE};
+use microphong::method::highlight_error::{
+    COLUMNS, COLUMNS_A_UNIT, CURVED, Curved, Growth, KINDS, Kind, LEAST_EXPONENTS, LEAST_SIZE, LINEAR, LINEAR_SIZE, Linear, RATE, ROWS,
+    ROWS_BEHIND, SHARE,
+};
 use microphong_stress::random::Random;
 use rayon::prelude::*;
 use std::fmt::Write;
@@ -19,8 +22,25 @@ pub use triangle::Triangle;
 /// Errors of each kind for one range of exponents, over the whole highlight.
 type Found = [[[f64; COLUMNS]; SEARCHED]; KINDS];
 
-/// The table, as the core has it.
-pub type Table = [[Errors; KINDS]; LEAST_EXPONENTS.len()];
+/// The tables, as the core has them, by range of exponents.
+#[derive(Clone, Debug)]
+pub struct Table {
+    /// Of linear interpolation.
+    pub linear: [Linear; LEAST_EXPONENTS.len()],
+    /// Of quadratics.
+    pub curved: [Curved; LEAST_EXPONENTS.len()],
+}
+
+impl Table {
+    /// The tables of the core.
+    #[must_use]
+    pub fn compiled() -> Self {
+        Self { linear: LINEAR, curved: CURVED }
+    }
+}
+
+/// Kinds of error of linear interpolation; all behind them are those of quadratics.
+const LINEAR_KINDS: usize = Kind::Quadratic as usize;
 
 /// Rows that are searched: half-way between those of the table, too.
 const SEARCHED: usize = 2 * ROWS - 1;
@@ -37,7 +57,7 @@ const ROUNDS: u64 = 3;
 /// Steps of [`table`], of which `done` is told.
 pub const STEPS: u64 = (LEAST_EXPONENTS.len() * SEARCHED) as u64 * ROUNDS;
 
-/// n e² of the largest triangles of a row that is searched.
+/// n (1 - ρ) of the largest triangles of a row that is searched.
 fn size_of(row: usize) -> f64 {
     LEAST_SIZE * f64::powf(2.0, row as f64 / 2.0)
 }
@@ -70,7 +90,7 @@ impl Worst {
 
     /// Moves the triangle as long as that makes it worse, `tries` times.
     fn climb(&mut self, random: &mut Random, tries: u32, kind: usize, exponent: u16, limits: (f64, f64)) {
-        let largest = 0.2 * limits.0.sqrt();
+        let largest = 0.5 * limits.0.sqrt();
         let mut step = largest;
         for _ in 0..tries {
             let moved = self.triangle.moved(random, step);
@@ -137,33 +157,58 @@ fn search(part: usize, effort: u32, seed: u64, done: &(impl Fn() + Sync)) -> Fou
     errors
 }
 
-/// The table with its margins, from `effort` triangles for an entry, a kind of error and an exponent.
+/// The tables with their margins, from `effort` triangles for an entry, a kind of error and an exponent.
 #[must_use]
 pub fn table(effort: u32, seed: u64, done: impl Fn() + Sync) -> Table {
-    let mut table = [[[[0; COLUMNS]; ROWS + 1]; KINDS]; LEAST_EXPONENTS.len()];
-    for (part, kinds) in table.iter_mut().enumerate() {
+    let mut table = Table {
+        linear: [[[Growth { rate: 0, base: 0, slope: 0 }; 2]; COLUMNS]; LEAST_EXPONENTS.len()],
+        curved: [[[[0; 2]; COLUMNS]; ROWS + ROWS_BEHIND]; LEAST_EXPONENTS.len()],
+    };
+    for part in 0..LEAST_EXPONENTS.len() {
         let found = search(part, effort, seed, &done);
-        for (kind, rows) in kinds.iter_mut().enumerate() {
-            for column in 0..COLUMNS {
-                let entries = entries(column, kind, |row| found[kind][row][column] * MARGINS[kind]);
-                for (row, entry) in rows.iter_mut().zip(entries) {
-                    row[column] = ((entry * f64::from(1 << SHARE)).ceil() as u16).saturating_add(1);
-                }
+        for (kind, column) in (0..KINDS).flat_map(|kind| (0..COLUMNS).map(move |column| (kind, column))) {
+            let found = |row: usize| found[kind][row][column] * MARGINS[kind];
+            if kind < LINEAR_KINDS {
+                table.linear[part][column][kind] = growth(found);
+                continue;
+            }
+            for (row, entry) in table.curved[part].iter_mut().zip(entries(found)) {
+                row[column][kind - LINEAR_KINDS] = ((entry * f64::from(1 << SHARE)).ceil() as u16).saturating_add(1);
             }
         }
     }
     table
 }
 
+/// Two lines no less than what was `found` in rows: one through zero, and of all through two of the errors the one that is nearest to them.
+fn growth(found: impl Fn(usize) -> f64) -> Growth {
+    let errors: Vec<[f64; 2]> = (0..SEARCHED).map(|row| [size_of(row), found(row)]).filter(|[size, _]| *size <= LINEAR_SIZE).collect();
+    let rate = errors.iter().map(|[size, error]| error / size).fold(0.0, f64::max);
+    let mut best = ([0.0, 0.0], f64::INFINITY);
+    for (number, [size, error]) in errors.iter().enumerate() {
+        for [larger, more] in &errors[number + 1..] {
+            let slope = (more - error) / (larger - size);
+            let base = errors.iter().map(|[size, error]| error - slope * size).fold(0.0, f64::max);
+            let excess = |[size, error]: &[f64; 2]| ((rate * size).min(base + slope * size) / error.max(LEAST_ERROR)).ln().max(0.0);
+            let excess = errors.iter().map(excess).sum();
+            if excess < best.1 {
+                best = ([base, slope], excess);
+            }
+        }
+    }
+    let ([base, slope], _) = best;
+    let bits = |value: f64, bits: u32| (value * f64::from(1 << bits)).ceil() as u16;
+    Growth { rate: bits(rate, RATE), base: bits(base, SHARE).saturating_add(1), slope: bits(slope, RATE) }
+}
+
+/// Smaller errors, of the whole highlight, need no line that is near to them.
+const LEAST_ERROR: f64 = 1.0 / 4096.0;
+
 /// The entries of one column, such that a straight line between two rows does not pass below what was `found` between them.
-fn entries(column: usize, kind: usize, found: impl Fn(usize) -> f64) -> [f64; ROWS + 1] {
-    // What larger triangles are off at most: the brightest highlight, by the quadratic 4/3 of it. Cosines are not judged there.
-    let all = match kind {
-        kind if kind == Kind::Cosines as usize => f64::INFINITY,
-        kind if kind == Kind::Quadratic as usize => 4.0 / 3.0 * f64::exp(-depth_of(column)),
-        _ => f64::exp(-depth_of(column)),
-    };
-    let mut entries: [f64; ROWS + 1] = std::array::from_fn(|row| if row < ROWS { found(2 * row) } else { all });
+fn entries(found: impl Fn(usize) -> f64) -> [f64; ROWS + ROWS_BEHIND] {
+    // Behind the rows that are searched nothing is judged by the table.
+    let all = f64::INFINITY;
+    let mut entries: [f64; ROWS + ROWS_BEHIND] = std::array::from_fn(|row| if row < ROWS { found(2 * row) } else { all });
     for row in 0..ROWS - 1 {
         let line = entries[row] + (f64::sqrt(2.0) - 1.0) * (entries[row + 1] - entries[row]);
         let lacking = (found(2 * row + 1) - line).max(0.0);
@@ -171,7 +216,7 @@ fn entries(column: usize, kind: usize, found: impl Fn(usize) -> f64) -> [f64; RO
         entries[row + 1] += lacking;
     }
     // Raised entries may exceed the next ones.
-    for row in 0..ROWS {
+    for row in 0..ROWS + ROWS_BEHIND - 1 {
         entries[row + 1] = entries[row + 1].max(entries[row]);
     }
     entries
@@ -184,7 +229,7 @@ pub struct Place {
     pub exponent: u16,
     /// The kind of error.
     pub kind: usize,
-    /// n e².
+    /// n (1 - ρ).
     pub size: f64,
     /// The column.
     pub column: usize,
@@ -197,7 +242,7 @@ impl Place {
         Self {
             exponent: random.octaves(LEAST_EXPONENTS[part].into(), end.into()) as u16,
             kind,
-            size: random.octaves(LEAST_SIZE, size_of(SEARCHED - 1)),
+            size: random.octaves(LEAST_SIZE, if kind < LINEAR_KINDS { LINEAR_SIZE } else { size_of(SEARCHED - 1) }),
             column: random.pick(0..COLUMNS as i32) as usize,
         }
     }
@@ -206,9 +251,15 @@ impl Place {
     #[must_use]
     pub fn entry(&self, table: &Table) -> f64 {
         let part = LEAST_EXPONENTS.iter().rposition(|&least| self.exponent >= least).unwrap_or(0);
+        let share = |entry: u16| f64::from(entry) / f64::from(1 << SHARE);
+        if self.kind < LINEAR_KINDS {
+            let Growth { rate, base, slope } = table.linear[part][self.column][self.kind];
+            let of_size = |rate: u16| f64::from(rate) / f64::from(1 << RATE) * self.size;
+            return of_size(rate).min(share(base) + of_size(slope));
+        }
         let octaves = (self.size / LEAST_SIZE).log2();
         let row = (octaves as usize).min(ROWS - 2);
-        let [less, more] = [row, row + 1].map(|row| f64::from(table[part][self.kind][row][self.column]) / f64::from(1 << SHARE));
+        let [less, more] = [row, row + 1].map(|row| share(table.curved[part][row][self.column][self.kind - LINEAR_KINDS]));
         less + (more - less) * (f64::powf(2.0, octaves - row as f64) - 1.0)
     }
 
@@ -236,30 +287,45 @@ pub fn worst(table: &Table, kind: usize, tries: u64, effort: u32, seed: u64) -> 
     (0..tries).into_par_iter().map(search).max_by(|a, b| ratio(a).total_cmp(&ratio(b)))
 }
 
-/// The table as a file of the core.
+/// The tables as a file of the core.
 #[must_use]
 pub fn source(table: &Table, effort: u32, seed: u64) -> String {
     let mut text = format!(
-        "//! The table of `highlight_error`, written by `microphong bounds --effort {effort} --seed {seed}`.\n\n\
-         use super::{{Errors, KINDS, LEAST_EXPONENTS}};\n\n\
-         /// For each range of exponents, and each kind of error: rows by size, columns by the distance from the peak.\n\
+        "//! The tables of `highlight_error`, written by `microphong bounds --effort {effort} --seed {seed}`.\n\n\
+         use super::{{Curved, Growth, LEAST_EXPONENTS, Linear}};\n\n\
+         const fn growth(rate: u16, base: u16, slope: u16) -> Growth {{\n    Growth {{ rate, base, slope }}\n}}\n\n\
+         /// For each range of exponents: columns by the distance from the peak, and how errors of both kinds grow there.\n\
          #[rustfmt::skip]\n\
-         pub static ERRORS: [[Errors; KINDS]; LEAST_EXPONENTS.len()] = [\n"
+         pub static LINEAR: [Linear; LEAST_EXPONENTS.len()] = [\n"
     );
-    for part in table {
+    // A String takes all that is written.
+    for part in &table.linear {
         text.push_str("    [\n");
-        for kind in part {
+        for columns in part.chunks(4) {
+            let columns: Vec<_> = columns
+                .iter()
+                .map(|kinds| {
+                    let [below, above] = kinds.map(|Growth { rate, base, slope }| format!("growth({rate}, {base}, {slope})"));
+                    format!("[{below}, {above}]")
+                })
+                .collect();
+            let _ = writeln!(text, "        {},", columns.join(", "));
+        }
+        text.push_str("    ],\n");
+    }
+    text.push_str(
+        "];\n\n\
+         /// For each range of exponents: rows by size, columns by the distance from the peak, and errors of both kinds there.\n\
+         #[rustfmt::skip]\n\
+         pub static CURVED: [Curved; LEAST_EXPONENTS.len()] = [\n",
+    );
+    for part in &table.curved {
+        text.push_str("    [\n");
+        for row in part {
             text.push_str("        [\n");
-            for row in kind {
-                let row: Vec<_> = row.iter().map(u16::to_string).collect();
-                let (one, two) = row.split_at(COLUMNS / 2);
-                // A String takes all that is written.
-                let _ = write!(
-                    text,
-                    "            [\n                {},\n                {},\n            ],\n",
-                    one.join(", "),
-                    two.join(", ")
-                );
+            for columns in row.chunks(8) {
+                let columns: Vec<_> = columns.iter().map(|kinds| format!("{kinds:?}")).collect();
+                let _ = writeln!(text, "            {},", columns.join(", "));
             }
             text.push_str("        ],\n");
         }

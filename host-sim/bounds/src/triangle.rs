@@ -24,7 +24,8 @@ impl Triangle {
             let length = x.hypot(y).max(1e-9);
             [x / length, y / length]
         };
-        let long = size.sqrt();
+        // Of a circle around the normals with the squared radius 2 (1 - ρ), the diameter.
+        let long = (8.0 * size).sqrt();
         let away = direction(random).map(|c| c * (2.0 * depth.max(0.0)).sqrt());
         let first = direction(random).map(|c| c * long);
         let second = direction(random).map(|c| c * random.between(0.0, long));
@@ -47,16 +48,17 @@ impl Triangle {
         Self(corners)
     }
 
-    /// This one, smaller and farther from the peak if it has to be: its size at most `size`, and its depth at least `depth`, for an exponent.
+    /// This one, smaller and farther from the peak if it has to be: its size n (1 - ρ) at most `size`, and its depth at least `depth`, for an
+    /// exponent.
     pub fn fitted(mut self, exponent: u16, size: f64, depth: f64) -> Option<Self> {
         let n = f64::from(exponent);
         for _ in 0..4 {
             let normals = self.normals(n);
-            let (longest, nearest, away) = (longest(&normals), nearest(&normals), depth_of(n, &normals));
-            if n * longest <= size && away >= depth {
-                return (longest <= 1.0).then_some(self);
+            let (least, nearest, away) = (least_length(&normals), nearest(&normals), depth_of(n, &normals));
+            if n * (1.0 - least) <= size && away >= depth {
+                return (least >= LEAST).then_some(self);
             }
-            let smaller = (size / (n * longest)).sqrt().min(1.0) * (1.0 - 1e-9);
+            let smaller = (size / (n * (1.0 - least)).max(1e-12)).sqrt().min(1.0) * (1.0 - 1e-9);
             let [x, y] = self.0[nearest];
             let distance = x.hypot(y).max(1e-9);
             let farther = (distance * distance + 2.0 * (depth - away).max(0.0)).sqrt() * (1.0 + 1e-9) - distance;
@@ -111,13 +113,20 @@ impl Triangle {
     }
 }
 
-/// The longest squared distance between two normals.
-fn longest(normals: &[[f64; 3]; 3]) -> f64 {
+/// The least length of interpolated normals for which there are bounds, 0.8165: that of three that are 60 degrees apart.
+const LEAST: f64 = 0.816;
+
+/// The least length of an interpolated normal, from the smallest circle around the ends of all three.
+fn least_length(normals: &[[f64; 3]; 3]) -> f64 {
     let squared = |i: usize, j: usize| {
         let d = [0, 1, 2].map(|k| normals[i][k] - normals[j][k]);
         dot(d, d)
     };
-    squared(0, 1).max(squared(1, 2)).max(squared(2, 0))
+    let mut squares = [squared(0, 1), squared(1, 2), squared(2, 0)];
+    squares.sort_by(f64::total_cmp);
+    let [a, b, c] = squares;
+    let radius2 = if a + b <= c { c / 4.0 } else { a * b * c / (2.0 * (a * b + b * c + c * a) - a * a - b * b - c * c) };
+    (1.0 - radius2).max(0.0).sqrt()
 }
 
 /// The normal that is nearest to the peak.
@@ -127,6 +136,5 @@ fn nearest(normals: &[[f64; 3]; 3]) -> usize {
 
 /// n (1 - w): w is the largest N·H of a corner over the least length of N.
 fn depth_of(n: f64, normals: &[[f64; 3]; 3]) -> f64 {
-    let least = (1.0 - longest(normals) / 3.0).max(1e-9).sqrt();
-    n * (1.0 - (normals[nearest(normals)][2] / least).min(1.0))
+    n * (1.0 - (normals[nearest(normals)][2] / least_length(normals).max(1e-9)).min(1.0))
 }

@@ -78,7 +78,7 @@ impl From<Choice> for Way {
     fn from(choice: Choice) -> Self {
         match choice {
             Choice::Solid(_) => Self::OneColour,
-            Choice::Linear | Choice::Between(_) => Self::Linear,
+            Choice::Linear(_) => Self::Linear,
             Choice::Quadratic => Self::Quadratic,
             Choice::Cosines => Self::Cosines,
             Choice::Phong => Self::Phong,

@@ -115,7 +115,6 @@ fn constants(corners: [Vertex; 3]) -> Option<Triangle> {
     let normals = corners.map(|v| unit(widen(v.normal())).unwrap_or([0.0, 0.0, 1.0]));
     let cosine = [0, 1, 2].map(|k| dot(normals[k], normals[(k + 1) % 3]).clamp(-1.0, 1.0));
     let sums = [0, 1, 2].map(|k| length(add(normals[k], normals[(k + 1) % 3])));
-    let least = cosine.iter().copied().fold(1.0, f64::min);
     let quantised = normal(plane);
     let [ab, bc, ca] = [sub(b, a), sub(c, b), sub(a, c)];
     let longest = [ab, bc, ca].map(length).into_iter().fold(0.0, f64::max);
@@ -125,12 +124,23 @@ fn constants(corners: [Vertex; 3]) -> Option<Triangle> {
         // Its bits are those of twice as much with one fraction bit less, for which there is a type.
         inverse_sum_length: sums.map(|s| nearest::<U0F16>(2.0 / s - 1.0).to_bits()),
         haversine: cosine.map(|c| nearest::<Haversine>((1.0 - c) / 2.0).to_bits()),
-        min_normal_length: below::<NormalLength>(((1.0 + 2.0 * least) / 3.0).max(0.0).sqrt().min(1.0)).to_bits(),
+        min_normal_length: below::<NormalLength>(least_length(cosine.map(|c| 2.0 - 2.0 * c))).to_bits(),
         normal: quantised.map(Unit::to_bits),
         offset: offset(plane, dot(plane, a), quantised).to_bits(),
         // With what floating point may have rounded down.
         inverse_altitude: above::<InverseAltitude>((1.0 + 1e-12) / altitude).to_bits(),
     })
+}
+
+/// The least length of what lies between three unit vectors, of whose ends these are the squared distances: the ends lie on a sphere, and
+/// the middle of the smallest circle around them is nearest to its centre.
+fn least_length(mut squares: [f64; 3]) -> f64 {
+    squares.sort_by(f64::total_cmp);
+    let [a, b, c] = squares;
+    // Around the longest side, or through all three ends.
+    let radius2 = if a + b <= c { c / 4.0 } else { a * b * c / (2.0 * (a * b + b * c + c * a) - a * a - b * b - c * c) };
+    // Less what floating point may have rounded up.
+    (1.0 - radius2 - 1e-12).max(0.0).sqrt()
 }
 
 /// The largest offset that never removes a triangle which faces an eye.

@@ -2,8 +2,8 @@
 
 use super::{Outcome, report};
 use anyhow::Result;
-use microphong::method::highlight_error::ERRORS;
-use microphong_sim::bounds::{Place, STEPS, source, table, worst};
+use microphong::method::highlight_error::{COLUMNS, Growth, LEAST_EXPONENTS, ROWS, ROWS_BEHIND};
+use microphong_sim::bounds::{Place, STEPS, Table, source, table, worst};
 use serde::Serialize;
 
 /// Search for the largest errors of interpolated highlights, and write the table by which `auto` judges methods.
@@ -35,6 +35,15 @@ Examples:
 /// The kinds of error, in the order of the table.
 const KINDS: [&str; 4] = ["linear, too dark", "linear, too bright", "quadratic", "cosines"];
 
+/// The tables as they stand in the file of the core.
+#[derive(Serialize)]
+struct Tables {
+    /// By range of exponents, column and kind: rate, base and slope.
+    linear: [[[[u16; 3]; 2]; COLUMNS]; LEAST_EXPONENTS.len()],
+    /// By range of exponents, row, column and kind.
+    curved: [[Vec<[u16; 2]>; ROWS + ROWS_BEHIND]; LEAST_EXPONENTS.len()],
+}
+
 #[derive(Serialize)]
 struct Line {
     kind: &'static str,
@@ -55,7 +64,10 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome> {
     let table = table(effort, seed, || bar.inc(1));
     bar.finish_and_clear();
     if json {
-        report::json(&table.as_slice().iter().map(|part| part.each_ref().map(|kind| kind.map(Vec::from))).collect::<Vec<_>>())?;
+        report::json(&Tables {
+            linear: table.linear.map(|columns| columns.map(|kinds| kinds.map(|Growth { rate, base, slope }| [rate, base, slope]))),
+            curved: table.curved.map(|rows| rows.map(Vec::from)),
+        })?;
     } else {
         report::line(source(&table, effort, seed).trim_end())?;
     }
@@ -66,14 +78,16 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome> {
 fn search(places: u64, effort: u32, seed: u64, json: bool) -> Result<Outcome> {
     let mut outcome = Outcome::Done;
     for (number, kind) in KINDS.into_iter().enumerate() {
-        let Some((Place { exponent, size, column, .. }, [error, entry])) = worst(&ERRORS, number, places, effort, seed) else { continue };
+        let Some((Place { exponent, size, column, .. }, [error, entry])) = worst(&Table::compiled(), number, places, effort, seed) else {
+            continue;
+        };
         if error > entry {
             outcome = Outcome::Differences;
         }
         if json {
             report::json(&Line { kind, places, exponent, size, column, error, entry })?;
         } else {
-            let place = format!("exponent {exponent}, n e2 {size:.4}, column {column}");
+            let place = format!("exponent {exponent}, n (1 - rho) {size:.5}, column {column}");
             report::line(&format!(
                 "{kind}: worst of {places} places {:.4} of its entry, {:.3} LSB ({place})",
                 error / entry,

@@ -1,14 +1,13 @@
 //! Upper bounds of what cheaper methods are off from Phong shading on one triangle, under constant lights.
 //!
 //! What a light reflects on a triangle is a function of the interpolated normal N, which is linear and shorter than the corners' unit
-//! normals: of the diffuse cosine N·L/|N|, and of the highlight (N·H/|N|)^n.
+//! normals: of the diffuse cosine N·L/|N|, and of the highlight (N·H/|N|)^n. Its least length ρ on the triangle stands in the stream.
 //!
 //! - What interpolation is off from highlights stands in a table, [`crate::method::highlight_error`].
-//! - Diffuse light that is interpolated linearly is N·L instead of N·L/|N|: too dark by N·L (1/|N| - 1). |N|² is 1 less the sum of
-//!   b_i b_j |N_i - N_j|² over barycentric coordinates b, and that sum is at most the squared radius around the corners.
+//! - Diffuse light that is interpolated linearly is N·L instead of N·L/|N|: too dark by N·L (1/|N| - 1), at most by N·L (1/ρ - 1).
 //! - The quadratic through six points is off from diffuse light by its third derivative along lines, at most 3.01, times (e/ρ)³
-//!   `REMAINDER`. Here e is the longest distance between two corners' normals and ρ the least length of N; with h = e²/4, the
-//!   haversine, (e/ρ)² = 12 h / (3 - 4 h). Source: remainders of interpolation (Kowalewski 1932); the derivative is computed on a grid.
+//!   `REMAINDER`. Here e is the longest distance between two corners' normals; with h = e²/4, the haversine, (e/ρ)² is at most
+//!   12 h / (3 - 4 h). Source: remainders of interpolation (Kowalewski 1932); the derivative is computed on a grid.
 //! - Diffuse light is clamped where N·L changes its sign, from p to -q. Linear interpolation of a clamped line is too bright by at most
 //!   p q/(p + q), no more than either of them or a fourth of their sum; the quadratic is off by at most 4/3 of the least of them over ρ, and
 //!   by `KINK` of their sum over ρ.
@@ -16,12 +15,12 @@
 //! - Light above 255 has no bound.
 
 use crate::{
-    arch::product::{unsigned_product, upper},
-    format::{COSINE, HAVERSINE},
+    arch::product::unsigned_product,
+    format::{COSINE, HAVERSINE, NORMAL_LENGTH},
     lighting::reflectance::{FULL, Reflectance},
     method::{
         CornerCosines,
-        highlight_error::{self, Kind, Place, USUAL_EXPONENT},
+        highlight_error::{self, Place, USUAL_EXPONENT},
         largest,
     },
     stream::record::Triangle,
@@ -31,11 +30,17 @@ use zerocopy::{FromBytes, Immutable, IntoBytes, KnownLayout};
 /// Largest remainder of the quadratic through six points, over the third derivative and (e/ρ)³: 0.0253.
 const REMAINDER: f64 = 0.0254;
 
+/// (e/ρ)³ is at most 8 h^1.5 (1 + this h): by a chord to h = 1/3, where (e/ρ)² = 12 h/(3 - 4 h) is 2.4.
+const CHORD: f64 = 4.25;
+
 /// What the quadratic is off at most from clamped diffuse light, over ρ and the range of N·L: 0.0952 on a grid.
 const KINK: f64 = 0.1;
 
-/// Haversine of the widest edge on which bounds are finite: 60 degrees. Chords of convex functions below reach to here.
-const WIDEST: u32 = 1 << (HAVERSINE - 2);
+/// By how much interpolated normals are shorter than 1 at most where bounds are finite, Q1.15: 1 - ρ of three normals that are 60 degrees
+/// apart from one another. Chords of convex functions below reach to here.
+const SHORTEST: u32 = 6013;
+/// The haversine of the longest edge of such a triangle is at most (1 - ρ²) = 1/3, Q0.16.
+const WIDEST: u32 = (1 << HAVERSINE) / 3 + 1;
 
 /// Most lights of a frame for which there are bounds.
 pub const MAX_LIGHTS: usize = 2;
@@ -59,14 +64,17 @@ pub struct ErrorBounds {
     lights: [LightBounds; MAX_LIGHTS],
     /// The level of ambient light, Q9.7.
     ambient: u32,
-    /// N·H, Q2.30, below which no highlight can be seen.
-    threshold: i32,
+    /// N·H, Q1.15, below which no highlight can be seen.
+    threshold: u32,
     exponent: u16,
     /// The part of the table of errors for this exponent.
     part: u8,
     /// Not 0 if all lights together may exceed 255.
     may_saturate: u8,
 }
+
+/// Fraction bits of cosines that bounds are computed from.
+const BOUND: u32 = 15;
 
 /// A number in Q16, rounded up.
 const fn share(x: f64) -> u32 {
@@ -111,7 +119,7 @@ impl ErrorBounds {
         Self {
             lights,
             ambient,
-            threshold: reflectance.highlight_threshold(),
+            threshold: reflectance.highlight_threshold().max(0) as u32 >> (COSINE - BOUND),
             exponent,
             part: highlight_error::part(exponent),
             may_saturate: u8::from(sum > FULL as u32),
@@ -122,9 +130,10 @@ impl ErrorBounds {
 /// How far the normals of a triangle lie apart.
 #[derive(Clone, Copy)]
 pub(crate) struct Curvature {
-    /// The haversine of the widest edge, and the squared radius around the corners, Q0.16.
-    h: u32,
-    around: u32,
+    /// By how much normals between the corners are shorter than 1 at most, 1 - ρ, Q1.15, rounded up.
+    short: u32,
+    /// 1/ρ - 1, Q1.15, rounded up.
+    longer: u32,
 }
 
 impl Curvature {
@@ -132,107 +141,177 @@ impl Curvature {
     #[inline(always)]
     #[must_use]
     pub(crate) fn of(triangle: &Triangle) -> Option<Self> {
-        let [ab, bc, ca] = triangle.haversine;
-        // Haversines are rounded to the nearest.
-        let h = u32::from(ab.max(bc).max(ca)) + 1;
-        // h (1 + t/3), the squared radius around the corners.
-        let beyond = (u32::from(ab) + u32::from(bc) + u32::from(ca) + 3).saturating_sub(2 * h);
-        let around = h + ((beyond * share(1.0 / 3.0)) >> 16) + 1;
-        (h <= WIDEST).then_some(Self { h, around })
-    }
-
-    /// An upper bound of 1/|N| - 1, Q0.32: |N|² is at least 1 less the radius squared, r, and the chord r/2 (1 + 1.05 r) reaches to 1/3.
-    #[inline(always)]
-    fn shorter(self) -> u32 {
-        (self.around << 15) + self.around * ((self.around * 69) >> 7)
+        let short = (1u32 << NORMAL_LENGTH).wrapping_sub(triangle.min_normal_length.into());
+        // 1/ρ - 1 = s + s²/(1 - s) for s = 1 - ρ, and 1/(1 - s) is at most 5/4 here.
+        let longer = short.wrapping_add(short.wrapping_mul(short).wrapping_mul(5) >> (NORMAL_LENGTH + 2)).wrapping_add(1);
+        (short <= SHORTEST).then_some(Self { short, longer })
     }
 
     /// The remainder of the quadratic through six points over the third derivative of what is interpolated, Q0.32.
     #[inline(always)]
-    fn remainder(self) -> u32 {
-        let h = self.h;
-        // 8 h^1.5 (1 + 3.35 h) times the remainder, by a chord, Q0.32; h^1.5 is in Q0.32 as well.
-        let shape = share(8.0 * REMAINDER) + ((h * share(8.0 * REMAINDER * 3.35)) >> 16) + 1;
+    fn remainder(triangle: &Triangle) -> u32 {
+        let [ab, bc, ca] = triangle.haversine;
+        // Haversines are rounded to the nearest.
+        let h = (u32::from(ab.max(bc).max(ca)) + 1).min(WIDEST);
+        // 8 h^1.5 (1 + `CHORD` h) times the remainder, by a chord, Q0.32; h^1.5 is in Q0.32 as well.
+        let shape = share(8.0 * REMAINDER) + ((h * share(8.0 * REMAINDER * CHORD)) >> 16) + 1;
         times(h * rooted(h), shape)
     }
 
-    /// An upper bound, Q2.30, of a cosine whose numerator is linear and largest at a corner with this value, which is not negative.
+    /// An upper bound of a cosine whose numerator is linear and largest at a corner with this value, which is not negative; Q1.15.
     #[inline(always)]
-    fn cosine(self, corner: i32) -> i32 {
-        // 1/ρ is at most 1 + 0.9 h, a chord, and normals are unit vectors to 2^-15; Q0.32.
-        let longer = self.h * share(0.9) + (4 << 16);
-        corner + upper(corner, longer as i32) + 1
+    fn cosine(self, corner: u32) -> u32 {
+        // Normals are unit vectors to 2^-15.
+        corner + ((corner * self.longer) >> BOUND) + 2
+    }
+}
+
+/// A cosine (Q2.30) that is not negative, or 0, as bounds are computed from it, Q1.15, rounded up.
+#[inline(always)]
+fn above_zero(cosine: i32) -> u32 {
+    (cosine.max(-1) + (1 << (COSINE - BOUND))) as u32 >> (COSINE - BOUND)
+}
+
+/// What linear interpolation may be off, in 1/255 of full intensity, Q9.7.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Interval {
+    /// By how much it may be too dark.
+    pub(crate) below: u32,
+    /// By how much it may be too bright.
+    pub(crate) above: u32,
+}
+
+impl Interval {
+    /// How far light may be from the middle of the interval.
+    #[inline(always)]
+    pub(crate) fn half(self) -> u32 {
+        ((self.below + self.above) >> 1) + 1
+    }
+
+    /// The middle of the interval.
+    #[inline(always)]
+    pub(crate) fn middle(self) -> i32 {
+        (self.below as i32 - self.above as i32) >> 1
+    }
+
+    /// By how much levels have to be raised so that light is within the budget, nothing if it is so already; no budget is less than
+    /// [`Self::half`].
+    #[inline(always)]
+    pub(crate) fn raise(self, budget: u32) -> i32 {
+        let beyond = |error: u32| (error as i32 - budget as i32).max(0);
+        beyond(self.below) - beyond(self.above)
+    }
+
+    #[inline(always)]
+    fn plus(self, other: Self) -> Self {
+        Self { below: self.below + other.below, above: self.above + other.above }
     }
 }
 
 impl LightBounds {
     /// What the quadratic through diffuse light is off, where that is not clamped; see [`Curvature::remainder`].
     #[inline(always)]
-    fn remainder(&self, of_curvature: u32) -> u32 {
-        fraction(times(self.diffuse, share(3.01)), of_curvature)
+    fn remainder(&self, of_triangle: u32) -> u32 {
+        fraction(times(self.diffuse, share(3.01)), of_triangle)
+    }
+
+    /// Linear interpolation of diffuse light: bounds, and the brightest level at a corner.
+    #[inline(always)]
+    fn diffuse(&self, curvature: Curvature, towards: &[i32; 3]) -> (Interval, u32) {
+        let mut interval = Interval { below: 0, above: 0 };
+        let most = largest(towards);
+        if most <= 0 {
+            return (interval, 0);
+        }
+        let most = above_zero(most);
+        let level = ((self.diffuse * most) >> BOUND) + 1;
+        interval.below = ((level * curvature.longer) >> BOUND) + 1;
+        if let Some([light_side, dark_side]) = terminator(curvature, towards, most) {
+            let gap = light_side.min(dark_side).min((light_side + dark_side + 3) >> 2);
+            interval.above = ((self.diffuse * gap) >> BOUND) + 1;
+        }
+        (interval, level)
     }
 }
 
-/// How far N·L reaches above zero (`most`, Q2.30) and below it on a triangle, Q1.15, rounded up; `None` unless it does both.
+/// How far N·L reaches above zero (`most`, Q1.15) and below it on a triangle, Q1.15, rounded up; `None` unless it does both.
 #[inline(always)]
-fn terminator(curvature: Curvature, &[a, b, c]: &[i32; 3], most: i32) -> Option<[u32; 2]> {
+fn terminator(curvature: Curvature, &[a, b, c]: &[i32; 3], most: u32) -> Option<[u32; 2]> {
     let least = a.min(b).min(c);
-    let up = |cosine: u32| (cosine >> (COSINE - 15)) + 1;
-    (least < 0).then(|| [up(curvature.cosine(most) as u32), up(least.unsigned_abs())])
+    (least < 0).then(|| [curvature.cosine(most), above_zero(0i32.wrapping_sub(least))])
+}
+
+/// Bounds of linear interpolation between the corners.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Linear {
+    /// What it may be off.
+    pub(crate) interval: Interval,
+    /// The brightest level, in 1/255 of full intensity, Q9.7.
+    pub(crate) brightest: u32,
+    /// Whether a highlight can be seen.
+    pub(crate) has_highlight: bool,
 }
 
 impl ErrorBounds {
     /// The place in the table of errors of the highlight of a light with these N·H at the corners; `None` where it cannot be seen.
     #[inline(always)]
     fn highlight(&self, curvature: Curvature, half: &[i32; 3]) -> Option<Place> {
-        let cosine = curvature.cosine(largest(half).max(0));
-        (cosine >= self.threshold).then(|| Place::new(self.part, curvature.h, cosine, self.exponent))
+        let cosine = curvature.cosine(above_zero(largest(half)));
+        (cosine >= self.threshold).then(|| Place::new(self.part, curvature.short, cosine, self.exponent))
     }
 
-    /// What a bound of linear interpolation between the corners leaves of a budget, in 1/255 of full intensity, Q9.7; `None` if it exceeds
-    /// the budget.
+    /// Bounds of linear interpolation between the corners under `N` lights; `None` if it exceeds the budget wherever in its interval light is.
     ///
-    /// Where it is lit, a diffuse surface is too dark: what makes it too bright takes from that. Highlights are judged first, because they
-    /// decide in most triangles where the answer is no.
+    /// Diffuse light is judged first, because that is soon done.
     #[inline(always)]
     #[must_use]
-    pub(crate) fn left_by_linear(&self, budget: u32, curvature: Curvature, cosines: &[CornerCosines]) -> Option<u32> {
-        let [mut below, mut above] = [2u32; 2];
-        for (light, [_, half]) in self.lights.iter().zip(cosines) {
-            if let Some(place) = self.highlight(curvature, half) {
-                let corners = place.rounding(self.exponent, light.specular);
-                below += corners + place.error(Kind::LinearBelow, light.specular);
-                above += corners + place.error(Kind::LinearAbove, light.specular);
-                if below.max(above) > budget {
-                    return None;
-                }
-            }
+    pub(crate) fn linear<const N: usize>(&self, budget: u32, curvature: Curvature, cosines: [CornerCosines; N]) -> Option<Linear> {
+        let rounding = Interval { below: 2, above: 2 };
+        let mut bounds = Linear { interval: rounding, brightest: self.ambient, has_highlight: false };
+        // Written out: a loop would keep all of it in memory.
+        self.add_diffuse(0, curvature, &cosines, &mut bounds);
+        self.add_diffuse(1, curvature, &cosines, &mut bounds);
+        if bounds.interval.half() > budget {
+            return None;
         }
-        let shorter = curvature.shorter();
-        for (light, [towards, _]) in self.lights.iter().zip(cosines) {
-            let most = largest(towards);
-            if most > 0 {
-                // Q1.15: a level of 16 bits times one of 17 would not fit a word.
-                below += fraction(light.diffuse * ((most as u32 >> (COSINE - 15)) + 1), shorter) >> 15;
-                if let Some([light_side, dark_side]) = terminator(curvature, towards, most) {
-                    let gap = light_side.min(dark_side).min((light_side + dark_side + 3) >> 2);
-                    above += ((light.diffuse * gap) >> 15) + 1;
-                }
-            }
+        self.add_highlight(0, curvature, &cosines, &mut bounds);
+        self.add_highlight(1, curvature, &cosines, &mut bounds);
+        (bounds.interval.half() <= budget).then_some(bounds)
+    }
+
+    #[inline(always)]
+    fn add_diffuse(&self, light: usize, curvature: Curvature, cosines: &[CornerCosines], bounds: &mut Linear) {
+        if let (Some(light), Some([towards, _])) = (self.lights.get(light), cosines.get(light)) {
+            let (interval, level) = light.diffuse(curvature, towards);
+            bounds.interval = bounds.interval.plus(interval);
+            bounds.brightest += level;
         }
-        budget.checked_sub(below.max(above))
+    }
+
+    #[inline(always)]
+    fn add_highlight(&self, light: usize, curvature: Curvature, cosines: &[CornerCosines], bounds: &mut Linear) {
+        if let (Some(light), Some([_, half])) = (self.lights.get(light), cosines.get(light))
+            && let Some(place) = self.highlight(curvature, half)
+        {
+            let [below, above] = place.linear(light.specular);
+            let corners = place.rounding(self.exponent, light.specular);
+            bounds.interval = bounds.interval.plus(Interval { below: below + corners, above: above + corners });
+            bounds.brightest += place.brightest(light.specular);
+            bounds.has_highlight = true;
+        }
     }
 
     /// A bound of the quadratic through corners and midpoints of edges, in 1/255 of full intensity, Q9.7.
     #[inline(never)]
     #[must_use]
-    pub(crate) fn quadratic(&self, curvature: Curvature, cosines: &[CornerCosines]) -> u32 {
-        let remainder = curvature.remainder();
+    pub(crate) fn quadratic(&self, triangle: &Triangle, curvature: Curvature, cosines: &[CornerCosines]) -> u32 {
+        let remainder = Curvature::remainder(triangle);
         let mut bound = 0u32;
         for (light, [towards, half]) in self.lights.iter().zip(cosines) {
             let most = largest(towards);
             if most > 0 {
                 bound += light.remainder(remainder);
+                let most = above_zero(most);
                 if let Some([light_side, dark_side]) = terminator(curvature, towards, most) {
                     // Over ρ, which is at least 0.81.
                     let gap =
@@ -241,7 +320,7 @@ impl ErrorBounds {
                 }
             }
             if let Some(place) = self.highlight(curvature, half) {
-                bound += place.rounding(self.exponent, light.specular) + place.error(Kind::Quadratic, light.specular);
+                bound += place.rounding(self.exponent, light.specular) + place.error_of_quadratic(light.specular);
             }
         }
         bound
@@ -251,8 +330,8 @@ impl ErrorBounds {
     /// full intensity, Q9.7. What is clamped at the pixel is no farther off than what is not.
     #[inline(never)]
     #[must_use]
-    pub(crate) fn cosines(&self, curvature: Curvature, cosines: &[CornerCosines]) -> u32 {
-        let remainder = curvature.remainder();
+    pub(crate) fn cosines(&self, triangle: &Triangle, curvature: Curvature, cosines: &[CornerCosines]) -> u32 {
+        let remainder = Curvature::remainder(triangle);
         self.lights.iter().zip(cosines).fold(0u32, |bound, (light, [_, half])| {
             let highlight = self
                 .highlight(curvature, half)
@@ -267,10 +346,10 @@ impl ErrorBounds {
     pub(crate) fn saturates(&self, curvature: Curvature, cosines: &[CornerCosines], reflectance: &Reflectance) -> bool {
         let mut sum = self.ambient as i32;
         for (light, [towards, half]) in self.lights.iter().zip(cosines) {
-            let [towards, half] = [towards, half].map(|cosines| curvature.cosine(largest(cosines).max(0)).min(1 << COSINE));
+            let [towards, half] = [towards, half].map(|cosines| curvature.cosine(above_zero(largest(cosines))).min(1 << BOUND));
             // The table of highlights is right to 2^-7 of the brightest.
-            let highlight = if half < self.threshold { 0 } else { self.share_of(light, reflectance, half) };
-            sum += (times(light.diffuse, (towards as u32 >> (COSINE - 16)) + 1) + highlight) as i32;
+            let highlight = if half < self.threshold { 0 } else { self.share_of(light, reflectance, (half as i32) << (COSINE - BOUND)) };
+            sum += (((light.diffuse * towards) >> BOUND) + 1 + highlight) as i32;
         }
         sum > FULL
     }
@@ -283,20 +362,27 @@ impl ErrorBounds {
         level + (light.specular >> 7) + 2
     }
 
-    /// The level of so much of a cosine (Q2.30) and of a highlight (unsigned Q0.16) under one light, Q9.7.
+    /// The diffuse level of so much of the cosine, Q2.30, of a light; Q9.7, rounded up.
     #[inline(always)]
     #[must_use]
-    pub(crate) fn level(&self, cosine: i32, highlight: i32) -> u32 {
-        let [LightBounds { diffuse, specular, .. }, _] = &self.lights;
-        let diffuse = (diffuse * (cosine as u32 >> (COSINE - 15))) >> 15;
-        diffuse + ((specular * highlight as u32) >> 16) + 2
+    pub(crate) fn diffuse_level(&self, light: usize, cosine: i32) -> u32 {
+        let diffuse = self.lights.get(light).map_or(0, |light| light.diffuse);
+        ((diffuse * (cosine as u32 >> (COSINE - BOUND))) >> BOUND) + 2
     }
 
-    /// The brightest level of such a cosine and highlight.
+    /// The level of so much of a highlight (unsigned Q0.16) of the first light, Q9.7, rounded up.
+    #[inline(always)]
+    #[must_use]
+    pub(crate) fn highlight_level(&self, highlight: i32) -> u32 {
+        let [LightBounds { specular, .. }, _] = &self.lights;
+        ((specular * highlight as u32) >> 16) + 1
+    }
+
+    /// The brightest level of such a cosine and highlight of the first light, Q9.7, rounded up.
     #[inline(always)]
     #[must_use]
     pub(crate) fn brightest(&self, cosine: i32, highlight: i32) -> i32 {
-        (self.ambient + self.level(cosine, highlight)) as i32
+        (self.ambient + self.diffuse_level(0, cosine) + self.highlight_level(highlight)) as i32
     }
 
     /// Whether light may exceed 255 anywhere.
@@ -335,6 +421,7 @@ mod tests {
         format::{LEVEL, UNIT},
         lighting::{lights::vertex_cosine, reflectance::Highlight},
         math::vector::wide,
+        method::highlight_error::EXACT,
         stream::record::{Header, Light, Material},
     };
     use embedded_graphics_core::pixelcolor::Gray8;
@@ -371,9 +458,9 @@ mod tests {
         }
     }
 
-    /// Largest errors of linear and quadratic interpolation of what lights reflect, and of quadratic interpolation of the cosines that they
-    /// reflect it by; each `[L, H]` with its levels at cosine 1 and of a whole highlight. Corners are lit by their normals as they are stored.
-    fn errors(normals: [[f64; 3]; 3], lights: &[([[f64; 3]; 2], [f64; 2])], exponent: u16) -> [f64; 3] {
+    /// By how much linear interpolation of what lights reflect is too dark and too bright, and the largest errors of quadratic interpolation of
+    /// it and of the cosines that they reflect it by; each `[L, H]` with its levels at cosine 1 and of a whole highlight.
+    fn errors(normals: [[f64; 3]; 3], lights: &[([[f64; 3]; 2], [f64; 2])], exponent: u16) -> [f64; 4] {
         let of = |cosine: &dyn Fn([f64; 3]) -> f64| -> f64 {
             let light = |&([light, half], [diffuse, specular]): &([[f64; 3]; 2], [f64; 2])| {
                 diffuse * cosine(light).max(0.0) + specular * cosine(half).clamp(0.0, 1.0).powi(exponent.into())
@@ -387,18 +474,32 @@ mod tests {
             let corners: f64 = (0..3).map(|k| b[k] * (2.0 * b[k] - 1.0) * at(normals[k])).sum();
             corners + 4.0 * (0..3).map(|k| b[k] * b[(k + 1) % 3] * at(middles[k])).sum::<f64>()
         };
-        let mut errors = [0f64; 3];
+        let mut errors = [0f64; 4];
         for (i, j) in (0..=GRID).flat_map(|i| (0..=GRID - i).map(move |j| (i, j))) {
             let [u, v] = [i, j].map(|k| f64::from(k) / f64::from(GRID));
             let b = [u, v, 1.0 - u - v];
             let linear: f64 = (0..3).map(|k| b[k] * lit(normals[k])).sum();
             let by_cosines = of(&|direction| through(b, &|normal| dot(normal, direction)));
             let exact = lit(between(b));
-            for (error, light) in errors.iter_mut().zip([linear, through(b, &lit), by_cosines]) {
-                *error = error.max((light - exact).abs());
+            let found = [exact - linear, linear - exact, (through(b, &lit) - exact).abs(), (by_cosines - exact).abs()];
+            for (error, found) in errors.iter_mut().zip(found) {
+                *error = error.max(found);
             }
         }
         errors
+    }
+
+    /// A triangle of these unit normals.
+    fn triangle(normals: [[f64; 3]; 3]) -> Triangle {
+        let haversine = |i: usize, j: usize| ((0.5 - 0.5 * dot(normals[i], normals[j])) * 65_536.0).round() as u16;
+        let haversine = [haversine(0, 1), haversine(1, 2), haversine(2, 0)];
+        let mut shortest = 1f64;
+        for (i, j) in (0..=GRID).flat_map(|i| (0..=GRID - i).map(move |j| (i, j))) {
+            let [u, v] = [i, j].map(|k| f64::from(k) / f64::from(GRID));
+            let normal = [0, 1, 2].map(|k| u * normals[0][k] + v * normals[1][k] + (1.0 - u - v) * normals[2][k]);
+            shortest = shortest.min(dot(normal, normal).sqrt());
+        }
+        Triangle { haversine, min_normal_length: (shortest * 32_768.0) as u16, ..Triangle::new_zeroed() }
     }
 
     /// Materials and lights as bright as a stream may have them, lit from the front and across the terminator: no product overflows, and the
@@ -412,14 +513,17 @@ mod tests {
         reflectance.fill::<Gray8>(&Header { ambient: bright, ..Header::new_zeroed() }, &material, &[light; 2], (Highlight::Half, false));
         let bounds = ErrorBounds::new(&reflectance, 1024, 2);
         let one = (1 << COSINE) + (1 << (COSINE - UNIT));
-        for h in [0, 1, 4000, WIDEST as u16 - 1] {
-            let curvature = Curvature::of(&Triangle { haversine: [h; 3], ..Triangle::new_zeroed() }).unwrap();
+        for angle in [0.0f64, 0.01, 0.5, 0.615] {
+            // As far from one another as from the axis.
+            let around = |turn: f64| [angle.sin() * turn.cos(), angle.sin() * turn.sin(), angle.cos()];
+            let triangle = triangle([0.0, 2.0, 4.0].map(|turn| around(turn * core::f64::consts::FRAC_PI_3)));
+            let curvature = Curvature::of(&triangle).unwrap();
             for towards in [[one; 3], [one, one, -one], [one, -one, -one], [-one; 3]] {
                 let cosines = [[towards, [one; 3]]; 2];
-                let _ = (bounds.left_by_linear(u32::MAX, curvature, &cosines), bounds.quadratic(curvature, &cosines));
-                let _ = bounds.cosines(curvature, &cosines);
+                let _ = (bounds.linear(1 << 20, curvature, cosines), bounds.quadratic(&triangle, curvature, &cosines));
+                let _ = bounds.cosines(&triangle, curvature, &cosines);
                 assert!(bounds.saturates(curvature, &cosines, &reflectance));
-                assert!(bounds.brightest(one, 0xffff) >= FULL);
+                assert!(bounds.linear(1 << 20, curvature, cosines).is_none_or(|linear| linear.brightest as i32 >= FULL));
             }
         }
     }
@@ -456,8 +560,7 @@ mod tests {
             });
             let stored = fixed.map(|normal| normal.map(|c| f64::from(c) / f64::from(1 << UNIT)));
             let normals = stored.map(unit);
-            let haversine = |i: usize, j: usize| ((0.5 - 0.5 * dot(normals[i], normals[j])) * 65_536.0).round() as u16;
-            let triangle = Triangle { haversine: [haversine(0, 1), haversine(1, 2), haversine(2, 0)], ..Triangle::new_zeroed() };
+            let triangle = triangle(normals);
             let Some(curvature) = Curvature::of(&triangle) else { continue };
             let directions = [(); 2].map(|()| {
                 let (light, aside) = (random.direction(), random.direction());
@@ -469,16 +572,26 @@ mod tests {
             let cosines = directions.map(|pair| pair.map(|direction| fixed.map(|normal| vertex_cosine(wide(normal), q30(direction)))));
             let gains = [0, 1].map(|light| reflectance.largest_gains(light).map(|level| f64::from(level) / f64::from(1 << LEVEL)));
             let lit = [(directions[0], gains[0]), (directions[1], gains[1])];
-            let exact = errors(stored, &lit[..lights], exponent);
-            let linear = u32::MAX - bounds.left_by_linear(u32::MAX, curvature, &cosines[..lights]).unwrap();
-            let bound = [linear, bounds.quadratic(curvature, &cosines[..lights]), bounds.cosines(curvature, &cosines[..lights])];
-            for (k, ratios) in ratios.iter_mut().enumerate() {
-                // Highlights below e^-8 are not drawn, and nodes are rounded.
-                let dark: f64 = gains[..lights].iter().map(|[_, specular]| 4.0 / 3.0 * specular * f64::exp(-8.0)).sum();
-                let bound = f64::from(bound[k]) / f64::from(1 << LEVEL) + dark + 0.01;
-                assert!(exact[k] <= bound, "case {case}, exponent {exponent}, method {k}: {} of {bound}, {normals:?}", exact[k]);
-                if (0.2..8.0).contains(&exact[k]) {
-                    ratios.push(bound / exact[k]).unwrap();
+            // Up to that exponent, what rounding of normals does is left to arithmetic.
+            let exact = errors(if exponent > EXACT { stored } else { normals }, &lit[..lights], exponent);
+            let linear = match lights {
+                1 => bounds.linear(1 << 20, curvature, [cosines[0]]),
+                _ => bounds.linear(1 << 20, curvature, cosines),
+            };
+            let Interval { below, above } = linear.unwrap().interval;
+            let cosines = &cosines[..lights];
+            let bound = [below, above, bounds.quadratic(&triangle, curvature, cosines), bounds.cosines(&triangle, curvature, cosines)];
+            // Highlights below e^-8 are not drawn, and nodes are rounded.
+            let dark: f64 = gains[..lights].iter().map(|[_, specular]| 4.0 / 3.0 * specular * f64::exp(-8.0)).sum();
+            let bound = bound.map(|bound| f64::from(bound) / f64::from(1 << LEVEL) + dark + 0.01);
+            for k in 0..4 {
+                assert!(exact[k] <= bound[k], "case {case}, exponent {exponent}, error {k}: {} of {}, {normals:?}", exact[k], bound[k]);
+            }
+            // The larger error of linear interpolation, and the others.
+            let largest = |[below, above, quadratic, cosines]: [f64; 4]| [below.max(above), quadratic, cosines];
+            for (ratios, (bound, exact)) in ratios.iter_mut().zip(largest(bound).into_iter().zip(largest(exact))) {
+                if (0.2..8.0).contains(&exact) {
+                    ratios.push(bound / exact).unwrap();
                 }
             }
         }

@@ -396,15 +396,15 @@ pub fn levels_at<const N: usize>(levels: [[i32; 3]; N]) -> Nodes<N, 3, RANGE> {
     Nodes::new(channels(levels), EXTRA).biased([bias(0); 3])
 }
 
-/// The field through levels at `N` nodes, Q9.7, as indices of the table of colours.
+/// The field through levels at `N` nodes, Q9.7, all of them `raise` more, as indices of the table of colours.
 #[inline(always)]
-fn level_field<const N: usize>(levels: [i32; N]) -> Nodes<N, 1, RANGE> {
-    Nodes::new([levels], EXTRA).biased([bias(1 << (WALK - 1))])
+fn level_field<const N: usize>(levels: [i32; N], raise: i32) -> Nodes<N, 1, RANGE> {
+    Nodes::new([levels], EXTRA).biased([bias((1 << (WALK - 1)) + (raise << EXTRA))])
 }
 
-/// The bias of walked levels plus a rounding half.
-const fn bias(half: i32) -> i32 {
-    (BIAS << WALK).wrapping_add(half)
+/// The bias of walked levels, and so much more.
+const fn bias(more: i32) -> i32 {
+    (BIAS << WALK).wrapping_add(more)
 }
 
 impl Shading<'_> {
@@ -422,24 +422,26 @@ impl Shading<'_> {
         Nodes<N, 1, BITS>: Field<Value = [u32; 1]>,
         Nodes<N, 3, BITS>: Field<Value = [u32; 3]>,
     {
-        self.draw_channels::<N, BITS>(area, &channels(levels), canvas)
+        self.draw_channels::<N, BITS>(area, &channels(levels), 0, canvas)
     }
 
-    /// [`Self::draw_levels`] with the nodes of each channel.
+    /// [`Self::draw_levels`] with the nodes of each channel, all of them `raise` more.
     pub(crate) fn draw_channels<const N: usize, const BITS: u32>(
         &self,
         area: &impl Area,
         channels: &[[i32; N]; 3],
+        raise: i32,
         canvas: &mut dyn Canvas,
     ) -> u32
     where
         Nodes<N, 1, BITS>: Field<Value = [u32; 1]>,
         Nodes<N, 3, BITS>: Field<Value = [u32; 3]>,
     {
+        let bias = bias(raise << EXTRA);
         if self.reflectance.three_channels() {
-            area.draw(&Nodes::<N, 3, BITS>::new(*channels, EXTRA).biased([bias(0); 3]), Walked, canvas)
+            area.draw(&Nodes::<N, 3, BITS>::new(*channels, EXTRA).biased([bias; 3]), Walked, canvas)
         } else {
-            area.draw(&Nodes::<N, 1, BITS>::new([channels[0]], EXTRA).biased([bias(0)]), Walked, canvas)
+            area.draw(&Nodes::<N, 1, BITS>::new([channels[0]], EXTRA).biased([bias]), Walked, canvas)
         }
     }
 
@@ -454,25 +456,27 @@ impl Shading<'_> {
     where
         Nodes<N, 1, RANGE>: Field<Value = [u32; 1]>,
     {
-        setup.fill(|| level_field(nodes()).fit(setup.gradients), Ramp(tables.ramp), band)
+        setup.fill(|| level_field(nodes(), 0).fit(setup.gradients), Ramp(tables.ramp), band)
     }
 
-    /// [`Self::draw_levels`] by loops of a method: three levels, whose polynomials are walked as `walked` says.
+    /// [`Self::draw_levels`] by loops of a method: three levels, `raise` more than at the nodes, whose polynomials are walked as `walked` says.
     #[inline(always)]
     fn fill_three<const N: usize, C: Pixel, P: Patch<Walker: Walker<Value = [u32; 3]>>>(
         setup: &TriangleSetup<'_>,
         channels: impl FnOnce() -> [[i32; N]; 3],
+        raise: i32,
         walked: impl FnOnce(<Nodes<N, 3, RANGE> as Field>::Patch) -> P,
         band: &mut Band<'_, C>,
     ) -> u32
     where
         Nodes<N, 3, RANGE>: Field,
     {
-        let half_steps = const {
-            let [r, g, b] = C::DEPTH;
-            [1 << (CHANNEL + 7 - r), 1 << (CHANNEL + 7 - g), 1 << (CHANNEL + 7 - b)]
+        let bias = || {
+            let ([r, g, b], raise) = (C::DEPTH, raise << (CHANNEL - LEVEL));
+            // Half a step of each channel.
+            [(1 << (CHANNEL + 7 - r)) + raise, (1 << (CHANNEL + 7 - g)) + raise, (1 << (CHANNEL + 7 - b)) + raise]
         };
-        let patch = || walked(Nodes::<N, 3, RANGE>::new(channels(), CHANNEL - LEVEL).biased(half_steps).fit(setup.gradients));
+        let patch = || walked(Nodes::<N, 3, RANGE>::new(channels(), CHANNEL - LEVEL).biased(bias()).fit(setup.gradients));
         setup.fill(patch, Rgb(PhantomData), band)
     }
 }

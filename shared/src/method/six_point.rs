@@ -34,7 +34,7 @@ impl Method for SixPoint {
     }
 
     fn shade(&self, setup: &TriangleSetup<'_>, shading: &Shading<'_>, canvas: &mut dyn Canvas) -> u32 {
-        shading.draw_channels::<6, RANGE>(setup, &levels(setup, shading), canvas)
+        shading.draw_channels::<6, RANGE>(setup, &levels(setup, shading), 0, canvas)
     }
 }
 
@@ -71,7 +71,7 @@ impl Loops for SixPoint {
 /// Draws `setup` in three channels.
 #[inline(never)]
 fn draw_rgb<C: Pixel>(setup: &TriangleSetup<'_>, shading: &Shading<'_>, band: &mut Band<'_, C>) -> u32 {
-    Shading::fill_three(setup, || levels(&setup.for_lighting(), shading), ByColumn, band)
+    Shading::fill_three(setup, || levels(&setup.for_lighting(), shading), 0, ByColumn, band)
 }
 
 /// N·L (Q2.30) and the highlight (unsigned Q0.16) of one constant light at the six nodes.

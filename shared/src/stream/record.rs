@@ -362,8 +362,8 @@ pub struct Triangle {
     /// Per edge the haversine of the angle between the normals at its ends, (1 - Ni·Nj)/2 = 1 - |Ni+Nj|²/4, [`Haversine`] in [0, 1],
     /// rounded to the nearest, 65535 at most. The squared length of the interpolated normal at the midpoint is 1 minus this.
     pub haversine: [u16; 3],
-    /// Lower bound of the interpolated normal's length on the triangle, sqrt((1 + 2 min Ni·Nj)/3), [`NormalLength`] in [0, 1], rounded
-    /// down.
+    /// The least length of the interpolated normal on the triangle, [`NormalLength`] in [0, 1], rounded down: the root of 1 less the squared
+    /// radius of the smallest circle around the ends of the corners' unit normals.
     pub min_normal_length: u16,
     /// Unit normal of the plane in object space, [`Unit`], rounded as that of a vertex.
     pub normal: [i16; 3],

@@ -11,8 +11,8 @@ const ENOUGH: f64 = 0.1;
 
 /// `m (3 - D m²) / 2`, once or twice; the exact root where normals differ so much that interpolated ones get shorter than 1/2.
 ///
-/// Newton's step leaves 1.5 δ² of a relative error δ; that of the fit is at most 0.02 c⁴, c the longest chord between
-/// normals, c² = 3 (1 - r²). A highlight multiplies it by its exponent.
+/// Newton's step leaves 1.5 δ² of a relative error δ; that of the fit is at most 0.02 c⁴ with c² = 3 (1 - r²), r the least length of
+/// normals: c is the chord between two of three that are equally far from one another. A highlight multiplies it by its exponent.
 pub(super) fn shade<'f>(frame: &'f Frame, facet: &'f Facet) -> Shade<'f> {
     let (numerators, reciprocals, squares) = (Numerators::new(frame, facet), reciprocals(facet), squares(facet));
     let delta = 0.02 * (3.0 * (1.0 - facet.min_normal_length * facet.min_normal_length)).powi(2);

@@ -1,41 +1,48 @@
-//! How much interpolation is off from a highlight: the largest errors on triangles of all sizes, as a table.
+//! How much interpolation is off from a highlight: the largest errors on triangles of all sizes, as tables.
 //!
-//! What interpolation is off from (N·H/|N|)^n on a triangle is about the same function of n e² and of n (1 - w) for all exponents n, where
-//! e is the longest distance between two corners' normals, and w the largest N·H at a corner over the least length of N. The table has a
-//! row for each octave of n e², between which straight lines are no less than the errors, a column for each fourth of n (1 - w), and one
-//! part for each range of exponents.
+//! What interpolation is off from (N·H/|N|)^n on a triangle is about the same function of its size n (1 - ρ) and its depth n (1 - w) for all
+//! exponents n, where ρ is the least length of N on the triangle, and w the largest N·H at a corner over ρ. Tables have a part for each range
+//! of exponents, and a column for each fourth of the depth.
 //!
-//! Behind the last row is one for all larger triangles: there linear interpolation is off by no more than the brightest highlight, the
-//! quadratic by 4/3 of it. All others are computed by `microphong bounds`: the largest error that a search found on any triangle of at most
-//! this size and at least so far from the peak, and a margin; `tests/suite/bounds.rs` searches anew.
+//! Errors of linear interpolation grow with the size, and more slowly where triangles reach into the tail of a highlight: they lie below two
+//! straight lines, which [`LINEAR`] has. For quadratics [`CURVED`] has a row for each octave of the size, between which straight lines are no less than the errors.
+//!
+//! All are computed by `microphong bounds`: the largest error that a search found on any triangle of at most a size and at least a depth, and
+//! a margin; `tests/suite/bounds.rs` searches anew. What is larger than the search went is off by no more than the brightest highlight, by
+//! the quadratic 4/3 of it.
 
 mod table;
 
-use crate::{
-    arch::product::unsigned_product,
-    format::{COSINE, HAVERSINE},
-};
-pub use table::ERRORS;
+use crate::{arch::product::unsigned_product, format::NORMAL_LENGTH};
+pub use table::{CURVED, LINEAR};
 
-/// Errors that the table knows.
+/// Errors that the tables know.
 pub const KINDS: usize = 4;
-/// Rows for octaves of n e².
-pub const ROWS: usize = 13;
+/// Rows for octaves of n (1 - ρ).
+pub const ROWS: usize = 14;
+/// Rows behind them, for all that is larger: two, between which interpolation changes nothing.
+pub const ROWS_BEHIND: usize = 2;
 /// Columns, each a fourth of a unit of n (1 - w).
 pub const COLUMNS: usize = 32;
 /// Columns to a unit of n (1 - w).
 pub const COLUMNS_A_UNIT: u32 = 4;
-/// n e² of the first row, which holds for all that is smaller.
-pub const LEAST_SIZE: f64 = 1.0 / 256.0;
+/// n (1 - ρ) of the first row, which holds for all that is smaller.
+pub const LEAST_SIZE: f64 = 1.0 / (1 << LEAST_SIZE_BITS) as f64;
+const LEAST_SIZE_BITS: u32 = 11;
+/// n (1 - ρ) of the largest triangles of [`LINEAR`].
+pub const LINEAR_SIZE: f64 = (1 << LINEAR_SIZE_BITS) as f64;
+const LINEAR_SIZE_BITS: u32 = 1;
 /// The least exponent of each part.
 pub const LEAST_EXPONENTS: [u16; 3] = [1, 5, 16];
 /// The largest exponent at which what rounding of normals does to the highlights at corners is left to what arithmetic may add: it is less than
 /// half an LSB.
-const EXACT: u16 = 64;
+pub(crate) const EXACT: u16 = 64;
 /// The exponent for which errors of [`Kind::Cosines`] stand in the table as they are.
 pub const USUAL_EXPONENT: u16 = 16;
-/// Fraction bits of an entry, a share of the whole highlight; the largest entry stands for any error.
+/// Fraction bits of an error, a share of the whole highlight; the largest stands for any error.
 pub const SHARE: u32 = 15;
+/// Fraction bits of a rate, in whole highlights to a unit of the size.
+pub const RATE: u32 = 10;
 
 /// A kind of error.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -51,8 +58,22 @@ pub enum Kind {
     Cosines,
 }
 
-/// The errors of one kind, unsigned Q1.15, rounded up.
-pub type Errors = [[u16; COLUMNS]; ROWS + 1];
+/// How an error of linear interpolation grows with the size of triangles: it lies below two straight lines.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Growth {
+    /// The error over the size on the first line, which goes through zero; unsigned Q6.[`RATE`], rounded up.
+    pub rate: u16,
+    /// The second line where the size is zero, unsigned Q1.15, rounded up.
+    pub base: u16,
+    /// How steep the second line is, unsigned Q6.[`RATE`], rounded up.
+    pub slope: u16,
+}
+
+/// The errors [`Kind::LinearBelow`] and [`Kind::LinearAbove`] of one part, by column.
+pub type Linear = [[Growth; 2]; COLUMNS];
+
+/// The errors [`Kind::Quadratic`] and [`Kind::Cosines`] of one part by row and column, unsigned Q1.15, rounded up.
+pub type Curved = [[[u16; 2]; COLUMNS]; ROWS + ROWS_BEHIND];
 
 /// The part of the table for an exponent.
 #[must_use]
@@ -60,44 +81,70 @@ pub(crate) fn part(exponent: u16) -> u8 {
     LEAST_EXPONENTS.iter().rposition(|&least| exponent >= least).unwrap_or(0) as u8
 }
 
-/// A place between two rows of the table.
+/// The logarithm of the size of the first row.
+const FIRST: u32 = NORMAL_LENGTH - LEAST_SIZE_BITS;
+
+/// A place in the tables.
 #[derive(Clone, Copy)]
 pub(crate) struct Place {
-    errors: &'static [Errors; KINDS],
-    /// The row before, and the column.
-    row: usize,
+    part: usize,
     column: usize,
-    /// How far it lies behind that row, unsigned Q0.16.
-    beyond: u32,
+    /// n (1 - ρ), at least [`LEAST_SIZE`], 15 fraction bits.
+    size: u32,
 }
 
 impl Place {
-    /// The place for triangles whose widest edge has the haversine `h`, Q0.16, between normals, where the highlight of an exponent is
-    /// brightest at N·H = `cosine`, Q2.30. Domain: `h` up to 1/4; n (1 - `cosine`) up to 8, beyond which highlights are not drawn.
+    /// The place for triangles whose normals are shorter than 1 by up to `short`, where the highlight of an exponent is brightest at N·H =
+    /// `cosine`; both Q1.15. Domain: `short` up to 1/5; n (1 - `cosine`) up to 8, beyond which highlights are not drawn.
     #[inline(always)]
     #[must_use]
-    pub(crate) fn new(part: u8, h: u32, cosine: i32, exponent: u16) -> Self {
-        // n e² is 4 h n, and the first row lies at 2^-8: there h n is 2^6.
-        const FIRST: u32 = HAVERSINE - 10;
-        let size = (h * u32::from(exponent)).max(1 << FIRST);
-        let zeros = size.leading_zeros();
-        let row = (31 - FIRST).saturating_sub(zeros) as usize;
-        let (row, beyond) = if row < ROWS - 1 { (row, (size << zeros << 1) >> 16) } else { (ROWS - 1, 1 << 16) };
-        let below = ((1 << COSINE) - cosine).max(0) as u32 >> 4;
-        let column = (below.wrapping_mul(exponent.into()) >> (COSINE - 4 - COLUMNS_A_UNIT.ilog2())) as usize;
-        Self { errors: ERRORS.get(usize::from(part)).unwrap_or(&ERRORS[0]), row, column: column % COLUMNS, beyond }
+    pub(crate) fn new(part: u8, short: u32, cosine: u32, exponent: u16) -> Self {
+        let exponent = u32::from(exponent);
+        let depth = (1u32 << NORMAL_LENGTH).saturating_sub(cosine).wrapping_mul(exponent);
+        let column = depth >> (NORMAL_LENGTH - COLUMNS_A_UNIT.ilog2());
+        Self {
+            // Both change nothing, and spare the compiler tests.
+            part: usize::from(part).min(LEAST_EXPONENTS.len() - 1),
+            column: column as usize % COLUMNS,
+            size: (short * exponent).max(1 << FIRST),
+        }
     }
 
-    /// The largest error of a kind but [`Kind::Cosines`], of a highlight with the level `specular` at its peak, Q9.7.
+    /// By how much linear interpolation of a highlight with the level `specular` at its peak, Q9.7, is too dark and too bright at most.
     #[inline(always)]
     #[must_use]
-    pub(crate) fn error(self, kind: Kind, specular: u32) -> u32 {
-        match self.errors[kind as usize].get(self.row..) {
-            Some([less, more, ..]) => {
-                let (less, more) = (u32::from(less[self.column]), u32::from(more[self.column]));
-                ((specular * (less + (((more - less) * self.beyond) >> 16) + 1)) >> SHARE) + 1
-            }
-            _ => u32::MAX >> 1,
+    pub(crate) fn linear(self, specular: u32) -> [u32; 2] {
+        if self.size > 1 << (NORMAL_LENGTH + LINEAR_SIZE_BITS) {
+            return [self.brightest(specular); 2];
+        }
+        let [below, above] = &LINEAR[self.part][self.column];
+        let level = |growth: &Growth| {
+            let of_size = |rate: u16| (self.size * u32::from(rate)) >> (RATE + NORMAL_LENGTH - SHARE);
+            let share = of_size(growth.rate).min(of_size(growth.slope) + u32::from(growth.base));
+            ((specular * (share + 1)) >> SHARE) + 1
+        };
+        [level(below), level(above)]
+    }
+
+    /// The entry of a kind of [`CURVED`], between two rows; `None` behind the last one.
+    #[inline(always)]
+    fn entry(self, kind: Kind) -> Option<u32> {
+        let size = self.size;
+        let zeros = size.leading_zeros();
+        let row = (31 - FIRST).wrapping_sub(zeros) as usize;
+        let [less, more] = CURVED[self.part].get(row..)?.first_chunk()?;
+        let entry = |row: &[[u16; 2]; COLUMNS]| u32::from(row[self.column][kind as usize - Kind::Quadratic as usize]);
+        let (less, more) = (entry(less), entry(more));
+        Some(less + (((more - less) * (size << zeros << 1 >> 16)) >> 16) + 1).filter(|_| row < ROWS - 1)
+    }
+
+    /// The largest error of [`Kind::Quadratic`], of a highlight with the level `specular` at its peak, Q9.7.
+    #[inline(always)]
+    #[must_use]
+    pub(crate) fn error_of_quadratic(self, specular: u32) -> u32 {
+        match self.entry(Kind::Quadratic) {
+            Some(entry) => ((specular * entry) >> SHARE) + 1,
+            None => 2 * self.brightest(specular),
         }
     }
 
@@ -106,13 +153,17 @@ impl Place {
     #[inline(always)]
     #[must_use]
     pub(crate) fn error_of_cosines(self, specular: u32, narrowed: u32) -> u32 {
-        match self.errors[Kind::Cosines as usize].get(self.row..) {
-            Some([less, more, ..]) if more[self.column] < u16::MAX => {
-                let (less, more) = (u32::from(less[self.column]), u32::from(more[self.column]));
-                (unsigned_product(narrowed, less + (((more - less) * self.beyond) >> 16) + 1) >> SHARE) as u32 + 1
-            }
-            _ => specular,
+        match self.entry(Kind::Cosines) {
+            Some(entry) => (unsigned_product(narrowed, entry) >> SHARE) as u32 + 1,
+            None => specular,
         }
+    }
+
+    /// The level of the brightest highlight on the triangle, at most: w^n is no more than 2^-n(1 - w).
+    #[inline(always)]
+    #[must_use]
+    pub(crate) fn brightest(self, specular: u32) -> u32 {
+        (specular >> (self.column as u32 / COLUMNS_A_UNIT)) + 1
     }
 
     /// What corners may be off because their normals are longer or shorter than 1 by up to 2^-15, at an exponent above [`EXACT`]: by that

@@ -1,0 +1,81 @@
+//! What methods cost, by which `auto` chooses among those that keep to the budget.
+//!
+//! Instructions on a Cortex-M3, as `microphong bench` counts them: set-up for each triangle, the rest of each row, and the inner loop for each
+//! pixel. They are the means of two scenes, of which one has large triangles, the other small ones: `peer-sphere` and `teapot` in one channel,
+//! `peer-sphere-plastic` and `torus` in three, `peer-sphere-lights` and `bunny` under two lights. `tests/suite/choices.rs` counts those of
+//! the methods that can be drawn alone anew.
+//!
+//! The choice is the same on every machine, and so are the pictures. A table of its own for the Cortex-M0+ was tried: frames of `bunny`,
+//! `torus`, `teapot` and `peer-sphere-plastic` took 0 to 1 % more cycles of the Pico by it.
+
+/// What drawing a triangle by a method takes, in instructions.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Cost {
+    /// For the triangle.
+    pub triangle: i32,
+    /// For each row.
+    pub row: i32,
+    /// For each pixel.
+    pub pixel: i32,
+}
+
+impl Cost {
+    const fn new(triangle: i32, row: i32, pixel: i32) -> Self {
+        Self { triangle, row, pixel }
+    }
+
+    const fn minus(self, other: Self) -> Self {
+        Self::new(self.triangle - other.triangle, self.row - other.row, self.pixel - other.pixel)
+    }
+
+    /// That of a triangle of so many rows and pixels, as many as pictures have.
+    #[inline(always)]
+    #[must_use]
+    pub(crate) fn of(self, [rows, pixels]: [i32; 2]) -> i32 {
+        self.triangle + rows * self.row + pixels * self.pixel
+    }
+}
+
+/// What draws a triangle where linear interpolation does not keep to the budget.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Costs {
+    /// The quadratic through levels.
+    pub quadratic: Cost,
+    /// The quadratic through cosines.
+    pub cosines: Cost,
+    /// Phong shading.
+    pub phong: Cost,
+}
+
+/// By how much quadratics are cheaper than Phong shading.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) struct Savings {
+    /// The quadratic through levels.
+    pub(crate) quadratic: Cost,
+    /// The quadratic through cosines.
+    pub(crate) cosines: Cost,
+}
+
+impl Savings {
+    const fn of(Costs { quadratic, cosines, phong }: Costs) -> Self {
+        Self { quadratic: phong.minus(quadratic).minus(JUDGE_QUADRATIC), cosines: phong.minus(cosines).minus(JUDGE_COSINES) }
+    }
+}
+
+/// What it takes to find out whether a quadratic through levels keeps to the budget, and a share of what that takes in vain.
+const JUDGE_QUADRATIC: Cost = Cost::new(500, 0, 0);
+/// The same of a quadratic through cosines.
+const JUDGE_COSINES: Cost = Cost::new(350, 0, 0);
+
+/// Costs in one channel, in three, and under two lights.
+pub const COSTS: [Costs; 3] = [
+    Costs { quadratic: Cost::new(1016, 66, 13), cosines: Cost::new(1276, 83, 21), phong: Cost::new(1030, 85, 32) },
+    Costs { quadratic: Cost::new(1323, 75, 23), cosines: Cost::new(1118, 81, 32), phong: Cost::new(941, 85, 42) },
+    Costs { quadratic: Cost::new(2191, 87, 31), cosines: Cost::new(1678, 97, 64), phong: Cost::new(1193, 96, 70) },
+];
+
+/// What quadratics save in each of these styles.
+pub(crate) static SAVINGS: [Savings; 3] = {
+    let [one, three, two_lights] = COSTS;
+    [Savings::of(one), Savings::of(three), Savings::of(two_lights)]
+};

@@ -1,0 +1,389 @@
+//! The cheapest of several methods that is guaranteed to stay within an error budget, chosen for each triangle.
+//!
+//! One colour, linear or quadratic interpolation of levels, or quadratic interpolation of cosines, where [`ErrorBounds`] allow it, else Phong
+//! shading. Near lights, a near viewer, and more than two lights are always shaded by Phong. The choice follows from constants of the mesh
+//! and from the cosines at the corners, in integers: it is the same on every machine.
+//!
+//! Bounds tell by how much linear interpolation may be too dark, and by how much too bright. Where one of the two exceeds the budget but their
+//! mean does not, all levels of the triangle are raised or lowered until both are within.
+//!
+//! Error against Phong: at most the budget, and what arithmetic adds to every method. Neighbours by the same method meet without a jump
+//! unless their levels are raised, others within twice the budget.
+
+pub mod costs;
+
+use crate::{
+    interpolate::{Constant, by_column::ByColumn},
+    lighting::{
+        material_tables::MaterialTables,
+        reflectance::{FULL, Highlight, Reflectance},
+    },
+    method::{
+        CornerCosines, Costs, DrawTriangle, Facts, Loops, Method, RANGE, Shading, Style, ThreeChannels, TriangleSetup, Uniform,
+        VertexLight, channels,
+        duff::Duff,
+        error_bound::{Curvature, ErrorBounds, Linear},
+        gouraud, largest, of_levels,
+        phong::Phong,
+        six_point::SixPoint,
+        sqrt6::SixCosines,
+    },
+    pixel::Pixel,
+    raster::{
+        band::Band,
+        canvas::{Canvas, Shaded},
+        counts::Counts,
+        pixel_shader::Solid,
+    },
+    setup::edge::COLUMNS,
+};
+use core::hint::black_box;
+use costs::SAVINGS;
+
+static FACTS: Facts = Facts {
+    name: "auto",
+    id: 26,
+    source: "microphong 2026",
+    vertex_light: VertexLight::CosinesAndReflection,
+    highlight: Highlight::Half,
+    highlight_levels: true,
+    near_lights: true,
+    perspective: true,
+    // At most: those of Phong shading.
+    costs: Costs::new(11, 12, 2, 30),
+};
+
+static FACTS_WITHOUT_QUADRATICS: Facts = Facts { name: "auto-linear", id: 27, ..FACTS };
+
+/// The cheapest method within the error budget. Among all, or without quadratics, which take half of the flash.
+pub struct Auto<const QUADRATICS: bool>;
+
+/// What draws a triangle.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Choice {
+    /// One colour, half-way between what the corners have, and these levels (Q9.7) more.
+    Solid(i32),
+    /// Linear interpolation between the corners, and these levels (Q9.7) more.
+    Linear(i32),
+    /// Levels at six nodes, quadratic in between.
+    Quadratic,
+    /// Cosines at six nodes, quadratic in between, highlights looked up at the pixel.
+    Cosines,
+    /// Phong shading.
+    Phong,
+}
+
+impl Choice {
+    /// How many triangles are drawn so.
+    fn count(self, counts: &mut Counts) -> &mut u32 {
+        let [solid, linear, quadratic, cosines, phong] = &mut counts.choices;
+        match self {
+            Self::Solid(_) => solid,
+            Self::Linear(_) => linear,
+            Self::Quadratic => quadratic,
+            Self::Cosines => cosines,
+            Self::Phong => phong,
+        }
+    }
+}
+
+/// Chooses what draws a triangle.
+#[inline(always)]
+#[must_use]
+pub fn choose<const QUADRATICS: bool>(setup: &TriangleSetup<'_>, shading: &Shading<'_>) -> Choice {
+    // In functions of their own: together they would need more registers than there are.
+    if shading.vertices_have_cosines() {
+        under_one_light::<QUADRATICS>(setup, shading)
+    } else if shading.reflectance.has_two_lights() && shading.lighting.is_constant() {
+        under_two_lights::<QUADRATICS>(setup, shading)
+    } else {
+        Choice::Phong
+    }
+}
+
+#[inline(never)]
+fn under_one_light<const QUADRATICS: bool>(setup: &TriangleSetup<'_>, shading: &Shading<'_>) -> Choice {
+    let Some(curvature) = Curvature::of(setup.triangle) else { return Choice::Phong };
+    let cosines = setup.corner_lights();
+    let linear = shading.error_bounds.linear(shading.budget, curvature, [cosines]);
+    let choice = linear.and_then(|linear| one_light(setup, shading, &cosines, linear));
+    choice.unwrap_or_else(|| curved::<QUADRATICS>(setup, shading, curvature))
+}
+
+#[inline(never)]
+fn under_two_lights<const QUADRATICS: bool>(setup: &TriangleSetup<'_>, shading: &Shading<'_>) -> Choice {
+    let Some(curvature) = Curvature::of(setup.triangle) else { return Choice::Phong };
+    let cosines = setup.corners_of_two_lights();
+    let linear = shading.error_bounds.linear(shading.budget, curvature, cosines);
+    let choice = linear.and_then(|linear| two_lights(setup, shading, &cosines, linear));
+    choice.unwrap_or_else(|| curved::<QUADRATICS>(setup, shading, curvature))
+}
+
+/// What draws a triangle that is not within the budget by linear interpolation: the cheapest of what is.
+#[inline(never)]
+fn curved<const QUADRATICS: bool>(setup: &TriangleSetup<'_>, shading: &Shading<'_>, curvature: Curvature) -> Choice {
+    let two_lights = !shading.vertices_have_cosines();
+    let style = if two_lights { 2 } else { usize::from(shading.reflectance.three_channels()) };
+    let Some(savings) = SAVINGS.get(style).filter(|_| QUADRATICS) else { return Choice::Phong };
+    let extent = extent(setup);
+    let (quadratic, cosines) = (savings.quadratic.of(extent), savings.cosines.of(extent));
+    if quadratic.max(cosines) <= 0 {
+        return Choice::Phong;
+    }
+    let both = setup.corners_of_two_lights();
+    let [one, _] = &both;
+    let corners = if two_lights { both.as_slice() } else { core::slice::from_ref(one) };
+    let keeps_quadratic = || is_quadratic(setup, shading, curvature, corners);
+    match () {
+        () if quadratic >= cosines && keeps_quadratic() => Choice::Quadratic,
+        () if cosines > 0 && shading.error_bounds.cosines(setup.triangle, curvature, corners) <= shading.budget => Choice::Cosines,
+        () if (1..cosines).contains(&quadratic) && keeps_quadratic() => Choice::Quadratic,
+        () => Choice::Phong,
+    }
+}
+
+/// Whether the quadratic is within the budget.
+#[inline(never)]
+fn is_quadratic(setup: &TriangleSetup<'_>, shading: &Shading<'_>, curvature: Curvature, cosines: &[CornerCosines]) -> bool {
+    let Shading { error_bounds: bounds, budget, reflectance, .. } = *shading;
+    bounds.quadratic(setup.triangle, curvature, cosines) <= budget
+        && !(bounds.may_saturate() && bounds.saturates(curvature, cosines, reflectance))
+}
+
+/// About how many rows and pixels the triangle covers.
+#[inline(always)]
+fn extent(setup: &TriangleSetup<'_>) -> [i32; 2] {
+    let [a, b, c] = setup.corners;
+    // A coarse grid, so that words hold the area.
+    let (x1, y1, x2, y2) = ((b.x - a.x) >> 2, (b.y - a.y) >> 2, (c.x - a.x) >> 2, (c.y - a.y) >> 2);
+    let pixels = x1.wrapping_mul(y2).wrapping_sub(x2.wrapping_mul(y1)).unsigned_abs() >> 5;
+    // Corners may lie far outside of the picture.
+    [(y1.max(y2) >> 2).min(COLUMNS as i32), pixels.min(COLUMNS * COLUMNS) as i32]
+}
+
+/// The least and the largest of three values.
+#[inline(always)]
+fn extremes([a, b, c]: [i32; 3]) -> [i32; 2] {
+    [a.min(b).min(c), a.max(b).max(c)]
+}
+
+/// By how much a cosine differs between the corners at most where it is not below zero.
+#[inline(always)]
+fn lit_range(cosines: &[i32; 3]) -> i32 {
+    let [dark, bright] = extremes(*cosines);
+    bright.max(0) - dark.max(0)
+}
+
+/// One colour or linear interpolation under one constant light, where the latter has these bounds; `None` where levels of the corners may have
+/// been clamped at 255.
+#[inline(always)]
+fn one_light(setup: &TriangleSetup<'_>, shading: &Shading<'_>, [towards, _]: &CornerCosines, bounds: Linear) -> Option<Choice> {
+    let ([a, b, c], Linear { interval, brightest, has_highlight }) = (setup.corners, bounds);
+    let Shading { error_bounds: limits, budget, reflectance, .. } = *shading;
+    let (raise, three) = (interval.raise(budget), reflectance.three_channels());
+    // The levels in one channel, the highlights in three.
+    let reflected = || extremes([a.light[2], b.light[2], c.light[2]]);
+    if brightest as i32 >= FULL {
+        let [_, most] = reflected();
+        let most = if three { limits.brightest(largest(towards).max(0), most) } else { most };
+        if most >= FULL {
+            return None;
+        }
+    }
+    let diffuse = limits.diffuse_level(0, lit_range(towards));
+    if interval.half() + (diffuse >> 1) < budget {
+        let [least, most] = reflected();
+        let range = match (has_highlight, three) {
+            (false, _) => diffuse,
+            (true, false) => (most - least) as u32,
+            (true, true) => diffuse + limits.highlight_level(most - least),
+        };
+        if interval.half() + (range >> 1) < budget {
+            return Some(Choice::Solid(interval.middle()));
+        }
+    }
+    // Without a highlight at the corners a table of colours is interpolated, which raises each channel by its share of diffuse light: too
+    // little for a highlight that is nowhere but in between.
+    let is_hidden = raise > 0 && has_highlight && three && a.light[2] | b.light[2] | c.light[2] == 0;
+    (!is_hidden).then_some(Choice::Linear(raise))
+}
+
+/// [`one_light`] under two: one colour only where there is no highlight.
+#[inline(always)]
+fn two_lights(
+    setup: &TriangleSetup<'_>,
+    shading: &Shading<'_>,
+    [[towards, _], [other, _]]: &[CornerCosines; 2],
+    bounds: Linear,
+) -> Option<Choice> {
+    let Linear { interval, brightest, has_highlight } = bounds;
+    let Shading { error_bounds: limits, budget, .. } = *shading;
+    if brightest as i32 >= FULL && corner_levels(setup, shading.reflectance).as_flattened().iter().any(|&level| level >= FULL) {
+        return None;
+    }
+    if !has_highlight {
+        let range = limits.diffuse_level(0, lit_range(towards)) + limits.diffuse_level(1, lit_range(other));
+        if interval.half() + (range >> 1) < budget {
+            return Some(Choice::Solid(interval.middle()));
+        }
+    }
+    Some(Choice::Linear(interval.raise(budget)))
+}
+
+/// The levels at the corners under two constant lights.
+#[inline(never)]
+fn corner_levels(setup: &TriangleSetup<'_>, reflectance: &Reflectance) -> [[i32; 3]; 3] {
+    let [a, b, c] = setup.corners;
+    [reflectance.two_lights(a.light), reflectance.two_lights(b.light), reflectance.two_lights(c.light)]
+}
+
+/// Half-way between the least and the most that corners have of the light number `k`, where that is not less than `floor`.
+#[inline(always)]
+fn half_way(setup: &TriangleSetup<'_>, k: usize, floor: i32) -> i32 {
+    let [a, b, c] = setup.corners;
+    let [least, most] = extremes([a.light[k].max(floor), b.light[k].max(floor), c.light[k].max(floor)]);
+    (least + most) >> 1
+}
+
+/// The levels half-way between the least and the most that corners have, and so much more.
+#[inline(never)]
+fn middle(setup: &TriangleSetup<'_>, shading: &Shading<'_>, raise: i32) -> [i32; 3] {
+    let reflectance = shading.reflectance;
+    let levels = match (shading.vertices_have_cosines(), reflectance.three_channels()) {
+        // Where one colour is chosen under two lights, no highlight can be seen.
+        (false, _) => reflectance.two_lights([half_way(setup, 0, 0), i32::MIN, half_way(setup, 2, 0), i32::MIN]),
+        (true, true) => reflectance.reflection(half_way(setup, 0, 0), half_way(setup, 2, 0) as u32),
+        (true, false) => [half_way(setup, 2, 0); 3],
+    };
+    levels.map(|level| (level + raise).clamp(0, FULL))
+}
+
+/// The colour of these levels; by a table of colours where that is sooner looked up.
+#[inline(never)]
+fn solid<C: Pixel>(setup: &TriangleSetup<'_>, shading: &Shading<'_>, raise: i32, tables: MaterialTables<'_, C>) -> C {
+    let ([a, b, c], reflectance) = (setup.corners, shading.reflectance);
+    if shading.vertices_have_cosines() {
+        if !reflectance.three_channels() {
+            return tables.tint(half_way(setup, 2, 0) + raise);
+        }
+        if a.light[2] | b.light[2] | c.light[2] == 0 && reflectance.has_ramp() {
+            return tables.tint(reflectance.ramp_level(half_way(setup, 0, 0)) + raise);
+        }
+    }
+    tables.colour(middle(setup, shading, raise))
+}
+
+/// Levels at the six nodes under two constant lights, Q9.7, of each channel.
+#[inline(never)]
+fn six_under_two(setup: &TriangleSetup<'_>, shading: &Shading<'_>) -> [[i32; 6]; 3] {
+    let Shading { reflectance, exponent, .. } = *shading;
+    let [[towards, half], [other, other_half]] = setup.corners_of_two_lights();
+    let (light, half) = (setup.six_from(towards), setup.six_half_from(half, exponent));
+    let (other, other_half) = (setup.six_from(other), setup.six_half_from(other_half, exponent));
+    let mut nodes = [[0; 6]; 3];
+    for k in 0..6 {
+        let [r, g, b] = reflectance.two_lights([light[k], half[k], other[k], other_half[k]]);
+        (nodes[0][k], nodes[1][k], nodes[2][k]) = (r, g, b);
+    }
+    nodes
+}
+
+impl<const QUADRATICS: bool> Method for Auto<QUADRATICS> {
+    fn facts(&self) -> &'static Facts {
+        if QUADRATICS { &FACTS } else { &FACTS_WITHOUT_QUADRATICS }
+    }
+
+    fn error_bounds(&self, reflectance: &Reflectance, exponent: u16, lights: usize) -> ErrorBounds {
+        ErrorBounds::new(reflectance, exponent, lights)
+    }
+
+    fn shade(&self, setup: &TriangleSetup<'_>, shading: &Shading<'_>, canvas: &mut dyn Canvas) -> u32 {
+        let choice = choose::<QUADRATICS>(setup, shading);
+        setup.count_on(canvas, |counts| choice.count(counts), 1);
+        let reflectance = shading.reflectance;
+        match (choice, shading.constant) {
+            (Choice::Solid(raise), _) => {
+                setup.draw_spans(&mut Shaded::new(Constant, Uniform(of_levels(middle(setup, shading, raise)))), canvas)
+            }
+            (Choice::Linear(raise), constant) => {
+                let levels = if constant.is_some() { gouraud::reflected(setup, reflectance) } else { corner_levels(setup, reflectance) };
+                shading.draw_channels::<3, RANGE>(setup, &channels(levels), raise, canvas)
+            }
+            (Choice::Quadratic, Some(_)) if QUADRATICS => SixPoint.shade(setup, shading, canvas),
+            (Choice::Quadratic, None) if QUADRATICS => shading.draw_channels::<6, RANGE>(setup, &six_under_two(setup, shading), 0, canvas),
+            (Choice::Cosines, _) if QUADRATICS => SixCosines::shade(setup, shading, canvas),
+            (Choice::Quadratic | Choice::Cosines | Choice::Phong, _) => Phong.shade(setup, shading, canvas),
+        }
+    }
+}
+
+impl<const QUADRATICS: bool> Loops for Auto<QUADRATICS> {
+    type ThreeChannels = ThreeChannels<Self>;
+
+    fn take(style: Style) -> bool {
+        Duff::take(style)
+    }
+
+    #[inline(always)]
+    fn draw<C: Pixel>(
+        setup: &TriangleSetup<'_>,
+        shading: &Shading<'_>,
+        tables: MaterialTables<'_, C>,
+        band: &mut Band<'_, C>,
+    ) -> Option<u32> {
+        let choice = choose::<QUADRATICS>(setup, shading);
+        setup.count(band.top, choice.count(&mut band.counts), 1);
+        match choice {
+            Choice::Solid(raise) => Some(setup.fill(|| Constant, Solid(solid(setup, shading, raise, tables)), band)),
+            Choice::Linear(raise) => Some(gouraud::draw_one(setup, raise, tables, band)),
+            Choice::Quadratic if QUADRATICS => by::<SixPoint, _>(setup, shading, tables, band),
+            Choice::Cosines if QUADRATICS => by::<SixCosines, _>(setup, shading, tables, band),
+            Choice::Quadratic | Choice::Cosines | Choice::Phong => by::<Phong, _>(setup, shading, tables, band),
+        }
+    }
+}
+
+impl<const QUADRATICS: bool> Loops for ThreeChannels<Auto<QUADRATICS>> {
+    type ThreeChannels = Self;
+
+    fn take(style: Style) -> bool {
+        Auto::<QUADRATICS>::take(style)
+    }
+
+    #[inline(always)]
+    fn draw<C: Pixel>(
+        setup: &TriangleSetup<'_>,
+        shading: &Shading<'_>,
+        tables: MaterialTables<'_, C>,
+        band: &mut Band<'_, C>,
+    ) -> Option<u32> {
+        let choice = choose::<QUADRATICS>(setup, shading);
+        setup.count(band.top, choice.count(&mut band.counts), 1);
+        match (choice, shading.constant) {
+            (Choice::Solid(raise), _) => Some(setup.fill(|| Constant, Solid(solid(setup, shading, raise, tables)), band)),
+            (Choice::Linear(raise), Some(_)) => Some(gouraud::draw_three(setup, raise, tables, band)),
+            (Choice::Linear(raise), None) => {
+                let channels = || channels(corner_levels(setup, shading.reflectance));
+                Some(Shading::fill_three(setup, channels, raise, |plane| plane, band))
+            }
+            (Choice::Quadratic, Some(_)) if QUADRATICS => by::<SixPoint, _>(setup, shading, tables, band),
+            (Choice::Quadratic, None) if QUADRATICS => {
+                Some(Shading::fill_three(setup, || six_under_two(setup, shading), 0, ByColumn, band))
+            }
+            (Choice::Cosines, _) if QUADRATICS => by::<SixCosines, _>(setup, shading, tables, band),
+            (Choice::Quadratic | Choice::Cosines | Choice::Phong, _) => by::<Phong, _>(setup, shading, tables, band),
+        }
+    }
+}
+
+/// Draws by the loops of another method. They are called by address, or the compiler would compile them once more here.
+#[inline(always)]
+fn by<L: Loops, C: Pixel>(
+    setup: &TriangleSetup<'_>,
+    shading: &Shading<'_>,
+    tables: MaterialTables<'_, C>,
+    band: &mut Band<'_, C>,
+) -> Option<u32> {
+    let draw: DrawTriangle<C> = L::draw;
+    black_box(draw)(setup, shading, tables, band)
+}
