@@ -18,7 +18,7 @@ pub mod stage;
 pub mod styles;
 
 use anyhow::{Context, Result};
-use embedded_graphics_core::geometry::Size;
+use embedded_graphics_core::{geometry::Size, pixelcolor::Rgb565};
 use flash::Graph;
 pub use measurement::{Measurement, Timing};
 use microphong::renderer::check;
@@ -82,7 +82,7 @@ impl Bench {
         let errors = frames.into_par_iter().map(|(size, name, shader)| {
             let reference = references.iter().find(|(of, _)| *of == size);
             let (_, reference) = reference.context("a size without a reference")?;
-            let told = choices::by(shader, stream, Size::new(size.0, size.1), false, 0)?;
+            let told = choices::by::<Rgb565>(shader, stream, Size::new(size.0, size.1), false, 0)?;
             Ok((size, name, reference.total(shader)?, told.map(|told| (told.budget, told.choices)).unzip()))
         });
         let errors: Vec<_> = errors.collect::<Result<_>>()?;

@@ -9,7 +9,10 @@ use microphong::{
     pixel::Pixel,
     stream::record::Material,
 };
-use microphong_render::render::{self, Style};
+use microphong_render::{
+    choices::{self, Told},
+    render::{self, Style},
+};
 
 /// A pixel that keeps its levels as they come; `None` is background.
 #[derive(Clone, Copy, Debug)]
@@ -78,6 +81,14 @@ pub fn is_one_channel(stream: &Stream<'_>, material: &Material) -> bool {
     let mut reflectance = Box::new(Reflectance::EMPTY);
     reflectance.fill::<Fine>(stream.header, material, stream.lights, (Highlight::Half, false));
     !reflectance.three_channels()
+}
+
+/// What a method chooses for each triangle of [`picture`]; `None` unless it keeps a budget.
+///
+/// # Errors
+/// When `size` is out of range.
+pub fn choices(stream: Stream<'_>, size: Size, style: Style, number: u32) -> Result<Option<Told>> {
+    choices::by::<Fine>(style.shader, stream, size, style.perspective_correct, number)
 }
 
 /// Levels of red, green and blue, 255 is full, row by row from the top; `None` where nothing is drawn.

@@ -14,7 +14,7 @@ mod samples;
 use anyhow::{Context, Result};
 use edges::Edges;
 pub use edges::Jumps;
-use embedded_graphics_core::geometry::Size;
+use embedded_graphics_core::{geometry::Size, pixelcolor::Rgb565};
 use figures::Spread;
 use microphong::{Stream, method::Costs, renderer::check};
 use microphong_oracle::{self as oracle, Facet, Frame, Levels};
@@ -232,11 +232,12 @@ impl<'s> Reference<'s> {
         let integers = level::picture(self.stream, size, style, self.number)?;
         let settings = Settings { size, style, band_rows: size.height, format: Format::Rgb888 };
         let picture = render::picture(self.stream, &settings, self.number)?.rgb.as_chunks::<3>().0.to_vec();
-        let told = choices::by(shader, self.stream, size, perspective_correct, self.number)?;
+        // As most boards draw it.
+        let told = choices::by::<Rgb565>(shader, self.stream, size, perspective_correct, self.number)?;
         // Of a method that chooses, what it has chosen for each triangle.
         let chosen = |facet: &Facet| told.as_ref()?.ways.get(facet.id as usize).copied().flatten();
         let shade = |facet| {
-            chosen(facet).map_or_else(|| oracle::method(name, &self.frame, facet), |way| Ok(oracle::chosen(&self.frame, facet, way)))
+            chosen(facet).map_or_else(|| oracle::method(name, &self.frame, facet), |chosen| Ok(oracle::chosen(&self.frame, facet, chosen)))
         };
         let real = self.samples.shade(&self.frame, &shade)?;
 

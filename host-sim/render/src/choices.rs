@@ -14,10 +14,10 @@ use embedded_graphics_core::{
 };
 use microphong::{
     Stats, Stream,
-    format::{Intensity, RAMP},
+    format::{Intensity, LEVEL, RAMP},
     method::{
         Canvas, ErrorBounds, Facts, Method, Reflectance, Shading, TriangleSetup,
-        auto::{Auto, Choice, choose},
+        auto::{Auto, Choice, choose, raises},
     },
     pixel::Pixel,
     stream::record::Triangle,
@@ -140,6 +140,15 @@ impl fmt::Display for Choices {
     }
 }
 
+/// What `auto` chooses for a triangle.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Chosen {
+    /// The way.
+    pub way: Way,
+    /// By how much the levels of each channel are raised, in 1/255.
+    pub raises: [f64; 3],
+}
+
 /// What `auto` makes of a frame.
 #[derive(Clone, Debug)]
 pub struct Told {
@@ -147,15 +156,15 @@ pub struct Told {
     pub budget: f64,
     /// How much it draws in each way.
     pub choices: Choices,
-    /// Its way with each triangle of the stream; `None` if that is not drawn, or cut before.
-    pub ways: Vec<Option<Way>>,
+    /// What it chooses for each triangle of the stream; `None` if that is not drawn, or cut before.
+    pub ways: Vec<Option<Chosen>>,
 }
 
 thread_local! {
     /// What this thread has drawn of the frame.
     static CHOICES: Cell<Choices> = const { Cell::new(Choices::NONE) };
     /// The same by triangles, whose records begin at this address.
-    static WAYS: RefCell<(usize, Vec<Option<Way>>)> = const { RefCell::new((0, Vec::new())) };
+    static WAYS: RefCell<(usize, Vec<Option<Chosen>>)> = const { RefCell::new((0, Vec::new())) };
     /// The way of the triangle that this thread is shading.
     static WAY: Cell<Option<Way>> = const { Cell::new(None) };
 }
@@ -175,7 +184,9 @@ impl<const QUADRATICS: bool> Method for Telling<QUADRATICS> {
     }
 
     fn shade(&self, setup: &TriangleSetup<'_>, shading: &Shading<'_>, canvas: &mut dyn Canvas) -> u32 {
-        let way = choose::<QUADRATICS>(setup, shading).into();
+        let choice = choose::<QUADRATICS>(setup, shading);
+        let way = Way::from(choice);
+        let raises = raises(choice, setup, shading).map(|raise| f64::from(raise) / f64::from(1 << LEVEL));
         WAY.set(Some(way));
         let pixels = Auto::<QUADRATICS>.shade(setup, shading, canvas);
         WAY.set(None);
@@ -183,7 +194,7 @@ impl<const QUADRATICS: bool> Method for Telling<QUADRATICS> {
             // What is cut has a record of its own, elsewhere.
             let distance = ptr::from_ref(setup.triangle).addr().wrapping_sub(*first);
             if let Some(of) = ways.get_mut(distance / size_of::<Triangle>()) {
-                *of = Some(way);
+                *of = Some(Chosen { way, raises });
             }
         });
         CHOICES.set(CHOICES.get().with_triangle(way, pixels));
@@ -271,15 +282,21 @@ fn told<C: Pixel>(
     Ok((pixels, stats, CHOICES.get()))
 }
 
-/// What a method chooses in frame `number` of a picture of 16 bits a pixel, as most boards draw it; `None` unless it keeps a budget.
+/// What a method chooses in frame `number` of a picture in the pixel format `C`; `None` unless it keeps a budget.
 ///
 /// # Errors
 /// When `size` is out of range.
-pub fn by(shader: Shader, stream: Stream<'_>, size: Size, perspective_correct: bool, number: u32) -> anyhow::Result<Option<Told>> {
+pub fn by<C: Pixel>(
+    shader: Shader,
+    stream: Stream<'_>,
+    size: Size,
+    perspective_correct: bool,
+    number: u32,
+) -> anyhow::Result<Option<Told>> {
     if !shader.keeps_budget() {
         return Ok(None);
     }
-    let (_, _, choices) = told::<Rgb565>(shader, stream, size, perspective_correct, number)?;
+    let (_, _, choices) = told::<C>(shader, stream, size, perspective_correct, number)?;
     let (_, ways) = WAYS.take();
     Ok(Some(Told { budget: stream.header.budget().to_num(), choices, ways }))
 }

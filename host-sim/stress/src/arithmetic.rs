@@ -10,9 +10,10 @@ use crate::{
     scenes::{self, Wishes},
     tiles,
 };
+use microphong::Stream;
 use microphong_compare::{UNDECIDED, level};
-use microphong_oracle::{Frame, Levels, Shade, decides, method, outcomes};
-use microphong_render::{render::Style, shader::Shader};
+use microphong_oracle::{Facet, Frame, Levels, Shade, chosen, decides, method, outcomes};
+use microphong_render::render::Style;
 
 /// Largest difference of any method, in 1/255 of full intensity.
 pub const LIMIT: f64 = 0.5;
@@ -142,9 +143,16 @@ pub fn judge(case: &Case) -> Option<Found> {
     Some(found)
 }
 
-/// All of a method's triangles in one frame, in floating point; `None` if the method cannot shade them.
-fn shades(frame: &Frame, shader: Shader) -> Option<Vec<Shade<'_>>> {
-    frame.facets.iter().map(|facet| method(shader.name(), frame, facet).ok()).collect()
+/// All of a method's triangles in one frame, in floating point, of a method that chooses what it has chosen; `None` if the method cannot shade
+/// them.
+fn shades<'f>(case: &Case, stream: Stream<'_>, frame: &'f Frame) -> Option<Vec<Shade<'f>>> {
+    let told = level::choices(stream, case.pixels(), case.style, case.frame).ok()?;
+    let way = |facet: &Facet| told.as_ref()?.ways.get(facet.id as usize).copied().flatten();
+    let shade = |facet: &'f Facet| match way(facet) {
+        Some(way) => Some(chosen(frame, facet, way)),
+        None => method(case.style.shader.name(), frame, facet).ok(),
+    };
+    frame.facets.iter().map(shade).collect()
 }
 
 /// Difference of levels; one level for all channels is that of the brightest.
@@ -180,7 +188,7 @@ impl Pixel {
 fn pixels(case: &Case, frame: &Frame, visible: &[Vec<u32>]) -> Option<Vec<Pixel>> {
     let shader = case.style.shader;
     let stream = case.stream.parse().ok()?;
-    let shades = shades(frame, shader)?;
+    let shades = shades(case, stream, frame)?;
     let drawn = level::picture(stream, case.pixels(), case.style, case.frame).ok()?;
     let mut pixels = Vec::new();
     for (i, (levels, candidates)) in drawn.iter().zip(visible).enumerate() {

@@ -339,6 +339,13 @@ impl Reflectance {
         diffuse_level(self.ramp, cosine)
     }
 
+    /// By how much each channel rises where the level of the table of colours rises by `raise`, Q9.7. Domain: [`Self::has_ramp`].
+    #[must_use]
+    pub fn ramp_rise(&self, raise: i32) -> [i32; 3] {
+        let share = |gain: u16| (raise * i32::from(gain)).checked_div(self.ramp[1]).unwrap_or(0);
+        self.gains[0].diffuse.map(share)
+    }
+
     /// The diffuse level at cosine 1 and the level of a whole highlight of a light, Q9.7, each in the channel where it is largest.
     #[must_use]
     pub fn largest_gains(&self, light: usize) -> [u32; 2] {

@@ -52,7 +52,7 @@ impl Loops for Gouraud {
     #[inline(always)]
     fn draw<C: Pixel>(setup: &TriangleSetup<'_>, _: &Shading<'_>, tables: MaterialTables<'_, C>, band: &mut Band<'_, C>) -> Option<u32> {
         let [a, b, c] = setup.corners;
-        Some(setup.fill(|| one(setup.gradients, [a.light[2], b.light[2], c.light[2]], 0), Ramp(tables.ramp), band))
+        Some(setup.fill(|| one(setup.gradients, [a.light[2], b.light[2], c.light[2]]), Ramp(tables.ramp), band))
     }
 }
 
@@ -87,8 +87,8 @@ impl Loops for ThreeChannels<Gouraud> {
 #[inline(never)]
 pub(super) fn draw_one<C: Pixel>(setup: &TriangleSetup<'_>, raise: i32, tables: MaterialTables<'_, C>, band: &mut Band<'_, C>) -> u32 {
     let [a, b, c] = setup.corners;
-    let patch = || level_field([a.light[2], b.light[2], c.light[2]], raise).fit(setup.gradients);
-    setup.fill(patch, Ramp(tables.ramp), band)
+    let levels = || [a.light[2] + raise, b.light[2] + raise, c.light[2] + raise];
+    setup.fill(|| level_field(levels()).fit(setup.gradients), Ramp(tables.ramp), band)
 }
 
 /// Draws a triangle of three channels under one constant light, all levels `raise` more; returns the number of its pixels in `band`.
@@ -97,9 +97,9 @@ pub(super) fn draw_three<C: Pixel>(setup: &TriangleSetup<'_>, raise: i32, tables
     let ([a, b, c], reflectance) = (setup.corners, tables.reflectance);
     // By the table of colours where the light has no highlight.
     if a.light[2] | b.light[2] | c.light[2] == 0 && reflectance.has_ramp() {
-        let level = |[cosine, ..]: [i32; 4]| reflectance.ramp_level(cosine);
+        let level = |[cosine, ..]: [i32; 4]| reflectance.ramp_level(cosine) + raise;
         let levels = || [level(a.light), level(b.light), level(c.light)];
-        return setup.fill(|| one(setup.gradients, levels(), raise), Ramp(tables.ramp), band);
+        return setup.fill(|| one(setup.gradients, levels()), Ramp(tables.ramp), band);
     }
     let channels = || {
         let [[r0, g0, b0], [r1, g1, b1], [r2, g2, b2]] = reflections([a, b, c], reflectance);
@@ -110,8 +110,8 @@ pub(super) fn draw_three<C: Pixel>(setup: &TriangleSetup<'_>, raise: i32, tables
 
 /// In a function of its own: by measurement, what draws the triangle has more registers then.
 #[inline(never)]
-fn one(gradients: &Gradients, levels: [i32; 3], raise: i32) -> Plane<1> {
-    level_field(levels, raise).fit(gradients)
+fn one(gradients: &Gradients, levels: [i32; 3]) -> Plane<1> {
+    level_field(levels).fit(gradients)
 }
 
 /// The levels at the corners.

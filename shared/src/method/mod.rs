@@ -396,10 +396,10 @@ pub fn levels_at<const N: usize>(levels: [[i32; 3]; N]) -> Nodes<N, 3, RANGE> {
     Nodes::new(channels(levels), EXTRA).biased([bias(0); 3])
 }
 
-/// The field through levels at `N` nodes, Q9.7, all of them `raise` more, as indices of the table of colours.
+/// The field through levels at `N` nodes, Q9.7, as indices of the table of colours.
 #[inline(always)]
-fn level_field<const N: usize>(levels: [i32; N], raise: i32) -> Nodes<N, 1, RANGE> {
-    Nodes::new([levels], EXTRA).biased([bias((1 << (WALK - 1)) + (raise << EXTRA))])
+fn level_field<const N: usize>(levels: [i32; N]) -> Nodes<N, 1, RANGE> {
+    Nodes::new([levels], EXTRA).biased([bias(1 << (WALK - 1))])
 }
 
 /// The bias of walked levels, and so much more.
@@ -422,26 +422,26 @@ impl Shading<'_> {
         Nodes<N, 1, BITS>: Field<Value = [u32; 1]>,
         Nodes<N, 3, BITS>: Field<Value = [u32; 3]>,
     {
-        self.draw_channels::<N, BITS>(area, &channels(levels), 0, canvas)
+        self.draw_channels::<N, BITS>(area, &channels(levels), [0; 3], canvas)
     }
 
-    /// [`Self::draw_levels`] with the nodes of each channel, all of them `raise` more.
+    /// [`Self::draw_levels`] with the nodes of each channel, all of them raised by so much.
     pub(crate) fn draw_channels<const N: usize, const BITS: u32>(
         &self,
         area: &impl Area,
         channels: &[[i32; N]; 3],
-        raise: i32,
+        raises: [i32; 3],
         canvas: &mut dyn Canvas,
     ) -> u32
     where
         Nodes<N, 1, BITS>: Field<Value = [u32; 1]>,
         Nodes<N, 3, BITS>: Field<Value = [u32; 3]>,
     {
-        let bias = bias(raise << EXTRA);
+        let biases = raises.map(|raise| bias(raise << EXTRA));
         if self.reflectance.three_channels() {
-            area.draw(&Nodes::<N, 3, BITS>::new(*channels, EXTRA).biased([bias; 3]), Walked, canvas)
+            area.draw(&Nodes::<N, 3, BITS>::new(*channels, EXTRA).biased(biases), Walked, canvas)
         } else {
-            area.draw(&Nodes::<N, 1, BITS>::new([channels[0]], EXTRA).biased([bias]), Walked, canvas)
+            area.draw(&Nodes::<N, 1, BITS>::new([channels[0]], EXTRA).biased([biases[0]]), Walked, canvas)
         }
     }
 
@@ -456,7 +456,7 @@ impl Shading<'_> {
     where
         Nodes<N, 1, RANGE>: Field<Value = [u32; 1]>,
     {
-        setup.fill(|| level_field(nodes(), 0).fit(setup.gradients), Ramp(tables.ramp), band)
+        setup.fill(|| level_field(nodes()).fit(setup.gradients), Ramp(tables.ramp), band)
     }
 
     /// [`Self::draw_levels`] by loops of a method: three levels, `raise` more than at the nodes, whose polynomials are walked as `walked` says.
@@ -471,12 +471,12 @@ impl Shading<'_> {
     where
         Nodes<N, 3, RANGE>: Field,
     {
-        let bias = || {
-            let ([r, g, b], raise) = (C::DEPTH, raise << (CHANNEL - LEVEL));
-            // Half a step of each channel.
-            [(1 << (CHANNEL + 7 - r)) + raise, (1 << (CHANNEL + 7 - g)) + raise, (1 << (CHANNEL + 7 - b)) + raise]
+        let half_steps = const {
+            let [r, g, b] = C::DEPTH;
+            [1 << (CHANNEL + 7 - r), 1 << (CHANNEL + 7 - g), 1 << (CHANNEL + 7 - b)]
         };
-        let patch = || walked(Nodes::<N, 3, RANGE>::new(channels(), CHANNEL - LEVEL).biased(bias()).fit(setup.gradients));
+        let bias = half_steps.map(|half| half + (raise << (CHANNEL - LEVEL)));
+        let patch = || walked(Nodes::<N, 3, RANGE>::new(channels(), CHANNEL - LEVEL).biased(bias).fit(setup.gradients));
         setup.fill(patch, Rgb(PhantomData), band)
     }
 }

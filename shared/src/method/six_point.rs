@@ -34,7 +34,7 @@ impl Method for SixPoint {
     }
 
     fn shade(&self, setup: &TriangleSetup<'_>, shading: &Shading<'_>, canvas: &mut dyn Canvas) -> u32 {
-        shading.draw_channels::<6, RANGE>(setup, &levels(setup, shading), 0, canvas)
+        shading.draw_channels::<6, RANGE>(setup, &levels(setup, shading), [0; 3], canvas)
     }
 }
 

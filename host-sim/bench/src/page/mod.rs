@@ -225,7 +225,7 @@ fn chart(measurements: &[Measurement]) -> Markup {
 mod tests {
     use super::*;
     use crate::Stages;
-    use embedded_graphics_core::geometry::Size;
+    use embedded_graphics_core::{geometry::Size, pixelcolor::Rgb565};
     use microphong_render::{choices, scene, shader::Shader};
 
     fn measured() -> Vec<Measurement> {
@@ -296,7 +296,7 @@ mod tests {
     fn what_auto_chooses_is_shown() {
         assert!(!page(&measured(), &[], &[], "").into_string().contains("class=\"shares\""));
         let scene = scene::load(PEER).expect("a built-in scene");
-        let told = choices::by(Shader::AUTO, scene.stream.parse().expect("a stream"), Size::new(320, 240), false, 0);
+        let told = choices::by::<Rgb565>(Shader::AUTO, scene.stream.parse().expect("a stream"), Size::new(320, 240), false, 0);
         let told = told.expect("a picture").expect("what auto chooses");
         let chosen = |m: Measurement| match m.shader {
             "auto" => Measurement { budget: Some(told.budget), choices: Some(told.choices), ..m },

@@ -5,7 +5,7 @@ use crate::{
     Facet, Frame, Shade,
     light::{highlight, phong},
 };
-use microphong_render::choices::Way;
+use microphong_render::choices::{Chosen, Way};
 
 /// An excess that is close to its threshold at every margin but 0.
 const CLOSE: f64 = -f64::MIN_POSITIVE;
@@ -27,17 +27,24 @@ pub(super) fn shade<'f, const QUADRATICS: bool>(frame: &'f Frame, facet: &'f Fac
     }
 }
 
-/// What is drawn in a way that is known.
+/// What is drawn of a facet for which the choice is known.
 #[must_use]
-pub fn chosen<'f>(frame: &'f Frame, facet: &'f Facet, way: Way) -> Shade<'f> {
-    match way {
+pub fn chosen<'f>(frame: &'f Frame, facet: &'f Facet, Chosen { way, raises }: Chosen) -> Shade<'f> {
+    let shade = match way {
         // Under one light in three channels the core has no levels at the corners, but a cosine and a highlight.
         Way::OneColour => solid(frame, facet, frame.lights.len() == 1 && frame.only_channel(facet).is_none()),
         Way::Linear => gouraud::shade(frame, facet),
         Way::Quadratic => six_point::shade(frame, facet),
         Way::Cosines => sqrt6::by_cosines(frame, facet),
         Way::Phong => phong(frame, facet),
+    };
+    if raises == [0.0; 3] {
+        return shade;
     }
+    Box::new(move |p| {
+        let levels = shade(p);
+        [0, 1, 2].map(|k| (levels[k] + raises[k]).clamp(0.0, 255.0))
+    })
 }
 
 /// One colour: that of the cosine and of the highlight half-way between their extremes at the corners, `by_light`, or half-way between the

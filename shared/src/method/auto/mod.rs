@@ -18,6 +18,7 @@ use crate::{
         material_tables::MaterialTables,
         reflectance::{FULL, Highlight, Reflectance},
     },
+    math::vector::zip,
     method::{
         CornerCosines, Costs, DrawTriangle, Facts, Loops, Method, RANGE, Shading, Style, ThreeChannels, TriangleSetup, Uniform,
         VertexLight, channels,
@@ -245,9 +246,21 @@ fn half_way(setup: &TriangleSetup<'_>, k: usize, floor: i32) -> i32 {
     (least + most) >> 1
 }
 
+/// By how much a choice raises each channel, Q9.7: where the table of colours can be interpolated, by its share of diffuse light, because
+/// there one level stands for all channels; elsewhere alike.
+#[inline(never)]
+#[must_use]
+pub fn raises(choice: Choice, setup: &TriangleSetup<'_>, shading: &Shading<'_>) -> [i32; 3] {
+    let (Choice::Solid(raise) | Choice::Linear(raise)) = choice else { return [0; 3] };
+    let ([a, b, c], reflectance) = (setup.corners, shading.reflectance);
+    let has_levels = !shading.vertices_have_cosines() || !reflectance.three_channels();
+    let by_table = !has_levels && a.light[2] | b.light[2] | c.light[2] == 0 && reflectance.has_ramp();
+    if by_table { reflectance.ramp_rise(raise) } else { [raise; 3] }
+}
+
 /// The levels half-way between the least and the most that corners have, and so much more.
 #[inline(never)]
-fn middle(setup: &TriangleSetup<'_>, shading: &Shading<'_>, raise: i32) -> [i32; 3] {
+fn middle(setup: &TriangleSetup<'_>, shading: &Shading<'_>, raises: [i32; 3]) -> [i32; 3] {
     let reflectance = shading.reflectance;
     let levels = match (shading.vertices_have_cosines(), reflectance.three_channels()) {
         // Where one colour is chosen under two lights, no highlight can be seen.
@@ -255,7 +268,7 @@ fn middle(setup: &TriangleSetup<'_>, shading: &Shading<'_>, raise: i32) -> [i32;
         (true, true) => reflectance.reflection(half_way(setup, 0, 0), half_way(setup, 2, 0) as u32),
         (true, false) => [half_way(setup, 2, 0); 3],
     };
-    levels.map(|level| (level + raise).clamp(0, FULL))
+    zip(levels, raises, |level, raise| (level + raise).clamp(0, FULL))
 }
 
 /// The colour of these levels; by a table of colours where that is sooner looked up.
@@ -270,7 +283,7 @@ fn solid<C: Pixel>(setup: &TriangleSetup<'_>, shading: &Shading<'_>, raise: i32,
             return tables.tint(reflectance.ramp_level(half_way(setup, 0, 0)) + raise);
         }
     }
-    tables.colour(middle(setup, shading, raise))
+    tables.colour(middle(setup, shading, [raise; 3]))
 }
 
 /// Levels at the six nodes under two constant lights, Q9.7, of each channel.
@@ -301,16 +314,19 @@ impl<const QUADRATICS: bool> Method for Auto<QUADRATICS> {
         let choice = choose::<QUADRATICS>(setup, shading);
         setup.count_on(canvas, |counts| choice.count(counts), 1);
         let reflectance = shading.reflectance;
+        let raises = raises(choice, setup, shading);
         match (choice, shading.constant) {
-            (Choice::Solid(raise), _) => {
-                setup.draw_spans(&mut Shaded::new(Constant, Uniform(of_levels(middle(setup, shading, raise)))), canvas)
+            (Choice::Solid(_), _) => {
+                setup.draw_spans(&mut Shaded::new(Constant, Uniform(of_levels(middle(setup, shading, raises)))), canvas)
             }
-            (Choice::Linear(raise), constant) => {
+            (Choice::Linear(_), constant) => {
                 let levels = if constant.is_some() { gouraud::reflected(setup, reflectance) } else { corner_levels(setup, reflectance) };
-                shading.draw_channels::<3, RANGE>(setup, &channels(levels), raise, canvas)
+                shading.draw_channels::<3, RANGE>(setup, &channels(levels), raises, canvas)
             }
             (Choice::Quadratic, Some(_)) if QUADRATICS => SixPoint.shade(setup, shading, canvas),
-            (Choice::Quadratic, None) if QUADRATICS => shading.draw_channels::<6, RANGE>(setup, &six_under_two(setup, shading), 0, canvas),
+            (Choice::Quadratic, None) if QUADRATICS => {
+                shading.draw_channels::<6, RANGE>(setup, &six_under_two(setup, shading), [0; 3], canvas)
+            }
             (Choice::Cosines, _) if QUADRATICS => SixCosines::shade(setup, shading, canvas),
             (Choice::Quadratic | Choice::Cosines | Choice::Phong, _) => Phong.shade(setup, shading, canvas),
         }
