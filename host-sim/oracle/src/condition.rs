@@ -66,7 +66,7 @@ impl Frame {
         let mut levels = [0.0; 3];
         for light in &self.lights {
             let condition = |weights| self.condition(facet, weights, &light.place);
-            let shortest = 1.0 / facet.min_normal_length.powi(2);
+            let shortest = 1.0 / facet.shortest_normal().powi(2);
             let worst = if whole { NODES.into_iter().map(condition).fold(shortest, f64::max) } else { 0.0 };
             let change = (self.unit(material.exponent) * worst.max(condition(weights))).min(2.0);
             let [_, half] = self.cosines(light, position, normal);

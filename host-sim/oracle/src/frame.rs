@@ -177,7 +177,6 @@ impl Facet {
     #[must_use]
     pub fn new(screen: [[f64; 2]; 3], vertices: [usize; 3], normals: [V3; 3], positions: [V3; 3]) -> Self {
         let [a, b, c] = positions;
-        let least = [0, 1, 2].map(|k| dot(normals[k], normals[(k + 1) % 3])).into_iter().fold(1.0, f64::min);
         Self {
             screen,
             inv_depth: [0.5; 3],
@@ -186,7 +185,7 @@ impl Facet {
             normals,
             positions,
             plane: direction(cross(sub(c, a), sub(b, a))),
-            min_normal_length: ((1.0 + 2.0 * least) / 3.0).max(0.0).sqrt(),
+            min_normal_length: shortest(&normals),
             material: 0,
             id: 0,
         }
@@ -228,10 +227,21 @@ impl Facet {
         if weights.contains(&1.0) { normal } else { direction(normal) }
     }
 
+    /// No interpolated normal is shorter, and none is as short unless all three edges turn it as far.
+    pub(super) fn shortest_normal(&self) -> f64 {
+        shortest(&self.normals)
+    }
+
     /// Length of the interpolated normal at the midpoint of the edge from corner `i` to `j`.
     pub(super) fn middle(&self, i: usize, j: usize) -> f64 {
         length(add(self.normals[i], self.normals[j])) / 2.0
     }
+}
+
+/// The length of the mean of three unit vectors each two of which enclose the widest angle of these.
+fn shortest(normals: &[V3; 3]) -> f64 {
+    let least = [0, 1, 2].map(|k| dot(normals[k], normals[(k + 1) % 3])).into_iter().fold(1.0, f64::min);
+    ((1.0 + 2.0 * least) / 3.0).max(0.0).sqrt()
 }
 
 /// Sum of three vectors, weighted.
