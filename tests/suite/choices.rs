@@ -1,7 +1,10 @@
 //! What the method `auto` chooses, as `render --show methods`, `compare` and `bench` tell it.
 
 use embedded_graphics::geometry::Size;
-use microphong::stream::record::Triangle;
+use microphong::{
+    method::auto::costs::{COSTS, Cost},
+    stream::record::Triangle,
+};
 use microphong_sim::{
     bench::{Bench, Processor},
     choices::{self, Choices, Way},
@@ -234,4 +237,29 @@ fn bench_tells_choices() {
     assert!(gouraud["budget"].is_null() && gouraud["choices"].is_null(), "{gouraud}");
     assert_eq!(auto["budget"], 1.0);
     assert_eq!(Some(sum(&auto, "pixels")), auto["pixels"].as_u64(), "{auto}");
+}
+
+/// The table by which methods are chosen still is what they cost: the means of two scenes, one of large and one of small triangles.
+#[test]
+fn the_table_of_costs_is_true() {
+    let bench = Bench::new(&[Processor::CortexM3]).expect("a firmware");
+    let wanted = [Shader::SIX_POINT, Shader::PHONG].map(|shader| (Processor::CortexM3, shader));
+    let cost = |scene: &&str| {
+        let scene = scene::load(scene).expect("a built-in scene");
+        let measured = bench.count(&scene, &wanted, &|| ()).expect("measurements");
+        [0, 1].map(|k: usize| {
+            let (of, stages) = (&measured[k], measured[k].by_stage);
+            [(stages.setup, of.triangles), (stages.span, of.spans), (stages.pixel, of.pixels)].map(|(sum, of)| sum as f64 / of as f64)
+        })
+    };
+    let styles = [["peer-sphere", "teapot"], ["peer-sphere-plastic", "torus"], ["peer-sphere-lights", "bunny"]];
+    for (scenes, table) in styles.iter().zip(COSTS) {
+        let [large, small] = [0, 1].map(|k: usize| cost(&scenes[k]));
+        for (k, Cost { triangle, row, pixel }) in [table.quadratic, table.phong].into_iter().enumerate() {
+            let means = [0, 1, 2].map(|part| f64::midpoint(large[k][part], small[k][part]));
+            let told = [triangle, row, pixel].map(f64::from);
+            println!("{scenes:?}, {}: {means:.1?}, the table has {told:?}", wanted[k].1.name());
+            assert!((0..3).all(|part| (means[part] - told[part]).abs() <= 0.5 + 0.05 * told[part]));
+        }
+    }
 }

@@ -2,8 +2,8 @@
 //!
 //! Instructions on a Cortex-M3, as `microphong bench` counts them: set-up for each triangle, the rest of each row, and the inner loop for each
 //! pixel. They are the means of two scenes, of which one has large triangles, the other small ones: `peer-sphere` and `teapot` in one channel,
-//! `peer-sphere-plastic` and `torus` in three, `peer-sphere-lights` and `bunny` under two lights. `tests/suite/choices.rs` counts those of
-//! the methods that can be drawn alone anew.
+//! `peer-sphere-plastic` and `torus` in three, `peer-sphere-lights` and `bunny` under two lights. `tests/suite/choices.rs` counts anew what
+//! can be drawn alone: all but the quadratic through cosines.
 //!
 //! The choice is the same on every machine, and so are the pictures. A table of its own for the Cortex-M0+ was tried: frames of `bunny`,
 //! `torus`, `teapot` and `peer-sphere-plastic` took 0 to 1 % more cycles of the Pico by it.
