@@ -2,7 +2,10 @@
 
 use embedded_graphics::geometry::Size;
 use microphong::{
-    method::auto::costs::{COSTS, Cost},
+    method::{
+        auto::costs::{COSTS, Cost},
+        sqrt6::Sqrt6,
+    },
     stream::record::Triangle,
 };
 use microphong_sim::{
@@ -10,6 +13,7 @@ use microphong_sim::{
     choices::{self, Choices, Way},
     legend,
     look::{Look, Surface},
+    oracle::{self, Frame},
     quantise::quantise,
     render::{Format, Settings},
     scene::{self, Scene},
@@ -26,7 +30,7 @@ use microphong_tests::{only_announces, program};
 use rayon::prelude::*;
 use serde_json::Value;
 use std::{
-    collections::BTreeSet,
+    collections::{BTreeSet, HashMap},
     fs::File,
     io::BufReader,
     path::Path,
@@ -261,5 +265,45 @@ fn the_table_of_costs_is_true() {
             println!("{scenes:?}, {}: {means:.1?}, the table has {told:?}", wanted[k].1.name());
             assert!((0..3).all(|part| (means[part] - told[part]).abs() <= 0.5 + 0.05 * told[part]));
         }
+    }
+}
+
+/// Under near lights `auto` is Phong shading. Were the cheapest method taken that the oracle finds within the budget, all the frame would cost at
+/// least two thirds of that.
+#[test]
+fn near_lights_leave_little_to_cheaper_methods() {
+    const METHODS: [Shader; 4] = [Shader::GOURAUD, Shader::SIX_POINT, Shader::new(&Sqrt6), Shader::PHONG];
+    let bench = Bench::new(&[Processor::CortexM3]).expect("a firmware");
+    for name in ["sphere-40", "dodecahedron"] {
+        let scene = scene::load(name).expect("a built-in scene");
+        let stream = scene.stream.parse().expect("a stream");
+        let wanted = [&METHODS[..], &[Shader::AUTO]].concat().into_iter().map(|shader| (Processor::CortexM3, shader)).collect::<Vec<_>>();
+        let costs: Vec<_> = bench.count(&scene, &wanted, &|| ()).expect("measurements").iter().map(|m| m.instr_per_pixel).collect();
+        let (width, height) = Processor::CortexM3.size();
+        let frame = Frame::new(stream, (width, height), 0);
+        let mut pixels: HashMap<u32, Vec<[f64; 2]>> = HashMap::new();
+        for (k, visible) in (0..).zip(frame.visible()) {
+            if let Some(&facet) = visible.first() {
+                pixels.entry(facet).or_default().push([k % width, k / width].map(|c| f64::from(c) + 0.5));
+            }
+        }
+        let mut drawn = [0; METHODS.len()];
+        for (&facet, points) in &pixels {
+            let facet = &frame.facets[facet as usize];
+            let exact = oracle::phong(&frame, facet);
+            let keeps = |shader: &Shader| {
+                let shade = oracle::method(shader.name(), &frame, facet).expect("a method of all scenes");
+                points.iter().all(|&p| (0..3).all(|k| (shade(p)[k] - exact(p)[k]).abs() <= 1.0))
+            };
+            drawn[METHODS.iter().position(keeps).expect("Phong shading")] += points.len();
+        }
+        let all: usize = drawn.iter().sum();
+        let cheapest: f64 = drawn.iter().zip(&costs).map(|(&pixels, cost)| pixels as f64 / all as f64 * cost).sum();
+        println!("{name}: pixels {drawn:?}, instructions a pixel {costs:.1?}, by true error {cheapest:.1}");
+        assert!(
+            costs[METHODS.len()] <= 1.5 * cheapest,
+            "{name}: {:.1} instructions a pixel, by true error {cheapest:.1}",
+            costs[METHODS.len()]
+        );
     }
 }
