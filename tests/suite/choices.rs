@@ -268,13 +268,25 @@ fn the_table_of_costs_is_true() {
     }
 }
 
-/// Under near lights `auto` is Phong shading. Were the cheapest method taken that the oracle finds within the budget, all the frame would cost at
-/// least two thirds of that.
+/// `auto` costs little more than if each triangle were drawn by the cheapest method that the oracle finds within the budget, and nobody had to
+/// find that out. Under near lights, as in the last two scenes, it is always Phong shading.
 #[test]
-fn near_lights_leave_little_to_cheaper_methods() {
+fn auto_is_nearly_as_cheap_as_true_errors_allow() {
+    /// The cheapest first.
     const METHODS: [Shader; 4] = [Shader::GOURAUD, Shader::SIX_POINT, Shader::new(&Sqrt6), Shader::PHONG];
+    /// Scenes, and how many times as much `auto` may cost.
+    const SCENES: [(&str, f64); 8] = [
+        ("peer-sphere", 1.2),
+        ("peer-sphere-plastic", 1.25),
+        ("peer-sphere-lights", 1.25),
+        ("teapot", 1.2),
+        ("torus", 1.15),
+        ("bunny", 1.15),
+        ("sphere-40", 1.2),
+        ("dodecahedron", 1.05),
+    ];
     let bench = Bench::new(&[Processor::CortexM3]).expect("a firmware");
-    for name in ["sphere-40", "dodecahedron"] {
+    for (name, most) in SCENES {
         let scene = scene::load(name).expect("a built-in scene");
         let stream = scene.stream.parse().expect("a stream");
         let wanted = [&METHODS[..], &[Shader::AUTO]].concat().into_iter().map(|shader| (Processor::CortexM3, shader)).collect::<Vec<_>>();
@@ -299,11 +311,8 @@ fn near_lights_leave_little_to_cheaper_methods() {
         }
         let all: usize = drawn.iter().sum();
         let cheapest: f64 = drawn.iter().zip(&costs).map(|(&pixels, cost)| pixels as f64 / all as f64 * cost).sum();
-        println!("{name}: pixels {drawn:?}, instructions a pixel {costs:.1?}, by true error {cheapest:.1}");
-        assert!(
-            costs[METHODS.len()] <= 1.5 * cheapest,
-            "{name}: {:.1} instructions a pixel, by true error {cheapest:.1}",
-            costs[METHODS.len()]
-        );
+        let ratio = costs[METHODS.len()] / cheapest;
+        println!("{name}: pixels {drawn:?}, instructions a pixel {costs:.1?}, by true error {cheapest:.1}: {ratio:.3} times as many");
+        assert!(ratio <= most, "{name}: {ratio:.3}");
     }
 }
