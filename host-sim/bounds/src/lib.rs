@@ -48,6 +48,10 @@ const SEARCHED: usize = 2 * ROWS - 1;
 /// Factors for what a search has not found: another one finds up to 1 % more of linear interpolation, and 8 % more of quadratics.
 const MARGINS: [f64; KINDS] = [1.03, 1.03, 1.12, 1.12];
 
+/// And so much of the whole highlight for quadratics, by range of exponents: at those below 5 a longer search finds up to 0.1 of 255 more, where
+/// triangles reach to the end of a highlight.
+const MORE: [f64; LEAST_EXPONENTS.len()] = [1.0 / 2048.0, 0.0, 0.0];
+
 /// Exponents that stand for a range.
 const EXPONENTS: [&[u16]; LEAST_EXPONENTS.len()] = [&[1, 2, 3, 4], &[5, 6, 7, 8, 10, 12, 15], &[16, 18, 24, 32, 50, 128, 1024]];
 
@@ -167,7 +171,8 @@ pub fn table(effort: u32, seed: u64, done: impl Fn() + Sync) -> Table {
     for part in 0..LEAST_EXPONENTS.len() {
         let found = search(part, effort, seed, &done);
         for (kind, column) in (0..KINDS).flat_map(|kind| (0..COLUMNS).map(move |column| (kind, column))) {
-            let found = |row: usize| found[kind][row][column] * MARGINS[kind];
+            let more = if kind == Kind::Quadratic as usize { MORE[part] } else { 0.0 };
+            let found = |row: usize| found[kind][row][column] * MARGINS[kind] + more;
             if kind < LINEAR_KINDS {
                 table.linear[part][column][kind] = growth(found);
                 continue;
@@ -239,10 +244,12 @@ impl Place {
     fn random(random: &mut Random, kind: usize) -> Self {
         let part = random.pick(0..LEAST_EXPONENTS.len() as i32) as usize;
         let end = LEAST_EXPONENTS.get(part + 1).copied().unwrap_or(1025);
+        let exponent = random.octaves(LEAST_EXPONENTS[part].into(), end.into()) as u16;
+        let largest = if kind < LINEAR_KINDS { LINEAR_SIZE } else { size_of(SEARCHED - 1) };
         Self {
-            exponent: random.octaves(LEAST_EXPONENTS[part].into(), end.into()) as u16,
+            exponent,
             kind,
-            size: random.octaves(LEAST_SIZE, if kind < LINEAR_KINDS { LINEAR_SIZE } else { size_of(SEARCHED - 1) }),
+            size: random.octaves(LEAST_SIZE, largest.min(f64::from(exponent) * (1.0 - Triangle::LEAST_LENGTH))),
             column: random.pick(0..COLUMNS as i32) as usize,
         }
     }

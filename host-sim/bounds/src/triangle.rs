@@ -17,6 +17,9 @@ fn dot(a: [f64; 3], b: [f64; 3]) -> f64 {
 }
 
 impl Triangle {
+    /// The least length of interpolated normals for which there are bounds, 0.8165: that of three that are 60 degrees apart.
+    pub const LEAST_LENGTH: f64 = 0.816;
+
     /// A random one, with a size of about `size` and at about `depth` from the peak.
     pub fn random(random: &mut Random, size: f64, depth: f64) -> Self {
         let direction = |random: &mut Random| {
@@ -56,7 +59,7 @@ impl Triangle {
             let normals = self.normals(n);
             let (least, nearest, away) = (least_length(&normals), nearest(&normals), depth_of(n, &normals));
             if n * (1.0 - least) <= size && away >= depth {
-                return (least >= LEAST).then_some(self);
+                return (least >= Self::LEAST_LENGTH).then_some(self);
             }
             let smaller = (size / (n * (1.0 - least)).max(1e-12)).sqrt().min(1.0) * (1.0 - 1e-9);
             let [x, y] = self.0[nearest];
@@ -112,9 +115,6 @@ impl Triangle {
         errors
     }
 }
-
-/// The least length of interpolated normals for which there are bounds, 0.8165: that of three that are 60 degrees apart.
-const LEAST: f64 = 0.816;
 
 /// The least length of an interpolated normal, from the smallest circle around the ends of all three.
 fn least_length(normals: &[[f64; 3]; 3]) -> f64 {
