@@ -168,10 +168,10 @@ pub fn table(effort: u32, seed: u64, done: impl Fn() + Sync) -> Table {
         linear: [[[Growth { rate: 0, base: 0, slope: 0 }; 2]; COLUMNS]; LEAST_EXPONENTS.len()],
         curved: [[[[0; 2]; COLUMNS]; ROWS + ROWS_BEHIND]; LEAST_EXPONENTS.len()],
     };
-    for part in 0..LEAST_EXPONENTS.len() {
+    for (part, quadratic_more) in MORE.into_iter().enumerate() {
         let found = search(part, effort, seed, &done);
         for (kind, column) in (0..KINDS).flat_map(|kind| (0..COLUMNS).map(move |column| (kind, column))) {
-            let more = if kind == Kind::Quadratic as usize { MORE[part] } else { 0.0 };
+            let more = if kind == Kind::Quadratic as usize { quadratic_more } else { 0.0 };
             let found = |row: usize| found[kind][row][column] * MARGINS[kind] + more;
             if kind < LINEAR_KINDS {
                 table.linear[part][column][kind] = growth(found);
