@@ -1,0 +1,185 @@
+//! What draws a triangle within an error budget: the cheapest of what [`crate::method::ErrorBounds`] allow.
+
+use super::{corner_levels, costs::SAVINGS};
+use crate::{
+    lighting::reflectance::FULL,
+    method::{
+        CornerCosines, Shading, TriangleSetup,
+        error_bound::{Curvature, Linear},
+        largest,
+    },
+    raster::counts::Counts,
+    setup::edge::COLUMNS,
+};
+
+/// What draws a triangle.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Choice {
+    /// One colour, half-way between what the corners have, and these levels (Q9.7) more.
+    Solid(i32),
+    /// Linear interpolation between the corners, and these levels (Q9.7) more.
+    Linear(i32),
+    /// Levels at six nodes, quadratic in between.
+    Quadratic,
+    /// Cosines at six nodes, quadratic in between, highlights looked up at the pixel.
+    Cosines,
+    /// Phong shading.
+    Phong,
+}
+
+impl Choice {
+    /// How many triangles are drawn so.
+    pub(super) fn count(self, counts: &mut Counts) -> &mut u32 {
+        let [solid, linear, quadratic, cosines, phong] = &mut counts.choices;
+        match self {
+            Self::Solid(_) => solid,
+            Self::Linear(_) => linear,
+            Self::Quadratic => quadratic,
+            Self::Cosines => cosines,
+            Self::Phong => phong,
+        }
+    }
+}
+
+/// Chooses what draws a triangle.
+#[inline(always)]
+#[must_use]
+pub fn choose<const QUADRATICS: bool>(setup: &TriangleSetup<'_>, shading: &Shading<'_>) -> Choice {
+    // In functions of their own: together they would need more registers than there are.
+    if shading.vertices_have_cosines() {
+        under_one_light::<QUADRATICS>(setup, shading)
+    } else if shading.reflectance.has_two_lights() && shading.lighting.is_constant() {
+        under_two_lights::<QUADRATICS>(setup, shading)
+    } else {
+        Choice::Phong
+    }
+}
+
+#[inline(never)]
+fn under_one_light<const QUADRATICS: bool>(setup: &TriangleSetup<'_>, shading: &Shading<'_>) -> Choice {
+    let Some(curvature) = Curvature::of(setup.triangle) else { return Choice::Phong };
+    let cosines = setup.corner_lights();
+    let linear = shading.error_bounds.linear(shading.budget, curvature, [cosines]);
+    let choice = linear.and_then(|linear| one_light(setup, shading, &cosines, linear));
+    choice.unwrap_or_else(|| curved::<QUADRATICS>(setup, shading, curvature))
+}
+
+#[inline(never)]
+fn under_two_lights<const QUADRATICS: bool>(setup: &TriangleSetup<'_>, shading: &Shading<'_>) -> Choice {
+    let Some(curvature) = Curvature::of(setup.triangle) else { return Choice::Phong };
+    let cosines = setup.corners_of_two_lights();
+    let linear = shading.error_bounds.linear(shading.budget, curvature, cosines);
+    let choice = linear.and_then(|linear| two_lights(setup, shading, &cosines, linear));
+    choice.unwrap_or_else(|| curved::<QUADRATICS>(setup, shading, curvature))
+}
+
+/// What draws a triangle that is not within the budget by linear interpolation: the cheapest of what is.
+#[inline(never)]
+fn curved<const QUADRATICS: bool>(setup: &TriangleSetup<'_>, shading: &Shading<'_>, curvature: Curvature) -> Choice {
+    let two_lights = !shading.vertices_have_cosines();
+    let style = if two_lights { 2 } else { usize::from(shading.reflectance.three_channels()) };
+    let Some(savings) = SAVINGS.get(style).filter(|_| QUADRATICS) else { return Choice::Phong };
+    let extent = extent(setup);
+    let (quadratic, cosines) = (savings.quadratic.of(extent), savings.cosines.of(extent));
+    if quadratic.max(cosines) <= 0 {
+        return Choice::Phong;
+    }
+    let both = setup.corners_of_two_lights();
+    let [one, _] = &both;
+    let corners = if two_lights { both.as_slice() } else { core::slice::from_ref(one) };
+    let keeps_quadratic = || is_quadratic(setup, shading, curvature, corners);
+    match () {
+        () if quadratic >= cosines && keeps_quadratic() => Choice::Quadratic,
+        () if cosines > 0 && shading.error_bounds.cosines(setup.triangle, curvature, corners) <= shading.budget => Choice::Cosines,
+        () if (1..cosines).contains(&quadratic) && keeps_quadratic() => Choice::Quadratic,
+        () => Choice::Phong,
+    }
+}
+
+/// Whether the quadratic is within the budget.
+#[inline(never)]
+fn is_quadratic(setup: &TriangleSetup<'_>, shading: &Shading<'_>, curvature: Curvature, cosines: &[CornerCosines]) -> bool {
+    let Shading { error_bounds: bounds, budget, reflectance, .. } = *shading;
+    bounds.quadratic(setup.triangle, curvature, cosines) <= budget
+        && !(bounds.may_saturate() && bounds.saturates(curvature, cosines, reflectance))
+}
+
+/// About how many rows and pixels the triangle covers.
+#[inline(always)]
+fn extent(setup: &TriangleSetup<'_>) -> [i32; 2] {
+    let [a, b, c] = setup.corners;
+    // A coarse grid, so that words hold the area.
+    let (x1, y1, x2, y2) = ((b.x - a.x) >> 2, (b.y - a.y) >> 2, (c.x - a.x) >> 2, (c.y - a.y) >> 2);
+    let pixels = x1.wrapping_mul(y2).wrapping_sub(x2.wrapping_mul(y1)).unsigned_abs() >> 5;
+    // Corners may lie far outside of the picture.
+    [(y1.max(y2) >> 2).min(COLUMNS as i32), pixels.min(COLUMNS * COLUMNS) as i32]
+}
+
+/// The least and the largest of three values.
+#[inline(always)]
+pub(super) fn extremes([a, b, c]: [i32; 3]) -> [i32; 2] {
+    [a.min(b).min(c), a.max(b).max(c)]
+}
+
+/// By how much a cosine differs between the corners at most where it is not below zero.
+#[inline(always)]
+fn lit_range(cosines: &[i32; 3]) -> i32 {
+    let [dark, bright] = extremes(*cosines);
+    bright.max(0) - dark.max(0)
+}
+
+/// One colour or linear interpolation under one constant light, where the latter has these bounds; `None` where levels of the corners may have
+/// been clamped at 255.
+#[inline(always)]
+fn one_light(setup: &TriangleSetup<'_>, shading: &Shading<'_>, [towards, _]: &CornerCosines, bounds: Linear) -> Option<Choice> {
+    let ([a, b, c], Linear { interval, brightest, has_highlight }) = (setup.corners, bounds);
+    let Shading { error_bounds: limits, budget, reflectance, .. } = *shading;
+    let (raise, three) = (interval.raise(budget), reflectance.three_channels());
+    // The levels in one channel, the highlights in three.
+    let reflected = || extremes([a.light[2], b.light[2], c.light[2]]);
+    if brightest as i32 >= FULL {
+        let [_, most] = reflected();
+        let most = if three { limits.brightest(largest(towards).max(0), most) } else { most };
+        if most >= FULL {
+            return None;
+        }
+    }
+    let diffuse = limits.diffuse_level(0, lit_range(towards));
+    if interval.half() + (diffuse >> 1) < budget {
+        let [least, most] = reflected();
+        let range = match (has_highlight, three) {
+            (false, _) => diffuse,
+            (true, false) => (most - least) as u32,
+            (true, true) => diffuse + limits.highlight_level(most - least),
+        };
+        if interval.half() + (range >> 1) < budget {
+            return Some(Choice::Solid(interval.middle()));
+        }
+    }
+    // Without a highlight at the corners a table of colours is interpolated, which raises each channel by its share of diffuse light: too
+    // little for a highlight that is nowhere but in between.
+    let is_hidden = raise > 0 && has_highlight && three && a.light[2] | b.light[2] | c.light[2] == 0;
+    (!is_hidden).then_some(Choice::Linear(raise))
+}
+
+/// [`one_light`] under two: one colour only where there is no highlight.
+#[inline(always)]
+fn two_lights(
+    setup: &TriangleSetup<'_>,
+    shading: &Shading<'_>,
+    [[towards, _], [other, _]]: &[CornerCosines; 2],
+    bounds: Linear,
+) -> Option<Choice> {
+    let Linear { interval, brightest, has_highlight } = bounds;
+    let Shading { error_bounds: limits, budget, .. } = *shading;
+    if brightest as i32 >= FULL && corner_levels(setup, shading.reflectance).as_flattened().iter().any(|&level| level >= FULL) {
+        return None;
+    }
+    if !has_highlight {
+        let range = limits.diffuse_level(0, lit_range(towards)) + limits.diffuse_level(1, lit_range(other));
+        if interval.half() + (range >> 1) < budget {
+            return Some(Choice::Solid(interval.middle()));
+        }
+    }
+    Some(Choice::Linear(interval.raise(budget)))
+}
