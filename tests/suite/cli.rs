@@ -363,7 +363,11 @@ fn wrong_usage_is_told_from_failure() {
     place.fails(&["convert", "good.obj", "--exponent", "0"], 2, &["--exponent"]);
     place.fails(&["convert", "good.obj", "--exponent", "1025"], 2, &["--exponent"]);
     place.fails(&["convert", "good.obj", "--colour", "red"], 2, &["red", "hexadecimal"]);
-    place.fails(&["convert", "good.obj", "--up", "x"], 2, &["--up"]);
+    place.fails(&["convert", "good.obj", "--up", "w"], 2, &["--up", "-z"]);
+    place.fails(&["convert", "good.obj", "--crease", "181"], 2, &["--crease", "0 to 180"]);
+    place.fails(&["convert", "good.obj", "--light", "1,2"], 2, &["--light", "three numbers"]);
+    place.fails(&["convert", "good.obj", "--light", "0,0,0"], 2, &["--light", "direction"]);
+    place.fails(&["convert", "good.obj", "--light", "1,0,0:red"], 2, &["--light", "hexadecimal"]);
     place.fails(&["convert", "good.obj", "--diffuse", "nan"], 2, &["--diffuse"]);
     place.fails(&["convert", "good.obj", "-o", "good.obj"], 2, &["overwrite"]);
     place.fails(&["verify", "--board", "uno"], 2, &["uno", "pico"]);
@@ -527,12 +531,35 @@ fn sealed_nonsense_is_refused_or_drawn_but_never_crashes() {
     assert!(refused > 100 && drawn > 100, "{refused} refused, {drawn} drawn");
 }
 
+/// Materials are told, and what a file has besides; a colour of the command line takes their place. Errors name the file of the materials.
+#[test]
+fn convert_takes_materials() {
+    let place = Place::new();
+    let two = TETRAHEDRON.replacen("\nf", "\nmtllib paint.mtl\nusemtl red\nf", 1) + "usemtl blue\nf 1 2 3\nvt 0 0\n";
+    place.file("two.obj", two).file("paint.mtl", "newmtl red\nKd 1 0 0\nnewmtl blue\nKd 0 0 1\nmap_Kd blue.png\n");
+    let said = place.succeeds(&["convert", "two.obj"]);
+    assert!(said.contains("2 materials") && said.contains("left out: texture coordinates, textures"), "{said}");
+    let json = |arguments: &[&str]| serde_json::from_str::<serde_json::Value>(place.succeeds(arguments).trim()).expect("JSON");
+    let line = json(&["convert", "two.obj", "--json"]);
+    assert_eq!((&line["materials"], &line["meshes"]), (&2.into(), &2.into()));
+    let line = json(&["convert", "two.obj", "--color", "ff8000", "--json"]);
+    assert_eq!((&line["materials"], &line["meshes"]), (&0.into(), &1.into()));
+    assert!(line["remarks"][1].as_str().expect("a remark").contains("--colour"), "{line}");
+    place.succeeds(&["convert", "two.obj", "--up", "-z", "--light", "-0.5,0.6,0.7:fff0d8", "--light", "1,0,0.2", "-o", "lit.tri"]);
+    assert!(place.succeeds(&["inspect", "lit.tri"]).contains("2 lights"));
+    place.file("paint.mtl", "newmtl red\nKd 1 0\n").fails(
+        &["convert", "two.obj", "-o", "out.tri"],
+        1,
+        &["paint.mtl", "line 2", "Kd", "\"red\""],
+    );
+}
+
 #[test]
 fn convert_inspect_and_render_work_together() {
     let place = Place::new();
     place.file("good.obj", TETRAHEDRON);
     let json = |text: String| serde_json::from_str::<serde_json::Value>(text.lines().last().expect("a line")).expect("JSON");
-    let converted = json(place.succeeds(&["convert", "good.obj", "--orbit", "7", "--shader", "phong", "--json"]));
+    let converted = json(place.succeeds(&["convert", "good.obj", "--orbit", "7", "--crease", "180", "--shader", "phong", "--json"]));
     assert_eq!(converted["triangles"], 4);
     let inspected = json(place.succeeds(&["inspect", "good.tri", "--json"]));
     let size = fs::metadata(place.0.path().join("good.tri")).expect("stream").len();

@@ -106,7 +106,7 @@ fn prism(angles: &[f64], height: f64) -> Mesh {
         triangles.push([k, n + k, n + next]);
         triangles.push([k, n + next, next]);
     }
-    Mesh { normals: positions.iter().filter_map(|&p| unit(p)).collect(), positions, triangles }
+    Mesh { normals: positions.iter().filter_map(|&p| unit(p)).collect(), positions, triangles, ..Mesh::default() }
 }
 
 fn marked(mesh: &Mesh) -> bool {
@@ -198,7 +198,7 @@ fn hull(points: &[V3]) -> Mesh {
             }
         }
     }
-    Mesh { positions: points.to_vec(), normals: points.to_vec(), triangles }
+    Mesh { positions: points.to_vec(), normals: points.to_vec(), triangles, ..Mesh::default() }
 }
 
 /// Squeezed along the axes, turned, and moved to where the sphere around it is the unit sphere.

@@ -39,7 +39,7 @@ const SHADER: Shader = Shader::GOURAUD;
 /// A mesh of `tests/meshes` with coarser levels for pictures of these sides, and the same without.
 fn streams(name: &str, sides: &[u32]) -> Result<[StreamBytes; 2]> {
     let text = fs::read_to_string(format!("{}/meshes/{name}.obj", env!("CARGO_MANIFEST_DIR")))?;
-    let (mesh, _) = microphong_sim::mesh::weld(&obj::parse(&text)?, false)?;
+    let (mesh, _) = microphong_sim::mesh::weld(&obj::parse(&text)?.soup, microphong_sim::mesh::Weld::SMOOTH)?;
     let view = View::orbit(Up::Y, 0.5, 0.35, DISTANCE, FRAMES).fit(&mesh.positions, (64, 64), MARGIN);
     // Black behind a surface that is nowhere black: what is covered can be told.
     let surface = Surface::metal([1.0; 3], [0.3, 0.5, 0.2], 30);

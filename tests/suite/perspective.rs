@@ -40,7 +40,7 @@ fn close(name: &str, mesh: &Mesh, view: View, lamps: Vec<Lamp>, local_viewer: bo
 fn floor(bulge: f64) -> Mesh {
     let positions: Vec<V3> = vec![[-1.0, 0.0, 1.0], [1.0, 0.0, 1.0], [1.0, 0.0, -1.0], [-1.0, 0.0, -1.0]];
     let normals = positions.iter().filter_map(|[x, _, z]| unit([bulge * x, 1.0, bulge * z])).collect();
-    Mesh { positions, normals, triangles: vec![[0, 1, 2], [0, 2, 3]] }
+    Mesh { positions, normals, triangles: vec![[0, 1, 2], [0, 2, 3]], ..Mesh::default() }
 }
 
 fn upright(tilt: f64, distance: f64) -> View {

@@ -62,8 +62,8 @@ pub enum Lamp {
 /// Everything of a scene but its mesh.
 #[derive(Clone, Debug)]
 pub struct Look {
-    /// Material of the whole mesh.
-    pub surface: Surface,
+    /// Materials, as parts of meshes count them.
+    pub surfaces: Vec<Surface>,
     /// Lights.
     pub lamps: Vec<Lamp>,
     /// Ambient light.
@@ -88,11 +88,11 @@ pub const BACKGROUND: [u8; 3] = [26, 28, 32];
 pub const KEY: V3 = [-0.45, 0.6, -0.66];
 
 impl Look {
-    /// One white key light.
+    /// One material under one white key light.
     #[must_use]
     pub fn new(surface: Surface, view: View) -> Self {
         Self {
-            surface,
+            surfaces: vec![surface],
             lamps: vec![Lamp::Distant(KEY, [1.0; 3])],
             ambient: [1.0; 3],
             background: BACKGROUND,
@@ -129,7 +129,7 @@ impl Look {
             version: VERSION,
             shader: self.shader.facts().id,
             meshes: u16::try_from(levels().count()).context("too many meshes for one stream; simplify the mesh")?,
-            materials: 1,
+            materials: u16::try_from(self.surfaces.len()).context("too many materials for one stream; merge some")?,
             lights: self.lamps.len() as u16,
             frames: self.frames.max(1),
             vertices: u32::try_from(vertices).context("too many vertices for one stream; simplify the mesh")?,
@@ -150,7 +150,7 @@ impl Look {
                     first_triangle,
                     triangles: triangles.len() as u32,
                     vertices,
-                    material: 0,
+                    material: part.material,
                     error: error.to_bits(),
                     flags: if closed_convex { CLOSED_CONVEX } else { 0 },
                 };
@@ -159,7 +159,7 @@ impl Look {
             }
             first_vertex += u32::from(vertices);
         }
-        bytes.extend_from_slice(material(&self.surface).as_bytes());
+        self.surfaces.iter().for_each(|surface| bytes.extend_from_slice(material(surface).as_bytes()));
         self.lamps.iter().for_each(|lamp| bytes.extend_from_slice(light(lamp).as_bytes()));
         parts.iter().for_each(|part| bytes.extend_from_slice(part.vertices.as_bytes()));
         levels().for_each(|(triangles, ..)| bytes.extend_from_slice(triangles.as_bytes()));

@@ -5,7 +5,7 @@ use crate::{
     vector::{V3, add, cross, dot, length, scale, sub, unit},
 };
 use anyhow::{Result, bail};
-use std::collections::HashMap;
+use std::{collections::HashMap, mem};
 
 /// What a mesh file holds: polygons whose corners may repeat positions.
 #[derive(Clone, Debug, Default)]
@@ -14,8 +14,37 @@ pub struct Soup {
     pub positions: Vec<V3>,
     /// Normals of any length, finite.
     pub normals: Vec<V3>,
-    /// Polygons, three corners or more, counter-clockwise seen from the front.
-    pub faces: Vec<Vec<Corner>>,
+    /// Polygons.
+    pub faces: Vec<Face>,
+}
+
+impl Soup {
+    /// The corners of all polygons.
+    fn corners(&self) -> impl Iterator<Item = &Corner> {
+        self.faces.iter().flat_map(|face| &face.corners)
+    }
+}
+
+/// A polygon.
+#[derive(Clone, Debug)]
+pub struct Face {
+    /// Three or more, counter-clockwise seen from the front.
+    pub corners: Vec<Corner>,
+    /// Number of its material.
+    pub material: usize,
+    /// Over which edges light is smooth where the file gives no normals.
+    pub smoothing: Smoothing,
+}
+
+/// Which faces around a vertex have a normal in common.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Smoothing {
+    /// Those that fold by no more than the crease angle.
+    ByAngle,
+    /// Those of the same group.
+    Group(u32),
+    /// None.
+    Flat,
 }
 
 /// One corner of a polygon.
@@ -36,6 +65,40 @@ pub struct Mesh {
     pub normals: Vec<V3>,
     /// Vertices, counter-clockwise seen from the front.
     pub triangles: Vec<[usize; 3]>,
+    /// The material of each triangle; all have the first one if this is empty.
+    pub materials: Vec<usize>,
+}
+
+impl Mesh {
+    /// Number of the material of a triangle.
+    #[must_use]
+    pub fn material(&self, triangle: usize) -> usize {
+        self.materials.get(triangle).copied().unwrap_or(0)
+    }
+}
+
+/// How a mesh is made of polygons.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Weld {
+    /// Turn the surface inside out; closed ones are turned without asking.
+    pub turn: bool,
+    /// Where the file gives neither normals nor smoothing groups, faces that fold by more than this, in degrees, meet in an edge that can be
+    /// seen.
+    pub crease: f64,
+}
+
+/// Facets of round things fold by less, edges of boxes by more.
+pub const CREASE: f64 = 30.0;
+
+impl Weld {
+    /// Light is smooth over all edges.
+    pub const SMOOTH: Self = Self { turn: false, crease: 180.0 };
+}
+
+impl Default for Weld {
+    fn default() -> Self {
+        Self { turn: false, crease: CREASE }
+    }
 }
 
 /// What welding did.
@@ -62,7 +125,7 @@ const FARTHEST: f64 = 1e-11;
 ///
 /// # Errors
 /// When nothing is left to draw.
-pub fn weld(soup: &Soup, turn: bool) -> Result<(Mesh, Report)> {
+pub fn weld(soup: &Soup, Weld { turn, crease }: Weld) -> Result<(Mesh, Report)> {
     if soup.faces.is_empty() {
         bail!("the mesh has no faces; export it with polygons");
     }
@@ -70,7 +133,7 @@ pub fn weld(soup: &Soup, turn: bool) -> Result<(Mesh, Report)> {
     let places = merge(&positions);
     let mut report = Report { welded: merged(soup, &places), own_normals: has_normals(soup), ..Report::default() };
     let (mut mesh, crossed) =
-        if report.own_normals { with_own_normals(soup, &positions, &places) } else { smooth(soup, &positions, &places) };
+        if report.own_normals { with_own_normals(soup, &positions, &places) } else { smooth(soup, &positions, &places, crease) };
     report.crossed = crossed;
     let before = mesh.triangles.len();
     drop_degenerate(&mut mesh);
@@ -93,7 +156,7 @@ pub fn weld(soup: &Soup, turn: bool) -> Result<(Mesh, Report)> {
 
 /// Positions moved to the centre of their box and scaled to radius 1; only those that faces use count.
 fn fit_sphere(soup: &Soup) -> Result<Vec<V3>> {
-    let used = || soup.faces.iter().flatten().map(|c| soup.positions[c.position]);
+    let used = || soup.corners().map(|c| soup.positions[c.position]);
     let low = used().fold([f64::INFINITY; 3], |m, p| [0, 1, 2].map(|k| f64::min(m[k], p[k])));
     let high = used().fold([f64::NEG_INFINITY; 3], |m, p| [0, 1, 2].map(|k| f64::max(m[k], p[k])));
     let across = sub(high, low).into_iter().fold(0.0, f64::max);
@@ -133,13 +196,13 @@ fn merge(positions: &[V3]) -> Vec<usize> {
 
 fn merged(soup: &Soup, places: &[usize]) -> usize {
     let mut used = vec![false; places.len()];
-    soup.faces.iter().flatten().for_each(|c| used[c.position] = true);
+    soup.corners().for_each(|c| used[c.position] = true);
     places.iter().enumerate().filter(|&(i, &first)| used[i] && first != i).count()
 }
 
 /// Whether every corner has a normal with a direction.
 fn has_normals(soup: &Soup) -> bool {
-    soup.faces.iter().flatten().all(|c| c.normal.is_some_and(|n| unit(soup.normals[n]).is_some()))
+    soup.corners().all(|c| c.normal.is_some_and(|n| unit(soup.normals[n]).is_some()))
 }
 
 /// Also counts polygons that cross themselves.
@@ -149,6 +212,7 @@ fn with_own_normals(soup: &Soup, positions: &[V3], places: &[usize]) -> (Mesh, u
     let mut vertices: HashMap<(usize, [i32; 3]), usize> = HashMap::new();
     for face in &soup.faces {
         let corners: Vec<usize> = face
+            .corners
             .iter()
             .map(|corner| {
                 let place = places[corner.position];
@@ -162,46 +226,87 @@ fn with_own_normals(soup: &Soup, positions: &[V3], places: &[usize]) -> (Mesh, u
                 })
             })
             .collect();
-        let points: Vec<V3> = corners.iter().map(|&c| mesh.positions[c]).collect();
-        let cut = cut(&points);
-        mesh.triangles.extend(cut.triangles.iter().map(|t| t.map(|k| corners[k])));
-        crossed += usize::from(cut.crossed);
+        crossed += usize::from(push(&mut mesh, face, &corners));
     }
     (mesh, crossed)
 }
 
-/// One normal per place: the sum of its polygons' area vectors. Also counts polygons that cross themselves.
-fn smooth(soup: &Soup, positions: &[V3], places: &[usize]) -> (Mesh, usize) {
-    let mut crossed = 0;
-    let mut sums = vec![[0.0; 3]; positions.len()];
-    let mut any: Vec<Option<V3>> = vec![None; positions.len()];
-    let mut triangles = Vec::new();
-    for face in &soup.faces {
-        let corners: Vec<usize> = face.iter().map(|c| places[c.position]).collect();
-        let points: Vec<V3> = corners.iter().map(|&c| positions[c]).collect();
-        let area = newell(&points);
-        for &c in &corners {
-            sums[c] = add(sums[c], area);
-            any[c] = any[c].or(unit(area));
+/// Adds a polygon on these vertices; whether it crosses itself.
+fn push(mesh: &mut Mesh, face: &Face, vertices: &[usize]) -> bool {
+    let points: Vec<V3> = vertices.iter().map(|&v| mesh.positions[v]).collect();
+    let cut = cut(&points);
+    mesh.materials.extend(cut.triangles.iter().map(|_| face.material));
+    mesh.triangles.extend(cut.triangles.iter().map(|t| t.map(|k| vertices[k])));
+    cut.crossed
+}
+
+/// A corner of a polygon around a place: of which face, where in it, and the direction of the face.
+type Around = (usize, usize, Option<V3>);
+
+/// One normal for all faces around a place between which light is smooth: the sum of their area vectors. Also counts polygons that cross
+/// themselves.
+fn smooth(soup: &Soup, positions: &[V3], places: &[usize], crease: f64) -> (Mesh, usize) {
+    let areas: Vec<V3> =
+        soup.faces.iter().map(|face| newell(&face.corners.iter().map(|c| positions[places[c.position]]).collect::<Vec<_>>())).collect();
+    let mut around: Vec<Vec<Around>> = vec![Vec::new(); positions.len()];
+    for (number, face) in soup.faces.iter().enumerate() {
+        for (k, corner) in face.corners.iter().enumerate() {
+            around[places[corner.position]].push((number, k, unit(areas[number])));
         }
-        let cut = cut(&points);
-        triangles.extend(cut.triangles.iter().map(|t| t.map(|k| corners[k])));
-        crossed += usize::from(cut.crossed);
     }
-    // Faces back to back cancel; then any one of them is as good as the other.
-    let direction = |(sum, any): (&V3, &Option<V3>)| if length(*sum) > 1e-14 { unit(*sum) } else { *any }.unwrap_or([0.0, 0.0, 1.0]);
-    let normals = sums.iter().zip(&any).map(direction).collect();
-    (Mesh { positions: positions.to_vec(), normals, triangles }, crossed)
+    let mut mesh = Mesh::default();
+    let mut vertices: Vec<Vec<usize>> = soup.faces.iter().map(|face| vec![0; face.corners.len()]).collect();
+    for (place, mut left) in around.into_iter().enumerate() {
+        while !left.is_empty() {
+            let sheet = sheet(soup, &mut left, crease);
+            let sum = sheet.iter().fold([0.0; 3], |sum, &(face, ..)| add(sum, areas[face]));
+            // Faces back to back cancel; then any one of them is as good as the other.
+            let any = sheet.iter().find_map(|&(.., direction)| direction);
+            let normal = if length(sum) > 1e-14 { unit(sum) } else { any };
+            for (face, k, _) in sheet {
+                vertices[face][k] = mesh.positions.len();
+            }
+            mesh.positions.push(positions[place]);
+            mesh.normals.push(normal.unwrap_or([0.0, 0.0, 1.0]));
+        }
+    }
+    let crossed = soup.faces.iter().zip(&vertices).filter(|(face, vertices)| push(&mut mesh, face, vertices)).count();
+    (mesh, crossed)
+}
+
+/// Takes the first corner out of those around a place, and all to which light is smooth from it, over others as well; in their order.
+fn sheet(soup: &Soup, left: &mut Vec<Around>, crease: f64) -> Vec<Around> {
+    // Less what rounding may take from the angle itself.
+    let least = if crease < 180.0 { crease.to_radians().cos() - 1e-9 } else { f64::NEG_INFINITY };
+    let smooth = |&(a, _, one): &Around, &(b, _, other): &Around| match (soup.faces[a].smoothing, soup.faces[b].smoothing) {
+        (Smoothing::ByAngle, Smoothing::ByAngle) => one.zip(other).map_or(0.0, |(one, other)| dot(one, other)) >= least,
+        (Smoothing::Group(one), Smoothing::Group(other)) => one == other,
+        _ => false,
+    };
+    let mut sheet = vec![left.remove(0)];
+    let mut seen = 0;
+    while let Some(&from) = sheet.get(seen) {
+        let (more, rest) = mem::take(left).into_iter().partition(|to| smooth(&from, to));
+        sheet.extend::<Vec<_>>(more);
+        *left = rest;
+        seen += 1;
+    }
+    sheet.sort_by_key(|&(face, k, _)| (face, k));
+    sheet
 }
 
 fn drop_degenerate(mesh: &mut Mesh) {
     let positions = &mesh.positions;
-    mesh.triangles.retain(|t| {
+    let has_area = |t: &[usize; 3]| {
         let [a, b, c] = t.map(|v| positions[v]);
         // Thinner than a weld can tell apart is no area.
         let longest = [sub(b, a), sub(c, b), sub(a, c)].map(length).into_iter().fold(0.0, f64::max);
         length(cross(sub(b, a), sub(c, a))) > WELD * longest
-    });
+    };
+    let kept = |triangle: usize| has_area(&mesh.triangles[triangle]);
+    let kept: Vec<_> = (0..mesh.triangles.len()).filter(|&triangle| kept(triangle)).collect();
+    mesh.materials = kept.iter().map(|&triangle| mesh.material(triangle)).collect();
+    mesh.triangles = kept.iter().map(|&triangle| mesh.triangles[triangle]).collect();
 }
 
 /// Whether each edge has exactly one partner that runs the other way.
@@ -236,7 +341,7 @@ fn volume(mesh: &Mesh) -> f64 {
 
 fn drop_unused(mesh: &mut Mesh) {
     let mut index = vec![None; mesh.positions.len()];
-    let mut kept = Mesh::default();
+    let mut kept = Mesh { materials: mem::take(&mut mesh.materials), ..Mesh::default() };
     for triangle in &mesh.triangles {
         kept.triangles.push(triangle.map(|v| {
             *index[v].get_or_insert_with(|| {

@@ -1,38 +1,67 @@
-//! Reads Wavefront OBJ: positions, normals and faces; the rest is of no use here.
+//! Reads Wavefront OBJ: positions, normals, faces, smoothing groups, and which material each face has; tells what else there is.
 //!
 //! A reader of our own, because a bad number or index should be reported with its line.
 
-use crate::mesh::{Corner, Soup};
+use crate::mesh::{Corner, Face, Smoothing, Soup};
 use anyhow::{Context, Result, bail};
+use std::collections::BTreeSet;
 
 /// Larger coordinates would overflow when squared.
 const LARGEST: f64 = 1e100;
+
+/// What an OBJ file holds.
+#[derive(Clone, Debug, Default)]
+pub struct Obj {
+    /// Its polygons.
+    pub soup: Soup,
+    /// The names of materials by which [`Face::material`] counts; `None` is that of faces before which no name stands.
+    pub materials: Vec<Option<String>>,
+    /// Files that say what the materials are.
+    pub libraries: Vec<String>,
+    /// What the file has besides, in words.
+    pub ignored: BTreeSet<&'static str>,
+}
 
 /// Parses the text of an OBJ file. Lines end in LF, CR or both; a byte order mark is passed over.
 ///
 /// # Errors
 /// Names the line, and what is wrong with it.
-pub fn parse(text: &str) -> Result<Soup> {
-    let mut soup = Soup::default();
+pub fn parse(text: &str) -> Result<Obj> {
+    let mut obj = Obj::default();
     // Faces may name vertices that follow: indices are checked at the end, by line.
     let mut lines = Vec::new();
-    let text = text.strip_prefix('\u{FEFF}').unwrap_or(text).replace("\r\n", "\n").replace('\r', "\n");
-    for (number, line) in logical_lines(&text) {
+    let (mut name, mut smoothing) = (None, Smoothing::ByAngle);
+    for (number, line) in logical_lines(&plain(text)) {
         let mut words = line.split_whitespace();
+        let soup = &mut obj.soup;
         match words.next() {
             Some("v") => soup.positions.push(vector(words).with_context(|| format!("line {number}: vertex"))?),
             Some("vn") => soup.normals.push(vector(words).with_context(|| format!("line {number}: normal"))?),
             Some("f") => {
-                let face = face(words, &soup).with_context(|| format!("line {number}: face"))?;
-                soup.faces.push(face);
+                let corners = corners(words, soup).with_context(|| format!("line {number}: face"))?;
+                let known = obj.materials.iter().position(|material| *material == name);
+                let material = known.unwrap_or(obj.materials.len());
+                if known.is_none() {
+                    obj.materials.push(name.clone());
+                }
+                soup.faces.push(Face { corners, material, smoothing });
                 lines.push(number);
             }
+            // Names may have blanks in them.
+            Some("usemtl") => name = Some(rest(&line)).filter(|name| !name.is_empty()),
+            Some("mtllib") => obj.libraries.push(rest(&line)),
+            Some("s") => smoothing = group(words.next()).with_context(|| format!("line {number}: smoothing group"))?,
+            Some("vt") => drop(obj.ignored.insert("texture coordinates")),
+            Some("l" | "p") => drop(obj.ignored.insert("lines and points")),
+            Some("vp" | "curv" | "curv2" | "surf" | "cstype") => drop(obj.ignored.insert("curves and free-form surfaces")),
+            // Groups and objects: one mesh is made of all.
             _ => {}
         }
     }
+    let soup = &obj.soup;
     let (positions, normals) = (soup.positions.len(), soup.normals.len());
     for (face, line) in soup.faces.iter().zip(lines) {
-        for corner in face {
+        for corner in &face.corners {
             if corner.position >= positions {
                 bail!("line {line}: face: vertex {} is out of range; the file has {positions}", corner.position + 1);
             }
@@ -41,11 +70,31 @@ pub fn parse(text: &str) -> Result<Soup> {
             }
         }
     }
-    Ok(soup)
+    Ok(obj)
+}
+
+/// The text with LF at the ends of its lines, and no byte order mark.
+pub(crate) fn plain(text: &str) -> String {
+    text.strip_prefix('\u{FEFF}').unwrap_or(text).replace("\r\n", "\n").replace('\r', "\n")
+}
+
+/// What follows the first word of a line.
+pub(crate) fn rest(line: &str) -> String {
+    line.trim().split_once(char::is_whitespace).map_or("", |(_, rest)| rest.trim()).to_owned()
+}
+
+/// The number of a smoothing group; 0 and `off` are none.
+fn group(word: Option<&str>) -> Result<Smoothing> {
+    let word = word.context("a number is missing, or off")?;
+    match word {
+        "off" | "0" => Ok(Smoothing::Flat),
+        "on" => Ok(Smoothing::Group(1)),
+        _ => Ok(Smoothing::Group(word.parse().ok().with_context(|| format!("{word:?} is neither a whole number nor off"))?)),
+    }
 }
 
 /// Lines without comments, with their numbers; a backslash at the end joins the next line.
-fn logical_lines(text: &str) -> impl Iterator<Item = (usize, String)> {
+pub(crate) fn logical_lines(text: &str) -> impl Iterator<Item = (usize, String)> {
     let mut lines = text.lines().enumerate();
     std::iter::from_fn(move || {
         let (index, first) = lines.next()?;
@@ -63,7 +112,7 @@ fn strip(line: &str) -> &str {
     line.split('#').next().unwrap_or_default().trim_end()
 }
 
-fn vector<'a>(mut words: impl Iterator<Item = &'a str>) -> Result<[f64; 3]> {
+pub(crate) fn vector<'a>(mut words: impl Iterator<Item = &'a str>) -> Result<[f64; 3]> {
     let mut vector = [0.0; 3];
     for (component, axis) in vector.iter_mut().zip(["x", "y", "z"]) {
         let word = words.next().with_context(|| format!("{axis} is missing; three numbers are needed"))?;
@@ -76,7 +125,7 @@ fn vector<'a>(mut words: impl Iterator<Item = &'a str>) -> Result<[f64; 3]> {
     Ok(vector)
 }
 
-fn face<'a>(words: impl Iterator<Item = &'a str>, soup: &Soup) -> Result<Vec<Corner>> {
+fn corners<'a>(words: impl Iterator<Item = &'a str>, soup: &Soup) -> Result<Vec<Corner>> {
     let corners = words.map(|word| corner(word, soup)).collect::<Result<Vec<_>>>()?;
     if corners.len() < 3 {
         bail!("{} corners; three at least are needed", corners.len());
@@ -105,15 +154,18 @@ fn index(word: &str, count: usize, what: &str) -> Result<usize> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::{mesh, quantise::quantise};
+    use crate::{
+        mesh::{self, Weld},
+        quantise::quantise,
+    };
     use proptest::prelude::*;
 
     #[test]
     fn polygons_negative_indices_and_continued_lines() {
-        let soup = parse("v 0 0 0\nv 1 0 0 # comment\nv 1 1 0\nv 0 1 0\nvn 0 0 2\nf -4//1 -3//1 \\\n -2//1 4//1\n").unwrap();
+        let soup = parse("v 0 0 0\nv 1 0 0 # comment\nv 1 1 0\nv 0 1 0\nvn 0 0 2\nf -4//1 -3//1 \\\n -2//1 4//1\n").unwrap().soup;
         assert_eq!(soup.faces.len(), 1);
-        assert_eq!(soup.faces[0].iter().map(|c| c.position).collect::<Vec<_>>(), [0, 1, 2, 3]);
-        assert!(soup.faces[0].iter().all(|c| c.normal == Some(0)));
+        assert_eq!(soup.faces[0].corners.iter().map(|c| c.position).collect::<Vec<_>>(), [0, 1, 2, 3]);
+        assert!(soup.faces[0].corners.iter().all(|c| c.normal == Some(0)));
     }
 
     #[test]
@@ -122,8 +174,22 @@ mod tests {
         for end in ["\n", "\r\n", "\r"] {
             let text = format!("\u{FEFF}{}", text.replace('\n', end));
             assert_eq!(format!("{:#}", parse(&text).unwrap_err()), "line 7: face: vertex 4 is out of range; the file has 3", "{end:?}");
-            assert_eq!(parse(text.strip_suffix(&format!("f 1 2 4{end}")).unwrap()).unwrap().positions.len(), 3, "{end:?}");
+            assert_eq!(parse(text.strip_suffix(&format!("f 1 2 4{end}")).unwrap()).unwrap().soup.positions.len(), 3, "{end:?}");
         }
+    }
+
+    #[test]
+    fn faces_have_materials_and_smoothing_groups() {
+        let triangle = "f 1 2 3\n";
+        let text = format!(
+            "mtllib two words.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0 0\n{triangle}usemtl red paint # dry\ns 2\n{triangle}usemtl b\ns off\n{triangle}usemtl red paint\n{triangle}l 1 2\n"
+        );
+        let obj = parse(&text).unwrap();
+        assert_eq!(obj.libraries, ["two words.mtl"]);
+        assert_eq!(obj.materials, [None, Some("red paint".to_owned()), Some("b".to_owned())]);
+        let faces: Vec<_> = obj.soup.faces.iter().map(|face| (face.material, face.smoothing)).collect();
+        assert_eq!(faces, [(0, Smoothing::ByAngle), (1, Smoothing::Group(2)), (2, Smoothing::Flat), (1, Smoothing::Flat)]);
+        assert_eq!(obj.ignored.into_iter().collect::<Vec<_>>(), ["lines and points", "texture coordinates"]);
     }
 
     #[test]
@@ -138,6 +204,8 @@ mod tests {
             ("v 1e200 2 3", "line 1"),
             ("v 1 2 3\nv 0 -1e999 0", "line 2"),
             ("v 1 2 3\r\rvn 0 -inf 0", "line 3"),
+            ("v 1 2 3\ns -1", "line 2"),
+            ("s\n", "line 1"),
         ] {
             let error = format!("{:#}", parse(text).unwrap_err());
             assert!(error.contains(line), "{text:?}: {error}");
@@ -152,7 +220,9 @@ mod tests {
             any::<i64>().prop_map(|n| n.to_string()),
             (-1.0..1.0).prop_map(|n| format!("{n:e}")),
         ];
-        let known = prop::sample::select(vec!["v", "vn", "f", "#", "\\", "nan", "1e-200", "1//1", "-1/2/-3", "2//", "/", "\u{FEFF}", "é"]);
+        let known = prop::sample::select(vec![
+            "v", "vn", "f", "s", "usemtl", "off", "#", "\\", "nan", "1e-200", "1//1", "-1/2/-3", "2//", "/", "\u{FEFF}", "é",
+        ]);
         prop_oneof![3 => number, 1 => known.prop_map(str::to_owned)]
     }
 
@@ -174,7 +244,7 @@ mod tests {
         /// Whatever is in a file, it is a mesh of finite numbers, or an error.
         #[test]
         fn no_text_is_too_much(lines in prop::collection::vec(line(), 0..40), end in prop::sample::select(vec!["\n", "\r\n", "\r"])) {
-            if let Ok((mesh, _)) = parse(&lines.join(end)).and_then(|soup| mesh::weld(&soup, false)) {
+            if let Ok((mesh, _)) = parse(&lines.join(end)).and_then(|obj| mesh::weld(&obj.soup, Weld::default())) {
                 prop_assert!(mesh.positions.iter().chain(&mesh.normals).flatten().all(|c| c.abs() < 1.0 + 1e-9));
                 prop_assert!(mesh.triangles.iter().flatten().all(|&v| v < mesh.positions.len()));
                 let (parts, dropped) = quantise(&mesh);

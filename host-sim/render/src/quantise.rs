@@ -12,7 +12,10 @@ use microphong::{
     format::{GeometricError, Haversine, InverseAltitude, NormalLength, UNIT, Unit},
     stream::record::{Triangle, Vertex},
 };
-use std::{collections::HashMap, iter};
+use std::{
+    collections::{BTreeSet, HashMap},
+    iter, mem,
+};
 
 /// One: a [`microphong::format::Unit`] in units of its last place.
 const ONE: f64 = (1 << UNIT) as f64;
@@ -26,6 +29,8 @@ const EYE_SLACK: f64 = 4.0 / ONE;
 /// Records of one mesh, indices from 0.
 #[derive(Clone, Debug, Default)]
 pub struct Part {
+    /// Number of the material of all triangles.
+    pub material: u16,
     /// At most 65,535.
     pub vertices: Vec<Vertex>,
     /// Their corners count from this part's first vertex.
@@ -46,25 +51,30 @@ impl Part {
     }
 }
 
-/// Rounds a mesh to a stream's formats; more than 65,535 vertices become several parts.
+/// Rounds a mesh to a stream's formats; several materials, and more than 65,535 vertices, become several parts.
 ///
 /// Also counts triangles that had an area before the rounding, but not after it.
 #[must_use]
 pub fn quantise(mesh: &Mesh) -> (Vec<Part>, usize) {
     let vertices: Vec<Vertex> = mesh.positions.iter().zip(&mesh.normals).map(|(&p, &n)| Vertex::new(p.map(nearest), normal(n))).collect();
-    let mut parts = vec![Part::default()];
-    let mut index: HashMap<usize, u16> = HashMap::new();
+    let mut parts = Vec::new();
     let mut dropped = 0;
-    for corners in &mesh.triangles {
-        let Some(mut triangle) = constants(corners.map(|v| vertices[v])) else {
-            dropped += 1;
-            continue;
-        };
-        if index.len() + corners.iter().filter(|v| !index.contains_key(v)).count() > MAX_VERTICES {
-            parts.push(Part::default());
-            index.clear();
-        }
-        if let Some(part) = parts.last_mut() {
+    let materials: BTreeSet<_> = (0..mesh.triangles.len()).map(|triangle| mesh.material(triangle)).collect();
+    for material in materials {
+        // A stream refuses more materials than its numbers can count.
+        let new = Part { material: material.try_into().unwrap_or(u16::MAX), ..Part::default() };
+        let mut part = new.clone();
+        let mut index: HashMap<usize, u16> = HashMap::new();
+        let its = |&(triangle, _): &(usize, _)| mesh.material(triangle) == material;
+        for (_, corners) in mesh.triangles.iter().enumerate().filter(its) {
+            let Some(mut triangle) = constants(corners.map(|v| vertices[v])) else {
+                dropped += 1;
+                continue;
+            };
+            if index.len() + corners.iter().filter(|v| !index.contains_key(v)).count() > MAX_VERTICES {
+                parts.push(mem::replace(&mut part, new.clone()));
+                index.clear();
+            }
             triangle.corners = corners.map(|v| {
                 *index.entry(v).or_insert_with(|| {
                     part.vertices.push(vertices[v]);
@@ -74,6 +84,7 @@ pub fn quantise(mesh: &Mesh) -> (Vec<Part>, usize) {
             });
             part.triangles.push(triangle);
         }
+        parts.push(part);
     }
     parts.retain(|part| !part.triangles.is_empty());
     if let ([part], 0) = (&mut parts[..], dropped) {

@@ -3,8 +3,9 @@
 use crate::{
     bytes::StreamBytes,
     foreign,
+    import::{self, Imported, read, surfaces},
     look::{Lamp, Look, Surface},
-    mesh::{self, Mesh, Report},
+    mesh::{self, Mesh, Weld},
     obj,
     quantise::quantise,
     shapes,
@@ -12,7 +13,7 @@ use crate::{
     view::{Up, View},
 };
 use anyhow::{Context, Result};
-use std::{f64::consts::TAU, fmt, fs, path::Path};
+use std::{f64::consts::TAU, fmt, path::Path};
 
 /// Something to draw.
 #[derive(Clone, Debug)]
@@ -106,12 +107,7 @@ pub fn load(name_or_path: &str) -> Result<Scene> {
     let ending = path.extension().map(|e| e.to_ascii_lowercase());
     let stream = match ending.as_deref().and_then(|e| e.to_str()) {
         Some("tri") => StreamBytes::read(path)?,
-        Some("obj") => {
-            let (mesh, _) = read_obj(path, false)?;
-            // The same as `convert` without options.
-            let view = View::orbit(Up::Y, 0.5, 0.35, DISTANCE, ORBIT).fit(&mesh.positions, SQUARE, MARGIN);
-            Look::new(default_surface(), view).stream(&quantise(&mesh).0).with_context(|| path.display().to_string())?
-        }
+        Some("obj") => from_obj(path, Weld::default())?,
         _ => {
             if path.is_file() {
                 foreign::refuse(path, &read(path)?)?;
@@ -123,29 +119,28 @@ pub fn load(name_or_path: &str) -> Result<Scene> {
     Ok(Scene { name, stream, size: SIZE })
 }
 
+/// A mesh from an OBJ file as `convert` without options makes it, but for how it is welded.
+///
+/// # Errors
+/// Names the file, and what is wrong with it.
+pub fn from_obj(path: &Path, weld: Weld) -> Result<StreamBytes> {
+    let Imported { mesh, materials, .. } = import::obj(path, weld)?;
+    let view = View::orbit(Up::Y, 0.5, 0.35, DISTANCE, ORBIT).fit(&mesh.positions, SQUARE, MARGIN);
+    let look = Look { surfaces: surfaces(&materials, &default_surface(), AMBIENT), ..Look::new(default_surface(), view) };
+    look.stream(&quantise(&mesh).0).with_context(|| path.display().to_string())
+}
+
 /// Material of meshes from files.
 #[must_use]
 pub fn default_surface() -> Surface {
-    Surface::metal(COPPER, [0.1, 0.5, 0.4], 30)
+    Surface::metal(COPPER, [AMBIENT, 0.5, 0.4], 30)
 }
 
-/// Reads and welds an OBJ file.
-///
-/// # Errors
-/// Names the file and the line.
-pub fn read_obj(path: &Path, turn: bool) -> Result<(Mesh, Report)> {
-    let bytes = read(path)?;
-    foreign::refuse(path, &bytes)?;
-    let soup = obj::parse(&String::from_utf8_lossy(&bytes)).with_context(|| path.display().to_string())?;
-    mesh::weld(&soup, turn).with_context(|| path.display().to_string())
-}
-
-fn read(path: &Path) -> Result<Vec<u8>> {
-    fs::read(path).with_context(|| format!("cannot read {}", path.display()))
-}
+/// Share of light that is everywhere, in scenes from files.
+pub const AMBIENT: f64 = 0.1;
 
 fn welded(text: &str) -> Result<Mesh> {
-    Ok(mesh::weld(&obj::parse(text)?, false)?.0)
+    Ok(mesh::weld(&obj::parse(text)?.soup, Weld::SMOOTH)?.0)
 }
 
 fn built_in(name: &str) -> Result<(StreamBytes, (u32, u32))> {

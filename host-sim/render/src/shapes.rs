@@ -30,7 +30,7 @@ pub fn sphere(meridians: usize, bands: usize, phase: f64) -> Mesh {
         }
     }
     triangles.extend((0..meridians).map(|j| [south, at(bands - 1, j + 1), at(bands - 1, j)]));
-    Mesh { normals: positions.clone(), positions, triangles }
+    Mesh { normals: positions.clone(), positions, triangles, ..Mesh::default() }
 }
 
 /// A torus about the z axis that a unit sphere encloses: `around` times `across` quadrilaterals, the tube 0.45 of the ring.
@@ -79,7 +79,7 @@ pub fn dodecahedron() -> Mesh {
         corners.sort_by(|&a, &b| angle(a).total_cmp(&angle(b)));
         triangles.extend((1..4).map(|k| [corners[0], corners[k], corners[k + 1]]));
     }
-    Mesh { normals: positions.clone(), positions, triangles }
+    Mesh { normals: positions.clone(), positions, triangles, ..Mesh::default() }
 }
 
 /// One triangle whose normals bulge it.
@@ -90,6 +90,7 @@ pub fn bulged_triangle() -> Mesh {
         positions: vec![[-1.0, -0.8, 0.0], [1.0, -0.9, 0.0], [0.1, 1.0, 0.0]],
         normals: normals.into_iter().filter_map(unit).collect(),
         triangles: vec![[0, 1, 2]],
+        ..Mesh::default()
     }
 }
 

@@ -36,10 +36,48 @@ pub struct View {
 /// Which way is up in object space.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Up {
+    /// x up, front towards +z.
+    X,
     /// y up, front towards +z.
     Y,
     /// z up, front towards -y.
     Z,
+    /// -x up, front towards +z.
+    MinusX,
+    /// -y up, front towards +z.
+    MinusY,
+    /// -z up, front towards +y.
+    MinusZ,
+}
+
+impl Up {
+    /// All of them.
+    pub const ALL: [Self; 6] = [Self::X, Self::Y, Self::Z, Self::MinusX, Self::MinusY, Self::MinusZ];
+
+    /// The name on the command line.
+    #[must_use]
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::X => "x",
+            Self::Y => "y",
+            Self::Z => "z",
+            Self::MinusX => "-x",
+            Self::MinusY => "-y",
+            Self::MinusZ => "-z",
+        }
+    }
+
+    /// The directions up and to the front.
+    const fn axes(self) -> [V3; 2] {
+        match self {
+            Self::X => [[1.0, 0.0, 0.0], [0.0, 0.0, 1.0]],
+            Self::Y => [[0.0, 1.0, 0.0], [0.0, 0.0, 1.0]],
+            Self::Z => [[0.0, 0.0, 1.0], [0.0, -1.0, 0.0]],
+            Self::MinusX => [[-1.0, 0.0, 0.0], [0.0, 0.0, 1.0]],
+            Self::MinusY => [[0.0, -1.0, 0.0], [0.0, 0.0, 1.0]],
+            Self::MinusZ => [[0.0, 0.0, -1.0], [0.0, 1.0, 0.0]],
+        }
+    }
 }
 
 /// Turns per orbit at which the picture is measured.
@@ -49,10 +87,7 @@ impl View {
     /// An eye at `distance`, `azimuth` to the right of the front and `elevation` above the horizon, radians.
     #[must_use]
     pub fn orbit(up: Up, azimuth: f64, elevation: f64, distance: f64, period: u16) -> Self {
-        let (up, front) = match up {
-            Up::Y => ([0.0, 1.0, 0.0], [0.0, 0.0, 1.0]),
-            Up::Z => ([0.0, 0.0, 1.0], [0.0, -1.0, 0.0]),
-        };
+        let [up, front] = up.axes();
         // Seen from the front, right is up x front.
         let right = cross(up, front);
         let rows = [right, up, front];

@@ -5,15 +5,20 @@ use microphong::{
     stream::record::{CLOSED_CONVEX, Triangle},
 };
 use microphong_render::{
+    import,
     look::{Look, Surface},
-    mesh, obj,
+    mesh::{self, Mesh, Weld},
+    obj,
     quantise::{normal, quantise},
     scene,
     shader::Shader,
     vector::{V3, add, cross, dot, length, scale, sub, unit},
     view::{Up, View},
 };
-use std::collections::HashMap;
+use std::{
+    collections::{HashMap, HashSet},
+    fs,
+};
 
 fn wide(v: [i16; 3]) -> V3 {
     v.map(|c| f64::from(c) / 16384.0)
@@ -163,6 +168,15 @@ fn corners_turn_counter_clockwise_on_the_screen() {
     let view = View::orbit(Up::Z, 0.0, 0.0, 4.0, 0);
     assert!(near(view.eye_space([0.0, 0.0, 1.0], 0.0), [0.0, 1.0, 4.0]));
     assert!(near(view.eye_space([0.0, -1.0, 0.0], 0.0), [0.0, 0.0, 3.0]));
+    // Whichever axis is up, it is up on the screen, and no view mirrors.
+    for up in Up::ALL {
+        let axis = ["x", "y", "z"].map(|axis| f64::from(u8::from(up.name().ends_with(axis))));
+        let axis = if up.name().starts_with('-') { scale(axis, -1.0) } else { axis };
+        let view = View::orbit(up, 0.0, 0.0, 4.0, 0);
+        assert!(near(view.eye_space(axis, 0.0), [0.0, 1.0, 4.0]), "{up:?}");
+        let [right, top, away] = view.rotation;
+        assert!(near(cross(right, top), scale(away, -1.0)), "{up:?}");
+    }
 }
 
 #[test]
@@ -191,7 +205,7 @@ fn doubled_vertices_weld_and_inside_out_surfaces_turn() {
         face.iter().for_each(|&p| text += &format!("v {}\n", points[p]));
         text += "f -3 -2 -1\n";
     }
-    let (mesh, report) = mesh::weld(&obj::parse(&text).unwrap(), false).unwrap();
+    let (mesh, report) = mesh::weld(&obj::parse(&text).unwrap().soup, Weld::SMOOTH).unwrap();
     assert_eq!((mesh.positions.len(), mesh.triangles.len()), (4, 4));
     assert_eq!((report.welded, report.degenerate, report.own_normals, report.turned), (11, 1, false, true));
     let (parts, dropped) = quantise(&mesh);
@@ -217,7 +231,7 @@ fn concave_polygons_keep_their_gaps() {
         for k in 0..8 {
             text += &format!("f{}{}{}{}\n", corner(k, false), corner(k + 1, false), corner(k + 1, true), corner(k, true));
         }
-        let (mesh, report) = mesh::weld(&obj::parse(&text).unwrap(), false).unwrap();
+        let (mesh, report) = mesh::weld(&obj::parse(&text).unwrap().soup, Weld::SMOOTH).unwrap();
         assert_eq!((report.crossed, report.degenerate, report.turned, report.own_normals), (0, 0, false, normals));
         assert_eq!(mesh.triangles.len(), 2 * 6 + 16);
         let corners = |t: &[usize; 3]| t.map(|v| mesh.positions[v]);
@@ -280,4 +294,88 @@ fn large_meshes_are_split() {
     let view = View::orbit(Up::Y, 0.0, 0.0, 4.0, 8);
     let stream = Look { shader: Shader::PHONG, ..Look::new(Surface::metal([1.0; 3], [0.1, 0.5, 0.4], 20), view) }.stream(&parts).unwrap();
     assert_eq!(Shader::by_id(stream.parse().unwrap().header.shader), Some(Shader::PHONG));
+}
+
+/// The corners of a cube, and its faces, each with what stands before it.
+fn cube(before: [&str; 6]) -> String {
+    let corners = (0..8).map(|k| format!("v {} {} {}\n", k & 1, k >> 1 & 1, k >> 2));
+    let faces = ["1 3 4 2", "5 6 8 7", "1 2 6 5", "3 7 8 4", "1 5 7 3", "2 4 8 6"];
+    corners.chain(before.into_iter().zip(faces).map(|(before, face)| format!("{before}\nf {face}\n"))).collect()
+}
+
+fn welded(text: &str, crease: f64) -> Mesh {
+    mesh::weld(&obj::parse(text).unwrap().soup, Weld { turn: false, crease }).unwrap().0
+}
+
+/// Edges that fold by more than the crease angle are seen: all faces on one side of them have a normal of their own.
+#[test]
+fn creases_divide_normals() {
+    let vertices = |text: &str, crease| welded(text, crease).positions.len();
+    let text = cube([""; 6]);
+    assert_eq!([0.0, 30.0, 89.9, 90.0, 180.0].map(|crease| vertices(&text, crease)), [24, 24, 24, 8, 8]);
+    let sharp = welded(&text, 30.0);
+    for triangle in &sharp.triangles {
+        let [a, b, c] = triangle.map(|v| sharp.positions[v]);
+        let face = unit(cross(sub(b, a), sub(c, a))).unwrap();
+        assert!(triangle.iter().all(|&v| dot(sharp.normals[v], face) > 1.0 - 1e-12));
+    }
+    // A pyramid of 24 sides, each of which folds by 11 degrees over its neighbours and by 135 over the base. Its tip is smooth, although what lies
+    // opposite folds by 90.
+    let rim: String = (0..24).map(|k| f64::from(k) * 0.261_799_387_799).map(|a| format!("v {} {} 0\n", a.cos(), a.sin())).collect();
+    let sides: String = (0..24).map(|k| format!("f {} {} 25\n", k + 1, (k + 1) % 24 + 1)).collect();
+    let base: String = (1..=24).rev().map(|k| format!(" {k}")).collect();
+    let pyramid = format!("{rim}v 0 0 1\n{sides}f{base}\n");
+    assert_eq!([5.0, 30.0, 140.0].map(|crease| vertices(&pyramid, crease)), [3 * 24 + 24, 24 + 1 + 24, 24 + 1]);
+    let round = welded(&pyramid, 30.0);
+    let highest = round.positions.iter().map(|p| p[2]).fold(f64::MIN, f64::max);
+    let tips: Vec<_> = round.positions.iter().zip(&round.normals).filter(|(p, _)| p[2] == highest).map(|(_, normal)| normal).collect();
+    assert!(tips.len() == 1 && tips[0][2] > 1.0 - 1e-9, "{tips:?}");
+}
+
+/// Smoothing groups of a file count more than angles.
+#[test]
+fn smoothing_groups_divide_normals() {
+    let vertices = |before| welded(&cube(before), 30.0).positions.len();
+    assert_eq!(vertices(["s 1", "", "", "", "", ""]), 8);
+    assert_eq!(vertices(["s off", "", "", "", "", ""]), 24);
+    // The lid is apart.
+    assert_eq!(vertices(["s 1", "s 2", "s 1", "", "", ""]), 12);
+}
+
+/// Each material of a file becomes a mesh of the stream, as the file beside it says; borders between them have no gaps.
+#[test]
+fn materials_become_meshes() {
+    let directory = tempfile::tempdir().unwrap();
+    let path = directory.path().join("cube.obj");
+    let text = cube(["mtllib a.mtl\nusemtl red", "usemtl blue", "usemtl nowhere", "usemtl red", "", "usemtl blue"]);
+    fs::write(&path, text).unwrap();
+    let remarks = import::obj(&path, Weld::SMOOTH).unwrap().remarks;
+    assert!(remarks[0].contains("a.mtl cannot be read") && remarks[1].ends_with("red, blue, nowhere"), "{remarks:?}");
+    fs::write(directory.path().join("a.mtl"), "newmtl blue\nKd 0.1 0.2 0.9\nNs 50\nnewmtl red\nKd 0.9 0 0\nKs 0.25 0.25 0.25\nd 0.5")
+        .unwrap();
+    let imported = import::obj(&path, Weld::SMOOTH).unwrap();
+    assert_eq!(
+        imported.remarks,
+        ["drawn in the colour of the command line, because no file says what they are: nowhere", "left out: transparency"]
+    );
+    let (parts, dropped) = quantise(&imported.mesh);
+    assert_eq!(
+        (dropped, parts.iter().map(|part| (part.material, part.triangles.len())).collect::<Vec<_>>()),
+        (0, vec![(0, 6), (1, 4), (2, 2)])
+    );
+    let other = Surface::metal([1.0, 0.5, 0.25], [0.5, 0.5, 0.5], 7);
+    let look =
+        Look { surfaces: import::surfaces(&imported.materials, &other, 0.5), ..Look::new(other, View::orbit(Up::Y, 0.0, 0.0, 4.0, 8)) };
+    let bytes = look.stream(&parts).unwrap();
+    let stream = bytes.parse().unwrap();
+    let materials: Vec<_> = stream.materials.iter().map(|m| (m.diffuse().map(|gain| gain.to_num::<f64>() as f32), m.exponent)).collect();
+    assert_eq!(materials.len(), 3);
+    for ((diffuse, exponent), (expected, sharp)) in
+        materials.iter().zip([([0.9, 0.0, 0.0], 30), ([0.1, 0.2, 0.9], 50), ([0.5, 0.25, 0.125], 7)])
+    {
+        assert!(diffuse.iter().zip(expected).all(|(a, b): (&f32, f32)| (a - b).abs() < 1e-3) && *exponent == sharp, "{materials:?}");
+    }
+    // All corners of the cube have the same place in every mesh that has them.
+    let places: HashSet<_> = stream.vertices.iter().map(|vertex| vertex.position).collect();
+    assert_eq!(places.len(), 8);
 }

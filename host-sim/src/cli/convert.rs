@@ -4,11 +4,13 @@ use super::{Outcome, Usage, parse, report};
 use anyhow::{Context, Result};
 use microphong::format::ErrorBudget;
 use microphong_sim::{
+    import::{self, Imported},
     levels,
-    look::{BACKGROUND, Look, Surface},
+    look::{BACKGROUND, Lamp, Look, Surface},
+    mesh::{CREASE, Weld},
     output,
     quantise::quantise,
-    scene::{self, COPPER, DISTANCE, MARGIN, ORBIT},
+    scene::{AMBIENT, COPPER, DISTANCE, MARGIN, ORBIT},
     shader::Shader,
     vector::V3,
     view::{Projection, Up, View},
@@ -19,7 +21,10 @@ use std::path::PathBuf;
 /// Convert a Wavefront OBJ mesh to a stream for a board's flash.
 ///
 /// Normals come from the file when every corner has one, else from the
-/// polygons around each vertex. Polygons, concave ones as well, are cut into triangles.
+/// polygons around each vertex: light is smooth within the file's smoothing groups, or where it has
+/// none, over edges that fold by no more than --crease. Polygons, concave ones as well, are cut into
+/// triangles. Materials come from the .mtl file beside the mesh (Kd, Ks, Ka, Ns); each becomes a mesh of
+/// the stream. What of the files is left out is said.
 /// The mesh is centred and scaled to a sphere of radius 1. One closed convex mesh is marked as
 /// such: it is drawn without depth, and looks the same.
 #[derive(clap::Args)]
@@ -30,12 +35,15 @@ pub(crate) struct Arguments {
     /// Stream to write; the mesh's name with .tri unless given.
     #[arg(short, long, value_name = "FILE.tri")]
     output: Option<PathBuf>,
-    /// Axis that points up in the mesh, y or z.
-    #[arg(long, default_value = "y", value_parser = parse::up)]
+    /// Axis that points up in the mesh: x, y, z, -x, -y or -z.
+    #[arg(long, default_value = "y", value_parser = parse::up, allow_hyphen_values = true)]
     up: Up,
     /// Turn the surface inside out, for meshes whose faces wind clockwise; closed ones are turned without asking.
     #[arg(long)]
     flip: bool,
+    /// Where a file without normals has no smoothing groups, edges that fold by more are seen: 0 shows all facets, 180 none.
+    #[arg(long, value_name = "DEGREES", default_value_t = CREASE, value_parser = parse::crease)]
+    crease: f64,
     /// Shading method that the stream asks for: flat, gouraud, six-point, phong, sqrt6, renq-newton, auto, auto-linear, or one of the
     /// literature, as `microphong compare` lists them. The board lm3s6965evb has flat, gouraud, phong and auto-linear, the others have all.
     #[arg(long, default_value = "auto", value_parser = parse::shader)]
@@ -43,21 +51,25 @@ pub(crate) struct Arguments {
     /// How far a pixel may be off from Phong shading by auto or auto-linear, in 1/255, 0.5 to 16.
     #[arg(long, value_name = "LSB", default_value = "1", value_parser = parse::budget)]
     budget: ErrorBudget,
-    /// Colour of the surface, RRGGBB; copper unless given.
-    #[arg(long, value_name = "RRGGBB", value_parser = parse::colour)]
+    /// Colour of all of the surface, RRGGBB, in place of the file's materials; copper where there are none.
+    #[arg(long, visible_alias = "color", value_name = "RRGGBB", value_parser = parse::colour)]
     colour: Option<V3>,
-    /// Share of light reflected evenly.
+    /// Share of light reflected evenly where the file has no material.
     #[arg(long, default_value = "0.5", value_parser = parse::share)]
     diffuse: f64,
-    /// Share of light reflected in the highlight.
+    /// Share of light reflected in the highlight where the file has no material.
     #[arg(long, default_value = "0.4", value_parser = parse::share)]
     specular: f64,
     /// Share of light that is everywhere.
-    #[arg(long, default_value = "0.1", value_parser = parse::share)]
+    #[arg(long, default_value_t = AMBIENT, value_parser = parse::share)]
     ambient: f64,
-    /// Sharpness of the highlight, 1 to 1024.
+    /// Sharpness of the highlight where the file has no material, 1 to 1024.
     #[arg(long, default_value = "30", value_parser = clap::value_parser!(u16).range(1..=1024))]
     exponent: u16,
+    /// A light, in the direction X to the right, Y up and Z to the eye, white unless a colour is given; up to eight, each by a --light of its
+    /// own. One from the upper left unless given.
+    #[arg(long = "light", value_name = "X,Y,Z[:RRGGBB]", value_parser = parse::light, allow_hyphen_values = true)]
+    lights: Vec<Lamp>,
     /// White highlights, as on plastic, instead of coloured ones, as on metal.
     #[arg(long)]
     plastic: bool,
@@ -95,13 +107,15 @@ const EXAMPLES: &str = "\
 Examples:
   microphong convert teapot.obj -o teapot.tri
   microphong convert bunny.obj --lod 240x240,128x128
-  microphong convert part.obj --up z --colour 4080ff --plastic --exponent 60 --orbit 240";
+  microphong convert part.obj --up z --colour 4080ff --plastic --exponent 60 --orbit 240
+  microphong convert car.obj --light -0.5,0.6,0.7:fff0d8 --light 1,0.1,0.2:304060";
 
 #[derive(Serialize)]
 struct Line<'a> {
     mesh: &'a str,
     output: &'a str,
     meshes: usize,
+    materials: usize,
     vertices: usize,
     triangles: usize,
     welded: usize,
@@ -112,6 +126,7 @@ struct Line<'a> {
     closed_convex: bool,
     levels: Vec<Level>,
     bytes: usize,
+    remarks: Vec<String>,
 }
 
 /// A coarser level of a mesh.
@@ -132,18 +147,26 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome> {
     if same(&target).is_some_and(|target| Some(target) == same(source)) {
         return Err(Usage(format!("{} would overwrite the mesh; name another file with -o", target.display())).into());
     }
-    let (mesh, report) = scene::read_obj(source, arguments.flip)?;
+    let Imported { mut mesh, report, mut materials, mut remarks } =
+        import::obj(source, Weld { turn: arguments.flip, crease: arguments.crease })?;
+    if arguments.colour.is_some() && materials.iter().any(Option::is_some) {
+        remarks.push(format!("{} materials of the file have the one colour of --colour", materials.iter().flatten().count()));
+        (mesh.materials, materials) = (Vec::new(), vec![None]);
+    }
     let (mut parts, lost) = quantise(&mesh);
     let place = || source.display().to_string();
     let view = View::orbit(arguments.up, arguments.azimuth.to_radians(), arguments.elevation.to_radians(), DISTANCE, arguments.orbit);
     let view = if arguments.projection == Projection::Orthographic { view.parallel() } else { view };
+    let of_arguments = surface(arguments);
     let look = Look {
+        surfaces: import::surfaces(&materials, &of_arguments, arguments.ambient),
         background: arguments.background.unwrap_or(BACKGROUND),
         local_viewer: arguments.local_viewer,
         budget: arguments.budget,
         shader: arguments.shader,
-        ..Look::new(surface(arguments), view.fit(&mesh.positions, arguments.size, MARGIN))
+        ..Look::new(of_arguments, view.fit(&mesh.positions, arguments.size, MARGIN))
     };
+    let look = if arguments.lights.is_empty() { look } else { Look { lamps: arguments.lights.clone(), ..look } };
     let errors: Vec<_> = arguments.lod.iter().map(|&size| look.tolerance(&parts, size)).collect();
     // The stream is a step as well, so that a single level has a bar.
     let bar = report::progress((parts.len() * errors.len()) as u64 + 1, "searching levels of detail");
@@ -156,6 +179,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome> {
         mesh: &source.to_string_lossy(),
         output: &target.to_string_lossy(),
         meshes: parts.len(),
+        materials: materials.iter().flatten().count(),
         vertices: parts.iter().map(|p| p.vertices.len()).sum(),
         triangles: parts.iter().map(|p| p.triangles.len()).sum(),
         welded: report.welded,
@@ -166,6 +190,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome> {
         closed_convex: parts.iter().all(|part| part.closed_convex),
         levels: parts.iter().enumerate().flat_map(|(mesh, part)| part.coarser.iter().map(move |level| of(mesh, level))).collect(),
         bytes: bytes.as_bytes().len(),
+        remarks,
     };
     if arguments.json {
         report::json(&line)?;
@@ -198,6 +223,14 @@ fn text(line: &Line<'_>) -> Result<()> {
     let (welded, degenerate) = (count(line.welded), count(line.degenerate));
     let convex = if line.closed_convex { ", closed and convex" } else { "" };
     report::line(&format!("  {welded} vertices welded, {degenerate} degenerate triangles dropped, {normals}{turned}{convex}"))?;
+    match line.materials {
+        0 => {}
+        1 => report::line("  1 material from the file")?,
+        several => report::line(&format!("  {} materials from the file, each a mesh of its own", count(several)))?,
+    }
+    for remark in &line.remarks {
+        report::line(&format!("  {remark}"))?;
+    }
     for Level { triangles, error, .. } in &line.levels {
         report::line(&format!("  a level of {} triangles, less than {error:.4} from the mesh", count(*triangles)))?;
     }

@@ -5,10 +5,11 @@ use microphong::{
     format::{ErrorBudget, LARGEST_BUDGET, LEAST_BUDGET},
 };
 use microphong_sim::{
+    look::Lamp,
     papers::Topic,
     render::Format,
     shader::Shader,
-    vector::V3,
+    vector::{V3, unit},
     view::{Projection, Up},
 };
 
@@ -62,9 +63,26 @@ pub(crate) fn format(text: &str) -> Result<Format, String> {
     among(text, &Format::ALL, Format::name)
 }
 
-/// `y` or `z`.
+/// An axis by name.
 pub(crate) fn up(text: &str) -> Result<Up, String> {
-    among(text, &[Up::Y, Up::Z], |up| if up == Up::Y { "y" } else { "z" })
+    among(text, &Up::ALL, Up::name)
+}
+
+/// Degrees from 0 to 180.
+pub(crate) fn crease(text: &str) -> Result<f64, String> {
+    text.parse().ok().filter(|angle| (0.0..=180.0).contains(angle)).ok_or_else(|| "a number of degrees from 0 to 180 is needed".to_owned())
+}
+
+/// `X,Y,Z` or `X,Y,Z:RRGGBB`: x to the right, y up and z to the eye, white unless a colour is given.
+pub(crate) fn light(text: &str) -> Result<Lamp, String> {
+    let (direction, given) = text.split_once(':').map_or((text, None), |(direction, given)| (direction, Some(given)));
+    let numbers: Option<Vec<f64>> = direction.split(',').map(|number| number.trim().parse().ok().filter(|n: &f64| n.is_finite())).collect();
+    let [x, y, z] = numbers
+        .and_then(|numbers| numbers.try_into().ok())
+        .ok_or("three numbers are needed, as -0.5,0.6,0.7, and a colour behind a colon if it is not white")?;
+    // In eye space z runs away from the eye.
+    let towards = unit([x, y, -z]).ok_or("a direction is needed, 0,0,0 is none")?;
+    Ok(Lamp::Distant(towards, given.map_or(Ok([1.0; 3]), colour)?))
 }
 
 /// `perspective` or `parallel`.

@@ -79,8 +79,8 @@ pub fn sealed(bytes: &[u8]) -> Option<Case> {
 
 /// `bytes` as the text of an OBJ file, on to a mesh.
 pub fn obj(bytes: &[u8]) {
-    if let Ok(soup) = obj::parse(&String::from_utf8_lossy(bytes)) {
-        drop(mesh::weld(&soup, true));
+    if let Ok(obj) = obj::parse(&String::from_utf8_lossy(bytes)) {
+        drop(mesh::weld(&obj.soup, mesh::Weld { turn: true, ..mesh::Weld::default() }));
     }
 }
 

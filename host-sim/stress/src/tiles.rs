@@ -132,7 +132,7 @@ fn facing(random: &mut Random, look: &Look) -> V3 {
     // The eye looks along z of its space, from where z is negative; in object space, it is turned round.
     let [x, y, z] = unit(towards).unwrap_or(anywhere);
     let half = unit([x, y, 1.0 - z]).unwrap_or(anywhere);
-    let width = 1.0 / f64::from(look.surface.exponent).sqrt();
+    let width = 1.0 / f64::from(look.surfaces[0].exponent).sqrt();
     unit(add(half, scale(anywhere, width * random.between(0.0, 5.0)))).unwrap_or(half)
 }
 

@@ -1,0 +1,155 @@
+//! Reads MTL, the materials of Wavefront OBJ.
+//!
+//! A reader of our own, as that of OBJ, because a bad number should be reported with its line.
+
+use crate::{
+    look::Surface,
+    obj::{logical_lines, plain, rest},
+    vector::{V3, scale},
+};
+use anyhow::{Context, Result, bail};
+use std::collections::BTreeSet;
+
+/// What an MTL file holds.
+#[derive(Clone, Debug, Default)]
+pub struct Mtl {
+    /// Its materials, in their order.
+    pub materials: Vec<Material>,
+    /// What the file has besides, in words.
+    pub ignored: BTreeSet<&'static str>,
+}
+
+/// A material. Colours are shares of light, 1 is all of it.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Material {
+    /// The name.
+    pub name: String,
+    /// `Ka`.
+    pub ambient: Option<V3>,
+    /// `Kd`.
+    pub diffuse: Option<V3>,
+    /// `Ks`.
+    pub specular: Option<V3>,
+    /// `Ns`.
+    pub exponent: Option<f64>,
+}
+
+/// Evenly reflected by materials that do not say how much.
+const DIFFUSE: V3 = [0.6; 3];
+/// Of highlights that do not say how sharp they are.
+const EXPONENT: f64 = 30.0;
+/// The largest exponent of a stream.
+const SHARPEST: f64 = 1024.0;
+
+impl Material {
+    /// As a stream has it, under so much ambient light.
+    #[must_use]
+    pub fn surface(&self, ambient_light: f64) -> Surface {
+        let diffuse = self.diffuse.unwrap_or(DIFFUSE);
+        Surface {
+            ambient: scale(self.ambient.unwrap_or(diffuse), ambient_light),
+            diffuse,
+            specular: self.specular.unwrap_or_default(),
+            exponent: self.exponent.unwrap_or(EXPONENT).round().clamp(1.0, SHARPEST) as u16,
+        }
+    }
+}
+
+/// Parses the text of an MTL file.
+///
+/// # Errors
+/// Names the line, and what is wrong with it.
+pub fn parse(text: &str) -> Result<Mtl> {
+    let mut mtl = Mtl::default();
+    for (number, line) in logical_lines(&plain(text)) {
+        let mut words = line.split_whitespace();
+        let Some(keyword) = words.next() else { continue };
+        if keyword == "newmtl" {
+            let name = rest(&line);
+            if name.is_empty() {
+                bail!("line {number}: newmtl: a name is missing");
+            }
+            mtl.materials.push(Material { name, ambient: None, diffuse: None, specular: None, exponent: None });
+            continue;
+        }
+        let ignored = match keyword {
+            "d" if words.clone().next() == Some("1") => None,
+            "d" | "Tr" | "Tf" => Some("transparency"),
+            "Ke" => Some("materials that shine by themselves"),
+            _ if keyword.starts_with("map_") || ["bump", "disp", "decal", "norm", "refl"].contains(&keyword) => Some("textures"),
+            _ => None,
+        };
+        mtl.ignored.extend(ignored);
+        let Some(material) = mtl.materials.last_mut() else { continue };
+        let place = || format!("line {number}: {keyword} of material {:?}", material.name);
+        match keyword {
+            "Ka" => material.ambient = colour(words).with_context(place)?.or(material.ambient),
+            "Kd" => material.diffuse = colour(words).with_context(place)?.or(material.diffuse),
+            "Ks" => material.specular = colour(words).with_context(place)?.or(material.specular),
+            "Ns" => material.exponent = Some(share(words.next().unwrap_or_default()).with_context(place)?),
+            // Illumination models without a highlight.
+            "illum" if ["0", "1"].contains(&words.next().unwrap_or_default()) => material.specular = Some([0.0; 3]),
+            _ => {}
+        }
+    }
+    Ok(mtl)
+}
+
+/// Three numbers, or one for all channels; `None` where the colour is a spectrum.
+fn colour<'a>(mut words: impl Iterator<Item = &'a str>) -> Result<Option<V3>> {
+    let red = words.next().context("a number is missing")?;
+    if ["spectral", "xyz"].contains(&red) {
+        return Ok(None);
+    }
+    let red = share(red)?;
+    Ok(Some(match (words.next(), words.next()) {
+        (None, _) => [red; 3],
+        (Some(green), Some(blue)) => [red, share(green)?, share(blue)?],
+        (Some(_), None) => bail!("blue is missing; one or three numbers are needed"),
+    }))
+}
+
+/// A number that is not negative.
+fn share(word: &str) -> Result<f64> {
+    let share = word.parse().ok().filter(|share: &f64| share.is_finite() && *share >= 0.0);
+    share.with_context(|| format!("{word:?} is not a number from 0 on"))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn colours_exponents_and_what_is_left_out() {
+        let mtl = parse("# from a modeller\nnewmtl red paint\nKa 1 1 1\nKd 0.8 0.1 0\nKs 0.5\nNs 96.1\nd 1\nillum 2\nnewmtl bare\nmap_Kd bare.png\nnewmtl matt\nKs 1 1 1\nillum 1\nTr 0.5\n").unwrap();
+        let [red, bare, matt] = &mtl.materials[..] else { panic!("{mtl:?}") };
+        assert_eq!(red.name, "red paint");
+        let Surface { ambient, diffuse, specular, exponent } = red.surface(0.125);
+        assert_eq!((ambient, diffuse, specular, exponent), ([0.125; 3], [0.8, 0.1, 0.0], [0.5; 3], 96));
+        let Surface { ambient, diffuse, specular, exponent } = bare.surface(0.5);
+        assert_eq!((ambient, diffuse, specular, exponent), (scale(DIFFUSE, 0.5), DIFFUSE, [0.0; 3], 30));
+        assert_eq!(matt.surface(0.1).specular, [0.0; 3]);
+        assert_eq!(mtl.ignored.into_iter().collect::<Vec<_>>(), ["textures", "transparency"]);
+    }
+
+    #[test]
+    fn errors_name_the_line() {
+        for (text, wrong) in [
+            ("newmtl\n", "line 1: newmtl: a name is missing"),
+            ("newmtl a\nKd 1 red 0", "line 2: Kd of material \"a\": \"red\" is not a number from 0 on"),
+            ("newmtl a\n\nKs 1 1", "line 3: Ks of material \"a\": blue is missing; one or three numbers are needed"),
+            ("newmtl a\nNs -3", "line 2: Ns of material \"a\": \"-3\" is not a number from 0 on"),
+            ("newmtl a\nKa", "line 2: Ka of material \"a\": a number is missing"),
+        ] {
+            assert_eq!(format!("{:#}", parse(text).unwrap_err()), wrong);
+        }
+    }
+
+    #[test]
+    fn exponents_are_those_of_streams() {
+        for (text, exponent) in [("0", 1), ("0.4", 1), ("17.6", 18), ("1e9", 1024)] {
+            let mtl = parse(&format!("newmtl a\nNs {text}")).unwrap();
+            assert_eq!(mtl.materials[0].surface(0.1).exponent, exponent);
+        }
+    }
+}
