@@ -1,8 +1,8 @@
 //! What draws a triangle within an error budget: the cheapest of what [`crate::method::ErrorBounds`] allow.
 
-use super::{corner_levels, costs::SAVINGS};
+use super::costs::SAVINGS;
 use crate::{
-    lighting::reflectance::FULL,
+    lighting::reflectance::{FULL, Reflectance},
     method::{
         CornerCosines, Shading, TriangleSetup,
         error_bound::{Curvature, Linear},
@@ -182,4 +182,11 @@ fn two_lights(
         }
     }
     Some(Choice::Linear(interval.raise(budget)))
+}
+
+/// The levels at the corners under two constant lights.
+#[inline(never)]
+pub(super) fn corner_levels(setup: &TriangleSetup<'_>, reflectance: &Reflectance) -> [[i32; 3]; 3] {
+    let [a, b, c] = setup.corners;
+    [reflectance.two_lights(a.light), reflectance.two_lights(b.light), reflectance.two_lights(c.light)]
 }

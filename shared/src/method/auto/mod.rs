@@ -31,8 +31,8 @@ use crate::{
         pixel_shader::Solid,
     },
 };
-use choice::extremes;
 pub use choice::{Choice, choose};
+use choice::{corner_levels, extremes};
 use core::hint::black_box;
 
 static FACTS: Facts = Facts {
@@ -52,13 +52,6 @@ static FACTS_WITHOUT_QUADRATICS: Facts = Facts { name: "auto-linear", id: 27, ..
 
 /// The cheapest method within the error budget. Among all, or without quadratics, which take two fifths of the flash.
 pub struct Auto<const QUADRATICS: bool>;
-
-/// The levels at the corners under two constant lights.
-#[inline(never)]
-fn corner_levels(setup: &TriangleSetup<'_>, reflectance: &Reflectance) -> [[i32; 3]; 3] {
-    let [a, b, c] = setup.corners;
-    [reflectance.two_lights(a.light), reflectance.two_lights(b.light), reflectance.two_lights(c.light)]
-}
 
 /// Half-way between the least and the most that corners have of the light number `k`, where that is not less than `floor`.
 #[inline(always)]
