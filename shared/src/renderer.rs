@@ -69,7 +69,7 @@ impl<'a, C: Pixel> Renderer<'a, C> {
             size,
             processors,
             shader,
-            dither: false,
+            dither: C::DITHERED,
             perspective_correct: false,
             antialias: false,
             budget: level(stream.header.budget()),
@@ -146,7 +146,7 @@ impl<'a, C: Pixel> Renderer<'a, C> {
         Ok(())
     }
 
-    /// Turns 4x4 ordered dither on or off; it is off at first.
+    /// Turns 8x8 ordered dither on or off; at first it is on in formats of one or two bits a channel.
     pub fn set_dither(&mut self, dither: bool) {
         (self.settings.dither, self.latest) = (dither, None);
     }

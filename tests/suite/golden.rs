@@ -3,12 +3,13 @@
 //! `MICROPHONG_BLESS=1 cargo test -p microphong-tests golden` makes what is drawn now the standard.
 //! Where a picture differs, target/golden holds it and a picture of the differences.
 
+use embedded_graphics::geometry::Size;
 use microphong_sim::{
     board::Board,
     image,
     mesh::Weld,
-    render::{self, Format, Settings},
-    scene,
+    render::{self, Format, Settings, Style},
+    scene::{self, Scene},
     shader::Shader,
     verify,
 };
@@ -42,10 +43,14 @@ fn difference(a: &[u8], b: &[u8]) -> Vec<u8> {
 /// What is wrong with the picture of `name` by `shader`, if anything.
 fn check(name: &str, shader: Shader, bless: bool) -> Option<String> {
     let scene = scene::load(name).expect("built-in scene");
-    let (width, height) = scene.size;
-    let settings = Settings { size: (width, height).into(), style: shader.into(), band_rows: 16, format: Format::Rgb565 };
-    let drawn = render::picture(scene.stream.parse().expect("built-in scene"), &settings, 0).expect("built-in scene").rgb;
-    let file = format!("{name}-{}.png", shader.name());
+    let settings = Settings { size: scene.size.into(), style: shader.into(), band_rows: 16, format: Format::Rgb565 };
+    check_picture(&format!("{name}-{}", shader.name()), &scene, &settings, bless)
+}
+
+/// What is wrong with the picture of a scene that has this name, if anything.
+fn check_picture(name: &str, scene: &Scene, settings: &Settings, bless: bool) -> Option<String> {
+    let drawn = render::picture(scene.stream.parse().expect("built-in scene"), settings, 0).expect("built-in scene").rgb;
+    let (Size { width, height }, file) = (settings.size, format!("{name}.png"));
     let golden = root().join("golden").join(&file);
     if bless {
         fs::create_dir_all(root().join("golden")).expect("golden directory");
@@ -64,7 +69,7 @@ fn check(name: &str, shader: Shader, bless: bool) -> Option<String> {
     if expected.2.len() != drawn.len() {
         return Some(format!("{file}: {width}x{height}, golden {}x{}", expected.0, expected.1));
     }
-    let path = out.join(format!("{name}-{}-difference.png", shader.name()));
+    let path = out.join(format!("{name}-difference.png"));
     image::write_png(&path, width, height, &difference(&drawn, &expected.2)).expect("difference picture");
     let (drawn, expected) = (drawn.as_chunks::<3>().0, expected.2.as_chunks::<3>().0);
     let count = drawn.iter().zip(expected).filter(|(a, b)| a != b).count();
@@ -97,5 +102,22 @@ fn golden() {
     let pairs = scene::NAMES.iter().flat_map(|&name| Shader::ALL.map(|shader| (name, shader)));
     let pairs = pairs.filter(|(name, shader)| *name == ONE || BASIC.contains(shader));
     let wrong: Vec<_> = pairs.filter_map(|(name, shader)| check(name, shader, bless)).collect();
+    assert!(wrong.is_empty(), "{}", wrong.join("\n"));
+}
+
+/// Every pixel format as it is drawn unless somebody says otherwise, on a display of 128x64.
+#[test]
+fn formats() {
+    let bless = bless();
+    let wrong = |name: &str| {
+        let scene = scene::load(name).expect("built-in scene");
+        let of = |format: Format| {
+            let style = Style { dither: format.is_dithered(), ..Shader::PHONG.into() };
+            let settings = Settings { size: Size::new(128, 64), style, band_rows: 16, format };
+            check_picture(&format!("{name}-{}", format.name()), &scene, &settings, bless)
+        };
+        Format::ALL.into_iter().filter_map(of).collect::<Vec<_>>()
+    };
+    let wrong = ["torus", "sphere-168"].map(wrong).concat();
     assert!(wrong.is_empty(), "{}", wrong.join("\n"));
 }

@@ -5,13 +5,10 @@
 
 use crate::{
     image::{rgb_bytes, to_rgb},
-    render::{self, Format, Picture, Settings, Style},
+    render::{self, InFormat, Picture, Settings, Style},
     shader::Shader,
 };
-use embedded_graphics_core::{
-    geometry::Size,
-    pixelcolor::{Gray4, Gray8, Rgb565, Rgb888},
-};
+use embedded_graphics_core::{geometry::Size, pixelcolor::Rgb888};
 use microphong::{
     Stats, Stream,
     format::{Intensity, LEVEL, RAMP},
@@ -307,15 +304,16 @@ pub fn by<C: Pixel>(
 /// # Errors
 /// When the size is out of range.
 pub fn painted(stream: Stream<'_>, settings: &Settings, number: u32) -> anyhow::Result<(Picture, Choices)> {
-    fn paint<C: Pixel>(stream: Stream<'_>, s: &Settings, number: u32) -> anyhow::Result<(Picture, Choices)> {
-        let (pixels, stats, choices) = told::<Traced<C>>(s.style.shader, stream, s.size, s.style.perspective_correct, number)?;
-        let painted: Vec<_> = pixels.into_iter().map(Traced::painted).collect();
-        Ok((Picture { rgb: rgb_bytes(&painted), crc: render::crc(&painted), stats }, choices))
+    struct Paint<'a>(Stream<'a>, &'a Settings, u32);
+    impl InFormat for Paint<'_> {
+        type Output = anyhow::Result<(Picture, Choices)>;
+
+        fn in_format<C: Pixel>(self) -> Self::Output {
+            let Self(stream, s, number) = self;
+            let (pixels, stats, choices) = told::<Traced<C>>(s.style.shader, stream, s.size, s.style.perspective_correct, number)?;
+            let painted: Vec<_> = pixels.into_iter().map(Traced::painted).collect();
+            Ok((Picture { rgb: rgb_bytes(&painted), crc: render::crc(&painted), stats }, choices))
+        }
     }
-    match settings.format {
-        Format::Rgb565 => paint::<Rgb565>(stream, settings, number),
-        Format::Rgb888 => paint::<Rgb888>(stream, settings, number),
-        Format::Gray8 => paint::<Gray8>(stream, settings, number),
-        Format::Gray4 => paint::<Gray4>(stream, settings, number),
-    }
+    settings.format.run(Paint(stream, settings, number))
 }

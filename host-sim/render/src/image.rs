@@ -8,17 +8,15 @@ use std::{cell::RefCell, io::Write, path::Path, rc::Rc};
 /// A channel of `bits` bits in 8, by repeating it: 0 stays 0 and the largest value becomes 255.
 #[must_use]
 pub fn replicate(value: u32, bits: u32) -> u8 {
-    let wide = value << (8 - bits);
-    (wide | wide >> bits | wide >> (2 * bits)) as u8
+    let first = value << (8 - bits);
+    (1..8).fold(first, |wide, k| wide | first >> (k * bits).min(8)) as u8
 }
 
 /// A pixel as 8-bit red, green and blue.
 #[must_use]
 pub fn to_rgb<C: Pixel>(pixel: C) -> [u8; 3] {
-    let bits = pixel.bits();
-    let channel = |shift: u32, depth: u32| replicate(bits >> shift & ((1 << depth) - 1), depth);
-    let [r, g, b] = C::DEPTH;
-    if C::GRAY { [channel(0, r); 3] } else { [channel(g + b, r), channel(b, g), channel(0, b)] }
+    let (channels, depth) = (pixel.channels(), C::DEPTH);
+    [0, 1, 2].map(|k| replicate(channels[k].into(), depth[k]))
 }
 
 /// Pixels as bytes, red, green and blue in turn.

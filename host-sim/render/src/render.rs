@@ -4,7 +4,7 @@ use crate::{image, shader::Shader};
 use anyhow::{Context, Result};
 use embedded_graphics_core::{
     geometry::Size,
-    pixelcolor::{Gray4, Gray8, Rgb565, Rgb888},
+    pixelcolor::{Bgr565, BinaryColor, Gray2, Gray4, Gray8, Rgb565, Rgb666, Rgb888},
 };
 use microphong::{
     Layout, Renderer, Skips, Stats, Stream,
@@ -89,11 +89,29 @@ pub enum Format {
     Gray8,
     /// 16 greys.
     Gray4,
+    /// Four greys.
+    Gray2,
+    /// Black and white.
+    Binary,
+    /// [`Self::Rgb565`] with red and blue exchanged.
+    Bgr565,
+    /// Six bits per channel.
+    Rgb666,
+}
+
+/// What is done in a pixel format that is chosen at run time.
+pub trait InFormat {
+    /// What comes of it.
+    type Output;
+
+    /// Does it.
+    fn in_format<C: Pixel>(self) -> Self::Output;
 }
 
 impl Format {
     /// Every format.
-    pub const ALL: [Self; 4] = [Self::Rgb565, Self::Rgb888, Self::Gray8, Self::Gray4];
+    pub const ALL: [Self; 8] =
+        [Self::Rgb565, Self::Rgb888, Self::Gray8, Self::Gray4, Self::Gray2, Self::Binary, Self::Bgr565, Self::Rgb666];
 
     /// The name on the command line.
     #[must_use]
@@ -103,7 +121,39 @@ impl Format {
             Self::Rgb888 => "rgb888",
             Self::Gray8 => "gray8",
             Self::Gray4 => "gray4",
+            Self::Gray2 => "gray2",
+            Self::Binary => "binary",
+            Self::Bgr565 => "bgr565",
+            Self::Rgb666 => "rgb666",
         }
+    }
+
+    /// Does something in this format.
+    pub fn run<T: InFormat>(self, what: T) -> T::Output {
+        match self {
+            Self::Rgb565 => what.in_format::<Rgb565>(),
+            Self::Rgb888 => what.in_format::<Rgb888>(),
+            Self::Gray8 => what.in_format::<Gray8>(),
+            Self::Gray4 => what.in_format::<Gray4>(),
+            Self::Gray2 => what.in_format::<Gray2>(),
+            Self::Binary => what.in_format::<BinaryColor>(),
+            Self::Bgr565 => what.in_format::<Bgr565>(),
+            Self::Rgb666 => what.in_format::<Rgb666>(),
+        }
+    }
+
+    /// Whether it is dithered unless somebody says otherwise: [`Pixel::DITHERED`].
+    #[must_use]
+    pub fn is_dithered(self) -> bool {
+        struct Asked;
+        impl InFormat for Asked {
+            type Output = bool;
+
+            fn in_format<C: Pixel>(self) -> bool {
+                C::DITHERED
+            }
+        }
+        self.run(Asked)
     }
 }
 
@@ -136,14 +186,15 @@ pub struct Picture {
 /// # Errors
 /// Those of [`frame`].
 pub fn picture(stream: Stream<'_>, settings: &Settings, number: u32) -> Result<Picture> {
-    fn view<C: Pixel>(stream: Stream<'_>, s: &Settings, number: u32) -> Result<Picture> {
-        let (pixels, stats) = frame::<C>(stream, s.size, s.style, s.band_rows, number)?;
-        Ok(Picture { rgb: image::rgb_bytes(&pixels), crc: crc(&pixels), stats })
+    struct View<'a>(Stream<'a>, &'a Settings, u32);
+    impl InFormat for View<'_> {
+        type Output = Result<Picture>;
+
+        fn in_format<C: Pixel>(self) -> Result<Picture> {
+            let Self(stream, s, number) = self;
+            let (pixels, stats) = frame::<C>(stream, s.size, s.style, s.band_rows, number)?;
+            Ok(Picture { rgb: image::rgb_bytes(&pixels), crc: crc(&pixels), stats })
+        }
     }
-    match settings.format {
-        Format::Rgb565 => view::<Rgb565>(stream, settings, number),
-        Format::Rgb888 => view::<Rgb888>(stream, settings, number),
-        Format::Gray8 => view::<Gray8>(stream, settings, number),
-        Format::Gray4 => view::<Gray4>(stream, settings, number),
-    }
+    settings.format.run(View(stream, settings, number))
 }

@@ -33,7 +33,7 @@ pub(crate) struct Arguments {
     /// Size of the picture; the scene's own unless given, 640x480 for files.
     #[arg(long, value_name = "WxH", value_parser = parse::size)]
     size: Option<(u32, u32)>,
-    /// Pixel format: rgb565, rgb888, gray8 or gray4.
+    /// Pixel format: rgb565, bgr565, rgb666, rgb888, gray8, gray4, gray2 or binary.
     #[arg(long, default_value = "rgb565", value_parser = parse::format)]
     format: Format,
     /// Number of frames.
@@ -45,9 +45,12 @@ pub(crate) struct Arguments {
     /// Interpolate in perspective: right where a triangle reaches from near to far.
     #[arg(long)]
     perspective_correct: bool,
-    /// Ordered dither: hides the steps of formats with few colours.
+    /// Ordered dither: hides the steps of formats with few colours. gray2 and binary have it unless --no-dither is given.
     #[arg(long)]
     dither: bool,
+    /// Rounded colours where a format has dither.
+    #[arg(long, conflicts_with = "dither")]
+    no_dither: bool,
     /// Smooth outlines: pixels on an edge take from either side by the exact area that each covers.
     #[arg(long)]
     antialias: bool,
@@ -72,6 +75,7 @@ Examples:
   microphong render teapot --shader gouraud --size 320x240 -o gouraud.png
   microphong render bunny --antialias
   microphong render mesh.tri --format gray4 --dither
+  microphong render mesh.tri --format binary --size 128x64
   microphong render bunny --frames 120 -o bunny.apng
   microphong render torus --frames 30 -o frames/
   microphong render teapot --show methods --budget 4";
@@ -117,7 +121,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome> {
             shader: method(arguments, &stream).with_context(|| scene.name.clone())?,
             perspective_correct: arguments.perspective_correct,
             antialias: arguments.antialias,
-            dither: arguments.dither,
+            dither: arguments.dither || arguments.format.is_dithered() && !arguments.no_dither,
             skips: Skips::ALL,
         },
         band_rows: arguments.band_rows,

@@ -53,8 +53,12 @@ impl Case {
     pub fn command(&self, file: &Path) -> String {
         let [width, height] = self.size;
         let Self { style, format, band_rows, frame, .. } = self;
-        let options =
-            [(style.perspective_correct, " --perspective-correct"), (style.dither, " --dither"), (style.antialias, " --antialias")];
+        let options = [
+            (style.perspective_correct, " --perspective-correct"),
+            (style.dither && !format.is_dithered(), " --dither"),
+            (!style.dither && format.is_dithered(), " --no-dither"),
+            (style.antialias, " --antialias"),
+        ];
         let options: String = options.iter().filter(|(on, _)| *on).map(|(_, text)| *text).collect();
         format!(
             "microphong render {} --shader {} --size {width}x{height} --format {} --band-rows {band_rows} --first {frame}{options}",

@@ -10,10 +10,10 @@ use crate::{
 use core::hint::black_box;
 use embedded_graphics_core::{
     pixelcolor::{
-        Gray4, Gray8, Rgb565, Rgb888,
-        raw::{RawData, RawU4, RawU8, RawU16, RawU24},
+        Bgr565, BinaryColor, Gray2, Gray4, Gray8, PixelColor, Rgb565, Rgb666, Rgb888,
+        raw::{RawData, RawU1, RawU2, RawU4, RawU8, RawU16, RawU24},
     },
-    prelude::{GrayColor, RgbColor},
+    prelude::RgbColor,
 };
 use zerocopy::{FromBytes, Immutable, IntoBytes, KnownLayout};
 
@@ -31,6 +31,8 @@ pub trait Pixel: Copy + 'static {
         let [r, g, b] = Self::DEPTH;
         r < 8 && g < 8 && b < 8
     };
+    /// Whether steps between levels are so wide that a picture needs dither.
+    const DITHERED: bool = Self::DEPTH[0] <= 2;
     /// Bytes that a pixel adds to the picture's checksum.
     const BYTES: usize;
 
@@ -85,10 +87,10 @@ pub trait Pixel: Copy + 'static {
     }
 }
 
-/// Red, green and blue of 5, 6 and 5 bits, packed.
+/// Channels of 5, 6 and 5 bits, packed.
 #[inline(always)]
-fn rgb565([r, g, b]: [u32; 3]) -> u16 {
-    (r << 11 | g << 5 | b) as u16
+fn rgb565([high, middle, low]: [u32; 3]) -> u16 {
+    (high << 11 | middle << 5 | low) as u16
 }
 
 /// Both halves of a word, each of them `half`; the compiler must not know that they are the same.
@@ -98,135 +100,130 @@ fn halves(half: u16) -> [u16; 2] {
     [word as u16, (word >> 16) as u16]
 }
 
-impl Pixel for Rgb565 {
-    type Stored = u16;
+/// Channels of 5, 6 and 5 bits in a word; the numbers are those of the high and of the low one.
+macro_rules! rgb565 {
+    ($format:ty, $high:literal, $low:literal) => {
+        impl Pixel for $format {
+            type Stored = u16;
 
-    const GRAY: bool = false;
-    const DEPTH: [u32; 3] = [5, 6, 5];
-    const BYTES: usize = 2;
+            const GRAY: bool = false;
+            const DEPTH: [u32; 3] = [5, 6, 5];
+            const BYTES: usize = 2;
 
-    #[inline(always)]
-    fn pack(channels: [u32; 3]) -> Self {
-        RawU16::new(rgb565(channels)).into()
-    }
+            #[inline(always)]
+            fn pack(channels: [u32; 3]) -> Self {
+                RawU16::new(rgb565([channels[$high], channels[1], channels[$low]])).into()
+            }
 
-    #[inline(always)]
-    fn stored(self) -> u16 {
-        RawU16::from(self).into_inner()
-    }
+            #[inline(always)]
+            fn stored(self) -> u16 {
+                RawU16::from(self).into_inner()
+            }
 
-    #[inline(always)]
-    fn from_stored(stored: u16) -> Self {
-        RawU16::new(stored).into()
-    }
+            #[inline(always)]
+            fn from_stored(stored: u16) -> Self {
+                RawU16::new(stored).into()
+            }
 
-    #[inline(always)]
-    fn pair(self) -> [Self; 2] {
-        let [even, odd] = halves(self.stored());
-        [Self::from_stored(even), Self::from_stored(odd)]
-    }
+            #[inline(always)]
+            fn pair(self) -> [Self; 2] {
+                let [even, odd] = halves(self.stored());
+                [Self::from_stored(even), Self::from_stored(odd)]
+            }
 
-    fn channels(self) -> [u8; 3] {
-        [self.r(), self.g(), self.b()]
-    }
+            fn channels(self) -> [u8; 3] {
+                [self.r(), self.g(), self.b()]
+            }
 
-    fn bits(self) -> u32 {
-        u32::from(self.r()) << 11 | u32::from(self.g()) << 5 | u32::from(self.b())
-    }
+            fn bits(self) -> u32 {
+                self.stored().into()
+            }
+        }
+    };
 }
 
-impl Pixel for Rgb888 {
-    type Stored = u32;
+rgb565!(Rgb565, 0, 2);
+rgb565!(Bgr565, 2, 0);
 
-    const GRAY: bool = false;
-    const DEPTH: [u32; 3] = [8; 3];
-    const BYTES: usize = 3;
+/// Red, green and blue of equal depth.
+macro_rules! rgb {
+    ($format:ty, $depth:literal) => {
+        impl Pixel for $format {
+            type Stored = u32;
 
-    #[inline(always)]
-    fn pack([r, g, b]: [u32; 3]) -> Self {
-        RawU24::new(r << 16 | g << 8 | b).into()
-    }
+            const GRAY: bool = false;
+            const DEPTH: [u32; 3] = [$depth; 3];
+            const BYTES: usize = 3;
 
-    #[inline(always)]
-    fn stored(self) -> u32 {
-        RawU24::from(self).into_inner()
-    }
+            #[inline(always)]
+            fn pack([r, g, b]: [u32; 3]) -> Self {
+                RawU24::new(r << (2 * $depth) | g << $depth | b).into()
+            }
 
-    #[inline(always)]
-    fn from_stored(stored: u32) -> Self {
-        RawU24::new(stored).into()
-    }
+            #[inline(always)]
+            fn stored(self) -> u32 {
+                RawU24::from(self).into_inner()
+            }
 
-    fn channels(self) -> [u8; 3] {
-        [self.r(), self.g(), self.b()]
-    }
+            #[inline(always)]
+            fn from_stored(stored: u32) -> Self {
+                RawU24::new(stored).into()
+            }
 
-    fn bits(self) -> u32 {
-        u32::from(self.r()) << 16 | u32::from(self.g()) << 8 | u32::from(self.b())
-    }
+            fn channels(self) -> [u8; 3] {
+                [self.r(), self.g(), self.b()]
+            }
+
+            fn bits(self) -> u32 {
+                self.stored()
+            }
+        }
+    };
 }
 
-impl Pixel for Gray8 {
-    type Stored = u8;
+rgb!(Rgb666, 6);
+rgb!(Rgb888, 8);
 
-    const GRAY: bool = true;
-    const DEPTH: [u32; 3] = [8; 3];
-    const BYTES: usize = 1;
+/// One channel.
+macro_rules! gray {
+    ($format:ty, $raw:ty, $depth:literal) => {
+        impl Pixel for $format {
+            type Stored = u8;
 
-    #[inline(always)]
-    fn pack([luma, ..]: [u32; 3]) -> Self {
-        Self::new(luma as u8)
-    }
+            const GRAY: bool = true;
+            const DEPTH: [u32; 3] = [$depth; 3];
+            const BYTES: usize = 1;
 
-    #[inline(always)]
-    fn stored(self) -> u8 {
-        RawU8::from(self).into_inner()
-    }
+            #[inline(always)]
+            fn pack([luma, ..]: [u32; 3]) -> Self {
+                <$raw>::new(luma as u8).into()
+            }
 
-    #[inline(always)]
-    fn from_stored(stored: u8) -> Self {
-        RawU8::new(stored).into()
-    }
+            #[inline(always)]
+            fn stored(self) -> u8 {
+                <$raw>::from(self).into_inner()
+            }
 
-    fn channels(self) -> [u8; 3] {
-        [self.luma(); 3]
-    }
+            #[inline(always)]
+            fn from_stored(stored: u8) -> Self {
+                <$raw>::new(stored).into()
+            }
 
-    fn bits(self) -> u32 {
-        self.luma().into()
-    }
+            fn channels(self) -> [u8; 3] {
+                [self.stored(); 3]
+            }
+
+            fn bits(self) -> u32 {
+                self.stored().into()
+            }
+        }
+    };
 }
 
-impl Pixel for Gray4 {
-    type Stored = u8;
-
-    const GRAY: bool = true;
-    const DEPTH: [u32; 3] = [4; 3];
-    const BYTES: usize = 1;
-
-    #[inline(always)]
-    fn pack([luma, ..]: [u32; 3]) -> Self {
-        Self::new(luma as u8)
-    }
-
-    #[inline(always)]
-    fn stored(self) -> u8 {
-        RawU4::from(self).into_inner()
-    }
-
-    #[inline(always)]
-    fn from_stored(stored: u8) -> Self {
-        RawU4::new(stored).into()
-    }
-
-    fn channels(self) -> [u8; 3] {
-        [self.luma(); 3]
-    }
-
-    fn bits(self) -> u32 {
-        self.luma().into()
-    }
-}
+gray!(Gray8, RawU8, 8);
+gray!(Gray4, RawU4, 4);
+gray!(Gray2, RawU2, 2);
+gray!(BinaryColor, RawU1, 1);
 
 /// RGB565 with the high byte first in memory, as serial displays want it: a band can be handed to the bus as it is, without a copy. The
 /// order costs nothing, since colours come from tables.
@@ -237,6 +234,28 @@ pub struct Rgb565Be(u16);
 impl Rgb565Be {
     /// Black.
     pub const BLACK: Self = Self(0);
+}
+
+impl PixelColor for Rgb565Be {
+    type Raw = RawU16;
+}
+
+impl From<RawU16> for Rgb565Be {
+    fn from(raw: RawU16) -> Self {
+        Self(raw.into_inner().to_be())
+    }
+}
+
+impl From<Rgb565Be> for RawU16 {
+    fn from(Rgb565Be(bytes): Rgb565Be) -> Self {
+        Self::new(u16::from_be(bytes))
+    }
+}
+
+impl From<Rgb565> for Rgb565Be {
+    fn from(color: Rgb565) -> Self {
+        RawU16::from(color).into()
+    }
 }
 
 impl Pixel for Rgb565Be {
