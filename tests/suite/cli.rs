@@ -407,12 +407,12 @@ fn stress_takes_a_budget() {
     place.fails(&["stress", "--only", "coverage", "--budget", "1"], 2, &["--budget", "--only"]);
 }
 
-/// The help of `convert` names the methods of the core, and those of the small board.
+/// The help of `convert` names all methods, and those of the small board.
 #[test]
 fn help_names_the_methods_of_boards() {
     let help = Place::new().succeeds(&["convert", "--help"]).split_whitespace().collect::<Vec<_>>().join(" ");
-    let names = Shader::CORE.map(Shader::name).join(", ");
-    assert!(help.contains(&format!("asks for: {names}, or one of the literature")), "{help}");
+    let names = Shader::ALL.map(Shader::name).join(", ");
+    assert!(help.contains(&format!("[possible values: {names}]")), "{help}");
     for board in Board::ALL {
         let has = Shader::ALL.into_iter().filter(|&shader| board.has(shader));
         let names: Vec<_> = has.map(Shader::name).collect();
@@ -531,6 +531,16 @@ fn sealed_nonsense_is_refused_or_drawn_but_never_crashes() {
     assert!(refused > 100 && drawn > 100, "{refused} refused, {drawn} drawn");
 }
 
+/// A board that lacks a method is told and left out where all are asked for.
+#[test]
+fn verify_leaves_out_boards_without_a_method() {
+    let place = Place::new();
+    let lines = place.succeeds(&["verify", "--board", "all", "--scene", "triangle", "--shader", "sqrt6", "--frames", "1", "--json"]);
+    let lines: Vec<serde_json::Value> = lines.lines().map(|line| serde_json::from_str(line).expect("JSON")).collect();
+    assert_eq!((lines.len(), &lines[0]["board"], &lines[0]["lacking"]), (4, &"lm3s6965evb".into(), &true.into()));
+    assert!(lines[1..].iter().all(|line| line["differing"] == 0), "{lines:?}");
+}
+
 /// Materials are told, and what a file has besides; a colour of the command line takes their place. Errors name the file of the materials.
 #[test]
 fn convert_takes_materials() {
@@ -539,6 +549,7 @@ fn convert_takes_materials() {
     place.file("two.obj", two).file("paint.mtl", "newmtl red\nKd 1 0 0\nnewmtl blue\nKd 0 0 1\nmap_Kd blue.png\n");
     let said = place.succeeds(&["convert", "two.obj"]);
     assert!(said.contains("2 materials") && said.contains("left out: texture coordinates, textures"), "{said}");
+    assert!(said.contains("Layout::new(640, 16).vertices(15).triangles(5).materials(2)"), "{said}");
     let json = |arguments: &[&str]| serde_json::from_str::<serde_json::Value>(place.succeeds(arguments).trim()).expect("JSON");
     let line = json(&["convert", "two.obj", "--json"]);
     assert_eq!((&line["materials"], &line["meshes"]), (&2.into(), &2.into()));

@@ -2,14 +2,15 @@
 
 use super::{Outcome, Usage, parse, report};
 use anyhow::{Context, Result};
-use microphong::format::ErrorBudget;
+use embedded_graphics_core::pixelcolor::Rgb565;
+use microphong::{Layout, format::ErrorBudget};
 use microphong_sim::{
     import::{self, Imported},
     levels,
     look::{BACKGROUND, Lamp, Look, Surface},
     mesh::{CREASE, Weld},
     output,
-    quantise::quantise,
+    quantise::{Part, quantise},
     scene::{AMBIENT, COPPER, DISTANCE, MARGIN, ORBIT},
     shader::Shader,
     vector::V3,
@@ -44,9 +45,8 @@ pub(crate) struct Arguments {
     /// Where a file without normals has no smoothing groups, edges that fold by more are seen: 0 shows all facets, 180 none.
     #[arg(long, value_name = "DEGREES", default_value_t = CREASE, value_parser = parse::crease)]
     crease: f64,
-    /// Shading method that the stream asks for: flat, gouraud, six-point, phong, sqrt6, renq-newton, auto, auto-linear, or one of the
-    /// literature, as `microphong compare` lists them. The board lm3s6965evb has flat, gouraud, phong and auto-linear, the others have all.
-    #[arg(long, default_value = "auto", value_parser = parse::shader)]
+    /// Shading method that the stream asks for. The board lm3s6965evb has flat, gouraud, phong and auto-linear, the others have all.
+    #[arg(long, default_value = "auto", value_parser = parse::Shaders)]
     shader: Shader,
     /// How far a pixel may be off from Phong shading by auto or auto-linear, in 1/255, 0.5 to 16.
     #[arg(long, value_name = "LSB", default_value = "1", value_parser = parse::budget)]
@@ -126,6 +126,8 @@ struct Line<'a> {
     closed_convex: bool,
     levels: Vec<Level>,
     bytes: usize,
+    layout: String,
+    memory: usize,
     remarks: Vec<String>,
 }
 
@@ -175,6 +177,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome> {
     let bytes = look.stream(&parts).with_context(place)?;
     report::leave_to(&target);
     output::write(&target, bytes.as_bytes())?;
+    let layout = layout(arguments.size, &parts, look.surfaces.len());
     let line = Line {
         mesh: &source.to_string_lossy(),
         output: &target.to_string_lossy(),
@@ -190,6 +193,8 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome> {
         closed_convex: parts.iter().all(|part| part.closed_convex),
         levels: parts.iter().enumerate().flat_map(|(mesh, part)| part.coarser.iter().map(move |level| of(mesh, level))).collect(),
         bytes: bytes.as_bytes().len(),
+        layout: text_of(&layout),
+        memory: layout.bytes::<Rgb565>(),
         remarks,
     };
     if arguments.json {
@@ -198,6 +203,24 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome> {
         text(&line)?;
     }
     Ok(Outcome::Done)
+}
+
+/// Rows of a band, where nobody says how many.
+const ROWS: usize = 16;
+
+/// Room for all triangles that can be seen at once, drawn in bands.
+fn layout((width, _): (u32, u32), parts: &[Part], materials: usize) -> Layout {
+    let sum = |of: fn(&Part) -> usize| parts.iter().map(of).sum();
+    Layout::new(width as usize, ROWS)
+        .vertices(sum(|part| part.vertices.len()))
+        .triangles(sum(|part| part.triangles.len()))
+        .materials(materials)
+}
+
+/// A layout as a program has it.
+fn text_of(layout: &Layout) -> String {
+    let Layout { width, rows, vertices, triangles, materials, .. } = layout;
+    format!("Layout::new({width}, {rows}).vertices({vertices}).triangles({triangles}).materials({materials})")
 }
 
 fn of(mesh: usize, level: &levels::Level) -> Level {
@@ -234,6 +257,11 @@ fn text(line: &Line<'_>) -> Result<()> {
     for Level { triangles, error, .. } in &line.levels {
         report::line(&format!("  a level of {} triangles, less than {error:.4} from the mesh", count(*triangles)))?;
     }
+    let memory = count(line.memory);
+    report::line(&format!(
+        "  room for all of it in a program, {memory} bytes of memory in Rgb565 beside a band of pixels:\n    {}",
+        line.layout
+    ))?;
     let crossed = match line.crossed {
         0 => return Ok(()),
         1 => "1 polygon crosses itself; split it".to_owned(),

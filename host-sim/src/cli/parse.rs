@@ -1,5 +1,9 @@
 //! Values on the command line.
 
+use clap::{
+    Arg, Command,
+    builder::{PossibleValue, TypedValueParser},
+};
 use microphong::{
     MAX_SIDE,
     format::{ErrorBudget, LARGEST_BUDGET, LEAST_BUDGET},
@@ -12,6 +16,7 @@ use microphong_sim::{
     vector::{V3, unit},
     view::{Projection, Up},
 };
+use std::ffi::OsStr;
 
 /// The value among `all` that has the name `text`.
 pub(crate) fn among<T: Copy>(text: &str, all: &[T], name: impl Fn(T) -> &'static str) -> Result<T, String> {
@@ -51,6 +56,22 @@ pub(crate) fn shaders(text: &str) -> Result<Several<Shader>, String> {
 /// Papers by name.
 pub(crate) fn topics(text: &str) -> Result<Several<Topic>, String> {
     several(text, &Topic::ALL, |text| among(text, &Topic::ALL, Topic::name))
+}
+
+/// A shading method by name, of which help lists all.
+#[derive(Clone)]
+pub(crate) struct Shaders;
+
+impl TypedValueParser for Shaders {
+    type Value = Shader;
+
+    fn parse_ref(&self, command: &Command, argument: Option<&Arg>, value: &OsStr) -> Result<Shader, clap::Error> {
+        shader.parse_ref(command, argument, value)
+    }
+
+    fn possible_values(&self) -> Option<Box<dyn Iterator<Item = PossibleValue> + '_>> {
+        Some(Box::new(Shader::ALL.into_iter().map(|shader| PossibleValue::new(shader.name()))))
+    }
 }
 
 /// A shading method by name.

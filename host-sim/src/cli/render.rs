@@ -25,7 +25,7 @@ pub(crate) struct Arguments {
     /// A .tri or .obj file, or a built-in scene; `microphong scenes` lists them.
     scene: String,
     /// Shading method; the scene's own unless given. `microphong compare` shows what each is worth.
-    #[arg(long, value_parser = parse::shader)]
+    #[arg(long, value_parser = parse::Shaders)]
     shader: Option<Shader>,
     /// How far a pixel may be off from Phong shading by auto or auto-linear, in 1/255, 0.5 to 16; the scene's own unless given.
     #[arg(long, value_name = "LSB", value_parser = parse::budget)]

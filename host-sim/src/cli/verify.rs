@@ -13,6 +13,7 @@ use microphong_sim::{
     shader::Shader,
     verify::{self, Report, Request},
 };
+use serde::Serialize;
 use std::path::PathBuf;
 
 /// Draw scenes with a board's own firmware, emulated, and compare every pixel with this computer.
@@ -61,8 +62,15 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome> {
     // Of all methods those that the board has and that can shade the scene.
     let wanted = |board: Board, scene: &Scene, shader: Shader| {
         let possible = scene.stream.parse().is_ok_and(|stream| check(&stream, shader.facts(), false).is_ok());
-        !shaders.all || board.has(shader) && possible
+        if shaders.all { board.has(shader) && possible } else { board.has(shader) || !arguments.board.all }
     };
+    if arguments.board.all && !shaders.all {
+        for (board, shader) in boards.iter().flat_map(|&board| shaders.values.iter().map(move |&shader| (board, shader))) {
+            if !board.has(shader) {
+                lacking(board, shader, arguments.json)?;
+            }
+        }
+    }
     let mut runs = Vec::new();
     for &board in boards {
         for scene in &scenes {
@@ -107,6 +115,23 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome> {
         bail!("{failed} of {count} comparisons failed");
     }
     Ok(if differ > 0 { Outcome::Differences } else { Outcome::Done })
+}
+
+/// A method that a board has no room for.
+#[derive(Serialize)]
+struct Lacking {
+    board: Board,
+    shader: &'static str,
+    lacking: bool,
+}
+
+/// Tells that a board is left out.
+fn lacking(board: Board, shader: Shader, json: bool) -> Result<()> {
+    if json {
+        return report::json(&Lacking { board, shader: shader.name(), lacking: true });
+    }
+    let has: Vec<_> = Shader::ALL.into_iter().filter(|&shader| board.has(shader)).map(Shader::name).collect();
+    report::line(&format!("{board} is left out, it has no {}; it has {}", shader.name(), has.join(", ")))
 }
 
 fn text(result: &Report, artefacts: &std::path::Path) -> Result<()> {
