@@ -90,7 +90,7 @@ pub mod renderer;
 #[doc(hidden)]
 pub mod setup;
 
-pub use display::Picture;
+pub use display::{BandTarget, Picture, PictureWithOverlay};
 pub use error::{MAX_SIDE, RenderError};
 pub use fixed;
 pub use frame::{Frame, FrameInTwo, FramePart, Preparation, PreparationPart, Skips, Stats};

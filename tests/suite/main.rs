@@ -24,6 +24,7 @@ mod levels;
 mod numerics;
 mod oracle;
 mod oracle_methods;
+mod overlay;
 mod panic_free;
 mod papers;
 mod peers;
