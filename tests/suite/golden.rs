@@ -79,7 +79,7 @@ fn check_picture(name: &str, scene: &Scene, settings: &Settings, bless: bool) ->
 /// The streams that firmware is built with: the teapot as `convert --crease 180` makes it, by a method that the board has.
 #[test]
 fn firmware_has_the_teapot() {
-    let stream = scene::from_obj(&root().join("meshes/teapot.obj"), Weld::SMOOTH).expect("a mesh");
+    let stream = scene::from_mesh(&root().join("meshes/teapot.obj"), Weld::SMOOTH).expect("a mesh");
     let frames = stream.parse().expect("a stream").header.frames;
     for (file, board) in [("teapot.tri", Board::Pico), ("boards/lm3s6965evb.tri", Board::Lm3s6965evb)] {
         let path = root().join("../firmware").join(file);

@@ -1,11 +1,10 @@
-//! Files that are no OBJ: recognised, so that an error can say what they are and what helps.
+//! Files of formats that are not read: recognised, so that an error can say what they are and what helps.
 
 use anyhow::{Result, bail};
 use std::path::Path;
 
 /// What other formats are called, by the ending of their files.
-const ENDINGS: [(&str, &str); 10] = [
-    ("stl", "STL"),
+const ENDINGS: [(&str, &str); 9] = [
     ("ply", "PLY"),
     ("gltf", "glTF"),
     ("glb", "glTF"),
@@ -17,7 +16,7 @@ const ENDINGS: [(&str, &str); 10] = [
     ("blend", "Blender"),
 ];
 
-/// Passes what may be an OBJ file.
+/// Passes what may be an OBJ or STL file.
 ///
 /// # Errors
 /// Names the file, its format, and what makes an OBJ of it.
@@ -30,7 +29,7 @@ pub(crate) fn refuse(path: &Path, bytes: &[u8]) -> Result<()> {
         let obj = path.with_extension("obj");
         let obj = if obj == path { path.with_extension("new.obj") } else { obj };
         bail!(
-            "{name}: a mesh in the format {format}; OBJ is needed: export it as OBJ, for example with Blender, or run\n  assimp export {name} {}",
+            "{name}: a mesh in the format {format}; OBJ or STL is needed: export it as OBJ, for example with Blender, or run\n  assimp export {name} {}",
             obj.display()
         );
     }
@@ -39,24 +38,16 @@ pub(crate) fn refuse(path: &Path, bytes: &[u8]) -> Result<()> {
 
 fn by_content(bytes: &[u8]) -> Option<&'static str> {
     let text = bytes.strip_prefix(b"\xEF\xBB\xBF").unwrap_or(bytes).trim_ascii_start();
-    let starts: [(&[u8], &str); 7] = [
+    let starts: [(&[u8], &str); 6] = [
         (b"glTF", "glTF"),
         // JSON.
         (b"{", "glTF"),
-        (b"solid", "STL"),
         (b"ply\n", "PLY"),
         (b"ply\r", "PLY"),
         (b"Kaydara FBX", "FBX"),
         (b"BLENDER", "Blender"),
     ];
-    let start = starts.iter().find(|(start, _)| text.starts_with(start)).map(|&(_, format)| format);
-    start.or_else(|| is_binary_stl(bytes).then_some("STL"))
-}
-
-/// A head of 80 bytes, the number of triangles, and 50 bytes for each. Text never is: its number would be too large.
-fn is_binary_stl(bytes: &[u8]) -> bool {
-    let count = bytes.get(80..).and_then(|rest| rest.first_chunk()).map(|&count| u32::from_le_bytes(count));
-    count.is_some_and(|count| bytes.len() as u64 == 84 + 50 * u64::from(count))
+    starts.iter().find(|(start, _)| text.starts_with(start)).map(|&(_, format)| format)
 }
 
 fn by_ending(path: &Path) -> Option<&'static str> {

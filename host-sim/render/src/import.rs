@@ -6,6 +6,7 @@ use crate::{
     mesh::{self, Mesh, Report, Weld},
     mtl,
     obj::{self, Obj},
+    stl,
 };
 use anyhow::{Context, Result};
 use std::{fs, path::Path};
@@ -29,15 +30,20 @@ pub fn surfaces(materials: &[Option<mtl::Material>], other: &Surface, ambient_li
     materials.iter().map(|material| material.as_ref().map_or(*other, |material| material.surface(ambient_light))).collect()
 }
 
-/// Reads and welds an OBJ file, and the files of its materials beside it.
+/// Reads and welds an OBJ file with the files of its materials beside it, or an STL file.
 ///
 /// # Errors
 /// Names the file and the line.
-pub fn obj(path: &Path, weld: Weld) -> Result<Imported> {
+pub fn file(path: &Path, weld: Weld) -> Result<Imported> {
     let place = || path.display().to_string();
     let bytes = read(path)?;
     foreign::refuse(path, &bytes)?;
-    let Obj { soup, materials: names, libraries, mut ignored } = obj::parse(&String::from_utf8_lossy(&bytes)).with_context(place)?;
+    let obj = if stl::is_stl(&bytes) {
+        stl::parse(&bytes).map(|soup| Obj { soup, materials: vec![None], ..Obj::default() })
+    } else {
+        obj::parse(&String::from_utf8_lossy(&bytes))
+    };
+    let Obj { soup, materials: names, libraries, mut ignored } = obj.with_context(place)?;
     let (mesh, report) = mesh::weld(&soup, weld).with_context(place)?;
     let (mut known, mut remarks) = (Vec::new(), Vec::new());
     if names.iter().any(Option::is_some) {

@@ -21,5 +21,6 @@ pub mod render;
 pub mod scene;
 pub mod shader;
 pub mod shapes;
+pub mod stl;
 pub mod vector;
 pub mod view;

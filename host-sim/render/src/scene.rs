@@ -72,7 +72,7 @@ pub struct Unknown(String);
 
 impl fmt::Display for Unknown {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "unknown scene {:?}; name a .tri or .obj file, or one of: {}, {}", self.0, NAMES.join(", "), VARIANTS.join(", "))
+        write!(f, "unknown scene {:?}; name a .tri, .obj or .stl file, or one of: {}, {}", self.0, NAMES.join(", "), VARIANTS.join(", "))
     }
 }
 
@@ -94,7 +94,7 @@ const BLUE: V3 = [0.25, 0.5, 0.95];
 const TEAPOT: &str = include_str!("../../../tests/meshes/teapot.obj");
 const BUNNY: &str = include_str!("../../../tests/meshes/bunny.obj");
 
-/// Loads a built-in scene, a `.tri` or an `.obj` file.
+/// Loads a built-in scene, a `.tri`, an `.obj` or an `.stl` file.
 ///
 /// # Errors
 /// [`Unknown`] when `name_or_path` is neither; else what is wrong with the file.
@@ -107,7 +107,7 @@ pub fn load(name_or_path: &str) -> Result<Scene> {
     let ending = path.extension().map(|e| e.to_ascii_lowercase());
     let stream = match ending.as_deref().and_then(|e| e.to_str()) {
         Some("tri") => StreamBytes::read(path)?,
-        Some("obj") => from_obj(path, Weld::default())?,
+        Some("obj" | "stl") => from_mesh(path, Weld::default())?,
         _ => {
             if path.is_file() {
                 foreign::refuse(path, &read(path)?)?;
@@ -119,12 +119,12 @@ pub fn load(name_or_path: &str) -> Result<Scene> {
     Ok(Scene { name, stream, size: SIZE })
 }
 
-/// A mesh from an OBJ file as `convert` without options makes it, but for how it is welded.
+/// A mesh from an OBJ or STL file as `convert` without options makes it, but for how it is welded.
 ///
 /// # Errors
 /// Names the file, and what is wrong with it.
-pub fn from_obj(path: &Path, weld: Weld) -> Result<StreamBytes> {
-    let Imported { mesh, materials, .. } = import::obj(path, weld)?;
+pub fn from_mesh(path: &Path, weld: Weld) -> Result<StreamBytes> {
+    let Imported { mesh, materials, .. } = import::file(path, weld)?;
     let view = View::orbit(Up::Y, 0.5, 0.35, DISTANCE, ORBIT).fit(&mesh.positions, SQUARE, MARGIN);
     let look = Look { surfaces: surfaces(&materials, &default_surface(), AMBIENT), ..Look::new(default_surface(), view) };
     look.stream(&quantise(&mesh).0).with_context(|| path.display().to_string())

@@ -349,11 +349,11 @@ fn materials_become_meshes() {
     let path = directory.path().join("cube.obj");
     let text = cube(["mtllib a.mtl\nusemtl red", "usemtl blue", "usemtl nowhere", "usemtl red", "", "usemtl blue"]);
     fs::write(&path, text).unwrap();
-    let remarks = import::obj(&path, Weld::SMOOTH).unwrap().remarks;
+    let remarks = import::file(&path, Weld::SMOOTH).unwrap().remarks;
     assert!(remarks[0].contains("a.mtl cannot be read") && remarks[1].ends_with("red, blue, nowhere"), "{remarks:?}");
     fs::write(directory.path().join("a.mtl"), "newmtl blue\nKd 0.1 0.2 0.9\nNs 50\nnewmtl red\nKd 0.9 0 0\nKs 0.25 0.25 0.25\nd 0.5")
         .unwrap();
-    let imported = import::obj(&path, Weld::SMOOTH).unwrap();
+    let imported = import::file(&path, Weld::SMOOTH).unwrap();
     assert_eq!(
         imported.remarks,
         ["drawn in the colour of the command line, because no file says what they are: nowhere", "left out: transparency"]

@@ -19,7 +19,7 @@ use microphong_sim::{
 use serde::Serialize;
 use std::path::PathBuf;
 
-/// Convert a Wavefront OBJ mesh to a stream for a board's flash.
+/// Convert a mesh, Wavefront OBJ or STL, to a stream for a board's flash.
 ///
 /// Normals come from the file when every corner has one, else from the
 /// polygons around each vertex: light is smooth within the file's smoothing groups, or where it has
@@ -142,7 +142,7 @@ struct Level {
 pub(crate) fn run(arguments: &Arguments) -> Result<Outcome> {
     let source = &arguments.mesh;
     if source.extension().is_some_and(|e| e.eq_ignore_ascii_case("tri")) {
-        return Err(Usage(format!("{} is a stream already; name an .obj file", source.display())).into());
+        return Err(Usage(format!("{} is a stream already; name an .obj or .stl file", source.display())).into());
     }
     let target = arguments.output.clone().unwrap_or_else(|| source.with_extension("tri"));
     let same = |path: &std::path::Path| path.canonicalize().ok();
@@ -150,7 +150,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome> {
         return Err(Usage(format!("{} would overwrite the mesh; name another file with -o", target.display())).into());
     }
     let Imported { mut mesh, report, mut materials, mut remarks } =
-        import::obj(source, Weld { turn: arguments.flip, crease: arguments.crease })?;
+        import::file(source, Weld { turn: arguments.flip, crease: arguments.crease })?;
     if arguments.colour.is_some() && materials.iter().any(Option::is_some) {
         remarks.push(format!("{} materials of the file have the one colour of --colour", materials.iter().flatten().count()));
         (mesh.materials, materials) = (Vec::new(), vec![None]);
