@@ -91,12 +91,19 @@ pub(super) fn draw_one<C: Pixel>(setup: &TriangleSetup<'_>, raise: i32, tables: 
     setup.fill(|| level_field(levels()).fit(setup.gradients), Ramp(tables.ramp), band)
 }
 
+/// Whether a triangle of three channels under one constant light is a ramp of the table of colours: no corner has a highlight.
+#[inline(always)]
+pub(super) fn has_ramp(setup: &TriangleSetup<'_>, reflectance: &Reflectance) -> bool {
+    let [a, b, c] = setup.corners;
+    a.light[2] | b.light[2] | c.light[2] == 0 && reflectance.has_ramp()
+}
+
 /// Draws a triangle of three channels under one constant light, all levels `raise` more; returns the number of its pixels in `band`.
 #[inline(always)]
 pub(super) fn draw_three<C: Pixel>(setup: &TriangleSetup<'_>, raise: i32, tables: MaterialTables<'_, C>, band: &mut Band<'_, C>) -> u32 {
     let ([a, b, c], reflectance) = (setup.corners, tables.reflectance);
     // By the table of colours where the light has no highlight.
-    if a.light[2] | b.light[2] | c.light[2] == 0 && reflectance.has_ramp() {
+    if has_ramp(setup, reflectance) {
         let level = |[cosine, ..]: [i32; 4]| reflectance.ramp_level(cosine) + raise;
         let levels = || [level(a.light), level(b.light), level(c.light)];
         return setup.fill(|| one(setup.gradients, levels()), Ramp(tables.ramp), band);

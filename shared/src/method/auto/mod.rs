@@ -67,9 +67,8 @@ fn half_way(setup: &TriangleSetup<'_>, k: usize, floor: i32) -> i32 {
 #[must_use]
 pub fn raises(choice: Choice, setup: &TriangleSetup<'_>, shading: &Shading<'_>) -> [i32; 3] {
     let (Choice::Solid(raise) | Choice::Linear(raise)) = choice else { return [0; 3] };
-    let ([a, b, c], reflectance) = (setup.corners, shading.reflectance);
-    let has_levels = !shading.vertices_have_cosines() || !reflectance.three_channels();
-    let by_table = !has_levels && a.light[2] | b.light[2] | c.light[2] == 0 && reflectance.has_ramp();
+    let reflectance = shading.reflectance;
+    let by_table = shading.vertices_have_cosines() && reflectance.three_channels() && gouraud::has_ramp(setup, reflectance);
     if by_table { reflectance.ramp_rise(raise) } else { [raise; 3] }
 }
 
@@ -89,12 +88,12 @@ fn middle(setup: &TriangleSetup<'_>, shading: &Shading<'_>, raises: [i32; 3]) ->
 /// The colour of these levels; by a table of colours where that is sooner looked up.
 #[inline(never)]
 fn solid<C: Pixel>(setup: &TriangleSetup<'_>, shading: &Shading<'_>, raise: i32, tables: MaterialTables<'_, C>) -> C {
-    let ([a, b, c], reflectance) = (setup.corners, shading.reflectance);
+    let reflectance = shading.reflectance;
     if shading.vertices_have_cosines() {
         if !reflectance.three_channels() {
             return tables.tint(half_way(setup, 2, 0) + raise);
         }
-        if a.light[2] | b.light[2] | c.light[2] == 0 && reflectance.has_ramp() {
+        if gouraud::has_ramp(setup, reflectance) {
             return tables.tint(reflectance.ramp_level(half_way(setup, 0, 0)) + raise);
         }
     }
