@@ -383,6 +383,8 @@ fn wrong_usage_is_told_from_failure() {
     place.fails(&["convert", "good.obj", "--crease", "181"], 2, &["--crease", "0 to 180"]);
     place.fails(&["convert", "good.obj", "--light", "1,2"], 2, &["--light", "three numbers"]);
     place.fails(&["convert", "good.obj", "--light", "0,0,0"], 2, &["--light", "direction"]);
+    let nine = ["--light", "1,0,0"].repeat(9);
+    place.fails(&[&["convert", "good.obj"], &nine[..]].concat(), 2, &["9 times --light", "8 lights"]);
     place.fails(&["convert", "good.obj", "--light", "1,0,0:red"], 2, &["--light", "hexadecimal"]);
     place.fails(&["convert", "good.obj", "--diffuse", "nan"], 2, &["--diffuse"]);
     place.fails(&["convert", "good.obj", "-o", "good.obj"], 2, &["overwrite"]);

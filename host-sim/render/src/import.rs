@@ -48,15 +48,20 @@ pub fn file(path: &Path, weld: Weld) -> Result<Imported> {
     let (mut known, mut remarks) = (Vec::new(), Vec::new());
     if names.iter().any(Option::is_some) {
         for library in libraries {
-            let path = path.with_file_name(&library);
-            // A mesh is of use without its materials.
-            let Ok(bytes) = fs::read(&path) else {
-                remarks.push(format!("{} cannot be read: put it beside the mesh for the materials in it", path.display()));
-                continue;
-            };
-            let mtl = mtl::parse(&String::from_utf8_lossy(&bytes)).with_context(|| path.display().to_string())?;
-            known.extend(mtl.materials);
-            ignored.extend(mtl.ignored);
+            // One name with blanks in it, or several names.
+            let whole = path.with_file_name(&library);
+            let files =
+                if whole.is_file() { vec![whole] } else { library.split_whitespace().map(|name| path.with_file_name(name)).collect() };
+            for path in files {
+                // A mesh is of use without its materials.
+                let Ok(bytes) = fs::read(&path) else {
+                    remarks.push(format!("{} cannot be read: put it beside the mesh for the materials in it", path.display()));
+                    continue;
+                };
+                let mtl = mtl::parse(&String::from_utf8_lossy(&bytes)).with_context(|| path.display().to_string())?;
+                known.extend(mtl.materials);
+                ignored.extend(mtl.ignored);
+            }
         }
     }
     let materials: Vec<_> = names.iter().map(|name| known.iter().find(|material| Some(&material.name) == name.as_ref()).cloned()).collect();

@@ -112,7 +112,7 @@ fn strip(line: &str) -> &str {
     line.split('#').next().unwrap_or_default().trim_end()
 }
 
-pub(crate) fn vector<'a>(mut words: impl Iterator<Item = &'a str>) -> Result<[f64; 3]> {
+fn vector<'a>(mut words: impl Iterator<Item = &'a str>) -> Result<[f64; 3]> {
     let mut vector = [0.0; 3];
     for (component, axis) in vector.iter_mut().zip(["x", "y", "z"]) {
         let word = words.next().with_context(|| format!("{axis} is missing; three numbers are needed"))?;

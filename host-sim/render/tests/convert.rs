@@ -358,6 +358,10 @@ fn materials_become_meshes() {
         imported.remarks,
         ["drawn in the colour of the command line, because no file says what they are: nowhere", "left out: transparency"]
     );
+    // A line may name several files, of which one is missing here.
+    fs::write(&path, fs::read_to_string(&path).unwrap().replace("a.mtl", "b.mtl a.mtl")).unwrap();
+    let several = import::file(&path, Weld::SMOOTH).unwrap();
+    assert!(several.materials == imported.materials && several.remarks[0].contains("b.mtl cannot be read"), "{:?}", several.remarks);
     let (parts, dropped) = quantise(&imported.mesh);
     assert_eq!(
         (dropped, parts.iter().map(|part| (part.material, part.triangles.len())).collect::<Vec<_>>()),

@@ -3,7 +3,10 @@
 use super::{Outcome, Usage, parse, report};
 use anyhow::{Context, Result};
 use embedded_graphics_core::pixelcolor::Rgb565;
-use microphong::{Layout, format::ErrorBudget};
+use microphong::{
+    Layout,
+    format::{ErrorBudget, MAX_LIGHTS},
+};
 use microphong_sim::{
     import::{self, Imported},
     levels,
@@ -143,6 +146,9 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome> {
     let source = &arguments.mesh;
     if source.extension().is_some_and(|e| e.eq_ignore_ascii_case("tri")) {
         return Err(Usage(format!("{} is a stream already; name an .obj or .stl file", source.display())).into());
+    }
+    if arguments.lights.len() > MAX_LIGHTS {
+        return Err(Usage(format!("{} times --light; a scene has {MAX_LIGHTS} lights at most", arguments.lights.len())).into());
     }
     let target = arguments.output.clone().unwrap_or_else(|| source.with_extension("tri"));
     let same = |path: &std::path::Path| path.canonicalize().ok();
