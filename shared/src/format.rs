@@ -4,7 +4,7 @@
 //! format and domain, and conversions from floating point round to the nearest. Inside the loops a value is a plain integer whose fraction
 //! bits are one of the constants below.
 
-use fixed::types::{I2F14, I2F30, I18F14, I28F4, U0F16, U1F15, U2F14, U5F3, U14F2, U16F16};
+use fixed::types::{I2F14, I2F30, I18F14, I28F4, U0F16, U0F32, U1F15, U2F14, U5F3, U14F2, U16F16};
 
 /// Screen coordinate, pixels, Q28.4: pixel centres lie at 8/16. Corners are rounded to the nearest sixteenth.
 pub type Subpixel = I28F4;
@@ -22,6 +22,10 @@ pub type Gain = U2F14;
 pub type Rotation = I2F30;
 /// Focal length in half sides of the viewport, unsigned Q16.16; streams use [1/16, 16].
 pub type Focal = U16F16;
+/// How large an object is in the world, unsigned Q16.16; scenes use [1/16, 8].
+pub type Scale = U16F16;
+/// Angle as a fraction of a turn, unsigned Q0.32 in [0, 1): sums wrap as angles do.
+pub type Angle = U0F32;
 /// Haversine of the angle between two unit normals, (1 - N1·N2)/2 = 1 - |N1+N2|²/4; unsigned Q0.16 in [0, 1).
 pub type Haversine = U0F16;
 /// Least length of an interpolated normal, unsigned Q1.15 in [0, 1].

@@ -30,7 +30,7 @@
 //! The command `microphong convert mesh.obj -o mesh.tri`, from the repository of this crate, makes such a file.
 //!
 //! Per-pixel normalisation and powers are replaced by polynomials that are walked with integer additions. The modules follow the way of the
-//! data, each using only those above it (tests/suite/layers.rs reads the imports). The interface is the crate's root, [`stream`], [`pixel`]
+//! data, each using only those above it (tests/suite/layers.rs reads the imports). The interface is the crate's root, [`stream`], [`scene`], [`pixel`]
 //! and, for methods of your own, [`method`], [`math`] and [`format`](mod@format). All other modules are no part of it and may change in any
 //! release: those that are public are so for microphong's own tests and tools alone.
 //!
@@ -41,6 +41,7 @@
 //! | [`math`] | reciprocal, root, lookup table of highlights, vectors, in integers |
 //! | [`pixel`] | pixel formats and ordered dither |
 //! | [`stream`] | bytes in flash to a checked view of meshes, lights and camera |
+//! | [`scene`] | what is drawn: objects in the world, lights, a camera |
 //! | `geometry` | object space to the screen, and what need not be drawn |
 //! | `lighting` | lights, and what materials reflect of them |
 //! | `setup` | edges and gradients of a triangle |
@@ -50,11 +51,12 @@
 //! | `antialias` | pixels on the edges of triangles |
 //! | [`method`] | the shading methods, and what a method of your own needs |
 //! | `mesh` | the triangles of one mesh in one frame |
+//! | `placement` | where an object is in one frame |
 //! | `shader` | a method together with its loops: [`Shader`] |
 //! | `error` | why a renderer cannot draw: [`RenderError`] |
 //! | `memory` | the memory that rendering takes: [`Layout`] |
 //! | `frame` | one frame, band by band: [`Frame`] |
-//! | `renderer` | the frames of one stream: [`Renderer`] |
+//! | `renderer` | the frames of a scene: [`Renderer`] |
 //! | `display` | frames onto embedded-graphics displays: [`Picture`] |
 #![no_std]
 #![forbid(unsafe_code)]
@@ -69,6 +71,8 @@ mod memory;
 mod mesh;
 pub mod method;
 pub mod pixel;
+mod placement;
+pub mod scene;
 mod shader;
 pub mod stream;
 
@@ -98,6 +102,8 @@ pub use memory::Layout;
 pub use raster::counts::Counts;
 #[doc(inline)]
 pub use renderer::Renderer;
+#[doc(inline)]
+pub use scene::{Object, Pose, Scene, SceneError};
 pub use shader::Shader;
 #[doc(inline)]
 pub use stream::{Stream, StreamError};

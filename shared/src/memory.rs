@@ -7,7 +7,9 @@ use crate::{
     lighting::reflectance::Reflectance,
     method::ErrorBounds,
     pixel::Pixel,
+    placement::Placement,
     raster::active::ActiveTriangle,
+    scene::{Object, SceneMaterial},
 };
 use zerocopy::{FromBytes, Immutable, IntoBytes, KnownLayout};
 
@@ -35,6 +37,8 @@ pub struct Layout {
     pub triangles: usize,
     /// Materials of the stream.
     pub materials: usize,
+    /// Objects of the scene.
+    pub objects: usize,
     /// Triangles that are kept from one band to the next, 128 bytes each. If more cross a border, the next band sets up the remaining ones
     /// anew.
     pub active_triangles: usize,
@@ -43,11 +47,11 @@ pub struct Layout {
 }
 
 impl Layout {
-    /// A layout for pictures of `width` columns in bands of `rows` rows. It has room for 1,024 vertices, 1,024 triangles, one material and
-    /// 48 triangles across the border of a band, and none for antialiasing.
+    /// A layout for pictures of `width` columns in bands of `rows` rows. It has room for 1,024 vertices, 1,024 triangles, one material, one
+    /// object and 48 triangles across the border of a band, and none for antialiasing.
     #[must_use]
     pub const fn new(width: usize, rows: usize) -> Self {
-        Self { width, rows, processors: 1, vertices: 1024, triangles: 1024, materials: 1, active_triangles: 48, antialias: false }
+        Self { width, rows, processors: 1, vertices: 1024, triangles: 1024, materials: 1, objects: 1, active_triangles: 48, antialias: false }
     }
 
     /// Changes how many processors draw at the same time: 1 or 2.
@@ -72,6 +76,12 @@ impl Layout {
     #[must_use]
     pub const fn materials(self, materials: usize) -> Self {
         Self { materials, ..self }
+    }
+
+    /// Changes how many objects there is room for.
+    #[must_use]
+    pub const fn objects(self, objects: usize) -> Self {
+        Self { objects, ..self }
     }
 
     /// Changes how many triangles across the border of a band there is room for.
@@ -102,6 +112,9 @@ impl Layout {
         let bytes = padded(self.vertices * size_of::<ScreenVertex>())
             + padded(self.triangles * size_of::<Entry>())
             + padded(self.active_triangles * size_of::<ActiveTriangle>())
+            + padded(self.objects * size_of::<Placement>())
+            + padded(self.objects * size_of::<Object>())
+            + padded(self.materials * size_of::<SceneMaterial>())
             + padded(self.materials * size_of::<Reflectance>())
             + padded(self.materials * size_of::<ErrorBounds>())
             + padded(self.samples() * size_of::<Sample>())
@@ -131,6 +144,8 @@ pub(crate) struct Memory<'a, C: Pixel> {
     pub(crate) bins: &'a mut [Entry],
     /// Depth of one band.
     pub(crate) depth: &'a mut [u16],
+    /// Objects in the latest frame.
+    pub(crate) placements: &'a mut [Placement],
     /// One for each material, as in `ramps`, the tables of colours.
     pub(crate) reflectances: &'a mut [Reflectance],
     pub(crate) ramps: &'a mut [[C::Stored; RAMP]],
@@ -143,18 +158,21 @@ pub(crate) struct Memory<'a, C: Pixel> {
 }
 
 impl<'a, C: Pixel> Memory<'a, C> {
-    /// Divides `words`; `None` if there are fewer than [`Layout::words`] says.
-    pub(crate) fn new(layout: &Layout, words: &'a mut [u64]) -> Option<Self> {
+    /// Divides `words`, room for objects and materials of the scene behind the rest; `None` if there are fewer than [`Layout::words`] says.
+    pub(crate) fn new(layout: &Layout, words: &'a mut [u64]) -> Option<(Self, &'a mut [Object], &'a mut [SceneMaterial])> {
         let bytes = words.as_mut_bytes();
         let (vertices, bytes) = take(bytes, layout.vertices)?;
         let (bins, bytes) = take(bytes, layout.triangles)?;
         let (active_triangles, bytes) = take(bytes, layout.active_triangles)?;
+        let (placements, bytes) = take(bytes, layout.objects)?;
         let (reflectances, bytes) = take(bytes, layout.materials)?;
         let (error_bounds, bytes) = take(bytes, layout.materials)?;
         let (samples, bytes) = take(bytes, layout.samples())?;
         let (ramps, bytes) = take(bytes, layout.materials)?;
-        let (depth, _) = take(bytes, layout.band() * layout.processors)?;
-        Some(Self { vertices, bins, depth, reflectances, ramps, error_bounds, samples, active_triangles })
+        let (depth, bytes) = take(bytes, layout.band() * layout.processors)?;
+        let (objects, bytes) = take(bytes, layout.objects)?;
+        let (materials, _) = take(bytes, layout.materials)?;
+        Some((Self { vertices, bins, depth, placements, reflectances, ramps, error_bounds, samples, active_triangles }, objects, materials))
     }
 }
 

@@ -1,28 +1,30 @@
-//! The frames of one stream.
+//! The frames of a scene.
 
 use crate::{
     Stream,
     error::{MAX_SIDE, RenderError},
-    format::{ErrorBudget, GeometricError, LARGEST_BUDGET, LEAST_BUDGET, LEVEL},
+    format::{ErrorBudget, LARGEST_BUDGET, LEAST_BUDGET, LEVEL, MAX_LIGHTS},
     frame::{Frame, Preparation, Seams, Settings},
-    geometry::detail::tolerance,
+    geometry::model_view::ModelView,
     lighting::material_tables::fill_ramp,
     memory::{Layout, Memory},
     method::Facts,
     pixel::Pixel,
+    placement::Placing,
+    scene::{Limits, Scene},
     shader::Shader,
+    stream::record::{Camera, DIRECTIONAL, Light, Material, PERSPECTIVE, VIEWER_LOCAL},
 };
 use embedded_graphics_core::geometry::Size;
 
-/// Draws the frames of one stream.
+/// Draws the frames of a scene.
 #[derive(Debug)]
 pub struct Renderer<'a, C: Pixel> {
-    settings: Settings<'a, C>,
+    settings: Settings<C>,
+    scene: Scene<'a>,
     memory: Memory<'a, C>,
     /// See [`Self::prepare`].
     seams: Option<Seams>,
-    /// Where the camera was in the latest frame, unless a setting has changed since.
-    latest: Option<u32>,
 }
 
 impl<'a, C: Pixel> Renderer<'a, C> {
@@ -60,59 +62,71 @@ impl<'a, C: Pixel> Renderer<'a, C> {
         if layout.materials < stream.materials.len() {
             return Err(RenderError::Materials { need: stream.materials.len() });
         }
+        if layout.objects == 0 {
+            return Err(RenderError::Objects);
+        }
         let need = layout.words::<C>();
-        let memory = Memory::new(layout, memory).ok_or(RenderError::Memory { need })?;
-        let background = background(stream.header.background);
-        let processors = layout.processors as u32;
+        let (memory, objects, materials) = Memory::new(layout, memory).ok_or(RenderError::Memory { need })?;
+        check(&stream, shader.facts(), false)?;
         let settings = Settings {
-            stream,
             size,
-            processors,
+            processors: layout.processors as u32,
             shader,
             dither: C::DITHERED,
             perspective_correct: false,
             antialias: false,
             budget: level(stream.header.budget()),
-            background,
             #[cfg(feature = "skips")]
             skips: crate::frame::Skips::ALL,
-            tolerance: GeometricError::ZERO,
-            triangles: 0,
-            closed_convex: false,
-            simplified: 0,
+            levels_of_detail: true,
         };
-        let mut renderer = Self { settings, memory, seams: None, latest: None };
-        renderer.set_levels_of_detail(true);
-        renderer.set_shader(shader)?;
-        Ok(renderer)
+        let scene = Scene::new(stream, materials, objects, limits(shader.facts()));
+        Ok(Self { settings, scene, memory, seams: None })
     }
 
-    /// Changes the shading method. All tables of the materials are computed anew, so it takes a moment.
+    /// What is drawn. A program may change it between frames.
+    pub fn scene(&mut self) -> &mut Scene<'a> {
+        &mut self.scene
+    }
+
+    /// Changes the shading method. All tables of the materials are computed anew, so the next frame takes a moment longer.
     ///
     /// # Errors
     /// When the method cannot shade this scene; the method in use stays.
     pub fn set_shader(&mut self, shader: Shader<C>) -> Result<(), RenderError> {
-        let facts = shader.facts();
-        check(&self.settings.stream, facts, self.settings.perspective_correct)?;
-        (self.settings.shader, self.latest) = (shader, None);
-        let (stream, Memory { reflectances, ramps, error_bounds, .. }) = (&self.settings.stream, &mut self.memory);
-        let tables = reflectances.iter_mut().zip(ramps.iter_mut()).zip(error_bounds.iter_mut());
-        for (((reflectance, ramp), bounds), material) in tables.zip(stream.materials) {
-            let highlight = (facts.highlight, facts.highlight_levels);
-            reflectance.fill::<C>(stream.header, material, stream.lights, highlight);
-            fill_ramp::<C>(ramp, reflectance);
-            *bounds = shader.method().error_bounds(reflectance, material.exponent, stream.lights.len());
-        }
-        #[cfg(feature = "skips")]
-        self.set_skips(self.settings.skips);
+        let (facts, scene) = (shader.facts(), &self.scene);
+        check_scene(scene.camera(), scene.lights(), scene.materials(), facts, self.settings.perspective_correct)?;
+        self.settings.shader = shader;
+        self.scene.set_limits(limits(facts));
+        self.scene.set_stale();
         Ok(())
+    }
+
+    /// Computes the tables of materials that have changed.
+    // A call that frames make only where something has.
+    #[inline(never)]
+    fn fill_tables(&mut self) {
+        let Self { settings, scene, memory: Memory { reflectances, ramps, error_bounds, .. }, .. } = self;
+        let (shader, facts, ambient) = (settings.shader, settings.shader.facts(), scene.ambient);
+        let lights: heapless::Vec<Light, MAX_LIGHTS> = heapless::Vec::from_slice(scene.lights()).unwrap_or_default();
+        for (index, material) in scene.stale_materials() {
+            let (Some(reflectance), Some(ramp), Some(bounds)) = (reflectances.get_mut(index), ramps.get_mut(index), error_bounds.get_mut(index))
+            else {
+                continue;
+            };
+            reflectance.fill::<C>(ambient, &material, &lights, (facts.highlight, facts.highlight_levels));
+            fill_ramp::<C>(ramp, reflectance);
+            *bounds = shader.method().error_bounds(reflectance, material.exponent, lights.len());
+            #[cfg(feature = "skips")]
+            reflectance.leave_out(settings.skips.highlights, settings.skips.lights);
+        }
     }
 
     /// Changes what is left out because nobody can see it; at first, all that can be. The picture is the same.
     #[cfg(feature = "skips")]
     pub fn set_skips(&mut self, skips: crate::frame::Skips) {
         self.settings.skips = skips;
-        self.memory.reflectances.iter_mut().for_each(|reflectance| reflectance.leave_out(skips.highlights, skips.lights));
+        self.scene.set_stale();
     }
 
     /// The method in use.
@@ -129,8 +143,10 @@ impl<'a, C: Pixel> Renderer<'a, C> {
         if on && !cfg!(feature = "perspective") {
             return Err(RenderError::NoPerspective);
         }
-        check(&self.settings.stream, self.settings.shader.facts(), on)?;
-        (self.settings.perspective_correct, self.latest) = (on, None);
+        let scene = &self.scene;
+        check_scene(scene.camera(), scene.lights(), scene.materials(), self.settings.shader.facts(), on)?;
+        self.settings.perspective_correct = on;
+        self.scene.set_changed();
         Ok(())
     }
 
@@ -142,13 +158,15 @@ impl<'a, C: Pixel> Renderer<'a, C> {
         if !(LEAST_BUDGET..=LARGEST_BUDGET).contains(&budget) {
             return Err(RenderError::Budget);
         }
-        (self.settings.budget, self.latest) = (level(budget), None);
+        self.settings.budget = level(budget);
+        self.scene.set_changed();
         Ok(())
     }
 
     /// Turns 8x8 ordered dither on or off; at first it is on in formats of one or two bits a channel.
     pub fn set_dither(&mut self, dither: bool) {
-        (self.settings.dither, self.latest) = (dither, None);
+        self.settings.dither = dither;
+        self.scene.set_changed();
     }
 
     /// Turns antialiasing by exact areas on or off; it is off at first.
@@ -162,7 +180,8 @@ impl<'a, C: Pixel> Renderer<'a, C> {
         if antialias && self.memory.samples.is_empty() {
             return Err(RenderError::NoSamples);
         }
-        (self.settings.antialias, self.latest) = (antialias, None);
+        self.settings.antialias = antialias;
+        self.scene.set_changed();
         Ok(())
     }
 
@@ -170,11 +189,8 @@ impl<'a, C: Pixel> Renderer<'a, C> {
     /// a pixel from it on the screen. Off, each is drawn as it is, which shows what they save. It makes no difference to streams without
     /// levels.
     pub fn set_levels_of_detail(&mut self, on: bool) {
-        let Self { settings, memory, seams, latest } = self;
-        *latest = None;
-        // The eye is as far from a stream's meshes in all frames, so that they are chosen once.
-        settings.set_tolerance(if on { tolerance(settings.stream.header, settings.size) } else { GeometricError::ZERO });
-        *seams = if settings.processors > 1 { Seams::new(settings, memory) } else { None };
+        self.settings.levels_of_detail = on;
+        self.scene.set_changed();
     }
 
     /// The size of the viewport.
@@ -197,32 +213,55 @@ impl<'a, C: Pixel> Renderer<'a, C> {
         if pixels.len() < need { Err(RenderError::Band { need }) } else { Ok(()) }
     }
 
-    /// Whether frame `number` is the same picture as the latest one, because the camera stands still or has come round, and no setting has
-    /// changed. Where the display still shows that, it need be neither drawn nor sent.
+    /// Whether frame `number` is the same picture as the latest one, because the camera stands still or has come round, and neither the scene
+    /// nor a setting has changed. Where the display still shows that, it need be neither drawn nor sent.
     #[must_use]
     pub fn is_latest(&self, number: u32) -> bool {
-        self.latest == Some(self.place(number))
+        self.scene.is_latest(number)
     }
 
-    /// Where the camera is in frame `number`: frames of one orbit differ.
-    fn place(&self, number: u32) -> u32 {
-        number.checked_rem(self.settings.stream.header.camera.period.into()).unwrap_or(0)
-    }
-
-    /// Places camera and lights, transforms vertices, culls and bins triangles for frame `number` (modulo the orbit).
-    #[inline(never)]
+    /// Frame `number` of the scene's ready-made animation (modulo its frames): [`Scene::play`], and [`Self::draw`].
     pub fn frame(&mut self, number: u32) -> Frame<'_, C> {
-        self.latest = Some(self.place(number));
-        Frame::new(&self.settings, &mut self.memory, number)
+        self.scene.play(number);
+        self.draw()
+    }
+
+    /// A frame of the scene as it is: places objects and lights, transforms vertices, culls and bins triangles.
+    #[inline(never)]
+    pub fn draw(&mut self) -> Frame<'_, C> {
+        self.place();
+        Frame::new(&self.settings, &self.scene, &mut self.memory)
     }
 
     /// Begins frame `number` as [`Self::frame`] does, and leaves most of that to two processors: the part of the earlier triangles, which are
     /// a `share` of all, of 2^16, and that of the later ones. The picture does not depend on it. The layout has to be one for two
-    /// [`Layout::processors`], and to have room for all triangles and vertices of the stream; else one part does everything.
+    /// [`Layout::processors`], and to have room for all triangles and vertices of the scene; else one part does everything.
     pub fn prepare(&mut self, number: u32, share: u16) -> Preparation<'_, C> {
-        self.latest = Some(self.place(number));
-        let division = self.seams.map(|seams| seams.division(&self.settings, share)).unwrap_or_default();
-        Preparation::new(&self.settings, &mut self.memory, number, division)
+        self.scene.play(number);
+        let rearranged = self.place();
+        if rearranged && self.settings.processors > 1 {
+            self.seams = Seams::new(&self.scene, &mut self.memory);
+        }
+        Preparation::new(&self.settings, &self.scene, &mut self.memory, self.seams, share)
+    }
+
+    /// Places all objects, and computes tables that are stale. Returns whether other triangles are drawn than before.
+    fn place(&mut self) -> bool {
+        if !self.scene.is_unchanged() {
+            self.fill_tables();
+        }
+        let Self { settings, scene, memory, .. } = self;
+        let world = ModelView::new(scene.camera(), scene.place);
+        let placing =
+            Placing { size: settings.size, levels_of_detail: settings.levels_of_detail, leaves_out_back_faces: settings.skips().back_faces };
+        let (mut rearranged, mut triangles, mut vertices) = (scene.rearranged, 0, 0);
+        for (object, placement) in scene.objects().iter().zip(memory.placements.iter_mut()) {
+            rearranged |= placement.update(scene, &world, object, &placing);
+            (placement.first_triangle, placement.first_vertex) = (triangles, vertices);
+            (triangles, vertices) = (triangles.wrapping_add(object.span), vertices.wrapping_add(object.vertices));
+        }
+        scene.set_drawn();
+        rearranged
     }
 }
 
@@ -231,29 +270,36 @@ fn level(budget: ErrorBudget) -> u32 {
     u32::from(budget.to_bits()) << (LEVEL - ErrorBudget::FRAC_NBITS)
 }
 
+/// What a method can draw.
+fn limits(facts: &Facts) -> Limits {
+    Limits { near_lights: facts.near_lights, least_exponent: facts.highlight.least_exponent() }
+}
+
 /// Checks that a method can shade a stream, with interpolation in perspective or without.
 ///
 /// # Errors
 /// When it cannot.
 pub fn check(stream: &Stream<'_>, facts: &Facts, perspective_correct: bool) -> Result<(), RenderError> {
-    if !facts.near_lights && !stream.is_constant() {
+    check_scene(&stream.header.camera, stream.lights, stream.materials.iter(), facts, perspective_correct)
+}
+
+fn check_scene<'m>(
+    camera: &Camera,
+    lights: &[Light],
+    mut materials: impl Iterator<Item = &'m Material>,
+    facts: &Facts,
+    perspective_correct: bool,
+) -> Result<(), RenderError> {
+    let Limits { near_lights, least_exponent: least } = limits(facts);
+    let is_perspective = camera.projection == PERSPECTIVE;
+    if !near_lights && (is_perspective && camera.viewer == VIEWER_LOCAL || lights.iter().any(|light| light.kind != DIRECTIONAL)) {
         return Err(RenderError::Light { shader: facts.name });
     }
-    let least = facts.highlight.least_exponent();
-    if stream.materials.iter().any(|material| material.exponent < least) {
+    if materials.any(|material| material.exponent < least) {
         return Err(RenderError::Exponent { shader: facts.name, least });
     }
-    if perspective_correct && stream.is_perspective() && !facts.perspective {
+    if perspective_correct && is_perspective && !facts.perspective {
         return Err(RenderError::Perspective { shader: facts.name });
     }
     Ok(())
-}
-
-/// A colour of 8 bits per channel in the pixel format; grey formats get its luma.
-fn background<C: Pixel>([r, g, b]: [u8; 3]) -> C {
-    let [r, g, b] = [u32::from(r), u32::from(g), u32::from(b)];
-    let luma = (r * 77 + g * 150 + b * 29) >> 8;
-    let [r, g, b] = if C::GRAY { [luma; 3] } else { [r, g, b] };
-    let [dr, dg, db] = C::DEPTH;
-    C::pack([r >> (8 - dr), g >> (8 - dg), b >> (8 - db)])
 }

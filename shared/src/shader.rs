@@ -9,7 +9,6 @@ use crate::{
     },
     pixel::Pixel,
     raster::band::Band,
-    stream::record::Triangle,
 };
 use core::fmt;
 
@@ -25,7 +24,7 @@ pub struct Shader<C: Pixel> {
 }
 
 /// The type of [`MeshPass::run`] with the loops of one method.
-type Run<C> = fn(&MeshPass<'_, C>, &[Triangle], Entry, &mut Walk<'_>, u32, &mut Band<'_, C>) -> (u32, Option<Entry>);
+type Run<C> = fn(&MeshPass<'_, C>, Entry, &mut Walk<'_>, &mut Band<'_, C>) -> (u32, Option<Entry>);
 
 /// What draws triangles by the loops of one method.
 pub(crate) struct TriangleLoops<C: Pixel> {
@@ -45,7 +44,7 @@ impl<C: Pixel> Copy for TriangleLoops<C> {}
 
 impl<C: Pixel> TriangleLoops<C> {
     const fn of<L: Loops>() -> Self {
-        Self { run: |drawing, triangles, entry, walk, end, band| drawing.run::<L>(triangles, entry, walk, end, band), draw: L::draw }
+        Self { run: |drawing, entry, walk, band| drawing.run::<L>(entry, walk, band), draw: L::draw }
     }
 }
 

@@ -15,10 +15,8 @@ use embedded_graphics::{
 };
 use microphong::{
     Stream,
-    geometry::{
-        pose::{ORBIT_ERROR, Pose},
-        projection::View,
-    },
+    geometry::{model_view::ModelView, projection::View},
+    scene::ORBIT_ERROR,
     stream::{
         record::{Header, PERSPECTIVE, Vertex},
         seal,
@@ -89,7 +87,7 @@ struct Seen {
 impl<'s> Frame<'s> {
     fn new(stream: Stream<'s>, size: Size, number: u32, in_perspective: bool) -> Self {
         let camera = &stream.header.camera;
-        let pose = Pose::new(camera, number);
+        let pose = ModelView::new(camera, number);
         let rotation = pose.rotation.map(|row| real(row, 30));
         let exact = turned(stream, number);
         let off = (0..9).map(|k| (rotation[k / 3][k % 3] - exact[k / 3][k % 3]).abs()).fold(0.0, f64::max);

@@ -7,7 +7,7 @@ use embedded_graphics::{
 use microphong::{
     Layout, Renderer, Stats, Stream,
     format::GeometricError,
-    geometry::detail::tolerance,
+    geometry::detail::stream_tolerance,
     stream::{
         record::{Header, Mesh, PERSPECTIVE},
         seal,
@@ -266,6 +266,6 @@ fn each_mesh_has_a_level_of_its_own() {
         assert_eq!(taken(error), expected, "{error}");
     }
     let sizes = iter::successors(Some(1), |side| Some(side * 2)).take_while(|&side| side < 2048);
-    let tolerances: Vec<GeometricError> = sizes.map(|side| tolerance(stream.header, Size::new(side, side))).collect();
+    let tolerances: Vec<GeometricError> = sizes.map(|side| stream_tolerance(stream.header, Size::new(side, side))).collect();
     assert!(tolerances.is_sorted_by(|a, b| a >= b), "{tolerances:?}");
 }

@@ -8,7 +8,7 @@ use embedded_graphics::{
     prelude::{RgbColor, Size},
 };
 use microphong::{
-    geometry::{pose::Pose, projection::View},
+    geometry::{model_view::ModelView, projection::View},
     stream::record::Triangle,
 };
 use microphong_sim::{render, scene, shader::Shader};
@@ -27,7 +27,7 @@ fn errors(name: &str, shader: Shader, number: u32) -> (f64, f64, usize) {
     let stream = scene.stream.parse().unwrap();
     let size = Size::new(scene.size.0, scene.size.1);
     let (pixels, _) = render::frame::<Rgb888>(stream, size, shader, 16, number).unwrap();
-    let pose = Pose::new(&stream.header.camera, number);
+    let pose = ModelView::new(&stream.header.camera, number);
     let view = View::new(&stream.header.camera, &pose, size);
     let rotation = pose.rotation.map(|row| real(row, 30));
     // The nearest triangle at each pixel, by its depth there.

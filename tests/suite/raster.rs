@@ -80,7 +80,7 @@ fn closed_convex_meshes_cover_each_pixel_once() {
 #[test]
 fn closed_meshes_are_entered_as_often_as_left() {
     use embedded_graphics::prelude::Size;
-    use microphong::geometry::{pose::Pose, projection::View};
+    use microphong::geometry::{model_view::ModelView, projection::View};
     use microphong_sim::scene;
 
     for name in ["torus", "sphere-690", "peer-sphere", "sphere-40", "dodecahedron"] {
@@ -88,7 +88,7 @@ fn closed_meshes_are_entered_as_often_as_left() {
         let stream = scene.stream.parse().unwrap();
         for number in [0, 11, 50, 93] {
             let camera = &stream.header.camera;
-            let view = View::new(camera, &Pose::new(camera, number), Size::new(WIDTH as u32, HEIGHT as u32));
+            let view = View::new(camera, &ModelView::new(camera, number), Size::new(WIDTH as u32, HEIGHT as u32));
             let [mut front, mut back] = [0; 2].map(|_| vec![0u8; WIDTH * HEIGHT]);
             let mut pixels = 0;
             for mesh in stream.meshes {

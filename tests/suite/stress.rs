@@ -2,7 +2,7 @@
 
 use embedded_graphics::pixelcolor::{Rgb565, RgbColor};
 use microphong::{
-    geometry::pose::Pose,
+    geometry::model_view::ModelView,
     interpolate::{Patch, plane::Plane},
     setup::gradients::Gradients,
     stream::{
@@ -305,9 +305,9 @@ fn walks_see_a_unit_of_the_last_place() {
 fn drift_sees_the_next_frame() {
     let case = sphere();
     let camera = case.stream.parse().unwrap().header.camera;
-    let rows = |number| Pose::new(&camera, number).rotation.map(|row| row.map(|c| f64::from(c) / f64::from(1 << 30)));
-    assert!(drift::error(&Pose::new(&camera, 5), &rows(5)) <= drift::LIMIT);
-    assert!(drift::error(&Pose::new(&camera, 6), &rows(5)) > drift::LIMIT);
+    let rows = |number| ModelView::new(&camera, number).rotation.map(|row| row.map(|c| f64::from(c) / f64::from(1 << 30)));
+    assert!(drift::error(&ModelView::new(&camera, 5), &rows(5)) <= drift::LIMIT);
+    assert!(drift::error(&ModelView::new(&camera, 6), &rows(5)) > drift::LIMIT);
 }
 
 /// A pixel, or a count, of another picture.

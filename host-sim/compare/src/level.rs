@@ -79,7 +79,7 @@ impl Pixel for Fine {
 #[must_use]
 pub fn is_one_channel(stream: &Stream<'_>, material: &Material) -> bool {
     let mut reflectance = Box::new(Reflectance::EMPTY);
-    reflectance.fill::<Fine>(stream.header, material, stream.lights, (Highlight::Half, false));
+    reflectance.fill::<Fine>(stream.header.ambient, material, stream.lights, (Highlight::Half, false));
     !reflectance.three_channels()
 }
 

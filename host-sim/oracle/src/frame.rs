@@ -5,7 +5,7 @@ use embedded_graphics_core::geometry::Size;
 use microphong::{
     Stream,
     format::{DEPTH, Gain, ROTATION, SUBPIXEL, UNIT},
-    geometry::{pose::Pose, projection::View},
+    geometry::{model_view::ModelView, projection::View},
     stream::{
         record,
         record::{DIRECTIONAL, EYE_SPACE, PERSPECTIVE, VIEWER_LOCAL},
@@ -76,7 +76,7 @@ impl Frame {
     #[must_use]
     pub fn new(stream: Stream<'_>, size: (u32, u32), number: u32) -> Self {
         let camera = &stream.header.camera;
-        let pose = Pose::new(camera, number);
+        let pose = ModelView::new(camera, number);
         let view = View::new(camera, &pose, Size::new(size.0, size.1));
         let [right, up, away] = pose.rotation.map(|row| real(row, ROTATION));
         let to_object = |v: V3| add(add(scale(right, v[0]), scale(up, v[1])), scale(away, v[2]));

@@ -5,7 +5,7 @@ use core::array;
 use microphong::{
     Stream,
     format::{COSINE, ROTATION, UNIT},
-    geometry::pose::Pose,
+    geometry::model_view::ModelView,
     lighting::lights::{Lighting, Source},
     stream::record::{Camera, PERSPECTIVE},
 };
@@ -75,14 +75,14 @@ impl Scene {
     pub fn new(stream: &Stream<'_>) -> Option<Self> {
         let ([_], [material]) = (stream.meshes, stream.materials) else { return None };
         let camera = &stream.header.camera;
-        let pose = Pose::new(camera, 0);
+        let pose = ModelView::new(camera, 0);
         let [right, up, away] = pose.rotation.map(|row| float(row, ROTATION));
         let axes = [right, up, away.map(|c| -c)];
         let turned = |v: [f32; 3]| axes.map(|axis| product(axis, v).into_iter().sum());
-        let lighting = Lighting::new(stream, &pose);
-        let sources = lighting.is_constant().then_some(&lighting.sources)?;
+        let lighting = Lighting::new(camera, stream.lights, &pose);
+        let sources = lighting.is_constant().then_some(lighting.sources())?;
         let lights = stream.lights.iter().zip(sources).filter_map(|(light, source)| {
-            let Source::Directional { towards, half } = *source else { return None };
+            let &[towards, half] = source.directional()?;
             let reflected = |share| product(wide(share), wide(light.colour));
             Some(Light {
                 towards: turned(float(towards, COSINE)),

@@ -16,7 +16,7 @@ use meshoptimizer_rs::{Attributes, Positions, SimplifyOptions, SimplifySettings,
 use microphong::{
     Stream,
     format::GeometricError,
-    geometry::detail::tolerance,
+    geometry::detail::stream_tolerance,
     stream::record::{self, Triangle, Vertex},
 };
 
@@ -89,7 +89,7 @@ fn fewest(part: &Part, most: usize, error: GeometricError, options: SimplifyOpti
 
 /// The meshes of a stream, each at the level that a picture of `size` pixels shows.
 pub fn drawn<'a>(stream: &Stream<'a>, size: Size) -> impl DoubleEndedIterator<Item = &'a record::Mesh> + use<'a> {
-    stream.meshes_within(tolerance(stream.header, size))
+    stream.meshes_within(stream_tolerance(stream.header, size))
 }
 
 /// About `target` triangles on vertices of `part`, as corners.

@@ -12,7 +12,7 @@ use anyhow::{Context, Result};
 use embedded_graphics_core::geometry::Size;
 use microphong::{
     format::{ErrorBudget, Gain, GeometricError, Radius},
-    geometry::detail::tolerance,
+    geometry::detail::stream_tolerance,
     stream,
     stream::{
         MAX_GAIN,
@@ -107,7 +107,7 @@ impl Look {
     /// How far a coarser level may lie from a mesh of these parts, if a picture of `size` pixels is to show it.
     #[must_use]
     pub fn tolerance(&self, parts: &[Part], size: (u32, u32)) -> GeometricError {
-        tolerance(&self.seen(parts), Size::new(size.0, size.1))
+        stream_tolerance(&self.seen(parts), Size::new(size.0, size.1))
     }
 
     /// A header of which camera and radius are right.

@@ -5,7 +5,7 @@ use anyhow::{Context, Result};
 use embedded_graphics_core::geometry::Size;
 use microphong::{
     MAX_SIDE, Stream,
-    geometry::detail::tolerance,
+    geometry::detail::stream_tolerance,
     stream::record::{CLOSED_CONVEX, EYE_SPACE, Header, Light, Material, Mesh, PERSPECTIVE, POINT, Triangle, VIEWER_LOCAL, Vertex},
 };
 use microphong_sim::{bytes::StreamBytes, shader::Shader};
@@ -103,7 +103,7 @@ fn levels(stream: &Stream<'_>) -> Vec<Level> {
     let mut meshes = 0usize;
     let level = |record: &Mesh| {
         meshes += usize::from(record.error == 0);
-        let is_drawn = |&side: &u32| tolerance(stream.header, Size::new(side, side)) >= record.error();
+        let is_drawn = |&side: &u32| stream_tolerance(stream.header, Size::new(side, side)) >= record.error();
         let side = (1..=MAX_SIDE).rev().find(is_drawn).unwrap_or(0);
         (record.error > 0).then_some(Level {
             mesh: meshes.saturating_sub(1),

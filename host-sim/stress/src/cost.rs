@@ -15,7 +15,7 @@ use crate::{
 use anyhow::Result;
 use microphong::{
     format::{GeometricError, Length, SUBPIXEL},
-    geometry::{pose::Pose, projection::View},
+    geometry::{model_view::ModelView, projection::View},
     stream::record::{Camera, DIRECTIONAL, Header, Light, Mesh as Record, POINT, Triangle, VIEWER_INFINITE, VIEWER_LOCAL},
 };
 use microphong_render::{
@@ -171,7 +171,7 @@ impl Work {
     pub fn of(case: &Case) -> Option<Self> {
         let stream = case.stream.parse().ok()?;
         let [width, height] = case.size.map(u64::from);
-        let view = View::new(&stream.header.camera, &Pose::new(&stream.header.camera, case.frame), case.pixels());
+        let view = View::new(&stream.header.camera, &ModelView::new(&stream.header.camera, case.frame), case.pixels());
         let is_local = stream.header.camera.viewer == VIEWER_LOCAL;
         let near = stream.lights.iter().filter(|light| is_local || light.kind == POINT).count();
         let mut work = Self {

@@ -2,7 +2,8 @@
 
 use crate::{Family, Verdict, random::Random};
 use microphong::{
-    geometry::pose::{ORBIT_ERROR, Pose, ROTATION_ERROR},
+    geometry::model_view::ModelView,
+    scene::{ORBIT_ERROR, ROTATION_ERROR},
     stream::record::{Camera, PERSPECTIVE},
 };
 use microphong_render::vector::{V3, apply, dot, length, product, rotation, sub};
@@ -42,7 +43,7 @@ impl Family for Drift {
             far: 0,
         };
         let frame = random.bits() as u32;
-        let pose = Pose::new(&camera, frame);
+        let pose = ModelView::new(&camera, frame);
         let turn = f64::from(frame % u32::from(camera.period)) / f64::from(camera.period) * TAU;
         let worst = error(&pose, &product(&start, &rotation(axis, turn)));
         let mut verdict = Verdict::of(worst, LIMIT, None);
@@ -55,7 +56,7 @@ impl Family for Drift {
 
 /// How far a pose is off these rows, and off a rotation.
 #[must_use]
-pub fn error(pose: &Pose, exact: &[V3; 3]) -> f64 {
+pub fn error(pose: &ModelView, exact: &[V3; 3]) -> f64 {
     let rows: [V3; 3] = pose.rotation.map(|row| row.map(|c| f64::from(c) / f64::from(1 << 30)));
     let mut worst = 0f64;
     for point in [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]] {

@@ -17,7 +17,7 @@ use embedded_graphics_core::{
 };
 use microphong::{
     Stream,
-    geometry::{pose::Pose, projection::View},
+    geometry::{model_view::ModelView, projection::View},
     stream::{
         record::{Header, Material, Mesh},
         seal,
@@ -112,7 +112,7 @@ pub fn judge(case: &Case) -> Option<Found> {
 #[must_use]
 pub fn covered(stream: &Stream<'_>, size: [u32; 2], number: u32) -> Option<Vec<u8>> {
     let camera = &stream.header.camera;
-    let view = View::new(camera, &Pose::new(camera, number), Size::new(size[0], size[1]));
+    let view = View::new(camera, &ModelView::new(camera, number), Size::new(size[0], size[1]));
     let mut counts = vec![0u8; (size[0] * size[1]) as usize];
     for mesh in levels::drawn(stream, Size::new(size[0], size[1])) {
         let place = |position| {

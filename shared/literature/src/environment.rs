@@ -67,7 +67,7 @@ fn diffuse(corners: &[Node; 3], source: &Source) -> [i32; 3] {
 /// (u, v) of W = 2(N·V)N - V, Q2.30; all in the axes of the eye.
 fn coordinates(lighting: &Lighting, node: &Node) -> [i32; 2] {
     let normal = lighting.axes.map(|axis| cosine(axis, node.normal));
-    let [x, y, z] = match lighting.viewer {
+    let [x, y, z] = match lighting.viewer() {
         Viewer::Infinite(_) => [0, 0, ONE],
         Viewer::Local(_) => normalise_wide(zip(lighting.axes, lighting.eye, |axis, eye| {
             (i64::from(eye) << (COSINE + POSITION - UNIT)) - dot(axis, node.position)

@@ -48,7 +48,7 @@ impl Method for Goldman {
 
 fn draw(setup: &TriangleSetup<'_>, shading: &Shading<'_>, canvas: &mut dyn Canvas) -> u32 {
     // A near viewer is refused before drawing.
-    let Viewer::Infinite(view) = shading.lighting.viewer else { return 0 };
+    let Viewer::Infinite(view) = shading.lighting.viewer() else { return 0 };
     let edges = Edges::new(setup);
     let (rows, normals) = (edges.rows(setup), setup.vertices().map(|vertex| wide(vertex.normal).map(|c| c << 16)));
     // The normal itself: its products with the axes.
@@ -160,7 +160,7 @@ impl LightingModel<([i32; 3], Divisor, i32), ()> for Many<'_> {
     }
 
     fn reflect(&self, light: usize, &(normal, inverse, square): &Self::Common, (): (), lut: CosineLookup<'_>) -> Reflection {
-        let Some(&Source::Directional { towards, .. }) = self.lighting.sources.get(light) else {
+        let Some(&[towards, _]) = self.lighting.sources().get(light).and_then(Source::directional) else {
             return Reflection { diffuse: 0, highlight: 0 };
         };
         let products = [towards, self.view].map(|v| cosine(normal, v));

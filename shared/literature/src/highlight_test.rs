@@ -55,8 +55,7 @@ fn has_no_highlight(setup: &TriangleSetup<'_>, shading: &Shading<'_>) -> bool {
     let limit = setup.highlight_threshold(shading.reflectance);
     let corners = setup.corner_nodes();
     shading.lighting.is_constant()
-        && shading.lighting.sources.iter().all(|source| match *source {
-            Source::Directional { half, .. } => corners.iter().all(|corner| cosine(corner.normal, half) < limit),
-            Source::Point(_) => false,
+        && shading.lighting.sources().iter().filter_map(Source::directional).all(|&[_, half]| {
+            corners.iter().all(|corner| cosine(corner.normal, half) < limit)
         })
 }

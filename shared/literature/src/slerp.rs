@@ -138,10 +138,10 @@ impl LightingModel<[i32; 3], ()> for Many<'_> {
     }
 
     fn reflect(&self, light: usize, &normal: &[i32; 3], (): (), lut: CosineLookup<'_>) -> Reflection {
-        let Some(&Source::Directional { towards, half }) = self.0.sources.get(light) else {
+        let Some(directions) = self.0.sources().get(light).and_then(Source::directional) else {
             return Reflection { diffuse: 0, highlight: 0 };
         };
-        let [diffuse, half] = [towards, half].map(|v| cosine(normal, v) >> 3);
+        let [diffuse, half] = directions.map(|v| cosine(normal, v) >> 3);
         Reflection { diffuse, highlight: lut.at(half) }
     }
 }

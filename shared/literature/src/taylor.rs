@@ -56,11 +56,8 @@ impl Method for Taylor {
 }
 
 fn draw(setup: &TriangleSetup<'_>, shading: &Shading<'_>, canvas: &mut dyn Canvas) -> u32 {
-    draw_by(setup, shading, canvas, |source| match *source {
-        Source::Directional { towards, half } => [towards, half].map(Series::constant),
-        // Near lights are refused before.
-        Source::Point(_) => [Series::constant([0; 3]); 2],
-    })
+    // Near lights are refused before.
+    draw_by(setup, shading, canvas, |source| source.directional().copied().unwrap_or_default().map(Series::constant))
 }
 
 /// Shades with the directions that `directions` makes of a light, along L and H.

@@ -45,7 +45,7 @@ impl Method for TaylorFinite {
 fn draw(setup: &TriangleSetup<'_>, shading: &Shading<'_>, canvas: &mut dyn Canvas) -> u32 {
     let positions = setup.vertices().map(|vertex| point(vertex.position));
     let shortened = |v: [i32; 3], bits: u32| v.map(|c| c >> (COSINE - VECTOR + bits));
-    let viewer = positions.map(|position| shortened(shading.lighting.viewer.towards(position), 1));
+    let viewer = positions.map(|position| shortened(shading.lighting.viewer().towards(position), 1));
     taylor::draw_by(setup, shading, canvas, |source| {
         let towards = positions.map(|position| source.towards(position));
         let ([a, b, c], [va, vb, vc]) = (towards.map(|towards| shortened(towards, 1)), viewer);

@@ -1,26 +1,26 @@
 //! One frame: what happens before its rows are drawn, and how it is drawn in one part or in two.
 
+mod context;
 mod part;
 mod preparation;
-mod scene;
 mod skips;
 
 pub use part::Stats;
+pub(crate) use context::Settings;
 pub(crate) use preparation::Seams;
 pub use preparation::{Preparation, PreparationPart};
-pub(crate) use scene::Settings;
 pub use skips::Skips;
 
 use crate::{error::RenderError, pixel::Pixel};
 use core::ops::Range;
 use embedded_graphics_core::primitives::Rectangle;
+use context::Context;
 use part::Part;
-use scene::Scene;
 
 /// One frame, drawn band by band from the top.
 #[derive(Debug)]
 pub struct Frame<'r, C: Pixel> {
-    scene: Scene<'r, C>,
+    context: Context<'r, C>,
     part: Part<'r>,
 }
 
@@ -32,7 +32,7 @@ impl<'r, C: Pixel> Frame<'r, C> {
     /// # Errors
     /// When `pixels` does not hold one row.
     pub fn next_band(&mut self, pixels: &mut [C]) -> Result<Option<Rectangle>, RenderError> {
-        self.part.next_band(&self.scene, pixels)
+        self.part.next_band(&self.context, pixels)
     }
 
     /// The rows that triangles can reach; all other rows are background.
@@ -51,7 +51,7 @@ impl<'r, C: Pixel> Frame<'r, C> {
     /// Draws only these `rows`; to be called before the first band. It is enough to draw and send the rows that triangles reach in this
     /// frame or reached in the frame before, see [`Self::rows`]: a display that shows the frame before has background in all others.
     pub fn limit(&mut self, rows: Range<u32>) {
-        self.part.limit(rows, self.scene.settings.size.height);
+        self.part.limit(rows, self.context.settings.size.height);
     }
 
     /// Whether the last band has been drawn.
@@ -71,15 +71,15 @@ impl<'r, C: Pixel> Frame<'r, C> {
     /// triangles take more than half of the room that there is for them, the first part has all rows.
     #[must_use]
     pub fn in_two(self, row: u32) -> FrameInTwo<'r, C> {
-        let Self { scene, part } = self;
-        FrameInTwo { parts: part.in_two(row, scene.settings.size.width as usize), scene }
+        let Self { context, part } = self;
+        FrameInTwo { parts: part.in_two(row, context.settings.size.width as usize), context }
     }
 }
 
 /// A frame in two parts, see [`Frame::in_two`].
 #[derive(Debug)]
 pub struct FrameInTwo<'r, C: Pixel> {
-    scene: Scene<'r, C>,
+    context: Context<'r, C>,
     parts: [Part<'r>; 2],
 }
 
@@ -87,8 +87,8 @@ impl<'r, C: Pixel> FrameInTwo<'r, C> {
     /// The upper part and the lower one.
     #[must_use]
     pub fn parts(&mut self) -> [FramePart<'_, 'r, C>; 2] {
-        let Self { scene, parts } = self;
-        parts.each_mut().map(|part| FramePart { scene, part })
+        let Self { context, parts } = self;
+        parts.each_mut().map(|part| FramePart { context, part })
     }
 
     /// The counts so far; they are complete after the last band of both parts.
@@ -102,7 +102,7 @@ impl<'r, C: Pixel> FrameInTwo<'r, C> {
 /// One part of a frame, drawn band by band from its top.
 #[derive(Debug)]
 pub struct FramePart<'f, 'r, C: Pixel> {
-    scene: &'f Scene<'r, C>,
+    context: &'f Context<'r, C>,
     part: &'f mut Part<'r>,
 }
 
@@ -112,6 +112,6 @@ impl<C: Pixel> FramePart<'_, '_, C> {
     /// # Errors
     /// When `pixels` does not hold one row.
     pub fn next_band(&mut self, pixels: &mut [C]) -> Result<Option<Rectangle>, RenderError> {
-        self.part.next_band(self.scene, pixels)
+        self.part.next_band(self.context, pixels)
     }
 }

@@ -4,7 +4,7 @@
 use crate::{
     coverage::sample::Sample,
     error::RenderError,
-    frame::scene::Scene,
+    frame::context::Context,
     geometry::bin::{Bins, Entry, Walk},
     pixel::Pixel,
     raster::{
@@ -81,21 +81,21 @@ pub(crate) struct Part<'r> {
 
 impl<'r> Part<'r> {
     /// See [`crate::Frame::next_band`].
-    pub(crate) fn next_band<C: Pixel>(&mut self, scene: &Scene<'_, C>, pixels: &mut [C]) -> Result<Option<Rectangle>, RenderError> {
-        let width = scene.settings.size.width;
+    pub(crate) fn next_band<C: Pixel>(&mut self, context: &Context<'_, C>, pixels: &mut [C]) -> Result<Option<Rectangle>, RenderError> {
+        let width = context.settings.size.width;
         let fit = u32::try_from(pixels.len()).unwrap_or(u32::MAX).checked_div(width).unwrap_or(0);
         if fit == 0 {
             return Err(RenderError::Band { need: width as usize });
         }
         // Bands end where bins end.
-        let band_rows = scene.settings.band_rows(self.depth.len(), self.samples.len());
+        let band_rows = context.settings.band_rows(self.depth.len(), self.samples.len());
         let into = self.top.checked_rem(band_rows).unwrap_or(0);
         let rows = band_rows.saturating_sub(into).min(self.bottom.saturating_sub(self.top)).min(fit);
         if rows == 0 {
             return Ok(None);
         }
         let area = Rectangle::new(Point::new(0, self.top as i32), Size::new(width, rows));
-        self.draw(scene, pixels.get_mut(..(rows * width) as usize).unwrap_or_default(), rows);
+        self.draw(context, pixels.get_mut(..(rows * width) as usize).unwrap_or_default(), rows);
         self.top += rows;
         Ok(Some(area))
     }
@@ -142,29 +142,29 @@ impl<'r> Part<'r> {
 
     /// Clears a band of `rows` rows and draws what falls into it.
     #[inline(never)]
-    fn draw<C: Pixel>(&mut self, scene: &Scene<'_, C>, pixels: &mut [C], rows: u32) {
-        let width = scene.settings.size.width as usize;
+    fn draw<C: Pixel>(&mut self, context: &Context<'_, C>, pixels: &mut [C], rows: u32) {
+        let width = context.settings.size.width as usize;
         let bottom = self.top + rows;
         let count = width * rows as usize;
         let active = ActiveTriangles::new(self.active_triangles, self.queue);
         let depth = self.depth.get_mut(..count).unwrap_or_default();
-        let blend = scene.settings.antialiased().then(|| Blend { samples: self.samples.get_mut(..count).unwrap_or_default() });
+        let blend = context.settings.antialiased().then(|| Blend { samples: self.samples.get_mut(..count).unwrap_or_default() });
         let mut band = Band { pixels, depth, width, top: self.top as i32, rows: rows as i32, blend, active, counts: Counts::default() };
-        band.clear(scene.settings.background, self.rows.clone());
+        band.clear(context.background, self.rows.clone());
         let (pixels, drawn) = if self.binned {
             self.bins.skip(self.entries, self.top);
             let mut walk = self.bins.band(self.entries, bottom);
-            let pixels = draw_binned(scene, &mut walk, &mut band);
+            let pixels = draw_binned(context, &mut walk, &mut band);
             self.bins.take_over(walk);
             (pixels, 0)
         } else {
             self.stats.passes += 1;
-            draw_all(scene, &mut band)
+            draw_all(context, &mut band)
         };
         self.stats.pixels = self.stats.pixels.saturating_add(pixels);
         self.stats.drawn += drawn;
-        if scene.settings.antialiased() {
-            band.resolve(scene.settings.background);
+        if context.settings.antialiased() {
+            band.resolve(context.background);
         }
         self.stats.counts = self.stats.counts.and(band.counts);
         self.queue = band.active.queue();
@@ -179,16 +179,14 @@ pub(super) fn halves<T>(memory: &mut [T], length: usize) -> (&mut [T], &mut [T])
 }
 
 /// Draws the triangles of `band`; returns their pixels there.
-fn draw_binned<C: Pixel>(scene: &Scene<'_, C>, walk: &mut Walk<'_>, band: &mut Band<'_, C>) -> u32 {
-    let stream = &scene.settings.stream;
+fn draw_binned<C: Pixel>(context: &Context<'_, C>, walk: &mut Walk<'_>, band: &mut Band<'_, C>) -> u32 {
     let mut pixels = 0u32;
     let mut next = walk.next();
     while let Some(entry) = next {
-        // A checked stream has both.
-        let Some(mesh) = scene.mesh(entry.triangle()) else { break };
-        let Some((drawing, loops)) = scene.drawing(mesh) else { break };
-        let end = mesh.first_triangle.saturating_add(mesh.triangles);
-        let (drawn, rest) = (loops.run)(&drawing, stream.triangles, entry, walk, end, band);
+        // A scene has both.
+        let Some(placed) = context.mesh(entry.triangle()) else { break };
+        let Some((drawing, loops)) = context.drawing(&placed) else { break };
+        let (drawn, rest) = (loops.run)(&drawing, entry, walk, band);
         pixels = pixels.saturating_add(drawn);
         next = rest;
     }
@@ -198,12 +196,11 @@ fn draw_binned<C: Pixel>(scene: &Scene<'_, C>, walk: &mut Walk<'_>, band: &mut B
 /// Draws all triangles into `band`; returns their pixels there, and how many of them start there.
 #[cold]
 #[inline(never)]
-fn draw_all<C: Pixel>(scene: &Scene<'_, C>, band: &mut Band<'_, C>) -> (u32, u32) {
-    let stream = &scene.settings.stream;
+fn draw_all<C: Pixel>(context: &Context<'_, C>, band: &mut Band<'_, C>) -> (u32, u32) {
     let (mut pixels, mut drawn) = (0u32, 0);
-    for mesh in scene.settings.meshes() {
-        let Some((drawing, loops)) = scene.drawing(mesh) else { continue };
-        for triangle in stream.triangles_of(mesh).unwrap_or_default().iter().filter(|triangle| scene.facing.may_face(triangle)) {
+    for placed in context.meshes() {
+        let Some((drawing, loops)) = context.drawing(&placed) else { continue };
+        for triangle in drawing.triangles.iter().filter(|triangle| placed.placement.facing.may_face(triangle)) {
             let Some(bounds) = drawing.bounds(triangle) else { continue };
             // A triangle is counted in the band where it starts.
             let bottom = band.top + band.rows;

@@ -1,7 +1,7 @@
 //! What happens once a frame, before its rows are drawn, in one go or in two halves: two processors can work at the same time.
 //!
-//! The triangles of the stream are divided, and the vertices as well: each is transformed, lit and kept by the processor of one half. As
-//! vertices are numbered by their first use in most streams, those that the earlier triangles do not use are the vertices from some number
+//! The triangles of the frame are divided, and the vertices as well: each is transformed, lit and kept by the processor of one half. As
+//! vertices are numbered by their first use in most streams, and objects have theirs one after the other, those that the earlier triangles do not use are the vertices from some number
 //! on, and belong to the later half. What remains is a seam: later triangles that use vertices of the earlier half. For them the places of
 //! these vertices on the screen are computed a second time, without light. When both are done, lists are joined, and where triangles at the
 //! seam alone use a vertex it is transformed. From then on, all is as if one processor had done it.
@@ -9,28 +9,27 @@
 use crate::{
     frame::{
         Frame,
+        context::{Context, PlacedMesh, Settings, drawn, meshes},
         part::{Part, Stats, halves},
-        scene::{Scene, Settings},
     },
     geometry::{
         bin::{Bins, Entry},
         cull::{Extent, Facing},
         depth_elision::DepthElision,
-        pose::Pose,
-        projection::{ScreenVertex, State, View},
+        projection::{ScreenVertex, State},
         viewport::{Bounds, Viewport},
     },
-    lighting::lights::Lighting,
     memory::Memory,
     mesh::vertices::{SeamPlace, UNUSED, VertexStage},
     pixel::Pixel,
     raster::active::QueueState,
-    stream::record::{Mesh, Triangle, Vertex},
+    scene::Scene,
+    stream::record::{Triangle, Vertex},
 };
 use core::{hint::black_box, mem, ops::Range};
 use zerocopy::{FromBytes, IntoBytes};
 
-/// Places where the stream can be divided.
+/// Places where the triangles of a frame can be divided.
 const STEPS: usize = 32;
 
 /// For the triangles before each of [`STEPS`] places, which share out all triangles equally, one past the last vertex that they use.
@@ -38,20 +37,21 @@ const STEPS: usize = 32;
 pub(crate) struct Seams([u16; STEPS]);
 
 impl Seams {
-    /// `None` if the stream has few triangles, or more than [`Bins::join`] can join, or `memory` has not room for all of them, for all
-    /// vertices, and for any seam: what happens once a frame is then left to one processor.
-    pub(crate) fn new<C: Pixel>(settings: &Settings<'_, C>, memory: &mut Memory<'_, C>) -> Option<Self> {
-        let stream = &settings.stream;
-        let (triangles, vertices) = (settings.triangles as usize, stream.vertices.len());
+    /// `None` if the placed objects of `scene` have few triangles, or more than [`Bins::join`] can join, or `memory` has not room for all of
+    /// them, for all vertices, and for any seam: what happens once a frame is then left to one processor.
+    pub(crate) fn new<C: Pixel>(scene: &Scene<'_>, memory: &mut Memory<'_, C>) -> Option<Self> {
+        let stream = &scene.stream;
+        let (triangles, vertices) = (drawn(scene, memory.placements) as usize, scene.vertices() as usize);
         let fits = triangles <= memory.bins.len() && vertices <= memory.vertices.len() && seam(memory.depth, vertices).len() == vertices;
         if !fits || !(2 * STEPS..1 << 15).contains(&triangles) {
             return None;
         }
         let (mut seams, mut vertex, mut before) = ([0; STEPS], 0, 0);
-        for mesh in settings.meshes() {
-            for triangle in stream.triangles_of(mesh)? {
+        for placed in meshes(scene, memory.placements) {
+            let first = placed.first_vertex as u32;
+            for triangle in stream.triangles_of(placed.mesh)? {
                 before += 1;
-                vertex = triangle.corners.map(|corner| mesh.first_vertex + u32::from(corner) + 1).into_iter().fold(vertex, u32::max);
+                vertex = triangle.corners.map(|corner| first + u32::from(corner) + 1).into_iter().fold(vertex, u32::max);
                 // The last of the triangles before a place remains.
                 if let Some(seam) = seams.get_mut((before * STEPS).div_ceil(triangles.max(1))) {
                     *seam = u16::try_from(vertex).ok()?;
@@ -62,10 +62,10 @@ impl Seams {
     }
 
     /// The place where a `share` of the triangles, of 2^16, lies before.
-    pub(crate) fn division<C: Pixel>(&self, settings: &Settings<'_, C>, share: u16) -> Division {
+    pub(crate) fn division(&self, triangles: u32, share: u16) -> Division {
         let step = (usize::from(share) * STEPS + (1 << 15)) >> 16;
         let vertex = self.0.get(step).copied().map(usize::from);
-        vertex.map(|vertex| Division { triangle: settings.triangles as usize * step / STEPS, vertex }).unwrap_or_default()
+        vertex.map(|vertex| Division { triangle: triangles as usize * step / STEPS, vertex }).unwrap_or_default()
     }
 }
 
@@ -100,14 +100,14 @@ pub struct Preparation<'r, C: Pixel> {
 type Empty<'r, C> = (Frame<'r, C>, &'r mut [ScreenVertex], Option<DepthElision>);
 
 impl<'r, C: Pixel> Frame<'r, C> {
-    /// Frame `number` of a renderer, prepared by one processor.
+    /// A frame of a scene whose objects are placed, prepared by one processor.
     #[inline(never)]
-    pub(crate) fn new(settings: &'r Settings<'r, C>, memory: &'r mut Memory<'_, C>, number: u32) -> Self {
-        let (mut frame, cache, mut depth_elision) = Self::empty(settings, memory, number);
-        let Part { bins, entries, .. } = &mut frame.part;
+    pub(crate) fn new(settings: &'r Settings<C>, scene: &'r Scene<'_>, memory: &'r mut Memory<'_, C>) -> Self {
+        let (mut frame, cache, mut depth_elision) = Self::empty(settings, scene, memory);
+        let Part { bins, entries, stats, .. } = &mut frame.part;
         let whole = PreparationPart {
-            scene: &frame.scene,
-            triangles: 0..settings.triangles as usize,
+            context: &frame.context,
+            triangles: 0..stats.triangles as usize,
             cached: cache,
             seam: &mut [],
             entries,
@@ -121,23 +121,28 @@ impl<'r, C: Pixel> Frame<'r, C> {
     }
 
     #[inline(always)]
-    fn empty(settings: &'r Settings<'r, C>, memory: &'r mut Memory<'_, C>, number: u32) -> Empty<'r, C> {
-        let Memory { vertices: cache, bins: entries, depth, reflectances, ramps, error_bounds, samples, active_triangles } = memory;
-        let (stream, size) = (&settings.stream, settings.size);
-        let camera = &stream.header.camera;
-        let pose = Pose::new(camera, number);
-        let lighting = Lighting::new(stream, &pose);
-        let constant = lighting.constant();
-        let view = View::new(camera, &pose, size);
-        let facing = if settings.skips().back_faces { Facing::new(&view, stream.header.radius) } else { Facing::ANY };
+    fn empty(settings: &'r Settings<C>, scene: &'r Scene<'_>, memory: &'r mut Memory<'_, C>) -> Empty<'r, C> {
+        let Memory { vertices: cache, bins: entries, depth, placements, reflectances, ramps, error_bounds, samples, active_triangles, .. } = memory;
+        let size = settings.size;
         // Bins as high as the bands of one processor.
         let band_rows = settings.band_rows(depth.len(), samples.len()).checked_div(settings.processors).unwrap_or(0);
         let bins = Bins::new(size.height, band_rows);
-        let elides = settings.closed_convex && settings.skips().depth && !settings.antialiased();
-        let depth_elision = if elides { DepthElision::new(camera, &view, size) } else { None };
-        let uncached = stream.vertices.len().saturating_sub(cache.len()) as u32;
-        let scene =
-            Scene { settings, view, facing, lighting, constant, depth_elision: None, vertices: &[], reflectances, ramps, error_bounds };
+        let uncached = scene.vertices().saturating_sub(cache.len() as u32);
+        let triangles = drawn(scene, placements);
+        let as_they_are = scene.objects().iter().filter(|object| object.is_visible()).fold(0, |sum, object| sum + object.triangles);
+        let context = Context {
+            settings,
+            scene,
+            background: background(scene.background),
+            placements,
+            depth_elision: None,
+            vertices: &[],
+            reflectances,
+            ramps,
+            error_bounds,
+        };
+        let elides = settings.skips().depth && !settings.antialiased();
+        let depth_elision = if elides { context.convex().and_then(|view| DepthElision::new(&scene.camera, view, size)) } else { None };
         let part = Part {
             bins,
             binned: false,
@@ -149,16 +154,16 @@ impl<'r, C: Pixel> Frame<'r, C> {
             rows: 0..size.height,
             top: 0,
             bottom: size.height,
-            stats: Stats { triangles: settings.triangles, simplified: settings.simplified, uncached, ..Stats::default() },
+            stats: Stats { triangles, simplified: as_they_are - triangles, uncached, ..Stats::default() },
         };
-        (Self { scene, part }, cache, depth_elision)
+        (Self { context, part }, cache, depth_elision)
     }
 
     /// All triangles are in the bins, and `cache` has the vertices.
     #[inline(always)]
     fn complete(&mut self, cache: &'r [ScreenVertex], depth_elision: Option<DepthElision>) {
-        let Self { scene, part } = self;
-        (scene.vertices, scene.depth_elision) = (cache, depth_elision);
+        let Self { context, part } = self;
+        (context.vertices, context.depth_elision) = (cache, depth_elision);
         if let Some(count) = part.bins.count() {
             part.binned = true;
             (part.stats.passes, part.stats.drawn) = (1, count.into());
@@ -169,8 +174,9 @@ impl<'r, C: Pixel> Frame<'r, C> {
 
 impl<'r, C: Pixel> Preparation<'r, C> {
     #[inline(never)]
-    pub(crate) fn new(settings: &'r Settings<'r, C>, memory: &'r mut Memory<'_, C>, number: u32, division: Division) -> Self {
-        let (frame, cache, depth_elision) = Frame::empty(settings, memory, number);
+    pub(crate) fn new(settings: &'r Settings<C>, scene: &'r Scene<'_>, memory: &'r mut Memory<'_, C>, seams: Option<Seams>, share: u16) -> Self {
+        let (frame, cache, depth_elision) = Frame::empty(settings, scene, memory);
+        let division = seams.map(|seams| seams.division(frame.part.stats.triangles, share)).unwrap_or_default();
         let earlier = frame.part.bins.open();
         Self { frame, cache, division, earlier, depth_elisions: [depth_elision.clone(), depth_elision], is_done: [false; 2] }
     }
@@ -181,13 +187,13 @@ impl<'r, C: Pixel> Preparation<'r, C> {
     pub fn parts(&mut self) -> [PreparationPart<'_, 'r, C>; 2] {
         let Self { frame, cache, division: Division { triangle, vertex }, earlier: earlier_bins, depth_elisions, is_done } = self;
         let ([later_elision, earlier_elision], [later_done, earlier_done]) = (depth_elisions, is_done);
-        let Frame { scene, part: Part { bins: later_bins, entries, depth, .. } } = frame;
-        let all = scene.settings.triangles as usize;
+        let Frame { context, part: Part { bins: later_bins, entries, depth, stats, .. } } = frame;
+        let all = stats.triangles as usize;
         let (earlier_cached, later_cached) = halves(cache, *vertex);
         // As many entries as triangles: none can be without.
         let (later_entries, earlier_entries) = halves(entries, entries.len().saturating_sub(*triangle));
         let later = PreparationPart {
-            scene,
+            context,
             triangles: *triangle..all,
             cached: later_cached,
             seam: seam(depth, *vertex),
@@ -197,7 +203,7 @@ impl<'r, C: Pixel> Preparation<'r, C> {
             is_done: later_done,
         };
         let earlier = PreparationPart {
-            scene,
+            context,
             triangles: 0..*triangle,
             cached: earlier_cached,
             seam: &mut [],
@@ -215,9 +221,9 @@ impl<'r, C: Pixel> Preparation<'r, C> {
     pub fn frame(mut self) -> Frame<'r, C> {
         self.parts().into_iter().for_each(PreparationPart::run);
         let Self { mut frame, cache, division: Division { triangle, vertex }, earlier, depth_elisions: [later, before], .. } = self;
-        let Frame { scene, part } = &mut frame;
+        let Frame { context, part } = &mut frame;
         if triangle > 0 {
-            close(scene, cache, seam(part.depth, vertex));
+            close(context, cache, seam(part.depth, vertex));
             part.bins.join(part.entries, &earlier, part.entries.len() - triangle);
         }
         frame.complete(cache, later.zip(before).map(|(later, before)| later.and(&before)));
@@ -227,12 +233,11 @@ impl<'r, C: Pixel> Preparation<'r, C> {
 
 /// Transforms the vertices that triangles at the seam use and no earlier ones.
 #[inline(never)]
-fn close<C: Pixel>(scene: &Scene<'_, C>, cache: &mut [ScreenVertex], seam: &[SeamPlace]) {
-    let stream = &scene.settings.stream;
-    for mesh in scene.settings.meshes() {
-        let first = mesh.first_vertex as usize;
+fn close<C: Pixel>(context: &Context<'_, C>, cache: &mut [ScreenVertex], seam: &[SeamPlace]) {
+    for placed in context.meshes() {
+        let (first, vertices) = (placed.first_vertex, context.scene.stream.vertices_of(placed.mesh));
         if let (Some(seam), Some(cached), Some(vertices), Some(stage)) =
-            (seam.get(first..), cache.get_mut(first..), stream.vertices_of(mesh), scene.stage(mesh))
+            (seam.get(first..), cache.get_mut(first..), vertices, context.stage(&placed))
         {
             stage.close_seam(cached, seam, vertices);
         }
@@ -242,7 +247,7 @@ fn close<C: Pixel>(scene: &Scene<'_, C>, cache: &mut [ScreenVertex], seam: &[Sea
 /// One half of what happens once a frame.
 #[derive(Debug)]
 pub struct PreparationPart<'f, 'r, C: Pixel> {
-    scene: &'f Scene<'r, C>,
+    context: &'f Context<'r, C>,
     /// Its triangles, counted from the first of those that are drawn at this level of detail.
     triangles: Range<usize>,
     /// Its vertices, which follow those of the seam.
@@ -255,7 +260,7 @@ pub struct PreparationPart<'f, 'r, C: Pixel> {
     is_done: &'f mut bool,
 }
 
-impl<C: Pixel> PreparationPart<'_, '_, C> {
+impl<'r, C: Pixel> PreparationPart<'_, 'r, C> {
     /// Its triangles, counted from the first of all levels that are drawn; none if the other part does everything.
     #[must_use]
     pub fn triangles(&self) -> Range<usize> {
@@ -273,38 +278,38 @@ impl<C: Pixel> PreparationPart<'_, '_, C> {
     /// last to the first, in the order that [`Bins::push`] needs. Unless the frame is `DIVIDED`, there is no seam.
     #[inline(never)]
     fn bin<const DIVIDED: bool>(mut self) {
-        let settings = self.scene.settings;
+        let context = self.context;
         self.cached
             .iter_mut()
-            .take(settings.stream.vertices.len().saturating_sub(self.seam.len()))
+            .take((context.scene.vertices() as usize).saturating_sub(self.seam.len()))
             .for_each(|vertex| vertex.state = State::IDLE);
         self.seam.fill(UNUSED);
         // Triangles of the meshes before.
-        let mut earlier = settings.triangles as usize;
-        for mesh in settings.meshes().rev() {
-            earlier = earlier.saturating_sub(mesh.triangles as usize);
-            self.bin_mesh::<DIVIDED>(mesh, earlier);
+        let mut earlier = drawn(context.scene, context.placements) as usize;
+        for placed in context.meshes().rev() {
+            earlier = earlier.saturating_sub(placed.mesh.triangles as usize);
+            self.bin_mesh::<DIVIDED>(&placed, earlier);
         }
     }
 
-    /// Does so with the triangles of `mesh` that belong to this half; `earlier` ones belong to meshes before it.
+    /// Does so with the triangles of a mesh that belong to this half; `earlier` ones belong to meshes before it.
     // A call, so that its loop has all registers.
     #[inline(never)]
-    fn bin_mesh<const DIVIDED: bool>(&mut self, mesh: &Mesh, earlier: usize) {
-        let Self { scene, triangles: Range { start, end }, cached, seam, entries, bins, depth_elision, .. } = self;
+    fn bin_mesh<const DIVIDED: bool>(&mut self, placed: &PlacedMesh<'r>, earlier: usize) {
+        let Self { context, triangles: Range { start, end }, cached, seam, entries, bins, depth_elision, .. } = self;
         // A copy of which the compiler does not know where it is from: it stays in registers.
-        let facing = black_box(scene.facing);
-        let stream = &scene.settings.stream;
-        let viewport = scene.settings.viewport();
+        let facing = black_box(placed.placement.facing);
+        let (stream, mesh) = (&context.scene.stream, placed.mesh);
+        let viewport = context.settings.viewport();
         // Reached by a pointer of its own, which is opaque to the compiler: instructions of Armv6-M reach little of a structure.
         let (bins, depth_elision, entries) = (black_box(&mut **bins), &mut **depth_elision, &mut **entries);
         let leaning = if depth_elision.is_some() { facing.leaning() } else { Facing::FRONT };
         let (vertices, triangles) = (stream.vertices_of(mesh).unwrap_or_default(), stream.triangles_of(mesh).unwrap_or_default());
-        let Some(stage) = scene.stage(mesh) else { return };
+        let Some(stage) = context.stage(placed) else { return };
         let within = |index: usize| index.saturating_sub(earlier).min(triangles.len());
         let before = if DIVIDED { within(*start) } else { 0 };
         let mut rest = if DIVIDED { triangles.get(before..within(*end)).unwrap_or_default() } else { triangles };
-        let (id, first_vertex) = (mesh.first_triangle.wrapping_add(before as u32), mesh.first_vertex as usize);
+        let (id, first_vertex) = (placed.first_triangle.wrapping_add(before as u32), placed.first_vertex);
         let cached = cached.get_mut(first_vertex.saturating_sub(seam.len())..).unwrap_or_default();
         let seam = seam.get_mut(first_vertex..).unwrap_or_default();
         let first_cached = if DIVIDED { seam.len() } else { 0 };
@@ -365,4 +370,13 @@ fn at_seam(
         elision.include(&extent);
     }
     (viewport.is_word_sized(&extent), viewport.bounds(&extent))
+}
+
+/// A colour of 8 bits per channel in the pixel format; grey formats get its luma.
+fn background<C: Pixel>([r, g, b]: [u8; 3]) -> C {
+    let [r, g, b] = [u32::from(r), u32::from(g), u32::from(b)];
+    let luma = (r * 77 + g * 150 + b * 29) >> 8;
+    let [r, g, b] = if C::GRAY { [luma; 3] } else { [r, g, b] };
+    let [dr, dg, db] = C::DEPTH;
+    C::pack([r >> (8 - dr), g >> (8 - dg), b >> (8 - db)])
 }

@@ -36,9 +36,12 @@ use crate::{
     math::vector::{narrow_dot, wide},
     stream::record::{LEAN, Triangle},
 };
+use zerocopy::{FromBytes, Immutable, IntoBytes, KnownLayout};
 
-/// The position of the camera, against which the planes of triangles are tested.
-#[derive(Clone, Copy, Debug)]
+/// The position of the camera, against which the planes of triangles are tested, in memory of the renderer. Lengths are in units of object
+/// space, or, where the eye is too far for that, in such units times a power of two.
+#[derive(FromBytes, IntoBytes, Immutable, KnownLayout, Clone, Copy, Debug)]
+#[repr(C)]
 pub struct Facing {
     /// Perspective: the eye; parallel rays: the direction towards the viewer; Q.10.
     vector: [i32; 3],
@@ -52,6 +55,9 @@ pub struct Facing {
 
 /// Fraction bits of `vector`: the dot product with a unit normal then fits 32 bits.
 const EYE: u32 = 10;
+
+/// Bits of the whole units of the eye's coordinates: below 64, so that with the slack a height fits 32 bits.
+const FARTHEST_EYE: u32 = 6;
 
 /// Fraction bits of a height: the slack of any triangle then fits 32 bits.
 const HEIGHT: u32 = 18;
@@ -77,14 +83,29 @@ impl Facing {
     #[must_use]
     pub fn new(view: &View, radius: u16) -> Self {
         let (vector, reach) = (view.viewer(), view.reach(radius));
-        let offset_scale = if view.is_perspective() { 1 << EYE } else { 0 };
-        // 2 r D, from Q.30 and Q.14, rounded up.
-        let slack = ((2 * view.displacement(reach) * u64::from(reach)) >> (30 + UNIT - PER_ALTITUDE)) + 1;
-        if slack > MAX_SLACK {
+        // In object space: rounding moves a corner by as much more as the object is small.
+        let scale = u64::from(view.scale());
+        let moved = ((view.displacement(reach) << 16) + scale - 1).checked_div(scale).unwrap_or(u64::MAX);
+        let (right, larger, offset_scale, reach) = if view.is_perspective() {
+            // The eye is taken to units that are larger than those of object space by a power of two, and so large that 32 bits hold it.
+            let farthest = vector.iter().fold(0, |m, c| m | c.unsigned_abs()) >> UNIT;
+            let finer = view.viewer_exponent();
+            let right = (32 - farthest.leading_zeros()).saturating_sub(FARTHEST_EYE).max(finer.max(0).unsigned_abs());
+            let larger = right.saturating_add_signed(-finer).min(31);
+            let reach = (view.in_object_units(reach) + ((1 << larger) - 1)) >> larger;
+            (right, larger, (1 << EYE) >> larger, reach)
+        } else {
+            (0, 0, 0, reach)
+        };
+        // 2 r D, from Q.30 and Q.14, rounded up. A direction that is not scaled by a power of two is up to twice as long as a unit vector.
+        let doubled = u64::from(!view.is_perspective() && !scale.is_power_of_two());
+        let slack = (((2 * moved * u64::from(reach)) >> (30 + UNIT - PER_ALTITUDE)) + 1) << doubled;
+        if slack > MAX_SLACK || larger > EYE {
             // There are so few pixels that any triangle may turn over.
             return Self::ANY;
         }
-        let vector = vector.map(|c| (c + (1 << (UNIT - EYE - 1))) >> (UNIT - EYE));
+        let right = right + UNIT - EYE;
+        let vector = vector.map(|c| (c + (1 << (right - 1))) >> right);
         Self { vector, offset_scale, slack: slack as i32, reach: reach as i32 }
     }
 

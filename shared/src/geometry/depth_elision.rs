@@ -55,7 +55,7 @@ impl DepthElision {
     pub(crate) fn new(camera: &Camera, view: &View, size: Size) -> Option<Self> {
         let thickness = view.moved(size, 3);
         // The body lies within one unit of its origin.
-        let is_seen = camera.projection == PERSPECTIVE || camera.translation[2] + (1 << UNIT) + BEHIND <= camera.far;
+        let is_seen = camera.projection == PERSPECTIVE || view.origin()[2] + (1 << UNIT) + BEHIND <= camera.far;
         let size = [size.width, size.height].map(|side| (side << SUBPIXEL) as i32);
         (is_seen && thickness < THICKEST).then_some(Self {
             thickness: thickness as i32,

@@ -16,22 +16,22 @@
 use crate::{
     arch::quotient::long,
     format::{GeometricError, UNIT},
-    stream::record::{Header, PERSPECTIVE},
+    stream::record::{Camera, Header, PERSPECTIVE},
 };
 use embedded_graphics_core::geometry::Size;
 
-/// How far a level may lie from its mesh at most, rounded down, to be less than half a pixel from it in all frames of a stream in a viewport
-/// of `size` pixels. For a rotation that is rounded, and stretches, 1/32 is spared, of the radius as well.
+/// How far a level may lie from its mesh at most, rounded down, to be less than half a pixel from it in a viewport of `size` pixels. The mesh
+/// lies in a ball of `radius`, whose centre is at the depth `depth`, both Q18.14. For a rotation that is rounded, and stretches, 1/32 is
+/// spared, of the radius as well.
 ///
-/// Domain: a checked header, sides up to [`crate::MAX_SIDE`]. Error: with that at most 4 % too little in views of up to 53 degrees along
+/// Domain: a checked camera, sides up to [`crate::MAX_SIDE`]. Error: with that at most 4 % too little in views of up to 53 degrees along
 /// the diagonal, 9 % in views of up to 90 degrees (tests::no_less_than_need_be). Source: the formula above.
 #[must_use]
-pub fn tolerance(header: &Header, size: Size) -> GeometricError {
-    let camera = &header.camera;
+pub fn tolerance(camera: &Camera, depth: i32, radius: u32, size: Size) -> GeometricError {
     let (width, height) = (size.width, size.height);
     let (depth, square) = if camera.projection == PERSPECTIVE {
-        let radius = i32::from(header.radius);
-        let nearest = camera.translation[2].wrapping_sub(radius + (radius >> 5) + 1);
+        let radius = radius as i32;
+        let nearest = depth.wrapping_sub(radius + (radius >> 5) + 1);
         (nearest.max(camera.near), width.wrapping_mul(width).wrapping_add(height.wrapping_mul(height)))
     } else {
         (1 << UNIT, 0)
@@ -43,13 +43,19 @@ pub fn tolerance(header: &Header, size: Size) -> GeometricError {
     GeometricError::from_bits(error.min(u16::MAX.into()) as u16)
 }
 
+/// [`tolerance`] for the whole stream, as its camera sees it in all frames.
+#[must_use]
+pub fn stream_tolerance(header: &Header, size: Size) -> GeometricError {
+    tolerance(&header.camera, header.camera.translation[2], header.radius.into(), size)
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
     use crate::{
         error::MAX_SIDE,
         format::{Focal, Length, Radius, Rotation},
-        stream::record::{Camera, ORTHOGRAPHIC},
+        stream::record::ORTHOGRAPHIC,
     };
     use proptest::prelude::*;
     use zerocopy::FromZeros;
@@ -62,6 +68,10 @@ mod tests {
         let translation = [0.0, 0.0, distance].map(Length::from_num);
         let camera = Camera::new(projection, rotation, translation, Focal::from_num(focal), [near, 32.0].map(Length::from_num));
         Header { camera, radius: Radius::from_num(radius).to_bits(), ..Header::new_zeroed() }
+    }
+
+    fn of(header: &Header, [width, height]: [u32; 2]) -> GeometricError {
+        stream_tolerance(header, Size::new(width, height))
     }
 
     /// The distance of the eye from the viewport, and half of its diagonal, pixels.
@@ -84,7 +94,7 @@ mod tests {
         ) {
             let projection = if perspective { PERSPECTIVE } else { ORTHOGRAPHIC };
             let header = header(projection, [distance, near, radius, focal]);
-            let error = f64::from(tolerance(&header, Size::new(size[0], size[1])));
+            let error = f64::from(of(&header, size));
             let [f, _] = pixels(size, focal);
             // Any point that is seen, at the depth of the ball.
             let nearest = (distance - radius).max(near);
@@ -106,7 +116,7 @@ mod tests {
         ) {
             let projection = if perspective { PERSPECTIVE } else { ORTHOGRAPHIC };
             let header = header(projection, [distance, near, radius, focal]);
-            let error = f64::from(tolerance(&header, Size::new(size[0], size[1])));
+            let error = f64::from(of(&header, size));
             let [f, h] = pixels(size, focal);
             let (z, slope) = if perspective { ((distance - radius * 33.0 / 32.0).max(near), h / f) } else { (1.0, 0.0) };
             let exact = z / (2.0 * f * slope.hypot(1.0));
@@ -124,7 +134,7 @@ mod tests {
             for [distance, focal] in [[-16.0, 1.0 / 16.0], [-16.0, 16.0], [16.0, 1.0 / 16.0], [16.0, 16.0]] {
                 for size in [[1, 1], [1, MAX_SIDE], [MAX_SIDE, MAX_SIDE]] {
                     let header = header(projection, [distance, 1.0 / 64.0, 3.9, focal]);
-                    let error = f64::from(tolerance(&header, Size::new(size[0], size[1])));
+                    let error = f64::from(of(&header, size));
                     let [f, h] = pixels(size, focal);
                     let (z, slope) = if projection == PERSPECTIVE { ((distance - 3.9f64).max(1.0 / 64.0), h / f) } else { (1.0, 0.0) };
                     assert!(error < z / (2.0 * f * slope.hypot(1.0)));

@@ -5,6 +5,6 @@ pub(crate) mod clip;
 pub mod cull;
 pub(crate) mod depth_elision;
 pub mod detail;
-pub mod pose;
+pub mod model_view;
 pub mod projection;
 pub mod viewport;

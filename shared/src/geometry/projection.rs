@@ -6,7 +6,7 @@ use crate::{
         quotient::long,
     },
     format::{DEPTH, ROTATION, SUBPIXEL, UNIT},
-    geometry::pose::Pose,
+    geometry::model_view::ModelView,
     math::{
         recip::recip,
         scale,
@@ -69,65 +69,70 @@ const MOVED: u32 = 2;
 /// Inverse depth of a vertex at the near plane, Q0.28: less than one, so that rounding cannot wrap it.
 const NEAREST: i32 = (1 << DEPTH) - (1 << 10);
 
-/// The transformation from object space to the screen in one frame.
-#[derive(Clone, Copy, Debug)]
+/// The transformation from object space to the screen in one frame, in memory of the renderer.
+#[derive(FromBytes, IntoBytes, Immutable, KnownLayout, Clone, Copy, Debug)]
+#[repr(C)]
 pub struct View {
-    /// Object to eye space, Q2.14, as exact as positions are.
+    /// Half of the viewport's smaller side, in 1/16 pixel, times the focal length, Q.16.
+    focal: i64,
+    /// Parallel rays: inverse depth per unit of distance, Q.14.
+    inv_depth: i64,
+    /// Object to eye space, as exact as positions are: the rotation times the scale, of which [`Self::shift`] has a power of two.
     rotation: [[i32; 3]; 3],
+    /// Fraction bits of `rotation`: 14 at the scale 1, and its entries below 2^14 in size at any.
+    shift: u32,
     translation: [i32; 3],
     /// Centre of the viewport, 1/16 pixel.
     centre: [i32; 2],
-    projection: Projection,
-    /// Half of the viewport's smaller side, in 1/16 pixel, times the focal length, Q.16.
-    focal: i64,
     near: i32,
-}
-
-#[derive(Clone, Copy, Debug)]
-enum Projection {
-    Perspective {
-        /// [`View::focal`] as a mantissa of 31 bits.
-        focal: i32,
-        /// Fraction bits of the mantissa.
-        exponent: u32,
-        /// [`View::near`] as a mantissa of 31 bits.
-        near: i32,
-        /// The shift that puts depth into the upper half of the product of `near` and 1/z.
-        depth_shift: u32,
-    },
-    Orthographic {
-        far: i32,
-        /// Inverse depth per unit of distance, Q.14.
-        inv_depth: i64,
-    },
+    /// Parallel rays: depth where inverse depth is 0.
+    far: i32,
+    /// Whether rays meet in the eye: 0 or 1.
+    is_perspective: u32,
+    /// Perspective: [`Self::focal`] as a mantissa of 31 bits, and its fraction bits.
+    focal_mantissa: i32,
+    focal_exponent: u32,
+    /// Perspective: [`Self::near`] as a mantissa of 31 bits.
+    near_mantissa: i32,
+    /// Perspective: the shift that puts depth into the upper half of the product of `near` and 1/z.
+    depth_shift: u32,
+    /// [`crate::format::Scale`] of the object.
+    scale: u32,
+    reserved: u32,
 }
 
 impl View {
-    /// The view of `pose` on a viewport of `size` pixels.
+    /// How `model_view` is seen on a viewport of `size` pixels.
     #[must_use]
-    pub fn new(camera: &Camera, pose: &Pose, size: Size) -> Self {
-        let round = |c: i32| (c + (1 << (ROTATION - UNIT - 1))) >> (ROTATION - UNIT);
+    pub fn new(camera: &Camera, model_view: &ModelView, size: Size) -> Self {
+        let scale = model_view.scale.max(1);
+        // The scale is a mantissa of at most 1, Q1.30, times a power of two: 2^(exponent - 16).
+        let exponent = 32 - (scale - 1).leading_zeros();
+        let mantissa = i64::from(scale) << (ROTATION - exponent.min(ROTATION));
+        let round = |c: i32| (((c as i64 * mantissa) >> ROTATION) as i32 + (1 << (ROTATION - UNIT - 1))) >> (ROTATION - UNIT);
         let smaller = size.width.min(size.height);
         let focal = (i64::from(smaller) << (SUBPIXEL - 1)) * i64::from(camera.focal);
         let near = camera.near.max(1);
-        let projection = if camera.projection == PERSPECTIVE {
-            let bits = 64 - focal.leading_zeros();
-            // focal is Q.16; at 31 bits its fraction bits are these.
-            let exponent = 16 + 31 - bits;
-            let focal = if bits > 31 { focal >> (bits - 31) } else { focal << (31 - bits) } as i32;
-            let shift = near.leading_zeros() - 1;
-            Projection::Perspective { focal, exponent, near: near << shift, depth_shift: shift + 30 - DEPTH }
-        } else {
-            let inv_depth = long((NEAREST as u64) << UNIT, (camera.far - near).max(1) as u64) as i64;
-            Projection::Orthographic { far: camera.far, inv_depth }
-        };
+        let bits = 64 - focal.leading_zeros();
+        let shift = near.leading_zeros() - 1;
+        let is_perspective = camera.projection == PERSPECTIVE;
         Self {
-            rotation: pose.rotation.map(|row| row.map(round)),
-            translation: pose.translation,
-            centre: [(size.width << (SUBPIXEL - 1)) as i32, (size.height << (SUBPIXEL - 1)) as i32],
-            projection,
             focal,
+            inv_depth: if is_perspective { 0 } else { long((NEAREST as u64) << UNIT, (camera.far - near).max(1) as u64) as i64 },
+            rotation: model_view.rotation.map(|row| row.map(round)),
+            shift: UNIT + 16 - exponent,
+            translation: model_view.translation,
+            centre: [(size.width << (SUBPIXEL - 1)) as i32, (size.height << (SUBPIXEL - 1)) as i32],
             near,
+            far: camera.far,
+            is_perspective: is_perspective.into(),
+            focal_mantissa: if bits > 31 { focal >> (bits - 31) } else { focal << (31 - bits) } as i32,
+            // The focal length is Q.16; at 31 bits its fraction bits are these.
+            focal_exponent: 16 + 31 - bits,
+            near_mantissa: near << shift,
+            depth_shift: shift + 30 - DEPTH,
+            scale,
+            reserved: 0,
         }
     }
 
@@ -136,7 +141,7 @@ impl View {
     #[must_use]
     pub fn to_eye(&self, position: [i16; 3]) -> [i32; 3] {
         let [x, y, z] = self.rotation;
-        let along = |row| narrow_dot(row, wide(position)) >> UNIT;
+        let along = |row| narrow_dot(row, wide(position)) >> (self.shift & 31);
         add([along(x), along(y), along(z)], self.translation)
     }
 
@@ -147,22 +152,19 @@ impl View {
     pub fn project(&self, eye: [i32; 3]) -> ([i32; 3], bool) {
         let [x, y, z] = eye;
         let (behind, z) = (z >= self.near, z.max(self.near));
-        let (x, y, depth) = match self.projection {
-            Projection::Perspective { focal, exponent, near, depth_shift } => {
-                // 1/z = r 2^(zeros - 62), relative error 2^-29 wherever the near plane lies.
-                let zeros = z.leading_zeros();
-                let r = recip((z as u32) << (zeros & 31)) as i32;
-                // c focal is below 2^(21 + 31); 31 bits of it times r stay below 2^62.
-                let shift = 41 - zeros + exponent;
-                let place = |c: i32| shifted(product((product(c, focal) >> 21) as i32, r), shift);
-                // Behind the near plane z has no more leading zeros than `near`: the shift is positive.
-                let depth = upper(near, r) >> ((depth_shift - zeros) & 31);
-                (place(x), place(y), depth)
-            }
-            Projection::Orthographic { far, inv_depth } => {
-                let place = |c: i32| saturated((i64::from(c) * self.focal + (1 << (UNIT + 15))) >> (UNIT + 16));
-                (place(x), place(y), saturated((i64::from(far - z) * inv_depth) >> UNIT).max(0))
-            }
+        let (x, y, depth) = if self.is_perspective() {
+            // 1/z = r 2^(zeros - 62), relative error 2^-29 wherever the near plane lies.
+            let zeros = z.leading_zeros();
+            let r = recip((z as u32) << (zeros & 31)) as i32;
+            // c focal is below 2^(21 + 31); 31 bits of it times r stay below 2^62.
+            let shift = 41 - zeros + self.focal_exponent;
+            let place = |c: i32| shifted(product((product(c, self.focal_mantissa) >> 21) as i32, r), shift);
+            // Behind the near plane z has no more leading zeros than `near`: the shift is positive.
+            let depth = upper(self.near_mantissa, r) >> ((self.depth_shift - zeros) & 31);
+            (place(x), place(y), depth)
+        } else {
+            let place = |c: i32| saturated((i64::from(c) * self.focal + (1 << (UNIT + 15))) >> (UNIT + 16));
+            (place(x), place(y), saturated((i64::from(self.far - z) * self.inv_depth) >> UNIT).max(0))
         };
         let inside = |c: i32| c.wrapping_add(GUARD) as u32 <= 2 * GUARD as u32;
         let within = behind && inside(x) && inside(y);
@@ -173,18 +175,43 @@ impl View {
     /// Whether the camera is perspective, so that rays meet in the eye.
     #[must_use]
     pub fn is_perspective(&self) -> bool {
-        matches!(self.projection, Projection::Perspective { .. })
+        self.is_perspective != 0
     }
 
-    /// The eye in object space, Q18.14, or the direction towards the viewer under parallel rays, Q2.14. It is consistent with
-    /// [`Self::to_eye`], whose rounding down is half a unit in the last place on average.
+    /// How many bits the units of [`Self::viewer`] are smaller than those of object space; negative if they are larger.
+    #[must_use]
+    pub fn viewer_exponent(&self) -> i32 {
+        UNIT as i32 - self.shift as i32
+    }
+
+    /// `length` of the world, Q18.14, in units of object space, rounded up.
+    #[must_use]
+    pub fn in_object_units(&self, length: u32) -> u32 {
+        long((u64::from(length) << 16) + u64::from(self.scale - 1), self.scale.into()) as u32
+    }
+
+    /// The object's scale, [`crate::format::Scale`].
+    #[must_use]
+    pub fn scale(&self) -> u32 {
+        self.scale
+    }
+
+    /// Where the origin of object space lies in eye space, Q18.14.
+    #[must_use]
+    pub fn origin(&self) -> [i32; 3] {
+        self.translation
+    }
+
+    /// The eye in object space, Q18.14, or the direction towards the viewer under parallel rays, Q2.14, both in units that are as large as
+    /// [`Self::viewer_exponent`] says: those of object space at the scale 1. It is consistent with [`Self::to_eye`], whose rounding down is
+    /// half a unit in the last place on average.
     #[must_use]
     pub fn viewer(&self) -> [i32; 3] {
         // Cramer's rule: the columns of the adjugate matrix, Q.28, over the determinant, Q.42.
         let [a, b, c] = self.rotation;
         let columns = [cross(b, c), cross(c, a), cross(a, b)];
         let determinant: i64 = c.iter().zip(columns[2]).map(|(&c, k)| i64::from(c) * k).sum();
-        // Homogeneous, Q.15. Below 2^20 in size: all sums, and what they are shifted to, stay below 2^62.
+        // Homogeneous, Q.15. Below 2^22 in size: all sums, and what they are shifted to, stay below 2^63.
         let from = if self.is_perspective() { self.translation.map(|c| 2 * i64::from(c) - 1) } else { [0, 0, 1 << 15] };
         let along = |k: usize| columns.iter().zip(from).map(|(column, t)| column.get(k).unwrap_or(&0) * t).sum::<i64>();
         // A rotation's determinant is not 0.
@@ -200,8 +227,31 @@ impl View {
     #[must_use]
     pub fn reach(&self, radius: u16) -> u32 {
         let [x, y, z] = self.translation.map(i32::unsigned_abs);
-        let reach = if self.is_perspective() { x + y + z + u32::from(radius) } else { 1 << UNIT };
+        let radius = ((u64::from(radius) * u64::from(self.scale) + 0xFFFF) >> 16) as u32;
+        let reach = if self.is_perspective() { x + y + z + radius } else { 1 << UNIT };
         reach + (reach >> 5) + 1
+    }
+
+    /// Whether some part of the ball of `radius`, [`crate::format::Radius`], about the origin of object space may be seen in a viewport of `size`
+    /// pixels. Errs on the side of true.
+    #[must_use]
+    pub fn sees(&self, radius: u16, size: Size) -> bool {
+        let radius = ((u64::from(radius) * u64::from(self.scale)) >> 16) as i64;
+        // Of what is rounded on the way.
+        let radius = radius + (radius >> 5) + 4;
+        let [x, y, z] = self.translation.map(i64::from);
+        if z + radius < i64::from(self.near) || !self.is_perspective() && z - radius > i64::from(self.far) {
+            return false;
+        }
+        let depth = if self.is_perspective() { z } else { 1 << UNIT };
+        let beside = |c: i64, side: u32| {
+            // The plane through the edge of the viewport: c focal = depth half, all in 1/16 pixel. The focal length and half of the viewport
+            // together are longer than its normal.
+            let (focal, half) = (self.focal >> 8, i64::from(side) << (SUBPIXEL + 7));
+            let normal = if self.is_perspective() { focal + half } else { focal };
+            c.abs() * focal - depth * half > radius * normal
+        };
+        !(beside(x, size.width) || beside(y, size.height))
     }
 
     /// How far rounding may move a vertex as far from the eye as `reach`, Q.30.
@@ -221,15 +271,13 @@ impl View {
     #[must_use]
     pub fn moved(&self, size: Size, times: u32) -> u32 {
         let focal = (self.focal >> 16) as u32;
-        let within = times.wrapping_mul(MOVED).wrapping_mul(match self.projection {
+        let (beside, unit) = if self.is_perspective() {
             // The point moves sideways by focal / z, and for its depth by as much as it lies off the axis.
-            Projection::Perspective { .. } => focal.wrapping_add(size.width.max(size.height) << (SUBPIXEL - 1)),
-            Projection::Orthographic { .. } => focal,
-        });
-        let unit = match self.projection {
-            Projection::Perspective { .. } => self.near.unsigned_abs(),
-            Projection::Orthographic { .. } => 1 << UNIT,
+            (size.width.max(size.height) << (SUBPIXEL - 1), self.near.unsigned_abs())
+        } else {
+            (0, 1 << UNIT)
         };
+        let within = times.wrapping_mul(MOVED).wrapping_mul(focal.wrapping_add(beside));
         // Screen coordinates are rounded to the nearest, with 2^-7 to spare for the arithmetic before.
         let rounded = times.wrapping_mul(65).div_ceil(128);
         within.checked_div(unit).map_or(u32::MAX, |within| within.saturating_add(1).saturating_add(rounded))
@@ -305,7 +353,7 @@ mod tests {
                 near: 1 << 12,
                 far: 1 << 18,
             };
-            let pose = Pose::new(&camera, number as u32);
+            let pose = ModelView::new(&camera, number as u32);
             let exact = |view: &View, last: f64| {
                 let viewer = view.viewer().map(i64::from);
                 [0, 1, 2].map(|k| {
@@ -325,11 +373,10 @@ mod tests {
     #[test]
     fn projection_keeps_its_precision() {
         let one = 1 << ROTATION;
-        let pose = Pose { rotation: [[one, 0, 0], [0, one, 0], [0, 0, -one]], translation: [0; 3] };
         for near in [1 << 8, 1 << 12, 3 << 13, 5 << 14] {
             for focal in [1u32 << 12, 1 << 16, 140_000, 16 << 16] {
                 let camera = Camera {
-                    rotation: pose.rotation,
+                    rotation: [[one, 0, 0], [0, one, 0], [0, 0, -one]],
                     translation: [0; 3],
                     axis: [0, one, 0],
                     period: 0,
@@ -339,7 +386,7 @@ mod tests {
                     near,
                     far: 0,
                 };
-                let view = View::new(&camera, &pose, Size::new(640, 480));
+                let view = View::new(&camera, &ModelView::new(&camera, 0), Size::new(640, 480));
                 for k in 0..2_000i32 {
                     let eye = [
                         (k * 7_919) % 90_000 - 45_000,

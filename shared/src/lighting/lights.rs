@@ -1,28 +1,23 @@
-//! The lights of one frame in object space. They are moved there once a frame, so that no normal needs to be rotated.
+//! The lights of one frame in object space. They are moved there once a frame for each object, so that no normal needs to be rotated.
 
 use crate::{
     arch::product::{HALVES, by_fraction},
     format::{COSINE, MAX_LIGHTS, POSITION, UNIT},
-    geometry::pose::Pose,
+    geometry::model_view::ModelView,
     math::vector::{add, dot, narrow_dot, normalise, sub, wide},
-    stream::{
-        Stream,
-        record::{DIRECTIONAL, EYE_SPACE, Light, PERSPECTIVE, VIEWER_LOCAL},
-    },
+    stream::record::{Camera, DIRECTIONAL, EYE_SPACE, Light, PERSPECTIVE, VIEWER_LOCAL},
 };
+use zerocopy::{FromBytes, Immutable, IntoBytes, KnownLayout};
 
-/// A light in object space.
-#[derive(Clone, Copy, Debug)]
-pub enum Source {
-    /// A light that is infinitely far, by unit vectors, Q2.30.
-    Directional {
-        /// The unit vector towards the light, L.
-        towards: [i32; 3],
-        /// The unit half vector H between L and an infinite viewer; unused under a local viewer.
-        half: [i32; 3],
-    },
-    /// A light at this position, Q7.25.
-    Point([i32; 3]),
+/// A light in object space, in memory of the renderer.
+#[derive(FromBytes, IntoBytes, Immutable, KnownLayout, Clone, Copy, Debug)]
+#[repr(C)]
+pub struct Source {
+    /// A light that is infinitely far: the unit vector L towards it, and the unit half vector H between L and an infinite viewer, which is
+    /// unused under a local viewer; Q2.30. Else its position, Q7.25.
+    vectors: [[i32; 3]; 2],
+    /// Whether the light is at a position: 0 or 1.
+    is_point: u32,
 }
 
 /// Where highlights are seen from, in object space.
@@ -34,66 +29,85 @@ pub enum Viewer {
     Local([i32; 3]),
 }
 
-/// All lights of one frame.
-#[derive(Clone, Debug)]
+/// All lights of one object in one frame, in memory of the renderer.
+#[derive(FromBytes, IntoBytes, Immutable, KnownLayout, Clone, Debug)]
+#[repr(C)]
 pub struct Lighting {
-    /// All lights, in the order of the stream.
-    pub sources: heapless::Vec<Source, MAX_LIGHTS>,
-    /// Where highlights are seen from.
-    pub viewer: Viewer,
+    /// The first `count` are the lights of the scene, in its order.
+    sources: [Source; MAX_LIGHTS],
+    count: u32,
+    /// See [`Self::is_directional`]: 0 or 1.
+    directional: u32,
+    /// See [`Viewer`].
+    viewer: [i32; 3],
+    is_local: u32,
     /// The axes of the eye, to the right, up, and towards the viewer: unit vectors, Q2.30.
     pub axes: [[i32; 3]; 3],
-    /// The eye in these axes, relative to the origin of object space, Q18.14: exact, unlike [`Viewer::Local`].
+    /// The eye in these axes, relative to the origin of object space and in its units, Q18.14: exact at the scale 1, unlike
+    /// [`Viewer::Local`].
     pub eye: [i32; 3],
-    /// See [`Self::is_directional`].
-    directional: bool,
 }
 
 impl Lighting {
-    /// The stream's lights for `pose`.
+    /// The lights of a scene, at most [`MAX_LIGHTS`], for an object seen as `model_view` says.
     #[must_use]
-    pub fn new(stream: &Stream<'_>, pose: &Pose) -> Self {
-        let header = stream.header;
-        let [right, up, away] = pose.rotation;
+    pub fn new(camera: &Camera, lights: &[Light], model_view: &ModelView) -> Self {
+        let [right, up, away] = model_view.rotation;
         let towards_eye = away.map(|c| -c);
-        let viewer = if header.camera.viewer == VIEWER_LOCAL && header.camera.projection == PERSPECTIVE {
-            Viewer::Local(pose.eye())
-        } else {
-            Viewer::Infinite(towards_eye)
-        };
-        let mut sources = heapless::Vec::new();
-        for light in stream.lights {
-            // A checked stream has no more lights than there is room for.
-            let _ = sources.push(source(light, pose, towards_eye));
+        let is_local = camera.viewer == VIEWER_LOCAL && camera.projection == PERSPECTIVE;
+        let mut sources = [Source { vectors: [[0; 3]; 2], is_point: 0 }; MAX_LIGHTS];
+        for (source, light) in sources.iter_mut().zip(lights) {
+            *source = Source::new(light, model_view, towards_eye);
         }
-        let [x, y, z] = pose.translation;
-        let directional = sources.iter().all(|source| matches!(source, Source::Directional { .. }));
-        Self { sources, viewer, axes: [right, up, towards_eye], eye: [-x, -y, z], directional }
+        let [x, y, z] = model_view.translation.map(|c| model_view.in_object_units(c));
+        Self {
+            sources,
+            count: lights.len() as u32,
+            directional: lights.iter().all(|light| light.kind == DIRECTIONAL).into(),
+            viewer: if is_local { model_view.eye() } else { towards_eye },
+            is_local: is_local.into(),
+            axes: [right, up, towards_eye],
+            eye: [-x, -y, z],
+        }
+    }
+
+    /// All lights, in the order of the scene.
+    #[inline(always)]
+    #[must_use]
+    pub fn sources(&self) -> &[Source] {
+        self.sources.get(..self.count as usize).unwrap_or_default()
+    }
+
+    /// Where highlights are seen from.
+    #[inline(always)]
+    #[must_use]
+    pub fn viewer(&self) -> Viewer {
+        if self.is_local == 0 { Viewer::Infinite(self.viewer) } else { Viewer::Local(self.viewer) }
     }
 
     /// L and H, if there is just one light, directional, under an infinite viewer. N·L and N·H are then linear in N, which every method can
     /// use.
     #[must_use]
-    pub fn constant(&self) -> Option<[[i32; 3]; 2]> {
-        match (self.sources.as_slice(), self.viewer) {
-            ([Source::Directional { towards, half }], Viewer::Infinite(_)) => Some([*towards, *half]),
+    pub fn constant(&self) -> Option<&[[i32; 3]; 2]> {
+        match self.sources() {
+            [source] if self.is_constant() => source.directional(),
             _ => None,
         }
     }
 
     /// `[N·L, N·H]` of each light, Q2.30, at `position` (Q7.25) with the normal `normal` (Q2.30, at most unit length).
     pub fn cosines(&self, position: [i32; 3], normal: [i32; 3]) -> impl Iterator<Item = [i32; 2]> {
-        self.sources.iter().map(move |source| self.directions(source, position).map(|direction| cosine(normal, direction)))
+        self.sources().iter().map(move |source| self.directions(source, position).map(|direction| cosine(normal, direction)))
     }
 
     /// The unit vectors L and H of a light at `position` (Q7.25), Q2.30.
     #[must_use]
     pub fn directions(&self, source: &Source, position: [i32; 3]) -> [[i32; 3]; 2] {
-        match (*source, self.viewer) {
-            (Source::Directional { towards, half }, Viewer::Infinite(_)) => [towards, half],
+        match source.directional() {
+            Some(directions) if self.is_local == 0 => *directions,
             _ => {
                 let towards = source.towards(position);
-                [towards, half(towards, self.viewer.towards(position))]
+                [towards, half(towards, self.viewer().towards(position))]
             }
         }
     }
@@ -102,36 +116,54 @@ impl Lighting {
     #[inline(always)]
     #[must_use]
     pub fn is_constant(&self) -> bool {
-        self.directional && !self.viewer.is_local()
+        self.directional & !self.is_local & 1 != 0
     }
 
     /// Whether all lights are directional.
     #[inline(always)]
     #[must_use]
     pub fn is_directional(&self) -> bool {
-        self.directional
+        self.directional != 0
     }
 }
 
 impl Source {
+    /// `light` for an object seen as `model_view` says, whose directions to the eye are `towards_eye`.
+    fn new(light: &Light, model_view: &ModelView, towards_eye: [i32; 3]) -> Self {
+        let (vector, is_eye_space) = (light.vector, light.space == EYE_SPACE);
+        if light.kind == DIRECTIONAL {
+            let unit = normalise(vector);
+            let towards = if is_eye_space { model_view.to_object(unit) } else { model_view.world_to_object(unit) };
+            return Self { vectors: [towards, half(towards, towards_eye)], is_point: 0 };
+        }
+        let point = if is_eye_space { model_view.point_to_object(vector) } else { model_view.world_point_to_object(vector) };
+        Self { vectors: [point; 2], is_point: 1 }
+    }
+
+    /// The unit vectors L and H, Q2.30, of a light that is infinitely far; H is unused under a local viewer.
+    #[inline(always)]
+    #[must_use]
+    pub fn directional(&self) -> Option<&[[i32; 3]; 2]> {
+        (self.is_point == 0).then_some(&self.vectors)
+    }
+
+    /// The position, Q7.25, of a light that is near.
+    #[inline(always)]
+    #[must_use]
+    pub fn point(&self) -> Option<[i32; 3]> {
+        let [point, _] = self.vectors;
+        (self.is_point != 0).then_some(point)
+    }
+
     /// Unit vector from `position` towards the light, Q2.30.
     #[must_use]
     pub fn towards(&self, position: [i32; 3]) -> [i32; 3] {
-        match *self {
-            Self::Directional { towards, .. } => towards,
-            Self::Point(light) => normalise(sub(light, position)),
-        }
+        let [vector, _] = self.vectors;
+        if self.is_point == 0 { vector } else { normalise(sub(vector, position)) }
     }
 }
 
 impl Viewer {
-    /// Whether the viewer is at a position.
-    #[inline(always)]
-    #[must_use]
-    pub fn is_local(&self) -> bool {
-        matches!(self, Self::Local(_))
-    }
-
     /// Unit vector from `position` towards the viewer, Q2.30.
     #[must_use]
     pub fn towards(&self, position: [i32; 3]) -> [i32; 3] {
@@ -215,17 +247,6 @@ impl MeanNormal {
 /// The unit half vector between two unit vectors, Q2.30; zero if they are opposite. Source: Blinn (1977).
 fn half(towards: [i32; 3], viewer: [i32; 3]) -> [i32; 3] {
     normalise(add(towards.map(|c| c >> 1), viewer.map(|c| c >> 1)))
-}
-
-fn source(light: &Light, pose: &Pose, towards_eye: [i32; 3]) -> Source {
-    if light.kind == DIRECTIONAL {
-        let vector = normalise(light.vector);
-        let towards = if light.space == EYE_SPACE { pose.to_object(vector) } else { vector };
-        return Source::Directional { towards, half: half(towards, towards_eye) };
-    }
-    let vector = light.vector;
-    let from_centre = || pose.point_to_object(sub(vector, pose.translation));
-    Source::Point(if light.space == EYE_SPACE { from_centre() } else { vector.map(|c| c << (POSITION - UNIT)) })
 }
 
 #[cfg(test)]

@@ -152,7 +152,7 @@ mod tests {
     use crate::{
         format::{COSINE, UNIT},
         lighting::reflectance::Highlight,
-        stream::record::{Header, Light, Material},
+        stream::record::{Light, Material},
     };
     use embedded_graphics_core::pixelcolor::{Rgb565, Rgb888};
     use proptest::prelude::*;
@@ -160,9 +160,8 @@ mod tests {
 
     /// The reflectance of a material under one light in the pixel format `C`.
     fn reflectance<C: Pixel>(material: &Material, colour: [u16; 3]) -> Reflectance {
-        let (mut reflectance, mut header) = (Reflectance::EMPTY, Header::new_zeroed());
-        header.ambient = [1 << UNIT; 3];
-        reflectance.fill::<C>(&header, material, &[Light { colour, ..Light::new_zeroed() }], (Highlight::Half, false));
+        let mut reflectance = Reflectance::EMPTY;
+        reflectance.fill::<C>([1 << UNIT; 3], material, &[Light { colour, ..Light::new_zeroed() }], (Highlight::Half, false));
         reflectance
     }
 

@@ -12,7 +12,7 @@ use crate::{
         vector::zip,
     },
     pixel::{Pixel, dither::quantise},
-    stream::record::{Header, Light, Material},
+    stream::record::{Light, Material},
 };
 use zerocopy::{FromBytes, Immutable, IntoBytes, KnownLayout};
 
@@ -185,12 +185,12 @@ impl Reflectance {
 
     /// Computes the reflectance of `material` under `lights`, for a method with these highlights and the pixel format `C`. If the method
     /// allows it, and there is one channel and one light, the table of highlights `holds_levels` instead of fractions.
-    pub fn fill<C: Pixel>(&mut self, header: &Header, material: &Material, lights: &[Light], (highlight, holds_levels): (Highlight, bool)) {
+    pub fn fill<C: Pixel>(&mut self, ambient: [u16; 3], material: &Material, lights: &[Light], (highlight, holds_levels): (Highlight, bool)) {
         let depth = C::DEPTH;
         // What each light adds at most, diffuse and specular, and the ambient term.
         let mut terms = heapless::Vec::<Colour, { 2 * MAX_LIGHTS + 1 }>::new();
         let lit = lights.iter().flat_map(|light| [(light.colour, material.diffuse), (light.colour, material.specular)]);
-        for (light, reflectance) in lit.chain([(header.ambient, material.ambient)]) {
+        for (light, reflectance) in lit.chain([(ambient, material.ambient)]) {
             let colour = product(light, reflectance);
             // There is room for the terms of as many lights as a stream has.
             let _ = terms.push(if C::GRAY { luma(colour) } else { colour });
@@ -427,7 +427,7 @@ impl Reflectance {
         }
         let mut lit = [[0; 2]; 2];
         for (lit, source) in lit.iter_mut().zip(sources) {
-            if let Source::Directional { towards, half } = *source {
+            if let Some(&[towards, half]) = source.directional() {
                 *lit = [node_cosine(normal.cosine(towards)), self.highlight(normal.cosine(half)) as i32];
             }
         }
@@ -458,10 +458,7 @@ impl Reflectance {
     #[cold]
     #[inline(never)]
     fn many_constant_levels(&self, sources: &[Source], normal: &MeanNormal) -> [i32; 3] {
-        let cosines = sources.iter().map(|source| match *source {
-            Source::Directional { towards, half } => [normal.cosine(towards), normal.cosine(half)],
-            Source::Point(_) => [0; 2],
-        });
+        let cosines = sources.iter().map(|source| source.directional().map_or([0; 2], |directions| directions.map(|v| normal.cosine(v))));
         self.levels(cosines)
     }
 

@@ -35,6 +35,9 @@ pub(crate) struct MeshPass<'f, C: Pixel> {
     pub(crate) stage: VertexStage<'f>,
     /// Where triangles may overlap; `None` if they may do so everywhere.
     pub(crate) depth_elision: Option<&'f DepthElision>,
+    /// Triangles of the frame before its own.
+    pub(crate) first_triangle: u32,
+    pub(crate) triangles: &'f [Triangle],
     pub(crate) vertices: &'f [Vertex],
     /// The cached vertices on the screen.
     pub(crate) cached: &'f [ScreenVertex],
@@ -52,21 +55,14 @@ struct MeshTriangle<'f> {
 }
 
 impl<C: Pixel> MeshPass<'_, C> {
-    /// Draws the triangle of `entry` and all that follow in the same mesh, whose triangles end at `end`, by the loops `L` where they can.
-    /// Returns the number of pixels in `band`, and the first entry of another mesh.
+    /// Draws the triangle of `entry` and all that follow in the same mesh, by the loops `L` where they can. Returns the number of pixels in
+    /// `band`, and the first entry of another mesh.
     #[inline(never)]
-    pub(crate) fn run<L: Loops>(
-        &self,
-        triangles: &[Triangle],
-        mut entry: Entry,
-        walk: &mut Walk<'_>,
-        end: u32,
-        band: &mut Band<'_, C>,
-    ) -> (u32, Option<Entry>) {
+    pub(crate) fn run<L: Loops>(&self, mut entry: Entry, walk: &mut Walk<'_>, band: &mut Band<'_, C>) -> (u32, Option<Entry>) {
         let mut pixels = 0u32;
         loop {
-            // A checked stream has every triangle.
-            if let Some(triangle) = triangles.get(entry.triangle() as usize) {
+            // The mesh has every triangle of its entries.
+            if let Some(triangle) = self.triangles.get(self.index(entry)) {
                 let drawn = if L::GENERAL || !entry.is_word_sized() {
                     self.draw(L::draw, triangle, band)
                 } else {
@@ -77,10 +73,16 @@ impl<C: Pixel> MeshPass<'_, C> {
                 pixels = pixels.saturating_add(drawn);
             }
             match walk.next() {
-                Some(other) if other.triangle() < end => entry = other,
+                Some(other) if self.index(other) < self.triangles.len() => entry = other,
                 other => return (pixels, other),
             }
         }
+    }
+
+    /// Index of a triangle in the mesh; beyond its end if it belongs to a later one.
+    #[inline(always)]
+    fn index(&self, entry: Entry) -> usize {
+        entry.triangle().wrapping_sub(self.first_triangle) as usize
     }
 
     #[inline(never)]

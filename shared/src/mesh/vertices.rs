@@ -7,7 +7,7 @@ use crate::{
         viewport::{Bounds, Viewport},
     },
     lighting::{
-        lights::{Lighting, MeanNormal, Source, point, vertex_cosine},
+        lights::{Lighting, MeanNormal, point, vertex_cosine},
         reflectance::Reflectance,
     },
     math::vector::wide,
@@ -113,7 +113,7 @@ impl VertexStage<'_> {
             }
             _ => {
                 let levels = if self.lighting.is_constant() {
-                    self.reflectance.constant_levels(&self.lighting.sources, &MeanNormal::at(normal))
+                    self.reflectance.constant_levels(self.lighting.sources(), &MeanNormal::at(normal))
                 } else {
                     self.reflectance.levels(self.lighting.cosines(point(vertex.position), normal.map(|c| c << (30 - UNIT))))
                 };
@@ -143,11 +143,8 @@ impl VertexStage<'_> {
     /// N·L and N·H of one light, then of the other, Q2.30.
     #[inline(always)]
     fn cosines_of_two_lights(&self, normal: [i32; 3]) -> [i32; 4] {
-        let [Source::Directional { towards, half }, Source::Directional { towards: other, half: other_half }] =
-            self.lighting.sources.as_slice()
-        else {
-            return [0; 4];
-        };
+        let [one, other] = self.lighting.sources() else { return [0; 4] };
+        let (Some([towards, half]), Some([other, other_half])) = (one.directional(), other.directional()) else { return [0; 4] };
         [vertex_cosine(normal, *towards), vertex_cosine(normal, *half), vertex_cosine(normal, *other), vertex_cosine(normal, *other_half)]
     }
 

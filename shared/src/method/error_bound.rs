@@ -422,7 +422,7 @@ mod tests {
         lighting::{lights::vertex_cosine, reflectance::Highlight},
         math::vector::wide,
         method::highlight_error::EXACT,
-        stream::record::{Header, Light, Material},
+        stream::record::{Light, Material},
     };
     use embedded_graphics_core::pixelcolor::Gray8;
     use zerocopy::FromZeros;
@@ -510,7 +510,7 @@ mod tests {
         let bright = [2 << UNIT; 3];
         let material = Material { ambient: bright, diffuse: bright, specular: bright, exponent: 1024 };
         let light = Light { colour: bright, ..Light::new_zeroed() };
-        reflectance.fill::<Gray8>(&Header { ambient: bright, ..Header::new_zeroed() }, &material, &[light; 2], (Highlight::Half, false));
+        reflectance.fill::<Gray8>(bright, &material, &[light; 2], (Highlight::Half, false));
         let bounds = ErrorBounds::new(&reflectance, 1024, 2);
         let one = (1 << COSINE) + (1 << (COSINE - UNIT));
         for angle in [0.0f64, 0.01, 0.5, 0.615] {
@@ -536,14 +536,12 @@ mod tests {
         for case in 0..20_000 {
             let lights = 1 + case % 2;
             let exponent = (1024f64.powf(0.5 + 0.5 * random.next()).max(1.0) as u16).min(1024);
-            let mut header = Header::new_zeroed();
-            header.ambient = [1 << UNIT; 3];
             let gain = |x: f64| [(x * f64::from(1 << UNIT)) as u16; 3];
             let shares = [0.2 + 0.2 * random.next(), 0.2 + 0.2 * random.next()];
             let material = Material { ambient: [0; 3], diffuse: gain(shares[0]), specular: gain(shares[1]), exponent };
             let mut reflectance = Reflectance::EMPTY;
             let white = Light { colour: [1 << UNIT; 3], ..Light::new_zeroed() };
-            reflectance.fill::<Gray8>(&header, &material, &[white; 2][..lights], (Highlight::Half, false));
+            reflectance.fill::<Gray8>([1 << UNIT; 3], &material, &[white; 2][..lights], (Highlight::Half, false));
             let bounds = ErrorBounds::new(&reflectance, exponent, lights);
             let (facing, spread) = (random.direction(), 0.6f64.powf(1.0 + 4.0 * random.next().abs()));
             // As long as a mesh has them.

@@ -77,7 +77,7 @@ impl Loops for Flat {
 fn levels(triangle: &Triangle, vertices: &[Vertex], shading: &Shading<'_>) -> [i32; 3] {
     let normal = wide(triangle.normal);
     if shading.lighting.is_constant() {
-        return shading.reflectance.constant_levels(&shading.lighting.sources, &MeanNormal::at(normal));
+        return shading.reflectance.constant_levels(shading.lighting.sources(), &MeanNormal::at(normal));
     }
     shading.levels(&centroid(triangle, vertices, normal))
 }

@@ -254,7 +254,7 @@ impl Shading<'_> {
         let (lut, mut ambient) = (reflectance.highlight_lut.by_cosine(), reflectance.ambient_sums());
         let (mut lights, mut diffuse) = (heapless::Vec::<_, MAX_LIGHTS>::new(), heapless::Vec::<_, MAX_LIGHTS>::new());
         let (mut without_highlight, mut without_light) = (0, 0);
-        for (light, source) in self.lighting.sources.iter().enumerate() {
+        for (light, source) in self.lighting.sources().iter().enumerate() {
             let factors = reflectance.factors(light);
             // There is room for as many lights as a frame has.
             match of(source) {
@@ -285,10 +285,7 @@ impl Shading<'_> {
 
     /// N·L and N·H of a constant light at the corners, Q2.30. Domain: [`crate::method::Lighting::is_constant`].
     pub fn constant_cosines(&self, setup: &TriangleSetup<'_>, source: &Source) -> [[i32; 3]; 2] {
-        match *source {
-            Source::Directional { towards, half } => [setup.corner_cosines(towards), setup.corner_cosines(half)],
-            Source::Point(_) => [[0; 3]; 2],
-        }
+        source.directional().map_or([[0; 3]; 2], |directions| directions.map(|direction| setup.corner_cosines(direction)))
     }
 
     /// The quadratics through N·L and N·H of a light at six nodes; `map` is applied to both.

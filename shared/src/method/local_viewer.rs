@@ -16,7 +16,7 @@ use crate::{
     interpolate::{by_column::ByColumn, field::Nodes, plane::Plane, quadric::Quadric},
     lighting::{
         constant_lights::{OneLight, OneLightRamp, OneLightRgb, node},
-        lights::{Source, point},
+        lights::point,
         material_tables::MaterialTables,
     },
     math::{
@@ -57,7 +57,8 @@ pub(crate) fn draw<C: Pixel>(
     tables: MaterialTables<'_, C>,
     band: &mut Band<'_, C>,
 ) -> Option<Result<u32, CornerCosines>> {
-    let [Source::Directional { towards, .. }] = *shading.lighting.sources.as_slice() else { return None };
+    let [source] = shading.lighting.sources() else { return None };
+    let &[towards, _] = source.directional()?;
     let light = setup.corner_cosines(towards);
     // What the band above has saved has no highlight: polynomials of all others are too long.
     if setup.place.is_none() {

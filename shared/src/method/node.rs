@@ -49,7 +49,7 @@ impl Shading<'_> {
             && !is_steep(self.exponent)
             && let Some([ab, bc, ca]) = &setup.middle_normals()
         {
-            let levels = |normal| self.reflectance.constant_levels(&self.lighting.sources, normal);
+            let levels = |normal| self.reflectance.constant_levels(self.lighting.sources(), normal);
             return [levels(ab), levels(bc), levels(ca)];
         }
         let [.., ab, bc, ca] = setup.six_nodes(self.exponent);

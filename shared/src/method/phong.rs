@@ -68,7 +68,7 @@ impl Loops for Phong {
         tables: MaterialTables<'_, C>,
         band: &mut Band<'_, C>,
     ) -> Option<u32> {
-        let cosines = match shading.lighting.viewer {
+        let cosines = match shading.lighting.viewer() {
             Viewer::Infinite(_) => None,
             // Boards with displays of greys have little flash: no loop there.
             Viewer::Local(_) if C::GRAY => return None,
@@ -88,15 +88,15 @@ where
 {
     let positions = setup.vertices().map(|vertex| point(vertex.position));
     let normals = fitted(setup.vertices().map(|vertex| wide(vertex.normal)));
-    let view = fitted(match shading.lighting.viewer {
+    let view = fitted(match shading.lighting.viewer() {
         Viewer::Infinite(towards) => [towards; 3],
         Viewer::Local(eye) => positions.map(|p| sub(eye, p)),
     });
     let common = quadratic([field_product(&normals, &normals), field_product(&view, &view), field_product(&normals, &view)]);
     let fit = |source: &Source| {
-        let towards = fitted(match *source {
-            Source::Directional { towards, .. } => [towards; 3],
-            Source::Point(position) => positions.map(|p| sub(position, p)),
+        let towards = fitted(match (source.directional(), source.point()) {
+            (Some([towards, _]), _) => [*towards; 3],
+            (None, position) => positions.map(|p| sub(position.unwrap_or_default(), p)),
         });
         quadratic([field_product(&normals, &towards), field_product(&towards, &towards), field_product(&view, &towards)])
     };

@@ -11,7 +11,7 @@ use crate::{
 };
 use core::{fmt, ops::Range};
 use record::{
-    DIRECTIONAL, EYE_SPACE, Header, Light, MAGIC, Material, Mesh, ORTHOGRAPHIC, PERSPECTIVE, POINT, Triangle, VERSION, VIEWER_INFINITE,
+    Camera, DIRECTIONAL, EYE_SPACE, Header, Light, MAGIC, Material, Mesh, ORTHOGRAPHIC, PERSPECTIVE, POINT, Triangle, VERSION, VIEWER_INFINITE,
     VIEWER_LOCAL, Vertex,
 };
 use zerocopy::{FromBytes, Immutable, KnownLayout};
@@ -206,21 +206,15 @@ impl<'a> Stream<'a> {
         let header = self.header;
         field(header.frames > 0, "frames", 0)?;
         field((LEAST_BUDGET..=LARGEST_BUDGET).contains(&header.budget()), "budget", 0)?;
-        field(header.camera.viewer <= VIEWER_LOCAL, "viewer", 0)?;
         field(self.lights.len() <= MAX_LIGHTS, "lights", 0)?;
-        self.check_camera()?;
+        let fault = |fault: Option<&'static str>, i: usize| fault.map_or(Ok(()), |name| field(false, name, i));
+        fault(header.camera.fault(), 0)?;
         for (i, material) in self.materials.iter().enumerate() {
-            field((1..=MAX_EXPONENT).contains(&material.exponent), "material exponent", i)?;
-            let colours = [material.ambient, material.diffuse, material.specular];
-            field(colours.as_flattened().iter().all(|&c| c <= MAX_GAIN), "material colour", i)?;
+            fault(material.fault(), i)?;
         }
-        field(header.ambient.iter().all(|&c| c <= MAX_GAIN), "ambient light", 0)?;
+        field(is_gain(header.ambient), "ambient light", 0)?;
         for (i, light) in self.lights.iter().enumerate() {
-            field(light.kind <= POINT && light.space <= EYE_SPACE, "light kind", i)?;
-            field(light.colour.iter().all(|&c| c <= MAX_GAIN), "light colour", i)?;
-            field(light.vector.iter().all(|&c| within(c, MAX_LENGTH)), "light vector", i)?;
-            let length = |v: [i32; 3]| v.iter().map(|&c| i64::from(c) * i64::from(c)).sum::<i64>();
-            field(light.kind == POINT || is_one(length(light.vector), 2 * UNIT), "light direction", i)?;
+            fault(light.fault(), i)?;
         }
         let (mut next_vertex, mut next_triangle) = (0, 0);
         let Some(mut finer) = self.meshes.first() else { return field(false, "meshes", 0) };
@@ -256,25 +250,6 @@ impl<'a> Stream<'a> {
         Ok(())
     }
 
-    fn check_camera(&self) -> Result<(), StreamError> {
-        let camera = &self.header.camera;
-        let unit = |v: &[i32; 3]| {
-            let square = v.iter().map(|&c| i64::from(c >> 1) * i64::from(c >> 1)).sum::<i64>();
-            v.iter().all(|&c| within(c, 1 << ROTATION)) && is_one(square, 2 * (ROTATION - 1))
-        };
-        let [x, y, z] = camera.rotation;
-        let square = |a: [i32; 3], b: [i32; 3]| dot(a, b).abs() <= 1 << (2 * ROTATION - 12);
-        let turns = dot(cross(x, y).map(|c| (c >> ROTATION) as i32), z) < 0;
-        field(camera.rotation.iter().all(unit), "camera rotation", 0)?;
-        field(square(x, y) && square(y, z) && square(z, x) && turns, "camera rotation", 0)?;
-        field(unit(&camera.axis), "camera axis", 0)?;
-        field(camera.translation.iter().all(|&c| within(c, MAX_LENGTH)), "camera translation", 0)?;
-        field(camera.projection <= ORTHOGRAPHIC, "camera projection", 0)?;
-        field((MIN_FOCAL..=MAX_FOCAL).contains(&camera.focal), "camera focal", 0)?;
-        field((MIN_NEAR..MAX_LENGTH).contains(&camera.near), "camera near", 0)?;
-        let depth = camera.near < camera.far && camera.far <= 2 * MAX_LENGTH;
-        field(camera.projection == PERSPECTIVE || depth, "camera far", 0)
-    }
 
     /// Whether all lights are directional and the viewer is infinitely far.
     #[must_use]
@@ -291,8 +266,13 @@ impl<'a> Stream<'a> {
 
     /// Each mesh at the coarsest of its levels that lies no farther than `error` from the mesh as it is; at an error of 0 each as it is.
     pub fn meshes_within(&self, error: GeometricError) -> impl DoubleEndedIterator<Item = &'a Mesh> + use<'a> {
-        let meshes = self.meshes;
-        (0..meshes.len()).filter_map(move |i| level(meshes, i, error.to_bits()))
+        self.levels_within(0..self.header.meshes, error)
+    }
+
+    /// The same of some meshes, by their indices.
+    pub(crate) fn levels_within(&self, meshes: Range<u16>, error: GeometricError) -> impl DoubleEndedIterator<Item = &'a Mesh> + use<'a> {
+        let all = self.meshes;
+        meshes.filter_map(move |i| level(all, i.into(), error.to_bits()))
     }
 
     /// The vertices of `mesh`.
@@ -306,6 +286,65 @@ impl<'a> Stream<'a> {
     pub fn triangles_of(&self, mesh: &Mesh) -> Option<&'a [Triangle]> {
         self.triangles.get(mesh.first_triangle as usize..)?.get(..mesh.triangles as usize)
     }
+}
+
+impl Camera {
+    /// What is out of its range, if anything is.
+    pub(crate) fn fault(&self) -> Option<&'static str> {
+        let unit = |v: &[i32; 3]| {
+            let square = v.iter().map(|&c| i64::from(c >> 1) * i64::from(c >> 1)).sum::<i64>();
+            v.iter().all(|&c| within(c, 1 << ROTATION)) && is_one(square, 2 * (ROTATION - 1))
+        };
+        let [x, y, z] = self.rotation;
+        let square = |a: [i32; 3], b: [i32; 3]| dot(a, b).abs() <= 1 << (2 * ROTATION - 12);
+        let turns = dot(cross(x, y).map(|c| (c >> ROTATION) as i32), z) < 0;
+        let depth = self.near < self.far && self.far <= 2 * MAX_LENGTH;
+        fault([
+            (self.viewer <= VIEWER_LOCAL, "viewer"),
+            (self.rotation.iter().all(unit), "camera rotation"),
+            (square(x, y) && square(y, z) && square(z, x) && turns, "camera rotation"),
+            (unit(&self.axis), "camera axis"),
+            (self.translation.iter().all(|&c| within(c, MAX_LENGTH)), "camera translation"),
+            (self.projection <= ORTHOGRAPHIC, "camera projection"),
+            ((MIN_FOCAL..=MAX_FOCAL).contains(&self.focal), "camera focal"),
+            ((MIN_NEAR..MAX_LENGTH).contains(&self.near), "camera near"),
+            (self.projection == PERSPECTIVE || depth, "camera far"),
+        ])
+    }
+}
+
+impl Light {
+    /// What is out of its range, if anything is.
+    pub(crate) fn fault(&self) -> Option<&'static str> {
+        let square = self.vector.iter().map(|&c| i64::from(c) * i64::from(c)).sum::<i64>();
+        fault([
+            (self.kind <= POINT && self.space <= EYE_SPACE, "light kind"),
+            (is_gain(self.colour), "light colour"),
+            (self.vector.iter().all(|&c| within(c, MAX_LENGTH)), "light vector"),
+            (self.kind == POINT || is_one(square, 2 * UNIT), "light direction"),
+        ])
+    }
+}
+
+impl Material {
+    /// What is out of its range, if anything is.
+    pub(crate) fn fault(&self) -> Option<&'static str> {
+        let colours = [self.ambient, self.diffuse, self.specular];
+        fault([
+            ((1..=MAX_EXPONENT).contains(&self.exponent), "material exponent"),
+            (colours.into_iter().all(is_gain), "material colour"),
+        ])
+    }
+}
+
+/// The name of the first condition that does not hold.
+fn fault<const N: usize>(conditions: [(bool, &'static str); N]) -> Option<&'static str> {
+    conditions.into_iter().find_map(|(holds, name)| (!holds).then_some(name))
+}
+
+/// Whether a colour is in range.
+pub(crate) fn is_gain(colour: [u16; 3]) -> bool {
+    colour.iter().all(|&c| c <= MAX_GAIN)
 }
 
 /// Record `i`, if it is the coarsest level of its mesh whose error is at most `error`.

@@ -13,7 +13,7 @@ use embedded_graphics_core::{
     pixelcolor::{Rgb565, RgbColor, raw::RawU16},
 };
 use lack::Lack;
-use microphong::{Stream, geometry::pose::Pose, lighting::lights::Lighting, stream::record::Material};
+use microphong::{Stream, geometry::model_view::ModelView, lighting::lights::Lighting, stream::record::Material};
 use microphong_boards::{
     Board, INSTRUCTIONS_PER_TICK,
     build::{host, release},
@@ -128,7 +128,7 @@ pub fn possible(processor: Processor) -> bool {
 /// # Errors
 /// When a built-in scene is damaged.
 pub fn obstacle(stream: &Stream<'_>) -> Result<Option<&'static str>> {
-    let lighting = Lighting::new(stream, &Pose::new(&stream.header.camera, 0));
+    let lighting = Lighting::new(&stream.header.camera, stream.lights, &ModelView::new(&stream.header.camera, 0));
     if !lighting.is_constant() {
         return Ok(Some("a light is near, or highlights are seen by a local viewer"));
     }

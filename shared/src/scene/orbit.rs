@@ -1,51 +1,18 @@
-//! Position and rotation of the camera in one frame.
+//! The ready-made animation of a stream: its camera orbits.
 
 use crate::{
-    format::{POSITION, ROTATION, UNIT},
-    math::vector::{cross, dot, transposed, zip},
+    format::ROTATION,
+    math::vector::{cross, dot, zip},
     stream::record::Camera,
 };
 use micromath::F32Ext;
 
-/// The camera of one frame.
-#[derive(Clone, Copy, Debug)]
-pub struct Pose {
-    /// Object to eye space, Q2.30.
-    pub rotation: [[i32; 3]; 3],
-    /// Added after rotation, Q18.14.
-    pub translation: [i32; 3],
-}
-
-impl Pose {
-    /// The camera's pose in frame `number`.
-    #[must_use]
-    pub fn new(camera: &Camera, number: u32) -> Self {
-        let mut rotation = camera.rotation;
-        if let Some(frame) = number.checked_rem(camera.period.into())
-            && frame != 0
-        {
-            rotation = turned(rotation, camera.axis, frame, camera.period.into());
-        }
-        Self { rotation, translation: camera.translation }
-    }
-
-    /// A direction of eye space in object space, in the format of `v`, rounded down.
-    #[must_use]
-    pub fn to_object(&self, v: [i32; 3]) -> [i32; 3] {
-        transposed(self.rotation).map(|column| (dot(column, v) >> ROTATION) as i32)
-    }
-
-    /// The point of object space at `v` of eye space, which is relative to the object's centre; from Q18.14 to [`POSITION`] fraction bits,
-    /// rounded down.
-    #[must_use]
-    pub fn point_to_object(&self, v: [i32; 3]) -> [i32; 3] {
-        transposed(self.rotation).map(|column| (dot(column, v) >> (ROTATION + UNIT - POSITION)) as i32)
-    }
-
-    /// The eye in object space, [`POSITION`] fraction bits.
-    #[must_use]
-    pub fn eye(&self) -> [i32; 3] {
-        self.point_to_object(self.translation.map(|c| -c))
+/// Rows of the rotation from the world to the eye in frame `number`, Q2.30.
+#[must_use]
+pub(crate) fn rotation(camera: &Camera, number: u32) -> [[i32; 3]; 3] {
+    match number.checked_rem(camera.period.into()) {
+        Some(frame) if frame != 0 => turned(camera.rotation, camera.axis, frame, camera.period.into()),
+        _ => camera.rotation,
     }
 }
 

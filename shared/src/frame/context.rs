@@ -1,0 +1,196 @@
+//! What all rows of a frame have in common. It does not change while they are drawn, so two processors can read it at the same time.
+
+use crate::{
+    format::RAMP,
+    frame::skips::Skips,
+    geometry::{
+        depth_elision::DepthElision,
+        projection::{ScreenVertex, View},
+        viewport::Viewport,
+    },
+    lighting::{material_tables::MaterialTables, reflectance::Reflectance},
+    mesh::{MeshPass, vertices::VertexStage},
+    method::{ErrorBounds, Shading, Style},
+    pixel::Pixel,
+    placement::Placement,
+    scene::{Object, Scene},
+    shader::{Shader, TriangleLoops},
+    stream::record::{CLOSED_CONVEX, Mesh},
+};
+use embedded_graphics_core::geometry::Size;
+
+/// How scenes are drawn, from frame to frame.
+#[derive(Debug)]
+pub(crate) struct Settings<C: Pixel> {
+    pub(crate) size: Size,
+    /// Processors that draw at the same time.
+    pub(crate) processors: u32,
+    pub(crate) shader: Shader<C>,
+    pub(crate) dither: bool,
+    pub(crate) perspective_correct: bool,
+    pub(crate) antialias: bool,
+    /// How far a pixel may be off by a method that keeps to a budget, in 1/255, Q9.7.
+    pub(crate) budget: u32,
+    #[cfg(feature = "skips")]
+    pub(crate) skips: Skips,
+    /// Whether coarser levels of meshes are drawn.
+    pub(crate) levels_of_detail: bool,
+}
+
+impl<C: Pixel> Settings<C> {
+    #[inline(always)]
+    pub(crate) fn antialiased(&self) -> bool {
+        cfg!(feature = "antialias") && self.antialias
+    }
+
+    /// What is left out.
+    #[inline(always)]
+    pub(crate) fn skips(&self) -> Skips {
+        #[cfg(feature = "skips")]
+        return self.skips;
+        #[cfg(not(feature = "skips"))]
+        Skips::ALL
+    }
+
+    /// Rows of a band for which there is room for depth, and for samples.
+    pub(crate) fn band_rows(&self, depth: usize, samples: usize) -> u32 {
+        let pixels = if self.antialiased() { depth.min(samples) } else { depth };
+        (pixels as u32).checked_div(self.size.width).unwrap_or(0).min(self.size.height)
+    }
+
+    pub(crate) fn viewport(&self) -> Viewport {
+        Viewport {
+            width: self.size.width as i32,
+            height: self.size.height as i32,
+            antialiased: self.antialiased(),
+            all_touched: self.antialiased() || !self.skips().between_centres,
+        }
+    }
+}
+
+/// One frame of a scene, its vertices on the screen.
+#[derive(Debug)]
+pub(crate) struct Context<'r, C: Pixel> {
+    pub(crate) settings: &'r Settings<C>,
+    pub(crate) scene: &'r Scene<'r>,
+    pub(crate) background: C,
+    /// One for each object of the scene.
+    pub(crate) placements: &'r [Placement],
+    /// Where triangles may overlap; `None` if they may do so everywhere.
+    pub(crate) depth_elision: Option<DepthElision>,
+    pub(crate) vertices: &'r [ScreenVertex],
+    /// One for each material, as in `ramps`, the tables of colours.
+    pub(crate) reflectances: &'r [Reflectance],
+    pub(crate) ramps: &'r [[C::Stored; RAMP]],
+    /// What a method that keeps to a budget knows of each material.
+    pub(crate) error_bounds: &'r [ErrorBounds],
+}
+
+/// A mesh of an object in one frame.
+pub(crate) struct PlacedMesh<'r> {
+    pub(crate) mesh: &'r Mesh,
+    pub(crate) placement: &'r Placement,
+    /// Index of its material.
+    pub(crate) material: usize,
+    /// Triangles of the frame before its own.
+    pub(crate) first_triangle: u32,
+    /// Vertices of the frame before its own.
+    pub(crate) first_vertex: usize,
+}
+
+impl<'r> PlacedMesh<'r> {
+    /// `mesh` of `object`, whose first mesh in the stream is `first`.
+    fn new(placement: &'r Placement, object: &Object, first: &Mesh, mesh: &'r Mesh) -> Self {
+        Self {
+            mesh,
+            placement,
+            material: object.material_of(mesh),
+            first_triangle: placement.first_triangle.wrapping_add(mesh.first_triangle.wrapping_sub(first.first_triangle)),
+            first_vertex: placement.first_vertex.wrapping_add(mesh.first_vertex.wrapping_sub(first.first_vertex)) as usize,
+        }
+    }
+}
+
+/// The meshes of all objects of a scene, each at the level that is drawn.
+pub(crate) fn meshes<'r>(scene: &'r Scene<'_>, placements: &'r [Placement]) -> impl DoubleEndedIterator<Item = PlacedMesh<'r>> {
+    placements.iter().zip(scene.objects()).flat_map(move |(placement, object)| {
+        let first = scene.stream.meshes.get(usize::from(object.meshes().start));
+        let placed = move |mesh| Some(PlacedMesh::new(placement, object, first?, mesh));
+        placement.meshes(scene, object).filter_map(placed)
+    })
+}
+
+/// Triangles of the levels that are drawn, those of objects that are out of sight among them.
+pub(crate) fn drawn(scene: &Scene<'_>, placements: &[Placement]) -> u32 {
+    placements.iter().zip(scene.objects()).fold(0, |sum, (placement, _)| sum + placement.triangles)
+}
+
+impl<'r, C: Pixel> Context<'r, C> {
+    /// The meshes of all objects, each at the level that is drawn.
+    pub(crate) fn meshes(&self) -> impl DoubleEndedIterator<Item = PlacedMesh<'r>> + use<'r, C> {
+        meshes(self.scene, self.placements)
+    }
+
+    /// The view of the only mesh that is drawn, if it is closed and convex, and no larger than its rounding allows for.
+    pub(crate) fn convex(&self) -> Option<&'r View> {
+        let mut meshes = self.meshes();
+        let only = meshes.next().filter(|only| only.mesh.flags & CLOSED_CONVEX != 0)?;
+        let view = &only.placement.view;
+        (meshes.next().is_none() && view.scale() <= 1 << 16).then_some(view)
+    }
+
+    /// The mesh of triangle `id` of the frame.
+    pub(crate) fn mesh(&self, id: u32) -> Option<PlacedMesh<'r>> {
+        // Objects follow one another without a gap, as meshes in the stream do: each time this is the last one that does not start behind the
+        // triangle. A stream may have 65,535 meshes: they are searched by halves.
+        let (placements, meshes) = (self.placements, self.scene.stream.meshes);
+        let index = placements.partition_point(|placement| placement.first_triangle <= id).wrapping_sub(1);
+        let (placement, object) = (placements.get(index)?, self.scene.objects().get(index)?);
+        let first = meshes.get(usize::from(object.meshes().start))?;
+        let id = id.wrapping_sub(placement.first_triangle).wrapping_add(first.first_triangle);
+        let mesh = meshes.get(meshes.partition_point(|mesh| mesh.first_triangle <= id).wrapping_sub(1))?;
+        Some(PlacedMesh::new(placement, object, first, mesh))
+    }
+
+    /// The stage that transforms and lights the vertices of `placed`.
+    pub(super) fn stage<'s>(&'s self, placed: &PlacedMesh<'s>) -> Option<VertexStage<'s>> {
+        let light = self.settings.shader.facts().vertex_light;
+        let reflectance = self.reflectances.get(placed.material)?;
+        let Placement { view, lighting, .. } = placed.placement;
+        Some(VertexStage { view, lighting, constant: lighting.constant(), reflectance, light })
+    }
+
+    /// What the triangles of `placed` have in common, and the loops that draw them.
+    #[inline(never)]
+    pub(crate) fn drawing<'s>(&'s self, placed: &PlacedMesh<'s>) -> Option<(MeshPass<'s, C>, TriangleLoops<C>)> {
+        let Settings { shader, dither, .. } = self.settings;
+        let (stream, material, stage) = (&self.scene.stream, placed.material, self.stage(placed)?);
+        let (reflectance, ramp) = (self.reflectances.get(material)?, self.ramps.get(material)?);
+        let perspective = self.settings.perspective_correct && stage.view.is_perspective();
+        let lighting = stage.lighting;
+        let style = Style {
+            three_channels: reflectance.three_channels(),
+            lights: if lighting.is_constant() { reflectance.lights() } else { 0 },
+            local_viewer: lighting.is_directional() && !lighting.is_constant() && reflectance.lights() == 1,
+            dithered_or_antialiased: *dither || self.settings.antialiased(),
+            perspective,
+        };
+        let exponent = self.scene.material(material)?.exponent;
+        let error_bounds = self.error_bounds.get(material)?;
+        let drawing = MeshPass {
+            method: shader.method(),
+            shading: Shading { reflectance, lighting, exponent, constant: stage.constant.copied(), error_bounds, budget: self.settings.budget },
+            tables: MaterialTables { ramp, reflectance },
+            dither: *dither,
+            stage,
+            depth_elision: self.depth_elision.as_ref(),
+            first_triangle: placed.first_triangle,
+            triangles: stream.triangles_of(placed.mesh)?,
+            vertices: stream.vertices_of(placed.mesh)?,
+            cached: self.vertices.get(placed.first_vertex..).unwrap_or_default(),
+            viewport: self.settings.viewport(),
+            perspective,
+        };
+        Some((drawing, shader.loops(style)))
+    }
+}

@@ -1,0 +1,114 @@
+//! The way of an object from its own space to that of the eye, in one frame.
+
+use crate::{
+    arch::quotient::long,
+    format::{POSITION, ROTATION, UNIT},
+    math::vector::{add, dot, normalise, sub, transposed},
+    scene::{Pose, orbit},
+    stream::record::Camera,
+};
+
+/// Farthest coordinate of a near light or viewer in object space, Q7.25: 59 units, so that a vertex, which is less than 4 units from the
+/// origin, differs from it by less than 64. At the scale 1 none is farther than 56.
+const FARTHEST: i64 = 59 << POSITION;
+
+/// The way of an object from its own space to that of the eye: scaled, rotated, moved. The world is that of an object without a pose.
+#[derive(Clone, Copy, Debug)]
+pub struct ModelView {
+    /// Object to eye space, Q2.30.
+    pub rotation: [[i32; 3]; 3],
+    /// Added after rotation, Q18.14.
+    pub translation: [i32; 3],
+    /// Before rotation, [`crate::format::Scale`].
+    pub scale: u32,
+    /// Object space to the world, Q2.30.
+    to_world: [[i32; 3]; 3],
+    /// Where the object is in the world, Q18.14.
+    position: [i32; 3],
+    /// 1 over the scale, Q16.16.
+    inverse_scale: u32,
+}
+
+impl ModelView {
+    /// The world as the camera sees it in frame `number` of its orbit.
+    #[must_use]
+    pub fn new(camera: &Camera, number: u32) -> Self {
+        let one = 1 << ROTATION;
+        Self {
+            rotation: orbit::rotation(camera, number),
+            translation: camera.translation,
+            scale: 1 << 16,
+            to_world: [[one, 0, 0], [0, one, 0], [0, 0, one]],
+            position: [0; 3],
+            inverse_scale: 1 << 16,
+        }
+    }
+
+    /// An object that lies in this world as `pose` says.
+    #[must_use]
+    pub fn of(&self, pose: &Pose) -> Self {
+        if pose.is_identity() {
+            return *self;
+        }
+        let (to_world, position, scale) = (pose.matrix(), pose.position().map(|c| c.to_bits()), pose.scale().to_bits());
+        let columns = transposed(to_world);
+        let rounded = |sum: i64| ((sum + (1 << (ROTATION - 1))) >> ROTATION) as i32;
+        Self {
+            rotation: self.rotation.map(|row| columns.map(|column| rounded(dot(row, column)))),
+            translation: add(self.rotation.map(|row| rounded(dot(row, position))), self.translation),
+            scale,
+            to_world,
+            position,
+            inverse_scale: long(1 << 32, scale.into()) as u32,
+        }
+    }
+
+    /// A direction of eye space in object space, in the format of `v`, rounded down.
+    #[must_use]
+    pub fn to_object(&self, v: [i32; 3]) -> [i32; 3] {
+        transposed(self.rotation).map(|column| (dot(column, v) >> ROTATION) as i32)
+    }
+
+    /// A direction of the world in object space, in the format of `v`, rounded down.
+    #[must_use]
+    pub fn world_to_object(&self, v: [i32; 3]) -> [i32; 3] {
+        transposed(self.to_world).map(|column| (dot(column, v) >> ROTATION) as i32)
+    }
+
+    /// A point of eye space, Q18.14, in object space, Q7.25; see [`FARTHEST`].
+    #[must_use]
+    pub fn point_to_object(&self, v: [i32; 3]) -> [i32; 3] {
+        self.near(self.rotation, sub(v, self.translation))
+    }
+
+    /// A point of the world, Q18.14, in object space, Q7.25; see [`FARTHEST`].
+    #[must_use]
+    pub fn world_point_to_object(&self, v: [i32; 3]) -> [i32; 3] {
+        self.near(self.to_world, sub(v, self.position))
+    }
+
+    /// The eye in object space, Q7.25; see [`FARTHEST`].
+    #[must_use]
+    pub fn eye(&self) -> [i32; 3] {
+        self.point_to_object([0; 3])
+    }
+
+    /// A length of the world in units of object space, in its format, rounded down.
+    #[must_use]
+    pub fn in_object_units(&self, length: i32) -> i32 {
+        ((i64::from(length) * i64::from(self.inverse_scale)) >> 16) as i32
+    }
+
+    /// A vector from the object's centre, rotated by the inverse of `rotation` and in units of object space, from Q18.14 to Q7.25, rounded
+    /// down. One that is too long for that is made shorter: seen from an object of radius 1, what is 56 units or farther away lies in a
+    /// direction that this changes by 1/56 rad at most.
+    fn near(&self, rotation: [[i32; 3]; 3], v: [i32; 3]) -> [i32; 3] {
+        // Q.44, then Q.30 of the world, then Q.46 of object space.
+        let point = transposed(rotation).map(|column| ((dot(column, v) >> UNIT) * i64::from(self.inverse_scale)) >> (ROTATION + 16 - POSITION));
+        if point.iter().all(|c| c.abs() <= FARTHEST) {
+            return point.map(|c| c as i32);
+        }
+        // Below 2^36.
+        normalise(point.map(|c| (c >> 6) as i32)).map(|c| ((i64::from(c) * FARTHEST) >> ROTATION) as i32)
+    }
+}

@@ -1,0 +1,63 @@
+//! Why a scene cannot be as a program wants it.
+
+use core::fmt;
+
+/// Why a scene cannot be as a program wants it. The scene stays as it was.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+pub enum SceneError {
+    /// A rotation is none: a quaternion or an axis is zero, a matrix is not orthonormal or mirrors, or one looks along the vertical.
+    Rotation,
+    /// A position is farther than [`crate::scene::MAX_POSITION`] from the origin along some axis.
+    Position,
+    /// A scale is none of those from [`crate::scene::MIN_SCALE`] to [`crate::scene::MAX_SCALE`].
+    Scale,
+    /// There is no object with this index.
+    Object {
+        /// The index.
+        index: usize,
+    },
+    /// The stream has no such meshes, or the first of them is a coarser level of another.
+    Meshes,
+    /// The stream has no material with this index.
+    Material {
+        /// The index.
+        index: usize,
+    },
+    /// The layout has room for no more objects.
+    Objects {
+        /// How many there is room for.
+        room: usize,
+    },
+    /// A value of the camera, a light or a material is out of its range.
+    Range {
+        /// Which value.
+        name: &'static str,
+    },
+    /// The shading method needs directional lights and an infinitely far viewer.
+    Light,
+    /// The shading method needs larger exponents of highlights.
+    Exponent {
+        /// The smallest one.
+        least: u16,
+    },
+}
+
+impl fmt::Display for SceneError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Rotation => f.write_str("a rotation must be a quaternion other than zero, an axis other than zero, or an orthonormal matrix"),
+            Self::Position => f.write_str("a position must be within 16 units of the origin along each axis"),
+            Self::Scale => f.write_str("a scale must be 1/16 to 8"),
+            Self::Object { index } => write!(f, "there is no object number {index}"),
+            Self::Meshes => f.write_str("the stream has no such meshes, or the first is a coarser level of another"),
+            Self::Material { index } => write!(f, "the stream has no material number {index}"),
+            Self::Objects { room } => write!(f, "there is room for {room} objects; ask for more by Layout::objects"),
+            Self::Range { name } => write!(f, "{name} is out of range"),
+            Self::Light => f.write_str("the shading method needs directional lights and an infinitely far viewer"),
+            Self::Exponent { least } => write!(f, "the shading method needs materials whose exponent is {least} or more"),
+        }
+    }
+}
+
+impl core::error::Error for SceneError {}

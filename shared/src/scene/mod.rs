@@ -1,0 +1,329 @@
+//! What is drawn: objects in the world, lights, a camera. A program changes it between frames.
+
+mod angle;
+mod error;
+mod object;
+pub(crate) mod orbit;
+mod pose;
+
+pub use angle::SIN_COS_ERROR;
+pub use error::SceneError;
+pub use object::Object;
+pub use orbit::{CIRCLE_ERROR, ORBIT_ERROR, ROTATION_ERROR};
+pub use pose::{MAX_POSITION, MAX_SCALE, MIN_SCALE, Pose, QUATERNION_ERROR, STEP_ERROR};
+
+use crate::{
+    format::{Gain, Length, MAX_LIGHTS, ROTATION},
+    math::vector::dot,
+    stream::{
+        Stream, is_gain,
+        record::{Camera, DIRECTIONAL, Light, Material, PERSPECTIVE, VIEWER_LOCAL},
+    },
+};
+use core::{mem, ops::Range};
+use object::OWN;
+use zerocopy::{FromBytes, Immutable, IntoBytes, KnownLayout};
+
+/// What the shading method in use can draw; a scene is not changed to anything else.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Limits {
+    /// Near lights and a local viewer.
+    pub(crate) near_lights: bool,
+    pub(crate) least_exponent: u16,
+}
+
+/// A material of a scene, and whether its tables are those of an earlier one.
+#[derive(FromBytes, IntoBytes, Immutable, KnownLayout, Clone, Copy, Debug)]
+#[repr(C)]
+pub(crate) struct SceneMaterial {
+    pub(crate) material: Material,
+    pub(crate) is_stale: u16,
+}
+
+/// What is drawn: objects that move in the world, the materials of a stream, lights, a camera, and a background.
+///
+/// At first it is what the stream says: its camera, its lights, and one object that consists of all its meshes. Whatever a program changes is
+/// checked at once, and drawn by the next [`crate::Renderer::draw`]. A change of poses, of visibility or of the camera costs nothing else; a
+/// changed material computes its own tables anew, and a changed colour or number of lights those of all materials.
+///
+/// The world is right-handed, and lengths in it are units of object space. Objects lie within 16 units of its origin along each axis, and are
+/// scaled by 1/16 to 8. Places in the space of the eye are exact to 2^-14 units. Depth is 16 bits of `near / z`: at the depth `z` it tells
+/// surfaces apart that are `z² / (near 2^16)` from one another, so that where the farthest object is 30 times as far as the near plane,
+/// surfaces a thousandth of that range apart do not fight.
+#[derive(Debug)]
+pub struct Scene<'a> {
+    pub(crate) stream: Stream<'a>,
+    pub(crate) camera: Camera,
+    /// The frame of the orbit in which the camera is.
+    pub(crate) place: u32,
+    lights: heapless::Vec<Light, MAX_LIGHTS>,
+    pub(crate) ambient: [u16; 3],
+    pub(crate) background: [u8; 3],
+    materials: &'a mut [SceneMaterial],
+    /// Room for objects, of which `count` are used.
+    objects: &'a mut [Object],
+    count: usize,
+    limits: Limits,
+    /// Whether something has changed since the latest frame, and whether the number of objects has, or what they are made of.
+    changed: bool,
+    pub(crate) rearranged: bool,
+}
+
+impl<'a> Scene<'a> {
+    /// The scene of a stream; there is room for one object and all materials.
+    pub(crate) fn new(stream: Stream<'a>, materials: &'a mut [SceneMaterial], objects: &'a mut [Object], limits: Limits) -> Self {
+        for (slot, &material) in materials.iter_mut().zip(stream.materials) {
+            *slot = SceneMaterial { material, is_stale: 1 };
+        }
+        let mut scene = Self {
+            stream,
+            camera: stream.header.camera,
+            place: 0,
+            // A checked stream has no more lights than there is room for.
+            lights: heapless::Vec::from_slice(stream.lights).unwrap_or_default(),
+            ambient: stream.header.ambient,
+            background: stream.header.background,
+            materials,
+            objects,
+            count: 0,
+            limits,
+            changed: true,
+            rearranged: true,
+        };
+        let _ = scene.add(0..stream.header.meshes, Pose::IDENTITY);
+        scene
+    }
+
+    /// Puts the camera where the stream's orbit has it in frame `number`. All else stays as it is.
+    pub fn play(&mut self, number: u32) {
+        let place = self.place_of(number);
+        self.changed |= place != self.place;
+        self.place = place;
+    }
+
+    /// Frames of one orbit differ.
+    fn place_of(&self, number: u32) -> u32 {
+        number.checked_rem(self.camera.period.into()).unwrap_or(0)
+    }
+
+    /// Whether frame `number` of the ready-made animation is what was drawn last.
+    pub(crate) fn is_latest(&self, number: u32) -> bool {
+        self.is_unchanged() && self.place == self.place_of(number)
+    }
+
+    /// Whether nothing has changed since the latest frame.
+    #[must_use]
+    pub fn is_unchanged(&self) -> bool {
+        !self.changed
+    }
+
+    /// The scene is drawn.
+    pub(crate) fn set_drawn(&mut self) {
+        (self.changed, self.rearranged) = (false, false);
+    }
+
+    /// The same scene looks otherwise, by a changed setting.
+    pub(crate) fn set_changed(&mut self) {
+        self.changed = true;
+    }
+
+    /// The objects. The earlier of two that are equally near is seen.
+    #[must_use]
+    pub fn objects(&self) -> &[Object] {
+        self.objects.get(..self.count).unwrap_or_default()
+    }
+
+    /// Removes all objects. To be called before others are added, as at first there is one: the whole stream.
+    pub fn clear(&mut self) {
+        self.count = 0;
+        self.rearrange();
+    }
+
+    /// Adds an object that consists of these meshes of the stream, and returns its index. Several objects may have the same meshes.
+    ///
+    /// # Errors
+    /// When the stream has no such meshes, or the layout has no room: see [`crate::Layout::objects`].
+    pub fn add(&mut self, meshes: Range<u16>, pose: Pose) -> Result<usize, SceneError> {
+        let object = Object::new(&self.stream, meshes).ok_or(SceneError::Meshes)?;
+        let room = self.objects.len();
+        let slot = self.objects.get_mut(self.count).ok_or(SceneError::Objects { room })?;
+        *slot = object;
+        slot.pose = pose;
+        self.count += 1;
+        self.rearrange();
+        Ok(self.count - 1)
+    }
+
+    /// Vertices of all objects.
+    pub(crate) fn vertices(&self) -> u32 {
+        self.objects().iter().fold(0, |sum, object| sum + object.vertices)
+    }
+
+    /// Material `index`.
+    pub(crate) fn material(&self, index: usize) -> Option<&Material> {
+        self.materials.get(index).map(|slot| &slot.material)
+    }
+
+    fn rearrange(&mut self) {
+        (self.changed, self.rearranged) = (true, true);
+    }
+
+    /// Object `index`, which is about to change.
+    fn change(&mut self, index: usize) -> Result<&mut Object, SceneError> {
+        self.changed = true;
+        self.objects.get_mut(..self.count).and_then(|objects| objects.get_mut(index)).ok_or(SceneError::Object { index })
+    }
+
+    /// Moves object `index`.
+    ///
+    /// # Errors
+    /// When there is no such object.
+    pub fn set_pose(&mut self, index: usize, pose: Pose) -> Result<(), SceneError> {
+        self.change(index)?.pose = pose;
+        Ok(())
+    }
+
+    /// Shows or hides object `index`.
+    ///
+    /// # Errors
+    /// When there is no such object.
+    pub fn set_visible(&mut self, index: usize, visible: bool) -> Result<(), SceneError> {
+        self.change(index)?.hidden = (!visible).into();
+        Ok(())
+    }
+
+    /// Gives all meshes of object `index` one material of the stream, or each its own.
+    ///
+    /// # Errors
+    /// When there is no such object or material.
+    pub fn set_object_material(&mut self, index: usize, material: Option<u16>) -> Result<(), SceneError> {
+        let material = material.unwrap_or(OWN);
+        if material != OWN && usize::from(material) >= self.materials.len() {
+            return Err(SceneError::Material { index: material.into() });
+        }
+        self.change(index)?.material = material;
+        Ok(())
+    }
+
+    /// The materials: those of the stream, until they are changed. Where the layout has room for more, these are black.
+    pub fn materials(&self) -> impl ExactSizeIterator<Item = &Material> {
+        self.materials.iter().map(|slot| &slot.material)
+    }
+
+    /// Changes material `index`, whose tables the next frame computes anew.
+    ///
+    /// # Errors
+    /// When there is no such material, it is out of range, or the shading method cannot draw it.
+    pub fn set_material(&mut self, index: usize, material: Material) -> Result<(), SceneError> {
+        in_range(material.fault())?;
+        let least = self.limits.least_exponent;
+        if material.exponent < least {
+            return Err(SceneError::Exponent { least });
+        }
+        *self.materials.get_mut(index).ok_or(SceneError::Material { index })? = SceneMaterial { material, is_stale: 1 };
+        self.changed = true;
+        Ok(())
+    }
+
+    /// The materials whose tables are to be computed, with their indices, each once.
+    pub(crate) fn stale_materials(&mut self) -> impl Iterator<Item = (usize, Material)> {
+        let stale = |slot: &mut SceneMaterial| (mem::take(&mut slot.is_stale) != 0).then_some(slot.material);
+        self.materials.iter_mut().enumerate().filter_map(move |(index, slot)| Some((index, stale(slot)?)))
+    }
+
+    /// The tables of all materials are to be computed anew.
+    pub(crate) fn set_stale(&mut self) {
+        self.materials.iter_mut().for_each(|slot| slot.is_stale = 1);
+        self.changed = true;
+    }
+
+    /// The lights.
+    #[must_use]
+    pub fn lights(&self) -> &[Light] {
+        &self.lights
+    }
+
+    /// Changes the lights. Where their number or colours change, the next frame computes the tables of all materials anew.
+    ///
+    /// # Errors
+    /// When there are more than [`MAX_LIGHTS`], one is out of range, or the shading method cannot draw near ones.
+    pub fn set_lights(&mut self, lights: &[Light]) -> Result<(), SceneError> {
+        lights.iter().try_for_each(|light| in_range(light.fault()))?;
+        if !self.limits.near_lights && lights.iter().any(|light| light.kind != DIRECTIONAL) {
+            return Err(SceneError::Light);
+        }
+        let lights = heapless::Vec::from_slice(lights).map_err(|_| SceneError::Range { name: "number of lights" })?;
+        if !lights.iter().map(|light| light.colour).eq(self.lights.iter().map(|light| light.colour)) {
+            self.set_stale();
+        }
+        (self.lights, self.changed) = (lights, true);
+        Ok(())
+    }
+
+    /// Changes the light that comes from everywhere; the next frame computes the tables of all materials anew.
+    ///
+    /// # Errors
+    /// When it is out of range.
+    pub fn set_ambient(&mut self, ambient: [Gain; 3]) -> Result<(), SceneError> {
+        let ambient = ambient.map(Gain::to_bits);
+        in_range((!is_gain(ambient)).then_some("ambient light"))?;
+        self.ambient = ambient;
+        self.set_stale();
+        Ok(())
+    }
+
+    /// Changes the colour where nothing is drawn: red, green, blue.
+    pub fn set_background(&mut self, background: [u8; 3]) {
+        (self.background, self.changed) = (background, true);
+    }
+
+    /// The camera. It may orbit: see [`Self::play`].
+    #[must_use]
+    pub fn camera(&self) -> &Camera {
+        &self.camera
+    }
+
+    /// Changes the camera.
+    ///
+    /// # Errors
+    /// When a value of it is out of range, or the shading method cannot draw for a local viewer.
+    pub fn set_camera(&mut self, camera: Camera) -> Result<(), SceneError> {
+        in_range(camera.fault())?;
+        if !self.limits.near_lights && camera.viewer == VIEWER_LOCAL && camera.projection == PERSPECTIVE {
+            return Err(SceneError::Light);
+        }
+        (self.camera, self.changed) = (camera, true);
+        self.place = self.place_of(self.place);
+        Ok(())
+    }
+
+    /// Moves the camera to `eye`, so that it looks at `target` and sees `up` upwards. It orbits no more; its lens stays.
+    ///
+    /// # Errors
+    /// When eye and target are one point, or `up` is zero or points along the way, or the camera is farther than 16 units from the origin.
+    pub fn look_at(&mut self, eye: [Length; 3], target: [Length; 3], up: [Length; 3]) -> Result<(), SceneError> {
+        self.set_camera_pose(&Pose::looking_at(eye, target, up)?)
+    }
+
+    /// Moves the camera, which looks along the z axis of `pose` and sees its y axis upwards. It orbits no more; its lens stays.
+    ///
+    /// # Errors
+    /// When the camera is farther than 16 units from the origin of the world along one of its own axes.
+    pub fn set_camera_pose(&mut self, pose: &Pose) -> Result<(), SceneError> {
+        let [x, y, z] = pose.matrix();
+        // Eye space is left-handed: x of the pose is to the left.
+        let rotation = [[-x[0], -y[0], -z[0]], [x[1], y[1], z[1]], [x[2], y[2], z[2]]];
+        let eye = pose.position().map(Length::to_bits);
+        let translation = rotation.map(|row| -((dot(row, eye) + (1 << (ROTATION - 1))) >> ROTATION) as i32);
+        self.set_camera(Camera { rotation, translation, period: 0, ..self.camera })
+    }
+
+    /// Changes what the method in use can draw; the scene is such.
+    pub(crate) fn set_limits(&mut self, limits: Limits) {
+        self.limits = limits;
+    }
+}
+
+fn in_range(fault: Option<&'static str>) -> Result<(), SceneError> {
+    fault.map_or(Ok(()), |name| Err(SceneError::Range { name }))
+}

@@ -1,0 +1,104 @@
+//! One object of a scene.
+
+use crate::{scene::pose::Pose, stream::{Stream, record::Mesh}};
+use core::ops::Range;
+use zerocopy::{FromBytes, Immutable, IntoBytes, KnownLayout};
+
+/// The object has the materials of its meshes.
+pub(crate) const OWN: u16 = u16::MAX;
+
+/// One object of a scene: meshes that move together.
+#[derive(FromBytes, IntoBytes, Immutable, KnownLayout, Clone, Copy, Debug, PartialEq, Eq)]
+#[repr(C)]
+pub struct Object {
+    pub(crate) pose: Pose,
+    /// Index of its first [`Mesh`], and one past the last.
+    meshes: [u16; 2],
+    /// Material of all its meshes, or [`OWN`].
+    pub(crate) material: u16,
+    pub(crate) hidden: u16,
+    /// Triangles of its meshes, those of coarser levels as well.
+    pub(crate) span: u32,
+    /// Triangles of its meshes as they are.
+    pub(crate) triangles: u32,
+    pub(crate) vertices: u32,
+    /// No vertex lies farther from the origin, [`crate::format::Radius`].
+    pub(crate) radius: u16,
+    /// Whether its meshes have coarser levels.
+    pub(crate) has_levels: u16,
+}
+
+impl Object {
+    /// The object that consists of `meshes` of a stream, as they are; `None` if there are none such, or the first is a coarser level.
+    pub(crate) fn new(stream: &Stream<'_>, meshes: Range<u16>) -> Option<Self> {
+        let (first, end) = (usize::from(meshes.start), usize::from(meshes.end));
+        let all = stream.meshes.get(first..end)?;
+        // Coarser levels belong to their mesh.
+        let starts = |index: usize| stream.meshes.get(index).is_none_or(|mesh| mesh.error == 0);
+        if all.is_empty() || !starts(first) || !starts(end) {
+            return None;
+        }
+        let (mut span, mut triangles, mut vertices) = (0u32, 0u32, 0u32);
+        for mesh in all {
+            span = span.saturating_add(mesh.triangles);
+            if mesh.error == 0 {
+                (triangles, vertices) = (triangles.saturating_add(mesh.triangles), vertices.saturating_add(mesh.vertices.into()));
+            }
+        }
+        let radius = if all.len() == stream.meshes.len() { stream.header.radius } else { radius(stream, all) };
+        Some(Self {
+            pose: Pose::IDENTITY,
+            meshes: [meshes.start, meshes.end],
+            material: OWN,
+            hidden: 0,
+            span,
+            triangles,
+            vertices,
+            radius,
+            has_levels: all.iter().any(|mesh| mesh.error > 0).into(),
+        })
+    }
+
+    /// How it lies in the world.
+    #[must_use]
+    pub fn pose(&self) -> Pose {
+        self.pose
+    }
+
+    /// Indices of its meshes in the stream.
+    #[must_use]
+    pub fn meshes(&self) -> Range<u16> {
+        let [first, end] = self.meshes;
+        first..end
+    }
+
+    /// The material that all of its meshes have in place of their own.
+    #[must_use]
+    pub fn material(&self) -> Option<u16> {
+        (self.material != OWN).then_some(self.material)
+    }
+
+    /// Whether it is drawn.
+    #[must_use]
+    pub fn is_visible(&self) -> bool {
+        self.hidden == 0
+    }
+
+    /// Index of the material of `mesh` on this object.
+    #[inline(always)]
+    pub(crate) fn material_of(&self, mesh: &Mesh) -> usize {
+        usize::from(if self.material == OWN { mesh.material } else { self.material })
+    }
+}
+
+/// No vertex of these meshes lies farther from the origin, [`crate::format::Radius`], rounded up.
+fn radius(stream: &Stream<'_>, meshes: &[Mesh]) -> u16 {
+    let mut largest = 0u32;
+    for mesh in meshes.iter().filter(|mesh| mesh.error == 0) {
+        for vertex in stream.vertices_of(mesh).unwrap_or_default() {
+            largest = largest.max(vertex.position.iter().map(|&c| u32::from(c.unsigned_abs()).pow(2)).sum());
+        }
+    }
+    let root = largest.isqrt();
+    (root + u32::from(root * root < largest)).min(u16::MAX.into()) as u16
+}

@@ -1,0 +1,272 @@
+//! How an object lies in the world.
+
+use crate::{
+    format::{Angle, Length, ROTATION, Rotation, Scale, UNIT},
+    math::{rsqrt::rsqrt_wide, vector::{cross, dot, normalise, sub, zip}},
+    scene::{angle::sin_cos, error::SceneError},
+};
+use zerocopy::{FromBytes, Immutable, IntoBytes, KnownLayout};
+
+/// Largest component of a position in the world: 16 units.
+pub const MAX_POSITION: Length = Length::from_bits(16 << UNIT);
+/// Least scale of an object: 1/16.
+pub const MIN_SCALE: Scale = Scale::from_bits(1 << 12);
+/// Largest scale of an object: 8.
+pub const MAX_SCALE: Scale = Scale::from_bits(8 << 16);
+
+/// How an object lies in the world: it is scaled, then rotated about its origin, then moved.
+///
+/// The rotation is kept as a unit quaternion, which each step puts back to the length 1: however many rotations are put one after the other,
+/// it stays one, and the matrix that is made of it is orthonormal. The world is right-handed.
+///
+/// ```
+/// use microphong::{Pose, SceneError, fixed::types::U0F32};
+///
+/// # fn main() -> Result<(), SceneError> {
+/// // Lying on its side, half as large, one unit to the right. No floating point is compiled for it.
+/// let one = Pose::about([1, 0, 0], U0F32::from_num(0.25))?.scaled("0.5".parse().unwrap())?.at([1.into(), 0.into(), 0.into()])?;
+/// // From what a sensor says.
+/// let other = Pose::from_f32([0.9, 0.1, 0.0, 0.42], [0.0, 0.5, 0.0], 1.0)?;
+/// # Ok(())
+/// # }
+/// ```
+#[derive(FromBytes, IntoBytes, Immutable, KnownLayout, Clone, Copy, Debug, PartialEq, Eq)]
+#[repr(C)]
+pub struct Pose {
+    /// Unit quaternion w, x, y, z, Q2.30.
+    rotation: [i32; 4],
+    /// [`Length`].
+    position: [i32; 3],
+    /// [`Scale`].
+    scale: u32,
+}
+
+/// One, Q2.30.
+const ONE: i32 = 1 << ROTATION;
+
+/// Largest error of the length of a [`Pose`]'s quaternion: two units of Q2.30.
+pub const QUATERNION_ERROR: f64 = 2.0 / (1u32 << 30) as f64;
+/// Largest change of a rotation by one step of [`Pose::turned`] beyond what was asked for, in radians: however many steps there are, errors
+/// add up to no more than so much for each of them.
+pub const STEP_ERROR: f64 = 1.0e-8;
+
+impl Pose {
+    /// As the mesh is: at the origin, as large as it is, not rotated.
+    pub const IDENTITY: Self = Self { rotation: [ONE, 0, 0, 0], position: [0; 3], scale: 1 << 16 };
+
+    /// The rotation of a quaternion w, x, y, z of any length.
+    ///
+    /// # Errors
+    /// When all four are zero.
+    pub fn from_quaternion(quaternion: [Rotation; 4]) -> Result<Self, SceneError> {
+        Self::rotated(quaternion.map(|c| c.to_bits().into()))
+    }
+
+    /// The rotation of a matrix, by rows, that takes object space to the world.
+    ///
+    /// # Errors
+    /// When it mirrors, or is not orthonormal: squared lengths to 1/256, products of rows to 1/256.
+    pub fn from_matrix(rows: [[Rotation; 3]; 3]) -> Result<Self, SceneError> {
+        let rows = rows.map(|row| row.map(Rotation::to_bits));
+        let [x, y, z] = rows;
+        let is = |product: i64, value: i64| (product - (value << (2 * ROTATION))).abs() <= 1 << (2 * ROTATION - 8);
+        let handed = dot(cross(x, y).map(|c| (c >> ROTATION) as i32), z) > 0;
+        let in_range = rows.as_flattened().iter().all(|c| c.abs() <= ONE + (ONE >> 8));
+        if !(in_range && handed && [x, y, z].iter().all(|&row| is(dot(row, row), 1)) && is(dot(x, y), 0) && is(dot(y, z), 0) && is(dot(z, x), 0)) {
+            return Err(SceneError::Rotation);
+        }
+        let [[xx, xy, xz], [yx, yy, yz], [zx, zy, zz]] = rows.map(|row| row.map(i64::from));
+        let one = i64::from(ONE);
+        // Four times the square of each component times the quaternion is one of these; the longest is the most exact. Source: Shepperd
+        // (1978).
+        let candidates = [
+            [one + xx + yy + zz, zy - yz, xz - zx, yx - xy],
+            [zy - yz, one + xx - yy - zz, xy + yx, zx + xz],
+            [xz - zx, xy + yx, one - xx + yy - zz, yz + zy],
+            [yx - xy, zx + xz, yz + zy, one - xx - yy + zz],
+        ];
+        let mut longest = (0, [0; 4]);
+        for (k, candidate) in candidates.into_iter().enumerate() {
+            let size = candidate.get(k).copied().unwrap_or(0);
+            if size > longest.0 {
+                longest = (size, candidate);
+            }
+        }
+        Self::rotated(longest.1)
+    }
+
+    /// The rotation by an angle about an axis of any length, counter-clockwise seen from its tip.
+    ///
+    /// # Errors
+    /// When the axis is zero.
+    pub fn about(axis: [i32; 3], angle: Angle) -> Result<Self, SceneError> {
+        let [sin, cos] = sin_cos(Angle::from_bits(angle.to_bits() >> 1));
+        let [x, y, z] = normalise(axis).map(|c| (i64::from(c) * i64::from(sin)) >> ROTATION);
+        if axis == [0; 3] {
+            return Err(SceneError::Rotation);
+        }
+        Self::rotated([cos.into(), x, y, z])
+    }
+
+    /// Euler angles: rolled about z, then pitched about x, then turned by `yaw` about y, all axes of the world.
+    #[must_use]
+    pub fn from_euler(yaw: Angle, pitch: Angle, roll: Angle) -> Self {
+        let about = |axis, angle| Self::about(axis, angle).unwrap_or(Self::IDENTITY);
+        about([0, 0, 1], roll).turned(&about([1, 0, 0], pitch)).turned(&about([0, 1, 0], yaw))
+    }
+
+    /// At `position` with its z axis towards `target`, and its y axis as near to `up` as can be.
+    ///
+    /// # Errors
+    /// When both are one point, or `up` is zero or points along the way, or a coordinate is out of range.
+    pub fn looking_at(position: [Length; 3], target: [Length; 3], up: [Length; 3]) -> Result<Self, SceneError> {
+        let from = Self::IDENTITY.at(position)?.position;
+        let along = sub(Self::IDENTITY.at(target)?.position, from);
+        let up = up.map(Length::to_bits);
+        // Unit vectors, of which the product fits 32 bits as Q2.29.
+        let across = |a: [i32; 3], b: [i32; 3]| cross(normalise(a), normalise(b)).map(|c| (c >> (ROTATION + 1)) as i32);
+        let side = across(up, along);
+        if side.iter().all(|c| c.unsigned_abs() < 1 << 16) {
+            return Err(SceneError::Rotation);
+        }
+        let (x, z) = (normalise(side), normalise(along));
+        let y = normalise(across(z, x));
+        let rows = zip(zip(x, y, |x, y| (x, y)), z, |(x, y), z| [x, y, z].map(Rotation::from_bits));
+        Self::from_matrix(rows)?.at(position)
+    }
+
+    /// From floating-point numbers, as sensors and other programs have them: a quaternion w, x, y, z, a position and a scale.
+    ///
+    /// # Errors
+    /// When one of them is out of range or not a number.
+    pub fn from_f32(quaternion: [f32; 4], position: [f32; 3], scale: f32) -> Result<Self, SceneError> {
+        let mut rotation = [0; 4];
+        for (bits, number) in rotation.iter_mut().zip(quaternion) {
+            *bits = Rotation::checked_from_num(finite(number).ok_or(SceneError::Rotation)?).ok_or(SceneError::Rotation)?.to_bits().into();
+        }
+        let mut place = [Length::ZERO; 3];
+        for (length, number) in place.iter_mut().zip(position) {
+            *length = finite(number).and_then(Length::checked_from_num).ok_or(SceneError::Position)?;
+        }
+        let scale = finite(scale).and_then(Scale::checked_from_num).ok_or(SceneError::Scale)?;
+        Self::rotated(rotation)?.at(place)?.scaled(scale)
+    }
+
+    /// This pose at another position.
+    ///
+    /// # Errors
+    /// When a coordinate is more than [`MAX_POSITION`] in size.
+    pub fn at(self, position: [Length; 3]) -> Result<Self, SceneError> {
+        let within = position.iter().all(|c| (-MAX_POSITION..=MAX_POSITION).contains(c));
+        if within { Ok(Self { position: position.map(Length::to_bits), ..self }) } else { Err(SceneError::Position) }
+    }
+
+    /// This pose at another scale.
+    ///
+    /// # Errors
+    /// When it is none of [`MIN_SCALE`] to [`MAX_SCALE`].
+    pub fn scaled(self, scale: Scale) -> Result<Self, SceneError> {
+        if (MIN_SCALE..=MAX_SCALE).contains(&scale) { Ok(Self { scale: scale.to_bits(), ..self }) } else { Err(SceneError::Scale) }
+    }
+
+    /// This pose, then rotated by the rotation of `other`, about the axes of the world and where it is.
+    ///
+    /// Error: at most [`STEP_ERROR`] (tests::steps); the quaternion's length is 1 to [`QUATERNION_ERROR`].
+    #[must_use]
+    pub fn turned(self, other: &Self) -> Self {
+        let ([a, b, c, d], [w, x, y, z]) = (other.rotation.map(i64::from), self.rotation.map(i64::from));
+        let product = [
+            a * w - b * x - c * y - d * z,
+            a * x + b * w + c * z - d * y,
+            a * y - b * z + c * w + d * x,
+            a * z + b * y - c * x + d * w,
+        ];
+        Self { rotation: put_back(product.map(|c| (c + (1 << (ROTATION - 1))) >> ROTATION)), ..self }
+    }
+
+    /// The way from this pose to another, `share` of 2^16: positions and scales linearly, rotations the shorter way round, and all ever the
+    /// same number of steps. Source: Shoemake (1985), with the chord in place of the arc.
+    #[must_use]
+    pub(crate) fn towards(&self, other: &Self, share: i64) -> Self {
+        let mean = |a: i32, b: i32| (i64::from(a) + (((i64::from(b) - i64::from(a)) * share) >> 16)) as i32;
+        let (from, to) = (self.rotation, other.rotation);
+        let cosine: i64 = from.iter().zip(to).map(|(&a, b)| i64::from(a) * i64::from(b)).sum();
+        let to = if cosine < 0 { to.map(|c| -c) } else { to };
+        let ([a, b, c, d], [w, x, y, z]) = (from, to);
+        let rotation = unit([mean(a, w), mean(b, x), mean(c, y), mean(d, z)].map(i64::from)).unwrap_or(from);
+        let scale = mean(self.scale as i32, other.scale as i32) as u32;
+        Self { rotation, position: zip(self.position, other.position, mean), scale }
+    }
+
+    fn rotated(quaternion: [i64; 4]) -> Result<Self, SceneError> {
+        unit(quaternion).map(|rotation| Self { rotation, ..Self::IDENTITY }).ok_or(SceneError::Rotation)
+    }
+
+    /// Whether nothing is rotated, moved or scaled.
+    pub(crate) fn is_identity(&self) -> bool {
+        *self == Self::IDENTITY
+    }
+
+    /// Unit quaternion w, x, y, z.
+    #[must_use]
+    pub fn quaternion(&self) -> [Rotation; 4] {
+        self.rotation.map(Rotation::from_bits)
+    }
+
+    /// Where the origin of the object is.
+    #[must_use]
+    pub fn position(&self) -> [Length; 3] {
+        self.position.map(Length::from_bits)
+    }
+
+    /// How large the object is.
+    #[must_use]
+    pub fn scale(&self) -> Scale {
+        Scale::from_bits(self.scale)
+    }
+
+    /// Rows of the rotation from object space to the world, Q2.30: orthonormal to a few units of the last place.
+    #[must_use]
+    pub(crate) fn matrix(&self) -> [[i32; 3]; 3] {
+        let [w, x, y, z] = self.rotation.map(i64::from);
+        // Twice the products, rounded.
+        let twice = |sum: i64| ((sum + (1 << (ROTATION - 2))) >> (ROTATION - 1)) as i32;
+        [
+            [ONE - twice(y * y + z * z), twice(x * y - w * z), twice(x * z + w * y)],
+            [twice(x * y + w * z), ONE - twice(x * x + z * z), twice(y * z - w * x)],
+            [twice(x * z - w * y), twice(y * z + w * x), ONE - twice(x * x + y * y)],
+        ]
+    }
+}
+
+impl Default for Pose {
+    fn default() -> Self {
+        Self::IDENTITY
+    }
+}
+
+/// Conversions of what is not a number panic.
+fn finite(number: f32) -> Option<f32> {
+    number.is_finite().then_some(number)
+}
+
+/// The unit quaternion along another one; `None` if that is zero.
+fn unit(quaternion: [i64; 4]) -> Option<[i32; 4]> {
+    let largest = quaternion.iter().fold(0, |m, c| m | c.unsigned_abs());
+    if largest == 0 {
+        return None;
+    }
+    // Components below 2^30 in size: four squares fit 62 bits.
+    let bits = 64 - largest.leading_zeros();
+    let quaternion = quaternion.map(|c| if bits > 30 { c >> ((bits - 30) & 63) } else { c << ((30 - bits) & 63) });
+    let (mantissa, exponent) = rsqrt_wide(quaternion.iter().map(|c| c * c).sum::<i64>() as u64);
+    let right = exponent.saturating_sub(ROTATION) & 63;
+    Some(put_back(quaternion.map(|c| (c * i64::from(mantissa)) >> right)))
+}
+
+/// A quaternion, Q2.30, that is a unit one to 2^-20, put back to the length 1 by a step of the method of Newton.
+fn put_back(quaternion: [i64; 4]) -> [i32; 4] {
+    let square: i64 = quaternion.iter().map(|c| c * c).sum::<i64>() >> ROTATION;
+    let factor = (3 << ROTATION) - square;
+    quaternion.map(|c| ((c * factor + (1 << ROTATION)) >> (ROTATION + 1)).clamp(-i64::from(ONE), ONE.into()) as i32)
+}
