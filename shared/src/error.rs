@@ -32,8 +32,11 @@ pub enum RenderError {
         /// Materials of the stream.
         need: usize,
     },
-    /// The layout has no room for an object.
-    Objects,
+    /// The layout has room for fewer objects than the stream has.
+    Objects {
+        /// Objects of the stream.
+        need: usize,
+    },
     /// The layout has no room for antialiasing.
     NoSamples,
     /// A slice of pixels does not hold one row of the picture.
@@ -78,7 +81,7 @@ impl fmt::Display for RenderError {
             Self::Layout { width } => write!(f, "the layout of the memory is not for pictures of {width} columns, or has no row"),
             Self::Memory { need } => write!(f, "the memory needs {need} words of 64 bits, as Layout::words says"),
             Self::Materials { need } => write!(f, "the stream has {need} materials; give the layout of the memory room for as many"),
-            Self::Objects => f.write_str("the layout has no room for an object; a scene has one at least"),
+            Self::Objects { need } => write!(f, "the scene has objects: {need}; give the layout of the memory room for as many"),
             Self::NoSamples => f.write_str("antialiasing needs memory of its own; ask for it by Layout::antialias"),
             Self::Band { need } => write!(f, "a band of pixels must hold a row of the picture, {need} pixels"),
             Self::Antialias => f.write_str("this build cannot antialias; build it with the feature antialias"),

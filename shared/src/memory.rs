@@ -10,6 +10,7 @@ use crate::{
     placement::Placement,
     raster::active::ActiveTriangle,
     scene::{Object, SceneMaterial},
+    stream::{Stream, record::Instance},
 };
 use zerocopy::{FromBytes, Immutable, IntoBytes, KnownLayout};
 
@@ -21,7 +22,7 @@ use zerocopy::{FromBytes, Immutable, IntoBytes, KnownLayout};
 ///
 /// const LAYOUT: Layout = Layout::new(240, 40).vertices(1024).triangles(1024);
 /// static MEMORY: [u64; LAYOUT.words::<Rgb565>()] = [0; LAYOUT.words::<Rgb565>()];
-/// assert_eq!(LAYOUT.bytes::<Rgb565>(), 75_840);
+/// assert_eq!(LAYOUT.bytes::<Rgb565>(), 76_368);
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Layout {
@@ -94,6 +95,22 @@ impl Layout {
     #[must_use]
     pub const fn antialias(self, antialias: bool) -> Self {
         Self { antialias, ..self }
+    }
+
+    /// Changes how many vertices, triangles, materials and objects there is room for: all that the scene of a stream has.
+    #[must_use]
+    pub fn with_room_for(self, stream: &Stream<'_>) -> Self {
+        let whole = [Instance { first_mesh: 0, meshes: stream.meshes.len() as u16, material: 0, reserved: 0 }];
+        let objects = if stream.instances.is_empty() { &whole } else { stream.instances };
+        let (mut vertices, mut triangles) = (0usize, 0usize);
+        for object in objects {
+            let meshes = stream.meshes.iter().skip(object.first_mesh.into()).take(object.meshes.into());
+            for mesh in meshes.filter(|mesh| mesh.error == 0) {
+                vertices = vertices.saturating_add(mesh.vertices.into());
+                triangles = triangles.saturating_add(mesh.triangles as usize);
+            }
+        }
+        Self { vertices, triangles, materials: stream.materials.len(), objects: objects.len(), ..self }
     }
 
     /// Pixels of a band: the length of the buffer that a program draws into.

@@ -62,8 +62,9 @@ impl<'a, C: Pixel> Renderer<'a, C> {
         if layout.materials < stream.materials.len() {
             return Err(RenderError::Materials { need: stream.materials.len() });
         }
-        if layout.objects == 0 {
-            return Err(RenderError::Objects);
+        let need = stream.instances.len().max(1);
+        if layout.objects < need {
+            return Err(RenderError::Objects { need });
         }
         let need = layout.words::<C>();
         let (memory, objects, materials) = Memory::new(layout, memory).ok_or(RenderError::Memory { need })?;

@@ -8,7 +8,7 @@ use microphong::{
     format::MAX_LIGHTS,
     stream::{
         self, MAX_EXPONENT, MAX_FOCAL, MAX_GAIN, MAX_LENGTH, MIN_FOCAL, MIN_NEAR,
-        record::{Header, Light, Material, Mesh, ORTHOGRAPHIC, POINT, Triangle, Vertex},
+        record::{Header, Instance, Key, Light, Material, Mesh, ORTHOGRAPHIC, POINT, Track, Triangle, Vertex},
     },
 };
 use microphong_sim::{
@@ -66,6 +66,9 @@ struct Parts {
     meshes: Vec<Mesh>,
     materials: Vec<Material>,
     lights: Vec<Light>,
+    instances: Vec<Instance>,
+    tracks: Vec<Track>,
+    keys: Vec<Key>,
     vertices: Vec<Vertex>,
     triangles: Vec<Triangle>,
 }
@@ -78,6 +81,9 @@ impl Parts {
             meshes: stream.meshes.to_vec(),
             materials: stream.materials.to_vec(),
             lights: stream.lights.to_vec(),
+            instances: stream.instances.to_vec(),
+            tracks: stream.tracks.to_vec(),
+            keys: stream.keys.to_vec(),
             vertices: stream.vertices.to_vec(),
             triangles: stream.triangles.to_vec(),
         })
@@ -88,13 +94,21 @@ impl Parts {
         let header = &mut self.header;
         (header.meshes, header.materials, header.lights) =
             (self.meshes.len() as u16, self.materials.len() as u16, self.lights.len() as u16);
+        (header.instances, header.tracks, header.keys) = (self.instances.len() as u16, self.tracks.len() as u16, self.keys.len() as u32);
         (header.vertices, header.triangles) = (self.vertices.len() as u32, self.triangles.len() as u32);
         header.length = stream::length(header).unwrap_or(u32::MAX);
         lie(header);
         let mut bytes = self.header.as_bytes().to_vec();
-        for records in
-            [self.meshes.as_bytes(), self.materials.as_bytes(), self.lights.as_bytes(), self.vertices.as_bytes(), self.triangles.as_bytes()]
-        {
+        for records in [
+            self.meshes.as_bytes(),
+            self.materials.as_bytes(),
+            self.lights.as_bytes(),
+            self.instances.as_bytes(),
+            self.tracks.as_bytes(),
+            self.keys.as_bytes(),
+            self.vertices.as_bytes(),
+            self.triangles.as_bytes(),
+        ] {
             bytes.extend_from_slice(records);
         }
         stream::seal(&mut bytes);

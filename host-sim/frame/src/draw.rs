@@ -73,12 +73,8 @@ impl<'w> Wanted<'w> {
         let stream = Stream::parse(&words.as_bytes()[..bytes.len()])?;
         let literature = ALL.into_iter().map(Shader::new);
         let shader = Shader::ALL.into_iter().chain(literature).find(|method| method.facts().name == self.shader);
-        let layout = Layout::new(self.size.width as usize, self.rows as usize)
-            .vertices(stream.vertices.len())
-            .triangles(stream.triangles.len())
-            .materials(stream.materials.len())
-            .active_triangles(stream.triangles.len())
-            .antialias(self.antialias);
+        let layout = Layout::new(self.size.width as usize, self.rows as usize).with_room_for(&stream);
+        let layout = layout.active_triangles(layout.triangles).antialias(self.antialias);
         let mut memory = vec![0; layout.words::<Rgb565>()];
         let mut band = vec![Rgb565::BLACK; layout.band()];
         let mut renderer = Renderer::with_shader(stream, self.size, &layout, &mut memory, shader.ok_or("no such method")?)?;

@@ -19,6 +19,7 @@ pub mod polygon;
 pub mod quantise;
 pub mod render;
 pub mod scene;
+pub mod script;
 pub mod shader;
 pub mod shapes;
 pub mod stl;

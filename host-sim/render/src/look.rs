@@ -17,7 +17,8 @@ use microphong::{
     stream::{
         MAX_GAIN,
         record::{
-            CLOSED_CONVEX, Camera, DIRECTIONAL, EYE_SPACE, Header, Light, MAGIC, Material, Mesh, ORTHOGRAPHIC, PERSPECTIVE, POINT, VERSION,
+            CLOSED_CONVEX, Camera, DIRECTIONAL, EYE_SPACE, Header, Instance, Key, Light, MAGIC, Material, Mesh, OBJECT_SPACE, ORTHOGRAPHIC,
+            OWN_MATERIALS, PERSPECTIVE, POINT, Track, VERSION,
         },
     },
 };
@@ -50,13 +51,46 @@ impl Surface {
     }
 }
 
-/// A light that stays with the camera, so that objects turn under it.
+/// A light.
 #[derive(Clone, Copy, Debug)]
 pub enum Lamp {
     /// Infinitely far: direction towards it in eye space, and colour.
     Distant(V3, V3),
     /// Near: position in eye space, and colour.
     Near(V3, V3),
+    /// Infinitely far, whatever the camera does: direction towards it in the world, and colour.
+    Fixed(V3, V3),
+    /// Near, whatever the camera does: position in the world, and colour.
+    FixedNear(V3, V3),
+}
+
+/// An object of a scene: some parts of its meshes.
+#[derive(Clone, Copy, Debug)]
+pub struct Member {
+    /// Number of its first mesh.
+    pub first_mesh: u16,
+    /// How many meshes it has.
+    pub meshes: u16,
+}
+
+/// How something moves.
+#[derive(Clone, Debug)]
+pub struct Way {
+    /// As [`Track::kind`].
+    pub kind: u16,
+    /// Number of the object or light.
+    pub index: u16,
+    /// Where it is, in the order of frames.
+    pub keys: Vec<Key>,
+}
+
+/// The objects of a scene, and how they, lights and camera move. Without members the scene is one object.
+#[derive(Clone, Debug, Default)]
+pub struct Cast {
+    /// Objects.
+    pub members: Vec<Member>,
+    /// What moves.
+    pub ways: Vec<Way>,
 }
 
 /// Everything of a scene but its mesh.
@@ -80,6 +114,8 @@ pub struct Look {
     pub view: View,
     /// Frames of the animation.
     pub frames: u16,
+    /// Objects, and what moves.
+    pub cast: Cast,
 }
 
 /// A dark neutral: bright and dark objects both stand out.
@@ -101,6 +137,7 @@ impl Look {
             shader: Shader::AUTO,
             view,
             frames: view.period.max(1),
+            cast: Cast::default(),
         }
     }
 
@@ -134,6 +171,9 @@ impl Look {
             frames: self.frames.max(1),
             vertices: u32::try_from(vertices).context("too many vertices for one stream; simplify the mesh")?,
             triangles: u32::try_from(triangles).context("too many triangles for one stream; simplify the mesh")?,
+            instances: u16::try_from(self.cast.members.len()).context("too many objects for one scene")?,
+            tracks: u16::try_from(self.cast.ways.len()).context("too many objects for one scene")?,
+            keys: self.cast.ways.iter().map(|way| way.keys.len() as u32).sum(),
             background: self.background,
             budget: self.budget.to_bits(),
             ambient: self.ambient.map(gain).map(Gain::to_bits),
@@ -161,6 +201,16 @@ impl Look {
         }
         self.surfaces.iter().for_each(|surface| bytes.extend_from_slice(material(surface).as_bytes()));
         self.lamps.iter().for_each(|lamp| bytes.extend_from_slice(light(lamp).as_bytes()));
+        for &Member { first_mesh, meshes } in &self.cast.members {
+            bytes.extend_from_slice(Instance { first_mesh, meshes, material: OWN_MATERIALS, reserved: 0 }.as_bytes());
+        }
+        let mut first_key = 0;
+        for Way { kind, index, keys } in &self.cast.ways {
+            let track = Track { kind: *kind, index: *index, first_key, keys: keys.len() as u32 };
+            first_key += track.keys;
+            bytes.extend_from_slice(track.as_bytes());
+        }
+        self.cast.ways.iter().for_each(|way| bytes.extend_from_slice(way.keys.as_bytes()));
         parts.iter().for_each(|part| bytes.extend_from_slice(part.vertices.as_bytes()));
         levels().for_each(|(triangles, ..)| bytes.extend_from_slice(triangles.as_bytes()));
         stream::seal(&mut bytes);
@@ -187,11 +237,13 @@ fn material(surface: &Surface) -> Material {
 }
 
 fn light(lamp: &Lamp) -> Light {
-    let (kind, vector, colour) = match *lamp {
-        Lamp::Distant(direction, colour) => (DIRECTIONAL, unit(direction).unwrap_or(KEY), colour),
-        Lamp::Near(position, colour) => (POINT, position, colour),
+    let (kind, space, vector, colour) = match *lamp {
+        Lamp::Distant(direction, colour) => (DIRECTIONAL, EYE_SPACE, unit(direction).unwrap_or(KEY), colour),
+        Lamp::Near(position, colour) => (POINT, EYE_SPACE, position, colour),
+        Lamp::Fixed(direction, colour) => (DIRECTIONAL, OBJECT_SPACE, unit(direction).unwrap_or(KEY), colour),
+        Lamp::FixedNear(position, colour) => (POINT, OBJECT_SPACE, position, colour),
     };
-    Light::new(kind, EYE_SPACE, vector.map(nearest), colour.map(gain))
+    Light::new(kind, space, vector.map(nearest), colour.map(gain))
 }
 
 fn camera(view: &View) -> Camera {

@@ -36,11 +36,8 @@ impl From<Shader> for Style {
 /// Room for all of a stream.
 #[must_use]
 pub fn layout(stream: &Stream<'_>, size: Size, band_rows: u32) -> Layout {
-    Layout::new(size.width as usize, band_rows as usize)
-        .vertices(stream.vertices.len())
-        .triangles(stream.triangles.len())
-        .materials(stream.materials.len())
-        .active_triangles(if band_rows < size.height { stream.triangles.len() } else { 0 })
+    let layout = Layout::new(size.width as usize, band_rows as usize).with_room_for(stream);
+    layout.active_triangles(if band_rows < size.height { layout.triangles } else { 0 })
 }
 
 /// Draws frame `number` and returns its pixels row by row from the top.

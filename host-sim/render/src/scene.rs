@@ -8,7 +8,7 @@ use crate::{
     mesh::{self, Mesh, Weld},
     obj,
     quantise::quantise,
-    shapes,
+    script, shapes,
     vector::{V3, product, rotation},
     view::{Up, View},
 };
@@ -42,6 +42,9 @@ pub const LIGHTS: &str = "peer-sphere-lights";
 /// The sphere of `peer-sphere`, drawn otherwise. Not among [`NAMES`], for other scenes show as much.
 pub const VARIANTS: [&str; 3] = [CONVEX, PLASTIC, LIGHTS];
 
+/// Scenes of several objects that move, from their texts in `tests/scenes`.
+pub const SCRIPTED: [&str; 3] = ["gauges", "board", "sensor"];
+
 /// Ordinary scenes of all kinds, by which costs are judged.
 pub const PORTFOLIO: [&str; 6] = [PEER, PLASTIC, LIGHTS, "teapot", "torus", "bunny"];
 
@@ -62,6 +65,9 @@ pub fn description(name: &str) -> &'static str {
         "dodecahedron" => "dodecahedron with a sphere's normals, near point light, local viewer",
         "torus" => "torus of 3,750 triangles, blue with a white highlight",
         "triangle" => "one bulged triangle, point light close in front",
+        "gauges" => "three gauges whose needles move, 2 objects each",
+        "board" => "a board with 11 pieces, one of which moves",
+        "sensor" => "an object that turns as a recorded sensor says, under a moving light",
         _ => "",
     }
 }
@@ -72,7 +78,7 @@ pub struct Unknown(String);
 
 impl fmt::Display for Unknown {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "unknown scene {:?}; name a .tri, .obj or .stl file, or one of: {}, {}", self.0, NAMES.join(", "), VARIANTS.join(", "))
+        write!(f, "unknown scene {:?}; name a .tri, .obj, .stl or .toml file, or one of: {}, {}, {}", self.0, NAMES.join(", "), VARIANTS.join(", "), SCRIPTED.join(", "))
     }
 }
 
@@ -94,7 +100,17 @@ const BLUE: V3 = [0.25, 0.5, 0.95];
 const TEAPOT: &str = include_str!("../../../tests/meshes/teapot.obj");
 const BUNNY: &str = include_str!("../../../tests/meshes/bunny.obj");
 
-/// Loads a built-in scene, a `.tri`, an `.obj` or an `.stl` file.
+/// The text of a scripted scene.
+fn scripted(name: &str) -> Option<&'static str> {
+    match name {
+        "gauges" => Some(include_str!("../../../tests/scenes/gauges.toml")),
+        "board" => Some(include_str!("../../../tests/scenes/board.toml")),
+        "sensor" => Some(include_str!("../../../tests/scenes/sensor.toml")),
+        _ => None,
+    }
+}
+
+/// Loads a built-in scene, a `.tri`, an `.obj`, an `.stl` or a `.toml` file.
 ///
 /// # Errors
 /// [`Unknown`] when `name_or_path` is neither; else what is wrong with the file.
@@ -103,10 +119,21 @@ pub fn load(name_or_path: &str) -> Result<Scene> {
         let (stream, size) = built_in(name_or_path)?;
         return Ok(Scene { name: name_or_path.to_owned(), stream, size });
     }
+    if let Some(script) = scripted(name_or_path) {
+        let (stream, size) = script::stream(script, Path::new("."))?;
+        return Ok(Scene { name: name_or_path.to_owned(), stream, size });
+    }
     let path = Path::new(name_or_path);
     let ending = path.extension().map(|e| e.to_ascii_lowercase());
+    let mut size = SIZE;
     let stream = match ending.as_deref().and_then(|e| e.to_str()) {
         Some("tri") => StreamBytes::read(path)?,
+        Some("toml") => {
+            let text = String::from_utf8(read(path)?).ok().with_context(|| format!("{name_or_path}: the text is not UTF-8"))?;
+            let scene = script::stream(&text, path.parent().unwrap_or(Path::new("."))).with_context(|| name_or_path.to_owned())?;
+            size = scene.1;
+            scene.0
+        }
         Some("obj" | "stl") => from_mesh(path, Weld::default())?,
         _ => {
             if path.is_file() {
@@ -116,7 +143,7 @@ pub fn load(name_or_path: &str) -> Result<Scene> {
         }
     };
     let name = path.file_stem().unwrap_or(path.as_os_str()).to_string_lossy().into_owned();
-    Ok(Scene { name, stream, size: SIZE })
+    Ok(Scene { name, stream, size })
 }
 
 /// A mesh from an OBJ or STL file as `convert` without options makes it, but for how it is welded.

@@ -118,6 +118,64 @@ pub fn cushion(cells: usize) -> Mesh {
     mesh
 }
 
+/// A cube from -1 to 1 along each axis, with edges.
+#[must_use]
+pub fn cuboid() -> Mesh {
+    let mut mesh = Mesh::default();
+    for axis in 0..3 {
+        for sign in [-1.0, 1.0] {
+            // Unit vectors along the face, counter-clockwise seen from outside.
+            let along = |k: usize| [0, 1, 2].map(|c| f64::from(u8::from(c == k)));
+            let (normal, right) = (scale(along(axis), sign), along((axis + 1) % 3));
+            let up = cross(normal, right);
+            let first = mesh.positions.len();
+            for [x, y] in [[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]] {
+                mesh.positions.push(add(normal, add(scale(right, x), scale(up, y))));
+                mesh.normals.push(normal);
+            }
+            mesh.triangles.extend([[first, first + 1, first + 2], [first, first + 2, first + 3]]);
+        }
+    }
+    mesh
+}
+
+/// A cylinder about the z axis, from -1 to 1 along each axis: smooth around, its ends flat.
+#[must_use]
+pub fn cylinder(around: usize) -> Mesh {
+    let mut mesh = Mesh::default();
+    let round = |j: usize| {
+        let (y, x) = (TAU * (j % around) as f64 / around as f64).sin_cos();
+        [x, y]
+    };
+    for j in 0..around {
+        for (z, [x, y]) in [-1.0, 1.0].into_iter().map(|z| (z, round(j))) {
+            mesh.positions.push([x, y, z]);
+            mesh.normals.push([x, y, 0.0]);
+        }
+        let at = |j: usize, k: usize| j % around * 2 + k;
+        mesh.triangles.extend([[at(j, 0), at(j + 1, 0), at(j + 1, 1)], [at(j, 0), at(j + 1, 1), at(j, 1)]]);
+    }
+    for z in [-1.0, 1.0] {
+        let first = mesh.positions.len();
+        for [x, y] in (0..around).map(round) {
+            mesh.positions.push([x, y, z]);
+            mesh.normals.push([0.0, 0.0, z]);
+        }
+        let end = (2..around).map(|j| if z > 0.0 { [first, first + j - 1, first + j] } else { [first, first + j, first + j - 1] });
+        mesh.triangles.extend(end);
+    }
+    mesh
+}
+
+/// The mesh as many times as large along each axis.
+#[must_use]
+pub fn stretched(mut mesh: Mesh, [x, y, z]: V3) -> Mesh {
+    mesh.positions.iter_mut().for_each(|p| *p = [p[0] * x, p[1] * y, p[2] * z]);
+    // Normals stay square to what is stretched.
+    mesh.normals.iter_mut().for_each(|n| *n = unit([n[0] / x, n[1] / y, n[2] / z]).unwrap_or(*n));
+    mesh
+}
+
 /// The mesh turned by a rotation with these rows.
 #[must_use]
 pub fn turned(mut mesh: Mesh, rows: &[V3; 3]) -> Mesh {

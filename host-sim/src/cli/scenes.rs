@@ -3,7 +3,7 @@
 use super::{Outcome, Usage, report};
 use anyhow::Result;
 use microphong::format::ErrorBudget;
-use microphong_sim::scene::{self, NAMES, Scene, VARIANTS};
+use microphong_sim::scene::{self, NAMES, SCRIPTED, Scene, VARIANTS};
 use serde::Serialize;
 
 /// List the built-in scenes.
@@ -21,7 +21,7 @@ struct Line {
 }
 
 pub(crate) fn run(arguments: &Arguments) -> Result<Outcome> {
-    for scene in NAMES.into_iter().chain(VARIANTS) {
+    for scene in NAMES.into_iter().chain(VARIANTS).chain(SCRIPTED) {
         let description = scene::description(scene);
         if arguments.json {
             report::json(&Line { scene, description })?;

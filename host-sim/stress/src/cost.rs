@@ -306,6 +306,7 @@ fn meshes_of_one(bytes: &StreamBytes) -> Option<StreamBytes> {
     }
     let header =
         Header { meshes: meshes.len() as u16, vertices: vertices.len() as u32, triangles: triangles.len() as u32, ..*stream.header };
+    // These scenes are one object.
     written(header, &[meshes.as_bytes(), stream.materials.as_bytes(), stream.lights.as_bytes(), vertices.as_bytes(), triangles.as_bytes()])
 }
 

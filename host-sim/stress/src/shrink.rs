@@ -78,7 +78,16 @@ fn triangles(bytes: &StreamBytes, kept: impl Fn(usize) -> bool) -> Option<Stream
     let header = Header { triangles: triangles.len() as u32, ..*stream.header };
     written(
         header,
-        &[meshes.as_bytes(), stream.materials.as_bytes(), stream.lights.as_bytes(), stream.vertices.as_bytes(), triangles.as_bytes()],
+        &[
+            meshes.as_bytes(),
+            stream.materials.as_bytes(),
+            stream.lights.as_bytes(),
+            stream.instances.as_bytes(),
+            stream.tracks.as_bytes(),
+            stream.keys.as_bytes(),
+            stream.vertices.as_bytes(),
+            triangles.as_bytes(),
+        ],
     )
 }
 
@@ -94,6 +103,9 @@ fn lights(bytes: &StreamBytes, light: usize) -> Option<StreamBytes> {
             stream.meshes.as_bytes(),
             stream.materials.as_bytes(),
             lights.as_bytes(),
+            stream.instances.as_bytes(),
+            stream.tracks.as_bytes(),
+            stream.keys.as_bytes(),
             stream.vertices.as_bytes(),
             stream.triangles.as_bytes(),
         ],

@@ -128,6 +128,8 @@ fn facing(random: &mut Random, look: &Look) -> V3 {
     let towards = match look.lamps[random.pick(0..look.lamps.len() as i32) as usize] {
         Lamp::Distant(direction, _) => direction,
         Lamp::Near(place, _) => sub(place, look.view.translation),
+        // These scenes have none such.
+        Lamp::Fixed(..) | Lamp::FixedNear(..) => return anywhere,
     };
     // The eye looks along z of its space, from where z is negative; in object space, it is turned round.
     let [x, y, z] = unit(towards).unwrap_or(anywhere);

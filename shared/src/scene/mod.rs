@@ -7,21 +7,21 @@ pub(crate) mod orbit;
 mod pose;
 
 pub use angle::SIN_COS_ERROR;
+pub use crate::stream::record::MAX_POSITION;
 pub use error::SceneError;
 pub use object::Object;
 pub use orbit::{CIRCLE_ERROR, ORBIT_ERROR, ROTATION_ERROR};
-pub use pose::{MAX_POSITION, MAX_SCALE, MIN_SCALE, Pose, QUATERNION_ERROR, STEP_ERROR};
+pub use pose::{MAX_SCALE, MIN_SCALE, Pose, QUATERNION_ERROR, STEP_ERROR};
 
 use crate::{
     format::{Gain, Length, MAX_LIGHTS, ROTATION},
     math::vector::dot,
     stream::{
         Stream, is_gain,
-        record::{Camera, DIRECTIONAL, Light, Material, PERSPECTIVE, VIEWER_LOCAL},
+        record::{Camera, DIRECTIONAL, LIGHT_TRACK, Light, Material, OBJECT_TRACK, OWN_MATERIALS, PERSPECTIVE, Track, VIEWER_LOCAL},
     },
 };
 use core::{mem, ops::Range};
-use object::OWN;
 use zerocopy::{FromBytes, Immutable, IntoBytes, KnownLayout};
 
 /// What the shading method in use can draw; a scene is not changed to anything else.
@@ -56,6 +56,8 @@ pub struct Scene<'a> {
     pub(crate) camera: Camera,
     /// The frame of the orbit in which the camera is.
     pub(crate) place: u32,
+    /// The frame that tracks were last followed to.
+    played: Option<u32>,
     lights: heapless::Vec<Light, MAX_LIGHTS>,
     pub(crate) ambient: [u16; 3],
     pub(crate) background: [u8; 3],
@@ -79,6 +81,7 @@ impl<'a> Scene<'a> {
             stream,
             camera: stream.header.camera,
             place: 0,
+            played: None,
             // A checked stream has no more lights than there is room for.
             lights: heapless::Vec::from_slice(stream.lights).unwrap_or_default(),
             ambient: stream.header.ambient,
@@ -90,15 +93,62 @@ impl<'a> Scene<'a> {
             changed: true,
             rearranged: true,
         };
-        let _ = scene.add(0..stream.header.meshes, Pose::IDENTITY);
+        // A renderer is refused where the stream has more objects than there is room for.
+        for instance in stream.instances {
+            let meshes = instance.first_mesh..instance.first_mesh.saturating_add(instance.meshes);
+            if let Ok(index) = scene.add(meshes, Pose::IDENTITY) {
+                let _ = scene.set_object_material(index, (instance.material != OWN_MATERIALS).then_some(instance.material));
+            }
+        }
+        if stream.instances.is_empty() {
+            let _ = scene.add(0..stream.meshes.len() as u16, Pose::IDENTITY);
+        }
+        scene.play(0);
         scene
     }
 
-    /// Puts the camera where the stream's orbit has it in frame `number`. All else stays as it is.
+    /// Puts the camera where the stream's orbit has it in frame `number`, and objects, lights and camera where its tracks have them. All else
+    /// stays as it is.
     pub fn play(&mut self, number: u32) {
         let place = self.place_of(number);
         self.changed |= place != self.place;
         self.place = place;
+        let frame = self.frame_of(number);
+        if self.played != frame {
+            self.played = frame;
+            self.changed |= frame.is_some();
+            let tracks = if frame.is_some() { self.stream.tracks } else { &[] };
+            tracks.iter().for_each(|track| self.follow(track, frame.unwrap_or(0)));
+        }
+    }
+
+    /// Moves what `track` moves.
+    fn follow(&mut self, track: &Track, frame: u32) {
+        let keys = self.stream.keys_of(track).unwrap_or_default();
+        let next = keys.partition_point(|key| key.frame <= frame);
+        let Some(key) = keys.get(next.saturating_sub(1)) else { return };
+        let (mut pose, index) = (Pose::of_key(key), usize::from(track.index));
+        let is_hidden = key.scale == 0;
+        if let Some(after) = keys.get(next).filter(|after| next > 0 && !is_hidden && after.scale != 0) {
+            let share = ((frame - key.frame) as u64) << 16;
+            pose = pose.towards(&Pose::of_key(after), (share / u64::from(after.frame - key.frame).max(1)) as i64);
+        }
+        // A checked stream has what its tracks move.
+        match track.kind {
+            OBJECT_TRACK => {
+                if let Ok(object) = self.change(index) {
+                    (object.hidden, object.pose) = (is_hidden.into(), if is_hidden { object.pose } else { pose });
+                }
+            }
+            LIGHT_TRACK => {
+                if let Some(light) = self.lights.get_mut(index) {
+                    light.vector = pose.position().map(Length::to_bits);
+                }
+            }
+            _ => {
+                let _ = self.set_camera_pose(&pose);
+            }
+        }
     }
 
     /// Frames of one orbit differ.
@@ -106,9 +156,14 @@ impl<'a> Scene<'a> {
         number.checked_rem(self.camera.period.into()).unwrap_or(0)
     }
 
+    /// Frames of a stream with tracks differ.
+    fn frame_of(&self, number: u32) -> Option<u32> {
+        if self.stream.tracks.is_empty() { None } else { number.checked_rem(self.stream.header.frames.into()) }
+    }
+
     /// Whether frame `number` of the ready-made animation is what was drawn last.
     pub(crate) fn is_latest(&self, number: u32) -> bool {
-        self.is_unchanged() && self.place == self.place_of(number)
+        self.is_unchanged() && self.place == self.place_of(number) && self.played == self.frame_of(number)
     }
 
     /// Whether nothing has changed since the latest frame.
@@ -197,8 +252,8 @@ impl<'a> Scene<'a> {
     /// # Errors
     /// When there is no such object or material.
     pub fn set_object_material(&mut self, index: usize, material: Option<u16>) -> Result<(), SceneError> {
-        let material = material.unwrap_or(OWN);
-        if material != OWN && usize::from(material) >= self.materials.len() {
+        let material = material.unwrap_or(OWN_MATERIALS);
+        if material != OWN_MATERIALS && usize::from(material) >= self.materials.len() {
             return Err(SceneError::Material { index: material.into() });
         }
         self.change(index)?.material = material;

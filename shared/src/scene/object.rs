@@ -1,11 +1,12 @@
 //! One object of a scene.
 
-use crate::{scene::pose::Pose, stream::{Stream, record::Mesh}};
+use crate::{scene::pose::Pose, stream::{
+        Stream,
+        record::{Mesh, OWN_MATERIALS},
+    },
+};
 use core::ops::Range;
 use zerocopy::{FromBytes, Immutable, IntoBytes, KnownLayout};
-
-/// The object has the materials of its meshes.
-pub(crate) const OWN: u16 = u16::MAX;
 
 /// One object of a scene: meshes that move together.
 #[derive(FromBytes, IntoBytes, Immutable, KnownLayout, Clone, Copy, Debug, PartialEq, Eq)]
@@ -14,7 +15,7 @@ pub struct Object {
     pub(crate) pose: Pose,
     /// Index of its first [`Mesh`], and one past the last.
     meshes: [u16; 2],
-    /// Material of all its meshes, or [`OWN`].
+    /// Material of all its meshes, or [`OWN_MATERIALS`].
     pub(crate) material: u16,
     pub(crate) hidden: u16,
     /// Triangles of its meshes, those of coarser levels as well.
@@ -49,7 +50,7 @@ impl Object {
         Some(Self {
             pose: Pose::IDENTITY,
             meshes: [meshes.start, meshes.end],
-            material: OWN,
+            material: OWN_MATERIALS,
             hidden: 0,
             span,
             triangles,
@@ -75,7 +76,7 @@ impl Object {
     /// The material that all of its meshes have in place of their own.
     #[must_use]
     pub fn material(&self) -> Option<u16> {
-        (self.material != OWN).then_some(self.material)
+        (self.material != OWN_MATERIALS).then_some(self.material)
     }
 
     /// Whether it is drawn.
@@ -87,7 +88,7 @@ impl Object {
     /// Index of the material of `mesh` on this object.
     #[inline(always)]
     pub(crate) fn material_of(&self, mesh: &Mesh) -> usize {
-        usize::from(if self.material == OWN { mesh.material } else { self.material })
+        usize::from(if self.material == OWN_MATERIALS { mesh.material } else { self.material })
     }
 }
 

@@ -1,18 +1,20 @@
 //! How an object lies in the world.
 
 use crate::{
-    format::{Angle, Length, ROTATION, Rotation, Scale, UNIT},
+    format::{Angle, Length, ROTATION, Rotation, Scale},
     math::{rsqrt::rsqrt_wide, vector::{cross, dot, normalise, sub, zip}},
     scene::{angle::sin_cos, error::SceneError},
+    stream::{
+        self,
+        record::{Key, MAX_POSITION},
+    },
 };
 use zerocopy::{FromBytes, Immutable, IntoBytes, KnownLayout};
 
-/// Largest component of a position in the world: 16 units.
-pub const MAX_POSITION: Length = Length::from_bits(16 << UNIT);
 /// Least scale of an object: 1/16.
-pub const MIN_SCALE: Scale = Scale::from_bits(1 << 12);
+pub const MIN_SCALE: Scale = Scale::from_bits(stream::MIN_SCALE);
 /// Largest scale of an object: 8.
-pub const MAX_SCALE: Scale = Scale::from_bits(8 << 16);
+pub const MAX_SCALE: Scale = Scale::from_bits(stream::MAX_SCALE);
 
 /// How an object lies in the world: it is scaled, then rotated about its origin, then moved.
 ///
@@ -20,13 +22,15 @@ pub const MAX_SCALE: Scale = Scale::from_bits(8 << 16);
 /// it stays one, and the matrix that is made of it is orthonormal. The world is right-handed.
 ///
 /// ```
-/// use microphong::{Pose, SceneError, fixed::types::U0F32};
+/// use microphong::{Pose, SceneError, fixed::types::{I18F14, U0F32, U16F16}};
 ///
 /// # fn main() -> Result<(), SceneError> {
-/// // Lying on its side, half as large, one unit to the right. No floating point is compiled for it.
-/// let one = Pose::about([1, 0, 0], U0F32::from_num(0.25))?.scaled("0.5".parse().unwrap())?.at([1.into(), 0.into(), 0.into()])?;
+/// // A quarter of a turn about x, half as large, one unit to the right. No floating point is compiled for it.
+/// let quarter = U0F32::from_bits(1 << 30);
+/// let [zero, one] = [0, 1].map(I18F14::from_num);
+/// let lying = Pose::about([1, 0, 0], quarter)?.scaled(U16F16::from_bits(1 << 15))?.at([one, zero, zero])?;
 /// // From what a sensor says.
-/// let other = Pose::from_f32([0.9, 0.1, 0.0, 0.42], [0.0, 0.5, 0.0], 1.0)?;
+/// let held = Pose::from_f32([0.9, 0.1, 0.0, 0.42], [0.0, 0.5, 0.0], 1.0)?;
 /// # Ok(())
 /// # }
 /// ```
@@ -196,6 +200,12 @@ impl Pose {
         let rotation = unit([mean(a, w), mean(b, x), mean(c, y), mean(d, z)].map(i64::from)).unwrap_or(from);
         let scale = mean(self.scale as i32, other.scale as i32) as u32;
         Self { rotation, position: zip(self.position, other.position, mean), scale }
+    }
+
+    /// The pose of a key.
+    pub(crate) fn of_key(key: &Key) -> Self {
+        let rotation = unit(key.rotation.map(i64::from)).unwrap_or(Self::IDENTITY.rotation);
+        Self { rotation, position: key.position, scale: key.scale }
     }
 
     fn rotated(quaternion: [i64; 4]) -> Result<Self, SceneError> {

@@ -11,8 +11,8 @@ use crate::{
 };
 use core::{fmt, ops::Range};
 use record::{
-    Camera, DIRECTIONAL, EYE_SPACE, Header, Light, MAGIC, Material, Mesh, ORTHOGRAPHIC, PERSPECTIVE, POINT, Triangle, VERSION, VIEWER_INFINITE,
-    VIEWER_LOCAL, Vertex,
+    CAMERA_TRACK, Camera, DIRECTIONAL, EYE_SPACE, Header, Instance, Key, LIGHT_TRACK, Light, MAGIC, MAX_POSITION, Material, Mesh, OBJECT_TRACK,
+    ORTHOGRAPHIC, OWN_MATERIALS, PERSPECTIVE, POINT, Track, Triangle, VERSION, VIEWER_INFINITE, VIEWER_LOCAL, Vertex,
 };
 use zerocopy::{FromBytes, Immutable, KnownLayout};
 
@@ -41,6 +41,12 @@ pub struct Stream<'a> {
     pub materials: &'a [Material],
     /// The lights, each of which shines on all meshes.
     pub lights: &'a [Light],
+    /// Objects of the scene; none if it is one object of all meshes.
+    pub instances: &'a [Instance],
+    /// What moves, and how.
+    pub tracks: &'a [Track],
+    /// Keys of all tracks.
+    pub keys: &'a [Key],
     /// Vertices of all meshes.
     pub vertices: &'a [Vertex],
     /// Triangles of all meshes and of all of their levels.
@@ -156,6 +162,9 @@ pub fn length(header: &Header) -> Option<u32> {
         (u32::from(header.meshes), size_of::<Mesh>()),
         (u32::from(header.materials), size_of::<Material>()),
         (u32::from(header.lights), size_of::<Light>()),
+        (u32::from(header.instances), size_of::<Instance>()),
+        (u32::from(header.tracks), size_of::<Track>()),
+        (header.keys, size_of::<Key>()),
         (header.vertices, size_of::<Vertex>()),
         (header.triangles, size_of::<Triangle>()),
     ];
@@ -194,6 +203,9 @@ impl<'a> Stream<'a> {
             meshes: take(&mut rest, header.meshes.into())?,
             materials: take(&mut rest, header.materials.into())?,
             lights: take(&mut rest, header.lights.into())?,
+            instances: take(&mut rest, header.instances.into())?,
+            tracks: take(&mut rest, header.tracks.into())?,
+            keys: take(&mut rest, header.keys as usize)?,
             vertices: take(&mut rest, header.vertices as usize)?,
             triangles: take(&mut rest, header.triangles as usize)?,
         };
@@ -238,6 +250,7 @@ impl<'a> Stream<'a> {
             }
         }
         field(next_vertex == header.vertices && next_triangle == header.triangles, "mesh coverage", self.meshes.len())?;
+        self.check_scene()?;
         for (i, vertex) in self.vertices.iter().enumerate() {
             field(is_one(square(vertex.normal).into(), 2 * UNIT), "vertex normal", i)?;
             field(square(vertex.position) <= u32::from(header.radius) * u32::from(header.radius), "vertex position", i)?;
@@ -250,6 +263,51 @@ impl<'a> Stream<'a> {
         Ok(())
     }
 
+
+    /// Objects, and what moves.
+    fn check_scene(&self) -> Result<(), StreamError> {
+        // Coarser levels belong to their mesh.
+        let starts = |index: usize| self.meshes.get(index).is_none_or(|mesh| mesh.error == 0);
+        for (i, instance) in self.instances.iter().enumerate() {
+            let (first, end) = (usize::from(instance.first_mesh), usize::from(instance.first_mesh) + usize::from(instance.meshes));
+            field(instance.meshes > 0 && end <= self.meshes.len() && starts(first) && starts(end), "object meshes", i)?;
+            let material = usize::from(instance.material);
+            field(instance.material == OWN_MATERIALS || material < self.materials.len(), "object material", i)?;
+        }
+        let mut next = 0u32;
+        for (i, track) in self.tracks.iter().enumerate() {
+            let index = usize::from(track.index);
+            let exists = match track.kind {
+                OBJECT_TRACK => index < self.instances.len().max(1),
+                LIGHT_TRACK => index < self.lights.len(),
+                kind => kind == CAMERA_TRACK,
+            };
+            field(exists, "what a track moves", i)?;
+            field(track.keys > 0 && track.first_key == next, "keys of a track", i)?;
+            next = next.saturating_add(track.keys);
+            let keys = self.keys_of(track).ok_or(StreamError::Field { name: "keys of a track", record: i as u32 })?;
+            field(keys.windows(2).all(|pair| matches!(pair, [a, b] if a.frame < b.frame)), "order of keys in a track", i)?;
+            let is_directional = track.kind == LIGHT_TRACK && self.lights.get(index).is_some_and(|light| light.kind == DIRECTIONAL);
+            for (k, key) in keys.iter().enumerate() {
+                let record = track.first_key as usize + k;
+                let [w, x, y, z] = key.rotation.map(|c| i64::from(c >> 1));
+                field(key.rotation.iter().all(|&c| within(c, 1 << ROTATION)), "key rotation", record)?;
+                field(is_one(w * w + x * x + y * y + z * z, 2 * (ROTATION - 1)), "key rotation", record)?;
+                let length = key.position.iter().map(|&c| i64::from(c) * i64::from(c)).sum::<i64>();
+                let in_reach = track.kind != CAMERA_TRACK || length <= i64::from(MAX_LENGTH) * i64::from(MAX_LENGTH);
+                field(key.position.iter().all(|&c| within(c, MAX_POSITION.to_bits())) && in_reach, "key position", record)?;
+                field(!is_directional || is_one(length, 2 * UNIT), "key direction", record)?;
+                field(key.scale == 0 || (MIN_SCALE..=MAX_SCALE).contains(&key.scale), "key scale", record)?;
+            }
+        }
+        field(next == self.header.keys, "keys", self.tracks.len())
+    }
+
+    /// The keys of `track`.
+    #[must_use]
+    pub fn keys_of(&self, track: &Track) -> Option<&'a [Key]> {
+        self.keys.get(track.first_key as usize..)?.get(..track.keys as usize)
+    }
 
     /// Whether all lights are directional and the viewer is infinitely far.
     #[must_use]
@@ -266,7 +324,7 @@ impl<'a> Stream<'a> {
 
     /// Each mesh at the coarsest of its levels that lies no farther than `error` from the mesh as it is; at an error of 0 each as it is.
     pub fn meshes_within(&self, error: GeometricError) -> impl DoubleEndedIterator<Item = &'a Mesh> + use<'a> {
-        self.levels_within(0..self.header.meshes, error)
+        self.levels_within(0..self.meshes.len() as u16, error)
     }
 
     /// The same of some meshes, by their indices.
@@ -362,6 +420,10 @@ pub const MAX_EXPONENT: u16 = 1024;
 pub const MAX_GAIN: u16 = 2 << UNIT;
 /// Largest component of a translation or a light's position, [`crate::format::Length`]: 16 units.
 pub const MAX_LENGTH: i32 = 16 << UNIT;
+/// Least scale of an object, [`crate::format::Scale`]: 1/16.
+pub const MIN_SCALE: u32 = 1 << 12;
+/// Largest scale of an object, [`crate::format::Scale`]: 8.
+pub const MAX_SCALE: u32 = 8 << 16;
 /// Smallest distance of the near plane, [`crate::format::Length`]: 1/64.
 pub const MIN_NEAR: i32 = 1 << (UNIT - 6);
 /// Smallest focal length, Q16.16: 1/16.

@@ -8,7 +8,7 @@
 
 #[doc(inline)]
 pub use crate::format::{
-    ErrorBudget, Focal, Gain, GeometricError, Haversine, InverseAltitude, Length, NormalLength, Radius, Rotation, Unit,
+    ErrorBudget, Focal, Gain, GeometricError, Haversine, InverseAltitude, Length, NormalLength, Radius, Rotation, Scale, Unit,
 };
 use zerocopy::{FromBytes, Immutable, IntoBytes, KnownLayout};
 
@@ -18,7 +18,7 @@ compile_error!("streams are read in place and are little-endian");
 /// First four bytes of every stream.
 pub const MAGIC: [u8; 4] = *b"mTRI";
 /// The version of the format that this core reads and the host writes.
-pub const VERSION: u16 = 5;
+pub const VERSION: u16 = 6;
 
 /// The start of a stream. The arrays follow in the order of the counts.
 #[derive(FromBytes, IntoBytes, Immutable, KnownLayout, Clone, Copy, Debug, PartialEq, Eq)]
@@ -46,6 +46,12 @@ pub struct Header {
     pub vertices: u32,
     /// Number of [`Triangle`] records.
     pub triangles: u32,
+    /// Number of [`Instance`] records. Without any, the scene is one object of all meshes.
+    pub instances: u16,
+    /// Number of [`Track`] records.
+    pub tracks: u16,
+    /// Number of [`Key`] records.
+    pub keys: u32,
     /// Colour where no triangle is drawn: red, green, blue.
     pub background: [u8; 3],
     /// How far a pixel may be off from Phong shading by a method that keeps to a budget, [`ErrorBudget`] from 1/2 to 16.
@@ -311,6 +317,61 @@ pub const POINT: u8 = 1;
 pub const OBJECT_SPACE: u8 = 0;
 /// The light stays with the camera.
 pub const EYE_SPACE: u8 = 1;
+
+/// An object of the scene: some meshes of the stream, with their coarser levels. Several objects may have the same meshes.
+#[derive(FromBytes, IntoBytes, Immutable, KnownLayout, Clone, Copy, Debug, PartialEq, Eq)]
+#[repr(C)]
+pub struct Instance {
+    /// Index of its first [`Mesh`].
+    pub first_mesh: u16,
+    /// Number of meshes.
+    pub meshes: u16,
+    /// Index of the [`Material`] of all its meshes, or [`OWN_MATERIALS`].
+    pub material: u16,
+    /// Unused, for alignment.
+    pub reserved: u16,
+}
+
+/// The meshes of an object have each its own material.
+pub const OWN_MATERIALS: u16 = u16::MAX;
+
+/// How an object, a light or the camera moves from frame to frame: by its keys, and linearly between them.
+#[derive(FromBytes, IntoBytes, Immutable, KnownLayout, Clone, Copy, Debug, PartialEq, Eq)]
+#[repr(C)]
+pub struct Track {
+    /// [`OBJECT_TRACK`], [`LIGHT_TRACK`] or [`CAMERA_TRACK`].
+    pub kind: u16,
+    /// Index of the [`Instance`] or [`Light`].
+    pub index: u16,
+    /// Index of its first [`Key`]; tracks follow one another without a gap.
+    pub first_key: u32,
+    /// Number of keys, at least 1.
+    pub keys: u32,
+}
+
+/// A track of an object: its pose.
+pub const OBJECT_TRACK: u16 = 0;
+/// A track of a light: the position of its keys is [`Light::vector`].
+pub const LIGHT_TRACK: u16 = 1;
+/// A track of the camera: it looks along the z axis of its keys, and sees their y axis upwards.
+pub const CAMERA_TRACK: u16 = 2;
+
+/// Where something is in a frame. Before the first key of its track it is there, behind the last one as well.
+#[derive(FromBytes, IntoBytes, Immutable, KnownLayout, Clone, Copy, Debug, PartialEq, Eq)]
+#[repr(C)]
+pub struct Key {
+    /// Number of the frame; keys of a track are in this order.
+    pub frame: u32,
+    /// Quaternion w, x, y, z, [`Rotation`]; squared length 1 to 1/256.
+    pub rotation: [i32; 4],
+    /// [`Length`], at most [`MAX_POSITION`] in size along each axis; for a camera, no longer than that.
+    pub position: [i32; 3],
+    /// [`Scale`] from 1/16 to 8; 0 hides the object up to its next key.
+    pub scale: u32,
+}
+
+/// Largest component of a position in the world: 16 units.
+pub const MAX_POSITION: Length = Length::from_bits(16 << 14);
 
 /// Position and unit normal.
 #[derive(FromBytes, IntoBytes, Immutable, KnownLayout, Clone, Copy, Debug, PartialEq, Eq)]
