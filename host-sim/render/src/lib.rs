@@ -15,6 +15,7 @@ pub mod mtl;
 pub mod number;
 pub mod obj;
 pub mod output;
+pub mod ply;
 pub mod polygon;
 pub mod quantise;
 pub mod render;

@@ -22,7 +22,7 @@ use microphong_sim::{
 use serde::Serialize;
 use std::path::PathBuf;
 
-/// Convert a mesh, Wavefront OBJ or STL, to a stream for a board's flash.
+/// Convert a mesh, Wavefront OBJ, STL or PLY, to a stream for a board's flash.
 ///
 /// Normals come from the file when every corner has one, else from the
 /// polygons around each vertex: light is smooth within the file's smoothing groups, or where it has
@@ -145,7 +145,7 @@ struct Level {
 pub(crate) fn run(arguments: &Arguments) -> Result<Outcome> {
     let source = &arguments.mesh;
     if source.extension().is_some_and(|e| e.eq_ignore_ascii_case("tri")) {
-        return Err(Usage(format!("{} is a stream already; name an .obj or .stl file", source.display())).into());
+        return Err(Usage(format!("{} is a stream already; name an .obj, .stl or .ply file", source.display())).into());
     }
     if arguments.lights.len() > MAX_LIGHTS {
         return Err(Usage(format!("{} times --light; a scene has {MAX_LIGHTS} lights at most", arguments.lights.len())).into());
