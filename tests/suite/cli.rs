@@ -145,17 +145,36 @@ fn ply_is_converted() {
     place.file("points.ply", points).fails(&["convert", "points.ply"], 1, &["points.ply", "no faces"]);
 }
 
+/// With its buffer inside; what is wrong with it is named by the place.
+#[test]
+fn gltf_is_converted() {
+    let text = r#"{"asset": {"version": "2.0"}, "scenes": [{"nodes": [0]}], "nodes": [{"mesh": 0}],
+        "meshes": [{"primitives": [{"attributes": {"POSITION": 1}, "indices": 0, "material": 0}]}],
+        "materials": [{"pbrMetallicRoughness": {"baseColorFactor": [1, 0, 0, 1], "metallicFactor": 0}, "doubleSided": true}],
+        "buffers": [{"byteLength": 44, "uri": "data:application/octet-stream;base64,AAABAAIAAAAAAAAAAAAAAAAAAAAAAIA/AAAAAAAAAAAAAAAAAACAPwAAAAA="}],
+        "bufferViews": [{"buffer": 0, "byteLength": 6}, {"buffer": 0, "byteOffset": 8, "byteLength": 36}],
+        "accessors": [{"bufferView": 0, "componentType": 5123, "count": 3, "type": "SCALAR"},
+            {"bufferView": 1, "componentType": 5126, "count": 3, "type": "VEC3", "min": [0, 0, 0], "max": [1, 1, 0]}]}"#;
+    let place = Place::new();
+    for file in ["a.gltf", "a.glb", "a.obj"] {
+        let said = place.file(file, text).succeeds(&["convert", file, "-o", "out.tri"]);
+        for words in ["3 vertices, 1 triangles", "1 material from the file", "left out: backs of double-sided materials"] {
+            assert!(said.contains(words), "{said}");
+        }
+    }
+    place.file("cut.gltf", text.replace("AACAPwAAAAA=", "AAA=")).fails(&["convert", "cut.gltf"], 1, &["cut.gltf", "buffer 0", "cut off"]);
+    place.file("far.gltf", text.replace("\"mesh\": 0", "\"mesh\": 7")).fails(&["convert", "far.gltf"], 1, &["far.gltf", "nodes[0].mesh"]);
+    let beside = text.replace("data:application/octet-stream;base64,", "http://");
+    place.file("beside.gltf", beside).fails(&["convert", "beside.gltf"], 1, &["beside.gltf", "buffer 0", "beside the mesh"]);
+    place.file("cut.glb", b"glTF\x02\0\0\0").fails(&["convert", "cut.glb"], 1, &["cut.glb", "GLB", "cut off"]);
+    place.file("not.gltf", TETRAHEDRON).fails(&["convert", "not.gltf"], 1, &["not.gltf", "glTF", "line 1"]);
+}
+
 /// With the remedy, whatever the file is called.
 #[test]
 fn other_formats_are_named() {
     let place = Place::new();
-    let cases: [(&str, &[u8]); 5] = [
-        ("glTF", b"glTF\x02\0\0\0"),
-        ("glTF", b"\xEF\xBB\xBF \n{\"asset\": {\"version\": \"2.0\"}}"),
-        ("FBX", b"Kaydara FBX Binary  \0"),
-        ("Blender", b"BLENDER-v300"),
-        ("UTF-16", b"\xFF\xFEv\0 \x000\0"),
-    ];
+    let cases: [(&str, &[u8]); 3] = [("FBX", b"Kaydara FBX Binary  \0"), ("Blender", b"BLENDER-v300"), ("UTF-16", b"\xFF\xFEv\0 \x000\0")];
     for (format, bytes) in cases {
         for file in ["in.obj", "in.mesh", "in"] {
             place.file(file, bytes);
@@ -164,10 +183,15 @@ fn other_formats_are_named() {
             place.fails(&["render", file], 1, &[file, format, &remedy]);
         }
     }
-    for (file, format) in [("a.gltf", "glTF"), ("a.glb", "glTF"), ("a.dae", "COLLADA"), ("a.3mf", "3MF")] {
+    for (file, format) in [("a.dae", "COLLADA"), ("a.3mf", "3MF")] {
         place.file(file, "of this we know the ending alone");
         place.fails(&["convert", file], 1, &[file, format, &format!("assimp export {file} a.obj")]);
         place.fails(&["compare", file], 1, &[file, format, "Blender"]);
+    }
+    // What `convert` alone reads.
+    for (file, format) in [("a.ply", "PLY"), ("a.gltf", "glTF"), ("a.glb", "glTF")] {
+        let remedy = format!("microphong convert {file} -o a.tri");
+        place.file(file, "whatever there is").fails(&["render", file], 1, &[file, format, &remedy]);
     }
     place.file("a.txt", TETRAHEDRON).fails(&["render", "a.txt"], 2, &["unknown scene", "a.txt", ".obj"]);
     place.fails(&["render", "none.3ds"], 2, &["none.3ds", ".obj"]);

@@ -17,7 +17,7 @@ const ENDINGS: [(&str, &str); 9] = [
 ];
 
 /// Of these, formats that `convert` reads.
-const CONVERTED: [&str; 1] = ["PLY"];
+const CONVERTED: [&str; 2] = ["PLY", "glTF"];
 
 /// Passes what may be an OBJ or STL file.
 ///
@@ -35,7 +35,7 @@ pub(crate) fn refuse(path: &Path, bytes: &[u8]) -> Result<()> {
         let obj = path.with_extension("obj");
         let obj = if obj == path { path.with_extension("new.obj") } else { obj };
         bail!(
-            "{name}: a mesh in the format {format}; OBJ, STL or PLY is needed: export it as OBJ, for example with Blender, or run\n  assimp export {name} {}",
+            "{name}: a mesh in the format {format}; OBJ, glTF, STL or PLY is needed: export it as OBJ, for example with Blender, or run\n  assimp export {name} {}",
             obj.display()
         );
     }

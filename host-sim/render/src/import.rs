@@ -1,7 +1,7 @@
 //! Reads a mesh and its materials from files.
 
 use crate::{
-    foreign,
+    foreign, gltf,
     look::Surface,
     mesh::{self, Mesh, Report, Soup, Weld},
     mtl,
@@ -40,7 +40,7 @@ struct Contents {
     remarks: Vec<String>,
 }
 
-/// Reads and welds an OBJ file with the files of its materials beside it, an STL or a PLY file.
+/// Reads and welds an OBJ file with the files of its materials beside it, a glTF file with the buffers beside it, an STL or a PLY file.
 ///
 /// # Errors
 /// Names the file and the place in it.
@@ -62,6 +62,10 @@ fn contents(path: &Path, bytes: &[u8]) -> Result<Contents> {
     if ply::is_ply(bytes) || ends("ply") {
         let Ply { soup, ignored } = ply::parse(bytes).with_context(place)?;
         return Ok(Contents { soup, ignored, ..plain });
+    }
+    if gltf::is_gltf(bytes) || ends("gltf") || ends("glb") {
+        let gltf::Scene { soup, materials, ignored } = gltf::parse(bytes, path).with_context(place)?;
+        return Ok(Contents { soup, materials, ignored, ..plain });
     }
     foreign::refuse(path, bytes)?;
     if stl::is_stl(bytes) {

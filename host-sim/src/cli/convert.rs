@@ -22,13 +22,14 @@ use microphong_sim::{
 use serde::Serialize;
 use std::path::PathBuf;
 
-/// Convert a mesh, Wavefront OBJ, STL or PLY, to a stream for a board's flash.
+/// Convert a mesh, Wavefront OBJ, glTF 2.0, STL or PLY, to a stream for a board's flash.
 ///
 /// Normals come from the file when every corner has one, else from the
 /// polygons around each vertex: light is smooth within the file's smoothing groups, or where it has
 /// none, over edges that fold by no more than --crease. Polygons, concave ones as well, are cut into
-/// triangles. Materials come from the .mtl file beside the mesh (Kd, Ks, Ka, Ns); each becomes a mesh of
-/// the stream. What of the files is left out is said.
+/// triangles. Materials come from the .mtl file beside the mesh (Kd, Ks, Ka, Ns), or from the .gltf or .glb
+/// file (base colour, metallic and roughness); each becomes a mesh of the stream. Of glTF the default scene
+/// is taken as its nodes put it. What of the files is left out is said.
 /// The mesh is centred and scaled to a sphere of radius 1. One closed convex mesh is marked as
 /// such: it is drawn without depth, and looks the same.
 #[derive(clap::Args)]
@@ -145,7 +146,7 @@ struct Level {
 pub(crate) fn run(arguments: &Arguments) -> Result<Outcome> {
     let source = &arguments.mesh;
     if source.extension().is_some_and(|e| e.eq_ignore_ascii_case("tri")) {
-        return Err(Usage(format!("{} is a stream already; name an .obj, .stl or .ply file", source.display())).into());
+        return Err(Usage(format!("{} is a stream already; name an .obj, .stl, .ply, .gltf or .glb file", source.display())).into());
     }
     if arguments.lights.len() > MAX_LIGHTS {
         return Err(Usage(format!("{} times --light; a scene has {MAX_LIGHTS} lights at most", arguments.lights.len())).into());
