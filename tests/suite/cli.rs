@@ -145,6 +145,73 @@ fn ply_is_converted() {
     place.file("points.ply", points).fails(&["convert", "points.ply"], 1, &["points.ply", "no faces"]);
 }
 
+/// A grid of so many cells along a side, on a bowl; the half to the right has a material of its own if `two`.
+fn bowl(side: usize, two: bool) -> String {
+    let mut text = String::new();
+    for k in 0..(side + 1) * (side + 1) {
+        let [x, y] = [k % (side + 1), k / (side + 1)].map(|c| c as f64 / side as f64 - 0.5);
+        text += &format!("v {x} {y} {}\n", x * x + y * y);
+    }
+    for k in 0..side * side {
+        let at = k / side * (side + 1) + k % side + 1;
+        let material = if two && k % side >= side / 2 { "usemtl b" } else { "usemtl a" };
+        text += &format!("{material}\nf {} {} {} {}\n", at, at + 1, at + side + 2, at + side + 1);
+    }
+    text
+}
+
+/// At most so many triangles, and how far they are off is said.
+#[test]
+fn meshes_are_simplified() {
+    let place = Place::new();
+    place.file("bowl.obj", bowl(20, false)).file("two.obj", bowl(20, true)).file("good.obj", TETRAHEDRON);
+    let json = |arguments: &[&str]| -> serde_json::Value {
+        serde_json::from_str(&place.succeeds(&[&["convert"], arguments, &["--json"]].concat())).expect("JSON")
+    };
+    let whole = json(&["bowl.obj"]);
+    assert_eq!((&whole["triangles"], &whole["simplified"]), (&800.into(), &serde_json::Value::Null));
+    let mut last = 0.0;
+    for most in [400, 100, 50] {
+        let line = json(&["bowl.obj", "--simplify", &most.to_string()]);
+        let [triangles, vertices, bytes] = ["triangles", "vertices", "bytes"].map(|field| line[field].as_u64().expect("a number"));
+        assert!(triangles <= most && triangles > most / 2 && vertices < triangles && bytes < 38 * triangles + 500, "{line}");
+        let [error, pixels] = ["error", "pixels"].map(|field| line["simplified"][field].as_f64().expect("a number"));
+        assert!(error > last && pixels > 100.0 * error && pixels < 250.0 * error && line["simplified"]["before"] == 800, "{line}");
+        last = error;
+    }
+    let said = place.succeeds(&["convert", "bowl.obj", "--simplify", "100"]);
+    assert!(said.contains("simplified from 800 triangles") && said.contains("pixels in a picture of 240x240"), "{said}");
+    let said = place.succeeds(&["convert", "bowl.obj", "--simplify", "400", "--lod", "64x64,320x240"]);
+    assert!(said.contains("pixels in a picture of 320x240") && said.contains("a level of"), "{said}");
+    for most in ["800", "4000000000"] {
+        assert!(place.succeeds(&["convert", "bowl.obj", "--simplify", most]).contains("not simplified: it has no more than"));
+    }
+    assert!(json(&["two.obj", "--simplify", "300"])["triangles"].as_u64() <= Some(300));
+    place.fails(
+        &["convert", "two.obj", "--simplify", "20", "-o", "no.tri"],
+        1,
+        &["two.obj", "cannot be made of 20 triangles", "borders", "--colour"],
+    );
+    place.fails(&["convert", "good.obj", "--simplify", "1", "-o", "no.tri"], 1, &["good.obj", "give more"]);
+}
+
+/// A near light is where it was put, from the centre of the mesh.
+#[test]
+fn lights_may_be_near() {
+    use microphong::stream::record::{DIRECTIONAL, POINT};
+    let place = Place::new();
+    let lights = ["--light", "at:-1,0.5,2:ff0000", "--light", "0,0,1"];
+    place.file("good.obj", TETRAHEDRON).succeeds(&[&["convert", "good.obj"], &lights[..]].concat());
+    let bytes = StreamBytes::read(&place.0.path().join("good.tri")).expect("a stream");
+    let stream = bytes.parse().expect("a stream");
+    let [near, far] = stream.lights else { panic!("two lights") };
+    assert_eq!((near.kind, far.kind), (POINT, DIRECTIONAL));
+    let away: Vec<_> = near.vector.iter().zip(stream.header.camera.translation).map(|(light, centre)| light - centre).collect();
+    // Lengths have 16 bits of a fraction at most: what the second coordinate is says how many.
+    let half = away[1];
+    assert!(half > 0 && away == [-2 * half, half, -4 * half], "{away:?}");
+}
+
 /// With its buffer inside; what is wrong with it is named by the place.
 #[test]
 fn gltf_is_converted() {
@@ -425,6 +492,13 @@ fn wrong_usage_is_told_from_failure() {
     place.fails(&["convert", "good.obj", "--crease", "181"], 2, &["--crease", "0 to 180"]);
     place.fails(&["convert", "good.obj", "--light", "1,2"], 2, &["--light", "three numbers"]);
     place.fails(&["convert", "good.obj", "--light", "0,0,0"], 2, &["--light", "direction"]);
+    place.fails(&["convert", "good.obj", "--light", "at:1,2"], 2, &["--light", "three numbers", "at:"]);
+    place.fails(&["convert", "good.obj", "--light", "at:1,2,9"], 2, &["--light", "from -8 to 8", "direction"]);
+    place.fails(&["convert", "good.obj", "--light", "at:1,2,3:red"], 2, &["--light", "hexadecimal"]);
+    place.fails(&["convert", "good.obj", "--light", "by:1,2,3"], 2, &["--light", "three numbers"]);
+    for most in ["0", "-1", "many", "1.5"] {
+        place.fails(&["convert", "good.obj", &format!("--simplify={most}")], 2, &["--simplify", most]);
+    }
     let nine = ["--light", "1,0,0"].repeat(9);
     place.fails(&[&["convert", "good.obj"], &nine[..]].concat(), 2, &["9 times --light", "8 lights"]);
     place.fails(&["convert", "good.obj", "--light", "1,0,0:red"], 2, &["--light", "hexadecimal"]);
