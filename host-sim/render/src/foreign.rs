@@ -16,20 +16,26 @@ const ENDINGS: [(&str, &str); 9] = [
     ("blend", "Blender"),
 ];
 
+/// Of these, formats that `convert` reads.
+const CONVERTED: [&str; 2] = ["PLY", "glTF"];
+
 /// Passes what may be an OBJ or STL file.
 ///
 /// # Errors
-/// Names the file, its format, and what makes an OBJ of it.
+/// Names the file, its format, and what makes an OBJ or a stream of it.
 pub(crate) fn refuse(path: &Path, bytes: &[u8]) -> Result<()> {
     let name = path.display();
     if [b"\xFF\xFE", b"\xFE\xFF"].iter().any(|mark| bytes.starts_with(*mark)) {
         bail!("{name}: text in UTF-16; save it as UTF-8 or ASCII");
     }
     if let Some(format) = by_content(bytes).or_else(|| by_ending(path)) {
+        if CONVERTED.contains(&format) {
+            bail!("{name}: a mesh in the format {format}; run\n  microphong convert {name} -o {}", path.with_extension("tri").display());
+        }
         let obj = path.with_extension("obj");
         let obj = if obj == path { path.with_extension("new.obj") } else { obj };
         bail!(
-            "{name}: a mesh in the format {format}; OBJ or STL is needed: export it as OBJ, for example with Blender, or run\n  assimp export {name} {}",
+            "{name}: a mesh in the format {format}; OBJ, glTF, STL or PLY is needed: export it as OBJ, for example with Blender, or run\n  assimp export {name} {}",
             obj.display()
         );
     }

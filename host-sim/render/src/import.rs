@@ -1,15 +1,16 @@
 //! Reads a mesh and its materials from files.
 
 use crate::{
-    foreign,
+    foreign, gltf,
     look::Surface,
-    mesh::{self, Mesh, Report, Weld},
+    mesh::{self, Mesh, Report, Soup, Weld},
     mtl,
     obj::{self, Obj},
+    ply::{self, Ply},
     stl,
 };
 use anyhow::{Context, Result};
-use std::{fs, path::Path};
+use std::{collections::BTreeSet, fs, path::Path};
 
 /// A mesh from a file.
 #[derive(Clone, Debug)]
@@ -30,21 +31,51 @@ pub fn surfaces(materials: &[Option<mtl::Material>], other: &Surface, ambient_li
     materials.iter().map(|material| material.as_ref().map_or(*other, |material| material.surface(ambient_light))).collect()
 }
 
-/// Reads and welds an OBJ file with the files of its materials beside it, or an STL file.
+/// What a file of any format holds.
+#[derive(Default)]
+struct Contents {
+    soup: Soup,
+    materials: Vec<Option<mtl::Material>>,
+    ignored: BTreeSet<&'static str>,
+    remarks: Vec<String>,
+}
+
+/// Reads and welds an OBJ file with the files of its materials beside it, a glTF file with the buffers beside it, an STL or a PLY file.
 ///
 /// # Errors
-/// Names the file and the line.
+/// Names the file and the place in it.
 pub fn file(path: &Path, weld: Weld) -> Result<Imported> {
     let place = || path.display().to_string();
-    let bytes = read(path)?;
-    foreign::refuse(path, &bytes)?;
-    let obj = if stl::is_stl(&bytes) {
-        stl::parse(&bytes).map(|soup| Obj { soup, materials: vec![None], ..Obj::default() })
-    } else {
-        obj::parse(&String::from_utf8_lossy(&bytes))
-    };
-    let Obj { soup, materials: names, libraries, mut ignored } = obj.with_context(place)?;
+    let Contents { soup, materials, ignored, mut remarks } = contents(path, &read(path)?)?;
     let (mesh, report) = mesh::weld(&soup, weld).with_context(place)?;
+    if !ignored.is_empty() {
+        remarks.push(format!("left out: {}", ignored.into_iter().collect::<Vec<_>>().join(", ")));
+    }
+    Ok(Imported { mesh, report, materials, remarks })
+}
+
+/// Chooses the reader by how the file begins, or where that says nothing, by the ending of its name.
+fn contents(path: &Path, bytes: &[u8]) -> Result<Contents> {
+    let place = || path.display().to_string();
+    let ends = |ending| path.extension().is_some_and(|e| e.eq_ignore_ascii_case(ending));
+    let plain = Contents { materials: vec![None], ..Contents::default() };
+    if ply::is_ply(bytes) || ends("ply") {
+        let Ply { soup, ignored } = ply::parse(bytes).with_context(place)?;
+        return Ok(Contents { soup, ignored, ..plain });
+    }
+    if gltf::is_gltf(bytes) || ends("gltf") || ends("glb") {
+        let gltf::Scene { soup, materials, ignored } = gltf::parse(bytes, path).with_context(place)?;
+        return Ok(Contents { soup, materials, ignored, ..plain });
+    }
+    foreign::refuse(path, bytes)?;
+    if stl::is_stl(bytes) {
+        return Ok(Contents { soup: stl::parse(bytes).with_context(place)?, ..plain });
+    }
+    with_libraries(path, obj::parse(&String::from_utf8_lossy(bytes)).with_context(place)?)
+}
+
+/// An OBJ file with the materials of the files that it names.
+fn with_libraries(path: &Path, Obj { soup, materials: names, libraries, mut ignored }: Obj) -> Result<Contents> {
     let (mut known, mut remarks) = (Vec::new(), Vec::new());
     if names.iter().any(Option::is_some) {
         for library in libraries {
@@ -70,10 +101,7 @@ pub fn file(path: &Path, weld: Weld) -> Result<Imported> {
     if !unknown.is_empty() {
         remarks.push(format!("drawn in the colour of the command line, because no file says what they are: {}", unknown.join(", ")));
     }
-    if !ignored.is_empty() {
-        remarks.push(format!("left out: {}", ignored.into_iter().collect::<Vec<_>>().join(", ")));
-    }
-    Ok(Imported { mesh, report, materials, remarks })
+    Ok(Contents { soup, materials, ignored, remarks })
 }
 
 pub(crate) fn read(path: &Path) -> Result<Vec<u8>> {

@@ -1,4 +1,4 @@
-//! Levels of detail: coarser triangles on the vertices of a mesh.
+//! Levels of detail: coarser triangles on the vertices of a mesh, in addition or in its place.
 //!
 //! Edges are collapsed by a port of meshoptimizer, which moves no vertex: a level costs flash for its triangles alone. What the library says
 //! of its error is an estimate; the error that a stream has is measured here, between the rounded surfaces.
@@ -10,7 +10,7 @@ use crate::{
     number::above,
     quantise::{self, Part},
 };
-use anyhow::{Result, anyhow};
+use anyhow::{Result, anyhow, bail};
 use embedded_graphics_core::geometry::Size;
 use meshoptimizer_rs::{Attributes, Positions, SimplifyOptions, SimplifySettings, Workspace, simplify_with_attributes};
 use microphong::{
@@ -85,6 +85,81 @@ fn fewest(part: &Part, most: usize, error: GeometricError, options: SimplifyOpti
         found = Some((triangles, above(apart)));
     }
     Ok(found)
+}
+
+/// How a mesh was simplified.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Simplified {
+    /// Triangles before.
+    pub before: usize,
+    /// No point of either surface lies farther from the other.
+    pub error: f64,
+}
+
+/// Smaller distances do not count: a tenth of a step of positions.
+const NEAREST: f64 = 0.1 / 16384.0;
+
+/// Makes the parts of a mesh of `most` triangles together or fewer, on some of their vertices; the others are dropped. `None` if they have no
+/// more anyway. `tick` is called after each part.
+///
+/// # Errors
+/// When the mesh cannot be made of so few.
+pub fn simplify(mesh: &Mesh, parts: &mut [Part], most: usize, tick: &dyn Fn()) -> Result<Option<Simplified>> {
+    let before: usize = parts.iter().map(|part| part.triangles.len()).sum();
+    if before <= most {
+        return Ok(None);
+    }
+    // As for levels: borders stay without gaps.
+    let options = if parts.len() > 1 { SimplifyOptions::LOCK_BORDER } else { SimplifyOptions::EMPTY };
+    let mut apart: f64 = 0.0;
+    for part in &mut *parts {
+        // Each part has its share, which may be less than it can be made of.
+        let share = (part.triangles.len() as u64 * most as u64 / before as u64) as usize;
+        let triangles: Vec<_> =
+            simplified(part, share, options)?.into_iter().filter_map(|corners| quantise::record(&part.vertices, corners)).collect();
+        if !triangles.is_empty() {
+            let error =
+                hausdorff(&corners(&part.vertices, &part.triangles), &corners(&part.vertices, &triangles), [NEAREST, f64::INFINITY]);
+            apart = apart.max(error.unwrap_or(f64::INFINITY));
+        }
+        part.closed_convex = is_convex(mesh, part, &triangles);
+        part.triangles = triangles;
+        drop_unused(part);
+        tick();
+    }
+    let after: usize = parts.iter().map(|part| part.triangles.len()).sum();
+    if after > most {
+        let borders = if parts.len() > 1 {
+            ", because borders between materials stay as they are; give more, or one --colour"
+        } else {
+            "; give more"
+        };
+        bail!("the mesh cannot be made of {most} triangles, but of {after}{borders}");
+    }
+    if parts.iter().any(|part| part.triangles.is_empty()) {
+        bail!("of {most} triangles nothing is left of a mesh of {before}, or of one of its materials; give more");
+    }
+    Ok(Some(Simplified { before, error: apart }))
+}
+
+/// Drops vertices that no triangle has; the others keep their order.
+fn drop_unused(part: &mut Part) {
+    let mut used = vec![false; part.vertices.len()];
+    part.triangles.iter().flat_map(|triangle| triangle.corners).for_each(|corner| used[usize::from(corner)] = true);
+    // A vertex's new number is how many before it are kept; all are numbers of 16 bits.
+    let numbers: Vec<u16> = used
+        .iter()
+        .scan(0, |kept, &used| {
+            let number = *kept;
+            *kept += u16::from(used);
+            Some(number)
+        })
+        .collect();
+    part.triangles.iter_mut().for_each(|triangle| triangle.corners = triangle.corners.map(|corner| numbers[usize::from(corner)]));
+    let mut keep = used.iter();
+    part.vertices.retain(|_| keep.next() == Some(&true));
+    let mut keep = used.iter();
+    part.sources.retain(|_| keep.next() == Some(&true));
 }
 
 /// The meshes of a stream, each at the level that a picture of `size` pixels shows.

@@ -39,7 +39,7 @@ const DIFFUSE: V3 = [0.6; 3];
 /// Of highlights that do not say how sharp they are.
 const EXPONENT: f64 = 30.0;
 /// The largest exponent of a stream.
-const SHARPEST: f64 = 1024.0;
+pub(crate) const SHARPEST: f64 = 1024.0;
 
 impl Material {
     /// As a stream has it, under so much ambient light.

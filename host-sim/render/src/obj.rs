@@ -7,7 +7,7 @@ use anyhow::{Context, Result, bail};
 use std::collections::BTreeSet;
 
 /// Larger coordinates would overflow when squared.
-const LARGEST: f64 = 1e100;
+pub(crate) const LARGEST: f64 = 1e100;
 
 /// What an OBJ file holds.
 #[derive(Clone, Debug, Default)]

@@ -5,7 +5,7 @@ use anyhow::{Context, Result};
 use embedded_graphics_core::pixelcolor::Rgb565;
 use microphong::{
     Layout,
-    format::{ErrorBudget, MAX_LIGHTS},
+    format::{ErrorBudget, GeometricError, MAX_LIGHTS},
 };
 use microphong_sim::{
     import::{self, Imported},
@@ -16,19 +16,20 @@ use microphong_sim::{
     quantise::{Part, quantise},
     scene::{AMBIENT, COPPER, DISTANCE, MARGIN, ORBIT},
     shader::Shader,
-    vector::V3,
+    vector::{V3, add},
     view::{Projection, Up, View},
 };
 use serde::Serialize;
 use std::path::PathBuf;
 
-/// Convert a mesh, Wavefront OBJ or STL, to a stream for a board's flash.
+/// Convert a mesh, Wavefront OBJ, glTF 2.0, STL or PLY, to a stream for a board's flash.
 ///
 /// Normals come from the file when every corner has one, else from the
 /// polygons around each vertex: light is smooth within the file's smoothing groups, or where it has
 /// none, over edges that fold by no more than --crease. Polygons, concave ones as well, are cut into
-/// triangles. Materials come from the .mtl file beside the mesh (Kd, Ks, Ka, Ns); each becomes a mesh of
-/// the stream. What of the files is left out is said.
+/// triangles. Materials come from the .mtl file beside the mesh (Kd, Ks, Ka, Ns), or from the .gltf or .glb
+/// file (base colour, metallic and roughness); each becomes a mesh of the stream. Of glTF the default scene
+/// is taken as its nodes put it. What of the files is left out is said.
 /// The mesh is centred and scaled to a sphere of radius 1. One closed convex mesh is marked as
 /// such: it is drawn without depth, and looks the same.
 #[derive(clap::Args)]
@@ -69,9 +70,10 @@ pub(crate) struct Arguments {
     /// Sharpness of the highlight where the file has no material, 1 to 1024.
     #[arg(long, default_value = "30", value_parser = clap::value_parser!(u16).range(1..=1024))]
     exponent: u16,
-    /// A light, in the direction X to the right, Y up and Z to the eye, white unless a colour is given; up to eight, each by a --light of its
-    /// own. One from the upper left unless given.
-    #[arg(long = "light", value_name = "X,Y,Z[:RRGGBB]", value_parser = parse::light, allow_hyphen_values = true)]
+    /// A light, in the direction X to the right, Y up and Z to the eye, white unless a colour is given; with at: before it a near light, at
+    /// that place from the centre of the mesh, whose radius is 1: dearer. Up to eight, each by a --light of its own. One from the upper left
+    /// unless given.
+    #[arg(long = "light", value_name = "[at:]X,Y,Z[:RRGGBB]", value_parser = parse::light, allow_hyphen_values = true)]
     lights: Vec<Lamp>,
     /// White highlights, as on plastic, instead of coloured ones, as on metal.
     #[arg(long)]
@@ -97,6 +99,10 @@ pub(crate) struct Arguments {
     /// Picture for which the camera is set up; others show the same with more border.
     #[arg(long, value_name = "WxH", default_value = "640x480", value_parser = parse::size)]
     size: (u32, u32),
+    /// Make the mesh of so many triangles at most, on some of its vertices, and say how far it lies from the mesh of the file. Levels of --lod
+    /// count from what is left.
+    #[arg(long, value_name = "TRIANGLES", value_parser = clap::value_parser!(u32).range(1..))]
+    simplify: Option<u32>,
     /// Pictures that get a level of detail: as few triangles as lie less than half a pixel from the mesh there. A picture shows the coarsest
     /// level that does so. Each takes flash for its triangles, 30 bytes; one that would save less than a tenth of them is left out.
     #[arg(long, value_name = "WxH,...", value_delimiter = ',', value_parser = parse::size)]
@@ -110,8 +116,10 @@ const EXAMPLES: &str = "\
 Examples:
   microphong convert teapot.obj -o teapot.tri
   microphong convert bunny.obj --lod 240x240,128x128
+  microphong convert scan.ply --simplify 2000
   microphong convert part.obj --up z --colour 4080ff --plastic --exponent 60 --orbit 240
-  microphong convert car.obj --light -0.5,0.6,0.7:fff0d8 --light 1,0.1,0.2:304060";
+  microphong convert car.obj --light -0.5,0.6,0.7:fff0d8 --light 1,0.1,0.2:304060
+  microphong convert toy.glb --light at:-1,1,2:fff0d8";
 
 #[derive(Serialize)]
 struct Line<'a> {
@@ -127,11 +135,22 @@ struct Line<'a> {
     own_normals: bool,
     turned: bool,
     closed_convex: bool,
+    simplified: Option<Simplified>,
     levels: Vec<Level>,
     bytes: usize,
     layout: String,
     memory: usize,
     remarks: Vec<String>,
+}
+
+/// What has become of the mesh of the file.
+#[derive(Serialize)]
+struct Simplified {
+    before: usize,
+    error: f64,
+    /// The same in a picture of this size, at most.
+    pixels: f64,
+    size: (u32, u32),
 }
 
 /// A coarser level of a mesh.
@@ -145,7 +164,7 @@ struct Level {
 pub(crate) fn run(arguments: &Arguments) -> Result<Outcome> {
     let source = &arguments.mesh;
     if source.extension().is_some_and(|e| e.eq_ignore_ascii_case("tri")) {
-        return Err(Usage(format!("{} is a stream already; name an .obj or .stl file", source.display())).into());
+        return Err(Usage(format!("{} is a stream already; name an .obj, .stl, .ply, .gltf or .glb file", source.display())).into());
     }
     if arguments.lights.len() > MAX_LIGHTS {
         return Err(Usage(format!("{} times --light; a scene has {MAX_LIGHTS} lights at most", arguments.lights.len())).into());
@@ -174,7 +193,19 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome> {
         shader: arguments.shader,
         ..Look::new(of_arguments, view.fit(&mesh.positions, arguments.size, MARGIN))
     };
-    let look = if arguments.lights.is_empty() { look } else { Look { lamps: arguments.lights.clone(), ..look } };
+    let look = if arguments.lights.is_empty() { look } else { Look { lamps: placed(&arguments.lights, &look.view), ..look } };
+    let simplified = match arguments.simplify.map(|most| most as usize) {
+        None => None,
+        Some(most) => {
+            let bar = report::progress(parts.len() as u64, "simplifying");
+            let simplified = levels::simplify(&mesh, &mut parts, most, &|| bar.inc(1)).with_context(place)?;
+            bar.finish_and_clear();
+            if simplified.is_none() {
+                remarks.push(format!("not simplified: it has no more than {} triangles", report::grouped(most as u64)));
+            }
+            simplified.map(|simplified| in_pixels(simplified, &look, &parts, &arguments.lod))
+        }
+    };
     let errors: Vec<_> = arguments.lod.iter().map(|&size| look.tolerance(&parts, size)).collect();
     // The stream is a step as well, so that a single level has a bar.
     let bar = report::progress((parts.len() * errors.len()) as u64 + 1, "searching levels of detail");
@@ -197,6 +228,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome> {
         own_normals: report.own_normals,
         turned: report.turned,
         closed_convex: parts.iter().all(|part| part.closed_convex),
+        simplified,
         levels: parts.iter().enumerate().flat_map(|(mesh, part)| part.coarser.iter().map(move |level| of(mesh, level))).collect(),
         bytes: bytes.as_bytes().len(),
         layout: text_of(&layout),
@@ -209,6 +241,26 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome> {
         text(&line)?;
     }
     Ok(Outcome::Done)
+}
+
+/// Near lights, which count from the centre of the mesh, where the camera sees them.
+fn placed(lights: &[Lamp], view: &View) -> Vec<Lamp> {
+    let place = |&lamp: &Lamp| match lamp {
+        Lamp::Near(position, colour) => Lamp::Near(add(position, view.translation), colour),
+        Lamp::Distant(..) => lamp,
+    };
+    lights.iter().map(place).collect()
+}
+
+/// Of a small display, where no other picture is named.
+const USUAL: (u32, u32) = (240, 240);
+
+/// The error of a simplified mesh in the largest picture that `--lod` names.
+fn in_pixels(levels::Simplified { before, error }: levels::Simplified, look: &Look, parts: &[Part], pictures: &[(u32, u32)]) -> Simplified {
+    let size = pictures.iter().copied().max_by_key(|&(width, height)| u64::from(width) * u64::from(height)).unwrap_or(USUAL);
+    // That which half a pixel is at the nearest point of the mesh. It is never more than that, so that these pixels are never too few.
+    let half: f64 = look.tolerance(parts, size).max(GeometricError::DELTA).into();
+    Simplified { before, error, pixels: 0.5 * error / half, size }
 }
 
 /// Rows of a band, where nobody says how many.
@@ -259,6 +311,12 @@ fn text(line: &Line<'_>) -> Result<()> {
     }
     for remark in &line.remarks {
         report::line(&format!("  {remark}"))?;
+    }
+    if let Some(Simplified { before, error, pixels, size: (width, height) }) = line.simplified {
+        let before = count(before);
+        report::line(&format!(
+            "  simplified from {before} triangles, {error:.4} from the mesh at most, {pixels:.1} pixels in a picture of {width}x{height}"
+        ))?;
     }
     for Level { triangles, error, .. } in &line.levels {
         report::line(&format!("  a level of {} triangles, less than {error:.4} from the mesh", count(*triangles)))?;

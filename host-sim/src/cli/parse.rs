@@ -94,16 +94,31 @@ pub(crate) fn crease(text: &str) -> Result<f64, String> {
     text.parse().ok().filter(|angle| (0.0..=180.0).contains(angle)).ok_or_else(|| "a number of degrees from 0 to 180 is needed".to_owned())
 }
 
-/// `X,Y,Z` or `X,Y,Z:RRGGBB`: x to the right, y up and z to the eye, white unless a colour is given.
+/// Farthest coordinate of a near light, in radii of the mesh; farther ones do not fit a stream with every camera.
+const FARTHEST_LIGHT: f64 = 8.0;
+
+/// `X,Y,Z` or `X,Y,Z:RRGGBB`, a direction, or with `at:` before it a position: x to the right, y up and z to the eye, white unless a colour is
+/// given. Positions count from the centre of the mesh.
 pub(crate) fn light(text: &str) -> Result<Lamp, String> {
-    let (direction, given) = text.split_once(':').map_or((text, None), |(direction, given)| (direction, Some(given)));
-    let numbers: Option<Vec<f64>> = direction.split(',').map(|number| number.trim().parse().ok().filter(|n: &f64| n.is_finite())).collect();
-    let [x, y, z] = numbers
-        .and_then(|numbers| numbers.try_into().ok())
-        .ok_or("three numbers are needed, as -0.5,0.6,0.7, and a colour behind a colon if it is not white")?;
+    let (is_near, rest) = text.strip_prefix("at:").map_or((false, text), |rest| (true, rest));
+    let (vector, given) = rest.split_once(':').map_or((rest, None), |(vector, given)| (vector, Some(given)));
+    let numbers: Option<Vec<f64>> = vector.split(',').map(|number| number.trim().parse().ok().filter(|n: &f64| n.is_finite())).collect();
+    let [x, y, z] = numbers.and_then(|numbers| numbers.try_into().ok()).ok_or(
+        "three numbers are needed, as -0.5,0.6,0.7, or at:-0.5,0.6,1.7 for a near light, and a colour behind a colon if it is not white",
+    )?;
     // In eye space z runs away from the eye.
-    let towards = unit([x, y, -z]).ok_or("a direction is needed, 0,0,0 is none")?;
-    Ok(Lamp::Distant(towards, given.map_or(Ok([1.0; 3]), colour)?))
+    let vector = [x, y, -z];
+    let colour = given.map_or(Ok([1.0; 3]), colour)?;
+    if is_near {
+        if vector.iter().any(|c| c.abs() > FARTHEST_LIGHT) {
+            return Err(format!(
+                "a near light has coordinates from -{FARTHEST_LIGHT} to {FARTHEST_LIGHT}; take a direction for a farther one"
+            ));
+        }
+        return Ok(Lamp::Near(vector, colour));
+    }
+    let towards = unit(vector).ok_or("a direction is needed, 0,0,0 is none")?;
+    Ok(Lamp::Distant(towards, colour))
 }
 
 /// `perspective` or `parallel`.

@@ -1,0 +1,64 @@
+//! Materials of metallic-roughness models to those of Blinn and Phong.
+//!
+//! The mirrored colour is that of the glTF 2.0 specification, appendix B: 0.04 mixed to the base colour by how metallic it is. The exponent
+//! is that of the Blinn-Phong distribution that comes nearest to the model's: 2 / alpha² - 2, where alpha is the square of the roughness
+//! (Walter et al. 2007; Karis 2013, "Specular BRDF Reference"). It departs from the specification where a picture without surroundings
+//! must: metals, which reflect nothing evenly there, keep half of their colour in the place of the surroundings that they would mirror.
+//!
+//! Colours of glTF are linear; those of a stream are added up as a display takes them, so that they are encoded as sRGB (IEC 61966-2-1).
+
+use crate::{
+    mtl::{Material, SHARPEST},
+    vector::{V3, add, scale},
+};
+
+/// What dielectrics mirror of light that falls straight on them.
+const DIELECTRIC: f64 = 0.04;
+/// Share of the evenly reflected light that metals keep.
+const KEPT: f64 = 0.5;
+
+/// The material nearest to a base colour, linear, with these shares.
+pub(crate) fn material(name: String, [red, green, blue, _]: [f32; 4], metallic: f32, roughness: f32) -> Material {
+    let base = [red, green, blue].map(|c| f64::from(c).clamp(0.0, 1.0));
+    let metallic = f64::from(metallic).clamp(0.0, 1.0);
+    let mirrored = add(scale([DIELECTRIC; 3], 1.0 - metallic), scale(base, metallic));
+    Material {
+        name,
+        ambient: None,
+        diffuse: Some(scale(encoded(base), 1.0 - (1.0 - KEPT) * metallic)),
+        specular: Some(encoded(mirrored)),
+        exponent: Some(exponent(roughness.into())),
+    }
+}
+
+/// Of the highlight of a surface so rough.
+fn exponent(roughness: f64) -> f64 {
+    let alpha = roughness.clamp(0.0, 1.0).powi(2);
+    (2.0 / (alpha * alpha).max(f64::MIN_POSITIVE) - 2.0).clamp(1.0, SHARPEST)
+}
+
+/// Linear light as sRGB has it.
+fn encoded(linear: V3) -> V3 {
+    linear.map(|c| if c <= 0.003_130_8 { 12.92 * c } else { 1.055 * c.powf(1.0 / 2.4) - 0.055 })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn exponents_follow_the_roughness() {
+        for (roughness, expected) in [(1.0, 1.0), (0.5, 30.0), (0.25, 510.0), (0.1, 1024.0), (0.0, 1024.0)] {
+            assert_eq!(exponent(roughness), expected);
+        }
+    }
+
+    #[test]
+    fn metals_have_coloured_highlights_and_others_white_ones() {
+        let near = |a: Option<V3>, b: V3| a.is_some_and(|a| a.iter().zip(b).all(|(a, b)| (a - b).abs() < 1e-3));
+        let copper = material(String::new(), [1.0, 0.214_041, 0.0, 1.0], 1.0, 0.5);
+        assert!(near(copper.diffuse, [0.5, 0.25, 0.0]) && near(copper.specular, [1.0, 0.5, 0.0]), "{copper:?}");
+        let paint = material(String::new(), [1.0, 0.214_041, 0.0, 1.0], 0.0, 0.5);
+        assert!(near(paint.diffuse, [1.0, 0.5, 0.0]) && near(paint.specular, [0.221; 3]), "{paint:?}");
+    }
+}

@@ -1,0 +1,326 @@
+//! Reads PLY, text and binary, by the library `ply-rs-bw`: positions, normals and polygons; tells what else there is.
+
+use crate::{
+    mesh::{Corner, Face, Smoothing, Soup},
+    obj::LARGEST,
+};
+use anyhow::{Context, Result, anyhow, bail};
+use ply_rs_bw::{
+    parser::{ParseError, Parser, Reader},
+    ply::{ElementDef, Encoding, Header, Property, PropertyAccess, PropertyAccessResult},
+};
+use std::collections::BTreeSet;
+
+/// What a PLY file holds.
+#[derive(Clone, Debug, Default)]
+pub struct Ply {
+    /// Its polygons.
+    pub soup: Soup,
+    /// What the file has besides, in words.
+    pub ignored: BTreeSet<&'static str>,
+}
+
+/// Whether a file is PLY.
+pub(crate) fn is_ply(bytes: &[u8]) -> bool {
+    [&b"ply\n"[..], b"ply\r"].iter().any(|start| bytes.starts_with(start))
+}
+
+/// Reads the polygons of a file, with a normal at each vertex if the file has one there.
+///
+/// # Errors
+/// Names the line, the vertex or the face, and what is wrong with it.
+pub fn parse(bytes: &[u8]) -> Result<Ply> {
+    let mut reader = Reader::new(bytes);
+    let header = Parser::<Skipped>::new().read_header(&mut reader).map_err(|error| plain(&error, true))?;
+    let mut ply = Ply { ignored: ignored(&header), ..Ply::default() };
+    let (mut vertices, mut faces) = (Vec::new(), Vec::new());
+    let mut with_normals = false;
+    for (name, element) in &header.elements {
+        match name.as_str() {
+            "vertex" => {
+                if let Some(axis) = AXES.iter().find(|axis| !element.properties.contains_key(**axis)) {
+                    bail!("PLY: vertices have no property {axis}; export them with x, y and z");
+                }
+                with_normals = NORMALS.iter().all(|axis| element.properties.contains_key(*axis));
+                vertices = elements::<Vertex>(&mut reader, element, &header)?;
+            }
+            "face" => {
+                if !CORNERS.iter().any(|list| element.properties.contains_key(*list)) {
+                    bail!("PLY: faces have no property {}; export them with lists of vertices", CORNERS.join(" or "));
+                }
+                faces = elements::<Corners>(&mut reader, element, &header)?;
+            }
+            _ => drop(elements::<Skipped>(&mut reader, element, &header)?),
+        }
+    }
+    for (number, vertex) in (1..).zip(&vertices) {
+        if vertex.position.iter().any(|c| !c.is_finite() || c.abs() > LARGEST) {
+            bail!("PLY, vertex {number}: coordinates must be finite and below {LARGEST:e}");
+        }
+        if with_normals && vertex.normal.iter().any(|c| !c.is_finite() || c.abs() > LARGEST) {
+            bail!("PLY, vertex {number}: its normal must be finite");
+        }
+    }
+    for (number, Corners(corners)) in (1..).zip(faces) {
+        if corners.len() < 3 {
+            bail!("PLY, face {number}: {} corners; three at least are needed", corners.len());
+        }
+        let corner = |index: i64| {
+            let position = usize::try_from(index).ok().filter(|&index| index < vertices.len());
+            let range =
+                || format!("PLY, face {number}: vertex {index} is out of range; they count from 0, and the file has {}", vertices.len());
+            position.with_context(range).map(|position| Corner { position, normal: with_normals.then_some(position) })
+        };
+        let corners = corners.into_iter().map(corner).collect::<Result<_>>()?;
+        ply.soup.faces.push(Face { corners, material: 0, smoothing: Smoothing::ByAngle });
+    }
+    ply.soup.positions = vertices.iter().map(|vertex| vertex.position).collect();
+    if with_normals {
+        ply.soup.normals = vertices.iter().map(|vertex| vertex.normal).collect();
+    }
+    Ok(ply)
+}
+
+const AXES: [&str; 3] = ["x", "y", "z"];
+const NORMALS: [&str; 3] = ["nx", "ny", "nz"];
+/// Both names of the list of a face's corners are usual.
+const CORNERS: [&str; 2] = ["vertex_indices", "vertex_index"];
+
+/// What a header announces and nobody reads.
+fn ignored(header: &Header) -> BTreeSet<&'static str> {
+    let elements = header.elements.iter().filter(|(_, element)| element.count > 0);
+    let whole = elements.clone().filter_map(|(name, _)| match name.as_str() {
+        "edge" => Some("lines and points"),
+        "tristrips" => Some("strips of triangles"),
+        _ => None,
+    });
+    let properties = elements.flat_map(|(name, element)| element.properties.keys().map(move |property| (name, property)));
+    let parts = properties.filter_map(|(name, property)| match (name.as_str(), property.trim_start_matches("diffuse_")) {
+        ("vertex", "red" | "green" | "blue" | "alpha" | "r" | "g" | "b") => Some("colours of vertices"),
+        ("face", "red" | "green" | "blue" | "alpha") => Some("colours of faces"),
+        ("vertex", "s" | "t" | "u" | "v" | "texture_u" | "texture_v") | ("face", "texcoord") => Some("texture coordinates"),
+        _ => None,
+    });
+    whole.chain(parts).collect()
+}
+
+/// All elements of a kind, which stand behind those that have been read.
+fn elements<E: PropertyAccess>(reader: &mut Reader<&[u8]>, element: &ElementDef, header: &Header) -> Result<Vec<E>> {
+    let is_text = header.encoding == Encoding::Ascii;
+    // They take no bytes, so that no end of the file would end them, however many the header says there are.
+    if element.properties.is_empty() && !is_text {
+        return Ok(Vec::new());
+    }
+    Parser::new().read_payload_for_element(reader, element, header).map_err(|error| plain(&error, is_text))
+}
+
+/// An error of the library in one line, without the file's own text, which may be long. Only text has lines.
+fn plain(error: &ParseError, is_text: bool) -> anyhow::Error {
+    let text = error.to_string();
+    let (line, message) = text
+        .strip_prefix("Line ")
+        .and_then(|rest| rest.split_once(": "))
+        .map_or((None, &text[..]), |(line, message)| (Some(line), message));
+    let what = message.lines().next().unwrap_or_default().trim_end_matches('.');
+    // What it was that could not be read stands last.
+    let why = message.lines().rev().find_map(|line| line.trim().strip_prefix("Error: ")).filter(|_| is_text);
+    let why = why.map(|why| why.chars().take(LONGEST).collect::<String>()).map_or(String::new(), |why| format!(": {why}"));
+    match line.filter(|_| is_text) {
+        Some(line) => anyhow!("PLY, line {line}: {what}{why}"),
+        None => anyhow!("PLY: {what}{why}"),
+    }
+}
+
+/// Characters of what a library says.
+const LONGEST: usize = 120;
+
+/// A number of whatever type; `None` for a list.
+fn number(property: &Property) -> Option<f64> {
+    match *property {
+        Property::Char(n) => Some(n.into()),
+        Property::UChar(n) => Some(n.into()),
+        Property::Short(n) => Some(n.into()),
+        Property::UShort(n) => Some(n.into()),
+        Property::Int(n) => Some(n.into()),
+        Property::UInt(n) => Some(n.into()),
+        Property::Float(n) => Some(n.into()),
+        Property::Double(n) => Some(n),
+        _ => None,
+    }
+}
+
+/// Whole numbers of whatever type; `None` for all else.
+fn whole_numbers(property: Property) -> Option<Vec<i64>> {
+    fn wide<N: Into<i64>>(list: Vec<N>) -> Vec<i64> {
+        list.into_iter().map(Into::into).collect()
+    }
+    match property {
+        Property::ListChar(list) => Some(wide(list)),
+        Property::ListUChar(list) => Some(wide(list)),
+        Property::ListShort(list) => Some(wide(list)),
+        Property::ListUShort(list) => Some(wide(list)),
+        Property::ListInt(list) => Some(wide(list)),
+        Property::ListUInt(list) => Some(wide(list)),
+        _ => None,
+    }
+}
+
+#[derive(Default)]
+struct Vertex {
+    position: [f64; 3],
+    normal: [f64; 3],
+}
+
+impl PropertyAccess for Vertex {
+    fn new() -> Self {
+        Self::default()
+    }
+
+    fn set_property(&mut self, name: &str, property: Property) -> PropertyAccessResult {
+        let axis = |names: [&str; 3]| names.iter().position(|&axis| axis == name);
+        let component = match (axis(AXES), axis(NORMALS)) {
+            (Some(axis), _) => &mut self.position[axis],
+            (_, Some(axis)) => &mut self.normal[axis],
+            _ => return PropertyAccessResult::Ignored,
+        };
+        let Some(number) = number(&property) else { return PropertyAccessResult::UnsupportedType };
+        *component = number;
+        PropertyAccessResult::Set
+    }
+}
+
+#[derive(Default)]
+struct Corners(Vec<i64>);
+
+impl PropertyAccess for Corners {
+    fn new() -> Self {
+        Self::default()
+    }
+
+    fn set_property(&mut self, name: &str, property: Property) -> PropertyAccessResult {
+        if !CORNERS.contains(&name) {
+            return PropertyAccessResult::Ignored;
+        }
+        let Some(corners) = whole_numbers(property) else { return PropertyAccessResult::UnsupportedType };
+        self.0 = corners;
+        PropertyAccessResult::Set
+    }
+}
+
+/// An element of which nothing is kept.
+struct Skipped;
+
+impl PropertyAccess for Skipped {
+    fn new() -> Self {
+        Self
+    }
+
+    fn set_property(&mut self, _: &str, _: Property) -> PropertyAccessResult {
+        PropertyAccessResult::Ignored
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    const HEAD: &str = "element vertex 3\nproperty float x\nproperty double y\nproperty short z\nproperty uchar red\nproperty list uchar float s\nelement edge 1\nproperty int vertex1\nelement face 1\nproperty list uchar uint vertex_index\nproperty uchar flags\nend_header\n";
+
+    fn text() -> Vec<u8> {
+        format!("ply\r\nformat ascii 1.0\ncomment of a modeller\n{HEAD}0 0.5 0 9 0\n1 0 -2 9 1 0.5\n0 1e0 0 9 0\n7\n3 0 1 2 4\n").into()
+    }
+
+    /// The same, whatever the order of its bytes.
+    fn binary(big: bool) -> Vec<u8> {
+        let mut bytes = format!("ply\nformat binary_{}_endian 1.0\n{HEAD}", if big { "big" } else { "little" }).into_bytes();
+        let mut push = |number: &[u8]| if big { bytes.extend(number.iter().rev()) } else { bytes.extend(number) };
+        for (x, y, z, s) in [(0f32, 0.5f64, 0i16, None), (1.0, 0.0, -2, Some(0.5f32)), (0.0, 1.0, 0, None)] {
+            push(&x.to_le_bytes());
+            push(&y.to_le_bytes());
+            push(&z.to_le_bytes());
+            push(&[9]);
+            push(&[s.is_some().into()]);
+            s.iter().for_each(|s| push(&s.to_le_bytes()));
+        }
+        push(&7i32.to_le_bytes());
+        push(&[3]);
+        [0u32, 1, 2].iter().for_each(|corner| push(&corner.to_le_bytes()));
+        push(&[4]);
+        bytes
+    }
+
+    #[test]
+    fn text_and_binary_are_the_same() {
+        for bytes in [text(), binary(false), binary(true)] {
+            assert!(is_ply(&bytes));
+            let Ply { soup, ignored } = parse(&bytes).unwrap();
+            assert_eq!(soup.positions, [[0.0, 0.5, 0.0], [1.0, 0.0, -2.0], [0.0, 1.0, 0.0]]);
+            assert_eq!(
+                soup.faces.iter().map(|face| face.corners.iter().map(|c| c.position).collect()).collect::<Vec<Vec<_>>>(),
+                [[0, 1, 2]]
+            );
+            assert!(soup.normals.is_empty());
+            assert_eq!(ignored.into_iter().collect::<Vec<_>>(), ["colours of vertices", "lines and points", "texture coordinates"]);
+        }
+    }
+
+    #[test]
+    fn errors_name_the_place() {
+        let file = |vertices: &str, faces: &str| {
+            let count = |lines: &str| lines.lines().count();
+            format!(
+                "ply\nformat ascii 1.0\nelement vertex {}\nproperty double x\nproperty double y\nproperty double z\nelement face {}\nproperty list uchar int vertex_indices\nend_header\n{vertices}{faces}",
+                count(vertices),
+                count(faces)
+            )
+        };
+        let three = "0 0 0\n1 0 0\n0 1 0\n";
+        for (text, wrong) in [
+            (file(three, "3 0 1 3\n"), "PLY, face 1: vertex 3 is out of range; they count from 0, and the file has 3"),
+            (file(three, "3 0 1 2\n3 0 1 -1\n"), "PLY, face 2: vertex -1 is out of range"),
+            (file(three, "2 0 1\n"), "PLY, face 1: 2 corners; three at least are needed"),
+            (file("0 0 0\n0 1e200 0\n", ""), "PLY, vertex 2: coordinates must be finite and below 1e100"),
+            (file("0 0 0\n0 1\n", ""), "PLY, line 11: Couldn't read element line"),
+            (file("0 0 0\n0 one 0\n", ""), "PLY, line 11: Couldn't read element line"),
+            (file(three, "3 0 1\n"), "PLY, line 13: Couldn't read element line: Expected 3 list elements, but found only 2"),
+            (
+                file(three, "3 0 1 2\n").replace("3 0 1 2\n", ""),
+                "PLY, line 13: Unexpected end of file while reading element 'face' (expected 1, got 0)",
+            ),
+            (file(three, "").replace("property double z\n", ""), "PLY: vertices have no property z; export them with x, y and z"),
+            (file(three, "").replace("vertex_indices", "corners"), "PLY: faces have no property vertex_indices or vertex_index"),
+            (file(three, "3 0 1 2\n").replace("uchar int", "uchar float"), "is unsupported"),
+            (file(three, "").replace("double x", "real x"), "PLY, line 4: Couldn't parse line"),
+            ("ply\nformat ascii 1.0\n".to_owned(), "PLY, line 3: Unexpected end of file while reading header (missing 'end_header')"),
+            ("ply\nelement vertex 0\nend_header\n".to_owned(), "PLY: No format line found"),
+        ] {
+            let error = format!("{:#}", parse(text.as_bytes()).unwrap_err());
+            assert!(error.contains(wrong) && !error.contains('\n'), "{error}");
+        }
+        let whole = binary(false);
+        let cut = format!("{:#}", parse(&whole[..whole.len() - 3]).unwrap_err());
+        assert_eq!(cut, "PLY: Unexpected end of file while reading binary element 'face' (expected 1, got 0)");
+    }
+
+    #[test]
+    fn numbers_in_the_header_are_not_believed() {
+        let endless = "ply\nformat binary_little_endian 1.0\nelement nothing 18446744073709551615\nelement vertex 0\nproperty float x\nproperty float y\nproperty float z\nend_header\n";
+        assert!(parse(endless.as_bytes()).unwrap().soup.faces.is_empty());
+        let many = endless.replace("vertex 0", "vertex 18446744073709551615");
+        assert!(format!("{:#}", parse(many.as_bytes()).unwrap_err()).contains("got 0"));
+    }
+
+    proptest! {
+        #[test]
+        fn any_bytes_may_come(bytes in prop::collection::vec(any::<u8>(), 0..200), format in 0..3usize, cut in 0..400usize, at in 0..400usize, byte in any::<u8>()) {
+            // An error is as good as a mesh.
+            let _ = parse(&[b"ply\n", &bytes[..]].concat());
+            let mut good = [text(), binary(false), binary(true)][format].clone();
+            let _ = parse(&good[..cut.min(good.len())]);
+            let at = at % good.len();
+            good[at] = byte;
+            let _ = parse(&good);
+        }
+    }
+}
