@@ -5,17 +5,17 @@ use embedded_graphics::{pixelcolor::BinaryColor, prelude::*, text::Text};
 use microphong::{Layout, Picture, RenderError, Renderer, Shader, Stats, Stream, include_stream};
 
 /// The whole picture in one band, and all of the teapot.
-pub const LAYOUT: Layout = Layout::new(128, 64).vertices(593).triangles(992);
+pub(crate) const LAYOUT: Layout = Layout::new(128, 64).vertices(593).triangles(992);
 /// White on black: no other colours look good on such a display.
-pub static MESH: &[u8] = include_stream!("../teapot.tri");
+pub(crate) static MESH: &[u8] = include_stream!("../teapot.tri");
 
 /// Triangles have a few pixels here: light that is linear in between is enough. Formats of one bit are dithered at first.
-pub fn renderer<'a>(stream: Stream<'a>, memory: &'a mut [u64]) -> Result<Renderer<'a, BinaryColor>, RenderError> {
+pub(crate) fn renderer<'a>(stream: Stream<'a>, memory: &'a mut [u64]) -> Result<Renderer<'a, BinaryColor>, RenderError> {
     Renderer::with_shader(stream, Size::new(128, 64), &LAYOUT, memory, Shader::GOURAUD)
 }
 
 /// With a label over it, drawn before a band is sent.
-pub fn picture<'r>(
+pub(crate) fn picture<'r>(
     renderer: &'r mut Renderer<'_, BinaryColor>,
     band: &'r mut [BinaryColor],
     number: u32,

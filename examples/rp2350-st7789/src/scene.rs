@@ -6,17 +6,16 @@ use embedded_graphics::{pixelcolor::Rgb565, prelude::*, text::Text};
 use microphong::{Layout, Picture, RenderError, Renderer, Shader, Stats, Stream, include_stream};
 
 /// Pictures 240 pixels wide, 40 rows at once, and all of the bunny.
-pub const LAYOUT: Layout = Layout::new(240, 40).vertices(1839).triangles(3674).active_triangles(128);
+pub(crate) const LAYOUT: Layout = Layout::new(240, 40).vertices(1839).triangles(3674).active_triangles(128);
 /// Read in place: the mesh stays in flash.
-pub static MESH: &[u8] = include_stream!("../bunny.tri");
+pub(crate) static MESH: &[u8] = include_stream!("../bunny.tri");
 
-pub fn renderer<'a>(stream: Stream<'a>, memory: &'a mut [u64]) -> Result<Renderer<'a, Rgb565>, RenderError> {
-    // The program has the code of the methods in this list and of no others.
+pub(crate) fn renderer<'a>(stream: Stream<'a>, memory: &'a mut [u64]) -> Result<Renderer<'a, Rgb565>, RenderError> {
     Renderer::new(stream, Size::new(240, 240), &LAYOUT, memory, &[Shader::AUTO])
 }
 
 /// With a text over it: frames a second, where they are known.
-pub fn picture<'r>(
+pub(crate) fn picture<'r>(
     renderer: &'r mut Renderer<'_, Rgb565>,
     band: &'r mut [Rgb565],
     number: u32,
