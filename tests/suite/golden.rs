@@ -23,7 +23,7 @@ use std::{
 /// The scene that every method draws: coarse enough to tell them apart.
 const ONE: &str = "sphere-168";
 
-fn root() -> &'static Path {
+pub(crate) fn root() -> &'static Path {
     Path::new(env!("CARGO_MANIFEST_DIR"))
 }
 
@@ -50,27 +50,32 @@ fn check(name: &str, shader: Shader, bless: bool) -> Option<String> {
 /// What is wrong with the picture of a scene that has this name, if anything.
 fn check_picture(name: &str, scene: &Scene, settings: &Settings, bless: bool) -> Option<String> {
     let drawn = render::picture(scene.stream.parse().expect("built-in scene"), settings, 0).expect("built-in scene").rgb;
-    let (Size { width, height }, file) = (settings.size, format!("{name}.png"));
-    let golden = root().join("golden").join(&file);
+    check_pixels(&root().join("golden").join(name).with_extension("png"), settings.size, &drawn, bless)
+}
+
+/// How the RGB bytes `drawn` differ from the recorded picture `golden`, if they do.
+pub(crate) fn check_pixels(golden: &Path, Size { width, height }: Size, drawn: &[u8], bless: bool) -> Option<String> {
+    let name = golden.file_stem().expect("a name").to_string_lossy();
+    let file = format!("{name}.png");
     if bless {
-        fs::create_dir_all(root().join("golden")).expect("golden directory");
-        image::write_png(&golden, width, height, &drawn).expect("golden picture");
+        fs::create_dir_all(golden.parent().expect("a directory")).expect("golden directory");
+        image::write_png(golden, width, height, drawn).expect("golden picture");
         return None;
     }
-    let Some(expected) = read(&golden) else {
+    let Some(expected) = read(golden) else {
         return Some(format!("{file}: no such golden picture; look at the drawing, then run with MICROPHONG_BLESS=1"));
     };
-    if expected == (width, height, drawn.clone()) {
+    if (expected.0, expected.1) == (width, height) && expected.2 == drawn {
         return None;
     }
     let out: PathBuf = root().join("../target/golden");
     fs::create_dir_all(&out).expect("target directory");
-    image::write_png(&out.join(&file), width, height, &drawn).expect("drawn picture");
+    image::write_png(&out.join(&file), width, height, drawn).expect("drawn picture");
     if expected.2.len() != drawn.len() {
         return Some(format!("{file}: {width}x{height}, golden {}x{}", expected.0, expected.1));
     }
     let path = out.join(format!("{name}-difference.png"));
-    image::write_png(&path, width, height, &difference(&drawn, &expected.2)).expect("difference picture");
+    image::write_png(&path, width, height, &difference(drawn, &expected.2)).expect("difference picture");
     let (drawn, expected) = (drawn.as_chunks::<3>().0, expected.2.as_chunks::<3>().0);
     let count = drawn.iter().zip(expected).filter(|(a, b)| a != b).count();
     Some(format!("{file}: {count} of {} pixels differ, see {}", drawn.len(), path.display()))
@@ -92,7 +97,7 @@ fn firmware_has_the_teapot() {
 }
 
 /// Whether what is drawn now is to be the standard.
-fn bless() -> bool {
+pub(crate) fn bless() -> bool {
     std::env::var_os("MICROPHONG_BLESS").is_some_and(|v| v == "1")
 }
 

@@ -14,6 +14,7 @@ mod compare;
 mod convex;
 mod differences;
 mod endurance;
+mod examples;
 mod faults;
 mod golden;
 mod hostile;

@@ -1,0 +1,26 @@
+//! What the display shows. The test `examples` draws it on your computer.
+
+use embedded_graphics::mono_font::{MonoTextStyle, ascii::FONT_5X8};
+use embedded_graphics::{pixelcolor::BinaryColor, prelude::*, text::Text};
+use microphong::{Layout, Picture, RenderError, Renderer, Shader, Stats, Stream, include_stream};
+
+/// The whole picture in one band, and all of the teapot.
+pub(crate) const LAYOUT: Layout = Layout::new(128, 64).vertices(593).triangles(992);
+/// White on black: no other colours look good on such a display.
+pub(crate) static MESH: &[u8] = include_stream!("../teapot.tri");
+
+/// Triangles have a few pixels here: light that is linear in between is enough. Formats of one bit are dithered at first.
+pub(crate) fn renderer<'a>(stream: Stream<'a>, memory: &'a mut [u64]) -> Result<Renderer<'a, BinaryColor>, RenderError> {
+    Renderer::with_shader(stream, Size::new(128, 64), &LAYOUT, memory, Shader::GOURAUD)
+}
+
+/// With a label over it, drawn before a band is sent.
+pub(crate) fn picture<'r>(
+    renderer: &'r mut Renderer<'_, BinaryColor>,
+    band: &'r mut [BinaryColor],
+    number: u32,
+) -> Result<impl Drawable<Color = BinaryColor, Output = Stats>, RenderError> {
+    Ok(Picture::new(renderer, band, number)?.over(move |band| {
+        let Ok(_) = Text::new("teapot", Point::new(97, 61), MonoTextStyle::new(&FONT_5X8, BinaryColor::On)).draw(band);
+    }))
+}

@@ -1,0 +1,101 @@
+//! The firmware in examples/: what its displays show is drawn here by the same code, the README shows its text, and each program is short.
+//!
+//! `MICROPHONG_BLESS=1 cargo test -p microphong-tests examples` makes pictures and streams the standard.
+
+use crate::golden::{bless, check_pixels, root};
+use embedded_graphics::prelude::*;
+use embedded_graphics_simulator::{OutputSettings, SimulatorDisplay};
+use microphong::{Layout, RenderError, Renderer, Stats, Stream, pixel::Pixel};
+use microphong_tests::program;
+use std::{fmt::Debug, fs, path::PathBuf, process::Command};
+
+#[path = "../../examples/rp2040-ssd1306/src/scene.rs"]
+mod rp2040_ssd1306;
+#[path = "../../examples/rp2350-st7789/src/scene.rs"]
+mod rp2350_st7789;
+#[path = "../../examples/stm32f411-ili9341/src/scene.rs"]
+mod stm32f411_ili9341;
+
+const NAMES: [&str; 3] = ["rp2040-ssd1306", "rp2350-st7789", "stm32f411-ili9341"];
+
+/// Of one file of an example.
+fn path(example: &str, file: &str) -> PathBuf {
+    root().join("../examples").join(example).join(file)
+}
+
+/// Compares the first frame with the picture in docs/examples.
+macro_rules! shows {
+    ($name:literal, $scene:ident $(, $argument:expr)*) => {{
+        let stream = Stream::parse($scene::MESH).expect("a stream");
+        has_room(&$scene::LAYOUT, &stream);
+        let mut memory = vec![0; words(&$scene::LAYOUT, $scene::renderer)];
+        let mut renderer = $scene::renderer(stream, &mut memory).expect("a renderer");
+        let mut display = SimulatorDisplay::new(renderer.size());
+        let mut band = vec![display.get_pixel(Point::zero()); $scene::LAYOUT.band()];
+        let Ok(stats) = $scene::picture(&mut renderer, &mut band, 0 $(, $argument)*).expect("a picture").draw(&mut display);
+        compare($name, &stats, &display);
+    }};
+}
+
+/// How many words the renderer that `make` makes takes.
+fn words<'a, C: Pixel>(layout: &Layout, _make: fn(Stream<'a>, &'a mut [u64]) -> Result<Renderer<'a, C>, RenderError>) -> usize {
+    layout.words::<C>()
+}
+
+fn has_room(layout: &Layout, stream: &Stream<'_>) {
+    let room = (layout.vertices, layout.triangles, layout.materials);
+    assert_eq!(room, (stream.vertices.len(), stream.triangles.len(), stream.materials.len()), "room for all of the mesh, and for no more");
+}
+
+fn compare<C: PixelColor + Into<embedded_graphics::pixelcolor::Rgb888> + Debug>(name: &str, stats: &Stats, display: &SimulatorDisplay<C>) {
+    assert!(stats.drawn > 0, "{name}: nothing is drawn");
+    let image = display.to_rgb_output_image(&OutputSettings::default());
+    let golden = root().join("../docs/examples").join(name).with_extension("png");
+    assert_eq!(check_pixels(&golden, display.size(), image.as_image_buffer().into_raw(), bless()), None);
+}
+
+#[test]
+fn displays_show_what_the_documentation_shows() {
+    shows!("rp2040-ssd1306", rp2040_ssd1306);
+    shows!("rp2350-st7789", rp2350_st7789, None);
+    shows!("stm32f411-ili9341", stm32f411_ili9341);
+}
+
+/// The commands stand in examples/README.md.
+#[test]
+fn streams_are_what_their_commands_make() {
+    let readme = fs::read_to_string(root().join("../examples/README.md")).expect("a README");
+    let commands: Vec<_> = readme.lines().filter_map(|line| line.strip_prefix("cargo run --release -- convert ")).collect();
+    assert_eq!(commands.len(), 2);
+    let place = tempfile::tempdir().expect("scratch directory");
+    for command in commands {
+        let (arguments, recorded) = command.split_once(" -o ").expect("a file");
+        let made = place.path().join("made.tri");
+        let mut convert = Command::new(program());
+        convert.current_dir(root().join("..")).arg("convert").args(arguments.split(' ')).arg("-o").arg(&made);
+        assert!(convert.output().expect("the program").status.success());
+        let recorded = root().join("..").join(recorded);
+        if bless() {
+            fs::copy(&made, &recorded).expect("a stream");
+        }
+        assert!(fs::read(&made).ok() == fs::read(&recorded).ok(), "{}: not what its command makes", recorded.display());
+    }
+}
+
+#[test]
+fn the_readme_shows_the_program() {
+    let readme = fs::read_to_string(root().join("../README.md")).expect("the README");
+    for file in ["src/scene.rs", "src/main.rs"] {
+        let text = fs::read_to_string(path("stm32f411-ili9341", file)).expect("a source");
+        assert!(readme.contains(&format!("\n```rust\n{text}```\n")), "{file} of stm32f411-ili9341 has changed: copy it into the README");
+    }
+}
+
+#[test]
+fn programs_are_short() {
+    for name in NAMES {
+        let count = |file| fs::read_to_string(path(name, file)).expect("a source").lines().count();
+        let lines = count("src/main.rs") + count("src/scene.rs");
+        assert!(lines <= 80, "{name}: {lines} lines");
+    }
+}
