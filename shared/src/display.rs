@@ -86,7 +86,8 @@ impl<C: Pixel + PixelColor> Frame<'_, C> {
 #[derive(Debug)]
 pub struct Picture<'r, 'a, C: Pixel> {
     parts: RefCell<(&'r mut Renderer<'a, C>, &'r mut [C])>,
-    number: u32,
+    /// Number of the frame; `None` for the scene as it is.
+    number: Option<u32>,
 }
 
 impl<'r, 'a, C: Pixel> Picture<'r, 'a, C> {
@@ -97,7 +98,15 @@ impl<'r, 'a, C: Pixel> Picture<'r, 'a, C> {
     /// When `band` does not hold one row.
     pub fn new(renderer: &'r mut Renderer<'a, C>, band: &'r mut [C], number: u32) -> Result<Self, RenderError> {
         renderer.check_band(band)?;
-        Ok(Self { parts: RefCell::new((renderer, band)), number })
+        Ok(Self { parts: RefCell::new((renderer, band)), number: Some(number) })
+    }
+
+    /// The scene of `renderer` as it is, see [`crate::Scene`]; `band` as in [`Self::new`].
+    ///
+    /// # Errors
+    /// When `band` does not hold one row.
+    pub fn of_scene(renderer: &'r mut Renderer<'a, C>, band: &'r mut [C]) -> Result<Self, RenderError> {
+        Ok(Self { number: None, ..Self::new(renderer, band, 0)? })
     }
 
     /// The same with something drawn over it: `over` is called for each band, and draws text, lines and images as on a display. What it draws
@@ -115,7 +124,11 @@ impl<C: Pixel + PixelColor> Picture<'_, '_, C> {
         match self.parts.try_borrow_mut() {
             Ok(mut parts) => {
                 let (renderer, band) = &mut *parts;
-                renderer.frame(self.number).draw_to(target, band, over)
+                let frame = match self.number {
+                    Some(number) => renderer.frame(number),
+                    None => renderer.draw(),
+                };
+                frame.draw_to(target, band, over)
             }
             Err(_) => Ok(Stats::default()),
         }

@@ -52,7 +52,17 @@ impl Layout {
     /// object and 48 triangles across the border of a band, and none for antialiasing.
     #[must_use]
     pub const fn new(width: usize, rows: usize) -> Self {
-        Self { width, rows, processors: 1, vertices: 1024, triangles: 1024, materials: 1, objects: 1, active_triangles: 48, antialias: false }
+        Self {
+            width,
+            rows,
+            processors: 1,
+            vertices: 1024,
+            triangles: 1024,
+            materials: 1,
+            objects: 1,
+            active_triangles: 48,
+            antialias: false,
+        }
     }
 
     /// Changes how many processors draw at the same time: 1 or 2.

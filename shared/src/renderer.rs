@@ -111,7 +111,8 @@ impl<'a, C: Pixel> Renderer<'a, C> {
         let (shader, facts, ambient) = (settings.shader, settings.shader.facts(), scene.ambient);
         let lights: heapless::Vec<Light, MAX_LIGHTS> = heapless::Vec::from_slice(scene.lights()).unwrap_or_default();
         for (index, material) in scene.stale_materials() {
-            let (Some(reflectance), Some(ramp), Some(bounds)) = (reflectances.get_mut(index), ramps.get_mut(index), error_bounds.get_mut(index))
+            let (Some(reflectance), Some(ramp), Some(bounds)) =
+                (reflectances.get_mut(index), ramps.get_mut(index), error_bounds.get_mut(index))
             else {
                 continue;
             };
@@ -253,8 +254,11 @@ impl<'a, C: Pixel> Renderer<'a, C> {
         }
         let Self { settings, scene, memory, .. } = self;
         let world = ModelView::new(scene.camera(), scene.place);
-        let placing =
-            Placing { size: settings.size, levels_of_detail: settings.levels_of_detail, leaves_out_back_faces: settings.skips().back_faces };
+        let placing = Placing {
+            size: settings.size,
+            levels_of_detail: settings.levels_of_detail,
+            leaves_out_back_faces: settings.skips().back_faces,
+        };
         let (mut rearranged, mut triangles, mut vertices) = (scene.rearranged, 0, 0);
         for (object, placement) in scene.objects().iter().zip(memory.placements.iter_mut()) {
             rearranged |= placement.update(scene, &world, object, &placing);

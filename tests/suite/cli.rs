@@ -255,11 +255,6 @@ fn other_formats_are_named() {
         place.fails(&["convert", file], 1, &[file, format, &format!("assimp export {file} a.obj")]);
         place.fails(&["compare", file], 1, &[file, format, "Blender"]);
     }
-    // What `convert` alone reads.
-    for (file, format) in [("a.ply", "PLY"), ("a.gltf", "glTF"), ("a.glb", "glTF")] {
-        let remedy = format!("microphong convert {file} -o a.tri");
-        place.file(file, "whatever there is").fails(&["render", file], 1, &[file, format, &remedy]);
-    }
     place.file("a.txt", TETRAHEDRON).fails(&["render", "a.txt"], 2, &["unknown scene", "a.txt", ".obj"]);
     place.fails(&["render", "none.3ds"], 2, &["none.3ds", ".obj"]);
 }

@@ -95,7 +95,7 @@ fn a_frame_like_the_latest_is_known() {
             draw(&mut renderer, 5);
             assert!(renderer.is_latest(5));
         }
-        drop(renderer.prepare(6, 0));
+        let _ = renderer.prepare(6, 0);
         assert!(renderer.is_latest(6));
     }
 }

@@ -4,22 +4,10 @@ use anyhow::{Result, bail};
 use std::path::Path;
 
 /// What other formats are called, by the ending of their files.
-const ENDINGS: [(&str, &str); 9] = [
-    ("ply", "PLY"),
-    ("gltf", "glTF"),
-    ("glb", "glTF"),
-    ("fbx", "FBX"),
-    ("dae", "COLLADA"),
-    ("3ds", "3DS"),
-    ("3mf", "3MF"),
-    ("off", "OFF"),
-    ("blend", "Blender"),
-];
+const ENDINGS: [(&str, &str); 6] =
+    [("fbx", "FBX"), ("dae", "COLLADA"), ("3ds", "3DS"), ("3mf", "3MF"), ("off", "OFF"), ("blend", "Blender")];
 
-/// Of these, formats that `convert` reads.
-const CONVERTED: [&str; 2] = ["PLY", "glTF"];
-
-/// Passes what may be an OBJ or STL file.
+/// Passes what may be a mesh of a format that is read.
 ///
 /// # Errors
 /// Names the file, its format, and what makes an OBJ or a stream of it.
@@ -29,9 +17,6 @@ pub(crate) fn refuse(path: &Path, bytes: &[u8]) -> Result<()> {
         bail!("{name}: text in UTF-16; save it as UTF-8 or ASCII");
     }
     if let Some(format) = by_content(bytes).or_else(|| by_ending(path)) {
-        if CONVERTED.contains(&format) {
-            bail!("{name}: a mesh in the format {format}; run\n  microphong convert {name} -o {}", path.with_extension("tri").display());
-        }
         let obj = path.with_extension("obj");
         let obj = if obj == path { path.with_extension("new.obj") } else { obj };
         bail!(
@@ -44,15 +29,7 @@ pub(crate) fn refuse(path: &Path, bytes: &[u8]) -> Result<()> {
 
 fn by_content(bytes: &[u8]) -> Option<&'static str> {
     let text = bytes.strip_prefix(b"\xEF\xBB\xBF").unwrap_or(bytes).trim_ascii_start();
-    let starts: [(&[u8], &str); 6] = [
-        (b"glTF", "glTF"),
-        // JSON.
-        (b"{", "glTF"),
-        (b"ply\n", "PLY"),
-        (b"ply\r", "PLY"),
-        (b"Kaydara FBX", "FBX"),
-        (b"BLENDER", "Blender"),
-    ];
+    let starts: [(&[u8], &str); 2] = [(b"Kaydara FBX", "FBX"), (b"BLENDER", "Blender")];
     starts.iter().find(|(start, _)| text.starts_with(start)).map(|&(_, format)| format)
 }
 

@@ -78,7 +78,14 @@ pub struct Unknown(String);
 
 impl fmt::Display for Unknown {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "unknown scene {:?}; name a .tri, .obj, .stl or .toml file, or one of: {}, {}, {}", self.0, NAMES.join(", "), VARIANTS.join(", "), SCRIPTED.join(", "))
+        write!(
+            f,
+            "unknown scene {:?}; name a .tri, .obj, .stl, .ply, .gltf, .glb or .toml file, or one of: {}, {}, {}",
+            self.0,
+            NAMES.join(", "),
+            VARIANTS.join(", "),
+            SCRIPTED.join(", ")
+        )
     }
 }
 
@@ -110,7 +117,7 @@ fn scripted(name: &str) -> Option<&'static str> {
     }
 }
 
-/// Loads a built-in scene, a `.tri`, an `.obj`, an `.stl` or a `.toml` file.
+/// Loads a built-in scene, a stream, a mesh or the text of a scripted scene, told apart by their endings.
 ///
 /// # Errors
 /// [`Unknown`] when `name_or_path` is neither; else what is wrong with the file.
@@ -134,7 +141,7 @@ pub fn load(name_or_path: &str) -> Result<Scene> {
             size = scene.1;
             scene.0
         }
-        Some("obj" | "stl") => from_mesh(path, Weld::default())?,
+        Some("obj" | "stl" | "ply" | "gltf" | "glb") => from_mesh(path, Weld::default())?,
         _ => {
             if path.is_file() {
                 foreign::refuse(path, &read(path)?)?;
@@ -144,6 +151,12 @@ pub fn load(name_or_path: &str) -> Result<Scene> {
     };
     let name = path.file_stem().unwrap_or(path.as_os_str()).to_string_lossy().into_owned();
     Ok(Scene { name, stream, size })
+}
+
+/// Whether a file is the text of a scripted scene, by its ending.
+#[must_use]
+pub fn is_script(path: &Path) -> bool {
+    path.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("toml"))
 }
 
 /// A mesh from an OBJ or STL file as `convert` without options makes it, but for how it is welded.

@@ -181,12 +181,16 @@ pub fn stream(text: &str, folder: &Path) -> Result<(StreamBytes, (u32, u32))> {
         look.background = colour(background).context("background")?.map(|c| (c * 255.0).round() as u8);
     }
     if let Some(name) = &script.shader {
-        look.shader = Shader::ALL.into_iter().find(|shader| shader.name() == name.as_str()).with_context(|| format!("shader: there is no method {name:?}"))?;
+        look.shader = Shader::ALL
+            .into_iter()
+            .find(|shader| shader.name() == name.as_str())
+            .with_context(|| format!("shader: there is no method {name:?}"))?;
     }
     if let Some(budget) = script.budget {
         look.budget = nearest::<ErrorBudget>(budget);
     }
-    look.lamps = script.light.iter().enumerate().map(|(i, light)| lamp(light).with_context(|| format!("light {}", i + 1))).collect::<Result<_>>()?;
+    look.lamps =
+        script.light.iter().enumerate().map(|(i, light)| lamp(light).with_context(|| format!("light {}", i + 1))).collect::<Result<_>>()?;
     if script.light.is_empty() {
         look.lamps = vec![Lamp::Fixed(KEY.map(|c| -c), [1.0; 3])];
     }
@@ -244,9 +248,9 @@ fn mesh(script: &MeshScript, folder: &Path) -> Result<(Mesh, Vec<Option<crate::m
         (None, Some(shape)) => {
             let mesh = match shape {
                 "box" => shapes::cuboid(),
-                "cylinder" => shapes::cylinder(32),
-                "sphere" => shapes::sphere(24, 16, 0.0),
-                "torus" => shapes::torus(40, 14),
+                "cylinder" => shapes::cylinder(24),
+                "sphere" => shapes::sphere(18, 11, 0.0),
+                "torus" => shapes::torus(28, 10),
                 other => bail!("there is no shape {other:?}; take {SHAPES}"),
             };
             (mesh, vec![None])
@@ -259,7 +263,10 @@ fn mesh(script: &MeshScript, folder: &Path) -> Result<(Mesh, Vec<Option<crate::m
     }
     mesh.positions.iter_mut().for_each(|position| *position = add(*position, script.centre));
     let farthest = mesh.positions.iter().map(|&position| dot(position, position)).fold(0.0, f64::max).sqrt();
-    ensure!(farthest < 2.0, "it reaches {farthest:.2} units from its origin; less than 2 are possible: make it smaller, and scale the object");
+    ensure!(
+        farthest < 2.0,
+        "it reaches {farthest:.2} units from its origin; less than 2 are possible: make it smaller, and scale the object"
+    );
     Ok((mesh, materials))
 }
 
@@ -332,7 +339,10 @@ fn cast(script: &Script, ranges: &[(String, u16, u16)]) -> Result<Cast> {
     if !script.camera.keys.is_empty() {
         let pose = |key: &CameraKey| {
             let [x, y, z] = looking(key.at, key.looks_at, script.camera.up)?;
-            Ok((key.frame, Key { rotation: of_columns([x, y, z]).map(|c| nearest::<microphong::format::Rotation>(c).to_bits()), ..still(key.at) }))
+            Ok((
+                key.frame,
+                Key { rotation: of_columns([x, y, z]).map(|c| nearest::<microphong::format::Rotation>(c).to_bits()), ..still(key.at) },
+            ))
         };
         let keys = script.camera.keys.iter().map(pose).collect::<Result<_>>().context("camera")?;
         cast.ways.push(way(CAMERA_TRACK, 0, keys).context("camera")?);
@@ -347,7 +357,12 @@ fn way(kind: u16, index: usize, keys: Vec<(u32, Key)>) -> Result<Way> {
 
 /// At a place, neither turned nor scaled.
 fn still(position: V3) -> Key {
-    Key { frame: 0, rotation: [1 << 30, 0, 0, 0], position: position.map(|c| nearest::<microphong::format::Length>(c).to_bits()), scale: 1 << 16 }
+    Key {
+        frame: 0,
+        rotation: [1 << 30, 0, 0, 0],
+        position: position.map(|c| nearest::<microphong::format::Length>(c).to_bits()),
+        scale: 1 << 16,
+    }
 }
 
 fn pose(pose: &Pose) -> Result<Key> {
@@ -363,10 +378,9 @@ fn pose(pose: &Pose) -> Result<Key> {
             ensure!(length > 1e-6, "quaternion: it must not be zero");
             quaternion.map(|c| c / length)
         }
-        (None, Some([yaw, pitch, roll]), None, None) => times(
-            times(about([0.0, 1.0, 0.0], yaw)?, about([1.0, 0.0, 0.0], pitch)?),
-            about([0.0, 0.0, 1.0], roll)?,
-        ),
+        (None, Some([yaw, pitch, roll]), None, None) => {
+            times(times(about([0.0, 1.0, 0.0], yaw)?, about([1.0, 0.0, 0.0], pitch)?), about([0.0, 0.0, 1.0], roll)?)
+        }
         (None, None, Some(axis), Some(angle)) => about(axis, angle)?,
         _ => bail!("say a rotation by `axis` and `angle`, by `euler`, or by `quaternion`"),
     };
@@ -394,4 +408,3 @@ fn of_columns([[xx, yx, zx], [xy, yy, zy], [xz, yz, zz]]: [V3; 3]) -> [f64; 4] {
     let length = candidates[best].iter().map(|c| c * c).sum::<f64>().sqrt();
     candidates[best].map(|c| c / length)
 }
-

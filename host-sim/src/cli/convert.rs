@@ -14,13 +14,13 @@ use microphong_sim::{
     mesh::{CREASE, Weld},
     output,
     quantise::{Part, quantise},
-    scene::{AMBIENT, COPPER, DISTANCE, MARGIN, ORBIT},
+    scene::{self, AMBIENT, COPPER, DISTANCE, MARGIN, ORBIT},
     shader::Shader,
     vector::{V3, add},
     view::{Projection, Up, View},
 };
 use serde::Serialize;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 /// Convert a mesh, Wavefront OBJ, glTF 2.0, STL or PLY, to a stream for a board's flash.
 ///
@@ -32,6 +32,9 @@ use std::path::PathBuf;
 /// is taken as its nodes put it. What of the files is left out is said.
 /// The mesh is centred and scaled to a sphere of radius 1. One closed convex mesh is marked as
 /// such: it is drawn without depth, and looks the same.
+///
+/// A .toml file is a scripted scene: its text says which objects there are and how they, lights and
+/// camera move. Of the options, --output and --json apply to it. tests/scenes has three to begin with.
 #[derive(clap::Args)]
 #[command(after_help = EXAMPLES)]
 pub(crate) struct Arguments {
@@ -119,7 +122,8 @@ Examples:
   microphong convert scan.ply --simplify 2000
   microphong convert part.obj --up z --colour 4080ff --plastic --exponent 60 --orbit 240
   microphong convert car.obj --light -0.5,0.6,0.7:fff0d8 --light 1,0.1,0.2:304060
-  microphong convert toy.glb --light at:-1,1,2:fff0d8";
+  microphong convert toy.glb --light at:-1,1,2:fff0d8
+  microphong convert tests/scenes/gauges.toml -o gauges.tri";
 
 #[derive(Serialize)]
 struct Line<'a> {
@@ -164,7 +168,7 @@ struct Level {
 pub(crate) fn run(arguments: &Arguments) -> Result<Outcome> {
     let source = &arguments.mesh;
     if source.extension().is_some_and(|e| e.eq_ignore_ascii_case("tri")) {
-        return Err(Usage(format!("{} is a stream already; name an .obj, .stl, .ply, .gltf or .glb file", source.display())).into());
+        return Err(Usage(format!("{} is a stream already; name an .obj, .stl, .ply, .gltf, .glb or .toml file", source.display())).into());
     }
     if arguments.lights.len() > MAX_LIGHTS {
         return Err(Usage(format!("{} times --light; a scene has {MAX_LIGHTS} lights at most", arguments.lights.len())).into());
@@ -173,6 +177,9 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome> {
     let same = |path: &std::path::Path| path.canonicalize().ok();
     if same(&target).is_some_and(|target| Some(target) == same(source)) {
         return Err(Usage(format!("{} would overwrite the mesh; name another file with -o", target.display())).into());
+    }
+    if scene::is_script(source) {
+        return convert_script(arguments, &target);
     }
     let Imported { mut mesh, report, mut materials, mut remarks } =
         import::file(source, Weld { turn: arguments.flip, crease: arguments.crease })?;
@@ -214,7 +221,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome> {
     let bytes = look.stream(&parts).with_context(place)?;
     report::leave_to(&target);
     output::write(&target, bytes.as_bytes())?;
-    let layout = layout(arguments.size, &parts, look.surfaces.len());
+    let layout = Layout::new(arguments.size.0 as usize, ROWS).with_room_for(&bytes.parse()?);
     let line = Line {
         mesh: &source.to_string_lossy(),
         output: &target.to_string_lossy(),
@@ -243,11 +250,58 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome> {
     Ok(Outcome::Done)
 }
 
+/// What becomes of a scripted scene.
+#[derive(Serialize)]
+struct SceneLine<'a> {
+    scene: &'a str,
+    output: &'a str,
+    objects: usize,
+    meshes: usize,
+    triangles: usize,
+    frames: u16,
+    bytes: usize,
+    layout: String,
+    memory: usize,
+}
+
+/// Writes the stream of a scripted scene.
+fn convert_script(arguments: &Arguments, target: &Path) -> Result<Outcome> {
+    let scene = scene::load(&arguments.mesh.to_string_lossy())?;
+    report::leave_to(target);
+    output::write(target, scene.stream.as_bytes())?;
+    let stream = scene.stream.parse()?;
+    let layout = Layout::new(scene.size.0 as usize, ROWS).with_room_for(&stream);
+    let line = SceneLine {
+        scene: &arguments.mesh.to_string_lossy(),
+        output: &target.to_string_lossy(),
+        objects: stream.instances.len(),
+        meshes: stream.meshes.len(),
+        triangles: stream.triangles.len(),
+        frames: stream.header.frames,
+        bytes: scene.stream.as_bytes().len(),
+        layout: text_of(&layout),
+        memory: layout.bytes::<Rgb565>(),
+    };
+    if arguments.json {
+        report::json(&line)?;
+        return Ok(Outcome::Done);
+    }
+    let count = |n: usize| report::grouped(n as u64);
+    let SceneLine { scene, output, objects, meshes, triangles, frames, bytes, layout, memory } = line;
+    report::line(&format!(
+        "{output}: {objects} objects of {meshes} meshes and {} triangles, {frames} frames, from {scene}",
+        count(triangles)
+    ))?;
+    report::line(&format!("  {} bytes of flash", count(bytes)))?;
+    report::line(&format!("  {layout}, {} bytes of memory for Rgb565", count(memory)))?;
+    Ok(Outcome::Done)
+}
+
 /// Near lights, which count from the centre of the mesh, where the camera sees them.
 fn placed(lights: &[Lamp], view: &View) -> Vec<Lamp> {
     let place = |&lamp: &Lamp| match lamp {
         Lamp::Near(position, colour) => Lamp::Near(add(position, view.translation), colour),
-        Lamp::Distant(..) => lamp,
+        _ => lamp,
     };
     lights.iter().map(place).collect()
 }
@@ -266,19 +320,11 @@ fn in_pixels(levels::Simplified { before, error }: levels::Simplified, look: &Lo
 /// Rows of a band, where nobody says how many.
 const ROWS: usize = 16;
 
-/// Room for all triangles that can be seen at once, drawn in bands.
-fn layout((width, _): (u32, u32), parts: &[Part], materials: usize) -> Layout {
-    let sum = |of: fn(&Part) -> usize| parts.iter().map(of).sum();
-    Layout::new(width as usize, ROWS)
-        .vertices(sum(|part| part.vertices.len()))
-        .triangles(sum(|part| part.triangles.len()))
-        .materials(materials)
-}
-
 /// A layout as a program has it.
 fn text_of(layout: &Layout) -> String {
-    let Layout { width, rows, vertices, triangles, materials, .. } = layout;
-    format!("Layout::new({width}, {rows}).vertices({vertices}).triangles({triangles}).materials({materials})")
+    let Layout { width, rows, vertices, triangles, materials, objects, .. } = layout;
+    let several = if *objects > 1 { format!(".objects({objects})") } else { String::new() };
+    format!("Layout::new({width}, {rows}).vertices({vertices}).triangles({triangles}).materials({materials}){several}")
 }
 
 fn of(mesh: usize, level: &levels::Level) -> Level {

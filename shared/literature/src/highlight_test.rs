@@ -55,7 +55,10 @@ fn has_no_highlight(setup: &TriangleSetup<'_>, shading: &Shading<'_>) -> bool {
     let limit = setup.highlight_threshold(shading.reflectance);
     let corners = setup.corner_nodes();
     shading.lighting.is_constant()
-        && shading.lighting.sources().iter().filter_map(Source::directional).all(|&[_, half]| {
-            corners.iter().all(|corner| cosine(corner.normal, half) < limit)
-        })
+        && shading
+            .lighting
+            .sources()
+            .iter()
+            .filter_map(Source::directional)
+            .all(|&[_, half]| corners.iter().all(|corner| cosine(corner.normal, half) < limit))
 }

@@ -179,7 +179,14 @@ impl<'r, C: Pixel> Context<'r, C> {
         let error_bounds = self.error_bounds.get(material)?;
         let drawing = MeshPass {
             method: shader.method(),
-            shading: Shading { reflectance, lighting, exponent, constant: stage.constant.copied(), error_bounds, budget: self.settings.budget },
+            shading: Shading {
+                reflectance,
+                lighting,
+                exponent,
+                constant: stage.constant.copied(),
+                error_bounds,
+                budget: self.settings.budget,
+            },
             tables: MaterialTables { ramp, reflectance },
             dither: *dither,
             stage,

@@ -5,16 +5,16 @@ mod part;
 mod preparation;
 mod skips;
 
-pub use part::Stats;
 pub(crate) use context::Settings;
+pub use part::Stats;
 pub(crate) use preparation::Seams;
 pub use preparation::{Preparation, PreparationPart};
 pub use skips::Skips;
 
 use crate::{error::RenderError, pixel::Pixel};
+use context::Context;
 use core::ops::Range;
 use embedded_graphics_core::primitives::Rectangle;
-use context::Context;
 use part::Part;
 
 /// One frame, drawn band by band from the top.

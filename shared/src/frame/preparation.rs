@@ -122,7 +122,9 @@ impl<'r, C: Pixel> Frame<'r, C> {
 
     #[inline(always)]
     fn empty(settings: &'r Settings<C>, scene: &'r Scene<'_>, memory: &'r mut Memory<'_, C>) -> Empty<'r, C> {
-        let Memory { vertices: cache, bins: entries, depth, placements, reflectances, ramps, error_bounds, samples, active_triangles, .. } = memory;
+        let Memory {
+            vertices: cache, bins: entries, depth, placements, reflectances, ramps, error_bounds, samples, active_triangles, ..
+        } = memory;
         let size = settings.size;
         // Bins as high as the bands of one processor.
         let band_rows = settings.band_rows(depth.len(), samples.len()).checked_div(settings.processors).unwrap_or(0);
@@ -174,7 +176,13 @@ impl<'r, C: Pixel> Frame<'r, C> {
 
 impl<'r, C: Pixel> Preparation<'r, C> {
     #[inline(never)]
-    pub(crate) fn new(settings: &'r Settings<C>, scene: &'r Scene<'_>, memory: &'r mut Memory<'_, C>, seams: Option<Seams>, share: u16) -> Self {
+    pub(crate) fn new(
+        settings: &'r Settings<C>,
+        scene: &'r Scene<'_>,
+        memory: &'r mut Memory<'_, C>,
+        seams: Option<Seams>,
+        share: u16,
+    ) -> Self {
         let (frame, cache, depth_elision) = Frame::empty(settings, scene, memory);
         let division = seams.map(|seams| seams.division(frame.part.stats.triangles, share)).unwrap_or_default();
         let earlier = frame.part.bins.open();

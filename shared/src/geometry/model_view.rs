@@ -104,7 +104,8 @@ impl ModelView {
     /// direction that this changes by 1/56 rad at most.
     fn near(&self, rotation: [[i32; 3]; 3], v: [i32; 3]) -> [i32; 3] {
         // Q.44, then Q.30 of the world, then Q.46 of object space.
-        let point = transposed(rotation).map(|column| ((dot(column, v) >> UNIT) * i64::from(self.inverse_scale)) >> (ROTATION + 16 - POSITION));
+        let point =
+            transposed(rotation).map(|column| ((dot(column, v) >> UNIT) * i64::from(self.inverse_scale)) >> (ROTATION + 16 - POSITION));
         if point.iter().all(|c| c.abs() <= FARTHEST) {
             return point.map(|c| c as i32);
         }

@@ -185,7 +185,13 @@ impl Reflectance {
 
     /// Computes the reflectance of `material` under `lights`, for a method with these highlights and the pixel format `C`. If the method
     /// allows it, and there is one channel and one light, the table of highlights `holds_levels` instead of fractions.
-    pub fn fill<C: Pixel>(&mut self, ambient: [u16; 3], material: &Material, lights: &[Light], (highlight, holds_levels): (Highlight, bool)) {
+    pub fn fill<C: Pixel>(
+        &mut self,
+        ambient: [u16; 3],
+        material: &Material,
+        lights: &[Light],
+        (highlight, holds_levels): (Highlight, bool),
+    ) {
         let depth = C::DEPTH;
         // What each light adds at most, diffuse and specular, and the ambient term.
         let mut terms = heapless::Vec::<Colour, { 2 * MAX_LIGHTS + 1 }>::new();

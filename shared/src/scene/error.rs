@@ -46,7 +46,9 @@ pub enum SceneError {
 impl fmt::Display for SceneError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
-            Self::Rotation => f.write_str("a rotation must be a quaternion other than zero, an axis other than zero, or an orthonormal matrix"),
+            Self::Rotation => {
+                f.write_str("a rotation must be a quaternion other than zero, an axis other than zero, or an orthonormal matrix")
+            }
             Self::Position => f.write_str("a position must be within 16 units of the origin along each axis"),
             Self::Scale => f.write_str("a scale must be 1/16 to 8"),
             Self::Object { index } => write!(f, "there is no object number {index}"),

@@ -6,8 +6,8 @@ mod object;
 pub(crate) mod orbit;
 mod pose;
 
-pub use angle::SIN_COS_ERROR;
 pub use crate::stream::record::MAX_POSITION;
+pub use angle::SIN_COS_ERROR;
 pub use error::SceneError;
 pub use object::Object;
 pub use orbit::{CIRCLE_ERROR, ORBIT_ERROR, ROTATION_ERROR};

@@ -1,6 +1,8 @@
 //! One object of a scene.
 
-use crate::{scene::pose::Pose, stream::{
+use crate::{
+    scene::pose::Pose,
+    stream::{
         Stream,
         record::{Mesh, OWN_MATERIALS},
     },

@@ -2,7 +2,10 @@
 
 use crate::{
     format::{Angle, Length, ROTATION, Rotation, Scale},
-    math::{rsqrt::rsqrt_wide, vector::{cross, dot, normalise, sub, zip}},
+    math::{
+        rsqrt::rsqrt_wide,
+        vector::{cross, dot, normalise, sub, zip},
+    },
     scene::{angle::sin_cos, error::SceneError},
     stream::{
         self,
@@ -76,7 +79,13 @@ impl Pose {
         let is = |product: i64, value: i64| (product - (value << (2 * ROTATION))).abs() <= 1 << (2 * ROTATION - 8);
         let handed = dot(cross(x, y).map(|c| (c >> ROTATION) as i32), z) > 0;
         let in_range = rows.as_flattened().iter().all(|c| c.abs() <= ONE + (ONE >> 8));
-        if !(in_range && handed && [x, y, z].iter().all(|&row| is(dot(row, row), 1)) && is(dot(x, y), 0) && is(dot(y, z), 0) && is(dot(z, x), 0)) {
+        if !(in_range
+            && handed
+            && [x, y, z].iter().all(|&row| is(dot(row, row), 1))
+            && is(dot(x, y), 0)
+            && is(dot(y, z), 0)
+            && is(dot(z, x), 0))
+        {
             return Err(SceneError::Rotation);
         }
         let [[xx, xy, xz], [yx, yy, yz], [zx, zy, zz]] = rows.map(|row| row.map(i64::from));
@@ -179,12 +188,8 @@ impl Pose {
     #[must_use]
     pub fn turned(self, other: &Self) -> Self {
         let ([a, b, c, d], [w, x, y, z]) = (other.rotation.map(i64::from), self.rotation.map(i64::from));
-        let product = [
-            a * w - b * x - c * y - d * z,
-            a * x + b * w + c * z - d * y,
-            a * y - b * z + c * w + d * x,
-            a * z + b * y - c * x + d * w,
-        ];
+        let product =
+            [a * w - b * x - c * y - d * z, a * x + b * w + c * z - d * y, a * y - b * z + c * w + d * x, a * z + b * y - c * x + d * w];
         Self { rotation: put_back(product.map(|c| (c + (1 << (ROTATION - 1))) >> ROTATION)), ..self }
     }
 

@@ -11,8 +11,8 @@ use crate::{
 };
 use core::{fmt, ops::Range};
 use record::{
-    CAMERA_TRACK, Camera, DIRECTIONAL, EYE_SPACE, Header, Instance, Key, LIGHT_TRACK, Light, MAGIC, MAX_POSITION, Material, Mesh, OBJECT_TRACK,
-    ORTHOGRAPHIC, OWN_MATERIALS, PERSPECTIVE, POINT, Track, Triangle, VERSION, VIEWER_INFINITE, VIEWER_LOCAL, Vertex,
+    CAMERA_TRACK, Camera, DIRECTIONAL, EYE_SPACE, Header, Instance, Key, LIGHT_TRACK, Light, MAGIC, MAX_POSITION, Material, Mesh,
+    OBJECT_TRACK, ORTHOGRAPHIC, OWN_MATERIALS, PERSPECTIVE, POINT, Track, Triangle, VERSION, VIEWER_INFINITE, VIEWER_LOCAL, Vertex,
 };
 use zerocopy::{FromBytes, Immutable, KnownLayout};
 
@@ -263,7 +263,6 @@ impl<'a> Stream<'a> {
         Ok(())
     }
 
-
     /// Objects, and what moves.
     fn check_scene(&self) -> Result<(), StreamError> {
         // Coarser levels belong to their mesh.
@@ -388,10 +387,7 @@ impl Material {
     /// What is out of its range, if anything is.
     pub(crate) fn fault(&self) -> Option<&'static str> {
         let colours = [self.ambient, self.diffuse, self.specular];
-        fault([
-            ((1..=MAX_EXPONENT).contains(&self.exponent), "material exponent"),
-            (colours.into_iter().all(is_gain), "material colour"),
-        ])
+        fault([((1..=MAX_EXPONENT).contains(&self.exponent), "material exponent"), (colours.into_iter().all(is_gain), "material colour")])
     }
 }
 
