@@ -63,11 +63,13 @@ pub(super) enum Part {
 
 /// Parts of functions by what their names contain; the first that fits counts. Names as the compiler writes them, so that this
 /// is the one place to follow when functions move.
-const TABLE: [(&str, Part); 25] = [
+const TABLE: [(&str, Part); 27] = [
     ("microphong::raster::triangle::fill_rows", Part::Row),
     ("as microphong::raster::canvas::SpanShader::span", Part::Row),
     ("microphong::raster::band::Band::clear", Part::Clear),
     ("microphong::renderer::Renderer::frame", Part::Frame),
+    ("microphong::renderer::Renderer::draw", Part::Frame),
+    ("microphong::renderer::Renderer::place", Part::Frame),
     ("microphong::renderer::Renderer::prepare", Part::Frame),
     ("microphong::frame::Frame::new", Part::Frame),
     ("microphong::frame::preparation::Preparation::", Part::Frame),
@@ -75,7 +77,7 @@ const TABLE: [(&str, Part); 25] = [
     ("microphong::frame::preparation::PreparationPart", Part::Cull),
     ("microphong::geometry::bin::Bins", Part::Cull),
     ("microphong::frame::part::Part::draw", Part::Setup),
-    ("microphong::frame::scene::Scene::drawing", Part::Setup),
+    ("microphong::frame::context::Context::drawing", Part::Setup),
     ("microphong::mesh::MeshPass", Part::Setup),
     // Of the host's program, which has no display.
     ("frame::counted_frame", Part::Frame),
@@ -90,7 +92,7 @@ const TABLE: [(&str, Part); 25] = [
     ("microphong::stream", Part::Unwatched),
     ("Reset", Part::Unwatched),
     ("microphong_firmware::animate", Part::Outside),
-    ("microphong::renderer::Renderer::set_shader", Part::Outside),
+    ("microphong::renderer::Renderer::fill_tables", Part::Outside),
 ];
 
 /// Without these the table has fallen behind the source.

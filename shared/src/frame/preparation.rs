@@ -126,6 +126,8 @@ impl<'r, C: Pixel> Frame<'r, C> {
             vertices: cache, bins: entries, depth, placements, reflectances, ramps, error_bounds, samples, active_triangles, ..
         } = memory;
         let size = settings.size;
+        // There may be room for more.
+        let placements = placements.get(..scene.objects().len()).unwrap_or_default();
         // Bins as high as the bands of one processor.
         let band_rows = settings.band_rows(depth.len(), samples.len()).checked_div(settings.processors).unwrap_or(0);
         let bins = Bins::new(size.height, band_rows);
