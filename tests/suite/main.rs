@@ -32,6 +32,7 @@ mod peers;
 mod perspective;
 mod raster;
 mod scanlines;
+mod scenes;
 mod skips;
 mod split;
 mod still;

@@ -245,12 +245,14 @@ impl Pose {
     pub(crate) fn matrix(&self) -> [[i32; 3]; 3] {
         let [w, x, y, z] = self.rotation.map(i64::from);
         // Twice the products, rounded.
-        let twice = |sum: i64| ((sum + (1 << (ROTATION - 2))) >> (ROTATION - 1)) as i32;
+        let twice = |sum: i64| (sum + (1 << (ROTATION - 2))) >> (ROTATION - 1);
+        let one = i64::from(ONE);
         [
-            [ONE - twice(y * y + z * z), twice(x * y - w * z), twice(x * z + w * y)],
-            [twice(x * y + w * z), ONE - twice(x * x + z * z), twice(y * z - w * x)],
-            [twice(x * z - w * y), twice(y * z + w * x), ONE - twice(x * x + y * y)],
+            [one - twice(y * y + z * z), twice(x * y - w * z), twice(x * z + w * y)],
+            [twice(x * y + w * z), one - twice(x * x + z * z), twice(y * z - w * x)],
+            [twice(x * z - w * y), twice(y * z + w * x), one - twice(x * x + y * y)],
         ]
+        .map(|row| row.map(|c| c.clamp(-one, one) as i32))
     }
 }
 
@@ -284,4 +286,126 @@ fn put_back(quaternion: [i64; 4]) -> [i32; 4] {
     let square: i64 = quaternion.iter().map(|c| c * c).sum::<i64>() >> ROTATION;
     let factor = (3 << ROTATION) - square;
     quaternion.map(|c| ((c * factor + (1 << ROTATION)) >> (ROTATION + 1)).clamp(-i64::from(ONE), ONE.into()) as i32)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use core::f64::consts::TAU;
+    use proptest::prelude::*;
+
+    fn length(pose: &Pose) -> f64 {
+        pose.rotation.iter().map(|&c| (f64::from(c) / f64::from(ONE)).powi(2)).sum::<f64>().sqrt()
+    }
+
+    /// The largest difference between products of rows and those of an orthonormal matrix, in units of Q2.30.
+    fn skew(pose: &Pose) -> f64 {
+        let rows = pose.matrix().map(|row| row.map(|c| f64::from(c) / f64::from(ONE)));
+        let mut worst = 0f64;
+        for (i, a) in rows.iter().enumerate() {
+            for (k, b) in rows.iter().enumerate() {
+                let product: f64 = a.iter().zip(b).map(|(a, b)| a * b).sum();
+                worst = worst.max((product - f64::from(u8::from(i == k))).abs());
+            }
+        }
+        worst * f64::from(ONE)
+    }
+
+    fn quaternion() -> impl Strategy<Value = [i32; 4]> {
+        prop::array::uniform4(-ONE..=ONE).prop_filter("zero", |q| *q != [0; 4])
+    }
+
+    proptest! {
+        #![proptest_config(ProptestConfig { cases: 5_000, failure_persistence: None, ..ProptestConfig::default() })]
+
+        #[test]
+        fn rotations_are_orthonormal(q in quaternion(), bits in 0u32..30) {
+            let q = q.map(|c| c >> bits);
+            prop_assume!(q != [0; 4]);
+            let pose = Pose::from_quaternion(q.map(Rotation::from_bits)).unwrap();
+            prop_assert!((length(&pose) - 1.0).abs() <= QUATERNION_ERROR, "{}", length(&pose));
+            prop_assert!(skew(&pose) <= 12.0, "{}", skew(&pose));
+        }
+
+        /// A matrix is made of a quaternion, and the same quaternion of the matrix.
+        #[test]
+        fn matrices_lead_back(q in quaternion()) {
+            let pose = Pose::from_quaternion(q.map(Rotation::from_bits)).unwrap();
+            let back = Pose::from_matrix(pose.matrix().map(|row| row.map(Rotation::from_bits))).unwrap();
+            let same: i64 = pose.rotation.iter().zip(back.rotation).map(|(&a, b)| i64::from(a) * i64::from(b)).sum();
+            prop_assert!((same.abs() - (1 << (2 * ROTATION))).abs() < 16 << ROTATION, "{pose:?} {back:?}");
+        }
+
+        /// Rotated one after the other is rotated by the product.
+        #[test]
+        fn turned_is_the_product(a in quaternion(), b in quaternion()) {
+            let [a, b] = [a, b].map(|q| Pose::from_quaternion(q.map(Rotation::from_bits)).unwrap());
+            let both = a.turned(&b).matrix();
+            let columns = crate::math::vector::transposed(a.matrix());
+            let product = b.matrix().map(|row| columns.map(|column| (dot(row, column) >> ROTATION) as i32));
+            for (exact, found) in product.iter().flatten().zip(both.iter().flatten()) {
+                prop_assert!((exact - found).abs() <= 24, "{exact} {found}");
+            }
+        }
+
+        /// The z axis points to the target, and the y axis upwards.
+        #[test]
+        fn looking_at_looks_there(at in prop::array::uniform3(-8.0f64..8.0), to in prop::array::uniform3(-8.0f64..8.0)) {
+            let way = [to[0] - at[0], to[1] - at[1], to[2] - at[2]];
+            let long = way.iter().map(|c| c * c).sum::<f64>().sqrt();
+            prop_assume!(way[0].hypot(way[2]) > 0.05 * long && long > 0.1);
+            let pose = Pose::looking_at(at.map(Length::from_num), to.map(Length::from_num), [Length::ZERO, Length::ONE, Length::ZERO]).unwrap();
+            let [x, y, z] = pose.matrix();
+            for (found, exact) in [x[2], y[2], z[2]].into_iter().zip(way) {
+                prop_assert!((f64::from(found) / f64::from(ONE) - exact / long).abs() < 2e-3, "{pose:?}");
+            }
+            prop_assert!(y[1] > 0 && x[1].abs().max(z[1].abs()) <= ONE && y[0].abs() < ONE >> 9, "{pose:?}");
+        }
+    }
+
+    /// However many steps there are, the rotation stays one, and is where it should be.
+    #[test]
+    fn steps() {
+        let (steps, axis) = (1_000_000u32, [3, -2, 5]);
+        // Not a divisor of a turn.
+        let angle = Angle::from_bits(7_654_321);
+        let step = Pose::about(axis, angle).unwrap();
+        let mut pose = Pose::IDENTITY;
+        for _ in 0..steps {
+            pose = pose.turned(&step);
+        }
+        assert!((length(&pose) - 1.0).abs() <= QUATERNION_ERROR && skew(&pose) <= 12.0, "{} {}", length(&pose), skew(&pose));
+        // What the rounded step turns by.
+        let [w, x, y, z] = step.rotation.map(f64::from);
+        let half = x.hypot(y).hypot(z).atan2(w) * f64::from(steps);
+        let [w, x, y, z] = pose.rotation.map(f64::from);
+        let direction = [3.0, -2.0, 5.0].map(|c: f64| c / 38f64.sqrt());
+        let along = x * direction[0] + y * direction[1] + z * direction[2];
+        let found = along.atan2(w);
+        let off = (found - half).rem_euclid(TAU / 2.0);
+        let off = 2.0 * off.min(TAU / 2.0 - off);
+        assert!(off <= f64::from(steps) * STEP_ERROR, "{off:e}");
+    }
+
+    #[test]
+    fn angles_of_euler() {
+        let quarter = Angle::from_bits(1 << 30);
+        let [x, y, z] = Pose::from_euler(quarter, Angle::ZERO, Angle::ZERO).matrix();
+        // Turned to the left about y, the z axis points along x.
+        assert!(x[2] > ONE - 9 && z[0] < 9 - ONE && y[1] > ONE - 9, "{x:?} {y:?} {z:?}");
+        let all = Pose::from_euler(Angle::from_num(0.1), Angle::from_num(0.2), Angle::from_num(0.3));
+        let one_by_one = Pose::about([0, 0, 1], Angle::from_num(0.3)).unwrap();
+        let one_by_one = one_by_one.turned(&Pose::about([1, 0, 0], Angle::from_num(0.2)).unwrap());
+        assert_eq!(all, one_by_one.turned(&Pose::about([0, 1, 0], Angle::from_num(0.1)).unwrap()));
+    }
+
+    /// Half-way between two rotations is half the angle, the shorter way round.
+    #[test]
+    fn half_way() {
+        let [from, to] = [0.05, 0.85].map(|turns| Pose::about([0, 1, 0], Angle::from_num(turns)).unwrap());
+        let middle = from.towards(&to, 1 << 15);
+        let exact = Pose::about([0, 1, 0], Angle::from_num(0.95)).unwrap();
+        let same: i64 = middle.rotation.iter().zip(exact.rotation).map(|(&a, b)| i64::from(a) * i64::from(b)).sum();
+        assert!((same.abs() - (1 << (2 * ROTATION))).abs() < 16 << ROTATION, "{middle:?} {exact:?}");
+    }
 }
