@@ -148,7 +148,7 @@ impl<'a, C: Pixel> Renderer<'a, C> {
         let scene = &self.scene;
         check_scene(scene.camera(), scene.lights(), scene.materials(), self.settings.shader.facts(), on)?;
         self.settings.perspective_correct = on;
-        self.scene.set_changed();
+        self.scene.set_view_changed();
         Ok(())
     }
 
@@ -161,14 +161,14 @@ impl<'a, C: Pixel> Renderer<'a, C> {
             return Err(RenderError::Budget);
         }
         self.settings.budget = level(budget);
-        self.scene.set_changed();
+        self.scene.set_view_changed();
         Ok(())
     }
 
     /// Turns 8x8 ordered dither on or off; at first it is on in formats of one or two bits a channel.
     pub fn set_dither(&mut self, dither: bool) {
         self.settings.dither = dither;
-        self.scene.set_changed();
+        self.scene.set_view_changed();
     }
 
     /// Turns antialiasing by exact areas on or off; it is off at first.
@@ -183,7 +183,7 @@ impl<'a, C: Pixel> Renderer<'a, C> {
             return Err(RenderError::NoSamples);
         }
         self.settings.antialias = antialias;
-        self.scene.set_changed();
+        self.scene.set_view_changed();
         Ok(())
     }
 
@@ -192,7 +192,7 @@ impl<'a, C: Pixel> Renderer<'a, C> {
     /// levels.
     pub fn set_levels_of_detail(&mut self, on: bool) {
         self.settings.levels_of_detail = on;
-        self.scene.set_changed();
+        self.scene.set_view_changed();
     }
 
     /// The size of the viewport.
@@ -261,7 +261,9 @@ impl<'a, C: Pixel> Renderer<'a, C> {
         };
         let (mut rearranged, mut triangles, mut vertices) = (scene.rearranged, 0, 0);
         for (object, placement) in scene.objects().iter().zip(memory.placements.iter_mut()) {
-            rearranged |= placement.update(scene, &world, object, &placing);
+            if scene.view_changed || object.has_moved != 0 {
+                rearranged |= placement.update(scene, &world, object, &placing);
+            }
             (placement.first_triangle, placement.first_vertex) = (triangles, vertices);
             (triangles, vertices) = (triangles.wrapping_add(object.span), vertices.wrapping_add(object.vertices));
         }

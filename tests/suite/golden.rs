@@ -110,6 +110,24 @@ fn golden() {
     assert!(wrong.is_empty(), "{}", wrong.join("\n"));
 }
 
+/// Scripted scenes, while all of their objects move.
+#[test]
+fn scripted() {
+    let bless = bless();
+    let wrong = |name: &str| {
+        let scene = scene::load(name).expect("built-in scene");
+        let stream = scene.stream.parse().expect("built-in scene");
+        let of = |shader: Shader| {
+            let settings = Settings { size: scene.size.into(), style: shader.into(), band_rows: 16, format: Format::Rgb565 };
+            let drawn = render::picture(stream, &settings, 20).expect("built-in scene").rgb;
+            check_pixels(&root().join("golden").join(format!("{name}-{}.png", shader.name())), settings.size, &drawn, bless)
+        };
+        [Shader::FLAT, Shader::GOURAUD, Shader::PHONG, Shader::AUTO].into_iter().filter_map(of).collect::<Vec<_>>()
+    };
+    let wrong = scene::SCRIPTED.map(wrong).concat();
+    assert!(wrong.is_empty(), "{}", wrong.join("\n"));
+}
+
 /// Every pixel format as it is drawn unless somebody says otherwise, on a display of 128x64.
 #[test]
 fn formats() {

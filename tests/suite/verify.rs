@@ -9,7 +9,7 @@ use microphong::{
 };
 use microphong_sim::{
     board::{self, Board, Until, build::program, elf::Elf},
-    scene,
+    scene::{self, SCRIPTED},
     shader::Shader,
     verify::{self, Request},
 };
@@ -46,6 +46,12 @@ fn matrix(board: Board) -> Result {
                 pictures.push(Request { frames: 1, ..request });
             }
         }
+    }
+    // The smallest board has no room for several objects.
+    let scripted = if board == Board::Lm3s6965evb { &[] } else { &SCRIPTED[..] };
+    for scene in scripted {
+        pictures.push(request(board, scene, Shader::AUTO)?);
+        pictures.push(request(board, scene, Shader::GOURAUD)?);
     }
     let reports: anyhow::Result<Vec<_>> = pictures.par_iter().map(|request| verify::run(request, &elf, directory.path())).collect();
     for (request, report) in pictures.iter().zip(reports?) {

@@ -11,7 +11,7 @@ pub mod level;
 pub mod page;
 mod samples;
 
-use anyhow::{Context, Result};
+use anyhow::{Context, Result, ensure};
 use edges::Edges;
 pub use edges::Jumps;
 use embedded_graphics_core::{geometry::Size, pixelcolor::Rgb565};
@@ -101,7 +101,7 @@ impl<'s> Reference<'s> {
     /// Frame `number` on a picture of `size` pixels.
     ///
     /// # Errors
-    /// When no pixel shows a triangle.
+    /// When no pixel shows a triangle, or the scene has several objects.
     pub fn new(stream: Stream<'s>, size: (u32, u32), number: u32) -> Result<Self> {
         Self::of(stream, Frame::new(stream, size, number), number, false)
     }
@@ -115,6 +115,7 @@ impl<'s> Reference<'s> {
     }
 
     fn of(stream: Stream<'s>, frame: Frame, number: u32, perspective_correct: bool) -> Result<Self> {
+        ensure!(stream.instances.is_empty(), "the scene has several objects, and the reference draws one: compare their meshes one by one");
         let size = frame.size;
         let (mut starts, mut facets, mut points) = (vec![0], Vec::new(), Vec::new());
         let mut shown = vec![false; frame.facets.len()];

@@ -43,8 +43,9 @@ pub(crate) struct SceneMaterial {
 /// What is drawn: objects that move in the world, the materials of a stream, lights, a camera, and a background.
 ///
 /// At first it is what the stream says: its camera, its lights, and one object that consists of all its meshes. Whatever a program changes is
-/// checked at once, and drawn by the next [`crate::Renderer::draw`]. A change of poses, of visibility or of the camera costs nothing else; a
-/// changed material computes its own tables anew, and a changed colour or number of lights those of all materials.
+/// checked at once, and drawn by the next [`crate::Renderer::draw`]. What has moved
+/// is placed anew, and where camera or lights have, all objects are; nothing else is computed again. A changed material computes its own tables
+/// anew, and a changed colour or number of lights those of all materials.
 ///
 /// The world is right-handed, and lengths in it are units of object space. Objects lie within 16 units of its origin along each axis, and are
 /// scaled by 1/16 to 8. Places in the space of the eye are exact to 2^-14 units. Depth is 16 bits of `near / z`: at the depth `z` it tells
@@ -66,8 +67,9 @@ pub struct Scene<'a> {
     objects: &'a mut [Object],
     count: usize,
     limits: Limits,
-    /// Whether something has changed since the latest frame, and whether the number of objects has, or what they are made of.
+    /// Whether something has changed since the latest frame, and whether all objects are seen otherwise, or there are others.
     changed: bool,
+    pub(crate) view_changed: bool,
     pub(crate) rearranged: bool,
 }
 
@@ -91,6 +93,7 @@ impl<'a> Scene<'a> {
             count: 0,
             limits,
             changed: true,
+            view_changed: true,
             rearranged: true,
         };
         // A renderer is refused where the stream has more objects than there is room for.
@@ -111,12 +114,13 @@ impl<'a> Scene<'a> {
     /// stays as it is.
     pub fn play(&mut self, number: u32) {
         let place = self.place_of(number);
-        self.changed |= place != self.place;
-        self.place = place;
+        if place != self.place {
+            self.place = place;
+            self.set_view_changed();
+        }
         let frame = self.frame_of(number);
         if self.played != frame {
             self.played = frame;
-            self.changed |= frame.is_some();
             let tracks = if frame.is_some() { self.stream.tracks } else { &[] };
             tracks.iter().for_each(|track| self.follow(track, frame.unwrap_or(0)));
         }
@@ -136,13 +140,16 @@ impl<'a> Scene<'a> {
         // A checked stream has what its tracks move.
         match track.kind {
             OBJECT_TRACK => {
-                if let Ok(object) = self.change(index) {
-                    (object.hidden, object.pose) = (is_hidden.into(), if is_hidden { object.pose } else { pose });
+                if let Ok(object) = self.object(index) {
+                    let pose = if is_hidden { object.pose } else { pose };
+                    self.changed |= object.place(pose, is_hidden);
                 }
             }
             LIGHT_TRACK => {
-                if let Some(light) = self.lights.get_mut(index) {
-                    light.vector = pose.position().map(Length::to_bits);
+                let vector = pose.position().map(Length::to_bits);
+                if let Some(light) = self.lights.get_mut(index).filter(|light| light.vector != vector) {
+                    light.vector = vector;
+                    self.set_view_changed();
                 }
             }
             _ => {
@@ -174,12 +181,13 @@ impl<'a> Scene<'a> {
 
     /// The scene is drawn.
     pub(crate) fn set_drawn(&mut self) {
-        (self.changed, self.rearranged) = (false, false);
+        (self.changed, self.view_changed, self.rearranged) = (false, false, false);
+        self.objects.iter_mut().for_each(|object| object.has_moved = 0);
     }
 
-    /// The same scene looks otherwise, by a changed setting.
-    pub(crate) fn set_changed(&mut self) {
-        self.changed = true;
+    /// The same scene looks otherwise, by a changed setting or because it is seen from elsewhere.
+    pub(crate) fn set_view_changed(&mut self) {
+        (self.changed, self.view_changed) = (true, true);
     }
 
     /// The objects. The earlier of two that are equally near is seen.
@@ -220,12 +228,11 @@ impl<'a> Scene<'a> {
     }
 
     fn rearrange(&mut self) {
-        (self.changed, self.rearranged) = (true, true);
+        (self.changed, self.view_changed, self.rearranged) = (true, true, true);
     }
 
-    /// Object `index`, which is about to change.
-    fn change(&mut self, index: usize) -> Result<&mut Object, SceneError> {
-        self.changed = true;
+    /// Object `index`.
+    fn object(&mut self, index: usize) -> Result<&mut Object, SceneError> {
         self.objects.get_mut(..self.count).and_then(|objects| objects.get_mut(index)).ok_or(SceneError::Object { index })
     }
 
@@ -234,7 +241,9 @@ impl<'a> Scene<'a> {
     /// # Errors
     /// When there is no such object.
     pub fn set_pose(&mut self, index: usize, pose: Pose) -> Result<(), SceneError> {
-        self.change(index)?.pose = pose;
+        let object = self.object(index)?;
+        let hidden = object.hidden != 0;
+        self.changed |= object.place(pose, hidden);
         Ok(())
     }
 
@@ -243,7 +252,9 @@ impl<'a> Scene<'a> {
     /// # Errors
     /// When there is no such object.
     pub fn set_visible(&mut self, index: usize, visible: bool) -> Result<(), SceneError> {
-        self.change(index)?.hidden = (!visible).into();
+        let object = self.object(index)?;
+        let pose = object.pose;
+        self.changed |= object.place(pose, !visible);
         Ok(())
     }
 
@@ -256,7 +267,8 @@ impl<'a> Scene<'a> {
         if material != OWN_MATERIALS && usize::from(material) >= self.materials.len() {
             return Err(SceneError::Material { index: material.into() });
         }
-        self.change(index)?.material = material;
+        self.object(index)?.material = material;
+        self.changed = true;
         Ok(())
     }
 
@@ -311,7 +323,8 @@ impl<'a> Scene<'a> {
         if !lights.iter().map(|light| light.colour).eq(self.lights.iter().map(|light| light.colour)) {
             self.set_stale();
         }
-        (self.lights, self.changed) = (lights, true);
+        self.lights = lights;
+        self.set_view_changed();
         Ok(())
     }
 
@@ -347,8 +360,11 @@ impl<'a> Scene<'a> {
         if !self.limits.near_lights && camera.viewer == VIEWER_LOCAL && camera.projection == PERSPECTIVE {
             return Err(SceneError::Light);
         }
-        (self.camera, self.changed) = (camera, true);
-        self.place = self.place_of(self.place);
+        if self.camera != camera {
+            self.camera = camera;
+            self.place = self.place_of(self.place);
+            self.set_view_changed();
+        }
         Ok(())
     }
 

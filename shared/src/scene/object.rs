@@ -29,6 +29,8 @@ pub struct Object {
     pub(crate) radius: u16,
     /// Whether its meshes have coarser levels.
     pub(crate) has_levels: u16,
+    /// Whether it lies otherwise than in the latest frame.
+    pub(crate) has_moved: u32,
 }
 
 impl Object {
@@ -59,6 +61,7 @@ impl Object {
             vertices,
             radius,
             has_levels: all.iter().any(|mesh| mesh.error > 0).into(),
+            has_moved: 1,
         })
     }
 
@@ -85,6 +88,14 @@ impl Object {
     #[must_use]
     pub fn is_visible(&self) -> bool {
         self.hidden == 0
+    }
+
+    /// Moves, shows or hides it. Returns whether it was otherwise.
+    pub(crate) fn place(&mut self, pose: Pose, hidden: bool) -> bool {
+        let moves = (self.pose, self.hidden) != (pose, hidden.into());
+        (self.pose, self.hidden) = (pose, hidden.into());
+        self.has_moved |= u32::from(moves);
+        moves
     }
 
     /// Index of the material of `mesh` on this object.
