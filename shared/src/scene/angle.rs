@@ -2,7 +2,7 @@
 
 use crate::format::{Angle, ROTATION};
 
-/// Largest error of [`sin_cos`]: eight units of Q2.30.
+/// Largest error of the sine and cosine of a rotation's angle: eight units of Q2.30.
 pub const SIN_COS_ERROR: f64 = 8.0 / (1u32 << 30) as f64;
 
 /// π/2, Q2.30.

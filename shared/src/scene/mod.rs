@@ -1,4 +1,24 @@
 //! What is drawn: objects in the world, lights, a camera. A program changes it between frames.
+//!
+//! ```
+//! use embedded_graphics_core::pixelcolor::Rgb565;
+//! use microphong::{Pose, Renderer, SceneError, fixed::types::I18F14};
+//!
+//! /// Two objects, of meshes 0 and 1 of the stream: the second stands to the right of the first. Once, before the first frame.
+//! fn arrange(renderer: &mut Renderer<'_, Rgb565>) -> Result<(), SceneError> {
+//!     let scene = renderer.scene();
+//!     let [zero, half, two, five] = ["0", "0.5", "2", "5"].map(|text| text.parse().unwrap_or(I18F14::ZERO));
+//!     scene.clear();
+//!     scene.add(0..1, Pose::IDENTITY)?;
+//!     scene.add(1..2, Pose::IDENTITY.at([two, zero, zero])?)?;
+//!     scene.look_at([zero, half, five], [zero; 3], [zero, I18F14::ONE, zero])
+//! }
+//!
+//! /// The first object lies as a sensor says; [`Renderer::draw`] draws it so.
+//! fn follow(renderer: &mut Renderer<'_, Rgb565>, quaternion: [f32; 4]) -> Result<(), SceneError> {
+//!     renderer.scene().set_pose(0, Pose::from_f32(quaternion, [0.0; 3], 1.0)?)
+//! }
+//! ```
 
 mod angle;
 mod error;
