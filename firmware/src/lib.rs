@@ -151,7 +151,7 @@ fn animate<D: Display>(
     defmt::info!("stack {=usize} bytes", stack::used());
     display.end();
     // All has been checked: from now on at full speed. A frame that is the picture shown is neither drawn nor sent. Outside of the rows
-    // `shown` the display shows nothing but background: what is so in this frame too is not drawn.
+    // `shown` the display shows nothing but background: what is so in this frame too is not drawn, nor are rows that no moving object touches.
     let mut shown = 0..display.size().height;
     let mut start = display.now();
     loop {
@@ -160,8 +160,9 @@ fn animate<D: Display>(
             display.begin()?;
             if !renderer.is_latest(number) {
                 let mut frame = painter.prepare(&mut renderer, number);
-                let rows = frame.rows();
-                frame.limit(rows.start.min(shown.start)..rows.end.max(shown.end));
+                let (rows, changed) = (frame.rows(), frame.changed_rows());
+                let reached = rows.start.min(shown.start)..rows.end.max(shown.end);
+                frame.limit(reached.start.max(changed.start)..reached.end.min(changed.end));
                 shown = rows;
                 painter.draw(display, frame, None)?;
                 drawn += 1;

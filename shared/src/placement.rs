@@ -7,6 +7,7 @@ use crate::{
     scene::{Object, Scene},
     stream::record::Mesh,
 };
+use core::ops::Range;
 use embedded_graphics_core::geometry::Size;
 use zerocopy::{FromBytes, Immutable, IntoBytes, KnownLayout};
 
@@ -27,6 +28,10 @@ pub(crate) struct Placement {
     tolerance: u16,
     /// Whether no part of it can be seen: 0 or 1.
     is_out_of_sight: u16,
+    /// The rows that it can reach, half open.
+    rows: [u16; 2],
+    /// For alignment.
+    reserved: u32,
 }
 
 /// How objects are placed.
@@ -42,11 +47,13 @@ impl Placement {
     /// Places `object` of a scene that is seen as `world` says. Returns whether other levels of it are drawn than before.
     pub(crate) fn update(&mut self, scene: &Scene<'_>, world: &ModelView, object: &Object, how: &Placing) -> bool {
         if object.hidden != 0 {
+            self.rows = [0; 2];
             return self.draws(0, GeometricError::ZERO);
         }
         let model_view = world.of(&object.pose);
         self.view = View::new(&scene.camera, &model_view, how.size);
         self.is_out_of_sight = (!self.view.sees(object.radius, how.size)).into();
+        self.rows = if self.is_out_of_sight == 0 { self.view.rows(object.radius, how.size) } else { [0; 2] };
         let has_levels = object.has_levels != 0 && how.levels_of_detail;
         let tolerance = if has_levels { self.tolerance(scene, object, how.size) } else { GeometricError::ZERO };
         if self.is_out_of_sight == 0 {
@@ -59,6 +66,12 @@ impl Placement {
             scene.stream.levels_within(object.meshes(), tolerance).fold(0, |sum, mesh| sum + mesh.triangles)
         };
         self.draws(triangles, tolerance)
+    }
+
+    /// The rows that it can reach; none if it is not seen.
+    pub(crate) fn rows(&self) -> Range<u32> {
+        let [top, bottom] = self.rows.map(u32::from);
+        top..bottom
     }
 
     fn draws(&mut self, triangles: u32, tolerance: GeometricError) -> bool {

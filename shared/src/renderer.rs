@@ -15,6 +15,7 @@ use crate::{
     shader::Shader,
     stream::record::{Camera, DIRECTIONAL, Light, Material, PERSPECTIVE, VIEWER_LOCAL},
 };
+use core::ops::Range;
 use embedded_graphics_core::geometry::Size;
 
 /// Draws the frames of a scene.
@@ -260,15 +261,28 @@ impl<'a, C: Pixel> Renderer<'a, C> {
             leaves_out_back_faces: settings.skips().back_faces,
         };
         let (mut rearranged, mut triangles, mut vertices) = (scene.rearranged, 0, 0);
+        let mut rows = if scene.repainted { 0..settings.size.height } else { 0..0 };
         for (object, placement) in scene.objects().iter().zip(memory.placements.iter_mut()) {
             if scene.view_changed || object.has_moved != 0 {
+                rows = union(rows, placement.rows());
                 rearranged |= placement.update(scene, &world, object, &placing);
+                rows = union(rows, placement.rows());
             }
             (placement.first_triangle, placement.first_vertex) = (triangles, vertices);
             (triangles, vertices) = (triangles.wrapping_add(object.span), vertices.wrapping_add(object.vertices));
         }
+        scene.changed_rows = rows;
         scene.set_drawn();
         rearranged
+    }
+}
+
+/// The rows from the top of the higher one to the bottom of the lower one; an empty one counts for nothing.
+fn union(one: Range<u32>, other: Range<u32>) -> Range<u32> {
+    match (one.is_empty(), other.is_empty()) {
+        (true, _) => other,
+        (_, true) => one,
+        _ => one.start.min(other.start)..one.end.max(other.end),
     }
 }
 

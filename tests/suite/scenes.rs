@@ -229,6 +229,43 @@ fn scripted_scenes_are_the_same_in_bands() {
     }
 }
 
+/// Where the rows of a frame that may have changed are drawn over the frame before, the picture is the whole frame, and rows are saved.
+#[test]
+fn changed_rows_are_all_that_changes() {
+    let mut saved = 0;
+    for name in SCRIPTED {
+        let scene = scene::load(name).unwrap();
+        let stream = scene.stream.parse().unwrap();
+        let layout = Layout::new(SIZE.width as usize, 13).with_room_for(&stream).active_triangles(40);
+        let mut memory = vec![0; layout.words::<Rgb888>()];
+        let mut renderer = Renderer::with_shader(stream, SIZE, &layout, &mut memory, Shader::PHONG).unwrap();
+        let mut shown = vec![Rgb888::BLACK; (SIZE.width * SIZE.height) as usize];
+        for number in (0..70).step_by(3) {
+            if number == 33 {
+                // What is not a place of an object changes all rows.
+                renderer.scene().set_background([9, 40, 70]);
+            }
+            let mut band = vec![Rgb888::BLACK; layout.band()];
+            let mut frame = renderer.frame(number);
+            let rows = frame.changed_rows();
+            saved += SIZE.height - (rows.end - rows.start);
+            frame.limit(rows);
+            while let Some(area) = frame.next_band(&mut band).unwrap() {
+                let (first, count) = ((area.top_left.y as u32 * SIZE.width) as usize, (area.size.width * area.size.height) as usize);
+                shown[first..first + count].copy_from_slice(&band[..count]);
+            }
+            let whole = drawn(stream, room(&stream).objects(12), |scene| {
+                scene.play(number);
+                if number >= 33 {
+                    scene.set_background([9, 40, 70]);
+                }
+            });
+            assert!(shown == whole, "{name}, frame {number}");
+        }
+    }
+    assert!(saved > 1000, "{saved} rows");
+}
+
 /// What a program changes is drawn as if the stream had said so.
 #[test]
 fn changes_are_drawn_as_if_the_stream_had_them() {

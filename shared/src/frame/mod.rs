@@ -41,6 +41,13 @@ impl<'r, C: Pixel> Frame<'r, C> {
         self.part.rows.clone()
     }
 
+    /// The rows in which this frame may differ from the one that the renderer drew before; all others are the same. Where that one is shown, it is
+    /// enough to draw and send these, see [`Self::limit`].
+    #[must_use]
+    pub fn changed_rows(&self) -> Range<u32> {
+        self.context.scene.changed_rows.clone()
+    }
+
     /// The row above which a `share` of the triangles end, of 2^16: about where [`Self::in_two`] has to divide the frame for two processors
     /// to share the work so.
     #[must_use]

@@ -98,6 +98,7 @@ pub struct View {
     depth_shift: u32,
     /// [`crate::format::Scale`] of the object.
     scale: u32,
+    /// For alignment.
     reserved: u32,
 }
 
@@ -236,9 +237,7 @@ impl View {
     /// pixels. Errs on the side of true.
     #[must_use]
     pub fn sees(&self, radius: u16, size: Size) -> bool {
-        let radius = ((u64::from(radius) * u64::from(self.scale)) >> 16) as i64;
-        // Of what is rounded on the way.
-        let radius = radius + (radius >> 5) + 4;
+        let radius = self.ball(radius);
         let [x, y, z] = self.translation.map(i64::from);
         if z + radius < i64::from(self.near) || !self.is_perspective() && z - radius > i64::from(self.far) {
             return false;
@@ -252,6 +251,31 @@ impl View {
             c.abs() * focal - depth * half > radius * normal
         };
         !(beside(x, size.width) || beside(y, size.height))
+    }
+
+    /// The rows that the ball of `radius`, [`crate::format::Radius`], about the origin of object space can reach in a viewport of `size` pixels,
+    /// half open. Errs on the side of more.
+    #[must_use]
+    pub fn rows(&self, radius: u16, size: Size) -> [u16; 2] {
+        let radius = self.ball(radius);
+        let [_, y, z] = self.translation.map(i64::from);
+        let (nearest, farthest) = if self.is_perspective() { (z - radius, z + radius) } else { (1 << UNIT, 1 << UNIT) };
+        if nearest < i64::from(self.near) && self.is_perspective() {
+            return [0, size.height as u16];
+        }
+        // Heights above the middle, 1/16 pixel: a point above it is seen the higher the nearer it is, one below the lower.
+        let seen = |height: i64| height * (self.focal >> 16) / if height > 0 { nearest } else { farthest };
+        let lowest = |height: i64| height * (self.focal >> 16) / if height < 0 { nearest } else { farthest };
+        let (top, bottom) = (seen(y + radius), lowest(y - radius));
+        // A pixel more, for what is rounded on the way.
+        let row = |above: i64, more: i64| (((i64::from(self.centre[1]) - above) >> SUBPIXEL) + more).clamp(0, size.height.into()) as u16;
+        [row(top, -2), row(bottom, 3)]
+    }
+
+    /// The radius of a ball in object space, [`crate::format::Radius`], in the world, Q18.14, with what is rounded on the way.
+    fn ball(&self, radius: u16) -> i64 {
+        let radius = ((u64::from(radius) * u64::from(self.scale)) >> 16) as i64;
+        radius + (radius >> 5) + 4
     }
 
     /// How far rounding may move a vertex as far from the eye as `reach`, Q.30.

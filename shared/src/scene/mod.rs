@@ -90,6 +90,10 @@ pub struct Scene<'a> {
     /// Whether something has changed since the latest frame, and whether all objects are seen otherwise, or there are others.
     changed: bool,
     pub(crate) view_changed: bool,
+    /// Whether something other than the place of single objects has changed.
+    pub(crate) repainted: bool,
+    /// Rows in which the latest frame may differ from the one before.
+    pub(crate) changed_rows: Range<u32>,
     pub(crate) rearranged: bool,
 }
 
@@ -114,6 +118,8 @@ impl<'a> Scene<'a> {
             limits,
             changed: true,
             view_changed: true,
+            repainted: true,
+            changed_rows: 0..0,
             rearranged: true,
         };
         // A renderer is refused where the stream has more objects than there is room for.
@@ -201,13 +207,19 @@ impl<'a> Scene<'a> {
 
     /// The scene is drawn.
     pub(crate) fn set_drawn(&mut self) {
-        (self.changed, self.view_changed, self.rearranged) = (false, false, false);
+        (self.changed, self.view_changed, self.rearranged, self.repainted) = (false, false, false, false);
         self.objects.iter_mut().for_each(|object| object.has_moved = 0);
+    }
+
+    /// Colours have changed.
+    fn set_repainted(&mut self) {
+        (self.changed, self.repainted) = (true, true);
     }
 
     /// The same scene looks otherwise, by a changed setting or because it is seen from elsewhere.
     pub(crate) fn set_view_changed(&mut self) {
-        (self.changed, self.view_changed) = (true, true);
+        self.view_changed = true;
+        self.set_repainted();
     }
 
     /// The objects. The earlier of two that are equally near is seen.
@@ -248,7 +260,8 @@ impl<'a> Scene<'a> {
     }
 
     fn rearrange(&mut self) {
-        (self.changed, self.view_changed, self.rearranged) = (true, true, true);
+        self.rearranged = true;
+        self.set_view_changed();
     }
 
     /// Object `index`.
@@ -288,7 +301,7 @@ impl<'a> Scene<'a> {
             return Err(SceneError::Material { index: material.into() });
         }
         self.object(index)?.material = material;
-        self.changed = true;
+        self.set_repainted();
         Ok(())
     }
 
@@ -308,7 +321,7 @@ impl<'a> Scene<'a> {
             return Err(SceneError::Exponent { least });
         }
         *self.materials.get_mut(index).ok_or(SceneError::Material { index })? = SceneMaterial { material, is_stale: 1 };
-        self.changed = true;
+        self.set_repainted();
         Ok(())
     }
 
@@ -321,7 +334,7 @@ impl<'a> Scene<'a> {
     /// The tables of all materials are to be computed anew.
     pub(crate) fn set_stale(&mut self) {
         self.materials.iter_mut().for_each(|slot| slot.is_stale = 1);
-        self.changed = true;
+        self.set_repainted();
     }
 
     /// The lights.
@@ -362,7 +375,8 @@ impl<'a> Scene<'a> {
 
     /// Changes the colour where nothing is drawn: red, green, blue.
     pub fn set_background(&mut self, background: [u8; 3]) {
-        (self.background, self.changed) = (background, true);
+        self.background = background;
+        self.set_repainted();
     }
 
     /// The camera. It may orbit: see [`Self::play`].
