@@ -1,6 +1,7 @@
 //! Where an object is in one frame: computed once, before its triangles are.
 
 use crate::{
+    arch::quotient::long,
     format::GeometricError,
     geometry::{cull::Facing, detail::tolerance, model_view::ModelView, projection::View},
     lighting::lights::Lighting,
@@ -28,10 +29,6 @@ pub(crate) struct Placement {
     tolerance: u16,
     /// Whether no part of it can be seen: 0 or 1.
     is_out_of_sight: u16,
-    /// The rows that it can reach, half open.
-    rows: [u16; 2],
-    /// For alignment.
-    reserved: u32,
 }
 
 /// How objects are placed.
@@ -47,13 +44,11 @@ impl Placement {
     /// Places `object` of a scene that is seen as `world` says. Returns whether other levels of it are drawn than before.
     pub(crate) fn update(&mut self, scene: &Scene<'_>, world: &ModelView, object: &Object, how: &Placing) -> bool {
         if object.hidden != 0 {
-            self.rows = [0; 2];
             return self.draws(0, GeometricError::ZERO);
         }
         let model_view = world.of(&object.pose);
         self.view = View::new(&scene.camera, &model_view, how.size);
         self.is_out_of_sight = (!self.view.sees(object.radius, how.size)).into();
-        self.rows = if self.is_out_of_sight == 0 { self.view.rows(object.radius, how.size) } else { [0; 2] };
         let has_levels = object.has_levels != 0 && how.levels_of_detail;
         let tolerance = if has_levels { self.tolerance(scene, object, how.size) } else { GeometricError::ZERO };
         if self.is_out_of_sight == 0 {
@@ -68,10 +63,11 @@ impl Placement {
         self.draws(triangles, tolerance)
     }
 
-    /// The rows that it can reach; none if it is not seen.
-    pub(crate) fn rows(&self) -> Range<u32> {
-        let [top, bottom] = self.rows.map(u32::from);
-        top..bottom
+    /// The rows that `object` can reach where it was placed; none if it was not seen.
+    pub(crate) fn rows(&self, object: &Object, size: Size) -> Range<u32> {
+        let seen = self.triangles > 0 && self.is_out_of_sight == 0;
+        let [top, bottom] = if seen { self.view.rows(object.radius, size) } else { [0; 2] };
+        top.into()..bottom.into()
     }
 
     fn draws(&mut self, triangles: u32, tolerance: GeometricError) -> bool {
@@ -85,7 +81,7 @@ impl Placement {
         let ([.., depth], scale) = (self.view.origin(), u64::from(self.view.scale()));
         let radius = ((u64::from(object.radius) * scale + 0xFFFF) >> 16) as u32;
         let error = tolerance(&scene.camera, depth, radius, size).to_bits();
-        GeometricError::from_bits(((u64::from(error) << 16) / scale.max(1)).min(u16::MAX.into()) as u16)
+        GeometricError::from_bits(long(u64::from(error) << 16, scale).min(u16::MAX.into()) as u16)
     }
 
     /// Its meshes, each at the level that is drawn.

@@ -264,9 +264,14 @@ impl<'a, C: Pixel> Renderer<'a, C> {
         let mut rows = if scene.repainted { 0..settings.size.height } else { 0..0 };
         for (object, placement) in scene.objects().iter().zip(memory.placements.iter_mut()) {
             if scene.view_changed || object.has_moved != 0 {
-                rows = union(rows, placement.rows());
+                // All rows are drawn where colours have changed, or the view has.
+                if !scene.repainted {
+                    rows = union(rows, placement.rows(object, settings.size));
+                }
                 rearranged |= placement.update(scene, &world, object, &placing);
-                rows = union(rows, placement.rows());
+                if !scene.repainted {
+                    rows = union(rows, placement.rows(object, settings.size));
+                }
             }
             (placement.first_triangle, placement.first_vertex) = (triangles, vertices);
             (triangles, vertices) = (triangles.wrapping_add(object.span), vertices.wrapping_add(object.vertices));

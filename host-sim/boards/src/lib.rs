@@ -225,7 +225,12 @@ pub struct Executed {
 /// When `stream` is shorter than its header says.
 pub fn watchable(board: Board, stream: &[u8], shader: Shader) -> Result<Vec<u8>> {
     match board {
-        Board::Pico => verify::with_header(&verify::prepare(stream, shader, 2)?, |header| header.camera.period = u16::MAX),
+        // What has tracks moves by itself.
+        Board::Pico => verify::with_header(&verify::prepare(stream, shader, 2)?, |header| {
+            if header.tracks == 0 {
+                header.camera.period = u16::MAX;
+            }
+        }),
         Board::Lm3s6965evb | Board::Mps2An385 | Board::Mps2An386 => verify::prepare(stream, shader, 1),
     }
 }

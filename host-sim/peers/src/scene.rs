@@ -6,7 +6,7 @@ use microphong::{
     Stream,
     format::{COSINE, ROTATION, UNIT},
     geometry::model_view::ModelView,
-    lighting::lights::{Lighting, Source},
+    lighting::lights::Lighting,
     stream::record::{Camera, PERSPECTIVE},
 };
 

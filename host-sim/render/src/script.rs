@@ -248,7 +248,7 @@ fn mesh(script: &MeshScript, folder: &Path) -> Result<(Mesh, Vec<Option<crate::m
         (None, Some(shape)) => {
             let mesh = match shape {
                 "box" => shapes::cuboid(),
-                "cylinder" => shapes::cylinder(40),
+                "cylinder" => shapes::cylinder(32),
                 "sphere" => shapes::sphere(18, 11, 0.0),
                 "torus" => shapes::torus(28, 10),
                 other => bail!("there is no shape {other:?}; take {SHAPES}"),

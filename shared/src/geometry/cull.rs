@@ -30,7 +30,7 @@
 //! parts, which may be thinner than it is: one of them may turn over and be lost.
 
 use crate::{
-    arch::{product::product, zeros::leading_zeros},
+    arch::{product::product, quotient::long, zeros::leading_zeros},
     format::{INVERSE_ALTITUDE, SUBPIXEL, UNIT},
     geometry::projection::View,
     math::vector::{narrow_dot, wide},
@@ -85,7 +85,8 @@ impl Facing {
         let (vector, reach) = (view.viewer(), view.reach(radius));
         // In object space: rounding moves a corner by as much more as the object is small.
         let scale = u64::from(view.scale());
-        let moved = ((view.displacement(reach) << 16) + scale - 1).checked_div(scale).unwrap_or(u64::MAX);
+        let moved = view.displacement(reach);
+        let moved = if scale == 1 << 16 { moved } else { long((moved << 16) + scale - 1, scale) };
         let (right, larger, offset_scale, reach) = if view.is_perspective() {
             // The eye is taken to units that are larger than those of object space by a power of two, and so large that 32 bits hold it.
             let farthest = vector.iter().fold(0, |m, c| m | c.unsigned_abs()) >> UNIT;

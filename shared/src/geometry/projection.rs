@@ -3,7 +3,7 @@
 use crate::{
     arch::{
         product::{product, upper},
-        quotient::long,
+        quotient::{long, signed_long},
     },
     format::{DEPTH, ROTATION, SUBPIXEL, UNIT},
     geometry::model_view::ModelView,
@@ -188,7 +188,7 @@ impl View {
     /// `length` of the world, Q18.14, in units of object space, rounded up.
     #[must_use]
     pub fn in_object_units(&self, length: u32) -> u32 {
-        long((u64::from(length) << 16) + u64::from(self.scale - 1), self.scale.into()) as u32
+        if self.scale == 1 << 16 { length } else { long((u64::from(length) << 16) + u64::from(self.scale - 1), self.scale.into()) as u32 }
     }
 
     /// The object's scale, [`crate::format::Scale`].
@@ -264,9 +264,10 @@ impl View {
             return [0, size.height as u16];
         }
         // Heights above the middle, 1/16 pixel: a point above it is seen the higher the nearer it is, one below the lower.
-        let seen = |height: i64| height * (self.focal >> 16) / if height > 0 { nearest } else { farthest };
-        let lowest = |height: i64| height * (self.focal >> 16) / if height < 0 { nearest } else { farthest };
-        let (top, bottom) = (seen(y + radius), lowest(y - radius));
+        let seen = |height: i64, depth: i64| signed_long(height * (self.focal >> 16), depth.unsigned_abs());
+        let (upper, lower) = (y + radius, y - radius);
+        let top = seen(upper, if upper > 0 { nearest } else { farthest });
+        let bottom = seen(lower, if lower < 0 { nearest } else { farthest });
         // A pixel more, for what is rounded on the way.
         let row = |above: i64, more: i64| (((i64::from(self.centre[1]) - above) >> SUBPIXEL) + more).clamp(0, size.height.into()) as u16;
         [row(top, -2), row(bottom, 3)]

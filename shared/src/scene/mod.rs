@@ -146,9 +146,13 @@ impl<'a> Scene<'a> {
         }
         let frame = self.frame_of(number);
         if self.played != frame {
+            // What has one key is put there once; a program may move it from there.
+            let fewest = if self.played.is_some() { 2 } else { 1 };
             self.played = frame;
-            let tracks = if frame.is_some() { self.stream.tracks } else { &[] };
-            tracks.iter().for_each(|track| self.follow(track, frame.unwrap_or(0)));
+            let stream = self.stream;
+            for track in stream.tracks.iter().filter(|track| track.keys >= fewest) {
+                self.follow(track, frame.unwrap_or(0));
+            }
         }
     }
 
@@ -160,8 +164,9 @@ impl<'a> Scene<'a> {
         let (mut pose, index) = (Pose::of_key(key), usize::from(track.index));
         let is_hidden = key.scale == 0;
         if let Some(after) = keys.get(next).filter(|after| next > 0 && !is_hidden && after.scale != 0) {
-            let share = ((frame - key.frame) as u64) << 16;
-            pose = pose.towards(&Pose::of_key(after), (share / u64::from(after.frame - key.frame).max(1)) as i64);
+            // A stream has no more frames than 16 bits can count.
+            let share = (frame.wrapping_sub(key.frame) << 16).checked_div(after.frame.wrapping_sub(key.frame)).unwrap_or(0);
+            pose = pose.towards(&Pose::of_key(after), share.into());
         }
         // A checked stream has what its tracks move.
         match track.kind {
