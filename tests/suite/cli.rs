@@ -723,6 +723,49 @@ fn convert_inspect_and_render_work_together() {
     assert_eq!(place.succeeds(&["scenes", "--json"]).lines().count(), count);
 }
 
+/// A text that is no scene is refused with the place and what is wrong, and leaves no file.
+#[test]
+fn texts_that_are_no_scenes_are_refused() {
+    let place = Place::new();
+    let good = "frames = 10\n[camera]\nat = [0, 0, 4]\n[[mesh]]\nname = \"a\"\nshape = \"sphere\"\n[[object]]\nmesh = \"a\"\n";
+    place.file("good.toml", good);
+    place.succeeds(&["convert", "good.toml", "-o", "good.tri"]);
+    let said = place.succeeds(&["inspect", "good.tri"]);
+    assert!(said.contains("1 objects") && said.contains("0 objects and 0 lights move, the camera stands still"), "{said}");
+    assert!(place.succeeds(&["inspect", "good.tri", "--json"]).contains("\"objects\":1"));
+    place.succeeds(&["render", "good.toml", "-o", "good.png"]);
+    place.fails(&["compare", "board"], 1, &["board", "several objects"]);
+    let with = |old: &str, new: &str| good.replacen(old, new, 1);
+    let cases = [
+        (with("frames = 10", "frames = 0"), "frames: there must be one"),
+        (with("frames = 10", "frames = ten"), "line 1"),
+        (with("shape", "shap"), "unknown field `shap`"),
+        (with("sphere", "cone"), "there is no shape \"cone\"; take box, cylinder, sphere or torus"),
+        (with("shape = \"sphere\"", "file = \"none.obj\""), "none.obj"),
+        (with("shape = \"sphere\"\n", ""), "say either the file"),
+        (with("mesh = \"a\"", "mesh = \"b\""), "object 1, of \"b\": there is no such mesh"),
+        (with("at = [0, 0, 4]", "at = [0, 0, 0]"), "camera: it must not look at the point where it is"),
+        (with("at = [0, 0, 4]", "at = [0, 3, 0]"), "camera: it must not look along its up"),
+        (with("at = [0, 0, 4]", "at = [0, 0, 4]\nview = 0"), "1 to 170 degrees"),
+        (format!("{good}scale = 9\n"), "scale: it can be 1/16 to 8"),
+        (format!("{good}at = [17, 0, 0]\n"), "within 16 units"),
+        (format!("{good}angle = 3\n"), "say a rotation by"),
+        (format!("{good}quaternion = [0, 0, 0, 0]\n"), "quaternion: it must not be zero"),
+        (format!("{good}keys = [{{ frame = 3 }}, {{ frame = 3 }}]\n"), "keys: their frames must rise"),
+        (format!("{good}[[light]]\ntowards = [0, 0, 0]\n"), "light 1"),
+        (format!("{good}[[light]]\ntowards = [1, 0, 0]\nat = [1, 0, 0]\n"), "say either where it shines from"),
+        (format!("{good}[[light]]\ntowards = [1, 0, 0]\ncolour = \"red\"\n"), "\"red\" is no colour; write it as RRGGBB"),
+        (format!("shader = \"none\"\n{good}"), "there is no method \"none\""),
+        (format!("{good}[[mesh]]\nname = \"a\"\nshape = \"box\"\n"), "two meshes of the name"),
+        (with("shape = \"sphere\"", "shape = \"sphere\"\nsize = [3, 1, 1]"), "less than 2 are possible"),
+    ];
+    for (text, words) in cases {
+        place.file("bad.toml", &text);
+        place.fails(&["convert", "bad.toml", "-o", "bad.tri"], 1, &["bad.toml", words]);
+        assert!(!place.0.path().join("bad.tri").exists(), "{words}");
+    }
+}
+
 #[test]
 fn formats_and_bands_keep_their_promises() {
     let place = Place::new();

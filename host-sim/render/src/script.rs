@@ -16,7 +16,7 @@ use crate::{
 };
 use anyhow::{Context, Result, bail, ensure};
 use microphong::{
-    format::{ErrorBudget, MAX_LIGHTS},
+    format::{ErrorBudget, Length, MAX_LIGHTS, Rotation, Scale},
     stream::record::{CAMERA_TRACK, Key, LIGHT_TRACK, OBJECT_TRACK},
 };
 use serde::Deserialize;
@@ -339,10 +339,7 @@ fn cast(script: &Script, ranges: &[(String, u16, u16)]) -> Result<Cast> {
     if !script.camera.keys.is_empty() {
         let pose = |key: &CameraKey| {
             let [x, y, z] = looking(key.at, key.looks_at, script.camera.up)?;
-            Ok((
-                key.frame,
-                Key { rotation: of_columns([x, y, z]).map(|c| nearest::<microphong::format::Rotation>(c).to_bits()), ..still(key.at) },
-            ))
+            Ok((key.frame, Key { rotation: of_columns([x, y, z]).map(|c| nearest::<Rotation>(c).to_bits()), ..still(key.at) }))
         };
         let keys = script.camera.keys.iter().map(pose).collect::<Result<_>>().context("camera")?;
         cast.ways.push(way(CAMERA_TRACK, 0, keys).context("camera")?);
@@ -357,12 +354,7 @@ fn way(kind: u16, index: usize, keys: Vec<(u32, Key)>) -> Result<Way> {
 
 /// At a place, neither turned nor scaled.
 fn still(position: V3) -> Key {
-    Key {
-        frame: 0,
-        rotation: [1 << 30, 0, 0, 0],
-        position: position.map(|c| nearest::<microphong::format::Length>(c).to_bits()),
-        scale: 1 << 16,
-    }
+    Key { frame: 0, rotation: [1 << 30, 0, 0, 0], position: position.map(|c| nearest::<Length>(c).to_bits()), scale: 1 << 16 }
 }
 
 fn pose(pose: &Pose) -> Result<Key> {
@@ -387,8 +379,8 @@ fn pose(pose: &Pose) -> Result<Key> {
     let scale = pose.scale.unwrap_or(1.0);
     ensure!((1.0 / 16.0..=8.0).contains(&scale), "scale: it can be 1/16 to 8");
     ensure!(pose.at.iter().all(|c| c.abs() <= 16.0), "at: objects must be within 16 units of the origin along each axis");
-    let scale = if pose.hidden { 0 } else { nearest::<microphong::format::Scale>(scale).to_bits() };
-    Ok(Key { rotation: rotation.map(|c| nearest::<microphong::format::Rotation>(c).to_bits()), scale, ..still(pose.at) })
+    let scale = if pose.hidden { 0 } else { nearest::<Scale>(scale).to_bits() };
+    Ok(Key { rotation: rotation.map(|c| nearest::<Rotation>(c).to_bits()), scale, ..still(pose.at) })
 }
 
 /// The product of two quaternions.

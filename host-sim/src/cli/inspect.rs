@@ -6,7 +6,10 @@ use embedded_graphics_core::geometry::Size;
 use microphong::{
     MAX_SIDE, Stream,
     geometry::detail::stream_tolerance,
-    stream::record::{CLOSED_CONVEX, EYE_SPACE, Header, Light, Material, Mesh, PERSPECTIVE, POINT, Triangle, VIEWER_LOCAL, Vertex},
+    stream::record::{
+        CAMERA_TRACK, CLOSED_CONVEX, EYE_SPACE, Header, Instance, Key, LIGHT_TRACK, Light, Material, Mesh, OBJECT_TRACK, PERSPECTIVE,
+        POINT, Track, Triangle, VIEWER_LOCAL, Vertex,
+    },
 };
 use microphong_sim::{bytes::StreamBytes, shader::Shader};
 use serde::Serialize;
@@ -33,6 +36,8 @@ struct Line<'a> {
     triangles: usize,
     lights: usize,
     frames: u16,
+    objects: usize,
+    keys: usize,
     levels: Vec<Level>,
     bytes: u32,
 }
@@ -64,6 +69,8 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome> {
             triangles: stream.triangles.len(),
             lights: stream.lights.len(),
             frames: header.frames,
+            objects: stream.instances.len().max(1),
+            keys: stream.keys.len(),
             levels: levels(&stream),
             bytes: header.length,
         })?;
@@ -84,6 +91,11 @@ fn text(file: &str, stream: &Stream<'_>) -> Result<()> {
     row("meshes", stream.meshes.len(), size_of::<Mesh>(), &format!("{} closed and convex", closed_convex(stream)))?;
     row("materials", stream.materials.len(), size_of::<Material>(), &exponents(stream))?;
     row("lights", stream.lights.len(), size_of::<Light>(), &lights(stream))?;
+    if !stream.instances.is_empty() {
+        row("objects", stream.instances.len(), size_of::<Instance>(), "")?;
+        row("tracks", stream.tracks.len(), size_of::<Track>(), "")?;
+        row("keys", stream.keys.len(), size_of::<Key>(), &moving(stream))?;
+    }
     row("vertices", stream.vertices.len(), size_of::<Vertex>(), "")?;
     row("triangles", stream.triangles.len(), size_of::<Triangle>(), &bend(stream))?;
     for Level { triangles, error, side, .. } in levels(stream) {
@@ -117,6 +129,13 @@ fn levels(stream: &Stream<'_>) -> Vec<Level> {
 
 fn closed_convex(stream: &Stream<'_>) -> usize {
     stream.meshes.iter().filter(|mesh| mesh.flags & CLOSED_CONVEX != 0).count()
+}
+
+/// How much of a scene moves.
+fn moving(stream: &Stream<'_>) -> String {
+    let of = |kind| stream.tracks.iter().filter(|track| track.kind == kind && track.keys > 1).count();
+    let camera = if of(CAMERA_TRACK) > 0 { "the camera moves" } else { "the camera stands still" };
+    format!("{} objects and {} lights move, {camera}", of(OBJECT_TRACK), of(LIGHT_TRACK))
 }
 
 fn exponents(stream: &Stream<'_>) -> String {
