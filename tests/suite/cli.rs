@@ -740,6 +740,8 @@ fn texts_that_are_no_scenes_are_refused() {
         (with("frames = 10", "frames = 0"), "frames: there must be one"),
         (with("frames = 10", "frames = ten"), "line 1"),
         (with("shape", "shap"), "unknown field `shap`"),
+        (format!("{good}positon = [1, 0, 0]\n"), "unknown field `positon`"),
+        (format!("{good}keys = [{{ frame = 1, agnle = 3 }}]\n"), "unknown field `agnle`"),
         (with("sphere", "cone"), "there is no shape \"cone\"; take box, cylinder, sphere or torus"),
         (with("shape = \"sphere\"", "file = \"none.obj\""), "none.obj"),
         (with("shape = \"sphere\"\n", ""), "say either the file"),

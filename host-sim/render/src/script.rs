@@ -141,6 +141,7 @@ struct Object {
 }
 
 #[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
 struct ObjectKey {
     frame: u32,
     #[serde(flatten)]
