@@ -241,15 +241,12 @@ impl<'a, C: Pixel> Renderer<'a, C> {
     /// [`Layout::processors`], and to have room for all triangles and vertices of the scene; else one part does everything.
     pub fn prepare(&mut self, number: u32, share: u16) -> Preparation<'_, C> {
         self.scene.play(number);
-        let rearranged = self.place();
-        if rearranged && self.settings.processors > 1 {
-            self.seams = Seams::new(&self.scene, &mut self.memory);
-        }
+        self.place();
         Preparation::new(&self.settings, &self.scene, &mut self.memory, self.seams, share)
     }
 
-    /// Places all objects, and computes tables that are stale. Returns whether other triangles are drawn than before.
-    fn place(&mut self) -> bool {
+    /// Places what has moved, and computes tables that are stale, and where triangles can be divided if others are drawn than before.
+    fn place(&mut self) {
         if !self.scene.is_unchanged() {
             self.fill_tables();
         }
@@ -278,7 +275,9 @@ impl<'a, C: Pixel> Renderer<'a, C> {
         }
         scene.changed_rows = rows;
         scene.set_drawn();
-        rearranged
+        if rearranged && settings.processors > 1 {
+            self.seams = Seams::new(scene, memory);
+        }
     }
 }
 

@@ -81,9 +81,9 @@ fn pixels(renderer: &mut Renderer<'_, Rgb888>) -> Vec<Rgb888> {
 }
 
 fn room(stream: &Stream<'_>) -> Layout {
-    // Memory for more objects than there are makes no difference.
+    // Memory for more objects and materials than there are makes no difference.
     let layout = Layout::new(SIZE.width as usize, SIZE.height as usize).with_room_for(stream);
-    Layout { vertices: 3 * layout.vertices, triangles: 3 * layout.triangles, ..layout.objects(7) }
+    Layout { vertices: 3 * layout.vertices, triangles: 3 * layout.triangles, materials: layout.materials + 2, ..layout.objects(7) }
 }
 
 /// A place and a rotation in floating point.
@@ -216,6 +216,8 @@ fn scripted_scenes_are_the_same_in_bands() {
             // One renderer for all frames, which places what has moved alone.
             let mut memory = vec![0; layout.words::<Rgb888>()];
             let mut renderer = Renderer::with_shader(stream, SIZE, &layout, &mut memory, Shader::PHONG).unwrap();
+            // A frame of one processor before those of two, too.
+            let _ = renderer.frame(3);
             for (number, share) in [(0, 0), (17, 20_000), (18, 50_000), (40, 50_000), (40, 0)] {
                 let whole = render::frame::<Rgb888>(stream, SIZE, microphong_sim::shader::Shader::PHONG, SIZE.height, number).unwrap().0;
                 let mut band = vec![Rgb888::BLACK; layout.band()];

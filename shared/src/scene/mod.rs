@@ -100,6 +100,8 @@ pub struct Scene<'a> {
 impl<'a> Scene<'a> {
     /// The scene of a stream; there is room for one object and all materials.
     pub(crate) fn new(stream: Stream<'a>, materials: &'a mut [SceneMaterial], objects: &'a mut [Object], limits: Limits) -> Self {
+        // There may be room for more, which nobody has written to.
+        let materials = materials.get_mut(..stream.materials.len()).unwrap_or_default();
         for (slot, &material) in materials.iter_mut().zip(stream.materials) {
             *slot = SceneMaterial { material, is_stale: 1 };
         }
@@ -310,7 +312,7 @@ impl<'a> Scene<'a> {
         Ok(())
     }
 
-    /// The materials: those of the stream, until they are changed. Where the layout has room for more, these are black.
+    /// The materials: those of the stream, until they are changed.
     pub fn materials(&self) -> impl ExactSizeIterator<Item = &Material> {
         self.materials.iter().map(|slot| &slot.material)
     }
