@@ -150,8 +150,9 @@ fn animate<D: Display>(
     // The host reads this line: keep its form.
     defmt::info!("stack {=usize} bytes", stack::used());
     display.end();
-    // All has been checked: from now on at full speed. A frame that is the picture shown is neither drawn nor sent. Outside of the rows
-    // `shown` the display shows nothing but background: what is so in this frame too is not drawn, nor are rows that no moving object touches.
+    // All has been checked: from now on at full speed. A frame that is the picture shown is neither drawn nor sent, nor is what no moving
+    // object touches. Outside of the rows `shown` the display shows nothing but background: what is so in this frame too is not drawn either.
+    renderer.set_partial_redraw(true);
     let mut shown = 0..display.size().height;
     let mut start = display.now();
     loop {
@@ -160,10 +161,10 @@ fn animate<D: Display>(
             display.begin()?;
             if !renderer.is_latest(number) {
                 let mut frame = painter.prepare(&mut renderer, number);
-                let (rows, changed) = (frame.rows(), frame.changed_rows());
+                let rows = frame.rows();
                 let reached = rows.start.min(shown.start)..rows.end.max(shown.end);
-                frame.limit(reached.start.max(changed.start)..reached.end.min(changed.end));
-                shown = rows;
+                frame.limit(reached.clone());
+                shown = if frame.area().size == display.size() { rows } else { reached };
                 painter.draw(display, frame, None)?;
                 drawn += 1;
             }

@@ -5,8 +5,8 @@ use crate::{
     error::{MAX_SIDE, RenderError},
     format::{ErrorBudget, LARGEST_BUDGET, LEAST_BUDGET, LEVEL, MAX_LIGHTS},
     frame::{Frame, Preparation, Seams, Settings},
-    geometry::model_view::ModelView,
-    lighting::material_tables::fill_ramp,
+    geometry::{area::Area, model_view::ModelView},
+    lighting::{lights::Directions, material_tables::fill_ramp},
     memory::{Layout, Memory},
     method::Facts,
     pixel::Pixel,
@@ -15,7 +15,7 @@ use crate::{
     shader::Shader,
     stream::record::{Camera, DIRECTIONAL, Light, Material, PERSPECTIVE, VIEWER_LOCAL},
 };
-use core::ops::Range;
+use core::mem;
 use embedded_graphics_core::geometry::Size;
 
 /// Draws the frames of a scene.
@@ -26,6 +26,10 @@ pub struct Renderer<'a, C: Pixel> {
     memory: Memory<'a, C>,
     /// See [`Self::prepare`].
     seams: Option<Seams>,
+    /// Whether other triangles are drawn than when the seams were found.
+    rearranged: bool,
+    /// The pixels that a frame has.
+    area: Area,
 }
 
 impl<'a, C: Pixel> Renderer<'a, C> {
@@ -81,9 +85,10 @@ impl<'a, C: Pixel> Renderer<'a, C> {
             #[cfg(feature = "skips")]
             skips: crate::frame::Skips::ALL,
             levels_of_detail: true,
+            partial_redraw: false,
         };
         let scene = Scene::new(stream, materials, objects, limits(shader.facts()));
-        Ok(Self { settings, scene, memory, seams: None })
+        Ok(Self { settings, scene, memory, seams: None, rearranged: true, area: Area::NONE })
     }
 
     /// What is drawn. A program may change it between frames.
@@ -196,6 +201,15 @@ impl<'a, C: Pixel> Renderer<'a, C> {
         self.scene.set_view_changed();
     }
 
+    /// Turns partial redraw on or off; it is off at first. With it, a frame has only the area that may differ from the latest frame, which the
+    /// display has to show still: see [`Frame::area`]. Where single objects move, that is the rectangle that they leave and enter, and
+    /// objects that do not reach into it are left out whole; where colours, lights or the camera have changed, and in the next frame, it is
+    /// all of the picture.
+    pub fn set_partial_redraw(&mut self, on: bool) {
+        self.settings.partial_redraw = on;
+        self.scene.set_view_changed();
+    }
+
     /// The size of the viewport.
     #[must_use]
     pub fn size(&self) -> Size {
@@ -233,7 +247,7 @@ impl<'a, C: Pixel> Renderer<'a, C> {
     #[inline(never)]
     pub fn draw(&mut self) -> Frame<'_, C> {
         self.place();
-        Frame::new(&self.settings, &self.scene, &mut self.memory)
+        Frame::new(&self.settings, &self.scene, &mut self.memory, self.area)
     }
 
     /// Begins frame `number` as [`Self::frame`] does, and leaves most of that to two processors: the part of the earlier triangles, which are
@@ -242,51 +256,47 @@ impl<'a, C: Pixel> Renderer<'a, C> {
     pub fn prepare(&mut self, number: u32, share: u16) -> Preparation<'_, C> {
         self.scene.play(number);
         self.place();
-        Preparation::new(&self.settings, &self.scene, &mut self.memory, self.seams, share)
+        if mem::take(&mut self.rearranged) && self.settings.processors > 1 {
+            self.seams = Seams::new(&self.scene, &mut self.memory);
+        }
+        Preparation::new(&self.settings, &self.scene, &mut self.memory, self.area, self.seams.map(|seams| (seams, share)))
     }
 
-    /// Places what has moved, and computes tables that are stale, and where triangles can be divided if others are drawn than before.
+    /// Places what has moved, and computes tables that are stale.
     fn place(&mut self) {
         if !self.scene.is_unchanged() {
             self.fill_tables();
         }
-        let Self { settings, scene, memory, .. } = self;
+        let Self { settings, scene, memory, rearranged, .. } = self;
         let world = ModelView::new(scene.camera(), scene.place);
-        let placing = Placing {
+        let how = Placing {
             size: settings.size,
             levels_of_detail: settings.levels_of_detail,
             leaves_out_back_faces: settings.skips().back_faces,
+            directions: Directions::new(scene.lights(), &world),
+            world,
         };
-        let (mut rearranged, mut triangles, mut vertices) = (scene.rearranged, 0, 0);
-        let mut rows = if scene.repainted { 0..settings.size.height } else { 0..0 };
+        // Everything is drawn where colours have changed, or the view has.
+        let is_partial = settings.partial_redraw && !scene.repainted;
+        let mut area = if is_partial { Area::NONE } else { Area::whole(settings.size) };
+        let (mut triangles, mut vertices) = (0, 0);
         for (object, placement) in scene.objects().iter().zip(memory.placements.iter_mut()) {
             if scene.view_changed || object.has_moved != 0 {
-                // All rows are drawn where colours have changed, or the view has.
-                if !scene.repainted {
-                    rows = union(rows, placement.rows(object, settings.size));
-                }
-                rearranged |= placement.update(scene, &world, object, &placing);
-                if !scene.repainted {
-                    rows = union(rows, placement.rows(object, settings.size));
+                let before = placement.area;
+                placement.update(scene, object, &how);
+                if is_partial {
+                    area = area.union(&before).union(&placement.area);
                 }
             }
             (placement.first_triangle, placement.first_vertex) = (triangles, vertices);
             (triangles, vertices) = (triangles.wrapping_add(object.span), vertices.wrapping_add(object.vertices));
         }
-        scene.changed_rows = rows;
-        scene.set_drawn();
-        if rearranged && settings.processors > 1 {
-            self.seams = Seams::new(scene, memory);
+        *rearranged |= scene.rearranged;
+        for placement in memory.placements.iter_mut().take(scene.objects().len()) {
+            *rearranged |= placement.draw_within(&area);
         }
-    }
-}
-
-/// The rows from the top of the higher one to the bottom of the lower one; an empty one counts for nothing.
-fn union(one: Range<u32>, other: Range<u32>) -> Range<u32> {
-    match (one.is_empty(), other.is_empty()) {
-        (true, _) => other,
-        (_, true) => one,
-        _ => one.start.min(other.start)..one.end.max(other.end),
+        self.area = area;
+        scene.set_drawn();
     }
 }
 

@@ -86,7 +86,7 @@ fn bent(scene: &str) -> Result<Vec<u8>> {
 /// One flipped bit of one normal in the firmware's stream must be found, and pictures of it kept.
 fn flipped_bit(board: Board) -> Result {
     let directory = tempfile::tempdir()?;
-    let request = Request { firmware_stream: Some(bent("triangle")?), ..request(board, "triangle", Shader::PHONG)? };
+    let request = Request { firmware_stream: Some(bent("triangle")?), ..request(board, "triangle", Shader::GOURAUD)? };
     let report = verify::run(&request, &verify::build(board)?, directory.path())?;
     assert!(report.differing > 0, "{board}: a bent normal went unnoticed");
     for name in ["board.png", "host.png", "difference.png"] {

@@ -6,8 +6,8 @@ use embedded_graphics::pixelcolor::{Gray4, GrayColor};
 use microphong::{Layout, Shader};
 use microphong_firmware::{OneCore, budget::LM3S6965EVB, run, ssd0323::Ssd0323};
 
-/// The methods for which there is flash beside a scene.
-const SHADERS: [Shader<Gray4>; 4] = [Shader::FLAT, Shader::GOURAUD, Shader::PHONG, Shader::AUTO_LINEAR];
+/// The methods for which there is flash beside a scene. What `phong` draws, `auto-linear` draws to half of a level.
+const SHADERS: [Shader<Gray4>; 3] = [Shader::FLAT, Shader::GOURAUD, Shader::AUTO_LINEAR];
 
 const LAYOUT: Layout = LM3S6965EVB.layout;
 

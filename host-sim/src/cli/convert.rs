@@ -52,7 +52,7 @@ pub(crate) struct Arguments {
     /// Where a file without normals has no smoothing groups, edges that fold by more are seen: 0 shows all facets, 180 none.
     #[arg(long, value_name = "DEGREES", default_value_t = CREASE, value_parser = parse::crease)]
     crease: f64,
-    /// Shading method that the stream asks for. The board lm3s6965evb has flat, gouraud, phong and auto-linear, the others have all.
+    /// Shading method that the stream asks for. The board lm3s6965evb has flat, gouraud and auto-linear, the others have all.
     #[arg(long, default_value = "auto", value_parser = parse::Shaders)]
     shader: Shader,
     /// How far a pixel may be off from Phong shading by auto or auto-linear, in 1/255, 0.5 to 16.

@@ -4,6 +4,7 @@ use crate::{
     format::RAMP,
     frame::skips::Skips,
     geometry::{
+        area::Area,
         depth_elision::DepthElision,
         projection::{ScreenVertex, View},
         viewport::Viewport,
@@ -35,6 +36,8 @@ pub(crate) struct Settings<C: Pixel> {
     pub(crate) skips: Skips,
     /// Whether coarser levels of meshes are drawn.
     pub(crate) levels_of_detail: bool,
+    /// Whether only what has changed is drawn.
+    pub(crate) partial_redraw: bool,
 }
 
 impl<C: Pixel> Settings<C> {
@@ -76,6 +79,8 @@ pub(crate) struct Context<'r, C: Pixel> {
     pub(crate) background: C,
     /// One for each object of the scene.
     pub(crate) placements: &'r [Placement],
+    /// The pixels that the frame has.
+    pub(crate) area: Area,
     /// Where triangles may overlap; `None` if they may do so everywhere.
     pub(crate) depth_elision: Option<DepthElision>,
     pub(crate) vertices: &'r [ScreenVertex],
@@ -120,9 +125,9 @@ pub(crate) fn meshes<'r>(scene: &'r Scene<'_>, placements: &'r [Placement]) -> i
     })
 }
 
-/// Triangles of the levels that are drawn, those of objects that are out of sight among them.
+/// Triangles of the levels that are drawn.
 pub(crate) fn drawn(scene: &Scene<'_>, placements: &[Placement]) -> u32 {
-    placements.iter().zip(scene.objects()).fold(0, |sum, (placement, _)| sum + placement.triangles)
+    placements.iter().zip(scene.objects()).fold(0, |sum, (placement, _)| sum + placement.drawn)
 }
 
 impl<'r, C: Pixel> Context<'r, C> {

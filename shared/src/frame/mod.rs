@@ -35,17 +35,17 @@ impl<'r, C: Pixel> Frame<'r, C> {
         self.part.next_band(&self.context, pixels)
     }
 
-    /// The rows that triangles can reach; all other rows are background.
+    /// What the frame has: the whole picture, or the area that may differ from the one that the renderer drew before, where that is asked for,
+    /// see [`crate::Renderer::set_partial_redraw`].
+    #[must_use]
+    pub fn area(&self) -> Rectangle {
+        self.context.area.rectangle()
+    }
+
+    /// The rows that triangles of this frame can reach; all other rows of its area are background.
     #[must_use]
     pub fn rows(&self) -> Range<u32> {
         self.part.rows.clone()
-    }
-
-    /// The rows in which this frame may differ from the one that the renderer drew before; all others are the same. Where that one is shown, it is
-    /// enough to draw and send these, see [`Self::limit`].
-    #[must_use]
-    pub fn changed_rows(&self) -> Range<u32> {
-        self.context.scene.changed_rows.clone()
     }
 
     /// The row above which a `share` of the triangles end, of 2^16: about where [`Self::in_two`] has to divide the frame for two processors
@@ -55,10 +55,10 @@ impl<'r, C: Pixel> Frame<'r, C> {
         self.part.bins.row_at(self.part.entries, share)
     }
 
-    /// Draws only these `rows`; to be called before the first band. It is enough to draw and send the rows that triangles reach in this
+    /// Draws only these `rows` of its area; to be called before the first band. It is enough to draw and send the rows that triangles reach in this
     /// frame or reached in the frame before, see [`Self::rows`]: a display that shows the frame before has background in all others.
     pub fn limit(&mut self, rows: Range<u32>) {
-        self.part.limit(rows, self.context.settings.size.height);
+        self.part.limit(rows);
     }
 
     /// Whether the last band has been drawn.

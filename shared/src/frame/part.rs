@@ -72,6 +72,8 @@ pub(crate) struct Part<'r> {
     pub(crate) queue: QueueState,
     /// Rows that triangles may reach.
     pub(crate) rows: Range<u32>,
+    /// Columns that are wanted. Rows are drawn whole, so that a pixel does not depend on it.
+    pub(crate) columns: Range<u32>,
     /// First row of the next band.
     pub(crate) top: u32,
     /// One past the last row to be drawn.
@@ -94,15 +96,20 @@ impl<'r> Part<'r> {
         if rows == 0 {
             return Ok(None);
         }
-        let area = Rectangle::new(Point::new(0, self.top as i32), Size::new(width, rows));
-        self.draw(context, pixels.get_mut(..(rows * width) as usize).unwrap_or_default(), rows);
+        let Range { start: left, end: right } = self.columns;
+        let area = Rectangle::new(Point::new(left as i32, self.top as i32), Size::new(right - left, rows));
+        let pixels = pixels.get_mut(..(rows * width) as usize).unwrap_or_default();
+        self.draw(context, pixels, rows);
+        if right - left < width {
+            narrow(pixels, width as usize, left as usize..right as usize);
+        }
         self.top += rows;
         Ok(Some(area))
     }
 
     /// The rows above `row`, and those from there on, `width` pixels wide: see [`crate::Frame::in_two`].
     pub(crate) fn in_two(self, row: u32, width: usize) -> [Self; 2] {
-        let Self { bins, binned, entries, depth, samples, active_triangles, queue, rows, top, bottom, stats } = self;
+        let Self { bins, binned, entries, depth, samples, active_triangles, queue, rows, columns, top, bottom, stats } = self;
         let used = bins.count().map_or(usize::MAX, usize::from);
         let fits = binned && used <= entries.len() / 2 && width <= depth.len() / 2;
         let row = if fits { row.min(bottom).max(top) } else { bottom };
@@ -123,16 +130,17 @@ impl<'r> Part<'r> {
             active_triangles: active_below,
             queue,
             rows: rows.clone(),
+            columns: columns.clone(),
             top: row,
             bottom,
             stats: Stats::default(),
         };
-        [Part { bins, binned, entries, depth, samples, active_triangles, queue, rows, top, bottom: row, stats }, below]
+        [Part { bins, binned, entries, depth, samples, active_triangles, queue, rows, columns, top, bottom: row, stats }, below]
     }
 
-    /// Draws only these `rows`, at most `height`.
-    pub(crate) fn limit(&mut self, rows: Range<u32>, height: u32) {
-        (self.top, self.bottom) = (rows.start.min(height), rows.end.min(height));
+    /// Draws only these `rows` of its own.
+    pub(crate) fn limit(&mut self, rows: Range<u32>) {
+        (self.top, self.bottom) = (rows.start.max(self.top), rows.end.min(self.bottom));
     }
 
     /// Whether the last band has been drawn.
@@ -169,6 +177,21 @@ impl<'r> Part<'r> {
         self.stats.counts = self.stats.counts.and(band.counts);
         self.queue = band.active.queue();
         self.stats.set_up_anew = self.stats.set_up_anew.saturating_add(band.active.overflow());
+    }
+}
+
+/// Moves these `columns` of rows that are `width` pixels wide to the front of a band.
+#[cold]
+fn narrow<C: Copy>(pixels: &mut [C], width: usize, columns: Range<usize>) {
+    let count = columns.len();
+    for row in 0..pixels.len().checked_div(width).unwrap_or(0) {
+        for column in 0..count {
+            if let Some(&pixel) = pixels.get(row * width + columns.start + column)
+                && let Some(slot) = pixels.get_mut(row * count + column)
+            {
+                *slot = pixel;
+            }
+        }
     }
 }
 

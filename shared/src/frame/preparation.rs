@@ -13,6 +13,7 @@ use crate::{
         part::{Part, Stats, halves},
     },
     geometry::{
+        area::Area,
         bin::{Bins, Entry},
         cull::{Extent, Facing},
         depth_elision::DepthElision,
@@ -102,8 +103,8 @@ type Empty<'r, C> = (Frame<'r, C>, &'r mut [ScreenVertex], Option<DepthElision>)
 impl<'r, C: Pixel> Frame<'r, C> {
     /// A frame of a scene whose objects are placed, prepared by one processor.
     #[inline(never)]
-    pub(crate) fn new(settings: &'r Settings<C>, scene: &'r Scene<'_>, memory: &'r mut Memory<'_, C>) -> Self {
-        let (mut frame, cache, mut depth_elision) = Self::empty(settings, scene, memory);
+    pub(crate) fn new(settings: &'r Settings<C>, scene: &'r Scene<'_>, memory: &'r mut Memory<'_, C>, area: Area) -> Self {
+        let (mut frame, cache, mut depth_elision) = Self::empty(settings, scene, memory, area);
         let Part { bins, entries, stats, .. } = &mut frame.part;
         let whole = PreparationPart {
             context: &frame.context,
@@ -121,7 +122,7 @@ impl<'r, C: Pixel> Frame<'r, C> {
     }
 
     #[inline(always)]
-    fn empty(settings: &'r Settings<C>, scene: &'r Scene<'_>, memory: &'r mut Memory<'_, C>) -> Empty<'r, C> {
+    fn empty(settings: &'r Settings<C>, scene: &'r Scene<'_>, memory: &'r mut Memory<'_, C>, area: Area) -> Empty<'r, C> {
         let Memory {
             vertices: cache, bins: entries, depth, placements, reflectances, ramps, error_bounds, samples, active_triangles, ..
         } = memory;
@@ -133,12 +134,14 @@ impl<'r, C: Pixel> Frame<'r, C> {
         let bins = Bins::new(size.height, band_rows);
         let uncached = scene.vertices().saturating_sub(cache.len() as u32);
         let triangles = drawn(scene, placements);
-        let as_they_are = scene.objects().iter().filter(|object| object.is_visible()).fold(0, |sum, object| sum + object.triangles);
+        let with_placements = placements.iter().zip(scene.objects());
+        let as_they_are = with_placements.filter(|(placement, _)| placement.drawn > 0).fold(0, |sum, (_, object)| sum + object.triangles);
         let context = Context {
             settings,
             scene,
             background: background(scene.background),
             placements,
+            area,
             depth_elision: None,
             vertices: &[],
             reflectances,
@@ -155,9 +158,10 @@ impl<'r, C: Pixel> Frame<'r, C> {
             samples,
             active_triangles,
             queue: QueueState::default(),
-            rows: 0..size.height,
-            top: 0,
-            bottom: size.height,
+            rows: area.rows(),
+            columns: area.columns(),
+            top: area.rows().start,
+            bottom: area.rows().end,
             stats: Stats { triangles, simplified: as_they_are - triangles, uncached, ..Stats::default() },
         };
         (Self { context, part }, cache, depth_elision)
@@ -182,11 +186,11 @@ impl<'r, C: Pixel> Preparation<'r, C> {
         settings: &'r Settings<C>,
         scene: &'r Scene<'_>,
         memory: &'r mut Memory<'_, C>,
-        seams: Option<Seams>,
-        share: u16,
+        area: Area,
+        seams: Option<(Seams, u16)>,
     ) -> Self {
-        let (frame, cache, depth_elision) = Frame::empty(settings, scene, memory);
-        let division = seams.map(|seams| seams.division(frame.part.stats.triangles, share)).unwrap_or_default();
+        let (frame, cache, depth_elision) = Frame::empty(settings, scene, memory, area);
+        let division = seams.map(|(seams, share)| seams.division(frame.part.stats.triangles, share)).unwrap_or_default();
         let earlier = frame.part.bins.open();
         Self { frame, cache, division, earlier, depth_elisions: [depth_elision.clone(), depth_elision], is_done: [false; 2] }
     }

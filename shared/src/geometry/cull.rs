@@ -30,7 +30,7 @@
 //! parts, which may be thinner than it is: one of them may turn over and be lost.
 
 use crate::{
-    arch::{product::product, quotient::long, zeros::leading_zeros},
+    arch::{product::product, zeros::leading_zeros},
     format::{INVERSE_ALTITUDE, SUBPIXEL, UNIT},
     geometry::projection::View,
     math::vector::{narrow_dot, wide},
@@ -84,22 +84,20 @@ impl Facing {
     pub fn new(view: &View, radius: u16) -> Self {
         let (vector, reach) = (view.viewer(), view.reach(radius));
         // In object space: rounding moves a corner by as much more as the object is small.
-        let scale = u64::from(view.scale());
-        let moved = view.displacement(reach);
-        let moved = if scale == 1 << 16 { moved } else { long((moved << 16) + scale - 1, scale) };
+        let moved = view.in_object_units(view.displacement(reach));
         let (right, larger, offset_scale, reach) = if view.is_perspective() {
             // The eye is taken to units that are larger than those of object space by a power of two, and so large that 32 bits hold it.
             let farthest = vector.iter().fold(0, |m, c| m | c.unsigned_abs()) >> UNIT;
             let finer = view.viewer_exponent();
             let right = (32 - farthest.leading_zeros()).saturating_sub(FARTHEST_EYE).max(finer.max(0).unsigned_abs());
             let larger = right.saturating_add_signed(-finer).min(31);
-            let reach = (view.in_object_units(reach) + ((1 << larger) - 1)) >> larger;
+            let reach = (view.in_object_units(reach.into()) as u32 + ((1 << larger) - 1)) >> larger;
             (right, larger, (1 << EYE) >> larger, reach)
         } else {
             (0, 0, 0, reach)
         };
         // 2 r D, from Q.30 and Q.14, rounded up. A direction that is not scaled by a power of two is up to twice as long as a unit vector.
-        let doubled = u64::from(!view.is_perspective() && !scale.is_power_of_two());
+        let doubled = u64::from(!view.is_perspective() && !view.scale().is_power_of_two());
         let slack = (((2 * moved * u64::from(reach)) >> (30 + UNIT - PER_ALTITUDE)) + 1) << doubled;
         if slack > MAX_SLACK || larger > EYE {
             // There are so few pixels that any triangle may turn over.

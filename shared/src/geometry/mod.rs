@@ -1,5 +1,6 @@
 //! The way from object space to the screen, and which triangles need not be drawn.
 
+pub(crate) mod area;
 pub(crate) mod bin;
 pub(crate) mod clip;
 pub mod cull;

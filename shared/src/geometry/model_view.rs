@@ -1,7 +1,6 @@
 //! The way of an object from its own space to that of the eye, in one frame.
 
 use crate::{
-    arch::quotient::long,
     format::{POSITION, ROTATION, UNIT},
     math::vector::{add, dot, normalise, sub, transposed},
     scene::{Pose, orbit},
@@ -25,8 +24,8 @@ pub struct ModelView {
     to_world: [[i32; 3]; 3],
     /// Where the object is in the world, Q18.14.
     position: [i32; 3],
-    /// 1 over the scale, Q16.16.
-    inverse_scale: u32,
+    /// 1 over the scale, Q16.16, rounded down.
+    pub inverse_scale: u32,
 }
 
 impl ModelView {
@@ -59,20 +58,20 @@ impl ModelView {
             scale,
             to_world,
             position,
-            inverse_scale: long(1 << 32, scale.into()) as u32,
+            inverse_scale: inverse(scale),
         }
     }
 
     /// A direction of eye space in object space, in the format of `v`, rounded down.
     #[must_use]
     pub fn to_object(&self, v: [i32; 3]) -> [i32; 3] {
-        transposed(self.rotation).map(|column| (dot(column, v) >> ROTATION) as i32)
+        rotated_back(self.rotation, v)
     }
 
     /// A direction of the world in object space, in the format of `v`, rounded down.
     #[must_use]
     pub fn world_to_object(&self, v: [i32; 3]) -> [i32; 3] {
-        transposed(self.to_world).map(|column| (dot(column, v) >> ROTATION) as i32)
+        rotated_back(self.to_world, v)
     }
 
     /// A point of eye space, Q18.14, in object space, Q7.25; see [`FARTHEST`].
@@ -102,6 +101,7 @@ impl ModelView {
     /// A vector from the object's centre, rotated by the inverse of `rotation` and in units of object space, from Q18.14 to Q7.25, rounded
     /// down. One that is too long for that is made shorter: seen from an object of radius 1, what is 56 units or farther away lies in a
     /// direction that this changes by 1/56 rad at most.
+    #[inline(never)]
     fn near(&self, rotation: [[i32; 3]; 3], v: [i32; 3]) -> [i32; 3] {
         // Q.44, then Q.30 of the world, then Q.46 of object space.
         let point =
@@ -112,4 +112,15 @@ impl ModelView {
         // Below 2^36.
         normalise(point.map(|c| (c >> 6) as i32)).map(|c| ((i64::from(c) * FARTHEST) >> ROTATION) as i32)
     }
+}
+
+/// `v` rotated by the inverse of `rotation`, in its format, rounded down.
+#[inline(never)]
+fn rotated_back(rotation: [[i32; 3]; 3], v: [i32; 3]) -> [i32; 3] {
+    transposed(rotation).map(|column| (dot(column, v) >> ROTATION) as i32)
+}
+
+/// 1 over a scale, Q16.16, rounded down: 2^32 over its bits, of which 2^32 - 1 lacks one where they are a power of two.
+fn inverse(scale: u32) -> u32 {
+    u32::MAX.checked_div(scale).unwrap_or(0) + u32::from(scale.is_power_of_two())
 }

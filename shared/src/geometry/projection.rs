@@ -3,12 +3,12 @@
 use crate::{
     arch::{
         product::{product, upper},
-        quotient::{long, signed_long},
+        quotient::long,
     },
     format::{DEPTH, ROTATION, SUBPIXEL, UNIT},
-    geometry::model_view::ModelView,
+    geometry::{area::Area, model_view::ModelView},
     math::{
-        recip::recip,
+        recip::{quotient, recip},
         scale,
         vector::{add, cross, narrow_dot, wide},
     },
@@ -98,8 +98,8 @@ pub struct View {
     depth_shift: u32,
     /// [`crate::format::Scale`] of the object.
     scale: u32,
-    /// For alignment.
-    reserved: u32,
+    /// [`ModelView::inverse_scale`].
+    inverse_scale: u32,
 }
 
 impl View {
@@ -133,7 +133,7 @@ impl View {
             near_mantissa: near << shift,
             depth_shift: shift + 30 - DEPTH,
             scale,
-            reserved: 0,
+            inverse_scale: model_view.inverse_scale,
         }
     }
 
@@ -185,16 +185,23 @@ impl View {
         UNIT as i32 - self.shift as i32
     }
 
-    /// `length` of the world, Q18.14, in units of object space, rounded up.
+    /// `length` of the world in units of object space, in its format, rounded up. Domain: below 2^44.
     #[must_use]
-    pub fn in_object_units(&self, length: u32) -> u32 {
-        if self.scale == 1 << 16 { length } else { long((u64::from(length) << 16) + u64::from(self.scale - 1), self.scale.into()) as u32 }
+    pub fn in_object_units(&self, length: u64) -> u64 {
+        // The inverse is rounded down.
+        if self.scale == 1 << 16 { length } else { ((length * (u64::from(self.inverse_scale) + 1)) >> 16) + 1 }
     }
 
     /// The object's scale, [`crate::format::Scale`].
     #[must_use]
     pub fn scale(&self) -> u32 {
         self.scale
+    }
+
+    /// `length` of the world in units of object space, in its format, rounded down; as far as 32 bits hold it.
+    #[must_use]
+    pub fn least_in_object_units(&self, length: u32) -> u32 {
+        u32::try_from((u64::from(length) * u64::from(self.inverse_scale)) >> 16).unwrap_or(u32::MAX)
     }
 
     /// Where the origin of object space lies in eye space, Q18.14.
@@ -218,7 +225,7 @@ impl View {
         // A rotation's determinant is not 0.
         [0, 1, 2].map(|k| {
             let along = along(k) << 13;
-            let size = long(along.unsigned_abs(), determinant.unsigned_abs()) as i32;
+            let size = quotient(along.unsigned_abs(), determinant.unsigned_abs()) as i32;
             if (along < 0) == (determinant < 0) { -size } else { size }
         })
     }
@@ -233,49 +240,34 @@ impl View {
         reach + (reach >> 5) + 1
     }
 
-    /// Whether some part of the ball of `radius`, [`crate::format::Radius`], about the origin of object space may be seen in a viewport of `size`
-    /// pixels. Errs on the side of true.
+    /// The pixels of a viewport of `size` that the ball of `radius`, [`crate::format::Radius`], about the origin of object space can reach; none
+    /// if no part of it can be seen. Errs on the side of more.
     #[must_use]
-    pub fn sees(&self, radius: u16, size: Size) -> bool {
-        let radius = self.ball(radius);
-        let [x, y, z] = self.translation.map(i64::from);
-        if z + radius < i64::from(self.near) || !self.is_perspective() && z - radius > i64::from(self.far) {
-            return false;
+    pub fn area(&self, radius: u16, size: Size) -> Area {
+        let (radius, [x, y, z]) = (self.ball(radius), self.translation);
+        let (nearest, farthest) = (z.saturating_sub(radius), z.saturating_add(radius));
+        if farthest < self.near || !self.is_perspective() && nearest > self.far {
+            return Area::NONE;
         }
-        let depth = if self.is_perspective() { z } else { 1 << UNIT };
-        let beside = |c: i64, side: u32| {
-            // The plane through the edge of the viewport: c focal = depth half, all in 1/16 pixel. The focal length and half of the viewport
-            // together are longer than its normal.
-            let (focal, half) = (self.focal >> 8, i64::from(side) << (SUBPIXEL + 7));
-            let normal = if self.is_perspective() { focal + half } else { focal };
-            c.abs() * focal - depth * half > radius * normal
-        };
-        !(beside(x, size.width) || beside(y, size.height))
-    }
-
-    /// The rows that the ball of `radius`, [`crate::format::Radius`], about the origin of object space can reach in a viewport of `size` pixels,
-    /// half open. Errs on the side of more.
-    #[must_use]
-    pub fn rows(&self, radius: u16, size: Size) -> [u16; 2] {
-        let radius = self.ball(radius);
-        let [_, y, z] = self.translation.map(i64::from);
-        let (nearest, farthest) = if self.is_perspective() { (z - radius, z + radius) } else { (1 << UNIT, 1 << UNIT) };
-        if nearest < i64::from(self.near) && self.is_perspective() {
-            return [0, size.height as u16];
+        if nearest < self.near {
+            return Area::whole(size);
         }
-        // Heights above the middle, 1/16 pixel: a point above it is seen the higher the nearer it is, one below the lower.
-        let seen = |height: i64, depth: i64| signed_long(height * (self.focal >> 16), depth.unsigned_abs());
-        let (upper, lower) = (y + radius, y - radius);
-        let top = seen(upper, if upper > 0 { nearest } else { farthest });
-        let bottom = seen(lower, if lower < 0 { nearest } else { farthest });
+        // The corners of a box about it: the farther from the axis, the nearer to the eye.
+        let (mut least, mut most) = ((i32::MAX, i32::MAX), (i32::MIN, i32::MIN));
+        for (radius, depth) in [(radius, nearest), (radius, farthest), (-radius, nearest), (-radius, farthest)] {
+            let ([x, y, _], _) = self.project([x.saturating_add(radius), y.saturating_add(radius), depth]);
+            least = (x.min(least.0), y.min(least.1));
+            most = (x.max(most.0), y.max(most.1));
+        }
         // A pixel more, for what is rounded on the way.
-        let row = |above: i64, more: i64| (((i64::from(self.centre[1]) - above) >> SUBPIXEL) + more).clamp(0, size.height.into()) as u16;
-        [row(top, -2), row(bottom, 3)]
+        let pixels =
+            |least: i32, most: i32, side: u32| [(least >> SUBPIXEL) - 2, (most >> SUBPIXEL) + 3].map(|c| c.clamp(0, side as i32) as u16);
+        Area { columns: pixels(least.0, most.0, size.width), rows: pixels(least.1, most.1, size.height) }
     }
 
     /// The radius of a ball in object space, [`crate::format::Radius`], in the world, Q18.14, with what is rounded on the way.
-    fn ball(&self, radius: u16) -> i64 {
-        let radius = ((u64::from(radius) * u64::from(self.scale)) >> 16) as i64;
+    fn ball(&self, radius: u16) -> i32 {
+        let radius = ((u64::from(radius) * u64::from(self.scale)) >> 16) as i32;
         radius + (radius >> 5) + 4
     }
 
@@ -287,8 +279,8 @@ impl View {
     #[must_use]
     pub fn displacement(&self, reach: u32) -> u64 {
         // A focal length is not 0.
-        let pixel = long((25 * u64::from(reach)) << (30 + 16 - UNIT - 5), self.focal.unsigned_abs());
-        pixel.saturating_add(1 + (1 << (30 - UNIT))).min(u64::from(u32::MAX))
+        let pixel = quotient((25 * u64::from(reach)) << (30 + 16 - UNIT - 5), self.focal.unsigned_abs());
+        pixel.saturating_add((pixel >> 27) + 1 + (1 << (30 - UNIT))).min(u64::from(u32::MAX))
     }
 
     /// How far rounding may move a point of a mesh that is marked as [`crate::stream::record::CLOSED_CONVEX`] along x or y, seen in a

@@ -7,7 +7,7 @@ use crate::{
     math::vector::{add, dot, narrow_dot, normalise, sub, wide},
     stream::record::{Camera, DIRECTIONAL, EYE_SPACE, Light, PERSPECTIVE, VIEWER_LOCAL},
 };
-use zerocopy::{FromBytes, Immutable, IntoBytes, KnownLayout};
+use zerocopy::{FromBytes, FromZeros as _, Immutable, IntoBytes, KnownLayout};
 
 /// A light in object space, in memory of the renderer.
 #[derive(FromBytes, IntoBytes, Immutable, KnownLayout, Clone, Copy, Debug)]
@@ -48,27 +48,51 @@ pub struct Lighting {
     pub eye: [i32; 3],
 }
 
-impl Lighting {
-    /// The lights of a scene, at most [`MAX_LIGHTS`], for an object seen as `model_view` says.
+/// L and H, Q2.30, of each light of a scene in the world; no vectors of those that are near. They are computed once a frame, and of each
+/// object's only the rotation is its own.
+pub struct Directions([[[i32; 3]; 2]; MAX_LIGHTS]);
+
+impl Directions {
+    /// Of the lights of a scene, at most [`MAX_LIGHTS`], whose `world` is seen so.
     #[must_use]
-    pub fn new(camera: &Camera, lights: &[Light], model_view: &ModelView) -> Self {
-        let [right, up, away] = model_view.rotation;
-        let towards_eye = away.map(|c| -c);
+    pub fn new(lights: &[Light], world: &ModelView) -> Self {
+        let mut directions = [[[0; 3]; 2]; MAX_LIGHTS];
+        for (direction, light) in directions.iter_mut().zip(lights).filter(|(_, light)| light.kind == DIRECTIONAL) {
+            let unit = normalise(light.vector);
+            let towards = if light.space == EYE_SPACE { world.to_object(unit) } else { unit };
+            *direction = [towards, half(towards, towards_eye(world))];
+        }
+        Self(directions)
+    }
+}
+
+/// The direction towards the eye, as far as it is the same everywhere: a unit vector, Q2.30.
+fn towards_eye(ModelView { rotation: [.., away], .. }: &ModelView) -> [i32; 3] {
+    away.map(|c| -c)
+}
+
+impl Lighting {
+    /// The lights of a scene in its `world`.
+    #[must_use]
+    pub fn new(camera: &Camera, lights: &[Light], world: &ModelView) -> Self {
+        let mut lighting = Self::new_zeroed();
+        lighting.place(camera, lights, &Directions::new(lights, world), world);
+        lighting
+    }
+
+    /// Changes it to the lights of a scene, whose directions are known, for an object seen as `model_view` says.
+    pub fn place(&mut self, camera: &Camera, lights: &[Light], directions: &Directions, model_view: &ModelView) {
+        for ((source, light), towards) in self.sources.iter_mut().zip(lights).zip(&directions.0) {
+            *source = Source::new(light, towards, model_view);
+        }
+        self.count = lights.len() as u32;
+        self.directional = lights.iter().all(|light| light.kind == DIRECTIONAL).into();
         let is_local = camera.viewer == VIEWER_LOCAL && camera.projection == PERSPECTIVE;
-        let mut sources = [Source { vectors: [[0; 3]; 2], is_point: 0 }; MAX_LIGHTS];
-        for (source, light) in sources.iter_mut().zip(lights) {
-            *source = Source::new(light, model_view, towards_eye);
-        }
+        let ([right, up, _], towards_eye) = (model_view.rotation, towards_eye(model_view));
+        (self.is_local, self.viewer) = (is_local.into(), if is_local { model_view.eye() } else { towards_eye });
+        self.axes = [right, up, towards_eye];
         let [x, y, z] = model_view.translation.map(|c| model_view.in_object_units(c));
-        Self {
-            sources,
-            count: lights.len() as u32,
-            directional: lights.iter().all(|light| light.kind == DIRECTIONAL).into(),
-            viewer: if is_local { model_view.eye() } else { towards_eye },
-            is_local: is_local.into(),
-            axes: [right, up, towards_eye],
-            eye: [-x, -y, z],
-        }
+        self.eye = [-x, -y, z];
     }
 
     /// All lights, in the order of the scene.
@@ -128,15 +152,13 @@ impl Lighting {
 }
 
 impl Source {
-    /// `light` for an object seen as `model_view` says, whose directions to the eye are `towards_eye`.
-    fn new(light: &Light, model_view: &ModelView, towards_eye: [i32; 3]) -> Self {
-        let (vector, is_eye_space) = (light.vector, light.space == EYE_SPACE);
+    /// `light`, with its L and H in the world, for an object seen as `model_view` says.
+    fn new(light: &Light, directions: &[[i32; 3]; 2], model_view: &ModelView) -> Self {
         if light.kind == DIRECTIONAL {
-            let unit = normalise(vector);
-            let towards = if is_eye_space { model_view.to_object(unit) } else { model_view.world_to_object(unit) };
-            return Self { vectors: [towards, half(towards, towards_eye)], is_point: 0 };
+            return Self { vectors: directions.map(|v| model_view.world_to_object(v)), is_point: 0 };
         }
-        let point = if is_eye_space { model_view.point_to_object(vector) } else { model_view.world_point_to_object(vector) };
+        let is_eye_space = light.space == EYE_SPACE;
+        let point = if is_eye_space { model_view.point_to_object(light.vector) } else { model_view.world_point_to_object(light.vector) };
         Self { vectors: [point; 2], is_point: 1 }
     }
 

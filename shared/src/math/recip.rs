@@ -25,6 +25,24 @@ pub fn recip(d: u32) -> u32 {
     x.wrapping_add((product(x as i32, residual) >> 31) as u32)
 }
 
+/// Largest error of [`quotient`] relative to its result, before that is rounded down to an integer.
+pub const QUOTIENT_ERROR: f64 = 1.0 / (1u32 << 28) as f64;
+
+/// `n / d`, nearly: where long numbers are divided and not all bits of the quotient count.
+///
+/// Domain: all numbers; 0 where `d` is 0. Error: at most [`QUOTIENT_ERROR`] relative, and 1 unit for rounding (tests::quotients). Source: a
+/// product of the upper word of `n` with the reciprocal of that of `d`.
+#[must_use]
+pub fn quotient(n: u64, d: u64) -> u64 {
+    let (bits, zeros) = (n.leading_zeros(), d.leading_zeros());
+    if n == 0 || d == 0 {
+        return 0;
+    }
+    let upper = |number: u64, zeros: u32| (number << (zeros & 63) >> 32) as u32;
+    let product = unsigned_product(upper(n, bits), recip(upper(d, zeros)));
+    (2 * product).checked_shr(63 + bits - zeros).unwrap_or(0)
+}
+
 /// Largest error of [`Divisor::divide`] relative to its result, before that is rounded down to an integer.
 pub const DIVIDE_ERROR: f64 = 2.25 / (1u32 << 30) as f64;
 
@@ -79,6 +97,21 @@ mod tests {
         check(2_147_614_719);
         check(u32::MAX);
         assert!(low <= f64::from(ERROR) && high <= 1.0, "{low} {high}");
+    }
+
+    #[test]
+    fn quotients() {
+        let mut seed = 1u64;
+        let mut random = || {
+            seed = seed.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+            (seed ^ seed >> 29) >> (seed >> 58)
+        };
+        for _ in 0..300_000 {
+            let (n, d) = (random(), random().max(1));
+            let (exact, quotient) = (n as f64 / d as f64, quotient(n, d));
+            assert!((quotient as f64 - exact).abs() <= exact * QUOTIENT_ERROR + 1.0, "{n} {d}");
+        }
+        assert_eq!([quotient(5, 0), quotient(0, 5), quotient(u64::MAX, 0)], [0; 3]);
     }
 
     #[test]

@@ -92,8 +92,6 @@ pub struct Scene<'a> {
     pub(crate) view_changed: bool,
     /// Whether something other than the place of single objects has changed.
     pub(crate) repainted: bool,
-    /// Rows in which the latest frame may differ from the one before.
-    pub(crate) changed_rows: Range<u32>,
     pub(crate) rearranged: bool,
 }
 
@@ -121,7 +119,6 @@ impl<'a> Scene<'a> {
             changed: true,
             view_changed: true,
             repainted: true,
-            changed_rows: 0..0,
             rearranged: true,
         };
         // A renderer is refused where the stream has more objects than there is room for.

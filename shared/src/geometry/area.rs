@@ -1,0 +1,98 @@
+//! Rectangles of pixels.
+
+use core::ops::Range;
+use embedded_graphics_core::{
+    geometry::{Point, Size},
+    primitives::Rectangle,
+};
+use zerocopy::{FromBytes, Immutable, IntoBytes, KnownLayout};
+
+/// A rectangle of pixels, in memory of the renderer.
+#[derive(FromBytes, IntoBytes, Immutable, KnownLayout, Clone, Copy, Debug, PartialEq, Eq)]
+#[repr(C)]
+pub struct Area {
+    /// The first column, and one past the last.
+    pub columns: [u16; 2],
+    /// The first row, and one past the last.
+    pub rows: [u16; 2],
+}
+
+impl Area {
+    /// No pixel.
+    pub const NONE: Self = Self { columns: [0; 2], rows: [0; 2] };
+
+    /// All pixels of a viewport of `size`, no larger than [`crate::MAX_SIDE`].
+    #[must_use]
+    pub fn whole(size: Size) -> Self {
+        Self { columns: [0, size.width as u16], rows: [0, size.height as u16] }
+    }
+
+    /// Whether it has no pixel.
+    #[must_use]
+    pub fn is_empty(&self) -> bool {
+        let is_empty = |[start, end]: [u16; 2]| start >= end;
+        is_empty(self.columns) || is_empty(self.rows)
+    }
+
+    /// The smallest one that has all pixels of both.
+    #[must_use]
+    pub fn union(&self, other: &Self) -> Self {
+        let hull = |[start, end]: [u16; 2], other: [u16; 2]| [start.min(other[0]), end.max(other[1])];
+        match (self.is_empty(), other.is_empty()) {
+            (true, _) => *other,
+            (_, true) => *self,
+            _ => Self { columns: hull(self.columns, other.columns), rows: hull(self.rows, other.rows) },
+        }
+    }
+
+    /// Whether some pixel belongs to both.
+    #[must_use]
+    pub fn meets(&self, other: &Self) -> bool {
+        let meet = |[start, end]: [u16; 2], other: [u16; 2]| start.max(other[0]) < end.min(other[1]);
+        meet(self.columns, other.columns) && meet(self.rows, other.rows)
+    }
+
+    /// Its columns.
+    #[must_use]
+    pub fn columns(&self) -> Range<u32> {
+        let [start, end] = self.columns;
+        start.into()..end.into()
+    }
+
+    /// Its rows.
+    #[must_use]
+    pub fn rows(&self) -> Range<u32> {
+        let [start, end] = self.rows;
+        start.into()..end.into()
+    }
+
+    /// As displays have it.
+    #[must_use]
+    pub fn rectangle(&self) -> Rectangle {
+        let (columns, rows) = (self.columns(), self.rows());
+        Rectangle::new(Point::new(columns.start as i32, rows.start as i32), Size::new(columns.len() as u32, rows.len() as u32))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    fn area() -> impl Strategy<Value = Area> {
+        prop::array::uniform2(prop::array::uniform2(0u16..6)).prop_map(|[columns, rows]| Area { columns, rows })
+    }
+
+    proptest! {
+        #[test]
+        fn areas_are_sets_of_pixels(one in area(), other in area()) {
+            let has = |area: &Area, x: u32, y: u32| area.columns().contains(&x) && area.rows().contains(&y);
+            let pixels = || (0..6).flat_map(|x| (0..6).map(move |y| (x, y)));
+            let both = one.union(&other);
+            prop_assert_eq!(one.is_empty(), !pixels().any(|(x, y)| has(&one, x, y)));
+            prop_assert_eq!(one.meets(&other), pixels().any(|(x, y)| has(&one, x, y) && has(&other, x, y)));
+            prop_assert!(pixels().all(|(x, y)| has(&both, x, y) || !has(&one, x, y) && !has(&other, x, y)));
+            prop_assert_eq!(embedded_graphics_core::primitives::PointsIter::points(&one.rectangle()).count(), pixels().filter(|&(x, y)| has(&one, x, y)).count());
+        }
+    }
+}
