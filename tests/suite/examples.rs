@@ -5,10 +5,12 @@
 use crate::golden::{bless, check_pixels, root};
 use embedded_graphics::prelude::*;
 use embedded_graphics_simulator::{OutputSettings, SimulatorDisplay};
-use microphong::{Layout, RenderError, Renderer, Stats, Stream, pixel::Pixel};
+use microphong::{Layout, Picture, RenderError, Renderer, Stats, Stream, pixel::Pixel};
 use microphong_tests::program;
 use std::{fmt::Debug, fs, path::PathBuf, process::Command};
 
+#[path = "../../examples/esp32c3-gc9a01/src/scene.rs"]
+mod esp32c3_gc9a01;
 #[path = "../../examples/rp2040-ssd1306/src/scene.rs"]
 mod rp2040_ssd1306;
 #[path = "../../examples/rp2350-st7789/src/scene.rs"]
@@ -16,23 +18,24 @@ mod rp2350_st7789;
 #[path = "../../examples/stm32f411-ili9341/src/scene.rs"]
 mod stm32f411_ili9341;
 
-const NAMES: [&str; 3] = ["rp2040-ssd1306", "rp2350-st7789", "stm32f411-ili9341"];
+const NAMES: [&str; 4] = ["esp32c3-gc9a01", "rp2040-ssd1306", "rp2350-st7789", "stm32f411-ili9341"];
 
 /// Of one file of an example.
 fn path(example: &str, file: &str) -> PathBuf {
     root().join("../examples").join(example).join(file)
 }
 
-/// Compares the first frame with the picture in docs/examples.
+/// Compares a picture with that in docs/examples.
 macro_rules! shows {
-    ($name:literal, $scene:ident $(, $argument:expr)*) => {{
+    ($name:literal, $scene:ident, |$renderer:ident, $band:ident| $picture:expr) => {{
         let stream = Stream::parse($scene::MESH).expect("a stream");
         has_room(&$scene::LAYOUT, &stream);
         let mut memory = vec![0; words(&$scene::LAYOUT, $scene::renderer)];
         let mut renderer = $scene::renderer(stream, &mut memory).expect("a renderer");
         let mut display = SimulatorDisplay::new(renderer.size());
         let mut band = vec![display.get_pixel(Point::zero()); $scene::LAYOUT.band()];
-        let Ok(stats) = $scene::picture(&mut renderer, &mut band, 0 $(, $argument)*).expect("a picture").draw(&mut display);
+        let ($renderer, $band) = (&mut renderer, &mut band);
+        let Ok(stats) = $picture.expect("a picture").draw(&mut display);
         compare($name, &stats, &display);
     }};
 }
@@ -43,8 +46,8 @@ fn words<'a, C: Pixel>(layout: &Layout, _make: fn(Stream<'a>, &'a mut [u64]) -> 
 }
 
 fn has_room(layout: &Layout, stream: &Stream<'_>) {
-    let room = (layout.vertices, layout.triangles, layout.materials);
-    assert_eq!(room, (stream.vertices.len(), stream.triangles.len(), stream.materials.len()), "room for all of the mesh, and for no more");
+    let room = |layout: &Layout| [layout.vertices, layout.triangles, layout.materials, layout.objects];
+    assert_eq!(room(layout), room(&layout.with_room_for(stream)), "room for all of the scene, and for no more");
 }
 
 fn compare<C: PixelColor + Into<embedded_graphics::pixelcolor::Rgb888> + Debug>(name: &str, stats: &Stats, display: &SimulatorDisplay<C>) {
@@ -56,9 +59,13 @@ fn compare<C: PixelColor + Into<embedded_graphics::pixelcolor::Rgb888> + Debug>(
 
 #[test]
 fn displays_show_what_the_documentation_shows() {
-    shows!("rp2040-ssd1306", rp2040_ssd1306);
-    shows!("rp2350-st7789", rp2350_st7789, None);
-    shows!("stm32f411-ili9341", stm32f411_ili9341);
+    shows!("esp32c3-gc9a01", esp32c3_gc9a01, |renderer, band| {
+        esp32c3_gc9a01::set(renderer.scene(), 43.0).expect("a needle");
+        Picture::of_scene(renderer, band)
+    });
+    shows!("rp2040-ssd1306", rp2040_ssd1306, |renderer, band| rp2040_ssd1306::picture(renderer, band, 0));
+    shows!("rp2350-st7789", rp2350_st7789, |renderer, band| rp2350_st7789::picture(renderer, band, 0, None));
+    shows!("stm32f411-ili9341", stm32f411_ili9341, |renderer, band| stm32f411_ili9341::picture(renderer, band, 0));
 }
 
 /// The commands stand in examples/README.md.
@@ -66,7 +73,7 @@ fn displays_show_what_the_documentation_shows() {
 fn streams_are_what_their_commands_make() {
     let readme = fs::read_to_string(root().join("../examples/README.md")).expect("a README");
     let commands: Vec<_> = readme.lines().filter_map(|line| line.strip_prefix("cargo run --release -- convert ")).collect();
-    assert_eq!(commands.len(), 2);
+    assert_eq!(commands.len(), 3);
     let place = tempfile::tempdir().expect("scratch directory");
     for command in commands {
         let (arguments, recorded) = command.split_once(" -o ").expect("a file");
