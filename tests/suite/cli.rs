@@ -536,12 +536,16 @@ fn stress_takes_a_budget() {
     place.fails(&["stress", "--only", "coverage", "--budget", "1"], 2, &["--budget", "--only"]);
 }
 
-/// The help of `convert` names all methods, and those of the small board.
+/// The help of commands names all methods, and that of `convert` those of the small board.
 #[test]
 fn help_names_the_methods_of_boards() {
     let help = Place::new().succeeds(&["convert", "--help"]).split_whitespace().collect::<Vec<_>>().join(" ");
     let names = Shader::ALL.map(Shader::name).join(", ");
     assert!(help.contains(&format!("[possible values: {names}]")), "{help}");
+    for command in ["compare", "verify", "bench", "growth"] {
+        let help = Place::new().succeeds(&[command, "--help"]).split_whitespace().collect::<Vec<_>>().join(" ");
+        assert!(help.contains(&format!("[possible values: {names}, all]")), "{command}: {help}");
+    }
     for board in Board::ALL {
         let has = Shader::ALL.into_iter().filter(|&shader| board.has(shader));
         let names: Vec<_> = has.map(Shader::name).collect();
@@ -668,6 +672,46 @@ fn verify_leaves_out_boards_without_a_method() {
     let lines: Vec<serde_json::Value> = lines.lines().map(|line| serde_json::from_str(line).expect("JSON")).collect();
     assert_eq!((lines.len(), &lines[0]["board"], &lines[0]["lacking"]), (4, &"lm3s6965evb".into(), &true.into()));
     assert!(lines[1..].iter().all(|line| line["differing"] == 0), "{lines:?}");
+}
+
+/// A stream is not made for a board whose firmware lacks its method; unless one is named, it gets the method that the board has.
+#[test]
+fn convert_refuses_methods_that_a_board_lacks() {
+    let place = Place::new();
+    place.file("good.obj", TETRAHEDRON);
+    for (board, shader) in Board::ALL.into_iter().flat_map(|board| Shader::ALL.map(|shader| (board, shader))) {
+        let arguments = ["convert", "good.obj", "--board", board.name(), "--shader", shader.name(), "-o", "out.tri"];
+        if board.has(shader) {
+            place.succeeds(&arguments);
+            fs::remove_file(place.0.path().join("out.tri")).expect("a stream");
+        } else {
+            let words = [board.name(), "has no", shader.name(), "it has flat, gouraud, phong, auto-linear", "--shader"];
+            place.fails(&arguments, 2, &words);
+        }
+    }
+    for board in Board::ALL {
+        place.succeeds(&["convert", "good.obj", "--board", board.name(), "-o", "out.tri"]);
+        let asks = format!("shader {}\n", board.shader().name());
+        assert!(place.succeeds(&["inspect", "out.tri"]).ends_with(&asks), "{board}");
+    }
+    let scene = "frames = 1\nshader = \"six-point\"\n[camera]\nat = [0, 0, 5]\n[[mesh]]\nname = \"box\"\nshape = \"box\"\n[[object]]\nmesh = \"box\"\n";
+    place.file("scene.toml", scene).succeeds(&["convert", "scene.toml", "--board", "pico"]);
+    place.fails(&["convert", "scene.toml", "--board", "lm3s6965evb", "-o", "no.tri"], 1, &["scene.toml", "no six-point", "`shader`"]);
+    place.fails(&["convert", "good.obj", "--board", "uno"], 2, &["uno", "lm3s6965evb"]);
+}
+
+/// Whatever `render` draws can be looked into: streams of any ending, built-in scenes, scripted ones, meshes.
+#[test]
+fn inspect_takes_scenes() {
+    let place = Place::new();
+    place.file("good.obj", TETRAHEDRON).succeeds(&["convert", "good.obj"]);
+    fs::copy(place.0.path().join("good.tri"), place.0.path().join("good.bin")).expect("a copy");
+    for name in ["good.obj", "good.tri", "good.bin", "triangle"] {
+        assert!(place.succeeds(&["inspect", name]).starts_with(&format!("{name}: triangle stream")), "{name}");
+    }
+    let gauges = serde_json::from_str::<serde_json::Value>(&place.succeeds(&["inspect", "gauges", "--json"])).expect("JSON");
+    assert_eq!((&gauges["file"], &gauges["objects"]), (&"gauges".into(), &6.into()));
+    place.fails(&["inspect", "gauge"], 2, &["\"gauge\"", "gauges", ".tri"]);
 }
 
 /// Materials are told, and what a file has besides; a colour of the command line takes their place. Errors name the file of the materials.

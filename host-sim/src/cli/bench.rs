@@ -37,7 +37,7 @@ pub(crate) struct Arguments {
     #[arg(value_name = "SCENE", default_values = scene::PORTFOLIO)]
     scenes: Vec<String>,
     /// Shading methods, separated by commas, or all that can shade the scene.
-    #[arg(long, value_name = "S,...", default_value = "flat,gouraud,six-point,sqrt6,phong", value_parser = parse::shaders)]
+    #[arg(long, value_name = "S,...", default_value = "flat,gouraud,six-point,sqrt6,phong", value_parser = parse::SeveralShaders)]
     shader: Several<Shader>,
     /// How far a pixel may be off from Phong shading by auto or auto-linear, in 1/255, 0.5 to 16, several separated by commas; the scene's
     /// own unless given.

@@ -28,7 +28,7 @@ pub(crate) struct Arguments {
     #[arg(required = true, value_name = "SCENE")]
     scenes: Vec<String>,
     /// Shading methods by name, separated by commas, or all.
-    #[arg(long, default_value = "all", value_name = "S,...", value_parser = parse::shaders)]
+    #[arg(long, default_value = "all", value_name = "S,...", value_parser = parse::SeveralShaders)]
     shader: Several<Shader>,
     /// How far a pixel may be off from Phong shading by auto or auto-linear, in 1/255, 0.5 to 16; the scene's own unless given.
     #[arg(long, value_name = "LSB", value_parser = parse::budget)]

@@ -1,7 +1,7 @@
 //! `microphong convert`.
 
 use super::{Outcome, Usage, parse, report};
-use anyhow::{Context, Result};
+use anyhow::{Context, Result, bail};
 use embedded_graphics_core::pixelcolor::Rgb565;
 use microphong::{
     Layout,
@@ -34,7 +34,7 @@ use std::path::{Path, PathBuf};
 /// such: it is drawn without depth, and looks the same.
 ///
 /// A .toml file is a scripted scene: its text says which objects there are and how they, lights and
-/// camera move. Of the options, --output and --json apply to it. tests/scenes has three to begin with.
+/// camera move. Of the options, --output, --board and --json apply to it. tests/scenes has three to begin with.
 #[derive(clap::Args)]
 #[command(after_help = EXAMPLES)]
 pub(crate) struct Arguments {
@@ -52,9 +52,13 @@ pub(crate) struct Arguments {
     /// Where a file without normals has no smoothing groups, edges that fold by more are seen: 0 shows all facets, 180 none.
     #[arg(long, value_name = "DEGREES", default_value_t = CREASE, value_parser = parse::crease)]
     crease: f64,
-    /// Shading method that the stream asks for. The board lm3s6965evb has flat, gouraud and auto-linear, the others have all.
-    #[arg(long, default_value = "auto", value_parser = parse::Shaders)]
-    shader: Shader,
+    /// Shading method that the stream asks for; auto unless given, and on a board that lacks it auto-linear. The board lm3s6965evb has flat,
+    /// gouraud and auto-linear, the others have all.
+    #[arg(long, value_parser = parse::Shaders)]
+    shader: Option<Shader>,
+    /// Board whose firmware is to draw the stream: a method that it lacks is refused.
+    #[arg(long, value_name = "NAME", value_parser = BOARDS.map(|(board, _)| board))]
+    board: Option<String>,
     /// How far a pixel may be off from Phong shading by auto or auto-linear, in 1/255, 0.5 to 16.
     #[arg(long, value_name = "LSB", default_value = "1", value_parser = parse::budget)]
     budget: ErrorBudget,
@@ -115,10 +119,19 @@ pub(crate) struct Arguments {
     json: bool,
 }
 
+/// The boards that there is firmware for, and their methods; a build without emulators knows them as well.
+const BOARDS: [(&str, &[Shader]); 4] = [
+    ("pico", &Shader::ALL),
+    ("lm3s6965evb", &[Shader::FLAT, Shader::GOURAUD, Shader::PHONG, Shader::AUTO_LINEAR]),
+    ("mps2-an385", &Shader::ALL),
+    ("mps2-an386", &Shader::ALL),
+];
+
 const EXAMPLES: &str = "\
 Examples:
   microphong convert teapot.obj -o teapot.tri
   microphong convert bunny.obj --lod 240x240,128x128
+  microphong convert part.obj --board lm3s6965evb
   microphong convert scan.ply --simplify 2000
   microphong convert part.obj --up z --colour 4080ff --plastic --exponent 60 --orbit 240
   microphong convert car.obj --light -0.5,0.6,0.7:fff0d8 --light 1,0.1,0.2:304060
@@ -170,6 +183,10 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome> {
     if source.extension().is_some_and(|e| e.eq_ignore_ascii_case("tri")) {
         return Err(Usage(format!("{} is a stream already; name an .obj, .stl, .ply, .gltf, .glb or .toml file", source.display())).into());
     }
+    let shader = arguments.shader.unwrap_or(if lacking(arguments, Shader::AUTO).is_some() { Shader::AUTO_LINEAR } else { Shader::AUTO });
+    if let Some(has) = lacking(arguments, shader) {
+        return Err(Usage(format!("{has}: name one of them by --shader")).into());
+    }
     if arguments.lights.len() > MAX_LIGHTS {
         return Err(Usage(format!("{} times --light; a scene has {MAX_LIGHTS} lights at most", arguments.lights.len())).into());
     }
@@ -197,7 +214,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome> {
         background: arguments.background.unwrap_or(BACKGROUND),
         local_viewer: arguments.local_viewer,
         budget: arguments.budget,
-        shader: arguments.shader,
+        shader,
         ..Look::new(of_arguments, view.fit(&mesh.positions, arguments.size, MARGIN))
     };
     let look = if arguments.lights.is_empty() { look } else { Look { lamps: placed(&arguments.lights, &look.view), ..look } };
@@ -250,6 +267,13 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome> {
     Ok(Outcome::Done)
 }
 
+/// What the board that is asked for has, if that is not the method `shader`.
+fn lacking(arguments: &Arguments, shader: Shader) -> Option<String> {
+    let (board, has) = BOARDS.into_iter().find(|(board, _)| arguments.board.as_deref() == Some(*board))?;
+    let names: Vec<_> = has.iter().map(|shader| shader.name()).collect();
+    (!has.contains(&shader)).then(|| format!("the firmware of {board} has no {}; it has {}", shader.name(), names.join(", ")))
+}
+
 /// What becomes of a scripted scene.
 #[derive(Serialize)]
 struct SceneLine<'a> {
@@ -267,6 +291,9 @@ struct SceneLine<'a> {
 /// Writes the stream of a scripted scene.
 fn convert_script(arguments: &Arguments, target: &Path) -> Result<Outcome> {
     let scene = scene::load(&arguments.mesh.to_string_lossy())?;
+    if let Some(has) = lacking(arguments, Shader::of(&scene.stream.parse()?)?) {
+        bail!("{}: {has}: name one of them as `shader` in its text", arguments.mesh.display());
+    }
     report::leave_to(target);
     output::write(target, scene.stream.as_bytes())?;
     let stream = scene.stream.parse()?;

@@ -26,7 +26,7 @@ pub(crate) struct Arguments {
     #[arg(default_value = "all", value_name = "WHAT,...", value_parser = sweeps)]
     sweep: Several<Sweep>,
     /// Shading methods, separated by commas, or all.
-    #[arg(long, default_value = "gouraud,six-point,sqrt6,phong", value_name = "S,...", value_parser = parse::shaders)]
+    #[arg(long, default_value = "gouraud,six-point,sqrt6,phong", value_name = "S,...", value_parser = parse::SeveralShaders)]
     shader: Several<Shader>,
     /// Print one JSON object per frame.
     #[arg(long)]

@@ -11,16 +11,21 @@ use microphong::{
         POINT, Track, Triangle, VIEWER_LOCAL, Vertex,
     },
 };
-use microphong_sim::{bytes::StreamBytes, shader::Shader};
+use microphong_sim::{
+    bytes::StreamBytes,
+    scene::{self, Unknown},
+    shader::Shader,
+};
 use serde::Serialize;
-use std::path::PathBuf;
+use std::path::Path;
 
 /// Show what is inside a stream, and what it takes in flash.
 #[derive(clap::Args)]
-#[command(after_help = "Example:\n  microphong inspect teapot.tri --json")]
+#[command(after_help = "Examples:\n  microphong inspect teapot.tri --json\n  microphong inspect gauges")]
 pub(crate) struct Arguments {
-    /// A stream made by `microphong convert`.
-    file: PathBuf,
+    /// A stream made by `microphong convert`, a built-in scene, or a file that `convert` would make a stream of: .obj, .stl, .ply, .gltf, .glb or
+    /// .toml.
+    scene: String,
     /// Print one JSON object.
     #[arg(long)]
     json: bool,
@@ -55,13 +60,13 @@ struct Level {
 }
 
 pub(crate) fn run(arguments: &Arguments) -> Result<Outcome> {
-    let bytes = StreamBytes::read(&arguments.file)?;
-    let stream = bytes.parse().with_context(|| arguments.file.display().to_string())?;
+    let file = &arguments.scene;
+    let bytes = read(file)?;
+    let stream = bytes.parse().with_context(|| file.clone())?;
     let header = stream.header;
-    let file = arguments.file.to_string_lossy();
     if arguments.json {
         report::json(&Line {
-            file: &file,
+            file,
             version: header.version,
             meshes: stream.meshes.len(),
             closed_convex: closed_convex(&stream),
@@ -75,9 +80,17 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome> {
             bytes: header.length,
         })?;
     } else {
-        text(&file, &stream)?;
+        text(file, &stream)?;
     }
     Ok(Outcome::Done)
+}
+
+/// The stream of a scene; of a file with any other ending, what is in it.
+fn read(name: &str) -> Result<StreamBytes> {
+    match scene::load(name) {
+        Err(error) if error.is::<Unknown>() && Path::new(name).exists() => StreamBytes::read(Path::new(name)),
+        scene => Ok(scene?.stream),
+    }
 }
 
 fn text(file: &str, stream: &Stream<'_>) -> Result<()> {

@@ -16,7 +16,7 @@ use microphong_sim::{
     vector::{V3, unit},
     view::{Projection, Up},
 };
-use std::ffi::OsStr;
+use std::{ffi::OsStr, iter};
 
 /// The value among `all` that has the name `text`.
 pub(crate) fn among<T: Copy>(text: &str, all: &[T], name: impl Fn(T) -> &'static str) -> Result<T, String> {
@@ -46,6 +46,23 @@ pub(crate) fn several<T: Copy + PartialEq>(text: &str, all: &[T], one: impl Fn(&
         }
     }
     Ok(Several { values, all: false })
+}
+
+/// Shading methods by name, separated by commas, of which help lists all.
+#[derive(Clone)]
+pub(crate) struct SeveralShaders;
+
+impl TypedValueParser for SeveralShaders {
+    type Value = Several<Shader>;
+
+    fn parse_ref(&self, command: &Command, argument: Option<&Arg>, value: &OsStr) -> Result<Several<Shader>, clap::Error> {
+        shaders.parse_ref(command, argument, value)
+    }
+
+    fn possible_values(&self) -> Option<Box<dyn Iterator<Item = PossibleValue> + '_>> {
+        let names = Shader::ALL.into_iter().map(Shader::name).chain(iter::once("all"));
+        Some(Box::new(names.map(PossibleValue::new)))
+    }
 }
 
 /// Shading methods by name.

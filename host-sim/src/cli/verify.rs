@@ -27,7 +27,7 @@ pub(crate) struct Arguments {
     #[arg(long, default_value = "teapot")]
     scene: String,
     /// Shading methods, separated by commas, or all that the board has room for.
-    #[arg(long, default_value = "all", value_parser = parse::shaders)]
+    #[arg(long, default_value = "all", value_parser = parse::SeveralShaders)]
     shader: Several<Shader>,
     /// How far a pixel may be off from Phong shading by auto or auto-linear, in 1/255, 0.5 to 16; the scene's own unless given.
     #[arg(long, value_name = "LSB", value_parser = parse::budget)]
