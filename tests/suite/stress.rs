@@ -20,6 +20,7 @@ use microphong_sim::{
     stress::{
         self, Family, Summary, Verdict, arithmetic, budget,
         case::Case,
+        changes,
         cost::{self, Bound, Cost, Count},
         coverage, drift, fuzz,
         random::Random,
@@ -321,6 +322,28 @@ fn sameness_sees_a_pixel_and_a_count() {
     assert!(sameness::unequal((&pixels, &stats), (&whole.0, &whole.1)).is_some());
     stats.pixels += 1;
     assert!(sameness::unequal((&whole.0, &stats), (&whole.0, &whole.1)).is_some());
+}
+
+/// The last of the rows that have changed is left as it was.
+#[test]
+fn changes_see_a_row_that_is_not_redrawn() {
+    let all: changes::Limit = changes::limit;
+    let one_less: changes::Limit = |frame, _| {
+        let rows = frame.changed_rows();
+        frame.limit(rows.start..rows.end.saturating_sub(1));
+        true
+    };
+    let cases = (0..60).filter_map(|number| changes::case(&mut Random::new(3, number), 60).unwrap());
+    let (mut found, mut counts) = (0, [0; 4]);
+    for case in cases {
+        let whole = changes::judge(&case, all).unwrap();
+        let whole: [u64; 4] = Vec::from(whole.unwrap_or_default()).try_into().unwrap();
+        counts = std::array::from_fn(|k| counts[k] + whole[k]);
+        found += usize::from(changes::judge(&case, one_less).is_err());
+    }
+    println!("{counts:?}, {found} cases show it");
+    // Each kind is there: frames, those in part, changes, and those refused.
+    assert!(found > 5 && counts.iter().all(|&count| count > 10), "{counts:?}, {found}");
 }
 
 /// A renderer that sets up everything anew in each row.

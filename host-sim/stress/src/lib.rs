@@ -7,6 +7,8 @@
 pub mod arithmetic;
 pub mod budget;
 pub mod case;
+pub mod change;
+pub mod changes;
 pub mod cost;
 pub mod coverage;
 pub mod drift;
@@ -103,6 +105,7 @@ pub fn families(budget: Option<ErrorBudget>) -> Vec<Box<dyn Family>> {
         Box::new(walks::Walks),
         Box::new(drift::Drift),
         Box::new(sameness::Sameness),
+        Box::new(changes::Changes),
         Box::new(hostile::Hostile),
     ]
 }

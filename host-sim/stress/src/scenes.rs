@@ -3,10 +3,11 @@
 use crate::{case::Case, random::Random};
 use microphong::Skips;
 use microphong_render::{
+    bytes::StreamBytes,
     levels,
     look::{Lamp, Look, Surface},
     mesh::Mesh,
-    quantise::quantise,
+    quantise::{Part, quantise},
     render::{Format, Style},
     shader::Shader,
     shapes,
@@ -53,13 +54,23 @@ pub fn of(random: &mut Random, mesh: &Mesh, size: [u32; 2], wishes: Wishes) -> O
 
 /// A scene, drawn in a random way on a picture of `size`.
 pub fn drawn(random: &mut Random, mesh: &Mesh, size: [u32; 2], look: &Look) -> Option<Case> {
+    let parts = parts(random, mesh, look)?;
+    Some(styled(random, look.stream(&parts).ok()?, size))
+}
+
+/// A mesh, now and then with coarser levels.
+pub fn parts(random: &mut Random, mesh: &Mesh, look: &Look) -> Option<Vec<Part>> {
     let (mut parts, _) = quantise(mesh);
     // Seldom, and of small meshes: to make coarser levels of large ones takes longer than all else.
     if random.once_in(8) && mesh.triangles.len() <= 128 {
         let errors = [(32, 32), (128, 96)].map(|size| look.tolerance(&parts, size));
         levels::add(mesh, &mut parts, &errors, &|| ()).ok()?;
     }
-    let stream = look.stream(&parts).ok()?;
+    Some(parts)
+}
+
+/// A stream, drawn in a random way on a picture of `size`.
+pub fn styled(random: &mut Random, stream: StreamBytes, size: [u32; 2]) -> Case {
     let style = Style {
         shader: random.among(&Shader::ALL),
         perspective_correct: random.once_in(4),
@@ -67,15 +78,14 @@ pub fn drawn(random: &mut Random, mesh: &Mesh, size: [u32; 2], look: &Look) -> O
         dither: random.once_in(4),
         skips: Skips::ALL,
     };
-    let case = Case {
+    Case {
         size,
         frame: if random.once_in(3) { 0 } else { random.bits() as u32 },
         style,
         format: random.among(&Format::ALL),
         band_rows: random.pick(1..64) as u32,
         ..Case::new(stream)
-    };
-    Some(case)
+    }
 }
 
 /// A closed body.
@@ -144,7 +154,8 @@ pub fn colour(random: &mut Random) -> V3 {
     }
 }
 
-fn surface(random: &mut Random) -> Surface {
+/// A material.
+pub fn surface(random: &mut Random) -> Surface {
     let exponent = if random.once_in(3) { random.among(&[1, 2, 3, 4, 7, 8, 512, 1023, 1024]) } else { random.octaves(1.0, 1025.0) as u16 };
     let shares = [random.between(0.0, 0.3), random.between(0.0, 1.0), random.between(0.0, 1.0)];
     let colour = colour(random);
