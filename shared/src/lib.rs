@@ -39,7 +39,7 @@
 //! | [`format`](mod@format) | names every number format |
 //! | `arch` | wide products, quotients and counts of zeros, as short as each processor can |
 //! | [`math`] | reciprocal, root, lookup table of highlights, vectors, in integers |
-//! | [`pixel`] | pixel formats and ordered dither |
+//! | [`pixel`] | pixel formats, ordered dither, curves of displays |
 //! | [`stream`] | bytes in flash to a checked view of meshes, lights and camera |
 //! | [`scene`] | what is drawn: objects in the world, lights, a camera |
 //! | `geometry` | object space to the screen, and what need not be drawn |

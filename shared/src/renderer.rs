@@ -9,7 +9,7 @@ use crate::{
     lighting::{lights::Directions, material_tables::fill_ramp},
     memory::{Layout, Memory},
     method::Facts,
-    pixel::Pixel,
+    pixel::{Pixel, gamma::Gamma},
     placement::Placing,
     scene::{Limits, Scene},
     shader::Shader,
@@ -79,6 +79,7 @@ impl<'a, C: Pixel> Renderer<'a, C> {
             processors: layout.processors as u32,
             shader,
             dither: C::DITHERED,
+            gamma: None,
             perspective_correct: false,
             antialias: false,
             budget: level(stream.header.budget()),
@@ -123,7 +124,7 @@ impl<'a, C: Pixel> Renderer<'a, C> {
                 continue;
             };
             reflectance.fill::<C>(ambient, &material, &lights, (facts.highlight, facts.highlight_levels));
-            fill_ramp::<C>(ramp, reflectance);
+            fill_ramp::<C>(ramp, reflectance, settings.gamma);
             *bounds = shader.method().error_bounds(reflectance, material.exponent, lights.len());
             #[cfg(feature = "skips")]
             reflectance.leave_out(settings.skips.highlights, settings.skips.lights);
@@ -171,10 +172,18 @@ impl<'a, C: Pixel> Renderer<'a, C> {
         Ok(())
     }
 
-    /// Turns 8x8 ordered dither on or off; at first it is on in formats of one or two bits a channel.
+    /// Turns 8x8 ordered dither on or off; at first it is on in formats that have a channel of at most three bits.
     pub fn set_dither(&mut self, dither: bool) {
         self.settings.dither = dither;
         self.scene.set_view_changed();
+    }
+
+    /// Corrects all colours for the curve of the display, such as [`crate::pixel::gamma::SRGB`], or does not; at first it does not, and light levels
+    /// are sent as they are. The background is sent as it has been set. Pixels of one channel cost nothing more, since their tables of colours
+    /// hold what to send; materials in three channels are drawn the general way, and take several times as long.
+    pub fn set_gamma(&mut self, gamma: Option<&'static Gamma>) {
+        self.settings.gamma = gamma;
+        self.scene.set_stale();
     }
 
     /// Turns antialiasing by exact areas on or off; it is off at first.

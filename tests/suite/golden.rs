@@ -3,7 +3,8 @@
 //! `MICROPHONG_BLESS=1 cargo test -p microphong-tests golden` makes what is drawn now the standard.
 //! Where a picture differs, target/golden holds it and a picture of the differences.
 
-use embedded_graphics::geometry::Size;
+use embedded_graphics::{geometry::Size, pixelcolor::Rgb565};
+use microphong::pixel::{Pixel, Rgb565Be};
 use microphong_sim::{
     board::Board,
     image,
@@ -143,4 +144,31 @@ fn formats() {
     };
     let wrong = ["torus", "sphere-168"].map(wrong).concat();
     assert!(wrong.is_empty(), "{}", wrong.join("\n"));
+}
+
+/// Colours for a display with the curve of sRGB, in one channel and in three.
+#[test]
+fn curve_of_the_display() {
+    let bless = bless();
+    let wrong = |name: &str| {
+        let scene = scene::load(name).expect("built-in scene");
+        let style = Style { srgb: true, ..Shader::AUTO.into() };
+        let settings = Settings { size: scene.size.into(), style, band_rows: 16, format: Format::Rgb565 };
+        check_picture(&format!("{name}-srgb"), &scene, &settings, bless)
+    };
+    let wrong: Vec<_> = ["teapot", "bunny"].into_iter().filter_map(wrong).collect();
+    assert!(wrong.is_empty(), "{}", wrong.join("\n"));
+}
+
+/// The byte order of RGB565 is that of memory, and no other picture.
+#[test]
+fn byte_orders() {
+    let scene = scene::load("torus").expect("built-in scene");
+    let (stream, size) = (scene.stream.parse().expect("built-in scene"), Size::new(128, 64));
+    let (low_first, _) = render::frame::<Rgb565>(stream, size, Shader::PHONG, 16, 0).expect("built-in scene");
+    let (high_first, _) = render::frame::<Rgb565Be>(stream, size, Shader::PHONG, 16, 0).expect("built-in scene");
+    assert_eq!(image::rgb_bytes(&low_first), image::rgb_bytes(&high_first));
+    for (low_first, high_first) in low_first.into_iter().zip(high_first) {
+        assert_eq!(low_first.stored().to_be_bytes(), <[u8; 2]>::try_from(zerocopy::IntoBytes::as_bytes(&high_first)).expect("two bytes"));
+    }
 }

@@ -16,6 +16,7 @@ mod differences;
 mod endurance;
 mod examples;
 mod faults;
+mod gamma;
 mod golden;
 mod hostile;
 mod independent;

@@ -8,7 +8,7 @@ use embedded_graphics_core::{
 };
 use microphong::{
     Layout, Renderer, Skips, Stats, Stream,
-    pixel::{PictureCrc, Pixel},
+    pixel::{PictureCrc, Pixel, Rgb332, gamma},
 };
 
 /// How a scene is drawn.
@@ -22,6 +22,8 @@ pub struct Style {
     pub antialias: bool,
     /// Ordered dither.
     pub dither: bool,
+    /// Colours for a display with the curve of sRGB, in place of linear ones.
+    pub srgb: bool,
     /// What is left out because nobody can see it.
     pub skips: Skips,
 }
@@ -29,7 +31,7 @@ pub struct Style {
 /// The method, and nothing else.
 impl From<Shader> for Style {
     fn from(shader: Shader) -> Self {
-        Self { shader, perspective_correct: false, antialias: false, dither: false, skips: Skips::ALL }
+        Self { shader, perspective_correct: false, antialias: false, dither: false, srgb: false, skips: Skips::ALL }
     }
 }
 
@@ -54,6 +56,7 @@ pub fn frame<C: Pixel>(stream: Stream<'_>, size: Size, style: impl Into<Style>, 
     let mut renderer = Renderer::with_shader(stream, size, &layout, &mut memory, style.shader.on())?;
     renderer.set_perspective_correct(style.perspective_correct)?;
     renderer.set_dither(style.dither);
+    renderer.set_gamma(style.srgb.then_some(&gamma::SRGB));
     renderer.set_skips(style.skips);
     renderer.set_antialias(style.antialias)?;
     let mut pixels = Vec::with_capacity(size.width as usize * size.height as usize);
@@ -94,6 +97,8 @@ pub enum Format {
     Bgr565,
     /// Six bits per channel.
     Rgb666,
+    /// Three bits of red and green, two of blue.
+    Rgb332,
 }
 
 /// What is done in a pixel format that is chosen at run time.
@@ -107,8 +112,8 @@ pub trait InFormat {
 
 impl Format {
     /// Every format.
-    pub const ALL: [Self; 8] =
-        [Self::Rgb565, Self::Rgb888, Self::Gray8, Self::Gray4, Self::Gray2, Self::Binary, Self::Bgr565, Self::Rgb666];
+    pub const ALL: [Self; 9] =
+        [Self::Rgb565, Self::Rgb888, Self::Gray8, Self::Gray4, Self::Gray2, Self::Binary, Self::Bgr565, Self::Rgb666, Self::Rgb332];
 
     /// The name on the command line.
     #[must_use]
@@ -122,6 +127,7 @@ impl Format {
             Self::Binary => "binary",
             Self::Bgr565 => "bgr565",
             Self::Rgb666 => "rgb666",
+            Self::Rgb332 => "rgb332",
         }
     }
 
@@ -136,6 +142,7 @@ impl Format {
             Self::Binary => what.in_format::<BinaryColor>(),
             Self::Bgr565 => what.in_format::<Bgr565>(),
             Self::Rgb666 => what.in_format::<Rgb666>(),
+            Self::Rgb332 => what.in_format::<Rgb332>(),
         }
     }
 

@@ -33,7 +33,7 @@ pub(crate) struct Arguments {
     /// Size of the picture; the scene's own unless given, 640x480 for files.
     #[arg(long, value_name = "WxH", value_parser = parse::size)]
     size: Option<(u32, u32)>,
-    /// Pixel format: rgb565, bgr565, rgb666, rgb888, gray8, gray4, gray2 or binary.
+    /// Pixel format: rgb565, bgr565, rgb666, rgb888, rgb332, gray8, gray4, gray2 or binary.
     #[arg(long, default_value = "rgb565", value_parser = parse::format)]
     format: Format,
     /// Number of frames.
@@ -45,12 +45,15 @@ pub(crate) struct Arguments {
     /// Interpolate in perspective: right where a triangle reaches from near to far.
     #[arg(long)]
     perspective_correct: bool,
-    /// Ordered dither: hides the steps of formats with few colours. gray2 and binary have it unless --no-dither is given.
+    /// Ordered dither: hides the steps of formats with few colours. rgb332, gray2 and binary have it unless --no-dither is given.
     #[arg(long)]
     dither: bool,
     /// Rounded colours where a format has dither.
     #[arg(long, conflicts_with = "dither")]
     no_dither: bool,
+    /// Levels of light as they are (linear), or corrected for the curve of most displays (srgb): brighter, with softer shadows.
+    #[arg(long, value_enum, default_value_t = Gamma::Linear)]
+    gamma: Gamma,
     /// Smooth outlines: pixels on an edge take from either side by the exact area that each covers.
     #[arg(long)]
     antialias: bool,
@@ -79,6 +82,13 @@ Examples:
   microphong render bunny --frames 120 -o bunny.apng
   microphong render torus --frames 30 -o frames/
   microphong render teapot --show methods --budget 4";
+
+/// What a display is sent for a level of light.
+#[derive(Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
+enum Gamma {
+    Linear,
+    Srgb,
+}
 
 /// What a picture shows in place of its colours.
 #[derive(Clone, Copy, clap::ValueEnum)]
@@ -122,6 +132,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome> {
             perspective_correct: arguments.perspective_correct,
             antialias: arguments.antialias,
             dither: arguments.dither || arguments.format.is_dithered() && !arguments.no_dither,
+            srgb: arguments.gamma == Gamma::Srgb,
             skips: Skips::ALL,
         },
         band_rows: arguments.band_rows,

@@ -58,6 +58,7 @@ impl Case {
             (style.dither && !format.is_dithered(), " --dither"),
             (!style.dither && format.is_dithered(), " --no-dither"),
             (style.antialias, " --antialias"),
+            (style.srgb, " --gamma srgb"),
         ];
         let options: String = options.iter().filter(|(on, _)| *on).map(|(_, text)| *text).collect();
         format!(

@@ -65,6 +65,7 @@ pub fn sealed(bytes: &[u8]) -> Option<Case> {
         perspective_correct: style & 1 != 0,
         antialias: style & 2 != 0,
         dither: style & 4 != 0,
+        srgb: style & 16 != 0,
         skips: if style & 8 == 0 { Skips::ALL } else { Skips::NONE },
     };
     Some(Case {
@@ -96,8 +97,12 @@ fn draw(case: Case) {
 #[must_use]
 pub fn seed(case: &Case) -> Vec<u8> {
     let index = |shader: Shader| Shader::ALL.iter().position(|&other| other == shader).unwrap_or(0) as u8;
-    let Style { shader, perspective_correct, antialias, dither, skips } = case.style;
-    let style = u8::from(perspective_correct) | u8::from(antialias) << 1 | u8::from(dither) << 2 | u8::from(skips != Skips::ALL) << 3;
+    let Style { shader, perspective_correct, antialias, dither, srgb, skips } = case.style;
+    let style = u8::from(perspective_correct)
+        | u8::from(antialias) << 1
+        | u8::from(dither) << 2
+        | u8::from(skips != Skips::ALL) << 3
+        | u8::from(srgb) << 4;
     let format = Format::ALL.iter().position(|&other| other == case.format).unwrap_or(0) as u8;
     let [width, height] = case.size.map(|side| ((side - 1) % 64) as u8);
     let [low, high, ..] = case.frame.to_le_bytes();

@@ -76,6 +76,7 @@ pub fn styled(random: &mut Random, stream: StreamBytes, size: [u32; 2]) -> Case 
         perspective_correct: random.once_in(4),
         antialias: random.once_in(4),
         dither: random.once_in(4),
+        srgb: false,
         skips: Skips::ALL,
     };
     Case {

@@ -12,7 +12,7 @@ use crate::{
     lighting::{material_tables::MaterialTables, reflectance::Reflectance},
     mesh::{MeshPass, vertices::VertexStage},
     method::{ErrorBounds, Shading, Style},
-    pixel::Pixel,
+    pixel::{Pixel, gamma::Gamma},
     placement::Placement,
     scene::{Object, Scene},
     shader::{Shader, TriangleLoops},
@@ -28,6 +28,8 @@ pub(crate) struct Settings<C: Pixel> {
     pub(crate) processors: u32,
     pub(crate) shader: Shader<C>,
     pub(crate) dither: bool,
+    /// The curve of the display.
+    pub(crate) gamma: Option<&'static Gamma>,
     pub(crate) perspective_correct: bool,
     pub(crate) antialias: bool,
     /// How far a pixel may be off by a method that keeps to a budget, in 1/255, Q9.7.
@@ -168,7 +170,7 @@ impl<'r, C: Pixel> Context<'r, C> {
     /// What the triangles of `placed` have in common, and the loops that draw them.
     #[inline(never)]
     pub(crate) fn drawing<'s>(&'s self, placed: &PlacedMesh<'s>) -> Option<(MeshPass<'s, C>, TriangleLoops<C>)> {
-        let Settings { shader, dither, .. } = self.settings;
+        let Settings { shader, dither, gamma, .. } = self.settings;
         let (stream, material, stage) = (&self.scene.stream, placed.material, self.stage(placed)?);
         let (reflectance, ramp) = (self.reflectances.get(material)?, self.ramps.get(material)?);
         let perspective = self.settings.perspective_correct && stage.view.is_perspective();
@@ -177,7 +179,7 @@ impl<'r, C: Pixel> Context<'r, C> {
             three_channels: reflectance.three_channels(),
             lights: if lighting.is_constant() { reflectance.lights() } else { 0 },
             local_viewer: lighting.is_directional() && !lighting.is_constant() && reflectance.lights() == 1,
-            dithered_or_antialiased: *dither || self.settings.antialiased(),
+            by_canvas: *dither || self.settings.antialiased() || gamma.is_some() && reflectance.three_channels(),
             perspective,
         };
         let exponent = self.scene.material(material)?.exponent;
@@ -194,6 +196,7 @@ impl<'r, C: Pixel> Context<'r, C> {
             },
             tables: MaterialTables { ramp, reflectance },
             dither: *dither,
+            gamma: *gamma,
             stage,
             depth_elision: self.depth_elision.as_ref(),
             first_triangle: placed.first_triangle,

@@ -7,7 +7,7 @@ use crate::{
         reflectance::Reflectance,
     },
     math::vector::zip,
-    pixel::Pixel,
+    pixel::{Pixel, gamma::Gamma},
 };
 use core::marker::PhantomData;
 
@@ -35,8 +35,9 @@ fn mixed<C: Pixel>(levels: [i32; 3]) -> C {
     C::mixed(zip(levels, C::DEPTH, |level, depth| (level + (1 << (LEVEL + 7 - depth))) << (CHANNEL - LEVEL)))
 }
 
-/// Fills the table of colours of a material.
-pub fn fill_ramp<C: Pixel>(ramp: &mut [C::Stored; RAMP], reflectance: &Reflectance) {
+/// Fills the table of colours of a material, by the curve of a display. In three channels the table is linear: what draws them with a curve does
+/// not look at it.
+pub fn fill_ramp<C: Pixel>(ramp: &mut [C::Stored; RAMP], reflectance: &Reflectance, gamma: Option<&Gamma>) {
     if reflectance.three_channels() {
         // Nobody looks at it then, and products might overflow.
         if !reflectance.has_ramp() {
@@ -56,7 +57,9 @@ pub fn fill_ramp<C: Pixel>(ramp: &mut [C::Stored; RAMP], reflectance: &Reflectan
         let mut channels = [0; 3];
         for (channel, (base, depth)) in channels.iter_mut().zip(reflectance.base.into_iter().zip(C::DEPTH)) {
             let step = 1 << (16 - depth);
-            *channel = ((level * u32::from(base) + step / 2) / step).min((1 << depth) - 1);
+            let scaled = level * u32::from(base);
+            let scaled = gamma.map_or(scaled, |gamma| gamma.encoded(scaled, depth));
+            *channel = ((scaled + step / 2) / step).min((1 << depth) - 1);
         }
         *stored = C::pack(channels).stored();
     }
@@ -138,11 +141,11 @@ impl<'a, C: Pixel> MaterialTables<'a, C> {
         if self.reflectance.three_channels() { C::rounded(intensity) } else { self.tint(level >> 1) }
     }
 
-    /// The colour of an intensity, with a [`crate::pixel::dither::threshold`] in place of rounding.
+    /// The colour of an intensity by the curve of a display, with a [`crate::pixel::dither::threshold`] in place of rounding.
     #[inline]
     #[must_use]
-    pub fn dithered(&self, intensity: Intensity, threshold: u32) -> C {
-        C::pack(self.reflectance.dithered(intensity, threshold).map(u32::from))
+    pub fn dithered(&self, intensity: Intensity, threshold: u32, gamma: Option<&Gamma>) -> C {
+        C::pack(self.reflectance.dithered(intensity, threshold, gamma).map(u32::from))
     }
 }
 
@@ -180,7 +183,7 @@ mod tests {
             prop_assume!(reflectance.three_channels());
             prop_assert!(reflectance.has_ramp());
             let mut ramp = [0; RAMP];
-            fill_ramp::<Rgb565>(&mut ramp, &reflectance);
+            fill_ramp::<Rgb565>(&mut ramp, &reflectance, None);
             let tables = MaterialTables::<Rgb565> { ramp: &ramp, reflectance: &reflectance };
             for cosine in (-4..=64).map(|c| c << (COSINE - 6)) {
                 let exact = tables.colour(reflectance.reflection(cosine, 0)).channels();

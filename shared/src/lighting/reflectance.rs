@@ -11,7 +11,7 @@ use crate::{
         highlight_lut::{Base, ENTRY, HighlightLut, square},
         vector::zip,
     },
-    pixel::{Pixel, dither::quantise},
+    pixel::{Pixel, dither::quantise, gamma::Gamma},
     stream::record::{Light, Material},
 };
 use zerocopy::{FromBytes, Immutable, IntoBytes, KnownLayout};
@@ -534,16 +534,21 @@ impl Reflectance {
         largest(total)
     }
 
-    /// The channels of an intensity in the pixel format, with a [`crate::pixel::dither::threshold`] in place of rounding.
+    /// The channels of an intensity in the pixel format by the curve of a display, with a [`crate::pixel::dither::threshold`] in place of
+    /// rounding.
     #[inline]
     #[must_use]
-    pub fn dithered(&self, intensity: Intensity, threshold: u32) -> [u8; 3] {
+    pub fn dithered(&self, intensity: Intensity, threshold: u32, gamma: Option<&Gamma>) -> [u8; 3] {
         let intensity = intensity.map(|level| level.min(255 << 8));
         let [level, ..] = intensity;
         let scaled = if self.three_channels() {
             intensity.map(|level| level as u32)
         } else {
             self.base.map(|base| (level as u32 * u32::from(base)) >> 8)
+        };
+        let scaled = match gamma {
+            Some(gamma) => zip(scaled, self.depth, |level, depth| gamma.encoded(level, depth)),
+            None => scaled,
         };
         quantise(scaled, self.depth, threshold)
     }

@@ -16,7 +16,7 @@ use crate::{
     lighting::material_tables::MaterialTables,
     mesh::vertices::VertexStage,
     method::{DrawTriangle, General, Loops, Method, Shading, TriangleSetup},
-    pixel::Pixel,
+    pixel::{Pixel, gamma::Gamma},
     raster::{
         band::Band,
         canvas::BandCanvas,
@@ -32,6 +32,8 @@ pub(crate) struct MeshPass<'f, C: Pixel> {
     pub(crate) shading: Shading<'f>,
     pub(crate) tables: MaterialTables<'f, C>,
     pub(crate) dither: bool,
+    /// The curve of the display.
+    pub(crate) gamma: Option<&'f Gamma>,
     pub(crate) stage: VertexStage<'f>,
     /// Where triangles may overlap; `None` if they may do so everywhere.
     pub(crate) depth_elision: Option<&'f DepthElision>,
@@ -87,7 +89,8 @@ impl<C: Pixel> MeshPass<'_, C> {
 
     #[inline(never)]
     fn shade_generally(&self, setup: &TriangleSetup<'_>, band: &mut Band<'_, C>) -> u32 {
-        self.method.shade(setup, &self.shading, &mut BandCanvas { band, tables: self.tables, dither: self.dither })
+        let Self { tables, dither, gamma, .. } = *self;
+        self.method.shade(setup, &self.shading, &mut BandCanvas { band, tables, dither, gamma })
     }
 
     /// Draws a triangle of any size, by `loops` if they can; returns the number of its pixels in `band`.

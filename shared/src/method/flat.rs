@@ -51,7 +51,7 @@ impl Loops for Flat {
     type ThreeChannels = Self;
 
     fn take(style: Style) -> bool {
-        !style.dithered_or_antialiased
+        !style.by_canvas
     }
 
     #[inline(always)]

@@ -46,7 +46,7 @@ impl Loops for Gouraud {
     type ThreeChannels = ThreeChannels<Self>;
 
     fn take(style: Style) -> bool {
-        !style.dithered_or_antialiased && !style.perspective
+        !style.by_canvas && !style.perspective
     }
 
     #[inline(always)]

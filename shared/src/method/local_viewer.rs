@@ -44,7 +44,7 @@ const HALF: u32 = 25;
 
 /// Whether there are loops for `style`.
 pub(crate) fn take(style: Style) -> bool {
-    style.local_viewer && !style.dithered_or_antialiased && !style.perspective
+    style.local_viewer && !style.by_canvas && !style.perspective
 }
 
 /// Draws `setup` as seen from `eye`, Q7.25, and returns the number of its pixels in `band`; if it has no highlight, returns the cosines by

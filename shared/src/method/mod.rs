@@ -91,8 +91,8 @@ pub(crate) struct Style {
     pub(crate) lights: u8,
     /// One directional light under a local viewer, whose levels fit these formats.
     pub(crate) local_viewer: bool,
-    /// Dither or antialiasing.
-    pub(crate) dithered_or_antialiased: bool,
+    /// What a canvas alone does to colours: dither, antialiasing, or the curve of a display on three channels.
+    pub(crate) by_canvas: bool,
     /// Interpolation in perspective.
     pub(crate) perspective: bool,
 }

@@ -63,7 +63,7 @@ impl Loops for RenqNewton {
     type ThreeChannels = Self;
 
     fn take(style: Style) -> bool {
-        style.lights == 1 && !style.dithered_or_antialiased && !style.perspective
+        style.lights == 1 && !style.by_canvas && !style.perspective
     }
 
     #[inline(always)]

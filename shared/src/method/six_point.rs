@@ -42,7 +42,7 @@ impl Loops for SixPoint {
     type ThreeChannels = Self;
 
     fn take(style: Style) -> bool {
-        !style.dithered_or_antialiased && !style.perspective
+        !style.by_canvas && !style.perspective
     }
 
     #[inline(always)]

@@ -106,7 +106,7 @@ impl Loops for Sqrt6 {
     type ThreeChannels = Self;
 
     fn take(style: Style) -> bool {
-        (1..=2).contains(&style.lights) && !style.dithered_or_antialiased && !style.perspective
+        (1..=2).contains(&style.lights) && !style.by_canvas && !style.perspective
     }
 
     #[inline(always)]

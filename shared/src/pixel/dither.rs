@@ -26,6 +26,9 @@ pub fn threshold(x: usize, y: usize) -> u32 {
     BAYER[y & 7][x & 7].into()
 }
 
+/// The threshold that rounds.
+pub const HALF: u32 = 64;
+
 /// Channels of `depth` bits from channels in unsigned Q8.8 that are scaled to that depth, with a [`threshold`] in place of rounding.
 #[inline(always)]
 #[must_use]

@@ -2,6 +2,7 @@
 
 #[doc(hidden)]
 pub mod dither;
+pub mod gamma;
 
 use crate::{
     arch::SATURATES,
@@ -32,7 +33,7 @@ pub trait Pixel: Copy + 'static {
         r < 8 && g < 8 && b < 8
     };
     /// Whether steps between levels are so wide that a picture needs dither.
-    const DITHERED: bool = Self::DEPTH[0] <= 2;
+    const DITHERED: bool = Self::DEPTH[2] <= 3;
     /// Bytes that a pixel adds to the picture's checksum.
     const BYTES: usize;
 
@@ -293,6 +294,63 @@ impl Pixel for Rgb565Be {
 
     fn bits(self) -> u32 {
         u16::from_be(self.0).into()
+    }
+}
+
+/// Red and green of three bits, blue of two, in a byte; embedded-graphics has no such format.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, FromBytes, IntoBytes, Immutable, KnownLayout)]
+#[repr(transparent)]
+pub struct Rgb332(u8);
+
+impl Rgb332 {
+    /// Black.
+    pub const BLACK: Self = Self(0);
+}
+
+impl PixelColor for Rgb332 {
+    type Raw = RawU8;
+}
+
+impl From<RawU8> for Rgb332 {
+    fn from(raw: RawU8) -> Self {
+        Self(raw.into_inner())
+    }
+}
+
+impl From<Rgb332> for RawU8 {
+    fn from(Rgb332(byte): Rgb332) -> Self {
+        Self::new(byte)
+    }
+}
+
+impl Pixel for Rgb332 {
+    type Stored = u8;
+
+    const GRAY: bool = false;
+    const DEPTH: [u32; 3] = [3, 3, 2];
+    const BYTES: usize = 1;
+
+    #[inline(always)]
+    fn pack([r, g, b]: [u32; 3]) -> Self {
+        Self((r << 5 | g << 2 | b) as u8)
+    }
+
+    #[inline(always)]
+    fn stored(self) -> u8 {
+        self.0
+    }
+
+    #[inline(always)]
+    fn from_stored(stored: u8) -> Self {
+        Self(stored)
+    }
+
+    fn channels(self) -> [u8; 3] {
+        [self.0 >> 5, self.0 >> 2 & 7, self.0 & 3]
+    }
+
+    fn bits(self) -> u32 {
+        self.0.into()
     }
 }
 

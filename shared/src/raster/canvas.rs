@@ -12,7 +12,11 @@ use crate::{
     format::Intensity,
     interpolate::{Patch, Walker, plane::Linear},
     lighting::material_tables::MaterialTables,
-    pixel::{Pixel, dither::threshold},
+    pixel::{
+        Pixel,
+        dither::{HALF, threshold},
+        gamma::Gamma,
+    },
     raster::{
         band::{Band, Blend},
         counts::Counts,
@@ -141,6 +145,8 @@ pub struct BandCanvas<'c, 'b, C: Pixel> {
     pub tables: MaterialTables<'c, C>,
     /// Whether dither takes the place of rounding.
     pub dither: bool,
+    /// The curve of the display.
+    pub gamma: Option<&'c Gamma>,
 }
 
 impl<C: Pixel> Canvas for BandCanvas<'_, '_, C> {
@@ -158,7 +164,8 @@ impl<C: Pixel> Canvas for BandCanvas<'_, '_, C> {
         let start = stop.wrapping_sub(count);
         if let (Some(pixels), Some(depth)) = (self.band.pixels.get_mut(start..stop), self.band.depth.get_mut(start..stop)) {
             let column = (end as usize).wrapping_sub(count);
-            let mut target = Row { pixels, depth, inv_depth, tables: self.tables, dither: self.dither, column, row: row as usize };
+            let Self { tables, dither, gamma, .. } = *self;
+            let mut target = Row { pixels, depth, inv_depth, tables, dither, gamma, column, row: row as usize };
             shader.span(0, end, count, &mut target);
         }
     }
@@ -174,10 +181,12 @@ impl<C: Pixel> Canvas for BandCanvas<'_, '_, C> {
     }
 
     fn channels(&self, intensity: Intensity, column: i32, row: i32) -> [u8; 3] {
-        if self.dither {
-            self.tables.reflectance.dithered(intensity, threshold(column as usize, row as usize))
+        let Self { tables, dither, gamma, .. } = *self;
+        if dither || gamma.is_some() && tables.reflectance.three_channels() {
+            let threshold = if dither { threshold(column as usize, row as usize) } else { HALF };
+            tables.reflectance.dithered(intensity, threshold, gamma)
         } else {
-            self.tables.shown(intensity).channels()
+            tables.shown(intensity).channels()
         }
     }
 }
@@ -190,6 +199,7 @@ struct Row<'r, C: Pixel> {
     inv_depth: Linear<1>,
     tables: MaterialTables<'r, C>,
     dither: bool,
+    gamma: Option<&'r Gamma>,
     /// Column of the first pixel.
     column: usize,
     row: usize,
@@ -213,12 +223,14 @@ impl<C: Pixel> SpanTarget for Row<'_, C> {
     }
 
     fn put(&mut self, first: usize, visible: u32, intensities: &[Intensity; CHUNK]) {
-        let (tables, column, row) = (self.tables, self.column.wrapping_add(first), self.row);
+        let (tables, gamma, column, row) = (self.tables, self.gamma, self.column.wrapping_add(first), self.row);
         let pixels = self.pixels.get_mut(first..).unwrap_or_default();
-        // One loop for each way to make a colour: no pixel asks for it.
-        if self.dither {
-            put_each(pixels, visible, intensities, |k, intensity| tables.dithered(intensity, threshold(column.wrapping_add(k), row)));
-        } else if tables.reflectance.three_channels() {
+        // One loop for each way to make a colour: no pixel asks for it. The table of colours has the curve in it already.
+        let (dither, three_channels) = (self.dither, tables.reflectance.three_channels());
+        if dither || gamma.is_some() && three_channels {
+            let threshold = |k| if dither { threshold(column.wrapping_add(k), row) } else { HALF };
+            put_each(pixels, visible, intensities, |k, intensity| tables.dithered(intensity, threshold(k), gamma));
+        } else if three_channels {
             put_each(pixels, visible, intensities, |_, intensity| C::rounded(intensity));
         } else {
             put_each(pixels, visible, intensities, |_, [level, ..]| tables.tint(level >> 1));

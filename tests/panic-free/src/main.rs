@@ -11,7 +11,7 @@ use embedded_graphics_core::{
 };
 use microphong::{
     Layout, PreparationPart, Renderer, Shader, Stream,
-    pixel::{PictureCrc, Pixel, Rgb565Be},
+    pixel::{PictureCrc, Pixel, Rgb565Be, gamma::SRGB},
 };
 
 use microphong_literature::ALL;
@@ -50,6 +50,7 @@ pub struct Request {
     /// Where work is divided for two processors.
     share: u16,
     dither: bool,
+    gamma: bool,
     antialias: bool,
     perspective: bool,
 }
@@ -62,6 +63,7 @@ fn draw<C: Pixel>(request: Request, buffers: &mut Buffers<C>) -> Option<u32> {
     let stream = Stream::parse(request.stream).ok()?;
     let mut renderer = Renderer::with_shader(stream, Size::new(width, height), &LAYOUT, &mut buffers.memory, shader).ok()?;
     renderer.set_dither(request.dither);
+    renderer.set_gamma(request.gamma.then_some(&SRGB));
     #[cfg(feature = "all")]
     renderer.set_antialias(request.antialias).ok()?;
     renderer.set_perspective_correct(request.perspective).ok()?;
