@@ -685,7 +685,7 @@ fn convert_refuses_methods_that_a_board_lacks() {
             place.succeeds(&arguments);
             fs::remove_file(place.0.path().join("out.tri")).expect("a stream");
         } else {
-            let words = [board.name(), "has no", shader.name(), "it has flat, gouraud, phong, auto-linear", "--shader"];
+            let words = [board.name(), "has no", shader.name(), "it has flat, gouraud, auto-linear", "--shader"];
             place.fails(&arguments, 2, &words);
         }
     }

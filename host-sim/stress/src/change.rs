@@ -4,7 +4,7 @@ use crate::{random::Random, scenes::colour};
 use microphong::{
     Layout, Pose, RenderError, Renderer, Scene, SceneError, Stream,
     format::{Angle, ErrorBudget, Gain, LARGEST_BUDGET, LEAST_BUDGET, Length, MAX_LIGHTS, Rotation, Scale},
-    pixel::Pixel,
+    pixel::{Pixel, gamma},
     scene::{MAX_POSITION, MAX_SCALE, MIN_SCALE},
     stream::{
         MAX_EXPONENT, MAX_FOCAL, MAX_GAIN, MAX_LENGTH, MIN_FOCAL, MIN_NEAR,
@@ -124,8 +124,9 @@ impl State {
     }
 
     fn set_style<C: Pixel>(&self, renderer: &mut Renderer<'_, C>) -> Result<(), RenderError> {
-        let Style { shader, perspective_correct, antialias, dither, skips } = self.style;
+        let Style { shader, perspective_correct, antialias, dither, srgb, skips } = self.style;
         renderer.set_dither(dither);
+        renderer.set_gamma(srgb.then_some(&gamma::SRGB));
         renderer.set_skips(skips);
         renderer.set_levels_of_detail(self.levels_of_detail);
         renderer.set_shader(shader.on())?;

@@ -10,14 +10,11 @@ use crate::{
     random::Random,
     scenes::{self, Wishes},
 };
-use embedded_graphics_core::{
-    geometry::{Point, Size},
-    pixelcolor::Rgb565,
-    primitives::Rectangle,
-};
+use embedded_graphics_core::{geometry::Point, pixelcolor::Rgb565, primitives::Rectangle};
 use microphong::{
     Frame, Layout, Pose, Renderer, Stream,
     format::Length,
+    pixel::gamma,
     stream::record::{CAMERA_TRACK, Key, LIGHT_TRACK, OBJECT_TRACK},
 };
 use microphong_render::{
@@ -50,7 +47,7 @@ impl Family for Changes {
             Ok(None) => return Verdict::skipped(),
             Err(what) => return Verdict { failure: Some(what), ..Verdict::default() },
         };
-        match judge(&case, limit) {
+        match judge(&case, all) {
             Ok(Some(found)) => Verdict { counts: found.into(), case: Some(case), ..Verdict::default() },
             // The method cannot draw this scene.
             Ok(None) => Verdict::skipped(),
@@ -59,7 +56,7 @@ impl Family for Changes {
     }
 
     fn fails(&self, case: &Case) -> bool {
-        judge(case, limit).is_err()
+        judge(case, all).is_err()
     }
 }
 
@@ -154,15 +151,11 @@ impl From<Found> for Vec<u64> {
     }
 }
 
-/// Leaves out of a frame what cannot differ from the one before. Returns whether less is left than all of its pixels, so many.
-pub type Limit = fn(&mut Frame<'_, Rgb565>, Size) -> bool;
+/// What is left out of a frame beyond what the renderer does not draw.
+pub type Limit = fn(&mut Frame<'_, Rgb565>);
 
-/// All that the renderer says.
-pub fn limit(frame: &mut Frame<'_, Rgb565>, size: Size) -> bool {
-    let rows = frame.changed_rows();
-    frame.limit(rows.clone());
-    (rows.len() as u32) < size.height
-}
+/// Nothing.
+pub fn all(_: &mut Frame<'_, Rgb565>) {}
 
 /// Draws some frames of a case with changes between them; `None` if its method cannot draw it.
 ///
@@ -179,6 +172,8 @@ pub fn judge(case: &Case, limit: Limit) -> Result<Option<Found>, String> {
     state.style = Style { perspective_correct: false, antialias: layout.antialias && case.style.antialias, ..case.style };
     renderer.set_antialias(state.style.antialias).map_err(|error| error.to_string())?;
     renderer.set_dither(case.style.dither);
+    renderer.set_gamma(case.style.srgb.then_some(&gamma::SRGB));
+    renderer.set_partial_redraw(true);
     let mut shown = vec![Rgb565::default(); (case.size[0] * case.size[1]) as usize];
     let mut found = Found::default();
     for number in 0..random.pick(2..FRAMES) {
@@ -269,12 +264,17 @@ fn draw(
 ) -> Result<bool, String> {
     let size = renderer.size();
     let mut band = vec![Rgb565::default(); layout.band()];
+    if random.once_in(8) {
+        // The next frame is whole.
+        renderer.set_partial_redraw(true);
+    }
     let mut frame = match random.pick(0..3) {
         0 => renderer.draw(),
         1 => renderer.frame(state.frame()),
         _ => renderer.prepare(state.frame(), random.bits() as u16).frame(),
     };
-    let in_part = !random.once_in(8) && limit(&mut frame, size);
+    let in_part = frame.area().size != size;
+    limit(&mut frame);
     let mut show = |area: Rectangle, band: &[Rgb565]| {
         for (row, pixels) in (area.top_left.y as u32..).zip(band.chunks_exact(area.size.width as usize)).take(area.size.height as usize) {
             let first = (row * size.width) as usize + area.top_left.x as usize;
