@@ -710,7 +710,7 @@ fn inspect_takes_scenes() {
         assert!(place.succeeds(&["inspect", name]).starts_with(&format!("{name}: triangle stream")), "{name}");
     }
     let gauges = serde_json::from_str::<serde_json::Value>(&place.succeeds(&["inspect", "gauges", "--json"])).expect("JSON");
-    assert_eq!((&gauges["file"], &gauges["objects"]), (&"gauges".into(), &6.into()));
+    assert_eq!((&gauges["file"], &gauges["objects"]), (&"gauges".into(), &9.into()));
     place.fails(&["inspect", "gauge"], 2, &["\"gauge\"", "gauges", ".tri"]);
 }
 
