@@ -212,11 +212,9 @@ impl<'a, C: Pixel> Renderer<'a, C> {
 
     /// Turns partial redraw on or off; it is off at first. With it, a frame has only the area that may differ from the latest frame, which the
     /// display has to show still: see [`Frame::area`]. Where single objects move, that is the rectangle that they leave and enter, and
-    /// objects that do not reach into it are left out whole; where colours, lights or the camera have changed, and in the next frame, it is
-    /// all of the picture.
+    /// objects that do not reach into it are left out whole; where colours, lights or the camera have changed, it is all of the picture.
     pub fn set_partial_redraw(&mut self, on: bool) {
         self.settings.partial_redraw = on;
-        self.scene.set_view_changed();
     }
 
     /// The size of the viewport.

@@ -173,7 +173,6 @@ pub fn judge(case: &Case, limit: Limit) -> Result<Option<Found>, String> {
     renderer.set_antialias(state.style.antialias).map_err(|error| error.to_string())?;
     renderer.set_dither(case.style.dither);
     renderer.set_gamma(case.style.srgb.then_some(&gamma::SRGB));
-    renderer.set_partial_redraw(true);
     let mut shown = vec![Rgb565::default(); (case.size[0] * case.size[1]) as usize];
     let mut found = Found::default();
     for number in 0..random.pick(2..FRAMES) {
@@ -264,10 +263,8 @@ fn draw(
 ) -> Result<bool, String> {
     let size = renderer.size();
     let mut band = vec![Rgb565::default(); layout.band()];
-    if random.once_in(8) {
-        // The next frame is whole.
-        renderer.set_partial_redraw(true);
-    }
+    // A whole frame now and then.
+    renderer.set_partial_redraw(!random.once_in(8));
     let mut frame = match random.pick(0..3) {
         0 => renderer.draw(),
         1 => renderer.frame(state.frame()),

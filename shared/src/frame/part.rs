@@ -183,7 +183,7 @@ impl<'r> Part<'r> {
 /// Moves these `columns` of rows that are `width` pixels wide to the front of a band.
 #[cold]
 fn narrow<C: Copy>(pixels: &mut [C], width: usize, columns: Range<usize>) {
-    let count = columns.len();
+    let count = columns.end.saturating_sub(columns.start);
     for row in 0..pixels.len().checked_div(width).unwrap_or(0) {
         for column in 0..count {
             if let Some(&pixel) = pixels.get(row * width + columns.start + column)

@@ -70,7 +70,10 @@ impl Area {
     #[must_use]
     pub fn rectangle(&self) -> Rectangle {
         let (columns, rows) = (self.columns(), self.rows());
-        Rectangle::new(Point::new(columns.start as i32, rows.start as i32), Size::new(columns.len() as u32, rows.len() as u32))
+        Rectangle::new(
+            Point::new(columns.start as i32, rows.start as i32),
+            Size::new(columns.end.saturating_sub(columns.start), rows.end.saturating_sub(rows.start)),
+        )
     }
 }
 

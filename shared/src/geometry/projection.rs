@@ -260,8 +260,9 @@ impl View {
             most = (x.max(most.0), y.max(most.1));
         }
         // A pixel more, for what is rounded on the way.
-        let pixels =
-            |least: i32, most: i32, side: u32| [(least >> SUBPIXEL) - 2, (most >> SUBPIXEL) + 3].map(|c| c.clamp(0, side as i32) as u16);
+        let pixels = |least: i32, most: i32, side: u32| {
+            [(least >> SUBPIXEL) - 2, (most >> SUBPIXEL) + 3].map(|c| c.clamp(0, i32::from(side as u16)) as u16)
+        };
         Area { columns: pixels(least.0, most.0, size.width), rows: pixels(least.1, most.1, size.height) }
     }
 
