@@ -34,13 +34,13 @@ impl Area {
         is_empty(self.columns) || is_empty(self.rows)
     }
 
-    /// The smallest one that has all pixels of both.
+    /// The smallest one that has all pixels of both; this one if the other has none.
     #[must_use]
     pub fn union(&self, other: &Self) -> Self {
         let hull = |[start, end]: [u16; 2], other: [u16; 2]| [start.min(other[0]), end.max(other[1])];
         match (self.is_empty(), other.is_empty()) {
-            (true, _) => *other,
             (_, true) => *self,
+            (true, _) => *other,
             _ => Self { columns: hull(self.columns, other.columns), rows: hull(self.rows, other.rows) },
         }
     }
