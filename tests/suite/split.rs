@@ -14,7 +14,7 @@ use microphong::{
         viewport::Bounds,
     },
     interpolate::{Constant, plane::Plane},
-    lighting::{material_tables::MaterialTables, reflectance::Reflectance},
+    lighting::{material_tables::MaterialTables, output::Output, reflectance::Reflectance},
     method::{
         Uniform,
         sub_triangle::{ScreenSubTriangle, SubTriangle},
@@ -110,7 +110,7 @@ fn parts_of_random_triangles_cover_each_pixel_once() {
                 } else {
                     let mut chance = Random::new(splits, 0);
                     let mut chance = (i % 3 > 0 && rows == HEIGHT).then_some(&mut chance);
-                    let mut canvas = BandCanvas { band: &mut band, tables, dither: false, gamma: None };
+                    let mut canvas = BandCanvas { band: &mut band, output: &Output::new(tables, false, None) };
                     whole.draw(&SubTriangle::WHOLE, (i % 7) as u32, &mut chance, &mut canvas)
                 };
                 picture[top * WIDTH..][..rows * WIDTH].copy_from_slice(&pixels);

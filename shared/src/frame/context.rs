@@ -9,7 +9,7 @@ use crate::{
         projection::{ScreenVertex, View},
         viewport::Viewport,
     },
-    lighting::{material_tables::MaterialTables, reflectance::Reflectance},
+    lighting::{material_tables::MaterialTables, output::Output, reflectance::Reflectance},
     mesh::{MeshPass, vertices::VertexStage},
     method::{ErrorBounds, Shading, Style},
     pixel::{Pixel, gamma::Gamma},
@@ -175,11 +175,12 @@ impl<'r, C: Pixel> Context<'r, C> {
         let (reflectance, ramp) = (self.reflectances.get(material)?, self.ramps.get(material)?);
         let perspective = self.settings.perspective_correct && stage.view.is_perspective();
         let lighting = stage.lighting;
+        let output = Output::new(MaterialTables { ramp, reflectance }, *dither, *gamma);
         let style = Style {
             three_channels: reflectance.three_channels(),
             lights: if lighting.is_constant() { reflectance.lights() } else { 0 },
             local_viewer: lighting.is_directional() && !lighting.is_constant() && reflectance.lights() == 1,
-            by_canvas: *dither || self.settings.antialiased() || gamma.is_some() && reflectance.three_channels(),
+            by_canvas: output.by_threshold() || self.settings.antialiased(),
             perspective,
         };
         let exponent = self.scene.material(material)?.exponent;
@@ -194,9 +195,7 @@ impl<'r, C: Pixel> Context<'r, C> {
                 error_bounds,
                 budget: self.settings.budget,
             },
-            tables: MaterialTables { ramp, reflectance },
-            dither: *dither,
-            gamma: *gamma,
+            output,
             stage,
             depth_elision: self.depth_elision.as_ref(),
             first_triangle: placed.first_triangle,

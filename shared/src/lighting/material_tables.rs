@@ -140,13 +140,6 @@ impl<'a, C: Pixel> MaterialTables<'a, C> {
         let [level, ..] = intensity;
         if self.reflectance.three_channels() { C::rounded(intensity) } else { self.tint(level >> 1) }
     }
-
-    /// The colour of an intensity by the curve of a display, with a [`crate::pixel::dither::threshold`] in place of rounding.
-    #[inline]
-    #[must_use]
-    pub fn dithered(&self, intensity: Intensity, threshold: u32, gamma: Option<&Gamma>) -> C {
-        C::pack(self.reflectance.dithered(intensity, threshold, gamma).map(u32::from))
-    }
 }
 
 #[cfg(test)]

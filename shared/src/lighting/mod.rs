@@ -3,4 +3,5 @@
 pub mod constant_lights;
 pub mod lights;
 pub mod material_tables;
+pub mod output;
 pub mod reflectance;

@@ -13,10 +13,10 @@ use crate::{
         projection::{ScreenVertex, State},
         viewport::{Bounds, Viewport},
     },
-    lighting::material_tables::MaterialTables,
+    lighting::output::Output,
     mesh::vertices::VertexStage,
     method::{DrawTriangle, General, Loops, Method, Shading, TriangleSetup},
-    pixel::{Pixel, gamma::Gamma},
+    pixel::Pixel,
     raster::{
         band::Band,
         canvas::BandCanvas,
@@ -30,10 +30,7 @@ use crate::{
 pub(crate) struct MeshPass<'f, C: Pixel> {
     pub(crate) method: &'static dyn Method,
     pub(crate) shading: Shading<'f>,
-    pub(crate) tables: MaterialTables<'f, C>,
-    pub(crate) dither: bool,
-    /// The curve of the display.
-    pub(crate) gamma: Option<&'f Gamma>,
+    pub(crate) output: Output<'f, C>,
     pub(crate) stage: VertexStage<'f>,
     /// Where triangles may overlap; `None` if they may do so everywhere.
     pub(crate) depth_elision: Option<&'f DepthElision>,
@@ -89,8 +86,7 @@ impl<C: Pixel> MeshPass<'_, C> {
 
     #[inline(never)]
     fn shade_generally(&self, setup: &TriangleSetup<'_>, band: &mut Band<'_, C>) -> u32 {
-        let Self { tables, dither, gamma, .. } = *self;
-        self.method.shade(setup, &self.shading, &mut BandCanvas { band, tables, dither, gamma })
+        self.method.shade(setup, &self.shading, &mut BandCanvas { band, output: &self.output })
     }
 
     /// Draws a triangle of any size, by `loops` if they can; returns the number of its pixels in `band`.
@@ -138,7 +134,7 @@ impl<C: Pixel> MeshPass<'_, C> {
             pixels: PixelSet::Centres,
             place,
         };
-        L::draw(&setup, &self.shading, self.tables, band)
+        L::draw(&setup, &self.shading, self.output.tables, band)
     }
 
     /// The cached corners on the screen; `None` if one is not cached.
@@ -246,7 +242,7 @@ impl<C: Pixel> MeshPass<'_, C> {
             pixels,
             place: None,
         };
-        loops(&setup, &self.shading, self.tables, band).unwrap_or_else(|| self.shade_generally(&setup, band))
+        loops(&setup, &self.shading, self.output.tables, band).unwrap_or_else(|| self.shade_generally(&setup, band))
     }
 }
 

@@ -11,12 +11,8 @@ use crate::{
     coverage::sample::Layer,
     format::Intensity,
     interpolate::{Patch, Walker, plane::Linear},
-    lighting::material_tables::MaterialTables,
-    pixel::{
-        Pixel,
-        dither::{HALF, threshold},
-        gamma::Gamma,
-    },
+    lighting::output::Output,
+    pixel::Pixel,
     raster::{
         band::{Band, Blend},
         counts::Counts,
@@ -142,11 +138,7 @@ pub struct BandCanvas<'c, 'b, C: Pixel> {
     /// The band that is drawn into.
     pub band: &'c mut Band<'b, C>,
     /// The colours of the material.
-    pub tables: MaterialTables<'c, C>,
-    /// Whether dither takes the place of rounding.
-    pub dither: bool,
-    /// The curve of the display.
-    pub gamma: Option<&'c Gamma>,
+    pub output: &'c Output<'c, C>,
 }
 
 impl<C: Pixel> Canvas for BandCanvas<'_, '_, C> {
@@ -164,8 +156,7 @@ impl<C: Pixel> Canvas for BandCanvas<'_, '_, C> {
         let start = stop.wrapping_sub(count);
         if let (Some(pixels), Some(depth)) = (self.band.pixels.get_mut(start..stop), self.band.depth.get_mut(start..stop)) {
             let column = (end as usize).wrapping_sub(count);
-            let Self { tables, dither, gamma, .. } = *self;
-            let mut target = Row { pixels, depth, inv_depth, tables, dither, gamma, column, row: row as usize };
+            let mut target = Row { pixels, depth, inv_depth, output: self.output, column, row: row as usize };
             shader.span(0, end, count, &mut target);
         }
     }
@@ -181,13 +172,7 @@ impl<C: Pixel> Canvas for BandCanvas<'_, '_, C> {
     }
 
     fn channels(&self, intensity: Intensity, column: i32, row: i32) -> [u8; 3] {
-        let Self { tables, dither, gamma, .. } = *self;
-        if dither || gamma.is_some() && tables.reflectance.three_channels() {
-            let threshold = if dither { threshold(column as usize, row as usize) } else { HALF };
-            tables.reflectance.dithered(intensity, threshold, gamma)
-        } else {
-            tables.shown(intensity).channels()
-        }
+        self.output.channels(intensity, column as usize, row as usize)
     }
 }
 
@@ -197,9 +182,7 @@ struct Row<'r, C: Pixel> {
     depth: &'r mut [u16],
     /// The depth, which stands on the column right of the pixels that are still to be tested.
     inv_depth: Linear<1>,
-    tables: MaterialTables<'r, C>,
-    dither: bool,
-    gamma: Option<&'r Gamma>,
+    output: &'r Output<'r, C>,
     /// Column of the first pixel.
     column: usize,
     row: usize,
@@ -223,14 +206,13 @@ impl<C: Pixel> SpanTarget for Row<'_, C> {
     }
 
     fn put(&mut self, first: usize, visible: u32, intensities: &[Intensity; CHUNK]) {
-        let (tables, gamma, column, row) = (self.tables, self.gamma, self.column.wrapping_add(first), self.row);
-        let pixels = self.pixels.get_mut(first..).unwrap_or_default();
+        let (output, column, row) = (self.output, self.column.wrapping_add(first), self.row);
+        let (pixels, tables) = (self.pixels.get_mut(first..).unwrap_or_default(), output.tables);
         // One loop for each way to make a colour: no pixel asks for it. The table of colours has the curve in it already.
-        let (dither, three_channels) = (self.dither, tables.reflectance.three_channels());
-        if dither || gamma.is_some() && three_channels {
-            let threshold = |k| if dither { threshold(column.wrapping_add(k), row) } else { HALF };
-            put_each(pixels, visible, intensities, |k, intensity| tables.dithered(intensity, threshold(k), gamma));
-        } else if three_channels {
+        if output.by_threshold() {
+            let colour = |k, intensity| C::pack(output.channels(intensity, column.wrapping_add(k), row).map(u32::from));
+            put_each(pixels, visible, intensities, colour);
+        } else if tables.reflectance.three_channels() {
             put_each(pixels, visible, intensities, |_, intensity| C::rounded(intensity));
         } else {
             put_each(pixels, visible, intensities, |_, [level, ..]| tables.tint(level >> 1));
