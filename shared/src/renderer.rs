@@ -88,7 +88,7 @@ impl<'a, C: Pixel> Renderer<'a, C> {
             levels_of_detail: true,
             partial_redraw: false,
         };
-        let scene = Scene::new(stream, materials, objects, limits(shader.facts()));
+        let scene = Scene::new(stream, materials, objects, limits(shader.facts(), false));
         Ok(Self { settings, scene, memory, seams: None, rearranged: true, area: Area::NONE })
     }
 
@@ -105,7 +105,7 @@ impl<'a, C: Pixel> Renderer<'a, C> {
         let (facts, scene) = (shader.facts(), &self.scene);
         check_scene(scene.camera(), scene.lights(), scene.materials(), facts, self.settings.perspective_correct)?;
         self.settings.shader = shader;
-        self.scene.set_limits(limits(facts));
+        self.scene.set_limits(limits(facts, self.settings.perspective_correct));
         self.scene.set_stale();
         Ok(())
     }
@@ -155,6 +155,7 @@ impl<'a, C: Pixel> Renderer<'a, C> {
         let scene = &self.scene;
         check_scene(scene.camera(), scene.lights(), scene.materials(), self.settings.shader.facts(), on)?;
         self.settings.perspective_correct = on;
+        self.scene.set_limits(limits(self.settings.shader.facts(), on));
         self.scene.set_view_changed();
         Ok(())
     }
@@ -212,7 +213,8 @@ impl<'a, C: Pixel> Renderer<'a, C> {
 
     /// Turns partial redraw on or off; it is off at first. With it, a frame has only the area that may differ from the latest frame, which the
     /// display has to show still: see [`Frame::area`]. Where single objects move, that is the rectangle that they leave and enter, and
-    /// objects that do not reach into it are left out whole; where colours, lights or the camera have changed, it is all of the picture.
+    /// objects that do not reach into it are left out whole; where colours, lights or the camera have changed, it is all of the picture. What a
+    /// program draws over the picture is sent in that area alone: where it changes, the frame has to be drawn with partial redraw turned off.
     pub fn set_partial_redraw(&mut self, on: bool) {
         self.settings.partial_redraw = on;
     }
@@ -312,9 +314,13 @@ fn level(budget: ErrorBudget) -> u32 {
     u32::from(budget.to_bits()) << (LEVEL - ErrorBudget::FRAC_NBITS)
 }
 
-/// What a method can draw.
-fn limits(facts: &Facts) -> Limits {
-    Limits { near_lights: facts.near_lights, least_exponent: facts.highlight.least_exponent() }
+/// What a method can draw, with interpolation in perspective or without.
+fn limits(facts: &Facts, perspective_correct: bool) -> Limits {
+    Limits {
+        near_lights: facts.near_lights,
+        perspective: facts.perspective || !perspective_correct,
+        least_exponent: facts.highlight.least_exponent(),
+    }
 }
 
 /// Checks that a method can shade a stream, with interpolation in perspective or without.
@@ -332,7 +338,7 @@ fn check_scene<'m>(
     facts: &Facts,
     perspective_correct: bool,
 ) -> Result<(), RenderError> {
-    let Limits { near_lights, least_exponent: least } = limits(facts);
+    let Limits { near_lights, perspective, least_exponent: least } = limits(facts, perspective_correct);
     let is_perspective = camera.projection == PERSPECTIVE;
     if !near_lights && (is_perspective && camera.viewer == VIEWER_LOCAL || lights.iter().any(|light| light.kind != DIRECTIONAL)) {
         return Err(RenderError::Light { shader: facts.name });
@@ -340,7 +346,7 @@ fn check_scene<'m>(
     if materials.any(|material| material.exponent < least) {
         return Err(RenderError::Exponent { shader: facts.name, least });
     }
-    if perspective_correct && is_perspective && !facts.perspective {
+    if is_perspective && !perspective {
         return Err(RenderError::Perspective { shader: facts.name });
     }
     Ok(())

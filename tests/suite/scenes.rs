@@ -6,7 +6,7 @@ use microphong::{
     fixed::types::{I2F30, I18F14, U0F32, U16F16},
     format::MAX_LIGHTS,
     scene::MAX_POSITION,
-    stream::record::{Camera, DIRECTIONAL, EYE_SPACE, Light, Material, OBJECT_SPACE, POINT, VIEWER_LOCAL},
+    stream::record::{Camera, DIRECTIONAL, EYE_SPACE, Light, Material, OBJECT_SPACE, ORTHOGRAPHIC, POINT, VIEWER_LOCAL},
 };
 use microphong_sim::{
     bytes::StreamBytes,
@@ -384,7 +384,8 @@ fn what_cannot_be_drawn_is_refused() {
     let stream = bytes.parse().unwrap();
     let layout = Layout::new(SIZE.width as usize, SIZE.height as usize).with_room_for(&stream).objects(2);
     let mut memory = vec![0; layout.words::<Rgb888>()];
-    let goldman = microphong_sim::shader::Shader::ALL.into_iter().find(|shader| shader.name() == "goldman").unwrap();
+    let named = |name| microphong_sim::shader::Shader::ALL.into_iter().find(|shader| shader.name() == name).unwrap();
+    let [goldman, hybrid] = ["goldman", "hybrid-original"].map(named);
     let mut renderer = Renderer::<Rgb888>::with_shader(stream, SIZE, &layout, &mut memory, Shader::PHONG).unwrap();
     let scene = renderer.scene();
     let errors = [
@@ -449,6 +450,16 @@ fn what_cannot_be_drawn_is_refused() {
     assert_eq!(scene.set_lights(&[near]), Err(SceneError::Light));
     assert_eq!(scene.set_camera(Camera { viewer: VIEWER_LOCAL, ..stream.header.camera }), Err(SceneError::Light));
     assert_eq!(scene.set_material(0, Material { exponent: 2, ..stream.materials[0] }), Err(SceneError::Exponent { least: 4 }));
+    // So is a perspective camera where the method would have to interpolate in perspective, and cannot.
+    renderer.set_shader(hybrid.on()).unwrap();
+    let parallel = Camera { projection: ORTHOGRAPHIC, far: stream.header.camera.near + (10 << 14), ..stream.header.camera };
+    renderer.scene().set_camera(parallel).unwrap();
+    renderer.set_perspective_correct(true).unwrap();
+    let refused = renderer.scene().set_camera(stream.header.camera);
+    assert_eq!(refused, Err(SceneError::Perspective));
+    assert!(SceneError::Perspective.to_string().contains("set_perspective_correct"));
+    renderer.set_perspective_correct(false).unwrap();
+    renderer.scene().set_camera(stream.header.camera).unwrap();
     renderer.set_shader(Shader::PHONG).unwrap();
     renderer.scene().set_lights(&[near]).unwrap();
     assert!(renderer.set_shader(goldman.on()).is_err());

@@ -308,6 +308,7 @@ impl Change {
                     && (camera.projection == PERSPECTIVE || camera.near < camera.far && camera.far <= 2 * MAX_LENGTH)
                     && camera.projection <= ORTHOGRAPHIC
                     && (camera.viewer != VIEWER_LOCAL || camera.projection != PERSPECTIVE || now.takes_near())
+                    && (camera.projection != PERSPECTIVE || !now.style.perspective_correct || now.style.shader.facts().perspective)
             }
             // Along the axes of the camera it may be farther away than along those of the world.
             Self::Eye(pose) => {
@@ -474,7 +475,5 @@ fn camera(random: &mut Random, now: &State) -> Camera {
             _ => camera.period = random.among(&[0, 1, 7, 120]),
         }
     }
-    // A known fault: the scene takes a perspective camera although the method has no form for the interpolation that the renderer is set to.
-    let is_refused = now.style.perspective_correct && !now.style.shader.facts().perspective;
-    Camera { projection: if is_refused { now.camera.projection } else { camera.projection }, ..camera }
+    camera
 }

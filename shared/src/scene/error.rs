@@ -36,6 +36,8 @@ pub enum SceneError {
     },
     /// The shading method needs directional lights and an infinitely far viewer.
     Light,
+    /// Light is interpolated in perspective, which the shading method does for orthographic cameras only.
+    Perspective,
     /// The shading method needs larger exponents of highlights.
     Exponent {
         /// The smallest one.
@@ -57,6 +59,9 @@ impl fmt::Display for SceneError {
             Self::Objects { room } => write!(f, "there is room for {room} objects; ask for more by Layout::objects"),
             Self::Range { name } => write!(f, "{name} is out of range"),
             Self::Light => f.write_str("the shading method needs directional lights and an infinitely far viewer"),
+            Self::Perspective => f.write_str(
+                "the shading method cannot interpolate light in perspective; turn that off by Renderer::set_perspective_correct, or keep an orthographic camera",
+            ),
             Self::Exponent { least } => write!(f, "the shading method needs materials whose exponent is {least} or more"),
         }
     }

@@ -49,6 +49,8 @@ use zerocopy::{FromBytes, Immutable, IntoBytes, KnownLayout};
 pub(crate) struct Limits {
     /// Near lights and a local viewer.
     pub(crate) near_lights: bool,
+    /// A perspective camera, as light is interpolated now.
+    pub(crate) perspective: bool,
     pub(crate) least_exponent: u16,
 }
 
@@ -392,11 +394,14 @@ impl<'a> Scene<'a> {
     /// Changes the camera.
     ///
     /// # Errors
-    /// When a value of it is out of range, or the shading method cannot draw for a local viewer.
+    /// When a value of it is out of range, or the shading method cannot draw for a local viewer, or not in perspective where that is asked for.
     pub fn set_camera(&mut self, camera: Camera) -> Result<(), SceneError> {
         in_range(camera.fault())?;
         if !self.limits.near_lights && camera.viewer == VIEWER_LOCAL && camera.projection == PERSPECTIVE {
             return Err(SceneError::Light);
+        }
+        if !self.limits.perspective && camera.projection == PERSPECTIVE {
+            return Err(SceneError::Perspective);
         }
         if self.camera != camera {
             self.camera = camera;
