@@ -90,7 +90,7 @@ impl Board {
     /// Whether its firmware has room for the method.
     #[must_use]
     pub fn has(self, shader: Shader) -> bool {
-        self != Self::Lm3s6965evb || [Shader::FLAT, Shader::GOURAUD, Shader::AUTO_LINEAR].contains(&shader)
+        self != Self::Lm3s6965evb || Shader::SMALLEST_BOARD.contains(&shader)
     }
 
     /// The method of the stream that its firmware is built with.

@@ -120,12 +120,8 @@ pub(crate) struct Arguments {
 }
 
 /// The boards that there is firmware for, and their methods; a build without emulators knows them as well.
-const BOARDS: [(&str, &[Shader]); 4] = [
-    ("pico", &Shader::ALL),
-    ("lm3s6965evb", &[Shader::FLAT, Shader::GOURAUD, Shader::AUTO_LINEAR]),
-    ("mps2-an385", &Shader::ALL),
-    ("mps2-an386", &Shader::ALL),
-];
+const BOARDS: [(&str, &[Shader]); 4] =
+    [("pico", &Shader::ALL), ("lm3s6965evb", &Shader::SMALLEST_BOARD), ("mps2-an385", &Shader::ALL), ("mps2-an386", &Shader::ALL)];
 
 const EXAMPLES: &str = "\
 Examples:
