@@ -115,7 +115,7 @@ pub(crate) fn long(n: u64, d: u64) -> u64 {
 
 /// [`long`] where processors have no division of long numbers.
 ///
-/// Source: Warren, Hacker's Delight 9-5. It is for what is divided rarely: a sixth of the library's code.
+/// Source: Warren, Hacker's Delight 9-5. Where it matters how long it takes and not all bits count, see [`crate::math::recip::quotient`].
 #[inline(never)]
 fn long_by_words(n: u64, d: u64) -> u64 {
     let (upper, lower) = ((n >> 32) as u32, n as u32);

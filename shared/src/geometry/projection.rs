@@ -222,7 +222,7 @@ impl View {
         // Homogeneous, Q.15. Below 2^22 in size: all sums, and what they are shifted to, stay below 2^63.
         let from = if self.is_perspective() { self.translation.map(|c| 2 * i64::from(c) - 1) } else { [0, 0, 1 << 15] };
         let along = |k: usize| columns.iter().zip(from).map(|(column, t)| column.get(k).unwrap_or(&0) * t).sum::<i64>();
-        // A rotation's determinant is not 0.
+        // A rotation's determinant is not 0. Coordinates are below 2^23, so that quotients are off by less than 2^-5 before they are rounded.
         [0, 1, 2].map(|k| {
             let along = along(k) << 13;
             let size = quotient(along.unsigned_abs(), determinant.unsigned_abs()) as i32;
@@ -252,7 +252,7 @@ impl View {
         if nearest < self.near {
             return Area::whole(size);
         }
-        // The corners of a box about it: the farther from the axis, the nearer to the eye.
+        // Opposite corners of the square about it, at its nearest depth and at its farthest: each side is seen farthest out at one of the two.
         let (mut least, mut most) = ((i32::MAX, i32::MAX), (i32::MIN, i32::MIN));
         for (radius, depth) in [(radius, nearest), (radius, farthest), (-radius, nearest), (-radius, farthest)] {
             let ([x, y, _], _) = self.project([x.saturating_add(radius), y.saturating_add(radius), depth]);
@@ -279,7 +279,7 @@ impl View {
     /// they are one unit and 25/32.
     #[must_use]
     pub fn displacement(&self, reach: u32) -> u64 {
-        // A focal length is not 0.
+        // A focal length is not 0. The quotient may be too small by less than one part of 2^27, and by what is rounded.
         let pixel = quotient((25 * u64::from(reach)) << (30 + 16 - UNIT - 5), self.focal.unsigned_abs());
         pixel.saturating_add((pixel >> 27) + 1 + (1 << (30 - UNIT))).min(u64::from(u32::MAX))
     }
