@@ -1,93 +1,62 @@
-//! Frames drawn to embedded-graphics displays, in whole bands and never in single pixels, and what is drawn over them.
+//! Frames drawn to embedded-graphics displays, in whole bands and never in single pixels, and what is drawn under and over them.
 
-use crate::{Frame, Renderer, Stats, error::RenderError, pixel::Pixel};
-use core::{cell::RefCell, convert::Infallible, fmt};
+use crate::{Renderer, Stats, band_target::BandTarget, error::RenderError, pixel::Pixel};
+use core::{cell::RefCell, fmt};
 use embedded_graphics_core::{
     Drawable,
     draw_target::DrawTarget,
-    geometry::{Dimensions, Point},
+    geometry::{Dimensions, Point, Size},
     pixelcolor::PixelColor,
     primitives::Rectangle,
 };
 
-/// A band as a target of embedded-graphics, in the coordinates of the picture: what is drawn on it lies over the picture and is sent with it, so
-/// that nothing flickers. What lies outside of the band is left out; the next band has its part of it.
-#[derive(Debug)]
-pub struct BandTarget<'b, C> {
-    pixels: &'b mut [C],
-    area: Rectangle,
-}
-
-impl<'b, C> BandTarget<'b, C> {
-    /// The band that [`Frame::next_band`] has drawn into the front of `pixels`, and its area.
-    #[must_use]
-    pub fn new(pixels: &'b mut [C], area: Rectangle) -> Self {
-        Self { pixels, area }
-    }
-
-    /// The pixels from a point on to the right, at most so many; none outside of the band.
-    fn row(&mut self, from: Point, count: u32) -> &mut [C] {
-        if !self.area.contains(from) {
-            return &mut [];
-        }
-        let (Point { x, y }, width) = (from - self.area.top_left, self.area.size.width as usize);
-        let (first, left) = (y as usize * width + x as usize, width.saturating_sub(x as usize));
-        self.pixels.get_mut(first..).and_then(|rest| rest.get_mut(..left.min(count as usize))).unwrap_or_default()
-    }
-}
-
-impl<C> Dimensions for BandTarget<'_, C> {
-    fn bounding_box(&self) -> Rectangle {
-        self.area
-    }
-}
-
-impl<C: PixelColor> DrawTarget for BandTarget<'_, C> {
-    type Color = C;
-    type Error = Infallible;
-
-    fn draw_iter<I: IntoIterator<Item = embedded_graphics_core::Pixel<C>>>(&mut self, pixels: I) -> Result<(), Infallible> {
-        for embedded_graphics_core::Pixel(point, color) in pixels {
-            self.row(point, 1).fill(color);
-        }
-        Ok(())
-    }
-
-    fn fill_solid(&mut self, area: &Rectangle, color: C) -> Result<(), Infallible> {
-        let area = area.intersection(&self.area);
-        for y in area.rows() {
-            self.row(Point::new(area.top_left.x, y), area.size.width).fill(color);
-        }
-        Ok(())
-    }
-}
-
-impl<C: Pixel + PixelColor> Frame<'_, C> {
-    /// Draws all bands of the frame and `over` them, handing each to `target` in one `fill_contiguous`.
-    ///
-    /// `band` holds at least one row.
-    ///
-    /// # Errors The display's.
-    fn draw_to<D: DrawTarget<Color = C>>(
-        mut self,
-        target: &mut D,
-        band: &mut [C],
-        over: impl Fn(&mut BandTarget<'_, C>),
-    ) -> Result<Stats, D::Error> {
-        while let Ok(Some(area)) = self.next_band(band) {
-            over(&mut BandTarget::new(band, area));
-            target.fill_contiguous(&area, band.iter().copied().take((area.size.width * area.size.height) as usize))?;
-        }
-        Ok(self.stats())
-    }
-}
-
 /// One frame as a [`Drawable`], to be drawn like any other shape of embedded-graphics. Its output is the frame's [`Stats`].
-#[derive(Debug)]
-pub struct Picture<'r, 'a, C: Pixel> {
+///
+/// Something may be drawn [`under`](Self::under) and [`over`](Self::over) it, and it may lie anywhere on the display: see [`Self::at`].
+///
+/// ```
+/// use embedded_graphics::{
+///     image::{Image, ImageRaw}, mono_font::{MonoTextStyle, ascii::FONT_6X10}, pixelcolor::Rgb565, prelude::*, text::Text,
+/// };
+/// use microphong::{Picture, RenderError, Renderer};
+///
+/// /// The object before an image, and a text before the object. The image stays in flash: embedded-graphics reads it there.
+/// fn show<D: DrawTarget<Color = Rgb565>>(
+///     renderer: &mut Renderer<'_, Rgb565>,
+///     band: &mut [Rgb565],
+///     image: &ImageRaw<'_, Rgb565>,
+///     display: &mut D,
+/// ) -> Result<(), RenderError> {
+///     let corner = Point::new(40, 20);
+///     let image = Image::new(image, corner);
+///     let text = Text::new("12.3 V", corner + Point::new(4, 12), MonoTextStyle::new(&FONT_6X10, Rgb565::YELLOW));
+///     let picture = Picture::of_scene(renderer, band)?.at(corner, display)?;
+///     // Drawing into a band cannot fail.
+///     let picture = picture.under(|band| image.draw(band).unwrap_or_default()).over(|band| {
+///         let Ok(_) = text.draw(band);
+///     });
+///     let _ = picture.draw(display);
+///     Ok(())
+/// }
+/// ```
+pub struct Picture<'r, 'a, C: Pixel, U = Draw<C>, O = Draw<C>> {
     parts: RefCell<(&'r mut Renderer<'a, C>, &'r mut [C])>,
     /// Number of the frame; `None` for the scene as it is.
     number: Option<u32>,
+    /// Where it lies on the display.
+    corner: Point,
+    under: Option<U>,
+    over: Option<O>,
+}
+
+/// What draws on a band.
+type Draw<C> = fn(&mut BandTarget<'_, C>);
+
+impl<C: Pixel + fmt::Debug, U, O> fmt::Debug for Picture<'_, '_, C, U, O> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self { parts, number, corner, .. } = self;
+        f.debug_struct("Picture").field("parts", parts).field("number", number).field("corner", corner).finish_non_exhaustive()
+    }
 }
 
 impl<'r, 'a, C: Pixel> Picture<'r, 'a, C> {
@@ -98,7 +67,7 @@ impl<'r, 'a, C: Pixel> Picture<'r, 'a, C> {
     /// When `band` does not hold one row.
     pub fn new(renderer: &'r mut Renderer<'a, C>, band: &'r mut [C], number: u32) -> Result<Self, RenderError> {
         renderer.check_band(band)?;
-        Ok(Self { parts: RefCell::new((renderer, band)), number: Some(number) })
+        Ok(Self { parts: RefCell::new((renderer, band)), number: Some(number), corner: Point::zero(), under: None, over: None })
     }
 
     /// The scene of `renderer` as it is, see [`crate::Scene`]; `band` as in [`Self::new`].
@@ -108,59 +77,75 @@ impl<'r, 'a, C: Pixel> Picture<'r, 'a, C> {
     pub fn of_scene(renderer: &'r mut Renderer<'a, C>, band: &'r mut [C]) -> Result<Self, RenderError> {
         Ok(Self { number: None, ..Self::new(renderer, band, 0)? })
     }
-
-    /// The same with something drawn over it: `over` is called for each band, and draws text, lines and images as on a display. What it draws
-    /// has to be the same for all bands of a picture.
-    #[must_use]
-    pub fn over<F: Fn(&mut BandTarget<'_, C>)>(self, over: F) -> PictureWithOverlay<'r, 'a, C, F> {
-        PictureWithOverlay { picture: self, over }
-    }
 }
 
-impl<C: Pixel + PixelColor> Picture<'_, '_, C> {
-    /// Draws the picture and what lies `over` it.
-    fn draw_with<D: DrawTarget<Color = C>>(&self, target: &mut D, over: impl Fn(&mut BandTarget<'_, C>)) -> Result<Stats, D::Error> {
-        // The picture is borrowed already only if a display draws it from within its own `fill_contiguous`.
-        match self.parts.try_borrow_mut() {
-            Ok(mut parts) => {
-                let (renderer, band) = &mut *parts;
-                let frame = match self.number {
-                    Some(number) => renderer.frame(number),
-                    None => renderer.draw(),
-                };
-                frame.draw_to(target, band, over)
-            }
-            Err(_) => Ok(Stats::default()),
+impl<'r, 'a, C: Pixel, U, O> Picture<'r, 'a, C, U, O> {
+    /// The same picture elsewhere: its upper left corner is this pixel of `display`, of which nothing but the picture is drawn. At first that is
+    /// the pixel 0, 0.
+    ///
+    /// # Errors
+    /// When a part of the picture would lie outside of the display.
+    pub fn at(mut self, corner: Point, display: &impl Dimensions) -> Result<Self, RenderError> {
+        let (Size { width, height }, outer) = (self.parts.get_mut().0.size(), display.bounding_box());
+        let lies = |at: i32, side: u32, start: i32, room: u32| {
+            let first = i64::from(at) - i64::from(start);
+            first >= 0 && first + i64::from(side) <= i64::from(room)
+        };
+        let on_display =
+            lies(corner.x, width, outer.top_left.x, outer.size.width) && lies(corner.y, height, outer.top_left.y, outer.size.height);
+        if !on_display {
+            return Err(RenderError::Corner);
         }
+        Ok(Self { corner, ..self })
+    }
+
+    /// The same with something drawn between the background and it: `under` is called for each band, and draws text, lines and images as on the
+    /// display, in its coordinates. What it draws has to be the same for all bands of a picture.
+    #[must_use]
+    pub fn under<F: Fn(&mut BandTarget<'_, C>)>(self, under: F) -> Picture<'r, 'a, C, F, O> {
+        let Self { parts, number, corner, over, .. } = self;
+        Picture { parts, number, corner, under: Some(under), over }
+    }
+
+    /// The same with something drawn over it: `over` is called for each band when all else is drawn, otherwise like [`Self::under`].
+    #[must_use]
+    pub fn over<F: Fn(&mut BandTarget<'_, C>)>(self, over: F) -> Picture<'r, 'a, C, U, F> {
+        let Self { parts, number, corner, under, .. } = self;
+        Picture { parts, number, corner, under, over: Some(over) }
     }
 }
 
-impl<C: Pixel + PixelColor> Drawable for Picture<'_, '_, C> {
+impl<C, U, O> Drawable for Picture<'_, '_, C, U, O>
+where
+    C: Pixel + PixelColor,
+    U: Fn(&mut BandTarget<'_, C>),
+    O: Fn(&mut BandTarget<'_, C>),
+{
     type Color = C;
     type Output = Stats;
 
+    /// Hands each band to `target` in one `fill_contiguous`.
     fn draw<D: DrawTarget<Color = C>>(&self, target: &mut D) -> Result<Stats, D::Error> {
-        self.draw_with(target, |_| ())
-    }
-}
-
-/// A [`Picture`] with something drawn over it, see [`Picture::over`].
-pub struct PictureWithOverlay<'r, 'a, C: Pixel, F> {
-    picture: Picture<'r, 'a, C>,
-    over: F,
-}
-
-impl<C: Pixel + fmt::Debug, F> fmt::Debug for PictureWithOverlay<'_, '_, C, F> {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.debug_struct("PictureWithOverlay").field("picture", &self.picture).finish_non_exhaustive()
-    }
-}
-
-impl<C: Pixel + PixelColor, F: Fn(&mut BandTarget<'_, C>)> Drawable for PictureWithOverlay<'_, '_, C, F> {
-    type Color = C;
-    type Output = Stats;
-
-    fn draw<D: DrawTarget<Color = C>>(&self, target: &mut D) -> Result<Stats, D::Error> {
-        self.picture.draw_with(target, &self.over)
+        // The picture is borrowed already only if a display draws it from within its own `fill_contiguous`.
+        let Ok(mut parts) = self.parts.try_borrow_mut() else { return Ok(Stats::default()) };
+        let (renderer, band) = &mut *parts;
+        let mut frame = match self.number {
+            Some(number) => renderer.frame(number),
+            None => renderer.draw(),
+        };
+        let on_display = |area: Rectangle| Rectangle::new(area.top_left + self.corner, area.size);
+        // The band holds a row: that was checked.
+        while let Ok(Some(area)) = frame.next_band_over(band, |pixels, area| {
+            if let Some(under) = &self.under {
+                under(&mut BandTarget::new(pixels, on_display(area)));
+            }
+        }) {
+            let area = on_display(area);
+            if let Some(over) = &self.over {
+                over(&mut BandTarget::new(band, area));
+            }
+            target.fill_contiguous(&area, band.iter().copied().take((area.size.width * area.size.height) as usize))?;
+        }
+        Ok(frame.stats())
     }
 }

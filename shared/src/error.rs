@@ -44,6 +44,13 @@ pub enum RenderError {
         /// Pixels needed at least.
         need: usize,
     },
+    /// A picture would not lie on the display.
+    Corner,
+    /// The stream has something that is not part of this build.
+    Feature {
+        /// The feature that it takes.
+        name: &'static str,
+    },
     /// Antialiasing is not part of this build.
     Antialias,
     /// None of the program's methods is the one that the stream asks for.
@@ -84,6 +91,8 @@ impl fmt::Display for RenderError {
             Self::Objects { need } => write!(f, "the scene has objects: {need}; give the layout of the memory room for as many"),
             Self::NoSamples => f.write_str("antialiasing needs memory of its own; ask for it by Layout::antialias"),
             Self::Band { need } => write!(f, "a band of pixels must hold a row of the picture, {need} pixels"),
+            Self::Corner => f.write_str("the picture would reach beyond the display; move it or make it smaller"),
+            Self::Feature { name } => write!(f, "this build cannot draw the scene; build it with the feature {name}"),
             Self::Antialias => f.write_str("this build cannot antialias; build it with the feature antialias"),
             Self::Budget => f.write_str("an error budget must be 1/2 to 16"),
             Self::Missing { method } => {

@@ -4,7 +4,7 @@
 //! format and domain, and conversions from floating point round to the nearest. Inside the loops a value is a plain integer whose fraction
 //! bits are one of the constants below.
 
-use fixed::types::{I2F14, I2F30, I18F14, I28F4, U0F16, U0F32, U1F15, U2F14, U5F3, U14F2, U16F16};
+use fixed::types::{I2F14, I2F30, I4F12, I18F14, I28F4, U0F16, U0F32, U1F15, U2F14, U5F3, U14F2, U16F16};
 
 /// Screen coordinate, pixels, Q28.4: pixel centres lie at 8/16. Corners are rounded to the nearest sixteenth.
 pub type Subpixel = I28F4;
@@ -32,6 +32,9 @@ pub type Haversine = U0F16;
 pub type NormalLength = U1F15;
 /// 1 over the least altitude of a triangle, in 1/units of object space, unsigned Q14.2 in [0, 16384).
 pub type InverseAltitude = U14F2;
+
+/// Length in a picture as a share of its smaller side, Q4.12 in [-8, 8).
+pub type Share = I4F12;
 
 /// How far a pixel may be off, in 1/255 of full intensity (LSB), unsigned Q5.3.
 pub type ErrorBudget = U5F3;

@@ -55,6 +55,8 @@
 //! | `shader` | a method together with its loops: [`Shader`] |
 //! | `error` | why a renderer cannot draw: [`RenderError`] |
 //! | `memory` | the memory that rendering takes: [`Layout`] |
+//! | `band_target` | a band for embedded-graphics to draw on: [`BandTarget`] |
+//! | `text` | labels, by fonts of embedded-graphics |
 //! | `frame` | one frame, band by band: [`Frame`] |
 //! | `renderer` | the frames of a scene: [`Renderer`] |
 //! | `display` | frames onto embedded-graphics displays: [`Picture`] |
@@ -62,6 +64,7 @@
 #![forbid(unsafe_code)]
 
 mod arch;
+mod band_target;
 mod display;
 mod error;
 pub mod format;
@@ -75,6 +78,8 @@ mod placement;
 pub mod scene;
 mod shader;
 pub mod stream;
+#[cfg(feature = "text")]
+mod text;
 
 // No part of the interface: public for the tests, tools and other packages of this repository alone.
 #[doc(hidden)]
@@ -94,7 +99,8 @@ pub mod renderer;
 #[doc(hidden)]
 pub mod setup;
 
-pub use display::{BandTarget, Picture, PictureWithOverlay};
+pub use band_target::BandTarget;
+pub use display::Picture;
 pub use error::{MAX_SIDE, RenderError};
 pub use fixed;
 pub use frame::{Frame, FrameInTwo, FramePart, Preparation, PreparationPart, Skips, Stats};

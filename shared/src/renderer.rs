@@ -36,8 +36,8 @@ impl<'a, C: Pixel> Renderer<'a, C> {
     /// A renderer for a viewport of `size` pixels, with the one of `shaders` that the stream asks for. `memory` has as many words as
     /// [`Layout::words`] says; its contents do not matter.
     ///
-    /// # Errors When `size` is out of range or not that of the layout, `memory` is too small, or the method is missing or cannot shade the
-    /// scene.
+    /// # Errors When `size` is out of range or not that of the layout, `memory` is too small, the method is missing or cannot shade the
+    /// scene, or the stream has labels or a gradient and this build lacks the feature `text` or `gradient`.
     pub fn new(stream: Stream<'a>, size: Size, layout: &Layout, memory: &'a mut [u64], shaders: &[Shader<C>]) -> Result<Self, RenderError> {
         let method = stream.header.shader;
         let shader = shaders.iter().find(|shader| shader.facts().id == method).ok_or(RenderError::Missing { method })?;
@@ -74,6 +74,12 @@ impl<'a, C: Pixel> Renderer<'a, C> {
         let need = layout.words::<C>();
         let (memory, objects, materials) = Memory::new(layout, memory).ok_or(RenderError::Memory { need })?;
         check(&stream, shader.facts(), false)?;
+        if !cfg!(feature = "gradient") && stream.header.background != stream.header.background_bottom {
+            return Err(RenderError::Feature { name: "gradient" });
+        }
+        if !cfg!(feature = "text") && !stream.labels.is_empty() {
+            return Err(RenderError::Feature { name: "text" });
+        }
         let settings = Settings {
             size,
             processors: layout.processors as u32,
@@ -214,7 +220,8 @@ impl<'a, C: Pixel> Renderer<'a, C> {
     /// Turns partial redraw on or off; it is off at first. With it, a frame has only the area that may differ from the latest frame, which the
     /// display has to show still: see [`Frame::area`]. Where single objects move, that is the rectangle that they leave and enter, and
     /// objects that do not reach into it are left out whole; where colours, lights or the camera have changed, it is all of the picture. What a
-    /// program draws over the picture is sent in that area alone: where it changes, the frame has to be drawn with partial redraw turned off.
+    /// program draws under the picture or over it is sent in that area alone: where it changes, the frame has to be drawn with partial redraw
+    /// turned off.
     pub fn set_partial_redraw(&mut self, on: bool) {
         self.settings.partial_redraw = on;
     }

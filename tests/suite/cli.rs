@@ -710,7 +710,7 @@ fn inspect_takes_scenes() {
         assert!(place.succeeds(&["inspect", name]).starts_with(&format!("{name}: triangle stream")), "{name}");
     }
     let gauges = serde_json::from_str::<serde_json::Value>(&place.succeeds(&["inspect", "gauges", "--json"])).expect("JSON");
-    assert_eq!((&gauges["file"], &gauges["objects"]), (&"gauges".into(), &9.into()));
+    assert_eq!((&gauges["file"], &gauges["objects"]), (&"gauges".into(), &12.into()));
     place.fails(&["inspect", "gauge"], 2, &["\"gauge\"", "gauges", ".tri"]);
 }
 
@@ -780,6 +780,7 @@ fn texts_that_are_no_scenes_are_refused() {
     place.succeeds(&["render", "good.toml", "-o", "good.png"]);
     place.fails(&["compare", "board"], 1, &["board", "several objects"]);
     let with = |old: &str, new: &str| good.replacen(old, new, 1);
+    let label = |lines: &str| format!("{good}[[label]]\n{lines}\n");
     let cases = [
         (with("frames = 10", "frames = 0"), "frames: there must be one"),
         (with("frames = 10", "frames = ten"), "line 1"),
@@ -801,8 +802,19 @@ fn texts_that_are_no_scenes_are_refused() {
         (format!("{good}[[light]]\ntowards = [0, 0, 0]\n"), "light 1"),
         (format!("{good}[[light]]\ntowards = [1, 0, 0]\nat = [1, 0, 0]\n"), "say either where it shines from"),
         (format!("{good}[[light]]\ntowards = [1, 0, 0]\ncolour = \"red\"\n"), "\"red\" is no colour; write it as RRGGBB"),
+        (format!("background = 7\n{good}"), "a background is a colour, as \"203040\", or a gradient"),
+        (format!("background = {{ top = \"red\", bottom = \"000000\" }}\n{good}"), "background: top: \"red\" is no colour"),
+        (label("text = \"\"\nat = [0, 0]"), "label 1, \"\": text: it has 0 characters; it can have 1 to 30"),
+        (label("text = \"0123456789012345678901234567890\"\nat = [0, 0]"), "it has 31 characters"),
+        (label("text = \"5 \u{3a9}\"\nat = [0, 0]"), "its characters must be those of ISO 8859-1, in one line"),
+        (label("text = \"a\\nb\"\nat = [0, 0]"), "ISO 8859-1, in one line"),
+        (label("text = \"a\"\nat = [9000, 0]"), "at: it is too far from the picture"),
+        (label("text = \"a\"\nat = [0, 0]\nheight = 0"), "height: a line must be 1 pixel high at least"),
+        (label("text = \"a\"\nat = [0, 0]\nalign = \"top\""), "expected one of `left`, `middle`, `right`"),
+        (label("text = \"a\"\nat = [0, 0]\ncolour = \"red\""), "label 1, \"a\": \"red\" is no colour"),
         (format!("shader = \"none\"\n{good}"), "there is no method \"none\""),
         (format!("{good}[[mesh]]\nname = \"a\"\nshape = \"box\"\n"), "two meshes of the name"),
+        (with("shape = \"sphere\"", "shape = \"torus\"\ntube = 1"), "tube: it must be more than 0"),
         (with("shape = \"sphere\"", "shape = \"sphere\"\nsize = [3, 1, 1]"), "less than 2 are possible"),
     ];
     for (text, words) in cases {

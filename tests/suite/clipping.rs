@@ -90,7 +90,7 @@ fn what_crosses_the_near_plane_or_leaves_the_guard_band_is_cut_not_lost() {
                 header.camera.focal = (focal * 65_536.0) as u32;
                 header.camera.near = (near * 16_384.0) as i32;
                 header.camera.projection = 0;
-                header.background = [0, 0, 255];
+                (header.background, header.background_bottom) = ([0, 0, 255], [0, 0, 255]);
             });
             let stream = bytes.parse().unwrap();
             let (hit, unsure) = rays(&stream, size);

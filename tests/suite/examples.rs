@@ -9,6 +9,9 @@ use microphong::{Layout, Picture, RenderError, Renderer, Stats, Stream, pixel::P
 use microphong_tests::program;
 use std::{fmt::Debug, fs, path::PathBuf, process::Command};
 
+#[path = "../../examples/backdrop.rs"]
+#[expect(dead_code, reason = "the example's `main`")]
+mod backdrop;
 #[path = "../../examples/esp32c3-gc9a01/src/scene.rs"]
 mod esp32c3_gc9a01;
 #[path = "../../examples/rp2040-ssd1306/src/scene.rs"]
@@ -36,7 +39,7 @@ macro_rules! shows {
         let mut band = vec![display.get_pixel(Point::zero()); $scene::LAYOUT.band()];
         let ($renderer, $band) = (&mut renderer, &mut band);
         let Ok(stats) = $picture.expect("a picture").draw(&mut display);
-        compare($name, &stats, &display);
+        compare(concat!("examples/", $name), &stats, &display);
     }};
 }
 
@@ -53,7 +56,7 @@ fn has_room(layout: &Layout, stream: &Stream<'_>) {
 fn compare<C: PixelColor + Into<embedded_graphics::pixelcolor::Rgb888> + Debug>(name: &str, stats: &Stats, display: &SimulatorDisplay<C>) {
     assert!(stats.drawn > 0, "{name}: nothing is drawn");
     let image = display.to_rgb_output_image(&OutputSettings::default());
-    let golden = root().join("../docs/examples").join(name).with_extension("png");
+    let golden = root().join("../docs").join(name).with_extension("png");
     assert_eq!(check_pixels(&golden, display.size(), image.as_image_buffer().into_raw(), bless()), None);
 }
 
@@ -66,6 +69,8 @@ fn displays_show_what_the_documentation_shows() {
     shows!("rp2040-ssd1306", rp2040_ssd1306, |renderer, band| rp2040_ssd1306::picture(renderer, band, 0));
     shows!("rp2350-st7789", rp2350_st7789, |renderer, band| rp2350_st7789::picture(renderer, band, 0, None));
     shows!("stm32f411-ili9341", stm32f411_ili9341, |renderer, band| stm32f411_ili9341::picture(renderer, band, 0));
+    let (display, stats) = backdrop::draw().expect("a picture");
+    compare("backdrop", &stats, &display);
 }
 
 /// The commands stand in examples/README.md.

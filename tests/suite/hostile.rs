@@ -5,10 +5,10 @@
 //! largest and smallest that the format has, or one beyond. Each takes the stream's place in the one program of a board.
 
 use microphong::{
-    format::MAX_LIGHTS,
+    format::{MAX_LIGHTS, Share},
     stream::{
         self, MAX_EXPONENT, MAX_FOCAL, MAX_GAIN, MAX_LENGTH, MIN_FOCAL, MIN_NEAR,
-        record::{Header, Instance, Key, Light, Material, Mesh, ORTHOGRAPHIC, POINT, Track, Triangle, Vertex},
+        record::{Header, Instance, Key, LABEL_TEXT, Label, Light, Material, Mesh, ORTHOGRAPHIC, POINT, RIGHT, Track, Triangle, Vertex},
     },
 };
 use microphong_sim::{
@@ -71,6 +71,7 @@ struct Parts {
     keys: Vec<Key>,
     vertices: Vec<Vertex>,
     triangles: Vec<Triangle>,
+    labels: Vec<Label>,
 }
 
 impl Parts {
@@ -86,6 +87,7 @@ impl Parts {
             keys: stream.keys.to_vec(),
             vertices: stream.vertices.to_vec(),
             triangles: stream.triangles.to_vec(),
+            labels: stream.labels.to_vec(),
         })
     }
 
@@ -96,6 +98,7 @@ impl Parts {
             (self.meshes.len() as u16, self.materials.len() as u16, self.lights.len() as u16);
         (header.instances, header.tracks, header.keys) = (self.instances.len() as u16, self.tracks.len() as u16, self.keys.len() as u32);
         (header.vertices, header.triangles) = (self.vertices.len() as u32, self.triangles.len() as u32);
+        header.labels = self.labels.len() as u8;
         header.length = stream::length(header).unwrap_or(u32::MAX);
         lie(header);
         let mut bytes = self.header.as_bytes().to_vec();
@@ -108,6 +111,7 @@ impl Parts {
             self.keys.as_bytes(),
             self.vertices.as_bytes(),
             self.triangles.as_bytes(),
+            self.labels.as_bytes(),
         ] {
             bytes.extend_from_slice(records);
         }
@@ -116,11 +120,16 @@ impl Parts {
     }
 }
 
+/// A label in the middle of the picture, as long as can be.
+fn label(colour: [u8; 3]) -> Label {
+    Label::new([Share::ZERO; 2], Share::from_bits(300), colour, 1, b"0123456789\xB0C \xA0\xFF abcdefghijklmno")
+}
+
 /// What to do with something, and what comes of it.
 type Change<T> = (&'static str, fn(&mut T));
 
 /// Values at the ends of their ranges, and beyond them.
-const LIMITS: [Change<Parts>; 17] = [
+const LIMITS: [Change<Parts>; 23] = [
     ("least focal length", |parts| parts.header.camera.focal = MIN_FOCAL),
     ("largest focal length", |parts| parts.header.camera.focal = MAX_FOCAL),
     ("too large a focal length", |parts| parts.header.camera.focal = MAX_FOCAL + 1),
@@ -152,6 +161,19 @@ const LIMITS: [Change<Parts>; 17] = [
         parts.triangles.clear();
         parts.meshes[0].triangles = 0;
     }),
+    ("a gradient", |parts| parts.header.background_bottom = [0, 255, 80]),
+    ("as many labels as can be, everywhere", |parts| {
+        let places = [i16::MIN, -2000, 0, 900, i16::MAX];
+        let label = |k: usize| {
+            let label = Label { height: [1, 150, 4000, i16::MAX][k % 4], ..label([90, 255, 60]) };
+            Label { position: [places[k % 5], places[k / 5 % 5]], alignment: (k % 3) as u8, ..label }
+        };
+        parts.labels = (0..255).map(label).collect();
+    }),
+    ("a label of no characters", |parts| parts.labels = vec![Label { text: [0; LABEL_TEXT], ..label([0; 3]) }]),
+    ("a label with a control character", |parts| parts.labels = vec![Label { text: [b'\n'; LABEL_TEXT], ..label([0; 3]) }]),
+    ("a label of no height", |parts| parts.labels = vec![Label { height: 0, ..label([0; 3]) }]),
+    ("a label that is aligned in no way", |parts| parts.labels = vec![Label { alignment: RIGHT + 1, ..label([0; 3]) }]),
     ("no mesh", |parts| {
         (parts.meshes, parts.vertices, parts.triangles) = (Vec::new(), Vec::new(), Vec::new());
     }),

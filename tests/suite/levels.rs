@@ -43,7 +43,7 @@ fn streams(name: &str, sides: &[u32]) -> Result<[StreamBytes; 2]> {
     let view = View::orbit(Up::Y, 0.5, 0.35, DISTANCE, FRAMES).fit(&mesh.positions, (64, 64), MARGIN);
     // Black behind a surface that is nowhere black: what is covered can be told.
     let surface = Surface::metal([1.0; 3], [0.3, 0.5, 0.2], 30);
-    let look = Look { background: [0; 3], ..Look::new(surface, view) };
+    let look = Look { background: [0; 3].into(), ..Look::new(surface, view) };
     let (mut parts, _) = quantise(&mesh);
     let without = look.stream(&parts)?;
     let errors: Vec<_> = sides.iter().map(|&side| look.tolerance(&parts, (side, side))).collect();

@@ -56,7 +56,7 @@ fn closed_convex_meshes_cover_each_pixel_once() {
         // A background that no material has tells pixels that were drawn from those that were not.
         let mut bytes = scene::load(name).unwrap().stream.as_bytes().to_vec();
         let mut header = Header::read_from_prefix(&bytes).unwrap().0;
-        header.background = [255, 0, 255];
+        (header.background, header.background_bottom) = ([255, 0, 255], [255, 0, 255]);
         bytes[..size_of::<Header>()].copy_from_slice(header.as_bytes());
         seal(&mut bytes);
         let bytes = StreamBytes::from(bytes.as_slice());

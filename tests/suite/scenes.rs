@@ -5,7 +5,7 @@ use microphong::{
     Layout, Object, Pose, Renderer, Scene, SceneError, Shader, Stream,
     fixed::types::{I2F30, I18F14, U0F32, U16F16},
     format::MAX_LIGHTS,
-    scene::MAX_POSITION,
+    scene::{Background, MAX_POSITION},
     stream::record::{Camera, DIRECTIONAL, EYE_SPACE, Light, Material, OBJECT_SPACE, ORTHOGRAPHIC, POINT, VIEWER_LOCAL},
 };
 use microphong_sim::{
@@ -287,7 +287,8 @@ fn changes_are_drawn_as_if_the_stream_had_them() {
         Projection::Perspective,
     );
     second.ambient = [0.5, 0.7, 0.9];
-    second.background = [10, 200, 60];
+    let background = Background::Gradient { top: [10, 200, 60], bottom: [250, 0, 61] };
+    second.background = background;
     second.surfaces.swap(0, 2);
     second.view.translation = [0.3, -0.2, 3.5];
     let (first, second) = (stream(&first, &meshes()), stream(&second, &meshes()));
@@ -299,7 +300,8 @@ fn changes_are_drawn_as_if_the_stream_had_them() {
     let scene = renderer.scene();
     scene.set_lights(to.lights).unwrap();
     scene.set_ambient(to.header.ambient()).unwrap();
-    scene.set_background(to.header.background);
+    scene.set_background(background);
+    assert_eq!(scene.background(), background);
     scene.set_camera(to.header.camera).unwrap();
     for (index, material) in to.materials.iter().enumerate() {
         scene.set_material(index, *material).unwrap();

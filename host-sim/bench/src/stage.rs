@@ -19,7 +19,7 @@ pub struct Stages {
     pub vertex: u64,
     /// Triangles that face away or lie off screen told apart, the others binned.
     pub cull: u64,
-    /// Per drawn triangle and band: nodes, fits, edges.
+    /// Per drawn triangle and band: nodes, fits, edges. Per label and band: all of it.
     pub setup: u64,
     /// Per row of a triangle: stepping, slices, the start of the walkers.
     pub span: u64,
@@ -63,10 +63,13 @@ pub(super) enum Part {
 
 /// Parts of functions by what their names contain; the first that fits counts. Names as the compiler writes them, so that this
 /// is the one place to follow when functions move.
-const TABLE: [(&str, Part); 27] = [
+const TABLE: [(&str, Part); 30] = [
     ("microphong::raster::triangle::fill_rows", Part::Row),
     ("as microphong::raster::canvas::SpanShader::span", Part::Row),
     ("microphong::raster::band::Band::clear", Part::Clear),
+    ("microphong::raster::band::fill_pixels", Part::Clear),
+    ("microphong::raster::gradient::fill", Part::Clear),
+    ("microphong::text::draw", Part::Setup),
     ("microphong::renderer::Renderer::frame", Part::Frame),
     ("microphong::renderer::Renderer::draw", Part::Frame),
     ("microphong::renderer::Renderer::place", Part::Frame),

@@ -93,6 +93,12 @@ impl Board {
         self != Self::Lm3s6965evb || Shader::SMALLEST_BOARD.contains(&shader)
     }
 
+    /// Whether its firmware has room for labels and gradients.
+    #[must_use]
+    pub fn has_decorations(self) -> bool {
+        self != Self::Lm3s6965evb
+    }
+
     /// The method of the stream that its firmware is built with.
     #[must_use]
     pub fn shader(self) -> Shader {

@@ -200,19 +200,25 @@ pub fn first_frame(board: Board, bytes: &[u8]) -> Result<Picture, String> {
 /// Draws in the board's format.
 fn draw(board: Board, stream: Stream<'_>, shaders: &[Shader], frames: usize) -> Result<Vec<Picture>, RenderError> {
     match board.format() {
-        Format::Rgb565 => draw_in::<Rgb565>(stream, shaders, board.budget(), frames),
-        Format::Rgb565Be => draw_in::<Rgb565Be>(stream, shaders, board.budget(), frames),
-        Format::Gray4 => draw_in::<Gray4>(stream, shaders, board.budget(), frames),
+        Format::Rgb565 => draw_in::<Rgb565>(board, stream, shaders, frames),
+        Format::Rgb565Be => draw_in::<Rgb565Be>(board, stream, shaders, frames),
+        Format::Gray4 => draw_in::<Gray4>(board, stream, shaders, frames),
     }
 }
 
 /// Draws with as much memory as the firmware has, in as many bands.
-fn draw_in<C: Pixel>(stream: Stream<'_>, shaders: &[Shader], budget: Budget, frames: usize) -> Result<Vec<Picture>, RenderError> {
-    let Budget { height, layout } = budget;
+fn draw_in<C: Pixel>(board: Board, stream: Stream<'_>, shaders: &[Shader], frames: usize) -> Result<Vec<Picture>, RenderError> {
+    let Budget { height, layout } = board.budget();
     let size = Size::new(layout.width as u32, height as u32);
     let mut memory = vec![0; layout.words::<C>()];
     let shaders: Vec<_> = shaders.iter().map(|shader| shader.on()).collect();
     let mut renderer = Renderer::new(stream, size, &layout, &mut memory, &shaders)?;
+    if !board.has_decorations() {
+        let needs = [(stream.header.background != stream.header.background_bottom, "gradient"), (!stream.labels.is_empty(), "text")];
+        if let Some((_, name)) = needs.into_iter().find(|(needs, _)| *needs) {
+            return Err(RenderError::Feature { name });
+        }
+    }
     let shader = renderer.shader().facts().name;
     let mut band = vec![C::pack([0; 3]); layout.band()];
     let pictures = (0..frames as u32).map(|number| {

@@ -13,12 +13,13 @@ use embedded_graphics_core::geometry::Size;
 use microphong::{
     format::{ErrorBudget, Gain, GeometricError, Radius},
     geometry::detail::stream_tolerance,
+    scene::Background,
     stream,
     stream::{
         MAX_GAIN,
         record::{
-            CLOSED_CONVEX, Camera, DIRECTIONAL, EYE_SPACE, Header, Instance, Key, Light, MAGIC, Material, Mesh, OBJECT_SPACE, ORTHOGRAPHIC,
-            OWN_MATERIALS, PERSPECTIVE, POINT, Track, VERSION,
+            CLOSED_CONVEX, Camera, DIRECTIONAL, EYE_SPACE, Header, Instance, Key, Label, Light, MAGIC, Material, Mesh, OBJECT_SPACE,
+            ORTHOGRAPHIC, OWN_MATERIALS, PERSPECTIVE, POINT, Track, VERSION,
         },
     },
 };
@@ -102,8 +103,8 @@ pub struct Look {
     pub lamps: Vec<Lamp>,
     /// Ambient light.
     pub ambient: V3,
-    /// Red, green, blue.
-    pub background: [u8; 3],
+    /// What is seen where no triangle is.
+    pub background: Background,
     /// Highlights see the eye where it is, not infinitely far.
     pub local_viewer: bool,
     /// How far a pixel may be off by a method that keeps to a budget.
@@ -116,6 +117,8 @@ pub struct Look {
     pub frames: u16,
     /// Objects, and what moves.
     pub cast: Cast,
+    /// Texts over the picture.
+    pub labels: Vec<Label>,
 }
 
 /// A dark neutral: bright and dark objects both stand out.
@@ -131,13 +134,14 @@ impl Look {
             surfaces: vec![surface],
             lamps: vec![Lamp::Distant(KEY, [1.0; 3])],
             ambient: [1.0; 3],
-            background: BACKGROUND,
+            background: BACKGROUND.into(),
             local_viewer: false,
             budget: ErrorBudget::ONE,
             shader: Shader::AUTO,
             view,
             frames: view.period.max(1),
             cast: Cast::default(),
+            labels: Vec::new(),
         }
     }
 
@@ -161,6 +165,10 @@ impl Look {
         let vertices: usize = parts.iter().map(|p| p.vertices.len()).sum();
         let levels = || parts.iter().flat_map(Part::levels);
         let triangles: usize = levels().map(|(triangles, ..)| triangles.len()).sum();
+        let [background, background_bottom] = match self.background {
+            Background::Colour(colour) => [colour; 2],
+            Background::Gradient { top, bottom } => [top, bottom],
+        };
         let mut header = Header {
             magic: MAGIC,
             version: VERSION,
@@ -174,7 +182,9 @@ impl Look {
             instances: u16::try_from(self.cast.members.len()).context("too many objects for one scene")?,
             tracks: u16::try_from(self.cast.ways.len()).context("too many objects for one scene")?,
             keys: self.cast.ways.iter().map(|way| way.keys.len() as u32).sum(),
-            background: self.background,
+            background,
+            background_bottom,
+            labels: u8::try_from(self.labels.len()).context("too many labels for one scene; there may be 255")?,
             budget: self.budget.to_bits(),
             ambient: self.ambient.map(gain).map(Gain::to_bits),
             ..self.seen(parts)
@@ -213,6 +223,7 @@ impl Look {
         self.cast.ways.iter().for_each(|way| bytes.extend_from_slice(way.keys.as_bytes()));
         parts.iter().for_each(|part| bytes.extend_from_slice(part.vertices.as_bytes()));
         levels().for_each(|(triangles, ..)| bytes.extend_from_slice(triangles.as_bytes()));
+        bytes.extend_from_slice(self.labels.as_bytes());
         stream::seal(&mut bytes);
         let bytes = StreamBytes::from(bytes.as_slice());
         bytes.parse().context("the stream would not be valid")?;

@@ -17,7 +17,8 @@ use crate::{
 use anyhow::{Context, Result, bail, ensure};
 use microphong::{
     format::{ErrorBudget, Length, MAX_LIGHTS, Rotation, Scale},
-    stream::record::{CAMERA_TRACK, Key, LIGHT_TRACK, OBJECT_TRACK},
+    scene::Background,
+    stream::record::{CAMERA_TRACK, Key, LABEL_TEXT, LEFT, LIGHT_TRACK, Label, MIDDLE, OBJECT_TRACK, RIGHT},
 };
 use serde::Deserialize;
 use std::path::Path;
@@ -31,8 +32,7 @@ struct Script {
     /// Width and height that suit it.
     #[serde(default = "square")]
     size: [u32; 2],
-    /// RRGGBB.
-    background: Option<String>,
+    background: Option<BackgroundScript>,
     /// Method unless another one is asked for.
     shader: Option<String>,
     /// How far a pixel may be off by `auto`.
@@ -42,6 +42,52 @@ struct Script {
     light: Vec<Light>,
     mesh: Vec<MeshScript>,
     object: Vec<Object>,
+    #[serde(default)]
+    label: Vec<LabelScript>,
+}
+
+#[derive(Deserialize)]
+#[serde(untagged, expecting = "a background is a colour, as \"203040\", or a gradient, as { top = \"203040\", bottom = \"000000\" }")]
+enum BackgroundScript {
+    /// RRGGBB.
+    Colour(String),
+    Gradient(Gradient),
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct Gradient {
+    top: String,
+    bottom: String,
+}
+
+/// A text over the picture. In pictures of another size it lies where the scene behind it does.
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct LabelScript {
+    text: String,
+    /// In a picture of the size of the script, pixels from its upper left corner.
+    at: [f64; 2],
+    /// Which part of the text is there: `left`, `middle` or `right`.
+    #[serde(default)]
+    align: Align,
+    /// Height of a line in such a picture, pixels.
+    #[serde(default = "line")]
+    height: f64,
+    colour: Option<String>,
+}
+
+#[derive(Clone, Copy, Default, Deserialize)]
+#[serde(rename_all = "lowercase")]
+enum Align {
+    Left,
+    #[default]
+    Middle,
+    Right,
+}
+
+fn line() -> f64 {
+    13.0
 }
 
 fn square() -> [u32; 2] {
@@ -116,6 +162,8 @@ struct MeshScript {
     shape: Option<String>,
     /// Half of the extent of a shape along each axis.
     size: Option<V3>,
+    /// Radius of the tube of a torus, as a share of that of its ring.
+    tube: Option<f64>,
     /// Where the middle of a shape lies; the object turns about the origin.
     #[serde(default)]
     centre: V3,
@@ -179,7 +227,12 @@ pub fn stream(text: &str, folder: &Path) -> Result<(StreamBytes, (u32, u32))> {
     let mut look = Look { surfaces, ..Look::new(surface(&script.mesh[0])?, eye(&script.camera)?) };
     look.frames = script.frames;
     if let Some(background) = &script.background {
-        look.background = colour(background).context("background")?.map(|c| (c * 255.0).round() as u8);
+        look.background = match background {
+            BackgroundScript::Colour(text) => Background::Colour(bytes(text).context("background")?),
+            BackgroundScript::Gradient(Gradient { top, bottom }) => {
+                Background::Gradient { top: bytes(top).context("background: top")?, bottom: bytes(bottom).context("background: bottom")? }
+            }
+        };
     }
     if let Some(name) = &script.shader {
         look.shader = Shader::ALL
@@ -196,6 +249,8 @@ pub fn stream(text: &str, folder: &Path) -> Result<(StreamBytes, (u32, u32))> {
         look.lamps = vec![Lamp::Fixed(KEY.map(|c| -c), [1.0; 3])];
     }
     look.cast = cast(&script, &ranges)?;
+    let label = |(i, text): (usize, &LabelScript)| label(text, script.size).with_context(|| format!("label {}, {:?}", i + 1, text.text));
+    look.labels = script.label.iter().enumerate().map(label).collect::<Result<_>>()?;
     let stream = look.stream(&parts)?;
     let [width, height] = script.size;
     Ok((stream, (width, height)))
@@ -251,7 +306,11 @@ fn mesh(script: &MeshScript, folder: &Path) -> Result<(Mesh, Vec<Option<crate::m
                 "box" => shapes::cuboid(),
                 "cylinder" => shapes::cylinder(32),
                 "sphere" => shapes::sphere(18, 11, 0.0),
-                "torus" => shapes::torus(28, 10),
+                "torus" => {
+                    let tube = script.tube.unwrap_or(shapes::TUBE);
+                    ensure!(tube > 0.0 && tube < 1.0, "tube: it must be more than 0 and less than 1");
+                    shapes::ring(28, 10, tube)
+                }
                 other => bail!("there is no shape {other:?}; take {SHAPES}"),
             };
             (mesh, vec![None])
@@ -276,6 +335,33 @@ fn colour(text: &str) -> Result<V3> {
     let value = u32::from_str_radix(digits, 16).ok().filter(|_| digits.len() == 6);
     let value = value.with_context(|| format!("{text:?} is no colour; write it as RRGGBB"))?;
     Ok([16, 8, 0].map(|shift| f64::from(value >> shift & 255) / 255.0))
+}
+
+/// Of 8 bits a channel.
+fn bytes(text: &str) -> Result<[u8; 3]> {
+    Ok(colour(text)?.map(|c| (c * 255.0).round() as u8))
+}
+
+fn label(script: &LabelScript, size: [u32; 2]) -> Result<Label> {
+    let text = script.text.chars().map(u8::try_from).collect::<Result<Vec<_>, _>>();
+    let is_printed = |text: &Vec<u8>| !text.iter().any(|&character| char::from(character).is_control());
+    let text = text.ok().filter(is_printed).context("text: its characters must be those of ISO 8859-1, in one line")?;
+    ensure!((1..=LABEL_TEXT).contains(&text.len()), "text: it has {} characters; it can have 1 to {LABEL_TEXT}", text.len());
+    let [width, height] = size.map(f64::from);
+    let (side, [x, y]) = (width.min(height), script.at);
+    let position = [x - width / 2.0, y - height / 2.0].map(|offset| offset / side);
+    ensure!(position.iter().all(|share| share.abs() < 8.0), "at: it is too far from the picture");
+    ensure!(
+        script.height >= 1.0 && script.height < 8.0 * side,
+        "height: a line must be 1 pixel high at least, and no higher than 8 pictures"
+    );
+    let alignment = match script.align {
+        Align::Left => LEFT,
+        Align::Middle => MIDDLE,
+        Align::Right => RIGHT,
+    };
+    let colour = script.colour.as_deref().map_or(Ok([255; 3]), bytes)?;
+    Ok(Label::new(position.map(nearest), nearest(script.height / side), colour, alignment, &text))
 }
 
 fn direction(towards: V3) -> Result<V3> {

@@ -33,10 +33,18 @@ pub fn sphere(meridians: usize, bands: usize, phase: f64) -> Mesh {
     Mesh { normals: positions.clone(), positions, triangles, ..Mesh::default() }
 }
 
-/// A torus about the z axis that a unit sphere encloses: `around` times `across` quadrilaterals, the tube 0.45 of the ring.
+/// Radius of the tube of a torus, as a share of that of its ring.
+pub const TUBE: f64 = 0.45;
+
+/// A torus about the z axis that a unit sphere encloses: `around` times `across` quadrilaterals, its tube [`TUBE`] of the ring.
 #[must_use]
 pub fn torus(around: usize, across: usize) -> Mesh {
-    const TUBE: f64 = 0.45;
+    ring(around, across, TUBE)
+}
+
+/// The same with another tube.
+#[must_use]
+pub fn ring(around: usize, across: usize, tube: f64) -> Mesh {
     let mut mesh = Mesh::default();
     for i in 0..around {
         for j in 0..across {
@@ -44,7 +52,7 @@ pub fn torus(around: usize, across: usize) -> Mesh {
             let (sb, cb) = (TAU * j as f64 / across as f64).sin_cos();
             let normal = [ca * cb, sa * cb, sb];
             mesh.normals.push(normal);
-            mesh.positions.push(scale(add([ca, sa, 0.0], scale(normal, TUBE)), 1.0 / (1.0 + TUBE)));
+            mesh.positions.push(scale(add([ca, sa, 0.0], scale(normal, tube)), 1.0 / (1.0 + tube)));
             let at = |i: usize, j: usize| i % around * across + j % across;
             mesh.triangles.push([at(i, j), at(i + 1, j), at(i + 1, j + 1)]);
             mesh.triangles.push([at(i, j), at(i + 1, j + 1), at(i, j + 1)]);

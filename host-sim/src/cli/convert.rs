@@ -207,7 +207,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome> {
     let of_arguments = surface(arguments);
     let look = Look {
         surfaces: import::surfaces(&materials, &of_arguments, arguments.ambient),
-        background: arguments.background.unwrap_or(BACKGROUND),
+        background: arguments.background.unwrap_or(BACKGROUND).into(),
         local_viewer: arguments.local_viewer,
         budget: arguments.budget,
         shader,

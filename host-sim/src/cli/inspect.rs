@@ -7,8 +7,8 @@ use microphong::{
     MAX_SIDE, Stream,
     geometry::detail::stream_tolerance,
     stream::record::{
-        CAMERA_TRACK, CLOSED_CONVEX, EYE_SPACE, Header, Instance, Key, LIGHT_TRACK, Light, Material, Mesh, OBJECT_TRACK, PERSPECTIVE,
-        POINT, Track, Triangle, VIEWER_LOCAL, Vertex,
+        CAMERA_TRACK, CLOSED_CONVEX, EYE_SPACE, Header, Instance, Key, LIGHT_TRACK, Label, Light, Material, Mesh, OBJECT_TRACK,
+        PERSPECTIVE, POINT, Track, Triangle, VIEWER_LOCAL, Vertex,
     },
 };
 use microphong_sim::{
@@ -43,6 +43,7 @@ struct Line<'a> {
     frames: u16,
     objects: usize,
     keys: usize,
+    labels: usize,
     levels: Vec<Level>,
     bytes: u32,
 }
@@ -76,6 +77,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome> {
             frames: header.frames,
             objects: stream.instances.len().max(1),
             keys: stream.keys.len(),
+            labels: stream.labels.len(),
             levels: levels(&stream),
             bytes: header.length,
         })?;
@@ -111,6 +113,9 @@ fn text(file: &str, stream: &Stream<'_>) -> Result<()> {
     }
     row("vertices", stream.vertices.len(), size_of::<Vertex>(), "")?;
     row("triangles", stream.triangles.len(), size_of::<Triangle>(), &bend(stream))?;
+    if !stream.labels.is_empty() {
+        row("labels", stream.labels.len(), size_of::<Label>(), &labels(stream))?;
+    }
     for Level { triangles, error, side, .. } in levels(stream) {
         let (triangles, flash) = (count(triangles as usize), count(triangles as usize * size_of::<Triangle>()));
         report::line(&format!("  a level of {triangles} triangles, {flash} bytes, {error:.4} from the mesh: up to {side}x{side} pixels"))?;
@@ -149,6 +154,11 @@ fn moving(stream: &Stream<'_>) -> String {
     let of = |kind| stream.tracks.iter().filter(|track| track.kind == kind && track.keys > 1).count();
     let camera = if of(CAMERA_TRACK) > 0 { "the camera moves" } else { "the camera stands still" };
     format!("{} objects and {} lights move, {camera}", of(OBJECT_TRACK), of(LIGHT_TRACK))
+}
+
+/// The texts of a scene.
+fn labels(stream: &Stream<'_>) -> String {
+    stream.labels.iter().map(|label| label.characters().collect::<String>()).collect::<Vec<_>>().join(", ")
 }
 
 fn exponents(stream: &Stream<'_>) -> String {

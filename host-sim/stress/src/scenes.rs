@@ -213,6 +213,6 @@ pub fn look(random: &mut Random, mesh: &Mesh, size: [u32; 2], wishes: Wishes) ->
         })
         .collect();
     look.local_viewer = random.once_in(3);
-    look.background = random.among(&[[0; 3], [255; 3], [26, 28, 32]]);
+    look.background = random.among(&[[0; 3], [255; 3], [26, 28, 32]]).into();
     look
 }

@@ -87,6 +87,7 @@ fn triangles(bytes: &StreamBytes, kept: impl Fn(usize) -> bool) -> Option<Stream
             stream.keys.as_bytes(),
             stream.vertices.as_bytes(),
             triangles.as_bytes(),
+            stream.labels.as_bytes(),
         ],
     )
 }
@@ -108,6 +109,7 @@ fn lights(bytes: &StreamBytes, light: usize) -> Option<StreamBytes> {
             stream.keys.as_bytes(),
             stream.vertices.as_bytes(),
             stream.triangles.as_bytes(),
+            stream.labels.as_bytes(),
         ],
     )
 }

@@ -76,6 +76,7 @@ pub fn on_background(stream: &StreamBytes) -> StreamBytes {
 fn blacken(bytes: &mut [u8]) -> Option<()> {
     let (header, rest) = Header::mut_from_prefix(bytes).ok()?;
     header.background = [BACKGROUND.r(), BACKGROUND.g(), BACKGROUND.b()];
+    header.background_bottom = header.background;
     let materials = rest.get_mut(size_of::<Mesh>() * usize::from(header.meshes)..)?;
     let (materials, _) = <[Material]>::mut_from_prefix_with_elems(materials, header.materials.into()).ok()?;
     for material in materials {

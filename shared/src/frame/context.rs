@@ -78,7 +78,6 @@ impl<C: Pixel> Settings<C> {
 pub(crate) struct Context<'r, C: Pixel> {
     pub(crate) settings: &'r Settings<C>,
     pub(crate) scene: &'r Scene<'r>,
-    pub(crate) background: C,
     /// One for each object of the scene.
     pub(crate) placements: &'r [Placement],
     /// The pixels that the frame has.

@@ -32,7 +32,20 @@ impl<'r, C: Pixel> Frame<'r, C> {
     /// # Errors
     /// When `pixels` does not hold one row.
     pub fn next_band(&mut self, pixels: &mut [C]) -> Result<Option<Rectangle>, RenderError> {
-        self.part.next_band(&self.context, pixels)
+        self.next_band_over(pixels, |_, _| ())
+    }
+
+    /// Draws the next band as [`Self::next_band`] does, over something of the program's own: `under` is given the pixels of the band, which are
+    /// the background of the scene, and its area, and draws what is to be seen where no triangle is, as on a [`crate::BandTarget`].
+    /// Antialiased edges blend with it.
+    ///
+    /// No frame knows what another one had under it: where that changes, the frame has to be drawn with partial redraw turned off, and
+    /// [`Self::rows`] does not tell the rows that it reaches.
+    ///
+    /// # Errors
+    /// When `pixels` does not hold one row.
+    pub fn next_band_over(&mut self, pixels: &mut [C], under: impl FnOnce(&mut [C], Rectangle)) -> Result<Option<Rectangle>, RenderError> {
+        self.part.next_band(&self.context, pixels, under)
     }
 
     /// What the frame has: the whole picture, or the area that may differ from the one that the renderer drew before, where that is asked for,
@@ -119,6 +132,14 @@ impl<C: Pixel> FramePart<'_, '_, C> {
     /// # Errors
     /// When `pixels` does not hold one row.
     pub fn next_band(&mut self, pixels: &mut [C]) -> Result<Option<Rectangle>, RenderError> {
-        self.part.next_band(self.context, pixels)
+        self.next_band_over(pixels, |_, _| ())
+    }
+
+    /// Draws the next band over what `under` draws, see [`Frame::next_band_over`].
+    ///
+    /// # Errors
+    /// When `pixels` does not hold one row.
+    pub fn next_band_over(&mut self, pixels: &mut [C], under: impl FnOnce(&mut [C], Rectangle)) -> Result<Option<Rectangle>, RenderError> {
+        self.part.next_band(self.context, pixels, under)
     }
 }

@@ -82,10 +82,32 @@ pub(crate) struct Part<'r> {
 }
 
 impl<'r> Part<'r> {
-    /// See [`crate::Frame::next_band`].
-    pub(crate) fn next_band<C: Pixel>(&mut self, context: &Context<'_, C>, pixels: &mut [C]) -> Result<Option<Rectangle>, RenderError> {
+    /// See [`crate::Frame::next_band_over`].
+    pub(crate) fn next_band<C: Pixel>(
+        &mut self,
+        context: &Context<'_, C>,
+        pixels: &mut [C],
+        under: impl FnOnce(&mut [C], Rectangle),
+    ) -> Result<Option<Rectangle>, RenderError> {
+        let Some(area) = self.next_area(context, pixels.len())? else { return Ok(None) };
+        let Size { width, height } = area.size;
+        let pixels = pixels.get_mut(..(width * height) as usize).unwrap_or_default();
+        context.scene.background().fill(pixels, area, context.settings.size.height);
+        under(pixels, area);
+        self.draw(context, pixels, height);
+        #[cfg(feature = "text")]
+        crate::text::draw(context.scene.stream.labels, context.settings.size, pixels, area);
+        let Range { start: left, end: right } = self.columns;
+        if right - left < width {
+            narrow(pixels, width as usize, left as usize..right as usize);
+        }
+        Ok(Some(Rectangle::new(Point::new(left as i32, area.top_left.y), Size::new(right - left, height))))
+    }
+
+    /// The next band in all of its columns, if there is room for so many `pixels`; `None` after the last.
+    fn next_area<C: Pixel>(&self, context: &Context<'_, C>, pixels: usize) -> Result<Option<Rectangle>, RenderError> {
         let width = context.settings.size.width;
-        let fit = u32::try_from(pixels.len()).unwrap_or(u32::MAX).checked_div(width).unwrap_or(0);
+        let fit = u32::try_from(pixels).unwrap_or(u32::MAX).checked_div(width).unwrap_or(0);
         if fit == 0 {
             return Err(RenderError::Band { need: width as usize });
         }
@@ -93,18 +115,7 @@ impl<'r> Part<'r> {
         let band_rows = context.settings.band_rows(self.depth.len(), self.samples.len());
         let into = self.top.checked_rem(band_rows).unwrap_or(0);
         let rows = band_rows.saturating_sub(into).min(self.bottom.saturating_sub(self.top)).min(fit);
-        if rows == 0 {
-            return Ok(None);
-        }
-        let Range { start: left, end: right } = self.columns;
-        let area = Rectangle::new(Point::new(left as i32, self.top as i32), Size::new(right - left, rows));
-        let pixels = pixels.get_mut(..(rows * width) as usize).unwrap_or_default();
-        self.draw(context, pixels, rows);
-        if right - left < width {
-            narrow(pixels, width as usize, left as usize..right as usize);
-        }
-        self.top += rows;
-        Ok(Some(area))
+        Ok((rows > 0).then(|| Rectangle::new(Point::new(0, self.top as i32), Size::new(width, rows))))
     }
 
     /// The rows above `row`, and those from there on, `width` pixels wide: see [`crate::Frame::in_two`].
@@ -148,7 +159,7 @@ impl<'r> Part<'r> {
         self.top >= self.bottom
     }
 
-    /// Clears a band of `rows` rows and draws what falls into it.
+    /// Draws what falls into a band of `rows` rows; its pixels are background.
     #[inline(never)]
     fn draw<C: Pixel>(&mut self, context: &Context<'_, C>, pixels: &mut [C], rows: u32) {
         let width = context.settings.size.width as usize;
@@ -158,7 +169,7 @@ impl<'r> Part<'r> {
         let depth = self.depth.get_mut(..count).unwrap_or_default();
         let blend = context.settings.antialiased().then(|| Blend { samples: self.samples.get_mut(..count).unwrap_or_default() });
         let mut band = Band { pixels, depth, width, top: self.top as i32, rows: rows as i32, blend, active, counts: Counts::default() };
-        band.clear(context.background, self.rows.clone());
+        band.clear(self.rows.clone());
         let (pixels, drawn) = if self.binned {
             self.bins.skip(self.entries, self.top);
             let mut walk = self.bins.band(self.entries, bottom);
@@ -172,11 +183,12 @@ impl<'r> Part<'r> {
         self.stats.pixels = self.stats.pixels.saturating_add(pixels);
         self.stats.drawn += drawn;
         if context.settings.antialiased() {
-            band.resolve(context.background);
+            band.resolve();
         }
         self.stats.counts = self.stats.counts.and(band.counts);
         self.queue = band.active.queue();
         self.stats.set_up_anew = self.stats.set_up_anew.saturating_add(band.active.overflow());
+        self.top = bottom;
     }
 }
 

@@ -136,18 +136,7 @@ impl<'r, C: Pixel> Frame<'r, C> {
         let triangles = drawn(scene, placements);
         let with_placements = placements.iter().zip(scene.objects());
         let as_they_are = with_placements.filter(|(placement, _)| placement.drawn > 0).fold(0, |sum, (_, object)| sum + object.triangles);
-        let context = Context {
-            settings,
-            scene,
-            background: background(scene.background),
-            placements,
-            area,
-            depth_elision: None,
-            vertices: &[],
-            reflectances,
-            ramps,
-            error_bounds,
-        };
+        let context = Context { settings, scene, placements, area, depth_elision: None, vertices: &[], reflectances, ramps, error_bounds };
         let elides = settings.skips().depth && !settings.antialiased();
         let depth_elision = if elides { context.convex().and_then(|view| DepthElision::new(&scene.camera, view, size)) } else { None };
         let part = Part {
@@ -384,13 +373,4 @@ fn at_seam(
         elision.include(&extent);
     }
     (viewport.is_word_sized(&extent), viewport.bounds(&extent))
-}
-
-/// A colour of 8 bits per channel in the pixel format; grey formats get its luma.
-fn background<C: Pixel>([r, g, b]: [u8; 3]) -> C {
-    let [r, g, b] = [u32::from(r), u32::from(g), u32::from(b)];
-    let luma = (r * 77 + g * 150 + b * 29) >> 8;
-    let [r, g, b] = if C::GRAY { [luma; 3] } else { [r, g, b] };
-    let [dr, dg, db] = C::DEPTH;
-    C::pack([r >> (8 - dr), g >> (8 - dg), b >> (8 - db)])
 }

@@ -1,5 +1,6 @@
 //! Pixel formats: how a colour of 8 bits per channel becomes what a display stores.
 
+pub(crate) mod colour;
 #[doc(hidden)]
 pub mod dither;
 pub mod gamma;

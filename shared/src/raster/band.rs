@@ -21,7 +21,7 @@ pub struct Band<'a, C> {
     pub top: i32,
     /// Number of rows.
     pub rows: i32,
-    /// Samples for antialiasing, which take the place of `depth`, and of `pixels` until [`Self::resolve`].
+    /// Samples for antialiasing, which take the place of `depth`, and of `pixels` until [`Self::resolve`]; these are background until then.
     pub blend: Option<Blend<'a>>,
     /// Active triangles that the band above has saved, and those that this band saves.
     pub active: ActiveTriangles<'a>,
@@ -37,29 +37,24 @@ pub struct Blend<'a> {
 }
 
 impl<C: Pixel> Band<'_, C> {
-    /// Turns samples into pixels.
+    /// Turns samples into pixels: what they do not cover is the pixel that is there.
     #[inline(never)]
-    pub fn resolve(&mut self, background: C) {
+    pub fn resolve(&mut self) {
         if let Some(blend) = &self.blend {
-            let background = background.channels();
             for (pixel, sample) in self.pixels.iter_mut().zip(blend.samples.iter()) {
-                *pixel = C::pack(sample.resolve(background).map(u32::from));
+                *pixel = C::pack(sample.resolve(pixel.channels()).map(u32::from));
             }
         }
     }
 }
 
 impl<C> Band<'_, C> {
-    /// Fills the band with background, infinitely far in the rows that triangles can reach; nothing asks how far it is in others.
+    /// Makes the band infinitely far in the rows that triangles can reach; nothing asks how far it is in others.
     #[inline(never)]
-    pub fn clear(&mut self, background: C, reached: Range<u32>)
-    where
-        C: Pixel,
-    {
+    pub fn clear(&mut self, reached: Range<u32>) {
         match &mut self.blend {
             Some(blend) => blend.samples.fill(Sample::EMPTY),
             None => {
-                fill(self.pixels, background.pair());
                 let within = |row: u32| (row as i32).max(self.top).min(self.top.wrapping_add(self.rows));
                 let (first, end) = (self.start(within(reached.start)), self.start(within(reached.end)));
                 clear_depth(self.depth.get_mut(first..end).unwrap_or_default());
@@ -89,6 +84,12 @@ fn clear_depth(depth: &mut [u16]) {
         // An odd number of pixels, or half a word off.
         Err(_) => depth.fill(0),
     }
+}
+
+/// Fills pixels with one colour.
+#[inline(never)]
+pub fn fill_pixels<C: Pixel>(pixels: &mut [C], colour: C) {
+    fill(pixels, colour.pair());
 }
 
 /// Fills a slice with the same value twice, sixteen values at a time, because the compiler does not unroll `slice::fill` at opt-level "s".

@@ -1,9 +1,12 @@
 //! Bands, active triangles, and the loops that fill rows.
 
 pub mod active;
+pub(crate) mod background;
 pub mod band;
 pub mod canvas;
 pub mod counts;
+#[cfg(feature = "gradient")]
+mod gradient;
 pub mod pixel_shader;
 pub(crate) mod span;
 pub mod triangle;

@@ -21,6 +21,7 @@
 //! ```
 
 mod angle;
+mod background;
 mod error;
 mod object;
 pub(crate) mod orbit;
@@ -28,6 +29,7 @@ mod pose;
 
 pub use crate::stream::record::MAX_POSITION;
 pub use angle::SIN_COS_ERROR;
+pub use background::Background;
 pub use error::SceneError;
 pub use object::Object;
 pub use orbit::{CIRCLE_ERROR, ORBIT_ERROR, ROTATION_ERROR};
@@ -83,7 +85,7 @@ pub struct Scene<'a> {
     played: Option<u32>,
     lights: heapless::Vec<Light, MAX_LIGHTS>,
     pub(crate) ambient: [u16; 3],
-    pub(crate) background: [u8; 3],
+    background: Background,
     materials: &'a mut [SceneMaterial],
     /// Room for objects, of which `count` are used.
     objects: &'a mut [Object],
@@ -113,7 +115,7 @@ impl<'a> Scene<'a> {
             // A checked stream has no more lights than there is room for.
             lights: heapless::Vec::from_slice(stream.lights).unwrap_or_default(),
             ambient: stream.header.ambient,
-            background: stream.header.background,
+            background: Background::between(stream.header.background, stream.header.background_bottom),
             materials,
             objects,
             count: 0,
@@ -379,9 +381,15 @@ impl<'a> Scene<'a> {
         Ok(())
     }
 
-    /// Changes the colour where nothing is drawn: red, green, blue.
-    pub fn set_background(&mut self, background: [u8; 3]) {
-        self.background = background;
+    /// What is seen where no triangle is.
+    #[must_use]
+    pub fn background(&self) -> Background {
+        self.background
+    }
+
+    /// Changes what is seen where no triangle is: a colour, red, green and blue, or a gradient.
+    pub fn set_background(&mut self, background: impl Into<Background>) {
+        self.background = background.into();
         self.set_repainted();
     }
 

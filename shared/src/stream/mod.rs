@@ -11,8 +11,8 @@ use crate::{
 };
 use core::{fmt, ops::Range};
 use record::{
-    CAMERA_TRACK, Camera, DIRECTIONAL, EYE_SPACE, Header, Instance, Key, LIGHT_TRACK, Light, MAGIC, MAX_POSITION, Material, Mesh,
-    OBJECT_TRACK, ORTHOGRAPHIC, OWN_MATERIALS, PERSPECTIVE, POINT, Track, Triangle, VERSION, VIEWER_INFINITE, VIEWER_LOCAL, Vertex,
+    CAMERA_TRACK, Camera, DIRECTIONAL, EYE_SPACE, Header, Instance, Key, LIGHT_TRACK, Label, Light, MAGIC, MAX_POSITION, Material, Mesh,
+    OBJECT_TRACK, ORTHOGRAPHIC, OWN_MATERIALS, PERSPECTIVE, POINT, RIGHT, Track, Triangle, VERSION, VIEWER_INFINITE, VIEWER_LOCAL, Vertex,
 };
 use zerocopy::{FromBytes, Immutable, KnownLayout};
 
@@ -51,6 +51,8 @@ pub struct Stream<'a> {
     pub vertices: &'a [Vertex],
     /// Triangles of all meshes and of all of their levels.
     pub triangles: &'a [Triangle],
+    /// Texts over the picture.
+    pub labels: &'a [Label],
 }
 
 /// Why bytes are not a valid stream.
@@ -167,6 +169,7 @@ pub fn length(header: &Header) -> Option<u32> {
         (header.keys, size_of::<Key>()),
         (header.vertices, size_of::<Vertex>()),
         (header.triangles, size_of::<Triangle>()),
+        (header.labels.into(), size_of::<Label>()),
     ];
     sizes.iter().try_fold(0u32, |sum, &(count, size)| sum.checked_add(count.checked_mul(size as u32)?))
 }
@@ -208,6 +211,7 @@ impl<'a> Stream<'a> {
             keys: take(&mut rest, header.keys as usize)?,
             vertices: take(&mut rest, header.vertices as usize)?,
             triangles: take(&mut rest, header.triangles as usize)?,
+            labels: take(&mut rest, header.labels.into())?,
         };
         stream.check()?;
         Ok(stream)
@@ -259,6 +263,9 @@ impl<'a> Stream<'a> {
             field(is_one(square(triangle.normal).into(), 2 * UNIT), "triangle normal", i)?;
             field(triangle.min_normal_length <= 1 << NORMAL_LENGTH, "triangle normal length", i)?;
             field(triangle.inverse_altitude > 0, "triangle altitude", i)?;
+        }
+        for (i, label) in self.labels.iter().enumerate() {
+            field(label.is_valid(), "label", i)?;
         }
         Ok(())
     }
@@ -381,6 +388,20 @@ impl Light {
             (self.kind == POINT || is_one(square, 2 * UNIT), "light direction"),
         ])
     }
+}
+
+impl Label {
+    /// Whether all is in its range: there are characters, and nothing but zeros behind them.
+    fn is_valid(&self) -> bool {
+        let mut rest = self.text.iter().skip_while(|&&character| is_printed(character));
+        let [first, ..] = self.text;
+        self.height > 0 && self.alignment <= RIGHT && first != 0 && rest.all(|&character| character == 0)
+    }
+}
+
+/// Whether a character of ISO 8859-1 is no control character.
+fn is_printed(character: u8) -> bool {
+    (character & 0x7F) >= 0x20 && character != 0x7F
 }
 
 impl Material {

@@ -8,7 +8,7 @@
 
 #[doc(inline)]
 pub use crate::format::{
-    ErrorBudget, Focal, Gain, GeometricError, Haversine, InverseAltitude, Length, NormalLength, Radius, Rotation, Scale, Unit,
+    ErrorBudget, Focal, Gain, GeometricError, Haversine, InverseAltitude, Length, NormalLength, Radius, Rotation, Scale, Share, Unit,
 };
 use zerocopy::{FromBytes, Immutable, IntoBytes, KnownLayout};
 
@@ -18,7 +18,7 @@ compile_error!("streams are read in place and are little-endian");
 /// First four bytes of every stream.
 pub const MAGIC: [u8; 4] = *b"mTRI";
 /// The version of the format that this core reads and the host writes.
-pub const VERSION: u16 = 6;
+pub const VERSION: u16 = 7;
 
 /// The start of a stream. The arrays follow in the order of the counts.
 #[derive(FromBytes, IntoBytes, Immutable, KnownLayout, Clone, Copy, Debug, PartialEq, Eq)]
@@ -52,7 +52,7 @@ pub struct Header {
     pub tracks: u16,
     /// Number of [`Key`] records.
     pub keys: u32,
-    /// Colour where no triangle is drawn: red, green, blue.
+    /// Colour where no triangle is drawn, in the first row: red, green, blue.
     pub background: [u8; 3],
     /// How far a pixel may be off from Phong shading by a method that keeps to a budget, [`ErrorBudget`] from 1/2 to 16.
     pub budget: u8,
@@ -60,6 +60,11 @@ pub struct Header {
     pub ambient: [u16; 3],
     /// No vertex lies farther from the origin of object space, [`Radius`], rounded up.
     pub radius: u16,
+    /// Colour where no triangle is drawn, in the last row. If it is that of the first row all rows have it, else the rows between have even
+    /// steps.
+    pub background_bottom: [u8; 3],
+    /// Number of [`Label`] records.
+    pub labels: u8,
     /// The camera.
     pub camera: Camera,
 }
@@ -466,5 +471,58 @@ impl Triangle {
     #[must_use]
     pub fn inverse_altitude(&self) -> InverseAltitude {
         InverseAltitude::from_bits(self.inverse_altitude)
+    }
+}
+
+/// A text over the picture. It lies where the scene behind it lies in pictures of any size.
+#[derive(FromBytes, IntoBytes, Immutable, KnownLayout, Clone, Copy, Debug, PartialEq, Eq)]
+#[repr(C)]
+pub struct Label {
+    /// How far right of the centre of the picture it is, and how far below, [`Share`].
+    pub position: [i16; 2],
+    /// Height of a line, [`Share`], more than 0: the largest of the program's fonts is taken that is not higher.
+    pub height: i16,
+    /// Red, green, blue.
+    pub colour: [u8; 3],
+    /// What lies at its position: [`LEFT`], [`MIDDLE`] or [`RIGHT`] of the text.
+    pub alignment: u8,
+    /// Characters of ISO 8859-1, at least one, then zeros. None of them is a control character.
+    pub text: [u8; LABEL_TEXT],
+}
+
+/// Characters that a [`Label`] has room for.
+pub const LABEL_TEXT: usize = 30;
+
+/// The position of a label is its left end, half of its height.
+pub const LEFT: u8 = 0;
+/// The position of a label is its middle.
+pub const MIDDLE: u8 = 1;
+/// The position of a label is its right end, half of its height.
+pub const RIGHT: u8 = 2;
+
+impl Label {
+    /// A label; see the fields. Of `text` what there is room for is kept.
+    #[must_use]
+    pub fn new(position: [Share; 2], height: Share, colour: [u8; 3], alignment: u8, text: &[u8]) -> Self {
+        let mut room = [0; LABEL_TEXT];
+        room.iter_mut().zip(text).for_each(|(room, character)| *room = *character);
+        Self { position: position.map(Share::to_bits), height: height.to_bits(), colour, alignment, text: room }
+    }
+
+    /// How far right of the centre of the picture it is, and how far below.
+    #[must_use]
+    pub fn position(&self) -> [Share; 2] {
+        self.position.map(Share::from_bits)
+    }
+
+    /// Height of a line.
+    #[must_use]
+    pub fn height(&self) -> Share {
+        Share::from_bits(self.height)
+    }
+
+    /// Its characters.
+    pub fn characters(&self) -> impl Iterator<Item = char> + '_ {
+        self.text.iter().take_while(|&&character| character != 0).map(|&character| character.into())
     }
 }

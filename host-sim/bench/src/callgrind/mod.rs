@@ -85,7 +85,7 @@ impl Count {
 /// When this is no x86-64 computer, or the program does not compile.
 pub fn build() -> Result<PathBuf> {
     ensure!(cfg!(target_arch = "x86_64"), "instructions of x86-64 are counted on such computers only; choose another board");
-    release("frame", "", &host()?, "the program that draws for callgrind")
+    release("frame", "frame/boards", &host()?, "the program that draws for callgrind")
 }
 
 /// Draws frame 0 of `stream` in all these ways and counts.

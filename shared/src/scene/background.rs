@@ -1,0 +1,36 @@
+//! What is seen where no triangle is.
+
+/// What is seen where no triangle is; red, green and blue.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+pub enum Background {
+    /// One colour. Formats of fewer bits a channel keep the upper ones.
+    Colour([u8; 3]),
+    /// A colour for each row: that of the first row, that of the last one, and even steps between them, dithered so that they are not seen. Only
+    /// in builds with the feature `gradient`.
+    #[cfg(feature = "gradient")]
+    Gradient {
+        /// Of the first row.
+        top: [u8; 3],
+        /// Of the last row.
+        bottom: [u8; 3],
+    },
+}
+
+impl Background {
+    /// Between two colours; one if they are the same.
+    pub(crate) fn between(top: [u8; 3], bottom: [u8; 3]) -> Self {
+        #[cfg(feature = "gradient")]
+        if top != bottom {
+            return Self::Gradient { top, bottom };
+        }
+        let _ = bottom;
+        Self::Colour(top)
+    }
+}
+
+impl From<[u8; 3]> for Background {
+    fn from(colour: [u8; 3]) -> Self {
+        Self::Colour(colour)
+    }
+}
