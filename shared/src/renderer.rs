@@ -219,9 +219,9 @@ impl<'a, C: Pixel> Renderer<'a, C> {
 
     /// Turns partial redraw on or off; it is off at first. With it, a frame has only the area that may differ from the latest frame, which the
     /// display has to show still: see [`Frame::area`]. Where single objects move, that is the rectangle that they leave and enter, and
-    /// objects that do not reach into it are left out whole; where colours, lights or the camera have changed, it is all of the picture. What a
-    /// program draws under the picture or over it is sent in that area alone: where it changes, the frame has to be drawn with partial redraw
-    /// turned off.
+    /// objects that do not reach into it are left out whole, as are the triangles of others that lie beside it; where colours, lights or the
+    /// camera have changed, it is all of the picture. What a program draws under the picture or over it is sent in that area alone: where it
+    /// changes, the frame has to be drawn with partial redraw turned off.
     pub fn set_partial_redraw(&mut self, on: bool) {
         self.settings.partial_redraw = on;
     }

@@ -15,7 +15,7 @@ use embedded_graphics::{
     pixelcolor::BinaryColor,
     prelude::*,
     primitives::Rectangle,
-    text::{Alignment, Baseline, Text, TextStyleBuilder},
+    text::{Baseline, renderer::TextRenderer},
 };
 
 /// From the smallest to the largest.
@@ -30,27 +30,29 @@ pub(crate) fn draw<C: Pixel>(labels: &[Label], size: Size, pixels: &mut [C], are
     let scaled = |share: Share, halves: u32| {
         (i32::from(share.to_bits()) * side + ((halves as i32 + 1) << (Share::FRAC_NBITS - 1))) >> Share::FRAC_NBITS
     };
+    let (top, bottom) = (area.top_left.y, area.top_left.y + area.size.height as i32);
     for label in labels {
         let height = scaled(label.height(), 0).unsigned_abs();
         let font = FONTS.iter().rev().find(|font| font.character_size.height <= height).unwrap_or(&&FONT_4X6);
         let [x, y] = label.position();
-        let position = Point::new(scaled(x, size.width), scaled(y, size.height));
-        let reach = font.character_size.height as i32;
-        let (top, bottom) = (area.top_left.y, area.top_left.y + area.size.height as i32);
-        if position.y + reach < top || position.y - reach > bottom {
+        let height = font.character_size.height as i32;
+        let y = scaled(y, size.height) - (height - 1) / 2;
+        if y + height <= top || y >= bottom {
             continue;
         }
-        let alignment = match label.alignment {
-            LEFT => Alignment::Left,
-            MIDDLE => Alignment::Center,
-            _ => Alignment::Right,
-        };
-        let style = TextStyleBuilder::new().alignment(alignment).baseline(Baseline::Middle).build();
         // In UTF-8 each character takes two bytes at most.
         let mut text = heapless::String::<{ 2 * LABEL_TEXT }>::new();
         label.characters().for_each(|character| text.push(character).unwrap_or_default());
+        let last_column = (label.characters().count() as u32 * font.character_size.width) as i32 - 1;
+        let left = match label.alignment {
+            LEFT => 0,
+            MIDDLE => last_column / 2,
+            _ => last_column,
+        };
+        let corner = Point::new(scaled(x, size.width) - left, y);
         let mut ink = Ink { band: BandTarget::new(&mut *pixels, area), colour: colour(label.colour) };
-        let Ok(_) = Text::with_text_style(&text, position, MonoTextStyle::new(font, BinaryColor::On), style).draw(&mut ink);
+        // Not by `Text`, whose division into lines has a panic that the compiler cannot rule out.
+        let Ok(_) = MonoTextStyle::new(font, BinaryColor::On).draw_string(&text, corner, Baseline::Top, &mut ink);
     }
 }
 

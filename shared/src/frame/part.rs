@@ -13,7 +13,7 @@ use crate::{
         counts::Counts,
     },
 };
-use core::ops::Range;
+use core::{cell::Cell, ops::Range};
 use embedded_graphics_core::{
     geometry::{Point, Size},
     primitives::Rectangle,
@@ -195,15 +195,11 @@ impl<'r> Part<'r> {
 /// Moves these `columns` of rows that are `width` pixels wide to the front of a band.
 #[cold]
 fn narrow<C: Copy>(pixels: &mut [C], width: usize, columns: Range<usize>) {
-    let count = columns.end.saturating_sub(columns.start);
-    for row in 0..pixels.len().checked_div(width).unwrap_or(0) {
-        for column in 0..count {
-            if let Some(&pixel) = pixels.get(row * width + columns.start + column)
-                && let Some(slot) = pixels.get_mut(row * count + column)
-            {
-                *slot = pixel;
-            }
-        }
+    let pixels = Cell::from_mut(pixels).as_slice_of_cells();
+    let rows = pixels.chunks_exact(width.max(1)).filter_map(|row| row.get(columns.clone()));
+    // Nothing moves to where another pixel waits to be moved.
+    for (to, from) in pixels.chunks_exact(columns.len().max(1)).zip(rows) {
+        to.iter().zip(from).for_each(|(to, from)| to.set(from.get()));
     }
 }
 

@@ -304,6 +304,8 @@ impl<'r, C: Pixel> PreparationPart<'_, 'r, C> {
         let facing = black_box(placed.placement.facing);
         let (stream, mesh) = (&context.scene.stream, placed.mesh);
         let viewport = context.settings.viewport();
+        // What lies beside it is left out.
+        let area = context.area.bounds();
         // Reached by a pointer of its own, which is opaque to the compiler: instructions of Armv6-M reach little of a structure.
         let (bins, depth_elision, entries) = (black_box(&mut **bins), &mut **depth_elision, &mut **entries);
         let leaning = if depth_elision.is_some() { facing.leaning() } else { Facing::FRONT };
@@ -337,16 +339,16 @@ impl<'r, C: Pixel> PreparationPart<'_, 'r, C> {
                         elision.include(&extent);
                     }
                     word_sized = viewport.is_word_sized(&extent);
-                    viewport.bounds(&extent)
+                    viewport.bounds_within(&extent, area)
                 }
                 None if DIVIDED => {
                     let (word_sized, bounds) = at_seam(&stage, (&mut *cached, &mut *seam), viewport, depth_elision, (vertices, triangle));
-                    push(bounds, word_sized);
+                    push(bounds.and_then(|bounds| bounds.visible(area)), word_sized);
                     continue;
                 }
                 None => {
                     *depth_elision = None;
-                    stage.bounds(viewport, vertices, triangle)
+                    stage.bounds(viewport, vertices, triangle).and_then(|bounds| bounds.visible(area))
                 }
             };
             push(bounds, word_sized);

@@ -75,11 +75,24 @@ impl Bounds {
         self.bottom = self.bottom.max(other.bottom);
     }
 
-    /// The part within a viewport of this size.
+    /// The part within others.
     #[inline(always)]
     #[must_use]
-    pub fn clipped(self, width: i32, height: i32) -> Self {
-        Self { left: self.left.max(0), top: self.top.max(0), right: self.right.min(width), bottom: self.bottom.min(height) }
+    pub fn clipped(self, to: Self) -> Self {
+        Self {
+            left: self.left.max(to.left),
+            top: self.top.max(to.top),
+            right: self.right.min(to.right),
+            bottom: self.bottom.min(to.bottom),
+        }
+    }
+
+    /// The part within others, if it has a pixel.
+    #[inline(always)]
+    #[must_use]
+    pub fn visible(self, to: Self) -> Option<Self> {
+        let bounds = self.clipped(to);
+        (!bounds.is_empty()).then_some(bounds)
     }
 
     /// `[left, top, right, bottom]`.
@@ -111,17 +124,31 @@ pub struct Viewport {
 }
 
 impl Viewport {
+    /// All of it.
+    #[inline(always)]
+    pub fn whole(self) -> Bounds {
+        Bounds { left: 0, top: 0, right: self.width, bottom: self.height }
+    }
+
     /// The visible bounding box of a triangle; `None` if it shows its back, or no pixel can belong to it.
     #[inline(always)]
     pub fn bounds(self, extent: &Extent) -> Option<Bounds> {
+        self.bounds_within(extent, self.whole())
+    }
+
+    /// The part of the bounding box of a triangle that lies in a part of the viewport; `None` if it shows its back, or no pixel there can belong
+    /// to it.
+    #[inline(always)]
+    pub fn bounds_within(self, extent: &Extent, part: Bounds) -> Option<Bounds> {
         if extent.area <= 0 {
             return None;
         }
-        self.visible(if self.all_touched {
+        let bounds = if self.all_touched {
             Bounds::touched([[extent.left, extent.top, 0], [extent.right, extent.bottom, 0]].into_iter())
         } else {
             Bounds::new(extent)
-        })
+        };
+        bounds.visible(part)
     }
 
     /// [`Self::bounds`] by the corners, for rare triangles.
@@ -143,22 +170,16 @@ impl Viewport {
         let polygon = clip::clip(view, vertices);
         let mut corners = polygon.iter().map(|cut| cut.place);
         if self.all_touched {
-            return self.visible(Bounds::touched(corners));
+            return Bounds::touched(corners).visible(self.whole());
         }
         let mut bounds = Bounds::at(corners.next()?);
         corners.for_each(|corner| bounds.include(corner));
-        self.visible(bounds)
+        bounds.visible(self.whole())
     }
 
     /// The visible bounding box of a triangle, on a grid that is finer by 2 to the power `finer`.
     pub fn box_of(self, corners: [&ScreenVertex; 3], finer: u32) -> [i32; 4] {
         let extent = Extent::new(corners.map(|corner| [corner.x, corner.y]));
-        Bounds::new(&extent).clipped(self.width << finer, self.height << finer).sides()
-    }
-
-    #[inline(always)]
-    fn visible(self, bounds: Bounds) -> Option<Bounds> {
-        let bounds = bounds.clipped(self.width, self.height);
-        (!bounds.is_empty()).then_some(bounds)
+        Bounds::new(&extent).clipped(Viewport { width: self.width << finer, height: self.height << finer, ..self }.whole()).sides()
     }
 }
