@@ -81,7 +81,7 @@ fn parts_of_random_triangles_cover_each_pixel_once() {
         let [a, b, c] = corners.map(|[x, y]| ScreenVertex { x, y, depth: 1 << 27, light: [0; 4], state: State::READY });
         let corners = if Extent::new(corners).area < 0 { [&a, &c, &b] } else { [&a, &b, &c] };
         let nowhere = ScreenTriangle::new(corners, [WIDTH as i32, 0, 0]);
-        let visible = Bounds::new(&Extent::new(nowhere.corners)).clipped(w / 16, h / 16).sides();
+        let visible = Bounds::new(&Extent::new(nowhere.corners)).clipped(Bounds::whole(w / 16, h / 16)).sides();
         let Some(gradients) = Gradients::new(nowhere.corners, visible) else { continue };
         let whole = Whole { screen: &nowhere, gradients: &gradients, depth: nowhere.plane(&gradients, 0) };
         let mut pictures = [[Gray8::BLACK; WIDTH * HEIGHT]; 2];

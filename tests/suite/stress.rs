@@ -143,12 +143,14 @@ fn seeds_are_drawn() {
     let mut drawn = 0;
     for number in 0..50 {
         let wishes = scenes::Wishes { closed: false, unclipped: false, triangles: 6 };
-        let Some(case) = scenes::case(&mut Random::new(3, number), wishes) else { continue };
-        let bytes = fuzz::seed(&case);
-        assert_eq!(fuzz::case(&bytes).map(|case| case.stream), Some(case.stream));
-        drawn += 1;
+        let moved = changes::case(&mut Random::new(3, number), 6).expect("poses in their range");
+        for case in scenes::case(&mut Random::new(3, number), wishes).into_iter().chain(moved) {
+            let bytes = fuzz::seed(&case);
+            assert_eq!(fuzz::case(&bytes).map(|case| case.stream), Some(case.stream));
+            drawn += 1;
+        }
     }
-    assert!(drawn > 40, "{drawn}");
+    assert!(drawn > 80, "{drawn}");
 }
 
 /// Random scenes cover their pictures: a family that draws nothing finds nothing.

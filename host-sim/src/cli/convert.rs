@@ -317,6 +317,7 @@ fn convert_script(arguments: &Arguments, target: &Path) -> Result<Outcome> {
     ))?;
     report::line(&format!("  {} bytes of flash", count(bytes)))?;
     report::line(&format!("  {layout}, {} bytes of memory for Rgb565", count(memory)))?;
+    report::line(&counted(output))?;
     Ok(Outcome::Done)
 }
 
@@ -342,6 +343,11 @@ fn in_pixels(levels::Simplified { before, error }: levels::Simplified, look: &Lo
 
 /// Rows of a band, where nobody says how many.
 const ROWS: usize = 16;
+
+/// How to see what a stream takes on boards. No estimate: one by triangles, pixels and spans was off by several times.
+fn counted(stream: &str) -> String {
+    format!("  instructions and frames a second on emulated boards: cargo run --release --features boards -- bench {stream} --board all")
+}
 
 /// A layout as a program has it.
 fn text_of(layout: &Layout) -> String {
@@ -395,6 +401,7 @@ fn text(line: &Line<'_>) -> Result<()> {
         "  room for all of it in a program, {memory} bytes of memory in Rgb565 beside a band of pixels:\n    {}",
         line.layout
     ))?;
+    report::line(&counted(line.output))?;
     let crossed = match line.crossed {
         0 => return Ok(()),
         1 => "1 polygon crosses itself; split it".to_owned(),

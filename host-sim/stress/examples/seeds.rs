@@ -2,14 +2,16 @@
 
 use anyhow::{Context, Result};
 use microphong_stress::{
-    fuzz,
+    changes, fuzz,
     random::Random,
     scenes::{self, Wishes},
 };
 use std::{fs, path::PathBuf};
 
-/// Streams of each kind.
+/// Streams of one object.
 const SEEDS: u64 = 24;
+/// Streams of several objects that move.
+const SCENES: u64 = 8;
 /// Larger ones slow the fuzzer down.
 const LARGEST: usize = 1_200;
 
@@ -42,6 +44,23 @@ fn main() -> Result<()> {
         fs::write(folder.join(format!("structured/seed-{k:02}")), fuzz::seed(&case()))?;
         if k % 4 == 0 {
             fs::write(folder.join(format!("raw/seed-{k:02}")), case().stream.as_bytes())?;
+        }
+    }
+    let mut number = 0;
+    let mut scene = || loop {
+        number += 1;
+        let case = changes::case(&mut Random::new(2, number), 6);
+        if let Some(case) = case.ok().flatten()
+            && case.stream.as_bytes().len() <= LARGEST
+            && case.stream.parse().is_ok_and(|stream| !stream.tracks.is_empty())
+        {
+            return case;
+        }
+    };
+    for k in SEEDS..SEEDS + SCENES {
+        fs::write(folder.join(format!("structured/seed-{k:02}")), fuzz::seed(&scene()))?;
+        if k % 4 == 0 {
+            fs::write(folder.join(format!("raw/seed-{k:02}")), scene().stream.as_bytes())?;
         }
     }
     for (k, text) in TEXTS.iter().enumerate() {

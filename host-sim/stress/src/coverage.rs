@@ -126,9 +126,7 @@ pub fn draw(corners: Corners, band_rows: usize, counts: &mut [u8]) -> u32 {
             counts: Counts::default(),
         };
         let screen = ScreenTriangle::new(corners, [WIDTH, top, top + rows].map(|side| side as i32));
-        let visible = Bounds::new(&Extent::new(screen.corners))
-            .clipped(Bounds { left: 0, top: 0, right: WIDTH as i32, bottom: HEIGHT as i32 })
-            .sides();
+        let visible = Bounds::new(&Extent::new(screen.corners)).clipped(Bounds::whole(WIDTH as i32, HEIGHT as i32)).sides();
         let Some(gradients) = Gradients::new(screen.corners, visible) else { return 0 };
         drawn += screen.draw(&gradients, Constant, Solid(1), &mut band);
         for (count, pixel) in counts[top * WIDTH..].iter_mut().zip(&pixels) {

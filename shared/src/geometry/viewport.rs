@@ -75,6 +75,13 @@ impl Bounds {
         self.bottom = self.bottom.max(other.bottom);
     }
 
+    /// All pixels of a viewport of this size.
+    #[inline(always)]
+    #[must_use]
+    pub fn whole(width: i32, height: i32) -> Self {
+        Self { left: 0, top: 0, right: width, bottom: height }
+    }
+
     /// The part within others.
     #[inline(always)]
     #[must_use]
@@ -127,7 +134,7 @@ impl Viewport {
     /// All of it.
     #[inline(always)]
     pub fn whole(self) -> Bounds {
-        Bounds { left: 0, top: 0, right: self.width, bottom: self.height }
+        Bounds::whole(self.width, self.height)
     }
 
     /// The visible bounding box of a triangle; `None` if it shows its back, or no pixel can belong to it.
@@ -180,6 +187,6 @@ impl Viewport {
     /// The visible bounding box of a triangle, on a grid that is finer by 2 to the power `finer`.
     pub fn box_of(self, corners: [&ScreenVertex; 3], finer: u32) -> [i32; 4] {
         let extent = Extent::new(corners.map(|corner| [corner.x, corner.y]));
-        Bounds::new(&extent).clipped(Viewport { width: self.width << finer, height: self.height << finer, ..self }.whole()).sides()
+        Bounds::new(&extent).clipped(Bounds::whole(self.width << finer, self.height << finer)).sides()
     }
 }
