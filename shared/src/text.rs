@@ -21,7 +21,8 @@ use embedded_graphics::{
 /// From the smallest to the largest.
 static FONTS: [&MonoFont<'_>; 6] = [&FONT_4X6, &FONT_5X8, &FONT_6X10, &FONT_7X13, &FONT_9X15, &FONT_10X20];
 
-/// Draws the labels of a picture of `size` pixels into the band `area`.
+/// Draws the labels of a picture of `size` pixels into the band `area`. In a small picture, those that no font is small enough for are left out:
+/// they would cover what they name.
 // A call, so that its instructions can be told from a frame's.
 #[inline(never)]
 pub(crate) fn draw<C: Pixel>(labels: &[Label], size: Size, pixels: &mut [C], area: Rectangle) {
@@ -33,7 +34,7 @@ pub(crate) fn draw<C: Pixel>(labels: &[Label], size: Size, pixels: &mut [C], are
     let (top, bottom) = (area.top_left.y, area.top_left.y + area.size.height as i32);
     for label in labels {
         let height = scaled(label.height(), 0).unsigned_abs();
-        let font = FONTS.iter().rev().find(|font| font.character_size.height <= height).unwrap_or(&&FONT_4X6);
+        let Some(font) = FONTS.iter().rev().find(|font| font.character_size.height <= height) else { continue };
         let [x, y] = label.position();
         let height = font.character_size.height as i32;
         let y = scaled(y, size.height) - (height - 1) / 2;

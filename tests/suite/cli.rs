@@ -809,7 +809,7 @@ fn texts_that_are_no_scenes_are_refused() {
         (label("text = \"5 \u{3a9}\"\nat = [0, 0]"), "its characters must be those of ISO 8859-1, in one line"),
         (label("text = \"a\\nb\"\nat = [0, 0]"), "ISO 8859-1, in one line"),
         (label("text = \"a\"\nat = [9000, 0]"), "at: it is too far from the picture"),
-        (label("text = \"a\"\nat = [0, 0]\nheight = 0"), "height: a line must be 1 pixel high at least"),
+        (label("text = \"a\"\nat = [0, 0]\nheight = 5.9"), "height: a line must be 6 pixels high at least"),
         (label("text = \"a\"\nat = [0, 0]\nalign = \"top\""), "expected one of `left`, `middle`, `right`"),
         (label("text = \"a\"\nat = [0, 0]\ncolour = \"red\""), "label 1, \"a\": \"red\" is no colour"),
         (format!("shader = \"none\"\n{good}"), "there is no method \"none\""),

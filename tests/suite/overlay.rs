@@ -272,7 +272,7 @@ fn labelled(labels: Vec<Label>) -> microphong_sim::bytes::StreamBytes {
 #[test]
 fn labels_lie_over_the_picture() {
     use embedded_graphics::{
-        mono_font::iso_8859_1::{FONT_4X6, FONT_6X10, FONT_9X15, FONT_10X20},
+        mono_font::iso_8859_1::{FONT_4X6, FONT_6X10, FONT_7X13, FONT_9X15, FONT_10X20},
         text::{Baseline, TextStyleBuilder},
     };
     let share = |value: f64| Share::from_num(value);
@@ -283,10 +283,12 @@ fn labels_lie_over_the_picture() {
         // Beyond every side.
         Label::new([share(-7.9), share(7.9)], share(0.1), [255; 3], RIGHT, b"nowhere"),
         Label::new([share(0.75), share(0.5)], share(0.15), [255; 3], MIDDLE, b"over the edge"),
+        // Left out of small pictures.
+        Label::new([share(-0.2), share(0.3)], share(0.07), [0, 255, 255], LEFT, b"small"),
     ];
     let fonts = |height: u32| match height {
-        64 => [&FONT_6X10, &FONT_9X15, &FONT_4X6, &FONT_4X6, &FONT_6X10],
-        _ => [&FONT_10X20, &FONT_10X20, &FONT_10X20, &FONT_10X20, &FONT_10X20],
+        64 => [&FONT_6X10, &FONT_9X15, &FONT_4X6, &FONT_4X6, &FONT_6X10].map(Some).into_iter().chain([None]).collect::<Vec<_>>(),
+        _ => [&FONT_10X20; 5].into_iter().chain([&FONT_7X13]).map(Some).collect(),
     };
     let [plain, bytes] = [labelled(Vec::new()), labelled(labels.to_vec())];
     let [plain, with_labels] = [&plain, &bytes].map(|bytes| bytes.parse().expect("a stream"));
@@ -301,6 +303,7 @@ fn labels_lie_over_the_picture() {
             display
         });
         for (label, font) in labels.iter().zip(fonts(size.height)) {
+            let Some(font) = font else { continue };
             let side = f64::from(size.width.min(size.height));
             let place = |share: Share, whole: u32| (f64::from(share) * side + f64::from(whole) / 2.0 + 0.5).floor() as i32;
             let [x, y] = label.position();

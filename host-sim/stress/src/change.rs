@@ -5,7 +5,7 @@ use microphong::{
     Layout, Pose, RenderError, Renderer, Scene, SceneError, Stream,
     format::{Angle, ErrorBudget, Gain, LARGEST_BUDGET, LEAST_BUDGET, Length, MAX_LIGHTS, Rotation, Scale},
     pixel::{Pixel, gamma},
-    scene::{MAX_POSITION, MAX_SCALE, MIN_SCALE},
+    scene::{Background, MAX_POSITION, MAX_SCALE, MIN_SCALE},
     stream::{
         MAX_EXPONENT, MAX_FOCAL, MAX_GAIN, MAX_LENGTH, MIN_FOCAL, MIN_NEAR,
         record::{Camera, DIRECTIONAL, EYE_SPACE, Light, Material, ORTHOGRAPHIC, PERSPECTIVE, POINT, VIEWER_LOCAL},
@@ -32,7 +32,7 @@ pub struct State {
     materials: Vec<Material>,
     lights: Vec<Light>,
     ambient: [Gain; 3],
-    background: [u8; 3],
+    background: Background,
     camera: Camera,
     /// Where the camera was moved to, with its lens.
     eye: Option<Pose>,
@@ -57,7 +57,7 @@ impl State {
             materials: stream.materials.to_vec(),
             lights: stream.lights.to_vec(),
             ambient: stream.header.ambient(),
-            background: stream.header.background,
+            background: stream.header.background.into(),
             camera: stream.header.camera,
             eye: None,
             frame: 0,
@@ -151,7 +151,7 @@ pub enum Change {
     Material(usize, Material),
     Lights(Vec<Light>),
     Ambient([Gain; 3]),
-    Background([u8; 3]),
+    Background(Background),
     Camera(Camera),
     Eye(Pose),
     Clear,
@@ -213,7 +213,11 @@ impl Change {
             12 | 13 => Self::ObjectMaterial(object, (!random.once_in(3)).then_some(material as u16)),
             14 => Self::Material(material as usize, shared(random)),
             15 => Self::Ambient([(); 3].map(|()| gain(random))),
-            16 => Self::Background([(); 3].map(|()| random.bits() as u8)),
+            16 => {
+                let mut colour = || [(); 3].map(|()| random.bits() as u8);
+                let (top, bottom) = (colour(), colour());
+                Self::Background(if random.once_in(2) { top.into() } else { Background::Gradient { top, bottom } })
+            }
             17 => Self::Shader(random.among(&Shader::ALL)),
             18 => Self::PerspectiveCorrect(random.once_in(2)),
             19 => Self::Antialias(random.once_in(2)),

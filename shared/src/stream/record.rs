@@ -480,7 +480,8 @@ impl Triangle {
 pub struct Label {
     /// How far right of the centre of the picture it is, and how far below, [`Share`].
     pub position: [i16; 2],
-    /// Height of a line, [`Share`], more than 0: the largest of the program's fonts is taken that is not higher.
+    /// Height of a line, [`Share`], more than 0: the largest of the program's fonts is taken that is not higher. Without one the label
+    /// is not drawn.
     pub height: i16,
     /// Red, green, blue.
     pub colour: [u8; 3],
