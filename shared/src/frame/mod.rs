@@ -55,7 +55,7 @@ impl<'r, C: Pixel> Frame<'r, C> {
         self.context.area.rectangle()
     }
 
-    /// The rows that triangles of this frame can reach; all other rows of its area are background.
+    /// The rows that triangles of this frame can reach; all other rows of its area are background, and labels, which never move.
     #[must_use]
     pub fn rows(&self) -> Range<u32> {
         self.part.rows.clone()
@@ -69,7 +69,7 @@ impl<'r, C: Pixel> Frame<'r, C> {
     }
 
     /// Draws only these `rows` of its area; to be called before the first band. It is enough to draw and send the rows that triangles reach in this
-    /// frame or reached in the frame before, see [`Self::rows`]: a display that shows the frame before has background in all others.
+    /// frame or reached in the frame before, see [`Self::rows`]: a display that shows the frame before has the rest.
     pub fn limit(&mut self, rows: Range<u32>) {
         self.part.limit(rows);
     }
