@@ -305,7 +305,7 @@ impl<'r, C: Pixel> PreparationPart<'_, 'r, C> {
         let (stream, mesh) = (&context.scene.stream, placed.mesh);
         let viewport = context.settings.viewport();
         // What lies beside it is left out.
-        let area = context.area.bounds();
+        let area = Bounds::from(&context.area);
         // Reached by a pointer of its own, which is opaque to the compiler: instructions of Armv6-M reach little of a structure.
         let (bins, depth_elision, entries) = (black_box(&mut **bins), &mut **depth_elision, &mut **entries);
         let leaning = if depth_elision.is_some() { facing.leaning() } else { Facing::FRONT };

@@ -1,6 +1,5 @@
 //! Rectangles of pixels.
 
-use crate::geometry::viewport::Bounds;
 use core::ops::Range;
 use embedded_graphics_core::{
     geometry::{Point, Size},
@@ -65,13 +64,6 @@ impl Area {
     pub fn rows(&self) -> Range<u32> {
         let [start, end] = self.rows;
         start.into()..end.into()
-    }
-
-    /// As triangles have it.
-    #[must_use]
-    pub fn bounds(&self) -> Bounds {
-        let ([left, right], [top, bottom]) = (self.columns.map(i32::from), self.rows.map(i32::from));
-        Bounds { left, top, right, bottom }
     }
 
     /// As displays have it.

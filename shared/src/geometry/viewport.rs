@@ -3,6 +3,7 @@
 use crate::{
     format::{CENTRE, SUBPIXEL},
     geometry::{
+        area::Area,
         clip,
         cull::Extent,
         projection::{ScreenVertex, View},
@@ -114,6 +115,13 @@ impl Bounds {
     #[must_use]
     pub fn is_empty(&self) -> bool {
         self.left >= self.right || self.top >= self.bottom
+    }
+}
+
+impl From<&Area> for Bounds {
+    fn from(area: &Area) -> Self {
+        let ([left, right], [top, bottom]) = (area.columns.map(i32::from), area.rows.map(i32::from));
+        Self { left, top, right, bottom }
     }
 }
 
