@@ -37,7 +37,7 @@ impl<'a, C: Pixel> Renderer<'a, C> {
     /// [`Layout::words`] says; its contents do not matter.
     ///
     /// # Errors When `size` is out of range or not that of the layout, `memory` is too small, the method is missing or cannot shade the
-    /// scene, or the stream has labels or a gradient and this build lacks the feature `text` or `gradient`.
+    /// scene, or the stream has labels and this build lacks the feature `text`.
     pub fn new(stream: Stream<'a>, size: Size, layout: &Layout, memory: &'a mut [u64], shaders: &[Shader<C>]) -> Result<Self, RenderError> {
         let method = stream.header.shader;
         let shader = shaders.iter().find(|shader| shader.facts().id == method).ok_or(RenderError::Missing { method })?;
@@ -74,9 +74,6 @@ impl<'a, C: Pixel> Renderer<'a, C> {
         let need = layout.words::<C>();
         let (memory, objects, materials) = Memory::new(layout, memory).ok_or(RenderError::Memory { need })?;
         check(&stream, shader.facts(), false)?;
-        if !cfg!(feature = "gradient") && stream.header.background != stream.header.background_bottom {
-            return Err(RenderError::Feature { name: "gradient" });
-        }
         if !cfg!(feature = "text") && !stream.labels.is_empty() {
             return Err(RenderError::Feature { name: "text" });
         }

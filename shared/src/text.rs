@@ -4,7 +4,7 @@ use crate::{
     band_target::BandTarget,
     format::Share,
     pixel::{Pixel, colour::colour},
-    stream::record::{LABEL_TEXT, LEFT, Label, MIDDLE},
+    stream::record::{LABEL_TEXT, LEAST_LINE, LEFT, Label, MIDDLE},
 };
 use core::convert::Infallible;
 use embedded_graphics::{
@@ -20,6 +20,8 @@ use embedded_graphics::{
 
 /// From the smallest to the largest.
 static FONTS: [&MonoFont<'_>; 6] = [&FONT_4X6, &FONT_5X8, &FONT_6X10, &FONT_7X13, &FONT_9X15, &FONT_10X20];
+
+const _: () = assert!(FONT_4X6.character_size.height == LEAST_LINE);
 
 /// Draws the labels of a picture of `size` pixels into the band `area`. In a small picture, those that no font is small enough for are left out:
 /// they would cover what they name.

@@ -93,9 +93,9 @@ impl Board {
         self != Self::Lm3s6965evb || Shader::SMALLEST_BOARD.contains(&shader)
     }
 
-    /// Whether its firmware has room for labels and gradients.
+    /// Whether its firmware has room for labels: for fonts.
     #[must_use]
-    pub fn has_decorations(self) -> bool {
+    pub fn has_text(self) -> bool {
         self != Self::Lm3s6965evb
     }
 

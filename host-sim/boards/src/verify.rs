@@ -213,11 +213,8 @@ fn draw_in<C: Pixel>(board: Board, stream: Stream<'_>, shaders: &[Shader], frame
     let mut memory = vec![0; layout.words::<C>()];
     let shaders: Vec<_> = shaders.iter().map(|shader| shader.on()).collect();
     let mut renderer = Renderer::new(stream, size, &layout, &mut memory, &shaders)?;
-    if !board.has_decorations() {
-        let needs = [(stream.header.background != stream.header.background_bottom, "gradient"), (!stream.labels.is_empty(), "text")];
-        if let Some((_, name)) = needs.into_iter().find(|(needs, _)| *needs) {
-            return Err(RenderError::Feature { name });
-        }
+    if !board.has_text() && !stream.labels.is_empty() {
+        return Err(RenderError::Feature { name: "text" });
     }
     let shader = renderer.shader().facts().name;
     let mut band = vec![C::pack([0; 3]); layout.band()];

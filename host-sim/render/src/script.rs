@@ -18,7 +18,7 @@ use anyhow::{Context, Result, bail, ensure};
 use microphong::{
     format::{ErrorBudget, Length, MAX_LIGHTS, Rotation, Scale},
     scene::Background,
-    stream::record::{CAMERA_TRACK, Key, LABEL_TEXT, LEFT, LIGHT_TRACK, Label, MIDDLE, OBJECT_TRACK, RIGHT},
+    stream::record::{CAMERA_TRACK, Key, LABEL_TEXT, LEAST_LINE, LEFT, LIGHT_TRACK, Label, MIDDLE, OBJECT_TRACK, RIGHT},
 };
 use serde::Deserialize;
 use std::path::Path;
@@ -342,9 +342,6 @@ fn bytes(text: &str) -> Result<[u8; 3]> {
     Ok(colour(text)?.map(|c| (c * 255.0).round() as u8))
 }
 
-/// Height of the smallest font, pixels.
-const LOWEST: f64 = 6.0;
-
 fn label(script: &LabelScript, size: [u32; 2]) -> Result<Label> {
     let text = script.text.chars().map(u8::try_from).collect::<Result<Vec<_>, _>>();
     let is_printed = |text: &Vec<u8>| !text.iter().any(|&character| char::from(character).is_control());
@@ -355,8 +352,8 @@ fn label(script: &LabelScript, size: [u32; 2]) -> Result<Label> {
     let position = [x - width / 2.0, y - height / 2.0].map(|offset| offset / side);
     ensure!(position.iter().all(|share| share.abs() < 8.0), "at: it is too far from the picture");
     ensure!(
-        script.height >= LOWEST && script.height < 8.0 * side,
-        "height: a line must be {LOWEST} pixels high at least, as the smallest font is, and no higher than 8 pictures"
+        script.height >= f64::from(LEAST_LINE) && script.height < 8.0 * side,
+        "height: a line must be {LEAST_LINE} pixels high at least, as the smallest font is, and no higher than 8 pictures"
     );
     let alignment = match script.align {
         Align::Left => LEFT,

@@ -40,12 +40,6 @@ fn main() -> Result<()> {
             return case;
         }
     };
-    for k in 0..SEEDS {
-        fs::write(folder.join(format!("structured/seed-{k:02}")), fuzz::seed(&case()))?;
-        if k % 4 == 0 {
-            fs::write(folder.join(format!("raw/seed-{k:02}")), case().stream.as_bytes())?;
-        }
-    }
     let mut number = 0;
     let mut scene = || loop {
         number += 1;
@@ -57,10 +51,11 @@ fn main() -> Result<()> {
             return case;
         }
     };
-    for k in SEEDS..SEEDS + SCENES {
-        fs::write(folder.join(format!("structured/seed-{k:02}")), fuzz::seed(&scene()))?;
+    for k in 0..SEEDS + SCENES {
+        let mut next = || if k < SEEDS { case() } else { scene() };
+        fs::write(folder.join(format!("structured/seed-{k:02}")), fuzz::seed(&next()))?;
         if k % 4 == 0 {
-            fs::write(folder.join(format!("raw/seed-{k:02}")), scene().stream.as_bytes())?;
+            fs::write(folder.join(format!("raw/seed-{k:02}")), next().stream.as_bytes())?;
         }
     }
     for (k, text) in TEXTS.iter().enumerate() {

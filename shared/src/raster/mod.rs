@@ -5,7 +5,6 @@ pub(crate) mod background;
 pub mod band;
 pub mod canvas;
 pub mod counts;
-#[cfg(feature = "gradient")]
 mod gradient;
 pub mod pixel_shader;
 pub(crate) mod span;

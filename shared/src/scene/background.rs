@@ -6,9 +6,7 @@
 pub enum Background {
     /// One colour. Formats of fewer bits a channel keep the upper ones.
     Colour([u8; 3]),
-    /// A colour for each row: that of the first row, that of the last one, and even steps between them, dithered so that they are not seen. Only
-    /// in builds with the feature `gradient`.
-    #[cfg(feature = "gradient")]
+    /// A colour for each row: that of the first row, that of the last one, and even steps between them, dithered so that they are not seen.
     Gradient {
         /// Of the first row.
         top: [u8; 3],
@@ -20,12 +18,7 @@ pub enum Background {
 impl Background {
     /// Between two colours; one if they are the same.
     pub(crate) fn between(top: [u8; 3], bottom: [u8; 3]) -> Self {
-        #[cfg(feature = "gradient")]
-        if top != bottom {
-            return Self::Gradient { top, bottom };
-        }
-        let _ = bottom;
-        Self::Colour(top)
+        if top == bottom { Self::Colour(top) } else { Self::Gradient { top, bottom } }
     }
 }
 

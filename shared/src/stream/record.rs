@@ -491,6 +491,9 @@ pub struct Label {
     pub text: [u8; LABEL_TEXT],
 }
 
+/// Height of a line of the smallest font, pixels.
+pub const LEAST_LINE: u32 = 6;
+
 /// Characters that a [`Label`] has room for.
 pub const LABEL_TEXT: usize = 30;
 
