@@ -14,6 +14,9 @@ use std::{fmt::Debug, fs, path::PathBuf, process::Command};
 mod backdrop;
 #[path = "../../examples/esp32c3-gc9a01/src/scene.rs"]
 mod esp32c3_gc9a01;
+#[path = "../../examples/redraw.rs"]
+#[expect(dead_code, reason = "the example's `main`")]
+mod redraw;
 #[path = "../../examples/rp2040-ssd1306/src/scene.rs"]
 mod rp2040_ssd1306;
 #[path = "../../examples/rp2350-st7789/src/scene.rs"]
@@ -69,8 +72,10 @@ fn displays_show_what_the_documentation_shows() {
     shows!("rp2040-ssd1306", rp2040_ssd1306, |renderer, band| rp2040_ssd1306::picture(renderer, band, 0));
     shows!("rp2350-st7789", rp2350_st7789, |renderer, band| rp2350_st7789::picture(renderer, band, 0, None));
     shows!("stm32f411-ili9341", stm32f411_ili9341, |renderer, band| stm32f411_ili9341::picture(renderer, band, 0));
-    let (display, stats) = backdrop::draw().expect("a picture");
-    compare("backdrop", &stats, &display);
+    for (name, drawn) in [("backdrop", backdrop::draw()), ("redraw", redraw::draw())] {
+        let (display, stats) = drawn.expect("a picture");
+        compare(name, &stats, &display);
+    }
 }
 
 /// The commands stand in examples/README.md.

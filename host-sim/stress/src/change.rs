@@ -161,6 +161,7 @@ pub enum Change {
     PerspectiveCorrect(bool),
     Antialias(bool),
     Dither(bool),
+    Gamma(bool),
     Budget(ErrorBudget),
     LevelsOfDetail(bool),
 }
@@ -189,10 +190,10 @@ impl Change {
         let object = random.pick(0..now.objects.len() as i32 + past) as usize;
         let material = random.pick(0..now.materials.len() as i32 + past);
         let kinds = match (now.scripted, calm) {
-            (true, true) => 23..32,
-            (true, false) => 12..32,
+            (true, true) => 24..33,
+            (true, false) => 12..33,
             (false, true) => 0..8,
-            (false, false) => 0..32,
+            (false, false) => 0..33,
         };
         Ok(match random.pick(kinds) {
             0..6 => Self::Pose(object, pose(random)?),
@@ -224,6 +225,7 @@ impl Change {
             20 => Self::Dither(random.once_in(2)),
             21 => Self::Budget(ErrorBudget::from_bits(random.bits() as u8 >> random.pick(0..7))),
             22 => Self::LevelsOfDetail(random.once_in(2)),
+            23 => Self::Gamma(random.once_in(2)),
             _ if now.scripted || random.once_in(4) => Self::Play(match random.pick(0..4) {
                 0 => random.bits() as u32,
                 1 => now.frame,
@@ -245,6 +247,7 @@ impl Change {
             Self::Antialias(on) => return renderer.set_antialias(*on).map_err(of_style),
             Self::Budget(budget) => return renderer.set_budget(*budget).map_err(of_style),
             Self::Dither(on) => renderer.set_dither(*on),
+            Self::Gamma(on) => renderer.set_gamma(on.then_some(&gamma::SRGB)),
             Self::LevelsOfDetail(on) => renderer.set_levels_of_detail(*on),
             _ => {}
         }
@@ -334,6 +337,7 @@ impl Change {
             | Self::Play(_)
             | Self::PerspectiveCorrect(false)
             | Self::Dither(_)
+            | Self::Gamma(_)
             | Self::LevelsOfDetail(_) => true,
         })
     }
@@ -364,6 +368,7 @@ impl Change {
             Self::PerspectiveCorrect(on) => state.style.perspective_correct = on,
             Self::Antialias(on) => state.style.antialias = on,
             Self::Dither(on) => state.style.dither = on,
+            Self::Gamma(on) => state.style.srgb = on,
             Self::Budget(budget) => state.budget = budget,
             Self::LevelsOfDetail(on) => state.levels_of_detail = on,
         }
