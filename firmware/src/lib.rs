@@ -135,8 +135,9 @@ fn animate<D: Display>(
     }
     painter.report();
     if cfg!(feature = "skips") {
-        let Counts { without_depth, without_highlight, without_light, choices: [one, linear, quadratic, cosines, phong] } = counts;
+        let Counts { without_depth, without_highlight, without_light, hidden, choices: [one, linear, quadratic, cosines, phong] } = counts;
         defmt::info!("triangles without depth {=u32}, highlights {=u32}, lights {=u32}", without_depth, without_highlight, without_light);
+        defmt::info!("triangles of hidden objects {=u32}", hidden);
         defmt::info!(
             "budget {=u8}/8 of 255: triangles in one colour {=u32}, linear {=u32}, quadratic {=u32}, cosines {=u32}, Phong {=u32}",
             stream.header.budget,

@@ -22,7 +22,7 @@ use zerocopy::{FromBytes, Immutable, IntoBytes, KnownLayout};
 ///
 /// const LAYOUT: Layout = Layout::new(240, 40).vertices(1024).triangles(1024);
 /// static MEMORY: [u64; LAYOUT.words::<Rgb565>()] = [0; LAYOUT.words::<Rgb565>()];
-/// assert_eq!(LAYOUT.bytes::<Rgb565>(), 76_392);
+/// assert_eq!(LAYOUT.bytes::<Rgb565>(), 76_400);
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Layout {
@@ -140,6 +140,7 @@ impl Layout {
             + padded(self.triangles * size_of::<Entry>())
             + padded(self.active_triangles * size_of::<ActiveTriangle>())
             + padded(self.objects * size_of::<Placement>())
+            + padded(self.objects * size_of::<u16>())
             + padded(self.objects * size_of::<Object>())
             + padded(self.materials * size_of::<SceneMaterial>())
             + padded(self.materials * size_of::<Reflectance>())
@@ -173,6 +174,8 @@ pub(crate) struct Memory<'a, C: Pixel> {
     pub(crate) depth: &'a mut [u16],
     /// Objects in the latest frame.
     pub(crate) placements: &'a mut [Placement],
+    /// Their indices, in the order in which they are drawn.
+    pub(crate) order: &'a mut [u16],
     /// One for each material, as in `ramps`, the tables of colours.
     pub(crate) reflectances: &'a mut [Reflectance],
     pub(crate) ramps: &'a mut [[C::Stored; RAMP]],
@@ -192,6 +195,7 @@ impl<'a, C: Pixel> Memory<'a, C> {
         let (bins, bytes) = take(bytes, layout.triangles)?;
         let (active_triangles, bytes) = take(bytes, layout.active_triangles)?;
         let (placements, bytes) = take(bytes, layout.objects)?;
+        let (order, bytes) = take(bytes, layout.objects)?;
         let (reflectances, bytes) = take(bytes, layout.materials)?;
         let (error_bounds, bytes) = take(bytes, layout.materials)?;
         let (samples, bytes) = take(bytes, layout.samples())?;
@@ -199,7 +203,7 @@ impl<'a, C: Pixel> Memory<'a, C> {
         let (depth, bytes) = take(bytes, layout.band() * layout.processors)?;
         let (objects, bytes) = take(bytes, layout.objects)?;
         let (materials, _) = take(bytes, layout.materials)?;
-        Some((Self { vertices, bins, depth, placements, reflectances, ramps, error_bounds, samples, active_triangles }, objects, materials))
+        Some((Self { vertices, bins, depth, placements, order, reflectances, ramps, error_bounds, samples, active_triangles }, objects, materials))
     }
 }
 

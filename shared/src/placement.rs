@@ -7,6 +7,7 @@ use crate::{
     scene::{Object, Scene},
     stream::record::Mesh,
 };
+use core::cell::Cell;
 use embedded_graphics_core::geometry::Size;
 use zerocopy::{FromBytes, Immutable, IntoBytes, KnownLayout};
 
@@ -27,8 +28,10 @@ pub(crate) struct Placement {
     pub(crate) area: Area,
     /// Coarser levels of its meshes may lie so far from them: [`GeometricError`].
     tolerance: u16,
+    /// No pixel of it is nearer, in the format of the depth buffer.
+    pub(crate) nearest: u16,
     /// For alignment.
-    reserved: [u16; 3],
+    reserved: [u16; 2],
     /// Triangles of it that the frame has, at the levels that are drawn.
     pub(crate) drawn: u32,
 }
@@ -55,7 +58,7 @@ impl Placement {
         }
         let model_view = how.world.of(&object.pose);
         self.view = View::new(&scene.camera, &model_view, how.size);
-        self.area = self.view.area(object.radius, how.size);
+        (self.area, self.nearest) = self.view.reached(object.radius, how.size);
         if self.area.is_empty() {
             return;
         }
@@ -69,6 +72,12 @@ impl Placement {
         } else {
             scene.stream.levels_within(object.meshes(), tolerance).fold(0, |sum, mesh| sum + mesh.triangles)
         };
+    }
+
+    /// The depth of the object's origin; where it is out of sight, it is drawn last.
+    pub(crate) fn depth(&self) -> i32 {
+        let [.., depth] = self.view.origin();
+        if self.area.is_empty() { i32::MAX } else { depth }
     }
 
     /// The frame has it if it reaches into `area`. Returns whether more or fewer triangles of it are drawn than before.
@@ -90,5 +99,63 @@ impl Placement {
     pub(crate) fn meshes<'a>(&self, scene: &Scene<'a>, object: &Object) -> impl DoubleEndedIterator<Item = &'a Mesh> + use<'a> {
         let meshes = if self.drawn == 0 { 0..0 } else { object.meshes() };
         scene.stream.levels_within(meshes, GeometricError::from_bits(self.tolerance))
+    }
+}
+
+/// Where the objects of a scene are in one frame, and in which order they are drawn: the nearest first, so that they hide what comes after
+/// them.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Placements<'r> {
+    /// In the order of the scene.
+    placements: &'r [Placement],
+    /// Indices of all.
+    order: &'r [u16],
+}
+
+impl<'r> Placements<'r> {
+    /// Those of `scene`, in memory where there may be room for more.
+    pub(crate) fn new(scene: &Scene<'_>, placements: &'r [Placement], order: &'r [u16]) -> Self {
+        let count = scene.objects().len();
+        Self { placements: placements.get(..count).unwrap_or_default(), order: order.get(..count).unwrap_or_default() }
+    }
+
+    /// Puts indices in the order of the depth of what they lead to; those that are equally near in the order of the scene. Returns whether
+    /// they were in another order.
+    pub(crate) fn sort(placements: &[Placement], order: &mut [u16]) -> bool {
+        let key = |index: u16| (placements.get(usize::from(index)).map_or(i32::MAX, Placement::depth), index);
+        let (order, mut has_changed) = (Cell::from_mut(order).as_slice_of_cells(), false);
+        // Few change places from one frame to the next.
+        for end in 1..order.len() {
+            for pair in order.get(..=end).unwrap_or_default().windows(2).rev() {
+                let [before, last] = pair else { break };
+                if key(before.get()) <= key(last.get()) {
+                    break;
+                }
+                before.swap(last);
+                has_changed = true;
+            }
+        }
+        has_changed
+    }
+
+    /// The objects in their order.
+    pub(crate) fn objects(self, scene: &'r Scene<'_>) -> impl DoubleEndedIterator<Item = (&'r Placement, &'r Object)> {
+        self.order.iter().filter_map(move |&index| self.object(scene, index))
+    }
+
+    /// The object that has triangle `id` of the frame.
+    pub(crate) fn with_triangle(self, scene: &'r Scene<'_>, id: u32) -> Option<(&'r Placement, &'r Object)> {
+        // They follow one another without a gap: it is the last one that does not start behind the triangle.
+        let starts = |&index: &u16| self.placements.get(usize::from(index)).is_some_and(|placement| placement.first_triangle <= id);
+        self.object(scene, *self.order.get(self.order.partition_point(starts).wrapping_sub(1))?)
+    }
+
+    fn object(self, scene: &'r Scene<'_>, index: u16) -> Option<(&'r Placement, &'r Object)> {
+        Some((self.placements.get(usize::from(index))?, scene.objects().get(usize::from(index))?))
+    }
+
+    /// Triangles of the levels that are drawn.
+    pub(crate) fn drawn(self) -> u32 {
+        self.placements.iter().fold(0, |sum, placement| sum + placement.drawn)
     }
 }

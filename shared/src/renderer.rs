@@ -10,7 +10,7 @@ use crate::{
     memory::{Layout, Memory},
     method::Facts,
     pixel::{Pixel, gamma::Gamma},
-    placement::Placing,
+    placement::{Placements, Placing},
     scene::{Limits, Scene},
     shader::Shader,
     stream::record::{Camera, DIRECTIONAL, Light, Material, PERSPECTIVE, VIEWER_LOCAL},
@@ -292,8 +292,8 @@ impl<'a, C: Pixel> Renderer<'a, C> {
         // Everything is drawn where colours have changed, or the view has.
         let is_partial = settings.partial_redraw && !scene.repainted;
         let mut area = if is_partial { Area::NONE } else { Area::whole(settings.size) };
-        let (mut triangles, mut vertices) = (0, 0);
-        for (object, placement) in scene.objects().iter().zip(memory.placements.iter_mut()) {
+        let Memory { placements, order, .. } = memory;
+        for (object, placement) in scene.objects().iter().zip(placements.iter_mut()) {
             if scene.view_changed || object.has_moved != 0 {
                 let before = placement.area;
                 placement.update(scene, object, &how);
@@ -301,11 +301,17 @@ impl<'a, C: Pixel> Renderer<'a, C> {
                     area = area.union(&before).union(&placement.area);
                 }
             }
+        }
+        let order = order.get_mut(..scene.objects().len()).unwrap_or_default();
+        if scene.rearranged {
+            (0..).zip(order.iter_mut()).for_each(|(index, place)| *place = index);
+        }
+        *rearranged |= Placements::sort(placements, order) | scene.rearranged;
+        let (mut triangles, mut vertices) = (0, 0);
+        for index in order.iter().copied().map(usize::from) {
+            let (Some(placement), Some(object)) = (placements.get_mut(index), scene.objects().get(index)) else { continue };
             (placement.first_triangle, placement.first_vertex) = (triangles, vertices);
             (triangles, vertices) = (triangles.wrapping_add(object.span), vertices.wrapping_add(object.vertices));
-        }
-        *rearranged |= scene.rearranged;
-        for placement in memory.placements.iter_mut().take(scene.objects().len()) {
             *rearranged |= placement.draw_within(&area);
         }
         self.area = area;

@@ -13,7 +13,8 @@ use crate::{
     mesh::{MeshPass, vertices::VertexStage},
     method::{ErrorBounds, Shading, Style},
     pixel::{Pixel, gamma::Gamma},
-    placement::Placement,
+    placement::{Placement, Placements},
+    raster::band::Band,
     scene::{Object, Scene},
     shader::{Shader, TriangleLoops},
     stream::record::{CLOSED_CONVEX, Mesh},
@@ -78,8 +79,7 @@ impl<C: Pixel> Settings<C> {
 pub(crate) struct Context<'r, C: Pixel> {
     pub(crate) settings: &'r Settings<C>,
     pub(crate) scene: &'r Scene<'r>,
-    /// One for each object of the scene.
-    pub(crate) placements: &'r [Placement],
+    pub(crate) placements: Placements<'r>,
     /// The pixels that the frame has.
     pub(crate) area: Area,
     /// Where triangles may overlap; `None` if they may do so everywhere.
@@ -105,6 +105,11 @@ pub(crate) struct PlacedMesh<'r> {
 }
 
 impl<'r> PlacedMesh<'r> {
+    /// Whether it has this triangle of the frame.
+    pub(crate) fn has(&self, triangle: u32) -> bool {
+        triangle.wrapping_sub(self.first_triangle) < self.mesh.triangles
+    }
+
     /// `mesh` of `object`, whose first mesh in the stream is `first`.
     fn new(placement: &'r Placement, object: &Object, first: &Mesh, mesh: &'r Mesh) -> Self {
         Self {
@@ -118,17 +123,12 @@ impl<'r> PlacedMesh<'r> {
 }
 
 /// The meshes of all objects of a scene, each at the level that is drawn.
-pub(crate) fn meshes<'r>(scene: &'r Scene<'_>, placements: &'r [Placement]) -> impl DoubleEndedIterator<Item = PlacedMesh<'r>> {
-    placements.iter().zip(scene.objects()).flat_map(move |(placement, object)| {
+pub(crate) fn meshes<'r>(scene: &'r Scene<'_>, placements: Placements<'r>) -> impl DoubleEndedIterator<Item = PlacedMesh<'r>> {
+    placements.objects(scene).flat_map(move |(placement, object)| {
         let first = scene.stream.meshes.get(usize::from(object.meshes().start));
         let placed = move |mesh| Some(PlacedMesh::new(placement, object, first?, mesh));
         placement.meshes(scene, object).filter_map(placed)
     })
-}
-
-/// Triangles of the levels that are drawn.
-pub(crate) fn drawn(scene: &Scene<'_>, placements: &[Placement]) -> u32 {
-    placements.iter().zip(scene.objects()).fold(0, |sum, (placement, _)| sum + placement.drawn)
 }
 
 impl<'r, C: Pixel> Context<'r, C> {
@@ -147,15 +147,28 @@ impl<'r, C: Pixel> Context<'r, C> {
 
     /// The mesh of triangle `id` of the frame.
     pub(crate) fn mesh(&self, id: u32) -> Option<PlacedMesh<'r>> {
-        // Objects follow one another without a gap, as meshes in the stream do: each time this is the last one that does not start behind the
-        // triangle. A stream may have 65,535 meshes: they are searched by halves.
-        let (placements, meshes) = (self.placements, self.scene.stream.meshes);
-        let index = placements.partition_point(|placement| placement.first_triangle <= id).wrapping_sub(1);
-        let (placement, object) = (placements.get(index)?, self.scene.objects().get(index)?);
+        let (placement, object) = self.placements.with_triangle(self.scene, id)?;
+        // As objects, meshes in the stream follow one another without a gap. There may be 65,535 of them: they are searched by halves.
+        let meshes = self.scene.stream.meshes;
         let first = meshes.get(usize::from(object.meshes().start))?;
         let id = id.wrapping_sub(placement.first_triangle).wrapping_add(first.first_triangle);
         let mesh = meshes.get(meshes.partition_point(|mesh| mesh.first_triangle <= id).wrapping_sub(1))?;
         Some(PlacedMesh::new(placement, object, first, mesh))
+    }
+
+    /// Whether all pixels that the frame has of an object within the rows of `band` are nearer than the object is: none of its triangles can be
+    /// seen there.
+    pub(crate) fn hides(&self, placement: &Placement, band: &Band<'_, C>) -> bool {
+        if !self.settings.skips().hidden_objects || self.settings.antialiased() {
+            return false;
+        }
+        let Area { columns: [left, right], rows: [top, bottom] } = placement.area.within(&self.area);
+        let [first, end] = band.range();
+        (i32::from(top).max(first)..i32::from(bottom).min(end)).all(|row| {
+            let start = band.start(row);
+            let pixels = band.depth.get(start.wrapping_add(left.into())..start.wrapping_add(right.into())).unwrap_or_default();
+            pixels.iter().all(|&inv_depth| inv_depth >= placement.nearest)
+        })
     }
 
     /// The stage that transforms and lights the vertices of `placed`.

@@ -4,7 +4,7 @@
 use crate::{
     coverage::sample::Sample,
     error::RenderError,
-    frame::context::Context,
+    frame::context::{Context, PlacedMesh},
     geometry::bin::{Bins, Entry, Walk},
     pixel::Pixel,
     raster::{
@@ -31,7 +31,8 @@ pub struct Stats {
     pub culled: u32,
     /// Triangles that are drawn: they face the camera, and their bounding box contains a pixel centre of the viewport.
     pub drawn: u32,
-    /// Pixels of all drawn triangles, those hidden by depth included; stays at its largest value instead of overflowing.
+    /// Pixels of all drawn triangles, those hidden by depth included, but where a whole object is hidden in the rows of a band; stays at its
+    /// largest value instead of overflowing.
     pub pixels: u32,
     /// Walks over the mesh: 1, or one per band when the bins overflow.
     pub passes: u32,
@@ -216,12 +217,31 @@ fn draw_binned<C: Pixel>(context: &Context<'_, C>, walk: &mut Walk<'_>, band: &m
     while let Some(entry) = next {
         // A scene has both.
         let Some(placed) = context.mesh(entry.triangle()) else { break };
+        if context.hides(placed.placement, band) {
+            next = leave_out(&placed, entry, walk, band);
+            continue;
+        }
         let Some((drawing, loops)) = context.drawing(&placed) else { break };
         let (drawn, rest) = (loops.run)(&drawing, entry, walk, band);
         pixels = pixels.saturating_add(drawn);
         next = rest;
     }
     pixels
+}
+
+/// Leaves out the triangle of `entry` and all that follow in the same mesh; returns the first entry of another one.
+#[inline(never)]
+fn leave_out<C: Pixel>(placed: &PlacedMesh<'_>, entry: Entry, walk: &mut Walk<'_>, band: &mut Band<'_, C>) -> Option<Entry> {
+    let mut next = Some(entry);
+    while let Some(entry) = next.filter(|entry| placed.has(entry.triangle())) {
+        if cfg!(feature = "skips") {
+            band.counts.hidden += 1;
+        }
+        // Where it is seen again, the band above has not saved it.
+        let _ = band.active.take(entry.key());
+        next = walk.next();
+    }
+    next
 }
 
 /// Draws all triangles into `band`; returns their pixels there, and how many of them start there.

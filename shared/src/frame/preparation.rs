@@ -9,7 +9,7 @@
 use crate::{
     frame::{
         Frame,
-        context::{Context, PlacedMesh, Settings, drawn, meshes},
+        context::{Context, PlacedMesh, Settings, meshes},
         part::{Part, Stats, halves},
     },
     geometry::{
@@ -23,6 +23,7 @@ use crate::{
     memory::Memory,
     mesh::vertices::{SeamPlace, UNUSED, VertexStage},
     pixel::Pixel,
+    placement::Placements,
     raster::active::QueueState,
     scene::Scene,
     stream::record::{Triangle, Vertex},
@@ -42,13 +43,14 @@ impl Seams {
     /// them, for all vertices, and for any seam: what happens once a frame is then left to one processor.
     pub(crate) fn new<C: Pixel>(scene: &Scene<'_>, memory: &mut Memory<'_, C>) -> Option<Self> {
         let stream = &scene.stream;
-        let (triangles, vertices) = (drawn(scene, memory.placements) as usize, scene.vertices() as usize);
+        let placements = Placements::new(scene, memory.placements, memory.order);
+        let (triangles, vertices) = (placements.drawn() as usize, scene.vertices() as usize);
         let fits = triangles <= memory.bins.len() && vertices <= memory.vertices.len() && seam(memory.depth, vertices).len() == vertices;
         if !fits || !(2 * STEPS..1 << 15).contains(&triangles) {
             return None;
         }
         let (mut seams, mut vertex, mut before) = ([0; STEPS], 0, 0);
-        for placed in meshes(scene, memory.placements) {
+        for placed in meshes(scene, placements) {
             let first = placed.first_vertex as u32;
             for triangle in stream.triangles_of(placed.mesh)? {
                 before += 1;
@@ -124,18 +126,17 @@ impl<'r, C: Pixel> Frame<'r, C> {
     #[inline(always)]
     fn empty(settings: &'r Settings<C>, scene: &'r Scene<'_>, memory: &'r mut Memory<'_, C>, area: Area) -> Empty<'r, C> {
         let Memory {
-            vertices: cache, bins: entries, depth, placements, reflectances, ramps, error_bounds, samples, active_triangles, ..
+            vertices: cache, bins: entries, depth, placements, order, reflectances, ramps, error_bounds, samples, active_triangles, ..
         } = memory;
         let size = settings.size;
-        // There may be room for more.
-        let placements = placements.get(..scene.objects().len()).unwrap_or_default();
+        let placements = Placements::new(scene, placements, order);
         // Bins as high as the bands of one processor.
         let band_rows = settings.band_rows(depth.len(), samples.len()).checked_div(settings.processors).unwrap_or(0);
         let bins = Bins::new(size.height, band_rows);
         let uncached = scene.vertices().saturating_sub(cache.len() as u32);
-        let triangles = drawn(scene, placements);
-        let with_placements = placements.iter().zip(scene.objects());
-        let as_they_are = with_placements.filter(|(placement, _)| placement.drawn > 0).fold(0, |sum, (_, object)| sum + object.triangles);
+        let triangles = placements.drawn();
+        let visible = placements.objects(scene).filter(|(placement, _)| placement.drawn > 0);
+        let as_they_are = visible.fold(0, |sum, (_, object)| sum + object.triangles);
         let context = Context { settings, scene, placements, area, depth_elision: None, vertices: &[], reflectances, ramps, error_bounds };
         let elides = settings.skips().depth && !settings.antialiased();
         let depth_elision = if elides { context.convex().and_then(|view| DepthElision::new(&scene.camera, view, size)) } else { None };
@@ -288,7 +289,7 @@ impl<'r, C: Pixel> PreparationPart<'_, 'r, C> {
             .for_each(|vertex| vertex.state = State::IDLE);
         self.seam.fill(UNUSED);
         // Triangles of the meshes before.
-        let mut earlier = drawn(context.scene, context.placements) as usize;
+        let mut earlier = context.placements.drawn() as usize;
         for placed in context.meshes().rev() {
             earlier = earlier.saturating_sub(placed.mesh.triangles as usize);
             self.bin_mesh::<DIVIDED>(&placed, earlier);

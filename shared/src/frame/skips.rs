@@ -20,19 +20,23 @@ pub struct Skips {
     pub highlights: bool,
     /// Lights are not computed on triangles that they do not reach.
     pub lights: bool,
+    /// Objects are not drawn in the rows of a band where others hide them: objects are drawn from the nearest to the farthest, and no pixel of
+    /// a ball around one is nearer than what is there already.
+    pub hidden_objects: bool,
 }
 
 impl Skips {
     /// Everything is left out that can be: how a renderer begins.
-    pub const ALL: Self = Self { back_faces: true, between_centres: true, depth: true, highlights: true, lights: true };
+    pub const ALL: Self = Self { back_faces: true, between_centres: true, depth: true, highlights: true, lights: true, hidden_objects: true };
     /// Nothing is left out.
-    pub const NONE: Self = Self { back_faces: false, between_centres: false, depth: false, highlights: false, lights: false };
+    pub const NONE: Self = Self { back_faces: false, between_centres: false, depth: false, highlights: false, lights: false, hidden_objects: false };
     /// For each by its name: all but this one.
-    pub const ALL_BUT: [(&str, Self); 5] = [
+    pub const ALL_BUT: [(&str, Self); 6] = [
         ("back-faces", Self { back_faces: false, ..Self::ALL }),
         ("between-centres", Self { between_centres: false, ..Self::ALL }),
         ("depth", Self { depth: false, ..Self::ALL }),
         ("highlights", Self { highlights: false, ..Self::ALL }),
         ("lights", Self { lights: false, ..Self::ALL }),
+        ("hidden-objects", Self { hidden_objects: false, ..Self::ALL }),
     ];
 }

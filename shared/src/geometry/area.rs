@@ -45,11 +45,17 @@ impl Area {
         }
     }
 
+    /// Its pixels that belong to the other one as well.
+    #[must_use]
+    pub fn within(&self, other: &Self) -> Self {
+        let within = |[start, end]: [u16; 2], other: [u16; 2]| [start.max(other[0]), end.min(other[1])];
+        Self { columns: within(self.columns, other.columns), rows: within(self.rows, other.rows) }
+    }
+
     /// Whether some pixel belongs to both.
     #[must_use]
     pub fn meets(&self, other: &Self) -> bool {
-        let meet = |[start, end]: [u16; 2], other: [u16; 2]| start.max(other[0]) < end.min(other[1]);
-        meet(self.columns, other.columns) && meet(self.rows, other.rows)
+        !self.within(other).is_empty()
     }
 
     /// Its columns.

@@ -69,6 +69,13 @@ const MOVED: u32 = 2;
 /// Inverse depth of a vertex at the near plane, Q0.28: less than one, so that rounding cannot wrap it.
 const NEAREST: i32 = (1 << DEPTH) - (1 << 10);
 
+/// Inverse depth of a vertex at the far plane of parallel rays or beyond, Q0.28: more than nothing, so that rounding cannot wrap it, and less
+/// than what the depth buffer tells from nothing.
+const FARTHEST: i32 = 1 << 10;
+
+/// Depths that the buffer tells apart: by no more may a pixel be nearer than the corners of its triangle are, by what is rounded.
+const SPARE: u16 = 4;
+
 /// The transformation from object space to the screen in one frame, in memory of the renderer.
 #[derive(FromBytes, IntoBytes, Immutable, KnownLayout, Clone, Copy, Debug)]
 #[repr(C)]
@@ -154,23 +161,41 @@ impl View {
         let [x, y, z] = eye;
         let (behind, z) = (z >= self.near, z.max(self.near));
         let (x, y, depth) = if self.is_perspective() {
-            // 1/z = r 2^(zeros - 62), relative error 2^-29 wherever the near plane lies.
-            let zeros = z.leading_zeros();
-            let r = recip((z as u32) << (zeros & 31)) as i32;
-            // c focal is below 2^(21 + 31); 31 bits of it times r stay below 2^62.
-            let shift = 41 - zeros + self.focal_exponent;
-            let place = |c: i32| shifted(product((product(c, self.focal_mantissa) >> 21) as i32, r), shift);
-            // Behind the near plane z has no more leading zeros than `near`: the shift is positive.
-            let depth = upper(self.near_mantissa, r) >> ((self.depth_shift - zeros) & 31);
-            (place(x), place(y), depth)
+            let reciprocal = Reciprocal::of(z);
+            (self.place(x, reciprocal), self.place(y, reciprocal), self.depth(reciprocal))
         } else {
-            let place = |c: i32| saturated((i64::from(c) * self.focal + (1 << (UNIT + 15))) >> (UNIT + 16));
-            (place(x), place(y), saturated((i64::from(self.far - z) * self.inv_depth) >> UNIT).max(0))
+            (self.parallel_place(x), self.parallel_place(y), self.parallel_depth(z))
         };
         let inside = |c: i32| c.wrapping_add(GUARD) as u32 <= 2 * GUARD as u32;
         let within = behind && inside(x) && inside(y);
         let [x, y] = if within { [x, y] } else { [limited(x), limited(y)] };
         ([self.centre[0] + x, self.centre[1] - y, depth.min(NEAREST)], within)
+    }
+
+    /// Perspective: a coordinate in eye space at a depth, from the middle of the screen.
+    #[inline(always)]
+    fn place(&self, c: i32, Reciprocal { r, zeros }: Reciprocal) -> i32 {
+        // c focal is below 2^(21 + 31); 31 bits of it times r stay below 2^62.
+        shifted(product((product(c, self.focal_mantissa) >> 21) as i32, r), 41 - zeros + self.focal_exponent)
+    }
+
+    /// Perspective: inverse depth, Q0.28. Domain: behind the near plane.
+    #[inline(always)]
+    fn depth(&self, Reciprocal { r, zeros }: Reciprocal) -> i32 {
+        // Behind the near plane a depth has no more leading zeros than `near`: the shift is positive.
+        upper(self.near_mantissa, r) >> ((self.depth_shift - zeros) & 31)
+    }
+
+    /// [`Self::place`] under parallel rays.
+    #[inline(always)]
+    fn parallel_place(&self, c: i32) -> i32 {
+        saturated((i64::from(c) * self.focal + (1 << (UNIT + 15))) >> (UNIT + 16))
+    }
+
+    /// [`Self::depth`] under parallel rays.
+    #[inline(always)]
+    fn parallel_depth(&self, z: i32) -> i32 {
+        saturated((i64::from(self.far - z) * self.inv_depth) >> UNIT).max(FARTHEST)
     }
 
     /// Whether the camera is perspective, so that rays meet in the eye.
@@ -241,29 +266,32 @@ impl View {
     }
 
     /// The pixels of a viewport of `size` that the ball of `radius`, [`crate::format::Radius`], about the origin of object space can reach; none
-    /// if no part of it can be seen. Errs on the side of more.
+    /// if no part of it can be seen. And how near a pixel of what is in it can be, in the format of the depth buffer. Errs on the side of more.
     #[must_use]
-    pub fn area(&self, radius: u16, size: Size) -> Area {
+    pub fn reached(&self, radius: u16, size: Size) -> (Area, u16) {
         let (radius, [x, y, z]) = (self.ball(radius), self.translation);
         let (nearest, farthest) = (z.saturating_sub(radius), z.saturating_add(radius));
         if farthest < self.near || !self.is_perspective() && nearest > self.far {
-            return Area::NONE;
+            return (Area::NONE, 0);
         }
         if nearest < self.near {
-            return Area::whole(size);
+            return (Area::whole(size), u16::MAX);
         }
-        // Opposite corners of the square about it, at its nearest depth and at its farthest: each side is seen farthest out at one of the two.
-        let (mut least, mut most) = ((i32::MAX, i32::MAX), (i32::MIN, i32::MIN));
-        for (radius, depth) in [(radius, nearest), (radius, farthest), (-radius, nearest), (-radius, farthest)] {
-            let ([x, y, _], _) = self.project([x.saturating_add(radius), y.saturating_add(radius), depth]);
-            least = (x.min(least.0), y.min(least.1));
-            most = (x.max(most.0), y.max(most.1));
-        }
+        // Each side of the square about it is seen farthest out where it is nearest, or, across the middle of the screen, farthest.
+        let [near, far] = [nearest, farthest].map(Reciprocal::of);
+        let place = |c: i32, reciprocal| limited(if self.is_perspective() { self.place(c, reciprocal) } else { self.parallel_place(c) });
+        let range = |c: i32| {
+            let (least, most) = (c.saturating_sub(radius), c.saturating_add(radius));
+            [place(least, if least < 0 { near } else { far }), place(most, if most < 0 { far } else { near })]
+        };
+        let ([left, right], [below, above], [x, y]) = (range(x), range(y), self.centre);
         // A pixel more, for what is rounded on the way.
         let pixels = |least: i32, most: i32, side: u32| {
             [(least >> SUBPIXEL) - 2, (most >> SUBPIXEL) + 3].map(|c| c.clamp(0, i32::from(side as u16)) as u16)
         };
-        Area { columns: pixels(least.0, most.0, size.width), rows: pixels(least.1, most.1, size.height) }
+        let area = Area { columns: pixels(x + left, x + right, size.width), rows: pixels(y - above, y - below, size.height) };
+        let inv_depth = if self.is_perspective() { self.depth(near) } else { self.parallel_depth(nearest) };
+        (area, ((inv_depth.min(NEAREST) >> (DEPTH - 16)) as u16).saturating_add(SPARE))
     }
 
     /// The radius of a ball in object space, [`crate::format::Radius`], in the world, Q18.14, with what is rounded on the way.
@@ -315,6 +343,21 @@ impl View {
         // along * focal / z <= GUARD, z being 1 without perspective.
         let z = if self.is_perspective() { z } else { 1 << UNIT };
         ((i64::from(GUARD) * z) << 16) - along * self.focal
+    }
+}
+
+/// 1/z = r 2^(zeros - 62), relative error 2^-29 wherever the near plane lies.
+#[derive(Clone, Copy)]
+struct Reciprocal {
+    r: i32,
+    zeros: u32,
+}
+
+impl Reciprocal {
+    #[inline(always)]
+    fn of(z: i32) -> Self {
+        let zeros = z.leading_zeros();
+        Self { r: recip((z as u32) << (zeros & 31)) as i32, zeros }
     }
 }
 
@@ -384,6 +427,30 @@ mod tests {
             camera.projection = ORTHOGRAPHIC;
             let [x, y, z] = exact(&View::new(&camera, &pose, Size::new(64, 64)), 0.0);
             assert!(x.abs() < 1.8 && y.abs() < 1.8 && (z + 16_384.0).abs() < 1.8, "{number}: {x} {y} {z}");
+        }
+    }
+
+    /// Between vertices beyond the far plane of parallel rays, a depth that rounding makes less than theirs is still none, and not the nearest.
+    #[test]
+    fn depth_beyond_the_far_plane_cannot_wrap() {
+        let one = 1 << ROTATION;
+        let camera = Camera {
+            rotation: [[one, 0, 0], [0, one, 0], [0, 0, -one]],
+            translation: [0; 3],
+            axis: [0, one, 0],
+            period: 0,
+            projection: ORTHOGRAPHIC,
+            viewer: crate::stream::record::VIEWER_INFINITE,
+            focal: 1 << 16,
+            near: 1 << 12,
+            far: 1 << 15,
+        };
+        let view = View::new(&camera, &ModelView::new(&camera, 0), Size::new(64, 64));
+        for z in [1 << 15, 1 << 16, 1 << 20] {
+            let ([.., depth], _) = view.project([0, 0, z]);
+            // A quarter of a step of the depth buffer away from both.
+            let step = 1 << (DEPTH - 16);
+            assert!(depth >= step / 4 && depth <= step - step / 4, "{z}: {depth}");
         }
     }
 

@@ -11,6 +11,8 @@ pub struct Counts {
     pub without_highlight: u32,
     /// Without a light, for each such light.
     pub without_light: u32,
+    /// Not at all in the rows of a band, because nearer objects hide theirs there; for each such band.
+    pub hidden: u32,
     /// By each choice of a method that chooses.
     pub choices: [u32; 5],
 }
@@ -25,6 +27,7 @@ impl Counts {
             without_depth: self.without_depth.wrapping_add(other.without_depth),
             without_highlight: self.without_highlight.wrapping_add(other.without_highlight),
             without_light: self.without_light.wrapping_add(other.without_light),
+            hidden: self.hidden.wrapping_add(other.hidden),
             choices: [
                 one.wrapping_add(a),
                 linear.wrapping_add(b),

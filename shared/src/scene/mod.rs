@@ -230,7 +230,7 @@ impl<'a> Scene<'a> {
         self.set_repainted();
     }
 
-    /// The objects. The earlier of two that are equally near is seen.
+    /// The objects. Where two are equally near, the one is seen whose origin is nearer, or else the earlier.
     #[must_use]
     pub fn objects(&self) -> &[Object] {
         self.objects.get(..self.count).unwrap_or_default()
