@@ -29,8 +29,8 @@ const _: () = assert!(MAX_STEPPED_HEIGHT as usize <= LARGEST);
 /// Largest width of an edge that fits a word with [`COLUMN`] fraction bits, in 1/16 pixel: 64 columns.
 pub(crate) const MAX_STEPPED_WIDTH: i32 = (1 << (31 - COLUMN)) - 1;
 
-/// Least height of an edge whose column is divided anew on each row, in 1/16 pixel.
-const MIN_DIVIDED_HEIGHT: i32 = 1 << (32 - COLUMN);
+/// Least height of an edge whose column is divided anew on each row, in 1/16 pixel: no viewport is as high.
+const MIN_DIVIDED_HEIGHT: i32 = 1 << (32 - COLUMN + SUBPIXEL);
 
 /// An edge from an upper to a lower point, 1/16 pixel.
 #[derive(Clone, Copy, Debug)]
@@ -83,8 +83,11 @@ impl Edge {
         let dy = i64::from(self.dy.max(1));
         let t = i64::from((row << SUBPIXEL) + CENTRE) - i64::from(self.y);
         let numerator = i64::from(self.x - CENTRE) * dy + i64::from(self.dx) * t;
-        // Ceiling of numerator / (16 dy).
-        -signed_long(-numerator, (dy << SUBPIXEL) as u64) as i32
+        // Ceiling of numerator / (16 dy). Those of most edges fit words.
+        match (i32::try_from(-numerator), i32::try_from(dy << SUBPIXEL)) {
+            (Ok(negated), Ok(divisor)) => -negated.div_euclid(divisor.max(1)),
+            _ => -signed_long(-numerator, (dy << SUBPIXEL) as u64) as i32,
+        }
     }
 
     /// The column at the centre of its first row, ready to be stepped to its end. Only for edges of at most [`MAX_STEPPED_HEIGHT`]
@@ -125,9 +128,18 @@ impl Edge {
         let sixteenths = (self.x - CENTRE).wrapping_add(whole.wrapping_mul(t as i32)).wrapping_add(quotient as i32);
         EdgeX {
             x: walked(sixteenths).wrapping_add((rest_t << (COLUMN - SUBPIXEL)) / dy),
-            step: ((whole << COLUMN) as u32).wrapping_add((rest << COLUMN) / dy),
+            step: ((whole << COLUMN) as u32).wrapping_add(fraction(rest, dy)),
         }
     }
+}
+
+/// `rest / dy` with [`COLUMN`] fraction bits, rounded down, in two steps that fit words. Domain: `rest` is below `dy`, and that below
+/// [`MIN_DIVIDED_HEIGHT`].
+#[inline(always)]
+fn fraction(rest: u32, dy: u32) -> u32 {
+    let dy = dy.max(1);
+    let upper = rest << (COLUMN - SUBPIXEL);
+    ((upper / dy) << SUBPIXEL) + ((upper % dy) << SUBPIXEL) / dy
 }
 
 #[cfg(test)]
@@ -143,7 +155,7 @@ mod tests {
             x0 in 0i32..32_000,
             dx in prop_oneof![-32_000i32..32_000, -1030i32..1030],
             y0 in -3000i32..3000,
-            height in 1i32..2048,
+            height in prop_oneof![1i32..MIN_DIVIDED_HEIGHT, 1i32..2048],
         ) {
             let edge = Edge::new([x0, y0], [(x0 + dx).clamp(0, 32_000), y0 + height]);
             let (mut row, end) = (first_centre(y0), first_centre(y0 + height));
