@@ -203,7 +203,11 @@ impl<'a, C: Pixel> Memory<'a, C> {
         let (depth, bytes) = take(bytes, layout.band() * layout.processors)?;
         let (objects, bytes) = take(bytes, layout.objects)?;
         let (materials, _) = take(bytes, layout.materials)?;
-        Some((Self { vertices, bins, depth, placements, order, reflectances, ramps, error_bounds, samples, active_triangles }, objects, materials))
+        Some((
+            Self { vertices, bins, depth, placements, order, reflectances, ramps, error_bounds, samples, active_triangles },
+            objects,
+            materials,
+        ))
     }
 }
 

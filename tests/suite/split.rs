@@ -80,7 +80,7 @@ fn parts_of_random_triangles_cover_each_pixel_once() {
         };
         let [a, b, c] = corners.map(|[x, y]| ScreenVertex { x, y, depth: 1 << 27, light: [0; 4], state: State::READY });
         let corners = if Extent::new(corners).area < 0 { [&a, &c, &b] } else { [&a, &b, &c] };
-        let nowhere = ScreenTriangle::new(corners, [WIDTH as i32, 0, 0]);
+        let nowhere = ScreenTriangle::new(corners, [0, WIDTH as i32], [0; 2]);
         let visible = Bounds::new(&Extent::new(nowhere.corners)).clipped(Bounds::whole(w / 16, h / 16)).sides();
         let Some(gradients) = Gradients::new(nowhere.corners, visible) else { continue };
         let whole = Whole { screen: &nowhere, gradients: &gradients, depth: nowhere.plane(&gradients, 0) };
@@ -105,7 +105,7 @@ fn parts_of_random_triangles_cover_each_pixel_once() {
                     counts: Counts::default(),
                 };
                 drawn[k] += if k == 0 {
-                    let screen = ScreenTriangle::new(corners, [WIDTH, top, top + rows].map(|side| side as i32));
+                    let screen = ScreenTriangle::new(corners, [0, WIDTH as i32], [top, top + rows].map(|row| row as i32));
                     screen.draw(&gradients, Constant, Solid(Gray8::new(1)), &mut band)
                 } else {
                     let mut chance = Random::new(splits, 0);

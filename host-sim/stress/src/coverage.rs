@@ -125,7 +125,7 @@ pub fn draw(corners: Corners, band_rows: usize, counts: &mut [u8]) -> u32 {
             active: ActiveTriangles::default(),
             counts: Counts::default(),
         };
-        let screen = ScreenTriangle::new(corners, [WIDTH, top, top + rows].map(|side| side as i32));
+        let screen = ScreenTriangle::new(corners, [0, WIDTH as i32], [top, top + rows].map(|row| row as i32));
         let visible = Bounds::new(&Extent::new(screen.corners)).clipped(Bounds::whole(WIDTH as i32, HEIGHT as i32)).sides();
         let Some(gradients) = Gradients::new(screen.corners, visible) else { return 0 };
         drawn += screen.draw(&gradients, Constant, Solid(1), &mut band);

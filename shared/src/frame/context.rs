@@ -195,6 +195,8 @@ impl<'r, C: Pixel> Context<'r, C> {
             by_canvas: output.by_threshold() || self.settings.antialiased(),
             perspective,
         };
+        // In perspective, light is interpolated between columns that depend on where a row begins: rows are drawn whole.
+        let area = if perspective { Area::whole(self.settings.size) } else { self.area };
         let exponent = self.scene.material(material)?.exponent;
         let error_bounds = self.error_bounds.get(material)?;
         let drawing = MeshPass {
@@ -215,6 +217,7 @@ impl<'r, C: Pixel> Context<'r, C> {
             vertices: stream.vertices_of(placed.mesh)?,
             cached: self.vertices.get(placed.first_vertex..).unwrap_or_default(),
             viewport: self.settings.viewport(),
+            columns: area.columns.map(i32::from),
             perspective,
         };
         Some((drawing, shader.loops(style)))

@@ -73,7 +73,7 @@ pub(crate) struct Part<'r> {
     pub(crate) queue: QueueState,
     /// Rows that triangles may reach.
     pub(crate) rows: Range<u32>,
-    /// Columns that are wanted. Rows are drawn whole, so that a pixel does not depend on it.
+    /// Columns that are wanted.
     pub(crate) columns: Range<u32>,
     /// First row of the next band.
     pub(crate) top: u32,

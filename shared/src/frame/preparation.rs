@@ -126,7 +126,17 @@ impl<'r, C: Pixel> Frame<'r, C> {
     #[inline(always)]
     fn empty(settings: &'r Settings<C>, scene: &'r Scene<'_>, memory: &'r mut Memory<'_, C>, area: Area) -> Empty<'r, C> {
         let Memory {
-            vertices: cache, bins: entries, depth, placements, order, reflectances, ramps, error_bounds, samples, active_triangles, ..
+            vertices: cache,
+            bins: entries,
+            depth,
+            placements,
+            order,
+            reflectances,
+            ramps,
+            error_bounds,
+            samples,
+            active_triangles,
+            ..
         } = memory;
         let size = settings.size;
         let placements = Placements::new(scene, placements, order);

@@ -27,9 +27,11 @@ pub struct Skips {
 
 impl Skips {
     /// Everything is left out that can be: how a renderer begins.
-    pub const ALL: Self = Self { back_faces: true, between_centres: true, depth: true, highlights: true, lights: true, hidden_objects: true };
+    pub const ALL: Self =
+        Self { back_faces: true, between_centres: true, depth: true, highlights: true, lights: true, hidden_objects: true };
     /// Nothing is left out.
-    pub const NONE: Self = Self { back_faces: false, between_centres: false, depth: false, highlights: false, lights: false, hidden_objects: false };
+    pub const NONE: Self =
+        Self { back_faces: false, between_centres: false, depth: false, highlights: false, lights: false, hidden_objects: false };
     /// For each by its name: all but this one.
     pub const ALL_BUT: [(&str, Self); 6] = [
         ("back-faces", Self { back_faces: false, ..Self::ALL }),

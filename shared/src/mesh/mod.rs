@@ -5,6 +5,7 @@ pub(crate) mod vertices;
 use crate::{
     antialias,
     antialias::PixelSet,
+    format::SUBPIXEL,
     geometry::{
         bin::{Entry, Walk},
         clip,
@@ -22,7 +23,10 @@ use crate::{
         canvas::BandCanvas,
         triangle::{ScreenTriangle, turn, turned},
     },
-    setup::gradients::{Gradients, MAX_FINE_THINNESS},
+    setup::{
+        edge::MAX_STEPPED_WIDTH,
+        gradients::{Gradients, MAX_FINE_THINNESS},
+    },
     stream::record::{Triangle, Vertex},
 };
 
@@ -41,9 +45,16 @@ pub(crate) struct MeshPass<'f, C: Pixel> {
     /// The cached vertices on the screen.
     pub(crate) cached: &'f [ScreenVertex],
     pub(crate) viewport: Viewport,
+    /// The columns of which wide triangles are drawn.
+    pub(crate) columns: [i32; 2],
     /// Whether light is interpolated in perspective.
     pub(crate) perspective: bool,
 }
+
+/// Width of a triangle, 1/16 pixel, from which on it is worth while to draw only the columns that a frame has: their edges are divided on
+/// each row then.
+const WIDE: i32 = 96 << SUBPIXEL;
+const _: () = assert!(WIDE > MAX_STEPPED_WIDTH, "others are stepped from end to end");
 
 /// A triangle whose corners run clockwise on the screen.
 struct MeshTriangle<'f> {
@@ -214,11 +225,11 @@ impl<C: Pixel> MeshPass<'_, C> {
 
     /// Sets up a triangle and draws the pixels of the set `pixels`.
     fn draw_pixels(&self, loops: DrawTriangle<C>, pixels: PixelSet, placed: &MeshTriangle<'_>, band: &mut Band<'_, C>) -> u32 {
-        let width = band.width as i32;
         let by_rows = pixels == PixelSet::Centres;
         let screen = if by_rows {
-            let [top, bottom] = band.range();
-            ScreenTriangle::new(placed.corners, [width, top, bottom])
+            let [a, b, c] = placed.corners.map(|corner| corner.x);
+            let is_wide = a.max(b).max(c).wrapping_sub(a.min(b).min(c)) >= WIDE;
+            ScreenTriangle::new(placed.corners, if is_wide { self.columns } else { [0, band.width as i32] }, band.range())
         } else {
             ScreenTriangle::without_rows(placed.corners)
         };
@@ -227,7 +238,7 @@ impl<C: Pixel> MeshPass<'_, C> {
         }
         let Some(gradients) = Gradients::new(screen.corners, self.viewport.box_of(placed.corners, pixels.finer())) else { return 0 };
         // Most of the slivers of a fine mesh lie between the centres of pixels.
-        if by_rows && gradients.is_thinner_than(MAX_FINE_THINNESS) && screen.covers_nothing(width) {
+        if by_rows && gradients.is_thinner_than(MAX_FINE_THINNESS) && screen.covers_nothing() {
             return 0;
         }
         let setup = TriangleSetup {

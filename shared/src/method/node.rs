@@ -275,7 +275,7 @@ mod tests {
         };
         let screen = [[0, 0], [160, 90], [20, 200]].map(|[x, y]| ScreenVertex { x, y, depth: 0, light: [0; 4], state: State::READY });
         let [a, b, c] = &screen;
-        let screen = ScreenTriangle::new([a, b, c], [0; 3]);
+        let screen = ScreenTriangle::new([a, b, c], [0; 2], [0; 2]);
         let gradients = Gradients::if_word_sized(screen.corners).unwrap();
         let triangle = Triangle { corners: [0, 2, 1], ..Triangle::new_zeroed() };
         for _ in 0..1_000 {

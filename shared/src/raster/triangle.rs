@@ -79,13 +79,14 @@ impl ScreenTriangle {
     /// No triangle.
     pub(crate) const NONE: Self = Self { corners: [[0; 2]; 3], depth: [0; 3], turned: 0, rows: RowRange::of(EdgeWalker::NONE, 0) };
 
-    /// Turns the corners until the top one is first; the order around the triangle stays.
+    /// Turns the corners until the top one is first; the order around the triangle stays. What lies beside these `columns` and `rows` is not
+    /// drawn, unless edges are stepped from end to end: they have to be those of the band then.
     #[inline(never)]
     #[must_use]
-    pub fn new(corners: [&ScreenVertex; 3], [width, top, bottom]: [i32; 3]) -> Self {
+    pub fn new(corners: [&ScreenVertex; 3], columns: [i32; 2], rows: [i32; 2]) -> Self {
         let (turned, corners) = turned(corners);
         let places = places(corners);
-        let sides = EdgeWalker::new(places, [top, bottom], width);
+        let sides = EdgeWalker::new(places, rows, columns);
         Self { corners: places, depth: depths(corners), turned, rows: RowRange::of(sides, 0) }
     }
 
@@ -118,9 +119,9 @@ impl ScreenTriangle {
         self.rows.sides.row >= self.rows.sides.end
     }
 
-    /// Whether the triangle contains no centre of a pixel within the rows of the band, which is `width` columns wide.
+    /// Whether the triangle contains no centre of a pixel within the rows of the band.
     #[must_use]
-    pub(crate) fn covers_nothing(&self, width: i32) -> bool {
+    pub(crate) fn covers_nothing(&self) -> bool {
         let sides = &self.rows.sides;
         let (mut row, mut stop, mut pair) = (sides.row, sides.stop, sides.pair);
         loop {
@@ -134,7 +135,7 @@ impl ScreenTriangle {
             if stop >= sides.end {
                 return true;
             }
-            stop = sides.next(row, &mut pair, self.corners, width);
+            stop = sides.next(row, &mut pair, self.corners);
         }
     }
 
@@ -187,7 +188,6 @@ impl ScreenTriangle {
         let (mut row, mut stop, mut pair) = (sides.row, sides.stop, sides.pair);
         let mut depth = self.plane(gradients, row);
         shader.jump(row.wrapping_sub(gradients.row()));
-        let [width, ..] = canvas.bounds();
         let mut pixels = 0u32;
         loop {
             while row < stop {
@@ -204,7 +204,7 @@ impl ScreenTriangle {
             if stop >= sides.end {
                 return pixels;
             }
-            stop = sides.next(row, &mut pair, self.corners, width);
+            stop = sides.next(row, &mut pair, self.corners);
         }
     }
 
@@ -234,7 +234,7 @@ impl ScreenTriangle {
                 break;
             }
             row = stop;
-            stop = sides.next(row, &mut rows.sides, self.corners, rows.width as i32);
+            stop = sides.next(row, &mut rows.sides, self.corners);
         }
         let filled = rows.filled;
         if P::WORDS <= ActiveTriangle::WORDS && self.rows.key != 0 && sides.goes_on() {

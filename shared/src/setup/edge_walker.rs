@@ -3,6 +3,7 @@
 use zerocopy::{FromBytes, Immutable, IntoBytes, KnownLayout};
 
 use crate::{
+    format::SUBPIXEL,
     geometry::viewport::first_centre,
     setup::edge::{COLUMN, Edge, EdgeX, MAX_STEPPED_HEIGHT, MAX_STEPPED_WIDTH},
 };
@@ -41,6 +42,15 @@ struct LowerEdge {
     right: bool,
 }
 
+/// What comes when edges have been stepped as far as they can be.
+#[derive(Clone, Copy, Debug)]
+enum Then {
+    /// All edges are stepped from end to end: the lower one replaces one of the other two.
+    Lower(LowerEdge),
+    /// Edges begin anew, within these columns.
+    Anew([i32; 2]),
+}
+
 /// The state of an [`EdgeWalker`] at the end of a band, for the next one.
 #[derive(FromBytes, IntoBytes, Immutable, KnownLayout, Clone, Copy, Debug)]
 #[repr(C)]
@@ -75,8 +85,7 @@ impl EdgeState {
             end,
             low,
             turn,
-            end_to_end: true,
-            below: LowerEdge { column, right: right != 0 },
+            then: Then::Lower(LowerEdge { column, right: right != 0 }),
         }
     }
 }
@@ -96,35 +105,25 @@ pub(crate) struct EdgeWalker {
     low: i32,
     /// First row of the edge below the middle corner.
     turn: i32,
-    /// Whether all edges are stepped from end to end.
-    end_to_end: bool,
-    /// The edge that replaces one of `pair` at `stop`, if edges are stepped from end to end.
-    below: LowerEdge,
+    /// At `stop`.
+    then: Then,
 }
 
 impl EdgeWalker {
     /// Edges without rows; all zeros.
-    pub(crate) const NONE: Self = Self {
-        pair: LeftRight::NONE,
-        row: 0,
-        stop: 0,
-        end: 0,
-        low: 0,
-        turn: 0,
-        end_to_end: false,
-        below: LowerEdge { column: EdgeX::NONE, right: false },
-    };
+    pub(crate) const NONE: Self = Self { pair: LeftRight::NONE, row: 0, stop: 0, end: 0, low: 0, turn: 0, then: Then::Anew([0; 2]) };
 
-    /// The edges of a triangle, its top corner first, clockwise, in the rows from `top` to `bottom` of a band of `width` columns.
-    pub(crate) fn new(corners: [[i32; 2]; 3], [top, bottom]: [i32; 2], width: i32) -> Self {
+    /// The edges of a triangle, its top corner first, clockwise, in the rows from `top` to `bottom` of a band and between two `columns`, unless
+    /// it is so small that it is stepped from end to end.
+    pub(crate) fn new(corners: [[i32; 2]; 3], [top, bottom]: [i32; 2], columns: [i32; 2]) -> Self {
         let [[_, upper], [_, right], [_, left]] = corners;
         let low = right.max(left);
-        if is_walkable(corners, width) && is_steppable(corners) && low - upper <= MAX_STEPPED_HEIGHT {
+        if is_walkable(corners, columns) && is_steppable(corners) && low - upper <= MAX_STEPPED_HEIGHT {
             return Self::end_to_end(corners, [top, bottom]);
         }
         let (row, end) = (first_centre(upper).max(top), first_centre(low).min(bottom));
-        let mut sides = Self { row, stop: row, end, low: end, ..Self::NONE };
-        (sides.stop, sides.pair) = sides.next_large(row, corners, width);
+        let mut sides = Self { row, stop: row, end, low: end, then: Then::Anew(columns), ..Self::NONE };
+        (sides.stop, sides.pair) = sides.next_large(row, corners, columns);
         sides
     }
 
@@ -144,7 +143,7 @@ impl EdgeWalker {
             column.skip(row.wrapping_sub(turn).max(0));
         }
         let end = low.min(bottom);
-        Self { pair, row, stop: turn.max(row).min(end), end, low, turn, end_to_end: true, below: LowerEdge { column, right: turns_right } }
+        Self { pair, row, stop: turn.max(row).min(end), end, low, turn, then: Then::Lower(LowerEdge { column, right: turns_right }) }
     }
 
     /// Whether rows follow in the next band to which the edges can be stepped.
@@ -158,27 +157,30 @@ impl EdgeWalker {
     pub(crate) fn state(&self, pair: LeftRight, shader: u8) -> EdgeState {
         // If the band ends at or above the middle corner, the lower edge is still to come.
         let turn = if self.stop < self.end { self.low } else { self.turn };
-        EdgeState { pair, column: self.below.column, turn, low: self.low, right: self.below.right.into(), shader, unused: 0 }
+        // Others are not saved.
+        let LowerEdge { column, right } =
+            if let Then::Lower(lower) = self.then { lower } else { LowerEdge { column: EdgeX::NONE, right: false } };
+        EdgeState { pair, column, turn, low: self.low, right: right.into(), shader, unused: 0 }
     }
 
     /// Continues with the rows from `row`, to which `pair` has been stepped; returns one past the last row to which it can be stepped now.
     #[inline(always)]
-    pub(crate) fn next(&self, row: i32, pair: &mut LeftRight, corners: [[i32; 2]; 3], width: i32) -> i32 {
+    pub(crate) fn next(&self, row: i32, pair: &mut LeftRight, corners: [[i32; 2]; 3]) -> i32 {
         let stop;
-        if self.end_to_end {
-            let LowerEdge { column, right } = self.below;
-            *(if right { &mut pair.right } else { &mut pair.left }) = column;
-            stop = self.end;
-        } else {
-            (stop, *pair) = self.next_large(row, corners, width);
+        match self.then {
+            Then::Lower(LowerEdge { column, right }) => {
+                *(if right { &mut pair.right } else { &mut pair.left }) = column;
+                stop = self.end;
+            }
+            Then::Anew(columns) => (stop, *pair) = self.next_large(row, corners, columns),
         }
         stop
     }
 
-    /// The next rows of a large triangle, or of one beside the band: as many as stay exact, or one.
+    /// The next rows of a large triangle, or of one beside the columns: as many as stay exact, or one.
     #[cold]
     #[inline(never)]
-    fn next_large(self, row: i32, corners: [[i32; 2]; 3], width: i32) -> (i32, LeftRight) {
+    fn next_large(self, row: i32, corners: [[i32; 2]; 3], columns: [i32; 2]) -> (i32, LeftRight) {
         let [top, right, left] = corners;
         let middle = first_centre(right[1].min(left[1]));
         // Above the middle corner both edges leave the top corner; below it, an edge from the middle corner replaces one of them.
@@ -189,8 +191,8 @@ impl EdgeWalker {
         } else {
             (self.end, Edge::new(left, right), Edge::new(top, right))
         };
-        let exact = if is_walkable(corners, width) { left.exact_rows().min(right.exact_rows()) } else { 0 };
-        let by_itself = |edge: Edge| EdgeX { x: (edge.column(row).max(0).min(width) as u32) << COLUMN, step: 0 };
+        let exact = if is_walkable(corners, columns) { left.exact_rows().min(right.exact_rows()) } else { 0 };
+        let by_itself = |edge: Edge| EdgeX { x: (edge.column(row).max(columns[0]).min(columns[1]) as u32) << COLUMN, step: 0 };
         let (stop, pair) = if exact > 0 {
             (stop.min(row + exact), LeftRight { left: left.walk_from(row), right: right.walk_from(row) })
         } else {
@@ -200,10 +202,10 @@ impl EdgeWalker {
     }
 }
 
-/// Whether no corner lies beside the band.
+/// Whether no corner lies beside these columns.
 #[inline(always)]
-fn is_walkable([[a, _], [b, _], [c, _]]: [[i32; 2]; 3], width: i32) -> bool {
-    let inside = |x: i32| (x as u32) < (width as u32) << 4;
+fn is_walkable([[a, _], [b, _], [c, _]]: [[i32; 2]; 3], [first, end]: [i32; 2]) -> bool {
+    let inside = |x: i32| (x.wrapping_sub(first << SUBPIXEL) as u32) < (end.wrapping_sub(first) as u32) << SUBPIXEL;
     inside(a) && inside(b) && inside(c)
 }
 
