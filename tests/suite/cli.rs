@@ -700,6 +700,23 @@ fn convert_refuses_methods_that_a_board_lacks() {
     place.fails(&["convert", "good.obj", "--board", "uno"], 2, &["uno", "lm3s6965evb"]);
 }
 
+/// `convert` ends with what a frame takes on boards where that is asked for, and refuses a board that it cannot count on before it writes.
+#[test]
+fn convert_counts_on_boards() {
+    let place = Place::new();
+    place.file("good.obj", TETRAHEDRON);
+    assert!(place.succeeds(&["convert", "good.obj", "-o", "out.tri"]).contains("--count"));
+    let arguments = ["convert", "good.obj", "--board", "pico", "--count", "-o", "out.tri"];
+    let told = place.succeeds(&arguments);
+    assert!(told.contains("a frame on pico (cortex-m0plus, emulated), 240x240: ") && told.ends_with(" frames/s\n"), "{told}");
+    let line: serde_json::Value = serde_json::from_str(&place.succeeds(&[&arguments[..], &["--json"]].concat())).expect("JSON");
+    let bench = place.succeeds(&["bench", "out.tri", "--board", "pico", "--shader", "auto", "--json"]);
+    let bench: serde_json::Value = serde_json::from_str(&bench).expect("JSON");
+    assert_eq!(line["costs"][0]["instructions"], bench["instructions"], "as bench counts");
+    place.fails(&["convert", "good.obj", "--board", "lm3s6965evb", "--count", "-o", "no.tri"], 2, &["lm3s6965evb", "mps2-an385"]);
+    assert!(!place.0.path().join("no.tri").exists());
+}
+
 /// Whatever `render` draws can be looked into: streams of any ending, built-in scenes, scripted ones, meshes.
 #[test]
 fn inspect_takes_scenes() {

@@ -58,6 +58,29 @@ fn counts_tell_what_is_left_out() {
     assert!(stats.counts.choices.iter().filter(|&&count| count > 0).count() > 2 && stats.drawn - shaded < stats.drawn / 20);
 }
 
+/// Objects behind others are left out of bands; the picture is the same whatever the bands, and with all objects drawn.
+#[test]
+fn hidden_objects_are_left_out() {
+    let board = scene::load("board").unwrap();
+    let (_, others) = Skips::ALL_BUT.into_iter().find(|(skip, _)| *skip == "hidden-objects").unwrap();
+    for shader in [Shader::GOURAUD, Shader::AUTO] {
+        let (whole, _) = frame(&board.stream, shader, others, SIZE.height);
+        for rows in [4, 10, 30] {
+            let [(picture, stats), (plain, none)] = [Skips::ALL, others].map(|skips| frame(&board.stream, shader, skips, rows));
+            println!(
+                "{}, bands of {rows} rows: {} triangles, {} of {} pixels left out",
+                shader.name(),
+                stats.counts.hidden,
+                none.pixels - stats.pixels,
+                none.pixels
+            );
+            assert!(picture == whole && plain == whole, "{}, bands of {rows}", shader.name());
+            assert!(stats.counts.hidden > 100 && none.counts.hidden == 0);
+            assert!(stats.pixels < none.pixels / 10 * 9, "{} of {}", stats.pixels, none.pixels);
+        }
+    }
+}
+
 /// The renderer knows when a frame is the picture of the latest one: the camera stands still, or has come round. Settings change pictures.
 #[test]
 fn a_frame_like_the_latest_is_known() {

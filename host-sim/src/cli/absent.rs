@@ -17,7 +17,7 @@ macro_rules! absent {
             }
 
             pub(crate) fn run(Arguments { arguments }: &Arguments) -> anyhow::Result<super::Outcome> {
-                super::refuse(stringify!($name), arguments)
+                super::refuse(concat!("`", stringify!($name), "`"), stringify!($name), arguments)
             }
         }
     )*};
@@ -30,8 +30,8 @@ absent! {
     growth: "Count how the cost of a frame grows with triangles, pixels, lights and bands";
 }
 
-/// Names the command that does what was asked for.
-fn refuse(name: &str, arguments: &[OsString]) -> Result<Outcome> {
+/// Names the command that does `what` was asked for.
+pub(super) fn refuse(what: &str, name: &str, arguments: &[OsString]) -> Result<Outcome> {
     let mut command = format!("cargo run --release --features boards -- {name}");
     for argument in arguments.iter().map(|argument| argument.to_string_lossy()) {
         command.push(' ');
@@ -41,7 +41,7 @@ fn refuse(name: &str, arguments: &[OsString]) -> Result<Outcome> {
             command.push_str(&argument);
         }
     }
-    Err(Usage(format!("this build has no `{name}`: it was compiled without emulated boards; in the sources, run\n  {command}")).into())
+    Err(Usage(format!("this build has no {what}: it was compiled without emulated boards; in the sources, run\n  {command}")).into())
 }
 
 #[cfg(test)]
@@ -51,7 +51,7 @@ mod tests {
     #[test]
     fn the_command_that_has_it_is_named() {
         let arguments = ["--board", "pico", "--scene", "my mesh.tri"].map(OsString::from);
-        let error = refuse("verify", &arguments).err().expect("an error");
+        let error = refuse("`verify`", "verify", &arguments).err().expect("an error");
         assert!(error.is::<Usage>());
         let command = "cargo run --release --features boards -- verify --board pico --scene \"my mesh.tri\"";
         assert!(error.to_string().ends_with(command), "{error}");

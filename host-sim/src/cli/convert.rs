@@ -1,6 +1,10 @@
 //! `microphong convert`.
 
-use super::{Outcome, Usage, parse, report};
+use super::{
+    Outcome, Usage,
+    count::{self, Cost, Counter},
+    parse, report,
+};
 use anyhow::{Context, Result, bail};
 use embedded_graphics_core::pixelcolor::Rgb565;
 use microphong::{
@@ -59,6 +63,10 @@ pub(crate) struct Arguments {
     /// Board whose firmware is to draw the stream: a method that it lacks is refused.
     #[arg(long, value_name = "NAME", value_parser = BOARDS.map(|(board, _)| board))]
     board: Option<String>,
+    /// End with what a frame takes on each board, or on the one of --board: instructions, and frames a second where time is modelled. Boards
+    /// are emulated: it needs a build with `--features boards`.
+    #[arg(long)]
+    count: bool,
     /// How far a pixel may be off from Phong shading by auto or auto-linear, in 1/255, 0.5 to 16.
     #[arg(long, value_name = "LSB", default_value = "1", value_parser = parse::budget)]
     budget: ErrorBudget,
@@ -128,6 +136,7 @@ Examples:
   microphong convert teapot.obj -o teapot.tri
   microphong convert bunny.obj --lod 240x240,128x128
   microphong convert part.obj --board lm3s6965evb
+  microphong convert part.obj --board pico --count
   microphong convert scan.ply --simplify 2000
   microphong convert part.obj --up z --colour 4080ff --plastic --exponent 60 --orbit 240
   microphong convert car.obj --light -0.5,0.6,0.7:fff0d8 --light 1,0.1,0.2:304060
@@ -154,6 +163,8 @@ struct Line<'a> {
     layout: String,
     memory: usize,
     remarks: Vec<String>,
+    /// Of frames, where they are counted.
+    costs: Option<Vec<Cost>>,
 }
 
 /// What has become of the mesh of the file.
@@ -186,13 +197,14 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome> {
     if arguments.lights.len() > MAX_LIGHTS {
         return Err(Usage(format!("{} times --light; a scene has {MAX_LIGHTS} lights at most", arguments.lights.len())).into());
     }
+    let counter = arguments.count.then(|| count::prepare(arguments.board.as_deref())).transpose()?;
     let target = arguments.output.clone().unwrap_or_else(|| source.with_extension("tri"));
     let same = |path: &std::path::Path| path.canonicalize().ok();
     if same(&target).is_some_and(|target| Some(target) == same(source)) {
         return Err(Usage(format!("{} would overwrite the mesh; name another file with -o", target.display())).into());
     }
     if scene::is_script(source) {
-        return convert_script(arguments, &target);
+        return convert_script(arguments, &target, counter.as_ref());
     }
     let Imported { mut mesh, report, mut materials, mut remarks } =
         import::file(source, Weld { turn: arguments.flip, crease: arguments.crease })?;
@@ -254,6 +266,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome> {
         layout: text_of(&layout),
         memory: layout.bytes::<Rgb565>(),
         remarks,
+        costs: counter.map(|counter| counter.count(&target.to_string_lossy())).transpose()?,
     };
     if arguments.json {
         report::json(&line)?;
@@ -282,10 +295,12 @@ struct SceneLine<'a> {
     bytes: usize,
     layout: String,
     memory: usize,
+    /// Of frames, where they are counted.
+    costs: Option<Vec<Cost>>,
 }
 
 /// Writes the stream of a scripted scene.
-fn convert_script(arguments: &Arguments, target: &Path) -> Result<Outcome> {
+fn convert_script(arguments: &Arguments, target: &Path, counter: Option<&Counter>) -> Result<Outcome> {
     let scene = scene::load(&arguments.mesh.to_string_lossy())?;
     if let Some(has) = lacking(arguments, Shader::of(&scene.stream.parse()?)?) {
         bail!("{}: {has}: name one of them as `shader` in its text", arguments.mesh.display());
@@ -304,20 +319,21 @@ fn convert_script(arguments: &Arguments, target: &Path) -> Result<Outcome> {
         bytes: scene.stream.as_bytes().len(),
         layout: text_of(&layout),
         memory: layout.bytes::<Rgb565>(),
+        costs: counter.map(|counter| counter.count(&target.to_string_lossy())).transpose()?,
     };
     if arguments.json {
         report::json(&line)?;
         return Ok(Outcome::Done);
     }
     let count = |n: usize| report::grouped(n as u64);
-    let SceneLine { scene, output, objects, meshes, triangles, frames, bytes, layout, memory } = line;
+    let SceneLine { scene, output, objects, meshes, triangles, frames, bytes, layout, memory, costs } = line;
     report::line(&format!(
         "{output}: {objects} objects of {meshes} meshes and {} triangles, {frames} frames, from {scene}",
         count(triangles)
     ))?;
     report::line(&format!("  {} bytes of flash", count(bytes)))?;
     report::line(&format!("  {layout}, {} bytes of memory for Rgb565", count(memory)))?;
-    report::line(&counted(output))?;
+    count::text(costs.as_deref())?;
     Ok(Outcome::Done)
 }
 
@@ -343,11 +359,6 @@ fn in_pixels(levels::Simplified { before, error }: levels::Simplified, look: &Lo
 
 /// Rows of a band, where nobody says how many.
 const ROWS: usize = 16;
-
-/// How to see what a stream takes on boards. No estimate: one by triangles, pixels and spans was off by several times.
-fn counted(stream: &str) -> String {
-    format!("  instructions and frames a second on emulated boards: cargo run --release --features boards -- bench {stream} --board all")
-}
 
 /// A layout as a program has it.
 fn text_of(layout: &Layout) -> String {
@@ -401,7 +412,7 @@ fn text(line: &Line<'_>) -> Result<()> {
         "  room for all of it in a program, {memory} bytes of memory in Rgb565 beside a band of pixels:\n    {}",
         line.layout
     ))?;
-    report::line(&counted(line.output))?;
+    count::text(line.costs.as_deref())?;
     let crossed = match line.crossed {
         0 => return Ok(()),
         1 => "1 polygon crosses itself; split it".to_owned(),

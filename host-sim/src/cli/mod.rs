@@ -7,6 +7,7 @@ mod bench;
 mod bounds;
 mod compare;
 mod convert;
+mod count;
 #[cfg(feature = "boards")]
 mod growth;
 mod inspect;

@@ -1,0 +1,94 @@
+//! What a frame of a stream takes on boards, which `convert` ends with where that is asked for: counted under emulation, as `bench` does.
+
+#[cfg(not(feature = "boards"))]
+use super::absent::refuse;
+use super::report;
+use anyhow::Result;
+use serde::Serialize;
+
+/// A frame on one board.
+#[derive(Serialize)]
+pub(super) struct Cost {
+    board: &'static str,
+    cpu: &'static str,
+    width: u32,
+    height: u32,
+    instructions: u64,
+    /// Where time is modelled.
+    frames_per_second: Option<f64>,
+}
+
+/// Compiles what the boards execute: all of them, or the one that has this name.
+#[cfg(feature = "boards")]
+pub(super) fn prepare(board: Option<&str>) -> Result<Counter> {
+    use super::Usage;
+    use microphong_bench::{Bench, processor::Processor};
+
+    let is_wanted = |processor: &&Processor| board.is_none_or(|board| processor.board_name() == board);
+    let boards = Processor::ALL.iter().filter(|processor| processor.board().is_some()).filter(is_wanted);
+    let boards: Vec<_> = boards.copied().collect();
+    if boards.is_empty() {
+        let board = board.unwrap_or_default();
+        return Err(Usage(format!("--count: the frames of {board} cannot be counted; mps2-an385 has the same processor")).into());
+    }
+    Ok(Counter { bench: Bench::new(&boards)?, boards })
+}
+
+/// Says how to get a build that can count.
+#[cfg(not(feature = "boards"))]
+pub(super) fn prepare(_: Option<&str>) -> Result<Counter> {
+    let arguments: Vec<_> = std::env::args_os().skip(2).collect();
+    refuse("boards to count on", "convert", &arguments).map(|_| Counter)
+}
+
+/// The programs of boards.
+#[cfg(feature = "boards")]
+pub(super) struct Counter {
+    bench: microphong_bench::Bench,
+    boards: Vec<microphong_bench::processor::Processor>,
+}
+
+/// Nothing: no boards are in this build.
+#[cfg(not(feature = "boards"))]
+pub(super) struct Counter;
+
+impl Counter {
+    /// What frames of a stream take by the method that it asks for.
+    #[cfg(feature = "boards")]
+    pub(super) fn count(&self, stream: &str) -> Result<Vec<Cost>> {
+        use microphong_sim::{scene, shader::Shader};
+
+        let scene = scene::load(stream)?;
+        let shader = Shader::of(&scene.stream.parse()?)?;
+        let wanted: Vec<_> = self.boards.iter().map(|&board| (board, shader)).collect();
+        let bar = report::progress(wanted.len() as u64, "counting instructions");
+        let measured = self.bench.count(&scene, &wanted, &|| bar.inc(1))?;
+        bar.finish_and_clear();
+        let cost = |m: microphong_bench::Measurement| {
+            let (width, height) = m.board.size();
+            let frames_per_second = m.timing.map(|timing| timing.frames_per_second);
+            Cost { board: m.board.board_name(), cpu: m.cpu, width, height, instructions: m.instructions, frames_per_second }
+        };
+        Ok(measured.into_iter().map(cost).collect())
+    }
+
+    /// No boards are in this build.
+    #[cfg(not(feature = "boards"))]
+    #[expect(clippy::unused_self, clippy::unnecessary_wraps, reason = "the other build needs both")]
+    pub(super) fn count(&self, _: &str) -> Result<Vec<Cost>> {
+        Ok(Vec::new())
+    }
+}
+
+/// Prints what has been counted, or how it can be.
+pub(super) fn text(costs: Option<&[Cost]>) -> Result<()> {
+    let Some(costs) = costs else {
+        return report::line("  what a frame takes on boards: the same with --count, in a build with `--features boards`");
+    };
+    for Cost { board, cpu, width, height, instructions, frames_per_second } in costs {
+        let rate = frames_per_second.map_or(String::new(), |rate| format!(", {rate} frames/s"));
+        let instructions = report::grouped(*instructions);
+        report::line(&format!("  a frame on {board} ({cpu}, emulated), {width}x{height}: {instructions} instructions{rate}"))?;
+    }
+    Ok(())
+}
