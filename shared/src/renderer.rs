@@ -176,7 +176,8 @@ impl<'a, C: Pixel> Renderer<'a, C> {
         Ok(())
     }
 
-    /// Turns 8x8 ordered dither on or off; at first it is on in formats that have a channel of at most three bits.
+    /// Turns 8x8 ordered dither on or off; at first it is on in formats that have a channel of at most four bits. Greys of so few bits are dithered
+    /// by the loops of methods, for few instructions more; without it they are drawn the general way, as all other formats are with it.
     pub fn set_dither(&mut self, dither: bool) {
         self.settings.dither = dither;
         self.scene.set_view_changed();

@@ -208,10 +208,10 @@ impl Pixel for White {
         self.0.into()
     }
 
-    fn ramped<const BITS: u32>(_: &[u8; RAMP], level: u32) -> Self {
+    fn entry<const BITS: u32>(_: &[u8; RAMP], level: u32) -> u8 {
         // No level is so far from what it should be that it wraps.
         assert!(i64::from(level >> BITS) < i64::from(BIAS) * 4);
-        Self(255)
+        255
     }
 
     fn rounded(_: Intensity) -> Self {

@@ -13,6 +13,7 @@ mod clipping;
 mod compare;
 mod convex;
 mod differences;
+mod dither;
 mod endurance;
 mod examples;
 mod faults;

@@ -51,17 +51,21 @@ impl Pixel for Fine {
         0
     }
 
-    fn ramped<const BITS: u32>(ramp: &[[u32; 3]; RAMP], level: u32) -> Self {
+    fn shown(levels: [u32; 3], _: u32) -> Self {
+        Self(Some(levels))
+    }
+
+    fn entry<const BITS: u32>(ramp: &[[u32; 3]; RAMP], level: u32) -> [u32; 3] {
         let walked = level << (WALK - BITS);
         // Between two entries of a table of colours: the level includes the half that rounds to the nearest.
         let exact = walked.saturating_sub(1 << (WALK - 1));
         let (entry, fraction) = ((exact >> WALK) as usize % RAMP, i64::from(exact & ((1 << WALK) - 1)));
         let (here, next) = (ramp[entry], ramp[(entry + 1).min(RAMP - 1)]);
         if here == ONE_CHANNEL {
-            return Self(Some([walked; 3]));
+            return [walked; 3];
         }
         let between = |k: usize| (i64::from(here[k]) + (((i64::from(next[k]) - i64::from(here[k])) * fraction) >> WALK)) as u32;
-        Self(Some([between(0), between(1), between(2)]))
+        [between(0), between(1), between(2)]
     }
 
     fn rounded(intensity: Intensity) -> Self {

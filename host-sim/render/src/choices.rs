@@ -250,8 +250,16 @@ impl<C: Pixel> Pixel for Traced<C> {
         self.pixel.bits()
     }
 
-    fn ramped<const BITS: u32>(ramp: &[C::Stored; RAMP], level: u32) -> Self {
-        Self::new(C::ramped::<BITS>(ramp, level))
+    fn tabled(channels: [u32; 3]) -> C::Stored {
+        C::tabled(channels)
+    }
+
+    fn shown(stored: C::Stored, threshold: u32) -> Self {
+        Self::new(C::shown(stored, threshold))
+    }
+
+    fn entry<const BITS: u32>(ramp: &[C::Stored; RAMP], level: u32) -> C::Stored {
+        C::entry::<BITS>(ramp, level)
     }
 
     fn rounded(intensity: Intensity) -> Self {

@@ -4,6 +4,7 @@
 //! walks edges.
 
 use crate::{Family, Verdict, random::Random};
+use embedded_graphics_core::{pixelcolor::Gray8, prelude::GrayColor};
 use microphong::{
     geometry::{
         cull::Extent,
@@ -113,7 +114,7 @@ pub fn draw(corners: Corners, band_rows: usize, counts: &mut [u8]) -> u32 {
     let mut drawn = 0;
     for top in (0..HEIGHT).step_by(band_rows) {
         let rows = band_rows.min(HEIGHT - top);
-        let mut pixels = vec![0u8; rows * WIDTH];
+        let mut pixels = vec![Gray8::BLACK; rows * WIDTH];
         let mut depth = vec![0u16; rows * WIDTH];
         let mut band = Band {
             pixels: &mut pixels,
@@ -128,9 +129,9 @@ pub fn draw(corners: Corners, band_rows: usize, counts: &mut [u8]) -> u32 {
         let screen = ScreenTriangle::new(corners, [0, WIDTH as i32], [top, top + rows].map(|row| row as i32));
         let visible = Bounds::new(&Extent::new(screen.corners)).clipped(Bounds::whole(WIDTH as i32, HEIGHT as i32)).sides();
         let Some(gradients) = Gradients::new(screen.corners, visible) else { return 0 };
-        drawn += screen.draw(&gradients, Constant, Solid(1), &mut band);
+        drawn += screen.draw(&gradients, Constant, Solid::<Gray8>(1), &mut band);
         for (count, pixel) in counts[top * WIDTH..].iter_mut().zip(&pixels) {
-            *count += pixel;
+            *count += pixel.luma();
         }
     }
     drawn

@@ -192,7 +192,7 @@ impl<'r, C: Pixel> Context<'r, C> {
             three_channels: reflectance.three_channels(),
             lights: if lighting.is_constant() { reflectance.lights() } else { 0 },
             local_viewer: lighting.is_directional() && !lighting.is_constant() && reflectance.lights() == 1,
-            by_canvas: output.by_threshold() || self.settings.antialiased(),
+            by_canvas: !output.suits_loops() || self.settings.antialiased(),
             perspective,
         };
         // In perspective, light is interpolated between columns that depend on where a row begins: rows are drawn whole.

@@ -12,7 +12,7 @@ use zerocopy::{FromBytes, Immutable, IntoBytes, KnownLayout};
 /// The colour of a pixel from diffuse light and a highlight.
 pub trait OneLight: Copy {
     /// The pixel that is stored.
-    type Pixel;
+    type Pixel: Pixel;
 
     /// Whether a level alone is a colour, so that light without a highlight can be fitted and walked as one level.
     const TABLED: bool;
@@ -20,8 +20,9 @@ pub trait OneLight: Copy {
     /// The diffuse level at cosine 1, Q9.7: the unit in which diffuse light is walked.
     fn diffuse(&self) -> u16;
 
-    /// The colour of a walked diffuse level, Q9.`BITS`, negative where there is no light, and an entry of the table of highlights.
-    fn colour<const BITS: u32>(&self, diffuse: i32, highlight: u32) -> Self::Pixel;
+    /// The colour of a walked diffuse level, Q9.`BITS`, negative where there is no light, and an entry of the table of highlights, with a
+    /// [`crate::pixel::dither::threshold`].
+    fn colour<const BITS: u32>(&self, diffuse: i32, highlight: u32, threshold: u32) -> Self::Pixel;
 
     /// Whether no diffuse level is above 255.
     #[inline(always)]
@@ -66,16 +67,21 @@ impl<C: Pixel> OneLight for OneLightRamp<'_, C> {
     }
 
     #[inline(always)]
-    fn colour<const BITS: u32>(&self, diffuse: i32, highlight: u32) -> C {
-        C::ramped::<BITS>(self.ramp, (diffuse.max(0) as u32).wrapping_add(highlight << (BITS - LEVEL)))
+    fn colour<const BITS: u32>(&self, diffuse: i32, highlight: u32, threshold: u32) -> C {
+        C::ramped::<BITS>(self.ramp, (diffuse.max(0) as u32).wrapping_add(highlight << (BITS - LEVEL)), threshold)
     }
 }
 
 impl<C: Pixel> OneLightRamp<'_, C> {
+    /// The colour where there is neither diffuse light nor a highlight.
+    pub fn unlit(&self) -> C::Stored {
+        C::entry::<LEVEL>(self.ramp, self.floor)
+    }
+
     /// [`OneLight::colour`] where there is no highlight.
     #[inline(always)]
-    pub fn without_highlight<const BITS: u32>(&self, diffuse: i32) -> C {
-        self.colour::<BITS>(diffuse, self.floor)
+    pub fn without_highlight<const BITS: u32>(&self, diffuse: i32, threshold: u32) -> C {
+        self.colour::<BITS>(diffuse, self.floor, threshold)
     }
 }
 
@@ -177,7 +183,7 @@ impl<C: Pixel> OneLight for OneLightRgb<'_, C> {
     }
 
     #[inline(always)]
-    fn colour<const BITS: u32>(&self, diffuse: i32, highlight: u32) -> C {
+    fn colour<const BITS: u32>(&self, diffuse: i32, highlight: u32, _: u32) -> C {
         let (Self([r, g, b], _), cosine, highlight) = (self, cosine::<BITS>(diffuse), highlight as i32);
         C::mixed([r.level(cosine, highlight), g.level(cosine, highlight), b.level(cosine, highlight)])
     }

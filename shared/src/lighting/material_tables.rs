@@ -54,14 +54,10 @@ pub fn fill_ramp<C: Pixel>(ramp: &mut [C::Stored; RAMP], reflectance: &Reflectan
     }
     for (i, stored) in ramp.iter_mut().enumerate() {
         let level = (i as i32 - BIAS).clamp(0, 255) as u32;
-        let mut channels = [0; 3];
-        for (channel, (base, depth)) in channels.iter_mut().zip(reflectance.base.into_iter().zip(C::DEPTH)) {
-            let step = 1 << (16 - depth);
+        *stored = C::tabled(zip(reflectance.base, C::DEPTH, |base, depth| {
             let scaled = level * u32::from(base);
-            let scaled = gamma.map_or(scaled, |gamma| gamma.encoded(scaled, depth));
-            *channel = ((scaled + step / 2) / step).min((1 << depth) - 1);
-        }
-        *stored = C::pack(channels).stored();
+            gamma.map_or(scaled, |gamma| gamma.encoded(scaled, depth))
+        }));
     }
 }
 
@@ -103,42 +99,42 @@ impl<'a, C: Pixel> MaterialTables<'a, C> {
     /// The colour under one light from `[N·L, N·H]` (Q2.30).
     #[inline(always)]
     #[must_use]
-    pub fn one_light(&self, cosines: [i32; 2]) -> C {
+    pub fn one_light(&self, cosines: [i32; 2]) -> C::Stored {
         if self.reflectance.three_channels() { self.one_light_mixed(cosines) } else { self.tint(self.reflectance.level(cosines)) }
     }
 
     /// [`Self::one_light`] in three channels.
     #[inline(never)]
-    fn one_light_mixed(self, [cosine, half]: [i32; 2]) -> C {
+    fn one_light_mixed(self, [cosine, half]: [i32; 2]) -> C::Stored {
         match self.reflectance.highlight(half) {
             0 if self.reflectance.has_ramp() => self.tint(self.reflectance.ramp_level(cosine)),
-            highlight => mixed(self.reflectance.reflection(cosine, highlight)),
+            highlight => mixed::<C>(self.reflectance.reflection(cosine, highlight)).stored(),
         }
     }
 
     /// The colour of three levels, Q9.7, rounded.
     #[inline(always)]
     #[must_use]
-    pub fn colour(&self, levels: [i32; 3]) -> C {
+    pub fn colour(&self, levels: [i32; 3]) -> C::Stored {
         if !self.reflectance.three_channels() {
             return self.tint(levels[0]);
         }
-        mixed(levels)
+        mixed::<C>(levels).stored()
     }
 
-    /// The colour of a level, Q9.7, of a material of one channel, rounded.
+    /// The colour of a level, Q9.7, of a material of one channel, as its table holds it.
     #[inline(always)]
     #[must_use]
-    pub fn tint(&self, level: i32) -> C {
-        C::ramped::<WALK>(self.ramp, Reflectance::biased(level) << (WALK - LEVEL))
+    pub fn tint(&self, level: i32) -> C::Stored {
+        C::entry::<WALK>(self.ramp, Reflectance::biased(level) << (WALK - LEVEL))
     }
 
-    /// The colour of an intensity, rounded.
+    /// The colour of an intensity, by the table of colours with a [`crate::pixel::dither::threshold`], or rounded.
     #[inline]
     #[must_use]
-    pub fn shown(&self, intensity: Intensity) -> C {
+    pub fn shown(&self, intensity: Intensity, threshold: u32) -> C {
         let [level, ..] = intensity;
-        if self.reflectance.three_channels() { C::rounded(intensity) } else { self.tint(level >> 1) }
+        if self.reflectance.three_channels() { C::rounded(intensity) } else { C::shown(self.tint(level >> 1), threshold) }
     }
 }
 
@@ -179,8 +175,8 @@ mod tests {
             fill_ramp::<Rgb565>(&mut ramp, &reflectance, None);
             let tables = MaterialTables::<Rgb565> { ramp: &ramp, reflectance: &reflectance };
             for cosine in (-4..=64).map(|c| c << (COSINE - 6)) {
-                let exact = tables.colour(reflectance.reflection(cosine, 0)).channels();
-                let tabled = tables.tint(reflectance.ramp_level(cosine)).channels();
+                let exact = Rgb565::from_stored(tables.colour(reflectance.reflection(cosine, 0))).channels();
+                let tabled = Rgb565::from_stored(tables.tint(reflectance.ramp_level(cosine))).channels();
                 let differences = zip(exact, tabled, u8::abs_diff);
                 prop_assert!(differences.into_iter().all(|difference| difference <= 1), "{cosine}: {exact:?} {tabled:?}");
             }

@@ -180,9 +180,9 @@ enum Colours<'a, C: Pixel> {
 
 /// The colour of diffuse light of this cosine, Q5.27, and a highlight.
 #[inline(always)]
-fn colour<T: OneLight>(colours: &T, cosine: i32, highlight: u32) -> T::Pixel {
+fn colour<T: OneLight>(colours: &T, cosine: i32, highlight: u32, threshold: u32) -> T::Pixel {
     // The cosine counts as one of Q2.30, so that the level has three bits less.
-    colours.colour::<17>(node(colours.diffuse(), cosine, 20), highlight)
+    colours.colour::<17>(node(colours.diffuse(), cosine, 20), highlight, threshold)
 }
 
 /// The values of [`Walked`].
@@ -192,13 +192,13 @@ impl<C: Pixel> PixelShader<Value> for DiffuseAndHighlight<'_, C> {
     type Pixel = C;
 
     #[inline(always)]
-    fn shade(&self, ([nn], (([vv], [nv]), ([nl], [lv]))): Value) -> C {
+    fn shade(&self, ([nn], (([vv], [nv]), ([nl], [lv]))): Value, threshold: u32) -> C {
         let (normal, view) = (self.lengths.rsqrt(nn) as i32, self.lengths.rsqrt(vv) as i32);
         let half = half(self.lengths, signed(nl), upper(signed(nv), view), upper(signed(lv), view));
         let (diffuse, highlight) = (upper(signed(nl), normal), self.lookup.at(upper(half << (COSINE - HALF), normal)));
         match self.colours {
-            Colours::Ramp(colours) => colour(&colours, diffuse, highlight),
-            Colours::Rgb(colours) => colour(&colours, diffuse, highlight),
+            Colours::Ramp(colours) => colour(&colours, diffuse, highlight, threshold),
+            Colours::Rgb(colours) => colour(&colours, diffuse, highlight, threshold),
         }
     }
 }

@@ -54,11 +54,11 @@ impl<T: OneLight, V, R: Fn(V) -> i32 + Copy, const EXACT: bool> PixelShader<(([u
     const CHEAP: bool = T::TABLED;
 
     #[inline(always)]
-    fn shade(&self, (([light], [half]), length): (([u32; 1], [u32; 1]), V)) -> T::Pixel {
+    fn shade(&self, (([light], [half]), length): (([u32; 1], [u32; 1]), V), threshold: u32) -> T::Pixel {
         let half_reciprocal = (self.half_reciprocal)(length);
         let diffuse = quotient::<EXACT>(self.colours.diffuse(), light, half_reciprocal);
         let highlight = self.lookup.at(upper(half as i32, half_reciprocal));
-        self.colours.colour::<PIXEL>(diffuse, highlight)
+        self.colours.colour::<PIXEL>(diffuse, highlight, threshold)
     }
 }
 
@@ -75,9 +75,9 @@ impl<C: Pixel, V, R: Fn(V) -> i32 + Copy, const EXACT: bool> PixelShader<([u32; 
     const CHEAP: bool = true;
 
     #[inline(always)]
-    fn shade(&self, ([light], length): ([u32; 1], V)) -> C {
+    fn shade(&self, ([light], length): ([u32; 1], V), threshold: u32) -> C {
         let diffuse = quotient::<EXACT>(self.colours.diffuse(), light, (self.half_reciprocal)(length));
-        self.colours.without_highlight::<PIXEL>(diffuse)
+        self.colours.without_highlight::<PIXEL>(diffuse, threshold)
     }
 }
 
@@ -88,7 +88,7 @@ impl<C: Pixel, V, R: Fn(V) -> i32 + Copy, const EXACT: bool> PixelShader<(Walked
     type Pixel = C;
 
     #[inline(always)]
-    fn shade(&self, ((one, two), length): (Walked<([u32; 1], [u32; 1])>, V)) -> C {
+    fn shade(&self, ((one, two), length): (Walked<([u32; 1], [u32; 1])>, V), _: u32) -> C {
         let half_reciprocal = (self.half_reciprocal)(length);
         let light = |([light], [half]): ([u32; 1], [u32; 1])| {
             let diffuse = quotient::<EXACT>(self.colours.diffuse(), light, half_reciprocal);
@@ -105,7 +105,7 @@ impl<C: Pixel, V, R: Fn(V) -> i32 + Copy, const EXACT: bool> PixelShader<((([u32
     type Pixel = C;
 
     #[inline(always)]
-    fn shade(&self, ((([light], [half]), [other]), length): ((([u32; 1], [u32; 1]), [u32; 1]), V)) -> C {
+    fn shade(&self, ((([light], [half]), [other]), length): ((([u32; 1], [u32; 1]), [u32; 1]), V), _: u32) -> C {
         let half_reciprocal = (self.half_reciprocal)(length);
         let diffuse = |light| quotient::<EXACT>(self.colours.diffuse(), light, half_reciprocal);
         let highlight = self.lookup.at(upper(half as i32, half_reciprocal));
@@ -120,7 +120,7 @@ impl<C: Pixel, V, R: Fn(V) -> i32 + Copy, const EXACT: bool> PixelShader<(Walked
     type Pixel = C;
 
     #[inline(always)]
-    fn shade(&self, (([one], [two]), length): (Walked<[u32; 1]>, V)) -> C {
+    fn shade(&self, (([one], [two]), length): (Walked<[u32; 1]>, V), _: u32) -> C {
         let half_reciprocal = (self.half_reciprocal)(length);
         let light = |light| (quotient::<EXACT>(self.colours.diffuse(), light, half_reciprocal), 0);
         self.colours.colour::<PIXEL>([light(one), light(two)])
@@ -237,7 +237,7 @@ fn draw_diffuse<const EXACT: bool, F: Field, C: Pixel>(
 ) -> u32 {
     if setup.leaves_out_light(tables.reflectance, towards) {
         setup.count(band.top, &mut band.counts.without_light, 1);
-        return setup.fill(|| Constant, Solid(colours.without_highlight::<PIXEL>(0)), band);
+        return setup.fill(|| Constant, Solid(colours.unlit()), band);
     }
     setup.count(band.top, &mut band.counts.without_highlight, 1);
     let patch = || diffuse_patch(setup, colours.diffuse(), towards, length);

@@ -286,8 +286,8 @@ impl<T: OneLight> PixelShader<([u32; 1], [u32; 1])> for DiffuseAndHighlight<'_, 
     const ID: u8 = 2;
 
     #[inline(always)]
-    fn shade(&self, ([light], [defect]): ([u32; 1], [u32; 1])) -> T::Pixel {
-        self.colours.colour::<WALK>(signed(light), self.lookup.at(signed(defect)))
+    fn shade(&self, ([light], [defect]): ([u32; 1], [u32; 1]), threshold: u32) -> T::Pixel {
+        self.colours.colour::<WALK>(signed(light), self.lookup.at(signed(defect)), threshold)
     }
 }
 
@@ -296,7 +296,7 @@ impl<C: Pixel> PixelShader<(([u32; 1], [u32; 1]), ([u32; 1], [u32; 1]))> for Dif
     type Pixel = C;
 
     #[inline(always)]
-    fn shade(&self, (one, two): (([u32; 1], [u32; 1]), ([u32; 1], [u32; 1]))) -> C {
+    fn shade(&self, (one, two): (([u32; 1], [u32; 1]), ([u32; 1], [u32; 1])), _: u32) -> C {
         let light = |([light], [defect]): ([u32; 1], [u32; 1])| (signed(light), self.lookup.at(signed(defect)));
         self.colours.colour::<WALK>([light(one), light(two)])
     }
@@ -307,7 +307,7 @@ impl<C: Pixel> PixelShader<(([u32; 1], [u32; 1]), [u32; 1])> for DiffuseAndHighl
     type Pixel = C;
 
     #[inline(always)]
-    fn shade(&self, (([light], [defect]), [other]): (([u32; 1], [u32; 1]), [u32; 1])) -> C {
+    fn shade(&self, (([light], [defect]), [other]): (([u32; 1], [u32; 1]), [u32; 1]), _: u32) -> C {
         self.colours.colour::<WALK>([(signed(light), self.lookup.at(signed(defect))), (signed(other), 0)])
     }
 }
@@ -324,8 +324,8 @@ impl<C: Pixel> PixelShader<[u32; 1]> for DiffuseOnly<OneLightRamp<'_, C>> {
     const ID: u8 = 1;
 
     #[inline(always)]
-    fn shade(&self, [light]: [u32; 1]) -> C {
-        self.0.without_highlight::<WALK>(signed(light))
+    fn shade(&self, [light]: [u32; 1], threshold: u32) -> C {
+        self.0.without_highlight::<WALK>(signed(light), threshold)
     }
 }
 
@@ -334,7 +334,7 @@ impl<C: Pixel> PixelShader<([u32; 1], [u32; 1])> for DiffuseOnly<TwoLightsRgb<'_
     type Pixel = C;
 
     #[inline(always)]
-    fn shade(&self, ([one], [two]): ([u32; 1], [u32; 1])) -> C {
+    fn shade(&self, ([one], [two]): ([u32; 1], [u32; 1]), _: u32) -> C {
         self.0.colour::<WALK>([(signed(one), 0), (signed(two), 0)])
     }
 }

@@ -8,6 +8,7 @@ pub mod gamma;
 use crate::{
     arch::SATURATES,
     format::{CHANNEL, Intensity, RAMP},
+    pixel::dither::{HALF, quantise},
 };
 use core::hint::black_box;
 use embedded_graphics_core::{
@@ -34,7 +35,9 @@ pub trait Pixel: Copy + 'static {
         r < 8 && g < 8 && b < 8
     };
     /// Whether steps between levels are so wide that a picture needs dither.
-    const DITHERED: bool = Self::DEPTH[2] <= 3;
+    const DITHERED: bool = Self::DEPTH[2] <= 4;
+    /// Whether tables of colours hold finer steps than pixels have, so that loops dither what they take from there.
+    const DITHERED_BY_TABLE: bool = Self::GRAY && Self::DITHERED;
     /// Bytes that a pixel adds to the picture's checksum.
     const BYTES: usize;
 
@@ -46,6 +49,18 @@ pub trait Pixel: Copy + 'static {
 
     /// The pixel from its stored form.
     fn from_stored(stored: Self::Stored) -> Self;
+
+    /// What tables of colours store of channels in unsigned Q8.8 that are scaled to [`Self::DEPTH`]: a pixel, rounded, or something finer where
+    /// they are [`Self::DITHERED_BY_TABLE`].
+    fn tabled(channels: [u32; 3]) -> Self::Stored {
+        Self::pack(quantise(channels, Self::DEPTH, HALF).map(u32::from)).stored()
+    }
+
+    /// The pixel of what a table of colours holds, with a [`dither::threshold`] where they are [`Self::DITHERED_BY_TABLE`].
+    #[inline(always)]
+    fn shown(stored: Self::Stored, _threshold: u32) -> Self {
+        Self::from_stored(stored)
+    }
 
     /// The pixel twice. Formats of half a word take both from one word, which some processors then store at once.
     #[inline(always)]
@@ -59,10 +74,16 @@ pub trait Pixel: Copy + 'static {
     /// The value that the display is sent, independent of byte order in memory.
     fn bits(self) -> u32;
 
-    /// The colour of a level under a table of colours. Levels are biased and have `BITS` fraction bits, rounding half included.
+    /// What a table of colours holds for a level. Levels are biased and have `BITS` fraction bits, rounding half included.
     #[inline(always)]
-    fn ramped<const BITS: u32>(ramp: &[Self::Stored; RAMP], level: u32) -> Self {
-        Self::from_stored(ramp[(level >> BITS) as usize % RAMP])
+    fn entry<const BITS: u32>(ramp: &[Self::Stored; RAMP], level: u32) -> Self::Stored {
+        ramp[(level >> BITS) as usize % RAMP]
+    }
+
+    /// The colour of a level, see [`Self::entry`], with a [`dither::threshold`].
+    #[inline(always)]
+    fn ramped<const BITS: u32>(ramp: &[Self::Stored; RAMP], level: u32, threshold: u32) -> Self {
+        Self::shown(Self::entry::<BITS>(ramp, level), threshold)
     }
 
     /// The colour of an intensity of three channels, rounded.
@@ -195,6 +216,19 @@ macro_rules! gray {
             const GRAY: bool = true;
             const DEPTH: [u32; 3] = [$depth; 3];
             const BYTES: usize = 1;
+
+            fn tabled([luma, ..]: [u32; 3]) -> u8 {
+                if Self::DITHERED_BY_TABLE { dither::finer(luma) } else { quantise([luma; 3], Self::DEPTH, HALF)[0] }
+            }
+
+            #[inline(always)]
+            fn shown(stored: u8, threshold: u32) -> Self {
+                if Self::DITHERED_BY_TABLE {
+                    Self::pack([dither::coarser(stored, $depth, threshold); 3])
+                } else {
+                    Self::from_stored(stored)
+                }
+            }
 
             #[inline(always)]
             fn pack([luma, ..]: [u32; 3]) -> Self {

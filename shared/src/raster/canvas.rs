@@ -2,7 +2,7 @@
 //!
 //! A [`SpanShader`] shades a row of pixels in [`Intensity`], which knows nothing of pixel formats; a [`Canvas`] tests depth, turns
 //! intensities into colours and stores them, and knows nothing of methods. So each method and each pixel format is compiled once, and not
-//! each pair. Whatever a method has no loop for (see [`crate::method`]) is drawn this way: many lights, near lights, dither, antialiasing,
+//! each pair. Whatever a method has no loop for (see [`crate::method`]) is drawn this way: many lights, near lights, dither but that of few greys, antialiasing,
 //! interpolation in perspective.
 //!
 //! Cost: several times that of a method's loop for a method of few instructions a pixel, little more for one of a hundred.
@@ -215,7 +215,8 @@ impl<C: Pixel> SpanTarget for Row<'_, C> {
         } else if tables.reflectance.three_channels() {
             put_each(pixels, visible, intensities, |_, intensity| C::rounded(intensity));
         } else {
-            put_each(pixels, visible, intensities, |_, [level, ..]| tables.tint(level >> 1));
+            let colour = |k, [level, ..]: Intensity| C::shown(tables.tint(level >> 1), output.threshold(column.wrapping_add(k), row));
+            put_each(pixels, visible, intensities, colour);
         }
     }
 }

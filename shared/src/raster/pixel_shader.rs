@@ -9,7 +9,7 @@ use core::marker::PhantomData;
 /// Turns the value at one pixel into its colour.
 pub trait PixelShader<V>: Copy {
     /// The pixel that is stored.
-    type Pixel;
+    type Pixel: Pixel;
 
     /// Whether the shader has so few instructions that a loop without depth test is worth its code.
     const CHEAP: bool = false;
@@ -17,22 +17,30 @@ pub trait PixelShader<V>: Copy {
     /// Number of the shader among those of its method, which is saved with an active triangle.
     const ID: u8 = 0;
 
-    /// The colour of a value.
-    fn shade(&self, value: V) -> Self::Pixel;
+    /// The colour of a value, with a [`crate::pixel::dither::threshold`].
+    fn shade(&self, value: V, threshold: u32) -> Self::Pixel;
 }
 
-/// One colour for all pixels.
-#[derive(Clone, Copy, Debug)]
-pub struct Solid<C>(pub C);
+/// One colour for all pixels, as tables of colours hold it.
+#[derive(Debug)]
+pub struct Solid<C: Pixel>(pub C::Stored);
 
-impl<C: Copy> PixelShader<()> for Solid<C> {
+impl<C: Pixel> Clone for Solid<C> {
+    fn clone(&self) -> Self {
+        *self
+    }
+}
+
+impl<C: Pixel> Copy for Solid<C> {}
+
+impl<C: Pixel> PixelShader<()> for Solid<C> {
     type Pixel = C;
 
     const CHEAP: bool = true;
 
     #[inline(always)]
-    fn shade(&self, (): ()) -> C {
-        self.0
+    fn shade(&self, (): (), threshold: u32) -> C {
+        C::shown(self.0, threshold)
     }
 }
 
@@ -54,8 +62,8 @@ impl<C: Pixel> PixelShader<[u32; 1]> for Ramp<'_, C> {
     const CHEAP: bool = true;
 
     #[inline(always)]
-    fn shade(&self, [level]: [u32; 1]) -> C {
-        C::ramped::<WALK>(self.0, level)
+    fn shade(&self, [level]: [u32; 1], threshold: u32) -> C {
+        C::ramped::<WALK>(self.0, level, threshold)
     }
 }
 
@@ -68,7 +76,7 @@ impl<C: Pixel> PixelShader<[u32; 3]> for Rgb<C> {
     type Pixel = C;
 
     #[inline(always)]
-    fn shade(&self, levels: [u32; 3]) -> C {
+    fn shade(&self, levels: [u32; 3], _: u32) -> C {
         let [r, g, b] = levels;
         C::mixed([r as i32, g as i32, b as i32])
     }
