@@ -140,7 +140,7 @@ impl Layout {
             + padded(self.triangles * size_of::<Entry>())
             + padded(self.active_triangles * size_of::<ActiveTriangle>())
             + padded(self.objects * size_of::<Placement>())
-            + padded(self.objects * size_of::<u16>())
+            + padded(self.objects * size_of::<u32>())
             + padded(self.objects * size_of::<Object>())
             + padded(self.materials * size_of::<SceneMaterial>())
             + padded(self.materials * size_of::<Reflectance>())
@@ -175,7 +175,7 @@ pub(crate) struct Memory<'a, C: Pixel> {
     /// Objects in the latest frame.
     pub(crate) placements: &'a mut [Placement],
     /// Their indices, in the order in which they are drawn.
-    pub(crate) order: &'a mut [u16],
+    pub(crate) order: &'a mut [u32],
     /// One for each material, as in `ramps`, the tables of colours.
     pub(crate) reflectances: &'a mut [Reflectance],
     pub(crate) ramps: &'a mut [[C::Stored; RAMP]],

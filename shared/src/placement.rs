@@ -109,20 +109,20 @@ pub(crate) struct Placements<'r> {
     /// In the order of the scene.
     placements: &'r [Placement],
     /// Indices of all.
-    order: &'r [u16],
+    order: &'r [u32],
 }
 
 impl<'r> Placements<'r> {
     /// Those of `scene`, in memory where there may be room for more.
-    pub(crate) fn new(scene: &Scene<'_>, placements: &'r [Placement], order: &'r [u16]) -> Self {
+    pub(crate) fn new(scene: &Scene<'_>, placements: &'r [Placement], order: &'r [u32]) -> Self {
         let count = scene.objects().len();
         Self { placements: placements.get(..count).unwrap_or_default(), order: order.get(..count).unwrap_or_default() }
     }
 
     /// Puts indices in the order of the depth of what they lead to; those that are equally near in the order of the scene. Returns whether
     /// they were in another order.
-    pub(crate) fn sort(placements: &[Placement], order: &mut [u16]) -> bool {
-        let key = |index: u16| (placements.get(usize::from(index)).map_or(i32::MAX, Placement::depth), index);
+    pub(crate) fn sort(placements: &[Placement], order: &mut [u32]) -> bool {
+        let key = |index: u32| (placements.get(index as usize).map_or(i32::MAX, Placement::depth), index);
         let (order, mut has_changed) = (Cell::from_mut(order).as_slice_of_cells(), false);
         // Few change places from one frame to the next.
         for end in 1..order.len() {
@@ -146,12 +146,12 @@ impl<'r> Placements<'r> {
     /// The object that has triangle `id` of the frame.
     pub(crate) fn with_triangle(self, scene: &'r Scene<'_>, id: u32) -> Option<(&'r Placement, &'r Object)> {
         // They follow one another without a gap: it is the last one that does not start behind the triangle.
-        let starts = |&index: &u16| self.placements.get(usize::from(index)).is_some_and(|placement| placement.first_triangle <= id);
+        let starts = |&index: &u32| self.placements.get(index as usize).is_some_and(|placement| placement.first_triangle <= id);
         self.object(scene, *self.order.get(self.order.partition_point(starts).wrapping_sub(1))?)
     }
 
-    fn object(self, scene: &'r Scene<'_>, index: u16) -> Option<(&'r Placement, &'r Object)> {
-        Some((self.placements.get(usize::from(index))?, scene.objects().get(usize::from(index))?))
+    fn object(self, scene: &'r Scene<'_>, index: u32) -> Option<(&'r Placement, &'r Object)> {
+        Some((self.placements.get(index as usize)?, scene.objects().get(index as usize)?))
     }
 
     /// Triangles of the levels that are drawn.

@@ -309,7 +309,7 @@ impl<'a, C: Pixel> Renderer<'a, C> {
         }
         *rearranged |= Placements::sort(placements, order) | scene.rearranged;
         let (mut triangles, mut vertices) = (0, 0);
-        for index in order.iter().copied().map(usize::from) {
+        for index in order.iter().map(|&index| index as usize) {
             let (Some(placement), Some(object)) = (placements.get_mut(index), scene.objects().get(index)) else { continue };
             (placement.first_triangle, placement.first_vertex) = (triangles, vertices);
             (triangles, vertices) = (triangles.wrapping_add(object.span), vertices.wrapping_add(object.vertices));

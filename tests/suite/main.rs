@@ -14,6 +14,7 @@ mod compare;
 mod convex;
 mod differences;
 mod dither;
+mod documents;
 mod endurance;
 mod examples;
 mod faults;
