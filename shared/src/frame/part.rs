@@ -237,7 +237,7 @@ fn leave_out<C: Pixel>(placed: &PlacedMesh<'_>, entry: Entry, walk: &mut Walk<'_
         if cfg!(feature = "skips") {
             band.counts.hidden += 1;
         }
-        // Where it is seen again, the band above has not saved it.
+        // What the band above has saved of it stands on the first row of this band: no later band may go on from there.
         let _ = band.active.take(entry.key());
         next = walk.next();
     }

@@ -396,23 +396,32 @@ pub const PLANES: usize = 5;
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::stream::record::ORTHOGRAPHIC;
+    use crate::stream::record::{ORTHOGRAPHIC, VIEWER_INFINITE};
+
+    /// It stands at the origin of the world and looks along -z.
+    const CAMERA: Camera = Camera {
+        rotation: [[1 << ROTATION, 0, 0], [0, 1 << ROTATION, 0], [0, 0, -1 << ROTATION]],
+        translation: [0; 3],
+        axis: [0, 1 << ROTATION, 0],
+        period: 0,
+        projection: PERSPECTIVE,
+        viewer: VIEWER_INFINITE,
+        focal: 1 << 16,
+        near: 1 << 12,
+        far: 1 << 15,
+    };
 
     /// The eye is the point that goes to the origin, the direction towards the viewer the one that goes to -z.
     #[test]
     fn viewer_inverts_the_way_to_eye_space() {
         for number in 0..50 {
-            let one = 1 << ROTATION;
             let mut camera = Camera {
-                rotation: [[one, 0, 0], [0, one, 0], [0, 0, -one]],
                 translation: [3_000 - 977 * number, 12_345, 50_000 + 4_001 * number],
                 axis: [619_925_131, 619_925_131, 619_925_131],
                 period: 50,
-                projection: PERSPECTIVE,
-                viewer: crate::stream::record::VIEWER_INFINITE,
                 focal: 1 << 17,
-                near: 1 << 12,
                 far: 1 << 18,
+                ..CAMERA
             };
             let pose = ModelView::new(&camera, number as u32);
             let exact = |view: &View, last: f64| {
@@ -433,18 +442,7 @@ mod tests {
     /// Between vertices beyond the far plane of parallel rays, a depth that rounding makes less than theirs is still none, and not the nearest.
     #[test]
     fn depth_beyond_the_far_plane_cannot_wrap() {
-        let one = 1 << ROTATION;
-        let camera = Camera {
-            rotation: [[one, 0, 0], [0, one, 0], [0, 0, -one]],
-            translation: [0; 3],
-            axis: [0, one, 0],
-            period: 0,
-            projection: ORTHOGRAPHIC,
-            viewer: crate::stream::record::VIEWER_INFINITE,
-            focal: 1 << 16,
-            near: 1 << 12,
-            far: 1 << 15,
-        };
+        let camera = Camera { projection: ORTHOGRAPHIC, ..CAMERA };
         let view = View::new(&camera, &ModelView::new(&camera, 0), Size::new(64, 64));
         for z in [1 << 15, 1 << 16, 1 << 20] {
             let ([.., depth], _) = view.project([0, 0, z]);
@@ -457,20 +455,9 @@ mod tests {
     /// Screen coordinates are right to 1/16 pixel wherever the near plane lies.
     #[test]
     fn projection_keeps_its_precision() {
-        let one = 1 << ROTATION;
         for near in [1 << 8, 1 << 12, 3 << 13, 5 << 14] {
             for focal in [1u32 << 12, 1 << 16, 140_000, 16 << 16] {
-                let camera = Camera {
-                    rotation: [[one, 0, 0], [0, one, 0], [0, 0, -one]],
-                    translation: [0; 3],
-                    axis: [0, one, 0],
-                    period: 0,
-                    projection: PERSPECTIVE,
-                    viewer: crate::stream::record::VIEWER_INFINITE,
-                    focal,
-                    near,
-                    far: 0,
-                };
+                let camera = Camera { focal, near, far: 0, ..CAMERA };
                 let view = View::new(&camera, &ModelView::new(&camera, 0), Size::new(640, 480));
                 for k in 0..2_000i32 {
                     let eye = [

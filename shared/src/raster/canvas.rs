@@ -2,8 +2,8 @@
 //!
 //! A [`SpanShader`] shades a row of pixels in [`Intensity`], which knows nothing of pixel formats; a [`Canvas`] tests depth, turns
 //! intensities into colours and stores them, and knows nothing of methods. So each method and each pixel format is compiled once, and not
-//! each pair. Whatever a method has no loop for (see [`crate::method`]) is drawn this way: many lights, near lights, dither but that of few greys, antialiasing,
-//! interpolation in perspective.
+//! each pair. Whatever a method has no loop for (see [`crate::method`]) is drawn this way: many lights, near lights, antialiasing,
+//! interpolation in perspective, and dither but that of a few greys.
 //!
 //! Cost: several times that of a method's loop for a method of few instructions a pixel, little more for one of a hundred.
 
