@@ -2,13 +2,12 @@
 
 use crate::{
     format::GeometricError,
-    geometry::{area::Area, cull::Facing, detail::tolerance, model_view::ModelView, projection::View},
+    geometry::{area::Area, cull::Facing, detail::tolerance, lens::Lens, model_view::ModelView, projection::View},
     lighting::lights::{Directions, Lighting},
     scene::{Object, Scene},
     stream::record::Mesh,
 };
 use core::cell::Cell;
-use embedded_graphics_core::geometry::Size;
 use zerocopy::{FromBytes, Immutable, IntoBytes, KnownLayout};
 
 /// An object in one frame, in memory of the renderer.
@@ -30,16 +29,16 @@ pub(crate) struct Placement {
     tolerance: u16,
     /// No pixel of it is nearer, in the format of the depth buffer.
     pub(crate) nearest: u16,
-    /// For alignment.
-    reserved: [u16; 2],
+    /// The depth of its origin, by which objects are drawn; where it is out of sight, it is the last.
+    depth: i32,
     /// Triangles of it that the frame has, at the levels that are drawn.
     pub(crate) drawn: u32,
 }
 
 /// How objects are placed.
 pub(crate) struct Placing {
-    /// Of the viewport.
-    pub(crate) size: Size,
+    /// Of the camera on the viewport.
+    pub(crate) lens: Lens,
     /// Whether coarser levels of meshes are drawn.
     pub(crate) levels_of_detail: bool,
     pub(crate) leaves_out_back_faces: bool,
@@ -52,32 +51,27 @@ pub(crate) struct Placing {
 impl Placement {
     /// Places `object` of a scene.
     pub(crate) fn update(&mut self, scene: &Scene<'_>, object: &Object, how: &Placing) {
-        (self.area, self.triangles) = (Area::NONE, 0);
+        (self.area, self.triangles, self.depth) = (Area::NONE, 0, i32::MAX);
         if !object.is_visible() {
             return;
         }
         let model_view = how.world.of(&object.pose);
-        self.view = View::new(&scene.camera, &model_view, how.size);
-        (self.area, self.nearest) = self.view.reached(object.radius, how.size);
+        self.view = View::new(&how.lens, &model_view);
+        (self.area, self.nearest) = self.view.reached(object.radius);
         if self.area.is_empty() {
             return;
         }
-        self.facing = if how.leaves_out_back_faces { Facing::new(&self.view, object.radius) } else { Facing::ANY };
+        [.., self.depth] = self.view.origin();
+        self.facing = if how.leaves_out_back_faces { Facing::new(&self.view, &model_view, object.radius) } else { Facing::ANY };
         self.lighting.place(&scene.camera, scene.lights(), &how.directions, &model_view);
         let has_levels = object.has_levels != 0 && how.levels_of_detail;
-        let tolerance = if has_levels { self.tolerance(scene, object, how.size) } else { GeometricError::ZERO };
+        let tolerance = if has_levels { self.tolerance(scene, object) } else { GeometricError::ZERO };
         self.tolerance = tolerance.to_bits();
         self.triangles = if tolerance == GeometricError::ZERO {
             object.triangles
         } else {
             scene.stream.levels_within(object.meshes(), tolerance).fold(0, |sum, mesh| sum + mesh.triangles)
         };
-    }
-
-    /// The depth of the object's origin; where it is out of sight, it is drawn last.
-    pub(crate) fn depth(&self) -> i32 {
-        let [.., depth] = self.view.origin();
-        if self.area.is_empty() { i32::MAX } else { depth }
     }
 
     /// The frame has it if it reaches into `area`. Returns whether more or fewer triangles of it are drawn than before.
@@ -88,10 +82,10 @@ impl Placement {
     }
 
     /// How far coarser levels may lie from the meshes of `object`.
-    fn tolerance(&self, scene: &Scene<'_>, object: &Object, size: Size) -> GeometricError {
+    fn tolerance(&self, scene: &Scene<'_>, object: &Object) -> GeometricError {
         let ([.., depth], scale) = (self.view.origin(), u64::from(self.view.scale()));
         let radius = ((u64::from(object.radius) * scale + 0xFFFF) >> 16) as u32;
-        let error = tolerance(&scene.camera, depth, radius, size).to_bits();
+        let error = tolerance(&scene.camera, depth, radius, self.view.lens.size()).to_bits();
         GeometricError::from_bits(self.view.least_in_object_units(error.into()).min(u16::MAX.into()) as u16)
     }
 
@@ -122,7 +116,7 @@ impl<'r> Placements<'r> {
     /// Puts indices in the order of the depth of what they lead to; those that are equally near in the order of the scene. Returns whether
     /// they were in another order.
     pub(crate) fn sort(placements: &[Placement], order: &mut [u32]) -> bool {
-        let key = |index: u32| (placements.get(index as usize).map_or(i32::MAX, Placement::depth), index);
+        let key = |index: u32| (placements.get(index as usize).map_or(i32::MAX, |placement| placement.depth), index);
         let (order, mut has_changed) = (Cell::from_mut(order).as_slice_of_cells(), false);
         // Few change places from one frame to the next.
         for end in 1..order.len() {

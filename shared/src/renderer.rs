@@ -5,7 +5,7 @@ use crate::{
     error::{MAX_SIDE, RenderError},
     format::{ErrorBudget, LARGEST_BUDGET, LEAST_BUDGET, LEVEL, MAX_LIGHTS},
     frame::{Frame, Preparation, Seams, Settings},
-    geometry::{area::Area, model_view::ModelView},
+    geometry::{area::Area, lens::Lens, model_view::ModelView},
     lighting::{lights::Directions, material_tables::fill_ramp},
     memory::{Layout, Memory},
     method::Facts,
@@ -284,7 +284,7 @@ impl<'a, C: Pixel> Renderer<'a, C> {
         let Self { settings, scene, memory, rearranged, .. } = self;
         let world = ModelView::new(scene.camera(), scene.place);
         let how = Placing {
-            size: settings.size,
+            lens: Lens::new(scene.camera(), settings.size),
             levels_of_detail: settings.levels_of_detail,
             leaves_out_back_faces: settings.skips().back_faces,
             directions: Directions::new(scene.lights(), &world),

@@ -15,7 +15,7 @@ use embedded_graphics::{
 };
 use microphong::{
     Stream,
-    geometry::{model_view::ModelView, projection::View},
+    geometry::{lens::Lens, model_view::ModelView, projection::View},
     scene::ORBIT_ERROR,
     stream::{
         record::{Header, PERSPECTIVE, Vertex},
@@ -95,13 +95,13 @@ impl<'s> Frame<'s> {
 
         let pixels = vec![Seen::default(); (size.width * size.height) as usize];
         let mut frame = Self { stream, size, number, in_perspective: in_perspective && stream.is_perspective(), rotation, pixels };
-        let view = View::new(camera, &pose, size);
+        let view = View::new(&Lens::new(camera, size), &pose);
         for mesh in stream.meshes {
             let vertices = stream.vertices_of(mesh).expect("a valid stream");
             for triangle in stream.triangles_of(mesh).expect("a valid stream") {
                 let vertices = triangle.corners.map(|corner| vertices[usize::from(corner)]);
                 let corners = vertices.map(|vertex| {
-                    let (corner, inside) = view.project(view.to_eye(vertex.position));
+                    let (corner, inside) = view.lens.project(view.to_eye(vertex.position));
                     assert!(inside, "the scenes are wholly visible");
                     frame.check(corner, &vertex);
                     corner

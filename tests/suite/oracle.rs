@@ -8,7 +8,7 @@ use embedded_graphics::{
     prelude::{RgbColor, Size},
 };
 use microphong::{
-    geometry::{model_view::ModelView, projection::View},
+    geometry::{lens::Lens, model_view::ModelView, projection::View},
     stream::record::Triangle,
 };
 use microphong_sim::{render, scene, shader::Shader};
@@ -28,14 +28,14 @@ fn errors(name: &str, shader: Shader, number: u32) -> (f64, f64, usize) {
     let size = Size::new(scene.size.0, scene.size.1);
     let (pixels, _) = render::frame::<Rgb888>(stream, size, shader, 16, number).unwrap();
     let pose = ModelView::new(&stream.header.camera, number);
-    let view = View::new(&stream.header.camera, &pose, size);
+    let view = View::new(&Lens::new(&stream.header.camera, size), &pose);
     let rotation = pose.rotation.map(|row| real(row, 30));
     // The nearest triangle at each pixel, by its depth there.
     let mut nearest = vec![(0.0, [0.0; 3]); pixels.len()];
     for mesh in stream.meshes {
         for triangle in stream.triangles_of(mesh).unwrap() {
             let vertices = Triangle::clone(triangle).corners.map(|c| stream.vertices[mesh.first_vertex as usize + usize::from(c)]);
-            let screen = vertices.map(|v| view.project(view.to_eye(v.position)).0.map(f64::from));
+            let screen = vertices.map(|v| view.lens.project(view.to_eye(v.position)).0.map(f64::from));
             let side = |a: V3, b: V3, p: V3| (b[0] - a[0]) * (p[1] - a[1]) - (b[1] - a[1]) * (p[0] - a[0]);
             let [a, b, c] = screen;
             let area = side(a, b, c);

@@ -80,7 +80,7 @@ fn closed_convex_meshes_cover_each_pixel_once() {
 #[test]
 fn closed_meshes_are_entered_as_often_as_left() {
     use embedded_graphics::prelude::Size;
-    use microphong::geometry::{model_view::ModelView, projection::View};
+    use microphong::geometry::{lens::Lens, model_view::ModelView, projection::View};
     use microphong_sim::scene;
 
     for name in ["torus", "sphere-690", "peer-sphere", "sphere-40", "dodecahedron"] {
@@ -88,14 +88,14 @@ fn closed_meshes_are_entered_as_often_as_left() {
         let stream = scene.stream.parse().unwrap();
         for number in [0, 11, 50, 93] {
             let camera = &stream.header.camera;
-            let view = View::new(camera, &ModelView::new(camera, number), Size::new(WIDTH as u32, HEIGHT as u32));
+            let view = View::new(&Lens::new(camera, Size::new(WIDTH as u32, HEIGHT as u32)), &ModelView::new(camera, number));
             let [mut front, mut back] = [0; 2].map(|_| vec![0u8; WIDTH * HEIGHT]);
             let mut pixels = 0;
             for mesh in stream.meshes {
                 let vertices = stream.vertices_of(mesh).unwrap();
                 for triangle in stream.triangles_of(mesh).unwrap() {
                     let corners = triangle.corners.map(|corner| {
-                        let ([x, y, _], inside) = view.project(view.to_eye(vertices[usize::from(corner)].position));
+                        let ([x, y, _], inside) = view.lens.project(view.to_eye(vertices[usize::from(corner)].position));
                         assert!(inside, "{name}: the scenes are wholly visible");
                         [x, y]
                     });

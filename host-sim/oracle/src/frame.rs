@@ -5,7 +5,7 @@ use embedded_graphics_core::geometry::Size;
 use microphong::{
     Stream,
     format::{DEPTH, Gain, ROTATION, SUBPIXEL, UNIT},
-    geometry::{model_view::ModelView, projection::View},
+    geometry::{lens::Lens, model_view::ModelView, projection::View},
     stream::{
         record,
         record::{DIRECTIONAL, EYE_SPACE, PERSPECTIVE, VIEWER_LOCAL},
@@ -77,7 +77,7 @@ impl Frame {
     pub fn new(stream: Stream<'_>, size: (u32, u32), number: u32) -> Self {
         let camera = &stream.header.camera;
         let pose = ModelView::new(camera, number);
-        let view = View::new(camera, &pose, Size::new(size.0, size.1));
+        let view = View::new(&Lens::new(camera, Size::new(size.0, size.1)), &pose);
         let [right, up, away] = pose.rotation.map(|row| real(row, ROTATION));
         let to_object = |v: V3| add(add(scale(right, v[0]), scale(up, v[1])), scale(away, v[2]));
         let translation = real(pose.translation, UNIT);
@@ -146,7 +146,7 @@ fn facet(stream: Stream<'_>, mesh: &record::Mesh, triangle: &record::Triangle, i
     let mut places = [[0; 3]; 3];
     for k in 0..3 {
         corners[k] = *stream.vertices.get(vertices[k])?;
-        let (place, inside) = view.project(view.to_eye(corners[k].position));
+        let (place, inside) = view.lens.project(view.to_eye(corners[k].position));
         places[k] = inside.then_some(place)?;
     }
     let [p, q, r] = places.map(|[x, y, _]| [i64::from(x), i64::from(y)]);

@@ -15,7 +15,7 @@ use crate::{
 use anyhow::Result;
 use microphong::{
     format::{GeometricError, Length, SUBPIXEL},
-    geometry::{model_view::ModelView, projection::View},
+    geometry::{lens::Lens, model_view::ModelView, projection::View},
     stream::record::{Camera, DIRECTIONAL, Header, Light, Mesh as Record, POINT, Triangle, VIEWER_INFINITE, VIEWER_LOCAL},
 };
 use microphong_render::{
@@ -171,7 +171,8 @@ impl Work {
     pub fn of(case: &Case) -> Option<Self> {
         let stream = case.stream.parse().ok()?;
         let [width, height] = case.size.map(u64::from);
-        let view = View::new(&stream.header.camera, &ModelView::new(&stream.header.camera, case.frame), case.pixels());
+        let camera = &stream.header.camera;
+        let view = View::new(&Lens::new(camera, case.pixels()), &ModelView::new(camera, case.frame));
         let is_local = stream.header.camera.viewer == VIEWER_LOCAL;
         let near = stream.lights.iter().filter(|light| is_local || light.kind == POINT).count();
         let mut work = Self {
@@ -188,7 +189,7 @@ impl Work {
         for mesh in levels::drawn(&stream, case.pixels()) {
             let vertices = stream.vertices_of(mesh)?;
             for triangle in stream.triangles_of(mesh)? {
-                let places = triangle.corners.map(|corner| view.project(view.to_eye(vertices[usize::from(corner)].position)));
+                let places = triangle.corners.map(|corner| view.lens.project(view.to_eye(vertices[usize::from(corner)].position)));
                 let is_whole = places.iter().all(|&(_, within)| within);
                 let (parts, rows, pixels) = if is_whole {
                     let (rows, pixels) = touched(places.map(|([x, y, _], _)| [x, y]), [width, height]);

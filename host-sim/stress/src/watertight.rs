@@ -17,7 +17,7 @@ use embedded_graphics_core::{
 };
 use microphong::{
     Stream,
-    geometry::{model_view::ModelView, projection::View},
+    geometry::{lens::Lens, model_view::ModelView, projection::View},
     stream::{
         record::{Header, Material, Mesh},
         seal,
@@ -113,11 +113,11 @@ pub fn judge(case: &Case) -> Option<Found> {
 #[must_use]
 pub fn covered(stream: &Stream<'_>, size: [u32; 2], number: u32) -> Option<Vec<u8>> {
     let camera = &stream.header.camera;
-    let view = View::new(camera, &ModelView::new(camera, number), Size::new(size[0], size[1]));
+    let view = View::new(&Lens::new(camera, Size::new(size[0], size[1])), &ModelView::new(camera, number));
     let mut counts = vec![0u8; (size[0] * size[1]) as usize];
     for mesh in levels::drawn(stream, Size::new(size[0], size[1])) {
         let place = |position| {
-            let ([x, y, _], inside) = view.project(view.to_eye(position));
+            let ([x, y, _], inside) = view.lens.project(view.to_eye(position));
             inside.then_some([x, y])
         };
         let places: Option<Vec<[i32; 2]>> = stream.vertices_of(mesh)?.iter().map(|vertex| place(vertex.position)).collect();

@@ -149,7 +149,7 @@ impl<'r, C: Pixel> Frame<'r, C> {
         let as_they_are = visible.fold(0, |sum, (_, object)| sum + object.triangles);
         let context = Context { settings, scene, placements, area, depth_elision: None, vertices: &[], reflectances, ramps, error_bounds };
         let elides = settings.skips().depth && !settings.antialiased();
-        let depth_elision = if elides { context.convex().and_then(|view| DepthElision::new(&scene.camera, view, size)) } else { None };
+        let depth_elision = if elides { context.convex().and_then(DepthElision::new) } else { None };
         let part = Part {
             bins,
             binned: false,

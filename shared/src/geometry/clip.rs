@@ -6,7 +6,7 @@
 use crate::{
     arch::quotient::long,
     format::{HAVERSINE, INVERSE_SUM_LENGTH, UNIT},
-    geometry::projection::{PLANES, View},
+    geometry::{lens::PLANES, projection::View},
     math::{
         rsqrt::rsqrt_wide,
         vector::{add, dot, normalise, wide, zip},
@@ -31,7 +31,7 @@ struct Corner {
 pub(crate) struct Cut {
     /// Position and unit normal.
     pub vertex: Vertex,
-    /// `[x, y, inv_depth]`, see [`View::project`].
+    /// `[x, y, inv_depth]`, see [`crate::geometry::lens::Lens::project`].
     pub place: [i32; 3],
 }
 
@@ -46,7 +46,7 @@ pub(crate) fn clip(view: &View, vertices: [&Vertex; 3]) -> Vec<Cut, CORNERS> {
         let mut cut = Vec::new();
         for (i, a) in polygon.iter().enumerate() {
             let b = polygon.get(i + 1).or(polygon.first()).unwrap_or(a);
-            let (da, db) = (view.distance(a.eye, plane), view.distance(b.eye, plane));
+            let (da, db) = (view.lens.distance(a.eye, plane), view.lens.distance(b.eye, plane));
             // A convex polygon gains at most one corner per plane: there is room.
             if da >= 0 {
                 let _ = cut.push(*a);
@@ -60,7 +60,7 @@ pub(crate) fn clip(view: &View, vertices: [&Vertex; 3]) -> Vec<Cut, CORNERS> {
     let mut cuts = Vec::new();
     for corner in &polygon {
         let normal = normalise(corner.normal).map(|c| ((c + (1 << 15)) >> 16) as i16);
-        let (place, _) = view.project(corner.eye);
+        let (place, _) = view.lens.project(corner.eye);
         let _ = cuts.push(Cut { vertex: Vertex { position: corner.position.map(|c| c as i16), normal }, place });
     }
     cuts

@@ -32,8 +32,8 @@
 use crate::{
     arch::{product::product, zeros::leading_zeros},
     format::{INVERSE_ALTITUDE, SUBPIXEL, UNIT},
-    geometry::projection::View,
-    math::vector::{narrow_dot, wide},
+    geometry::{model_view::ModelView, projection::View},
+    math::vector::{map, narrow_dot, wide},
     stream::record::{LEAN, Triangle},
 };
 use zerocopy::{FromBytes, Immutable, IntoBytes, KnownLayout};
@@ -79,12 +79,13 @@ impl Facing {
     /// All triangles may show their front: all heights are 0.
     pub const ANY: Self = Self { vector: [0; 3], offset_scale: 0, slack: 0, reach: 0 };
 
-    /// For the camera of one frame and a mesh in the ball of `radius` about the origin, [`crate::stream::record::Header::radius`].
+    /// For a mesh in the ball of `radius` about the origin, [`crate::stream::record::Header::radius`], that lies as `model_view` says and is
+    /// seen so.
     #[must_use]
-    pub fn new(view: &View, radius: u16) -> Self {
-        let (vector, reach) = (view.viewer(), view.reach(radius));
+    pub fn new(view: &View, model_view: &ModelView, radius: u16) -> Self {
+        let (vector, reach) = (view.viewer(model_view), view.reach(radius));
         // In object space: rounding moves a corner by as much more as the object is small.
-        let moved = view.in_object_units(view.displacement(reach));
+        let moved = view.in_object_units(view.lens.displacement(reach));
         let (right, larger, offset_scale, reach) = if view.is_perspective() {
             // The eye is taken to units that are larger than those of object space by a power of two, and so large that 32 bits hold it.
             let farthest = vector.iter().fold(0, |m, c| m | c.unsigned_abs()) >> UNIT;
@@ -104,7 +105,7 @@ impl Facing {
             return Self::ANY;
         }
         let right = right + UNIT - EYE;
-        let vector = vector.map(|c| (c + (1 << (right - 1))) >> right);
+        let vector = map(vector, |c| (c + (1 << (right - 1))) >> right);
         Self { vector, offset_scale, slack: slack as i32, reach: reach as i32 }
     }
 

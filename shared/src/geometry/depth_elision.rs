@@ -2,7 +2,7 @@
 //!
 //! The front faces of a convex body do not hide one another: seen exactly, no pixel belongs to two. What is drawn is not that exact picture
 //! `G` but `F`, whose corners are rounded, in the mesh, in eye space, and on the screen; each coordinate is moved by at most `d`
-//! ([`View::moved`]). So a triangle that is thinner than it is moved may turn over, or let its neighbours overlap. A triangle is *thick* if
+//! ([`crate::geometry::lens::Lens::moved`]). So a triangle that is thinner than it is moved may turn over, or let its neighbours overlap. A triangle is *thick* if
 //! it lies in the viewport and is at least `3 d` thick in `F`. A triangle that is not thick, and may show its front in `G`, *marks* the
 //! cells of a coarse grid that lie within `3 d` of its bounding box. A triangle whose box touches no marked cell is drawn without depth
 //! test, all others are drawn with it, and the picture is the same:
@@ -22,10 +22,8 @@
 use crate::{
     format::{SUBPIXEL, UNIT},
     geometry::{cull::Extent, projection::View},
-    stream::record::{Camera, PERSPECTIVE},
 };
 use core::ops::RangeInclusive;
-use embedded_graphics_core::geometry::Size;
 
 /// Rows and columns of the grid.
 const CELLS: u32 = u32::BITS;
@@ -52,10 +50,11 @@ pub(crate) struct DepthElision {
 impl DepthElision {
     /// A grid without marks for one frame of a closed convex mesh and no other; `None` if it is seen from too near.
     #[must_use]
-    pub(crate) fn new(camera: &Camera, view: &View, size: Size) -> Option<Self> {
-        let thickness = view.moved(size, 3);
+    pub(crate) fn new(view: &View) -> Option<Self> {
+        let (lens, size) = (&view.lens, view.lens.size());
+        let thickness = lens.moved(3);
         // The body lies within one unit of its origin.
-        let is_seen = camera.projection == PERSPECTIVE || view.origin()[2] + (1 << UNIT) + BEHIND <= camera.far;
+        let is_seen = lens.is_perspective() || view.origin()[2] + (1 << UNIT) + BEHIND <= lens.far;
         let size = [size.width, size.height].map(|side| (side << SUBPIXEL) as i32);
         (is_seen && thickness < THICKEST).then_some(Self {
             thickness: thickness as i32,

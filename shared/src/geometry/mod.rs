@@ -6,6 +6,7 @@ pub(crate) mod clip;
 pub mod cull;
 pub(crate) mod depth_elision;
 pub mod detail;
+pub mod lens;
 pub mod model_view;
 pub mod projection;
 pub mod viewport;

@@ -2,7 +2,7 @@
 
 use crate::{
     format::{POSITION, ROTATION, UNIT},
-    math::vector::{add, dot, normalise, sub, transposed},
+    math::vector::{add, dot, map, normalise, sub, transposed},
     scene::{Pose, orbit},
     stream::record::Camera,
 };
@@ -49,12 +49,12 @@ impl ModelView {
         if pose.is_identity() {
             return *self;
         }
-        let (to_world, position, scale) = (pose.matrix(), pose.position().map(|c| c.to_bits()), pose.scale().to_bits());
+        let (to_world, position, scale) = (pose.matrix(), map(pose.position(), |c| c.to_bits()), pose.scale().to_bits());
         let columns = transposed(to_world);
-        let rounded = |sum: i64| ((sum + (1 << (ROTATION - 1))) >> ROTATION) as i32;
+        let rounded = |a, b| ((dot(a, b) + (1 << (ROTATION - 1))) >> ROTATION) as i32;
         Self {
-            rotation: self.rotation.map(|row| columns.map(|column| rounded(dot(row, column)))),
-            translation: add(self.rotation.map(|row| rounded(dot(row, position))), self.translation),
+            rotation: map(self.rotation, |row| map(columns, |column| rounded(row, column))),
+            translation: add(map(self.rotation, |row| rounded(row, position)), self.translation),
             scale,
             to_world,
             position,
@@ -105,7 +105,7 @@ impl ModelView {
     fn near(&self, rotation: [[i32; 3]; 3], v: [i32; 3]) -> [i32; 3] {
         // Q.44, then Q.30 of the world, then Q.46 of object space.
         let point =
-            transposed(rotation).map(|column| ((dot(column, v) >> UNIT) * i64::from(self.inverse_scale)) >> (ROTATION + 16 - POSITION));
+            map(transposed(rotation), |column| ((dot(column, v) >> UNIT) * i64::from(self.inverse_scale)) >> (ROTATION + 16 - POSITION));
         if point.iter().all(|c| c.abs() <= FARTHEST) {
             return point.map(|c| c as i32);
         }
@@ -117,7 +117,7 @@ impl ModelView {
 /// `v` rotated by the inverse of `rotation`, in its format, rounded down.
 #[inline(never)]
 fn rotated_back(rotation: [[i32; 3]; 3], v: [i32; 3]) -> [i32; 3] {
-    transposed(rotation).map(|column| (dot(column, v) >> ROTATION) as i32)
+    map(transposed(rotation), |column| (dot(column, v) >> ROTATION) as i32)
 }
 
 /// 1 over a scale, Q16.16, rounded down: 2^32 over its bits, of which 2^32 - 1 lacks one where they are a power of two.

@@ -4,7 +4,7 @@ use crate::{
     arch::product::{HALVES, by_fraction},
     format::{COSINE, MAX_LIGHTS, POSITION, UNIT},
     geometry::model_view::ModelView,
-    math::vector::{add, dot, narrow_dot, normalise, sub, wide},
+    math::vector::{add, dot, map, narrow_dot, normalise, sub, wide},
     stream::record::{Camera, DIRECTIONAL, EYE_SPACE, Light, PERSPECTIVE, VIEWER_LOCAL},
 };
 use zerocopy::{FromBytes, FromZeros as _, Immutable, IntoBytes, KnownLayout};
@@ -68,7 +68,7 @@ impl Directions {
 
 /// The direction towards the eye, as far as it is the same everywhere: a unit vector, Q2.30.
 fn towards_eye(ModelView { rotation: [.., away], .. }: &ModelView) -> [i32; 3] {
-    away.map(|c| -c)
+    map(*away, |c| -c)
 }
 
 impl Lighting {
@@ -91,7 +91,7 @@ impl Lighting {
         let ([right, up, _], towards_eye) = (model_view.rotation, towards_eye(model_view));
         (self.is_local, self.viewer) = (is_local.into(), if is_local { model_view.eye() } else { towards_eye });
         self.axes = [right, up, towards_eye];
-        let [x, y, z] = model_view.translation.map(|c| model_view.in_object_units(c));
+        let [x, y, z] = map(model_view.translation, |c| model_view.in_object_units(c));
         self.eye = [-x, -y, z];
     }
 
@@ -155,7 +155,8 @@ impl Source {
     /// `light`, with its L and H in the world, for an object seen as `model_view` says.
     fn new(light: &Light, directions: &[[i32; 3]; 2], model_view: &ModelView) -> Self {
         if light.kind == DIRECTIONAL {
-            return Self { vectors: directions.map(|v| model_view.world_to_object(v)), is_point: 0 };
+            let [towards, half] = *directions;
+            return Self { vectors: [model_view.world_to_object(towards), model_view.world_to_object(half)], is_point: 0 };
         }
         let is_eye_space = light.space == EYE_SPACE;
         let point = if is_eye_space { model_view.point_to_object(light.vector) } else { model_view.world_point_to_object(light.vector) };

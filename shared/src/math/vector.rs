@@ -19,12 +19,10 @@ fn dot_by_calls(a: [i32; 3], b: [i32; 3]) -> i64 {
 }
 
 /// A vertex normal or position as `i32`, in its format.
-///
-/// The components are written out because `map` is a loop through memory at opt-level "s".
 #[inline(always)]
 #[must_use]
-pub fn wide([x, y, z]: [i16; 3]) -> [i32; 3] {
-    [x.into(), y.into(), z.into()]
+pub fn wide(v: [i16; 3]) -> [i32; 3] {
+    map(v, i32::from)
 }
 
 /// Dot product of two vectors, in the product of their formats. Domain: the sum fits 32 bits; else it wraps modulo 2^32. Exact.
@@ -32,6 +30,13 @@ pub fn wide([x, y, z]: [i16; 3]) -> [i32; 3] {
 #[must_use]
 pub fn narrow_dot([a0, a1, a2]: [i32; 3], [b0, b1, b2]: [i32; 3]) -> i32 {
     a0.wrapping_mul(b0).wrapping_add(a1.wrapping_mul(b1)).wrapping_add(a2.wrapping_mul(b2))
+}
+
+/// `f` of each component, written out because `map` of an array is a loop through memory at opt-level "s".
+#[inline(always)]
+#[must_use]
+pub fn map<A, R>([a0, a1, a2]: [A; 3], f: impl Fn(A) -> R) -> [R; 3] {
+    [f(a0), f(a1), f(a2)]
 }
 
 /// `f` of each pair of components.

@@ -64,7 +64,7 @@ impl VertexStage<'_> {
         let mut place = |corner| match seam.get_mut(usize::from(corner)) {
             Some(place) => {
                 if *place == UNUSED {
-                    let ([x, y, _], inside) = self.view.project(self.view.to_eye(vertices.get(usize::from(corner))?.position));
+                    let ([x, y, _], inside) = self.view.lens.project(self.view.to_eye(vertices.get(usize::from(corner))?.position));
                     *place = if inside { [x, y] } else { CLIPPED };
                 }
                 (*place != CLIPPED).then_some(*place)
@@ -102,7 +102,7 @@ impl VertexStage<'_> {
     /// Transforms a vertex, and lights it if the method needs that.
     #[inline(never)]
     pub(crate) fn transform(&self, vertex: &Vertex) -> ScreenVertex {
-        let ([x, y, depth], inside) = self.view.project(self.view.to_eye(vertex.position));
+        let ([x, y, depth], inside) = self.view.lens.project(self.view.to_eye(vertex.position));
         let normal = wide(vertex.normal);
         let light = match (self.light, self.constant) {
             (VertexLight::None, _) => [0; 4],

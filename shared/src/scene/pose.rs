@@ -1,6 +1,7 @@
 //! How an object lies in the world.
 
 use crate::{
+    arch::product::product,
     format::{Angle, Length, ROTATION, Rotation, Scale},
     math::{
         rsqrt::rsqrt_wide,
@@ -243,16 +244,20 @@ impl Pose {
     /// Rows of the rotation from object space to the world, Q2.30: orthonormal to a few units of the last place.
     #[must_use]
     pub(crate) fn matrix(&self) -> [[i32; 3]; 3] {
-        let [w, x, y, z] = self.rotation.map(i64::from);
-        // Twice the products, rounded.
-        let twice = |sum: i64| (sum + (1 << (ROTATION - 2))) >> (ROTATION - 1);
-        let one = i64::from(ONE);
+        let [w, x, y, z] = self.rotation;
+        // Twice the products, rounded: at most 2^31 + 2 in size, and with what they are taken from, a few units more than one.
+        let twice = |sum: i64| ((sum + (1 << (ROTATION - 2))) >> (ROTATION - 1)) as i32;
+        let [xx, yy, zz] = [x, y, z].map(|c| product(c, c));
+        let [xy, yz, zx] = [product(x, y), product(y, z), product(z, x)];
+        let [wx, wy, wz] = [product(w, x), product(w, y), product(w, z)];
+        let within = |c: i32| c.clamp(-ONE, ONE);
+        let beside = |sum| within(twice(sum));
+        let along = |sum| within(ONE.wrapping_sub(twice(sum)));
         [
-            [one - twice(y * y + z * z), twice(x * y - w * z), twice(x * z + w * y)],
-            [twice(x * y + w * z), one - twice(x * x + z * z), twice(y * z - w * x)],
-            [twice(x * z - w * y), twice(y * z + w * x), one - twice(x * x + y * y)],
+            [along(yy + zz), beside(xy - wz), beside(zx + wy)],
+            [beside(xy + wz), along(xx + zz), beside(yz - wx)],
+            [beside(zx - wy), beside(yz + wx), along(xx + yy)],
         ]
-        .map(|row| row.map(|c| c.clamp(-one, one) as i32))
     }
 }
 
