@@ -11,7 +11,7 @@ use crate::{
     },
     lighting::{material_tables::MaterialTables, output::Output, reflectance::Reflectance},
     mesh::{MeshPass, vertices::VertexStage},
-    method::{ErrorBounds, Shading, Style},
+    method::{ErrorBounds, Shading, Style, VertexLight},
     pixel::{Pixel, gamma::Gamma},
     placement::{Placement, Placements},
     raster::band::Band,
@@ -169,6 +169,16 @@ impl<'r, C: Pixel> Context<'r, C> {
             let pixels = band.depth.get(start.wrapping_add(left.into())..start.wrapping_add(right.into())).unwrap_or_default();
             pixels.iter().all(|&inv_depth| inv_depth >= placement.nearest)
         })
+    }
+
+    /// Whether vertices are lit once it is known which triangles reach into the area: where that is not the whole picture, most do not, and
+    /// levels take longer than to find that out.
+    pub(crate) fn lights_later(&self) -> bool {
+        let may_have_levels = match self.settings.shader.facts().vertex_light {
+            VertexLight::None | VertexLight::Cosines | VertexLight::CosinesAndReflection => false,
+            VertexLight::CosinesOrLevels | VertexLight::ReflectionOrLevels | VertexLight::Levels => true,
+        };
+        may_have_levels && self.area != Area::whole(self.settings.size)
     }
 
     /// The stage that transforms and lights the vertices of `placed`.

@@ -13,7 +13,7 @@ use crate::{
         counts::Counts,
     },
 };
-use core::{cell::Cell, ops::Range};
+use core::ops::Range;
 use embedded_graphics_core::{
     geometry::{Point, Size},
     primitives::Rectangle,
@@ -196,11 +196,15 @@ impl<'r> Part<'r> {
 /// Moves these `columns` of rows that are `width` pixels wide to the front of a band.
 #[cold]
 fn narrow<C: Copy>(pixels: &mut [C], width: usize, columns: Range<usize>) {
-    let pixels = Cell::from_mut(pixels).as_slice_of_cells();
-    let rows = pixels.chunks_exact(width.max(1)).filter_map(|row| row.get(columns.clone()));
-    // Nothing moves to where another pixel waits to be moved.
-    for (to, from) in pixels.chunks_exact(columns.len().max(1)).zip(rows) {
-        to.iter().zip(from).for_each(|(to, from)| to.set(from.get()));
+    let count = columns.len();
+    for row in 0..pixels.len().checked_div(width).unwrap_or(0) {
+        let (to, from) = (row * count, row * width + columns.start);
+        // Up to where they are now, so that nothing moves to where another pixel waits to be moved.
+        if let Some(pixels) = pixels.get_mut(to..from + count)
+            && let Some(from) = pixels.len().checked_sub(count)
+        {
+            pixels.copy_within(from.., 0);
+        }
     }
 }
 

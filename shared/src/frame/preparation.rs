@@ -5,6 +5,9 @@
 //! on, and belong to the later half. What remains is a seam: later triangles that use vertices of the earlier half. For them the places of
 //! these vertices on the screen are computed a second time, without light. When both are done, lists are joined, and where triangles at the
 //! seam alone use a vertex it is transformed. From then on, all is as if one processor had done it.
+//!
+//! Where only a part of the picture is drawn, most triangles of most objects lie beside it. Light levels, which take longer than all else at a
+//! vertex, are then left for when it is known whose corners are needed.
 
 use crate::{
     frame::{
@@ -22,6 +25,7 @@ use crate::{
     },
     memory::Memory,
     mesh::vertices::{SeamPlace, UNUSED, VertexStage},
+    method::VertexLight,
     pixel::Pixel,
     placement::Placements,
     raster::active::QueueState,
@@ -304,6 +308,41 @@ impl<'r, C: Pixel> PreparationPart<'_, 'r, C> {
             earlier = earlier.saturating_sub(placed.mesh.triangles as usize);
             self.bin_mesh::<DIVIDED>(&placed, earlier);
         }
+        if context.lights_later() {
+            self.light();
+        }
+    }
+
+    /// Lights the vertices of the triangles that are in the bins, or all that are transformed if some triangle has found no room there.
+    #[cold]
+    #[inline(never)]
+    fn light(&mut self) {
+        let Self { context, cached, seam, entries, bins, .. } = self;
+        // In the order in which they were put there.
+        let mut rest = bins.count().and_then(|count| entries.get(..count.into()));
+        for placed in context.meshes().rev() {
+            let (stream, mesh, first) = (&context.scene.stream, placed.mesh, placed.first_vertex);
+            let (Some(vertices), Some(triangles)) = (stream.vertices_of(mesh), stream.triangles_of(mesh)) else { continue };
+            let Some(stage) = context.stage(&placed) else { continue };
+            let cached = cached.get_mut(first.saturating_sub(seam.len())..).unwrap_or_default();
+            // Those before are the other part's.
+            let before = seam.len().saturating_sub(first);
+            let Some(entries) = &mut rest else {
+                let vertices = vertices.get(before..).unwrap_or_default();
+                cached.iter_mut().zip(vertices).for_each(|(screen, vertex)| stage.light_up(screen, vertex));
+                continue;
+            };
+            while let [entry, behind @ ..] = *entries
+                && let Some(triangle) = triangles.get(entry.triangle().wrapping_sub(placed.first_triangle) as usize)
+            {
+                *entries = behind;
+                for corner in triangle.corners.map(usize::from) {
+                    if let (Some(screen), Some(vertex)) = (cached.get_mut(corner.wrapping_sub(before)), vertices.get(corner)) {
+                        stage.light_up(screen, vertex);
+                    }
+                }
+            }
+        }
     }
 
     /// Does so with the triangles of a mesh that belong to this half; `earlier` ones belong to meshes before it.
@@ -321,7 +360,10 @@ impl<'r, C: Pixel> PreparationPart<'_, 'r, C> {
         let (bins, depth_elision, entries) = (black_box(&mut **bins), &mut **depth_elision, &mut **entries);
         let leaning = if depth_elision.is_some() { facing.leaning() } else { Facing::FRONT };
         let (vertices, triangles) = (stream.vertices_of(mesh).unwrap_or_default(), stream.triangles_of(mesh).unwrap_or_default());
-        let Some(stage) = context.stage(placed) else { return };
+        let Some(mut stage) = context.stage(placed) else { return };
+        if context.lights_later() {
+            stage.light = VertexLight::None;
+        }
         let within = |index: usize| index.saturating_sub(earlier).min(triangles.len());
         let before = if DIVIDED { within(*start) } else { 0 };
         let mut rest = if DIVIDED { triangles.get(before..within(*end)).unwrap_or_default() } else { triangles };

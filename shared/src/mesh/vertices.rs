@@ -10,7 +10,7 @@ use crate::{
         lights::{Lighting, MeanNormal, point, vertex_cosine},
         reflectance::Reflectance,
     },
-    math::vector::wide,
+    math::vector::{map, wide},
     method::VertexLight,
     stream::record::{Triangle, Vertex},
 };
@@ -74,13 +74,25 @@ impl VertexStage<'_> {
         Some([place(a)?, place(c)?, place(b)?])
     }
 
-    /// Transforms the vertices whose places at the seam were used, where no triangle of the processor that caches them has used them.
+    /// Transforms the vertices whose places at the seam were used, where no triangle of the processor that caches them has used them, and
+    /// lights those that none has lit.
     #[inline(never)]
     pub(crate) fn close_seam(&self, cached: &mut [ScreenVertex], seam: &[SeamPlace], vertices: &[Vertex]) {
         for ((screen, place), vertex) in cached.iter_mut().zip(seam).zip(vertices) {
-            if screen.state == State::IDLE && *place != UNUSED {
-                *screen = self.transform(vertex);
+            if *place != UNUSED {
+                if screen.state == State::IDLE {
+                    *screen = self.transform(vertex);
+                }
+                self.light_up(screen, vertex);
             }
+        }
+    }
+
+    /// Lights a vertex that was transformed without light. One that no light reaches may be lit again, which makes it no lighter.
+    #[inline(always)]
+    pub(crate) fn light_up(&self, screen: &mut ScreenVertex, vertex: &Vertex) {
+        if screen.state == State::READY && screen.light == [0; 4] {
+            screen.light = self.light_at(vertex);
         }
     }
 
@@ -103,24 +115,34 @@ impl VertexStage<'_> {
     #[inline(never)]
     pub(crate) fn transform(&self, vertex: &Vertex) -> ScreenVertex {
         let ([x, y, depth], inside) = self.view.lens.project(self.view.to_eye(vertex.position));
+        ScreenVertex { x, y, depth, light: self.light_at(vertex), state: if inside { State::READY } else { State::OUTSIDE } }
+    }
+
+    /// What [`ScreenVertex::light`] says.
+    #[inline(always)]
+    fn light_at(&self, vertex: &Vertex) -> [i32; 4] {
         let normal = wide(vertex.normal);
-        let light = match (self.light, self.constant) {
+        match (self.light, self.constant) {
             (VertexLight::None, _) => [0; 4],
             (VertexLight::Cosines | VertexLight::CosinesAndReflection, None) if self.has_two_lights() => self.cosines_of_two_lights(normal),
             (VertexLight::Cosines | VertexLight::CosinesAndReflection, None) => [0; 4],
             (light, Some([towards, half])) if light != VertexLight::Levels || !self.reflectance.three_channels() => {
                 self.under_one_light(light, [vertex_cosine(normal, *towards), vertex_cosine(normal, *half)])
             }
-            _ => {
-                let levels = if self.lighting.is_constant() {
-                    self.reflectance.constant_levels(self.lighting.sources(), &MeanNormal::at(normal))
-                } else {
-                    self.reflectance.levels(self.lighting.cosines(point(vertex.position), normal.map(|c| c << (30 - UNIT))))
-                };
-                [levels[0], levels[1], levels[2], 0]
-            }
+            _ => self.levels(vertex),
+        }
+    }
+
+    /// The light levels of a vertex under all lights.
+    #[inline(never)]
+    fn levels(&self, vertex: &Vertex) -> [i32; 4] {
+        let normal = wide(vertex.normal);
+        let [r, g, b] = if self.lighting.is_constant() {
+            self.reflectance.constant_levels(self.lighting.sources(), &MeanNormal::at(normal))
+        } else {
+            self.reflectance.levels(self.lighting.cosines(point(vertex.position), map(normal, |c| c << (30 - UNIT))))
         };
-        ScreenVertex { x, y, depth, light, state: if inside { State::READY } else { State::OUTSIDE } }
+        [r, g, b, 0]
     }
 
     /// The light of a vertex with these cosines of one constant light.
