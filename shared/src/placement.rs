@@ -57,12 +57,12 @@ impl Placement {
         }
         let model_view = how.world.of(&object.pose);
         self.view = View::new(&how.lens, &model_view);
-        (self.area, self.nearest) = self.view.reached(object.radius);
+        (self.area, self.nearest) = self.view.reached(&object.bounds);
         if self.area.is_empty() {
             return;
         }
         [.., self.depth] = self.view.origin();
-        self.facing = if how.leaves_out_back_faces { Facing::new(&self.view, &model_view, object.radius) } else { Facing::ANY };
+        self.facing = if how.leaves_out_back_faces { Facing::new(&self.view, &model_view, object.bounds.radius) } else { Facing::ANY };
         self.lighting.place(&scene.camera, scene.lights(), &how.directions, &model_view);
         let has_levels = object.has_levels != 0 && how.levels_of_detail;
         let tolerance = if has_levels { self.tolerance(scene, object) } else { GeometricError::ZERO };
@@ -84,7 +84,7 @@ impl Placement {
     /// How far coarser levels may lie from the meshes of `object`.
     fn tolerance(&self, scene: &Scene<'_>, object: &Object) -> GeometricError {
         let ([.., depth], scale) = (self.view.origin(), u64::from(self.view.scale()));
-        let radius = ((u64::from(object.radius) * scale + 0xFFFF) >> 16) as u32;
+        let radius = ((u64::from(object.bounds.radius) * scale + 0xFFFF) >> 16) as u32;
         let error = tolerance(&scene.camera, depth, radius, self.view.lens.size()).to_bits();
         GeometricError::from_bits(self.view.least_in_object_units(error.into()).min(u16::MAX.into()) as u16)
     }
@@ -116,13 +116,17 @@ impl<'r> Placements<'r> {
     /// Puts indices in the order of the depth of what they lead to; those that are equally near in the order of the scene. Returns whether
     /// they were in another order.
     pub(crate) fn sort(placements: &[Placement], order: &mut [u32]) -> bool {
-        let key = |index: u32| (placements.get(index as usize).map_or(i32::MAX, |placement| placement.depth), index);
+        let key = |index: &Cell<u32>| {
+            let index = index.get();
+            (placements.get(index as usize).map_or(i32::MAX, |placement| placement.depth), index)
+        };
         let (order, mut has_changed) = (Cell::from_mut(order).as_slice_of_cells(), false);
         // Few change places from one frame to the next.
-        for end in 1..order.len() {
+        for (end, next) in order.iter().enumerate() {
+            let moved = key(next);
             for pair in order.get(..=end).unwrap_or_default().windows(2).rev() {
                 let [before, last] = pair else { break };
-                if key(before.get()) <= key(last.get()) {
+                if key(before) <= moved {
                     break;
                 }
                 before.swap(last);

@@ -21,7 +21,7 @@ pub struct Skips {
     /// Lights are not computed on triangles that they do not reach.
     pub lights: bool,
     /// Objects are not drawn in the rows of a band where others hide them: objects are drawn from the nearest to the farthest, and no pixel of
-    /// a ball around one is nearer than what is there already.
+    /// the box around one is nearer than what is there already.
     pub hidden_objects: bool,
 }
 

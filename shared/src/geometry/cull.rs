@@ -88,11 +88,12 @@ impl Facing {
         let moved = view.in_object_units(view.lens.displacement(reach));
         let (right, larger, offset_scale, reach) = if view.is_perspective() {
             // The eye is taken to units that are larger than those of object space by a power of two, and so large that 32 bits hold it.
-            let farthest = vector.iter().fold(0, |m, c| m | c.unsigned_abs()) >> UNIT;
+            let [x, y, z] = map(vector, i32::unsigned_abs);
+            let farthest = (x | y | z) >> UNIT;
             let finer = view.viewer_exponent();
             let right = (32 - farthest.leading_zeros()).saturating_sub(FARTHEST_EYE).max(finer.max(0).unsigned_abs());
             let larger = right.saturating_add_signed(-finer).min(31);
-            let reach = (view.in_object_units(reach.into()) as u32 + ((1 << larger) - 1)) >> larger;
+            let reach = (view.in_object_units(reach) as u32 + ((1 << larger) - 1)) >> larger;
             (right, larger, (1 << EYE) >> larger, reach)
         } else {
             (0, 0, 0, reach)

@@ -107,22 +107,19 @@ impl Lens {
         ([self.centre[0] + x, self.centre[1] - y, depth.min(NEAREST)], within)
     }
 
-    /// `[left, right]`, `[top, bottom]`, 1/16 pixel, and the largest inverse depth, Q0.28, of what lies in a cube about `centre` in eye space
-    /// with edges of twice `radius`. Domain: all of the cube lies behind the near plane.
+    /// `[left, right]`, `[top, bottom]`, 1/16 pixel, and the largest inverse depth, Q0.28, of what lies within these `[least, most]` coordinates in
+    /// eye space, behind the near plane.
     #[must_use]
-    pub fn project_cube(&self, [x, y, z]: [i32; 3], radius: i32) -> ([[i32; 2]; 2], i32) {
-        // Each side of the square about it is seen farthest out where it is nearest, or, across the middle of the screen, farthest.
-        let nearest = z.saturating_sub(radius);
-        let [near, far] = [nearest, z.saturating_add(radius)].map(Reciprocal::of);
+    pub fn project_box(&self, [across, up, [nearest, farthest]]: [[i32; 2]; 3]) -> ([[i32; 2]; 2], i32) {
+        // Each side is seen farthest out where it is nearest, or, across the middle of the screen, farthest.
+        let (near, far) = (Reciprocal::of(nearest), Reciprocal::of(farthest));
         let place = |c: i32, reciprocal| {
             let place = if self.is_perspective() { self.place(c, reciprocal) } else { self.parallel_place(c) };
             place.clamp(-GUARD, GUARD)
         };
-        let range = |c: i32| {
-            let (least, most) = (c.saturating_sub(radius), c.saturating_add(radius));
-            [place(least, if least < 0 { near } else { far }), place(most, if most < 0 { far } else { near })]
-        };
-        let ([left, right], [below, above], [x, y]) = (range(x), range(y), self.centre);
+        let range =
+            |[least, most]: [i32; 2]| [place(least, if least < 0 { near } else { far }), place(most, if most < 0 { far } else { near })];
+        let ([left, right], [below, above], [x, y]) = (range(across), range(up), self.centre);
         let inv_depth = if self.is_perspective() { self.depth(near) } else { self.parallel_depth(nearest) };
         ([[x + left, x + right], [y - above, y - below]], inv_depth.min(NEAREST))
     }
@@ -167,15 +164,15 @@ impl Lens {
         Size::new(width as u32 >> (SUBPIXEL - 1), height as u32 >> (SUBPIXEL - 1))
     }
 
-    /// How far rounding may move a vertex as far from the eye as `reach`, Q.30.
+    /// How far rounding may move a vertex as far from the eye as `reach`, Q.30, as far as 32 bits hold it.
     ///
     /// In eye space that is half a unit in the last place along each axis, √3/2 = 0.87 in all; on the screen along both axes half of 1/16
     /// pixel, with 2^-7 to spare for the arithmetic on the way: √2 · 65/128 = 0.72 of 1/16 pixel. With room for a rotation that is rounded
     /// they are one unit and 25/32.
     #[must_use]
-    pub fn displacement(&self, reach: u32) -> u64 {
+    pub fn displacement(&self, reach: u32) -> u32 {
         let pixel = (u64::from(reach) * u64::from(self.unit_per_pixel)) >> PER_PIXEL;
-        (pixel + 1 + (1 << (30 - UNIT))).min(u64::from(u32::MAX))
+        u32::try_from(pixel + 1 + (1 << (30 - UNIT))).unwrap_or(u32::MAX)
     }
 
     /// How far rounding may move a point of a mesh that is marked as [`crate::stream::record::CLOSED_CONVEX`] along x or y, behind the near
@@ -331,7 +328,7 @@ pub(crate) mod tests {
                 // 25/32 of 1/16 pixel at that distance, and one unit of the last place.
                 let pixel = f64::from(reach) * 25.0 / 32.0 / (f64::from(side) * 8.0 * f64::from(focal) / 65_536.0) * 2f64.powi(16);
                 let exact = (pixel + 2f64.powi(16)).min(f64::from(u32::MAX));
-                let found = lens.displacement(reach) as f64;
+                let found = f64::from(lens.displacement(reach));
                 assert!(found >= exact && found <= exact * 1.001 + 2.0, "{focal} {side} {reach}: {found} {exact}");
             }
         }

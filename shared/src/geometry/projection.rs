@@ -5,6 +5,7 @@ use crate::{
     format::{DEPTH, ROTATION, SUBPIXEL, UNIT},
     geometry::{area::Area, lens::Lens, model_view::ModelView},
     math::vector::{add, dot, map, narrow_dot, wide, zip},
+    scene::BoundingVolume,
 };
 use zerocopy::{FromBytes, Immutable, IntoBytes, KnownLayout};
 
@@ -112,11 +113,12 @@ impl View {
         UNIT as i32 - self.shift as i32
     }
 
-    /// `length` of the world in units of object space, in its format, rounded up. Domain: below 2^44.
+    /// `length` of the world in units of object space, in its format, rounded up.
     #[must_use]
-    pub fn in_object_units(&self, length: u64) -> u64 {
-        // The inverse is rounded down.
-        if self.scale == 1 << 16 { length } else { ((length * (u64::from(self.inverse_scale) + 1)) >> 16) + 1 }
+    pub fn in_object_units(&self, length: u32) -> u64 {
+        // The inverse is rounded down; at the scale 1 it is exact, and the length as well.
+        let inexact = u32::from(self.scale != 1 << 16);
+        ((u64::from(length) * u64::from(self.inverse_scale + inexact)) >> 16) + u64::from(inexact)
     }
 
     /// The object's scale, [`crate::format::Scale`].
@@ -160,25 +162,29 @@ impl View {
     /// parallel rays. It includes 1/32 to spare, since a rotation is rounded.
     #[must_use]
     pub fn reach(&self, radius: u16) -> u32 {
-        let [x, y, z] = self.translation.map(i32::unsigned_abs);
+        let [x, y, z] = map(self.translation, i32::unsigned_abs);
         let radius = ((u64::from(radius) * u64::from(self.scale) + 0xFFFF) >> 16) as u32;
         let reach = if self.is_perspective() { x + y + z + radius } else { 1 << UNIT };
         reach + (reach >> 5) + 1
     }
 
-    /// The pixels of the viewport that the ball of `radius`, [`crate::format::Radius`], about the origin of object space can reach; none if no
-    /// part of it can be seen. And how near a pixel of what is in it can be, in the format of the depth buffer. Errs on the side of more.
+    /// The pixels of the viewport that what is in a part of object space can reach; none if no part of it can be seen. And how near a pixel of
+    /// it can be, in the format of the depth buffer. Errs on the side of more.
     #[must_use]
-    pub fn reached(&self, radius: u16) -> (Area, u16) {
-        let (radius, [.., z], size) = (self.ball(radius), self.translation, self.lens.size());
-        let (nearest, farthest) = (z.saturating_sub(radius), z.saturating_add(radius));
+    pub(crate) fn reached(&self, bounds: &BoundingVolume) -> (Area, u16) {
+        // Along each axis of eye space the sides of the box add up, or the ball is shorter. Both ways are rounded down.
+        let (half, ball) = (map(bounds.half, i32::from), self.ball(bounds.radius));
+        let half = map(self.rotation, |row| (narrow_dot(map(row, i32::abs), half) >> (self.shift & 31)) + 2);
+        let sides = zip(self.to_eye(bounds.middle), half, |middle, half| [middle - half, middle + half]);
+        let sides = zip(sides, self.translation, |[least, most], origin| [least.max(origin - ball), most.min(origin + ball)]);
+        let (size, [.., [nearest, farthest]]) = (self.lens.size(), sides);
         if farthest < self.lens.near || !self.is_perspective() && nearest > self.lens.far {
             return (Area::NONE, 0);
         }
         if nearest < self.lens.near {
             return (Area::whole(size), u16::MAX);
         }
-        let ([columns, rows], inv_depth) = self.lens.project_cube(self.translation, radius);
+        let ([columns, rows], inv_depth) = self.lens.project_box(sides);
         // A pixel more, for what is rounded on the way.
         let within = |c: i32, side: u32| c.clamp(0, i32::from(side as u16)) as u16;
         let pixels = |[least, most]: [i32; 2], side| [within((least >> SUBPIXEL) - 2, side), within((most >> SUBPIXEL) + 3, side)];
@@ -186,10 +192,13 @@ impl View {
         (area, ((inv_depth >> (DEPTH - 16)) as u16).saturating_add(SPARE))
     }
 
-    /// The radius of a ball in object space, [`crate::format::Radius`], in the world, Q18.14, with what is rounded on the way.
+    /// The radius of a ball in object space, [`crate::format::Radius`], in eye space, Q18.14, with what is rounded on the way.
+    ///
+    /// Each of the nine entries of the rotation is off by 0.501 of 2^-14 at most, so that a vector becomes longer by less than 1.51 of 2^-14 of
+    /// its length, where it ought to be at least half as long as it was: by less than 2^-12.
     fn ball(&self, radius: u16) -> i32 {
         let radius = ((u64::from(radius) * u64::from(self.scale)) >> 16) as i32;
-        radius + (radius >> 5) + 4
+        radius + (radius >> 12) + 4
     }
 }
 
@@ -200,9 +209,43 @@ mod tests {
         format::{Angle, Length, Scale},
         geometry::lens::tests::CAMERA,
         scene::Pose,
-        stream::record::{Camera, ORTHOGRAPHIC},
+        stream::record::{Camera, ORTHOGRAPHIC, PERSPECTIVE},
     };
     use embedded_graphics_core::geometry::Size;
+    use proptest::prelude::*;
+
+    proptest! {
+        #![proptest_config(ProptestConfig { cases: 3_000, failure_persistence: None, ..ProptestConfig::default() })]
+
+        /// No vertex is seen outside of the pixels that its object can reach, nor nearer.
+        #[test]
+        fn boxes_reach_as_far_as_their_vertices(
+            vertices in prop::collection::vec(prop::array::uniform3(-16_384i16..16_384), 1..6),
+            (bits, is_perspective) in (0u32..13, any::<bool>()),
+            angles in prop::array::uniform3(any::<u32>()),
+            at in prop::array::uniform3(-3.0f64..3.0),
+            scale in 1u32 << 12..1 << 17,
+        ) {
+            let vertices = vertices.iter().map(|vertex| vertex.map(|c| c >> bits));
+            let projection = if is_perspective { PERSPECTIVE } else { ORTHOGRAPHIC };
+            let camera = Camera { projection, focal: 1 << 17, near: 1 << 13, far: 1 << 17, translation: [0, 0, 70_000], ..CAMERA };
+            let [yaw, pitch, roll] = angles.map(Angle::from_bits);
+            let pose = Pose::from_euler(yaw, pitch, roll).at(at.map(Length::from_num)).unwrap().scaled(Scale::from_bits(scale)).unwrap();
+            let (size, model_view) = (Size::new(200, 160), ModelView::new(&camera, 0).of(&pose));
+            let view = View::new(&Lens::new(&camera, size), &model_view);
+            let (area, nearest) = view.reached(&BoundingVolume::around(vertices.clone()));
+            for vertex in vertices {
+                let eye = view.to_eye(vertex);
+                let ([x, y, depth], is_inside) = view.lens.project(eye);
+                let (column, row) = (x >> SUBPIXEL, y >> SUBPIXEL);
+                let is_seen = is_inside && (0..200).contains(&column) && (0..160).contains(&row) && (is_perspective || eye[2] <= camera.far);
+                if is_seen {
+                    prop_assert!(area.columns().contains(&(column as u32)) && area.rows().contains(&(row as u32)), "{area:?} {column} {row}");
+                    prop_assert!((depth >> (DEPTH - 16)) as u16 <= nearest, "{depth} {nearest}");
+                }
+            }
+        }
+    }
 
     /// The eye is the point that goes to the origin, the direction towards the viewer the one that goes to -z.
     #[test]

@@ -48,21 +48,25 @@ pub struct Lighting {
     pub eye: [i32; 3],
 }
 
-/// L and H, Q2.30, of each light of a scene in the world; no vectors of those that are near. They are computed once a frame, and of each
-/// object's only the rotation is its own.
-pub struct Directions([[[i32; 3]; 2]; MAX_LIGHTS]);
+/// The directions of a scene's lights in the world. They are computed once a frame, and of each object's only the rotation is its own.
+pub struct Directions {
+    /// L and H, Q2.30, of each light; no vectors of those that are near.
+    vectors: [[[i32; 3]; 2]; MAX_LIGHTS],
+    /// Whether none is near.
+    is_all: bool,
+}
 
 impl Directions {
     /// Of the lights of a scene, at most [`MAX_LIGHTS`], whose `world` is seen so.
     #[must_use]
     pub fn new(lights: &[Light], world: &ModelView) -> Self {
-        let mut directions = [[[0; 3]; 2]; MAX_LIGHTS];
-        for (direction, light) in directions.iter_mut().zip(lights).filter(|(_, light)| light.kind == DIRECTIONAL) {
+        let mut vectors = [[[0; 3]; 2]; MAX_LIGHTS];
+        for (direction, light) in vectors.iter_mut().zip(lights).filter(|(_, light)| light.kind == DIRECTIONAL) {
             let unit = normalise(light.vector);
             let towards = if light.space == EYE_SPACE { world.to_object(unit) } else { unit };
             *direction = [towards, half(towards, towards_eye(world))];
         }
-        Self(directions)
+        Self { vectors, is_all: lights.iter().all(|light| light.kind == DIRECTIONAL) }
     }
 }
 
@@ -82,11 +86,11 @@ impl Lighting {
 
     /// Changes it to the lights of a scene, whose directions are known, for an object seen as `model_view` says.
     pub fn place(&mut self, camera: &Camera, lights: &[Light], directions: &Directions, model_view: &ModelView) {
-        for ((source, light), towards) in self.sources.iter_mut().zip(lights).zip(&directions.0) {
+        for ((source, light), towards) in self.sources.iter_mut().zip(lights).zip(&directions.vectors) {
             *source = Source::new(light, towards, model_view);
         }
         self.count = lights.len() as u32;
-        self.directional = lights.iter().all(|light| light.kind == DIRECTIONAL).into();
+        self.directional = directions.is_all.into();
         let is_local = camera.viewer == VIEWER_LOCAL && camera.projection == PERSPECTIVE;
         let ([right, up, _], towards_eye) = (model_view.rotation, towards_eye(model_view));
         (self.is_local, self.viewer) = (is_local.into(), if is_local { model_view.eye() } else { towards_eye });

@@ -92,8 +92,13 @@ impl VertexStage<'_> {
     #[inline(always)]
     pub(crate) fn light_up(&self, screen: &mut ScreenVertex, vertex: &Vertex) {
         if screen.state == State::READY && screen.light == [0; 4] {
-            screen.light = self.light_at(vertex);
+            screen.light = self.late_light(vertex);
         }
+    }
+
+    #[inline(never)]
+    fn late_light(&self, vertex: &Vertex) -> [i32; 4] {
+        self.light_at(vertex)
     }
 
     /// The position of `corner` on the screen; it is transformed at its first use.

@@ -22,6 +22,7 @@
 
 mod angle;
 mod background;
+mod bounding_volume;
 mod error;
 mod object;
 pub(crate) mod orbit;
@@ -30,6 +31,7 @@ mod pose;
 pub use crate::stream::record::MAX_POSITION;
 pub use angle::SIN_COS_ERROR;
 pub use background::Background;
+pub(crate) use bounding_volume::BoundingVolume;
 pub use error::SceneError;
 pub use object::Object;
 pub use orbit::{CIRCLE_ERROR, ORBIT_ERROR, ROTATION_ERROR};

@@ -1,7 +1,7 @@
 //! One object of a scene.
 
 use crate::{
-    scene::pose::Pose,
+    scene::{bounding_volume::BoundingVolume, pose::Pose},
     stream::{
         Stream,
         record::{Mesh, OWN_MATERIALS},
@@ -25,10 +25,9 @@ pub struct Object {
     /// Triangles of its meshes as they are.
     pub(crate) triangles: u32,
     pub(crate) vertices: u32,
-    /// No vertex lies farther from the origin, [`crate::format::Radius`].
-    pub(crate) radius: u16,
     /// Whether its meshes have coarser levels.
     pub(crate) has_levels: u16,
+    pub(crate) bounds: BoundingVolume,
     /// Whether it lies otherwise than in the latest frame.
     pub(crate) has_moved: u32,
 }
@@ -50,7 +49,13 @@ impl Object {
                 (triangles, vertices) = (triangles.saturating_add(mesh.triangles), vertices.saturating_add(mesh.vertices.into()));
             }
         }
-        let radius = if all.len() == stream.meshes.len() { stream.header.radius } else { radius(stream, all) };
+        // Coarser levels have vertices of their meshes.
+        let whole = all.iter().filter(|mesh| mesh.error == 0);
+        let corners = whole.flat_map(|mesh| stream.vertices_of(mesh).unwrap_or_default()).map(|vertex| vertex.position);
+        let mut bounds = BoundingVolume::around(corners);
+        if all.len() == stream.meshes.len() {
+            bounds.radius = stream.header.radius;
+        }
         Some(Self {
             pose: Pose::IDENTITY,
             meshes: [meshes.start, meshes.end],
@@ -59,7 +64,7 @@ impl Object {
             span,
             triangles,
             vertices,
-            radius,
+            bounds,
             has_levels: all.iter().any(|mesh| mesh.error > 0).into(),
             has_moved: 1,
         })
@@ -103,16 +108,4 @@ impl Object {
     pub(crate) fn material_of(&self, mesh: &Mesh) -> usize {
         usize::from(if self.material == OWN_MATERIALS { mesh.material } else { self.material })
     }
-}
-
-/// No vertex of these meshes lies farther from the origin, [`crate::format::Radius`], rounded up.
-fn radius(stream: &Stream<'_>, meshes: &[Mesh]) -> u16 {
-    let mut largest = 0u32;
-    for mesh in meshes.iter().filter(|mesh| mesh.error == 0) {
-        for vertex in stream.vertices_of(mesh).unwrap_or_default() {
-            largest = largest.max(vertex.position.iter().map(|&c| u32::from(c.unsigned_abs()).pow(2)).sum());
-        }
-    }
-    let root = largest.isqrt();
-    (root + u32::from(root * root < largest)).min(u16::MAX.into()) as u16
 }
