@@ -1,7 +1,7 @@
 //! What `bench` counts is exact, the same each time, and has not grown since somebody last looked.
 
 use microphong_sim::{
-    bench::{Bench, Processor, baseline, callgrind::Counters, renewal::Growth, stage::Meter, styles},
+    bench::{Bench, Processor, baseline, callgrind::Counters, renewal::Growth, stage::Meter, styles, styles::RedrawCost},
     board::{Blocks, elf::Elf, trace},
     scene,
     shader::Shader,
@@ -48,6 +48,54 @@ fn styles_are_told_apart() {
         assert!(others[..2].iter().all(|other| *other > plain), "dither and antialiasing");
     }
     assert!(gouraud[3] > gouraud[0] && gouraud[2] > gouraud[1] && split[3].is_none());
+}
+
+/// A ball stands still, and a small box beside it moves.
+const BALL_AND_BOX: &str = "
+frames = 3
+
+[camera]
+at = [0, 0, 4]
+looks-at = [0, 0, 0]
+view = 45
+near = 2
+
+[[light]]
+towards = [0, 0, 1]
+
+[[mesh]]
+name = 'ball'
+shape = 'sphere'
+
+[[mesh]]
+name = 'box'
+shape = 'box'
+
+[[object]]
+mesh = 'ball'
+
+[[object]]
+mesh = 'box'
+keys = [{ frame = 0, at = [-1.3, 1, 0], scale = 0.1 }, { frame = 2, at = [-1.2, 1, 0], scale = 0.1 }]
+";
+
+/// Where little moves, little is drawn again; a scene that does not move is refused.
+#[test]
+fn what_has_changed_is_counted_alone() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("scene.toml");
+    let load = |text: &str| {
+        fs::write(&path, text).unwrap();
+        scene::load(path.to_str().unwrap()).unwrap()
+    };
+    let redraw = |scene| styles::redraw(&Counters::default(), &scene, &[Shader::GOURAUD], &|| ());
+    let costs = redraw(load(BALL_AND_BOX)).unwrap();
+    println!("{costs:?}");
+    let [RedrawCost { frames: 2, whole, with_hidden_objects, redrawn, .. }] = costs[..] else { panic!("{costs:?}") };
+    assert!(redrawn * 5 < whole && redrawn > 10_000 && with_hidden_objects.abs_diff(whole) * 50 < whole);
+    let still =
+        redraw(load(&BALL_AND_BOX.replace("frames = 3", "frames = 1").replace(", { frame = 2, at = [-1.2, 1, 0], scale = 0.1 }", "")));
+    assert!(still.unwrap_err().to_string().contains("one frame"));
 }
 
 /// Two runs, each side by side with others, give the same to the instruction and cycle.

@@ -505,6 +505,7 @@ fn wrong_usage_is_told_from_failure() {
     place.fails(&["bench", "--renew", "costs.csv", "--reason", " "], 2, &["--reason", "a reason is needed"]);
     place.fails(&["bench", "--reason", "none"], 2, &["--renew <FILE>"]);
     place.fails(&["bench", "--styles", "--board", "pico"], 2, &["--styles", "--board"]);
+    place.fails(&["bench", "--redraw", "--skips"], 2, &["--redraw", "--skips"]);
     place.fails(&["paint"], 2, &["paint"]);
     place.fails(&[], 2, &["Usage"]);
 }

@@ -1,8 +1,8 @@
-//! What styles cost, and what is spared by leaving out what nobody can see: instructions of whole frames on x86-64, by the program that
-//! `stress` counts with, which draws in every style.
+//! What styles cost, and what is spared by leaving out what nobody can see, or what has not changed: instructions of frames on x86-64, by
+//! the program that `stress` counts with, which draws in every style.
 
 use crate::{Processor, callgrind::Counters};
-use anyhow::{Context, Result};
+use anyhow::{Context, Result, ensure};
 use embedded_graphics_core::geometry::Size;
 use microphong::{Skips, pixel::Rgb565Be};
 use microphong_render::{
@@ -77,6 +77,53 @@ pub fn measure(
         let instructions = styles.into_iter().map(count).collect::<Result<_>>()?;
         tick();
         Ok(StyleCosts { scene: scene.name.clone(), shader: shader.name(), pixels: stats.pixels, styles: names, instructions })
+    });
+    costs.collect()
+}
+
+/// Rows of the bands in which animations are counted, as displays of 320x240 pixels are sent.
+const ANIMATION_ROWS: u32 = 16;
+
+/// What a scene's animation takes by one method, in instructions of a frame on average, clearing included.
+#[derive(Clone, Debug, Serialize)]
+pub struct RedrawCost {
+    /// Name of the scene.
+    pub scene: String,
+    /// Name of the method.
+    pub shader: &'static str,
+    /// Frames that are counted: all but the first.
+    pub frames: u32,
+    /// Rows of a band.
+    pub band_rows: u32,
+    /// Whole frames.
+    pub whole: u64,
+    /// Whole frames with objects that others hide in the rows of a band.
+    pub with_hidden_objects: u64,
+    /// Only what has changed.
+    pub redrawn: u64,
+}
+
+/// Counts the frames of the animation of `scene` behind the first by `shaders`; `tick` is called for each method.
+///
+/// # Errors
+/// When the scene has one frame, this is no x86-64 computer, valgrind is missing, or the scene cannot be drawn.
+pub fn redraw(counters: &Counters, scene: &Scene, shaders: &[Shader], tick: &(dyn Fn() + Sync)) -> Result<Vec<RedrawCost>> {
+    let (width, height) = Processor::X86_64.size();
+    let frames = u32::from(scene.stream.parse().with_context(|| scene.name.clone())?.header.frames).saturating_sub(1);
+    ensure!(frames > 0, "{}: its animation has one frame, so that nothing is drawn again; choose a scene that moves", scene.name);
+    let costs = shaders.par_iter().map(|&shader| {
+        let plain = Style::from(shader);
+        let seen = Style { skips: Skips { hidden_objects: false, ..Skips::ALL }, ..plain };
+        let mean = |style, in_part| -> Result<u64> {
+            let (stream, size, format) = (scene.stream.clone(), [width, height], Format::Rgb565);
+            let case = Case { stream, size, frame: 0, style, format, band_rows: ANIMATION_ROWS };
+            let all = counters.animation(&case, in_part)?.with_context(|| format!("{} cannot draw {}", shader.name(), scene.name))?;
+            Ok(all / u64::from(frames))
+        };
+        let (whole, with_hidden_objects, redrawn) = (mean(plain, false)?, mean(seen, false)?, mean(plain, true)?);
+        tick();
+        let (scene, shader) = (scene.name.clone(), shader.name());
+        Ok(RedrawCost { scene, shader, frames, band_rows: ANIMATION_ROWS, whole, with_hidden_objects, redrawn })
     });
     costs.collect()
 }

@@ -1,4 +1,4 @@
-//! One frame, drawn by the core as a board draws it.
+//! One frame, or all of an animation, drawn by the core as a board draws it.
 
 use embedded_graphics_core::{
     geometry::Size,
@@ -6,21 +6,25 @@ use embedded_graphics_core::{
 };
 use microphong::{Layout, Renderer, Shader, Skips, Stats, Stream};
 use microphong_literature::ALL;
-use std::{error::Error, fs, hint::black_box};
+use std::{error::Error, fs, hint::black_box, ops::Range};
 use zerocopy::IntoBytes;
 
 /// Callgrind knows it by its name, and starts from zero where it begins.
 #[inline(never)]
-fn counted_frame(renderer: &mut Renderer<'_, Rgb565>, number: u32, band: &mut [Rgb565]) -> Stats {
-    let mut frame = renderer.frame(number);
-    while let Ok(Some(_)) = frame.next_band(band) {}
-    frame.stats()
+fn counted_frame(renderer: &mut Renderer<'_, Rgb565>, numbers: Range<u32>, band: &mut [Rgb565]) -> Stats {
+    let mut stats = Stats::default();
+    for number in numbers {
+        let mut frame = renderer.frame(number);
+        while let Ok(Some(_)) = frame.next_band(band) {}
+        stats = frame.stats();
+    }
+    stats
 }
 
 /// Callgrind writes down what it has counted where this ends.
 #[inline(never)]
-fn dumped_frame(renderer: &mut Renderer<'_, Rgb565>, number: u32, band: &mut [Rgb565]) -> Stats {
-    black_box(counted_frame(renderer, number, band))
+fn dumped_frame(renderer: &mut Renderer<'_, Rgb565>, numbers: Range<u32>, band: &mut [Rgb565]) -> Stats {
+    black_box(counted_frame(renderer, numbers, band))
 }
 
 /// A frame that is wanted, and how it is to be drawn.
@@ -33,6 +37,10 @@ pub(crate) struct Wanted<'w> {
     /// Name of the method.
     shader: &'w str,
     number: u32,
+    /// All frames of the animation behind this one are wanted, in place of this one.
+    animation: bool,
+    /// Only what has changed is drawn.
+    redraw: bool,
     dither: bool,
     antialias: bool,
     perspective_correct: bool,
@@ -46,10 +54,13 @@ impl<'w> Wanted<'w> {
         let (width, height) = size.split_once('x').ok_or("a size is WIDTHxHEIGHT")?;
         let size = Size::new(width.parse()?, height.parse()?);
         let rows = rows.parse()?;
-        let (dither, antialias, perspective_correct) = (false, false, false);
-        let mut wanted = Self { path, size, rows, shader, number: 0, dither, antialias, perspective_correct, skips: Skips::ALL };
+        let (animation, redraw, dither, antialias, perspective_correct) = (false, false, false, false, false);
+        let skips = Skips::ALL;
+        let mut wanted = Self { path, size, rows, shader, number: 0, animation, redraw, dither, antialias, perspective_correct, skips };
         for option in options {
             match option.split_once('=').unwrap_or((option, "")) {
+                ("animation", "") => wanted.animation = true,
+                ("redraw", "") => wanted.redraw = true,
                 ("dither", "") => wanted.dither = true,
                 ("antialias", "") => wanted.antialias = true,
                 ("perspective-correct", "") => wanted.perspective_correct = true,
@@ -84,10 +95,17 @@ impl<'w> Wanted<'w> {
         #[cfg(feature = "styles")]
         renderer.set_skips(self.skips);
         renderer.check_band(&band)?;
-        // Tables of materials are computed once, and not by the frame that is counted; objects are placed by it.
+        // Tables of materials are computed once, and not by the frames that are counted.
         let _ = renderer.frame(self.number);
-        renderer.set_levels_of_detail(true);
-        let Stats { drawn, pixels, .. } = dumped_frame(&mut renderer, self.number, &mut band);
+        let numbers = if self.animation {
+            self.number + 1..u32::from(stream.header.frames)
+        } else {
+            // Objects are placed by it.
+            renderer.set_levels_of_detail(true);
+            self.number..self.number + 1
+        };
+        renderer.set_partial_redraw(self.redraw);
+        let Stats { drawn, pixels, .. } = dumped_frame(&mut renderer, numbers, &mut band);
         println!("{drawn} {pixels}");
         Ok(())
     }

@@ -18,7 +18,7 @@ use microphong_sim::{
             table::{Table, short},
         },
         renewal::{self, Growth},
-        styles::{self, Named, StyleCosts},
+        styles::{self, Named, RedrawCost, StyleCosts},
     },
     scene::{self, Scene},
     shader::Shader,
@@ -63,15 +63,19 @@ pub(crate) struct Arguments {
     /// computer.
     #[arg(long, conflicts_with_all = ["board", "report", "peers", "styles"])]
     skips: bool,
+    /// Count all frames of the scenes' animations but the first instead, in bands of 16 rows on this computer: whole, with objects that
+    /// others hide, and nothing but what has changed.
+    #[arg(long, conflicts_with_all = ["board", "report", "peers", "styles", "skips"])]
+    redraw: bool,
     /// Measure the frames that FILE lists, and fail where one costs over 0.2 % more instructions or flash than recorded there.
-    #[arg(long, value_name = "FILE", conflicts_with_all = ["scenes", "shader", "board", "json", "report", "peers", "styles", "skips"])]
+    #[arg(long, value_name = "FILE", conflicts_with_all = ["scenes", "shader", "board", "json", "report", "peers", "styles", "skips", "redraw"])]
     check: Option<PathBuf>,
     /// Measure the frames that FILE lists, and record what they cost; a --reason is needed.
     #[arg(
         long,
         value_name = "FILE",
         requires = "reason",
-        conflicts_with_all = ["scenes", "shader", "board", "json", "report", "peers", "styles", "skips", "check"]
+        conflicts_with_all = ["scenes", "shader", "board", "json", "report", "peers", "styles", "skips", "redraw", "check"]
     )]
     renew: Option<PathBuf>,
     /// Why costs have changed, in a sentence: --renew of costs.csv adds it to costs-reasons.md.
@@ -89,6 +93,7 @@ Examples:
   microphong bench --peers --board mps2-an385,mps2-an386,x86-64    beside other renderers
   microphong bench --styles                              what dither, antialiasing and perspective cost
   microphong bench all --skips                           what is spared where nobody can see it
+  microphong bench board --redraw --shader auto          what is spared where nothing has changed
   microphong bench --check tests/baselines/costs.csv     has anything become dearer?
   microphong bench --renew tests/baselines/costs.csv --reason \"Thin triangles no longer flicker.\"
                                                          it has, and this is why
@@ -130,6 +135,9 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome> {
         let possible = |shader: Shader| scene.stream.parse().is_ok_and(|stream| check(&stream, shader.facts(), false).is_ok());
         shaders.iter().copied().filter(|&shader| !all || possible(shader)).collect::<Vec<_>>()
     };
+    if arguments.redraw {
+        return redraws(&scenes, wanted, arguments.json);
+    }
     if arguments.styles || arguments.skips {
         let styles = if arguments.styles { styles::styles } else { styles::skips };
         return in_styles(&scenes, wanted, styles, arguments.json);
@@ -191,6 +199,29 @@ fn in_styles(scenes: &[Scene], wanted: impl Fn(&Scene) -> Vec<Shader>, styles: f
     }
     bar.finish_and_clear();
     Ok(Outcome::Done)
+}
+
+/// Counts the animations of `scenes` by the `wanted` methods.
+fn redraws(scenes: &[Scene], wanted: impl Fn(&Scene) -> Vec<Shader>, json: bool) -> Result<Outcome> {
+    let bar = report::progress(scenes.iter().map(|scene| wanted(scene).len() as u64).sum(), "counting instructions");
+    let counters = Counters::default();
+    for scene in scenes {
+        let costs = styles::redraw(&counters, scene, &wanted(scene), &|| bar.inc(1))?;
+        bar.suspend(|| costs.iter().try_for_each(|cost| if json { report::json(cost) } else { redrawn(cost) }))?;
+    }
+    bar.finish_and_clear();
+    Ok(Outcome::Done)
+}
+
+fn redrawn(cost: &RedrawCost) -> Result<()> {
+    let RedrawCost { scene, shader, frames, band_rows, whole, with_hidden_objects, redrawn } = cost;
+    let (times, share) = (*with_hidden_objects as f64 / *whole as f64, 100.0 * *redrawn as f64 / *whole as f64);
+    report::line(&format!(
+        "x86-64, {scene}, {shader}: {} instructions a frame, mean of {frames} in bands of {band_rows} rows; with hidden-objects {times:.2} times; \
+         what has changed alone {}, {share:.1} %",
+        report::grouped(*whole),
+        report::grouped(*redrawn)
+    ))
 }
 
 fn in_style(cost: &StyleCosts) -> Result<()> {

@@ -28,11 +28,26 @@ thread_local! {
 
 impl Count for Counters {
     fn count(&self, case: &Case) -> Result<Option<u64>> {
+        self.counted(case, "")
+    }
+}
+
+impl Counters {
+    /// Counts the frames of the animation behind that of `case`, together; `in_part` only what has changed from one to the next. `None` if
+    /// the method cannot draw it in this style.
+    ///
+    /// # Errors
+    /// When this is no x86-64 computer, valgrind is missing, or the scene cannot be drawn.
+    pub fn animation(&self, case: &Case, in_part: bool) -> Result<Option<u64>> {
+        self.counted(case, if in_part { " animation redraw" } else { " animation" })
+    }
+
+    fn counted(&self, case: &Case, options: &str) -> Result<Option<u64>> {
         let program = self.0.get_or_init(|| build().map_err(|error| format!("{error:#}"))).as_ref().map_err(|error| anyhow!("{error}"))?;
         COUNTER.with_borrow_mut(|counter| {
             // One that has failed is not asked again.
             let mut running = counter.take().map_or_else(|| Counter::start(program), Ok)?;
-            let counted = running.count(case)?;
+            let counted = running.count(case, options)?;
             *counter = Some(running);
             Ok(counted)
         })
@@ -68,10 +83,10 @@ impl Counter {
     }
 
     /// Draws a case, and counts; `None` if the method cannot draw it in this style.
-    fn count(&mut self, case: &Case) -> Result<Option<u64>> {
+    fn count(&mut self, case: &Case, options: &str) -> Result<Option<u64>> {
         let stream = Scratch::new(case.stream.as_bytes())?;
         let died = "the program that draws has ended under callgrind";
-        writeln!(self.questions, "{} {}", stream.path().display(), words(case)).context(died)?;
+        writeln!(self.questions, "{} {}{options}", stream.path().display(), words(case)).context(died)?;
         let mut answer = String::new();
         ensure!(self.answers.read_line(&mut answer).context(died)? > 0, "{died}");
         if answer.starts_with("refused") {
