@@ -46,20 +46,16 @@ pub enum RenderError {
     },
     /// A picture would not lie on the display.
     Corner,
-    /// The stream has something that is not part of this build.
+    /// The stream has something, or the program asks for something, that is not part of this build.
     Feature {
         /// The feature that it takes.
         name: &'static str,
     },
-    /// Antialiasing is not part of this build.
-    Antialias,
     /// None of the program's methods is the one that the stream asks for.
     Missing {
         /// The number of the missing method, see [`crate::method::Facts::id`].
         method: u16,
     },
-    /// Interpolation in perspective is not part of this build.
-    NoPerspective,
     /// The method cannot shade under near lights or for a near viewer.
     Light {
         /// The method's name.
@@ -92,13 +88,11 @@ impl fmt::Display for RenderError {
             Self::NoSamples => f.write_str("antialiasing needs memory of its own; ask for it by Layout::antialias"),
             Self::Band { need } => write!(f, "a band of pixels must hold a row of the picture, {need} pixels"),
             Self::Corner => f.write_str("the picture would reach beyond the display; move it or make it smaller"),
-            Self::Feature { name } => write!(f, "this build cannot draw the scene; build it with the feature {name}"),
-            Self::Antialias => f.write_str("this build cannot antialias; build it with the feature antialias"),
+            Self::Feature { name } => write!(f, "this needs the feature {name}; build the program with it"),
             Self::Budget => f.write_str("an error budget must be 1/2 to 16"),
             Self::Missing { method } => {
                 write!(f, "this program has no shading method number {method}, for which the stream asks; convert it with another --shader")
             }
-            Self::NoPerspective => f.write_str("this build cannot interpolate in perspective; build it with the feature perspective"),
             Self::Light { shader } => {
                 write!(f, "{shader} shading needs directional lights and an infinitely far viewer; this scene has near ones")
             }

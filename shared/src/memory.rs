@@ -22,7 +22,7 @@ use zerocopy::{FromBytes, Immutable, IntoBytes, KnownLayout};
 ///
 /// const LAYOUT: Layout = Layout::new(240, 40).vertices(1024).triangles(1024);
 /// static MEMORY: [u64; LAYOUT.words::<Rgb565>()] = [0; LAYOUT.words::<Rgb565>()];
-/// assert_eq!(LAYOUT.bytes::<Rgb565>(), 76_400);
+/// assert_eq!(LAYOUT.bytes::<Rgb565>(), 76_416);
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Layout {

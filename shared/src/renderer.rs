@@ -153,7 +153,7 @@ impl<'a, C: Pixel> Renderer<'a, C> {
     /// # Errors When this build or the method in use cannot interpolate in perspective; nothing changes then.
     pub fn set_perspective_correct(&mut self, on: bool) -> Result<(), RenderError> {
         if on && !cfg!(feature = "perspective") {
-            return Err(RenderError::NoPerspective);
+            return Err(RenderError::Feature { name: "perspective" });
         }
         let scene = &self.scene;
         check_scene(scene.camera(), scene.lights(), scene.materials(), self.settings.shader.facts(), on)?;
@@ -197,7 +197,7 @@ impl<'a, C: Pixel> Renderer<'a, C> {
     pub fn set_antialias(&mut self, antialias: bool) -> Result<(), RenderError> {
         self.settings.antialias = false;
         if antialias && !cfg!(feature = "antialias") {
-            return Err(RenderError::Antialias);
+            return Err(RenderError::Feature { name: "antialias" });
         }
         if antialias && self.memory.samples.is_empty() {
             return Err(RenderError::NoSamples);

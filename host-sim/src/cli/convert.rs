@@ -112,7 +112,7 @@ pub(crate) struct Arguments {
     #[arg(long)]
     local_viewer: bool,
     /// Picture for which the camera is set up; others show the same with more border.
-    #[arg(long, value_name = "WxH", default_value = "640x480", value_parser = parse::size)]
+    #[arg(long, value_name = "WxH", default_value = "320x240", value_parser = parse::size)]
     size: (u32, u32),
     /// Make the mesh of so many triangles at most, on some of its vertices, and say how far it lies from the mesh of the file. Levels of --lod
     /// count from what is left.
@@ -328,8 +328,11 @@ fn convert_script(arguments: &Arguments, target: &Path, counter: Option<&Counter
     let count = |n: usize| report::grouped(n as u64);
     let SceneLine { scene, output, objects, meshes, triangles, frames, bytes, layout, memory, costs } = line;
     report::line(&format!(
-        "{output}: {objects} objects of {meshes} meshes and {} triangles, {frames} frames, from {scene}",
-        count(triangles)
+        "{output}: {} of {} and {}, {}, from {scene}",
+        report::counted(objects, ["object", "objects"]),
+        report::counted(meshes, ["mesh", "meshes"]),
+        report::counted(triangles, report::TRIANGLES),
+        report::counted(frames, report::FRAMES)
     ))?;
     report::line(&format!("  {} bytes of flash", count(bytes)))?;
     report::line(&format!("  {layout}, {} bytes of memory for Rgb565", count(memory)))?;
@@ -383,8 +386,8 @@ fn surface(arguments: &Arguments) -> Surface {
 
 fn text(line: &Line<'_>) -> Result<()> {
     let count = |n: usize| report::grouped(n as u64);
-    let (vertices, triangles, bytes) = (count(line.vertices), count(line.triangles), count(line.bytes));
-    report::line(&format!("{}: {vertices} vertices, {triangles} triangles, {bytes} bytes", line.output))?;
+    let (vertices, triangles) = (report::counted(line.vertices, report::VERTICES), report::counted(line.triangles, report::TRIANGLES));
+    report::line(&format!("{}: {vertices}, {triangles}, {} bytes", line.output, count(line.bytes)))?;
     let normals = if line.own_normals { "normals from the file" } else { "normals computed" };
     let turned = if line.turned { ", surface turned inside out" } else { "" };
     let (welded, degenerate) = (count(line.welded), count(line.degenerate));

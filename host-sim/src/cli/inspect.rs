@@ -124,9 +124,9 @@ fn text(file: &str, stream: &Stream<'_>) -> Result<()> {
     let kind = if camera.projection == PERSPECTIVE { "perspective" } else { "parallel rays" };
     let orbit = if camera.period == 0 { "stands still".to_owned() } else { format!("one turn in {} frames", camera.period) };
     let viewer = if header.camera.viewer == VIEWER_LOCAL { "local" } else { "infinite" };
-    let frames = header.frames;
+    let frames = report::counted(header.frames, report::FRAMES);
     let shader = Shader::by_id(header.shader).map_or_else(|| format!("number {}", header.shader), |shader| shader.name().to_owned());
-    report::line(&format!("  {kind}, {viewer} viewer, {orbit}, {frames} frames, shader {shader}"))
+    report::line(&format!("  {kind}, {viewer} viewer, {orbit}, {frames}, shader {shader}"))
 }
 
 fn levels(stream: &Stream<'_>) -> Vec<Level> {
@@ -153,7 +153,9 @@ fn closed_convex(stream: &Stream<'_>) -> usize {
 fn moving(stream: &Stream<'_>) -> String {
     let of = |kind| stream.tracks.iter().filter(|track| track.kind == kind && track.keys > 1).count();
     let camera = if of(CAMERA_TRACK) > 0 { "the camera moves" } else { "the camera stands still" };
-    format!("{} objects and {} lights move, {camera}", of(OBJECT_TRACK), of(LIGHT_TRACK))
+    let (objects, lights) =
+        (report::counted(of(OBJECT_TRACK), ["object", "objects"]), report::counted(of(LIGHT_TRACK), ["light", "lights"]));
+    format!("{objects} and {lights} move, {camera}")
 }
 
 /// The texts of a scene.

@@ -100,6 +100,17 @@ pub(crate) fn start() {
     }
 }
 
+/// So many of something that has these names if there is one, and if there are others.
+pub(crate) fn counted(number: impl TryInto<u64>, [one, many]: [&str; 2]) -> String {
+    let number = number.try_into().unwrap_or(u64::MAX);
+    format!("{} {}", grouped(number), if number == 1 { one } else { many })
+}
+
+/// Names of what is counted.
+pub(crate) const TRIANGLES: [&str; 2] = ["triangle", "triangles"];
+pub(crate) const VERTICES: [&str; 2] = ["vertex", "vertices"];
+pub(crate) const FRAMES: [&str; 2] = ["frame", "frames"];
+
 /// 12345 as 12,345.
 pub(crate) fn grouped(number: u64) -> String {
     let digits = number.to_string();

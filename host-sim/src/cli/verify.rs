@@ -137,7 +137,7 @@ fn lacking(board: Board, shader: Shader, json: bool) -> Result<()> {
 fn text(result: &Report, artefacts: &std::path::Path) -> Result<()> {
     let [pixels, differing, ram, flash, stack] =
         [result.pixels, result.differing, result.ram_bytes, result.flash_bytes, result.stack_bytes].map(report::grouped);
-    let frames = if result.frames == 1 { "1 frame".to_owned() } else { format!("{} frames", result.frames) };
+    let frames = report::counted(result.frames, report::FRAMES);
     let verdict = if result.differing == 0 { "all equal".to_owned() } else { format!("{differing} differ, see {}", artefacts.display()) };
     let Report { board, scene, shader, .. } = result;
     report::line(&format!("{board}, {scene}, {}: {frames}, {pixels} pixels, {verdict}", shader.name()))?;
