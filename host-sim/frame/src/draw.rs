@@ -75,7 +75,7 @@ impl<'w> Wanted<'w> {
         Ok(wanted)
     }
 
-    /// Draws it, and prints triangles drawn and pixels.
+    /// Draws it, and prints triangles drawn and pixels, those of the last frame.
     pub(crate) fn draw(&self) -> Result<(), Box<dyn Error>> {
         let bytes = fs::read(self.path)?;
         // Read in place, so the bytes must be aligned.

@@ -47,7 +47,7 @@ pub(crate) struct Arguments {
     /// or all.
     #[arg(long, value_name = "B,...", default_value = "mps2-an385", value_parser = processors)]
     board: Several<Processor>,
-    /// Print one JSON object per frame.
+    /// Print one JSON object per frame, or per animation.
     #[arg(long)]
     json: bool,
     /// Write DIR/index.html, run time against error, growth and break-even on one page, and DIR/chart.svg.
@@ -206,8 +206,12 @@ fn redraws(scenes: &[Scene], wanted: impl Fn(&Scene) -> Vec<Shader>, json: bool)
     let bar = report::progress(scenes.iter().map(|scene| wanted(scene).len() as u64).sum(), "counting instructions");
     let counters = Counters::default();
     for scene in scenes {
-        let costs = styles::redraw(&counters, scene, &wanted(scene), &|| bar.inc(1))?;
-        bar.suspend(|| costs.iter().try_for_each(|cost| if json { report::json(cost) } else { redrawn(cost) }))?;
+        match styles::redraw(&counters, scene, &wanted(scene), &|| bar.inc(1)) {
+            Ok(costs) => bar.suspend(|| costs.iter().try_for_each(|cost| if json { report::json(cost) } else { redrawn(cost) }))?,
+            // Others may move.
+            Err(error) if scenes.len() > 1 => bar.suspend(|| report::error(&format!("{error:#}"))),
+            Err(error) => return Err(error),
+        }
     }
     bar.finish_and_clear();
     Ok(Outcome::Done)

@@ -2,10 +2,10 @@
 //!
 //! The front faces of a convex body do not hide one another: seen exactly, no pixel belongs to two. What is drawn is not that exact picture
 //! `G` but `F`, whose corners are rounded, in the mesh, in eye space, and on the screen; each coordinate is moved by at most `d`
-//! ([`crate::geometry::lens::Lens::moved`]). So a triangle that is thinner than it is moved may turn over, or let its neighbours overlap. A triangle is *thick* if
-//! it lies in the viewport and is at least `3 d` thick in `F`. A triangle that is not thick, and may show its front in `G`, *marks* the
-//! cells of a coarse grid that lie within `3 d` of its bounding box. A triangle whose box touches no marked cell is drawn without depth
-//! test, all others are drawn with it, and the picture is the same:
+//! ([`crate::geometry::lens::Lens::moved`]). So a triangle that is thinner than it is moved may turn over, or let its neighbours overlap. A
+//! triangle is *thick* if it lies in the viewport and is at least `3 d` thick in `F`. A triangle that is not thick, and may show its front
+//! in `G`, *marks* the cells of a coarse grid that lie within `3 d` of its bounding box. A triangle whose box touches no marked cell is
+//! drawn without depth test, all others are drawn with it, and the picture is the same:
 //!
 //! No pixel of a triangle `T` that is drawn without depth belongs to another one that is drawn. Suppose that the pixel `p` belongs to `T'`
 //! as well. Neither marks its cell, so both are thick. On a thick triangle the displacement `G - F`, linear and no longer than √2 d at the

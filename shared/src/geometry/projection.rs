@@ -4,12 +4,12 @@ use crate::{
     arch::product::product,
     format::{DEPTH, ROTATION, SUBPIXEL, UNIT},
     geometry::{area::Area, lens::Lens, model_view::ModelView},
-    math::vector::{add, dot, map, narrow_dot, wide, zip},
+    math::vector::{add, dot, map, narrow_dot, sub, wide, zip},
     scene::BoundingVolume,
 };
 use zerocopy::{FromBytes, Immutable, IntoBytes, KnownLayout};
 
-/// A lit vertex on the screen.
+/// A vertex on the screen.
 #[derive(FromBytes, IntoBytes, Immutable, KnownLayout, Clone, Copy, Debug)]
 #[repr(C)]
 pub struct ScreenVertex {
@@ -21,7 +21,7 @@ pub struct ScreenVertex {
     pub depth: i32,
     /// What [`crate::method::VertexLight`] says: N·L and N·H of a constant light in Q2.30, and of a second one, or light levels in Q9.7.
     pub light: [i32; 4],
-    /// Whether position and light are those of this frame.
+    /// Whether the position is that of this frame.
     pub state: State,
 }
 
@@ -43,7 +43,7 @@ pub struct State(u32);
 impl State {
     /// The vertex is not transformed: no triangle that faces the camera has used it.
     pub const IDLE: Self = Self(0);
-    /// Position and light are those of this frame.
+    /// The position is that of this frame, and so is the light where a triangle that is drawn uses the vertex.
     pub const READY: Self = Self(1);
     /// The vertex lies in front of the near plane or beyond the guard band: its triangles are clipped.
     pub const OUTSIDE: Self = Self(2);
@@ -51,6 +51,12 @@ impl State {
 
 /// Depths that the buffer tells apart: by no more may a pixel be nearer than the corners of its triangle are, by what is rounded.
 const SPARE: u16 = 4;
+
+/// A step of refinement in [`View::viewer`] below this leaves less than one unit in the last place.
+const LARGEST_STEP: u32 = 32;
+
+/// Steps after one that is larger.
+const MORE_STEPS: usize = 3;
 
 /// The transformation from object space to the screen in one frame, in memory of the renderer.
 #[derive(FromBytes, IntoBytes, Immutable, KnownLayout, Clone, Copy, Debug)]
@@ -144,18 +150,26 @@ impl View {
     /// half a unit in the last place on average, and with this `model_view`, of which the view is.
     ///
     /// Error: less than one and a half units in the last place along each axis of the eye (tests::viewer_inverts_the_way_to_eye_space).
-    /// Source: one step of refinement (Wilkinson 1963) from the exact rotation, whose inverse is its transpose.
+    /// Source: refinement (Wilkinson 1963) of the way back by the transpose, which is the inverse of an exact rotation.
     #[must_use]
     pub fn viewer(&self, model_view: &ModelView) -> [i32; 3] {
-        // Below 2^22 in size; Q.29.
+        // Q.14, below 2^21 in size.
         let from = if self.is_perspective() { self.translation } else { [0, 0, 1 << UNIT] };
+        // Q.29, less half of its last place.
         let from_finely = |c: i32| if self.is_perspective() { (2 * i64::from(c) - 1) << UNIT } else { i64::from(c) << (UNIT + 1) };
-        // The way back by the exact rotation, of which the rounded one differs by less than 2^-12, as does the inverse of the scale.
         let back = |v| map(model_view.to_object(v), |c| (product(c, self.inverse_scale as i32) >> ((self.shift + 2) & 63)) as i32);
+        // What is left of the way there and back, Q.29, below 2^30 in size: the rotation has 2^-14 as its last place, as `viewer` has.
+        let rest = |viewer| zip(self.rotation, from, |row, c| (2 * dot(row, viewer) + from_finely(c)) as i32);
+        let step = |viewer| map(back(rest(viewer)), |c| (c + (1 << UNIT)) >> (UNIT + 1));
         let first = map(back(from), |c| -c);
-        // What is left of the way there and back, below 2^30 in size; the rotation has 2^-14 as its last place, as `first` has.
-        let rest = zip(self.rotation, from, |row, c| (2 * dot(row, first) + from_finely(c)) as i32);
-        zip(first, back(rest), |c, rest| c - ((rest + (1 << UNIT)) >> (UNIT + 1)))
+        let second = step(first);
+        let viewer = sub(first, second);
+        // What is too much becomes less by a factor of 2^-12, as the rounded rotation and the inverse of the scale are so exact; of 2^-5 where
+        // a camera's rows are as far from unit vectors as a stream may have them.
+        if map(second, i32::unsigned_abs).iter().all(|&c| c < LARGEST_STEP) {
+            return viewer;
+        }
+        (0..MORE_STEPS).fold(viewer, |viewer, _| sub(viewer, step(viewer)))
     }
 
     /// Upper bound of the distance between the eye and a vertex of a mesh in the ball of `radius` about the origin, Q18.14; 1 under
@@ -172,11 +186,7 @@ impl View {
     /// it can be, in the format of the depth buffer. Errs on the side of more.
     #[must_use]
     pub(crate) fn reached(&self, bounds: &BoundingVolume) -> (Area, u16) {
-        // Along each axis of eye space the sides of the box add up, or the ball is shorter. Both ways are rounded down.
-        let (half, ball) = (map(bounds.half, i32::from), self.ball(bounds.radius));
-        let half = map(self.rotation, |row| (narrow_dot(map(row, i32::abs), half) >> (self.shift & 31)) + 2);
-        let sides = zip(self.to_eye(bounds.middle), half, |middle, half| [middle - half, middle + half]);
-        let sides = zip(sides, self.translation, |[least, most], origin| [least.max(origin - ball), most.min(origin + ball)]);
+        let sides = self.sides(bounds);
         let (size, [.., [nearest, farthest]]) = (self.lens.size(), sides);
         if farthest < self.lens.near || !self.is_perspective() && nearest > self.lens.far {
             return (Area::NONE, 0);
@@ -192,13 +202,22 @@ impl View {
         (area, ((inv_depth >> (DEPTH - 16)) as u16).saturating_add(SPARE))
     }
 
+    /// The least and the largest coordinate along each axis of eye space, Q18.14, that a vertex within these bounds can have.
+    fn sides(&self, bounds: &BoundingVolume) -> [[i32; 2]; 3] {
+        // Half of the box along each axis, and no farther from the origin than the ball. Both products are rounded down, hence 2.
+        let (half, ball) = (map(bounds.half, i32::from), self.ball(bounds.radius));
+        let half = map(self.rotation, |row| (narrow_dot(map(row, i32::abs), half) >> (self.shift & 31)) + 2);
+        let sides = zip(self.to_eye(bounds.middle), half, |middle, half| [middle - half, middle + half]);
+        zip(sides, self.translation, |[least, most], origin| [least.max(origin - ball), most.min(origin + ball)])
+    }
+
     /// The radius of a ball in object space, [`crate::format::Radius`], in eye space, Q18.14, with what is rounded on the way.
     ///
-    /// Each of the nine entries of the rotation is off by 0.501 of 2^-14 at most, so that a vector becomes longer by less than 1.51 of 2^-14 of
-    /// its length, where it ought to be at least half as long as it was: by less than 2^-12.
+    /// 1/64 is spared: squared lengths of a camera's rows are right to 1/256, so that they are 1/512 too long at most; half a turn about an axis
+    /// that is too long by as much adds 2/256; and the nine entries, each rounded by half of 2^-14, add less than 2^-12.
     fn ball(&self, radius: u16) -> i32 {
         let radius = ((u64::from(radius) * u64::from(self.scale)) >> 16) as i32;
-        radius + (radius >> 12) + 4
+        radius + (radius >> 6) + 4
     }
 }
 
@@ -217,25 +236,29 @@ mod tests {
     proptest! {
         #![proptest_config(ProptestConfig { cases: 3_000, failure_persistence: None, ..ProptestConfig::default() })]
 
-        /// No vertex is seen outside of the pixels that its object can reach, nor nearer.
+        /// No vertex lies beyond the sides of its object in eye space, is seen outside of the pixels that it can reach, or nearer.
         #[test]
-        fn boxes_reach_as_far_as_their_vertices(
-            vertices in prop::collection::vec(prop::array::uniform3(-16_384i16..16_384), 1..6),
-            (bits, is_perspective) in (0u32..13, any::<bool>()),
+        fn bounds_reach_as_far_as_vertices(
+            vertices in prop::collection::vec(prop::array::uniform3(any::<i16>()), 1..6),
+            (bits, is_perspective, is_stretched) in (0u32..13, any::<bool>(), any::<bool>()),
             angles in prop::array::uniform3(any::<u32>()),
-            at in prop::array::uniform3(-3.0f64..3.0),
-            scale in 1u32 << 12..1 << 17,
+            (at, reach) in (prop::array::uniform3(-1.0f64..1.0), 0.1f64..16.0),
+            (scale, number) in (1u32 << 12..=1 << 19, 0u32..60),
         ) {
             let vertices = vertices.iter().map(|vertex| vertex.map(|c| c >> bits));
             let projection = if is_perspective { PERSPECTIVE } else { ORTHOGRAPHIC };
             let camera = Camera { projection, focal: 1 << 17, near: 1 << 13, far: 1 << 17, translation: [0, 0, 70_000], ..CAMERA };
+            let camera = if is_stretched { stretched(camera) } else { camera };
             let [yaw, pitch, roll] = angles.map(Angle::from_bits);
-            let pose = Pose::from_euler(yaw, pitch, roll).at(at.map(Length::from_num)).unwrap().scaled(Scale::from_bits(scale)).unwrap();
-            let (size, model_view) = (Size::new(200, 160), ModelView::new(&camera, 0).of(&pose));
+            let pose = Pose::from_euler(yaw, pitch, roll).at(at.map(|c| Length::from_num(c * reach))).unwrap();
+            let (size, model_view) = (Size::new(200, 160), ModelView::new(&camera, number).of(&pose.scaled(Scale::from_bits(scale)).unwrap()));
             let view = View::new(&Lens::new(&camera, size), &model_view);
-            let (area, nearest) = view.reached(&BoundingVolume::around(vertices.clone()));
+            let bounds = BoundingVolume::around(vertices.clone());
+            let (sides, (area, nearest)) = (view.sides(&bounds), view.reached(&bounds));
             for vertex in vertices {
                 let eye = view.to_eye(vertex);
+                let is_within = eye.iter().zip(sides).all(|(&c, [least, most])| (least..=most).contains(&c));
+                prop_assert!(is_within, "{eye:?} {sides:?}");
                 let ([x, y, depth], is_inside) = view.lens.project(eye);
                 let (column, row) = (x >> SUBPIXEL, y >> SUBPIXEL);
                 let is_seen = is_inside && (0..200).contains(&column) && (0..160).contains(&row) && (is_perspective || eye[2] <= camera.far);
@@ -247,12 +270,22 @@ mod tests {
         }
     }
 
+    /// Thirds as components of vectors that are longer than unit vectors by as much as a stream may have them.
+    fn longer(thirds: [i32; 3]) -> [i32; 3] {
+        thirds.map(|c| (f64::from(c) / 3.0 * f64::from(1 << ROTATION) * 1.001_95) as i32)
+    }
+
+    /// A camera with such rows, which turns about such an axis.
+    fn stretched(camera: Camera) -> Camera {
+        Camera { rotation: [[2, -2, 1], [1, 2, 2], [2, 1, -2]].map(longer), axis: longer([2, 1, 2]), period: 60, ..camera }
+    }
+
     /// The eye is the point that goes to the origin, the direction towards the viewer the one that goes to -z.
     #[test]
     fn viewer_inverts_the_way_to_eye_space() {
         let scales = [1 << 16, 1 << 12, 1 << 19, (1 << 16) + 1, (1 << 16) - 1, (1 << 18) + 12_345, (1 << 19) - 1, 54_321, 5_000];
         for (number, scale) in (0..50).flat_map(|number| scales.map(|scale| (number, scale))) {
-            let mut camera = Camera {
+            let camera = Camera {
                 translation: [3_000 - 977 * number, 12_345, 50_000 + 4_001 * number],
                 axis: [619_925_131, 619_925_131, 619_925_131],
                 period: 50,
@@ -262,18 +295,20 @@ mod tests {
             };
             let pose = Pose::from_euler(Angle::from_num(f64::from(number) * 0.019), Angle::from_num(0.7), Angle::from_num(0.2));
             let pose = pose.at([0.5, -1.0, 0.25].map(Length::from_num)).unwrap().scaled(Scale::from_bits(scale)).unwrap();
-            let model_view = ModelView::new(&camera, number as u32).of(&pose);
-            let off = |camera: &Camera, last: [f64; 3]| {
-                let view = View::new(&Lens::new(camera, Size::new(64, 64)), &model_view);
-                let viewer = view.viewer(&model_view).map(i64::from);
-                let along = view.rotation.map(|row| row.iter().zip(viewer).map(|(&r, v)| i64::from(r) * v).sum::<i64>());
-                zip(along, last, |along, last| along as f64 / 16_384.0 + last)
-            };
-            let eye = off(&camera, model_view.translation.map(|c| f64::from(c) - 0.5));
-            assert!(eye.iter().all(|c| c.abs() < 1.5), "{number} {scale}: {eye:?}");
-            camera.projection = ORTHOGRAPHIC;
-            let towards = off(&camera, [0.0, 0.0, 16_384.0]);
-            assert!(towards.iter().all(|c| c.abs() < 1.5), "{number} {scale}: {towards:?}");
+            for camera in [camera, stretched(camera)] {
+                assert_eq!(camera.fault(), None);
+                let model_view = ModelView::new(&camera, number as u32).of(&pose);
+                let off = |camera: &Camera, last: [f64; 3]| {
+                    let view = View::new(&Lens::new(camera, Size::new(64, 64)), &model_view);
+                    let viewer = view.viewer(&model_view).map(i64::from);
+                    let along = view.rotation.map(|row| row.iter().zip(viewer).map(|(&r, v)| i64::from(r) * v).sum::<i64>());
+                    zip(along, last, |along, last| along as f64 / 16_384.0 + last)
+                };
+                let eye = off(&camera, model_view.translation.map(|c| f64::from(c) - 0.5));
+                assert!(eye.iter().all(|c| c.abs() < 1.5), "{number} {scale}: {eye:?}");
+                let towards = off(&Camera { projection: ORTHOGRAPHIC, ..camera }, [0.0, 0.0, 16_384.0]);
+                assert!(towards.iter().all(|c| c.abs() < 1.5), "{number} {scale}: {towards:?}");
+            }
         }
     }
 }

@@ -52,8 +52,8 @@ pub struct Lighting {
 pub struct Directions {
     /// L and H, Q2.30, of each light; no vectors of those that are near.
     vectors: [[[i32; 3]; 2]; MAX_LIGHTS],
-    /// Whether none is near.
-    is_all: bool,
+    /// Whether all lights are directional.
+    are_directional: bool,
 }
 
 impl Directions {
@@ -66,7 +66,7 @@ impl Directions {
             let towards = if light.space == EYE_SPACE { world.to_object(unit) } else { unit };
             *direction = [towards, half(towards, towards_eye(world))];
         }
-        Self { vectors, is_all: lights.iter().all(|light| light.kind == DIRECTIONAL) }
+        Self { vectors, are_directional: lights.iter().all(|light| light.kind == DIRECTIONAL) }
     }
 }
 
@@ -90,7 +90,7 @@ impl Lighting {
             *source = Source::new(light, towards, model_view);
         }
         self.count = lights.len() as u32;
-        self.directional = directions.is_all.into();
+        self.directional = directions.are_directional.into();
         let is_local = camera.viewer == VIEWER_LOCAL && camera.projection == PERSPECTIVE;
         let ([right, up, _], towards_eye) = (model_view.rotation, towards_eye(model_view));
         (self.is_local, self.viewer) = (is_local.into(), if is_local { model_view.eye() } else { towards_eye });

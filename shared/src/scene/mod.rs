@@ -434,7 +434,8 @@ impl<'a> Scene<'a> {
     /// # Errors
     /// When the camera is farther than 16 units from the origin of the world along one of its own axes.
     pub fn set_camera_pose(&mut self, pose: &Pose) -> Result<(), SceneError> {
-        let [x, y, z] = pose.matrix();
+        let one = 1 << ROTATION;
+        let [x, y, z] = pose.matrix().map(|row| row.map(|c| c.clamp(-one, one)));
         // Eye space is left-handed: x of the pose is to the left.
         let rotation = [[-x[0], -y[0], -z[0]], [x[1], y[1], z[1]], [x[2], y[2], z[2]]];
         let eye = pose.position().map(Length::to_bits);

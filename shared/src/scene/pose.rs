@@ -241,22 +241,21 @@ impl Pose {
         Scale::from_bits(self.scale)
     }
 
-    /// Rows of the rotation from object space to the world, Q2.30: orthonormal to a few units of the last place.
+    /// Rows of the rotation from object space to the world, Q2.30: orthonormal to a few units of the last place, by which entries may be above
+    /// one.
     #[must_use]
     pub(crate) fn matrix(&self) -> [[i32; 3]; 3] {
         let [w, x, y, z] = self.rotation;
-        // Twice the products, rounded: at most 2^31 + 2 in size, and with what they are taken from, a few units more than one.
+        // Twice the products, rounded: at most 2^31 + 8 in size, by [`QUATERNION_ERROR`], and 2^30 + 8 where they are taken from one.
         let twice = |sum: i64| ((sum + (1 << (ROTATION - 2))) >> (ROTATION - 1)) as i32;
-        let [xx, yy, zz] = [x, y, z].map(|c| product(c, c));
+        let [xx, yy, zz] = [product(x, x), product(y, y), product(z, z)];
         let [xy, yz, zx] = [product(x, y), product(y, z), product(z, x)];
         let [wx, wy, wz] = [product(w, x), product(w, y), product(w, z)];
-        let within = |c: i32| c.clamp(-ONE, ONE);
-        let beside = |sum| within(twice(sum));
-        let along = |sum| within(ONE.wrapping_sub(twice(sum)));
+        let along = |sum| ONE.wrapping_sub(twice(sum));
         [
-            [along(yy + zz), beside(xy - wz), beside(zx + wy)],
-            [beside(xy + wz), along(xx + zz), beside(yz - wx)],
-            [beside(zx - wy), beside(yz + wx), along(xx + yy)],
+            [along(yy + zz), twice(xy - wz), twice(zx + wy)],
+            [twice(xy + wz), along(xx + zz), twice(yz - wx)],
+            [twice(zx - wy), twice(yz + wx), along(xx + yy)],
         ]
     }
 }
