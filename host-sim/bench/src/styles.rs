@@ -81,7 +81,7 @@ pub fn measure(
     costs.collect()
 }
 
-/// Rows of the bands in which animations are counted, as displays of 320x240 pixels are sent.
+/// Rows of the bands in which animations are counted: as many as the layout has that `convert` prints.
 const ANIMATION_ROWS: u32 = 16;
 
 /// What a scene's animation takes by one method, in instructions of a frame on average, clearing included.
