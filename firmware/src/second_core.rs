@@ -100,7 +100,7 @@ pub struct TwoCores<C: 'static> {
 
 impl<D> Painter<D> for TwoCores<D::Color>
 where
-    D: Display<Color: Pixel<Stored: Sync> + Send + Sync> + Send,
+    D: Display<Color: Pixel + Send + Sync> + Send,
 {
     fn prepare<'r>(&mut self, renderer: &'r mut Renderer<'_, D::Color>, number: u32) -> Frame<'r, D::Color> {
         let mut preparation = renderer.prepare(number, self.earlier);

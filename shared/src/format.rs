@@ -100,6 +100,8 @@ pub const INVERSE_ALTITUDE: u32 = 2;
 pub const RAMP: usize = 512;
 /// Largest number of lights in one scene.
 pub const MAX_LIGHTS: usize = 8;
+/// Fraction bits of an [`Intensity`].
+pub const INTENSITY: u32 = 8;
 /// Light of three channels at a pixel, Q24.8 in 1/255 of full intensity, in [0, 256); above 255 counts as 255. One channel stands in the
 /// first place.
 pub type Intensity = [i32; 3];

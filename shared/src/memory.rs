@@ -2,7 +2,6 @@
 
 use crate::{
     coverage::sample::Sample,
-    format::RAMP,
     geometry::{bin::Entry, projection::ScreenVertex},
     lighting::reflectance::Reflectance,
     method::ErrorBounds,
@@ -22,7 +21,7 @@ use zerocopy::{FromBytes, Immutable, IntoBytes, KnownLayout};
 ///
 /// const LAYOUT: Layout = Layout::new(240, 40).vertices(1024).triangles(1024);
 /// static MEMORY: [u64; LAYOUT.words::<Rgb565>()] = [0; LAYOUT.words::<Rgb565>()];
-/// assert_eq!(LAYOUT.bytes::<Rgb565>(), 76_416);
+/// assert_eq!(LAYOUT.bytes::<Rgb565>(), 77_440);
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Layout {
@@ -146,7 +145,7 @@ impl Layout {
             + padded(self.materials * size_of::<Reflectance>())
             + padded(self.materials * size_of::<ErrorBounds>())
             + padded(self.samples() * size_of::<Sample>())
-            + padded(self.materials * size_of::<[C::Stored; RAMP]>())
+            + padded(self.materials * size_of::<C::Ramps>())
             + padded(self.band() * self.processors * size_of::<u16>());
         bytes / size_of::<u64>()
     }
@@ -178,7 +177,7 @@ pub(crate) struct Memory<'a, C: Pixel> {
     pub(crate) order: &'a mut [u32],
     /// One for each material, as in `ramps`, the tables of colours.
     pub(crate) reflectances: &'a mut [Reflectance],
-    pub(crate) ramps: &'a mut [[C::Stored; RAMP]],
+    pub(crate) ramps: &'a mut [C::Ramps],
     /// What a method that keeps to a budget knows of each material.
     pub(crate) error_bounds: &'a mut [ErrorBounds],
     /// Samples for antialiasing; empty without it.

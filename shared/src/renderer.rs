@@ -6,7 +6,7 @@ use crate::{
     format::{ErrorBudget, LARGEST_BUDGET, LEAST_BUDGET, LEVEL, MAX_LIGHTS},
     frame::{Frame, Preparation, Seams, Settings},
     geometry::{area::Area, lens::Lens, model_view::ModelView},
-    lighting::{lights::Directions, material_tables::fill_ramp},
+    lighting::{lights::Directions, material_tables::fill_ramps},
     memory::{Layout, Memory},
     method::Facts,
     pixel::{Pixel, gamma::Gamma},
@@ -121,13 +121,13 @@ impl<'a, C: Pixel> Renderer<'a, C> {
         let (shader, facts, ambient) = (settings.shader, settings.shader.facts(), scene.ambient);
         let lights: heapless::Vec<Light, MAX_LIGHTS> = heapless::Vec::from_slice(scene.lights()).unwrap_or_default();
         for (index, material) in scene.stale_materials() {
-            let (Some(reflectance), Some(ramp), Some(bounds)) =
+            let (Some(reflectance), Some(ramps), Some(bounds)) =
                 (reflectances.get_mut(index), ramps.get_mut(index), error_bounds.get_mut(index))
             else {
                 continue;
             };
             reflectance.fill::<C>(ambient, &material, &lights, (facts.highlight, facts.highlight_levels));
-            fill_ramp::<C>(ramp, reflectance, settings.gamma);
+            fill_ramps::<C>(ramps, reflectance, settings.dither, settings.gamma);
             *bounds = shader.method().error_bounds(reflectance, material.exponent, lights.len());
             #[cfg(feature = "skips")]
             reflectance.leave_out(settings.skips.highlights, settings.skips.lights);
@@ -176,11 +176,15 @@ impl<'a, C: Pixel> Renderer<'a, C> {
         Ok(())
     }
 
-    /// Turns 8x8 ordered dither on or off; at first it is on in formats that have a channel of at most four bits. Greys of so few bits are dithered
-    /// by the loops of methods, for few instructions more; without it they are drawn the general way, as all other formats are with it.
+    /// Turns ordered dither on or off; at first it is on in formats of less than eight bits a channel. All tables of the materials are computed anew.
+    ///
+    /// Where channels have five bits to seven, two thresholds take turns ([`crate::pixel::ramps`]), which costs nothing: like the squares of a
+    /// checkerboard, or by rows. Light of three channels is rounded by the loops of methods all the same. Formats of fewer bits have 64
+    /// thresholds in squares of eight by eight: greys are dithered by the loops of methods, for few instructions more, and without it
+    /// drawn the general way, as colours of so few bits are with it.
     pub fn set_dither(&mut self, dither: bool) {
         self.settings.dither = dither;
-        self.scene.set_view_changed();
+        self.scene.set_stale();
     }
 
     /// Corrects all colours for the curve of the display, such as [`crate::pixel::gamma::SRGB`], or does not; at first it does not, and light levels

@@ -7,8 +7,8 @@ use embedded_graphics::{
 use microphong::{
     Layout, RenderError, Renderer, Stats, Stream,
     coverage::area::TriangleCoverage,
-    format::{BIAS, Intensity, RAMP},
-    pixel::Pixel,
+    format::{BIAS, Intensity, RAMP, WALK},
+    pixel::{Pixel, ramps::Rounded},
 };
 use microphong_sim::{
     oracle::{self, Frame},
@@ -183,6 +183,7 @@ struct White(u8);
 
 impl Pixel for White {
     type Stored = u8;
+    type Ramps = Rounded<u8>;
 
     const GRAY: bool = true;
     const DEPTH: [u32; 3] = [8; 3];
@@ -214,7 +215,11 @@ impl Pixel for White {
         255
     }
 
-    fn rounded(_: Intensity) -> Self {
+    fn on_square([ramp]: &Rounded<u8>, level: u32, bits: u32) -> u8 {
+        Self::entry::<WALK>(ramp, level << (WALK - bits))
+    }
+
+    fn quantised(_: Intensity, _: u32) -> Self {
         Self(255)
     }
 

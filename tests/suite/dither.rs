@@ -1,10 +1,11 @@
-//! Greys of few bits, dithered by loops as by the general way: against the picture of 256 greys and thresholds in floating point.
+//! Greys of few bits, dithered by loops as by the general way: against the picture of 256 greys and thresholds in floating point. Colours of five
+//! bits to seven, dithered by two thresholds in turn: against rounded ones, and against a picture of eight bits.
 
 use embedded_graphics::{
     geometry::Size,
-    pixelcolor::{BinaryColor, Gray2, Gray4, Gray8},
+    pixelcolor::{Bgr565, BinaryColor, Gray2, Gray4, Gray8, Rgb565, Rgb666, Rgb888},
 };
-use microphong::pixel::{Pixel, dither::threshold};
+use microphong::pixel::{Pixel, Rgb565Be, dither::threshold};
 use microphong_sim::{
     render::{self, Style},
     scene,
@@ -13,10 +14,14 @@ use microphong_sim::{
 
 const SIZE: Size = Size::new(120, 90);
 
-fn picture<C: Pixel>(scene: &str, style: Style) -> Vec<u8> {
+fn channels<C: Pixel>(scene: &str, style: Style) -> Vec<[u8; 3]> {
     let scene = scene::load(scene).expect("built-in scene");
     let (pixels, _) = render::frame::<C>(scene.stream.parse().expect("a stream"), SIZE, style, 16, 3).expect("a picture");
-    pixels.into_iter().map(|pixel| pixel.channels()[0]).collect()
+    pixels.into_iter().map(Pixel::channels).collect()
+}
+
+fn picture<C: Pixel>(scene: &str, style: Style) -> Vec<u8> {
+    channels::<C>(scene, style).into_iter().map(|[grey, ..]| grey).collect()
 }
 
 /// Every pixel is the level of 256 greys plus its threshold, rounded down to the greys that there are; or, without dither, the nearest grey.
@@ -51,4 +56,95 @@ fn few_greys_are_dithered_by_their_tables() {
             }
         }
     }
+}
+
+/// Which of two thresholds a pixel has, or `None` if it may have either.
+type Turn = fn(usize, usize) -> Option<usize>;
+
+const SQUARES: Turn = |x, y| Some((x + y) % 2);
+const ROWS: Turn = |_, y| Some(y % 2);
+const EITHER: Turn = |_, _| None;
+
+/// Where the threshold is lower than that which rounds, no channel is more than rounded, and elsewhere none is less; none is off by more than a step.
+/// Returns how many channels are not the rounded ones, and how far the means of two by two pixels lie from those of eight bits a channel on
+/// average, in steps, dithered and rounded, where all four are rounded to the same: within a step that could be seen.
+fn turns<C: Pixel>(scene: &str, style: Style, turn: Turn) -> (usize, [f64; 2]) {
+    let draw = |dither| channels::<C>(scene, Style { dither, ..style });
+    let (dithered, rounded) = (draw(true), draw(false));
+    let mut others = 0;
+    for (pixel, (dithered, rounded)) in dithered.iter().zip(&rounded).enumerate() {
+        let (x, y) = (pixel % SIZE.width as usize, pixel / SIZE.width as usize);
+        for (&dithered, &rounded) in dithered.iter().zip(rounded) {
+            let within = match turn(x, y) {
+                Some(0) => i16::from(rounded) - 1..=i16::from(rounded),
+                Some(_) => i16::from(rounded)..=i16::from(rounded) + 1,
+                None => i16::from(rounded) - 1..=i16::from(rounded) + 1,
+            };
+            let name = style.shader.name();
+            assert!(within.contains(&i16::from(dithered)), "{scene} by {name}, {x} {y}: {dithered}, and {rounded} if rounded");
+            others += usize::from(dithered != rounded);
+        }
+    }
+    let fine = channels::<Rgb888>(scene, Style { dither: false, ..style });
+    let width = SIZE.width as usize;
+    let mean = |pixels: &[[u8; 3]], first: usize, channel: usize| {
+        [0, 1, width, width + 1].iter().map(|at| f64::from(pixels[first + at][channel])).sum::<f64>() / 4.0
+    };
+    let off = |pixels: &[[u8; 3]]| {
+        let (mut sum, mut count) = (0.0, 0.0);
+        let background = fine[0];
+        for first in (0..SIZE.height as usize - 1).step_by(2).flat_map(|y| (0..width - 1).step_by(2).map(move |x| y * width + x)) {
+            let square = [0, 1, width, width + 1].map(|at| first + at);
+            // Red and blue, whose steps are the widest.
+            for channel in [0, 2] {
+                let is_one = square.iter().all(|&at| fine[at] != background && rounded[at][channel] == rounded[first][channel]);
+                if is_one {
+                    let steps = f64::from((1u32 << C::DEPTH[channel]) - 1);
+                    sum += (mean(pixels, first, channel) - mean(&fine, first, channel) / 255.0 * steps).abs();
+                    count += 1.0;
+                }
+            }
+        }
+        sum / count
+    };
+    (others, [off(&dithered), off(&rounded)])
+}
+
+/// Colours of five and six bits are dithered where light is one level: like the squares of a checkerboard where that is walked, by rows where it is
+/// computed at the pixel; and the mean of neighbours comes closer to what it should be.
+#[test]
+fn colours_are_dithered_by_turns() {
+    for scene in ["sphere-168", "teapot", "torus", "sphere-690"] {
+        for (shader, turn) in [(Shader::GOURAUD, SQUARES), (Shader::SIX_POINT, SQUARES), (Shader::PHONG, ROWS), (Shader::AUTO, EITHER)] {
+            let style = Style::from(shader);
+            let (others, [dithered, rounded]) = turns::<Rgb565>(scene, style, turn);
+            println!("{scene} by {}: {others} channels, {dithered:.3} of {rounded:.3} steps off", shader.name());
+            assert!(others > 1000 && dithered < 0.75 * rounded, "{scene} by {}: {others}, {dithered}, {rounded}", shader.name());
+            let (others, _) = turns::<Rgb666>(scene, style, turn);
+            assert!(others > 1000);
+            let all = channels::<Rgb565>(scene, Style { dither: true, ..style });
+            assert!(channels::<Rgb565Be>(scene, Style { dither: true, ..style }) == all, "the order of bytes changes nothing");
+            assert!(channels::<Bgr565>(scene, Style { dither: true, ..style }) == all, "nor does that of channels");
+        }
+    }
+}
+
+/// The general way takes turns by rows, in three channels as well, and in each pixel that a smooth edge blends.
+#[test]
+fn the_general_way_dithers_by_rows() {
+    for scene in ["sphere-168", "torus", "peer-sphere-lights"] {
+        let style = Style { perspective_correct: true, ..Shader::RENQ_NEWTON.into() };
+        let (others, [dithered, rounded]) = turns::<Rgb565>(scene, style, ROWS);
+        println!("{scene}: {others} channels, {dithered:.3} of {rounded:.3} steps off");
+        assert!(others > 1000 && dithered < 0.75 * rounded, "{scene}: {others}, {dithered}, {rounded}");
+        let (others, _) = turns::<Rgb565>(scene, Style { antialias: true, ..style }, ROWS);
+        assert!(others > 1000);
+    }
+}
+
+/// A face of one colour takes turns by rows, unless its colour is looked up in three channels.
+#[test]
+fn faces_of_one_colour_are_dithered_by_rows() {
+    let (others, [dithered, rounded]) = turns::<Rgb565>("sphere-690", Shader::FLAT.into(), ROWS);
+    assert!(others > 1000 && dithered < 0.75 * rounded, "{others}, {dithered}, {rounded}");
 }

@@ -64,7 +64,7 @@ fn parts_of_random_triangles_cover_each_pixel_once() {
     let (w, h) = (WIDTH as i32 * 16, HEIGHT as i32 * 16);
     let (mut triangles, mut covered) = (0, 0u64);
     // Every level is the same colour.
-    let tables = MaterialTables::<Gray8> { ramp: &[1; RAMP], reflectance: &Reflectance::EMPTY };
+    let tables = MaterialTables::<Gray8> { ramps: &[[1; RAMP]], reflectance: &Reflectance::EMPTY };
     let cases = cases(12_000) as usize;
     for i in 0..cases {
         let corners = match i % 5 {
@@ -106,7 +106,7 @@ fn parts_of_random_triangles_cover_each_pixel_once() {
                 };
                 drawn[k] += if k == 0 {
                     let screen = ScreenTriangle::new(corners, [0, WIDTH as i32], [top, top + rows].map(|row| row as i32));
-                    screen.draw(&gradients, Constant, Solid::<Gray8>(1), &mut band)
+                    screen.draw(&gradients, Constant, Solid::<Gray8>([1; 2]), &mut band)
                 } else {
                     let mut chance = Random::new(splits, 0);
                     let mut chance = (i % 3 > 0 && rows == HEIGHT).then_some(&mut chance);

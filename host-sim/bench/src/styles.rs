@@ -18,13 +18,12 @@ use std::iter;
 /// A way of drawing, by name.
 pub type Named = (String, Style);
 
-/// The plain style of a method, dither, antialiasing and interpolation in perspective.
+/// The plain style of a method, antialiasing and interpolation in perspective.
 #[must_use]
 pub fn styles(shader: Shader) -> Vec<Named> {
     let plain = Style::from(shader);
     let named = [
         ("plain", plain),
-        ("dither", Style { dither: true, ..plain }),
         ("antialias", Style { antialias: true, ..plain }),
         ("perspective-correct", Style { perspective_correct: true, ..plain }),
     ];

@@ -6,7 +6,7 @@ use microphong::{
     Stream,
     format::{BIAS, CHANNEL, Intensity, RAMP, WALK},
     method::{Highlight, Reflectance},
-    pixel::Pixel,
+    pixel::{Pixel, ramps::Rounded},
     stream::record::Material,
 };
 use microphong_render::{
@@ -24,6 +24,7 @@ const ONE_CHANNEL: [u32; 3] = [u32::MAX; 3];
 impl Pixel for Fine {
     /// Levels of three channels, or [`ONE_CHANNEL`].
     type Stored = [u32; 3];
+    type Ramps = Rounded<[u32; 3]>;
 
     const GRAY: bool = false;
     const DEPTH: [u32; 3] = [8; 3];
@@ -68,7 +69,11 @@ impl Pixel for Fine {
         [between(0), between(1), between(2)]
     }
 
-    fn rounded(intensity: Intensity) -> Self {
+    fn on_square([ramp]: &Rounded<[u32; 3]>, level: u32, bits: u32) -> [u32; 3] {
+        Self::entry::<WALK>(ramp, level << (WALK - bits))
+    }
+
+    fn quantised(intensity: Intensity, _: u32) -> Self {
         Self(Some(intensity.map(|level| ((level as u32) << (WALK - 8)) + ((BIAS as u32) << WALK) + (1 << (WALK - 1)))))
     }
 

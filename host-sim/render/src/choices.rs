@@ -224,6 +224,7 @@ impl<C: Pixel> Traced<C> {
 
 impl<C: Pixel> Pixel for Traced<C> {
     type Stored = C::Stored;
+    type Ramps = C::Ramps;
 
     const GRAY: bool = C::GRAY;
     const DEPTH: [u32; 3] = C::DEPTH;
@@ -250,8 +251,8 @@ impl<C: Pixel> Pixel for Traced<C> {
         self.pixel.bits()
     }
 
-    fn tabled(channels: [u32; 3]) -> C::Stored {
-        C::tabled(channels)
+    fn tabled(channels: [u32; 3], threshold: u32) -> C::Stored {
+        C::tabled(channels, threshold)
     }
 
     fn shown(stored: C::Stored, threshold: u32) -> Self {
@@ -262,8 +263,12 @@ impl<C: Pixel> Pixel for Traced<C> {
         C::entry::<BITS>(ramp, level)
     }
 
-    fn rounded(intensity: Intensity) -> Self {
-        Self::new(C::rounded(intensity))
+    fn on_square(ramps: &C::Ramps, level: u32, bits: u32) -> C::Stored {
+        C::on_square(ramps, level, bits)
+    }
+
+    fn quantised(intensity: Intensity, threshold: u32) -> Self {
+        Self::new(C::quantised(intensity, threshold))
     }
 
     fn mixed(levels: [i32; 3]) -> Self {

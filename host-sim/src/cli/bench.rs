@@ -56,7 +56,7 @@ pub(crate) struct Arguments {
     /// Also measure other renderers on the same scenes, on the boards mps2-an385, mps2-an386 and x86-64, and print ours beside theirs.
     #[arg(long)]
     peers: bool,
-    /// Count dither, antialiasing and interpolation in perspective beside the plain style instead, on this computer.
+    /// Count antialiasing and interpolation in perspective beside the plain style instead, on this computer.
     #[arg(long, conflicts_with_all = ["board", "report", "peers"])]
     styles: bool,
     /// Count with each thing that is left out of frames because nobody can see it beside frames without all of them instead, on this
@@ -91,7 +91,7 @@ Examples:
   microphong bench all --shader all --board all --json   everything
   microphong bench peer-sphere --shader all --board all --report bench    the chart, as a page
   microphong bench --peers --board mps2-an385,mps2-an386,x86-64    beside other renderers
-  microphong bench --styles                              what dither, antialiasing and perspective cost
+  microphong bench --styles                              what antialiasing and perspective cost
   microphong bench all --skips                           what is spared where nobody can see it
   microphong bench board --redraw --shader auto          what is spared where nothing has changed
   microphong bench --check tests/baselines/costs.csv     has anything become dearer?

@@ -45,7 +45,7 @@ pub(crate) struct Arguments {
     /// Interpolate in perspective: right where a triangle reaches from near to far.
     #[arg(long)]
     perspective_correct: bool,
-    /// Ordered dither: hides the steps of formats with few colours. rgb332, gray2 and binary have it unless --no-dither is given.
+    /// Ordered dither: hides the steps of formats with few colours. All of less than eight bits a channel have it unless --no-dither is given.
     #[arg(long)]
     dither: bool,
     /// Rounded colours where a format has dither.
@@ -77,7 +77,7 @@ Examples:
   microphong render teapot
   microphong render teapot --shader gouraud --size 320x240 -o gouraud.png
   microphong render bunny --antialias
-  microphong render mesh.tri --format gray4 --dither
+  microphong render mesh.tri --format gray4 --no-dither
   microphong render mesh.tri --format binary --size 128x64
   microphong render bunny --frames 120 -o bunny.apng
   microphong render torus --frames 30 -o frames/

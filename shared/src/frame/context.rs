@@ -1,7 +1,6 @@
 //! What all rows of a frame have in common. It does not change while they are drawn, so two processors can read it at the same time.
 
 use crate::{
-    format::RAMP,
     frame::skips::Skips,
     geometry::{
         area::Area,
@@ -87,7 +86,7 @@ pub(crate) struct Context<'r, C: Pixel> {
     pub(crate) vertices: &'r [ScreenVertex],
     /// One for each material, as in `ramps`, the tables of colours.
     pub(crate) reflectances: &'r [Reflectance],
-    pub(crate) ramps: &'r [[C::Stored; RAMP]],
+    pub(crate) ramps: &'r [C::Ramps],
     /// What a method that keeps to a budget knows of each material.
     pub(crate) error_bounds: &'r [ErrorBounds],
 }
@@ -194,10 +193,10 @@ impl<'r, C: Pixel> Context<'r, C> {
     pub(crate) fn drawing<'s>(&'s self, placed: &PlacedMesh<'s>) -> Option<(MeshPass<'s, C>, TriangleLoops<C>)> {
         let Settings { shader, dither, gamma, .. } = self.settings;
         let (stream, material, stage) = (&self.scene.stream, placed.material, self.stage(placed)?);
-        let (reflectance, ramp) = (self.reflectances.get(material)?, self.ramps.get(material)?);
+        let (reflectance, ramps) = (self.reflectances.get(material)?, self.ramps.get(material)?);
         let perspective = self.settings.perspective_correct && stage.view.is_perspective();
         let lighting = stage.lighting;
-        let output = Output::new(MaterialTables { ramp, reflectance }, *dither, *gamma);
+        let output = Output::new(MaterialTables { ramps, reflectance }, *dither, *gamma);
         let style = Style {
             three_channels: reflectance.three_channels(),
             lights: if lighting.is_constant() { reflectance.lights() } else { 0 },

@@ -46,6 +46,17 @@ pub trait Patch: Copy {
     }
 }
 
+/// A polynomial that can carry a checkerboard in its highest bit.
+pub trait Checkered: Patch {
+    /// Half of the range of 2^32 more at every other pixel, in all channels: at those whose column and row are not both even or both odd. It
+    /// stands on `row`. Values have one bit less then, and what is above wraps as before.
+    #[must_use]
+    fn checkered(self, row: i32) -> Self;
+}
+
+/// Half of the range of a walked value.
+const HALF_RANGE: i32 = i32::MIN;
+
 /// `f` of each channel. Written out, since at opt-level "s" a loop over channels goes through memory.
 #[inline(always)]
 pub(crate) fn each_channel<const CH: usize>(mut f: impl FnMut(usize)) {
@@ -179,5 +190,45 @@ impl<A: Walker, B: Walker> Walker for (A, B) {
     #[inline(always)]
     fn value(&self) -> Self::Value {
         (self.0.value(), self.1.value())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{Checkered, Patch, Walker, plane::Plane, quadric::Quadric};
+    use proptest::prelude::*;
+
+    /// `checkered` has half of the range more than `plain`, which stands on the same row, where column and row are not both even or both odd.
+    fn check<P: Checkered<Walker: Walker<Value = [u32; 1]>>>(mut plain: P, row: i32, x: i32, jump: i32) -> Result<(), TestCaseError> {
+        let mut checkered = plain.checkered(row);
+        let mut row = row;
+        for step in 0..6 {
+            let (mut walker, mut expected) = (checkered.enter(x), plain.enter(x));
+            for column in (x - 5..x).rev() {
+                walker.step();
+                expected.step();
+                let square = ((column ^ row) as u32 & 1) << 31;
+                prop_assert_eq!(walker.value()[0], expected.value()[0] ^ square, "column {}, row {}", column, row);
+            }
+            if step == 3 {
+                plain.jump(jump);
+                checkered.jump(jump);
+                row += jump;
+            } else {
+                plain.step_row();
+                checkered.step_row();
+                row += 1;
+            }
+        }
+        Ok(())
+    }
+
+    proptest! {
+        /// The highest bit alternates from column to column and from row to row, also behind a jump, and all others are as they were.
+        #[test]
+        fn the_highest_bit_is_a_checkerboard(words: [u32; 6], row in -3000..3000, x in -3000..3000, jump in -3000..3000) {
+            check(Plane::<1>::load(&words).expect("three words"), row, x, jump)?;
+            check(Quadric::<1>::load(&words).expect("six words"), row, x, jump)?;
+        }
     }
 }

@@ -1,7 +1,7 @@
 //! Linear fields.
 
 use crate::{
-    interpolate::{Patch, Walker, each_channel},
+    interpolate::{Checkered, HALF_RANGE, Patch, Walker, each_channel},
     setup::gradients::Gradients,
 };
 
@@ -118,6 +118,18 @@ impl<const CH: usize> Patch for Plane<CH> {
             walker.step[c] = row.dx as u32;
         });
         walker
+    }
+}
+
+impl<const CH: usize> Checkered for Plane<CH> {
+    #[inline(always)]
+    fn checkered(mut self, row: i32) -> Self {
+        for channel in &mut self.0 {
+            channel.c = channel.c.wrapping_add(HALF_RANGE.wrapping_mul(row));
+            channel.dx = channel.dx.wrapping_add(HALF_RANGE);
+            channel.dy = channel.dy.wrapping_add(HALF_RANGE);
+        }
+        self
     }
 }
 

@@ -1,7 +1,7 @@
 //! Quadratic fields.
 
 use crate::{
-    interpolate::{Patch, Walker, each_channel},
+    interpolate::{Checkered, HALF_RANGE, Patch, Walker, each_channel},
     setup::{gradients::Gradients, word_sized::QUADRATIC},
 };
 
@@ -156,6 +156,18 @@ impl<const CH: usize> Patch for Quadric<CH> {
             walker.d2[c] = row.dxx.wrapping_mul(2) as u32;
         });
         walker
+    }
+}
+
+impl<const CH: usize> Checkered for Quadric<CH> {
+    #[inline(always)]
+    fn checkered(mut self, row: i32) -> Self {
+        for channel in &mut self.0 {
+            channel.c = channel.c.wrapping_add(HALF_RANGE.wrapping_mul(row));
+            channel.dx = channel.dx.wrapping_add(HALF_RANGE);
+            channel.c_down = channel.c_down.wrapping_add(HALF_RANGE);
+        }
+        self
     }
 }
 

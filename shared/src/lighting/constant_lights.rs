@@ -4,13 +4,45 @@ use crate::{
     arch::product::upper,
     format::{BIAS, CHANNEL, COSINE, LEVEL, RAMP},
     math::highlight_lut::ENTRY,
-    pixel::Pixel,
+    pixel::{Pixel, dither::ByRows, ramps::Ramps},
 };
 use core::marker::PhantomData;
 use zerocopy::{FromBytes, Immutable, IntoBytes, KnownLayout};
 
+/// Two of the same kind, of which rows take one after the other: where pixels have a checkerboard, thresholds are those of its squares by
+/// turns, and else there is no difference.
+#[derive(Debug)]
+pub(super) struct ByTurns<'a, T> {
+    now: &'a T,
+    next: &'a T,
+}
+
+impl<T> Clone for ByTurns<'_, T> {
+    fn clone(&self) -> Self {
+        *self
+    }
+}
+
+impl<T> Copy for ByTurns<'_, T> {}
+
+impl<'a, T> ByTurns<'a, T> {
+    /// Even rows take the first one.
+    #[inline(always)]
+    pub(super) fn new([now, next]: [&'a T; 2]) -> Self {
+        Self { now, next }
+    }
+
+    /// Takes the other one, in formats with a checkerboard.
+    #[inline(always)]
+    fn turn<C: Pixel>(&mut self) {
+        if C::Ramps::CHECKERED {
+            (self.now, self.next) = (self.next, self.now);
+        }
+    }
+}
+
 /// The colour of a pixel from diffuse light and a highlight.
-pub trait OneLight: Copy {
+pub trait OneLight: ByRows {
     /// The pixel that is stored.
     type Pixel: Pixel;
 
@@ -42,7 +74,7 @@ pub fn node(full: u16, cosine: i32, bits: u32) -> i32 {
 /// channel all light is a level, in three that of one light without a highlight.
 #[derive(Debug)]
 pub struct OneLightRamp<'a, C: Pixel> {
-    pub(super) ramp: &'a [C::Stored; RAMP],
+    pub(super) ramps: ByTurns<'a, [C::Stored; RAMP]>,
     pub(super) diffuse: u16,
     /// The level without diffuse light and highlight, as an entry of the table of highlights.
     pub(super) floor: u32,
@@ -56,6 +88,13 @@ impl<C: Pixel> Clone for OneLightRamp<'_, C> {
 
 impl<C: Pixel> Copy for OneLightRamp<'_, C> {}
 
+impl<C: Pixel> ByRows for OneLightRamp<'_, C> {
+    #[inline(always)]
+    fn step_row(&mut self) {
+        self.ramps.turn::<C>();
+    }
+}
+
 impl<C: Pixel> OneLight for OneLightRamp<'_, C> {
     type Pixel = C;
 
@@ -68,14 +107,15 @@ impl<C: Pixel> OneLight for OneLightRamp<'_, C> {
 
     #[inline(always)]
     fn colour<const BITS: u32>(&self, diffuse: i32, highlight: u32, threshold: u32) -> C {
-        C::ramped::<BITS>(self.ramp, (diffuse.max(0) as u32).wrapping_add(highlight << (BITS - LEVEL)), threshold)
+        C::ramped::<BITS>(self.ramps.now, (diffuse.max(0) as u32).wrapping_add(highlight << (BITS - LEVEL)), threshold)
     }
 }
 
 impl<C: Pixel> OneLightRamp<'_, C> {
-    /// The colour where there is neither diffuse light nor a highlight.
-    pub fn unlit(&self) -> C::Stored {
-        C::entry::<LEVEL>(self.ramp, self.floor)
+    /// The colour where there is neither diffuse light nor a highlight, on even rows and on odd ones.
+    pub fn unlit(&self) -> [C::Stored; 2] {
+        let ByTurns { now, next } = self.ramps;
+        [C::entry::<LEVEL>(now, self.floor), C::entry::<LEVEL>(next, self.floor)]
     }
 
     /// [`OneLight::colour`] where there is no highlight.
@@ -172,6 +212,8 @@ impl<C> OneLightRgb<'_, C> {
     const DIFFUSE: u16 = 1 << (FULL + LEVEL);
 }
 
+impl<C: Pixel> ByRows for OneLightRgb<'_, C> {}
+
 impl<C: Pixel> OneLight for OneLightRgb<'_, C> {
     type Pixel = C;
 
@@ -188,6 +230,8 @@ impl<C: Pixel> OneLight for OneLightRgb<'_, C> {
         C::mixed([r.level(cosine, highlight), g.level(cosine, highlight), b.level(cosine, highlight)])
     }
 }
+
+impl<C: Pixel> ByRows for TwoLightsRgb<'_, C> {}
 
 impl<C: Pixel> TwoLightsRgb<'_, C> {
     /// [`OneLight::diffuse`] of both lights.

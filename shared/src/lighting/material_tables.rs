@@ -1,13 +1,13 @@
 //! A material in the colours of a pixel format, computed once.
 
 use crate::{
-    format::{BIAS, CHANNEL, Intensity, LEVEL, RAMP, WALK},
+    format::{BIAS, CHANNEL, LEVEL, WALK},
     lighting::{
-        constant_lights::{OneLightRamp, OneLightRgb, TwoLightsRgb},
+        constant_lights::{ByTurns, OneLightRamp, OneLightRgb, TwoLightsRgb},
         reflectance::Reflectance,
     },
     math::vector::zip,
-    pixel::{Pixel, gamma::Gamma},
+    pixel::{Pixel, dither::HALF, gamma::Gamma, ramps::Ramps},
 };
 use core::marker::PhantomData;
 
@@ -16,7 +16,7 @@ use core::marker::PhantomData;
 pub struct MaterialTables<'a, C: Pixel> {
     /// Colour of each level of a material of one channel. In three channels under one light, if [`Reflectance::has_ramp`], the colours
     /// without a highlight, by the level of the channel that has most diffuse light.
-    pub ramp: &'a [C::Stored; RAMP],
+    pub ramps: &'a C::Ramps,
     /// What the material reflects, in levels.
     pub reflectance: &'a Reflectance,
 }
@@ -29,36 +29,38 @@ impl<C: Pixel> Clone for MaterialTables<'_, C> {
 
 impl<C: Pixel> Copy for MaterialTables<'_, C> {}
 
-/// The colour of three levels, Q9.7, rounded.
+/// The colour of three levels, Q9.7, by a [`crate::pixel::dither::threshold`].
 #[inline(always)]
-fn mixed<C: Pixel>(levels: [i32; 3]) -> C {
-    C::mixed(zip(levels, C::DEPTH, |level, depth| (level + (1 << (LEVEL + 7 - depth))) << (CHANNEL - LEVEL)))
+fn mixed<C: Pixel>(levels: [i32; 3], threshold: u32) -> C {
+    // A step of a channel is 2^(8 - depth) levels, of which thresholds are 1/128.
+    C::mixed(zip(levels, C::DEPTH, |level, depth| (level + ((threshold as i32) << (LEVEL + 1 - depth))) << (CHANNEL - LEVEL)))
 }
 
-/// Fills the table of colours of a material, by the curve of a display. In three channels the table is linear: what draws them with a curve does
-/// not look at it.
-pub fn fill_ramp<C: Pixel>(ramp: &mut [C::Stored; RAMP], reflectance: &Reflectance, gamma: Option<&Gamma>) {
+/// Fills the tables of colours of a material, by the curve of a display. In three channels they are linear: what draws them with a curve does
+/// not look at them.
+pub fn fill_ramps<C: Pixel>(ramps: &mut C::Ramps, reflectance: &Reflectance, dither: bool, gamma: Option<&Gamma>) {
     if reflectance.three_channels() {
         // Nobody looks at it then, and products might overflow.
         if !reflectance.has_ramp() {
             return;
         }
         let ([least, most], [gains, ..]) = (reflectance.ramp, &reflectance.gains);
-        for (i, stored) in ramp.iter_mut().enumerate() {
+        ramps.fill(dither, |i, threshold| {
             let more = ((i as i32 - BIAS) << LEVEL) - least;
             // By the share of each channel in the one that has most.
             let share = |level, diffuse: u16| level + (more * i32::from(diffuse)).checked_div(most).unwrap_or(0);
-            *stored = mixed::<C>(zip(reflectance.ambient, gains.diffuse, share)).stored();
-        }
+            mixed::<C>(zip(reflectance.ambient, gains.diffuse, share), threshold).stored()
+        });
         return;
     }
-    for (i, stored) in ramp.iter_mut().enumerate() {
+    ramps.fill(dither, |i, threshold| {
         let level = (i as i32 - BIAS).clamp(0, 255) as u32;
-        *stored = C::tabled(zip(reflectance.base, C::DEPTH, |base, depth| {
+        let channels = zip(reflectance.base, C::DEPTH, |base, depth| {
             let scaled = level * u32::from(base);
             gamma.map_or(scaled, |gamma| gamma.encoded(scaled, depth))
-        }));
-    }
+        });
+        C::tabled(channels, threshold)
+    });
 }
 
 impl<'a, C: Pixel> MaterialTables<'a, C> {
@@ -67,8 +69,8 @@ impl<'a, C: Pixel> MaterialTables<'a, C> {
     #[must_use]
     pub fn one_light_ramp(&self) -> Option<OneLightRamp<'a, C>> {
         let Reflectance { ramp: [_, diffuse], highlight_lut, .. } = self.reflectance;
-        let Self { ramp, .. } = *self;
-        self.reflectance.holds_levels().then(|| OneLightRamp { ramp, diffuse: *diffuse as u16, floor: highlight_lut.least() })
+        let ramps = ByTurns::new(self.ramps.squares());
+        self.reflectance.holds_levels().then(|| OneLightRamp { ramps, diffuse: *diffuse as u16, floor: highlight_lut.least() })
     }
 
     /// The table of colours of a triangle in three channels under the only light, where that has no highlight; `None` unless
@@ -76,8 +78,8 @@ impl<'a, C: Pixel> MaterialTables<'a, C> {
     #[inline(always)]
     #[must_use]
     pub fn diffuse_ramp(&self) -> Option<OneLightRamp<'a, C>> {
-        let (Self { ramp, .. }, [ambient, diffuse]) = (*self, self.reflectance.ramp);
-        self.reflectance.has_ramp().then(|| OneLightRamp { ramp, diffuse: diffuse as u16, floor: Reflectance::biased(ambient) })
+        let (ramps, [ambient, diffuse]) = (ByTurns::new(self.ramps.squares()), self.reflectance.ramp);
+        self.reflectance.has_ramp().then(|| OneLightRamp { ramps, diffuse: diffuse as u16, floor: Reflectance::biased(ambient) })
     }
 
     /// The sums of three channels under the only light, if the material has three. Domain: [`Reflectance::lights`] is 1.
@@ -96,45 +98,38 @@ impl<'a, C: Pixel> MaterialTables<'a, C> {
         (!C::GRAY && self.reflectance.lights() == 2).then_some([TwoLightsRgb(forth, PhantomData), TwoLightsRgb(back, PhantomData)])
     }
 
-    /// The colour under one light from `[N·L, N·H]` (Q2.30).
+    /// The colour under one light from `[N·L, N·H]` (Q2.30), on even rows and on odd ones.
     #[inline(always)]
     #[must_use]
-    pub fn one_light(&self, cosines: [i32; 2]) -> C::Stored {
+    pub fn one_light(&self, cosines: [i32; 2]) -> [C::Stored; 2] {
         if self.reflectance.three_channels() { self.one_light_mixed(cosines) } else { self.tint(self.reflectance.level(cosines)) }
     }
 
     /// [`Self::one_light`] in three channels.
     #[inline(never)]
-    fn one_light_mixed(self, [cosine, half]: [i32; 2]) -> C::Stored {
+    fn one_light_mixed(self, [cosine, half]: [i32; 2]) -> [C::Stored; 2] {
         match self.reflectance.highlight(half) {
             0 if self.reflectance.has_ramp() => self.tint(self.reflectance.ramp_level(cosine)),
-            highlight => mixed::<C>(self.reflectance.reflection(cosine, highlight)).stored(),
+            highlight => [mixed::<C>(self.reflectance.reflection(cosine, highlight), HALF).stored(); 2],
         }
     }
 
-    /// The colour of three levels, Q9.7, rounded.
+    /// The colour of three levels, Q9.7, on even rows and on odd ones; in three channels it is rounded on both.
     #[inline(always)]
     #[must_use]
-    pub fn colour(&self, levels: [i32; 3]) -> C::Stored {
+    pub fn colour(&self, levels: [i32; 3]) -> [C::Stored; 2] {
         if !self.reflectance.three_channels() {
             return self.tint(levels[0]);
         }
-        mixed::<C>(levels).stored()
+        [mixed::<C>(levels, HALF).stored(); 2]
     }
 
-    /// The colour of a level, Q9.7, of a material of one channel, as its table holds it.
+    /// The colour of a level, Q9.7, of a material of one channel, as its tables hold it for even rows and for odd ones.
     #[inline(always)]
     #[must_use]
-    pub fn tint(&self, level: i32) -> C::Stored {
-        C::entry::<WALK>(self.ramp, Reflectance::biased(level) << (WALK - LEVEL))
-    }
-
-    /// The colour of an intensity, by the table of colours with a [`crate::pixel::dither::threshold`], or rounded.
-    #[inline]
-    #[must_use]
-    pub fn shown(&self, intensity: Intensity, threshold: u32) -> C {
-        let [level, ..] = intensity;
-        if self.reflectance.three_channels() { C::rounded(intensity) } else { C::shown(self.tint(level >> 1), threshold) }
+    pub fn tint(&self, level: i32) -> [C::Stored; 2] {
+        let ([even, odd], level) = (self.ramps.squares(), Reflectance::biased(level) << (WALK - LEVEL));
+        [C::entry::<WALK>(even, level), C::entry::<WALK>(odd, level)]
     }
 }
 
@@ -142,7 +137,7 @@ impl<'a, C: Pixel> MaterialTables<'a, C> {
 mod tests {
     use super::*;
     use crate::{
-        format::{COSINE, UNIT},
+        format::{COSINE, RAMP, UNIT},
         lighting::reflectance::Highlight,
         stream::record::{Light, Material},
     };
@@ -171,12 +166,12 @@ mod tests {
             let reflectance = reflectance::<Rgb565>(&material, light);
             prop_assume!(reflectance.three_channels());
             prop_assert!(reflectance.has_ramp());
-            let mut ramp = [0; RAMP];
-            fill_ramp::<Rgb565>(&mut ramp, &reflectance, None);
-            let tables = MaterialTables::<Rgb565> { ramp: &ramp, reflectance: &reflectance };
+            let mut ramps = [[0; RAMP]; 2];
+            fill_ramps::<Rgb565>(&mut ramps, &reflectance, false, None);
+            let tables = MaterialTables::<Rgb565> { ramps: &ramps, reflectance: &reflectance };
             for cosine in (-4..=64).map(|c| c << (COSINE - 6)) {
-                let exact = Rgb565::from_stored(tables.colour(reflectance.reflection(cosine, 0))).channels();
-                let tabled = Rgb565::from_stored(tables.tint(reflectance.ramp_level(cosine))).channels();
+                let [exact, _] = tables.colour(reflectance.reflection(cosine, 0)).map(|stored| Rgb565::from_stored(stored).channels());
+                let [tabled, _] = tables.tint(reflectance.ramp_level(cosine)).map(|stored| Rgb565::from_stored(stored).channels());
                 let differences = zip(exact, tabled, u8::abs_diff);
                 prop_assert!(differences.into_iter().all(|difference| difference <= 1), "{cosine}: {exact:?} {tabled:?}");
             }

@@ -1,12 +1,13 @@
 //! Intensities to pixels, where no loop does it by a table: rounded or dithered, by the curve of a display.
 
 use crate::{
-    format::Intensity,
+    format::{BIAS, INTENSITY, Intensity, RAMP},
     lighting::material_tables::MaterialTables,
     pixel::{
         Pixel,
-        dither::{HALF, threshold},
+        dither::{HALF, SQUARES, threshold},
         gamma::Gamma,
+        ramps::Ramps,
     },
 };
 
@@ -16,7 +17,7 @@ pub struct Output<'a, C: Pixel> {
     pub tables: MaterialTables<'a, C>,
     dither: bool,
     gamma: Option<&'a Gamma>,
-    /// Whether pixels are made from intensities: tables dither nothing but a few greys, and hold no curve of three channels.
+    /// Whether pixels are made from intensities: where tables do not dither, or have no curve, which they hold for one channel alone.
     by_threshold: bool,
 }
 
@@ -24,24 +25,29 @@ impl<'a, C: Pixel> Output<'a, C> {
     /// For a display with a curve or without.
     #[must_use]
     pub fn new(tables: MaterialTables<'a, C>, dither: bool, gamma: Option<&'a Gamma>) -> Self {
-        let by_threshold = dither && !C::DITHERED_BY_TABLE || gamma.is_some() && tables.reflectance.three_channels();
+        let by_tables = C::DITHERED_BY_TABLE || C::Ramps::CHECKERED;
+        let by_threshold = dither && !by_tables || gamma.is_some() && tables.reflectance.three_channels();
         Self { tables, dither, gamma, by_threshold }
     }
 
-    /// Whether the loops of methods make the same pixels: they dither by tables alone, and always where those are made for it.
+    /// Whether the loops of methods make the same pixels: they dither by tables alone, and always where those hold finer steps than pixels.
     #[must_use]
     pub fn suits_loops(&self) -> bool {
-        !self.by_threshold && self.dither == C::DITHERED_BY_TABLE
+        !self.by_threshold && (self.dither == C::DITHERED_BY_TABLE || C::Ramps::CHECKERED)
     }
 
-    /// The threshold at a pixel.
+    /// The threshold at a pixel. Where the format has a checkerboard for loops, rows take turns here: at each pixel a turn would take longer.
     #[inline(always)]
     #[must_use]
     pub fn threshold(&self, column: usize, row: usize) -> u32 {
-        if self.dither { threshold(column, row) } else { HALF }
+        match (self.dither, C::Ramps::CHECKERED) {
+            (false, _) => HALF,
+            (true, false) => threshold(column, row),
+            (true, true) => SQUARES[row % 2],
+        }
     }
 
-    /// Whether a pixel depends on more than the tables: [`Self::channels`] makes it then.
+    /// Whether a pixel depends on more than the tables: [`Self::quantised`] makes it then.
     #[inline(always)]
     #[must_use]
     pub fn by_threshold(&self) -> bool {
@@ -53,9 +59,35 @@ impl<'a, C: Pixel> Output<'a, C> {
     #[must_use]
     pub fn channels(&self, intensity: Intensity, column: usize, row: usize) -> [u8; 3] {
         let threshold = self.threshold(column, row);
-        if !self.by_threshold {
-            return self.tables.shown(intensity, threshold).channels();
+        if self.by_threshold {
+            return self.quantised(intensity, threshold);
         }
+        let colour = if self.tables.reflectance.three_channels() {
+            C::quantised(intensity, if C::Ramps::CHECKERED { threshold } else { HALF })
+        } else {
+            Self::by_table(self.ramp(row), intensity, threshold)
+        };
+        colour.channels()
+    }
+
+    /// The channels of an intensity by a threshold. Domain: [`Self::by_threshold`].
+    #[inline]
+    #[must_use]
+    pub fn quantised(&self, intensity: Intensity, threshold: u32) -> [u8; 3] {
         self.tables.reflectance.dithered(intensity, threshold, self.gamma)
+    }
+
+    /// The table of colours of a row.
+    #[inline(always)]
+    #[must_use]
+    pub fn ramp(&self, row: usize) -> &'a [C::Stored; RAMP] {
+        self.tables.ramps.squares()[row % 2]
+    }
+
+    /// The colour of an intensity of a material in one channel, by a table of colours and a threshold. Domain: not [`Self::by_threshold`].
+    #[inline(always)]
+    #[must_use]
+    pub fn by_table(ramp: &[C::Stored; RAMP], [level, ..]: Intensity, threshold: u32) -> C {
+        C::ramped::<INTENSITY>(ramp, (level + (BIAS << INTENSITY) + (1 << (INTENSITY - 1))) as u32, threshold)
     }
 }

@@ -6,12 +6,12 @@
 
 use crate::{
     geometry::projection::ScreenVertex,
-    interpolate::{field::Field, plane::Plane},
+    interpolate::plane::Plane,
     lighting::{
         material_tables::MaterialTables,
         reflectance::{Highlight, Reflectance},
     },
-    method::{Costs, Facts, Loops, Method, RANGE, Shading, Style, ThreeChannels, TriangleSetup, VertexLight, level_field},
+    method::{Costs, Facts, Loops, Method, RANGE, Shading, Style, ThreeChannels, TriangleSetup, VertexLight, fit_levels},
     pixel::Pixel,
     raster::{band::Band, canvas::Canvas, pixel_shader::Ramp},
     setup::gradients::Gradients,
@@ -52,7 +52,7 @@ impl Loops for Gouraud {
     #[inline(always)]
     fn draw<C: Pixel>(setup: &TriangleSetup<'_>, _: &Shading<'_>, tables: MaterialTables<'_, C>, band: &mut Band<'_, C>) -> Option<u32> {
         let [a, b, c] = setup.corners;
-        Some(setup.fill(|| one(setup.gradients, [a.light[2], b.light[2], c.light[2]]), Ramp(tables.ramp), band))
+        Some(setup.fill(|| one::<C>(setup.gradients, [a.light[2], b.light[2], c.light[2]]), Ramp(tables.ramps), band))
     }
 }
 
@@ -88,7 +88,7 @@ impl Loops for ThreeChannels<Gouraud> {
 pub(super) fn draw_one<C: Pixel>(setup: &TriangleSetup<'_>, raise: i32, tables: MaterialTables<'_, C>, band: &mut Band<'_, C>) -> u32 {
     let [a, b, c] = setup.corners;
     let levels = || [a.light[2] + raise, b.light[2] + raise, c.light[2] + raise];
-    setup.fill(|| level_field(levels()).fit(setup.gradients), Ramp(tables.ramp), band)
+    setup.fill(|| fit_levels::<3, C>(setup.gradients, levels()), Ramp(tables.ramps), band)
 }
 
 /// Whether a triangle of three channels under one constant light is a ramp of the table of colours: no corner has a highlight.
@@ -106,7 +106,7 @@ pub(super) fn draw_three<C: Pixel>(setup: &TriangleSetup<'_>, raise: i32, tables
     if has_ramp(setup, reflectance) {
         let level = |[cosine, ..]: [i32; 4]| reflectance.ramp_level(cosine) + raise;
         let levels = || [level(a.light), level(b.light), level(c.light)];
-        return setup.fill(|| one(setup.gradients, levels()), Ramp(tables.ramp), band);
+        return setup.fill(|| one::<C>(setup.gradients, levels()), Ramp(tables.ramps), band);
     }
     let channels = || {
         let [[r0, g0, b0], [r1, g1, b1], [r2, g2, b2]] = reflections([a, b, c], reflectance);
@@ -117,8 +117,8 @@ pub(super) fn draw_three<C: Pixel>(setup: &TriangleSetup<'_>, raise: i32, tables
 
 /// In a function of its own: by measurement, what draws the triangle has more registers then.
 #[inline(never)]
-fn one(gradients: &Gradients, levels: [i32; 3]) -> Plane<1> {
-    level_field(levels).fit(gradients)
+fn one<C: Pixel>(gradients: &Gradients, levels: [i32; 3]) -> Plane<1> {
+    fit_levels::<3, C>(gradients, levels)
 }
 
 /// The levels at the corners.

@@ -29,7 +29,7 @@ use crate::{
         lighting_model::{Quadratic, fitted, linear, quadratic, signed},
         node::{FRACTION, field_product, is_steep, map_six},
     },
-    pixel::Pixel,
+    pixel::{Pixel, dither::ByRows},
     raster::{band::Band, pixel_shader::PixelShader},
     stream::record::Vertex,
 };
@@ -187,6 +187,16 @@ fn colour<T: OneLight>(colours: &T, cosine: i32, highlight: u32, threshold: u32)
 
 /// The values of [`Walked`].
 type Value = ([u32; 1], (([u32; 1], [u32; 1]), ([u32; 1], [u32; 1])));
+
+impl<C: Pixel> ByRows for DiffuseAndHighlight<'_, C> {
+    #[inline(always)]
+    fn step_row(&mut self) {
+        match &mut self.colours {
+            Colours::Ramp(colours) => colours.step_row(),
+            Colours::Rgb(colours) => colours.step_row(),
+        }
+    }
+}
 
 impl<C: Pixel> PixelShader<Value> for DiffuseAndHighlight<'_, C> {
     type Pixel = C;

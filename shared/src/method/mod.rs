@@ -29,9 +29,9 @@ use crate::{
     arch::product::by_fraction,
     format::{BIAS, CHANNEL, LEVEL, NORMAL_LENGTH, SUBPIXEL, WALK},
     geometry::viewport::first_centre,
-    interpolate::perspective::PerspectivePatch,
+    interpolate::{Checkered, perspective::PerspectivePatch},
     lighting::material_tables::MaterialTables,
-    pixel::Pixel,
+    pixel::{Pixel, ramps::Ramps},
     raster::{
         active::ActiveTriangle,
         band::Band,
@@ -396,10 +396,15 @@ pub fn levels_at<const N: usize>(levels: [[i32; 3]; N]) -> Nodes<N, 3, RANGE> {
     Nodes::new(channels(levels), EXTRA).biased([bias(0); 3])
 }
 
-/// The field through levels at `N` nodes, Q9.7, as indices of the table of colours.
+/// The polynomial through levels at `N` nodes, Q9.7, as indices of the tables of colours of the pixel format `C`.
 #[inline(always)]
-fn level_field<const N: usize>(levels: [i32; N]) -> Nodes<N, 1, RANGE> {
-    Nodes::new([levels], EXTRA).biased([bias(1 << (WALK - 1))])
+fn fit_levels<const N: usize, C: Pixel>(gradients: &Gradients, levels: [i32; N]) -> <Nodes<N, 1, RANGE> as Field>::Patch
+where
+    Nodes<N, 1, RANGE>: Field<Patch: Checkered>,
+{
+    let walk = <C::Ramps as Ramps<C::Stored>>::WALK;
+    let patch = Nodes::<N, 1, RANGE>::new([levels], walk - LEVEL).biased([(BIAS << walk).wrapping_add(1 << (walk - 1))]).fit(gradients);
+    if C::Ramps::CHECKERED { patch.checkered(gradients.row()) } else { patch }
 }
 
 /// The bias of walked levels, and so much more.
@@ -454,9 +459,9 @@ impl Shading<'_> {
         band: &mut Band<'_, C>,
     ) -> u32
     where
-        Nodes<N, 1, RANGE>: Field<Value = [u32; 1]>,
+        Nodes<N, 1, RANGE>: Field<Value = [u32; 1], Patch: Checkered>,
     {
-        setup.fill(|| level_field(nodes()).fit(setup.gradients), Ramp(tables.ramp), band)
+        setup.fill(|| fit_levels::<N, C>(setup.gradients, nodes()), Ramp(tables.ramps), band)
     }
 
     /// [`Self::draw_levels`] by loops of a method: three levels, `raise` more than at the nodes, whose polynomials are walked as `walked` says.

@@ -16,7 +16,7 @@ use crate::{
     },
     math::{highlight_lookup, highlight_lookup::QuotientLookup},
     method::{CornerCosines, TriangleSetup, largest, lighting_model::fitted, two_lights::TwoLights},
-    pixel::Pixel,
+    pixel::{Pixel, dither::ByRows},
     raster::{
         band::Band,
         pixel_shader::{PixelShader, Solid},
@@ -46,6 +46,13 @@ struct DiffuseAndHighlight<'a, T, R, const EXACT: bool> {
     half_reciprocal: R,
 }
 
+impl<T: ByRows, R: Copy, const EXACT: bool> ByRows for DiffuseAndHighlight<'_, T, R, EXACT> {
+    #[inline(always)]
+    fn step_row(&mut self) {
+        self.colours.step_row();
+    }
+}
+
 impl<T: OneLight, V, R: Fn(V) -> i32 + Copy, const EXACT: bool> PixelShader<(([u32; 1], [u32; 1]), V)>
     for DiffuseAndHighlight<'_, T, R, EXACT>
 {
@@ -67,6 +74,13 @@ impl<T: OneLight, V, R: Fn(V) -> i32 + Copy, const EXACT: bool> PixelShader<(([u
 struct DiffuseOnly<T, R, const EXACT: bool> {
     colours: T,
     half_reciprocal: R,
+}
+
+impl<T: ByRows, R: Copy, const EXACT: bool> ByRows for DiffuseOnly<T, R, EXACT> {
+    #[inline(always)]
+    fn step_row(&mut self) {
+        self.colours.step_row();
+    }
 }
 
 impl<C: Pixel, V, R: Fn(V) -> i32 + Copy, const EXACT: bool> PixelShader<([u32; 1], V)> for DiffuseOnly<OneLightRamp<'_, C>, R, EXACT> {

@@ -29,7 +29,7 @@ use crate::{
         node::map_six,
         two_lights::TwoLights,
     },
-    pixel::Pixel,
+    pixel::{Pixel, dither::ByRows},
     raster::{
         band::Band,
         canvas::Canvas,
@@ -278,6 +278,13 @@ struct DiffuseAndHighlight<'a, T> {
     lookup: DefectLookup<'a>,
 }
 
+impl<T: ByRows> ByRows for DiffuseAndHighlight<'_, T> {
+    #[inline(always)]
+    fn step_row(&mut self) {
+        self.colours.step_row();
+    }
+}
+
 impl<T: OneLight> PixelShader<([u32; 1], [u32; 1])> for DiffuseAndHighlight<'_, T> {
     type Pixel = T::Pixel;
 
@@ -315,6 +322,13 @@ impl<C: Pixel> PixelShader<(([u32; 1], [u32; 1]), [u32; 1])> for DiffuseAndHighl
 /// Diffuse light alone: a walked level, negative where there is no light.
 #[derive(Clone, Copy)]
 struct DiffuseOnly<T>(T);
+
+impl<T: ByRows> ByRows for DiffuseOnly<T> {
+    #[inline(always)]
+    fn step_row(&mut self) {
+        self.0.step_row();
+    }
+}
 
 impl<C: Pixel> PixelShader<[u32; 1]> for DiffuseOnly<OneLightRamp<'_, C>> {
     type Pixel = C;

@@ -63,6 +63,23 @@ pub(crate) fn coarser(finer: u8, depth: u32, threshold: u32) -> u32 {
 
 /// The threshold that rounds.
 pub const HALF: u32 = 64;
+/// The thresholds on the squares of a checkerboard, a quarter of a step below [`HALF`] and above it.
+pub const SQUARES: [u32; 2] = [HALF / 2, HALF / 2 + HALF];
+
+/// What may be different on even rows and on odd ones, as in the columns of a checkerboard.
+pub trait ByRows: Copy {
+    /// Moves down one row.
+    #[inline(always)]
+    fn step_row(&mut self) {}
+
+    /// Moves down from the first row of all.
+    #[inline(always)]
+    fn jump(&mut self, row: i32) {
+        if row & 1 != 0 {
+            self.step_row();
+        }
+    }
+}
 
 /// Channels of `depth` bits from channels in unsigned Q8.8 that are scaled to that depth, with a [`threshold`] in place of rounding.
 #[inline(always)]

@@ -4,11 +4,15 @@ pub(crate) mod colour;
 #[doc(hidden)]
 pub mod dither;
 pub mod gamma;
+pub mod ramps;
 
 use crate::{
     arch::SATURATES,
     format::{CHANNEL, Intensity, RAMP},
-    pixel::dither::{HALF, quantise},
+    pixel::{
+        dither::quantise,
+        ramps::{Checkered, Ramps, Rounded},
+    },
 };
 use core::hint::black_box;
 use embedded_graphics_core::{
@@ -24,6 +28,8 @@ use zerocopy::{FromBytes, Immutable, IntoBytes, KnownLayout};
 pub trait Pixel: Copy + 'static {
     /// The form in which tables of colours store a pixel.
     type Stored: FromBytes + IntoBytes + Immutable + KnownLayout + Copy + core::fmt::Debug;
+    /// The tables of colours of a material: [`Rounded`], or [`Checkered`] where channels have five bits to seven.
+    type Ramps: Ramps<Self::Stored>;
 
     /// One channel instead of three.
     const GRAY: bool;
@@ -35,7 +41,7 @@ pub trait Pixel: Copy + 'static {
         r < 8 && g < 8 && b < 8
     };
     /// Whether steps between levels are so wide that a picture needs dither.
-    const DITHERED: bool = Self::DEPTH[2] <= 4;
+    const DITHERED: bool = Self::DEPTH[2] < 8;
     /// Whether tables of colours hold finer steps than pixels have, so that loops dither what they take from there.
     const DITHERED_BY_TABLE: bool = Self::GRAY && Self::DITHERED;
     /// Bytes that a pixel adds to the picture's checksum.
@@ -50,10 +56,10 @@ pub trait Pixel: Copy + 'static {
     /// The pixel from its stored form.
     fn from_stored(stored: Self::Stored) -> Self;
 
-    /// What tables of colours store of channels in unsigned Q8.8 that are scaled to [`Self::DEPTH`]: a pixel, rounded, or something finer where
-    /// they are [`Self::DITHERED_BY_TABLE`].
-    fn tabled(channels: [u32; 3]) -> Self::Stored {
-        Self::pack(quantise(channels, Self::DEPTH, HALF).map(u32::from)).stored()
+    /// What tables of colours store of channels in unsigned Q8.8 that are scaled to [`Self::DEPTH`]: a pixel by a [`dither::threshold`], or
+    /// something finer where they are [`Self::DITHERED_BY_TABLE`].
+    fn tabled(channels: [u32; 3], threshold: u32) -> Self::Stored {
+        Self::pack(quantise(channels, Self::DEPTH, threshold).map(u32::from)).stored()
     }
 
     /// The pixel of what a table of colours holds, with a [`dither::threshold`] where they are [`Self::DITHERED_BY_TABLE`].
@@ -80,17 +86,24 @@ pub trait Pixel: Copy + 'static {
         ramp[(level >> BITS) as usize % RAMP]
     }
 
+    /// What tables of colours hold for a level on a square of the checkerboard, see [`Ramps::on_square`].
+    #[inline(always)]
+    fn on_square(ramps: &Self::Ramps, level: u32, bits: u32) -> Self::Stored {
+        ramps.on_square(level, bits)
+    }
+
     /// The colour of a level, see [`Self::entry`], with a [`dither::threshold`].
     #[inline(always)]
     fn ramped<const BITS: u32>(ramp: &[Self::Stored; RAMP], level: u32, threshold: u32) -> Self {
         Self::shown(Self::entry::<BITS>(ramp, level), threshold)
     }
 
-    /// The colour of an intensity of three channels, rounded.
-    #[inline]
-    fn rounded(intensity: Intensity) -> Self {
-        // Armv7-M shifts and clamps by one instruction.
-        let channel = |level: i32, depth: u32| ((level + (1 << (15 - depth))) >> (16 - depth)).clamp(0, (1 << depth) - 1) as u32;
+    /// The colour of an intensity of three channels, by a [`dither::threshold`].
+    #[inline(always)]
+    fn quantised(intensity: Intensity, threshold: u32) -> Self {
+        // A step of a channel is 2^(16 - depth), of which thresholds are 1/128. Armv7-M shifts and clamps by one instruction.
+        let more = |depth: u32| (threshold as i32) << (9 - depth);
+        let channel = |level: i32, depth: u32| ((level + more(depth)) >> (16 - depth)).clamp(0, (1 << depth) - 1) as u32;
         let ([r, g, b], [dr, dg, db]) = (intensity, Self::DEPTH);
         Self::pack([channel(r, dr), channel(g, dg), channel(b, db)])
     }
@@ -128,6 +141,7 @@ macro_rules! rgb565 {
     ($format:ty, $high:literal, $low:literal) => {
         impl Pixel for $format {
             type Stored = u16;
+            type Ramps = Checkered<u16>;
 
             const GRAY: bool = false;
             const DEPTH: [u32; 3] = [5, 6, 5];
@@ -170,9 +184,10 @@ rgb565!(Bgr565, 2, 0);
 
 /// Red, green and blue of equal depth.
 macro_rules! rgb {
-    ($format:ty, $depth:literal) => {
+    ($format:ty, $depth:literal, $ramps:ident) => {
         impl Pixel for $format {
             type Stored = u32;
+            type Ramps = $ramps<u32>;
 
             const GRAY: bool = false;
             const DEPTH: [u32; 3] = [$depth; 3];
@@ -204,21 +219,22 @@ macro_rules! rgb {
     };
 }
 
-rgb!(Rgb666, 6);
-rgb!(Rgb888, 8);
+rgb!(Rgb666, 6, Checkered);
+rgb!(Rgb888, 8, Rounded);
 
 /// One channel.
 macro_rules! gray {
     ($format:ty, $raw:ty, $depth:literal) => {
         impl Pixel for $format {
             type Stored = u8;
+            type Ramps = Rounded<u8>;
 
             const GRAY: bool = true;
             const DEPTH: [u32; 3] = [$depth; 3];
             const BYTES: usize = 1;
 
-            fn tabled([luma, ..]: [u32; 3]) -> u8 {
-                if Self::DITHERED_BY_TABLE { dither::finer(luma) } else { quantise([luma; 3], Self::DEPTH, HALF)[0] }
+            fn tabled([luma, ..]: [u32; 3], threshold: u32) -> u8 {
+                if Self::DITHERED_BY_TABLE { dither::finer(luma) } else { quantise([luma; 3], Self::DEPTH, threshold)[0] }
             }
 
             #[inline(always)]
@@ -296,6 +312,7 @@ impl From<Rgb565> for Rgb565Be {
 
 impl Pixel for Rgb565Be {
     type Stored = Self;
+    type Ramps = Checkered<Self>;
 
     const GRAY: bool = false;
     const DEPTH: [u32; 3] = [5, 6, 5];
@@ -360,6 +377,7 @@ impl From<Rgb332> for RawU8 {
 
 impl Pixel for Rgb332 {
     type Stored = u8;
+    type Ramps = Rounded<u8>;
 
     const GRAY: bool = false;
     const DEPTH: [u32; 3] = [3, 3, 2];

@@ -12,7 +12,7 @@ use crate::{
     format::Intensity,
     interpolate::{Patch, Walker, plane::Linear},
     lighting::output::Output,
-    pixel::Pixel,
+    pixel::{Pixel, dither::HALF, ramps::Ramps},
     raster::{
         band::{Band, Blend},
         counts::Counts,
@@ -207,16 +207,18 @@ impl<C: Pixel> SpanTarget for Row<'_, C> {
 
     fn put(&mut self, first: usize, visible: u32, intensities: &[Intensity; CHUNK]) {
         let (output, column, row) = (self.output, self.column.wrapping_add(first), self.row);
-        let (pixels, tables) = (self.pixels.get_mut(first..).unwrap_or_default(), output.tables);
+        let pixels = self.pixels.get_mut(first..).unwrap_or_default();
+        let threshold = |k| output.threshold(column.wrapping_add(k), row);
         // One loop for each way to make a colour: no pixel asks for it. The table of colours has the curve in it already.
         if output.by_threshold() {
-            let colour = |k, intensity| C::pack(output.channels(intensity, column.wrapping_add(k), row).map(u32::from));
+            let colour = |k, intensity| C::pack(output.quantised(intensity, threshold(k)).map(u32::from));
             put_each(pixels, visible, intensities, colour);
-        } else if tables.reflectance.three_channels() {
-            put_each(pixels, visible, intensities, |_, intensity| C::rounded(intensity));
+        } else if output.tables.reflectance.three_channels() {
+            let threshold = if C::Ramps::CHECKERED { threshold(0) } else { HALF };
+            put_each(pixels, visible, intensities, |_, intensity| C::quantised(intensity, threshold));
         } else {
-            let colour = |k, [level, ..]: Intensity| C::shown(tables.tint(level >> 1), output.threshold(column.wrapping_add(k), row));
-            put_each(pixels, visible, intensities, colour);
+            let ramp = output.ramp(row);
+            put_each(pixels, visible, intensities, |k, intensity| Output::by_table(ramp, intensity, threshold(k)));
         }
     }
 }

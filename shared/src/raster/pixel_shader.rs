@@ -1,13 +1,10 @@
 //! Pixel shaders: walked values to pixels, in loops that are compiled for one method and one pixel format.
 
-use crate::{
-    format::{RAMP, WALK},
-    pixel::Pixel,
-};
+use crate::pixel::{Pixel, dither::ByRows, ramps::Ramps};
 use core::marker::PhantomData;
 
 /// Turns the value at one pixel into its colour.
-pub trait PixelShader<V>: Copy {
+pub trait PixelShader<V>: ByRows {
     /// The pixel that is stored.
     type Pixel: Pixel;
 
@@ -21,9 +18,9 @@ pub trait PixelShader<V>: Copy {
     fn shade(&self, value: V, threshold: u32) -> Self::Pixel;
 }
 
-/// One colour for all pixels, as tables of colours hold it.
+/// One colour for all pixels, as tables of colours hold it for even rows and for odd ones.
 #[derive(Debug)]
-pub struct Solid<C: Pixel>(pub C::Stored);
+pub struct Solid<C: Pixel>(pub [C::Stored; 2]);
 
 impl<C: Pixel> Clone for Solid<C> {
     fn clone(&self) -> Self {
@@ -33,6 +30,16 @@ impl<C: Pixel> Clone for Solid<C> {
 
 impl<C: Pixel> Copy for Solid<C> {}
 
+impl<C: Pixel> ByRows for Solid<C> {
+    #[inline(always)]
+    fn step_row(&mut self) {
+        if C::Ramps::CHECKERED {
+            let Self([now, next]) = *self;
+            *self = Self([next, now]);
+        }
+    }
+}
+
 impl<C: Pixel> PixelShader<()> for Solid<C> {
     type Pixel = C;
 
@@ -40,13 +47,14 @@ impl<C: Pixel> PixelShader<()> for Solid<C> {
 
     #[inline(always)]
     fn shade(&self, (): (), threshold: u32) -> C {
-        C::shown(self.0, threshold)
+        let Self([now, _]) = *self;
+        C::shown(now, threshold)
     }
 }
 
 /// One walked level, which is an index of a table of colours; guards at both ends of the table take the place of a clamp.
 #[derive(Debug)]
-pub struct Ramp<'a, C: Pixel>(pub &'a [C::Stored; RAMP]);
+pub struct Ramp<'a, C: Pixel>(pub &'a C::Ramps);
 
 impl<C: Pixel> Clone for Ramp<'_, C> {
     fn clone(&self) -> Self {
@@ -56,6 +64,8 @@ impl<C: Pixel> Clone for Ramp<'_, C> {
 
 impl<C: Pixel> Copy for Ramp<'_, C> {}
 
+impl<C: Pixel> ByRows for Ramp<'_, C> {}
+
 impl<C: Pixel> PixelShader<[u32; 1]> for Ramp<'_, C> {
     type Pixel = C;
 
@@ -63,7 +73,7 @@ impl<C: Pixel> PixelShader<[u32; 1]> for Ramp<'_, C> {
 
     #[inline(always)]
     fn shade(&self, [level]: [u32; 1], threshold: u32) -> C {
-        C::ramped::<WALK>(self.0, level, threshold)
+        C::shown(C::on_square(self.0, level, C::Ramps::WALK), threshold)
     }
 }
 
@@ -71,6 +81,8 @@ impl<C: Pixel> PixelShader<[u32; 1]> for Ramp<'_, C> {
 /// them already.
 #[derive(Clone, Copy, Debug)]
 pub struct Rgb<C>(pub PhantomData<C>);
+
+impl<C: Pixel> ByRows for Rgb<C> {}
 
 impl<C: Pixel> PixelShader<[u32; 3]> for Rgb<C> {
     type Pixel = C;

@@ -339,8 +339,9 @@ impl<'b, D: Patch<Walker: DepthTest>, P: Patch, T: PixelShader<<P::Walker as Wal
 
     /// The state before the first row, which is `row` of the band.
     #[inline(always)]
-    pub(crate) fn new(band: &'b mut Band<'_, T::Pixel>, row: i32, sides: LeftRight, depth: D, patch: P, shader: T) -> Self {
+    pub(crate) fn new(band: &'b mut Band<'_, T::Pixel>, row: i32, sides: LeftRight, depth: D, patch: P, mut shader: T) -> Self {
         let (width, start) = (band.width, band.start(row));
+        shader.jump(row);
         Self {
             pixels: band.pixels,
             buffer: band.depth,
@@ -422,6 +423,7 @@ impl<'b, D: Patch<Walker: DepthTest>, P: Patch, T: PixelShader<<P::Walker as Wal
     fn step(&mut self) {
         self.depth.step_row();
         self.patch.step_row();
+        self.shader.step_row();
         if T::Pixel::DITHERED_BY_TABLE {
             self.row = self.row.wrapping_add(1);
         }

@@ -87,7 +87,7 @@ fn middle(setup: &TriangleSetup<'_>, shading: &Shading<'_>, raises: [i32; 3]) ->
 
 /// The colour of these levels; by a table of colours where that is sooner looked up.
 #[inline(never)]
-fn solid<C: Pixel>(setup: &TriangleSetup<'_>, shading: &Shading<'_>, raise: i32, tables: MaterialTables<'_, C>) -> C::Stored {
+fn solid<C: Pixel>(setup: &TriangleSetup<'_>, shading: &Shading<'_>, raise: i32, tables: MaterialTables<'_, C>) -> [C::Stored; 2] {
     let reflectance = shading.reflectance;
     if shading.vertices_have_cosines() {
         if !reflectance.three_channels() {

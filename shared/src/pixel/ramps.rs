@@ -1,0 +1,80 @@
+//! Tables of colours: what is stored of each level of light.
+//!
+//! A display of five or six bits a channel shows steps where light changes slowly. Its formats have two tables, rounded a quarter of a step
+//! down and up, which a picture takes by turns like the squares of a checkerboard: the eye sees half steps. No pixel computes where it
+//! lies: half of the range of a walked level is added to its step from column to column and from row to row ([`crate::interpolate::Patch`] is exact
+//! modulo 2^32), and the highest bit says which table it is.
+
+use crate::{
+    format::{RAMP, WALK},
+    pixel::dither::{HALF, SQUARES},
+};
+use core::fmt::Debug;
+use zerocopy::{FromBytes, Immutable, IntoBytes, KnownLayout};
+
+/// The tables of colours of a material, of what a format stores.
+pub trait Ramps<T: Copy>: FromBytes + IntoBytes + Immutable + KnownLayout + Debug + Sync {
+    /// Whether there are tables for the squares of a checkerboard.
+    const CHECKERED: bool;
+    /// Fraction bits of a level while it is walked along a span: [`WALK`], or one less where the highest bit is that of the checkerboard.
+    const WALK: u32;
+
+    /// The colours on both squares of the checkerboard, or the same twice.
+    fn squares(&self) -> [&[T; RAMP]; 2];
+
+    /// The colour of a biased level with `bits` fraction bits, rounding half included; above its highest bit stands the square of the checkerboard.
+    fn on_square(&self, level: u32, bits: u32) -> T;
+
+    /// Fills the tables: `colour` is that of an entry with a [`crate::pixel::dither::threshold`].
+    fn fill(&mut self, dither: bool, colour: impl FnMut(usize, u32) -> T);
+}
+
+/// Rounded colours alone.
+pub type Rounded<T> = [[T; RAMP]; 1];
+
+/// Two tables for the squares of a checkerboard.
+pub type Checkered<T> = [[T; RAMP]; 2];
+
+impl<T: Copy + Debug + FromBytes + IntoBytes + Immutable + KnownLayout + Sync> Ramps<T> for Rounded<T> {
+    const CHECKERED: bool = false;
+    const WALK: u32 = WALK;
+
+    #[inline(always)]
+    fn squares(&self) -> [&[T; RAMP]; 2] {
+        let [rounded] = self;
+        [rounded; 2]
+    }
+
+    #[inline(always)]
+    fn on_square(&self, level: u32, bits: u32) -> T {
+        let [rounded] = self;
+        rounded[(level >> bits) as usize % RAMP]
+    }
+
+    fn fill(&mut self, _: bool, mut colour: impl FnMut(usize, u32) -> T) {
+        let [rounded] = self;
+        rounded.iter_mut().enumerate().for_each(|(level, stored)| *stored = colour(level, HALF));
+    }
+}
+
+impl<T: Copy + Debug + FromBytes + IntoBytes + Immutable + KnownLayout + Sync> Ramps<T> for Checkered<T> {
+    const CHECKERED: bool = true;
+    const WALK: u32 = WALK - 1;
+
+    #[inline(always)]
+    fn squares(&self) -> [&[T; RAMP]; 2] {
+        let [first, second] = self;
+        [first, second]
+    }
+
+    #[inline(always)]
+    fn on_square(&self, level: u32, bits: u32) -> T {
+        self.as_flattened()[(level >> bits) as usize % (2 * RAMP)]
+    }
+
+    fn fill(&mut self, dither: bool, mut colour: impl FnMut(usize, u32) -> T) {
+        for (table, threshold) in self.iter_mut().zip(if dither { SQUARES } else { [HALF; 2] }) {
+            table.iter_mut().enumerate().for_each(|(level, stored)| *stored = colour(level, threshold));
+        }
+    }
+}
