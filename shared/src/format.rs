@@ -63,7 +63,8 @@ pub const ROTATION: u32 = 30;
 pub const COSINE: u32 = 30;
 /// Fraction bits of a light level at a node, in 1/255 of full intensity (LSB): Q9.7 held in an `i32`.
 pub const LEVEL: u32 = 7;
-/// Fraction bits of a level while it is walked along a span: unsigned Q9.23.
+/// Fraction bits of a level while it is walked along a span: unsigned Q9.23, or Q9.22 below a bit of its own, see
+/// [`crate::pixel::ramps::Ramps::BITS`].
 pub const WALK: u32 = 23;
 /// Fraction bits of a level of one of three channels while it is walked: signed Q10.22. Its range takes all overshoots without a bias, so
 /// that one instruction of Armv7-M makes it a channel.

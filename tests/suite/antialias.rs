@@ -7,7 +7,7 @@ use embedded_graphics::{
 use microphong::{
     Layout, RenderError, Renderer, Stats, Stream,
     coverage::area::TriangleCoverage,
-    format::{BIAS, Intensity, RAMP, WALK},
+    format::{BIAS, Intensity, RAMP},
     pixel::{Pixel, ramps::Rounded},
 };
 use microphong_sim::{
@@ -213,10 +213,6 @@ impl Pixel for White {
         // No level is so far from what it should be that it wraps.
         assert!(i64::from(level >> BITS) < i64::from(BIAS) * 4);
         255
-    }
-
-    fn on_square([ramp]: &Rounded<u8>, level: u32, bits: u32) -> u8 {
-        Self::entry::<WALK>(ramp, level << (WALK - bits))
     }
 
     fn quantised(_: Intensity, _: u32) -> Self {

@@ -165,10 +165,7 @@ fn stripes<D: DrawTarget<Error = Infallible>>(target: &mut D, [dark, bright]: [D
 }
 
 /// Each pixel over stripes is what it is over a background of the stripe's colour, edges that are antialiased included.
-fn under<C: Pixel + PixelColor + Debug + Send + Sync>(antialias: bool, dither: bool)
-where
-    C::Stored: Sync,
-{
+fn under<C: Pixel + PixelColor + Debug + Send + Sync>(antialias: bool, dither: bool) {
     let scene = scene::load("torus").expect("a built-in scene");
     let stream = scene.stream.parse().expect("a stream");
     // Each channel's bits are those of the format, or none.

@@ -28,7 +28,8 @@ impl Pixel for Fine {
 
     const GRAY: bool = false;
     const DEPTH: [u32; 3] = [8; 3];
-    /// What errors are measured of is drawn as boards draw it.
+    /// What errors are measured of is drawn as boards draw it, but that a walked level of one channel has a bit more than in formats with a
+    /// checkerboard.
     const COARSE: bool = true;
     const BYTES: usize = 3;
 
@@ -67,10 +68,6 @@ impl Pixel for Fine {
         }
         let between = |k: usize| (i64::from(here[k]) + (((i64::from(next[k]) - i64::from(here[k])) * fraction) >> WALK)) as u32;
         [between(0), between(1), between(2)]
-    }
-
-    fn on_square([ramp]: &Rounded<[u32; 3]>, level: u32, bits: u32) -> [u32; 3] {
-        Self::entry::<WALK>(ramp, level << (WALK - bits))
     }
 
     fn quantised(intensity: Intensity, _: u32) -> Self {

@@ -263,10 +263,6 @@ impl<C: Pixel> Pixel for Traced<C> {
         C::entry::<BITS>(ramp, level)
     }
 
-    fn on_square(ramps: &C::Ramps, level: u32, bits: u32) -> C::Stored {
-        C::on_square(ramps, level, bits)
-    }
-
     fn quantised(intensity: Intensity, threshold: u32) -> Self {
         Self::new(C::quantised(intensity, threshold))
     }

@@ -47,7 +47,7 @@ pub trait Patch: Copy {
 }
 
 /// A polynomial that can carry a checkerboard in its highest bit.
-pub trait Checkered: Patch {
+pub trait Checkerboard: Patch {
     /// Half of the range of 2^32 more at every other pixel, in all channels: at those whose column and row are not both even or both odd. It
     /// stands on `row`. Values have one bit less then, and what is above wraps as before.
     #[must_use]
@@ -195,11 +195,11 @@ impl<A: Walker, B: Walker> Walker for (A, B) {
 
 #[cfg(test)]
 mod tests {
-    use super::{Checkered, Patch, Walker, plane::Plane, quadric::Quadric};
+    use super::{Checkerboard, Patch, Walker, plane::Plane, quadric::Quadric};
     use proptest::prelude::*;
 
     /// `checkered` has half of the range more than `plain`, which stands on the same row, where column and row are not both even or both odd.
-    fn check<P: Checkered<Walker: Walker<Value = [u32; 1]>>>(mut plain: P, row: i32, x: i32, jump: i32) -> Result<(), TestCaseError> {
+    fn check<P: Checkerboard<Walker: Walker<Value = [u32; 1]>>>(mut plain: P, row: i32, x: i32, jump: i32) -> Result<(), TestCaseError> {
         let mut checkered = plain.checkered(row);
         let mut row = row;
         for step in 0..6 {

@@ -1,7 +1,7 @@
 //! Linear fields.
 
 use crate::{
-    interpolate::{Checkered, HALF_RANGE, Patch, Walker, each_channel},
+    interpolate::{Checkerboard, HALF_RANGE, Patch, Walker, each_channel},
     setup::gradients::Gradients,
 };
 
@@ -121,7 +121,7 @@ impl<const CH: usize> Patch for Plane<CH> {
     }
 }
 
-impl<const CH: usize> Checkered for Plane<CH> {
+impl<const CH: usize> Checkerboard for Plane<CH> {
     #[inline(always)]
     fn checkered(mut self, row: i32) -> Self {
         for channel in &mut self.0 {

@@ -1,7 +1,7 @@
 //! Quadratic fields.
 
 use crate::{
-    interpolate::{Checkered, HALF_RANGE, Patch, Walker, each_channel},
+    interpolate::{Checkerboard, HALF_RANGE, Patch, Walker, each_channel},
     setup::{gradients::Gradients, word_sized::QUADRATIC},
 };
 
@@ -159,7 +159,7 @@ impl<const CH: usize> Patch for Quadric<CH> {
     }
 }
 
-impl<const CH: usize> Checkered for Quadric<CH> {
+impl<const CH: usize> Checkerboard for Quadric<CH> {
     #[inline(always)]
     fn checkered(mut self, row: i32) -> Self {
         for channel in &mut self.0 {

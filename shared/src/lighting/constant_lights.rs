@@ -9,8 +9,7 @@ use crate::{
 use core::marker::PhantomData;
 use zerocopy::{FromBytes, Immutable, IntoBytes, KnownLayout};
 
-/// Two of the same kind, of which rows take one after the other: where pixels have a checkerboard, thresholds are those of its squares by
-/// turns, and else there is no difference.
+/// Tables for even rows and for odd ones, which are the same in formats without a checkerboard.
 #[derive(Debug)]
 pub(super) struct ByTurns<'a, T> {
     now: &'a T,
@@ -26,7 +25,7 @@ impl<T> Clone for ByTurns<'_, T> {
 impl<T> Copy for ByTurns<'_, T> {}
 
 impl<'a, T> ByTurns<'a, T> {
-    /// Even rows take the first one.
+    /// The first one is that of even rows.
     #[inline(always)]
     pub(super) fn new([now, next]: [&'a T; 2]) -> Self {
         Self { now, next }

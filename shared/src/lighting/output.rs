@@ -30,7 +30,7 @@ impl<'a, C: Pixel> Output<'a, C> {
         Self { tables, dither, gamma, by_threshold }
     }
 
-    /// Whether the loops of methods make the same pixels: they dither by tables alone, and always where those hold finer steps than pixels.
+    /// Whether the loops of methods may draw: they dither by tables alone, and always where those hold finer steps than pixels.
     #[must_use]
     pub fn suits_loops(&self) -> bool {
         !self.by_threshold && (self.dither == C::DITHERED_BY_TABLE || C::Ramps::CHECKERED)
@@ -63,7 +63,7 @@ impl<'a, C: Pixel> Output<'a, C> {
             return self.quantised(intensity, threshold);
         }
         let colour = if self.tables.reflectance.three_channels() {
-            C::quantised(intensity, if C::Ramps::CHECKERED { threshold } else { HALF })
+            C::quantised(intensity, threshold)
         } else {
             Self::by_table(self.ramp(row), intensity, threshold)
         };

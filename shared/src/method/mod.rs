@@ -27,9 +27,9 @@ mod two_lights;
 use crate::{
     antialias::{PixelSet, Shape},
     arch::product::by_fraction,
-    format::{BIAS, CHANNEL, LEVEL, NORMAL_LENGTH, SUBPIXEL, WALK},
+    format::{BIAS, CHANNEL, INTENSITY, LEVEL, NORMAL_LENGTH, SUBPIXEL, WALK},
     geometry::viewport::first_centre,
-    interpolate::{Checkered, perspective::PerspectivePatch},
+    interpolate::{Checkerboard, perspective::PerspectivePatch},
     lighting::material_tables::MaterialTables,
     pixel::{Pixel, ramps::Ramps},
     raster::{
@@ -91,7 +91,7 @@ pub(crate) struct Style {
     pub(crate) lights: u8,
     /// One directional light under a local viewer, whose levels fit these formats.
     pub(crate) local_viewer: bool,
-    /// What a canvas alone does to colours: dither, antialiasing, or the curve of a display on three channels.
+    /// What a canvas alone does to colours: 8x8 dither of colours, antialiasing, or the curve of a display on three channels.
     pub(crate) by_canvas: bool,
     /// Interpolation in perspective.
     pub(crate) perspective: bool,
@@ -400,10 +400,11 @@ pub fn levels_at<const N: usize>(levels: [[i32; 3]; N]) -> Nodes<N, 3, RANGE> {
 #[inline(always)]
 fn fit_levels<const N: usize, C: Pixel>(gradients: &Gradients, levels: [i32; N]) -> <Nodes<N, 1, RANGE> as Field>::Patch
 where
-    Nodes<N, 1, RANGE>: Field<Patch: Checkered>,
+    Nodes<N, 1, RANGE>: Field<Patch: Checkerboard>,
 {
-    let walk = <C::Ramps as Ramps<C::Stored>>::WALK;
-    let patch = Nodes::<N, 1, RANGE>::new([levels], walk - LEVEL).biased([(BIAS << walk).wrapping_add(1 << (walk - 1))]).fit(gradients);
+    let bits = C::Ramps::BITS;
+    let bias = (BIAS << bits).wrapping_add(1 << (bits - 1));
+    let patch = Nodes::<N, 1, RANGE>::new([levels], bits - LEVEL).biased([bias]).fit(gradients);
     if C::Ramps::CHECKERED { patch.checkered(gradients.row()) } else { patch }
 }
 
@@ -459,7 +460,7 @@ impl Shading<'_> {
         band: &mut Band<'_, C>,
     ) -> u32
     where
-        Nodes<N, 1, RANGE>: Field<Value = [u32; 1], Patch: Checkered>,
+        Nodes<N, 1, RANGE>: Field<Value = [u32; 1], Patch: Checkerboard>,
     {
         setup.fill(|| fit_levels::<N, C>(setup.gradients, nodes()), Ramp(tables.ramps), band)
     }
@@ -505,7 +506,7 @@ pub struct Walked;
 /// The intensity of a biased, walked level.
 #[inline(always)]
 fn intensity(walked: u32) -> i32 {
-    ((walked >> (WALK - 8)) as i32 - (BIAS << 8)).clamp(0, (1 << 16) - 1)
+    ((walked >> (WALK - INTENSITY)) as i32 - (BIAS << INTENSITY)).clamp(0, (1 << 16) - 1)
 }
 
 /// The intensity of levels in Q9.7, at most 255.

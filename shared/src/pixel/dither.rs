@@ -72,9 +72,9 @@ pub trait ByRows: Copy {
     #[inline(always)]
     fn step_row(&mut self) {}
 
-    /// Moves down from the first row of all.
+    /// Moves down from the first row of the picture to `row`.
     #[inline(always)]
-    fn jump(&mut self, row: i32) {
+    fn start_at(&mut self, row: i32) {
         if row & 1 != 0 {
             self.step_row();
         }

@@ -8,10 +8,10 @@ pub mod ramps;
 
 use crate::{
     arch::SATURATES,
-    format::{CHANNEL, Intensity, RAMP},
+    format::{CHANNEL, Intensity, RAMP, WALK},
     pixel::{
         dither::quantise,
-        ramps::{Checkered, Ramps, Rounded},
+        ramps::{InTurn, Ramps, Rounded},
     },
 };
 use core::hint::black_box;
@@ -28,7 +28,8 @@ use zerocopy::{FromBytes, Immutable, IntoBytes, KnownLayout};
 pub trait Pixel: Copy + 'static {
     /// The form in which tables of colours store a pixel.
     type Stored: FromBytes + IntoBytes + Immutable + KnownLayout + Copy + core::fmt::Debug;
-    /// The tables of colours of a material: [`Rounded`], or [`Checkered`] where channels have five bits to seven.
+    /// The tables of colours of a material: [`InTurn`] where channels have five bits to seven, else [`Rounded`]. Colours of so few bits with
+    /// [`Rounded`] are dithered the general way, which takes several times as long.
     type Ramps: Ramps<Self::Stored>;
 
     /// One channel instead of three.
@@ -43,7 +44,7 @@ pub trait Pixel: Copy + 'static {
     /// Whether steps between levels are so wide that a picture needs dither.
     const DITHERED: bool = Self::DEPTH[2] < 8;
     /// Whether tables of colours hold finer steps than pixels have, so that loops dither what they take from there.
-    const DITHERED_BY_TABLE: bool = Self::GRAY && Self::DITHERED;
+    const DITHERED_BY_TABLE: bool = Self::GRAY && Self::DITHERED && !Self::Ramps::CHECKERED;
     /// Bytes that a pixel adds to the picture's checksum.
     const BYTES: usize;
 
@@ -86,10 +87,15 @@ pub trait Pixel: Copy + 'static {
         ramp[(level >> BITS) as usize % RAMP]
     }
 
-    /// What tables of colours hold for a level on a square of the checkerboard, see [`Ramps::on_square`].
+    /// What tables of colours hold for a walked level, see [`Ramps::walked`].
     #[inline(always)]
-    fn on_square(ramps: &Self::Ramps, level: u32, bits: u32) -> Self::Stored {
-        ramps.on_square(level, bits)
+    fn walked(ramps: &Self::Ramps, level: u32) -> Self::Stored {
+        if Self::Ramps::CHECKERED {
+            ramps.walked(level)
+        } else {
+            let [ramp, _] = ramps.squares();
+            Self::entry::<WALK>(ramp, level)
+        }
     }
 
     /// The colour of a level, see [`Self::entry`], with a [`dither::threshold`].
@@ -141,7 +147,7 @@ macro_rules! rgb565 {
     ($format:ty, $high:literal, $low:literal) => {
         impl Pixel for $format {
             type Stored = u16;
-            type Ramps = Checkered<u16>;
+            type Ramps = InTurn<u16>;
 
             const GRAY: bool = false;
             const DEPTH: [u32; 3] = [5, 6, 5];
@@ -219,7 +225,7 @@ macro_rules! rgb {
     };
 }
 
-rgb!(Rgb666, 6, Checkered);
+rgb!(Rgb666, 6, InTurn);
 rgb!(Rgb888, 8, Rounded);
 
 /// One channel.
@@ -312,7 +318,7 @@ impl From<Rgb565> for Rgb565Be {
 
 impl Pixel for Rgb565Be {
     type Stored = Self;
-    type Ramps = Checkered<Self>;
+    type Ramps = InTurn<Self>;
 
     const GRAY: bool = false;
     const DEPTH: [u32; 3] = [5, 6, 5];

@@ -17,13 +17,14 @@ pub trait Ramps<T: Copy>: FromBytes + IntoBytes + Immutable + KnownLayout + Debu
     /// Whether there are tables for the squares of a checkerboard.
     const CHECKERED: bool;
     /// Fraction bits of a level while it is walked along a span: [`WALK`], or one less where the highest bit is that of the checkerboard.
-    const WALK: u32;
+    const BITS: u32;
 
     /// The colours on both squares of the checkerboard, or the same twice.
     fn squares(&self) -> [&[T; RAMP]; 2];
 
-    /// The colour of a biased level with `bits` fraction bits, rounding half included; above its highest bit stands the square of the checkerboard.
-    fn on_square(&self, level: u32, bits: u32) -> T;
+    /// The colour of a walked level with [`Self::BITS`] fraction bits, bias and rounding half included; above them stands the square of the
+    /// checkerboard.
+    fn walked(&self, level: u32) -> T;
 
     /// Fills the tables: `colour` is that of an entry with a [`crate::pixel::dither::threshold`].
     fn fill(&mut self, dither: bool, colour: impl FnMut(usize, u32) -> T);
@@ -33,11 +34,11 @@ pub trait Ramps<T: Copy>: FromBytes + IntoBytes + Immutable + KnownLayout + Debu
 pub type Rounded<T> = [[T; RAMP]; 1];
 
 /// Two tables for the squares of a checkerboard.
-pub type Checkered<T> = [[T; RAMP]; 2];
+pub type InTurn<T> = [[T; RAMP]; 2];
 
 impl<T: Copy + Debug + FromBytes + IntoBytes + Immutable + KnownLayout + Sync> Ramps<T> for Rounded<T> {
     const CHECKERED: bool = false;
-    const WALK: u32 = WALK;
+    const BITS: u32 = WALK;
 
     #[inline(always)]
     fn squares(&self) -> [&[T; RAMP]; 2] {
@@ -46,9 +47,9 @@ impl<T: Copy + Debug + FromBytes + IntoBytes + Immutable + KnownLayout + Sync> R
     }
 
     #[inline(always)]
-    fn on_square(&self, level: u32, bits: u32) -> T {
+    fn walked(&self, level: u32) -> T {
         let [rounded] = self;
-        rounded[(level >> bits) as usize % RAMP]
+        rounded[(level >> Self::BITS) as usize % RAMP]
     }
 
     fn fill(&mut self, _: bool, mut colour: impl FnMut(usize, u32) -> T) {
@@ -57,9 +58,9 @@ impl<T: Copy + Debug + FromBytes + IntoBytes + Immutable + KnownLayout + Sync> R
     }
 }
 
-impl<T: Copy + Debug + FromBytes + IntoBytes + Immutable + KnownLayout + Sync> Ramps<T> for Checkered<T> {
+impl<T: Copy + Debug + FromBytes + IntoBytes + Immutable + KnownLayout + Sync> Ramps<T> for InTurn<T> {
     const CHECKERED: bool = true;
-    const WALK: u32 = WALK - 1;
+    const BITS: u32 = WALK - 1;
 
     #[inline(always)]
     fn squares(&self) -> [&[T; RAMP]; 2] {
@@ -68,8 +69,8 @@ impl<T: Copy + Debug + FromBytes + IntoBytes + Immutable + KnownLayout + Sync> R
     }
 
     #[inline(always)]
-    fn on_square(&self, level: u32, bits: u32) -> T {
-        self.as_flattened()[(level >> bits) as usize % (2 * RAMP)]
+    fn walked(&self, level: u32) -> T {
+        self.as_flattened()[(level >> Self::BITS) as usize % (2 * RAMP)]
     }
 
     fn fill(&mut self, dither: bool, mut colour: impl FnMut(usize, u32) -> T) {

@@ -3,7 +3,7 @@
 //! A [`SpanShader`] shades a row of pixels in [`Intensity`], which knows nothing of pixel formats; a [`Canvas`] tests depth, turns
 //! intensities into colours and stores them, and knows nothing of methods. So each method and each pixel format is compiled once, and not
 //! each pair. Whatever a method has no loop for (see [`crate::method`]) is drawn this way: many lights, near lights, antialiasing,
-//! interpolation in perspective, and dither but that of a few greys.
+//! interpolation in perspective, and 8x8 dither of colours.
 //!
 //! Cost: several times that of a method's loop for a method of few instructions a pixel, little more for one of a hundred.
 

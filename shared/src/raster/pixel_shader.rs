@@ -52,7 +52,7 @@ impl<C: Pixel> PixelShader<()> for Solid<C> {
     }
 }
 
-/// One walked level, which is an index of a table of colours; guards at both ends of the table take the place of a clamp.
+/// One walked level, which is an index of a table of colours; guards at both ends of a table take the place of a clamp.
 #[derive(Debug)]
 pub struct Ramp<'a, C: Pixel>(pub &'a C::Ramps);
 
@@ -73,7 +73,7 @@ impl<C: Pixel> PixelShader<[u32; 1]> for Ramp<'_, C> {
 
     #[inline(always)]
     fn shade(&self, [level]: [u32; 1], threshold: u32) -> C {
-        C::shown(C::on_square(self.0, level, C::Ramps::WALK), threshold)
+        C::shown(C::walked(self.0, level), threshold)
     }
 }
 

@@ -337,11 +337,11 @@ impl<'b, D: Patch<Walker: DepthTest>, P: Patch, T: PixelShader<<P::Walker as Wal
     /// Whether pixels are counted a row ahead in that copy, so that the count need not be kept during the pixel loop.
     const AHEAD: bool = Self::LOCAL && cfg!(target_arch = "arm") && P::WORDS <= 6;
 
-    /// The state before the first row, which is `row` of the band.
+    /// The state before the first row, which is `row` of the picture.
     #[inline(always)]
     pub(crate) fn new(band: &'b mut Band<'_, T::Pixel>, row: i32, sides: LeftRight, depth: D, patch: P, mut shader: T) -> Self {
         let (width, start) = (band.width, band.start(row));
-        shader.jump(row);
+        shader.start_at(row);
         Self {
             pixels: band.pixels,
             buffer: band.depth,
