@@ -506,6 +506,9 @@ fn wrong_usage_is_told_from_failure() {
     place.fails(&["bench", "--reason", "none"], 2, &["--renew <FILE>"]);
     place.fails(&["bench", "--styles", "--board", "pico"], 2, &["--styles", "--board"]);
     place.fails(&["bench", "--redraw", "--skips"], 2, &["--redraw", "--skips"]);
+    for what in ["--styles", "--skips", "--redraw"] {
+        place.fails(&["bench", what, "--budget", "1,2"], 2, &[what, "one --budget"]);
+    }
     place.fails(&["paint"], 2, &["paint"]);
     place.fails(&[], 2, &["Usage"]);
 }

@@ -1,7 +1,7 @@
 //! `microphong bench`.
 
 use super::{
-    Outcome, growth,
+    Outcome, Usage, growth,
     parse::{self, Several},
     report, scenes,
 };
@@ -125,6 +125,9 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome> {
     }
     if let (Some(path), Some(reason)) = (&arguments.renew, &arguments.reason) {
         return renew(path, reason);
+    }
+    if (arguments.styles || arguments.skips || arguments.redraw) && arguments.budget.len() > 1 {
+        return Err(Usage("--styles, --skips and --redraw count by one --budget; give one value".to_owned()).into());
     }
     let mut scenes = Vec::new();
     for name in &arguments.scenes {
