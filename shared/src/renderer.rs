@@ -179,9 +179,11 @@ impl<'a, C: Pixel> Renderer<'a, C> {
     /// Turns ordered dither on or off; at first it is on in formats of less than eight bits a channel. All tables of the materials are computed anew.
     ///
     /// Where channels have five bits to seven, two thresholds take turns ([`crate::pixel::ramps`]): like the squares of a checkerboard, or by rows.
-    /// Frames take as many instructions as without dither. Light of three channels is rounded by the loops of methods all the same. Formats of fewer bits have 64
-    /// thresholds in squares of eight by eight: greys are dithered by the loops of methods, for few instructions more, and without it
-    /// drawn the general way, as colours of so few bits are with it. So are all formats of eight bits.
+    /// Frames take as many instructions as without dither. Light of three channels is rounded by the loops of methods all the same.
+    ///
+    /// All other formats have 64 thresholds in squares of eight by eight. Greys of up to four bits are dithered by the loops of methods, for few
+    /// instructions more, and drawn the general way without dither. Colours of so few bits, and formats of eight bits, are drawn the
+    /// general way with it.
     pub fn set_dither(&mut self, dither: bool) {
         self.settings.dither = dither;
         self.scene.set_stale();
