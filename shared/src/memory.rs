@@ -21,7 +21,7 @@ use zerocopy::{FromBytes, Immutable, IntoBytes, KnownLayout};
 ///
 /// const LAYOUT: Layout = Layout::new(240, 40).vertices(1024).triangles(1024);
 /// static MEMORY: [u64; LAYOUT.words::<Rgb565>()] = [0; LAYOUT.words::<Rgb565>()];
-/// assert_eq!(LAYOUT.bytes::<Rgb565>(), 77_440);
+/// assert_eq!(LAYOUT.bytes::<Rgb565>(), 77_632);
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Layout {
@@ -39,7 +39,7 @@ pub struct Layout {
     pub materials: usize,
     /// Objects of the scene.
     pub objects: usize,
-    /// Triangles that are kept from one band to the next, 128 bytes each. If more cross a border, the next band sets up the remaining ones
+    /// Triangles that are kept from one band to the next, 132 bytes each. If more cross a border, the next band sets up the remaining ones
     /// anew.
     pub active_triangles: usize,
     /// Whether there is room for antialiasing, 72 bytes for each pixel of a band.

@@ -9,7 +9,7 @@ use crate::{
     lighting::{lights::Directions, material_tables::fill_ramps},
     memory::{Layout, Memory},
     method::Facts,
-    pixel::{Pixel, gamma::Gamma},
+    pixel::{Pixel, gamma::Gamma, ramps::Ramps},
     placement::{Placements, Placing},
     scene::{Limits, Scene},
     shader::Shader,
@@ -129,6 +129,9 @@ impl<'a, C: Pixel> Renderer<'a, C> {
             reflectance.fill::<C>(ambient, &material, &lights, (facts.highlight, facts.highlight_levels));
             fill_ramps::<C>(ramps, reflectance, settings.dither, settings.gamma);
             *bounds = shader.method().error_bounds(reflectance, material.exponent, lights.len());
+            if settings.dither && C::Ramps::CHECKERED {
+                reflectance.dither();
+            }
             #[cfg(feature = "skips")]
             reflectance.leave_out(settings.skips.highlights, settings.skips.lights);
         }
@@ -179,7 +182,7 @@ impl<'a, C: Pixel> Renderer<'a, C> {
     /// Turns ordered dither on or off; at first it is on in formats of less than eight bits a channel. All tables of the materials are computed anew.
     ///
     /// Where channels have five bits to seven, two thresholds take turns ([`crate::pixel::ramps`]): like the squares of a checkerboard, or by rows.
-    /// Frames take as many instructions as without dither. Light of three channels is rounded by the loops of methods all the same.
+    /// Frames take as many instructions as without dither. What loops compute at the pixel in three channels is rounded all the same.
     ///
     /// All other formats have 64 thresholds in squares of eight by eight. Greys of up to four bits are dithered by the loops of methods, for few
     /// instructions more, and drawn the general way without dither. Colours of so few bits, and formats of eight bits, are drawn the

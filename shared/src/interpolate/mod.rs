@@ -9,6 +9,7 @@
 //! Methods say what they interpolate by [`field`]s; [`perspective`] interpolates the same in perspective.
 
 pub mod by_column;
+pub mod by_row;
 pub mod cubic;
 pub mod field;
 pub mod perspective;
@@ -52,6 +53,12 @@ pub trait Checkerboard: Patch {
     /// stands on `row`. Values have one bit less then, and what is above wraps as before.
     #[must_use]
     fn checkered(self, row: i32) -> Self;
+}
+
+/// A polynomial of three channels that can be raised.
+pub trait Raised: Patch {
+    /// So much more in each channel.
+    fn raise(&mut self, by: [i32; 3]);
 }
 
 /// Half of the range of a walked value.

@@ -113,6 +113,8 @@ pub struct Reflectance {
     /// The levels of ambient light, Q9.7.
     pub(super) ambient: [i32; 3],
     highlight_threshold: i32,
+    /// By how much odd rows are higher than even ones where three channels are walked, see [`Self::higher_below`].
+    half_step: i32,
     /// Bits of each channel of the pixel format.
     depth: [u32; 3],
     pub(super) gains: [Gains; MAX_LIGHTS],
@@ -172,6 +174,7 @@ impl Reflectance {
         has_ramp: 0,
         has_two_lights: 0,
         computes_all: [0; 2],
+        half_step: 0,
         ambient: [0; 3],
         gains: [Gains::NONE; MAX_LIGHTS],
         sums: [[Sum::EMPTY; 3]; 3],
@@ -207,6 +210,7 @@ impl Reflectance {
         let direction = if C::COARSE { base } else { [largest(base); 3] };
         let one_channel = terms.iter().all(|&term| along(term, direction));
         self.depth = depth;
+        self.half_step = 0;
         self.three_channels = u8::from(!one_channel);
         let levels = |colour: Colour| -> [u16; 3] { if one_channel { [level(largest(colour), 8); 3] } else { zip(colour, depth, level) } };
         self.ambient = levels(terms.last().copied().unwrap_or_default()).map(i32::from);
@@ -300,6 +304,19 @@ impl Reflectance {
     #[must_use]
     pub fn highlight_threshold(&self) -> i32 {
         self.highlight_threshold
+    }
+
+    /// Dithers three channels where they are walked: half a step lies between even rows and odd ones.
+    pub(crate) fn dither(&mut self) {
+        self.half_step = 1 << (CHANNEL - 1);
+    }
+
+    /// By how much the row below `row` is higher where three channels are walked, with [`CHANNEL`] fraction bits, as if channels had eight bits; 0
+    /// without dither.
+    #[inline(always)]
+    #[must_use]
+    pub(crate) fn higher_below(&self, row: i32) -> i32 {
+        if row & 1 == 0 { self.half_step } else { -self.half_step }
     }
 
     /// Changes whether highlights are left out of triangles where none can be seen, and lights of triangles that they do not reach.

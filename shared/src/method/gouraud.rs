@@ -77,9 +77,9 @@ impl Loops for ThreeChannels<Gouraud> {
                 let ([r0, g0, b0], [r1, g1, b1], [r2, g2, b2]) = (a.levels(), b.levels(), c.levels());
                 [[r0, r1, r2], [g0, g1, g2], [b0, b1, b2]]
             };
-            return Some(Shading::fill_three(setup, channels, 0, |plane| plane, band));
+            return Some(shading.fill_three(setup, channels, 0, |plane| plane, band));
         }
-        Some(draw_three(setup, 0, tables, band))
+        Some(draw_three(setup, shading, 0, tables, band))
     }
 }
 
@@ -100,7 +100,13 @@ pub(super) fn has_ramp(setup: &TriangleSetup<'_>, reflectance: &Reflectance) -> 
 
 /// Draws a triangle of three channels under one constant light, all levels `raise` more; returns the number of its pixels in `band`.
 #[inline(always)]
-pub(super) fn draw_three<C: Pixel>(setup: &TriangleSetup<'_>, raise: i32, tables: MaterialTables<'_, C>, band: &mut Band<'_, C>) -> u32 {
+pub(super) fn draw_three<C: Pixel>(
+    setup: &TriangleSetup<'_>,
+    shading: &Shading<'_>,
+    raise: i32,
+    tables: MaterialTables<'_, C>,
+    band: &mut Band<'_, C>,
+) -> u32 {
     let ([a, b, c], reflectance) = (setup.corners, tables.reflectance);
     // By the table of colours where the light has no highlight.
     if has_ramp(setup, reflectance) {
@@ -112,7 +118,7 @@ pub(super) fn draw_three<C: Pixel>(setup: &TriangleSetup<'_>, raise: i32, tables
         let [[r0, g0, b0], [r1, g1, b1], [r2, g2, b2]] = reflections([a, b, c], reflectance);
         [[r0, r1, r2], [g0, g1, g2], [b0, b1, b2]]
     };
-    Shading::fill_three(setup, channels, raise, |plane| plane, band)
+    shading.fill_three(setup, channels, raise, |plane| plane, band)
 }
 
 /// In a function of its own: by measurement, what draws the triangle has more registers then.

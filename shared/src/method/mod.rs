@@ -29,7 +29,11 @@ use crate::{
     arch::product::by_fraction,
     format::{BIAS, CHANNEL, INTENSITY, LEVEL, NORMAL_LENGTH, SUBPIXEL, WALK},
     geometry::viewport::first_centre,
-    interpolate::{Checkerboard, perspective::PerspectivePatch},
+    interpolate::{
+        Checkerboard, Raised,
+        by_row::{self, ByRow},
+        perspective::PerspectivePatch,
+    },
     lighting::material_tables::MaterialTables,
     pixel::{Pixel, ramps::Ramps},
     raster::{
@@ -468,21 +472,36 @@ impl Shading<'_> {
     /// [`Self::draw_levels`] by loops of a method: three levels, `raise` more than at the nodes, whose polynomials are walked as `walked` says.
     #[inline(always)]
     fn fill_three<const N: usize, C: Pixel, P: Patch<Walker: Walker<Value = [u32; 3]>>>(
+        &self,
         setup: &TriangleSetup<'_>,
         channels: impl FnOnce() -> [[i32; N]; 3],
         raise: i32,
-        walked: impl FnOnce(<Nodes<N, 3, RANGE> as Field>::Patch) -> P,
+        walked: impl FnOnce(ByRow<<Nodes<N, 3, RANGE> as Field>::Patch, C>) -> P,
         band: &mut Band<'_, C>,
     ) -> u32
     where
-        Nodes<N, 3, RANGE>: Field,
+        Nodes<N, 3, RANGE>: Field<Patch: Raised>,
     {
         let half_steps = const {
             let [r, g, b] = C::DEPTH;
             [1 << (CHANNEL + 7 - r), 1 << (CHANNEL + 7 - g), 1 << (CHANNEL + 7 - b)]
         };
-        let bias = half_steps.map(|half| half + (raise << (CHANNEL - LEVEL)));
-        let patch = || walked(Nodes::<N, 3, RANGE>::new(channels(), CHANNEL - LEVEL).biased(bias).fit(setup.gradients));
+        let patch = || {
+            let higher = || self.reflectance.higher_below(setup.gradients.row());
+            let raise = raise << (CHANNEL - LEVEL);
+            let [r, g, b] = half_steps;
+            let mut bias = [r + raise, g + raise, b + raise];
+            // By measurement, planes are set up sooner if they begin lower, and quadratics if they are lowered.
+            if N == 3 && C::Ramps::CHECKERED {
+                let [r, g, b] = by_row::channels::<C>(higher() >> 1);
+                bias = [bias[0] - r, bias[1] - g, bias[2] - b];
+            }
+            let mut patch = Nodes::<N, 3, RANGE>::new(channels(), CHANNEL - LEVEL).biased(bias).fit(setup.gradients);
+            if N > 3 && C::Ramps::CHECKERED {
+                patch.raise(by_row::channels::<C>(-(higher() >> 1)));
+            }
+            walked(ByRow::new(patch, higher()))
+        };
         setup.fill(patch, Rgb(PhantomData), band)
     }
 }

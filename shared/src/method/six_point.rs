@@ -71,7 +71,7 @@ impl Loops for SixPoint {
 /// Draws `setup` in three channels.
 #[inline(never)]
 fn draw_rgb<C: Pixel>(setup: &TriangleSetup<'_>, shading: &Shading<'_>, band: &mut Band<'_, C>) -> u32 {
-    Shading::fill_three(setup, || levels(&setup.for_lighting(), shading), 0, ByColumn, band)
+    shading.fill_three(setup, || levels(&setup.for_lighting(), shading), 0, ByColumn, band)
 }
 
 /// N·L (Q2.30) and the highlight (unsigned Q0.16) of one constant light at the six nodes.

@@ -70,8 +70,8 @@ const JUDGE_COSINES: Cost = Cost::new(350, 0, 0);
 /// Costs in one channel, in three, and under two lights.
 pub const COSTS: [Costs; 3] = [
     Costs { quadratic: Cost::new(1016, 66, 13), cosines: Cost::new(1276, 83, 21), phong: Cost::new(1030, 85, 32) },
-    Costs { quadratic: Cost::new(1323, 75, 23), cosines: Cost::new(1118, 81, 32), phong: Cost::new(941, 85, 42) },
-    Costs { quadratic: Cost::new(2191, 87, 31), cosines: Cost::new(1678, 97, 64), phong: Cost::new(1193, 96, 70) },
+    Costs { quadratic: Cost::new(1309, 80, 23), cosines: Cost::new(1118, 81, 32), phong: Cost::new(941, 85, 42) },
+    Costs { quadratic: Cost::new(2149, 96, 31), cosines: Cost::new(1678, 97, 64), phong: Cost::new(1193, 96, 70) },
 ];
 
 /// What quadratics save in each of these styles.

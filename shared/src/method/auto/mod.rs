@@ -191,15 +191,13 @@ impl<const QUADRATICS: bool> Loops for ThreeChannels<Auto<QUADRATICS>> {
         setup.count(band.top, choice.count(&mut band.counts), 1);
         match (choice, shading.constant) {
             (Choice::Solid(raise), _) => Some(setup.fill(|| Constant, Solid(solid(setup, shading, raise, tables)), band)),
-            (Choice::Linear(raise), Some(_)) => Some(gouraud::draw_three(setup, raise, tables, band)),
+            (Choice::Linear(raise), Some(_)) => Some(gouraud::draw_three(setup, shading, raise, tables, band)),
             (Choice::Linear(raise), None) => {
                 let channels = || channels(corner_levels(setup, shading.reflectance));
-                Some(Shading::fill_three(setup, channels, raise, |plane| plane, band))
+                Some(shading.fill_three(setup, channels, raise, |plane| plane, band))
             }
             (Choice::Quadratic, Some(_)) if QUADRATICS => by::<SixPoint, _>(setup, shading, tables, band),
-            (Choice::Quadratic, None) if QUADRATICS => {
-                Some(Shading::fill_three(setup, || six_under_two(setup, shading), 0, ByColumn, band))
-            }
+            (Choice::Quadratic, None) if QUADRATICS => Some(shading.fill_three(setup, || six_under_two(setup, shading), 0, ByColumn, band)),
             (Choice::Cosines, _) if QUADRATICS => by::<SixCosines, _>(setup, shading, tables, band),
             (Choice::Quadratic | Choice::Cosines | Choice::Phong, _) => by::<Phong, _>(setup, shading, tables, band),
         }

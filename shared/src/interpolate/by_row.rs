@@ -1,0 +1,87 @@
+//! Levels of several channels that are dithered by rows.
+//!
+//! Channels that are walked side by side have no table to choose, and a threshold would be an addition in each of them at every pixel. So rows
+//! take turns: a quarter of a step of each channel less on even rows, and more on odd ones.
+
+use crate::{
+    interpolate::{Patch, Raised},
+    pixel::{Pixel, ramps::Ramps},
+};
+use core::marker::PhantomData;
+
+/// A polynomial of the levels of three channels, of which every other row is higher, if the pixel format `C` has a checkerboard.
+#[derive(Clone, Copy, Debug)]
+pub struct ByRow<P, C> {
+    patch: P,
+    /// How much higher the next row is, as if all channels had eight bits.
+    higher: i32,
+    format: PhantomData<C>,
+}
+
+impl<P: Raised, C: Pixel> ByRow<P, C> {
+    /// Whether the pixel format has a checkerboard.
+    const IS_ON: bool = C::Ramps::CHECKERED;
+
+    /// Of `patch`, on a row below which all is so much `higher`, as if channels had eight bits.
+    #[inline(always)]
+    #[must_use]
+    pub fn new(patch: P, higher: i32) -> Self {
+        Self { patch, higher, format: PhantomData }
+    }
+
+    #[inline(always)]
+    fn turn(&mut self) {
+        self.patch.raise(channels::<C>(self.higher));
+        self.higher = -self.higher;
+    }
+}
+
+/// In each channel of the pixel format as many steps as `by` is of eight bits.
+#[inline(always)]
+pub(crate) fn channels<C: Pixel>(by: i32) -> [i32; 3] {
+    let [r, g, b] = C::DEPTH;
+    [by << (8 - r), by << (8 - g), by << (8 - b)]
+}
+
+impl<P: Raised, C: Pixel> Patch for ByRow<P, C> {
+    type Walker = P::Walker;
+
+    #[inline(always)]
+    fn jump(&mut self, rows: i32) {
+        self.patch.jump(rows);
+        if Self::IS_ON && rows & 1 != 0 {
+            self.turn();
+        }
+    }
+
+    #[inline(always)]
+    fn step_row(&mut self) {
+        self.patch.step_row();
+        if Self::IS_ON {
+            self.turn();
+        }
+    }
+
+    #[inline(always)]
+    fn enter(&self, x: i32) -> P::Walker {
+        self.patch.enter(x)
+    }
+
+    const WORDS: usize = P::WORDS + if Self::IS_ON { 1 } else { 0 };
+
+    #[inline(always)]
+    fn save(&self, words: &mut [u32]) -> bool {
+        if !Self::IS_ON {
+            return self.patch.save(words);
+        }
+        let Some((higher, words)) = words.split_first_mut() else { return false };
+        *higher = self.higher as u32;
+        self.patch.save(words)
+    }
+
+    #[inline(always)]
+    fn load(words: &[u32]) -> Option<Self> {
+        let (higher, words) = if Self::IS_ON { words.split_first()? } else { (&0, words) };
+        Some(Self { patch: P::load(words)?, higher: *higher as i32, format: PhantomData })
+    }
+}
