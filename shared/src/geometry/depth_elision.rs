@@ -112,10 +112,11 @@ impl DepthElision {
 
     /// Rows and columns of the grid that a box in the viewport touches.
     #[inline(always)]
-    fn cells(&self, columns: [i32; 2], rows: [i32; 2]) -> (RangeInclusive<usize>, u32) {
+    fn cells(&self, [left, right]: [i32; 2], [top, bottom]: [i32; 2]) -> (RangeInclusive<usize>, u32) {
         let [across, down] = self.scale;
-        let [left, right] = columns.map(|x| (x * across) as u32 >> 16);
-        let [top, bottom] = rows.map(|y| (y * down) as usize >> 16);
+        // Written out, as the compiler makes loops of maps on Armv6-M.
+        let (left, right) = ((left * across) as u32 >> 16, (right * across) as u32 >> 16);
+        let (top, bottom) = ((top * down) as usize >> 16, (bottom * down) as usize >> 16);
         (top..=bottom, (u32::MAX << (left & 31)) & (u32::MAX >> ((CELLS - 1).wrapping_sub(right) & 31)))
     }
 }
