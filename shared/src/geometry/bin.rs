@@ -222,11 +222,12 @@ impl Iterator for Walk<'_> {
 
     #[inline(always)]
     fn next(&mut self) -> Option<Entry> {
-        // Entries are put in from the last triangle to the first: of two lists the later entry comes first in the stream.
-        let [active, fresh] = &mut self.lists;
-        let link = (*active).max(*fresh);
+        // Entries are put in from the last triangle to the first: of two lists the later entry comes first in the stream. Which list is which
+        // does not matter.
+        let [one, other] = self.lists;
+        let (link, rest) = (one.max(other), one.min(other));
         let entry = *linked(link).and_then(|index| self.entries.get(index))?;
-        *(if link == *active { active } else { fresh }) = entry.next;
+        self.lists = [entry.next, rest];
         if u32::from(entry.bottom) > self.bottom {
             append(self.entries, &mut self.head, self.tail, link);
             self.tail = link;
