@@ -41,14 +41,15 @@ struct RowRange {
     inv_depth: Option<Plane<1>>,
     /// The key among [`ActiveTriangles`]; 0 if the triangle is not saved for the next band.
     key: u32,
-    /// Whether the band above has saved the triangle, so that patches stand on the first row already.
-    resumed: bool,
+    /// 1 if the band above has saved the triangle, so that patches stand on the first row already. A word: behind a byte the compiler copies
+    /// padding, and the corners with it, byte by byte.
+    resumed: u32,
 }
 
 impl RowRange {
     #[inline(always)]
     const fn of(sides: EdgeWalker, key: u32) -> Self {
-        Self { sides, inv_depth: None, key, resumed: false }
+        Self { sides, inv_depth: None, key, resumed: 0 }
     }
 }
 
@@ -110,7 +111,7 @@ impl ScreenTriangle {
             sides: active_triangle.edges.walker(band.range()),
             inv_depth: active_triangle.inv_depth(),
             key: active_triangle.key,
-            resumed: true,
+            resumed: 1,
         };
         Self { corners: [[0; 2]; 3], depth: [0; 3], turned, rows }
     }
@@ -224,7 +225,7 @@ impl ScreenTriangle {
         let sides = &self.rows.sides;
         let (mut row, mut stop) = (sides.row, sides.stop);
         let mut rows = Rows::new(band, row, sides.pair, depth, patch, shader);
-        if !self.rows.resumed && row != gradients.row() {
+        if self.rows.resumed == 0 && row != gradients.row() {
             rows.patch.jump(row.wrapping_sub(gradients.row()));
         }
         loop {
