@@ -1,7 +1,7 @@
 //! A shading method together with the loops that draw it in one pixel format.
 
 use crate::{
-    geometry::bin::{Entry, Walk},
+    geometry::bin::{Key, Walk},
     mesh::MeshPass,
     method::{
         DrawTriangle, Facts, General, Loops, Method, Style, auto::Auto, flat::Flat, gouraud::Gouraud, phong::Phong,
@@ -24,7 +24,7 @@ pub struct Shader<C: Pixel> {
 }
 
 /// The type of [`MeshPass::run`] with the loops of one method.
-type Run<C> = fn(&MeshPass<'_, C>, Entry, &mut Walk<'_>, &mut Band<'_, C>) -> (u32, Option<Entry>);
+type Run<C> = fn(&MeshPass<'_, C>, Key, &mut Walk<'_>, &mut Band<'_, C>) -> (u32, Option<Key>);
 
 /// What draws triangles by the loops of one method.
 pub(crate) struct TriangleLoops<C: Pixel> {

@@ -5,7 +5,7 @@ use crate::{
     coverage::sample::Sample,
     error::RenderError,
     frame::context::{Context, PlacedMesh},
-    geometry::bin::{Bins, Entry, Walk},
+    geometry::bin::{Bins, Entry, Key, Walk},
     pixel::Pixel,
     raster::{
         active::{ActiveTriangle, ActiveTriangles, QueueState},
@@ -218,31 +218,31 @@ pub(super) fn halves<T>(memory: &mut [T], length: usize) -> (&mut [T], &mut [T])
 fn draw_binned<C: Pixel>(context: &Context<'_, C>, walk: &mut Walk<'_>, band: &mut Band<'_, C>) -> u32 {
     let mut pixels = 0u32;
     let mut next = walk.next();
-    while let Some(entry) = next {
+    while let Some(key) = next {
         // A scene has both.
-        let Some(placed) = context.mesh(entry.triangle()) else { break };
+        let Some(placed) = context.mesh(key.triangle()) else { break };
         if context.hides(placed.placement, band) {
-            next = leave_out(&placed, entry, walk, band);
+            next = leave_out(&placed, key, walk, band);
             continue;
         }
         let Some((drawing, loops)) = context.drawing(&placed) else { break };
-        let (drawn, rest) = (loops.run)(&drawing, entry, walk, band);
+        let (drawn, rest) = (loops.run)(&drawing, key, walk, band);
         pixels = pixels.saturating_add(drawn);
         next = rest;
     }
     pixels
 }
 
-/// Leaves out the triangle of `entry` and all that follow in the same mesh; returns the first entry of another one.
+/// Leaves out the triangle `key` and all that follow in the same mesh; returns the first one of another.
 #[inline(never)]
-fn leave_out<C: Pixel>(placed: &PlacedMesh<'_>, entry: Entry, walk: &mut Walk<'_>, band: &mut Band<'_, C>) -> Option<Entry> {
-    let mut next = Some(entry);
-    while let Some(entry) = next.filter(|entry| placed.has(entry.triangle())) {
+fn leave_out<C: Pixel>(placed: &PlacedMesh<'_>, key: Key, walk: &mut Walk<'_>, band: &mut Band<'_, C>) -> Option<Key> {
+    let mut next = Some(key);
+    while let Some(key) = next.filter(|key| placed.has(key.triangle())) {
         if cfg!(feature = "skips") {
             band.counts.hidden += 1;
         }
         // What the band above has saved of it stands on the first row of this band: no later band may go on from there.
-        let _ = band.active.take(entry.key());
+        let _ = band.active.take(key.word());
         next = walk.next();
     }
     next

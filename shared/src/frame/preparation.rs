@@ -333,7 +333,7 @@ impl<'r, C: Pixel> PreparationPart<'_, 'r, C> {
                 continue;
             };
             while let [entry, behind @ ..] = *entries
-                && let Some(triangle) = triangles.get(entry.triangle().wrapping_sub(placed.first_triangle) as usize)
+                && let Some(triangle) = triangles.get(entry.key().triangle().wrapping_sub(placed.first_triangle) as usize)
             {
                 *entries = behind;
                 for corner in triangle.corners.map(usize::from) {

@@ -17,43 +17,62 @@ const NONE: u16 = 0;
 /// The end of the list of a bin that will be continued, plus the bin.
 const OPEN: u16 = 1 << 15;
 
-/// A triangle in a list.
+/// A triangle in a list: twice its index in the stream, plus 1 if it is word-sized. No other has the same.
+#[derive(FromBytes, IntoBytes, Immutable, KnownLayout, Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+#[repr(transparent)]
+pub(crate) struct Key(u32);
+
+impl Key {
+    #[inline(always)]
+    fn new(triangle: u32, word_sized: bool) -> Self {
+        Self(triangle << 1 | u32::from(word_sized))
+    }
+
+    /// Index of the triangle in the stream.
+    #[inline(always)]
+    #[must_use]
+    pub(crate) fn triangle(self) -> u32 {
+        self.0 >> 1
+    }
+
+    /// Whether the triangle was pushed as word-sized, see [`Bins::push`].
+    #[inline(always)]
+    #[must_use]
+    pub(crate) fn is_word_sized(self) -> bool {
+        self.0 & 1 != 0
+    }
+
+    /// The key as a word, which is not 0 if the triangle is word-sized.
+    #[inline(always)]
+    #[must_use]
+    pub(crate) fn word(self) -> u32 {
+        self.0
+    }
+}
+
+/// An entry of a list.
 #[derive(FromBytes, IntoBytes, Immutable, KnownLayout, Clone, Copy, Debug)]
 #[repr(C)]
 pub(crate) struct Entry {
-    /// Twice the index of the triangle in the stream, plus 1 if the triangle is word-sized. Lists are in this order.
-    key: u32,
-    /// One past its last row.
+    /// Lists are in this order.
+    key: Key,
+    /// One past the last row of the triangle.
     bottom: u16,
     /// The entry behind it.
     next: u16,
 }
 
 impl Entry {
-    /// An entry of zeros.
-    #[cfg(test)]
-    pub(crate) const EMPTY: Self = Self { key: 0, bottom: 0, next: NONE };
-
-    /// Index of the triangle in the stream.
+    /// The triangle.
     #[inline(always)]
     #[must_use]
-    pub(crate) fn triangle(&self) -> u32 {
-        self.key >> 1
-    }
-
-    /// A number that no other entry has, and that is not 0 if the triangle is word-sized.
-    #[inline(always)]
-    #[must_use]
-    pub(crate) fn key(&self) -> u32 {
+    pub(crate) fn key(&self) -> Key {
         self.key
     }
 
-    /// Whether the triangle was pushed as word-sized, see [`Bins::push`].
-    #[inline(always)]
-    #[must_use]
-    pub(crate) fn is_word_sized(&self) -> bool {
-        self.key & 1 != 0
-    }
+    /// An entry of zeros.
+    #[cfg(test)]
+    pub(crate) const EMPTY: Self = Self { key: Key(0), bottom: 0, next: NONE };
 }
 
 /// The triangles of one frame, in one list for each bin and one of active triangles. In the order of memory, as instructions of Armv6-M
@@ -108,7 +127,7 @@ impl Bins {
         let link = self.count.wrapping_add(1);
         match (self.heads.get_mut(bin), entries.get_mut(usize::from(self.count))) {
             (Some(head), Some(entry)) if link != NONE => {
-                *entry = Entry { key: triangle << 1 | u32::from(word_sized), bottom: bottom as u16, next: *head };
+                *entry = Entry { key: Key::new(triangle, word_sized), bottom: bottom as u16, next: *head };
                 *head = link;
                 self.count = link;
                 self.top = self.top.min(top);
@@ -188,7 +207,7 @@ impl Bins {
             }
             self.reached += 1;
         }
-        Walk { entries, lists: [self.active, fresh], head: NONE, tail: NONE, bottom }
+        Walk { entries, lists: [self.active.into(), fresh.into()], head: 0, tail: 0, bottom }
     }
 
     /// Leaves out the triangles that end above `row`, where the first band begins; does nothing for any later band.
@@ -210,29 +229,29 @@ impl Bins {
 #[derive(Debug)]
 pub(crate) struct Walk<'e> {
     entries: &'e mut [Entry],
-    lists: [u16; 2],
+    lists: [u32; 2],
     /// Head of the list of triangles that reach below the band; `tail` is its last entry.
-    head: u16,
-    tail: u16,
+    head: u32,
+    tail: u32,
     bottom: u32,
 }
 
 impl Iterator for Walk<'_> {
-    type Item = Entry;
+    type Item = Key;
 
     #[inline(always)]
-    fn next(&mut self) -> Option<Entry> {
+    fn next(&mut self) -> Option<Key> {
         // Entries are put in from the last triangle to the first: of two lists the later entry comes first in the stream. Which list is which
         // does not matter.
         let [one, other] = self.lists;
         let (link, rest) = (one.max(other), one.min(other));
         let entry = *linked(link).and_then(|index| self.entries.get(index))?;
-        self.lists = [entry.next, rest];
+        self.lists = [entry.next.into(), rest];
         if u32::from(entry.bottom) > self.bottom {
             append(self.entries, &mut self.head, self.tail, link);
             self.tail = link;
         }
-        Some(entry)
+        Some(entry.key)
     }
 }
 
@@ -240,29 +259,29 @@ impl Walk<'_> {
     /// Walks to the end; returns the head of the list of triangles that reach below the band.
     fn end(mut self) -> u16 {
         while self.next().is_some() {}
-        append(self.entries, &mut self.head, self.tail, NONE);
-        self.head
+        append(self.entries, &mut self.head, self.tail, NONE.into());
+        self.head as u16
     }
 }
 
 /// The index that a link leads to.
 #[inline(always)]
-fn linked(link: u16) -> Option<usize> {
-    link.checked_sub(1).map(usize::from)
+fn linked(link: u32) -> Option<usize> {
+    link.checked_sub(1).map(|index| index as usize)
 }
 
 /// Makes `link` follow `tail`, the last entry of the list that starts at `head`.
 #[inline(always)]
-fn append(entries: &mut [Entry], head: &mut u16, tail: u16, link: u16) {
+fn append(entries: &mut [Entry], head: &mut u32, tail: u32, link: u32) {
     match linked(tail).and_then(|index| entries.get_mut(index)) {
-        Some(tail) => tail.next = link,
+        Some(tail) => tail.next = link as u16,
         None => *head = link,
     }
 }
 
 /// Merges two lists in the order of the stream; returns the head of the merged list.
 fn merge(entries: &mut [Entry], lists: [u16; 2]) -> u16 {
-    Walk { entries, lists, head: NONE, tail: NONE, bottom: 0 }.end()
+    Walk { entries, lists: lists.map(u32::from), head: 0, tail: 0, bottom: 0 }.end()
 }
 
 #[cfg(test)]
@@ -287,9 +306,9 @@ mod tests {
                 let mut seen = [false; 100];
                 let mut last = None;
                 let mut walk = bins.band(&mut entries, bottom);
-                for entry in walk.by_ref() {
-                    let triangle = entry.triangle();
-                    assert_eq!(entry.is_word_sized(), triangle % 3 == 0);
+                for key in walk.by_ref() {
+                    let triangle = key.triangle();
+                    assert_eq!(key.is_word_sized(), triangle % 3 == 0);
                     assert!(last < Some(triangle));
                     assert!(rows(triangle).1 > top, "it has ended");
                     seen[triangle as usize] = true;

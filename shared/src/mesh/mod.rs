@@ -7,7 +7,7 @@ use crate::{
     antialias::PixelSet,
     format::SUBPIXEL,
     geometry::{
-        bin::{Entry, Walk},
+        bin::{Key, Walk},
         clip,
         cull::Extent,
         depth_elision::DepthElision,
@@ -65,25 +65,25 @@ struct MeshTriangle<'f> {
 }
 
 impl<C: Pixel> MeshPass<'_, C> {
-    /// Draws the triangle of `entry` and all that follow in the same mesh, by the loops `L` where they can. Returns the number of pixels in
-    /// `band`, and the first entry of another mesh.
+    /// Draws the triangle `key` and all that follow in the same mesh, by the loops `L` where they can. Returns the number of pixels in `band`, and
+    /// the first triangle of another mesh.
     #[inline(never)]
-    pub(crate) fn run<L: Loops>(&self, mut entry: Entry, walk: &mut Walk<'_>, band: &mut Band<'_, C>) -> (u32, Option<Entry>) {
+    pub(crate) fn run<L: Loops>(&self, mut key: Key, walk: &mut Walk<'_>, band: &mut Band<'_, C>) -> (u32, Option<Key>) {
         let mut pixels = 0u32;
         loop {
             // The mesh has every triangle of its entries.
-            if let Some(triangle) = self.triangles.get(self.index(entry)) {
-                let drawn = if L::GENERAL || !entry.is_word_sized() {
+            if let Some(triangle) = self.triangles.get(self.index(key)) {
+                let drawn = if L::GENERAL || !key.is_word_sized() {
                     self.draw(L::draw, triangle, band)
                 } else {
                     // A triangle that the loops decline is set up anew: if its set-up were passed on, that of all triangles would be kept
                     // in memory.
-                    self.draw_word_sized::<L>(triangle, entry.key(), band).unwrap_or_else(|| self.draw(General::draw, triangle, band))
+                    self.draw_word_sized::<L>(triangle, key.word(), band).unwrap_or_else(|| self.draw(General::draw, triangle, band))
                 };
                 pixels = pixels.saturating_add(drawn);
             }
             match walk.next() {
-                Some(other) if self.index(other) < self.triangles.len() => entry = other,
+                Some(other) if self.index(other) < self.triangles.len() => key = other,
                 other => return (pixels, other),
             }
         }
@@ -91,8 +91,8 @@ impl<C: Pixel> MeshPass<'_, C> {
 
     /// Index of a triangle in the mesh; beyond its end if it belongs to a later one.
     #[inline(always)]
-    fn index(&self, entry: Entry) -> usize {
-        entry.triangle().wrapping_sub(self.first_triangle) as usize
+    fn index(&self, key: Key) -> usize {
+        key.triangle().wrapping_sub(self.first_triangle) as usize
     }
 
     #[inline(never)]
