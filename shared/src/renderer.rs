@@ -182,7 +182,7 @@ impl<'a, C: Pixel> Renderer<'a, C> {
     /// Turns ordered dither on or off; at first it is on in formats of less than eight bits a channel. All tables of the materials are computed anew.
     ///
     /// Where channels have five bits to seven, two thresholds take turns ([`crate::pixel::ramps`]): like the squares of a checkerboard, or by rows.
-    /// Frames take as many instructions as without dither. What loops compute at the pixel in three channels is rounded all the same.
+    /// Frames take as many instructions as without dither.
     ///
     /// All other formats have 64 thresholds in squares of eight by eight. Greys of up to four bits are dithered by the loops of methods, for few
     /// instructions more, and drawn the general way without dither. Colours of so few bits, and formats of eight bits, are drawn the

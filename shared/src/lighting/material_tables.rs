@@ -1,13 +1,13 @@
 //! A material in the colours of a pixel format, computed once.
 
 use crate::{
-    format::{BIAS, CHANNEL, LEVEL, WALK},
+    format::{BIAS, CHANNEL, COSINE, LEVEL, WALK},
     lighting::{
-        constant_lights::{ByTurns, OneLightRamp, OneLightRgb, TwoLightsRgb},
+        constant_lights::{ByTurns, FACTOR, OneLightRamp, OneLightRgb, TwoLightsRgb},
         reflectance::Reflectance,
     },
     math::vector::zip,
-    pixel::{Pixel, dither::HALF, gamma::Gamma, ramps::Ramps},
+    pixel::{Pixel, gamma::Gamma, ramps::Ramps},
 };
 use core::marker::PhantomData;
 
@@ -28,6 +28,12 @@ impl<C: Pixel> Clone for MaterialTables<'_, C> {
 }
 
 impl<C: Pixel> Copy for MaterialTables<'_, C> {}
+
+/// A level, Q9.7, of a channel, and half of its last place, Q10.22.
+#[inline(always)]
+fn rounded(level: i32, depth: u32) -> i32 {
+    (level + (1 << (LEVEL + 7 - depth))) << (CHANNEL - LEVEL)
+}
 
 /// The colour of three levels, Q9.7, by a [`crate::pixel::dither::threshold`].
 #[inline(always)]
@@ -86,15 +92,23 @@ impl<'a, C: Pixel> MaterialTables<'a, C> {
     #[inline(always)]
     #[must_use]
     pub fn one_light_rgb(&self) -> Option<OneLightRgb<'a, C>> {
-        let [sums, ..] = &self.reflectance.sums;
-        (!C::GRAY && self.reflectance.three_channels()).then_some(OneLightRgb(sums, PhantomData))
+        (!C::GRAY && self.reflectance.three_channels()).then_some(self.sums())
+    }
+
+    /// The sums of three channels under the first light.
+    #[inline(always)]
+    fn sums(&self) -> OneLightRgb<'a, C> {
+        let [[even, ..], [odd, ..]] = &self.reflectance.sums;
+        OneLightRgb(ByTurns::new([even, odd]), PhantomData)
     }
 
     /// The sums of three channels under two lights in the order of the stream, and in the other, if [`Reflectance::lights`] is 2.
     #[inline(always)]
     #[must_use]
     pub fn two_lights_rgb(&self) -> Option<[TwoLightsRgb<'a, C>; 2]> {
-        let (forth, back) = (self.reflectance.sums.first_chunk()?, self.reflectance.sums.last_chunk()?);
+        let [even, odd] = &self.reflectance.sums;
+        let forth = ByTurns::new([even.first_chunk()?, odd.first_chunk()?]);
+        let back = ByTurns::new([even.last_chunk()?, odd.last_chunk()?]);
         (!C::GRAY && self.reflectance.lights() == 2).then_some([TwoLightsRgb(forth, PhantomData), TwoLightsRgb(back, PhantomData)])
     }
 
@@ -110,18 +124,28 @@ impl<'a, C: Pixel> MaterialTables<'a, C> {
     fn one_light_mixed(self, [cosine, half]: [i32; 2]) -> [C::Stored; 2] {
         match self.reflectance.highlight(half) {
             0 if self.reflectance.has_ramp() => self.tint(self.reflectance.ramp_level(cosine)),
-            highlight => [mixed::<C>(self.reflectance.reflection(cosine, highlight), HALF).stored(); 2],
+            highlight => self.sums().by_turns(cosine >> (COSINE - FACTOR), highlight),
         }
     }
 
-    /// The colour of three levels, Q9.7, on even rows and on odd ones; in three channels it is rounded on both.
+    /// The colour of three levels, Q9.7, on even rows and on odd ones.
     #[inline(always)]
     #[must_use]
     pub fn colour(&self, levels: [i32; 3]) -> [C::Stored; 2] {
         if !self.reflectance.three_channels() {
             return self.tint(levels[0]);
         }
-        [mixed::<C>(levels, HALF).stored(); 2]
+        self.mixed_by_turns(levels)
+    }
+
+    /// [`Self::colour`] in three channels.
+    #[inline(always)]
+    fn mixed_by_turns(&self, levels: [i32; 3]) -> [C::Stored; 2] {
+        let (quarter, [r, g, b], [dr, dg, db]) = (self.reflectance.quarter(), levels, C::DEPTH);
+        let [r, g, b] = [rounded(r, dr), rounded(g, dg), rounded(b, db)];
+        let [r_more, g_more, b_more] = [quarter << (8 - dr), quarter << (8 - dg), quarter << (8 - db)];
+        let even = C::mixed([r - r_more, g - g_more, b - b_more]).stored();
+        if C::Ramps::CHECKERED { [even, C::mixed([r + r_more, g + g_more, b + b_more]).stored()] } else { [even; 2] }
     }
 
     /// The colour of a level, Q9.7, of a material of one channel, as its tables hold it for even rows and for odd ones.

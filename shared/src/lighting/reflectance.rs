@@ -113,15 +113,16 @@ pub struct Reflectance {
     /// The levels of ambient light, Q9.7.
     pub(super) ambient: [i32; 3],
     highlight_threshold: i32,
-    /// By how much odd rows are higher than even ones where three channels are walked, see [`Self::higher_below`].
-    half_step: i32,
+    /// See [`Self::quarter`].
+    quarter: i32,
     /// Bits of each channel of the pixel format.
     depth: [u32; 3],
     pub(super) gains: [Gains; MAX_LIGHTS],
     /// Bits by which the sum of all lights may leave Q10.22, at most 5.
     excess: u32,
-    /// For [`OneLightRgb`], of the first two lights, and of the first one again: two neighbours are both lights in either order.
-    pub(super) sums: [Sums; 3],
+    /// For [`OneLightRgb`], of the first two lights, and of the first one again: two neighbours are both lights in either order. On even rows and
+    /// on odd ones.
+    pub(super) sums: [[Sums; 3]; 2],
     /// See [`Self::ambient_sums`].
     ambient_sums: [i32; 3],
     /// Levels without diffuse light, and of diffuse light at cosine 1, in the channel by whose level the table of colours is indexed, Q9.7.
@@ -174,10 +175,10 @@ impl Reflectance {
         has_ramp: 0,
         has_two_lights: 0,
         computes_all: [0; 2],
-        half_step: 0,
+        quarter: 0,
         ambient: [0; 3],
         gains: [Gains::NONE; MAX_LIGHTS],
-        sums: [[Sum::EMPTY; 3]; 3],
+        sums: [[[Sum::EMPTY; 3]; 3]; 2],
         ambient_sums: [0; 3],
         ramp: [0; 2],
         highlight_threshold: 0,
@@ -210,7 +211,7 @@ impl Reflectance {
         let direction = if C::COARSE { base } else { [largest(base); 3] };
         let one_channel = terms.iter().all(|&term| along(term, direction));
         self.depth = depth;
-        self.half_step = 0;
+        self.quarter = 0;
         self.three_channels = u8::from(!one_channel);
         let levels = |colour: Colour| -> [u16; 3] { if one_channel { [level(largest(colour), 8); 3] } else { zip(colour, depth, level) } };
         self.ambient = levels(terms.last().copied().unwrap_or_default()).map(i32::from);
@@ -233,13 +234,15 @@ impl Reflectance {
         let holds_levels = looped && one_channel;
         let [one, two, ..] = &self.gains;
         let all = zip(one.diffuse, if lights.len() > 1 { two.diffuse } else { [0; 3] }, u16::saturating_add);
-        for (sums, gains) in self.sums.iter_mut().zip(&self.gains) {
+        let [even, odd] = &mut self.sums;
+        for (sums, gains) in even.iter_mut().zip(&self.gains) {
             for (k, sum) in sums.iter_mut().enumerate() {
                 *sum = Sum::new(self.ambient[k], [gains.diffuse[k], all[k]], gains.specular[k], depth[k]);
             }
         }
-        let [first, _, again] = &mut self.sums;
+        let [first, _, again] = even;
         *again = *first;
+        *odd = *even;
         let [one, ..] = &mut self.gains;
         let (mut full, mut floor) = (1 << ENTRY, 0);
         if holds_levels {
@@ -306,17 +309,30 @@ impl Reflectance {
         self.highlight_threshold
     }
 
-    /// Dithers three channels where they are walked: half a step lies between even rows and odd ones.
+    /// Dithers three channels by rows: even ones are a quarter of a step lower, odd ones higher.
     pub(crate) fn dither(&mut self) {
-        self.half_step = 1 << (CHANNEL - 1);
+        self.quarter = 1 << (CHANNEL - 2);
+        for (rows, quarter) in self.sums.iter_mut().zip([-self.quarter, self.quarter]) {
+            for sums in rows {
+                *sums = zip(*sums, self.depth, |sum, depth| sum.raised(quarter << (8 - depth)));
+            }
+        }
     }
 
-    /// By how much the row below `row` is higher where three channels are walked, with [`CHANNEL`] fraction bits, as if channels had eight bits; 0
-    /// without dither.
+    /// By how much the row below `row` is higher in three channels, with [`CHANNEL`] fraction bits, as if channels had eight bits; 0 without
+    /// dither.
     #[inline(always)]
     #[must_use]
     pub(crate) fn higher_below(&self, row: i32) -> i32 {
-        if row & 1 == 0 { self.half_step } else { -self.half_step }
+        if row & 1 == 0 { 2 * self.quarter } else { -2 * self.quarter }
+    }
+
+    /// By how much three channels are lower on even rows and higher on odd ones, a quarter of a step, with [`CHANNEL`] fraction bits, as if
+    /// channels had eight bits; 0 without dither.
+    #[inline(always)]
+    #[must_use]
+    pub(crate) fn quarter(&self) -> i32 {
+        self.quarter
     }
 
     /// Changes whether highlights are left out of triangles where none can be seen, and lights of triangles that they do not reach.
@@ -468,7 +484,7 @@ impl Reflectance {
     /// Levels under two lights, Q9.7 in [0, 255], from a cosine, Q1.15, and a highlight, unsigned Q0.16, of each.
     #[inline(always)]
     fn two_sums(&self, [[cosine, highlight], [other, other_highlight]]: [[i32; 2]; 2]) -> [i32; 3] {
-        let [first, second, _] = &self.sums;
+        let [[first, second, _], _] = &self.sums;
         let level = |ambient: i32, first: &Sum, second: &Sum| {
             let sum = first.light(cosine, highlight).wrapping_add(second.light(other, other_highlight));
             ((ambient << FACTOR) + (1 << (FACTOR - 1))).wrapping_add(sum) >> FACTOR
@@ -541,9 +557,9 @@ impl Reflectance {
         (level + (BIAS << LEVEL) + (1 << (LEVEL - 1))) as u32
     }
 
-    /// The largest level under that many lights, Q9.7 and more, and a half step of a channel.
+    /// The largest level under that many lights, Q9.7 and more, and what rounds, at most three quarters of a step of the channel.
     fn total(&self, lights: usize) -> u32 {
-        let mut total = zip(self.ambient, self.depth, |level, depth| level as u32 + (1 << (LEVEL + 7 - depth)));
+        let mut total = zip(self.ambient, self.depth, |level, depth| level as u32 + (3 << (LEVEL + 6 - depth)));
         for gains in self.gains.iter().take(lights) {
             let light = zip(gains.diffuse, gains.specular, |diffuse, specular| u32::from(diffuse) + u32::from(specular));
             total = zip(total, light, |total, light| total + light);
