@@ -2,7 +2,7 @@
 
 use crate::{
     format::GeometricError,
-    geometry::{area::Area, cull::Facing, detail::tolerance, lens::Lens, model_view::ModelView, projection::View},
+    geometry::{area::Area, cull::Facing, detail::tolerance, lens::Lens, model_view::ModelView, projection::View, region::Region},
     lighting::lights::{Directions, Lighting},
     scene::{Object, Scene},
     stream::record::Mesh,
@@ -74,10 +74,10 @@ impl Placement {
         };
     }
 
-    /// The frame has it if it reaches into `area`. Returns whether more or fewer triangles of it are drawn than before.
-    pub(crate) fn draw_within(&mut self, area: &Area) -> bool {
+    /// The frame has it if it reaches into `region`. Returns whether more or fewer triangles of it are drawn than before.
+    pub(crate) fn draw_within(&mut self, region: &Region) -> bool {
         let before = self.drawn;
-        self.drawn = if self.area.meets(area) { self.triangles } else { 0 };
+        self.drawn = if !region.within(&self.area).is_empty() { self.triangles } else { 0 };
         before != self.drawn
     }
 

@@ -5,7 +5,7 @@ use crate::{
     error::{MAX_SIDE, RenderError},
     format::{ErrorBudget, LARGEST_BUDGET, LEAST_BUDGET, LEVEL, MAX_LIGHTS},
     frame::{Frame, Preparation, Seams, Settings},
-    geometry::{area::Area, lens::Lens, model_view::ModelView},
+    geometry::{lens::Lens, model_view::ModelView, region::Region},
     lighting::{lights::Directions, material_tables::fill_ramps},
     memory::{Layout, Memory},
     method::Facts,
@@ -29,7 +29,7 @@ pub struct Renderer<'a, C: Pixel> {
     /// Whether other triangles are drawn than when the seams were found.
     rearranged: bool,
     /// The pixels that a frame has.
-    area: Area,
+    region: Region,
 }
 
 impl<'a, C: Pixel> Renderer<'a, C> {
@@ -92,7 +92,7 @@ impl<'a, C: Pixel> Renderer<'a, C> {
             partial_redraw: false,
         };
         let scene = Scene::new(stream, materials, objects, limits(shader.facts(), false));
-        Ok(Self { settings, scene, memory, seams: None, rearranged: true, area: Area::NONE })
+        Ok(Self { settings, scene, memory, seams: None, rearranged: true, region: Region::NONE })
     }
 
     /// What is drawn. A program may change it between frames.
@@ -224,11 +224,12 @@ impl<'a, C: Pixel> Renderer<'a, C> {
         self.scene.set_view_changed();
     }
 
-    /// Turns partial redraw on or off; it is off at first. With it, a frame has only the area that may differ from the latest frame, which the
-    /// display has to show still: see [`Frame::area`]. Where single objects move, that is the rectangle that they leave and enter, and
-    /// objects that do not reach into it are left out whole, as are the triangles of others that lie beside it; where colours, lights or the
-    /// camera have changed, it is all of the picture. What a program draws under the picture or over it is sent in that area alone: where it
-    /// changes, the frame has to be drawn with partial redraw turned off.
+    /// Turns partial redraw on or off; it is off at first. With it, a frame has only what may differ from the latest frame, which the display
+    /// has to show still. Where single objects move, that is what they leave and enter: each band is as wide as that is in its rows, and rows
+    /// without any are left out; [`Frame::area`] is the rectangle around all of it. Objects that do not reach into it are left out whole, as are
+    /// the triangles of others that lie beside it. Where colours, lights or the camera have changed, it is all of the picture. What a program
+    /// draws under the picture or over it is sent in these areas alone: where it changes, the frame has to be drawn with partial redraw turned
+    /// off.
     pub fn set_partial_redraw(&mut self, on: bool) {
         self.settings.partial_redraw = on;
     }
@@ -270,7 +271,7 @@ impl<'a, C: Pixel> Renderer<'a, C> {
     #[inline(never)]
     pub fn draw(&mut self) -> Frame<'_, C> {
         self.place();
-        Frame::new(&self.settings, &self.scene, &mut self.memory, self.area)
+        Frame::new(&self.settings, &self.scene, &mut self.memory, &self.region)
     }
 
     /// Begins frame `number` as [`Self::frame`] does, and leaves most of that to two processors: the part of the earlier triangles, which are
@@ -282,7 +283,7 @@ impl<'a, C: Pixel> Renderer<'a, C> {
         if mem::take(&mut self.rearranged) && self.settings.processors > 1 {
             self.seams = Seams::new(&self.scene, &mut self.memory);
         }
-        Preparation::new(&self.settings, &self.scene, &mut self.memory, self.area, self.seams.map(|seams| (seams, share)))
+        Preparation::new(&self.settings, &self.scene, &mut self.memory, &self.region, self.seams.map(|seams| (seams, share)))
     }
 
     /// Places what has moved, and computes tables that are stale.
@@ -290,7 +291,7 @@ impl<'a, C: Pixel> Renderer<'a, C> {
         if !self.scene.is_unchanged() {
             self.fill_tables();
         }
-        let Self { settings, scene, memory, rearranged, .. } = self;
+        let Self { settings, scene, memory, rearranged, region, .. } = self;
         let world = ModelView::new(scene.camera(), scene.place);
         let how = Placing {
             lens: Lens::new(scene.camera(), settings.size),
@@ -301,15 +302,18 @@ impl<'a, C: Pixel> Renderer<'a, C> {
         };
         // Everything is drawn where colours have changed, or the view has.
         let is_partial = settings.partial_redraw && !scene.repainted;
-        let mut area = if is_partial { Area::NONE } else { Area::whole(settings.size) };
-        let Memory { placements, order, .. } = memory;
+        let Memory { placements, order, depth, samples, .. } = memory;
+        if is_partial {
+            let band_rows = settings.band_rows(depth.len(), samples.len());
+            region.clear(settings.size.height, band_rows.checked_div(settings.processors).unwrap_or(0));
+        } else {
+            region.fill(settings.size);
+        }
         for (object, placement) in scene.objects().iter().zip(placements.iter_mut()) {
             if scene.view_changed || object.has_moved != 0 {
-                let before = placement.area;
+                region.include(&placement.area);
                 placement.update(scene, object, &how);
-                if is_partial {
-                    area = area.union(&before).union(&placement.area);
-                }
+                region.include(&placement.area);
             }
         }
         let order = order.get_mut(..scene.objects().len()).unwrap_or_default();
@@ -322,9 +326,8 @@ impl<'a, C: Pixel> Renderer<'a, C> {
             let (Some(placement), Some(object)) = (placements.get_mut(index), scene.objects().get(index)) else { continue };
             (placement.first_triangle, placement.first_vertex) = (triangles, vertices);
             (triangles, vertices) = (triangles.wrapping_add(object.span), vertices.wrapping_add(object.vertices));
-            *rearranged |= placement.draw_within(&area);
+            *rearranged |= placement.draw_within(region);
         }
-        self.area = area;
         scene.set_drawn();
     }
 }

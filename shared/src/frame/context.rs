@@ -6,6 +6,7 @@ use crate::{
         area::Area,
         depth_elision::DepthElision,
         projection::{ScreenVertex, View},
+        region::Region,
         viewport::Viewport,
     },
     lighting::{material_tables::MaterialTables, output::Output, reflectance::Reflectance},
@@ -80,7 +81,7 @@ pub(crate) struct Context<'r, C: Pixel> {
     pub(crate) scene: &'r Scene<'r>,
     pub(crate) placements: Placements<'r>,
     /// The pixels that the frame has.
-    pub(crate) area: Area,
+    pub(crate) region: &'r Region,
     /// Where triangles may overlap; `None` if they may do so everywhere.
     pub(crate) depth_elision: Option<DepthElision>,
     pub(crate) vertices: &'r [ScreenVertex],
@@ -155,13 +156,12 @@ impl<'r, C: Pixel> Context<'r, C> {
         Some(PlacedMesh::new(placement, object, first, mesh))
     }
 
-    /// Whether all pixels that the frame has of an object within the rows of `band` are nearer than the object is: none of its triangles can be
-    /// seen there.
-    pub(crate) fn hides(&self, placement: &Placement, band: &Band<'_, C>) -> bool {
+    /// Whether all pixels of an object in these `columns` of `band` are nearer than the object is: none of its triangles can be seen there.
+    pub(crate) fn hides(&self, placement: &Placement, columns: [u16; 2], band: &Band<'_, C>) -> bool {
         if !self.settings.skips().hidden_objects || self.settings.antialiased() {
             return false;
         }
-        let Area { columns: [left, right], rows: [top, bottom] } = placement.area.within(&self.area);
+        let Area { columns: [left, right], rows: [top, bottom] } = placement.area.within(&Area { columns, rows: [0, u16::MAX] });
         let [first, end] = band.range();
         (i32::from(top).max(first)..i32::from(bottom).min(end)).all(|row| {
             let start = band.start(row);
@@ -177,7 +177,7 @@ impl<'r, C: Pixel> Context<'r, C> {
             VertexLight::None | VertexLight::Cosines | VertexLight::CosinesAndReflection => false,
             VertexLight::CosinesOrLevels | VertexLight::ReflectionOrLevels | VertexLight::Levels => true,
         };
-        may_have_levels && self.area != Area::whole(self.settings.size)
+        may_have_levels && !self.region.is_whole()
     }
 
     /// The stage that transforms and lights the vertices of `placed`.
@@ -188,9 +188,9 @@ impl<'r, C: Pixel> Context<'r, C> {
         Some(VertexStage { view, lighting, constant: lighting.constant(), reflectance, light })
     }
 
-    /// What the triangles of `placed` have in common, and the loops that draw them.
+    /// What the triangles of `placed` have in common in a band of which these `columns` are wanted, and the loops that draw them.
     #[inline(never)]
-    pub(crate) fn drawing<'s>(&'s self, placed: &PlacedMesh<'s>) -> Option<(MeshPass<'s, C>, TriangleLoops<C>)> {
+    pub(crate) fn drawing<'s>(&'s self, placed: &PlacedMesh<'s>, columns: [u16; 2]) -> Option<(MeshPass<'s, C>, TriangleLoops<C>)> {
         let Settings { shader, dither, gamma, .. } = self.settings;
         let (stream, material, stage) = (&self.scene.stream, placed.material, self.stage(placed)?);
         let (reflectance, ramps) = (self.reflectances.get(material)?, self.ramps.get(material)?);
@@ -205,7 +205,7 @@ impl<'r, C: Pixel> Context<'r, C> {
             perspective,
         };
         // In perspective, light is interpolated between columns that depend on where a row begins: rows are drawn whole.
-        let area = if perspective { Area::whole(self.settings.size) } else { self.area };
+        let columns = if perspective { [0, self.settings.size.width as u16] } else { columns };
         let exponent = self.scene.material(material)?.exponent;
         let error_bounds = self.error_bounds.get(material)?;
         let drawing = MeshPass {
@@ -226,7 +226,7 @@ impl<'r, C: Pixel> Context<'r, C> {
             vertices: stream.vertices_of(placed.mesh)?,
             cached: self.vertices.get(placed.first_vertex..).unwrap_or_default(),
             viewport: self.settings.viewport(),
-            columns: area.columns.map(i32::from),
+            columns: columns.map(i32::from),
             perspective,
         };
         Some((drawing, shader.loops(style)))

@@ -48,11 +48,11 @@ impl<'r, C: Pixel> Frame<'r, C> {
         self.part.next_band(&self.context, pixels, under)
     }
 
-    /// What the frame has: the whole picture, or the area that may differ from the one that the renderer drew before, where that is asked for,
-    /// see [`crate::Renderer::set_partial_redraw`].
+    /// What the frame has: the whole picture, or the rectangle around what may differ from the one that the renderer drew before, where that is
+    /// asked for, see [`crate::Renderer::set_partial_redraw`]; bands may leave out some of it.
     #[must_use]
     pub fn area(&self) -> Rectangle {
-        self.context.area.rectangle()
+        self.context.region.hull().rectangle()
     }
 
     /// The rows that triangles of this frame can reach; all other rows of its area are background, and labels, which never move.

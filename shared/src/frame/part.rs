@@ -5,7 +5,10 @@ use crate::{
     coverage::sample::Sample,
     error::RenderError,
     frame::context::{Context, PlacedMesh},
-    geometry::bin::{Bins, Entry, Key, Walk},
+    geometry::{
+        area::Area,
+        bin::{Bins, Entry, Key, Walk},
+    },
     pixel::Pixel,
     raster::{
         active::{ActiveTriangle, ActiveTriangles, QueueState},
@@ -73,9 +76,7 @@ pub(crate) struct Part<'r> {
     pub(crate) queue: QueueState,
     /// Rows that triangles may reach.
     pub(crate) rows: Range<u32>,
-    /// Columns that are wanted.
-    pub(crate) columns: Range<u32>,
-    /// First row of the next band.
+    /// First row that has not been drawn.
     pub(crate) top: u32,
     /// One past the last row to be drawn.
     pub(crate) bottom: u32,
@@ -90,23 +91,29 @@ impl<'r> Part<'r> {
         pixels: &mut [C],
         under: impl FnOnce(&mut [C], Rectangle),
     ) -> Result<Option<Rectangle>, RenderError> {
-        let Some(area) = self.next_area(context, pixels.len())? else { return Ok(None) };
+        let Some(rows) = self.next_rows(context, pixels.len())? else {
+            self.top = self.bottom;
+            return Ok(None);
+        };
+        let size = context.settings.size;
+        // They are drawn in all columns, and sent in those that are wanted.
+        let whole = Area { columns: [0, size.width as u16], rows };
+        let (area, Range { start: left, end: right }) = (whole.rectangle(), context.region.within(&whole).columns());
         let Size { width, height } = area.size;
         let pixels = pixels.get_mut(..(width * height) as usize).unwrap_or_default();
-        context.scene.background().fill(pixels, area, context.settings.size.height);
+        context.scene.background().fill(pixels, area, size.height);
         under(pixels, area);
-        self.draw(context, pixels, height);
+        self.draw(context, pixels, [left as u16, right as u16], rows.map(u32::from));
         #[cfg(feature = "text")]
-        crate::text::draw(context.scene.stream.labels, context.settings.size, pixels, area);
-        let Range { start: left, end: right } = self.columns;
+        crate::text::draw(context.scene.stream.labels, size, pixels, area);
         if right - left < width {
             narrow(pixels, width as usize, left as usize..right as usize);
         }
         Ok(Some(Rectangle::new(Point::new(left as i32, area.top_left.y), Size::new(right - left, height))))
     }
 
-    /// The next band in all of its columns, if there is room for so many `pixels`; `None` after the last.
-    fn next_area<C: Pixel>(&self, context: &Context<'_, C>, pixels: usize) -> Result<Option<Rectangle>, RenderError> {
+    /// The rows of the next band, if there is room for so many `pixels`; `None` after the last.
+    fn next_rows<C: Pixel>(&self, context: &Context<'_, C>, pixels: usize) -> Result<Option<[u16; 2]>, RenderError> {
         let width = context.settings.size.width;
         let fit = u32::try_from(pixels).unwrap_or(u32::MAX).checked_div(width).unwrap_or(0);
         if fit == 0 {
@@ -114,14 +121,15 @@ impl<'r> Part<'r> {
         }
         // Bands end where bins end.
         let band_rows = context.settings.band_rows(self.depth.len(), self.samples.len());
-        let into = self.top.checked_rem(band_rows).unwrap_or(0);
-        let rows = band_rows.saturating_sub(into).min(self.bottom.saturating_sub(self.top)).min(fit);
-        Ok((rows > 0).then(|| Rectangle::new(Point::new(0, self.top as i32), Size::new(width, rows))))
+        let Range { start, end } = context.region.next(self.top).rows();
+        let into = start.checked_rem(band_rows).unwrap_or(0);
+        let rows = band_rows.saturating_sub(into).min(end.min(self.bottom).saturating_sub(start)).min(fit);
+        Ok((rows > 0).then(|| [start as u16, (start + rows) as u16]))
     }
 
     /// The rows above `row`, and those from there on, `width` pixels wide: see [`crate::Frame::in_two`].
     pub(crate) fn in_two(self, row: u32, width: usize) -> [Self; 2] {
-        let Self { bins, binned, entries, depth, samples, active_triangles, queue, rows, columns, top, bottom, stats } = self;
+        let Self { bins, binned, entries, depth, samples, active_triangles, queue, rows, top, bottom, stats } = self;
         let used = bins.count().map_or(usize::MAX, usize::from);
         let fits = binned && used <= entries.len() / 2 && width <= depth.len() / 2;
         let row = if fits { row.min(bottom).max(top) } else { bottom };
@@ -142,12 +150,11 @@ impl<'r> Part<'r> {
             active_triangles: active_below,
             queue,
             rows: rows.clone(),
-            columns: columns.clone(),
             top: row,
             bottom,
             stats: Stats::default(),
         };
-        [Part { bins, binned, entries, depth, samples, active_triangles, queue, rows, columns, top, bottom: row, stats }, below]
+        [Part { bins, binned, entries, depth, samples, active_triangles, queue, rows, top, bottom: row, stats }, below]
     }
 
     /// Draws only these `rows` of its own.
@@ -160,26 +167,29 @@ impl<'r> Part<'r> {
         self.top >= self.bottom
     }
 
-    /// Draws what falls into a band of `rows` rows; its pixels are background.
+    /// Draws what falls into the band of the rows from `top` to `bottom`, of which these `columns` are wanted; its pixels are background.
     #[inline(never)]
-    fn draw<C: Pixel>(&mut self, context: &Context<'_, C>, pixels: &mut [C], rows: u32) {
-        let width = context.settings.size.width as usize;
-        let bottom = self.top + rows;
+    fn draw<C: Pixel>(&mut self, context: &Context<'_, C>, pixels: &mut [C], columns: [u16; 2], [top, bottom]: [u32; 2]) {
+        let (width, rows) = (context.settings.size.width as usize, bottom - top);
         let count = width * rows as usize;
+        if top > self.top {
+            // What has been saved stands on a row that is left out.
+            self.queue = QueueState::default();
+        }
         let active = ActiveTriangles::new(self.active_triangles, self.queue);
         let depth = self.depth.get_mut(..count).unwrap_or_default();
         let blend = context.settings.antialiased().then(|| Blend { samples: self.samples.get_mut(..count).unwrap_or_default() });
-        let mut band = Band { pixels, depth, width, top: self.top as i32, rows: rows as i32, blend, active, counts: Counts::default() };
+        let mut band = Band { pixels, depth, width, top: top as i32, rows: rows as i32, blend, active, counts: Counts::default() };
         band.clear(self.rows.clone());
         let (pixels, drawn) = if self.binned {
-            self.bins.skip(self.entries, self.top);
+            self.bins.skip(self.entries, top);
             let mut walk = self.bins.band(self.entries, bottom);
-            let pixels = draw_binned(context, &mut walk, &mut band);
+            let pixels = draw_binned(context, &mut walk, columns, &mut band);
             self.bins.take_over(walk);
             (pixels, 0)
         } else {
             self.stats.passes += 1;
-            draw_all(context, &mut band)
+            draw_all(context, columns, &mut band)
         };
         self.stats.pixels = self.stats.pixels.saturating_add(pixels);
         self.stats.drawn += drawn;
@@ -215,17 +225,17 @@ pub(super) fn halves<T>(memory: &mut [T], length: usize) -> (&mut [T], &mut [T])
 }
 
 /// Draws the triangles of `band`; returns their pixels there.
-fn draw_binned<C: Pixel>(context: &Context<'_, C>, walk: &mut Walk<'_>, band: &mut Band<'_, C>) -> u32 {
+fn draw_binned<C: Pixel>(context: &Context<'_, C>, walk: &mut Walk<'_>, columns: [u16; 2], band: &mut Band<'_, C>) -> u32 {
     let mut pixels = 0u32;
     let mut next = walk.next();
     while let Some(key) = next {
         // A scene has both.
         let Some(placed) = context.mesh(key.triangle()) else { break };
-        if context.hides(placed.placement, band) {
+        if context.hides(placed.placement, columns, band) {
             next = leave_out(&placed, key, walk, band);
             continue;
         }
-        let Some((drawing, loops)) = context.drawing(&placed) else { break };
+        let Some((drawing, loops)) = context.drawing(&placed, columns) else { break };
         let (drawn, rest) = (loops.run)(&drawing, key, walk, band);
         pixels = pixels.saturating_add(drawn);
         next = rest;
@@ -251,10 +261,10 @@ fn leave_out<C: Pixel>(placed: &PlacedMesh<'_>, key: Key, walk: &mut Walk<'_>, b
 /// Draws all triangles into `band`; returns their pixels there, and how many of them start there.
 #[cold]
 #[inline(never)]
-fn draw_all<C: Pixel>(context: &Context<'_, C>, band: &mut Band<'_, C>) -> (u32, u32) {
+fn draw_all<C: Pixel>(context: &Context<'_, C>, columns: [u16; 2], band: &mut Band<'_, C>) -> (u32, u32) {
     let (mut pixels, mut drawn) = (0u32, 0);
     for placed in context.meshes() {
-        let Some((drawing, loops)) = context.drawing(&placed) else { continue };
+        let Some((drawing, loops)) = context.drawing(&placed, columns) else { continue };
         for triangle in drawing.triangles.iter().filter(|triangle| placed.placement.facing.may_face(triangle)) {
             let Some(bounds) = drawing.bounds(triangle) else { continue };
             // A triangle is counted in the band where it starts.

@@ -16,11 +16,11 @@ use crate::{
         part::{Part, Stats, halves},
     },
     geometry::{
-        area::Area,
         bin::{Bins, Entry},
         cull::{Extent, Facing},
         depth_elision::DepthElision,
         projection::{ScreenVertex, State},
+        region::Region,
         viewport::{Bounds, Viewport},
     },
     memory::Memory,
@@ -109,8 +109,8 @@ type Empty<'r, C> = (Frame<'r, C>, &'r mut [ScreenVertex], Option<DepthElision>)
 impl<'r, C: Pixel> Frame<'r, C> {
     /// A frame of a scene whose objects are placed, prepared by one processor.
     #[inline(never)]
-    pub(crate) fn new(settings: &'r Settings<C>, scene: &'r Scene<'_>, memory: &'r mut Memory<'_, C>, area: Area) -> Self {
-        let (mut frame, cache, mut depth_elision) = Self::empty(settings, scene, memory, area);
+    pub(crate) fn new(settings: &'r Settings<C>, scene: &'r Scene<'_>, memory: &'r mut Memory<'_, C>, region: &'r Region) -> Self {
+        let (mut frame, cache, mut depth_elision) = Self::empty(settings, scene, memory, region);
         let Part { bins, entries, stats, .. } = &mut frame.part;
         let whole = PreparationPart {
             context: &frame.context,
@@ -128,7 +128,7 @@ impl<'r, C: Pixel> Frame<'r, C> {
     }
 
     #[inline(always)]
-    fn empty(settings: &'r Settings<C>, scene: &'r Scene<'_>, memory: &'r mut Memory<'_, C>, area: Area) -> Empty<'r, C> {
+    fn empty(settings: &'r Settings<C>, scene: &'r Scene<'_>, memory: &'r mut Memory<'_, C>, region: &'r Region) -> Empty<'r, C> {
         let Memory {
             vertices: cache,
             bins: entries,
@@ -151,7 +151,8 @@ impl<'r, C: Pixel> Frame<'r, C> {
         let triangles = placements.drawn();
         let visible = placements.objects(scene).filter(|(placement, _)| placement.drawn > 0);
         let as_they_are = visible.fold(0, |sum, (_, object)| sum + object.triangles);
-        let context = Context { settings, scene, placements, area, depth_elision: None, vertices: &[], reflectances, ramps, error_bounds };
+        let context =
+            Context { settings, scene, placements, region, depth_elision: None, vertices: &[], reflectances, ramps, error_bounds };
         let elides = settings.skips().depth && !settings.antialiased();
         let depth_elision = if elides { context.convex().and_then(DepthElision::new) } else { None };
         let part = Part {
@@ -162,10 +163,9 @@ impl<'r, C: Pixel> Frame<'r, C> {
             samples,
             active_triangles,
             queue: QueueState::default(),
-            rows: area.rows(),
-            columns: area.columns(),
-            top: area.rows().start,
-            bottom: area.rows().end,
+            rows: region.hull().rows(),
+            top: region.hull().rows().start,
+            bottom: region.hull().rows().end,
             stats: Stats { triangles, simplified: as_they_are - triangles, uncached, ..Stats::default() },
         };
         (Self { context, part }, cache, depth_elision)
@@ -190,10 +190,10 @@ impl<'r, C: Pixel> Preparation<'r, C> {
         settings: &'r Settings<C>,
         scene: &'r Scene<'_>,
         memory: &'r mut Memory<'_, C>,
-        area: Area,
+        region: &'r Region,
         seams: Option<(Seams, u16)>,
     ) -> Self {
-        let (frame, cache, depth_elision) = Frame::empty(settings, scene, memory, area);
+        let (frame, cache, depth_elision) = Frame::empty(settings, scene, memory, region);
         let division = seams.map(|(seams, share)| seams.division(frame.part.stats.triangles, share)).unwrap_or_default();
         let earlier = frame.part.bins.open();
         Self { frame, cache, division, earlier, depth_elisions: [depth_elision.clone(), depth_elision], is_done: [false; 2] }
@@ -355,7 +355,7 @@ impl<'r, C: Pixel> PreparationPart<'_, 'r, C> {
         let (stream, mesh) = (&context.scene.stream, placed.mesh);
         let viewport = context.settings.viewport();
         // What lies beside it is left out.
-        let area = Bounds::from(&context.area);
+        let area = Bounds::from(&context.region.within(&placed.placement.area));
         // Reached by a pointer of its own, which is opaque to the compiler: instructions of Armv6-M reach little of a structure.
         let (bins, depth_elision, entries) = (black_box(&mut **bins), &mut **depth_elision, &mut **entries);
         let leaning = if depth_elision.is_some() { facing.leaning() } else { Facing::FRONT };

@@ -87,6 +87,8 @@ pub(crate) struct Bins {
     bottom: u32,
     /// Bins that `active` has taken over.
     reached: usize,
+    /// One past the last row of the bands so far.
+    drawn: u32,
     /// Entries in use.
     count: u16,
     active: u16,
@@ -106,6 +108,7 @@ impl Bins {
             count: 0,
             overflow: false,
             reached: 0,
+            drawn: 0,
             top: height,
             bottom: 0,
             bins_per_row: (1 << 20) / NonZeroU32::new(height.div_ceil(BINS as u32).max(band_rows)).unwrap_or(NonZeroU32::MIN) + 1,
@@ -207,12 +210,13 @@ impl Bins {
             }
             self.reached += 1;
         }
+        self.drawn = bottom;
         Walk { entries, lists: [self.active.into(), fresh.into()], head: 0, tail: 0, bottom }
     }
 
-    /// Leaves out the triangles that end above `row`, where the first band begins; does nothing for any later band.
+    /// Leaves out the triangles that end above `row`, where the next band begins; does nothing where that is the end of the band before.
     pub(crate) fn skip(&mut self, entries: &mut [Entry], row: u32) {
-        if self.reached == 0 && row > 0 {
+        if row > self.drawn {
             let walk = self.band(entries, row);
             self.take_over(walk);
         }

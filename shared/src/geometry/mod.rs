@@ -9,4 +9,5 @@ pub mod detail;
 pub mod lens;
 pub mod model_view;
 pub mod projection;
+pub(crate) mod region;
 pub mod viewport;

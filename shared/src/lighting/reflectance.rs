@@ -240,9 +240,12 @@ impl Reflectance {
                 *sum = Sum::new(self.ambient[k], [gains.diffuse[k], all[k]], gains.specular[k], depth[k]);
             }
         }
-        let [first, _, again] = even;
-        *again = *first;
-        *odd = *even;
+        // Greys have no three channels.
+        if !C::GRAY {
+            let [first, _, again] = even;
+            *again = *first;
+            *odd = *even;
+        }
         let [one, ..] = &mut self.gains;
         let (mut full, mut floor) = (1 << ENTRY, 0);
         if holds_levels {
