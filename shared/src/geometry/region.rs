@@ -125,7 +125,7 @@ mod tests {
             region.clear(SIDES[1].into(), band.into());
             areas.iter().for_each(|area| region.include(area));
             let rows = region.rows;
-            prop_assert!(rows % band == 0 && SIDES[1] <= rows * STRIPS as u16);
+            prop_assert!(rows.is_multiple_of(band) && SIDES[1] <= rows * STRIPS as u16);
             let (mut row, mut drawn) = (0, [[false; SIDES[0] as usize]; SIDES[1] as usize]);
             loop {
                 let area = region.next(row);
