@@ -165,7 +165,7 @@ fn animate<D: Display>(
                 let rows = frame.rows();
                 let reached = rows.start.min(shown.start)..rows.end.max(shown.end);
                 frame.limit(reached.clone());
-                shown = if frame.area().size == display.size() { rows } else { reached };
+                shown = if frame.is_whole() { rows } else { reached };
                 painter.draw(display, frame, None)?;
                 drawn += 1;
             }

@@ -162,6 +162,12 @@ const fn padded(bytes: usize) -> usize {
     bytes.next_multiple_of(size_of::<u64>())
 }
 
+/// The sizes that docs/design.md tells.
+const _: () = {
+    assert!(size_of::<ScreenVertex>() == 32 && size_of::<Entry>() == 8 && size_of::<ActiveTriangle>() == 132);
+    assert!(size_of::<Reflectance>() == 8580 && size_of::<Sample>() == 72);
+};
+
 /// The memory of a renderer, divided into its parts.
 #[derive(Debug)]
 pub(crate) struct Memory<'a, C: Pixel> {

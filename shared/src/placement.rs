@@ -77,7 +77,7 @@ impl Placement {
     /// The frame has it if it reaches into `region`. Returns whether more or fewer triangles of it are drawn than before.
     pub(crate) fn draw_within(&mut self, region: &Region) -> bool {
         let before = self.drawn;
-        self.drawn = if !region.within(&self.area).is_empty() { self.triangles } else { 0 };
+        self.drawn = if region.within(&self.area).is_empty() { 0 } else { self.triangles };
         before != self.drawn
     }
 

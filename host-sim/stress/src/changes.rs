@@ -270,7 +270,7 @@ fn draw(
         1 => renderer.frame(state.frame()),
         _ => renderer.prepare(state.frame(), random.bits() as u16).frame(),
     };
-    let in_part = frame.area().size != size;
+    let in_part = !frame.is_whole();
     limit(&mut frame);
     let mut show = |area: Rectangle, band: &[Rgb565]| {
         for (row, pixels) in (area.top_left.y as u32..).zip(band.chunks_exact(area.size.width as usize)).take(area.size.height as usize) {
@@ -286,8 +286,12 @@ fn draw(
             }
         }
     } else {
-        while let Some(area) = frame.next_band(&mut band).map_err(|error| error.to_string())? {
-            show(area, &band);
+        while !frame.is_complete() {
+            let area = frame.next_band(&mut band).map_err(|error| error.to_string())?;
+            show(area.ok_or("a frame has no band, though it is not complete")?, &band);
+        }
+        if frame.next_band(&mut band) != Ok(None) {
+            return Err("a frame has a band, though it is complete".to_owned());
         }
     }
     Ok(in_part)

@@ -156,7 +156,8 @@ impl<'r, C: Pixel> Context<'r, C> {
         Some(PlacedMesh::new(placement, object, first, mesh))
     }
 
-    /// Whether all pixels of an object in these `columns` of `band` are nearer than the object is: none of its triangles can be seen there.
+    /// Whether all pixels of an object in these `columns` of `band`, if there are any, are nearer than the object is: none of its triangles can be
+    /// seen there.
     pub(crate) fn hides(&self, placement: &Placement, columns: [u16; 2], band: &Band<'_, C>) -> bool {
         if !self.settings.skips().hidden_objects || self.settings.antialiased() {
             return false;

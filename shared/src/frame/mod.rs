@@ -55,7 +55,14 @@ impl<'r, C: Pixel> Frame<'r, C> {
         self.context.region.hull().rectangle()
     }
 
-    /// The rows that triangles of this frame can reach; all other rows of its area are background, and labels, which never move.
+    /// Whether the frame has the whole picture.
+    #[must_use]
+    pub fn is_whole(&self) -> bool {
+        self.context.region.is_whole()
+    }
+
+    /// The rows that triangles of this frame can reach; all other rows of what it has are background, and labels, which never move. What of the
+    /// picture it has not may show objects that stand still in other rows.
     #[must_use]
     pub fn rows(&self) -> Range<u32> {
         self.part.rows.clone()
@@ -77,7 +84,7 @@ impl<'r, C: Pixel> Frame<'r, C> {
     /// Whether the last band has been drawn.
     #[must_use]
     pub fn is_complete(&self) -> bool {
-        self.part.is_complete()
+        self.part.is_complete(&self.context)
     }
 
     /// The counts so far; they are complete after the last band.

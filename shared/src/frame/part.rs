@@ -91,10 +91,7 @@ impl<'r> Part<'r> {
         pixels: &mut [C],
         under: impl FnOnce(&mut [C], Rectangle),
     ) -> Result<Option<Rectangle>, RenderError> {
-        let Some(rows) = self.next_rows(context, pixels.len())? else {
-            self.top = self.bottom;
-            return Ok(None);
-        };
+        let Some(rows) = self.next_rows(context, pixels.len())? else { return Ok(None) };
         let size = context.settings.size;
         // They are drawn in all columns, and sent in those that are wanted.
         let whole = Area { columns: [0, size.width as u16], rows };
@@ -163,8 +160,8 @@ impl<'r> Part<'r> {
     }
 
     /// Whether the last band has been drawn.
-    pub(crate) fn is_complete(&self) -> bool {
-        self.top >= self.bottom
+    pub(crate) fn is_complete<C: Pixel>(&self, context: &Context<'_, C>) -> bool {
+        context.region.next(self.top).rows().start >= self.bottom
     }
 
     /// Draws what falls into the band of the rows from `top` to `bottom`, of which these `columns` are wanted; its pixels are background.

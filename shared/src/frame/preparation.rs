@@ -354,8 +354,10 @@ impl<'r, C: Pixel> PreparationPart<'_, 'r, C> {
         let facing = black_box(placed.placement.facing);
         let (stream, mesh) = (&context.scene.stream, placed.mesh);
         let viewport = context.settings.viewport();
-        // What lies beside it is left out.
-        let area = Bounds::from(&context.region.within(&placed.placement.area));
+        // What lies beside it is left out, but not what lies below it: bands save triangles that go on, also where no strip below has pixels of
+        // the object, and what they have saved is taken off by those that walk the triangle.
+        let mut area = Bounds::from(&context.region.within(&placed.placement.area));
+        area.bottom = area.bottom.max(context.region.hull().rows().end as i32);
         // Reached by a pointer of its own, which is opaque to the compiler: instructions of Armv6-M reach little of a structure.
         let (bins, depth_elision, entries) = (black_box(&mut **bins), &mut **depth_elision, &mut **entries);
         let leaning = if depth_elision.is_some() { facing.leaning() } else { Facing::FRONT };

@@ -52,12 +52,6 @@ impl Area {
         Self { columns: within(self.columns, other.columns), rows: within(self.rows, other.rows) }
     }
 
-    /// Whether some pixel belongs to both.
-    #[must_use]
-    pub fn meets(&self, other: &Self) -> bool {
-        !self.within(other).is_empty()
-    }
-
     /// Its columns.
     #[must_use]
     pub fn columns(&self) -> Range<u32> {
@@ -99,7 +93,7 @@ mod tests {
             let pixels = || (0..6).flat_map(|x| (0..6).map(move |y| (x, y)));
             let both = one.union(&other);
             prop_assert_eq!(one.is_empty(), !pixels().any(|(x, y)| has(&one, x, y)));
-            prop_assert_eq!(one.meets(&other), pixels().any(|(x, y)| has(&one, x, y) && has(&other, x, y)));
+            prop_assert_eq!(!one.within(&other).is_empty(), pixels().any(|(x, y)| has(&one, x, y) && has(&other, x, y)));
             prop_assert!(pixels().all(|(x, y)| has(&both, x, y) || !has(&one, x, y) && !has(&other, x, y)));
             prop_assert_eq!(embedded_graphics_core::primitives::PointsIter::points(&one.rectangle()).count(), pixels().filter(|&(x, y)| has(&one, x, y)).count());
         }

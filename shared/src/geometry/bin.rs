@@ -18,7 +18,7 @@ const NONE: u16 = 0;
 const OPEN: u16 = 1 << 15;
 
 /// A triangle in a list: twice its index in the stream, plus 1 if it is word-sized. No other has the same.
-#[derive(FromBytes, IntoBytes, Immutable, KnownLayout, Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+#[derive(FromBytes, IntoBytes, Immutable, KnownLayout, Clone, Copy, Debug)]
 #[repr(transparent)]
 pub(crate) struct Key(u32);
 

@@ -1,7 +1,9 @@
 //! What of a picture is drawn: rectangles that objects have left and entered.
 //!
 //! A frame is drawn in bands, and each of them is one rectangle: what has changed in its rows, as narrow as that is. So a picture is divided into
-//! strips of as many rows as a band has, and all that has changed in one of them is one rectangle; strips without any are left out.
+//! at most 16 strips, each as high as a band or a multiple of it, and all that has changed in one of them is one rectangle; strips without any
+//! are left out. No band reaches into the next strip: its rectangle would have pixels of neither, and of objects that reach into none of the
+//! rectangles nothing is drawn.
 
 use crate::geometry::area::Area;
 use core::slice;
@@ -79,12 +81,13 @@ impl Region {
         self.strips.iter().filter(meets).fold(Area::NONE, |hull, strip| hull.union(&strip.within(&area)))
     }
 
-    /// The first rectangle from `row` on that a band may fill; none behind the last.
+    /// The first rectangle from `row` on that a band may fill; behind the last an empty one that begins behind all rows.
     #[inline(never)]
     pub(crate) fn next(&self, row: u32) -> Area {
-        let from = |area: &Area| Area { rows: [area.rows[0].max(row as u16), area.rows[1]], ..*area };
+        let row = row.min(u16::MAX.into()) as u16;
+        let from = |area: &Area| Area { rows: [area.rows[0].max(row), area.rows[1]], ..*area };
         let mut all = if self.is_whole { slice::from_ref(&self.hull) } else { &self.strips }.iter().map(from);
-        all.find(|area| !area.is_empty()).unwrap_or(Area::NONE)
+        all.find(|area| !area.is_empty()).unwrap_or(Area { rows: [u16::MAX; 2], ..Area::NONE })
     }
 }
 

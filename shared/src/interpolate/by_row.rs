@@ -13,7 +13,7 @@ use core::marker::PhantomData;
 #[derive(Clone, Copy, Debug)]
 pub struct ByRow<P, C> {
     patch: P,
-    /// How much higher the next row is, as if all channels had eight bits.
+    /// How much higher the next row is, with [`crate::format::CHANNEL`] fraction bits, as if all channels had eight bits.
     higher: i32,
     format: PhantomData<C>,
 }

@@ -9,7 +9,7 @@ use crate::{
 use core::marker::PhantomData;
 use zerocopy::{FromBytes, Immutable, IntoBytes, KnownLayout};
 
-/// Tables for even rows and for odd ones, which are the same in formats without a checkerboard.
+/// Tables for even rows and for odd ones; formats without a checkerboard look at the former alone.
 #[derive(Debug)]
 pub(super) struct ByTurns<'a, T> {
     now: &'a T,
@@ -190,9 +190,9 @@ impl Sum {
         self.diffuse.wrapping_mul(cosine).wrapping_add(self.specular.wrapping_mul(highlight))
     }
 
-    /// The same, with all levels so much more, Q10.22.
+    /// The same, with all levels so much more, Q10.22. Where they are too large, nobody adds these sums up.
     pub(super) fn raised(self, by: i32) -> Self {
-        Self { ambient: self.ambient + by, ..self }
+        Self { ambient: self.ambient.wrapping_add(by), ..self }
     }
 
     /// The level, Q10.22, from a cosine, Q1.15, and a highlight, unsigned Q0.16.

@@ -29,7 +29,7 @@ impl<C: Pixel> Clone for MaterialTables<'_, C> {
 
 impl<C: Pixel> Copy for MaterialTables<'_, C> {}
 
-/// A level, Q9.7, of a channel, and half of its last place, Q10.22.
+/// A level, Q9.7, and half a step of its channel, Q10.22.
 #[inline(always)]
 fn rounded(level: i32, depth: u32) -> i32 {
     (level + (1 << (LEVEL + 7 - depth))) << (CHANNEL - LEVEL)
@@ -92,7 +92,13 @@ impl<'a, C: Pixel> MaterialTables<'a, C> {
     #[inline(always)]
     #[must_use]
     pub fn one_light_rgb(&self) -> Option<OneLightRgb<'a, C>> {
-        (!C::GRAY && self.reflectance.three_channels()).then_some(self.sums())
+        self.three_channels().then_some(self.sums())
+    }
+
+    /// [`Reflectance::three_channels`], which greys never have: the compiler leaves that code out.
+    #[inline(always)]
+    fn three_channels(&self) -> bool {
+        !C::GRAY && self.reflectance.three_channels()
     }
 
     /// The sums of three channels under the first light.
@@ -116,7 +122,7 @@ impl<'a, C: Pixel> MaterialTables<'a, C> {
     #[inline(always)]
     #[must_use]
     pub fn one_light(&self, cosines: [i32; 2]) -> [C::Stored; 2] {
-        if self.reflectance.three_channels() { self.one_light_mixed(cosines) } else { self.tint(self.reflectance.level(cosines)) }
+        if self.three_channels() { self.one_light_mixed(cosines) } else { self.tint(self.reflectance.level(cosines)) }
     }
 
     /// [`Self::one_light`] in three channels.
@@ -124,7 +130,8 @@ impl<'a, C: Pixel> MaterialTables<'a, C> {
     fn one_light_mixed(self, [cosine, half]: [i32; 2]) -> [C::Stored; 2] {
         match self.reflectance.highlight(half) {
             0 if self.reflectance.has_ramp() => self.tint(self.reflectance.ramp_level(cosine)),
-            highlight => self.sums().by_turns(cosine >> (COSINE - FACTOR), highlight),
+            highlight if self.reflectance.sums_fit() => self.sums().by_turns(cosine >> (COSINE - FACTOR), highlight),
+            highlight => self.mixed_by_turns(self.reflectance.reflection(cosine, highlight)),
         }
     }
 
@@ -132,7 +139,7 @@ impl<'a, C: Pixel> MaterialTables<'a, C> {
     #[inline(always)]
     #[must_use]
     pub fn colour(&self, levels: [i32; 3]) -> [C::Stored; 2] {
-        if !self.reflectance.three_channels() {
+        if !self.three_channels() {
             return self.tint(levels[0]);
         }
         self.mixed_by_turns(levels)
@@ -174,6 +181,30 @@ mod tests {
         let mut reflectance = Reflectance::EMPTY;
         reflectance.fill::<C>([1 << UNIT; 3], material, &[Light { colour, ..Light::new_zeroed() }], (Highlight::Half, false));
         reflectance
+    }
+
+    /// Light that a word does not hold is white, dithered or not, and however bright it is.
+    #[test]
+    fn the_brightest_light_does_not_wrap() {
+        for gain in (1u16 << 11..1 << 15).step_by(499) {
+            let material = Material { ambient: [gain; 3], diffuse: [gain, gain / 2, 0], specular: [gain; 3], exponent: 30 };
+            let mut reflectance = reflectance::<Rgb565>(&material, [1 << UNIT; 3]);
+            for _ in 0..2 {
+                let tables = MaterialTables::<Rgb565> { ramps: &[[0; RAMP]; 2], reflectance: &reflectance };
+                let exact = reflectance.reflection(1 << COSINE, 1 << 16);
+                let colours = tables.one_light([1 << COSINE, 1 << COSINE]).map(|stored| Rgb565::from_stored(stored).channels());
+                for (colour, turn) in colours.into_iter().zip([-1, 1]) {
+                    let quarter = reflectance.quarter() * turn;
+                    let expected = zip(exact, Rgb565::DEPTH, |level, depth| {
+                        let level = ((level + (1 << (LEVEL + 7 - depth))) << (CHANNEL - LEVEL)) + (quarter << (8 - depth));
+                        (level >> (CHANNEL + 8 - depth)).min((1 << depth) - 1)
+                    });
+                    let differences = zip(colour, expected, |colour, expected| (i32::from(colour) - expected).abs());
+                    assert!(differences.into_iter().all(|difference| difference <= 1), "{gain}: {colour:?} {expected:?}");
+                }
+                reflectance.dither();
+            }
+        }
     }
 
     proptest! {

@@ -11,7 +11,7 @@ use crate::{
         highlight_lut::{Base, ENTRY, HighlightLut, square},
         vector::zip,
     },
-    pixel::{Pixel, dither::quantise, gamma::Gamma},
+    pixel::{Pixel, dither::quantise, gamma::Gamma, ramps::Ramps},
     stream::record::{Light, Material},
 };
 use zerocopy::{FromBytes, Immutable, IntoBytes, KnownLayout};
@@ -220,7 +220,7 @@ impl Reflectance {
                 *gains = Gains { diffuse: levels(diffuse), specular: levels(specular) };
             }
         }
-        let total = self.total(lights.len());
+        let total = self.total::<C>(lights.len());
         self.excess = (total >> (9 + LEVEL)).checked_ilog2().map_or(0, |bits| bits + 1);
         let fits = if one_channel { total < LARGEST } else { self.excess == 0 };
         let (ambient, diffuse) = (self.ambient, self.gains[0].diffuse);
@@ -310,6 +310,13 @@ impl Reflectance {
     #[must_use]
     pub fn highlight_threshold(&self) -> i32 {
         self.highlight_threshold
+    }
+
+    /// Whether the light of all lights fits a word as [`Sum`]s add it up.
+    #[inline(always)]
+    #[must_use]
+    pub fn sums_fit(&self) -> bool {
+        self.excess == 0
     }
 
     /// Dithers three channels by rows: even ones are a quarter of a step lower, odd ones higher.
@@ -560,9 +567,10 @@ impl Reflectance {
         (level + (BIAS << LEVEL) + (1 << (LEVEL - 1))) as u32
     }
 
-    /// The largest level under that many lights, Q9.7 and more, and what rounds, at most three quarters of a step of the channel.
-    fn total(&self, lights: usize) -> u32 {
-        let mut total = zip(self.ambient, self.depth, |level, depth| level as u32 + (3 << (LEVEL + 6 - depth)));
+    /// The largest level under that many lights, Q9.7 and more, and what rounds: half a step of a channel, or with a checkerboard three quarters.
+    fn total<C: Pixel>(&self, lights: usize) -> u32 {
+        let quarters = if C::Ramps::CHECKERED { 3 } else { 2 };
+        let mut total = zip(self.ambient, self.depth, |level, depth| level as u32 + (quarters << (LEVEL + 6 - depth)));
         for gains in self.gains.iter().take(lights) {
             let light = zip(gains.diffuse, gains.specular, |diffuse, specular| u32::from(diffuse) + u32::from(specular));
             total = zip(total, light, |total, light| total + light);

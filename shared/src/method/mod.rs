@@ -491,7 +491,8 @@ impl Shading<'_> {
             let raise = raise << (CHANNEL - LEVEL);
             let [r, g, b] = half_steps;
             let mut bias = [r + raise, g + raise, b + raise];
-            // By measurement, planes are set up sooner if they begin lower, and quadratics if they are lowered.
+            // By measurement, planes take fewer instructions if the nodes are lower by a quarter of a step, and quadratics if it is taken off after
+            // the fit.
             if N == 3 && C::Ramps::CHECKERED {
                 let [r, g, b] = by_row::channels::<C>(higher() >> 1);
                 bias = [bias[0] - r, bias[1] - g, bias[2] - b];

@@ -114,7 +114,7 @@ pub trait Pixel: Copy + 'static {
         Self::pack([channel(r, dr), channel(g, dg), channel(b, db)])
     }
 
-    /// The colour of three levels with [`CHANNEL`] fraction bits, half a step of each channel included.
+    /// The colour of three levels with [`CHANNEL`] fraction bits, what rounds or dithers each channel included.
     #[inline(always)]
     fn mixed([r, g, b]: [i32; 3]) -> Self {
         let shifted = |level: i32, depth: u32| level >> (CHANNEL + 8 - depth);

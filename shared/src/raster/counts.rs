@@ -11,7 +11,7 @@ pub struct Counts {
     pub without_highlight: u32,
     /// Without a light, for each such light.
     pub without_light: u32,
-    /// Not at all in the rows of a band, because nearer objects hide theirs there; for each such band.
+    /// Not at all in a band, because nearer objects hide theirs there, or because it has none of their pixels; for each such band.
     pub hidden: u32,
     /// By each choice of a method that chooses.
     pub choices: [u32; 5],

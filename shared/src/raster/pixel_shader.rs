@@ -77,8 +77,8 @@ impl<C: Pixel> PixelShader<[u32; 1]> for Ramp<'_, C> {
     }
 }
 
-/// Three walked levels with [`crate::format::CHANNEL`] fraction bits, scaled so that their upper bits are the channels; half a step is in
-/// them already.
+/// Three walked levels with [`crate::format::CHANNEL`] fraction bits, scaled so that their upper bits are the channels; what rounds or
+/// dithers is in them already.
 #[derive(Clone, Copy, Debug)]
 pub struct Rgb<C>(pub PhantomData<C>);
 
