@@ -85,3 +85,37 @@ impl<P: Raised, C: Pixel> Patch for ByRow<P, C> {
         Some(Self { patch: P::load(words)?, higher: *higher as i32, format: PhantomData })
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::interpolate::{Walker, plane::Plane};
+    use embedded_graphics_core::pixelcolor::{Rgb565, Rgb888};
+
+    fn levels<C: Pixel>(rows: &ByRow<Plane<3>, C>) -> [u32; 3] {
+        rows.enter(0).value()
+    }
+
+    /// Every other row is higher, however it is come to, and by twice as much where a channel has a bit less.
+    #[test]
+    fn rows_take_turns() {
+        let begun = ByRow::<_, Rgb565>::new(Plane::<3>::default(), 12);
+        let mut stepped = begun;
+        for row in 0..6 {
+            let mut jumped = begun;
+            jumped.jump(row);
+            let higher = if row % 2 == 0 { [0; 3] } else { [96, 48, 96] };
+            assert_eq!((levels(&stepped), levels(&jumped)), (higher, higher), "row {row}");
+            jumped.jump(-row);
+            assert_eq!(levels(&jumped), [0; 3]);
+            // The band below goes on from here.
+            let mut words = [0; ByRow::<Plane<3>, Rgb565>::WORDS];
+            assert!(stepped.save(&mut words));
+            stepped = ByRow::load(&words).unwrap();
+            stepped.step_row();
+        }
+        let mut fine = ByRow::<_, Rgb888>::new(Plane::<3>::default(), 12);
+        fine.step_row();
+        assert_eq!(levels(&fine), [0; 3], "eight bits have no checkerboard");
+    }
+}
