@@ -280,7 +280,12 @@ impl<C: Pixel> TwoLightsRgb<'_, C> {
         let [[r, g, b], [r2, g2, b2]] = self.0.now;
         let (c, h, c2, h2) = (cosine::<BITS>(one.0), one.1 as i32, cosine::<BITS>(two.0), two.1 as i32);
         let level = |first: &Sum, second: &Sum| first.level_from_highlight(c, h).wrapping_add(second.light(c2, h2));
-        C::mixed([level(r, r2), level(g, g2), level(b, b2)])
+        // The same, the second light's products one after the other. In which channels that leaves loops more registers is known by measurement
+        // alone.
+        let in_turn = |first: &Sum, second: &Sum| {
+            first.level_from_highlight(c, h).wrapping_add(second.specular.wrapping_mul(h2)).wrapping_add(second.diffuse.wrapping_mul(c2))
+        };
+        C::mixed([level(r, r2), in_turn(g, g2), level(b, b2)])
     }
 
     /// The colours of the first light alone.
