@@ -130,7 +130,7 @@ impl<'a, C: Pixel> Renderer<'a, C> {
             fill_ramps::<C>(ramps, reflectance, settings.dither, settings.gamma);
             *bounds = shader.method().error_bounds(reflectance, material.exponent, lights.len());
             if settings.dither && C::Ramps::CHECKERED {
-                reflectance.dither();
+                reflectance.dither::<C>();
             }
             #[cfg(feature = "skips")]
             reflectance.leave_out(settings.skips.highlights, settings.skips.lights);

@@ -211,7 +211,7 @@ impl Bins {
             self.reached += 1;
         }
         self.drawn = bottom;
-        Walk { entries, lists: [self.active.into(), fresh.into()], head: 0, tail: 0, bottom }
+        Walk { entries, lists: [self.active.into(), fresh.into()], head: NONE.into(), tail: NONE.into(), bottom }
     }
 
     /// Leaves out the triangles that end above `row`, where the next band begins; does nothing where that is the end of the band before.
@@ -285,7 +285,7 @@ fn append(entries: &mut [Entry], head: &mut u32, tail: u32, link: u32) {
 
 /// Merges two lists in the order of the stream; returns the head of the merged list.
 fn merge(entries: &mut [Entry], lists: [u16; 2]) -> u16 {
-    Walk { entries, lists: lists.map(u32::from), head: 0, tail: 0, bottom: 0 }.end()
+    Walk { entries, lists: lists.map(u32::from), head: NONE.into(), tail: NONE.into(), bottom: 0 }.end()
 }
 
 #[cfg(test)]

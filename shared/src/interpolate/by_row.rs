@@ -5,7 +5,7 @@
 
 use crate::{
     interpolate::{Patch, Raised},
-    pixel::{Pixel, ramps::Ramps},
+    pixel::{Pixel, ramps::Ramps, steps},
 };
 use core::marker::PhantomData;
 
@@ -31,16 +31,9 @@ impl<P: Raised, C: Pixel> ByRow<P, C> {
 
     #[inline(always)]
     fn turn(&mut self) {
-        self.patch.raise(channels::<C>(self.higher));
+        self.patch.raise(steps::<C>(self.higher));
         self.higher = -self.higher;
     }
-}
-
-/// In each channel of the pixel format as many steps as `by` is of eight bits.
-#[inline(always)]
-pub(crate) fn channels<C: Pixel>(by: i32) -> [i32; 3] {
-    let [r, g, b] = C::DEPTH;
-    [by << (8 - r), by << (8 - g), by << (8 - b)]
 }
 
 impl<P: Raised, C: Pixel> Patch for ByRow<P, C> {

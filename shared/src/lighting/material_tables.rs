@@ -7,7 +7,7 @@ use crate::{
         reflectance::Reflectance,
     },
     math::vector::zip,
-    pixel::{Pixel, gamma::Gamma, ramps::Ramps},
+    pixel::{Pixel, gamma::Gamma, ramps::Ramps, steps},
 };
 use core::marker::PhantomData;
 
@@ -148,9 +148,8 @@ impl<'a, C: Pixel> MaterialTables<'a, C> {
     /// [`Self::colour`] in three channels.
     #[inline(always)]
     fn mixed_by_turns(&self, levels: [i32; 3]) -> [C::Stored; 2] {
-        let (quarter, [r, g, b], [dr, dg, db]) = (self.reflectance.quarter(), levels, C::DEPTH);
-        let [r, g, b] = [rounded(r, dr), rounded(g, dg), rounded(b, db)];
-        let [r_more, g_more, b_more] = [quarter << (8 - dr), quarter << (8 - dg), quarter << (8 - db)];
+        let [r, g, b] = zip(levels, C::DEPTH, rounded);
+        let [r_more, g_more, b_more] = steps::<C>(self.reflectance.quarter());
         let even = C::mixed([r - r_more, g - g_more, b - b_more]).stored();
         if C::Ramps::CHECKERED { [even, C::mixed([r + r_more, g + g_more, b + b_more]).stored()] } else { [even; 2] }
     }
@@ -183,7 +182,7 @@ mod tests {
         reflectance
     }
 
-    /// Light that a word does not hold is white, dithered or not, and however bright it is.
+    /// Light that a word does not hold is as bright as it can be, dithered or not: it does not begin anew at black.
     #[test]
     fn the_brightest_light_does_not_wrap() {
         for gain in (1u16 << 11..1 << 15).step_by(499) {
@@ -202,7 +201,7 @@ mod tests {
                     let differences = zip(colour, expected, |colour, expected| (i32::from(colour) - expected).abs());
                     assert!(differences.into_iter().all(|difference| difference <= 1), "{gain}: {colour:?} {expected:?}");
                 }
-                reflectance.dither();
+                reflectance.dither::<Rgb565>();
             }
         }
     }

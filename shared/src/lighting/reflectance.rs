@@ -11,7 +11,7 @@ use crate::{
         highlight_lut::{Base, ENTRY, HighlightLut, square},
         vector::zip,
     },
-    pixel::{Pixel, dither::quantise, gamma::Gamma, ramps::Ramps},
+    pixel::{Pixel, dither::quantise, gamma::Gamma, ramps::Ramps, steps},
     stream::record::{Light, Material},
 };
 use zerocopy::{FromBytes, Immutable, IntoBytes, KnownLayout};
@@ -320,11 +320,11 @@ impl Reflectance {
     }
 
     /// Dithers three channels by rows: even ones are a quarter of a step lower, odd ones higher.
-    pub(crate) fn dither(&mut self) {
+    pub(crate) fn dither<C: Pixel>(&mut self) {
         self.quarter = 1 << (CHANNEL - 2);
         for (rows, quarter) in self.sums.iter_mut().zip([-self.quarter, self.quarter]) {
             for sums in rows {
-                *sums = zip(*sums, self.depth, |sum, depth| sum.raised(quarter << (8 - depth)));
+                *sums = zip(*sums, steps::<C>(quarter), Sum::raised);
             }
         }
     }

@@ -129,6 +129,13 @@ pub trait Pixel: Copy + 'static {
     }
 }
 
+/// In each channel as many steps as `by` is of channels of eight bits.
+#[inline(always)]
+pub(crate) fn steps<C: Pixel>(by: i32) -> [i32; 3] {
+    let [r, g, b] = C::DEPTH;
+    [by << (8 - r), by << (8 - g), by << (8 - b)]
+}
+
 /// Channels of 5, 6 and 5 bits, packed.
 #[inline(always)]
 fn rgb565([high, middle, low]: [u32; 3]) -> u16 {
