@@ -13,11 +13,14 @@
 use microphong::{
     format::{BIAS, CHANNEL, LEVEL, WALK},
     interpolate::{Patch, Walker, cubic::Cubic, plane::Plane, quadric::Quadric},
-    setup::gradients::{Gradients, MAX_THINNESS},
+    setup::{
+        gradients::{Gradients, MAX_THINNESS},
+        steepness::{SHARE, Steepness},
+    },
 };
 use microphong_sim::stress::{coverage::side, random::Random};
 use microphong_tests::{cases, seed};
-use std::ops::Range;
+use std::{f64::consts::TAU, ops::Range};
 
 /// The unit of walked levels.
 const LSB: f64 = 1.0 / (1u64 << WALK) as f64;
@@ -151,7 +154,7 @@ fn quadratics_of_100_000_random_triangles_stay_within_the_bound() {
         let nodes: [i32; 6] = std::array::from_fn(|_| random.pick(0..255 << LEVEL));
         // As one channel is walked, or as one of three.
         let (walk, coarser) = if i / 6 % 2 == 0 { (WALK, 1.0) } else { (CHANNEL, 2.0) };
-        let mut patch = Quadric::<1>::fit::<15>(&gradients, &[nodes], walk - LEVEL, [0]);
+        let mut patch = Quadric::<1>::fit::<15>(&gradients, &[nodes], walk - LEVEL, [0], Steepness::NONE);
         // Longest edge over the height on it.
         let longest2 = (0..3).map(|k| square(c[k], c[(k + 1) % 3])).fold(0.0, f64::max);
         let thinness = longest2 / side(c[0], c[1], c[2]) as f64;
@@ -282,8 +285,8 @@ fn planes_stay_within_the_bound_even_on_slivers() {
         let size = f64::from(extent(0).max(extent(1)));
         let thinness = size * size / side(case.corners[0], case.corners[1], case.corners[2]) as f64;
         let (mut plane, setup) = match finer {
-            0 => (Plane::<1>::fit::<15>(&gradients, &[nodes], WALK - LEVEL, [0]), LINEAR),
-            _ => (Plane::<1>::fit::<20>(&gradients, &[nodes], WALK - LEVEL - finer, [0]), LINEAR_FINER),
+            0 => (Plane::<1>::fit::<15>(&gradients, &[nodes], WALK - LEVEL, [0], Steepness::NONE), LINEAR),
+            _ => (Plane::<1>::fit::<20>(&gradients, &[nodes], WALK - LEVEL - finer, [0], Steepness::NONE), LINEAR_FINER),
         };
         let mut at = gradients.row();
         for row in 0..case.height {
@@ -347,8 +350,8 @@ fn fields_of_26_bits_stay_within_the_bound() {
         let nodes: [i32; 6] = std::array::from_fn(|_| least + random.pick(0..range / 2 + 1));
         let [a, b, c, ..] = nodes;
         let extra = 5 + i as u32 / 7 % 2;
-        let mut plane = Plane::<1>::fit::<26>(&gradients, &[[a, b, c]], extra, [0]);
-        let mut quadric = Quadric::<1>::fit::<26>(&gradients, &[nodes], extra, [0]);
+        let mut plane = Plane::<1>::fit::<26>(&gradients, &[[a, b, c]], extra, [0], Steepness::NONE);
+        let mut quadric = Quadric::<1>::fit::<26>(&gradients, &[nodes], extra, [0], Steepness::NONE);
         let is_word_sized = Gradients::if_word_sized(corners).is_some();
         let is_thin = reach(corners).pow(2) > side(corners[0], corners[1], corners[2]) * LONG_THINNESS;
         let bend = if is_thin && !is_word_sized { 0.0 } else { LONG_QUADRATIC };
@@ -392,4 +395,74 @@ fn fields_of_26_bits_stay_within_the_bound() {
     }
     println!("{triangles} triangles; worst error of planes {:.2}, of quadratics {:.2} of the bound", worst[0], worst[1]);
     assert!(triangles >= 100_000);
+}
+
+/// What set-up adds to a white highlight, in 1/255, by the exponent for which fields are fitted: the share of each step, see
+/// [`microphong::setup::steepness`], and a little of another one.
+const STEEP: f64 = 1.2 * SHARE;
+/// Planes are not fitted by exact fractions, and are judged on triangles up to so many times as long as high.
+const THINNEST: f64 = 100.0;
+
+#[test]
+fn highlights_show_nothing_of_set_up() {
+    let mut random = Random::new(seed(), 9);
+    let mut worst = [0f64; 2];
+    for _ in 0..cases(400_000) {
+        let (size, thin, angle) = (random.octaves(2.0, 300.0), random.octaves(0.002, 1.0), random.between(0.0, TAU));
+        let (sine, cosine) = angle.sin_cos();
+        let mut corner = || {
+            let (x, y) = (random.between(-0.5, 0.5) * size, random.between(-0.5, 0.5) * size * thin);
+            [160.0 + x * cosine - y * sine, 120.0 + x * sine + y * cosine].map(|c| (c * 16.0) as i32)
+        };
+        let mut c = [corner(), corner(), corner()];
+        let top = (0..3).min_by_key(|&k| (c[k][1], c[k][0])).unwrap();
+        c.rotate_left(top);
+        if side(c[0], c[1], c[2]) < 0 {
+            c.swap(1, 2);
+        }
+        let case = Case { width: 320, height: 240, corners: c };
+        let Some(gradients) = Gradients::new(c, visible(&case)) else { continue };
+        let exponent = random.octaves(1.0, 2049.0) as u32;
+        let steepness = Steepness::new(exponent);
+        // Cosines of any curvature, 24 fraction bits.
+        let bend = random.octaves(1.0 / 4096.0, 0.5) * 2f64.powi(24);
+        let corners = [(); 3].map(|()| random.pick(-(1 << 23)..1 << 23));
+        let middles = [0, 1, 2].map(|k| {
+            let mean = (f64::from(corners[k]) + f64::from(corners[(k + 1) % 3])) / 2.0;
+            (mean + bend * random.between(-1.0, 1.0)) as i32
+        });
+        let nodes = [corners[0], corners[1], corners[2], middles[0], middles[1], middles[2]];
+        let mut quadric = Quadric::<1>::fit::<26>(&gradients, &[nodes], 6, [0], steepness);
+        let mut plane = Plane::<1>::fit::<26>(&gradients, &[corners], 6, [0], steepness);
+        // A pixel of the triangle.
+        let [u, v] = [random.between(0.0, 1.0), random.between(0.0, 1.0)];
+        let [u, v] = if u + v > 1.0 { [1.0 - u, 1.0 - v] } else { [u, v] };
+        let place = |k: usize| f64::from(c[0][k]) + u * f64::from(c[1][k] - c[0][k]) + v * f64::from(c[2][k] - c[0][k]);
+        let pixel = [0, 1].map(|k| (place(k) / 16.0).floor() as i32);
+        let b = barycentric(c, pixel.map(|c| c * 16 + 8));
+        if b.iter().any(|&b| b < 0.0) {
+            continue;
+        }
+        let f = nodes.map(f64::from);
+        let linear = (0..3).map(|k| b[k] * f[k]).sum::<f64>();
+        let quadratic = (0..3).map(|k| b[k] * (2.0 * b[k] - 1.0) * f[k]).sum::<f64>()
+            + 4.0 * (b[0] * b[1] * f[3] + b[1] * b[2] * f[4] + b[2] * b[0] * f[5]);
+        quadric.jump(pixel[1] - gradients.row());
+        plane.jump(pixel[1] - gradients.row());
+        let (mut quadric, mut plane) = (quadric.enter(pixel[0] + 1), plane.enter(pixel[0] + 1));
+        quadric.step();
+        plane.step();
+        let away = f64::from((pixel[0] - gradients.column()).abs() + (pixel[1] - gradients.row()).abs());
+        let levels = |walked: u32, exact: f64, walking: f64| {
+            let error = (f64::from(walked as i32) / 64.0 - exact).abs() / 2f64.powi(24) - 2f64.powi(-31) * walking;
+            error.max(0.0) * 255.0 * f64::from(exponent)
+        };
+        worst[0] = worst[0].max(levels(quadric.value()[0], quadratic, 1.0 + away + away * away));
+        let extent = c.iter().map(|p| (p[0] - c[0][0]).abs().max((p[1] - c[0][1]).abs())).max().unwrap();
+        if f64::from(extent).powi(2) < THINNEST * side(c[0], c[1], c[2]) as f64 {
+            worst[1] = worst[1].max(levels(plane.value()[0], linear, 1.0 + away));
+        }
+    }
+    println!("quadratics {:.3}, planes {:.3} of 1/255", worst[0], worst[1]);
+    assert!(worst.iter().all(|&worst| worst <= STEEP), "{worst:?}");
 }

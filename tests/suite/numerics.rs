@@ -65,9 +65,11 @@ const JUMPS: [(&str, f64); 7] = [
 const PLANE: &str = "flat takes the normal of the plane; the prototype took the corners' mean normal (see flat_by_the_mean_normal)";
 /// Likewise.
 const BEHIND: &str = "nodes whose normal points away from H lie on the unit circle; the prototype mirrored the highlight to the back there";
+/// Under near lights renq-newton is Phong shading now.
+const NEAR: &str = "under near lights renq-newton is Phong shading; the prototype took quadratics through six points";
 
 /// What is not as the prototypes had it: scene, exponent, method, what it is, and why. Those that no longer deviate fail.
-const EXCEPTIONS: [(&str, f64, &str, Measured, &str); 7] = [
+const EXCEPTIONS: [(&str, f64, &str, Measured, &str); 9] = [
     ("sphere-168", 5.0, "flat", (66.28, 20.61), PLANE),
     ("sphere-168", 50.0, "flat", (102.05, 16.57), PLANE),
     ("sphere-374", 50.0, "flat", (93.99, 12.37), PLANE),
@@ -75,6 +77,8 @@ const EXCEPTIONS: [(&str, f64, &str, Measured, &str); 7] = [
     ("torus", 50.0, "flat", (72.08, 7.01), PLANE),
     ("sphere-40", 20.0, "flat", (152.35, 37.40), PLANE),
     ("sphere-168", 5.0, "quadratic-blinn", (1.41, 0.28), BEHIND),
+    ("dodecahedron", 20.0, "renq-newton", (0.0, 0.0), NEAR),
+    ("sphere-40", 20.0, "renq-newton", (0.0, 0.0), NEAR),
 ];
 
 /// A scene as the prototypes have it: `z` runs towards the eye.
@@ -166,7 +170,7 @@ fn errors_are_those_of_the_prototypes() {
                 "{scene_name:12} e {exponent:2} {name:20} {:7.2} /{:6.2}, prototype {:6.2} /{:5.2} {verdict}",
                 measured.0, measured.1, expected.0, expected.1
             );
-            if !["", PLANE, BEHIND].contains(&verdict) {
+            if !["", PLANE, BEHIND, NEAR].contains(&verdict) {
                 wrong.push(format!("{scene_name} {exponent} {name} {verdict}: {measured:.2?}, not {expected:?}"));
             }
         }

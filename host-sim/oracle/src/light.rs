@@ -55,7 +55,8 @@ impl Frame {
 
     /// The channel that a facet is shaded in alone: the brightest, if all that its material reflects of any light has the same hue, to 1/1024
     /// of the largest channel. Such a material is interpolated in one channel under a table of colours.
-    pub(super) fn only_channel(&self, facet: &Facet) -> Option<usize> {
+    #[must_use]
+    pub fn only_channel(&self, facet: &Facet) -> Option<usize> {
         let material = self.material(facet);
         let product = |a: V3, b: V3| [0, 1, 2].map(|k| a[k] * b[k]);
         let lit = self.lights.iter().flat_map(|light| [material.diffuse, material.specular].map(|gain| product(light.colour, gain)));

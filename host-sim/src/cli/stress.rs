@@ -9,7 +9,7 @@ use anyhow::Result;
 use microphong::format::ErrorBudget;
 use microphong_sim::{
     families, output,
-    stress::{self, Failure, Family, Summary},
+    stress::{self, Failure, Family, Kind, Summary},
 };
 use std::{
     path::PathBuf,
@@ -18,8 +18,9 @@ use std::{
 
 /// Look for scenes that are drawn wrong, by random cases and exact oracles.
 ///
-/// Each family makes cases of one kind and judges them by means that share no code with the renderer. The first case that fails is
-/// made as small as it can be, written as a stream, and the command that draws it is printed. Case N of a seed is the same in every run.
+/// Each family makes cases of one kind and judges them by means that share no code with the renderer. A case that fails does not end the
+/// run. The worst failure of each method is made as small as it can be and written as a stream, and the command that draws it is printed.
+/// Case N of a seed is the same in every run.
 #[derive(clap::Args)]
 #[command(after_help = after_help())]
 pub(crate) struct Arguments {
@@ -101,7 +102,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome> {
         } else {
             report::line(&text(&summary))?;
         }
-        if let Some(failure) = &summary.first {
+        for failure in &summary.breaks {
             failed = true;
             tell(family.name(), seed, failure, arguments)?;
         }
@@ -124,19 +125,27 @@ fn look(family: &dyn Family, arguments: &Arguments, seed: u64, seconds: f64) -> 
 }
 
 fn text(summary: &Summary) -> String {
-    let Summary { family, cases, skipped, counts, worst, limit, unit, failures, .. } = summary;
+    let Summary { family, cases, skipped, counts, worst, limit, unit, failures, kinds, .. } = summary;
     let counts: String = counts.iter().map(|(name, count)| format!(", {} {name}", report::grouped(*count))).collect();
     let figure = match (worst, limit) {
         (Some(worst), Some(limit)) => format!(", worst {worst:.3e} of at most {limit:.3e} {unit}"),
         _ => String::new(),
     };
-    let verdict = if *failures == 0 { "all right" } else { "WRONG" };
-    format!("{family:11} {:>12} cases ({} made none){counts}: {verdict}{figure}", report::grouped(*cases), report::grouped(*skipped))
+    let verdict = match failures {
+        0 => "all right".to_owned(),
+        _ => format!("{} WRONG", report::grouped(*failures)),
+    };
+    let (cases, skipped) = (report::grouped(*cases), report::grouped(*skipped));
+    let of_kind = |kind: &Kind| {
+        format!("\n  {:18} {:>9} cases, worst {:.3} in case {}", kind.name, report::grouped(kind.cases), kind.worst, kind.number)
+    };
+    let kinds: String = kinds.iter().filter(|kind| !kind.name.is_empty()).map(of_kind).collect();
+    format!("{family:11} {cases:>12} cases ({skipped} made none){counts}: {verdict}{figure}{kinds}")
 }
 
 /// Writes the stream of a failure, and says how to see it.
 fn tell(family: &str, seed: u64, failure: &Failure, arguments: &Arguments) -> Result<()> {
-    let Failure { number, what, case } = failure;
+    let Failure { number, what, case, .. } = failure;
     report::error(&format!("{family}, case {number} of seed {seed}: {what}"));
     if let Some(case) = case {
         let file = arguments.artefacts.join(format!("{family}-{seed}-{number}.tri"));

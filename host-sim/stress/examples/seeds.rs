@@ -33,7 +33,7 @@ fn main() -> Result<()> {
     let mut number = 0;
     let mut case = || loop {
         number += 1;
-        let wishes = Wishes { closed: false, unclipped: false, triangles: 6 };
+        let wishes = Wishes { closed: false, unclipped: false, triangles: 6, hard: scenes::Hard::default() };
         if let Some(case) = scenes::case(&mut Random::new(1, number), wishes)
             && case.stream.as_bytes().len() <= LARGEST
         {

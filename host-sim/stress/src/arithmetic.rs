@@ -7,13 +7,13 @@ use crate::{
     Family, Verdict,
     case::Case,
     random::Random,
-    scenes::{self, Wishes},
+    scenes::{self, Hard, Wishes},
     tiles,
 };
-use microphong::Stream;
+use microphong::{Stream, renderer};
 use microphong_compare::{UNDECIDED, level};
 use microphong_oracle::{Facet, Frame, Levels, Shade, chosen, decides, method, outcomes};
-use microphong_render::render::Style;
+use microphong_render::{render::Style, shader::Shader};
 
 /// Largest difference of any method, in 1/255 of full intensity.
 pub const LIMIT: f64 = 0.5;
@@ -42,10 +42,11 @@ impl Family for Arithmetic {
 
     fn check(&self, random: &mut Random) -> Verdict {
         let Some(case) = case(random) else { return Verdict::skipped() };
+        let kind = case.style.shader.name();
         match judge(&case) {
             Some(found) => {
                 let counts = vec![found.strictly + found.leniently, found.leniently, found.not_judged];
-                Verdict { counts, ..Verdict::of(found.error, LIMIT, Some(case)) }
+                Verdict { kind, counts, ..Verdict::of(found.error, LIMIT, Some(case)) }
             }
             None => Verdict::skipped(),
         }
@@ -56,14 +57,21 @@ impl Family for Arithmetic {
     }
 }
 
-/// Triangles side by side, of all of which something is seen, or a scene of any kind; `None` if it would not make a valid stream.
+/// Triangles side by side, of all of which something is seen, or a scene of any kind, two of three of them hard, by a method that can draw it;
+/// `None` if it would not make a valid stream.
 pub fn case(random: &mut Random) -> Option<Case> {
+    let hard = if random.once_in(3) { Hard::default() } else { Hard::random(random) };
     let case = if random.once_in(2) {
-        tiles::case(random)
+        tiles::case(random, hard)
     } else {
-        scenes::case(random, Wishes { closed: false, unclipped: true, triangles: 200 })
+        scenes::case(random, Wishes { closed: false, unclipped: true, triangles: 200, hard })
     }?;
-    Some(Case { style: Style { antialias: false, dither: false, ..case.style }, ..case })
+    let style = Style { antialias: false, dither: false, ..case.style };
+    let stream = case.stream.parse().ok()?;
+    let can_draw = |shader: &Shader| renderer::check(&stream, shader.facts(), style.perspective_correct).is_ok();
+    let fitting: Vec<_> = Shader::ALL.into_iter().filter(can_draw).collect();
+    let shader = if can_draw(&style.shader) { style.shader } else { random.among(&fitting) };
+    Some(Case { style: Style { shader, ..style }, ..case.clone() })
 }
 
 /// What each light beyond the first may add, in 1/255: the table of highlights is off by as much at low exponents, everywhere.
@@ -105,6 +113,8 @@ impl Divides {
         match name {
             // Near lights are no quotients of linear functions: it interpolates cosines.
             "duff" if !is_constant => Self::AtNodes,
+            // Under near lights it is Phong shading.
+            "renq-newton" if !is_constant => Self::AtPixels,
             "auto" | "auto-linear" | "duff" | "highlight-test" | "phong" | "phong-rv" => Self::AtPixels,
             "angular" | "angular-original" | "goldman" | "hybrid" | "hybrid-original" | "renq" | "renq-newton" | "slerp" => Self::AtNodes,
             _ => Self::Nowhere,
@@ -155,11 +165,13 @@ fn shades<'f>(case: &Case, stream: Stream<'_>, frame: &'f Frame) -> Option<Vec<S
     frame.facets.iter().map(shade).collect()
 }
 
-/// Difference of levels; one level for all channels is that of the brightest.
-pub(crate) fn difference(drawn: [f64; 3], exact: [f64; 3]) -> f64 {
+/// Difference of levels of a facet. A material of one hue has one level for all channels: that of its brightest channel, which approximation
+/// may lift above 255 later than others.
+pub(crate) fn difference(frame: &Frame, facet: &Facet, drawn: [f64; 3], exact: [f64; 3]) -> f64 {
     let all = (0..3).map(|k| (drawn[k] - exact[k]).abs()).fold(0.0, f64::max);
     let one = drawn[0] == drawn[1] && drawn[1] == drawn[2];
-    if one { all.min((drawn[0] - exact.into_iter().fold(0.0, f64::max)).abs()) } else { all }
+    let brightest = || frame.only_channel(facet).map_or(exact.into_iter().fold(0.0, f64::max), |channel| exact[channel]);
+    if one { all.min((drawn[0] - brightest()).abs()) } else { all }
 }
 
 /// Largest difference of a frame from its method in floating point, in 1/255, before the output format rounds; infinite where a pixel is
@@ -201,7 +213,8 @@ fn pixels(case: &Case, frame: &Frame, visible: &[Vec<u32>]) -> Option<Vec<Pixel>
                 continue;
             }
         };
-        let errors = candidates.iter().map(|&c| (c, difference(levels, shades[c as usize](centre)))).collect();
+        let errors =
+            candidates.iter().map(|&c| (c, difference(frame, &frame.facets[c as usize], levels, shades[c as usize](centre)))).collect();
         let mut pixel = Pixel { centre, errors };
         if pixel.least() > UNDECIDED && decides(shader.name()) {
             for (facet, error) in &mut pixel.errors {
@@ -209,7 +222,7 @@ fn pixels(case: &Case, frame: &Frame, visible: &[Vec<u32>]) -> Option<Vec<Pixel>
                 for [x, y] in [[0.0, 0.0], [NUDGE, NUDGE], [NUDGE, -NUDGE], [-NUDGE, NUDGE], [-NUDGE, -NUDGE]] {
                     let point = [centre[0] + x, centre[1] + y];
                     let outcomes: Vec<Levels> = outcomes(shader.name(), frame, facet, point, frame.undecided(facet)).ok()?;
-                    *error = outcomes.into_iter().map(|exact| difference(levels, exact)).fold(*error, f64::min);
+                    *error = outcomes.into_iter().map(|exact| difference(frame, facet, levels, exact)).fold(*error, f64::min);
                 }
             }
         }

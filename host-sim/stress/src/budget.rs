@@ -4,13 +4,13 @@ use crate::{
     Family, Verdict, arithmetic,
     case::Case,
     random::Random,
-    scenes::{self, Wishes},
+    scenes::{self, Hard, Wishes},
     tiles,
 };
 use embedded_graphics_core::geometry::Size;
 use microphong::{
     format::ErrorBudget,
-    method::{Canvas, Facts, Method, Shading, TriangleSetup, phong::Phong},
+    method::{Canvas, Facts, Method, Shading, Steepness, TriangleSetup, phong::Phong},
 };
 use microphong_compare::level;
 use microphong_oracle::{Frame, Shade, phong};
@@ -65,9 +65,9 @@ impl Family for Budget {
 /// Triangles side by side, or a scene of any kind that fills its picture; `None` if it would not make a valid stream.
 pub fn case(random: &mut Random) -> Option<Case> {
     let case = if random.once_in(8) {
-        scenes::case(random, Wishes { closed: false, unclipped: true, triangles: 200 })
+        scenes::case(random, Wishes { closed: false, unclipped: true, triangles: 200, hard: Hard::default() })
     } else {
-        tiles::case(random)
+        tiles::case(random, Hard::default())
     }?;
     Some(Case { style: Style { shader: Shader::AUTO, antialias: false, dither: false, ..case.style }, ..case })
 }
@@ -79,6 +79,10 @@ impl Method for General {
     fn facts(&self) -> &'static Facts {
         static FACTS: LazyLock<Facts> = LazyLock::new(|| Facts { id: Facts::FIRST_FREE, ..*Phong.facts() });
         &FACTS
+    }
+
+    fn steepness(&self, setup: &TriangleSetup<'_>, shading: &Shading<'_>) -> Steepness {
+        Phong.steepness(setup, shading)
     }
 
     fn shade(&self, setup: &TriangleSetup<'_>, shading: &Shading<'_>, canvas: &mut dyn Canvas) -> u32 {
@@ -127,7 +131,7 @@ pub fn judge(case: &Case) -> Option<Found> {
             let (shade, _) = shades.entry(candidate).or_insert_with(|| (phong(&frame, facet), false));
             let is_clear = frame.is_constant() && length(facet.normal(facet.weights(point))) >= SHORT;
             error = error.min(match (is_clear, same) {
-                (true, _) => arithmetic::difference(levels, shade(point)),
+                (true, _) => arithmetic::difference(&frame, facet, levels, shade(point)),
                 (false, true) => 0.0,
                 (false, false) => f64::INFINITY,
             });

@@ -73,10 +73,10 @@ const OBJECTS: usize = 12;
 pub fn case(random: &mut Random, triangles: i32) -> Result<Option<Case>, String> {
     let width = random.between(8.0, 100.0);
     let size = scenes::size(random, width);
-    let wishes = Wishes { closed: random.once_in(2), unclipped: !random.once_in(4), triangles };
+    let wishes = Wishes { closed: random.once_in(2), unclipped: !random.once_in(4), triangles, hard: scenes::Hard::default() };
     let meshes: Vec<_> = (0..random.pick(1..5)).map(|_| scenes::mesh(random, wishes)).collect();
     let mut look = scenes::look(random, &meshes[0], size, wishes);
-    look.surfaces = (0..random.pick(1..4)).map(|_| scenes::surface(random)).collect();
+    look.surfaces = (0..random.pick(1..4)).map(|_| scenes::surface(random, false)).collect();
     let mut parts = Vec::new();
     for mesh in &meshes {
         let Some(mut of_mesh) = scenes::parts(random, mesh, &look) else { return Ok(None) };

@@ -244,7 +244,7 @@ fn touched(corners: [[i32; 2]; 3], size: [u64; 2]) -> (Range<u64>, u64) {
 /// A random case of a kind that costs a lot.
 #[must_use]
 pub fn case(random: &mut Random) -> Option<Case> {
-    let wishes = Wishes { closed: false, unclipped: !random.once_in(4), triangles: 300 };
+    let wishes = Wishes { closed: false, unclipped: !random.once_in(4), triangles: 300, hard: scenes::Hard::default() };
     let mesh = match random.pick(0..4) {
         // That of any scene of the other families.
         0 => scenes::mesh(random, wishes),

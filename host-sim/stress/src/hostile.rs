@@ -18,7 +18,7 @@ const FRONT: usize = 256;
 /// A random scene, its stream with bytes flipped, cut off, sealed again: each of them or not. `None` if there is no such scene.
 #[must_use]
 pub fn damaged(random: &mut Random) -> Option<Case> {
-    let case = scenes::case(random, Wishes { closed: false, unclipped: false, triangles: 60 })?;
+    let case = scenes::case(random, Wishes { closed: false, unclipped: false, triangles: 60, hard: scenes::Hard::default() })?;
     let mut bytes = case.stream.as_bytes().to_vec();
     for _ in 0..random.pick(0..6) {
         // Half of them where one byte changes the whole picture: most bytes are vertices.

@@ -29,10 +29,11 @@ use serde::{Serialize, Serializer};
 use std::{
     any::Any,
     cell::Cell,
+    collections::BTreeMap,
     panic::{self, AssertUnwindSafe},
     sync::{
         Once,
-        atomic::{AtomicBool, AtomicU64, Ordering},
+        atomic::{AtomicU64, Ordering},
     },
     thread,
 };
@@ -71,6 +72,8 @@ pub struct Verdict {
     pub worst: f64,
     /// How many of each of [`Family::counts`] were judged in this case.
     pub counts: Vec<u64>,
+    /// What kind of case it was, such as the method that drew it, for families that tell kinds apart.
+    pub kind: &'static str,
     /// The random numbers made no case that can be judged.
     pub skipped: bool,
     /// What is wrong, if anything is.
@@ -132,9 +135,59 @@ pub struct Summary {
     pub unit: &'static str,
     /// Cases that are wrong.
     pub failures: u64,
-    /// The first of them.
+    /// The same of each kind of case, by name.
+    pub kinds: Vec<Kind>,
+    /// The worst failure of each kind.
     #[serde(skip)]
-    pub first: Option<Failure>,
+    pub breaks: Vec<Failure>,
+}
+
+/// What the cases of one kind came to.
+#[derive(Clone, Debug, Default, Serialize)]
+pub struct Kind {
+    /// The name of the kind, such as that of a method.
+    pub name: &'static str,
+    /// Cases that were judged.
+    pub cases: u64,
+    /// The worst figure.
+    pub worst: f64,
+    /// The number of its case.
+    pub number: u64,
+    /// Cases that are wrong.
+    pub failures: u64,
+    /// The worst of them; the first if it has no figure.
+    #[serde(skip)]
+    failure: Option<Failure>,
+}
+
+impl Kind {
+    /// Adds the verdict of case `number`.
+    fn add(&mut self, number: u64, verdict: Verdict) {
+        let Verdict { worst, failure, case, .. } = verdict;
+        self.join(Self {
+            name: self.name,
+            cases: 1,
+            worst,
+            number,
+            failures: failure.is_some().into(),
+            failure: failure.map(|what| Failure { number, worst, what, case }),
+        });
+    }
+
+    /// Adds other cases of the same kind.
+    fn join(&mut self, other: Self) {
+        self.cases += other.cases;
+        self.failures += other.failures;
+        if self.cases == other.cases || (other.worst, self.number) > (self.worst, other.number) {
+            (self.worst, self.number) = (other.worst, other.number);
+        }
+        if let Some(theirs) = other.failure {
+            let is_worse = |ours: &Failure| (theirs.worst, ours.number) > (ours.worst, theirs.number);
+            if self.failure.as_ref().is_none_or(is_worse) {
+                self.failure = Some(theirs);
+            }
+        }
+    }
 }
 
 /// Names and numbers as a map.
@@ -147,68 +200,67 @@ fn as_map<S: Serializer>(counts: &[(&'static str, u64)], serializer: S) -> Resul
 pub struct Failure {
     /// Its number.
     pub number: u64,
+    /// Its figure, if the family has one.
+    worst: f64,
     /// What is wrong.
     pub what: String,
     /// Its scene.
     pub case: Option<Case>,
 }
 
-/// Runs cases of `family` from number `first` on, on all processors, as long as none fails and `goes_on` after so many, which is asked before
-/// each.
+/// Runs cases of `family` from number `first` on, on all processors, as long as `goes_on` after so many, which is asked before each. A failure
+/// does not end the run, so that one kind of failure hides no other.
 #[must_use]
 pub fn run(family: &dyn Family, seed: u64, first: u64, goes_on: &(dyn Fn(u64) -> bool + Sync)) -> Summary {
     quiet();
-    let (next, stop) = (AtomicU64::new(0), AtomicBool::new(false));
+    let next = AtomicU64::new(0);
     let work = || {
-        let (mut cases, mut skipped, mut worst, mut failures) = (0, 0, 0f64, Vec::new());
+        let (mut skipped, mut kinds) = (0, BTreeMap::new());
         let mut counts = vec![0; family.counts().len()];
-        while !stop.load(Ordering::Relaxed) {
+        loop {
             let count = next.fetch_add(1, Ordering::Relaxed);
             if !goes_on(count) {
-                break;
+                return (skipped, counts, kinds);
             }
             let number = first.wrapping_add(count);
             let verdict = judge(family, seed, number);
-            cases += u64::from(!verdict.skipped);
-            skipped += u64::from(verdict.skipped);
-            worst = worst.max(verdict.worst);
-            counts.iter_mut().zip(&verdict.counts).for_each(|(sum, count)| *sum += count);
-            if let Some(what) = verdict.failure {
-                stop.store(true, Ordering::Relaxed);
-                failures.push(Failure { number, what, case: verdict.case });
+            if verdict.skipped {
+                skipped += 1;
+                continue;
             }
+            counts.iter_mut().zip(&verdict.counts).for_each(|(sum, count)| *sum += count);
+            let name = verdict.kind;
+            kinds.entry(name).or_insert_with(|| Kind { name, ..Kind::default() }).add(number, verdict);
         }
-        (cases, skipped, counts, worst, failures)
     };
     let parts: Vec<_> = thread::scope(|scope| {
         let threads: Vec<_> = (0..thread::available_parallelism().map_or(1, usize::from)).map(|_| scope.spawn(work)).collect();
         threads.into_iter().map(|thread| thread.join().expect("cases are judged behind a guard")).collect()
     });
-    let mut summary = Summary {
+    let mut kinds = BTreeMap::new();
+    let mut counts: Vec<_> = family.counts().iter().map(|&name| (name, 0)).collect();
+    let mut skipped = 0;
+    for (none, some, part) in parts {
+        skipped += none;
+        counts.iter_mut().zip(some).for_each(|((_, sum), count)| *sum += count);
+        for (name, kind) in part {
+            kinds.entry(name).or_insert_with(|| Kind { name, ..Kind::default() }).join(kind);
+        }
+    }
+    let mut kinds: Vec<Kind> = kinds.into_values().collect();
+    Summary {
         family: family.name(),
         seed,
-        cases: 0,
-        skipped: 0,
-        counts: family.counts().iter().map(|&name| (name, 0)).collect(),
-        worst: None,
+        cases: kinds.iter().map(|kind| kind.cases).sum(),
+        skipped,
+        counts,
+        worst: family.limit().map(|_| kinds.iter().map(|kind| kind.worst).fold(0.0, f64::max)),
         limit: family.limit().map(|(limit, _)| limit),
         unit: family.limit().map_or("", |(_, unit)| unit),
-        failures: 0,
-        first: None,
-    };
-    let mut failures = Vec::new();
-    for (cases, skipped, counts, worst, failed) in parts {
-        summary.cases += cases;
-        summary.skipped += skipped;
-        summary.counts.iter_mut().zip(counts).for_each(|((_, sum), count)| *sum += count);
-        if summary.limit.is_some() {
-            summary.worst = Some(summary.worst.unwrap_or(0.0).max(worst));
-        }
-        failures.extend(failed);
+        failures: kinds.iter().map(|kind| kind.failures).sum(),
+        breaks: kinds.iter_mut().filter_map(|kind| kind.failure.take()).map(|failure| shrunk(family, failure)).collect(),
+        kinds,
     }
-    summary.failures = failures.len() as u64;
-    summary.first = failures.into_iter().min_by_key(|failure| failure.number).map(|failure| shrunk(family, failure));
-    summary
 }
 
 /// Judges one case of a seed; a panic is a failure.

@@ -25,7 +25,8 @@ impl Family for Sameness {
     }
 
     fn check(&self, random: &mut Random) -> Verdict {
-        let Some(case) = scenes::case(random, Wishes { closed: false, unclipped: false, triangles: 600 }) else {
+        let Some(case) = scenes::case(random, Wishes { closed: false, unclipped: false, triangles: 600, hard: scenes::Hard::default() })
+        else {
             return Verdict::skipped();
         };
         match differs(&case) {

@@ -25,6 +25,29 @@ pub struct Wishes {
     pub unclipped: bool,
     /// Triangles at most, about.
     pub triangles: i32,
+    /// What is hard to compute in it.
+    pub hard: Hard,
+}
+
+/// What makes arithmetic hard, where a scene has it for certain.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Hard {
+    /// A material of an exponent above 256.
+    pub steep: bool,
+    /// Normals of a triangle that are nearly the same, or nearly opposite to one another.
+    pub normals: bool,
+    /// A local viewer.
+    pub local: bool,
+    /// A near light.
+    pub near: bool,
+}
+
+impl Hard {
+    /// One or more of all.
+    pub fn random(random: &mut Random) -> Self {
+        let bits = random.pick(1..16);
+        Self { steep: bits & 1 != 0, normals: bits & 2 != 0, local: bits & 4 != 0, near: bits & 8 != 0 }
+    }
 }
 
 /// A random scene, drawn in a random way; `None` if it would not make a valid stream.
@@ -43,7 +66,12 @@ pub fn size(random: &mut Random, width: f64) -> [u32; 2] {
 
 /// A random mesh.
 pub fn mesh(random: &mut Random, wishes: Wishes) -> Mesh {
-    if wishes.closed || random.once_in(3) { body(random, wishes.triangles) } else { soup(random, wishes.triangles.min(40)) }
+    // Bodies have no normals but those of their shapes.
+    if wishes.closed || !wishes.hard.normals && random.once_in(3) {
+        body(random, wishes.triangles)
+    } else {
+        soup(random, wishes.triangles.min(40), wishes.hard.normals)
+    }
 }
 
 /// A random scene of `mesh` on a picture of `size`.
@@ -112,10 +140,11 @@ fn body(random: &mut Random, triangles: i32) -> Mesh {
 }
 
 /// Triangles without a neighbour: slivers, tiny and huge ones, with normals that fit their planes or do not.
-fn soup(random: &mut Random, triangles: i32) -> Mesh {
+fn soup(random: &mut Random, triangles: i32, hard: bool) -> Mesh {
     let mut mesh = Mesh::default();
     // In half of the scenes no two normals of a triangle are nearly opposite, so that shading is defined everywhere.
     let wild = random.once_in(2);
+    let nearly = if hard { random.octaves(3e-4, 0.02) } else { 0.0 };
     for _ in 0..random.pick(1..triangles.max(2)) {
         let centre = scale(random.direction(), random.between(0.0, 0.9));
         let size = if random.once_in(2) { random.between(0.3, 1.0) } else { random.octaves(0.001, 1.0) };
@@ -123,7 +152,11 @@ fn soup(random: &mut Random, triangles: i32) -> Mesh {
         let (along, across) = (scale(random.direction(), size), scale(random.direction(), size * thin));
         let corners = shown(random, [add(centre, along), add(centre, scale(along, -1.0)), add(centre, across)]);
         let facing = random.direction();
-        let spread = if wild { random.among(&[0.0, 0.1, 0.5, 1.0, 3.0]) } else { random.among(&[0.0, 0.1, 0.5, 0.8]) };
+        let spread = match (hard, wild) {
+            (true, _) => nearly,
+            (_, true) => random.among(&[0.0, 0.1, 0.5, 1.0, 3.0]),
+            _ => random.among(&[0.0, 0.1, 0.5, 0.8]),
+        };
         let first = mesh.positions.len();
         for corner in corners {
             mesh.positions.push(corner.map(|c| c.clamp(-1.0, 1.0)));
@@ -131,9 +164,10 @@ fn soup(random: &mut Random, triangles: i32) -> Mesh {
             mesh.normals.push(unit(normal).unwrap_or(facing));
         }
         // Some have normals that are opposite to one another.
-        if wild && random.once_in(8) {
+        if wild && random.once_in(if hard { 3 } else { 8 }) {
             let opposite = mesh.normals[first].map(|c| -c);
-            mesh.normals[first + 1] = opposite;
+            let aside = if hard { scale(random.direction(), nearly) } else { [0.0; 3] };
+            mesh.normals[first + 1] = unit(add(opposite, aside)).unwrap_or(opposite);
         }
         mesh.triangles.push([first, first + 1, first + 2]);
     }
@@ -155,9 +189,15 @@ pub fn colour(random: &mut Random) -> V3 {
     }
 }
 
-/// A material.
-pub fn surface(random: &mut Random) -> Surface {
-    let exponent = if random.once_in(3) { random.among(&[1, 2, 3, 4, 7, 8, 512, 1023, 1024]) } else { random.octaves(1.0, 1025.0) as u16 };
+/// A material; with an exponent above 256 if it is `steep`.
+pub fn surface(random: &mut Random, steep: bool) -> Surface {
+    let exponent = if steep {
+        random.octaves(257.0, 1025.0) as u16
+    } else if random.once_in(3) {
+        random.among(&[1, 2, 3, 4, 7, 8, 512, 1023, 1024])
+    } else {
+        random.octaves(1.0, 1025.0) as u16
+    };
     let shares = [random.between(0.0, 0.3), random.between(0.0, 1.0), random.between(0.0, 1.0)];
     let colour = colour(random);
     match random.pick(0..3) {
@@ -176,7 +216,8 @@ pub fn look(random: &mut Random, mesh: &Mesh, size: [u32; 2], wishes: Wishes) ->
     let distance = if wishes.unclipped { random.between(2.0, 8.0) } else { random.octaves(0.2, 12.0) };
     let period = random.among(&[0, 0, 1, 7, 120, 65_535]);
     let mut view = View::facing(turned, distance, axis, period);
-    if random.once_in(3) {
+    // Where rays are parallel no viewer is near.
+    if !wishes.hard.local && random.once_in(3) {
         view = view.parallel();
     }
     if wishes.unclipped {
@@ -193,12 +234,12 @@ pub fn look(random: &mut Random, mesh: &Mesh, size: [u32; 2], wishes: Wishes) ->
             Projection::Orthographic => view.near,
         };
     }
-    let mut look = Look::new(surface(random), view);
-    let lamps = if random.once_in(2) { 1 } else { random.pick(0..9) };
+    let mut look = Look::new(surface(random, wishes.hard.steep), view);
+    let lamps = if random.once_in(2) { 1 } else { random.pick(i32::from(wishes.hard.near)..9) };
     look.lamps = (0..lamps)
-        .map(|_| {
+        .map(|number| {
             let colour = colour(random);
-            if random.once_in(3) {
+            if wishes.hard.near && number == 0 || random.once_in(3) {
                 // Somewhere around the mesh, or next to one of its vertices.
                 let place = if random.once_in(2) {
                     scale(random.direction(), random.octaves(0.05, 8.0))
@@ -212,7 +253,7 @@ pub fn look(random: &mut Random, mesh: &Mesh, size: [u32; 2], wishes: Wishes) ->
             }
         })
         .collect();
-    look.local_viewer = random.once_in(3);
+    look.local_viewer = wishes.hard.local || random.once_in(3);
     look.background = random.among(&[[0; 3], [255; 3], [26, 28, 32]]).into();
     look
 }

@@ -3,7 +3,7 @@
 use crate::{
     case::Case,
     random::Random,
-    scenes::{self, Wishes},
+    scenes::{self, Hard, Wishes},
 };
 use microphong_render::{
     look::{Lamp, Look},
@@ -41,13 +41,13 @@ const HEIGHT: i32 = 150;
 
 /// Triangles side by side on a plane that faces the viewer, under one to four lights, drawn in a random way; `None` if they would not make
 /// a valid stream.
-pub fn case(random: &mut Random) -> Option<Case> {
-    let (mesh, look, size) = scene(random);
+pub fn case(random: &mut Random, hard: Hard) -> Option<Case> {
+    let (mesh, look, size) = scene(random, hard);
     scenes::drawn(random, &mesh, size, &look)
 }
 
 /// Triangles, what they look like, and the size of their picture in pixels.
-fn scene(random: &mut Random) -> (Mesh, Look, [u32; 2]) {
+fn scene(random: &mut Random, hard: Hard) -> (Mesh, Look, [u32; 2]) {
     let tile = random.octaves(4.0, 48.0) as i32;
     let [columns, rows] = [WIDTH, HEIGHT].map(|side| random.pick(1..side / tile + 1));
     let size = [columns, rows].map(|count| (count * tile) as u32);
@@ -57,7 +57,8 @@ fn scene(random: &mut Random) -> (Mesh, Look, [u32; 2]) {
     let mut kinds = Vec::new();
     for (i, j) in (0..rows).flat_map(|i| (0..columns).map(move |j| (i, j))) {
         // Creases and opposite normals are Phong's business; where more can go wrong, more is tried.
-        let kind = random.among(&[Kind::ALL.as_slice(), &[Kind::Gentle, Kind::Gentle, Kind::Curved, Kind::Sliver]].concat());
+        let kinds_of = [Kind::ALL.as_slice(), &[Kind::Gentle, Kind::Gentle, Kind::Curved, Kind::Sliver]].concat();
+        let kind = random.among(if hard.normals { &[Kind::Gentle, Kind::Gentle, Kind::Opposite] } else { &kinds_of[..] });
         let centre = [f64::from(2 * j + 1 - columns) / 2.0, f64::from(2 * i + 1 - rows) / 2.0];
         let depth = random.between(-0.2, 0.2);
         let first = mesh.positions.len();
@@ -67,16 +68,16 @@ fn scene(random: &mut Random) -> (Mesh, Look, [u32; 2]) {
         mesh.triangles.push([first, first + 1, first + 2]);
         kinds.push(kind);
     }
-    let mut look = scenes::look(random, &mesh, size, Wishes { closed: false, unclipped: true, triangles: 1 });
+    let mut look = scenes::look(random, &mesh, size, Wishes { closed: false, unclipped: true, triangles: 1, hard });
     let view = View::facing([[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]], random.between(2.0, 8.0), [0.0, 0.0, 1.0], 0);
-    let view = if random.once_in(2) { view.parallel() } else { view };
+    let view = if !hard.local && random.once_in(2) { view.parallel() } else { view };
     look.view = view.fit(&mesh.positions, size.into(), 0.01);
-    look.lamps = lamps(random, look.view.translation);
+    look.lamps = lamps(random, look.view.translation, hard.near);
     // A near viewer is seen by highlights, and is shaded by Phong alone.
-    look.local_viewer = random.once_in(8);
+    look.local_viewer = hard.local || random.once_in(8);
     for kind in kinds {
         let facing = facing(random, &look);
-        mesh.normals.extend(normals(random, kind, facing));
+        mesh.normals.extend(normals(random, kind, facing, hard.normals));
     }
     (mesh, look, size)
 }
@@ -104,13 +105,13 @@ fn corners(random: &mut Random, kind: Kind, pixel: f64) -> [[f64; 2]; 3] {
     corners
 }
 
-/// One to four lights, seldom near ones: for those there is no method but Phong shading.
-fn lamps(random: &mut Random, object: V3) -> Vec<Lamp> {
-    let near = random.once_in(6);
+/// One to four lights; mostly no near ones, for which there is no method but Phong shading.
+fn lamps(random: &mut Random, object: V3, certainly_near: bool) -> Vec<Lamp> {
+    let near = certainly_near || random.once_in(6);
     let count = random.among(&[1, 1, 1, 2, 2, 2, 3, 4]);
-    let mut lamp = |_| {
+    let mut lamp = |number| {
         let (direction, colour) = (random.direction(), scenes::colour(random));
-        if near && random.once_in(2) {
+        if certainly_near && number == 0 || near && random.once_in(2) {
             Lamp::Near(add(object, scale(direction, random.octaves(0.3, 8.0))), colour)
         } else {
             Lamp::Distant(direction, colour)
@@ -138,9 +139,10 @@ fn facing(random: &mut Random, look: &Look) -> V3 {
     unit(add(half, scale(anywhere, width * random.between(0.0, 5.0)))).unwrap_or(half)
 }
 
-/// Normals of a triangle that faces there.
-fn normals(random: &mut Random, kind: Kind, facing: V3) -> [V3; 3] {
+/// Normals of a triangle that faces there, `nearly` the same or opposite.
+fn normals(random: &mut Random, kind: Kind, facing: V3, nearly: bool) -> [V3; 3] {
     let spread = match kind {
+        _ if nearly => random.octaves(3e-4, 0.02),
         Kind::Gentle => random.octaves(0.002, 0.1),
         Kind::Curved => random.octaves(0.1, 1.0),
         Kind::Creased | Kind::Opposite => random.octaves(0.002, 0.3),

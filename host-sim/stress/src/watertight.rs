@@ -50,7 +50,10 @@ impl Family for Watertight {
     }
 
     fn check(&self, random: &mut Random) -> Verdict {
-        let Some(case) = scenes::case(random, Wishes { closed: false, unclipped: true, triangles: 800 }) else { return Verdict::skipped() };
+        let Some(case) = scenes::case(random, Wishes { closed: false, unclipped: true, triangles: 800, hard: scenes::Hard::default() })
+        else {
+            return Verdict::skipped();
+        };
         let case = Case { stream: on_background(&case.stream), style: Shader::FLAT.into(), ..case };
         match judge(&case) {
             Some(found) => Verdict { counts: vec![found.covered], ..Verdict::of((found.missing + found.extra) as f64, 0.0, Some(case)) },

@@ -8,7 +8,7 @@
 //! 2 products more per light. Error: that of the tables, [`microphong::math::highlight_lut::NEAREST_ERROR`] of the highlight above all.
 //! Domain: any lights; with near lights as good as six points are.
 
-use microphong::method::{Canvas, Costs, Facts, Highlight, Method, Shading, TriangleSetup, VertexLight, duff};
+use microphong::method::{Canvas, Costs, Facts, Highlight, Method, Shading, Steepness, TriangleSetup, VertexLight, duff};
 
 static FACTS: Facts = Facts {
     name: "duff",
@@ -28,6 +28,10 @@ pub struct Duff;
 impl Method for Duff {
     fn facts(&self) -> &'static Facts {
         &FACTS
+    }
+
+    fn steepness(&self, _: &TriangleSetup<'_>, shading: &Shading<'_>) -> Steepness {
+        shading.steepness()
     }
 
     fn shade(&self, setup: &TriangleSetup<'_>, shading: &Shading<'_>, canvas: &mut dyn Canvas) -> u32 {

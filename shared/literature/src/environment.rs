@@ -15,7 +15,7 @@ use microphong::{
     format::{COSINE, POSITION, UNIT},
     math::vector::{dot, normalise, zip},
     method::{
-        Canvas, CosineLookup, Costs, Facts, Held, Highlight, Lighting, LightingModel, Method, Node, Reflection, Shading, Source,
+        Canvas, CosineLookup, Costs, Facts, Held, Highlight, Lighting, LightingModel, Method, Node, Reflection, Shading, Source, Steepness,
         TriangleSetup, VertexLight, Viewer, cosine, duff::Root, linear, signed,
     },
 };
@@ -51,10 +51,10 @@ impl Method for Environment {
 fn draw(setup: &TriangleSetup<'_>, shading: &Shading<'_>, canvas: &mut dyn Canvas) -> u32 {
     let (corners, lighting) = (setup.corner_nodes(), shading.lighting);
     let [a, b, c] = corners.map(|corner| coordinates(lighting, &corner));
-    let map = linear([[a[0], b[0], c[0]], [a[1], b[1], c[1]]]);
+    let map = linear([[a[0], b[0], c[0]], [a[1], b[1], c[1]]], shading.steepness());
     let fit = |source: &Source| {
         let to_eye = |v: [i32; 3]| lighting.axes.map(|axis| cosine(axis, v));
-        (linear([diffuse(&corners, source)]), Held(to_eye(source.towards([0; 3]))))
+        (linear([diffuse(&corners, source)], Steepness::NONE), Held(to_eye(source.towards([0; 3]))))
     };
     shading.draw_lit(setup, fit, map, Mirror, canvas)
 }

@@ -8,7 +8,8 @@
 //! continuous where the two meet. Error against Phong: Gouraud's of diffuse light. Domain: any lights.
 
 use microphong::method::{
-    Canvas, Costs, Facts, Highlight, Method, RANGE, Shading, Source, TriangleSetup, VertexLight, cosine, gouraud::Gouraud, phong::Phong,
+    Canvas, Costs, Facts, Highlight, Method, RANGE, Shading, Source, Steepness, TriangleSetup, VertexLight, cosine, gouraud::Gouraud,
+    phong::Phong,
 };
 
 static FACTS: Facts = Facts {
@@ -29,6 +30,10 @@ pub struct HighlightTest;
 impl Method for HighlightTest {
     fn facts(&self) -> &'static Facts {
         &FACTS
+    }
+
+    fn steepness(&self, _: &TriangleSetup<'_>, shading: &Shading<'_>) -> Steepness {
+        shading.steepness()
     }
 
     fn shade(&self, setup: &TriangleSetup<'_>, shading: &Shading<'_>, canvas: &mut dyn Canvas) -> u32 {

@@ -14,8 +14,8 @@ use crate::{
 use microphong::{
     math::vector::normalise,
     method::{
-        Canvas, Constant, CosineLookup, Costs, Facts, Highlight, LightingModel, Method, Patch, Reflection, Shading, Source, TriangleSetup,
-        VertexLight, cosine, quadratic, signed,
+        Canvas, Constant, CosineLookup, Costs, Facts, Highlight, LightingModel, Method, Patch, Reflection, Shading, Source, Steepness,
+        TriangleSetup, VertexLight, cosine, quadratic, signed,
     },
 };
 
@@ -80,7 +80,7 @@ fn draw(setup: &TriangleSetup<'_>, shading: &Shading<'_>, fit: fn(u16) -> Parabo
     let constant = |direction| bows(Turned { normals: setup.corner_nodes().map(|node| node.normal), direction });
     let (nodes, is_constant) = (setup.six_nodes(shading.exponent), shading.lighting.is_constant());
     let fit = |source: &Source| {
-        let diffuse = setup.fit(&quadratic([nodes.map(|node| cosine(node.normal, source.towards(node.position)))]));
+        let diffuse = setup.fit(&quadratic([nodes.map(|node| cosine(node.normal, source.towards(node.position)))], Steepness::NONE));
         let highlight = if is_constant {
             let [_, half] = shading.lighting.directions(source, [0; 3]);
             constant(half)

@@ -7,8 +7,8 @@
 //! Error against the half vector: that of the model.
 
 use microphong::method::{
-    Canvas, CosineLookup, Costs, Facts, Highlight, LightingModel, Method, Reflection, Shading, TriangleSetup, VertexLight, phong,
-    phong::Common,
+    Canvas, CosineLookup, Costs, Facts, Highlight, LightingModel, Method, Reflection, Shading, Steepness, TriangleSetup, VertexLight,
+    phong, phong::Common,
 };
 
 static FACTS: Facts = Facts {
@@ -29,6 +29,10 @@ pub struct PhongRv;
 impl Method for PhongRv {
     fn facts(&self) -> &'static Facts {
         &FACTS
+    }
+
+    fn steepness(&self, _: &TriangleSetup<'_>, shading: &Shading<'_>) -> Steepness {
+        shading.steepness()
     }
 
     fn shade(&self, setup: &TriangleSetup<'_>, shading: &Shading<'_>, canvas: &mut dyn Canvas) -> u32 {

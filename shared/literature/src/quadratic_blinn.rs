@@ -4,7 +4,9 @@
 //! sphere of 168 triangles, 0.4 on one of 690 (exponent 50, ks 1/2). Domain: any lights, see [`crate::blinn`].
 
 use crate::blinn::{Across, coordinates};
-use microphong::method::{Canvas, Constant, Costs, Facts, Highlight, Method, Shading, Source, TriangleSetup, VertexLight, quadratic};
+use microphong::method::{
+    Canvas, Constant, Costs, Facts, Highlight, Method, Shading, Source, Steepness, TriangleSetup, VertexLight, quadratic,
+};
 
 static FACTS: Facts = Facts {
     name: "quadratic-blinn",
@@ -26,6 +28,10 @@ impl Method for QuadraticBlinn {
         &FACTS
     }
 
+    fn steepness(&self, _: &TriangleSetup<'_>, shading: &Shading<'_>) -> Steepness {
+        shading.steepness()
+    }
+
     fn shade(&self, setup: &TriangleSetup<'_>, shading: &Shading<'_>, canvas: &mut dyn Canvas) -> u32 {
         draw(setup, shading, canvas)
     }
@@ -33,6 +39,6 @@ impl Method for QuadraticBlinn {
 
 fn draw(setup: &TriangleSetup<'_>, shading: &Shading<'_>, canvas: &mut dyn Canvas) -> u32 {
     let nodes = setup.six_nodes(shading.exponent);
-    let fit = |source: &Source| quadratic(coordinates(shading.lighting, source, nodes));
+    let fit = |source: &Source| quadratic(coordinates(shading.lighting, source, nodes), shading.steepness());
     shading.draw_lit(setup, fit, Constant, Across, canvas)
 }

@@ -9,7 +9,7 @@
 //! Domain: any lights; where |N| falls below 1/2, [`microphong::method::duff`]'s root takes over.
 
 use microphong::method::{
-    Canvas, Costs, Facts, Highlight, Method, Shading, TriangleSetup, VertexLight, duff,
+    Canvas, Costs, Facts, Highlight, Method, Shading, Steepness, TriangleSetup, VertexLight, duff,
     renq::{Scaled, length},
 };
 
@@ -31,6 +31,10 @@ pub struct Renq;
 impl Method for Renq {
     fn facts(&self) -> &'static Facts {
         &FACTS
+    }
+
+    fn steepness(&self, _: &TriangleSetup<'_>, shading: &Shading<'_>) -> Steepness {
+        shading.steepness()
     }
 
     fn shade(&self, setup: &TriangleSetup<'_>, shading: &Shading<'_>, canvas: &mut dyn Canvas) -> u32 {

@@ -14,14 +14,14 @@
 //! useless on coarser ones. Domain: constant lights.
 
 use microphong::{
-    format::{COSINE, UNIT},
+    format::{COSINE, NORMAL_LENGTH, UNIT},
     math::{
         rsqrt::rsqrt_wide,
         vector::{add, dot, sub, wide},
     },
     method::{
         Canvas, Constant, CosineLookup, Costs, Facts, Held, Highlight, LightingModel, Method, Quadratic, Reflection, Shading, Source,
-        TriangleSetup, VertexLight,
+        Steepness, TriangleSetup, VertexLight,
         lighting_model::{EXTRA, NODE},
         signed,
     },
@@ -50,14 +50,50 @@ impl Method for Taylor {
         &FACTS
     }
 
+    fn steepness(&self, setup: &TriangleSetup<'_>, shading: &Shading<'_>) -> Steepness {
+        steepness(shading.exponent, largest_shift(setup))
+    }
+
     fn shade(&self, setup: &TriangleSetup<'_>, shading: &Shading<'_>, canvas: &mut dyn Canvas) -> u32 {
         draw(setup, shading, canvas)
     }
 }
 
 fn draw(setup: &TriangleSetup<'_>, shading: &Shading<'_>, canvas: &mut dyn Canvas) -> u32 {
-    // Near lights are refused before.
-    draw_by(setup, shading, canvas, |source| source.directional().copied().unwrap_or_default().map(Series::constant))
+    draw_by(setup, shading, canvas, constant)
+}
+
+/// L and H of a light that is infinitely far, as all are: near lights are refused before.
+fn constant(source: &Source) -> [Series; 2] {
+    source.directional().copied().unwrap_or_default().map(Series::constant)
+}
+
+/// The expansions of N·L and N·H of a light at the six nodes, and by how many bits they have to be shifted to be walked.
+fn expanded(normal: &Series, directions: [Series; 2]) -> ([[i64; 6]; 2], u32) {
+    let values = directions.map(|direction| expansions(normal, &direction));
+    let largest = values.as_flattened().iter().fold(0, |m, v| v.unsigned_abs().max(m));
+    // Nodes stay below 6/5, so that quadratics stay below 2.
+    (values, (64 - (largest - largest / 6).leading_zeros()).saturating_sub(NODE))
+}
+
+/// The series of the normals.
+fn normals(setup: &TriangleSetup<'_>) -> Series {
+    Series::new(setup.vertices().map(|vertex| wide(vertex.normal).map(|c| c << (VECTOR - UNIT))))
+}
+
+/// By how many bits expansions are shifted at most under constant lights: they are below four times the square of one and how far normals are
+/// away from the centroid's, which the least length of a normal tells.
+pub fn largest_shift(setup: &TriangleSetup<'_>) -> u32 {
+    match setup.triangle.min_normal_length >> (NORMAL_LENGTH - 4) {
+        13.. => 2,
+        8.. => 5,
+        _ => 11,
+    }
+}
+
+/// How steeply highlights follow cosines that are walked with so many bits less.
+pub fn steepness(exponent: u16, shift: u32) -> Steepness {
+    Steepness::new(u32::from(exponent) << shift.min(15))
 }
 
 /// Shades with the directions that `directions` makes of a light, along L and H.
@@ -67,13 +103,11 @@ pub fn draw_by(
     canvas: &mut dyn Canvas,
     directions: impl Fn(&Source) -> [Series; 2],
 ) -> u32 {
-    let normal = Series::new(setup.vertices().map(|vertex| wide(vertex.normal).map(|c| c << (VECTOR - UNIT))));
+    let normal = normals(setup);
     let fit = |source: &Source| {
-        let values = directions(source).map(|direction| expansions(&normal, &direction));
-        let largest = values.as_flattened().iter().fold(0, |m, v| v.unsigned_abs().max(m));
-        // Nodes stay below 6/5, so that quadratics stay below 2.
-        let shift = (64 - (largest - largest / 6).leading_zeros()).saturating_sub(NODE);
-        (Quadratic::new(values.map(|nodes| nodes.map(|node| (node >> shift) as i32)), EXTRA), Held(shift))
+        let (values, shift) = expanded(&normal, directions(source));
+        let nodes = values.map(|nodes| nodes.map(|node| (node >> shift) as i32));
+        (Quadratic::new(nodes, EXTRA).steep(steepness(shading.exponent, shift)), Held(shift))
     };
     shading.draw_lit(setup, fit, Constant, Clamped, canvas)
 }

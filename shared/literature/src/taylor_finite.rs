@@ -14,7 +14,7 @@ use crate::{
 use microphong::{
     format::COSINE,
     math::vector::add,
-    method::{Canvas, Costs, Facts, Highlight, Method, Shading, TriangleSetup, VertexLight, point},
+    method::{Canvas, Costs, Facts, Highlight, Method, Shading, Source, Steepness, TriangleSetup, VertexLight, point},
 };
 
 static FACTS: Facts = Facts {
@@ -37,18 +37,25 @@ impl Method for TaylorFinite {
         &FACTS
     }
 
+    fn steepness(&self, setup: &TriangleSetup<'_>, shading: &Shading<'_>) -> Steepness {
+        // Directions of near lights may be as far away from the centroid's.
+        let shift = if shading.lighting.is_constant() { 0 } else { 6 };
+        taylor::steepness(shading.exponent, taylor::largest_shift(setup).max(shift))
+    }
+
     fn shade(&self, setup: &TriangleSetup<'_>, shading: &Shading<'_>, canvas: &mut dyn Canvas) -> u32 {
-        draw(setup, shading, canvas)
+        taylor::draw_by(setup, shading, canvas, directions(setup, shading))
     }
 }
 
-fn draw(setup: &TriangleSetup<'_>, shading: &Shading<'_>, canvas: &mut dyn Canvas) -> u32 {
+/// L and L + V of a light, linear between the corners.
+fn directions(setup: &TriangleSetup<'_>, shading: &Shading<'_>) -> impl Fn(&Source) -> [Series; 2] {
     let positions = setup.vertices().map(|vertex| point(vertex.position));
     let shortened = |v: [i32; 3], bits: u32| v.map(|c| c >> (COSINE - VECTOR + bits));
     let viewer = positions.map(|position| shortened(shading.lighting.viewer().towards(position), 1));
-    taylor::draw_by(setup, shading, canvas, |source| {
+    move |source| {
         let towards = positions.map(|position| source.towards(position));
         let ([a, b, c], [va, vb, vc]) = (towards.map(|towards| shortened(towards, 1)), viewer);
         [Series::new(towards.map(|towards| shortened(towards, 0))), Series::new([add(a, va), add(b, vb), add(c, vc)])]
-    })
+    }
 }

@@ -2,7 +2,7 @@
 
 use crate::{
     interpolate::{Checkerboard, HALF_RANGE, Patch, Raised, Walker, each_channel},
-    setup::{gradients::Gradients, word_sized::QUADRATIC},
+    setup::{gradients::Gradients, steepness::Steepness, word_sized::QUADRATIC},
 };
 
 /// `c + dx x + dy y + dxx x² + dxy x y + dyy y²` in each of `CH` channels, standing on one row.
@@ -33,9 +33,12 @@ struct Row {
 impl Row {
     /// See [`Quadric::fit`].
     #[inline(always)]
-    fn fit<const BITS: u32>(gradients: &Gradients, nodes: [i32; 6], extra: u32, bias: i32) -> Self {
-        let [c, dx, dy, dxx, dxy, dyy] =
-            if BITS <= QUADRATIC { gradients.quadratic::<BITS>(nodes, extra) } else { long::<BITS>(gradients, nodes, extra) };
+    fn fit<const BITS: u32>(gradients: &Gradients, nodes: [i32; 6], extra: u32, bias: i32, steepness: Steepness) -> Self {
+        let [c, dx, dy, dxx, dxy, dyy] = if BITS <= QUADRATIC {
+            gradients.quadratic::<BITS>(nodes, extra, steepness)
+        } else {
+            long::<BITS>(gradients, nodes, extra, steepness)
+        };
         let x = gradients.column();
         // The move from the anchor column to column 0 is exact, modulo 2^32.
         Self {
@@ -53,7 +56,13 @@ impl Row {
     /// [`Self::fit`] in a function of its own, for several channels.
     #[inline(never)]
     fn fitted<const BITS: u32>(gradients: &Gradients, nodes: &[i32; 6], extra: u32, bias: i32) -> Self {
-        Self::fit::<BITS>(gradients, *nodes, extra, bias)
+        Self::fit::<BITS>(gradients, *nodes, extra, bias, Steepness::NONE)
+    }
+
+    /// [`Self::fitted`] for highlights.
+    #[inline(never)]
+    fn fitted_steeply<const BITS: u32>(gradients: &Gradients, nodes: &[i32; 6], extra: u32, bias: i32, steepness: Steepness) -> Self {
+        Self::fit::<BITS>(gradients, *nodes, extra, bias, steepness)
     }
 }
 
@@ -72,14 +81,22 @@ impl<const CH: usize> Quadric<CH> {
     /// Source: Szirmay-Kalos et al.; Vlasic 2002, 4.2; change of basis without his divisions.
     #[inline(always)]
     #[must_use]
-    pub fn fit<const BITS: u32>(gradients: &Gradients, nodes: &[[i32; 6]; CH], extra: u32, bias: [i32; CH]) -> Self {
+    pub fn fit<const BITS: u32>(gradients: &Gradients, nodes: &[[i32; 6]; CH], extra: u32, bias: [i32; CH], steepness: Steepness) -> Self {
         let mut quadric = Self::ZERO;
         if CH == 1 {
             for ((to, nodes), bias) in quadric.0.iter_mut().zip(*nodes).zip(bias) {
-                *to = Row::fit::<BITS>(gradients, nodes, extra, bias);
+                *to = Row::fit::<BITS>(gradients, nodes, extra, bias, steepness);
             }
         } else {
-            each_channel::<CH>(|c| quadric.0[c] = Row::fitted::<BITS>(gradients, &nodes[c], extra, bias[c]));
+            each_channel::<CH>(|c| {
+                quadric.0[c] = {
+                    if BITS <= QUADRATIC {
+                        Row::fitted::<BITS>(gradients, &nodes[c], extra, bias[c])
+                    } else {
+                        Row::fitted_steeply::<BITS>(gradients, &nodes[c], extra, bias[c], steepness)
+                    }
+                }
+            });
         }
         quadric
     }
@@ -87,8 +104,8 @@ impl<const CH: usize> Quadric<CH> {
 
 /// Fits one channel outside of words, in a function of its own, since a call is a small share of the cost.
 #[inline(never)]
-fn long<const BITS: u32>(gradients: &Gradients, nodes: [i32; 6], extra: u32) -> [i32; 6] {
-    gradients.quadratic::<BITS>(nodes, extra)
+fn long<const BITS: u32>(gradients: &Gradients, nodes: [i32; 6], extra: u32, steepness: Steepness) -> [i32; 6] {
+    gradients.quadratic::<BITS>(nodes, extra, steepness)
 }
 
 impl<const CH: usize> Patch for Quadric<CH> {

@@ -16,7 +16,7 @@ use crate::{
     },
     lighting::output::Output,
     mesh::vertices::VertexStage,
-    method::{DrawTriangle, General, Loops, Method, Shading, TriangleSetup},
+    method::{DrawTriangle, General, Loops, Method, Shading, TriangleSetup, tiles},
     pixel::Pixel,
     raster::{
         band::Band,
@@ -97,7 +97,7 @@ impl<C: Pixel> MeshPass<'_, C> {
 
     #[inline(never)]
     fn shade_generally(&self, setup: &TriangleSetup<'_>, band: &mut Band<'_, C>) -> u32 {
-        self.method.shade(setup, &self.shading, &mut BandCanvas { band, output: &self.output })
+        tiles::shade(self.method, setup, &self.shading, &mut BandCanvas { band, output: &self.output })
     }
 
     /// Draws a triangle of any size, by `loops` if they can; returns the number of its pixels in `band`.

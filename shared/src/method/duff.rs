@@ -26,6 +26,7 @@ use crate::{
     },
     pixel::Pixel,
     raster::{band::Band, canvas::Canvas},
+    setup::steepness::Steepness,
 };
 
 /// Shades by linear numerators over a root, under lights that are the same everywhere.
@@ -38,11 +39,11 @@ pub fn shade_constant(setup: &TriangleSetup<'_>, shading: &Shading<'_>, canvas: 
                 // Both are linear, so that corners tell.
                 let [towards, half] = shading.constant_cosines(setup, source);
                 if !setup.leaves_out_highlight(reflectance, &half) {
-                    Lit::Fully(linear([towards, half]))
+                    Lit::Fully(linear([towards, half], shading.steepness()))
                 } else if setup.leaves_out_light(reflectance, &towards) {
                     Lit::Nowhere
                 } else {
-                    Lit::Diffuse(linear([towards]))
+                    Lit::Diffuse(linear([towards], Steepness::NONE))
                 }
             };
             shading.draw_lit_in_part(setup, fit, square, Tabled, canvas)
@@ -60,7 +61,13 @@ pub fn shade(setup: &TriangleSetup<'_>, shading: &Shading<'_>, canvas: &mut dyn 
 }
 
 /// Shades by `model` from `common` and N·L and N·H of each light, normals not normalised, which are linear under constant lights.
-fn draw_constant<K: Field, F>(setup: &TriangleSetup<'_>, shading: &Shading<'_>, common: K, model: F, canvas: &mut dyn Canvas) -> u32
+pub(super) fn draw_constant<K: Field, F>(
+    setup: &TriangleSetup<'_>,
+    shading: &Shading<'_>,
+    common: K,
+    model: F,
+    canvas: &mut dyn Canvas,
+) -> u32
 where
     F: LightingModel<K::Value, [u32; 2]>,
 {
@@ -77,7 +84,7 @@ where
         return draw_constant(setup, shading, common, model, canvas);
     }
     let nodes = setup.six_linear_nodes();
-    shading.draw_lit(setup, |source| shading.six_products(&nodes, source, |p| p), common, model, canvas)
+    shading.draw_lit(setup, |source| shading.six_products(&nodes, source, |p| p, shading.steepness()), common, model, canvas)
 }
 
 /// The loops under one light, or two.
@@ -112,6 +119,10 @@ pub(crate) fn draw<C: Pixel>(
 ) -> Option<u32> {
     let reflectance = tables.reflectance;
     if is_steep(shading.exponent) && (reflectance.lights() > 1 || largest(&corners()[1]) >= setup.highlight_threshold(reflectance)) {
+        return None;
+    }
+    // |N|² has two more bits than other quadratics, and its root is half as steep.
+    if setup.gradients.is_any() && !setup.gradients.walks_in_words(Steepness::new((shading.exponent / 8).into())) {
         return None;
     }
     let square = tabled(setup)?;
@@ -155,7 +166,7 @@ pub fn square(setup: &TriangleSetup<'_>, exponent: u16) -> Quadratic<1> {
         let [ab, bc, ca] = setup.edges(setup.triangle.haversine).map(|haversine| -(i32::from(haversine) << (NODE - HAVERSINE)));
         [0, 0, 0, ab, bc, ca]
     };
-    Quadratic::new([nodes], EXTRA).biased([1 << 30])
+    Quadratic::new([nodes], EXTRA).biased([1 << 30]).steep(Steepness::new(exponent.into()))
 }
 
 /// Six nodes of |N|² - 1 by the normals themselves, which are of unit length but for the rounding of their components.

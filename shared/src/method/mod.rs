@@ -22,6 +22,7 @@ pub mod renq_newton;
 pub mod six_point;
 pub mod sqrt6;
 pub mod sub_triangle;
+pub(crate) mod tiles;
 mod two_lights;
 
 use crate::{
@@ -57,6 +58,7 @@ pub use crate::{
     },
     math::highlight_lut::CosineLookup,
     raster::canvas::{Canvas, IntensityShader},
+    setup::steepness::Steepness,
 };
 use core::marker::PhantomData;
 pub use error_bound::ErrorBounds;
@@ -76,6 +78,12 @@ pub trait Method: Sync {
     /// Computes what a method needs to keep to an error budget, for a material of this exponent under so many lights: others need nothing.
     fn error_bounds(&self, _reflectance: &Reflectance, _exponent: u16, _lights: usize) -> ErrorBounds {
         ErrorBounds::EMPTY
+    }
+
+    /// How steeply the light of pixels follows the quadratics that are walked over a triangle: a triangle that is too large for words to walk
+    /// them exactly is shaded in tiles. By default no highlight is computed of a quadratic, and triangles are shaded as a whole.
+    fn steepness(&self, _setup: &TriangleSetup<'_>, _shading: &Shading<'_>) -> Steepness {
+        Steepness::NONE
     }
 
     /// Shades the triangle `setup` into `canvas`; returns the number of its pixels there.

@@ -27,6 +27,7 @@ use crate::{
     },
     pixel::Pixel,
     raster::{band::Band, canvas::Canvas},
+    setup::steepness::Steepness,
 };
 
 static FACTS: Facts = Facts {
@@ -47,6 +48,10 @@ pub struct Phong;
 impl Method for Phong {
     fn facts(&self) -> &'static Facts {
         &FACTS
+    }
+
+    fn steepness(&self, _: &TriangleSetup<'_>, shading: &Shading<'_>) -> Steepness {
+        shading.steepness()
     }
 
     fn shade(&self, setup: &TriangleSetup<'_>, shading: &Shading<'_>, canvas: &mut dyn Canvas) -> u32 {
@@ -86,19 +91,20 @@ pub fn draw_by<F>(setup: &TriangleSetup<'_>, shading: &Shading<'_>, model: F, ca
 where
     F: LightingModel<[u32; 3], [u32; 3]>,
 {
+    let steepness = shading.steepness();
     let positions = setup.vertices().map(|vertex| point(vertex.position));
     let normals = fitted(setup.vertices().map(|vertex| wide(vertex.normal)));
     let view = fitted(match shading.lighting.viewer() {
         Viewer::Infinite(towards) => [towards; 3],
         Viewer::Local(eye) => positions.map(|p| sub(eye, p)),
     });
-    let common = quadratic([field_product(&normals, &normals), field_product(&view, &view), field_product(&normals, &view)]);
+    let common = quadratic([field_product(&normals, &normals), field_product(&view, &view), field_product(&normals, &view)], steepness);
     let fit = |source: &Source| {
         let towards = fitted(match (source.directional(), source.point()) {
             (Some([towards, _]), _) => [*towards; 3],
             (None, position) => positions.map(|p| sub(position.unwrap_or_default(), p)),
         });
-        quadratic([field_product(&normals, &towards), field_product(&towards, &towards), field_product(&view, &towards)])
+        quadratic([field_product(&normals, &towards), field_product(&towards, &towards), field_product(&view, &towards)], steepness)
     };
     shading.draw_lit(setup, fit, common, model, canvas)
 }

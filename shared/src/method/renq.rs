@@ -18,6 +18,7 @@ use crate::{
         lighting_model::{EXTRA, LightingModel, NODE, Quadratic, signed},
         node::is_steep,
     },
+    setup::steepness::Steepness,
 };
 
 /// Half the quadratic through 1/|N| at six nodes, Q2.30.
@@ -34,7 +35,7 @@ pub fn length(setup: &TriangleSetup<'_>, exponent: u16) -> Quadratic<1> {
         let [ab, bc, ca] = setup.inverse_sum_lengths();
         [node(ab), node(bc), node(ca)]
     };
-    Quadratic::new([[0, 0, 0, ab, bc, ca]], EXTRA).biased([1 << 29])
+    Quadratic::new([[0, 0, 0, ab, bc, ca]], EXTRA).biased([1 << 29]).steep(Steepness::new(exponent.into()))
 }
 
 /// Numerators times a reciprocal length.

@@ -5,7 +5,8 @@
 //!
 //! Cost: 6 additions a pixel, 5 products (8 with two steps) and the highlight's table; 2 or 4 additions and 2 products
 //! more per light. Continuous. Error against Phong under constant light: 0.1 LSB and the table's.
-//! Domain: any lights; where |N| falls below 1/2, [`crate::method::duff`]'s root takes over.
+//! Domain: any lights; where |N| falls below 1/2, [`crate::method::duff`]'s root takes over. Under near lights, and for a local viewer, no
+//! quadratic through six points is exact: there it is [`crate::method::phong`].
 
 use crate::{
     arch::product::upper,
@@ -18,10 +19,12 @@ use crate::{
     method::{
         Costs, Facts, Loops, Method, Shading, Style, TriangleSetup, VertexLight, duff,
         lighting_model::{LightingModel, signed},
+        phong::Phong,
         quotient, renq,
     },
     pixel::Pixel,
     raster::{band::Band, canvas::Canvas},
+    setup::steepness::Steepness,
 };
 
 static FACTS: Facts = Facts {
@@ -44,12 +47,16 @@ impl Method for RenqNewton {
         &FACTS
     }
 
+    fn steepness(&self, _: &TriangleSetup<'_>, shading: &Shading<'_>) -> Steepness {
+        shading.steepness()
+    }
+
     fn shade(&self, setup: &TriangleSetup<'_>, shading: &Shading<'_>, canvas: &mut dyn Canvas) -> u32 {
-        if duff::is_curved(setup) {
-            return duff::shade(setup, shading, canvas);
+        if !shading.lighting.is_constant() || duff::is_curved(setup) {
+            return Phong.shade(setup, shading, canvas);
         }
         // Always two steps, although one is often enough: so the general way needs one loop.
-        duff::draw_products(
+        duff::draw_constant(
             setup,
             shading,
             (renq::length(setup, shading.exponent), duff::square(setup, shading.exponent)),
@@ -74,7 +81,8 @@ impl Loops for RenqNewton {
         band: &mut Band<'_, C>,
     ) -> Option<u32> {
         // Strongly curved triangles, rare: a root for each pixel.
-        if duff::is_curved(setup) || needs_two(setup.triangle.min_normal_length, shading.exponent) {
+        let is_exact = || setup.place.is_some() || setup.gradients.walks_in_words(shading.steepness());
+        if duff::is_curved(setup) || needs_two(setup.triangle.min_normal_length, shading.exponent) || !is_exact() {
             return None;
         }
         let lengths = || (renq::length(setup, shading.exponent), duff::square(setup, shading.exponent));

@@ -20,7 +20,7 @@ use crate::{
     lighting::{
         constant_lights::{OneLight, OneLightRamp, OneLightRgb, TwoLightsRgb, node},
         material_tables::MaterialTables,
-        reflectance::{Highlight, Reflection},
+        reflectance::{Highlight, Reflectance, Reflection},
     },
     math::{highlight_lookup::DefectLookup, highlight_lut::CosineLookup, rsqrt::sqrt},
     method::{
@@ -35,6 +35,7 @@ use crate::{
         canvas::Canvas,
         pixel_shader::{PixelShader, Ramp},
     },
+    setup::steepness::Steepness,
 };
 
 /// Whether the quadratic goes through roots of N·H, for which the table of highlights is made, or through N·H itself.
@@ -68,12 +69,23 @@ impl Method for Sqrt6 {
         &FACTS
     }
 
+    fn steepness(&self, _: &TriangleSetup<'_>, shading: &Shading<'_>) -> Steepness {
+        steepness::<true>(shading.exponent)
+    }
+
     fn shade(&self, setup: &TriangleSetup<'_>, shading: &Shading<'_>, canvas: &mut dyn Canvas) -> u32 {
         if shading.lighting.is_constant() {
             return shade_constant::<true>(setup, shading, canvas);
         }
         let nodes = setup.six_nodes(shading.exponent);
-        let fit = |source: &_| Lit::<_, Quadratic<1>>::Fully(shading.six_products(&nodes, source, |[light, half]| [light, root(half)]));
+        let fit = |source: &_| {
+            Lit::<_, Quadratic<1>>::Fully(shading.six_products(
+                &nodes,
+                source,
+                |[light, half]| [light, root(half)],
+                steepness::<true>(shading.exponent),
+            ))
+        };
         shading.draw_lit_in_part(setup, fit, Constant, AtPixel, canvas)
     }
 }
@@ -92,11 +104,12 @@ fn shade_constant<const ROOT: IsRoot>(setup: &TriangleSetup<'_>, shading: &Shadi
         let [towards, half] = shading.lighting.directions(source, [0; 3]);
         let (towards, half) = (setup.six_from(setup.corner_cosines(towards)), setup.corner_cosines(half));
         if largest(&half) >= threshold {
-            Lit::Fully(quadratic([towards, map_six(setup.six_half_from(half, shading.exponent), walked::<ROOT>)]))
+            let half = map_six(setup.six_half_from(half, shading.exponent), walked::<ROOT>);
+            Lit::Fully(quadratic([towards, half], steepness::<ROOT>(shading.exponent)))
         } else if DiffuseSign::of(towards) == DiffuseSign::Nowhere {
             Lit::Nowhere
         } else {
-            Lit::Diffuse(quadratic([towards]))
+            Lit::Diffuse(quadratic([towards], Steepness::NONE))
         }
     };
     shading.draw_lit_in_part(setup, fit, Constant, AtPixel, canvas)
@@ -190,6 +203,10 @@ fn draw_two<const ROOT: IsRoot, C: Pixel>(
 ) -> Option<u32> {
     let TwoLights { colours, cosines: [first, second], highlights } = TwoLights::on(setup, tables)?;
     let (full, exponent) = (colours.diffuse(), shading.exponent);
+    let steeply = |[_, half]: CornerCosines| !is_exact::<ROOT>(setup, half, exponent, tables.reflectance);
+    if setup.place.is_none() && (highlights > 0 && steeply(first) || highlights > 1 && steeply(second)) {
+        return None;
+    }
     let (towards, other) = (setup.six_from(first[0]), setup.six_from(second[0]));
     let is_dark = |cosines| DiffuseSign::of(cosines) == DiffuseSign::Nowhere;
     let lookup = DefectLookup::new(&tables.reflectance.highlight_lut);
@@ -218,6 +235,9 @@ fn draw<const ROOT: IsRoot, C: Pixel, T: OneLight<Pixel = C>>(
     tables: MaterialTables<'_, C>,
     band: &mut Band<'_, C>,
 ) -> Option<u32> {
+    if setup.resumed(band).is_none() && !is_exact::<ROOT>(setup, half, exponent, tables.reflectance) {
+        return None;
+    }
     // No nodes are needed of an active triangle.
     let cosines = if setup.resumed(band).is_none() { setup.six_from(towards) } else { [0; 6] };
     if T::TABLED && setup.resumed(band).is_none() {
@@ -268,7 +288,7 @@ fn diffuse(setup: &TriangleSetup<'_>, full: u16, cosines: [i32; 6]) -> Quadric<1
 #[inline(never)]
 fn highlight<const ROOT: IsRoot>(setup: &TriangleSetup<'_>, half: [i32; 3], lookup: DefectLookup<'_>, exponent: u16) -> Quadric<1> {
     let half = [map_six(map_six(setup.six_half_from(half, exponent), walked::<ROOT>), |node| lookup.node(node))];
-    Nodes::<6, 1, BITS>::new(half, EXTRA).biased([lookup.half()]).fit(setup.gradients)
+    Nodes::<6, 1, BITS>::new(half, EXTRA).biased([lookup.half()]).steep(steepness::<ROOT>(exponent)).fit(setup.gradients)
 }
 
 /// A walked diffuse level, and a highlight by 1 minus the root of N·H.
@@ -394,6 +414,20 @@ fn root(w: i32) -> i32 {
 /// highlight only triangles are clamped that are too large for any bound.
 fn walked<const ROOT: IsRoot>(w: i32) -> i32 {
     if ROOT { root(w) } else { w.max(LOWEST - ONE) }
+}
+
+/// How steeply a highlight of this exponent follows what is walked of N·H.
+fn steepness<const ROOT: IsRoot>(exponent: u16) -> Steepness {
+    Steepness::new(u32::from(exponent) << u32::from(ROOT))
+}
+
+/// Whether words walk N·H of a triangle exactly enough for a highlight of this exponent. Where N·H is the same all over, or where no highlight can be seen, they do.
+#[inline(always)]
+fn is_exact<const ROOT: IsRoot>(setup: &TriangleSetup<'_>, half: [i32; 3], exponent: u16, reflectance: &Reflectance) -> bool {
+    let [a, b, c] = half;
+    setup.gradients.walks_in_words(steepness::<ROOT>(exponent))
+        || a == b && b == c
+        || largest(&half) < setup.highlight_threshold(reflectance)
 }
 
 /// Looks up highlights at the pixel.

@@ -13,7 +13,7 @@ use crate::{
     arch::product::{product, rounded},
     format::{CENTRE, FINE, SPLITS, SUBPIXEL},
     math::{recip::recip, scale, scale_wide, wide::Wide},
-    setup::{sliver::Sliver, terms::Terms, word_sized, word_sized::WordSized},
+    setup::{sliver::Sliver, steepness::Steepness, terms::Terms, word_sized, word_sized::WordSized},
 };
 
 /// Fraction bits beyond those of the walked format, while coefficients move to the anchor.
@@ -160,6 +160,14 @@ impl Gradients {
         })
     }
 
+    /// The gradients of any triangle with this anchor; `None` if it has no area or runs the other way.
+    #[must_use]
+    pub fn anchored(corners: [[i32; 2]; 3], anchor: [i32; 2]) -> Option<Self> {
+        let whole = Self::any(corners, [0; 4])?;
+        let away = |k: usize| anchor[k].wrapping_sub(whole.anchor[k]).wrapping_add(whole.shift[k]);
+        Some(Self { shift: [away(0), away(1)], anchor, ..whole })
+    }
+
     /// The gradients of a part of the triangle: its copy, 2^`level` times smaller, with corner 0 at `corner` ([`FINE`] fraction bits),
     /// turned by 180 degrees or not. Exact: a copy's gradients are the triangle's, times ±2^`level`.
     ///
@@ -200,6 +208,12 @@ impl Gradients {
         matches!(self.scale, Scale::Any(_)) && is_longer(self.edges, ratio)
     }
 
+    /// Whether the triangle is neither word-sized nor a part.
+    #[inline(always)]
+    pub(crate) fn is_any(&self) -> bool {
+        matches!(self.scale, Scale::Any(_))
+    }
+
     /// Column of the anchor.
     #[inline(always)]
     #[must_use]
@@ -238,17 +252,20 @@ impl Gradients {
         Slopes { s, t, exponent: exponent as i32 }
     }
 
-    /// `[c, dx, dy]` of the linear field through the corners' values in a range of 2^`BITS`, at the anchor.
+    /// `[c, dx, dy]` of the linear field through the corners' values in a range of 2^`BITS`, at the anchor, as exact as a highlight of this
+    /// `steepness` needs it.
     #[inline(always)]
     #[must_use]
-    pub fn linear<const BITS: u32>(&self, nodes: [i32; 3], extra: u32) -> [i32; 3] {
+    pub fn linear<const BITS: u32>(&self, nodes: [i32; 3], extra: u32, steepness: Steepness) -> [i32; 3] {
         match self.scale {
             Scale::WordSized(area) if BITS <= word_sized::LINEAR && extra <= word_sized::EXTRA => {
                 area.linear(self.edges, self.subpixels(), nodes, extra)
             }
-            Scale::WordSized(area) if BITS <= word_sized::LONG && extra >= word_sized::LONG_EXTRA => {
+            Scale::WordSized(area) if BITS <= word_sized::LONG && extra >= word_sized::LONG_EXTRA && steepness.fits_words(area.bits) => {
                 area.long_linear(self.edges, self.subpixels(), nodes, extra)
             }
+            // Words would show.
+            Scale::WordSized(_) if BITS > word_sized::LINEAR && steepness.is_steep() => self.linear_any(nodes, extra),
             _ => self.linear_otherwise(BITS, nodes, extra),
         }
     }
@@ -277,7 +294,8 @@ impl Gradients {
         [(i0 << extra).wrapping_add(rounded(c, left)), rounded(dx, left), rounded(dy, left)]
     }
 
-    fn linear_any(&self, nodes: [i32; 3], extra: u32) -> [i32; 3] {
+    #[inline(never)]
+    fn linear_any(self, nodes: [i32; 3], extra: u32) -> [i32; 3] {
         let [c, dx, dy] = self.plane(nodes, extra);
         let [c, dx, dy, ..] = self.round([c, dx, dy, 0, 0, 0]);
         [c, dx, dy]
@@ -308,10 +326,11 @@ impl Gradients {
         (i64::from(c0).wrapping_shl(extra + GUARD as u32), along(s[0], t[0]), along(s[1], t[1]))
     }
 
-    /// `[c, dx, dy, dxx, dxy, dyy]` of the quadratic through six nodes in a range of 2^`BITS`, at the anchor.
+    /// `[c, dx, dy, dxx, dxy, dyy]` of the quadratic through six nodes in a range of 2^`BITS`, at the anchor, as exact as a highlight of this
+    /// `steepness` needs it.
     #[inline(always)]
     #[must_use]
-    pub fn quadratic<const BITS: u32>(&self, nodes: [i32; 6], extra: u32) -> [i32; 6] {
+    pub fn quadratic<const BITS: u32>(&self, nodes: [i32; 6], extra: u32, steepness: Steepness) -> [i32; 6] {
         match self.scale {
             Scale::WordSized(area) if BITS <= word_sized::QUADRATIC && extra <= word_sized::EXTRA => {
                 match area.quadratic(self.edges, self.subpixels(), nodes, extra) {
@@ -319,19 +338,19 @@ impl Gradients {
                     None => {
                         // Rebuild the array, so that the result of this rare path, which is returned in memory, does not force the fast
                         // path onto the stack.
-                        let [c, dx, dy, dxx, dxy, dyy] = self.quadratic_any(BITS, nodes, extra);
+                        let [c, dx, dy, dxx, dxy, dyy] = self.quadratic_any(BITS, nodes, extra, steepness);
                         [c, dx, dy, dxx, dxy, dyy]
                     }
                 }
             }
             Scale::WordSized(area) if BITS <= word_sized::LONG && extra >= word_sized::LONG_EXTRA => {
-                match area.long_quadratic(self.edges, self.subpixels(), nodes, extra) {
+                match area.long_quadratic(self.edges, self.subpixels(), nodes, extra, steepness) {
                     Some(fitted) => fitted,
-                    None => self.quadratic_any(BITS, nodes, extra),
+                    None => self.quadratic_any(BITS, nodes, extra, steepness),
                 }
             }
             Scale::WordSized(_) | Scale::Part(_) => self.quadratic_by_mantissas(BITS, nodes, extra),
-            Scale::Any(_) => self.quadratic_any(BITS, nodes, extra),
+            Scale::Any(_) => self.quadratic_any(BITS, nodes, extra, steepness),
         }
     }
 
@@ -364,23 +383,25 @@ impl Gradients {
 
     #[cold]
     #[inline(never)]
-    fn quadratic_any(self, range: u32, nodes: [i32; 6], extra: u32) -> [i32; 6] {
+    fn quadratic_any(self, range: u32, nodes: [i32; 6], extra: u32, steepness: Steepness) -> [i32; 6] {
         let [i0, i1, i2, i01, i12, i20] = nodes;
         let ratio = if range > word_sized::LINEAR { MAX_FINE_THINNESS } else { MAX_THINNESS };
-        if self.is_thinner_than(ratio) {
-            // In 1/16 pixel, in a part of the triangle as much finer as it is smaller: all exact.
-            let offset = self.offset.map(|c| c >> (SPLITS - self.level));
-            let sliver = Sliver { edges: self.edges, offset, bits: SUBPIXEL + self.level };
+        // Half the matrix of second derivatives: [[ss, st], [st, tt]].
+        let (ss, st, tt) = (2 * (i0 + i1 - 2 * i01), 2 * (i0 - i01 - i20 + i12), 2 * (i0 + i2 - 2 * i20));
+        // Second differences are below 2^(range + 2).
+        let mut less = range + 2;
+        let mut is_exact = self.is_thinner_than(ratio);
+        if !is_exact && steepness.is_steep() && is_longer(self.edges, steepness.thinness().into()) {
+            // Their own size in place of the largest possible one.
+            less = 32 - (ss.unsigned_abs() | st.unsigned_abs() | tt.unsigned_abs()).leading_zeros();
+            is_exact = !steepness.bends(range as i32 - less as i32 - 1, thinness(self.edges));
+        }
+        if is_exact && let Some(sliver) = self.sliver() {
             return self.round(sliver.quadratic(nodes, extra + GUARD as u32));
         }
         let (c, dx, dy) = self.slopes(i0, (4 * i01 - 3 * i0 - i1).into(), (4 * i20 - 3 * i0 - i2).into(), extra);
-        // Half the matrix of second derivatives: [[ss, st], [st, tt]].
-        let ss = i64::from(2 * (i0 + i1 - 2 * i01));
-        let st = i64::from(2 * (i0 - i01 - i20 + i12));
-        let tt = i64::from(2 * (i0 + i2 - 2 * i20));
-        // One factor of the chain rule, then the other. Second differences are below 2^(range + 2): two products
-        // with mantissas stay below 2^(range + 33), less these bits below 2^31.
-        let less = range as i32 + 2;
+        // One factor of the chain rule, then the other: two products with mantissas, less these bits, stay below 2^31.
+        let (ss, st, tt, less) = (i64::from(ss), i64::from(st), i64::from(tt), less as i32);
         let Slopes { s, t, exponent } = self.gradients();
         let once = |a: i64, b: i64, k: usize| scale(a * i64::from(s[k]) + b * i64::from(t[k]), less);
         let (sx, tx, sy, ty) = (once(ss, st, 0), once(st, tt, 0), once(ss, st, 1), once(st, tt, 1));
@@ -397,14 +418,31 @@ impl Gradients {
         self.round([c, dx, dy, dxx, dxy, dyy])
     }
 
+    /// The triangle for fits by exact fractions; `None` if it is so large that its area does not fit a word.
+    fn sliver(&self) -> Option<Sliver> {
+        // In 1/16 pixel, in a part of the triangle as much finer as it is smaller: all exact.
+        Sliver::new(self.edges, self.offset.map(|c| c >> (SPLITS - self.level)), SUBPIXEL + self.level)
+    }
+
+    /// Whether a quadratic of this steepness can be walked in words all over the triangle.
+    #[inline(always)]
+    #[must_use]
+    pub(crate) fn walks_in_words(&self, steepness: Steepness) -> bool {
+        match self.scale {
+            Scale::WordSized(area) if steepness.walks_word_sized(area.bits) => true,
+            _ => walks_in_words(self.edges, self.shift, steepness),
+        }
+    }
+
     /// The terms of the cubic through ten nodes in a range of 2^15, at the anchor; by powers of x, then of y.
     ///
     /// In 128 bits all is exact but the gradients, and one rounding of each coefficient.
     #[must_use]
     pub fn cubic(&self, nodes: [i32; 10], extra: u32) -> Terms<i64> {
         let fraction = extra + GUARD as u32;
-        let terms = if self.is_thinner_than(MAX_THINNESS) {
-            let sliver = Sliver { edges: self.edges, offset: self.offset.map(|c| c >> SPLITS), bits: SUBPIXEL };
+        let terms = if self.is_thinner_than(MAX_THINNESS)
+            && let Some(sliver) = self.sliver()
+        {
             let by = |k: usize| move |a: Wide, b: Wide| a + b * Wide::from(self.shift[k]);
             sliver.cubic(nodes, fraction).moved_across(by(0)).moved_down(by(1))
         } else {
@@ -438,6 +476,16 @@ impl Gradients {
     }
 }
 
+/// See [`Gradients::walks_in_words`].
+#[cold]
+#[inline(never)]
+fn walks_in_words([[x1, y1], [x2, y2]]: [[i32; 2]; 2], shift: [i32; 2], steepness: Steepness) -> bool {
+    let extent = |a: i32, b: i32| a.max(b).max(0).wrapping_sub(a.min(b).min(0)).unsigned_abs();
+    let span = (extent(x1, x2).saturating_add(extent(y1, y2)) >> SUBPIXEL) + 1;
+    // The anchor of a large triangle is the middle of what is seen of it.
+    steepness.walks_in_words(if shift == [0; 2] { span } else { span / 2 })
+}
+
 /// The first corner, and the edges from it to the others.
 #[inline(always)]
 fn edges([[x0, y0], [x1, y1], [x2, y2]]: [[i32; 2]; 3]) -> ([i32; 2], [[i32; 2]; 2]) {
@@ -448,9 +496,25 @@ fn edges([[x0, y0], [x1, y1], [x2, y2]]: [[i32; 2]; 3]) -> ([i32; 2], [[i32; 2];
 #[cold]
 #[inline(never)]
 fn is_longer(edges: [[i32; 2]; 2], ratio: i64) -> bool {
+    let [square, area] = square_and_area(edges);
+    square > area.saturating_mul(ratio)
+}
+
+/// Length over height, rounded up; the length as [`Gradients::is_thinner_than`] takes it.
+#[cold]
+#[inline(never)]
+pub(super) fn thinness(edges: [[i32; 2]; 2]) -> u32 {
+    // Coordinates have at most 18 bits.
+    let [square, area] = square_and_area(edges).map(|c| (c >> 4) as u32);
+    square.checked_div(area).unwrap_or(u32::MAX - 1) + 1
+}
+
+/// The square of the longest side by columns or rows from corner 0, and twice the area.
+#[inline(always)]
+fn square_and_area(edges: [[i32; 2]; 2]) -> [i64; 2] {
     let [[x1, y1], [x2, y2]] = edges.map(|edge| edge.map(i64::from));
     let extent = x1.abs().max(y1.abs()).max(x2.abs()).max(y2.abs());
-    extent * extent > (x1 * y2 - x2 * y1).saturating_mul(ratio)
+    [extent * extent, x1 * y2 - x2 * y1]
 }
 
 /// Gradients of s and t, and s and t at the anchor of a word-sized triangle, all with one exponent.

@@ -1,4 +1,4 @@
-//! Quadratics and cubics on very thin triangles, by exact fractions.
+//! Polynomials on thin triangles, by exact fractions.
 //!
 //! Across a sliver a polynomial bends so sharply that its derivatives on the screen cancel one another; any that are rounded before they
 //! meet lose the value. Here nothing is rounded before the last division, which is slow but rarely needed.
@@ -10,14 +10,24 @@ use core::num::NonZeroU32;
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Sliver {
     /// Fraction bits of all coordinates.
-    pub(crate) bits: u32,
+    bits: u32,
     /// `[x, y]` of corner 1 and of corner 2, from corner 0.
-    pub(crate) edges: [[i32; 2]; 2],
+    edges: [[i32; 2]; 2],
     /// From corner 0 to the anchor.
-    pub(crate) offset: [i32; 2],
+    offset: [i32; 2],
+    /// Twice the area.
+    area: NonZeroU32,
 }
 
 impl Sliver {
+    /// The triangle of these edges, the anchor at `offset`, all with `bits` fraction bits; `None` if twice its area does not fit a word, as
+    /// only that of a triangle which is thousands of pixels long, and not thin.
+    pub(crate) fn new(edges: [[i32; 2]; 2], offset: [i32; 2], bits: u32) -> Option<Self> {
+        let [[x1, y1], [x2, y2]] = edges.map(|edge| edge.map(i64::from));
+        let area = u32::try_from(x1 * y2 - x2 * y1).ok().and_then(NonZeroU32::new)?;
+        Some(Self { bits, edges, offset, area })
+    }
+
     /// `[c, dx, dy, dxx, dxy, dyy]` of the quadratic through six nodes at the anchor, with `extra` more bits than the nodes.
     ///
     /// Every coefficient is the exact one rounded, modulo 2^64.
@@ -29,18 +39,18 @@ impl Sliver {
         let (ss, st, tt) = (2 * (i0 + i1 - 2 * i01), 4 * (i0 - i01 - i20 + i12), 2 * (i0 + i2 - 2 * i20));
         let [[x1, y1], [x2, y2]] = self.edges.map(|edge| edge.map(Wide::from));
         let [ox, oy] = self.offset.map(Wide::from);
-        let det = x1 * y2 - x2 * y1;
+        let det = Wide(i128::from(self.area.get()));
         // The quadratic in barycentric coordinates s and t as a symmetric form of (s, t, 1), times 2.
         let matrix = [[2 * ss, st, c1], [st, 2 * tt, c2], [c1, c2, 2 * i0]];
         // The anchor's coordinates and their gradients per unit, all times det; those of 1 are 0.
         let (at, x, y) = ([y2 * ox - x2 * oy, x1 * oy - y1 * ox, det], [y2, -y1], [-x2, x1]);
         let times = |v: &[Wide]| matrix.each_ref().map(|row| dot(row, v));
         let (m_at, m_x, m_y) = (times(&at), times(&x), times(&y));
-        // Edges are below 2^17 and the triangle is thin, so 0 < det < 2^30. Nine terms of 2^29 and det², and 28 more bits: within 128 bits.
+        // Edges are below 2^17, and det is below 2^32. Nine terms of 2^28 and det², and 28 more bits: within 128 bits.
         let half = Wide((det * det).0 >> 1);
-        let divisor = NonZeroU32::new(det.0 as u32).unwrap_or(NonZeroU32::MIN);
-        let over =
-            |numerator: i128, order: u32| (Wide(numerator).shifted(extra + order * self.bits) + half).over(divisor).over(divisor).0 as i64;
+        let over = |numerator: i128, order: u32| {
+            (Wide(numerator).shifted(extra + order * self.bits) + half).over(self.area).over(self.area).0 as i64
+        };
         [
             over(dot(&m_at, &at).0 >> 1, 0),
             over(dot(&m_at, &x).0, 1),
@@ -59,7 +69,7 @@ impl Sliver {
     pub(crate) fn cubic(&self, nodes: [i32; 10], extra: u32) -> Terms<Wide> {
         let [[x1, y1], [x2, y2]] = self.edges.map(|edge| edge.map(Wide::from));
         let [ox, oy] = self.offset.map(Wide::from);
-        let det = x1 * y2 - x2 * y1;
+        let det = Wide(i128::from(self.area.get()));
         // det is below 2^28, as slivers have less than 1/128 of their square; all together below 2^105.
         let common = Terms::of(nodes.map(Wide::from), [y2, -x2], [-y1, x1]).map(|c, degree| (degree..3).fold(c, |c, _| c * det));
         let divisor = 4 * det * det * det;

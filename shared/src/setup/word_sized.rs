@@ -15,6 +15,7 @@ use crate::{
     },
     format::SUBPIXEL,
     geometry::cull::fits_words,
+    setup::steepness::Steepness,
 };
 
 /// Largest number of fraction bits that walked values have beyond those of nodes.
@@ -135,7 +136,7 @@ impl WordSized {
     }
 
     /// [`Self::quadratic`] for nodes of at most [`LONG`] bits, walked with at least [`LONG_EXTRA`]; `None` if a second derivative has more
-    /// than [`LONG_SECOND`] bits.
+    /// than [`LONG_SECOND`] bits, or a highlight of this `steepness` would show what words round.
     #[inline(always)]
     pub(crate) fn long_quadratic(
         &self,
@@ -143,11 +144,20 @@ impl WordSized {
         [ox, oy]: [i32; 2],
         [i0, i1, i2, i01, i12, i20]: [i32; 6],
         extra: u32,
+        steepness: Steepness,
     ) -> Option<[i32; 6]> {
         // A quarter of the matrix of second derivatives by s and t, made as large as words can be added.
         let (ss, st, tt) = (i0 + i1 - 2 * i01, i0 - i01 - i20 + i12, i0 + i2 - 2 * i20);
         let most = 2 * (self.bits + self.zeros) + extra - 47;
-        let up = room([ss, st, tt]).min(most);
+        let room = room([ss, st, tt]);
+        // Second differences are below 2^(30 - room), and 1 is 2^(LONG - 2).
+        let small = room as i32 + LONG as i32 - 32;
+        // Mostly logarithms tell: length over height is below 2^(2 bits + zeros - 31).
+        let is_exact = steepness.bends_little(small, (2 * self.bits + self.zeros) as i32 - 31);
+        if !is_exact && !self.is_exact(edges, small, steepness) {
+            return None;
+        }
+        let up = room.min(most);
         let left = most + 1 - up;
         if left > LONG_SECOND - 1 {
             return None;
@@ -182,6 +192,17 @@ impl WordSized {
         let dx = (dx << SUBPIXEL).wrapping_add(2 * (across + mixed));
         let dy = (dy << SUBPIXEL).wrapping_add(2 * (down + by(dxy, ox)));
         Some([c, dx, dy, dxx, dxy.wrapping_mul(2), dyy])
+    }
+
+    /// Whether words fit quadratics of this steepness, whose second differences are below 2^-`small`.
+    #[cold]
+    #[inline(never)]
+    fn is_exact(self, [[x1, y1], [x2, y2]]: [[i32; 2]; 2], small: i32, steepness: Steepness) -> bool {
+        let size = |c: i32| c.unsigned_abs();
+        let length = size(x1).max(size(y1)).max(size(x2)).max(size(y2));
+        // Length over height, rounded up, by the upper 11 bits of the inverse.
+        let thinness = ((length * length).wrapping_mul((self.inverse >> 16) as u32) >> (41 - self.zeros) >> 1) + 1;
+        steepness.fits_words(self.bits) && steepness.bends(small, thinness)
     }
 
     /// [`Self::slopes`] for differences of at most [`LONG`] + 2 bits, with at least [`LONG_EXTRA`].

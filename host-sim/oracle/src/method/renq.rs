@@ -4,6 +4,7 @@ use crate::{
     Facet, Frame, Levels, Shade,
     poly::{SIX, blend, quadratic, sum},
 };
+use microphong_render::vector::dot;
 
 /// N·L and N·H of the interpolated normal, not normalised: `scale` then takes their length away.
 ///
@@ -35,10 +36,12 @@ pub(super) fn reciprocals(facet: &Facet) -> [f64; 6] {
     [1.0, 1.0, 1.0, middle(0, 1), middle(1, 2), middle(2, 0)]
 }
 
-/// |N|², exactly quadratic, at the six nodes; corners count as unit vectors.
+/// |N|², exactly quadratic, at the six nodes. At corners it differs from 1 by the rounding of the stored normals, of which a highlight of
+/// exponent 1024 makes several levels.
 pub(super) fn squares(facet: &Facet) -> [f64; 6] {
+    let corner = |i: usize| dot(facet.normals[i], facet.normals[i]);
     let middle = |i, j| facet.middle(i, j).powi(2);
-    [1.0, 1.0, 1.0, middle(0, 1), middle(1, 2), middle(2, 0)]
+    [corner(0), corner(1), corner(2), middle(0, 1), middle(1, 2), middle(2, 0)]
 }
 
 /// 1/sqrt of an interpolated [`squares`].

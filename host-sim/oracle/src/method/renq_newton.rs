@@ -2,7 +2,7 @@
 
 use super::renq::{CURVED, Numerators, reciprocals, rsqrt, squares};
 use crate::{
-    Facet, Frame, Shade,
+    Facet, Frame, Shade, phong,
     poly::{quadratic, sum},
 };
 
@@ -13,7 +13,12 @@ const ENOUGH: f64 = 0.1;
 ///
 /// Newton's step leaves 1.5 δ² of a relative error δ; that of the fit is at most 0.02 c⁴ with c² = 3 (1 - r²), r the least length of
 /// normals: c is the chord between two of three that are equally far from one another. A highlight multiplies it by its exponent.
+///
+/// Under near lights and for a near viewer no quadratic is exact: there it is Phong shading.
 pub(super) fn shade<'f>(frame: &'f Frame, facet: &'f Facet) -> Shade<'f> {
+    if !frame.is_constant() {
+        return phong(frame, facet);
+    }
     let (numerators, reciprocals, squares) = (Numerators::new(frame, facet), reciprocals(facet), squares(facet));
     let delta = 0.02 * (3.0 * (1.0 - facet.min_normal_length * facet.min_normal_length)).powi(2);
     let left = 255.0 * frame.material(facet).exponent * 1.5 * delta * delta;

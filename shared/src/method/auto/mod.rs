@@ -30,6 +30,7 @@ use crate::{
         canvas::{Canvas, Shaded},
         pixel_shader::Solid,
     },
+    setup::steepness::Steepness,
 };
 pub use choice::{Choice, choose};
 use choice::{corner_levels, extremes};
@@ -122,6 +123,10 @@ impl<const QUADRATICS: bool> Method for Auto<QUADRATICS> {
 
     fn error_bounds(&self, reflectance: &Reflectance, exponent: u16, lights: usize) -> ErrorBounds {
         ErrorBounds::new(reflectance, exponent, lights)
+    }
+
+    fn steepness(&self, _: &TriangleSetup<'_>, shading: &Shading<'_>) -> Steepness {
+        shading.steepness()
     }
 
     fn shade(&self, setup: &TriangleSetup<'_>, shading: &Shading<'_>, canvas: &mut dyn Canvas) -> u32 {
