@@ -167,7 +167,10 @@ pub(super) fn draw<const EXACT: bool, F: Field, C: Pixel>(
     };
     let ramp = if rgb.is_some() { tables.diffuse_ramp() } else { Some(tables.one_light_ramp()?) };
     Some(match (ramp, rgb) {
-        (Some(ramp), _) if has_no_highlight => draw_diffuse::<EXACT, _, _>(setup, &cosines[0], length, half_reciprocal, ramp, tables, band),
+        // Boards with displays of greys have little flash: no loop of its own for that there.
+        (Some(ramp), _) if !C::GRAY && has_no_highlight => {
+            draw_diffuse::<EXACT, _, _>(setup, &cosines[0], length, half_reciprocal, ramp, tables, band)
+        }
         (_, Some(rgb)) => draw_rgb::<EXACT, _, _>(setup, cosines, length, half_reciprocal, rgb, tables, band),
         (ramp, None) => draw_in::<EXACT, _, _>(setup, cosines, length, half_reciprocal, ramp?, tables, band),
     })

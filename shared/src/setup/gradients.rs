@@ -394,7 +394,8 @@ impl Gradients {
         if !is_exact && steepness.is_steep() && is_longer(self.edges, steepness.thinness().into()) {
             // Their own size in place of the largest possible one.
             less = 32 - (ss.unsigned_abs() | st.unsigned_abs() | tt.unsigned_abs()).leading_zeros();
-            is_exact = !steepness.bends(range as i32 - less as i32 - 1, thinness(self.edges));
+            // Exact fractions take most stack of all. Below, highlights are so soft that what is relative to second differences shows little.
+            is_exact = steepness.is_sharp() && !steepness.bends(range as i32 - less as i32 - 1, thinness(self.edges));
         }
         if is_exact && let Some(sliver) = self.sliver() {
             return self.round(sliver.quadratic(nodes, extra + GUARD as u32));

@@ -71,6 +71,11 @@ impl Steepness {
         self != Self::NONE
     }
 
+    /// Whether the field makes a highlight of an exponent above 128, or above 64 by a root.
+    pub(crate) fn is_sharp(self) -> bool {
+        self.0 > 128
+    }
+
     /// Whether words fit first derivatives on a word-sized triangle whose sides have so many bits, in 1/16 pixel: S is below 2^(bits - 3).
     #[inline(always)]
     pub(crate) fn fits_words(self, bits: u32) -> bool {
