@@ -154,7 +154,7 @@ fn quadratics_of_100_000_random_triangles_stay_within_the_bound() {
         let nodes: [i32; 6] = std::array::from_fn(|_| random.pick(0..255 << LEVEL));
         // As one channel is walked, or as one of three.
         let (walk, coarser) = if i / 6 % 2 == 0 { (WALK, 1.0) } else { (CHANNEL, 2.0) };
-        let mut patch = Quadric::<1>::fit::<15>(&gradients, &[nodes], walk - LEVEL, [0], Steepness::NONE);
+        let mut patch = Quadric::<1>::fit::<15>(&gradients, &[nodes], walk - LEVEL, [0]);
         // Longest edge over the height on it.
         let longest2 = (0..3).map(|k| square(c[k], c[(k + 1) % 3])).fold(0.0, f64::max);
         let thinness = longest2 / side(c[0], c[1], c[2]) as f64;
@@ -285,8 +285,8 @@ fn planes_stay_within_the_bound_even_on_slivers() {
         let size = f64::from(extent(0).max(extent(1)));
         let thinness = size * size / side(case.corners[0], case.corners[1], case.corners[2]) as f64;
         let (mut plane, setup) = match finer {
-            0 => (Plane::<1>::fit::<15>(&gradients, &[nodes], WALK - LEVEL, [0], Steepness::NONE), LINEAR),
-            _ => (Plane::<1>::fit::<20>(&gradients, &[nodes], WALK - LEVEL - finer, [0], Steepness::NONE), LINEAR_FINER),
+            0 => (Plane::<1>::fit::<15>(&gradients, &[nodes], WALK - LEVEL, [0]), LINEAR),
+            _ => (Plane::<1>::fit::<20>(&gradients, &[nodes], WALK - LEVEL - finer, [0]), LINEAR_FINER),
         };
         let mut at = gradients.row();
         for row in 0..case.height {
@@ -350,8 +350,8 @@ fn fields_of_26_bits_stay_within_the_bound() {
         let nodes: [i32; 6] = std::array::from_fn(|_| least + random.pick(0..range / 2 + 1));
         let [a, b, c, ..] = nodes;
         let extra = 5 + i as u32 / 7 % 2;
-        let mut plane = Plane::<1>::fit::<26>(&gradients, &[[a, b, c]], extra, [0], Steepness::NONE);
-        let mut quadric = Quadric::<1>::fit::<26>(&gradients, &[nodes], extra, [0], Steepness::NONE);
+        let mut plane = Plane::<1>::fit::<26>(&gradients, &[[a, b, c]], extra, [0]);
+        let mut quadric = Quadric::<1>::fit::<26>(&gradients, &[nodes], 6, [0]);
         let is_word_sized = Gradients::if_word_sized(corners).is_some();
         let is_thin = reach(corners).pow(2) > side(corners[0], corners[1], corners[2]) * LONG_THINNESS;
         let bend = if is_thin && !is_word_sized { 0.0 } else { LONG_QUADRATIC };
@@ -379,11 +379,11 @@ fn fields_of_26_bits_stay_within_the_bound() {
                 let curved = (0..3).map(|k| b[k] * (2.0 * b[k] - 1.0) * n[k]).sum::<f64>()
                     + 4.0 * (b[0] * b[1] * n[3] + b[1] * b[2] * n[4] + b[2] * b[0] * n[5]);
                 let distance = f64::from((x - gradients.column()).abs() + (row - gradients.row()).abs());
-                let units = f64::from(1 << extra);
-                for (k, walked, exact, part, far) in [
-                    (0, linear.value(), straight, LONG_LINEAR * thinness, 0.0),
-                    (1, quadratic.value(), curved, bend * thinness * thinness, distance * distance),
+                for (k, extra, walked, exact, part, far) in [
+                    (0, extra, linear.value(), straight, LONG_LINEAR * thinness, 0.0),
+                    (1, 6, quadratic.value(), curved, bend * thinness * thinness, distance * distance),
                 ] {
+                    let units = f64::from(1 << extra);
                     let error = (f64::from(walked[0] as i32) - exact * units).abs();
                     let error = error.min((error - 2f64.powi(32)).abs());
                     let bound = 0.5 * (1.0 + distance + far) + moving + small * (1.0 + distance) + part * units;
@@ -423,7 +423,7 @@ fn highlights_show_nothing_of_set_up() {
         let case = Case { width: 320, height: 240, corners: c };
         let Some(gradients) = Gradients::new(c, visible(&case)) else { continue };
         let exponent = random.octaves(1.0, 2049.0) as u32;
-        let steepness = Steepness::new(exponent);
+        let gradients = gradients.steep(Steepness::new(exponent));
         // Cosines of any curvature, 24 fraction bits.
         let bend = random.octaves(1.0 / 4096.0, 0.5) * 2f64.powi(24);
         let corners = [(); 3].map(|()| random.pick(-(1 << 23)..1 << 23));
@@ -432,8 +432,8 @@ fn highlights_show_nothing_of_set_up() {
             (mean + bend * random.between(-1.0, 1.0)) as i32
         });
         let nodes = [corners[0], corners[1], corners[2], middles[0], middles[1], middles[2]];
-        let mut quadric = Quadric::<1>::fit::<26>(&gradients, &[nodes], 6, [0], steepness);
-        let mut plane = Plane::<1>::fit::<26>(&gradients, &[corners], 6, [0], steepness);
+        let mut quadric = Quadric::<1>::fit::<26>(&gradients, &[nodes], 6, [0]);
+        let mut plane = Plane::<1>::fit::<26>(&gradients, &[corners], 6, [0]);
         // A pixel of the triangle.
         let [u, v] = [random.between(0.0, 1.0), random.between(0.0, 1.0)];
         let [u, v] = if u + v > 1.0 { [1.0 - u, 1.0 - v] } else { [u, v] };

@@ -10,7 +10,7 @@ use crate::{
 use embedded_graphics_core::geometry::Size;
 use microphong::{
     format::ErrorBudget,
-    method::{Canvas, Facts, Method, Shading, Steepness, TriangleSetup, phong::Phong},
+    method::{Canvas, Facts, Method, Shading, TriangleSetup, phong::Phong},
 };
 use microphong_compare::level;
 use microphong_oracle::{Frame, Shade, phong};
@@ -79,10 +79,6 @@ impl Method for General {
     fn facts(&self) -> &'static Facts {
         static FACTS: LazyLock<Facts> = LazyLock::new(|| Facts { id: Facts::FIRST_FREE, ..*Phong.facts() });
         &FACTS
-    }
-
-    fn steepness(&self, setup: &TriangleSetup<'_>, shading: &Shading<'_>) -> Steepness {
-        Phong.steepness(setup, shading)
     }
 
     fn shade(&self, setup: &TriangleSetup<'_>, shading: &Shading<'_>, canvas: &mut dyn Canvas) -> u32 {

@@ -7,7 +7,7 @@ use crate::{
 };
 use microphong::{
     interpolate::{Patch, Walker, cubic::Cubic, plane::Plane, quadric::Quadric},
-    setup::{gradients::Gradients, steepness::Steepness},
+    setup::gradients::Gradients,
 };
 use std::hint::black_box;
 
@@ -39,8 +39,8 @@ impl Family for Walks {
         let (three, six, ten) = ([(); 3].map(|()| nodes()), [(); 6].map(|()| nodes()), [(); 10].map(|()| nodes()));
         let (row, column) = (random.pick(1..ROWS + 1), random.pick(1..COLUMNS + 1));
         let wrong = [
-            ("plane", drifts(Plane::<1>::fit::<15>(&gradients, &[three], 16, [0], Steepness::NONE), row, column)),
-            ("quadratic", drifts(Quadric::<1>::fit::<15>(&gradients, &[six], 16, [0], Steepness::NONE), row, column)),
+            ("plane", drifts(Plane::<1>::fit::<15>(&gradients, &[three], 16, [0]), row, column)),
+            ("quadratic", drifts(Quadric::<1>::fit::<15>(&gradients, &[six], 16, [0]), row, column)),
             ("cubic", drifts(Cubic::<1>::fit(&gradients, &[ten], 16, [0]), row, column)),
         ];
         let failure =

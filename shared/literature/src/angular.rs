@@ -18,8 +18,8 @@ use crate::{
 use microphong::{
     math::vector::{add, dot, normalise, wide, zip},
     method::{
-        Canvas, Constant, CosineLookup, Costs, Facts, Highlight, Lighting, LightingModel, Method, Patch, Reflection, Shading, Source,
-        TriangleSetup, VertexLight, Walker,
+        Canvas, Constant, CosineLookup, Costs, Facts, Highlight, HighlightField, Lighting, LightingModel, Method, Patch, Reflection,
+        Shading, Source, TriangleSetup, VertexLight, Walker,
     },
 };
 
@@ -30,6 +30,7 @@ static FACTS: Facts = Facts {
     vertex_light: VertexLight::None,
     highlight: Highlight::Half,
     highlight_levels: false,
+    highlight_field: HighlightField::Level,
     near_lights: true,
     perspective: false,
     costs: Costs::new(5, 0, 0, 200).per_row(360),
@@ -42,6 +43,7 @@ static ORIGINAL: Facts = Facts {
     vertex_light: VertexLight::None,
     highlight: Highlight::Half,
     highlight_levels: false,
+    highlight_field: HighlightField::Level,
     near_lights: true,
     perspective: false,
     costs: Costs::new(5, 0, 0, 200).per_row(360),

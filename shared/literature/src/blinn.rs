@@ -13,8 +13,8 @@ use microphong::{
     format::{COSINE, PIXEL_COSINE},
     math::vector::{cross, normalise, zip},
     method::{
-        Canvas, Constant, CosineLookup, Costs, Facts, Highlight, Lighting, LightingModel, Method, Node, Reflection, Shading, Source,
-        TriangleSetup, VertexLight, cosine, linear, signed,
+        Canvas, Constant, CosineLookup, Costs, Facts, Highlight, HighlightField, Lighting, LightingModel, Method, Node, Reflection,
+        Shading, Source, TriangleSetup, VertexLight, cosine, linear, signed,
     },
 };
 
@@ -25,6 +25,7 @@ static FACTS: Facts = Facts {
     vertex_light: VertexLight::None,
     highlight: Highlight::HalfSquared,
     highlight_levels: false,
+    highlight_field: HighlightField::Plane,
     near_lights: true,
     perspective: true,
     costs: Costs::new(4, 2, 1, 25),
@@ -47,7 +48,7 @@ fn draw(setup: &TriangleSetup<'_>, shading: &Shading<'_>, canvas: &mut dyn Canva
     let corners = setup.corner_nodes();
     let fit = |source: &Source| {
         let [diffuse, u, v] = coordinates(shading.lighting, source, corners);
-        linear([diffuse.map(|diffuse| diffuse.max(0)), u, v], shading.steepness())
+        linear([diffuse.map(|diffuse| diffuse.max(0)), u, v])
     };
     shading.draw_lit(setup, fit, Constant, Across, canvas)
 }

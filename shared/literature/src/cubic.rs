@@ -3,7 +3,7 @@
 //! Cost: three additions of 64 bits a pixel and channel; ten points to light. Continuous: both neighbours light the
 //! same thirds. A third to a half of the error of [`microphong::method::six_point`]. Domain: any lights.
 
-use microphong::method::{Canvas, Costs, Facts, Highlight, Method, RANGE, Shading, TriangleSetup, VertexLight};
+use microphong::method::{Canvas, Costs, Facts, Highlight, HighlightField, Method, RANGE, Shading, TriangleSetup, VertexLight};
 
 static FACTS: Facts = Facts {
     name: "cubic",
@@ -12,6 +12,7 @@ static FACTS: Facts = Facts {
     vertex_light: VertexLight::Levels,
     highlight: Highlight::Half,
     highlight_levels: false,
+    highlight_field: HighlightField::Level,
     near_lights: true,
     perspective: true,
     costs: Costs::new(3, 0, 0, 330),

@@ -8,7 +8,7 @@
 //! 2 products more per light. Error: that of the tables, [`microphong::math::highlight_lut::NEAREST_ERROR`] of the highlight above all.
 //! Domain: any lights; with near lights as good as six points are.
 
-use microphong::method::{Canvas, Costs, Facts, Highlight, Method, Shading, Steepness, TriangleSetup, VertexLight, duff};
+use microphong::method::{Canvas, Costs, Facts, Highlight, HighlightField, Method, Shading, TriangleSetup, VertexLight, duff};
 
 static FACTS: Facts = Facts {
     name: "duff",
@@ -17,6 +17,7 @@ static FACTS: Facts = Facts {
     vertex_light: VertexLight::Cosines,
     highlight: Highlight::Half,
     highlight_levels: true,
+    highlight_field: HighlightField::Quadratic,
     near_lights: true,
     perspective: true,
     costs: Costs::new(6, 3, 2, 60),
@@ -28,10 +29,6 @@ pub struct Duff;
 impl Method for Duff {
     fn facts(&self) -> &'static Facts {
         &FACTS
-    }
-
-    fn steepness(&self, _: &TriangleSetup<'_>, shading: &Shading<'_>) -> Steepness {
-        shading.steepness()
     }
 
     fn shade(&self, setup: &TriangleSetup<'_>, shading: &Shading<'_>, canvas: &mut dyn Canvas) -> u32 {

@@ -15,8 +15,8 @@ use microphong::{
     format::{COSINE, POSITION, UNIT},
     math::vector::{dot, normalise, zip},
     method::{
-        Canvas, CosineLookup, Costs, Facts, Held, Highlight, Lighting, LightingModel, Method, Node, Reflection, Shading, Source, Steepness,
-        TriangleSetup, VertexLight, Viewer, cosine, duff::Root, linear, signed,
+        Canvas, CosineLookup, Costs, Facts, Held, Highlight, HighlightField, Lighting, LightingModel, Method, Node, Reflection, Shading,
+        Source, TriangleSetup, VertexLight, Viewer, cosine, duff::Root, linear, signed,
     },
 };
 
@@ -30,6 +30,7 @@ static FACTS: Facts = Facts {
     vertex_light: VertexLight::None,
     highlight: Highlight::Reflected,
     highlight_levels: false,
+    highlight_field: HighlightField::Plane,
     near_lights: true,
     perspective: true,
     costs: Costs::new(4, 0, 1, 20),
@@ -51,10 +52,10 @@ impl Method for Environment {
 fn draw(setup: &TriangleSetup<'_>, shading: &Shading<'_>, canvas: &mut dyn Canvas) -> u32 {
     let (corners, lighting) = (setup.corner_nodes(), shading.lighting);
     let [a, b, c] = corners.map(|corner| coordinates(lighting, &corner));
-    let map = linear([[a[0], b[0], c[0]], [a[1], b[1], c[1]]], shading.steepness());
+    let map = linear([[a[0], b[0], c[0]], [a[1], b[1], c[1]]]);
     let fit = |source: &Source| {
         let to_eye = |v: [i32; 3]| lighting.axes.map(|axis| cosine(axis, v));
-        (linear([diffuse(&corners, source)], Steepness::NONE), Held(to_eye(source.towards([0; 3]))))
+        (linear([diffuse(&corners, source)]), Held(to_eye(source.towards([0; 3]))))
     };
     shading.draw_lit(setup, fit, map, Mirror, canvas)
 }

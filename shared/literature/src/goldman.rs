@@ -16,8 +16,8 @@ use microphong::{
         vector::{dot, normalise, wide},
     },
     method::{
-        Canvas, Constant, CosineLookup, Costs, Facts, Highlight, Lighting, LightingModel, Method, Patch, Reflection, Shading, Source,
-        TriangleSetup, VertexLight, Viewer, Walker, cosine,
+        Canvas, Constant, CosineLookup, Costs, Facts, Highlight, HighlightField, Lighting, LightingModel, Method, Patch, Reflection,
+        Shading, Source, TriangleSetup, VertexLight, Viewer, Walker, cosine,
     },
 };
 
@@ -28,6 +28,7 @@ static FACTS: Facts = Facts {
     vertex_light: VertexLight::None,
     highlight: Highlight::Reflected,
     highlight_levels: false,
+    highlight_field: HighlightField::Level,
     near_lights: false,
     perspective: false,
     costs: Costs::new(7, 4, 1, 30).per_row(70),

@@ -5,7 +5,7 @@
 //! Gouraud's set-up a triangle. Continuous. A quarter of Gouraud's error.
 
 use crate::split::SubTriangles;
-use microphong::method::{Canvas, Costs, Facts, Highlight, Method, Shading, SubTriangle, TriangleSetup, VertexLight};
+use microphong::method::{Canvas, Costs, Facts, Highlight, HighlightField, Method, Shading, SubTriangle, TriangleSetup, VertexLight};
 
 static FACTS: Facts = Facts {
     name: "gouraud4",
@@ -14,6 +14,7 @@ static FACTS: Facts = Facts {
     vertex_light: VertexLight::Levels,
     highlight: Highlight::Half,
     highlight_levels: false,
+    highlight_field: HighlightField::Level,
     near_lights: true,
     perspective: false,
     costs: Costs::new(1, 0, 0, 130),

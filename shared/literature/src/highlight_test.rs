@@ -8,7 +8,7 @@
 //! continuous where the two meet. Error against Phong: Gouraud's of diffuse light. Domain: any lights.
 
 use microphong::method::{
-    Canvas, Costs, Facts, Highlight, Method, RANGE, Shading, Source, Steepness, TriangleSetup, VertexLight, cosine, gouraud::Gouraud,
+    Canvas, Costs, Facts, Highlight, HighlightField, Method, RANGE, Shading, Source, TriangleSetup, VertexLight, cosine, gouraud::Gouraud,
     phong::Phong,
 };
 
@@ -19,6 +19,7 @@ static FACTS: Facts = Facts {
     vertex_light: VertexLight::CosinesOrLevels,
     highlight: Highlight::Half,
     highlight_levels: true,
+    highlight_field: HighlightField::Quadratic,
     near_lights: true,
     perspective: true,
     costs: Costs::new(11, 12, 2, 35),
@@ -30,10 +31,6 @@ pub struct HighlightTest;
 impl Method for HighlightTest {
     fn facts(&self) -> &'static Facts {
         &FACTS
-    }
-
-    fn steepness(&self, _: &TriangleSetup<'_>, shading: &Shading<'_>) -> Steepness {
-        shading.steepness()
     }
 
     fn shade(&self, setup: &TriangleSetup<'_>, shading: &Shading<'_>, canvas: &mut dyn Canvas) -> u32 {

@@ -14,7 +14,7 @@ use crate::{
 use microphong::{
     math::vector::normalise,
     method::{
-        Canvas, Constant, CosineLookup, Costs, Facts, Highlight, LightingModel, Method, Patch, Reflection, Shading, Source, Steepness,
+        Canvas, Constant, CosineLookup, Costs, Facts, Highlight, HighlightField, LightingModel, Method, Patch, Reflection, Shading, Source,
         TriangleSetup, VertexLight, cosine, quadratic, signed,
     },
 };
@@ -26,6 +26,7 @@ static FACTS: Facts = Facts {
     vertex_light: VertexLight::Cosines,
     highlight: Highlight::Half,
     highlight_levels: false,
+    highlight_field: HighlightField::Level,
     near_lights: true,
     perspective: false,
     costs: Costs::new(5, 0, 0, 290).per_row(180),
@@ -38,6 +39,7 @@ static ORIGINAL: Facts = Facts {
     vertex_light: VertexLight::Cosines,
     highlight: Highlight::Half,
     highlight_levels: false,
+    highlight_field: HighlightField::Level,
     near_lights: true,
     perspective: false,
     costs: Costs::new(5, 0, 0, 290).per_row(180),
@@ -80,7 +82,7 @@ fn draw(setup: &TriangleSetup<'_>, shading: &Shading<'_>, fit: fn(u16) -> Parabo
     let constant = |direction| bows(Turned { normals: setup.corner_nodes().map(|node| node.normal), direction });
     let (nodes, is_constant) = (setup.six_nodes(shading.exponent), shading.lighting.is_constant());
     let fit = |source: &Source| {
-        let diffuse = setup.fit(&quadratic([nodes.map(|node| cosine(node.normal, source.towards(node.position)))], Steepness::NONE));
+        let diffuse = setup.fit(&quadratic([nodes.map(|node| cosine(node.normal, source.towards(node.position)))]));
         let highlight = if is_constant {
             let [_, half] = shading.lighting.directions(source, [0; 3]);
             constant(half)

@@ -7,7 +7,7 @@
 //! Error against the half vector: that of the model.
 
 use microphong::method::{
-    Canvas, CosineLookup, Costs, Facts, Highlight, LightingModel, Method, Reflection, Shading, Steepness, TriangleSetup, VertexLight,
+    Canvas, CosineLookup, Costs, Facts, Highlight, HighlightField, LightingModel, Method, Reflection, Shading, TriangleSetup, VertexLight,
     phong, phong::Common,
 };
 
@@ -18,6 +18,7 @@ static FACTS: Facts = Facts {
     vertex_light: VertexLight::None,
     highlight: Highlight::Reflected,
     highlight_levels: false,
+    highlight_field: HighlightField::Quadratic,
     near_lights: true,
     perspective: true,
     costs: Costs::new(12, 13, 2, 30),
@@ -29,10 +30,6 @@ pub struct PhongRv;
 impl Method for PhongRv {
     fn facts(&self) -> &'static Facts {
         &FACTS
-    }
-
-    fn steepness(&self, _: &TriangleSetup<'_>, shading: &Shading<'_>) -> Steepness {
-        shading.steepness()
     }
 
     fn shade(&self, setup: &TriangleSetup<'_>, shading: &Shading<'_>, canvas: &mut dyn Canvas) -> u32 {

@@ -10,7 +10,7 @@
 use crate::split::SubTriangles;
 use microphong::{
     format::{SPLITS, SUBPIXEL},
-    method::{Canvas, Costs, Facts, Highlight, Method, Shading, SubTriangle, TriangleSetup, VertexLight},
+    method::{Canvas, Costs, Facts, Highlight, HighlightField, Method, Shading, SubTriangle, TriangleSetup, VertexLight},
 };
 
 /// Logarithm of the longest edge of a part, 8 pixels in 1/16 pixel.
@@ -23,6 +23,7 @@ static FACTS: Facts = Facts {
     vertex_light: VertexLight::Levels,
     highlight: Highlight::Half,
     highlight_levels: false,
+    highlight_field: HighlightField::Level,
     near_lights: true,
     perspective: false,
     costs: Costs::new(1, 0, 0, 520),

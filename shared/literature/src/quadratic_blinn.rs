@@ -5,7 +5,7 @@
 
 use crate::blinn::{Across, coordinates};
 use microphong::method::{
-    Canvas, Constant, Costs, Facts, Highlight, Method, Shading, Source, Steepness, TriangleSetup, VertexLight, quadratic,
+    Canvas, Constant, Costs, Facts, Highlight, HighlightField, Method, Shading, Source, TriangleSetup, VertexLight, quadratic,
 };
 
 static FACTS: Facts = Facts {
@@ -15,6 +15,7 @@ static FACTS: Facts = Facts {
     vertex_light: VertexLight::None,
     highlight: Highlight::HalfSquared,
     highlight_levels: false,
+    highlight_field: HighlightField::Quadratic,
     near_lights: true,
     perspective: true,
     costs: Costs::new(7, 2, 1, 260),
@@ -28,10 +29,6 @@ impl Method for QuadraticBlinn {
         &FACTS
     }
 
-    fn steepness(&self, _: &TriangleSetup<'_>, shading: &Shading<'_>) -> Steepness {
-        shading.steepness()
-    }
-
     fn shade(&self, setup: &TriangleSetup<'_>, shading: &Shading<'_>, canvas: &mut dyn Canvas) -> u32 {
         draw(setup, shading, canvas)
     }
@@ -39,6 +36,6 @@ impl Method for QuadraticBlinn {
 
 fn draw(setup: &TriangleSetup<'_>, shading: &Shading<'_>, canvas: &mut dyn Canvas) -> u32 {
     let nodes = setup.six_nodes(shading.exponent);
-    let fit = |source: &Source| quadratic(coordinates(shading.lighting, source, nodes), shading.steepness());
+    let fit = |source: &Source| quadratic(coordinates(shading.lighting, source, nodes));
     shading.draw_lit(setup, fit, Constant, Across, canvas)
 }

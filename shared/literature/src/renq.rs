@@ -9,7 +9,7 @@
 //! Domain: any lights; where |N| falls below 1/2, [`microphong::method::duff`]'s root takes over.
 
 use microphong::method::{
-    Canvas, Costs, Facts, Highlight, Method, Shading, Steepness, TriangleSetup, VertexLight, duff,
+    Canvas, Costs, Facts, Highlight, HighlightField, Method, Shading, TriangleSetup, VertexLight, duff,
     renq::{Scaled, length},
 };
 
@@ -20,6 +20,7 @@ static FACTS: Facts = Facts {
     vertex_light: VertexLight::Cosines,
     highlight: Highlight::Half,
     highlight_levels: true,
+    highlight_field: HighlightField::Quadratic,
     near_lights: true,
     perspective: true,
     costs: Costs::new(5, 2, 1, 60),
@@ -31,10 +32,6 @@ pub struct Renq;
 impl Method for Renq {
     fn facts(&self) -> &'static Facts {
         &FACTS
-    }
-
-    fn steepness(&self, _: &TriangleSetup<'_>, shading: &Shading<'_>) -> Steepness {
-        shading.steepness()
     }
 
     fn shade(&self, setup: &TriangleSetup<'_>, shading: &Shading<'_>, canvas: &mut dyn Canvas) -> u32 {

@@ -17,7 +17,7 @@ use crate::{
 use microphong::{
     format::LEVEL,
     math::vector::zip,
-    method::{Canvas, Costs, Facts, Highlight, Method, Shading, SubTriangle, TriangleSetup, VertexLight},
+    method::{Canvas, Costs, Facts, Highlight, HighlightField, Method, Shading, SubTriangle, TriangleSetup, VertexLight},
 };
 
 /// What an edge's parabola may be wrong by at its quarters, Q9.7.
@@ -30,6 +30,7 @@ static FACTS: Facts = Facts {
     vertex_light: VertexLight::Levels,
     highlight: Highlight::Half,
     highlight_levels: false,
+    highlight_field: HighlightField::Level,
     near_lights: true,
     perspective: false,
     costs: Costs::new(2, 0, 0, 355),

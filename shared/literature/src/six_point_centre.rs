@@ -10,7 +10,7 @@
 use crate::split::{Six, SubTriangles, corners, edges};
 use microphong::{
     format::LEVEL,
-    method::{Canvas, Costs, Facts, Highlight, Method, Shading, SubTriangle, TriangleSetup, VertexLight},
+    method::{Canvas, Costs, Facts, Highlight, HighlightField, Method, Shading, SubTriangle, TriangleSetup, VertexLight},
 };
 
 /// What the quadratic may be wrong by at the centre, Q9.7.
@@ -25,6 +25,7 @@ static FACTS: Facts = Facts {
     vertex_light: VertexLight::Levels,
     highlight: Highlight::Half,
     highlight_levels: false,
+    highlight_field: HighlightField::Level,
     near_lights: true,
     perspective: false,
     costs: Costs::new(2, 0, 0, 175),

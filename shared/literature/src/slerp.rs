@@ -17,8 +17,8 @@ use crate::{
 use microphong::{
     math::vector::{dot, normalise, wide},
     method::{
-        Canvas, Constant, CosineLookup, Costs, Facts, Highlight, Lighting, LightingModel, Method, Patch, Reflection, Shading, Source,
-        TriangleSetup, VertexLight, Walker, cosine,
+        Canvas, Constant, CosineLookup, Costs, Facts, Highlight, HighlightField, Lighting, LightingModel, Method, Patch, Reflection,
+        Shading, Source, TriangleSetup, VertexLight, Walker, cosine,
     },
 };
 
@@ -29,6 +29,7 @@ static FACTS: Facts = Facts {
     vertex_light: VertexLight::None,
     highlight: Highlight::Half,
     highlight_levels: false,
+    highlight_field: HighlightField::Level,
     near_lights: false,
     perspective: false,
     costs: Costs::new(5, 8, 1, 30).per_row(100),

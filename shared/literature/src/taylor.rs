@@ -15,16 +15,18 @@
 
 use microphong::{
     format::{COSINE, NORMAL_LENGTH, UNIT},
+    interpolate::{field::Field, quadric::Quadric},
     math::{
         rsqrt::rsqrt_wide,
         vector::{add, dot, sub, wide},
     },
     method::{
-        Canvas, Constant, CosineLookup, Costs, Facts, Held, Highlight, LightingModel, Method, Quadratic, Reflection, Shading, Source,
-        Steepness, TriangleSetup, VertexLight,
+        Canvas, Constant, CosineLookup, Costs, Facts, Held, Highlight, HighlightField, LightingModel, Method, Quadratic, Reflection,
+        Shading, Source, Steepness, TriangleSetup, VertexLight,
         lighting_model::{EXTRA, NODE},
-        signed,
+        signed, tiles,
     },
+    setup::gradients::Gradients,
 };
 
 /// Fraction bits of the vectors that [`Series::new`] takes.
@@ -37,6 +39,7 @@ static FACTS: Facts = Facts {
     vertex_light: VertexLight::None,
     highlight: Highlight::Half,
     highlight_levels: false,
+    highlight_field: HighlightField::Plane,
     near_lights: false,
     perspective: true,
     costs: Costs::new(5, 0, 1, 180),
@@ -48,10 +51,6 @@ pub struct Taylor;
 impl Method for Taylor {
     fn facts(&self) -> &'static Facts {
         &FACTS
-    }
-
-    fn steepness(&self, setup: &TriangleSetup<'_>, shading: &Shading<'_>) -> Steepness {
-        steepness(shading.exponent, largest_shift(setup))
     }
 
     fn shade(&self, setup: &TriangleSetup<'_>, shading: &Shading<'_>, canvas: &mut dyn Canvas) -> u32 {
@@ -73,7 +72,7 @@ fn expanded(normal: &Series, directions: [Series; 2]) -> ([[i64; 6]; 2], u32) {
     let values = directions.map(|direction| expansions(normal, &direction));
     let largest = values.as_flattened().iter().fold(0, |m, v| v.unsigned_abs().max(m));
     // Nodes stay below 6/5, so that quadratics stay below 2.
-    (values, (64 - (largest - largest / 6).leading_zeros()).saturating_sub(NODE))
+    (values, (64 - (largest - largest / 6).leading_zeros()).saturating_sub(VECTOR))
 }
 
 /// The series of the normals.
@@ -81,19 +80,17 @@ fn normals(setup: &TriangleSetup<'_>) -> Series {
     Series::new(setup.vertices().map(|vertex| wide(vertex.normal).map(|c| c << (VECTOR - UNIT))))
 }
 
-/// By how many bits expansions are shifted at most under constant lights: they are below four times the square of one and how far normals are
-/// away from the centroid's, which the least length of a normal tells.
-pub fn largest_shift(setup: &TriangleSetup<'_>) -> u32 {
-    match setup.triangle.min_normal_length >> (NORMAL_LENGTH - 4) {
+/// How steeply highlights follow the cosines, which are walked with as many bits less as they are shifted: expansions are below four times the
+/// square of one and how far normals are away from the centroid's, which the least length of a normal tells. Directions of near lights may be
+/// as far away.
+fn steepness(setup: &TriangleSetup<'_>, shading: &Shading<'_>) -> Steepness {
+    let shift = match setup.triangle.min_normal_length >> (NORMAL_LENGTH - 4) {
         13.. => 2,
         8.. => 5,
         _ => 11,
-    }
-}
-
-/// How steeply highlights follow cosines that are walked with so many bits less.
-pub fn steepness(exponent: u16, shift: u32) -> Steepness {
-    Steepness::new(u32::from(exponent) << shift.min(15))
+    };
+    let shift = if shading.lighting.is_constant() { shift } else { shift.max(6) };
+    Steepness::new(u32::from(shading.exponent) << shift)
 }
 
 /// Shades with the directions that `directions` makes of a light, along L and H.
@@ -103,21 +100,41 @@ pub fn draw_by(
     canvas: &mut dyn Canvas,
     directions: impl Fn(&Source) -> [Series; 2],
 ) -> u32 {
-    let normal = normals(setup);
+    let (normal, unshifted) = (normals(setup), setup.steepness());
     let fit = |source: &Source| {
         let (values, shift) = expanded(&normal, directions(source));
-        let nodes = values.map(|nodes| nodes.map(|node| (node >> shift) as i32));
-        (Quadratic::new(nodes, EXTRA).steep(steepness(shading.exponent, shift)), Held(shift))
+        let bits = shift + VECTOR - NODE;
+        let nodes = values.map(|nodes| nodes.map(|node| (node >> bits) as i32));
+        let steepness = if shift == 0 { unshifted } else { Steepness::new(u32::from(shading.exponent) << shift) };
+        (Steep(Quadratic::new(nodes, EXTRA), steepness), Held(shift))
     };
-    shading.draw_lit(setup, fit, Constant, Clamped, canvas)
+    tiles::shade_steeply(steepness(setup, shading), setup, canvas, |setup, canvas| shading.draw_lit(setup, &fit, Constant, Clamped, canvas))
+}
+
+/// A field of cosines that are walked with fewer bits.
+#[derive(Clone, Copy)]
+struct Steep(Quadratic<2>, Steepness);
+
+impl Field for Steep {
+    type Value = [u32; 2];
+    type Patch = Quadric<2>;
+    type Surface = Quadratic<2>;
+
+    fn fit(&self, gradients: &Gradients) -> Quadric<2> {
+        self.0.fit(&gradients.steep(self.1))
+    }
+
+    fn surface(&self) -> Quadratic<2> {
+        self.0
+    }
 }
 
 /// A vector that is linear over the triangle, divided by its length at the centroid.
 #[derive(Clone, Copy)]
 pub struct Series {
-    /// The vector at the centroid, Q8.24.
+    /// The vector at the centroid, [`VECTOR`] fraction bits.
     centre: [i32; 3],
-    /// The differences to it at corners and midpoints (01, 12, 20), Q8.24.
+    /// The differences to it at corners and midpoints (01, 12, 20), [`VECTOR`] fraction bits: below 22.
     away: [[i32; 3]; 6],
 }
 
@@ -129,7 +146,7 @@ impl Series {
         let [a, b, c] = corners;
         let sum = add(a, add(b, c));
         let (mantissa, exponent) = rsqrt_wide((dot(sum, sum) as u64).max(LEAST));
-        let scaled = |v: [i32; 3]| v.map(|c| ((i64::from(c) * i64::from(mantissa)) >> (exponent - NODE)) as i32);
+        let scaled = |v: [i32; 3]| v.map(|c| ((i64::from(c) * i64::from(mantissa)) >> (exponent - VECTOR)) as i32);
         let [a, b, c] = corners.map(|v| scaled(sub(v.map(|c| 3 * c), sum)));
         let middle = |a, b| add(a, b).map(|c| c >> 1);
         Self { centre: scaled(sum), away: [a, b, c, middle(a, b), middle(b, c), middle(c, a)] }
@@ -137,15 +154,15 @@ impl Series {
 
     /// The series of a constant unit vector, Q2.30.
     fn constant(v: [i32; 3]) -> Self {
-        Self { centre: v.map(|c| c >> (COSINE - NODE)), away: [[0; 3]; 6] }
+        Self { centre: v.map(|c| c >> (COSINE - VECTOR)), away: [[0; 3]; 6] }
     }
 }
 
-/// The expansion of the cosine between two vectors at the six nodes, [`NODE`] fraction bits.
+/// The expansion of the cosine between two vectors at the six nodes, [`VECTOR`] fraction bits.
 fn expansions(normal: &Series, direction: &Series) -> [i64; 6] {
-    // No factor exceeds 22, 3/2 of a square 2^10, a sum 2^13.
-    let product = |a: [i32; 3], b: [i32; 3]| dot(a, b) >> NODE;
-    let times = |a: i64, b: i64| (a * b) >> NODE;
+    // No vector exceeds 22, no sum of two products 45, no sum of squares 2^11: products of two stay below 2^11 of 2^52.
+    let product = |a: [i32; 3], b: [i32; 3]| dot(a, b) >> VECTOR;
+    let times = |a: i64, b: i64| (a * b) >> VECTOR;
     let (c, d) = (normal.centre, direction.centre);
     let zeroth = product(c, d);
     let at = |n: [i32; 3], w: [i32; 3]| {

@@ -14,7 +14,7 @@ use crate::{
 use microphong::{
     format::COSINE,
     math::vector::add,
-    method::{Canvas, Costs, Facts, Highlight, Method, Shading, Source, Steepness, TriangleSetup, VertexLight, point},
+    method::{Canvas, Costs, Facts, Highlight, HighlightField, Method, Shading, Source, TriangleSetup, VertexLight, point},
 };
 
 static FACTS: Facts = Facts {
@@ -24,6 +24,7 @@ static FACTS: Facts = Facts {
     vertex_light: VertexLight::None,
     highlight: Highlight::Half,
     highlight_levels: false,
+    highlight_field: HighlightField::Plane,
     near_lights: true,
     perspective: true,
     costs: Costs::new(5, 0, 1, 550),
@@ -35,12 +36,6 @@ pub struct TaylorFinite;
 impl Method for TaylorFinite {
     fn facts(&self) -> &'static Facts {
         &FACTS
-    }
-
-    fn steepness(&self, setup: &TriangleSetup<'_>, shading: &Shading<'_>) -> Steepness {
-        // Directions of near lights may be as far away from the centroid's.
-        let shift = if shading.lighting.is_constant() { 0 } else { 6 };
-        taylor::steepness(shading.exponent, taylor::largest_shift(setup).max(shift))
     }
 
     fn shade(&self, setup: &TriangleSetup<'_>, shading: &Shading<'_>, canvas: &mut dyn Canvas) -> u32 {

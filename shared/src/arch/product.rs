@@ -49,7 +49,7 @@ pub(crate) fn by_fraction(a: i32, b: u16) -> i32 {
 #[inline(always)]
 #[must_use]
 pub(crate) fn unsigned_by_fraction(a: u32, b: u16) -> u32 {
-    if HALVES { unsigned_by_half_word(a, b.into()) } else { ((u64::from(a) * u64::from(b)) >> 16) as u32 }
+    if HALVES { unsigned_by_half_word(a, b.into()) } else { ((u64::from(a) * (u64::from(b) << 16)) >> 32) as u32 }
 }
 
 /// Upper half of a dot product: `(a x + b y) / 2^32`, rounded down.

@@ -211,6 +211,7 @@ impl<'r, C: Pixel> Context<'r, C> {
         let error_bounds = self.error_bounds.get(material)?;
         let drawing = MeshPass {
             method: shader.method(),
+            steepness: shader.method().facts().steepness(exponent),
             shading: Shading {
                 reflectance,
                 lighting,

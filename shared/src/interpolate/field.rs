@@ -12,7 +12,7 @@ use crate::{
         plane::Plane,
         quadric::Quadric,
     },
-    setup::{gradients::Gradients, steepness::Steepness},
+    setup::gradients::Gradients,
 };
 
 /// A quantity that varies over a triangle.
@@ -38,7 +38,6 @@ pub struct Nodes<const N: usize, const CH: usize, const BITS: u32 = 32> {
     pub(crate) values: [[i32; N]; CH],
     pub(crate) extra: u32,
     pub(crate) bias: [i32; CH],
-    pub(crate) steepness: Steepness,
 }
 
 impl<const N: usize, const CH: usize, const BITS: u32> Nodes<N, CH, BITS> {
@@ -46,14 +45,7 @@ impl<const N: usize, const CH: usize, const BITS: u32> Nodes<N, CH, BITS> {
     #[inline(always)]
     #[must_use]
     pub fn new(values: [[i32; N]; CH], extra: u32) -> Self {
-        Self { values, extra, bias: [0; CH], steepness: Steepness::NONE }
-    }
-
-    /// The field as exact as a highlight of this steepness needs it.
-    #[inline(always)]
-    #[must_use]
-    pub fn steep(self, steepness: Steepness) -> Self {
-        Self { steepness, ..self }
+        Self { values, extra, bias: [0; CH] }
     }
 
     /// The field plus `bias` in every channel.
@@ -77,7 +69,7 @@ impl<const CH: usize, const BITS: u32> Field for Nodes<3, CH, BITS> {
 
     #[inline(always)]
     fn fit(&self, gradients: &Gradients) -> Plane<CH> {
-        Plane::fit::<BITS>(gradients, &self.values, self.extra, self.bias, self.steepness)
+        Plane::fit::<BITS>(gradients, &self.values, self.extra, self.bias)
     }
 
     fn surface(&self) -> Self {
@@ -92,7 +84,7 @@ impl<const CH: usize, const BITS: u32> Field for Nodes<6, CH, BITS> {
 
     #[inline(always)]
     fn fit(&self, gradients: &Gradients) -> Quadric<CH> {
-        Quadric::fit::<BITS>(gradients, &self.values, self.extra, self.bias, self.steepness)
+        Quadric::fit::<BITS>(gradients, &self.values, self.extra, self.bias)
     }
 
     fn surface(&self) -> Self {

@@ -2,7 +2,7 @@
 
 use crate::{
     interpolate::{Checkerboard, HALF_RANGE, Patch, Raised, Walker, each_channel},
-    setup::{gradients::Gradients, steepness::Steepness, word_sized::LINEAR},
+    setup::gradients::Gradients,
 };
 
 /// `c + dx x + dy y` in each of `CH` channels, standing on one row.
@@ -26,8 +26,8 @@ struct Row {
 impl Row {
     /// See [`Plane::fit`].
     #[inline(always)]
-    fn fit<const BITS: u32>(gradients: &Gradients, nodes: [i32; 3], extra: u32, bias: i32, steepness: Steepness) -> Self {
-        let [c, dx, dy] = gradients.linear::<BITS>(nodes, extra, steepness);
+    fn fit<const BITS: u32>(gradients: &Gradients, nodes: [i32; 3], extra: u32, bias: i32) -> Self {
+        let [c, dx, dy] = gradients.linear::<BITS>(nodes, extra);
         // The move from the anchor column to column 0 is exact, modulo 2^32.
         Self { c: c.wrapping_sub(dx.wrapping_mul(gradients.column())).wrapping_add(bias), dx, dy }
     }
@@ -35,13 +35,7 @@ impl Row {
     /// [`Self::fit`] in a function of its own, for several channels.
     #[inline(never)]
     fn fitted<const BITS: u32>(gradients: &Gradients, nodes: &[i32; 3], extra: u32, bias: i32) -> Self {
-        Self::fit::<BITS>(gradients, *nodes, extra, bias, Steepness::NONE)
-    }
-
-    /// [`Self::fitted`] for highlights.
-    #[inline(never)]
-    fn fitted_steeply<const BITS: u32>(gradients: &Gradients, nodes: &[i32; 3], extra: u32, bias: i32, steepness: Steepness) -> Self {
-        Self::fit::<BITS>(gradients, *nodes, extra, bias, steepness)
+        Self::fit::<BITS>(gradients, *nodes, extra, bias)
     }
 }
 
@@ -57,22 +51,14 @@ impl<const CH: usize> Plane<CH> {
     /// height.
     #[inline(always)]
     #[must_use]
-    pub fn fit<const BITS: u32>(gradients: &Gradients, nodes: &[[i32; 3]; CH], extra: u32, bias: [i32; CH], steepness: Steepness) -> Self {
+    pub fn fit<const BITS: u32>(gradients: &Gradients, nodes: &[[i32; 3]; CH], extra: u32, bias: [i32; CH]) -> Self {
         let mut plane = Self::ZERO;
         if CH == 1 {
             for ((row, nodes), bias) in plane.0.iter_mut().zip(*nodes).zip(bias) {
-                *row = Row::fit::<BITS>(gradients, nodes, extra, bias, steepness);
+                *row = Row::fit::<BITS>(gradients, nodes, extra, bias);
             }
         } else {
-            each_channel::<CH>(|c| {
-                plane.0[c] = {
-                    if BITS <= LINEAR {
-                        Row::fitted::<BITS>(gradients, &nodes[c], extra, bias[c])
-                    } else {
-                        Row::fitted_steeply::<BITS>(gradients, &nodes[c], extra, bias[c], steepness)
-                    }
-                }
-            });
+            each_channel::<CH>(|c| plane.0[c] = Row::fitted::<BITS>(gradients, &nodes[c], extra, bias[c]));
         }
         plane
     }

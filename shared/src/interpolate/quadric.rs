@@ -2,7 +2,7 @@
 
 use crate::{
     interpolate::{Checkerboard, HALF_RANGE, Patch, Raised, Walker, each_channel},
-    setup::{gradients::Gradients, steepness::Steepness, word_sized::QUADRATIC},
+    setup::{gradients::Gradients, word_sized::QUADRATIC},
 };
 
 /// `c + dx x + dy y + dxx x² + dxy x y + dyy y²` in each of `CH` channels, standing on one row.
@@ -33,12 +33,10 @@ struct Row {
 impl Row {
     /// See [`Quadric::fit`].
     #[inline(always)]
-    fn fit<const BITS: u32>(gradients: &Gradients, nodes: [i32; 6], extra: u32, bias: i32, steepness: Steepness) -> Self {
-        let [c, dx, dy, dxx, dxy, dyy] = if BITS <= QUADRATIC {
-            gradients.quadratic::<BITS>(nodes, extra, steepness)
-        } else {
-            long::<BITS>(gradients, nodes, extra, steepness)
-        };
+    fn fit<const BITS: u32>(gradients: &Gradients, nodes: [i32; 6], extra: u32, bias: i32) -> Self {
+        debug_assert!(BITS <= QUADRATIC || extra == 32 - BITS, "nodes of so many bits are walked in whole words");
+        let [c, dx, dy, dxx, dxy, dyy] =
+            if BITS <= QUADRATIC { gradients.quadratic::<BITS>(nodes, extra) } else { long::<BITS>(gradients, nodes) };
         let x = gradients.column();
         // The move from the anchor column to column 0 is exact, modulo 2^32.
         Self {
@@ -56,13 +54,7 @@ impl Row {
     /// [`Self::fit`] in a function of its own, for several channels.
     #[inline(never)]
     fn fitted<const BITS: u32>(gradients: &Gradients, nodes: &[i32; 6], extra: u32, bias: i32) -> Self {
-        Self::fit::<BITS>(gradients, *nodes, extra, bias, Steepness::NONE)
-    }
-
-    /// [`Self::fitted`] for highlights.
-    #[inline(never)]
-    fn fitted_steeply<const BITS: u32>(gradients: &Gradients, nodes: &[i32; 6], extra: u32, bias: i32, steepness: Steepness) -> Self {
-        Self::fit::<BITS>(gradients, *nodes, extra, bias, steepness)
+        Self::fit::<BITS>(gradients, *nodes, extra, bias)
     }
 }
 
@@ -73,7 +65,7 @@ impl<const CH: usize> Quadric<CH> {
     /// The quadratic through six nodes per channel: corners 0, 1, 2, then the midpoints of the edges 01, 12, 20.
     ///
     /// All nodes lie in a range narrower than 2^`BITS`; values are walked with `extra` more
-    /// fraction bits, `bias` added. Error: at most 2^-1 (1 + S + S²) units of the walked format, S the distance in columns plus rows
+    /// fraction bits, which of nodes of more than [`QUADRATIC`] bits are all that a word has, and `bias` added. Error: at most 2^-1 (1 + S + S²) units of the walked format, S the distance in columns plus rows
     /// from the anchor, and for set-up 2^-22 k² of the nodes' range, k the length over the height, up to
     /// [`crate::setup::gradients::MAX_THINNESS`]; nothing beyond. For 26 bits these are 2^-25 k² and
     /// [`crate::setup::gradients::MAX_FINE_THINNESS`]. On triangles of up to 64 pixels: 2^4 (1 + S) units more, of levels 2^9 (1 + S),
@@ -81,31 +73,24 @@ impl<const CH: usize> Quadric<CH> {
     /// Source: Szirmay-Kalos et al.; Vlasic 2002, 4.2; change of basis without his divisions.
     #[inline(always)]
     #[must_use]
-    pub fn fit<const BITS: u32>(gradients: &Gradients, nodes: &[[i32; 6]; CH], extra: u32, bias: [i32; CH], steepness: Steepness) -> Self {
+    pub fn fit<const BITS: u32>(gradients: &Gradients, nodes: &[[i32; 6]; CH], extra: u32, bias: [i32; CH]) -> Self {
         let mut quadric = Self::ZERO;
         if CH == 1 {
             for ((to, nodes), bias) in quadric.0.iter_mut().zip(*nodes).zip(bias) {
-                *to = Row::fit::<BITS>(gradients, nodes, extra, bias, steepness);
+                *to = Row::fit::<BITS>(gradients, nodes, extra, bias);
             }
         } else {
-            each_channel::<CH>(|c| {
-                quadric.0[c] = {
-                    if BITS <= QUADRATIC {
-                        Row::fitted::<BITS>(gradients, &nodes[c], extra, bias[c])
-                    } else {
-                        Row::fitted_steeply::<BITS>(gradients, &nodes[c], extra, bias[c], steepness)
-                    }
-                }
-            });
+            each_channel::<CH>(|c| quadric.0[c] = Row::fitted::<BITS>(gradients, &nodes[c], extra, bias[c]));
         }
         quadric
     }
 }
 
-/// Fits one channel outside of words, in a function of its own, since a call is a small share of the cost.
+/// Fits one channel outside of words, in a function of its own, since a call is a small share of the cost. That fields of these ranges are walked
+/// in whole words leaves it fewer instructions.
 #[inline(never)]
-fn long<const BITS: u32>(gradients: &Gradients, nodes: [i32; 6], extra: u32, steepness: Steepness) -> [i32; 6] {
-    gradients.quadratic::<BITS>(nodes, extra, steepness)
+fn long<const BITS: u32>(gradients: &Gradients, nodes: [i32; 6]) -> [i32; 6] {
+    gradients.quadratic::<BITS>(nodes, 32 - BITS)
 }
 
 impl<const CH: usize> Patch for Quadric<CH> {

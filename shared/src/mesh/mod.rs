@@ -26,6 +26,7 @@ use crate::{
     setup::{
         edge::MAX_STEPPED_WIDTH,
         gradients::{Gradients, MAX_FINE_THINNESS},
+        steepness::Steepness,
     },
     stream::record::{Triangle, Vertex},
 };
@@ -34,6 +35,8 @@ use crate::{
 pub(crate) struct MeshPass<'f, C: Pixel> {
     pub(crate) method: &'static dyn Method,
     pub(crate) shading: Shading<'f>,
+    /// How steeply light follows the fields that are fitted.
+    pub(crate) steepness: Steepness,
     pub(crate) output: Output<'f, C>,
     pub(crate) stage: VertexStage<'f>,
     /// Where triangles may overlap; `None` if they may do so everywhere.
@@ -97,7 +100,7 @@ impl<C: Pixel> MeshPass<'_, C> {
 
     #[inline(never)]
     fn shade_generally(&self, setup: &TriangleSetup<'_>, band: &mut Band<'_, C>) -> u32 {
-        tiles::shade(self.method, setup, &self.shading, &mut BandCanvas { band, output: &self.output })
+        tiles::shade(setup, &mut BandCanvas { band, output: &self.output }, |setup, canvas| self.method.shade(setup, &self.shading, canvas))
     }
 
     /// Draws a triangle of any size, by `loops` if they can; returns the number of its pixels in `band`.
@@ -126,7 +129,7 @@ impl<C: Pixel> MeshPass<'_, C> {
             if new.is_empty() {
                 return Some(0);
             }
-            gradients = Gradients::word_sized(new.corners);
+            gradients = Gradients::word_sized(new.corners, self.steepness);
             needs_depth_test = self.needs_depth_test(&new);
             if needs_depth_test {
                 new.set_up_depth(&gradients);
@@ -237,6 +240,7 @@ impl<C: Pixel> MeshPass<'_, C> {
             return 0;
         }
         let Some(gradients) = Gradients::new(screen.corners, self.viewport.box_of(placed.corners, pixels.finer())) else { return 0 };
+        let gradients = gradients.steep(self.steepness);
         // Most of the slivers of a fine mesh lie between the centres of pixels.
         if by_rows && gradients.is_thinner_than(MAX_FINE_THINNESS) && screen.covers_nothing() {
             return 0;

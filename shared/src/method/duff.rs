@@ -26,7 +26,6 @@ use crate::{
     },
     pixel::Pixel,
     raster::{band::Band, canvas::Canvas},
-    setup::steepness::Steepness,
 };
 
 /// Shades by linear numerators over a root, under lights that are the same everywhere.
@@ -39,11 +38,11 @@ pub fn shade_constant(setup: &TriangleSetup<'_>, shading: &Shading<'_>, canvas: 
                 // Both are linear, so that corners tell.
                 let [towards, half] = shading.constant_cosines(setup, source);
                 if !setup.leaves_out_highlight(reflectance, &half) {
-                    Lit::Fully(linear([towards, half], shading.steepness()))
+                    Lit::Fully(linear([towards, half]))
                 } else if setup.leaves_out_light(reflectance, &towards) {
                     Lit::Nowhere
                 } else {
-                    Lit::Diffuse(linear([towards], Steepness::NONE))
+                    Lit::Diffuse(linear([towards]))
                 }
             };
             shading.draw_lit_in_part(setup, fit, square, Tabled, canvas)
@@ -84,7 +83,7 @@ where
         return draw_constant(setup, shading, common, model, canvas);
     }
     let nodes = setup.six_linear_nodes();
-    shading.draw_lit(setup, |source| shading.six_products(&nodes, source, |p| p, shading.steepness()), common, model, canvas)
+    shading.draw_lit(setup, |source| shading.six_products(&nodes, source, |p| p), common, model, canvas)
 }
 
 /// The loops under one light, or two.
@@ -122,7 +121,7 @@ pub(crate) fn draw<C: Pixel>(
         return None;
     }
     // |N|² has two more bits than other quadratics, and its root is half as steep.
-    if setup.gradients.is_any() && !setup.gradients.walks_in_words(Steepness::new((shading.exponent / 8).into())) {
+    if setup.gradients.is_any() && !setup.gradients.steep(setup.gradients.steepness().halved(3)).walks_in_words() {
         return None;
     }
     let square = tabled(setup)?;
@@ -166,7 +165,7 @@ pub fn square(setup: &TriangleSetup<'_>, exponent: u16) -> Quadratic<1> {
         let [ab, bc, ca] = setup.edges(setup.triangle.haversine).map(|haversine| -(i32::from(haversine) << (NODE - HAVERSINE)));
         [0, 0, 0, ab, bc, ca]
     };
-    Quadratic::new([nodes], EXTRA).biased([1 << 30]).steep(Steepness::new(exponent.into()))
+    Quadratic::new([nodes], EXTRA).biased([1 << 30])
 }
 
 /// Six nodes of |N|² - 1 by the normals themselves, which are of unit length but for the rounding of their components.

@@ -1,6 +1,6 @@
 //! The facts about a shading method.
 
-use crate::lighting::reflectance::Highlight;
+use crate::{lighting::reflectance::Highlight, setup::steepness::Steepness};
 
 /// The facts about a method, which stand in its own file.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -18,6 +18,8 @@ pub struct Facts {
     pub highlight: Highlight,
     /// Whether the table of highlights may hold levels, because the method looks up nothing else in it.
     pub highlight_levels: bool,
+    /// What the highlight at a pixel is computed of, which says how exactly that has to be fitted and walked.
+    pub highlight_field: HighlightField,
     /// Whether the method can shade under near lights and for a near viewer.
     pub near_lights: bool,
     /// Whether the method can interpolate in perspective: it then interpolates over whole triangles, and neither along rows of the screen
@@ -40,10 +42,22 @@ impl Facts {
         vertex_light: VertexLight::Levels,
         highlight: Highlight::Half,
         highlight_levels: false,
+        highlight_field: HighlightField::Level,
         near_lights: true,
         perspective: true,
         costs: Costs::new(0, 0, 0, 0),
     };
+
+    /// How steeply light follows the fields of this method under this exponent.
+    pub(crate) const fn steepness(&self, exponent: u16) -> Steepness {
+        let steepness = Steepness::new(exponent as u32);
+        match self.highlight_field {
+            HighlightField::Level => Steepness::NONE,
+            HighlightField::Plane => steepness.of_planes(),
+            HighlightField::Quadratic => steepness,
+            HighlightField::Root => Steepness::new(2 * exponent as u32),
+        }
+    }
 }
 
 /// Operations of a method's formulas, counted by hand; `microphong bench` counts instructions.
@@ -78,6 +92,19 @@ impl Costs {
     pub const fn per_row(self, row: u32) -> Self {
         Self { row, ..self }
     }
+}
+
+/// What the highlight at a pixel is computed of.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum HighlightField {
+    /// Nothing: the pixel takes a level that is interpolated.
+    Level,
+    /// Planes.
+    Plane,
+    /// Quadratics.
+    Quadratic,
+    /// A quadratic through roots, which is squared first: the highlight follows it twice as steeply.
+    Root,
 }
 
 /// The light at a vertex that is computed once for all triangles around it.

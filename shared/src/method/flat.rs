@@ -11,7 +11,7 @@ use crate::{
         reflectance::Highlight,
     },
     math::vector::{add, wide},
-    method::{Costs, Facts, Loops, Method, Shading, Style, TriangleSetup, Uniform, VertexLight, node::Node, of_levels},
+    method::{Costs, Facts, HighlightField, Loops, Method, Shading, Style, TriangleSetup, Uniform, VertexLight, node::Node, of_levels},
     pixel::Pixel,
     raster::{
         band::Band,
@@ -28,6 +28,7 @@ static FACTS: Facts = Facts {
     vertex_light: VertexLight::None,
     highlight: Highlight::Half,
     highlight_levels: false,
+    highlight_field: HighlightField::Level,
     near_lights: true,
     perspective: true,
     costs: Costs::new(0, 0, 0, 5),

@@ -14,7 +14,7 @@ use crate::{
     math::highlight_lut::CosineLookup,
     method::{Shading, TriangleSetup, node::Node},
     raster::canvas::{CHUNK, Canvas, SpanShader, SpanTarget},
-    setup::{gradients::Gradients, steepness::Steepness},
+    setup::gradients::Gradients,
 };
 
 /// Fraction bits of a field at a node; walked with [`COSINE`].
@@ -280,7 +280,7 @@ impl Shading<'_> {
 
     /// The planes through N·L and N·H of a constant light, normals not normalised, which are exact.
     pub fn constant_products(&self, setup: &TriangleSetup<'_>, source: &Source) -> Linear<2> {
-        linear(self.constant_cosines(setup, source), self.steepness())
+        linear(self.constant_cosines(setup, source))
     }
 
     /// N·L and N·H of a constant light at the corners, Q2.30. Domain: [`crate::method::Lighting::is_constant`].
@@ -288,22 +288,10 @@ impl Shading<'_> {
         source.directional().map_or([[0; 3]; 2], |directions| directions.map(|direction| setup.corner_cosines(direction)))
     }
 
-    /// The quadratics through N·L and N·H of a light at six nodes; `map` is applied to both, and what it makes of N·H has this steepness.
-    pub fn six_products(
-        &self,
-        nodes: &[Node; 6],
-        source: &Source,
-        map: impl Fn([i32; 2]) -> [i32; 2],
-        steepness: Steepness,
-    ) -> Quadratic<2> {
+    /// The quadratics through N·L and N·H of a light at six nodes; `map` is applied to both.
+    pub fn six_products(&self, nodes: &[Node; 6], source: &Source, map: impl Fn([i32; 2]) -> [i32; 2]) -> Quadratic<2> {
         let values = nodes.map(|node| map(self.lighting.directions(source, node.position).map(|direction| cosine(node.normal, direction))));
-        quadratic([values.map(|[light, _]| light), values.map(|[_, half]| half)], steepness)
-    }
-
-    /// How steeply highlights follow a cosine.
-    #[must_use]
-    pub fn steepness(&self) -> Steepness {
-        Steepness::new(self.exponent.into())
+        quadratic([values.map(|[light, _]| light), values.map(|[_, half]| half)])
     }
 }
 
@@ -312,16 +300,16 @@ pub type Linear<const CH: usize> = Nodes<3, CH, BITS>;
 /// A field through six nodes.
 pub type Quadratic<const CH: usize> = Nodes<6, CH, BITS>;
 
-/// The quadratics through six nodes in Q2.30, as exact as highlights of this steepness need them.
+/// The quadratics through six nodes in Q2.30.
 #[inline]
-pub fn quadratic<const CH: usize>(nodes: [[i32; 6]; CH], steepness: Steepness) -> Quadratic<CH> {
-    Nodes::new(rounded(nodes), EXTRA).steep(steepness)
+pub fn quadratic<const CH: usize>(nodes: [[i32; 6]; CH]) -> Quadratic<CH> {
+    Nodes::new(rounded(nodes), EXTRA)
 }
 
-/// The planes through three nodes in Q2.30, as exact as highlights of this steepness need them.
+/// The planes through three nodes in Q2.30.
 #[inline]
-pub fn linear<const CH: usize>(nodes: [[i32; 3]; CH], steepness: Steepness) -> Linear<CH> {
-    Nodes::new(rounded(nodes), EXTRA).steep(steepness)
+pub fn linear<const CH: usize>(nodes: [[i32; 3]; CH]) -> Linear<CH> {
+    Nodes::new(rounded(nodes), EXTRA)
 }
 
 /// From Q2.30 to [`NODE`] fraction bits.

@@ -31,7 +31,6 @@ use crate::{
     },
     pixel::{Pixel, dither::ByRows},
     raster::{band::Band, pixel_shader::PixelShader},
-    setup::steepness::Steepness,
     stream::record::Vertex,
 };
 
@@ -65,11 +64,11 @@ pub(crate) fn draw<C: Pixel>(
     if setup.place.is_none() {
         let products = Products::new(setup, eye, towards)?;
         if products.largest_half(light) >= setup.highlight_threshold(tables.reflectance) >> (COSINE - HALF) {
-            if is_steep(shading.exponent) || !setup.gradients.walks_in_words(shading.steepness()) {
+            if is_steep(shading.exponent) || !setup.gradients.walks_in_words() {
                 return None;
             }
             let length = duff::tabled(setup)?;
-            let patch = products.patch(setup, light, length, shading.steepness());
+            let patch = products.patch(setup, light, length);
             let (lookup, lengths) = (tables.reflectance.highlight_lut.by_cosine(), HalfRsqrt::get());
             let colours = match tables.one_light_rgb() {
                 Some(colours) => Colours::Rgb(colours),
@@ -131,16 +130,10 @@ impl Products {
 
     /// The polynomials of all products.
     #[inline(never)]
-    fn patch(
-        &self,
-        setup: &TriangleSetup<'_>,
-        light: [i32; 3],
-        length: Nodes<6, 1, { duff::HAVERSINE_RANGE }>,
-        steepness: Steepness,
-    ) -> Walked {
-        let vv = Nodes::<6, 1, BITS>::new([map_six(self.vv, |square| (above_least(square) >> 8) as i32)], 8).steep(steepness);
-        let fit = |nodes: [i32; 6]| fitted(&quadratic([nodes], steepness), setup.gradients);
-        let plane = |corners| fitted(&linear([corners], steepness), setup.gradients);
+    fn patch(&self, setup: &TriangleSetup<'_>, light: [i32; 3], length: Nodes<6, 1, { duff::HAVERSINE_RANGE }>) -> Walked {
+        let vv = Nodes::<6, 1, { BITS - 2 }>::new([map_six(self.vv, |square| (above_least(square) >> 8) as i32)], 8);
+        let fit = |nodes: [i32; 6]| fitted(&quadratic([nodes]), setup.gradients);
+        let plane = |corners| fitted(&linear([corners]), setup.gradients);
         ByColumn((fitted(&length, setup.gradients), ((fitted(&vv, setup.gradients), fit(self.nv)), (plane(light), plane(self.lv)))))
     }
 }

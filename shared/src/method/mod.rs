@@ -22,7 +22,7 @@ pub mod renq_newton;
 pub mod six_point;
 pub mod sqrt6;
 pub mod sub_triangle;
-pub(crate) mod tiles;
+pub mod tiles;
 mod two_lights;
 
 use crate::{
@@ -62,7 +62,7 @@ pub use crate::{
 };
 use core::marker::PhantomData;
 pub use error_bound::ErrorBounds;
-pub use facts::{Costs, Facts, VertexLight};
+pub use facts::{Costs, Facts, HighlightField, VertexLight};
 #[doc(inline)]
 pub use lighting_model::{LightingModel, Linear, Quadratic, linear, quadratic, signed};
 #[doc(inline)]
@@ -78,12 +78,6 @@ pub trait Method: Sync {
     /// Computes what a method needs to keep to an error budget, for a material of this exponent under so many lights: others need nothing.
     fn error_bounds(&self, _reflectance: &Reflectance, _exponent: u16, _lights: usize) -> ErrorBounds {
         ErrorBounds::EMPTY
-    }
-
-    /// How steeply the light of pixels follows the quadratics that are walked over a triangle: a triangle that is too large for words to walk
-    /// them exactly is shaded in tiles. By default no highlight is computed of a quadratic, and triangles are shaded as a whole.
-    fn steepness(&self, _setup: &TriangleSetup<'_>, _shading: &Shading<'_>) -> Steepness {
-        Steepness::NONE
     }
 
     /// Shades the triangle `setup` into `canvas`; returns the number of its pixels there.
@@ -188,6 +182,12 @@ pub struct TriangleSetup<'f> {
 }
 
 impl TriangleSetup<'_> {
+    /// How steeply light follows what is fitted.
+    #[must_use]
+    pub fn steepness(&self) -> Steepness {
+        self.gradients.steepness()
+    }
+
     /// A copy without edges and gradients, for functions that light the triangle: since these are not passed, the compiler keeps them in
     /// registers.
     #[inline(always)]

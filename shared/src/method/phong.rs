@@ -19,7 +19,7 @@ use crate::{
         vector::{sub, wide},
     },
     method::{
-        Costs, Facts, Loops, Method, Shading, Style, TriangleSetup, VertexLight,
+        Costs, Facts, HighlightField, Loops, Method, Shading, Style, TriangleSetup, VertexLight,
         duff::{self, Duff, Root},
         lighting_model::{LightingModel, quadratic, signed},
         local_viewer,
@@ -27,7 +27,6 @@ use crate::{
     },
     pixel::Pixel,
     raster::{band::Band, canvas::Canvas},
-    setup::steepness::Steepness,
 };
 
 static FACTS: Facts = Facts {
@@ -37,6 +36,7 @@ static FACTS: Facts = Facts {
     vertex_light: VertexLight::Cosines,
     highlight: Highlight::Half,
     highlight_levels: true,
+    highlight_field: HighlightField::Quadratic,
     near_lights: true,
     perspective: true,
     costs: Costs::new(11, 12, 2, 30),
@@ -48,10 +48,6 @@ pub struct Phong;
 impl Method for Phong {
     fn facts(&self) -> &'static Facts {
         &FACTS
-    }
-
-    fn steepness(&self, _: &TriangleSetup<'_>, shading: &Shading<'_>) -> Steepness {
-        shading.steepness()
     }
 
     fn shade(&self, setup: &TriangleSetup<'_>, shading: &Shading<'_>, canvas: &mut dyn Canvas) -> u32 {
@@ -91,20 +87,19 @@ pub fn draw_by<F>(setup: &TriangleSetup<'_>, shading: &Shading<'_>, model: F, ca
 where
     F: LightingModel<[u32; 3], [u32; 3]>,
 {
-    let steepness = shading.steepness();
     let positions = setup.vertices().map(|vertex| point(vertex.position));
     let normals = fitted(setup.vertices().map(|vertex| wide(vertex.normal)));
     let view = fitted(match shading.lighting.viewer() {
         Viewer::Infinite(towards) => [towards; 3],
         Viewer::Local(eye) => positions.map(|p| sub(eye, p)),
     });
-    let common = quadratic([field_product(&normals, &normals), field_product(&view, &view), field_product(&normals, &view)], steepness);
+    let common = quadratic([field_product(&normals, &normals), field_product(&view, &view), field_product(&normals, &view)]);
     let fit = |source: &Source| {
         let towards = fitted(match (source.directional(), source.point()) {
             (Some([towards, _]), _) => [*towards; 3],
             (None, position) => positions.map(|p| sub(position.unwrap_or_default(), p)),
         });
-        quadratic([field_product(&normals, &towards), field_product(&towards, &towards), field_product(&view, &towards)], steepness)
+        quadratic([field_product(&normals, &towards), field_product(&towards, &towards), field_product(&view, &towards)])
     };
     shading.draw_lit(setup, fit, common, model, canvas)
 }

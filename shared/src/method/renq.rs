@@ -18,7 +18,6 @@ use crate::{
         lighting_model::{EXTRA, LightingModel, NODE, Quadratic, signed},
         node::is_steep,
     },
-    setup::steepness::Steepness,
 };
 
 /// Half the quadratic through 1/|N| at six nodes, Q2.30.
@@ -35,7 +34,7 @@ pub fn length(setup: &TriangleSetup<'_>, exponent: u16) -> Quadratic<1> {
         let [ab, bc, ca] = setup.inverse_sum_lengths();
         [node(ab), node(bc), node(ca)]
     };
-    Quadratic::new([[0, 0, 0, ab, bc, ca]], EXTRA).biased([1 << 29]).steep(Steepness::new(exponent.into()))
+    Quadratic::new([[0, 0, 0, ab, bc, ca]], EXTRA).biased([1 << 29])
 }
 
 /// Numerators times a reciprocal length.

@@ -17,14 +17,13 @@ use crate::{
     },
     math::highlight_lut::CosineLookup,
     method::{
-        Costs, Facts, Loops, Method, Shading, Style, TriangleSetup, VertexLight, duff,
+        Costs, Facts, HighlightField, Loops, Method, Shading, Style, TriangleSetup, VertexLight, duff,
         lighting_model::{LightingModel, signed},
         phong::Phong,
         quotient, renq,
     },
     pixel::Pixel,
     raster::{band::Band, canvas::Canvas},
-    setup::steepness::Steepness,
 };
 
 static FACTS: Facts = Facts {
@@ -34,6 +33,7 @@ static FACTS: Facts = Facts {
     vertex_light: VertexLight::Cosines,
     highlight: Highlight::Half,
     highlight_levels: true,
+    highlight_field: HighlightField::Quadratic,
     near_lights: true,
     perspective: true,
     costs: Costs::new(7, 5, 1, 85),
@@ -45,10 +45,6 @@ pub struct RenqNewton;
 impl Method for RenqNewton {
     fn facts(&self) -> &'static Facts {
         &FACTS
-    }
-
-    fn steepness(&self, _: &TriangleSetup<'_>, shading: &Shading<'_>) -> Steepness {
-        shading.steepness()
     }
 
     fn shade(&self, setup: &TriangleSetup<'_>, shading: &Shading<'_>, canvas: &mut dyn Canvas) -> u32 {
@@ -81,7 +77,7 @@ impl Loops for RenqNewton {
         band: &mut Band<'_, C>,
     ) -> Option<u32> {
         // Strongly curved triangles, rare: a root for each pixel.
-        let is_exact = || setup.place.is_some() || setup.gradients.walks_in_words(shading.steepness());
+        let is_exact = || setup.place.is_some() || setup.gradients.walks_in_words();
         if duff::is_curved(setup) || needs_two(setup.triangle.min_normal_length, shading.exponent) || !is_exact() {
             return None;
         }

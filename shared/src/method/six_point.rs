@@ -8,7 +8,7 @@
 use crate::{
     interpolate::by_column::ByColumn,
     lighting::{material_tables::MaterialTables, reflectance::Highlight},
-    method::{Costs, Facts, Loops, Method, RANGE, Shading, Style, TriangleSetup, VertexLight, node::map_six},
+    method::{Costs, Facts, HighlightField, Loops, Method, RANGE, Shading, Style, TriangleSetup, VertexLight, node::map_six},
     pixel::Pixel,
     raster::{band::Band, canvas::Canvas},
 };
@@ -20,6 +20,7 @@ static FACTS: Facts = Facts {
     vertex_light: VertexLight::CosinesOrLevels,
     highlight: Highlight::Half,
     highlight_levels: false,
+    highlight_field: HighlightField::Level,
     near_lights: true,
     perspective: true,
     costs: Costs::new(2, 0, 0, 135),

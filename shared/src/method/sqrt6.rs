@@ -24,7 +24,7 @@ use crate::{
     },
     math::{highlight_lookup::DefectLookup, highlight_lut::CosineLookup, rsqrt::sqrt},
     method::{
-        CornerCosines, Costs, Facts, Loops, Method, RANGE, Shading, Style, TriangleSetup, VertexLight, largest,
+        CornerCosines, Costs, Facts, HighlightField, Loops, Method, RANGE, Shading, Style, TriangleSetup, VertexLight, largest,
         lighting_model::{BITS, EXTRA, LightingModel, Lit, Quadratic, quadratic, signed},
         node::map_six,
         two_lights::TwoLights,
@@ -35,7 +35,6 @@ use crate::{
         canvas::Canvas,
         pixel_shader::{PixelShader, Ramp},
     },
-    setup::steepness::Steepness,
 };
 
 /// Whether the quadratic goes through roots of N·H, for which the table of highlights is made, or through N·H itself.
@@ -53,6 +52,7 @@ static FACTS: Facts = Facts {
     vertex_light: VertexLight::Cosines,
     highlight: Highlight::Root,
     highlight_levels: true,
+    highlight_field: HighlightField::Root,
     near_lights: true,
     perspective: true,
     costs: Costs::new(5, 0, 1, 175),
@@ -69,23 +69,12 @@ impl Method for Sqrt6 {
         &FACTS
     }
 
-    fn steepness(&self, _: &TriangleSetup<'_>, shading: &Shading<'_>) -> Steepness {
-        steepness::<true>(shading.exponent)
-    }
-
     fn shade(&self, setup: &TriangleSetup<'_>, shading: &Shading<'_>, canvas: &mut dyn Canvas) -> u32 {
         if shading.lighting.is_constant() {
             return shade_constant::<true>(setup, shading, canvas);
         }
         let nodes = setup.six_nodes(shading.exponent);
-        let fit = |source: &_| {
-            Lit::<_, Quadratic<1>>::Fully(shading.six_products(
-                &nodes,
-                source,
-                |[light, half]| [light, root(half)],
-                steepness::<true>(shading.exponent),
-            ))
-        };
+        let fit = |source: &_| Lit::<_, Quadratic<1>>::Fully(shading.six_products(&nodes, source, |[light, half]| [light, root(half)]));
         shading.draw_lit_in_part(setup, fit, Constant, AtPixel, canvas)
     }
 }
@@ -105,11 +94,11 @@ fn shade_constant<const ROOT: IsRoot>(setup: &TriangleSetup<'_>, shading: &Shadi
         let (towards, half) = (setup.six_from(setup.corner_cosines(towards)), setup.corner_cosines(half));
         if largest(&half) >= threshold {
             let half = map_six(setup.six_half_from(half, shading.exponent), walked::<ROOT>);
-            Lit::Fully(quadratic([towards, half], steepness::<ROOT>(shading.exponent)))
+            Lit::Fully(quadratic([towards, half]))
         } else if DiffuseSign::of(towards) == DiffuseSign::Nowhere {
             Lit::Nowhere
         } else {
-            Lit::Diffuse(quadratic([towards], Steepness::NONE))
+            Lit::Diffuse(quadratic([towards]))
         }
     };
     shading.draw_lit_in_part(setup, fit, Constant, AtPixel, canvas)
@@ -203,8 +192,9 @@ fn draw_two<const ROOT: IsRoot, C: Pixel>(
 ) -> Option<u32> {
     let TwoLights { colours, cosines: [first, second], highlights } = TwoLights::on(setup, tables)?;
     let (full, exponent) = (colours.diffuse(), shading.exponent);
-    let steeply = |[_, half]: CornerCosines| !is_exact::<ROOT>(setup, half, exponent, tables.reflectance);
-    if setup.place.is_none() && (highlights > 0 && steeply(first) || highlights > 1 && steeply(second)) {
+    let steeply = |[_, half]: CornerCosines| !is_exact(setup, half, tables.reflectance);
+    if setup.place.is_none() && !setup.gradients.walks_in_words() && (highlights > 0 && steeply(first) || highlights > 1 && steeply(second))
+    {
         return None;
     }
     let (towards, other) = (setup.six_from(first[0]), setup.six_from(second[0]));
@@ -235,7 +225,7 @@ fn draw<const ROOT: IsRoot, C: Pixel, T: OneLight<Pixel = C>>(
     tables: MaterialTables<'_, C>,
     band: &mut Band<'_, C>,
 ) -> Option<u32> {
-    if setup.resumed(band).is_none() && !is_exact::<ROOT>(setup, half, exponent, tables.reflectance) {
+    if setup.resumed(band).is_none() && !setup.gradients.walks_in_words() && !is_exact(setup, half, tables.reflectance) {
         return None;
     }
     // No nodes are needed of an active triangle.
@@ -288,7 +278,7 @@ fn diffuse(setup: &TriangleSetup<'_>, full: u16, cosines: [i32; 6]) -> Quadric<1
 #[inline(never)]
 fn highlight<const ROOT: IsRoot>(setup: &TriangleSetup<'_>, half: [i32; 3], lookup: DefectLookup<'_>, exponent: u16) -> Quadric<1> {
     let half = [map_six(map_six(setup.six_half_from(half, exponent), walked::<ROOT>), |node| lookup.node(node))];
-    Nodes::<6, 1, BITS>::new(half, EXTRA).biased([lookup.half()]).steep(steepness::<ROOT>(exponent)).fit(setup.gradients)
+    Nodes::<6, 1, BITS>::new(half, EXTRA).biased([lookup.half()]).fit(setup.gradients)
 }
 
 /// A walked diffuse level, and a highlight by 1 minus the root of N·H.
@@ -416,18 +406,12 @@ fn walked<const ROOT: IsRoot>(w: i32) -> i32 {
     if ROOT { root(w) } else { w.max(LOWEST - ONE) }
 }
 
-/// How steeply a highlight of this exponent follows what is walked of N·H.
-fn steepness<const ROOT: IsRoot>(exponent: u16) -> Steepness {
-    Steepness::new(u32::from(exponent) << u32::from(ROOT))
-}
-
-/// Whether words walk N·H of a triangle exactly enough for a highlight of this exponent. Where N·H is the same all over, or where no highlight can be seen, they do.
-#[inline(always)]
-fn is_exact<const ROOT: IsRoot>(setup: &TriangleSetup<'_>, half: [i32; 3], exponent: u16, reflectance: &Reflectance) -> bool {
+/// Whether words walk N·H exactly enough all over the triangle. They do where it is the same everywhere, or where no highlight can be seen.
+// A call leaves more registers to its callers.
+#[inline(never)]
+fn is_exact(setup: &TriangleSetup<'_>, half: [i32; 3], reflectance: &Reflectance) -> bool {
     let [a, b, c] = half;
-    setup.gradients.walks_in_words(steepness::<ROOT>(exponent))
-        || a == b && b == c
-        || largest(&half) < setup.highlight_threshold(reflectance)
+    a == b && b == c || largest(&half) < setup.highlight_threshold(reflectance)
 }
 
 /// Looks up highlights at the pixel.

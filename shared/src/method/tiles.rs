@@ -12,12 +12,12 @@ use crate::{
         Patch,
         plane::{Linear, Plane},
     },
-    method::{Method, Shading, TriangleSetup},
+    method::TriangleSetup,
     raster::{
         canvas::{Canvas, SpanShader},
         counts::Counts,
     },
-    setup::gradients::Gradients,
+    setup::{gradients::Gradients, steepness::Steepness},
 };
 
 /// What a tile shows of a canvas.
@@ -68,20 +68,36 @@ impl Canvas for Tile<'_> {
     }
 }
 
-/// Shades a triangle by `method`, in tiles if need be; returns the number of its pixels in `canvas`.
-pub(crate) fn shade(method: &dyn Method, setup: &TriangleSetup<'_>, shading: &Shading<'_>, canvas: &mut dyn Canvas) -> u32 {
-    let steepness = method.steepness(setup, shading);
-    if setup.gradients.walks_in_words(steepness) || setup.pixels != PixelSet::Centres {
-        return method.shade(setup, shading, canvas);
+/// Shades a triangle by `shade`, in tiles if need be; returns the number of its pixels in `canvas`.
+#[inline(always)]
+pub(crate) fn shade(
+    setup: &TriangleSetup<'_>,
+    canvas: &mut dyn Canvas,
+    mut shade: impl FnMut(&TriangleSetup<'_>, &mut dyn Canvas) -> u32,
+) -> u32 {
+    if setup.gradients.walks_in_words() || setup.pixels != PixelSet::Centres {
+        return shade(setup, canvas);
     }
-    in_tiles(steepness.tile(), method, setup, shading, canvas)
+    in_tiles(setup, canvas, &mut shade)
 }
 
-/// Shades a triangle in tiles whose sides have this logarithm.
+/// [`shade`] by fields that light follows as steeply as this, for methods of which [`crate::method::HighlightField`] does not say it.
+pub fn shade_steeply(
+    steepness: Steepness,
+    setup: &TriangleSetup<'_>,
+    canvas: &mut dyn Canvas,
+    draw: impl FnMut(&TriangleSetup<'_>, &mut dyn Canvas) -> u32,
+) -> u32 {
+    let gradients = setup.gradients.steep(steepness);
+    shade(&TriangleSetup { gradients: &gradients, ..*setup }, canvas, draw)
+}
+
+/// Shades a triangle in tiles.
 #[cold]
 #[inline(never)]
-fn in_tiles(side: u32, method: &dyn Method, setup: &TriangleSetup<'_>, shading: &Shading<'_>, canvas: &mut dyn Canvas) -> u32 {
+fn in_tiles(setup: &TriangleSetup<'_>, canvas: &mut dyn Canvas, shade: &mut dyn FnMut(&TriangleSetup<'_>, &mut dyn Canvas) -> u32) -> u32 {
     let (corners, whole) = (setup.screen.corners, setup.gradients);
+    let side = whole.steepness().tile();
     let [a, b, c] = corners.map(|corner| corner.map(|c| c >> SUBPIXEL));
     let [columns, top, bottom] = canvas.bounds();
     // First and last tile, counted from the first corner.
@@ -97,12 +113,13 @@ fn in_tiles(side: u32, method: &dyn Method, setup: &TriangleSetup<'_>, shading: 
             let place = |k: usize, tile: i32| a[k].wrapping_add(tile << side);
             let middle = [place(0, x), place(1, y)].map(|c| c.wrapping_add(1 << (side - 1)));
             let Some(gradients) = Gradients::anchored(corners, middle) else { continue };
+            let gradients = gradients.steep(whole.steepness());
             let setup = TriangleSetup { gradients: &gradients, ..*setup };
             let depth = setup.screen.plane(whole, top);
             let (columns, rows) = ([place(0, x), place(0, x + 1)], [place(1, y), place(1, y + 1)]);
             let counted = ([x, y] != [left, upper]).then(Counts::default);
             let mut tile = Tile { canvas, columns, rows, depth, row: top, pixels: 0, counted };
-            method.shade(&setup, shading, &mut tile);
+            shade(&setup, &mut tile);
             pixels = pixels.wrapping_add(tile.pixels);
         }
     }

@@ -17,7 +17,6 @@ use crate::{
         edge::{COLUMN, COLUMNS},
         edge_walker::{EdgeState, EdgeWalker, LeftRight},
         gradients::Gradients,
-        steepness::Steepness,
     },
 };
 use core::hint::black_box;
@@ -265,8 +264,7 @@ impl ScreenTriangle {
     fn fit_depth(&self, gradients: &Gradients, row: i32) -> Plane<1> {
         let [a, b, c] = self.depth;
         let node = |depth: i32| (depth + (1 << (DEPTH - DEPTH_NODE - 1))) >> (DEPTH - DEPTH_NODE);
-        let mut depth =
-            Plane::fit::<DEPTH_NODE>(gradients, &[[node(a), node(b), node(c)]], 16 + DEPTH_WALK - DEPTH_NODE, [0], Steepness::NONE);
+        let mut depth = Plane::fit::<DEPTH_NODE>(gradients, &[[node(a), node(b), node(c)]], 16 + DEPTH_WALK - DEPTH_NODE, [0]);
         depth.jump(row.wrapping_sub(gradients.row()));
         depth
     }

@@ -55,6 +55,8 @@ pub struct Gradients {
     edges: [[i32; 2]; 2],
     /// How often the triangle was split.
     level: u32,
+    /// How steeply light follows what is fitted.
+    steepness: Steepness,
 }
 
 /// Either the reciprocal of the area, from which the gradients follow, or the gradients themselves.
@@ -92,7 +94,7 @@ impl Gradients {
     #[must_use]
     pub fn if_word_sized(corners: [[i32; 2]; 3]) -> Option<Self> {
         let (_, edges) = edges(corners);
-        Some(Self::from_area(corners, WordSized::new(edges)?))
+        Some(Self::from_area(corners, WordSized::new(edges)?, Steepness::NONE))
     }
 
     /// The gradients of a triangle on which nothing is fitted.
@@ -103,22 +105,23 @@ impl Gradients {
         anchor: [0; 2],
         edges: [[0; 2]; 2],
         level: 0,
+        steepness: Steepness::NONE,
     };
 
     /// The gradients of a triangle that is known to be word-sized.
     #[inline(always)]
     #[must_use]
-    pub(crate) fn word_sized(corners: [[i32; 2]; 3]) -> Self {
+    pub(crate) fn word_sized(corners: [[i32; 2]; 3], steepness: Steepness) -> Self {
         let (_, edges) = edges(corners);
-        Self::from_area(corners, WordSized::of(edges))
+        Self::from_area(corners, WordSized::of(edges), steepness)
     }
 
     #[inline(always)]
-    fn from_area(corners: [[i32; 2]; 3], area: WordSized) -> Self {
+    fn from_area(corners: [[i32; 2]; 3], area: WordSized, steepness: Steepness) -> Self {
         let ([x0, y0], edges) = edges(corners);
         let anchor = [x0 >> SUBPIXEL, (y0 + CENTRE - 1) >> SUBPIXEL];
         let offset = [((anchor[0] << SUBPIXEL) + CENTRE - x0) << SPLITS, ((anchor[1] << SUBPIXEL) + CENTRE - y0) << SPLITS];
-        Self { scale: Scale::WordSized(area), offset, shift: [0; 2], anchor, edges, level: 0 }
+        Self { scale: Scale::WordSized(area), offset, shift: [0; 2], anchor, edges, level: 0, steepness }
     }
 
     /// The gradients of any triangle; `None` if it has no area or runs the other way.
@@ -157,6 +160,7 @@ impl Gradients {
             anchor: [pixel[0].wrapping_add(shift[0]), pixel[1].wrapping_add(shift[1])],
             edges,
             level: 0,
+            steepness: Steepness::NONE,
         })
     }
 
@@ -166,6 +170,19 @@ impl Gradients {
         let whole = Self::any(corners, [0; 4])?;
         let away = |k: usize| anchor[k].wrapping_sub(whole.anchor[k]).wrapping_add(whole.shift[k]);
         Some(Self { shift: [away(0), away(1)], anchor, ..whole })
+    }
+
+    /// The same gradients for fields that light follows so steeply: they are fitted as exactly as its highlights need them.
+    #[inline(always)]
+    #[must_use]
+    pub fn steep(self, steepness: Steepness) -> Self {
+        Self { steepness, ..self }
+    }
+
+    /// How steeply light follows what is fitted.
+    #[must_use]
+    pub fn steepness(&self) -> Steepness {
+        self.steepness
     }
 
     /// The gradients of a part of the triangle: its copy, 2^`level` times smaller, with corner 0 at `corner` ([`FINE`] fraction bits),
@@ -188,6 +205,7 @@ impl Gradients {
             anchor,
             edges: self.edges.map(gradient),
             level,
+            steepness: self.steepness,
         }
     }
 
@@ -252,20 +270,21 @@ impl Gradients {
         Slopes { s, t, exponent: exponent as i32 }
     }
 
-    /// `[c, dx, dy]` of the linear field through the corners' values in a range of 2^`BITS`, at the anchor, as exact as a highlight of this
-    /// `steepness` needs it.
+    /// `[c, dx, dy]` of the linear field through the corners' values in a range of 2^`BITS`, at the anchor.
     #[inline(always)]
     #[must_use]
-    pub fn linear<const BITS: u32>(&self, nodes: [i32; 3], extra: u32, steepness: Steepness) -> [i32; 3] {
+    pub fn linear<const BITS: u32>(&self, nodes: [i32; 3], extra: u32) -> [i32; 3] {
         match self.scale {
             Scale::WordSized(area) if BITS <= word_sized::LINEAR && extra <= word_sized::EXTRA => {
                 area.linear(self.edges, self.subpixels(), nodes, extra)
             }
-            Scale::WordSized(area) if BITS <= word_sized::LONG && extra >= word_sized::LONG_EXTRA && steepness.fits_words(area.bits) => {
+            Scale::WordSized(area)
+                if BITS <= word_sized::LONG && extra >= word_sized::LONG_EXTRA && self.steepness.fits_words(area.bits) =>
+            {
                 area.long_linear(self.edges, self.subpixels(), nodes, extra)
             }
             // Words would show.
-            Scale::WordSized(_) if BITS > word_sized::LINEAR && steepness.is_steep() => self.linear_any(nodes, extra),
+            Scale::WordSized(_) if BITS > word_sized::LINEAR && self.steepness.is_steep() => self.linear_any(nodes, extra),
             _ => self.linear_otherwise(BITS, nodes, extra),
         }
     }
@@ -313,24 +332,23 @@ impl Gradients {
     /// walked.
     #[inline(always)]
     fn plane(&self, nodes: [i32; 3], extra: u32) -> [i64; 3] {
-        let (c, dx, dy) = self.slopes(nodes[0], nodes[1].wrapping_sub(nodes[0]).into(), nodes[2].wrapping_sub(nodes[0]).into(), extra);
+        let (c, dx, dy) = self.slopes(nodes[0], nodes[1].wrapping_sub(nodes[0]), nodes[2].wrapping_sub(nodes[0]), extra);
         [c.wrapping_add(along(dx, self.offset[0])).wrapping_add(along(dy, self.offset[1])), dx, dy]
     }
 
     /// Value at corner 0 and derivatives along x and y of `c0 + c1 s + c2 t`, with `GUARD` more bits than walked.
     #[inline(always)]
-    fn slopes(&self, c0: i32, c1: i64, c2: i64, extra: u32) -> (i64, i64, i64) {
+    fn slopes(&self, c0: i32, c1: i32, c2: i32, extra: u32) -> (i64, i64, i64) {
         let Slopes { s, t, exponent } = self.gradients();
         let bits = exponent - extra as i32 - GUARD;
-        let along = |s: i32, t: i32| scale(c1.wrapping_mul(s.into()).wrapping_add(c2.wrapping_mul(t.into())), bits);
+        let along = |s: i32, t: i32| scale(product(c1, s) + product(c2, t), bits);
         (i64::from(c0).wrapping_shl(extra + GUARD as u32), along(s[0], t[0]), along(s[1], t[1]))
     }
 
-    /// `[c, dx, dy, dxx, dxy, dyy]` of the quadratic through six nodes in a range of 2^`BITS`, at the anchor, as exact as a highlight of this
-    /// `steepness` needs it.
+    /// `[c, dx, dy, dxx, dxy, dyy]` of the quadratic through six nodes in a range of 2^`BITS`, at the anchor.
     #[inline(always)]
     #[must_use]
-    pub fn quadratic<const BITS: u32>(&self, nodes: [i32; 6], extra: u32, steepness: Steepness) -> [i32; 6] {
+    pub fn quadratic<const BITS: u32>(&self, nodes: [i32; 6], extra: u32) -> [i32; 6] {
         match self.scale {
             Scale::WordSized(area) if BITS <= word_sized::QUADRATIC && extra <= word_sized::EXTRA => {
                 match area.quadratic(self.edges, self.subpixels(), nodes, extra) {
@@ -338,19 +356,19 @@ impl Gradients {
                     None => {
                         // Rebuild the array, so that the result of this rare path, which is returned in memory, does not force the fast
                         // path onto the stack.
-                        let [c, dx, dy, dxx, dxy, dyy] = self.quadratic_any(BITS, nodes, extra, steepness);
+                        let [c, dx, dy, dxx, dxy, dyy] = self.quadratic_any(BITS, nodes, extra);
                         [c, dx, dy, dxx, dxy, dyy]
                     }
                 }
             }
             Scale::WordSized(area) if BITS <= word_sized::LONG && extra >= word_sized::LONG_EXTRA => {
-                match area.long_quadratic(self.edges, self.subpixels(), nodes, extra, steepness) {
+                match area.long_quadratic(self.edges, self.subpixels(), nodes, extra, self.steepness) {
                     Some(fitted) => fitted,
-                    None => self.quadratic_any(BITS, nodes, extra, steepness),
+                    None => self.quadratic_any(BITS, nodes, extra),
                 }
             }
             Scale::WordSized(_) | Scale::Part(_) => self.quadratic_by_mantissas(BITS, nodes, extra),
-            Scale::Any(_) => self.quadratic_any(BITS, nodes, extra, steepness),
+            Scale::Any(_) => self.quadratic_any(BITS, nodes, extra),
         }
     }
 
@@ -383,33 +401,38 @@ impl Gradients {
 
     #[cold]
     #[inline(never)]
-    fn quadratic_any(self, range: u32, nodes: [i32; 6], extra: u32, steepness: Steepness) -> [i32; 6] {
+    fn quadratic_any(self, range: u32, nodes: [i32; 6], extra: u32) -> [i32; 6] {
         let [i0, i1, i2, i01, i12, i20] = nodes;
         let ratio = if range > word_sized::LINEAR { MAX_FINE_THINNESS } else { MAX_THINNESS };
         // Half the matrix of second derivatives: [[ss, st], [st, tt]].
         let (ss, st, tt) = (2 * (i0 + i1 - 2 * i01), 2 * (i0 - i01 - i20 + i12), 2 * (i0 + i2 - 2 * i20));
-        // Second differences are below 2^(range + 2).
-        let mut less = range + 2;
+        // Second differences are below 2^(range + 2), and are shifted up to there where their products would lose too much.
+        let mut up = 0;
         let mut is_exact = self.is_thinner_than(ratio);
-        if !is_exact && steepness.is_steep() && is_longer(self.edges, steepness.thinness().into()) {
-            // Their own size in place of the largest possible one.
-            less = 32 - (ss.unsigned_abs() | st.unsigned_abs() | tt.unsigned_abs()).leading_zeros();
-            // Exact fractions take most stack of all. Below, highlights are so soft that what is relative to second differences shows little.
-            is_exact = steepness.is_sharp() && !steepness.bends(range as i32 - less as i32 - 1, thinness(self.edges));
+        let steepness = self.steepness;
+        if !is_exact && steepness.is_steep() {
+            let thinness = self.thinness();
+            if steepness.is_thin(thinness) {
+                let size = (ss.unsigned_abs() | st.unsigned_abs() | tt.unsigned_abs()).leading_zeros();
+                up = size.wrapping_sub(30 - range);
+                // Exact fractions take most stack of all. Below, highlights are so soft that what is relative to second differences shows little.
+                is_exact = steepness.is_sharp() && !steepness.bends(size as i32 + range as i32 - 33, thinness);
+            }
         }
         if is_exact && let Some(sliver) = self.sliver() {
             return self.round(sliver.quadratic(nodes, extra + GUARD as u32));
         }
-        let (c, dx, dy) = self.slopes(i0, (4 * i01 - 3 * i0 - i1).into(), (4 * i20 - 3 * i0 - i2).into(), extra);
+        let (c, dx, dy) = self.slopes(i0, 4 * i01 - 3 * i0 - i1, 4 * i20 - 3 * i0 - i2, extra);
         // One factor of the chain rule, then the other: two products with mantissas, less these bits, stay below 2^31.
-        let (ss, st, tt, less) = (i64::from(ss), i64::from(st), i64::from(tt), less as i32);
+        let less = range as i32 + 2;
+        let (ss, st, tt) = (ss << up, st << up, tt << up);
         let Slopes { s, t, exponent } = self.gradients();
-        let once = |a: i64, b: i64, k: usize| scale(a * i64::from(s[k]) + b * i64::from(t[k]), less);
+        let sum = |a: i32, b: i32, k: usize, bits: i32| scale(product(a, s[k]) + product(b, t[k]), bits);
+        let once = |a: i32, b: i32, k: usize| sum(a, b, k, less) as i32;
         let (sx, tx, sy, ty) = (once(ss, st, 0), once(st, tt, 0), once(ss, st, 1), once(st, tt, 1));
-        let bits = 2 * exponent - less - extra as i32 - GUARD;
-        let twice = |a: i64, b: i64, k: usize| scale(a * i64::from(s[k]) + b * i64::from(t[k]), bits);
-        let (dxx, dyy) = (twice(sx, tx, 0), twice(sy, ty, 1));
-        let dxy = twice(sx, tx, 1).wrapping_mul(2);
+        let bits = 2 * exponent - less + up as i32 - extra as i32 - GUARD;
+        let (dxx, dyy) = (sum(sx, tx, 0, bits), sum(sy, ty, 1, bits));
+        let dxy = sum(sx, tx, 1, bits).wrapping_mul(2);
         // From the corner to its pixel's centre, at most a pixel away.
         let [ox, oy] = self.offset;
         let (bend_x, mixed, bend_y) = (along(dxx, ox), along(dxy, oy), along(dyy, oy));
@@ -419,19 +442,28 @@ impl Gradients {
         self.round([c, dx, dy, dxx, dxy, dyy])
     }
 
+    /// Length over height, rounded up; the length as [`Self::is_thinner_than`] takes it.
+    #[inline(always)]
+    fn thinness(&self) -> u32 {
+        match self.scale {
+            Scale::WordSized(area) => area.thinness(self.edges),
+            _ => thinness(self.edges),
+        }
+    }
+
     /// The triangle for fits by exact fractions; `None` if it is so large that its area does not fit a word.
     fn sliver(&self) -> Option<Sliver> {
         // In 1/16 pixel, in a part of the triangle as much finer as it is smaller: all exact.
         Sliver::new(self.edges, self.offset.map(|c| c >> (SPLITS - self.level)), SUBPIXEL + self.level)
     }
 
-    /// Whether a quadratic of this steepness can be walked in words all over the triangle.
+    /// Whether quadratics can be walked in words all over the triangle.
     #[inline(always)]
     #[must_use]
-    pub(crate) fn walks_in_words(&self, steepness: Steepness) -> bool {
+    pub(crate) fn walks_in_words(&self) -> bool {
         match self.scale {
-            Scale::WordSized(area) if steepness.walks_word_sized(area.bits) => true,
-            _ => walks_in_words(self.edges, self.shift, steepness),
+            Scale::WordSized(area) if self.steepness.walks_word_sized(area.bits) => true,
+            _ => walks_in_words(self.edges, self.shift, self.steepness),
         }
     }
 
@@ -501,7 +533,7 @@ fn is_longer(edges: [[i32; 2]; 2], ratio: i64) -> bool {
     square > area.saturating_mul(ratio)
 }
 
-/// Length over height, rounded up; the length as [`Gradients::is_thinner_than`] takes it.
+/// See [`Gradients::thinness`].
 #[cold]
 #[inline(never)]
 pub(super) fn thinness(edges: [[i32; 2]; 2]) -> u32 {

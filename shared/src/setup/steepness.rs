@@ -7,10 +7,6 @@
 /// What each error of a field may add to a highlight, in 1/255.
 pub const SHARE: f64 = 0.1;
 
-/// How steeply light follows a field: as a highlight of this exponent, or 0 for a field of levels.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct Steepness(u32);
-
 /// The largest `n e` by which a highlight is off by [`SHARE`], in units of 2^-`bits`.
 const fn limit(bits: u32) -> u32 {
     (SHARE / 255.0 * (1u64 << bits) as f64) as u32
@@ -26,34 +22,76 @@ const THIN: u32 = limit(25) * 10 / 13;
 /// Largest n d k² that words fit, or gradients of 30 bits: with d the second difference of nodes, quadratics are off by 2^-25 d k².
 const BEND: u32 = limit(25);
 
-/// The largest steepness that is told apart.
-const MOST: u32 = 1 << 14;
+/// The largest power of two that fits `a / b`, by its logarithm: a division takes a small processor longer.
+const fn log_quotient(a: u32, b: u32) -> u32 {
+    let log = a.ilog2() - b.ilog2();
+    if b << log <= a { log } else { log - 1 }
+}
+
+/// The largest steepness that is told apart. Words that walk a quadratic of this steepness all over a word-sized triangle also fit its first
+/// derivatives: [`FIRST`] is the smaller limit only below 8 pixels, where it allows this much.
+const MOST: u32 = FIRST >> 3;
+
+/// How steeply light follows a field: as a highlight of this exponent, or of exponent 0 for a field of levels; and which fast ways are
+/// exact enough for it.
+///
+/// One word, since every triangle keeps it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[repr(align(4))]
+pub struct Steepness {
+    exponent: u16,
+    /// Bits of the longest side of a word-sized triangle, in 1/16 pixel, all over which words walk a quadratic: no way is longer than
+    /// 2^(bits - 3). [`Self::ALL`] if nothing limits them.
+    walked: u8,
+    /// Largest logarithm of d k², [`Self::LOG`] added, for which words fit second derivatives.
+    bend: u8,
+}
 
 impl Steepness {
+    /// No limit.
+    const ALL: u8 = u8::MAX;
+    /// Added to logarithms, so that all are positive.
+    pub(crate) const LOG: u32 = 18;
     /// The steepness of a field of levels, of which no highlight is computed.
-    pub const NONE: Self = Self(0);
+    pub const NONE: Self = Self { exponent: 0, walked: Self::ALL, bend: Self::ALL };
 
-    /// The steepness of a field that is raised to `exponent`.
-    #[inline(always)]
+    /// The steepness of quadratics that are raised to `exponent`.
     #[must_use]
     pub const fn new(exponent: u32) -> Self {
-        Self(if exponent > MOST { MOST } else { exponent })
+        let exponent = if exponent > MOST { MOST } else { exponent };
+        if exponent == 0 {
+            return Self::NONE;
+        }
+        Self {
+            exponent: exponent as u16,
+            walked: (log_quotient(WALKED << 6, exponent) / 2) as u8,
+            bend: log_quotient(BEND << Self::LOG, exponent) as u8,
+        }
+    }
+
+    /// The steepness of a quadratic on a large triangle, where light follows it `2^bits` times less steeply.
+    #[must_use]
+    pub(crate) fn halved(self, bits: u32) -> Self {
+        Self { exponent: self.exponent >> bits, ..self }
+    }
+
+    /// The same for planes, which words walk exactly enough over any triangle.
+    #[must_use]
+    pub(crate) const fn of_planes(self) -> Self {
+        Self { walked: Self::ALL, ..self }
     }
 
     /// Whether a quadratic can be walked in words as far as `span` columns plus rows from its anchor.
-    #[inline(always)]
-    #[must_use]
     pub(crate) fn walks_in_words(self, span: u32) -> bool {
-        // Steepness has at most 15 bits, and no limit is above 1,023 pixels: all products fit a word.
+        // Steepness has at most 13 bits, and no limit is above 1,023 pixels: all products fit a word.
         let span = span.min(1023);
-        ((span * span) >> 4).wrapping_mul(self.0) <= WALKED >> 4
+        self.walked == Self::ALL || ((span * span) >> 4) * u32::from(self.exponent) <= WALKED >> 4
     }
 
-    /// Whether a quadratic can be walked in words all over a word-sized triangle whose sides have so many bits, in 1/16 pixel: no way is longer
-    /// than 2^(bits - 3).
+    /// Whether a quadratic can be walked in words all over a word-sized triangle whose sides have so many bits.
     #[inline(always)]
     pub(crate) fn walks_word_sized(self, bits: u32) -> bool {
-        self.0 <= 1 << 11 && self.0 << ((2 * bits) & 31) <= WALKED << 6
+        bits <= u32::from(self.walked)
     }
 
     /// The logarithm of the side of the largest square tiles in whose middles quadratics can be anchored, in pixels.
@@ -68,38 +106,39 @@ impl Steepness {
     /// Whether a highlight is computed of the field.
     #[inline(always)]
     pub(crate) fn is_steep(self) -> bool {
-        self != Self::NONE
+        self.exponent > 0
     }
 
     /// Whether the field makes a highlight of an exponent above 128, or above 64 by a root.
     pub(crate) fn is_sharp(self) -> bool {
-        self.0 > 128
+        self.exponent > 128
     }
 
-    /// Whether words fit first derivatives on a word-sized triangle whose sides have so many bits, in 1/16 pixel: S is below 2^(bits - 3).
+    /// Whether words fit first derivatives on a word-sized triangle whose sides have so many bits.
     #[inline(always)]
     pub(crate) fn fits_words(self, bits: u32) -> bool {
-        self.0 << (bits & 15) <= FIRST << 3
+        u32::from(self.exponent) <= (FIRST << 3) >> (bits & 31)
     }
 
-    /// Whether [`Self::bends`] and [`Self::fits_words`] are sure, by the logarithm of how many times as long as high a word-sized triangle is at
-    /// most.
+    /// Whether [`Self::bends`] is sure where d k² is below 2^(`log` - [`Self::LOG`]).
     #[inline(always)]
-    pub(crate) fn bends_little(self, small: i32, log_thinness: i32) -> bool {
-        let bits = (2 * log_thinness - small).max(0) as u32;
-        self.0 <= FIRST >> 7 && bits < 16 && self.0 << (bits & 15) <= BEND
+    pub(crate) fn bends_little(self, log: u32) -> bool {
+        log <= u32::from(self.bend)
     }
 
     /// Whether second derivatives can be rounded relative to the second differences, which are below 2^-`small`, on a triangle so many times as
     /// long as high.
-    #[inline(always)]
     pub(crate) fn bends(self, small: i32, thinness: u32) -> bool {
-        let bend = self.0.saturating_mul(thinness.saturating_mul(thinness));
+        let bend = u32::from(self.exponent).saturating_mul(thinness.saturating_mul(thinness));
         (if small < 0 { bend.saturating_mul(1 << -small.max(-3)) } else { bend >> small.min(31) }) <= BEND
     }
 
-    /// Length over height beyond which gradients of 30 bits do not fit a quadratic, if second derivatives are rounded as if they were large.
-    pub(crate) fn thinness(self) -> u32 {
-        THIN.checked_div(self.0).unwrap_or(u32::MAX).isqrt()
+    /// Whether gradients of 30 bits do not fit a quadratic on a triangle so many times as long as high, if second derivatives are rounded as if they
+    /// were large.
+    #[inline(always)]
+    pub(crate) fn is_thin(self, thinness: u32) -> bool {
+        // No limit is above 511, and steepness has at most 13 bits.
+        let thinness = thinness.min(511);
+        u32::from(self.exponent) * (thinness * thinness) > THIN
     }
 }

@@ -150,16 +150,14 @@ impl WordSized {
         let (ss, st, tt) = (i0 + i1 - 2 * i01, i0 - i01 - i20 + i12, i0 + i2 - 2 * i20);
         let most = 2 * (self.bits + self.zeros) + extra - 47;
         let room = room([ss, st, tt]);
-        // Second differences are below 2^(30 - room), and 1 is 2^(LONG - 2).
-        let small = room as i32 + LONG as i32 - 32;
-        // Mostly logarithms tell: length over height is below 2^(2 bits + zeros - 31).
-        let is_exact = steepness.bends_little(small, (2 * self.bits + self.zeros) as i32 - 31);
-        if !is_exact && !self.is_exact(edges, small, steepness) {
-            return None;
-        }
         let up = room.min(most);
         let left = most + 1 - up;
-        if left > LONG_SECOND - 1 {
+        // Second differences are below 2^(30 - room), and 1 is 2^(LONG - 2).
+        let is_exact = || {
+            steepness.bends_little(left + 2 * self.bits + Steepness::LOG - 10 - extra)
+                || self.is_exact(edges, room as i32 + LONG as i32 - 32, steepness)
+        };
+        if left > LONG_SECOND - 1 || !is_exact() {
             return None;
         }
         let (ss, st, tt) = (ss << up, st << up, tt << up);
@@ -197,12 +195,17 @@ impl WordSized {
     /// Whether words fit quadratics of this steepness, whose second differences are below 2^-`small`.
     #[cold]
     #[inline(never)]
-    fn is_exact(self, [[x1, y1], [x2, y2]]: [[i32; 2]; 2], small: i32, steepness: Steepness) -> bool {
+    fn is_exact(self, edges: [[i32; 2]; 2], small: i32, steepness: Steepness) -> bool {
+        steepness.fits_words(self.bits) && steepness.bends(small, self.thinness(edges))
+    }
+
+    /// Length over height, rounded up.
+    #[inline(always)]
+    pub(crate) fn thinness(&self, [[x1, y1], [x2, y2]]: [[i32; 2]; 2]) -> u32 {
         let size = |c: i32| c.unsigned_abs();
         let length = size(x1).max(size(y1)).max(size(x2)).max(size(y2));
-        // Length over height, rounded up, by the upper 11 bits of the inverse.
-        let thinness = ((length * length).wrapping_mul((self.inverse >> 16) as u32) >> (41 - self.zeros) >> 1) + 1;
-        steepness.fits_words(self.bits) && steepness.bends(small, thinness)
+        // By the upper 11 bits of the inverse.
+        ((length * length).wrapping_mul((self.inverse >> 16) as u32) >> (41 - self.zeros) >> 1) + 1
     }
 
     /// [`Self::slopes`] for differences of at most [`LONG`] + 2 bits, with at least [`LONG_EXTRA`].

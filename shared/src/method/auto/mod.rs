@@ -21,8 +21,9 @@ use crate::{
     },
     math::vector::zip,
     method::{
-        Costs, DrawTriangle, Facts, Loops, Method, RANGE, Shading, Style, ThreeChannels, TriangleSetup, Uniform, VertexLight, channels,
-        duff::Duff, error_bound::ErrorBounds, gouraud, of_levels, phong::Phong, six_point::SixPoint, sqrt6::SixCosines,
+        Costs, DrawTriangle, Facts, HighlightField, Loops, Method, RANGE, Shading, Style, ThreeChannels, TriangleSetup, Uniform,
+        VertexLight, channels, duff::Duff, error_bound::ErrorBounds, gouraud, of_levels, phong::Phong, six_point::SixPoint,
+        sqrt6::SixCosines,
     },
     pixel::Pixel,
     raster::{
@@ -30,7 +31,6 @@ use crate::{
         canvas::{Canvas, Shaded},
         pixel_shader::Solid,
     },
-    setup::steepness::Steepness,
 };
 pub use choice::{Choice, choose};
 use choice::{corner_levels, extremes};
@@ -43,6 +43,7 @@ static FACTS: Facts = Facts {
     vertex_light: VertexLight::CosinesAndReflection,
     highlight: Highlight::Half,
     highlight_levels: true,
+    highlight_field: HighlightField::Quadratic,
     near_lights: true,
     perspective: true,
     // At most: those of Phong shading.
@@ -123,10 +124,6 @@ impl<const QUADRATICS: bool> Method for Auto<QUADRATICS> {
 
     fn error_bounds(&self, reflectance: &Reflectance, exponent: u16, lights: usize) -> ErrorBounds {
         ErrorBounds::new(reflectance, exponent, lights)
-    }
-
-    fn steepness(&self, _: &TriangleSetup<'_>, shading: &Shading<'_>) -> Steepness {
-        shading.steepness()
     }
 
     fn shade(&self, setup: &TriangleSetup<'_>, shading: &Shading<'_>, canvas: &mut dyn Canvas) -> u32 {
