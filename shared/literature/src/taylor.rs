@@ -15,18 +15,16 @@
 
 use microphong::{
     format::{COSINE, NORMAL_LENGTH, UNIT},
-    interpolate::{field::Field, quadric::Quadric},
     math::{
         rsqrt::rsqrt_wide,
         vector::{add, dot, sub, wide},
     },
     method::{
         Canvas, Constant, CosineLookup, Costs, Facts, Held, Highlight, HighlightField, LightingModel, Method, Quadratic, Reflection,
-        Shading, Source, Steepness, TriangleSetup, VertexLight,
+        Shading, Source, Steep, Steepness, TriangleSetup, VertexLight,
         lighting_model::{EXTRA, NODE},
         signed, tiles,
     },
-    setup::gradients::Gradients,
 };
 
 /// Fraction bits of the vectors that [`Series::new`] takes.
@@ -106,27 +104,9 @@ pub fn draw_by(
         let bits = shift + VECTOR - NODE;
         let nodes = values.map(|nodes| nodes.map(|node| (node >> bits) as i32));
         let steepness = if shift == 0 { unshifted } else { Steepness::new(u32::from(shading.exponent) << shift) };
-        (Steep(Quadratic::new(nodes, EXTRA), steepness), Held(shift))
+        (Steep { field: Quadratic::new(nodes, EXTRA), steepness }, Held(shift))
     };
-    tiles::shade_steeply(steepness(setup, shading), setup, canvas, |setup, canvas| shading.draw_lit(setup, &fit, Constant, Clamped, canvas))
-}
-
-/// A field of cosines that are walked with fewer bits.
-#[derive(Clone, Copy)]
-struct Steep(Quadratic<2>, Steepness);
-
-impl Field for Steep {
-    type Value = [u32; 2];
-    type Patch = Quadric<2>;
-    type Surface = Quadratic<2>;
-
-    fn fit(&self, gradients: &Gradients) -> Quadric<2> {
-        self.0.fit(&gradients.steep(self.1))
-    }
-
-    fn surface(&self) -> Quadratic<2> {
-        self.0
-    }
+    tiles::shade_steeply(steepness(setup, shading), setup, canvas, |setup, canvas| shading.draw_lit(setup, fit, Constant, Clamped, canvas))
 }
 
 /// A vector that is linear over the triangle, divided by its length at the centroid.

@@ -12,7 +12,7 @@ use crate::{
         plane::Plane,
         quadric::Quadric,
     },
-    setup::gradients::Gradients,
+    setup::{gradients::Gradients, steepness::Steepness},
 };
 
 /// A quantity that varies over a triangle.
@@ -103,6 +103,29 @@ impl<const CH: usize, const BITS: u32> Field for Nodes<10, CH, BITS> {
 
     fn surface(&self) -> Self {
         *self
+    }
+}
+
+/// A field that light follows more steeply than others of its triangle, or less so.
+#[derive(Clone, Copy, Debug)]
+pub struct Steep<F> {
+    /// The field.
+    pub field: F,
+    /// How steeply light follows it.
+    pub steepness: Steepness,
+}
+
+impl<F: Field> Field for Steep<F> {
+    type Value = F::Value;
+    type Patch = F::Patch;
+    type Surface = F::Surface;
+
+    fn fit(&self, gradients: &Gradients) -> F::Patch {
+        self.field.fit(&gradients.steep(self.steepness))
+    }
+
+    fn surface(&self) -> F::Surface {
+        self.field.surface()
     }
 }
 

@@ -50,7 +50,7 @@ pub use crate::{
     geometry::projection::ScreenVertex,
     interpolate::{
         Constant, Held, Patch, Walker,
-        field::{Field, Nodes},
+        field::{Field, Nodes, Steep},
     },
     lighting::{
         lights::{Lighting, Source, Viewer, cosine, point},

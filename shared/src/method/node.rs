@@ -214,7 +214,7 @@ pub fn map_six<A, R>([a, b, c, d, e, g]: [A; 6], f: impl Fn(A) -> R) -> [R; 6] {
     [f(a), f(b), f(c), f(d), f(e), f(g)]
 }
 
-/// [`TriangleSetup::six_cosines`] at the midpoints, where the 16 bits of a record (`given`) do not hold all constants of edges.
+/// Cosines at the midpoints, where the 16 bits of a record (`given`) do not hold all constants of edges.
 #[cold]
 #[inline(never)]
 fn wide_middles(vertices: [&Vertex; 3], given: [u16; 3], [a, b, c]: [i32; 3]) -> [i32; 3] {

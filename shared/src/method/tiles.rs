@@ -81,7 +81,8 @@ pub(crate) fn shade(
     in_tiles(setup, canvas, &mut shade)
 }
 
-/// [`shade`] by fields that light follows as steeply as this, for methods of which [`crate::method::HighlightField`] does not say it.
+/// Shades a triangle by fields that light follows as steeply as this, in tiles if need be: for methods of which
+/// [`crate::method::HighlightField`] does not say it.
 pub fn shade_steeply(
     steepness: Steepness,
     setup: &TriangleSetup<'_>,
