@@ -36,7 +36,8 @@ const fn sunset() -> [u8; 2 * SIDE * SIDE] {
 
 /// What the display shows in the end, and the counts of the picture.
 ///
-/// # Errors Of the library, if something is wrong with the above.
+/// # Errors
+/// Whatever the library reports if a constant of this file is wrong.
 pub(crate) fn draw() -> Result<(SimulatorDisplay<Rgb565>, Stats), Box<dyn std::error::Error>> {
     // Read in place: on a microcontroller the mesh stays in flash.
     let stream = Stream::parse(include_stream!("../firmware/teapot.tri"))?;

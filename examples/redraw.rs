@@ -13,7 +13,8 @@ const SIZE: Size = Size::new(320, 240);
 
 /// Both pictures, and the counts of the second.
 ///
-/// # Errors Of the library, if something is wrong with the below.
+/// # Errors
+/// Whatever the library reports if a constant of this file is wrong.
 pub(crate) fn draw() -> Result<(SimulatorDisplay<Rgb565>, Stats), Box<dyn std::error::Error>> {
     let board = scene::load("board")?;
     let stream = board.stream.parse()?;

@@ -8,7 +8,7 @@ const TEAPOT: &str = "teapot.tri";
 /// Features that choose a board, where its memory map lies, and its stream unless another is named.
 const BOARDS: [(&str, &str, &str); 4] = [
     ("PICO", "../memory.x", TEAPOT),
-    // By six-point: it has no flash for auto.
+    // By auto-linear: it has no flash for auto.
     ("LM3S6965EVB", "boards/lm3s6965evb.x", "boards/lm3s6965evb.tri"),
     ("MPS2_AN385", "boards/mps2-an385.x", TEAPOT),
     ("MPS2_AN386", "boards/mps2-an386.x", TEAPOT),

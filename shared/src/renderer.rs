@@ -36,8 +36,9 @@ impl<'a, C: Pixel> Renderer<'a, C> {
     /// A renderer for a viewport of `size` pixels, with the one of `shaders` that the stream asks for. `memory` has as many words as
     /// [`Layout::words`] says; its contents do not matter.
     ///
-    /// # Errors When `size` is out of range or not that of the layout, `memory` is too small, the method is missing or cannot shade the
-    /// scene, or the stream has labels and this build lacks the feature `text`.
+    /// # Errors
+    /// When `size` is out of range, its width is not the layout's, `memory` is too small, the method is missing or cannot shade the scene, or
+    /// the stream has labels and this build lacks the feature `text`.
     pub fn new(stream: Stream<'a>, size: Size, layout: &Layout, memory: &'a mut [u64], shaders: &[Shader<C>]) -> Result<Self, RenderError> {
         let method = stream.header.shader;
         let shader = shaders.iter().find(|shader| shader.facts().id == method).ok_or(RenderError::Missing { method })?;
@@ -153,7 +154,8 @@ impl<'a, C: Pixel> Renderer<'a, C> {
     /// Turns interpolation in perspective on or off; it is off at first. Without it, light is interpolated linearly on the screen, which
     /// shows where a triangle reaches from near to far. It makes no difference to orthographic cameras.
     ///
-    /// # Errors When this build or the method in use cannot interpolate in perspective; nothing changes then.
+    /// # Errors
+    /// When this build or the method in use cannot interpolate in perspective; nothing changes then.
     pub fn set_perspective_correct(&mut self, on: bool) -> Result<(), RenderError> {
         if on && !cfg!(feature = "perspective") {
             return Err(RenderError::Feature { name: "perspective" });
@@ -169,7 +171,8 @@ impl<'a, C: Pixel> Renderer<'a, C> {
     /// Changes how far a pixel may be off from Phong shading by the method [`Shader::AUTO`], in 1/255 of full intensity; at first it is what
     /// the stream says.
     ///
-    /// # Errors When it is less than [`LEAST_BUDGET`] or more than [`LARGEST_BUDGET`]; nothing changes then.
+    /// # Errors
+    /// When it is less than [`LEAST_BUDGET`] or more than [`LARGEST_BUDGET`]; nothing changes then.
     pub fn set_budget(&mut self, budget: ErrorBudget) -> Result<(), RenderError> {
         if !(LEAST_BUDGET..=LARGEST_BUDGET).contains(&budget) {
             return Err(RenderError::Budget);
@@ -202,7 +205,8 @@ impl<'a, C: Pixel> Renderer<'a, C> {
 
     /// Turns antialiasing by exact areas on or off; it is off at first.
     ///
-    /// # Errors When the memory has no room for it, or this build lacks the feature `antialias`; it stays off then.
+    /// # Errors
+    /// When the memory has no room for it, or this build lacks the feature `antialias`; it stays off then.
     pub fn set_antialias(&mut self, antialias: bool) -> Result<(), RenderError> {
         self.settings.antialias = false;
         if antialias && !cfg!(feature = "antialias") {
@@ -248,7 +252,8 @@ impl<'a, C: Pixel> Renderer<'a, C> {
 
     /// Checks that a slice of pixels can be a band.
     ///
-    /// # Errors When it does not hold one row of the picture.
+    /// # Errors
+    /// When `pixels` does not hold one row of the picture.
     pub fn check_band(&self, pixels: &[C]) -> Result<(), RenderError> {
         let need = self.settings.size.width as usize;
         if pixels.len() < need { Err(RenderError::Band { need }) } else { Ok(()) }

@@ -42,6 +42,11 @@ pub fn program() -> &'static Path {
     &PROGRAM
 }
 
+/// The method in CONTRIBUTING.md compiles as it stands there.
+#[cfg(doctest)]
+#[doc = include_str!("../../CONTRIBUTING.md")]
+struct Documents;
+
 /// The methods that all others are compared with.
 pub const BASIC: [Shader; 4] = [Shader::FLAT, Shader::GOURAUD, Shader::SIX_POINT, Shader::PHONG];
 

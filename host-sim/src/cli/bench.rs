@@ -32,8 +32,8 @@ use std::path::{Path, PathBuf};
 #[derive(clap::Args)]
 #[command(after_help = EXAMPLES)]
 pub(crate) struct Arguments {
-    /// .tri, .obj or .stl files, built-in scenes, or all built-in scenes. The default is one of each ordinary kind: large triangles and
-    /// small ones, in one hue, in blue with a white highlight, and under two coloured lights.
+    /// .tri, .obj, .stl, .ply, .gltf, .glb and .toml files, built-in scenes, or all built-in scenes. The default is one of each ordinary kind:
+    /// large triangles and small ones, in one hue, in blue with a white highlight, and under two coloured lights.
     #[arg(value_name = "SCENE", default_values = scene::PORTFOLIO)]
     scenes: Vec<String>,
     /// Shading methods, separated by commas, or all that can shade the scene.

@@ -24,7 +24,7 @@ use std::path::PathBuf;
 #[derive(clap::Args)]
 #[command(after_help = EXAMPLES)]
 pub(crate) struct Arguments {
-    /// .tri, .obj or .stl files, built-in scenes, or all built-in scenes.
+    /// .tri, .obj, .stl, .ply, .gltf, .glb and .toml files, built-in scenes, or all built-in scenes.
     #[arg(required = true, value_name = "SCENE")]
     scenes: Vec<String>,
     /// Shading methods by name, separated by commas, or all.

@@ -111,7 +111,7 @@ pub(crate) struct Arguments {
     /// Highlights look from each point to the eye, instead of in one direction for all: dearer.
     #[arg(long)]
     local_viewer: bool,
-    /// Picture for which the camera is set up; others show the same with more border.
+    /// Picture for which the camera is set up. Wider ones show the same with more border; narrower ones may cut the mesh off at the sides.
     #[arg(long, value_name = "WxH", default_value = "320x240", value_parser = parse::size)]
     size: (u32, u32),
     /// Make the mesh of so many triangles at most, on some of its vertices, and say how far it lies from the mesh of the file. Levels of --lod

@@ -22,7 +22,7 @@ use std::{
 #[derive(clap::Args)]
 #[command(after_help = EXAMPLES)]
 pub(crate) struct Arguments {
-    /// A .tri, .obj or .stl file, or a built-in scene; `microphong scenes` lists them.
+    /// A .tri, .obj, .stl, .ply, .gltf, .glb or .toml file, or a built-in scene; `microphong scenes` lists them.
     scene: String,
     /// Shading method; the scene's own unless given. `microphong compare` shows what each is worth.
     #[arg(long, value_parser = parse::Shaders)]

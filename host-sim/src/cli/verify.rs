@@ -23,7 +23,7 @@ pub(crate) struct Arguments {
     /// Boards, separated by commas: pico, lm3s6965evb, mps2-an385, mps2-an386; or all.
     #[arg(long, value_parser = boards)]
     board: Several<Board>,
-    /// A .tri, .obj or .stl file, a built-in scene, or all built-in scenes.
+    /// A .tri, .obj, .stl, .ply, .gltf, .glb or .toml file, a built-in scene, or all built-in scenes.
     #[arg(long, default_value = "teapot")]
     scene: String,
     /// Shading methods, separated by commas, or all that the board has room for.

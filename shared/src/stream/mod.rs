@@ -177,7 +177,8 @@ pub fn length(header: &Header) -> Option<u32> {
 impl<'a> Stream<'a> {
     /// Checks `bytes` once and for all. Bytes behind the stream's own length are ignored.
     ///
-    /// # Errors The first fault that is found, with its place.
+    /// # Errors
+    /// The first fault that is found, with its place.
     pub fn parse(bytes: &'a [u8]) -> Result<Self, StreamError> {
         let have = bytes.len() as u32;
         let truncated = |need| StreamError::Truncated { need, have };
