@@ -42,9 +42,10 @@ pub fn program() -> &'static Path {
     &PROGRAM
 }
 
-/// The method in CONTRIBUTING.md compiles as it stands there.
+/// The method in CONTRIBUTING.md, and the light in the guide, compile as they stand there.
 #[cfg(doctest)]
 #[doc = include_str!("../../CONTRIBUTING.md")]
+#[doc = include_str!("../../docs/guide/coordinates.md")]
 struct Documents;
 
 /// The methods that all others are compared with.

@@ -1,12 +1,19 @@
-//! Links in the documents lead to files that are there.
+//! Links in the documents lead to files and headings that are there, the index names each page, and the README is short. Sizes that the guide
+//! tells are those of the layout.
 
 use crate::golden::root;
-use std::fs;
+use embedded_graphics::pixelcolor::{BinaryColor, Rgb565};
+use microphong::{Layout, pixel::Pixel};
+use std::{
+    fs,
+    path::{Path, PathBuf},
+};
 
-const DOCUMENTS: [&str; 8] = [
+const DOCUMENTS: [&str; 9] = [
     "README.md",
     "CHANGELOG.md",
     "CONTRIBUTING.md",
+    "docs/README.md",
     "docs/design.md",
     "docs/proofs.md",
     "examples/README.md",
@@ -14,23 +21,91 @@ const DOCUMENTS: [&str; 8] = [
     "tests/scenes/README.md",
 ];
 
+/// Bytes that a first look may take.
+const README: usize = 15_000;
+
+fn repository() -> PathBuf {
+    root().join("..")
+}
+
+fn read(path: &Path) -> String {
+    fs::read_to_string(path).unwrap_or_else(|error| panic!("{}: {error}", path.display()))
+}
+
+/// All pages of the guide.
+fn pages() -> Vec<String> {
+    let files = fs::read_dir(repository().join("docs/guide")).expect("the guide");
+    files.map(|file| format!("docs/guide/{}", file.expect("a file").file_name().to_string_lossy())).collect()
+}
+
+/// The targets of its links.
+fn links(text: &str) -> impl Iterator<Item = &str> {
+    text.split("](").skip(1).filter_map(|rest| rest.split_once(')')).map(|(target, _)| target)
+}
+
+/// The names by which links know the headings of a document.
+fn anchors(text: &str) -> Vec<String> {
+    let mut fenced = false;
+    let headings = text.lines().filter(|line| {
+        fenced ^= line.trim_start().starts_with("```");
+        !fenced && line.starts_with('#')
+    });
+    let kept = |c: char| c.is_alphanumeric() || "-_ ".contains(c);
+    headings.map(|line| line.trim_start_matches('#').trim().to_lowercase().replace(|c: char| !kept(c), "").replace(' ', "-")).collect()
+}
+
 #[test]
-fn links_lead_to_files() {
-    let (mut links, mut broken) = (0, Vec::new());
-    for document in DOCUMENTS {
-        let path = root().join("..").join(document);
-        let text = fs::read_to_string(&path).expect("a document");
-        let folder = path.parent().expect("a folder");
-        for target in text.split("](").skip(1).filter_map(|rest| rest.split_once(')')).map(|(target, _)| target) {
-            let file = target.split('#').next().unwrap_or_default();
-            if !file.is_empty() && !file.contains("://") {
-                links += 1;
-                if !folder.join(file).exists() {
-                    broken.push(format!("{document}: {target}"));
-                }
+fn links_lead_to_files_and_headings() {
+    let (mut count, mut broken) = (0, Vec::new());
+    for document in DOCUMENTS.map(String::from).into_iter().chain(pages()) {
+        let path = repository().join(&document);
+        let text = read(&path);
+        for target in links(&text).filter(|target| !target.contains("://")) {
+            count += 1;
+            let (file, heading) = target.split_once('#').unwrap_or((target, ""));
+            let file = if file.is_empty() { path.clone() } else { path.parent().expect("a folder").join(file) };
+            if !file.exists() || !heading.is_empty() && !anchors(&read(&file)).iter().any(|anchor| anchor == heading) {
+                broken.push(format!("{document}: {target}"));
             }
         }
     }
-    assert!(links > 100, "{links} links");
+    assert!(count > 100, "{count} links");
     assert!(broken.is_empty(), "{broken:#?}");
+}
+
+#[test]
+fn the_index_names_each_page() {
+    let index = read(&repository().join("docs/README.md"));
+    let missing: Vec<_> = pages().into_iter().filter(|page| !links(&index).any(|target| page.ends_with(target))).collect();
+    assert!(missing.is_empty(), "{missing:?}");
+}
+
+#[test]
+fn the_readme_is_short() {
+    let length = read(&repository().join("README.md")).len();
+    assert!(length <= README, "{length} bytes; move something to the guide");
+}
+
+/// The table of docs/guide/size.md.
+#[test]
+fn memory_is_what_the_guide_says() {
+    let guide = read(&repository().join("docs/guide/size.md"));
+    let told = |part: &str| {
+        let row = guide.lines().find_map(|line| line.strip_prefix(&format!("| {part}"))).unwrap_or_else(|| panic!("no row of {part}"));
+        let figure = row.trim_end_matches([' ', '|']).rsplit('|').next().unwrap_or_default();
+        figure.trim().replace(',', "").parse::<usize>().unwrap_or_else(|error| panic!("{part}: {figure}: {error}"))
+    };
+    let layout = Layout::new(320, 16).vertices(800).triangles(992).materials(2).objects(3).active_triangles(48);
+    let common = 800 * told("vertex")
+        + 992 * told("triangle |")
+        + 48 * told("triangle across")
+        + 3 * told("object")
+        + 320 * 16 * told("pixel of a band");
+    // Each part begins at a multiple of a word.
+    fn has<C: Pixel>(layout: &Layout, told: usize) {
+        let bytes = layout.bytes::<C>();
+        assert!(bytes.abs_diff(told) < 64, "{bytes} bytes, the guide says {told}");
+    }
+    has::<Rgb565>(&layout, common + 2 * told("material in `Rgb565`"));
+    has::<BinaryColor>(&layout, common + 2 * told("material in `BinaryColor`"));
 }

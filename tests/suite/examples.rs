@@ -1,4 +1,4 @@
-//! The firmware in examples/: what its displays show is drawn here by the same code, the README shows its text, and each program is short.
+//! The firmware in examples/: what its displays show is drawn here by the same code, the documents show its text, and each program is short.
 //!
 //! `MICROPHONG_BLESS=1 cargo test -p microphong-tests examples` makes pictures and streams the standard.
 
@@ -100,12 +100,19 @@ fn streams_are_what_their_commands_make() {
 }
 
 #[test]
-fn the_readme_shows_the_program() {
-    let readme = fs::read_to_string(root().join("../README.md")).expect("the README");
+fn documents_show_the_programs() {
+    let shown = |document: &str, text: &str| {
+        let document = fs::read_to_string(root().join("..").join(document)).expect("a document");
+        document.contains(&format!("\n```rust\n{text}```\n"))
+    };
     for file in ["src/scene.rs", "src/main.rs"] {
         let text = fs::read_to_string(path("stm32f411-ili9341", file)).expect("a source");
-        assert!(readme.contains(&format!("\n```rust\n{text}```\n")), "{file} of stm32f411-ili9341 has changed: copy it into the README");
+        let document = "docs/guide/getting-started.md";
+        assert!(shown(document, &text), "{file} of stm32f411-ili9341 has changed: copy it into {document}");
     }
+    // A reader's program has a mesh of its own beside `src`.
+    let text = fs::read_to_string(path("", "display.rs")).expect("a source").replace("../firmware/teapot.tri", "../mesh.tri");
+    assert!(shown("README.md", &text), "examples/display.rs has changed: copy it into the README");
 }
 
 #[test]

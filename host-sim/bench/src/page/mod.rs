@@ -186,7 +186,7 @@ fn legend() -> Markup {
     }
 }
 
-/// The panels of the first scene as one drawing, with its own style: for the README.
+/// The panels of the first scene as one drawing, with its own style: for the guide.
 fn chart(measurements: &[Measurement]) -> Markup {
     const GAP: f64 = 24.0;
     const HEAD: f64 = 46.0;
