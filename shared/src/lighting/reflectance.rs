@@ -120,8 +120,8 @@ pub struct Reflectance {
     pub(super) gains: [Gains; MAX_LIGHTS],
     /// Bits by which the sum of all lights may leave Q10.22, at most 5.
     excess: u32,
-    /// For [`OneLightRgb`], of the first two lights, and of the first one again: two neighbours are both lights in either order. On even rows and
-    /// on odd ones.
+    /// For [`OneLightRgb`](super::constant_lights::OneLightRgb): of the first light, of the second light, and of the first light again, so that two
+    /// neighbours are both lights in either order. One array is for even rows, one for odd rows.
     pub(super) sums: [[Sums; 3]; 2],
     /// See [`Self::ambient_sums`].
     ambient_sums: [i32; 3],
