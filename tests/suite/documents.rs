@@ -1,5 +1,5 @@
-//! Links in the documents lead to files and headings that are there, the index names each page, and the README is short. Sizes that the guide
-//! tells are those of the layout.
+//! Links in the documents lead to files and headings that are there, the index names each page, and the README is short. Costs of methods are
+//! those that are recorded, and sizes in the guide are those of the layout.
 
 use crate::golden::root;
 use embedded_graphics::pixelcolor::{BinaryColor, Rgb565};
@@ -108,4 +108,35 @@ fn memory_is_what_the_guide_says() {
     }
     has::<Rgb565>(&layout, common + 2 * told("material in `Rgb565`"));
     has::<BinaryColor>(&layout, common + 2 * told("material in `BinaryColor`"));
+}
+
+/// Instructions and flash of each method in the README and the guide, as `tests/baselines/costs.csv` has them. A program without a method takes
+/// 54 KB; the README tells whole programs.
+#[test]
+fn costs_are_those_that_are_recorded() {
+    /// Of the scene, at 320x240 on the MPS2 and at 240x240 on the Pico: the sphere is as large in both.
+    const PIXELS: f64 = 43_813.0;
+    let recorded = read(&root().join("baselines/costs.csv"));
+    let cost = |board: &str, method: &str| {
+        let start = format!("{board},peer-sphere-plastic,{method},");
+        let row = recorded.lines().find_map(|line| line.strip_prefix(&start)).unwrap_or_else(|| panic!("no costs {start}"));
+        let (instructions, flash) = row.split_once(',').expect("two figures");
+        [instructions, flash].map(|figure| figure.parse::<f64>().expect("a figure"))
+    };
+    for (document, before, base, methods) in [("README.md", 4, 54.0, 7), ("docs/guide/methods.md", 5, 0.0, 8)] {
+        let text = read(&repository().join(document));
+        let mut found = 0;
+        for method in ["flat", "gouraud", "six-point", "sqrt6", "renq-newton", "phong", "auto", "auto-linear"] {
+            let Some(row) = text.lines().find(|line| line.starts_with(&format!("| `{method}` |"))) else { continue };
+            found += 1;
+            let cells: Vec<_> =
+                row.split('|').skip(before).flat_map(|cell| cell.split(',')).map(|cell| cell.trim().trim_end_matches(" KB")).collect();
+            let [m3, m0, flash] = [0, 1, 2].map(|index| cells[index].parse::<f64>().expect("a figure"));
+            let ([on_m3, bytes], [on_m0, _]) = (cost("mps2-an385", method), cost("pico", method));
+            let close = |told: f64, instructions: f64| (told * PIXELS / instructions - 1.0).abs() < 0.01;
+            assert!(close(m3, on_m3) && close(m0, on_m0), "{document}: {method}: {:.1}, {:.1}", on_m3 / PIXELS, on_m0 / PIXELS);
+            assert!((flash - base - bytes / 1000.0).abs() < if base > 0.0 { 2.0 } else { 0.6 }, "{document}: {method}: {bytes} bytes");
+        }
+        assert_eq!(found, methods, "{document}: methods");
+    }
 }
