@@ -48,6 +48,7 @@ impl Place {
         let stderr = String::from_utf8_lossy(&output.stderr);
         assert_eq!(output.status.code(), Some(code), "{arguments:?}: {stderr}");
         assert!(!stderr.contains("panicked"), "{arguments:?}: {stderr}");
+        assert!(stderr.len() < 4_000, "{arguments:?}: {} bytes", stderr.len());
         for word in words {
             assert!(stderr.contains(word), "{arguments:?}: {word:?} is not in {stderr:?}");
         }
@@ -803,7 +804,7 @@ fn texts_that_are_no_scenes_are_refused() {
     let with = |old: &str, new: &str| good.replacen(old, new, 1);
     let label = |lines: &str| format!("{good}[[label]]\n{lines}\n");
     let cases = [
-        (with("frames = 10", "frames = 0"), "frames: there must be one"),
+        (with("frames = 10", "frames = 0"), "line 1: frames: 0 is not possible; it must be a whole number from 1 to 65535"),
         (with("frames = 10", "frames = ten"), "line 1"),
         (with("shape", "shap"), "unknown field `shap`"),
         (format!("{good}positon = [1, 0, 0]\n"), "unknown field `positon`"),
@@ -811,36 +812,77 @@ fn texts_that_are_no_scenes_are_refused() {
         (with("sphere", "cone"), "there is no shape \"cone\"; take box, cylinder, sphere or torus"),
         (with("shape = \"sphere\"", "file = \"none.obj\""), "none.obj"),
         (with("shape = \"sphere\"\n", ""), "say either the file"),
-        (with("mesh = \"a\"", "mesh = \"b\""), "object 1, of \"b\": there is no such mesh"),
-        (with("at = [0, 0, 4]", "at = [0, 0, 0]"), "camera: it must not look at the point where it is"),
-        (with("at = [0, 0, 4]", "at = [0, 3, 0]"), "camera: it must not look along its up"),
-        (with("at = [0, 0, 4]", "at = [0, 0, 4]\nview = 0"), "1 to 170 degrees"),
-        (format!("{good}scale = 9\n"), "scale: it can be 1/16 to 8"),
-        (format!("{good}at = [17, 0, 0]\n"), "within 16 units"),
-        (format!("{good}angle = 3\n"), "say a rotation by"),
+        (with("mesh = \"a\"", "mesh = \"b\""), "line 8: object 1: mesh: there is no mesh \"b\"; write a [[mesh]] of this name"),
+        (with("at = [0, 0, 4]", "at = [0, 0, 0]"), "line 3: camera: at: the camera must not look at the point where it is"),
+        (with("at = [0, 0, 4]", "at = [0, 3, 0]"), "line 3: camera: at: the camera must not look along its `up`"),
+        (
+            with("at = [0, 0, 4]", "at = [0, 0, 4]\nview = 0"),
+            "line 4: camera: view: 0 is not possible; it must be a number from 1 to less than 170",
+        ),
+        (format!("{good}scale = 9\n"), "line 9: object 1: scale: 9 is not possible; it must be a number from 0.0625 to 8"),
+        (format!("{good}at = [17, 0, 0]\n"), "line 9: object 1: at: 17 is not possible; it must be a number from -16 to 16"),
+        (format!("{good}angle = 3\n"), "line 9: object 1: angle: say a rotation by"),
         (format!("{good}quaternion = [0, 0, 0, 0]\n"), "quaternion: it must not be zero"),
-        (format!("{good}keys = [{{ frame = 3 }}, {{ frame = 3 }}]\n"), "keys: their frames must rise"),
+        (format!("{good}keys = [{{ frame = 3 }}, {{ frame = 3 }}]\n"), "line 9: object 1: key 2: frame: the frames of keys must rise"),
         (format!("{good}[[light]]\ntowards = [0, 0, 0]\n"), "light 1"),
         (format!("{good}[[light]]\ntowards = [1, 0, 0]\nat = [1, 0, 0]\n"), "say either where it shines from"),
         (format!("{good}[[light]]\ntowards = [1, 0, 0]\ncolour = \"red\"\n"), "\"red\" is no colour; write it as RRGGBB"),
         (format!("background = 7\n{good}"), "a background is a colour, as \"203040\", or a gradient"),
-        (format!("background = {{ top = \"red\", bottom = \"000000\" }}\n{good}"), "background: top: \"red\" is no colour"),
-        (label("text = \"\"\nat = [0, 0]"), "label 1, \"\": text: it has 0 characters; it can have 1 to 30"),
+        (format!("background = {{ top = \"red\", bottom = \"000000\" }}\n{good}"), "line 1: background: top: \"red\" is no colour"),
+        (label("text = \"\"\nat = [0, 0]"), "line 10: label 1: text: it has 0 characters; it can have 1 to 30"),
         (label("text = \"0123456789012345678901234567890\"\nat = [0, 0]"), "it has 31 characters"),
         (label("text = \"5 \u{3a9}\"\nat = [0, 0]"), "its characters must be those of ISO 8859-1, in one line"),
         (label("text = \"a\\nb\"\nat = [0, 0]"), "ISO 8859-1, in one line"),
         (label("text = \"a\"\nat = [9000, 0]"), "at: it is too far from the picture"),
-        (label("text = \"a\"\nat = [0, 0]\nheight = 5.9"), "height: a line must be 6 pixels high at least"),
-        (label("text = \"a\"\nat = [0, 0]\nalign = \"top\""), "expected one of `left`, `middle`, `right`"),
-        (label("text = \"a\"\nat = [0, 0]\ncolour = \"red\""), "label 1, \"a\": \"red\" is no colour"),
+        (
+            label("text = \"a\"\nat = [0, 0]\nheight = 5.9"),
+            "line 12: label 1: height: 5.9 is not possible; it must be a number from 6 to less than 1920",
+        ),
+        (label("text = \"a\"\nat = [0, 0]\nalign = \"top\""), "there is no \"top\"; take left, middle or right"),
+        (label("text = \"a\"\nat = [0, 0]\ncolour = \"red\""), "line 12: label 1: colour: \"red\" is no colour"),
         (format!("shader = \"none\"\n{good}"), "there is no method \"none\""),
         (format!("{good}[[mesh]]\nname = \"a\"\nshape = \"box\"\n"), "two meshes of the name"),
-        (with("shape = \"sphere\"", "shape = \"torus\"\ntube = 1"), "tube: it must be more than 0"),
-        (with("shape = \"sphere\"", "shape = \"sphere\"\nsize = [3, 1, 1]"), "less than 2 are possible"),
+        (
+            with("shape = \"sphere\"", "shape = \"torus\"\ntube = 1"),
+            "line 7: mesh 1: tube: 1 is not possible; it must be a number from 0.01 to 0.99",
+        ),
+        (with("shape = \"sphere\"", "shape = \"sphere\"\nsize = [3, 1, 1]"), "it must be a number from 0.001 to less than 2"),
+        (with("shape = \"sphere\"", "shape = \"sphere\"\nsize = [1.9, 1, 1]\ncentre = [1, 0, 0]"), "less than 2 are possible"),
+        (with("shape = \"sphere\"", "shape = \"sphere\"\ncentre = [\n0, nan, 0]"), "line 8: mesh 1: centre: nan is not possible"),
+        (
+            with("shape = \"sphere\"", "shape = \"sphere\"\ncrease = nan"),
+            "line 7: mesh 1: crease: nan is not possible; it must be a number from 0 to 180",
+        ),
+        (with("shape = \"sphere\"", "shape = \"sphere\"\ncrease = -500"), "crease: -500 is not possible"),
+        (with("shape = \"sphere\"", "shape = \"sphere\"\nexponent = 1025"), "a whole number from 1 to 1024"),
+        (format!("size = [0, 240]\n{good}"), "line 1: size: 0 is not possible; it must be a whole number from 1 to 2047"),
+        (format!("size = [99999, 240]\n{good}"), "size: 99999 is not possible"),
+        (format!("budget = 17\n{good}"), "a number from 0.5 to 16"),
+        (with("at = [0, 0, 4]", "at = [0, 0, 4, 0]"), "line 3: camera: at: [0, 0, 4, 0] is not possible; it must be a list of 3 numbers"),
+        (
+            with("at = [0, 0, 4]", "at = [0, 0, 4]\nnear = 0"),
+            "line 4: camera: near: 0 is not possible; it must be a number from 0.015625 to less than 16",
+        ),
+        (with("at = [0, 0, 4]", "at = [0, 0, 4]\nview = 170"), "view: 170 is not possible; it must be a number from 1 to less than 170"),
+        (with("at = [0, 0, 4]", "at = [12, 12, 0]"), "camera: at: it is 16.97 units from the origin; at most 16 are possible"),
+        (format!("{good}[[light]]\nat = [nan, 0, 0]\n"), "line 10: light 1: at: nan is not possible"),
+        (
+            format!("{good}keys = [\n{{ frame = 3 }},\n{{ frame = 4, at = [0, 0, inf] }}]\n"),
+            "line 11: object 1: key 2: at: inf is not possible",
+        ),
+        (
+            format!(
+                "{good}[[light]]\ntowards = [1, 0, 0]\nkeys = [{{ frame = 0, towards = [0, 0, 1] }}, {{ frame = 9, towards = [0, 0, -2] }}]\n"
+            ),
+            "line 11: light 1: key 2: towards: it is opposite to the key before",
+        ),
+        (good.replace("frames", "frame"), "line 1: `frames` is missing"),
+        (format!("{good}x = \"{}", "y".repeat(10_000_000)), "line 9"),
+        (with("\"sphere\"", &format!("\"{}\"", "y".repeat(10_000_000))), "line 6: mesh 1: shape: there is no shape \"yyyy"),
     ];
     for (text, words) in cases {
         place.file("bad.toml", &text);
-        place.fails(&["convert", "bad.toml", "-o", "bad.tri"], 1, &["bad.toml", words]);
+        place.fails(&["convert", "bad.toml", "-o", "bad.tri"], 1, &["bad.toml: line ", words]);
         assert!(!place.0.path().join("bad.tri").exists(), "{words}");
     }
 }

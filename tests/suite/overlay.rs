@@ -254,7 +254,7 @@ fn labelled(labels: Vec<Label>) -> microphong_sim::bytes::StreamBytes {
         shape = \"torus\"
         [[object]]
         mesh = \"ring\"";
-    let (bytes, _) = script::stream(text, Path::new(".")).expect("a scene");
+    let (bytes, _) = script::stream(text, None).expect("a scene");
     let stream = bytes.parse().expect("a stream");
     let header = microphong::stream::record::Header { labels: labels.len() as u8, ..*stream.header };
     let mut all = [zerocopy::IntoBytes::as_bytes(&header), &bytes.as_bytes()[size_of_val(&header)..]].concat();

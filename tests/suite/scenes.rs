@@ -500,7 +500,7 @@ fn tracks_lead_from_key_to_key() {
             { frame = 20, at = [3, 2, 0], axis = [0, 0, 1], angle = 90, scale = 0.5 },
             { frame = 30, hidden = true },
         ]";
-    let (bytes, _) = script::stream(text, std::path::Path::new(".")).unwrap();
+    let (bytes, _) = script::stream(text, None).unwrap();
     let stream = bytes.parse().unwrap();
     let layout = room(&stream);
     let mut memory = vec![0; layout.words::<Rgb888>()];
@@ -530,5 +530,71 @@ fn tracks_lead_from_key_to_key() {
         (40, ([1.0, 0.0, 0.0], 0.0, 1.0, true)),
     ] {
         assert!(near(at(frame), expected), "frame {frame}: {:?}", at(frame));
+    }
+}
+
+/// An object with these keys, a line in each, from frame 0 to frame 60.
+fn with_keys(keys: &[&str]) -> String {
+    let scene = "frames = 61\n[camera]\nat = [0, 0, 5]\n[[mesh]]\nname = \"box\"\nshape = \"box\"\n[[object]]\nmesh = \"box\"\n";
+    format!("{scene}keys = [\n{}\n]", keys.join(",\n"))
+}
+
+/// Rotations that are said by angles go the way that they say, at even speed, however far; quaternions go the shorter way.
+#[test]
+fn angles_say_a_way() {
+    let about = |axis: V3, degrees: f64| Placed { axis, degrees, at: [0.0; 3], scale: 1.0 }.pose();
+    let euler = |yaw, pitch, roll| {
+        let [yaw, pitch, roll] = [yaw, pitch, roll].map(|degrees: f64| U0F32::wrapping_from_num(degrees / 360.0));
+        Pose::from_euler(yaw, pitch, roll)
+    };
+    let (y, z) = ([0.0, 1.0, 0.0], [0.0, 0.0, 1.0]);
+    type Expected<'a> = &'a dyn Fn(f64) -> Pose;
+    let cases: [(&[&str], Expected<'_>, f64); 8] = [
+        (
+            &["{ frame = 0, axis = [0, 0, 1], angle = 135 }", "{ frame = 60, axis = [0, 0, 1], angle = -135 }"],
+            &|t| about(z, 135.0 - 270.0 * t),
+            0.11,
+        ),
+        (&["{ frame = 0, axis = [0, 0, 1], angle = 0 }", "{ frame = 60, axis = [0, 0, 1], angle = 360 }"], &|t| about(z, 360.0 * t), 0.11),
+        (&["{ frame = 0 }", "{ frame = 60, axis = [0, 2, 0], angle = -1800 }"], &|t| about(y, -1800.0 * t), 0.11),
+        (
+            &["{ frame = 0, axis = [0, 1, 0], angle = 10 }", "{ frame = 60, axis = [0, -1, 0], angle = 170 }"],
+            &|t| about(y, 10.0 - 180.0 * t),
+            0.11,
+        ),
+        (&["{ frame = 0, axis = [0, 1, 0], angle = 0 }", "{ frame = 60, axis = [0, 1, 0], angle = 80 }"], &|t| about(y, 80.0 * t), 1.0),
+        (&["{ frame = 0 }", "{ frame = 60, euler = [0, 0, 360] }"], &|t| euler(0.0, 0.0, 360.0 * t), 0.11),
+        (
+            &["{ frame = 0, euler = [90, 20, 0] }", "{ frame = 60, euler = [-270, 20, 720] }"],
+            &|t| euler(90.0 - 360.0 * t, 20.0, 720.0 * t),
+            0.11,
+        ),
+        (
+            &["{ frame = 0, quaternion = [1, 0, 0, 0] }", "{ frame = 60, quaternion = [-0.9238795, 0, 0, -0.3826834] }"],
+            &|t| about(z, 45.0 * t),
+            0.2,
+        ),
+    ];
+    for (keys, expected, limit) in cases {
+        let (bytes, _) = script::stream(&with_keys(keys), None).unwrap();
+        let stream = bytes.parse().unwrap();
+        let layout = room(&stream);
+        let mut memory = vec![0; layout.words::<Rgb888>()];
+        let mut renderer = Renderer::<Rgb888>::with_shader(stream, SIZE, &layout, &mut memory, Shader::PHONG).unwrap();
+        for frame in 0..=60 {
+            renderer.scene().play(frame);
+            let [pose, expected] = [renderer.scene().objects()[0].pose(), expected(f64::from(frame) / 60.0)].map(|pose| pose.quaternion());
+            let cosine: f64 = pose.iter().zip(expected).map(|(a, b)| f64::from(*a) * f64::from(b)).sum();
+            let off = 2.0 * cosine.abs().min(1.0).acos().to_degrees();
+            assert!(off < limit, "{keys:?}, frame {frame}: {off} degrees off");
+        }
+    }
+    // What turns by less than a quarter takes no keys that the text does not have, nor does what is hidden.
+    for keys in [
+        ["{ frame = 0 }", "{ frame = 60, axis = [1, 2, 3], angle = 85 }"],
+        ["{ frame = 0, hidden = true }", "{ frame = 60, euler = [300, 0, 0] }"],
+    ] {
+        let (bytes, _) = script::stream(&with_keys(&keys), None).unwrap();
+        assert_eq!(bytes.parse().unwrap().keys.len(), 2, "{keys:?}");
     }
 }

@@ -127,7 +127,7 @@ pub fn load(name_or_path: &str) -> Result<Scene> {
         return Ok(Scene { name: name_or_path.to_owned(), stream, size });
     }
     if let Some(script) = scripted(name_or_path) {
-        let (stream, size) = script::stream(script, Path::new("."))?;
+        let (stream, size) = script::stream(script, None)?;
         return Ok(Scene { name: name_or_path.to_owned(), stream, size });
     }
     let path = Path::new(name_or_path);
@@ -136,8 +136,7 @@ pub fn load(name_or_path: &str) -> Result<Scene> {
     let stream = match ending.as_deref().and_then(|e| e.to_str()) {
         Some("tri") => StreamBytes::read(path)?,
         Some("toml") => {
-            let text = String::from_utf8(read(path)?).ok().with_context(|| format!("{name_or_path}: the text is not UTF-8"))?;
-            let scene = script::stream(&text, path.parent().unwrap_or(Path::new("."))).with_context(|| name_or_path.to_owned())?;
+            let scene = script::of_bytes(&read(path)?, path.parent()).with_context(|| name_or_path.to_owned())?;
             size = scene.1;
             scene.0
         }

@@ -4,475 +4,420 @@
 
 use crate::{
     bytes::StreamBytes,
+    fields::{Field, Place, Table, quoted},
     import::{self, Imported, surfaces},
     look::{Cast, KEY, Lamp, Look, Member, Surface, Way},
     mesh::{CREASE, Mesh, Weld},
+    mtl::Material,
     number::nearest,
     quantise::{Part, quantise},
     shader::Shader,
     shapes,
-    vector::{V3, add, cross, dot, scale, sub, unit},
+    turn::{Stop, Turn, along},
+    vector::{V3, add, cross, dot, length, scale, sub, unit},
     view::{Projection, View},
 };
-use anyhow::{Context, Result, bail, ensure};
+use anyhow::{Context, Result, anyhow, ensure};
 use microphong::{
-    format::{ErrorBudget, Length, MAX_LIGHTS, Rotation, Scale},
+    MAX_SIDE,
+    format::{ErrorBudget, LARGEST_BUDGET, LEAST_BUDGET, Length, MAX_LIGHTS, Scale},
     scene::Background,
-    stream::record::{CAMERA_TRACK, Key, LABEL_TEXT, LEAST_LINE, LEFT, LIGHT_TRACK, Label, MIDDLE, OBJECT_TRACK, RIGHT},
+    stream::{
+        MAX_EXPONENT,
+        record::{CAMERA_TRACK, Key, LABEL_TEXT, LEAST_LINE, LEFT, LIGHT_TRACK, Label, MAX_POSITION, MIDDLE, OBJECT_TRACK, RIGHT},
+    },
 };
-use serde::Deserialize;
-use std::path::Path;
+use std::{
+    collections::HashMap,
+    ops::{Range, RangeInclusive},
+    path::Path,
+};
 
-/// A scene as its text says.
-#[derive(Deserialize)]
-#[serde(deny_unknown_fields, rename_all = "kebab-case")]
-struct Script {
-    /// Frames of the animation.
-    frames: u16,
-    /// Width and height that suit it.
-    #[serde(default = "square")]
-    size: [u32; 2],
-    background: Option<BackgroundScript>,
-    /// Method unless another one is asked for.
-    shader: Option<String>,
-    /// How far a pixel may be off by `auto`.
-    budget: Option<f64>,
-    camera: Camera,
-    #[serde(default)]
-    light: Vec<Light>,
-    mesh: Vec<MeshScript>,
-    object: Vec<Object>,
-    #[serde(default)]
-    label: Vec<LabelScript>,
-}
-
-#[derive(Deserialize)]
-#[serde(untagged, expecting = "a background is a colour, as \"203040\", or a gradient, as { top = \"203040\", bottom = \"000000\" }")]
-enum BackgroundScript {
-    /// RRGGBB.
-    Colour(String),
-    Gradient(Gradient),
-}
-
-#[derive(Deserialize)]
-#[serde(deny_unknown_fields)]
-struct Gradient {
-    top: String,
-    bottom: String,
-}
-
-/// A text over the picture. In pictures of another size it lies where the scene behind it does.
-#[derive(Deserialize)]
-#[serde(deny_unknown_fields)]
-struct LabelScript {
-    text: String,
-    /// In a picture of the size of the script, pixels from its upper left corner.
-    at: [f64; 2],
-    /// Which part of the text is there: `left`, `middle` or `right`.
-    #[serde(default)]
-    align: Align,
-    /// Height of a line in such a picture, pixels.
-    #[serde(default = "line")]
-    height: f64,
-    colour: Option<String>,
-}
-
-#[derive(Clone, Copy, Default, Deserialize)]
-#[serde(rename_all = "lowercase")]
-enum Align {
-    Left,
-    #[default]
-    Middle,
-    Right,
-}
-
-fn line() -> f64 {
-    13.0
-}
-
-fn square() -> [u32; 2] {
-    [240, 240]
-}
-
-#[derive(Deserialize)]
-#[serde(deny_unknown_fields, rename_all = "kebab-case")]
-struct Camera {
-    at: V3,
-    #[serde(default)]
-    looks_at: V3,
-    #[serde(default = "up")]
-    up: V3,
-    /// Degrees that the smaller side of the picture shows.
-    #[serde(default = "view")]
-    view: f64,
-    #[serde(default = "near")]
-    near: f64,
-    #[serde(default)]
-    keys: Vec<CameraKey>,
-}
-
-fn up() -> V3 {
-    [0.0, 1.0, 0.0]
-}
-
-fn view() -> f64 {
-    40.0
-}
-
-fn near() -> f64 {
-    0.5
-}
-
-#[derive(Deserialize)]
-#[serde(deny_unknown_fields, rename_all = "kebab-case")]
-struct CameraKey {
-    frame: u32,
-    at: V3,
-    #[serde(default)]
-    looks_at: V3,
-}
-
-#[derive(Deserialize)]
-#[serde(deny_unknown_fields, rename_all = "kebab-case")]
-struct Light {
-    /// Direction, of a light that is infinitely far.
-    towards: Option<V3>,
-    /// Position, of one that is near.
-    at: Option<V3>,
-    colour: Option<String>,
-    #[serde(default)]
-    keys: Vec<LightKey>,
-}
-
-#[derive(Deserialize)]
-#[serde(deny_unknown_fields, rename_all = "kebab-case")]
-struct LightKey {
-    frame: u32,
-    towards: Option<V3>,
-    at: Option<V3>,
-}
-
-#[derive(Deserialize)]
-#[serde(deny_unknown_fields, rename_all = "kebab-case")]
-struct MeshScript {
-    name: String,
-    /// A file of a mesh, from the folder of the text on; it is centred and scaled to a sphere of radius 1.
-    file: Option<String>,
-    /// One of [`SHAPES`].
-    shape: Option<String>,
-    /// Half of the extent of a shape along each axis.
-    size: Option<V3>,
-    /// Radius of the tube of a torus, as a share of that of its ring.
-    tube: Option<f64>,
-    /// Where the middle of a shape lies; the object turns about the origin.
-    #[serde(default)]
-    centre: V3,
-    colour: Option<String>,
-    /// Whether the highlight is white.
-    #[serde(default)]
-    plastic: bool,
-    exponent: Option<u16>,
-    crease: Option<f64>,
-}
-
+/// Frames, and all else that 16 bits number.
+const NUMBERS: u32 = u16::MAX as u32;
+/// Coordinates in the world.
+const WORLD: RangeInclusive<f64> = -16.0..=16.0;
+/// Coordinates of meshes.
+const MESH: RangeInclusive<f64> = -2.0..=2.0;
+/// Components of directions, of which the length is of no matter, and degrees of turns.
+const LARGE: RangeInclusive<f64> = -1e6..=1e6;
+/// Degrees that the smaller side of a picture shows.
+const VIEW: Range<f64> = 1.0..170.0;
+/// Distance of the near plane.
+const NEAR: Range<f64> = 1.0 / 64.0..16.0;
+/// Half of the extent of a shape.
+const EXTENT: Range<f64> = 1e-3..2.0;
+/// Radius of the tube of a torus, as a share of that of its ring.
+const TUBE: RangeInclusive<f64> = 0.01..=0.99;
+/// Degrees by which edges fold.
+const FOLD: RangeInclusive<f64> = 0.0..=180.0;
+/// Size of an object.
+const SCALE: RangeInclusive<f64> = 1.0 / 16.0..=8.0;
 /// Shapes that need no file.
 const SHAPES: &str = "box, cylinder, sphere or torus";
-
-#[derive(Deserialize)]
-#[serde(deny_unknown_fields, rename_all = "kebab-case")]
-struct Object {
-    mesh: String,
-    #[serde(flatten)]
-    pose: Pose,
-    #[serde(default)]
-    keys: Vec<ObjectKey>,
-}
-
-#[derive(Deserialize)]
-#[serde(deny_unknown_fields)]
-struct ObjectKey {
-    frame: u32,
-    #[serde(flatten)]
-    pose: Pose,
-}
-
-/// How an object lies. At most one way to say a rotation is used.
-#[derive(Deserialize)]
-#[serde(rename_all = "kebab-case")]
-struct Pose {
-    #[serde(default)]
-    at: V3,
-    /// An axis, and the angle about it in degrees.
-    axis: Option<V3>,
-    angle: Option<f64>,
-    /// About y, then x, then z of the object, in degrees.
-    euler: Option<V3>,
-    /// w, x, y, z.
-    quaternion: Option<[f64; 4]>,
-    scale: Option<f64>,
-    #[serde(default)]
-    hidden: bool,
-}
-
-/// Reads a scripted scene; meshes are looked for in `folder`. Returns the stream and the size that suits it.
-///
-/// # Errors
-/// Says the place in the text, or the object, and what is wrong with it.
-pub fn stream(text: &str, folder: &Path) -> Result<(StreamBytes, (u32, u32))> {
-    let script: Script = toml::from_str(text).map_err(|error| anyhow::anyhow!("{}", error.to_string().trim_end()))?;
-    ensure!(script.frames > 0, "frames: there must be one at least");
-    ensure!(!script.object.is_empty(), "the scene has no [[object]]");
-    ensure!(script.light.len() <= MAX_LIGHTS, "the scene has {} lights; there may be {MAX_LIGHTS}", script.light.len());
-    let (parts, surfaces, ranges) = meshes(&script.mesh, folder)?;
-    let mut look = Look { surfaces, ..Look::new(surface(&script.mesh[0])?, eye(&script.camera)?) };
-    look.frames = script.frames;
-    if let Some(background) = &script.background {
-        look.background = match background {
-            BackgroundScript::Colour(text) => Background::Colour(bytes(text).context("background")?),
-            BackgroundScript::Gradient(Gradient { top, bottom }) => {
-                Background::Gradient { top: bytes(top).context("background: top")?, bottom: bytes(bottom).context("background: bottom")? }
-            }
-        };
-    }
-    if let Some(name) = &script.shader {
-        look.shader = Shader::ALL
-            .into_iter()
-            .find(|shader| shader.name() == name.as_str())
-            .with_context(|| format!("shader: there is no method {name:?}"))?;
-    }
-    if let Some(budget) = script.budget {
-        look.budget = nearest::<ErrorBudget>(budget);
-    }
-    look.lamps =
-        script.light.iter().enumerate().map(|(i, light)| lamp(light).with_context(|| format!("light {}", i + 1))).collect::<Result<_>>()?;
-    if script.light.is_empty() {
-        look.lamps = vec![Lamp::Fixed(KEY.map(|c| -c), [1.0; 3])];
-    }
-    look.cast = cast(&script, &ranges)?;
-    let label = |(i, text): (usize, &LabelScript)| label(text, script.size).with_context(|| format!("label {}, {:?}", i + 1, text.text));
-    look.labels = script.label.iter().enumerate().map(label).collect::<Result<_>>()?;
-    let stream = look.stream(&parts)?;
-    let [width, height] = script.size;
-    Ok((stream, (width, height)))
-}
-
-/// The parts and materials of all meshes, and which parts each mesh has.
-type Meshes = (Vec<Part>, Vec<Surface>, Vec<(String, u16, u16)>);
-
-fn meshes(scripts: &[MeshScript], folder: &Path) -> Result<Meshes> {
-    let (mut parts, mut materials, mut ranges) = (Vec::new(), Vec::new(), Vec::<(String, u16, u16)>::new());
-    ensure!(!scripts.is_empty(), "the scene has no [[mesh]]");
-    for script in scripts {
-        let place = || format!("mesh {:?}", script.name);
-        let (mut mesh, own) = mesh(script, folder).with_context(place)?;
-        if script.colour.is_some() {
-            mesh.materials.clear();
-        }
-        let own = if script.colour.is_some() { vec![None] } else { own };
-        let first = parts.len();
-        for mut part in quantise(&mesh).0 {
-            part.material += materials.len() as u16;
-            parts.push(part);
-        }
-        materials.extend(surfaces(&own, &surface(script).with_context(place)?, AMBIENT));
-        ensure!(!ranges.iter().any(|(name, ..)| *name == script.name), "there are two meshes of the name {:?}", script.name);
-        ranges.push((script.name.clone(), first as u16, (parts.len() - first) as u16));
-    }
-    Ok((parts, materials, ranges))
-}
-
+/// What is seen upwards.
+const UP: V3 = [0.0, 1.0, 0.0];
 /// Share of light that is everywhere.
 const AMBIENT: f64 = 0.12;
 
-fn surface(script: &MeshScript) -> Result<Surface> {
-    let colour = script.colour.as_deref().map_or(Ok([0.8; 3]), colour)?;
-    let exponent = script.exponent.unwrap_or(30);
-    Ok(if script.plastic {
-        Surface::plastic(colour, [AMBIENT, 0.75, 0.35], exponent)
-    } else {
-        Surface::metal(colour, [AMBIENT, 0.6, 0.4], exponent)
-    })
+/// Reads a scripted scene from the bytes of a file, as [`stream`] does.
+///
+/// # Errors
+/// Says the line, the field, and what is wrong with it.
+pub fn of_bytes(bytes: &[u8], folder: Option<&Path>) -> Result<(StreamBytes, (u32, u32))> {
+    let text = str::from_utf8(bytes).map_err(|error| {
+        let line = 1 + bytes[..error.valid_up_to()].iter().filter(|&&byte| byte == b'\n').count();
+        anyhow!("line {line}: the text is not UTF-8; save it in this encoding")
+    })?;
+    stream(text, folder)
 }
 
-fn mesh(script: &MeshScript, folder: &Path) -> Result<(Mesh, Vec<Option<crate::mtl::Material>>)> {
-    let (mut mesh, materials) = match (&script.file, script.shape.as_deref()) {
-        (Some(file), None) => {
-            let weld = Weld { crease: script.crease.unwrap_or(CREASE), ..Weld::default() };
-            let Imported { mesh, materials, .. } = import::file(&folder.join(file), weld)?;
-            (mesh, materials)
-        }
-        (None, Some(shape)) => {
-            let mesh = match shape {
-                "box" => shapes::cuboid(),
-                "cylinder" => shapes::cylinder(32),
-                "sphere" => shapes::sphere(18, 11, 0.0),
-                "torus" => {
-                    let tube = script.tube.unwrap_or(shapes::TUBE);
-                    ensure!(tube > 0.0 && tube < 1.0, "tube: it must be more than 0 and less than 1");
-                    shapes::ring(28, 10, tube)
-                }
-                other => bail!("there is no shape {other:?}; take {SHAPES}"),
-            };
-            (mesh, vec![None])
-        }
-        _ => bail!("say either the file of the mesh, or as its shape {SHAPES}"),
-    };
-    if let Some(size) = script.size {
-        ensure!(size.iter().all(|c| *c > 0.0), "size: each extent must be more than 0");
-        mesh = shapes::stretched(mesh, size);
+/// Reads a scripted scene; files of meshes are looked for in `folder`, and without one there are none. Returns the stream and the size that
+/// suits it.
+///
+/// # Errors
+/// Says the line, the field, and what is wrong with it.
+pub fn stream(text: &str, folder: Option<&Path>) -> Result<(StreamBytes, (u32, u32))> {
+    let mut script = Table::parse(text)?;
+    let most = NUMBERS as usize;
+    let frames = script.need("frames", |field| field.integer(&(1..=NUMBERS)))?;
+    let size = script.get("size", |field| field.array(|side| side.integer(&(1..=MAX_SIDE))))?.unwrap_or([240; 2]);
+    let background = script.get("background", background)?;
+    let shader = script.get("shader", shader)?;
+    let budget = script.get("budget", |field| field.number(&(LEAST_BUDGET.to_num::<f64>()..=LARGEST_BUDGET.to_num())))?;
+    let camera = script.need("camera", Field::table)?;
+    let lights = script.list("light", "light", MAX_LIGHTS)?;
+    let meshes = script.list("mesh", "mesh", most)?;
+    let objects = script.list("object", "object", most)?;
+    let labels = script.list("label", "label", u8::MAX.into())?;
+    script.end()?;
+    ensure!(!meshes.is_empty(), script.place.error("the scene has no [[mesh]]"));
+    ensure!(!objects.is_empty(), script.place.error("the scene has no [[object]]"));
+
+    let mut cast = Cast::default();
+    let view = self::camera(camera, &mut cast)?;
+    let mut stock = Stock::default();
+    meshes.into_iter().try_for_each(|table| stock.add(table, folder))?;
+    for (i, table) in objects.into_iter().enumerate() {
+        object(table, i, &stock, &mut cast)?;
     }
-    mesh.positions.iter_mut().for_each(|position| *position = add(*position, script.centre));
-    let farthest = mesh.positions.iter().map(|&position| dot(position, position)).fold(0.0, f64::max).sqrt();
-    ensure!(
-        farthest < 2.0,
-        "it reaches {farthest:.2} units from its origin; less than 2 are possible: make it smaller, and scale the object"
-    );
-    Ok((mesh, materials))
+    let Stock { parts, surfaces, .. } = stock;
+    let mut look = Look { frames: frames as u16, ..Look::new(surfaces[0], view) };
+    look.surfaces = surfaces;
+    look.background = background.unwrap_or(look.background);
+    look.shader = shader.unwrap_or(look.shader);
+    look.budget = budget.map_or(look.budget, nearest::<ErrorBudget>);
+    look.lamps = vec![Lamp::Fixed(KEY.map(|c| -c), [1.0; 3])];
+    if !lights.is_empty() {
+        look.lamps = lights.into_iter().enumerate().map(|(i, table)| lamp(table, i, &mut cast)).collect::<Result<_>>()?;
+    }
+    // Tracks come in this order: objects, lights, camera.
+    cast.ways.sort_by_key(|way| way.kind);
+    look.labels = labels.into_iter().map(|table| label(table, size)).collect::<Result<_>>()?;
+    look.cast = cast;
+    let stream = look.stream(&parts).with_context(|| script.place.to_string())?;
+    Ok((stream, size.into()))
 }
 
-fn colour(text: &str) -> Result<V3> {
-    let digits = text.strip_prefix('#').unwrap_or(text);
-    let value = u32::from_str_radix(digits, 16).ok().filter(|_| digits.len() == 6);
-    let value = value.with_context(|| format!("{text:?} is no colour; write it as RRGGBB"))?;
+/// A direction in the world.
+fn direction(field: Field<'_>) -> Result<V3> {
+    let place = field.place.clone();
+    unit(field.numbers(&LARGE)?).ok_or_else(|| place.error("it must not be zero"))
+}
+
+fn colour(field: Field<'_>) -> Result<V3> {
+    let place = field.place.clone();
+    let text = field.text()?;
+    let digits = text.strip_prefix('#').unwrap_or(&text);
+    let value = u32::from_str_radix(digits, 16).ok().filter(|_| digits.len() == 6 && !digits.starts_with('+'));
+    let value = value.ok_or_else(|| place.error(format!("\"{}\" is no colour; write it as RRGGBB", quoted(&text))))?;
     Ok([16, 8, 0].map(|shift| f64::from(value >> shift & 255) / 255.0))
 }
 
-/// Of 8 bits a channel.
-fn bytes(text: &str) -> Result<[u8; 3]> {
-    Ok(colour(text)?.map(|c| (c * 255.0).round() as u8))
+/// A colour of 8 bits a channel.
+fn bytes(field: Field<'_>) -> Result<[u8; 3]> {
+    Ok(colour(field)?.map(|c| (c * 255.0).round() as u8))
 }
 
-fn label(script: &LabelScript, size: [u32; 2]) -> Result<Label> {
-    let text = script.text.chars().map(u8::try_from).collect::<Result<Vec<_>, _>>();
-    let is_printed = |text: &Vec<u8>| !text.iter().any(|&character| char::from(character).is_control());
-    let text = text.ok().filter(is_printed).context("text: its characters must be those of ISO 8859-1, in one line")?;
-    ensure!((1..=LABEL_TEXT).contains(&text.len()), "text: it has {} characters; it can have 1 to {LABEL_TEXT}", text.len());
-    let [width, height] = size.map(f64::from);
-    let (side, [x, y]) = (width.min(height), script.at);
-    let position = [x - width / 2.0, y - height / 2.0].map(|offset| offset / side);
-    ensure!(position.iter().all(|share| share.abs() < 8.0), "at: it is too far from the picture");
-    ensure!(
-        script.height >= f64::from(LEAST_LINE) && script.height < 8.0 * side,
-        "height: a line must be {LEAST_LINE} pixels high at least, as the smallest font is, and no higher than 8 pictures"
-    );
-    let alignment = match script.align {
-        Align::Left => LEFT,
-        Align::Middle => MIDDLE,
-        Align::Right => RIGHT,
-    };
-    let colour = script.colour.as_deref().map_or(Ok([255; 3]), bytes)?;
-    Ok(Label::new(position.map(nearest), nearest(script.height / side), colour, alignment, &text))
+/// A colour, or a gradient of two.
+fn background(field: Field<'_>) -> Result<Background> {
+    if !field.is_table() {
+        let (place, is_text) = (field.place.clone(), field.is_text());
+        let wanted = "a background is a colour, as \"203040\", or a gradient, as { top = \"203040\", bottom = \"000000\" }";
+        return bytes(field).map(Background::Colour).map_err(|error| if is_text { error } else { place.error(wanted) });
+    }
+    let mut table = field.table()?;
+    let [top, bottom] = [table.need("top", bytes)?, table.need("bottom", bytes)?];
+    table.end()?;
+    Ok(Background::Gradient { top, bottom })
 }
 
-fn direction(towards: V3) -> Result<V3> {
-    unit(towards).context("towards: the direction must not be zero")
+fn shader(field: Field<'_>) -> Result<Shader> {
+    let place = field.place.clone();
+    let name = field.text()?;
+    Shader::ALL.into_iter().find(|shader| shader.name() == name).ok_or_else(|| {
+        let names: Vec<_> = Shader::ALL.iter().map(|shader| shader.name()).collect();
+        place.error(format!("there is no method \"{}\"; take one of {}", quoted(&name), names.join(", ")))
+    })
 }
 
-fn lamp(light: &Light) -> Result<Lamp> {
-    let colour = light.colour.as_deref().map_or(Ok([1.0; 3]), colour)?;
-    match (light.towards, light.at) {
-        (Some(towards), None) => Ok(Lamp::Fixed(direction(towards)?, colour)),
-        (None, Some(at)) => Ok(Lamp::FixedNear(at, colour)),
-        _ => bail!("say either where it shines from, by `towards`, or where it is, by `at`"),
+/// What objects are made of.
+#[derive(Default)]
+struct Stock {
+    parts: Vec<Part>,
+    surfaces: Vec<Surface>,
+    /// The first part of each mesh, and how many it has.
+    meshes: HashMap<String, Member>,
+}
+
+impl Stock {
+    /// Adds a mesh.
+    fn add(&mut self, mut table: Table<'_>, folder: Option<&Path>) -> Result<()> {
+        let name = table.need("name", Field::text)?;
+        let file = table.get("file", Field::text)?;
+        let shape = table.get("shape", Field::text)?;
+        let size = table.get("size", |field| field.numbers(&EXTENT))?;
+        let tube = table.get("tube", |field| field.number(&TUBE))?.unwrap_or(shapes::TUBE);
+        let centre = table.get("centre", |field| field.numbers(&MESH))?.unwrap_or_default();
+        let colour = table.get("colour", colour)?;
+        let plastic = table.get("plastic", Field::flag)?.unwrap_or(false);
+        let exponent = table.get("exponent", |field| field.integer(&(1..=MAX_EXPONENT.into())))?.unwrap_or(30) as u16;
+        let crease = table.get("crease", |field| field.number(&FOLD))?.unwrap_or(CREASE);
+        table.end()?;
+        let (mut mesh, mut materials) = match (&file, &shape) {
+            (Some(file), None) => from_file(file, crease, folder).with_context(|| table.place_of("file").to_string())?,
+            (None, Some(shape)) => (of_shape(shape, tube, &table.place_of("shape"))?, vec![None]),
+            _ => return Err(table.place.error(format!("say either the file of the mesh, or as its shape {SHAPES}"))),
+        };
+        if let Some(size) = size {
+            mesh = shapes::stretched(mesh, size);
+        }
+        mesh.positions.iter_mut().for_each(|position| *position = add(*position, centre));
+        let farthest = mesh.positions.iter().map(|&position| length(position)).fold(0.0, f64::max);
+        let too_large =
+            || format!("it reaches {farthest:.2} units from its origin; less than 2 are possible: make it smaller, and scale the object");
+        ensure!(farthest < 2.0, table.place_of(if size.is_some() { "size" } else { "centre" }).error(too_large()));
+        if colour.is_some() {
+            mesh.materials.clear();
+            materials = vec![None];
+        }
+        let colour = colour.unwrap_or([0.8; 3]);
+        let surface = if plastic {
+            Surface::plastic(colour, [AMBIENT, 0.75, 0.35], exponent)
+        } else {
+            Surface::metal(colour, [AMBIENT, 0.6, 0.4], exponent)
+        };
+        let first = self.parts.len();
+        self.parts.extend(quantise(&mesh).0.into_iter().map(|part| Part { material: part.material + self.surfaces.len() as u16, ..part }));
+        self.surfaces.extend(surfaces(&materials, &surface, AMBIENT));
+        ensure!(
+            self.parts.len() > first,
+            table.place.error("nothing is left of it in steps of 1/16384; make it larger, and scale the object")
+        );
+        let many = "there are too many materials and parts of meshes; 65535 are possible";
+        ensure!(self.parts.len().max(self.surfaces.len()) <= NUMBERS as usize, table.place.error(many));
+        let member = Member { first_mesh: first as u16, meshes: (self.parts.len() - first) as u16 };
+        let twice = format!("there are two meshes of the name \"{}\"", quoted(&name));
+        ensure!(self.meshes.insert(name, member).is_none(), table.place_of("name").error(twice));
+        Ok(())
     }
 }
 
-/// Columns of the rotation of something at `at` whose z axis points to `target`.
-fn looking(at: V3, target: V3, up: V3) -> Result<[V3; 3]> {
-    let z = unit(sub(target, at)).context("camera: it must not look at the point where it is")?;
-    let x = unit(cross(up, z)).context("camera: it must not look along its up")?;
+fn from_file(file: &str, crease: f64, folder: Option<&Path>) -> Result<(Mesh, Vec<Option<Material>>)> {
+    let folder = folder.context("there is no folder from which files could be read; take a shape")?;
+    let Imported { mesh, materials, .. } = import::file(&folder.join(file), Weld { crease, ..Weld::default() })?;
+    Ok((mesh, materials))
+}
+
+fn of_shape(shape: &str, tube: f64, place: &Place<'_>) -> Result<Mesh> {
+    Ok(match shape {
+        "box" => shapes::cuboid(),
+        "cylinder" => shapes::cylinder(32),
+        "sphere" => shapes::sphere(18, 11, 0.0),
+        "torus" => shapes::ring(28, 10, tube),
+        other => return Err(place.error(format!("there is no shape \"{}\"; take {SHAPES}", quoted(other)))),
+    })
+}
+
+/// A text over the picture. In pictures of another size it lies where the scene behind it does.
+fn label(mut table: Table<'_>, size: [u32; 2]) -> Result<Label> {
+    let [width, height] = size.map(f64::from);
+    let side = width.min(height);
+    let text = table.need("text", Field::text)?;
+    let at: [f64; 2] = table.need("at", |field| field.numbers(&LARGE))?;
+    let alignment = table.get("align", align)?.unwrap_or(MIDDLE);
+    let line = table.get("height", |field| field.number(&(LEAST_LINE.into()..8.0 * side)))?.unwrap_or(13.0);
+    let colour = table.get("colour", bytes)?.unwrap_or([255; 3]);
+    table.end()?;
+    let place = table.place_of("text");
+    let characters = text.chars().map(u8::try_from).collect::<Result<Vec<_>, _>>();
+    let is_printed = |text: &Vec<u8>| !text.iter().any(|&character| char::from(character).is_control());
+    let text = characters.ok().filter(is_printed);
+    let text = text.ok_or_else(|| place.error("its characters must be those of ISO 8859-1, in one line"))?;
+    let count = text.len();
+    ensure!((1..=LABEL_TEXT).contains(&count), place.error(format!("it has {count} characters; it can have 1 to {LABEL_TEXT}")));
+    let position = [at[0] - width / 2.0, at[1] - height / 2.0].map(|offset| offset / side);
+    let far = "it is too far from the picture; less than 8 of its smaller sides from its middle are possible";
+    ensure!(position.iter().all(|share| share.abs() < 8.0), table.place_of("at").error(far));
+    Ok(Label::new(position.map(nearest), nearest(line / side), colour, alignment, &text))
+}
+
+fn align(field: Field<'_>) -> Result<u8> {
+    let place = field.place.clone();
+    match field.text()?.as_str() {
+        "left" => Ok(LEFT),
+        "middle" => Ok(MIDDLE),
+        "right" => Ok(RIGHT),
+        other => Err(place.error(format!("there is no \"{}\"; take left, middle or right", quoted(other)))),
+    }
+}
+
+/// The light of number `index`, and its way.
+fn lamp(mut table: Table<'_>, index: usize, cast: &mut Cast) -> Result<Lamp> {
+    let towards = table.get("towards", direction)?;
+    let at = table.get("at", |field| field.numbers(&WORLD))?;
+    let colour = table.get("colour", colour)?.unwrap_or([1.0; 3]);
+    let keys = table.list("keys", "key", NUMBERS as usize)?;
+    table.end()?;
+    let lamp = match (towards, at) {
+        (Some(towards), None) => Lamp::Fixed(towards, colour),
+        (None, Some(at)) => Lamp::FixedNear(at, colour),
+        _ => return Err(table.place.error("say either where it shines from, by `towards`, or where it is, by `at`")),
+    };
+    let mut before = None;
+    let stop = |mut table: Table<'_>, frame| {
+        let towards = table.get("towards", direction)?;
+        let at = table.get("at", |field| field.numbers(&WORLD))?;
+        table.end()?;
+        let vector = if matches!(lamp, Lamp::Fixed(..)) { towards.filter(|_| at.is_none()) } else { at.filter(|_| towards.is_none()) };
+        let vector = vector.ok_or_else(|| table.place.error("its keys must say the same as the light: `towards` or `at`"))?;
+        // Between opposite directions there is no shorter way, and the straight one goes through no light.
+        let is_opposite = towards.zip(before.replace(vector)).is_some_and(|(now, before)| dot(now, before) < OPPOSITE);
+        let opposite = "it is opposite to the key before, and there are many ways between them; write a key in between";
+        ensure!(!is_opposite, table.place_of("towards").error(opposite));
+        Ok(Stop::new(frame, vector, Turn::NONE))
+    };
+    way(cast, LIGHT_TRACK, index, keys, stop)?;
+    Ok(lamp)
+}
+
+/// The cosine of 179 degrees.
+const OPPOSITE: f64 = -0.999_85;
+
+/// Where the camera is, and what it looks at.
+fn eye(table: &mut Table<'_>) -> Result<[V3; 2]> {
+    let at: V3 = table.need("at", |field| field.numbers(&WORLD))?;
+    let target = table.get("looks-at", |field| field.numbers(&LARGE))?.unwrap_or_default();
+    // As it is, and as it is rounded.
+    let farthest = length(at).max(length(at.map(|c| nearest::<Length>(c).to_num())));
+    let far = || format!("it is {farthest:.2} units from the origin; at most {MAX_POSITION} are possible");
+    ensure!(farthest <= MAX_POSITION.to_num::<f64>(), table.place_of("at").error(far()));
+    Ok([at, target])
+}
+
+/// Columns of the rotation of a camera, whose z axis points to what it looks at.
+fn looking([at, target]: [V3; 2], up: V3, table: &Table<'_>) -> Result<[V3; 3]> {
+    let z = unit(sub(target, at)).ok_or_else(|| table.place_of("at").error("the camera must not look at the point where it is"))?;
+    let side = Some(cross(up, z)).filter(|&side| length(side) > 1e-3);
+    let x = side.and_then(unit).ok_or_else(|| table.place_of("at").error("the camera must not look along its `up`"))?;
     Ok([x, cross(z, x), z])
 }
 
-fn eye(camera: &Camera) -> Result<View> {
-    let [x, y, z] = looking(camera.at, camera.looks_at, camera.up)?;
-    ensure!((1.0..170.0).contains(&camera.view), "camera: it can show 1 to 170 degrees");
+/// The camera, and its way.
+fn camera(mut table: Table<'_>, cast: &mut Cast) -> Result<View> {
+    let eye = self::eye(&mut table)?;
+    let up = table.get("up", direction)?.unwrap_or(UP);
+    let view = table.get("view", |field| field.number(&VIEW))?.unwrap_or(40.0);
+    let near = table.get("near", |field| field.number(&NEAR))?.unwrap_or(0.5);
+    let keys = table.list("keys", "key", NUMBERS as usize)?;
+    table.end()?;
+    let [x, y, z] = looking(eye, up, &table)?;
+    let stop = |mut table: Table<'_>, frame| {
+        let eye = self::eye(&mut table)?;
+        table.end()?;
+        let rotation = of_columns(looking(eye, up, &table)?);
+        Ok(Stop::new(frame, eye[0], Turn::Quaternion(rotation)))
+    };
+    way(cast, CAMERA_TRACK, 0, keys, stop)?;
     let rotation = [scale(x, -1.0), y, z];
     Ok(View {
         rotation,
-        translation: rotation.map(|row| -dot(row, camera.at)),
-        axis: up(),
+        translation: rotation.map(|row| -dot(row, eye[0])),
+        axis: UP,
         period: 0,
         projection: Projection::Perspective,
-        focal: 1.0 / (camera.view.to_radians() / 2.0).tan(),
-        near: camera.near,
+        focal: 1.0 / (view.to_radians() / 2.0).tan(),
+        near,
         far: 32.0,
     })
 }
 
-fn cast(script: &Script, ranges: &[(String, u16, u16)]) -> Result<Cast> {
-    let mut cast = Cast::default();
-    for (i, object) in script.object.iter().enumerate() {
-        let place = || format!("object {}, of {:?}", i + 1, object.mesh);
-        let range = ranges.iter().find(|(name, ..)| *name == object.mesh);
-        let &(_, first_mesh, meshes) = range.with_context(|| format!("{}: there is no such mesh", place()))?;
-        cast.members.push(Member { first_mesh, meshes });
-        let mut keys = vec![(0, pose(&object.pose).with_context(place)?)];
-        if !object.keys.is_empty() {
-            keys = object.keys.iter().map(|key| Ok((key.frame, pose(&key.pose)?))).collect::<Result<_>>().with_context(place)?;
+/// An object, and its way.
+fn object(mut table: Table<'_>, index: usize, stock: &Stock, cast: &mut Cast) -> Result<()> {
+    let mesh = table.need("mesh", Field::text)?;
+    let keys = table.list("keys", "key", NUMBERS as usize)?;
+    let pose = self::pose(&mut table, 0)?;
+    let no_mesh = || table.place_of("mesh").error(format!("there is no mesh \"{}\"; write a [[mesh]] of this name", quoted(&mesh)));
+    cast.members.push(*stock.meshes.get(&mesh).ok_or_else(no_mesh)?);
+    if keys.is_empty() {
+        cast.ways.push(Way { kind: OBJECT_TRACK, index: index as u16, keys: vec![pose.key] });
+    }
+    way(cast, OBJECT_TRACK, index, keys, |mut table, frame| self::pose(&mut table, frame))
+}
+
+/// The way of something, by the keys that `stop` reads, if there are any.
+fn way(
+    cast: &mut Cast,
+    kind: u16,
+    index: usize,
+    tables: Vec<Table<'_>>,
+    mut stop: impl FnMut(Table<'_>, u32) -> Result<Stop>,
+) -> Result<()> {
+    let mut stops = Vec::<Stop>::new();
+    for mut table in tables {
+        let frame = table.need("frame", |field| field.integer(&(0..=NUMBERS)))?;
+        let before = stops.last().map(|stop| stop.key.frame);
+        ensure!(before.is_none_or(|before| before < frame), table.place_of("frame").error("the frames of keys must rise"));
+        stops.push(stop(table, frame)?);
+    }
+    if !stops.is_empty() {
+        cast.ways.push(Way { kind, index: index as u16, keys: along(&stops) });
+    }
+    Ok(())
+}
+
+/// How an object lies: all fields of a table that are left.
+fn pose(table: &mut Table<'_>, frame: u32) -> Result<Stop> {
+    let at = table.get("at", |field| field.numbers(&WORLD))?.unwrap_or_default();
+    let axis = table.get("axis", direction)?;
+    let angle = table.get("angle", |field| field.number(&LARGE))?;
+    let euler = table.get("euler", |field| field.numbers(&LARGE))?;
+    let quaternion = table.get("quaternion", quaternion)?;
+    let scale = table.get("scale", |field| field.number(&SCALE))?.unwrap_or(1.0);
+    let hidden = table.get("hidden", Field::flag)?.unwrap_or(false);
+    table.end()?;
+    let turn = match (quaternion, euler, axis, angle) {
+        (None, None, None, None) => Turn::NONE,
+        (Some(quaternion), None, None, None) => Turn::Quaternion(quaternion),
+        (None, Some(euler), None, None) => Turn::Euler(euler),
+        (None, None, Some(axis), Some(angle)) => Turn::About(axis, angle),
+        _ => {
+            let place = table.place_of_any(&["quaternion", "euler", "axis", "angle"]);
+            return Err(place.error("say a rotation by `axis` and `angle`, by `euler`, or by `quaternion`"));
         }
-        cast.ways.push(way(OBJECT_TRACK, i, keys).with_context(place)?);
-    }
-    for (i, light) in script.light.iter().enumerate().filter(|(_, light)| !light.keys.is_empty()) {
-        let place = || format!("light {}", i + 1);
-        let vector = |key: &LightKey| match (light.towards, key.towards, key.at) {
-            (Some(_), Some(towards), None) => direction(towards),
-            (None, None, Some(at)) => Ok(at),
-            _ => bail!("its keys must say the same as the light: `towards` or `at`"),
-        };
-        let keys = light.keys.iter().map(|key| Ok((key.frame, still(vector(key)?)))).collect::<Result<_>>().with_context(place)?;
-        cast.ways.push(way(LIGHT_TRACK, i, keys).with_context(place)?);
-    }
-    if !script.camera.keys.is_empty() {
-        let pose = |key: &CameraKey| {
-            let [x, y, z] = looking(key.at, key.looks_at, script.camera.up)?;
-            Ok((key.frame, Key { rotation: of_columns([x, y, z]).map(|c| nearest::<Rotation>(c).to_bits()), ..still(key.at) }))
-        };
-        let keys = script.camera.keys.iter().map(pose).collect::<Result<_>>().context("camera")?;
-        cast.ways.push(way(CAMERA_TRACK, 0, keys).context("camera")?);
-    }
-    Ok(cast)
-}
-
-fn way(kind: u16, index: usize, keys: Vec<(u32, Key)>) -> Result<Way> {
-    ensure!(keys.windows(2).all(|pair| pair[0].0 < pair[1].0), "keys: their frames must rise");
-    Ok(Way { kind, index: index as u16, keys: keys.into_iter().map(|(frame, key)| Key { frame, ..key }).collect() })
-}
-
-/// At a place, neither turned nor scaled.
-fn still(position: V3) -> Key {
-    Key { frame: 0, rotation: [1 << 30, 0, 0, 0], position: position.map(|c| nearest::<Length>(c).to_bits()), scale: 1 << 16 }
-}
-
-fn pose(pose: &Pose) -> Result<Key> {
-    let about = |axis: V3, degrees: f64| -> Result<[f64; 4]> {
-        let [x, y, z] = unit(axis).context("axis: it must not be zero")?;
-        let (sin, cos) = (degrees.to_radians() / 2.0).sin_cos();
-        Ok([cos, x * sin, y * sin, z * sin])
     };
-    let rotation = match (pose.quaternion, pose.euler, pose.axis, pose.angle) {
-        (None, None, None, None) => [1.0, 0.0, 0.0, 0.0],
-        (Some(quaternion), None, None, None) => {
-            let length = quaternion.iter().map(|c| c * c).sum::<f64>().sqrt();
-            ensure!(length > 1e-6, "quaternion: it must not be zero");
-            quaternion.map(|c| c / length)
-        }
-        (None, Some([yaw, pitch, roll]), None, None) => {
-            times(times(about([0.0, 1.0, 0.0], yaw)?, about([1.0, 0.0, 0.0], pitch)?), about([0.0, 0.0, 1.0], roll)?)
-        }
-        (None, None, Some(axis), Some(angle)) => about(axis, angle)?,
-        _ => bail!("say a rotation by `axis` and `angle`, by `euler`, or by `quaternion`"),
-    };
-    let scale = pose.scale.unwrap_or(1.0);
-    ensure!((1.0 / 16.0..=8.0).contains(&scale), "scale: it can be 1/16 to 8");
-    ensure!(pose.at.iter().all(|c| c.abs() <= 16.0), "at: objects must be within 16 units of the origin along each axis");
-    let scale = if pose.hidden { 0 } else { nearest::<Scale>(scale).to_bits() };
-    Ok(Key { rotation: rotation.map(|c| nearest::<Rotation>(c).to_bits()), scale, ..still(pose.at) })
+    let scale = if hidden { 0 } else { nearest::<Scale>(scale).to_bits() };
+    let stop = Stop::new(frame, at, turn);
+    Ok(Stop { key: Key { scale, ..stop.key }, ..stop })
 }
 
-/// The product of two quaternions.
-fn times([a, b, c, d]: [f64; 4], [w, x, y, z]: [f64; 4]) -> [f64; 4] {
-    [a * w - b * x - c * y - d * z, a * x + b * w + c * z - d * y, a * y - b * z + c * w + d * x, a * z + b * y - c * x + d * w]
+/// w, x, y, z; it becomes a unit one.
+fn quaternion(field: Field<'_>) -> Result<[f64; 4]> {
+    let place = field.place.clone();
+    let quaternion = field.numbers(&LARGE)?;
+    let length = quaternion.iter().map(|c| c * c).sum::<f64>().sqrt();
+    ensure!(length > 1e-6, place.error("it must not be zero"));
+    Ok(quaternion.map(|c| c / length))
 }
 
 /// The quaternion of a rotation matrix. Source: Shepperd (1978).
