@@ -24,7 +24,7 @@ use microphong_sim::{
         cost::{self, Bound, Cost, Count},
         coverage, drift, fuzz,
         random::Random,
-        sameness, scenes, walks, watertight,
+        sameness, scenes, texts, walks, watertight,
     },
 };
 use microphong_tests::{cases, seed, thick};
@@ -218,6 +218,25 @@ fn seeds_are_drawn() {
         }
     }
     assert!(drawn > 80, "{drawn}");
+}
+
+/// Many texts of scenes are converted, and many are refused: a family that does one alone finds nothing.
+#[test]
+fn texts_are_converted_and_refused() {
+    let texts = (0..300).map(|number| texts::text(&mut Random::new(3, number)));
+    let converted = texts.filter(|text| texts::converted(text).unwrap().is_some()).count();
+    println!("{converted} of 300 texts are converted");
+    assert!((60..240).contains(&converted), "{converted}");
+}
+
+/// An error without a line, behind the last one, or of a whole page is a failure.
+#[test]
+fn errors_without_a_line_are_seen() {
+    assert!(texts::is_placed("line 3: frames: 0 is not possible", 3));
+    let page = format!("line 3: {}", "y".repeat(1_000));
+    for said in ["frames: 0 is not possible", "line 4: frames: 0", "line 0: frames", &page] {
+        assert!(!texts::is_placed(said, 3), "{said}");
+    }
 }
 
 /// Random scenes cover their pictures: a family that draws nothing finds nothing.

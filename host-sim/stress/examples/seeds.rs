@@ -5,12 +5,13 @@ use microphong_stress::{
     changes, fuzz,
     random::Random,
     scenes::{self, Wishes},
+    texts,
 };
 use std::{fs, path::PathBuf};
 
 /// Streams of one object.
 const SEEDS: u64 = 24;
-/// Streams of several objects that move.
+/// Streams of several objects that move, and texts of such.
 const SCENES: u64 = 8;
 /// Larger ones slow the fuzzer down.
 const LARGEST: usize = 1_200;
@@ -60,6 +61,9 @@ fn main() -> Result<()> {
     }
     for (k, text) in TEXTS.iter().enumerate() {
         fs::write(folder.join(format!("obj/seed-{k:02}")), text)?;
+    }
+    for k in 0..SCENES {
+        fs::write(folder.join(format!("scene/seed-{k:02}")), texts::text(&mut Random::new(4, k)))?;
     }
     Ok(())
 }

@@ -2,7 +2,7 @@
 //!
 //! Whatever the bytes are, nothing may panic, and no sum or product may overflow.
 
-use crate::case::Case;
+use crate::{case::Case, texts};
 use microphong::{
     Skips,
     stream::{
@@ -22,7 +22,7 @@ use zerocopy::FromBytes;
 pub type Target = fn(&[u8]);
 
 /// The targets, by name.
-pub const TARGETS: [(&str, Target); 3] = [("raw", raw), ("structured", structured), ("obj", obj)];
+pub const TARGETS: [(&str, Target); 4] = [("raw", raw), ("structured", structured), ("obj", obj), ("scene", scene)];
 
 /// How a frame is drawn, by the first of the fuzzer's bytes.
 const CHOICES: usize = 8;
@@ -82,6 +82,16 @@ pub fn sealed(bytes: &[u8]) -> Option<Case> {
 pub fn obj(bytes: &[u8]) {
     if let Ok(obj) = obj::parse(&String::from_utf8_lossy(bytes)) {
         drop(mesh::weld(&obj.soup, mesh::Weld { turn: true, ..mesh::Weld::default() }));
+    }
+}
+
+/// `bytes` as the text of a scene, on to a picture.
+///
+/// # Panics
+/// When the text is refused in words that name no line.
+pub fn scene(bytes: &[u8]) {
+    if let Some(stream) = texts::converted(bytes).unwrap_or_else(|what| panic!("{what}")) {
+        draw(Case { frame: 7, ..Case::new(stream) });
     }
 }
 

@@ -18,6 +18,7 @@ pub mod random;
 pub mod sameness;
 pub mod scenes;
 pub mod shrink;
+pub mod texts;
 pub mod tiles;
 pub mod walks;
 pub mod watertight;
@@ -110,6 +111,7 @@ pub fn families(budget: Option<ErrorBudget>) -> Vec<Box<dyn Family>> {
         Box::new(sameness::Sameness),
         Box::new(changes::Changes),
         Box::new(hostile::Hostile),
+        Box::new(texts::Texts),
     ]
 }
 
