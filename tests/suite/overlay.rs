@@ -17,7 +17,7 @@ use microphong::{
     stream::record::{LEFT, Label, MIDDLE, RIGHT},
 };
 use microphong_sim::{scene, script, shader::Shader};
-use std::{convert::Infallible, fmt::Debug, path::Path, thread};
+use std::{convert::Infallible, fmt::Debug, thread};
 
 const SIZE: Size = Size::new(96, 64);
 const IMAGE: [u8; 32] = [0xF8; 32];
