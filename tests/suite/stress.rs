@@ -67,7 +67,7 @@ fn no_family_finds_a_failure() {
 }
 
 /// Scenes that once broke a promise, each with its method, size, frame, and whether it was drawn in perspective. The folder is `tests/broken`.
-const BROKEN: [(&str, &str, [u32; 2], u32, bool); 11] = [
+const BROKEN: [(&str, &str, [u32; 2], u32, bool); 13] = [
     // Quadratics were set up in words on triangles 15 to 93 times as long as high, under exponents of 328 to 1024.
     ("sqrt6-thin", "sqrt6", [48, 48], 0, false),
     ("renq-thin", "renq", [90, 135], 3_157_191_938, true),
@@ -80,6 +80,10 @@ const BROKEN: [(&str, &str, [u32; 2], u32, bool); 11] = [
     ("sqrt6-large", "sqrt6", [115, 100], 3_773_892_824, false),
     // Each product of an expansion was rounded down to 24 bits, under an exponent of 847.
     ("taylor-sharp", "taylor", [120, 60], 0, true),
+    // Rows whose normals are 2^-12 apart have no plane that 30 bits tell.
+    ("angular-short", "angular-original", [97, 67], 0, false),
+    // The method in floating point took a cosine above 1 for one, where the core counts it as 1.
+    ("sqrt6-above-one", "sqrt6", [80, 132], 0, true),
     // The method in floating point took corners' normals for unit vectors.
     ("duff-corners", "duff", [135, 63], 977_128_035, false),
     // A material of one hue was judged by a channel that overshoots before its brightest one.

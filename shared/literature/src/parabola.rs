@@ -113,9 +113,9 @@ impl Lobe<'_> {
     }
 }
 
-/// Arcs whose sine (Q2.30) is less, 2^-12, have no plane: the rounding of their ends would turn it so far that a sharp highlight shows it. A
-/// power of the exponent 1024 is linear along them to 0.002 of 1/255.
-const SHORT: i32 = 1 << 18;
+/// Arcs whose sine (Q2.30) is less, 2^-9, have no plane: the rounding of their ends would turn it so far that a sharp highlight shows it. A
+/// power of the exponent 1024 is linear along them to 0.13 of 1/255.
+const SHORT: i32 = 1 << 21;
 
 /// Walks three parabolas from right to left by two additions a pixel.
 #[derive(Clone, Copy)]

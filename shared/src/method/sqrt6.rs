@@ -392,7 +392,8 @@ impl DiffuseSign {
     }
 }
 
-/// sqrt(w) for w >= 1/4, and w + 1/4 below, with the same slope at 1/4; Q2.30.
+/// sqrt(w) for w >= 1/4, and w + 1/4 below, with the same slope at 1/4; Q2.30. A cosine above 1, of a normal that rounding has made longer
+/// than 1, counts as 1.
 fn root(w: i32) -> i32 {
     if w < LOWEST {
         return w + LOWEST;

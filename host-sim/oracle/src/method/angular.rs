@@ -34,8 +34,8 @@ pub(crate) fn parabolas(angle: f64, [a, b]: [f64; 2]) -> f64 {
     }
 }
 
-/// Squared sine of an angle below which two normals have no plane, 2^-24: rounded normals cannot tell it.
-const SHORT: f64 = 1.0 / (1u64 << 24) as f64;
+/// Squared sine of an angle below which two normals have no plane, 2^-18: rounded normals cannot tell it.
+const SHORT: f64 = 1.0 / (1u64 << 18) as f64;
 
 /// `cos^s` of the angle to `v`, a share `t` of the way from the normal `l` to `r`, of any lengths.
 ///

@@ -5,9 +5,9 @@ use crate::{
     poly::{SIX, blend, quadratic},
 };
 
-/// `sqrt(w)` from 1/4 upwards, continued by its tangent.
+/// `sqrt(w)` from 1/4 upwards, continued by its tangent. A cosine above 1, of a normal that rounding has made longer than 1, counts as 1.
 fn root(w: f64) -> f64 {
-    if w >= 0.25 { w.sqrt() } else { w + 0.25 }
+    if w >= 0.25 { w.min(1.0).sqrt() } else { w + 0.25 }
 }
 
 /// The inverse of [`root`].
