@@ -37,6 +37,16 @@ pub(crate) fn parabolas(angle: f64, [a, b]: [f64; 2]) -> f64 {
 /// Squared sine of an angle below which two normals have no plane, 2^-18: rounded normals cannot tell it.
 const SHORT: f64 = 1.0 / (1u64 << 18) as f64;
 
+/// [`along`], or linear where there is hardly any angle between the normals, so no plane either.
+fn along_row([l, r]: [V3; 2], v: V3, t: f64, s: f64, widths: Widths) -> f64 {
+    let (ll, lr, rr) = (dot(l, l), dot(l, r), dot(r, r));
+    if ll * rr - lr * lr > SHORT * ll * rr {
+        return along([l, r], v, t, s, widths);
+    }
+    let end = |cosine: f64, square: f64| (cosine / square.sqrt().max(1e-6)).max(0.0).powf(s);
+    end(dot(l, v), ll) * (1.0 - t) + end(dot(r, v), rr) * t
+}
+
 /// `cos^s` of the angle to `v`, a share `t` of the way from the normal `l` to `r`, of any lengths.
 ///
 /// On their great circle the cosine is `Γ cos(θ - α)`, θ running from 0 to the angle between them:
@@ -44,11 +54,6 @@ const SHORT: f64 = 1.0 / (1u64 << 18) as f64;
 pub(crate) fn along([l, r]: [V3; 2], v: V3, t: f64, s: f64, widths: Widths) -> f64 {
     let (ll, lr, rr, lv, rv) = (dot(l, l), dot(l, r), dot(r, r), dot(l, v), dot(r, v));
     let area = ll * rr - lr * lr;
-    if area <= SHORT * ll * rr {
-        // Hardly any angle between them, so no plane either: linear.
-        let end = |cosine: f64, square: f64| (cosine / square.sqrt().max(1e-6)).max(0.0).powf(s);
-        return end(lv, ll) * (1.0 - t) + end(rv, rr) * t;
-    }
     let gamma = ((rr * lv * lv - 2.0 * lv * lr * rv + ll * rv * rv) / area).clamp(0.0, 1.0);
     let alpha = (ll * rv - lr * lv).atan2(lv * area.sqrt());
     let whole = (lr / (ll * rr).sqrt()).clamp(-1.0, 1.0).acos();
@@ -89,7 +94,7 @@ pub(super) fn angular<'f>(frame: &'f Frame, facet: &'f Facet, widths: Widths) ->
         let span = Span::new(&facet.screen, y);
         let power = |field: &Turned, s: f64| {
             let ends = [span.left, span.right].map(|end| end.slerp(&field.normals));
-            along(ends, field.direction, span.along(x), s, widths)
+            along_row(ends, field.direction, span.along(x), s, widths)
         };
         frame.levels(facet, lights.iter().map(|[diffuse, half]| [power(diffuse, 1.0), power(half, exponent)]))
     })
@@ -107,7 +112,7 @@ pub(super) fn hybrid<'f>(frame: &'f Frame, facet: &'f Facet, widths: Widths) -> 
         let (span, weights) = (Span::new(&facet.screen, y), quadratic(facet.weights([x, y])));
         let power = |field: &Turned| {
             let ends = [span.left, span.right].map(|end: End| end.lerp(&field.normals));
-            along(ends, field.direction, span.along(x), exponent, widths)
+            along_row(ends, field.direction, span.along(x), exponent, widths)
         };
         frame.levels(facet, lights.iter().map(|(diffuse, half)| [sum(&weights, diffuse), power(half)]))
     })
