@@ -351,7 +351,7 @@ fn fields_of_26_bits_stay_within_the_bound() {
         let [a, b, c, ..] = nodes;
         let extra = 5 + i as u32 / 7 % 2;
         let mut plane = Plane::<1>::fit::<26>(&gradients, &[[a, b, c]], extra, [0]);
-        let mut quadric = Quadric::<1>::fit::<26>(&gradients, &[nodes], 6, [0]);
+        let mut quadric = Quadric::<1>::fit::<26>(&gradients, &[nodes], extra, [0]);
         let is_word_sized = Gradients::if_word_sized(corners).is_some();
         let is_thin = reach(corners).pow(2) > side(corners[0], corners[1], corners[2]) * LONG_THINNESS;
         let bend = if is_thin && !is_word_sized { 0.0 } else { LONG_QUADRATIC };
@@ -379,11 +379,11 @@ fn fields_of_26_bits_stay_within_the_bound() {
                 let curved = (0..3).map(|k| b[k] * (2.0 * b[k] - 1.0) * n[k]).sum::<f64>()
                     + 4.0 * (b[0] * b[1] * n[3] + b[1] * b[2] * n[4] + b[2] * b[0] * n[5]);
                 let distance = f64::from((x - gradients.column()).abs() + (row - gradients.row()).abs());
-                for (k, extra, walked, exact, part, far) in [
-                    (0, extra, linear.value(), straight, LONG_LINEAR * thinness, 0.0),
-                    (1, 6, quadratic.value(), curved, bend * thinness * thinness, distance * distance),
+                let units = f64::from(1 << extra);
+                for (k, walked, exact, part, far) in [
+                    (0, linear.value(), straight, LONG_LINEAR * thinness, 0.0),
+                    (1, quadratic.value(), curved, bend * thinness * thinness, distance * distance),
                 ] {
-                    let units = f64::from(1 << extra);
                     let error = (f64::from(walked[0] as i32) - exact * units).abs();
                     let error = error.min((error - 2f64.powi(32)).abs());
                     let bound = 0.5 * (1.0 + distance + far) + moving + small * (1.0 + distance) + part * units;

@@ -34,9 +34,8 @@ impl Row {
     /// See [`Quadric::fit`].
     #[inline(always)]
     fn fit<const BITS: u32>(gradients: &Gradients, nodes: [i32; 6], extra: u32, bias: i32) -> Self {
-        debug_assert!(BITS <= QUADRATIC || extra == 32 - BITS, "nodes of so many bits are walked in whole words");
         let [c, dx, dy, dxx, dxy, dyy] =
-            if BITS <= QUADRATIC { gradients.quadratic::<BITS>(nodes, extra) } else { long::<BITS>(gradients, nodes) };
+            if BITS <= QUADRATIC { gradients.quadratic::<BITS>(nodes, extra) } else { long::<BITS>(gradients, nodes, extra) };
         let x = gradients.column();
         // The move from the anchor column to column 0 is exact, modulo 2^32.
         Self {
@@ -65,7 +64,7 @@ impl<const CH: usize> Quadric<CH> {
     /// The quadratic through six nodes per channel: corners 0, 1, 2, then the midpoints of the edges 01, 12, 20.
     ///
     /// All nodes lie in a range narrower than 2^`BITS`; values are walked with `extra` more
-    /// fraction bits, which of nodes of more than [`QUADRATIC`] bits are all that a word has, and `bias` added. Error: at most 2^-1 (1 + S + S²) units of the walked format, S the distance in columns plus rows
+    /// fraction bits, `bias` added. Error: at most 2^-1 (1 + S + S²) units of the walked format, S the distance in columns plus rows
     /// from the anchor, and for set-up 2^-22 k² of the nodes' range, k the length over the height, up to
     /// [`crate::setup::gradients::MAX_THINNESS`]; nothing beyond. For 26 bits these are 2^-25 k² and
     /// [`crate::setup::gradients::MAX_FINE_THINNESS`]. On triangles of up to 64 pixels: 2^4 (1 + S) units more, of levels 2^9 (1 + S),
@@ -86,11 +85,11 @@ impl<const CH: usize> Quadric<CH> {
     }
 }
 
-/// Fits one channel outside of words, in a function of its own, since a call is a small share of the cost. That fields of these ranges are walked
-/// in whole words leaves it fewer instructions.
+/// Fits one channel outside of words, in a function of its own, since a call is a small share of the cost. Fields that are walked in whole words
+/// are fitted fast: a constant number of fraction bits spares instructions.
 #[inline(never)]
-fn long<const BITS: u32>(gradients: &Gradients, nodes: [i32; 6]) -> [i32; 6] {
-    gradients.quadratic::<BITS>(nodes, 32 - BITS)
+fn long<const BITS: u32>(gradients: &Gradients, nodes: [i32; 6], extra: u32) -> [i32; 6] {
+    if extra == 32 - BITS { gradients.quadratic::<BITS>(nodes, 32 - BITS) } else { gradients.quadratic_any(BITS, nodes, extra) }
 }
 
 impl<const CH: usize> Patch for Quadric<CH> {

@@ -401,7 +401,7 @@ impl Gradients {
 
     #[cold]
     #[inline(never)]
-    fn quadratic_any(self, range: u32, nodes: [i32; 6], extra: u32) -> [i32; 6] {
+    pub(crate) fn quadratic_any(self, range: u32, nodes: [i32; 6], extra: u32) -> [i32; 6] {
         let [i0, i1, i2, i01, i12, i20] = nodes;
         let ratio = if range > word_sized::LINEAR { MAX_FINE_THINNESS } else { MAX_THINNESS };
         // Half the matrix of second derivatives: [[ss, st], [st, tt]].
