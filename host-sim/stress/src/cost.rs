@@ -152,7 +152,7 @@ pub struct Work {
     pub perspective: bool,
     /// Vertices of the stream.
     pub vertices: u64,
-    /// Triangles and meshes of the stream, and triangles once more in each band that they reach into.
+    /// Triangles and meshes of the stream, and triangles once more in each band that they reach into, or in each band of each of their tiles.
     pub triangles: u64,
     /// Rows of triangles.
     pub rows: u64,
@@ -164,6 +164,12 @@ pub struct Work {
 const TABLE: u64 = 512;
 /// Triangles that a clipped triangle may become.
 const FAN: u64 = 6;
+/// Methods that interpolate levels. All others draw large triangles under sharp highlights in square tiles.
+const OF_LEVELS: [&str; 8] = ["flat", "gouraud", "gouraud4", "six-point", "six-point-adaptive", "six-point-centre", "cubic", "environment"];
+/// Columns and rows of a triangle beyond which there are tiles, at an exponent of 1. They shrink with the root of the exponent.
+const UNTILED: f64 = 768.0;
+/// The side of the smallest tiles, in pixels.
+const SMALLEST_TILE: u64 = 8;
 
 impl Work {
     /// Of a case; `None` if its stream is not valid.
@@ -186,19 +192,24 @@ impl Work {
             pixels: width * height + TABLE * stream.materials.len() as u64,
         };
         let band = u64::from(case.band_rows);
+        let is_tiled = !case.style.antialias && !OF_LEVELS.contains(&case.style.shader.name());
         for mesh in levels::drawn(&stream, case.pixels()) {
             let vertices = stream.vertices_of(mesh)?;
+            let exponent = stream.materials.get(usize::from(mesh.material))?.exponent;
             for triangle in stream.triangles_of(mesh)? {
                 let places = triangle.corners.map(|corner| view.lens.project(view.to_eye(vertices[usize::from(corner)].position)));
                 let is_whole = places.iter().all(|&(_, within)| within);
-                let (parts, rows, pixels) = if is_whole {
-                    let (rows, pixels) = touched(places.map(|([x, y, _], _)| [x, y]), [width, height]);
-                    (1, rows, pixels)
+                let corners = places.map(|([x, y, _], _)| [x, y]);
+                let (parts, span, seen, rows, pixels) = if is_whole {
+                    let (seen, rows, pixels) = touched(corners, [width, height]);
+                    (1, span(corners), seen, rows, pixels)
                 } else {
-                    (FAN, 0..height, width * height)
+                    (FAN, f64::INFINITY, [width, height], 0..height, width * height)
                 };
                 if !rows.is_empty() {
-                    work.triangles += parts * ((rows.end - 1) / band - rows.start / band + 1);
+                    let bands = (rows.end - 1) / band - rows.start / band + 1;
+                    let [columns, lines] = if is_tiled { tiles(seen, span, exponent) } else { [1, 1] };
+                    work.triangles += parts * columns * (bands + lines - 1);
                     work.rows += parts * (rows.end - rows.start);
                     work.pixels += pixels;
                 }
@@ -223,9 +234,9 @@ impl Work {
     }
 }
 
-/// The rows of a picture that a triangle reaches into, and how many pixels it touches at most; none if it shows its back. `corners` are in
-/// 1/16 pixel.
-fn touched(corners: [[i32; 2]; 3], size: [u64; 2]) -> (Range<u64>, u64) {
+/// How many columns and rows of a picture a triangle reaches into, which rows, and how many pixels it touches at most; none if it shows its
+/// back. `corners` are in 1/16 pixel.
+fn touched(corners: [[i32; 2]; 3], size: [u64; 2]) -> ([u64; 2], Range<u64>, u64) {
     let [a, b, c] = corners.map(|corner| corner.map(i64::from));
     // It runs against the order of the screen, whose y runs down.
     let area = (b[1] - a[1]) * (c[0] - a[0]) - (b[0] - a[0]) * (c[1] - a[1]);
@@ -233,12 +244,34 @@ fn touched(corners: [[i32; 2]; 3], size: [u64; 2]) -> (Range<u64>, u64) {
         let (least, most) = (a[k].min(b[k]).min(c[k]) >> SUBPIXEL, (a[k].max(b[k]).max(c[k]) >> SUBPIXEL) + 1);
         least.clamp(0, size[k] as i64) as u64..most.clamp(0, size[k] as i64) as u64
     });
-    let (width, height) = (columns.end - columns.start, rows.end - rows.start);
+    let [width, height] = [columns.end - columns.start, rows.end - rows.start];
     if area <= 0 || width * height == 0 {
-        return (0..0, 0);
+        return ([0, 0], 0..0, 0);
     }
     // A convex figure touches as many pixels as its area and its boundary, at most.
-    (rows, (width * height).min((area as u64 >> (2 * SUBPIXEL + 1)) + 2 * (width + height)))
+    ([width, height], rows, (width * height).min((area as u64 >> (2 * SUBPIXEL + 1)) + 2 * (width + height)))
+}
+
+/// The columns and rows of a triangle together, in pixels. `corners` are in 1/16 pixel.
+fn span(corners: [[i32; 2]; 3]) -> f64 {
+    let extent = |k: usize| {
+        let places = corners.map(|corner| i64::from(corner[k]));
+        places.iter().max().zip(places.iter().min()).map_or(0, |(most, least)| most - least)
+    };
+    (extent(0) + extent(1)) as f64 / f64::from(1 << SUBPIXEL)
+}
+
+/// How many tiles of a triangle lie side by side and one above the other, at most, if so many columns and rows of it are seen under a
+/// highlight of this exponent.
+fn tiles(seen: [u64; 2], span: f64, exponent: u16) -> [u64; 2] {
+    // A root of N·H has twice the exponent.
+    let reach = UNTILED / (2.0 * f64::from(exponent)).sqrt();
+    if span + 1.0 < reach {
+        return [1, 1];
+    }
+    // A tile reaches as far from its middle in columns and rows as its side, and its side is a power of two.
+    let side = SMALLEST_TILE.max(1 << ((reach / 2.0) as u64).max(1).ilog2());
+    seen.map(|pixels| pixels / side + 2)
 }
 
 /// A random case of a kind that costs a lot.
