@@ -9,7 +9,7 @@
 //! quadratic through six points is exact: there it is [`crate::method::phong`].
 
 use crate::{
-    arch::product::upper,
+    arch::product::{unsigned_product, upper},
     format::NORMAL_LENGTH,
     lighting::{
         material_tables::MaterialTables,
@@ -89,16 +89,16 @@ impl Loops for RenqNewton {
 /// Whether one step may leave more than 0.1 LSB: 255 n 1.5 delta² > 0.1 with delta = 0.02 e⁴ and e² = 3 (1 - r²), r the least length
 /// of normals: on a grid, no triangle with r² of at least 1/2 has more than 0.0202 e⁴, and none where this decides more than 0.015 e⁴.
 fn needs_two(min_length: u16, exponent: u16) -> bool {
-    // e² in Q2.30; 255 · 1.5 · 0.02² = 0.153.
-    let length = u64::from(min_length);
-    let chord2 = 3 * ((1u64 << 30) - ((length * length) >> (2 * NORMAL_LENGTH - 30)));
-    let chord4 = (chord2 * chord2) >> 32;
-    // e⁸ in Q.26, and 0.1 / 0.153 in Q.26.
-    ((chord4 * chord4) >> 30) * u64::from(exponent) > LIMIT
+    // e² in Q2.30, e⁴ in Q.28, e⁸ in Q.24; 255 · 1.5 · 0.02² = 0.153.
+    let length = u32::from(min_length);
+    let chord2 = 3 * ((1 << 30) - ((length * length) >> (2 * NORMAL_LENGTH - 30)));
+    let upper = |a: u32, b: u32| (unsigned_product(a, b) >> 32) as u32;
+    let chord4 = upper(chord2, chord2);
+    unsigned_product(upper(chord4, chord4), u32::from(exponent)) > LIMIT
 }
 
-/// 0.1 / (255 · 1.5 · 0.02²), Q.26.
-const LIMIT: u64 = (0.1 / (255.0 * 1.5 * 0.02 * 0.02) * (1u64 << 26) as f64) as u64;
+/// 0.1 / (255 · 1.5 · 0.02²), Q.24.
+const LIMIT: u64 = (0.1 / (255.0 * 1.5 * 0.02 * 0.02) * (1u64 << 24) as f64) as u64;
 
 /// One step from h towards 1/(2 sqrt(D)): h (3 - 4 D h²)/2, Q2.30.
 #[inline(always)]

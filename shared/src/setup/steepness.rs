@@ -1,26 +1,30 @@
 //! How exactly a field has to be fitted and walked, so that no highlight shows an error of it.
 //!
-//! A highlight of exponent n that is off by e in its cosine is off by up to 255 n e levels. Fields have three errors that grow, and each of
-//! them may take [`SHARE`] of a level. Where a faster way would take more, a slower one is taken. Ordinary meshes have next to no such
-//! triangles.
+//! A highlight of exponent n that is off by e in its cosine is off by up to 255 n e levels. Three errors of a field grow: of first derivatives, of
+//! second derivatives, and of walking. Each has its share of half a level. Where a faster way would take more, a slower one is taken.
+//! Ordinary meshes have next to no such triangles.
 
-/// What each error of a field may add to a highlight, in 1/255.
-pub const SHARE: f64 = 0.1;
+/// What first derivatives may add to a highlight, in 1/255.
+pub const SLOPE: f64 = 0.06;
+/// What second derivatives may add to a highlight, in 1/255.
+pub const CURVATURE: f64 = 0.02;
+/// What walking may add to a highlight, in 1/255.
+pub const WALK: f64 = 0.07;
 
-/// The largest `n e` by which a highlight is off by [`SHARE`], in units of 2^-`bits`.
-const fn limit(bits: u32) -> u32 {
-    (SHARE / 255.0 * (1u64 << bits) as f64) as u32
+/// The largest `n e` by which a highlight is off by a share of 1/255, in units of 2^-`bits`.
+const fn limit(share: f64, bits: u32) -> u32 {
+    (share / 255.0 * (1u64 << bits) as f64) as u32
 }
 
 /// Largest n S² of a quadratic that words walk: coefficients that are rounded to 2^-30 are off by 2^-31 (1 + S + S²) at a distance of S
 /// columns plus rows.
-const WALKED: u32 = limit(31);
+const WALKED: u32 = limit(WALK, 31);
 /// Largest n S of a field that words fit on a word-sized triangle: its first derivatives are off by 2^-27.
-const FIRST: u32 = limit(27);
+const FIRST: u32 = limit(SLOPE, 27);
 /// Largest n k² that gradients of 30 bits fit: with k the length over the height, quadratics are off by 1.3 · 2^-25 k².
-const THIN: u32 = limit(25) * 10 / 13;
+const THIN: u32 = limit(SLOPE, 25) * 10 / 13;
 /// Largest n d k² that words fit, or gradients of 30 bits: with d the second difference of nodes, quadratics are off by 2^-25 d k².
-const BEND: u32 = limit(25);
+const BEND: u32 = limit(CURVATURE, 25);
 
 /// The largest power of two that fits `a / b`, by its logarithm: a division takes a small processor longer.
 const fn log_quotient(a: u32, b: u32) -> u32 {
