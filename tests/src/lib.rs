@@ -13,7 +13,7 @@ use serde_json::Value;
 use std::{
     mem::{offset_of, size_of},
     path::{Path, PathBuf},
-    process::Command,
+    process::{Command, Output},
     sync::LazyLock,
 };
 use zerocopy::FromBytes;
@@ -64,6 +64,28 @@ pub fn named(name: &str) -> Shader {
 #[must_use]
 pub fn only_announces(stderr: &str) -> bool {
     stderr.lines().all(|line| line.ends_with(" ..."))
+}
+
+/// Runs the command in a folder.
+///
+/// # Panics
+/// When it does not start.
+#[must_use]
+pub fn run(directory: &Path, arguments: &[&str]) -> Output {
+    Command::new(program()).args(arguments).current_dir(directory).output().expect("the program")
+}
+
+/// Runs the command in a folder, where it must succeed and announce no more than long work on stderr, and returns its stdout.
+///
+/// # Panics
+/// When it does not.
+#[track_caller]
+#[must_use]
+pub fn succeeds(directory: &Path, arguments: &[&str]) -> String {
+    let output = run(directory, arguments);
+    let stderr = String::from_utf8_lossy(&output.stderr);
+    assert!(output.status.success() && only_announces(&stderr), "{arguments:?}: {stderr}");
+    String::from_utf8(output.stdout).expect("text")
 }
 
 /// The same stream, its first mesh not marked as closed and convex: all of it is drawn with depth.

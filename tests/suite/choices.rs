@@ -26,29 +26,14 @@ use microphong_sim::{
     vector::{add, unit},
     view::{Up, View},
 };
-use microphong_tests::{only_announces, program};
+use microphong_tests::{run, succeeds};
 use rayon::prelude::*;
 use serde_json::Value;
 use std::{
     collections::{BTreeSet, HashMap},
     fs::File,
     io::BufReader,
-    path::Path,
-    process::{Command, Output},
 };
-
-fn run(directory: &Path, arguments: &[&str]) -> Output {
-    Command::new(program()).args(arguments).current_dir(directory).output().expect("the program")
-}
-
-/// Runs the command, which must succeed, and returns its stdout.
-#[track_caller]
-fn succeeds(directory: &Path, arguments: &[&str]) -> String {
-    let output = run(directory, arguments);
-    let stderr = String::from_utf8_lossy(&output.stderr);
-    assert!(output.status.success() && only_announces(&stderr), "{arguments:?}: {stderr}");
-    String::from_utf8(output.stdout).expect("text")
-}
 
 #[track_caller]
 fn object(line: &str) -> Value {

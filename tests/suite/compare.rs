@@ -7,25 +7,15 @@ use microphong_sim::{
     image, oracle, scene,
     shader::Shader,
 };
-use microphong_tests::{only_announces, program};
 use serde_json::Value;
-use std::{
-    fs,
-    path::Path,
-    process::{Command, Output},
-};
+use std::{fs, path::Path, process::Output};
 
 fn run(directory: &Path, arguments: &[&str]) -> Output {
-    Command::new(program()).arg("compare").args(arguments).current_dir(directory).output().expect("the program")
+    microphong_tests::run(directory, &[&["compare"], arguments].concat())
 }
 
-/// Runs the command, which must succeed and announce no more than long work on stderr, and returns its stdout.
-#[track_caller]
 fn succeeds(directory: &Path, arguments: &[&str]) -> String {
-    let output = run(directory, arguments);
-    let stderr = String::from_utf8_lossy(&output.stderr);
-    assert!(output.status.success() && only_announces(&stderr), "{arguments:?}: {stderr}");
-    String::from_utf8(output.stdout).expect("text")
+    microphong_tests::succeeds(directory, &[&["compare"], arguments].concat())
 }
 
 fn objects(lines: &str) -> Vec<Value> {

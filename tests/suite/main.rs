@@ -18,6 +18,7 @@ mod documents;
 mod endurance;
 mod examples;
 mod faults;
+mod framing;
 mod gamma;
 mod golden;
 mod hostile;

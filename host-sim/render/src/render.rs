@@ -70,6 +70,20 @@ pub fn frame<C: Pixel>(stream: Stream<'_>, size: Size, style: impl Into<Style>, 
     Ok((pixels, stats))
 }
 
+/// Whether any frame of a stream shows a pixel of a triangle, in pictures of this size.
+///
+/// # Errors
+/// When `size` is out of range.
+pub fn shows_a_pixel(stream: &Stream<'_>, size: Size) -> Result<bool> {
+    for number in 0..u32::from(stream.header.frames) {
+        let (_, stats) = frame::<Gray8>(*stream, size, Shader::FLAT, size.height, number)?;
+        if stats.pixels > 0 {
+            return Ok(true);
+        }
+    }
+    Ok(false)
+}
+
 /// Checksum of a picture.
 #[must_use]
 pub fn crc<C: Pixel>(pixels: &[C]) -> u32 {

@@ -208,8 +208,8 @@ fn built_in(name: &str) -> Result<(StreamBytes, (u32, u32))> {
 
 type Parts = (Mesh, Look, (u32, u32));
 
-/// What fits a square fits displays of every shape.
-const SQUARE: (u32, u32) = (256, 256);
+/// What fits a square fits displays of every shape: the field of view is that of the narrower side.
+pub const SQUARE: (u32, u32) = (256, 256);
 
 fn teapot() -> Result<Parts> {
     let mesh = welded(TEAPOT)?;

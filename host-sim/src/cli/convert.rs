@@ -6,9 +6,9 @@ use super::{
     parse, report,
 };
 use anyhow::{Context, Result, bail};
-use embedded_graphics_core::pixelcolor::Rgb565;
+use embedded_graphics_core::{geometry::Size, pixelcolor::Rgb565};
 use microphong::{
-    Layout,
+    Layout, Stream,
     format::{ErrorBudget, GeometricError, MAX_LIGHTS},
 };
 use microphong_sim::{
@@ -18,7 +18,8 @@ use microphong_sim::{
     mesh::{CREASE, Weld},
     output,
     quantise::{Part, quantise},
-    scene::{self, AMBIENT, COPPER, DISTANCE, MARGIN, ORBIT},
+    render,
+    scene::{self, AMBIENT, COPPER, DISTANCE, MARGIN, ORBIT, SQUARE},
     shader::Shader,
     vector::{V3, add},
     view::{Projection, Up, View},
@@ -111,9 +112,10 @@ pub(crate) struct Arguments {
     /// Highlights look from each point to the eye, instead of in one direction for all: dearer.
     #[arg(long)]
     local_viewer: bool,
-    /// Picture for which the camera is set up. Wider ones show the same with more border; narrower ones may cut the mesh off at the sides.
-    #[arg(long, value_name = "WxH", default_value = "320x240", value_parser = parse::size)]
-    size: (u32, u32),
+    /// Picture that the turn fills. Without it the whole turn is seen on displays of every shape, because the mesh fits the narrower side. A
+    /// picture that is wider than high may show a wide mesh larger; narrower pictures then cut its sides off.
+    #[arg(long, value_name = "WxH", value_parser = parse::size)]
+    size: Option<(u32, u32)>,
     /// Make the mesh of so many triangles at most, on some of its vertices, and say how far it lies from the mesh of the file. Levels of --lod
     /// count from what is left.
     #[arg(long, value_name = "TRIANGLES", value_parser = clap::value_parser!(u32).range(1..))]
@@ -223,7 +225,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome> {
         local_viewer: arguments.local_viewer,
         budget: arguments.budget,
         shader,
-        ..Look::new(of_arguments, view.fit(&mesh.positions, arguments.size, MARGIN))
+        ..Look::new(of_arguments, view.fit(&mesh.positions, arguments.size.unwrap_or(SQUARE), MARGIN))
     };
     let look = if arguments.lights.is_empty() { look } else { Look { lamps: placed(&arguments.lights, &look.view), ..look } };
     let simplified = match arguments.simplify.map(|most| most as usize) {
@@ -246,7 +248,9 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome> {
     let bytes = look.stream(&parts).with_context(place)?;
     report::leave_to(&target);
     output::write(&target, bytes.as_bytes())?;
-    let layout = Layout::new(arguments.size.0 as usize, ROWS).with_room_for(&bytes.parse()?);
+    let size = arguments.size.unwrap_or(USUAL);
+    remarks.extend(unseen(&bytes.parse()?, size)?);
+    let layout = Layout::new(size.0 as usize, ROWS).with_room_for(&bytes.parse()?);
     let line = Line {
         mesh: &source.to_string_lossy(),
         output: &target.to_string_lossy(),
@@ -295,6 +299,7 @@ struct SceneLine<'a> {
     bytes: usize,
     layout: String,
     memory: usize,
+    remarks: Vec<String>,
     /// Of frames, where they are counted.
     costs: Option<Vec<Cost>>,
 }
@@ -319,6 +324,7 @@ fn convert_script(arguments: &Arguments, target: &Path, counter: Option<&Counter
         bytes: scene.stream.as_bytes().len(),
         layout: text_of(&layout),
         memory: layout.bytes::<Rgb565>(),
+        remarks: unseen(&stream, scene.size)?.into_iter().collect(),
         costs: counter.map(|counter| counter.count(&target.to_string_lossy())).transpose()?,
     };
     if arguments.json {
@@ -326,7 +332,7 @@ fn convert_script(arguments: &Arguments, target: &Path, counter: Option<&Counter
         return Ok(Outcome::Done);
     }
     let count = |n: usize| report::grouped(n as u64);
-    let SceneLine { scene, output, objects, meshes, triangles, frames, bytes, layout, memory, costs } = line;
+    let SceneLine { scene, output, objects, meshes, triangles, frames, bytes, layout, memory, remarks, costs } = line;
     report::line(&format!(
         "{output}: {} of {} and {}, {}, from {scene}",
         report::counted(objects, ["object", "objects"]),
@@ -335,6 +341,9 @@ fn convert_script(arguments: &Arguments, target: &Path, counter: Option<&Counter
         report::counted(frames, report::FRAMES)
     ))?;
     report::line(&format!("  {} bytes of flash", count(bytes)))?;
+    for remark in remarks {
+        report::line(&format!("  {remark}"))?;
+    }
     report::line(&format!("  {layout}, {} bytes of memory for Rgb565", count(memory)))?;
     count::text(costs.as_deref())?;
     Ok(Outcome::Done)
@@ -349,8 +358,17 @@ fn placed(lights: &[Lamp], view: &View) -> Vec<Lamp> {
     lights.iter().map(place).collect()
 }
 
-/// Of a small display, where no other picture is named.
-const USUAL: (u32, u32) = (240, 240);
+/// The commonest display, where no other picture is named.
+const USUAL: (u32, u32) = (320, 240);
+
+/// What is said of a scene that stays empty.
+fn unseen(stream: &Stream<'_>, (width, height): (u32, u32)) -> Result<Option<String>> {
+    let is_seen = render::shows_a_pixel(stream, Size::new(width, height))?;
+    Ok((!is_seen).then(|| {
+        "no frame shows a pixel of it: its faces look away (--flip turns them over), or it is thinner than a pixel from this side"
+            .to_owned()
+    }))
+}
 
 /// The error of a simplified mesh in the largest picture that `--lod` names.
 fn in_pixels(levels::Simplified { before, error }: levels::Simplified, look: &Look, parts: &[Part], pictures: &[(u32, u32)]) -> Simplified {
