@@ -14,6 +14,9 @@ use std::{fmt::Debug, fs, path::PathBuf, process::Command};
 mod backdrop;
 #[path = "../../examples/esp32c3-gc9a01/src/scene.rs"]
 mod esp32c3_gc9a01;
+#[path = "../../examples/objects.rs"]
+#[expect(dead_code, reason = "the example's `main`")]
+mod objects;
 #[path = "../../examples/redraw.rs"]
 #[expect(dead_code, reason = "the example's `main`")]
 mod redraw;
@@ -72,7 +75,7 @@ fn displays_show_what_the_documentation_shows() {
     shows!("rp2040-ssd1306", rp2040_ssd1306, |renderer, band| rp2040_ssd1306::picture(renderer, band, 0));
     shows!("rp2350-st7789", rp2350_st7789, |renderer, band| rp2350_st7789::picture(renderer, band, 0, None));
     shows!("stm32f411-ili9341", stm32f411_ili9341, |renderer, band| stm32f411_ili9341::picture(renderer, band, 0));
-    for (name, drawn) in [("backdrop", backdrop::draw()), ("redraw", redraw::draw())] {
+    for (name, drawn) in [("backdrop", backdrop::draw()), ("objects", objects::draw()), ("redraw", redraw::draw())] {
         let (display, stats) = drawn.expect("a picture");
         compare(name, &stats, &display);
     }
@@ -83,7 +86,7 @@ fn displays_show_what_the_documentation_shows() {
 fn streams_are_what_their_commands_make() {
     let readme = fs::read_to_string(root().join("../examples/README.md")).expect("a README");
     let commands: Vec<_> = readme.lines().filter_map(|line| line.strip_prefix("cargo run --release -- convert ")).collect();
-    assert_eq!(commands.len(), 3);
+    assert_eq!(commands.len(), 4);
     let place = tempfile::tempdir().expect("scratch directory");
     for command in commands {
         let (arguments, recorded) = command.split_once(" -o ").expect("a file");
@@ -110,6 +113,10 @@ fn documents_show_the_programs() {
         let document = "docs/guide/getting-started.md";
         assert!(shown(document, &text), "{file} of stm32f411-ili9341 has changed: copy it into {document}");
     }
+    let text = fs::read_to_string(path("", "objects.rs")).expect("a source");
+    let document = "docs/guide/scenes.md";
+    let program = text.split_once("\n\n").map(|(_, program)| program).and_then(|program| program.split_once("\nfn main")).expect("it").0;
+    assert!(shown(document, program), "examples/objects.rs has changed: copy it into {document}");
     // A reader's program has a mesh of its own beside `src`.
     let text = fs::read_to_string(path("", "display.rs")).expect("a source").replace("../firmware/teapot.tri", "../mesh.tri");
     assert!(shown("README.md", &text), "examples/display.rs has changed: copy it into the README");

@@ -72,6 +72,7 @@ struct Parts {
     vertices: Vec<Vertex>,
     triangles: Vec<Triangle>,
     labels: Vec<Label>,
+    names: Vec<u8>,
 }
 
 impl Parts {
@@ -88,6 +89,7 @@ impl Parts {
             vertices: stream.vertices.to_vec(),
             triangles: stream.triangles.to_vec(),
             labels: stream.labels.to_vec(),
+            names: stream.names.to_vec(),
         })
     }
 
@@ -99,7 +101,7 @@ impl Parts {
         (header.instances, header.tracks, header.keys) = (self.instances.len() as u16, self.tracks.len() as u16, self.keys.len() as u32);
         (header.vertices, header.triangles) = (self.vertices.len() as u32, self.triangles.len() as u32);
         header.labels = self.labels.len() as u8;
-        header.length = stream::length(header).unwrap_or(u32::MAX);
+        header.length = stream::length(header).map_or(u32::MAX, |length| length.saturating_add(self.names.len() as u32));
         lie(header);
         let mut bytes = self.header.as_bytes().to_vec();
         for records in [
@@ -112,6 +114,7 @@ impl Parts {
             self.vertices.as_bytes(),
             self.triangles.as_bytes(),
             self.labels.as_bytes(),
+            &self.names,
         ] {
             bytes.extend_from_slice(records);
         }
@@ -129,7 +132,7 @@ fn label(colour: [u8; 3]) -> Label {
 type Change<T> = (&'static str, fn(&mut T));
 
 /// Values at the ends of their ranges, and beyond them.
-const LIMITS: [Change<Parts>; 23] = [
+const LIMITS: [Change<Parts>; 25] = [
     ("least focal length", |parts| parts.header.camera.focal = MIN_FOCAL),
     ("largest focal length", |parts| parts.header.camera.focal = MAX_FOCAL),
     ("too large a focal length", |parts| parts.header.camera.focal = MAX_FOCAL + 1),
@@ -174,6 +177,8 @@ const LIMITS: [Change<Parts>; 23] = [
     ("a label with a control character", |parts| parts.labels = vec![Label { text: [b'\n'; LABEL_TEXT], ..label([0; 3]) }]),
     ("a label of no height", |parts| parts.labels = vec![Label { height: 0, ..label([0; 3]) }]),
     ("a label that is aligned in no way", |parts| parts.labels = vec![Label { alignment: RIGHT + 1, ..label([0; 3]) }]),
+    ("a name", |parts| parts.names = b"\x06needle".to_vec()),
+    ("a name that no program can read", |parts| parts.names = b"\xFF\xFE".to_vec()),
     ("no mesh", |parts| {
         (parts.meshes, parts.vertices, parts.triangles) = (Vec::new(), Vec::new(), Vec::new());
     }),

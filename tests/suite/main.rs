@@ -26,6 +26,7 @@ mod independent;
 mod inner_loop;
 mod layers;
 mod levels;
+mod names;
 mod numerics;
 mod oracle;
 mod oracle_methods;

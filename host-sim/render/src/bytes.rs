@@ -32,7 +32,8 @@ impl StreamBytes {
     pub fn read(path: &Path) -> Result<Self> {
         let bytes = fs::read(path).with_context(|| format!("cannot read {}", path.display()))?;
         let stream = Self::from(bytes.as_slice());
-        stream.parse().map_err(|error| match error {
+        let checked = stream.parse().and_then(|stream| stream.names().try_for_each(|entry| entry.map(drop)));
+        checked.map_err(|error| match error {
             StreamError::Magic => anyhow!("{}: {error}; make one with `microphong convert mesh.obj -o mesh.tri`", path.display()),
             _ => anyhow!("{}: {error}; copy the file again, or make it anew with `microphong convert`", path.display()),
         })?;

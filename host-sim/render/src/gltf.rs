@@ -2,7 +2,7 @@
 //! materials; tells what else there is.
 
 use crate::{
-    mesh::{Corner, Face, Smoothing, Soup},
+    mesh::{Corner, Face, Smoothing, Soup, Submesh},
     mtl::Material,
     obj::LARGEST,
     pbr,
@@ -28,7 +28,10 @@ use std::{
 pub struct Scene {
     /// The triangles of its default scene.
     pub soup: Soup,
-    /// Materials by which [`Face::material`] counts; `None` where a primitive has none.
+    /// The names of objects by which [`Submesh::object`] counts: of the nodes that have meshes, or else of their meshes. A name is empty where
+    /// the file gives none.
+    pub objects: Vec<String>,
+    /// Materials by which [`Submesh::material`] counts; `None` where a primitive has none.
     pub materials: Vec<Option<Material>>,
     /// What the file has besides, in words.
     pub ignored: BTreeSet<&'static str>,
@@ -68,6 +71,8 @@ pub fn parse(bytes: &[u8], path: &Path) -> Result<Scene> {
         }
         let transform = above.then(&Transform::of(&node));
         if let Some(mesh) = node.mesh() {
+            let name = node.name().filter(|name| !name.is_empty()).or(mesh.name()).unwrap_or_default();
+            reader.scene.objects.push(name.to_owned());
             for primitive in mesh.primitives() {
                 let place = || format!("glTF, mesh {}, primitive {}", mesh.index(), primitive.index());
                 reader.primitive(&primitive, &transform).with_context(place)?;
@@ -240,7 +245,7 @@ impl Reader {
             bail!("vertex {index} is out of range; they count from 0, and there are {}", positions.len());
         }
         let triangles = triangles(&indices, primitive.mode())?;
-        let material = self.material(primitive);
+        let submesh = Submesh { object: self.scene.objects.len() - 1, material: self.material(primitive) };
         let soup = &mut self.scene.soup;
         let (first, first_normal) = (soup.positions.len(), soup.normals.len());
         for (number, &position) in positions.iter().enumerate() {
@@ -262,7 +267,7 @@ impl Reader {
         let corner = |index| Corner { position: first + index, normal: normals.is_some().then_some(first_normal + index) };
         soup.faces.extend(triangles.into_iter().map(|[a, b, c]| {
             let [a, b, c] = if transform.mirrors() { [a, c, b] } else { [a, b, c] };
-            Face { corners: vec![corner(a), corner(b), corner(c)], material, smoothing: Smoothing::ByAngle }
+            Face { corners: vec![corner(a), corner(b), corner(c)], submesh, smoothing: Smoothing::ByAngle }
         }));
         Ok(())
     }

@@ -5,6 +5,7 @@ use crate::{
     look::Surface,
     mesh::{self, Mesh, Report, Soup, Weld},
     mtl,
+    names,
     obj::{self, Obj},
     ply::{self, Ply},
     stl,
@@ -19,6 +20,8 @@ pub struct Imported {
     pub mesh: Mesh,
     /// What welding did.
     pub report: Report,
+    /// Names of the objects by which the mesh counts, all different; none if the file names no object.
+    pub objects: Vec<String>,
     /// The materials of the file, by which the mesh counts; `None` where it does not say what a material is.
     pub materials: Vec<Option<mtl::Material>>,
     /// What a user should know of the file, in sentences.
@@ -35,6 +38,7 @@ pub fn surfaces(materials: &[Option<mtl::Material>], other: &Surface, ambient_li
 #[derive(Default)]
 struct Contents {
     soup: Soup,
+    objects: Vec<String>,
     materials: Vec<Option<mtl::Material>>,
     ignored: BTreeSet<&'static str>,
     remarks: Vec<String>,
@@ -46,12 +50,13 @@ struct Contents {
 /// Names the file and the place in it.
 pub fn file(path: &Path, weld: Weld) -> Result<Imported> {
     let place = || path.display().to_string();
-    let Contents { soup, materials, ignored, mut remarks } = contents(path, &read(path)?)?;
+    let Contents { soup, objects, materials, ignored, mut remarks } = contents(path, &read(path)?)?;
     let (mesh, report) = mesh::weld(&soup, weld).with_context(place)?;
     if !ignored.is_empty() {
         remarks.push(format!("left out: {}", ignored.into_iter().collect::<Vec<_>>().join(", ")));
     }
-    Ok(Imported { mesh, report, materials, remarks })
+    let objects = names::distinct(objects, &mut remarks);
+    Ok(Imported { mesh, report, objects, materials, remarks })
 }
 
 /// Chooses the reader by how the file begins, or where that says nothing, by the ending of its name.
@@ -64,8 +69,8 @@ fn contents(path: &Path, bytes: &[u8]) -> Result<Contents> {
         return Ok(Contents { soup, ignored, ..plain });
     }
     if gltf::is_gltf(bytes) || ends("gltf") || ends("glb") {
-        let gltf::Scene { soup, materials, ignored } = gltf::parse(bytes, path).with_context(place)?;
-        return Ok(Contents { soup, materials, ignored, ..plain });
+        let gltf::Scene { soup, objects, materials, ignored } = gltf::parse(bytes, path).with_context(place)?;
+        return Ok(Contents { soup, objects, materials, ignored, ..plain });
     }
     foreign::refuse(path, bytes)?;
     if stl::is_stl(bytes) {
@@ -75,7 +80,7 @@ fn contents(path: &Path, bytes: &[u8]) -> Result<Contents> {
 }
 
 /// An OBJ file with the materials of the files that it names.
-fn with_libraries(path: &Path, Obj { soup, materials: names, libraries, mut ignored }: Obj) -> Result<Contents> {
+fn with_libraries(path: &Path, Obj { soup, objects, materials: names, libraries, mut ignored }: Obj) -> Result<Contents> {
     let (mut known, mut remarks) = (Vec::new(), Vec::new());
     if names.iter().any(Option::is_some) {
         for library in libraries {
@@ -101,7 +106,7 @@ fn with_libraries(path: &Path, Obj { soup, materials: names, libraries, mut igno
     if !unknown.is_empty() {
         remarks.push(format!("drawn in the colour of the command line, because no file says what they are: {}", unknown.join(", ")));
     }
-    Ok(Contents { soup, materials, ignored, remarks })
+    Ok(Contents { soup, objects, materials, ignored, remarks })
 }
 
 pub(crate) fn read(path: &Path) -> Result<Vec<u8>> {

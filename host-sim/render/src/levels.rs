@@ -19,6 +19,7 @@ use microphong::{
     geometry::detail::stream_tolerance,
     stream::record::{self, Triangle, Vertex},
 };
+use std::{collections::HashMap, iter};
 
 /// A coarser level of a part.
 #[derive(Clone, Debug)]
@@ -44,12 +45,12 @@ const NORMALS: [f32; 3] = [0.05; 3];
 /// # Errors
 /// When the library refuses the mesh.
 pub fn add(mesh: &Mesh, parts: &mut [Part], errors: &[GeometricError], tick: &dyn Fn()) -> Result<()> {
-    // Parts have borders in common, which stay without gaps at whatever levels are drawn.
-    let options = if parts.len() > 1 { SimplifyOptions::LOCK_BORDER } else { SimplifyOptions::EMPTY };
+    // Borders in common stay without gaps at whatever levels are drawn.
+    let borders = borders(parts);
     // An error of 0 is that of the mesh as it is.
     let mut errors: Vec<_> = errors.iter().copied().filter(|&error| error > GeometricError::ZERO).collect();
     errors.sort();
-    for part in parts {
+    for (part, options) in parts.iter_mut().zip(borders) {
         for &error in &errors {
             let (finer, least) =
                 part.coarser.last().map_or((part.triangles.len(), GeometricError::ZERO), |last| (last.triangles.len(), last.error));
@@ -63,6 +64,22 @@ pub fn add(mesh: &Mesh, parts: &mut [Part], errors: &[GeometricError], tick: &dy
         }
     }
     Ok(())
+}
+
+/// Whether the borders of each part must stay: those that its object's other parts have as well, or that touch another object.
+fn borders(parts: &[Part]) -> Vec<SimplifyOptions> {
+    let mut first = HashMap::new();
+    let mut locked = vec![false; parts.len()];
+    for (number, part) in parts.iter().enumerate() {
+        let positions = part.vertices.iter().map(|vertex| (None, vertex.position));
+        for place in iter::once((Some(part.object), [0; 3])).chain(positions) {
+            let other = *first.entry(place).or_insert(number);
+            if other != number {
+                (locked[other], locked[number]) = (true, true);
+            }
+        }
+    }
+    locked.into_iter().map(|locked| if locked { SimplifyOptions::LOCK_BORDER } else { SimplifyOptions::EMPTY }).collect()
 }
 
 /// About as few triangles, up to `most`, as lie within `error` of a part, and the error that they have; `None` if there are none.
@@ -109,10 +126,9 @@ pub fn simplify(mesh: &Mesh, parts: &mut [Part], most: usize, tick: &dyn Fn()) -
     if before <= most {
         return Ok(None);
     }
-    // As for levels: borders stay without gaps.
-    let options = if parts.len() > 1 { SimplifyOptions::LOCK_BORDER } else { SimplifyOptions::EMPTY };
+    let borders = borders(parts);
     let mut apart: f64 = 0.0;
-    for part in &mut *parts {
+    for (part, options) in parts.iter_mut().zip(borders) {
         // Each part has its share, which may be less than it can be made of.
         let share = (part.triangles.len() as u64 * most as u64 / before as u64) as usize;
         let triangles: Vec<_> =
@@ -130,14 +146,14 @@ pub fn simplify(mesh: &Mesh, parts: &mut [Part], most: usize, tick: &dyn Fn()) -
     let after: usize = parts.iter().map(|part| part.triangles.len()).sum();
     if after > most {
         let borders = if parts.len() > 1 {
-            ", because borders between materials stay as they are; give more, or one --colour"
+            ", because borders between materials and between objects stay as they are; give more, or one --colour and --merge"
         } else {
             "; give more"
         };
         bail!("the mesh cannot be made of {most} triangles, but of {after}{borders}");
     }
     if parts.iter().any(|part| part.triangles.is_empty()) {
-        bail!("of {most} triangles nothing is left of a mesh of {before}, or of one of its materials; give more");
+        bail!("of {most} triangles nothing is left of a mesh of {before}, or of one of its materials or objects; give more");
     }
     Ok(Some(Simplified { before, error: apart }))
 }

@@ -14,6 +14,7 @@ pub mod levels;
 pub mod look;
 pub mod mesh;
 pub mod mtl;
+mod names;
 pub mod number;
 pub mod obj;
 pub mod output;

@@ -16,7 +16,7 @@ use microphong::{
     scene::Background,
     stream,
     stream::{
-        MAX_GAIN,
+        MAX_GAIN, MAX_NAME,
         record::{
             CLOSED_CONVEX, Camera, DIRECTIONAL, EYE_SPACE, Header, Instance, Key, Label, Light, MAGIC, Material, Mesh, OBJECT_SPACE,
             ORTHOGRAPHIC, OWN_MATERIALS, PERSPECTIVE, POINT, Track, VERSION,
@@ -97,6 +97,8 @@ pub struct Cast {
 /// Everything of a scene but its mesh.
 #[derive(Clone, Debug)]
 pub struct Look {
+    /// Names of objects, as parts of meshes count them; empty for a stream without names.
+    pub objects: Vec<String>,
     /// Materials, as parts of meshes count them.
     pub surfaces: Vec<Surface>,
     /// Lights.
@@ -131,6 +133,7 @@ impl Look {
     #[must_use]
     pub fn new(surface: Surface, view: View) -> Self {
         Self {
+            objects: Vec::new(),
             surfaces: vec![surface],
             lamps: vec![Lamp::Distant(KEY, [1.0; 3])],
             ambient: [1.0; 3],
@@ -173,7 +176,7 @@ impl Look {
             magic: MAGIC,
             version: VERSION,
             shader: self.shader.facts().id,
-            meshes: u16::try_from(levels().count()).context("too many meshes for one stream; simplify the mesh")?,
+            meshes: u16::try_from(levels().count()).context("too many meshes for one stream; merge objects or materials")?,
             materials: u16::try_from(self.surfaces.len()).context("too many materials for one stream; merge some")?,
             lights: self.lamps.len() as u16,
             frames: self.frames.max(1),
@@ -189,7 +192,9 @@ impl Look {
             ambient: self.ambient.map(gain).map(Gain::to_bits),
             ..self.seen(parts)
         };
-        header.length = stream::length(&header).context("the stream would be larger than 4 GiB; simplify the mesh")?;
+        let names = self.names(parts)?;
+        let length = stream::length(&header).and_then(|length| length.checked_add(names.len() as u32));
+        header.length = length.context("the stream would be larger than 4 GiB; simplify the mesh")?;
         let mut bytes = header.as_bytes().to_vec();
         let (mut first_vertex, mut first_triangle) = (0, 0);
         for part in parts {
@@ -224,9 +229,25 @@ impl Look {
         parts.iter().for_each(|part| bytes.extend_from_slice(part.vertices.as_bytes()));
         levels().for_each(|(triangles, ..)| bytes.extend_from_slice(triangles.as_bytes()));
         bytes.extend_from_slice(self.labels.as_bytes());
+        bytes.extend_from_slice(&names);
         stream::seal(&mut bytes);
         let bytes = StreamBytes::from(bytes.as_slice());
         bytes.parse().context("the stream would not be valid")?;
+        Ok(bytes)
+    }
+
+    /// The names of meshes as a stream has them: that of an object stands at its first mesh.
+    fn names(&self, parts: &[Part]) -> Result<Vec<u8>> {
+        let (mut bytes, mut named) = (Vec::new(), None);
+        if self.objects.is_empty() {
+            return Ok(bytes);
+        }
+        for (part, _) in parts.iter().flat_map(|part| part.levels().map(move |level| (part, level))) {
+            let continues = named.replace(part.object) == Some(part.object);
+            let name = if continues { "" } else { self.objects[part.object].as_str() };
+            bytes.push(u8::try_from(name.len()).with_context(|| format!("the name of an object has more than {MAX_NAME} bytes"))?);
+            bytes.extend_from_slice(name.as_bytes());
+        }
         Ok(bytes)
     }
 }

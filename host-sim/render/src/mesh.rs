@@ -30,10 +30,19 @@ impl Soup {
 pub struct Face {
     /// Three or more, counter-clockwise seen from the front.
     pub corners: Vec<Corner>,
-    /// Number of its material.
-    pub material: usize,
+    /// What it belongs to.
+    pub submesh: Submesh,
     /// Over which edges light is smooth where the file gives no normals.
     pub smoothing: Smoothing,
+}
+
+/// The part of a mesh that becomes a mesh of the stream; they come in this order.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
+pub struct Submesh {
+    /// Number of the object.
+    pub object: usize,
+    /// Number of the material.
+    pub material: usize,
 }
 
 /// Which faces around a vertex have a normal in common.
@@ -65,15 +74,25 @@ pub struct Mesh {
     pub normals: Vec<V3>,
     /// Vertices, counter-clockwise seen from the front.
     pub triangles: Vec<[usize; 3]>,
-    /// The material of each triangle; all have the first one if this is empty.
-    pub materials: Vec<usize>,
+    /// What each triangle belongs to; all belong to the first object and material if this is empty.
+    pub submeshes: Vec<Submesh>,
 }
 
 impl Mesh {
-    /// Number of the material of a triangle.
+    /// What a triangle belongs to.
     #[must_use]
-    pub fn material(&self, triangle: usize) -> usize {
-        self.materials.get(triangle).copied().unwrap_or(0)
+    pub fn submesh(&self, triangle: usize) -> Submesh {
+        self.submeshes.get(triangle).copied().unwrap_or_default()
+    }
+
+    /// Makes one object of all.
+    pub fn merge_objects(&mut self) {
+        self.submeshes.iter_mut().for_each(|submesh| submesh.object = 0);
+    }
+
+    /// Gives all objects one material.
+    pub fn merge_materials(&mut self) {
+        self.submeshes.iter_mut().for_each(|submesh| submesh.material = 0);
     }
 }
 
@@ -235,7 +254,7 @@ fn with_own_normals(soup: &Soup, positions: &[V3], places: &[usize]) -> (Mesh, u
 fn push(mesh: &mut Mesh, face: &Face, vertices: &[usize]) -> bool {
     let points: Vec<V3> = vertices.iter().map(|&v| mesh.positions[v]).collect();
     let cut = cut(&points);
-    mesh.materials.extend(cut.triangles.iter().map(|_| face.material));
+    mesh.submeshes.extend(cut.triangles.iter().map(|_| face.submesh));
     mesh.triangles.extend(cut.triangles.iter().map(|t| t.map(|k| vertices[k])));
     cut.crossed
 }
@@ -305,7 +324,7 @@ fn drop_degenerate(mesh: &mut Mesh) {
     };
     let kept = |triangle: usize| has_area(&mesh.triangles[triangle]);
     let kept: Vec<_> = (0..mesh.triangles.len()).filter(|&triangle| kept(triangle)).collect();
-    mesh.materials = kept.iter().map(|&triangle| mesh.material(triangle)).collect();
+    mesh.submeshes = kept.iter().map(|&triangle| mesh.submesh(triangle)).collect();
     mesh.triangles = kept.iter().map(|&triangle| mesh.triangles[triangle]).collect();
 }
 
@@ -341,7 +360,7 @@ fn volume(mesh: &Mesh) -> f64 {
 
 fn drop_unused(mesh: &mut Mesh) {
     let mut index = vec![None; mesh.positions.len()];
-    let mut kept = Mesh { materials: mem::take(&mut mesh.materials), ..Mesh::default() };
+    let mut kept = Mesh { submeshes: mem::take(&mut mesh.submeshes), ..Mesh::default() };
     for triangle in &mesh.triangles {
         kept.triangles.push(triangle.map(|v| {
             *index[v].get_or_insert_with(|| {

@@ -2,9 +2,9 @@
 //!
 //! A reader of our own, because a bad number or index should be reported with its line.
 
-use crate::mesh::{Corner, Face, Smoothing, Soup};
+use crate::mesh::{Corner, Face, Smoothing, Soup, Submesh};
 use anyhow::{Context, Result, bail};
-use std::collections::BTreeSet;
+use std::collections::{BTreeSet, HashMap};
 
 /// Larger coordinates would overflow when squared.
 pub(crate) const LARGEST: f64 = 1e100;
@@ -14,7 +14,9 @@ pub(crate) const LARGEST: f64 = 1e100;
 pub struct Obj {
     /// Its polygons.
     pub soup: Soup,
-    /// The names of materials by which [`Face::material`] counts; `None` is that of faces before which no name stands.
+    /// The names of objects by which [`Submesh::object`] counts; a name is empty where the file gives none.
+    pub objects: Vec<String>,
+    /// The names of materials by which [`Submesh::material`] counts; `None` is that of faces before which no name stands.
     pub materials: Vec<Option<String>>,
     /// Files that say what the materials are.
     pub libraries: Vec<String>,
@@ -31,6 +33,7 @@ pub fn parse(text: &str) -> Result<Obj> {
     // Faces may name vertices that follow: indices are checked at the end, by line.
     let mut lines = Vec::new();
     let (mut name, mut smoothing) = (None, Smoothing::ByAngle);
+    let mut naming = Naming::default();
     for (number, line) in logical_lines(&plain(text)) {
         let mut words = line.split_whitespace();
         let soup = &mut obj.soup;
@@ -44,7 +47,8 @@ pub fn parse(text: &str) -> Result<Obj> {
                 if known.is_none() {
                     obj.materials.push(name.clone());
                 }
-                soup.faces.push(Face { corners, material, smoothing });
+                naming.face();
+                soup.faces.push(Face { corners, submesh: Submesh { object: 0, material }, smoothing });
                 lines.push(number);
             }
             // Names may have blanks in them.
@@ -54,7 +58,8 @@ pub fn parse(text: &str) -> Result<Obj> {
             Some("vt") => drop(obj.ignored.insert("texture coordinates")),
             Some("l" | "p") => drop(obj.ignored.insert("lines and points")),
             Some("vp" | "curv" | "curv2" | "surf" | "cstype") => drop(obj.ignored.insert("curves and free-form surfaces")),
-            // Groups and objects: one mesh is made of all.
+            Some("o") => naming.object(rest(&line)),
+            Some("g") => naming.group(rest(&line)),
             _ => {}
         }
     }
@@ -70,7 +75,66 @@ pub fn parse(text: &str) -> Result<Obj> {
             }
         }
     }
+    let of_faces;
+    (obj.objects, of_faces) = naming.objects();
+    obj.soup.faces.iter_mut().zip(of_faces).for_each(|(face, object)| face.submesh.object = object);
     Ok(obj)
+}
+
+/// The objects and groups of a file, and which of them each face is in.
+struct Naming {
+    objects: Vec<String>,
+    groups: Vec<String>,
+    /// The number of each group by its name.
+    known: HashMap<String, usize>,
+    group: usize,
+    /// Object and group of each face.
+    faces: Vec<[usize; 2]>,
+}
+
+impl Default for Naming {
+    /// Faces may come before any name.
+    fn default() -> Self {
+        let unnamed = || vec![String::new()];
+        Self { objects: unnamed(), groups: unnamed(), known: HashMap::from([(String::new(), 0)]), group: 0, faces: Vec::new() }
+    }
+}
+
+impl Naming {
+    /// Each statement begins another object.
+    fn object(&mut self, name: String) {
+        self.objects.push(name);
+    }
+
+    /// A group may be continued by its name.
+    fn group(&mut self, name: String) {
+        self.group = *self.known.entry(name.clone()).or_insert(self.groups.len());
+        if self.group == self.groups.len() {
+            self.groups.push(name);
+        }
+    }
+
+    fn face(&mut self) {
+        self.faces.push([self.objects.len() - 1, self.group]);
+    }
+
+    /// The names of objects, and the number of each face's object. Where all faces are in one object, they are told apart by groups.
+    fn objects(self) -> (Vec<String>, Vec<usize>) {
+        let differs = |k: usize| self.faces.windows(2).any(|pair| pair[0][k] != pair[1][k]);
+        let has_name = |names: &[String], k: usize| self.faces.first().is_some_and(|face| !names[face[k]].is_empty());
+        let by_group = !differs(0) && (differs(1) || !has_name(&self.objects, 0));
+        let (names, k) = if by_group { (self.groups, 1) } else { (self.objects, 0) };
+        // In the order of the first faces; what has no face is no object.
+        let (mut order, mut numbers) = (Vec::new(), HashMap::new());
+        let faces = self.faces.iter().map(|face| {
+            *numbers.entry(face[k]).or_insert_with(|| {
+                order.push(names[face[k]].clone());
+                order.len() - 1
+            })
+        });
+        let faces = faces.collect();
+        (order, faces)
+    }
 }
 
 /// The text with LF at the ends of its lines, and no byte order mark.
@@ -187,7 +251,7 @@ mod tests {
         let obj = parse(&text).unwrap();
         assert_eq!(obj.libraries, ["two words.mtl"]);
         assert_eq!(obj.materials, [None, Some("red paint".to_owned()), Some("b".to_owned())]);
-        let faces: Vec<_> = obj.soup.faces.iter().map(|face| (face.material, face.smoothing)).collect();
+        let faces: Vec<_> = obj.soup.faces.iter().map(|face| (face.submesh.material, face.smoothing)).collect();
         assert_eq!(faces, [(0, Smoothing::ByAngle), (1, Smoothing::Group(2)), (2, Smoothing::Flat), (1, Smoothing::Flat)]);
         assert_eq!(obj.ignored.into_iter().collect::<Vec<_>>(), ["lines and points", "texture coordinates"]);
     }
@@ -221,7 +285,7 @@ mod tests {
             (-1.0..1.0).prop_map(|n| format!("{n:e}")),
         ];
         let known = prop::sample::select(vec![
-            "v", "vn", "f", "s", "usemtl", "off", "#", "\\", "nan", "1e-200", "1//1", "-1/2/-3", "2//", "/", "\u{FEFF}", "é",
+            "v", "vn", "f", "s", "o", "g", "usemtl", "off", "#", "\\", "nan", "1e-200", "1//1", "-1/2/-3", "2//", "/", "\u{FEFF}", "é",
         ]);
         prop_oneof![3 => number, 1 => known.prop_map(str::to_owned)]
     }
@@ -236,6 +300,7 @@ mod tests {
             40 => vertex().prop_map(|vertex| format!("v {vertex}")),
             4 => vertex().prop_map(|normal| format!("vn {normal}")),
             12 => face.prop_map(|face| format!("f {face}")),
+            1 => (prop::sample::select(vec!["o", "g"]), words(0..2)).prop_map(|(what, name)| format!("{what} {name}")),
             1 => words(0..6),
         ]
     }
@@ -244,7 +309,11 @@ mod tests {
         /// Whatever is in a file, it is a mesh of finite numbers, or an error.
         #[test]
         fn no_text_is_too_much(lines in prop::collection::vec(line(), 0..40), end in prop::sample::select(vec!["\n", "\r\n", "\r"])) {
-            if let Ok((mesh, _)) = parse(&lines.join(end)).and_then(|obj| mesh::weld(&obj.soup, Weld::default())) {
+            let parsed = parse(&lines.join(end));
+            if let Ok(obj) = &parsed {
+                prop_assert!(obj.soup.faces.iter().all(|face| face.submesh.object < obj.objects.len()));
+            }
+            if let Ok((mesh, _)) = parsed.and_then(|obj| mesh::weld(&obj.soup, Weld::default())) {
                 prop_assert!(mesh.positions.iter().chain(&mesh.normals).flatten().all(|c| c.abs() < 1.0 + 1e-9));
                 prop_assert!(mesh.triangles.iter().flatten().all(|&v| v < mesh.positions.len()));
                 let (parts, dropped) = quantise(&mesh);

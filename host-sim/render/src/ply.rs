@@ -1,7 +1,7 @@
 //! Reads PLY, text and binary, by the library `ply-rs-bw`: positions, normals and polygons; tells what else there is.
 
 use crate::{
-    mesh::{Corner, Face, Smoothing, Soup},
+    mesh::{Corner, Face, Smoothing, Soup, Submesh},
     obj::LARGEST,
 };
 use anyhow::{Context, Result, anyhow, bail};
@@ -72,7 +72,7 @@ pub fn parse(bytes: &[u8]) -> Result<Ply> {
             position.with_context(range).map(|position| Corner { position, normal: with_normals.then_some(position) })
         };
         let corners = corners.into_iter().map(corner).collect::<Result<_>>()?;
-        ply.soup.faces.push(Face { corners, material: 0, smoothing: Smoothing::ByAngle });
+        ply.soup.faces.push(Face { corners, submesh: Submesh::default(), smoothing: Smoothing::ByAngle });
     }
     ply.soup.positions = vertices.iter().map(|vertex| vertex.position).collect();
     if with_normals {

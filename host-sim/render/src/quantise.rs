@@ -3,7 +3,7 @@
 use crate::{
     convex::is_closed_convex,
     levels::Level,
-    mesh::Mesh,
+    mesh::{Mesh, Submesh},
     number::{above, below, nearest},
     vector::{V3, add, cross, dot, length, scale, sub, unit},
 };
@@ -13,7 +13,7 @@ use microphong::{
     stream::record::{Triangle, Vertex},
 };
 use std::{
-    collections::{BTreeSet, HashMap},
+    collections::{BTreeMap, HashMap},
     iter, mem,
 };
 
@@ -29,6 +29,8 @@ const EYE_SLACK: f64 = 4.0 / ONE;
 /// Records of one mesh, indices from 0.
 #[derive(Clone, Debug, Default)]
 pub struct Part {
+    /// Number of the object that it belongs to.
+    pub object: usize,
     /// Number of the material of all triangles.
     pub material: u16,
     /// At most 65,535.
@@ -51,7 +53,8 @@ impl Part {
     }
 }
 
-/// Rounds a mesh to a stream's formats; several materials, and more than 65,535 vertices, become several parts.
+/// Rounds a mesh to a stream's formats. Each submesh becomes a part, and several of more than 65,535 vertices. Parts of an object follow one
+/// another.
 ///
 /// Also counts triangles that had an area before the rounding, but not after it.
 #[must_use]
@@ -59,14 +62,16 @@ pub fn quantise(mesh: &Mesh) -> (Vec<Part>, usize) {
     let vertices: Vec<Vertex> = mesh.positions.iter().zip(&mesh.normals).map(|(&p, &n)| Vertex::new(p.map(nearest), normal(n))).collect();
     let mut parts = Vec::new();
     let mut dropped = 0;
-    let materials: BTreeSet<_> = (0..mesh.triangles.len()).map(|triangle| mesh.material(triangle)).collect();
-    for material in materials {
+    let mut submeshes: BTreeMap<Submesh, Vec<[usize; 3]>> = BTreeMap::new();
+    for (number, &corners) in mesh.triangles.iter().enumerate() {
+        submeshes.entry(mesh.submesh(number)).or_default().push(corners);
+    }
+    for (Submesh { object, material }, triangles) in submeshes {
         // A stream refuses more materials than its numbers can count.
-        let new = Part { material: material.try_into().unwrap_or(u16::MAX), ..Part::default() };
+        let new = Part { object, material: material.try_into().unwrap_or(u16::MAX), ..Part::default() };
         let mut part = new.clone();
         let mut index: HashMap<usize, u16> = HashMap::new();
-        let its = |&(triangle, _): &(usize, _)| mesh.material(triangle) == material;
-        for (_, corners) in mesh.triangles.iter().enumerate().filter(its) {
+        for corners in triangles {
             let Some(mut triangle) = constants(corners.map(|v| vertices[v])) else {
                 dropped += 1;
                 continue;

@@ -163,9 +163,9 @@ pub fn is_script(path: &Path) -> bool {
 /// # Errors
 /// Names the file, and what is wrong with it.
 pub fn from_mesh(path: &Path, weld: Weld) -> Result<StreamBytes> {
-    let Imported { mesh, materials, .. } = import::file(path, weld)?;
+    let Imported { mesh, objects, materials, .. } = import::file(path, weld)?;
     let view = View::orbit(Up::Y, 0.5, 0.35, DISTANCE, ORBIT).fit(&mesh.positions, SQUARE, MARGIN);
-    let look = Look { surfaces: surfaces(&materials, &default_surface(), AMBIENT), ..Look::new(default_surface(), view) };
+    let look = Look { objects, surfaces: surfaces(&materials, &default_surface(), AMBIENT), ..Look::new(default_surface(), view) };
     look.stream(&quantise(&mesh).0).with_context(|| path.display().to_string())
 }
 

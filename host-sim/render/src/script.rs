@@ -23,7 +23,7 @@ use microphong::{
     format::{ErrorBudget, LARGEST_BUDGET, LEAST_BUDGET, Length, MAX_LIGHTS, Scale},
     scene::Background,
     stream::{
-        MAX_EXPONENT,
+        MAX_EXPONENT, MAX_NAME,
         record::{CAMERA_TRACK, Key, LABEL_TEXT, LEAST_LINE, LEFT, LIGHT_TRACK, Label, MAX_POSITION, MIDDLE, OBJECT_TRACK, RIGHT},
     },
 };
@@ -101,9 +101,10 @@ pub fn stream(text: &str, folder: Option<&Path>) -> Result<(StreamBytes, (u32, u
     for (i, table) in objects.into_iter().enumerate() {
         object(table, i, &stock, &mut cast)?;
     }
-    let Stock { parts, surfaces, .. } = stock;
+    let Stock { parts, surfaces, names, .. } = stock;
     let mut look = Look { frames: frames as u16, ..Look::new(surfaces[0], view) };
     look.surfaces = surfaces;
+    look.objects = names;
     look.background = background.unwrap_or(look.background);
     look.shader = shader.unwrap_or(look.shader);
     look.budget = budget.map_or(look.budget, nearest::<ErrorBudget>);
@@ -166,6 +167,8 @@ fn shader(field: Field<'_>) -> Result<Shader> {
 struct Stock {
     parts: Vec<Part>,
     surfaces: Vec<Surface>,
+    /// Names of the meshes.
+    names: Vec<String>,
     /// The first part of each mesh, and how many it has.
     meshes: HashMap<String, Member>,
 }
@@ -173,7 +176,7 @@ struct Stock {
 impl Stock {
     /// Adds a mesh.
     fn add(&mut self, mut table: Table<'_>, folder: Option<&Path>) -> Result<()> {
-        let name = table.need("name", Field::text)?;
+        let name = table.need("name", name)?;
         let file = table.get("file", Field::text)?;
         let shape = table.get("shape", Field::text)?;
         let size = table.get("size", |field| field.numbers(&EXTENT))?;
@@ -198,7 +201,7 @@ impl Stock {
             || format!("it reaches {farthest:.2} units from its origin; less than 2 are possible: make it smaller, and scale the object");
         ensure!(farthest < 2.0, table.place_of(if size.is_some() { "size" } else { "centre" }).error(too_large()));
         if colour.is_some() {
-            mesh.materials.clear();
+            mesh.merge_materials();
             materials = vec![None];
         }
         let colour = colour.unwrap_or([0.8; 3]);
@@ -208,7 +211,11 @@ impl Stock {
             Surface::metal(colour, [AMBIENT, 0.6, 0.4], exponent)
         };
         let first = self.parts.len();
-        self.parts.extend(quantise(&mesh).0.into_iter().map(|part| Part { material: part.material + self.surfaces.len() as u16, ..part }));
+        // A file's own objects are one object here.
+        mesh.merge_objects();
+        let (object, first_material) = (self.names.len(), self.surfaces.len() as u16);
+        self.names.push(name.clone());
+        self.parts.extend(quantise(&mesh).0.into_iter().map(|part| Part { object, material: part.material + first_material, ..part }));
         self.surfaces.extend(surfaces(&materials, &surface, AMBIENT));
         ensure!(
             self.parts.len() > first,
@@ -221,6 +228,15 @@ impl Stock {
         ensure!(self.meshes.insert(name, member).is_none(), table.place_of("name").error(twice));
         Ok(())
     }
+}
+
+/// A name that a stream can keep.
+fn name(field: Field<'_>) -> Result<String> {
+    let place = field.place.clone();
+    let name = field.text()?;
+    let is_kept = (1..=MAX_NAME).contains(&name.len());
+    ensure!(is_kept, place.error(format!("it has {} bytes; a name can have 1 to {MAX_NAME}", name.len())));
+    Ok(name)
 }
 
 fn from_file(file: &str, crease: f64, folder: Option<&Path>) -> Result<(Mesh, Vec<Option<Material>>)> {

@@ -1,6 +1,6 @@
 //! Reads STL, text and binary, by the library `stl_io`.
 
-use crate::mesh::{Corner, Face, Smoothing, Soup};
+use crate::mesh::{Corner, Face, Smoothing, Soup, Submesh};
 use anyhow::{Context, Result, bail};
 use std::io::Cursor;
 
@@ -42,7 +42,7 @@ pub fn parse(bytes: &[u8]) -> Result<Soup> {
             soup.positions.push(position);
         }
         let corners = (first..first + 3).map(|position| Corner { position, normal: None }).collect();
-        soup.faces.push(Face { corners, material: 0, smoothing: Smoothing::ByAngle });
+        soup.faces.push(Face { corners, submesh: Submesh::default(), smoothing: Smoothing::ByAngle });
     }
     Ok(soup)
 }

@@ -3,19 +3,20 @@
 use super::{
     Outcome, Usage,
     count::{self, Cost, Counter},
-    parse, report,
+    meshes, parse, report,
 };
 use anyhow::{Context, Result, bail};
 use embedded_graphics_core::{geometry::Size, pixelcolor::Rgb565};
 use microphong::{
     Layout, Stream,
     format::{ErrorBudget, GeometricError, MAX_LIGHTS},
+    stream::record,
 };
 use microphong_sim::{
     import::{self, Imported},
     levels,
     look::{BACKGROUND, Lamp, Look, Surface},
-    mesh::{CREASE, Weld},
+    mesh::{CREASE, Mesh, Weld},
     output,
     quantise::{Part, quantise},
     render,
@@ -33,8 +34,12 @@ use std::path::{Path, PathBuf};
 /// polygons around each vertex: light is smooth within the file's smoothing groups, or where it has
 /// none, over edges that fold by no more than --crease. Polygons, concave ones as well, are cut into
 /// triangles. Materials come from the .mtl file beside the mesh (Kd, Ks, Ka, Ns), or from the .gltf or .glb
-/// file (base colour, metallic and roughness); each becomes a mesh of the stream. Of glTF the default scene
-/// is taken as its nodes put it. What of the files is left out is said.
+/// file (base colour, metallic and roughness). Of glTF the default scene is taken as its nodes put it. What of the
+/// files is left out is said.
+///
+/// Each object of the file keeps its name, so that a program can move it: o of OBJ, or g in a file of one object, and
+/// the nodes of glTF. An object has a mesh of the stream for each of its materials.
+///
 /// The mesh is centred and scaled to a sphere of radius 1. One closed convex mesh is marked as
 /// such: it is drawn without depth, and looks the same.
 ///
@@ -71,6 +76,9 @@ pub(crate) struct Arguments {
     /// How far a pixel may be off from Phong shading by auto or auto-linear, in 1/255, 0.5 to 16.
     #[arg(long, value_name = "LSB", default_value = "1", value_parser = parse::budget)]
     budget: ErrorBudget,
+    /// Make one object of all, without a name: one mesh of the stream for each material. It takes less flash.
+    #[arg(long)]
+    merge: bool,
     /// Colour of all of the surface, RRGGBB, in place of the file's materials; copper where there are none.
     #[arg(long, visible_alias = "color", value_name = "RRGGBB", value_parser = parse::colour)]
     colour: Option<V3>,
@@ -150,6 +158,10 @@ struct Line<'a> {
     mesh: &'a str,
     output: &'a str,
     meshes: usize,
+    /// Each mesh, without its coarser levels.
+    list: Vec<meshes::Row>,
+    /// What --merge would spare, where objects have meshes of their own.
+    by_object: Option<ByObject>,
     materials: usize,
     vertices: usize,
     triangles: usize,
@@ -177,6 +189,15 @@ struct Simplified {
     /// The same in a picture of this size, at most.
     pixels: f64,
     size: (u32, u32),
+}
+
+/// What it takes that objects have meshes of their own.
+#[derive(Serialize)]
+struct ByObject {
+    /// Meshes beyond one for each material.
+    meshes: usize,
+    /// Bytes of flash.
+    bytes: usize,
 }
 
 /// A coarser level of a mesh.
@@ -208,18 +229,25 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome> {
     if scene::is_script(source) {
         return convert_script(arguments, &target, counter.as_ref());
     }
-    let Imported { mut mesh, report, mut materials, mut remarks } =
+    let Imported { mut mesh, report, mut objects, mut materials, mut remarks } =
         import::file(source, Weld { turn: arguments.flip, crease: arguments.crease })?;
     if arguments.colour.is_some() && materials.iter().any(Option::is_some) {
         remarks.push(format!("{} materials of the file have the one colour of --colour", materials.iter().flatten().count()));
-        (mesh.materials, materials) = (Vec::new(), vec![None]);
+        mesh.merge_materials();
+        materials = vec![None];
+    }
+    if arguments.merge {
+        mesh.merge_objects();
+        objects.clear();
     }
     let (mut parts, lost) = quantise(&mesh);
+    let records = records(&parts);
     let place = || source.display().to_string();
     let view = View::orbit(arguments.up, arguments.azimuth.to_radians(), arguments.elevation.to_radians(), DISTANCE, arguments.orbit);
     let view = if arguments.projection == Projection::Orthographic { view.parallel() } else { view };
     let of_arguments = surface(arguments);
     let look = Look {
+        objects,
         surfaces: import::surfaces(&materials, &of_arguments, arguments.ambient),
         background: arguments.background.unwrap_or(BACKGROUND).into(),
         local_viewer: arguments.local_viewer,
@@ -248,13 +276,16 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome> {
     let bytes = look.stream(&parts).with_context(place)?;
     report::leave_to(&target);
     output::write(&target, bytes.as_bytes())?;
+    let stream = bytes.parse()?;
     let size = arguments.size.unwrap_or(USUAL);
-    remarks.extend(unseen(&bytes.parse()?, size)?);
-    let layout = Layout::new(size.0 as usize, ROWS).with_room_for(&bytes.parse()?);
+    remarks.extend(unseen(&stream, size)?);
+    let layout = Layout::new(size.0 as usize, ROWS).with_room_for(&stream);
     let line = Line {
         mesh: &source.to_string_lossy(),
         output: &target.to_string_lossy(),
         meshes: parts.len(),
+        list: meshes::rows(&stream)?,
+        by_object: by_object(mesh, records, stream.names.len()),
         materials: materials.iter().flatten().count(),
         vertices: parts.iter().map(|p| p.vertices.len()).sum(),
         triangles: parts.iter().map(|p| p.triangles.len()).sum(),
@@ -275,9 +306,23 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome> {
     if arguments.json {
         report::json(&line)?;
     } else {
-        text(&line)?;
+        let names: Vec<_> = materials.iter().map(|material| material.as_ref().map(|material| material.name.as_str())).collect();
+        text(&line, &names)?;
     }
     Ok(Outcome::Done)
+}
+
+/// Meshes of these parts, and the bytes of meshes and vertices.
+fn records(parts: &[Part]) -> [usize; 2] {
+    let vertices: usize = parts.iter().map(|part| part.vertices.len()).sum();
+    [parts.len(), parts.len() * size_of::<record::Mesh>() + vertices * size_of::<record::Vertex>()]
+}
+
+/// What --merge would spare of a mesh that has these records, before it is simplified.
+fn by_object(mut mesh: Mesh, [meshes, bytes]: [usize; 2], names: usize) -> Option<ByObject> {
+    mesh.merge_objects();
+    let [merged, fewer] = records(&quantise(&mesh).0);
+    (meshes > merged).then(|| ByObject { meshes: meshes - merged, bytes: bytes - fewer + names })
 }
 
 /// What the board that is asked for has, if that is not the method `shader`.
@@ -294,6 +339,8 @@ struct SceneLine<'a> {
     output: &'a str,
     objects: usize,
     meshes: usize,
+    /// Each mesh.
+    list: Vec<meshes::Row>,
     triangles: usize,
     frames: u16,
     bytes: usize,
@@ -319,6 +366,7 @@ fn convert_script(arguments: &Arguments, target: &Path, counter: Option<&Counter
         output: &target.to_string_lossy(),
         objects: stream.instances.len(),
         meshes: stream.meshes.len(),
+        list: meshes::rows(&stream)?,
         triangles: stream.triangles.len(),
         frames: stream.header.frames,
         bytes: scene.stream.as_bytes().len(),
@@ -332,14 +380,15 @@ fn convert_script(arguments: &Arguments, target: &Path, counter: Option<&Counter
         return Ok(Outcome::Done);
     }
     let count = |n: usize| report::grouped(n as u64);
-    let SceneLine { scene, output, objects, meshes, triangles, frames, bytes, layout, memory, remarks, costs } = line;
+    let SceneLine { scene, output, objects, meshes, list, triangles, frames, bytes, layout, memory, remarks, costs } = line;
     report::line(&format!(
         "{output}: {} of {} and {}, {}, from {scene}",
         report::counted(objects, ["object", "objects"]),
-        report::counted(meshes, ["mesh", "meshes"]),
+        report::counted(meshes, meshes::MESHES),
         report::counted(triangles, report::TRIANGLES),
         report::counted(frames, report::FRAMES)
     ))?;
+    meshes::text(&list, &[], LISTED)?;
     report::line(&format!("  {} bytes of flash", count(bytes)))?;
     for remark in remarks {
         report::line(&format!("  {remark}"))?;
@@ -378,6 +427,9 @@ fn in_pixels(levels::Simplified { before, error }: levels::Simplified, look: &Lo
     Simplified { before, error, pixels: 0.5 * error / half, size }
 }
 
+/// Lines that meshes take.
+const LISTED: usize = 20;
+
 /// Rows of a band, where nobody says how many.
 const ROWS: usize = 16;
 
@@ -402,7 +454,7 @@ fn surface(arguments: &Arguments) -> Surface {
     }
 }
 
-fn text(line: &Line<'_>) -> Result<()> {
+fn text(line: &Line<'_>, materials: &[Option<&str>]) -> Result<()> {
     let count = |n: usize| report::grouped(n as u64);
     let (vertices, triangles) = (report::counted(line.vertices, report::VERTICES), report::counted(line.triangles, report::TRIANGLES));
     report::line(&format!("{}: {vertices}, {triangles}, {} bytes", line.output, count(line.bytes)))?;
@@ -414,7 +466,15 @@ fn text(line: &Line<'_>) -> Result<()> {
     match line.materials {
         0 => {}
         1 => report::line("  1 material from the file")?,
-        several => report::line(&format!("  {} materials from the file, each a mesh of its own", count(several)))?,
+        several => report::line(&format!("  {} materials from the file", count(several)))?,
+    }
+    meshes::text(&line.list, materials, LISTED)?;
+    if let Some(ByObject { meshes, bytes }) = line.by_object {
+        let bytes = if line.simplified.is_some() { "more".to_owned() } else { format!("{} bytes more", count(bytes)) };
+        report::line(&format!(
+            "  objects have meshes of their own: {} more than --merge makes, which take {bytes} flash and more time",
+            report::counted(meshes, meshes::MESHES)
+        ))?;
     }
     for remark in &line.remarks {
         report::line(&format!("  {remark}"))?;

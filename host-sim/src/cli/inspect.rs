@@ -1,14 +1,14 @@
 //! `microphong inspect`.
 
-use super::{Outcome, report};
+use super::{Outcome, meshes, report};
 use anyhow::{Context, Result};
 use embedded_graphics_core::geometry::Size;
 use microphong::{
     MAX_SIDE, Stream,
     geometry::detail::stream_tolerance,
     stream::record::{
-        CAMERA_TRACK, CLOSED_CONVEX, EYE_SPACE, Header, Instance, Key, LIGHT_TRACK, Label, Light, Material, Mesh, OBJECT_TRACK,
-        PERSPECTIVE, POINT, Track, Triangle, VIEWER_LOCAL, Vertex,
+        CAMERA_TRACK, CLOSED_CONVEX, EYE_SPACE, Header, LIGHT_TRACK, Light, Mesh, OBJECT_TRACK, PERSPECTIVE, POINT, Triangle,
+        VIEWER_LOCAL,
     },
 };
 use microphong_sim::{
@@ -36,6 +36,8 @@ struct Line<'a> {
     file: &'a str,
     version: u16,
     meshes: usize,
+    /// Each mesh, without its coarser levels.
+    list: Vec<meshes::Row>,
     closed_convex: usize,
     vertices: usize,
     triangles: usize,
@@ -64,12 +66,14 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome> {
     let file = &arguments.scene;
     let bytes = read(file)?;
     let stream = bytes.parse().with_context(|| file.clone())?;
+    let list = meshes::rows(&stream).with_context(|| file.clone())?;
     let header = stream.header;
     if arguments.json {
         report::json(&Line {
             file,
             version: header.version,
             meshes: stream.meshes.len(),
+            list,
             closed_convex: closed_convex(&stream),
             vertices: stream.vertices.len(),
             triangles: stream.triangles.len(),
@@ -82,7 +86,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome> {
             bytes: header.length,
         })?;
     } else {
-        text(file, &stream)?;
+        text(file, &stream, &list)?;
     }
     Ok(Outcome::Done)
 }
@@ -95,27 +99,31 @@ fn read(name: &str) -> Result<StreamBytes> {
     }
 }
 
-fn text(file: &str, stream: &Stream<'_>) -> Result<()> {
+fn text(file: &str, stream: &Stream<'_>, list: &[meshes::Row]) -> Result<()> {
     let header = stream.header;
     let count = |n: usize| report::grouped(n as u64);
     report::line(&format!("{file}: triangle stream, version {}, {} bytes of flash", header.version, count(header.length as usize)))?;
-    let row = |name: &str, number: usize, size: usize, note: &str| {
-        report::line(format!("  {:>7} {name:9} {:>9} bytes  {note}", count(number), count(number * size)).trim_end())
+    let row = |name: &str, number: usize, bytes: usize, note: &str| {
+        report::line(format!("  {:>7} {name:9} {:>9} bytes  {note}", count(number), count(bytes)).trim_end())
     };
     row("header", 1, size_of::<Header>(), "")?;
-    row("meshes", stream.meshes.len(), size_of::<Mesh>(), &format!("{} closed and convex", closed_convex(stream)))?;
-    row("materials", stream.materials.len(), size_of::<Material>(), &exponents(stream))?;
-    row("lights", stream.lights.len(), size_of::<Light>(), &lights(stream))?;
+    row("meshes", stream.meshes.len(), size_of_val(stream.meshes), &format!("{} closed and convex", closed_convex(stream)))?;
+    row("materials", stream.materials.len(), size_of_val(stream.materials), &exponents(stream))?;
+    row("lights", stream.lights.len(), size_of_val(stream.lights), &lights(stream))?;
     if !stream.instances.is_empty() {
-        row("objects", stream.instances.len(), size_of::<Instance>(), "")?;
-        row("tracks", stream.tracks.len(), size_of::<Track>(), "")?;
-        row("keys", stream.keys.len(), size_of::<Key>(), &moving(stream))?;
+        row("objects", stream.instances.len(), size_of_val(stream.instances), "")?;
+        row("tracks", stream.tracks.len(), size_of_val(stream.tracks), "")?;
+        row("keys", stream.keys.len(), size_of_val(stream.keys), &moving(stream))?;
     }
-    row("vertices", stream.vertices.len(), size_of::<Vertex>(), "")?;
-    row("triangles", stream.triangles.len(), size_of::<Triangle>(), &bend(stream))?;
+    row("vertices", stream.vertices.len(), size_of_val(stream.vertices), "")?;
+    row("triangles", stream.triangles.len(), size_of_val(stream.triangles), &bend(stream))?;
     if !stream.labels.is_empty() {
-        row("labels", stream.labels.len(), size_of::<Label>(), &labels(stream))?;
+        row("labels", stream.labels.len(), size_of_val(stream.labels), &labels(stream))?;
     }
+    if !stream.names.is_empty() {
+        row("names", stream.names().count(), stream.names.len(), "")?;
+    }
+    meshes::text(list, &[], usize::MAX)?;
     for Level { triangles, error, side, .. } in levels(stream) {
         let (triangles, flash) = (count(triangles as usize), count(triangles as usize * size_of::<Triangle>()));
         report::line(&format!("  a level of {triangles} triangles, {flash} bytes, {error:.4} from the mesh: up to {side}x{side} pixels"))?;

@@ -11,6 +11,7 @@ mod count;
 #[cfg(feature = "boards")]
 mod growth;
 mod inspect;
+mod meshes;
 mod papers;
 mod parse;
 mod render;

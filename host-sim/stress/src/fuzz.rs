@@ -4,7 +4,7 @@
 
 use crate::{case::Case, texts};
 use microphong::{
-    Skips,
+    Skips, Stream,
     stream::{
         record::{Header, MAGIC, VERSION},
         seal,
@@ -95,10 +95,22 @@ pub fn scene(bytes: &[u8]) {
     }
 }
 
+/// Asks a stream for its names, and for one that it has not.
+///
+/// # Panics
+/// When it does not find what it lists.
+pub fn ask(stream: &Stream<'_>) {
+    for (name, meshes) in stream.names().flatten() {
+        assert!(meshes.end <= stream.meshes.len() as u16 && stream.mesh(name).is_ok(), "{name:?}");
+    }
+    let unknown = stream.mesh("");
+    assert!(unknown.is_err_and(|error| error.to_string().starts_with("the stream has no mesh")));
+}
+
 /// Draws a frame small enough that thousands are drawn in a second; what cannot be drawn is refused.
 fn draw(case: Case) {
     // A fuzzer's million triangles show no more than its hundred.
-    if case.stream.parse().is_ok_and(|stream| stream.triangles.len() <= 256) {
+    if case.stream.parse().inspect(ask).is_ok_and(|stream| stream.triangles.len() <= 256) {
         drop(case.draw());
     }
 }

@@ -3,6 +3,7 @@
 //! [`Stream::parse`] checks everything once: length, checksum, every index and every range. The arithmetic of rendering relies on these
 //! checks and repeats none of them.
 
+mod names;
 pub mod record;
 
 use crate::{
@@ -10,6 +11,7 @@ use crate::{
     math::vector::{cross, dot},
 };
 use core::{fmt, ops::Range};
+pub use names::{MAX_NAME, Names, UnknownMesh};
 use record::{
     CAMERA_TRACK, Camera, DIRECTIONAL, EYE_SPACE, Header, Instance, Key, LIGHT_TRACK, Label, Light, MAGIC, MAX_POSITION, Material, Mesh,
     OBJECT_TRACK, ORTHOGRAPHIC, OWN_MATERIALS, PERSPECTIVE, POINT, RIGHT, Track, Triangle, VERSION, VIEWER_INFINITE, VIEWER_LOCAL, Vertex,
@@ -53,6 +55,8 @@ pub struct Stream<'a> {
     pub triangles: &'a [Triangle],
     /// Texts over the picture.
     pub labels: &'a [Label],
+    /// Names of the meshes, as they lie in flash; none if this is empty. [`Stream::names`] reads them.
+    pub names: &'a [u8],
 }
 
 /// Why bytes are not a valid stream.
@@ -82,7 +86,7 @@ pub enum StreamError {
         /// CRC of the bytes.
         computed: u32,
     },
-    /// The length does not match the counts.
+    /// The length is less than the counts ask for.
     Length {
         /// Bytes that the counts ask for.
         need: u32,
@@ -155,7 +159,7 @@ fn take<'a, T: FromBytes + Immutable + KnownLayout>(bytes: &mut &'a [u8], count:
     Ok(records)
 }
 
-/// Bytes of a stream with these counts; `None` beyond 4 GiB.
+/// Bytes of a stream with these counts and without names; `None` beyond 4 GiB.
 #[doc(hidden)]
 #[must_use]
 pub fn length(header: &Header) -> Option<u32> {
@@ -194,7 +198,7 @@ impl<'a> Stream<'a> {
         }
         let stream = bytes.get(..header.length as usize).ok_or(truncated(header.length))?;
         let need = length(header).ok_or(StreamError::Field { name: "count", record: 0 })?;
-        if need != header.length {
+        if need > header.length {
             return Err(StreamError::Length { need, claimed: header.length });
         }
         let computed = checksum(stream);
@@ -213,6 +217,7 @@ impl<'a> Stream<'a> {
             vertices: take(&mut rest, header.vertices as usize)?,
             triangles: take(&mut rest, header.triangles as usize)?,
             labels: take(&mut rest, header.labels.into())?,
+            names: rest,
         };
         stream.check()?;
         Ok(stream)

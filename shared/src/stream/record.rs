@@ -20,7 +20,8 @@ pub const MAGIC: [u8; 4] = *b"mTRI";
 /// The version of the format that this core reads and the host writes.
 pub const VERSION: u16 = 7;
 
-/// The start of a stream. The arrays follow in the order of the counts.
+/// The start of a stream. The arrays follow in the order of the counts, and the names of meshes behind them, if there are any: see
+/// [`crate::Stream::names`].
 #[derive(FromBytes, IntoBytes, Immutable, KnownLayout, Clone, Copy, Debug, PartialEq, Eq)]
 #[repr(C)]
 pub struct Header {
