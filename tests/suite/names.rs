@@ -57,7 +57,7 @@ fn objects_of_an_obj_file_are_meshes_with_names() {
         assert!(said.contains(words), "{said}");
     }
     // A record of a mesh has 20 bytes, and each name a byte more than it has letters.
-    assert!(said.contains("1 mesh more than --merge makes, which take 32 bytes more flash"), "{said}");
+    assert!(said.contains("--merge saves 1 mesh, 32 bytes of flash"), "{said}");
     let stream = bytes.parse().expect("a stream");
     assert_eq!(names(&stream), [("dial", 0..1), ("needle", 1..2)]);
     assert_eq!(stream.mesh("needle").expect("it is there"), 1..2);
@@ -148,7 +148,9 @@ fn meshes_of_a_scene_text_have_their_names() {
     assert!(text.contains(&format!("name = \"{}\"", list[0].0)) && list.last().expect("names").1.end == stream.meshes.len() as u16);
     for name in ["", &"x".repeat(256)] {
         let error = script::stream(&text.replace(&format!("name = \"{}\"", list[0].0), &format!("name = \"{name}\"")), None);
-        assert!(format!("{:#}", error.expect_err("no such name")).contains(&format!("it has {} bytes; a name can have 1 to 255", name.len())));
+        assert!(
+            format!("{:#}", error.expect_err("no such name")).contains(&format!("it has {} bytes; a name can have 1 to 255", name.len()))
+        );
     }
 }
 
@@ -229,8 +231,10 @@ fn pictures_are_those_of_merged_meshes() {
     let draw = |arguments: &[&str]| {
         let (_, bytes) = convert(&folder, &[&["two.obj"], arguments].concat());
         let stream = bytes.parse().expect("a stream");
-        render::frame::<Rgb565>(stream, Size::new(64, 48), Shader::AUTO, 16, 7).expect("a picture")
+        let frame = |number| render::frame::<Rgb565>(stream, Size::new(64, 48), Shader::AUTO, 16, number).expect("a picture");
+        [0, 30, 60, 90].map(|number| frame(number))
     };
-    let [(by_object, stats), (merged, _)] = [draw(&[]), draw(&["--merge"])];
-    assert!(by_object == merged && stats.drawn > 4);
+    for ((by_object, stats), (merged, _)) in draw(&[]).into_iter().zip(draw(&["--merge"])) {
+        assert!(by_object == merged && stats.drawn >= 3);
+    }
 }

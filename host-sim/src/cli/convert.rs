@@ -470,11 +470,9 @@ fn text(line: &Line<'_>, materials: &[Option<&str>]) -> Result<()> {
     }
     meshes::text(&line.list, materials, LISTED)?;
     if let Some(ByObject { meshes, bytes }) = line.by_object {
-        let bytes = if line.simplified.is_some() { "more".to_owned() } else { format!("{} bytes more", count(bytes)) };
-        report::line(&format!(
-            "  objects have meshes of their own: {} more than --merge makes, which take {bytes} flash and more time",
-            report::counted(meshes, meshes::MESHES)
-        ))?;
+        let bytes = if line.simplified.is_some() { String::new() } else { format!("{} bytes of ", count(bytes)) };
+        let meshes = report::counted(meshes, meshes::MESHES);
+        report::line(&format!("  each object has meshes of its own; --merge saves {meshes}, {bytes}flash and some time"))?;
     }
     for remark in &line.remarks {
         report::line(&format!("  {remark}"))?;

@@ -7,8 +7,7 @@ use microphong::{
     MAX_SIDE, Stream,
     geometry::detail::stream_tolerance,
     stream::record::{
-        CAMERA_TRACK, CLOSED_CONVEX, EYE_SPACE, Header, LIGHT_TRACK, Light, Mesh, OBJECT_TRACK, PERSPECTIVE, POINT, Triangle,
-        VIEWER_LOCAL,
+        CAMERA_TRACK, CLOSED_CONVEX, EYE_SPACE, Header, LIGHT_TRACK, Light, Mesh, OBJECT_TRACK, PERSPECTIVE, POINT, Triangle, VIEWER_LOCAL,
     },
 };
 use microphong_sim::{
