@@ -5,7 +5,7 @@ use crate::{
     error::{MAX_SIDE, RenderError},
     format::{ErrorBudget, LARGEST_BUDGET, LEAST_BUDGET, LEVEL, MAX_LIGHTS},
     frame::{Frame, Preparation, Seams, Settings},
-    geometry::{lens::Lens, model_view::ModelView, region::Region},
+    geometry::{area::Area, lens::Lens, model_view::ModelView, region::Region},
     lighting::{lights::Directions, material_tables::fill_ramps},
     memory::{Layout, Memory},
     method::Facts,
@@ -16,7 +16,7 @@ use crate::{
     stream::record::{Camera, DIRECTIONAL, Light, Material, PERSPECTIVE, VIEWER_LOCAL},
 };
 use core::mem;
-use embedded_graphics_core::geometry::Size;
+use embedded_graphics_core::{geometry::Size, primitives::Rectangle};
 
 /// Draws the frames of a scene.
 #[derive(Debug)]
@@ -28,8 +28,10 @@ pub struct Renderer<'a, C: Pixel> {
     seams: Option<Seams>,
     /// Whether other triangles are drawn than when the seams were found.
     rearranged: bool,
-    /// The pixels that a frame has.
+    /// The pixels that the latest frame had, or that the next one will have at least.
     region: Region,
+    /// Whether `region` is of the next frame, see [`Self::invalidate`].
+    is_invalidated: bool,
 }
 
 impl<'a, C: Pixel> Renderer<'a, C> {
@@ -93,7 +95,7 @@ impl<'a, C: Pixel> Renderer<'a, C> {
             partial_redraw: false,
         };
         let scene = Scene::new(stream, materials, objects, limits(shader.facts(), false));
-        Ok(Self { settings, scene, memory, seams: None, rearranged: true, region: Region::NONE })
+        Ok(Self { settings, scene, memory, seams: None, rearranged: true, region: Region::NONE, is_invalidated: false })
     }
 
     /// What is drawn. A program may change it between frames.
@@ -232,10 +234,28 @@ impl<'a, C: Pixel> Renderer<'a, C> {
     /// has to show still. Where single objects move, that is what they leave and enter: each band is as wide as that is in its rows, and rows
     /// without any are left out; [`Frame::area`] is the rectangle around all of it. Objects that do not reach into it are left out whole, as are
     /// the triangles of others that lie beside it. Where colours, lights or the camera have changed, it is all of the picture. What a program
-    /// draws under the picture or over it is sent in these areas alone: where it changes, the frame has to be drawn with partial redraw turned
-    /// off.
+    /// draws under the picture or over it is sent in these areas alone: [`Self::invalidate`] adds the area where it changes.
     pub fn set_partial_redraw(&mut self, on: bool) {
         self.settings.partial_redraw = on;
+    }
+
+    /// Has `area` drawn and sent again by the next frame, though nothing of the scene has changed there. A clock that a program draws over the
+    /// picture needs this when partial redraw is on; without it, every frame is drawn whole. `area` is in pixels of the picture. What of it lies
+    /// outside of the picture is ignored. Areas of several calls add up.
+    pub fn invalidate(&mut self, area: Rectangle) {
+        let area = Area::of(area, self.settings.size);
+        if !area.is_empty() {
+            if !mem::replace(&mut self.is_invalidated, true) {
+                self.clear_region();
+            }
+            self.region.include(&area);
+        }
+    }
+
+    fn clear_region(&mut self) {
+        let Self { settings, memory, region, .. } = self;
+        let band_rows = settings.band_rows(memory.depth.len(), memory.samples.len());
+        region.clear(settings.size.height, band_rows.checked_div(settings.processors).unwrap_or(0));
     }
 
     /// The size of the viewport.
@@ -260,10 +280,10 @@ impl<'a, C: Pixel> Renderer<'a, C> {
     }
 
     /// Whether frame `number` is the same picture as the latest one, because the camera stands still or has come round, and neither the scene
-    /// nor a setting has changed. Where the display still shows that, it need be neither drawn nor sent.
+    /// nor a setting has changed, and nothing is invalidated. Where the display still shows that, it need be neither drawn nor sent.
     #[must_use]
     pub fn is_latest(&self, number: u32) -> bool {
-        self.scene.is_latest(number)
+        !self.is_invalidated && self.scene.is_latest(number)
     }
 
     /// Frame `number` of the scene's ready-made animation (modulo its frames): [`Scene::play`], and [`Self::draw`].
@@ -296,6 +316,14 @@ impl<'a, C: Pixel> Renderer<'a, C> {
         if !self.scene.is_unchanged() {
             self.fill_tables();
         }
+        // Everything is drawn where colours have changed, or the view has.
+        let is_partial = self.settings.partial_redraw && !self.scene.repainted;
+        if !is_partial {
+            self.region.fill(self.settings.size);
+        } else if !self.is_invalidated {
+            self.clear_region();
+        }
+        self.is_invalidated = false;
         let Self { settings, scene, memory, rearranged, region, .. } = self;
         let world = ModelView::new(scene.camera(), scene.place);
         let how = Placing {
@@ -305,15 +333,7 @@ impl<'a, C: Pixel> Renderer<'a, C> {
             directions: Directions::new(scene.lights(), &world),
             world,
         };
-        // Everything is drawn where colours have changed, or the view has.
-        let is_partial = settings.partial_redraw && !scene.repainted;
-        let Memory { placements, order, depth, samples, .. } = memory;
-        if is_partial {
-            let band_rows = settings.band_rows(depth.len(), samples.len());
-            region.clear(settings.size.height, band_rows.checked_div(settings.processors).unwrap_or(0));
-        } else {
-            region.fill(settings.size);
-        }
+        let Memory { placements, order, .. } = memory;
         for (object, placement) in scene.objects().iter().zip(placements.iter_mut()) {
             if scene.view_changed || object.has_moved != 0 {
                 region.include(&placement.area);

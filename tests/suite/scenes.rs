@@ -1,6 +1,6 @@
 //! Scenes that change between frames: objects with poses, materials, lights, camera, and the tracks of scripted scenes.
 
-use embedded_graphics::{pixelcolor::Rgb888, prelude::*};
+use embedded_graphics::{pixelcolor::Rgb888, prelude::*, primitives::Rectangle};
 use microphong::{
     Layout, Object, Pose, Renderer, Scene, SceneError, Shader, Stream,
     fixed::types::{I2F30, I18F14, U0F32, U16F16},
@@ -291,6 +291,39 @@ fn changed_areas_are_all_that_changes() {
     }
     println!("{saved} pixels, and {between} between areas");
     assert!(saved > 1_250_000 && between > 100_000, "{saved} pixels, and {between} between areas");
+}
+
+/// A frame has what is invalidated and nothing else where nothing moves; the next one has nothing.
+#[test]
+fn invalidated_areas_are_drawn_once_more() {
+    let bytes = stream(&look(vec![Lamp::Distant([-0.4, 0.6, -0.7], [1.0; 3])], false, Projection::Perspective), &meshes());
+    let stream = bytes.parse().unwrap();
+    let layout = room(&stream);
+    let mut memory = vec![0; layout.words::<Rgb888>()];
+    let mut renderer: Renderer<'_, Rgb888> = Renderer::with_shader(stream, SIZE, &layout, &mut memory, Shader::PHONG).unwrap();
+    renderer.set_partial_redraw(true);
+    let whole = Rectangle::new(Point::zero(), SIZE);
+    assert_eq!(renderer.draw().area(), whole);
+    assert!(renderer.is_latest(0) && renderer.draw().area().is_zero_sized());
+    let area = |left, top, width, height| Rectangle::new(Point::new(left, top), Size::new(width, height));
+    for (asked, drawn) in [
+        (area(10, 20, 30, 5), area(10, 20, 30, 5)),
+        (area(-10, -10, 20, 20), area(0, 0, 10, 10)),
+        (area(100, 85, u32::MAX, u32::MAX), area(100, 85, 20, 5)),
+        (area(i32::MIN, i32::MIN, u32::MAX, u32::MAX), whole),
+    ] {
+        renderer.invalidate(asked);
+        assert!(!renderer.is_latest(0));
+        assert_eq!(renderer.draw().area(), drawn, "{asked:?}");
+        assert!(renderer.is_latest(0) && renderer.draw().area().is_zero_sized(), "{asked:?}");
+    }
+    for nothing in [area(-10, 5, 10, 10), area(SIZE.width as i32, 0, 5, 5), area(5, 5, 0, 9)] {
+        renderer.invalidate(nothing);
+        assert!(renderer.is_latest(0), "{nothing:?}");
+    }
+    renderer.invalidate(area(3, 4, 5, 6));
+    renderer.invalidate(area(50, 70, 8, 9));
+    assert_eq!(renderer.draw().area(), area(3, 4, 55, 75));
 }
 
 /// What a program changes is drawn as if the stream had said so.

@@ -10,7 +10,11 @@ use crate::{
     random::Random,
     scenes::{self, Wishes},
 };
-use embedded_graphics_core::{geometry::Point, pixelcolor::Rgb565, primitives::Rectangle};
+use embedded_graphics_core::{
+    geometry::{Point, Size},
+    pixelcolor::Rgb565,
+    primitives::{PointsIter, Rectangle},
+};
 use microphong::{
     Frame, Layout, Pose, Renderer, Stream,
     format::Length,
@@ -265,6 +269,19 @@ fn draw(
     let mut band = vec![Rgb565::default(); layout.band()];
     // A whole frame now and then.
     renderer.set_partial_redraw(!random.once_in(8));
+    while random.once_in(4) {
+        let mut range = |side: u32| {
+            let start = random.pick(-20..side as i32 + 20);
+            (start, random.pick(0..60) as u32)
+        };
+        let ((left, width), (top, height)) = (range(size.width), range(size.height));
+        let area = Rectangle::new(Point::new(left, top), Size::new(width, height));
+        renderer.invalidate(area);
+        // The program has drawn there.
+        for point in area.intersection(&Rectangle::new(Point::zero(), size)).points() {
+            shown[(point.y as u32 * size.width) as usize + point.x as usize] = Rgb565::new(31, 0, 31);
+        }
+    }
     let mut frame = match random.pick(0..3) {
         0 => renderer.draw(),
         1 => renderer.frame(state.frame()),

@@ -27,6 +27,16 @@ impl Area {
         Self { columns: [0, size.width as u16], rows: [0, size.height as u16] }
     }
 
+    /// The pixels of `rectangle` that belong to a viewport of `size`, no larger than [`crate::MAX_SIDE`].
+    #[must_use]
+    pub fn of(rectangle: Rectangle, size: Size) -> Self {
+        let range = |start: i32, length: u32, side: u32| {
+            [start, start.saturating_add_unsigned(length)].map(|place| place.clamp(0, side as i32) as u16)
+        };
+        let Rectangle { top_left, size: extent } = rectangle;
+        Self { columns: range(top_left.x, extent.width, size.width), rows: range(top_left.y, extent.height, size.height) }
+    }
+
     /// Whether it has no pixel.
     #[must_use]
     pub fn is_empty(&self) -> bool {
