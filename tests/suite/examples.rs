@@ -86,7 +86,7 @@ fn displays_show_what_the_documentation_shows() {
 fn streams_are_what_their_commands_make() {
     let readme = fs::read_to_string(root().join("../examples/README.md")).expect("a README");
     let commands: Vec<_> = readme.lines().filter_map(|line| line.strip_prefix("cargo run --release -- convert ")).collect();
-    assert_eq!(commands.len(), 4);
+    assert_eq!(commands.len(), NAMES.len() + 1);
     let place = tempfile::tempdir().expect("scratch directory");
     for command in commands {
         let (arguments, recorded) = command.split_once(" -o ").expect("a file");

@@ -6,7 +6,7 @@ use microphong::{Layout, Picture, RenderError, Renderer, Shader, Stream, include
 /// Pictures 320 pixels wide, 24 rows at once; room for all vertices and triangles of the teapot, and one material.
 pub(crate) const LAYOUT: Layout = Layout::new(320, 24).vertices(529).triangles(992);
 /// Read in place: the mesh stays in flash.
-pub(crate) static MESH: &[u8] = include_stream!("../../../firmware/teapot.tri");
+pub(crate) static MESH: &[u8] = include_stream!("../teapot.tri");
 
 pub(crate) fn renderer<'a>(stream: Stream<'a>, memory: &'a mut [u64]) -> Result<Renderer<'a, Rgb565>, RenderError> {
     // What `convert` asks for unless told otherwise. The program has the code of the methods in this list and of no others.
