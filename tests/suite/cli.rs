@@ -576,7 +576,7 @@ fn the_command_can_be_moved() {
         command.args(arguments).current_dir(place.0.path()).env("MICROPHONG_SOURCES", "nowhere").output().expect("the program")
     };
     assert!(run(&["render", "teapot", "--size", "64x48"]).status.success());
-    for arguments in [&["verify", "--board", "pico"][..], &["bench"], &["growth"], &["bench", "--peers", "--board", "x86-64"]] {
+    for arguments in [&["verify", "--board", "pico"][..], &["bench"], &["growth"], &["size"], &["bench", "--peers", "--board", "x86-64"]] {
         let output = run(arguments);
         let stderr = String::from_utf8_lossy(&output.stderr);
         assert_eq!(output.status.code(), Some(1), "{arguments:?}: {stderr}");

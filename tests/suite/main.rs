@@ -38,6 +38,7 @@ mod perspective;
 mod raster;
 mod scanlines;
 mod scenes;
+mod size;
 mod skips;
 mod split;
 mod still;

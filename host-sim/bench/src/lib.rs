@@ -14,6 +14,7 @@ pub mod pareto;
 pub mod peers;
 pub mod processor;
 pub mod renewal;
+pub mod size;
 pub mod stage;
 pub mod styles;
 

@@ -39,7 +39,7 @@ impl Total {
 }
 
 /// Without figures that are zero: those of frames that are still to be recorded.
-fn mean(pairs: impl Iterator<Item = (u64, u64)>) -> f64 {
+pub(crate) fn mean(pairs: impl Iterator<Item = (u64, u64)>) -> f64 {
     let logarithms: Vec<_> = pairs.filter(|&(was, is)| was > 0 && is > 0).map(|(was, is)| (is as f64 / was as f64).ln()).collect();
     let mean = logarithms.iter().sum::<f64>() / logarithms.len().max(1) as f64;
     // As it is shown; plus zero, or almost nothing might be shown as -0.
@@ -97,6 +97,7 @@ fn beside(path: &Path, name: &str) -> Result<PathBuf> {
     Ok(path.with_file_name(format!("{}-{name}", stem.to_string_lossy())))
 }
 
+/// What the file of reasons begins with.
 const HEAD: &str = "\
 # Why costs were renewed
 
@@ -112,15 +113,25 @@ geometric mean, and the reason.
 /// # Errors
 /// When a file cannot be written, or there is no reason.
 pub fn renew(path: &Path, [old, new]: [&[Entry]; 2], reason: &str) -> Result<PathBuf> {
+    let Total { instructions, flash } = Total::between(old, new);
+    with_reason(path, HEAD, &[instructions, flash], reason, || baseline::write(path, new))
+}
+
+/// Lets `write` renew the file at `path`, and adds a line to the reasons beside it, which begin with `head`: changes in percent, and why. Returns
+/// where the reasons stand.
+///
+/// # Errors
+/// When a file cannot be written, or there is no reason.
+pub(crate) fn with_reason(path: &Path, head: &str, changes: &[f64], reason: &str, write: impl FnOnce() -> Result<()>) -> Result<PathBuf> {
     // A line, and a cell of a table.
     let reason = reason.split_whitespace().collect::<Vec<_>>().join(" ").replace('|', "\\|");
     ensure!(!reason.is_empty(), "a reason is needed");
     let target = beside(path, "reasons.md")?;
-    let before = if target.exists() { fs::read_to_string(&target) } else { Ok(HEAD.to_owned()) };
+    let before = if target.exists() { fs::read_to_string(&target) } else { Ok(head.to_owned()) };
     let before = before.with_context(|| format!("cannot read {}", target.display()))?;
-    let Total { instructions, flash } = Total::between(old, new);
-    let text = format!("{}\n| {instructions:+.2} | {flash:+.2} | {reason} |\n", before.trim_end());
-    baseline::write(path, new)?;
+    let changes: String = changes.iter().map(|change| format!("{change:+.2} | ")).collect();
+    let text = format!("{}\n| {changes}{reason} |\n", before.trim_end());
+    write()?;
     output::write(&target, text.as_bytes())?;
     Ok(target)
 }

@@ -33,6 +33,14 @@ pub fn program(board: Board, name: &str) -> Result<PathBuf> {
 /// # Errors
 /// When the target or the compiler is missing, or the program does not compile.
 pub fn release(name: &str, features: &str, target: &str, what: &str) -> Result<PathBuf> {
+    Ok(releases(&[name], features, target, what)?.join(name))
+}
+
+/// Builds several programs of the workspace `firmware`, as [`release`] does, at the same time, and returns the folder that they are in.
+///
+/// # Errors
+/// When the target or the compiler is missing, or a program does not compile.
+pub fn releases(names: &[&str], features: &str, target: &str, what: &str) -> Result<PathBuf> {
     let root = sources()?;
     let directory = root.join("firmware");
     install_target(target, &directory)?;
@@ -41,7 +49,8 @@ pub fn release(name: &str, features: &str, target: &str, what: &str) -> Result<P
     let status = Command::new(env::var_os("CARGO").unwrap_or_else(|| "cargo".into()))
         .current_dir(directory)
         .args(["build", "--quiet", "--release", "--workspace", "--no-default-features", "--features", features])
-        .args(["--bin", name, "--target", target, "--target-dir"])
+        .args(names.iter().flat_map(|&name| ["--bin", name]))
+        .args(["--target", target, "--target-dir"])
         .arg(&output)
         // They would take the place of the flags that the workspace asks for, and counts depend on those.
         .env_remove("RUSTFLAGS")
@@ -50,7 +59,7 @@ pub fn release(name: &str, features: &str, target: &str, what: &str) -> Result<P
         .status()
         .context("cannot start cargo: install Rust from https://rustup.rs")?;
     ensure!(status.success(), "{what} did not compile; its messages are above");
-    Ok(output.join(target).join("release").join(name))
+    Ok(output.join(target).join("release"))
 }
 
 /// The target of this computer.

@@ -28,6 +28,7 @@ absent! {
     verify: "Draw scenes with a board's own firmware, emulated, and compare every pixel with this computer";
     bench: "Count the instructions that processors take for one frame";
     growth: "Count how the cost of a frame grows with triangles, pixels, lights and bands";
+    size: "Print flash, RAM and stack of whole programs, and whether chips have room for them";
 }
 
 /// Names the command that does `what` was asked for.

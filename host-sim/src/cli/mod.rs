@@ -17,12 +17,14 @@ mod parse;
 mod render;
 mod report;
 mod scenes;
+#[cfg(feature = "boards")]
+mod size;
 mod stress;
 #[cfg(feature = "boards")]
 mod verify;
 
 #[cfg(not(feature = "boards"))]
-use absent::{bench, growth, verify};
+use absent::{bench, growth, size, verify};
 
 use anyhow::{Context, Result};
 use clap::{Parser, Subcommand};
@@ -47,6 +49,7 @@ Examples:
   microphong verify --board all --scene teapot     compare emulated boards with this computer
   microphong bench                                 count the instructions of a frame
   microphong growth                                count how that grows with triangles, pixels, lights, bands
+  microphong size part.obj --chip rp2040           flash, RAM and stack of whole programs
   microphong compare teapot --report comparison    measure all methods against Phong shading
   microphong papers --only vlasic                  compute again what a paper claims
   microphong stress --seconds 60                   look for scenes that are drawn wrong
@@ -62,6 +65,7 @@ enum Command {
     Verify(verify::Arguments),
     Bench(bench::Arguments),
     Growth(growth::Arguments),
+    Size(Box<size::Arguments>),
     Compare(compare::Arguments),
     Bounds(bounds::Arguments),
     Papers(papers::Arguments),
@@ -122,6 +126,7 @@ fn run(command: Command) -> Result<Outcome> {
         Command::Verify(arguments) => verify::run(&arguments),
         Command::Bench(arguments) => bench::run(&arguments),
         Command::Growth(arguments) => growth::run(&arguments),
+        Command::Size(arguments) => size::run(&arguments),
         Command::Compare(arguments) => compare::run(&arguments),
         Command::Bounds(arguments) => bounds::run(&arguments),
         Command::Papers(arguments) => papers::run(&arguments),

@@ -12,7 +12,7 @@ use super::{
     elf::Elf,
     log,
 };
-use anyhow::{Context, Result, anyhow, bail};
+use anyhow::{Context, Result, anyhow, bail, ensure};
 use qmp::Qmp;
 use screen::Screen;
 use std::{
@@ -30,11 +30,11 @@ const END: Duration = Duration::from_secs(20);
 /// The exit code that the firmware's fault handler chooses.
 const PANIC: i32 = 101;
 
-/// The command that runs `program` on `board`, without anything that looks at it.
-fn machine(board: Board, program: &Scratch) -> Command {
+/// The command that runs `program` on the machine that QEMU knows by this name, without anything that looks at it.
+fn machine(name: &str, program: &Scratch) -> Command {
     let mut machine = Command::new("qemu-system-arm");
     bound(&mut machine)
-        .args(["-M", board.name(), "-display", "none", "-nodefaults", "-nic", "none", "-serial", "none", "-monitor", "none"])
+        .args(["-M", name, "-display", "none", "-nodefaults", "-nic", "none", "-serial", "none", "-monitor", "none"])
         .args(["-chardev", "stdio,id=host,signal=off", "-semihosting-config", "enable=on,target=native,chardev=host"])
         .arg("-kernel")
         .arg(program.path());
@@ -48,6 +48,9 @@ fn missing(error: io::Error) -> anyhow::Error {
         _ => anyhow!("cannot start qemu-system-arm: {error}"),
     }
 }
+
+/// Finds lines in bytes that a program sends, and hands each over.
+type Decode = Box<dyn FnMut(&[u8], &mut dyn FnMut(String)) + Send>;
 
 /// A running emulator; ends with it.
 struct Emulator {
@@ -65,13 +68,14 @@ impl Drop for Emulator {
 }
 
 impl Emulator {
-    fn start(mut machine: Command, decoder: log::Decoder) -> Result<Self> {
+    /// Starts `machine`; `decode` finds the lines in the bytes that the program sends.
+    fn start(mut machine: Command, decode: Decode) -> Result<Self> {
         let mut process = machine.stdin(Stdio::piped()).stdout(Stdio::piped()).stderr(Stdio::null()).spawn().map_err(missing)?;
         let pipes = (process.stdin.take(), process.stdout.take());
         let (Some(input), Some(output)) = pipes else {
             bail!("qemu-system-arm started without pipes");
         };
-        Ok(Self { process, input, lines: read_lines(output, decoder) })
+        Ok(Self { process, input, lines: read_lines(output, decode) })
     }
 
     /// The next line of the log; `None` when QEMU has ended.
@@ -101,14 +105,20 @@ impl Emulator {
     }
 }
 
+/// Finds the lines of the log of `elf`.
+fn decoder(elf: &Elf) -> Result<Decode> {
+    let mut decoder = log::Decoder::new(elf)?;
+    Ok(Box::new(move |bytes, line| decoder.push(bytes, line)))
+}
+
 /// Decodes in a thread of its own, as reading cannot time out.
-fn read_lines(mut output: ChildStdout, mut decoder: log::Decoder) -> Receiver<String> {
+fn read_lines(mut output: ChildStdout, mut decode: Decode) -> Receiver<String> {
     let (sender, lines) = mpsc::channel();
     thread::spawn(move || {
         let mut buffer = [0; 4096];
         // Ends with QEMU.
         while let Ok(count @ 1..) = output.read(&mut buffer) {
-            decoder.push(&buffer[..count], |line| {
+            decode(&buffer[..count], &mut |line| {
                 // Nobody listens any more once the run is over.
                 let _ = sender.send(line);
             });
@@ -123,9 +133,9 @@ pub(super) fn run(board: Board, elf: &Elf, until: Until) -> Result<Recording> {
     let screen = Screen::of(board, elf)?;
 
     let mut recording = Recording::default();
-    let mut machine = machine(board, &program);
+    let mut machine = machine(board.name(), &program);
     let qmp = Qmp::new(&mut machine)?;
-    let mut emulator = Emulator::start(machine, log::Decoder::new(elf)?)?;
+    let mut emulator = Emulator::start(machine, decoder(elf)?)?;
     let outcome = play(&mut emulator, qmp, &screen, until, &mut recording);
     outcome.with_context(|| format!("{board} in QEMU; {}", log::tail(&recording.log)))?;
     Ok(recording)
@@ -141,9 +151,9 @@ pub const INSTRUCTIONS_PER_TICK: f64 = 40.0 / 256.0;
 /// When the program crashes, falls silent or fails.
 pub fn clocked(board: Board, elf: &Elf) -> Result<Vec<String>> {
     let program = Scratch::new(elf.bytes())?;
-    let mut machine = machine(board, &program);
+    let mut machine = machine(board.name(), &program);
     machine.args(["-icount", "shift=8,sleep=off"]);
-    let mut emulator = Emulator::start(machine, log::Decoder::new(elf)?)?;
+    let mut emulator = Emulator::start(machine, decoder(elf)?)?;
     let mut lines = Vec::new();
     while let Some(line) = emulator.line()? {
         lines.push(line);
@@ -152,6 +162,36 @@ pub fn clocked(board: Board, elf: &Elf) -> Result<Vec<String>> {
         Some(0) => Ok(lines),
         _ => bail!("the program on {board} failed; {}", log::tail(&lines)),
     }
+}
+
+/// Bytes below the top of the stack that are looked at.
+const DEEPEST: u32 = 1 << 18;
+/// What the start-up code fills the stack with.
+const PAINT: [u8; 4] = 0xCCCC_CCCC_u32.to_le_bytes();
+
+/// Runs a program of the package `size` on the machine of this name until all frames are drawn, and returns the bytes of stack that have lost their
+/// paint.
+///
+/// # Errors
+/// When the program cannot draw its stream, crashes or falls silent.
+pub fn stack(name: &str, elf: &Elf) -> Result<u64> {
+    let program = Scratch::new(elf.bytes())?;
+    let mut machine = machine(name, &program);
+    let mut qmp = Qmp::new(&mut machine)?;
+    let letters: Decode = Box::new(|bytes, line| bytes.iter().for_each(|&byte| line(char::from(byte).to_string())));
+    let emulator = Emulator::start(machine, letters)?;
+    qmp.greet()?;
+    match emulator.line()?.as_deref() {
+        Some("d") => {}
+        Some(_) => bail!("the program on {name} cannot draw the scene"),
+        None => bail!("QEMU has ended before the program on {name}"),
+    }
+    let [(bottom, _), (top, _)] = [elf.symbol("_stack_end")?, elf.symbol("_stack_start")?];
+    let size = (top - bottom).min(DEEPEST);
+    let bytes = qmp.memory(top - size, size)?;
+    let clean = bytes.chunks_exact(PAINT.len()).take_while(|word| **word == PAINT).count() * PAINT.len();
+    ensure!(clean > 0, "the stack of the program on {name} is deeper than {size} bytes");
+    Ok(u64::from(size) - clean as u64)
 }
 
 fn play(emulator: &mut Emulator, mut qmp: Qmp, screen: &Screen, until: Until, recording: &mut Recording) -> Result<()> {

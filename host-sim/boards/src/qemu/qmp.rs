@@ -1,7 +1,7 @@
 //! QEMU's control socket: one JSON object per line.
 
-use crate::child::inherited;
-use anyhow::{Context, Result, bail};
+use crate::child::{Scratch, inherited};
+use anyhow::{Context, Result, bail, ensure};
 use serde_json::{Value, json};
 use std::{
     io::{BufRead, BufReader, Write},
@@ -40,6 +40,15 @@ impl Qmp {
             bail!("QEMU has closed its control socket");
         }
         Ok(serde_json::from_str(&line)?)
+    }
+
+    /// The `size` bytes of memory at `address`.
+    pub(super) fn memory(&mut self, address: u32, size: u32) -> Result<Vec<u8>> {
+        let file = Scratch::new(&[])?;
+        self.command("pmemsave", &json!({ "val": address, "size": size, "filename": file.path().to_string_lossy() }))?;
+        let bytes = file.read().context("QEMU's copy of memory")?;
+        ensure!(bytes.len() == size as usize, "QEMU's copy of memory has {} bytes, not {size}", bytes.len());
+        Ok(bytes)
     }
 
     /// Runs a command to its end.

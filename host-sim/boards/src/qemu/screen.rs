@@ -31,17 +31,14 @@ impl Screen {
 
     /// The pixels as they are now.
     pub(super) fn picture(&self, qmp: &mut Qmp) -> Result<Vec<u32>> {
-        let file = Scratch::new(&[])?;
-        let path = file.path();
         match *self {
             Self::Oled => {
-                qmp.command("screendump", &json!({ "filename": path.to_string_lossy(), "format": "png" }))?;
+                let file = Scratch::new(&[])?;
+                qmp.command("screendump", &json!({ "filename": file.path().to_string_lossy(), "format": "png" }))?;
                 read_oled(&file.read()?).context("QEMU's picture of the OLED")
             }
             Self::Memory { address, size } => {
-                qmp.command("pmemsave", &json!({ "val": address, "size": size, "filename": path.to_string_lossy() }))?;
-                let bytes = file.read().context("QEMU's copy of the frame buffer")?;
-                ensure!(bytes.len() == size as usize, "QEMU's copy of the frame buffer has {} bytes, not {size}", bytes.len());
+                let bytes = qmp.memory(address, size)?;
                 Ok(bytes.chunks_exact(2).map(|pair| u16::from_le_bytes([pair[0], pair[1]]).into()).collect())
             }
         }

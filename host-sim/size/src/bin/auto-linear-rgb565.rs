@@ -1,0 +1,5 @@
+//! Draws by `auto-linear` in `Rgb565`.
+#![no_std]
+#![no_main]
+
+size::program!(Rgb565, BLACK, AUTO_LINEAR);

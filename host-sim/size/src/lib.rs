@@ -1,0 +1,108 @@
+//! A whole program with one method and one pixel format, and nothing else: it has no log and no display driver. Its display is one register, like
+//! the bus of a real one.
+#![no_std]
+
+#[path = "../../../firmware/src/stream.rs"]
+mod stream;
+
+use core::{convert::Infallible, marker::PhantomData, panic::PanicInfo};
+use embedded_graphics_core::{pixelcolor::PixelColor, prelude::*, primitives::Rectangle};
+use microphong::{Layout, Picture, Renderer, Shader, Stream, pixel::Pixel};
+
+#[cfg(target_arch = "arm")]
+pub use cortex_m_rt::entry;
+#[cfg(target_arch = "riscv32")]
+pub use riscv_rt::entry;
+
+/// Room for any mesh. The command subtracts this memory, and adds the memory of the mesh and picture in question.
+pub const ROOM: Layout = Layout::new(240, 240).vertices(16384).triangles(32768).materials(16).objects(64);
+
+struct Panel<C>(PhantomData<C>);
+
+impl<C> OriginDimensions for Panel<C> {
+    fn size(&self) -> Size {
+        Size::new(240, 240)
+    }
+}
+
+impl<C: PixelColor> DrawTarget for Panel<C> {
+    type Color = C;
+    type Error = Infallible;
+
+    fn draw_iter<I: IntoIterator<Item = embedded_graphics_core::Pixel<C>>>(&mut self, pixels: I) -> Result<(), Infallible> {
+        pixels.into_iter().for_each(|pixel| send(pixel.1));
+        Ok(())
+    }
+
+    fn fill_contiguous<I: IntoIterator<Item = C>>(&mut self, _: &Rectangle, colours: I) -> Result<(), Infallible> {
+        colours.into_iter().for_each(send);
+        Ok(())
+    }
+}
+
+fn send<C: PixelColor>(colour: C) {
+    static mut REGISTER: u32 = 0;
+    // SAFETY: nothing else names the register, and no pixel of these programs is larger.
+    unsafe { (&raw mut REGISTER).cast::<C>().write_volatile(colour) }
+}
+
+/// Draws all frames of the stream, and tells the host whether they are drawn.
+pub fn run<C: Pixel + PixelColor>(memory: &mut [u64], band: &mut [C], shader: Shader<C>) -> ! {
+    let drawn = draw(memory, band, shader).is_some();
+    loop {
+        tell(if drawn { b'd' } else { b'f' });
+    }
+}
+
+fn draw<C: Pixel + PixelColor>(memory: &mut [u64], band: &mut [C], shader: Shader<C>) -> Option<()> {
+    let stream = Stream::parse(stream::bytes()).ok()?;
+    let mut display = Panel(PhantomData);
+    let mut renderer = Renderer::with_shader(stream, display.size(), &ROOM, memory, shader).ok()?;
+    for number in 0..u32::from(stream.header.frames) {
+        let Ok(_) = Picture::new(&mut renderer, band, number).ok()?.draw(&mut display);
+    }
+    Some(())
+}
+
+/// Hands the host a byte, and waits until it has looked at the stack.
+#[cfg(target_arch = "arm")]
+fn tell(byte: u8) {
+    use cortex_m_semihosting::{nr, syscall, syscall1};
+    // SAFETY: WRITEC reads one byte; READC takes no argument and touches no memory of ours.
+    unsafe {
+        syscall(nr::WRITEC, &byte);
+        syscall1(nr::READC, 0);
+    }
+}
+
+/// Nobody runs it.
+#[cfg(target_arch = "riscv32")]
+fn tell(_: u8) {}
+
+#[panic_handler]
+fn panic(_: &PanicInfo<'_>) -> ! {
+    loop {}
+}
+
+/// A program that draws by one method in one pixel format. The host finds memory and band by their names.
+#[macro_export]
+macro_rules! program {
+    ($format:ident, $black:ident, $shader:ident) => {
+        use ::embedded_graphics_core::pixelcolor::*;
+        use ::microphong::Shader;
+        use ::size::ROOM;
+
+        #[unsafe(no_mangle)]
+        static mut MEMORY: [u64; ROOM.words::<$format>()] = [0; ROOM.words::<$format>()];
+        #[unsafe(no_mangle)]
+        static mut BAND: [$format; ROOM.band()] = [$format::$black; ROOM.band()];
+
+        /// Draws.
+        #[::size::entry]
+        fn main() -> ! {
+            // SAFETY: nothing else in the program names them, and `main` runs once.
+            let (memory, band) = unsafe { (&mut *(&raw mut MEMORY), &mut *(&raw mut BAND)) };
+            ::size::run(memory, band, Shader::$shader)
+        }
+    };
+}

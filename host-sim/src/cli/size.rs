@@ -1,0 +1,199 @@
+//! `microphong size`.
+
+use super::{
+    Outcome,
+    parse::{self, Several},
+    report,
+};
+use anyhow::Result;
+use microphong_sim::{
+    bench::size::{
+        Chip, FORMATS, Program, SHADERS, Size,
+        baseline::{self, Entry},
+        measure, picture,
+    },
+    render::Format,
+    scene,
+    shader::Shader,
+};
+use serde::Serialize;
+use std::path::{Path, PathBuf};
+
+/// Print flash, RAM and stack of whole programs, and whether chips have room for them.
+///
+/// It builds a program for each method and pixel format. The programs have no display driver and no log, which come on top. Flash and RAM are
+/// those of the compiled program with the memory that the mesh takes. The stack is what an emulated processor used while it drew one turn.
+#[derive(clap::Args)]
+#[command(after_help = EXAMPLES)]
+pub(crate) struct Arguments {
+    /// .tri, .obj, .stl, .ply, .gltf, .glb or .toml file, or a built-in scene.
+    #[arg(value_name = "SCENE", default_value = baseline::SCENE)]
+    scene: String,
+    /// Chips, separated by commas: stm32f103 (Cortex-M3), samd21, rp2040 (Cortex-M0+), stm32f411, nrf52840 (Cortex-M4F), rp2350 (Cortex-M33),
+    /// esp32-c3 (RISC-V); or all.
+    #[arg(long, value_name = "C,...", default_value = "stm32f103", value_parser = chips)]
+    chip: Several<Chip>,
+    /// Shading methods, separated by commas: gouraud, auto-linear, phong, auto; or all.
+    #[arg(long, value_name = "S,...", default_value = "all", value_parser = shaders)]
+    shader: Several<Shader>,
+    /// Pixel formats, separated by commas: rgb565, at 240x240 in bands of 16 rows; binary, at 128x64 in bands of 8 rows; or all.
+    #[arg(long, value_name = "F,...", default_value = "all", value_parser = formats)]
+    format: Several<Format>,
+    /// Print one JSON object per program and chip.
+    #[arg(long)]
+    json: bool,
+    /// Measure the programs that FILE lists, and fail if one takes over 0.2 % more than it says.
+    #[arg(long, value_name = "FILE", conflicts_with_all = ["scene", "chip", "shader", "format", "json"])]
+    check: Option<PathBuf>,
+    /// Measure the programs that FILE lists, and write what they take now.
+    #[arg(long, value_name = "FILE", requires = "reason", conflicts_with_all = ["scene", "chip", "shader", "format", "json", "check"])]
+    renew: Option<PathBuf>,
+    /// Why sizes have changed, in a sentence: --renew of sizes.csv adds it to sizes-reasons.md.
+    #[arg(long, value_name = "TEXT", requires = "renew", value_parser = parse::reason)]
+    reason: Option<String>,
+}
+
+const EXAMPLES: &str = "\
+Examples:
+  microphong size                                         the teapot on an STM32F103
+  microphong size part.obj --chip rp2040 --format rgb565  a mesh of yours
+  microphong size --chip all --json                       everything
+  microphong size --check tests/baselines/sizes.csv       has anything become larger?";
+
+fn chips(text: &str) -> Result<Several<Chip>, String> {
+    parse::several(text, &Chip::ALL, |text| parse::among(text, &Chip::ALL, |chip| chip.name))
+}
+
+fn shaders(text: &str) -> Result<Several<Shader>, String> {
+    parse::several(text, &SHADERS, |text| parse::among(text, &SHADERS, Shader::name))
+}
+
+fn formats(text: &str) -> Result<Several<Format>, String> {
+    parse::several(text, &FORMATS, |text| parse::among(text, &FORMATS, Format::name))
+}
+
+/// A program on a chip.
+#[derive(Serialize)]
+struct Line<'a> {
+    scene: &'a str,
+    chip: &'a str,
+    core: &'a str,
+    shader: &'a str,
+    format: &'a str,
+    width: u32,
+    height: u32,
+    band_rows: usize,
+    #[serde(flatten)]
+    size: Size,
+    chip_flash_bytes: u64,
+    chip_ram_bytes: u64,
+    fits: bool,
+}
+
+impl<'a> Line<'a> {
+    fn new(scene: &'a str, chip: &Chip, program: Program, size: Size) -> Self {
+        let (width, height, band_rows) = picture(program.format);
+        let fits =
+            size.flash_bytes + size.mesh_bytes <= chip.flash_bytes && size.ram_bytes + size.stack_bytes.unwrap_or(0) <= chip.ram_bytes;
+        let [chip_flash_bytes, chip_ram_bytes] = [chip.flash_bytes, chip.ram_bytes];
+        let (shader, format) = (program.shader.name(), program.format.name());
+        Self {
+            scene,
+            chip: chip.name,
+            core: chip.core.name(),
+            shader,
+            format,
+            width,
+            height,
+            band_rows,
+            size,
+            chip_flash_bytes,
+            chip_ram_bytes,
+            fits,
+        }
+    }
+
+    fn text(&self) -> Result<()> {
+        let Size { flash_bytes, mesh_bytes, ram_bytes, stack_bytes } = self.size;
+        let [flash, with_mesh, ram] = [flash_bytes, flash_bytes + mesh_bytes, ram_bytes].map(report::grouped);
+        let stack = stack_bytes.map_or("unknown".to_owned(), report::grouped);
+        let fits = if self.fits { "yes" } else { "no" };
+        report::line(&format!("  {:<12} {:<7} {flash:>9} {with_mesh:>10} {ram:>8} {stack:>8}  {fits}", self.shader, self.format))
+    }
+}
+
+pub(crate) fn run(arguments: &Arguments) -> Result<Outcome> {
+    if let Some(path) = &arguments.check {
+        return check(path);
+    }
+    if let (Some(path), Some(reason)) = (&arguments.renew, &arguments.reason) {
+        return renew(path, reason);
+    }
+    let scene = scene::load(&arguments.scene)?;
+    let mut cores: Vec<_> = Vec::new();
+    for chip in &arguments.chip.values {
+        if !cores.contains(&chip.core) {
+            cores.push(chip.core);
+        }
+    }
+    let programs = Program::all(&cores, &arguments.shader.values, &arguments.format.values);
+    let bar = report::progress(programs.len() as u64, "building and measuring programs");
+    let sizes = measure(&programs, &scene, &|| bar.inc(1))?;
+    bar.finish_and_clear();
+    for chip in &arguments.chip.values {
+        if !arguments.json {
+            let [flash, ram] = [chip.flash_bytes, chip.ram_bytes].map(report::grouped);
+            report::line(&format!("{}, {} on {} ({flash} bytes of flash, {ram} of RAM)", scene.name, chip.core.title(), chip.name))?;
+            report::line(&format!(
+                "  {:<12} {:<7} {:>9} {:>10} {:>8} {:>8}  fits",
+                "method", "format", "flash", "with mesh", "RAM", "stack"
+            ))?;
+        }
+        for (program, size) in programs.iter().zip(&sizes).filter(|(program, _)| program.core == chip.core) {
+            let line = Line::new(&scene.name, chip, *program, *size);
+            if arguments.json { report::json(&line)? } else { line.text()? }
+        }
+    }
+    Ok(Outcome::Done)
+}
+
+/// What a file lists, as recorded and as measured now.
+fn again(path: &Path) -> Result<[Vec<Entry>; 2]> {
+    let recorded = baseline::read(path)?;
+    let bar = report::progress(recorded.len() as u64, "building and measuring programs");
+    let measured = baseline::again(&recorded, &|| bar.inc(1))?;
+    bar.finish_and_clear();
+    Ok([recorded, measured])
+}
+
+/// Changes beyond the tolerance, and whether they are growth.
+fn changes([recorded, measured]: &[Vec<Entry>; 2]) -> Vec<(String, bool)> {
+    recorded.iter().zip(measured).flat_map(|(was, is)| is.changes(was)).collect()
+}
+
+fn check(path: &Path) -> Result<Outcome> {
+    let figures = again(path)?;
+    let changes = changes(&figures);
+    changes.iter().try_for_each(|(text, _)| report::line(text))?;
+    let grown = changes.iter().filter(|(_, grown)| *grown).count();
+    let renew = format!("if that is meant, renew the file: microphong size --renew {} --reason \"...\"", path.display());
+    match (grown, changes.len()) {
+        (0, 0) => report::line(&format!("{} programs take what they did", figures[0].len()))?,
+        (0, shrunk) => report::line(&format!("{shrunk} figures have shrunk, which would hide later growth; {renew}"))?,
+        (grown, _) => report::line(&format!("{grown} figures have grown; {renew}"))?,
+    }
+    Ok(if grown > 0 { Outcome::Differences } else { Outcome::Done })
+}
+
+fn renew(path: &Path, reason: &str) -> Result<Outcome> {
+    let figures = again(path)?;
+    let [recorded, measured] = &figures;
+    if recorded == measured {
+        report::line(&format!("{} programs take exactly what is recorded: nothing to renew", recorded.len()))?;
+        return Ok(Outcome::Done);
+    }
+    changes(&figures).iter().try_for_each(|(text, _)| report::line(text))?;
+    let reasons = baseline::renew(path, [recorded, measured], reason)?;
+    report::line(&format!("{} programs recorded in {}, the reason in {}", measured.len(), path.display(), reasons.display()))?;
+    Ok(Outcome::Done)
+}
