@@ -112,4 +112,7 @@ pub use renderer::Renderer;
 pub use scene::{Object, Pose, Scene, SceneError};
 pub use shader::Shader;
 #[doc(inline)]
-pub use stream::{Stream, StreamError};
+pub use stream::{
+    Stream, StreamError,
+    record::{Light, Material},
+};

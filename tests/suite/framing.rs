@@ -63,7 +63,7 @@ fn turns_are_seen_whole_on_every_display() {
     let mut streams = Vec::new();
     for name in ["teapot.obj", "bunny.obj", "plate.obj", "upright.obj", "rod.obj", "lying.obj"] {
         for options in [&[][..], &["--projection", "parallel"], &["--elevation", "70"]] {
-            succeeds(directory.path(), &[&["convert", name, "-o", "mesh.tri"], options].concat());
+            let _ = succeeds(directory.path(), &[&["convert", name, "-o", "mesh.tri"], options].concat());
             streams.push((format!("{name} {}", options.join(" ")), StreamBytes::read(&directory.path().join("mesh.tri")).unwrap()));
         }
     }

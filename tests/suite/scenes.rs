@@ -6,7 +6,7 @@ use microphong::{
     fixed::types::{I2F30, I18F14, U0F32, U16F16},
     format::MAX_LIGHTS,
     scene::{Background, MAX_POSITION},
-    stream::record::{Camera, DIRECTIONAL, EYE_SPACE, Light, Material, OBJECT_SPACE, ORTHOGRAPHIC, POINT, VIEWER_LOCAL},
+    stream::record::{Camera, EYE_SPACE, Light, Material, ORTHOGRAPHIC, POINT, VIEWER_LOCAL},
 };
 use microphong_sim::{
     bytes::StreamBytes,
@@ -380,12 +380,7 @@ fn the_camera_looks_where_it_is_told() {
     assert!(told == whole);
     // From the right, the world turned to the left instead.
     let from_right = drawn(stream, room(&stream), |scene| scene.look_at([four, zero, zero], [zero; 3], [zero, one, zero]).unwrap());
-    let lights = [Light::new(
-        DIRECTIONAL,
-        OBJECT_SPACE,
-        [-0.7, 0.6, -0.4].map(|c| I18F14::from_num(c / (0.7f64.powi(2) + 0.52).sqrt())),
-        [microphong::format::Gain::ONE; 3],
-    )];
+    let lights = [Light::directional([-0.7, 0.6, -0.4], [1; 3]).unwrap()];
     let turned = drawn(stream, room(&stream), |scene| {
         scene.set_pose(0, Pose::about([0, 1, 0], U0F32::from_num(0.75)).unwrap()).unwrap();
         scene.set_lights(&lights).unwrap();

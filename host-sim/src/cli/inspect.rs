@@ -179,8 +179,9 @@ fn lights(stream: &Stream<'_>) -> String {
     let kind = |light: &Light| {
         let [x, y, z] = light.vector().map(f64::from);
         let kind = if light.kind == POINT { "at" } else { "towards" };
-        let space = if light.space == EYE_SPACE { "eye" } else { "object" };
-        format!("{kind} ({x:.2}, {y:.2}, {z:.2}) of {space} space")
+        // Eye space has z away from the viewer; a user never sees it.
+        let (z, place) = if light.space == EYE_SPACE { (-z, "as the camera sees it") } else { (z, "in the world") };
+        format!("{kind} ({x:.2}, {y:.2}, {z:.2}) {place}")
     };
     stream.lights.iter().map(kind).collect::<Vec<_>>().join("; ")
 }

@@ -8,6 +8,8 @@ use core::fmt;
 pub enum SceneError {
     /// A rotation is none: a quaternion or an axis is zero, a matrix is not orthonormal or mirrors, or one looks along the vertical.
     Rotation,
+    /// A direction is zero, or not a number.
+    Direction,
     /// A position is farther than [`crate::scene::MAX_POSITION`] from the origin along some axis.
     Position,
     /// A scale is none of those from [`crate::scene::MIN_SCALE`] to [`crate::scene::MAX_SCALE`].
@@ -51,6 +53,7 @@ impl fmt::Display for SceneError {
             Self::Rotation => {
                 f.write_str("a rotation must be a quaternion other than zero, an axis other than zero, or an orthonormal matrix")
             }
+            Self::Direction => f.write_str("a direction must be three numbers that are not all zero"),
             Self::Position => f.write_str("a position must be within 16 units of the origin along each axis"),
             Self::Scale => f.write_str("a scale must be 1/16 to 8"),
             Self::Object { index } => write!(f, "there is no object number {index}"),

@@ -24,6 +24,7 @@ mod angle;
 mod background;
 mod bounding_volume;
 mod error;
+mod light;
 mod object;
 pub(crate) mod orbit;
 mod pose;

@@ -1,0 +1,118 @@
+//! Lights as a program makes them: x to the right, y up, z to the viewer.
+
+use crate::{
+    format::{Gain, Length, UNIT},
+    math::vector::normalise,
+    scene::SceneError,
+    stream::record::{DIRECTIONAL, EYE_SPACE, Light, OBJECT_SPACE, POINT},
+};
+use fixed::{traits::ToFixed, types::I32F32};
+
+/// Lights.
+///
+/// Numbers are `f32` or of any type of the crate `fixed`. No floating point is compiled for fixed-point numbers.
+///
+/// ```
+/// use microphong::{Light, SceneError, fixed::types::I18F14};
+///
+/// # fn main() -> Result<(), SceneError> {
+/// // White, from the upper left, in front of the object; and an orange one nearby, which goes where the camera goes.
+/// let key = Light::directional([-0.4, 0.6, 0.7], [1.0; 3])?;
+/// let near = Light::near([1, 0, -2].map(I18F14::from_num), [1.0, 0.6, 0.2])?.with_camera();
+/// assert!(Light::directional([0.0; 3], [1.0; 3]).is_err());
+/// # Ok(())
+/// # }
+/// ```
+impl Light {
+    /// A light infinitely far away, in the direction `towards` from every object: x to the right, y up, z to the viewer, as the camera sees the
+    /// world at first. The direction may have any length but 0. The light stays where it is in the world. `colour` is red, green and blue, from
+    /// 0 to 4, and 1 is full.
+    ///
+    /// # Errors
+    /// When the direction is zero, or a number is not finite or out of range.
+    pub fn directional<V: ToFixed, C: ToFixed>(towards: [V; 3], colour: [C; 3]) -> Result<Self, SceneError> {
+        let mut vector = [0i64; 3];
+        for (bits, number) in vector.iter_mut().zip(towards) {
+            *bits = number.checked_to_fixed::<I32F32>().ok_or(SceneError::Direction)?.to_bits();
+        }
+        // Components of at most 30 bits.
+        let largest = vector.iter().fold(0, |largest, c| largest | c.unsigned_abs());
+        let less = 34u32.saturating_sub(largest.leading_zeros());
+        let unit = normalise(vector.map(|c| (c >> less) as i32));
+        if unit == [0; 3] {
+            return Err(SceneError::Direction);
+        }
+        let rounded = |c: i32| Length::from_bits(((c >> (29 - UNIT)) + 1) >> 1);
+        Ok(Self::new(DIRECTIONAL, OBJECT_SPACE, unit.map(rounded), gains(colour)?))
+    }
+
+    /// A light at `position`, which stays where it is in the world: x to the right, y up, z to the viewer, as the camera sees the world at first.
+    /// `colour` is red, green and blue, from 0 to 4, and 1 is full. A near light costs more than one that is infinitely far away.
+    ///
+    /// # Errors
+    /// When a number is not finite or out of range.
+    pub fn near<V: ToFixed, C: ToFixed>(position: [V; 3], colour: [C; 3]) -> Result<Self, SceneError> {
+        let mut place = [Length::ZERO; 3];
+        for (length, number) in place.iter_mut().zip(position) {
+            *length = number.checked_to_fixed().ok_or(SceneError::Position)?;
+        }
+        Ok(Self::new(POINT, OBJECT_SPACE, place, gains(colour)?))
+    }
+
+    /// This light, going where the camera goes. Its vector is then x to the right of the picture, y up, and z to the viewer; a position is
+    /// counted from the eye, so that what is seen has a negative z.
+    #[must_use]
+    pub fn with_camera(self) -> Self {
+        let [x, y, z] = self.vector;
+        // Eye space has z away from the viewer.
+        let z = if self.space == EYE_SPACE { z } else { z.saturating_neg() };
+        Self { vector: [x, y, z], space: EYE_SPACE, ..self }
+    }
+}
+
+fn gains<C: ToFixed>(colour: [C; 3]) -> Result<[Gain; 3], SceneError> {
+    let mut gains = [Gain::ZERO; 3];
+    for (gain, number) in gains.iter_mut().zip(colour) {
+        *gain = number.checked_to_fixed().ok_or(SceneError::Range { name: "the colour of a light" })?;
+    }
+    Ok(gains)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    proptest! {
+        /// Directions of any length are unit vectors, to half a unit of the last place.
+        #[test]
+        fn directions_are_normalised(towards in [(); 3].map(|()| -1.0e3f32..1.0e3), exponent in -14i32..20) {
+            let towards = towards.map(|c| c * 2f32.powi(exponent));
+            let length = towards.iter().map(|&c| f64::from(c).powi(2)).sum::<f64>().sqrt();
+            prop_assume!(length > 1e-2);
+            let light = Light::directional(towards, [1.0f32; 3]).unwrap();
+            for (found, exact) in light.vector().into_iter().zip(towards) {
+                let error = f64::from(found) - f64::from(exact) / length;
+                prop_assert!(error.abs() <= 0.51 / f64::from(1 << UNIT), "{light:?}");
+            }
+        }
+    }
+
+    #[test]
+    fn what_is_no_direction_is_refused() {
+        for towards in [[0.0, 0.0, 0.0], [f32::NAN, 0.0, 1.0], [0.0, f32::INFINITY, 1.0], [1e30, 0.0, 0.0]] {
+            assert_eq!(Light::directional(towards, [1; 3]), Err(SceneError::Direction), "{towards:?}");
+        }
+        assert_eq!(Light::near([f32::NAN, 0.0, 0.0], [1; 3]), Err(SceneError::Position));
+        assert_eq!(Light::near([0; 3], [-1, 0, 0]), Err(SceneError::Range { name: "the colour of a light" }));
+    }
+
+    #[test]
+    fn lights_with_the_camera_have_z_away_from_the_viewer() {
+        let light = Light::directional([0, 0, 5], [1; 3]).unwrap();
+        assert_eq!((light.vector().map(f64::from), light.space), ([0.0, 0.0, 1.0], OBJECT_SPACE));
+        let moving = light.with_camera();
+        assert_eq!((moving.vector().map(f64::from), moving.space), ([0.0, 0.0, -1.0], EYE_SPACE));
+        assert_eq!(moving.with_camera(), moving);
+    }
+}
