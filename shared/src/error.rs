@@ -8,6 +8,7 @@ pub const MAX_SIDE: u32 = COLUMNS - 1;
 
 /// Why a renderer cannot draw.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub enum RenderError {
     /// The viewport is empty or larger than [`MAX_SIDE`] on a side.
@@ -52,7 +53,7 @@ pub enum RenderError {
         name: &'static str,
     },
     /// None of the program's methods is the one that the stream asks for.
-    Missing {
+    UnknownMethod {
         /// The number of the missing method, see [`crate::method::Facts::id`].
         method: u16,
     },
@@ -90,7 +91,7 @@ impl fmt::Display for RenderError {
             Self::Corner => f.write_str("the picture would reach beyond the display; move it or make it smaller"),
             Self::Feature { name } => write!(f, "this needs the feature {name}; build the program with it"),
             Self::Budget => f.write_str("an error budget must be 1/2 to 16"),
-            Self::Missing { method } => {
+            Self::UnknownMethod { method } => {
                 write!(f, "this program has no shading method number {method}, for which the stream asks; convert it with another --shader")
             }
             Self::Light { shader } => {

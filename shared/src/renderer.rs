@@ -43,7 +43,7 @@ impl<'a, C: Pixel> Renderer<'a, C> {
     /// the stream has labels and this build lacks the feature `text`.
     pub fn new(stream: Stream<'a>, size: Size, layout: &Layout, memory: &'a mut [u64], shaders: &[Shader<C>]) -> Result<Self, RenderError> {
         let method = stream.header.shader;
-        let shader = shaders.iter().find(|shader| shader.facts().id == method).ok_or(RenderError::Missing { method })?;
+        let shader = shaders.iter().find(|shader| shader.facts().id == method).ok_or(RenderError::UnknownMethod { method })?;
         Self::with_shader(stream, size, layout, memory, *shader)
     }
 

@@ -371,7 +371,7 @@ fn what_does_not_fit_is_named() {
     let others: Vec<_> = Shader::ALL.into_iter().filter(|shader| shader.facts().id != method).map(Shader::on).collect();
     for shaders in [&others[..], &[]] {
         let missing = Renderer::<Rgb565>::new(stream, size, &layout, &mut memory, shaders).map(drop);
-        assert_eq!(missing, Err(RenderError::Missing { method }));
+        assert_eq!(missing, Err(RenderError::UnknownMethod { method }));
         assert!(missing.unwrap_err().to_string().contains(&format!("number {method}")));
     }
     let near = near.stream.parse().unwrap();

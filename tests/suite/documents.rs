@@ -1,12 +1,13 @@
 //! Links in the documents lead to files and headings that are there, the index names each page, and the README is short. Costs of methods are
 //! those that are recorded, and sizes in the guide are those of the layout.
 
-use crate::golden::root;
+use crate::golden::{bless, root};
 use embedded_graphics::pixelcolor::{BinaryColor, Rgb565};
 use microphong::{Layout, pixel::Pixel};
 use std::{
     fs,
     path::{Path, PathBuf},
+    process::Command,
 };
 
 const DOCUMENTS: [&str; 9] = [
@@ -144,4 +145,27 @@ fn costs_are_those_that_are_recorded() {
         }
         assert_eq!(found, methods, "{document}: methods");
     }
+}
+
+/// The names that a user of the library sees are those of `docs/public-names.txt`. `MICROPHONG_BLESS=1` writes them there; CHANGELOG.md then has to
+/// say what has changed.
+#[test]
+fn public_names_are_those_that_are_listed() {
+    let cargo =
+        Command::new(env!("CARGO")).args(["doc", "--quiet", "--no-deps", "-p", "microphong"]).current_dir(root()).output().expect("cargo");
+    assert!(cargo.status.success(), "{}", String::from_utf8_lossy(&cargo.stderr));
+    let all =
+        fs::read_to_string(Path::new(env!("CARGO_TARGET_TMPDIR")).with_file_name("doc/microphong/all.html")).expect("an index of names");
+    // A heading's link begins with "#".
+    let items = all.split("<li><a href=\"").skip(1).filter(|item| !item.starts_with('#'));
+    let names: String = items.filter_map(|item| Some(item.split_once('>')?.1.split_once('<')?.0.to_owned() + "\n")).collect();
+    let file = root().join("../docs/public-names.txt");
+    if bless() {
+        fs::write(&file, &names).expect("a folder");
+    }
+    let listed = fs::read_to_string(&file).unwrap_or_default();
+    let only =
+        |some: &str, others: &str| some.lines().filter(|name| others.lines().all(|other| other != *name)).collect::<Vec<_>>().join(", ");
+    assert!(listed == names, "new: {}; gone: {}", only(&names, &listed), only(&listed, &names));
+    println!("{} public names", names.lines().count());
 }

@@ -5,23 +5,38 @@
 //! [`Canvas`] tests depth and stores colours. The methods of this crate also have loops that are compiled for each pixel format, for the
 //! common styles.
 
+#[doc(hidden)]
 pub mod auto;
+#[doc(hidden)]
 pub mod duff;
+#[doc(hidden)]
 pub mod error_bound;
 mod facts;
+#[doc(hidden)]
 pub mod flat;
+#[doc(hidden)]
 pub mod gouraud;
+#[doc(hidden)]
 pub mod highlight_error;
+#[doc(hidden)]
 pub mod lighting_model;
 mod local_viewer;
+#[doc(hidden)]
 pub mod node;
+#[doc(hidden)]
 pub mod phong;
 mod quotient;
+#[doc(hidden)]
 pub mod renq;
+#[doc(hidden)]
 pub mod renq_newton;
+#[doc(hidden)]
 pub mod six_point;
+#[doc(hidden)]
 pub mod sqrt6;
+#[doc(hidden)]
 pub mod sub_triangle;
+#[doc(hidden)]
 pub mod tiles;
 mod two_lights;
 

@@ -4,6 +4,7 @@ use core::fmt;
 
 /// Why a scene cannot be as a program wants it. The scene stays as it was.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub enum SceneError {
     /// A rotation is none: a quaternion or an axis is zero, a matrix is not orthonormal or mirrors, or one looks along the vertical.

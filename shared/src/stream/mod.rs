@@ -62,6 +62,7 @@ pub struct Stream<'a> {
 /// Why bytes are not a valid stream.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[non_exhaustive]
 pub enum StreamError {
     /// The slice does not start at a multiple of four: wrap it in [`Aligned`].
     Misaligned,

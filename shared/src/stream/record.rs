@@ -6,7 +6,7 @@
 //! Fields are plain integers, as they are read in place. Each has a method of its name that gives its value as a number of the
 //! crate [`fixed`], and `new` makes a record of such numbers; [`crate::Stream::parse`] checks what does not follow from the type.
 
-#[doc(inline)]
+#[doc(no_inline)]
 pub use crate::format::{
     ErrorBudget, Focal, Gain, GeometricError, Haversine, InverseAltitude, Length, NormalLength, Radius, Rotation, Scale, Share, Unit,
 };
