@@ -69,6 +69,7 @@ mod display;
 mod error;
 pub mod format;
 mod frame;
+pub mod math;
 mod memory;
 mod mesh;
 pub mod method;
@@ -91,8 +92,6 @@ pub mod geometry;
 pub mod interpolate;
 #[doc(hidden)]
 pub mod lighting;
-#[doc(hidden)]
-pub mod math;
 #[doc(hidden)]
 pub mod raster;
 #[doc(hidden)]

@@ -281,10 +281,10 @@ fn told<C: Pixel>(
     number: u32,
 ) -> anyhow::Result<(Vec<C>, Stats, Choices)> {
     let telling: &'static dyn Method = if shader == Shader::AUTO { &Telling::<true> } else { &Telling::<false> };
-    let style = Style { perspective_correct, ..Shader::new(telling).into() };
+    let style = Style { perspective_correct, ..shader.into() };
     CHOICES.set(Choices::NONE);
     WAYS.set((stream.triangles.as_ptr().addr(), vec![None; stream.triangles.len()]));
-    let (pixels, stats) = render::frame(stream, size, style, size.height, number)?;
+    let (pixels, stats) = render::frame_by(stream, size, style, microphong::Shader::new(telling), size.height, number)?;
     Ok((pixels, stats, CHOICES.get()))
 }
 

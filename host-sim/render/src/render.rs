@@ -50,10 +50,25 @@ pub fn layout(stream: &Stream<'_>, size: Size, band_rows: u32) -> Layout {
 /// When `size` is out of range, or the scene cannot be drawn in this style.
 pub fn frame<C: Pixel>(stream: Stream<'_>, size: Size, style: impl Into<Style>, band_rows: u32, number: u32) -> Result<(Vec<C>, Stats)> {
     let style = style.into();
+    frame_by(stream, size, style, style.shader.on(), band_rows, number)
+}
+
+/// [`frame`] by this shader, whatever the style says.
+///
+/// # Errors
+/// Those of [`frame`].
+pub fn frame_by<C: Pixel>(
+    stream: Stream<'_>,
+    size: Size,
+    style: Style,
+    shader: microphong::Shader<C>,
+    band_rows: u32,
+    number: u32,
+) -> Result<(Vec<C>, Stats)> {
     let rows = band_rows.clamp(1, size.height.max(1));
     let layout = layout(&stream, size, rows).antialias(style.antialias);
     let mut memory = vec![0; layout.words::<C>()];
-    let mut renderer = Renderer::with_shader(stream, size, &layout, &mut memory, style.shader.on())?;
+    let mut renderer = Renderer::with_shader(stream, size, &layout, &mut memory, shader)?;
     renderer.set_perspective_correct(style.perspective_correct)?;
     renderer.set_dither(style.dither);
     renderer.set_gamma(style.srgb.then_some(&gamma::SRGB));

@@ -7,26 +7,21 @@
 
 #[doc(hidden)]
 pub mod auto;
-#[doc(hidden)]
 pub mod duff;
 #[doc(hidden)]
 pub mod error_bound;
 mod facts;
 #[doc(hidden)]
 pub mod flat;
-#[doc(hidden)]
 pub mod gouraud;
 #[doc(hidden)]
 pub mod highlight_error;
-#[doc(hidden)]
 pub mod lighting_model;
 mod local_viewer;
 #[doc(hidden)]
 pub mod node;
-#[doc(hidden)]
 pub mod phong;
 mod quotient;
-#[doc(hidden)]
 pub mod renq;
 #[doc(hidden)]
 pub mod renq_newton;
@@ -36,7 +31,6 @@ pub mod six_point;
 pub mod sqrt6;
 #[doc(hidden)]
 pub mod sub_triangle;
-#[doc(hidden)]
 pub mod tiles;
 mod two_lights;
 
