@@ -4,7 +4,7 @@ use embedded_graphics::pixelcolor::Gray8;
 use microphong::{Shader, pixel::Pixel};
 use microphong_literature::ALL;
 
-/// Those of the core, then those of the literature.
+/// All methods: first the core's, then the literature's.
 struct Every<C>(core::marker::PhantomData<C>);
 
 impl<C: Pixel> Every<C> {

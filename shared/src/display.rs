@@ -80,8 +80,8 @@ impl<'r, 'a, C: Pixel> Picture<'r, 'a, C> {
 }
 
 impl<'r, 'a, C: Pixel, U, O> Picture<'r, 'a, C, U, O> {
-    /// The same picture elsewhere: its upper left corner is this pixel of `display`, of which nothing but the picture is drawn. At first that is
-    /// the pixel 0, 0.
+    /// Puts the upper left corner of the picture at the pixel `corner` of `display`. Nothing outside of the picture is drawn. Without this call the
+    /// corner is the pixel 0, 0.
     ///
     /// # Errors
     /// When a part of the picture would lie outside of the display.
@@ -99,15 +99,16 @@ impl<'r, 'a, C: Pixel, U, O> Picture<'r, 'a, C, U, O> {
         Ok(Self { corner, ..self })
     }
 
-    /// The same with something drawn between the background and it: `under` is called for each band, and draws text, lines and images as on the
-    /// display, in its coordinates. What it draws has to be the same for all bands of a picture.
+    /// Draws something between the background and the picture. `under` is called for each band. It draws text, lines and images in the display's
+    /// coordinates, and has to draw the same things for all bands of a picture.
     #[must_use]
     pub fn under<F: Fn(&mut BandTarget<'_, C>)>(self, under: F) -> Picture<'r, 'a, C, F, O> {
         let Self { parts, number, corner, over, .. } = self;
         Picture { parts, number, corner, under: Some(under), over }
     }
 
-    /// The same with something drawn over it: `over` is called for each band when all else is drawn, otherwise like [`Self::under`].
+    /// Draws something over the picture. `over` is called for each band once the triangles are drawn. It draws in the display's coordinates, and has
+    /// to draw the same things for all bands of a picture.
     #[must_use]
     pub fn over<F: Fn(&mut BandTarget<'_, C>)>(self, over: F) -> Picture<'r, 'a, C, U, F> {
         let Self { parts, number, corner, under, .. } = self;

@@ -37,14 +37,14 @@ pub(crate) struct Placement {
 
 /// How objects are placed.
 pub(crate) struct Placing {
-    /// Of the camera on the viewport.
+    /// Projection of the camera onto the viewport.
     pub(crate) lens: Lens,
     /// Whether coarser levels of meshes are drawn.
     pub(crate) levels_of_detail: bool,
     pub(crate) leaves_out_back_faces: bool,
     /// The world as it is seen.
     pub(crate) world: ModelView,
-    /// Of the lights in the world.
+    /// Directions of the lights in the world.
     pub(crate) directions: Directions,
 }
 
@@ -107,7 +107,7 @@ pub(crate) struct Placements<'r> {
 }
 
 impl<'r> Placements<'r> {
-    /// Those of `scene`, in memory where there may be room for more.
+    /// Places of the objects of `scene`. The memory may have room for more objects.
     pub(crate) fn new(scene: &Scene<'_>, placements: &'r [Placement], order: &'r [u32]) -> Self {
         let count = scene.objects().len();
         Self { placements: placements.get(..count).unwrap_or_default(), order: order.get(..count).unwrap_or_default() }

@@ -19,7 +19,7 @@ pub struct Shader<C: Pixel> {
     /// Whether `loops` can draw this style; if not, the general way does.
     take: fn(Style) -> bool,
     pub(crate) loops: TriangleLoops<C>,
-    /// Those for three channels.
+    /// Loops for three channels.
     three_channels: TriangleLoops<C>,
 }
 

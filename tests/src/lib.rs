@@ -88,7 +88,7 @@ pub fn succeeds(directory: &Path, arguments: &[&str]) -> String {
     String::from_utf8(output.stdout).expect("text")
 }
 
-/// The same stream, its first mesh not marked as closed and convex: all of it is drawn with depth.
+/// Copies a stream without the mark that its first mesh is closed and convex, so that all of it is drawn with depth.
 #[must_use]
 pub fn unmarked(stream: &StreamBytes) -> StreamBytes {
     let mut bytes = stream.as_bytes().to_vec();
@@ -97,7 +97,7 @@ pub fn unmarked(stream: &StreamBytes) -> StreamBytes {
     StreamBytes::from(bytes.as_slice())
 }
 
-/// The same stream, its triangles said to be so thick that rounding their corners turns none of them.
+/// Copies a stream and marks its triangles as so thick that rounding their corners turns none of them.
 #[must_use]
 pub fn thick(stream: &StreamBytes) -> StreamBytes {
     let mut bytes = stream.as_bytes().to_vec();

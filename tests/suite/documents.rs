@@ -1,5 +1,5 @@
-//! Links in the documents lead to files and headings that are there, the index names each page, and the README is short. Costs of methods are
-//! those that are recorded, and sizes in the guide are those of the layout.
+//! Links in the documents lead to files and headings that are there, the index names each page, and the README is short. Costs of methods agree
+//! with the recorded ones, sizes in the guide agree with the layout, and doc comments begin with a subject.
 
 use crate::golden::{bless, root};
 use embedded_graphics::pixelcolor::{BinaryColor, Rgb565};
@@ -87,6 +87,41 @@ fn the_readme_is_short() {
     assert!(length <= README, "{length} bytes; move something to the guide");
 }
 
+/// Beginnings of doc comments that cannot be understood without another comment.
+const DANGLING: [&str; 7] = ["That ", "Those ", "The same ", "Of ", "As ", "It ", "They "];
+
+/// The Rust sources below a folder.
+fn sources(folder: &Path) -> Vec<PathBuf> {
+    let entries = fs::read_dir(folder).unwrap_or_else(|error| panic!("{}: {error}", folder.display()));
+    let paths = entries.map(|entry| entry.expect("an entry").path()).filter(|path| !path.ends_with("target"));
+    paths.flat_map(|path| if path.is_dir() { sources(&path) } else { vec![path] }).filter(|path| path.extension() == Some("rs".as_ref())).collect()
+}
+
+/// The first lines of all doc comments, with their numbers.
+fn first_lines(text: &str) -> impl Iterator<Item = (usize, &str)> {
+    fn is_comment(line: &str) -> bool {
+        ["///", "//!"].iter().any(|start| line.trim_start().starts_with(start))
+    }
+    let mut before = false;
+    let first = (1..).zip(text.lines()).filter(move |(_, line)| !std::mem::replace(&mut before, is_comment(line)) && is_comment(line));
+    first.map(|(number, line)| (number, line.trim_start()[3..].trim_start()))
+}
+
+#[test]
+fn doc_comments_begin_with_a_subject() {
+    let (mut count, mut dangling) = (0, Vec::new());
+    for path in ["shared", "firmware", "host-sim", "tests", "examples", "fuzz"].iter().flat_map(|folder| sources(&repository().join(folder))) {
+        for (number, line) in first_lines(&read(&path)) {
+            count += 1;
+            if DANGLING.iter().any(|beginning| line.starts_with(beginning)) {
+                dangling.push(format!("{}:{number}: {line}", path.display()));
+            }
+        }
+    }
+    assert!(count > 3000, "{count} comments");
+    assert!(dangling.is_empty(), "{dangling:#?}");
+}
+
 /// The table of docs/guide/size.md.
 #[test]
 fn memory_is_what_the_guide_says() {
@@ -115,7 +150,7 @@ fn memory_is_what_the_guide_says() {
 /// programs: what the method adds to the program without one, which is the recorded program by `gouraud` without that method.
 #[test]
 fn costs_are_those_that_are_recorded() {
-    /// Of the scene, at 320x240 on the MPS2 and at 240x240 on the Pico: the sphere is as large in both.
+    /// Pixels of the scene, at 320x240 on the MPS2 and at 240x240 on the Pico. The sphere is equally large in both.
     const PIXELS: f64 = 43_813.0;
     let recorded = read(&root().join("baselines/costs.csv"));
     let cost = |board: &str, method: &str| {

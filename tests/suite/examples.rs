@@ -29,7 +29,7 @@ mod stm32f411_ili9341;
 
 const NAMES: [&str; 4] = ["esp32c3-gc9a01", "rp2040-ssd1306", "rp2350-st7789", "stm32f411-ili9341"];
 
-/// Of one file of an example.
+/// The path of one file of an example.
 fn path(example: &str, file: &str) -> PathBuf {
     root().join("../examples").join(example).join(file)
 }

@@ -45,7 +45,7 @@ const LEVEL: f64 = 0.20;
 const BYTE: f64 = LEVEL + 0.5;
 /// Largest share of a frame's pixels that may be left out: a torus seen small, from the side, is full of edges.
 const LEFT_OUT: f64 = 0.01;
-/// The same of all frames together.
+/// Largest share of the pixels of all frames together that may be left out.
 const LEFT_OUT_IN_ALL: f64 = 0.001;
 
 /// How close to an edge, in pixels along its row, a pixel's centre is left out.
@@ -202,7 +202,7 @@ fn turned(stream: Stream<'_>, number: u32) -> [V3; 3] {
 struct Tally {
     /// Pixels that either has drawn.
     drawn: usize,
-    /// Of them, those that are left out because of an edge.
+    /// Drawn pixels that are left out because they lie close to an edge.
     unsure: usize,
     /// Because of a division by zero.
     undefined: usize,

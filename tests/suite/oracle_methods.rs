@@ -30,7 +30,7 @@ fn single(facet: Facet, light: Place, viewer: Place, exponent: f64) -> Frame {
 }
 
 const SCREEN: [[f64; 2]; 3] = [[10.0, 20.0], [90.0, 30.0], [40.0, 95.0]];
-/// The same triangle in space.
+/// Positions of the triangle's corners in space.
 const POSITIONS: [V3; 3] = [[-0.8, 0.6, 0.0], [0.8, 0.4, 0.0], [-0.2, -0.9, 0.0]];
 const TOWARDS_EYE: Place = Place::Far([0.0, 0.0, 1.0]);
 

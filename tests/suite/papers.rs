@@ -10,7 +10,7 @@ use std::collections::HashSet;
 /// What our figure must be.
 #[derive(Clone, Copy, Debug)]
 enum Ours {
-    /// As the design notes say, up to a tolerance.
+    /// The figure of the design notes, up to a tolerance.
     Near(f64, f64),
     /// From a lowest to a largest value, where the notes give a range or only an order of magnitude.
     Within(f64, f64),

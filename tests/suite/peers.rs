@@ -49,8 +49,8 @@ fn without(scene: &Scene, lacks: &[Lack]) -> Scene {
     Scene { stream: bytes.as_slice().into(), ..scene.clone() }
 }
 
-/// The same pixels in the same colours. A scene is compared without what a peer leaves out; `peer-sphere`, as its highlight is small, also
-/// with it.
+/// Checks that a peer covers the pixels that we cover, in the colours that we draw. What the peer leaves out is removed from the scene. `peer-sphere`
+/// is compared with its highlight, too, because that is small.
 fn check_picture(scene: &Scene, frame: &Frame) {
     let name = format!("{}, {}", scene.name, frame.shader);
     let ours = |scene: &Scene| Picture::ours(scene, Processor::X86_64, Shader::PHONG).unwrap().0;
@@ -108,7 +108,7 @@ fn check_costs(frames: &[Frame], ours: &[(&str, u64)]) {
     }
 }
 
-/// They draw ordinary scenes, on three processors the same pictures to the bit, and take more instructions for each.
+/// Peers draw ordinary scenes. On three processors the pictures agree to the bit, and peers take more instructions for each.
 #[test]
 fn they_draw_the_same_frames_and_ours_cost_less() {
     let programs = PROCESSORS.map(|processor| (processor, Program::build(processor).unwrap()));
@@ -138,7 +138,7 @@ fn they_draw_the_same_frames_and_ours_cost_less() {
     });
 }
 
-/// It is said what they leave out, and why they cannot draw a scene at all.
+/// The output says what peers leave out, and why they cannot draw a scene at all.
 #[test]
 fn what_they_cannot_draw_is_said() {
     let scene = |name| scene::load(name).unwrap().stream;

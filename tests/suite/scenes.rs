@@ -389,7 +389,7 @@ fn the_camera_looks_where_it_is_told() {
     assert!(far < 60, "{far} pixels differ");
 }
 
-/// Of two surfaces a thousandth of the range from near to far apart, the nearer is seen everywhere, at the far end as well.
+/// Where two surfaces are a thousandth of the range from near to far apart, the nearer is seen everywhere, at the far end as well.
 #[test]
 fn surfaces_a_thousandth_of_the_range_apart_do_not_fight() {
     let mut look = look(vec![Lamp::Distant([0.0, 0.0, -1.0], [1.0; 3])], false, Projection::Perspective);

@@ -115,7 +115,7 @@ fn damaged_stream(board: Board) -> Result {
     Ok(())
 }
 
-/// As it is built, without another stream put into it, the firmware draws the teapot by a method that the board has.
+/// The firmware as it is built, without another stream put into it, draws the teapot by a method that the board has.
 fn as_built(board: Board) -> Result {
     let elf = Elf::read(&verify::build(board)?)?;
     let recording = board::run(board, &elf, Until::FirstFrame)?;

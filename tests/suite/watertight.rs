@@ -50,7 +50,7 @@ impl Case {
     }
 }
 
-/// Of `mesh` under a camera that sees all of it, a little from above.
+/// A stream of `mesh` under a camera that sees all of it, a little from above.
 fn stream(mesh: &Mesh, parallel: bool) -> StreamBytes {
     let mut camera = view::View::orbit(Up::Y, 0.3, 0.2, scene::DISTANCE, FRAMES as u16);
     if parallel {

@@ -16,15 +16,15 @@ const HEAD: &str = "board,scene,shader,instructions,flash_bytes";
 /// One line.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Entry {
-    /// Who executes.
+    /// The processor that executes the frame.
     pub processor: Processor,
     /// The scene's name.
     pub scene: String,
     /// The method.
     pub shader: Shader,
-    /// Of the frame, without clearing and transfer.
+    /// Instructions of the frame, without clearing and transfer.
     pub instructions: u64,
-    /// Of the method, see [`Measurement::flash_bytes`].
+    /// Flash of the method, in bytes; see [`Measurement::flash_bytes`].
     pub flash_bytes: u64,
 }
 
@@ -51,7 +51,7 @@ impl Entry {
         (self.processor, &self.scene, self.shader) == (other.processor, &other.scene, other.shader)
     }
 
-    /// The same frame as it is now.
+    /// The entry for this frame with the figures that were measured now.
     #[must_use]
     fn renewed(&self, now: &Measurement) -> Self {
         Self { instructions: now.instructions, flash_bytes: now.flash_bytes.unwrap_or(0), ..self.clone() }
@@ -68,13 +68,13 @@ impl fmt::Display for Entry {
 /// A figure that has changed.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Change {
-    /// Which frame.
+    /// The entry of the frame.
     pub entry: Entry,
-    /// Of what.
+    /// The unit of the figure: instructions or bytes of flash.
     pub what: &'static str,
-    /// As recorded.
+    /// The recorded figure.
     pub was: u64,
-    /// As measured.
+    /// The measured figure.
     pub is: u64,
 }
 
@@ -105,7 +105,7 @@ pub fn changed(recorded: &[Entry], measured: &[Entry]) -> Vec<Change> {
     pairs.filter(|change| change.is != change.was).collect()
 }
 
-/// Those of them that are beyond the [`TOLERANCE`].
+/// Figures that differ from their record by more than the [`TOLERANCE`].
 #[must_use]
 pub fn changes(recorded: &[Entry], measured: &[Entry]) -> Vec<Change> {
     changed(recorded, measured).into_iter().filter(|change| change.percent().abs() > TOLERANCE).collect()

@@ -19,7 +19,7 @@ pub struct Costs {
 }
 
 impl Costs {
-    /// Of a measured frame; `None` if it is empty.
+    /// Costs of a measured frame; `None` if it is empty.
     #[must_use]
     pub fn of(frame: &Measurement) -> Option<Self> {
         let [triangles, pixels] = [frame.triangles, frame.pixels].map(|n| n as f64);

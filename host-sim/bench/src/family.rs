@@ -39,7 +39,7 @@ impl Family {
         }
     }
 
-    /// As a legend says it.
+    /// The name of the family in a legend.
     #[must_use]
     pub const fn label(self) -> &'static str {
         match self {

@@ -15,9 +15,9 @@ use std::collections::BTreeSet;
 /// Bytes of code and constants.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Flash {
-    /// That the method needs and the frame loop does not.
+    /// Bytes that the method needs and the frame loop does not.
     pub alone: u64,
-    /// That no other method needs either.
+    /// Bytes that only this method needs.
     pub own: u64,
 }
 

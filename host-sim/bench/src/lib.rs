@@ -125,7 +125,7 @@ impl Bench {
         measured.collect()
     }
 
-    /// Those of the `wanted` frames that the host draws; many in one process, which takes long to start.
+    /// Counts the `wanted` frames that the host draws. One process draws many of them, because its start takes long.
     fn count_on_host(&self, scene: &Scene, wanted: &[(Processor, Shader)], tick: &(dyn Fn() + Sync)) -> Result<Vec<Measurement>> {
         let Some(program) = &self.host else { return Ok(Vec::new()) };
         let (size, band_rows) = (Processor::X86_64.size(), Processor::X86_64.size().1);

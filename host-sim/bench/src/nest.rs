@@ -13,7 +13,8 @@ pub(super) struct Nest {
 }
 
 impl Nest {
-    /// Of a function that begins at `entry`, and goes these `ways`, from one instruction to another, which are executed `count` times.
+    /// The loops of a function that begins at `entry`. `ways` are its jumps from one instruction to another; `count` tells how often an instruction
+    /// is executed.
     pub(super) fn new(entry: u64, ways: impl Iterator<Item = (u64, u64)>, count: impl Fn(u64) -> u64) -> Self {
         let graph: DiGraphMap<u64, ()> = ways.collect();
         let (mut nest, mut alone) = (Self::default(), HashSet::new());
@@ -54,7 +55,7 @@ mod tests {
         assert_eq!(nest, Nest { inner: HashSet::from([3, 4]), rows: 2 });
     }
 
-    /// The same, called for each row.
+    /// A function that is called once for each row counts as a row.
     #[test]
     fn a_call_may_be_a_row() {
         let counts = [2, 2, 1, 3, 1, 2];

@@ -20,9 +20,9 @@ pub const RELEASE: &str = "0.1.0";
 /// The change of all frames together, in percent: the geometric mean, in which each frame weighs the same.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Total {
-    /// Of instructions.
+    /// Change of instructions.
     pub instructions: f64,
-    /// Of flash.
+    /// Change of flash.
     pub flash: f64,
 }
 
@@ -57,7 +57,7 @@ impl fmt::Display for Total {
 pub struct Growth {
     /// How many frames of the release are still measured.
     pub frames: usize,
-    /// Of all of them.
+    /// Change of all frames together.
     pub total: Total,
     /// The single figure that has grown the most, if any has.
     pub most: Option<Change>,

@@ -222,7 +222,7 @@ impl Elf {
         Ok(self.symbol("__stream_start")?.0..self.symbol("__stream_end")?.0)
     }
 
-    /// The same program with `stream` in place of its own: the new bytes go to the end of the file, and the segment points there.
+    /// Replaces the program's stream by `stream`. The new bytes go to the end of the file, and the segment points there.
     ///
     /// Section headers still describe the old stream; loaders look at segments only.
     ///

@@ -39,7 +39,7 @@ pub enum Board {
 pub enum Format {
     /// Five, six and five bits of red, green and blue.
     Rgb565,
-    /// The same with the high byte first in the firmware's memory.
+    /// Five, six and five bits of red, green and blue, the high byte first in memory.
     Rgb565Be,
     /// Sixteen greys.
     Gray4,

@@ -50,7 +50,7 @@ pub struct Report {
     pub frames: u16,
     /// Pixels compared, of all frames.
     pub pixels: u64,
-    /// Of them, those that are not the same.
+    /// Compared pixels that differ.
     pub differing: u64,
     /// RAM for the firmware's variables.
     pub ram_bytes: u64,

@@ -25,9 +25,9 @@ type Found = [[[f64; COLUMNS]; SEARCHED]; KINDS];
 /// The tables, as the core has them, by range of exponents.
 #[derive(Clone, Debug)]
 pub struct Table {
-    /// Of linear interpolation.
+    /// Errors of linear interpolation.
     pub linear: [Linear; LEAST_EXPONENTS.len()],
-    /// Of quadratics.
+    /// Errors of quadratic interpolation.
     pub curved: [Curved; LEAST_EXPONENTS.len()],
 }
 

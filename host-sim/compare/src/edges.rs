@@ -27,9 +27,9 @@ pub(super) struct Edges {
 /// The largest jumps.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Jumps {
-    /// Of the level, LSB: an edge that shows.
+    /// Jump of the level, in 1/255: an edge that shows.
     pub level: f64,
-    /// Of the level's slope across the edge, LSB per pixel: a Mach band.
+    /// Jump of the level's slope across the edge, in 1/255 per pixel: a Mach band.
     pub slope: f64,
 }
 

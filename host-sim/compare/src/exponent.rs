@@ -1,4 +1,4 @@
-//! The same scene with tighter or wider highlights.
+//! Scenes with tighter or wider highlights.
 
 use anyhow::{Context, Result, anyhow};
 use microphong::stream::{

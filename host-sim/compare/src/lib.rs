@@ -77,7 +77,7 @@ pub struct Comparison {
     pub psnr: f64,
     /// See [`figures::similarity`]; of the [`Reference::window`], rounded to 8 bits.
     pub similarity: f64,
-    /// Of the method in f64; of `auto` by what it chooses for each triangle.
+    /// Jumps at edges of the method in f64. For `auto`, each triangle is drawn by what `auto` chooses for it.
     pub jumps: Jumps,
     /// Operations.
     pub costs: Costs,

@@ -84,7 +84,7 @@ mod tests {
     use super::*;
     use crate::{Light, Material};
 
-    /// It grows where normals are short, and where light and view are nearly opposite; of a whole facet it is that of the worst node.
+    /// The condition number grows where normals are short, and where light and view are nearly opposite. A facet has the largest of its nodes.
     #[test]
     fn it_grows_where_shading_is_ill_conditioned() {
         let facet = |bend: f64| {

@@ -84,7 +84,7 @@ impl Frame {
         sum.map(|channel| (255.0 * channel).clamp(0.0, 255.0))
     }
 
-    /// The same from each light's `[N·L, N·H]`.
+    /// The level from each light's `[N·L, N·H]`.
     pub(super) fn lit(&self, facet: &Facet, cosines: impl IntoIterator<Item = [f64; 2]>) -> Levels {
         let exponent = self.material(facet).exponent;
         self.levels(facet, cosines.into_iter().map(|[diffuse, half]| [diffuse, highlight(half, exponent)]))

@@ -40,7 +40,7 @@ pub struct Material {
     pub diffuse: V3,
     /// In the highlight.
     pub specular: V3,
-    /// Of the highlight: larger is smaller.
+    /// Exponent of the highlight. A larger exponent makes a smaller highlight.
     pub exponent: f64,
 }
 

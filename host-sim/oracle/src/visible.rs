@@ -25,7 +25,7 @@ impl Frame {
     }
 }
 
-/// Those that may be the nearest; of equals the first drawn comes first.
+/// Triangles that may be the nearest at a pixel. Of equally near ones the first drawn comes first.
 fn contenders(mut at: Vec<(f64, u32)>) -> Vec<u32> {
     at.sort_by(|a, b| b.0.total_cmp(&a.0));
     let nearest = at.first().map_or(0.0, |first| first.0);

@@ -38,7 +38,7 @@ pub(crate) fn gouraud(scene: &Scene) -> Drawing<'_> {
     drawing(scene, RenderMode::GouraudLightDir(light(scene)))
 }
 
-/// It turns z round.
+/// The direction of the light. embedded-3dgfx has its z the other way round.
 fn light(scene: &Scene) -> Vector3<f32> {
     let [x, y, z] = scene.lights.first().map_or([0.0; 3], |light| light.towards);
     Vector3::new(x, y, -z)

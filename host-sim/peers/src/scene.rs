@@ -14,13 +14,13 @@ use microphong::{
 /// up, z towards the eye.
 #[derive(Clone, Debug)]
 pub struct Scene {
-    /// Of the vertices.
+    /// Positions of the vertices.
     pub positions: Vec<[f32; 3]>,
-    /// Of the vertices.
+    /// Normals of the vertices.
     pub normals: Vec<[f32; 3]>,
     /// Vertices, counter-clockwise where seen from outside.
     pub faces: Vec<[usize; 3]>,
-    /// Of the faces.
+    /// Normals of the faces.
     pub face_normals: Vec<[f32; 3]>,
     /// Radius of the ball about the origin that holds all vertices.
     pub radius: f32,

@@ -114,7 +114,7 @@ impl Choices {
         })
     }
 
-    /// The same with one triangle more, which has so many pixels.
+    /// Adds a triangle of `pixels` pixels.
     fn with_triangle(mut self, way: Way, pixels: u32) -> Self {
         let count = &mut self.0[way as usize];
         *count = Count { triangles: count.triangles + 1, pixels: count.pixels.saturating_add(pixels) };
@@ -160,7 +160,7 @@ pub struct Told {
 thread_local! {
     /// What this thread has drawn of the frame.
     static CHOICES: Cell<Choices> = const { Cell::new(Choices::NONE) };
-    /// The same by triangles, whose records begin at this address.
+    /// The address of the triangles' records, and what was chosen for each triangle.
     static WAYS: RefCell<(usize, Vec<Option<Chosen>>)> = const { RefCell::new((0, Vec::new())) };
     /// The way of the triangle that this thread is shading.
     static WAY: Cell<Option<Way>> = const { Cell::new(None) };

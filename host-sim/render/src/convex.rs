@@ -44,7 +44,7 @@ fn normal([a, b, c]: [V3; 3]) -> Option<V3> {
     unit(cross(sub(b, a), sub(c, a)))
 }
 
-/// It lies in the ball of radius 1.
+/// Whether the mesh lies in the ball of radius 1.
 fn is_small(mesh: &Mesh) -> bool {
     mesh.positions.iter().all(|&p| length(p) < 1.0 + 1e-9)
 }

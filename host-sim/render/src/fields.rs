@@ -140,7 +140,7 @@ impl<'a> Field<'a> {
         Self { place: parent.part(name, value.span()), value: value.into_inner() }
     }
 
-    /// It is not what it must be.
+    /// The error that the value is not what is `wanted`.
     fn wrong(&self, wanted: impl fmt::Display) -> Error {
         self.place.error(format!("{} is not possible; it must be {wanted}", self.place.source()))
     }

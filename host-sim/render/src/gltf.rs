@@ -196,7 +196,7 @@ impl Transform {
 struct Reader {
     buffers: Vec<Vec<u8>>,
     scene: Scene,
-    /// Of each material of the scene its number in the file.
+    /// The number in the file of each material of the scene.
     numbers: Vec<Option<usize>>,
 }
 

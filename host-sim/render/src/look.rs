@@ -28,13 +28,13 @@ use zerocopy::{FromZeros, IntoBytes};
 /// How a surface reflects light; per channel, 1 is all of it.
 #[derive(Clone, Copy, Debug)]
 pub struct Surface {
-    /// Of the ambient light.
+    /// Colour that is reflected of the ambient light.
     pub ambient: V3,
     /// Evenly.
     pub diffuse: V3,
     /// In the highlight.
     pub specular: V3,
-    /// Of the highlight: larger is smaller.
+    /// Exponent of the highlight. A larger exponent makes a smaller highlight.
     pub exponent: u16,
 }
 
@@ -77,7 +77,7 @@ pub struct Member {
 /// How something moves.
 #[derive(Clone, Debug)]
 pub struct Way {
-    /// As [`Track::kind`].
+    /// What moves, see [`Track::kind`].
     pub kind: u16,
     /// Number of the object or light.
     pub index: u16,
@@ -252,7 +252,7 @@ impl Look {
     }
 }
 
-/// Of the ball about the origin that holds all vertices, rounded up.
+/// Radius of the ball about the origin that holds all vertices, rounded up.
 fn radius(parts: &[Part]) -> Radius {
     let vertices = parts.iter().flat_map(|part| &part.vertices);
     let farthest = vertices.map(|vertex| length(vertex.position().map(f64::from))).fold(0.0, f64::max);

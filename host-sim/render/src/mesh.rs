@@ -48,11 +48,11 @@ pub struct Submesh {
 /// Which faces around a vertex have a normal in common.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Smoothing {
-    /// Those that fold by no more than the crease angle.
+    /// Faces share a normal where the edge between them folds by no more than the crease angle.
     ByAngle,
-    /// Those of the same group.
+    /// Faces of one smoothing group share a normal.
     Group(u32),
-    /// None.
+    /// No faces share a normal.
     Flat,
 }
 

@@ -34,15 +34,15 @@ pub struct Material {
     pub exponent: Option<f64>,
 }
 
-/// Evenly reflected by materials that do not say how much.
+/// Diffuse colour of a material without `Kd`.
 const DIFFUSE: V3 = [0.6; 3];
-/// Of highlights that do not say how sharp they are.
+/// Exponent of a material without `Ns`.
 const EXPONENT: f64 = 30.0;
 /// The largest exponent of a stream.
 pub(crate) const SHARPEST: f64 = 1024.0;
 
 impl Material {
-    /// As a stream has it, under so much ambient light.
+    /// Converts the material to one of a stream, under ambient light from 0 to 1.
     #[must_use]
     pub fn surface(&self, ambient_light: f64) -> Surface {
         let diffuse = self.diffuse.unwrap_or(DIFFUSE);

@@ -31,7 +31,7 @@ pub(crate) fn material(name: String, [red, green, blue, _]: [f32; 4], metallic: 
     }
 }
 
-/// Of the highlight of a surface so rough.
+/// The exponent of the highlight of a surface of this roughness, from 0 to 1.
 fn exponent(roughness: f64) -> f64 {
     let alpha = roughness.clamp(0.0, 1.0).powi(2);
     (2.0 / (alpha * alpha).max(f64::MIN_POSITIVE) - 2.0).clamp(1.0, SHARPEST)

@@ -13,7 +13,7 @@ pub(crate) const WELD: f64 = 1e-6;
 /// A polygon in triangles, which name its corners.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Cut {
-    /// They wind as the polygon does. Together they have its area, unless it crosses itself.
+    /// Triangles, which wind as the polygon does. Together they have its area, unless it crosses itself.
     pub triangles: Vec<[usize; 3]>,
     /// The outline crosses itself, which areas have shown: the triangles are an attempt.
     pub crossed: bool,
@@ -153,7 +153,7 @@ mod tests {
     }
 
     proptest! {
-        /// As many triangles as it takes to use each corner, all wound as the polygon, with its area together, and none over another.
+        /// A simple polygon becomes triangles that use each of its corners, wind as it does, have its area together, and do not overlap.
         #[test]
         fn simple_polygons_are_covered_once(flat in prop_oneof![stars(), combs()], first in 0usize..40) {
             let mut flat = flat;

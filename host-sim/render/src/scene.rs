@@ -36,7 +36,7 @@ pub const PEER: &str = "peer-sphere";
 pub const CONVEX: &str = "peer-sphere-convex";
 /// `peer-sphere` in blue with a white highlight.
 pub const PLASTIC: &str = "peer-sphere-plastic";
-/// The same under two coloured lights.
+/// `peer-sphere-plastic` under two coloured lights.
 pub const LIGHTS: &str = "peer-sphere-lights";
 
 /// The sphere of `peer-sphere`, drawn otherwise. Not among [`NAMES`], for other scenes show as much.

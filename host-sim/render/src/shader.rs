@@ -33,7 +33,7 @@ impl Shader {
 
     /// For each triangle the cheapest method that stays within the error budget.
     pub const AUTO: Self = Self(&Auto::<true>);
-    /// The same without quadratics.
+    /// The method `auto-linear`: `auto` without quadratic interpolation.
     pub const AUTO_LINEAR: Self = Self(&Auto::<false>);
 
     /// Every method, in the order of their numbers.

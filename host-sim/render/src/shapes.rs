@@ -42,7 +42,7 @@ pub fn torus(around: usize, across: usize) -> Mesh {
     ring(around, across, TUBE)
 }
 
-/// The same with another tube.
+/// A torus about the z axis that a unit sphere encloses. Its tube has the radius `tube`, as a share of the ring's.
 #[must_use]
 pub fn ring(around: usize, across: usize, tube: f64) -> Mesh {
     let mut mesh = Mesh::default();

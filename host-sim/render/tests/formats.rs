@@ -1,4 +1,4 @@
-//! The same mesh in several formats is the same stream, and damaged files are errors.
+//! A mesh becomes one and the same stream from several file formats, and damaged files are errors.
 
 use microphong_render::{
     import::{self, Imported},
@@ -31,7 +31,7 @@ fn cube() -> Shape {
     Shape { positions, normals: Vec::new(), triangles }
 }
 
-/// Of rings of points, with its exact normals.
+/// A sphere made of rings of points, with exact normals.
 fn sphere() -> Shape {
     let (rings, sectors) = (8u32, 12u32);
     let mut shape = Shape { positions: Vec::new(), normals: Vec::new(), triangles: Vec::new() };

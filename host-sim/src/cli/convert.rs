@@ -177,7 +177,7 @@ struct Line<'a> {
     layout: String,
     memory: usize,
     remarks: Vec<String>,
-    /// Of frames, where they are counted.
+    /// Costs of frames, if they were counted.
     costs: Option<Vec<Cost>>,
 }
 
@@ -186,7 +186,7 @@ struct Line<'a> {
 struct Simplified {
     before: usize,
     error: f64,
-    /// The same in a picture of this size, at most.
+    /// The error in pixels, at most, in a picture of this size.
     pixels: f64,
     size: (u32, u32),
 }
@@ -347,7 +347,7 @@ struct SceneLine<'a> {
     layout: String,
     memory: usize,
     remarks: Vec<String>,
-    /// Of frames, where they are counted.
+    /// Costs of frames, if they were counted.
     costs: Option<Vec<Cost>>,
 }
 

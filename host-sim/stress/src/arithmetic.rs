@@ -99,11 +99,11 @@ pub struct Found {
 /// Where a method divides by lengths that may vanish.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Divides {
-    /// It interpolates light.
+    /// The method interpolates light and divides nowhere.
     Nowhere,
-    /// At the pixel itself.
+    /// The method divides at each pixel.
     AtPixels,
-    /// At nodes or ends of rows, between which it interpolates cosines, lengths or angles.
+    /// The method divides at nodes or ends of rows, and interpolates cosines, lengths or angles between them.
     AtNodes,
 }
 

@@ -89,13 +89,13 @@ impl Method for General {
 /// What has come of a case.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Found {
-    /// The largest error, as a share of the one that is right; infinite where coverage differs, or where `auto` has to be `phong` and is not.
+    /// The largest error, as a share of the one that is allowed. It is infinite where coverage differs, or where `auto` has to be `phong` and is not.
     pub share: f64,
-    /// The same error in 1/255.
+    /// The largest error, in 1/255.
     pub error: f64,
     /// Triangles of which a pixel was judged.
     pub triangles: u64,
-    /// Of them, those that `phong` draws otherwise.
+    /// Judged triangles that `auto` draws otherwise than `phong`.
     pub cheaper: u64,
 }
 

@@ -14,7 +14,7 @@ use std::path::Path;
 pub struct Case {
     /// The scene.
     pub stream: StreamBytes,
-    /// Of the picture.
+    /// Size of the picture, in pixels.
     pub size: [u32; 2],
     /// The frame of the orbit.
     pub frame: u32,

@@ -85,11 +85,11 @@ pub const PARTS: usize = 4;
 /// What a frame takes at most.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Bound {
-    /// Of a vertex, a triangle, a row and a pixel.
+    /// Instructions of a vertex, a triangle, a row and a pixel.
     pub parts: [u32; PARTS],
     /// In perspective, in hundredths of what it takes otherwise.
     pub perspective: u32,
-    /// As how many lights a light counts whose direction, or that of the viewer, differs from pixel to pixel.
+    /// Lights whose direction, or that of the viewer, differs from pixel to pixel count as this number of ordinary lights.
     pub near: u32,
 }
 
@@ -134,7 +134,7 @@ pub const BOUNDS: [(&str, Bound, Bound); 28] = [
     ("auto-linear", at_most([5900, 4700, 1, 220], 364, 8), at_most([14000, 18000, 10, 2200], 118, 4)),
 ];
 
-/// Those of a style.
+/// The bound of a style.
 #[must_use]
 pub fn bound(style: Style) -> Bound {
     let row = BOUNDS.iter().find(|(name, ..)| *name == style.shader.name());
@@ -172,7 +172,7 @@ const UNTILED: f64 = 768.0;
 const SMALLEST_TILE: u64 = 8;
 
 impl Work {
-    /// Of a case; `None` if its stream is not valid.
+    /// The work of a case; `None` if its stream is not valid.
     #[must_use]
     pub fn of(case: &Case) -> Option<Self> {
         let stream = case.stream.parse().ok()?;
@@ -325,7 +325,7 @@ fn sphere(random: &mut Random) -> Mesh {
     mesh
 }
 
-/// The same triangles, each with vertices of its own and in a mesh of its own.
+/// Gives each triangle vertices of its own and a mesh of its own.
 fn meshes_of_one(bytes: &StreamBytes) -> Option<StreamBytes> {
     let stream = bytes.parse().ok()?;
     let (mut meshes, mut vertices, mut triangles) = (Vec::new(), Vec::new(), Vec::new());
@@ -344,7 +344,7 @@ fn meshes_of_one(bytes: &StreamBytes) -> Option<StreamBytes> {
     written(header, &[meshes.as_bytes(), stream.materials.as_bytes(), stream.lights.as_bytes(), vertices.as_bytes(), triangles.as_bytes()])
 }
 
-/// The same scene, its lights and its viewer all near, or all far away.
+/// Makes the lights and the viewer of a scene all near, or all far away.
 #[must_use]
 pub fn lit(bytes: &StreamBytes, near: bool) -> Option<StreamBytes> {
     let stream = bytes.parse().ok()?;

@@ -135,9 +135,9 @@ pub struct Summary {
     pub limit: Option<f64>,
     /// What the figure is of.
     pub unit: &'static str,
-    /// Cases that are wrong.
+    /// Number of cases that are wrong.
     pub failures: u64,
-    /// The same of each kind of case, by name.
+    /// The results of each kind of case, by name.
     pub kinds: Vec<Kind>,
     /// The worst failure of each kind.
     #[serde(skip)]

@@ -41,7 +41,8 @@ impl Parabolas {
         Self { a, narrow, middle: inverse(a), outer: inverse(ONE - a) }
     }
 
-    /// As printed: a b = (s + 5.6)/(s (0.09 s + 5.2)), b = (s + 65)/(5 s + 31.7). Wrong by up to 0.26 (s = 512).
+    /// The constants as printed in the paper: a b = (s + 5.6)/(s (0.09 s + 5.2)), b = (s + 65)/(5 s + 31.7). They are wrong by up to 0.26, at s =
+    /// 512.
     pub fn printed(exponent: u16) -> Self {
         let s = u64::from(exponent.max(1));
         let a = ratio((10 * s + 56) * (50 * s + 317), s * (9 * s + 520) * (s + 65), PLACE);

@@ -53,7 +53,7 @@ impl Stats {
         Self { culled: self.triangles.saturating_sub(self.drawn), ..self }
     }
 
-    /// Those of a frame whose rows are drawn in two parts: what happens once a frame is counted in the first.
+    /// Adds the counts of the lower part of a frame to those of the upper part. What is counted once a frame is in the upper part's counts.
     pub(crate) fn and(self, lower: Self) -> Self {
         let (pixels, set_up_anew) = (self.pixels.saturating_add(lower.pixels), self.set_up_anew.saturating_add(lower.set_up_anew));
         Self { pixels, set_up_anew, counts: self.counts.and(lower.counts), ..self }

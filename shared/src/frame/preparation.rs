@@ -98,7 +98,7 @@ pub struct Preparation<'r, C: Pixel> {
     division: Division,
     /// The lists of the earlier triangles.
     earlier: Bins,
-    /// Of the later triangles and of the earlier ones.
+    /// Depth tests to leave out, for the later triangles and for the earlier ones.
     depth_elisions: [Option<DepthElision>; 2],
     is_done: [bool; 2],
 }

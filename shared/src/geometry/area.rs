@@ -76,7 +76,7 @@ impl Area {
         start.into()..end.into()
     }
 
-    /// As displays have it.
+    /// Converts the area to a rectangle of embedded-graphics.
     #[must_use]
     pub fn rectangle(&self) -> Rectangle {
         let (columns, rows) = (self.columns(), self.rows());

@@ -140,8 +140,8 @@ impl Bins {
         }
     }
 
-    /// The same without triangles, and with lists whose ends name their bins, so that others can be appended by [`Self::join`]. For less than
-    /// 2^15 triangles.
+    /// Copies the bins without their triangles. Each list ends with the number of its bin, so that [`Self::join`] can append other lists. A frame has
+    /// less than 2^15 triangles.
     #[must_use]
     pub(crate) fn open(&self) -> Self {
         Self { heads: array::from_fn(|bin| OPEN | bin as u16), ..self.clone() }

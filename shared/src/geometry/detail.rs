@@ -83,7 +83,8 @@ mod tests {
     proptest! {
         #![proptest_config(ProptestConfig { cases: 20_000, failure_persistence: None, ..ProptestConfig::default() })]
 
-        /// Of two points as far apart as a level may lie from its mesh, one of which is seen, the pictures lie less than half a pixel apart.
+        /// A point of a mesh and a point as far from it as a level of detail may lie are projected to points less than half a pixel apart, if one of
+        /// them is seen.
         #[test]
         fn less_than_half_a_pixel(
             perspective in any::<bool>(),

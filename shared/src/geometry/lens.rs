@@ -61,7 +61,7 @@ pub struct Lens {
 }
 
 impl Lens {
-    /// That of `camera` on a viewport of `size` pixels.
+    /// The projection of `camera` onto a viewport of `size` pixels.
     #[must_use]
     pub fn new(camera: &Camera, size: Size) -> Self {
         let smaller = size.width.min(size.height);
@@ -265,7 +265,7 @@ pub(crate) mod tests {
         stream::record::{ORTHOGRAPHIC, VIEWER_INFINITE},
     };
 
-    /// It stands at the origin of the world and looks along -z.
+    /// A camera at the origin of the world that looks along -z.
     pub(crate) const CAMERA: Camera = Camera {
         rotation: [[1 << ROTATION, 0, 0], [0, 1 << ROTATION, 0], [0, 0, -1 << ROTATION]],
         translation: [0; 3],

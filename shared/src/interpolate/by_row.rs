@@ -22,7 +22,7 @@ impl<P: Raised, C: Pixel> ByRow<P, C> {
     /// Whether the pixel format has a checkerboard.
     const IS_ON: bool = C::Ramps::CHECKERED;
 
-    /// Of `patch`, on a row below which all is so much `higher`, as if channels had eight bits.
+    /// Dithers `patch` by rows. The next row is `higher` than the first, in units of a channel of eight bits.
     #[inline(always)]
     #[must_use]
     pub fn new(patch: P, higher: i32) -> Self {

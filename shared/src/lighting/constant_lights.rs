@@ -173,7 +173,7 @@ impl Sum {
     /// Before it is filled; all zeros.
     pub(super) const EMPTY: Self = Self { ambient: 0, diffuse: 0, specular: 0 };
 
-    /// That of levels of ambient, diffuse and specular light, Q9.7, for a channel of `depth` bits; `all` is the diffuse light of all lights.
+    /// The factors for levels of ambient, diffuse and specular light, Q9.7, in a channel of `depth` bits. `all` is the diffuse light of all lights.
     pub(super) fn new(ambient: i32, [diffuse, all]: [u16; 2], specular: u16, depth: u32) -> Self {
         Self {
             // Cosines are rounded down: half of their last place more. Of all lights, so that it does not matter which of them is first, nor
@@ -190,7 +190,7 @@ impl Sum {
         self.diffuse.wrapping_mul(cosine).wrapping_add(self.specular.wrapping_mul(highlight))
     }
 
-    /// The same, with all levels so much more, Q10.22. Where they are too large, nobody adds these sums up.
+    /// Adds `by` to all levels, Q10.22. A sum that overflows is not used.
     pub(super) fn raised(self, by: i32) -> Self {
         Self { ambient: self.ambient.wrapping_add(by), ..self }
     }

@@ -57,7 +57,7 @@ pub struct Directions {
 }
 
 impl Directions {
-    /// Of the lights of a scene, at most [`MAX_LIGHTS`], whose `world` is seen so.
+    /// Directions of the lights of a scene, at most [`MAX_LIGHTS`], where `world` maps the world to eye space.
     #[must_use]
     pub fn new(lights: &[Light], world: &ModelView) -> Self {
         let mut vectors = [[[0; 3]; 2]; MAX_LIGHTS];

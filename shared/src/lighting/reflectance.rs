@@ -61,7 +61,7 @@ pub struct Gains {
 }
 
 impl Gains {
-    /// Those of no light.
+    /// Gains where there is no light.
     const NONE: Self = Self { diffuse: [0; 3], specular: [0; 3] };
 }
 

@@ -51,7 +51,8 @@ impl VertexStage<'_> {
         Some([place(a)?, place(c)?, place(b)?])
     }
 
-    /// The same where vertices before `first` are cached by the other processor: this one keeps their places in `seam`.
+    /// Places of a triangle's corners where the other processor caches the vertices before `first`. This processor keeps the places of these in
+    /// `seam`.
     #[inline(always)]
     pub(crate) fn corners_at_seam(
         &self,

@@ -53,7 +53,7 @@ struct LightBounds {
     diffuse: u32,
     /// The level of a whole highlight, Q9.7.
     specular: u32,
-    /// The same times [`USUAL_EXPONENT`] over the exponent, rounded up.
+    /// The level of a whole highlight times [`USUAL_EXPONENT`] over the exponent, rounded up.
     narrowed: u32,
 }
 
@@ -104,7 +104,7 @@ impl ErrorBounds {
         may_saturate: 0,
     };
 
-    /// Those of a material of this exponent under so many lights.
+    /// Error bounds for a material of this `exponent` under `lights` lights.
     #[must_use]
     pub fn new(reflectance: &Reflectance, exponent: u16, lights: usize) -> Self {
         let light = |light| {
@@ -137,7 +137,7 @@ pub(crate) struct Curvature {
 }
 
 impl Curvature {
-    /// That of a triangle; `None` if it is too large for any bound.
+    /// The curvature of a triangle; `None` if it is too large for any bound.
     #[inline(always)]
     #[must_use]
     pub(crate) fn of(triangle: &Triangle) -> Option<Self> {

@@ -45,11 +45,11 @@ pub trait LightingModel<K, V, D = ()>: Copy {
 /// What one light does to a triangle, with the fields that a method interpolates for it.
 #[derive(Clone, Copy, Debug)]
 pub enum Lit<V, D> {
-    /// It adds nothing anywhere.
+    /// The light adds nothing anywhere on the triangle.
     Nowhere,
-    /// It adds diffuse light, and no highlight that can be seen.
+    /// The light adds diffuse light, and no highlight that can be seen.
     Diffuse(D),
-    /// It adds both.
+    /// The light adds diffuse light and a highlight.
     Fully(V),
 }
 
@@ -61,7 +61,7 @@ struct ManyLights<'a, K, P, D, F, S> {
     common: K,
     /// The number and the field of each light that adds a highlight, and what it adds.
     lights: &'a mut [(usize, P, Factors)],
-    /// The same of lights that add none.
+    /// The field of each light that adds no highlight, and what it adds.
     diffuse: &'a mut [(D, Factors)],
     lut: CosineLookup<'a>,
     /// Where the sums of all lights begin.

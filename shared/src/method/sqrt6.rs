@@ -61,7 +61,8 @@ static FACTS: Facts = Facts {
 /// Six-point shading with a root of N·H.
 pub struct Sqrt6;
 
-/// The same by N·H itself, for a method whose table of highlights is that of [`Highlight::Half`]: set up sooner, and less accurate.
+/// Six-point shading that interpolates N·H itself, for a method whose table of highlights is that of [`Highlight::Half`]. It is set up sooner than
+/// [`Sqrt6`] and less accurate.
 pub(crate) struct SixCosines;
 
 impl Method for Sqrt6 {

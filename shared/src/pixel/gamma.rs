@@ -14,8 +14,8 @@ pub struct Gamma(pub [u16; LEVELS]);
 /// Levels of a curve.
 const LEVELS: usize = 256;
 
-/// That of sRGB (IEC 61966-2-1), which the power of 2.2 approximates. Entries are exact to rounding; values between them lie on straight lines,
-/// and are at most 0.47/255 off the curve in channels of any depth, most of it between the levels 1 and 2.
+/// The curve of sRGB (IEC 61966-2-1), which a power of 2.2 approximates. Entries are exact to rounding. Values between entries are interpolated
+/// linearly, and are at most 0.47/255 off the curve in channels of any depth. Most of this error lies between the levels 1 and 2.
 #[rustfmt::skip]
 pub static SRGB: Gamma = Gamma([
     0, 3254, 5545, 7227, 8604, 9792, 10849, 11806, 12687, 13506, 14273, 14997, 15683, 16337, 16962, 17561, 18138, 18694, 19231, 19751,

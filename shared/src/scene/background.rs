@@ -8,9 +8,9 @@ pub enum Background {
     Colour([u8; 3]),
     /// A colour for each row: that of the first row, that of the last one, and even steps between them, dithered so that they are not seen.
     Gradient {
-        /// Of the first row.
+        /// Colour of the first row: red, green, blue.
         top: [u8; 3],
-        /// Of the last row.
+        /// Colour of the last row: red, green, blue.
         bottom: [u8; 3],
     },
 }

@@ -11,12 +11,12 @@ pub(crate) struct BoundingVolume {
     pub(crate) middle: [i16; 3],
     /// From there to the farther sides of the box.
     pub(crate) half: [u16; 3],
-    /// Of the ball, rounded up: [`crate::format::Radius`].
+    /// Radius of the ball, rounded up, in the format [`crate::format::Radius`].
     pub(crate) radius: u16,
 }
 
 impl BoundingVolume {
-    /// That of vertices at these positions.
+    /// The box and the ball around vertices at these positions.
     #[inline(always)]
     pub(crate) fn around(positions: impl Iterator<Item = [i16; 3]>) -> Self {
         let (mut least, mut most, mut square) = ([i16::MAX; 3], [i16::MIN; 3], 0u32);

@@ -227,7 +227,7 @@ impl<'a> Scene<'a> {
         (self.changed, self.repainted) = (true, true);
     }
 
-    /// The same scene looks otherwise, by a changed setting or because it is seen from elsewhere.
+    /// Marks the whole picture as changed, because of a setting or of the camera.
     pub(crate) fn set_view_changed(&mut self) {
         self.view_changed = true;
         self.set_repainted();

@@ -59,7 +59,7 @@ pub const QUATERNION_ERROR: f64 = 2.0 / (1u32 << 30) as f64;
 pub const STEP_ERROR: f64 = 1.0e-8;
 
 impl Pose {
-    /// As the mesh is: at the origin, as large as it is, not rotated.
+    /// The pose of an object at the origin, not rotated, at the size of its mesh.
     pub const IDENTITY: Self = Self { rotation: [ONE, 0, 0, 0], position: [0; 3], scale: 1 << 16 };
 
     /// The rotation of a quaternion w, x, y, z of any length.

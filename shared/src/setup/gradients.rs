@@ -27,7 +27,8 @@ pub const NEAR: i32 = 256;
 ///
 /// The error of the fast way grows with the square of this ratio: at most 2^-22 of the nodes' range at 1, 2^-8 here.
 pub const MAX_THINNESS: i64 = 128;
-/// The same for fields of more than `word_sized::LINEAR` bits, as cosines are, of which sharp highlights need all.
+/// Length over height beyond which fields of more than `word_sized::LINEAR` bits, such as cosines, are fitted by exact fractions. Sharp highlights
+/// need all of these bits.
 ///
 /// The error of the fast way is 2^-25 of the nodes' range at 1, and 2^-17 here.
 pub const MAX_FINE_THINNESS: i64 = 16;
@@ -172,7 +173,7 @@ impl Gradients {
         Some(Self { shift: [away(0), away(1)], anchor, ..whole })
     }
 
-    /// The same gradients for fields that light follows so steeply: they are fitted as exactly as its highlights need them.
+    /// These gradients, for fields of this steepness: they are fitted as exactly as the highlights of a material need them.
     #[inline(always)]
     #[must_use]
     pub fn steep(self, steepness: Steepness) -> Self {
@@ -209,7 +210,7 @@ impl Gradients {
         }
     }
 
-    /// These gradients in the form from which many parts are taken fast.
+    /// Converts the gradients to the form from which many parts are taken fast.
     #[must_use]
     pub fn parted(&self) -> Self {
         match self.scale {

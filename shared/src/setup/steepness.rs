@@ -79,7 +79,7 @@ impl Steepness {
         Self { exponent: self.exponent >> bits, ..self }
     }
 
-    /// The same for planes, which words walk exactly enough over any triangle.
+    /// The steepness of planes instead of quadratics. Planes are walked exactly enough in words over any triangle.
     #[must_use]
     pub(crate) const fn of_planes(self) -> Self {
         Self { walked: Self::ALL, ..self }

@@ -335,12 +335,12 @@ impl<'a> Stream<'a> {
         self.header.camera.projection == PERSPECTIVE
     }
 
-    /// Each mesh at the coarsest of its levels that lies no farther than `error` from the mesh as it is; at an error of 0 each as it is.
+    /// The coarsest level of each mesh that lies no farther than `error` from the full mesh. At an error of 0 that is the full mesh.
     pub fn meshes_within(&self, error: GeometricError) -> impl DoubleEndedIterator<Item = &'a Mesh> + use<'a> {
         self.levels_within(0..self.meshes.len() as u16, error)
     }
 
-    /// The same of some meshes, by their indices.
+    /// The levels of the meshes with these indices, as in [`Self::meshes_within`].
     pub(crate) fn levels_within(&self, meshes: Range<u16>, error: GeometricError) -> impl DoubleEndedIterator<Item = &'a Mesh> + use<'a> {
         let all = self.meshes;
         meshes.filter_map(move |i| level(all, i.into(), error.to_bits()))

@@ -47,7 +47,7 @@ pub struct Request {
     /// The method, by its index.
     shader: usize,
     number: u32,
-    /// Of an object.
+    /// Name of the object.
     name: &'static str,
     /// Where work is divided for two processors.
     share: u16,

@@ -49,7 +49,7 @@ pub struct Count {
 }
 
 impl Count {
-    /// The same as a measurement of frame 0 of `scene`.
+    /// Converts the count of frame 0 of `scene` to a measurement.
     #[must_use]
     pub fn measurement(&self, scene: &str, shader: Shader) -> Measurement {
         let instructions = self.stages.drawing();

@@ -14,9 +14,9 @@ pub(crate) struct Profile {
 /// A function and everything that it did itself.
 #[derive(Debug, Default, PartialEq, Eq)]
 pub(super) struct Function {
-    /// As in the source.
+    /// The function's name in the source.
     pub(super) name: String,
-    /// As in the symbol table: the only name that is its own.
+    /// The function's name in the symbol table. No other function has it.
     pub(super) symbol: String,
     /// Executions of each instruction, by address.
     pub(super) executions: BTreeMap<u64, u64>,

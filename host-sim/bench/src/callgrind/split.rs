@@ -61,8 +61,8 @@ impl<'p> Helpers<'p> {
         Self { profile, entered }
     }
 
-    /// Of `cost`, spent in calls of the function `symbol`, what its caller has to bear: nothing if the function has a stage
-    /// of its own, and of a helper all but its own calls of such functions, which are shared out among its callers.
+    /// The part of `cost`, the instructions spent in calls of the function `symbol`, that belongs to its caller. It is nothing if the function has a
+    /// stage of its own. A helper's calls of such functions are left out; all else of it is shared out among its callers.
     fn own_cost(&self, symbol: &str, cost: u64) -> u64 {
         self.share(symbol, cost, &mut Vec::new())
     }

@@ -18,7 +18,7 @@ pub(super) struct Label {
     /// Where the text's base line starts, ends or has its middle, as `anchor` says: its side towards the point, so that text of
     /// another width than expected does not cover it.
     pub(super) text: (f64, f64),
-    /// Of the text.
+    /// The `text-anchor` of the text.
     pub(super) anchor: &'static str,
     /// Where a line from the point ends that shows to which it belongs; `None` if it stands beside it.
     pub(super) leader: Option<(f64, f64)>,

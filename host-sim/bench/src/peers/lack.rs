@@ -13,11 +13,11 @@ use std::fmt;
 pub enum Lack {
     /// Its depth is that of rays which meet in the eye: it sees parallel ones from afar.
     ParallelRays,
-    /// It has one directional light.
+    /// The renderer has one directional light only.
     OtherLights,
     /// Its ambient light is a tenth of what it shows of the directional one.
     Ambient,
-    /// It has none.
+    /// The renderer has no highlights.
     Highlights,
     /// Its highlights are white.
     ColouredHighlights,

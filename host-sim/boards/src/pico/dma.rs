@@ -97,9 +97,9 @@ pub(super) struct Dma {
     pub(super) channels: [Channel; CHANNELS],
     /// Channels that have ended, one bit each.
     ended: u32,
-    /// Of them, those that raise each of the two interrupts.
+    /// Channels whose end raises each of the two interrupts, one bit each.
     enabled: [u32; 2],
-    /// It moves nothing, and ends nothing.
+    /// Whether a fault is simulated: transfers neither move data nor end.
     pub(super) stalled: bool,
 }
 

@@ -113,7 +113,7 @@ impl Machine {
         }
     }
 
-    /// It is time to take the log.
+    /// Whether it is time to take the log.
     pub(super) fn log_is_due(&self) -> bool {
         self.steps.is_multiple_of(LOG_INTERVAL)
     }

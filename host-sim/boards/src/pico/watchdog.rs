@@ -27,7 +27,7 @@ pub(super) struct Watchdog {
 }
 
 impl Watchdog {
-    /// As it is after it has started the chip anew.
+    /// The watchdog after it has restarted the chip.
     pub(super) fn after_reset() -> Self {
         Self { reason: TIME_OUT, ..Self::default() }
     }

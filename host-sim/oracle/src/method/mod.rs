@@ -38,9 +38,9 @@ struct Method {
     name: &'static str,
     /// Only for lights and a viewer that are infinitely far.
     constant: bool,
-    /// It compares something with a threshold.
+    /// Whether the method compares something with a threshold.
     decides: bool,
-    /// It interpolates along rows of the screen.
+    /// Whether the method interpolates along rows of the screen.
     rows: bool,
     build: Build,
 }

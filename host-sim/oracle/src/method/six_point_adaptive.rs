@@ -25,12 +25,12 @@ struct Edge {
     ends: [V3; 2],
     /// Colours at start, middle and end.
     colours: [Levels; 3],
-    /// It belongs to a parabola that is not to be split.
+    /// Whether the edge belongs to a parabola that must not be split.
     locked: bool,
 }
 
 impl Edge {
-    /// The same, begun at the other end.
+    /// The edge with its ends exchanged.
     fn reversed(self) -> Self {
         let ([a, b], [x, y, z]) = (self.ends, self.colours);
         Self { ends: [b, a], colours: [z, y, x], ..self }

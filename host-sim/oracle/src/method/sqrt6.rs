@@ -19,7 +19,7 @@ pub(super) fn shade<'f>(frame: &'f Frame, facet: &'f Facet) -> Shade<'f> {
     fitted(frame, facet, root, square)
 }
 
-/// The same through N·H itself.
+/// `sqrt6` without the root: N·H itself is interpolated.
 pub(super) fn by_cosines<'f>(frame: &'f Frame, facet: &'f Facet) -> Shade<'f> {
     fitted(frame, facet, |w| w, |w| w)
 }

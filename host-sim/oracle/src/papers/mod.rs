@@ -27,7 +27,7 @@ pub struct Claim {
     pub source: String,
     /// What is claimed, or of what the figures are.
     pub what: String,
-    /// Of both figures; empty for plain numbers.
+    /// Unit of both figures; empty for plain numbers.
     pub unit: &'static str,
     /// The paper's figure; of an erratum, what the printed formula comes to.
     pub paper: Value,
@@ -93,11 +93,11 @@ impl Serialize for Topic {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Verdict {
-    /// It stands.
+    /// The claim holds.
     Confirmed,
-    /// It almost stands.
+    /// The claim almost holds.
     Close,
-    /// It does not.
+    /// The claim does not hold.
     Refuted,
     /// The paper does not say what it would take to decide.
     NotReproducible,

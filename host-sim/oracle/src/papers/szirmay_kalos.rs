@@ -302,7 +302,7 @@ fn printed<T: Real>(sample: &Sample) -> [f64; 6] {
     [i1, t1, t2, t3, t4, t5].map(T::into)
 }
 
-/// The same by affine coordinates.
+/// The six coefficients, by affine coordinates.
 fn affine<T: Real>(sample: &Sample) -> [f64; 6] {
     let [[x2, y2], [x3, y3]] = sample.edges.map(|edge| edge.map(T::from));
     let [i1, i2, i3, i12, i23, i13] = sample.nodes.map(T::from);

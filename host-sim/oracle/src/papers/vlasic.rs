@@ -36,7 +36,7 @@ const TABLE: [Column; 6] = [
     Column { title: "quadratic Blinn map", short: "QB", method: "quadratic-blinn", triangle: 0.9311, teapot: 0.9888 },
 ];
 
-/// Of our triangle's highlight.
+/// Exponent of the highlight of our triangle.
 const EXPONENT: f64 = 20.0;
 
 pub(super) fn claims() -> Result<Vec<Claim>> {

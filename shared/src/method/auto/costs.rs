@@ -28,7 +28,7 @@ impl Cost {
         Self::new(self.triangle - other.triangle, self.row - other.row, self.pixel - other.pixel)
     }
 
-    /// That of a triangle of so many rows and pixels, as many as pictures have.
+    /// Cost of a triangle of this number of rows and pixels, in instructions.
     #[inline(always)]
     #[must_use]
     pub(crate) fn of(self, [rows, pixels]: [i32; 2]) -> i32 {
@@ -62,9 +62,9 @@ impl Savings {
     }
 }
 
-/// What it takes to find out whether a quadratic through levels keeps to the budget, and a share of what that takes in vain.
+/// Cost of finding out whether a quadratic through levels keeps to the budget, with a share of what is spent in vain.
 const JUDGE_QUADRATIC: Cost = Cost::new(500, 0, 0);
-/// The same of a quadratic through cosines.
+/// Cost of finding out whether a quadratic through cosines keeps to the budget.
 const JUDGE_COSINES: Cost = Cost::new(350, 0, 0);
 
 /// Costs in one channel, in three, and under two lights.
