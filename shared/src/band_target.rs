@@ -1,4 +1,4 @@
-//! A band as a target of embedded-graphics.
+//! Bands of a picture as targets that embedded-graphics can draw on.
 
 use core::convert::Infallible;
 use embedded_graphics_core::{
@@ -8,8 +8,8 @@ use embedded_graphics_core::{
     primitives::Rectangle,
 };
 
-/// A band as a target of embedded-graphics, in the coordinates of the display: what is drawn on it is sent with the picture, so that nothing
-/// flickers. What lies outside of the band is left out; the next band has its part of it.
+/// One band of a picture, which embedded-graphics can draw on in the coordinates of the display. What is drawn here is sent together with the
+/// picture, so nothing flickers. Pixels outside of the band are left out; the next band draws them.
 #[derive(Debug)]
 pub struct BandTarget<'b, C> {
     pixels: &'b mut [C],
@@ -17,13 +17,14 @@ pub struct BandTarget<'b, C> {
 }
 
 impl<'b, C> BandTarget<'b, C> {
-    /// The band in the front of `pixels`, and its area: that of [`crate::Frame::next_band`], moved to where the picture lies on the display.
+    /// Makes a target of a band. `area` is the band's place on the display: the area that [`crate::Frame::next_band`] returned, moved by the
+    /// picture's corner. Its pixels are at the front of `pixels`.
     #[must_use]
     pub fn new(pixels: &'b mut [C], area: Rectangle) -> Self {
         Self { pixels, area }
     }
 
-    /// The pixels from a point on to the right, at most so many; none outside of the band.
+    /// At most `count` pixels of the band, from a point to the right. Empty if the point is outside of the band.
     pub(crate) fn row(&mut self, from: Point, count: u32) -> &mut [C] {
         if !self.area.contains(from) {
             return &mut [];

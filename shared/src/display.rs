@@ -1,4 +1,4 @@
-//! Frames drawn to embedded-graphics displays, in whole bands and never in single pixels, and what is drawn under and over them.
+//! Pictures on displays of embedded-graphics, drawn in bands, with texts, lines and images under and over them.
 
 use crate::{Renderer, Stats, band_target::BandTarget, error::RenderError, pixel::Pixel};
 use core::{cell::RefCell, fmt};
@@ -10,9 +10,9 @@ use embedded_graphics_core::{
     primitives::Rectangle,
 };
 
-/// One frame as a [`Drawable`], to be drawn like any other shape of embedded-graphics. Its output is the frame's [`Stats`].
+/// One frame as a [`Drawable`] of embedded-graphics, drawn like any other shape. Drawing returns the frame's [`Stats`].
 ///
-/// Something may be drawn [`under`](Self::under) and [`over`](Self::over) it, and it may lie anywhere on the display: see [`Self::at`].
+/// Other things can be drawn [`under`](Self::under) and [`over`](Self::over) the picture, and it can lie anywhere on the display: see [`Self::at`].
 ///
 /// ```
 /// use embedded_graphics::{
@@ -41,15 +41,15 @@ use embedded_graphics_core::{
 /// ```
 pub struct Picture<'r, 'a, C: Pixel, U = Draw<C>, O = Draw<C>> {
     parts: RefCell<(&'r mut Renderer<'a, C>, &'r mut [C])>,
-    /// Number of the frame; `None` for the scene as it is.
+    /// Number of the frame of the stream's animation; `None` for the scene as the program has set it.
     number: Option<u32>,
-    /// Where it lies on the display.
+    /// The pixel of the display at the upper left corner of the picture.
     corner: Point,
     under: Option<U>,
     over: Option<O>,
 }
 
-/// What draws on a band.
+/// A function that draws on a band.
 type Draw<C> = fn(&mut BandTarget<'_, C>);
 
 impl<C: Pixel + fmt::Debug, U, O> fmt::Debug for Picture<'_, '_, C, U, O> {
@@ -60,8 +60,8 @@ impl<C: Pixel + fmt::Debug, U, O> fmt::Debug for Picture<'_, '_, C, U, O> {
 }
 
 impl<'r, 'a, C: Pixel> Picture<'r, 'a, C> {
-    /// Frame `number` of `renderer`. `band` should hold as many pixels as [`crate::Layout::band`] says; a shorter one makes bands of fewer
-    /// rows.
+    /// Frame `number` of the stream's animation, drawn by `renderer`. `band` is memory for one band: [`crate::Layout::band`] pixels. A shorter one
+    /// works, with fewer rows a band.
     ///
     /// # Errors
     /// When `band` does not hold one row.
@@ -70,7 +70,7 @@ impl<'r, 'a, C: Pixel> Picture<'r, 'a, C> {
         Ok(Self { parts: RefCell::new((renderer, band)), number: Some(number), corner: Point::zero(), under: None, over: None })
     }
 
-    /// The scene of `renderer` as it is, see [`crate::Scene`]; `band` as in [`Self::new`].
+    /// The scene of `renderer` as the program has set it, see [`crate::Scene`]. `band` is memory for one band: [`crate::Layout::band`] pixels.
     ///
     /// # Errors
     /// When `band` does not hold one row.
@@ -125,7 +125,7 @@ where
     type Color = C;
     type Output = Stats;
 
-    /// Hands each band to `target` in one `fill_contiguous`.
+    /// Draws the frame and sends each band to `target` by one call of `fill_contiguous`.
     fn draw<D: DrawTarget<Color = C>>(&self, target: &mut D) -> Result<Stats, D::Error> {
         // The picture is borrowed already only if a display draws it from within its own `fill_contiguous`.
         let Ok(mut parts) = self.parts.try_borrow_mut() else { return Ok(Stats::default()) };

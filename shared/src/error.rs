@@ -1,79 +1,79 @@
-//! Why a renderer cannot draw.
+//! Errors of a renderer.
 
 use crate::setup::edge::COLUMNS;
 use core::fmt;
 
-/// Largest width and height of a viewport.
+/// Largest width and height of a picture, in pixels.
 pub const MAX_SIDE: u32 = COLUMNS - 1;
 
-/// Why a renderer cannot draw.
+/// The reason why a renderer cannot draw.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub enum RenderError {
-    /// The viewport is empty or larger than [`MAX_SIDE`] on a side.
+    /// The picture is empty, or a side is longer than [`MAX_SIDE`].
     Size {
-        /// Width asked for.
+        /// Width of the picture, in pixels.
         width: u32,
-        /// Height asked for.
+        /// Height of the picture, in pixels.
         height: u32,
     },
-    /// The layout is for pictures of another width, or for bands without a row.
+    /// The layout is for pictures of another width, or its bands have no row.
     Layout {
-        /// Width asked for.
+        /// Width of the picture, in pixels.
         width: u32,
     },
-    /// The memory is smaller than its layout says.
+    /// The memory is smaller than [`crate::Layout::words`] says.
     Memory {
-        /// Words of 64 bits needed.
+        /// Number of 64-bit words that are needed.
         need: usize,
     },
-    /// The layout has room for fewer materials than the stream has.
+    /// The layout has room for fewer materials than the stream has; see [`crate::Layout::materials`].
     Materials {
-        /// Materials of the stream.
+        /// Number of materials in the stream.
         need: usize,
     },
-    /// The layout has room for fewer objects than the stream has.
+    /// The layout has room for fewer objects than the stream has; see [`crate::Layout::objects`].
     Objects {
-        /// Objects of the stream.
+        /// Number of objects in the stream.
         need: usize,
     },
-    /// The layout has no room for antialiasing.
+    /// The layout has no room for antialiasing; see [`crate::Layout::antialias`].
     NoSamples,
-    /// A slice of pixels does not hold one row of the picture.
+    /// The memory for a band is shorter than one row of the picture.
     Band {
-        /// Pixels needed at least.
+        /// Number of pixels that are needed at least.
         need: usize,
     },
-    /// A picture would not lie on the display.
+    /// A part of the picture would lie outside of the display.
     Corner,
-    /// The stream has something, or the program asks for something, that is not part of this build.
+    /// The stream or the program needs a cargo feature that this build lacks.
     Feature {
-        /// The feature that it takes.
+        /// Name of the cargo feature.
         name: &'static str,
     },
-    /// None of the program's methods is the one that the stream asks for.
+    /// The stream asks for a method that is not in the program's list of methods.
     UnknownMethod {
         /// The number of the missing method, see [`crate::method::Facts::id`].
         method: u16,
     },
-    /// The method cannot shade under near lights or for a near viewer.
+    /// The method cannot draw point lights or a local viewer, and the scene has one of them.
     Light {
-        /// The method's name.
+        /// Name of the method.
         shader: &'static str,
     },
-    /// The error budget is none of those from [`crate::format::LEAST_BUDGET`] to [`crate::format::LARGEST_BUDGET`].
+    /// The error budget is less than [`crate::format::LEAST_BUDGET`] or more than [`crate::format::LARGEST_BUDGET`].
     Budget,
-    /// The method raises a root of its own to a share of the exponent, which is less than 1 here.
+    /// A material's exponent is too small for the method.
     Exponent {
-        /// The method's name.
+        /// Name of the method.
         shader: &'static str,
-        /// Smallest exponent of a material that it can shade.
+        /// The smallest exponent that the method can draw.
         least: u16,
     },
     /// The method cannot interpolate in perspective.
     Perspective {
-        /// The method's name.
+        /// Name of the method.
         shader: &'static str,
     },
 }

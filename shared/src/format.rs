@@ -8,54 +8,54 @@ use fixed::types::{I2F14, I2F30, I4F12, I18F14, I28F4, U0F16, U0F32, U1F15, U2F1
 
 /// Screen coordinate, pixels, Q28.4: pixel centres lie at 8/16. Corners are rounded to the nearest sixteenth.
 pub type Subpixel = I28F4;
-/// Component of a position, in units of object space, or of a unit normal; Q2.14 in [-2, 2).
+/// Component of a position, in units of object space, or component of a unit normal; Q2.14 in [-2, 2).
 pub type Unit = I2F14;
 /// Distance or coordinate in units of object space, Q18.14; streams use [-32, 32].
 pub type Length = I18F14;
 /// Radius in units of object space, unsigned Q2.14 in [0, 4).
 pub type Radius = U2F14;
-/// How far two surfaces lie apart at most, in units of object space, unsigned Q2.14 in [0, 4).
+/// Largest distance between two surfaces, in units of object space, unsigned Q2.14 in [0, 4).
 pub type GeometricError = U2F14;
-/// Reflectance or light colour of one channel, 1 is full; unsigned Q2.14 in [0, 4), of which streams use [0, 2].
+/// Reflectance, or colour of a light, in one channel; 1 is full intensity. Unsigned Q2.14 in [0, 4); streams use [0, 2].
 pub type Gain = U2F14;
 /// Entry of a rotation matrix or component of a unit axis, Q2.30 in [-1, 1].
 pub type Rotation = I2F30;
-/// Focal length in half sides of the viewport, unsigned Q16.16; streams use [1/16, 16].
+/// Focal length, in units of half the viewport's smaller side, unsigned Q16.16; streams use [1/16, 16].
 pub type Focal = U16F16;
-/// How large an object is in the world, unsigned Q16.16; scenes use [1/16, 8].
+/// Size of an object relative to its mesh, unsigned Q16.16; scenes use [1/16, 8].
 pub type Scale = U16F16;
-/// Angle as a fraction of a turn, unsigned Q0.32 in [0, 1): sums wrap as angles do.
+/// Angle as a fraction of a turn, unsigned Q0.32 in [0, 1). A sum of angles wraps at a whole turn.
 pub type Angle = U0F32;
 /// Haversine of the angle between two unit normals, (1 - N1·N2)/2 = 1 - |N1+N2|²/4; unsigned Q0.16 in [0, 1).
 pub type Haversine = U0F16;
-/// Least length of an interpolated normal, unsigned Q1.15 in [0, 1].
+/// Smallest length of an interpolated normal, unsigned Q1.15 in [0, 1].
 pub type NormalLength = U1F15;
-/// 1 over the least altitude of a triangle, in 1/units of object space, unsigned Q14.2 in [0, 16384).
+/// 1 over the smallest altitude of a triangle, per unit of object space, unsigned Q14.2 in [0, 16384).
 pub type InverseAltitude = U14F2;
 
-/// Length in a picture as a share of its smaller side, Q4.12 in [-8, 8).
+/// Length in a picture, as a fraction of the picture's smaller side, Q4.12 in [-8, 8).
 pub type Share = I4F12;
 
-/// How far a pixel may be off, in 1/255 of full intensity (LSB), unsigned Q5.3.
+/// Largest error of a pixel, in 1/255 of full intensity, unsigned Q5.3.
 pub type ErrorBudget = U5F3;
 
-/// Least error budget: 1/2.
+/// Smallest error budget: 1/2 of 1/255.
 pub const LEAST_BUDGET: ErrorBudget = ErrorBudget::from_bits(1 << 2);
-/// Largest error budget: 16.
+/// Largest error budget: 16 of 1/255.
 pub const LARGEST_BUDGET: ErrorBudget = ErrorBudget::from_bits(16 << 3);
 
 /// Fraction bits of [`Subpixel`].
 pub const SUBPIXEL: u32 = 4;
 /// Sixteenths of a pixel from its corner to its centre.
 pub const CENTRE: i32 = 1 << (SUBPIXEL - 1);
-/// Largest number of times that a triangle is split.
+/// Largest number of times that a triangle can be split.
 pub const SPLITS: u32 = 6;
-/// Fraction bits of a screen coordinate within a triangle, so that corners of parts are exact however often it is split.
+/// Fraction bits of a screen coordinate within a triangle. They keep the corners of its parts exact after [`SPLITS`] splits.
 pub const FINE: u32 = SUBPIXEL + SPLITS;
 /// Fraction bits of [`Unit`], [`Length`], [`GeometricError`] and [`Gain`].
 pub const UNIT: u32 = 14;
-/// Fraction bits of a point of object space where light is computed, and of a near light or viewer there: Q7.25. Streams keep them within
-/// 56 units, and next to a light each bit of their distance counts.
+/// Fraction bits of a point in object space where light is computed, and of a point light or viewer there: Q7.25. Streams keep points within 56
+/// units. Close to a light each bit of the distance counts.
 pub const POSITION: u32 = 25;
 /// Fraction bits of [`Rotation`].
 pub const ROTATION: u32 = 30;
@@ -63,11 +63,11 @@ pub const ROTATION: u32 = 30;
 pub const COSINE: u32 = 30;
 /// Fraction bits of a light level at a node, in 1/255 of full intensity (LSB): Q9.7 held in an `i32`.
 pub const LEVEL: u32 = 7;
-/// Fraction bits of a level while it is walked along a span: unsigned Q9.23, or Q9.22 below a bit of its own, see
+/// Fraction bits of a level while it is walked along a span. Levels are unsigned Q9.23, or Q9.22 below one more bit: see
 /// [`crate::pixel::ramps::Ramps::BITS`].
 pub const WALK: u32 = 23;
-/// Fraction bits of a level of one of three channels while it is walked: signed Q10.22. Its range takes all overshoots without a bias, so
-/// that one instruction of Armv7-M makes it a channel.
+/// Fraction bits of a level of one of three channels while it is walked: signed Q10.22. The range holds all overshoots without a bias, so one
+/// instruction of Armv7-M converts a level to a channel.
 pub const CHANNEL: u32 = 22;
 /// The bias of walked levels: 0..=127 are below black, 128..=383 the 256 levels, 384..=511 above white.
 ///
@@ -76,20 +76,20 @@ pub const CHANNEL: u32 = 22;
 pub const BIAS: i32 = 128;
 /// Fraction bits of depth at a vertex, Q0.28: 1 at the near plane, 0 infinitely far.
 pub const DEPTH: u32 = 28;
-/// Fraction bits of depth between the corners of a triangle: 1/16 of what the depth buffer tells apart.
+/// Fraction bits of depth at the corners of a triangle, 16 times finer than the depth buffer.
 pub const DEPTH_NODE: u32 = 20;
-/// Fraction bits of depth while it is walked; the depth buffer keeps the 16 bits above them.
+/// Fraction bits of depth while it is walked. The depth buffer keeps the 16 bits above them.
 pub const DEPTH_WALK: u32 = 16;
-/// Fraction bits of the area that a triangle covers of a pixel: Q1.16, 1 is the whole pixel.
+/// Fraction bits of the part of a pixel that a triangle covers: Q1.16, where 1 is the whole pixel.
 pub const COVERAGE: u32 = 16;
-/// Number of surfaces in one pixel that antialiasing tells apart.
+/// Number of surfaces that antialiasing keeps apart in one pixel.
 pub const LAYERS: usize = 3;
-/// Places along each axis of a pixel where antialiasing can shade it: 2 to this power at most.
+/// Base-2 logarithm of the number of places along each axis of a pixel where antialiasing can shade it.
 pub const FINER: u32 = 4;
-/// Fraction bits of a cosine in the pixel loop: Q5.27, so that sums and overshoots fit.
+/// Fraction bits of a cosine in the loop over pixels: Q5.27. Sums and overshoots fit.
 pub const PIXEL_COSINE: u32 = 27;
-/// Fraction bits of the reciprocal length of the sum of two unit normals, 1/|N1+N2|, unsigned Q1.17 in [1/2, 1); a stream stores its excess
-/// over 1/2.
+/// Fraction bits of the reciprocal length of the sum of two unit normals, 1/|N1+N2|, unsigned Q1.17 in [1/2, 1). A stream stores this number minus
+/// 1/2.
 pub const INVERSE_SUM_LENGTH: u32 = 17;
 /// Fraction bits of [`Haversine`].
 pub const HAVERSINE: u32 = 16;
@@ -97,12 +97,12 @@ pub const HAVERSINE: u32 = 16;
 pub const NORMAL_LENGTH: u32 = 15;
 /// Fraction bits of [`InverseAltitude`].
 pub const INVERSE_ALTITUDE: u32 = 2;
-/// Entries of a table of colours: the 256 levels and [`BIAS`] guards at each end.
+/// Number of entries in a table of colours: 256 levels, and [`BIAS`] more at each end.
 pub const RAMP: usize = 512;
 /// Largest number of lights in one scene.
 pub const MAX_LIGHTS: usize = 8;
 /// Fraction bits of an [`Intensity`].
 pub const INTENSITY: u32 = 8;
-/// Light of three channels at a pixel, Q24.8 in 1/255 of full intensity, in [0, 256); above 255 counts as 255. One channel stands in the
-/// first place.
+/// Light of three channels at a pixel, Q24.8 in 1/255 of full intensity, in [0, 256). Values above 255 count as 255. One channel is in the first
+/// place.
 pub type Intensity = [i32; 3];

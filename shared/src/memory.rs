@@ -1,4 +1,4 @@
-//! The memory of a renderer: one configuration from which all sizes follow.
+//! The memory of a renderer. All sizes follow from one configuration, [`Layout`].
 
 use crate::{
     coverage::sample::Sample,
@@ -13,7 +13,7 @@ use crate::{
 };
 use zerocopy::{FromBytes, Immutable, IntoBytes, KnownLayout};
 
-/// What a renderer has room for.
+/// The size of the picture's bands, and the number of vertices, triangles and other things that a renderer has room for.
 ///
 /// ```
 /// use embedded_graphics_core::pixelcolor::Rgb565;
@@ -27,28 +27,28 @@ use zerocopy::{FromBytes, Immutable, IntoBytes, KnownLayout};
 pub struct Layout {
     /// Columns of the picture.
     pub width: usize,
-    /// Rows of a band, which are drawn at once: more rows take more memory, fewer rows more time.
+    /// Rows of a band. A band is drawn at once. More rows take more memory, fewer rows more time.
     pub rows: usize,
-    /// Processors that draw at the same time, each a band of its own: see [`crate::Frame::in_two`].
+    /// Processors that draw at the same time, each a band of its own: 1 or 2. See [`crate::Frame::in_two`].
     pub processors: usize,
-    /// Vertices that are kept in a frame. If the stream has more, each triangle transforms the remaining ones anew.
+    /// Vertices that a frame keeps. If the stream has more, each triangle transforms the others again.
     pub vertices: usize,
-    /// Triangles facing the camera that are kept in a frame. If there are more, each band walks the whole stream.
+    /// Triangles that a frame keeps; triangles that face away need no room. If there are more, each band walks the whole stream.
     pub triangles: usize,
-    /// Materials of the stream.
+    /// Number of materials, at least as many as the stream has.
     pub materials: usize,
-    /// Objects of the scene.
+    /// Number of objects, at least as many as the scene has.
     pub objects: usize,
-    /// Triangles that are kept from one band to the next, 132 bytes each. If more cross a border, the next band sets up the remaining ones
-    /// anew.
+    /// Triangles that are kept from one band to the next, 132 bytes each. If more triangles cross the border of a band, the next band sets up the
+    /// others again.
     pub active_triangles: usize,
-    /// Whether there is room for antialiasing, 72 bytes for each pixel of a band.
+    /// Whether there is room for antialiasing, which takes 72 bytes for each pixel of a band.
     pub antialias: bool,
 }
 
 impl Layout {
-    /// A layout for pictures of `width` columns in bands of `rows` rows. It has room for 1,024 vertices, 1,024 triangles, one material, one
-    /// object and 48 triangles across the border of a band, and none for antialiasing.
+    /// A layout for pictures of `width` columns in bands of `rows` rows. It has room for 1,024 vertices, 1,024 triangles, one material, one object
+    /// and 48 triangles that cross the border of a band. It has no room for antialiasing.
     #[must_use]
     pub const fn new(width: usize, rows: usize) -> Self {
         Self {
@@ -64,49 +64,49 @@ impl Layout {
         }
     }
 
-    /// Changes how many processors draw at the same time: 1 or 2.
+    /// Sets the number of processors that draw at the same time: 1 or 2.
     #[must_use]
     pub const fn processors(self, processors: usize) -> Self {
         Self { processors, ..self }
     }
 
-    /// Changes how many vertices there is room for.
+    /// Sets the number of vertices that there is room for.
     #[must_use]
     pub const fn vertices(self, vertices: usize) -> Self {
         Self { vertices, ..self }
     }
 
-    /// Changes how many triangles there is room for.
+    /// Sets the number of triangles that there is room for.
     #[must_use]
     pub const fn triangles(self, triangles: usize) -> Self {
         Self { triangles, ..self }
     }
 
-    /// Changes how many materials there is room for.
+    /// Sets the number of materials that there is room for.
     #[must_use]
     pub const fn materials(self, materials: usize) -> Self {
         Self { materials, ..self }
     }
 
-    /// Changes how many objects there is room for.
+    /// Sets the number of objects that there is room for.
     #[must_use]
     pub const fn objects(self, objects: usize) -> Self {
         Self { objects, ..self }
     }
 
-    /// Changes how many triangles across the border of a band there is room for.
+    /// Sets the number of triangles across the border of a band that there is room for.
     #[must_use]
     pub const fn active_triangles(self, active_triangles: usize) -> Self {
         Self { active_triangles, ..self }
     }
 
-    /// Changes whether there is room for antialiasing.
+    /// Sets whether there is room for antialiasing.
     #[must_use]
     pub const fn antialias(self, antialias: bool) -> Self {
         Self { antialias, ..self }
     }
 
-    /// Changes how many vertices, triangles, materials and objects there is room for: all that the scene of a stream has.
+    /// Sets the numbers of vertices, triangles, materials and objects to those of a stream.
     #[must_use]
     pub fn with_room_for(self, stream: &Stream<'_>) -> Self {
         let whole = [Instance { first_mesh: 0, meshes: stream.meshes.len() as u16, material: 0, reserved: 0 }];
@@ -122,7 +122,7 @@ impl Layout {
         Self { vertices, triangles, materials: stream.materials.len(), objects: objects.len(), ..self }
     }
 
-    /// Pixels of a band: the length of the buffer that a program draws into.
+    /// Number of pixels in a band. A program needs a buffer of this length.
     #[must_use]
     pub const fn band(&self) -> usize {
         self.width * self.rows
@@ -132,7 +132,7 @@ impl Layout {
         if self.antialias { self.band() * self.processors } else { 0 }
     }
 
-    /// Words of 64 bits that a renderer of this layout takes in the pixel format `C`: the length of the slice for [`crate::Renderer::new`].
+    /// Number of 64-bit words that a renderer needs in the pixel format `C`. The slice for [`crate::Renderer::new`] has this length.
     #[must_use]
     pub const fn words<C: Pixel>(&self) -> usize {
         let bytes = padded(self.vertices * size_of::<ScreenVertex>())
@@ -150,7 +150,7 @@ impl Layout {
         bytes / size_of::<u64>()
     }
 
-    /// Bytes that a renderer of this layout takes in the pixel format `C`, without the band of pixels.
+    /// Number of bytes that a renderer needs in the pixel format `C`. The buffer for a band is not included.
     #[must_use]
     pub const fn bytes<C: Pixel>(&self) -> usize {
         self.words::<C>() * size_of::<u64>()
@@ -184,7 +184,7 @@ pub(crate) struct Memory<'a, C: Pixel> {
     /// One for each material, as in `ramps`, the tables of colours.
     pub(crate) reflectances: &'a mut [Reflectance],
     pub(crate) ramps: &'a mut [C::Ramps],
-    /// What a method that keeps to a budget knows of each material.
+    /// For each material, what a method with an error budget knows of it.
     pub(crate) error_bounds: &'a mut [ErrorBounds],
     /// Samples for antialiasing; empty without it.
     pub(crate) samples: &'a mut [Sample],

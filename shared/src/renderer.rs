@@ -1,4 +1,4 @@
-//! The frames of a scene.
+//! Renderers, which draw the frames of a scene.
 
 use crate::{
     Stream,
@@ -35,8 +35,8 @@ pub struct Renderer<'a, C: Pixel> {
 }
 
 impl<'a, C: Pixel> Renderer<'a, C> {
-    /// A renderer for a viewport of `size` pixels, with the one of `shaders` that the stream asks for. `memory` has as many words as
-    /// [`Layout::words`] says; its contents do not matter.
+    /// A renderer for pictures of `size` pixels. It draws by the method in `shaders` that the stream asks for. `memory` needs [`Layout::words`]
+    /// words; its contents do not matter.
     ///
     /// # Errors
     /// When `size` is out of range, its width is not the layout's, `memory` is too small, the method is missing or cannot shade the scene, or
@@ -47,7 +47,7 @@ impl<'a, C: Pixel> Renderer<'a, C> {
         Self::with_shader(stream, size, layout, memory, *shader)
     }
 
-    /// A renderer with the method `shader`, whatever method the stream asks for; otherwise as [`Self::new`].
+    /// A renderer with the method `shader`, whatever method the stream asks for. All else is as in [`Self::new`].
     ///
     /// # Errors
     /// Those of [`Self::new`], except that no method can be missing.
@@ -98,12 +98,12 @@ impl<'a, C: Pixel> Renderer<'a, C> {
         Ok(Self { settings, scene, memory, seams: None, rearranged: true, region: Region::NONE, is_invalidated: false })
     }
 
-    /// What is drawn. A program may change it between frames.
+    /// The scene. A program can change it between frames.
     pub fn scene(&mut self) -> &mut Scene<'a> {
         &mut self.scene
     }
 
-    /// Changes the shading method. All tables of the materials are computed anew, so the next frame takes a moment longer.
+    /// Changes the shading method. The next frame takes a little longer, because it computes the tables of all materials again.
     ///
     /// # Errors
     /// When the method cannot shade this scene; the method in use stays.
@@ -140,7 +140,7 @@ impl<'a, C: Pixel> Renderer<'a, C> {
         }
     }
 
-    /// Changes what is left out because nobody can see it; at first, all that can be. The picture is the same.
+    /// Selects work to leave out because nobody can see the result; by default all of it. The picture is the same.
     #[cfg(feature = "skips")]
     pub fn set_skips(&mut self, skips: crate::frame::Skips) {
         self.settings.skips = skips;
@@ -153,8 +153,8 @@ impl<'a, C: Pixel> Renderer<'a, C> {
         self.settings.shader
     }
 
-    /// Turns interpolation in perspective on or off; it is off at first. Without it, light is interpolated linearly on the screen, which
-    /// shows where a triangle reaches from near to far. It makes no difference to orthographic cameras.
+    /// Turns interpolation in perspective on or off; by default it is off. Without it, light is interpolated linearly on the screen, and a triangle
+    /// that reaches from near to far looks wrong. It makes no difference to orthographic cameras.
     ///
     /// # Errors
     /// When this build or the method in use cannot interpolate in perspective; nothing changes then.
@@ -170,8 +170,8 @@ impl<'a, C: Pixel> Renderer<'a, C> {
         Ok(())
     }
 
-    /// Changes how far a pixel may be off from Phong shading by the method [`Shader::AUTO`], in 1/255 of full intensity; at first it is what
-    /// the stream says.
+    /// Sets the error budget of the method [`Shader::AUTO`]: the largest error of a pixel against Phong shading, in 1/255 of full intensity. By
+    /// default it is the stream's.
     ///
     /// # Errors
     /// When it is less than [`LEAST_BUDGET`] or more than [`LARGEST_BUDGET`]; nothing changes then.
@@ -184,22 +184,23 @@ impl<'a, C: Pixel> Renderer<'a, C> {
         Ok(())
     }
 
-    /// Turns ordered dither on or off; at first it is on in formats of less than eight bits a channel. All tables of the materials are computed anew.
+    /// Turns ordered dither on or off. By default it is on in formats of less than eight bits a channel. The next frame computes the tables of all
+    /// materials again.
     ///
-    /// Where channels have five bits to seven, two thresholds take turns ([`crate::pixel::ramps`]): like the squares of a checkerboard, or by rows.
-    /// Frames take as many instructions as without dither.
+    /// Channels of five to seven bits are dithered by two thresholds ([`crate::pixel::ramps`]), which take turns like the squares of a checkerboard,
+    /// or by rows. This takes as many instructions as no dither.
     ///
-    /// All other formats have 64 thresholds in squares of eight by eight. Greys of up to four bits are dithered by the loops of methods, for few
-    /// instructions more, and drawn the general way without dither. Colours of so few bits, and formats of eight bits, are drawn the
-    /// general way with it.
+    /// All other formats are dithered by 64 thresholds in squares of eight by eight pixels. Greys of one to four bits are drawn fastest with dither,
+    /// and take several times as many instructions without it. Colours of one to four bits a channel, and formats of eight bits, take several times
+    /// as many instructions with dither.
     pub fn set_dither(&mut self, dither: bool) {
         self.settings.dither = dither;
         self.scene.set_stale();
     }
 
-    /// Corrects all colours for the curve of the display, such as [`crate::pixel::gamma::SRGB`], or does not; at first it does not, and light levels
-    /// are sent as they are. The background is sent as it has been set. Pixels of one channel cost nothing more, since their tables of colours
-    /// hold what to send; materials in three channels are drawn the general way, and take several times as long.
+    /// Corrects all colours for the curve of the display, such as [`crate::pixel::gamma::SRGB`]. By default nothing is corrected, and light levels
+    /// are sent unchanged. The background is never corrected. Materials of one channel cost nothing more, because tables of colours hold the
+    /// corrected values. Materials of three channels take several times as long.
     pub fn set_gamma(&mut self, gamma: Option<&'static Gamma>) {
         self.settings.gamma = gamma;
         self.scene.set_stale();
@@ -222,26 +223,25 @@ impl<'a, C: Pixel> Renderer<'a, C> {
         Ok(())
     }
 
-    /// Turns coarser levels of meshes on or off; they are on at first, and each mesh is drawn at the coarsest level that lies less than half
-    /// a pixel from it on the screen. Off, each is drawn as it is, which shows what they save. It makes no difference to streams without
-    /// levels.
+    /// Turns levels of detail on or off; by default they are on. Each mesh is then drawn at its coarsest level that lies less than half a pixel from
+    /// the full mesh on the screen. It makes no difference to streams without levels.
     pub fn set_levels_of_detail(&mut self, on: bool) {
         self.settings.levels_of_detail = on;
         self.scene.set_view_changed();
     }
 
-    /// Turns partial redraw on or off; it is off at first. With it, a frame has only what may differ from the latest frame, which the display
-    /// has to show still. Where single objects move, that is what they leave and enter: each band is as wide as that is in its rows, and rows
-    /// without any are left out; [`Frame::area`] is the rectangle around all of it. Objects that do not reach into it are left out whole, as are
-    /// the triangles of others that lie beside it. Where colours, lights or the camera have changed, it is all of the picture. What a program
-    /// draws under the picture or over it is sent in these areas alone: [`Self::invalidate`] adds the area where it changes.
+    /// Turns partial redraw on or off; by default it is off. With it, a frame draws only areas that may differ from the frame before, which the
+    /// display has to show still. Where single objects move, these are the areas that they leave and enter. [`Frame::area`] is the rectangle around
+    /// them. If colours, lights or the camera have changed, the whole picture is drawn.
+    ///
+    /// What a program draws under or over the picture is sent in these areas only. [`Self::invalidate`] adds an area where it changes.
     pub fn set_partial_redraw(&mut self, on: bool) {
         self.settings.partial_redraw = on;
     }
 
-    /// Has `area` drawn and sent again by the next frame, though nothing of the scene has changed there. A clock that a program draws over the
-    /// picture needs this when partial redraw is on; without it, every frame is drawn whole. `area` is in pixels of the picture. What of it lies
-    /// outside of the picture is ignored. Areas of several calls add up.
+    /// Adds `area` to the next frame, which draws and sends it again although nothing of the scene has changed there. A clock that a program draws
+    /// over the picture needs this with partial redraw. `area` is in pixels of the picture; parts outside of the picture are ignored. Areas of several
+    /// calls add up.
     pub fn invalidate(&mut self, area: Rectangle) {
         let area = Area::of(area, self.settings.size);
         if !area.is_empty() {
@@ -258,7 +258,7 @@ impl<'a, C: Pixel> Renderer<'a, C> {
         region.clear(settings.size.height, band_rows.checked_div(settings.processors).unwrap_or(0));
     }
 
-    /// The size of the viewport.
+    /// The size of the picture, in pixels.
     #[must_use]
     pub fn size(&self) -> Size {
         self.settings.size
@@ -270,7 +270,7 @@ impl<'a, C: Pixel> Renderer<'a, C> {
         self.settings.band_rows(self.memory.depth.len(), self.memory.samples.len())
     }
 
-    /// Checks that a slice of pixels can be a band.
+    /// Checks that a slice of pixels is long enough for a band.
     ///
     /// # Errors
     /// When `pixels` does not hold one row of the picture.
@@ -279,29 +279,29 @@ impl<'a, C: Pixel> Renderer<'a, C> {
         if pixels.len() < need { Err(RenderError::Band { need }) } else { Ok(()) }
     }
 
-    /// Whether frame `number` is the same picture as the latest one, because the camera stands still or has come round, and neither the scene
-    /// nor a setting has changed, and nothing is invalidated. Where the display still shows that, it need be neither drawn nor sent.
+    /// Whether frame `number` is the picture that was drawn last: scene and settings have not changed, nothing is invalidated, and the camera stands
+    /// still or has come round. It need be neither drawn nor sent if the display still shows it.
     #[must_use]
     pub fn is_latest(&self, number: u32) -> bool {
         !self.is_invalidated && self.scene.is_latest(number)
     }
 
-    /// Frame `number` of the scene's ready-made animation (modulo its frames): [`Scene::play`], and [`Self::draw`].
+    /// Begins frame `number` of the stream's animation. Numbers beyond the last frame start over. It is [`Scene::play`] and then [`Self::draw`].
     pub fn frame(&mut self, number: u32) -> Frame<'_, C> {
         self.scene.play(number);
         self.draw()
     }
 
-    /// A frame of the scene as it is: places objects and lights, transforms vertices, culls and bins triangles.
+    /// Begins a frame of the scene as the program has set it: places objects and lights, transforms vertices, and culls and sorts triangles.
     #[inline(never)]
     pub fn draw(&mut self) -> Frame<'_, C> {
         self.place();
         Frame::new(&self.settings, &self.scene, &mut self.memory, &self.region)
     }
 
-    /// Begins frame `number` as [`Self::frame`] does, and leaves most of that to two processors: the part of the earlier triangles, which are
-    /// a `share` of all, of 2^16, and that of the later ones. The picture does not depend on it. The layout has to be one for two
-    /// [`Layout::processors`], and to have room for all triangles and vertices of the scene; else one part does everything.
+    /// Begins frame `number` as [`Self::frame`] does, and divides the preparation between two processors. The earlier triangles are a `share` of all,
+    /// in units of 1/65,536. The picture does not depend on it. The layout has to be for two [`Layout::processors`], and to have room for all
+    /// triangles and vertices; otherwise one part does everything.
     pub fn prepare(&mut self, number: u32, share: u16) -> Preparation<'_, C> {
         self.scene.play(number);
         self.place();

@@ -12,11 +12,11 @@ use crate::{
 };
 use core::fmt;
 
-/// A shading method in the pixel format `C`. A program contains the code of the methods that it names, and of no others.
+/// A shading method in the pixel format `C`. A program contains only the code of methods that it names.
 #[derive(Clone, Copy)]
 pub struct Shader<C: Pixel> {
     method: &'static dyn Method,
-    /// Whether `loops` can draw this style; if not, the general way does.
+    /// Whether `loops` can draw this style. If not, the general loop draws it.
     take: fn(Style) -> bool,
     pub(crate) loops: TriangleLoops<C>,
     /// Loops for three channels.
@@ -49,29 +49,30 @@ impl<C: Pixel> TriangleLoops<C> {
 }
 
 impl<C: Pixel> Shader<C> {
-    /// One colour per triangle.
+    /// Flat shading: one colour for each triangle.
     pub const FLAT: Self = Self::with_loops(&Flat);
-    /// Lit at the corners, linear in between.
+    /// Gouraud shading: light at the corners of a triangle, interpolated linearly.
     pub const GOURAUD: Self = Self::with_loops(&Gouraud);
-    /// Lit at corners and edge midpoints, quadratic in between.
+    /// Six-point shading: light at the corners and the midpoints of edges, interpolated quadratically.
     pub const SIX_POINT: Self = Self::with_loops(&SixPoint);
-    /// Normals interpolated and normalised at every pixel, highlight by the half vector.
+    /// Phong shading: the normal is interpolated and normalised at every pixel. Highlights use the half vector.
     pub const PHONG: Self = Self::with_loops(&Phong);
-    /// The root of N·H quadratic, squared and raised at the pixel.
+    /// Six-point shading with a root: the square root of N·H is interpolated quadratically, then squared and raised to the exponent at every pixel.
     pub const SQRT6: Self = Self::with_loops(&Sqrt6);
-    /// Linear numerators times a quadratic reciprocal length, made exact by Newton's iteration.
+    /// Normals interpolated linearly, multiplied by a reciprocal length that is interpolated quadratically and corrected by a step of Newton's method
+    /// at every pixel.
     pub const RENQ_NEWTON: Self = Self::with_loops(&RenqNewton);
 
-    /// For each triangle the cheapest method that stays within the error budget.
+    /// The cheapest way for each triangle that keeps to the error budget: one colour, linear, quadratic, or Phong shading.
     pub const AUTO: Self = Self::with_loops(&Auto::<true>);
-    /// [`Shader::AUTO`] without quadratics: half of its flash, and as exact.
+    /// [`Shader::AUTO`] without quadratic interpolation. It takes about half of the flash, and keeps to the error budget as well.
     pub const AUTO_LINEAR: Self = Self::with_loops(&Auto::<false>);
 
     /// Every method of this crate.
     pub const ALL: [Self; 8] =
         [Self::FLAT, Self::GOURAUD, Self::SIX_POINT, Self::PHONG, Self::SQRT6, Self::RENQ_NEWTON, Self::AUTO, Self::AUTO_LINEAR];
 
-    /// A method of your own, or of the crate `microphong-literature`.
+    /// A method of the program's own, or of the crate `microphong-literature`.
     #[must_use]
     pub const fn new(method: &'static dyn Method) -> Self {
         Self { method, take: General::take, loops: TriangleLoops::of::<General>(), three_channels: TriangleLoops::of::<General>() }
@@ -94,7 +95,7 @@ impl<C: Pixel> Shader<C> {
 }
 
 impl<C: Pixel> Shader<C> {
-    /// What is known of the method.
+    /// Properties of the method.
     #[must_use]
     pub fn facts(&self) -> &'static Facts {
         self.method.facts()

@@ -1,4 +1,4 @@
-//! One frame: what happens before its rows are drawn, and how it is drawn in one part or in two.
+//! One frame: preparation before its rows are drawn, and drawing in one part or in two.
 
 mod context;
 mod part;
@@ -25,9 +25,10 @@ pub struct Frame<'r, C: Pixel> {
 }
 
 impl<'r, C: Pixel> Frame<'r, C> {
-    /// Draws the next band into the front of `pixels`, row by row, and returns the area that it fills; `None` after the last.
+    /// Draws the next band into the front of `pixels`, row by row, and returns its area in the picture; `None` after the last band.
     ///
-    /// The first `area.size.width * area.size.height` entries of `pixels` are the band. A slice shorter than a band gets fewer rows.
+    /// The first `area.size.width * area.size.height` entries of `pixels` hold the band. If `pixels` is shorter than a whole band, the band has fewer
+    /// rows.
     ///
     /// # Errors
     /// When `pixels` does not hold one row.
@@ -35,12 +36,11 @@ impl<'r, C: Pixel> Frame<'r, C> {
         self.next_band_over(pixels, |_, _| ())
     }
 
-    /// Draws the next band as [`Self::next_band`] does, over something of the program's own: `under` is given the pixels of the band, which are
-    /// the background of the scene, and its area, and draws what is to be seen where no triangle is, as on a [`crate::BandTarget`].
-    /// Antialiased edges blend with it.
+    /// Draws the next band as [`Self::next_band`] does, over a background that the program draws. `under` is called with the pixels of the band,
+    /// which hold the scene's background, and with its area. A [`crate::BandTarget`] helps to draw there. Antialiased edges blend with the result.
     ///
-    /// No frame knows what another one had under it: where that changes, the frame has to be drawn with partial redraw turned off, and
-    /// [`Self::rows`] does not tell the rows that it reaches.
+    /// Partial redraw does not know what `under` draws. Turn it off for a frame in which that changes. [`Self::rows`] does not include rows that only
+    /// `under` draws.
     ///
     /// # Errors
     /// When `pixels` does not hold one row.
@@ -48,35 +48,35 @@ impl<'r, C: Pixel> Frame<'r, C> {
         self.part.next_band(&self.context, pixels, under)
     }
 
-    /// What the frame has: the whole picture, or the rectangle around what may differ from the one that the renderer drew before, where that is
-    /// asked for, see [`crate::Renderer::set_partial_redraw`]; bands may leave out some of it.
+    /// The rectangle that the frame draws. This is the whole picture, or with [`crate::Renderer::set_partial_redraw`] the rectangle around all pixels
+    /// that may have changed since the frame before. Some bands may be narrower than the rectangle.
     #[must_use]
     pub fn area(&self) -> Rectangle {
         self.context.region.hull().rectangle()
     }
 
-    /// Whether the frame has the whole picture.
+    /// Whether the frame draws the whole picture.
     #[must_use]
     pub fn is_whole(&self) -> bool {
         self.context.region.is_whole()
     }
 
-    /// The rows that triangles of this frame can reach; all other rows of what it has are background, and labels, which never move. What of the
-    /// picture it has not may show objects that stand still in other rows.
+    /// The rows that triangles of this frame can reach. The other rows of [`Self::area`] hold background and labels, which never move. Outside of
+    /// that area, other rows of the picture may show objects that stand still.
     #[must_use]
     pub fn rows(&self) -> Range<u32> {
         self.part.rows.clone()
     }
 
-    /// The row above which a `share` of the triangles end, of 2^16: about where [`Self::in_two`] has to divide the frame for two processors
-    /// to share the work so.
+    /// The row above which a `share` of the triangles end, in units of 1/65,536. [`Self::in_two`] divides the work of two processors in about this
+    /// proportion there.
     #[must_use]
     pub fn row_at(&self, share: u16) -> u32 {
         self.part.bins.row_at(self.part.entries, share)
     }
 
-    /// Draws only these `rows` of its area; to be called before the first band. It is enough to draw and send the rows that triangles reach in this
-    /// frame or reached in the frame before, see [`Self::rows`]: a display that shows the frame before has the rest.
+    /// Draws only these `rows`. Call it before the first band. It suffices to draw and send rows that triangles reach in this frame or reached in the
+    /// frame before, see [`Self::rows`], because the display still shows the rest.
     pub fn limit(&mut self, rows: Range<u32>) {
         self.part.limit(rows);
     }
@@ -87,15 +87,14 @@ impl<'r, C: Pixel> Frame<'r, C> {
         self.part.is_complete(&self.context)
     }
 
-    /// The counts so far; they are complete after the last band.
+    /// The counts of what has been drawn. They are complete after the last band.
     #[must_use]
     pub fn stats(&self) -> Stats {
         self.part.stats.culled()
     }
 
-    /// Divides the frame, before its first band, into the rows above `row` and those from there on, for two processors to draw at the same
-    /// time. The memory for bands is divided as well: that of a layout for two [`crate::Layout::processors`] gives each its bands. Where
-    /// triangles take more than half of the room that there is for them, the first part has all rows.
+    /// Divides the frame into the rows above `row` and the rest, so that two processors can draw at the same time. Call it before the first band. The
+    /// layout has to be for two [`crate::Layout::processors`]. If the triangles fill more than half of their memory, the first part gets all rows.
     #[must_use]
     pub fn in_two(self, row: u32) -> FrameInTwo<'r, C> {
         let Self { context, part } = self;
@@ -118,7 +117,7 @@ impl<'r, C: Pixel> FrameInTwo<'r, C> {
         parts.each_mut().map(|part| FramePart { context, part })
     }
 
-    /// The counts so far; they are complete after the last band of both parts.
+    /// The counts of what has been drawn. They are complete after the last band of both parts.
     #[must_use]
     pub fn stats(&self) -> Stats {
         let [upper, lower] = self.parts.each_ref().map(|part| part.stats);
@@ -142,7 +141,7 @@ impl<C: Pixel> FramePart<'_, '_, C> {
         self.next_band_over(pixels, |_, _| ())
     }
 
-    /// Draws the next band over what `under` draws, see [`Frame::next_band_over`].
+    /// Draws the next band over a background that `under` draws, see [`Frame::next_band_over`].
     ///
     /// # Errors
     /// When `pixels` does not hold one row.

@@ -1,5 +1,4 @@
-//! Rows of a frame, drawn band by band from the top. All that drawing writes belongs to them: two parts of a frame can be drawn at the
-//! same time.
+//! Some rows of a frame, drawn band by band from the top. Two parts share nothing that drawing writes, so they can be drawn at the same time.
 
 use crate::{
     coverage::sample::Sample,
@@ -22,33 +21,33 @@ use embedded_graphics_core::{
     primitives::Rectangle,
 };
 
-/// Counts of one frame: triangles, pixels, what was left out of them, and what did not fit into memory.
+/// Counts of one frame: triangles, pixels, work that was left out, and data that did not fit into memory.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Stats {
-    /// Triangles of the meshes, each at the level that is drawn.
+    /// Triangles of all meshes, at the level of detail that is drawn.
     pub triangles: u32,
-    /// Triangles that coarser levels have saved: those that the meshes as they are have more than the levels that are drawn.
+    /// Triangles that levels of detail have saved.
     pub simplified: u32,
-    /// Triangles that face away, or whose bounding box contains no pixel centre of the viewport.
+    /// Triangles that are not drawn, because they face away, or because their bounding box contains no pixel centre of the picture.
     pub culled: u32,
-    /// Triangles that are drawn: they face the camera, and their bounding box contains a pixel centre of the viewport.
+    /// Triangles that are drawn. They face the camera, and their bounding box contains a pixel centre of the picture.
     pub drawn: u32,
-    /// Pixels of all drawn triangles, those hidden by depth included, but where a whole object is hidden in the rows of a band; stays at its
-    /// largest value instead of overflowing.
+    /// Pixels of all drawn triangles, including pixels that nearer triangles hide. Pixels of an object are left out in bands where nearer objects
+    /// hide all of it. The count stops at its largest value.
     pub pixels: u32,
-    /// Walks over the mesh: 1, or one per band when the bins overflow.
+    /// How often the meshes were walked: once, or once for each band if the layout has room for fewer triangles than are drawn.
     pub passes: u32,
-    /// Vertices that did not fit and were transformed by each triangle that uses them.
+    /// Vertices for which the layout has no room. Each triangle that uses one transforms it again.
     pub uncached: u32,
-    /// How often a triangle that reaches into the next band found no room among the active triangles, and was set up anew there.
+    /// How often a triangle was set up again in the next band, because the layout had no room for more active triangles.
     pub set_up_anew: u32,
-    /// How many triangles were drawn without something that could not be seen, and by what.
+    /// Triangles that were drawn without something that nobody could see, by what was left out. All are 0 without the feature `skips`.
     pub counts: Counts,
 }
 
 impl Stats {
-    /// Triangles that are not drawn are culled.
+    /// Counts all triangles that are not drawn as culled.
     pub(crate) fn culled(self) -> Self {
         Self { culled: self.triangles.saturating_sub(self.drawn), ..self }
     }
@@ -67,11 +66,11 @@ pub(crate) struct Part<'r> {
     /// Whether all triangles found room in the bins.
     pub(crate) binned: bool,
     pub(crate) entries: &'r mut [Entry],
-    /// Depth of one band.
+    /// Depth buffer of one band.
     pub(crate) depth: &'r mut [u16],
-    /// Samples of one band, for antialiasing; empty without it.
+    /// Samples of one band for antialiasing; empty if antialiasing is off.
     pub(crate) samples: &'r mut [Sample],
-    /// Triangles that are kept from one band to the next, and those that the last band has saved.
+    /// Triangles that are kept for the next band, and triangles that the last band has kept.
     pub(crate) active_triangles: &'r mut [ActiveTriangle],
     pub(crate) queue: QueueState,
     /// Rows that triangles may reach.

@@ -1,13 +1,13 @@
-//! What happens once a frame, before its rows are drawn, in one go or in two halves: two processors can work at the same time.
+//! Preparation of a frame before its rows are drawn, in one part or in two, so that two processors can work at the same time.
 //!
-//! The triangles of the frame are divided, and the vertices as well: each is transformed, lit and kept by the processor of one half. As
-//! vertices are numbered by their first use in most streams, and objects have theirs one after the other, those that the earlier triangles do not use are the vertices from some number
-//! on, and belong to the later half. What remains is a seam: later triangles that use vertices of the earlier half. For them the places of
-//! these vertices on the screen are computed a second time, without light. When both are done, lists are joined, and where triangles at the
-//! seam alone use a vertex it is transformed. From then on, all is as if one processor had done it.
+//! Triangles and vertices of a frame are divided into two halves. Each vertex is transformed and lit by one processor. Most streams number vertices
+//! by their first use, and objects have their vertices one after the other. The later half therefore owns all vertices from some number on. Some
+//! later triangles use vertices of the earlier half: this is the seam. The places of these vertices on the screen are computed a second time, without
+//! light. When both halves are done, their lists are joined, and a vertex that only triangles at the seam use is transformed. The result is the one
+//! of a single processor.
 //!
-//! Where only a part of the picture is drawn, most triangles of most objects lie beside it. Light levels, which take longer than all else at a
-//! vertex, are then left for when it is known whose corners are needed.
+//! With partial redraw most triangles lie outside of the area that is drawn. Light is then computed last, for vertices that are needed: it takes
+//! longer than all else at a vertex.
 
 use crate::{
     frame::{
@@ -84,12 +84,12 @@ pub(crate) struct Division {
     vertex: usize,
 }
 
-/// Memory for the seam: until rows are drawn that of their depth is free. None if it is too little.
+/// Memory for the places of the seam's vertices. It is borrowed from the depth buffer, which is free until rows are drawn. Empty if it is too small.
 fn seam(depth: &mut [u16], vertices: usize) -> &mut [SeamPlace] {
     <[SeamPlace]>::mut_from_prefix_with_elems(depth.as_mut_bytes(), vertices).map(|(seam, _)| seam).unwrap_or_default()
 }
 
-/// A frame that is not ready to be drawn, see [`crate::Renderer::prepare`].
+/// The preparation of a frame in two parts, see [`crate::Renderer::prepare`].
 #[derive(Debug)]
 pub struct Preparation<'r, C: Pixel> {
     /// The lists of its part are those of the later triangles.
@@ -199,8 +199,8 @@ impl<'r, C: Pixel> Preparation<'r, C> {
         Self { frame, cache, division, earlier, depth_elisions: [depth_elision.clone(), depth_elision], is_done: [false; 2] }
     }
 
-    /// The later half of the work and the earlier one. If the layout is for one processor, or has too little room for the stream, the first
-    /// is all of it.
+    /// The part with the later triangles and the part with the earlier ones. If the layout is for one processor, or has too little room for the
+    /// stream, the first part does everything.
     #[must_use]
     pub fn parts(&mut self) -> [PreparationPart<'_, 'r, C>; 2] {
         let Self { frame, cache, division: Division { triangle, vertex }, earlier: earlier_bins, depth_elisions, is_done } = self;
@@ -233,7 +233,7 @@ impl<'r, C: Pixel> Preparation<'r, C> {
         [later, earlier]
     }
 
-    /// The frame. Parts that have not run are done by this processor.
+    /// The prepared frame. If a part has not been run, it is run here.
     #[must_use]
     #[inline(never)]
     pub fn frame(mut self) -> Frame<'r, C> {
@@ -262,7 +262,7 @@ fn close<C: Pixel>(context: &Context<'_, C>, cache: &mut [ScreenVertex], seam: &
     }
 }
 
-/// One half of what happens once a frame.
+/// One part of the preparation of a frame, for one processor to run.
 #[derive(Debug)]
 pub struct PreparationPart<'f, 'r, C: Pixel> {
     context: &'f Context<'r, C>,
@@ -279,13 +279,13 @@ pub struct PreparationPart<'f, 'r, C: Pixel> {
 }
 
 impl<'r, C: Pixel> PreparationPart<'_, 'r, C> {
-    /// Its triangles, counted from the first of all levels that are drawn; none if the other part does everything.
+    /// The triangles of this part, counted through all meshes at the level of detail that is drawn. Empty if the other part does everything.
     #[must_use]
     pub fn triangles(&self) -> Range<usize> {
         self.triangles.clone()
     }
 
-    /// Does it, once.
+    /// Prepares the triangles and vertices of this part.
     pub fn run(self) {
         if !mem::replace(self.is_done, true) {
             self.bin::<true>();

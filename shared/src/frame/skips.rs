@@ -1,38 +1,35 @@
-//! What a frame leaves out because nobody can see it.
+//! Work that a frame leaves out because nobody can see the result.
 
-/// What a frame leaves out because nobody can see it: switches that show what each spares.
+/// Switches for work that a frame leaves out because nobody can see the result. Turning one off shows what it saves.
 ///
-/// The picture is the same without, bit for bit, with two exceptions. Of a triangle that is clipped, because it is near or far off the
-/// screen, and faces away, parts may turn over by rounding if it is not left out. And antialiasing shades up to a pixel beyond the edges of a
-/// triangle, where there may be light that reaches none of its points.
+/// The picture stays the same, bit for bit, with two exceptions. A clipped triangle that faces away may turn to the front in parts, by rounding, if
+/// it is drawn. Antialiasing shades up to a pixel beyond the edges of a triangle, where a light may shine that reaches no point of the triangle.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[expect(clippy::struct_excessive_bools, reason = "each is a switch of its own")]
 pub struct Skips {
-    /// Triangles that face away are known by their planes, before their vertices are transformed.
+    /// Leave out triangles that face away, by their planes, before their vertices are transformed.
     pub back_faces: bool,
-    /// Triangles whose bounding box contains no pixel centre are not set up.
+    /// Leave out triangles whose bounding box contains no pixel centre.
     pub between_centres: bool,
-    /// Front faces of a closed convex mesh are drawn without depth test, as none can hide another.
+    /// Leave out the depth test for the front faces of a closed convex mesh, because none can hide another.
     pub depth: bool,
-    /// Highlights are not computed on triangles where they are too weak to be seen. A method that draws such triangles in another way, as by
-    /// a table of colours, does so in any case.
+    /// Leave out highlights on triangles where they are too weak to be seen. If a method draws such triangles by another loop, it always does.
     pub highlights: bool,
-    /// Lights are not computed on triangles that they do not reach.
+    /// Leave out lights on triangles that they do not reach.
     pub lights: bool,
-    /// Objects are not drawn in the rows of a band where others hide them: objects are drawn from the nearest to the farthest, and no pixel of
-    /// the box around one is nearer than what is there already.
+    /// Leave out objects in bands where nearer objects hide them.
     pub hidden_objects: bool,
 }
 
 impl Skips {
-    /// Everything is left out that can be: how a renderer begins.
+    /// Leaves out all that can be left out. A renderer begins with this value.
     pub const ALL: Self =
         Self { back_faces: true, between_centres: true, depth: true, highlights: true, lights: true, hidden_objects: true };
-    /// Nothing is left out.
+    /// Leaves out nothing.
     pub const NONE: Self =
         Self { back_faces: false, between_centres: false, depth: false, highlights: false, lights: false, hidden_objects: false };
-    /// For each by its name: all but this one.
+    /// For each switch, its name and all others turned on.
     pub const ALL_BUT: [(&str, Self); 6] = [
         ("back-faces", Self { back_faces: false, ..Self::ALL }),
         ("between-centres", Self { between_centres: false, ..Self::ALL }),

@@ -66,9 +66,9 @@ pub const HALF: u32 = 64;
 /// The thresholds on the squares of a checkerboard, a quarter of a step below [`HALF`] and above it.
 pub const SQUARES: [u32; 2] = [HALF / 2, HALF / 2 + HALF];
 
-/// What may be different on even rows and on odd ones, as in the columns of a checkerboard.
+/// State that differs between even and odd rows, for dither.
 pub trait ByRows: Copy {
-    /// Moves down one row.
+    /// Moves down by one row.
     #[inline(always)]
     fn step_row(&mut self) {}
 

@@ -1,12 +1,12 @@
-//! What a display has to be sent so that it shows a light level.
+//! Correction of colours for the curve of a display.
 //!
-//! Lighting adds light, so levels are linear: half of full level is half of the light. Most displays are not: what they show of a value is about
-//! its power of 2.2. A [`Gamma`] is the inverse of that. Tables of colours hold what comes of it, so that pixels which are drawn by them cost
-//! nothing more.
+//! Lighting adds light, so levels are linear: half of the full level is half of the light. Most displays are not linear: their light is about the
+//! power 2.2 of the value. A [`Gamma`] holds the inverse of this curve. Tables of colours are filled with corrected values, so pixels that are drawn
+//! by a table cost nothing more.
 
 use core::fmt;
 
-/// The curve of a display: the value, unsigned Q8.8 in \[0, 255\], at which it shows each of the 256 levels. A program can make one of its own
+/// The curve of a display: for each of the 256 levels the value that shows it, unsigned Q8.8 in \[0, 255\]. A program can make one for its own
 /// display.
 #[derive(Clone, PartialEq, Eq)]
 pub struct Gamma(pub [u16; LEVELS]);

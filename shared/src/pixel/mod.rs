@@ -1,4 +1,4 @@
-//! Pixel formats: how a colour of 8 bits per channel becomes what a display stores.
+//! Pixel formats: how a colour of 8 bits a channel becomes the value that a display stores.
 
 pub(crate) mod colour;
 #[doc(hidden)]
@@ -24,70 +24,70 @@ use embedded_graphics_core::{
 };
 use zerocopy::{FromBytes, Immutable, IntoBytes, KnownLayout};
 
-/// A format that the renderer can draw.
+/// A pixel format that the renderer can draw.
 pub trait Pixel: Copy + 'static {
-    /// The form in which tables of colours store a pixel.
+    /// The type of a pixel in a table of colours.
     type Stored: FromBytes + IntoBytes + Immutable + KnownLayout + Copy + core::fmt::Debug;
-    /// The tables of colours of a material: [`InTurn`] where channels have five bits to seven, else [`Rounded`]. Colours of so few bits with
-    /// [`Rounded`] are dithered the general way, which takes several times as long.
+    /// The type of a material's tables of colours: [`InTurn`] for channels of five to seven bits, else [`Rounded`]. With [`Rounded`] such channels
+    /// would be dithered by the general loop, which takes several times as long.
     type Ramps: Ramps<Self::Stored>;
 
-    /// One channel instead of three.
+    /// Whether the format has one channel instead of three.
     const GRAY: bool;
     /// Bits of red, green and blue (or of grey, three times).
     const DEPTH: [u32; 3];
-    /// Whether channels have so few bits that light of several channels may be rounded to a level of 1/255 first.
+    /// Whether channels have so few bits that the light of several channels may be rounded to a level of 1/255 first.
     const COARSE: bool = {
         let [r, g, b] = Self::DEPTH;
         r < 8 && g < 8 && b < 8
     };
-    /// Whether steps between levels are so wide that a picture needs dither.
+    /// Whether dither is on by default: the steps between levels are wide enough to be seen.
     const DITHERED: bool = Self::DEPTH[2] < 8;
-    /// Whether tables of colours hold finer steps than pixels have, so that loops dither what they take from there.
+    /// Whether tables of colours have finer steps than pixels, so that dither is applied after the look-up.
     const DITHERED_BY_TABLE: bool = Self::GRAY && Self::DITHERED && !Self::Ramps::CHECKERED;
-    /// Bytes that a pixel adds to the picture's checksum.
+    /// Number of bytes that a pixel adds to the picture's checksum.
     const BYTES: usize;
 
-    /// Packs channel values of [`Self::DEPTH`] bits; a grey format looks at the first.
+    /// Packs channel values of [`Self::DEPTH`] bits. A grey format uses the first.
     fn pack(channels: [u32; 3]) -> Self;
 
-    /// The pixel as tables of colours store it.
+    /// Converts the pixel to its form in a table of colours.
     fn stored(self) -> Self::Stored;
 
-    /// The pixel from its stored form.
+    /// Converts the form in a table of colours to a pixel.
     fn from_stored(stored: Self::Stored) -> Self;
 
-    /// What tables of colours store of channels in unsigned Q8.8 that are scaled to [`Self::DEPTH`]: a pixel by a [`dither::threshold`], or
-    /// something finer where they are [`Self::DITHERED_BY_TABLE`].
+    /// The entry of a table of colours for channels in unsigned Q8.8 that are scaled to [`Self::DEPTH`]. This is the pixel by a
+    /// [`dither::threshold`], or a finer value in formats that are [`Self::DITHERED_BY_TABLE`].
     fn tabled(channels: [u32; 3], threshold: u32) -> Self::Stored {
         Self::pack(quantise(channels, Self::DEPTH, threshold).map(u32::from)).stored()
     }
 
-    /// The pixel of what a table of colours holds, with a [`dither::threshold`] where they are [`Self::DITHERED_BY_TABLE`].
+    /// The pixel of a table's entry. The [`dither::threshold`] is used in formats that are [`Self::DITHERED_BY_TABLE`].
     #[inline(always)]
     fn shown(stored: Self::Stored, _threshold: u32) -> Self {
         Self::from_stored(stored)
     }
 
-    /// The pixel twice. Formats of half a word take both from one word, which some processors then store at once.
+    /// The pixel twice. A format of two bytes takes both from one word, so that some processors can store them at once.
     #[inline(always)]
     fn pair(self) -> [Self; 2] {
         [self; 2]
     }
 
-    /// The channel values that were packed.
+    /// The channel values of the pixel, as [`Self::pack`] takes them.
     fn channels(self) -> [u8; 3];
 
-    /// The value that the display is sent, independent of byte order in memory.
+    /// The value that is sent to the display, independent of the order of bytes in memory.
     fn bits(self) -> u32;
 
-    /// What a table of colours holds for a level. Levels are biased and have `BITS` fraction bits, rounding half included.
+    /// Looks up a level in a table of colours. Levels have a bias and `BITS` fraction bits, and include half a step for rounding.
     #[inline(always)]
     fn entry<const BITS: u32>(ramp: &[Self::Stored; RAMP], level: u32) -> Self::Stored {
         ramp[(level >> BITS) as usize % RAMP]
     }
 
-    /// What tables of colours hold for a walked level, see [`Ramps::walked`].
+    /// Looks up a walked level in tables of colours, see [`Ramps::walked`].
     #[inline(always)]
     fn walked(ramps: &Self::Ramps, level: u32) -> Self::Stored {
         if Self::Ramps::CHECKERED {
@@ -98,13 +98,13 @@ pub trait Pixel: Copy + 'static {
         }
     }
 
-    /// The colour of a level, see [`Self::entry`], with a [`dither::threshold`].
+    /// The colour of a level, see [`Self::entry`], by a [`dither::threshold`].
     #[inline(always)]
     fn ramped<const BITS: u32>(ramp: &[Self::Stored; RAMP], level: u32, threshold: u32) -> Self {
         Self::shown(Self::entry::<BITS>(ramp, level), threshold)
     }
 
-    /// The colour of an intensity of three channels, by a [`dither::threshold`].
+    /// The colour of three intensities, by a [`dither::threshold`].
     #[inline(always)]
     fn quantised(intensity: Intensity, threshold: u32) -> Self {
         // A step of a channel is 2^(16 - depth), of which thresholds are 1/128. Armv7-M shifts and clamps by one instruction.
@@ -114,7 +114,7 @@ pub trait Pixel: Copy + 'static {
         Self::pack([channel(r, dr), channel(g, dg), channel(b, db)])
     }
 
-    /// The colour of three levels with [`CHANNEL`] fraction bits, what rounds or dithers each channel included.
+    /// The colour of three levels with [`CHANNEL`] fraction bits. Half a step for rounding, or the dither, has been added to each.
     #[inline(always)]
     fn mixed([r, g, b]: [i32; 3]) -> Self {
         let shifted = |level: i32, depth: u32| level >> (CHANNEL + 8 - depth);
@@ -290,8 +290,8 @@ gray!(Gray4, RawU4, 4);
 gray!(Gray2, RawU2, 2);
 gray!(BinaryColor, RawU1, 1);
 
-/// RGB565 with the high byte first in memory, as serial displays want it: a band can be handed to the bus as it is, without a copy. The
-/// order costs nothing, since colours come from tables.
+/// The format RGB565 with the high byte first in memory, as serial displays expect it. A band can be handed to the bus without a copy. This order
+/// takes no time, because colours come from tables.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, FromBytes, IntoBytes, Immutable, KnownLayout)]
 #[repr(transparent)]
 pub struct Rgb565Be(u16);
@@ -362,7 +362,7 @@ impl Pixel for Rgb565Be {
     }
 }
 
-/// Red and green of three bits, blue of two, in a byte; embedded-graphics has no such format.
+/// The format of red and green in three bits and blue in two, in one byte. embedded-graphics has no such format.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, FromBytes, IntoBytes, Immutable, KnownLayout)]
 #[repr(transparent)]
 pub struct Rgb332(u8);
@@ -420,7 +420,7 @@ impl Pixel for Rgb332 {
     }
 }
 
-/// Checksum of a picture: CRC-32 over the pixels' values, low byte first, row by row from the top.
+/// Checksum of a picture: CRC-32 over the values of its pixels, low byte first, row by row from the top.
 #[derive(Clone)]
 pub struct PictureCrc {
     digest: crc::Digest<'static, u32, crc::Table<1>>,
@@ -437,7 +437,7 @@ impl Default for PictureCrc {
 }
 
 impl PictureCrc {
-    /// The checksum of pixels that follow others, which are summed up elsewhere: see [`Self::append`].
+    /// A checksum for the later pixels of a picture, summed up elsewhere; see [`Self::append`].
     #[must_use]
     pub fn of_rest() -> Self {
         Self { digest: PICTURE.digest_with_initial(0), bytes: 0 }
@@ -452,7 +452,7 @@ impl PictureCrc {
         self.bytes += pixels.len() * C::BYTES;
     }
 
-    /// Adds the pixels of a sum that began as [`Self::of_rest`].
+    /// Adds the pixels of another checksum, which began as [`Self::of_rest`].
     pub fn append(&mut self, rest: Self) {
         // A checksum is linear: that of all bytes is that of the first ones, followed by zeros, plus that of the rest that follows zeros.
         (0..rest.bytes).for_each(|_| self.digest.update(&[0]));

@@ -1,9 +1,9 @@
-//! Tables of colours: what is stored of each level of light.
+//! Tables of colours: the pixel for each level of light.
 //!
-//! A display of five or six bits a channel shows steps where light changes slowly. Its formats have two tables, rounded a quarter of a step
-//! down and up, which a picture takes by turns like the squares of a checkerboard: the eye sees half steps. No pixel computes where it
-//! lies: half of the range of a walked level is added to its step from column to column and from row to row ([`crate::interpolate::Patch`] is exact
-//! modulo 2^32), and the highest bit says which table it is.
+//! A display of five or six bits a channel shows steps where light changes slowly. Its formats have two tables, rounded a quarter of a step down and
+//! up. A picture takes them by turns, like the squares of a checkerboard, and the eye sees half steps. No pixel computes its place on the board: half
+//! of the range of a walked level is added to the level's step from column to column and from row to row ([`crate::interpolate::Patch`] is exact
+//! modulo 2^32), and the highest bit selects the table.
 
 use crate::{
     format::{RAMP, WALK},
@@ -12,28 +12,28 @@ use crate::{
 use core::fmt::Debug;
 use zerocopy::{FromBytes, Immutable, IntoBytes, KnownLayout};
 
-/// The tables of colours of a material, of what a format stores.
+/// The tables of colours of a material. `T` is the type of their entries.
 pub trait Ramps<T: Copy>: FromBytes + IntoBytes + Immutable + KnownLayout + Debug + Sync {
-    /// Whether there are tables for the squares of a checkerboard.
+    /// Whether there is a table for each kind of square of a checkerboard.
     const CHECKERED: bool;
-    /// Fraction bits of a level while it is walked along a span: [`WALK`], or one less where the highest bit is that of the checkerboard.
+    /// Fraction bits of a level while it is walked along a span: [`WALK`], or one less if the highest bit selects the square of the checkerboard.
     const BITS: u32;
 
-    /// The colours on both squares of the checkerboard, or the same twice.
+    /// The tables for the two kinds of squares, or one table twice.
     fn squares(&self) -> [&[T; RAMP]; 2];
 
-    /// The colour of a walked level with [`Self::BITS`] fraction bits, bias and rounding half included; above them stands the square of the
-    /// checkerboard.
+    /// The colour of a walked level with [`Self::BITS`] fraction bits. The level includes bias and half a step for rounding. The bit above it selects
+    /// the square of the checkerboard.
     fn walked(&self, level: u32) -> T;
 
-    /// Fills the tables: `colour` is that of an entry with a [`crate::pixel::dither::threshold`].
+    /// Fills the tables. `colour` makes an entry by its number and a [`crate::pixel::dither::threshold`].
     fn fill(&mut self, dither: bool, colour: impl FnMut(usize, u32) -> T);
 }
 
-/// Rounded colours alone.
+/// One table of rounded colours.
 pub type Rounded<T> = [[T; RAMP]; 1];
 
-/// Two tables for the squares of a checkerboard.
+/// Two tables, for the two kinds of squares of a checkerboard.
 pub type InTurn<T> = [[T; RAMP]; 2];
 
 impl<T: Copy + Debug + FromBytes + IntoBytes + Immutable + KnownLayout + Sync> Ramps<T> for Rounded<T> {

@@ -1,24 +1,24 @@
 //! Counts of triangles that are drawn.
 
-/// How many triangles were drawn without something, and by what. Each counts once, in the band where it begins; slivers do not count, nor do
-/// antialiased triangles. All are 0 unless the feature `skips` is on.
+/// Counts of triangles that were drawn with less work, by what was left out. Each triangle counts once, in the band where it begins. Slivers and
+/// antialiased triangles do not count. All counts are 0 unless the feature `skips` is on.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Counts {
-    /// Without depth test.
+    /// Triangles drawn without depth test.
     pub without_depth: u32,
-    /// Without the highlight of a light, for each such light.
+    /// Highlights of single lights that were left out on triangles.
     pub without_highlight: u32,
-    /// Without a light, for each such light.
+    /// Lights that were left out on triangles.
     pub without_light: u32,
-    /// Not at all in a band, because nearer objects hide theirs there, or because it has none of their pixels; for each such band.
+    /// Triangles that were left out in a band, because nearer objects hide their object there, or because they have no pixels in it.
     pub hidden: u32,
-    /// By each choice of a method that chooses.
+    /// Triangles by each choice of a method such as `auto`: one colour, linear, quadratic levels, quadratic cosines, Phong shading.
     pub choices: [u32; 5],
 }
 
 impl Counts {
-    /// The sums of both.
+    /// Adds the counts of two parts.
     #[must_use]
     pub fn and(self, other: Self) -> Self {
         let [one, linear, quadratic, cosines, exact] = self.choices;

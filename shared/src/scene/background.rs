@@ -1,12 +1,12 @@
-//! What is seen where no triangle is.
+//! The background of a scene.
 
-/// What is seen where no triangle is; red, green and blue.
+/// What is seen where no triangle is drawn.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub enum Background {
-    /// One colour. Formats of fewer bits a channel keep the upper ones.
+    /// One colour: red, green, blue. A pixel format of fewer bits a channel keeps the upper bits.
     Colour([u8; 3]),
-    /// A colour for each row: that of the first row, that of the last one, and even steps between them, dithered so that they are not seen.
+    /// A vertical gradient: even steps from the colour of the first row to the colour of the last. It is dithered, so that the steps are not seen.
     Gradient {
         /// Colour of the first row: red, green, blue.
         top: [u8; 3],
@@ -16,7 +16,7 @@ pub enum Background {
 }
 
 impl Background {
-    /// Between two colours; one if they are the same.
+    /// The gradient between two colours, or one colour if they are equal.
     pub(crate) fn between(top: [u8; 3], bottom: [u8; 3]) -> Self {
         if top == bottom { Self::Colour(top) } else { Self::Gradient { top, bottom } }
     }

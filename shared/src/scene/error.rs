@@ -1,49 +1,50 @@
-//! Why a scene cannot be as a program wants it.
+//! Errors of changes to a scene.
 
 use core::fmt;
 
-/// Why a scene cannot be as a program wants it. The scene stays as it was.
+/// The reason why a scene cannot be changed as a program asks. The scene stays unchanged.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub enum SceneError {
-    /// A rotation is none: a quaternion or an axis is zero, a matrix is not orthonormal or mirrors, or one looks along the vertical.
+    /// This is not a rotation: a quaternion or an axis is zero, a matrix is not orthonormal or mirrors, or a viewing direction is zero or parallel to
+    /// `up`.
     Rotation,
     /// A direction is zero, or not a number.
     Direction,
-    /// A position is farther than [`crate::scene::MAX_POSITION`] from the origin along some axis.
+    /// A position is farther than [`crate::scene::MAX_POSITION`] from the origin along an axis.
     Position,
-    /// A scale is none of those from [`crate::scene::MIN_SCALE`] to [`crate::scene::MAX_SCALE`].
+    /// A scale is less than [`crate::scene::MIN_SCALE`] or more than [`crate::scene::MAX_SCALE`].
     Scale,
     /// There is no object with this index.
     Object {
-        /// The index.
+        /// Index of the object.
         index: usize,
     },
-    /// The stream has no such meshes, or the first of them is a coarser level of another.
+    /// The stream has no meshes with these indices, or the first of them is a coarser level of another mesh.
     Meshes,
     /// The stream has no material with this index.
     Material {
-        /// The index.
+        /// Index of the material.
         index: usize,
     },
     /// The layout has room for no more objects.
     Objects {
-        /// How many there is room for.
+        /// Number of objects that the layout has room for.
         room: usize,
     },
     /// A value of the camera, a light or a material is out of its range.
     Range {
-        /// Which value.
+        /// Name of the value.
         name: &'static str,
     },
-    /// The shading method needs directional lights and an infinitely far viewer.
+    /// The shading method needs directional lights and an infinitely far viewer, and the scene would have others.
     Light,
-    /// Light is interpolated in perspective, which the shading method does for orthographic cameras only.
+    /// The shading method cannot interpolate light in perspective, so it needs an orthographic camera while this is on.
     Perspective,
-    /// The shading method needs larger exponents of highlights.
+    /// The exponent of a material is too small for the shading method.
     Exponent {
-        /// The smallest one.
+        /// The smallest exponent that the method can draw.
         least: u16,
     },
 }

@@ -1,4 +1,4 @@
-//! What is drawn: objects in the world, lights, a camera. A program changes it between frames.
+//! The scene: objects, lights, a camera. A program can change it between frames.
 //!
 //! ```
 //! use embedded_graphics_core::pixelcolor::Rgb565;
@@ -49,7 +49,7 @@ use crate::{
 use core::{mem, ops::Range};
 use zerocopy::{FromBytes, Immutable, IntoBytes, KnownLayout};
 
-/// What the shading method in use can draw; a scene is not changed to anything else.
+/// Limits of the shading method in use. A change of the scene beyond them is refused.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Limits {
     /// Near lights and a local viewer.
@@ -67,17 +67,16 @@ pub(crate) struct SceneMaterial {
     pub(crate) is_stale: u16,
 }
 
-/// What is drawn: objects that move in the world, the materials of a stream, lights, a camera, and a background.
+/// What is drawn: objects, the materials of a stream, lights, a camera, and a background.
 ///
-/// At first it is what the stream says: its camera, its lights, and one object that consists of all its meshes. Whatever a program changes is
-/// checked at once, and drawn by the next [`crate::Renderer::draw`]. What has moved
-/// is placed anew, and where camera or lights have, all objects are; nothing else is computed again. A changed material computes its own tables
-/// anew, and a changed colour or number of lights those of all materials.
+/// A scene begins with the camera and the lights of the stream, and one object that consists of all its meshes. A change is checked at once, and the
+/// next [`crate::Renderer::draw`] shows it. Moved objects are placed again. Moved lights and cameras place all objects again. A changed material
+/// computes its tables again. Changed colours of lights, or another number of lights, compute the tables of all materials again.
 ///
-/// The world is right-handed, and lengths in it are units of object space. Objects lie within 16 units of its origin along each axis, and are
-/// scaled by 1/16 to 8. Places in the space of the eye are exact to 2^-14 units. Depth is 16 bits of `near / z`: at the depth `z` it tells
-/// surfaces apart that are `z² / (near 2^16)` from one another, so that where the farthest object is 30 times as far as the near plane,
-/// surfaces a thousandth of that range apart do not fight.
+/// The world is right-handed; its lengths are in units of object space. Objects lie within 16 units of the origin along each axis, at a scale of 1/16
+/// to 8. Positions in eye space are exact to 2^-14 units. Depth has 16 bits, of `near / z`. Surfaces at the depth `z` are told apart if they are `z²
+/// / (near 2^16)` units from one another. If the farthest object is 30 times as far as the near plane, surfaces at a thousandth of that range from
+/// one another do not fight.
 #[derive(Debug)]
 pub struct Scene<'a> {
     pub(crate) stream: Stream<'a>,
@@ -142,8 +141,8 @@ impl<'a> Scene<'a> {
         scene
     }
 
-    /// Puts the camera where the stream's orbit has it in frame `number`, and objects, lights and camera where its tracks have them. All else
-    /// stays as it is.
+    /// Moves the camera to its place on the stream's orbit in frame `number`, and moves objects, lights and the camera along the stream's tracks.
+    /// Nothing else changes.
     pub fn play(&mut self, number: u32) {
         let place = self.place_of(number);
         if place != self.place {
@@ -210,7 +209,7 @@ impl<'a> Scene<'a> {
         self.is_unchanged() && self.place == self.place_of(number) && self.played == self.frame_of(number)
     }
 
-    /// Whether nothing has changed since the latest frame.
+    /// Whether the scene is unchanged since the latest frame.
     #[must_use]
     pub fn is_unchanged(&self) -> bool {
         !self.changed
@@ -233,19 +232,20 @@ impl<'a> Scene<'a> {
         self.set_repainted();
     }
 
-    /// The objects. Where two are equally near, the one is seen whose origin is nearer, or else the earlier.
+    /// The objects. Of two surfaces that are equally near, the one is seen whose object has the nearer origin; if these are equally near, the one of
+    /// the earlier object.
     #[must_use]
     pub fn objects(&self) -> &[Object] {
         self.objects.get(..self.count).unwrap_or_default()
     }
 
-    /// Removes all objects. To be called before others are added, as at first there is one: the whole stream.
+    /// Removes all objects. Call it before adding your own objects: a new scene has one object, the whole stream.
     pub fn clear(&mut self) {
         self.count = 0;
         self.rearrange();
     }
 
-    /// Adds an object that consists of these meshes of the stream, and returns its index. Several objects may have the same meshes.
+    /// Adds an object that consists of meshes of the stream, and returns its index. Several objects can have the same meshes.
     ///
     /// # Errors
     /// When the stream has no such meshes, or the layout has no room: see [`crate::Layout::objects`].
@@ -302,7 +302,7 @@ impl<'a> Scene<'a> {
         Ok(())
     }
 
-    /// Gives all meshes of object `index` one material of the stream, or each its own.
+    /// Draws all meshes of object `index` with one material of the stream, or with `None` each mesh with its own.
     ///
     /// # Errors
     /// When there is no such object or material.
@@ -316,12 +316,12 @@ impl<'a> Scene<'a> {
         Ok(())
     }
 
-    /// The materials: those of the stream, until they are changed.
+    /// The materials. They are the stream's until they are changed.
     pub fn materials(&self) -> impl ExactSizeIterator<Item = &Material> {
         self.materials.iter().map(|slot| &slot.material)
     }
 
-    /// Changes material `index`, whose tables the next frame computes anew.
+    /// Changes material `index`. The next frame computes its tables again.
     ///
     /// # Errors
     /// When there is no such material, it is out of range, or the shading method cannot draw it.
@@ -354,7 +354,7 @@ impl<'a> Scene<'a> {
         &self.lights
     }
 
-    /// Changes the lights. Where their number or colours change, the next frame computes the tables of all materials anew.
+    /// Changes the lights. If their number or colours change, the next frame computes the tables of all materials again.
     ///
     /// # Errors
     /// When there are more than [`MAX_LIGHTS`], one is out of range, or the shading method cannot draw near ones.
@@ -372,7 +372,7 @@ impl<'a> Scene<'a> {
         Ok(())
     }
 
-    /// Changes the light that comes from everywhere; the next frame computes the tables of all materials anew.
+    /// Changes the ambient light. The next frame computes the tables of all materials again.
     ///
     /// # Errors
     /// When it is out of range.
@@ -384,19 +384,19 @@ impl<'a> Scene<'a> {
         Ok(())
     }
 
-    /// What is seen where no triangle is.
+    /// The background, which is seen where no triangle is drawn.
     #[must_use]
     pub fn background(&self) -> Background {
         self.background
     }
 
-    /// Changes what is seen where no triangle is: a colour, red, green and blue, or a gradient.
+    /// Changes the background: one colour (red, green, blue) or a vertical gradient.
     pub fn set_background(&mut self, background: impl Into<Background>) {
         self.background = background.into();
         self.set_repainted();
     }
 
-    /// The camera. It may orbit: see [`Self::play`].
+    /// The camera. The stream may let it orbit, see [`Self::play`].
     #[must_use]
     pub fn camera(&self) -> &Camera {
         &self.camera
@@ -422,7 +422,7 @@ impl<'a> Scene<'a> {
         Ok(())
     }
 
-    /// Moves the camera to `eye`, so that it looks at `target` and sees `up` upwards. It orbits no more; its lens stays.
+    /// Moves the camera to `eye`. It looks at `target`, and `up` points upwards in the picture. An orbit of the stream ends; the projection stays.
     ///
     /// # Errors
     /// When eye and target are one point, or `up` is zero or points along the way, or the camera is farther than 16 units from the origin.
@@ -430,7 +430,8 @@ impl<'a> Scene<'a> {
         self.set_camera_pose(&Pose::looking_at(eye, target, up)?)
     }
 
-    /// Moves the camera, which looks along the z axis of `pose` and sees its y axis upwards. It orbits no more; its lens stays.
+    /// Moves the camera. It looks along the z axis of `pose`, whose y axis points upwards in the picture. An orbit of the stream ends; the projection
+    /// stays.
     ///
     /// # Errors
     /// When the camera is farther than 16 units from the origin of the world along one of its own axes.

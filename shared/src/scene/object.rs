@@ -10,25 +10,25 @@ use crate::{
 use core::ops::Range;
 use zerocopy::{FromBytes, Immutable, IntoBytes, KnownLayout};
 
-/// One object of a scene: meshes that move together.
+/// An object of a scene: meshes that move together.
 #[derive(FromBytes, IntoBytes, Immutable, KnownLayout, Clone, Copy, Debug, PartialEq, Eq)]
 #[repr(C)]
 pub struct Object {
     pub(crate) pose: Pose,
-    /// Index of its first [`Mesh`], and one past the last.
+    /// Index of the object's first [`Mesh`], and one past the last.
     meshes: [u16; 2],
-    /// Material of all its meshes, or [`OWN_MATERIALS`].
+    /// Material of all meshes of the object, or [`OWN_MATERIALS`].
     pub(crate) material: u16,
     pub(crate) hidden: u16,
-    /// Triangles of its meshes, those of coarser levels as well.
+    /// Number of triangles of the object's meshes, coarser levels included.
     pub(crate) span: u32,
-    /// Triangles of its meshes as they are.
+    /// Number of triangles of the object's meshes, without coarser levels.
     pub(crate) triangles: u32,
     pub(crate) vertices: u32,
-    /// Whether its meshes have coarser levels.
+    /// Whether the object's meshes have coarser levels.
     pub(crate) has_levels: u16,
     pub(crate) bounds: BoundingVolume,
-    /// Whether it lies otherwise than in the latest frame.
+    /// Whether the object has moved since the latest frame.
     pub(crate) has_moved: u32,
 }
 
@@ -70,26 +70,26 @@ impl Object {
         })
     }
 
-    /// How it lies in the world.
+    /// The object's rotation, position and scale in the world.
     #[must_use]
     pub fn pose(&self) -> Pose {
         self.pose
     }
 
-    /// Indices of its meshes in the stream.
+    /// Indices of the object's meshes in the stream.
     #[must_use]
     pub fn meshes(&self) -> Range<u16> {
         let [first, end] = self.meshes;
         first..end
     }
 
-    /// The material that all of its meshes have in place of their own.
+    /// The material that all meshes of the object have; `None` if each has its own.
     #[must_use]
     pub fn material(&self) -> Option<u16> {
         (self.material != OWN_MATERIALS).then_some(self.material)
     }
 
-    /// Whether it is drawn.
+    /// Whether the object is drawn.
     #[must_use]
     pub fn is_visible(&self) -> bool {
         self.hidden == 0

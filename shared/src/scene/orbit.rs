@@ -1,4 +1,4 @@
-//! The ready-made animation of a stream: its camera orbits.
+//! The animation of a stream whose camera orbits.
 
 use crate::{
     format::ROTATION,

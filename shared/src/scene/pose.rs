@@ -1,4 +1,4 @@
-//! How an object lies in the world.
+//! Poses: rotation, position and scale of an object in the world.
 
 use crate::{
     arch::product::product,
@@ -20,10 +20,10 @@ pub const MIN_SCALE: Scale = Scale::from_bits(stream::MIN_SCALE);
 /// Largest scale of an object: 8.
 pub const MAX_SCALE: Scale = Scale::from_bits(stream::MAX_SCALE);
 
-/// How an object lies in the world: it is scaled, then rotated about its origin, then moved.
+/// Rotation, position and scale of an object in the world. The object is scaled, then rotated about its origin, then moved.
 ///
-/// The rotation is kept as a unit quaternion, which each step puts back to the length 1: however many rotations are put one after the other,
-/// it stays one, and the matrix that is made of it is orthonormal. The world is right-handed.
+/// The rotation is a unit quaternion. Each operation normalises it again, so errors do not add up over many rotations, and the rotation matrix is
+/// orthonormal. The world is right-handed.
 ///
 /// ```
 /// use microphong::{Pose, SceneError, fixed::types::{I18F14, U0F32, U16F16}};
@@ -52,17 +52,16 @@ pub struct Pose {
 /// One, Q2.30.
 const ONE: i32 = 1 << ROTATION;
 
-/// Largest error of the length of a [`Pose`]'s quaternion: two units of Q2.30.
+/// Largest difference of the length of a [`Pose`]'s quaternion from 1: two units of Q2.30.
 pub const QUATERNION_ERROR: f64 = 2.0 / (1u32 << 30) as f64;
-/// Largest change of a rotation by one step of [`Pose::turned`] beyond what was asked for, in radians: however many steps there are, errors
-/// add up to no more than so much for each of them.
+/// Largest error of the rotation in one call of [`Pose::turned`], in radians. Errors of several calls add up to at most this much a call.
 pub const STEP_ERROR: f64 = 1.0e-8;
 
 impl Pose {
     /// The pose of an object at the origin, not rotated, at the size of its mesh.
     pub const IDENTITY: Self = Self { rotation: [ONE, 0, 0, 0], position: [0; 3], scale: 1 << 16 };
 
-    /// The rotation of a quaternion w, x, y, z of any length.
+    /// The rotation of a quaternion w, x, y, z, of any length but zero.
     ///
     /// # Errors
     /// When all four are zero.
@@ -70,7 +69,7 @@ impl Pose {
         Self::rotated(quaternion.map(|c| c.to_bits().into()))
     }
 
-    /// The rotation of a matrix, by rows, that takes object space to the world.
+    /// The rotation of a matrix, given by rows. It takes object space to the world.
     ///
     /// # Errors
     /// When it mirrors, or is not orthonormal: squared lengths to 1/256, products of rows to 1/256.
@@ -109,7 +108,7 @@ impl Pose {
         Self::rotated(longest.1)
     }
 
-    /// The rotation by an angle about an axis of any length, counter-clockwise seen from its tip.
+    /// The rotation by an angle about an axis of any length but zero. It is counter-clockwise as seen from the tip of the axis.
     ///
     /// # Errors
     /// When the axis is zero.
@@ -122,14 +121,14 @@ impl Pose {
         Self::rotated([cos.into(), x, y, z])
     }
 
-    /// Euler angles: rolled about z, then pitched about x, then turned by `yaw` about y, all axes of the world.
+    /// The rotation by Euler angles: first `roll` about z, then `pitch` about x, then `yaw` about y. All are axes of the world.
     #[must_use]
     pub fn from_euler(yaw: Angle, pitch: Angle, roll: Angle) -> Self {
         let about = |axis, angle| Self::about(axis, angle).unwrap_or(Self::IDENTITY);
         about([0, 0, 1], roll).turned(&about([1, 0, 0], pitch)).turned(&about([0, 1, 0], yaw))
     }
 
-    /// At `position` with its z axis towards `target`, and its y axis as near to `up` as can be.
+    /// A pose at `position` whose z axis points to `target`, and whose y axis is as close to `up` as possible.
     ///
     /// # Errors
     /// When both are one point, or `up` is zero or points along the way, or a coordinate is out of range.
@@ -149,7 +148,7 @@ impl Pose {
         Self::from_matrix(rows)?.at(position)
     }
 
-    /// From floating-point numbers, as sensors and other programs have them: a quaternion w, x, y, z, a position and a scale.
+    /// Converts floating-point numbers: a quaternion w, x, y, z, a position in units of the world, and a scale.
     ///
     /// # Errors
     /// When one of them is out of range or not a number.
@@ -166,7 +165,7 @@ impl Pose {
         Self::rotated(rotation)?.at(place)?.scaled(scale)
     }
 
-    /// This pose at another position.
+    /// Copies this pose to another position.
     ///
     /// # Errors
     /// When a coordinate is more than [`MAX_POSITION`] in size.
@@ -175,7 +174,7 @@ impl Pose {
         if within { Ok(Self { position: position.map(Length::to_bits), ..self }) } else { Err(SceneError::Position) }
     }
 
-    /// This pose at another scale.
+    /// Changes the scale of this pose.
     ///
     /// # Errors
     /// When it is none of [`MIN_SCALE`] to [`MAX_SCALE`].
@@ -183,9 +182,9 @@ impl Pose {
         if (MIN_SCALE..=MAX_SCALE).contains(&scale) { Ok(Self { scale: scale.to_bits(), ..self }) } else { Err(SceneError::Scale) }
     }
 
-    /// This pose, then rotated by the rotation of `other`, about the axes of the world and where it is.
+    /// Rotates this pose by the rotation of `other`, about the axes of the world. The position stays.
     ///
-    /// Error: at most [`STEP_ERROR`] (tests::steps); the quaternion's length is 1 to [`QUATERNION_ERROR`].
+    /// Error: at most [`STEP_ERROR`] (tests::steps). The length of the quaternion is within [`QUATERNION_ERROR`] of 1.
     #[must_use]
     pub fn turned(self, other: &Self) -> Self {
         let ([a, b, c, d], [w, x, y, z]) = (other.rotation.map(i64::from), self.rotation.map(i64::from));
@@ -223,19 +222,19 @@ impl Pose {
         *self == Self::IDENTITY
     }
 
-    /// Unit quaternion w, x, y, z.
+    /// The rotation, as a unit quaternion w, x, y, z.
     #[must_use]
     pub fn quaternion(&self) -> [Rotation; 4] {
         self.rotation.map(Rotation::from_bits)
     }
 
-    /// Where the origin of the object is.
+    /// The position of the object's origin in the world.
     #[must_use]
     pub fn position(&self) -> [Length; 3] {
         self.position.map(Length::from_bits)
     }
 
-    /// How large the object is.
+    /// The scale of the object: 1 is the size of its mesh.
     #[must_use]
     pub fn scale(&self) -> Scale {
         Scale::from_bits(self.scale)

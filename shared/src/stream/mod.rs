@@ -1,7 +1,6 @@
-//! Triangle streams: bytes become a checked view of meshes, materials, lights and camera.
+//! Triangle streams: a checked view of meshes, materials, lights and camera in the bytes of a file.
 //!
-//! [`Stream::parse`] checks everything once: length, checksum, every index and every range. The arithmetic of rendering relies on these
-//! checks and repeats none of them.
+//! [`Stream::parse`] checks length, checksum, all indices and all ranges, once. Rendering relies on these checks and repeats none of them.
 
 mod names;
 pub mod record;
@@ -35,68 +34,68 @@ macro_rules! include_stream {
 /// A checked stream, which borrows the bytes that it was parsed from.
 #[derive(Clone, Copy, Debug)]
 pub struct Stream<'a> {
-    /// Counts, camera, background.
+    /// Numbers of records, camera and background.
     pub header: &'a Header,
-    /// Runs of vertices and triangles, each mesh followed by its coarser levels.
+    /// The meshes. Each is followed by its coarser levels of detail.
     pub meshes: &'a [Mesh],
     /// Colours and exponents of all materials.
     pub materials: &'a [Material],
-    /// The lights, each of which shines on all meshes.
+    /// The lights. Each shines on all meshes.
     pub lights: &'a [Light],
-    /// Objects of the scene; none if it is one object of all meshes.
+    /// Objects of the scene. If there are none, the scene is one object of all meshes.
     pub instances: &'a [Instance],
-    /// What moves, and how.
+    /// Movements of objects, lights and the camera.
     pub tracks: &'a [Track],
     /// Keys of all tracks.
     pub keys: &'a [Key],
     /// Vertices of all meshes.
     pub vertices: &'a [Vertex],
-    /// Triangles of all meshes and of all of their levels.
+    /// Triangles of all meshes and of their levels of detail.
     pub triangles: &'a [Triangle],
-    /// Texts over the picture.
+    /// Texts that are drawn over the picture.
     pub labels: &'a [Label],
-    /// Names of the meshes, as they lie in flash; none if this is empty. [`Stream::names`] reads them.
+    /// Names of the meshes as bytes of the file; empty if there are none. [`Stream::names`] reads them.
     pub names: &'a [u8],
 }
 
-/// Why bytes are not a valid stream.
+/// The reason why bytes are not a valid stream.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[non_exhaustive]
 pub enum StreamError {
-    /// The slice does not start at a multiple of four: wrap it in [`Aligned`].
+    /// The slice does not start at a multiple of four bytes. [`Aligned`] or [`crate::include_stream!`] aligns it.
     Misaligned,
-    /// Fewer bytes than the header, or than the header says.
+    /// The slice is shorter than the stream.
     Truncated {
-        /// Bytes needed.
+        /// Number of bytes that are needed.
         need: u32,
-        /// Bytes there.
+        /// Number of bytes in the slice.
         have: u32,
     },
-    /// The first four bytes are not [`MAGIC`].
+    /// The bytes are not a stream: the first four are not [`MAGIC`].
     Magic,
-    /// The bytes have another version of the format.
+    /// The stream has another version of the format. `microphong convert` makes it again.
     Version {
-        /// Version found.
+        /// Version of the stream.
         found: u16,
     },
     /// The checksum does not match: the bytes have changed since they were written.
     Checksum {
-        /// CRC in the header.
+        /// Checksum in the header.
         stored: u32,
-        /// CRC of the bytes.
+        /// Checksum of the bytes.
         computed: u32,
     },
-    /// The length is less than the counts ask for.
+    /// The length in the header is less than the records take.
     Length {
-        /// Bytes that the counts ask for.
+        /// Number of bytes that the records take.
         need: u32,
-        /// Bytes that the header claims.
+        /// Number of bytes that the header names.
         claimed: u32,
     },
     /// A field has a value outside its range.
     Field {
-        /// Which field.
+        /// Name of the field.
         name: &'static str,
         /// Index of the record that holds it.
         record: u32,
@@ -125,7 +124,7 @@ impl fmt::Display for StreamError {
 
 impl core::error::Error for StreamError {}
 
-/// CRC-32 (ISO-HDLC), the checksum of streams and of pictures. The small table: flash is dearer than the time of one check.
+/// The algorithm of the checksums of streams and pictures: CRC-32 (ISO-HDLC). It uses a small table, which saves flash.
 #[doc(hidden)]
 pub const CRC: crc::Crc<u32, crc::NoTable> = crc::Crc::<u32, crc::NoTable>::new(&crc::CRC_32_ISO_HDLC);
 
@@ -140,7 +139,7 @@ fn checksum(bytes: &[u8]) -> u32 {
     digest.finalize()
 }
 
-/// Writes the checksum that `bytes` should have into their header: the last step of a writer.
+/// Writes the checksum of `bytes` into their header. A program that writes streams does this last.
 #[doc(hidden)]
 pub fn seal(bytes: &mut [u8]) {
     let crc = checksum(bytes);
@@ -160,7 +159,7 @@ fn take<'a, T: FromBytes + Immutable + KnownLayout>(bytes: &mut &'a [u8], count:
     Ok(records)
 }
 
-/// Bytes of a stream with these counts and without names; `None` beyond 4 GiB.
+/// Length in bytes of a stream with the numbers of records in `header`, without names; `None` beyond 4 GiB.
 #[doc(hidden)]
 #[must_use]
 pub fn length(header: &Header) -> Option<u32> {
@@ -180,7 +179,7 @@ pub fn length(header: &Header) -> Option<u32> {
 }
 
 impl<'a> Stream<'a> {
-    /// Checks `bytes` once and for all. Bytes behind the stream's own length are ignored.
+    /// Checks `bytes` and returns the stream in them. Bytes behind the stream's own length are ignored.
     ///
     /// # Errors
     /// The first fault that is found, with its place.
@@ -322,14 +321,14 @@ impl<'a> Stream<'a> {
         self.keys.get(track.first_key as usize..)?.get(..track.keys as usize)
     }
 
-    /// Whether all lights are directional and the viewer is infinitely far.
+    /// Whether all lights are directional and the viewer is infinitely far, so that directions are the same for all points.
     #[must_use]
     pub fn is_constant(&self) -> bool {
         let infinite = self.header.camera.viewer == VIEWER_INFINITE || self.header.camera.projection == ORTHOGRAPHIC;
         infinite && self.lights.iter().all(|light| light.kind == DIRECTIONAL)
     }
 
-    /// Whether the camera is perspective, so that rays meet in the eye.
+    /// Whether the camera is a perspective one, whose rays meet in the eye.
     #[must_use]
     pub fn is_perspective(&self) -> bool {
         self.header.camera.projection == PERSPECTIVE
@@ -440,19 +439,19 @@ fn level(meshes: &[Mesh], i: usize, error: u16) -> Option<&Mesh> {
 
 /// Largest exponent of a highlight.
 pub const MAX_EXPONENT: u16 = 1024;
-/// Largest reflectance or light, [`crate::format::Gain`]: 2.
+/// Largest reflectance, or colour of a light, as the bits of a [`crate::format::Gain`]: 2.
 pub const MAX_GAIN: u16 = 2 << UNIT;
-/// Largest component of a translation or a light's position, [`crate::format::Length`]: 16 units.
+/// Largest component of a translation or of a light's position, as the bits of a [`crate::format::Length`]: 16 units.
 pub const MAX_LENGTH: i32 = 16 << UNIT;
-/// Least scale of an object, [`crate::format::Scale`]: 1/16.
+/// Smallest scale of an object, as the bits of a [`crate::format::Scale`]: 1/16.
 pub const MIN_SCALE: u32 = 1 << 12;
-/// Largest scale of an object, [`crate::format::Scale`]: 8.
+/// Largest scale of an object, as the bits of a [`crate::format::Scale`]: 8.
 pub const MAX_SCALE: u32 = 8 << 16;
-/// Smallest distance of the near plane, [`crate::format::Length`]: 1/64.
+/// Smallest distance of the near plane, as the bits of a [`crate::format::Length`]: 1/64 unit.
 pub const MIN_NEAR: i32 = 1 << (UNIT - 6);
-/// Smallest focal length, Q16.16: 1/16.
+/// Smallest focal length, as the bits of a [`crate::format::Focal`]: 1/16.
 pub const MIN_FOCAL: u32 = 1 << 12;
-/// Largest focal length, Q16.16: 16.
+/// Largest focal length, as the bits of a [`crate::format::Focal`]: 16.
 pub const MAX_FOCAL: u32 = 16 << 16;
 
 fn within(c: i32, limit: i32) -> bool {

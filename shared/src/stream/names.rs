@@ -1,17 +1,17 @@
-//! Names of meshes: optional, behind all records, and read only where a program asks for one.
+//! Names of meshes. They are optional, follow all other records, and are read only if a program asks for one.
 //!
-//! Each [`Mesh`] record has an entry: a byte, which is the length of its name, and the name in UTF-8. A length of 0 continues the object
-//! before: an object of several materials has several meshes, and a mesh may have coarser levels.
+//! Each [`Mesh`] record has an entry: one byte for the length of its name, and the name in UTF-8. A length of 0 means that the mesh belongs to the
+//! object of the mesh before. An object of several materials has several meshes, and a mesh may have coarser levels.
 
 use super::{Stream, StreamError, record::Mesh};
 use core::{fmt, ops::Range, str};
 
-/// Bytes that a name may have.
+/// Largest length of a name, in bytes.
 pub const MAX_NAME: usize = u8::MAX as usize;
 
-/// The objects of a stream by name, in its order, each with the indices of its meshes; made by [`Stream::names`].
+/// The objects of a stream: names, each with the indices of its meshes. [`Stream::names`] makes this iterator.
 ///
-/// An entry that is not valid gives an error, and ends the names.
+/// An invalid entry gives an error and ends the iteration.
 #[derive(Clone, Debug)]
 pub struct Names<'a> {
     meshes: &'a [Mesh],
@@ -54,10 +54,10 @@ impl<'a> Iterator for Names<'a> {
     }
 }
 
-/// No object of the stream has this name. Its text lists the names that there are.
+/// The stream has no object of this name. The message lists the names that it has.
 #[derive(Clone, Debug)]
 pub struct UnknownMesh<'a> {
-    /// The name that was asked for.
+    /// The name that the program asked for.
     pub name: &'a str,
     /// The names of the stream.
     pub names: Names<'a>,
@@ -91,15 +91,15 @@ impl defmt::Format for UnknownMesh<'_> {
 }
 
 impl<'a> Stream<'a> {
-    /// The objects by name, in the order of their meshes; nothing if the stream has no names.
+    /// The objects of the stream by name, in the order of their meshes; empty if the stream has no names.
     ///
-    /// [`Stream::parse`] leaves the names unchecked, so that a program which asks for none has no code for them. They are checked here.
+    /// [`Stream::parse`] does not check the names, so that a program that asks for none contains no code for them. This method checks them.
     #[must_use]
     pub fn names(&self) -> Names<'a> {
         Names { meshes: self.meshes, entries: self.names, next: 0 }
     }
 
-    /// The meshes of the object `name`, as [`crate::Scene::add`] takes them.
+    /// The indices of the meshes of the object `name`, for [`crate::Scene::add`].
     ///
     /// ```no_run
     /// # use microphong::{Pose, Renderer, Stream, pixel::Pixel};

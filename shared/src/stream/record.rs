@@ -1,10 +1,9 @@
-//! The records of a triangle stream, exactly as they lie in flash.
+//! The records of a triangle stream, in the layout that they have in flash.
 //!
-//! Little-endian, no padding, read in place. Host and core share these types,
-//! so there is one definition of the format.
+//! Records are little-endian, have no padding, and are read in place. Host and core share these types, so the format is defined once.
 //!
-//! Fields are plain integers, as they are read in place. Each has a method of its name that gives its value as a number of the
-//! crate [`fixed`], and `new` makes a record of such numbers; [`crate::Stream::parse`] checks what does not follow from the type.
+//! Fields are plain integers. A method of the same name returns a field as a number of the crate [`fixed`], and `new` makes a record from such
+//! numbers. [`crate::Stream::parse`] checks the ranges.
 
 #[doc(no_inline)]
 pub use crate::format::{
@@ -17,21 +16,21 @@ compile_error!("streams are read in place and are little-endian");
 
 /// First four bytes of every stream.
 pub const MAGIC: [u8; 4] = *b"mTRI";
-/// The version of the format that this core reads and the host writes.
+/// Version of the format.
 pub const VERSION: u16 = 7;
 
-/// The start of a stream. The arrays follow in the order of the counts, and the names of meshes behind them, if there are any: see
+/// The start of a stream. The records follow in the order of their numbers here. Names of meshes follow last, if there are any: see
 /// [`crate::Stream::names`].
 #[derive(FromBytes, IntoBytes, Immutable, KnownLayout, Clone, Copy, Debug, PartialEq, Eq)]
 #[repr(C)]
 pub struct Header {
-    /// [`MAGIC`].
+    /// First four bytes of every stream: [`MAGIC`].
     pub magic: [u8; 4],
-    /// [`VERSION`].
+    /// Version of the format: [`VERSION`].
     pub version: u16,
-    /// Shading method to use unless the caller names one: its [`crate::method::Facts::id`].
+    /// Number of the shading method, see [`crate::method::Facts::id`]. A program may use another one.
     pub shader: u16,
-    /// Bytes in the whole stream, this header included.
+    /// Length of the stream in bytes, header and names included.
     pub length: u32,
     /// CRC-32 (ISO-HDLC: polynomial 04C11DB7, reflected) of all other bytes.
     pub crc: u32,
@@ -53,16 +52,15 @@ pub struct Header {
     pub tracks: u16,
     /// Number of [`Key`] records.
     pub keys: u32,
-    /// Colour where no triangle is drawn, in the first row: red, green, blue.
+    /// Background colour of the first row: red, green, blue.
     pub background: [u8; 3],
-    /// How far a pixel may be off from Phong shading by a method that keeps to a budget, [`ErrorBudget`] from 1/2 to 16.
+    /// Largest error of a pixel against Phong shading by a method with an error budget, in 1/255 of full intensity: [`ErrorBudget`] from 1/2 to 16.
     pub budget: u8,
-    /// Ambient light, red, green, blue, [`Gain`] at most 2; it is multiplied by the ambient colour of a material.
+    /// Ambient light: red, green, blue, each a [`Gain`] of at most 2. It is multiplied by a material's ambient colour.
     pub ambient: [u16; 3],
-    /// No vertex lies farther from the origin of object space, [`Radius`], rounded up.
+    /// Radius of the ball about the origin of object space that contains all vertices, [`Radius`], rounded up.
     pub radius: u16,
-    /// Colour where no triangle is drawn, in the last row. If it is that of the first row all rows have it, else the rows between have even
-    /// steps.
+    /// Background colour of the last row: red, green, blue. The rows between have even steps from the first row's colour to this one.
     pub background_bottom: [u8; 3],
     /// Number of [`Label`] records.
     pub labels: u8,
@@ -71,13 +69,13 @@ pub struct Header {
 }
 
 impl Header {
-    /// Ambient light.
+    /// Ambient light: red, green, blue; 1 is full intensity.
     #[must_use]
     pub fn ambient(&self) -> [Gain; 3] {
         self.ambient.map(Gain::from_bits)
     }
 
-    /// How far a pixel may be off from Phong shading by a method that keeps to a budget, in 1/255 of full intensity.
+    /// Largest error of a pixel against Phong shading by a method with an error budget, in 1/255 of full intensity.
     #[must_use]
     pub fn budget(&self) -> ErrorBudget {
         ErrorBudget::from_bits(self.budget)
@@ -90,42 +88,42 @@ impl Header {
     }
 }
 
-/// Highlights use one direction to the eye for the whole scene: cheaper, and constant H for directional lights.
+/// The viewer is infinitely far: highlights use one direction to the eye for the whole scene. This is cheaper.
 pub const VIEWER_INFINITE: u8 = 0;
-/// Highlights use the direction from each point to the eye.
+/// The viewer is near: highlights use the direction from each point to the eye.
 pub const VIEWER_LOCAL: u8 = 1;
 
-/// A camera that looks along +z of its own space (x right, y up, z away from the eye) and may orbit.
+/// A camera, which may orbit. It looks along +z of eye space: x right, y up, z away from the eye.
 ///
 /// `eye_space = rotation · orbit(frame) · object_space + translation`, where
 /// `orbit` turns by `frame / period` of a revolution about `axis`.
 #[derive(FromBytes, IntoBytes, Immutable, KnownLayout, Clone, Copy, Debug, PartialEq, Eq)]
 #[repr(C)]
 pub struct Camera {
-    /// Rows of the rotation from object to eye space in frame 0, [`Rotation`] in [-1, 1]: orthonormal, squared lengths to 1/256 and
-    /// products to 1/4096; determinant -1, for object space is right-handed, eye space left-handed.
+    /// Rows of the rotation from object space to eye space in frame 0, [`Rotation`] in [-1, 1]. The matrix is orthonormal: squared lengths within
+    /// 1/256 of 1, products of rows within 1/4096 of 0. Its determinant is -1, because object space is right-handed and eye space left-handed.
     pub rotation: [[i32; 3]; 3],
-    /// Where the origin of object space lies in eye space, [`Length`] in [-16, 16].
+    /// Position of the origin of object space in eye space, [`Length`] in [-16, 16].
     pub translation: [i32; 3],
-    /// Axis of the orbit in object space, [`Rotation`] in [-1, 1], squared length 1 to 1/256.
+    /// Axis of the orbit in object space, [`Rotation`] in [-1, 1]. Its squared length is within 1/256 of 1.
     pub axis: [i32; 3],
-    /// Frames per revolution; 0 stands still. The angle is right to 0.1 degrees.
+    /// Number of frames of one orbit; 0 if the camera stands still. The angle is exact to 0.1 degrees.
     pub period: u16,
-    /// [`PERSPECTIVE`] or [`ORTHOGRAPHIC`].
+    /// Kind of projection: [`PERSPECTIVE`] or [`ORTHOGRAPHIC`].
     pub projection: u8,
-    /// [`VIEWER_INFINITE`] or [`VIEWER_LOCAL`].
+    /// Distance of the viewer: [`VIEWER_INFINITE`] or [`VIEWER_LOCAL`].
     pub viewer: u8,
-    /// [`Focal`] in [1/16, 16]. Perspective: half of the viewport's smaller side is seen under the slope `1 / focal`.
-    /// Orthographic: half of the viewport's smaller side shows `1 / focal` units.
+    /// Focal length, [`Focal`] in [1/16, 16]. Perspective: half of the viewport's smaller side is seen at the slope `1 / focal`. Orthographic: half
+    /// of the viewport's smaller side shows `1 / focal` units.
     pub focal: u32,
-    /// Nearest depth drawn, along z of eye space, [`Length`] in [1/64, 16).
+    /// Distance of the near plane along z of eye space, [`Length`] in [1/64, 16). Nothing nearer is drawn.
     pub near: i32,
-    /// Orthographic only: farthest depth drawn, [`Length`], above `near` and at most 32.
+    /// Distance of the far plane of an orthographic camera, [`Length`], more than `near` and at most 32. A perspective camera has none.
     pub far: i32,
 }
 
 impl Camera {
-    /// A camera that stands still and draws what lies between two depths; `projection` is [`PERSPECTIVE`] or [`ORTHOGRAPHIC`].
+    /// A camera that stands still and draws what lies between the depths `near` and `far`. `projection` is [`PERSPECTIVE`] or [`ORTHOGRAPHIC`].
     #[must_use]
     pub fn new(projection: u8, rotation: [[Rotation; 3]; 3], translation: [Length; 3], focal: Focal, [near, far]: [Length; 2]) -> Self {
         Self {
@@ -141,25 +139,25 @@ impl Camera {
         }
     }
 
-    /// This camera, near enough that highlights use the direction from each point to the eye.
+    /// Makes the viewer near: highlights use the direction from each point to the eye.
     #[must_use]
     pub fn with_local_viewer(self) -> Self {
         Self { viewer: VIEWER_LOCAL, ..self }
     }
 
-    /// This camera, which orbits once around `axis` in `period` frames.
+    /// Makes the camera orbit around `axis`, once in `period` frames.
     #[must_use]
     pub fn orbiting(self, axis: [Rotation; 3], period: u16) -> Self {
         Self { axis: axis.map(Rotation::to_bits), period, ..self }
     }
 
-    /// Rows of the rotation from object to eye space in frame 0.
+    /// Rows of the rotation from object space to eye space in frame 0.
     #[must_use]
     pub fn rotation(&self) -> [[Rotation; 3]; 3] {
         self.rotation.map(|row| row.map(Rotation::from_bits))
     }
 
-    /// Where the origin of object space lies in eye space.
+    /// Position of the origin of object space in eye space.
     #[must_use]
     pub fn translation(&self) -> [Length; 3] {
         self.translation.map(Length::from_bits)
@@ -171,19 +169,20 @@ impl Camera {
         self.axis.map(Rotation::from_bits)
     }
 
-    /// Perspective: the distance of the eye from the viewport over half of its smaller side. Orthographic: one unit over that half side.
+    /// Focal length. Perspective: the distance of the eye from the viewport, in units of half the viewport's smaller side. Orthographic: 1 over the
+    /// units that this half side shows.
     #[must_use]
     pub fn focal(&self) -> Focal {
         Focal::from_bits(self.focal)
     }
 
-    /// Nearest depth drawn.
+    /// Distance of the near plane. Nothing nearer is drawn.
     #[must_use]
     pub fn near(&self) -> Length {
         Length::from_bits(self.near)
     }
 
-    /// Farthest depth drawn by an orthographic camera.
+    /// Distance of the far plane of an orthographic camera.
     #[must_use]
     pub fn far(&self) -> Length {
         Length::from_bits(self.far)
@@ -197,38 +196,37 @@ pub const ORTHOGRAPHIC: u8 = 1;
 
 /// A run of vertices and triangles with one material, or a coarser level of detail of the mesh before.
 ///
-/// Meshes follow one another without a gap. Each may be followed by coarser levels of itself, from fine to coarse: fewer triangles on some
-/// of the same vertices, for pictures that are too small to show the difference. A frame has one level of each mesh, see
-/// [`crate::Stream::meshes_within`].
+/// Meshes follow one another without a gap. Coarser levels follow their mesh, from fine to coarse. A level has fewer triangles on some of the mesh's
+/// vertices, for pictures that are too small to show the difference. A frame draws one level of each mesh, see [`crate::Stream::meshes_within`].
 #[derive(FromBytes, IntoBytes, Immutable, KnownLayout, Clone, Copy, Debug, PartialEq, Eq)]
 #[repr(C)]
 pub struct Mesh {
-    /// Index of its first [`Vertex`]; a coarser level has that of its mesh.
+    /// Index of the first [`Vertex`]. A coarser level has its mesh's.
     pub first_vertex: u32,
-    /// Index of its first [`Triangle`].
+    /// Index of the first [`Triangle`].
     pub first_triangle: u32,
     /// Number of triangles.
     pub triangles: u32,
-    /// Number of vertices; a coarser level has that of its mesh.
+    /// Number of vertices. A coarser level has its mesh's.
     pub vertices: u16,
-    /// Index of its [`Material`]; a coarser level has that of its mesh.
+    /// Index of the [`Material`]. A coarser level has its mesh's.
     pub material: u16,
-    /// 0 for a mesh as it is. For a coarser level, [`GeometricError`], rounded up and more than that of the level before: no point of its
-    /// triangles lies farther from the triangles of the mesh as it is, and no point of those farther from its own.
+    /// Distance of a coarser level from its full mesh, [`GeometricError`], rounded up, larger than the level before; 0 for a full mesh. No point of
+    /// the level's triangles lies farther from the full mesh, and no point of the full mesh lies farther from the level.
     pub error: u16,
-    /// Bit 0: [`CLOSED_CONVEX`], of the triangles of this level.
+    /// Bit 0 is [`CLOSED_CONVEX`] and concerns the triangles of this level.
     pub flags: u16,
 }
 
 impl Mesh {
-    /// How far this level lies from the mesh as it is; 0 for the mesh as it is.
+    /// Distance of this level from its full mesh, in units of object space; 0 for a full mesh.
     #[must_use]
     pub fn error(&self) -> GeometricError {
         GeometricError::from_bits(self.error)
     }
 }
 
-/// The mesh is closed and convex, so its front faces never hide one another; see `geometry/depth_elision.rs`. It promises:
+/// The mesh is closed and convex, so none of its front faces can hide another: see `geometry/depth_elision.rs`. It promises:
 ///
 /// - The mesh is one closed surface, all of its triangles counter-clockwise seen from outside.
 /// - Each vertex is a corner of a convex body, in the ball of radius one about the origin, with coordinates rounded to the
@@ -236,162 +234,162 @@ impl Mesh {
 /// - By that rounding no triangle has leaned by more than 2^-[`LEAN`] rad.
 pub const CLOSED_CONVEX: u16 = 1;
 
-/// How far a triangle of a [`CLOSED_CONVEX`] mesh may have leaned: 2^-6 rad, 0.9 degrees.
+/// Largest angle by which a triangle of a [`CLOSED_CONVEX`] mesh may have leaned, as a negative power of 2: 2^-6 rad, 0.9 degrees.
 pub const LEAN: u32 = 6;
 
-/// Colours in [`Gain`], at most 2, red, green, blue.
+/// A material. Each colour is red, green, blue, as a [`Gain`] of at most 2.
 #[derive(FromBytes, IntoBytes, Immutable, KnownLayout, Clone, Copy, Debug, PartialEq, Eq)]
 #[repr(C)]
 pub struct Material {
-    /// Share of the ambient light that is reflected.
+    /// Factor of the ambient light.
     pub ambient: [u16; 3],
-    /// Share of each light that is reflected evenly.
+    /// Factor of each light's diffuse reflection.
     pub diffuse: [u16; 3],
-    /// Share of each light that is reflected in the highlight.
+    /// Factor of each light's highlight.
     pub specular: [u16; 3],
-    /// Exponent of N·H in the highlight (Blinn 1977), or of R·V in place of it (Phong 1975): 1 to 1024.
+    /// Exponent of the highlight, 1 to 1024: of N·H (Blinn 1977), or for some methods of R·V (Phong 1975).
     pub exponent: u16,
 }
 
 impl Material {
-    /// A material; see the fields.
+    /// A material of these colours and this exponent of the highlight.
     #[must_use]
     pub fn new(ambient: [Gain; 3], diffuse: [Gain; 3], specular: [Gain; 3], exponent: u16) -> Self {
         let [ambient, diffuse, specular] = [ambient, diffuse, specular].map(|colour| colour.map(Gain::to_bits));
         Self { ambient, diffuse, specular, exponent }
     }
 
-    /// Share of the ambient light that is reflected.
+    /// Factor of the ambient light: red, green, blue.
     #[must_use]
     pub fn ambient(&self) -> [Gain; 3] {
         self.ambient.map(Gain::from_bits)
     }
 
-    /// Share of each light that is reflected evenly.
+    /// Factor of each light's diffuse reflection: red, green, blue.
     #[must_use]
     pub fn diffuse(&self) -> [Gain; 3] {
         self.diffuse.map(Gain::from_bits)
     }
 
-    /// Share of each light that is reflected in the highlight.
+    /// Factor of each light's highlight: red, green, blue.
     #[must_use]
     pub fn specular(&self) -> [Gain; 3] {
         self.specular.map(Gain::from_bits)
     }
 }
 
-/// A light without fall-off.
+/// A directional or a point light. Light does not weaken with distance.
 #[derive(FromBytes, IntoBytes, Immutable, KnownLayout, Clone, Copy, Debug, PartialEq, Eq)]
 #[repr(C)]
 pub struct Light {
-    /// [`Length`] in [-16, 16]. Directional: vector towards the light, squared length 1 to 1/256; the renderer normalises it. Point: the
-    /// light's position.
+    /// Directional light: the vector towards the light, whose squared length is within 1/256 of 1; the renderer normalises it. Point light: its
+    /// position. [`Length`] in [-16, 16].
     pub vector: [i32; 3],
-    /// Red, green, blue, [`Gain`] at most 2.
+    /// Colour: red, green, blue, each a [`Gain`] of at most 2.
     pub colour: [u16; 3],
-    /// [`DIRECTIONAL`] or [`POINT`].
+    /// Kind of light: [`DIRECTIONAL`] or [`POINT`].
     pub kind: u8,
-    /// [`OBJECT_SPACE`] or [`EYE_SPACE`].
+    /// Space of the vector: [`OBJECT_SPACE`] or [`EYE_SPACE`].
     pub space: u8,
 }
 
 impl Light {
-    /// A light; `kind` is [`DIRECTIONAL`] or [`POINT`], `space` [`OBJECT_SPACE`] or [`EYE_SPACE`].
+    /// A light. `kind` is [`DIRECTIONAL`] or [`POINT`]; `space` is [`OBJECT_SPACE`] or [`EYE_SPACE`].
     #[must_use]
     pub fn new(kind: u8, space: u8, vector: [Length; 3], colour: [Gain; 3]) -> Self {
         Self { vector: vector.map(Length::to_bits), colour: colour.map(Gain::to_bits), kind, space }
     }
 
-    /// Directional: unit vector towards the light. Point: its position.
+    /// Directional light: the unit vector towards it. Point light: its position.
     #[must_use]
     pub fn vector(&self) -> [Length; 3] {
         self.vector.map(Length::from_bits)
     }
 
-    /// Red, green, blue.
+    /// Colour: red, green, blue; 1 is full intensity.
     #[must_use]
     pub fn colour(&self) -> [Gain; 3] {
         self.colour.map(Gain::from_bits)
     }
 }
 
-/// A directional light, infinitely far.
+/// A directional light, which is infinitely far.
 pub const DIRECTIONAL: u8 = 0;
-/// A point light, at a position.
+/// A point light, which has a position.
 pub const POINT: u8 = 1;
-/// The light stays with the object.
+/// The light stands still in the world.
 pub const OBJECT_SPACE: u8 = 0;
-/// The light stays with the camera.
+/// The light moves with the camera.
 pub const EYE_SPACE: u8 = 1;
 
-/// An object of the scene: some meshes of the stream, with their coarser levels. Several objects may have the same meshes.
+/// An object of the scene: meshes of the stream, with their coarser levels. Several objects can have the same meshes.
 #[derive(FromBytes, IntoBytes, Immutable, KnownLayout, Clone, Copy, Debug, PartialEq, Eq)]
 #[repr(C)]
 pub struct Instance {
-    /// Index of its first [`Mesh`].
+    /// Index of the object's first [`Mesh`].
     pub first_mesh: u16,
-    /// Number of meshes.
+    /// Number of the object's meshes.
     pub meshes: u16,
-    /// Index of the [`Material`] of all its meshes, or [`OWN_MATERIALS`].
+    /// Index of the [`Material`] of all meshes of the object, or [`OWN_MATERIALS`].
     pub material: u16,
     /// Unused, for alignment.
     pub reserved: u16,
 }
 
-/// The meshes of an object have each its own material.
+/// Each mesh of the object has its own material.
 pub const OWN_MATERIALS: u16 = u16::MAX;
 
-/// How an object, a light or the camera moves from frame to frame: by its keys, and linearly between them.
+/// The movement of an object, a light or the camera: keys, and linear interpolation between them.
 #[derive(FromBytes, IntoBytes, Immutable, KnownLayout, Clone, Copy, Debug, PartialEq, Eq)]
 #[repr(C)]
 pub struct Track {
-    /// [`OBJECT_TRACK`], [`LIGHT_TRACK`] or [`CAMERA_TRACK`].
+    /// What moves: [`OBJECT_TRACK`], [`LIGHT_TRACK`] or [`CAMERA_TRACK`].
     pub kind: u16,
     /// Index of the [`Instance`] or [`Light`].
     pub index: u16,
-    /// Index of its first [`Key`]; tracks follow one another without a gap.
+    /// Index of the track's first [`Key`]. Tracks follow one another without a gap.
     pub first_key: u32,
     /// Number of keys, at least 1.
     pub keys: u32,
 }
 
-/// A track of an object: its pose.
+/// The track moves an object: its keys are poses.
 pub const OBJECT_TRACK: u16 = 0;
-/// A track of a light: the position of its keys is [`Light::vector`].
+/// The track moves a light: the position of a key is its [`Light::vector`].
 pub const LIGHT_TRACK: u16 = 1;
-/// A track of the camera: it looks along the z axis of its keys, and sees their y axis upwards.
+/// The track moves the camera: it looks along the z axis of a key, whose y axis points upwards in the picture.
 pub const CAMERA_TRACK: u16 = 2;
 
-/// Where something is in a frame. Before the first key of its track it is there, behind the last one as well.
+/// A pose in one frame. Before the first key of its track the pose is that of the first key, after the last key that of the last.
 #[derive(FromBytes, IntoBytes, Immutable, KnownLayout, Clone, Copy, Debug, PartialEq, Eq)]
 #[repr(C)]
 pub struct Key {
-    /// Number of the frame; keys of a track are in this order.
+    /// Number of the frame. The keys of a track are in this order.
     pub frame: u32,
-    /// Quaternion w, x, y, z, [`Rotation`]; squared length 1 to 1/256.
+    /// Quaternion w, x, y, z, each a [`Rotation`]. Its squared length is within 1/256 of 1.
     pub rotation: [i32; 4],
-    /// [`Length`], at most [`MAX_POSITION`] in size along each axis; for a camera, no longer than that.
+    /// Position, each coordinate a [`Length`] of at most [`MAX_POSITION`] in size. For a camera the distance from the origin is limited so.
     pub position: [i32; 3],
-    /// [`Scale`] from 1/16 to 8; 0 hides the object up to its next key.
+    /// Scale, a [`Scale`] from 1/16 to 8. At 0 the object is hidden until its next key.
     pub scale: u32,
 }
 
-/// Largest component of a position in the world: 16 units.
+/// Largest coordinate of a position in the world: 16 units.
 pub const MAX_POSITION: Length = Length::from_bits(16 << 14);
 
-/// Position and unit normal.
+/// A vertex: position and unit normal.
 #[derive(FromBytes, IntoBytes, Immutable, KnownLayout, Clone, Copy, Debug, PartialEq, Eq)]
 #[repr(C)]
 pub struct Vertex {
-    /// In object space, [`Unit`] in [-2, 2), rounded to the nearest: right to 3.1e-5, half a step, along each axis.
+    /// Position in object space, each coordinate a [`Unit`] in [-2, 2), rounded to the nearest. The error is at most 3.1e-5 along each axis.
     pub position: [i16; 3],
-    /// Unit normal in object space, [`Unit`] in [-1, 1] and hardly beyond, rounded to the lattice point nearby whose length is nearest to
-    /// 1. The length is 1 to 3.1e-5, half a step, as written; readers accept squared lengths of 1 to 1/256.
+    /// Unit normal in object space, each component a [`Unit`], at most a little beyond [-1, 1]. It is rounded to the grid point nearby whose length
+    /// is closest to 1. Writers keep the length within 3.1e-5 of 1; readers accept squared lengths within 1/256 of 1.
     pub normal: [i16; 3],
 }
 
 impl Vertex {
-    /// A vertex of zeros.
+    /// A vertex whose position and normal are zero.
     pub const ZERO: Self = Self { position: [0; 3], normal: [0; 3] };
 
     /// A vertex at `position` with a unit normal.
@@ -413,44 +411,43 @@ impl Vertex {
     }
 }
 
-/// Three vertices, and the constants that depend on neither camera nor light.
+/// A triangle: three vertices, and constants that depend on neither camera nor light.
 ///
-/// Seen from its front side the vertices run counter-clockwise in object space
-/// (right-handed). Edge `k` joins corner `k` and corner `k + 1`.
+/// Seen from the front, the vertices run counter-clockwise in object space, which is right-handed. Edge `k` joins corner `k` and corner `k + 1`.
 #[derive(FromBytes, IntoBytes, Immutable, KnownLayout, Clone, Copy, Debug, PartialEq, Eq)]
 #[repr(C)]
 pub struct Triangle {
-    /// Indices relative to the mesh's first vertex.
+    /// Indices of the corners, relative to the mesh's first vertex.
     pub corners: [u16; 3],
-    /// Per edge the reciprocal length of the sum of the normals at its ends, minus its least value: 1/|Ni+Nj| - 1/2, unsigned Q0.17 in [0,
-    /// 1/2), rounded to the nearest. It normalises the sum at the midpoint. 65535 where the normals are 120 degrees apart or more, for
-    /// which the renderer computes it.
+    /// For each edge the reciprocal length of the sum of the normals at its ends, minus its smallest possible value: 1/|Ni+Nj| - 1/2, unsigned Q0.17
+    /// in [0, 1/2), rounded to the nearest. It normalises the normal at the midpoint. It is 65535 where the normals are 120 degrees apart or more;
+    /// the renderer computes it there.
     pub inverse_sum_length: [u16; 3],
-    /// Per edge the haversine of the angle between the normals at its ends, (1 - Ni·Nj)/2 = 1 - |Ni+Nj|²/4, [`Haversine`] in [0, 1],
-    /// rounded to the nearest, 65535 at most. The squared length of the interpolated normal at the midpoint is 1 minus this.
+    /// For each edge the haversine of the angle between the normals at its ends, (1 - Ni·Nj)/2 = 1 - |Ni+Nj|²/4, a [`Haversine`] in [0, 1], rounded
+    /// to the nearest, at most 65535. The squared length of the interpolated normal at the midpoint is 1 minus this.
     pub haversine: [u16; 3],
-    /// The least length of the interpolated normal on the triangle, [`NormalLength`] in [0, 1], rounded down: the root of 1 less the squared
-    /// radius of the smallest circle around the ends of the corners' unit normals.
+    /// Smallest length of the interpolated normal on the triangle, a [`NormalLength`] in [0, 1], rounded down. It is the root of 1 minus the squared
+    /// radius of the smallest circle around the tips of the three unit normals.
     pub min_normal_length: u16,
-    /// Unit normal of the plane in object space, [`Unit`], rounded as that of a vertex.
+    /// Unit normal of the plane in object space, each component a [`Unit`], rounded as a vertex's normal is.
     pub normal: [i16; 3],
-    /// Distance of the plane from the origin, [`Unit`] in [-2, 2), rounded down such that every point a camera can be at with
-    /// `normal · p` below it sees the back.
+    /// Distance of the plane from the origin, a [`Unit`] in [-2, 2). It is rounded down, so that a camera at `p` with `normal · p` less than it
+    /// surely sees the back.
     pub offset: i16,
-    /// 1 over the least altitude of the stored corners, longest side over twice the area, [`InverseAltitude`] in 1/units, rounded up, so
-    /// at least one step; 65535 where that is too little. It tells how far the triangle must face away before no rounding of
-    /// corners can turn it to the front, see [`crate::geometry::cull`].
+    /// 1 over the smallest altitude of the triangle, which is the longest side over twice the area; an [`InverseAltitude`] per unit, rounded up, at
+    /// least one step, at most 65535. It tells how far the triangle has to face away before rounding of corners cannot turn it to the front, see
+    /// [`crate::geometry::cull`].
     pub inverse_altitude: u16,
 }
 
 impl Triangle {
-    /// Per edge the haversine of the angle between the normals at its ends.
+    /// For each edge the haversine of the angle between the normals at its ends.
     #[must_use]
     pub fn haversine(&self) -> [Haversine; 3] {
         self.haversine.map(Haversine::from_bits)
     }
 
-    /// Lower bound of the interpolated normal's length.
+    /// Lower bound for the length of the interpolated normal.
     #[must_use]
     pub fn min_normal_length(&self) -> NormalLength {
         NormalLength::from_bits(self.min_normal_length)
@@ -468,45 +465,45 @@ impl Triangle {
         Unit::from_bits(self.offset)
     }
 
-    /// 1 over the least altitude.
+    /// 1 over the smallest altitude of the triangle, per unit of object space.
     #[must_use]
     pub fn inverse_altitude(&self) -> InverseAltitude {
         InverseAltitude::from_bits(self.inverse_altitude)
     }
 }
 
-/// A text over the picture. It lies where the scene behind it lies in pictures of any size.
+/// A text over the picture. In pictures of any size it lies at the same place of the scene.
 #[derive(FromBytes, IntoBytes, Immutable, KnownLayout, Clone, Copy, Debug, PartialEq, Eq)]
 #[repr(C)]
 pub struct Label {
-    /// How far right of the centre of the picture it is, and how far below, [`Share`].
+    /// Distance of the text from the centre of the picture, to the right and downwards, each a [`Share`].
     pub position: [i16; 2],
-    /// Height of a line, [`Share`], more than 0: the largest of the program's fonts is taken that is not higher. Without one the label
-    /// is not drawn.
+    /// Height of a line, a [`Share`] of more than 0. The text is drawn by the largest of the program's fonts that is not higher. If all fonts are
+    /// higher, it is not drawn.
     pub height: i16,
-    /// Red, green, blue.
+    /// Colour of the text: red, green, blue.
     pub colour: [u8; 3],
-    /// What lies at its position: [`LEFT`], [`MIDDLE`] or [`RIGHT`] of the text.
+    /// The point of the text that lies at `position`: [`LEFT`], [`MIDDLE`] or [`RIGHT`].
     pub alignment: u8,
-    /// Characters of ISO 8859-1, at least one, then zeros. None of them is a control character.
+    /// Characters of ISO 8859-1, at least one, followed by zeros. None is a control character.
     pub text: [u8; LABEL_TEXT],
 }
 
-/// Height of a line of the smallest font, pixels.
+/// Height of a line of the smallest font, in pixels.
 pub const LEAST_LINE: u32 = 6;
 
-/// Characters that a [`Label`] has room for.
+/// Largest number of characters in a [`Label`].
 pub const LABEL_TEXT: usize = 30;
 
-/// The position of a label is its left end, half of its height.
+/// The label lies at its left end, in the middle of its height.
 pub const LEFT: u8 = 0;
-/// The position of a label is its middle.
+/// The label lies at its middle.
 pub const MIDDLE: u8 = 1;
-/// The position of a label is its right end, half of its height.
+/// The label lies at its right end, in the middle of its height.
 pub const RIGHT: u8 = 2;
 
 impl Label {
-    /// A label; see the fields. Of `text` what there is room for is kept.
+    /// A label. If `text` is longer than [`LABEL_TEXT`] characters, the rest is cut off.
     #[must_use]
     pub fn new(position: [Share; 2], height: Share, colour: [u8; 3], alignment: u8, text: &[u8]) -> Self {
         let mut room = [0; LABEL_TEXT];
@@ -514,19 +511,19 @@ impl Label {
         Self { position: position.map(Share::to_bits), height: height.to_bits(), colour, alignment, text: room }
     }
 
-    /// How far right of the centre of the picture it is, and how far below.
+    /// Distance of the text from the centre of the picture, to the right and downwards.
     #[must_use]
     pub fn position(&self) -> [Share; 2] {
         self.position.map(Share::from_bits)
     }
 
-    /// Height of a line.
+    /// Height of a line, as a fraction of the picture's smaller side.
     #[must_use]
     pub fn height(&self) -> Share {
         Share::from_bits(self.height)
     }
 
-    /// Its characters.
+    /// The characters of the text.
     pub fn characters(&self) -> impl Iterator<Item = char> + '_ {
         self.text.iter().take_while(|&&character| character != 0).map(|&character| character.into())
     }
