@@ -1,6 +1,6 @@
-//! Lookup in the highlight's table by quantities that are interpolated in steps of the table, see [`HighlightLut`].
+//! Lookup in the highlight's table by an interpolated quantity that is measured in steps of the table, see [`HighlightLut`].
 //!
-//! The factor that turns a cosine into an index is applied at the nodes of the interpolation, and not at every pixel.
+//! The factor from a cosine to an index is applied at the nodes of the interpolation, not at every pixel.
 
 use crate::{
     arch::product::upper_by_half_word,
@@ -51,7 +51,7 @@ impl<'a> QuotientLookup<'a> {
     }
 }
 
-/// Lookup by a defect: 1 - cosine.
+/// Lookup by a defect, which is 1 minus the cosine.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct DefectLookup<'a> {
     table: &'a [u16; SIZE + 1],

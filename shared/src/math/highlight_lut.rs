@@ -1,4 +1,4 @@
-//! The lookup table of the highlight, x^n.
+//! The lookup table of the highlight's power function, x^n.
 
 use crate::{
     arch::{
@@ -10,7 +10,7 @@ use crate::{
 use core::num::NonZeroU32;
 use zerocopy::{FromBytes, Immutable, IntoBytes, KnownLayout};
 
-/// Intervals of the table; it has one entry more.
+/// Number of intervals in the table. It has one entry more.
 pub(crate) const SIZE: usize = 4096;
 
 /// Lookup table of the highlight's power function `floor + full x^n`, unsigned Q0.16, in 4096 intervals.
@@ -28,16 +28,16 @@ pub struct HighlightLut {
     pub(crate) table: [u16; SIZE + 1],
 }
 
-/// The base that is raised to a power, as a function of the argument x by which the table is indexed.
+/// The base that is raised to the exponent, as a function of the table's argument x.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Base {
-    /// x.
+    /// The base is x.
     Itself,
-    /// The square root of x.
+    /// The base is the square root of x.
     Root,
-    /// The fourth root of x.
+    /// The base is the fourth root of x.
     FourthRoot,
-    /// x², continued below 1/2 by its tangent there: x - 1/4.
+    /// The base is x². Below 1/2 it goes on as the tangent there: x - 1/4.
     Square,
 }
 
@@ -81,8 +81,8 @@ fn root(x: u64) -> u64 {
 /// Four times the exponent up to which the table covers the whole of [0, 1].
 const WHOLE: NonZeroU32 = NonZeroU32::new(4 * 8).unwrap();
 
-/// One entry of so many is computed, and a straight line gives those between. It is off by 8e-6 at most: over the interval x^n is like e^-y, y in
-/// steps of 8/1024.
+/// One of this number of entries is computed by the power function. Straight lines give the entries between, with an error of at most 8e-6: over the
+/// interval x^n is like e^-y, y in steps of 8/1024.
 const COMPUTED: usize = 4;
 
 /// `x^n` by binary exponentiation, Q1.31. Domain: `x` from 0 to 1.
@@ -165,20 +165,20 @@ impl HighlightLut {
         CosineLookup { table: &self.table, top: (1 << PIXEL_COSINE) + ((1 << 19) / scale) as i32, factor: (scale.get() << 16) as i32 }
     }
 
-    /// The value of entries where the power is 0, unsigned Q0.16.
+    /// The smallest value of the table, where the power is 0; unsigned Q0.16.
     #[must_use]
     pub fn floor(&self) -> u32 {
         self.floor.into()
     }
 
-    /// The entry that the pixel loop takes for small cosines, unsigned Q0.16.
+    /// The last entry of the table, which a pixel takes for all smaller cosines; unsigned Q0.16.
     #[inline(always)]
     #[must_use]
     pub fn least(&self) -> u32 {
         self.table[SIZE - 1].into()
     }
 
-    /// The cosine, Q2.30, at which the table ends: the power of smaller ones is taken as 0.
+    /// The cosine, Q2.30, at which the table ends. The powers of smaller cosines count as 0.
     #[must_use]
     pub fn highlight_threshold(&self) -> i32 {
         (1i32 << COSINE) - long(32u64 << COSINE, NonZeroU32::new(self.scale).unwrap_or(WHOLE).get().into()) as i32

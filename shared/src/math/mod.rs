@@ -1,8 +1,8 @@
-//! Integer mathematics.
+//! Mathematics in integers.
 //!
-//! Formats are written Qm.f: m integer bits, the sign included, and f fraction bits. Each function states its meaning, format, domain,
-//! error and source. A bound on an error is a constant next to the function, and the test that the documentation names asserts that
-//! very constant. "Exact" says that the result is the integer that the formula gives, for every argument of the domain.
+//! Formats are written Qm.f: m integer bits, the sign included, and f fraction bits. Each function states its meaning, format, domain, error and
+//! source. An error bound is a constant next to the function, and the test that the documentation names asserts this constant. "Exact" means that the
+//! result is the integer that the formula gives, for every argument of the domain.
 
 pub(crate) mod highlight_lookup;
 pub mod highlight_lut;

@@ -1,4 +1,4 @@
-//! Reciprocal of a normalised integer, and division by a fixed-point number.
+//! Reciprocals of normalised integers, and division by fixed-point numbers.
 
 use crate::arch::{
     product::{product, unsigned_product},
@@ -28,7 +28,7 @@ pub fn recip(d: u32) -> u32 {
 /// Largest error of [`quotient`] relative to its result, before that is rounded down to an integer.
 pub const QUOTIENT_ERROR: f64 = 1.0 / (1u32 << 28) as f64;
 
-/// `n / d`, nearly: where long numbers are divided and not all bits of the quotient count.
+/// Approximates `n / d`, for long numbers whose quotient need not be exact.
 ///
 /// Domain: all numbers; 0 where `d` is 0. Error: at most [`QUOTIENT_ERROR`] relative, and 1 unit for rounding (tests::quotients). Source: a
 /// product of the upper word of `n` with the reciprocal of that of `d`.

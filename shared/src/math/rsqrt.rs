@@ -1,4 +1,4 @@
-//! Square root and reciprocal square root.
+//! Square roots and reciprocal square roots.
 
 use crate::arch::product::{unsigned_by_fraction, unsigned_product, upper};
 
@@ -89,7 +89,7 @@ static TABLE: HalfRsqrt = HalfRsqrt({
     table
 });
 
-/// The least x that [`HalfRsqrt::rsqrt`] takes, Q0.32: 2^-10 less than a quarter, as much as forward differences may err there.
+/// The smallest x that [`HalfRsqrt::rsqrt`] takes, Q0.32: 2^-10 less than a quarter, because forward differences may err by this much.
 pub const LEAST: u32 = (1 << 30) - (1 << 22);
 
 /// Table of half the reciprocal root, 1/(2 sqrt(x)), for x in [1/4, 1] and a little around, for the pixel loop.
@@ -99,7 +99,7 @@ pub const LEAST: u32 = (1 << 30) - (1 << 22);
 pub struct HalfRsqrt([u32; 2048]);
 
 impl HalfRsqrt {
-    /// The table; there is only one.
+    /// The table. There is only one.
     #[must_use]
     pub fn get() -> &'static Self {
         &TABLE
@@ -142,7 +142,7 @@ pub fn rsqrt_wide(x: u64) -> (u32, u32) {
 pub const FINE_ERROR: f64 = 2.25 / (1u64 << 30) as f64;
 
 impl HalfRsqrt {
-    /// Reciprocal square root 1/sqrt(m), Q2.30: from 1/2 to 1. Sooner than [`rsqrt`], for programs that have this table.
+    /// Reciprocal square root 1/sqrt(m), Q2.30: from 1/2 to 1. It is faster than [`rsqrt`], for programs that contain this table.
     ///
     /// Domain: `m` in [1, 4), unsigned Q2.30; less counts as 1. Error: at most [`FINE_ERROR`] relative (tests::fine_error).
     /// Source: [`Self::rsqrt`], and a step of the method of Newton, y + y (1 - m y²) / 2.

@@ -1,4 +1,4 @@
-//! Dot products and unit vectors.
+//! Vectors: dot products, cross products and unit vectors.
 
 use crate::{
     arch::product::{HALVES, product, rounded},
@@ -12,13 +12,13 @@ pub fn dot(a: [i32; 3], b: [i32; 3]) -> i64 {
     if HALVES { dot_by_calls(a, b) } else { product(a[0], b[0]) + product(a[1], b[1]) + product(a[2], b[2]) }
 }
 
-/// Where each product is a call, so is the sum of three: flash is worth more than the time.
+/// The dot product on processors where a wide product is a call. The sum of three is then a call as well, because flash is worth more than the time.
 #[inline(never)]
 fn dot_by_calls(a: [i32; 3], b: [i32; 3]) -> i64 {
     zip(a, b, product).into_iter().sum()
 }
 
-/// A vertex normal or position as `i32`, in its format.
+/// Converts a vertex normal or position to `i32`, in the same format.
 #[inline(always)]
 #[must_use]
 pub fn wide(v: [i16; 3]) -> [i32; 3] {
@@ -32,16 +32,16 @@ pub fn narrow_dot([a0, a1, a2]: [i32; 3], [b0, b1, b2]: [i32; 3]) -> i32 {
     a0.wrapping_mul(b0).wrapping_add(a1.wrapping_mul(b1)).wrapping_add(a2.wrapping_mul(b2))
 }
 
-/// `f` of each component, written out because `map` of an array is a loop through memory at opt-level "s".
+/// Applies `f` to each component. It is written out, because `map` of an array is a loop through memory at opt-level "s".
 #[inline(always)]
 #[must_use]
 pub fn map<A, R>([a0, a1, a2]: [A; 3], f: impl Fn(A) -> R) -> [R; 3] {
     [f(a0), f(a1), f(a2)]
 }
 
-/// `f` of each pair of components.
+/// Applies `f` to each pair of components.
 ///
-/// The components are written out so that no index is checked.
+/// The components are written out, so that no index is checked.
 #[inline(always)]
 #[must_use]
 pub fn zip<A, B, R>([a0, a1, a2]: [A; 3], [b0, b1, b2]: [B; 3], f: impl Fn(A, B) -> R) -> [R; 3] {
@@ -55,14 +55,14 @@ pub fn transposed<A>([[a, b, c], [d, e, f], [g, h, i]]: [[A; 3]; 3]) -> [[A; 3];
     [[a, d, g], [b, e, h], [c, f, i]]
 }
 
-/// `a - b`, in their format. Domain: the caller's ranges keep it from overflowing; else it wraps modulo 2^32.
+/// Computes `a - b`, in their format. It wraps modulo 2^32 if it overflows.
 #[inline(always)]
 #[must_use]
 pub fn sub(a: [i32; 3], b: [i32; 3]) -> [i32; 3] {
     zip(a, b, i32::wrapping_sub)
 }
 
-/// `a + b`, in their format. Domain: the caller's ranges keep it from overflowing; else it wraps modulo 2^32.
+/// Computes `a + b`, in their format. It wraps modulo 2^32 if it overflows.
 #[inline(always)]
 #[must_use]
 pub fn add(a: [i32; 3], b: [i32; 3]) -> [i32; 3] {
@@ -98,7 +98,7 @@ pub fn normalise(v: [i32; 3]) -> [i32; 3] {
     v.map(|c| (product(c, mantissa as i32) >> (exponent - 30)) as i32)
 }
 
-/// Three vectors over the length of the longest, with `BITS` fraction bits, at most 30.
+/// Divides three vectors by the length of the longest. The results have `BITS` fraction bits, at most 30.
 ///
 /// Domain: components below 2^30 in size, the longest vector not shorter than 2. Error: that of [`normalise`], and less than 2 units of the
 /// last place.

@@ -1,7 +1,7 @@
 //! Integers of 128 bits whose products are function calls.
 //!
-//! Inlined, one product takes a hundred instructions on a 32-bit machine. Formulas with forty products serve rare triangles only, and
-//! must not fill the flash.
+//! One product takes a hundred instructions on a 32-bit processor when it is inlined. Formulas with forty products are needed for rare triangles
+//! only, and must not fill the flash.
 
 use crate::arch::quotient::by_word;
 use core::{
@@ -97,7 +97,7 @@ impl Wide {
         Self((quotient ^ sign) as i128)
     }
 
-    /// The number times 2^`bits`, modulo 2^128. Domain: `bits` is less than 128. Exact.
+    /// Multiplies by 2^`bits`, modulo 2^128. Domain: `bits` is less than 128. Exact.
     #[inline(never)]
     #[must_use]
     pub fn shifted(self, bits: u32) -> Self {

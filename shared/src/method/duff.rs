@@ -4,9 +4,9 @@
 //! the reciprocal root is approximated, by a table of 1,537 knots. Near lights and viewers have numerators that
 //! are not linear: there they are the quadratics through six points.
 //!
-//! Cost: 4 additions a pixel, a root from a table, 2 products and the highlight's table; 2 or 4 additions and
-//! 2 products more per light. Error: that of the tables, [`crate::math::highlight_lut::NEAREST_ERROR`] of the highlight above all.
-//! Domain: any lights; with near lights as good as six points are.
+//! Cost: 4 additions a pixel, a root from a table, 2 products and the highlight's table; 2 or 4 additions and 2 products more per light. Error: the
+//! tables' error, mainly [`crate::math::highlight_lut::NEAREST_ERROR`] of the highlight. Domain: any lights; under near lights as exact as six points
+//! are.
 
 use crate::{
     arch::product::{product, upper},
@@ -28,7 +28,7 @@ use crate::{
     raster::{band::Band, canvas::Canvas},
 };
 
-/// Shades by linear numerators over a root, under lights that are the same everywhere.
+/// Shades by linear numerators over a root, under constant lights.
 pub fn shade_constant(setup: &TriangleSetup<'_>, shading: &Shading<'_>, canvas: &mut dyn Canvas) -> u32 {
     match tabled(setup).filter(|_| !is_steep(shading.exponent)) {
         // The faster root is worth its code only where little else is done at a pixel.
@@ -51,7 +51,7 @@ pub fn shade_constant(setup: &TriangleSetup<'_>, shading: &Shading<'_>, canvas: 
     }
 }
 
-/// Shades by linear numerators over a root, or under near lights by quadratic ones.
+/// Shades by linear numerators over a root, or by quadratic numerators under near lights.
 pub fn shade(setup: &TriangleSetup<'_>, shading: &Shading<'_>, canvas: &mut dyn Canvas) -> u32 {
     if shading.lighting.is_constant() {
         return shade_constant(setup, shading, canvas);
@@ -59,7 +59,7 @@ pub fn shade(setup: &TriangleSetup<'_>, shading: &Shading<'_>, canvas: &mut dyn 
     draw_products(setup, shading, square(setup, shading.exponent), Rooted, canvas)
 }
 
-/// Shades by `model` from `common` and N·L and N·H of each light, normals not normalised, which are linear under constant lights.
+/// Shades by `model`. `common` and N·L and N·H of each light are interpolated; normals are not normalised, so these are linear under constant lights.
 pub(super) fn draw_constant<K: Field, F>(
     setup: &TriangleSetup<'_>,
     shading: &Shading<'_>,
@@ -73,8 +73,8 @@ where
     shading.draw_lit(setup, |source| shading.constant_products(setup, source), common, model, canvas)
 }
 
-/// Shades by `model` from `common` and N·L and N·H of each light, normals not normalised: linear under constant lights, else quadratics
-/// through six points.
+/// Shades by `model`. `common` and N·L and N·H of each light are interpolated; normals are not normalised. N·L and N·H are linear under constant
+/// lights, otherwise quadratics through six points.
 pub fn draw_products<K: Field, F>(setup: &TriangleSetup<'_>, shading: &Shading<'_>, common: K, model: F, canvas: &mut dyn Canvas) -> u32
 where
     F: LightingModel<K::Value, [u32; 2]>,
@@ -86,7 +86,7 @@ where
     shading.draw_lit(setup, |source| shading.six_products(&nodes, source, |p| p), common, model, canvas)
 }
 
-/// The loops under one light, or two.
+/// The loops under one or two lights.
 pub(crate) struct Duff;
 
 impl Loops for Duff {
@@ -206,7 +206,7 @@ impl LightingModel<[u32; 1], [u32; 2], [u32; 1]> for Tabled {
     }
 }
 
-/// Normalises by 1/|N| from [`Root`], for any |N|².
+/// Normalises by 1/|N| from [`Root`], for every |N|².
 #[derive(Clone, Copy)]
 pub struct Rooted;
 
@@ -223,7 +223,7 @@ impl LightingModel<[u32; 1], [u32; 2]> for Rooted {
     }
 }
 
-/// 1/sqrt(x): mantissa in Q2.30 and the power of two to multiply it by.
+/// The reciprocal root 1/sqrt(x): a mantissa in Q2.30 and a power of two to multiply it by.
 #[derive(Clone, Copy, Default)]
 pub struct Root {
     mantissa: u32,
@@ -239,8 +239,8 @@ impl Root {
         Self { mantissa: HalfRsqrt::get().fine(x << (shift & 31)), shift: shift / 2 }
     }
 
-    /// `value / sqrt(x)`, Q2.30 each; at most 2 by saturation. Error: beside that of the root, less than 2/sqrt(x) units of the last place,
-    /// because the quotient is rounded down before it is shifted.
+    /// Computes `value / sqrt(x)`, Q2.30 each, saturating at 2. Error: the root's, and less than 2/sqrt(x) units of the last place, because the
+    /// quotient is rounded down before it is shifted.
     #[inline(always)]
     pub fn divide(self, value: i32) -> i32 {
         let quotient = (product(value, self.mantissa as i32) >> 30) as i32;

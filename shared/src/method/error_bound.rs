@@ -1,7 +1,7 @@
-//! Upper bounds of what cheaper methods are off from Phong shading on one triangle, under constant lights.
+//! Upper bounds for the error of cheaper methods against Phong shading on one triangle, under constant lights.
 //!
-//! What a light reflects on a triangle is a function of the interpolated normal N, which is linear and shorter than the corners' unit
-//! normals: of the diffuse cosine N·L/|N|, and of the highlight (N·H/|N|)^n. Its least length ρ on the triangle stands in the stream.
+//! The light on a triangle depends on the interpolated normal N, which is linear and shorter than the corners' unit normals: by the diffuse cosine
+//! N·L/|N| and the highlight (N·H/|N|)^n. The stream has the smallest length ρ of N on each triangle.
 //!
 //! - What interpolation is off from highlights stands in a table, [`crate::method::highlight_error`].
 //! - Diffuse light that is interpolated linearly is N·L instead of N·L/|N|: too dark by N·L (1/|N| - 1), at most by N·L (1/ρ - 1).
@@ -33,11 +33,11 @@ const REMAINDER: f64 = 0.0254;
 /// (e/ρ)³ is at most 8 h^1.5 (1 + this h): by a chord to h = 1/3, where (e/ρ)² = 12 h/(3 - 4 h) is 2.4.
 const CHORD: f64 = 4.25;
 
-/// What the quadratic is off at most from clamped diffuse light, over ρ and the range of N·L: 0.0952 on a grid.
+/// Largest error of the quadratic against clamped diffuse light, over ρ and the range of N·L: 0.0952 on a grid.
 const KINK: f64 = 0.1;
 
-/// By how much interpolated normals are shorter than 1 at most where bounds are finite, Q1.15: 1 - ρ of three normals that are 60 degrees
-/// apart from one another. Chords of convex functions below reach to here.
+/// Largest amount by which interpolated normals may be shorter than 1 if bounds are finite, Q1.15: 1 - ρ of three normals that are 60 degrees from
+/// one another. Chords of convex functions below reach to here.
 const SHORTEST: u32 = 6013;
 /// The haversine of the longest edge of such a triangle is at most (1 - ρ²) = 1/3, Q0.16.
 const WIDEST: u32 = (1 << HAVERSINE) / 3 + 1;
@@ -45,7 +45,7 @@ const WIDEST: u32 = (1 << HAVERSINE) / 3 + 1;
 /// Most lights of a frame for which there are bounds.
 pub const MAX_LIGHTS: usize = 2;
 
-/// A light as a material reflects it, in the channel where it is strongest.
+/// Levels of one light on a material, in the channel where it is strongest.
 #[derive(FromBytes, IntoBytes, Immutable, KnownLayout, Clone, Copy, Debug)]
 #[repr(C)]
 struct LightBounds {
@@ -57,7 +57,7 @@ struct LightBounds {
     narrowed: u32,
 }
 
-/// What bounds on the triangles of one material have in common.
+/// Values that bounds on all triangles of one material need.
 #[derive(FromBytes, IntoBytes, Immutable, KnownLayout, Clone, Copy, Debug)]
 #[repr(C)]
 pub struct ErrorBounds {
@@ -94,7 +94,7 @@ fn fraction(x: u32, share: u32) -> u32 {
 }
 
 impl ErrorBounds {
-    /// Before they are filled; all zeros.
+    /// Bounds that are not computed yet; all zeros.
     pub const EMPTY: Self = Self {
         lights: [LightBounds { diffuse: 0, specular: 0, narrowed: 0 }; MAX_LIGHTS],
         ambient: 0,
@@ -127,10 +127,10 @@ impl ErrorBounds {
     }
 }
 
-/// How far the normals of a triangle lie apart.
+/// How far the normals of a triangle are apart.
 #[derive(Clone, Copy)]
 pub(crate) struct Curvature {
-    /// By how much normals between the corners are shorter than 1 at most, 1 - ρ, Q1.15, rounded up.
+    /// Largest amount by which normals between the corners are shorter than 1: 1 - ρ, Q1.15, rounded up.
     short: u32,
     /// 1/ρ - 1, Q1.15, rounded up.
     longer: u32,
@@ -172,12 +172,12 @@ fn above_zero(cosine: i32) -> u32 {
     (cosine.max(-1) + (1 << (COSINE - BOUND))) as u32 >> (COSINE - BOUND)
 }
 
-/// What linear interpolation may be off, in 1/255 of full intensity, Q9.7.
+/// Range of the error of linear interpolation, in 1/255 of full intensity, Q9.7.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Interval {
-    /// By how much it may be too dark.
+    /// Largest amount by which it is too dark.
     pub(crate) below: u32,
-    /// By how much it may be too bright.
+    /// Largest amount by which it is too bright.
     pub(crate) above: u32,
 }
 
@@ -194,8 +194,7 @@ impl Interval {
         (self.below as i32 - self.above as i32) >> 1
     }
 
-    /// By how much levels have to be raised so that light is within the budget, nothing if it is so already; no budget is less than
-    /// [`Self::half`].
+    /// Amount by which levels have to be raised to keep to the budget; 0 if they do. The budget is at least [`Self::half`].
     #[inline(always)]
     pub(crate) fn raise(self, budget: u32) -> i32 {
         let beyond = |error: u32| (error as i32 - budget as i32).max(0);
@@ -209,7 +208,7 @@ impl Interval {
 }
 
 impl LightBounds {
-    /// What the quadratic through diffuse light is off, where that is not clamped; see [`Curvature::remainder`].
+    /// Error of the quadratic through diffuse light that is not clamped; see [`Curvature::remainder`].
     #[inline(always)]
     fn remainder(&self, of_triangle: u32) -> u32 {
         fraction(times(self.diffuse, share(3.01)), of_triangle)
@@ -244,7 +243,7 @@ fn terminator(curvature: Curvature, &[a, b, c]: &[i32; 3], most: u32) -> Option<
 /// Bounds of linear interpolation between the corners.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Linear {
-    /// What it may be off.
+    /// Range of the error.
     pub(crate) interval: Interval,
     /// The brightest level, in 1/255 of full intensity, Q9.7.
     pub(crate) brightest: u32,
@@ -354,7 +353,7 @@ impl ErrorBounds {
         sum > FULL
     }
 
-    /// The level of the highlight of a light at N·H (Q2.30), Q9.7, rounded up.
+    /// The level of a light's highlight at N·H (Q2.30), Q9.7, rounded up.
     #[inline(always)]
     fn share_of(&self, light: &LightBounds, reflectance: &Reflectance, half: i32) -> u32 {
         let entry = reflectance.highlight_lut.at(half);
@@ -362,7 +361,7 @@ impl ErrorBounds {
         level + (light.specular >> 7) + 2
     }
 
-    /// The diffuse level of so much of the cosine, Q2.30, of a light; Q9.7, rounded up.
+    /// The diffuse level of a light for a difference of cosines, Q2.30; the level is Q9.7, rounded up.
     #[inline(always)]
     #[must_use]
     pub(crate) fn diffuse_level(&self, light: usize, cosine: i32) -> u32 {
@@ -370,7 +369,7 @@ impl ErrorBounds {
         ((diffuse * (cosine as u32 >> (COSINE - BOUND))) >> BOUND) + 2
     }
 
-    /// The level of so much of a highlight (unsigned Q0.16) of the first light, Q9.7, rounded up.
+    /// The level of the first light's highlight for a difference of powers, unsigned Q0.16; the level is Q9.7, rounded up.
     #[inline(always)]
     #[must_use]
     pub(crate) fn highlight_level(&self, highlight: i32) -> u32 {
@@ -378,7 +377,7 @@ impl ErrorBounds {
         ((specular * highlight as u32) >> 16) + 1
     }
 
-    /// The brightest level of such a cosine and highlight of the first light, Q9.7, rounded up.
+    /// The brightest level of the first light at this cosine and highlight, Q9.7, rounded up.
     #[inline(always)]
     #[must_use]
     pub(crate) fn brightest(&self, cosine: i32, highlight: i32) -> i32 {

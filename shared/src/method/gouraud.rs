@@ -1,4 +1,4 @@
-//! Gouraud shading (Gouraud 1971): lit at the corners, linear in between.
+//! Gouraud shading (Gouraud 1971): light at the corners, interpolated linearly.
 //!
 //! Cost: one addition a pixel and channel. Continuous. Error against Phong: at
 //! most 255 ks n (1 - c)/(1 + 2c) for the highlight and 255 kd 1.165 (1 - c)/(1 + 2c)
@@ -84,7 +84,7 @@ impl Loops for ThreeChannels<Gouraud> {
     }
 }
 
-/// Draws a triangle of one channel, all levels `raise` more; returns the number of its pixels in `band`.
+/// Draws a triangle of one channel, with all levels `raise` higher. Returns the number of its pixels in `band`.
 #[inline(never)]
 pub(super) fn draw_one<C: Pixel>(setup: &TriangleSetup<'_>, raise: i32, tables: MaterialTables<'_, C>, band: &mut Band<'_, C>) -> u32 {
     let [a, b, c] = setup.corners;
@@ -99,7 +99,7 @@ pub(super) fn has_ramp(setup: &TriangleSetup<'_>, reflectance: &Reflectance) -> 
     a.light[2] | b.light[2] | c.light[2] == 0 && reflectance.has_ramp()
 }
 
-/// Draws a triangle of three channels under one constant light, all levels `raise` more; returns the number of its pixels in `band`.
+/// Draws a triangle of three channels under one constant light, with all levels `raise` higher. Returns the number of its pixels in `band`.
 #[inline(always)]
 pub(super) fn draw_three<C: Pixel>(
     setup: &TriangleSetup<'_>,
@@ -122,7 +122,7 @@ pub(super) fn draw_three<C: Pixel>(
     shading.fill_three(setup, channels, raise, |plane| plane, band)
 }
 
-/// In a function of its own: by measurement, what draws the triangle has more registers then.
+/// A function of its own: measured, the loop that draws the triangle has more registers then.
 #[inline(never)]
 fn one<C: Pixel>(gradients: &Gradients, levels: [i32; 3]) -> Plane<1> {
     fit_levels::<3, C>(gradients, levels)

@@ -1,4 +1,4 @@
-//! Lighting models: how the fields that are interpolated for each light become reflected light at a pixel.
+//! Lighting models: how interpolated fields become reflected light at a pixel.
 
 use crate::{
     format::{COSINE, MAX_LIGHTS},
@@ -17,32 +17,31 @@ use crate::{
     setup::gradients::Gradients,
 };
 
-/// Fraction bits of a field at a node; walked with [`COSINE`].
+/// Fraction bits of a field at a node. A walked field has [`COSINE`] fraction bits.
 pub const NODE: u32 = 24;
-/// Fraction bits that a walked field has beyond those of a node.
+/// Fraction bits that a walked field has more than a node.
 pub const EXTRA: u32 = COSINE - NODE;
 /// Bits of the range of nodes, which lie in [-2, 2].
 pub const BITS: u32 = NODE + 2;
 
-/// How a method computes the light at a pixel from the fields that it interpolates: `V` for each light, `D` for one without a highlight, and
-/// `K` once for all lights.
+/// Computes the light at a pixel from interpolated fields: `V` for each light, `D` for a light without a highlight, and `K` once for all lights.
 pub trait LightingModel<K, V, D = ()>: Copy {
-    /// The result that all lights share.
+    /// The result that is computed once for all lights.
     type Common: Copy + Default;
 
-    /// Computes what all lights share.
+    /// Computes what is needed once for all lights.
     fn common(&self, common: K) -> Self::Common;
 
-    /// The reflection of light number `light`.
+    /// Computes the diffuse light and the highlight of light number `light`.
     fn reflect(&self, light: usize, common: &Self::Common, fields: V, lut: CosineLookup<'_>) -> Reflection;
 
-    /// The diffuse part of [`Self::reflect`], for a light without a highlight; methods that never tell these apart have none.
+    /// Computes the diffuse part of [`Self::reflect`], for a light without a highlight. Only methods that tell such lights apart implement it.
     fn reflect_diffuse(&self, _: &Self::Common, _: D) -> i32 {
         0
     }
 }
 
-/// What one light does to a triangle, with the fields that a method interpolates for it.
+/// What one light adds to a triangle, with the fields that the method interpolates for it.
 #[derive(Clone, Copy, Debug)]
 pub enum Lit<V, D> {
     /// The light adds nothing anywhere on the triangle.
@@ -53,7 +52,7 @@ pub enum Lit<V, D> {
     Fully(V),
 }
 
-/// Shades a triangle under any lights on any material: one light after the other over a run of pixels, so that each loop knows one light.
+/// Shades a triangle under any lights on any material. Lights take turns over a run of pixels, so that each loop knows one light.
 struct ManyLights<'a, K, P, D, F, S> {
     reflectance: &'a Reflectance,
     model: F,
@@ -167,7 +166,7 @@ where
 }
 
 impl Shading<'_> {
-    /// Draws a triangle by `model`, with the field `common` for all lights and the field `of` each light.
+    /// Draws a triangle by `model`. `common` is interpolated once for all lights, and `of` gives the field of each light.
     pub fn draw_lit<K, V, F>(
         &self,
         setup: &TriangleSetup<'_>,
@@ -184,7 +183,7 @@ impl Shading<'_> {
         self.draw_lit_in_part(setup, |source| Lit::<V, Constant>::Fully(of(source)), common, model, canvas)
     }
 
-    /// [`Self::draw_lit`] by a method that tells lights apart by what they add to the triangle.
+    /// Draws a triangle as [`Self::draw_lit`] does, by a method that knows what each light adds to it.
     pub fn draw_lit_in_part<K, V, D, F>(
         &self,
         setup: &TriangleSetup<'_>,
@@ -219,7 +218,7 @@ impl Shading<'_> {
         self.draw_patches(setup, of, fitted(&common, gradients), model, canvas)
     }
 
-    /// [`Self::draw_lit`] with patches in place of fields, for methods that interpolate along rows of the screen.
+    /// Draws a triangle as [`Self::draw_lit`] does, with patches in place of fields, for methods that interpolate along rows of the screen.
     pub fn draw_rows<K, P, F>(
         &self,
         setup: &TriangleSetup<'_>,
@@ -278,7 +277,7 @@ impl Shading<'_> {
         setup.draw_spans(&mut ManyLights { reflectance, model, common, lights, diffuse, lut, ambient, shared, levels }, canvas)
     }
 
-    /// The planes through N·L and N·H of a constant light, normals not normalised, which are exact.
+    /// The planes through N·L and N·H of a constant light. Normals are not normalised, so the planes are exact.
     pub fn constant_products(&self, setup: &TriangleSetup<'_>, source: &Source) -> Linear<2> {
         linear(self.constant_cosines(setup, source))
     }
@@ -295,18 +294,18 @@ impl Shading<'_> {
     }
 }
 
-/// A field through three nodes.
+/// A linear field: it goes through the values at the three corners.
 pub type Linear<const CH: usize> = Nodes<3, CH, BITS>;
-/// A field through six nodes.
+/// A quadratic field: it goes through the values at three corners and three midpoints of edges.
 pub type Quadratic<const CH: usize> = Nodes<6, CH, BITS>;
 
-/// The quadratics through six nodes in Q2.30.
+/// The quadratic through values at six nodes, Q2.30.
 #[inline]
 pub fn quadratic<const CH: usize>(nodes: [[i32; 6]; CH]) -> Quadratic<CH> {
     Nodes::new(rounded(nodes), EXTRA)
 }
 
-/// The planes through three nodes in Q2.30.
+/// The plane through values at three nodes, Q2.30.
 #[inline]
 pub fn linear<const CH: usize>(nodes: [[i32; 3]; CH]) -> Linear<CH> {
     Nodes::new(rounded(nodes), EXTRA)
@@ -318,7 +317,7 @@ fn rounded<const N: usize, const CH: usize>(nodes: [[i32; N]; CH]) -> [[i32; N];
     nodes.map(|nodes| nodes.map(|node| (node + (1 << (EXTRA - 1))) >> EXTRA))
 }
 
-/// A walked field in Q2.30, signed.
+/// Converts a walked field to a signed number, Q2.30.
 #[inline(always)]
 pub fn signed(field: u32) -> i32 {
     field as i32

@@ -1,14 +1,17 @@
-//! One directional light under a local viewer: loops of Phong shading.
+//! Phong shading under one directional light and a local viewer, in loops of its own.
 //!
-//! The vector V from the surface to the viewer is linear over a triangle, as its normal N is. So N·L and L·V are linear, N·V, |N|² and
+//! The vector V from the surface to the viewer is linear over a triangle, as its normal N is. So N·L and L·V are linear, and N·V, |N|² and |V|²
+//! exactly quadratic; all are walked. V is measured in units of its length at the farthest corner, so it is 1/2 to 1 long unless the viewer is close.
+//! Three squares then lie in the table of reciprocal roots, without counting of leading zeros: |V|², |N|², and a quarter of |L + V|², which is 2 + 2
+//! L·V where V has the length 1.
 //! |V|² exactly quadratic, and all are walked. Measured in its length at the farthest corner, V is 1/2 to 1 long unless the viewer is close:
 //! then the table of reciprocal roots has its square, that of N, and, since |L + V|² = 2 + 2 L·V where V has the length 1, a quarter of
 //! that, all without counting leading zeros.
 //!
-//! Many triangles have no highlight, which the coefficients of these polynomials tell. They are drawn as under an infinite viewer.
+//! Many triangles have no highlight, as the coefficients of these polynomials tell. They are drawn as under an infinitely far viewer.
 //!
-//! Cost: 8 products to evaluate the polynomials, 3 roots from a table, 7 products more and the table of highlights. Error: that of the
-//! tables; the three roots err by at most 4.5e-6 together, 0.07 of 1/255 at the exponent 64 beyond which the general way draws.
+//! Cost: 8 products to evaluate the polynomials, 3 roots from a table, 7 products more and the table of highlights. Error: the tables' error; the
+//! three roots err by at most 4.5e-6 together, which is 0.07 of 1/255 at the exponent 64. Beyond this exponent the general loop draws.
 
 use crate::{
     arch::product::upper,
@@ -47,8 +50,8 @@ pub(crate) fn take(style: Style) -> bool {
     style.local_viewer && !style.by_canvas && !style.perspective
 }
 
-/// Draws `setup` as seen from `eye`, Q7.25, and returns the number of its pixels in `band`; if it has no highlight, returns the cosines by
-/// which it is drawn as under an infinite viewer. `None` if it has to be drawn the general way.
+/// Draws `setup` as seen from `eye`, Q7.25, and returns the number of its pixels in `band`. If it has no highlight, returns the cosines by which it
+/// is drawn as under an infinitely far viewer. `None` if the general loop has to draw it.
 #[inline(never)]
 pub(crate) fn draw<C: Pixel>(
     setup: &TriangleSetup<'_>,

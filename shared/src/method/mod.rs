@@ -1,9 +1,8 @@
-//! The shading methods, one file each.
+//! The shading methods, one file for each.
 //!
-//! A [`Method`] is its [`Facts`], and how it shades a triangle of any scene in intensities. It interpolates fields over the triangle and
-//! computes an intensity from their values at each pixel, by an [`IntensityShader`] or, light by light, by a [`LightingModel`]. A
-//! [`Canvas`] tests depth and stores colours. The methods of this crate also have loops that are compiled for each pixel format, for the
-//! common styles.
+//! A [`Method`] has [`Facts`] and shades a triangle of any scene. It interpolates fields over the triangle, and computes an intensity from their
+//! values at each pixel. For this it has an [`IntensityShader`], or a [`LightingModel`] for one light at a time. A [`Canvas`] tests depth and stores
+//! colours. The methods of this crate also have loops of their own for common styles, compiled for each pixel format.
 
 #[doc(hidden)]
 pub mod auto;
@@ -81,45 +80,46 @@ pub use sub_triangle::{Part, Parts, SubTriangle};
 
 /// A shading method.
 pub trait Method: Sync {
-    /// The facts about the method.
+    /// Properties of the method.
     fn facts(&self) -> &'static Facts;
 
-    /// Computes what a method needs to keep to an error budget, for a material of this exponent under so many lights: others need nothing.
+    /// Computes bounds for a method with an error budget, for a material of exponent `_exponent` under `_lights` lights. Other methods do nothing
+    /// here.
     fn error_bounds(&self, _reflectance: &Reflectance, _exponent: u16, _lights: usize) -> ErrorBounds {
         ErrorBounds::EMPTY
     }
 
-    /// Shades the triangle `setup` into `canvas`; returns the number of its pixels there.
+    /// Shades the triangle `setup` into `canvas`, and returns the number of its pixels there.
     fn shade(&self, setup: &TriangleSetup<'_>, shading: &Shading<'_>, canvas: &mut dyn Canvas) -> u32;
 }
 
-/// How the triangles of a mesh are drawn, which is decided once for all of them.
+/// How the triangles of a mesh are drawn. It is decided once for all of them.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Style {
-    /// Three channels in place of one.
+    /// Whether colours have three channels instead of one.
     pub(crate) three_channels: bool,
     /// Number of constant lights, if their levels fit the formats of [`crate::lighting::constant_lights`]; otherwise 0.
     pub(crate) lights: u8,
-    /// One directional light under a local viewer, whose levels fit these formats.
+    /// Whether there is one directional light under a local viewer, whose levels fit these formats.
     pub(crate) local_viewer: bool,
-    /// What a canvas alone does to colours: 8x8 dither of colours, antialiasing, or the curve of a display on three channels.
+    /// Whether only a canvas can make the colours: by 8x8 dither of colours, antialiasing, or the curve of a display on three channels.
     pub(crate) by_canvas: bool,
-    /// Interpolation in perspective.
+    /// Whether light is interpolated in perspective.
     pub(crate) perspective: bool,
 }
 
-/// A method that has loops of its own for some styles, compiled for each pixel format.
+/// Loops of a method for some styles, compiled for each pixel format. All other styles are drawn by the general loop, through a [`Canvas`].
 pub(crate) trait Loops {
-    /// The loops in three channels, or these again.
+    /// The loops in three channels. They may be the same type.
     type ThreeChannels: Loops;
 
-    /// Whether there are no loops but those of the general way.
+    /// Whether the method has only the general loop.
     const GENERAL: bool = false;
 
     /// Whether there are loops for `style`.
     fn take(style: Style) -> bool;
 
-    /// Shades `setup` into `band` and returns the number of its pixels there; `None` if the triangle has to be drawn the general way.
+    /// Shades `setup` into `band` and returns the number of its pixels there; `None` if the general loop has to draw the triangle.
     fn draw<C: Pixel>(
         setup: &TriangleSetup<'_>,
         shading: &Shading<'_>,
@@ -128,13 +128,13 @@ pub(crate) trait Loops {
     ) -> Option<u32>;
 }
 
-/// See [`Loops::draw`].
+/// The type of [`Loops::draw`] in one pixel format.
 pub(crate) type DrawTriangle<C> = fn(&TriangleSetup<'_>, &Shading<'_>, MaterialTables<'_, C>, &mut Band<'_, C>) -> Option<u32>;
 
-/// The loops of the method `M` in three channels, where it tells these apart.
+/// The loops of the method `M` in three channels.
 pub(crate) struct ThreeChannels<M>(PhantomData<M>);
 
-/// No loops but those of the general way.
+/// A method without loops of its own: the general loop draws all triangles.
 pub(crate) struct General;
 
 impl Loops for General {
@@ -166,19 +166,19 @@ pub(crate) fn largest(&[a, b, c]: &[i32; 3]) -> i32 {
     a.max(b).max(c)
 }
 
-/// A triangle ready to be shaded; all triples start with its top corner.
+/// A triangle ready to be shaded. All triples start with its top corner.
 pub struct TriangleSetup<'f> {
-    /// The corners, edges and depth on the screen.
+    /// Corners, edges and depth on the screen.
     pub(crate) screen: &'f ScreenTriangle,
     /// The gradients by which polynomials are fitted to the triangle.
     pub(crate) gradients: &'f Gradients,
-    /// The lit corners on the screen.
+    /// The corners on the screen, with their light.
     pub corners: [&'f ScreenVertex; 3],
     /// The triangle's record in the stream.
     pub triangle: &'f Triangle,
-    /// The vertices to which the record's indices lead.
+    /// The vertices of the mesh, to which the indices of the triangle's record point.
     pub vertices: &'f [Vertex],
-    /// Number of places from the stream's first corner to the top one.
+    /// How often the stream's corners are rotated, so that the top one is first: 0, 1 or 2.
     pub turned: usize,
     /// Whether other triangles may overlap this one.
     pub needs_depth_test: bool,
@@ -186,26 +186,26 @@ pub struct TriangleSetup<'f> {
     pub perspective: bool,
     /// Which pixels of the triangle are drawn.
     pub(crate) pixels: PixelSet,
-    /// Index of the active triangle that the band above has saved: its patch is loaded, and nothing is fitted.
+    /// Index of the active triangle whose patch the band above has saved. It is loaded, and nothing is fitted.
     pub(crate) place: Option<usize>,
 }
 
 impl TriangleSetup<'_> {
-    /// How steeply light follows what is fitted.
+    /// How steeply light depends on the interpolated fields.
     #[must_use]
     pub fn steepness(&self) -> Steepness {
         self.gradients.steepness()
     }
 
-    /// A copy without edges and gradients, for functions that light the triangle: since these are not passed, the compiler keeps them in
-    /// registers.
+    /// Copies the set-up without edges and gradients, for functions that light the triangle. Since these are not passed on, the compiler keeps them
+    /// in registers.
     #[inline(always)]
     #[must_use]
     pub(crate) fn for_lighting(&self) -> TriangleSetup<'_> {
         TriangleSetup { screen: &ScreenTriangle::NONE, gradients: &Gradients::NONE, ..*self }
     }
 
-    /// The vertices, the top one first.
+    /// The vertices of the triangle, the top one first.
     #[inline(always)]
     pub fn vertices(&self) -> [&Vertex; 3] {
         let [a, c, b] = self.triangle.corners;
@@ -214,7 +214,7 @@ impl TriangleSetup<'_> {
         turn([vertex(a), vertex(b), vertex(c)], self.turned)
     }
 
-    /// Inverse depth of the corners; `None` unless light is interpolated in perspective and that makes a difference.
+    /// Inverse depth of the corners; `None` if light is not interpolated in perspective, or that makes no difference.
     #[inline(always)]
     pub fn inv_depth(&self) -> Option<[i32; 3]> {
         let [a, b, c] = self.corners;
@@ -223,7 +223,7 @@ impl TriangleSetup<'_> {
         (self.perspective && !(a == b && b == c)).then_some([a, b, c])
     }
 
-    /// Constants of the stream's edges in the order of the corners here, which run the other way around.
+    /// Sorts constants of the stream's edges in the order of the corners here, which run the other way around.
     #[inline(always)]
     pub fn edges(&self, [ab, bc, ca]: [u16; 3]) -> [u16; 3] {
         turn([ca, bc, ab], self.turned)
@@ -260,25 +260,25 @@ impl TriangleSetup<'_> {
         Some(band.active.active_triangle(self.place?)?.edges.shader)
     }
 
-    /// The polynomial of `field` on the screen, without perspective, for [`Shading::draw_rows`].
+    /// Fits a polynomial to `field` on the screen, without perspective, for [`Shading::draw_rows`].
     #[must_use]
     pub fn fit<F: Field>(&self, field: &F) -> F::Patch {
         field.fit(self.gradients)
     }
 
-    /// The row of the screen on which patches stand when shading begins, in finer rows where antialiasing shades by them.
+    /// The row of the screen on which patches stand when shading begins. With antialiasing rows are finer.
     #[must_use]
     pub fn first_row(&self) -> i32 {
         self.gradients.row()
     }
 
-    /// Logarithm of the number of places along each axis of a pixel where the triangle is shaded; 0 without antialiasing.
+    /// Base-2 logarithm of the number of places along each axis of a pixel where the triangle is shaded; 0 without antialiasing.
     #[must_use]
     pub fn finer(&self) -> u32 {
         self.pixels.finer()
     }
 
-    /// Draws the triangle by `shader`, which stands on [`Self::first_row`]; returns the number of pixels in `canvas`.
+    /// Draws the triangle by `shader`, which begins on [`Self::first_row`]. Returns the number of pixels in `canvas`.
     pub(crate) fn draw_spans(&self, shader: &mut dyn SpanShader, canvas: &mut dyn Canvas) -> u32 {
         if cfg!(feature = "antialias") && self.pixels != PixelSet::Centres {
             let Self { screen, pixels, .. } = *self;
@@ -288,7 +288,7 @@ impl TriangleSetup<'_> {
         self.screen.draw_spans(self.gradients, shader, canvas)
     }
 
-    /// What the vertices hold of [`VertexLight::Cosines`] of the first light.
+    /// The first light's [`VertexLight::Cosines`] at the corners.
     #[inline(always)]
     #[must_use]
     pub(crate) fn corner_lights(&self) -> CornerCosines {
@@ -296,7 +296,7 @@ impl TriangleSetup<'_> {
         [[a.light[0], b.light[0], c.light[0]], [a.light[1], b.light[1], c.light[1]]]
     }
 
-    /// What the vertices hold of [`VertexLight::Cosines`] of two lights. Domain: [`Reflectance::has_two_lights`], constant lights.
+    /// The [`VertexLight::Cosines`] of two lights at the corners. Domain: [`Reflectance::has_two_lights`], constant lights.
     #[inline(always)]
     #[must_use]
     pub(crate) fn corners_of_two_lights(&self) -> [CornerCosines; 2] {
@@ -304,7 +304,7 @@ impl TriangleSetup<'_> {
         [self.corner_lights(), [[a.light[2], b.light[2], c.light[2]], [a.light[3], b.light[3], c.light[3]]]]
     }
 
-    /// Whether the highlight of one constant light reaches a visible level nowhere on the triangle: N·H is linear and |N| at least
+    /// Whether the highlight of one constant light is nowhere on the triangle strong enough to be seen. N·H is linear on it, and |N| at least
     /// [`Triangle::min_normal_length`].
     #[inline(always)]
     pub fn has_no_highlight(&self, reflectance: &Reflectance) -> bool {
@@ -347,7 +347,7 @@ impl TriangleSetup<'_> {
         }
     }
 
-    /// Threshold of N·H, linear between the corners, below which N·H over |N| is too small for a highlight; Q2.30.
+    /// Threshold of N·H, Q2.30, where N·H is linear between the corners. Below it N·H over |N| is too small for a highlight.
     #[inline(always)]
     pub fn highlight_threshold(&self, reflectance: &Reflectance) -> i32 {
         self.before_division(reflectance.highlight_threshold())
@@ -360,13 +360,13 @@ impl TriangleSetup<'_> {
     }
 }
 
-/// An area of the screen over which fields can be interpolated.
+/// An area of the screen over which fields can be interpolated: a triangle or a part of one.
 pub trait Area {
-    /// Interpolates `field` over the area and shades it by `shader`; returns the number of pixels in `canvas`.
+    /// Interpolates `field` over the area and shades it by `shader`. Returns the number of pixels in `canvas`.
     fn draw<F: Field, S: IntensityShader<F::Value>>(&self, field: &F, shader: S, canvas: &mut dyn Canvas) -> u32;
 }
 
-/// The whole triangle, in perspective or without.
+/// The whole triangle, in perspective or not.
 impl Area for TriangleSetup<'_> {
     fn draw<F: Field, S: IntensityShader<F::Value>>(&self, field: &F, shader: S, canvas: &mut dyn Canvas) -> u32 {
         if cfg!(feature = "perspective")
@@ -382,17 +382,17 @@ impl Area for TriangleSetup<'_> {
 /// Material and lights of the triangles of one mesh in one frame.
 #[derive(Clone, Copy)]
 pub struct Shading<'f> {
-    /// What the material reflects.
+    /// Colours that the material reflects.
     pub reflectance: &'f Reflectance,
-    /// The lights.
+    /// The lights of the scene, as the object sees them.
     pub lighting: &'f Lighting,
     /// The material's exponent.
     pub exponent: u16,
-    /// L and H of the only light, if they are constant, see [`Lighting::constant`].
+    /// Directions L and H of the only light, if they are the same everywhere; see [`Lighting::constant`].
     pub constant: Option<[[i32; 3]; 2]>,
-    /// See [`Method::error_bounds`].
+    /// Bounds for a method with an error budget; see [`Method::error_bounds`].
     pub error_bounds: &'f ErrorBounds,
-    /// How far a pixel may be off by a method that keeps to a budget, in 1/255, Q9.7.
+    /// The error budget: the largest error of a pixel, in 1/255, Q9.7.
     pub budget: u32,
 }
 
@@ -407,7 +407,7 @@ fn channels<const N: usize>(levels: [[i32; 3]; N]) -> [[i32; N]; 3] {
     channels
 }
 
-/// The field through levels at `N` nodes, Q9.7, in three channels; [`Walked`] turns its values into intensities.
+/// A field through levels at `N` nodes, Q9.7, in three channels. [`Walked`] converts its values to intensities.
 #[must_use]
 pub fn levels_at<const N: usize>(levels: [[i32; 3]; N]) -> Nodes<N, 3, RANGE> {
     Nodes::new(channels(levels), EXTRA).biased([bias(0); 3])
@@ -431,15 +431,15 @@ const fn bias(more: i32) -> i32 {
 }
 
 impl Shading<'_> {
-    /// Whether vertices have [`VertexLight::Cosines`] where the method asks for [`VertexLight::CosinesOrLevels`].
+    /// Whether vertices have [`VertexLight::Cosines`] if the method asks for [`VertexLight::CosinesOrLevels`].
     #[inline(always)]
     #[must_use]
     pub fn vertices_have_cosines(&self) -> bool {
         self.constant.is_some()
     }
 
-    /// Interpolates the levels at `N` nodes over `area`, in one channel or three, as the material needs. Levels are Q9.7, in a range
-    /// narrower than 2^`BITS`.
+    /// Interpolates levels at `N` nodes over `area`, in one channel or three, as the material needs. Levels are Q9.7 and lie in a range narrower than
+    /// 2^`BITS`.
     pub fn draw_levels<const N: usize, const BITS: u32>(&self, area: &impl Area, levels: [[i32; 3]; N], canvas: &mut dyn Canvas) -> u32
     where
         Nodes<N, 1, BITS>: Field<Value = [u32; 1]>,
@@ -520,7 +520,7 @@ impl Shading<'_> {
     }
 }
 
-/// Shades every pixel with one intensity.
+/// Shades all pixels with one intensity.
 #[derive(Clone, Copy, Debug)]
 pub struct Uniform(pub Intensity);
 
@@ -532,17 +532,17 @@ impl IntensityShader<()> for Uniform {
     }
 }
 
-/// Shades by walked levels as they are.
+/// Shades by interpolated levels.
 #[derive(Clone, Copy, Debug)]
 pub struct Walked;
 
-/// The intensity of a biased, walked level.
+/// Converts a walked level, which has a bias, to an intensity.
 #[inline(always)]
 fn intensity(walked: u32) -> i32 {
     ((walked >> (WALK - INTENSITY)) as i32 - (BIAS << INTENSITY)).clamp(0, (1 << 16) - 1)
 }
 
-/// The intensity of levels in Q9.7, at most 255.
+/// Converts levels in Q9.7 to intensities of at most 255.
 #[inline(always)]
 #[must_use]
 pub fn of_levels(levels: [i32; 3]) -> Intensity {

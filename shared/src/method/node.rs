@@ -18,21 +18,21 @@ const FINER: u32 = 30 - UNIT;
 /// A point of a triangle and the normal there.
 #[derive(Clone, Copy, Debug)]
 pub struct Node {
-    /// Object space, Q7.25.
+    /// Position in object space, Q7.25.
     pub position: [i32; 3],
-    /// Q2.30.
+    /// Unit normal, Q2.30.
     pub normal: [i32; 3],
 }
 
-/// Whether a highlight of this exponent is so steep that the constants of edges, of which the stream has 16 fraction bits, would show: an
-/// error of 2^-17 in a cosine is 0.1 of 1/255 at 64, and grows with the exponent. What they stand for is then computed from the normals.
+/// Whether highlights of this exponent are so steep that rounding of the stream's edge constants to 16 bits would show: an error of 2^-17 in a cosine
+/// is 0.1 of 1/255 at the exponent 64, and grows with the exponent. The constants are then computed from the normals.
 #[must_use]
 pub fn is_steep(exponent: u16) -> bool {
     exponent > 64
 }
 
 impl Shading<'_> {
-    /// Levels at a point, Q9.7.
+    /// Light levels at a point, Q9.7.
     pub fn levels(&self, node: &Node) -> [i32; 3] {
         if let Some([towards, half]) = self.constant {
             return self.reflectance.one_light([cosine(node.normal, towards), cosine(node.normal, half)]);
@@ -42,7 +42,7 @@ impl Shading<'_> {
 }
 
 impl Shading<'_> {
-    /// Levels at the midpoints of the edges 01, 12, 20, Q9.7.
+    /// Light levels at the midpoints of the edges 01, 12, 20, Q9.7.
     #[inline(never)]
     pub fn middle_levels(&self, setup: &TriangleSetup<'_>) -> [[i32; 3]; 3] {
         if self.lighting.is_constant()
@@ -58,12 +58,12 @@ impl Shading<'_> {
 }
 
 impl TriangleSetup<'_> {
-    /// The corners, with their normals as stored.
+    /// The corners, with the normals of the stream.
     pub fn corner_nodes(&self) -> [Node; 3] {
         self.vertices().map(|vertex| Node { position: point(vertex.position), normal: wide(vertex.normal).map(|c| c << FINER) })
     }
 
-    /// Corners and edge midpoints (01, 12, 20), unit normals, as exact as a highlight of this exponent needs them.
+    /// Corners and midpoints of the edges 01, 12, 20, with unit normals as exact as a highlight of this exponent needs them.
     pub fn six_nodes(&self, exponent: u16) -> [Node; 6] {
         let sums = self.sums();
         let [a, b, c] = self.corner_nodes();
@@ -81,14 +81,14 @@ impl TriangleSetup<'_> {
         [a, b, c, middle(0), middle(1), middle(2)]
     }
 
-    /// Corners and edge midpoints (01, 12, 20), the normals linear between the corners.
+    /// Corners and midpoints of the edges 01, 12, 20. The normals at midpoints are means of the corners', not normalised.
     pub fn six_linear_nodes(&self) -> [Node; 6] {
         let [ab, bc, ca] = self.sums().map(|(position, sum)| Node { position, normal: sum.map(|c| c << (FINER - 1)) });
         let [a, b, c] = self.corner_nodes();
         [a, b, c, ab, bc, ca]
     }
 
-    /// The point with the barycentric coordinates `weights / 2^bits`, which are not negative, `bits` at most 11; unit normal.
+    /// The point with the barycentric coordinates `weights / 2^bits` and the unit normal there. Weights are not negative, `bits` is at most 11.
     pub fn node(&self, weights: [i32; 3], bits: u32) -> Node {
         let ([a, b, c], [u, v, w]) = (self.vertices(), weights);
         let mean = |of: fn(&Vertex) -> [i16; 3]| {
@@ -100,7 +100,7 @@ impl TriangleSetup<'_> {
         Node { position: [x << up, y << up, z << up], normal: normalise(mean(|vertex| vertex.normal)) }
     }
 
-    /// The point with the barycentric coordinates `weights / (3 2^bits)`; unit normal.
+    /// The point with the barycentric coordinates `weights / (3 2^bits)` and the unit normal there.
     pub fn third(&self, weights: [i32; 3], bits: u32) -> Node {
         let node = self.node(weights, bits);
         Node { position: node.position.map(|c| c / 3), ..node }
@@ -111,7 +111,7 @@ impl TriangleSetup<'_> {
         sums(self.vertices())
     }
 
-    /// 1/|Ni+Nj| of the edges 01, 12, 20, [`INVERSE_SUM_LENGTH`] fraction bits, less than 2^31.
+    /// The reciprocal lengths 1/|Ni+Nj| for the edges 01, 12, 20, [`INVERSE_SUM_LENGTH`] fraction bits, less than 2^31.
     #[inline(always)]
     pub fn inverse_sum_lengths(&self) -> [u32; 3] {
         let [ab, bc, ca] = self.edges(self.triangle.inverse_sum_length);
@@ -147,7 +147,7 @@ impl TriangleSetup<'_> {
         self.six_half_from([a.light[1], b.light[1], c.light[1]], exponent)
     }
 
-    /// [`Self::six_half`] of the values at corners.
+    /// N·H at the six nodes, as [`Self::six_half`] gives it, from the values at the corners.
     #[inline(always)]
     pub fn six_half_from(&self, corners: [i32; 3], exponent: u16) -> [i32; 6] {
         if is_steep(exponent) { exact_six(self.vertices(), corners) } else { self.six_from(corners) }
@@ -208,7 +208,7 @@ fn wide_inverse_sum_lengths(vertices: [&Vertex; 3], given: [u16; 3]) -> [u32; 3]
     })
 }
 
-/// `f` of each value at six nodes, written out because `map` is a loop through memory at opt-level "s".
+/// Applies `f` to the values at six nodes. It is written out, because `map` is a loop through memory at opt-level "s".
 #[inline(always)]
 pub fn map_six<A, R>([a, b, c, d, e, g]: [A; 6], f: impl Fn(A) -> R) -> [R; 6] {
     [f(a), f(b), f(c), f(d), f(e), f(g)]
@@ -234,7 +234,7 @@ fn exact_six(vertices: [&Vertex; 3], [a, b, c]: [i32; 3]) -> [i32; 6] {
     [a, b, c, ab, bc, ca]
 }
 
-/// `f` of each pair of values at six nodes, written out because `map` is a loop through memory at opt-level "s".
+/// Applies `f` to pairs of values at six nodes. It is written out, because `map` is a loop through memory at opt-level "s".
 #[inline(always)]
 pub fn zip_six<A, B, R>([a0, a1, a2, a3, a4, a5]: [A; 6], [b0, b1, b2, b3, b4, b5]: [B; 6], f: impl Fn(A, B) -> R) -> [R; 6] {
     [f(a0, b0), f(a1, b1), f(a2, b2), f(a3, b3), f(a4, b4), f(a5, b5)]

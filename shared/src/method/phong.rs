@@ -1,12 +1,11 @@
 //! Per-pixel Phong shading (Phong 1975), highlights by the half vector (Blinn 1977).
 //!
-//! Normals, lights and viewer are linear over the screen, so every dot product
-//! between them is linear or exactly quadratic and can be walked; only the roots
-//! that normalise are taken at each pixel. Under one constant light that is [`crate::method::duff`], under one directional light and a local
-//! viewer `local_viewer`.
+//! Normals, lights and viewer are linear over the screen. Every dot product of them is therefore linear or exactly quadratic and can be walked. Only
+//! the roots that normalise are taken at each pixel. One constant light is drawn by [`crate::method::duff`], one directional light under a local
+//! viewer by `local_viewer`.
 //!
-//! Cost: one constant light as `duff`; otherwise 6 additions and 2 roots, and 6 additions and 2 roots more for each light.
-//! Error: that of the tables, [`crate::math::highlight_lut::NEAREST_ERROR`] of the highlight above all. Domain: any lights and viewer.
+//! Cost: one constant light as `duff`; otherwise 6 additions and 2 roots, and 6 additions and 2 roots more for each light. Error: the tables' error,
+//! mainly [`crate::math::highlight_lut::NEAREST_ERROR`] of the highlight. Domain: any lights and viewer.
 
 use crate::{
     lighting::{
@@ -42,7 +41,7 @@ static FACTS: Facts = Facts {
     costs: Costs::new(11, 12, 2, 30),
 };
 
-/// Phong shading at every pixel.
+/// Phong shading: the normal is normalised at every pixel.
 pub struct Phong;
 
 impl Method for Phong {
@@ -112,25 +111,25 @@ fn fitted(vectors: [[i32; 3]; 3]) -> [[i32; 3]; 3] {
     vectors.map(|v| v.map(|c| if zeros >= 5 { c << (zeros - 5) } else { c >> (5 - zeros) }))
 }
 
-/// What all lights share at a pixel: the factors that normalise normal and viewer.
+/// Factors at a pixel that all lights share: they normalise the normal and the direction to the viewer.
 #[derive(Clone, Copy, Default)]
 pub struct Common {
-    /// One over the length of the normal.
+    /// 1 over the length of the normal.
     pub normal: Root,
-    /// One over the distance of the viewer.
+    /// 1 over the distance of the viewer.
     pub view: Root,
-    /// N·V, the normal not normalised, Q2.30.
+    /// N·V, Q2.30; the normal is not normalised.
     pub nv: i32,
 }
 
 impl Common {
-    /// From walked N·N, V·V, N·V.
+    /// Computes the factors from walked N·N, V·V and N·V.
     pub fn new([nn, vv, nv]: [u32; 3]) -> Self {
         let (normal, view) = (Root::of(nn), Root::of(vv));
         Self { normal, view, nv: view.divide(signed(nv)) }
     }
 
-    /// N·L (the normal not normalised) and L·V from walked N·L, L·L, V·L.
+    /// Computes N·L (the normal not normalised) and L·V from walked N·L, L·L and V·L.
     pub fn light(&self, [nl, ll, vl]: [u32; 3]) -> [i32; 2] {
         let light = Root::of(ll);
         [light.divide(signed(nl)), self.view.divide(light.divide(signed(vl)))]

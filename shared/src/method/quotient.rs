@@ -1,5 +1,5 @@
-//! Constant lights, by linear numerators over a length: level and highlight are walked in the units
-//! of their tables, so that a pixel takes one product for each.
+//! Loops under constant lights that divide linear numerators by a length. Level and highlight are walked in the units of their tables, so that each
+//! takes one product a pixel.
 
 use crate::{
     arch::product::upper,
@@ -23,7 +23,7 @@ use crate::{
     },
 };
 
-/// Fraction bits of a diffuse level at a node: levels, with a sign, then have [`RANGE`] bits.
+/// Fraction bits of a diffuse level at a node. With a sign, levels then have [`RANGE`] bits.
 const NODE: u32 = 10;
 /// Bits of the range of diffuse levels at nodes.
 const RANGE: u32 = 20;
@@ -95,7 +95,7 @@ impl<C: Pixel, V, R: Fn(V) -> i32 + Copy, const EXACT: bool> PixelShader<([u32; 
     }
 }
 
-/// [`DiffuseAndHighlight`] of two lights.
+/// Shades by two lights.
 impl<C: Pixel, V, R: Fn(V) -> i32 + Copy, const EXACT: bool> PixelShader<(Walked<([u32; 1], [u32; 1])>, V)>
     for DiffuseAndHighlight<'_, TwoLightsRgb<'_, C>, R, EXACT>
 {
@@ -112,7 +112,7 @@ impl<C: Pixel, V, R: Fn(V) -> i32 + Copy, const EXACT: bool> PixelShader<(Walked
     }
 }
 
-/// [`DiffuseAndHighlight`] of two lights, of which the second has no highlight.
+/// Shades by two lights, of which the second has no highlight.
 impl<C: Pixel, V, R: Fn(V) -> i32 + Copy, const EXACT: bool> PixelShader<((([u32; 1], [u32; 1]), [u32; 1]), V)>
     for DiffuseAndHighlight<'_, TwoLightsRgb<'_, C>, R, EXACT>
 {
@@ -127,7 +127,7 @@ impl<C: Pixel, V, R: Fn(V) -> i32 + Copy, const EXACT: bool> PixelShader<((([u32
     }
 }
 
-/// [`DiffuseOnly`] of two lights.
+/// Shades by two lights without highlights.
 impl<C: Pixel, V, R: Fn(V) -> i32 + Copy, const EXACT: bool> PixelShader<(Walked<[u32; 1]>, V)>
     for DiffuseOnly<TwoLightsRgb<'_, C>, R, EXACT>
 {
@@ -141,15 +141,15 @@ impl<C: Pixel, V, R: Fn(V) -> i32 + Copy, const EXACT: bool> PixelShader<(Walked
     }
 }
 
-/// The diffuse level of a numerator times half a reciprocal length, of a material with the level `full` at cosine 1.
+/// The diffuse level from a numerator and half a reciprocal length. `full` is the material's level at cosine 1.
 #[inline(always)]
 fn quotient<const EXACT: bool>(full: u16, light: u32, half_reciprocal: i32) -> i32 {
     let diffuse = upper(light as i32, half_reciprocal);
     if EXACT { diffuse } else { diffuse.min(node(full, 1 << COSINE, PIXEL)) }
 }
 
-/// Draws `setup` under one light with these `cosines`; `None` if its levels do not fit their formats. `half_reciprocal` computes half a
-/// reciprocal length, Q2.30, from the walked field `length`, `EXACT` or not.
+/// Draws `setup` under one light with these `cosines`; `None` if its levels do not fit their formats. `half_reciprocal` computes half a reciprocal
+/// length, Q2.30, from the walked field `length`. Whether it is exact is told by `EXACT`.
 #[inline(always)]
 pub(super) fn draw<const EXACT: bool, F: Field, C: Pixel>(
     setup: &TriangleSetup<'_>,
@@ -176,7 +176,7 @@ pub(super) fn draw<const EXACT: bool, F: Field, C: Pixel>(
     })
 }
 
-/// [`draw_in`] in three channels, once for triangles of all sizes: a call is a small share of what they take.
+/// Draws as [`draw_in`] does, in three channels. It is compiled once for triangles of all sizes, because a call is a small share of their time.
 #[inline(never)]
 fn draw_rgb<const EXACT: bool, F: Field, C: Pixel>(
     setup: &TriangleSetup<'_>,
@@ -190,7 +190,7 @@ fn draw_rgb<const EXACT: bool, F: Field, C: Pixel>(
     draw_in::<EXACT, _, _>(setup, cosines, length, half_reciprocal, colours, tables, band)
 }
 
-/// [`draw`] under two constant lights.
+/// Draws `setup` under two constant lights.
 #[inline(never)]
 pub(super) fn draw_two<const EXACT: bool, F: Field, C: Pixel>(
     setup: &TriangleSetup<'_>,
@@ -222,7 +222,7 @@ pub(super) fn draw_two<const EXACT: bool, F: Field, C: Pixel>(
     })
 }
 
-/// [`draw`] in these `colours` of a triangle with a highlight.
+/// Draws a triangle with a highlight in these `colours`.
 #[inline(always)]
 fn draw_in<const EXACT: bool, F: Field, T: OneLight>(
     setup: &TriangleSetup<'_>,
@@ -241,7 +241,7 @@ where
     setup.fill(patch, DiffuseAndHighlight::<_, _, EXACT> { colours, lookup, half_reciprocal }, band)
 }
 
-/// [`draw`] by a table of colours, of a triangle without a highlight.
+/// Draws a triangle without a highlight by a table of colours.
 #[inline(always)]
 fn draw_diffuse<const EXACT: bool, F: Field, C: Pixel>(
     setup: &TriangleSetup<'_>,
@@ -261,14 +261,14 @@ fn draw_diffuse<const EXACT: bool, F: Field, C: Pixel>(
     setup.fill(patch, DiffuseOnly::<_, _, EXACT> { colours, half_reciprocal }, band)
 }
 
-/// The numerator of diffuse light, of a material with the level `full` at cosine 1.
+/// The numerator of diffuse light. `full` is the material's level at cosine 1.
 #[inline(always)]
 fn diffuse(setup: &TriangleSetup<'_>, full: u16, &[a, b, c]: &[i32; 3]) -> Plane<1> {
     let nodes = [node(full, a, NODE), node(full, b, NODE), node(full, c, NODE)];
     Nodes::<3, 1, RANGE>::new([nodes], LEVEL - NODE).fit(setup.gradients)
 }
 
-/// [`diffuse`] in a function of its own.
+/// A function of its own around [`diffuse`].
 #[inline(never)]
 fn plane(setup: &TriangleSetup<'_>, full: u16, towards: &[i32; 3]) -> Plane<1> {
     diffuse(setup, full, towards)
@@ -281,7 +281,7 @@ fn highlight(setup: &TriangleSetup<'_>, lookup: QuotientLookup<'_>, &[a, b, c]: 
     Nodes::<3, 1, STEPS>::new([half], highlight_lookup::EXTRA).fit(setup.gradients)
 }
 
-/// [`highlight`] in a function of its own.
+/// A function of its own around [`highlight`].
 #[inline(never)]
 fn numerator(setup: &TriangleSetup<'_>, lookup: QuotientLookup<'_>, half: &[i32; 3]) -> Plane<1> {
     highlight(setup, lookup, half)

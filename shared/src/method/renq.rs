@@ -1,7 +1,7 @@
-//! Quadratic renormalisation: linear N·L and N·H times the six-point quadratic of 1/|N|.
+//! Quadratic renormalisation: linear N·L and N·H, multiplied by the six-point quadratic of 1/|N|.
 //!
-//! 1/|N| is 1 at the corners and 2/|Ni+Nj| at the edges' midpoints whatever the pose, so its nodes are constants of the
-//! mesh and no midpoint is lit. With near lights the numerators are quadratics through six points.
+//! 1/|N| is 1 at the corners and 2/|Ni+Nj| at the edges' midpoints in every pose. Its nodes are therefore constants of the mesh, and no midpoint is
+//! lit. Under near lights the numerators are quadratics through six points.
 //!
 //! Cost: 4 additions a pixel, 2 products and the highlight's table; 2 or 4 additions and 2 products more per light.
 //! Continuous. Error against Phong: 255 ks n w^n 0.0125 (e/r)^4, w the largest N·H/|N|, e the longest |Ni-Nj|, r
@@ -37,7 +37,7 @@ pub fn length(setup: &TriangleSetup<'_>, exponent: u16) -> Quadratic<1> {
     Quadratic::new([[0, 0, 0, ab, bc, ca]], EXTRA).biased([1 << 29])
 }
 
-/// Numerators times a reciprocal length.
+/// Shades by numerators times a reciprocal length.
 #[derive(Clone, Copy)]
 pub struct Scaled;
 

@@ -1,4 +1,4 @@
-//! Quadratic renormalisation made exact by Newton's iteration: q = m (3 - D m²)/2 with m from [`crate::method::renq`] and D = |N|².
+//! Quadratic renormalisation, corrected by Newton's iteration: q = m (3 - D m²)/2 with m from [`crate::method::renq`] and D = |N|².
 //!
 //! One step squares m's relative error, delta <= 0.02 e⁴, e² = 3 (1 - min |N|²), to 1.5 delta²; where that still shows at the material's
 //! exponent, on strongly curved triangles, a second step is taken. No root, no division, no table but the highlight's.
@@ -39,7 +39,7 @@ static FACTS: Facts = Facts {
     costs: Costs::new(7, 5, 1, 85),
 };
 
-/// Quadratic renormalisation, made exact.
+/// Quadratic renormalisation, corrected by Newton's iteration.
 pub struct RenqNewton;
 
 impl Method for RenqNewton {
@@ -51,7 +51,7 @@ impl Method for RenqNewton {
         if !shading.lighting.is_constant() || duff::is_curved(setup) {
             return Phong.shade(setup, shading, canvas);
         }
-        // Always two steps, although one is often enough: so the general way needs one loop.
+        // Always two steps, although one is often enough: so the general loop needs one shader.
         duff::draw_constant(
             setup,
             shading,

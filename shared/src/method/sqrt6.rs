@@ -1,8 +1,8 @@
-//! The six-point quadratic through N·L and through a root of N·H; squared and raised to the exponent at the pixel.
+//! The six-point quadratic through N·L and through a root of N·H, which is squared and raised to the exponent at the pixel.
 //!
-//! Near a highlight's centre N·H is nearly quadratic in the angle, and its root more nearly so over the whole
-//! triangle: fitting sqrt(N·H) instead of N·H leaves 1.5 to 6 times less error for the same cost. Below 1/4, where
-//! the root would grow steep, a line of the same slope goes on.
+//! Near a highlight's centre N·H is nearly quadratic in the angle, and its root is even closer to a quadratic over the whole triangle. Fitting
+//! sqrt(N·H) instead of N·H leaves 1.5 to 6 times less error at the same cost. Below 1/4, where the root would grow steep, it goes on as a line of
+//! the same slope.
 //!
 //! Cost: 4 additions a pixel and light and the highlight's table, which also squares; 12 cosines to set up. Triangles
 //! without a highlight under one constant light cost as much as by [`crate::method::six_point`]. Continuous.
@@ -37,7 +37,7 @@ use crate::{
     },
 };
 
-/// Whether the quadratic goes through roots of N·H, for which the table of highlights is made, or through N·H itself.
+/// Whether the quadratic goes through roots of N·H, as the table of highlights expects, or through N·H itself.
 type IsRoot = bool;
 
 /// One, Q2.30.
@@ -58,7 +58,7 @@ static FACTS: Facts = Facts {
     costs: Costs::new(5, 0, 1, 175),
 };
 
-/// Six-point shading with a root of N·H.
+/// Six-point shading with a square root of N·H.
 pub struct Sqrt6;
 
 /// Six-point shading that interpolates N·H itself, for a method whose table of highlights is that of [`Highlight::Half`]. It is set up sooner than
@@ -141,7 +141,7 @@ impl Loops for SixCosines {
     }
 }
 
-/// [`Loops::draw`] under one light or two.
+/// Draws under one light or two.
 #[inline(always)]
 fn draw_any<const ROOT: IsRoot, C: Pixel>(
     setup: &TriangleSetup<'_>,
@@ -170,7 +170,7 @@ fn draw_any<const ROOT: IsRoot, C: Pixel>(
     }
 }
 
-/// [`draw`] in three channels, once for triangles of all sizes: a call is a small share of what they take.
+/// Draws as [`draw`] does, in three channels. It is compiled once for triangles of all sizes, because a call is a small share of their time.
 #[inline(never)]
 fn draw_rgb<const ROOT: IsRoot, C: Pixel>(
     setup: &TriangleSetup<'_>,
@@ -309,7 +309,7 @@ impl<T: OneLight> PixelShader<([u32; 1], [u32; 1])> for DiffuseAndHighlight<'_, 
     }
 }
 
-/// [`DiffuseAndHighlight`] of two lights.
+/// Shades by two lights.
 impl<C: Pixel> PixelShader<(([u32; 1], [u32; 1]), ([u32; 1], [u32; 1]))> for DiffuseAndHighlight<'_, TwoLightsRgb<'_, C>> {
     type Pixel = C;
 
@@ -320,7 +320,7 @@ impl<C: Pixel> PixelShader<(([u32; 1], [u32; 1]), ([u32; 1], [u32; 1]))> for Dif
     }
 }
 
-/// [`DiffuseAndHighlight`] of two lights, of which the second has no highlight.
+/// Shades by two lights, of which the second has no highlight.
 impl<C: Pixel> PixelShader<(([u32; 1], [u32; 1]), [u32; 1])> for DiffuseAndHighlight<'_, TwoLightsRgb<'_, C>> {
     type Pixel = C;
 
@@ -354,7 +354,7 @@ impl<C: Pixel> PixelShader<[u32; 1]> for DiffuseOnly<OneLightRamp<'_, C>> {
     }
 }
 
-/// [`DiffuseOnly`] of two lights.
+/// Shades by two lights without highlights.
 impl<C: Pixel> PixelShader<([u32; 1], [u32; 1])> for DiffuseOnly<TwoLightsRgb<'_, C>> {
     type Pixel = C;
 
@@ -364,7 +364,7 @@ impl<C: Pixel> PixelShader<([u32; 1], [u32; 1])> for DiffuseOnly<TwoLightsRgb<'_
     }
 }
 
-/// The sign of the quadratic through N·L over a triangle, as far as it decides how levels are walked.
+/// The sign of the quadratic through N·L over a triangle. It decides how levels are walked.
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum DiffuseSign {
     Everywhere,
@@ -402,8 +402,8 @@ fn root(w: i32) -> i32 {
     sqrt(w.min(ONE - 1))
 }
 
-/// What is walked of N·H, Q2.30: its [`root`], or itself, but not below the lowest root, so that no polynomial wraps. That far from a
-/// highlight only triangles are clamped that are too large for any bound.
+/// The walked form of N·H, Q2.30: its [`root`] or N·H itself, but not below the lowest root, so that no polynomial wraps. Far from a highlight only
+/// triangles are clamped that are too large for any bound.
 fn walked<const ROOT: IsRoot>(w: i32) -> i32 {
     if ROOT { root(w) } else { w.max(LOWEST - ONE) }
 }

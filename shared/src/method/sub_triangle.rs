@@ -1,9 +1,8 @@
-//! Parts of a triangle, for methods that shade it piece by piece.
+//! Sub-triangles, for methods that shade a triangle piece by piece.
 //!
-//! A triangle split at the midpoints of its edges falls into four copies of half its size, the one in the middle turned by 180 degrees;
-//! these can be split again. The corners of all these *sub-triangles* are exact in the finer coordinates used here, so their edges lie
-//! exactly on the triangle's edges and on each other. The top-left rule then gives every pixel of the triangle to one sub-triangle: no
-//! crack, no overlap, and no pixel more or less than the triangle has.
+//! A triangle that is split at the midpoints of its edges becomes four copies of half its size. The middle one is turned by 180 degrees. The copies
+//! can be split again. Corners of sub-triangles are exact in the finer coordinates used here, so their edges lie exactly on the triangle's edges and
+//! on each other. The top-left rule gives every pixel of the triangle to one sub-triangle, without cracks and overlaps.
 
 use crate::{
     antialias::{PixelSet, Shape, coarse},
@@ -19,11 +18,10 @@ use crate::{
     setup::gradients::{Gradients, NEAR},
 };
 
-/// From a pixel's border to its centre.
+/// Distance from a pixel's border to its centre.
 const CENTRE: i32 = 1 << (FINE - 1);
 
-/// The place of a part of a triangle: its corner `k` has the barycentric coordinates `origin` plus or minus 1 at
-/// coordinate `k`, all over 2^`level`.
+/// The place of a sub-triangle. Its corner `k` has the barycentric coordinates `origin`, plus or minus 1 at coordinate `k`, all over 2^`level`.
 #[derive(Clone, Copy, Debug)]
 pub struct SubTriangle {
     level: u32,
@@ -32,10 +30,10 @@ pub struct SubTriangle {
 }
 
 impl SubTriangle {
-    /// The triangle itself.
+    /// The whole triangle.
     pub const WHOLE: Self = Self { level: 0, origin: [0; 3], turned: false };
 
-    /// How often the triangle was split: barycentric coordinates are over 2 to this power.
+    /// How often the triangle was split. Barycentric coordinates are over 2 to this power.
     #[inline(always)]
     #[must_use]
     pub fn level(&self) -> u32 {
@@ -54,8 +52,8 @@ impl SubTriangle {
         [[a + sign, b, c], [a, b + sign, c], [a, b, c + sign]]
     }
 
-    /// The four sub-triangles between corners and edge midpoints. Sub-triangle `k` < 3 keeps corner `k` in its place; corner `k` of the
-    /// last one is the midpoint of the edge opposite.
+    /// The four sub-triangles between corners and edge midpoints. Sub-triangle `k` < 3 keeps corner `k` in its place. Corner `k` of the last one is
+    /// the midpoint of the opposite edge.
     #[inline]
     #[must_use]
     pub fn split(&self) -> [Self; 4] {
@@ -70,7 +68,7 @@ impl SubTriangle {
     }
 }
 
-/// What fields are fitted by to the parts of a triangle.
+/// A triangle that is drawn in parts, with what is needed to fit fields to them.
 pub struct Parts<'f> {
     screen: &'f ScreenTriangle,
     pixels: PixelSet,
@@ -79,7 +77,7 @@ pub struct Parts<'f> {
 }
 
 impl<'f> TriangleSetup<'f> {
-    /// The triangle, ready to be drawn part by part.
+    /// Makes the triangle ready to be drawn in parts.
     #[must_use]
     pub fn parts(&self) -> Parts<'f> {
         let Self { screen, pixels, .. } = *self;
@@ -88,13 +86,13 @@ impl<'f> TriangleSetup<'f> {
 }
 
 impl Parts<'_> {
-    /// Whether any pixel of the box around `sub_triangle` is in `canvas`.
+    /// Whether `canvas` has a pixel of the box around `sub_triangle`.
     #[must_use]
     pub fn meets(&self, sub_triangle: &SubTriangle, canvas: &dyn Canvas) -> bool {
         ScreenSubTriangle::new(self.screen, self.pixels, sub_triangle).meets(canvas)
     }
 
-    /// The area of `sub_triangle`.
+    /// The area of `sub_triangle`, to draw on.
     #[inline(always)]
     #[must_use]
     pub fn part<'p>(&'p self, sub_triangle: &'p SubTriangle) -> Part<'p> {
@@ -102,7 +100,7 @@ impl Parts<'_> {
     }
 }
 
-/// A part of a triangle, over which fields are interpolated by nodes of its own. If nothing of it is in the canvas, nothing is fitted.
+/// A part of a triangle, over which fields are interpolated by nodes of its own. Nothing is fitted if no pixel of it is in the canvas.
 pub struct Part<'p> {
     whole: &'p Parts<'p>,
     sub_triangle: &'p SubTriangle,
@@ -127,7 +125,7 @@ pub struct ScreenSubTriangle<'o> {
     screen: &'o ScreenTriangle,
     pixels: PixelSet,
     sub_triangle: SubTriangle,
-    /// Clockwise, [`FINE`] fraction bits.
+    /// Corners, clockwise, with [`FINE`] fraction bits.
     corners: [[i32; 2]; 3],
     /// First row, and one past the last, on the grid of the corners.
     rows: [i32; 2],
@@ -172,7 +170,7 @@ impl<'o> ScreenSubTriangle<'o> {
 }
 
 impl ScreenSubTriangle<'_> {
-    /// Its box has a pixel in `canvas`.
+    /// Whether the box around the sub-triangle has a pixel in `canvas`.
     #[inline]
     #[must_use]
     pub fn meets(&self, canvas: &dyn Canvas) -> bool {
@@ -188,7 +186,7 @@ impl ScreenSubTriangle<'_> {
         top.max(first) < bottom.min(end) && left.max(0) < right.min(width)
     }
 
-    /// For fitting on it, from the triangle's.
+    /// Gradients of the sub-triangle, computed from the triangle's.
     #[must_use]
     pub fn gradients(&self, triangle: &Gradients) -> Gradients {
         let extent = |[from, to]: [i32; 2]| to.wrapping_sub(from);
@@ -261,14 +259,14 @@ impl ScreenSubTriangle<'_> {
     }
 }
 
-/// Where the inside is not.
+/// The side of an edge that is outside of the triangle.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Side {
     /// Left of an edge that runs up.
     Left,
     /// Right of an edge that runs down.
     Right,
-    /// A level edge bounds rows, not columns.
+    /// The edge is level and bounds rows, not columns.
     None,
 }
 
@@ -278,7 +276,7 @@ struct Line {
     side: Side,
     /// First column whose centre is not left of the line.
     column: i64,
-    /// What rounding up added, as the numerator over `whole`.
+    /// The remainder of rounding up, as a numerator over `whole`.
     rest: i64,
     column_step: i64,
     rest_step: i64,
@@ -286,7 +284,7 @@ struct Line {
 }
 
 impl Line {
-    /// Through the edge from `a` to `b`, standing on `row`.
+    /// The line through the edge from `a` to `b`, on row `row`.
     #[inline]
     fn new(a: [i32; 2], b: [i32; 2], row: i32) -> Self {
         let (side, [x, y], lower) = match b[1].cmp(&a[1]) {

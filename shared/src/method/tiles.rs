@@ -1,8 +1,8 @@
-//! Large triangles under sharp highlights, tile by tile.
+//! Tiles of large triangles under sharp highlights.
 //!
-//! The coefficients of a polynomial are rounded at its anchor, and what they are off by grows with the square of the way from there. Where a
-//! highlight would show that, the triangle is drawn in square tiles, each of which has an anchor of its own in its middle. The grid begins at the
-//! triangle's first corner, so that neither bands nor the size of the picture change a pixel. Depth is walked over the whole triangle, as always.
+//! The coefficients of a polynomial are rounded at its anchor, and their error grows with the square of the distance from there. Where a highlight
+//! would show this, the triangle is drawn in square tiles, each with its own anchor in the middle. The grid of tiles begins at the triangle's first
+//! corner, so neither bands nor the size of the picture change a pixel. Depth is walked over the whole triangle, as always.
 
 use crate::{
     antialias::PixelSet,
@@ -20,7 +20,7 @@ use crate::{
     setup::{gradients::Gradients, steepness::Steepness},
 };
 
-/// What a tile shows of a canvas.
+/// The part of a canvas that lies in a tile.
 struct Tile<'c> {
     canvas: &'c mut dyn Canvas,
     /// Columns and rows, half open.
@@ -68,7 +68,7 @@ impl Canvas for Tile<'_> {
     }
 }
 
-/// Shades a triangle by `shade`, in tiles if need be; returns the number of its pixels in `canvas`.
+/// Shades a triangle by `shade`, in tiles if they are needed. Returns the number of its pixels in `canvas`.
 #[inline(always)]
 pub(crate) fn shade(
     setup: &TriangleSetup<'_>,
@@ -81,8 +81,8 @@ pub(crate) fn shade(
     in_tiles(setup, canvas, &mut shade)
 }
 
-/// Shades a triangle by fields that light follows as steeply as this, in tiles if need be: for methods of which
-/// [`crate::method::HighlightField`] does not say it.
+/// Shades a triangle by fields of this steepness, in tiles if they are needed. Methods call it whose [`crate::method::HighlightField`] does not say
+/// how steep they are.
 pub fn shade_steeply(
     steepness: Steepness,
     setup: &TriangleSetup<'_>,

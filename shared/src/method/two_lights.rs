@@ -1,4 +1,4 @@
-//! Two constant lights on a triangle in three channels, for the loops of methods.
+//! Two constant lights on a triangle in three channels, for methods' loops.
 
 use crate::{
     lighting::{constant_lights::TwoLightsRgb, material_tables::MaterialTables},
@@ -8,17 +8,17 @@ use crate::{
 
 /// Two lights on a triangle. If one of them has a highlight there that can be seen, it is the first.
 pub(super) struct TwoLights<'a, C> {
-    /// What the material reflects of them.
+    /// Colours that the material reflects of the lights.
     pub(super) colours: TwoLightsRgb<'a, C>,
-    /// Their cosines at the corners.
+    /// Cosines of the lights at the corners.
     pub(super) cosines: [CornerCosines; 2],
-    /// How many of them have a highlight.
+    /// Number of lights that have a highlight on the triangle.
     pub(super) highlights: u32,
 }
 
 impl<'a, C: Pixel> TwoLights<'a, C> {
-    /// The lights on the triangle `setup`, whose vertices have [`crate::method::VertexLight::Cosines`]; `None` unless there are two that have
-    /// loops.
+    /// The lights on the triangle `setup`, whose vertices have [`crate::method::VertexLight::Cosines`]; `None` unless there are two, with loops for
+    /// them.
     #[inline(always)]
     pub(super) fn on(setup: &TriangleSetup<'_>, tables: MaterialTables<'a, C>) -> Option<Self> {
         let [forth, back] = tables.two_lights_rgb()?;

@@ -1,4 +1,4 @@
-//! The general way from a triangle to its pixels: code that all methods and styles share.
+//! The general loop, which draws triangles of every method and style; its code is shared by all of them.
 //!
 //! A [`SpanShader`] shades a row of pixels in [`Intensity`], which knows nothing of pixel formats; a [`Canvas`] tests depth, turns
 //! intensities into colours and stores them, and knows nothing of methods. So each method and each pixel format is compiled once, and not

@@ -185,7 +185,7 @@ impl ScreenTriangle {
         Self { corners: places(corners), depth: depths(corners), turned, rows: RowRange::of(EdgeWalker::NONE, 0) }
     }
 
-    /// Draws the rows that lie in `canvas` the general way; returns how many pixels they have. `shader` stands on the anchor's row.
+    /// Draws the rows that lie in `canvas` by the general loop; returns how many pixels they have. `shader` stands on the anchor's row.
     #[inline(never)]
     pub fn draw_spans(&self, gradients: &Gradients, shader: &mut dyn SpanShader, canvas: &mut dyn Canvas) -> u32 {
         let sides = &self.rows.sides;

@@ -3,7 +3,7 @@
 //! A triangle of up to 64 pixels has sides of few bits, and light levels have few bits too. The numerator of a first derivative is then an
 //! integer of one word, exact, that of a second one is rounded once to a word; each meets the inverse of the area, or its square, in one
 //! product. First derivatives are kept per 1/16 pixel: the way from corner 0 to the centre of its pixel is whole steps of these, exact
-//! modulo 2^32 however steep they are. Eight long products for depth and a quadratic, where the general way takes fifty.
+//! modulo 2^32 however steep they are. Eight long products for depth and a quadratic, where other triangles take fifty.
 //!
 //! Cosines have more bits. Their differences, made as large as words allow, times sides of half a word are rounded to words as well.
 
