@@ -164,5 +164,5 @@ fn renewal_keeps_the_reason() {
 
     assert!(run(&["--renew", "costs.csv", "--reason", "None."]).contains("nothing to renew"));
     assert_eq!(fs::read_to_string(&reasons).unwrap(), text);
-    assert!(run(&["--check", "costs.csv"]).starts_with("1 frames cost what they did\nsince 0.1.0"));
+    assert!(run(&["--check", "costs.csv"]).starts_with("1 frames cost what is recorded\nsince 0.1.0"));
 }

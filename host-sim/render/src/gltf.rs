@@ -115,7 +115,7 @@ fn buffers(document: &Document, mut blob: Option<Vec<u8>>, path: &Path) -> Resul
         let bytes = match buffer.source() {
             Source::Bin => blob.take().context("it is the binary chunk of a GLB file, which is missing")?,
             Source::Uri(uri) if uri.starts_with("data:") => {
-                let url = data_url::DataUrl::process(uri).map_err(|error| anyhow!("its data URI is none: {error}"))?;
+                let url = data_url::DataUrl::process(uri).map_err(|error| anyhow!("its data URI is not valid: {error}"))?;
                 url.decode_to_vec().map_err(|error| anyhow!("its data URI: {error}"))?.0
             }
             Source::Uri(uri) => {

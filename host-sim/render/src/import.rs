@@ -90,7 +90,7 @@ fn with_libraries(path: &Path, Obj { soup, objects, materials: names, libraries,
             for path in files {
                 // A mesh is of use without its materials.
                 let Ok(bytes) = fs::read(&path) else {
-                    remarks.push(format!("{} cannot be read: put it beside the mesh for the materials in it", path.display()));
+                    remarks.push(format!("{} cannot be read; to have its materials, put it beside the mesh", path.display()));
                     continue;
                 };
                 let mtl = mtl::parse(&String::from_utf8_lossy(&bytes)).with_context(|| path.display().to_string())?;
@@ -103,7 +103,7 @@ fn with_libraries(path: &Path, Obj { soup, objects, materials: names, libraries,
     let unknown: Vec<_> =
         names.iter().zip(&materials).filter(|(_, known)| known.is_none()).filter_map(|(name, _)| name.as_deref()).collect();
     if !unknown.is_empty() {
-        remarks.push(format!("drawn in the colour of the command line, because no file says what they are: {}", unknown.join(", ")));
+        remarks.push(format!("materials that no file defines have the colour of the command line: {}", unknown.join(", ")));
     }
     Ok(Contents { soup, objects, materials, ignored, remarks })
 }

@@ -153,7 +153,7 @@ pub fn simplify(mesh: &Mesh, parts: &mut [Part], most: usize, tick: &dyn Fn()) -
         bail!("the mesh cannot be made of {most} triangles, but of {after}{borders}");
     }
     if parts.iter().any(|part| part.triangles.is_empty()) {
-        bail!("of {most} triangles nothing is left of a mesh of {before}, or of one of its materials or objects; give more");
+        bail!("with {most} triangles nothing is left of the mesh, which has {before}, or of one of its materials or objects; give more");
     }
     Ok(Some(Simplified { before, error: apart }))
 }

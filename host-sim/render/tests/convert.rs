@@ -356,7 +356,7 @@ fn materials_become_meshes() {
     let imported = import::file(&path, Weld::SMOOTH).unwrap();
     assert_eq!(
         imported.remarks,
-        ["drawn in the colour of the command line, because no file says what they are: nowhere", "left out: transparency"]
+        ["materials that no file defines have the colour of the command line: nowhere", "left out: transparency"]
     );
     // A line may name several files, of which one is missing here.
     fs::write(&path, fs::read_to_string(&path).unwrap().replace("a.mtl", "b.mtl a.mtl")).unwrap();

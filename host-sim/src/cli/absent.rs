@@ -1,10 +1,10 @@
-//! Commands that this build was compiled without: they are listed, and say how to get them.
+//! Commands that this build lacks. Help lists them, and calling one says which build has it.
 
 use super::{Outcome, Usage};
 use anyhow::Result;
 use std::ffi::OsString;
 
-/// A command that needs the feature `boards`, under its own name.
+/// Defines a command that needs the feature `boards`.
 #[cfg(not(feature = "boards"))]
 macro_rules! absent {
     ($($name:ident: $about:literal;)*) => {$(
@@ -31,7 +31,7 @@ absent! {
     size: "Print flash, RAM and stack of whole programs, and whether chips have room for them";
 }
 
-/// Names the command that does `what` was asked for.
+/// The error that names the build with `what`, by the command to run.
 pub(super) fn refuse(what: &str, name: &str, arguments: &[OsString]) -> Result<Outcome> {
     let mut command = format!("cargo run --release --features boards -- {name}");
     for argument in arguments.iter().map(|argument| argument.to_string_lossy()) {

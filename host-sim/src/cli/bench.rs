@@ -25,22 +25,22 @@ use microphong_sim::{
 };
 use std::path::{Path, PathBuf};
 
-/// Count the instructions that processors take for one frame, stage by stage, beside the error of the same frame.
+/// Count the instructions that a processor takes for one frame, by stage, and show the error of the frame
 ///
-/// Exact: an emulated board executes its firmware, callgrind the same on this computer, and every instruction is counted.
-/// Instructions are not cycles; those of the Pico are approximate.
+/// The counts are exact: an emulated board runs its firmware, or callgrind runs the code on this computer, and every instruction is counted.
+/// Instructions are not cycles. The counts of the Pico are approximate.
 #[derive(clap::Args)]
 #[command(after_help = EXAMPLES)]
 pub(crate) struct Arguments {
-    /// .tri, .obj, .stl, .ply, .gltf, .glb and .toml files, built-in scenes, or all built-in scenes. The default is one of each ordinary kind:
-    /// large triangles and small ones, in one hue, in blue with a white highlight, and under two coloured lights.
+    /// .tri, .obj, .stl, .ply, .gltf, .glb and .toml files, built-in scenes, or all built-in scenes. By default one of each common kind: large and
+    /// small triangles, in one hue, in blue with a white highlight, and under two coloured lights.
     #[arg(value_name = "SCENE", default_values = scene::PORTFOLIO)]
     scenes: Vec<String>,
-    /// Shading methods, separated by commas, or all that can shade the scene.
+    /// Shading methods, separated by commas, or all that can draw the scene.
     #[arg(long, value_name = "S,...", default_value = "flat,gouraud,six-point,sqrt6,phong", value_parser = parse::SeveralShaders)]
     shader: Several<Shader>,
-    /// How far a pixel may be off from Phong shading by auto or auto-linear, in 1/255, 0.5 to 16, several separated by commas; the scene's
-    /// own unless given.
+    /// Error budget of auto and auto-linear: the largest error of a pixel against Phong shading, in 1/255, from 0.5 to 16. Several are separated by
+    /// commas. By default the scene's own.
     #[arg(long, value_name = "LSB,...", value_delimiter = ',', value_parser = parse::budget)]
     budget: Vec<ErrorBudget>,
     /// Boards, separated by commas: mps2-an385 (Cortex-M3), mps2-an386 (Cortex-M4F), pico (Cortex-M0+), x86-64 (this computer);
@@ -50,27 +50,26 @@ pub(crate) struct Arguments {
     /// Print one JSON object per frame, or per animation.
     #[arg(long)]
     json: bool,
-    /// Write DIR/index.html, run time against error, growth and break-even on one page, and DIR/chart.svg.
+    /// Write DIR/index.html and DIR/chart.svg: run time against error, growth of costs, and break-even points, on one page.
     #[arg(long, value_name = "DIR")]
     report: Option<PathBuf>,
-    /// Also measure other renderers on the same scenes, on the boards mps2-an385, mps2-an386 and x86-64, and print ours beside theirs.
+    /// Also measure other renderers on these scenes, on the boards mps2-an385, mps2-an386 and x86-64, and print their figures beside ours.
     #[arg(long)]
     peers: bool,
-    /// Count antialiasing and interpolation in perspective beside the plain style instead, on this computer.
+    /// Count antialiasing and interpolation in perspective beside the plain style, on this computer.
     #[arg(long, conflicts_with_all = ["board", "report", "peers"])]
     styles: bool,
-    /// Count with each thing that is left out of frames because nobody can see it beside frames without all of them instead, on this
-    /// computer.
+    /// Count what is saved by leaving out work that nobody can see, one kind at a time, on this computer.
     #[arg(long, conflicts_with_all = ["board", "report", "peers", "styles"])]
     skips: bool,
-    /// Count all frames of the scenes' animations but the first instead, in bands of 16 rows on this computer: whole, with objects that
-    /// others hide, and nothing but what has changed.
+    /// Count all frames of an animation but the first, in bands of 16 rows, on this computer: all of the picture, all without hidden objects, and
+    /// only areas that have changed.
     #[arg(long, conflicts_with_all = ["board", "report", "peers", "styles", "skips"])]
     redraw: bool,
-    /// Measure the frames that FILE lists, and fail where one costs over 0.2 % more instructions or flash than recorded there.
+    /// Measure the frames that FILE lists. Fail if one takes over 0.2 % more instructions or flash than FILE records.
     #[arg(long, value_name = "FILE", conflicts_with_all = ["scenes", "shader", "board", "json", "report", "peers", "styles", "skips", "redraw"])]
     check: Option<PathBuf>,
-    /// Measure the frames that FILE lists, and record what they cost; a --reason is needed.
+    /// Measure the frames that FILE lists, and record their costs there. Needs --reason.
     #[arg(
         long,
         value_name = "FILE",
@@ -78,7 +77,7 @@ pub(crate) struct Arguments {
         conflicts_with_all = ["scenes", "shader", "board", "json", "report", "peers", "styles", "skips", "redraw", "check"]
     )]
     renew: Option<PathBuf>,
-    /// Why costs have changed, in a sentence: --renew of costs.csv adds it to costs-reasons.md.
+    /// Why costs have changed, in a sentence. With --renew costs.csv it is added to costs-reasons.md.
     #[arg(long, value_name = "TEXT", requires = "renew", value_parser = parse::reason)]
     reason: Option<String>,
 }
@@ -86,14 +85,14 @@ pub(crate) struct Arguments {
 const EXAMPLES: &str = "\
 Examples:
   microphong bench                                       ordinary scenes on a Cortex-M3
-  microphong bench peer-sphere-convex                    a mesh that convert marks as convex: without depth
+  microphong bench peer-sphere-convex                    a convex mesh, drawn without depth test
   microphong bench teapot --board pico --shader sqrt6    frame time and frames per second of the Pico
   microphong bench all --shader all --board all --json   everything
   microphong bench peer-sphere --shader all --board all --report bench    the chart, as a page
   microphong bench --peers --board mps2-an385,mps2-an386,x86-64    beside other renderers
   microphong bench --styles                              what antialiasing and perspective cost
-  microphong bench all --skips                           what is spared where nobody can see it
-  microphong bench board --redraw --shader auto          what is spared where nothing has changed
+  microphong bench all --skips                           what leaving out invisible work saves
+  microphong bench board --redraw --shader auto          what partial redraw saves
   microphong bench --check tests/baselines/costs.csv     has anything become dearer?
   microphong bench --renew tests/baselines/costs.csv --reason \"Thin triangles no longer flicker.\"
                                                          it has, and this is why
@@ -292,7 +291,7 @@ fn compare(path: &Path) -> Result<Outcome> {
     } else if shrunk > 0 {
         report::line(&format!("{shrunk} costs have shrunk, which would hide later growth; {renew}"))?;
     } else {
-        report::line(&format!("{} frames cost what they did", recorded.len()))?;
+        report::line(&format!("{} frames cost what is recorded", recorded.len()))?;
     }
     grown_since(path, &measured)?;
     Ok(if grown > 0 { Outcome::Differences } else { Outcome::Done })

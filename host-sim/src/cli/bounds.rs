@@ -6,20 +6,20 @@ use microphong::method::highlight_error::{COLUMNS, Growth, LEAST_EXPONENTS, ROWS
 use microphong_sim::bounds::{Place, STEPS, Table, source, table, worst};
 use serde::Serialize;
 
-/// Search for the largest errors of interpolated highlights, and write the table by which `auto` judges methods.
+/// Search for the largest errors of interpolated highlights, and write the table by which `auto` chooses
 ///
-/// The table is a file of the core, shared/src/method/highlight_error/table.rs: the largest errors that were found, and a margin. With
-/// --check the table that is compiled in is searched for triangles that are off by more than it says.
+/// The table is a file of the core, shared/src/method/highlight_error/table.rs. It holds the largest errors that were found, and a margin. With
+/// --check no table is written: triangles are searched whose errors exceed the compiled table.
 #[derive(clap::Args)]
 #[command(after_help = EXAMPLES)]
 pub(crate) struct Arguments {
-    /// Triangles that are tried for each entry and exponent: more take longer and find a little more.
+    /// Number of triangles to try for each entry and exponent. More take longer and find slightly larger errors.
     #[arg(long, default_value_t = 2000, value_name = "N", value_parser = clap::value_parser!(u32).range(40..))]
     effort: u32,
-    /// Which triangles.
+    /// Seed of the random triangles.
     #[arg(long, default_value_t = 1, value_name = "S")]
     seed: u64,
-    /// Search as many places of the compiled table for larger errors, instead of writing one.
+    /// Search this number of places in the compiled table for larger errors, and write no table.
     #[arg(long, value_name = "PLACES")]
     check: Option<u64>,
     /// Print one JSON object.

@@ -18,9 +18,9 @@ use rayon::prelude::*;
 use serde::Serialize;
 use std::path::PathBuf;
 
-/// Measure shading methods against Phong shading in 64-bit floating point.
+/// Measure shading methods against Phong shading in 64-bit floating point
 ///
-/// Levels are compared before an output format rounds them. LSB: 255 is full.
+/// Light levels are compared before a pixel format rounds them. One LSB is 1/255 of full intensity.
 #[derive(clap::Args)]
 #[command(after_help = EXAMPLES)]
 pub(crate) struct Arguments {
@@ -30,22 +30,23 @@ pub(crate) struct Arguments {
     /// Shading methods by name, separated by commas, or all.
     #[arg(long, default_value = "all", value_name = "S,...", value_parser = parse::SeveralShaders)]
     shader: Several<Shader>,
-    /// How far a pixel may be off from Phong shading by auto or auto-linear, in 1/255, 0.5 to 16; the scene's own unless given.
+    /// Error budget of auto and auto-linear: the largest error of a pixel against Phong shading, in 1/255, from 0.5 to 16. By default the scene's
+    /// own.
     #[arg(long, value_name = "LSB", value_parser = parse::budget)]
     budget: Option<ErrorBudget>,
-    /// Exponent of all highlights; the scene's own unless given.
+    /// Exponent of all highlights, 1 to 1024. By default the scene's own.
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
     exponent: Option<u16>,
-    /// Size of the picture; the scene's own unless given, 640x480 for files.
+    /// Size of the picture. By default the scene's own, or 640x480 for mesh files.
     #[arg(long, value_name = "WxH", value_parser = parse::size)]
     size: Option<(u32, u32)>,
-    /// Interpolate in perspective: Phong shading, and all that is measured against it.
+    /// Interpolate in perspective, in Phong shading and in all methods.
     #[arg(long)]
     perspective_correct: bool,
-    /// Frame of the orbit.
+    /// Number of the frame of the animation.
     #[arg(long, value_name = "N", default_value_t = 0)]
     frame: u32,
-    /// Write DIR/index.html: pictures, errors and curves of all methods on one page.
+    /// Write DIR/index.html: pictures, errors and charts of all methods on one page.
     #[arg(long, value_name = "DIR")]
     report: Option<PathBuf>,
     /// Print one JSON object per scene and method.

@@ -28,108 +28,107 @@ use microphong_sim::{
 use serde::Serialize;
 use std::path::{Path, PathBuf};
 
-/// Convert a mesh, Wavefront OBJ, glTF 2.0, STL or PLY, to a stream for a board's flash.
+/// Convert a mesh to a stream for a board's flash: Wavefront OBJ, glTF 2.0, STL or PLY
 ///
-/// Normals come from the file when every corner has one, else from the
-/// polygons around each vertex: light is smooth within the file's smoothing groups, or where it has
-/// none, over edges that fold by no more than --crease. Polygons, concave ones as well, are cut into
-/// triangles. Materials come from the .mtl file beside the mesh (Kd, Ks, Ka, Ns), or from the .gltf or .glb
-/// file (base colour, metallic and roughness). Of glTF the default scene is taken as its nodes put it. What of the
-/// files is left out is said.
+/// Normals come from the file if every corner has one. Otherwise they are computed: light is smooth within the file's smoothing groups, or without
+/// groups over edges that fold by no more than --crease. Polygons are cut into triangles, concave ones as well. Materials come from the .mtl file
+/// beside an .obj file (Kd, Ks, Ka, Ns), or from the .gltf or .glb file (base colour, metallic, roughness). Of glTF the default scene is converted,
+/// with the transformations of its nodes. The output names everything in the files that is left out.
 ///
-/// Each object of the file keeps its name, so that a program can move it: o of OBJ, or g in a file of one object, and
-/// the nodes of glTF. An object has a mesh of the stream for each of its materials.
+/// Each object of the file keeps its name, by which a program finds it. Objects are o of OBJ (g in a file with at most one o), and the nodes of glTF.
+/// An object has one mesh in the stream for each of its materials.
 ///
-/// The mesh is centred and scaled to a sphere of radius 1. One closed convex mesh is marked as
-/// such: it is drawn without depth, and looks the same.
+/// The mesh is centred and scaled to a sphere of radius 1. A single closed convex mesh is marked, so that it is drawn without depth test. Its picture
+/// is the same.
 ///
-/// A .toml file is a scripted scene: its text says which objects there are and how they, lights and
-/// camera move. Of the options, --output, --board and --json apply to it. tests/scenes has three to begin with.
+/// A .toml file is a scripted scene: a text that describes objects, lights, the camera and their movements. Only --output, --board, --count and
+/// --json apply to it. Three examples are in tests/scenes.
 #[derive(clap::Args)]
 #[command(after_help = EXAMPLES)]
 pub(crate) struct Arguments {
-    /// Mesh to read.
+    /// Mesh file to read.
     mesh: PathBuf,
-    /// Stream to write; the mesh's name with .tri unless given.
+    /// Stream file to write. By default the name of the mesh file with .tri.
     #[arg(short, long, value_name = "FILE.tri")]
     output: Option<PathBuf>,
-    /// Axis that points up in the mesh: x, y, z, -x, -y or -z.
+    /// Axis of the mesh that points up: x, y, z, -x, -y or -z.
     #[arg(long, default_value = "y", value_parser = parse::up, allow_hyphen_values = true)]
     up: Up,
-    /// Turn the surface inside out, for meshes whose faces wind clockwise; closed ones are turned without asking.
+    /// Turn the surface inside out, for meshes whose faces wind clockwise. Closed meshes are turned without this option.
     #[arg(long)]
     flip: bool,
-    /// Where a file without normals has no smoothing groups, edges that fold by more are seen: 0 shows all facets, 180 none.
+    /// Largest angle in degrees at which an edge looks smooth, for files without normals and smoothing groups: 0 shows all facets, 180 none.
     #[arg(long, value_name = "DEGREES", default_value_t = CREASE, value_parser = parse::crease)]
     crease: f64,
-    /// Shading method that the stream asks for; auto unless given, and on a board that lacks it auto-linear. The board lm3s6965evb has flat,
+    /// Shading method that the stream asks for. By default auto, or auto-linear if the board of --board lacks auto. The board lm3s6965evb has flat,
     /// gouraud and auto-linear, the others have all.
     #[arg(long, value_parser = parse::Shaders)]
     shader: Option<Shader>,
-    /// Board whose firmware is to draw the stream: a method that it lacks is refused.
+    /// Board whose firmware shall draw the stream. A method that this firmware lacks is refused.
     #[arg(long, value_name = "NAME", value_parser = BOARDS.map(|(board, _)| board))]
     board: Option<String>,
-    /// End with what a frame takes on each board, or on the one of --board: instructions, and frames a second where time is modelled. Boards
-    /// are emulated: it needs a build with `--features boards`.
+    /// Count a frame on each board, or on the board of --board, and print instructions, and frames per second where time is modelled. Boards are
+    /// emulated, which needs a build with `--features boards`.
     #[arg(long)]
     count: bool,
-    /// How far a pixel may be off from Phong shading by auto or auto-linear, in 1/255, 0.5 to 16.
+    /// Error budget of auto and auto-linear: the largest error of a pixel against Phong shading, in 1/255, from 0.5 to 16.
     #[arg(long, value_name = "LSB", default_value = "1", value_parser = parse::budget)]
     budget: ErrorBudget,
-    /// Make one object of all, without a name: one mesh of the stream for each material. It takes less flash.
+    /// Merge all objects into one without a name: one mesh for each material. It takes less flash.
     #[arg(long)]
     merge: bool,
-    /// Colour of all of the surface, RRGGBB, in place of the file's materials; copper where there are none.
+    /// Colour of the whole surface, RRGGBB, instead of the file's materials. Without materials the default is copper.
     #[arg(long, visible_alias = "color", value_name = "RRGGBB", value_parser = parse::colour)]
     colour: Option<V3>,
-    /// Share of light reflected evenly where the file has no material.
+    /// Diffuse reflection of materials that the file does not define, 0 to 2.
     #[arg(long, default_value = "0.5", value_parser = parse::share)]
     diffuse: f64,
-    /// Share of light reflected in the highlight where the file has no material.
+    /// Strength of the highlight of materials that the file does not define, 0 to 2.
     #[arg(long, default_value = "0.4", value_parser = parse::share)]
     specular: f64,
-    /// Share of light that is everywhere.
+    /// Ambient light, which comes from all sides, 0 to 2.
     #[arg(long, default_value_t = AMBIENT, value_parser = parse::share)]
     ambient: f64,
-    /// Sharpness of the highlight where the file has no material, 1 to 1024.
+    /// Exponent of the highlight of materials that the file does not define, 1 to 1024. Larger ones are smaller and sharper.
     #[arg(long, default_value = "30", value_parser = clap::value_parser!(u16).range(1..=1024))]
     exponent: u16,
-    /// A light, in the direction X to the right, Y up and Z to the eye, white unless a colour is given; with at: before it a near light, at
-    /// that place from the centre of the mesh, whose radius is 1: dearer. Up to eight, each by a --light of its own. One from the upper left
-    /// unless given.
+    /// A light in the direction X,Y,Z: x to the right, y up, z towards the eye. White unless a colour follows. With at: it is a near light at the
+    /// position X,Y,Z from the centre of the mesh, whose radius is 1; near lights take longer. Repeat the option for up to eight lights. By default
+    /// one light comes from the upper left.
     #[arg(long = "light", value_name = "[at:]X,Y,Z[:RRGGBB]", value_parser = parse::light, allow_hyphen_values = true)]
     lights: Vec<Lamp>,
-    /// White highlights, as on plastic, instead of coloured ones, as on metal.
+    /// White highlights, as of plastic, instead of coloured ones, as of metal.
     #[arg(long)]
     plastic: bool,
-    /// Colour behind the mesh, RRGGBB.
+    /// Background colour, RRGGBB.
     #[arg(long, value_name = "RRGGBB", value_parser = parse::bytes)]
     background: Option<[u8; 3]>,
-    /// Frames of one turn about the axis that points up; 0 stands still.
+    /// Number of frames of one turn of the camera around the axis that points up; 0 for a camera that stands still.
     #[arg(long, value_name = "FRAMES", default_value_t = ORBIT)]
     orbit: u16,
-    /// Where the eye is: degrees to the right of the front.
+    /// Position of the camera, in degrees to the right of the front.
     #[arg(long, value_name = "DEGREES", default_value = "28.6", value_parser = parse::degrees, allow_negative_numbers = true)]
     azimuth: f64,
-    /// Where the eye is: degrees above the horizon.
+    /// Position of the camera, in degrees above the horizon.
     #[arg(long, value_name = "DEGREES", default_value = "20", value_parser = parse::degrees, allow_negative_numbers = true)]
     elevation: f64,
-    /// perspective or parallel.
+    /// Projection: perspective or parallel.
     #[arg(long, default_value = "perspective", value_parser = parse::projection)]
     projection: Projection,
-    /// Highlights look from each point to the eye, instead of in one direction for all: dearer.
+    /// Compute highlights with the direction from each point to the eye, instead of one direction for all points. This takes longer.
     #[arg(long)]
     local_viewer: bool,
-    /// Picture that the turn fills. Without it the whole turn is seen on displays of every shape, because the mesh fits the narrower side. A
-    /// picture that is wider than high may show a wide mesh larger; narrower pictures then cut its sides off.
+    /// Picture to fill with the mesh. By default the whole turn is seen on displays of every shape, because the mesh fits the narrower side. A
+    /// picture that is wider than high can show a wide mesh larger, but narrower displays then cut its sides off.
     #[arg(long, value_name = "WxH", value_parser = parse::size)]
     size: Option<(u32, u32)>,
-    /// Make the mesh of so many triangles at most, on some of its vertices, and say how far it lies from the mesh of the file. Levels of --lod
-    /// count from what is left.
+    /// Reduce the mesh to this number of triangles, or fewer, on some of its vertices. The output says how far the result is from the mesh of the file. Levels of
+    /// --lod are made from the result.
     #[arg(long, value_name = "TRIANGLES", value_parser = clap::value_parser!(u32).range(1..))]
     simplify: Option<u32>,
-    /// Pictures that get a level of detail: as few triangles as lie less than half a pixel from the mesh there. A picture shows the coarsest
-    /// level that does so. Each takes flash for its triangles, 30 bytes; one that would save less than a tenth of them is left out.
+    /// Sizes of pictures for which to make a level of detail: the fewest triangles that lie less than half a pixel from the mesh in this picture. A
+    /// picture shows the coarsest level that fits it. Each triangle of a level takes 30 bytes of flash. A level that saves less than a tenth of the
+    /// triangles is left out.
     #[arg(long, value_name = "WxH,...", value_delimiter = ',', value_parser = parse::size)]
     lod: Vec<(u32, u32)>,
     /// Print one JSON object.
@@ -137,7 +136,7 @@ pub(crate) struct Arguments {
     json: bool,
 }
 
-/// The boards that there is firmware for, and their methods; a build without emulators knows them as well.
+/// The boards that there is firmware for, and their methods. A build without emulators knows them as well.
 const BOARDS: [(&str, &[Shader]); 4] =
     [("pico", &Shader::ALL), ("lm3s6965evb", &Shader::SMALLEST_BOARD), ("mps2-an385", &Shader::ALL), ("mps2-an386", &Shader::ALL)];
 
@@ -160,7 +159,7 @@ struct Line<'a> {
     meshes: usize,
     /// Each mesh, without its coarser levels.
     list: Vec<meshes::Row>,
-    /// What --merge would spare, where objects have meshes of their own.
+    /// The saving by --merge, if objects have meshes of their own.
     by_object: Option<ByObject>,
     materials: usize,
     vertices: usize,
@@ -181,7 +180,7 @@ struct Line<'a> {
     costs: Option<Vec<Cost>>,
 }
 
-/// What has become of the mesh of the file.
+/// Result of --simplify.
 #[derive(Serialize)]
 struct Simplified {
     before: usize,
@@ -191,12 +190,12 @@ struct Simplified {
     size: (u32, u32),
 }
 
-/// What it takes that objects have meshes of their own.
+/// The cost of meshes for each object.
 #[derive(Serialize)]
 struct ByObject {
-    /// Meshes beyond one for each material.
+    /// Number of meshes beyond one for each material.
     meshes: usize,
-    /// Bytes of flash.
+    /// Bytes of flash of these meshes.
     bytes: usize,
 }
 
@@ -232,7 +231,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome> {
     let Imported { mut mesh, report, mut objects, mut materials, mut remarks } =
         import::file(source, Weld { turn: arguments.flip, crease: arguments.crease })?;
     if arguments.colour.is_some() && materials.iter().any(Option::is_some) {
-        remarks.push(format!("{} materials of the file have the one colour of --colour", materials.iter().flatten().count()));
+        remarks.push(format!("--colour replaces {} materials of the file", materials.iter().flatten().count()));
         mesh.merge_materials();
         materials = vec![None];
     }
@@ -318,21 +317,21 @@ fn records(parts: &[Part]) -> [usize; 2] {
     [parts.len(), parts.len() * size_of::<record::Mesh>() + vertices * size_of::<record::Vertex>()]
 }
 
-/// What --merge would spare of a mesh that has these records, before it is simplified.
+/// The saving by --merge for a mesh with these records, before it is simplified.
 fn by_object(mut mesh: Mesh, [meshes, bytes]: [usize; 2], names: usize) -> Option<ByObject> {
     mesh.merge_objects();
     let [merged, fewer] = records(&quantise(&mesh).0);
     (meshes > merged).then(|| ByObject { meshes: meshes - merged, bytes: bytes - fewer + names })
 }
 
-/// What the board that is asked for has, if that is not the method `shader`.
+/// The methods of the board that is asked for, if it lacks the method `shader`.
 fn lacking(arguments: &Arguments, shader: Shader) -> Option<String> {
     let (board, has) = BOARDS.into_iter().find(|(board, _)| arguments.board.as_deref() == Some(*board))?;
     let names: Vec<_> = has.iter().map(|shader| shader.name()).collect();
     (!has.contains(&shader)).then(|| format!("the firmware of {board} has no {}; it has {}", shader.name(), names.join(", ")))
 }
 
-/// What becomes of a scripted scene.
+/// Output for a scripted scene.
 #[derive(Serialize)]
 struct SceneLine<'a> {
     scene: &'a str,
@@ -398,7 +397,7 @@ fn convert_script(arguments: &Arguments, target: &Path, counter: Option<&Counter
     Ok(Outcome::Done)
 }
 
-/// Near lights, which count from the centre of the mesh, where the camera sees them.
+/// Moves near lights, which are given from the centre of the mesh, to the space of the camera.
 fn placed(lights: &[Lamp], view: &View) -> Vec<Lamp> {
     let place = |&lamp: &Lamp| match lamp {
         Lamp::Near(position, colour) => Lamp::Near(add(position, view.translation), colour),
@@ -407,14 +406,14 @@ fn placed(lights: &[Lamp], view: &View) -> Vec<Lamp> {
     lights.iter().map(place).collect()
 }
 
-/// The commonest display, where no other picture is named.
+/// Size of the most common display, for figures that need one.
 const USUAL: (u32, u32) = (320, 240);
 
-/// What is said of a scene that stays empty.
+/// The remark that no frame shows a pixel of the mesh.
 fn unseen(stream: &Stream<'_>, (width, height): (u32, u32)) -> Result<Option<String>> {
     let is_seen = render::shows_a_pixel(stream, Size::new(width, height))?;
     Ok((!is_seen).then(|| {
-        "no frame shows a pixel of it: its faces look away (--flip turns them over), or it is thinner than a pixel from this side"
+        "no frame shows a pixel of it: its faces look away (--flip turns them over), or seen from here it is thinner than a pixel"
             .to_owned()
     }))
 }
@@ -427,13 +426,13 @@ fn in_pixels(levels::Simplified { before, error }: levels::Simplified, look: &Lo
     Simplified { before, error, pixels: 0.5 * error / half, size }
 }
 
-/// Lines that meshes take.
+/// Largest number of lines for meshes.
 const LISTED: usize = 20;
 
-/// Rows of a band, where nobody says how many.
+/// Rows of a band in the layout that is printed.
 const ROWS: usize = 16;
 
-/// A layout as a program has it.
+/// The layout as program text.
 fn text_of(layout: &Layout) -> String {
     let Layout { width, rows, vertices, triangles, materials, objects, .. } = layout;
     let several = if *objects > 1 { format!(".objects({objects})") } else { String::new() };
@@ -480,15 +479,15 @@ fn text(line: &Line<'_>, materials: &[Option<&str>]) -> Result<()> {
     if let Some(Simplified { before, error, pixels, size: (width, height) }) = line.simplified {
         let before = count(before);
         report::line(&format!(
-            "  simplified from {before} triangles, {error:.4} from the mesh at most, {pixels:.1} pixels in a picture of {width}x{height}"
+            "  simplified from {before} triangles: at most {error:.4} units from the mesh, {pixels:.1} pixels in a picture of {width}x{height}"
         ))?;
     }
     for Level { triangles, error, .. } in &line.levels {
-        report::line(&format!("  a level of {} triangles, less than {error:.4} from the mesh", count(*triangles)))?;
+        report::line(&format!("  a level of detail of {} triangles, less than {error:.4} units from the mesh", count(*triangles)))?;
     }
     let memory = count(line.memory);
     report::line(&format!(
-        "  room for all of it in a program, {memory} bytes of memory in Rgb565 beside a band of pixels:\n    {}",
+        "  a program needs {memory} bytes of memory for it in Rgb565, and a band of pixels:\n    {}",
         line.layout
     ))?;
     count::text(line.costs.as_deref())?;
@@ -497,5 +496,5 @@ fn text(line: &Line<'_>, materials: &[Option<&str>]) -> Result<()> {
         1 => "1 polygon crosses itself; split it".to_owned(),
         several => format!("{} polygons cross themselves; split them", count(several)),
     };
-    report::line(&format!("  {crossed}, or look whether the picture is as it should be"))
+    report::line(&format!("  {crossed}, or check the picture"))
 }

@@ -14,15 +14,14 @@ use microphong_sim::{
     shader::Shader,
 };
 
-/// Count how the cost of a frame grows with triangles, pixels, lights and bands.
+/// Count how the cost of a frame grows with triangles, pixels, lights and bands
 ///
-/// In instructions of x86-64, which callgrind counts exactly: no board has the memory. Triangles, pixels and lights are
-/// varied on a flat square with the normals of a cushion, which covers the same pixels however fine its mesh is; bands on the
-/// scene peer-sphere.
+/// Costs are instructions of x86-64, counted exactly by callgrind, because no board has the memory. Triangles, pixels and lights are varied on a flat
+/// square with the normals of a cushion, which covers the same pixels at every fineness. Bands are varied on the scene peer-sphere.
 #[derive(clap::Args)]
 #[command(after_help = EXAMPLES)]
 pub(crate) struct Arguments {
-    /// What to vary: triangles, pixels, lights, bands, separated by commas, or all.
+    /// Quantities to vary: triangles, pixels, lights and bands, separated by commas, or all.
     #[arg(default_value = "all", value_name = "WHAT,...", value_parser = sweeps)]
     sweep: Several<Sweep>,
     /// Shading methods, separated by commas, or all.

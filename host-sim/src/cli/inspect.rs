@@ -18,12 +18,11 @@ use microphong_sim::{
 use serde::Serialize;
 use std::path::Path;
 
-/// Show what is inside a stream, and what it takes in flash.
+/// Show the contents of a stream, and its flash
 #[derive(clap::Args)]
 #[command(after_help = "Examples:\n  microphong inspect teapot.tri --json\n  microphong inspect gauges")]
 pub(crate) struct Arguments {
-    /// A stream made by `microphong convert`, a built-in scene, or a file that `convert` would make a stream of: .obj, .stl, .ply, .gltf, .glb or
-    /// .toml.
+    /// A stream made by `microphong convert`, a built-in scene, or a file for `convert`: .obj, .stl, .ply, .gltf, .glb or .toml.
     scene: String,
     /// Print one JSON object.
     #[arg(long)]
@@ -52,12 +51,12 @@ struct Line<'a> {
 /// A coarser level of a mesh.
 #[derive(Serialize)]
 struct Level {
-    /// The mesh, without coarser levels counted from 0.
+    /// Number of the mesh, counted without coarser levels.
     mesh: usize,
     triangles: u32,
-    /// In units of object space.
+    /// Largest distance from the mesh, in units of object space.
     error: f64,
-    /// Side of the largest square picture that it may be drawn in, pixels.
+    /// Side of the largest square picture that draws this level, in pixels.
     side: u32,
 }
 
@@ -125,7 +124,7 @@ fn text(file: &str, stream: &Stream<'_>, list: &[meshes::Row]) -> Result<()> {
     meshes::text(list, &[], usize::MAX)?;
     for Level { triangles, error, side, .. } in levels(stream) {
         let (triangles, flash) = (count(triangles as usize), count(triangles as usize * size_of::<Triangle>()));
-        report::line(&format!("  a level of {triangles} triangles, {flash} bytes, {error:.4} from the mesh: up to {side}x{side} pixels"))?;
+        report::line(&format!("  a level of detail of {triangles} triangles, {flash} bytes, {error:.4} units from the mesh: for pictures of up to {side}x{side}"))?;
     }
     let camera = &header.camera;
     let kind = if camera.projection == PERSPECTIVE { "perspective" } else { "parallel rays" };
@@ -186,7 +185,7 @@ fn lights(stream: &Stream<'_>) -> String {
     stream.lights.iter().map(kind).collect::<Vec<_>>().join("; ")
 }
 
-/// How strongly normals vary within a triangle: the shorter they get between the corners, the harder it is to shade.
+/// How strongly normals vary within a triangle, as the smallest length of an interpolated normal. Short ones are hard to shade.
 fn bend(stream: &Stream<'_>) -> String {
     let least = stream.triangles.iter().map(Triangle::min_normal_length).min().unwrap_or_default();
     format!("interpolated normals at least {least:.3} long")

@@ -8,11 +8,11 @@ use serde::Serialize;
 /// A mesh with its coarser levels.
 #[derive(Serialize)]
 pub(crate) struct Row {
-    /// Its index.
+    /// Index of the mesh.
     index: usize,
-    /// The index behind it and its levels.
+    /// Index of the next mesh, after coarser levels.
     end: usize,
-    /// The object that it belongs to.
+    /// Name of the mesh's object.
     name: Option<String>,
     material: u16,
     triangles: u32,
@@ -40,7 +40,7 @@ pub(crate) fn rows(stream: &Stream<'_>) -> Result<Vec<Row>, StreamError> {
     Ok(rows)
 }
 
-/// Lists meshes, where there is something to tell apart: at most so many. Names of materials are those of the file that was converted.
+/// Lists at most `most` meshes, if there are several objects or materials. `materials` are names from the converted file.
 pub(crate) fn text(rows: &[Row], materials: &[Option<&str>], most: usize) -> Result<()> {
     if matches!(rows, [Row { name: None, .. }]) {
         return Ok(());

@@ -31,7 +31,7 @@ use clap::{Parser, Subcommand};
 use microphong_sim::scene;
 use std::process::ExitCode;
 
-/// Phong-quality shading for microcontrollers: convert meshes, look at them, verify boards.
+/// Phong-quality shading for microcontrollers: convert meshes, draw them, and verify boards
 #[derive(Parser)]
 #[command(version, max_term_width = 100, after_help = EXAMPLES)]
 struct Arguments {

@@ -8,10 +8,10 @@ use super::{
 use anyhow::Result;
 use microphong_sim::papers::{self, Claim, Topic, Verdict};
 
-/// Compute again what the papers claim, and say what becomes of it.
+/// Compute again what the papers claim, and show which claims hold
 ///
-/// The shading methods are those of the oracle in 64-bit floating point; errata are shown on an example. Errors are in LSB,
-/// 1/255 of full light.
+/// The methods are those of the oracle, in 64-bit floating point. Errors in a paper are shown by an example. Figures of error are in LSB, which is
+/// 1/255 of full intensity.
 #[derive(clap::Args)]
 #[command(after_help = EXAMPLES)]
 pub(crate) struct Arguments {

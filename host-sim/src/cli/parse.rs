@@ -48,7 +48,7 @@ pub(crate) fn several<T: Copy + PartialEq>(text: &str, all: &[T], one: impl Fn(&
     Ok(Several { values, all: false })
 }
 
-/// Shading methods by name, separated by commas, of which help lists all.
+/// Shading methods, separated by commas. Help lists all names.
 #[derive(Clone)]
 pub(crate) struct SeveralShaders;
 
@@ -75,7 +75,7 @@ pub(crate) fn topics(text: &str) -> Result<Several<Topic>, String> {
     several(text, &Topic::ALL, |text| among(text, &Topic::ALL, Topic::name))
 }
 
-/// A shading method by name, of which help lists all.
+/// A shading method. Help lists all names.
 #[derive(Clone)]
 pub(crate) struct Shaders;
 
@@ -121,7 +121,7 @@ pub(crate) fn light(text: &str) -> Result<Lamp, String> {
     let (vector, given) = rest.split_once(':').map_or((rest, None), |(vector, given)| (vector, Some(given)));
     let numbers: Option<Vec<f64>> = vector.split(',').map(|number| number.trim().parse().ok().filter(|n: &f64| n.is_finite())).collect();
     let [x, y, z] = numbers.and_then(|numbers| numbers.try_into().ok()).ok_or(
-        "three numbers are needed, as -0.5,0.6,0.7, or at:-0.5,0.6,1.7 for a near light, and a colour behind a colon if it is not white",
+        "three numbers are needed, such as -0.5,0.6,0.7, or at:-0.5,0.6,1.7 for a near light; a colour may follow, such as :ffc080",
     )?;
     // In eye space z runs away from the eye.
     let vector = [x, y, -z];
@@ -134,7 +134,7 @@ pub(crate) fn light(text: &str) -> Result<Lamp, String> {
         }
         return Ok(Lamp::Near(vector, colour));
     }
-    let towards = unit(vector).ok_or("a direction is needed, 0,0,0 is none")?;
+    let towards = unit(vector).ok_or("a direction is needed; 0,0,0 has none")?;
     Ok(Lamp::Distant(towards, colour))
 }
 
@@ -146,7 +146,7 @@ pub(crate) fn projection(text: &str) -> Result<Projection, String> {
 
 /// `640x480`.
 pub(crate) fn size(text: &str) -> Result<(u32, u32), String> {
-    let wrong = || format!("WIDTHxHEIGHT is needed, as 320x240, each side 1 to {MAX_SIDE}");
+    let wrong = || format!("WIDTHxHEIGHT is needed, such as 320x240, each side from 1 to {MAX_SIDE}");
     let (width, height) = text.split_once('x').ok_or_else(wrong)?;
     let side = |text: &str| text.parse().ok().filter(|side| (1..=MAX_SIDE).contains(side)).ok_or_else(wrong);
     Ok((side(width)?, side(height)?))
@@ -156,11 +156,11 @@ pub(crate) fn size(text: &str) -> Result<(u32, u32), String> {
 pub(crate) fn bytes(text: &str) -> Result<[u8; 3], String> {
     let digits = text.strip_prefix('#').unwrap_or(text);
     let number = u32::from_str_radix(digits, 16).ok().filter(|_| digits.len() == 6);
-    let [_, r, g, b] = number.ok_or("six hexadecimal digits are needed, as e0a060")?.to_be_bytes();
+    let [_, r, g, b] = number.ok_or("six hexadecimal digits are needed, such as e0a060")?.to_be_bytes();
     Ok([r, g, b])
 }
 
-/// [`bytes`] with 1 for ff.
+/// A colour as [`bytes`] reads it, where 1 is ff.
 pub(crate) fn colour(text: &str) -> Result<V3, String> {
     Ok(bytes(text)?.map(|c| f64::from(c) / 255.0))
 }

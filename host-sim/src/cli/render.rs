@@ -18,53 +18,55 @@ use std::{
     path::{Path, PathBuf},
 };
 
-/// Draw a scene to a PNG file, an animated PNG or a directory of numbered PNGs.
+/// Draw a scene to a PNG file, an animated PNG or a directory of numbered PNGs
 #[derive(clap::Args)]
 #[command(after_help = EXAMPLES)]
 pub(crate) struct Arguments {
     /// A .tri, .obj, .stl, .ply, .gltf, .glb or .toml file, or a built-in scene; `microphong scenes` lists them.
     scene: String,
-    /// Shading method; the scene's own unless given. `microphong compare` shows what each is worth.
+    /// Shading method. By default the scene's own. `microphong compare` compares methods.
     #[arg(long, value_parser = parse::Shaders)]
     shader: Option<Shader>,
-    /// How far a pixel may be off from Phong shading by auto or auto-linear, in 1/255, 0.5 to 16; the scene's own unless given.
+    /// Error budget of auto and auto-linear: the largest error of a pixel against Phong shading, in 1/255, from 0.5 to 16. By default the scene's
+    /// own.
     #[arg(long, value_name = "LSB", value_parser = parse::budget)]
     budget: Option<ErrorBudget>,
-    /// Size of the picture; the scene's own unless given, 640x480 for files.
+    /// Size of the picture. By default the scene's own, or 640x480 for mesh files.
     #[arg(long, value_name = "WxH", value_parser = parse::size)]
     size: Option<(u32, u32)>,
     /// Pixel format: rgb565, bgr565, rgb666, rgb888, rgb332, gray8, gray4, gray2 or binary.
     #[arg(long, default_value = "rgb565", value_parser = parse::format)]
     format: Format,
-    /// Number of frames.
+    /// Number of frames to draw.
     #[arg(long, default_value_t = 1, value_parser = clap::value_parser!(u32).range(1..=65535))]
     frames: u32,
-    /// First frame of the orbit.
+    /// Number of the first frame of the animation.
     #[arg(long, default_value_t = 0)]
     first: u32,
-    /// Interpolate in perspective: right where a triangle reaches from near to far.
+    /// Interpolate light in perspective. This is correct for triangles that reach from near to far.
     #[arg(long)]
     perspective_correct: bool,
-    /// Ordered dither: hides the steps of formats with few colours. All of less than eight bits a channel have it unless --no-dither is given.
+    /// Dither, which hides the steps between few colours. Formats of less than eight bits a channel always have it, unless --no-dither is given.
     #[arg(long)]
     dither: bool,
-    /// Rounded colours where a format has dither.
+    /// Round colours instead of dithering them.
     #[arg(long, conflicts_with = "dither")]
     no_dither: bool,
-    /// Levels of light as they are (linear), or corrected for the curve of most displays (srgb): brighter, with softer shadows.
+    /// Curve of the display: linear sends light levels unchanged, srgb corrects them for most displays, which makes pictures brighter and shadows
+    /// softer.
     #[arg(long, value_enum, default_value_t = Gamma::Linear)]
     gamma: Gamma,
-    /// Smooth outlines: pixels on an edge take from either side by the exact area that each covers.
+    /// Smooth outlines: a pixel on an edge mixes both sides by the exact areas that they cover.
     #[arg(long)]
     antialias: bool,
-    /// Rows drawn at a time, as a board with little memory does; the picture is the same.
+    /// Number of rows to draw at once, as a board with little memory does. The picture is the same.
     #[arg(long, default_value_t = 16, value_parser = clap::value_parser!(u32).range(1..))]
     band_rows: u32,
-    /// Paint each triangle in the colour of what the method auto chooses for it, with a legend below the picture; colours are darker where
-    /// the picture is.
+    /// Paint each triangle in the colour of the way in which the method auto draws it, with a legend below the picture. Dark parts of the picture
+    /// stay darker.
     #[arg(long, value_name = "WHAT", conflicts_with_all = ["antialias", "dither", "band_rows"])]
     show: Option<Show>,
-    /// FILE.png, FILE.apng or a directory; SCENE.png (SCENE.apng for several frames) in the current directory unless given.
+    /// FILE.png, FILE.apng or a directory. By default SCENE.png, or SCENE.apng for several frames, in the current directory.
     #[arg(short, long)]
     output: Option<PathBuf>,
     /// Print one JSON object per frame.
@@ -83,14 +85,14 @@ Examples:
   microphong render torus --frames 30 -o frames/
   microphong render teapot --show methods --budget 4";
 
-/// What a display is sent for a level of light.
+/// The curve of a display.
 #[derive(Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
 enum Gamma {
     Linear,
     Srgb,
 }
 
-/// What a picture shows in place of its colours.
+/// What a picture shows instead of colours.
 #[derive(Clone, Copy, clap::ValueEnum)]
 enum Show {
     Methods,
@@ -184,7 +186,7 @@ fn method(arguments: &Arguments, stream: &Stream<'_>) -> Result<Shader> {
         (None, None) => Shader::of(stream),
         (None, Some(shader)) => Ok(shader),
         (Some(Show::Methods), Some(shader)) if !shader.keeps_budget() => {
-            Err(Usage(format!("--show methods shows what auto chooses; --shader {} chooses nothing", shader.name())).into())
+            Err(Usage(format!("--show methods needs the method auto or auto-linear; --shader {} chooses nothing", shader.name())).into())
         }
         (Some(Show::Methods), shader) => Ok(shader.unwrap_or(Shader::AUTO)),
     }
@@ -198,14 +200,14 @@ fn draw(show: Option<Show>, stream: Stream<'_>, settings: &Settings, number: u32
     Ok((picture, Some(choices)))
 }
 
-/// Where pictures go.
+/// Where pictures are written.
 enum Target {
     File(PathBuf),
     Directory(PathBuf),
 }
 
 impl Target {
-    /// What `path` asks for, by its ending, or because there is a device or a pipe.
+    /// The target that `path` names by its ending, or the device or pipe that exists there.
     fn of(path: &Path, frames: u32) -> Result<Self, Usage> {
         let slash = path.to_string_lossy().ends_with(std::path::is_separator);
         let ending = path.extension().map(|e| e.to_string_lossy().to_ascii_lowercase());
@@ -221,7 +223,7 @@ impl Target {
     }
 }
 
-/// Takes the pictures as they are finished.
+/// Writes pictures as they are finished.
 enum Writer {
     Film(Film, PathBuf),
     Numbered(PathBuf, Size),

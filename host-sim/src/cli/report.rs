@@ -15,13 +15,13 @@ use std::{
     time::Duration,
 };
 
-/// All bars, which make room for what else is printed.
+/// All progress bars. They make room for other output.
 static BARS: LazyLock<MultiProgress> = LazyLock::new(MultiProgress::new);
 
 /// Whether standard output is the file that the command writes.
 static TAKEN: AtomicBool = AtomicBool::new(false);
 
-/// From now on, results go to stderr if `output` is standard output: they are not part of that file.
+/// Sends results to stderr from now on if `output` is standard output, because they are not part of that file.
 pub(crate) fn leave_to(output: &Path) {
     TAKEN.store(output::is_stdout(output), Ordering::Relaxed);
 }
@@ -39,7 +39,7 @@ pub(crate) fn json(object: &impl Serialize) -> Result<()> {
     line(&serde_json::to_string(object)?)
 }
 
-/// Prints what the method auto chooses within a budget, in 1/255, below what it has come to.
+/// Prints the shares of triangles and pixels that the method auto draws in each way, with its budget in 1/255.
 pub(crate) fn choices((budget, choices): &(f64, Choices)) -> Result<()> {
     line(&format!("    budget {budget} LSB; {choices}"))
 }
@@ -73,7 +73,7 @@ pub(crate) fn progress(count: u64, what: &'static str) -> ProgressBar {
     bar.with_message(what)
 }
 
-/// Prints what takes long, when it starts, on stderr.
+/// Prints the start of long work on stderr.
 struct Announcer;
 
 impl Log for Announcer {
@@ -92,7 +92,7 @@ impl Log for Announcer {
     fn flush(&self) {}
 }
 
-/// From now on, long work announces itself.
+/// Announces long work from now on.
 pub(crate) fn start() {
     // Fails where it has been called before: then it need not.
     if log::set_logger(&Announcer).is_ok() {
@@ -100,13 +100,13 @@ pub(crate) fn start() {
     }
 }
 
-/// So many of something that has these names if there is one, and if there are others.
+/// A number with the noun for one thing or for several.
 pub(crate) fn counted(number: impl TryInto<u64>, [one, many]: [&str; 2]) -> String {
     let number = number.try_into().unwrap_or(u64::MAX);
     format!("{} {}", grouped(number), if number == 1 { one } else { many })
 }
 
-/// Names of what is counted.
+/// The noun for one triangle and for several.
 pub(crate) const TRIANGLES: [&str; 2] = ["triangle", "triangles"];
 pub(crate) const VERTICES: [&str; 2] = ["vertex", "vertices"];
 pub(crate) const FRAMES: [&str; 2] = ["frame", "frames"];

@@ -32,7 +32,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome> {
     Ok(Outcome::Done)
 }
 
-/// A scene by name or from a file, or all that are built in; with another error budget if one is given.
+/// Loads a scene by its name or from a file, or all built-in scenes; with another error budget if one is given.
 pub(super) fn load(name: &str, budget: Option<ErrorBudget>) -> Result<Vec<Scene>> {
     let load = |name| Ok(with_budget(scene::load(name)?, budget));
     if name == "all" {
@@ -44,7 +44,7 @@ pub(super) fn load(name: &str, budget: Option<ErrorBudget>) -> Result<Vec<Scene>
     }
 }
 
-/// A scene with another error budget, if one is given.
+/// Replaces the error budget of a scene, if one is given.
 pub(super) fn with_budget(scene: Scene, budget: Option<ErrorBudget>) -> Scene {
     match budget {
         Some(budget) => Scene { stream: scene.stream.with_budget(budget), ..scene },

@@ -16,33 +16,33 @@ use std::{
     time::{Duration, Instant},
 };
 
-/// Look for scenes that are drawn wrong, by random cases and exact oracles.
+/// Look for scenes that are drawn wrong, by random cases and exact checks
 ///
-/// Each family makes cases of one kind and judges them by means that share no code with the renderer. A case that fails does not end the
-/// run. The worst failure of each method is made as small as it can be and written as a stream, and the command that draws it is printed.
-/// Case N of a seed is the same in every run.
+/// Each family makes cases of one kind, and checks them without any code of the renderer. A case that fails does not end the run. The worst failure
+/// of each method is made as small as possible and written as a stream, and the command that draws it is printed. Case N of a seed is the same in
+/// every run.
 #[derive(clap::Args)]
 #[command(after_help = after_help())]
 pub(crate) struct Arguments {
-    /// Seconds to go on, shared by the families.
+    /// Seconds to run, shared by the families.
     #[arg(long, default_value_t = 10.0, value_name = "N", value_parser = seconds)]
     seconds: f64,
-    /// Cases of each family, instead of seconds.
+    /// Number of cases for each family, instead of --seconds.
     #[arg(long, value_name = "N", conflicts_with = "seconds")]
     cases: Option<u64>,
-    /// Which cases: another seed makes others. A random one unless given.
+    /// Seed of the random cases. By default a random one.
     #[arg(long, value_name = "S")]
     seed: Option<u64>,
-    /// First case of each family: the number of a failure, with `--cases 1`, finds it again.
+    /// Number of the first case of each family. With --cases 1 it repeats the case of that number.
     #[arg(long, default_value_t = 0, value_name = "N")]
     first: u64,
     /// Families, separated by commas, or all.
     #[arg(long, default_value = "all", value_name = "NAME,...", value_parser = only)]
     only: Several<&'static str>,
-    /// How far a pixel may be off in the family budget, in 1/255, 0.5 to 16; random ones unless given.
+    /// Error budget in the family budget, in 1/255, from 0.5 to 16. By default random ones.
     #[arg(long, value_name = "LSB", value_parser = parse::budget)]
     budget: Option<ErrorBudget>,
-    /// Where streams of failures are written.
+    /// Directory for streams of failures.
     #[arg(long, default_value = ".", value_name = "FOLDER")]
     artefacts: PathBuf,
     /// Print one JSON object per family.
@@ -60,10 +60,10 @@ Examples:
 
 Overflows are seen by a build that looks for them: cargo run --profile stress -- stress";
 
-/// What is said of the family that some builds lack.
+/// Help text of the family that this build lacks.
 const WITHOUT_BOARDS: &str = "\n  cost        with --features boards: a frame takes no more instructions than are documented";
 
-/// The examples, and what each family asserts.
+/// The examples, and the assertion of each family.
 fn after_help() -> String {
     let families = families(None);
     let lines: Vec<_> = families.iter().map(|family| format!("  {:11} {}", family.name(), family.about())).collect();
@@ -82,10 +82,10 @@ fn only(text: &str) -> Result<Several<&'static str>, String> {
 
 pub(crate) fn run(arguments: &Arguments) -> Result<Outcome> {
     if !arguments.artefacts.is_dir() {
-        return Err(Usage(format!("{} is no folder; name one that is there, with --artefacts", arguments.artefacts.display())).into());
+        return Err(Usage(format!("{} is not a directory; name one that exists with --artefacts", arguments.artefacts.display())).into());
     }
     if arguments.budget.is_some() && !arguments.only.values.contains(&"budget") {
-        return Err(Usage("--budget is for the family budget, which --only leaves out".to_owned()).into());
+        return Err(Usage("--budget needs the family budget, which --only leaves out".to_owned()).into());
     }
     let seed = arguments.seed.unwrap_or_else(|| {
         std::time::SystemTime::now().duration_since(std::time::UNIX_EPOCH).map_or(0, |time| time.as_nanos() as u64 % 1_000_000)

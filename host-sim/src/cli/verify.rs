@@ -16,7 +16,7 @@ use microphong_sim::{
 use serde::Serialize;
 use std::path::PathBuf;
 
-/// Draw scenes with a board's own firmware, emulated, and compare every pixel with this computer.
+/// Draw scenes by a board's own firmware under emulation, and compare every pixel with this computer
 #[derive(clap::Args)]
 #[command(after_help = EXAMPLES)]
 pub(crate) struct Arguments {
@@ -29,13 +29,14 @@ pub(crate) struct Arguments {
     /// Shading methods, separated by commas, or all that the board has room for.
     #[arg(long, default_value = "all", value_parser = parse::SeveralShaders)]
     shader: Several<Shader>,
-    /// How far a pixel may be off from Phong shading by auto or auto-linear, in 1/255, 0.5 to 16; the scene's own unless given.
+    /// Error budget of auto and auto-linear: the largest error of a pixel against Phong shading, in 1/255, from 0.5 to 16. By default the scene's
+    /// own.
     #[arg(long, value_name = "LSB", value_parser = parse::budget)]
     budget: Option<ErrorBudget>,
-    /// Frames to compare, from the first.
+    /// Number of frames to compare, beginning with the first.
     #[arg(long, default_value_t = 3, value_parser = clap::value_parser!(u16).range(1..))]
     frames: u16,
-    /// Where pictures go that differ.
+    /// Directory for pictures that differ.
     #[arg(long, value_name = "DIR", default_value = "differences")]
     artefacts: PathBuf,
     /// Print one JSON object per comparison.
@@ -117,7 +118,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome> {
     Ok(if differ > 0 { Outcome::Differences } else { Outcome::Done })
 }
 
-/// A method that a board has no room for.
+/// A method that the board lacks.
 #[derive(Serialize)]
 struct Lacking {
     board: Board,
@@ -125,7 +126,7 @@ struct Lacking {
     lacking: bool,
 }
 
-/// Tells that a board is left out.
+/// Reports that a board is left out.
 fn lacking(board: Board, shader: Shader, json: bool) -> Result<()> {
     if json {
         return report::json(&Lacking { board, shader: shader.name(), lacking: true });
