@@ -1,17 +1,17 @@
 //! Antialiasing by the exact area that a triangle covers of each pixel (after Disselkoen 1991, section 9).
 //!
-//! A triangle is drawn in two parts. Pixels wholly inside are shaded at their centres, as without antialiasing. The pixels of its *edge*
-//! are shaded at the centroid of the part that it covers: for an intensity that is linear over the pixel, coverage times that value *is*
-//! the integral. To reach centroids with polynomials that stand on pixels, the method shades a copy of the triangle on a grid up to
-//! 2^[`FINER`] times finer. No method needs code for antialiasing.
+//! A triangle is drawn in two parts. Pixels wholly inside are shaded at their centres, as without antialiasing. Pixels on its *edge* are shaded at
+//! the centroid of the part that it covers. For an intensity that is linear over the pixel, coverage times the value there *is* the integral. To
+//! reach centroids with polynomials that stand on pixels, the method shades a copy of the triangle on a grid up to 2^[`FINER`] times finer. No method
+//! needs code for antialiasing.
 //!
 //! Coverage is exact to less than three units of 2^-16 of a pixel, and the sum of coverages over a closed patch to the last bit (see
-//! [`crate::coverage::area`]). The centroid is rounded to half a place of the finer grid, and the intensity with it; the curvature of the
-//! intensity within a pixel is left out, I''/24 in a whole one. A triangle too thin for the finer grid is shaded beyond its edge by a
-//! quarter of itself at most, else at its nearest corner.
+//! [`crate::coverage::area`]). The centroid is rounded to half a place of the finer grid, and the intensity with it. The curvature of the intensity
+//! within a pixel is left out: I''/24 in a whole pixel. A triangle that is too thin for the finer grid is shaded beyond its edge by at most a quarter
+//! of its own width, or at its nearest corner.
 //!
-//! Cost: one layer of a [`Sample`](crate::coverage::sample::Sample) for an inner pixel; for an edge pixel one to three divisions of 64 bits
-//! for each edge in it, two for the centroid, and entering the patch there. Set-up and lights are worked out twice.
+//! Cost: one layer of a [`Sample`](crate::coverage::sample::Sample) for an inner pixel. An edge pixel takes one to three divisions of 64 bits for
+//! each edge in it, two for the centroid, and entering the patch there. Set-up and lights are computed twice.
 
 use crate::{
     coverage::{area::TriangleCoverage, sample::Layer},
@@ -26,11 +26,11 @@ use crate::{
 /// Which pixels of a triangle are drawn.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum PixelSet {
-    /// Pixels whose centres lie inside: no antialiasing.
+    /// All pixels whose centres lie inside, without antialiasing.
     Centres,
-    /// Pixels that the triangle covers wholly.
+    /// All pixels that the triangle covers wholly.
     Inner,
-    /// Pixels that the triangle covers in part, shaded on a grid finer by 2 to this power.
+    /// All pixels that the triangle covers in part, shaded on a grid that is finer by 2 to this power.
     Edge(u32),
 }
 
@@ -42,8 +42,8 @@ impl PixelSet {
     }
 }
 
-/// How much finer the grid is on which a triangle's edge pixels are shaded. Larger triangles get coarser grids, because polynomials lose
-/// precision far from their anchor.
+/// Base-2 logarithm of the fineness of the grid on which a triangle's edge pixels are shaded. Larger triangles have coarser grids, because
+/// polynomials lose precision far from their anchor.
 #[must_use]
 pub fn finer(corners: [&ScreenVertex; 3]) -> u32 {
     let extent = |[a, b, c]: [i32; 3]| a.max(b).max(c).abs_diff(a.min(b).min(c));
@@ -52,7 +52,7 @@ pub fn finer(corners: [&ScreenVertex; 3]) -> u32 {
     (7 + FINER).saturating_sub(32 - size.leading_zeros()).min(FINER)
 }
 
-/// `corner` on a grid that is finer by 2 to the power `finer`. Centres of pixels stay centres.
+/// Converts `corner` to a grid that is finer by 2 to the power `finer`. Centres of pixels stay centres.
 #[must_use]
 pub fn refined(corner: &ScreenVertex, finer: u32) -> ScreenVertex {
     let place = |c: i32| (c << finer) + CENTRE - (CENTRE << finer);
@@ -65,18 +65,18 @@ pub fn coarse(corner: [i32; 2], finer: u32, more: u32) -> [i32; 2] {
     corner.map(|c| (c - centre + (centre << finer)) >> finer)
 }
 
-/// Least and largest inverse depth of a triangle within a pixel.
+/// Smallest and largest inverse depth of a triangle within a pixel.
 struct DepthRange {
     /// Inverse depth at corner 0 and its derivatives per pixel, Q0.32.
     start: i64,
     dx: i64,
     dy: i64,
     corner: [i64; 2],
-    /// Least and largest inverse depth of the corners.
+    /// Smallest and largest inverse depth of the corners.
     range: [i64; 2],
 }
 
-/// Fraction bits of inverse depth here that [`DEPTH`] has not.
+/// Fraction bits of inverse depth here beyond [`DEPTH`].
 const MORE: u32 = 32 - DEPTH;
 
 impl DepthRange {
@@ -116,9 +116,9 @@ impl DepthRange {
 pub struct Shape<'o> {
     /// The triangle.
     pub screen: &'o ScreenTriangle,
-    /// Which of its pixels are drawn.
+    /// The pixels that are drawn.
     pub pixels: PixelSet,
-    /// The part that is drawn, if not the whole triangle.
+    /// The part of the triangle that is drawn; `None` for the whole triangle.
     pub part: Option<TriangleCoverage>,
     /// Corners of the part that is drawn, on the finer grid.
     pub corners: [[i32; 2]; 3],
@@ -163,7 +163,7 @@ fn side(from: [i64; 2], to: [i64; 2], p: [i64; 2]) -> i64 {
     (to[0] - from[0]) * (p[1] - from[1]) - (to[1] - from[1]) * (p[0] - from[0])
 }
 
-/// Where a span is shaded: row and column on the grid of the patch, first column and number of pixels on the screen.
+/// The place of a span: row and column on the grid of the patch, first column and number of pixels on the screen.
 struct Place {
     at: [i32; 2],
     column: i32,

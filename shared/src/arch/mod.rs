@@ -1,4 +1,4 @@
-//! Operations that processors do differently: each is as short as the processor at hand allows, with the same result on all.
+//! Operations that differ between processors. Each is as short as the processor allows, and has the same result on all.
 
 pub(crate) mod product;
 pub(crate) mod quotient;

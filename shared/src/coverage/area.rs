@@ -1,4 +1,4 @@
-//! How much of a pixel a triangle covers: areas under edges, summed with a sign.
+//! The area of a pixel that a triangle covers, by areas under edges that are summed with a sign.
 //!
 //! An edge leaves to its right the area `F(c + 1) - F(c)` of column `c`, where `F(c)` is the integral of `max(c - x, 0)` over the part of
 //! the edge in one row: half a square between its ends, linear beyond them, so one division of exact integers. The coverage of a triangle
@@ -23,9 +23,9 @@ struct Edge {
     x: i64,
     y: i64,
     dx: i64,
-    /// Never negative.
+    /// The height of the edge, never negative.
     dy: i64,
-    /// The triangle lies to its right.
+    /// Whether the triangle lies to the right of the edge.
     left: bool,
 }
 
@@ -192,7 +192,7 @@ impl EdgeSegment {
         area
     }
 
-    /// The points of `column` to the right of the segment.
+    /// The points of `column` that lie to the right of the segment.
     fn mask(&self, column: i32) -> Mask {
         let border = i64::from(column) << PLACE;
         let [a, b, c, d] = self.crossings.map(|x| {
@@ -204,7 +204,7 @@ impl EdgeSegment {
     }
 }
 
-/// Which of 8 x 4 points of a pixel are covered, to tell where in the pixel an area lies. Neighbours share out the points.
+/// A set of 8 x 4 points of a pixel that are covered. It tells where in the pixel an area lies. Neighbouring triangles share no point.
 pub type Mask = u32;
 
 /// An area and its moments about the upper left corner of a pixel.
@@ -228,7 +228,7 @@ pub struct Row {
     pub inner: [i32; 2],
 }
 
-/// What a triangle covers of a pixel.
+/// The part of a pixel that a triangle covers.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Fragment {
     /// The area, [`COVERAGE`] fraction bits; by rounding it may be negative, -2 units at least.

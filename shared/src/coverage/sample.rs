@@ -7,8 +7,8 @@
 //! Surfaces that cut each other within a pixel are one layer too. Their coverages exceed the pixel then, and the excess is
 //! shared out by how far their ranges of depth overlap (Carpenter's rule).
 //!
-//! The order of triangles matters where more than [`LAYERS`] surfaces share a pixel, of which the farthest are then made
-//! one; where a surface that comes in several fragments cuts another; and, by rounding, in the last of 16 bits.
+//! The order of triangles matters in three cases. If more than [`LAYERS`] surfaces share a pixel, the farthest are merged. A surface in several
+//! fragments may cut another one. And the last of 16 bits may be rounded differently.
 
 use crate::{
     coverage::area::Mask,
@@ -17,7 +17,7 @@ use crate::{
 
 use zerocopy::{FromBytes, Immutable, IntoBytes, KnownLayout};
 
-/// A wholly covered pixel.
+/// The coverage of a whole pixel.
 const WHOLE: u32 = 1 << COVERAGE;
 
 /// Part of a surface in a pixel.
@@ -40,7 +40,7 @@ impl Layer {
     /// No surface.
     const NONE: Self = Self { near: 0, far: 0, coverage: 0, mask: 0, light: [0; 3] };
 
-    /// A surface of one colour.
+    /// A surface of one colour that covers a part of the pixel.
     #[inline]
     #[must_use]
     pub fn new([near, far]: [u16; 2], coverage: u32, mask: Mask, colour: [u8; 3]) -> Self {
@@ -48,7 +48,7 @@ impl Layer {
         Self { near, far, coverage, mask, light: colour.map(|channel| u32::from(channel) * coverage) }
     }
 
-    /// A surface over all of the pixel.
+    /// A surface of one colour that covers the whole pixel.
     #[inline]
     #[must_use]
     pub fn whole(range: [u16; 2], colour: [u8; 3]) -> Self {
@@ -59,7 +59,7 @@ impl Layer {
         self.near >= other.far && other.near >= self.far
     }
 
-    /// Adds a fragment of the same surface, or of one that cuts it.
+    /// Adds a fragment of this surface, or of one that cuts it.
     fn join(&mut self, part: &Self) {
         // Both surfaces cover the excess; the nearer one is seen there.
         let excess = (self.coverage + part.coverage).saturating_sub(WHOLE);

@@ -39,8 +39,8 @@ impl<'r, C: Pixel> Frame<'r, C> {
     /// Draws the next band as [`Self::next_band`] does, over a background that the program draws. `under` is called with the pixels of the band,
     /// which hold the scene's background, and with its area. A [`crate::BandTarget`] helps to draw there. Antialiased edges blend with the result.
     ///
-    /// Partial redraw does not know what `under` draws. [`crate::Renderer::invalidate`] adds an area in which that changes. [`Self::rows`] does not include rows that only
-    /// `under` draws.
+    /// Partial redraw does not know what `under` draws. [`crate::Renderer::invalidate`] adds an area in which that changes. [`Self::rows`] does not
+    /// include rows that only `under` draws.
     ///
     /// # Errors
     /// When `pixels` does not hold one row.

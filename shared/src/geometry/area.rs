@@ -7,7 +7,7 @@ use embedded_graphics_core::{
 };
 use zerocopy::{FromBytes, Immutable, IntoBytes, KnownLayout};
 
-/// A rectangle of pixels, in memory of the renderer.
+/// A rectangle of pixels. It lies in the renderer's memory.
 #[derive(FromBytes, IntoBytes, Immutable, KnownLayout, Clone, Copy, Debug, PartialEq, Eq)]
 #[repr(C)]
 pub struct Area {
@@ -18,7 +18,7 @@ pub struct Area {
 }
 
 impl Area {
-    /// No pixel.
+    /// The empty rectangle.
     pub const NONE: Self = Self { columns: [0; 2], rows: [0; 2] };
 
     /// All pixels of a viewport of `size`, no larger than [`crate::MAX_SIDE`].
@@ -37,14 +37,14 @@ impl Area {
         Self { columns: range(top_left.x, extent.width, size.width), rows: range(top_left.y, extent.height, size.height) }
     }
 
-    /// Whether it has no pixel.
+    /// Whether the rectangle has no pixel.
     #[must_use]
     pub fn is_empty(&self) -> bool {
         let is_empty = |[start, end]: [u16; 2]| start >= end;
         is_empty(self.columns) || is_empty(self.rows)
     }
 
-    /// The smallest one that has all pixels of both; this one if the other has none.
+    /// The smallest rectangle that contains both. An empty one is left out.
     #[must_use]
     pub fn union(&self, other: &Self) -> Self {
         let hull = |[start, end]: [u16; 2], other: [u16; 2]| [start.min(other[0]), end.max(other[1])];
@@ -55,21 +55,21 @@ impl Area {
         }
     }
 
-    /// Its pixels that belong to the other one as well.
+    /// The pixels that belong to both rectangles.
     #[must_use]
     pub fn within(&self, other: &Self) -> Self {
         let within = |[start, end]: [u16; 2], other: [u16; 2]| [start.max(other[0]), end.min(other[1])];
         Self { columns: within(self.columns, other.columns), rows: within(self.rows, other.rows) }
     }
 
-    /// Its columns.
+    /// The columns of the rectangle.
     #[must_use]
     pub fn columns(&self) -> Range<u32> {
         let [start, end] = self.columns;
         start.into()..end.into()
     }
 
-    /// Its rows.
+    /// The rows of the rectangle.
     #[must_use]
     pub fn rows(&self) -> Range<u32> {
         let [start, end] = self.rows;

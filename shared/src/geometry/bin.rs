@@ -1,23 +1,21 @@
-//! Triangles sorted by the rows they start in, once per frame.
+//! Triangles of a frame, sorted once by the rows in which they start.
 //!
-//! Each triangle is stored once, in the list of the first bin it touches; the
-//! list of *active* triangles takes over a bin's list when drawing reaches it,
-//! and drops a triangle below its last row. Lists are in the order of the
-//! stream, so the picture does not depend on the height of the bands.
+//! Each triangle is stored once, in the list of the first bin that it touches. When drawing reaches a bin, the list of *active* triangles takes over
+//! its list. A triangle is dropped below its last row. Lists are in the order of the stream, so the picture does not depend on the height of bands.
 
 use core::{array, cell::Cell, num::NonZeroU32, ops::Range};
 use zerocopy::{FromBytes, Immutable, IntoBytes, KnownLayout};
 
-/// Bins of a frame; the rows are shared out among them.
+/// Number of bins of a frame, which share its rows.
 pub(crate) const BINS: usize = 64;
 
-/// The end of a list: links are one more than the index that they lead to, so that empty memory is all zeros.
+/// The end of a list. A link is one more than the index that it leads to, so that empty memory is all zeros.
 const NONE: u16 = 0;
 
-/// The end of the list of a bin that will be continued, plus the bin.
+/// The end of a bin's list that other lists may follow, plus the number of the bin.
 const OPEN: u16 = 1 << 15;
 
-/// A triangle in a list: twice its index in the stream, plus 1 if it is word-sized. No other has the same.
+/// A triangle in a list: twice its index in the stream, plus 1 if it is word-sized. Each triangle has another key.
 #[derive(FromBytes, IntoBytes, Immutable, KnownLayout, Clone, Copy, Debug)]
 #[repr(transparent)]
 pub(crate) struct Key(u32);
@@ -50,20 +48,20 @@ impl Key {
     }
 }
 
-/// An entry of a list.
+/// An entry of a list. Entries of a list are in the order of their keys.
 #[derive(FromBytes, IntoBytes, Immutable, KnownLayout, Clone, Copy, Debug)]
 #[repr(C)]
 pub(crate) struct Entry {
-    /// Lists are in this order.
+    /// Key of the triangle.
     key: Key,
     /// One past the last row of the triangle.
     bottom: u16,
-    /// The entry behind it.
+    /// Link to the next entry.
     next: u16,
 }
 
 impl Entry {
-    /// The triangle.
+    /// The key of the entry's triangle.
     #[inline(always)]
     #[must_use]
     pub(crate) fn key(&self) -> Key {
@@ -75,8 +73,8 @@ impl Entry {
     pub(crate) const EMPTY: Self = Self { key: Key(0), bottom: 0, next: NONE };
 }
 
-/// The triangles of one frame, in one list for each bin and one of active triangles. In the order of memory, as instructions of Armv6-M
-/// reach little of a structure.
+/// The triangles of one frame: a list for each bin, and one of active triangles. Fields are ordered by use, because instructions of Armv6-M reach
+/// little of a structure.
 #[derive(Clone, Debug)]
 #[repr(C)]
 pub(crate) struct Bins {
@@ -85,7 +83,7 @@ pub(crate) struct Bins {
     /// First row of the highest triangle, and one past the last row of the lowest.
     top: u32,
     bottom: u32,
-    /// Bins that `active` has taken over.
+    /// Number of bins whose lists `active` has taken over.
     reached: usize,
     /// One past the last row of the bands so far.
     drawn: u32,
@@ -98,8 +96,8 @@ pub(crate) struct Bins {
 }
 
 impl Bins {
-    /// Empty lists for a viewport of `height` rows that is drawn `band_rows` at a time: a bin is at least a band, so that
-    /// each band merges one list.
+    /// Empty lists for a picture of `height` rows that is drawn `band_rows` rows at a time. A bin is at least as high as a band, so that each band
+    /// merges one list.
     #[must_use]
     pub(crate) fn new(height: u32, band_rows: u32) -> Self {
         Self {
@@ -115,8 +113,8 @@ impl Bins {
         }
     }
 
-    /// The bin of a row below 2048, by a product, which is cheaper than a quotient. With bins of more than 512 rows the result may be one
-    /// too high, alike when triangles are put there and when they are taken.
+    /// The bin of a row below 2048, by a product, which is cheaper than a quotient. With bins of more than 512 rows the result may be one too high.
+    /// This does no harm, because it is used both to store and to find triangles.
     #[inline(always)]
     fn of(&self, row: u32) -> usize {
         (row.wrapping_mul(self.bins_per_row) >> 20) as usize
@@ -147,8 +145,8 @@ impl Bins {
         Self { heads: array::from_fn(|bin| OPEN | bin as u16), ..self.clone() }
     }
 
-    /// Puts the lists of `earlier` triangles of the stream before these. Their entries lie from index `first` on, where their links begin;
-    /// they are moved up to the others. Like all that is pushed later, they get the larger links.
+    /// Puts the lists of `earlier` triangles before these. Their entries lie from index `first` on, where their links begin. They are moved next to
+    /// the others, and have the larger links, as all entries that are pushed later.
     pub(crate) fn join(&mut self, entries: &mut [Entry], earlier: &Self, first: usize) {
         let Self { heads, count, .. } = *self;
         let joined = |link| if link & OPEN == 0 { link + count } else { heads.get(usize::from(link & !OPEN)).copied().unwrap_or(NONE) };
@@ -176,8 +174,8 @@ impl Bins {
         self.top.min(self.bottom)..self.bottom
     }
 
-    /// The row above which a `share` of the triangles end, of 2^16: about where a frame has to be divided for two processors to share the
-    /// work so.
+    /// The row above which a `share` of the triangles end, in units of 1/65,536. Two processors share the work in about this proportion if the frame
+    /// is divided there.
     #[must_use]
     pub(crate) fn row_at(&self, entries: &[Entry], share: u16) -> u32 {
         let Range { start, end } = self.rows();
@@ -214,7 +212,7 @@ impl Bins {
         Walk { entries, lists: [self.active.into(), fresh.into()], head: NONE.into(), tail: NONE.into(), bottom }
     }
 
-    /// Leaves out the triangles that end above `row`, where the next band begins; does nothing where that is the end of the band before.
+    /// Leaves out the triangles that end above `row`, where the next band begins. If that is the end of the last band, nothing happens.
     pub(crate) fn skip(&mut self, entries: &mut [Entry], row: u32) {
         if row > self.drawn {
             let walk = self.band(entries, row);
@@ -228,7 +226,7 @@ impl Bins {
     }
 }
 
-/// The triangles of a band in the order of the stream: those that reach down from above, and those that start here, merged on the way.
+/// The triangles of a band in the order of the stream: the ones that reach down from above and the ones that start here, merged step by step.
 /// Triangles that reach below the band are collected in a list for the next one.
 #[derive(Debug)]
 pub(crate) struct Walk<'e> {
@@ -328,7 +326,7 @@ mod tests {
         }
     }
 
-    /// Above the row of a share end so many triangles, but for those that end in the same 1/64 of the frame's rows.
+    /// The number of triangles that end above the row of a share is right, except for triangles that end in the same 1/64 of the frame's rows.
     #[test]
     fn a_share_of_the_triangles_ends_above_its_row() {
         let (mut entries, mut bins) = ([Entry::EMPTY; 400], Bins::new(240, 10));

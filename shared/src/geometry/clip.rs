@@ -1,7 +1,7 @@
-//! Triangles that cross the near plane or leave the guard band, cut in eye space.
+//! Clipping of triangles that cross the near plane or leave the guard band, in eye space.
 //!
-//! Clipping is rare, so it may be slow: vertices are transformed anew and lit with the interpolated normal. Both neighbours of an edge cut
-//! it at the same point, from its inner to its outer end: no crack opens.
+//! Clipping is rare, so it may be slow: vertices are transformed again and lit with the interpolated normal. An edge is cut from its inner to its
+//! outer end, so both its triangles cut it at the same point, and no crack opens.
 
 use crate::{
     arch::quotient::long,
@@ -15,7 +15,7 @@ use crate::{
 };
 use heapless::Vec;
 
-/// Corners of a triangle cut by five planes.
+/// Largest number of corners of a triangle that five planes have cut.
 const CORNERS: usize = 3 + PLANES;
 
 /// A corner of the cut polygon.

@@ -1,9 +1,9 @@
-//! Triangles that face away, told apart in object space: four products, no vertex touched. The rest are culled by their extent on the
-//! screen.
+//! Culling of triangles that face away, in object space, by four products and without touching vertices. Other triangles are culled by their extent
+//! on the screen.
 //!
-//! What is drawn has rounded corners, in eye space and on the screen, and rounding may turn a thin triangle that faces away to
-//! the front. If it were culled, a closed mesh would have a hole there: its neighbours leave those pixels to it. So a triangle
-//! is culled only where no rounding can turn it:
+//! Corners that are drawn are rounded in eye space and on the screen, and rounding may turn a thin triangle that faces away to the front. If it were
+//! culled, a closed mesh would have a hole there, because its neighbours leave those pixels to it. So a triangle is culled only where no rounding can
+//! turn it:
 //!
 //! Write `a` for the triangle's least altitude, `D` for a distance from the eye that no vertex exceeds, and `r` for how far
 //! rounding moves a corner in object space at most; a rounded corner is taken for the point where the ray through its place on
@@ -38,12 +38,12 @@ use crate::{
 };
 use zerocopy::{FromBytes, Immutable, IntoBytes, KnownLayout};
 
-/// The position of the camera, against which the planes of triangles are tested, in memory of the renderer. Lengths are in units of object
-/// space, or, where the eye is too far for that, in such units times a power of two.
+/// The position of the camera, against which the planes of triangles are tested. It lies in the renderer's memory. Lengths are in units of object
+/// space, or, if the eye is too far away for this, in such units times a power of two.
 #[derive(FromBytes, IntoBytes, Immutable, KnownLayout, Clone, Copy, Debug)]
 #[repr(C)]
 pub struct Facing {
-    /// Perspective: the eye; parallel rays: the direction towards the viewer; Q.10.
+    /// With perspective the eye, with parallel rays the direction towards the viewer; Q.10.
     vector: [i32; 3],
     /// Factor from the format of a plane's offset to that of the dot product; 0 for parallel rays, which do not depend on the offset.
     offset_scale: i32,
@@ -76,11 +76,11 @@ const MAX_SLACK: u64 = (1 << 14) - 1;
 const SLACK: i32 = 1 << (HEIGHT - 9);
 
 impl Facing {
-    /// All triangles may show their front: all heights are 0.
+    /// A test that culls nothing: all heights are 0.
     pub const ANY: Self = Self { vector: [0; 3], offset_scale: 0, slack: 0, reach: 0 };
 
-    /// For a mesh in the ball of `radius` about the origin, [`crate::stream::record::Header::radius`], that lies as `model_view` says and is
-    /// seen so.
+    /// The test for a mesh in the ball of `radius` about the origin, [`crate::stream::record::Header::radius`], at the place `model_view`, seen as
+    /// `view` says.
     #[must_use]
     pub fn new(view: &View, model_view: &ModelView, radius: u16) -> Self {
         let (vector, reach) = (view.viewer(model_view), view.reach(radius));
@@ -110,14 +110,14 @@ impl Facing {
         Self { vector, offset_scale, slack: slack as i32, reach: reach as i32 }
     }
 
-    /// Whether `triangle` may show its front. Errs on the side of true: the signed area on the screen decides.
+    /// Whether `triangle` may show its front. If in doubt the answer is yes, and the signed area on the screen decides.
     #[inline(always)]
     #[must_use]
     pub fn may_face(&self, triangle: &Triangle) -> bool {
         self.height(triangle) >= Self::FRONT
     }
 
-    /// Least [`Self::height`] above triangles that may show their front.
+    /// Smallest [`Self::height`] above triangles that may show their front.
     pub(crate) const FRONT: i32 = -SLACK;
 
     /// The height of the eye above the plane of `triangle`, plus the slack that makes up for its rounded corners.
@@ -129,7 +129,7 @@ impl Facing {
         height.wrapping_add(self.slack.wrapping_mul(triangle.inverse_altitude.into()))
     }
 
-    /// Least [`Self::height`] above triangles that might show their front if their plane leaned as [`crate::stream::record::CLOSED_CONVEX`]
+    /// Smallest [`Self::height`] above triangles that could show their front if their plane leaned as far as [`crate::stream::record::CLOSED_CONVEX`]
     /// allows.
     #[must_use]
     pub(crate) fn leaning(&self) -> i32 {
@@ -141,20 +141,20 @@ impl Facing {
 /// The bounding box and area of a triangle on the screen.
 #[derive(Clone, Copy, Debug)]
 pub struct Extent {
-    /// Least column, 1/16 pixel.
+    /// Leftmost column, in 1/16 pixel.
     pub left: i32,
-    /// Largest column.
+    /// Rightmost column, in 1/16 pixel.
     pub right: i32,
-    /// Least row.
+    /// Uppermost row, in 1/16 pixel.
     pub top: i32,
-    /// Largest row.
+    /// Lowest row, in 1/16 pixel.
     pub bottom: i32,
     /// Twice the signed area, 1/256 pixel², as far as 32 bits hold it; positive seen from the front.
     pub area: i32,
 }
 
 impl Extent {
-    /// The extent of corners `[x, y]` that run clockwise seen from the front.
+    /// The extent of corners `[x, y]` that run clockwise as seen from the front.
     #[inline(always)]
     #[must_use]
     pub fn new([[x0, y0], [x1, y1], [x2, y2]]: [[i32; 2]; 3]) -> Self {
@@ -173,8 +173,8 @@ impl Extent {
         fits_words(((self.right - self.left) | (self.bottom - self.top)) as u32, self.area)
     }
 
-    /// Whether no pixel lies wholly inside: of a triangle that contains a square at most half is square, and its least altitude, which is its
-    /// least width, is at least the square's.
+    /// Whether no pixel can lie wholly inside the triangle. If a triangle contains a square, at most half of its area is square, and its smallest
+    /// altitude, which is its smallest width, is at least the square's side.
     #[must_use]
     pub fn contains_no_pixel(&self) -> bool {
         let side = (self.right - self.left).max(self.bottom - self.top);
@@ -190,11 +190,11 @@ impl Extent {
     }
 }
 
-/// Bits of the sides of a word-sized triangle, 1/16 pixel.
+/// Bits of the sides of a word-sized triangle, in 1/16 pixel.
 const WORD_SIDE: u32 = 10;
 
-/// Whether a triangle is word-sized: so small, and so far from [`crate::setup::gradients::MAX_THINNESS`], that its polynomials are set up
-/// in words. `size` is the larger of width and height of its bounding box, or the bitwise or of both; `area` is twice its area.
+/// Whether a triangle is word-sized: so small, and so far from [`crate::setup::gradients::MAX_THINNESS`], that its polynomials are set up in words.
+/// `size` is the larger of width and height of its bounding box, or the bitwise or of both. `area` is twice its area.
 #[inline(always)]
 pub(crate) fn fits_words(size: u32, area: i32) -> bool {
     // 2^(2 bits) <= 128 area.

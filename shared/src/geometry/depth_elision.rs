@@ -1,4 +1,4 @@
-//! Which triangles of a closed convex mesh need no depth test.
+//! Leaving out the depth test for triangles of a closed convex mesh.
 //!
 //! The front faces of a convex body do not hide one another: seen exactly, no pixel belongs to two. What is drawn is not that exact picture
 //! `G` but `F`, whose corners are rounded, in the mesh, in eye space, and on the screen; each coordinate is moved by at most `d`
@@ -48,7 +48,7 @@ pub(crate) struct DepthElision {
 }
 
 impl DepthElision {
-    /// A grid without marks for one frame of a closed convex mesh and no other; `None` if it is seen from too near.
+    /// A grid without marks for one frame of a single closed convex mesh; `None` if the mesh is too near.
     #[must_use]
     pub(crate) fn new(view: &View) -> Option<Self> {
         let (lens, size) = (&view.lens, view.lens.size());
@@ -65,7 +65,7 @@ impl DepthElision {
         })
     }
 
-    /// Takes account of a triangle that may show its front: marks the cells around it unless it is thick.
+    /// Takes a triangle into account that may show its front: marks the cells around it unless it is thick.
     #[inline(always)]
     pub(crate) fn include(&mut self, extent: &Extent) {
         let inside = self.is_inside([extent.left, extent.right], [extent.top, extent.bottom]);
@@ -85,15 +85,14 @@ impl DepthElision {
         self.marked.get_mut(rows).unwrap_or_default().iter_mut().for_each(|row| *row |= columns);
     }
 
-    /// Takes account of the triangles that `other` has included as well.
+    /// Takes the triangles into account that `other` has included.
     #[must_use]
     pub(crate) fn and(mut self, other: &Self) -> Self {
         self.marked.iter_mut().zip(other.marked).for_each(|(row, columns)| *row |= columns);
         self
     }
 
-    /// Whether other triangles may overlap one whose columns and rows lie between these. To be called once all triangles have been
-    /// included.
+    /// Whether other triangles may overlap one in these columns and rows. Call it once all triangles have been included.
     #[inline(never)]
     #[must_use]
     pub(crate) fn needs_depth_test(&self, columns: [i32; 2], rows: [i32; 2]) -> bool {

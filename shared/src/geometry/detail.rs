@@ -1,4 +1,4 @@
-//! Levels of detail: how far a coarser level may lie from its mesh, so that no picture of a size shows it.
+//! Levels of detail: the largest distance of a coarser level from its mesh that pictures of a size do not show.
 //!
 //! Let a point of one surface lie within `e` of a point of the other, both in the ball of the stream's radius about the origin, so that
 //! neither is nearer to the eye than the depth `z`. On the way from one to the other the picture of the point moves by at most
@@ -20,12 +20,11 @@ use crate::{
 };
 use embedded_graphics_core::geometry::Size;
 
-/// How far a level may lie from its mesh at most, rounded down, to be less than half a pixel from it in a viewport of `size` pixels. The mesh
-/// lies in a ball of `radius`, whose centre is at the depth `depth`, both Q18.14. For a rotation that is rounded, and stretches, 1/32 is
-/// spared, of the radius as well.
+/// Largest distance of a level from its mesh, rounded down, that is less than half a pixel in a viewport of `size` pixels. The mesh lies in a ball of
+/// `radius`, whose centre is at the depth `depth`, both Q18.14. A margin of 1/32 is left for a rotation that is rounded and stretches.
 ///
-/// Domain: a checked camera, sides up to [`crate::MAX_SIDE`]. Error: with that at most 4 % too little in views of up to 53 degrees along
-/// the diagonal, 9 % in views of up to 90 degrees (tests::no_less_than_need_be). Source: the formula above.
+/// Domain: a checked camera, sides up to [`crate::MAX_SIDE`]. Error: at most 4 % too little in views of up to 53 degrees along the diagonal, 9 % in
+/// views of up to 90 degrees, the margin included (tests::no_less_than_need_be). Source: the formula above.
 #[must_use]
 pub fn tolerance(camera: &Camera, depth: i32, radius: u32, size: Size) -> GeometricError {
     let (width, height) = (size.width, size.height);
@@ -43,7 +42,7 @@ pub fn tolerance(camera: &Camera, depth: i32, radius: u32, size: Size) -> Geomet
     GeometricError::from_bits(error.min(u16::MAX.into()) as u16)
 }
 
-/// [`tolerance`] for the whole stream, as its camera sees it in all frames.
+/// The [`tolerance`] for the whole stream, as its camera sees it in all frames.
 #[must_use]
 pub fn stream_tolerance(header: &Header, size: Size) -> GeometricError {
     tolerance(&header.camera, header.camera.translation[2], header.radius.into(), size)
@@ -74,7 +73,7 @@ mod tests {
         stream_tolerance(header, Size::new(width, height))
     }
 
-    /// The distance of the eye from the viewport, and half of its diagonal, pixels.
+    /// The distance of the eye from the viewport, and half of its diagonal, in pixels.
     fn pixels(size: [u32; 2], focal: f64) -> [f64; 2] {
         let [width, height] = size.map(f64::from);
         [focal * width.min(height) / 2.0, width.hypot(height) / 2.0]

@@ -1,4 +1,4 @@
-//! The lens of the camera: from eye space to the screen, for all objects of a frame.
+//! The lens of the camera, which projects eye space to the screen. All objects of a frame share it.
 
 use crate::{
     arch::{
@@ -15,9 +15,9 @@ use crate::{
 use embedded_graphics_core::geometry::Size;
 use zerocopy::{FromBytes, Immutable, IntoBytes, KnownLayout};
 
-/// Largest distance from the viewport's centre that screen coordinates may have, in 1/16 pixel.
+/// Largest distance of screen coordinates from the viewport's centre, in 1/16 pixel.
 ///
-/// Twice the widest viewport: triangles that only cross its border are not clipped but walked.
+/// It is twice the widest viewport. Triangles that merely cross the border of the viewport are not clipped.
 pub const GUARD: i32 = 4096 << SUBPIXEL;
 
 /// Largest distance of a coordinate in eye space from that of the exact convex body, up to a common shift, in units of its last place: 1/2
@@ -34,7 +34,7 @@ const FARTHEST: i32 = 1 << 10;
 /// Fraction bits of [`Lens::unit_per_pixel`].
 const PER_PIXEL: u32 = 14;
 
-/// The way from eye space to a viewport, in memory of the renderer.
+/// The projection from eye space to a viewport. It lies in the renderer's memory.
 #[derive(FromBytes, IntoBytes, Immutable, KnownLayout, Clone, Copy, Debug)]
 #[repr(C)]
 pub struct Lens {
@@ -88,8 +88,8 @@ impl Lens {
         }
     }
 
-    /// Eye space to `[x, y, inv_depth]` on the screen, and whether the point lies behind the near plane and within the guard band. Other
-    /// points are moved there; only clipping, which rounds, may use them.
+    /// Projects a point of eye space to `[x, y, inv_depth]` on the screen, and tells whether it lies behind the near plane and within the guard band.
+    /// Other points are moved there; only clipping, which rounds, may use them.
     #[inline(always)]
     #[must_use]
     pub fn project(&self, eye: [i32; 3]) -> ([i32; 3], bool) {
@@ -107,8 +107,8 @@ impl Lens {
         ([self.centre[0] + x, self.centre[1] - y, depth.min(NEAREST)], within)
     }
 
-    /// `[left, right]`, `[top, bottom]`, 1/16 pixel, and the largest inverse depth, Q0.28, of what lies within these `[least, most]` coordinates in
-    /// eye space, behind the near plane.
+    /// Projects a box of eye space behind the near plane, given by `[least, most]` coordinates. Returns `[left, right]` and `[top, bottom]`, in 1/16
+    /// pixel, and the largest inverse depth, Q0.28.
     #[must_use]
     pub fn project_box(&self, [across, up, [nearest, farthest]]: [[i32; 2]; 3]) -> ([[i32; 2]; 2], i32) {
         // Each side is seen farthest out where it is nearest, or, across the middle of the screen, farthest.
@@ -164,7 +164,7 @@ impl Lens {
         Size::new(width as u32 >> (SUBPIXEL - 1), height as u32 >> (SUBPIXEL - 1))
     }
 
-    /// How far rounding may move a vertex as far from the eye as `reach`, Q.30, as far as 32 bits hold it.
+    /// Largest distance by which rounding may move a vertex at the distance `reach` from the eye, Q.30, saturating at 32 bits.
     ///
     /// In eye space that is half a unit in the last place along each axis, √3/2 = 0.87 in all; on the screen along both axes half of 1/16
     /// pixel, with 2^-7 to spare for the arithmetic on the way: √2 · 65/128 = 0.72 of 1/16 pixel. With room for a rotation that is rounded
@@ -175,8 +175,8 @@ impl Lens {
         u32::try_from(pixel + 1 + (1 << (30 - UNIT))).unwrap_or(u32::MAX)
     }
 
-    /// How far rounding may move a point of a mesh that is marked as [`crate::stream::record::CLOSED_CONVEX`] along x or y, behind the near
-    /// plane; `times` that, 1/16 pixel, rounded up.
+    /// Largest distance along x or y by which rounding may move a point of a mesh that is marked as [`crate::stream::record::CLOSED_CONVEX`] and lies
+    /// behind the near plane; `times` this distance, in 1/16 pixel, rounded up.
     #[must_use]
     pub fn moved(&self, times: u32) -> u32 {
         let focal = (self.focal >> 16) as u32;
@@ -193,7 +193,7 @@ impl Lens {
         within.checked_div(unit).map_or(u32::MAX, |within| within.saturating_add(1).saturating_add(rounded))
     }
 
-    /// How far `eye` lies on the inner side of a clip plane (near, then the guard band's left, right, bottom, top); negative outside.
+    /// The distance of `eye` from a clip plane (near, then the guard band's left, right, bottom, top); negative outside.
     #[must_use]
     pub fn distance(&self, eye: [i32; 3], plane: usize) -> i64 {
         let [x, y, z] = eye.map(i64::from);
@@ -225,7 +225,7 @@ impl Reciprocal {
     }
 }
 
-/// `value / 2^bits` rounded to nearest, as far as 32 bits hold it.
+/// `value / 2^bits`, rounded to the nearest, saturating at 32 bits.
 #[inline(always)]
 fn shifted(value: i64, bits: u32) -> i32 {
     match bits.checked_sub(33) {
@@ -248,7 +248,7 @@ fn limited(c: i32) -> i32 {
     c.clamp(-GUARD, GUARD)
 }
 
-/// The nearest value that 32 bits hold.
+/// The nearest value that fits 32 bits.
 #[inline(always)]
 fn saturated(value: i64) -> i32 {
     value.clamp(i32::MIN.into(), i32::MAX.into()) as i32
@@ -278,7 +278,8 @@ pub(crate) mod tests {
         far: 1 << 15,
     };
 
-    /// Between vertices beyond the far plane of parallel rays, a depth that rounding makes less than theirs is still none, and not the nearest.
+    /// A vertex beyond the far plane of parallel rays has no depth, even if rounding makes its depth smaller than the plane's; it must not wrap to
+    /// the nearest depth.
     #[test]
     fn depth_beyond_the_far_plane_cannot_wrap() {
         let lens = Lens::new(&Camera { projection: ORTHOGRAPHIC, ..CAMERA }, Size::new(64, 64));

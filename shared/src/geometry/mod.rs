@@ -1,4 +1,4 @@
-//! The way from object space to the screen, and which triangles need not be drawn.
+//! Geometry: from object space to the screen, and culling.
 
 pub(crate) mod area;
 pub(crate) mod bin;

@@ -1,4 +1,4 @@
-//! The way of an object from its own space to that of the eye, in one frame.
+//! The transformation of an object from its own space to eye space, in one frame.
 
 use crate::{
     format::{POSITION, ROTATION, UNIT},
@@ -11,25 +11,26 @@ use crate::{
 /// origin, differs from it by less than 64. At the scale 1 none is farther than 56.
 const FARTHEST: i64 = 59 << POSITION;
 
-/// The way of an object from its own space to that of the eye: scaled, rotated, moved. The world is that of an object without a pose.
+/// The transformation of an object from its own space to eye space: it is scaled, rotated and moved. The world is the space of an object without a
+/// pose.
 #[derive(Clone, Copy, Debug)]
 pub struct ModelView {
     /// Object to eye space, Q2.30.
     pub rotation: [[i32; 3]; 3],
-    /// Added after rotation, Q18.14.
+    /// Translation after rotation, Q18.14.
     pub translation: [i32; 3],
-    /// Before rotation, [`crate::format::Scale`].
+    /// Scale before rotation, a [`crate::format::Scale`].
     pub scale: u32,
     /// Object space to the world, Q2.30.
     to_world: [[i32; 3]; 3],
-    /// Where the object is in the world, Q18.14.
+    /// Position of the object in the world, Q18.14.
     position: [i32; 3],
     /// 1 over the scale, Q16.16, rounded down.
     pub inverse_scale: u32,
 }
 
 impl ModelView {
-    /// The world as the camera sees it in frame `number` of its orbit.
+    /// The transformation of the world to eye space in frame `number` of the camera's orbit.
     #[must_use]
     pub fn new(camera: &Camera, number: u32) -> Self {
         let one = 1 << ROTATION;
@@ -43,7 +44,7 @@ impl ModelView {
         }
     }
 
-    /// An object that lies in this world as `pose` says.
+    /// The transformation of an object with this `pose` in the world.
     #[must_use]
     pub fn of(&self, pose: &Pose) -> Self {
         if pose.is_identity() {
@@ -62,25 +63,25 @@ impl ModelView {
         }
     }
 
-    /// A direction of eye space in object space, in the format of `v`, rounded down.
+    /// Converts a direction of eye space to object space, in the format of `v`, rounded down.
     #[must_use]
     pub fn to_object(&self, v: [i32; 3]) -> [i32; 3] {
         rotated_back(self.rotation, v)
     }
 
-    /// A direction of the world in object space, in the format of `v`, rounded down.
+    /// Converts a direction of the world to object space, in the format of `v`, rounded down.
     #[must_use]
     pub fn world_to_object(&self, v: [i32; 3]) -> [i32; 3] {
         rotated_back(self.to_world, v)
     }
 
-    /// A point of eye space, Q18.14, in object space, Q7.25; see [`FARTHEST`].
+    /// Converts a point of eye space, Q18.14, to object space, Q7.25; see [`FARTHEST`].
     #[must_use]
     pub fn point_to_object(&self, v: [i32; 3]) -> [i32; 3] {
         self.near(self.rotation, sub(v, self.translation))
     }
 
-    /// A point of the world, Q18.14, in object space, Q7.25; see [`FARTHEST`].
+    /// Converts a point of the world, Q18.14, to object space, Q7.25; see [`FARTHEST`].
     #[must_use]
     pub fn world_point_to_object(&self, v: [i32; 3]) -> [i32; 3] {
         self.near(self.to_world, sub(v, self.position))
@@ -92,15 +93,15 @@ impl ModelView {
         self.point_to_object([0; 3])
     }
 
-    /// A length of the world in units of object space, in its format, rounded down.
+    /// Converts a length of the world to units of object space, in its format, rounded down.
     #[must_use]
     pub fn in_object_units(&self, length: i32) -> i32 {
         ((i64::from(length) * i64::from(self.inverse_scale)) >> 16) as i32
     }
 
-    /// A vector from the object's centre, rotated by the inverse of `rotation` and in units of object space, from Q18.14 to Q7.25, rounded
-    /// down. One that is too long for that is made shorter: seen from an object of radius 1, what is 56 units or farther away lies in a
-    /// direction that this changes by 1/56 rad at most.
+    /// Rotates a vector from the object's centre by the inverse of `rotation`, and converts it to units of object space, from Q18.14 to Q7.25,
+    /// rounded down. A vector that is too long for this is shortened. For an object of radius 1 this changes the direction of a point 56 units away
+    /// or farther by at most 1/56 rad.
     #[inline(never)]
     fn near(&self, rotation: [[i32; 3]; 3], v: [i32; 3]) -> [i32; 3] {
         // Q.44, then Q.30 of the world, then Q.46 of object space.

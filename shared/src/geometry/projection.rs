@@ -1,4 +1,4 @@
-//! How an object is seen: from its own space to the screen.
+//! The projection of an object from its own space to the screen.
 
 use crate::{
     arch::product::product,
@@ -19,14 +19,14 @@ pub struct ScreenVertex {
     pub y: i32,
     /// Inverse depth, Q0.28.
     pub depth: i32,
-    /// What [`crate::method::VertexLight`] says: N·L and N·H of a constant light in Q2.30, and of a second one, or light levels in Q9.7.
+    /// Light by the method's [`crate::method::VertexLight`]: N·L and N·H of a constant light in Q2.30, and of a second one, or light levels in Q9.7.
     pub light: [i32; 4],
-    /// Whether the position is that of this frame.
+    /// Whether position and light belong to this frame.
     pub state: State,
 }
 
 impl ScreenVertex {
-    /// Light levels, Q9.7, of a vertex that has these.
+    /// Light levels, Q9.7, of a vertex that has levels.
     #[inline(always)]
     #[must_use]
     pub fn levels(&self) -> [i32; 3] {
@@ -43,13 +43,13 @@ pub struct State(u32);
 impl State {
     /// The vertex is not transformed: no triangle that faces the camera has used it.
     pub const IDLE: Self = Self(0);
-    /// The position is that of this frame, and so is the light where a triangle that is drawn uses the vertex.
+    /// The position belongs to this frame, and so does the light if a drawn triangle uses the vertex.
     pub const READY: Self = Self(1);
     /// The vertex lies in front of the near plane or beyond the guard band: its triangles are clipped.
     pub const OUTSIDE: Self = Self(2);
 }
 
-/// Depths that the buffer tells apart: by no more may a pixel be nearer than the corners of its triangle are, by what is rounded.
+/// Number of steps of the depth buffer by which rounding may make a pixel nearer than the corners of its triangle.
 const SPARE: u16 = 4;
 
 /// A step of refinement in [`View::viewer`] below this leaves less than one unit in the last place.
@@ -58,18 +58,18 @@ const LARGEST_STEP: u32 = 32;
 /// Steps after one that is larger.
 const MORE_STEPS: usize = 3;
 
-/// The transformation from object space to the screen in one frame, in memory of the renderer.
+/// The transformation from object space to the screen in one frame. It lies in the renderer's memory.
 #[derive(FromBytes, IntoBytes, Immutable, KnownLayout, Clone, Copy, Debug)]
 #[repr(C)]
 pub struct View {
-    /// Object to eye space, as exact as positions are: the rotation times the scale, of which [`Self::shift`] has a power of two.
+    /// The rotation from object to eye space times the scale, as exact as positions are. [`Self::shift`] has a power of two of the scale.
     rotation: [[i32; 3]; 3],
     /// Fraction bits of `rotation`: 14 at the scale 1, and its entries below 2^14 in size at any.
     shift: u32,
     translation: [i32; 3],
     /// [`crate::format::Scale`] of the object.
     scale: u32,
-    /// From eye space on.
+    /// The projection from eye space to the screen.
     pub lens: Lens,
     /// [`ModelView::inverse_scale`].
     inverse_scale: u32,
@@ -78,7 +78,7 @@ pub struct View {
 }
 
 impl View {
-    /// How what lies as `model_view` says is seen through `lens`.
+    /// The view of an object at the place `model_view` through `lens`.
     #[must_use]
     pub fn new(lens: &Lens, model_view: &ModelView) -> Self {
         let scale = model_view.scale.max(1);
@@ -97,7 +97,7 @@ impl View {
         }
     }
 
-    /// Object to eye space, Q18.14.
+    /// Converts a position to eye space, Q18.14.
     #[inline(always)]
     #[must_use]
     pub fn to_eye(&self, position: [i16; 3]) -> [i32; 3] {
@@ -119,7 +119,7 @@ impl View {
         UNIT as i32 - self.shift as i32
     }
 
-    /// `length` of the world in units of object space, in its format, rounded up.
+    /// Converts `length` of the world to units of object space, in its format, rounded up.
     #[must_use]
     pub fn in_object_units(&self, length: u32) -> u64 {
         // The inverse is rounded down; at the scale 1 it is exact, and the length as well.
@@ -133,13 +133,13 @@ impl View {
         self.scale
     }
 
-    /// `length` of the world in units of object space, in its format, rounded down; as far as 32 bits hold it.
+    /// Converts `length` of the world to units of object space, in its format, rounded down, saturating at 32 bits.
     #[must_use]
     pub fn least_in_object_units(&self, length: u32) -> u32 {
         u32::try_from((u64::from(length) * u64::from(self.inverse_scale)) >> 16).unwrap_or(u32::MAX)
     }
 
-    /// Where the origin of object space lies in eye space, Q18.14.
+    /// Position of the origin of object space in eye space, Q18.14.
     #[must_use]
     pub fn origin(&self) -> [i32; 3] {
         self.translation
@@ -182,8 +182,8 @@ impl View {
         reach + (reach >> 5) + 1
     }
 
-    /// The pixels of the viewport that what is in a part of object space can reach; none if no part of it can be seen. And how near a pixel of
-    /// it can be, in the format of the depth buffer. Errs on the side of more.
+    /// The pixels of the viewport that a part of object space can reach, and the nearest depth of such a pixel, in the format of the depth buffer.
+    /// None if no part of it can be seen. If in doubt, there are more pixels and nearer depths.
     #[must_use]
     pub(crate) fn reached(&self, bounds: &BoundingVolume) -> (Area, u16) {
         let sides = self.sides(bounds);
@@ -202,7 +202,7 @@ impl View {
         (area, ((inv_depth >> (DEPTH - 16)) as u16).saturating_add(SPARE))
     }
 
-    /// The least and the largest coordinate along each axis of eye space, Q18.14, that a vertex within these bounds can have.
+    /// The smallest and the largest coordinate along each axis of eye space, Q18.14, of a vertex within these bounds.
     fn sides(&self, bounds: &BoundingVolume) -> [[i32; 2]; 3] {
         // Half of the box along each axis, and no farther from the origin than the ball. Both products are rounded down, hence 2.
         let (half, ball) = (map(bounds.half, i32::from), self.ball(bounds.radius));
@@ -211,7 +211,7 @@ impl View {
         zip(sides, self.translation, |[least, most], origin| [least.max(origin - ball), most.min(origin + ball)])
     }
 
-    /// The radius of a ball in object space, [`crate::format::Radius`], in eye space, Q18.14, with what is rounded on the way.
+    /// Converts the radius of a ball in object space, a [`crate::format::Radius`], to eye space, Q18.14, with a margin for rounding.
     ///
     /// 1/64 is spared: squared lengths of a camera's rows are right to 1/256, so that they are 1/512 too long at most; half a turn about an axis
     /// that is too long by as much adds 2/256; and the nine entries, each rounded by half of 2^-14, add less than 2^-12.
@@ -236,7 +236,8 @@ mod tests {
     proptest! {
         #![proptest_config(ProptestConfig { cases: 3_000, failure_persistence: None, ..ProptestConfig::default() })]
 
-        /// No vertex lies beyond the sides of its object in eye space, is seen outside of the pixels that it can reach, or nearer.
+        /// Vertices lie within the sides of their object in eye space, are seen within the pixels that it can reach, and are no nearer than it can
+        /// be.
         #[test]
         fn bounds_reach_as_far_as_vertices(
             vertices in prop::collection::vec(prop::array::uniform3(any::<i16>()), 1..6),

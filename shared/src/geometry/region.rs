@@ -1,23 +1,23 @@
-//! What of a picture is drawn: rectangles that objects have left and entered.
+//! The part of a picture that is drawn: rectangles that objects have left and entered.
 //!
-//! A frame is drawn in bands, and each of them is one rectangle: what has changed in its rows, as narrow as that is. So a picture is divided into
-//! at most 16 strips, each as high as a band or a multiple of it, and all that has changed in one of them is one rectangle; strips without any
-//! are left out. No band reaches into the next strip: its rectangle would have pixels of neither, and of objects that reach into none of the
-//! rectangles nothing is drawn.
+//! A frame is drawn in bands, and each band is one rectangle, as narrow as the changes in its rows. So the picture is divided into at most 16 strips,
+//! each as high as a band or a multiple of it, and the changes in a strip have one rectangle around them. Strips without changes are left out. No
+//! band reaches into the next strip, because its rectangle would have pixels of neither strip's changes, and objects that reach into none of the
+//! rectangles are not drawn.
 
 use crate::geometry::area::Area;
 use core::slice;
 use embedded_graphics_core::geometry::Size;
 
-/// Most strips of a picture.
+/// Largest number of strips of a picture.
 const STRIPS: usize = 16;
 
-/// Some pixels of a picture: a rectangle of each of its strips.
+/// Pixels of a picture: a rectangle of each strip.
 #[derive(Clone, Debug)]
 pub(crate) struct Region {
-    /// The smallest rectangle that has all of them.
+    /// The smallest rectangle that contains all of the pixels.
     hull: Area,
-    /// Whether they are all pixels of the picture; it is one strip then.
+    /// Whether the region is the whole picture; it is one strip then.
     is_whole: bool,
     /// Rows of a strip.
     rows: u16,
@@ -25,7 +25,7 @@ pub(crate) struct Region {
 }
 
 impl Region {
-    /// No pixel.
+    /// The empty region.
     pub(crate) const NONE: Self = Self { hull: Area::NONE, is_whole: false, rows: 0, strips: [Area::NONE; STRIPS] };
 
     /// Takes all pixels of a picture of this `size`.
@@ -40,12 +40,12 @@ impl Region {
         *self = Self { rows, ..Self::NONE };
     }
 
-    /// Whether it has all pixels of the picture, as it began with.
+    /// Whether the region is the whole picture.
     pub(crate) fn is_whole(&self) -> bool {
         self.is_whole
     }
 
-    /// The smallest rectangle that has all of its pixels.
+    /// The smallest rectangle that contains all pixels of the region.
     pub(crate) fn hull(&self) -> Area {
         self.hull
     }
@@ -65,7 +65,7 @@ impl Region {
         }
     }
 
-    /// The smallest rectangle that has all of its pixels that `area`, which lies in the picture, has as well.
+    /// The smallest rectangle that contains all pixels of both the region and `area`, which lies in the picture.
     #[inline(always)]
     pub(crate) fn within(&self, area: &Area) -> Area {
         if self.is_whole { *area } else { self.part_within(area) }
@@ -81,7 +81,7 @@ impl Region {
         self.strips.iter().filter(meets).fold(Area::NONE, |hull, strip| hull.union(&strip.within(&area)))
     }
 
-    /// The first rectangle from `row` on that a band may fill; behind the last an empty one that begins behind all rows.
+    /// The first rectangle from `row` on that a band may fill. After the last one, an empty rectangle behind all rows.
     #[inline(never)]
     pub(crate) fn next(&self, row: u32) -> Area {
         let row = row.min(u16::MAX.into()) as u16;

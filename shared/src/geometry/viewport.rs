@@ -61,7 +61,7 @@ impl Bounds {
         })
     }
 
-    /// The empty bounds at one point `[x, y, _]`.
+    /// The bounds of one point `[x, y, _]`: empty, to be extended.
     #[must_use]
     pub fn at([x, y, _]: [i32; 3]) -> Self {
         Self { left: first_centre(x), top: first_centre(y), right: first_centre(x), bottom: first_centre(y) }
@@ -83,7 +83,7 @@ impl Bounds {
         Self { left: 0, top: 0, right: width, bottom: height }
     }
 
-    /// The part within others.
+    /// The part of the bounds that lies within `to`.
     #[inline(always)]
     #[must_use]
     pub fn clipped(self, to: Self) -> Self {
@@ -95,7 +95,7 @@ impl Bounds {
         }
     }
 
-    /// The part within others, if it has a pixel.
+    /// The part of the bounds that lies within `to`, if it has a pixel.
     #[inline(always)]
     #[must_use]
     pub fn visible(self, to: Self) -> Option<Self> {
@@ -103,14 +103,14 @@ impl Bounds {
         (!bounds.is_empty()).then_some(bounds)
     }
 
-    /// `[left, top, right, bottom]`.
+    /// The bounds as `[left, top, right, bottom]`.
     #[inline(always)]
     #[must_use]
     pub fn sides(self) -> [i32; 4] {
         [self.left, self.top, self.right, self.bottom]
     }
 
-    /// Whether there is no pixel.
+    /// Whether the bounds have no pixel.
     #[inline(always)]
     #[must_use]
     pub fn is_empty(&self) -> bool {
@@ -128,9 +128,9 @@ impl From<&Area> for Bounds {
 /// The size of the picture, and which pixels of it a triangle can touch.
 #[derive(Clone, Copy)]
 pub struct Viewport {
-    /// Columns.
+    /// Number of columns.
     pub width: i32,
-    /// Rows.
+    /// Number of rows.
     pub height: i32,
     /// Whether pixels are weighted by covered areas, so that a triangle can touch more of them.
     pub antialiased: bool,
@@ -139,7 +139,7 @@ pub struct Viewport {
 }
 
 impl Viewport {
-    /// All of it.
+    /// The bounds of the whole viewport.
     #[inline(always)]
     pub fn whole(self) -> Bounds {
         Bounds::whole(self.width, self.height)
@@ -151,7 +151,7 @@ impl Viewport {
         self.bounds_within(extent, self.whole())
     }
 
-    /// The part of the bounding box of a triangle that lies in a part of the viewport; `None` if it shows its back, or no pixel there can belong
+    /// The part of a triangle's bounding box that lies in a part of the viewport; `None` if the triangle shows its back, or no pixel there can belong
     /// to it.
     #[inline(always)]
     pub fn bounds_within(self, extent: &Extent, part: Bounds) -> Option<Bounds> {
@@ -172,7 +172,7 @@ impl Viewport {
         self.bounds(&Extent::new(corners.map(|corner| [corner.x, corner.y])))
     }
 
-    /// Whether a triangle with cached corners is word-sized, and not beside the viewport: it is then set up in words.
+    /// Whether a triangle with cached corners is word-sized and reaches into the viewport. It is then set up in words.
     #[inline(always)]
     pub fn is_word_sized(self, extent: &Extent) -> bool {
         !self.antialiased && extent.left >= 0 && extent.right < self.width << SUBPIXEL && extent.fits_words()

@@ -1,4 +1,4 @@
-//! Polynomials that are evaluated at the columns of visible pixels, for loops that walk more than there are registers.
+//! Polynomials that are evaluated at the columns of visible pixels, for loops that walk more values than there are registers.
 
 use crate::{
     arch::SATURATES,
@@ -6,12 +6,12 @@ use crate::{
 };
 use core::hint::black_box;
 
-/// Whether that is sooner than to step through all columns: by measurement where a product and a sum are one instruction. On Cortex-M3 a
-/// value that is stepped in memory takes four instructions for a plane and seven for a quadratic, at every pixel of a span, and evaluation
-/// two and four, at those that pass the depth test.
+/// Whether evaluation is faster than stepping through all columns. By measurement it is where a product and a sum are one instruction. On a Cortex-M3
+/// a value that is stepped in memory takes four instructions for a plane and seven for a quadratic, at every pixel of a span. Evaluation takes two
+/// and four, at pixels that pass the depth test.
 const EVALUATES: bool = SATURATES;
 
-/// A polynomial of which the column alone is stepped. The values are those of the polynomial itself, bit for bit.
+/// A polynomial that is evaluated at each column. The values are bit for bit those of stepping.
 #[derive(Clone, Copy, Debug)]
 pub struct ByColumn<P>(pub P);
 
@@ -46,7 +46,7 @@ impl<P: Patch<Walker: Copy>> Patch for ByColumn<P> {
     }
 }
 
-/// A column, with the polynomial or its walker: the compiler removes what is not used.
+/// A column together with the polynomial or its walker. The compiler removes what is not used.
 #[derive(Clone, Copy, Debug)]
 pub struct AtColumn<P: Patch> {
     patch: P,

@@ -1,7 +1,7 @@
-//! Levels of several channels that are dithered by rows.
+//! Dither by rows, for levels of several channels.
 //!
-//! Channels that are walked side by side have no table to choose, and a threshold would be an addition in each of them at every pixel. So rows
-//! take turns: a quarter of a step of each channel less on even rows, and more on odd ones.
+//! Channels that are walked side by side have no table to choose, and a threshold would be one addition in each channel at every pixel. So rows take
+//! turns: levels are a quarter of a step lower on even rows, and a quarter of a step higher on odd rows.
 
 use crate::{
     interpolate::{Patch, Raised},
@@ -9,11 +9,11 @@ use crate::{
 };
 use core::marker::PhantomData;
 
-/// A polynomial of the levels of three channels, of which every other row is higher, if the pixel format `C` has a checkerboard.
+/// A polynomial for the levels of three channels. If the pixel format `C` has a checkerboard, every other row is higher.
 #[derive(Clone, Copy, Debug)]
 pub struct ByRow<P, C> {
     patch: P,
-    /// How much higher the next row is, with [`crate::format::CHANNEL`] fraction bits, as if all channels had eight bits.
+    /// Height of the next row above this one, with [`crate::format::CHANNEL`] fraction bits, as if all channels had eight bits.
     higher: i32,
     format: PhantomData<C>,
 }
@@ -89,7 +89,7 @@ mod tests {
         rows.enter(0).value()
     }
 
-    /// Every other row is higher, however it is come to, and by twice as much where a channel has a bit less.
+    /// Every other row is higher, after steps and after jumps, and by twice as much in a channel that has one bit less.
     #[test]
     fn rows_take_turns() {
         let begun = ByRow::<_, Rgb565>::new(Plane::<3>::default(), 12);

@@ -11,8 +11,8 @@ use crate::{
     },
 };
 
-/// Fraction bits that a coefficient has beyond those of a walked value. Nine integer bits of the walked format become eleven, so that
-/// values outside of it by a factor of two are clamped and not wrapped.
+/// Fraction bits that a coefficient has more than a walked value. Nine integer bits of the walked format become eleven, so that values that exceed it
+/// by a factor of two are clamped instead of wrapped.
 pub const FINER: u32 = 30;
 
 /// A cubic in each of `CH` channels, standing on one row.
@@ -26,8 +26,8 @@ impl<const CH: usize> Default for Cubic<CH> {
 }
 
 impl<const CH: usize> Cubic<CH> {
-    /// The cubic through ten nodes per channel: corners 0, 1, 2; the thirds of the edges 01, 12, 20, each time the one
-    /// nearer to the edge's start first; the centroid.
+    /// The cubic through ten nodes in each channel: the corners 0, 1, 2; two thirds of each of the edges 01, 12, 20, first the one nearer to the
+    /// edge's start; and the centroid.
     ///
     /// Nodes lie in a range narrower than 2^15; values are walked with `extra` more fraction bits.
     /// Error: at most 1 + 2^-31 (1 + S + S² + S³) units of the walked format, S the distance in columns plus rows from the
@@ -75,7 +75,7 @@ impl<const CH: usize> Patch for Cubic<CH> {
     }
 }
 
-/// Walks a [`Cubic`]: three additions of 64 bits a pixel and channel. Value, and first to third difference.
+/// Walks a [`Cubic`] by three additions of 64 bits a pixel and channel. It holds the value and the first to third differences.
 #[derive(Clone, Copy, Debug)]
 pub struct Cubical<const CH: usize>([[i64; 4]; CH]);
 

@@ -1,8 +1,7 @@
-//! What a method interpolates, on the screen or in perspective.
+//! Fields: quantities that a method interpolates over a triangle, on the screen or in perspective.
 //!
-//! A field knows values at nodes of a triangle, not where they lie on the screen. [`Field::fit`] makes it a polynomial of
-//! the screen's coordinates, to be walked by additions; [`Field::surface`] one of the place in the triangle, for
-//! [`crate::interpolate::perspective`].
+//! A field has values at nodes of a triangle, and does not know where they lie on the screen. [`Field::fit`] makes a polynomial in screen
+//! coordinates, to be walked by additions. [`Field::surface`] makes a polynomial in barycentric coordinates, for [`crate::interpolate::perspective`].
 
 use crate::{
     interpolate::{
@@ -21,18 +20,18 @@ pub trait Field {
     type Value;
     /// The field as a polynomial on the screen, without perspective.
     type Patch: Patch<Walker: Walker<Value = Self::Value> + Copy> + Default;
-    /// The field as a polynomial of the place in the triangle.
+    /// The field as a polynomial in barycentric coordinates of the triangle.
     type Surface: Surface<Value = Self::Value> + Default;
 
     /// Fits the polynomial on the screen, on the triangle of `gradients`.
     fn fit(&self, gradients: &Gradients) -> Self::Patch;
 
-    /// The polynomial on the triangle in space.
+    /// Makes the polynomial in barycentric coordinates.
     fn surface(&self) -> Self::Surface;
 }
 
-/// The polynomial through three, six or ten nodes in each of `CH` channels: see [`Plane::fit`], [`Quadric::fit`] (of which
-/// `BITS` is) and [`Cubic::fit`].
+/// A polynomial through three, six or ten nodes in each of `CH` channels: see [`Plane::fit`], [`Quadric::fit`] (which explains `BITS`) and
+/// [`Cubic::fit`].
 #[derive(Clone, Copy, Debug)]
 pub struct Nodes<const N: usize, const CH: usize, const BITS: u32 = 32> {
     pub(crate) values: [[i32; N]; CH],
@@ -41,14 +40,14 @@ pub struct Nodes<const N: usize, const CH: usize, const BITS: u32 = 32> {
 }
 
 impl<const N: usize, const CH: usize, const BITS: u32> Nodes<N, CH, BITS> {
-    /// Through `values[channel][k]` at node `k`, taken with `extra` more fraction bits than they have.
+    /// The polynomial through `values[channel][k]` at node `k`, walked with `extra` more fraction bits than the values have.
     #[inline(always)]
     #[must_use]
     pub fn new(values: [[i32; N]; CH], extra: u32) -> Self {
         Self { values, extra, bias: [0; CH] }
     }
 
-    /// The field plus `bias` in every channel.
+    /// Adds `bias` to every channel.
     #[inline(always)]
     #[must_use]
     pub fn biased(self, bias: [i32; CH]) -> Self {
@@ -106,12 +105,12 @@ impl<const CH: usize, const BITS: u32> Field for Nodes<10, CH, BITS> {
     }
 }
 
-/// A field that light follows more steeply than others of its triangle, or less so.
+/// A field with its own steepness: light depends on it more or less steeply than on other fields of its triangle.
 #[derive(Clone, Copy, Debug)]
 pub struct Steep<F> {
     /// The field.
     pub field: F,
-    /// How steeply light follows it.
+    /// How steeply light depends on the field.
     pub steepness: Steepness,
 }
 

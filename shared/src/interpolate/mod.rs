@@ -6,7 +6,7 @@
 //! step is exact modulo 2^32 (2^64), so neither rows, nor bands, nor clipping change a
 //! bit of a value, and nothing drifts.
 //!
-//! Methods say what they interpolate by [`field`]s; [`perspective`] interpolates the same in perspective.
+//! Methods describe what they interpolate by [`field`]s. [`perspective`] interpolates fields in perspective.
 
 pub mod by_column;
 pub mod by_row;
@@ -49,22 +49,22 @@ pub trait Patch: Copy {
 
 /// A polynomial that can carry a checkerboard in its highest bit.
 pub trait Checkerboard: Patch {
-    /// Half of the range of 2^32 more at every other pixel, in all channels: at those whose column and row are not both even or both odd. It
-    /// stands on `row`. Values have one bit less then, and what is above wraps as before.
+    /// Adds half of the range of 2^32 at every other pixel, in all channels: where one of column and row is even and the other odd. The polynomial
+    /// stands on `row`. Values have one bit less then; higher bits wrap.
     #[must_use]
     fn checkered(self, row: i32) -> Self;
 }
 
 /// A polynomial of three channels that can be raised.
 pub trait Raised: Patch {
-    /// So much more in each channel.
+    /// Adds `by` to each channel.
     fn raise(&mut self, by: [i32; 3]);
 }
 
 /// Half of the range of a walked value.
 const HALF_RANGE: i32 = i32::MIN;
 
-/// `f` of each channel. Written out, since at opt-level "s" a loop over channels goes through memory.
+/// Calls `f` for each channel. It is written out, because a loop over channels goes through memory at opt-level "s".
 #[inline(always)]
 pub(crate) fn each_channel<const CH: usize>(mut f: impl FnMut(usize)) {
     match CH {
@@ -123,7 +123,7 @@ impl Walker for Constant {
     fn value(&self) {}
 }
 
-/// A value that is the same everywhere, as a polynomial.
+/// A polynomial with one value everywhere.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Held<T>(pub T);
 
@@ -205,7 +205,7 @@ mod tests {
     use super::{Checkerboard, Patch, Walker, plane::Plane, quadric::Quadric};
     use proptest::prelude::*;
 
-    /// `checkered` has half of the range more than `plain`, which stands on the same row, where column and row are not both even or both odd.
+    /// Checks that `checkered` is half of the range higher than `plain` where one of column and row is even and the other odd. Both stand on one row.
     fn check<P: Checkerboard<Walker: Walker<Value = [u32; 1]>>>(mut plain: P, row: i32, x: i32, jump: i32) -> Result<(), TestCaseError> {
         let mut checkered = plain.checkered(row);
         let mut row = row;
@@ -231,7 +231,7 @@ mod tests {
     }
 
     proptest! {
-        /// The highest bit alternates from column to column and from row to row, also behind a jump, and all others are as they were.
+        /// The highest bit alternates from column to column and from row to row, also after a jump, and all other bits stay unchanged.
         #[test]
         fn the_highest_bit_is_a_checkerboard(words: [u32; 6], row in -3000..3000, x in -3000..3000, jump in -3000..3000) {
             check(Plane::<1>::load(&words).expect("three words"), row, x, jump)?;

@@ -34,7 +34,7 @@ pub trait Surface: Copy {
     fn at(&self, point: &Point) -> Self::Value;
 }
 
-/// A surface in perspective, standing on one row.
+/// A field in perspective, standing on one row.
 #[derive(Clone, Copy, Debug)]
 pub struct PerspectivePatch<S> {
     /// Numerators of the barycentric coordinates of corners 1 and 2, and their common denominator.
@@ -42,7 +42,7 @@ pub struct PerspectivePatch<S> {
     surface: S,
 }
 
-/// `c + dx x + dy y`, see [`Gradients::fine`].
+/// The linear function `c + dx x + dy y`, see [`Gradients::fine`].
 #[derive(Clone, Copy, Debug)]
 struct Row {
     /// Value at column 0 of the current row.
@@ -52,7 +52,7 @@ struct Row {
 }
 
 impl<S: Surface> PerspectivePatch<S> {
-    /// `surface` on the triangle whose corners have this inverse depth, all of them positive.
+    /// The field `surface` on a triangle whose corners have this inverse depth, all positive.
     ///
     /// Error of barycentric coordinates: at most 2^-28 k / r, with k the length over the height of the triangle, and r the least inverse
     /// depth over the largest.
@@ -76,7 +76,7 @@ fn rows(gradients: &Gradients, inv_depth: [i32; 3]) -> [Row; 3] {
 }
 
 impl<S> PerspectivePatch<S> {
-    /// Another surface on the same triangle.
+    /// Replaces the field, on this triangle.
     #[must_use]
     pub fn with<T>(&self, surface: T) -> PerspectivePatch<T> {
         PerspectivePatch { rows: self.rows, surface }
@@ -130,8 +130,8 @@ impl<S: Surface> Walker for PerspectiveWalker<S> {
 }
 
 impl Point {
-    /// The point with the barycentric coordinates `s / whole` and `t / whole` of corners 1 and 2, moved into the triangle: beside a sliver,
-    /// where one over the distance nears zero, quotients would grow without end.
+    /// The point with the barycentric coordinates `s / whole` and `t / whole` of corners 1 and 2, moved into the triangle. Beside a sliver one over
+    /// the distance nears zero, and quotients would grow without limit.
     #[inline(always)]
     fn new(s: i64, t: i64, whole: i64) -> Self {
         // All are shifted up until `whole` fills 32 bits, and the numerators 30; the reciprocal of `whole` is 2^62 over it.

@@ -5,7 +5,7 @@ use crate::{
     setup::gradients::Gradients,
 };
 
-/// `c + dx x + dy y` in each of `CH` channels, standing on one row.
+/// A linear function `c + dx x + dy y` in each of `CH` channels, standing on one row.
 #[derive(Clone, Copy, Debug)]
 pub struct Plane<const CH: usize>([Row; CH]);
 
@@ -43,8 +43,8 @@ impl<const CH: usize> Plane<CH> {
     /// A constant, so that no loop clears one channel after the other.
     const ZERO: Self = Self([Row { c: 0, dx: 0, dy: 0 }; CH]);
 
-    /// The field with value `nodes[channel][k]` at corner `k`, all of them in a range narrower than 2^`BITS`; walked with `extra` more
-    /// fraction bits than the nodes have, `bias` added.
+    /// The linear field with the value `nodes[channel][k]` at corner `k`. Nodes lie in a range narrower than 2^`BITS`. Values are walked with `extra`
+    /// more fraction bits than nodes have, and with `bias` added.
     ///
     /// Error: at most 2^-1 (1 + S) units of the walked format, S the distance in columns plus rows from the anchor (see [`Gradients`]). On
     /// triangles of up to 64 pixels: 2^4 (1 + S) units more. Set-up costs at most 2^-22 k of the nodes' range, k the length over the
@@ -140,7 +140,7 @@ impl<const CH: usize> Checkerboard for Plane<CH> {
     }
 }
 
-/// Walks a [`Plane`]: one addition a pixel and channel.
+/// Walks a [`Plane`] by one addition a pixel and channel.
 #[derive(Clone, Copy, Debug)]
 pub struct Linear<const CH: usize> {
     value: [u32; CH],

@@ -5,7 +5,7 @@ use crate::{
     setup::{gradients::Gradients, word_sized::QUADRATIC},
 };
 
-/// `c + dx x + dy y + dxx x² + dxy x y + dyy y²` in each of `CH` channels, standing on one row.
+/// A quadratic function `c + dx x + dy y + dxx x² + dxy x y + dyy y²` in each of `CH` channels, standing on one row.
 #[derive(Clone, Copy, Debug)]
 pub struct Quadric<const CH: usize>([Row; CH]);
 
@@ -85,8 +85,8 @@ impl<const CH: usize> Quadric<CH> {
     }
 }
 
-/// Fits one channel outside of words, in a function of its own, since a call is a small share of the cost. Fields that are walked in whole words
-/// are fitted fast: a constant number of fraction bits spares instructions.
+/// Fits one channel of a triangle that is not word-sized. It is a function of its own, since a call is a small share of the cost. Fields that are
+/// walked in whole words are fitted fast, because a constant number of fraction bits saves instructions.
 #[inline(never)]
 fn long<const BITS: u32>(gradients: &Gradients, nodes: [i32; 6], extra: u32) -> [i32; 6] {
     if extra == 32 - BITS { gradients.quadratic::<BITS>(nodes, 32 - BITS) } else { gradients.quadratic_any(BITS, nodes, extra) }
@@ -179,7 +179,7 @@ impl<const CH: usize> Checkerboard for Quadric<CH> {
     }
 }
 
-/// Walks a [`Quadric`]: two additions a pixel and channel.
+/// Walks a [`Quadric`] by two additions a pixel and channel.
 #[derive(Clone, Copy, Debug)]
 pub struct Quadratic<const CH: usize> {
     value: [u32; CH],

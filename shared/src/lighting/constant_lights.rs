@@ -1,4 +1,4 @@
-//! The colours of a material under one or two constant lights, for pixel loops: diffuse light is walked, highlights are looked up.
+//! The colours of a material under one or two constant lights, for pixel loops. Diffuse light is walked, and highlights are looked up.
 
 use crate::{
     arch::product::upper,
@@ -9,7 +9,7 @@ use crate::{
 use core::marker::PhantomData;
 use zerocopy::{FromBytes, Immutable, IntoBytes, KnownLayout};
 
-/// Tables for even rows and for odd ones; formats without a checkerboard look at the former alone.
+/// Tables for even rows and for odd ones. Formats without a checkerboard use the first.
 #[derive(Debug)]
 pub(super) struct ByTurns<'a, T> {
     now: &'a T,
@@ -25,13 +25,13 @@ impl<T> Clone for ByTurns<'_, T> {
 impl<T> Copy for ByTurns<'_, T> {}
 
 impl<'a, T> ByTurns<'a, T> {
-    /// The first one is that of even rows.
+    /// Makes the pair. The first table is for even rows.
     #[inline(always)]
     pub(super) fn new([now, next]: [&'a T; 2]) -> Self {
         Self { now, next }
     }
 
-    /// Takes the other one, in formats with a checkerboard.
+    /// Changes to the other table, in formats with a checkerboard.
     #[inline(always)]
     fn turn<C: Pixel>(&mut self) {
         if C::Ramps::CHECKERED {
@@ -40,12 +40,12 @@ impl<'a, T> ByTurns<'a, T> {
     }
 }
 
-/// The colour of a pixel from diffuse light and a highlight.
+/// Makes the colour of a pixel from diffuse light and a highlight.
 pub trait OneLight: ByRows {
     /// The pixel that is stored.
     type Pixel: Pixel;
 
-    /// Whether a level alone is a colour, so that light without a highlight can be fitted and walked as one level.
+    /// Whether a level gives a colour, so that light without a highlight can be fitted and walked as one level.
     const TABLED: bool;
 
     /// The diffuse level at cosine 1, Q9.7: the unit in which diffuse light is walked.
@@ -69,8 +69,8 @@ pub fn node(full: u16, cosine: i32, bits: u32) -> i32 {
     upper(cosine, i32::from(full) << 15) >> (COSINE + LEVEL - 17 - bits)
 }
 
-/// A table of colours, by diffuse level plus what the table of highlights holds, which are levels of highlight and ambient light. In one
-/// channel all light is a level, in three that of one light without a highlight.
+/// A table of colours, indexed by the diffuse level plus an entry of the table of highlights. These entries are levels of highlight and ambient
+/// light. In one channel the level is all of the light, in three channels it is one light without a highlight.
 #[derive(Debug)]
 pub struct OneLightRamp<'a, C: Pixel> {
     pub(super) ramps: ByTurns<'a, [C::Stored; RAMP]>,
@@ -124,12 +124,12 @@ impl<C: Pixel> OneLightRamp<'_, C> {
     }
 }
 
-/// Three channels: sums of two products each, of the cosine and of the highlight with what the channel reflects of them.
+/// Three channels, each the sum of two products: of the cosine and of the highlight with the material's reflectances.
 #[derive(Debug)]
 pub struct OneLightRgb<'a, C>(pub(super) ByTurns<'a, Sums>, pub(super) PhantomData<C>);
 
-/// Three channels under two lights: what [`OneLightRgb`] adds up under the first, and what the second one adds to it. The second cosine
-/// is rounded down, by at most 1/128 of a level.
+/// Three channels under two lights: the sums of [`OneLightRgb`] for the first, and the addends of the second. The second cosine is rounded down, by
+/// at most 1/128 of a level.
 #[derive(Debug)]
 pub struct TwoLightsRgb<'a, C>(pub(super) ByTurns<'a, [Sums; 2]>, pub(super) PhantomData<C>);
 
@@ -149,14 +149,14 @@ impl<C> Clone for TwoLightsRgb<'_, C> {
 
 impl<C> Copy for TwoLightsRgb<'_, C> {}
 
-/// What [`OneLightRgb`] adds up in each channel. In Q10.22 the sum of all three is below 2^31.
+/// The factors of [`OneLightRgb`] for each channel. In Q10.22 the sum of all three is below 2^31.
 pub type Sums = [Sum; 3];
 
-/// What one channel adds up.
+/// The factors of one channel.
 #[derive(FromBytes, IntoBytes, Immutable, KnownLayout, Clone, Copy, Debug)]
 #[repr(C)]
 pub struct Sum {
-    /// The level of ambient light, and what rounds, Q10.22.
+    /// The level of ambient light plus a constant for rounding, Q10.22.
     ambient: i32,
     /// The level of diffuse light at cosine 1, Q9.7.
     diffuse: i32,
@@ -170,7 +170,7 @@ pub(super) const FACTOR: u32 = CHANNEL - LEVEL;
 const FULL: u32 = 7;
 
 impl Sum {
-    /// Before it is filled; all zeros.
+    /// Factors that are not filled yet; all zeros.
     pub(super) const EMPTY: Self = Self { ambient: 0, diffuse: 0, specular: 0 };
 
     /// The factors for levels of ambient, diffuse and specular light, Q9.7, in a channel of `depth` bits. `all` is the diffuse light of all lights.
@@ -201,7 +201,7 @@ impl Sum {
         self.ambient.wrapping_add(self.light(cosine, highlight))
     }
 
-    /// [`Self::level`] with the highlight added first. Which of them leaves loops more registers is known by measurement alone.
+    /// [`Self::level`] with the highlight added first. Only measurement tells which order leaves loops more registers.
     #[inline(always)]
     fn level_from_highlight(&self, cosine: i32, highlight: i32) -> i32 {
         self.ambient.wrapping_add(self.specular.wrapping_mul(highlight)).wrapping_add(self.diffuse.wrapping_mul(cosine))
@@ -296,5 +296,5 @@ impl<C: Pixel> TwoLightsRgb<'_, C> {
     }
 }
 
-/// Sums of levels below this are entries of a table of colours, Q9.7.
+/// Sums of levels below this limit, Q9.7, are entries of a table of colours.
 pub(super) const LARGEST: u32 = (RAMP as u32 - BIAS as u32 - 1) << LEVEL;

@@ -1,4 +1,4 @@
-//! The lights of one frame in object space. They are moved there once a frame for each object, so that no normal needs to be rotated.
+//! The lights of one frame in object space. They are transformed once a frame for each object, so that no normal needs to be rotated.
 
 use crate::{
     arch::product::{HALVES, by_fraction},
@@ -9,31 +9,31 @@ use crate::{
 };
 use zerocopy::{FromBytes, FromZeros as _, Immutable, IntoBytes, KnownLayout};
 
-/// A light in object space, in memory of the renderer.
+/// A light in object space. It lies in the renderer's memory.
 #[derive(FromBytes, IntoBytes, Immutable, KnownLayout, Clone, Copy, Debug)]
 #[repr(C)]
 pub struct Source {
-    /// A light that is infinitely far: the unit vector L towards it, and the unit half vector H between L and an infinite viewer, which is
-    /// unused under a local viewer; Q2.30. Else its position, Q7.25.
+    /// For a directional light the unit vector L towards it, and the unit half vector H between L and an infinitely far viewer, which is unused under
+    /// a local viewer; Q2.30. For a point light its position, Q7.25.
     vectors: [[i32; 3]; 2],
     /// Whether the light is at a position: 0 or 1.
     is_point: u32,
 }
 
-/// Where highlights are seen from, in object space.
+/// Position from which highlights are seen, in object space.
 #[derive(Clone, Copy, Debug)]
 pub enum Viewer {
-    /// A viewer that is infinitely far, by the unit vector towards it, Q2.30.
+    /// An infinitely far viewer, by the unit vector towards it, Q2.30.
     Infinite([i32; 3]),
     /// A viewer at this position, Q7.25.
     Local([i32; 3]),
 }
 
-/// All lights of one object in one frame, in memory of the renderer.
+/// All lights of one object in one frame. They lie in the renderer's memory.
 #[derive(FromBytes, IntoBytes, Immutable, KnownLayout, Clone, Debug)]
 #[repr(C)]
 pub struct Lighting {
-    /// The first `count` are the lights of the scene, in its order.
+    /// The lights of the scene, in its order; the first `count` are used.
     sources: [Source; MAX_LIGHTS],
     count: u32,
     /// See [`Self::is_directional`]: 0 or 1.
@@ -48,9 +48,9 @@ pub struct Lighting {
     pub eye: [i32; 3],
 }
 
-/// The directions of a scene's lights in the world. They are computed once a frame, and of each object's only the rotation is its own.
+/// The directions of a scene's lights in the world. They are computed once a frame; for each object they are only rotated.
 pub struct Directions {
-    /// L and H, Q2.30, of each light; no vectors of those that are near.
+    /// L and H of each light, Q2.30; point lights have none.
     vectors: [[[i32; 3]; 2]; MAX_LIGHTS],
     /// Whether all lights are directional.
     are_directional: bool,
@@ -70,7 +70,7 @@ impl Directions {
     }
 }
 
-/// The direction towards the eye, as far as it is the same everywhere: a unit vector, Q2.30.
+/// The direction towards the eye of an infinitely far viewer: a unit vector, Q2.30.
 fn towards_eye(ModelView { rotation: [.., away], .. }: &ModelView) -> [i32; 3] {
     map(*away, |c| -c)
 }
@@ -84,7 +84,7 @@ impl Lighting {
         lighting
     }
 
-    /// Changes it to the lights of a scene, whose directions are known, for an object seen as `model_view` says.
+    /// Sets the lights of a scene, whose directions are known, for an object at the place `model_view`.
     pub fn place(&mut self, camera: &Camera, lights: &[Light], directions: &Directions, model_view: &ModelView) {
         for ((source, light), towards) in self.sources.iter_mut().zip(lights).zip(&directions.vectors) {
             *source = Source::new(light, towards, model_view);
@@ -106,15 +106,15 @@ impl Lighting {
         self.sources.get(..self.count as usize).unwrap_or_default()
     }
 
-    /// Where highlights are seen from.
+    /// Position from which highlights are seen.
     #[inline(always)]
     #[must_use]
     pub fn viewer(&self) -> Viewer {
         if self.is_local == 0 { Viewer::Infinite(self.viewer) } else { Viewer::Local(self.viewer) }
     }
 
-    /// L and H, if there is just one light, directional, under an infinite viewer. N·L and N·H are then linear in N, which every method can
-    /// use.
+    /// L and H, if there is just one light, it is directional, and the viewer infinitely far. N·L and N·H are then linear in N, which every method
+    /// can use.
     #[must_use]
     pub fn constant(&self) -> Option<&[[i32; 3]; 2]> {
         match self.sources() {
@@ -123,7 +123,7 @@ impl Lighting {
         }
     }
 
-    /// `[N·L, N·H]` of each light, Q2.30, at `position` (Q7.25) with the normal `normal` (Q2.30, at most unit length).
+    /// Computes `[N·L, N·H]` of each light, Q2.30, at `position` (Q7.25) with the normal `normal` (Q2.30, at most unit length).
     pub fn cosines(&self, position: [i32; 3], normal: [i32; 3]) -> impl Iterator<Item = [i32; 2]> {
         self.sources().iter().map(move |source| self.directions(source, position).map(|direction| cosine(normal, direction)))
     }
@@ -156,7 +156,7 @@ impl Lighting {
 }
 
 impl Source {
-    /// `light`, with its L and H in the world, for an object seen as `model_view` says.
+    /// Transforms `light`, whose L and H in the world are known, to an object at the place `model_view`.
     fn new(light: &Light, directions: &[[i32; 3]; 2], model_view: &ModelView) -> Self {
         if light.kind == DIRECTIONAL {
             let [towards, half] = *directions;
@@ -167,14 +167,14 @@ impl Source {
         Self { vectors: [point; 2], is_point: 1 }
     }
 
-    /// The unit vectors L and H, Q2.30, of a light that is infinitely far; H is unused under a local viewer.
+    /// The unit vectors L and H, Q2.30, of a directional light. H is unused under a local viewer.
     #[inline(always)]
     #[must_use]
     pub fn directional(&self) -> Option<&[[i32; 3]; 2]> {
         (self.is_point == 0).then_some(&self.vectors)
     }
 
-    /// The position, Q7.25, of a light that is near.
+    /// The position, Q7.25, of a point light.
     #[inline(always)]
     #[must_use]
     pub fn point(&self) -> Option<[i32; 3]> {
@@ -201,7 +201,7 @@ impl Viewer {
     }
 }
 
-/// The position of a vertex as a point where light is computed, Q7.25.
+/// Converts the position of a vertex to a point where light is computed, Q7.25.
 #[inline(always)]
 #[must_use]
 pub fn point(position: [i16; 3]) -> [i32; 3] {
@@ -231,7 +231,7 @@ fn scaled_dot<const BITS: u32>(v: [i32; 3], unit: [i32; 3]) -> i32 {
     upper.wrapping_add(narrow_dot(v, [lower(x), lower(y), lower(z)]) >> BITS)
 }
 
-/// [`cosine`] of a vertex normal, [`crate::format::Unit`], and a unit vector: the same bits, sooner.
+/// [`cosine`] of a vertex normal, [`crate::format::Unit`], and a unit vector. The result has the same bits and is computed faster.
 #[inline(always)]
 #[must_use]
 pub fn vertex_cosine(normal: [i32; 3], direction: [i32; 3]) -> i32 {
@@ -255,7 +255,7 @@ impl MeanNormal {
         Self { sum: add(a, b), excess }
     }
 
-    /// A vertex normal, or that of a triangle's plane.
+    /// A vertex normal, or the normal of a triangle's plane.
     #[inline(always)]
     #[must_use]
     pub fn at(normal: [i32; 3]) -> Self {

@@ -1,4 +1,4 @@
-//! A material in the colours of a pixel format, computed once.
+//! The colours of a material in a pixel format, computed once.
 
 use crate::{
     format::{BIAS, CHANNEL, COSINE, LEVEL, WALK},
@@ -11,13 +11,13 @@ use crate::{
 };
 use core::marker::PhantomData;
 
-/// A material in the colours of a pixel format.
+/// The colours of a material in a pixel format.
 #[derive(Debug)]
 pub struct MaterialTables<'a, C: Pixel> {
-    /// Colour of each level of a material of one channel. In three channels under one light, if [`Reflectance::has_ramp`], the colours
-    /// without a highlight, by the level of the channel that has most diffuse light.
+    /// Colour of each level of a material of one channel. In three channels under one light, if [`Reflectance::has_ramp`], colours without a
+    /// highlight, by the level of the channel that has most diffuse light.
     pub ramps: &'a C::Ramps,
-    /// What the material reflects, in levels.
+    /// Reflectances of the material, in levels.
     pub reflectance: &'a Reflectance,
 }
 
@@ -29,7 +29,7 @@ impl<C: Pixel> Clone for MaterialTables<'_, C> {
 
 impl<C: Pixel> Copy for MaterialTables<'_, C> {}
 
-/// A level, Q9.7, and half a step of its channel, Q10.22.
+/// Adds half a step of a channel of `depth` bits to a level, Q9.7; the result is Q10.22.
 #[inline(always)]
 fn rounded(level: i32, depth: u32) -> i32 {
     (level + (1 << (LEVEL + 7 - depth))) << (CHANNEL - LEVEL)
@@ -42,8 +42,8 @@ fn mixed<C: Pixel>(levels: [i32; 3], threshold: u32) -> C {
     C::mixed(zip(levels, C::DEPTH, |level, depth| (level + ((threshold as i32) << (LEVEL + 1 - depth))) << (CHANNEL - LEVEL)))
 }
 
-/// Fills the tables of colours of a material, by the curve of a display. In three channels they are linear: what draws them with a curve does
-/// not look at them.
+/// Fills the tables of colours of a material, with the curve of a display. In three channels they stay linear, because code that draws them with a
+/// curve does not use them.
 pub fn fill_ramps<C: Pixel>(ramps: &mut C::Ramps, reflectance: &Reflectance, dither: bool, gamma: Option<&Gamma>) {
     if reflectance.three_channels() {
         // Nobody looks at it then, and products might overflow.
@@ -70,7 +70,7 @@ pub fn fill_ramps<C: Pixel>(ramps: &mut C::Ramps, reflectance: &Reflectance, dit
 }
 
 impl<'a, C: Pixel> MaterialTables<'a, C> {
-    /// The table of colours with the only light's gain, if the table of highlights holds levels.
+    /// The table of colours with the gain of the only light, if the table of highlights holds levels.
     #[inline(always)]
     #[must_use]
     pub fn one_light_ramp(&self) -> Option<OneLightRamp<'a, C>> {
@@ -95,7 +95,7 @@ impl<'a, C: Pixel> MaterialTables<'a, C> {
         self.three_channels().then_some(self.sums())
     }
 
-    /// [`Reflectance::three_channels`], which greys never have: the compiler leaves that code out.
+    /// Whether the material has three channels. Formats of greys never have, so the compiler leaves this code out for them.
     #[inline(always)]
     fn three_channels(&self) -> bool {
         !C::GRAY && self.reflectance.three_channels()
@@ -182,7 +182,7 @@ mod tests {
         reflectance
     }
 
-    /// Light that a word does not hold is as bright as it can be, dithered or not: it does not begin anew at black.
+    /// Light that does not fit a word is as bright as possible, with dither or without. It does not wrap to black.
     #[test]
     fn the_brightest_light_does_not_wrap() {
         for gain in (1u16 << 11..1 << 15).step_by(499) {

@@ -1,4 +1,4 @@
-//! The lights of one frame, and what materials reflect of them.
+//! The lights of one frame, and their reflection by materials.
 
 pub mod constant_lights;
 pub mod lights;

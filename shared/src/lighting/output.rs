@@ -1,4 +1,4 @@
-//! Intensities to pixels, where no loop does it by a table: rounded or dithered, by the curve of a display.
+//! Conversion of intensities to pixels where no loop does it by a table: with rounding or dither, and the curve of a display.
 
 use crate::{
     format::{BIAS, INTENSITY, Intensity, RAMP},
@@ -11,18 +11,18 @@ use crate::{
     },
 };
 
-/// How the intensities of one material become pixels.
+/// Converts the intensities of one material to pixels.
 pub struct Output<'a, C: Pixel> {
     /// The colours of the material.
     pub tables: MaterialTables<'a, C>,
     dither: bool,
     gamma: Option<&'a Gamma>,
-    /// Whether pixels are made from intensities: where tables do not dither, or have no curve, which they hold for one channel alone.
+    /// Whether pixels are made from intensities. They are where tables have no dither, or no curve, which tables hold for one channel only.
     by_threshold: bool,
 }
 
 impl<'a, C: Pixel> Output<'a, C> {
-    /// For a display with a curve or without.
+    /// The output for a display, with a curve or without.
     #[must_use]
     pub fn new(tables: MaterialTables<'a, C>, dither: bool, gamma: Option<&'a Gamma>) -> Self {
         let by_tables = C::DITHERED_BY_TABLE || C::Ramps::CHECKERED;
@@ -30,13 +30,13 @@ impl<'a, C: Pixel> Output<'a, C> {
         Self { tables, dither, gamma, by_threshold }
     }
 
-    /// Whether the loops of methods may draw: they dither by tables alone, and always where those hold finer steps than pixels.
+    /// Whether methods' own loops may draw. They dither by tables only, and always where tables have finer steps than pixels.
     #[must_use]
     pub fn suits_loops(&self) -> bool {
         !self.by_threshold && (self.dither == C::DITHERED_BY_TABLE || C::Ramps::CHECKERED)
     }
 
-    /// The threshold at a pixel. Where the format has a checkerboard for loops, rows take turns here: at each pixel a turn would take longer.
+    /// The threshold at a pixel. If the format has a checkerboard for loops, rows take turns here, because a turn at each pixel would take longer.
     #[inline(always)]
     #[must_use]
     pub fn threshold(&self, column: usize, row: usize) -> u32 {
@@ -47,7 +47,7 @@ impl<'a, C: Pixel> Output<'a, C> {
         }
     }
 
-    /// Whether a pixel depends on more than the tables: [`Self::quantised`] makes it then.
+    /// Whether a pixel depends on more than the tables. Then [`Self::quantised`] makes it.
     #[inline(always)]
     #[must_use]
     pub fn by_threshold(&self) -> bool {
@@ -84,7 +84,7 @@ impl<'a, C: Pixel> Output<'a, C> {
         self.tables.ramps.squares()[row % 2]
     }
 
-    /// The colour of an intensity of a material in one channel, by a table of colours and a threshold. Domain: not [`Self::by_threshold`].
+    /// The colour of a material in one channel for an intensity, by a table of colours and a threshold. Domain: not [`Self::by_threshold`].
     #[inline(always)]
     #[must_use]
     pub fn by_table(ramp: &[C::Stored; RAMP], [level, ..]: Intensity, threshold: u32) -> C {
