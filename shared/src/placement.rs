@@ -1,4 +1,4 @@
-//! Where an object is in one frame: computed once, before its triangles are.
+//! The place of an object in one frame, computed once before its triangles are drawn.
 
 use crate::{
     format::GeometricError,
@@ -10,39 +10,39 @@ use crate::{
 use core::cell::Cell;
 use zerocopy::{FromBytes, Immutable, IntoBytes, KnownLayout};
 
-/// An object in one frame, in memory of the renderer.
+/// An object in one frame. It lies in the renderer's memory.
 #[derive(FromBytes, IntoBytes, Immutable, KnownLayout, Clone, Debug)]
 #[repr(C)]
 pub(crate) struct Placement {
     pub(crate) view: View,
     pub(crate) facing: Facing,
     pub(crate) lighting: Lighting,
-    /// Triangles of a frame are numbered throughout, those of coarser levels as well: this many belong to objects before.
+    /// Number of triangles of objects before this one, coarser levels included: triangles of a frame are numbered throughout.
     pub(crate) first_triangle: u32,
-    /// This many vertices belong to objects before.
+    /// Number of vertices of objects before this one.
     pub(crate) first_vertex: u32,
-    /// Triangles of the levels at which it is drawn where it can be seen.
+    /// Number of triangles at the levels at which the object is drawn if it can be seen.
     triangles: u32,
-    /// The pixels that it can reach; none where it is out of sight.
+    /// The pixels that the object can reach; none if it is out of sight.
     pub(crate) area: Area,
-    /// Coarser levels of its meshes may lie so far from them: [`GeometricError`].
+    /// Largest distance of coarser levels from their meshes, a [`GeometricError`].
     tolerance: u16,
-    /// No pixel of it is nearer, in the format of the depth buffer.
+    /// The smallest depth that a pixel of the object can have, in the format of the depth buffer.
     pub(crate) nearest: u16,
-    /// The depth of its origin, by which objects are drawn; where it is out of sight, it is the last.
+    /// The depth of the object's origin, which decides the order of drawing. Objects out of sight come last.
     depth: i32,
-    /// Triangles of it that the frame has, at the levels that are drawn.
+    /// Number of triangles of the object that the frame draws, at the levels that are drawn.
     pub(crate) drawn: u32,
 }
 
-/// How objects are placed.
+/// Settings and camera by which objects are placed.
 pub(crate) struct Placing {
     /// Projection of the camera onto the viewport.
     pub(crate) lens: Lens,
     /// Whether coarser levels of meshes are drawn.
     pub(crate) levels_of_detail: bool,
     pub(crate) leaves_out_back_faces: bool,
-    /// The world as it is seen.
+    /// The transformation of the world to eye space.
     pub(crate) world: ModelView,
     /// Directions of the lights in the world.
     pub(crate) directions: Directions,
@@ -74,14 +74,14 @@ impl Placement {
         };
     }
 
-    /// The frame has it if it reaches into `region`. Returns whether more or fewer triangles of it are drawn than before.
+    /// Draws the object in the frame if it reaches into `region`. Returns whether the number of its triangles changes.
     pub(crate) fn draw_within(&mut self, region: &Region) -> bool {
         let before = self.drawn;
         self.drawn = if region.within(&self.area).is_empty() { 0 } else { self.triangles };
         before != self.drawn
     }
 
-    /// How far coarser levels may lie from the meshes of `object`.
+    /// Largest distance of coarser levels from the meshes of `object`.
     fn tolerance(&self, scene: &Scene<'_>, object: &Object) -> GeometricError {
         let ([.., depth], scale) = (self.view.origin(), u64::from(self.view.scale()));
         let radius = ((u64::from(object.bounds.radius) * scale + 0xFFFF) >> 16) as u32;
@@ -89,20 +89,19 @@ impl Placement {
         GeometricError::from_bits(self.view.least_in_object_units(error.into()).min(u16::MAX.into()) as u16)
     }
 
-    /// Its meshes, each at the level that is drawn.
+    /// The object's meshes, each at the level that is drawn.
     pub(crate) fn meshes<'a>(&self, scene: &Scene<'a>, object: &Object) -> impl DoubleEndedIterator<Item = &'a Mesh> + use<'a> {
         let meshes = if self.drawn == 0 { 0..0 } else { object.meshes() };
         scene.stream.levels_within(meshes, GeometricError::from_bits(self.tolerance))
     }
 }
 
-/// Where the objects of a scene are in one frame, and in which order they are drawn: the nearest first, so that they hide what comes after
-/// them.
+/// Places of the objects of a scene in one frame, and the order in which they are drawn. The nearest is first, so that it hides later ones.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Placements<'r> {
-    /// In the order of the scene.
+    /// Places in the order of the scene.
     placements: &'r [Placement],
-    /// Indices of all.
+    /// Indices of the places in the order of drawing.
     order: &'r [u32],
 }
 
@@ -113,8 +112,7 @@ impl<'r> Placements<'r> {
         Self { placements: placements.get(..count).unwrap_or_default(), order: order.get(..count).unwrap_or_default() }
     }
 
-    /// Puts indices in the order of the depth of what they lead to; those that are equally near in the order of the scene. Returns whether
-    /// they were in another order.
+    /// Sorts indices by the depth of their objects. Equally near objects stay in the order of the scene. Returns whether the order has changed.
     pub(crate) fn sort(placements: &[Placement], order: &mut [u32]) -> bool {
         let key = |index: &Cell<u32>| {
             let index = index.get();
@@ -136,7 +134,7 @@ impl<'r> Placements<'r> {
         has_changed
     }
 
-    /// The objects in their order.
+    /// The objects in the order of drawing.
     pub(crate) fn objects(self, scene: &'r Scene<'_>) -> impl DoubleEndedIterator<Item = (&'r Placement, &'r Object)> {
         self.order.iter().filter_map(move |&index| self.object(scene, index))
     }
@@ -152,7 +150,7 @@ impl<'r> Placements<'r> {
         Some((self.placements.get(index as usize)?, scene.objects().get(index as usize)?))
     }
 
-    /// Triangles of the levels that are drawn.
+    /// Number of triangles at the levels that are drawn.
     pub(crate) fn drawn(self) -> u32 {
         self.placements.iter().fold(0, |sum, placement| sum + placement.drawn)
     }

@@ -18,13 +18,13 @@ use embedded_graphics::{
     text::{Baseline, renderer::TextRenderer},
 };
 
-/// From the smallest to the largest.
+/// The fonts, from the smallest to the largest.
 static FONTS: [&MonoFont<'_>; 6] = [&FONT_4X6, &FONT_5X8, &FONT_6X10, &FONT_7X13, &FONT_9X15, &FONT_10X20];
 
 const _: () = assert!(FONT_4X6.character_size.height == LEAST_LINE);
 
-/// Draws the labels of a picture of `size` pixels into the band `area`. In a small picture, those that no font is small enough for are left out:
-/// they would cover what they name.
+/// Draws the labels of a picture of `size` pixels into the band `area`. In a small picture labels are left out that would need a smaller font than
+/// there is, because they would cover what they name.
 // A call, so that its instructions can be told from a frame's.
 #[inline(never)]
 pub(crate) fn draw<C: Pixel>(labels: &[Label], size: Size, pixels: &mut [C], area: Rectangle) {
@@ -59,7 +59,7 @@ pub(crate) fn draw<C: Pixel>(labels: &[Label], size: Size, pixels: &mut [C], are
     }
 }
 
-/// Paints in one colour, whatever the pixel format.
+/// Paints in one colour, in any pixel format.
 struct Ink<'b, C> {
     band: BandTarget<'b, C>,
     colour: C,

@@ -1,4 +1,4 @@
-//! What a material reflects of the lights of a scene, in levels, computed once.
+//! Reflectances of a material under the lights of a scene, in levels, computed once.
 
 use crate::{
     arch::{product::unsigned_product, quotient::long},
@@ -19,22 +19,23 @@ use zerocopy::{FromBytes, Immutable, IntoBytes, KnownLayout};
 /// Largest level of a node, Q9.7.
 pub const FULL: i32 = 255 << LEVEL;
 
-/// The quantity that is raised to the exponent `n` of a material, such that highlights are equally wide by all methods.
+/// The quantity that is raised to the exponent `n` of a material. Each is scaled so that all methods give highlights of one width.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Highlight {
-    /// (N·H)^n (Blinn 1977).
+    /// The cosine of normal and half vector: (N·H)^n (Blinn 1977).
     #[default]
     Half,
-    /// ((N·H)²)^(n/2).
+    /// The square of this cosine: ((N·H)²)^(n/2).
     HalfSquared,
-    /// (z²)^n of z = sqrt(N·H).
+    /// The square root z of this cosine: (z²)^n with z = sqrt(N·H).
     Root,
-    /// (R·V)^(n/4): with L, N and V in a plane the angle of R and V is twice that of N and H (Phong 1975).
+    /// The cosine of reflected light and viewer: (R·V)^(n/4) (Phong 1975). If L, N and V lie in a plane, the angle of R and V is twice the angle of N
+    /// and H.
     Reflected,
 }
 
 impl Highlight {
-    /// The function of the quantity by which a [`HighlightLut`] is indexed that is raised to the exponent.
+    /// The base that is raised to the exponent, as a function of the quantity by which a [`HighlightLut`] is indexed.
     #[must_use]
     pub const fn base(self) -> Base {
         match self {
@@ -45,14 +46,14 @@ impl Highlight {
         }
     }
 
-    /// Smallest exponent of a material: what is raised is raised to 1 then.
+    /// Smallest exponent of a material. At this exponent the base is raised to 1.
     #[must_use]
     pub const fn least_exponent(self) -> u16 {
         1 << self.base().roots()
     }
 }
 
-/// Light levels that one light adds at cosine 1, per channel, in Q9.7.
+/// Light levels that one light adds at cosine 1, for each channel, in Q9.7.
 #[derive(FromBytes, IntoBytes, Immutable, KnownLayout, Clone, Copy, Debug)]
 #[repr(C)]
 pub struct Gains {
@@ -65,7 +66,7 @@ impl Gains {
     const NONE: Self = Self { diffuse: [0; 3], specular: [0; 3] };
 }
 
-/// What one light adds to the levels of a pixel, per channel.
+/// Factors by which one light adds to the levels of a pixel, for each channel.
 #[derive(Clone, Copy, Debug)]
 pub struct Factors {
     /// The diffuse level at cosine 1, Q9.7 less the bits of [`Reflectance::excess`].
@@ -81,15 +82,14 @@ impl Factors {
         *levels = zip(*levels, self.levels(reflection), i32::wrapping_add);
     }
 
-    /// [`Self::add`] of diffuse light alone.
+    /// Adds diffuse light only.
     #[inline(always)]
     pub fn add_diffuse(&self, levels: &mut [i32; 3], diffuse: i32) {
         let cosine = Self::cosine(diffuse);
         *levels = zip(*levels, self.diffuse, |level, diffuse| level.wrapping_add(diffuse.wrapping_mul(cosine)));
     }
 
-    /// A cosine, Q5.27, with the fraction bits of a factor. Approximations may exceed 1, which counts as 1. Armv7-M shifts and clamps by one
-    /// instruction.
+    /// A cosine, Q5.27, with the fraction bits of a factor. Approximations above 1 count as 1. Armv7-M shifts and clamps in one instruction.
     #[inline(always)]
     fn cosine(diffuse: i32) -> i32 {
         (diffuse >> (PIXEL_COSINE - FACTOR)).clamp(0, (1 << FACTOR) - 1)
@@ -120,12 +120,12 @@ pub struct Reflectance {
     pub(super) gains: [Gains; MAX_LIGHTS],
     /// Bits by which the sum of all lights may leave Q10.22, at most 5.
     excess: u32,
-    /// For [`OneLightRgb`](super::constant_lights::OneLightRgb): of the first light, of the second light, and of the first light again, so that two
-    /// neighbours are both lights in either order. One array is for even rows, one for odd rows.
+    /// Sums for [`OneLightRgb`](super::constant_lights::OneLightRgb): of the first light, of the second light, and of the first light again, so that
+    /// two neighbours are both lights in either order. One array is for even rows, one for odd rows.
     pub(super) sums: [[Sums; 3]; 2],
     /// See [`Self::ambient_sums`].
     ambient_sums: [i32; 3],
-    /// Levels without diffuse light, and of diffuse light at cosine 1, in the channel by whose level the table of colours is indexed, Q9.7.
+    /// The level without diffuse light and the diffuse level at cosine 1, Q9.7, in the channel that is the index of the table of colours.
     pub(super) ramp: [i32; 2],
     /// Channels at full level for dither, Q0.8 scaled to the output's depth.
     pub(super) base: [u16; 3],
@@ -167,7 +167,7 @@ fn along(colour: Colour, base: Colour) -> bool {
 }
 
 impl Reflectance {
-    /// A reflectance before it is filled; all zeros, which takes no flash in static memory.
+    /// A reflectance that is not computed yet; all zeros, which takes no flash in static memory.
     pub const EMPTY: Self = Self {
         base: [0; 3],
         highlight_lut: HighlightLut::EMPTY,
@@ -270,29 +270,29 @@ impl Reflectance {
         self.base = zip(base, depth, |channel, depth| share(channel, whole, depth));
     }
 
-    /// Whether three levels are walked instead of one, because the colours of the material are no multiples of one another.
+    /// Whether three levels are walked instead of one, because the colours of the material are not multiples of one colour.
     #[inline(always)]
     #[must_use]
     pub fn three_channels(&self) -> bool {
         self.three_channels != 0
     }
 
-    /// Whether all light without a highlight under one light is a level of the table of colours: in one channel, and in three unless one of
-    /// them exceeds 255 or the pixel format is finer than the table.
+    /// Whether all light without a highlight under one light is a level of the table of colours. It is in one channel, and in three unless a level
+    /// exceeds 255 or the pixel format is finer than the table.
     #[inline(always)]
     #[must_use]
     pub fn has_ramp(&self) -> bool {
         self.has_ramp != 0
     }
 
-    /// Whether the table of highlights holds levels: those that the highlight of the only light adds, plus the ambient level.
+    /// Whether the table of highlights holds levels: the ambient level plus the highlight of the only light.
     #[inline(always)]
     #[must_use]
     pub fn holds_levels(&self) -> bool {
         self.lights() == 1 && !self.three_channels()
     }
 
-    /// Number of lights if the method has loops for so many, and their levels fit their formats; otherwise 0.
+    /// Number of lights, if the method has loops for this number and their levels fit their formats; otherwise 0.
     #[inline(always)]
     #[must_use]
     pub fn lights(&self) -> u8 {
@@ -329,23 +329,23 @@ impl Reflectance {
         }
     }
 
-    /// By how much the row below `row` is higher in three channels, with [`CHANNEL`] fraction bits, as if channels had eight bits; 0 without
-    /// dither.
+    /// Dither offset in three channels from `row` to the row below, with [`CHANNEL`] fraction bits, as if channels had eight bits: half a step up
+    /// from even rows, half a step down from odd ones; 0 without dither.
     #[inline(always)]
     #[must_use]
     pub(crate) fn higher_below(&self, row: i32) -> i32 {
         if row & 1 == 0 { 2 * self.quarter } else { -2 * self.quarter }
     }
 
-    /// By how much three channels are lower on even rows and higher on odd ones, a quarter of a step, with [`CHANNEL`] fraction bits, as if
-    /// channels had eight bits; 0 without dither.
+    /// Dither offset in three channels, a quarter of a step, with [`CHANNEL`] fraction bits, as if channels had eight bits. Even rows are lower by it
+    /// and odd ones higher; 0 without dither.
     #[inline(always)]
     #[must_use]
     pub(crate) fn quarter(&self) -> i32 {
         self.quarter
     }
 
-    /// Changes whether highlights are left out of triangles where none can be seen, and lights of triangles that they do not reach.
+    /// Turns two savings on or off: leaving out highlights where none can be seen, and lights that do not reach a triangle.
     #[cfg(feature = "skips")]
     pub(crate) fn leave_out(&mut self, highlights: bool, lights: bool) {
         self.computes_all = [highlights, lights].map(|left_out| u8::from(!left_out));
@@ -388,7 +388,7 @@ impl Reflectance {
         diffuse_level(self.ramp, cosine)
     }
 
-    /// By how much each channel rises where the level of the table of colours rises by `raise`, Q9.7. Domain: [`Self::has_ramp`].
+    /// Rise of each channel if the level of the table of colours rises by `raise`, Q9.7. Domain: [`Self::has_ramp`].
     #[must_use]
     pub fn ramp_rise(&self, raise: i32) -> [i32; 3] {
         let share = |gain: u16| (raise * i32::from(gain)).checked_div(self.ramp[1]).unwrap_or(0);
@@ -418,7 +418,7 @@ impl Reflectance {
         (diffuse + reflected((0, gains.specular[n]), 0, highlight)).min(FULL)
     }
 
-    /// The levels of the table of colours without highlight at six nodes of these cosines, under one light, not clamped, Q9.7. Domain:
+    /// The levels of the table of colours without highlight at six nodes with these cosines, under one light, not clamped, Q9.7. Domain:
     /// [`Self::has_ramp`].
     #[inline(always)]
     #[must_use]
@@ -427,7 +427,7 @@ impl Reflectance {
         [level(a), level(b), level(c), level(ab), level(bc), level(ca)]
     }
 
-    /// [`Self::six_diffuse`], at most 255.
+    /// Levels as in [`Self::six_diffuse`], clamped to 255.
     #[inline]
     #[must_use]
     pub fn six_diffuse_clamped(&self, cosines: [i32; 6]) -> [i32; 6] {
@@ -467,7 +467,7 @@ impl Reflectance {
         levels.map(|level| level.min(FULL))
     }
 
-    /// Levels under lights that are the same everywhere, Q9.7 in [0, 255].
+    /// Levels under constant lights, Q9.7 in [0, 255].
     #[inline(never)]
     #[must_use]
     pub fn constant_levels(&self, sources: &[Source], normal: &MeanNormal) -> [i32; 3] {
@@ -503,7 +503,7 @@ impl Reflectance {
         [level(r, r1, r2).min(FULL), level(g, g1, g2).min(FULL), level(b, b1, b2).min(FULL)]
     }
 
-    /// [`Self::constant_levels`] of sums that a word does not hold, or of more lights than there are sums for.
+    /// Levels as in [`Self::constant_levels`], for sums that do not fit a word, or for more than two lights.
     #[cold]
     #[inline(never)]
     fn many_constant_levels(&self, sources: &[Source], normal: &MeanNormal) -> [i32; 3] {
@@ -518,7 +518,7 @@ impl Reflectance {
         self.ambient
     }
 
-    /// What light number `light` adds at a pixel.
+    /// Factors of light number `light`.
     #[inline(always)]
     #[must_use]
     pub fn factors(&self, light: usize) -> Factors {
@@ -529,20 +529,20 @@ impl Reflectance {
         Factors { diffuse: [diffuse(dr), diffuse(dg), diffuse(db)], specular: [specular(sr), specular(sg), specular(sb)] }
     }
 
-    /// The sums to which [`Factors::add`] adds all lights: ambient light, less what the table of highlights holds where there is none.
+    /// The sums to which [`Factors::add`] adds all lights: ambient light, minus what a table entry without a highlight would add for each light.
     #[inline(always)]
     #[must_use]
     pub fn ambient_sums(&self) -> [i32; 3] {
         self.ambient_sums
     }
 
-    /// Adds to `sums` what [`Self::ambient_sums`] is less for a light: that which the table of highlights holds where there is none.
+    /// Adds to `sums` what a table entry without a highlight adds for a light; [`Self::ambient_sums`] is less by this.
     #[inline(always)]
     pub fn add_no_highlight(&self, factors: &Factors, sums: &mut [i32; 3]) {
         factors.add(sums, Reflection { diffuse: 0, highlight: self.highlight_lut.floor() });
     }
 
-    /// Makes intensities of sums of all lights.
+    /// Converts sums of all lights to intensities.
     #[inline(always)]
     pub fn intensities(&self) -> impl Fn([i32; 3]) -> Intensity + use<> {
         let shift = (CHANNEL - 8 - self.excess) & 31;
@@ -562,12 +562,13 @@ impl Reflectance {
         }
     }
 
-    /// A level, Q9.7, with bias and rounding half of the ramp's index.
+    /// A level, Q9.7, as an index of the table of colours, with bias and half a step for rounding.
     pub(super) fn biased(level: i32) -> u32 {
         (level + (BIAS << LEVEL) + (1 << (LEVEL - 1))) as u32
     }
 
-    /// The largest level under that many lights, Q9.7 and more, and what rounds: half a step of a channel, or with a checkerboard three quarters.
+    /// The largest level under `lights` lights, Q9.7 or more bits, and the constant for rounding: half a step of a channel, or with a checkerboard
+    /// three quarters.
     fn total<C: Pixel>(&self, lights: usize) -> u32 {
         let quarters = if C::Ramps::CHECKERED { 3 } else { 2 };
         let mut total = zip(self.ambient, self.depth, |level, depth| level as u32 + (quarters << (LEVEL + 6 - depth)));
@@ -578,8 +579,7 @@ impl Reflectance {
         largest(total)
     }
 
-    /// The channels of an intensity in the pixel format by the curve of a display, with a [`crate::pixel::dither::threshold`] in place of
-    /// rounding.
+    /// The channels of an intensity in the pixel format, by the curve of a display and a [`crate::pixel::dither::threshold`].
     #[inline]
     #[must_use]
     pub fn dithered(&self, intensity: Intensity, threshold: u32, gamma: Option<&Gamma>) -> [u8; 3] {
@@ -598,14 +598,14 @@ impl Reflectance {
     }
 }
 
-/// The level without highlight for the levels of ambient light and of diffuse light at cosine 1, not clamped, rounded as by [`reflected`].
+/// The level without highlight, not clamped, rounded as by [`reflected`]. `ambient` is the ambient level, `diffuse` the diffuse level at cosine 1.
 #[inline(always)]
 fn diffuse_level([ambient, diffuse]: [i32; 2], cosine: i32) -> i32 {
     let base = ((ambient as u32) << 15) + (1 << 14);
     ((base + diffuse as u32 * (cosine.max(0) as u32 >> (COSINE - 15))) >> 15) as i32
 }
 
-/// The light that is reflected at a pixel, before the gains of the material.
+/// Light that a surface reflects at a pixel, before the gains of the material.
 #[derive(Clone, Copy, Debug)]
 pub struct Reflection {
     /// N·L, Q5.27; negative where the light is behind the surface.
@@ -623,7 +623,7 @@ fn reflected((diffuse, specular): (u16, u16), cosine: i32, highlight: u32) -> i3
     (diffuse + specular) as i32
 }
 
-/// N·L of a node, Q2.30, as a factor of diffuse light, Q1.15: 0 where there is no light.
+/// N·L of a node, Q2.30, as a factor of diffuse light, Q1.15; 0 if it is negative.
 #[inline(always)]
 fn node_cosine(cosine: i32) -> i32 {
     cosine.max(0) >> (COSINE - FACTOR)

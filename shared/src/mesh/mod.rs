@@ -1,4 +1,4 @@
-//! Draws the triangles of one mesh into a band: each is set up and shaded.
+//! Drawing of the triangles of one mesh into a band: set-up and shading of each.
 
 pub(crate) mod vertices;
 
@@ -31,31 +31,30 @@ use crate::{
     stream::record::{Triangle, Vertex},
 };
 
-/// What all triangles of one mesh have in common in one frame.
+/// Data of one mesh in one frame that all of its triangles use.
 pub(crate) struct MeshPass<'f, C: Pixel> {
     pub(crate) method: &'static dyn Method,
     pub(crate) shading: Shading<'f>,
-    /// How steeply light follows the fields that are fitted.
+    /// How steeply light depends on the fitted fields.
     pub(crate) steepness: Steepness,
     pub(crate) output: Output<'f, C>,
     pub(crate) stage: VertexStage<'f>,
-    /// Where triangles may overlap; `None` if they may do so everywhere.
+    /// Places where triangles may overlap; `None` if they may overlap everywhere.
     pub(crate) depth_elision: Option<&'f DepthElision>,
-    /// Triangles of the frame before its own.
+    /// Number of triangles in the frame before this mesh.
     pub(crate) first_triangle: u32,
     pub(crate) triangles: &'f [Triangle],
     pub(crate) vertices: &'f [Vertex],
     /// The cached vertices on the screen.
     pub(crate) cached: &'f [ScreenVertex],
     pub(crate) viewport: Viewport,
-    /// The columns of which wide triangles are drawn.
+    /// The columns to which wide triangles are cut.
     pub(crate) columns: [i32; 2],
     /// Whether light is interpolated in perspective.
     pub(crate) perspective: bool,
 }
 
-/// Width of a triangle, 1/16 pixel, from which on it is worth while to draw only the columns that a frame has: their edges are divided on
-/// each row then.
+/// Width of a triangle, in 1/16 pixel, from which it is faster to draw only the columns of a partial frame. Edges are then divided in each row.
 const WIDE: i32 = 96 << SUBPIXEL;
 const _: () = assert!(WIDE > MAX_STEPPED_WIDTH, "others are stepped from end to end");
 
@@ -63,7 +62,7 @@ const _: () = assert!(WIDE > MAX_STEPPED_WIDTH, "others are stepped from end to 
 struct MeshTriangle<'f> {
     corners: [&'f ScreenVertex; 3],
     triangle: &'f Triangle,
-    /// The vertices that the triangle's indices lead to.
+    /// The vertices of the mesh, to which the triangle's indices point.
     vertices: &'f [Vertex],
 }
 
@@ -92,7 +91,7 @@ impl<C: Pixel> MeshPass<'_, C> {
         }
     }
 
-    /// Index of a triangle in the mesh; beyond its end if it belongs to a later one.
+    /// Index of a triangle in the mesh. It is beyond the mesh's end if the triangle belongs to a later mesh.
     #[inline(always)]
     fn index(&self, key: Key) -> usize {
         key.triangle().wrapping_sub(self.first_triangle) as usize
@@ -103,7 +102,7 @@ impl<C: Pixel> MeshPass<'_, C> {
         tiles::shade(setup, &mut BandCanvas { band, output: &self.output }, |setup, canvas| self.method.shade(setup, &self.shading, canvas))
     }
 
-    /// Draws a triangle of any size, by `loops` if they can; returns the number of its pixels in `band`.
+    /// Draws a triangle of any size, by `loops` if possible. Returns the number of its pixels in `band`.
     #[inline(never)]
     pub(crate) fn draw(&self, loops: DrawTriangle<C>, triangle: &Triangle, band: &mut Band<'_, C>) -> u32 {
         match self.corners(triangle).filter(is_ready) {
@@ -112,8 +111,7 @@ impl<C: Pixel> MeshPass<'_, C> {
         }
     }
 
-    /// Draws a word-sized triangle, see [`Viewport::is_word_sized`]; `key` identifies it among active triangles. `None` if the loops
-    /// decline it.
+    /// Draws a word-sized triangle, see [`Viewport::is_word_sized`]. `key` identifies it among active triangles. `None` if the loops cannot draw it.
     // Instructions of Armv6-M reach little of a large stack frame, so this is a call there.
     #[cfg_attr(all(target_arch = "arm", not(target_has_atomic = "32")), inline(never))]
     #[cfg_attr(not(all(target_arch = "arm", not(target_has_atomic = "32"))), inline(always))]
@@ -173,8 +171,7 @@ impl<C: Pixel> MeshPass<'_, C> {
         }
     }
 
-    /// Draws a triangle that has a corner that is not cached, or not on the screen: transforms all three, and clips the triangle if need
-    /// be.
+    /// Draws a triangle with a corner that is not cached or not on the screen: transforms all three corners, and clips the triangle if needed.
     #[cold]
     #[inline(never)]
     fn draw_transformed_anew(&self, loops: DrawTriangle<C>, triangle: &Triangle, band: &mut Band<'_, C>) -> u32 {

@@ -18,10 +18,10 @@ use crate::{
 /// Column and row, 1/16 pixel, of a vertex that another processor transforms and lights.
 pub(crate) type SeamPlace = [i32; 2];
 
-/// No triangle that faces the camera has used the vertex; no place on the screen is as far away.
+/// The place of a vertex that no front face has used. Real places are nearer.
 pub(crate) const UNUSED: SeamPlace = [i32::MIN; 2];
 
-/// Triangles of the vertex are clipped.
+/// The place of a vertex whose triangles are clipped.
 const CLIPPED: SeamPlace = [i32::MAX; 2];
 
 /// The vertex stage of one mesh in one frame.
@@ -75,8 +75,8 @@ impl VertexStage<'_> {
         Some([place(a)?, place(c)?, place(b)?])
     }
 
-    /// Transforms the vertices whose places at the seam were used, where no triangle of the processor that caches them has used them, and
-    /// lights those that none has lit.
+    /// Transforms vertices at the seam that are used here, but by no triangle of the processor that caches them, and lights vertices that are not
+    /// lit.
     #[inline(never)]
     pub(crate) fn close_seam(&self, cached: &mut [ScreenVertex], seam: &[SeamPlace], vertices: &[Vertex]) {
         for ((screen, place), vertex) in cached.iter_mut().zip(seam).zip(vertices) {
@@ -89,7 +89,7 @@ impl VertexStage<'_> {
         }
     }
 
-    /// Lights a vertex that was transformed without light. One that no light reaches may be lit again, which makes it no lighter.
+    /// Lights a vertex that was transformed without light. A vertex that no light reaches may be lit again, with the same result.
     #[inline(always)]
     pub(crate) fn light_up(&self, screen: &mut ScreenVertex, vertex: &Vertex) {
         if screen.state == State::READY && screen.light == [0; 4] {
@@ -124,7 +124,7 @@ impl VertexStage<'_> {
         ScreenVertex { x, y, depth, light: self.light_at(vertex), state: if inside { State::READY } else { State::OUTSIDE } }
     }
 
-    /// What [`ScreenVertex::light`] says.
+    /// The light of a vertex, as [`ScreenVertex::light`] describes it.
     #[inline(always)]
     fn light_at(&self, vertex: &Vertex) -> [i32; 4] {
         let normal = wide(vertex.normal);

@@ -1,7 +1,7 @@
-//! Active triangles: those that reach across the lower border of a band, saved on the row where the next band continues.
+//! Active triangles, which reach across the lower border of a band. They are saved at the row where the next band continues.
 //!
-//! Edges and polynomials are stepped exactly, modulo 2^32, so continuing them gives the same pixels as setting up anew. All bands draw
-//! triangles in the order of the stream, so active triangles form a queue. If the queue is full, the next band sets up the triangle anew.
+//! Edges and polynomials are stepped exactly, modulo 2^32, so continuing them gives the same pixels as setting them up again. All bands draw
+//! triangles in the order of the stream, so active triangles form a queue. If the queue is full, the next band sets up the triangle again.
 
 use zerocopy::{FromBytes, Immutable, IntoBytes, KnownLayout};
 
@@ -29,10 +29,10 @@ impl ActiveTriangle {
     /// No triangle; all zeros, which takes no flash in static memory.
     pub const EMPTY: Self = Self { key: 0, edges: EdgeState::NONE, has_depth: 0, depth: [0; 3], words: [0; Self::WORDS] };
 
-    /// Words of a patch that can be saved: those of a quadratic in three channels, and how much higher the next row is.
+    /// Words of a patch that can be saved: a quadratic in three channels, and the dither offset to the next row.
     pub(crate) const WORDS: usize = 19;
 
-    /// Saves what has been stepped to the end of a band; false if the patch cannot be saved.
+    /// Saves a triangle that has been stepped to the end of a band; false if the patch cannot be saved.
     #[inline(always)]
     pub(crate) fn save<D: Patch, P: Patch>(&mut self, (key, edges): (u32, EdgeState), depth: &D, patch: &P) -> bool {
         self.has_depth = u32::from(D::WORDS > 0 && depth.save(&mut self.depth));

@@ -1,4 +1,4 @@
-//! What bands are filled with before triangles are drawn.
+//! Filling of bands with the background, before triangles are drawn.
 
 use crate::{
     pixel::{Pixel, colour::colour},

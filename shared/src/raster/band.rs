@@ -1,4 +1,4 @@
-//! A band: some rows of the picture and their depth, the only memory that drawing writes.
+//! A band: some rows of the picture and their depth. Drawing writes no other memory.
 
 use crate::{
     coverage::sample::Sample,
@@ -8,7 +8,7 @@ use crate::{
 use core::{hint::black_box, ops::Range};
 use zerocopy::{FromBytes, IntoBytes};
 
-/// Rows `top .. top + rows` of the viewport.
+/// The rows `top .. top + rows` of the picture.
 #[derive(Debug)]
 pub struct Band<'a, C> {
     /// All pixels, row by row.
@@ -21,11 +21,11 @@ pub struct Band<'a, C> {
     pub top: i32,
     /// Number of rows.
     pub rows: i32,
-    /// Samples for antialiasing, which take the place of `depth`, and of `pixels` until [`Self::resolve`]; these are background until then.
+    /// Samples for antialiasing. Until [`Self::resolve`] they take the place of `depth` and `pixels`, and `pixels` hold the background.
     pub blend: Option<Blend<'a>>,
     /// Active triangles that the band above has saved, and those that this band saves.
     pub active: ActiveTriangles<'a>,
-    /// What was drawn.
+    /// Counts of what was drawn.
     pub counts: Counts,
 }
 
@@ -37,7 +37,7 @@ pub struct Blend<'a> {
 }
 
 impl<C: Pixel> Band<'_, C> {
-    /// Turns samples into pixels: what they do not cover is the pixel that is there.
+    /// Converts samples to pixels. What samples do not cover shows the pixel that is there.
     #[inline(never)]
     pub fn resolve(&mut self) {
         if let Some(blend) = &self.blend {
@@ -49,7 +49,7 @@ impl<C: Pixel> Band<'_, C> {
 }
 
 impl<C> Band<'_, C> {
-    /// Makes the band infinitely far in the rows that triangles can reach; nothing asks how far it is in others.
+    /// Sets the depth to infinity in rows that triangles can reach. The depth of other rows is never read.
     #[inline(never)]
     pub fn clear(&mut self, reached: Range<u32>) {
         match &mut self.blend {
@@ -92,7 +92,7 @@ pub fn fill_pixels<C: Pixel>(pixels: &mut [C], colour: C) {
     fill(pixels, colour.pair());
 }
 
-/// Fills a slice with the same value twice, sixteen values at a time, because the compiler does not unroll `slice::fill` at opt-level "s".
+/// Fills a slice with two values in turns, sixteen at a time, because the compiler does not unroll `slice::fill` at opt-level "s".
 #[inline(always)]
 fn fill<T: Copy>(slice: &mut [T], [even, odd]: [T; 2]) {
     let (blocks, rest) = slice.as_chunks_mut::<16>();

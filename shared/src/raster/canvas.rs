@@ -1,11 +1,11 @@
 //! The general loop, which draws triangles of every method and style; its code is shared by all of them.
 //!
-//! A [`SpanShader`] shades a row of pixels in [`Intensity`], which knows nothing of pixel formats; a [`Canvas`] tests depth, turns
-//! intensities into colours and stores them, and knows nothing of methods. So each method and each pixel format is compiled once, and not
-//! each pair. Whatever a method has no loop for (see [`crate::method`]) is drawn this way: many lights, near lights, antialiasing,
-//! interpolation in perspective, and 8x8 dither of colours.
+//! A [`SpanShader`] shades a row of pixels as [`Intensity`] and knows no pixel formats. A [`Canvas`] tests depth, converts intensities to colours,
+//! stores them, and knows no methods. So each method and each pixel format is compiled once, and not each pair of them. The general loop draws all
+//! that a method has no loop for (see [`crate::method`]): many lights, near lights, antialiasing, interpolation in perspective, and 8x8 dither of
+//! colours.
 //!
-//! Cost: several times that of a method's loop for a method of few instructions a pixel, little more for one of a hundred.
+//! Cost: several times as much as a method's own loop if the method takes few instructions a pixel, and little more if it takes a hundred.
 
 use crate::{
     coverage::sample::Layer,
@@ -19,13 +19,13 @@ use crate::{
     },
 };
 
-/// Pixels that are shaded at a time.
+/// Number of pixels that are shaded at once.
 pub const CHUNK: usize = 16;
 
-/// Shades a triangle row by row; it stands on one row.
+/// Shades a triangle row by row. It stands on one of its rows.
 pub trait SpanShader {
-    /// Shades the `count` pixels to the left of column `end`, from right to left, on the row that lies `rows` rows below the one it
-    /// stands on, and puts them into `target`.
+    /// Shades the `count` pixels to the left of column `end`, from right to left, in the row that is `rows` rows below the current one. It puts them
+    /// into `target`.
     fn span(&mut self, rows: i32, end: i32, count: usize, target: &mut dyn SpanTarget);
 
     /// Moves down `rows` rows.
@@ -37,17 +37,17 @@ pub trait SpanShader {
 
 /// Receives the pixels of a span, in runs from right to left.
 pub trait SpanTarget {
-    /// Which of `count` pixels, at most [`CHUNK`], from number `first` of the span on pass the depth test: bit k stands for pixel `first +
-    /// k`.
+    /// Tests the depth of `count` pixels, at most [`CHUNK`], from number `first` of the span on. Bit k of the result is 1 if pixel `first + k`
+    /// passes.
     fn visible(&mut self, first: usize, count: usize) -> u32;
 
-    /// Stores the intensities of the pixels from number `first` on that are `visible`, by the latest result of [`Self::visible`].
+    /// Stores the intensities of `visible` pixels from number `first` on, as [`Self::visible`] has returned them.
     fn put(&mut self, first: usize, visible: u32, intensities: &[Intensity; CHUNK]);
 }
 
 /// Computes an intensity from walked values.
 pub trait IntensityShader<V> {
-    /// The intensity of the pixel with this value.
+    /// Computes the intensity of a pixel with this value.
     fn shade(&self, value: V) -> Intensity;
 }
 
@@ -56,9 +56,9 @@ pub trait IntensityShader<V> {
 pub struct Shaded<P, S> {
     /// The polynomial that is walked.
     patch: P,
-    /// What turns its values into intensities.
+    /// The shader that converts values to intensities.
     shader: S,
-    /// The intensities of a run of pixels. They are written before they are read, and so cleared once a triangle and not once a span.
+    /// Memory for the intensities of a run of pixels. They are written before they are read, so they are cleared once a triangle and not once a span.
     intensities: [Intensity; CHUNK],
 }
 
@@ -108,19 +108,19 @@ impl<P: Patch, S: IntensityShader<<P::Walker as Walker>::Value>> SpanShader for 
     }
 }
 
-/// The target of drawing: a band of the picture, in some pixel format. A method passes it on to what draws, such as
+/// The target of drawing: a band of the picture in some pixel format. A method passes it to functions that draw, such as
 /// [`crate::method::Area::draw`].
 pub trait Canvas {
     /// Number of columns, first row, and one past the last row.
     #[doc(hidden)]
     fn bounds(&self) -> [i32; 3];
 
-    /// What was drawn.
+    /// Counts of what was drawn.
     #[doc(hidden)]
     fn counts(&mut self) -> &mut Counts;
 
-    /// Draws the `count` pixels of `row` to the left of column `end` by `shader`, which stands on this row, where `inv_depth`, which stands
-    /// on column `end`, passes the depth test.
+    /// Draws the `count` pixels of `row` to the left of column `end` by `shader`, which stands on this row. Pixels whose `inv_depth`, which stands on
+    /// column `end`, fails the depth test are left out.
     #[doc(hidden)]
     fn draw_row(&mut self, row: i32, end: i32, count: usize, inv_depth: Linear<1>, shader: &mut dyn SpanShader);
 
@@ -128,7 +128,7 @@ pub trait Canvas {
     #[doc(hidden)]
     fn add(&mut self, column: i32, row: i32, layer: Layer);
 
-    /// The channels of an intensity in the pixel format.
+    /// Converts an intensity to the channels of the pixel format, at this pixel.
     #[doc(hidden)]
     fn channels(&self, intensity: Intensity, column: i32, row: i32) -> [u8; 3];
 }

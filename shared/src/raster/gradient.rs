@@ -1,10 +1,10 @@
-//! Backgrounds of even steps between two colours. They are dithered in all formats: eight colours a row are all that it takes, and a display of 16
-//! bits a pixel would show the steps.
+//! Vertical gradients between two colours. They are dithered in all formats: this takes eight colours a row, and without it a display of 16 bits a
+//! pixel would show steps.
 
 use crate::pixel::{Pixel, colour::shown, dither::threshold};
 use embedded_graphics_core::primitives::Rectangle;
 
-/// Thresholds of dither repeat after so many columns.
+/// Number of columns after which thresholds of dither repeat.
 const COLUMNS: usize = 8;
 
 /// Fills the band `area` of a picture of `height` rows.
@@ -24,7 +24,7 @@ pub(super) fn fill<C: Pixel>(ends: [[u8; 3]; 2], pixels: &mut [C], area: Rectang
     }
 }
 
-/// The channels of one row, exactly: a level of the pixel format each, and what remains above it as a numerator.
+/// The channels of one row, exactly: for each a level of the pixel format, and the remainder as a numerator.
 struct Levels {
     channels: [(u32, u32); 3],
     denominator: u32,
@@ -44,7 +44,7 @@ impl Levels {
         Self { channels: [channel(top_r, r, dr), channel(top_g, g, dg), channel(top_b, b, db)], denominator }
     }
 
-    /// The colour by a threshold in 1/128 of a step.
+    /// The colour for a threshold in 1/128 of a step.
     fn colour<C: Pixel>(&self, threshold: u32) -> C {
         let whole = self.denominator << 7;
         C::pack(self.channels.map(|(level, numerator)| level + u32::from((numerator << 7) + threshold * self.denominator >= whole)))

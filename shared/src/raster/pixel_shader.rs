@@ -1,20 +1,20 @@
-//! Pixel shaders: walked values to pixels, in loops that are compiled for one method and one pixel format.
+//! Pixel shaders, which convert walked values to pixels in loops that are compiled for one method and one pixel format.
 
 use crate::pixel::{Pixel, dither::ByRows, ramps::Ramps};
 use core::marker::PhantomData;
 
-/// Turns the value at one pixel into its colour.
+/// Converts the value at a pixel to its colour.
 pub trait PixelShader<V>: ByRows {
     /// The pixel that is stored.
     type Pixel: Pixel;
 
-    /// Whether the shader has so few instructions that a loop without depth test is worth its code.
+    /// Whether the shader takes so few instructions that a loop without depth test is worth its code.
     const CHEAP: bool = false;
 
-    /// Number of the shader among those of its method, which is saved with an active triangle.
+    /// Number of the shader among the method's shaders. It is saved with an active triangle.
     const ID: u8 = 0;
 
-    /// The colour of a value, with a [`crate::pixel::dither::threshold`].
+    /// The colour of a value, by a [`crate::pixel::dither::threshold`].
     fn shade(&self, value: V, threshold: u32) -> Self::Pixel;
 }
 
@@ -52,7 +52,7 @@ impl<C: Pixel> PixelShader<()> for Solid<C> {
     }
 }
 
-/// One walked level, which is an index of a table of colours; guards at both ends of a table take the place of a clamp.
+/// One walked level, which is the index of a table of colours. Guards at both ends of the table replace a clamp.
 #[derive(Debug)]
 pub struct Ramp<'a, C: Pixel>(pub &'a C::Ramps);
 
@@ -77,8 +77,8 @@ impl<C: Pixel> PixelShader<[u32; 1]> for Ramp<'_, C> {
     }
 }
 
-/// Three walked levels with [`crate::format::CHANNEL`] fraction bits, scaled so that their upper bits are the channels; what rounds or
-/// dithers is in them already.
+/// Three walked levels with [`crate::format::CHANNEL`] fraction bits, scaled so that their upper bits are the channels. Constants for rounding or
+/// dither have been added.
 #[derive(Clone, Copy, Debug)]
 pub struct Rgb<C>(pub PhantomData<C>);
 

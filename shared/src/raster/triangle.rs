@@ -1,4 +1,4 @@
-//! Draws one triangle into one band: edges, plane of depth, and the rows between the edges.
+//! Drawing of one triangle into one band: edges, plane of depth, and the rows between the edges.
 
 use crate::{
     arch::product::HALVES,
@@ -37,7 +37,7 @@ pub struct ScreenTriangle {
 #[derive(Clone, Copy, Debug)]
 struct RowRange {
     sides: EdgeWalker,
-    /// The plane of depth on the first row, if it is known already.
+    /// The plane of depth on the first row, if it is known.
     inv_depth: Option<Plane<1>>,
     /// The key among [`ActiveTriangles`]; 0 if the triangle is not saved for the next band.
     key: u32,
@@ -83,8 +83,8 @@ impl ScreenTriangle {
     /// No triangle.
     pub(crate) const NONE: Self = Self { corners: [[0; 2]; 3], depth: [0; 3], turned: 0, rows: RowRange::of(EdgeWalker::NONE, 0) };
 
-    /// Turns the corners until the top one is first; the order around the triangle stays. What lies beside these `columns` and `rows` is not
-    /// drawn, unless edges are stepped from end to end: they have to be those of the band then.
+    /// Rotates the corners so that the top one is first. Pixels outside of these `columns` and `rows` are not drawn. If edges are stepped from end to
+    /// end, these have to be the band's.
     #[inline(never)]
     #[must_use]
     pub fn new(corners: [&ScreenVertex; 3], columns: [i32; 2], rows: [i32; 2]) -> Self {
@@ -123,7 +123,7 @@ impl ScreenTriangle {
         self.rows.sides.row >= self.rows.sides.end
     }
 
-    /// Whether the triangle contains no centre of a pixel within the rows of the band.
+    /// Whether the triangle contains no centre of a pixel in the rows of the band.
     #[must_use]
     pub(crate) fn covers_nothing(&self) -> bool {
         let sides = &self.rows.sides;
@@ -149,7 +149,7 @@ impl ScreenTriangle {
         self.rows.inv_depth = Some(self.fit_depth(gradients, self.rows.sides.row));
     }
 
-    /// Draws the rows that lie in `band`; returns how many pixels they have.
+    /// Draws the triangle's rows in `band`. Returns the number of its pixels there.
     #[inline(always)]
     pub fn draw<P: Patch, T: PixelShader<<P::Walker as Walker>::Value>>(
         &self,
@@ -165,7 +165,7 @@ impl ScreenTriangle {
         self.walk(gradients, inv_depth, patch, shader, band)
     }
 
-    /// Draws the rows that lie in `band` without a depth test, for triangles that no other overlaps; returns how many pixels they have.
+    /// Draws the triangle's rows in `band` without a depth test, because no other triangle overlaps it. Returns the number of its pixels there.
     #[inline(always)]
     pub fn draw_alone<P: Patch, T: PixelShader<<P::Walker as Walker>::Value>>(
         &self,
@@ -185,7 +185,7 @@ impl ScreenTriangle {
         Self { corners: places(corners), depth: depths(corners), turned, rows: RowRange::of(EdgeWalker::NONE, 0) }
     }
 
-    /// Draws the rows that lie in `canvas` by the general loop; returns how many pixels they have. `shader` stands on the anchor's row.
+    /// Draws the triangle's rows in `canvas` by the general loop. Returns the number of its pixels there. `shader` stands on the anchor's row.
     #[inline(never)]
     pub fn draw_spans(&self, gradients: &Gradients, shader: &mut dyn SpanShader, canvas: &mut dyn Canvas) -> u32 {
         let sides = &self.rows.sides;
@@ -332,7 +332,7 @@ pub(crate) fn fill_rows<D: Patch<Walker: DepthTest>, P: Patch, T: PixelShader<<P
 }
 
 impl<'b, D: Patch<Walker: DepthTest>, P: Patch, T: PixelShader<<P::Walker as Walker>::Value>> Rows<'b, D, P, T> {
-    /// Whether rows are filled in a copy, see [`fill_rows`].
+    /// Whether rows are filled in a local copy, see [`fill_rows`].
     const LOCAL: bool = HALVES || cfg!(not(target_arch = "arm")) || size_of::<P>() == 0;
 
     /// Whether pixels are counted a row ahead in that copy, so that the count need not be kept during the pixel loop.

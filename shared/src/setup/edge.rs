@@ -1,8 +1,7 @@
 //! Edges of a triangle against pixel centres: the top-left rule, exactly.
 //!
-//! A pixel belongs to a triangle if its centre lies inside, or on a left or top edge. Both edges of a span ask the same question, *which is
-//! the first column whose centre is not left of me*, so spans are half open, and neighbours get one answer along their common edge: no gap,
-//! no pixel twice.
+//! A pixel belongs to a triangle if its centre lies inside, or on a left or top edge. Both edges of a span ask the same question: *which is the first
+//! column whose centre is not left of me?* So spans are half open, and neighbours get one answer along their common edge: no gap, and no pixel twice.
 //!
 //! ```text
 //!   centres   +   +   +   +      x = 2.5 on a left edge:  column 2 is in
@@ -19,7 +18,7 @@ use crate::{
 /// Fraction bits of a stepped column.
 pub(crate) const COLUMN: u32 = SLOPE;
 
-/// Number of columns that a stepped column can tell apart: no viewport is wider.
+/// Number of columns that a stepped column can distinguish. No viewport is wider.
 pub(crate) const COLUMNS: u32 = 1 << (32 - COLUMN);
 
 /// Largest height of an edge that is stepped from end to end, in 1/16 pixel: 89 rows.
@@ -29,7 +28,7 @@ const _: () = assert!(MAX_STEPPED_HEIGHT as usize <= LARGEST);
 /// Largest width of an edge that fits a word with [`COLUMN`] fraction bits, in 1/16 pixel: 64 columns.
 pub(crate) const MAX_STEPPED_WIDTH: i32 = (1 << (31 - COLUMN)) - 1;
 
-/// Least height of an edge whose column is divided anew on each row, in 1/16 pixel: no viewport is as high.
+/// Smallest height of an edge whose column is divided in each row, in 1/16 pixel. No viewport is as high.
 const MIN_DIVIDED_HEIGHT: i32 = 1 << (32 - COLUMN + SUBPIXEL);
 
 /// An edge from an upper to a lower point, 1/16 pixel.
@@ -51,7 +50,7 @@ pub(crate) struct EdgeX {
     pub step: u32,
 }
 
-/// A coordinate in 1/16 pixel in the format of a stepped column. All ones below the integer part turn its floor into a ceiling.
+/// Converts a coordinate in 1/16 pixel to the format of a stepped column. All ones below the integer part turn its floor into a ceiling.
 #[inline(always)]
 fn walked(sixteenths: i32) -> u32 {
     ((sixteenths << (COLUMN - SUBPIXEL)) as u32).wrapping_add((1 << COLUMN) - 1)
@@ -90,8 +89,8 @@ impl Edge {
         }
     }
 
-    /// The column at the centre of its first row, ready to be stepped to its end. Only for edges of at most [`MAX_STEPPED_HEIGHT`]
-    /// and [`MAX_STEPPED_WIDTH`], whose columns lie in [0, [`COLUMNS`]).
+    /// The column at the centre of the edge's first row, ready to be stepped to its end. Domain: edges of at most [`MAX_STEPPED_HEIGHT`] and
+    /// [`MAX_STEPPED_WIDTH`], whose columns lie in [0, [`COLUMNS`]).
     ///
     /// A true position is a multiple of 1/(256 h) columns, h the height in rows. The start is too small by less than
     /// 2 · 2^-21 and each step by less than 2^-21, so in row n the integer part is right while (n + 3) 256 h < 2^21.
@@ -105,17 +104,17 @@ impl Edge {
         EdgeX { x: walked(self.x.wrapping_sub(CENTRE)).wrapping_add(across as u32), step: step as u32 }
     }
 
-    /// Number of rows over which a stepped column of a larger edge stays exact; 0 if the edge cannot be stepped.
+    /// Number of rows over which the stepped column of a larger edge stays exact; 0 if the edge cannot be stepped.
     ///
-    /// The bound is that of [`Self::walk`], except that the start is too small by less than 2^-21.
+    /// The bound is the one in [`Self::walk`], except that the start is too small by less than 2^-21.
     #[inline(always)]
     #[must_use]
     pub(crate) fn exact_rows(&self) -> i32 {
         if self.dy < MIN_DIVIDED_HEIGHT { (1 << (COLUMN + SUBPIXEL - 8)) / self.dy.max(1) - 2 } else { 0 }
     }
 
-    /// The column at the centre of `row`, ready to be stepped. Only for edges with `exact_rows() > 0`
-    /// whose columns lie in [0, [`COLUMNS`]), and rows of the edge.
+    /// The column at the centre of `row`, ready to be stepped. Domain: edges with `exact_rows() > 0` whose columns lie in [0, [`COLUMNS`]), and rows
+    /// of the edge.
     #[must_use]
     pub(crate) fn walk_from(&self, row: i32) -> EdgeX {
         let dy = self.dy.max(1) as u32;

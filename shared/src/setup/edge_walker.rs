@@ -42,12 +42,12 @@ struct LowerEdge {
     right: bool,
 }
 
-/// What comes when edges have been stepped as far as they can be.
+/// Continuation at the row to which edges can be stepped.
 #[derive(Clone, Copy, Debug)]
 enum Then {
     /// All edges are stepped from end to end: the lower one replaces one of the other two.
     Lower(LowerEdge),
-    /// Edges begin anew, within these columns.
+    /// Edges are computed again, within these columns.
     Anew([i32; 2]),
 }
 
@@ -70,7 +70,7 @@ pub(crate) struct EdgeState {
 }
 
 impl EdgeState {
-    /// The state of no triangle; all zeros.
+    /// The state without a triangle; all zeros.
     pub(crate) const NONE: Self = Self { pair: LeftRight::NONE, column: EdgeX::NONE, turn: 0, low: 0, right: 0, shader: 0, unused: 0 };
 
     /// The edges in the rows from `top` to `bottom` of the next band.
@@ -105,7 +105,7 @@ pub(crate) struct EdgeWalker {
     low: i32,
     /// First row of the edge below the middle corner.
     turn: i32,
-    /// At `stop`.
+    /// Continuation at the row `stop`.
     then: Then,
 }
 
@@ -113,8 +113,8 @@ impl EdgeWalker {
     /// Edges without rows; all zeros.
     pub(crate) const NONE: Self = Self { pair: LeftRight::NONE, row: 0, stop: 0, end: 0, low: 0, turn: 0, then: Then::Anew([0; 2]) };
 
-    /// The edges of a triangle, its top corner first, clockwise, in the rows from `top` to `bottom` of a band and between two `columns`, unless
-    /// it is so small that it is stepped from end to end.
+    /// The edges of a triangle in the rows from `top` to `bottom` of a band and between two `columns`. Corners are clockwise, the top one first. A
+    /// triangle that is small enough is stepped from end to end, whatever the columns.
     pub(crate) fn new(corners: [[i32; 2]; 3], [top, bottom]: [i32; 2], columns: [i32; 2]) -> Self {
         let [[_, upper], [_, right], [_, left]] = corners;
         let low = right.max(left);
@@ -177,7 +177,7 @@ impl EdgeWalker {
         stop
     }
 
-    /// The next rows of a large triangle, or of one beside the columns: as many as stay exact, or one.
+    /// The next rows of a large triangle, or of one that is cut by the columns: as many as stay exact, or one.
     #[cold]
     #[inline(never)]
     fn next_large(self, row: i32, corners: [[i32; 2]; 3], columns: [i32; 2]) -> (i32, LeftRight) {

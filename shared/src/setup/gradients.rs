@@ -1,4 +1,4 @@
-//! From values at the nodes of a triangle to derivatives on the screen.
+//! Gradients, which convert values at the nodes of a triangle to derivatives on the screen.
 //!
 //! With corner 0 as the origin, `s` and `t` are the barycentric coordinates of
 //! corners 1 and 2. Their gradients are 30-bit mantissas with one
@@ -7,7 +7,7 @@
 //! well conditioned where the printed formulas divide by zero
 //! (Szirmay-Kalos et al.; see their T3..T5).
 //!
-//! Word-sized triangles take shorter ways: in words where nodes have few bits, and by mantissas of one word elsewhere.
+//! Word-sized triangles are set up faster: in words if nodes have few bits, and otherwise by mantissas of one word.
 
 use crate::{
     arch::product::{product, rounded},
@@ -16,16 +16,16 @@ use crate::{
     setup::{sliver::Sliver, steepness::Steepness, terms::Terms, word_sized, word_sized::WordSized},
 };
 
-/// Fraction bits beyond those of the walked format, while coefficients move to the anchor.
+/// Fraction bits of coefficients beyond the walked format, until they have been moved to the anchor.
 pub const GUARD: i32 = 12;
 
-/// Largest extent of a triangle, in columns plus rows, whose anchor is the pixel at its first corner. The anchor of a larger one is the
-/// middle of its visible part.
+/// Largest size of a triangle, in columns plus rows, whose anchor is the pixel at its first corner. The anchor of a larger triangle is the middle of
+/// its visible part.
 pub const NEAR: i32 = 256;
 
 /// Length over height beyond which quadratic fields are fitted by exact fractions.
 ///
-/// The error of the fast way grows with the square of this ratio: at most 2^-22 of the nodes' range at 1, 2^-8 here.
+/// The error of the fast way grows with the square of this ratio. It is at most 2^-22 of the nodes' range at 1, and 2^-8 here.
 pub const MAX_THINNESS: i64 = 128;
 /// Length over height beyond which fields of more than `word_sized::LINEAR` bits, such as cosines, are fitted by exact fractions. Sharp highlights
 /// need all of these bits.
@@ -46,17 +46,17 @@ const LEAST: i32 = 20;
 #[derive(Clone, Copy, Debug)]
 pub struct Gradients {
     scale: Scale,
-    /// From corner 0 to the centre of its pixel, [`FINE`] fraction bits.
+    /// Vector from corner 0 to the centre of its pixel, [`FINE`] fraction bits.
     offset: [i32; 2],
-    /// From that pixel to the anchor, in pixels.
+    /// Vector from that pixel to the anchor, in pixels.
     shift: [i32; 2],
     /// The anchor.
     anchor: [i32; 2],
-    /// Corners 1 and 2 from corner 0, in 1/16 pixel, of a part of the triangle 2^`level` times finer.
+    /// Vectors from corner 0 to the corners 1 and 2, in 1/16 pixel, of a part of the triangle 2^`level` times finer.
     edges: [[i32; 2]; 2],
     /// How often the triangle was split.
     level: u32,
-    /// How steeply light follows what is fitted.
+    /// How steeply light depends on the fitted field.
     steepness: Steepness,
 }
 
@@ -98,7 +98,7 @@ impl Gradients {
         Some(Self::from_area(corners, WordSized::new(edges)?, Steepness::NONE))
     }
 
-    /// The gradients of a triangle on which nothing is fitted.
+    /// Gradients of a triangle on which nothing is fitted.
     pub(crate) const NONE: Self = Self {
         scale: Scale::Any(Slopes { s: [0; 2], t: [0; 2], exponent: 0 }),
         offset: [0; 2],
@@ -186,8 +186,8 @@ impl Gradients {
         self.steepness
     }
 
-    /// The gradients of a part of the triangle: its copy, 2^`level` times smaller, with corner 0 at `corner` ([`FINE`] fraction bits),
-    /// turned by 180 degrees or not. Exact: a copy's gradients are the triangle's, times ±2^`level`.
+    /// The gradients of a part of the triangle: a copy that is 2^`level` times smaller, has corner 0 at `corner` ([`FINE`] fraction bits), and is
+    /// turned by 180 degrees or not. They are exact: the triangle's gradients times ±2^`level`.
     ///
     /// A part that is not `near` its corner everywhere has the triangle's anchor.
     #[must_use]
@@ -219,8 +219,8 @@ impl Gradients {
         }
     }
 
-    /// Whether the triangle is not word-sized and longer than `ratio` times its height, about: its longest side by columns or rows from
-    /// corner 0, squared, over twice its area.
+    /// Whether the triangle is not word-sized and longer than about `ratio` times its height. The measure is the square of its longest side by
+    /// columns or rows from corner 0, over twice its area.
     #[inline(always)]
     #[must_use]
     pub fn is_thinner_than(&self, ratio: i64) -> bool {
@@ -290,7 +290,7 @@ impl Gradients {
         }
     }
 
-    /// By value: were its address taken, the fast way would keep these gradients in memory.
+    /// The gradients are passed by value: if their address were taken, the fast way would keep them in memory.
     #[inline(never)]
     fn linear_otherwise(self, bits: u32, nodes: [i32; 3], extra: u32) -> [i32; 3] {
         match self.scale {
@@ -299,7 +299,7 @@ impl Gradients {
         }
     }
 
-    /// From corner 0 to the centre of its pixel, in 1/16 pixel, for a triangle that is not a part.
+    /// Vector from corner 0 to the centre of its pixel, in 1/16 pixel, for a triangle that is not a part.
     #[inline(always)]
     fn subpixels(&self) -> [i32; 2] {
         [self.offset[0] >> SPLITS, self.offset[1] >> SPLITS]
@@ -329,8 +329,7 @@ impl Gradients {
         [c.wrapping_add(dx.wrapping_mul(x)).wrapping_add(dy.wrapping_mul(y)), dx, dy]
     }
 
-    /// `[c, dx, dy]` of the linear field through the corners' values, in the pixel at corner 0, with `GUARD` more bits than
-    /// walked.
+    /// The coefficients `[c, dx, dy]` of the linear field through the corners' values, at the pixel of corner 0, with `GUARD` more bits than walked.
     #[inline(always)]
     fn plane(&self, nodes: [i32; 3], extra: u32) -> [i64; 3] {
         let (c, dx, dy) = self.slopes(nodes[0], nodes[1].wrapping_sub(nodes[0]), nodes[2].wrapping_sub(nodes[0]), extra);
@@ -443,7 +442,7 @@ impl Gradients {
         self.round([c, dx, dy, dxx, dxy, dyy])
     }
 
-    /// Length over height, rounded up; the length as [`Self::is_thinner_than`] takes it.
+    /// Length over height, rounded up, where length is measured as in [`Self::is_thinner_than`].
     #[inline(always)]
     fn thinness(&self) -> u32 {
         match self.scale {
@@ -470,7 +469,7 @@ impl Gradients {
 
     /// The terms of the cubic through ten nodes in a range of 2^15, at the anchor; by powers of x, then of y.
     ///
-    /// In 128 bits all is exact but the gradients, and one rounding of each coefficient.
+    /// In 128 bits all steps are exact, except the gradients and one rounding of each coefficient.
     #[must_use]
     pub fn cubic(&self, nodes: [i32; 10], extra: u32) -> Terms<i64> {
         let fraction = extra + GUARD as u32;

@@ -1,27 +1,27 @@
-//! Polynomials on thin triangles, by exact fractions.
+//! Exact fits of polynomials on thin triangles, by fractions.
 //!
-//! Across a sliver a polynomial bends so sharply that its derivatives on the screen cancel one another; any that are rounded before they
-//! meet lose the value. Here nothing is rounded before the last division, which is slow but rarely needed.
+//! Across a sliver a polynomial bends so sharply that its derivatives on the screen cancel one another, and rounding them separately would lose the
+//! value. Here nothing is rounded before the last division. This is slow, but rarely needed.
 
 use crate::{math::wide::Wide, setup::terms::Terms};
 use core::num::NonZeroU32;
 
-/// A triangle by the two edges that leave its first corner, and the anchor relative to that corner.
+/// A triangle, given by the two edges from its first corner, and the anchor relative to this corner.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Sliver {
     /// Fraction bits of all coordinates.
     bits: u32,
-    /// `[x, y]` of corner 1 and of corner 2, from corner 0.
+    /// Vectors `[x, y]` from corner 0 to corner 1 and to corner 2.
     edges: [[i32; 2]; 2],
-    /// From corner 0 to the anchor.
+    /// Vector from corner 0 to the anchor.
     offset: [i32; 2],
     /// Twice the area.
     area: NonZeroU32,
 }
 
 impl Sliver {
-    /// The triangle of these edges, the anchor at `offset`, all with `bits` fraction bits; `None` if twice its area does not fit a word, as
-    /// only that of a triangle which is thousands of pixels long, and not thin.
+    /// The triangle with these edges and the anchor at `offset`, all with `bits` fraction bits. `None` if twice its area does not fit a word; such a
+    /// triangle is thousands of pixels long, and not thin.
     pub(crate) fn new(edges: [[i32; 2]; 2], offset: [i32; 2], bits: u32) -> Option<Self> {
         let [[x1, y1], [x2, y2]] = edges.map(|edge| edge.map(i64::from));
         let area = u32::try_from(x1 * y2 - x2 * y1).ok().and_then(NonZeroU32::new)?;
@@ -30,7 +30,7 @@ impl Sliver {
 
     /// `[c, dx, dy, dxx, dxy, dyy]` of the quadratic through six nodes at the anchor, with `extra` more bits than the nodes.
     ///
-    /// Every coefficient is the exact one rounded, modulo 2^64.
+    /// Every coefficient is exact before it is rounded, modulo 2^64.
     #[cold]
     #[inline(never)]
     pub(crate) fn quadratic(&self, nodes: [i32; 6], extra: u32) -> [i64; 6] {
@@ -63,7 +63,7 @@ impl Sliver {
 
     /// The terms of the cubic through ten nodes at the anchor, with `extra` more bits than the nodes.
     ///
-    /// Every coefficient is the exact one, rounded down, modulo 2^128.
+    /// Every coefficient is exact before it is rounded down, modulo 2^128.
     #[cold]
     #[inline(never)]
     pub(crate) fn cubic(&self, nodes: [i32; 10], extra: u32) -> Terms<Wide> {
@@ -85,7 +85,7 @@ impl Sliver {
     }
 }
 
-/// Dot product; what the shorter one lacks is 0.
+/// The dot product of two vectors. Missing components of the shorter one are 0.
 #[inline(never)]
 fn dot(a: &[Wide], b: &[Wide]) -> Wide {
     a.iter().zip(b).fold(Wide(0), |sum, (&a, &b)| sum + a * b)

@@ -1,17 +1,17 @@
-//! How exactly a field has to be fitted and walked, so that no highlight shows an error of it.
+//! Steepness of a field: how exactly it has to be fitted and walked, so that no highlight shows its errors.
 //!
-//! A highlight of exponent n that is off by e in its cosine is off by up to 255 n e levels. Three errors of a field grow: of first derivatives, of
-//! second derivatives, and of walking. Each has its share of half a level. Where a faster way would take more, a slower one is taken.
-//! Ordinary meshes have next to no such triangles.
+//! If the cosine of a highlight of exponent n has the error e, its level has an error of up to 255 n e. Three errors of a field grow with the
+//! triangle: errors of first derivatives, of second derivatives, and of walking. Each has a fixed part of half a level. If a fast way would exceed
+//! this, a slower one is taken. Ordinary meshes have next to no such triangles.
 
-/// What first derivatives may add to a highlight, in 1/255.
+/// Largest error of a highlight by first derivatives, in 1/255.
 pub const SLOPE: f64 = 0.06;
-/// What second derivatives may add to a highlight, in 1/255.
+/// Largest error of a highlight by second derivatives, in 1/255.
 pub const CURVATURE: f64 = 0.02;
-/// What walking may add to a highlight, in 1/255.
+/// Largest error of a highlight by walking, in 1/255.
 pub const WALK: f64 = 0.07;
 
-/// The largest `n e` by which a highlight is off by a share of 1/255, in units of 2^-`bits`.
+/// The largest `n e`, in units of 2^-`bits`, at which a highlight has an error of `share` of 1/255.
 const fn limit(share: f64, bits: u32) -> u32 {
     (share / 255.0 * (1u64 << bits) as f64) as u32
 }
@@ -26,37 +26,37 @@ const THIN: u32 = limit(SLOPE, 25) * 10 / 13;
 /// Largest n d k² that words fit, or gradients of 30 bits: with d the second difference of nodes, quadratics are off by 2^-25 d k².
 const BEND: u32 = limit(CURVATURE, 25);
 
-/// The largest power of two that fits `a / b`, by its logarithm: a division takes a small processor longer.
+/// The largest power of two that fits `a / b`, as its logarithm. A division would take a small processor longer.
 const fn log_quotient(a: u32, b: u32) -> u32 {
     let log = a.ilog2() - b.ilog2();
     if b << log <= a { log } else { log - 1 }
 }
 
-/// The largest steepness that is told apart. Words that walk a quadratic of this steepness all over a word-sized triangle also fit its first
+/// The largest steepness that is distinguished. If words walk a quadratic of this steepness all over a word-sized triangle, they also fit its first
 /// derivatives: [`FIRST`] is the smaller limit only below 8 pixels, where it allows this much.
 const MOST: u32 = FIRST >> 3;
 
-/// How steeply light follows a field: as a highlight of this exponent, or of exponent 0 for a field of levels; and which fast ways are
-/// exact enough for it.
+/// How steeply light depends on a field: as a highlight of this exponent, or as exponent 0 for a field of levels. It also tells which fast ways are
+/// exact enough.
 ///
-/// One word, since every triangle keeps it.
+/// It fits one word, because every triangle keeps it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[repr(align(4))]
 pub struct Steepness {
     exponent: u16,
-    /// Bits of the longest side of a word-sized triangle, in 1/16 pixel, all over which words walk a quadratic: no way is longer than
-    /// 2^(bits - 3). [`Self::ALL`] if nothing limits them.
+    /// Bits of the longest side, in 1/16 pixel, of a word-sized triangle on which words walk a quadratic exactly enough: no distance is more than
+    /// 2^(bits - 3). [`Self::ALL`] if there is no limit.
     walked: u8,
     /// Largest logarithm of d k², [`Self::LOG`] added, for which words fit second derivatives.
     bend: u8,
 }
 
 impl Steepness {
-    /// No limit.
+    /// The value for no limit.
     const ALL: u8 = u8::MAX;
     /// Added to logarithms, so that all are positive.
     pub(crate) const LOG: u32 = 18;
-    /// The steepness of a field of levels, of which no highlight is computed.
+    /// The steepness of a field of levels, from which no highlight is computed.
     pub const NONE: Self = Self { exponent: 0, walked: Self::ALL, bend: Self::ALL };
 
     /// The steepness of quadratics that are raised to `exponent`.
@@ -73,7 +73,7 @@ impl Steepness {
         }
     }
 
-    /// The steepness of a quadratic on a large triangle, where light follows it `2^bits` times less steeply.
+    /// The steepness of a quadratic on a large triangle, where light depends on it `2^bits` times less steeply.
     #[must_use]
     pub(crate) fn halved(self, bits: u32) -> Self {
         Self { exponent: self.exponent >> bits, ..self }
@@ -92,13 +92,13 @@ impl Steepness {
         self.walked == Self::ALL || ((span * span) >> 4) * u32::from(self.exponent) <= WALKED >> 4
     }
 
-    /// Whether a quadratic can be walked in words all over a word-sized triangle whose sides have so many bits.
+    /// Whether a quadratic can be walked in words all over a word-sized triangle whose sides have this number of bits.
     #[inline(always)]
     pub(crate) fn walks_word_sized(self, bits: u32) -> bool {
         bits <= u32::from(self.walked)
     }
 
-    /// The logarithm of the side of the largest square tiles in whose middles quadratics can be anchored, in pixels.
+    /// Base-2 logarithm of the side, in pixels, of the largest square tiles in whose middles quadratics can be anchored.
     pub(crate) fn tile(self) -> u32 {
         let mut side = 3;
         while side < 8 && self.walks_in_words(2 << side) {
@@ -107,18 +107,18 @@ impl Steepness {
         side
     }
 
-    /// Whether a highlight is computed of the field.
+    /// Whether a highlight is computed from the field.
     #[inline(always)]
     pub(crate) fn is_steep(self) -> bool {
         self.exponent > 0
     }
 
-    /// Whether the field makes a highlight of an exponent above 128, or above 64 by a root.
+    /// Whether the field makes a highlight of an exponent above 128, or above 64 if it is a root.
     pub(crate) fn is_sharp(self) -> bool {
         self.exponent > 128
     }
 
-    /// Whether words fit first derivatives on a word-sized triangle whose sides have so many bits.
+    /// Whether words fit first derivatives on a word-sized triangle whose sides have this number of bits.
     #[inline(always)]
     pub(crate) fn fits_words(self, bits: u32) -> bool {
         u32::from(self.exponent) <= (FIRST << 3) >> (bits & 31)
@@ -130,15 +130,15 @@ impl Steepness {
         log <= u32::from(self.bend)
     }
 
-    /// Whether second derivatives can be rounded relative to the second differences, which are below 2^-`small`, on a triangle so many times as
-    /// long as high.
+    /// Whether second derivatives can be rounded relative to the second differences, which are below 2^-`small`, on a triangle that is `thinness`
+    /// times as long as high.
     pub(crate) fn bends(self, small: i32, thinness: u32) -> bool {
         let bend = u32::from(self.exponent).saturating_mul(thinness.saturating_mul(thinness));
         (if small < 0 { bend.saturating_mul(1 << -small.max(-3)) } else { bend >> small.min(31) }) <= BEND
     }
 
-    /// Whether gradients of 30 bits do not fit a quadratic on a triangle so many times as long as high, if second derivatives are rounded as if they
-    /// were large.
+    /// Whether gradients of 30 bits do not fit a quadratic on a triangle that is `thinness` times as long as high, if second derivatives are rounded
+    /// as for large second differences.
     #[inline(always)]
     pub(crate) fn is_thin(self, thinness: u32) -> bool {
         // No limit is above 511, and steepness has at most 13 bits.

@@ -1,9 +1,9 @@
-//! Word-sized triangles: sums of products in one word, before they meet the triangle's area.
+//! Set-up of word-sized triangles: sums of products stay in one word until they are multiplied by the inverse of the area.
 //!
-//! A triangle of up to 64 pixels has sides of few bits, and light levels have few bits too. The numerator of a first derivative is then an
-//! integer of one word, exact, that of a second one is rounded once to a word; each meets the inverse of the area, or its square, in one
-//! product. First derivatives are kept per 1/16 pixel: the way from corner 0 to the centre of its pixel is whole steps of these, exact
-//! modulo 2^32 however steep they are. Eight long products for depth and a quadratic, where other triangles take fifty.
+//! A triangle of up to 64 pixels has sides of few bits, and light levels have few bits too. The numerator of a first derivative is therefore an exact
+//! integer of one word. The numerator of a second derivative is rounded once to a word. One product with the inverse of the area, or with its square,
+//! gives the derivative. First derivatives are kept per 1/16 pixel: from corner 0 to the centre of its pixel there are whole steps of these, exact
+//! modulo 2^32 however steep they are. Depth and a quadratic take eight long products, where other triangles take fifty.
 //!
 //! Cosines have more bits. Their differences, made as large as words allow, times sides of half a word are rounded to words as well.
 
@@ -18,7 +18,7 @@ use crate::{
     setup::steepness::Steepness,
 };
 
-/// Largest number of fraction bits that walked values have beyond those of nodes.
+/// Largest number of fraction bits that walked values have more than nodes.
 pub(crate) const EXTRA: u32 = 16;
 /// Bits of the range of nodes of a linear field.
 pub(crate) const LINEAR: u32 = 20;
@@ -26,7 +26,7 @@ pub(crate) const LINEAR: u32 = 20;
 pub(crate) const QUADRATIC: u32 = 15;
 /// Bits of the range of nodes of fields that are walked with [`LONG_EXTRA`].
 pub(crate) const LONG: u32 = 26;
-/// Least number of fraction bits that walked values of fields of [`LONG`] bits have beyond those of nodes.
+/// Smallest number of fraction bits that walked values of fields of [`LONG`] bits have more than nodes.
 pub(crate) const LONG_EXTRA: u32 = 5;
 /// Largest number of bits of a second derivative of such a field, by room for the move to the anchor.
 const LONG_SECOND: u32 = 27;
@@ -192,7 +192,7 @@ impl WordSized {
         Some([c, dx, dy, dxx, dxy.wrapping_mul(2), dyy])
     }
 
-    /// Whether words fit quadratics of this steepness, whose second differences are below 2^-`small`.
+    /// Whether words fit quadratics of this steepness whose second differences are below 2^-`small`.
     #[cold]
     #[inline(never)]
     fn is_exact(self, edges: [[i32; 2]; 2], small: i32, steepness: Steepness) -> bool {
@@ -237,14 +237,14 @@ impl WordSized {
     }
 }
 
-/// A shift by which all three stay within 2^30; the largest one, or nearly.
+/// A shift by which all three values stay within 2^30: the largest one, or nearly.
 #[inline(always)]
 fn room([a, b, c]: [i32; 3]) -> u32 {
     let size = |c: i32| (c ^ (c >> 31)) as u32;
     leading_zeros((size(a) | size(b) | size(c)) >> 8) - 10
 }
 
-/// Twice the area between two edges, as far as a word holds it.
+/// Twice the area between two edges, modulo 2^32.
 #[inline(always)]
 fn area([[x1, y1], [x2, y2]]: [[i32; 2]; 2]) -> i32 {
     x1.wrapping_mul(y2).wrapping_sub(x2.wrapping_mul(y1))

@@ -1,4 +1,4 @@
-//! What draws a triangle within an error budget: the cheapest of what [`crate::method::ErrorBounds`] allow.
+//! The choice of the cheapest way to draw a triangle within an error budget, by the bounds of [`crate::method::ErrorBounds`].
 
 use super::costs::SAVINGS;
 use crate::{
@@ -12,23 +12,23 @@ use crate::{
     setup::edge::COLUMNS,
 };
 
-/// What draws a triangle.
+/// A way to draw a triangle.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Choice {
-    /// One colour, half-way between what the corners have, and these levels (Q9.7) more.
+    /// One colour: the mean of the extremes at the corners, raised by these levels, Q9.7.
     Solid(i32),
-    /// Linear interpolation between the corners, and these levels (Q9.7) more.
+    /// Linear interpolation between the corners, raised by these levels, Q9.7.
     Linear(i32),
-    /// Levels at six nodes, quadratic in between.
+    /// Levels at six nodes, interpolated quadratically.
     Quadratic,
-    /// Cosines at six nodes, quadratic in between, highlights looked up at the pixel.
+    /// Cosines at six nodes, interpolated quadratically; highlights are looked up at the pixel.
     Cosines,
     /// Phong shading.
     Phong,
 }
 
 impl Choice {
-    /// How many triangles are drawn so.
+    /// The count of triangles that are drawn in this way.
     pub(super) fn count(self, counts: &mut Counts) -> &mut u32 {
         let [solid, linear, quadratic, cosines, phong] = &mut counts.choices;
         match self {
@@ -41,7 +41,7 @@ impl Choice {
     }
 }
 
-/// Chooses what draws a triangle.
+/// Chooses how to draw a triangle.
 #[inline(always)]
 #[must_use]
 pub fn choose<const QUADRATICS: bool>(setup: &TriangleSetup<'_>, shading: &Shading<'_>) -> Choice {
@@ -73,7 +73,7 @@ fn under_two_lights<const QUADRATICS: bool>(setup: &TriangleSetup<'_>, shading: 
     choice.unwrap_or_else(|| curved::<QUADRATICS>(setup, shading, curvature))
 }
 
-/// What draws a triangle that is not within the budget by linear interpolation: the cheapest of what is.
+/// The cheapest way to draw a triangle that linear interpolation does not keep within the budget.
 #[inline(never)]
 fn curved<const QUADRATICS: bool>(setup: &TriangleSetup<'_>, shading: &Shading<'_>, curvature: Curvature) -> Choice {
     let two_lights = !shading.vertices_have_cosines();
@@ -104,7 +104,7 @@ fn is_quadratic(setup: &TriangleSetup<'_>, shading: &Shading<'_>, curvature: Cur
         && !(bounds.may_saturate() && bounds.saturates(curvature, cosines, reflectance))
 }
 
-/// About how many rows and pixels the triangle covers.
+/// Approximate numbers of rows and pixels that the triangle covers.
 #[inline(always)]
 fn extent(setup: &TriangleSetup<'_>) -> [i32; 2] {
     let [a, b, c] = setup.corners;
@@ -115,20 +115,20 @@ fn extent(setup: &TriangleSetup<'_>) -> [i32; 2] {
     [(y1.max(y2) >> 2).min(COLUMNS as i32), pixels.min(COLUMNS * COLUMNS) as i32]
 }
 
-/// The least and the largest of three values.
+/// The smallest and the largest of three values.
 #[inline(always)]
 pub(super) fn extremes([a, b, c]: [i32; 3]) -> [i32; 2] {
     [a.min(b).min(c), a.max(b).max(c)]
 }
 
-/// By how much a cosine differs between the corners at most where it is not below zero.
+/// Largest difference of a cosine between the corners, where negative cosines count as 0.
 #[inline(always)]
 fn lit_range(cosines: &[i32; 3]) -> i32 {
     let [dark, bright] = extremes(*cosines);
     bright.max(0) - dark.max(0)
 }
 
-/// One colour or linear interpolation under one constant light, where the latter has these bounds; `None` where levels of the corners may have
+/// One colour or linear interpolation under one constant light, where linear interpolation has these bounds; `None` if levels of the corners may have
 /// been clamped at 255.
 #[inline(always)]
 fn one_light(setup: &TriangleSetup<'_>, shading: &Shading<'_>, [towards, _]: &CornerCosines, bounds: Linear) -> Option<Choice> {
@@ -162,7 +162,7 @@ fn one_light(setup: &TriangleSetup<'_>, shading: &Shading<'_>, [towards, _]: &Co
     (!is_hidden).then_some(Choice::Linear(raise))
 }
 
-/// [`one_light`] under two: one colour only where there is no highlight.
+/// One colour or linear interpolation under two constant lights. One colour is chosen only where there is no highlight.
 #[inline(always)]
 fn two_lights(
     setup: &TriangleSetup<'_>,

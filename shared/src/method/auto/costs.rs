@@ -1,21 +1,21 @@
-//! What methods cost, by which `auto` chooses among those that keep to the budget.
+//! Costs of the ways to draw a triangle, by which `auto` chooses.
 //!
-//! Instructions on a Cortex-M3, as `microphong bench` counts them: set-up for each triangle, the rest of each row, and the inner loop for each
-//! pixel. They are the means of two scenes, of which one has large triangles, the other small ones: `peer-sphere` and `teapot` in one channel,
-//! `peer-sphere-plastic` and `torus` in three, `peer-sphere-lights` and `bunny` under two lights. `tests/suite/choices.rs` counts anew what
-//! can be drawn alone: all but the quadratic through cosines.
+//! Costs are instructions on a Cortex-M3, as `microphong bench` counts them: set-up for each triangle, the rest of each row, and the inner loop for
+//! each pixel. They are means of two scenes, one with large triangles and one with small ones: `peer-sphere` and `teapot` in one channel,
+//! `peer-sphere-plastic` and `torus` in three, `peer-sphere-lights` and `bunny` under two lights. `tests/suite/choices.rs` counts everything again
+//! that can be drawn alone: all but the quadratic through cosines.
 //!
-//! The choice is the same on every machine, and so are the pictures. A table of its own for the Cortex-M0+ was tried: frames of `bunny`,
-//! `torus`, `teapot` and `peer-sphere-plastic` took 0 to 1 % more cycles of the Pico by it.
+//! The choice is the same on every machine, and so are the pictures. A table measured on the Cortex-M0+ would not help: with it, frames of `bunny`,
+//! `torus`, `teapot` and `peer-sphere-plastic` take 0 to 1 % more cycles of the Pico.
 
-/// What drawing a triangle by a method takes, in instructions.
+/// Cost of drawing a triangle by a method, in instructions.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Cost {
-    /// For the triangle.
+    /// Instructions for the triangle.
     pub triangle: i32,
-    /// For each row.
+    /// Instructions for each row.
     pub row: i32,
-    /// For each pixel.
+    /// Instructions for each pixel.
     pub pixel: i32,
 }
 
@@ -36,23 +36,23 @@ impl Cost {
     }
 }
 
-/// What draws a triangle where linear interpolation does not keep to the budget.
+/// Costs of the ways to draw a triangle that linear interpolation does not keep within the budget.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Costs {
-    /// The quadratic through levels.
+    /// Cost of the quadratic through levels.
     pub quadratic: Cost,
-    /// The quadratic through cosines.
+    /// Cost of the quadratic through cosines.
     pub cosines: Cost,
-    /// Phong shading.
+    /// Cost of Phong shading.
     pub phong: Cost,
 }
 
-/// By how much quadratics are cheaper than Phong shading.
+/// Savings of quadratics compared with Phong shading.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct Savings {
-    /// The quadratic through levels.
+    /// Saving by the quadratic through levels.
     pub(crate) quadratic: Cost,
-    /// The quadratic through cosines.
+    /// Saving by the quadratic through cosines.
     pub(crate) cosines: Cost,
 }
 

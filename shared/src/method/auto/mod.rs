@@ -1,14 +1,14 @@
-//! The cheapest of several methods that is guaranteed to stay within an error budget, chosen for each triangle.
+//! The method `auto`: for each triangle the cheapest way that is guaranteed to stay within an error budget.
 //!
-//! One colour, linear or quadratic interpolation of levels, or quadratic interpolation of cosines, where [`ErrorBounds`] allow it, else Phong
-//! shading. Near lights, a near viewer, and more than two lights are always shaded by Phong. The choice follows from constants of the mesh
-//! and from the cosines at the corners, in integers: it is the same on every machine.
+//! A triangle is drawn in one colour, by linear or quadratic interpolation of levels, or by quadratic interpolation of cosines, if [`ErrorBounds`]
+//! allow it, and otherwise by Phong shading. Under near lights, for a near viewer, and under more than two lights all triangles are drawn by Phong
+//! shading. The choice follows from constants of the mesh and from the cosines at the corners, in integers, so it is the same on every machine.
 //!
-//! Bounds tell by how much linear interpolation may be too dark, and by how much too bright. Where one of the two exceeds the budget but their
-//! mean does not, all levels of the triangle are raised or lowered until both are within.
+//! Bounds tell by how much linear interpolation may be too dark, and by how much too bright. If one of the two exceeds the budget but their mean does
+//! not, all levels of the triangle are raised or lowered until both are within the budget.
 //!
-//! Error against Phong: at most the budget, and what arithmetic adds to every method. Neighbours by the same method meet without a jump
-//! unless their levels are raised, others within twice the budget.
+//! Error against Phong: at most the budget, plus the arithmetic error of every method. At an edge between triangles drawn in one way light does not
+//! jump, unless their levels are raised; at others it jumps by at most twice the budget.
 
 mod choice;
 pub mod costs;
@@ -52,10 +52,10 @@ static FACTS: Facts = Facts {
 
 static FACTS_WITHOUT_QUADRATICS: Facts = Facts { name: "auto-linear", id: 27, ..FACTS };
 
-/// The cheapest method within the error budget. Among all, or without quadratics, which take two fifths of the flash.
+/// The cheapest way within the error budget, with or without quadratics, which take two fifths of the flash.
 pub struct Auto<const QUADRATICS: bool>;
 
-/// Half-way between the least and the most that corners have of the light number `k`, where that is not less than `floor`.
+/// The mean of the smallest and the largest light number `k` at the corners, where values below `floor` count as `floor`.
 #[inline(always)]
 fn half_way(setup: &TriangleSetup<'_>, k: usize, floor: i32) -> i32 {
     let [a, b, c] = setup.corners;
@@ -63,8 +63,8 @@ fn half_way(setup: &TriangleSetup<'_>, k: usize, floor: i32) -> i32 {
     (least + most) >> 1
 }
 
-/// By how much a choice raises each channel, Q9.7: where the table of colours can be interpolated, by its share of diffuse light, because
-/// there one level stands for all channels; elsewhere alike.
+/// Levels by which a choice raises each channel, Q9.7. Where the table of colours can be interpolated, one level stands for all channels, and each
+/// rises by its share of diffuse light. Elsewhere all channels rise alike.
 #[inline(never)]
 #[must_use]
 pub fn raises(choice: Choice, setup: &TriangleSetup<'_>, shading: &Shading<'_>) -> [i32; 3] {
@@ -74,7 +74,7 @@ pub fn raises(choice: Choice, setup: &TriangleSetup<'_>, shading: &Shading<'_>) 
     if by_table { reflectance.ramp_rise(raise) } else { [raise; 3] }
 }
 
-/// The levels half-way between the least and the most that corners have, and so much more.
+/// The means of the smallest and the largest level at the corners, raised.
 #[inline(never)]
 fn middle(setup: &TriangleSetup<'_>, shading: &Shading<'_>, raises: [i32; 3]) -> [i32; 3] {
     let reflectance = shading.reflectance;
@@ -87,7 +87,7 @@ fn middle(setup: &TriangleSetup<'_>, shading: &Shading<'_>, raises: [i32; 3]) ->
     zip(levels, raises, |level, raise| (level + raise).clamp(0, FULL))
 }
 
-/// The colour of these levels; by a table of colours where that is sooner looked up.
+/// The colour of these levels, by a table of colours if that is faster.
 #[inline(never)]
 fn solid<C: Pixel>(setup: &TriangleSetup<'_>, shading: &Shading<'_>, raise: i32, tables: MaterialTables<'_, C>) -> [C::Stored; 2] {
     let reflectance = shading.reflectance;
@@ -102,7 +102,7 @@ fn solid<C: Pixel>(setup: &TriangleSetup<'_>, shading: &Shading<'_>, raise: i32,
     tables.colour(middle(setup, shading, [raise; 3]))
 }
 
-/// Levels at the six nodes under two constant lights, Q9.7, of each channel.
+/// Levels of each channel at the six nodes under two constant lights, Q9.7.
 #[inline(never)]
 fn six_under_two(setup: &TriangleSetup<'_>, shading: &Shading<'_>) -> [[i32; 6]; 3] {
     let Shading { reflectance, exponent, .. } = *shading;
@@ -206,7 +206,7 @@ impl<const QUADRATICS: bool> Loops for ThreeChannels<Auto<QUADRATICS>> {
     }
 }
 
-/// Draws by the loops of another method. They are called by address, or the compiler would compile them once more here.
+/// Draws by the loops of another method. They are called by address, because the compiler would compile them again here.
 #[inline(always)]
 fn by<L: Loops, C: Pixel>(
     setup: &TriangleSetup<'_>,

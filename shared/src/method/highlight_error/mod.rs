@@ -1,45 +1,46 @@
-//! How much interpolation is off from a highlight: the largest errors on triangles of all sizes, as tables.
+//! Errors of interpolated highlights: the largest errors on triangles of all sizes, as tables.
 //!
-//! What interpolation is off from (N·H/|N|)^n on a triangle is about the same function of its size n (1 - ρ) and its depth n (1 - w) for all
-//! exponents n, where ρ is the least length of N on the triangle, and w the largest N·H at a corner over ρ. Tables have a part for each range
-//! of exponents, and a column for each fourth of the depth.
+//! The error of interpolating (N·H/|N|)^n on a triangle is about the same function of its size n (1 - ρ) and its depth n (1 - w) for all exponents n,
+//! where ρ is the smallest length of N on the triangle, and w the largest N·H at a corner over ρ. Tables have a part for each range of exponents, and
+//! a column for each fourth of the depth.
 //!
-//! Errors of linear interpolation grow with the size, and more slowly where triangles reach into the tail of a highlight: they lie below two
-//! straight lines, which [`LINEAR`] has. For quadratics [`CURVED`] has a row for each octave of the size, between which straight lines are no less than the errors.
+//! Errors of linear interpolation grow with the size, and more slowly where triangles reach into the tail of a highlight. They lie below two straight
+//! lines, which are in [`LINEAR`]. For quadratics [`CURVED`] has a row for each octave of the size. Errors between rows lie below the straight line
+//! between these.
 //!
-//! All are computed by `microphong bounds`: the largest error that a search found on any triangle of at most a size and at least a depth, and
-//! a margin; `tests/suite/bounds.rs` searches anew. What is larger than the search went is off by no more than the brightest highlight, by
-//! the quadratic 4/3 of it.
+//! `microphong bounds` computes all tables: each entry is the largest error that a search found on any triangle of at most a size and at least a
+//! depth, plus a margin. `tests/suite/bounds.rs` searches again. The error of larger triangles is at most the brightest highlight, or 4/3 of it by
+//! the quadratic.
 
 mod table;
 
 use crate::{arch::product::unsigned_product, format::NORMAL_LENGTH};
 pub use table::{CURVED, LINEAR};
 
-/// Errors that the tables know.
+/// Number of kinds of errors in the tables.
 pub const KINDS: usize = 4;
-/// Rows for octaves of n (1 - ρ).
+/// Number of rows, one for each octave of n (1 - ρ).
 pub const ROWS: usize = 14;
-/// Rows behind them, for all that is larger: two, between which interpolation changes nothing.
+/// Number of rows behind them, for all larger sizes: two, between which interpolation changes nothing.
 pub const ROWS_BEHIND: usize = 2;
-/// Columns, each a fourth of a unit of n (1 - w).
+/// Number of columns, each a fourth of a unit of n (1 - w).
 pub const COLUMNS: usize = 32;
-/// Columns to a unit of n (1 - w).
+/// Number of columns in a unit of n (1 - w).
 pub const COLUMNS_A_UNIT: u32 = 4;
-/// n (1 - ρ) of the first row, which holds for all that is smaller.
+/// Size n (1 - ρ) of the first row, which holds for all smaller sizes.
 pub const LEAST_SIZE: f64 = 1.0 / (1 << LEAST_SIZE_BITS) as f64;
 const LEAST_SIZE_BITS: u32 = 11;
-/// n (1 - ρ) of the largest triangles of [`LINEAR`].
+/// Size n (1 - ρ) of the largest triangles in [`LINEAR`].
 pub const LINEAR_SIZE: f64 = (1 << LINEAR_SIZE_BITS) as f64;
 const LINEAR_SIZE_BITS: u32 = 1;
-/// The least exponent of each part.
+/// The smallest exponent of each part.
 pub const LEAST_EXPONENTS: [u16; 3] = [1, 5, 16];
-/// The largest exponent at which what rounding of normals does to the highlights at corners is left to what arithmetic may add: it is less than
-/// half an LSB.
+/// The largest exponent at which bounds need not include the rounding of normals at corners, because it changes highlights by less than half of
+/// 1/255.
 pub(crate) const EXACT: u16 = 64;
-/// The exponent for which errors of [`Kind::Cosines`] stand in the table as they are.
+/// The exponent for which the table holds errors of [`Kind::Cosines`] without a factor.
 pub const USUAL_EXPONENT: u16 = 16;
-/// Fraction bits of an error, a share of the whole highlight; the largest stands for any error.
+/// Fraction bits of an error, as a part of the whole highlight. The largest number stands for any error.
 pub const SHARE: u32 = 15;
 /// Fraction bits of a rate, in whole highlights to a unit of the size.
 pub const RATE: u32 = 10;
@@ -47,25 +48,25 @@ pub const RATE: u32 = 10;
 /// A kind of error.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Kind {
-    /// By how much linear interpolation between corners is too dark.
+    /// Linear interpolation between corners is too dark.
     LinearBelow,
-    /// By how much it is too bright.
+    /// Linear interpolation between corners is too bright.
     LinearAbove,
-    /// How far the quadratic through six points is off.
+    /// The quadratic through six points is off, in either direction.
     Quadratic,
-    /// How far the power of the quadratic through N·H at six points is off, times the exponent over [`USUAL_EXPONENT`]: as highlights become
-    /// narrower, this error becomes smaller.
+    /// The power of the quadratic through N·H at six points is off, in either direction. The error is multiplied by the exponent over
+    /// [`USUAL_EXPONENT`], because it becomes smaller as highlights become narrower.
     Cosines,
 }
 
-/// How an error of linear interpolation grows with the size of triangles: it lies below two straight lines.
+/// Growth of an error of linear interpolation with the size of triangles. The error lies below two straight lines.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Growth {
-    /// The error over the size on the first line, which goes through zero; unsigned Q6.[`RATE`], rounded up.
+    /// Slope of the first line, which goes through zero; unsigned Q6.[`RATE`], rounded up.
     pub rate: u16,
-    /// The second line where the size is zero, unsigned Q1.15, rounded up.
+    /// Value of the second line at size zero, unsigned Q1.15, rounded up.
     pub base: u16,
-    /// How steep the second line is, unsigned Q6.[`RATE`], rounded up.
+    /// Slope of the second line, unsigned Q6.[`RATE`], rounded up.
     pub slope: u16,
 }
 
@@ -110,7 +111,8 @@ impl Place {
         }
     }
 
-    /// By how much linear interpolation of a highlight with the level `specular` at its peak, Q9.7, is too dark and too bright at most.
+    /// Largest amounts by which linear interpolation of a highlight is too dark and too bright. The level at the highlight's peak is `specular`,
+    /// Q9.7.
     #[inline(always)]
     #[must_use]
     pub(crate) fn linear(self, specular: u32) -> [u32; 2] {
@@ -126,7 +128,7 @@ impl Place {
         [level(below), level(above)]
     }
 
-    /// The entry of a kind of [`CURVED`], between two rows; `None` behind the last one.
+    /// The entry of [`CURVED`] for a kind of error, interpolated between two rows; `None` behind the last row.
     #[inline(always)]
     fn entry(self, kind: Kind) -> Option<u32> {
         let size = self.size;
@@ -138,7 +140,7 @@ impl Place {
         Some(less + (((more - less) * (size << zeros << 1 >> 16)) >> 16) + 1).filter(|_| row < ROWS - 1)
     }
 
-    /// The largest error of [`Kind::Quadratic`], of a highlight with the level `specular` at its peak, Q9.7.
+    /// The largest error of [`Kind::Quadratic`] for a highlight with the level `specular` at its peak, Q9.7.
     #[inline(always)]
     #[must_use]
     pub(crate) fn error_of_quadratic(self, specular: u32) -> u32 {
@@ -148,8 +150,8 @@ impl Place {
         }
     }
 
-    /// The largest error of [`Kind::Cosines`], of a highlight with the level `specular` at its peak, and `narrowed`, the same times
-    /// [`USUAL_EXPONENT`] over the exponent; Q9.7. No error exceeds `specular`, because a power is between 0 and 1.
+    /// The largest error of [`Kind::Cosines`] for a highlight with the level `specular` at its peak, Q9.7. `narrowed` is `specular` times
+    /// [`USUAL_EXPONENT`] over the exponent. No error exceeds `specular`, because a power is between 0 and 1.
     #[inline(always)]
     #[must_use]
     pub(crate) fn error_of_cosines(self, specular: u32, narrowed: u32) -> u32 {
@@ -159,15 +161,15 @@ impl Place {
         }
     }
 
-    /// The level of the brightest highlight on the triangle, at most: w^n is no more than 2^-n(1 - w).
+    /// Upper bound for the level of the brightest highlight on the triangle: w^n is at most 2^-n(1 - w).
     #[inline(always)]
     #[must_use]
     pub(crate) fn brightest(self, specular: u32) -> u32 {
         (specular >> (self.column as u32 / COLUMNS_A_UNIT)) + 1
     }
 
-    /// What corners may be off because their normals are longer or shorter than 1 by up to 2^-15, at an exponent above [`EXACT`]: by that
-    /// times the exponent of the brightest highlight on the triangle, w^n, which is no more than 2^-n(1 - w).
+    /// Error of light at corners whose normals are longer or shorter than 1 by up to 2^-15, at an exponent above [`EXACT`]. It is this times the
+    /// exponent times the brightest highlight on the triangle, w^n, which is at most 2^-n(1 - w).
     #[inline(always)]
     #[must_use]
     pub(crate) fn rounding(self, exponent: u16, specular: u32) -> u32 {
