@@ -34,10 +34,10 @@ const fn sunset() -> [u8; 2 * SIDE * SIDE] {
     bytes
 }
 
-/// What the display shows in the end, and the counts of the picture.
+/// Draws the picture. Returns the display and the counts of the picture.
 ///
 /// # Errors
-/// Whatever the library reports if a constant of this file is wrong.
+/// Errors of the library, if a constant of this file is wrong.
 pub(crate) fn draw() -> Result<(SimulatorDisplay<Rgb565>, Stats), Box<dyn std::error::Error>> {
     // Read in place: on a microcontroller the mesh stays in flash.
     let stream = Stream::parse(include_stream!("../firmware/teapot.tri"))?;

@@ -1,14 +1,14 @@
 //! A shading method of your own: light in four steps, as in a cartoon.
 //!
-//! A method shades one triangle at a time: it takes the light at nodes of the triangle, here its corners, has it interpolated, and makes
-//! an intensity of what arrives at each pixel. Clipping, depth, bands and pixel formats are done for it.
+//! A method shades one triangle at a time. It computes light at nodes of the triangle, here its corners, has it interpolated, and makes an intensity
+//! at each pixel. Clipping, depth, bands and pixel formats are not its concern.
 //!
 //! `cargo run --release -p microphong-tests --example own_method` writes `own_method.png`, or the file that is named behind `--`;
 //! `firmware/src/bin/own-method.rs` has the same method on a board.
 
 use microphong::method::{Area, Canvas, Facts, Intensity, IntensityShader, Method, Shading, TriangleSetup, Walked, levels_at};
 
-/// What the renderer must know: here that light at the corners is wanted, and otherwise nothing special.
+/// Facts for the renderer: light is needed at the corners, and nothing special otherwise.
 static FACTS: Facts = Facts { name: "cartoon", ..Facts::OWN };
 
 /// Intensities are Q8.8: 255 << 8 is full. Of 256 levels, 64 each become one of the steps 0, 85, 170 and 255.
@@ -29,7 +29,7 @@ impl Method for Cartoon {
     }
 }
 
-/// Called for each pixel that is seen, with red, green and blue as they are interpolated.
+/// Called for each visible pixel, with the interpolated red, green and blue.
 impl IntensityShader<[u32; 3]> for Cartoon {
     fn shade(&self, levels: [u32; 3]) -> Intensity {
         Walked.shade(levels).map(|level| level / STEP * STRIDE)

@@ -1,5 +1,4 @@
-//! What partial redraw draws and sends where one of twelve objects moves: a whole frame of `board`, and beside it all of the next one that is
-//! drawn.
+//! Partial redraw where one of twelve objects moves: a whole frame of `board`, and beside it the part of the next frame that is drawn.
 //!
 //! `cargo run --release -p microphong-tests --example redraw` writes `redraw.png`, or the file that is named behind `--`.
 
@@ -11,10 +10,10 @@ use microphong_sim::scene;
 /// Pixels of a picture.
 const SIZE: Size = Size::new(320, 240);
 
-/// Both pictures, and the counts of the second.
+/// Draws both pictures. Returns the display and the counts of the second picture.
 ///
 /// # Errors
-/// Whatever the library reports if a constant of this file is wrong.
+/// Errors of the library, if a constant of this file is wrong.
 pub(crate) fn draw() -> Result<(SimulatorDisplay<Rgb565>, Stats), Box<dyn std::error::Error>> {
     let board = scene::load("board")?;
     let stream = board.stream.parse()?;

@@ -1,4 +1,4 @@
-//! What each board's memory is spent on. The host simulator includes this file, so both sides render with the same.
+//! Sizes of each board's memory. The host simulator includes this file, so both render with the same sizes.
 
 use microphong::Layout;
 

@@ -3,21 +3,21 @@
 use core::fmt::Write;
 use microphong::{RenderError, StreamError};
 
-/// What kept the frame loop from starting, or ended it.
+/// The reason why the frame loop has not started, or has ended.
 #[derive(Clone, Copy, Debug)]
 pub enum Failure {
     /// The bytes in flash cannot be drawn.
     Stream(StreamError),
     /// The stream asks for more than this board has.
     Setup(RenderError),
-    /// The display has not taken what it was sent.
+    /// The display has not accepted bytes in time.
     Transfer {
-        /// How much that was.
+        /// Number of bytes that were sent.
         bytes: u32,
-        /// Microseconds that it had, more than twice what it takes.
+        /// Time limit in microseconds, more than twice the time that the bytes take.
         limit: u32,
     },
-    /// The program did not go on, and the watchdog has started it anew.
+    /// The program hung, and the watchdog has restarted it.
     Hang,
 }
 

@@ -96,7 +96,7 @@ impl Display for Framebuffer {
     }
 }
 
-/// Memory and start of a board with such a display and these methods; a macro, as the statics of `main` must be written in it.
+/// Memory and start of a board with a frame buffer and these methods. It is a macro, because the statics of `main` must be written in it.
 #[macro_export]
 macro_rules! framebuffer_board {
     ($shaders:expr) => {

@@ -34,9 +34,9 @@ use microphong::{
 };
 use panic_probe as _;
 
-/// What the frame loop needs of a board.
+/// A board as the frame loop needs it.
 pub trait Display {
-    /// What the renderer should produce.
+    /// The pixel format in which the renderer draws.
     type Color: Pixel;
 
     /// The picture's size.
@@ -50,11 +50,11 @@ pub trait Display {
         Ok(())
     }
 
-    /// Begins to show the pixels of `area`, row by row, which are the front of `band`. Returns memory for the next band, which may be that of
-    /// an earlier one: a board may send one band while the next one is drawn.
+    /// Begins to show the pixels of `area`, row by row, which are at the front of `band`. Returns memory for the next band. It may be the memory of
+    /// an earlier band, because a board can send one band while the next one is drawn.
     fn send(&mut self, area: Rectangle, band: &'static mut [Self::Color]) -> &'static mut [Self::Color];
 
-    /// All of a frame has been handed over.
+    /// Called when all of a frame has been handed over.
     fn present(&mut self) {}
 
     /// Microseconds since some time, if the board has a clock.
@@ -68,7 +68,7 @@ pub trait Display {
     /// When the display has not taken all of it.
     fn finish(&mut self) -> Result<(), Failure>;
 
-    /// All frames of the stream have been shown; they start again when this returns.
+    /// Called when all frames of the stream have been shown. They start again when it returns.
     fn end(&mut self) {}
 
     /// There is no picture to draw: shows `message` instead.

@@ -8,7 +8,7 @@ use microphong::{
     pixel::{PictureCrc, Pixel},
 };
 
-/// What prepares a frame and draws its rows: one processor or several.
+/// Prepares frames and draws their rows, by one processor or several.
 pub trait Painter<D: Display> {
     /// Does what comes before the rows of frame `number`.
     fn prepare<'r>(&mut self, renderer: &'r mut Renderer<'_, D::Color>, number: u32) -> Frame<'r, D::Color> {
@@ -21,11 +21,11 @@ pub trait Painter<D: Display> {
     /// When there is no room to draw into.
     fn draw(&mut self, display: &mut D, frame: Frame<'_, D::Color>, crc: Option<&mut PictureCrc>) -> Result<Stats, Failure>;
 
-    /// Logs what it took.
+    /// Logs the time and the counts of the frames.
     fn report(&self) {}
 }
 
-/// One processor draws all rows.
+/// A painter in which one processor draws all rows.
 #[derive(Debug)]
 pub struct OneCore<C: 'static> {
     /// The band that is drawn next.

@@ -9,7 +9,7 @@ use embedded_graphics::{
 /// Fills `target` and writes `message` on it, broken into lines between words.
 ///
 /// # Errors
-/// Those of the target.
+/// Errors of the target.
 pub fn error_picture<D: DrawTarget>(target: &mut D, background: D::Color, ink: D::Color, message: &str) -> Result<(), D::Error> {
     target.clear(background)?;
     let style = MonoTextStyle::new(&FONT_6X10, ink);

@@ -23,7 +23,7 @@ use microphong::{
 /// Bytes of its stack.
 pub const STACK: usize = 10 << 10;
 
-/// What the second processor is to do.
+/// Work for the second processor.
 struct Job(*mut (dyn FnMut() + Send));
 
 // SAFETY: what it points to may be sent, and the processor that made it keeps away until the job is done.
@@ -58,7 +58,7 @@ impl SecondCore {
         Self { stack: lowest }
     }
 
-    /// Does `here` on this processor and `there` on the second one, at the same time, and returns when both are done.
+    /// Runs `here` on this processor and `there` on the second one, at the same time. Returns when both are done.
     fn join<A, B: Send>(&mut self, here: impl FnOnce() -> A, there: impl FnOnce() -> B + Send) -> (A, Option<B>) {
         let (mut there, mut result) = (Some(there), None);
         let mut job = || result = there.take().map(|there| there());
@@ -83,10 +83,10 @@ fn wait() {
     }
 }
 
-/// What a stack is filled with before it is used.
+/// The word with which a stack is filled before it is used.
 const PAINT: u32 = 0;
 
-/// Both processors draw: one the upper rows, the other the lower ones. Each sends its own bands.
+/// A painter in which both processors draw: one the upper rows, the other the lower ones. Each sends its own bands.
 pub struct TwoCores<C: 'static> {
     /// The bands that they draw next.
     pub bands: [&'static mut [C]; 2],

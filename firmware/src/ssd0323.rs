@@ -58,7 +58,7 @@ const BUSY: u32 = 1 << 4;
 
 /// Pin of port C that tells data from commands.
 const DATA: usize = 1 << 7;
-/// Pin of port D that selects the SD card on the same bus; high: not selected.
+/// Pin of port D that selects the SD card on the display's bus. High means not selected.
 const CARD: usize = 1 << 0;
 
 /// The display and a copy of its memory.

@@ -37,18 +37,18 @@ pub const SPI_HZ: u32 = 62_500_000;
 /// The DMA channel that sends, as its registers count it.
 const CHANNEL: u16 = 0;
 
-/// How long the program may go on without a sign of life, of which each band is one: nearly the longest that the watchdog can wait.
+/// Longest time without a sign of life, of which each band is one. It is almost the longest time that the watchdog can wait.
 pub const SIGN_OF_LIFE: Duration = Duration::from_secs(8);
 
 /// The panel's wires, and what sees to it that something is shown.
 pub struct St7789 {
     /// Clock and data.
     pub bus: Spi<'static, SPI1, Blocking>,
-    /// What feeds the bus with bands.
+    /// The DMA channel that sends bands to the bus.
     pub channel: Channel<'static>,
     /// The band that is being sent, or was the last one to be.
     pub sent: &'static mut [Rgb565Be],
-    /// How many bytes are on their way, and until when they have to be there.
+    /// Number of bytes that are being sent, and the time at which they must have been sent.
     pub sending: Option<(u32, Instant)>,
     /// Whether a band of the frame that is drawn has been sent.
     pub begun: bool,
@@ -64,9 +64,9 @@ pub struct St7789 {
     pub backlight: Output<'static>,
     /// The board's own light: goes on when a frame is complete, and out when another one begins to be shown.
     pub led: Output<'static>,
-    /// Starts the program anew that hangs.
+    /// The watchdog, which restarts the program if it hangs.
     pub watchdog: Watchdog,
-    /// What the panel has not taken, if there is anything: then nothing else is sent, and no frame shown.
+    /// The transfer that the panel has not accepted, if any. Nothing else is sent then, and no frame shown.
     pub failure: Option<Failure>,
 }
 
@@ -138,7 +138,7 @@ fn wait(channel: &Channel<'_>, deadline: Instant) -> bool {
     true
 }
 
-/// Microseconds in which so many bytes must have been sent: twice as long as they are on the wire, and 1 ms.
+/// Time limit for sending `bytes`, in microseconds: twice the time that they take on the wire, plus 1 ms.
 const fn limit(bytes: u32) -> u32 {
     2 * (8 * bytes / (SPI_HZ / 1_000_000)) + 1_000
 }

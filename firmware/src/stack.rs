@@ -1,4 +1,4 @@
-//! How much stack was ever used.
+//! Measurement of the largest stack that was used.
 
 use cortex_m_rt::STACK_PAINT_VALUE;
 

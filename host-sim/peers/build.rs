@@ -2,7 +2,7 @@
 
 use std::{env, error::Error, fs, path::PathBuf};
 
-/// The firmware's own: both boards have the same memory.
+/// Linker scripts of the firmware. Both boards have the same memory.
 const SCRIPTS: [(&str, &str); 2] = [("memory.x", "../../firmware/boards/mps2-an385.x"), ("stream.x", "../../firmware/boards/stream.x")];
 
 fn main() -> Result<(), Box<dyn Error>> {

@@ -13,7 +13,7 @@ pub use microphong_render::{
 };
 pub use microphong_stress as stress;
 
-/// Every family of random cases; with a `budget`, that of the same name keeps to it.
+/// All families of random cases. With a `budget`, the family of this name keeps to it.
 #[must_use]
 pub fn families(budget: Option<microphong::format::ErrorBudget>) -> Vec<Box<dyn stress::Family>> {
     let mut families = stress::families(budget);

@@ -1,4 +1,4 @@
-//! What the display shows. The test `examples` draws it on your computer.
+//! The scene on the display. The test `examples` draws it on your computer.
 
 use embedded_graphics::{pixelcolor::Rgb565, prelude::*};
 use microphong::format::{Angle, Gain};
@@ -15,7 +15,7 @@ pub(crate) fn renderer<'a>(stream: Stream<'a>, memory: &'a mut [u64]) -> Result<
     Renderer::new(stream, Size::new(240, 240), &LAYOUT, memory, &[Shader::AUTO_LINEAR])
 }
 
-/// From 20 to 80 °C the needle goes two thirds of a turn clockwise, and the light turns from white to red.
+/// Shows a temperature: from 20 to 80 °C the needle goes two thirds of a turn clockwise, and the light turns from white to red.
 pub(crate) fn set(scene: &mut Scene<'_>, celsius: f32) -> Result<(), SceneError> {
     let share = ((celsius - 20.0) / 60.0).clamp(0.0, 1.0);
     scene.set_pose(NEEDLE, Pose::about([0, 0, 1], Angle::wrapping_from_num((1.0 - 2.0 * share) / 3.0))?)?;

@@ -1,4 +1,4 @@
-//! What the display shows. The test `examples` draws it on your computer.
+//! The scene on the display. The test `examples` draws it on your computer.
 
 use embedded_graphics::mono_font::{MonoTextStyle, ascii::FONT_5X8};
 use embedded_graphics::{pixelcolor::BinaryColor, prelude::*, text::Text};
@@ -6,7 +6,7 @@ use microphong::{Layout, Picture, RenderError, Renderer, Shader, Stats, Stream, 
 
 /// The whole picture in one band, and all of the teapot.
 pub(crate) const LAYOUT: Layout = Layout::new(128, 64).vertices(593).triangles(992);
-/// White on black: no other colours look good on such a display.
+/// The teapot, white on black: a display of one bit shows no other colours well.
 pub(crate) static MESH: &[u8] = include_stream!("../teapot.tri");
 
 /// Triangles have a few pixels here: light that is linear in between is enough. Formats of one bit are dithered at first.
@@ -14,7 +14,7 @@ pub(crate) fn renderer<'a>(stream: Stream<'a>, memory: &'a mut [u64]) -> Result<
     Renderer::with_shader(stream, Size::new(128, 64), &LAYOUT, memory, Shader::GOURAUD)
 }
 
-/// With a label over it, drawn before a band is sent.
+/// The picture with a label over it, which is drawn into each band before it is sent.
 pub(crate) fn picture<'r>(
     renderer: &'r mut Renderer<'_, BinaryColor>,
     band: &'r mut [BinaryColor],

@@ -1,4 +1,4 @@
-//! What the display shows. The test `examples` draws it on your computer.
+//! The scene on the display. The test `examples` draws it on your computer.
 
 use core::fmt::Write;
 use embedded_graphics::mono_font::{MonoTextStyle, ascii::FONT_9X15_BOLD};
@@ -14,7 +14,7 @@ pub(crate) fn renderer<'a>(stream: Stream<'a>, memory: &'a mut [u64]) -> Result<
     Renderer::new(stream, Size::new(240, 240), &LAYOUT, memory, &[Shader::AUTO])
 }
 
-/// With a text over it: frames a second, where they are known.
+/// The picture with a text over it: the frames per second, if they are known.
 pub(crate) fn picture<'r>(
     renderer: &'r mut Renderer<'_, Rgb565>,
     band: &'r mut [Rgb565],

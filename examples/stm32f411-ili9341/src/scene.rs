@@ -1,4 +1,4 @@
-//! What the display shows. The test `examples` draws it on your computer.
+//! The scene on the display. The test `examples` draws it on your computer.
 
 use embedded_graphics::{pixelcolor::Rgb565, prelude::*};
 use microphong::{Layout, Picture, RenderError, Renderer, Shader, Stream, include_stream};

@@ -1,7 +1,7 @@
-//! What frames cost when somebody last looked, in a file that is kept with the sources.
+//! Recorded costs of frames, in a file that is kept with the sources.
 //!
-//! One line per frame: board, scene, method, instructions, bytes of flash. The lines choose what is measured: to add a frame, add
-//! a line with zeros and renew the file.
+//! Each line is a frame: board, scene, method, instructions, bytes of flash. The lines choose what is measured. To add a frame, add a line with zeros
+//! and renew the file.
 
 use super::{Bench, Measurement, Processor};
 use anyhow::{Context, Result};
@@ -13,7 +13,7 @@ pub const TOLERANCE: f64 = 0.2;
 
 const HEAD: &str = "board,scene,shader,instructions,flash_bytes";
 
-/// One line.
+/// A line of the file.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Entry {
     /// The processor that executes the frame.
@@ -45,7 +45,7 @@ impl Entry {
         })
     }
 
-    /// Whether both are about the same frame.
+    /// Whether both entries are for one frame.
     #[must_use]
     pub fn same_frame(&self, other: &Self) -> bool {
         (self.processor, &self.scene, self.shader) == (other.processor, &other.scene, other.shader)

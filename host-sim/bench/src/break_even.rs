@@ -1,13 +1,13 @@
-//! From which size of triangles on a method is cheaper than another.
+//! Break-even points: the size of triangles from which a method is cheaper than another.
 //!
-//! One counted frame gives the costs of a triangle (vertices, culling, set-up), of a span and of a pixel, and how many spans
-//! triangles of its shape have: s · √a of them if they are a pixels large. A frame of other triangles of that shape then
-//! costs t + r s √a + p a instructions a triangle, and break-even is a root of a quadratic in √a.
+//! One counted frame gives the costs of a triangle (vertices, culling, set-up), of a span and of a pixel. It also gives the number of spans of
+//! triangles of its shape: s · √a if they have a pixels. A frame of other triangles of this shape then takes t + r s √a + p a instructions a
+//! triangle, and break-even is a root of a quadratic in √a.
 
 use super::Measurement;
 use serde::Serialize;
 
-/// What one method's frame is made of, instructions.
+/// Costs of the parts of one method's frame, in instructions.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Costs {
     /// Per triangle drawn, with its share of camera, vertices and triangles not drawn.
@@ -38,17 +38,17 @@ impl Costs {
     }
 }
 
-/// From which area on, in pixels, a method is cheaper than another.
+/// Area in pixels from which a method is cheaper than another.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum BreakEven {
     /// Whatever the size.
     Always,
-    /// From this area on.
+    /// The method is cheaper from this area on.
     From(f64),
     /// Only below this area.
     Below(f64),
-    /// At no size, or only at some between.
+    /// The method is cheaper at no size, or only at some sizes in between.
     Never,
 }
 
@@ -105,11 +105,11 @@ pub struct Printed {
     pub shader: &'static str,
     /// Cost of a frame over Gouraud's.
     pub ratio: f64,
-    /// Who says so.
+    /// The publication with this figure.
     pub source: &'static str,
 }
 
-/// Times of frames over that of Gouraud shading.
+/// Published times of frames, divided by the time of Gouraud shading.
 pub const RATIOS: [Printed; 6] = [
     Printed { shader: "taylor", ratio: 1.89, source: "Bishop & Weimer 1986, distant eye" },
     Printed { shader: "taylor-finite", ratio: 2.09, source: "Bishop & Weimer 1986, near eye" },

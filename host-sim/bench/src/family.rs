@@ -2,7 +2,7 @@
 
 use microphong_render::shader::Shader;
 
-/// What a method walks along a span, and what it makes of that at each pixel.
+/// Families of methods, by what they walk along a span and compute at each pixel.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum Family {
     /// Intensity, linear on triangles or parts of them.
@@ -22,7 +22,7 @@ pub enum Family {
 }
 
 impl Family {
-    /// All of them, from cheap to dear.
+    /// All families, from cheap to dear.
     pub const ALL: [Self; 7] = [Self::Linear, Self::Curved, Self::Cosine, Self::Map, Self::Angle, Self::Vector, Self::Budget];
 
     /// The family of a method.
@@ -53,7 +53,7 @@ impl Family {
         }
     }
 
-    /// Its class in a drawing.
+    /// CSS class of the family in a drawing.
     pub(super) const fn class(self) -> &'static str {
         match self {
             Self::Linear => "linear",

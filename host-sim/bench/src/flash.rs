@@ -1,11 +1,10 @@
-//! How much flash a method takes, from the program's call graph.
+//! Flash of a method, from the program's call graph.
 //!
-//! Methods share code, with one another and with the frame loop, so there are two answers. *Alone*: what a program with just this method
-//! has more than one with none, everything that its entry reaches and the frame loop without methods does not. *Own*: what no other
-//! method reaches either, and a program with all the others would be spared. The streams' bytes are in neither.
+//! Methods share code with one another and with the frame loop, so there are two figures. *Alone* is what a program with only this method has more
+//! than a program without methods: everything that its entry reaches and the frame loop does not. *Own* is what no other method reaches: a program
+//! with all other methods would save it. Neither includes streams.
 //!
-//! Edges of the graph are what the linker put into code and constants: calls, branches and addresses. Constants without a symbol are not
-//! seen.
+//! Edges of the graph are calls, branches and addresses in code and constants. Constants without a symbol are not seen.
 
 use anyhow::{Context, Result};
 use microphong_boards::elf::Elf;
@@ -67,10 +66,10 @@ impl Graph {
         Ok(Self { sizes: nodes.iter().map(|range| range.len() as u64).collect(), needs, roots, methods })
     }
 
-    /// What `shader` takes.
+    /// Flash of the method `shader`.
     ///
     /// # Errors
-    /// When its entry is no function of its own.
+    /// When the method's entry is not a function of its own.
     pub fn flash(&self, shader: Shader) -> Result<Flash> {
         let entries = self.methods.iter().find(|(other, _)| *other == shader).map(|(_, entries)| entries);
         let entries = entries.filter(|entries| !entries.is_empty());
@@ -84,7 +83,7 @@ impl Graph {
         Ok(Flash { alone: size(&alone), own: size(&own) })
     }
 
-    /// All that `from` needs, without going through `but`.
+    /// All functions that `from` reaches without going through `but`.
     fn reached(&self, from: impl IntoIterator<Item = usize>, but: &BTreeSet<usize>) -> BTreeSet<usize> {
         let mut reached = BTreeSet::new();
         let mut open: Vec<usize> = from.into_iter().collect();

@@ -1,7 +1,7 @@
-//! How the cost of a frame grows with what is in it, counted on x86-64: no board has the memory.
+//! Growth of a frame's cost with its contents, counted on x86-64, because no board has the memory.
 //!
-//! Triangles, pixels and lights are swept on a flat square with the normals of a cushion, seen by parallel rays: however
-//! fine its mesh is, it covers the same pixels. Bands are swept on `peer-sphere`.
+//! Triangles, pixels and lights are varied on a flat square with the normals of a cushion, seen by parallel rays. It covers the same pixels at every
+//! fineness of its mesh. Bands are varied on `peer-sphere`.
 
 use super::{Stages, callgrind};
 use anyhow::Result;
@@ -18,7 +18,7 @@ use rayon::prelude::*;
 use serde::{Serialize, Serializer};
 use std::{fmt, path::Path};
 
-/// What grows.
+/// A quantity that is varied.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Sweep {
@@ -32,25 +32,25 @@ pub enum Sweep {
     Bands,
 }
 
-/// One frame.
+/// A counted frame.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Point {
-    /// What grows.
+    /// The varied quantity.
     pub sweep: Sweep,
-    /// How much of it there is.
+    /// Its amount.
     pub amount: u64,
     /// The method.
     #[serde(serialize_with = "name")]
     pub shader: Shader,
     /// Instructions of the frame, without clearing.
     pub instructions: u64,
-    /// Triangles drawn: those in whose box a pixel's centre lies.
+    /// Number of drawn triangles, whose bounding boxes contain a pixel's centre.
     pub triangles: u64,
     /// Rows of triangles.
     pub spans: u64,
     /// Pixels drawn.
     pub pixels: u64,
-    /// Where the instructions go.
+    /// Instructions of each stage.
     pub by_stage: Stages,
 }
 
@@ -67,9 +67,9 @@ const PIXELS: [u32; 10] = [1_000, 2_000, 5_000, 10_000, 20_000, 50_000, 100_000,
 const LIGHTS: [usize; 8] = [1, 2, 3, 4, 5, 6, 7, 8];
 /// Divisors of the picture's 240 rows.
 const BANDS: [u32; 9] = [1, 2, 3, 4, 6, 8, 12, 16, 24];
-/// Where something else is swept.
+/// Fineness and pixels of the square while another quantity is varied.
 const MEDIUM: (usize, u32) = (22, 40_000);
-/// For [`PIXELS`].
+/// Fineness of the square while pixels are varied.
 const COARSE: usize = 16;
 /// The square's turn on the screen, radians: no edge lies along rows or columns, and diagonals do not either.
 const TURN: f64 = 0.3;
@@ -77,7 +77,7 @@ const TURN: f64 = 0.3;
 const BORDER: f64 = 4.0;
 
 impl Sweep {
-    /// All of them.
+    /// All quantities.
     pub const ALL: [Self; 4] = [Self::Triangles, Self::Pixels, Self::Lights, Self::Bands];
 
     /// The name on the command line.
@@ -123,7 +123,7 @@ impl fmt::Display for Sweep {
     }
 }
 
-/// One scene of a sweep.
+/// A scene with one amount of the varied quantity.
 #[derive(Clone, Debug)]
 pub struct Step {
     sweep: Sweep,
@@ -158,7 +158,7 @@ impl Step {
     /// Counts the frame by each method.
     ///
     /// # Errors
-    /// Those of [`callgrind::count`].
+    /// Errors of [`callgrind::count`].
     pub fn count(&self, program: &Path, shaders: &[Shader]) -> Result<Vec<Point>> {
         let one = |&shader: &Shader| {
             let frame = callgrind::Frame { size: self.size, band_rows: self.band_rows, shader };

@@ -1,5 +1,5 @@
-//! What a frame costs, in instructions, stage by stage: exact, because an emulated board executes the firmware itself, and callgrind
-//! the same on the host. And how wrong the very same frame is.
+//! Instructions of a frame, by stage, and its errors. Counts are exact, because an emulated board executes the firmware itself, and callgrind the
+//! same code on the host.
 
 pub mod baseline;
 pub mod break_even;
@@ -102,7 +102,7 @@ impl Bench {
         Ok(measured)
     }
 
-    /// What [`Self::measure`] does, but for the errors and choices.
+    /// Counts as [`Self::measure`] does, without errors and choices.
     ///
     /// # Errors
     /// When a method cannot shade the scene, or a board fails.
@@ -189,7 +189,7 @@ impl Firmware {
     }
 }
 
-/// To parts of one as many as `parts`.
+/// Rounds `value` to 1 over `parts`.
 fn rounded(value: f64, parts: f64) -> f64 {
     (value * parts).round() / parts
 }

@@ -1,4 +1,4 @@
-//! What one frame costs, and how wrong it is.
+//! Cost and error of one frame.
 
 use super::{processor::Processor, stage::Stages};
 use microphong_render::choices::Choices;
@@ -10,7 +10,7 @@ pub struct Measurement {
     /// The board that drew; of the host its architecture.
     #[serde(serialize_with = "board")]
     pub board: Processor,
-    /// Its processor.
+    /// Name of the processor.
     pub cpu: &'static str,
     /// The scene's name.
     pub scene: String,
@@ -18,7 +18,7 @@ pub struct Measurement {
     pub shader: &'static str,
     /// Instructions of the frame, without clearing and transfer.
     pub instructions: u64,
-    /// Cycles of the same, where they are modelled: approximately.
+    /// Cycles of these instructions, where they are modelled: approximately.
     pub cycles: Option<u64>,
     /// Pixels of all drawn triangles.
     pub pixels: u64,
@@ -28,7 +28,7 @@ pub struct Measurement {
     pub spans: u64,
     /// Instructions per pixel, to a hundredth.
     pub instr_per_pixel: f64,
-    /// Where the instructions go.
+    /// Instructions of each stage.
     pub by_stage: Stages,
     /// Variables and stack, where the program is alone on its board.
     pub ram_bytes: Option<u64>,
@@ -36,32 +36,32 @@ pub struct Measurement {
     pub flash_bytes: Option<u64>,
     /// Largest error of this frame against Phong shading in f64: 255 is full.
     pub max_lsb: Option<f64>,
-    /// Root mean square of the same.
+    /// Root mean square of these errors.
     pub rmse_lsb: Option<f64>,
-    /// How far a pixel may be off by the method `auto`, in 1/255; null for others.
+    /// Error budget of the method `auto`, in 1/255; null for others.
     pub budget: Option<f64>,
-    /// What `auto` chooses within it; null for others.
+    /// The ways that `auto` chooses; null for others.
     pub choices: Option<Choices>,
     /// Flash that no other method needs.
     pub flash_own_bytes: Option<u64>,
     /// Flash of the whole program with all its methods, without the stream.
     pub firmware_bytes: Option<u64>,
-    /// How long the frame takes, where time is modelled.
+    /// Times of the frame, where time is modelled.
     pub timing: Option<Timing>,
 }
 
 /// Cycles of a frame that follows another, all approximate.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Timing {
-    /// From its beginning to that of the next.
+    /// Cycles from the beginning of the frame to the beginning of the next.
     pub frame_cycles: u64,
-    /// In which the processor draws, clearing included.
+    /// Cycles in which the processor draws, clearing included.
     pub render_cycles: u64,
-    /// In which bits go over the wire to the display.
+    /// Cycles in which bits are sent to the display.
     pub wire_cycles: u64,
-    /// In which the processor waits for the wire.
+    /// Cycles in which the processor waits for the wire.
     pub idle_cycles: u64,
-    /// At the board's clock.
+    /// Frames per second at the board's clock.
     pub frames_per_second: f64,
 }
 

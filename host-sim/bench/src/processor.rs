@@ -1,4 +1,4 @@
-//! What instructions are counted on.
+//! Processors on which instructions are counted.
 
 use microphong_boards::Board;
 
@@ -16,7 +16,7 @@ pub enum Processor {
 }
 
 impl Processor {
-    /// All that can be measured.
+    /// All processors that can be measured.
     pub const ALL: [Self; 4] = [Self::CortexM3, Self::CortexM4F, Self::CortexM0Plus, Self::X86_64];
 
     /// The processor's name.
@@ -50,7 +50,7 @@ impl Processor {
         }
     }
 
-    /// Width and height of the frame that is measured: the board's display; for the host that of the Cortex-M3's.
+    /// Width and height of the frame that is measured: the board's display, and on the host the display of the Cortex-M3's board.
     #[must_use]
     pub const fn size(self) -> (u32, u32) {
         match self.board() {

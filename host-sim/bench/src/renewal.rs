@@ -1,7 +1,7 @@
-//! What has become of recorded costs: how much they have changed in all, since which release, and why somebody has renewed them.
+//! History of recorded costs: their change since a release, and the reason of each renewal.
 //!
-//! Beside a file `costs.csv` of [`baseline`] lie `costs-0.1.0.csv`, the same frames at that release, which nobody renews, and
-//! `costs-reasons.md`, a line for each renewal. A tolerance lets small growth pass each time; the first of the two shows the sum.
+//! Beside a file `costs.csv` of [`baseline`] are two others: `costs-0.1.0.csv` has these frames at that release and is never renewed, and
+//! `costs-reasons.md` has a line for each renewal. A tolerance lets small growth pass each time. The first file shows the sum.
 
 use super::{
     baseline::{self, Change, Entry, changed},
@@ -17,7 +17,7 @@ use std::{
 /// The release whose costs are kept.
 pub const RELEASE: &str = "0.1.0";
 
-/// The change of all frames together, in percent: the geometric mean, in which each frame weighs the same.
+/// The change of all frames together, in percent: the geometric mean, in which all frames weigh alike.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Total {
     /// Change of instructions.
@@ -27,7 +27,7 @@ pub struct Total {
 }
 
 impl Total {
-    /// The change from the figures `old` to those that the same frames have among `new`.
+    /// The change from the figures `old` to the figures of these frames in `new`.
     #[must_use]
     pub fn between(old: &[Entry], new: &[Entry]) -> Self {
         let pairs = || old.iter().filter_map(|entry| Some((entry, new.iter().find(|now| entry.same_frame(now))?)));
@@ -38,7 +38,7 @@ impl Total {
     }
 }
 
-/// Without figures that are zero: those of frames that are still to be recorded.
+/// The geometric mean of changes, in percent. Figures of zero belong to frames that are not recorded yet, and are left out.
 pub(crate) fn mean(pairs: impl Iterator<Item = (u64, u64)>) -> f64 {
     let logarithms: Vec<_> = pairs.filter(|&(was, is)| was > 0 && is > 0).map(|(was, is)| (is as f64 / was as f64).ln()).collect();
     let mean = logarithms.iter().sum::<f64>() / logarithms.len().max(1) as f64;
@@ -55,7 +55,7 @@ impl fmt::Display for Total {
 /// The growth since [`RELEASE`].
 #[derive(Clone, Debug, PartialEq)]
 pub struct Growth {
-    /// How many frames of the release are still measured.
+    /// Number of frames of the release that are still measured.
     pub frames: usize,
     /// Change of all frames together.
     pub total: Total,
@@ -64,7 +64,7 @@ pub struct Growth {
 }
 
 impl Growth {
-    /// From the figures of the release to those of today.
+    /// The growth from the figures of the release to today's figures.
     #[must_use]
     pub fn between(release: &[Entry], now: &[Entry]) -> Self {
         let (old, new): (Vec<_>, Vec<_>) =
@@ -74,10 +74,10 @@ impl Growth {
         Self { frames: old.len(), total: Total::between(&old, &new), most }
     }
 
-    /// The growth of what is recorded in the file at `path`; `None` if it has no figures of the release beside it.
+    /// The growth of the costs in the file at `path`; `None` if no figures of the release are beside it.
     ///
     /// # Errors
-    /// When those cannot be read.
+    /// When the figures cannot be read.
     pub fn of(path: &Path, now: &[Entry]) -> Result<Option<Self>> {
         let release = beside(path, &format!("{RELEASE}.csv"))?;
         release.exists().then(|| Ok(Self::between(&baseline::read(&release)?, now))).transpose()
@@ -97,7 +97,7 @@ fn beside(path: &Path, name: &str) -> Result<PathBuf> {
     Ok(path.with_file_name(format!("{}-{name}", stem.to_string_lossy())))
 }
 
-/// What the file of reasons begins with.
+/// The beginning of the file of reasons.
 const HEAD: &str = "\
 # Why costs were renewed
 

@@ -29,14 +29,14 @@ const FRAMES: u16 = 120;
 pub struct Program {
     /// The processor that it is compiled for.
     pub core: Core,
-    /// Its one method.
+    /// Method of the program.
     pub shader: Shader,
-    /// Its pixel format.
+    /// Pixel format of the program.
     pub format: Format,
 }
 
 impl Program {
-    /// All programs for these processors.
+    /// All programs for these processors, methods and formats.
     #[must_use]
     pub fn all(cores: &[Core], shaders: &[Shader], formats: &[Format]) -> Vec<Self> {
         let of = |&core: &Core| formats.iter().flat_map(move |&format| shaders.iter().map(move |&shader| Self { core, shader, format }));

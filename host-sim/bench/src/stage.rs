@@ -34,14 +34,14 @@ pub struct Stages {
 }
 
 impl Stages {
-    /// All that draws: without clearing and transfer.
+    /// Instructions that draw: all but clearing and transfer.
     #[must_use]
     pub fn drawing(&self) -> u64 {
         self.vertex + self.cull + self.setup + self.span + self.pixel + self.frame
     }
 }
 
-/// What a function does, or whatever its caller does.
+/// The stage of a function, or the stage of its caller.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Part {
     Frame,
@@ -54,9 +54,9 @@ pub(super) enum Part {
     Transfer,
     /// The processor has nothing to do until the transfer has ended.
     Idle,
-    /// Not part of a frame, but it may call what is.
+    /// Not part of a frame, but it may call functions that are.
     Outside,
-    /// Not part of a frame; a loop that would take long to watch.
+    /// Not part of a frame: a loop that would take long to watch.
     Unwatched,
     Callers,
 }
@@ -98,7 +98,7 @@ const TABLE: [(&str, Part); 30] = [
     ("microphong::renderer::Renderer::fill_tables", Part::Outside),
 ];
 
-/// Without these the table has fallen behind the source.
+/// Stages that every frame has. If one is missing, the table of functions is out of date.
 const NEEDED: [Part; 6] = [Part::Row, Part::Clear, Part::Frame, Part::Vertex, Part::Cull, Part::Setup];
 
 /// The part of the function with this name.
@@ -134,7 +134,7 @@ impl Sum for Cost {
     }
 }
 
-/// At an address of a row's function: how often it was executed, what it cost with all that it called, and where it went on.
+/// Counts at an address of a function that draws rows: executions, cost including calls, and the addresses that followed.
 #[derive(Clone, Debug, Default)]
 struct Site {
     count: u64,
@@ -145,20 +145,20 @@ struct Site {
 /// Follows a program instruction by instruction and books each to a stage.
 #[derive(Clone, Debug)]
 pub struct Meter {
-    /// In the order of addresses.
+    /// Functions in the order of their addresses.
     functions: Vec<Function>,
     /// The function of each half-word from `base` on, and one more than all for none.
     owners: Vec<u16>,
     base: u32,
-    /// Where each processor is.
+    /// State of each processor.
     cores: [Core; 2],
-    /// By [`Part`].
+    /// Cost of each [`Part`].
     costs: [Cost; Part::Callers as usize + 1],
     /// Like `owners`.
     sites: Vec<Site>,
 }
 
-/// Where a processor is.
+/// State of a processor.
 #[derive(Clone, Debug, Default)]
 struct Core {
     /// Functions that have been entered and not left, and the part that each plays.
@@ -248,7 +248,7 @@ impl Meter {
         }
     }
 
-    /// What has been counted.
+    /// The counts so far.
     #[must_use]
     pub fn tally(&self) -> Tally {
         let (mut span, mut pixel, mut spans) = (Cost::default(), Cost::default(), 0);

@@ -1,5 +1,5 @@
-//! What styles cost, and what is spared by leaving out what nobody can see, or what has not changed: instructions of frames on x86-64, by
-//! the program that `stress` counts with, which draws in every style.
+//! Costs of styles, and savings by leaving out work that nobody can see or that has not changed. They are instructions of frames on x86-64, counted
+//! by the program that `stress` uses, which draws in every style.
 
 use crate::{Processor, callgrind::Counters};
 use anyhow::{Context, Result, ensure};
@@ -83,7 +83,7 @@ pub fn measure(
 /// Rows of the bands in which animations are counted: as many as the layout has that `convert` prints.
 const ANIMATION_ROWS: u32 = 16;
 
-/// What a scene's animation takes by one method, in instructions of a frame on average, clearing included.
+/// Instructions of a frame of a scene's animation by one method, on average, clearing included.
 #[derive(Clone, Debug, Serialize)]
 pub struct RedrawCost {
     /// Name of the scene.

@@ -26,9 +26,9 @@ pub fn program(board: Board, name: &str) -> Result<PathBuf> {
     release(name, &format!("microphong-firmware/{board}"), board.target(), &what)
 }
 
-/// Builds a program of the workspace `firmware` with these `features` and no others, and returns its path; `what` is its name in messages.
+/// Builds a program of the workspace `firmware` with only these `features`, and returns its path. `what` is the program's name in messages.
 ///
-/// Features are those of the whole workspace, and the directory is the same for all programs: so dependencies are compiled once for each target.
+/// Features apply to the whole workspace, and all programs share a directory, so dependencies are compiled once for each target.
 ///
 /// # Errors
 /// When the target or the compiler is missing, or the program does not compile.
@@ -36,7 +36,7 @@ pub fn release(name: &str, features: &str, target: &str, what: &str) -> Result<P
     Ok(releases(&[name], features, target, what)?.join(name))
 }
 
-/// Builds several programs of the workspace `firmware`, as [`release`] does, at the same time, and returns the folder that they are in.
+/// Builds several programs of the workspace `firmware` together, as [`release`] does, and returns their folder.
 ///
 /// # Errors
 /// When the target or the compiler is missing, or a program does not compile.
@@ -75,7 +75,7 @@ pub fn host() -> Result<String> {
     Ok(String::from_utf8_lossy(&rustc.stdout).trim().to_owned())
 }
 
-/// Adds `target` to the toolchain in use unless it is there.
+/// Adds `target` to the current toolchain if it is missing.
 ///
 /// # Errors
 /// When it cannot be added.

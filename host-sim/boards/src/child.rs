@@ -39,7 +39,7 @@ impl Scratch {
         Ok(Self { file })
     }
 
-    /// Where it is opened, as long as it is here.
+    /// The path at which the file can be opened while this value exists.
     #[must_use]
     pub fn path(&self) -> PathBuf {
         #[cfg(target_os = "linux")]
@@ -48,10 +48,10 @@ impl Scratch {
         return self.file.path().to_owned();
     }
 
-    /// What is in it now.
+    /// The current contents of the file.
     ///
     /// # Errors
-    /// When it cannot be read.
+    /// When the file cannot be read.
     pub fn read(&self) -> Result<Vec<u8>> {
         fs::read(self.path()).context("cannot read a temporary file")
     }

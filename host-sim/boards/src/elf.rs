@@ -1,4 +1,4 @@
-//! The firmware's ELF file: what it takes of a board's memory, and another stream in it.
+//! The firmware's ELF file: its use of a board's memory, and replacing its stream.
 
 use anyhow::{Context, Result, bail, ensure};
 use goblin::elf::{
@@ -18,9 +18,9 @@ pub struct Elf {
 /// A piece of flash or RAM to be filled before the start.
 #[derive(Clone, Copy, Debug)]
 pub struct Segment<'a> {
-    /// Where it is loaded.
+    /// Address at which the bytes are loaded.
     pub address: u32,
-    /// What is loaded.
+    /// Bytes that are loaded.
     pub bytes: &'a [u8],
 }
 
@@ -32,7 +32,7 @@ const OFFSET: usize = 4;
 const FILE_SIZE: usize = 16;
 const MEMORY_SIZE: usize = 20;
 
-/// The name of a function without what it is compiled for: `<a::B<C>>::d::<E>` is `a::B::d`.
+/// The name of a function without its type parameters: `<a::B<C>>::d::<E>` becomes `a::B::d`.
 #[must_use]
 pub fn short_name(name: &str) -> String {
     // `<type>` and `<type as trait>` at the start, or after a space or another of these, are part of the name; other brackets are not.
@@ -71,7 +71,7 @@ impl Elf {
         &self.bytes
     }
 
-    /// The file as it is loaded, without names: what logs them logs less.
+    /// The file without names of functions. Emulators that log names then log less.
     ///
     /// # Errors
     /// When the file is shorter than its header.
@@ -179,7 +179,7 @@ impl Elf {
         Ok(found)
     }
 
-    /// All that is loaded before the start.
+    /// All segments that are loaded before the start.
     ///
     /// # Errors
     /// When the file is damaged.

@@ -34,7 +34,7 @@ pub enum Board {
     Mps2An386,
 }
 
-/// How a board's pixels are stored.
+/// Pixel formats of boards.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Format {
     /// Five, six and five bits of red, green and blue.
@@ -105,7 +105,7 @@ impl Board {
         if self.has(Shader::AUTO) { Shader::AUTO } else { Shader::AUTO_LINEAR }
     }
 
-    /// What a byte of the memory for streams is before anything is written there: erased flash, but QEMU begins with zeros.
+    /// The value of a byte of the memory for streams before anything is written there: erased flash, but QEMU begins with zeros.
     #[must_use]
     pub const fn blank(self) -> u8 {
         match self {
@@ -114,7 +114,7 @@ impl Board {
         }
     }
 
-    /// How it stores a pixel.
+    /// The board's pixel format.
     #[must_use]
     pub const fn format(self) -> Format {
         match self {
@@ -142,11 +142,11 @@ impl Serialize for Board {
 pub enum Until {
     /// The first frame has been shown, however many the stream has.
     FirstFrame,
-    /// All frames of the stream, so many, have been shown, and the firmware has measured its stack.
+    /// All frames of the stream have been shown, in this number, and the firmware has measured its stack.
     LastFrame(usize),
 }
 
-/// What a board showed and said.
+/// Pictures and log of a board.
 #[derive(Clone, Debug, Default)]
 pub struct Recording {
     /// Pixels of each picture, row by row from the top, as the display stores them.
@@ -173,10 +173,10 @@ impl Recording {
         self.log.iter().filter_map(checksum).collect()
     }
 
-    /// What the firmware has counted under this name in its first frame.
+    /// The figure with this name that the firmware has counted in its first frame.
     ///
     /// # Errors
-    /// When it has not logged that.
+    /// When the firmware has not logged it.
     pub fn figure(&self, name: &str) -> Result<u64> {
         let frame = self.log.iter().find_map(|line| line.strip_prefix("frame "));
         let mut words = frame.unwrap_or_default().split_whitespace();
@@ -205,9 +205,9 @@ pub fn run(board: Board, elf: &Elf, until: Until) -> Result<Recording> {
 /// A frame of which every instruction was watched.
 #[derive(Clone, Debug, Default)]
 pub struct Watched {
-    /// What the firmware said; no pictures.
+    /// The log of the firmware; there are no pictures.
     pub recording: Recording,
-    /// How long the frame took, where time is modelled.
+    /// Times of the frame, where time is modelled.
     pub time: Option<FrameTime>,
 }
 
@@ -216,16 +216,16 @@ pub struct Watched {
 pub struct Executed {
     /// The processor of the board, from 0 on.
     pub core: usize,
-    /// Where it stands.
+    /// Address of the instruction.
     pub address: u32,
-    /// How many cycles it took, where they are modelled.
+    /// Cycles of the instruction, where they are modelled.
     pub cycles: u64,
 }
 
-/// The stream as [`watch`] needs it: of frames by this method, the first of which is watched.
+/// Changes a stream for [`watch`]: frames are drawn by this method, and the first one is watched.
 ///
-/// The Pico's is watched when it is drawn at full speed, which does not happen while the picture is shown already. It gets a second frame,
-/// which is turned by so little that it takes as long.
+/// The Pico's frame is watched when it is drawn at full speed, which does not happen while its picture is shown already. So the stream has a second
+/// frame, turned by so little that it takes as long.
 ///
 /// # Errors
 /// When `stream` is shorter than its header says.
@@ -241,8 +241,8 @@ pub fn watchable(board: Board, stream: &[u8], shader: Shader) -> Result<Vec<u8>>
     }
 }
 
-/// Runs `elf`, whose stream must be [`watchable`], and hands each instruction of its first frame to `visit`. In QEMU those in `ranges` and
-/// without cycles; on the Pico all, of a frame that follows another.
+/// Runs `elf`, whose stream must be [`watchable`], and passes each instruction of its first frame to `visit`. In QEMU these are instructions in
+/// `ranges`, without cycles. On the Pico these are all instructions, of a frame that follows another.
 ///
 /// # Errors
 /// When the program crashes, falls silent or drives its display wrongly.

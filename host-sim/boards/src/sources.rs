@@ -1,4 +1,4 @@
-//! Where the sources of microphong are: what boards and callgrind execute is compiled from them.
+//! Finds the sources of microphong, from which firmware and programs for callgrind are compiled.
 
 use anyhow::{Context, Result, ensure};
 use std::{
@@ -9,7 +9,7 @@ use std::{
 /// The environment variable that names their folder.
 pub const VARIABLE: &str = "MICROPHONG_SOURCES";
 
-/// Where this program was compiled; it may have been moved since.
+/// The folder in which this program was compiled. The program may have been moved since.
 const BUILT_IN: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../..");
 
 /// The folder of the sources: the one that [`VARIABLE`] names; else the nearest one that the current folder lies in; else the one

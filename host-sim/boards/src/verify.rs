@@ -19,7 +19,7 @@ use std::{
 };
 use zerocopy::{FromBytes, IntoBytes};
 
-/// What to compare.
+/// A comparison to make.
 #[derive(Clone, Debug)]
 pub struct Request {
     /// The board that draws.
@@ -36,7 +36,7 @@ pub struct Request {
     pub frames: u16,
 }
 
-/// What came out of it.
+/// The result of a comparison.
 #[derive(Clone, Debug, Serialize)]
 pub struct Report {
     /// The board that drew.
@@ -170,7 +170,7 @@ pub struct Picture {
 }
 
 impl Picture {
-    /// What the firmware must log of this frame.
+    /// The line that the firmware must log for this frame.
     #[must_use]
     pub fn line(&self, number: usize) -> String {
         let Stats { triangles, culled, drawn, pixels, .. } = self.stats;
@@ -185,10 +185,10 @@ fn log_tail(recording: &Recording) -> String {
     format!("its last lines: {}", lines.get(lines.len().saturating_sub(3)..).unwrap_or_default().join(" / "))
 }
 
-/// What a board must show that finds `bytes` in the whole of its memory for streams: the first frame, or this message.
+/// The first frame that a board must show if `bytes` fill its memory for streams, or an error.
 ///
 /// # Errors
-/// The message.
+/// The message that the board must show instead.
 pub fn first_frame(board: Board, bytes: &[u8]) -> Result<Picture, String> {
     let bytes = StreamBytes::from(bytes);
     let stream = bytes.parse().map_err(|error| format!("stream: {error}"))?;

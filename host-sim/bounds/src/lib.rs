@@ -1,12 +1,12 @@
-//! The largest errors of interpolated highlights, found by search: the table by which the method `auto` judges others.
+//! Search for the largest errors of interpolated highlights, for the table by which the method `auto` chooses.
 //!
-//! What interpolation is off from a highlight (N·H/|N|)^n on a triangle depends on its three unit normals, seen from the half vector. Errors
-//! of all exponents n are about the same function of n (1 - ρ) and of n (1 - w), where ρ is the least length of N on the triangle, and w the
-//! largest N·H at a corner over ρ. [`microphong::method::highlight_error`] says how the table is laid out.
+//! The error of interpolating a highlight (N·H/|N|)^n on a triangle depends on its three unit normals, seen from the half vector. For all exponents n
+//! it is about the same function of n (1 - ρ) and n (1 - w), where ρ is the smallest length of N on the triangle, and w the largest N·H at a corner
+//! over ρ. [`microphong::method::highlight_error`] describes the table.
 //!
-//! An entry is the largest error that was found on any triangle that is at most as large and at least as far from the peak: of random ones,
-//! and of those found for neighbouring entries, moved as long as that makes the error larger. It is a maximum over what was tried, not a
-//! proof: margins are added, and [`worst`] searches again, by another seed and at other exponents, for what exceeds the table.
+//! An entry is the largest error found on any triangle that is at most as large and at least as far from the peak. Random triangles are tried, and
+//! triangles of neighbouring entries, which are moved as long as the error grows. This is a maximum of what was tried, not a proof. So margins are
+//! added, and [`worst`] searches again with another seed and other exponents for errors that exceed the table.
 
 mod triangle;
 
@@ -39,17 +39,17 @@ impl Table {
     }
 }
 
-/// Kinds of error of linear interpolation; all behind them are those of quadratics.
+/// Number of kinds of error of linear interpolation. The kinds after them belong to quadratics.
 const LINEAR_KINDS: usize = Kind::Quadratic as usize;
 
-/// Rows that are searched: half-way between those of the table, too.
+/// Number of rows that are searched: the table's rows and the ones half-way between them.
 const SEARCHED: usize = 2 * ROWS - 1;
 
 /// Factors for what a search has not found: another one finds up to 1 % more of linear interpolation, and 8 % more of quadratics.
 const MARGINS: [f64; KINDS] = [1.03, 1.03, 1.12, 1.12];
 
-/// And so much of the whole highlight for quadratics, by range of exponents: at those below 5 a longer search finds up to 0.1 of 255 more, where
-/// triangles reach to the end of a highlight.
+/// Additional margin for quadratics, as a part of the whole highlight, by range of exponents. At exponents below 5 a longer search finds up to 0.1 of
+/// 255 more, where triangles reach to the end of a highlight.
 const MORE: [f64; LEAST_EXPONENTS.len()] = [1.0 / 2048.0, 0.0, 0.0];
 
 /// Exponents that stand for a range.
@@ -81,7 +81,7 @@ struct Worst {
 impl Worst {
     const NONE: Self = Self { error: 0.0, triangle: Triangle([[0.0; 2]; 3]) };
 
-    /// Takes `triangle` in its place, fitted to size and depth, if it is worse; whether it is.
+    /// Fits `triangle` to size and depth, and keeps it if its error is larger. Returns whether it is.
     fn consider(&mut self, triangle: Triangle, kind: usize, exponent: u16, (size, depth): (f64, f64)) -> bool {
         let Some(triangle) = triangle.fitted(exponent, size, depth) else { return false };
         let error = triangle.errors(exponent)[kind];

@@ -17,7 +17,7 @@ fn dot(a: [f64; 3], b: [f64; 3]) -> f64 {
 }
 
 impl Triangle {
-    /// The least length of interpolated normals for which there are bounds, 0.8165: that of three that are 60 degrees apart.
+    /// Smallest length of interpolated normals for which there are bounds: 0.8165, for three normals that are 60 degrees apart.
     pub const LEAST_LENGTH: f64 = 0.816;
 
     /// A random one, with a size of about `size` and at about `depth` from the peak.
@@ -39,7 +39,7 @@ impl Triangle {
         Self([[x, y], [x + first[0], y + first[1]], [x + second[0], y + second[1]]])
     }
 
-    /// This one, its corners moved by about `step`.
+    /// A copy of this triangle whose corners are moved by about `step`.
     pub fn moved(&self, random: &mut Random, step: f64) -> Self {
         let one = random.once_in(2).then(|| random.pick(0..3) as usize);
         let mut corners = self.0;
@@ -51,8 +51,8 @@ impl Triangle {
         Self(corners)
     }
 
-    /// This one, smaller and farther from the peak if it has to be: its size n (1 - ρ) at most `size`, and its depth at least `depth`, for an
-    /// exponent.
+    /// A copy of this triangle, made smaller and moved away from the peak if necessary: its size n (1 - ρ) is at most `size`, and its depth at least
+    /// `depth`, for an exponent.
     pub fn fitted(mut self, exponent: u16, size: f64, depth: f64) -> Option<Self> {
         let n = f64::from(exponent);
         for _ in 0..4 {
@@ -71,7 +71,7 @@ impl Triangle {
         None
     }
 
-    /// The unit normals, those of the peak along the third axis.
+    /// The unit normals. The peak is along the third axis.
     fn normals(&self, n: f64) -> [[f64; 3]; 3] {
         self.0.map(|[x, y]| {
             let angle = x.hypot(y) / n.sqrt();
@@ -80,8 +80,8 @@ impl Triangle {
         })
     }
 
-    /// Largest errors of each kind for an exponent, over the whole highlight; that of [`microphong::method::highlight_error::Kind::Cosines`] times the exponent over
-    /// [`USUAL_EXPONENT`].
+    /// Largest errors of each kind for an exponent, over the whole highlight. The error of [`microphong::method::highlight_error::Kind::Cosines`] is
+    /// multiplied by the exponent over [`USUAL_EXPONENT`].
     #[must_use]
     pub fn errors(&self, exponent: u16) -> [f64; KINDS] {
         let n = f64::from(exponent);

@@ -20,7 +20,7 @@ const LOWEST: f64 = 3.0;
 /// The places where a method's jumps are looked for.
 #[derive(Clone, Debug)]
 pub(super) struct Edges {
-    /// Per point of an edge four: beside it and a step on in one triangle, then the same in the other.
+    /// Four samples for each point of an edge: beside it and one step on in one triangle, then in the other.
     samples: Samples,
 }
 
@@ -59,7 +59,7 @@ impl Edges {
         Self { samples: Samples::new(frame, points) }
     }
 
-    /// How a method jumps.
+    /// Measures the jumps of a method at edges.
     ///
     /// # Errors
     /// When the method cannot draw this frame.

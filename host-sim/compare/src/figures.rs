@@ -1,9 +1,9 @@
-//! What is said of errors in numbers.
+//! Figures of errors.
 
 use anyhow::{Context, Result};
 use image::RgbImage;
 
-/// How large errors are.
+/// The distribution of errors.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Spread {
     /// The largest, without its sign.
@@ -35,9 +35,9 @@ fn quantile(sorted: &[f64], share: f64) -> f64 {
     low + (high - low) * place.fract()
 }
 
-/// 1 less the mean difference of all channels, 1 being full (Vlasic 2002, section 6.1); 1 is the same, 0 black for white.
+/// 1 minus the mean difference of all channels, where full intensity is 1 (Vlasic 2002, section 6.1). Equal pictures have 1, black and white have 0.
 ///
-/// Give the pixels that show something: a background is always right.
+/// Pass pixels that show something: a background is always right.
 #[must_use]
 pub fn colour_correctness(pairs: &[[[u8; 3]; 2]]) -> f64 {
     let sum: f64 = differences(pairs).map(|d| f64::from(d.unsigned_abs())).sum();
@@ -55,7 +55,7 @@ fn differences(pairs: &[[[u8; 3]; 2]]) -> impl Iterator<Item = i16> + '_ {
     pairs.iter().flat_map(|[a, b]| (0..3).map(|k| i16::from(a[k]) - i16::from(b[k])))
 }
 
-/// How alike two pictures look: structure (SSIM of luma) and colour; 1 is the same, 0 nothing alike.
+/// Similarity of two pictures in structure (SSIM of luma) and colour: 1 for equal pictures, 0 for unlike ones.
 ///
 /// # Errors
 /// When a picture has not `width` times `height` pixels.

@@ -28,8 +28,8 @@ impl Pixel for Fine {
 
     const GRAY: bool = false;
     const DEPTH: [u32; 3] = [8; 3];
-    /// What errors are measured of is drawn as boards draw it, but that a walked level of one channel has a bit more than in formats with a
-    /// checkerboard.
+    /// Pictures for errors are drawn as boards draw them. The one difference is that a walked level of one channel has a bit more than in formats
+    /// with a checkerboard.
     const COARSE: bool = true;
     const BYTES: usize = 3;
 
@@ -89,7 +89,7 @@ pub fn is_one_channel(stream: &Stream<'_>, material: &Material) -> bool {
     !reflectance.three_channels()
 }
 
-/// What a method chooses for each triangle of [`picture`]; `None` unless it keeps a budget.
+/// The way that a method chooses for each triangle of [`picture`]; `None` unless the method has an error budget.
 ///
 /// # Errors
 /// When `size` is out of range.
@@ -97,9 +97,9 @@ pub fn choices(stream: Stream<'_>, size: Size, style: Style, number: u32) -> Res
     choices::by::<Fine>(style.shader, stream, size, style.perspective_correct, number)
 }
 
-/// Levels of red, green and blue, 255 is full, row by row from the top; `None` where nothing is drawn.
+/// Levels of red, green and blue, where 255 is full, row by row from the top; `None` where nothing is drawn.
 ///
-/// Where the renderer walks one level for all channels it stands in all three; it is that of the brightest channel.
+/// Where the renderer walks one level for all channels, all three have the level of the brightest channel.
 ///
 /// # Errors
 /// When `size` is out of range, or the scene cannot be drawn in this style.

@@ -1,7 +1,7 @@
-//! What methods make of a scene, measured against Phong shading in f64.
+//! Measures the pictures of methods against Phong shading in f64.
 //!
-//! Two errors add up in a picture: that of the method, which approximates, and that of its arithmetic, which rounds.
-//! The oracle draws each method in f64, so the two can be told apart.
+//! Two errors add up in a picture: the method's error, because it approximates, and the error of its arithmetic, which rounds. The oracle draws each
+//! method in f64, so that the two can be separated.
 
 pub mod document;
 mod edges;
@@ -26,10 +26,10 @@ use microphong_render::{
 use samples::Samples;
 use std::ops::Range;
 
-/// A larger difference, LSB, of a method that decides is compared with what it makes of other decisions.
+/// A difference, in 1/255, beyond which a method that makes decisions is also compared with the results of other decisions.
 pub const UNDECIDED: f64 = 0.25;
 
-/// One frame of a scene and its Phong shading: what methods are measured against.
+/// One frame of a scene and its Phong shading, against which methods are measured.
 #[derive(Debug)]
 pub struct Reference<'s> {
     stream: Stream<'s>,
@@ -54,9 +54,9 @@ pub struct Reference<'s> {
 /// A part of the picture.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Window {
-    /// From left to right.
+    /// Columns, from left to right.
     pub columns: Range<u32>,
-    /// From top to bottom.
+    /// Rows, from top to bottom.
     pub rows: Range<u32>,
 }
 
@@ -71,19 +71,19 @@ pub struct Comparison {
     pub method: Spread,
     /// Errors of the integer picture against the method in f64.
     pub arithmetic: Spread,
-    /// See [`figures::colour_correctness`]; of pixels rounded to 8 bits.
+    /// Colour correctness of pixels rounded to 8 bits, see [`figures::colour_correctness`].
     pub colour_correctness: f64,
-    /// See [`figures::psnr`]; of pixels rounded to 8 bits.
+    /// Signal-to-noise ratio of pixels rounded to 8 bits, see [`figures::psnr`].
     pub psnr: f64,
-    /// See [`figures::similarity`]; of the [`Reference::window`], rounded to 8 bits.
+    /// Similarity in the [`Reference::window`], rounded to 8 bits, see [`figures::similarity`].
     pub similarity: f64,
     /// Jumps at edges of the method in f64. For `auto`, each triangle is drawn by what `auto` chooses for it.
     pub jumps: Jumps,
     /// Operations.
     pub costs: Costs,
-    /// How far a pixel may be off, in 1/255, if the method is `auto`.
+    /// Error budget of the method `auto`, in 1/255.
     pub budget: Option<f64>,
-    /// What the method chooses, if it is `auto`.
+    /// The ways that the method `auto` chooses.
     pub choices: Option<Choices>,
     /// Pixels compared.
     pub pixels: usize,
@@ -181,7 +181,7 @@ impl<'s> Reference<'s> {
         self.candidates(pixel).next()
     }
 
-    /// How far levels are from those of candidate `sample`: in the channel that is off most.
+    /// The difference of levels from candidate `sample`, in the channel that differs most.
     fn error(&self, sample: usize, of: Levels, from: Levels) -> f64 {
         let material = self.facets.get(sample).and_then(|&facet| self.frame.facets.get(facet)).map_or(0, |facet| facet.material);
         if self.one_channel.get(material) == Some(&true) {
@@ -192,14 +192,13 @@ impl<'s> Reference<'s> {
         }
     }
 
-    /// The candidate of a pixel that levels are closest to, and how far they are off: of triangles at the same depth the integers may
-    /// show any.
+    /// The candidate of a pixel that is closest to these levels, and its difference. Of triangles at equal depth the integers may show any.
     fn best(&self, pixel: usize, level: Levels) -> Option<(usize, f64)> {
         let errors = self.candidates(pixel).map(|sample| (sample, self.error(sample, level, self.phong[sample])));
         errors.min_by(|a, b| a.1.abs().total_cmp(&b.1.abs()))
     }
 
-    /// All that a method may make of a candidate of a pixel, see [`oracle::outcomes`].
+    /// All results that a method may have for a candidate of a pixel, see [`oracle::outcomes`].
     fn outcomes(&self, sample: usize, pixel: usize, name: &str) -> Vec<Levels> {
         let width = self.frame.size.0 as usize;
         let centre = [pixel % width, pixel / width].map(|c| c as f64 + 0.5);
@@ -208,10 +207,10 @@ impl<'s> Reference<'s> {
         outcomes.unwrap_or_default()
     }
 
-    /// [`Comparison::total`] alone, which is quick.
+    /// [`Comparison::total`] only, which is quick.
     ///
     /// # Errors
-    /// Those of [`Self::compare`].
+    /// Errors of [`Self::compare`].
     pub fn total(&self, shader: Shader) -> Result<Spread> {
         let size = Size::new(self.frame.size.0, self.frame.size.1);
         let style = Style { perspective_correct: self.perspective_correct, ..shader.into() };
@@ -317,7 +316,7 @@ impl Window {
     }
 }
 
-/// Pixels left free around what is drawn.
+/// Number of pixels that stay free around the object.
 const SPACE: u32 = 4;
 
 /// The rectangle around all pixels that show something, and the row through the middle of the brightest.

@@ -6,7 +6,7 @@ use rayon::prelude::*;
 /// A point of the screen, and its place in the result.
 type Point = (usize, [f64; 2]);
 
-/// How a method shades a facet.
+/// A function by which a method shades a facet.
 pub(super) type Method<'f, 'm> = dyn Fn(&'f Facet) -> Result<Shade<'f>, Unsupported> + Sync + 'm;
 
 /// Points on facets. A method is set up once per facet, whatever the order of its points.
@@ -33,10 +33,10 @@ impl Samples {
         Self { by_facet, count }
     }
 
-    /// The levels at all points by a method that shades facets, in the order in which the points came.
+    /// The levels at all points, in the order in which the points were added, by a method that shades facets.
     ///
     /// # Errors
-    /// Those of the method.
+    /// Errors of the method.
     pub(super) fn shade<'f>(&self, frame: &'f Frame, method: &Method<'f, '_>) -> Result<Vec<Levels>, Unsupported> {
         let shaded: Vec<Vec<Levels>> = self
             .by_facet

@@ -1,4 +1,4 @@
-//! One frame, or all of an animation, drawn by the core as a board draws it.
+//! Draws one frame, or all of an animation, as a board draws it.
 
 use embedded_graphics_core::{
     geometry::Size,
@@ -21,7 +21,7 @@ fn counted_frame(renderer: &mut Renderer<'_, Rgb565>, numbers: Range<u32>, band:
     stats
 }
 
-/// Callgrind writes down what it has counted where this ends.
+/// Draws frames. Callgrind writes its counts when this function returns.
 #[inline(never)]
 fn dumped_frame(renderer: &mut Renderer<'_, Rgb565>, numbers: Range<u32>, band: &mut [Rgb565]) -> Stats {
     black_box(counted_frame(renderer, numbers, band))
@@ -37,7 +37,7 @@ pub(crate) struct Wanted<'w> {
     /// Name of the method.
     shader: &'w str,
     number: u32,
-    /// All frames of the animation behind this one are wanted, in place of this one.
+    /// Whether all frames of the animation after this one are drawn instead of this one.
     animation: bool,
     /// Only what has changed is drawn.
     redraw: bool,
@@ -48,7 +48,7 @@ pub(crate) struct Wanted<'w> {
 }
 
 impl<'w> Wanted<'w> {
-    /// From words: a stream's file, the picture's size as `320x240`, the rows of a band, a method, and options.
+    /// Reads a request from words: a stream's file, the picture's size as `320x240`, the rows of a band, a method, and options.
     pub(crate) fn parse(words: &[&'w str]) -> Result<Self, Box<dyn Error>> {
         let [path, size, rows, shader, options @ ..] = words else { return Err("FILE WIDTHxHEIGHT ROWS METHOD are needed".into()) };
         let (width, height) = size.split_once('x').ok_or("a size is WIDTHxHEIGHT")?;
@@ -75,7 +75,7 @@ impl<'w> Wanted<'w> {
         Ok(wanted)
     }
 
-    /// Draws it, and prints triangles drawn and pixels, those of the last frame.
+    /// Draws the request, and prints the numbers of triangles and pixels of the last frame.
     pub(crate) fn draw(&self) -> Result<(), Box<dyn Error>> {
         let bytes = fs::read(self.path)?;
         // Read in place, so the bytes must be aligned.

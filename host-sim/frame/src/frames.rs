@@ -1,8 +1,7 @@
-//! Draws frames for callgrind to count, one after the other as they are asked for, in every style.
+//! Draws frames on request, in every style, for callgrind to count.
 //!
-//! Each line of the standard input is a frame, or an animation: a stream's file, the picture's size as `320x240`, the rows of a band, a
-//! method, and options. A line of the standard output answers it: what was drawn, `refused` where the renderer cannot draw it in this
-//! style, or `failed`.
+//! Each line of the standard input is a frame or an animation: a stream's file, the picture's size as `320x240`, the rows of a band, a method, and
+//! options. A line of the standard output answers it: counts, `refused` if the renderer cannot draw it in this style, or `failed`.
 
 mod draw;
 

@@ -1,4 +1,4 @@
-//! How ill-conditioned shading is at a point: by how much it magnifies the rounding of what it is computed from.
+//! Condition number of shading at a point: by how much it magnifies rounding errors of its inputs.
 
 use super::{Facet, Frame, Place, light::highlight, scene::direction};
 use microphong_render::vector::{V3, add, dot, length, sub};
@@ -6,11 +6,11 @@ use microphong_render::vector::{V3, add, dot, length, sub};
 /// Corners, middles of edges and the centre: where methods take the normals and lights between which they interpolate.
 const NODES: [V3; 7] =
     [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0], [0.5, 0.5, 0.0], [0.0, 0.5, 0.5], [0.5, 0.0, 0.5], Facet::CENTRE];
-/// Up to this exponent |N|² follows from the constants of edges, which have 16 fraction bits; beyond it, from the normals.
+/// The exponent up to which |N|² follows from the constants of edges, which have 16 fraction bits. Beyond it, |N|² follows from the normals.
 const STEEP: f64 = 64.0;
 
 impl Place {
-    /// How many times as long as here the way from the farthest corner is, squared: all ways are measured in that.
+    /// The squared distance of the farthest corner from this light or viewer, divided by the squared distance of `position`.
     fn closeness(&self, facet: &Facet, position: V3) -> f64 {
         let Self::Near(place) = *self else { return 1.0 };
         let square = |from: V3| dot(sub(place, from), sub(place, from));
@@ -34,8 +34,8 @@ impl Frame {
         normal.max(light.closeness(facet, position).max(self.viewer.closeness(facet, position)) / (half * half))
     }
 
-    /// What cosines of the condition number 1 may be off by. None of it is proven: each is some two times what millions of random pixels
-    /// showed.
+    /// Largest error of cosines of the condition number 1. These numbers are not proven: each is about twice the largest error of millions of random
+    /// pixels.
     fn unit(&self, exponent: f64) -> f64 {
         let bits = match (self.is_constant(), exponent > STEEP) {
             // Four quadratics are walked, over the whole span of a triangle.
@@ -56,8 +56,8 @@ impl Frame {
         self.lights.iter().any(|light| half(light) < unit * self.condition(facet, weights, &light.place))
     }
 
-    /// By how many levels the light of a point changes at most, if cosines are off by what their condition number makes of rounding: by that
-    /// of the point itself, or, if `whole`, the largest of the point and all nodes of the facet.
+    /// Largest change of a point's light, in levels, if cosines have the errors that their condition number makes of rounding. If `whole`, it is the
+    /// largest of the point and all nodes of the facet.
     #[must_use]
     pub fn sensitivity(&self, facet: &Facet, point: [f64; 2], whole: bool) -> f64 {
         let (weights, material) = (facet.weights(point), self.material(facet));

@@ -16,7 +16,7 @@ use microphong_render::{
     vector::{V3, add, apply, cross, dot, length, scale, sub},
 };
 
-/// All that a picture of one frame depends on, in object space.
+/// All data on which a picture of one frame depends, in object space.
 #[derive(Clone, Debug)]
 pub struct Frame {
     /// Width and height in pixels.
@@ -25,26 +25,26 @@ pub struct Frame {
     pub facets: Vec<Facet>,
     /// All lights.
     pub lights: Vec<Light>,
-    /// Where highlights are seen from.
+    /// Position from which highlights are seen.
     pub viewer: Place,
     /// The axes of the eye: to the right, up, and towards the viewer.
     pub axes: [V3; 3],
-    /// In the stream's order.
+    /// Materials in the stream's order.
     pub materials: Vec<Material>,
 }
 
-/// One triangle.
+/// A triangle.
 #[derive(Clone, Debug)]
 pub struct Facet {
     /// Corners in pixels, clockwise on a screen whose y runs down.
     pub screen: [[f64; 2]; 3],
     /// Inverse depth of the corners: 1 at the near plane, 0 far away, linear on the screen.
     pub inv_depth: [f64; 3],
-    /// What a corner's share of the screen counts for in space: 1, or its inverse depth where perspective is corrected.
+    /// Weight of each corner's share of the screen in space: 1, or its inverse depth if perspective is corrected.
     pub shares: [f64; 3],
-    /// Which vertices of the whole scene the corners are: neighbours share them.
+    /// Numbers of the corners' vertices in the whole scene. Neighbours share them.
     pub vertices: [usize; 3],
-    /// Normals of the corners as they are stored: of unit length but for their rounding.
+    /// Normals of the corners as stored. Their length is 1 but for rounding.
     pub normals: [V3; 3],
     /// Corners in object space.
     pub positions: [V3; 3],
@@ -58,7 +58,7 @@ pub struct Facet {
     pub id: u32,
 }
 
-/// From a stream's fixed point.
+/// Converts fixed-point numbers of a stream.
 fn real<const N: usize>(v: [i32; N], bits: u32) -> [f64; N] {
     v.map(|c| f64::from(c) / f64::from(bits).exp2())
 }
@@ -119,8 +119,8 @@ impl Frame {
         }
     }
 
-    /// [`Self::new`], but methods take the point of the triangle that is seen, not the one that parts the triangle of the
-    /// screen in the same way. With parallel rays it is the same point.
+    /// A frame as [`Self::new`] makes it, in which methods take the point of the triangle that is seen. [`Self::new`] takes the point that divides
+    /// the triangle of the screen in the same way. With parallel rays both points are equal.
     #[must_use]
     pub fn perspective_correct(stream: Stream<'_>, size: (u32, u32), number: u32) -> Self {
         let mut frame = Self::new(stream, size, number);
@@ -137,7 +137,7 @@ impl Frame {
     }
 }
 
-/// One record on the screen; `None` if it shows its back, is empty there, or has to be clipped.
+/// A record as a facet on the screen; `None` if it shows its back, is empty there, or has to be clipped.
 fn facet(stream: Stream<'_>, mesh: &record::Mesh, triangle: &record::Triangle, id: u32, view: &View) -> Option<Facet> {
     // Streams list corners counter-clockwise.
     let [a, b, c] = triangle.corners;
@@ -191,7 +191,7 @@ impl Facet {
         }
     }
 
-    /// Affine coordinates of what is seen in a point of the screen: the corners' shares, which sum up to one.
+    /// Affine coordinates of the point that is seen at a point of the screen: the corners' shares, whose sum is one.
     #[must_use]
     pub fn weights(&self, p: [f64; 2]) -> V3 {
         let [flat, shares] = [self.flat_weights(p), self.shares];

@@ -1,8 +1,8 @@
 //! Every shading method in 64-bit floating point, written a second time.
 //!
-//! The core shades in integers; this package says what it should come to. The two share no shading code: from the core
-//! come the parsed records of a stream, the pose of a frame, and where a corner lies on the screen. All else is the
-//! methods' definition, one file each, as plain as formulas allow.
+//! The core shades in integers. This package says what the result should be. The two share no shading code: from the core come only the parsed
+//! records of a stream, the pose of a frame, and the positions of corners on the screen. All else is the methods' definition, one file each, as plain
+//! as formulas allow.
 
 mod condition;
 mod frame;

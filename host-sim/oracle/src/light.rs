@@ -1,4 +1,4 @@
-//! What a point of a surface reflects: Phong's sum over the lights.
+//! Light that a point of a surface reflects: Phong's sum over the lights.
 
 use super::{
     Levels, Shade,
@@ -8,7 +8,7 @@ use super::{
 use microphong::math::highlight_lut;
 use microphong_render::vector::{V3, add, dot};
 
-/// What rounding adds to the error of one light's level: of two gains, two products and a cosine of 15 bits, in levels of 7 fraction bits.
+/// Error of one light's level by rounding of two gains, two products and a cosine of 15 bits, in levels of 7 fraction bits.
 const ROUNDING: f64 = 3.0 / 128.0;
 
 /// The unit vectors that shading is made of.
@@ -41,11 +41,11 @@ impl Frame {
         self.materials.get(facet.material).copied().unwrap_or(black)
     }
 
-    /// How far integers may be off, in levels, where a method compares light with an interpolation of it.
+    /// Largest error of integers, in levels, where a method compares light with its interpolation.
     ///
-    /// Light at a point is off by the error of the table of highlights, and by the roundings of gains and cosines. The quadratic in the centre
-    /// weighs its six nodes by 5/3 in all, nodes on the parabola of an edge that is not split are up to 5/4 times as wrong as others, and what
-    /// they are compared with has an error of its own: 5/3 · 5/4 + 1 is 3.1.
+    /// Light at a point has the error of the table of highlights, and rounding of gains and cosines. The quadratic at the centre weighs its six nodes
+    /// by 5/3 in all. Nodes on the parabola of an edge that is not split have up to 5/4 times the error of others. The light they are compared with
+    /// has an error, too: 5/3 · 5/4 + 1 is 3.1.
     #[must_use]
     pub fn undecided(&self, facet: &Facet) -> f64 {
         let specular = self.material(facet).specular;
@@ -53,8 +53,8 @@ impl Frame {
         self.lights.iter().map(|light| 3.1 * (255.0 * highlight_lut::ERROR * largest(light) + ROUNDING)).sum()
     }
 
-    /// The channel that a facet is shaded in alone: the brightest, if all that its material reflects of any light has the same hue, to 1/1024
-    /// of the largest channel. Such a material is interpolated in one channel under a table of colours.
+    /// The one channel in which a facet is shaded: the brightest, if all light that its material reflects has one hue, to 1/1024 of the largest
+    /// channel. Such a material is interpolated in one channel under a table of colours.
     #[must_use]
     pub fn only_channel(&self, facet: &Facet) -> Option<usize> {
         let material = self.material(facet);
@@ -102,7 +102,7 @@ pub(super) fn highlight(cosine: f64, exponent: f64) -> f64 {
     cosine.clamp(0.0, 1.0).powf(exponent)
 }
 
-/// The highlight that Phong (1975) drew: `(R·V)^(exponent / 4)`, R the light reflected; from N·L, N·V and L·V.
+/// The highlight of Phong (1975), from N·L, N·V and L·V: `(R·V)^(exponent / 4)`, where R is the reflected light.
 ///
 /// Mirrored about N, the half vector's angle doubles; a quarter of Blinn's exponent makes highlights of the same size.
 /// R·V also grows where the normal points away from both, which is not a highlight.
@@ -111,8 +111,8 @@ pub(super) fn reflection(light: f64, view: f64, between: f64, exponent: f64) -> 
     if light + view > 0.0 { highlight(cosine, exponent / 4.0) } else { 0.0 }
 }
 
-/// Phong shading with Blinn's half vector (Phong 1975, Blinn 1977): the normal interpolated and normalised, position,
-/// light and viewer anew at every point. All other methods approximate it.
+/// Phong shading with Blinn's half vector (Phong 1975, Blinn 1977): the normal is interpolated and normalised, and position, light and viewer are
+/// computed at every point. All other methods approximate it.
 #[must_use]
 pub fn phong<'f>(frame: &'f Frame, facet: &'f Facet) -> Shade<'f> {
     Box::new(move |p| {

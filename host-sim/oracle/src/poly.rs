@@ -22,13 +22,13 @@ pub(crate) const TEN: [V3; 10] = [
     [THIRD, THIRD, THIRD],
 ];
 
-/// What the six nodes count for: Lagrange's quadratic, `b (2b - 1)` for corners, `4 b b'` for midpoints.
+/// Weights of the six nodes: Lagrange's quadratic, `b (2b - 1)` for corners, `4 b b'` for midpoints.
 pub(crate) fn quadratic([a, b, c]: V3) -> [f64; 6] {
     let corner = |u: f64| u * (2.0 * u - 1.0);
     [corner(a), corner(b), corner(c), 4.0 * a * b, 4.0 * b * c, 4.0 * c * a]
 }
 
-/// What the ten nodes count for: Lagrange's cubic.
+/// Weights of the ten nodes: Lagrange's cubic.
 pub(crate) fn cubic([a, b, c]: V3) -> [f64; 10] {
     let corner = |u: f64| u * (3.0 * u - 1.0) * (3.0 * u - 2.0) / 2.0;
     let edge = |near: f64, far: f64| 4.5 * near * far * (3.0 * near - 1.0);
@@ -50,7 +50,7 @@ pub(crate) fn sum<const NODES: usize>(weights: &[f64; NODES], values: &[f64; NOD
 pub(super) const FOUR: [[V3; 3]; 4] =
     [[SIX[0], SIX[3], SIX[5]], [SIX[3], SIX[1], SIX[4]], [SIX[5], SIX[4], SIX[2]], [SIX[3], SIX[4], SIX[5]]];
 
-/// In which of the [`FOUR`] a point lies, and its affine coordinates there.
+/// The one of the [`FOUR`] that contains a point, and the point's affine coordinates there.
 pub(super) fn quarter([a, b, c]: V3) -> (usize, V3) {
     if a >= 0.5 {
         (0, [2.0 * a - 1.0, 2.0 * b, 2.0 * c])

@@ -2,14 +2,14 @@
 
 use microphong_render::vector::{V3, add, dot, scale};
 
-/// Where a row leaves the triangle.
+/// The point at which a row leaves the triangle.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct End {
     /// Corner at which the edge begins.
     from: usize,
     /// Corner at which it ends.
     to: usize,
-    /// How far along the edge, in [0, 1].
+    /// Place along the edge, in [0, 1].
     along: f64,
     /// Column.
     pub(super) x: f64,
@@ -56,7 +56,7 @@ impl Span {
         if beside.x <= screen[middle][0] { Self { left: long, right: short } } else { Self { left: short, right: long } }
     }
 
-    /// How far from the left to the right end a column lies, in [0, 1].
+    /// Place of a column between the left and the right end, in [0, 1].
     pub(super) fn along(&self, x: f64) -> f64 {
         let width = self.right.x - self.left.x;
         if width > 0.0 { ((x - self.left.x) / width).clamp(0.0, 1.0) } else { 0.0 }

@@ -1,13 +1,13 @@
-//! What shines, from where it is seen, and what it shines on.
+//! Lights, viewer and materials.
 
 use microphong_render::vector::{V3, sub, unit};
 
-/// Where a light or a viewer is, object space.
+/// Position of a light or viewer, in object space.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Place {
     /// Infinitely far: the unit vector towards it.
     Far(V3),
-    /// At a position.
+    /// Near, at a position.
     Near(V3),
 }
 
@@ -25,20 +25,20 @@ impl Place {
 /// A light without fall-off.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Light {
-    /// Where it is.
+    /// Position of the light.
     pub place: Place,
     /// Red, green, blue; 1 is full.
     pub colour: V3,
 }
 
-/// How a surface reflects light; per channel, 1 is all of it.
+/// Reflectances of a surface for each channel, where 1 reflects all light.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Material {
-    /// What is there without lights.
+    /// Colour that is there without lights.
     pub ambient: V3,
     /// Evenly.
     pub diffuse: V3,
-    /// In the highlight.
+    /// Reflectance in the highlight.
     pub specular: V3,
     /// Exponent of the highlight. A larger exponent makes a smaller highlight.
     pub exponent: f64,

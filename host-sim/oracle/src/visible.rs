@@ -1,4 +1,4 @@
-//! Which triangle each pixel shows.
+//! Finds the triangle that each pixel shows.
 
 use super::frame::{Facet, Frame};
 

@@ -22,12 +22,12 @@ use embedded_graphics_core::{
 };
 use nalgebra::{Point3, Vector3};
 
-/// One colour a triangle.
+/// Draws each triangle in one colour.
 pub(crate) fn flat(scene: &Scene) -> Drawing<'_> {
     drawing(scene, RenderMode::SolidLightDir(light(scene)))
 }
 
-/// One colour a triangle, with a highlight, which is white, and seen from where the eye is.
+/// Draws each triangle in one colour, with a white highlight that is seen from the eye.
 pub(crate) fn flat_blinn_phong(scene: &Scene) -> Drawing<'_> {
     let [_, specular_intensity, _] = scene.lights.first().map_or([0.0; 3], |light| light.specular);
     drawing(scene, RenderMode::BlinnPhong { light_dir: light(scene), specular_intensity, shininess: scene.exponent.into() })
@@ -47,8 +47,8 @@ fn light(scene: &Scene) -> Vector3<f32> {
 /// Room for the triangles of a frame.
 type Commands = CommandBuffer<2048>;
 
-/// Its depth is f + 2n - 2fn/d at the distance d, between the distances n and f, rounded to whole numbers and never below zero: from 2n on it
-/// is of use.
+/// The far plane. The renderer's depth is f + 2n - 2fn/d at the distance d, between the distances n and f, rounded to whole numbers and never below
+/// zero, so it is useful from 2n on.
 const FAR: f32 = 60_000.0;
 
 fn drawing(scene: &Scene, mode: RenderMode) -> Drawing<'_> {
@@ -78,7 +78,7 @@ fn drawing(scene: &Scene, mode: RenderMode) -> Drawing<'_> {
     })
 }
 
-/// What a face shows that is turned to the first light; a tenth of it is its ambient light.
+/// The colour of a face that is turned to the first light. A tenth of it is the ambient light.
 fn colour(scene: &Scene) -> Rgb565 {
     let diffuse = scene.lights.first().map_or([0.0; 3], |light| light.diffuse);
     let level = |channel: usize, max: u8| ((scene.ambient[channel] + diffuse[channel]).min(1.0) * f32::from(max)) as u8;

@@ -1,7 +1,7 @@
-//! Other renderers draw frames of microphong, each in the way that its documentation shows, for `microphong bench --peers`.
+//! Frames of microphong drawn by other renderers, each in the way that its documentation shows, for `microphong bench --peers`.
 //!
-//! Only [`counted_frame`] is counted: all that a renderer does for a frame but clearing. What stays the same from frame to frame is
-//! converted before: meshes, matrices, the light's direction.
+//! Only [`counted_frame`] is counted: all that a renderer does for a frame, without clearing. Meshes, matrices and the light's direction stay the
+//! same from frame to frame and are converted before.
 #![no_std]
 
 extern crate alloc;
@@ -33,16 +33,16 @@ pub enum Peer {
     RetrofireGouraud,
     /// Light at each pixel, by a fragment shader.
     RetrofirePhong,
-    /// One colour a triangle, `RenderMode::SolidLightDir`.
+    /// One colour for each triangle, `RenderMode::SolidLightDir`.
     Embedded3dgfxFlat,
-    /// One colour a triangle, `RenderMode::BlinnPhong`.
+    /// One colour for each triangle with a highlight, `RenderMode::BlinnPhong`.
     Embedded3dgfxFlatBlinnPhong,
     /// Light at the vertices, `RenderMode::GouraudLightDir`.
     Embedded3dgfxGouraud,
 }
 
 impl Peer {
-    /// All of them.
+    /// All drawings by other renderers.
     pub const ALL: [Self; 5] = [
         Self::RetrofireGouraud,
         Self::RetrofirePhong,
@@ -89,7 +89,7 @@ pub fn counted_frame(draw: &mut dyn FnMut(&mut Picture), picture: &mut Picture) 
     black_box(picture);
 }
 
-/// Callgrind writes down what it has counted where this ends.
+/// Draws a frame. Callgrind writes its counts when this function returns.
 #[inline(never)]
 pub fn dumped_frame(draw: &mut dyn FnMut(&mut Picture), picture: &mut Picture) {
     counted_frame(draw, picture);

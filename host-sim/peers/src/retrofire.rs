@@ -24,7 +24,7 @@ type Levels<const CHANNELS: usize, const LIGHTS: usize, const EXPONENT: u16> = C
 
 type Corner<const CHANNELS: usize, const LIGHTS: usize, const EXPONENT: u16> = Vertex3<Normal<CHANNELS, LIGHTS, EXPONENT>>;
 
-/// How a surface reflects its lights. All numbers are constants, as in shaders that are written for their scene: so a power is a few products.
+/// Reflectances of a surface. All numbers are constants, as in shaders that are written for one scene, so a power is a few products.
 struct Surface<const CHANNELS: usize, const LIGHTS: usize, const EXPONENT: u16> {
     ambient: [f32; CHANNELS],
     lights: [Light<CHANNELS, LIGHTS, EXPONENT>; LIGHTS],
@@ -61,7 +61,7 @@ impl<const CHANNELS: usize, const LIGHTS: usize, const EXPONENT: u16> Surface<CH
     }
 }
 
-/// By squaring.
+/// A power, by repeated squaring.
 #[inline]
 fn power(mut base: f32, mut exponent: u16) -> f32 {
     let mut result = 1.0;
@@ -81,18 +81,18 @@ fn colour<const CHANNELS: usize, const LIGHTS: usize, const EXPONENT: u16>(level
     Color3f::new(array::from_fn(|channel| levels.0[channel % CHANNELS])).to_color4()
 }
 
-/// What its shaders know of a scene.
+/// Constants of a scene for the shaders.
 struct Uniforms<const CHANNELS: usize, const LIGHTS: usize, const EXPONENT: u16> {
     to_clip: ProjMat3<Model>,
     surface: Surface<CHANNELS, LIGHTS, EXPONENT>,
 }
 
-/// Where light is worked out.
+/// The place where light is computed.
 #[derive(Clone, Copy)]
 pub(crate) enum Shading {
-    /// At the vertices.
+    /// Light is computed at the vertices.
     Gouraud,
-    /// At each pixel: normals are interpolated, and normalised in the cheaper of its two ways.
+    /// Light is computed at each pixel. Normals are interpolated, and normalised in the cheaper of retrofire's two ways.
     Phong,
 }
 
@@ -158,7 +158,7 @@ where
     })
 }
 
-/// Its view's y runs down, and z away from the eye.
+/// The transformation to retrofire's view space, where y runs down, and z away from the eye.
 fn to_view(scene: &Scene) -> Mat4<Model, View> {
     let [x, y, z] = scene.eye;
     [[1.0, 0.0, 0.0, -x], [0.0, -1.0, 0.0, y], [0.0, 0.0, -1.0, z], [0.0, 0.0, 0.0, 1.0]].into()

@@ -10,8 +10,8 @@ use microphong::{
     stream::record::{Camera, PERSPECTIVE},
 };
 
-/// One mesh under directional lights, seen from infinity as far as highlights go. It is turned as the camera sees it: x runs to the right, y
-/// up, z towards the eye.
+/// One mesh under directional lights. Highlights are seen from infinity. The mesh is rotated to the camera's axes: x to the right, y up, z towards
+/// the eye.
 #[derive(Clone, Debug)]
 pub struct Scene {
     /// Positions of the vertices.
@@ -24,13 +24,13 @@ pub struct Scene {
     pub face_normals: Vec<[f32; 3]>,
     /// Radius of the ball about the origin that holds all vertices.
     pub radius: f32,
-    /// Where the eye is, looking along -z.
+    /// Position of the eye, which looks along -z.
     pub eye: [f32; 3],
     /// Half of the picture's height is seen under the slope 1 / `focal`.
     pub focal: f32,
     /// Nearest distance drawn.
     pub near: f32,
-    /// What is always reflected, of full.
+    /// Light that is always reflected; 1 is full intensity.
     pub ambient: [f32; 3],
     /// The lights, the brightest usually first.
     pub lights: Vec<Light>,
@@ -51,16 +51,16 @@ pub struct Light {
     pub specular: [f32; 3],
 }
 
-/// How far an eye is that sees nearly parallel rays: no corner moves by a quarter of a pixel of these pictures. Where they are parallel, 1 / z,
-/// by which peers test depth, is the same everywhere.
+/// Distance of an eye that sees nearly parallel rays: no corner moves by a quarter of a pixel of these pictures. With exactly parallel rays 1 / z, by
+/// which peers test depth, would be the same everywhere.
 const AFAR: f32 = 500.0;
 
-/// From fixed point with `bits` fraction bits.
+/// Converts fixed-point numbers with `bits` fraction bits.
 fn float<const N: usize>(v: [i32; N], bits: u32) -> [f32; N] {
     v.map(|c| c as f32 / (1u32 << bits) as f32)
 }
 
-/// From lengths, unit vectors and gains of a stream.
+/// Converts lengths, unit vectors and gains of a stream.
 fn wide<const N: usize, T: Into<i32>>(v: [T; N]) -> [f32; N] {
     float(v.map(Into::into), UNIT)
 }
@@ -107,7 +107,7 @@ impl Scene {
         })
     }
 
-    /// How many channels differ: one, where everything is grey.
+    /// Number of channels that differ: one if everything is grey.
     #[must_use]
     pub fn channels(&self) -> usize {
         let grey = |[r, g, b]: [f32; 3]| r == g && g == b;
@@ -115,7 +115,7 @@ impl Scene {
     }
 }
 
-/// Where the eye is, and the focal length, for a camera whose rays meet in the eye; the object is at `translation` in eye space.
+/// The position of the eye and the focal length, for a camera whose rays meet in the eye. The object is at `translation` in eye space.
 fn eye(camera: &Camera, [x, y, z]: [f32; 3]) -> ([f32; 3], f32) {
     let focal = camera.focal as f32 / 65536.0;
     if camera.projection == PERSPECTIVE { ([-x, -y, z], focal) } else { ([-x, -y, AFAR], focal * AFAR) }

@@ -28,7 +28,7 @@ impl StreamBytes {
     /// Reads a `.tri` file and checks it.
     ///
     /// # Errors
-    /// Names the file, what is wrong with it and what can be done.
+    /// The error names the file, its fault and the remedy.
     pub fn read(path: &Path) -> Result<Self> {
         let bytes = fs::read(path).with_context(|| format!("cannot read {}", path.display()))?;
         let stream = Self::from(bytes.as_slice());
@@ -61,7 +61,7 @@ impl StreamBytes {
     /// The checked view of the bytes.
     ///
     /// # Errors
-    /// Those of [`Stream::parse`].
+    /// Errors of [`Stream::parse`].
     pub fn parse(&self) -> Result<Stream<'_>, StreamError> {
         Stream::parse(self.as_bytes())
     }

@@ -1,7 +1,7 @@
-//! What the method `auto` chooses: how many triangles and pixels of a frame each way of shading draws, and a picture of them.
+//! Choices of the method `auto`: numbers of triangles and pixels that are drawn in each way, and a picture of them.
 //!
-//! The frame is drawn by a method that asks as `auto` does, remembers the answer, and leaves the rest to `auto`; its pixels remember what
-//! drew them. It is drawn in one band, so that no triangle is counted twice.
+//! The frame is drawn by a method that asks as `auto` does, remembers the answer, and lets `auto` draw. Each pixel remembers the way in which it was
+//! drawn. The frame has one band, so that no triangle is counted twice.
 
 use crate::{
     image::{rgb_bytes, to_rgb},
@@ -30,7 +30,7 @@ use std::{
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Way {
-    /// One colour for all of the triangle.
+    /// One colour for the whole triangle.
     OneColour,
     /// Levels at the corners, linear in between.
     Linear,
@@ -43,7 +43,7 @@ pub enum Way {
 }
 
 impl Way {
-    /// All of them, the cheapest first.
+    /// All ways, the cheapest first.
     pub const ALL: [Self; 5] = [Self::OneColour, Self::Linear, Self::Quadratic, Self::Cosines, Self::Phong];
 
     /// The name in texts and pictures.
@@ -83,23 +83,23 @@ impl From<Choice> for Way {
     }
 }
 
-/// What is drawn in one way.
+/// Numbers of triangles and pixels that are drawn in one way.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 pub struct Count {
-    /// Triangles that are shaded: of those drawn all but slivers between the centres of pixels. Where one is cut, each of its parts counts.
+    /// Number of shaded triangles: all drawn ones but slivers between the centres of pixels. If a triangle is cut, each of its parts counts.
     pub triangles: u32,
-    /// Pixels of these triangles, those hidden by depth included.
+    /// Pixels of these triangles, hidden ones included.
     pub pixels: u32,
 }
 
-/// What is drawn in each way, in the order of [`Way::ALL`].
+/// Counts of each way, in the order of [`Way::ALL`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Choices([Count; Way::ALL.len()]);
 
 impl Choices {
     const NONE: Self = Self([Count { triangles: 0, pixels: 0 }; Way::ALL.len()]);
 
-    /// What is drawn in one way.
+    /// The count of one way.
     #[must_use]
     pub const fn count(&self, way: Way) -> Count {
         self.0[way as usize]
@@ -137,28 +137,28 @@ impl fmt::Display for Choices {
     }
 }
 
-/// What `auto` chooses for a triangle.
+/// The choice of `auto` for a triangle.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Chosen {
     /// The way.
     pub way: Way,
-    /// By how much the levels of each channel are raised, in 1/255.
+    /// Levels by which each channel is raised, in 1/255.
     pub raises: [f64; 3],
 }
 
-/// What `auto` makes of a frame.
+/// The choices of `auto` in a frame.
 #[derive(Clone, Debug)]
 pub struct Told {
     /// The error budget, in 1/255.
     pub budget: f64,
-    /// How much it draws in each way.
+    /// Counts of each way.
     pub choices: Choices,
-    /// What it chooses for each triangle of the stream; `None` if that is not drawn, or cut before.
+    /// The choice for each triangle of the stream; `None` if the triangle is not drawn, or is cut first.
     pub ways: Vec<Option<Chosen>>,
 }
 
 thread_local! {
-    /// What this thread has drawn of the frame.
+    /// Counts of the triangles that this thread has drawn in the frame.
     static CHOICES: Cell<Choices> = const { Cell::new(Choices::NONE) };
     /// The address of the triangles' records, and what was chosen for each triangle.
     static WAYS: RefCell<(usize, Vec<Option<Chosen>>)> = const { RefCell::new((0, Vec::new())) };
@@ -166,7 +166,7 @@ thread_local! {
     static WAY: Cell<Option<Way>> = const { Cell::new(None) };
 }
 
-/// The method `auto`, or `auto-linear`, which tells what it chooses.
+/// The method `auto`, or `auto-linear`, which records its choices.
 struct Telling<const QUADRATICS: bool>;
 
 impl<const QUADRATICS: bool> Method for Telling<QUADRATICS> {
@@ -288,7 +288,7 @@ fn told<C: Pixel>(
     Ok((pixels, stats, CHOICES.get()))
 }
 
-/// What a method chooses in frame `number` of a picture in the pixel format `C`; `None` unless it keeps a budget.
+/// The choices of a method in frame `number` of a picture in the pixel format `C`; `None` unless the method has an error budget.
 ///
 /// # Errors
 /// When `size` is out of range.

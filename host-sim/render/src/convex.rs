@@ -12,8 +12,8 @@ use microphong::{
 };
 use std::f64::consts::PI;
 
-/// What a file's decimals may add to a convex body, in units of the last place. That there is an exactly convex one as near
-/// as this is taken for granted; the renderer has 0.36 to spare.
+/// Amount by which a file's decimals may change a convex body, in units of the last place. The existence of an exactly convex body this close is
+/// taken for granted; the renderer has a margin of 0.36.
 const SLACK: f64 = 0.25;
 
 /// Whether `mesh` is closed and convex, and its rounded copy, `vertices` and `triangles`, has all of its triangles with hardly leaning planes.
@@ -72,7 +72,7 @@ fn leans_little(faces: &[Face], vertices: &[Vertex], triangles: &[Triangle]) -> 
         && faces.iter().zip(rounded).all(|(face, rounded)| rounded.is_some_and(|n| length(sub(n, face.normal)) < (-f64::from(LEAN)).exp2()))
 }
 
-/// All corners lie below all planes.
+/// Whether all corners lie below all planes.
 fn is_convex(mesh: &Mesh, faces: &[Face]) -> bool {
     let slack = SLACK / f64::from(1 << UNIT);
     faces.iter().all(|face| mesh.positions.iter().all(|&p| dot(face.normal, sub(p, face.corners[0])) <= slack))

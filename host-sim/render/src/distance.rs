@@ -1,4 +1,4 @@
-//! How far two surfaces lie apart.
+//! Distance between two surfaces.
 
 use crate::vector::{V3, add, cross, dot, length, scale, sub};
 
@@ -8,12 +8,12 @@ pub type Corners = [V3; 3];
 /// A result may be too large by this share of itself.
 const SHARE: f64 = 1.0 / 128.0;
 
-/// Upper bound of the Hausdorff distance between two surfaces: each point of one has a point of the other that is no farther. `least` if it
-/// is less, which must be above 0: to tell less takes the more time the less it is. `None` if it is more than `most`.
+/// Upper bound of the Hausdorff distance between two surfaces: each point of one has a point of the other that is no farther. The result is at least
+/// `least`, which must be above 0, because smaller distances take longer. `None` if the distance is more than `most`.
 ///
-/// Points within triangles count as well as their corners. Error: at most 1/128 of it too large. Source: branch and bound. The distance
-/// from a triangle is a convex function, on another triangle therefore largest at a corner: where all corners lie near one triangle, so does
-/// all between them. Where they do not, triangles are cut in four.
+/// Points within triangles count as well as corners. Error: the bound is at most 1/128 too large. Source: branch and bound. The distance from a
+/// triangle is a convex function, so on another triangle it is largest at a corner: if all corners lie near one triangle, so do all points between
+/// them. Otherwise triangles are cut in four.
 #[must_use]
 pub fn hausdorff(one: &[Corners], other: &[Corners], [least, most]: [f64; 2]) -> Option<f64> {
     let mut search = Search { bound: least, most };

@@ -1,4 +1,4 @@
-//! The fields of a text in TOML. Each is taken by its name and is checked, and what is wrong with it has a place: a line, and its name.
+//! Fields of a TOML text. Each is taken by its name and checked. An error has a place: a line and a name.
 
 use anyhow::{Error, Result, anyhow, ensure};
 use std::{
@@ -22,28 +22,28 @@ pub(crate) fn quoted(text: &str) -> String {
     }
 }
 
-/// Where something stands in a text.
+/// A place in a text.
 #[derive(Clone)]
 pub(crate) struct Place<'a> {
     text: &'a str,
     span: Range<usize>,
-    /// What it is, such as `object 2: at`; empty for the whole text.
+    /// Name of the place, such as `object 2: at`; empty for the whole text.
     name: String,
 }
 
 impl<'a> Place<'a> {
-    /// A part of what is here.
+    /// A part of this place.
     fn part(&self, name: impl fmt::Display, span: Range<usize>) -> Self {
         let name = if self.name.is_empty() { name.to_string() } else { format!("{}: {name}", self.name) };
         Self { name, span, ..*self }
     }
 
-    /// What is wrong here.
+    /// An error at this place.
     pub(crate) fn error(&self, what: impl fmt::Display) -> Error {
         anyhow!("{self}: {what}")
     }
 
-    /// What is written here.
+    /// The text at this place.
     fn source(&self) -> String {
         quoted(self.text.get(self.span.clone()).unwrap_or_default())
     }
@@ -61,7 +61,7 @@ impl fmt::Display for Place<'_> {
 pub(crate) struct Table<'a> {
     pub(crate) place: Place<'a>,
     values: DeTable<'a>,
-    /// The fields that were asked for, and where those stand that are there.
+    /// Fields that were asked for, and the places of fields that exist.
     known: Vec<(&'static str, Option<Range<usize>>)>,
 }
 
@@ -106,12 +106,12 @@ impl<'a> Table<'a> {
         Ok(tables.unwrap_or_default())
     }
 
-    /// Where a field stands that was asked for; if it was left out, where the table stands.
+    /// The place of a field that was asked for, or the place of the table if the field was left out.
     pub(crate) fn place_of(&self, name: &'static str) -> Place<'a> {
         self.place_of_any(&[name])
     }
 
-    /// Where the first of some fields stands that is there.
+    /// The place of the first of these fields that exists.
     pub(crate) fn place_of_any(&self, names: &[&'static str]) -> Place<'a> {
         let stands = |name| self.known.iter().find_map(|(known, span)| if *known == name { span.clone() } else { None });
         match names.iter().find_map(|&name| Some((name, stands(name)?))) {
@@ -198,12 +198,12 @@ impl<'a> Field<'a> {
         }
     }
 
-    /// Whether it has fields of its own.
+    /// Whether the value has fields of its own.
     pub(crate) fn is_table(&self) -> bool {
         self.value.is_table()
     }
 
-    /// Whether it is a text.
+    /// Whether the value is a text.
     pub(crate) fn is_text(&self) -> bool {
         self.value.is_str()
     }

@@ -3,7 +3,7 @@
 use anyhow::{Result, bail};
 use std::path::Path;
 
-/// What other formats are called, by the ending of their files.
+/// Names of other formats, by the endings of their files.
 const ENDINGS: [(&str, &str); 6] =
     [("fbx", "FBX"), ("dae", "COLLADA"), ("3ds", "3DS"), ("3mf", "3MF"), ("off", "OFF"), ("blend", "Blender")];
 

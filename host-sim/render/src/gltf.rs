@@ -23,7 +23,7 @@ use std::{
     path::Path,
 };
 
-/// What a glTF file holds.
+/// The contents of a glTF file.
 #[derive(Clone, Debug, Default)]
 pub struct Scene {
     /// The triangles of its default scene.
@@ -33,11 +33,11 @@ pub struct Scene {
     pub objects: Vec<String>,
     /// Materials by which [`Submesh::material`] counts; `None` where a primitive has none.
     pub materials: Vec<Option<Material>>,
-    /// What the file has besides, in words.
+    /// Contents that are left out, in words.
     pub ignored: BTreeSet<&'static str>,
 }
 
-/// How GLB begins.
+/// The first bytes of GLB.
 const MAGIC: &[u8] = b"glTF";
 /// Bytes of GLB before its first chunk.
 const HEAD: usize = 12;
@@ -52,10 +52,10 @@ fn text(bytes: &[u8]) -> &[u8] {
     bytes.strip_prefix(b"\xEF\xBB\xBF").unwrap_or(bytes).trim_ascii_start()
 }
 
-/// Reads the default scene of a file, else its first; buffers may be in the file or beside `path`.
+/// Reads the default scene of a file, or its first scene if there is no default. Buffers may be in the file or beside `path`.
 ///
 /// # Errors
-/// Names the buffer, mesh or node, and what is wrong with it.
+/// The error names the buffer, mesh or node, and its fault.
 pub fn parse(bytes: &[u8], path: &Path) -> Result<Scene> {
     let Gltf { document, blob } = open(bytes)?;
     let buffers = buffers(&document, blob, path)?;
@@ -138,7 +138,7 @@ fn buffers(document: &Document, mut blob: Option<Vec<u8>>, path: &Path) -> Resul
         .collect()
 }
 
-/// What a document has that nobody reads, but for what stands in its meshes.
+/// Contents of a document that are left out, without the contents of its meshes.
 fn besides(document: &Document) -> BTreeSet<&'static str> {
     let mut ignored = BTreeSet::new();
     let mut note = |is_there: bool, what| {
@@ -155,7 +155,7 @@ fn besides(document: &Document) -> BTreeSet<&'static str> {
     ignored
 }
 
-/// A linear map and what is added to it.
+/// A linear map and a translation.
 #[derive(Clone, Copy)]
 struct Transform {
     rows: [V3; 3],
@@ -192,7 +192,7 @@ impl Transform {
     }
 }
 
-/// What has been read so far.
+/// The reader and what it has read so far.
 struct Reader {
     buffers: Vec<Vec<u8>>,
     scene: Scene,

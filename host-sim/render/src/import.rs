@@ -17,23 +17,24 @@ use std::{collections::BTreeSet, fs, path::Path};
 pub struct Imported {
     /// The mesh.
     pub mesh: Mesh,
-    /// What welding did.
+    /// A report on welding.
     pub report: Report,
     /// Names of the objects by which the mesh counts, all different; none if the file names no object.
     pub objects: Vec<String>,
     /// The materials of the file, by which the mesh counts; `None` where it does not say what a material is.
     pub materials: Vec<Option<mtl::Material>>,
-    /// What a user should know of the file, in sentences.
+    /// Remarks on the file for the user, in sentences.
     pub remarks: Vec<String>,
 }
 
-/// The materials of a mesh as a stream has them, under so much ambient light; `other` in place of what the file does not say.
+/// Converts the materials of a mesh to those of a stream, under ambient light from 0 to 1. Values that the file does not define are taken from
+/// `other`.
 #[must_use]
 pub fn surfaces(materials: &[Option<mtl::Material>], other: &Surface, ambient_light: f64) -> Vec<Surface> {
     materials.iter().map(|material| material.as_ref().map_or(*other, |material| material.surface(ambient_light))).collect()
 }
 
-/// What a file of any format holds.
+/// The contents of a file of any format.
 #[derive(Default)]
 struct Contents {
     soup: Soup,

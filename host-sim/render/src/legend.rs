@@ -10,7 +10,7 @@ use embedded_graphics::{
 };
 use std::convert::Infallible;
 
-/// From one line to the next, in pixels.
+/// Distance from one line to the next, in pixels.
 const LINE: u32 = 15;
 /// Free space around the lines.
 const SPACE: u32 = 4;

@@ -34,8 +34,8 @@ pub struct Level {
 
 /// A level has at most this share of the triangles of the level before; flash for a smaller gain would be wasted.
 const GAIN: f64 = 0.9;
-/// How much the difference of unit normals counts beside distances, so that of two collapses as near to the mesh the one is taken that
-/// changes its light less. Ten times as much takes a third more triangles for the same error.
+/// Weight of the difference of unit normals beside distances. Of two collapses at equal distance the one is taken that changes light less. Ten times
+/// this weight takes a third more triangles for the same error.
 const NORMALS: [f32; 3] = [0.05; 3];
 
 /// Gives each part of a mesh a coarser level for each of some errors, of the fewest triangles that keep to it.
@@ -66,7 +66,7 @@ pub fn add(mesh: &Mesh, parts: &mut [Part], errors: &[GeometricError], tick: &dy
     Ok(())
 }
 
-/// Whether the borders of each part must stay: those that its object's other parts have as well, or that touch another object.
+/// For each part, whether its borders must stay: borders that other parts of its object have as well, or that touch another object.
 fn borders(parts: &[Part]) -> Vec<SimplifyOptions> {
     let mut first = HashMap::new();
     let mut locked = vec![false; parts.len()];
@@ -104,7 +104,7 @@ fn fewest(part: &Part, most: usize, error: GeometricError, options: SimplifyOpti
     Ok(found)
 }
 
-/// How a mesh was simplified.
+/// The result of simplifying a mesh.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Simplified {
     /// Triangles before.
@@ -116,11 +116,11 @@ pub struct Simplified {
 /// Smaller distances do not count: a tenth of a step of positions.
 const NEAREST: f64 = 0.1 / 16384.0;
 
-/// Makes the parts of a mesh of `most` triangles together or fewer, on some of their vertices; the others are dropped. `None` if they have no
-/// more anyway. `tick` is called after each part.
+/// Reduces the parts of a mesh to at most `most` triangles together, on some of their vertices; other vertices are dropped. `None` if they have no
+/// more triangles. `tick` is called after each part.
 ///
 /// # Errors
-/// When the mesh cannot be made of so few.
+/// When the mesh cannot be reduced so far.
 pub fn simplify(mesh: &Mesh, parts: &mut [Part], most: usize, tick: &dyn Fn()) -> Result<Option<Simplified>> {
     let before: usize = parts.iter().map(|part| part.triangles.len()).sum();
     if before <= most {

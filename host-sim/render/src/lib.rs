@@ -1,4 +1,4 @@
-//! From a mesh to its picture: scenes, the triangle streams that boards draw, and what the core renderer makes of them.
+//! From meshes to pictures: scenes, the streams that boards draw, and drawing them by the core.
 
 pub mod bytes;
 pub mod choices;

@@ -25,21 +25,21 @@ use microphong::{
 };
 use zerocopy::{FromZeros, IntoBytes};
 
-/// How a surface reflects light; per channel, 1 is all of it.
+/// Reflectances of a surface for each channel, where 1 reflects all light.
 #[derive(Clone, Copy, Debug)]
 pub struct Surface {
     /// Colour that is reflected of the ambient light.
     pub ambient: V3,
     /// Evenly.
     pub diffuse: V3,
-    /// In the highlight.
+    /// Reflectance in the highlight.
     pub specular: V3,
     /// Exponent of the highlight. A larger exponent makes a smaller highlight.
     pub exponent: u16,
 }
 
 impl Surface {
-    /// All three shares in one colour, as metals have it: every channel is then a multiple of one intensity.
+    /// A metal, whose ambient, diffuse and specular reflectances have one colour. Every channel is then a multiple of one intensity.
     #[must_use]
     pub fn metal(colour: V3, [ambient, diffuse, specular]: [f64; 3], exponent: u16) -> Self {
         Self { ambient: scale(colour, ambient), diffuse: scale(colour, diffuse), specular: scale(colour, specular), exponent }
@@ -70,18 +70,18 @@ pub enum Lamp {
 pub struct Member {
     /// Number of its first mesh.
     pub first_mesh: u16,
-    /// How many meshes it has.
+    /// Number of meshes.
     pub meshes: u16,
 }
 
-/// How something moves.
+/// A movement.
 #[derive(Clone, Debug)]
 pub struct Way {
     /// What moves, see [`Track::kind`].
     pub kind: u16,
     /// Number of the object or light.
     pub index: u16,
-    /// Where it is, in the order of frames.
+    /// Keys, in the order of frames.
     pub keys: Vec<Key>,
 }
 
@@ -90,7 +90,7 @@ pub struct Way {
 pub struct Cast {
     /// Objects.
     pub members: Vec<Member>,
-    /// What moves.
+    /// All movements.
     pub ways: Vec<Way>,
 }
 
@@ -105,11 +105,11 @@ pub struct Look {
     pub lamps: Vec<Lamp>,
     /// Ambient light.
     pub ambient: V3,
-    /// What is seen where no triangle is.
+    /// The background.
     pub background: Background,
     /// Highlights see the eye where it is, not infinitely far.
     pub local_viewer: bool,
-    /// How far a pixel may be off by a method that keeps to a budget.
+    /// The error budget of the method.
     pub budget: ErrorBudget,
     /// Method unless another one is asked for.
     pub shader: Shader,
@@ -129,7 +129,7 @@ pub const BACKGROUND: [u8; 3] = [26, 28, 32];
 pub const KEY: V3 = [-0.45, 0.6, -0.66];
 
 impl Look {
-    /// One material under one white key light.
+    /// A scene of one material under one white key light.
     #[must_use]
     pub fn new(surface: Surface, view: View) -> Self {
         Self {
@@ -148,7 +148,7 @@ impl Look {
         }
     }
 
-    /// How far a coarser level may lie from a mesh of these parts, if a picture of `size` pixels is to show it.
+    /// Largest distance of a coarser level from a mesh of these parts for which a picture of `size` pixels may show the level.
     #[must_use]
     pub fn tolerance(&self, parts: &[Part], size: (u32, u32)) -> GeometricError {
         stream_tolerance(&self.seen(parts), Size::new(size.0, size.1))
@@ -236,7 +236,7 @@ impl Look {
         Ok(bytes)
     }
 
-    /// The names of meshes as a stream has them: that of an object stands at its first mesh.
+    /// Converts the names of meshes to those of a stream. The name of an object stands at its first mesh.
     fn names(&self, parts: &[Part]) -> Result<Vec<u8>> {
         let (mut bytes, mut named) = (Vec::new(), None);
         if self.objects.is_empty() {

@@ -7,7 +7,7 @@ use crate::{
 use anyhow::{Result, bail};
 use std::{collections::HashMap, mem};
 
-/// What a mesh file holds: polygons whose corners may repeat positions.
+/// The contents of a mesh file: polygons whose corners may repeat positions.
 #[derive(Clone, Debug, Default)]
 pub struct Soup {
     /// Positions, finite.
@@ -30,7 +30,7 @@ impl Soup {
 pub struct Face {
     /// Three or more, counter-clockwise seen from the front.
     pub corners: Vec<Corner>,
-    /// What it belongs to.
+    /// Object and material of the polygon.
     pub submesh: Submesh,
     /// Over which edges light is smooth where the file gives no normals.
     pub smoothing: Smoothing,
@@ -45,7 +45,7 @@ pub struct Submesh {
     pub material: usize,
 }
 
-/// Which faces around a vertex have a normal in common.
+/// Rules for faces around a vertex that share a normal.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Smoothing {
     /// Faces share a normal where the edge between them folds by no more than the crease angle.
@@ -56,7 +56,7 @@ pub enum Smoothing {
     Flat,
 }
 
-/// One corner of a polygon.
+/// A corner of a polygon.
 #[derive(Clone, Copy, Debug)]
 pub struct Corner {
     /// Index of the position.
@@ -68,18 +68,18 @@ pub struct Corner {
 /// Triangles on shared vertices.
 #[derive(Clone, Debug, Default)]
 pub struct Mesh {
-    /// One per vertex.
+    /// Position of each vertex.
     pub positions: Vec<V3>,
-    /// One per vertex, unit length.
+    /// Unit normal of each vertex.
     pub normals: Vec<V3>,
     /// Vertices, counter-clockwise seen from the front.
     pub triangles: Vec<[usize; 3]>,
-    /// What each triangle belongs to; all belong to the first object and material if this is empty.
+    /// Object and material of each triangle. If this is empty, all triangles belong to the first object and material.
     pub submeshes: Vec<Submesh>,
 }
 
 impl Mesh {
-    /// What a triangle belongs to.
+    /// Object and material of a triangle.
     #[must_use]
     pub fn submesh(&self, triangle: usize) -> Submesh {
         self.submeshes.get(triangle).copied().unwrap_or_default()
@@ -96,13 +96,12 @@ impl Mesh {
     }
 }
 
-/// How a mesh is made of polygons.
+/// Options for making a mesh from polygons.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Weld {
     /// Turn the surface inside out; closed ones are turned without asking.
     pub turn: bool,
-    /// Where the file gives neither normals nor smoothing groups, faces that fold by more than this, in degrees, meet in an edge that can be
-    /// seen.
+    /// Largest angle, in degrees, at which an edge looks smooth in a file without normals and smoothing groups.
     pub crease: f64,
 }
 
@@ -120,7 +119,7 @@ impl Default for Weld {
     }
 }
 
-/// What welding did.
+/// A report on welding.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Report {
     /// Positions that coincided with another one.
@@ -173,7 +172,7 @@ pub fn weld(soup: &Soup, Weld { turn, crease }: Weld) -> Result<(Mesh, Report)> 
     Ok((mesh, report))
 }
 
-/// Positions moved to the centre of their box and scaled to radius 1; only those that faces use count.
+/// Positions moved to the centre of their bounding box and scaled to radius 1. Only positions that faces use count.
 fn fit_sphere(soup: &Soup) -> Result<Vec<V3>> {
     let used = || soup.corners().map(|c| soup.positions[c.position]);
     let low = used().fold([f64::INFINITY; 3], |m, p| [0, 1, 2].map(|k| f64::min(m[k], p[k])));
@@ -195,7 +194,7 @@ fn fit_sphere(soup: &Soup) -> Result<Vec<V3>> {
     Ok(soup.positions.iter().map(|&p| scale(sub(p, centre), inverse).map(|c| c.clamp(-1.0, 1.0))).collect())
 }
 
-/// For each position the first one that lies within [`WELD`] of it.
+/// For each position the first position within [`WELD`] of it.
 fn merge(positions: &[V3]) -> Vec<usize> {
     let mut cells: HashMap<[i64; 3], Vec<usize>> = HashMap::new();
     let mut first = Vec::with_capacity(positions.len());
@@ -262,7 +261,7 @@ fn push(mesh: &mut Mesh, face: &Face, vertices: &[usize]) -> bool {
 /// A corner of a polygon around a place: of which face, where in it, and the direction of the face.
 type Around = (usize, usize, Option<V3>);
 
-/// One normal for all faces around a place between which light is smooth: the sum of their area vectors. Also counts polygons that cross
+/// Computes one normal for all faces around a position between which light is smooth: the sum of their area vectors. Also counts polygons that cross
 /// themselves.
 fn smooth(soup: &Soup, positions: &[V3], places: &[usize], crease: f64) -> (Mesh, usize) {
     let areas: Vec<V3> =
@@ -293,7 +292,7 @@ fn smooth(soup: &Soup, positions: &[V3], places: &[usize], crease: f64) -> (Mesh
     (mesh, crossed)
 }
 
-/// Takes the first corner out of those around a place, and all to which light is smooth from it, over others as well; in their order.
+/// Takes the first corner out of the corners around a position, and all to which light is smooth from it, directly or over others, in their order.
 fn sheet(soup: &Soup, left: &mut Vec<Around>, crease: f64) -> Vec<Around> {
     // Less what rounding may take from the angle itself.
     let least = if crease < 180.0 { crease.to_radians().cos() - 1e-9 } else { f64::NEG_INFINITY };

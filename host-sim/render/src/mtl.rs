@@ -1,6 +1,6 @@
-//! Reads MTL, the materials of Wavefront OBJ.
+//! Reader for MTL, the materials of Wavefront OBJ.
 //!
-//! A reader of our own, as that of OBJ, because a bad number should be reported with its line.
+//! It is our own, as the reader for OBJ is, because an error should name the line of a bad number.
 
 use crate::{
     look::Surface,
@@ -10,12 +10,12 @@ use crate::{
 use anyhow::{Context, Result, bail};
 use std::collections::BTreeSet;
 
-/// What an MTL file holds.
+/// The contents of an MTL file.
 #[derive(Clone, Debug, Default)]
 pub struct Mtl {
-    /// Its materials, in their order.
+    /// Materials, in the order of the file.
     pub materials: Vec<Material>,
-    /// What the file has besides, in words.
+    /// Contents that are left out, in words.
     pub ignored: BTreeSet<&'static str>,
 }
 
@@ -58,7 +58,7 @@ impl Material {
 /// Parses the text of an MTL file.
 ///
 /// # Errors
-/// Names the line, and what is wrong with it.
+/// The error names the line and its fault.
 pub fn parse(text: &str) -> Result<Mtl> {
     let mut mtl = Mtl::default();
     for (number, line) in logical_lines(&plain(text)) {

@@ -4,7 +4,7 @@ use crate::fields::quoted;
 use microphong::stream::MAX_NAME;
 use std::collections::{HashMap, HashSet};
 
-/// Names that are all different, none of them empty or too long. Says what it changes. No names at all stay none.
+/// Makes names different, not empty and not too long, and adds a remark on each change. An empty list stays empty.
 pub(crate) fn distinct(names: Vec<String>, remarks: &mut Vec<String>) -> Vec<String> {
     if matches!(&names[..], [name] if name.is_empty()) {
         return Vec::new();

@@ -2,8 +2,8 @@
 
 use microphong::fixed::traits::Fixed;
 
-/// The number of a stream's format that is nearest to `x`. What does not fit becomes the least or largest that does, which the check
-/// of the stream catches where it must not be; what is no number becomes 0.
+/// The number of a stream's format that is nearest to `x`. A number that does not fit becomes the smallest or largest that does; the check of the
+/// stream finds it where it is not allowed. NaN becomes 0.
 #[must_use]
 pub fn nearest<F: Fixed>(x: f64) -> F {
     if x.is_nan() { F::ZERO } else { F::saturating_from_num(x) }

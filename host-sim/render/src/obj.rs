@@ -9,25 +9,25 @@ use std::collections::{BTreeSet, HashMap};
 /// Larger coordinates would overflow when squared.
 pub(crate) const LARGEST: f64 = 1e100;
 
-/// What an OBJ file holds.
+/// The contents of an OBJ file.
 #[derive(Clone, Debug, Default)]
 pub struct Obj {
-    /// Its polygons.
+    /// The polygons of the file.
     pub soup: Soup,
     /// The names of objects by which [`Submesh::object`] counts; a name is empty where the file gives none.
     pub objects: Vec<String>,
-    /// The names of materials by which [`Submesh::material`] counts; `None` is that of faces before which no name stands.
+    /// Names of materials, which [`Submesh::material`] refers to. `None` is the material of faces before the first name.
     pub materials: Vec<Option<String>>,
     /// Files that say what the materials are.
     pub libraries: Vec<String>,
-    /// What the file has besides, in words.
+    /// Contents that are left out, in words.
     pub ignored: BTreeSet<&'static str>,
 }
 
-/// Parses the text of an OBJ file. Lines end in LF, CR or both; a byte order mark is passed over.
+/// Parses the text of an OBJ file. Lines end in LF, CR or both. A byte order mark is skipped.
 ///
 /// # Errors
-/// Names the line, and what is wrong with it.
+/// The error names the line and its fault.
 pub fn parse(text: &str) -> Result<Obj> {
     let mut obj = Obj::default();
     // Faces may name vertices that follow: indices are checked at the end, by line.
@@ -142,7 +142,7 @@ pub(crate) fn plain(text: &str) -> String {
     text.strip_prefix('\u{FEFF}').unwrap_or(text).replace("\r\n", "\n").replace('\r', "\n")
 }
 
-/// What follows the first word of a line.
+/// The part of a line after its first word.
 pub(crate) fn rest(line: &str) -> String {
     line.trim().split_once(char::is_whitespace).map_or("", |(_, rest)| rest.trim()).to_owned()
 }

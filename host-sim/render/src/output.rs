@@ -1,8 +1,8 @@
-//! Files that are there whole or not at all.
+//! Output files that are complete or do not exist.
 //!
-//! A file has no name while it is written: whatever ends the program, nothing of it stays. Linux gives a complete file its name at once.
-//! Where an older file has that name, it takes two calls, first a name beside it; elsewhere the file is copied to that name. Only an end in
-//! that moment leaves what begins with `.microphong-`.
+//! A file has no name while it is written, so if the program ends, nothing of it stays. Linux gives a complete file its name in one step. If an older
+//! file has this name, two steps are needed: first a name beside it, then the exchange. On other systems the file is copied to the name. If the
+//! program ends between two steps, a file that begins with `.microphong-` stays.
 
 use anyhow::{Context, Result};
 use std::{
@@ -11,10 +11,9 @@ use std::{
     path::{Path, PathBuf},
 };
 
-/// A file under construction: it takes its name when it is complete, and is gone when it never is.
+/// A file that is being written. It gets its name when it is complete, and is gone if it never is.
 ///
-/// A link keeps its name, and the file that it points to is replaced. Devices, pipes and standard output stay what they are and take the
-/// bytes as they come.
+/// A link keeps its name, and the file that it points to is replaced. Devices, pipes and standard output receive the bytes at once.
 #[derive(Debug)]
 pub struct Output {
     path: PathBuf,
@@ -75,7 +74,7 @@ impl Write for Output {
 /// Writes a whole file at once.
 ///
 /// # Errors
-/// Those of [`Output`].
+/// Errors of [`Output`].
 pub fn write(path: &Path, bytes: &[u8]) -> Result<()> {
     let mut output = Output::create(path)?;
     output.write_all(bytes).with_context(|| format!("cannot write {}", path.display()))?;
@@ -88,11 +87,11 @@ pub fn is_stdout(path: &Path) -> bool {
     cfg!(unix) && ["/dev/stdout", "/dev/fd/1", "/proc/self/fd/1"].iter().any(|&name| path == Path::new(name))
 }
 
-/// How a file is written.
+/// Ways to write a file.
 enum Place {
     /// Under this name, where a regular file is or nothing.
     Name(PathBuf),
-    /// Into what is there.
+    /// Writes directly into an existing device or pipe.
     Directly(File),
 }
 
@@ -112,7 +111,8 @@ fn place(path: &Path) -> io::Result<Place> {
     }
 }
 
-/// What a link to nothing points to; `path` itself if it is none. There are no circles: those are not nothing.
+/// The target of a link to a file that does not exist; `path` itself if it is not a link. Circles of links do not come here,
+/// because opening one is another error.
 fn pointed_to(path: &Path) -> PathBuf {
     fs::read_link(path).map_or_else(|_| path.to_owned(), |next| pointed_to(&directory(path).join(next)))
 }
@@ -154,7 +154,7 @@ fn link(_: &File, _: &Path) -> io::Result<()> {
     Err(ErrorKind::Unsupported.into())
 }
 
-/// What [`link`] does, where there is no such thing.
+/// Does the work of [`link`] where the system cannot.
 fn copy(mut file: &File, name: &Path) -> io::Result<()> {
     let mut named = File::create_new(name)?;
     file.rewind()?;

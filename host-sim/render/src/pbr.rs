@@ -1,18 +1,18 @@
-//! Materials of metallic-roughness models to those of Blinn and Phong.
+//! Conversion of metallic-roughness materials to materials of Blinn and Phong.
 //!
-//! The mirrored colour is that of the glTF 2.0 specification, appendix B: 0.04 mixed to the base colour by how metallic it is. The exponent
-//! is that of the Blinn-Phong distribution that comes nearest to the model's: 2 / alpha² - 2, where alpha is the square of the roughness
-//! (Walter et al. 2007; Karis 2013, "Specular BRDF Reference"). It departs from the specification where a picture without surroundings
-//! must: metals, which reflect nothing evenly there, keep half of their colour in the place of the surroundings that they would mirror.
+//! The mirrored colour follows the glTF 2.0 specification, appendix B: 0.04, mixed with the base colour by the metallic factor. The exponent is the
+//! one of the closest Blinn-Phong distribution: 2 / alpha² - 2, where alpha is the square of the roughness (Walter et al. 2007; Karis 2013, "Specular
+//! BRDF Reference"). There is one difference from the specification, because a picture has no surroundings that a metal could mirror: metals, which
+//! have no diffuse reflection there, keep half of their colour for it.
 //!
-//! Colours of glTF are linear; those of a stream are added up as a display takes them, so that they are encoded as sRGB (IEC 61966-2-1).
+//! Colours of glTF are linear. Colours of a stream are added as a display takes them, so they are encoded as sRGB (IEC 61966-2-1).
 
 use crate::{
     mtl::{Material, SHARPEST},
     vector::{V3, add, scale},
 };
 
-/// What dielectrics mirror of light that falls straight on them.
+/// Part of light that dielectrics mirror if it falls straight on them.
 const DIELECTRIC: f64 = 0.04;
 /// Share of the evenly reflected light that metals keep.
 const KEPT: f64 = 0.5;

@@ -11,12 +11,12 @@ use ply_rs_bw::{
 };
 use std::collections::BTreeSet;
 
-/// What a PLY file holds.
+/// The contents of a PLY file.
 #[derive(Clone, Debug, Default)]
 pub struct Ply {
-    /// Its polygons.
+    /// The polygons of the file.
     pub soup: Soup,
-    /// What the file has besides, in words.
+    /// Contents that are left out, in words.
     pub ignored: BTreeSet<&'static str>,
 }
 
@@ -28,7 +28,7 @@ pub(crate) fn is_ply(bytes: &[u8]) -> bool {
 /// Reads the polygons of a file, with a normal at each vertex if the file has one there.
 ///
 /// # Errors
-/// Names the line, the vertex or the face, and what is wrong with it.
+/// The error names the line, the vertex or the face, and its fault.
 pub fn parse(bytes: &[u8]) -> Result<Ply> {
     let mut reader = Reader::new(bytes);
     let header = Parser::<Skipped>::new().read_header(&mut reader).map_err(|error| plain(&error, true))?;
@@ -83,10 +83,10 @@ pub fn parse(bytes: &[u8]) -> Result<Ply> {
 
 const AXES: [&str; 3] = ["x", "y", "z"];
 const NORMALS: [&str; 3] = ["nx", "ny", "nz"];
-/// Both names of the list of a face's corners are usual.
+/// Names for the list of a face's corners; both are common.
 const CORNERS: [&str; 2] = ["vertex_indices", "vertex_index"];
 
-/// What a header announces and nobody reads.
+/// Contents that a header announces and that are left out.
 fn ignored(header: &Header) -> BTreeSet<&'static str> {
     let elements = header.elements.iter().filter(|(_, element)| element.count > 0);
     let whole = elements.clone().filter_map(|(name, _)| match name.as_str() {
@@ -104,7 +104,7 @@ fn ignored(header: &Header) -> BTreeSet<&'static str> {
     whole.chain(parts).collect()
 }
 
-/// All elements of a kind, which stand behind those that have been read.
+/// All elements of a kind. They follow the elements that have been read.
 fn elements<E: PropertyAccess>(reader: &mut Reader<&[u8]>, element: &ElementDef, header: &Header) -> Result<Vec<E>> {
     let is_text = header.encoding == Encoding::Ascii;
     // They take no bytes, so that no end of the file would end them, however many the header says there are.
@@ -231,7 +231,7 @@ mod tests {
         format!("ply\r\nformat ascii 1.0\ncomment of a modeller\n{HEAD}0 0.5 0 9 0\n1 0 -2 9 1 0.5\n0 1e0 0 9 0\n7\n3 0 1 2 4\n").into()
     }
 
-    /// The same, whatever the order of its bytes.
+    /// A square as binary PLY, in either order of bytes.
     fn binary(big: bool) -> Vec<u8> {
         let mut bytes = format!("ply\nformat binary_{}_endian 1.0\n{HEAD}", if big { "big" } else { "little" }).into_bytes();
         let mut push = |number: &[u8]| if big { bytes.extend(number.iter().rev()) } else { bytes.extend(number) };

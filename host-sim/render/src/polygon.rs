@@ -19,9 +19,9 @@ pub struct Cut {
     pub crossed: bool,
 }
 
-/// Areas that differ by more than this share are not the same.
+/// Largest relative difference of areas that count as equal.
 const SAME: f64 = 1e-6;
-/// Corners that turn by less than this, in radians, are not for fans: those might have triangles without area.
+/// Smallest turn at a corner, in radians, for a fan. At smaller turns triangles might have no area.
 const STRAIGHT: f64 = 1e-6;
 
 /// Cuts a polygon of three corners or more. What has no area may become triangles without area.
@@ -74,7 +74,7 @@ fn project(points: &[V3], normal: V3) -> Vec<[f64; 2]> {
     points.iter().map(|&p| [dot(p, right), dot(p, up)]).collect()
 }
 
-/// Whether it turns left at every corner, and once around in all. Corners that coincide count as one.
+/// Whether the polygon turns left at every corner, and once around in all. Corners that coincide count as one.
 fn is_convex(points: &[[f64; 2]]) -> bool {
     let edge = |a: [f64; 2], b: [f64; 2]| [b[0] - a[0], b[1] - a[1]];
     let next = points.iter().cycle().skip(1);

@@ -17,13 +17,13 @@ use std::{
     iter, mem,
 };
 
-/// One: a [`microphong::format::Unit`] in units of its last place.
+/// The number 1 as a [`microphong::format::Unit`], in units of its last place.
 const ONE: f64 = (1 << UNIT) as f64;
 /// Corners are 16-bit indices.
 const MAX_VERTICES: usize = u16::MAX as usize;
 /// Farthest eye that a stream can ask for: 16 units along each axis, of a rotation that is one only nearly.
 const FARTHEST: f64 = 16.0 * 1.8;
-/// For what `offset` itself may be off: points of the plane just beyond [`FARTHEST`] take 0.6 units in the last place.
+/// Margin for the error of `offset` itself: points of the plane just beyond [`FARTHEST`] take 0.6 units in the last place.
 const EYE_SLACK: f64 = 4.0 / ONE;
 
 /// Records of one mesh, indices from 0.
@@ -33,7 +33,7 @@ pub struct Part {
     pub object: usize,
     /// Number of the material of all triangles.
     pub material: u16,
-    /// At most 65,535.
+    /// The vertices, at most 65,535.
     pub vertices: Vec<Vertex>,
     /// Their corners count from this part's first vertex.
     pub triangles: Vec<Triangle>,
@@ -98,7 +98,7 @@ pub fn quantise(mesh: &Mesh) -> (Vec<Part>, usize) {
     (parts, dropped)
 }
 
-/// The lattice point for a unit vector whose length is nearest to one, among the 27 around it.
+/// The grid point for a unit vector whose length is closest to one, among the 27 around it.
 ///
 /// An error of the length enters a highlight as many times as its exponent
 /// says; an error of the direction by one unit in the last place does not show.
@@ -123,7 +123,7 @@ pub(crate) fn record(vertices: &[Vertex], corners: [u16; 3]) -> Option<Triangle>
     Some(Triangle { corners, ..constants(corners.map(|corner| vertices[usize::from(corner)]))? })
 }
 
-/// All that does not depend on camera or light; `None` without an area. Corners are left at 0.
+/// All constants that depend on neither camera nor light; `None` for a triangle without area. Corners are left at 0.
 fn constants(corners: [Vertex; 3]) -> Option<Triangle> {
     let [a, b, c] = corners.map(|v| widen(v.position()));
     // Exact: 16-bit differences, and sums of a few of their products.

@@ -11,7 +11,7 @@ use microphong::{
     pixel::{PictureCrc, Pixel, Rgb332, gamma},
 };
 
-/// How a scene is drawn.
+/// Options of drawing a scene.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Style {
     /// Shading method.
@@ -24,7 +24,7 @@ pub struct Style {
     pub dither: bool,
     /// Colours for a display with the curve of sRGB, in place of linear ones.
     pub srgb: bool,
-    /// What is left out because nobody can see it.
+    /// Work that is left out because nobody can see the result.
     pub skips: Skips,
 }
 
@@ -110,7 +110,7 @@ pub fn crc<C: Pixel>(pixels: &[C]) -> u32 {
 /// A pixel format, chosen at run time.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Format {
-    /// What colour displays store.
+    /// The format that most colour displays store.
     Rgb565,
     /// Eight bits per channel.
     Rgb888,
@@ -130,9 +130,9 @@ pub enum Format {
     Rgb332,
 }
 
-/// What is done in a pixel format that is chosen at run time.
+/// An operation for a pixel format that is chosen at run time.
 pub trait InFormat {
-    /// What comes of it.
+    /// The result of the operation.
     type Output;
 
     /// Does it.
@@ -175,7 +175,7 @@ impl Format {
         }
     }
 
-    /// Whether it is dithered unless somebody says otherwise: [`Pixel::DITHERED`].
+    /// Whether the format is dithered by default: [`Pixel::DITHERED`].
     #[must_use]
     pub fn is_dithered(self) -> bool {
         struct Asked;
@@ -190,12 +190,12 @@ impl Format {
     }
 }
 
-/// How to draw.
+/// Settings of a picture.
 #[derive(Clone, Copy, Debug)]
 pub struct Settings {
     /// Width and height.
     pub size: Size,
-    /// How.
+    /// The style of drawing.
     pub style: Style,
     /// Rows drawn at a time.
     pub band_rows: u32,
@@ -210,14 +210,14 @@ pub struct Picture {
     pub rgb: Vec<u8>,
     /// Checksum of the pixels in their own format.
     pub crc: u32,
-    /// What the frame took.
+    /// Counts of the frame.
     pub stats: Stats,
 }
 
-/// Draws frame `number`, widened for viewing.
+/// Draws frame `number`, and converts it to 8 bits a channel.
 ///
 /// # Errors
-/// Those of [`frame`].
+/// Errors of [`frame`].
 pub fn picture(stream: Stream<'_>, settings: &Settings, number: u32) -> Result<Picture> {
     struct View<'a>(Stream<'a>, &'a Settings, u32);
     impl InFormat for View<'_> {

@@ -48,7 +48,7 @@ pub const SCRIPTED: [&str; 3] = ["gauges", "board", "sensor"];
 /// Ordinary scenes of all kinds, by which costs are judged.
 pub const PORTFOLIO: [&str; 6] = [PEER, PLASTIC, LIGHTS, "teapot", "torus", "bunny"];
 
-/// What a built-in scene shows; empty for other names.
+/// A description of a built-in scene; empty for other names.
 #[must_use]
 pub fn description(name: &str) -> &'static str {
     match name {
@@ -117,10 +117,10 @@ fn scripted(name: &str) -> Option<&'static str> {
     }
 }
 
-/// Loads a built-in scene, a stream, a mesh or the text of a scripted scene, told apart by their endings.
+/// Loads a built-in scene, a stream, a mesh or the text of a scripted scene. The ending of the name decides.
 ///
 /// # Errors
-/// [`Unknown`] when `name_or_path` is neither; else what is wrong with the file.
+/// [`Unknown`] if `name_or_path` is none of these, otherwise the fault of the file.
 pub fn load(name_or_path: &str) -> Result<Scene> {
     if NAMES.contains(&name_or_path) || VARIANTS.contains(&name_or_path) {
         let (stream, size) = built_in(name_or_path)?;
@@ -158,10 +158,10 @@ pub fn is_script(path: &Path) -> bool {
     path.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("toml"))
 }
 
-/// A mesh from an OBJ or STL file as `convert` without options makes it, but for how it is welded.
+/// Converts a mesh file as `convert` does without options, with these options of welding.
 ///
 /// # Errors
-/// Names the file, and what is wrong with it.
+/// The error names the file and its fault.
 pub fn from_mesh(path: &Path, weld: Weld) -> Result<StreamBytes> {
     let Imported { mesh, objects, materials, .. } = import::file(path, weld)?;
     let view = View::orbit(Up::Y, 0.5, 0.35, DISTANCE, ORBIT).fit(&mesh.positions, SQUARE, MARGIN);
@@ -208,7 +208,7 @@ fn built_in(name: &str) -> Result<(StreamBytes, (u32, u32))> {
 
 type Parts = (Mesh, Look, (u32, u32));
 
-/// What fits a square fits displays of every shape: the field of view is that of the narrower side.
+/// Size of a square picture. What fits a square fits displays of every shape, because the field of view is that of the narrower side.
 pub const SQUARE: (u32, u32) = (256, 256);
 
 fn teapot() -> Result<Parts> {

@@ -1,6 +1,6 @@
-//! Scripted scenes: a text that says which objects there are, how they look, and how they, lights and camera move from frame to frame.
+//! Scripted scenes: a text that describes objects, their looks, and the movements of objects, lights and camera.
 //!
-//! The text is TOML. What it says becomes a stream: host and boards play that, and nothing else.
+//! The text is TOML. It becomes a stream, and host and boards play only the stream.
 
 use crate::{
     bytes::StreamBytes,
@@ -47,7 +47,7 @@ const VIEW: Range<f64> = 1.0..170.0;
 const NEAR: Range<f64> = 1.0 / 64.0..16.0;
 /// Half of the extent of a shape.
 const EXTENT: Range<f64> = 1e-3..2.0;
-/// Radius of the tube of a torus, as a share of that of its ring.
+/// Radius of the tube of a torus, as a fraction of its ring's.
 const TUBE: RangeInclusive<f64> = 0.01..=0.99;
 /// Degrees by which edges fold.
 const FOLD: RangeInclusive<f64> = 0.0..=180.0;
@@ -55,7 +55,7 @@ const FOLD: RangeInclusive<f64> = 0.0..=180.0;
 const SCALE: RangeInclusive<f64> = 1.0 / 16.0..=8.0;
 /// Shapes that need no file.
 const SHAPES: &str = "box, cylinder, sphere or torus";
-/// What is seen upwards.
+/// The direction that is upwards in the picture by default.
 const UP: V3 = [0.0, 1.0, 0.0];
 /// Share of light that is everywhere.
 const AMBIENT: f64 = 0.12;
@@ -63,7 +63,7 @@ const AMBIENT: f64 = 0.12;
 /// Reads a scripted scene from the bytes of a file, as [`stream`] does.
 ///
 /// # Errors
-/// Says the line, the field, and what is wrong with it.
+/// The error names the line, the field and its fault.
 pub fn of_bytes(bytes: &[u8], folder: Option<&Path>) -> Result<(StreamBytes, (u32, u32))> {
     let text = str::from_utf8(bytes).map_err(|error| {
         let line = 1 + bytes[..error.valid_up_to()].iter().filter(|&&byte| byte == b'\n').count();
@@ -72,11 +72,10 @@ pub fn of_bytes(bytes: &[u8], folder: Option<&Path>) -> Result<(StreamBytes, (u3
     stream(text, folder)
 }
 
-/// Reads a scripted scene; files of meshes are looked for in `folder`, and without one there are none. Returns the stream and the size that
-/// suits it.
+/// Reads a scripted scene. Mesh files are searched in `folder`; without one the text may name none. Returns the stream and the size of its picture.
 ///
 /// # Errors
-/// Says the line, the field, and what is wrong with it.
+/// The error names the line, the field and its fault.
 pub fn stream(text: &str, folder: Option<&Path>) -> Result<(StreamBytes, (u32, u32))> {
     let mut script = Table::parse(text)?;
     let most = NUMBERS as usize;
@@ -162,7 +161,7 @@ fn shader(field: Field<'_>) -> Result<Shader> {
     })
 }
 
-/// What objects are made of.
+/// Shapes and materials from which objects are made.
 #[derive(Default)]
 struct Stock {
     parts: Vec<Part>,
@@ -320,7 +319,7 @@ fn lamp(mut table: Table<'_>, index: usize, cast: &mut Cast) -> Result<Lamp> {
 /// The cosine of 179 degrees.
 const OPPOSITE: f64 = -0.999_85;
 
-/// Where the camera is, and what it looks at.
+/// The position of the camera, and the point it looks at.
 fn eye(table: &mut Table<'_>) -> Result<[V3; 2]> {
     let at: V3 = table.need("at", |field| field.numbers(&WORLD))?;
     let target = table.get("looks-at", |field| field.numbers(&LARGE))?.unwrap_or_default();
@@ -331,7 +330,7 @@ fn eye(table: &mut Table<'_>) -> Result<[V3; 2]> {
     Ok([at, target])
 }
 
-/// Columns of the rotation of a camera, whose z axis points to what it looks at.
+/// Columns of the rotation of a camera whose z axis points to its target.
 fn looking([at, target]: [V3; 2], up: V3, table: &Table<'_>) -> Result<[V3; 3]> {
     let z = unit(sub(target, at)).ok_or_else(|| table.place_of("at").error("the camera must not look at the point where it is"))?;
     let side = Some(cross(up, z)).filter(|&side| length(side) > 1e-3);
@@ -402,7 +401,7 @@ fn way(
     Ok(())
 }
 
-/// How an object lies: all fields of a table that are left.
+/// The pose of an object: all fields of a table that are left.
 fn pose(table: &mut Table<'_>, frame: u32) -> Result<Stop> {
     let at = table.get("at", |field| field.numbers(&WORLD))?.unwrap_or_default();
     let axis = table.get("axis", direction)?;

@@ -1,4 +1,4 @@
-//! Shading methods, chosen at run time: those of the core and those of the literature.
+//! Shading methods that are chosen at run time, from the core and the literature.
 
 use anyhow::{Context, Result};
 use microphong::{
@@ -16,7 +16,7 @@ use std::fmt;
 pub struct Shader(&'static dyn Method);
 
 impl Shader {
-    /// One colour per triangle.
+    /// Flat shading: one colour for each triangle.
     pub const FLAT: Self = Self(&Flat);
     /// Lit at the corners, linear in between.
     pub const GOURAUD: Self = Self(&Gouraud);
@@ -31,7 +31,7 @@ impl Shader {
     /// Linear numerators times a quadratic reciprocal length, made exact by Newton's iteration.
     pub const RENQ_NEWTON: Self = Self(&RenqNewton);
 
-    /// For each triangle the cheapest method that stays within the error budget.
+    /// The method `auto`: for each triangle the cheapest way within the error budget.
     pub const AUTO: Self = Self(&Auto::<true>);
     /// The method `auto-linear`: `auto` without quadratic interpolation.
     pub const AUTO_LINEAR: Self = Self(&Auto::<false>);
@@ -93,7 +93,7 @@ impl Shader {
     /// The method that a stream asks for.
     ///
     /// # Errors
-    /// When it is none of those that there are here.
+    /// When this program does not have the method.
     pub fn of(stream: &Stream<'_>) -> Result<Self> {
         let id = stream.header.shader;
         Self::by_id(id)
@@ -106,7 +106,7 @@ impl Shader {
         [Self::AUTO, Self::AUTO_LINEAR].contains(&self)
     }
 
-    /// What is known of the method.
+    /// Properties of the method.
     #[must_use]
     pub fn facts(self) -> &'static Facts {
         self.0.facts()

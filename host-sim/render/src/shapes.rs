@@ -33,7 +33,7 @@ pub fn sphere(meridians: usize, bands: usize, phase: f64) -> Mesh {
     Mesh { normals: positions.clone(), positions, triangles, ..Mesh::default() }
 }
 
-/// Radius of the tube of a torus, as a share of that of its ring.
+/// Radius of the tube of a torus, as a fraction of its ring's.
 pub const TUBE: f64 = 0.45;
 
 /// A torus about the z axis that a unit sphere encloses: `around` times `across` quadrilaterals, its tube [`TUBE`] of the ring.
@@ -90,7 +90,7 @@ pub fn dodecahedron() -> Mesh {
     Mesh { normals: positions.clone(), positions, triangles, ..Mesh::default() }
 }
 
-/// One triangle whose normals bulge it.
+/// A triangle with normals that make it look bulged.
 #[must_use]
 pub fn bulged_triangle() -> Mesh {
     let normals = [[-0.35, -0.3, 1.0], [0.35, -0.3, 1.0], [0.0, 0.4, 1.0]];
@@ -102,11 +102,11 @@ pub fn bulged_triangle() -> Mesh {
     }
 }
 
-/// A flat square that the unit sphere encloses, in `cells` times `cells` quadrilaterals, with the normals of a cushion:
-/// however fine it is, it covers the same pixels.
+/// A flat square in the unit sphere, made of `cells` times `cells` quadrilaterals, with the normals of a cushion. It covers the same pixels at every
+/// fineness.
 #[must_use]
 pub fn cushion(cells: usize) -> Mesh {
-    /// How far normals lean at the middle of a side: tan 45 degrees.
+    /// Slope of the normals at the middle of a side: tan 45 degrees.
     const LEAN: f64 = 1.0;
     let mut mesh = Mesh::default();
     for i in 0..=cells {

@@ -18,10 +18,10 @@ fn is_binary(bytes: &[u8]) -> bool {
     count.is_some_and(|count| bytes.len() as u64 == HEAD as u64 + 4 + 50 * u64::from(count))
 }
 
-/// Reads the triangles of a file. Its normals, of which each triangle has one, are left out: they say nothing that the corners do not.
+/// Reads the triangles of a file. The normals in the file are left out, because they follow from the corners.
 ///
 /// # Errors
-/// Names the triangle, and what is wrong with it.
+/// The error names the triangle and its fault.
 pub fn parse(bytes: &[u8]) -> Result<Soup> {
     let mut bytes = bytes.to_vec();
     if is_binary(&bytes) {

@@ -23,7 +23,7 @@ pub(crate) enum Turn {
     Quaternion([f64; 4]),
 }
 
-/// Where something is in a frame.
+/// A pose in a frame.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Stop {
     pub(crate) key: Key,
@@ -83,13 +83,13 @@ impl Turn {
 }
 
 impl Stop {
-    /// At a place, in the size of its mesh.
+    /// A pose at the position `at`, at the size of the mesh.
     pub(crate) fn new(frame: u32, at: V3, turn: Turn) -> Self {
         let position = at.map(|c| nearest::<Length>(c).to_bits());
         Self { key: Key { frame, rotation: turn.bits(), position, scale: Scale::ONE.to_bits() }, turn }
     }
 
-    /// Where it is in a frame on the way to another stop; `None` where the chord between their keys is the way.
+    /// The pose in a frame on the way to another stop; `None` where the way is the chord between their keys.
     fn towards(&self, to: &Self, frame: u32) -> Option<Key> {
         let share = f64::from(frame - self.key.frame) / f64::from(to.key.frame - self.key.frame);
         let mean = |from: f64, to: f64| (from + (to - from) * share).round();
@@ -125,7 +125,7 @@ fn divide(keys: &mut Vec<Key>, way: &impl Fn(u32) -> Option<Key>, [from, to]: [K
     }
 }
 
-/// How far the chord between two keys is off a third one, in degrees.
+/// The angle, in degrees, between the chord from one key to another and a third key.
 fn off(from: &Key, to: &Key, key: &Key) -> f64 {
     let [from_rotation, to_rotation, wanted] = [from, to, key].map(|key| key.rotation.map(|c| f64::from(c) / f64::from(1 << 30)));
     let product = |a: [f64; 4], b: [f64; 4]| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();

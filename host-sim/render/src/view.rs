@@ -1,9 +1,9 @@
-//! Where a scene is seen from.
+//! Views: camera and projection of a scene.
 
 use crate::vector::{V3, add, apply, cross, product, rotation, unit};
 use std::f64::consts::TAU;
 
-/// How space becomes a picture.
+/// Kinds of projection.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Projection {
     /// Rays meet in the eye.
@@ -17,15 +17,15 @@ pub enum Projection {
 pub struct View {
     /// Rows from object to eye space (x right, y up, z away), frame 0.
     pub rotation: [V3; 3],
-    /// Where the object's centre lies in eye space.
+    /// Position of the object's centre in eye space.
     pub translation: V3,
     /// Unit axis of the orbit, object space.
     pub axis: V3,
     /// Frames per revolution; 0 stands still.
     pub period: u16,
-    /// How space becomes a picture.
+    /// Kind of projection.
     pub projection: Projection,
-    /// See [`microphong::stream::record::Camera::focal`].
+    /// Focal length, see [`microphong::stream::record::Camera::focal`].
     pub focal: f64,
     /// Nearest distance drawn.
     pub near: f64,
@@ -33,7 +33,7 @@ pub struct View {
     pub far: f64,
 }
 
-/// Which way is up in object space.
+/// The axis of object space that points up.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Up {
     /// x up, front towards +z.
@@ -51,7 +51,7 @@ pub enum Up {
 }
 
 impl Up {
-    /// All of them.
+    /// All axes.
     pub const ALL: [Self; 6] = [Self::X, Self::Y, Self::Z, Self::MinusX, Self::MinusY, Self::MinusZ];
 
     /// The name on the command line.
@@ -111,13 +111,13 @@ impl View {
         }
     }
 
-    /// With parallel rays, half of the smaller side showing `1 / focal` units.
+    /// Replaces the projection by parallel rays, where half of the smaller side shows `1 / focal` units.
     #[must_use]
     pub fn parallel(self) -> Self {
         Self { projection: Projection::Orthographic, ..self }
     }
 
-    /// With another focal length.
+    /// Replaces the focal length.
     #[must_use]
     pub fn focal(self, focal: f64) -> Self {
         Self { focal, ..self }
@@ -172,7 +172,7 @@ impl View {
     }
 }
 
-/// Where points of all frames lie in the picture plane, and how far away.
+/// Bounds of the points of all frames in the picture plane, and their depth.
 struct Bounds {
     across: f64,
     low: f64,

@@ -1,4 +1,4 @@
-//! What a converted mesh promises to the renderer.
+//! Promises of a converted mesh to the renderer.
 
 use microphong::{
     Stream,
@@ -244,7 +244,7 @@ fn concave_polygons_keep_their_gaps() {
     }
 }
 
-/// A mesh of a stream has 65,535 vertices, which is all that 16 bits can count, and not one more; the surface is the same.
+/// A mesh of a stream has at most 65,535 vertices, because 16 bits count them. A surface with one vertex more becomes two meshes and stays the same.
 #[test]
 fn one_vertex_too_many_makes_another_mesh() {
     // Triangles that share no vertex, one in each cell of a grid.

@@ -151,7 +151,7 @@ impl Place {
         path
     }
 
-    /// What is wrong with a file of this name.
+    /// The error for a file of this name and contents.
     #[track_caller]
     fn wrong(&self, name: &str, contents: impl AsRef<[u8]>) -> String {
         let path = self.file(name, contents);
@@ -224,7 +224,7 @@ fn nodes_move_turn_stretch_and_mirror() {
     assert!((reach(true) / reach(false) - 2.0).abs() < 1e-6, "{} {}", reach(true), reach(false));
 }
 
-/// Each material is a mesh of the stream; what is left out is said.
+/// Each material is a mesh of the stream, and the output names what is left out.
 #[test]
 fn materials_become_meshes_and_the_rest_is_told() {
     let place = Place::new();

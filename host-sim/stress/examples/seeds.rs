@@ -16,7 +16,7 @@ const SCENES: u64 = 8;
 /// Larger ones slow the fuzzer down.
 const LARGEST: usize = 1_200;
 
-/// What an OBJ file may have.
+/// Statements that an OBJ file may have.
 const TEXTS: [&str; 6] = [
     "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n",
     "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nf 1 2 3 4\n",

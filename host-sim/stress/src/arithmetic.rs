@@ -1,7 +1,7 @@
-//! Integers against the same method in 64-bit floating point, on every pixel.
+//! Compares integers with floating point in 64 bits, by the same method, at every pixel.
 //!
-//! Where shading is well-conditioned every pixel keeps to [`LIMIT`]. Elsewhere rounding is magnified, and a pixel may be off by as much
-//! more as its light changes when cosines change by their rounding, times their condition number: [`Frame::sensitivity`].
+//! Where shading is well-conditioned, every pixel keeps to [`LIMIT`]. Elsewhere rounding is magnified, and a pixel may be off by an additional
+//! amount: the change of its light if cosines change by their rounding, times their condition number, see [`Frame::sensitivity`].
 
 use crate::{
     Family, Verdict,
@@ -17,7 +17,7 @@ use microphong_render::{render::Style, shader::Shader};
 
 /// Largest difference of any method, in 1/255 of full intensity.
 pub const LIMIT: f64 = 0.5;
-/// Where a pixel's centre lies on the border of two parts of a triangle, either may show.
+/// Distance, in affine coordinates, at which a pixel's centre counts as on the border of two parts of a triangle. Either part may show there.
 const NUDGE: f64 = 1e-6;
 
 /// Random scenes, by a random method.
@@ -74,7 +74,7 @@ pub fn case(random: &mut Random) -> Option<Case> {
     Some(Case { style: Style { shader, ..style }, ..case.clone() })
 }
 
-/// What each light beyond the first may add, in 1/255: the table of highlights is off by as much at low exponents, everywhere.
+/// Additional error for each light beyond the first, in 1/255: the error of the table of highlights at low exponents.
 pub(crate) const PER_LIGHT: f64 = 0.1;
 /// Pixels that are less sensitive, in 1/255, are judged strictly.
 const STRICT: f64 = 0.25;
@@ -82,7 +82,7 @@ const STRICT: f64 = 0.25;
 /// between them points.
 const UNDEFINED: f64 = 64.0;
 
-/// What has come of a case.
+/// The result of a case.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Found {
     /// The largest error in 1/255, less what many lights may add, and less the sensitivity of pixels that are judged leniently; infinite
@@ -96,7 +96,7 @@ pub struct Found {
     pub not_judged: u64,
 }
 
-/// Where a method divides by lengths that may vanish.
+/// Places at which a method divides by lengths that may vanish.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Divides {
     /// The method interpolates light and divides nowhere.
@@ -153,8 +153,8 @@ pub fn judge(case: &Case) -> Option<Found> {
     Some(found)
 }
 
-/// All of a method's triangles in one frame, in floating point, of a method that chooses what it has chosen; `None` if the method cannot shade
-/// them.
+/// The shading of all triangles of a frame by a method in floating point. A method that makes choices uses the recorded ones. `None` if the method
+/// cannot shade them.
 fn shades<'f>(case: &Case, stream: Stream<'_>, frame: &'f Frame) -> Option<Vec<Shade<'f>>> {
     let told = level::choices(stream, case.pixels(), case.style, case.frame).ok()?;
     let way = |facet: &Facet| told.as_ref()?.ways.get(facet.id as usize).copied().flatten();
@@ -165,8 +165,8 @@ fn shades<'f>(case: &Case, stream: Stream<'_>, frame: &'f Frame) -> Option<Vec<S
     frame.facets.iter().map(shade).collect()
 }
 
-/// Difference of levels of a facet. A material of one hue has one level for all channels: that of its brightest channel, which approximation
-/// may lift above 255 later than others.
+/// Difference of levels of a facet. A material of one hue has one level for all channels, its brightest channel's. Approximation may lift this above
+/// 255 later than others.
 pub(crate) fn difference(frame: &Frame, facet: &Facet, drawn: [f64; 3], exact: [f64; 3]) -> f64 {
     let all = (0..3).map(|k| (drawn[k] - exact[k]).abs()).fold(0.0, f64::max);
     let one = drawn[0] == drawn[1] && drawn[1] == drawn[2];

@@ -20,7 +20,7 @@ use std::{collections::HashMap, sync::LazyLock};
 /// Random scenes, by `auto` with this budget, or random ones.
 pub struct Budget(pub Option<ErrorBudget>);
 
-/// The largest error that is right, in 1/255, of so many lights: the budget and what arithmetic may add to Phong shading.
+/// The largest error that is allowed under this number of lights, in 1/255: the budget, plus the error that arithmetic may add to Phong shading.
 fn allowed(budget: f64, lights: usize) -> f64 {
     budget + arithmetic::LIMIT + arithmetic::PER_LIGHT * lights.saturating_sub(1) as f64
 }
@@ -72,7 +72,7 @@ pub fn case(random: &mut Random) -> Option<Case> {
     Some(Case { style: Style { shader: Shader::AUTO, antialias: false, dither: false, ..case.style }, ..case })
 }
 
-/// `phong` without loops of its own. Under near lights and for a near viewer `auto` has none, and those of `phong` round otherwise.
+/// The method `phong` without its own loops. Under near lights and for a near viewer `auto` has none, and those of `phong` round differently.
 struct General;
 
 impl Method for General {
@@ -86,7 +86,7 @@ impl Method for General {
     }
 }
 
-/// What has come of a case.
+/// The result of a case.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Found {
     /// The largest error, as a share of the one that is allowed. It is infinite where coverage differs, or where `auto` has to be `phong` and is not.

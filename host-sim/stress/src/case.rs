@@ -1,4 +1,4 @@
-//! One scene and how it is drawn: all that it takes to see a failure again.
+//! A scene and the way it is drawn: all that is needed to see a failure again.
 
 use anyhow::Result;
 use embedded_graphics_core::geometry::Size;
@@ -27,7 +27,7 @@ pub struct Case {
 }
 
 impl Case {
-    /// A stream as it is drawn unless something else is wanted.
+    /// A case that draws a stream in the ordinary way.
     #[must_use]
     pub fn new(stream: StreamBytes) -> Self {
         Self { stream, size: [64, 48], frame: 0, style: Shader::FLAT.into(), format: Format::Rgb888, band_rows: 16 }

@@ -1,4 +1,4 @@
-//! One change of a scene: made of random numbers, told to a renderer, and written down in a record of what the scene is from then on.
+//! A change of a scene. It is made of random numbers, applied to a renderer, and recorded in the expected state of the scene.
 
 use crate::{random::Random, scenes::colour};
 use microphong::{
@@ -23,7 +23,7 @@ pub struct Placed {
     material: Option<u16>,
 }
 
-/// What a scene is, kept beside the renderer by code of its own.
+/// The expected state of a scene, kept beside the renderer by separate code.
 #[derive(Clone, Debug)]
 pub struct State {
     /// Whether tracks of the stream move objects, lights and camera, in place of changes.
@@ -34,18 +34,18 @@ pub struct State {
     ambient: [Gain; 3],
     background: Background,
     camera: Camera,
-    /// Where the camera was moved to, with its lens.
+    /// The pose to which the camera was moved; its lens stays.
     eye: Option<Pose>,
     /// The frame of the orbit or of the tracks.
     frame: u32,
-    /// How it is drawn.
+    /// The style of drawing.
     pub style: Style,
     budget: ErrorBudget,
     levels_of_detail: bool,
 }
 
 impl State {
-    /// What a stream says.
+    /// The state at the beginning: that of a stream.
     #[must_use]
     pub fn new(stream: &Stream<'_>, style: Style) -> Self {
         let whole = Placed { meshes: 0..stream.meshes.len() as u16, pose: Pose::IDENTITY, visible: true, material: None };
@@ -67,7 +67,7 @@ impl State {
         }
     }
 
-    /// Whether tracks of the stream move what is in it.
+    /// Whether tracks of the stream move something.
     #[must_use]
     pub fn is_scripted(&self) -> bool {
         self.scripted
@@ -91,10 +91,10 @@ impl State {
             .antialias(self.style.antialias)
     }
 
-    /// Makes a renderer whose scene is that of its stream draw this one.
+    /// Makes a renderer with the scene of its stream draw this state.
     ///
     /// # Errors
-    /// What it refuses.
+    /// The renderer's refusal.
     pub fn set<C: Pixel>(&self, renderer: &mut Renderer<'_, C>) -> Result<(), String> {
         self.set_scene(renderer.scene()).map_err(|error| error.to_string())?;
         self.set_style(renderer).map_err(|error| error.to_string())
@@ -141,7 +141,7 @@ impl State {
     }
 }
 
-/// What a program may want of a scene, right or wrong.
+/// A change that a program may ask for, valid or not.
 #[derive(Clone, Debug)]
 #[expect(missing_docs, reason = "each is a function of the scene or the renderer")]
 pub enum Change {
@@ -167,10 +167,10 @@ pub enum Change {
 }
 
 impl Change {
-    /// Up to so many objects of random meshes in the place of all others.
+    /// Objects of random meshes, at most `most`, instead of all others.
     ///
     /// # Errors
-    /// Those of [`pose`].
+    /// Errors of [`pose`].
     pub fn arrangement(random: &mut Random, most: usize, stream: &Stream<'_>) -> Result<Vec<Self>, String> {
         let mut changes = vec![Self::Clear];
         for _ in 0..random.pick(1..most as i32 + 1) {
@@ -342,7 +342,7 @@ impl Change {
         })
     }
 
-    /// What the scene is then.
+    /// Records the change in the state.
     pub fn keep(self, state: &mut State) {
         match self {
             Self::Pose(object, pose) => state.objects[object].pose = pose,
@@ -375,10 +375,10 @@ impl Change {
     }
 }
 
-/// A pose: mostly one that a camera near the origin sees something of, some at the limits. What is out of range has to be refused.
+/// A pose. Most are partly seen by a camera near the origin, and some are at the limits. Values out of range have to be refused.
 ///
 /// # Errors
-/// When something is taken that is out of range, or refused although it is not.
+/// When a value out of range is accepted, or a valid one refused.
 pub fn pose(random: &mut Random) -> Result<Pose, String> {
     let judged = |what: &str, right: bool, pose: Result<Pose, SceneError>| match (right, pose) {
         (true, Err(error)) => Err(format!("{what} is refused: {error}")),
@@ -422,10 +422,10 @@ pub fn pose(random: &mut Random) -> Result<Pose, String> {
     Ok(judged(&format!("scale {scale}"), within, pose.scaled(scale))?.unwrap_or(pose))
 }
 
-/// Where a camera is: mostly outside of what it looks at.
+/// A pose of a camera, mostly outside of the objects.
 ///
 /// # Errors
-/// Those of [`pose`].
+/// Errors of [`pose`].
 pub fn eye(random: &mut Random) -> Result<Pose, String> {
     let away = random.octaves(0.5, 8.0);
     let from = random.direction().map(|c| nearest::<Length>(c * away));
@@ -451,7 +451,7 @@ fn shared(random: &mut Random) -> Material {
     Material::new(ambient, diffuse, specular, exponent)
 }
 
-/// Other lights, or the same at other places.
+/// Other lights, or these lights at other places.
 fn lights(random: &mut Random, now: &State) -> Vec<Light> {
     let mut lights = now.lights.clone();
     if random.once_in(2) {

@@ -1,7 +1,7 @@
-//! Scenes of several objects that change between frames, each frame against one that a new renderer draws of what the scene is then.
+//! Scenes of several objects that change between frames. Each frame is compared with the frame of a new renderer for the state at that time.
 //!
-//! What is shown is drawn piece by piece: only what the renderer says may differ from the frame before, in bands of any height, with little
-//! memory or much, prepared and drawn in one part or in two. The new renderer draws the whole at once, with room for everything.
+//! The compared picture is updated by partial redraw: only areas that the renderer names are drawn, in bands of any height, with little memory or
+//! much, prepared and drawn in one part or in two. The new renderer draws the whole picture at once, with room for everything.
 
 use crate::{
     Family, Verdict,
@@ -69,11 +69,11 @@ const FRAMES: i32 = 12;
 /// Objects that there is room for.
 const OBJECTS: usize = 12;
 
-/// Some meshes of so many `triangles`, about, as one object or as several that tracks move. The frame of the case is the seed of its changes.
+/// Random meshes of about `triangles` triangles, as one object or as several that tracks move. The frame of the case is the seed of its changes.
 /// `None` if they would not make a valid stream.
 ///
 /// # Errors
-/// When a pose is taken that is out of range, or one refused that is not.
+/// When a pose out of range is accepted, or a valid one refused.
 pub fn case(random: &mut Random, triangles: i32) -> Result<Option<Case>, String> {
     let width = random.between(8.0, 100.0);
     let size = scenes::size(random, width);
@@ -140,7 +140,7 @@ fn keys(random: &mut Random, look: &Look, pose: impl Fn(&mut Random) -> Result<P
     Ok(keys)
 }
 
-/// How much was judged.
+/// Amounts that were judged.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Found {
     frames: u64,
@@ -155,16 +155,16 @@ impl From<Found> for Vec<u64> {
     }
 }
 
-/// What is left out of a frame beyond what the renderer does not draw.
+/// An additional limit for a frame, by which it leaves out more than the renderer does.
 pub type Limit = fn(&mut Frame<'_, Rgb565>);
 
-/// Nothing.
+/// The limit that leaves out nothing more.
 pub fn all(_: &mut Frame<'_, Rgb565>) {}
 
 /// Draws some frames of a case with changes between them; `None` if its method cannot draw it.
 ///
 /// # Errors
-/// What is wrong with which frame, and what has changed since the one before.
+/// The faulty frame, its fault, and the changes since the frame before.
 pub fn judge(case: &Case, limit: Limit) -> Result<Option<Found>, String> {
     let Ok(stream) = case.stream.parse() else { return Ok(None) };
     let random = &mut Random::new(case.frame.into(), 0);
@@ -232,7 +232,7 @@ fn layout(random: &mut Random, case: &Case, stream: &Stream<'_>, state: &State) 
         .processors(random.pick(1..3) as usize)
 }
 
-/// Changes the scene, and what is known of it. Returns whether the change was taken.
+/// Changes the scene and its expected state. Returns whether the change was accepted.
 fn tell(
     change: &Change,
     renderer: &mut Renderer<'_, Rgb565>,
@@ -256,7 +256,7 @@ fn tell(
     Ok(told.is_ok())
 }
 
-/// Draws what has changed over what is `shown`, one way or another. Returns whether that is less than the whole.
+/// Draws changed areas over the picture `shown`, in one way or another. Returns whether they are less than the whole picture.
 fn draw(
     random: &mut Random,
     renderer: &mut Renderer<'_, Rgb565>,

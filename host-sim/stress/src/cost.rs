@@ -1,9 +1,8 @@
-//! Instructions of a frame: at most so many for each vertex, triangle, row and pixel that it has.
+//! Bounds for the instructions of a frame: a number for each vertex, triangle, row and pixel.
 //!
-//! A frame of L lights, at least one, takes at most (1 + L) (a vertices + b triangles + c rows + d pixels) instructions of x86-64, with the
-//! factors of [`BOUNDS`] and the counts of [`Work`]. A near light counts as several, and perspective as a factor. The counts follow from the
-//! scene alone, so whatever a renderer does more often than once for each of them is seen. Scenes are those that cost most for what they
-//! show.
+//! A frame of L lights, at least one, takes at most (1 + L) (a vertices + b triangles + c rows + d pixels) instructions of x86-64, with the factors
+//! of [`BOUNDS`] and the counts of [`Work`]. A near light counts as several, and perspective as a factor. The counts follow from the scene alone, so
+//! repeated work of a renderer is noticed. The scenes are of the kinds that cost most for what they show.
 
 use crate::{
     Family, Verdict,
@@ -29,7 +28,7 @@ use microphong_render::{
 use std::ops::Range;
 use zerocopy::IntoBytes;
 
-/// What counts the instructions of a frame.
+/// Counts the instructions of a frame.
 pub trait Count: Sync {
     /// Draws a case and counts; `None` if the method cannot draw it in this style.
     ///
@@ -72,7 +71,7 @@ impl<C: Count> Family for Cost<C> {
 }
 
 impl<C: Count> Cost<C> {
-    /// What a case takes, as a share of what is documented; `None` if it cannot be drawn.
+    /// The cost of a case as a fraction of the documented bound; `None` if it cannot be drawn.
     fn share(&self, case: &Case) -> Result<Option<f64>> {
         let Some(work) = Work::of(case) else { return Ok(None) };
         Ok(self.0.count(case)?.map(|instructions| instructions as f64 / work.instructions(bound(case.style))))
@@ -82,27 +81,27 @@ impl<C: Count> Cost<C> {
 /// Counts of [`Work`] that the cost of a frame is a sum of.
 pub const PARTS: usize = 4;
 
-/// What a frame takes at most.
+/// Upper bound for the instructions of a frame.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Bound {
     /// Instructions of a vertex, a triangle, a row and a pixel.
     pub parts: [u32; PARTS],
-    /// In perspective, in hundredths of what it takes otherwise.
+    /// Factor of perspective, in hundredths.
     pub perspective: u32,
     /// Lights whose direction, or that of the viewer, differs from pixel to pixel count as this number of ordinary lights.
     pub near: u32,
 }
 
-/// For the rows of a table.
+/// A bound as a row of the table.
 const fn at_most(parts: [u32; PARTS], perspective: u32, near: u32) -> Bound {
     Bound { parts, perspective, near }
 }
 
 /// The bounds of each method, without antialiasing and with it.
 ///
-/// Six times what the worst of 250 scenes of up to 320x240 pixels takes: under lights and a viewer far away, and then in perspective and under
-/// near ones. A row of a triangle costs next to nothing of its own, because the pixels of its ends are counted among those it touches.
-/// `cargo test -p microphong-tests stress::costs_are_counted_anew -- --ignored --nocapture` counts anew and prints the table.
+/// They are six times the worst of 250 scenes of up to 320x240 pixels, first under far lights and a far viewer, then in perspective and under near
+/// ones. A row of a triangle costs next to nothing of its own, because the pixels of its ends are counted among the touched ones. `cargo test -p
+/// microphong-tests stress::costs_are_counted_anew -- --ignored --nocapture` counts again and prints the table.
 pub const BOUNDS: [(&str, Bound, Bound); 28] = [
     ("flat", at_most([4000, 2900, 34, 60], 100, 2), at_most([5200, 12000, 2100, 1900], 100, 2)),
     ("gouraud", at_most([8100, 2700, 1, 71], 534, 2), at_most([12000, 15000, 1, 2000], 113, 1)),
@@ -141,12 +140,12 @@ pub fn bound(style: Style) -> Bound {
     row.map_or(Bound::default(), |&(_, plain, antialiased)| if style.antialias { antialiased } else { plain })
 }
 
-/// What the cost of a frame may be proportional to.
+/// Counts to which the cost of a frame may be proportional.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Work {
     /// Lights, at least one, and one more, but for near ones.
     pub lights: u64,
-    /// Lights whose direction, or that of the viewer, differs from pixel to pixel.
+    /// Number of lights whose direction, or whose viewer's, differs from pixel to pixel.
     pub near: u64,
     /// Whether pixels are drawn in perspective.
     pub perspective: bool,
@@ -156,7 +155,7 @@ pub struct Work {
     pub triangles: u64,
     /// Rows of triangles.
     pub rows: u64,
-    /// Pixels of the picture, those that triangles touch, and entries of the tables of colours.
+    /// Number of pixels of the picture, pixels that triangles touch, and entries of the tables of colours.
     pub pixels: u64,
 }
 
@@ -218,7 +217,7 @@ impl Work {
         Some(work)
     }
 
-    /// What it takes by this bound.
+    /// Instructions of this work by a bound.
     #[must_use]
     pub fn instructions(&self, bound: Bound) -> f64 {
         let sum: f64 = self.parts().iter().zip(bound.parts).map(|(part, bound)| part * f64::from(bound)).sum();
@@ -227,14 +226,14 @@ impl Work {
         lights as f64 * sum * perspective
     }
 
-    /// What each part of a bound is multiplied by, for each light.
+    /// Factors of the parts of a bound, for each light.
     #[must_use]
     pub fn parts(&self) -> [f64; PARTS] {
         [self.vertices, self.triangles, self.rows, self.pixels].map(|part| part as f64)
     }
 }
 
-/// How many columns and rows of a picture a triangle reaches into, which rows, and how many pixels it touches at most; none if it shows its
+/// The numbers of columns and rows that a triangle reaches into, its rows, and the largest number of pixels that it touches; none if it shows its
 /// back. `corners` are in 1/16 pixel.
 fn touched(corners: [[i32; 2]; 3], size: [u64; 2]) -> ([u64; 2], Range<u64>, u64) {
     let [a, b, c] = corners.map(|corner| corner.map(i64::from));
@@ -261,8 +260,8 @@ fn span(corners: [[i32; 2]; 3]) -> f64 {
     (extent(0) + extent(1)) as f64 / f64::from(1 << SUBPIXEL)
 }
 
-/// How many tiles of a triangle lie side by side and one above the other, at most, if so many columns and rows of it are seen under a
-/// highlight of this exponent.
+/// Largest number of tiles of a triangle, side by side and one above the other, if this number of its columns and rows is seen under a highlight of
+/// this exponent.
 fn tiles(seen: [u64; 2], span: f64, exponent: u16) -> [u64; 2] {
     // A root of N·H has twice the exponent.
     let reach = UNTILED / (2.0 * f64::from(exponent)).sqrt();

@@ -49,7 +49,7 @@ impl Family for Coverage {
     }
 }
 
-/// What is wrong with the pixels of a triangle, drawn in bands of `rows` rows.
+/// The fault in the pixels of a triangle that is drawn in bands of `rows` rows, if there is any.
 #[must_use]
 pub fn wrong(corners: Corners, rows: usize) -> Option<String> {
     let mut counts = vec![0u8; WIDTH * HEIGHT];
@@ -57,7 +57,7 @@ pub fn wrong(corners: Corners, rows: usize) -> Option<String> {
     judge(corners, rows, &counts, drawn)
 }
 
-/// What is wrong if each pixel of the picture is drawn as often as `counts` says, and `drawn` pixels are counted.
+/// The fault, if each pixel of the picture is drawn as often as `counts` says, and `drawn` pixels are counted.
 #[must_use]
 pub fn judge(corners: Corners, rows: usize, counts: &[u8], drawn: u32) -> Option<String> {
     let mut expected = 0;

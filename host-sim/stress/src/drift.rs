@@ -12,7 +12,7 @@ use std::f64::consts::TAU;
 /// Frames of random orbits.
 pub struct Drift;
 
-/// Largest error of a rotation's entries: that of the angle, and what a camera's rounded matrix is off.
+/// Largest error of a rotation's entries: the angle's error, and the rounding of a camera's matrix.
 pub const LIMIT: f64 = ORBIT_ERROR + 4.0 * ROTATION_ERROR;
 
 impl Family for Drift {
@@ -54,7 +54,7 @@ impl Family for Drift {
     }
 }
 
-/// How far a pose is off these rows, and off a rotation.
+/// The difference of a pose from these rows, and from a rotation.
 #[must_use]
 pub fn error(pose: &ModelView, exact: &[V3; 3]) -> f64 {
     let rows: [V3; 3] = pose.rotation.map(|row| row.map(|c| f64::from(c) / f64::from(1 << 30)));

@@ -1,5 +1,4 @@
-//! What `stress` counts costs with: a program that draws frames as they are asked for, since valgrind takes longer to start than to draw most
-//! of them.
+//! The counter of `stress`: one program that draws frames on request, because valgrind takes longer to start than to draw most frames.
 
 use super::{Profile, not_started, valgrind};
 use anyhow::{Context, Result, anyhow, ensure};
@@ -33,11 +32,11 @@ impl Count for Counters {
 }
 
 impl Counters {
-    /// Counts the frames of the animation behind that of `case`, together; `in_part` only what has changed from one to the next. `None` if
-    /// the method cannot draw it in this style.
+    /// Counts the frames of the animation after the frame of `case`, together. With `in_part` only changed areas are drawn. `None` if the method
+    /// cannot draw the case in this style.
     ///
     /// # Errors
-    /// When this is no x86-64 computer, valgrind is missing, or the scene cannot be drawn.
+    /// When this is not an x86-64 computer, valgrind is missing, or the scene cannot be drawn.
     pub fn animation(&self, case: &Case, in_part: bool) -> Result<Option<u64>> {
         self.counted(case, if in_part { " animation redraw" } else { " animation" })
     }
@@ -68,7 +67,7 @@ struct Counter {
     answers: BufReader<ChildStdout>,
     /// Callgrind appends a profile of each frame.
     dumps: Scratch,
-    /// How much of it has been read.
+    /// Number of bytes that have been read.
     read: u64,
 }
 

@@ -24,7 +24,7 @@ use std::{
     process::Command,
 };
 
-/// One frame to be counted.
+/// A frame to be counted.
 #[derive(Clone, Copy, Debug)]
 pub struct Frame {
     /// Width and height of the picture.
@@ -35,7 +35,7 @@ pub struct Frame {
     pub shader: Shader,
 }
 
-/// What a frame took.
+/// Counts of a frame.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Count {
     /// Instructions.
@@ -121,7 +121,7 @@ fn valgrind(program: &Path, dumps: &Scratch, options: &[&str]) -> Command {
     valgrind
 }
 
-/// What to do if it cannot be started.
+/// The error that valgrind cannot be started, with its remedy.
 fn not_started(error: io::Error) -> anyhow::Error {
     match error.kind() {
         ErrorKind::NotFound => anyhow!("valgrind is not installed; `apt-get install -y --no-install-recommends valgrind`"),
@@ -129,7 +129,7 @@ fn not_started(error: io::Error) -> anyhow::Error {
     }
 }
 
-/// What `program` prints, and a profile of each frame that it draws: of what `counted_frame` does within `dumped_frame`.
+/// Runs `program` under callgrind. Returns its output and a profile of each frame: of `counted_frame` within `dumped_frame`.
 pub(super) fn profiles<const N: usize>(program: &Path, frames: &[[OsString; N]]) -> Result<(String, Vec<Profile>)> {
     let dumps = Scratch::new(&[])?;
     let mut valgrind = valgrind(program, &dumps, &["--dump-instr=yes", "--collect-jumps=yes"]);

@@ -1,4 +1,4 @@
-//! What callgrind writes: the executions of each instruction, and what calls cost.
+//! Profiles of callgrind: executions of each instruction, and costs of calls.
 
 use anyhow::{Context, Result, bail};
 use std::collections::{BTreeMap, HashMap};
@@ -7,7 +7,7 @@ use std::collections::{BTreeMap, HashMap};
 #[derive(Debug, Default, PartialEq, Eq)]
 pub(crate) struct Profile {
     pub(super) functions: Vec<Function>,
-    /// All instructions.
+    /// Number of all executed instructions.
     pub(crate) total: u64,
 }
 
@@ -25,7 +25,7 @@ pub(super) struct Function {
 }
 
 impl Function {
-    /// From which instructions it went on to which others.
+    /// Pairs of instructions that were executed one after the other.
     pub(super) fn ways(&self) -> impl Iterator<Item = (u64, u64)> {
         let taken: HashMap<u64, u64> = self.jumps.iter().map(|jump| (jump.from, jump.count)).collect();
         let following = self.executions.iter().zip(self.executions.keys().skip(1));
@@ -36,7 +36,7 @@ impl Function {
     }
 }
 
-/// All jumps from one instruction to one other within a function.
+/// Jumps from one instruction to another within a function.
 #[derive(Debug, PartialEq, Eq)]
 pub(super) struct Jump {
     pub(super) from: u64,
@@ -44,7 +44,7 @@ pub(super) struct Jump {
     pub(super) count: u64,
 }
 
-/// All calls from one instruction to one function.
+/// Calls from one instruction to one function.
 #[derive(Debug, PartialEq, Eq)]
 pub(super) struct Call {
     /// Address of the instruction.

@@ -6,12 +6,12 @@ use maud::{Markup, html};
 const WIDTH: f64 = 38.0;
 const HEIGHT: f64 = 13.0;
 
-/// From values to places on a drawing.
+/// An axis of a drawing, which converts values to places.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Axis {
     /// First and last value.
     pub(super) from: [f64; 2],
-    /// Where they are drawn.
+    /// The two ends of the axis in the drawing.
     pub(super) to: [f64; 2],
     pub(super) logarithmic: bool,
 }

@@ -7,20 +7,20 @@ type Box = [f64; 4];
 const LETTER: [(f64, f64); 2] = [(6.1, 10.5), (6.9, 10.5)];
 /// Radius of a point, with some air.
 const POINT: f64 = 4.5;
-/// How far labels may lie from their points.
+/// Distances of labels from their points, in the order in which they are tried.
 const DISTANCES: [f64; 12] = [6.0, 11.0, 17.0, 24.0, 32.0, 42.0, 54.0, 68.0, 84.0, 104.0, 128.0, 156.0];
 /// Directions tried, right first.
 const DIRECTIONS: usize = 16;
 
-/// Where a label goes.
+/// A label and its place.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Label {
-    /// Where the text's base line starts, ends or has its middle, as `anchor` says: its side towards the point, so that text of
-    /// another width than expected does not cover it.
+    /// The place where the text's base line starts, ends or has its middle, as `anchor` says. This is the side towards the point, so that a text of
+    /// unexpected width does not cover it.
     pub(super) text: (f64, f64),
     /// The `text-anchor` of the text.
     pub(super) anchor: &'static str,
-    /// Where a line from the point ends that shows to which it belongs; `None` if it stands beside it.
+    /// The end of a line from the point to its label; `None` if the label is beside the point.
     pub(super) leader: Option<(f64, f64)>,
 }
 
@@ -50,7 +50,7 @@ fn placed((x, y): (f64, f64), (width, height): (f64, f64), direction: usize, dis
     [middle[0] - width / 2.0, middle[1] - height / 2.0, middle[0] + width / 2.0, middle[1] + height / 2.0]
 }
 
-/// Where between `from` and the middle of `target` a line meets the box.
+/// The point at which a line from `from` to the middle of `target` meets the box.
 fn edge((x, y): (f64, f64), target: Box) -> (f64, f64) {
     (x.clamp(target[0], target[2]), y.clamp(target[1], target[3]))
 }

@@ -1,4 +1,4 @@
-//! How cost grows: one plot for each sweep.
+//! Plots of the growth of costs, one for each quantity.
 
 use super::axis::{Axis, short};
 use crate::{
@@ -10,16 +10,16 @@ use microphong_render::shader::Shader;
 
 const SIZE: (f64, f64) = (480.0, 300.0);
 const LEFT: f64 = 44.0;
-/// Names of the lines stand beyond.
+/// Right end of the lines. Names stand to the right of it.
 const RIGHT: f64 = 408.0;
 const TOP: f64 = 22.0;
 const BOTTOM: f64 = 264.0;
 /// Least distance of two names.
 const NAME: f64 = 11.0;
-/// What 24 bands may cost over one.
+/// Largest cost of 24 bands, relative to one.
 pub(super) const BANDS: f64 = 1.15;
 
-/// What the vertical axis shows, and what is drawn of a point.
+/// The titles of the vertical and the horizontal axis.
 fn figure(sweep: Sweep) -> (&'static str, &'static str) {
     match sweep {
         Sweep::Triangles => ("instructions per frame", "triangles on 40,000 pixels"),
@@ -99,7 +99,7 @@ fn path(line: &[(f64, f64)], x: &Axis, y: &Axis) -> String {
     line.iter().zip(pens).map(|((amount, value), pen)| format!("{pen}{:.1} {:.1}", x.at(*amount), y.at(*value))).collect()
 }
 
-/// Heights of names as near to those wanted as they may be without covering one another.
+/// Heights of names, as close to the wanted ones as possible without overlap.
 fn spread(wanted: &[f64]) -> Vec<f64> {
     let mut order: Vec<usize> = (0..wanted.len()).collect();
     order.sort_by(|&a, &b| wanted[a].total_cmp(&wanted[b]));

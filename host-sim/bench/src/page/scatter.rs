@@ -16,7 +16,7 @@ const RIGHT: f64 = 474.0;
 const TOP: f64 = 22.0;
 const BOTTOM: f64 = 344.0;
 
-/// Which error is meant.
+/// The error on the vertical axis.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Error {
     Rms,
@@ -26,7 +26,7 @@ pub(super) enum Error {
 impl Error {
     pub(super) const ALL: [Self; 2] = [Self::Rms, Self::Max];
 
-    /// Its class in a drawing.
+    /// CSS class of the error in a drawing.
     pub(super) const fn class(self) -> &'static str {
         match self {
             Self::Rms => "rms",
@@ -58,7 +58,7 @@ struct Point<'m> {
     name: String,
 }
 
-/// All panels of a scene have the same axes.
+/// Axes that all panels of a scene share.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Axes {
     error: Error,
@@ -96,7 +96,7 @@ pub(super) fn panel(processor: Processor, measurements: &[&Measurement], axes: &
     }
 }
 
-/// What is in a panel.
+/// Contents of a panel.
 pub(super) fn drawing(processor: Processor, measurements: &[&Measurement], axes: &Axes) -> Markup {
     let Axes { error, x, y } = *axes;
     let points = axes.points(measurements);

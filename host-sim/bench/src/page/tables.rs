@@ -39,7 +39,7 @@ fn words(found: BreakEven) -> (String, Option<f64>) {
     }
 }
 
-/// Where a method's curve crosses Phong's when a mesh is refined, counted.
+/// The counted triangle size at which a method's curve crosses Phong's when a mesh is refined.
 fn counted(points: &[Point], shader: &str) -> Option<String> {
     let curve = |name: &str| {
         let points = points.iter().filter(|p| p.sweep == Sweep::Triangles && p.shader.name() == name && p.triangles > 0);
@@ -56,7 +56,7 @@ fn counted(points: &[Point], shader: &str) -> Option<String> {
     })
 }
 
-/// From which size of triangles on methods are cheaper than Phong shading.
+/// The size of triangles from which methods are cheaper than Phong shading.
 pub(super) fn break_evens(measurements: &[&Measurement], processors: &[Processor], growth: &[Point]) -> Markup {
     let costs = |processor, shader| find(measurements, processor, shader).and_then(Costs::of);
     let methods: Vec<_> =
@@ -158,10 +158,10 @@ pub(super) fn peers(table: &Table) -> Markup {
     }
 }
 
-/// A column: heading, what it means, its value and its places.
+/// A column: heading, meaning, value and number of decimals.
 type Column = (&'static str, &'static str, usize, fn(&Measurement) -> Option<f64>);
 
-/// What is printed of a measurement.
+/// The columns that are printed of a measurement.
 const COLUMNS: [Column; 18] = [
     ("per pixel", "instructions per pixel", 2, |m| Some(m.instr_per_pixel)),
     ("max LSB", "largest error", 2, |m| m.max_lsb),

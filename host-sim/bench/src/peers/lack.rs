@@ -1,4 +1,4 @@
-//! What other renderers cannot draw.
+//! Features that other renderers lack.
 
 use super::reflected;
 use microphong::{
@@ -11,20 +11,20 @@ use std::fmt;
 /// Something that a renderer leaves out of a scene, or draws otherwise.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Lack {
-    /// Its depth is that of rays which meet in the eye: it sees parallel ones from afar.
+    /// The renderer's depth needs rays that meet in the eye: it sees parallel rays from afar.
     ParallelRays,
     /// The renderer has one directional light only.
     OtherLights,
-    /// Its ambient light is a tenth of what it shows of the directional one.
+    /// The renderer's ambient light is a tenth of the directional light that it shows.
     Ambient,
     /// The renderer has no highlights.
     Highlights,
-    /// Its highlights are white.
+    /// The renderer's highlights are white.
     ColouredHighlights,
 }
 
 impl Lack {
-    /// Whether it is to be seen in a scene.
+    /// Whether a scene shows the difference.
     #[must_use]
     pub fn concerns(self, stream: &Stream<'_>) -> bool {
         let highlights =

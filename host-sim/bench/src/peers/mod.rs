@@ -1,7 +1,7 @@
-//! What other renderers need for the same frames.
+//! Costs of other renderers for the frames that we measure.
 //!
-//! Those of crates.io are drawn by `host-sim/peers`, which nothing depends on, and counted here: on the host by callgrind as microphong is,
-//! on boards by QEMU's instruction clock. Figures of others were measured once.
+//! Renderers of crates.io are drawn by `host-sim/peers`, which nothing depends on. They are counted as microphong is: on the host by callgrind, on
+//! boards by QEMU's instruction clock. Figures of other renderers were measured once.
 
 pub mod lack;
 pub mod table;
@@ -34,11 +34,11 @@ use std::{array, ffi::OsString, path::PathBuf};
 pub struct Peer {
     /// The name that `host-sim/peers` has for it.
     pub name: &'static str,
-    /// What it cannot draw.
+    /// Features that the renderer lacks.
     lacks: &'static [Lack],
 }
 
-/// All that are measured.
+/// All renderers that are measured.
 pub const PEERS: [Peer; 5] = [
     Peer { name: "retrofire gouraud", lacks: &[Lack::ParallelRays] },
     Peer { name: "retrofire phong", lacks: &[Lack::ParallelRays] },
@@ -51,14 +51,14 @@ pub const PEERS: [Peer; 5] = [
 ];
 
 impl Peer {
-    /// What it leaves out of a scene.
+    /// Features of a scene that the renderer leaves out.
     #[must_use]
     pub fn lacks(&self, stream: &Stream<'_>) -> Vec<Lack> {
         self.lacks.iter().copied().filter(|lack| lack.concerns(stream)).collect()
     }
 }
 
-/// By how much a picture may cover more or fewer pixels than ours, a share of ours.
+/// Largest difference between the numbers of pixels that a renderer and ours cover, as a fraction of ours.
 const COVERAGE: f64 = 0.02;
 
 /// One frame drawn by another renderer: a line of `bench --json`, with the keys of a [`super::Measurement`] and `lacks`.
@@ -66,17 +66,17 @@ const COVERAGE: f64 = 0.02;
 pub struct Frame {
     /// The board that drew; of the host its architecture.
     pub board: &'static str,
-    /// Its processor.
+    /// Name of the processor.
     pub cpu: &'static str,
     /// The scene's name.
     pub scene: String,
     /// The name of one of [`PEERS`].
     pub shader: &'static str,
-    /// What is left out of the scene.
+    /// Features of the scene that are left out.
     pub lacks: Vec<Lack>,
     /// Instructions of the frame, without clearing and transfer.
     pub instructions: u64,
-    /// Pixels that microphong draws for the same frame, hidden ones among them: all figures of a frame are per the same pixels.
+    /// Pixels that microphong draws for this frame, hidden ones included. All figures of a frame are per these pixels.
     pub pixels: u64,
     /// Instructions per pixel, to a hundredth.
     pub instr_per_pixel: f64,
@@ -90,7 +90,7 @@ pub struct Frame {
     pub picture: Option<Picture>,
 }
 
-/// What only our own firmware tells: null.
+/// A figure that only our own firmware gives: null.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
 struct Unknown {
     cycles: (),
@@ -108,7 +108,7 @@ struct Unknown {
     timing: (),
 }
 
-/// What is counted of a frame.
+/// Counts of a frame.
 struct Count {
     instructions: u64,
     /// Pixels that are not background.
@@ -143,7 +143,7 @@ pub fn obstacle(stream: &Stream<'_>) -> Result<Option<&'static str>> {
     Ok(Some("no ordinary scene has such colours, so many lights and that exponent, and shaders are compiled for ordinary scenes only"))
 }
 
-/// What a shader is written for.
+/// The kind of scene for which a shader is written.
 #[derive(PartialEq)]
 struct Shading {
     grey: bool,
@@ -192,7 +192,7 @@ impl Picture {
         Ok((Self { pixels, background: Rgb565::new(r >> 3, g >> 2, b >> 3) }, stats.pixels.into()))
     }
 
-    /// What is not background.
+    /// Pixels that are not background.
     pub fn object(&self) -> impl Iterator<Item = Rgb565> {
         self.pixels.iter().copied().filter(|&pixel| pixel != self.background)
     }
@@ -267,10 +267,10 @@ impl Program {
         frames.collect()
     }
 
-    /// What a board executes to draw `scene`.
+    /// The program with which a board draws `scene`.
     ///
     /// # Errors
-    /// When the stream finds no room.
+    /// When there is no room for the stream.
     pub fn elf(&self, scene: &Scene) -> Result<Elf> {
         Elf::read(&self.path)?.with_stream(scene.stream.as_bytes())
     }

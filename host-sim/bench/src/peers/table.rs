@@ -13,7 +13,7 @@ pub struct Row {
     pub name: String,
     /// Instructions per pixel on each processor; `None` where nobody has measured.
     pub figures: Vec<Option<f64>>,
-    /// What has to be known of these figures.
+    /// A remark on these figures.
     pub note: String,
 }
 
@@ -24,7 +24,7 @@ pub struct Table {
     pub scene: String,
     /// The columns.
     pub processors: Vec<Processor>,
-    /// Ours, those of crates.io, those measured once.
+    /// Rows: first our methods, then renderers of crates.io, then figures that were measured once.
     pub rows: Vec<Row>,
 }
 
@@ -56,7 +56,7 @@ impl Table {
         Ok(Self { scene: scene.to_owned(), processors: processors.to_vec(), rows: own.chain(theirs).chain(earlier).collect() })
     }
 
-    /// What has to be known of its columns.
+    /// A remark on the columns.
     #[must_use]
     pub fn note(&self) -> Option<String> {
         let rows = PICO.layout.rows;
@@ -85,7 +85,7 @@ fn earlier(processors: &[Processor]) -> Result<Vec<Row>> {
         .collect()
 }
 
-/// To three digits.
+/// A figure with three digits.
 #[must_use]
 pub fn short(figure: f64) -> String {
     if figure < 99.95 { format!("{figure:.1}") } else { format!("{figure:.0}") }

@@ -1,4 +1,4 @@
-//! What programs took when somebody last looked, in a file that is kept with the sources: one line for each program, with the mesh of the teapot.
+//! Recorded sizes of programs, in a file that is kept with the sources. It has one line for each program, with the mesh of the teapot.
 
 use super::{Core, FORMATS, Program, SHADERS, Size, measure};
 use crate::{
@@ -26,10 +26,10 @@ geometric mean, and the reason.
 |---|---|---|---|
 ";
 
-/// One line.
+/// A line of the file.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Entry {
-    /// Which program.
+    /// The program.
     pub program: Program,
     /// Bytes of flash, without the mesh.
     pub flash: u64,

@@ -3,20 +3,20 @@
 /// A processor.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Core {
-    /// Without a division and without long multiplications.
+    /// A Cortex-M0+: no division and no long multiplication.
     CortexM0Plus,
-    /// Without floating point.
+    /// A Cortex-M3: no floating point.
     CortexM3,
-    /// With floating point.
+    /// A Cortex-M4F: floating point.
     CortexM4F,
-    /// The same, of a later architecture.
+    /// A Cortex-M33: floating point, a later architecture.
     CortexM33,
-    /// Without floating point.
+    /// A RISC-V processor without floating point.
     RiscV,
 }
 
 impl Core {
-    /// All of them.
+    /// All kinds of processors.
     pub const ALL: [Self; 5] = [Self::CortexM0Plus, Self::CortexM3, Self::CortexM4F, Self::CortexM33, Self::RiscV];
 
     /// The name in files.
@@ -70,7 +70,7 @@ impl Core {
 pub struct Chip {
     /// The name on the command line.
     pub name: &'static str,
-    /// Its processor.
+    /// Processor of the chip.
     pub core: Core,
     /// Bytes of flash, of the chip or of the board's flash chip.
     pub flash_bytes: u64,
@@ -83,7 +83,7 @@ const fn chip(name: &'static str, core: Core, flash: u64, ram: u64) -> Chip {
 }
 
 impl Chip {
-    /// All of them, those with the least flash first.
+    /// All chips, the one with the least flash first.
     pub const ALL: [Self; 7] = [
         chip("stm32f103", Core::CortexM3, 64, 20),
         chip("samd21", Core::CortexM0Plus, 256, 32),

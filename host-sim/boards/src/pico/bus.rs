@@ -1,4 +1,4 @@
-//! What the processor sees: the crate's bus, with our serial port and DMA at their addresses, and the panel behind them.
+//! The bus of the emulated chip: the crate's bus, with our serial port and DMA at their addresses, and the panel behind them.
 
 use super::{
     Fault,
@@ -35,7 +35,7 @@ const SELECT: u32 = 9;
 const DATA: u32 = 8;
 const LED: u32 = 25;
 
-/// One of our peripherals.
+/// A peripheral that is emulated here.
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum Device {
     Spi,
@@ -52,7 +52,7 @@ fn device(address: u32) -> Option<Device> {
     }
 }
 
-/// The whole chip but for the processor, and what is wired to it.
+/// The whole chip without its processors, and the panel that is wired to it.
 pub(super) struct Bus {
     pub(super) chip: Chip,
     pub(super) panel: Panel,
@@ -95,7 +95,7 @@ impl Bus {
         self.watchdog.expired(self.cycle)
     }
 
-    /// What the watchdog does: the whole chip begins anew. The panel stays as it is, and time goes on.
+    /// Restarts the whole chip, as the watchdog does. The panel keeps its picture, and time goes on.
     pub(super) fn reset(&mut self, chip: Chip) {
         (self.chip, self.noticed, self.waiting) = (chip, self.cycle, false);
         (self.spi, self.dma, self.watchdog) = (Spi::default(), Dma::default(), Watchdog::after_reset());

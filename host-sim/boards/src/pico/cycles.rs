@@ -1,4 +1,4 @@
-//! How long an instruction takes on a Cortex-M0+ (technical reference manual, table 3-1) with the RP2040's fast multiplier.
+//! Cycles of instructions on a Cortex-M0+ (technical reference manual, table 3-1) with the RP2040's fast multiplier.
 
 /// Cycles of `instruction`, its first half-word. `taken`: it did not go on to the next one. `fast`: it accessed the single-cycle I/O
 /// block. `wait`: what slow peripherals add.

@@ -14,7 +14,7 @@ mod control {
     pub(super) const BUSY: u32 = 1 << 24;
 }
 
-/// Who sets a channel's pace: the second serial port's transmitter, or nobody.
+/// The request number of the second serial port's transmitter, which sets the pace of a channel.
 pub(super) const PACED_BY_SPI1: u32 = 18;
 pub(super) const UNPACED: u32 = 63;
 
@@ -30,7 +30,7 @@ mod register {
 const STRIDE: u32 = 0x40;
 const CHANNELS_END: u32 = STRIDE * CHANNELS as u32;
 
-/// One channel; its four registers appear in four orders.
+/// A channel. Its four registers appear in four orders.
 #[derive(Clone, Copy, Default)]
 pub(super) struct Channel {
     pub(super) read: u32,
@@ -78,7 +78,7 @@ impl Channel {
         self.control >> control::PACE_SHIFT & 0x3F
     }
 
-    /// One transfer has been made.
+    /// Counts a transfer that has been made.
     pub(super) fn advance(&mut self) {
         let width = self.width();
         if self.control & control::STEP_READ != 0 {

@@ -11,10 +11,10 @@ const FLASH_SIZE: usize = 2 << 20;
 /// Bytes of the second stage of the boot loader, its checksum included; the vector table follows.
 const BOOT2: usize = 0x100;
 
-/// Instructions between looks at the log: it has room for more than those can write.
+/// Number of instructions between reads of the log. The log has room for more than these can write.
 const LOG_INTERVAL: u64 = 1024;
 
-/// One of the chip's two processors.
+/// A processor of the chip.
 struct Core {
     core: CortexM0Plus,
     /// Processor cycles since the start.
@@ -23,8 +23,8 @@ struct Core {
     runs: bool,
 }
 
-/// An RP2040. The processor that is behind the other goes on, so that what one writes the other reads at about the same time. That one waits
-/// for the other at a bank of memory is not modelled.
+/// An RP2040. The processor that is behind the other runs next, so that each soon reads what the other writes. Waiting for a bank of memory that the
+/// other uses is not modelled.
 pub(super) struct Machine {
     flash: Vec<u8>,
     cores: [Core; 2],
@@ -160,7 +160,7 @@ impl Machine {
         (0..SRAM_SIZE as u32).map(|offset| self.bus.chip.memory.sram_read8(offset)).collect()
     }
 
-    /// What the panel shows.
+    /// The picture on the panel.
     pub(super) fn picture(&self) -> Vec<u32> {
         self.bus.panel.picture()
     }

@@ -23,10 +23,10 @@ use machine::Machine;
 /// Cycles that a picture may take: 16 s of the board's time.
 const PATIENCE: u64 = 2_000_000_000;
 
-/// What can break.
+/// Faults that can be simulated.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Fault {
-    /// DMA moves no more data, so that no transfer ends.
+    /// DMA moves no more data, so no transfer ends.
     DmaStalls,
     /// The serial port is busy with a word for ever. A reset mends it.
     SpiHangs,
@@ -85,7 +85,7 @@ impl Pico {
         bail!("the firmware has not finished a picture in {PATIENCE} cycles (at {:#010x}): it hangs", self.machine.pc())
     }
 
-    /// What the panel shows.
+    /// The picture on the panel.
     #[must_use]
     pub fn picture(&self) -> Vec<u32> {
         self.machine.picture()
@@ -114,13 +114,13 @@ impl Pico {
         self.machine.wire()
     }
 
-    /// What the firmware has logged.
+    /// The log of the firmware.
     #[must_use]
     pub fn log(&self) -> &[String] {
         &self.log
     }
 
-    /// All of the memory that programs can write.
+    /// All memory that programs can write.
     #[must_use]
     pub fn ram(&self) -> Vec<u8> {
         self.machine.ram()
@@ -150,7 +150,7 @@ pub(super) fn run(elf: &Elf, until: Until) -> Result<Recording> {
 /// Cycles of one frame; 125 of them are a microsecond.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct FrameTime {
-    /// From its beginning to that of the next.
+    /// Cycles from the beginning of the frame to the beginning of the next.
     pub all: u64,
     /// While bits went over the wire to the panel.
     pub wire: u64,

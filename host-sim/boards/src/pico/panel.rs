@@ -2,7 +2,7 @@
 
 use anyhow::{Result, ensure};
 
-/// Commands that change what is shown.
+/// Commands that change the picture.
 mod command {
     pub(super) const SOFTWARE_RESET: u8 = 0x01;
     pub(super) const SLEEP: u8 = 0x10;
@@ -47,11 +47,11 @@ pub(super) struct Panel {
     upright: bool,
     /// Pixels written so far.
     written: u64,
-    /// What the firmware did first that a panel would not survive or show.
+    /// The first action of the firmware that would break a panel or not be shown.
     fault: Option<String>,
 }
 
-/// What the memory holds after power-on: nothing that anybody draws.
+/// Contents of the memory after power-on, which no scene draws.
 const NOISE: u16 = 0xDEAD;
 
 impl Panel {
@@ -82,7 +82,7 @@ impl Panel {
         self.fault.get_or_insert_with(fault);
     }
 
-    /// A byte arrives; the data pin tells what it is.
+    /// Receives a byte. The data pin tells whether it is data or a command.
     pub(super) fn receive(&mut self, data: bool, byte: u8) {
         if data { self.argument(byte) } else { self.start(byte) }
     }
@@ -154,7 +154,7 @@ impl Panel {
         Ok(())
     }
 
-    /// What the memory holds, row by row from the top.
+    /// The contents of the memory, row by row from the top.
     pub(super) fn picture(&self) -> Vec<u32> {
         self.pixels.iter().map(|&pixel| pixel.into()).collect()
     }

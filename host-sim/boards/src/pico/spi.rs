@@ -34,7 +34,7 @@ pub(super) struct Spi {
 }
 
 impl Spi {
-    /// Nothing is on the wire.
+    /// Whether nothing is being sent.
     pub(super) fn idle(&self) -> bool {
         self.done.is_none()
     }

@@ -1,6 +1,6 @@
-//! The watchdog: starts the chip anew unless the program sets its count again in time.
+//! The watchdog, which restarts the chip unless the program sets its counter in time.
 
-/// Offsets of registers; those behind them are the chip's.
+/// Offsets of registers. Registers behind them belong to the crate's chip.
 mod register {
     pub(super) const CONTROL: u32 = 0x0;
     pub(super) const LOAD: u32 = 0x4;

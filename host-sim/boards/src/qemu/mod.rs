@@ -23,9 +23,9 @@ use std::{
     time::{Duration, Instant},
 };
 
-/// How long the firmware may be silent: a frame takes a second at most, and the machine may be busy.
+/// Longest time without output of the firmware. A frame takes a second at most, and the machine may be busy.
 const SILENCE: Duration = Duration::from_secs(120);
-/// How long QEMU may take to end after the firmware has.
+/// Longest time that QEMU may take to end after the firmware has ended.
 const END: Duration = Duration::from_secs(20);
 /// The exit code that the firmware's fault handler chooses.
 const PANIC: i32 = 101;
@@ -166,7 +166,7 @@ pub fn clocked(board: Board, elf: &Elf) -> Result<Vec<String>> {
 
 /// Bytes below the top of the stack that are looked at.
 const DEEPEST: u32 = 1 << 18;
-/// What the start-up code fills the stack with.
+/// The word with which the start-up code fills the stack.
 const PAINT: [u8; 4] = 0xCCCC_CCCC_u32.to_le_bytes();
 
 /// Runs a program of the package `size` on the machine of this name until all frames are drawn, and returns the bytes of stack that have lost their

@@ -10,7 +10,7 @@ use std::{
     time::Duration,
 };
 
-/// How long an answer may take.
+/// Longest time for an answer.
 const LIMIT: Duration = Duration::from_secs(20);
 
 /// A connection that commands can be sent over.
@@ -19,7 +19,7 @@ pub(super) struct Qmp {
 }
 
 impl Qmp {
-    /// One to the emulator that `machine` starts: a pair of sockets that nobody else can find.
+    /// Connects to the emulator that `machine` starts, by a pair of sockets that nobody else can find.
     pub(super) fn new(machine: &mut Command) -> Result<Self> {
         let (ours, theirs) = UnixStream::pair().context("cannot make QEMU's control socket")?;
         ours.set_read_timeout(Some(LIMIT))?;

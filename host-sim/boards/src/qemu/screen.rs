@@ -5,7 +5,7 @@ use anyhow::{Context, Result, ensure};
 use serde_json::json;
 use std::io::Cursor;
 
-/// Where the picture is.
+/// The place of the picture in the emulator.
 pub(super) enum Screen {
     /// Drawn by QEMU, every pixel four times as wide and high.
     Oled,
@@ -29,7 +29,7 @@ impl Screen {
         Ok(Self::Memory { address, size })
     }
 
-    /// The pixels as they are now.
+    /// The current pixels.
     pub(super) fn picture(&self, qmp: &mut Qmp) -> Result<Vec<u32>> {
         match *self {
             Self::Oled => {

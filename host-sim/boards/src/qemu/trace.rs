@@ -23,12 +23,12 @@ use std::{
     time::Duration,
 };
 
-/// How much QEMU translates at once.
+/// Size of the blocks that QEMU translates at once.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Blocks {
-    /// All up to the next branch.
+    /// All instructions up to the next branch.
     Whole,
-    /// One instruction: slow, and simple enough to check the other by.
+    /// Single instructions. This is slow, and simple enough to check the other way.
     Single,
 }
 

@@ -1,4 +1,4 @@
-//! What the method `auto` chooses, as bars.
+//! Bars of the ways that the method `auto` chooses.
 
 use maud::{Markup, html};
 use microphong_render::choices::{Choices, Way};

@@ -1,15 +1,15 @@
-//! What all reports share: one HTML file with its style and its scripts inside.
+//! The frame of all reports: one HTML file with its style and its scripts inside.
 
 pub mod choices;
 
 use maud::{DOCTYPE, Markup, PreEscaped, html};
 
-/// For drawings outside of pages, too.
+/// The colours of reports, for drawings outside of pages as well.
 pub const COLOURS: &str = include_str!("colours.css");
 const STYLE: &str = include_str!("style.css");
 const SORT: &str = include_str!("sort.js");
 
-/// A page with a style and a script of its own beside those of all. `head` stands under the title.
+/// A page with a style and a script of its own, besides the common ones. `head` stands under the title.
 #[must_use]
 pub fn document(title: &str, [style, script]: [&str; 2], head: &Markup, body: &Markup) -> Markup {
     html! {

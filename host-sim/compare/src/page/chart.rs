@@ -1,15 +1,15 @@
-//! One row's levels over those of Phong shading, and below the error.
+//! A chart of one row: its levels over those of Phong shading, and below the error.
 
 use crate::{Comparison, Reference};
 use maud::{Markup, html};
 
 /// The drawing's size.
 const SIZE: (f64, f64) = (300.0, 290.0);
-/// From left to right, both plots.
+/// Left and right end of both plots.
 const ACROSS: [f64; 2] = [36.0, 296.0];
-/// From bottom to top, levels.
+/// Bottom and top of the plot of levels.
 const LEVELS: [f64; 2] = [170.0, 22.0];
-/// From bottom to top, errors.
+/// Bottom and top of the plot of errors.
 const ERRORS: [f64; 2] = [256.0, 198.0];
 
 /// A linear scale.

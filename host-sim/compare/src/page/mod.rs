@@ -29,7 +29,7 @@ pub struct Page {
     scenes: Vec<(String, Markup)>,
 }
 
-/// What came of a method on a scene: its figures, or why there are none.
+/// The result of a method on a scene: its figures, or the reason why there are none.
 pub type Outcome<'a> = (Shader, Result<&'a Comparison, &'a str>);
 
 impl Page {
@@ -52,10 +52,10 @@ impl Page {
         Ok(())
     }
 
-    /// Writes the page and returns where it is.
+    /// Writes the page and returns its path.
     ///
     /// # Errors
-    /// When it cannot be written; then there is none.
+    /// When the page cannot be written; no part of it stays.
     pub fn finish(mut self) -> Result<PathBuf> {
         let path = self.output.path().to_owned();
         let page = page(&self.scenes).into_string();

@@ -24,7 +24,7 @@ fn encoded(window: &Window, colours: Option<&scale::Palette>, bytes: &[u8]) -> R
     Ok(format!("data:image/png;base64,{}", STANDARD.encode(file)))
 }
 
-/// Pixels as they are.
+/// The picture in its own colours.
 pub(super) fn rgb(window: &Window, pixels: &[[u8; 3]]) -> Result<String> {
     encoded(window, None, pixels.as_flattened())
 }

@@ -7,9 +7,9 @@ pub(super) type Palette = [[u8; 3]; 256];
 
 /// Errors up to here are about evenly spread, larger ones by their logarithm, LSB.
 const EVEN: f64 = 0.25;
-/// Errors from here on all look the same, LSB.
+/// The error, in 1/255, from which on all errors have one colour.
 const MOST: f64 = 128.0;
-/// From far too dark to far too bright; readable with any colour vision.
+/// Colours from far too dark to far too bright. They can be distinguished with any colour vision.
 const COLOURS: [[f64; 3]; 7] = [
     [5.0, 48.0, 97.0],
     [33.0, 113.0, 181.0],
@@ -20,7 +20,7 @@ const COLOURS: [[f64; 3]; 7] = [
     [103.0, 0.0, 31.0],
 ];
 
-/// Where an error lies between -1 and 1.
+/// The place of an error on the scale from -1 to 1.
 fn place(error: f64) -> f64 {
     let size = (1.0 + error.abs().min(MOST) / EVEN).ln() / (1.0 + MOST / EVEN).ln();
     size.copysign(error)

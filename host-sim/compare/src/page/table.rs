@@ -1,11 +1,11 @@
-//! All figures of a scene.
+//! A table of all figures of a scene.
 
 use super::Outcome;
 use crate::Comparison;
 use maud::{Markup, html};
 use microphong_render::shader::Shader;
 
-/// A column of numbers: its heading, what it means, its places, and where its value comes from.
+/// A column of numbers: heading, meaning, number of decimals, and value.
 type Column = (&'static str, &'static str, usize, fn(&Comparison) -> f64);
 
 /// The columns and the headings above them.

@@ -67,8 +67,8 @@ fn turned(normal: V3, from: V3, to: V3) -> V3 {
     add(add(scale(normal, c), cross(k, normal)), scale(k, dot(k, normal) / (1.0 + c).max(1e-6)))
 }
 
-/// One direction for the whole triangle, and normals turned so that each corner sees it as it saw its own (Kuijk and
-/// Blake). Nothing turns where the direction is constant.
+/// A triangle with one direction, whose normals are turned so that each corner sees this direction as it saw its own (Kuijk and Blake). Nothing turns
+/// where the direction is constant.
 #[derive(Clone, Copy, Debug)]
 struct Turned {
     normals: [V3; 3],
@@ -153,7 +153,7 @@ mod tests {
         }
     }
 
-    /// With the exponent 1 and a cosine for the parabolas, the formula is exact: a great circle is walked evenly.
+    /// With the exponent 1 and a cosine instead of the parabolas, the formula is exact: a great circle is walked evenly.
     #[test]
     fn angles_are_those_of_the_great_circle() {
         let [l, r, v] = [[0.2, 0.3, 1.0], [-0.5, 0.1, 0.9], [0.4, -0.3, 0.8]].map(|v| unit(v).unwrap());

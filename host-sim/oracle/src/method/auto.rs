@@ -1,4 +1,4 @@
-//! One of five methods, whichever stays within an error budget.
+//! The method `auto`: one of five ways, whichever stays within an error budget.
 
 use super::{Decide, gouraud, six_point, sqrt6};
 use crate::{
@@ -10,10 +10,10 @@ use microphong_render::choices::{Chosen, Way};
 /// An excess that is close to its threshold at every margin but 0.
 const CLOSE: f64 = -f64::MIN_POSITIVE;
 
-/// Which of them that is follows from bounds that only the core knows. What it is measured against is Phong shading, and each of the five
-/// counts as a decision that may fall either way: arithmetic is compared with all of them.
+/// Shades as `auto`. The choice follows from bounds that only the core knows. The first result is Phong shading, and each of the five ways counts as
+/// a decision that may fall either way, so arithmetic is compared with all of them.
 ///
-/// Near lights or a near viewer: always Phong.
+/// Near lights or a near viewer are always drawn by Phong shading.
 pub(super) fn shade<'f, const QUADRATICS: bool>(frame: &'f Frame, facet: &'f Facet, decide: &'f Decide<'f>) -> Shade<'f> {
     if !frame.is_constant() || !decide(CLOSE) {
         return phong(frame, facet);
@@ -27,7 +27,7 @@ pub(super) fn shade<'f, const QUADRATICS: bool>(frame: &'f Frame, facet: &'f Fac
     }
 }
 
-/// What is drawn of a facet for which the choice is known.
+/// Shades a facet for which the choice is known.
 #[must_use]
 pub fn chosen<'f>(frame: &'f Frame, facet: &'f Facet, Chosen { way, raises }: Chosen) -> Shade<'f> {
     let shade = match way {
@@ -47,8 +47,8 @@ pub fn chosen<'f>(frame: &'f Frame, facet: &'f Facet, Chosen { way, raises }: Ch
     })
 }
 
-/// One colour: that of the cosine and of the highlight half-way between their extremes at the corners, `by_light`, or half-way between the
-/// extremes of the corners' levels.
+/// One colour: `by_light` from the means of the extremes of cosine and highlight at the corners, otherwise from the means of the extremes of the
+/// corners' levels.
 fn solid<'f>(frame: &'f Frame, facet: &'f Facet, by_light: bool) -> Shade<'f> {
     let middle = |values: [f64; 3]| {
         let [least, most] = [f64::min, f64::max].map(|extreme| values.into_iter().reduce(extreme).unwrap_or(0.0));

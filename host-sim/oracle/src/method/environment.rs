@@ -22,7 +22,7 @@ fn mirrored([u, v]: [f64; 2]) -> V3 {
     [2.0 * k * u, 2.0 * k * v, 1.0 - 2.0 * square]
 }
 
-/// All in the eye's axes. One map serves the whole object: a near light shines as from the origin.
+/// Shades in the eye's axes. One map serves the whole object: a near light shines as if from the origin.
 pub(super) fn shade<'f>(frame: &'f Frame, facet: &'f Facet) -> Shade<'f> {
     let to_eye = |v: V3| apply(&frame.axes, v);
     let exponent = frame.material(facet).exponent;

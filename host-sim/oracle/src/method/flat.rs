@@ -1,4 +1,4 @@
-//! One colour per triangle: that of its plane at its centroid.
+//! One colour per triangle: the light of its plane at its centroid.
 
 use crate::{Facet, Frame, Shade};
 

@@ -33,7 +33,7 @@ type Decide<'f> = dyn Fn(f64) -> bool + 'f;
 /// A method's way to shade one triangle, and to decide.
 type Build = for<'f> fn(&'f Frame, &'f Facet, &'f Decide<'f>) -> Shade<'f>;
 
-/// What is known of a method.
+/// Properties of a method.
 struct Method {
     name: &'static str,
     /// Only for lights and a viewer that are infinitely far.
@@ -112,7 +112,7 @@ pub const NAMES: [&str; METHODS.len()] = {
 pub enum Unsupported {
     /// No method has this name.
     Unknown(String),
-    /// The method wants directions that are the same everywhere, and a light or the viewer is near.
+    /// The method needs directions that are the same everywhere, and a light or the viewer is near.
     Near(&'static str),
     /// The method interpolates along rows of the screen, and the facet is to be seen in perspective.
     Perspective(&'static str),
@@ -157,8 +157,8 @@ pub fn method<'f>(name: &str, frame: &'f Frame, facet: &'f Facet) -> Result<Shad
     Ok((Method::of(name, frame, facet)?.build)(frame, facet, &|excess| excess > 0.0))
 }
 
-/// All that a method may make of a point of `facet` in an arithmetic that is off by up to `margin` levels where it decides, see
-/// [`Frame::undecided`]: every combination of those decisions that are so close. The first is what the method itself makes of it.
+/// All results that a method may have at a point of `facet` in an arithmetic with errors of up to `margin` levels where it decides, see
+/// [`Frame::undecided`]: every combination of decisions that are this close. The first is the exact result.
 ///
 /// # Errors
 /// When there is no such method, or when it cannot draw this frame.

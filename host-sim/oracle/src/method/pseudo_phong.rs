@@ -1,4 +1,4 @@
-//! Gouraud on so many equal triangles that none is large on the screen.
+//! Gouraud shading on equal parts of a triangle, in a number at which none is large on the screen.
 
 use crate::{
     Facet, Frame, Shade,
@@ -8,7 +8,7 @@ use microphong_render::vector::V3;
 
 /// Longest edge of a part, in pixels.
 const LONGEST: f64 = 8.0;
-/// How often a triangle is split at most.
+/// Largest number of times that a triangle is split.
 const DEPTH: u32 = 6;
 
 /// Split into 4^k triangles, k the smallest for which no edge is longer than eight pixels.

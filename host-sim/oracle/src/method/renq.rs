@@ -49,7 +49,7 @@ pub(super) fn rsqrt(square: f64) -> f64 {
     1.0 / square.max(SHORTEST * SHORTEST).sqrt()
 }
 
-/// Where the interpolated normal may be shorter, no quadratic is near 1/|N|: there it is worked out.
+/// Length of the interpolated normal below which no quadratic is close to 1/|N|; it is computed there.
 pub(super) const CURVED: f64 = 0.5;
 
 pub(super) fn shade<'f>(frame: &'f Frame, facet: &'f Facet) -> Shade<'f> {

@@ -6,15 +6,15 @@ use crate::{
     poly::{quadratic, sum},
 };
 
-/// What one step may leave, in levels.
+/// Largest error that one step may leave, in levels.
 const ENOUGH: f64 = 0.1;
 
-/// `m (3 - D m²) / 2`, once or twice; the exact root where normals differ so much that interpolated ones get shorter than 1/2.
+/// One or two steps `m (3 - D m²) / 2`. The exact root is taken where normals differ so much that interpolated ones become shorter than 1/2.
 ///
-/// Newton's step leaves 1.5 δ² of a relative error δ; that of the fit is at most 0.02 c⁴ with c² = 3 (1 - r²), r the least length of
-/// normals: c is the chord between two of three that are equally far from one another. A highlight multiplies it by its exponent.
+/// Newton's step leaves 1.5 δ² of a relative error δ. The fit's error is at most 0.02 c⁴ with c² = 3 (1 - r²), where r is the smallest length of
+/// normals, and c the chord between two of three equally distant ones. A highlight multiplies it by its exponent.
 ///
-/// Under near lights and for a near viewer no quadratic is exact: there it is Phong shading.
+/// Under near lights and for a near viewer no quadratic is exact, so these are drawn by Phong shading.
 pub(super) fn shade<'f>(frame: &'f Frame, facet: &'f Facet) -> Shade<'f> {
     if !frame.is_constant() {
         return phong(frame, facet);

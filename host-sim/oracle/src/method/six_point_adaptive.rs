@@ -15,10 +15,10 @@ use crate::{
 };
 use microphong_render::vector::V3;
 
-/// What an edge's parabola may be wrong by at its quarters, in levels.
+/// Largest error of an edge's parabola at its quarters, in levels.
 const EDGE: f64 = 1.0;
 
-/// One edge of a part.
+/// An edge of a part of the triangle.
 #[derive(Clone, Copy, Debug)]
 struct Edge {
     /// Affine coordinates of its two ends.
@@ -73,7 +73,7 @@ impl<C: Fn(V3) -> Levels> Builder<'_, C> {
         !edge.locked && (misses(0.25) || misses(0.75))
     }
 
-    /// Both halves of an edge.
+    /// The two halves of an edge.
     fn halves(&self, edge: Edge, split: bool) -> [Edge; 2] {
         let ([a, b], [x, y, z]) = (edge.ends, edge.colours);
         let middle = lerp(a, b, 0.5);

@@ -8,9 +8,9 @@ use crate::{
     poly::{FOUR, SIX, blend, quadratic, quarter, within},
 };
 
-/// What the quadratic may be wrong by at the centre, in levels.
+/// Largest error of the quadratic at the centre, in levels.
 pub(super) const CENTRE: f64 = 2.0;
-/// How often a triangle is split at most.
+/// Largest number of times that a triangle is split.
 pub(super) const DEPTH: u32 = 3;
 
 pub(super) fn shade<'f>(frame: &'f Frame, facet: &'f Facet, decide: &'f Decide<'f>) -> Shade<'f> {

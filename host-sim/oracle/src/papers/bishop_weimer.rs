@@ -34,7 +34,7 @@ enum Entry {
     Bytes,
 }
 
-/// Largest error of `x^n` on [0, 1] by a table of so many steps.
+/// Largest error of `x^n` on [0, 1] by a table of `steps` steps.
 fn error(steps: u32, n: i32, entry: Entry) -> f64 {
     let all = f64::from(steps);
     largest((0..=steps).flat_map(|k| {

@@ -256,10 +256,10 @@ fn symbols() -> [Claim; 4] {
     ]
 }
 
-/// What is wrong with the code as printed.
+/// A fault of the code as printed.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Slip {
-    /// Nothing: as corrected.
+    /// No fault: the corrected code.
     None,
     /// The recurrences start at y = 0, but C has not been moved there.
     Unmoved,
@@ -269,11 +269,11 @@ enum Slip {
     Swapped,
     /// `first = s/2`, s the exponent.
     First,
-    /// All three parts begin where the first may.
+    /// All three parts begin where the first may begin.
     Starts,
 }
 
-/// One half of a triangle: between two heights, its left and right ends there.
+/// One half of a triangle: two heights, and the left and right ends there.
 #[derive(Clone, Copy, Debug)]
 struct Part {
     top: f64,

@@ -64,7 +64,7 @@ fn drift(degrees: f64) -> Claim {
     NORMALS.claim(what, "degrees", 0.0, worst, (Verdict::at_most(worst, 0.1, 0.25), note))
 }
 
-/// One step of Newton's iteration per pixel, each from its neighbour's root.
+/// One step of Newton's iteration per pixel, which starts from the neighbour's root.
 fn newton(pixels: u32) -> Claim {
     let c = 60f64.to_radians().cos();
     let mut root = 1.0;
@@ -110,7 +110,7 @@ fn reflected() -> Claim {
     OTHERS.identity("R·V = 2(L·N)(V·N)/D - L·V", worst, "No root is needed.")
 }
 
-/// Along edges, then along the row: the same as affine coordinates.
+/// Interpolation along edges and then along the row gives the result of affine coordinates.
 fn barycentric() -> Claim {
     let mut random = Random(92);
     let worst = largest((0..100).map(|_| {

@@ -1,7 +1,7 @@
-//! What the papers claim, computed again.
+//! Claims of the papers, computed again.
 //!
-//! Only the papers' own figures are stored. Ours come from the oracle and from the printed formulas whenever they are
-//! asked for, in 64-bit floating point; random examples start from fixed seeds.
+//! Only the papers' figures are stored. Ours are computed from the oracle and the printed formulas when they are asked for, in 64-bit floating point.
+//! Random examples start from fixed seeds.
 
 mod bishop_weimer;
 mod disselkoen;
@@ -18,14 +18,14 @@ use microphong_render::{
 use serde::{Serialize, Serializer};
 use std::{borrow::Cow, f64::consts::TAU, fmt};
 
-/// One claim and what comes of it.
+/// A claim and its verdict.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Claim {
     /// Whose claim it is.
     pub topic: Topic,
     /// Author, year and place.
     pub source: String,
-    /// What is claimed, or of what the figures are.
+    /// The claim, or the name of the figures.
     pub what: String,
     /// Unit of both figures; empty for plain numbers.
     pub unit: &'static str,
@@ -55,10 +55,10 @@ pub enum Topic {
 }
 
 impl Topic {
-    /// All of them.
+    /// All papers.
     pub const ALL: [Self; 5] = [Self::Vlasic, Self::SzirmayKalos, Self::BishopWeimer, Self::Disselkoen, Self::Goldman];
 
-    /// Its name on the command line.
+    /// Name of the paper on the command line.
     #[must_use]
     pub fn name(self) -> &'static str {
         match self {
@@ -89,7 +89,7 @@ impl Serialize for Topic {
     }
 }
 
-/// What becomes of a claim.
+/// Verdict on a claim.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Verdict {
@@ -99,15 +99,15 @@ pub enum Verdict {
     Close,
     /// The claim does not hold.
     Refuted,
-    /// The paper does not say what it would take to decide.
+    /// The paper does not give what is needed to decide.
     NotReproducible,
 }
 
 impl Verdict {
-    /// All of them.
+    /// All verdicts.
     pub const ALL: [Self; 4] = [Self::Confirmed, Self::Close, Self::Refuted, Self::NotReproducible];
 
-    /// In words.
+    /// The verdict in words.
     #[must_use]
     pub fn name(self) -> &'static str {
         match self {
@@ -118,7 +118,7 @@ impl Verdict {
         }
     }
 
-    /// Confirmed up to `good`, close up to `fair`, refuted beyond.
+    /// The verdict on an error: confirmed up to `good`, close up to `fair`, refuted beyond.
     fn at_most(value: f64, good: f64, fair: f64) -> Self {
         if value <= good {
             Self::Confirmed
@@ -178,7 +178,7 @@ impl fmt::Display for Value {
     }
 }
 
-/// All claims of one paper.
+/// All claims of a paper.
 ///
 /// # Errors
 /// When a built-in scene cannot be drawn.
@@ -238,7 +238,7 @@ impl Source {
     }
 }
 
-/// Formulas that differ by less, relative to the result plus one, are the same.
+/// Largest difference, relative to the result plus one, of formulas that count as equal.
 const SAME: f64 = 1e-7;
 
 /// Numbers that look random: the generator SplitMix64 (Steele, Lea, Flood 2014).
@@ -246,7 +246,7 @@ const SAME: f64 = 1e-7;
 struct Random(u64);
 
 impl Random {
-    /// In [0, 1).
+    /// A random number in [0, 1).
     fn share(&mut self) -> f64 {
         self.0 = self.0.wrapping_add(0x9E37_79B9_7F4A_7C15);
         let mut z = self.0;
@@ -292,7 +292,7 @@ fn grid(steps: usize) -> impl Iterator<Item = V3> {
     (0..=steps).flat_map(move |i| (0..=steps - i).map(move |j| [i, j, steps - i - j].map(|k| k as f64 / steps as f64)))
 }
 
-/// Where the row of height `y` enters and leaves a triangle.
+/// The points at which the row of height `y` enters and leaves a triangle.
 fn row(screen: &[[f64; 2]; 3], y: f64) -> Option<[f64; 2]> {
     let crossings = (0..3).filter_map(|k| {
         let ([x0, y0], [x1, y1]) = (screen[k], screen[(k + 1) % 3]);

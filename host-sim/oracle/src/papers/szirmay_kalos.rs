@@ -19,7 +19,7 @@ const FIT: Source = Source(Topic::SzirmayKalos, "six-point solution");
 const FULL: f64 = 255.0;
 /// A difference that is hardly seen: one in a hundred.
 const UNSEEN: f64 = 0.01 * FULL;
-/// One that is seen, but does not disturb.
+/// A jump that is seen, but does not disturb.
 const SLIGHT: f64 = 0.04 * FULL;
 
 pub(super) fn claims() -> Result<Vec<Claim>> {
@@ -266,7 +266,7 @@ fn steps() -> Claim {
     EDGES.identity("recurrences along rows and edges", worst, "At the fractional X_start they are exact.")
 }
 
-/// What the printed solution is computed in.
+/// Number types in which the printed solution is computed.
 trait Real: Copy + From<f32> + Into<f64> + Add<Output = Self> + Sub<Output = Self> + Mul<Output = Self> + Div<Output = Self> {}
 impl Real for f32 {}
 impl Real for f64 {}

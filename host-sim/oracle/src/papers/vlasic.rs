@@ -19,7 +19,7 @@ const APPENDIX: Source = Source(Topic::Vlasic, "appendix B");
 /// A column of table 6.1.
 struct Column {
     title: &'static str,
-    /// In rankings.
+    /// Name of the method in rankings.
     short: &'static str,
     /// The oracle's name.
     method: &'static str,
@@ -65,7 +65,7 @@ pub(super) fn claims() -> Result<Vec<Claim>> {
     Ok(claims)
 }
 
-/// One flat triangle with a light close in front of it, highlight alone: the prototypes' `vtri_flat_spec`.
+/// A flat triangle with a light close in front of it, with the highlight only: the prototypes' `vtri_flat_spec`.
 fn triangle(exponent: f64) -> Frame {
     const SIDE: u32 = 256;
     let mesh = bulged_triangle();
@@ -97,7 +97,7 @@ fn correctness(frame: &Frame, pixels: &[(usize, [u32; 2])]) -> Result<[f64; 6]> 
     Ok(sums.map(|sum| 1.0 - sum / (3.0 * 255.0 * pixels.len().max(1) as f64)))
 }
 
-/// One scene of table 6.1, and the order that it puts the methods in.
+/// A scene of table 6.1, and the order of the methods in it.
 fn table(source: Source, unknown: &str, paper: [f64; 6], ours: [f64; 6]) -> Vec<Claim> {
     let mut claims: Vec<_> = (0..6)
         .map(|k| {
@@ -243,7 +243,7 @@ fn spherical(degrees: f64) -> Claim {
     MAPS.claim(format!("quadratic Blinn, arc of {degrees} degrees: (u,v) off by"), "", "identical", deviation, (verdict, note))
 }
 
-/// With the viewer far, the sphere map's coordinates are the normal's.
+/// With a far viewer the coordinates in the sphere map are the normal's.
 fn matcap() -> Claim {
     let mut random = Random(64);
     let difference = largest((0..1000).map(|_| {

@@ -85,7 +85,7 @@ fn start_timer() {
     }
 }
 
-/// Ticks of the timer while a frame is drawn. Not inlined, so that each call takes as long as that of an empty frame.
+/// Ticks of the timer while a frame is drawn. The function is not inlined, so that each call takes as long as the call for an empty frame.
 #[inline(never)]
 fn ticks(draw: &mut dyn FnMut(&mut Picture), picture: &mut Picture) -> u32 {
     // SAFETY: reading the timer has no effect.
