@@ -119,7 +119,7 @@ pub fn seed() -> u64 {
     seed
 }
 
-/// How many random cases: `count` times `MICROPHONG_CASES`, else `count`.
+/// Number of random cases: `count`, times `MICROPHONG_CASES` if it is set.
 #[must_use]
 pub fn cases(count: u64) -> u64 {
     let count = count * variable("MICROPHONG_CASES").unwrap_or(1).max(1);
@@ -127,7 +127,7 @@ pub fn cases(count: u64) -> u64 {
     count
 }
 
-/// What makes random cases by the strategies of proptest, with the same [`seed`] and so many [`cases`].
+/// Makes random cases by the strategies of proptest, with a fixed [`seed`] and [`cases`] of `count`.
 #[must_use]
 pub fn runner(count: u64) -> TestRunner {
     let mut bytes = [0; 32];

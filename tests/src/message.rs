@@ -1,4 +1,4 @@
-//! What a board's display must show in place of a picture: the firmware's message, drawn here by the firmware's own code.
+//! The message that a board must show instead of a picture, drawn here by the firmware's own code.
 
 use embedded_graphics::{
     pixelcolor::BinaryColor,

@@ -21,7 +21,7 @@ pub fn unit(v: V3) -> V3 {
     v.map(|c| c / length)
 }
 
-/// From a stream's fixed point.
+/// Converts fixed-point numbers of a stream.
 #[must_use]
 pub fn real<const N: usize>(v: [i32; N], bits: i32) -> [f64; N] {
     v.map(|c| f64::from(c) / 2f64.powi(bits))

@@ -177,7 +177,7 @@ fn coverages_of_a_patch_add_up_to_one() {
     }
 }
 
-/// What a mesh is drawn with, whatever its shading says: white; everything else is black.
+/// A method that draws a mesh in white on black, whatever its material.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct White(u8);
 
@@ -224,7 +224,7 @@ impl Pixel for White {
     }
 }
 
-/// What is seen of a frame at 16 x 16 points of each pixel: the share of points on a triangle.
+/// The silhouette of a frame at 16 x 16 points of each pixel: the share of points on a triangle.
 fn silhouette(frame: &Frame) -> Vec<u32> {
     let (width, height) = frame.size;
     let fine = |c: f64| (c * 16.0).round() as i64;
@@ -303,7 +303,7 @@ fn meshes_have_no_seams_and_smooth_outlines() {
 /// Points of a pixel in each direction.
 const SIDE: u32 = 8;
 
-/// Which facet is seen at each of 8 x 8 points of each pixel, in 64-bit floating point.
+/// The facet that is seen at each of 8 x 8 points of each pixel, in 64-bit floating point.
 fn seen(frame: &Frame) -> Vec<Option<usize>> {
     let (width, height) = frame.size;
     let columns = (width * SIDE) as usize;
@@ -330,12 +330,12 @@ fn seen(frame: &Frame) -> Vec<Option<usize>> {
     points.into_iter().map(|(_, facet)| facet).collect()
 }
 
-/// Where a point lies, in pixels.
+/// The place of a point, in pixels.
 fn place(x: u32, y: u32) -> [f64; 2] {
     [x, y].map(|c| (f64::from(c) + 0.5) / f64::from(SIDE))
 }
 
-/// Means of what is `seen` in each pixel, in 64-bit floating point.
+/// The mean colour of the points of each pixel, in 64-bit floating point.
 fn supersampled(frame: &Frame, seen: &[Option<usize>], method: &str, ground: [f64; 3]) -> Vec<[f64; 3]> {
     let (width, height) = frame.size;
     let shades: Vec<_> = frame.facets.iter().map(|facet| oracle::method(method, frame, facet).unwrap()).collect();
@@ -397,7 +397,7 @@ fn pictures_are_like_supersampled_ones() {
     }
 }
 
-/// A frame with room for so many vertices and triangles, in bands of so many rows.
+/// A frame with room for `vertices` vertices and `triangles` triangles, in bands of `rows` rows.
 fn frame(stream: Stream<'_>, shader: Shader, vertices: usize, triangles: usize, rows: u32) -> (Vec<Rgb565>, Stats) {
     let size = Size::new(150, 110);
     let layout = Layout::new(150, rows as usize).vertices(vertices).triangles(triangles).materials(stream.materials.len());

@@ -1,4 +1,4 @@
-//! Memory decides how a frame is drawn, never what it looks like.
+//! Memory decides how a frame is drawn, and never the picture.
 
 use embedded_graphics::{
     mock_display::MockDisplay,
@@ -19,7 +19,7 @@ use microphong_sim::{
 use microphong_tests::named;
 use std::thread;
 
-/// A frame with room for so many vertices, triangles, and active triangles, in bands of so many rows.
+/// A frame with room for these numbers of vertices, triangles and active triangles, in bands of `rows` rows.
 fn frame(stream: Stream<'_>, size: Size, shader: Shader, [vertices, triangles, active]: [usize; 3], rows: u32) -> (Vec<Rgb565>, Stats) {
     let layout = Layout::new(size.width as usize, rows as usize).vertices(vertices).triangles(triangles);
     let layout = layout.materials(stream.materials.len()).active_triangles(active);
@@ -61,7 +61,7 @@ fn neither_bands_nor_overflow_change_a_pixel() {
     }
 }
 
-/// Both parts of a frame, drawn at the same time by two threads: wherever it is divided, and where there is no room for that.
+/// Two threads draw both parts of a frame at the same time, wherever it is divided, and also where there is too little room to divide it.
 #[test]
 fn two_parts_are_the_whole() {
     let size = Size::new(200, 150);
@@ -170,7 +170,7 @@ fn two_preparations_are_the_whole() {
     }
 }
 
-/// What nobody has run is run in the end, once. Each part has its share, if there is room for all.
+/// Parts of a preparation that nobody has run are run in the end, once. Each part has its share, if there is room for all.
 #[test]
 fn a_preparation_is_complete() {
     let scene = scene::load("torus").unwrap();

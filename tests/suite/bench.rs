@@ -1,4 +1,4 @@
-//! What `bench` counts is exact, the same each time, and has not grown since somebody last looked.
+//! The counts of `bench` are exact, repeat, and have not grown since they were recorded.
 
 use microphong_sim::{
     bench::{Bench, Processor, baseline, callgrind::Counters, renewal::Growth, stage::Meter, styles, styles::RedrawCost},
@@ -77,7 +77,7 @@ mesh = 'box'
 keys = [{ frame = 0, at = [-1.3, 1, 0], scale = 0.1 }, { frame = 2, at = [-1.2, 1, 0], scale = 0.1 }]
 ";
 
-/// Where little moves, little is drawn again; a scene that does not move is refused.
+/// In scenes where little moves, little is drawn again. A scene that does not move is refused.
 #[test]
 fn what_has_changed_is_counted_alone() {
     let folder = tempfile::tempdir().unwrap();
@@ -143,7 +143,7 @@ fn costs_have_not_grown() {
     assert!(grown.is_empty(), "{} costs have grown:\n{}\n{growth}\nif that is meant, {renew}", grown.len(), list.join("\n"));
 }
 
-/// Renewed costs are those that are measured, with the reason beside them; what has not changed needs none.
+/// Renewed costs are the measured ones, with the reason beside them. Unchanged costs need no reason.
 #[test]
 fn renewal_keeps_the_reason() {
     let directory = tempfile::tempdir().unwrap();

@@ -3,8 +3,8 @@
 use microphong::method::highlight_error::{Growth, KINDS, Kind};
 use microphong_sim::bounds::{Table, worst};
 
-/// Another seed than that of the table, at other exponents and sizes, finds no triangle that is off by more than it says. Were all entries
-/// where it found most lower by what is left there, it would.
+/// A search with another seed, at other exponents and sizes, finds no triangle whose error exceeds the table. If all entries where it found most were
+/// lowered by the remaining margin, it would find one.
 #[test]
 fn another_search_finds_no_larger_error_but_of_lowered_entries() {
     for kind in 0..KINDS {

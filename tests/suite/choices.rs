@@ -1,4 +1,4 @@
-//! What the method `auto` chooses, as `render --show methods`, `compare` and `bench` tell it.
+//! The choices of the method `auto`, as `render --show methods`, `compare` and `bench` show them.
 
 use embedded_graphics::geometry::Size;
 use microphong::{
@@ -183,7 +183,7 @@ fn creased() -> Scene {
     Scene { name: "creased torus".to_owned(), stream: look.stream(&quantise(&mesh).0).expect("a stream"), size: (256, 256) }
 }
 
-/// All scenes, all around, within 1 of 255 and what arithmetic adds.
+/// Frames of all scenes, seen from all around, stay within 1 of 255 plus the error of arithmetic.
 #[test]
 fn all_frames_of_all_scenes_keep_the_budget() {
     let scenes = scene::NAMES.iter().chain(&scene::VARIANTS).map(|name| scene::load(name).expect("a built-in scene"));
@@ -215,7 +215,7 @@ fn all_frames_of_all_scenes_keep_the_budget() {
     }
 }
 
-/// So does `bench`.
+/// `bench` prints choices as well.
 #[test]
 fn bench_tells_choices() {
     let scene = scene::load("torus").expect("a built-in scene");

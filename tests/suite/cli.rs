@@ -103,7 +103,7 @@ fn bad_meshes_are_refused_with_their_line() {
     place.fails(&["convert", "bad.obj"], 1, &["bad.obj", "line 2"]);
 }
 
-/// STL is read as OBJ is, whatever the file is called; what is wrong with it is named by the triangle.
+/// STL is read as OBJ is, whatever the file is called. An error names the triangle.
 #[test]
 fn stl_is_converted() {
     let corners = ["0 0 0", "1 0 0", "0 1 0", "0 0 1"];
@@ -126,7 +126,7 @@ fn stl_is_converted() {
     place.fails(&["convert", "cut.stl"], 1, &["cut.stl", "STL", "triangle 1"]);
 }
 
-/// PLY is read as OBJ is, whatever the file is called; what is wrong with it is named by the place.
+/// PLY is read as OBJ is, whatever the file is called. An error names the place.
 #[test]
 fn ply_is_converted() {
     let head = "ply\nformat ascii 1.0\nelement vertex 4\nproperty float x\nproperty float y\nproperty float z\nproperty uchar red\nelement face 4\nproperty list uchar int vertex_indices\nend_header\n";
@@ -146,7 +146,7 @@ fn ply_is_converted() {
     place.file("points.ply", points).fails(&["convert", "points.ply"], 1, &["points.ply", "no faces"]);
 }
 
-/// A grid of so many cells along a side, on a bowl; the half to the right has a material of its own if `two`.
+/// A grid of `side` cells along a side, on a bowl. If `two`, its right half has another material.
 fn bowl(side: usize, two: bool) -> String {
     let mut text = String::new();
     for k in 0..(side + 1) * (side + 1) {
@@ -161,7 +161,7 @@ fn bowl(side: usize, two: bool) -> String {
     text
 }
 
-/// At most so many triangles, and how far they are off is said.
+/// A mesh is reduced to a number of triangles, and the output tells the error.
 #[test]
 fn meshes_are_simplified() {
     let place = Place::new();
@@ -213,7 +213,7 @@ fn lights_may_be_near() {
     assert!(half > 0 && away == [-2 * half, half, -4 * half], "{away:?}");
 }
 
-/// With its buffer inside; what is wrong with it is named by the place.
+/// A glTF file with its buffer inside is converted. An error names the place.
 #[test]
 fn gltf_is_converted() {
     let text = r#"{"asset": {"version": "2.0"}, "scenes": [{"nodes": [0]}], "nodes": [{"mesh": 0}],
@@ -238,7 +238,7 @@ fn gltf_is_converted() {
     place.file("not.gltf", TETRAHEDRON).fails(&["convert", "not.gltf"], 1, &["not.gltf", "glTF", "line 1"]);
 }
 
-/// With the remedy, whatever the file is called.
+/// Files of other formats are refused with the remedy, whatever they are called.
 #[test]
 fn other_formats_are_named() {
     let place = Place::new();
@@ -346,7 +346,7 @@ fn only_regular_files_are_replaced() {
     assert!(fs::metadata(at("pipe")).expect("pipe").file_type().is_fifo());
 }
 
-/// Then what is said of the file goes to stderr.
+/// If the file goes to standard output, the report goes to stderr.
 #[cfg(target_os = "linux")]
 #[test]
 fn standard_output_may_be_the_file() {
@@ -514,7 +514,7 @@ fn wrong_usage_is_told_from_failure() {
     place.fails(&[], 2, &["Usage"]);
 }
 
-/// What is not asked for otherwise is `auto`, within 1 of 255.
+/// The default method is `auto`, within 1 of 255.
 #[test]
 fn auto_is_the_default() {
     let place = Place::new();
@@ -541,7 +541,7 @@ fn stress_takes_a_budget() {
     place.fails(&["stress", "--only", "coverage", "--budget", "1"], 2, &["--budget", "--only"]);
 }
 
-/// The help of commands names all methods, and that of `convert` those of the small board.
+/// The help of commands names all methods, and the help of `convert` the methods of the small board.
 #[test]
 fn help_names_the_methods_of_boards() {
     let help = Place::new().succeeds(&["convert", "--help"]).split_whitespace().collect::<Vec<_>>().join(" ");
@@ -789,7 +789,7 @@ fn convert_inspect_and_render_work_together() {
     assert_eq!(place.succeeds(&["scenes", "--json"]).lines().count(), count);
 }
 
-/// A text that is no scene is refused with the place and what is wrong, and leaves no file.
+/// A text that is not a scene is refused with the place and the fault, and leaves no file.
 #[test]
 fn texts_that_are_no_scenes_are_refused() {
     let place = Place::new();

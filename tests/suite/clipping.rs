@@ -24,7 +24,7 @@ fn changed(name: &str, change: impl Fn(&mut Header)) -> StreamBytes {
     StreamBytes::from(bytes.as_slice())
 }
 
-/// Pixels where a ray through the centre meets a front face behind the near plane, and those where that is uncertain.
+/// Pixels where a ray through the centre meets a front face behind the near plane, and pixels where that is uncertain.
 fn rays(stream: &Stream<'_>, size: Size) -> (Vec<bool>, Vec<bool>) {
     let camera = &stream.header.camera;
     let rotation = camera.rotation.map(|row| row.map(|c| f64::from(c) / 2f64.powi(30)));

@@ -1,4 +1,4 @@
-//! `microphong compare`: what it prints, what it refuses, and the page that it writes.
+//! `microphong compare`: its output, its refusals, and its page.
 
 use microphong::format::ErrorBudget;
 use microphong_sim::{
@@ -150,7 +150,7 @@ fn the_report_is_one_file_that_needs_no_other() {
     assert_eq!(page.matches("<table").count(), 2);
 }
 
-/// What `auto` chooses stands on the page as it is printed; other methods choose nothing.
+/// The page shows the choices of `auto` as they are printed. Other methods choose nothing.
 #[test]
 fn the_report_shows_choices() {
     let directory = tempfile::tempdir().expect("scratch directory");

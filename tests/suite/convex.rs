@@ -1,4 +1,4 @@
-//! Without depth where it cannot matter, a closed convex mesh looks the same, pixel by pixel; and no other mesh is drawn so.
+//! A closed convex mesh is drawn without depth test where that cannot matter, and looks the same, pixel by pixel. No other mesh is drawn so.
 
 use embedded_graphics::{pixelcolor::Rgb888, prelude::Size};
 use microphong::{Counts, Stats, renderer::check, stream::record::CLOSED_CONVEX};
@@ -18,7 +18,7 @@ use microphong_tests::{runner, unmarked};
 use proptest::prelude::*;
 use std::f64::consts::TAU;
 
-/// How many pixels differ with and without the mark, in bands of so many rows.
+/// Number of pixels that differ with and without the mark, in bands of `rows` rows.
 fn difference(stream: &StreamBytes, size: Size, style: impl Into<Style>, rows: u32, frames: impl Iterator<Item = u32>) -> usize {
     let (style, plain) = (style.into(), unmarked(stream));
     let differing = frames.map(|number| {
@@ -69,7 +69,7 @@ fn every_method_looks_the_same() {
     }
 }
 
-/// What is convex but for a coordinate of one vertex, `by` units of the last place.
+/// A mesh that would be convex but for a coordinate of one vertex, which is off by `by` units of the last place.
 fn dented(mut mesh: Mesh, vertex: usize, by: f64) -> Mesh {
     let vertex = vertex % mesh.positions.len();
     let p = mesh.positions[vertex];
@@ -229,7 +229,7 @@ fn bodies() -> impl Strategy<Value = Mesh> {
         .prop_map(|(mesh, (x, y, z), turn)| placed(mesh, [x, y, z], turn))
 }
 
-/// From so near that it is clipped to far away, straight at it or past it.
+/// Views from so near that the mesh is clipped to far away, straight at it or past it.
 fn views() -> impl Strategy<Value = View> {
     let aside = (-0.5..0.5f64, -0.5..0.5f64, any::<bool>());
     let planes = (prop_oneof![Just(None), (0.02..2.0f64).prop_map(Some)], -0.5..2.0f64);

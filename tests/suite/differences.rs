@@ -320,7 +320,7 @@ const LONG_SMALL: f64 = 16.0;
 const LONG_LINEAR: f64 = 1.0 / 16.0;
 /// Set-up error of a quadratic of 26 bits on a triangle as long as high, in units of its nodes.
 const LONG_QUADRATIC: f64 = 2.0;
-/// How many times a triangle that is not word-sized is as long as high if set-up of a quadratic of 26 bits adds nothing to it.
+/// Ratio of length to height from which on set-up of a quadratic of 26 bits adds nothing, on a triangle that is not word-sized.
 const LONG_THINNESS: i64 = 16;
 
 #[test]
@@ -397,13 +397,13 @@ fn fields_of_26_bits_stay_within_the_bound() {
     assert!(triangles >= 100_000);
 }
 
-/// What set-up adds to a white highlight, in 1/255: up to an exponent of [`SOFT`], and above, where a little of curvature joins the share of
+/// Largest error of a white highlight by set-up, in 1/255: up to an exponent of [`SOFT`], and above, where a little of curvature joins the share of
 /// slopes. See [`microphong::setup::steepness`].
 const STEEP: [f64; 2] = [CURVATURE, SLOPE + 0.5 * CURVATURE];
 const SOFT: u32 = 128;
-/// Quadratics of soft highlights are not fitted by exact fractions, and are judged on triangles up to so many times as long as high.
+/// Largest ratio of length to height at which quadratics of soft highlights are judged. They are not fitted by exact fractions.
 const THIN: f64 = 16.0;
-/// Planes are not fitted by exact fractions, and are judged on triangles up to so many times as long as high.
+/// Largest ratio of length to height at which planes are judged. They are not fitted by exact fractions.
 const THINNEST: f64 = 100.0;
 
 #[test]

@@ -46,7 +46,8 @@ fn check<C: Pixel>(scene: &str, style: Style) {
     assert!(greys.iter().filter(|&&count| count > 50).count() > 1, "{greys:?}");
 }
 
-/// By loops, and by the general way under several lights: there is no seam where one triangle is drawn so and its neighbour otherwise.
+/// Few greys are dithered by methods' own loops, and under several lights by the general loop. There is no seam where one triangle is drawn by the
+/// one and its neighbour by the other.
 #[test]
 fn few_greys_are_dithered_by_their_tables() {
     for scene in ["sphere-168", "teapot", "bunny", "sphere-690"] {
@@ -61,16 +62,16 @@ fn few_greys_are_dithered_by_their_tables() {
     }
 }
 
-/// Which of two thresholds a pixel has, or `None` if it may have either.
+/// Chooses one of two thresholds for a pixel; `None` if it may have either.
 type Turn = fn(usize, usize) -> Option<usize>;
 
 const SQUARES: Turn = |x, y| Some((x + y) % 2);
 const ROWS: Turn = |_, y| Some(y % 2);
 const EITHER: Turn = |_, _| None;
 
-/// Where the threshold is lower than that which rounds, no channel is more than rounded, and elsewhere none is less; none is off by more than a step.
-/// Returns how many channels are not the rounded ones, and how far the means of two by two pixels lie from those of eight bits a channel on
-/// average, in steps, dithered and rounded, where all four are rounded to the same: within a step that could be seen.
+/// Checks that no channel is above its rounded value where the threshold is lower than for rounding, that none is below elsewhere, and that none is
+/// off by more than a step. Returns the number of channels that differ from rounded ones, and the mean distance, in steps, of two by two pixels from
+/// pictures of eight bits a channel, dithered and rounded. Only squares count whose four pixels are rounded alike: within a step that could be seen.
 fn turns<C: Pixel>(scene: &str, style: Style, turn: Turn) -> (usize, [f64; 2]) {
     let draw = |dither| channels::<C>(scene, Style { dither, ..style });
     let (dithered, rounded) = (draw(true), draw(false));
@@ -113,8 +114,8 @@ fn turns<C: Pixel>(scene: &str, style: Style, turn: Turn) -> (usize, [f64; 2]) {
     (others, [off(&dithered), off(&rounded)])
 }
 
-/// Colours of five and six bits are dithered where light is one level: like the squares of a checkerboard where that is walked, by rows where it is
-/// computed at the pixel; and the mean of neighbours comes closer to what it should be.
+/// Colours of five and six bits are dithered where light is one level: like the squares of a checkerboard where the level is walked, by rows where it
+/// is computed at the pixel. The mean of neighbours comes closer to the exact level.
 #[test]
 fn colours_are_dithered_by_turns() {
     for scene in ["sphere-168", "teapot", "torus", "sphere-690"] {

@@ -24,9 +24,9 @@ const TURN: usize = 25;
 const EARLY: usize = 100;
 const LATE: usize = 10_000;
 
-/// What start-up code fills the first processor's stack with; that of the second one is all zeros.
+/// The word with which start-up code fills the first processor's stack. The second one's stack is all zeros.
 const PAINT: u32 = 0xCCCC_CCCC;
-/// Where RAM begins.
+/// First address of RAM.
 const RAM: u32 = 0x2000_0000;
 
 /// A small torus that circles round a point above the middle of the picture. A unit is 15 pixels.

@@ -49,7 +49,7 @@ macro_rules! shows {
     }};
 }
 
-/// How many words the renderer that `make` makes takes.
+/// Number of words that the renderer made by `make` takes.
 fn words<'a, C: Pixel>(layout: &Layout, _make: fn(Stream<'a>, &'a mut [u64]) -> Result<Renderer<'a, C>, RenderError>) -> usize {
     layout.words::<C>()
 }

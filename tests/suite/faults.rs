@@ -1,4 +1,4 @@
-//! What the Pico's firmware does when the board fails: it says so, on the panel and in the log, and comes to rest. It never falls silent.
+//! The Pico's firmware when the board fails: it reports the fault on the panel and in the log, and stops. It never falls silent.
 
 use microphong::stream::{MAX_LENGTH, record::Header};
 use microphong_sim::{
@@ -16,12 +16,12 @@ type Result<T = ()> = std::result::Result<T, Box<dyn Error>>;
 /// Frames of the scene: the firmware checks them first, and then draws them at full speed.
 const FRAMES: u16 = 2;
 
-/// A Pico that has shown so many pictures.
+/// A Pico that has shown this number of pictures.
 fn after(pictures: usize) -> Result<Pico> {
     after_of(scene::load("dodecahedron")?.stream.as_bytes(), pictures)
 }
 
-/// A Pico that has shown so many pictures of a stream.
+/// A Pico that has shown this number of pictures of a stream.
 fn after_of(stream: &[u8], pictures: usize) -> Result<Pico> {
     let stream = verify::prepare(stream, Shader::SIX_POINT, FRAMES)?;
     let mut pico = Pico::new(&Elf::read(&verify::build(Board::Pico)?)?.with_stream(&stream)?)?;
@@ -68,7 +68,7 @@ fn dma_that_never_ends_is_reported() -> Result {
     Ok(())
 }
 
-/// No command gets to the panel any more: the watchdog starts the board anew, which mends the port here.
+/// No command reaches the panel any more. The watchdog restarts the board, which mends the port here.
 #[test]
 fn a_port_that_hangs_is_reported_after_a_reset() -> Result {
     let mut pico = after(1)?;

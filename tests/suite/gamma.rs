@@ -1,4 +1,4 @@
-//! Colours for the curve of a display, against those without it and the curve in floating point.
+//! Colours with the curve of a display, compared with colours without it and the curve in floating point.
 
 use embedded_graphics::{
     geometry::Size,
@@ -11,7 +11,7 @@ use microphong_sim::{
     shader::Shader,
 };
 
-/// What a display with the curve of sRGB is sent for a level, both in [0, 255].
+/// The value that a display with the curve of sRGB is sent for a level, both in [0, 255].
 fn srgb(level: f64) -> f64 {
     let level = level.clamp(0.0, 255.0) / 255.0;
     255.0 * if level <= 0.003_130_8 { 12.92 * level } else { 1.055 * level.powf(1.0 / 2.4) - 0.055 }
@@ -28,7 +28,7 @@ fn both<C: microphong::pixel::Pixel>(scene: &Scene, shader: Shader) -> [Vec<C>; 
     [draw(false), draw(true)]
 }
 
-/// In one channel every pixel is the curve of what it was, to rounding: loops by tables of colours, and the general way.
+/// In one channel every pixel is the curve of the pixel without it, to rounding, by own loops and by the general loop.
 #[test]
 fn one_channel_follows_the_curve() {
     let scene = scene::load("sphere-168").expect("built-in scene");
@@ -46,7 +46,7 @@ fn one_channel_follows_the_curve() {
     }
 }
 
-/// So it is in three channels, where light is not rounded before; the background stays.
+/// In three channels every pixel is the curve of the pixel without it, and light is not rounded before. The background stays.
 #[test]
 fn three_channels_follow_the_curve() {
     let scene = scene::load("bunny").expect("built-in scene");

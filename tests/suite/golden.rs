@@ -1,7 +1,7 @@
-//! Every built-in scene with the basic shading methods, and one scene with all of them, against pictures that somebody has looked at.
+//! Every built-in scene with the basic shading methods, and one scene with all of them, compared with pictures that somebody has looked at.
 //!
-//! `MICROPHONG_BLESS=1 cargo test -p microphong-tests golden` makes what is drawn now the standard.
-//! Where a picture differs, target/golden holds it and a picture of the differences.
+//! `MICROPHONG_BLESS=1 cargo test -p microphong-tests golden` records the current pictures. If a picture differs, target/golden holds it and a
+//! picture of the differences.
 
 use embedded_graphics::{geometry::Size, pixelcolor::Rgb565};
 use microphong::pixel::{Pixel, Rgb565Be};
@@ -41,20 +41,20 @@ fn difference(a: &[u8], b: &[u8]) -> Vec<u8> {
     a.iter().zip(b).map(|(a, b)| if a == b { a / 8 } else { a.abs_diff(*b).saturating_mul(8).saturating_add(96) }).collect()
 }
 
-/// What is wrong with the picture of `name` by `shader`, if anything.
+/// The difference of the picture of `name` by `shader` from the recorded one, if there is any.
 fn check(name: &str, shader: Shader, bless: bool) -> Option<String> {
     let scene = scene::load(name).expect("built-in scene");
     let settings = Settings { size: scene.size.into(), style: shader.into(), band_rows: 16, format: Format::Rgb565 };
     check_picture(&format!("{name}-{}", shader.name()), &scene, &settings, bless)
 }
 
-/// What is wrong with the picture of a scene that has this name, if anything.
+/// The difference of the picture of a scene from the recorded one of this name, if there is any.
 fn check_picture(name: &str, scene: &Scene, settings: &Settings, bless: bool) -> Option<String> {
     let drawn = render::picture(scene.stream.parse().expect("built-in scene"), settings, 0).expect("built-in scene").rgb;
     check_pixels(&root().join("golden").join(name).with_extension("png"), settings.size, &drawn, bless)
 }
 
-/// How the RGB bytes `drawn` differ from the recorded picture `golden`, if they do.
+/// The difference of the RGB bytes `drawn` from the recorded picture `golden`, if there is any.
 pub(crate) fn check_pixels(golden: &Path, Size { width, height }: Size, drawn: &[u8], bless: bool) -> Option<String> {
     let name = golden.file_stem().expect("a name").to_string_lossy();
     let file = format!("{name}.png");
@@ -97,7 +97,7 @@ fn firmware_has_the_teapot() {
     }
 }
 
-/// Whether what is drawn now is to be the standard.
+/// Whether current pictures are recorded instead of compared.
 pub(crate) fn bless() -> bool {
     std::env::var_os("MICROPHONG_BLESS").is_some_and(|v| v == "1")
 }
@@ -129,7 +129,7 @@ fn scripted() {
     assert!(wrong.is_empty(), "{}", wrong.join("\n"));
 }
 
-/// Every pixel format as it is drawn unless somebody says otherwise, on a display of 128x64.
+/// Every pixel format with its default dither, on a display of 128x64.
 #[test]
 fn formats() {
     let bless = bless();
@@ -160,7 +160,7 @@ fn curve_of_the_display() {
     assert!(wrong.is_empty(), "{}", wrong.join("\n"));
 }
 
-/// The byte order of RGB565 is that of memory, and no other picture.
+/// The order of bytes of RGB565 in memory changes no picture.
 #[test]
 fn byte_orders() {
     let scene = scene::load("torus").expect("built-in scene");

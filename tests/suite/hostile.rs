@@ -1,8 +1,8 @@
-//! Whatever lies in a board's flash in place of a stream: the firmware draws the host's picture, bit for bit, or says why there is none,
-//! on its display and in its log. It never hangs.
+//! Any bytes in a board's flash instead of a stream: the firmware draws the host's picture, bit for bit, or reports why there is none, on its display
+//! and in its log. It never hangs.
 //!
-//! The streams are those of the fuzzers' corpus, random ones of `microphong stress` with bytes damaged, and some whose values are the
-//! largest and smallest that the format has, or one beyond. Each takes the stream's place in the one program of a board.
+//! The streams are the fuzzers' corpus, random ones of `microphong stress` with damaged bytes, and some whose values are the largest and smallest of
+//! the format, or one beyond. Each replaces the stream in the one program of a board.
 
 use microphong::{
     format::{MAX_LIGHTS, Share},
@@ -128,7 +128,7 @@ fn label(colour: [u8; 3]) -> Label {
     Label::new([Share::ZERO; 2], Share::from_bits(300), colour, 1, b"0123456789\xB0C \xA0\xFF abcdefghijklmno")
 }
 
-/// What to do with something, and what comes of it.
+/// A name and a change.
 type Change<T> = (&'static str, fn(&mut T));
 
 /// Values at the ends of their ranges, and beyond them.
@@ -184,7 +184,7 @@ const LIMITS: [Change<Parts>; 25] = [
     }),
 ];
 
-/// What a header may claim.
+/// False values in a header.
 const LIES: [Change<Header>; 6] = [
     ("a length of 4 GiB", |header| header.length = u32::MAX),
     ("a length of nothing", |header| header.length = 0),
@@ -214,7 +214,7 @@ fn limits(board: Board) -> Result<Vec<Named>> {
     Ok(streams)
 }
 
-/// What a board shows and says that has `bytes` for a stream.
+/// Pictures and log of a board with `bytes` for a stream.
 fn run(board: Board, elf: &Elf, bytes: &[u8]) -> Result<Recording> {
     Ok(board::run(board, &elf.with_stream(bytes)?, Until::FirstFrame)?)
 }
@@ -232,7 +232,7 @@ fn judge(board: Board, elf: &Elf, bytes: &[u8], Recording { pictures, log }: &Re
     }
 }
 
-/// All streams on one board.
+/// Runs all streams on one board.
 fn board(board: Board) -> Result {
     let elf = Elf::read(&verify::build(board)?)?;
     let (mut drawn, mut refused, mut wrong) = (0, 0, Vec::new());

@@ -48,11 +48,11 @@ const LEFT_OUT: f64 = 0.01;
 /// Largest share of the pixels of all frames together that may be left out.
 const LEFT_OUT_IN_ALL: f64 = 0.001;
 
-/// How close to an edge, in pixels along its row, a pixel's centre is left out.
+/// Distance from an edge, in pixels along its row, within which a pixel's centre is left out.
 const UNSURE: f64 = 1.0 / 1024.0;
 /// Inverse depths that differ by less are a tie; the depth buffer tells steps of 1/65536 apart.
 const TIE: f64 = 4.0 / 65_536.0;
-/// How far corners may lie from where they belong, in pixels: half a sixteenth is rounded, and eye space has steps of 1/16384.
+/// Largest error of corners, in pixels. Half a sixteenth is rounded, and eye space has steps of 1/16384.
 const CORNER: f64 = 1.0 / 16.0;
 
 /// Frames of the orbit.
@@ -63,7 +63,7 @@ struct Frame<'s> {
     stream: Stream<'s>,
     size: Size,
     number: u32,
-    /// What is in between corners is interpolated in space and not on the screen.
+    /// Whether values between corners are interpolated in space and not on the screen.
     in_perspective: bool,
     /// Rows of the rotation from object to eye space.
     rotation: [V3; 3],
@@ -71,7 +71,7 @@ struct Frame<'s> {
     pixels: Vec<Seen>,
 }
 
-/// What is seen in a pixel.
+/// The surface that is seen in a pixel.
 #[derive(Clone, Copy, Debug, Default)]
 struct Seen {
     /// Inverse depths of the two nearest surfaces; 0 where there is none.
@@ -197,14 +197,14 @@ fn turned(stream: Stream<'_>, number: u32) -> [V3; 3] {
     })
 }
 
-/// What came of comparing frames.
+/// Results of comparing frames.
 #[derive(Clone, Copy, Debug, Default)]
 struct Tally {
     /// Pixels that either has drawn.
     drawn: usize,
     /// Drawn pixels that are left out because they lie close to an edge.
     unsure: usize,
-    /// Because of a division by zero.
+    /// Drawn pixels that are left out because of a division by zero.
     undefined: usize,
     /// Whose colour is left out because of a tie.
     ties: usize,
@@ -216,7 +216,7 @@ struct Tally {
     byte: f64,
 }
 
-/// Levels may be one for all channels, then it is that of the brightest.
+/// Difference of levels. If all channels have one level, it is the brightest channel's.
 fn difference(drawn: V3, exact: V3) -> f64 {
     let each = (0..3).map(|k| (drawn[k] - exact[k]).abs()).fold(0.0, f64::max);
     let one = drawn[0] == drawn[1] && drawn[1] == drawn[2];

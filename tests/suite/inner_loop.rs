@@ -33,7 +33,7 @@ fn three_channels_are_clamped_by_one_instruction_each() {
     check(scene::LIGHTS, &[(Shader::GOURAUD, 20), (Shader::SIX_POINT, 31), (Shader::SQRT6, 63), (Shader::PHONG, 70)]);
 }
 
-/// Without a highlight one light is one number also in three channels: on most triangles loops are those of one channel.
+/// One light without a highlight is one quantity also in three channels: most triangles are drawn by loops of one channel.
 #[test]
 fn light_without_a_highlight_is_one_channel() {
     check(scene::PLASTIC, &[(Shader::GOURAUD, 17), (Shader::SIX_POINT, 24), (Shader::SQRT6, 32), (Shader::PHONG, 44)]);

@@ -1,8 +1,8 @@
 //! Modules of the core use those above them in the table of `shared/src/lib.rs` and no others, and no files of one folder import in a
 //! circle. The crate of the literature names nothing that the core's documentation hides.
 //!
-//! Read are `use` declarations and paths that start at `crate`, `self` or `super`, or at a child of the module; not what is compiled for
-//! tests alone. A `pub use` of a child, in the file that declares it, names the child's items and uses none of them.
+//! The test reads `use` declarations, and paths that start at `crate`, `self` or `super`, or at a child of the module, but no code that is compiled
+//! for tests only. A `pub use` of a child, in the file that declares it, names the child's items and uses none of them.
 
 use std::{
     collections::{BTreeMap, BTreeSet},
@@ -13,7 +13,7 @@ use std::{
 /// A module's names from the root on; the root itself has none.
 type Module = Vec<String>;
 
-/// What is wrong, one sentence each.
+/// Faults, one sentence each.
 type Faults = Vec<String>;
 
 /// One file: its place below `src`, such as `math/mod.rs`, and its text.
@@ -101,7 +101,7 @@ fn tokens(text: &str) -> Vec<String> {
     tokens
 }
 
-/// How many of `tokens` make up the item at the front, its attributes included: up to its block's end, or its semicolon.
+/// Number of `tokens` in the item at the front, attributes included: up to its block's end, or its semicolon.
 fn item(tokens: &[String]) -> usize {
     let (mut depth, mut inner) = (0, 0);
     for (i, token) in tokens.iter().enumerate() {
@@ -119,7 +119,7 @@ fn item(tokens: &[String]) -> usize {
     tokens.len()
 }
 
-/// Without what is compiled for tests alone.
+/// Removes code that is compiled for tests only.
 fn without_tests(tokens: &[String]) -> Vec<String> {
     let (mut kept, mut i) = (Vec::new(), 0);
     while i < tokens.len() {
@@ -134,7 +134,7 @@ fn without_tests(tokens: &[String]) -> Vec<String> {
     kept
 }
 
-/// Adds the paths of the tree at the front, such as `a::{b, c::d}`, behind `path`; returns how many tokens it has.
+/// Adds the paths of the tree at the front, such as `a::{b, c::d}`, behind `path`. Returns the number of its tokens.
 fn tree(tokens: &[String], path: &[String], paths: &mut Vec<Module>) -> usize {
     let mut path = path.to_vec();
     let mut i = 0;
@@ -201,9 +201,9 @@ struct Core {
     table: Vec<String>,
     /// The file of each module.
     files: BTreeMap<Module, String>,
-    /// What each module names.
+    /// The names that each module uses.
     paths: BTreeMap<Module, Vec<(Module, bool)>>,
-    /// What public names of modules stand for.
+    /// The items that public names of modules stand for.
     public: BTreeMap<Module, Module>,
 }
 
@@ -267,7 +267,7 @@ impl Core {
         (0..=path.len()).rev().map(|length| path[..length].to_vec()).find(|module| self.files.contains_key(module)).unwrap_or_default()
     }
 
-    /// Where a module stands in the table.
+    /// The place of a module in the table.
     fn place(&self, name: &str) -> Option<usize> {
         self.table.iter().position(|module| module == name)
     }

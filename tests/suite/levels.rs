@@ -64,7 +64,7 @@ fn frame(stream: Stream<'_>, side: u32, number: u32, on: bool) -> Result<(Vec<Rg
     Ok((band, stats))
 }
 
-/// Pixels that one picture covers and the other does not, and those of them in whose neighbourhood of 3x3 the other does not either.
+/// Number of pixels that only one picture covers, and of pixels among them in whose neighbourhood of 3x3 the other picture covers none.
 fn differences(one: &[Rgb888], other: &[Rgb888], side: u32) -> [usize; 2] {
     let side = side as usize;
     let covered = |picture: &[Rgb888], at: usize| picture[at] != Rgb888::BLACK;
@@ -104,7 +104,7 @@ fn coarser_levels_keep_the_outline() -> Result {
     Ok(())
 }
 
-/// The error of a level is that of its triangles; the level that is drawn is the coarsest of which it is less than half a pixel.
+/// A level states its true error. The level that is drawn is the coarsest one whose error is less than half a pixel.
 #[test]
 fn errors_are_true_and_the_coarsest_is_drawn() -> Result {
     let [stream, _] = streams("teapot", &[160, 96, 64, 32, 16])?;
@@ -246,7 +246,7 @@ fn levels_are_the_same_however_the_work_is_divided() -> Result {
     Ok(())
 }
 
-/// Meshes are chosen one by one, and those without levels are drawn as they are.
+/// Levels are chosen for each mesh. Meshes without levels are drawn in full.
 #[test]
 fn each_mesh_has_a_level_of_its_own() {
     let mesh = |error: u16| Mesh { first_vertex: 0, first_triangle: 0, triangles: 1, vertices: 3, material: 0, error, flags: 0 };

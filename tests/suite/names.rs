@@ -15,7 +15,7 @@ fn folder(files: &[(&str, &str)]) -> TempDir {
     folder
 }
 
-/// What `convert` says of a file, and the stream that it makes.
+/// The output of `convert` for a file, and the stream that it makes.
 fn convert(folder: &TempDir, arguments: &[&str]) -> (String, StreamBytes) {
     let output = Command::new(program()).current_dir(folder).arg("convert").args(arguments).args(["-o", "out.tri"]).output().expect("it");
     assert!(output.status.success(), "{arguments:?}: {}", String::from_utf8_lossy(&output.stderr));

@@ -10,7 +10,7 @@ use microphong_sim::{
     vector::{V3, apply, product, rotation, unit},
 };
 
-/// What the prototypes measured: largest error and root mean square, in 1/255.
+/// Figures of the prototypes: largest error and root mean square, in 1/255.
 type Measured = (f64, f64);
 
 /// The scenes, with their exponents.
@@ -68,7 +68,7 @@ const BEHIND: &str = "nodes whose normal points away from H lie on the unit circ
 /// Under near lights renq-newton is Phong shading now.
 const NEAR: &str = "under near lights renq-newton is Phong shading; the prototype took quadratics through six points";
 
-/// What is not as the prototypes had it: scene, exponent, method, what it is, and why. Those that no longer deviate fail.
+/// Deviations from the prototypes: scene, exponent, method, our figure, and the reason. An entry that no longer deviates fails.
 const EXCEPTIONS: [(&str, f64, &str, Measured, &str); 9] = [
     ("sphere-168", 5.0, "flat", (66.28, 20.61), PLANE),
     ("sphere-168", 50.0, "flat", (102.05, 16.57), PLANE),

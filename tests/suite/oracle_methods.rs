@@ -45,7 +45,7 @@ fn distance(a: Levels, b: Levels) -> f64 {
     a.iter().zip(b).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max)
 }
 
-/// Where normals are parallel, every method is exact: `ka + kd cos a + ks cos^e b`.
+/// If normals are parallel, every method is exact: `ka + kd cos a + ks cos^e b`.
 #[test]
 fn parallel_normals_have_a_closed_form() {
     for degrees in [0.0f64, 30.0, 60.0, 80.0] {
@@ -73,7 +73,7 @@ fn parallel_normals_have_a_closed_form() {
     }
 }
 
-/// What a facet becomes when its picture is moved: same corners, other places.
+/// A facet whose picture is moved: its corners are the same in space, and at other places on the screen.
 fn moved(facet: &Facet, order: [usize; 3], place: impl Fn([f64; 2]) -> [f64; 2]) -> Facet {
     Facet {
         screen: order.map(|k| place(facet.screen[k])),
@@ -280,7 +280,7 @@ fn pseudo_phong_counts_pixels() {
     assert!(errors[1..7].windows(2).all(|e| e[1] < e[0]) && errors[6] == errors[7] && errors[6] < 0.1, "{errors:?}");
 }
 
-/// What counts as dark is dark, and most of a sphere does.
+/// No highlight is missed: light that counts as dark is dark, and most of a sphere counts as dark.
 #[test]
 fn no_highlight_is_missed() {
     let mut frame = frame("sphere-690", 0);

@@ -1,5 +1,5 @@
-//! What is drawn over a picture, band by band, is what is drawn on a display that shows the picture, wherever the picture lies on it; and what is
-//! drawn under it is seen as a background is.
+//! Drawing over a picture, band by band, gives the result of drawing on a display that shows the picture, wherever the picture lies on it. Drawing
+//! under a picture gives the result of a background.
 
 use embedded_graphics::{
     image::{Image, ImageRaw},
@@ -107,7 +107,7 @@ impl DrawTarget for Recorder {
     }
 }
 
-/// All pixels of the picture and of what lies over it, and no others.
+/// A picture draws all of its own pixels and all that lies over it, and no others.
 #[test]
 fn pictures_lie_anywhere_on_the_display() {
     let scene = scene::load("torus").expect("a built-in scene");
@@ -164,7 +164,7 @@ fn stripes<D: DrawTarget<Error = Infallible>>(target: &mut D, [dark, bright]: [D
     let Ok(()) = target.draw_iter(points.map(|point| embedded_graphics::Pixel(point, if is_bright(point) { bright } else { dark })));
 }
 
-/// Each pixel over stripes is what it is over a background of the stripe's colour, edges that are antialiased included.
+/// Each pixel over stripes equals the pixel over a background of the stripe's colour, at antialiased edges as well.
 fn under<C: Pixel + PixelColor + Debug + Send + Sync>(antialias: bool, dither: bool) {
     let scene = scene::load("torus").expect("a built-in scene");
     let stream = scene.stream.parse().expect("a stream");
@@ -228,7 +228,7 @@ fn what_is_under_a_picture_is_its_background() {
     }
 }
 
-/// What is not drawn under a picture is the background of the scene, in every band.
+/// If nothing is drawn under a picture, the background of the scene is seen, in every band.
 #[test]
 fn nothing_under_a_picture_is_its_background() {
     let scene = scene::load("torus").expect("a built-in scene");

@@ -1,4 +1,4 @@
-//! What becomes of the papers' claims, against what the design notes say.
+//! Verdicts on the papers' claims, compared with the design notes.
 
 use microphong_sim::papers::{
     Claim, Topic, Value,
@@ -7,16 +7,16 @@ use microphong_sim::papers::{
 };
 use std::collections::HashSet;
 
-/// What our figure must be.
+/// The figure that we expect.
 #[derive(Clone, Copy, Debug)]
 enum Ours {
     /// The figure of the design notes, up to a tolerance.
     Near(f64, f64),
-    /// From a lowest to a largest value, where the notes give a range or only an order of magnitude.
+    /// A figure from a lowest to a largest value, where the notes give a range or only an order of magnitude.
     Within(f64, f64),
     /// The difference of two things that are the same.
     Same,
-    /// These words.
+    /// A text.
     Text(&'static str),
     /// A random example's: the verdict already says that the corrected formula gives what direct evaluation gives.
     Example,

@@ -20,7 +20,7 @@ use zerocopy::FromBytes;
 
 const PROCESSORS: [Processor; 3] = [Processor::X86_64, Processor::CortexM3, Processor::CortexM4F];
 
-/// Means of red, green and blue of what is not background, 1 is full.
+/// Means of red, green and blue of all pixels but the background, where 1 is full intensity.
 fn brightness(picture: &Picture) -> [f64; 3] {
     let mean = |channel: fn(&Rgb565) -> u8, max: u8| {
         picture.object().map(|pixel| f64::from(channel(&pixel))).sum::<f64>() / picture.covered() as f64 / f64::from(max)

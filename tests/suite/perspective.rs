@@ -25,7 +25,7 @@ fn correct(shader: Shader) -> Style {
 const LIMIT: f64 = 0.5;
 /// Frames of the orbit.
 const FRAMES: u32 = 6;
-/// One in so many pixels is compared, other ones in each frame.
+/// One in this number of pixels is compared, others in each frame.
 const SAMPLE: usize = 7;
 
 /// A scene seen by an eye that is much closer than any built-in one.
@@ -75,7 +75,7 @@ fn size(scene: &Scene) -> Size {
     Size::new(scene.size.0, scene.size.1)
 }
 
-/// Largest difference of `levels` to `exact`; one level for all channels is that of the brightest.
+/// Largest difference of `levels` from `exact`. If all channels have one level, it is the brightest channel's.
 fn difference(levels: [f64; 3], exact: Levels) -> f64 {
     let all = (0..3).map(|k| (levels[k] - exact[k]).abs()).fold(0.0, f64::max);
     let one = levels[0] == levels[1] && levels[1] == levels[2];
@@ -141,8 +141,7 @@ fn integers_follow_the_perspective() {
     assert!(worst.iter().zip(Shader::ALL).all(|(&(error, _), shader)| error <= limit(shader)), "a method is more than {LIMIT} LSB off");
 }
 
-/// The triangles of the close scenes are what they are meant to be, and correction is worth it there: of each method against
-/// what it would be at the point that is seen.
+/// The triangles of the close scenes reach far enough for correction to matter: each method is compared with its value at the point that is seen.
 #[test]
 fn correction_comes_closer_to_the_truth() {
     for scene in close_scenes() {

@@ -235,8 +235,7 @@ fn scripted_scenes_are_the_same_in_bands() {
     }
 }
 
-/// Where what may have changed of a frame is drawn over the frame before, the picture is the whole frame, and pixels are saved; also between areas
-/// that lie above one another.
+/// Drawing the changed areas of a frame over the frame before gives the whole frame, and saves pixels, also between areas that lie above one another.
 #[test]
 fn changed_areas_are_all_that_changes() {
     let (mut saved, mut between) = (0, 0);
@@ -293,7 +292,7 @@ fn changed_areas_are_all_that_changes() {
     assert!(saved > 1_250_000 && between > 100_000, "{saved} pixels, and {between} between areas");
 }
 
-/// A frame has what is invalidated and nothing else where nothing moves; the next one has nothing.
+/// If nothing moves, a frame draws only what is invalidated, and the next one nothing.
 #[test]
 fn invalidated_areas_are_drawn_once_more() {
     let bytes = stream(&look(vec![Lamp::Distant([-0.4, 0.6, -0.7], [1.0; 3])], false, Projection::Perspective), &meshes());
@@ -326,7 +325,7 @@ fn invalidated_areas_are_drawn_once_more() {
     assert_eq!(renderer.draw().area(), area(3, 4, 55, 75));
 }
 
-/// What a program changes is drawn as if the stream had said so.
+/// Changes by a program are drawn as if the stream had them.
 #[test]
 fn changes_are_drawn_as_if_the_stream_had_them() {
     let first = look(vec![Lamp::Fixed([-0.4, 0.6, 0.7], [1.0; 3])], false, Projection::Perspective);
@@ -422,7 +421,7 @@ fn surfaces_a_thousandth_of_the_range_apart_do_not_fight() {
     }
 }
 
-/// Nothing is set that cannot be drawn, and words say why.
+/// A change that cannot be drawn is refused, and the message says why.
 #[test]
 fn what_cannot_be_drawn_is_refused() {
     let first = look(vec![Lamp::Fixed([-0.4, 0.6, 0.7], [1.0; 3])], false, Projection::Perspective);

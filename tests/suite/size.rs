@@ -95,7 +95,7 @@ fn the_guide_says_what_programs_take_and_what_fits() {
     }
 }
 
-/// Figures of a mesh are those of the same program, with its own bytes and memory in the place of the teapot's.
+/// Figures for a mesh are figures of the teapot's program, with the mesh's bytes and memory instead of the teapot's.
 #[test]
 fn the_mesh_counts() {
     let arguments = ["size", "sphere-40", "--chip", "stm32f103,samd21", "--shader", "gouraud", "--format", "binary", "--json"];

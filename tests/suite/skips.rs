@@ -1,4 +1,4 @@
-//! What is left out of frames because nobody can see it: the picture is the same with it, and the counts tell how much it was.
+//! Work that frames leave out because nobody can see the result: the picture is the same with it, and counts tell its amount.
 
 use embedded_graphics::{pixelcolor::Rgb565, prelude::Size};
 use microphong::{Counts, Layout, Renderer, Skips, Stats, Stream, format::ErrorBudget, renderer::check};
@@ -17,7 +17,7 @@ fn frame(stream: &StreamBytes, shader: Shader, skips: Skips, rows: u32) -> (Vec<
     render::frame(stream.parse().unwrap(), SIZE, Style { skips, dither: true, ..Style::from(shader) }, rows, 5).unwrap()
 }
 
-/// With each thing by itself, and with all of them, in every scene, by every method.
+/// The picture is the same with each kind of work and with all of them, in every scene, by every method.
 #[test]
 fn pictures_are_the_same() {
     for scene in scene::NAMES.into_iter().chain(scene::VARIANTS).map(|name| scene::load(name).unwrap()) {

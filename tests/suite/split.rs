@@ -36,7 +36,7 @@ const SPLITTING: [&str; 4] = ["gouraud4", "pseudo-phong", "six-point-centre", "s
 const WIDTH: usize = 96;
 const HEIGHT: usize = 80;
 
-/// What all parts of a triangle share.
+/// Data that all parts of a triangle share.
 struct Whole<'a> {
     screen: &'a ScreenTriangle,
     gradients: &'a Gradients,

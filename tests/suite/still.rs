@@ -13,7 +13,7 @@ type Result<T = ()> = std::result::Result<T, Box<dyn Error>>;
 /// A frame that is left out takes fewer cycles, even if the firmware looks before how much stack was used; one that is drawn takes more.
 const DRAWN: u64 = 200_000;
 
-/// A Pico that has checked so many frames of a turn of `period` frames.
+/// A Pico that has checked `frames` frames of a turn of `period` frames.
 fn checked(period: u16, frames: u16) -> Result<Pico> {
     let stream = verify::prepare(scene::load("dodecahedron")?.stream.as_bytes(), Shader::GOURAUD, frames)?;
     let stream = verify::with_header(&stream, |header| header.camera.period = period)?;
@@ -24,7 +24,7 @@ fn checked(period: u16, frames: u16) -> Result<Pico> {
     Ok(pico)
 }
 
-/// Which of the next frames are sent; the others must take next to no time, and show what is shown.
+/// For each of the next frames, whether it is sent. The others must take next to no time and leave the picture unchanged.
 fn sent(pico: &mut Pico, frames: usize) -> Result<Vec<bool>> {
     let mut sent = Vec::new();
     for number in 0..frames {

@@ -1,4 +1,4 @@
-//! Random cases of every family, and that each family sees what is wrong.
+//! Random cases of every family, and checks that each family notices faults.
 
 use embedded_graphics::pixelcolor::{Rgb565, RgbColor};
 use microphong::{
@@ -36,7 +36,7 @@ use std::{
 };
 use zerocopy::IntoBytes;
 
-/// How long all families together look for failures; `MICROPHONG_CASES` multiplies it.
+/// Seconds that all families together run, times `MICROPHONG_CASES` if it is set.
 const SECONDS: u64 = 60;
 /// Seeds that are tried beside the usual one. With each of the first seven a version of the core broke a promise.
 const SEEDS: [u64; 8] = [31, 111, 222, 333, 777, 4242, 498_050_517, 918_273];
@@ -191,7 +191,7 @@ fn panics_are_failures() {
     assert!(summary.breaks.iter().any(|failure| failure.what.contains("as it should")) && summary.failures > 200);
 }
 
-/// What a fuzzer has found worth keeping breaks nothing.
+/// Inputs that a fuzzer has found worth keeping break nothing.
 #[test]
 fn the_corpus_breaks_nothing() {
     let corpus = Path::new(env!("CARGO_MANIFEST_DIR")).join("../fuzz/corpus");
@@ -437,7 +437,7 @@ fn changes_see_a_row_that_is_not_redrawn() {
     assert!(found > 5 && counts.iter().all(|&count| count > 10), "{counts:?}, {found}");
 }
 
-/// A renderer that sets up everything anew in each row.
+/// A renderer that sets up everything again in each row.
 #[test]
 fn cost_sees_what_is_done_for_each_row() {
     struct EachRow(Counters);
@@ -487,7 +487,7 @@ fn costs_are_counted_anew() {
     }
 }
 
-/// Bounds are so many times what the worst scene takes.
+/// Ratio of the bounds to the cost of the worst scene.
 const MARGIN: f64 = 6.0;
 
 /// A bound of [`MARGIN`] times what each scene takes, at least, and of as little as can be on the whole. `scenes` are the parts of each,

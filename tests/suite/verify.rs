@@ -32,7 +32,7 @@ fn request(board: Board, scene: &str, shader: Shader) -> Result<Request> {
     Ok(Request { board, scene: scene.to_owned(), stream: stream(scene)?, firmware_stream: None, shader, frames: FRAMES })
 }
 
-/// All shaders and scenes on one board: those of the core everywhere, all others on the teapot.
+/// All shaders and scenes on one board. The core's shaders draw all scenes, the others draw the teapot.
 fn matrix(board: Board) -> Result {
     let directory = tempfile::tempdir()?;
     let elf = verify::build(board)?;

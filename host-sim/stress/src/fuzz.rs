@@ -1,6 +1,6 @@
-//! What the fuzz targets do with their bytes; the tests do the same with the committed corpus, without a fuzzer.
+//! Functions of the fuzz targets. The tests call them with the committed corpus, without a fuzzer.
 //!
-//! Whatever the bytes are, nothing may panic, and no sum or product may overflow.
+//! For no bytes may anything panic, or a sum or product overflow.
 
 use crate::{case::Case, texts};
 use microphong::{
@@ -18,13 +18,13 @@ use microphong_render::{
 };
 use zerocopy::FromBytes;
 
-/// What is done with a fuzzer's bytes.
+/// A function that takes a fuzzer's bytes.
 pub type Target = fn(&[u8]);
 
 /// The targets, by name.
 pub const TARGETS: [(&str, Target); 4] = [("raw", raw), ("structured", structured), ("obj", obj), ("scene", scene)];
 
-/// How a frame is drawn, by the first of the fuzzer's bytes.
+/// Number of the first bytes, which decide how a frame is drawn.
 const CHOICES: usize = 8;
 
 /// `bytes` as a file that somebody hands to the command: nearly all are refused.
@@ -35,14 +35,14 @@ pub fn raw(bytes: &[u8]) {
     }
 }
 
-/// `bytes` behind a header that is right, in a stream that is sealed: what is refused is refused for what it holds.
+/// Draws `bytes` behind a valid header, in a stream with a valid checksum. A stream is then refused for its contents only.
 pub fn structured(bytes: &[u8]) {
     if let Some(case) = case(bytes) {
         draw(case);
     }
 }
 
-/// What [`structured`] draws; `None` if the bytes make no valid stream.
+/// The case that [`structured`] draws; `None` if the bytes make no valid stream.
 #[must_use]
 pub fn case(bytes: &[u8]) -> Option<Case> {
     sealed(bytes).filter(|case| case.stream.parse().is_ok())
@@ -95,10 +95,10 @@ pub fn scene(bytes: &[u8]) {
     }
 }
 
-/// Asks a stream for its names, and for one that it has not.
+/// Asks a stream for each of its names, and for a name that it lacks.
 ///
 /// # Panics
-/// When it does not find what it lists.
+/// When it does not find a name that it lists.
 pub fn ask(stream: &Stream<'_>) {
     for (name, meshes) in stream.names().flatten() {
         assert!(meshes.end <= stream.meshes.len() as u16 && stream.mesh(name).is_ok(), "{name:?}");

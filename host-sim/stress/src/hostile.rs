@@ -44,7 +44,7 @@ pub fn damaged(random: &mut Random) -> Option<Case> {
     Some(Case { stream: StreamBytes::from(&bytes[..]), ..case })
 }
 
-/// Ends a stream with names, of which some are not valid, as are those of coarser levels.
+/// Appends names to a stream. Some are invalid, as are names of coarser levels.
 fn name_meshes(random: &mut Random, bytes: &mut Vec<u8>) {
     let Ok((header, _)) = Header::read_from_prefix(bytes) else { return };
     for _ in 0..header.meshes {

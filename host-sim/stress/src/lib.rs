@@ -1,8 +1,7 @@
-//! What looks for failures: random cases, exact oracles, and the smallest case that still fails.
+//! Search for failures: random cases, exact oracles, and the smallest case that still fails.
 //!
-//! A [`Family`] makes cases of one kind and judges them by means that share no code with what they judge. The same families serve the
-//! command `microphong stress`, the tests and the fuzz targets. Case `n` of a seed is the same whatever was run before it, so that a
-//! failure is found again by its seed and number.
+//! A [`Family`] makes cases of one kind and judges them by code that it does not share with the renderer. The command `microphong stress`, the tests
+//! and the fuzz targets use the families. Case `n` of a seed does not depend on the cases before it, so seed and number find a failure again.
 
 pub mod arithmetic;
 pub mod budget;
@@ -44,15 +43,15 @@ pub trait Family: Sync {
     /// The name on the command line.
     fn name(&self) -> &'static str;
 
-    /// What is asserted, in a sentence.
+    /// The assertion of the family, in a sentence.
     fn about(&self) -> &'static str;
 
-    /// What [`Verdict::worst`] is a figure of, and the largest that is right; `None` if cases are right or wrong.
+    /// The largest allowed value of [`Verdict::worst`], and its unit; `None` if cases are just right or wrong.
     fn limit(&self) -> Option<(f64, &'static str)> {
         None
     }
 
-    /// What [`Verdict::counts`] are numbers of.
+    /// Names of the numbers in [`Verdict::counts`].
     fn counts(&self) -> &'static [&'static str] {
         &[]
     }
@@ -60,24 +59,24 @@ pub trait Family: Sync {
     /// Makes a case and judges it.
     fn check(&self, random: &mut Random) -> Verdict;
 
-    /// Whether a case is wrong; for those whose failures can be made smaller.
+    /// Whether a case is wrong. Families implement it whose failures can be made smaller.
     fn fails(&self, _case: &Case) -> bool {
         false
     }
 }
 
-/// What came of one case.
+/// The result of a case.
 #[derive(Clone, Debug, Default)]
 pub struct Verdict {
     /// The figure that [`Family::limit`] limits.
     pub worst: f64,
-    /// How many of each of [`Family::counts`] were judged in this case.
+    /// For each of [`Family::counts`], how many were judged in this case.
     pub counts: Vec<u64>,
-    /// What kind of case it was, such as the method that drew it, for families that tell kinds apart.
+    /// The kind of the case, such as the method that drew it, in families that distinguish kinds.
     pub kind: &'static str,
     /// The random numbers made no case that can be judged.
     pub skipped: bool,
-    /// What is wrong, if anything is.
+    /// The fault, if there is any.
     pub failure: Option<String>,
     /// The scene, if there is one.
     pub case: Option<Case>,
@@ -98,7 +97,7 @@ impl Verdict {
     }
 }
 
-/// Every family; with a `budget`, that of the same name keeps to it in all cases.
+/// All families. With a `budget`, the family of this name keeps to it in all cases.
 #[must_use]
 pub fn families(budget: Option<ErrorBudget>) -> Vec<Box<dyn Family>> {
     vec![
@@ -115,7 +114,7 @@ pub fn families(budget: Option<ErrorBudget>) -> Vec<Box<dyn Family>> {
     ]
 }
 
-/// What a family came to.
+/// The results of a family.
 #[derive(Clone, Debug, Serialize)]
 pub struct Summary {
     /// The family.
@@ -126,14 +125,14 @@ pub struct Summary {
     pub cases: u64,
     /// Random numbers that made no case.
     pub skipped: u64,
-    /// What was judged in these cases, if the family counts it: names and numbers.
+    /// Names and numbers of what was judged in these cases, if the family counts it.
     #[serde(serialize_with = "as_map")]
     pub counts: Vec<(&'static str, u64)>,
     /// The worst figure, and its limit.
     pub worst: Option<f64>,
     /// The largest figure that is right.
     pub limit: Option<f64>,
-    /// What the figure is of.
+    /// Unit of the figure.
     pub unit: &'static str,
     /// Number of cases that are wrong.
     pub failures: u64,
@@ -144,10 +143,10 @@ pub struct Summary {
     pub breaks: Vec<Failure>,
 }
 
-/// What the cases of one kind came to.
+/// The results of the cases of one kind.
 #[derive(Clone, Debug, Default, Serialize)]
 pub struct Kind {
-    /// The name of the kind, such as that of a method.
+    /// Name of the kind, such as the method's.
     pub name: &'static str,
     /// Cases that were judged.
     pub cases: u64,
@@ -176,7 +175,7 @@ impl Kind {
         });
     }
 
-    /// Adds other cases of the same kind.
+    /// Adds the results of other cases of this kind.
     fn join(&mut self, other: Self) {
         self.cases += other.cases;
         self.failures += other.failures;
@@ -200,18 +199,18 @@ fn as_map<S: Serializer>(counts: &[(&'static str, u64)], serializer: S) -> Resul
 /// A case that is wrong.
 #[derive(Clone, Debug)]
 pub struct Failure {
-    /// Its number.
+    /// Number of the case.
     pub number: u64,
-    /// Its figure, if the family has one.
+    /// The figure of the case, if the family has one.
     worst: f64,
-    /// What is wrong.
+    /// The fault.
     pub what: String,
-    /// Its scene.
+    /// The scene of the case.
     pub case: Option<Case>,
 }
 
-/// Runs cases of `family` from number `first` on, on all processors, as long as `goes_on` after so many, which is asked before each. A failure
-/// does not end the run, so that one kind of failure hides no other.
+/// Runs cases of `family` from number `first` on, on all processors, as long as `goes_on` returns true; it is called with the number of cases before
+/// each. A failure does not end the run, so that one kind of failure does not hide another.
 #[must_use]
 pub fn run(family: &dyn Family, seed: u64, first: u64, goes_on: &(dyn Fn(u64) -> bool + Sync)) -> Summary {
     quiet();
@@ -283,10 +282,10 @@ thread_local! {
     static GUARDED: Cell<bool> = const { Cell::new(false) };
 }
 
-/// `f`, or what it panicked with.
+/// Calls `f` and catches a panic.
 ///
 /// # Errors
-/// What it panicked with.
+/// The message of the panic.
 pub fn guarded<T>(f: impl FnOnce() -> T) -> Result<T, String> {
     let before = GUARDED.replace(true);
     let result = panic::catch_unwind(AssertUnwindSafe(f)).map_err(|payload| format!("panicked: {}", message(&*payload)));

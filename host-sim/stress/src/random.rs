@@ -1,4 +1,4 @@
-//! Random numbers that are the same on every machine and in every version.
+//! Random numbers, equal on every machine and in every version.
 
 use rand_chacha::{
     ChaCha8Rng,
@@ -19,7 +19,7 @@ impl Random {
         Self(random)
     }
 
-    /// All 64 bits.
+    /// A random number of 64 bits.
     pub fn bits(&mut self) -> u64 {
         self.0.next_u64()
     }
@@ -30,7 +30,7 @@ impl Random {
         (i64::from(range.start) + (self.bits() % width) as i64) as i32
     }
 
-    /// One of these.
+    /// One of the choices.
     pub fn among<T: Copy>(&mut self, choices: &[T]) -> T {
         choices[self.pick(0..choices.len() as i32) as usize]
     }
@@ -45,7 +45,7 @@ impl Random {
         from + (to - from) * (self.bits() >> 11) as f64 / (1u64 << 53) as f64
     }
 
-    /// Between two positive numbers, every octave equally likely.
+    /// A number between two positive ones. Every octave is equally likely.
     pub fn octaves(&mut self, from: f64, to: f64) -> f64 {
         self.between(from.ln(), to.ln()).exp()
     }

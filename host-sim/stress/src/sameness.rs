@@ -1,5 +1,5 @@
-//! One picture, drawn in several ways: by bands of any height, with little memory or much, twice by the same renderer, and with all that
-//! nobody can see.
+//! Checks that a scene has one picture, however it is drawn: by bands of any height, with little memory or much, twice by one renderer, and with all
+//! that nobody can see.
 
 use crate::{
     Family, Verdict,
@@ -41,7 +41,7 @@ impl Family for Sameness {
     }
 }
 
-/// In what the ways of drawing a case differ.
+/// The difference between ways of drawing a case, if there is any.
 fn differs(case: &Case) -> Result<Option<String>> {
     let stream = case.stream.parse()?;
     let whole = render::frame::<Rgb565>(stream, case.pixels(), case.style, case.size[1], case.frame)?;
@@ -75,7 +75,7 @@ fn differs(case: &Case) -> Result<Option<String>> {
     Ok(differs.map(|what| format!("nothing left out: {what}")))
 }
 
-/// In what one picture and its counts differ from another.
+/// The difference between one picture with its counts and another, if there is any.
 #[must_use]
 pub fn unequal((pixels, stats): (&[Rgb565], &Stats), (whole, expected): (&[Rgb565], &Stats)) -> Option<String> {
     let differ = pixels.iter().zip(whole).filter(|(a, b)| a != b).count() + pixels.len().abs_diff(whole.len());

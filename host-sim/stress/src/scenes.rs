@@ -16,25 +16,25 @@ use microphong_render::{
 };
 use std::f64::consts::TAU;
 
-/// What a scene may have.
+/// Features that a random scene may have.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Wishes {
     /// The mesh is closed: nobody may see its inside, nor through it.
     pub closed: bool,
-    /// All of it lies before the near plane and within the picture's guard band.
+    /// Whether all of the scene lies behind the near plane and within the guard band.
     pub unclipped: bool,
     /// Triangles at most, about.
     pub triangles: i32,
-    /// What is hard to compute in it.
+    /// Features that are hard to compute.
     pub hard: Hard,
 }
 
-/// What makes arithmetic hard, where a scene has it for certain.
+/// Features that make arithmetic hard, and that a scene has for certain.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Hard {
     /// A material of an exponent above 256.
     pub steep: bool,
-    /// Normals of a triangle that are nearly the same, or nearly opposite to one another.
+    /// Normals of a triangle that are nearly equal, or nearly opposite.
     pub normals: bool,
     /// A local viewer.
     pub local: bool,
@@ -43,7 +43,7 @@ pub struct Hard {
 }
 
 impl Hard {
-    /// One or more of all.
+    /// One or more of these features.
     pub fn random(random: &mut Random) -> Self {
         let bits = random.pick(1..16);
         Self { steep: bits & 1 != 0, normals: bits & 2 != 0, local: bits & 4 != 0, near: bits & 8 != 0 }
@@ -207,8 +207,8 @@ pub fn surface(random: &mut Random, steep: bool) -> Surface {
     }
 }
 
-/// Material, lights and camera for a picture of `size`. Where nothing may be clipped, most scenes fill their pictures, some are small, and
-/// some reach beyond the edges.
+/// Material, lights and camera for a picture of `size`. If nothing may be clipped, most scenes fill their pictures, some are small, and some reach
+/// beyond the edges.
 pub fn look(random: &mut Random, mesh: &Mesh, size: [u32; 2], wishes: Wishes) -> Look {
     let axis = random.direction();
     // Mostly from where single triangles show their front.

@@ -59,7 +59,7 @@ pub fn smallest(mut case: Case, fails: &dyn Fn(&Case) -> bool) -> Case {
     case
 }
 
-/// The stream with those of its triangles that are `kept`, by their numbers; vertices stay. `None` if none is left.
+/// Removes all triangles from a stream whose numbers are not `kept`. Vertices stay. `None` if no triangle is left.
 fn triangles(bytes: &StreamBytes, kept: impl Fn(usize) -> bool) -> Option<StreamBytes> {
     let stream = bytes.parse().ok()?;
     let (mut meshes, mut triangles) = (Vec::new(), Vec::new());

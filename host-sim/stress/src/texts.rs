@@ -75,7 +75,7 @@ impl Writer<'_> {
         if self.is_odd() { "\"red\"".to_owned() } else { format!("\"{:06x}\"", self.random.bits() & 0xFF_FFFF) }
     }
 
-    /// Fields that are there or not, after those that are.
+    /// Fields that are always there, followed by some of the others.
     fn with(&mut self, fields: Vec<String>, others: Vec<String>) -> Vec<String> {
         let others: Vec<_> = others.into_iter().filter(|_| self.random.once_in(2)).collect();
         fields.into_iter().chain(others).collect()
@@ -221,10 +221,10 @@ fn damage(random: &mut Random, bytes: &mut Vec<u8>) {
     *bytes = lines.join(&b'\n');
 }
 
-/// The stream of a text; `None` if it is refused.
+/// The stream of a text; `None` if the text is refused.
 ///
 /// # Errors
-/// When it is refused in words that name no line of it, or are long.
+/// When the message of the refusal names no line, or is long.
 pub fn converted(bytes: &[u8]) -> Result<Option<StreamBytes>, String> {
     match script::of_bytes(bytes, None) {
         Ok((stream, _)) => Ok(Some(stream)),
@@ -236,7 +236,7 @@ pub fn converted(bytes: &[u8]) -> Result<Option<StreamBytes>, String> {
     }
 }
 
-/// Whether an error begins with one of so many lines, and is short.
+/// Whether an error begins with the number of one of `lines` lines, and is short.
 #[must_use]
 pub fn is_placed(said: &str, lines: usize) -> bool {
     let line = said.strip_prefix("line ").and_then(|rest| rest.split_once(':')).and_then(|(line, _)| line.parse().ok());

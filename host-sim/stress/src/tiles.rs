@@ -1,4 +1,4 @@
-//! Triangles side by side, all of them seen: of each there is something to judge, and no time goes into what is hidden.
+//! Scenes of triangles side by side, none hidden, so that each can be judged and no time goes into hidden ones.
 
 use crate::{
     case::Case,
@@ -12,14 +12,14 @@ use microphong_render::{
     view::View,
 };
 
-/// What is special about a triangle.
+/// Kinds of triangles.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Kind {
     /// Normals that differ little, as in a fine mesh.
     Gentle,
     /// Normals that differ as in a coarse mesh.
     Curved,
-    /// Two normals that are nearly the same, and one far off: a smoothed edge of a box.
+    /// Two normals are nearly equal and one is far off, as at a smoothed edge of a box.
     Creased,
     /// Two normals that are opposite to one another, or nearly so.
     Opposite,
@@ -30,7 +30,7 @@ pub enum Kind {
 }
 
 impl Kind {
-    /// All of them.
+    /// All kinds.
     pub const ALL: [Self; 6] = [Self::Gentle, Self::Curved, Self::Creased, Self::Opposite, Self::Sliver, Self::Tiny];
 }
 
@@ -105,7 +105,7 @@ fn corners(random: &mut Random, kind: Kind, pixel: f64) -> [[f64; 2]; 3] {
     corners
 }
 
-/// One to four lights; mostly no near ones, for which there is no method but Phong shading.
+/// One to four lights. Few are near ones, because under these all triangles are drawn by Phong shading.
 fn lamps(random: &mut Random, object: V3, certainly_near: bool) -> Vec<Lamp> {
     let near = certainly_near || random.once_in(6);
     let count = random.among(&[1, 1, 1, 2, 2, 2, 3, 4]);
@@ -120,7 +120,7 @@ fn lamps(random: &mut Random, object: V3, certainly_near: bool) -> Vec<Lamp> {
     (0..count).map(&mut lamp).collect()
 }
 
-/// Where a triangle faces: anywhere, or to where the highlight of a light is, in object space.
+/// A direction in object space that a triangle faces: any, or the one at which a light has its highlight.
 fn facing(random: &mut Random, look: &Look) -> V3 {
     let anywhere = random.direction();
     if random.once_in(2) {
@@ -139,7 +139,7 @@ fn facing(random: &mut Random, look: &Look) -> V3 {
     unit(add(half, scale(anywhere, width * random.between(0.0, 5.0)))).unwrap_or(half)
 }
 
-/// Normals of a triangle that faces there, `nearly` the same or opposite.
+/// Normals of a triangle that faces this direction. `nearly` makes them almost equal or opposite.
 fn normals(random: &mut Random, kind: Kind, facing: V3, nearly: bool) -> [V3; 3] {
     let spread = match kind {
         _ if nearly => random.octaves(3e-4, 0.02),

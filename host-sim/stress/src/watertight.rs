@@ -26,7 +26,7 @@ use microphong::{
 use microphong_render::{bytes::StreamBytes, levels, render, shader::Shader};
 use zerocopy::FromBytes;
 
-/// A colour that no scene shows, so that what is not drawn can be told: surfaces are black.
+/// A colour that no scene shows. Surfaces are black, so pixels that are not drawn can be recognised.
 const BACKGROUND: Rgb888 = Rgb888::MAGENTA;
 
 /// Scenes that are wholly seen.
@@ -66,7 +66,7 @@ impl Family for Watertight {
     }
 }
 
-/// A stream with black surfaces on a background of another colour, so that what is not drawn can be told.
+/// A stream with black surfaces on a background of another colour, so that pixels that are not drawn can be recognised.
 #[must_use]
 pub fn on_background(stream: &StreamBytes) -> StreamBytes {
     let mut bytes = stream.as_bytes().to_vec();
@@ -88,7 +88,7 @@ fn blacken(bytes: &mut [u8]) -> Option<()> {
     Some(())
 }
 
-/// What has come of a case, in pixels.
+/// The result of a case, in pixels.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Found {
     /// Covered.
@@ -112,7 +112,7 @@ pub fn judge(case: &Case) -> Option<Found> {
     Some(Found { covered: count([true, true]) + missing, missing, extra })
 }
 
-/// How many triangles that show their front cover the centre of each pixel; `None` if a vertex is clipped.
+/// For each pixel, the number of front faces that cover its centre; `None` if a vertex is clipped.
 #[must_use]
 pub fn covered(stream: &Stream<'_>, size: [u32; 2], number: u32) -> Option<Vec<u8>> {
     let camera = &stream.header.camera;

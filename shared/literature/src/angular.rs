@@ -1,13 +1,12 @@
 //! Angular interpolation (Kuijk and Blake 1989; Disselkoen 1991): normals on great circles along edges and rows, diffuse
 //! light and highlights in three parabolas a row, see [`crate::parabola`].
 //!
-//! Near lights and viewers (Kuijk and Blake): one direction for the triangle, that of its middle, and normals turned so
-//! that each corner sees it as it sees its own.
+//! Near lights and viewers (Kuijk and Blake): the triangle has one direction, the one at its middle, and normals are turned so that each corner sees
+//! this direction as it would see its own.
 //!
-//! Cost: 3 additions and a comparison a pixel, twice a light; a row has 3 unit vectors, 2 pairs of sine and cosine, 3
-//! arc tangents and 2 divisions to set up, with near lights twice that. Error: that of the parabolas, 3.6 LSB of the
-//! highlight and 6 of the diffuse light (as printed: 66 and 13), and jumps where rows begin on different edges.
-//! Domain: any lights; coarse meshes under near lights are off by up to 45 LSB.
+//! Cost: 3 additions and a comparison a pixel, twice a light. A row has 3 unit vectors, 2 pairs of sine and cosine, 3 arc tangents and 2 divisions to
+//! set up, with near lights twice as many. Error: the parabolas', 3.6 of 255 in the highlight and 6 in diffuse light (as printed: 66 and 13), and
+//! jumps where rows begin on different edges. Domain: any lights; coarse meshes under near lights are off by up to 45 of 255.
 
 use crate::{
     arc::Arc,
@@ -96,7 +95,7 @@ fn draw(setup: &TriangleSetup<'_>, shading: &Shading<'_>, fit: fn(u16) -> Parabo
     }
 }
 
-/// One direction for a triangle, and normals that see it as they saw their own.
+/// One direction for a triangle, and normals turned so that each corner sees this direction as it would see its own.
 #[derive(Clone, Copy)]
 pub struct Turned {
     /// Q2.30.

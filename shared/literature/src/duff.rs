@@ -4,9 +4,9 @@
 //! the reciprocal root is approximated, by a table of 1,537 knots. Near lights and viewers have numerators that
 //! are not linear: there they are the quadratics through six points.
 //!
-//! Cost: 4 additions a pixel, a root from a table, 2 products and the highlight's table; 2 or 4 additions and
-//! 2 products more per light. Error: that of the tables, [`microphong::math::highlight_lut::NEAREST_ERROR`] of the highlight above all.
-//! Domain: any lights; with near lights as good as six points are.
+//! Cost: 4 additions a pixel, a root from a table, 2 products and the highlight's table; 2 or 4 additions and 2 products more per light. Error: the
+//! tables' error, mainly [`microphong::math::highlight_lut::NEAREST_ERROR`] of the highlight. Domain: any lights; under near lights as exact as six
+//! points are.
 
 use microphong::method::{Canvas, Costs, Facts, Highlight, HighlightField, Method, Shading, TriangleSetup, VertexLight, duff};
 

@@ -20,7 +20,7 @@ use microphong::{
     },
 };
 
-/// One, Q2.30.
+/// The number 1 in Q2.30.
 const ONE: i32 = 1 << COSINE;
 
 static FACTS: Facts = Facts {

@@ -5,9 +5,9 @@
 //! pixel's normal is the first guess at the next one's, from the right end to the left, starting from 1. Highlights by
 //! the reflected light, R·V = 2(N·L)(N·V)/|N|² - L·V, which need no root.
 //!
-//! Cost: a row has 2 divisions and 2 unit vectors to set up; a pixel 4 additions, 4 products and a division, and where it
-//! is seen another division and 5 products, with the highlight's table. Error of the length: (1/2) of the square of its
-//! change from pixel to pixel. Domain: directional lights and an infinitely far viewer.
+//! Cost: a row has 2 divisions and 2 unit vectors to set up; a pixel takes 4 additions, 4 products and a division, and a visible one another division
+//! and 5 products, with the highlight's table. Error of the length: (1/2) of the square of its change from pixel to pixel. Domain: directional lights
+//! and an infinitely far viewer.
 
 use crate::scanline::{Edges, Rows};
 use microphong::{

@@ -1,11 +1,11 @@
-//! Phong shading where a highlight can be, Gouraud shading elsewhere.
+//! Phong shading on triangles that may have a highlight, Gouraud shading on others.
 //!
-//! N·H is linear under constant light, and no interpolated normal is shorter than r: N·H over |N| is at most the
-//! largest of the corners over r. Where that stays below the cosine whose power is taken as 0, for each light,
-//! only diffuse light is left, and it changes slowly. Near lights have no such bound at a fair price: Phong everywhere.
+//! N·H is linear under constant light, and no interpolated normal is shorter than r. So N·H over |N| is at most the largest of the corners' values
+//! over r. Where this stays below the cosine whose power counts as 0, for each light, only diffuse light is left, and it changes slowly. Near lights
+//! have no such bound at a fair price, so all triangles are drawn by Phong shading.
 //!
-//! Cost: three comparisons a triangle and light, then that of [`microphong::method::gouraud`] or [`microphong::method::phong`]. Not
-//! continuous where the two meet. Error against Phong: Gouraud's of diffuse light. Domain: any lights.
+//! Cost: three comparisons a triangle and light, and then the cost of [`microphong::method::gouraud`] or [`microphong::method::phong`]. Not
+//! continuous where the two meet. Error against Phong: Gouraud's error of diffuse light. Domain: any lights.
 
 use microphong::method::{
     Canvas, Costs, Facts, Highlight, HighlightField, Method, RANGE, Shading, Source, TriangleSetup, VertexLight, cosine, gouraud::Gouraud,

@@ -1,9 +1,9 @@
 //! Disselkoen's hybrid (1991): highlights in three parabolas a row as [`crate::angular`], but normals linear along the
 //! edges, and diffuse light by polynomials: here the quadratic through N·L at six points.
 //!
-//! Cost: 5 additions and a comparison a pixel and light; a row has 3 unit vectors, 2 arc tangents and 2 divisions to
-//! set up. Error: that of the parabolas, 3.6 LSB of the highlight (as printed: 66), and jumps where rows begin on
-//! different edges. Domain: any lights; coarse meshes under near lights are off by up to 45 LSB.
+//! Cost: 5 additions and a comparison a pixel and light; a row has 3 unit vectors, 2 arc tangents and 2 divisions to set up. Error: the parabolas',
+//! 3.6 of 255 in the highlight (as printed: 66), and jumps where rows begin on different edges. Domain: any lights; coarse meshes under near lights
+//! are off by up to 45 of 255.
 
 use crate::{
     angular::{Turned, turned},

@@ -34,7 +34,7 @@ fn ratio(numerator: u64, denominator: u64, bits: u32) -> i32 {
 }
 
 impl Parabolas {
-    /// From a and 1/b.
+    /// The parabolas with these a and 1/b.
     fn new(a: i32, narrow: i32) -> Self {
         let a = a.clamp(1, ONE - 1);
         let inverse = |x: i32| ratio(1 << PLACE, u64::from(x.unsigned_abs()), PLACE);
@@ -49,8 +49,8 @@ impl Parabolas {
         Self::new(a, ratio(50 * s + 317, 10 * (s + 65), 26))
     }
 
-    /// Fitted anew: a b = (0.7535 + 0.55/s)/sqrt s, b = (2.992 - 1.33/s)/sqrt s; 1.3545 and 1.6861 for s = 1.
-    /// Wrong by 0.024 at most.
+    /// Constants of our own fit: a b = (0.7535 + 0.55/s)/sqrt s, b = (2.992 - 1.33/s)/sqrt s; 1.3545 and 1.6861 for s = 1. They are wrong by at most
+    /// 0.024.
     pub fn refitted(exponent: u16) -> Self {
         if exponent <= 1 {
             return Self::new(ratio(13_545, 16_861, PLACE), ratio(10_000, 16_861, 26));
@@ -140,7 +140,7 @@ pub struct PiecewiseQuadratic {
 }
 
 impl PiecewiseQuadratic {
-    /// Nothing, in one piece.
+    /// A piece of value 0.
     const FLAT: Self = Self { place: 0, step: 0, limit: i32::MIN, value: 0, first: 0, second: 0, height: 0, a: 0, middle: 0, outer: 0 };
 
     /// Starts the piece at the current place.

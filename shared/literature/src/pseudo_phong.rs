@@ -1,11 +1,9 @@
-//! Pseudo-Phong shading: Gouraud's on triangles a few pixels large.
+//! Pseudo-Phong shading: Gouraud shading on triangles a few pixels large.
 //!
-//! A triangle is split into 4^k copies of itself, k at most 6 and the least for
-//! which no edge is longer than 8 pixels, each lit at its corners with the
-//! interpolated, normalised normal. What Phong shading on machines that only know
-//! Gouraud's amounts to. Cost: one addition a pixel and channel, but a light and a
-//! set-up for every 32 pixels or fewer. Neighbours may be split unequally, then
-//! they meet in chords of the same curve.
+//! A triangle is split into 4^k copies of itself, each lit at its corners with the interpolated, normalised normal. k is the smallest number, at most
+//! 6, for which no edge is longer than 8 pixels. Machines that only know Gouraud shading can approximate Phong shading in this way. Cost: one
+//! addition a pixel and channel, but a light and a set-up for every 32 pixels or fewer. Neighbours may be split unequally; they then meet in chords
+//! of one curve.
 
 use crate::split::SubTriangles;
 use microphong::{
@@ -47,7 +45,7 @@ fn draw(setup: &TriangleSetup<'_>, shading: &Shading<'_>, canvas: &mut dyn Canva
     sub_triangles.linear_parts(&SubTriangle::WHOLE, &sub_triangles.corners(), splits(setup), canvas)
 }
 
-/// How often the triangle is split.
+/// Number of times that the triangle is split.
 fn splits(setup: &TriangleSetup<'_>) -> u32 {
     let ([a, b, c], finer) = (setup.corners, setup.finer());
     let longest = [(a, b), (b, c), (c, a)].into_iter().fold(0, |longest, (a, b)| {

@@ -40,13 +40,13 @@ impl Edge {
         Self { start, run, height, inverse: recip((height as u32) << (zeros & 31)), zeros }
     }
 
-    /// How far along the edge a height is, Q2.30 from 0 to 1. Error: 2^-28.
+    /// Place of a height along the edge, Q2.30 from 0 to 1. Error: 2^-28.
     fn along(&self, y: i32) -> i32 {
         let way = i64::from(y.wrapping_sub(self.start[1]).wrapping_abs().max(0).min(self.height));
         ((way * i64::from(self.inverse)) >> (32 - self.zeros.min(31))).min(1 << 30) as i32
     }
 
-    /// How far inside of it a point lies, times its height; exact.
+    /// Distance of a point from the edge, towards the inside, times the edge's height; exact.
     fn inside(&self, [x, y]: [i32; 2]) -> i64 {
         let [dx, dy] = self.run.map(i64::from);
         dx * i64::from(y.wrapping_sub(self.start[1])) - dy * i64::from(x.wrapping_sub(self.start[0]))
@@ -68,7 +68,7 @@ impl Edges {
     }
 }
 
-/// One row after the other.
+/// The rows of a triangle, one after the other.
 #[derive(Clone, Copy, Debug)]
 pub struct Rows<'e> {
     edges: &'e Edges,
@@ -80,19 +80,19 @@ pub struct Rows<'e> {
 pub struct Span {
     /// The left end and the right one.
     pub ends: [End; 2],
-    /// How far from the left to the right end the row's last pixel lies, Q2.30 from 0 to 1. Error: 2^-28.
+    /// Place of the row's last pixel between the left and the right end, Q2.30 from 0 to 1. Error: 2^-28.
     pub last: i32,
-    /// How far the next pixel is from it; at most 1, then there is no next one.
+    /// Distance from one pixel to the next in this measure. At most 1, which means that there is no next pixel.
     pub step: i32,
     /// Pixels between it and the first one wanted.
     ahead: u32,
 }
 
-/// Where a row leaves the triangle.
+/// The point at which a row leaves the triangle.
 #[derive(Clone, Copy, Debug)]
 pub struct End {
     edge: usize,
-    /// How far along that edge, Q2.30 from 0 to 1.
+    /// Place along this edge, Q2.30 from 0 to 1.
     pub along: i32,
 }
 
@@ -148,7 +148,7 @@ impl Span {
 }
 
 impl End {
-    /// What belongs to its edge.
+    /// The value of three that belongs to this edge.
     pub fn of<A>(&self, [a, b, c]: [A; 3]) -> A {
         match self.edge {
             0 => a,

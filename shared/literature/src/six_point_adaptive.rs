@@ -20,7 +20,7 @@ use microphong::{
     method::{Canvas, Costs, Facts, Highlight, HighlightField, Method, Shading, SubTriangle, TriangleSetup, VertexLight},
 };
 
-/// What an edge's parabola may be wrong by at its quarters, Q9.7.
+/// Largest error of an edge's parabola at its quarters, Q9.7.
 const EDGE: i32 = 1 << LEVEL;
 
 static FACTS: Facts = Facts {
@@ -94,7 +94,7 @@ fn parts(
     pixels
 }
 
-/// A call of its own: what it needs is off the stack before parts are drawn.
+/// A function of its own, so that its variables are off the stack before parts are drawn.
 #[inline(never)]
 fn halves(sub_triangles: &SubTriangles<'_, '_>, sub_triangle: &SubTriangle, six: &Six, locked: [bool; 3]) -> Halves {
     let [a, b, c] = six.corners;

@@ -13,9 +13,9 @@ use microphong::{
     method::{Canvas, Costs, Facts, Highlight, HighlightField, Method, Shading, SubTriangle, TriangleSetup, VertexLight},
 };
 
-/// What the quadratic may be wrong by at the centre, Q9.7.
+/// Largest error of the quadratic at the centre, Q9.7.
 pub const CENTRE: i32 = 2 << LEVEL;
-/// How often a triangle is split at most.
+/// Largest number of times that a triangle is split.
 pub const DEPTH: u32 = 3;
 
 static FACTS: Facts = Facts {

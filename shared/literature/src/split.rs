@@ -1,4 +1,4 @@
-//! What the methods share that split a triangle into sub-triangles and shade each by itself.
+//! Code for methods that split a triangle into sub-triangles and shade each by itself.
 
 use microphong::{
     math::vector::{add, zip},
@@ -8,7 +8,7 @@ use microphong::{
 /// Light of three channels, Q9.7.
 pub type Levels = [i32; 3];
 
-/// Nodes are in [0, 255], those on a parabola a little outside.
+/// Bits of the range of nodes: they are in [0, 255], and those on a parabola a little outside.
 const BITS: u32 = 16;
 
 /// A triangle that is drawn sub-triangle by sub-triangle.

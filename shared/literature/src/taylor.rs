@@ -1,13 +1,13 @@
 //! N·L and N·H by their Taylor quadratics about the centroid (Bishop & Weimer 1986, infinite eye).
 //!
-//! The expansion does not change with the axes, so it is worked out at six points of the triangle, without the printed
-//! formulas' sixteen coefficients, and the one quadratic through them walked. With N = s (c + n) and
-//! W = r (d + w), c and d of length one, and W = L or H constant here (w = 0), the cosine is, cut after second order,
+//! The expansion does not depend on the axes. So it is computed at six points of the triangle, without the sixteen coefficients of the printed
+//! formulas, and the quadratic through these points is walked. Let N = s (c + n) and W = r (d + w), with c and d of length one, and W = L or H, which
+//! is constant here (w = 0). The cosine, cut after second order, is
 //!
 //! (c·d + c·w + n·d + n·w) + (c·d + c·w + n·d)(-a - b) + c·d (3/2 (a² + b²) - (n² + w²)/2 + a b), a = c·n, b = d·w.
 //!
-//! Far from the centroid it leaves [-1, 1] and more: values are walked with as many fraction bits less as the triangle and
-//! light need, and count as 1 beyond. The centroid's |N| counts as 1/16 at least.
+//! Far from the centroid the expansion leaves [-1, 1] and more. Values are walked with fewer fraction bits, as the triangle and the light need, and
+//! count as 1 beyond. The centroid's |N| counts as at least 1/16.
 //!
 //! Cost: 4 additions a pixel and light, 4 comparisons and shifts, the highlight's table; 12 expansions to set up. Not
 //! continuous. Error against Phong: 12 LSB on a sphere of 168 triangles, 1.5 on one of 690 (exponent 50, ks 1/2);
@@ -78,9 +78,9 @@ fn normals(setup: &TriangleSetup<'_>) -> Series {
     Series::new(setup.vertices().map(|vertex| wide(vertex.normal).map(|c| c << (VECTOR - UNIT))))
 }
 
-/// How steeply highlights follow the cosines, which are walked with as many bits less as they are shifted: expansions are below four times the
-/// square of one and how far normals are away from the centroid's, which the least length of a normal tells. Directions of near lights may be
-/// as far away.
+/// How steeply highlights depend on the cosines, which are walked with fewer bits the more they are shifted. Expansions are below four times the
+/// square of 1 plus the distance of normals from the centroid's, which the smallest length of a normal tells. Directions of near lights may be
+/// equally far away.
 fn steepness(setup: &TriangleSetup<'_>, shading: &Shading<'_>) -> Steepness {
     let shift = match setup.triangle.min_normal_length >> (NORMAL_LENGTH - 4) {
         13.. => 2,
@@ -155,7 +155,7 @@ fn expansions(normal: &Series, direction: &Series) -> [i64; 6] {
     [at(n0, w0), at(n1, w1), at(n2, w2), at(n3, w3), at(n4, w4), at(n5, w5)]
 }
 
-/// Cosines that may be anything, with so many bits less.
+/// Shades by cosines of any size, which have been shifted.
 #[derive(Clone, Copy)]
 struct Clamped;
 

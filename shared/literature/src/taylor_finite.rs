@@ -1,11 +1,11 @@
 //! N·L and N·H by their Taylor quadratics about the centroid, near lights and viewer included (Bishop & Weimer 1986,
 //! finite eye).
 //!
-//! The directions L, and L + V for H, are linear between the corners; the rest is [`crate::taylor`]'s. The centroid's |L|
-//! counts as 1/16 at least, and |L + V| as 1/8.
+//! The directions L, and L + V for H, are linear between the corners. All else is as in [`crate::taylor`]. The centroid's |L| counts as at least
+//! 1/16, and |L + V| as at least 1/8.
 //!
-//! Cost and error as there, and those of directions that are not linear: useless on coarse meshes with near lights.
-//! Domain: any lights.
+//! Cost and error are those of [`crate::taylor`], plus the error of directions that are not linear: the method is useless on coarse meshes with near
+//! lights. Domain: any lights.
 
 use crate::{
     taylor,

@@ -29,7 +29,7 @@ fn panic(_: &core::panic::PanicInfo<'_>) -> ! {
 const BAND: usize = 9600;
 /// Room for a small scene, antialiased.
 const LAYOUT: Layout = Layout::new(240, 40).vertices(600).triangles(600).materials(2).processors(2).antialias(cfg!(feature = "all"));
-/// Enough in every pixel format: those with the largest pixels take most.
+/// Number of words that suffices in every pixel format: the largest pixels take most.
 const WORDS: usize = LAYOUT.words::<Rgb565>();
 
 /// The memory that a board draws pictures of one pixel format in.
@@ -38,7 +38,7 @@ pub struct Buffers<C: Pixel> {
     band: [C; BAND],
 }
 
-/// What to draw, and how: none of it is known at compile time.
+/// What to draw, and how. Nothing of it is known at compile time.
 #[derive(Clone, Copy)]
 #[repr(C)]
 pub struct Request {
@@ -49,7 +49,7 @@ pub struct Request {
     number: u32,
     /// Name of the object.
     name: &'static str,
-    /// Where work is divided for two processors.
+    /// Share of the triangles at which work is divided for two processors, in units of 1/65,536.
     share: u16,
     dither: bool,
     gamma: bool,
@@ -88,7 +88,7 @@ fn draw<C: Pixel>(request: Request, buffers: &mut Buffers<C>) -> Option<u32> {
     Some(crc.finish() ^ frame.stats().pixels ^ named)
 }
 
-/// Arguments come from outside, so nothing is known at compile time. Formats are those of the boards.
+/// Arguments come from outside, so nothing is known at compile time. The formats are those of the boards.
 #[unsafe(no_mangle)]
 pub extern "C" fn _start(
     request: &'static Request,
