@@ -94,7 +94,10 @@ const DANGLING: [&str; 7] = ["That ", "Those ", "The same ", "Of ", "As ", "It "
 fn sources(folder: &Path) -> Vec<PathBuf> {
     let entries = fs::read_dir(folder).unwrap_or_else(|error| panic!("{}: {error}", folder.display()));
     let paths = entries.map(|entry| entry.expect("an entry").path()).filter(|path| !path.ends_with("target"));
-    paths.flat_map(|path| if path.is_dir() { sources(&path) } else { vec![path] }).filter(|path| path.extension() == Some("rs".as_ref())).collect()
+    paths
+        .flat_map(|path| if path.is_dir() { sources(&path) } else { vec![path] })
+        .filter(|path| path.extension() == Some("rs".as_ref()))
+        .collect()
 }
 
 /// The first lines of all doc comments, with their numbers.
@@ -110,7 +113,9 @@ fn first_lines(text: &str) -> impl Iterator<Item = (usize, &str)> {
 #[test]
 fn doc_comments_begin_with_a_subject() {
     let (mut count, mut dangling) = (0, Vec::new());
-    for path in ["shared", "firmware", "host-sim", "tests", "examples", "fuzz"].iter().flat_map(|folder| sources(&repository().join(folder))) {
+    for path in
+        ["shared", "firmware", "host-sim", "tests", "examples", "fuzz"].iter().flat_map(|folder| sources(&repository().join(folder)))
+    {
         for (number, line) in first_lines(&read(&path)) {
             count += 1;
             if DANGLING.iter().any(|beginning| line.starts_with(beginning)) {

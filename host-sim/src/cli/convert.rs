@@ -486,10 +486,7 @@ fn text(line: &Line<'_>, materials: &[Option<&str>]) -> Result<()> {
         report::line(&format!("  a level of detail of {} triangles, less than {error:.4} units from the mesh", count(*triangles)))?;
     }
     let memory = count(line.memory);
-    report::line(&format!(
-        "  a program needs {memory} bytes of memory for it in Rgb565, and a band of pixels:\n    {}",
-        line.layout
-    ))?;
+    report::line(&format!("  a program needs {memory} bytes of memory for it in Rgb565, and a band of pixels:\n    {}", line.layout))?;
     count::text(line.costs.as_deref())?;
     let crossed = match line.crossed {
         0 => return Ok(()),

@@ -124,7 +124,9 @@ fn text(file: &str, stream: &Stream<'_>, list: &[meshes::Row]) -> Result<()> {
     meshes::text(list, &[], usize::MAX)?;
     for Level { triangles, error, side, .. } in levels(stream) {
         let (triangles, flash) = (count(triangles as usize), count(triangles as usize * size_of::<Triangle>()));
-        report::line(&format!("  a level of detail of {triangles} triangles, {flash} bytes, {error:.4} units from the mesh: for pictures of up to {side}x{side}"))?;
+        report::line(&format!(
+            "  a level of detail of {triangles} triangles, {flash} bytes, {error:.4} units from the mesh: for pictures of up to {side}x{side}"
+        ))?;
     }
     let camera = &header.camera;
     let kind = if camera.projection == PERSPECTIVE { "perspective" } else { "parallel rays" };

@@ -137,7 +137,7 @@ pub struct Reflectance {
     lights: u8,
     /// Not 0 if [`Self::has_two_lights`].
     has_two_lights: u8,
-    /// Not 0 if highlights, or lights, are computed where they cannot be seen, see [`Self::leave_out`].
+    /// Not 0 if highlights, or lights, are computed where they cannot be seen. The feature `skips` can turn this on.
     computes_all: [u8; 2],
 }
 
