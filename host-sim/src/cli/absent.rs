@@ -25,8 +25,8 @@ macro_rules! absent {
 
 #[cfg(not(feature = "boards"))]
 absent! {
-    verify: "Draw scenes with a board's own firmware, emulated, and compare every pixel with this computer";
-    bench: "Count the instructions that processors take for one frame";
+    verify: "Draw scenes by a board's own firmware under emulation, and compare every pixel with this computer";
+    bench: "Count the instructions that a processor takes for one frame";
     growth: "Count how the cost of a frame grows with triangles, pixels, lights and bands";
     size: "Print flash, RAM and stack of whole programs, and whether chips have room for them";
 }
