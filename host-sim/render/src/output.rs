@@ -6,14 +6,15 @@
 
 use anyhow::{Context, Result};
 use std::{
-    fs::{self, File},
+    fs::{self, File, Permissions},
     io::{self, BufWriter, Error, ErrorKind, IntoInnerError, Seek, Write},
     path::{Path, PathBuf},
 };
 
 /// A file that is being written. It gets its name when it is complete, and is gone if it never is.
 ///
-/// A link keeps its name, and the file that it points to is replaced. Devices, pipes and standard output receive the bytes at once.
+/// A link keeps its name, and the file that it points to is replaced. A file that replaces another takes its permissions. Devices, pipes and
+/// standard output receive the bytes at once.
 #[derive(Debug)]
 pub struct Output {
     path: PathBuf,
@@ -84,7 +85,7 @@ pub fn write(path: &Path, bytes: &[u8]) -> Result<()> {
 /// Whether `path` is a name of standard output.
 #[must_use]
 pub fn is_stdout(path: &Path) -> bool {
-    cfg!(unix) && ["/dev/stdout", "/dev/fd/1", "/proc/self/fd/1"].iter().any(|&name| path == Path::new(name))
+    cfg!(unix) && ["-", "/dev/stdout", "/dev/fd/1", "/proc/self/fd/1"].iter().any(|&name| path == Path::new(name))
 }
 
 /// Ways to write a file.
@@ -131,9 +132,14 @@ fn take(file: &mut File, name: &Path) -> io::Result<()> {
     if link(file, name).is_ok() {
         return Ok(());
     }
+    let permissions = fs::metadata(name).ok().map(|replaced| replaced.permissions());
+    if let Some(permissions) = &permissions {
+        file.set_permissions(permissions.clone())?;
+    }
     // It is in use, and only a file that has a name can take the place of another.
     let linked = |path: &Path| {
-        link(file, path).or_else(|error| if error.kind() == ErrorKind::AlreadyExists { Err(error) } else { copy(file, path) })
+        link(file, path)
+            .or_else(|error| if error.kind() == ErrorKind::AlreadyExists { Err(error) } else { copy(file, path, permissions.as_ref()) })
     };
     let named = tempfile::Builder::new().prefix(".microphong-").make_in(directory(name), linked).map_err(without_path)?;
     named.persist(name).map_err(|error| error.error)?;
@@ -155,15 +161,17 @@ fn link(_: &File, _: &Path) -> io::Result<()> {
 }
 
 /// Does the work of [`link`] where the system cannot.
-fn copy(mut file: &File, name: &Path) -> io::Result<()> {
+fn copy(mut file: &File, name: &Path, permissions: Option<&Permissions>) -> io::Result<()> {
     let mut named = File::create_new(name)?;
-    file.rewind()?;
-    let copied = io::copy(&mut file, &mut named).map(|_| ());
+    let copied = permissions
+        .map_or(Ok(()), |permissions| named.set_permissions(permissions.clone()))
+        .and_then(|()| file.rewind())
+        .and_then(|()| io::copy(&mut file, &mut named));
     if copied.is_err() {
         // The error is reported, and not that of removing what it has left.
         let _ = fs::remove_file(name);
     }
-    copied
+    copied.map(drop)
 }
 
 #[cfg(test)]
@@ -182,6 +190,12 @@ mod tests {
             take(&mut file, &name).unwrap();
             assert_eq!(fs::read_to_string(&name).unwrap(), text);
             assert_eq!(fs::read_dir(directory.path()).unwrap().count(), 1);
+            if text == "newer" {
+                assert!(fs::metadata(&name).unwrap().permissions().readonly(), "the permissions of the file that was replaced");
+            }
+            let mut permissions = fs::metadata(&name).unwrap().permissions();
+            permissions.set_readonly(true);
+            fs::set_permissions(&name, permissions).unwrap();
         }
     }
 }
