@@ -4,7 +4,7 @@
 //! and renew the file.
 
 use super::{Bench, Measurement, Processor};
-use anyhow::{Context, Result};
+use anyhow::{Context, Result, ensure};
 use microphong_render::{output, scene, shader::Shader};
 use std::{fmt, fs, path::Path};
 
@@ -118,7 +118,10 @@ pub fn changes(recorded: &[Entry], measured: &[Entry]) -> Vec<Change> {
 pub fn read(path: &Path) -> Result<Vec<Entry>> {
     let text = fs::read_to_string(path).with_context(|| format!("cannot read {}", path.display()))?;
     let lines = (1..).zip(text.lines()).filter(|(_, line)| !line.trim().is_empty() && *line != HEAD);
-    lines.map(|(number, line)| Entry::parse(line).with_context(|| format!("{}, line {number}", path.display()))).collect()
+    let entry = |(number, line)| Entry::parse(line).with_context(|| format!("{}, line {number}", path.display()));
+    let entries = lines.map(entry).collect::<Result<Vec<_>>>()?;
+    ensure!(!entries.is_empty(), "{} lists no frames", path.display());
+    Ok(entries)
 }
 
 /// Writes a file.

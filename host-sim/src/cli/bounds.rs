@@ -1,6 +1,6 @@
 //! `microphong bounds`.
 
-use super::{Outcome, report};
+use super::{Outcome, parse, report};
 use anyhow::Result;
 use microphong::method::highlight_error::{COLUMNS, Growth, LEAST_EXPONENTS, ROWS, ROWS_BEHIND};
 use microphong_sim::bounds::{Place, STEPS, Table, source, table, worst};
@@ -17,10 +17,10 @@ pub(crate) struct Arguments {
     #[arg(long, default_value_t = 2000, value_name = "N", value_parser = clap::value_parser!(u32).range(40..))]
     effort: u32,
     /// Seed of the random triangles.
-    #[arg(long, default_value_t = 1, value_name = "S")]
+    #[arg(long, default_value_t = 1, value_name = "S", value_parser = parse::whole)]
     seed: u64,
     /// Search this number of places in the compiled table for larger errors, and write no table.
-    #[arg(long, value_name = "PLACES")]
+    #[arg(long, value_name = "PLACES", value_parser = parse::count)]
     check: Option<u64>,
     /// Print one JSON object.
     #[arg(long)]

@@ -96,9 +96,27 @@ pub(crate) fn shader(text: &str) -> Result<Shader, String> {
     among(text, &Shader::ALL, Shader::name)
 }
 
-/// A pixel format by name.
+/// A pixel format by name, of which help lists all.
+#[derive(Clone)]
+pub(crate) struct Formats;
+
+impl TypedValueParser for Formats {
+    type Value = Format;
+
+    fn parse_ref(&self, command: &Command, argument: Option<&Arg>, value: &OsStr) -> Result<Format, clap::Error> {
+        format.parse_ref(command, argument, value)
+    }
+
+    fn possible_values(&self) -> Option<Box<dyn Iterator<Item = PossibleValue> + '_>> {
+        Some(Box::new(Format::ALL.into_iter().map(|format| PossibleValue::new(format.name()))))
+    }
+}
+
+/// A pixel format by its name here, or by the name of its type in programs.
 pub(crate) fn format(text: &str) -> Result<Format, String> {
-    among(text, &Format::ALL, Format::name)
+    let name = text.to_ascii_lowercase();
+    let name = if name == "binarycolor" { Format::Binary.name() } else { &name };
+    among(name, &Format::ALL, Format::name)
 }
 
 /// An axis by name.
@@ -163,6 +181,16 @@ pub(crate) fn bytes(text: &str) -> Result<[u8; 3], String> {
 /// A colour as [`bytes`] reads it, where 1 is ff.
 pub(crate) fn colour(text: &str) -> Result<V3, String> {
     Ok(bytes(text)?.map(|c| f64::from(c) / 255.0))
+}
+
+/// A number of 64 bits.
+pub(crate) fn whole(text: &str) -> Result<u64, String> {
+    text.parse().map_err(|_| format!("a whole number from 0 to {} is needed", u64::MAX))
+}
+
+/// A number of 64 bits of something that is done.
+pub(crate) fn count(text: &str) -> Result<u64, String> {
+    text.parse().ok().filter(|&count| count > 0).ok_or_else(|| format!("a whole number from 1 to {} is needed", u64::MAX))
 }
 
 /// An error budget in 1/255, 1/2 to 16.

@@ -5,7 +5,7 @@ use super::{
     parse::{self, Several},
     report,
 };
-use anyhow::Result;
+use anyhow::{Result, ensure};
 use microphong::format::ErrorBudget;
 use microphong_sim::{
     families, output,
@@ -28,13 +28,13 @@ pub(crate) struct Arguments {
     #[arg(long, default_value_t = 10.0, value_name = "N", value_parser = seconds)]
     seconds: f64,
     /// Number of cases for each family, instead of --seconds.
-    #[arg(long, value_name = "N", conflicts_with = "seconds")]
+    #[arg(long, value_name = "N", conflicts_with = "seconds", value_parser = parse::count)]
     cases: Option<u64>,
     /// Seed of the random cases. By default a random one.
-    #[arg(long, value_name = "S")]
+    #[arg(long, value_name = "S", value_parser = parse::whole)]
     seed: Option<u64>,
     /// Number of the first case of each family. With --cases 1 it repeats the case of that number.
-    #[arg(long, default_value_t = 0, value_name = "N")]
+    #[arg(long, default_value_t = 0, value_name = "N", value_parser = parse::whole)]
     first: u64,
     /// Families, separated by commas, or all.
     #[arg(long, default_value = "all", value_name = "NAME,...", value_parser = only)]
@@ -71,8 +71,14 @@ fn after_help() -> String {
     format!("{EXAMPLES}\n\nFamilies:\n{}{missing}", lines.join("\n"))
 }
 
+/// Four months.
+const LONGEST: f64 = 1e7;
+
 fn seconds(text: &str) -> Result<f64, String> {
-    text.parse().ok().filter(|&seconds: &f64| seconds > 0.0 && seconds <= 1e7).ok_or_else(|| "a number of seconds is needed".into())
+    text.parse()
+        .ok()
+        .filter(|&seconds: &f64| seconds > 0.0 && seconds <= LONGEST)
+        .ok_or_else(|| format!("more than 0 seconds are needed, and at most {LONGEST}"))
 }
 
 fn only(text: &str) -> Result<Several<&'static str>, String> {
@@ -94,9 +100,10 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome> {
     if !arguments.json {
         report::line(&format!("seed {seed}"))?;
     }
-    let mut failed = false;
+    let (mut failed, mut cases) = (false, 0);
     for family in &families {
         let summary = look(&**family, arguments, seed, arguments.seconds / families.len() as f64)?;
+        cases += summary.cases;
         if arguments.json {
             report::json(&summary)?;
         } else {
@@ -107,6 +114,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome> {
             tell(family.name(), seed, failure, arguments)?;
         }
     }
+    ensure!(cases > 0, "no case was judged; give more --seconds, or more --cases");
     Ok(if failed { Outcome::Differences } else { Outcome::Done })
 }
 
@@ -132,6 +140,7 @@ fn text(summary: &Summary) -> String {
         _ => String::new(),
     };
     let verdict = match failures {
+        0 if *cases == 0 => "nothing to judge".to_owned(),
         0 => "all right".to_owned(),
         _ => format!("{} WRONG", report::grouped(*failures)),
     };
