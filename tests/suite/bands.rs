@@ -7,6 +7,7 @@ use embedded_graphics::{
 };
 use microphong::{FramePart, Layout, MAX_SIDE, Picture, RenderError, Renderer, Stats, Stream, renderer::check};
 use microphong_sim::{
+    convert::Options,
     look::Look,
     mesh::Mesh,
     quantise::quantise,
@@ -140,7 +141,7 @@ fn prepared(stream: Stream<'_>, shader: Shader, layout: &Layout, antialias: bool
 fn two_preparations_are_the_whole() {
     let mut streams: Vec<_> = scene::NAMES.iter().chain(&scene::VARIANTS).map(|name| (*name, scene::load(name).unwrap().stream)).collect();
     let mesh = shapes::torus(30, 20);
-    let look = |distance| Look::new(scene::default_surface(), View::orbit(Up::Y, 0.5, 0.35, distance, 120));
+    let look = |distance| Look::new(Options::default().surface, View::orbit(Up::Y, 0.5, 0.35, distance, 120));
     let (mut parts, _) = quantise(&mesh);
     streams.extend([("far", look(4.0).stream(&parts).unwrap()), ("near", look(1.1).stream(&parts).unwrap())]);
     let count = parts[0].vertices.len();

@@ -7,6 +7,7 @@ use microphong_sim::{
     render::{self, Format, Settings, Style},
     scene,
     shader::Shader,
+    verify,
 };
 use microphong_tests::{only_announces, program};
 use std::{
@@ -146,7 +147,73 @@ fn ply_is_converted() {
     place.file("points.ply", points).fails(&["convert", "points.ply"], 1, &["points.ply", "no faces"]);
 }
 
-/// A grid of `side` cells along a side, on a bowl. If `two`, its right half has another material.
+/// Whatever takes a mesh file takes its options: the picture is that of the stream that `convert` makes with these options.
+#[test]
+fn mesh_files_take_options_everywhere() {
+    let place = Place::new();
+    place.file("part.obj", bowl(8, true).replace("usemtl", "#"));
+    let json = |arguments: &[&str]| -> serde_json::Value { serde_json::from_str(place.succeeds(arguments).trim()).expect("JSON") };
+    let options: [&[&str]; 5] = [
+        &[],
+        &["--up", "z", "--colour", "4080ff", "--plastic", "--exponent", "60", "--background", "102030"],
+        &["--flip", "--crease", "0", "--light", "-1,1,1", "--light", "at:1,1,2:ff8000", "--ambient", "0.3"],
+        &["--azimuth", "-40", "--elevation", "70", "--projection", "parallel", "--orbit", "7", "--diffuse", "0.7", "--specular", "0.1"],
+        &["--simplify", "60", "--lod", "48x48", "--merge", "--local-viewer"],
+    ];
+    let mut seen = Vec::new();
+    for options in options {
+        place.succeeds(&[&["convert", "part.obj", "-o", "part.tri"], options].concat());
+        let drawn =
+            |scene: &str, options: &[&str]| json(&[&["render", scene, "--size", "64x48", "--first", "3", "--json"], options].concat());
+        let crc = drawn("part.tri", &[])["crc"].clone();
+        assert_eq!(drawn("part.obj", options)["crc"], crc, "{options:?}");
+        assert!(!seen.contains(&crc), "{options:?} change nothing");
+        seen.push(crc);
+        let bytes = |scene: &str, options: &[&str]| json(&[&["inspect", scene, "--json"], options].concat())["bytes"].clone();
+        assert_eq!(bytes("part.obj", options), bytes("part.tri", &[]), "{options:?}");
+    }
+    let simplified = &options[4][..4];
+    let compare =
+        |scene: &str, options: &[&str]| json(&[&["compare", scene, "--size", "64x48", "--shader", "gouraud", "--json"], options].concat());
+    place.succeeds(&[&["convert", "part.obj", "-o", "part.tri"], simplified].concat());
+    assert_eq!(compare("part.obj", simplified), compare("part.tri", &[]));
+    let bench = |scene: &str, options: &[&str]| {
+        json(&[&["bench", scene, "--board", "x86-64", "--shader", "gouraud", "--json"], options].concat())["instructions"].clone()
+    };
+    assert_eq!(bench("part.obj", simplified), bench("part.tri", &[]));
+}
+
+/// Other scenes have their own surface, light and view: options for mesh files are refused, not ignored.
+#[test]
+fn options_for_mesh_files_are_refused_elsewhere() {
+    let place = Place::new();
+    place.file("good.obj", TETRAHEDRON).succeeds(&["convert", "good.obj"]);
+    place.file("good.toml", "frames = 1\n[camera]\nat = [0, 0, 4]\n[[mesh]]\nname = \"a\"\nshape = \"sphere\"\n[[object]]\nmesh = \"a\"\n");
+    let kinds: [(&str, &[&str]); 4] = [
+        ("good.tri", &["good.tri is a finished stream", "`microphong convert`"]),
+        ("good.toml", &["good.toml is a scripted scene", "into its text"]),
+        ("teapot", &["teapot is a built-in scene", "leave them out"]),
+        ("gauges", &["gauges is a built-in scene"]),
+    ];
+    for (scene, words) in kinds {
+        let commands: [&[&str]; 5] = [&["render"], &["inspect"], &["compare", "good.obj"], &["bench"], &["verify", "--board", "pico"]];
+        for command in commands {
+            place.fails(&[command, &[scene, "--up", "z"]].concat(), 2, &[words, &["--up"]].concat());
+        }
+    }
+    // As given, and not as it differs: this is the axis without the option.
+    place.fails(&["render", "teapot", "--up", "y"], 2, &["teapot is a built-in scene"]);
+    place.fails(&["convert", "good.toml", "--plastic", "-o", "no.tri"], 2, &["good.toml is a scripted scene"]);
+    for option in [["--shader", "phong"], ["--budget", "2"], ["--size", "64x48"]] {
+        place.fails(&[&["convert", "good.toml", "-o", "no.tri"], &option[..]].concat(), 2, &["good.toml", option[0], "into the text"]);
+    }
+    place.fails(&["bench", "--check", "none.csv", "--up", "z"], 2, &["--check", "--up"]);
+    place.fails(&["bench", "--up", "z"], 2, &["peer-sphere is a built-in scene"]);
+    let nine = ["--light", "1,0,0"].repeat(9);
+    place.fails(&[&["render", "good.obj"], &nine[..]].concat(), 2, &["9 times --light", "8 lights"]);
+}
+
+/// A grid of so many cells along a side, on a bowl; the half to the right has a material of its own if `two`.
 fn bowl(side: usize, two: bool) -> String {
     let mut text = String::new();
     for k in 0..(side + 1) * (side + 1) {
@@ -181,7 +248,7 @@ fn meshes_are_simplified() {
         last = error;
     }
     let said = place.succeeds(&["convert", "bowl.obj", "--simplify", "100"]);
-    assert!(said.contains("simplified from 800 triangles") && said.contains("pixels in a picture of 240x240"), "{said}");
+    assert!(said.contains("simplified from 800 triangles") && said.contains("pixels in a picture of 320x240"), "{said}");
     let said = place.succeeds(&["convert", "bowl.obj", "--simplify", "400", "--lod", "64x64,320x240"]);
     assert!(said.contains("pixels in a picture of 320x240") && said.contains("a level of"), "{said}");
     for most in ["800", "4000000000"] {
@@ -346,22 +413,56 @@ fn only_regular_files_are_replaced() {
     assert!(fs::metadata(at("pipe")).expect("pipe").file_type().is_fifo());
 }
 
-/// If the file goes to standard output, the report goes to stderr.
+/// A private file stays private, and a new one has the permissions that new files have.
+#[cfg(unix)]
+#[test]
+fn permissions_of_a_replaced_file_stay() {
+    use std::os::unix::fs::PermissionsExt;
+    let place = Place::new();
+    place.file("good.obj", TETRAHEDRON).file("other", "");
+    let at = |name: &str| place.0.path().join(name);
+    let mode = |name: &str| fs::metadata(at(name)).expect("a file").permissions().mode() & 0o777;
+    for (command, file) in [(&["convert", "good.obj"][..], "out.tri"), (&["render", "good.obj", "--size", "33x17"], "out.png")] {
+        let write = || place.succeeds(&[command, &["-o", file]].concat());
+        write();
+        assert_eq!(mode(file), mode("other"), "{file}");
+        for private in [0o600, 0o640, 0o400] {
+            fs::write(at(file), "old").expect("scratch file");
+            fs::set_permissions(at(file), fs::Permissions::from_mode(private)).expect("permissions");
+            write();
+            assert_eq!(mode(file), private, "{file}");
+            assert!(fs::metadata(at(file)).expect("a file").len() > 3, "{file} is replaced");
+            fs::set_permissions(at(file), fs::Permissions::from_mode(0o600)).expect("permissions");
+        }
+    }
+    assert_eq!(place.files(), ["good.obj", "other", "out.png", "out.tri"]);
+}
+
+/// Then what is said of the file goes to stderr.
 #[cfg(target_os = "linux")]
 #[test]
 fn standard_output_may_be_the_file() {
     let place = Place::new();
     place.file("good.obj", TETRAHEDRON).succeeds(&["convert", "good.obj"]);
-    let output = place.run(&["convert", "good.obj", "-o", "/proc/self/fd/1"]);
-    assert!(output.status.success());
-    assert_eq!(output.stdout, fs::read(place.0.path().join("good.tri")).expect("stream"));
-    assert!(String::from_utf8_lossy(&output.stderr).contains("4 triangles"));
+    for name in ["-", "/proc/self/fd/1"] {
+        let output = place.run(&["convert", "good.obj", "-o", name]);
+        assert!(output.status.success());
+        assert_eq!(output.stdout, fs::read(place.0.path().join("good.tri")).expect("stream"), "{name}");
+        assert!(String::from_utf8_lossy(&output.stderr).contains("4 triangles"), "{name}");
+    }
+    assert_eq!(place.files(), ["good.obj", "good.tri"]);
+    let counted = place.run(&["convert", "good.obj", "-o", "-", "--board", "mps2-an385", "--count"]);
+    assert_eq!(counted.stdout, fs::read(place.0.path().join("good.tri")).expect("stream"));
+    assert!(String::from_utf8_lossy(&counted.stderr).contains("a frame on mps2-an385"), "{counted:?}");
+    let picture = place.run(&["render", "good.obj", "--size", "33x17", "-o", "-"]).stdout;
+    assert!(picture.starts_with(b"\x89PNG"), "a picture");
     place.succeeds(&["render", "good.obj", "--size", "33x17", "-o", "good.png"]);
     let file = fs::File::create(place.0.path().join("redirected.png")).expect("scratch file");
     let render = ["render", "good.obj", "--size", "33x17", "-o", "/proc/self/fd/1", "--json"];
     let status = Command::new(program()).args(render).current_dir(place.0.path()).stdout(file).stderr(std::process::Stdio::null()).status();
     assert!(status.expect("the program").success());
     assert_eq!(fs::read(place.0.path().join("redirected.png")).ok(), fs::read(place.0.path().join("good.png")).ok());
+    assert_eq!(fs::read(place.0.path().join("good.png")).ok(), Some(picture));
 }
 
 #[cfg(target_os = "linux")]
@@ -432,7 +533,7 @@ fn interrupted_emulations_leave_nothing_behind() {
         time::{Duration, Instant},
     };
     let commands: [(&[&str], &str); 3] = [
-        (&["verify", "--board", "lm3s6965evb", "--scene", "triangle", "--shader", "flat", "--frames", "2000"], "qemu-system-arm"),
+        (&["verify", "--board", "lm3s6965evb", "triangle", "--shader", "flat", "--frames", "2000"], "qemu-system-arm"),
         (&["bench", "bunny", "--board", "mps2-an385", "--shader", "phong"], "qemu-system-arm"),
         (&["bench", "bunny", "--board", "x86-64", "--shader", "phong"], "callgrind-amd64"),
     ];
@@ -501,7 +602,7 @@ fn wrong_usage_is_told_from_failure() {
     place.fails(&["convert", "good.obj", "--diffuse", "nan"], 2, &["--diffuse"]);
     place.fails(&["convert", "good.obj", "-o", "good.obj"], 2, &["overwrite"]);
     place.fails(&["verify", "--board", "uno"], 2, &["uno", "pico"]);
-    place.fails(&["verify", "--board", "pico", "--scene", "none"], 2, &["none", "teapot"]);
+    place.fails(&["verify", "triangle", "none", "--board", "pico"], 2, &["none", "teapot"]);
     place.fails(&["bench", "--renew", "costs.csv"], 2, &["--reason <TEXT>"]);
     place.fails(&["bench", "--renew", "costs.csv", "--reason", " "], 2, &["--reason", "a reason is needed"]);
     place.fails(&["bench", "--reason", "none"], 2, &["--renew <FILE>"]);
@@ -514,7 +615,103 @@ fn wrong_usage_is_told_from_failure() {
     place.fails(&[], 2, &["Usage"]);
 }
 
-/// The default method is `auto`, within 1 of 255.
+/// A number below its range is told by the range, and not as an option that nobody knows.
+#[test]
+fn negative_numbers_are_told_by_their_range() {
+    let place = Place::new();
+    place.file("good.obj", TETRAHEDRON);
+    let cases: [(&[&str], &str, &str); 14] = [
+        (&["convert", "good.obj"], "--crease", "from 0 to 180"),
+        (&["convert", "good.obj"], "--exponent", "1..=1024"),
+        (&["convert", "good.obj"], "--diffuse", "from 0 to 2"),
+        (&["render", "good.obj"], "--ambient", "from 0 to 2"),
+        (&["render", "good.obj"], "--orbit", "0..=65535"),
+        (&["render", "good.obj"], "--budget", "from 0.5 to 16"),
+        (&["render", "good.obj"], "--frames", "1..=65535"),
+        (&["render", "good.obj"], "--band-rows", "1..=4294967295"),
+        (&["compare", "good.obj"], "--frame", "0..=4294967295"),
+        (&["verify", "--board", "pico"], "--frames", "1..=65535"),
+        (&["stress"], "--seconds", "more than 0 seconds"),
+        (&["stress"], "--cases", "from 1 to 18446744073709551615"),
+        (&["stress"], "--seed", "from 0 to 18446744073709551615"),
+        (&["bounds"], "--check", "from 1 to 18446744073709551615"),
+    ];
+    for (command, option, range) in cases {
+        place.fails(&[command, &[option, "-1"]].concat(), 2, &["'-1'", option, range]);
+    }
+    place.succeeds(&["render", "good.obj", "--azimuth", "-30.5", "--elevation", "-10", "--size", "33x17"]);
+}
+
+/// Nothing is all right of which nothing was looked at.
+#[test]
+fn nothing_judged_is_not_all_right() {
+    let place = Place::new();
+    place.fails(&["stress", "--cases", "0"], 2, &["--cases", "from 1"]);
+    place.fails(&["bounds", "--check", "0"], 2, &["--check", "from 1"]);
+    let output = place.run(&["stress", "--only", "budget", "--seed", "1", "--seconds", "1e-9"]);
+    let (told, wrong) = (String::from_utf8_lossy(&output.stdout), String::from_utf8_lossy(&output.stderr));
+    assert!(told.contains("nothing to judge") && !told.contains("all right"), "{told}");
+    assert!(output.status.code() == Some(1) && wrong.contains("no case was judged"), "{wrong}");
+    place.file("costs.csv", "\n").fails(&["bench", "--check", "costs.csv"], 1, &["costs.csv lists no frames"]);
+}
+
+/// A pixel format has one name, in the command and in what it prints; names of types are understood as well.
+#[test]
+fn formats_have_the_same_names_everywhere() {
+    let place = Place::new();
+    place.file("good.obj", TETRAHEDRON);
+    let names = Format::ALL.map(Format::name).join(", ");
+    for command in ["render", "convert"] {
+        let help = place.succeeds(&[command, "--help"]).split_whitespace().collect::<Vec<_>>().join(" ");
+        assert!(help.contains(&format!("[possible values: {names}]")), "{command}: {help}");
+    }
+    for format in Format::ALL {
+        assert!(place.succeeds(&["convert", "good.obj", "--format", format.name()]).contains(&format!(" in {} ", format.name())));
+        // Of the type `BinaryColor`, `Gray4` and so on.
+        let of_type = if format == Format::Binary { "BinaryColor".to_owned() } else { format!("{format:?}") };
+        let crc = |name: &str| place.succeeds(&["render", "good.obj", "--size", "33x17", "--format", name, "--json"]);
+        assert_eq!(crc(&of_type), crc(format.name()), "{of_type}");
+    }
+    place.fails(&["convert", "good.obj", "--format", "rgb8"], 2, &["rgb8", "rgb888"]);
+}
+
+/// A mesh without materials is white on black in one bit and few greys: its lit side is bright, and half of it is not lost.
+#[test]
+fn few_greys_get_a_material_that_can_be_read() {
+    let place = Place::new();
+    let teapot = fs::read_to_string(Path::new(env!("CARGO_MANIFEST_DIR")).join("meshes/teapot.obj")).expect("a mesh");
+    place.file("teapot.obj", teapot);
+    /// The share of light pixels of those that a mesh covers.
+    fn lit(place: &Place, arguments: &[&str]) -> f64 {
+        let common = ["render", "--size", "128x128", "--first", "10", "-o", "out.png", "--json"];
+        let line = place.succeeds(&[&common, arguments].concat());
+        let covered = serde_json::from_str::<serde_json::Value>(&line).expect("JSON")["pixels"].as_f64().expect("a number");
+        let decoder = png::Decoder::new(std::io::BufReader::new(fs::File::open(place.0.path().join("out.png")).expect("a picture")));
+        let mut reader = decoder.read_info().expect("a picture");
+        let mut rgb = vec![0; reader.output_buffer_size().expect("a size")];
+        reader.next_frame(&mut rgb).expect("a picture");
+        rgb.chunks_exact(3).map(|pixel| f64::from(pixel[1]) / 255.0).sum::<f64>() / covered
+    }
+    for format in ["binary", "gray2", "gray4"] {
+        let own = lit(&place, &["teapot.obj", "--format", format]);
+        let copper = lit(
+            &place,
+            &["teapot.obj", "--format", format, "--colour", "ff9e54", "--diffuse", "0.5", "--ambient", "0.1", "--background", "000000"],
+        );
+        println!("{format}: {own:.2}, copper {copper:.2}");
+        assert!(own > 0.5 && own > 1.5 * copper, "{format}: {own}, copper {copper}");
+        // `convert` takes the format of the display for that.
+        place.succeeds(&["convert", "teapot.obj", "--format", format]);
+        assert!((lit(&place, &["teapot.tri", "--format", format]) - own).abs() < 1e-9, "{format}");
+    }
+    place.succeeds(&["convert", "teapot.obj", "--board", "lm3s6965evb", "-o", "board.tri"]);
+    assert_eq!(
+        lit(&place, &["board.tri", "--format", "gray4"]),
+        lit(&place, &["teapot.obj", "--format", "gray4", "--shader", "auto-linear"])
+    );
+}
+
+/// What is not asked for otherwise is `auto`, within 1 of 255.
 #[test]
 fn auto_is_the_default() {
     let place = Place::new();
@@ -669,11 +866,23 @@ fn sealed_nonsense_is_refused_or_drawn_but_never_crashes() {
     assert!(refused > 100 && drawn > 100, "{refused} refused, {drawn} drawn");
 }
 
+/// Scenes are named as `bench` names them.
+#[test]
+fn verify_takes_several_scenes() {
+    let place = Place::new();
+    place.file("good.obj", TETRAHEDRON);
+    let lines = place.succeeds(&["verify", "triangle", "good.obj", "--board", "mps2-an385", "--shader", "flat", "--frames", "1", "--json"]);
+    let lines: Vec<serde_json::Value> = lines.lines().map(|line| serde_json::from_str(line).expect("JSON")).collect();
+    let told: Vec<_> = lines.iter().map(|line| (line["scene"].as_str(), line["differing"].as_u64())).collect();
+    assert_eq!(told, [(Some("triangle"), Some(0)), (Some("good"), Some(0))]);
+    place.fails(&["verify", "--board", "pico", "--scene", "teapot"], 2, &["--scene"]);
+}
+
 /// A board that lacks a method is told and left out where all are asked for.
 #[test]
 fn verify_leaves_out_boards_without_a_method() {
     let place = Place::new();
-    let lines = place.succeeds(&["verify", "--board", "all", "--scene", "triangle", "--shader", "sqrt6", "--frames", "1", "--json"]);
+    let lines = place.succeeds(&["verify", "triangle", "--board", "all", "--shader", "sqrt6", "--frames", "1", "--json"]);
     let lines: Vec<serde_json::Value> = lines.lines().map(|line| serde_json::from_str(line).expect("JSON")).collect();
     assert_eq!((lines.len(), &lines[0]["board"], &lines[0]["lacking"]), (4, &"lm3s6965evb".into(), &true.into()));
     assert!(lines[1..].iter().all(|line| line["differing"] == 0), "{lines:?}");
@@ -703,6 +912,58 @@ fn convert_refuses_methods_that_a_board_lacks() {
     place.file("scene.toml", scene).succeeds(&["convert", "scene.toml", "--board", "pico"]);
     place.fails(&["convert", "scene.toml", "--board", "lm3s6965evb", "-o", "no.tri"], 1, &["scene.toml", "no six-point", "`shader`"]);
     place.fails(&["convert", "good.obj", "--board", "uno"], 2, &["uno", "lm3s6965evb"]);
+}
+
+/// `convert --board` refuses what the firmware of that board would refuse, and nothing else.
+#[test]
+fn convert_refuses_what_a_board_would_refuse() {
+    let place = Place::new();
+    let materials = |count: usize| -> String {
+        let faces = (0..count).map(|k| format!("usemtl m{k}\nf {} {} {}\n", 3 * k + 1, 3 * k + 2, 3 * k + 3));
+        (0..count).map(|k| format!("v {k} 0 0\nv {k} 1 0\nv {k} 0 1\n")).collect::<String>() + &faces.collect::<String>()
+    };
+    let scene = |objects: usize, more: &str| -> String {
+        let head = "frames = 1\nshader = \"gouraud\"\n[camera]\nat = [0, 0, 5]\n[[mesh]]\nname = \"box\"\nshape = \"box\"\n";
+        format!("{head}{}{more}", "[[object]]\nmesh = \"box\"\n".repeat(objects))
+    };
+    for count in [2, 3, 4, 5, 16, 17] {
+        let colours: String = (0..count).map(|k| format!("newmtl m{k}\nKd 0.{} 0.5 0.5\n", k + 10)).collect();
+        place.file(&format!("m{count}.mtl"), colours);
+        place.file(&format!("m{count}.obj"), format!("mtllib m{count}.mtl\n{}", materials(count)));
+    }
+    for count in [1, 2, 12, 13, 64, 65] {
+        place.file(&format!("o{count}.toml"), scene(count, ""));
+    }
+    place.file("label.toml", scene(1, "[[label]]\ntext = \"5\"\nat = [0, 0]\n")).file("large.obj", bowl(50, false));
+    let (mut refused, mut taken) = (0, 0);
+    for file in place.files().iter().filter(|file| !file.ends_with("mtl")) {
+        for board in Board::ALL {
+            let shader = if file.ends_with("toml") { &[][..] } else { &["--shader", "gouraud"] };
+            place.succeeds(&[&["convert", file, "-o", "out.tri"], shader].concat());
+            let bytes = fs::read(place.0.path().join("out.tri")).expect("a stream");
+            let fits = board != Board::Lm3s6965evb || bytes.len() <= 130 << 10;
+            let arguments = [&["convert", file, "--board", board.name(), "-o", "no.tri"], shader].concat();
+            fs::remove_file(place.0.path().join("out.tri")).expect("a stream");
+            match verify::first_frame(board, &bytes) {
+                Ok(_) if fits => {
+                    taken += 1;
+                    place.succeeds(&arguments);
+                    fs::remove_file(place.0.path().join("no.tri")).expect("a stream");
+                }
+                _ => {
+                    refused += 1;
+                    place.fails(&arguments, 1, &[file, board.name()]);
+                }
+            }
+        }
+    }
+    // Refused by the Pico 6 of 14, by the smallest board 12, by each of the two others 2.
+    assert_eq!((taken, refused), (34, 22));
+    place.fails(&["convert", "m5.obj", "--board", "pico", "-o", "no.tri"], 1, &["5 materials", "room for 4", "--colour"]);
+    place.succeeds(&["convert", "m5.obj", "--board", "pico", "--colour", "ff8000"]);
+    place.fails(&["convert", "o13.toml", "--board", "pico", "-o", "no.tri"], 1, &["13 objects", "room for 12"]);
+    place.fails(&["convert", "label.toml", "--board", "lm3s6965evb", "-o", "no.tri"], 1, &["no fonts", "labels"]);
+    place.fails(&["convert", "large.obj", "--board", "lm3s6965evb", "-o", "no.tri"], 1, &["room for 133120", "--simplify"]);
 }
 
 /// `convert` ends with what a frame takes on boards where that is asked for, and refuses a board that it cannot count on before it writes.

@@ -41,7 +41,8 @@ const FIGURES: [&str; 12] = [
 #[test]
 fn json_has_all_figures_of_every_scene_and_method() {
     let directory = tempfile::tempdir().expect("scratch directory");
-    let lines = succeeds(directory.path(), &["sphere-168", "torus", "--shader", "gouraud,six-point,phong", "--exponent", "50", "--json"]);
+    let lines =
+        succeeds(directory.path(), &["sphere-168", "torus", "--shader", "gouraud,six-point,phong", "--override-exponent", "50", "--json"]);
     let objects = objects(&lines);
     let keys: Vec<_> = objects.iter().map(|o| (o["scene"].as_str().unwrap_or(""), o["shader"].as_str().unwrap_or(""))).collect();
     let methods = ["gouraud", "six-point", "phong"];
@@ -74,7 +75,8 @@ fn json_has_all_figures_of_every_scene_and_method() {
 fn an_exponent_changes_the_highlights_alone() {
     let directory = tempfile::tempdir().expect("scratch directory");
     let figure = |exponent: &str, shader: &str| {
-        let lines = succeeds(directory.path(), &["sphere-374", "--size", "96x96", "--shader", shader, "--exponent", exponent, "--json"]);
+        let lines =
+            succeeds(directory.path(), &["sphere-374", "--size", "96x96", "--shader", shader, "--override-exponent", exponent, "--json"]);
         objects(&lines)[0]["method_max_lsb"].as_f64().expect("a figure")
     };
     assert!(figure("100", "gouraud") > 2.0 * figure("5", "gouraud"));
@@ -88,8 +90,8 @@ fn wrong_usage_and_impossible_methods() {
         (&["teapott"], 2, &["teapott", "teapot, bunny"]),
         (&["teapot", "--shader", "fong"], 2, &["fong", "six-point", "or all"]),
         (&["teapot", "--shader", "phong,"], 2, &["--shader"]),
-        (&["teapot", "--exponent", "0"], 2, &["--exponent"]),
-        (&["teapot", "--exponent", "1025"], 2, &["--exponent"]),
+        (&["teapot", "--override-exponent", "0"], 2, &["--override-exponent"]),
+        (&["teapot", "--override-exponent", "1025"], 2, &["--override-exponent"]),
         (&["teapot", "--size", "0x4"], 2, &["WIDTHxHEIGHT"]),
         (&[], 2, &["SCENE"]),
         // Before anything is drawn: nothing on stdout, though the other method and scene could be.

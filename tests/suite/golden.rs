@@ -7,6 +7,7 @@ use embedded_graphics::{geometry::Size, pixelcolor::Rgb565};
 use microphong::pixel::{Pixel, Rgb565Be};
 use microphong_sim::{
     board::Board,
+    convert::{Converted, Options},
     image,
     mesh::Weld,
     render::{self, Format, Settings, Style},
@@ -85,7 +86,9 @@ pub(crate) fn check_pixels(golden: &Path, Size { width, height }: Size, drawn: &
 /// The streams that firmware is built with: the teapot as `convert --crease 180` makes it, by a method that the board has.
 #[test]
 fn firmware_has_the_teapot() {
-    let stream = scene::from_mesh(&root().join("meshes/teapot.obj"), Weld::SMOOTH).expect("a mesh");
+    let options = Options { weld: Weld::SMOOTH, ..Options::default() };
+    let converted = Converted::read(&root().join("meshes/teapot.obj"), &options, &()).expect("a mesh");
+    let stream = converted.stream().expect("a stream");
     let frames = stream.parse().expect("a stream").header.frames;
     for (file, board) in [("teapot.tri", Board::Pico), ("boards/lm3s6965evb.tri", Board::Lm3s6965evb)] {
         let path = root().join("../firmware").join(file);

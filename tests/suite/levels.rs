@@ -15,13 +15,13 @@ use microphong::{
 };
 use microphong_sim::{
     bytes::StreamBytes,
+    convert::{DISTANCE, MARGIN},
     distance::distance,
     levels,
     look::{Look, Surface},
     obj,
     quantise::quantise,
     render,
-    scene::{DISTANCE, MARGIN},
     shader::Shader,
     shapes,
     vector::V3,

@@ -6,6 +6,7 @@
 
 use microphong_sim::{
     bytes::StreamBytes,
+    convert::{self, Options},
     look::Look,
     mesh::Mesh,
     quantise::quantise,
@@ -52,12 +53,12 @@ impl Case {
 
 /// A stream of `mesh` under a camera that sees all of it, a little from above.
 fn stream(mesh: &Mesh, parallel: bool) -> StreamBytes {
-    let mut camera = view::View::orbit(Up::Y, 0.3, 0.2, scene::DISTANCE, FRAMES as u16);
+    let mut camera = view::View::orbit(Up::Y, 0.3, 0.2, convert::DISTANCE, FRAMES as u16);
     if parallel {
         camera = camera.parallel();
     }
-    let camera = camera.fit(&mesh.positions, (256, 256), scene::MARGIN);
-    Look::new(scene::default_surface(), camera).stream(&quantise(mesh).0).unwrap()
+    let camera = camera.fit(&mesh.positions, (256, 256), convert::MARGIN);
+    Look::new(Options::default().surface, camera).stream(&quantise(mesh).0).unwrap()
 }
 
 /// Pixels of one frame that are covered and not drawn, and that are drawn and not covered.

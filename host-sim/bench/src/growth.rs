@@ -7,6 +7,7 @@ use super::{Stages, callgrind};
 use anyhow::Result;
 use microphong_render::{
     bytes::StreamBytes,
+    convert,
     look::{Lamp, Look, Surface},
     quantise::quantise,
     scene,
@@ -141,7 +142,8 @@ impl Step {
         // Half a side is half the root of two in space.
         let focal = side / picture * 2f64.sqrt();
         let (s, c) = TURN.sin_cos();
-        let view = View::facing([[c, -s, 0.0], [s, c, 0.0], [0.0, 0.0, 1.0]], scene::DISTANCE, [0.0, 0.0, 1.0], 0).parallel().focal(focal);
+        let view =
+            View::facing([[c, -s, 0.0], [s, c, 0.0], [0.0, 0.0, 1.0]], convert::DISTANCE, [0.0, 0.0, 1.0], 0).parallel().focal(focal);
         let share = 1.0 / lights as f64;
         let mut look = Look::new(Surface::metal([1.0; 3], [0.1, 0.45, 0.45], 50), view);
         look.lamps = (0..lights)

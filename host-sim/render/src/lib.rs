@@ -2,6 +2,7 @@
 
 pub mod bytes;
 pub mod choices;
+pub mod convert;
 pub mod convex;
 pub mod distance;
 mod fields;

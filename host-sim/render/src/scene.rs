@@ -2,8 +2,9 @@
 
 use crate::{
     bytes::StreamBytes,
+    convert::{COPPER, Converted, DISTANCE, MARGIN, ORBIT, Options, SQUARE, Steps},
     foreign,
-    import::{self, Imported, read, surfaces},
+    import::read,
     look::{Lamp, Look, Surface},
     mesh::{self, Mesh, Weld},
     obj,
@@ -93,14 +94,6 @@ impl std::error::Error for Unknown {}
 
 /// Size for scenes from files.
 pub const SIZE: (u32, u32) = (640, 480);
-/// Frames in which a scene turns once.
-pub const ORBIT: u16 = 120;
-/// Distance of the eye from an object of radius 1.
-pub const DISTANCE: f64 = 4.0;
-/// Free border, a share of the picture.
-pub const MARGIN: f64 = 0.06;
-/// Copper, a little towards gold.
-pub const COPPER: V3 = [1.0, 0.62, 0.33];
 /// Blue, a little towards cyan.
 const BLUE: V3 = [0.25, 0.5, 0.95];
 
@@ -122,11 +115,23 @@ fn scripted(name: &str) -> Option<&'static str> {
 /// # Errors
 /// [`Unknown`] if `name_or_path` is none of these, otherwise the fault of the file.
 pub fn load(name_or_path: &str) -> Result<Scene> {
+    load_with(name_or_path, &Options::default(), false, &())
+}
+
+/// Loads what [`load`] does, mesh files with these options. `are_given` says that a user has asked for some of them.
+///
+/// # Errors
+/// [`Misplaced`] when options are given for what is no mesh file; else the errors of [`load`].
+pub fn load_with(name_or_path: &str, options: &Options, are_given: bool, steps: &dyn Steps) -> Result<Scene> {
+    let fixed = |kind, remedy| if are_given { Err(Misplaced { name: name_or_path.to_owned(), kind, remedy }) } else { Ok(()) };
+    let built_in = "a built-in scene";
     if NAMES.contains(&name_or_path) || VARIANTS.contains(&name_or_path) {
-        let (stream, size) = built_in(name_or_path)?;
+        fixed(built_in, LEAVE_OUT)?;
+        let (stream, size) = self::built_in(name_or_path)?;
         return Ok(Scene { name: name_or_path.to_owned(), stream, size });
     }
     if let Some(script) = scripted(name_or_path) {
+        fixed(built_in, LEAVE_OUT)?;
         let (stream, size) = script::stream(script, None)?;
         return Ok(Scene { name: name_or_path.to_owned(), stream, size });
     }
@@ -134,13 +139,20 @@ pub fn load(name_or_path: &str) -> Result<Scene> {
     let ending = path.extension().map(|e| e.to_ascii_lowercase());
     let mut size = SIZE;
     let stream = match ending.as_deref().and_then(|e| e.to_str()) {
-        Some("tri") => StreamBytes::read(path)?,
+        Some("tri") => {
+            fixed("a finished stream", "give them to `microphong convert`, which makes streams")?;
+            StreamBytes::read(path)?
+        }
         Some("toml") => {
+            fixed("a scripted scene", "write them into its text")?;
             let scene = script::of_bytes(&read(path)?, path.parent()).with_context(|| name_or_path.to_owned())?;
             size = scene.1;
             scene.0
         }
-        Some("obj" | "stl" | "ply" | "gltf" | "glb") => from_mesh(path, Weld::default())?,
+        Some("obj" | "stl" | "ply" | "gltf" | "glb") => {
+            let converted = Converted::read(path, options, steps)?;
+            converted.stream().with_context(|| name_or_path.to_owned())?
+        }
         _ => {
             if path.is_file() {
                 foreign::refuse(path, &read(path)?)?;
@@ -152,31 +164,30 @@ pub fn load(name_or_path: &str) -> Result<Scene> {
     Ok(Scene { name, stream, size })
 }
 
+const LEAVE_OUT: &str = "leave them out";
+
+/// Options for mesh files with a scene that is none.
+#[derive(Debug)]
+pub struct Misplaced {
+    name: String,
+    kind: &'static str,
+    remedy: &'static str,
+}
+
+impl fmt::Display for Misplaced {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self { name, kind, remedy } = self;
+        write!(f, "{name} is {kind}, and options such as --up and --colour are for mesh files; {remedy}")
+    }
+}
+
+impl std::error::Error for Misplaced {}
+
 /// Whether a file is the text of a scripted scene, by its ending.
 #[must_use]
 pub fn is_script(path: &Path) -> bool {
     path.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("toml"))
 }
-
-/// Converts a mesh file as `convert` does without options, with these options of welding.
-///
-/// # Errors
-/// The error names the file and its fault.
-pub fn from_mesh(path: &Path, weld: Weld) -> Result<StreamBytes> {
-    let Imported { mesh, objects, materials, .. } = import::file(path, weld)?;
-    let view = View::orbit(Up::Y, 0.5, 0.35, DISTANCE, ORBIT).fit(&mesh.positions, SQUARE, MARGIN);
-    let look = Look { objects, surfaces: surfaces(&materials, &default_surface(), AMBIENT), ..Look::new(default_surface(), view) };
-    look.stream(&quantise(&mesh).0).with_context(|| path.display().to_string())
-}
-
-/// Material of meshes from files.
-#[must_use]
-pub fn default_surface() -> Surface {
-    Surface::metal(COPPER, [AMBIENT, 0.5, 0.4], 30)
-}
-
-/// Share of light that is everywhere, in scenes from files.
-pub const AMBIENT: f64 = 0.1;
 
 fn welded(text: &str) -> Result<Mesh> {
     Ok(mesh::weld(&obj::parse(text)?.soup, Weld::SMOOTH)?.0)
@@ -207,9 +218,6 @@ fn built_in(name: &str) -> Result<(StreamBytes, (u32, u32))> {
 }
 
 type Parts = (Mesh, Look, (u32, u32));
-
-/// Size of a square picture. What fits a square fits displays of every shape, because the field of view is that of the narrower side.
-pub const SQUARE: (u32, u32) = (256, 256);
 
 fn teapot() -> Result<Parts> {
     let mesh = welded(TEAPOT)?;

@@ -51,10 +51,10 @@ mod tests {
 
     #[test]
     fn the_command_that_has_it_is_named() {
-        let arguments = ["--board", "pico", "--scene", "my mesh.tri"].map(OsString::from);
+        let arguments = ["my mesh.tri", "--board", "pico"].map(OsString::from);
         let error = refuse("`verify`", "verify", &arguments).err().expect("an error");
         assert!(error.is::<Usage>());
-        let command = "cargo run --release --features boards -- verify --board pico --scene \"my mesh.tri\"";
+        let command = "cargo run --release --features boards -- verify \"my mesh.tri\" --board pico";
         assert!(error.to_string().ends_with(command), "{error}");
     }
 }

@@ -2,6 +2,7 @@
 
 use super::{
     Outcome, Usage, growth,
+    mesh_options::MeshOptions,
     parse::{self, Several},
     report, scenes,
 };
@@ -67,19 +68,21 @@ pub(crate) struct Arguments {
     #[arg(long, conflicts_with_all = ["board", "report", "peers", "styles", "skips"])]
     redraw: bool,
     /// Measure the frames that FILE lists. Fail if one takes over 0.2 % more instructions or flash than FILE records.
-    #[arg(long, value_name = "FILE", conflicts_with_all = ["scenes", "shader", "board", "json", "report", "peers", "styles", "skips", "redraw"])]
+    #[arg(long, value_name = "FILE", conflicts_with_all = ["scenes", "MeshOptions", "shader", "board", "json", "report", "peers", "styles", "skips", "redraw"])]
     check: Option<PathBuf>,
     /// Measure the frames that FILE lists, and record their costs there. Needs --reason.
     #[arg(
         long,
         value_name = "FILE",
         requires = "reason",
-        conflicts_with_all = ["scenes", "shader", "board", "json", "report", "peers", "styles", "skips", "redraw", "check"]
+        conflicts_with_all = ["scenes", "MeshOptions", "shader", "board", "json", "report", "peers", "styles", "skips", "redraw", "check"]
     )]
     renew: Option<PathBuf>,
     /// Why costs have changed, in a sentence. With --renew costs.csv it is added to costs-reasons.md.
     #[arg(long, value_name = "TEXT", requires = "renew", value_parser = parse::reason)]
     reason: Option<String>,
+    #[command(flatten)]
+    options: Option<MeshOptions>,
 }
 
 const EXAMPLES: &str = "\
@@ -128,10 +131,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome> {
     if (arguments.styles || arguments.skips || arguments.redraw) && arguments.budget.len() > 1 {
         return Err(Usage("--styles, --skips and --redraw count by one --budget; give one value".to_owned()).into());
     }
-    let mut scenes = Vec::new();
-    for name in &arguments.scenes {
-        scenes.extend(scenes::load(name, arguments.budget.first().copied())?);
-    }
+    let scenes = scenes::load_all(&arguments.scenes, arguments.options.as_ref(), arguments.budget.first().copied())?;
     let Several { values: shaders, all } = &arguments.shader;
     let wanted = |scene: &Scene| {
         let possible = |shader: Shader| scene.stream.parse().is_ok_and(|stream| check(&stream, shader.facts(), false).is_ok());

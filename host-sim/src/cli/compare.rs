@@ -2,6 +2,7 @@
 
 use super::{
     Outcome,
+    mesh_options::MeshOptions,
     parse::{self, Several},
     report, scenes,
 };
@@ -34,9 +35,9 @@ pub(crate) struct Arguments {
     /// own.
     #[arg(long, value_name = "LSB", value_parser = parse::budget)]
     budget: Option<ErrorBudget>,
-    /// Exponent of all highlights, 1 to 1024. By default the scene's own.
+    /// Exponent of all highlights, 1 to 1024, in scenes of every kind. By default the scene's own.
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
-    exponent: Option<u16>,
+    override_exponent: Option<u16>,
     /// Size of the picture. By default the scene's own, or 640x480 for mesh files.
     #[arg(long, value_name = "WxH", value_parser = parse::size)]
     size: Option<(u32, u32)>,
@@ -52,12 +53,14 @@ pub(crate) struct Arguments {
     /// Print one JSON object per scene and method.
     #[arg(long)]
     json: bool,
+    #[command(flatten)]
+    options: Option<MeshOptions>,
 }
 
 const EXAMPLES: &str = "\
 Examples:
   microphong compare teapot
-  microphong compare sphere-168 torus --exponent 50 --report comparison
+  microphong compare sphere-168 torus --override-exponent 50 --report comparison
   microphong compare all --shader six-point,renq --json
 
 Columns:
@@ -158,14 +161,11 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome> {
 
 /// The scenes with the exponent that was asked for.
 fn chosen(arguments: &Arguments) -> Result<Vec<Scene>> {
-    let mut scenes = Vec::new();
-    for name in &arguments.scenes {
-        for mut scene in scenes::load(name, arguments.budget)? {
-            if let Some(exponent) = arguments.exponent {
-                let bytes = with_exponent(scene.stream.as_bytes(), exponent).with_context(|| scene.name.clone())?;
-                scene.stream = StreamBytes::from(bytes.as_slice());
-            }
-            scenes.push(scene);
+    let mut scenes = scenes::load_all(&arguments.scenes, arguments.options.as_ref(), arguments.budget)?;
+    if let Some(exponent) = arguments.override_exponent {
+        for scene in &mut scenes {
+            let bytes = with_exponent(scene.stream.as_bytes(), exponent).with_context(|| scene.name.clone())?;
+            scene.stream = StreamBytes::from(bytes.as_slice());
         }
     }
     Ok(scenes)

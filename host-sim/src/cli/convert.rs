@@ -2,28 +2,31 @@
 
 use super::{
     Outcome, Usage,
+    boards::{BOARDS, Board},
     count::{self, Cost, Counter},
-    meshes, parse, report,
+    mesh_options::{self, MeshOptions},
+    meshes, parse,
+    report::{self, Bars},
+    scenes,
 };
 use anyhow::{Context, Result, bail};
-use embedded_graphics_core::{geometry::Size, pixelcolor::Rgb565};
+use embedded_graphics_core::geometry::Size;
 use microphong::{
     Layout, Stream,
-    format::{ErrorBudget, GeometricError, MAX_LIGHTS},
+    format::{ErrorBudget, GeometricError},
+    pixel::Pixel,
     stream::record,
 };
 use microphong_sim::{
-    import::{self, Imported},
+    convert::{Converted, Options, SQUARE},
     levels,
-    look::{BACKGROUND, Lamp, Look, Surface},
-    mesh::{CREASE, Mesh, Weld},
+    look::Look,
+    mesh::Mesh,
     output,
     quantise::{Part, quantise},
-    render,
-    scene::{self, AMBIENT, COPPER, DISTANCE, MARGIN, ORBIT, SQUARE},
+    render::{self, Format, InFormat},
+    scene::{self, Scene},
     shader::Shader,
-    vector::{V3, add},
-    view::{Projection, Up, View},
 };
 use serde::Serialize;
 use std::path::{Path, PathBuf};
@@ -48,97 +51,37 @@ use std::path::{Path, PathBuf};
 pub(crate) struct Arguments {
     /// Mesh file to read.
     mesh: PathBuf,
-    /// Stream file to write. By default the name of the mesh file with .tri.
+    /// Stream file to write, or - for standard output. By default the name of the mesh file with .tri.
     #[arg(short, long, value_name = "FILE.tri")]
     output: Option<PathBuf>,
-    /// Axis of the mesh that points up: x, y, z, -x, -y or -z.
-    #[arg(long, default_value = "y", value_parser = parse::up, allow_hyphen_values = true)]
-    up: Up,
-    /// Turn the surface inside out, for meshes whose faces wind clockwise. Closed meshes are turned without this option.
-    #[arg(long)]
-    flip: bool,
-    /// Largest angle in degrees at which an edge looks smooth, for files without normals and smoothing groups: 0 shows all facets, 180 none.
-    #[arg(long, value_name = "DEGREES", default_value_t = CREASE, value_parser = parse::crease)]
-    crease: f64,
     /// Shading method that the stream asks for. By default auto, or auto-linear if the board of --board lacks auto. The board lm3s6965evb has flat,
     /// gouraud and auto-linear, the others have all.
     #[arg(long, value_parser = parse::Shaders)]
     shader: Option<Shader>,
-    /// Board whose firmware shall draw the stream. A method that this firmware lacks is refused.
-    #[arg(long, value_name = "NAME", value_parser = BOARDS.map(|(board, _)| board))]
+    /// Board whose firmware shall draw the stream. Whatever this firmware would refuse is refused, such as a method that it lacks or too many materials.
+    #[arg(long, value_name = "NAME", value_parser = BOARDS.map(|board| board.name))]
     board: Option<String>,
+    /// Pixel format of the display. By default the format of --board, or else rgb565. In one bit and up to 16 greys a mesh without materials is white on
+    /// black.
+    #[arg(long, value_parser = parse::Formats)]
+    format: Option<Format>,
     /// Count a frame on each board, or on the board of --board, and print instructions, and frames per second where time is modelled. Boards are
     /// emulated, which needs a build with `--features boards`.
     #[arg(long)]
     count: bool,
-    /// Error budget of auto and auto-linear: the largest error of a pixel against Phong shading, in 1/255, from 0.5 to 16.
-    #[arg(long, value_name = "LSB", default_value = "1", value_parser = parse::budget)]
-    budget: ErrorBudget,
-    /// Merge all objects into one without a name: one mesh for each material. It takes less flash.
-    #[arg(long)]
-    merge: bool,
-    /// Colour of the whole surface, RRGGBB, instead of the file's materials. Without materials the default is copper.
-    #[arg(long, visible_alias = "color", value_name = "RRGGBB", value_parser = parse::colour)]
-    colour: Option<V3>,
-    /// Diffuse reflection of materials that the file does not define, 0 to 2.
-    #[arg(long, default_value = "0.5", value_parser = parse::share)]
-    diffuse: f64,
-    /// Strength of the highlight of materials that the file does not define, 0 to 2.
-    #[arg(long, default_value = "0.4", value_parser = parse::share)]
-    specular: f64,
-    /// Ambient light, which comes from all sides, 0 to 2.
-    #[arg(long, default_value_t = AMBIENT, value_parser = parse::share)]
-    ambient: f64,
-    /// Exponent of the highlight of materials that the file does not define, 1 to 1024. Larger ones are smaller and sharper.
-    #[arg(long, default_value = "30", value_parser = clap::value_parser!(u16).range(1..=1024))]
-    exponent: u16,
-    /// A light in the direction X,Y,Z: x to the right, y up, z towards the eye. White unless a colour follows. With at: it is a near light at the
-    /// position X,Y,Z from the centre of the mesh, whose radius is 1; near lights take longer. Repeat the option for up to eight lights. By default
-    /// one light comes from the upper left.
-    #[arg(long = "light", value_name = "[at:]X,Y,Z[:RRGGBB]", value_parser = parse::light, allow_hyphen_values = true)]
-    lights: Vec<Lamp>,
-    /// White highlights, as of plastic, instead of coloured ones, as of metal.
-    #[arg(long)]
-    plastic: bool,
-    /// Background colour, RRGGBB.
-    #[arg(long, value_name = "RRGGBB", value_parser = parse::bytes)]
-    background: Option<[u8; 3]>,
-    /// Number of frames of one turn of the camera around the axis that points up; 0 for a camera that stands still.
-    #[arg(long, value_name = "FRAMES", default_value_t = ORBIT)]
-    orbit: u16,
-    /// Position of the camera, in degrees to the right of the front.
-    #[arg(long, value_name = "DEGREES", default_value = "28.6", value_parser = parse::degrees, allow_negative_numbers = true)]
-    azimuth: f64,
-    /// Position of the camera, in degrees above the horizon.
-    #[arg(long, value_name = "DEGREES", default_value = "20", value_parser = parse::degrees, allow_negative_numbers = true)]
-    elevation: f64,
-    /// Projection: perspective or parallel.
-    #[arg(long, default_value = "perspective", value_parser = parse::projection)]
-    projection: Projection,
-    /// Compute highlights with the direction from each point to the eye, instead of one direction for all points. This takes longer.
-    #[arg(long)]
-    local_viewer: bool,
+    /// Error budget of auto and auto-linear: the largest error of a pixel against Phong shading, in 1/255, from 0.5 to 16. By default 1.
+    #[arg(long, value_name = "LSB", value_parser = parse::budget)]
+    budget: Option<ErrorBudget>,
     /// Picture to fill with the mesh. By default the whole turn is seen on displays of every shape, because the mesh fits the narrower side. A
     /// picture that is wider than high can show a wide mesh larger, but narrower displays then cut its sides off.
     #[arg(long, value_name = "WxH", value_parser = parse::size)]
     size: Option<(u32, u32)>,
-    /// Reduce the mesh to this number of triangles, or fewer, on some of its vertices. The output says how far the result is from the mesh of the file. Levels of
-    /// --lod are made from the result.
-    #[arg(long, value_name = "TRIANGLES", value_parser = clap::value_parser!(u32).range(1..))]
-    simplify: Option<u32>,
-    /// Sizes of pictures for which to make a level of detail: the fewest triangles that lie less than half a pixel from the mesh in this picture. A
-    /// picture shows the coarsest level that fits it. Each triangle of a level takes 30 bytes of flash. A level that saves less than a tenth of the
-    /// triangles is left out.
-    #[arg(long, value_name = "WxH,...", value_delimiter = ',', value_parser = parse::size)]
-    lod: Vec<(u32, u32)>,
     /// Print one JSON object.
     #[arg(long)]
     json: bool,
+    #[command(flatten)]
+    options: Option<MeshOptions>,
 }
-
-/// The boards that there is firmware for, and their methods. A build without emulators knows them as well.
-const BOARDS: [(&str, &[Shader]); 4] =
-    [("pico", &Shader::ALL), ("lm3s6965evb", &Shader::SMALLEST_BOARD), ("mps2-an385", &Shader::ALL), ("mps2-an386", &Shader::ALL)];
 
 const EXAMPLES: &str = "\
 Examples:
@@ -175,6 +118,8 @@ struct Line<'a> {
     bytes: usize,
     layout: String,
     memory: usize,
+    /// The pixel format of that memory.
+    format: &'static str,
     remarks: Vec<String>,
     /// Costs of frames, if they were counted.
     costs: Option<Vec<Cost>>,
@@ -212,13 +157,14 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome> {
     if source.extension().is_some_and(|e| e.eq_ignore_ascii_case("tri")) {
         return Err(Usage(format!("{} is a stream already; name an .obj, .stl, .ply, .gltf, .glb or .toml file", source.display())).into());
     }
-    let shader = arguments.shader.unwrap_or(if lacking(arguments, Shader::AUTO).is_some() { Shader::AUTO_LINEAR } else { Shader::AUTO });
-    if let Some(has) = lacking(arguments, shader) {
+    let board = arguments.board.as_deref().and_then(Board::named);
+    let lacks = |shader| board.as_ref().and_then(|board| board.lacks(shader));
+    let shader = arguments.shader.unwrap_or(if lacks(Shader::AUTO).is_some() { Shader::AUTO_LINEAR } else { Shader::AUTO });
+    if let Some(has) = lacks(shader) {
         return Err(Usage(format!("{has}: name one of them by --shader")).into());
     }
-    if arguments.lights.len() > MAX_LIGHTS {
-        return Err(Usage(format!("{} times --light; a scene has {MAX_LIGHTS} lights at most", arguments.lights.len())).into());
-    }
+    let format = arguments.format.or(board.as_ref().map(|board| board.format)).unwrap_or(Format::Rgb565);
+    let options = mesh_options::or_default(arguments.options.as_ref(), format)?;
     let counter = arguments.count.then(|| count::prepare(arguments.board.as_deref())).transpose()?;
     let target = arguments.output.clone().unwrap_or_else(|| source.with_extension("tri"));
     let same = |path: &std::path::Path| path.canonicalize().ok();
@@ -226,65 +172,33 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome> {
         return Err(Usage(format!("{} would overwrite the mesh; name another file with -o", target.display())).into());
     }
     if scene::is_script(source) {
-        return convert_script(arguments, &target, counter.as_ref());
+        return convert_script(arguments, (board.as_ref(), format), &target, counter.as_ref());
     }
-    let Imported { mut mesh, report, mut objects, mut materials, mut remarks } =
-        import::file(source, Weld { turn: arguments.flip, crease: arguments.crease })?;
-    if arguments.colour.is_some() && materials.iter().any(Option::is_some) {
-        remarks.push(format!("--colour replaces {} materials of the file", materials.iter().flatten().count()));
-        mesh.merge_materials();
-        materials = vec![None];
+    let options = Options { size: arguments.size.unwrap_or(SQUARE), ..options };
+    let mut converted = Converted::read(source, &options, &Bars::default())?;
+    converted.look.budget = arguments.budget.unwrap_or(ErrorBudget::ONE);
+    converted.look.shader = shader;
+    let bytes = converted.stream().with_context(|| source.display().to_string())?;
+    let Converted { mesh, report, materials, mut remarks, parts, lost, look, simplified } = converted;
+    if let (Some(most), None) = (options.simplify, &simplified) {
+        remarks.push(format!("not simplified: it has no more than {} triangles", report::grouped(most as u64)));
     }
-    if arguments.merge {
-        mesh.merge_objects();
-        objects.clear();
+    let stream = bytes.parse()?;
+    if let Some(board) = &board {
+        board.check(&stream).with_context(|| source.display().to_string())?;
     }
-    let (mut parts, lost) = quantise(&mesh);
-    let records = records(&parts);
-    let place = || source.display().to_string();
-    let view = View::orbit(arguments.up, arguments.azimuth.to_radians(), arguments.elevation.to_radians(), DISTANCE, arguments.orbit);
-    let view = if arguments.projection == Projection::Orthographic { view.parallel() } else { view };
-    let of_arguments = surface(arguments);
-    let look = Look {
-        objects,
-        surfaces: import::surfaces(&materials, &of_arguments, arguments.ambient),
-        background: arguments.background.unwrap_or(BACKGROUND).into(),
-        local_viewer: arguments.local_viewer,
-        budget: arguments.budget,
-        shader,
-        ..Look::new(of_arguments, view.fit(&mesh.positions, arguments.size.unwrap_or(SQUARE), MARGIN))
-    };
-    let look = if arguments.lights.is_empty() { look } else { Look { lamps: placed(&arguments.lights, &look.view), ..look } };
-    let simplified = match arguments.simplify.map(|most| most as usize) {
-        None => None,
-        Some(most) => {
-            let bar = report::progress(parts.len() as u64, "simplifying");
-            let simplified = levels::simplify(&mesh, &mut parts, most, &|| bar.inc(1)).with_context(place)?;
-            bar.finish_and_clear();
-            if simplified.is_none() {
-                remarks.push(format!("not simplified: it has no more than {} triangles", report::grouped(most as u64)));
-            }
-            simplified.map(|simplified| in_pixels(simplified, &look, &parts, &arguments.lod))
-        }
-    };
-    let errors: Vec<_> = arguments.lod.iter().map(|&size| look.tolerance(&parts, size)).collect();
-    // The stream is a step as well, so that a single level has a bar.
-    let bar = report::progress((parts.len() * errors.len()) as u64 + 1, "searching levels of detail");
-    levels::add(&mesh, &mut parts, &errors, &|| bar.inc(1)).with_context(place)?;
-    bar.finish_and_clear();
-    let bytes = look.stream(&parts).with_context(place)?;
     report::leave_to(&target);
     output::write(&target, bytes.as_bytes())?;
-    let stream = bytes.parse()?;
     let size = arguments.size.unwrap_or(USUAL);
     remarks.extend(unseen(&stream, size)?);
     let layout = Layout::new(size.0 as usize, ROWS).with_room_for(&stream);
+    let name = source.display().to_string();
     let line = Line {
         mesh: &source.to_string_lossy(),
         output: &target.to_string_lossy(),
         meshes: parts.len(),
         list: meshes::rows(&stream)?,
-        by_object: by_object(mesh, records, stream.names.len()),
+        by_object: by_object(mesh, stream.names.len()),
         materials: materials.iter().flatten().count(),
         vertices: parts.iter().map(|p| p.vertices.len()).sum(),
         triangles: parts.iter().map(|p| p.triangles.len()).sum(),
@@ -294,13 +208,14 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome> {
         own_normals: report.own_normals,
         turned: report.turned,
         closed_convex: parts.iter().all(|part| part.closed_convex),
-        simplified,
+        simplified: simplified.map(|simplified| in_pixels(simplified, &look, &parts, &options.levels)),
         levels: parts.iter().enumerate().flat_map(|(mesh, part)| part.coarser.iter().map(move |level| of(mesh, level))).collect(),
         bytes: bytes.as_bytes().len(),
         layout: text_of(&layout),
-        memory: layout.bytes::<Rgb565>(),
+        memory: memory(&layout, format),
+        format: format.name(),
         remarks,
-        costs: counter.map(|counter| counter.count(&target.to_string_lossy())).transpose()?,
+        costs: counter.map(|counter| counter.count(&Scene { name, stream: bytes.clone(), size })).transpose()?,
     };
     if arguments.json {
         report::json(&line)?;
@@ -317,21 +232,15 @@ fn records(parts: &[Part]) -> [usize; 2] {
     [parts.len(), parts.len() * size_of::<record::Mesh>() + vertices * size_of::<record::Vertex>()]
 }
 
-/// The saving by --merge for a mesh with these records, before it is simplified.
-fn by_object(mut mesh: Mesh, [meshes, bytes]: [usize; 2], names: usize) -> Option<ByObject> {
+/// What --merge would spare of a mesh, before it is simplified.
+fn by_object(mut mesh: Mesh, names: usize) -> Option<ByObject> {
+    let [meshes, bytes] = records(&quantise(&mesh).0);
     mesh.merge_objects();
     let [merged, fewer] = records(&quantise(&mesh).0);
     (meshes > merged).then(|| ByObject { meshes: meshes - merged, bytes: bytes - fewer + names })
 }
 
-/// The methods of the board that is asked for, if it lacks the method `shader`.
-fn lacking(arguments: &Arguments, shader: Shader) -> Option<String> {
-    let (board, has) = BOARDS.into_iter().find(|(board, _)| arguments.board.as_deref() == Some(*board))?;
-    let names: Vec<_> = has.iter().map(|shader| shader.name()).collect();
-    (!has.contains(&shader)).then(|| format!("the firmware of {board} has no {}; it has {}", shader.name(), names.join(", ")))
-}
-
-/// Output for a scripted scene.
+/// What becomes of a scripted scene.
 #[derive(Serialize)]
 struct SceneLine<'a> {
     scene: &'a str,
@@ -345,20 +254,37 @@ struct SceneLine<'a> {
     bytes: usize,
     layout: String,
     memory: usize,
+    /// The pixel format of that memory.
+    format: &'static str,
     remarks: Vec<String>,
     /// Costs of frames, if they were counted.
     costs: Option<Vec<Cost>>,
 }
 
 /// Writes the stream of a scripted scene.
-fn convert_script(arguments: &Arguments, target: &Path, counter: Option<&Counter>) -> Result<Outcome> {
-    let scene = scene::load(&arguments.mesh.to_string_lossy())?;
-    if let Some(has) = lacking(arguments, Shader::of(&scene.stream.parse()?)?) {
-        bail!("{}: {has}: name one of them as `shader` in its text", arguments.mesh.display());
+fn convert_script(
+    arguments: &Arguments,
+    (board, format): (Option<&Board>, Format),
+    target: &Path,
+    counter: Option<&Counter>,
+) -> Result<Outcome> {
+    let own = [("--shader", arguments.shader.is_some()), ("--budget", arguments.budget.is_some()), ("--size", arguments.size.is_some())];
+    if let Some((option, _)) = own.into_iter().find(|(_, given)| *given) {
+        let field = &option[2..];
+        return Err(
+            Usage(format!("{}: {option} is for mesh files; write `{field}` into the text of the scene", arguments.mesh.display())).into()
+        );
+    }
+    let scene = scenes::load(&arguments.mesh.to_string_lossy(), arguments.options.as_ref(), format)?;
+    let stream = scene.stream.parse()?;
+    if let Some(board) = board {
+        if let Some(has) = board.lacks(Shader::of(&stream)?) {
+            bail!("{}: {has}: name one of them as `shader` in its text", arguments.mesh.display());
+        }
+        board.check(&stream).with_context(|| arguments.mesh.display().to_string())?;
     }
     report::leave_to(target);
     output::write(target, scene.stream.as_bytes())?;
-    let stream = scene.stream.parse()?;
     let layout = Layout::new(scene.size.0 as usize, ROWS).with_room_for(&stream);
     let line = SceneLine {
         scene: &arguments.mesh.to_string_lossy(),
@@ -370,16 +296,17 @@ fn convert_script(arguments: &Arguments, target: &Path, counter: Option<&Counter
         frames: stream.header.frames,
         bytes: scene.stream.as_bytes().len(),
         layout: text_of(&layout),
-        memory: layout.bytes::<Rgb565>(),
+        memory: memory(&layout, format),
+        format: format.name(),
         remarks: unseen(&stream, scene.size)?.into_iter().collect(),
-        costs: counter.map(|counter| counter.count(&target.to_string_lossy())).transpose()?,
+        costs: counter.map(|counter| counter.count(&scene)).transpose()?,
     };
     if arguments.json {
         report::json(&line)?;
         return Ok(Outcome::Done);
     }
     let count = |n: usize| report::grouped(n as u64);
-    let SceneLine { scene, output, objects, meshes, list, triangles, frames, bytes, layout, memory, remarks, costs } = line;
+    let SceneLine { scene, output, objects, meshes, list, triangles, frames, bytes, layout, memory, format, remarks, costs } = line;
     report::line(&format!(
         "{output}: {} of {} and {}, {}, from {scene}",
         report::counted(objects, ["object", "objects"]),
@@ -392,21 +319,12 @@ fn convert_script(arguments: &Arguments, target: &Path, counter: Option<&Counter
     for remark in remarks {
         report::line(&format!("  {remark}"))?;
     }
-    report::line(&format!("  {layout}, {} bytes of memory for Rgb565", count(memory)))?;
+    report::line(&format!("  {layout}, {} bytes of memory in {format}", count(memory)))?;
     count::text(costs.as_deref())?;
     Ok(Outcome::Done)
 }
 
-/// Moves near lights, which are given from the centre of the mesh, to the space of the camera.
-fn placed(lights: &[Lamp], view: &View) -> Vec<Lamp> {
-    let place = |&lamp: &Lamp| match lamp {
-        Lamp::Near(position, colour) => Lamp::Near(add(position, view.translation), colour),
-        _ => lamp,
-    };
-    lights.iter().map(place).collect()
-}
-
-/// Size of the most common display, for figures that need one.
+/// The commonest display, where no other picture is named.
 const USUAL: (u32, u32) = (320, 240);
 
 /// The remark that no frame shows a pixel of the mesh.
@@ -432,7 +350,20 @@ const LISTED: usize = 20;
 /// Rows of a band in the layout that is printed.
 const ROWS: usize = 16;
 
-/// The layout as program text.
+/// Bytes that a layout takes in a format.
+fn memory(layout: &Layout, format: Format) -> usize {
+    struct Bytes<'a>(&'a Layout);
+    impl InFormat for Bytes<'_> {
+        type Output = usize;
+
+        fn in_format<C: Pixel>(self) -> usize {
+            self.0.bytes::<C>()
+        }
+    }
+    format.run(Bytes(layout))
+}
+
+/// A layout as a program has it.
 fn text_of(layout: &Layout) -> String {
     let Layout { width, rows, vertices, triangles, materials, objects, .. } = layout;
     let several = if *objects > 1 { format!(".objects({objects})") } else { String::new() };
@@ -441,16 +372,6 @@ fn text_of(layout: &Layout) -> String {
 
 fn of(mesh: usize, level: &levels::Level) -> Level {
     Level { mesh, triangles: level.triangles.len(), error: level.error.into() }
-}
-
-fn surface(arguments: &Arguments) -> Surface {
-    let shares = [arguments.ambient, arguments.diffuse, arguments.specular];
-    let colour = arguments.colour.unwrap_or(COPPER);
-    if arguments.plastic {
-        Surface::plastic(colour, shares, arguments.exponent)
-    } else {
-        Surface::metal(colour, shares, arguments.exponent)
-    }
 }
 
 fn text(line: &Line<'_>, materials: &[Option<&str>]) -> Result<()> {
@@ -486,7 +407,10 @@ fn text(line: &Line<'_>, materials: &[Option<&str>]) -> Result<()> {
         report::line(&format!("  a level of detail of {} triangles, less than {error:.4} units from the mesh", count(*triangles)))?;
     }
     let memory = count(line.memory);
-    report::line(&format!("  a program needs {memory} bytes of memory for it in Rgb565, and a band of pixels:\n    {}", line.layout))?;
+    report::line(&format!(
+        "  a program needs {memory} bytes of memory for it in {}, and a band of pixels:\n    {}",
+        line.format, line.layout
+    ))?;
     count::text(line.costs.as_deref())?;
     let crossed = match line.crossed {
         0 => return Ok(()),

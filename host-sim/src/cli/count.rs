@@ -4,6 +4,7 @@
 use super::absent::refuse;
 use super::report;
 use anyhow::Result;
+use microphong_sim::scene::Scene;
 use serde::Serialize;
 
 /// A frame on one board.
@@ -53,16 +54,15 @@ pub(super) struct Counter {
 pub(super) struct Counter;
 
 impl Counter {
-    /// What frames of a stream take by the method that it asks for.
+    /// What frames of a scene take by the method that it asks for.
     #[cfg(feature = "boards")]
-    pub(super) fn count(&self, stream: &str) -> Result<Vec<Cost>> {
-        use microphong_sim::{scene, shader::Shader};
+    pub(super) fn count(&self, scene: &Scene) -> Result<Vec<Cost>> {
+        use microphong_sim::shader::Shader;
 
-        let scene = scene::load(stream)?;
         let shader = Shader::of(&scene.stream.parse()?)?;
         let wanted: Vec<_> = self.boards.iter().map(|&board| (board, shader)).collect();
         let bar = report::progress(wanted.len() as u64, "counting instructions");
-        let measured = self.bench.count(&scene, &wanted, &|| bar.inc(1))?;
+        let measured = self.bench.count(scene, &wanted, &|| bar.inc(1))?;
         bar.finish_and_clear();
         let cost = |m: microphong_bench::Measurement| {
             let (width, height) = m.board.size();
@@ -75,7 +75,7 @@ impl Counter {
     /// No boards are in this build.
     #[cfg(not(feature = "boards"))]
     #[expect(clippy::unused_self, clippy::unnecessary_wraps, reason = "the other build needs both")]
-    pub(super) fn count(&self, _: &str) -> Result<Vec<Cost>> {
+    pub(super) fn count(&self, _: &Scene) -> Result<Vec<Cost>> {
         Ok(Vec::new())
     }
 }

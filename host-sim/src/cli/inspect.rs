@@ -1,6 +1,6 @@
 //! `microphong inspect`.
 
-use super::{Outcome, meshes, report};
+use super::{Outcome, mesh_options::MeshOptions, meshes, report, scenes};
 use anyhow::{Context, Result};
 use embedded_graphics_core::geometry::Size;
 use microphong::{
@@ -10,23 +10,23 @@ use microphong::{
         CAMERA_TRACK, CLOSED_CONVEX, EYE_SPACE, Header, LIGHT_TRACK, Light, Mesh, OBJECT_TRACK, PERSPECTIVE, POINT, Triangle, VIEWER_LOCAL,
     },
 };
-use microphong_sim::{
-    bytes::StreamBytes,
-    scene::{self, Unknown},
-    shader::Shader,
-};
+use microphong_sim::{bytes::StreamBytes, render::Format, scene::Unknown, shader::Shader};
 use serde::Serialize;
 use std::path::Path;
 
 /// Show the contents of a stream, and its flash
 #[derive(clap::Args)]
-#[command(after_help = "Examples:\n  microphong inspect teapot.tri --json\n  microphong inspect gauges")]
+#[command(
+    after_help = "Examples:\n  microphong inspect teapot.tri --json\n  microphong inspect gauges\n  microphong inspect scan.ply --simplify 2000"
+)]
 pub(crate) struct Arguments {
     /// A stream made by `microphong convert`, a built-in scene, or a file for `convert`: .obj, .stl, .ply, .gltf, .glb or .toml.
     scene: String,
     /// Print one JSON object.
     #[arg(long)]
     json: bool,
+    #[command(flatten)]
+    options: Option<MeshOptions>,
 }
 
 #[derive(Serialize)]
@@ -62,7 +62,7 @@ struct Level {
 
 pub(crate) fn run(arguments: &Arguments) -> Result<Outcome> {
     let file = &arguments.scene;
-    let bytes = read(file)?;
+    let bytes = read(file, arguments.options.as_ref())?;
     let stream = bytes.parse().with_context(|| file.clone())?;
     let list = meshes::rows(&stream).with_context(|| file.clone())?;
     let header = stream.header;
@@ -90,8 +90,8 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome> {
 }
 
 /// The stream of a scene; of a file with any other ending, what is in it.
-fn read(name: &str) -> Result<StreamBytes> {
-    match scene::load(name) {
+fn read(name: &str, options: Option<&MeshOptions>) -> Result<StreamBytes> {
+    match scenes::load(name, options, Format::Rgb565) {
         Err(error) if error.is::<Unknown>() && Path::new(name).exists() => StreamBytes::read(Path::new(name)),
         scene => Ok(scene?.stream),
     }

@@ -4,6 +4,7 @@
 mod absent;
 #[cfg(feature = "boards")]
 mod bench;
+mod boards;
 mod bounds;
 mod compare;
 mod convert;
@@ -11,6 +12,7 @@ mod count;
 #[cfg(feature = "boards")]
 mod growth;
 mod inspect;
+mod mesh_options;
 mod meshes;
 mod papers;
 mod parse;
@@ -27,7 +29,7 @@ mod verify;
 use absent::{bench, growth, size, verify};
 
 use anyhow::{Context, Result};
-use clap::{Parser, Subcommand};
+use clap::{CommandFactory, FromArgMatches, Parser, Subcommand};
 use microphong_sim::scene;
 use std::process::ExitCode;
 
@@ -46,7 +48,7 @@ Examples:
   microphong render teapot --frames 120 -o t.apng  write an animation of one turn
   microphong convert mesh.obj -o mesh.tri          make a stream for a board's flash
   microphong inspect mesh.tri                      what is inside, and how large it is
-  microphong verify --board all --scene teapot     compare emulated boards with this computer
+  microphong verify teapot --board all             compare emulated boards with this computer
   microphong bench                                 count the instructions of a frame
   microphong growth                                count how that grows with triangles, pixels, lights, bands
   microphong size part.obj --chip rp2040           flash, RAM and stack of whole programs
@@ -91,10 +93,17 @@ enum Outcome {
     Differences,
 }
 
+/// The command line. A negative number is a value, so that an argument whose range it leaves is told by that, and not as an unknown option.
+fn command() -> clap::Command {
+    let takes_numbers =
+        |argument: clap::Arg| if argument.get_action().takes_values() { argument.allow_negative_numbers(true) } else { argument };
+    Arguments::command().mut_subcommands(|command| command.mut_args(takes_numbers))
+}
+
 /// Runs the command line.
 pub(crate) fn main() -> ExitCode {
     report::start();
-    let result = match Arguments::try_parse() {
+    let result = match command().try_get_matches().and_then(|matches| Arguments::from_arg_matches(&matches)) {
         Ok(arguments) => run(arguments.command),
         Err(wrong) if wrong.use_stderr() => {
             // Nobody left to tell when stderr is closed.
@@ -114,7 +123,7 @@ pub(crate) fn main() -> ExitCode {
         return ExitCode::SUCCESS;
     }
     report::failure(&error);
-    let usage = error.is::<Usage>() || error.is::<scene::Unknown>();
+    let usage = error.is::<Usage>() || error.is::<scene::Unknown>() || error.is::<scene::Misplaced>();
     if usage { ExitCode::from(2) } else { ExitCode::FAILURE }
 }
 

@@ -1,6 +1,6 @@
 //! `microphong render`.
 
-use super::{Outcome, Usage, parse, report, scenes};
+use super::{Outcome, Usage, mesh_options::MeshOptions, parse, report, scenes};
 use anyhow::{Context, Result};
 use embedded_graphics_core::geometry::Size;
 use microphong::{Skips, Stream, format::ErrorBudget, renderer::check};
@@ -9,7 +9,6 @@ use microphong_sim::{
     image::{self, Film},
     legend, output,
     render::{self, Format, Picture, Settings, Style},
-    scene,
     shader::Shader,
 };
 use serde::Serialize;
@@ -34,8 +33,8 @@ pub(crate) struct Arguments {
     /// Size of the picture. By default the scene's own, or 640x480 for mesh files.
     #[arg(long, value_name = "WxH", value_parser = parse::size)]
     size: Option<(u32, u32)>,
-    /// Pixel format: rgb565, bgr565, rgb666, rgb888, rgb332, gray8, gray4, gray2 or binary.
-    #[arg(long, default_value = "rgb565", value_parser = parse::format)]
+    /// Pixel format. The names of types in programs, such as BinaryColor, are understood as well.
+    #[arg(long, default_value = "rgb565", value_parser = parse::Formats)]
     format: Format,
     /// Number of frames to draw.
     #[arg(long, default_value_t = 1, value_parser = clap::value_parser!(u32).range(1..=65535))]
@@ -66,12 +65,14 @@ pub(crate) struct Arguments {
     /// stay darker.
     #[arg(long, value_name = "WHAT", conflicts_with_all = ["antialias", "dither", "band_rows"])]
     show: Option<Show>,
-    /// FILE.png, FILE.apng or a directory. By default SCENE.png, or SCENE.apng for several frames, in the current directory.
+    /// FILE.png, FILE.apng, a directory, or - for standard output. By default SCENE.png, or SCENE.apng for several frames, in the current directory.
     #[arg(short, long)]
     output: Option<PathBuf>,
     /// Print one JSON object per frame.
     #[arg(long)]
     json: bool,
+    #[command(flatten)]
+    options: Option<MeshOptions>,
 }
 
 const EXAMPLES: &str = "\
@@ -79,6 +80,7 @@ Examples:
   microphong render teapot
   microphong render teapot --shader gouraud --size 320x240 -o gouraud.png
   microphong render bunny --antialias
+  microphong render part.obj --up z --colour 4080ff --plastic
   microphong render mesh.tri --format gray4 --no-dither
   microphong render mesh.tri --format binary --size 128x64
   microphong render bunny --frames 120 -o bunny.apng
@@ -120,7 +122,7 @@ struct Line<'a> {
 pub(crate) fn run(arguments: &Arguments) -> Result<Outcome> {
     let frames = arguments.frames;
     let wanted = arguments.output.as_deref().map(|path| Target::of(path, frames)).transpose()?;
-    let scene = scenes::with_budget(scene::load(&arguments.scene)?, arguments.budget);
+    let scene = scenes::with_budget(scenes::load(&arguments.scene, arguments.options.as_ref(), arguments.format)?, arguments.budget);
     let stream = scene.stream.parse().with_context(|| arguments.scene.clone())?;
     let target = wanted.unwrap_or_else(|| {
         let file = PathBuf::from(format!("{}.{}", scene.name, if frames > 1 { "apng" } else { "png" }));

@@ -3,16 +3,17 @@
 use anyhow::{Context, Result};
 use indicatif::{MultiProgress, ProgressBar, ProgressStyle};
 use log::{LevelFilter, Log, Metadata, Record};
-use microphong_sim::{choices::Choices, output};
+use microphong_sim::{choices::Choices, convert::Steps, output};
 use serde::Serialize;
 use std::{
+    cell::RefCell,
     io::Write,
     path::Path,
     sync::{
-        LazyLock,
+        LazyLock, Mutex,
         atomic::{AtomicBool, Ordering},
     },
-    time::Duration,
+    time::{Duration, Instant},
 };
 
 /// All progress bars. They make room for other output.
@@ -56,21 +57,88 @@ pub(crate) fn error(text: &str) {
     let _ = BARS.suspend(|| writeln!(std::io::stderr().lock(), "{text}"));
 }
 
-/// A bar on stderr for `count` steps; a line when stderr is no terminal. Silent for a single step.
-pub(crate) fn progress(count: u64, what: &'static str) -> ProgressBar {
-    if count < 2 {
-        return ProgressBar::hidden();
+/// Between lines that tell how far long work is, where no bar shows it.
+const SILENCE: Duration = Duration::from_secs(30);
+
+/// Steps of long work: a bar on a terminal, and lines elsewhere.
+pub(crate) struct Progress {
+    bar: ProgressBar,
+    what: &'static str,
+    /// When a line was printed last; `None` where the bar is seen, or there is none.
+    told: Option<Mutex<Instant>>,
+}
+
+/// Work of `count` steps, which is announced on stderr. Silent for a single step.
+pub(crate) fn progress(count: u64, what: &'static str) -> Progress {
+    let bar = if count < 2 { ProgressBar::hidden() } else { BARS.add(ProgressBar::new(count)) };
+    let is_hidden = BARS.is_hidden();
+    if count > 1 {
+        if is_hidden {
+            log::info!("{what}, {count} steps");
+        }
+        if let Ok(style) = ProgressStyle::with_template("{msg} {wide_bar} {pos}/{len} {elapsed}, {eta} to go") {
+            bar.set_style(style);
+        }
+        bar.set_message(what);
+        // A single step may take long.
+        bar.enable_steady_tick(Duration::from_secs(1));
     }
-    if BARS.is_hidden() {
-        log::info!("{what}, {count} steps");
+    Progress { bar, what, told: (count > 1 && is_hidden).then(|| Mutex::new(Instant::now())) }
+}
+
+impl Progress {
+    /// More steps are done.
+    pub(crate) fn inc(&self, steps: u64) {
+        self.bar.inc(steps);
+        self.tell();
     }
-    let bar = BARS.add(ProgressBar::new(count));
-    if let Ok(style) = ProgressStyle::with_template("{msg} {wide_bar} {pos}/{len} {elapsed}, {eta} to go") {
-        bar.set_style(style);
+
+    /// So many steps are done.
+    pub(crate) fn set_position(&self, steps: u64) {
+        self.bar.set_position(steps);
+        self.tell();
     }
-    // A single step may take long.
-    bar.enable_steady_tick(Duration::from_secs(1));
-    bar.with_message(what)
+
+    /// Tells how far the work is, after a while of silence.
+    fn tell(&self) {
+        let Some(Ok(mut told)) = self.told.as_ref().map(Mutex::lock) else { return };
+        if told.elapsed() >= SILENCE {
+            *told = Instant::now();
+            log::info!("{}, {} of {} steps", self.what, self.bar.position(), self.bar.length().unwrap_or_default());
+        }
+    }
+
+    /// Prints something that is not part of the bar.
+    pub(crate) fn suspend<T>(&self, print: impl FnOnce() -> T) -> T {
+        self.bar.suspend(print)
+    }
+
+    /// All is done.
+    pub(crate) fn finish_and_clear(&self) {
+        self.bar.finish_and_clear();
+    }
+}
+
+/// The bar of each step of a conversion, one after the other.
+#[derive(Default)]
+pub(crate) struct Bars(RefCell<Option<Progress>>);
+
+impl Steps for Bars {
+    fn begin(&self, what: &'static str, count: usize) {
+        if let Some(last) = self.0.replace(Some(progress(count as u64, what))) {
+            last.finish_and_clear();
+        }
+    }
+
+    fn step(&self) {
+        self.0.borrow().iter().for_each(|bar| bar.inc(1));
+    }
+}
+
+impl Drop for Bars {
+    fn drop(&mut self) {
+        self.0.take().iter().for_each(Progress::finish_and_clear);
+    }
 }
 
 /// Prints the start of long work on stderr.

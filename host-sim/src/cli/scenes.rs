@@ -1,9 +1,16 @@
 //! `microphong scenes`.
 
-use super::{Outcome, Usage, report};
+use super::{
+    Outcome, Usage,
+    mesh_options::{self, MeshOptions},
+    report::{self, Bars},
+};
 use anyhow::Result;
 use microphong::format::ErrorBudget;
-use microphong_sim::scene::{self, NAMES, SCRIPTED, Scene, VARIANTS};
+use microphong_sim::{
+    render::Format,
+    scene::{self, NAMES, SCRIPTED, Scene, VARIANTS},
+};
 use serde::Serialize;
 
 /// List the built-in scenes.
@@ -32,16 +39,25 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome> {
     Ok(Outcome::Done)
 }
 
-/// Loads a scene by its name or from a file, or all built-in scenes; with another error budget if one is given.
-pub(super) fn load(name: &str, budget: Option<ErrorBudget>) -> Result<Vec<Scene>> {
-    let load = |name| Ok(with_budget(scene::load(name)?, budget));
-    if name == "all" {
-        return NAMES.into_iter().map(load).collect();
+/// A scene by name or from a file, for pictures in this format.
+pub(super) fn load(name: &str, options: Option<&MeshOptions>, format: Format) -> Result<Scene> {
+    let are_given = options.is_some();
+    scene::load_with(name, &mesh_options::or_default(options, format)?, are_given, &Bars::default())
+}
+
+/// Scenes by name or from files, or all that are built in; with another error budget if one is given.
+pub(super) fn load_all(names: &[String], options: Option<&MeshOptions>, budget: Option<ErrorBudget>) -> Result<Vec<Scene>> {
+    let mut scenes = Vec::new();
+    for name in names {
+        let all = if name == "all" { &NAMES[..] } else { &[name.as_str()] };
+        for name in all {
+            match load(name, options, Format::Rgb565) {
+                Err(error) if error.is::<scene::Unknown>() => return Err(Usage(format!("{error}, or all")).into()),
+                scene => scenes.push(with_budget(scene?, budget)),
+            }
+        }
     }
-    match load(name) {
-        Err(error) if error.is::<scene::Unknown>() => Err(Usage(format!("{error}, or all")).into()),
-        other => Ok(vec![other?]),
-    }
+    Ok(scenes)
 }
 
 /// Replaces the error budget of a scene, if one is given.

@@ -2,8 +2,9 @@
 
 use super::{
     Outcome,
+    mesh_options::MeshOptions,
     parse::{self, Several},
-    report,
+    report, scenes,
 };
 use anyhow::Result;
 use microphong_sim::{
@@ -13,7 +14,6 @@ use microphong_sim::{
         measure, picture,
     },
     render::Format,
-    scene,
     shader::Shader,
 };
 use serde::Serialize;
@@ -43,14 +43,16 @@ pub(crate) struct Arguments {
     #[arg(long)]
     json: bool,
     /// Measure the programs that FILE lists, and fail if one takes over 0.2 % more than it says.
-    #[arg(long, value_name = "FILE", conflicts_with_all = ["scene", "chip", "shader", "format", "json"])]
+    #[arg(long, value_name = "FILE", conflicts_with_all = ["scene", "MeshOptions", "chip", "shader", "format", "json"])]
     check: Option<PathBuf>,
     /// Measure the programs that FILE lists, and write what they take now.
-    #[arg(long, value_name = "FILE", requires = "reason", conflicts_with_all = ["scene", "chip", "shader", "format", "json", "check"])]
+    #[arg(long, value_name = "FILE", requires = "reason", conflicts_with_all = ["scene", "MeshOptions", "chip", "shader", "format", "json", "check"])]
     renew: Option<PathBuf>,
     /// Why sizes have changed, in a sentence: --renew of sizes.csv adds it to sizes-reasons.md.
     #[arg(long, value_name = "TEXT", requires = "renew", value_parser = parse::reason)]
     reason: Option<String>,
+    #[command(flatten)]
+    options: Option<MeshOptions>,
 }
 
 const EXAMPLES: &str = "\
@@ -129,7 +131,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome> {
     if let (Some(path), Some(reason)) = (&arguments.renew, &arguments.reason) {
         return renew(path, reason);
     }
-    let scene = scene::load(&arguments.scene)?;
+    let scene = scenes::load(&arguments.scene, arguments.options.as_ref(), Format::Rgb565)?;
     let mut cores: Vec<_> = Vec::new();
     for chip in &arguments.chip.values {
         if !cores.contains(&chip.core) {

@@ -2,10 +2,11 @@
 
 use super::{
     Outcome,
+    mesh_options::MeshOptions,
     parse::{self, Several},
     report, scenes,
 };
-use anyhow::{Context, Result, bail};
+use anyhow::{Context, Result, bail, ensure};
 use microphong::{format::ErrorBudget, renderer::check};
 use microphong_sim::{
     board::Board,
@@ -20,12 +21,12 @@ use std::path::PathBuf;
 #[derive(clap::Args)]
 #[command(after_help = EXAMPLES)]
 pub(crate) struct Arguments {
+    /// .tri, .obj, .stl, .ply, .gltf, .glb and .toml files, built-in scenes, or all built-in scenes.
+    #[arg(value_name = "SCENE", default_value = "teapot")]
+    scenes: Vec<String>,
     /// Boards, separated by commas: pico, lm3s6965evb, mps2-an385, mps2-an386; or all.
     #[arg(long, value_parser = boards)]
     board: Several<Board>,
-    /// A .tri, .obj, .stl, .ply, .gltf, .glb or .toml file, a built-in scene, or all built-in scenes.
-    #[arg(long, default_value = "teapot")]
-    scene: String,
     /// Shading methods, separated by commas, or all that the board has room for.
     #[arg(long, default_value = "all", value_parser = parse::SeveralShaders)]
     shader: Several<Shader>,
@@ -42,12 +43,14 @@ pub(crate) struct Arguments {
     /// Print one JSON object per comparison.
     #[arg(long)]
     json: bool,
+    #[command(flatten)]
+    options: Option<MeshOptions>,
 }
 
 const EXAMPLES: &str = "\
 Examples:
-  microphong verify --board pico --scene bunny --shader six-point
-  microphong verify --board all --scene all --json
+  microphong verify bunny torus --board pico --shader six-point
+  microphong verify all --board all --json
 
 Exit codes: 0 all pixels are equal; 1 some differ, or a board failed; 2 wrong usage.";
 
@@ -57,7 +60,7 @@ fn boards(text: &str) -> Result<Several<Board>, String> {
 }
 
 pub(crate) fn run(arguments: &Arguments) -> Result<Outcome> {
-    let scenes = scenes::load(&arguments.scene, arguments.budget)?;
+    let scenes = scenes::load_all(&arguments.scenes, arguments.options.as_ref(), arguments.budget)?;
     let boards = &arguments.board.values;
     let shaders = &arguments.shader;
     // Of all methods those that the board has and that can shade the scene.
@@ -79,6 +82,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome> {
         }
     }
     let count = runs.len();
+    ensure!(count > 0, "nothing to compare: none of these boards has a method that can shade one of these scenes");
     let bar = report::progress(count as u64 + 1, "verifying pictures");
     let (mut differ, mut failed) = (0, 0);
     let mut built: Option<(Board, PathBuf)> = None;

@@ -1,0 +1,211 @@
+//! A mesh file becomes a stream, for commands that write it and for commands that draw it at once.
+
+use crate::{
+    bytes::StreamBytes,
+    import::{self, Imported},
+    levels::{self, Simplified},
+    look::{BACKGROUND, Lamp, Look, Surface},
+    mesh::{Mesh, Report, Weld},
+    mtl::Material,
+    quantise::{Part, quantise},
+    render::Format,
+    vector::{V3, add},
+    view::{Up, View},
+};
+use anyhow::{Context, Result};
+use std::path::Path;
+
+/// The look of a mesh without materials.
+#[derive(Clone, Copy, Debug)]
+pub struct Finish {
+    /// Colour of the surface.
+    pub colour: V3,
+    /// Shares of light: ambient, diffuse and specular.
+    pub shares: [f64; 3],
+    /// Exponent of the highlight.
+    pub exponent: u16,
+    /// Colour behind the mesh.
+    pub background: [u8; 3],
+}
+
+/// Copper, a little towards gold.
+pub const COPPER: V3 = [1.0, 0.62, 0.33];
+
+impl Finish {
+    /// Copper on a dark neutral colour.
+    const COLOUR: Self = Self { colour: COPPER, shares: [0.1, 0.5, 0.4], exponent: 30, background: BACKGROUND };
+    /// White on black: one bit and few greys have no steps to spare.
+    const GREY: Self = Self { colour: [1.0; 3], shares: [0.15, 0.8, 0.4], exponent: 20, background: [0; 3] };
+
+    /// The look that can be read in a pixel format.
+    #[must_use]
+    pub const fn of(format: Format) -> Self {
+        match format {
+            Format::Binary | Format::Gray2 | Format::Gray4 => Self::GREY,
+            _ => Self::COLOUR,
+        }
+    }
+}
+
+/// Degrees of the eye to the right of the front.
+pub const AZIMUTH: f64 = 28.6;
+/// Degrees of the eye above the horizon.
+pub const ELEVATION: f64 = 20.0;
+/// Distance of the eye from an object of radius 1.
+pub const DISTANCE: f64 = 4.0;
+/// Frames in which a scene turns once.
+pub const ORBIT: u16 = 120;
+/// A picture of this size fits displays of every shape, because the field of view is that of the narrower side.
+pub const SQUARE: (u32, u32) = (256, 256);
+/// Free border, a share of the picture.
+pub const MARGIN: f64 = 0.06;
+
+/// What a user may choose about a mesh file.
+#[derive(Clone, Debug)]
+pub struct Options {
+    /// How polygons become a surface.
+    pub weld: Weld,
+    /// Whether all objects become one without a name.
+    pub merge: bool,
+    /// The material where the file has none.
+    pub surface: Surface,
+    /// Whether the surface takes the place of the file's materials as well.
+    pub repaint: bool,
+    /// Share of light that is everywhere.
+    pub ambient: f64,
+    /// Lights in eye space; near ones count from the centre of the mesh. Empty for the key light.
+    pub lamps: Vec<Lamp>,
+    /// Colour behind the mesh.
+    pub background: [u8; 3],
+    /// Camera, before the mesh is fitted into the picture.
+    pub view: View,
+    /// Whether highlights see the eye where it is, not infinitely far.
+    pub local_viewer: bool,
+    /// Size of the picture that the turn fills.
+    pub size: (u32, u32),
+    /// Most triangles.
+    pub simplify: Option<usize>,
+    /// Sizes of pictures that get a level of detail.
+    pub levels: Vec<(u32, u32)>,
+}
+
+impl Default for Options {
+    fn default() -> Self {
+        Self::for_format(Format::Rgb565)
+    }
+}
+
+impl Options {
+    /// What nobody has chosen otherwise, for pictures in this format.
+    #[must_use]
+    pub fn for_format(format: Format) -> Self {
+        let Finish { colour, shares, exponent, background } = Finish::of(format);
+        Self {
+            weld: Weld::default(),
+            merge: false,
+            surface: Surface::metal(colour, shares, exponent),
+            repaint: false,
+            ambient: shares[0],
+            lamps: Vec::new(),
+            background,
+            view: View::orbit(Up::Y, AZIMUTH.to_radians(), ELEVATION.to_radians(), DISTANCE, ORBIT),
+            local_viewer: false,
+            size: SQUARE,
+            simplify: None,
+            levels: Vec::new(),
+        }
+    }
+}
+
+/// Steps of long work.
+pub trait Steps {
+    /// Begins `count` steps of work that has this name, and ends the work before.
+    fn begin(&self, what: &'static str, count: usize);
+    /// A step is done.
+    fn step(&self);
+}
+
+/// Work that nobody watches.
+impl Steps for () {
+    fn begin(&self, _: &'static str, _: usize) {}
+    fn step(&self) {}
+}
+
+/// A mesh file that is ready to become a stream.
+#[derive(Clone, Debug)]
+pub struct Converted {
+    /// The mesh, not simplified.
+    pub mesh: Mesh,
+    /// What welding did.
+    pub report: Report,
+    /// The file's materials, by which parts count; `None` where the file does not say what a material is.
+    pub materials: Vec<Option<Material>>,
+    /// What a user should know of the file, in sentences.
+    pub remarks: Vec<String>,
+    /// The meshes of the stream, with coarser levels.
+    pub parts: Vec<Part>,
+    /// Triangles that vanish when positions are rounded.
+    pub lost: usize,
+    /// Everything else of the stream.
+    pub look: Look,
+    /// What simplification did.
+    pub simplified: Option<Simplified>,
+}
+
+impl Converted {
+    /// Reads a mesh file.
+    ///
+    /// # Errors
+    /// Names the file, and what is wrong with it.
+    pub fn read(path: &Path, options: &Options, steps: &dyn Steps) -> Result<Self> {
+        let place = || path.display().to_string();
+        let Imported { mut mesh, report, mut objects, mut materials, mut remarks } = import::file(path, options.weld)?;
+        if options.repaint && materials.iter().any(Option::is_some) {
+            remarks.push(format!("{} materials of the file have the one colour of --colour", materials.iter().flatten().count()));
+            mesh.merge_materials();
+            materials = vec![None];
+        }
+        if options.merge {
+            mesh.merge_objects();
+            objects.clear();
+        }
+        let (mut parts, lost) = quantise(&mesh);
+        let view = options.view.fit(&mesh.positions, options.size, MARGIN);
+        let mut look = Look {
+            objects,
+            surfaces: import::surfaces(&materials, &options.surface, options.ambient),
+            background: options.background.into(),
+            local_viewer: options.local_viewer,
+            ..Look::new(options.surface, view)
+        };
+        if !options.lamps.is_empty() {
+            look.lamps = options.lamps.iter().map(|&lamp| placed(lamp, &view)).collect();
+        }
+        let mut simplified = None;
+        if let Some(most) = options.simplify {
+            steps.begin("simplifying", parts.len());
+            simplified = levels::simplify(&mesh, &mut parts, most, &|| steps.step()).with_context(place)?;
+        }
+        let errors: Vec<_> = options.levels.iter().map(|&size| look.tolerance(&parts, size)).collect();
+        // The stream is a step as well, so that a single level is announced.
+        steps.begin("searching levels of detail", parts.len() * errors.len() + 1);
+        levels::add(&mesh, &mut parts, &errors, &|| steps.step()).with_context(place)?;
+        Ok(Self { mesh, report, materials, remarks, parts, lost, look, simplified })
+    }
+
+    /// The stream.
+    ///
+    /// # Errors
+    /// When the mesh does not fit a stream, or a value lies outside its range.
+    pub fn stream(&self) -> Result<StreamBytes> {
+        self.look.stream(&self.parts)
+    }
+}
+
+/// A near light counts from the centre of the mesh; in a stream it counts from the eye.
+fn placed(lamp: Lamp, view: &View) -> Lamp {
+    match lamp {
+        Lamp::Near(position, colour) => Lamp::Near(add(position, view.translation), colour),
+        _ => lamp,
+    }
+}
