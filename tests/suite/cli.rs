@@ -196,7 +196,8 @@ fn options_for_mesh_files_are_refused_elsewhere() {
         ("gauges", &["gauges is a built-in scene"]),
     ];
     for (scene, words) in kinds {
-        let commands: [&[&str]; 5] = [&["render"], &["inspect"], &["compare", "good.obj"], &["bench"], &["verify", "--board", "pico"]];
+        let commands: [&[&str]; 6] =
+            [&["render"], &["inspect"], &["size"], &["compare", "good.obj"], &["bench"], &["verify", "--board", "pico"]];
         for command in commands {
             place.fails(&[command, &[scene, "--up", "z"]].concat(), 2, &[words, &["--up"]].concat());
         }
