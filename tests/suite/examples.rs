@@ -89,7 +89,7 @@ fn displays_show_what_the_documentation_shows() {
 
 const TEN_PAST_TEN: u32 = (10 * 60 + 10) * 60;
 
-/// As the sensor of the watch says it: a quaternion w, x, y, z.
+/// A rotation as the sensor of the watch reports it: a quaternion w, x, y, z.
 fn tilt() -> Pose {
     Pose::from_quaternion([15_488, -4_864, 2_048, 512].map(|c| Rotation::from_bits(c << 16))).expect("a rotation")
 }
