@@ -71,8 +71,8 @@ pub const WALK: u32 = 23;
 pub const CHANNEL: u32 = 22;
 /// The bias of walked levels: 0..=127 are below black, 128..=383 the 256 levels, 384..=511 above white.
 ///
-/// The six-point quadratic overshoots its nodes' range by at most 5/3 of its
-/// half width (its Lebesgue constant), so nodes in [0, 255] stay in [-85, 340].
+/// The quadratic of six points stays within 5/3 of half the nodes' range from its middle (its Lebesgue constant). Nodes in [0, 255] therefore give
+/// values in [-85, 340].
 pub const BIAS: i32 = 128;
 /// Fraction bits of depth at a vertex, Q0.28: 1 at the near plane, 0 infinitely far.
 pub const DEPTH: u32 = 28;

@@ -232,7 +232,7 @@ fn pictures_are_those_of_merged_meshes() {
         let (_, bytes) = convert(&folder, &[&["two.obj"], arguments].concat());
         let stream = bytes.parse().expect("a stream");
         let frame = |number| render::frame::<Rgb565>(stream, Size::new(64, 48), Shader::AUTO, 16, number).expect("a picture");
-        [0, 30, 60, 90].map(|number| frame(number))
+        [0, 30, 60, 90].map(frame)
     };
     for ((by_object, stats), (merged, _)) in draw(&[]).into_iter().zip(draw(&["--merge"])) {
         assert!(by_object == merged && stats.drawn >= 3);

@@ -26,7 +26,7 @@ use fixed::{traits::ToFixed, types::I32F32};
 impl Light {
     /// A light infinitely far away, in the direction `towards` from every object: x to the right, y up, z to the viewer, as the camera sees the
     /// world at first. The direction may have any length but 0. The light stays where it is in the world. `colour` is red, green and blue, from
-    /// 0 to 4, and 1 is full.
+    /// 0 to 2, and 1 is full.
     ///
     /// # Errors
     /// When the direction is zero, or a number is not finite or out of range.
@@ -47,7 +47,7 @@ impl Light {
     }
 
     /// A light at `position`, which stays where it is in the world: x to the right, y up, z to the viewer, as the camera sees the world at first.
-    /// `colour` is red, green and blue, from 0 to 4, and 1 is full. A near light costs more than one that is infinitely far away.
+    /// `colour` is red, green and blue, from 0 to 2, and 1 is full. A near light costs more than one that is infinitely far away.
     ///
     /// # Errors
     /// When a number is not finite or out of range.

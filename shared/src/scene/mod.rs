@@ -430,8 +430,8 @@ impl<'a> Scene<'a> {
         self.set_camera_pose(&Pose::looking_at(eye, target, up)?)
     }
 
-    /// Moves the camera. It looks along the z axis of `pose`, whose y axis points upwards in the picture. An orbit of the stream ends; the projection
-    /// stays.
+    /// Moves the camera. It looks along the z axis of `pose`, whose y axis points upwards in the picture. The camera stops following
+    /// the orbit of the stream. The projection does not change.
     ///
     /// # Errors
     /// When the camera is farther than 16 units from the origin of the world along one of its own axes.

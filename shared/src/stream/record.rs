@@ -234,7 +234,7 @@ impl Mesh {
 /// - By that rounding no triangle has leaned by more than 2^-[`LEAN`] rad.
 pub const CLOSED_CONVEX: u16 = 1;
 
-/// Largest angle by which a triangle of a [`CLOSED_CONVEX`] mesh may have leaned, as a negative power of 2: 2^-6 rad, 0.9 degrees.
+/// The largest angle by which rounding may have tilted a triangle of a [`CLOSED_CONVEX`] mesh is 2^-`LEAN` rad: 0.9 degrees.
 pub const LEAN: u32 = 6;
 
 /// A material. Each colour is red, green, blue, as a [`Gain`] of at most 2.
