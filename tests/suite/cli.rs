@@ -667,7 +667,7 @@ fn formats_have_the_same_names_everywhere() {
         assert!(help.contains(&format!("[possible values: {names}]")), "{command}: {help}");
     }
     for format in Format::ALL {
-        assert!(place.succeeds(&["convert", "good.obj", "--format", format.name()]).contains(&format!(" in {} ", format.name())));
+        assert!(place.succeeds(&["convert", "good.obj", "--format", format.name()]).contains(&format!(" in {}, ", format.name())));
         // Of the type `BinaryColor`, `Gray4` and so on.
         let of_type = if format == Format::Binary { "BinaryColor".to_owned() } else { format!("{format:?}") };
         let crc = |name: &str| place.succeeds(&["render", "good.obj", "--size", "33x17", "--format", name, "--json"]);

@@ -257,8 +257,11 @@ fn labelled(labels: Vec<Label>) -> microphong_sim::bytes::StreamBytes {
     let (bytes, _) = script::stream(text, None).expect("a scene");
     let stream = bytes.parse().expect("a stream");
     let header = microphong::stream::record::Header { labels: labels.len() as u8, ..*stream.header };
-    let mut all = [zerocopy::IntoBytes::as_bytes(&header), &bytes.as_bytes()[size_of_val(&header)..]].concat();
+    // Names follow the labels.
+    let records = size_of_val(&header)..bytes.as_bytes().len() - stream.names.len();
+    let mut all = [zerocopy::IntoBytes::as_bytes(&header), &bytes.as_bytes()[records]].concat();
     labels.iter().for_each(|label| all.extend_from_slice(zerocopy::IntoBytes::as_bytes(label)));
+    all.extend_from_slice(stream.names);
     let length = all.len() as u32;
     all[8..12].copy_from_slice(&length.to_le_bytes());
     microphong::stream::seal(&mut all);

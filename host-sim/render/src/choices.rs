@@ -187,14 +187,15 @@ impl<const QUADRATICS: bool> Method for Telling<QUADRATICS> {
         WAY.set(Some(way));
         let pixels = Auto::<QUADRATICS>.shade(setup, shading, canvas);
         WAY.set(None);
-        WAYS.with_borrow_mut(|(first, ways)| {
-            // What is cut has a record of its own, elsewhere.
+        let is_first = WAYS.with_borrow_mut(|(first, ways)| {
+            // A triangle that is cut has a record of its own, elsewhere.
             let distance = ptr::from_ref(setup.triangle).addr().wrapping_sub(*first);
-            if let Some(of) = ways.get_mut(distance / size_of::<Triangle>()) {
-                *of = Some(Chosen { way, raises });
-            }
+            ways.get_mut(distance / size_of::<Triangle>()).is_none_or(|of| of.replace(Chosen { way, raises }).is_none())
         });
-        CHOICES.set(CHOICES.get().with_triangle(way, pixels));
+        // A large triangle is shaded once for each of its tiles, and each time all of its pixels are counted.
+        if is_first {
+            CHOICES.set(CHOICES.get().with_triangle(way, pixels));
+        }
         pixels
     }
 }
