@@ -3,7 +3,7 @@
 use crate::{
     format::{Gain, Length, UNIT},
     math::vector::normalise,
-    scene::SceneError,
+    scene::{SceneError, in_range},
     stream::record::{DIRECTIONAL, EYE_SPACE, Light, OBJECT_SPACE, POINT},
 };
 use fixed::{traits::ToFixed, types::I32F32};
@@ -43,7 +43,7 @@ impl Light {
             return Err(SceneError::Direction);
         }
         let rounded = |c: i32| Length::from_bits(((c >> (29 - UNIT)) + 1) >> 1);
-        Ok(Self::new(DIRECTIONAL, OBJECT_SPACE, unit.map(rounded), gains(colour)?))
+        checked(Self::new(DIRECTIONAL, OBJECT_SPACE, unit.map(rounded), gains(colour)?))
     }
 
     /// A light at `position`, which stays where it is in the world: x to the right, y up, z to the viewer, as the camera sees the world at first.
@@ -56,7 +56,7 @@ impl Light {
         for (length, number) in place.iter_mut().zip(position) {
             *length = number.checked_to_fixed().ok_or(SceneError::Position)?;
         }
-        Ok(Self::new(POINT, OBJECT_SPACE, place, gains(colour)?))
+        checked(Self::new(POINT, OBJECT_SPACE, place, gains(colour)?))
     }
 
     /// This light, going where the camera goes. Its vector is then x to the right of the picture, y up, and z to the viewer; a position is
@@ -70,10 +70,15 @@ impl Light {
     }
 }
 
+/// The light, if [`crate::Scene::set_lights`] will take it.
+fn checked(light: Light) -> Result<Light, SceneError> {
+    in_range(light.fault()).map(|()| light)
+}
+
 fn gains<C: ToFixed>(colour: [C; 3]) -> Result<[Gain; 3], SceneError> {
     let mut gains = [Gain::ZERO; 3];
     for (gain, number) in gains.iter_mut().zip(colour) {
-        *gain = number.checked_to_fixed().ok_or(SceneError::Range { name: "the colour of a light" })?;
+        *gain = number.checked_to_fixed().ok_or(SceneError::Range { name: "light colour" })?;
     }
     Ok(gains)
 }
@@ -104,7 +109,11 @@ mod tests {
             assert_eq!(Light::directional(towards, [1; 3]), Err(SceneError::Direction), "{towards:?}");
         }
         assert_eq!(Light::near([f32::NAN, 0.0, 0.0], [1; 3]), Err(SceneError::Position));
-        assert_eq!(Light::near([0; 3], [-1, 0, 0]), Err(SceneError::Range { name: "the colour of a light" }));
+        for colour in [[-1, 0, 0], [3, 0, 0], [9, 0, 0]] {
+            assert_eq!(Light::near([0; 3], colour), Err(SceneError::Range { name: "light colour" }), "{colour:?}");
+        }
+        assert_eq!(Light::near([0, 0, 100], [1; 3]), Err(SceneError::Range { name: "light vector" }));
+        assert!(Light::near([0, 0, 16], [2; 3]).is_ok());
     }
 
     #[test]
