@@ -674,6 +674,8 @@ fn formats_have_the_same_names_everywhere() {
         assert_eq!(crc(&of_type), crc(format.name()), "{of_type}");
     }
     place.fails(&["convert", "good.obj", "--format", "rgb8"], 2, &["rgb8", "rgb888"]);
+    // `size` knows two of them, by the same names.
+    place.fails(&["size", "--format", "BinaryColor,Gray8"], 2, &["Gray8", "one of rgb565, binary is needed"]);
 }
 
 /// A mesh without materials is white on black in one bit and few greys: its lit side is bright, and half of it is not lost.

@@ -114,9 +114,13 @@ impl TypedValueParser for Formats {
 
 /// A pixel format by its name here, or by the name of its type in programs.
 pub(crate) fn format(text: &str) -> Result<Format, String> {
+    format_among(text, &Format::ALL)
+}
+
+/// One of these pixel formats, by the names that [`format`] takes.
+pub(crate) fn format_among(text: &str, all: &[Format]) -> Result<Format, String> {
     let name = text.to_ascii_lowercase();
-    let name = if name == "binarycolor" { Format::Binary.name() } else { &name };
-    among(name, &Format::ALL, Format::name)
+    among(if name == "binarycolor" { Format::Binary.name() } else { &name }, all, Format::name)
 }
 
 /// An axis by name.

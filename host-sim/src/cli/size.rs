@@ -71,7 +71,7 @@ fn shaders(text: &str) -> Result<Several<Shader>, String> {
 }
 
 fn formats(text: &str) -> Result<Several<Format>, String> {
-    parse::several(text, &FORMATS, |text| parse::among(text, &FORMATS, Format::name))
+    parse::several(text, &FORMATS, |text| parse::format_among(text, &FORMATS))
 }
 
 /// A program on a chip.
