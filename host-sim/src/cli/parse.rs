@@ -117,7 +117,7 @@ pub(crate) fn format(text: &str) -> Result<Format, String> {
     format_among(text, &Format::ALL)
 }
 
-/// One of these pixel formats, by the names that [`format`] takes.
+/// One of these pixel formats, by the names that [`format()`] takes.
 pub(crate) fn format_among(text: &str, all: &[Format]) -> Result<Format, String> {
     let name = text.to_ascii_lowercase();
     among(if name == "binarycolor" { Format::Binary.name() } else { &name }, all, Format::name)
