@@ -11,7 +11,7 @@ use embedded_graphics::{
     text::Text,
 };
 use embedded_graphics_simulator::{OutputSettings, SimulatorDisplay};
-use microphong::{Layout, Picture, Renderer, Shader, Stats, Stream, include_stream, scene::Background};
+use microphong::{Background, Layout, Picture, Renderer, Shader, Stats, Stream, include_stream};
 
 /// Pictures 220 pixels wide, 40 rows at once; a microcontroller keeps the memory in a `static`.
 const LAYOUT: Layout = Layout::new(220, 40);

@@ -29,19 +29,35 @@
 //!
 //! The command `microphong convert mesh.obj -o mesh.tri`, from the repository of this crate, makes such a file.
 //!
-//! Per-pixel normalisation and powers are replaced by polynomials that are walked with integer additions. The modules follow the way of the
-//! data, each using only those above it (tests/suite/layers.rs reads the imports). The interface is the crate's root, [`stream`], [`scene`], [`pixel`]
-//! and, for methods of your own, [`method`], [`math`] and [`format`](mod@format). All other modules are no part of it and may change in any
-//! release: those that are public are so for microphong's own tests and tools alone.
+//! # Words
+//!
+//! | word | meaning |
+//! |---|---|
+//! | stream | the bytes of a file of `convert`: meshes, materials, lights, a camera, an animation |
+//! | band | some rows of the picture, as high as the program has memory for. A frame is drawn band by band |
+//! | level | the strength of light at a point, from 0 to 255 in each channel |
+//! | node | a point of a triangle where light is computed exactly: a corner, or the midpoint of an edge |
+//! | method, shader | a way to get from nodes to pixels, such as Gouraud or Phong shading |
+//! | walk | to compute a polynomial pixel by pixel with additions only (forward differences) |
+//! | active triangle | a triangle that continues from one band into the next |
+//! | clipped | cut at the near plane, or far outside of the picture |
+//! | error budget | the largest error of a pixel, in 1/255 of full intensity, that [`Shader::AUTO`] may make |
+//! | L, H, N, V, R | unit vectors: towards the light, half way between light and viewer, normal, towards the viewer, and L mirrored at N |
+//!
+//! # Modules
+//!
+//! Shading normalises no vector and computes no power at a pixel: polynomials that are walked take their place. The interface is the crate's root,
+//! [`stream`], [`pixel`], [`format`](mod@format) and, for methods of your own, [`method`]. Everything that this documentation hides may change in any
+//! release. The modules follow the data from the file to the display. Each uses only modules above it in this table, and a test checks that.
 //!
 //! | module | what it does |
 //! |---|---|
 //! | [`format`](mod@format) | names every number format |
 //! | `arch` | wide products, quotients and counts of zeros, as short as each processor can |
-//! | [`math`] | reciprocal, root, lookup table of highlights, vectors, in integers |
+//! | `math` | reciprocal, root, lookup table of highlights, vectors, in integers |
 //! | [`pixel`] | pixel formats, ordered dither, curves of displays |
 //! | [`stream`] | bytes in flash to a checked view of meshes, lights and camera |
-//! | [`scene`] | what is drawn: objects in the world, lights, a camera |
+//! | `scene` | what is drawn: objects in the world, lights, a camera |
 //! | `geometry` | object space to the screen, and what need not be drawn |
 //! | `lighting` | lights, and what materials reflect of them |
 //! | `setup` | edges and gradients of a triangle |
@@ -69,12 +85,14 @@ mod display;
 mod error;
 pub mod format;
 mod frame;
+#[doc(hidden)]
 pub mod math;
 mod memory;
 mod mesh;
 pub mod method;
 pub mod pixel;
 mod placement;
+#[doc(hidden)]
 pub mod scene;
 mod shader;
 pub mod stream;
@@ -109,7 +127,7 @@ pub use raster::counts::Counts;
 #[doc(inline)]
 pub use renderer::Renderer;
 #[doc(inline)]
-pub use scene::{Object, Pose, Scene, SceneError};
+pub use scene::{Background, Object, Pose, Scene, SceneError};
 pub use shader::Shader;
 #[doc(inline)]
 pub use stream::{

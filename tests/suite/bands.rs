@@ -357,7 +357,7 @@ fn what_does_not_fit_is_named() {
         (new(Size::new(64, 0), layout, words), RenderError::Size { width: 64, height: 0 }, "64x0"),
         (new(Size::new(64, MAX_SIDE + 1), layout, words), RenderError::Size { width: 64, height: MAX_SIDE + 1 }, "1 to"),
         (new(Size::new(63, 48), layout, words), RenderError::Layout { width: 63 }, "63 columns"),
-        (new(size, Layout { rows: 0, ..layout }, words), RenderError::Layout { width: 64 }, "no row"),
+        (new(size, Layout::new(64, 0), words), RenderError::Layout { width: 64 }, "no row"),
         (new(size, layout, words - 1), RenderError::Memory { need: words }, "Layout::words"),
         (new(size, layout, 0), RenderError::Memory { need: words }, "Layout::words"),
         (new(size, layout.materials(0), words), RenderError::Materials { need: stream.materials.len() }, "materials"),

@@ -87,7 +87,7 @@ fn pixels(renderer: &mut Renderer<'_, Rgb888>) -> Vec<Rgb888> {
 fn room(stream: &Stream<'_>) -> Layout {
     // Memory for more objects and materials than there are makes no difference.
     let layout = Layout::new(SIZE.width as usize, SIZE.height as usize).with_room_for(stream);
-    Layout { vertices: 3 * layout.vertices, triangles: 3 * layout.triangles, materials: layout.materials + 2, ..layout.objects(7) }
+    layout.objects(7).vertices(3 * layout.vertices).triangles(3 * layout.triangles).materials(layout.materials + 2)
 }
 
 /// A place and a rotation in floating point.

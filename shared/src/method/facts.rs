@@ -15,10 +15,13 @@ pub struct Facts {
     /// Light that is computed at vertices, once for all triangles around each.
     pub vertex_light: VertexLight,
     /// The quantity that is raised to the exponent of the material.
+    #[doc(hidden)]
     pub highlight: Highlight,
     /// Whether the table of highlights may hold levels. It may if the method looks up nothing else in it.
+    #[doc(hidden)]
     pub highlight_levels: bool,
     /// What the highlight at a pixel is computed from. This tells how exactly it has to be fitted and walked.
+    #[doc(hidden)]
     pub highlight_field: HighlightField,
     /// Whether the method can draw point lights and a near viewer.
     pub near_lights: bool,
@@ -26,6 +29,7 @@ pub struct Facts {
     /// parts of a triangle that are split on the screen.
     pub perspective: bool,
     /// Numbers of operations in the method's formulas.
+    #[doc(hidden)]
     pub costs: Costs,
 }
 

@@ -6,21 +6,26 @@
 
 #[doc(hidden)]
 pub mod auto;
+#[doc(hidden)]
 pub mod duff;
 #[doc(hidden)]
 pub mod error_bound;
 mod facts;
 #[doc(hidden)]
 pub mod flat;
+#[doc(hidden)]
 pub mod gouraud;
 #[doc(hidden)]
 pub mod highlight_error;
+#[doc(hidden)]
 pub mod lighting_model;
 mod local_viewer;
 #[doc(hidden)]
 pub mod node;
+#[doc(hidden)]
 pub mod phong;
 mod quotient;
+#[doc(hidden)]
 pub mod renq;
 #[doc(hidden)]
 pub mod renq_newton;
@@ -30,6 +35,7 @@ pub mod six_point;
 pub mod sqrt6;
 #[doc(hidden)]
 pub mod sub_triangle;
+#[doc(hidden)]
 pub mod tiles;
 mod two_lights;
 
@@ -56,27 +62,31 @@ use crate::{
 pub use crate::{
     format::Intensity,
     geometry::projection::ScreenVertex,
-    interpolate::{
-        Constant, Held, Patch, Walker,
-        field::{Field, Nodes, Steep},
-    },
-    lighting::{
-        lights::{Lighting, Source, Viewer, cosine, point},
-        reflectance::{Highlight, Reflectance, Reflection},
-    },
-    math::highlight_lut::CosineLookup,
     raster::canvas::{Canvas, IntensityShader},
-    setup::steepness::Steepness,
 };
 use core::marker::PhantomData;
-pub use error_bound::ErrorBounds;
-pub use facts::{Costs, Facts, HighlightField, VertexLight};
-#[doc(inline)]
-pub use lighting_model::{LightingModel, Linear, Quadratic, linear, quadratic, signed};
-#[doc(inline)]
-pub use node::Node;
-#[doc(inline)]
-pub use sub_triangle::{Part, Parts, SubTriangle};
+pub use facts::{Facts, VertexLight};
+// For the crate of the literature.
+#[doc(hidden)]
+pub use {
+    crate::{
+        interpolate::{
+            Constant, Held, Patch, Walker,
+            field::{Field, Nodes, Steep},
+        },
+        lighting::{
+            lights::{Lighting, Source, Viewer, cosine, point},
+            reflectance::{Highlight, Reflectance, Reflection},
+        },
+        math::highlight_lut::CosineLookup,
+        setup::steepness::Steepness,
+    },
+    error_bound::ErrorBounds,
+    facts::{Costs, HighlightField},
+    lighting_model::{LightingModel, Linear, Quadratic, linear, quadratic, signed},
+    node::Node,
+    sub_triangle::{Part, Parts, SubTriangle},
+};
 
 /// A shading method.
 pub trait Method: Sync {
@@ -85,6 +95,7 @@ pub trait Method: Sync {
 
     /// Computes bounds for a method with an error budget, for a material of exponent `_exponent` under `_lights` lights. Other methods do nothing
     /// here.
+    #[doc(hidden)]
     fn error_bounds(&self, _reflectance: &Reflectance, _exponent: u16, _lights: usize) -> ErrorBounds {
         ErrorBounds::EMPTY
     }
@@ -155,6 +166,7 @@ impl Loops for General {
 /// Fraction bits that a walked level has beyond those of a node.
 const EXTRA: u32 = WALK - LEVEL;
 /// Bits of the range of levels at nodes: they are in [0, 255] in Q9.7.
+#[doc(hidden)]
 pub const RANGE: u32 = LEVEL + 8;
 
 /// N·L and N·H of a constant light at the corners, Q2.30.
@@ -175,10 +187,13 @@ pub struct TriangleSetup<'f> {
     /// The corners on the screen, with their light.
     pub corners: [&'f ScreenVertex; 3],
     /// The triangle's record in the stream.
+    #[doc(hidden)]
     pub triangle: &'f Triangle,
     /// The vertices of the mesh, to which the indices of the triangle's record point.
+    #[doc(hidden)]
     pub vertices: &'f [Vertex],
     /// How often the stream's corners are rotated, so that the top one is first: 0, 1 or 2.
+    #[doc(hidden)]
     pub turned: usize,
     /// Whether other triangles may overlap this one.
     pub needs_depth_test: bool,
@@ -522,6 +537,7 @@ impl Shading<'_> {
 
 /// Shades all pixels with one intensity.
 #[derive(Clone, Copy, Debug)]
+#[doc(hidden)]
 pub struct Uniform(pub Intensity);
 
 impl IntensityShader<()> for Uniform {
@@ -545,6 +561,7 @@ fn intensity(walked: u32) -> i32 {
 /// Converts levels in Q9.7 to intensities of at most 255.
 #[inline(always)]
 #[must_use]
+#[doc(hidden)]
 pub fn of_levels(levels: [i32; 3]) -> Intensity {
     levels.map(|level| level.max(0) << 1)
 }

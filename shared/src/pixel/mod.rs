@@ -3,16 +3,20 @@
 pub(crate) mod colour;
 #[doc(hidden)]
 pub mod dither;
+#[doc(hidden)]
 pub mod gamma;
+#[doc(hidden)]
 pub mod ramps;
+
+#[doc(inline)]
+pub use gamma::{Gamma, SRGB};
+#[doc(inline)]
+pub use ramps::{InTurn, Rounded};
 
 use crate::{
     arch::SATURATES,
     format::{CHANNEL, Intensity, RAMP, WALK},
-    pixel::{
-        dither::quantise,
-        ramps::{InTurn, Ramps, Rounded},
-    },
+    pixel::{dither::quantise, ramps::Ramps},
 };
 use core::hint::black_box;
 use embedded_graphics_core::{
@@ -37,6 +41,7 @@ pub trait Pixel: Copy + 'static {
     /// Bits of red, green and blue (or of grey, three times).
     const DEPTH: [u32; 3];
     /// Whether channels have so few bits that the light of several channels may be rounded to a level of 1/255 first.
+    #[doc(hidden)]
     const COARSE: bool = {
         let [r, g, b] = Self::DEPTH;
         r < 8 && g < 8 && b < 8
@@ -44,6 +49,7 @@ pub trait Pixel: Copy + 'static {
     /// Whether dither is on by default: the steps between levels are wide enough to be seen.
     const DITHERED: bool = Self::DEPTH[2] < 8;
     /// Whether tables of colours have finer steps than pixels, so that dither is applied after the look-up.
+    #[doc(hidden)]
     const DITHERED_BY_TABLE: bool = Self::GRAY && Self::DITHERED && !Self::Ramps::CHECKERED;
     /// Number of bytes that a pixel adds to the picture's checksum.
     const BYTES: usize;
@@ -59,17 +65,20 @@ pub trait Pixel: Copy + 'static {
 
     /// The entry of a table of colours for channels in unsigned Q8.8 that are scaled to [`Self::DEPTH`]. This is the pixel by a
     /// [`dither::threshold`], or a finer value in formats that are [`Self::DITHERED_BY_TABLE`].
+    #[doc(hidden)]
     fn tabled(channels: [u32; 3], threshold: u32) -> Self::Stored {
         Self::pack(quantise(channels, Self::DEPTH, threshold).map(u32::from)).stored()
     }
 
     /// The pixel of a table's entry. The [`dither::threshold`] is used in formats that are [`Self::DITHERED_BY_TABLE`].
+    #[doc(hidden)]
     #[inline(always)]
     fn shown(stored: Self::Stored, _threshold: u32) -> Self {
         Self::from_stored(stored)
     }
 
     /// The pixel twice. A format of two bytes takes both from one word, so that some processors can store them at once.
+    #[doc(hidden)]
     #[inline(always)]
     fn pair(self) -> [Self; 2] {
         [self; 2]
@@ -82,12 +91,14 @@ pub trait Pixel: Copy + 'static {
     fn bits(self) -> u32;
 
     /// Looks up a level in a table of colours. Levels have a bias and `BITS` fraction bits, and include half a step for rounding.
+    #[doc(hidden)]
     #[inline(always)]
     fn entry<const BITS: u32>(ramp: &[Self::Stored; RAMP], level: u32) -> Self::Stored {
         ramp[(level >> BITS) as usize % RAMP]
     }
 
     /// Looks up a walked level in tables of colours, see [`Ramps::walked`].
+    #[doc(hidden)]
     #[inline(always)]
     fn walked(ramps: &Self::Ramps, level: u32) -> Self::Stored {
         if Self::Ramps::CHECKERED {
@@ -99,12 +110,14 @@ pub trait Pixel: Copy + 'static {
     }
 
     /// The colour of a level, see [`Self::entry`], by a [`dither::threshold`].
+    #[doc(hidden)]
     #[inline(always)]
     fn ramped<const BITS: u32>(ramp: &[Self::Stored; RAMP], level: u32, threshold: u32) -> Self {
         Self::shown(Self::entry::<BITS>(ramp, level), threshold)
     }
 
     /// The colour of three intensities, by a [`dither::threshold`].
+    #[doc(hidden)]
     #[inline(always)]
     fn quantised(intensity: Intensity, threshold: u32) -> Self {
         // A step of a channel is 2^(16 - depth), of which thresholds are 1/128. Armv7-M shifts and clamps by one instruction.
@@ -115,6 +128,7 @@ pub trait Pixel: Copy + 'static {
     }
 
     /// The colour of three levels with [`CHANNEL`] fraction bits. Half a step for rounding, or the dither, has been added to each.
+    #[doc(hidden)]
     #[inline(always)]
     fn mixed([r, g, b]: [i32; 3]) -> Self {
         let shifted = |level: i32, depth: u32| level >> (CHANNEL + 8 - depth);

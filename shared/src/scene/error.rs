@@ -12,9 +12,9 @@ pub enum SceneError {
     Rotation,
     /// A direction is zero, or not a number.
     Direction,
-    /// A position is farther than [`crate::scene::MAX_POSITION`] from the origin along an axis.
+    /// A position is farther than 16 units from the origin along an axis.
     Position,
-    /// A scale is less than [`crate::scene::MIN_SCALE`] or more than [`crate::scene::MAX_SCALE`].
+    /// A scale is less than 1/16 or more than 8.
     Scale,
     /// There is no object with this index.
     Object {

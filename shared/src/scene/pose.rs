@@ -177,7 +177,7 @@ impl Pose {
     /// Changes the scale of this pose.
     ///
     /// # Errors
-    /// When it is none of [`MIN_SCALE`] to [`MAX_SCALE`].
+    /// When it is none of 1/16 to 8.
     pub fn scaled(self, scale: Scale) -> Result<Self, SceneError> {
         if (MIN_SCALE..=MAX_SCALE).contains(&scale) { Ok(Self { scale: scale.to_bits(), ..self }) } else { Err(SceneError::Scale) }
     }

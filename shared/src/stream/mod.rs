@@ -3,6 +3,7 @@
 //! [`Stream::parse`] checks length, checksum, all indices and all ranges, once. Rendering relies on these checks and repeats none of them.
 
 mod names;
+#[doc(hidden)]
 pub mod record;
 
 use crate::{
@@ -10,11 +11,15 @@ use crate::{
     math::vector::{cross, dot},
 };
 use core::{fmt, ops::Range};
-pub use names::{MAX_NAME, Names, UnknownMesh};
+#[doc(hidden)]
+pub use names::MAX_NAME;
+pub use names::{Names, UnknownMesh};
 use record::{
-    CAMERA_TRACK, Camera, DIRECTIONAL, EYE_SPACE, Header, Instance, Key, LIGHT_TRACK, Label, Light, MAGIC, MAX_POSITION, Material, Mesh,
-    OBJECT_TRACK, ORTHOGRAPHIC, OWN_MATERIALS, PERSPECTIVE, POINT, RIGHT, Track, Triangle, VERSION, VIEWER_INFINITE, VIEWER_LOCAL, Vertex,
+    CAMERA_TRACK, DIRECTIONAL, EYE_SPACE, Instance, Key, LIGHT_TRACK, Label, Light, MAGIC, MAX_POSITION, Material, OBJECT_TRACK,
+    ORTHOGRAPHIC, OWN_MATERIALS, PERSPECTIVE, POINT, RIGHT, Track, Triangle, VERSION, VIEWER_INFINITE, VIEWER_LOCAL, Vertex,
 };
+#[doc(inline)]
+pub use record::{Camera, Header, Mesh};
 use zerocopy::{FromBytes, Immutable, KnownLayout};
 
 /// Bytes aligned for [`Stream::parse`]: wrap `include_bytes!` in it, or use [`crate::include_stream!`].
@@ -43,18 +48,25 @@ pub struct Stream<'a> {
     /// The lights. Each shines on all meshes.
     pub lights: &'a [Light],
     /// Objects of the scene. If there are none, the scene is one object of all meshes.
+    #[doc(hidden)]
     pub instances: &'a [Instance],
     /// Movements of objects, lights and the camera.
+    #[doc(hidden)]
     pub tracks: &'a [Track],
     /// Keys of all tracks.
+    #[doc(hidden)]
     pub keys: &'a [Key],
     /// Vertices of all meshes.
+    #[doc(hidden)]
     pub vertices: &'a [Vertex],
     /// Triangles of all meshes and of their levels of detail.
+    #[doc(hidden)]
     pub triangles: &'a [Triangle],
     /// Texts that are drawn over the picture.
+    #[doc(hidden)]
     pub labels: &'a [Label],
     /// Names of the meshes as bytes of the file; empty if there are none. [`Stream::names`] reads them.
+    #[doc(hidden)]
     pub names: &'a [u8],
 }
 
@@ -438,20 +450,28 @@ fn level(meshes: &[Mesh], i: usize, error: u16) -> Option<&Mesh> {
 }
 
 /// Largest exponent of a highlight.
+#[doc(hidden)]
 pub const MAX_EXPONENT: u16 = 1024;
 /// Largest reflectance, or colour of a light, as the bits of a [`crate::format::Gain`]: 2.
+#[doc(hidden)]
 pub const MAX_GAIN: u16 = 2 << UNIT;
 /// Largest component of a translation or of a light's position, as the bits of a [`crate::format::Length`]: 16 units.
+#[doc(hidden)]
 pub const MAX_LENGTH: i32 = 16 << UNIT;
 /// Smallest scale of an object, as the bits of a [`crate::format::Scale`]: 1/16.
+#[doc(hidden)]
 pub const MIN_SCALE: u32 = 1 << 12;
 /// Largest scale of an object, as the bits of a [`crate::format::Scale`]: 8.
+#[doc(hidden)]
 pub const MAX_SCALE: u32 = 8 << 16;
 /// Smallest distance of the near plane, as the bits of a [`crate::format::Length`]: 1/64 unit.
+#[doc(hidden)]
 pub const MIN_NEAR: i32 = 1 << (UNIT - 6);
 /// Smallest focal length, as the bits of a [`crate::format::Focal`]: 1/16.
+#[doc(hidden)]
 pub const MIN_FOCAL: u32 = 1 << 12;
 /// Largest focal length, as the bits of a [`crate::format::Focal`]: 16.
+#[doc(hidden)]
 pub const MAX_FOCAL: u32 = 16 << 16;
 
 fn within(c: i32, limit: i32) -> bool {

@@ -1,48 +1,23 @@
-//! All number formats of the core.
+//! The number formats within the core and in streams.
 //!
-//! `Qm.f` has `m` integer bits (sign included) and `f` fraction bits. Numbers at interfaces are types of the crate [`fixed`]: the type says
-//! format and domain, and conversions from floating point round to the nearest. Inside the loops a value is a plain integer whose fraction
-//! bits are one of the constants below.
+//! In the loops a value is a plain integer. Its number of fraction bits is one of the constants below.
 
-use fixed::types::{I2F14, I2F30, I4F12, I18F14, I28F4, U0F16, U0F32, U1F15, U2F14, U5F3, U14F2, U16F16};
+use fixed::types::{I4F12, I28F4, U0F16, U1F15, U2F14, U14F2};
 
 /// Screen coordinate, pixels, Q28.4: pixel centres lie at 8/16. Corners are rounded to the nearest sixteenth.
 pub type Subpixel = I28F4;
-/// Component of a position, in units of object space, or component of a unit normal; Q2.14 in [-2, 2).
-pub type Unit = I2F14;
-/// Distance or coordinate in units of object space, Q18.14; streams use [-32, 32].
-pub type Length = I18F14;
 /// Radius in units of object space, unsigned Q2.14 in [0, 4).
 pub type Radius = U2F14;
 /// Largest distance between two surfaces, in units of object space, unsigned Q2.14 in [0, 4).
 pub type GeometricError = U2F14;
-/// Reflectance, or colour of a light, in one channel; 1 is full intensity. Unsigned Q2.14 in [0, 4); streams use [0, 2].
-pub type Gain = U2F14;
-/// Entry of a rotation matrix or component of a unit axis, Q2.30 in [-1, 1].
-pub type Rotation = I2F30;
-/// Focal length, in units of half the viewport's smaller side, unsigned Q16.16; streams use [1/16, 16].
-pub type Focal = U16F16;
-/// Size of an object relative to its mesh, unsigned Q16.16; scenes use [1/16, 8].
-pub type Scale = U16F16;
-/// Angle as a fraction of a turn, unsigned Q0.32 in [0, 1). A sum of angles wraps at a whole turn.
-pub type Angle = U0F32;
 /// Haversine of the angle between two unit normals, (1 - N1·N2)/2 = 1 - |N1+N2|²/4; unsigned Q0.16 in [0, 1).
 pub type Haversine = U0F16;
 /// Smallest length of an interpolated normal, unsigned Q1.15 in [0, 1].
 pub type NormalLength = U1F15;
 /// 1 over the smallest altitude of a triangle, per unit of object space, unsigned Q14.2 in [0, 16384).
 pub type InverseAltitude = U14F2;
-
 /// Length in a picture, as a fraction of the picture's smaller side, Q4.12 in [-8, 8).
 pub type Share = I4F12;
-
-/// Largest error of a pixel, in 1/255 of full intensity, unsigned Q5.3.
-pub type ErrorBudget = U5F3;
-
-/// Smallest error budget: 1/2 of 1/255.
-pub const LEAST_BUDGET: ErrorBudget = ErrorBudget::from_bits(1 << 2);
-/// Largest error budget: 16 of 1/255.
-pub const LARGEST_BUDGET: ErrorBudget = ErrorBudget::from_bits(16 << 3);
 
 /// Fraction bits of [`Subpixel`].
 pub const SUBPIXEL: u32 = 4;
@@ -52,12 +27,12 @@ pub const CENTRE: i32 = 1 << (SUBPIXEL - 1);
 pub const SPLITS: u32 = 6;
 /// Fraction bits of a screen coordinate within a triangle. They keep the corners of its parts exact after [`SPLITS`] splits.
 pub const FINE: u32 = SUBPIXEL + SPLITS;
-/// Fraction bits of [`Unit`], [`Length`], [`GeometricError`] and [`Gain`].
+/// Fraction bits of [`Unit`](super::Unit), [`Length`](super::Length), [`GeometricError`] and [`Gain`](super::Gain).
 pub const UNIT: u32 = 14;
 /// Fraction bits of a point in object space where light is computed, and of a point light or viewer there: Q7.25. Streams keep points within 56
 /// units. Close to a light each bit of the distance counts.
 pub const POSITION: u32 = 25;
-/// Fraction bits of [`Rotation`].
+/// Fraction bits of [`Rotation`](super::Rotation).
 pub const ROTATION: u32 = 30;
 /// Fraction bits of a dot product of unit vectors, N·L or N·H: Q2.30.
 pub const COSINE: u32 = 30;
@@ -99,10 +74,5 @@ pub const NORMAL_LENGTH: u32 = 15;
 pub const INVERSE_ALTITUDE: u32 = 2;
 /// Number of entries in a table of colours: 256 levels, and [`BIAS`] more at each end.
 pub const RAMP: usize = 512;
-/// Largest number of lights in one scene.
-pub const MAX_LIGHTS: usize = 8;
-/// Fraction bits of an [`Intensity`].
+/// Fraction bits of an [`Intensity`](super::Intensity).
 pub const INTENSITY: u32 = 8;
-/// Light of three channels at a pixel, Q24.8 in 1/255 of full intensity, in [0, 256). Values above 255 count as 255. One channel is in the first
-/// place.
-pub type Intensity = [i32; 3];
