@@ -8,8 +8,9 @@ use embedded_graphics_core::{
     primitives::Rectangle,
 };
 
-/// One band of a picture, which embedded-graphics can draw on in the coordinates of the display. What is drawn here is sent together with the
-/// picture, so nothing flickers. Pixels outside of the band are left out; the next band draws them.
+/// A [`DrawTarget`] for one band (group of rows drawn at once) of a picture. Text, shapes and images of embedded-graphics drawn on it are
+/// sent to the display together with the picture, so nothing flickers. Coordinates are pixels of the display; pixels outside of the band
+/// are discarded. `C` is the pixel format.
 #[derive(Debug)]
 pub struct BandTarget<'b, C> {
     pixels: &'b mut [C],
@@ -17,8 +18,8 @@ pub struct BandTarget<'b, C> {
 }
 
 impl<'b, C> BandTarget<'b, C> {
-    /// Makes a target of a band. `area` is the band's place on the display: the area that [`crate::Frame::next_band`] returned, moved by the
-    /// picture's corner. Its pixels are at the front of `pixels`.
+    /// Creates a target that draws into `pixels`, the pixels of one band in row-major order. `area` is the position of the band on the
+    /// display: the rectangle that [`crate::Frame::next_band`] returned, moved by the position of the picture's upper left corner.
     #[must_use]
     pub fn new(pixels: &'b mut [C], area: Rectangle) -> Self {
         Self { pixels, area }

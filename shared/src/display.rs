@@ -10,9 +10,11 @@ use embedded_graphics_core::{
     primitives::Rectangle,
 };
 
-/// One frame as a [`Drawable`] of embedded-graphics, drawn like any other shape. Drawing returns the frame's [`Stats`].
+/// One frame as a [`Drawable`] of embedded-graphics. Its method `draw` renders the frame onto a display and returns the frame's [`Stats`].
 ///
-/// Other things can be drawn [`under`](Self::under) and [`over`](Self::over) the picture, and it can lie anywhere on the display: see [`Self::at`].
+/// A picture can lie anywhere on the display ([`Self::at`]). Text, lines and images can be drawn behind it ([`Self::under`]) and in front
+/// of it ([`Self::over`]) without flicker. `C` is the pixel format; `U` and `O` are the types of the functions that draw behind and in
+/// front.
 ///
 /// ```
 /// use embedded_graphics::{
@@ -60,31 +62,34 @@ impl<C: Pixel + fmt::Debug, U, O> fmt::Debug for Picture<'_, '_, C, U, O> {
 }
 
 impl<'r, 'a, C: Pixel> Picture<'r, 'a, C> {
-    /// Frame `number` of the stream's animation, drawn by `renderer`. `band` is memory for one band: [`crate::Layout::band`] pixels. A shorter one
-    /// works, with fewer rows a band.
+    /// Creates a picture of frame `number` of the stream's animation. A number beyond the last frame starts over.
+    ///
+    /// `band` is the buffer into which `renderer` draws some rows at a time. Give it [`crate::Layout::band`] pixels; with fewer, the
+    /// picture is sent in more and smaller pieces.
     ///
     /// # Errors
-    /// When `band` does not hold one row.
+    /// Returns [`RenderError::Band`] if `band` is shorter than one row of the picture.
     pub fn new(renderer: &'r mut Renderer<'a, C>, band: &'r mut [C], number: u32) -> Result<Self, RenderError> {
         renderer.check_band(band)?;
         Ok(Self { parts: RefCell::new((renderer, band)), number: Some(number), corner: Point::zero(), under: None, over: None })
     }
 
-    /// The scene of `renderer` as the program has set it, see [`crate::Scene`]. `band` is memory for one band: [`crate::Layout::band`] pixels.
+    /// Creates a picture of the scene in its current state, for programs that move objects themselves through [`Renderer::scene`]. `band`
+    /// is the buffer into which `renderer` draws some rows at a time: [`crate::Layout::band`] pixels.
     ///
     /// # Errors
-    /// When `band` does not hold one row.
+    /// Returns [`RenderError::Band`] if `band` is shorter than one row of the picture.
     pub fn of_scene(renderer: &'r mut Renderer<'a, C>, band: &'r mut [C]) -> Result<Self, RenderError> {
         Ok(Self { number: None, ..Self::new(renderer, band, 0)? })
     }
 }
 
 impl<'r, 'a, C: Pixel, U, O> Picture<'r, 'a, C, U, O> {
-    /// Puts the upper left corner of the picture at the pixel `corner` of `display`. Nothing outside of the picture is drawn. Without this call the
-    /// corner is the pixel 0, 0.
+    /// Moves the picture on the display: `corner` is the position of its upper left pixel, in pixels of `display`. Without this call the
+    /// picture lies at `(0, 0)`. The rest of the display stays untouched.
     ///
     /// # Errors
-    /// When a part of the picture would lie outside of the display.
+    /// Returns [`RenderError::Corner`] if a part of the picture would lie outside of `display`.
     pub fn at(mut self, corner: Point, display: &impl Dimensions) -> Result<Self, RenderError> {
         let (Size { width, height }, outer) = (self.parts.get_mut().0.size(), display.bounding_box());
         let lies = |at: i32, side: u32, start: i32, room: u32| {
@@ -99,16 +104,18 @@ impl<'r, 'a, C: Pixel, U, O> Picture<'r, 'a, C, U, O> {
         Ok(Self { corner, ..self })
     }
 
-    /// Draws something between the background and the picture. `under` is called for each band. It draws text, lines and images in the display's
-    /// coordinates, and has to draw the same things for all bands of a picture.
+    /// Sets a function that draws behind the objects and in front of the scene's background, for example an image. The picture is drawn in
+    /// bands (groups of rows), and `under` is called once for each band. Each call draws the same things, in coordinates of the display;
+    /// pixels outside of the band are discarded.
     #[must_use]
     pub fn under<F: Fn(&mut BandTarget<'_, C>)>(self, under: F) -> Picture<'r, 'a, C, F, O> {
         let Self { parts, number, corner, over, .. } = self;
         Picture { parts, number, corner, under: Some(under), over }
     }
 
-    /// Draws something over the picture. `over` is called for each band once the triangles are drawn. It draws in the display's coordinates, and has
-    /// to draw the same things for all bands of a picture.
+    /// Sets a function that draws in front of the objects, for example a label. The picture is drawn in bands (groups of rows), and `over`
+    /// is called once for each band. Each call draws the same things, in coordinates of the display; pixels outside of the band are
+    /// discarded.
     #[must_use]
     pub fn over<F: Fn(&mut BandTarget<'_, C>)>(self, over: F) -> Picture<'r, 'a, C, U, F> {
         let Self { parts, number, corner, under, .. } = self;
@@ -125,7 +132,8 @@ where
     type Color = C;
     type Output = Stats;
 
-    /// Draws the frame and sends each band to `target` by one call of `fill_contiguous`.
+    /// Renders the frame and sends it to `target`, with one call of `fill_contiguous` for each band (group of rows drawn at once). Returns
+    /// the frame's [`Stats`], or the first error of the display.
     fn draw<D: DrawTarget<Color = C>>(&self, target: &mut D) -> Result<Stats, D::Error> {
         // The picture is borrowed already only if a display draws it from within its own `fill_contiguous`.
         let Ok(mut parts) = self.parts.try_borrow_mut() else { return Ok(Stats::default()) };

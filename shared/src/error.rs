@@ -3,77 +3,78 @@
 use crate::setup::edge::COLUMNS;
 use core::fmt;
 
-/// Largest width and height of a picture, in pixels.
+/// The largest width and height of a picture: 2,047 pixels.
 pub const MAX_SIDE: u32 = COLUMNS - 1;
 
-/// The reason why a renderer cannot draw.
+/// The reason why a renderer cannot be created, cannot use a setting or cannot draw.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub enum RenderError {
-    /// The picture is empty, or a side is longer than [`MAX_SIDE`].
+    /// The picture has no pixels, or is wider or higher than [`MAX_SIDE`].
     Size {
-        /// Width of the picture, in pixels.
+        /// The width of the picture that was asked for, in pixels.
         width: u32,
-        /// Height of the picture, in pixels.
+        /// The height of the picture that was asked for, in pixels.
         height: u32,
     },
-    /// The layout is for pictures of another width, or its bands have no row.
+    /// The [`crate::Layout`] has another width than the picture, no rows, or no processor.
     Layout {
-        /// Width of the picture, in pixels.
+        /// The width of the picture that was asked for, in pixels.
         width: u32,
     },
-    /// The memory is smaller than [`crate::Layout::words`] says.
+    /// The memory that was passed to the renderer is smaller than [`crate::Layout::words`].
     Memory {
-        /// Number of 64-bit words that are needed.
+        /// The number of 64-bit words that are needed.
         need: usize,
     },
-    /// The layout has room for fewer materials than the stream has; see [`crate::Layout::materials`].
+    /// The stream has more materials than the layout has room for; set [`crate::Layout::materials`].
     Materials {
-        /// Number of materials in the stream.
+        /// The number of materials in the stream.
         need: usize,
     },
-    /// The layout has room for fewer objects than the stream has; see [`crate::Layout::objects`].
+    /// The stream has more objects than the layout has room for; set [`crate::Layout::objects`].
     Objects {
-        /// Number of objects in the stream.
+        /// The number of objects in the stream.
         need: usize,
     },
-    /// The layout has no room for antialiasing; see [`crate::Layout::antialias`].
+    /// Antialiasing was turned on, but the layout has no room for it; set [`crate::Layout::antialias`].
     NoSamples,
-    /// The memory for a band is shorter than one row of the picture.
+    /// The pixel buffer for a band (group of rows drawn at once) is shorter than one row of the picture.
     Band {
-        /// Number of pixels that are needed at least.
+        /// The smallest number of pixels that the buffer may have: one row of the picture.
         need: usize,
     },
-    /// A part of the picture would lie outside of the display.
+    /// A part of the picture would lie outside of the display; see [`crate::Picture::at`].
     Corner,
-    /// The stream or the program needs a cargo feature that this build lacks.
+    /// The stream or a setting needs a cargo feature of this crate that is turned off.
     Feature {
-        /// Name of the cargo feature.
+        /// The name of the cargo feature.
         name: &'static str,
     },
-    /// The stream asks for a method that is not in the program's list of methods.
+    /// The stream asks for a shading method that is not in the list of shaders that was passed to [`crate::Renderer::new`].
     UnknownMethod {
-        /// The number of the missing method, see [`crate::method::Facts::id`].
+        /// The number of the missing method, as in [`crate::method::Facts::id`].
         method: u16,
     },
-    /// The method cannot draw point lights or a local viewer, and the scene has one of them.
+    /// The shading method supports only directional lights and an infinitely distant viewer, and the scene has a point light or a local
+    /// viewer.
     Light {
-        /// Name of the method.
+        /// The name of the shading method.
         shader: &'static str,
     },
-    /// The error budget is less than [`crate::format::LEAST_BUDGET`] or more than [`crate::format::LARGEST_BUDGET`].
+    /// The error budget (the largest error of a pixel) is less than 1/2 or more than 16, in units of 1/255 of full intensity.
     Budget,
-    /// A material's exponent is too small for the method.
+    /// A material's highlight exponent is too small for the shading method.
     Exponent {
-        /// Name of the method.
+        /// The name of the shading method.
         shader: &'static str,
         /// The smallest exponent that the method can draw.
         least: u16,
     },
-    /// The method cannot interpolate in perspective.
+    /// Perspective-correct interpolation of light is on, and the shading method does not support it for a perspective camera.
     Perspective {
-        /// Name of the method.
+        /// The name of the shading method.
         shader: &'static str,
     },
 }

@@ -13,7 +13,9 @@ use crate::{
 };
 use zerocopy::{FromBytes, Immutable, IntoBytes, KnownLayout};
 
-/// The size of the picture's bands, and the number of vertices, triangles and other things that a renderer has room for.
+/// The configuration that decides how much memory a [`crate::Renderer`] needs: the size of the picture and of its bands (a band is a group
+/// of rows that is drawn at once), and how many vertices, triangles, materials and objects there is room for. Use it as a constant, so that
+/// the memory can be a `static`.
 ///
 /// ```
 /// use embedded_graphics_core::pixelcolor::Rgb565;
@@ -26,30 +28,36 @@ use zerocopy::{FromBytes, Immutable, IntoBytes, KnownLayout};
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub struct Layout {
-    /// Columns of the picture.
+    /// The width of the picture in pixels. It has to equal the width that [`crate::Renderer::new`] is called with.
     pub width: usize,
-    /// Rows of a band. A band is drawn at once. More rows take more memory, fewer rows more time.
+    /// The number of rows of a band, at least 1. A picture is drawn and sent band by band, so few rows save memory, and many rows save
+    /// time.
     pub rows: usize,
-    /// Processors that draw at the same time, each a band of its own: 1 or 2. See [`crate::Frame::in_two`].
+    /// The number of processors that draw at the same time, each its own band: 1 or 2. See [`crate::Frame::in_two`].
     pub processors: usize,
-    /// Vertices that a frame keeps. If the stream has more, each triangle transforms the others again.
+    /// The number of transformed vertices that a frame keeps, 32 bytes each. If the scene has more vertices, the picture stays the same,
+    /// but the vertices without room are transformed again for each triangle that uses them.
     pub vertices: usize,
-    /// Triangles that a frame keeps; triangles that face away need no room. If there are more, each band walks the whole stream.
+    /// The number of visible triangles that a frame keeps in its list, 8 bytes each; triangles that face away need no room. If more
+    /// triangles are visible, the picture stays the same, but each band goes through all triangles of the scene.
     pub triangles: usize,
-    /// Number of materials, at least as many as the stream has.
+    /// The number of materials that there is room for. A renderer refuses a stream that has more.
     pub materials: usize,
-    /// Number of objects, at least as many as the scene has.
+    /// The number of objects that there is room for, at least 1. A renderer refuses a stream that has more, and [`crate::Scene::add`] fails
+    /// beyond this number.
     pub objects: usize,
-    /// Triangles that are kept from one band to the next, 132 bytes each. If more triangles cross the border of a band, the next band sets up the
-    /// others again.
+    /// The number of triangles that can continue from one band into the next without new set-up, 132 bytes each. If more triangles cross
+    /// the border between two bands, the picture stays the same, but the next band sets up the others again.
     pub active_triangles: usize,
-    /// Whether there is room for antialiasing, which takes 72 bytes for each pixel of a band.
+    /// Whether there is room for antialiasing, which takes 72 bytes for each pixel of a band. [`crate::Renderer::set_antialias`] turns it
+    /// on.
     pub antialias: bool,
 }
 
 impl Layout {
-    /// A layout for pictures of `width` columns in bands of `rows` rows. It has room for 1,024 vertices, 1,024 triangles, one material, one object
-    /// and 48 triangles that cross the border of a band. It has no room for antialiasing.
+    /// Creates a layout for pictures that are `width` pixels wide and are drawn in bands of `rows` rows. It has room for 1,024 vertices,
+    /// 1,024 triangles, one material, one object, and 48 triangles that cross the border between two bands. It is for one processor,
+    /// without antialiasing.
     #[must_use]
     pub const fn new(width: usize, rows: usize) -> Self {
         Self {
@@ -65,49 +73,52 @@ impl Layout {
         }
     }
 
-    /// Sets the number of processors that draw at the same time: 1 or 2.
+    /// Sets the number of processors that draw at the same time, 1 or 2. The default is 1.
     #[must_use]
     pub const fn processors(self, processors: usize) -> Self {
         Self { processors, ..self }
     }
 
-    /// Sets the number of vertices that there is room for.
+    /// Sets the number of transformed vertices that a frame can keep, 32 bytes each. The default is 1,024.
     #[must_use]
     pub const fn vertices(self, vertices: usize) -> Self {
         Self { vertices, ..self }
     }
 
-    /// Sets the number of triangles that there is room for.
+    /// Sets the number of visible triangles that a frame can keep in its list, 8 bytes each. The default is 1,024.
     #[must_use]
     pub const fn triangles(self, triangles: usize) -> Self {
         Self { triangles, ..self }
     }
 
-    /// Sets the number of materials that there is room for.
+    /// Sets the number of materials that there is room for. The default is 1.
     #[must_use]
     pub const fn materials(self, materials: usize) -> Self {
         Self { materials, ..self }
     }
 
-    /// Sets the number of objects that there is room for.
+    /// Sets the number of objects that there is room for. The default is 1.
     #[must_use]
     pub const fn objects(self, objects: usize) -> Self {
         Self { objects, ..self }
     }
 
-    /// Sets the number of triangles across the border of a band that there is room for.
+    /// Sets the number of triangles that can continue from one band (group of rows drawn at once) into the next without new set-up, 132
+    /// bytes each. The default is 48.
     #[must_use]
     pub const fn active_triangles(self, active_triangles: usize) -> Self {
         Self { active_triangles, ..self }
     }
 
-    /// Sets whether there is room for antialiasing.
+    /// Sets whether there is room for antialiasing, which takes 72 bytes for each pixel of a band (group of rows drawn at once). The
+    /// default is `false`.
     #[must_use]
     pub const fn antialias(self, antialias: bool) -> Self {
         Self { antialias, ..self }
     }
 
-    /// Sets the numbers of vertices, triangles, materials and objects to those of a stream.
+    /// Sets the numbers of vertices, triangles, materials and objects to what the scene in `stream` needs. All other values stay. This
+    /// suits programs that can allocate memory when they run; a `static` needs numbers that are known at compile time.
     #[must_use]
     pub fn with_room_for(self, stream: &Stream<'_>) -> Self {
         let whole = [Instance { first_mesh: 0, meshes: stream.meshes.len() as u16, material: 0, reserved: 0 }];
@@ -123,7 +134,8 @@ impl Layout {
         Self { vertices, triangles, materials: stream.materials.len(), objects: objects.len(), ..self }
     }
 
-    /// Number of pixels in a band. A program needs a buffer of this length.
+    /// Returns the number of pixels in a band (group of rows drawn at once): width times rows. The program passes a pixel buffer of this
+    /// length to [`crate::Picture::new`] or [`crate::Frame::next_band`].
     #[must_use]
     pub const fn band(&self) -> usize {
         self.width * self.rows
@@ -133,7 +145,8 @@ impl Layout {
         if self.antialias { self.band() * self.processors } else { 0 }
     }
 
-    /// Number of 64-bit words that a renderer needs in the pixel format `C`. The slice for [`crate::Renderer::new`] has this length.
+    /// Returns the number of 64-bit words of memory that a renderer needs when it draws in the pixel format `C`. [`crate::Renderer::new`]
+    /// takes a `&mut [u64]` of this length.
     #[must_use]
     pub const fn words<C: Pixel>(&self) -> usize {
         let bytes = padded(self.vertices * size_of::<ScreenVertex>())
@@ -151,7 +164,8 @@ impl Layout {
         bytes / size_of::<u64>()
     }
 
-    /// Number of bytes that a renderer needs in the pixel format `C`. The buffer for a band is not included.
+    /// Returns the number of bytes of memory that a renderer needs when it draws in the pixel format `C`: 8 times [`Self::words`]. The
+    /// pixel buffer for a band ([`Self::band`]) is not included.
     #[must_use]
     pub const fn bytes<C: Pixel>(&self) -> usize {
         self.words::<C>() * size_of::<u64>()

@@ -18,7 +18,8 @@ use crate::{
 use core::mem;
 use embedded_graphics_core::{geometry::Size, primitives::Rectangle};
 
-/// Draws the frames of a scene.
+/// A renderer, which draws the frames of a [`Scene`] in the pixel format `C`. It owns the scene and all settings, and works in memory that
+/// the program lends it; nothing is allocated.
 #[derive(Debug)]
 pub struct Renderer<'a, C: Pixel> {
     settings: Settings<C>,
@@ -35,22 +36,31 @@ pub struct Renderer<'a, C: Pixel> {
 }
 
 impl<'a, C: Pixel> Renderer<'a, C> {
-    /// A renderer for pictures of `size` pixels. It draws by the method in `shaders` that the stream asks for. `memory` needs [`Layout::words`]
-    /// words; its contents do not matter.
+    /// Creates a renderer for pictures of `size` pixels.
+    ///
+    /// - `stream` has the meshes, materials, lights and camera, and the number of the shading method to use.
+    /// - `layout` says how much memory there is. Its width is that of the picture.
+    /// - `memory` is working memory of at least [`Layout::words`] words, with any contents.
+    /// - `shaders` lists the shading methods that the program contains. The renderer uses the one that the stream asks for.
     ///
     /// # Errors
-    /// When `size` is out of range, its width is not the layout's, `memory` is too small, the method is missing or cannot shade the scene, or
-    /// the stream has labels and this build lacks the feature `text`.
+    /// - Returns [`RenderError::UnknownMethod`] if the stream asks for a method that is not in `shaders`.
+    /// - Returns [`RenderError::Size`] if a side of the picture is 0 or longer than [`MAX_SIDE`].
+    /// - Returns [`RenderError::Layout`] if `layout` has another width than `size`, or no rows.
+    /// - Returns [`RenderError::Memory`], [`RenderError::Materials`] or [`RenderError::Objects`] if there is too little room.
+    /// - Returns [`RenderError::Light`], [`RenderError::Exponent`] or [`RenderError::Perspective`] if the method cannot shade this scene.
+    /// - Returns [`RenderError::Feature`] if the stream has text labels and this crate is built without the feature `text`.
     pub fn new(stream: Stream<'a>, size: Size, layout: &Layout, memory: &'a mut [u64], shaders: &[Shader<C>]) -> Result<Self, RenderError> {
         let method = stream.header.shader;
         let shader = shaders.iter().find(|shader| shader.facts().id == method).ok_or(RenderError::UnknownMethod { method })?;
         Self::with_shader(stream, size, layout, memory, *shader)
     }
 
-    /// A renderer with the method `shader`, whatever method the stream asks for. All else is as in [`Self::new`].
+    /// Creates a renderer that uses the shading method `shader`, whatever method the stream asks for. All other arguments are as in
+    /// [`Self::new`].
     ///
     /// # Errors
-    /// Those of [`Self::new`], except that no method can be missing.
+    /// Returns the errors of [`Self::new`] except [`RenderError::UnknownMethod`].
     // Copies of it on the way stay off the stack of the frame loop.
     #[inline(never)]
     pub fn with_shader(
@@ -98,15 +108,17 @@ impl<'a, C: Pixel> Renderer<'a, C> {
         Ok(Self { settings, scene, memory, seams: None, rearranged: true, region: Region::NONE, is_invalidated: false })
     }
 
-    /// The scene. A program can change it between frames.
+    /// Returns the scene, so that the program can change objects, materials, lights and the camera between frames.
     pub fn scene(&mut self) -> &mut Scene<'a> {
         &mut self.scene
     }
 
-    /// Changes the shading method. The next frame takes a little longer, because it computes the tables of all materials again.
+    /// Sets the shading method for the next frames. The next frame takes a little longer, because it computes the colour tables of all
+    /// materials again.
     ///
     /// # Errors
-    /// When the method cannot shade this scene; the method in use stays.
+    /// Returns [`RenderError::Light`], [`RenderError::Exponent`] or [`RenderError::Perspective`] if the method cannot shade the scene. The
+    /// renderer then keeps its method.
     pub fn set_shader(&mut self, shader: Shader<C>) -> Result<(), RenderError> {
         let (facts, scene) = (shader.facts(), &self.scene);
         check_scene(scene.camera(), scene.lights(), scene.materials(), facts, self.settings.perspective_correct)?;
@@ -140,24 +152,27 @@ impl<'a, C: Pixel> Renderer<'a, C> {
         }
     }
 
-    /// Selects work to leave out because nobody can see the result; by default all of it. The picture is the same.
+    /// Sets which invisible work a frame leaves out; by default this is all of it. The picture is the same with any choice, apart from two
+    /// exceptions that [`Skips`](crate::Skips) names. Turning a switch off and counting time shows what it saves.
     #[cfg(feature = "skips")]
     pub fn set_skips(&mut self, skips: crate::frame::Skips) {
         self.settings.skips = skips;
         self.scene.set_stale();
     }
 
-    /// The method in use.
+    /// Returns the shading method in use.
     #[must_use]
     pub fn shader(&self) -> Shader<C> {
         self.settings.shader
     }
 
-    /// Turns interpolation in perspective on or off; by default it is off. Without it, light is interpolated linearly on the screen, and a triangle
-    /// that reaches from near to far looks wrong. It makes no difference to orthographic cameras.
+    /// Turns perspective-correct interpolation of light on or off; the default is off. Without it, light is interpolated linearly on the
+    /// screen, so the light on a large triangle that reaches from near to far is visibly distorted. Turning it on costs time, and changes
+    /// nothing for an orthographic camera.
     ///
     /// # Errors
-    /// When this build or the method in use cannot interpolate in perspective; nothing changes then.
+    /// Returns [`RenderError::Feature`] if this crate is built without the feature `perspective`, and [`RenderError::Perspective`] if the
+    /// camera is perspective and the shading method cannot do this. The setting then stays.
     pub fn set_perspective_correct(&mut self, on: bool) -> Result<(), RenderError> {
         if on && !cfg!(feature = "perspective") {
             return Err(RenderError::Feature { name: "perspective" });
@@ -170,11 +185,12 @@ impl<'a, C: Pixel> Renderer<'a, C> {
         Ok(())
     }
 
-    /// Sets the error budget of the method [`Shader::AUTO`]: the largest error of a pixel against Phong shading, in 1/255 of full intensity. By
-    /// default it is the stream's.
+    /// Sets the error budget of [`Shader::AUTO`] and [`Shader::AUTO_LINEAR`]: the largest difference of a pixel from Phong shading, in
+    /// units of 1/255 of full intensity, from 1/2 to 16. A larger budget is faster. The default is stored in the stream. Other methods
+    /// ignore it.
     ///
     /// # Errors
-    /// When it is less than [`LEAST_BUDGET`] or more than [`LARGEST_BUDGET`]; nothing changes then.
+    /// Returns [`RenderError::Budget`] if the budget is less than [`LEAST_BUDGET`] or more than [`LARGEST_BUDGET`]. The budget then stays.
     pub fn set_budget(&mut self, budget: ErrorBudget) -> Result<(), RenderError> {
         if !(LEAST_BUDGET..=LARGEST_BUDGET).contains(&budget) {
             return Err(RenderError::Budget);
@@ -184,32 +200,35 @@ impl<'a, C: Pixel> Renderer<'a, C> {
         Ok(())
     }
 
-    /// Turns ordered dither on or off. By default it is on in formats of less than eight bits a channel. The next frame computes the tables of all
-    /// materials again.
+    /// Turns ordered dither on or off. Dither hides the visible steps between colours of few bits. It is on by default in formats of fewer
+    /// than eight bits a channel. The next frame computes the colour tables of all materials again.
     ///
-    /// Channels of five to seven bits are dithered by two thresholds ([`crate::pixel::ramps`]), which take turns like the squares of a checkerboard,
-    /// or by rows. This takes as many instructions as no dither.
+    /// The cost depends on the pixel format:
     ///
-    /// All other formats are dithered by 64 thresholds in squares of eight by eight pixels. Greys of one to four bits are drawn fastest with dither,
-    /// and take several times as many instructions without it. Colours of one to four bits a channel, and formats of eight bits, take several times
-    /// as many instructions with dither.
+    /// - Colours of five or six bits a channel, such as RGB565, take the same time with and without dither.
+    /// - Greys of one to four bits are fastest with dither, and several times as slow without it.
+    /// - All other formats are fastest without dither, and several times as slow with it.
     pub fn set_dither(&mut self, dither: bool) {
         self.settings.dither = dither;
         self.scene.set_stale();
     }
 
-    /// Corrects all colours for the curve of the display, such as [`crate::pixel::gamma::SRGB`]. By default nothing is corrected, and light levels
-    /// are sent unchanged. The background is never corrected. Materials of one channel cost nothing more, because tables of colours hold the
-    /// corrected values. Materials of three channels take several times as long.
+    /// Sets the curve that corrects all colours for the display, such as [`SRGB`](crate::pixel::SRGB). The default is `None`: light levels
+    /// are sent unchanged, which suits colours that were chosen on a screen. The background is never corrected.
+    ///
+    /// In grey formats the correction takes no more time. Neither does it in formats of fewer than eight bits a channel for materials whose
+    /// colours are multiples of one another. All other materials can take several times as long.
     pub fn set_gamma(&mut self, gamma: Option<&'static Gamma>) {
         self.settings.gamma = gamma;
         self.scene.set_stale();
     }
 
-    /// Turns antialiasing by exact areas on or off; it is off at first.
+    /// Turns antialiasing on or off; the default is off. Each pixel on the edge of a triangle is blended by the exact area that the
+    /// triangle covers.
     ///
     /// # Errors
-    /// When the memory has no room for it, or this build lacks the feature `antialias`; it stays off then.
+    /// Returns [`RenderError::Feature`] if this crate is built without the feature `antialias`, and [`RenderError::NoSamples`] if the
+    /// memory has no room for it ([`Layout::antialias`]). Antialiasing is then off.
     pub fn set_antialias(&mut self, antialias: bool) -> Result<(), RenderError> {
         self.settings.antialias = false;
         if antialias && !cfg!(feature = "antialias") {
@@ -223,25 +242,26 @@ impl<'a, C: Pixel> Renderer<'a, C> {
         Ok(())
     }
 
-    /// Turns levels of detail on or off; by default they are on. Each mesh is then drawn at its coarsest level that lies less than half a pixel from
-    /// the full mesh on the screen. It makes no difference to streams without levels.
+    /// Turns levels of detail on or off; the default is on. Each mesh is then drawn with the fewest triangles that keep it within half a
+    /// pixel of the full mesh. A stream has coarser levels if `convert` made them; without any, this setting changes nothing.
     pub fn set_levels_of_detail(&mut self, on: bool) {
         self.settings.levels_of_detail = on;
         self.scene.set_view_changed();
     }
 
-    /// Turns partial redraw on or off; by default it is off. With it, a frame draws only areas that may differ from the frame before, which the
-    /// display has to show still. Where single objects move, these are the areas that they leave and enter. [`Frame::area`] is the rectangle around
-    /// them. If colours, lights or the camera have changed, the whole picture is drawn.
+    /// Turns partial redraw on or off; the default is off. When it is on, a frame draws and sends only the areas that moving objects left
+    /// or entered, so the display has to keep showing the previous picture. [`Frame::area`] is the rectangle around these areas. If
+    /// colours, lights or the camera have changed, the whole picture is drawn.
     ///
-    /// What a program draws under or over the picture is sent in these areas only. [`Self::invalidate`] adds an area where it changes.
+    /// A text or image that the program itself draws under or over the picture is not watched. Call [`Self::invalidate`] with its area when
+    /// it changes.
     pub fn set_partial_redraw(&mut self, on: bool) {
         self.settings.partial_redraw = on;
     }
 
-    /// Adds `area` to the next frame, which draws and sends it again although nothing of the scene has changed there. A clock that a program draws
-    /// over the picture needs this with partial redraw. `area` is in pixels of the picture; parts outside of the picture are ignored. Areas of several
-    /// calls add up.
+    /// Marks an area of the picture to be drawn and sent again by the next frame. With partial redraw ([`Self::set_partial_redraw`]), call
+    /// it when something changes that the program itself draws over the picture, for example a clock. `area` is in pixels of the picture,
+    /// and is clipped to it. Areas of several calls add up.
     pub fn invalidate(&mut self, area: Rectangle) {
         let area = Area::of(area, self.settings.size);
         if !area.is_empty() {
@@ -258,50 +278,56 @@ impl<'a, C: Pixel> Renderer<'a, C> {
         region.clear(settings.size.height, band_rows.checked_div(settings.processors).unwrap_or(0));
     }
 
-    /// The size of the picture, in pixels.
+    /// Returns the size of the picture in pixels.
     #[must_use]
     pub fn size(&self) -> Size {
         self.settings.size
     }
 
-    /// Rows of a band; the last band of a frame may have fewer.
+    /// Returns the largest number of rows that one call of [`Frame::next_band`] can draw, if the pixel buffer is long enough:
+    /// [`Layout::rows`] times [`Layout::processors`], or the height of the picture if this is less.
     #[must_use]
     pub fn band_rows(&self) -> u32 {
         self.settings.band_rows(self.memory.depth.len(), self.memory.samples.len())
     }
 
-    /// Checks that a slice of pixels is long enough for a band.
+    /// Checks that a pixel buffer is long enough for [`Frame::next_band`], which needs at least one row of the picture.
     ///
     /// # Errors
-    /// When `pixels` does not hold one row of the picture.
+    /// Returns [`RenderError::Band`] if `pixels` is shorter than one row of the picture.
     pub fn check_band(&self, pixels: &[C]) -> Result<(), RenderError> {
         let need = self.settings.size.width as usize;
         if pixels.len() < need { Err(RenderError::Band { need }) } else { Ok(()) }
     }
 
-    /// Whether frame `number` is the picture that was drawn last: scene and settings have not changed, nothing is invalidated, and the camera stands
-    /// still or has come round. It need be neither drawn nor sent if the display still shows it.
+    /// Returns `true` if frame `number` of the animation would equal the frame that was drawn last: the scene and the settings have not
+    /// changed, no area is invalidated, and the animation is at the same place. A program can then skip drawing while the display still
+    /// shows that frame.
     #[must_use]
     pub fn is_latest(&self, number: u32) -> bool {
         !self.is_invalidated && self.scene.is_latest(number)
     }
 
-    /// Begins frame `number` of the stream's animation. Numbers beyond the last frame start over. It is [`Scene::play`] and then [`Self::draw`].
+    /// Begins frame `number` of the stream's animation. A number beyond the last frame starts over. This is [`Scene::play`] followed by
+    /// [`Self::draw`]; the pixels are drawn by [`Frame::next_band`].
     pub fn frame(&mut self, number: u32) -> Frame<'_, C> {
         self.scene.play(number);
         self.draw()
     }
 
-    /// Begins a frame of the scene as the program has set it: places objects and lights, transforms vertices, and culls and sorts triangles.
+    /// Begins a frame of the scene in its current state, for programs that move objects themselves. It transforms the vertices, and makes
+    /// the list of visible triangles; the pixels are then drawn by [`Frame::next_band`].
     #[inline(never)]
     pub fn draw(&mut self) -> Frame<'_, C> {
         self.place();
         Frame::new(&self.settings, &self.scene, &mut self.memory, &self.region)
     }
 
-    /// Begins frame `number` as [`Self::frame`] does, and divides the preparation between two processors. The earlier triangles are a `share` of all,
-    /// in units of 1/65,536. The picture does not depend on it. The layout has to be for two [`Layout::processors`], and to have room for all
-    /// triangles and vertices; otherwise one part does everything.
+    /// Begins frame `number` as [`Self::frame`] does, and divides the work before the first pixel between two processors. The picture does
+    /// not depend on `share`: about the first `share / 65,536` of all triangles form one part, and the rest form the other part.
+    ///
+    /// This needs a layout for two [`Layout::processors`] with room for all vertices and triangles, and a scene of 64 to 32,767 triangles.
+    /// Otherwise, or if the bands are very small, one part does everything.
     pub fn prepare(&mut self, number: u32, share: u16) -> Preparation<'_, C> {
         self.scene.play(number);
         self.place();

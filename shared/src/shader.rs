@@ -12,7 +12,8 @@ use crate::{
 };
 use core::fmt;
 
-/// A shading method in the pixel format `C`. A program contains only the code of methods that it names.
+/// A shading method, compiled for the pixel format `C`. Choose from the constants, or wrap your own [`Method`] by [`Self::new`]. A program
+/// contains only the code of the methods that it names.
 #[derive(Clone, Copy)]
 pub struct Shader<C: Pixel> {
     method: &'static dyn Method,
@@ -49,30 +50,38 @@ impl<C: Pixel> TriangleLoops<C> {
 }
 
 impl<C: Pixel> Shader<C> {
-    /// Flat shading: one colour for each triangle.
+    /// Flat shading: each triangle has one colour. It suits objects with facets, and is the fastest method.
     pub const FLAT: Self = Self::with_loops(&Flat);
-    /// Gouraud shading: light at the corners of a triangle, interpolated linearly.
+    /// Gouraud shading: light is computed at the corners of a triangle and interpolated linearly. It suits dull surfaces, and triangles of
+    /// a few pixels.
     pub const GOURAUD: Self = Self::with_loops(&Gouraud);
-    /// Six-point shading: light at the corners and the midpoints of edges, interpolated quadratically.
+    /// Six-point shading: light is computed at the corners and the midpoints of the edges of a triangle, and interpolated by a quadratic
+    /// polynomial. It suits smooth surfaces, but flattens highlights that are narrower than a triangle.
     pub const SIX_POINT: Self = Self::with_loops(&SixPoint);
-    /// Phong shading: the normal is interpolated and normalised at every pixel. Highlights use the half vector.
+    /// Phong shading: the normal is interpolated and normalised at every pixel. Highlights use the half vector H between light and viewer
+    /// (Blinn). All other methods approximate this result.
     pub const PHONG: Self = Self::with_loops(&Phong);
-    /// Six-point shading with a root: the square root of N·H is interpolated quadratically, then squared and raised to the exponent at every pixel.
+    /// Six-point shading of the square root of N·H, where N is the normal and H the half vector between light and viewer. At each pixel the
+    /// root is squared and raised to the material's exponent. The result is hardly distinguishable from Phong shading, and takes less time.
     pub const SQRT6: Self = Self::with_loops(&Sqrt6);
-    /// Normals interpolated linearly, multiplied by a reciprocal length that is interpolated quadratically and corrected by a step of Newton's method
-    /// at every pixel.
+    /// Phong shading that normalises without square root, division or table of roots: the normal is interpolated linearly, its reciprocal
+    /// length quadratically, and one step of Newton's method at every pixel corrects the length. Under point lights or with a local viewer
+    /// it draws like [`Shader::PHONG`].
     pub const RENQ_NEWTON: Self = Self::with_loops(&RenqNewton);
 
-    /// The cheapest way for each triangle that keeps to the error budget: one colour, linear, quadratic, or Phong shading.
+    /// A method that chooses for each triangle the cheapest way whose error stays within a budget: one colour, linear interpolation, two
+    /// kinds of quadratic interpolation, or Phong shading. [`crate::Renderer::set_budget`] sets the budget. This is the default of
+    /// `microphong convert`.
     pub const AUTO: Self = Self::with_loops(&Auto::<true>);
-    /// [`Shader::AUTO`] without quadratic interpolation. It takes about half of the flash, and keeps to the error budget as well.
+    /// A smaller variant of [`Shader::AUTO`], without quadratic interpolation. It keeps to the same error budget and takes about three
+    /// fifths of the flash; large triangles take longer.
     pub const AUTO_LINEAR: Self = Self::with_loops(&Auto::<false>);
 
-    /// Every method of this crate.
+    /// All shading methods of this crate. A program that uses this list contains the code of every method.
     pub const ALL: [Self; 8] =
         [Self::FLAT, Self::GOURAUD, Self::SIX_POINT, Self::PHONG, Self::SQRT6, Self::RENQ_NEWTON, Self::AUTO, Self::AUTO_LINEAR];
 
-    /// A method of the program's own, or of the crate `microphong-literature`.
+    /// Creates a shader from your own implementation of [`Method`], or from a method of the crate `microphong-literature`.
     #[must_use]
     pub const fn new(method: &'static dyn Method) -> Self {
         Self { method, take: General::take, loops: TriangleLoops::of::<General>(), three_channels: TriangleLoops::of::<General>() }
@@ -95,13 +104,13 @@ impl<C: Pixel> Shader<C> {
 }
 
 impl<C: Pixel> Shader<C> {
-    /// Properties of the method.
+    /// Returns the properties of the shading method, for example its name and its number.
     #[must_use]
     pub fn facts(&self) -> &'static Facts {
         self.method.facts()
     }
 
-    /// The method.
+    /// Returns the shading method without its pixel format.
     #[must_use]
     pub fn method(&self) -> &'static dyn Method {
         self.method

@@ -1,24 +1,27 @@
 //! Counts of triangles that are drawn.
 
-/// Counts of triangles that were drawn with less work, by what was left out. Each triangle counts once, in the band where it begins. Slivers and
-/// antialiased triangles do not count. All counts are 0 unless the feature `skips` is on.
+/// Counts of triangles by the way in which they were drawn; part of [`crate::Stats`]. Except in `hidden`, each triangle counts only in the
+/// band (group of rows drawn at once) where it begins. Antialiased triangles and extremely thin ones do not count. All counts are 0 unless
+/// this crate is built with the feature `skips`.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Counts {
-    /// Triangles drawn without depth test.
+    /// The number of triangles drawn without depth test, because nothing can hide them.
     pub without_depth: u32,
-    /// Highlights of single lights that were left out on triangles.
+    /// The number of highlights that were left out because they are too weak to be visible, counted for each triangle and light.
     pub without_highlight: u32,
-    /// Lights that were left out on triangles.
+    /// The number of lights that were left out because they do not reach the triangle, counted for each triangle.
     pub without_light: u32,
-    /// Triangles that were left out in a band, because nearer objects hide their object there, or because they have no pixels in it.
+    /// The number of triangles that were left out in a band (group of rows drawn at once), because nearer objects hide their object there
+    /// or it has no pixels there. A triangle counts once for each band in which it is left out.
     pub hidden: u32,
-    /// Triangles by each choice of a method such as `auto`: one colour, linear, quadratic levels, quadratic cosines, Phong shading.
+    /// The number of triangles that [`crate::Shader::AUTO`] drew in each of its five ways: one colour, linear interpolation, quadratic
+    /// interpolation of light levels, quadratic interpolation of cosines, and Phong shading. Other methods leave all five at 0.
     pub choices: [u32; 5],
 }
 
 impl Counts {
-    /// Adds the counts of two parts.
+    /// Adds two counts, for example of two parts of a picture. A sum beyond the largest `u32` wraps around.
     #[must_use]
     pub fn and(self, other: Self) -> Self {
         let [one, linear, quadratic, cosines, exact] = self.choices;

@@ -1,16 +1,17 @@
 //! The background of a scene.
 
-/// What is seen where no triangle is drawn.
+/// The background of a scene: the colour of pixels that no triangle covers.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub enum Background {
-    /// One colour: red, green, blue. A pixel format of fewer bits a channel keeps the upper bits.
+    /// A single colour: red, green, blue, each 0 to 255. A pixel format of fewer bits keeps the upper bits of each.
     Colour([u8; 3]),
-    /// A vertical gradient: even steps from the colour of the first row to the colour of the last. It is dithered, so that the steps are not seen.
+    /// A vertical gradient from the first row of the picture to the last. It is dithered, so that the steps between colours are not
+    /// visible.
     Gradient {
-        /// Colour of the first row: red, green, blue.
+        /// The colour of the first row: red, green, blue, each 0 to 255.
         top: [u8; 3],
-        /// Colour of the last row: red, green, blue.
+        /// The colour of the last row: red, green, blue, each 0 to 255.
         bottom: [u8; 3],
     },
 }

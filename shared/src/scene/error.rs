@@ -2,47 +2,50 @@
 
 use core::fmt;
 
-/// The reason why a scene cannot be changed as a program asks. The scene stays unchanged.
+/// The reason why a [`crate::Scene`], a [`crate::Pose`] or a [`crate::Light`] cannot have the values that a program asks for. A scene that
+/// returns this error stays unchanged.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub enum SceneError {
-    /// This is not a rotation: a quaternion or an axis is zero, a matrix is not orthonormal or mirrors, or a viewing direction is zero or parallel to
-    /// `up`.
+    /// The numbers do not describe a rotation: a quaternion or an axis is zero, a matrix is not orthonormal or mirrors, or a viewing
+    /// direction is zero or parallel to `up`.
     Rotation,
-    /// A direction is zero, or not a number.
+    /// The direction of a light is zero, not finite, or too long for the number format.
     Direction,
-    /// A position is farther than 16 units from the origin along an axis.
+    /// A position is farther than 16 units from the origin along an axis, or not a number.
     Position,
-    /// A scale is less than 1/16 or more than 8.
+    /// A scale is less than 1/16, more than 8, or not a number.
     Scale,
-    /// There is no object with this index.
+    /// The scene has no object with this index.
     Object {
-        /// Index of the object.
+        /// The index that was asked for.
         index: usize,
     },
-    /// The stream has no meshes with these indices, or the first of them is a coarser level of another mesh.
+    /// The stream has no meshes with these indices, or the range begins or ends between a mesh and its coarser levels of detail.
     Meshes,
     /// The stream has no material with this index.
     Material {
-        /// Index of the material.
+        /// The index that was asked for.
         index: usize,
     },
-    /// The layout has room for no more objects.
+    /// The scene has as many objects as the layout has room for; set [`crate::Layout::objects`].
     Objects {
-        /// Number of objects that the layout has room for.
+        /// The number of objects that the layout has room for.
         room: usize,
     },
-    /// A value of the camera, a light or a material is out of its range.
+    /// A value of the camera, a light or a material is outside of its range.
     Range {
-        /// Name of the value.
+        /// The name of the value, for example `"light colour"`.
         name: &'static str,
     },
-    /// The shading method needs directional lights and an infinitely far viewer, and the scene would have others.
+    /// The shading method supports only directional lights and an infinitely distant viewer; the change would add a point light or a local
+    /// viewer.
     Light,
-    /// The shading method cannot interpolate light in perspective, so it needs an orthographic camera while this is on.
+    /// The change would set a perspective camera while perspective-correct interpolation of light is on, and the shading method does not
+    /// support both.
     Perspective,
-    /// The exponent of a material is too small for the shading method.
+    /// The highlight exponent of a material is too small for the shading method.
     Exponent {
         /// The smallest exponent that the method can draw.
         least: u16,

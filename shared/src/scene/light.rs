@@ -8,9 +8,8 @@ use crate::{
 };
 use fixed::{traits::ToFixed, types::I32F32};
 
-/// Lights.
-///
-/// Numbers are `f32` or of any type of the crate `fixed`. No floating point is compiled for fixed-point numbers.
+/// Constructors of lights. Numbers are `f32` or any type of the crate [`fixed`]; with fixed-point numbers a program contains no
+/// floating-point code.
 ///
 /// ```
 /// use microphong::{Light, SceneError, fixed::types::I18F14};
@@ -24,12 +23,14 @@ use fixed::{traits::ToFixed, types::I32F32};
 /// # }
 /// ```
 impl Light {
-    /// A light infinitely far away, in the direction `towards` from every object: x to the right, y up, z to the viewer, as the camera sees the
-    /// world at first. The direction may have any length but 0. The light stays where it is in the world. `colour` is red, green and blue, from
-    /// 0 to 2, and 1 is full.
+    /// Creates a directional light, which is infinitely far away and stays fixed in the world.
+    ///
+    /// `towards` is the direction from the objects to the light, of any length but 0: x to the right, y up, z to the viewer, as a camera
+    /// sees them that looks along the negative z axis. `colour` is red, green and blue, each 0 to 2; 1 is full intensity.
     ///
     /// # Errors
-    /// When the direction is zero, or a number is not finite or out of range.
+    /// Returns [`SceneError::Direction`] if the direction is zero, not finite or too long, and [`SceneError::Range`] if a colour is out of
+    /// range.
     pub fn directional<V: ToFixed, C: ToFixed>(towards: [V; 3], colour: [C; 3]) -> Result<Self, SceneError> {
         let mut vector = [0i64; 3];
         for (bits, number) in vector.iter_mut().zip(towards) {
@@ -46,11 +47,13 @@ impl Light {
         checked(Self::new(DIRECTIONAL, OBJECT_SPACE, unit.map(rounded), gains(colour)?))
     }
 
-    /// A light at `position`, which stays where it is in the world: x to the right, y up, z to the viewer, as the camera sees the world at first.
-    /// `colour` is red, green and blue, from 0 to 2, and 1 is full. A near light costs more than one that is infinitely far away.
+    /// Creates a point light at `position`, which stays fixed in the world. Its light does not weaken with distance. It takes more time to
+    /// draw than a directional light.
+    ///
+    /// `position` is in world units, each coordinate -16 to 16. `colour` is red, green and blue, each 0 to 2; 1 is full intensity.
     ///
     /// # Errors
-    /// When a number is not finite or out of range.
+    /// Returns [`SceneError::Position`] or [`SceneError::Range`] if a number is not finite or out of range.
     pub fn near<V: ToFixed, C: ToFixed>(position: [V; 3], colour: [C; 3]) -> Result<Self, SceneError> {
         let mut place = [Length::ZERO; 3];
         for (length, number) in place.iter_mut().zip(position) {
@@ -59,8 +62,8 @@ impl Light {
         checked(Self::new(POINT, OBJECT_SPACE, place, gains(colour)?))
     }
 
-    /// This light, going where the camera goes. Its vector is then x to the right of the picture, y up, and z to the viewer; a position is
-    /// counted from the eye, so that what is seen has a negative z.
+    /// Attaches the light to the camera, like a lamp on a helmet. The light's direction or position then counts in the axes of the picture,
+    /// from the eye: x to the right, y up, z to the viewer. So a position in front of the camera has a negative z.
     #[must_use]
     pub fn with_camera(self) -> Self {
         let [x, y, z] = self.vector;

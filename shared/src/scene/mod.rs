@@ -67,16 +67,14 @@ pub(crate) struct SceneMaterial {
     pub(crate) is_stale: u16,
 }
 
-/// What is drawn: objects, the materials of a stream, lights, a camera, and a background.
+/// A scene: objects, materials, lights, a camera and a background. [`crate::Renderer::scene`] gives access to it.
 ///
-/// A scene begins with the camera and the lights of the stream, and one object that consists of all its meshes. A change is checked at once, and the
-/// next [`crate::Renderer::draw`] shows it. Moved objects are placed again. Moved lights and cameras place all objects again. A changed material
-/// computes its tables again. Changed colours of lights, or another number of lights, compute the tables of all materials again.
+/// A scene begins with what the stream says. If the stream lists no objects, there is one object that consists of all meshes. A change is
+/// checked at once, and the next [`crate::Renderer::draw`] shows it.
 ///
-/// The world is right-handed; its lengths are in units of object space. Objects lie within 16 units of the origin along each axis, at a scale of 1/16
-/// to 8. Positions in eye space are exact to 2^-14 units. Depth has 16 bits, of `near / z`. Surfaces at the depth `z` are told apart if they are `z²
-/// / (near 2^16)` units from one another. If the farthest object is 30 times as far as the near plane, surfaces at a thousandth of that range from
-/// one another do not fight.
+/// The world is right-handed: x to the right, y up, z to the viewer. Objects lie within 16 units of the origin along each axis, at scales
+/// of 1/16 to 8. The depth buffer has 16 bits, which hold `near / z`: if the farthest object is 30 times as far as the near plane, surfaces
+/// are told apart from 1/1000 of that range on.
 #[derive(Debug)]
 pub struct Scene<'a> {
     pub(crate) stream: Stream<'a>,
@@ -141,8 +139,8 @@ impl<'a> Scene<'a> {
         scene
     }
 
-    /// Moves the camera to its place on the stream's orbit in frame `number`, and moves objects, lights and the camera along the stream's tracks.
-    /// Nothing else changes.
+    /// Moves the camera, the objects and the lights to where the stream's animation has them in frame `number`. A number beyond the last
+    /// frame starts over. Nothing is drawn; [`crate::Renderer::frame`] does both.
     pub fn play(&mut self, number: u32) {
         let place = self.place_of(number);
         if place != self.place {
@@ -209,7 +207,7 @@ impl<'a> Scene<'a> {
         self.is_unchanged() && self.place == self.place_of(number) && self.played == self.frame_of(number)
     }
 
-    /// Whether the scene is unchanged since the latest frame.
+    /// Returns `true` if the scene has not changed since the frame that was drawn last.
     #[must_use]
     pub fn is_unchanged(&self) -> bool {
         !self.changed
@@ -232,23 +230,26 @@ impl<'a> Scene<'a> {
         self.set_repainted();
     }
 
-    /// The objects. Of two surfaces that are equally near, the one is seen whose object has the nearer origin; if these are equally near, the one of
-    /// the earlier object.
+    /// Returns the objects. Their order decides which one is visible where surfaces of two objects lie at exactly equal depth: the one
+    /// whose origin is nearer to the camera, or else the earlier one.
     #[must_use]
     pub fn objects(&self) -> &[Object] {
         self.objects.get(..self.count).unwrap_or_default()
     }
 
-    /// Removes all objects. Call it before adding your own objects: a new scene has one object, the whole stream.
+    /// Removes all objects. Call this before [`Self::add`] if the program builds its own scene, because a new scene has objects already:
+    /// the stream's, or one that consists of all meshes.
     pub fn clear(&mut self) {
         self.count = 0;
         self.rearrange();
     }
 
-    /// Adds an object that consists of meshes of the stream, and returns its index. Several objects can have the same meshes.
+    /// Adds an object and returns its index. `meshes` are the indices of its meshes in the stream, as [`Stream::mesh`] returns them for a
+    /// name. Several objects can share meshes. The object is visible, and each mesh has its own material.
     ///
     /// # Errors
-    /// When the stream has no such meshes, or the layout has no room: see [`crate::Layout::objects`].
+    /// Returns [`SceneError::Meshes`] if the stream does not have these meshes, and [`SceneError::Objects`] if the layout has no room for
+    /// another object ([`crate::Layout::objects`]).
     pub fn add(&mut self, meshes: Range<u16>, pose: Pose) -> Result<usize, SceneError> {
         let object = Object::new(&self.stream, meshes).ok_or(SceneError::Meshes)?;
         let room = self.objects.len();
@@ -280,10 +281,10 @@ impl<'a> Scene<'a> {
         self.objects.get_mut(..self.count).and_then(|objects| objects.get_mut(index)).ok_or(SceneError::Object { index })
     }
 
-    /// Moves object `index`.
+    /// Sets the rotation, position and scale of the object `index`.
     ///
     /// # Errors
-    /// When there is no such object.
+    /// Returns [`SceneError::Object`] if there is no object with this index.
     pub fn set_pose(&mut self, index: usize, pose: Pose) -> Result<(), SceneError> {
         let object = self.object(index)?;
         let hidden = object.hidden != 0;
@@ -291,10 +292,10 @@ impl<'a> Scene<'a> {
         Ok(())
     }
 
-    /// Shows or hides object `index`.
+    /// Shows or hides the object `index`.
     ///
     /// # Errors
-    /// When there is no such object.
+    /// Returns [`SceneError::Object`] if there is no object with this index.
     pub fn set_visible(&mut self, index: usize, visible: bool) -> Result<(), SceneError> {
         let object = self.object(index)?;
         let pose = object.pose;
@@ -302,10 +303,11 @@ impl<'a> Scene<'a> {
         Ok(())
     }
 
-    /// Draws all meshes of object `index` with one material of the stream, or with `None` each mesh with its own.
+    /// Sets the material of the object `index`: the index of one of the stream's materials for all its meshes, or `None` so that each mesh
+    /// has its own material.
     ///
     /// # Errors
-    /// When there is no such object or material.
+    /// Returns [`SceneError::Object`] or [`SceneError::Material`] if there is no object or material with this index.
     pub fn set_object_material(&mut self, index: usize, material: Option<u16>) -> Result<(), SceneError> {
         let material = material.unwrap_or(OWN_MATERIALS);
         if material != OWN_MATERIALS && usize::from(material) >= self.materials.len() {
@@ -316,15 +318,16 @@ impl<'a> Scene<'a> {
         Ok(())
     }
 
-    /// The materials. They are the stream's until they are changed.
+    /// Returns the materials in the order of their indices. They are the stream's until [`Self::set_material`] changes one.
     pub fn materials(&self) -> impl ExactSizeIterator<Item = &Material> {
         self.materials.iter().map(|slot| &slot.material)
     }
 
-    /// Changes material `index`. The next frame computes its tables again.
+    /// Replaces the material `index`. The next frame takes longer, because it computes the colour tables of this material again.
     ///
     /// # Errors
-    /// When there is no such material, it is out of range, or the shading method cannot draw it.
+    /// Returns [`SceneError::Material`] if there is no material with this index, [`SceneError::Range`] if a value is out of range, and
+    /// [`SceneError::Exponent`] if the exponent is too small for the shading method.
     pub fn set_material(&mut self, index: usize, material: Material) -> Result<(), SceneError> {
         in_range(material.fault())?;
         let least = self.limits.least_exponent;
@@ -348,16 +351,18 @@ impl<'a> Scene<'a> {
         self.set_repainted();
     }
 
-    /// The lights.
+    /// Returns the lights, each of which shines on all objects.
     #[must_use]
     pub fn lights(&self) -> &[Light] {
         &self.lights
     }
 
-    /// Changes the lights. If their number or colours change, the next frame computes the tables of all materials again.
+    /// Replaces all lights, of which there may be up to 8. If their number or their colours change, the next frame takes longer, because it
+    /// computes the colour tables of all materials again.
     ///
     /// # Errors
-    /// When there are more than [`MAX_LIGHTS`], one is out of range, or the shading method cannot draw near ones.
+    /// Returns [`SceneError::Range`] if there are more than [`MAX_LIGHTS`] or a value is out of range, and [`SceneError::Light`] if the
+    /// shading method does not support a point light.
     pub fn set_lights(&mut self, lights: &[Light]) -> Result<(), SceneError> {
         lights.iter().try_for_each(|light| in_range(light.fault()))?;
         if !self.limits.near_lights && lights.iter().any(|light| light.kind != DIRECTIONAL) {
@@ -372,10 +377,11 @@ impl<'a> Scene<'a> {
         Ok(())
     }
 
-    /// Changes the ambient light. The next frame computes the tables of all materials again.
+    /// Sets the ambient light, which reaches every surface equally: red, green and blue, each 0 to 2, where 1 is full intensity. It is
+    /// multiplied by a material's ambient colour. The next frame computes the colour tables of all materials again.
     ///
     /// # Errors
-    /// When it is out of range.
+    /// Returns [`SceneError::Range`] if a value is more than 2.
     pub fn set_ambient(&mut self, ambient: [Gain; 3]) -> Result<(), SceneError> {
         let ambient = ambient.map(Gain::to_bits);
         in_range((!is_gain(ambient)).then_some("ambient light"))?;
@@ -384,28 +390,29 @@ impl<'a> Scene<'a> {
         Ok(())
     }
 
-    /// The background, which is seen where no triangle is drawn.
+    /// Returns the background, which is visible where no triangle is drawn.
     #[must_use]
     pub fn background(&self) -> Background {
         self.background
     }
 
-    /// Changes the background: one colour (red, green, blue) or a vertical gradient.
+    /// Sets the background: one colour as `[red, green, blue]`, each 0 to 255, or a [`Background::Gradient`].
     pub fn set_background(&mut self, background: impl Into<Background>) {
         self.background = background.into();
         self.set_repainted();
     }
 
-    /// The camera. The stream may let it orbit, see [`Self::play`].
+    /// Returns the camera. If it orbits, its rotation is the one of frame 0 of the orbit.
     #[must_use]
     pub fn camera(&self) -> &Camera {
         &self.camera
     }
 
-    /// Changes the camera.
+    /// Replaces the camera, its projection and its orbit included. To move the camera only, use [`Self::look_at`].
     ///
     /// # Errors
-    /// When a value of it is out of range, or the shading method cannot draw for a local viewer, or not in perspective where that is asked for.
+    /// Returns [`SceneError::Range`] if a value is out of range, [`SceneError::Light`] if the shading method does not support a local
+    /// viewer, and [`SceneError::Perspective`] if it does not support perspective-correct interpolation while that is on.
     pub fn set_camera(&mut self, camera: Camera) -> Result<(), SceneError> {
         in_range(camera.fault())?;
         if !self.limits.near_lights && camera.viewer == VIEWER_LOCAL && camera.projection == PERSPECTIVE {
@@ -422,19 +429,23 @@ impl<'a> Scene<'a> {
         Ok(())
     }
 
-    /// Moves the camera to `eye`. It looks at `target`, and `up` points upwards in the picture. An orbit of the stream ends; the projection stays.
+    /// Moves the camera to the position `eye` and turns it so that it looks at `target`, with the direction `up` upwards in the picture.
+    /// All are in world units; a position is within 16 units of the origin. The camera stops following the stream's orbit. The focal length
+    /// stays.
     ///
     /// # Errors
-    /// When eye and target are one point, or `up` is zero or points along the way, or the camera is farther than 16 units from the origin.
+    /// Returns [`SceneError::Rotation`] if `eye` equals `target`, or `up` is zero or parallel to the viewing direction. Returns
+    /// [`SceneError::Position`] or [`SceneError::Range`] if the camera is too far from the origin.
     pub fn look_at(&mut self, eye: [Length; 3], target: [Length; 3], up: [Length; 3]) -> Result<(), SceneError> {
         self.set_camera_pose(&Pose::looking_at(eye, target, up)?)
     }
 
-    /// Moves the camera. It looks along the z axis of `pose`, whose y axis points upwards in the picture. The camera stops following
-    /// the orbit of the stream. The projection does not change.
+    /// Moves the camera to the position and rotation of `pose`. The camera looks along the positive z axis of the pose, and the y axis
+    /// points upwards in the picture; the scale is ignored. The camera stops following the stream's orbit. The focal length stays.
     ///
     /// # Errors
-    /// When the camera is farther than 16 units from the origin of the world along one of its own axes.
+    /// Returns [`SceneError::Range`] if the camera is farther than 16 units from the origin of the world along one of the camera's own
+    /// axes.
     pub fn set_camera_pose(&mut self, pose: &Pose) -> Result<(), SceneError> {
         let one = 1 << ROTATION;
         let [x, y, z] = pose.matrix().map(|row| row.map(|c| c.clamp(-one, one)));

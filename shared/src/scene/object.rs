@@ -10,7 +10,7 @@ use crate::{
 use core::ops::Range;
 use zerocopy::{FromBytes, Immutable, IntoBytes, KnownLayout};
 
-/// An object of a scene: meshes that move together.
+/// An object of a [`crate::Scene`]: one or more meshes that move together. Several objects can share meshes.
 #[derive(FromBytes, IntoBytes, Immutable, KnownLayout, Clone, Copy, Debug, PartialEq, Eq)]
 #[repr(C)]
 pub struct Object {
@@ -70,26 +70,26 @@ impl Object {
         })
     }
 
-    /// The object's rotation, position and scale in the world.
+    /// Returns the rotation, position and scale of the object in the world.
     #[must_use]
     pub fn pose(&self) -> Pose {
         self.pose
     }
 
-    /// Indices of the object's meshes in the stream.
+    /// Returns the indices of the object's meshes in [`Stream::meshes`].
     #[must_use]
     pub fn meshes(&self) -> Range<u16> {
         let [first, end] = self.meshes;
         first..end
     }
 
-    /// The material that all meshes of the object have; `None` if each has its own.
+    /// Returns the index of the material that all meshes of the object have, or `None` if each mesh has its own.
     #[must_use]
     pub fn material(&self) -> Option<u16> {
         (self.material != OWN_MATERIALS).then_some(self.material)
     }
 
-    /// Whether the object is drawn.
+    /// Returns `true` unless the object is hidden by [`crate::Scene::set_visible`] or by the stream's animation.
     #[must_use]
     pub fn is_visible(&self) -> bool {
         self.hidden == 0

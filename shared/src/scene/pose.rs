@@ -20,10 +20,11 @@ pub const MIN_SCALE: Scale = Scale::from_bits(stream::MIN_SCALE);
 /// Largest scale of an object: 8.
 pub const MAX_SCALE: Scale = Scale::from_bits(stream::MAX_SCALE);
 
-/// Rotation, position and scale of an object in the world. The object is scaled, then rotated about its origin, then moved.
+/// A pose: the rotation, position and scale of an object in the world. The object is first scaled, then rotated about its origin, then
+/// moved.
 ///
-/// The rotation is a unit quaternion. Each operation normalises it again, so errors do not add up over many rotations, and the rotation matrix is
-/// orthonormal. The world is right-handed.
+/// The rotation is stored as a unit quaternion that each operation normalises again, so errors do not build up over many rotations. The
+/// world is right-handed.
 ///
 /// ```
 /// use microphong::{Pose, SceneError, fixed::types::{I18F14, U0F32, U16F16}};
@@ -58,21 +59,22 @@ pub const QUATERNION_ERROR: f64 = 2.0 / (1u32 << 30) as f64;
 pub const STEP_ERROR: f64 = 1.0e-8;
 
 impl Pose {
-    /// The pose of an object at the origin, not rotated, at the size of its mesh.
+    /// The pose of an object at the origin, without rotation, at the size of its mesh.
     pub const IDENTITY: Self = Self { rotation: [ONE, 0, 0, 0], position: [0; 3], scale: 1 << 16 };
 
-    /// The rotation of a quaternion w, x, y, z, of any length but zero.
+    /// Creates a rotation from the quaternion `[w, x, y, z]`, which need not be normalised.
     ///
     /// # Errors
-    /// When all four are zero.
+    /// Returns [`SceneError::Rotation`] if all four numbers are zero.
     pub fn from_quaternion(quaternion: [Rotation; 4]) -> Result<Self, SceneError> {
         Self::rotated(quaternion.map(|c| c.to_bits().into()))
     }
 
-    /// The rotation of a matrix, given by rows. It takes object space to the world.
+    /// Creates a rotation from a 3x3 matrix, given by rows, which transforms vectors from object space to the world.
     ///
     /// # Errors
-    /// When it mirrors, or is not orthonormal: squared lengths to 1/256, products of rows to 1/256.
+    /// Returns [`SceneError::Rotation`] if the matrix mirrors or is not orthonormal: the squared length of each row has to be within 1/256
+    /// of 1, and the dot product of two rows within 1/256 of 0.
     pub fn from_matrix(rows: [[Rotation; 3]; 3]) -> Result<Self, SceneError> {
         let rows = rows.map(|row| row.map(Rotation::to_bits));
         let [x, y, z] = rows;
@@ -108,10 +110,11 @@ impl Pose {
         Self::rotated(longest.1)
     }
 
-    /// The rotation by an angle about an axis of any length but zero. It is counter-clockwise as seen from the tip of the axis.
+    /// Creates a rotation by `angle` (in turns, 0 to 1) about `axis`, which may have any length but zero. The object turns
+    /// counter-clockwise as seen from the tip of the axis.
     ///
     /// # Errors
-    /// When the axis is zero.
+    /// Returns [`SceneError::Rotation`] if the axis is zero.
     pub fn about(axis: [i32; 3], angle: Angle) -> Result<Self, SceneError> {
         let [sin, cos] = sin_cos(Angle::from_bits(angle.to_bits() >> 1));
         let [x, y, z] = normalise(axis).map(|c| (i64::from(c) * i64::from(sin)) >> ROTATION);
@@ -121,17 +124,20 @@ impl Pose {
         Self::rotated([cos.into(), x, y, z])
     }
 
-    /// The rotation by Euler angles: first `roll` about z, then `pitch` about x, then `yaw` about y. All are axes of the world.
+    /// Creates a rotation from Euler angles in turns. The object turns first by `roll` about z, then by `pitch` about x, then by `yaw`
+    /// about y; all three are fixed axes of the world.
     #[must_use]
     pub fn from_euler(yaw: Angle, pitch: Angle, roll: Angle) -> Self {
         let about = |axis, angle| Self::about(axis, angle).unwrap_or(Self::IDENTITY);
         about([0, 0, 1], roll).turned(&about([1, 0, 0], pitch)).turned(&about([0, 1, 0], yaw))
     }
 
-    /// A pose at `position` whose z axis points to `target`, and whose y axis is as close to `up` as possible.
+    /// Creates a pose at `position` whose z axis points to `target`, and whose y axis is as close to the direction `up` as possible. This
+    /// suits objects that face something, and cameras ([`crate::Scene::set_camera_pose`]).
     ///
     /// # Errors
-    /// When both are one point, or `up` is zero or points along the way, or a coordinate is out of range.
+    /// Returns [`SceneError::Rotation`] if `position` equals `target`, or `up` is zero or parallel to the direction of the target. Returns
+    /// [`SceneError::Position`] if a coordinate is more than 16 in size.
     pub fn looking_at(position: [Length; 3], target: [Length; 3], up: [Length; 3]) -> Result<Self, SceneError> {
         let from = Self::IDENTITY.at(position)?.position;
         let along = sub(Self::IDENTITY.at(target)?.position, from);
@@ -148,10 +154,12 @@ impl Pose {
         Self::from_matrix(rows)?.at(position)
     }
 
-    /// Converts floating-point numbers: a quaternion w, x, y, z, a position in units of the world, and a scale.
+    /// Creates a pose from floating-point numbers, for example from a motion sensor: the quaternion `[w, x, y, z]`, which need not be
+    /// normalised, the position in world units, each coordinate -16 to 16, and the scale, 1/16 to 8.
     ///
     /// # Errors
-    /// When one of them is out of range or not a number.
+    /// Returns [`SceneError::Rotation`] if the quaternion is zero or one of its numbers is not finite or 2 or more in size. Returns
+    /// [`SceneError::Position`] or [`SceneError::Scale`] if the position or the scale is out of range or not finite.
     pub fn from_f32(quaternion: [f32; 4], position: [f32; 3], scale: f32) -> Result<Self, SceneError> {
         let mut rotation = [0; 4];
         for (bits, number) in rotation.iter_mut().zip(quaternion) {
@@ -165,24 +173,25 @@ impl Pose {
         Self::rotated(rotation)?.at(place)?.scaled(scale)
     }
 
-    /// Copies this pose to another position.
+    /// Returns a copy of this pose at another position, in world units.
     ///
     /// # Errors
-    /// When a coordinate is more than [`MAX_POSITION`] in size.
+    /// Returns [`SceneError::Position`] if a coordinate is more than 16 in size.
     pub fn at(self, position: [Length; 3]) -> Result<Self, SceneError> {
         let within = position.iter().all(|c| (-MAX_POSITION..=MAX_POSITION).contains(c));
         if within { Ok(Self { position: position.map(Length::to_bits), ..self }) } else { Err(SceneError::Position) }
     }
 
-    /// Changes the scale of this pose.
+    /// Returns a copy of this pose with another scale, from 1/16 to 8, where 1 is the size of the mesh.
     ///
     /// # Errors
-    /// When it is none of 1/16 to 8.
+    /// Returns [`SceneError::Scale`] if the scale is out of this range.
     pub fn scaled(self, scale: Scale) -> Result<Self, SceneError> {
         if (MIN_SCALE..=MAX_SCALE).contains(&scale) { Ok(Self { scale: scale.to_bits(), ..self }) } else { Err(SceneError::Scale) }
     }
 
-    /// Rotates this pose by the rotation of `other`, about the axes of the world. The position stays.
+    /// Returns a copy of this pose, rotated further by the rotation of `other` about the axes of the world. Position and scale stay. Called
+    /// once a frame with a small rotation, it makes an object spin; the result stays a rotation after any number of calls.
     ///
     /// Error: at most [`STEP_ERROR`] (tests::steps). The length of the quaternion is within [`QUATERNION_ERROR`] of 1.
     #[must_use]
@@ -222,19 +231,19 @@ impl Pose {
         *self == Self::IDENTITY
     }
 
-    /// The rotation, as a unit quaternion w, x, y, z.
+    /// Returns the rotation as a unit quaternion `[w, x, y, z]`.
     #[must_use]
     pub fn quaternion(&self) -> [Rotation; 4] {
         self.rotation.map(Rotation::from_bits)
     }
 
-    /// The position of the object's origin in the world.
+    /// Returns the position of the object's origin in the world, in world units.
     #[must_use]
     pub fn position(&self) -> [Length; 3] {
         self.position.map(Length::from_bits)
     }
 
-    /// The scale of the object: 1 is the size of its mesh.
+    /// Returns the scale of the object, where 1 is the size of its mesh.
     #[must_use]
     pub fn scale(&self) -> Scale {
         Scale::from_bits(self.scale)
