@@ -10,29 +10,34 @@ use fixed::types::{I2F14, I2F30, I18F14, U0F32, U2F14, U5F3, U16F16};
 #[doc(hidden)]
 pub use internal::*;
 
-/// Component of a position, in units of object space, or component of a unit normal; Q2.14 in [-2, 2).
+/// A coordinate of a vertex in units of object space, or a component of a unit normal: 16 bits, from -2 to 2 in steps of 1/16,384.
 pub type Unit = I2F14;
-/// Distance or coordinate in units of object space, Q18.14; streams use [-32, 32].
+/// A distance or a coordinate in units of object space or of the world: 32 bits, in steps of 1/16,384. Positions in a scene are within 16
+/// units of the origin along each axis.
 pub type Length = I18F14;
-/// Reflectance, or colour of a light, in one channel; 1 is full intensity. Unsigned Q2.14 in [0, 4); streams use [0, 2].
+/// A reflectance of a material, or the intensity of a light, in one colour channel: 16 bits, in steps of 1/16,384. 1 is full intensity, and
+/// values up to 2 are allowed.
 pub type Gain = U2F14;
-/// Entry of a rotation matrix or component of a unit axis, Q2.30 in [-1, 1].
+/// An entry of a rotation matrix, or a component of a quaternion or unit vector, from -1 to 1: 32 bits, in steps of 2^-30.
 pub type Rotation = I2F30;
-/// Focal length, in units of half the viewport's smaller side, unsigned Q16.16; streams use [1/16, 16].
+/// A focal length, from 1/16 to 16: 32 bits, in steps of 1/65,536. In perspective, the tangent of half the field of view of the picture's
+/// smaller side is 1 / focal.
 pub type Focal = U16F16;
-/// Size of an object relative to its mesh, unsigned Q16.16; scenes use [1/16, 8].
+/// The size of an object relative to its mesh, from 1/16 to 8: 32 bits, in steps of 1/65,536.
 pub type Scale = U16F16;
-/// Angle as a fraction of a turn, unsigned Q0.32 in [0, 1). A sum of angles wraps at a whole turn.
+/// An angle as a fraction of a turn, from 0 to less than 1: 32 bits, in steps of 2^-32 of a turn. `Angle::from_bits(1 << 30)` is a quarter
+/// of a turn. Wrapping addition gives the sum of two angles.
 pub type Angle = U0F32;
-/// Largest error of a pixel, in 1/255 of full intensity, unsigned Q5.3.
+/// An error budget: the largest difference of a pixel from Phong shading, in units of 1/255 of full intensity. It has 8 bits, in steps of
+/// 1/8; budgets from 1/2 to 16 are allowed.
 pub type ErrorBudget = U5F3;
-/// Light of three channels at a pixel, Q24.8 in 1/255 of full intensity, in [0, 256). Values above 255 count as 255. One channel is in the first
-/// place.
+/// The light at a pixel: red, green, blue, each in units of 1/256 of a light level, so that 255 · 256 is full intensity. Larger values
+/// count as full. On a material or in a pixel format of one channel, only the first number counts.
 pub type Intensity = [i32; 3];
 
-/// Smallest error budget: 1/2 of 1/255.
+/// The smallest error budget: 1/2, in units of 1/255 of full intensity.
 pub const LEAST_BUDGET: ErrorBudget = ErrorBudget::from_bits(1 << 2);
-/// Largest error budget: 16 of 1/255.
+/// The largest error budget: 16, in units of 1/255 of full intensity.
 pub const LARGEST_BUDGET: ErrorBudget = ErrorBudget::from_bits(16 << 3);
-/// Largest number of lights in one scene.
+/// The largest number of lights in a scene: 8.
 pub const MAX_LIGHTS: usize = 8;

@@ -17,7 +17,8 @@ use core::ops::Range;
 use embedded_graphics_core::primitives::Rectangle;
 use part::Part;
 
-/// One frame, drawn band by band from the top.
+/// One frame, ready to be drawn band by band (groups of rows) from the top. [`crate::Renderer::frame`] and [`crate::Renderer::draw`] begin
+/// one. Programs with a display of embedded-graphics can use [`crate::Picture`] instead.
 #[derive(Debug)]
 pub struct Frame<'r, C: Pixel> {
     context: Context<'r, C>,
@@ -25,76 +26,82 @@ pub struct Frame<'r, C: Pixel> {
 }
 
 impl<'r, C: Pixel> Frame<'r, C> {
-    /// Draws the next band into the front of `pixels`, row by row, and returns its area in the picture; `None` after the last band.
+    /// Draws the next band (group of rows) into `pixels` in row-major order, and returns its rectangle in the picture. Returns `None` after
+    /// the last band.
     ///
-    /// The first `area.size.width * area.size.height` entries of `pixels` hold the band. If `pixels` is shorter than a whole band, the band has fewer
-    /// rows.
+    /// The band takes the first `area.size.width * area.size.height` pixels of `pixels`, where `area` is the rectangle. The buffer should
+    /// have [`crate::Layout::band`] pixels; if it is shorter, the band has fewer rows.
     ///
     /// # Errors
-    /// When `pixels` does not hold one row.
+    /// Returns [`RenderError::Band`] if `pixels` is shorter than one row of the picture.
     pub fn next_band(&mut self, pixels: &mut [C]) -> Result<Option<Rectangle>, RenderError> {
         self.next_band_over(pixels, |_, _| ())
     }
 
-    /// Draws the next band as [`Self::next_band`] does, over a background that the program draws. `under` is called with the pixels of the band,
-    /// which hold the scene's background, and with its area. A [`crate::BandTarget`] helps to draw there. Antialiased edges blend with the result.
+    /// Draws the next band (group of rows) like [`Self::next_band`], over something that the program draws, for example an image. `under`
+    /// is called with the pixels of the band, which have the background already, and with the rectangle of the band in the picture.
+    /// [`crate::BandTarget`] makes a target for embedded-graphics of both.
     ///
-    /// Partial redraw does not know what `under` draws. [`crate::Renderer::invalidate`] adds an area in which that changes. [`Self::rows`] does not
-    /// include rows that only `under` draws.
+    /// With partial redraw, call [`crate::Renderer::invalidate`] with the area in which the result of `under` changes. [`Self::rows`] does
+    /// not include rows in which only `under` draws.
     ///
     /// # Errors
-    /// When `pixels` does not hold one row.
+    /// Returns [`RenderError::Band`] if `pixels` is shorter than one row of the picture.
     pub fn next_band_over(&mut self, pixels: &mut [C], under: impl FnOnce(&mut [C], Rectangle)) -> Result<Option<Rectangle>, RenderError> {
         self.part.next_band(&self.context, pixels, under)
     }
 
-    /// The rectangle that the frame draws. This is the whole picture, or with [`crate::Renderer::set_partial_redraw`] the rectangle around all pixels
-    /// that may have changed since the frame before. Some bands may be narrower than the rectangle.
+    /// Returns the rectangle that the frame draws, in pixels of the picture. It is the whole picture, unless
+    /// [`crate::Renderer::set_partial_redraw`] is on: then it is the rectangle around all pixels that may have changed since the last
+    /// frame.
     #[must_use]
     pub fn area(&self) -> Rectangle {
         self.context.region.hull().rectangle()
     }
 
-    /// Whether the frame draws the whole picture.
+    /// Returns `true` if the frame draws the whole picture. With [`crate::Renderer::set_partial_redraw`] a frame may draw only a part.
     #[must_use]
     pub fn is_whole(&self) -> bool {
         self.context.region.is_whole()
     }
 
-    /// The rows that triangles of this frame can reach. The other rows of [`Self::area`] hold background and labels, which never move. Outside of
-    /// that area, other rows of the picture may show objects that stand still.
+    /// Returns the range of rows that triangles of this frame can reach. Within [`Self::area`], all other rows have only background and
+    /// labels.
     #[must_use]
     pub fn rows(&self) -> Range<u32> {
         self.part.rows.clone()
     }
 
-    /// The row above which a `share` of the triangles end, in units of 1/65,536. [`Self::in_two`] divides the work of two processors in about this
-    /// proportion there.
+    /// Returns the row above which about `share / 65,536` of the triangles end. [`Self::in_two`] takes this row to divide the work between
+    /// two processors in this proportion; 32,768 divides it equally.
     #[must_use]
     pub fn row_at(&self, share: u16) -> u32 {
         self.part.bins.row_at(self.part.entries, share)
     }
 
-    /// Draws only these `rows`. Call it before the first band. It suffices to draw and send rows that triangles reach in this frame or reached in the
-    /// frame before, see [`Self::rows`], because the display still shows the rest.
+    /// Restricts the frame to `rows`. Call this before the first band. It saves time if the display still shows the other rows of the last
+    /// frame, because no triangle reaches them in either frame; see [`Self::rows`].
     pub fn limit(&mut self, rows: Range<u32>) {
         self.part.limit(rows);
     }
 
-    /// Whether the last band has been drawn.
+    /// Returns `true` if the last band (group of rows) has been drawn.
     #[must_use]
     pub fn is_complete(&self) -> bool {
         self.part.is_complete(&self.context)
     }
 
-    /// The counts of what has been drawn. They are complete after the last band.
+    /// Returns counts of what has been drawn. They are complete after the last band.
     #[must_use]
     pub fn stats(&self) -> Stats {
         self.part.stats.culled()
     }
 
-    /// Divides the frame into the rows above `row` and the rest, so that two processors can draw at the same time. Call it before the first band. The
-    /// layout has to be for two [`crate::Layout::processors`]. If the triangles fill more than half of their memory, the first part gets all rows.
+    /// Divides the frame into the rows above `row` and the rows from `row` on, so that two processors can draw at the same time. Call this
+    /// before the first band, with a row from [`Self::row_at`].
+    ///
+    /// The layout has to be for two [`crate::Layout::processors`], and [`crate::Layout::triangles`] at least twice the number of visible
+    /// triangles. Otherwise the upper part gets all rows.
     #[must_use]
     pub fn in_two(self, row: u32) -> FrameInTwo<'r, C> {
         let Self { context, part } = self;
@@ -102,7 +109,8 @@ impl<'r, C: Pixel> Frame<'r, C> {
     }
 }
 
-/// A frame in two parts, see [`Frame::in_two`].
+/// A frame that is divided into an upper and a lower part, so that two processors can draw it at the same time. [`Frame::in_two`] creates
+/// it.
 #[derive(Debug)]
 pub struct FrameInTwo<'r, C: Pixel> {
     context: Context<'r, C>,
@@ -110,14 +118,14 @@ pub struct FrameInTwo<'r, C: Pixel> {
 }
 
 impl<'r, C: Pixel> FrameInTwo<'r, C> {
-    /// The upper part and the lower one.
+    /// Returns the upper part and the lower part. Each can be moved to its own processor.
     #[must_use]
     pub fn parts(&mut self) -> [FramePart<'_, 'r, C>; 2] {
         let Self { context, parts } = self;
         parts.each_mut().map(|part| FramePart { context, part })
     }
 
-    /// The counts of what has been drawn. They are complete after the last band of both parts.
+    /// Returns counts of what both parts have drawn. They are complete after the last band of both.
     #[must_use]
     pub fn stats(&self) -> Stats {
         let [upper, lower] = self.parts.each_ref().map(|part| part.stats);
@@ -125,7 +133,7 @@ impl<'r, C: Pixel> FrameInTwo<'r, C> {
     }
 }
 
-/// One part of a frame, drawn band by band from its top.
+/// The upper or the lower part of a frame, for one of two processors to draw. [`FrameInTwo::parts`] returns both.
 #[derive(Debug)]
 pub struct FramePart<'f, 'r, C: Pixel> {
     context: &'f Context<'r, C>,
@@ -133,18 +141,20 @@ pub struct FramePart<'f, 'r, C: Pixel> {
 }
 
 impl<C: Pixel> FramePart<'_, '_, C> {
-    /// Draws the next band, see [`Frame::next_band`].
+    /// Draws the next band (group of rows) of this part into `pixels`, and returns its rectangle in the picture. Returns `None` after the
+    /// last band. See [`Frame::next_band`].
     ///
     /// # Errors
-    /// When `pixels` does not hold one row.
+    /// Returns [`RenderError::Band`] if `pixels` is shorter than one row of the picture.
     pub fn next_band(&mut self, pixels: &mut [C]) -> Result<Option<Rectangle>, RenderError> {
         self.next_band_over(pixels, |_, _| ())
     }
 
-    /// Draws the next band over a background that `under` draws, see [`Frame::next_band_over`].
+    /// Draws the next band (group of rows) of this part like [`Self::next_band`], over something that `under` draws into the pixels of the
+    /// band. See [`Frame::next_band_over`].
     ///
     /// # Errors
-    /// When `pixels` does not hold one row.
+    /// Returns [`RenderError::Band`] if `pixels` is shorter than one row of the picture.
     pub fn next_band_over(&mut self, pixels: &mut [C], under: impl FnOnce(&mut [C], Rectangle)) -> Result<Option<Rectangle>, RenderError> {
         self.part.next_band(self.context, pixels, under)
     }

@@ -21,28 +21,32 @@ use embedded_graphics_core::{
     primitives::Rectangle,
 };
 
-/// Counts of one frame: triangles, pixels, work that was left out, and data that did not fit into memory.
+/// Statistics of one frame: how many triangles and pixels were drawn, and what did not fit into memory. [`crate::Frame::stats`] and the
+/// `draw` method of [`crate::Picture`] return them.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Stats {
-    /// Triangles of all meshes, at the level of detail that is drawn.
+    /// The number of triangles in the frame, at the levels of detail that are drawn, visible or not.
     pub triangles: u32,
-    /// Triangles that levels of detail have saved.
+    /// The number of triangles that levels of detail have saved: the triangles of the full meshes less [`Self::triangles`].
     pub simplified: u32,
-    /// Triangles that are not drawn, because they face away, or because their bounding box contains no pixel centre of the picture.
+    /// The number of triangles that were not drawn, because they face away or contain no pixel centre of the picture.
     pub culled: u32,
-    /// Triangles that are drawn. They face the camera, and their bounding box contains a pixel centre of the picture.
+    /// The number of triangles that were drawn: they face the camera, and their bounding box contains a pixel centre of the picture.
     pub drawn: u32,
-    /// Pixels of all drawn triangles, including pixels that nearer triangles hide. Pixels of an object are left out in bands where nearer objects
-    /// hide all of it. The count stops at its largest value.
+    /// The number of pixels of all drawn triangles. A pixel counts once for each triangle that covers it, even if a nearer triangle hides
+    /// it. An object that nearer objects hide in a whole band (group of rows drawn at once) does not count there.
     pub pixels: u32,
-    /// How often the meshes were walked: once, or once for each band if the layout has room for fewer triangles than are drawn.
+    /// How often the frame went through all triangles of the scene: once, or once for each band (group of rows drawn at once) if
+    /// [`crate::Layout::triangles`] is too small.
     pub passes: u32,
-    /// Vertices for which the layout has no room. Each triangle that uses one transforms it again.
+    /// The number of vertices that the layout has no room for; increase [`crate::Layout::vertices`] if it is not 0. Each triangle that uses
+    /// one of them transforms it again.
     pub uncached: u32,
-    /// How often a triangle was set up again in the next band, because the layout had no room for more active triangles.
+    /// How often a triangle that continues from one band (group of rows drawn at once) into the next had to be set up again. If it is
+    /// large, increase [`crate::Layout::active_triangles`].
     pub set_up_anew: u32,
-    /// Triangles that were drawn without something that nobody could see, by what was left out. All are 0 without the feature `skips`.
+    /// Counts of triangles by the way in which they were drawn. All are 0 unless this crate is built with the feature `skips`.
     pub counts: Counts,
 }
 

@@ -89,7 +89,8 @@ fn seam(depth: &mut [u16], vertices: usize) -> &mut [SeamPlace] {
     <[SeamPlace]>::mut_from_prefix_with_elems(depth.as_mut_bytes(), vertices).map(|(seam, _)| seam).unwrap_or_default()
 }
 
-/// The preparation of a frame in two parts, see [`crate::Renderer::prepare`].
+/// The work of a frame before its first pixel (transforming vertices and listing visible triangles), divided into two parts for two
+/// processors. [`crate::Renderer::prepare`] creates it, and [`Self::frame`] ends it.
 #[derive(Debug)]
 pub struct Preparation<'r, C: Pixel> {
     /// The lists of its part are those of the later triangles.
@@ -199,8 +200,9 @@ impl<'r, C: Pixel> Preparation<'r, C> {
         Self { frame, cache, division, earlier, depth_elisions: [depth_elision.clone(), depth_elision], is_done: [false; 2] }
     }
 
-    /// The part with the later triangles and the part with the earlier ones. If the layout is for one processor, or has too little room for the
-    /// stream, the first part does everything.
+    /// Returns the two parts. Call [`PreparationPart::run`] for each, one on each processor. The first one has the later triangles of the
+    /// scene, the second one the earlier triangles. If the work cannot be divided, the first part does everything and the second one
+    /// nothing.
     #[must_use]
     pub fn parts(&mut self) -> [PreparationPart<'_, 'r, C>; 2] {
         let Self { frame, cache, division: Division { triangle, vertex }, earlier: earlier_bins, depth_elisions, is_done } = self;
@@ -233,7 +235,7 @@ impl<'r, C: Pixel> Preparation<'r, C> {
         [later, earlier]
     }
 
-    /// The prepared frame. If a part has not been run, it is run here.
+    /// Ends the preparation and returns the frame, ready to be drawn. A part that has not been run is run here.
     #[must_use]
     #[inline(never)]
     pub fn frame(mut self) -> Frame<'r, C> {
@@ -262,7 +264,7 @@ fn close<C: Pixel>(context: &Context<'_, C>, cache: &mut [ScreenVertex], seam: &
     }
 }
 
-/// One part of the preparation of a frame, for one processor to run.
+/// One of two parts of the work of a frame before its first pixel, for one processor. [`Preparation::parts`] returns both.
 #[derive(Debug)]
 pub struct PreparationPart<'f, 'r, C: Pixel> {
     context: &'f Context<'r, C>,
@@ -279,13 +281,14 @@ pub struct PreparationPart<'f, 'r, C: Pixel> {
 }
 
 impl<'r, C: Pixel> PreparationPart<'_, 'r, C> {
-    /// The triangles of this part, counted through all meshes at the level of detail that is drawn. Empty if the other part does everything.
+    /// Returns the range of triangles that this part prepares, counted through all meshes of the frame. It is empty if the other part does
+    /// everything.
     #[must_use]
     pub fn triangles(&self) -> Range<usize> {
         self.triangles.clone()
     }
 
-    /// Prepares the triangles and vertices of this part.
+    /// Prepares the triangles of this part: transforms their vertices and lists the visible ones.
     pub fn run(self) {
         if !mem::replace(self.is_done, true) {
             self.bin::<true>();

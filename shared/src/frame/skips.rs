@@ -1,35 +1,37 @@
 //! Work that a frame leaves out because nobody can see the result.
 
-/// Switches for work that a frame leaves out because nobody can see the result. Turning one off shows what it saves.
+/// Switches for invisible work that a frame leaves out, for [`crate::Renderer::set_skips`]. They exist to measure what each saves; normally
+/// all are on.
 ///
-/// The picture stays the same, bit for bit, with two exceptions. A clipped triangle that faces away may turn to the front in parts, by rounding, if
-/// it is drawn. Antialiasing shades up to a pixel beyond the edges of a triangle, where a light may shine that reaches no point of the triangle.
+/// The picture stays the same, bit for bit, with two exceptions. A triangle that faces away and crosses the near plane may be visible in
+/// parts, by rounding, if [`Self::back_faces`] is off. With antialiasing, a light may brighten pixels on the edges of a triangle that it
+/// does not reach if [`Self::lights`] is off.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[expect(clippy::struct_excessive_bools, reason = "each is a switch of its own")]
 pub struct Skips {
-    /// Leave out triangles that face away, by their planes, before their vertices are transformed.
+    /// Leaves out triangles that face away from the camera before their vertices are transformed.
     pub back_faces: bool,
-    /// Leave out triangles whose bounding box contains no pixel centre.
+    /// Leaves out triangles whose bounding box contains no pixel centre.
     pub between_centres: bool,
-    /// Leave out the depth test for the front faces of a closed convex mesh, because none can hide another.
+    /// Leaves out the depth test for the front faces of a closed convex mesh, because none of them can hide another.
     pub depth: bool,
-    /// Leave out highlights on triangles where they are too weak to be seen. If a method draws such triangles by another loop, it always does.
+    /// Leaves out highlights on triangles where they are too weak to be visible. Some methods do so even if this is off.
     pub highlights: bool,
-    /// Leave out lights on triangles that they do not reach.
+    /// Leaves out lights on triangles that they do not reach.
     pub lights: bool,
-    /// Leave out objects in bands where nearer objects hide them.
+    /// Leaves out objects in bands (groups of rows drawn at once) where nearer objects hide them.
     pub hidden_objects: bool,
 }
 
 impl Skips {
-    /// Leaves out all that can be left out. A renderer begins with this value.
+    /// All switches on. A renderer begins with this value.
     pub const ALL: Self =
         Self { back_faces: true, between_centres: true, depth: true, highlights: true, lights: true, hidden_objects: true };
-    /// Leaves out nothing.
+    /// All switches off: nothing is left out.
     pub const NONE: Self =
         Self { back_faces: false, between_centres: false, depth: false, highlights: false, lights: false, hidden_objects: false };
-    /// For each switch, its name and all others turned on.
+    /// For each switch its name, and the value in which it alone is off. A benchmark can go through this list.
     pub const ALL_BUT: [(&str, Self); 6] = [
         ("back-faces", Self { back_faces: false, ..Self::ALL }),
         ("between-centres", Self { between_centres: false, ..Self::ALL }),

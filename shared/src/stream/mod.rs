@@ -22,12 +22,15 @@ use record::{
 pub use record::{Camera, Header, Mesh};
 use zerocopy::{FromBytes, Immutable, KnownLayout};
 
-/// Bytes aligned for [`Stream::parse`]: wrap `include_bytes!` in it, or use [`crate::include_stream!`].
+/// A wrapper that aligns its contents to four bytes, as [`Stream::parse`] needs. Wrap the result of `include_bytes!` in it, or use
+/// [`crate::include_stream!`], which does so. `B` is the type of the contents, for example `[u8; 1000]`.
 #[derive(Clone, Copy, Debug)]
 #[repr(C, align(4))]
 pub struct Aligned<B: ?Sized>(pub B);
 
-/// Embeds a stream file, aligned so that it can be read in place: `include_stream!("teapot.tri")` is a `&'static [u8]`.
+/// Embeds a stream file (a mesh file written by `microphong convert`) in the program, like `include_bytes!`. The result is a
+/// `&'static [u8]` that is aligned for [`Stream::parse`](crate::Stream::parse), so the file can be read in place from flash:
+/// `include_stream!("teapot.tri")`.
 #[macro_export]
 macro_rules! include_stream {
     ($path:expr) => {{
@@ -36,16 +39,17 @@ macro_rules! include_stream {
     }};
 }
 
-/// A checked stream, which borrows the bytes that it was parsed from.
+/// A view of a mesh file ("stream") that `microphong convert` has written: meshes, materials, lights, a camera and an animation. It is read
+/// in place: a `Stream` only borrows the bytes, and copies cost nothing. [`Self::parse`] has checked all of it.
 #[derive(Clone, Copy, Debug)]
 pub struct Stream<'a> {
-    /// Numbers of records, camera and background.
+    /// The first record of the stream, with the camera, the background and the number of records of each kind.
     pub header: &'a Header,
-    /// The meshes. Each is followed by its coarser levels of detail.
+    /// The meshes. Each is followed by its coarser levels of detail, if it has any.
     pub meshes: &'a [Mesh],
-    /// Colours and exponents of all materials.
+    /// The materials: their colours and highlight exponents. A mesh refers to them by index.
     pub materials: &'a [Material],
-    /// The lights. Each shines on all meshes.
+    /// The lights at the beginning of the scene. Each shines on all meshes.
     pub lights: &'a [Light],
     /// Objects of the scene. If there are none, the scene is one object of all meshes.
     #[doc(hidden)]
@@ -70,46 +74,46 @@ pub struct Stream<'a> {
     pub names: &'a [u8],
 }
 
-/// The reason why bytes are not a valid stream.
+/// The reason why bytes are not a valid stream (a mesh file that `microphong convert` has written).
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[non_exhaustive]
 pub enum StreamError {
-    /// The slice does not start at a multiple of four bytes. [`Aligned`] or [`crate::include_stream!`] aligns it.
+    /// The bytes do not begin at an address that is a multiple of four. [`Aligned`] or [`crate::include_stream!`] aligns them.
     Misaligned,
-    /// The slice is shorter than the stream.
+    /// There are fewer bytes than the stream has.
     Truncated {
-        /// Number of bytes that are needed.
+        /// The number of bytes that are needed.
         need: u32,
-        /// Number of bytes in the slice.
+        /// The number of bytes that there are.
         have: u32,
     },
-    /// The bytes are not a stream: the first four are not [`MAGIC`].
+    /// The bytes are not a stream, because they do not begin with `mTRI`.
     Magic,
-    /// The stream has another version of the format. `microphong convert` makes it again.
+    /// The stream was written for another version of this crate. Convert the mesh again with `microphong convert`.
     Version {
-        /// Version of the stream.
+        /// The version of the format in the stream.
         found: u16,
     },
-    /// The checksum does not match: the bytes have changed since they were written.
+    /// The checksum does not match, because the bytes have changed since they were written.
     Checksum {
-        /// Checksum in the header.
+        /// The checksum in the header of the stream.
         stored: u32,
-        /// Checksum of the bytes.
+        /// The checksum of the bytes that there are.
         computed: u32,
     },
-    /// The length in the header is less than the records take.
+    /// The header is not consistent: its length is too small for the numbers of records that it states.
     Length {
-        /// Number of bytes that the records take.
+        /// The number of bytes that these records take.
         need: u32,
-        /// Number of bytes that the header names.
+        /// The length in bytes that the header states.
         claimed: u32,
     },
-    /// A field has a value outside its range.
+    /// A field of a record has a value outside of its range.
     Field {
-        /// Name of the field.
+        /// The name of the field.
         name: &'static str,
-        /// Index of the record that holds it.
+        /// The index of the record, counted among the records of the same kind.
         record: u32,
     },
 }
@@ -191,10 +195,11 @@ pub fn length(header: &Header) -> Option<u32> {
 }
 
 impl<'a> Stream<'a> {
-    /// Checks `bytes` and returns the stream in them. Bytes behind the stream's own length are ignored.
+    /// Checks `bytes` and returns a view of the stream in them. Length, checksum, indices and ranges are checked once, here. Bytes behind
+    /// the end of the stream are ignored.
     ///
     /// # Errors
-    /// The first fault that is found, with its place.
+    /// Returns a [`StreamError`] that describes the first fault.
     pub fn parse(bytes: &'a [u8]) -> Result<Self, StreamError> {
         let have = bytes.len() as u32;
         let truncated = |need| StreamError::Truncated { need, have };
@@ -327,26 +332,29 @@ impl<'a> Stream<'a> {
         field(next == self.header.keys, "keys", self.tracks.len())
     }
 
-    /// The keys of `track`.
+    /// Returns the keyframes of `track`, which is the movement of one object, light or camera. Returns `None` if `track` belongs to another
+    /// stream.
     #[must_use]
     pub fn keys_of(&self, track: &Track) -> Option<&'a [Key]> {
         self.keys.get(track.first_key as usize..)?.get(..track.keys as usize)
     }
 
-    /// Whether all lights are directional and the viewer is infinitely far, so that directions are the same for all points.
+    /// Returns `true` if all lights are directional and the viewer is infinitely distant, so that the directions to light and viewer are
+    /// equal at all points. Drawing is fastest then.
     #[must_use]
     pub fn is_constant(&self) -> bool {
         let infinite = self.header.camera.viewer == VIEWER_INFINITE || self.header.camera.projection == ORTHOGRAPHIC;
         infinite && self.lights.iter().all(|light| light.kind == DIRECTIONAL)
     }
 
-    /// Whether the camera is a perspective one, whose rays meet in the eye.
+    /// Returns `true` if the camera is a perspective one, and `false` if it is orthographic.
     #[must_use]
     pub fn is_perspective(&self) -> bool {
         self.header.camera.projection == PERSPECTIVE
     }
 
-    /// The coarsest level of each mesh that lies no farther than `error` from the full mesh. At an error of 0 that is the full mesh.
+    /// Returns one level of detail for each mesh: the coarsest one whose surface is no farther than `error` from the full mesh, in units of
+    /// object space. With an error of 0 these are the full meshes.
     pub fn meshes_within(&self, error: GeometricError) -> impl DoubleEndedIterator<Item = &'a Mesh> + use<'a> {
         self.levels_within(0..self.meshes.len() as u16, error)
     }
@@ -357,13 +365,13 @@ impl<'a> Stream<'a> {
         meshes.filter_map(move |i| level(all, i.into(), error.to_bits()))
     }
 
-    /// The vertices of `mesh`.
+    /// Returns the vertices of `mesh`. Returns `None` if `mesh` belongs to another stream.
     #[must_use]
     pub fn vertices_of(&self, mesh: &Mesh) -> Option<&'a [Vertex]> {
         self.vertices.get(mesh.first_vertex as usize..)?.get(..mesh.vertices as usize)
     }
 
-    /// The triangles of `mesh`.
+    /// Returns the triangles of `mesh`. Returns `None` if `mesh` belongs to another stream.
     #[must_use]
     pub fn triangles_of(&self, mesh: &Mesh) -> Option<&'a [Triangle]> {
         self.triangles.get(mesh.first_triangle as usize..)?.get(..mesh.triangles as usize)

@@ -9,9 +9,8 @@ use core::{fmt, ops::Range, str};
 /// Largest length of a name, in bytes.
 pub const MAX_NAME: usize = u8::MAX as usize;
 
-/// The objects of a stream: names, each with the indices of its meshes. [`Stream::names`] makes this iterator.
-///
-/// An invalid entry gives an error and ends the iteration.
+/// An iterator over the named objects of a stream, which [`Stream::names`] returns. Each item is a name and the range of indices of the
+/// object's meshes. If the names in the file are damaged, the last item is an error.
 #[derive(Clone, Debug)]
 pub struct Names<'a> {
     meshes: &'a [Mesh],
@@ -54,12 +53,12 @@ impl<'a> Iterator for Names<'a> {
     }
 }
 
-/// The stream has no object of this name. The message lists the names that it has.
+/// The error of [`Stream::mesh`]: the stream has no object of this name. Its message lists the names that there are.
 #[derive(Clone, Debug)]
 pub struct UnknownMesh<'a> {
     /// The name that the program asked for.
     pub name: &'a str,
-    /// The names of the stream.
+    /// The named objects that the stream has.
     pub names: Names<'a>,
 }
 
@@ -91,15 +90,15 @@ impl defmt::Format for UnknownMesh<'_> {
 }
 
 impl<'a> Stream<'a> {
-    /// The objects of the stream by name, in the order of their meshes; empty if the stream has no names.
+    /// Returns an iterator over the named objects of the stream, in the order of their meshes. It is empty if the stream has no names.
     ///
-    /// [`Stream::parse`] does not check the names, so that a program that asks for none contains no code for them. This method checks them.
+    /// [`Stream::parse`] does not check the names, so that programs that need none contain no code for them. The iterator checks them.
     #[must_use]
     pub fn names(&self) -> Names<'a> {
         Names { meshes: self.meshes, entries: self.names, next: 0 }
     }
 
-    /// The indices of the meshes of the object `name`, for [`crate::Scene::add`].
+    /// Finds the object `name` and returns the indices of its meshes, for [`crate::Scene::add`].
     ///
     /// ```no_run
     /// # use microphong::{Pose, Renderer, Stream, pixel::Pixel};
@@ -110,7 +109,7 @@ impl<'a> Stream<'a> {
     /// ```
     ///
     /// # Errors
-    /// When no object has this name. The error lists the names that there are.
+    /// Returns [`UnknownMesh`] if the stream has no object of this name. The error lists the names that there are.
     pub fn mesh<'n>(&self, name: &'n str) -> Result<Range<u16>, UnknownMesh<'n>>
     where
         'a: 'n,

@@ -19,69 +19,75 @@ pub const MAGIC: [u8; 4] = *b"mTRI";
 /// Version of the format.
 pub const VERSION: u16 = 7;
 
-/// The start of a stream. The records follow in the order of their numbers here. Names of meshes follow last, if there are any: see
-/// [`crate::Stream::names`].
+/// The first record of a stream: the camera, the background, and the number of records of each kind. Most programs only read
+/// [`Self::frames`].
 #[derive(FromBytes, IntoBytes, Immutable, KnownLayout, Clone, Copy, Debug, PartialEq, Eq)]
 #[repr(C)]
 pub struct Header {
-    /// First four bytes of every stream: [`MAGIC`].
+    /// The first four bytes of every stream: `mTRI`.
     pub magic: [u8; 4],
-    /// Version of the format: [`VERSION`].
+    /// The version of the file format.
     pub version: u16,
-    /// Number of the shading method, see [`crate::method::Facts::id`]. A program may use another one.
+    /// The number of the shading method that the stream asks for, as in [`crate::method::Facts::id`]. [`crate::Renderer::with_shader`]
+    /// ignores it.
     pub shader: u16,
-    /// Length of the stream in bytes, header and names included.
+    /// The length of the whole stream in bytes.
     pub length: u32,
-    /// CRC-32 (ISO-HDLC: polynomial 04C11DB7, reflected) of all other bytes.
+    /// The checksum of all bytes of the stream except this field: CRC-32 as in zip files (polynomial 04C11DB7, reflected).
     pub crc: u32,
-    /// Number of [`Mesh`] records, at least 1.
+    /// The number of [`Mesh`] records, at least 1. Levels of detail are counted as well.
     pub meshes: u16,
-    /// Number of [`Material`] records.
+    /// The number of [`Material`] records.
     pub materials: u16,
-    /// Number of [`Light`] records, at most [`crate::format::MAX_LIGHTS`].
+    /// The number of [`Light`] records, at most 8.
     pub lights: u16,
-    /// Frames in the animation, at least 1.
+    /// The number of frames in the animation, at least 1. Frame numbers are 0 to `frames - 1`.
     pub frames: u16,
-    /// Number of [`Vertex`] records.
+    /// The number of vertices of all meshes.
     pub vertices: u32,
-    /// Number of [`Triangle`] records.
+    /// The number of triangles of all meshes and of their coarser levels of detail.
     pub triangles: u32,
-    /// Number of [`Instance`] records. Without any, the scene is one object of all meshes.
+    /// The number of objects in the scene. If it is 0, the scene has one object, which consists of all meshes.
     pub instances: u16,
-    /// Number of [`Track`] records.
+    /// The number of movements in the animation, each of one object, light or camera.
     pub tracks: u16,
-    /// Number of [`Key`] records.
+    /// The number of keyframes of all movements.
     pub keys: u32,
-    /// Background colour of the first row: red, green, blue.
+    /// The background colour of the first row: red, green, blue, each 0 to 255.
     pub background: [u8; 3],
-    /// Largest error of a pixel against Phong shading by a method with an error budget, in 1/255 of full intensity: [`ErrorBudget`] from 1/2 to 16.
+    /// The error budget of [`crate::Shader::AUTO`] as an integer, in units of 1/8 of 1/255 of full intensity: 4 to 128. [`Self::budget`]
+    /// returns it as a number.
     pub budget: u8,
-    /// Ambient light: red, green, blue, each a [`Gain`] of at most 2. It is multiplied by a material's ambient colour.
+    /// The ambient light as integers: red, green, blue, each 0 to 32,768, where 16,384 is full intensity. [`Self::ambient`] returns it as
+    /// numbers.
     pub ambient: [u16; 3],
-    /// Radius of the ball about the origin of object space that contains all vertices, [`Radius`], rounded up.
+    /// The radius of the sphere about the origin of object space that contains all vertices, as an integer: units of 1/16,384, rounded up.
+    /// [`Self::radius`] returns it as a number.
     pub radius: u16,
-    /// Background colour of the last row: red, green, blue. The rows between have even steps from the first row's colour to this one.
+    /// The background colour of the last row: red, green, blue, each 0 to 255. The colour changes evenly from the first row to the last.
     pub background_bottom: [u8; 3],
-    /// Number of [`Label`] records.
+    /// The number of texts that are drawn over the picture.
     pub labels: u8,
-    /// The camera.
+    /// The camera in frame 0.
     pub camera: Camera,
 }
 
 impl Header {
-    /// Ambient light: red, green, blue; 1 is full intensity.
+    /// Returns the ambient light: red, green, blue, each 0 to 2, where 1 is full intensity. It is multiplied by a material's ambient
+    /// colour.
     #[must_use]
     pub fn ambient(&self) -> [Gain; 3] {
         self.ambient.map(Gain::from_bits)
     }
 
-    /// Largest error of a pixel against Phong shading by a method with an error budget, in 1/255 of full intensity.
+    /// Returns the error budget of [`crate::Shader::AUTO`]: the largest difference of a pixel from Phong shading, in units of 1/255 of full
+    /// intensity, from 1/2 to 16.
     #[must_use]
     pub fn budget(&self) -> ErrorBudget {
         ErrorBudget::from_bits(self.budget)
     }
 
-    /// Radius of the ball about the origin that contains all vertices.
+    /// Returns the radius of the sphere about the origin of object space that contains all vertices.
     #[must_use]
     pub fn radius(&self) -> Radius {
         Radius::from_bits(self.radius)
@@ -93,37 +99,47 @@ pub const VIEWER_INFINITE: u8 = 0;
 /// The viewer is near: highlights use the direction from each point to the eye.
 pub const VIEWER_LOCAL: u8 = 1;
 
-/// A camera, which may orbit. It looks along +z of eye space: x right, y up, z away from the eye.
+/// A camera as the stream stores it. Fields are integers (fixed-point bits); the methods return numbers. To move the camera of a scene, use
+/// [`crate::Scene::look_at`].
 ///
-/// `eye_space = rotation · orbit(frame) · object_space + translation`, where
-/// `orbit` turns by `frame / period` of a revolution about `axis`.
+/// In eye space x points to the right, y up, and z away from the viewer. A point is transformed by
+/// `eye_space = rotation · orbit(frame) · object_space + translation`, where `orbit` turns by `frame / period` of a revolution about
+/// `axis`.
 #[derive(FromBytes, IntoBytes, Immutable, KnownLayout, Clone, Copy, Debug, PartialEq, Eq)]
 #[repr(C)]
 pub struct Camera {
-    /// Rows of the rotation from object space to eye space in frame 0, [`Rotation`] in [-1, 1]. The matrix is orthonormal: squared lengths within
-    /// 1/256 of 1, products of rows within 1/4096 of 0. Its determinant is -1, because object space is right-handed and eye space left-handed.
+    /// The rows of the rotation matrix from object space to eye space in frame 0, in units of 2^-30, so that 1 is `1 << 30`. The matrix is
+    /// orthonormal to within 1/256. Its determinant is -1, because object space is right-handed and eye space left-handed.
     pub rotation: [[i32; 3]; 3],
-    /// Position of the origin of object space in eye space, [`Length`] in [-16, 16].
+    /// The position of the origin of object space in eye space, in units of 1/16,384, each coordinate -16 to 16.
     pub translation: [i32; 3],
-    /// Axis of the orbit in object space, [`Rotation`] in [-1, 1]. Its squared length is within 1/256 of 1.
+    /// The axis of the orbit in object space: a unit vector in units of 2^-30.
     pub axis: [i32; 3],
-    /// Number of frames of one orbit; 0 if the camera stands still. The angle is exact to 0.1 degrees.
+    /// The number of frames in which the camera orbits once, or 0 if it stands still.
     pub period: u16,
-    /// Kind of projection: [`PERSPECTIVE`] or [`ORTHOGRAPHIC`].
+    /// The kind of projection: 0 for perspective, 1 for orthographic (parallel rays).
     pub projection: u8,
-    /// Distance of the viewer: [`VIEWER_INFINITE`] or [`VIEWER_LOCAL`].
+    /// The kind of viewer for highlights: 0 for an infinitely distant viewer, which is faster, and 1 for a local viewer, with the exact
+    /// direction from each point to the eye.
     pub viewer: u8,
-    /// Focal length, [`Focal`] in [1/16, 16]. Perspective: half of the viewport's smaller side is seen at the slope `1 / focal`. Orthographic: half
-    /// of the viewport's smaller side shows `1 / focal` units.
+    /// The focal length in units of 1/65,536, from 1/16 to 16. In perspective, the tangent of half the field of view of the picture's
+    /// smaller side is 1 / focal. An orthographic picture shows 1 / focal units of object space in half of its smaller side.
     pub focal: u32,
-    /// Distance of the near plane along z of eye space, [`Length`] in [1/64, 16). Nothing nearer is drawn.
+    /// The distance of the near plane along z of eye space, in units of 1/16,384, from 1/64 to less than 16. Nothing nearer is drawn.
     pub near: i32,
-    /// Distance of the far plane of an orthographic camera, [`Length`], more than `near` and at most 32. A perspective camera has none.
+    /// The distance of the far plane of an orthographic camera along z of eye space, in units of 1/16,384: more than `near`, at most 32. A
+    /// perspective camera has no far plane and ignores it.
     pub far: i32,
 }
 
 impl Camera {
-    /// A camera that stands still and draws what lies between the depths `near` and `far`. `projection` is [`PERSPECTIVE`] or [`ORTHOGRAPHIC`].
+    /// Creates a camera that stands still, with an infinitely distant viewer for highlights.
+    ///
+    /// - `projection` is 0 for perspective, 1 for orthographic.
+    /// - `rotation` has the rows of the rotation matrix from object space to eye space, in which z points away from the viewer.
+    /// - `translation` is the position of the origin of object space in eye space.
+    /// - `focal` is the focal length, from 1/16 to 16; see [`Self::focal`].
+    /// - `near` and `far` are the distances of the near and the far plane. A perspective camera ignores `far`.
     #[must_use]
     pub fn new(projection: u8, rotation: [[Rotation; 3]; 3], translation: [Length; 3], focal: Focal, [near, far]: [Length; 2]) -> Self {
         Self {
@@ -139,50 +155,51 @@ impl Camera {
         }
     }
 
-    /// Makes the viewer near: highlights use the direction from each point to the eye.
+    /// Makes the viewer local: highlights use the exact direction from each point to the eye. This takes more time than an infinitely
+    /// distant viewer.
     #[must_use]
     pub fn with_local_viewer(self) -> Self {
         Self { viewer: VIEWER_LOCAL, ..self }
     }
 
-    /// Makes the camera orbit around `axis`, once in `period` frames.
+    /// Makes the camera orbit about `axis`, a unit vector in object space, once in `period` frames. A period of 0 makes it stand still.
     #[must_use]
     pub fn orbiting(self, axis: [Rotation; 3], period: u16) -> Self {
         Self { axis: axis.map(Rotation::to_bits), period, ..self }
     }
 
-    /// Rows of the rotation from object space to eye space in frame 0.
+    /// Returns the rows of the rotation matrix from object space to eye space in frame 0.
     #[must_use]
     pub fn rotation(&self) -> [[Rotation; 3]; 3] {
         self.rotation.map(|row| row.map(Rotation::from_bits))
     }
 
-    /// Position of the origin of object space in eye space.
+    /// Returns the position of the origin of object space in eye space, in units of object space.
     #[must_use]
     pub fn translation(&self) -> [Length; 3] {
         self.translation.map(Length::from_bits)
     }
 
-    /// Unit axis of the orbit in object space.
+    /// Returns the axis of the orbit, a unit vector in object space.
     #[must_use]
     pub fn axis(&self) -> [Rotation; 3] {
         self.axis.map(Rotation::from_bits)
     }
 
-    /// Focal length. Perspective: the distance of the eye from the viewport, in units of half the viewport's smaller side. Orthographic: 1 over the
-    /// units that this half side shows.
+    /// Returns the focal length. In perspective, the tangent of half the field of view of the picture's smaller side is 1 / focal. An
+    /// orthographic picture shows 1 / focal units of object space in half of its smaller side.
     #[must_use]
     pub fn focal(&self) -> Focal {
         Focal::from_bits(self.focal)
     }
 
-    /// Distance of the near plane. Nothing nearer is drawn.
+    /// Returns the distance of the near plane along the viewing direction, in units of object space. Nothing nearer is drawn.
     #[must_use]
     pub fn near(&self) -> Length {
         Length::from_bits(self.near)
     }
 
-    /// Distance of the far plane of an orthographic camera.
+    /// Returns the distance of the far plane of an orthographic camera, in units of object space. A perspective camera has no far plane.
     #[must_use]
     pub fn far(&self) -> Length {
         Length::from_bits(self.far)
@@ -194,32 +211,32 @@ pub const PERSPECTIVE: u8 = 0;
 /// An orthographic camera: rays are parallel.
 pub const ORTHOGRAPHIC: u8 = 1;
 
-/// A run of vertices and triangles with one material, or a coarser level of detail of the mesh before.
-///
-/// Meshes follow one another without a gap. Coarser levels follow their mesh, from fine to coarse. A level has fewer triangles on some of the mesh's
-/// vertices, for pictures that are too small to show the difference. A frame draws one level of each mesh, see [`crate::Stream::meshes_within`].
+/// A mesh of a stream: some consecutive vertices and triangles that have one material. A mesh can be followed by coarser levels of detail,
+/// records of this type that have fewer triangles on the same vertices. A frame draws one level of each mesh.
 #[derive(FromBytes, IntoBytes, Immutable, KnownLayout, Clone, Copy, Debug, PartialEq, Eq)]
 #[repr(C)]
 pub struct Mesh {
-    /// Index of the first [`Vertex`]. A coarser level has its mesh's.
+    /// The index of the first vertex among all vertices of the stream. A coarser level of detail has the vertices of its mesh.
     pub first_vertex: u32,
-    /// Index of the first [`Triangle`].
+    /// The index of the first triangle among all triangles of the stream.
     pub first_triangle: u32,
-    /// Number of triangles.
+    /// The number of triangles.
     pub triangles: u32,
-    /// Number of vertices. A coarser level has its mesh's.
+    /// The number of vertices. A coarser level of detail has the vertices of its mesh.
     pub vertices: u16,
-    /// Index of the [`Material`]. A coarser level has its mesh's.
+    /// The index of the material in [`crate::Stream::materials`].
     pub material: u16,
-    /// Distance of a coarser level from its full mesh, [`GeometricError`], rounded up, larger than the level before; 0 for a full mesh. No point of
-    /// the level's triangles lies farther from the full mesh, and no point of the full mesh lies farther from the level.
+    /// The largest distance between this level of detail and the full mesh (Hausdorff distance), in units of 1/16,384, rounded up; 0 for a
+    /// full mesh.
     pub error: u16,
-    /// Bit 0 is [`CLOSED_CONVEX`] and concerns the triangles of this level.
+    /// Properties as bits. Bit 0 is 1 if the mesh is closed and convex, so that none of its front faces can hide another; the renderer then
+    /// leaves out depth tests. The other bits are unused.
     pub flags: u16,
 }
 
 impl Mesh {
-    /// Distance of this level from its full mesh, in units of object space; 0 for a full mesh.
+    /// Returns the largest distance between this level of detail and the full mesh (Hausdorff distance), in units of object space; 0 for a
+    /// full mesh.
     #[must_use]
     pub fn error(&self) -> GeometricError {
         GeometricError::from_bits(self.error)
@@ -237,76 +254,82 @@ pub const CLOSED_CONVEX: u16 = 1;
 /// The largest angle by which rounding may have tilted a triangle of a [`CLOSED_CONVEX`] mesh is 2^-`LEAN` rad: 0.9 degrees.
 pub const LEAN: u32 = 6;
 
-/// A material. Each colour is red, green, blue, as a [`Gain`] of at most 2.
+/// A material of the Phong lighting model: how much of the light it reflects. Fields are integers, where 16,384 stands for 1; [`Self::new`]
+/// makes a material from numbers.
 #[derive(FromBytes, IntoBytes, Immutable, KnownLayout, Clone, Copy, Debug, PartialEq, Eq)]
 #[repr(C)]
 pub struct Material {
-    /// Factor of the ambient light.
+    /// The factors of the ambient light: red, green, blue, each 0 to 32,768, where 16,384 is 1.
     pub ambient: [u16; 3],
-    /// Factor of each light's diffuse reflection.
+    /// The factors of diffuse reflection: red, green, blue, each 0 to 32,768, where 16,384 is 1. This is the colour of the surface.
     pub diffuse: [u16; 3],
-    /// Factor of each light's highlight.
+    /// The factors of the highlight: red, green, blue, each 0 to 32,768, where 16,384 is 1.
     pub specular: [u16; 3],
-    /// Exponent of the highlight, 1 to 1024: of N·H (Blinn 1977), or for some methods of R·V (Phong 1975).
+    /// The exponent of the highlight, 1 to 1024. A larger exponent makes a smaller highlight. It is applied to N·H, where N is the normal
+    /// and H the half vector between light and viewer (Blinn).
     pub exponent: u16,
 }
 
 impl Material {
-    /// A material of these colours and this exponent of the highlight.
+    /// Creates a material from its colours (red, green, blue, each 0 to 2) and the exponent of its highlight (1 to 1024). The ranges are
+    /// checked by [`crate::Scene::set_material`].
     #[must_use]
     pub fn new(ambient: [Gain; 3], diffuse: [Gain; 3], specular: [Gain; 3], exponent: u16) -> Self {
         let [ambient, diffuse, specular] = [ambient, diffuse, specular].map(|colour| colour.map(Gain::to_bits));
         Self { ambient, diffuse, specular, exponent }
     }
 
-    /// Factor of the ambient light: red, green, blue.
+    /// Returns the factors of the ambient light: red, green, blue, each 0 to 2.
     #[must_use]
     pub fn ambient(&self) -> [Gain; 3] {
         self.ambient.map(Gain::from_bits)
     }
 
-    /// Factor of each light's diffuse reflection: red, green, blue.
+    /// Returns the factors of diffuse reflection: red, green, blue, each 0 to 2. This is the colour of the surface.
     #[must_use]
     pub fn diffuse(&self) -> [Gain; 3] {
         self.diffuse.map(Gain::from_bits)
     }
 
-    /// Factor of each light's highlight: red, green, blue.
+    /// Returns the factors of the highlight: red, green, blue, each 0 to 2.
     #[must_use]
     pub fn specular(&self) -> [Gain; 3] {
         self.specular.map(Gain::from_bits)
     }
 }
 
-/// A directional or a point light. Light does not weaken with distance.
+/// A light, which is either directional or a point light. It does not weaken with distance. Create one by [`Self::directional`] or
+/// [`Self::near`]; the fields are integers as the stream stores them.
 #[derive(FromBytes, IntoBytes, Immutable, KnownLayout, Clone, Copy, Debug, PartialEq, Eq)]
 #[repr(C)]
 pub struct Light {
-    /// Directional light: the vector towards the light, whose squared length is within 1/256 of 1; the renderer normalises it. Point light: its
-    /// position. [`Length`] in [-16, 16].
+    /// The unit vector towards a directional light, or the position of a point light, in units of 1/16,384. Positions are within 16 units
+    /// of the origin along each axis.
     pub vector: [i32; 3],
-    /// Colour: red, green, blue, each a [`Gain`] of at most 2.
+    /// The colour: red, green, blue, each 0 to 32,768, where 16,384 is full intensity.
     pub colour: [u16; 3],
-    /// Kind of light: [`DIRECTIONAL`] or [`POINT`].
+    /// The kind of light: 0 for directional, 1 for a point light.
     pub kind: u8,
-    /// Space of the vector: [`OBJECT_SPACE`] or [`EYE_SPACE`].
+    /// The space of the vector: 0 if the light is fixed in the world, 1 if it moves with the camera.
     pub space: u8,
 }
 
 impl Light {
-    /// A light. `kind` is [`DIRECTIONAL`] or [`POINT`]; `space` is [`OBJECT_SPACE`] or [`EYE_SPACE`].
+    /// Creates a light from the values of its fields: `kind` is 0 for a directional light and 1 for a point light, `space` is 0 for the
+    /// world and 1 for eye space (x to the right, y up, z away from the viewer), and each channel of `colour` is 0 to 2.
+    /// [`Self::directional`] and [`Self::near`] are easier to use, and check their arguments.
     #[must_use]
     pub fn new(kind: u8, space: u8, vector: [Length; 3], colour: [Gain; 3]) -> Self {
         Self { vector: vector.map(Length::to_bits), colour: colour.map(Gain::to_bits), kind, space }
     }
 
-    /// Directional light: the unit vector towards it. Point light: its position.
+    /// Returns the unit vector towards a directional light, or the position of a point light.
     #[must_use]
     pub fn vector(&self) -> [Length; 3] {
         self.vector.map(Length::from_bits)
     }
 
-    /// Colour: red, green, blue; 1 is full intensity.
+    /// Returns the colour: red, green, blue, each 0 to 2, where 1 is full intensity.
     #[must_use]
     pub fn colour(&self) -> [Gain; 3] {
         self.colour.map(Gain::from_bits)
