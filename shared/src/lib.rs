@@ -33,11 +33,11 @@
 //!
 //! | word | meaning |
 //! |---|---|
-//! | stream | the bytes of a file of `convert`: meshes, materials, lights, a camera, an animation |
-//! | band | some rows of the picture, as high as the program has memory for. A frame is drawn band by band |
-//! | level | the strength of light at a point, from 0 to 255 in each channel |
+//! | stream | a mesh file that the command `microphong convert` writes: meshes, materials, lights, a camera, an animation |
+//! | band | a group of rows of the picture that is drawn at once, as many as the program has memory for. A frame is drawn band by band |
+//! | level | the intensity of light at a point, from 0 to 255 in each channel |
 //! | node | a point of a triangle where light is computed exactly: a corner, or the midpoint of an edge |
-//! | method, shader | a way to get from nodes to pixels, such as Gouraud or Phong shading |
+//! | method, shader | a way to compute the light of pixels from the light at nodes, such as Gouraud or Phong shading |
 //! | walk | to compute a polynomial pixel by pixel with additions only (forward differences) |
 //! | active triangle | a triangle that continues from one band into the next |
 //! | clipped | cut at the near plane, or far outside of the picture |
@@ -46,17 +46,17 @@
 //!
 //! # Modules
 //!
-//! Shading normalises no vector and computes no power at a pixel: polynomials that are walked take their place. The interface is the crate's root,
-//! [`stream`], [`pixel`], [`format`](mod@format) and, for methods of your own, [`method`]. Everything that this documentation hides may change in any
-//! release. The modules follow the data from the file to the display. Each uses only modules above it in this table, and a test checks that.
+//! The interface is the crate's root, [`stream`], [`pixel`], [`format`](mod@format) and, for shading methods of your own, [`method`]. Everything that
+//! this documentation hides may change in any release. The modules follow the data from the file to the display. Each uses only modules above it in
+//! this table, and a test checks that.
 //!
 //! | module | what it does |
 //! |---|---|
-//! | [`format`](mod@format) | names every number format |
+//! | [`format`](mod@format) | the number formats of the interface |
 //! | `arch` | wide products, quotients and counts of zeros, as short as each processor can |
 //! | `math` | reciprocal, root, lookup table of highlights, vectors, in integers |
 //! | [`pixel`] | pixel formats, ordered dither, curves of displays |
-//! | [`stream`] | bytes in flash to a checked view of meshes, lights and camera |
+//! | [`stream`] | mesh files in flash, checked and read in place |
 //! | `scene` | what is drawn: objects in the world, lights, a camera |
 //! | `geometry` | object space to the screen, and what need not be drawn |
 //! | `lighting` | lights, and what materials reflect of them |

@@ -48,7 +48,7 @@ impl<'a, C: Pixel> Renderer<'a, C> {
     /// - Returns [`RenderError::Size`] if a side of the picture is 0 or longer than [`MAX_SIDE`].
     /// - Returns [`RenderError::Layout`] if `layout` has another width than `size`, or no rows.
     /// - Returns [`RenderError::Memory`], [`RenderError::Materials`] or [`RenderError::Objects`] if there is too little room.
-    /// - Returns [`RenderError::Light`], [`RenderError::Exponent`] or [`RenderError::Perspective`] if the method cannot shade this scene.
+    /// - Returns [`RenderError::Light`] or [`RenderError::Exponent`] if the method cannot shade this scene.
     /// - Returns [`RenderError::Feature`] if the stream has text labels and this crate is built without the feature `text`.
     pub fn new(stream: Stream<'a>, size: Size, layout: &Layout, memory: &'a mut [u64], shaders: &[Shader<C>]) -> Result<Self, RenderError> {
         let method = stream.header.shader;

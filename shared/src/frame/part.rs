@@ -30,7 +30,7 @@ pub struct Stats {
     pub triangles: u32,
     /// The number of triangles that levels of detail have saved: the triangles of the full meshes less [`Self::triangles`].
     pub simplified: u32,
-    /// The number of triangles that were not drawn, because they face away or contain no pixel centre of the picture.
+    /// The number of triangles that were not drawn, because they face away, or their bounding box contains no pixel centre of the picture.
     pub culled: u32,
     /// The number of triangles that were drawn: they face the camera, and their bounding box contains a pixel centre of the picture.
     pub drawn: u32,

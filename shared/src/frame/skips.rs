@@ -1,6 +1,6 @@
 //! Work that a frame leaves out because nobody can see the result.
 
-/// Switches for invisible work that a frame leaves out, for [`crate::Renderer::set_skips`]. They exist to measure what each saves; normally
+/// Switches for invisible work that a frame leaves out, for the method `set_skips` of a renderer. They exist to measure what each saves; normally
 /// all are on.
 ///
 /// The picture stays the same, bit for bit, with two exceptions. A triangle that faces away and crosses the near plane may be visible in

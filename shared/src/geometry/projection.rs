@@ -9,24 +9,28 @@ use crate::{
 };
 use zerocopy::{FromBytes, Immutable, IntoBytes, KnownLayout};
 
-/// A vertex on the screen.
+/// A vertex of a mesh after projection to the screen, with the light there. A shading method reads it as a corner of a triangle, see
+/// [`crate::method::TriangleSetup::corners`].
 #[derive(FromBytes, IntoBytes, Immutable, KnownLayout, Clone, Copy, Debug)]
 #[repr(C)]
 pub struct ScreenVertex {
-    /// Column, 1/16 pixel.
+    /// The column in units of 1/16 pixel, from the left side of the picture. Pixel centres lie at 8/16.
     pub x: i32,
-    /// Row, 1/16 pixel, downwards.
+    /// The row in units of 1/16 pixel, downwards from the upper side of the picture. Pixel centres lie at 8/16.
     pub y: i32,
-    /// Inverse depth, Q0.28.
+    /// The inverse depth in Q0.28: 1 at the near plane, 0 infinitely far away (or at the far plane of an orthographic camera). In
+    /// perspective it is `near / z`.
     pub depth: i32,
-    /// Light by the method's [`crate::method::VertexLight`]: N·L and N·H of a constant light in Q2.30, and of a second one, or light levels in Q9.7.
+    /// The light at the vertex, in the form that [`crate::method::Facts::vertex_light`] asks for. Light levels are Q9.7, from 0 to 255;
+    /// cosines such as N·L are Q2.30. See [`crate::method::VertexLight`].
     pub light: [i32; 4],
-    /// Whether position and light belong to this frame.
+    /// Bookkeeping of the renderer. A shading method has no need of it.
     pub state: State,
 }
 
 impl ScreenVertex {
-    /// Light levels, Q9.7, of a vertex that has levels.
+    /// Returns the light levels of the vertex: red, green, blue, each Q9.7 from 0 to 255. Use it in a method whose
+    /// [`crate::method::Facts::vertex_light`] is [`crate::method::VertexLight::Levels`].
     #[inline(always)]
     #[must_use]
     pub fn levels(&self) -> [i32; 3] {

@@ -2,17 +2,18 @@
 
 use crate::{lighting::reflectance::Highlight, setup::steepness::Steepness};
 
-/// Properties of a shading method. They stand in the method's own file.
+/// The properties of a shading method, which [`crate::method::Method::facts`] returns. For a method of your own, begin with [`Self::OWN`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Facts {
-    /// Name of the method on the command line and in logs.
+    /// The name of the method in error messages and logs, and on the command line.
     pub name: &'static str,
-    /// Number of the method in streams. It never changes, and no two methods of a program may have the same one. Numbers from [`Facts::FIRST_FREE`]
-    /// on are free for methods of your own.
+    /// The number of the method, by which a stream asks for it. No two methods of a program may have the same number. Numbers from
+    /// [`Facts::FIRST_FREE`] on are free for methods of your own.
     pub id: u16,
-    /// Author and year of the source.
+    /// The author and the year of the publication in which the method was described; it may be empty.
     pub source: &'static str,
-    /// Light that is computed at vertices, once for all triangles around each.
+    /// The light that the renderer computes at each vertex, once for all triangles around it. The method reads it from
+    /// [`crate::method::ScreenVertex::light`].
     pub vertex_light: VertexLight,
     /// The quantity that is raised to the exponent of the material.
     #[doc(hidden)]
@@ -23,10 +24,11 @@ pub struct Facts {
     /// What the highlight at a pixel is computed from. This tells how exactly it has to be fitted and walked.
     #[doc(hidden)]
     pub highlight_field: HighlightField,
-    /// Whether the method can draw point lights and a near viewer.
+    /// Whether the method can draw point lights, and highlights for a local viewer (with the exact direction from each point to the eye).
+    /// If not, the renderer refuses scenes that have them.
     pub near_lights: bool,
-    /// Whether the method can interpolate in perspective. Such a method interpolates over whole triangles, not along rows of the screen and not over
-    /// parts of a triangle that are split on the screen.
+    /// Whether the method supports perspective-correct interpolation. A method that draws by [`crate::method::Area::draw`] or
+    /// [`crate::method::Shading::draw_levels`] over whole triangles does.
     pub perspective: bool,
     /// Numbers of operations in the method's formulas.
     #[doc(hidden)]
@@ -34,11 +36,11 @@ pub struct Facts {
 }
 
 impl Facts {
-    /// First method number that is free for methods of your own.
+    /// The first method number that is free for methods of your own: 32,768.
     pub const FIRST_FREE: u16 = 0x8000;
 
-    /// Facts of most methods of your own: `Facts { name: "mine", ..Facts::OWN }`. They say that light levels are computed at vertices, under any
-    /// lights, with perspective. Operations are not counted.
+    /// Properties that suit most methods of your own: `Facts { name: "mine", ..Facts::OWN }`. The renderer computes light levels at
+    /// vertices; point lights and perspective-correct interpolation are supported. A second method of your own also needs another `id`.
     pub const OWN: Self = Self {
         name: "own",
         id: Self::FIRST_FREE,
@@ -110,21 +112,27 @@ pub enum HighlightField {
     Root,
 }
 
-/// Light at a vertex, computed once for all triangles around it.
+/// The form of light that the renderer computes at each vertex for a shading method, in [`crate::method::ScreenVertex::light`]. N is the
+/// normal, L the direction to the light, and H the half vector between light and viewer. Cosines are Q2.30, and light levels are Q9.7 from
+/// 0 to 255.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum VertexLight {
-    /// No light is computed at vertices.
+    /// No light is computed at vertices; the four numbers are 0.
     None,
-    /// Under one constant light `[N·L, N·H]`, and under two on a material of three channels these values of both. Otherwise nothing.
+    /// N·L and N·H of each light, for one directional light, or for two on a material of several colours, with an infinitely distant
+    /// viewer. Under any other lights the four numbers are 0.
     Cosines,
-    /// Under one constant light `[N·L, N·H]`, otherwise levels.
+    /// N·L and N·H, if there is just one light, which is directional, and the viewer is infinitely distant. Under any other lights it is
+    /// like [`Self::Levels`].
     CosinesOrLevels,
-    /// Under one constant light on a material of three channels `[N·L, N·H, highlight]`, otherwise levels. The highlight is unsigned Q0.16, and 0
-    /// where none can be seen.
+    /// N·L, N·H and a third number, if there is just one light, which is directional, and the viewer is infinitely distant. The third
+    /// number is the light level on a material of one channel, and the strength of the highlight (unsigned Q0.16) on one of three. Under
+    /// any other lights it is like [`Self::Levels`].
     ReflectionOrLevels,
-    /// Under one constant light `[N·L, N·H, r]`, where r is the level on a material of one channel, and the highlight on one of three. Otherwise as
-    /// [`Self::Cosines`].
+    /// N·L, N·H and a third number, if there is just one light, which is directional, and the viewer is infinitely distant. The third
+    /// number is the light level on a material of one channel, and the strength of the highlight (unsigned Q0.16) on one of three. Under
+    /// any other lights it is like [`Self::Cosines`].
     CosinesAndReflection,
-    /// Light levels of all channels.
+    /// Light levels of red, green and blue, Q9.7 from 0 to 255, under any lights. This suits most methods.
     Levels,
 }

@@ -166,7 +166,9 @@ where
 }
 
 impl Shading<'_> {
-    /// Draws a triangle by `model`. `common` is interpolated once for all lights, and `of` gives the field of each light.
+    /// Draws the triangle `setup` under any number of lights, by a lighting `model` that computes the light at each pixel from interpolated
+    /// fields (quantities with values at the corners, or at more points). `of` returns the field of each light, and `common` is a field for
+    /// all lights together. Returns the number of pixels drawn.
     pub fn draw_lit<K, V, F>(
         &self,
         setup: &TriangleSetup<'_>,
@@ -183,7 +185,8 @@ impl Shading<'_> {
         self.draw_lit_in_part(setup, |source| Lit::<V, Constant>::Fully(of(source)), common, model, canvas)
     }
 
-    /// Draws a triangle as [`Self::draw_lit`] does, by a method that knows what each light adds to it.
+    /// Draws a triangle like [`Self::draw_lit`], but leaves out work for lights that do not reach it, or have no visible highlight on it.
+    /// `of` tells this for each light, together with its field. Returns the number of pixels drawn.
     pub fn draw_lit_in_part<K, V, D, F>(
         &self,
         setup: &TriangleSetup<'_>,
@@ -218,7 +221,8 @@ impl Shading<'_> {
         self.draw_patches(setup, of, fitted(&common, gradients), model, canvas)
     }
 
-    /// Draws a triangle as [`Self::draw_lit`] does, with patches in place of fields, for methods that interpolate along rows of the screen.
+    /// Draws a triangle like [`Self::draw_lit`], for methods that interpolate along rows of the screen. `of` and `common` are polynomials
+    /// on the screen, as [`TriangleSetup::fit`] makes them, in place of fields. Returns the number of pixels drawn.
     pub fn draw_rows<K, P, F>(
         &self,
         setup: &TriangleSetup<'_>,
@@ -277,17 +281,20 @@ impl Shading<'_> {
         setup.draw_spans(&mut ManyLights { reflectance, model, common, lights, diffuse, lut, ambient, shared, levels }, canvas)
     }
 
-    /// The planes through N·L and N·H of a constant light. Normals are not normalised, so the planes are exact.
+    /// Returns N·L and N·H of a directional light, with an infinitely distant viewer, as fields that are linear over the triangle. N is the
+    /// normal interpolated linearly without normalising, so the fields are exact.
     pub fn constant_products(&self, setup: &TriangleSetup<'_>, source: &Source) -> Linear<2> {
         linear(self.constant_cosines(setup, source))
     }
 
-    /// N·L and N·H of a constant light at the corners, Q2.30. Domain: [`crate::method::Lighting::is_constant`].
+    /// Returns N·L and N·H (Q2.30) of the directional light `source` at the three corners, for an infinitely distant viewer. A point light
+    /// gives zeros.
     pub fn constant_cosines(&self, setup: &TriangleSetup<'_>, source: &Source) -> [[i32; 3]; 2] {
         source.directional().map_or([[0; 3]; 2], |directions| directions.map(|direction| setup.corner_cosines(direction)))
     }
 
-    /// The quadratics through N·L and N·H of a light at six nodes; `map` is applied to both.
+    /// Returns N·L and N·H of a light as fields that are quadratic over the triangle, through the values at `nodes`: the three corners and
+    /// then the midpoints of the edges 0-1, 1-2 and 2-0. `map` is applied to each pair of values first, for example to take square roots.
     pub fn six_products(&self, nodes: &[Node; 6], source: &Source, map: impl Fn([i32; 2]) -> [i32; 2]) -> Quadratic<2> {
         let values = nodes.map(|node| map(self.lighting.directions(source, node.position).map(|direction| cosine(node.normal, direction))));
         quadratic([values.map(|[light, _]| light), values.map(|[_, half]| half)])

@@ -1,8 +1,8 @@
-//! The shading methods, one file for each.
+//! Shading methods, and what a method of your own needs. The methods of this crate are constants of [`crate::Shader`].
 //!
-//! A [`Method`] has [`Facts`] and shades a triangle of any scene. It interpolates fields over the triangle, and computes an intensity from their
-//! values at each pixel. For this it has an [`IntensityShader`], or a [`LightingModel`] for one light at a time. A [`Canvas`] tests depth and stores
-//! colours. The methods of this crate also have loops of their own for common styles, compiled for each pixel format.
+//! A [`Method`] has properties ([`Facts`]) and draws the pixels of a triangle. It computes light at some points of the triangle, for example its
+//! corners, and interpolates these values as a field over the triangle ([`levels_at`]). An [`IntensityShader`] converts the value at each pixel to
+//! light ([`Intensity`]). A [`Canvas`] tests depth and stores colours, so a method knows nothing of pixel formats.
 
 #[doc(hidden)]
 pub mod auto;
@@ -88,9 +88,10 @@ pub use {
     sub_triangle::{Part, Parts, SubTriangle},
 };
 
-/// A shading method.
+/// A shading method: it computes the light of the pixels of a triangle. Implement it for a method of your own, and make a [`crate::Shader`]
+/// of it by [`crate::Shader::new`]. Clipping, depth test and pixel formats are the renderer's part.
 pub trait Method: Sync {
-    /// Properties of the method.
+    /// Returns the properties of the method, for example its name and the light that it needs at vertices.
     fn facts(&self) -> &'static Facts;
 
     /// Computes bounds for a method with an error budget, for a material of exponent `_exponent` under `_lights` lights. Other methods do nothing
@@ -100,7 +101,9 @@ pub trait Method: Sync {
         ErrorBounds::EMPTY
     }
 
-    /// Shades the triangle `setup` into `canvas`, and returns the number of its pixels there.
+    /// Draws the pixels of the triangle `setup` to `canvas`, for example by [`Shading::draw_levels`] or [`Area::draw`]. `shading` has the
+    /// material and the lights. Returns the number of pixels drawn, which these functions return. It is called again for each band (group
+    /// of rows drawn at once) that the triangle lies in.
     fn shade(&self, setup: &TriangleSetup<'_>, shading: &Shading<'_>, canvas: &mut dyn Canvas) -> u32;
 }
 
@@ -178,13 +181,14 @@ pub(crate) fn largest(&[a, b, c]: &[i32; 3]) -> i32 {
     a.max(b).max(c)
 }
 
-/// A triangle ready to be shaded. All triples start with its top corner.
+/// A triangle that is ready to be shaded. The order of its corners 0, 1, 2 is the top one first, then clockwise on the screen. "Nodes" are
+/// points where light is computed: the corners, and for some methods the midpoints of the edges 0-1, 1-2 and 2-0.
 pub struct TriangleSetup<'f> {
     /// Corners, edges and depth on the screen.
     pub(crate) screen: &'f ScreenTriangle,
     /// The gradients by which polynomials are fitted to the triangle.
     pub(crate) gradients: &'f Gradients,
-    /// The corners on the screen, with their light.
+    /// The corners on the screen with their light: the top one first, then clockwise.
     pub corners: [&'f ScreenVertex; 3],
     /// The triangle's record in the stream.
     #[doc(hidden)]
@@ -195,9 +199,10 @@ pub struct TriangleSetup<'f> {
     /// How often the stream's corners are rotated, so that the top one is first: 0, 1 or 2.
     #[doc(hidden)]
     pub turned: usize,
-    /// Whether other triangles may overlap this one.
+    /// Whether the depth of each pixel has to be tested, because other triangles may overlap this one. Functions that draw do this
+    /// themselves.
     pub needs_depth_test: bool,
-    /// Whether light is interpolated in perspective.
+    /// Whether perspective-correct interpolation of light is on for this triangle.
     pub perspective: bool,
     /// Which pixels of the triangle are drawn.
     pub(crate) pixels: PixelSet,
@@ -206,7 +211,8 @@ pub struct TriangleSetup<'f> {
 }
 
 impl TriangleSetup<'_> {
-    /// How steeply light depends on the interpolated fields.
+    /// Returns how strongly the light changes with the interpolated values, which grows with the material's exponent. It decides how
+    /// exactly polynomials are fitted.
     #[must_use]
     pub fn steepness(&self) -> Steepness {
         self.gradients.steepness()
@@ -220,7 +226,7 @@ impl TriangleSetup<'_> {
         TriangleSetup { screen: &ScreenTriangle::NONE, gradients: &Gradients::NONE, ..*self }
     }
 
-    /// The vertices of the triangle, the top one first.
+    /// Returns the three vertices of the triangle in the stream, the top one first, then clockwise on the screen.
     #[inline(always)]
     pub fn vertices(&self) -> [&Vertex; 3] {
         let [a, c, b] = self.triangle.corners;
@@ -229,7 +235,8 @@ impl TriangleSetup<'_> {
         turn([vertex(a), vertex(b), vertex(c)], self.turned)
     }
 
-    /// Inverse depth of the corners; `None` if light is not interpolated in perspective, or that makes no difference.
+    /// Returns the inverse depths of the corners (Q0.28), for perspective-correct interpolation. Returns `None` if that is off, or if all
+    /// corners are equally far, so that linear interpolation on the screen gives the same result.
     #[inline(always)]
     pub fn inv_depth(&self) -> Option<[i32; 3]> {
         let [a, b, c] = self.corners;
@@ -238,7 +245,7 @@ impl TriangleSetup<'_> {
         (self.perspective && !(a == b && b == c)).then_some([a, b, c])
     }
 
-    /// Sorts constants of the stream's edges in the order of the corners here, which run the other way around.
+    /// Sorts three numbers that belong to the edges of the triangle in the stream into the order of the edges here: 0-1, 1-2, 2-0.
     #[inline(always)]
     pub fn edges(&self, [ab, bc, ca]: [u16; 3]) -> [u16; 3] {
         turn([ca, bc, ab], self.turned)
@@ -275,19 +282,22 @@ impl TriangleSetup<'_> {
         Some(band.active.active_triangle(self.place?)?.edges.shader)
     }
 
-    /// Fits a polynomial to `field` on the screen, without perspective, for [`Shading::draw_rows`].
+    /// Fits a polynomial on the screen to `field` (a quantity with values at the corners, or at more points), without perspective.
+    /// [`Shading::draw_rows`] takes the result.
     #[must_use]
     pub fn fit<F: Field>(&self, field: &F) -> F::Patch {
         field.fit(self.gradients)
     }
 
-    /// The row of the screen on which patches stand when shading begins. With antialiasing rows are finer.
+    /// Returns the row of the screen at which the polynomials of [`Self::fit`] begin. With antialiasing, rows are finer than pixels; see
+    /// [`Self::finer`].
     #[must_use]
     pub fn first_row(&self) -> i32 {
         self.gradients.row()
     }
 
-    /// Base-2 logarithm of the number of places along each axis of a pixel where the triangle is shaded; 0 without antialiasing.
+    /// Returns the base-2 logarithm of the number of positions along each axis of a pixel where the triangle can be shaded. It is 0 without
+    /// antialiasing.
     #[must_use]
     pub fn finer(&self) -> u32 {
         self.pixels.finer()
@@ -319,8 +329,8 @@ impl TriangleSetup<'_> {
         [self.corner_lights(), [[a.light[2], b.light[2], c.light[2]], [a.light[3], b.light[3], c.light[3]]]]
     }
 
-    /// Whether the highlight of one constant light is nowhere on the triangle strong enough to be seen. N·H is linear on it, and |N| at least
-    /// [`Triangle::min_normal_length`].
+    /// Returns `true` if no point of the triangle has a visible highlight. It needs one directional light, an infinitely distant viewer,
+    /// and N·H at the corners ([`VertexLight::Cosines`]).
     #[inline(always)]
     pub fn has_no_highlight(&self, reflectance: &Reflectance) -> bool {
         let [a, b, c] = self.corners;
@@ -362,7 +372,8 @@ impl TriangleSetup<'_> {
         }
     }
 
-    /// Threshold of N·H, Q2.30, where N·H is linear between the corners. Below it N·H over |N| is too small for a highlight.
+    /// Returns the value of N·H (Q2.30) below which no highlight is visible on this triangle, where N is the normal interpolated linearly
+    /// between the corners without normalising, and H the half vector between light and viewer.
     #[inline(always)]
     pub fn highlight_threshold(&self, reflectance: &Reflectance) -> i32 {
         self.before_division(reflectance.highlight_threshold())
@@ -375,9 +386,10 @@ impl TriangleSetup<'_> {
     }
 }
 
-/// An area of the screen over which fields can be interpolated: a triangle or a part of one.
+/// An area of the screen that can be shaded: a triangle ([`TriangleSetup`]) or a part of one.
 pub trait Area {
-    /// Interpolates `field` over the area and shades it by `shader`. Returns the number of pixels in `canvas`.
+    /// Draws the area to `canvas`: interpolates `field` (a quantity with values at the corners, or at more points, for example
+    /// [`levels_at`]) and computes the light of each pixel by `shader`. Returns the number of pixels drawn.
     fn draw<F: Field, S: IntensityShader<F::Value>>(&self, field: &F, shader: S, canvas: &mut dyn Canvas) -> u32;
 }
 
@@ -394,20 +406,22 @@ impl Area for TriangleSetup<'_> {
     }
 }
 
-/// Material and lights of the triangles of one mesh in one frame.
+/// The material and the lights of a triangle, which the renderer passes to [`Method::shade`].
 #[derive(Clone, Copy)]
 pub struct Shading<'f> {
-    /// Colours that the material reflects.
+    /// The material under the lights of the scene: it converts the cosines N·L and N·H to light levels.
     pub reflectance: &'f Reflectance,
-    /// The lights of the scene, as the object sees them.
+    /// The lights of the scene and the viewer, in object space.
     pub lighting: &'f Lighting,
-    /// The material's exponent.
+    /// The exponent of the material's highlight, 1 to 1024.
     pub exponent: u16,
-    /// Directions L and H of the only light, if they are the same everywhere; see [`Lighting::constant`].
+    /// The unit vectors L (to the light) and H (half vector between light and viewer) in object space, Q2.30, if there is just one light,
+    /// which is directional, and the viewer is infinitely distant. Otherwise `None`.
     pub constant: Option<[[i32; 3]; 2]>,
-    /// Bounds for a method with an error budget; see [`Method::error_bounds`].
+    /// Bounds of the error that cheap interpolation makes on this material, for methods that keep to an error budget.
     pub error_bounds: &'f ErrorBounds,
-    /// The error budget: the largest error of a pixel, in 1/255, Q9.7.
+    /// The error budget: the largest difference of a pixel from Phong shading, in Q9.7 units of 1/255 of full intensity. Only methods that
+    /// keep to a budget use it.
     pub budget: u32,
 }
 
@@ -422,7 +436,9 @@ fn channels<const N: usize>(levels: [[i32; 3]; N]) -> [[i32; N]; 3] {
     channels
 }
 
-/// A field through levels at `N` nodes, Q9.7, in three channels. [`Walked`] converts its values to intensities.
+/// Creates a field (a quantity to be interpolated over a triangle) of light levels in three channels, for [`Area::draw`]. `levels` are red,
+/// green and blue, Q9.7 from 0 to 255, at `N` points: the 3 corners, or 6 with the midpoints of the edges 0-1, 1-2 and 2-0. Use [`Walked`]
+/// to convert the interpolated values to an [`Intensity`].
 #[must_use]
 pub fn levels_at<const N: usize>(levels: [[i32; 3]; N]) -> Nodes<N, 3, RANGE> {
     Nodes::new(channels(levels), EXTRA).biased([bias(0); 3])
@@ -446,15 +462,16 @@ const fn bias(more: i32) -> i32 {
 }
 
 impl Shading<'_> {
-    /// Whether vertices have [`VertexLight::Cosines`] if the method asks for [`VertexLight::CosinesOrLevels`].
+    /// Returns `true` if the vertices hold N·L and N·H, not light levels, in a method that asks for [`VertexLight::CosinesOrLevels`].
     #[inline(always)]
     #[must_use]
     pub fn vertices_have_cosines(&self) -> bool {
         self.constant.is_some()
     }
 
-    /// Interpolates levels at `N` nodes over `area`, in one channel or three, as the material needs. Levels are Q9.7 and lie in a range narrower than
-    /// 2^`BITS`.
+    /// Interpolates light levels over `area` and draws them to `canvas`. `levels` are red, green and blue, Q9.7, at `N` points: the 3
+    /// corners, or 6 with the midpoints of the edges 0-1, 1-2 and 2-0. `BITS` is the number of bits of their range: 15 for levels from 0 to
+    /// 255. Returns the number of pixels drawn.
     pub fn draw_levels<const N: usize, const BITS: u32>(&self, area: &impl Area, levels: [[i32; 3]; N], canvas: &mut dyn Canvas) -> u32
     where
         Nodes<N, 1, BITS>: Field<Value = [u32; 1]>,
@@ -548,7 +565,8 @@ impl IntensityShader<()> for Uniform {
     }
 }
 
-/// Shades by interpolated levels.
+/// The [`IntensityShader`] for interpolated light levels, such as the field [`levels_at`] gives: it converts them to an [`Intensity`]
+/// without any change.
 #[derive(Clone, Copy, Debug)]
 pub struct Walked;
 

@@ -32,7 +32,8 @@ pub fn is_steep(exponent: u16) -> bool {
 }
 
 impl Shading<'_> {
-    /// Light levels at a point, Q9.7.
+    /// Computes the light levels of red, green and blue at `node`, a point of the triangle with its unit normal. They are Q9.7 from 0 to
+    /// 255.
     pub fn levels(&self, node: &Node) -> [i32; 3] {
         if let Some([towards, half]) = self.constant {
             return self.reflectance.one_light([cosine(node.normal, towards), cosine(node.normal, half)]);
@@ -42,7 +43,7 @@ impl Shading<'_> {
 }
 
 impl Shading<'_> {
-    /// Light levels at the midpoints of the edges 01, 12, 20, Q9.7.
+    /// Computes the light levels of red, green and blue at the midpoints of the edges 0-1, 1-2 and 2-0. They are Q9.7 from 0 to 255.
     #[inline(never)]
     pub fn middle_levels(&self, setup: &TriangleSetup<'_>) -> [[i32; 3]; 3] {
         if self.lighting.is_constant()
@@ -58,12 +59,13 @@ impl Shading<'_> {
 }
 
 impl TriangleSetup<'_> {
-    /// The corners, with the normals of the stream.
+    /// Returns position and unit normal of each corner in object space, for [`Shading::levels`].
     pub fn corner_nodes(&self) -> [Node; 3] {
         self.vertices().map(|vertex| Node { position: point(vertex.position), normal: wide(vertex.normal).map(|c| c << FINER) })
     }
 
-    /// Corners and midpoints of the edges 01, 12, 20, with unit normals as exact as a highlight of this exponent needs them.
+    /// Returns position and unit normal, in object space, of the three corners and then of the midpoints of the edges 0-1, 1-2 and 2-0.
+    /// `exponent` is the material's, which decides how exactly the normals are computed.
     pub fn six_nodes(&self, exponent: u16) -> [Node; 6] {
         let sums = self.sums();
         let [a, b, c] = self.corner_nodes();
@@ -81,14 +83,16 @@ impl TriangleSetup<'_> {
         [a, b, c, middle(0), middle(1), middle(2)]
     }
 
-    /// Corners and midpoints of the edges 01, 12, 20. The normals at midpoints are means of the corners', not normalised.
+    /// Returns position and normal, in object space, of the three corners and then of the midpoints of the edges 0-1, 1-2 and 2-0. The
+    /// normals at midpoints are means of two corners and are not normalised.
     pub fn six_linear_nodes(&self) -> [Node; 6] {
         let [ab, bc, ca] = self.sums().map(|(position, sum)| Node { position, normal: sum.map(|c| c << (FINER - 1)) });
         let [a, b, c] = self.corner_nodes();
         [a, b, c, ab, bc, ca]
     }
 
-    /// The point with the barycentric coordinates `weights / 2^bits` and the unit normal there. Weights are not negative, `bits` is at most 11.
+    /// Returns position and unit normal of the point with the barycentric coordinates `weights / 2^bits`. The weights belong to the corners
+    /// 0, 1, 2, are not negative, and add up to `2^bits`; `bits` is at most 11.
     pub fn node(&self, weights: [i32; 3], bits: u32) -> Node {
         let ([a, b, c], [u, v, w]) = (self.vertices(), weights);
         let mean = |of: fn(&Vertex) -> [i16; 3]| {
@@ -100,7 +104,8 @@ impl TriangleSetup<'_> {
         Node { position: [x << up, y << up, z << up], normal: normalise(mean(|vertex| vertex.normal)) }
     }
 
-    /// The point with the barycentric coordinates `weights / (3 2^bits)` and the unit normal there.
+    /// Returns position and unit normal of the point with the barycentric coordinates `weights / (3 · 2^bits)`. The weights belong to the
+    /// corners 0, 1, 2, are not negative, and add up to `3 · 2^bits`.
     pub fn third(&self, weights: [i32; 3], bits: u32) -> Node {
         let node = self.node(weights, bits);
         Node { position: node.position.map(|c| c / 3), ..node }
@@ -111,7 +116,8 @@ impl TriangleSetup<'_> {
         sums(self.vertices())
     }
 
-    /// The reciprocal lengths 1/|Ni+Nj| for the edges 01, 12, 20, [`INVERSE_SUM_LENGTH`] fraction bits, less than 2^31.
+    /// Returns for each edge 0-1, 1-2, 2-0 the reciprocal length of the sum of the unit normals at its ends, with 17 fraction bits.
+    /// Multiplied by the sum, it gives the unit normal at the midpoint.
     #[inline(always)]
     pub fn inverse_sum_lengths(&self) -> [u32; 3] {
         let [ab, bc, ca] = self.edges(self.triangle.inverse_sum_length);
@@ -123,7 +129,8 @@ impl TriangleSetup<'_> {
         [inverse(ab), inverse(bc), inverse(ca)]
     }
 
-    /// [`Self::inverse_sum_lengths`] with 24 fraction bits, those of [`crate::method::lighting_model::NODE`], from the normals: at most 1.
+    /// Returns for each edge 0-1, 1-2, 2-0 the reciprocal length of the sum of the unit normals at its ends, with 24 fraction bits and at
+    /// most 1. It is more exact than [`Self::inverse_sum_lengths`], and takes longer.
     #[cold]
     #[inline(never)]
     pub fn fine_inverse_sum_lengths(&self) -> [u32; 3] {
@@ -133,27 +140,32 @@ impl TriangleSetup<'_> {
         })
     }
 
-    /// N·L, Q2.30, at the six nodes under one constant light, from the values at the vertices.
+    /// Returns N·L (Q2.30) at the three corners and then at the midpoints of the edges 0-1, 1-2 and 2-0. It needs one directional light, an
+    /// infinitely distant viewer, and N·L at the corners ([`VertexLight::Cosines`](crate::method::VertexLight::Cosines)).
     #[inline(always)]
     pub fn six_diffuse(&self) -> [i32; 6] {
         let [a, b, c] = self.corners;
         self.six_from([a.light[0], b.light[0], c.light[0]])
     }
 
-    /// N·H, Q2.30, at the six nodes under one constant light, as exact as a highlight of this exponent needs it.
+    /// Returns N·H (Q2.30) at the three corners and then at the midpoints of the edges 0-1, 1-2 and 2-0. It needs one directional light, an
+    /// infinitely distant viewer, and N·H at the corners ([`VertexLight::Cosines`](crate::method::VertexLight::Cosines)). `exponent` is the
+    /// material's, which decides how exact the result is.
     #[inline(always)]
     pub fn six_half(&self, exponent: u16) -> [i32; 6] {
         let [a, b, c] = self.corners;
         self.six_half_from([a.light[1], b.light[1], c.light[1]], exponent)
     }
 
-    /// N·H at the six nodes, as [`Self::six_half`] gives it, from the values at the corners.
+    /// Returns N·H (Q2.30) at the three corners and then at the midpoints of the edges 0-1, 1-2 and 2-0, from the values at the `corners`
+    /// under a directional light with an infinitely distant viewer. `exponent` is the material's, which decides how exact the result is.
     #[inline(always)]
     pub fn six_half_from(&self, corners: [i32; 3], exponent: u16) -> [i32; 6] {
         if is_steep(exponent) { exact_six(self.vertices(), corners) } else { self.six_from(corners) }
     }
 
-    /// A cosine, Q2.30, at the six nodes under a constant light: at midpoints it follows from the cosines at corners.
+    /// Returns the cosine of the normal with a fixed direction (Q2.30) at the three corners and then at the midpoints of the edges 0-1, 1-2
+    /// and 2-0, from the values at the corners.
     #[inline(always)]
     pub fn six_from(&self, [a, b, c]: [i32; 3]) -> [i32; 6] {
         let [ab, bc, ca] = self.edges(self.triangle.inverse_sum_length);
@@ -169,7 +181,7 @@ impl TriangleSetup<'_> {
         [a, b, c, middle(a, b, ab), middle(b, c, bc), middle(c, a, ca)]
     }
 
-    /// The cosines of the corners' normals with a unit vector, Q2.30.
+    /// Returns the cosines (Q2.30) between the normals of the corners and `direction`, a unit vector in object space (Q2.30).
     #[inline]
     pub fn corner_cosines(&self, direction: [i32; 3]) -> [i32; 3] {
         let [a, b, c] = self.vertices();

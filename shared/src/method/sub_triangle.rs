@@ -77,7 +77,7 @@ pub struct Parts<'f> {
 }
 
 impl<'f> TriangleSetup<'f> {
-    /// Makes the triangle ready to be drawn in parts.
+    /// Prepares the triangle to be drawn in parts, for methods that split a triangle.
     #[must_use]
     pub fn parts(&self) -> Parts<'f> {
         let Self { screen, pixels, .. } = *self;

@@ -6,16 +6,16 @@
 
 use core::fmt;
 
-/// The curve of a display: for each of the 256 levels the value that shows it, unsigned Q8.8 in \[0, 255\]. A program can make one for its own
-/// display.
+/// The curve of a display, for [`crate::Renderer::set_gamma`]. For each linear light level from 0 to 255 it holds the value to send to the
+/// display, in units of 1/256 of a level: 0 to 65,280. Make your own for a display that [`SRGB`] does not suit.
 #[derive(Clone, PartialEq, Eq)]
 pub struct Gamma(pub [u16; LEVELS]);
 
 /// Levels of a curve.
 const LEVELS: usize = 256;
 
-/// The curve of sRGB (IEC 61966-2-1), which a power of 2.2 approximates. Entries are exact to rounding. Values between entries are interpolated
-/// linearly, and are at most 0.47/255 off the curve in channels of any depth. Most of this error lies between the levels 1 and 2.
+/// The curve of sRGB displays (IEC 61966-2-1), about a power of 1/2.2. Values between entries are interpolated linearly, and are within
+/// 0.47/255 of the exact curve.
 #[rustfmt::skip]
 pub static SRGB: Gamma = Gamma([
     0, 3254, 5545, 7227, 8604, 9792, 10849, 11806, 12687, 13506, 14273, 14997, 15683, 16337, 16962, 17561, 18138, 18694, 19231, 19751,

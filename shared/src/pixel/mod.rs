@@ -28,17 +28,18 @@ use embedded_graphics_core::{
 };
 use zerocopy::{FromBytes, Immutable, IntoBytes, KnownLayout};
 
-/// A pixel format that the renderer can draw.
+/// A pixel format that the renderer can draw. It is implemented for the colours of embedded-graphics (for example `Rgb565`, `Gray8`,
+/// `BinaryColor`) and for [`Rgb565Be`] and [`Rgb332`]. Implement it for a colour type of your own to support another format.
 pub trait Pixel: Copy + 'static {
-    /// The type of a pixel in a table of colours.
+    /// The type of a pixel in the tables that map light levels to colours: often the raw integer of the pixel, such as `u16` for RGB565.
     type Stored: FromBytes + IntoBytes + Immutable + KnownLayout + Copy + core::fmt::Debug;
-    /// The type of a material's tables of colours: [`InTurn`] for channels of five to seven bits, else [`Rounded`]. With [`Rounded`] such channels
-    /// would be dithered by the general loop, which takes several times as long.
+    /// The type of the tables that map light levels to colours: [`InTurn`] for channels of five to seven bits, which are dithered by two
+    /// tables, and [`Rounded`] for all others.
     type Ramps: Ramps<Self::Stored>;
 
-    /// Whether the format has one channel instead of three.
+    /// Whether the format has one channel (grey) instead of three.
     const GRAY: bool;
-    /// Bits of red, green and blue (or of grey, three times).
+    /// The number of bits of red, green and blue, each 1 to 8. A grey format gives its number of bits three times.
     const DEPTH: [u32; 3];
     /// Whether channels have so few bits that the light of several channels may be rounded to a level of 1/255 first.
     #[doc(hidden)]
@@ -46,21 +47,21 @@ pub trait Pixel: Copy + 'static {
         let [r, g, b] = Self::DEPTH;
         r < 8 && g < 8 && b < 8
     };
-    /// Whether dither is on by default: the steps between levels are wide enough to be seen.
+    /// Whether dither is on by default; [`crate::Renderer::set_dither`] changes it. It is on if blue or grey has fewer than eight bits.
     const DITHERED: bool = Self::DEPTH[2] < 8;
     /// Whether tables of colours have finer steps than pixels, so that dither is applied after the look-up.
     #[doc(hidden)]
     const DITHERED_BY_TABLE: bool = Self::GRAY && Self::DITHERED && !Self::Ramps::CHECKERED;
-    /// Number of bytes that a pixel adds to the picture's checksum.
+    /// The number of bytes of a pixel that [`PictureCrc`] adds to the checksum of a picture: 1 to 4.
     const BYTES: usize;
 
-    /// Packs channel values of [`Self::DEPTH`] bits. A grey format uses the first.
+    /// Creates a pixel from red, green and blue, each of as many bits as [`Self::DEPTH`] says. A grey format uses the first number.
     fn pack(channels: [u32; 3]) -> Self;
 
-    /// Converts the pixel to its form in a table of colours.
+    /// Converts a pixel to the type that the colour tables have.
     fn stored(self) -> Self::Stored;
 
-    /// Converts the form in a table of colours to a pixel.
+    /// Converts an entry of the colour tables to a pixel.
     fn from_stored(stored: Self::Stored) -> Self;
 
     /// The entry of a table of colours for channels in unsigned Q8.8 that are scaled to [`Self::DEPTH`]. This is the pixel by a
@@ -84,10 +85,10 @@ pub trait Pixel: Copy + 'static {
         [self; 2]
     }
 
-    /// The channel values of the pixel, as [`Self::pack`] takes them.
+    /// Returns red, green and blue, each of as many bits as [`Self::DEPTH`] says. A grey format returns its value three times.
     fn channels(self) -> [u8; 3];
 
-    /// The value that is sent to the display, independent of the order of bytes in memory.
+    /// Returns the value of the pixel as an integer, independent of the order of its bytes in memory. [`PictureCrc`] uses it.
     fn bits(self) -> u32;
 
     /// Looks up a level in a table of colours. Levels have a bias and `BITS` fraction bits, and include half a step for rounding.
@@ -304,14 +305,14 @@ gray!(Gray4, RawU4, 4);
 gray!(Gray2, RawU2, 2);
 gray!(BinaryColor, RawU1, 1);
 
-/// The format RGB565 with the high byte first in memory, as serial displays expect it. A band can be handed to the bus without a copy. This order
-/// takes no time, because colours come from tables.
+/// A pixel in the format RGB565 with the high byte first in memory, as displays on a serial bus expect it. The bytes of a band can be sent
+/// without conversion.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, FromBytes, IntoBytes, Immutable, KnownLayout)]
 #[repr(transparent)]
 pub struct Rgb565Be(u16);
 
 impl Rgb565Be {
-    /// Black.
+    /// Black, for example to fill a pixel buffer.
     pub const BLACK: Self = Self(0);
 }
 
@@ -376,13 +377,13 @@ impl Pixel for Rgb565Be {
     }
 }
 
-/// The format of red and green in three bits and blue in two, in one byte. embedded-graphics has no such format.
+/// A pixel of one byte: three bits of red, three bits of green and two bits of blue. Embedded-graphics has no such format.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, FromBytes, IntoBytes, Immutable, KnownLayout)]
 #[repr(transparent)]
 pub struct Rgb332(u8);
 
 impl Rgb332 {
-    /// Black.
+    /// Black, for example to fill a pixel buffer.
     pub const BLACK: Self = Self(0);
 }
 
@@ -434,7 +435,8 @@ impl Pixel for Rgb332 {
     }
 }
 
-/// Checksum of a picture: CRC-32 over the values of its pixels, low byte first, row by row from the top.
+/// A checksum (CRC-32) of a picture: add its pixels row by row from the top. Two programs can compare what they drew without sending the
+/// picture. `PictureCrc::default()` begins one.
 #[derive(Clone)]
 pub struct PictureCrc {
     digest: crc::Digest<'static, u32, crc::Table<1>>,
@@ -451,13 +453,14 @@ impl Default for PictureCrc {
 }
 
 impl PictureCrc {
-    /// A checksum for the later pixels of a picture, summed up elsewhere; see [`Self::append`].
+    /// Begins the checksum of the lower part of a picture, for example on a second processor. [`Self::append`] joins it to that of the
+    /// upper part.
     #[must_use]
     pub fn of_rest() -> Self {
         Self { digest: PICTURE.digest_with_initial(0), bytes: 0 }
     }
 
-    /// Adds the next pixels.
+    /// Adds the next pixels of the picture, of format `C`.
     pub fn update<C: Pixel>(&mut self, pixels: &[C]) {
         for pixel in pixels {
             let bytes = pixel.bits().to_le_bytes();
@@ -466,7 +469,7 @@ impl PictureCrc {
         self.bytes += pixels.len() * C::BYTES;
     }
 
-    /// Adds the pixels of another checksum, which began as [`Self::of_rest`].
+    /// Joins the checksum of the lower part of the picture, which [`Self::of_rest`] began, to this one of the upper part.
     pub fn append(&mut self, rest: Self) {
         // A checksum is linear: that of all bytes is that of the first ones, followed by zeros, plus that of the rest that follows zeros.
         (0..rest.bytes).for_each(|_| self.digest.update(&[0]));
@@ -475,7 +478,7 @@ impl PictureCrc {
         self.bytes += rest.bytes;
     }
 
-    /// The checksum of all pixels so far.
+    /// Returns the checksum of all pixels that were added.
     #[must_use]
     pub fn finish(self) -> u32 {
         self.digest.finalize()

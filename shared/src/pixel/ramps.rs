@@ -30,10 +30,13 @@ pub trait Ramps<T: Copy>: FromBytes + IntoBytes + Immutable + KnownLayout + Debu
     fn fill(&mut self, dither: bool, colour: impl FnMut(usize, u32) -> T);
 }
 
-/// One table of rounded colours.
+/// A table of 512 colours, which map light levels to pixels without dither. It is the type [`Pixel::Ramps`](crate::pixel::Pixel::Ramps) of
+/// most formats. `T` is the type of an entry.
 pub type Rounded<T> = [[T; RAMP]; 1];
 
-/// Two tables, for the two kinds of squares of a checkerboard.
+/// Two tables of 512 colours each, which map light levels to pixels. One is rounded up and one down, and pixels or rows use them in turn,
+/// so that the display seems to have finer steps (dither). It is the type [`Pixel::Ramps`](crate::pixel::Pixel::Ramps) of formats with five
+/// to seven bits a channel. `T` is the type of an entry.
 pub type InTurn<T> = [[T; RAMP]; 2];
 
 impl<T: Copy + Debug + FromBytes + IntoBytes + Immutable + KnownLayout + Sync> Ramps<T> for Rounded<T> {

@@ -45,9 +45,10 @@ pub trait SpanTarget {
     fn put(&mut self, first: usize, visible: u32, intensities: &[Intensity; CHUNK]);
 }
 
-/// Computes an intensity from walked values.
+/// Converts an interpolated value to light at a pixel. Implement it for a shading method of your own; `V` is the type of the value, for
+/// example `[u32; 3]` for light levels of three channels.
 pub trait IntensityShader<V> {
-    /// Computes the intensity of a pixel with this value.
+    /// Computes the light of one pixel from its interpolated value. It is called for each visible pixel.
     fn shade(&self, value: V) -> Intensity;
 }
 
@@ -108,8 +109,8 @@ impl<P: Patch, S: IntensityShader<<P::Walker as Walker>::Value>> SpanShader for 
     }
 }
 
-/// The target of drawing: a band of the picture in some pixel format. A method passes it to functions that draw, such as
-/// [`crate::method::Area::draw`].
+/// The target that a shading method draws to: some rows of the picture, in any pixel format. A method only passes it on to functions that
+/// draw, such as [`crate::method::Area::draw`].
 pub trait Canvas {
     /// Number of columns, first row, and one past the last row.
     #[doc(hidden)]

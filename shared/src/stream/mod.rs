@@ -1,6 +1,7 @@
-//! Triangle streams: a checked view of meshes, materials, lights and camera in the bytes of a file.
+//! Streams: mesh files that `microphong convert` writes, with meshes, materials, lights, a camera and an animation.
 //!
-//! [`Stream::parse`] checks length, checksum, all indices and all ranges, once. Rendering relies on these checks and repeats none of them.
+//! A stream is read in place, from flash. [`Stream::parse`] checks length, checksum, all indices and all ranges, once. Rendering relies on these
+//! checks and repeats none of them.
 
 mod names;
 #[doc(hidden)]

@@ -68,7 +68,7 @@ pub struct Header {
     pub background_bottom: [u8; 3],
     /// The number of texts that are drawn over the picture.
     pub labels: u8,
-    /// The camera in frame 0.
+    /// The camera at the beginning of the animation.
     pub camera: Camera,
 }
 
