@@ -30,34 +30,36 @@ use zerocopy::{FromBytes, Immutable, IntoBytes, KnownLayout};
 pub struct Layout {
     /// The width of the picture in pixels. It has to equal the width that [`crate::Renderer::new`] is called with.
     pub width: usize,
-    /// The number of rows of a band, at least 1. A picture is drawn and sent band by band, so few rows save memory, and many rows save
-    /// time.
+    /// The number of rows of a band (group of rows drawn at once), at least 1. A picture is drawn and sent band by band, so few rows save
+    /// memory, and many rows save time.
     pub rows: usize,
-    /// The number of processors that draw at the same time, each its own band: 1 or 2. See [`crate::Frame::in_two`].
+    /// The number of processors that draw at the same time, 1 or 2, each its own rows of the picture. See [`crate::Frame::in_two`].
     pub processors: usize,
     /// The number of transformed vertices that a frame keeps, 32 bytes each. If the scene has more vertices, the picture stays the same,
     /// but the vertices without room are transformed again for each triangle that uses them.
     pub vertices: usize,
     /// The number of visible triangles that a frame keeps in its list, 8 bytes each; triangles that face away need no room. If more
-    /// triangles are visible, the picture stays the same, but each band goes through all triangles of the scene.
+    /// triangles are visible, the picture stays the same, but each band (group of rows drawn at once) goes through all triangles of the
+    /// scene.
     pub triangles: usize,
     /// The number of materials that there is room for. A renderer refuses a stream that has more.
     pub materials: usize,
     /// The number of objects that there is room for, at least 1. A renderer refuses a stream that has more, and [`crate::Scene::add`] fails
     /// beyond this number.
     pub objects: usize,
-    /// The number of triangles that can continue from one band into the next without new set-up, 132 bytes each. If more triangles cross
-    /// the border between two bands, the picture stays the same, but the next band sets up the others again.
+    /// The number of triangles that can continue from one band (group of rows drawn at once) into the next without being set up again, 132
+    /// bytes each. If more triangles cross the border between two bands, the picture stays the same, but the next band sets up the others
+    /// again.
     pub active_triangles: usize,
-    /// Whether there is room for antialiasing, which takes 72 bytes for each pixel of a band. [`crate::Renderer::set_antialias`] turns it
-    /// on.
+    /// Whether there is room for antialiasing, which takes 72 bytes for each pixel of a band (group of rows drawn at once).
+    /// [`crate::Renderer::set_antialias`] turns it on.
     pub antialias: bool,
 }
 
 impl Layout {
-    /// Creates a layout for pictures that are `width` pixels wide and are drawn in bands of `rows` rows. It has room for 1,024 vertices,
-    /// 1,024 triangles, one material, one object, and 48 triangles that cross the border between two bands. It is for one processor,
-    /// without antialiasing.
+    /// Creates a layout for pictures that are `width` pixels wide and are drawn in bands (groups) of `rows` rows. It has room for 1,024
+    /// vertices, 1,024 triangles, one material, one object, and 48 triangles that cross the border between two bands. It is for one
+    /// processor, without antialiasing.
     #[must_use]
     pub const fn new(width: usize, rows: usize) -> Self {
         Self {

@@ -243,7 +243,7 @@ impl<'a, C: Pixel> Renderer<'a, C> {
     }
 
     /// Turns levels of detail on or off; the default is on. Each mesh is then drawn with the fewest triangles that keep it within half a
-    /// pixel of the full mesh. A stream has coarser levels if `convert` made them; without any, this setting changes nothing.
+    /// pixel of the full mesh. If `microphong convert` made no coarser levels of a mesh, this setting changes nothing.
     pub fn set_levels_of_detail(&mut self, on: bool) {
         self.settings.levels_of_detail = on;
         self.scene.set_view_changed();
@@ -284,7 +284,7 @@ impl<'a, C: Pixel> Renderer<'a, C> {
         self.settings.size
     }
 
-    /// Returns the largest number of rows that one call of [`Frame::next_band`] can draw, if the pixel buffer is long enough:
+    /// Returns the number of rows of a band (group of rows drawn at once): the most that one call of [`Frame::next_band`] can draw. It is
     /// [`Layout::rows`] times [`Layout::processors`], or the height of the picture if this is less.
     #[must_use]
     pub fn band_rows(&self) -> u32 {

@@ -119,20 +119,24 @@ pub enum HighlightField {
 pub enum VertexLight {
     /// No light is computed at vertices; the four numbers are 0.
     None,
-    /// N·L and N·H of each light, for one directional light, or for two on a material of several colours, with an infinitely distant
-    /// viewer. Under any other lights the four numbers are 0.
+    /// The cosines N·L and N·H (Q2.30), where N is the normal, L the direction to the light, and H the half vector between light and
+    /// viewer. They are there for one directional light, or for two on a material of several colours, if the viewer is infinitely distant.
+    /// In all other scenes the four numbers are 0.
     Cosines,
-    /// N·L and N·H, if there is just one light, which is directional, and the viewer is infinitely distant. Under any other lights it is
-    /// like [`Self::Levels`].
+    /// The cosines N·L and N·H (Q2.30), if there is just one light, which is directional, and the viewer is infinitely distant. N is the
+    /// normal, L the direction to the light, and H the half vector between light and viewer. In all other scenes it is like
+    /// [`Self::Levels`].
     CosinesOrLevels,
-    /// N·L, N·H and a third number, if there is just one light, which is directional, and the viewer is infinitely distant. The third
-    /// number is the light level on a material of one channel, and the strength of the highlight (unsigned Q0.16) on one of three. Under
-    /// any other lights it is like [`Self::Levels`].
+    /// The cosines N·L and N·H (Q2.30) and a third number, if there is just one light, which is directional, and the viewer is infinitely
+    /// distant. N is the normal, L the direction to the light, and H the half vector between light and viewer. The third number is the
+    /// light level (Q9.7) on a material that is drawn in one channel, and the strength of the highlight (unsigned Q0.16) on one that is
+    /// drawn in three. In all other scenes it is like [`Self::Levels`].
     ReflectionOrLevels,
-    /// N·L, N·H and a third number, if there is just one light, which is directional, and the viewer is infinitely distant. The third
-    /// number is the light level on a material of one channel, and the strength of the highlight (unsigned Q0.16) on one of three. Under
-    /// any other lights it is like [`Self::Cosines`].
+    /// The cosines N·L and N·H (Q2.30) and a third number, if there is just one light, which is directional, and the viewer is infinitely
+    /// distant. N is the normal, L the direction to the light, and H the half vector between light and viewer. The third number is the
+    /// light level (Q9.7) on a material that is drawn in one channel, and the strength of the highlight (unsigned Q0.16) on one that is
+    /// drawn in three. In all other scenes it is like [`Self::Cosines`].
     CosinesAndReflection,
-    /// Light levels of red, green and blue, Q9.7 from 0 to 255, under any lights. This suits most methods.
+    /// Light levels of red, green and blue, Q9.7 from 0 to 255, under lights of any number and kind. This suits most methods.
     Levels,
 }

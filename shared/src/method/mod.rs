@@ -211,8 +211,8 @@ pub struct TriangleSetup<'f> {
 }
 
 impl TriangleSetup<'_> {
-    /// Returns how strongly the light changes with the interpolated values, which grows with the material's exponent. It decides how
-    /// exactly polynomials are fitted.
+    /// Returns how exactly values have to be interpolated on this triangle: a larger highlight exponent of the material needs more exact
+    /// arithmetic. Functions that fit polynomials use it.
     #[must_use]
     pub fn steepness(&self) -> Steepness {
         self.gradients.steepness()
@@ -329,8 +329,8 @@ impl TriangleSetup<'_> {
         [self.corner_lights(), [[a.light[2], b.light[2], c.light[2]], [a.light[3], b.light[3], c.light[3]]]]
     }
 
-    /// Returns `true` if no point of the triangle has a visible highlight. It needs one directional light, an infinitely distant viewer,
-    /// and N·H at the corners ([`VertexLight::Cosines`]).
+    /// Returns `true` if no point of the triangle has a visible highlight. It can be used for one directional light and an infinitely
+    /// distant viewer, if the vertices hold cosines ([`VertexLight::Cosines`]).
     #[inline(always)]
     pub fn has_no_highlight(&self, reflectance: &Reflectance) -> bool {
         let [a, b, c] = self.corners;
@@ -409,7 +409,8 @@ impl Area for TriangleSetup<'_> {
 /// The material and the lights of a triangle, which the renderer passes to [`Method::shade`].
 #[derive(Clone, Copy)]
 pub struct Shading<'f> {
-    /// The material under the lights of the scene: it converts the cosines N·L and N·H to light levels.
+    /// The material under the lights of the scene. It converts cosines to light levels: N·L (normal and direction to the light) for diffuse
+    /// light, and N·H (normal and half vector between light and viewer) for highlights.
     pub reflectance: &'f Reflectance,
     /// The lights of the scene and the viewer, in object space.
     pub lighting: &'f Lighting,
@@ -462,7 +463,9 @@ const fn bias(more: i32) -> i32 {
 }
 
 impl Shading<'_> {
-    /// Returns `true` if the vertices hold N·L and N·H, not light levels, in a method that asks for [`VertexLight::CosinesOrLevels`].
+    /// Returns `true` if vertices hold cosines, and `false` if they hold light levels, in a method that asks for
+    /// [`VertexLight::CosinesOrLevels`]. Cosines are there if the scene has just one light, which is directional, and the viewer is
+    /// infinitely distant.
     #[inline(always)]
     #[must_use]
     pub fn vertices_have_cosines(&self) -> bool {

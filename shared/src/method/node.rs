@@ -140,32 +140,35 @@ impl TriangleSetup<'_> {
         })
     }
 
-    /// Returns N·L (Q2.30) at the three corners and then at the midpoints of the edges 0-1, 1-2 and 2-0. It needs one directional light, an
-    /// infinitely distant viewer, and N·L at the corners ([`VertexLight::Cosines`](crate::method::VertexLight::Cosines)).
+    /// Returns the cosine N·L of normal and direction to the light (Q2.30) at the three corners and then at the midpoints of the edges 0-1,
+    /// 1-2 and 2-0. It can be used for one directional light and an infinitely distant viewer, if the vertices hold cosines
+    /// ([`VertexLight::Cosines`](crate::method::VertexLight::Cosines)).
     #[inline(always)]
     pub fn six_diffuse(&self) -> [i32; 6] {
         let [a, b, c] = self.corners;
         self.six_from([a.light[0], b.light[0], c.light[0]])
     }
 
-    /// Returns N·H (Q2.30) at the three corners and then at the midpoints of the edges 0-1, 1-2 and 2-0. It needs one directional light, an
-    /// infinitely distant viewer, and N·H at the corners ([`VertexLight::Cosines`](crate::method::VertexLight::Cosines)). `exponent` is the
-    /// material's, which decides how exact the result is.
+    /// Returns the cosine N·H of normal and half vector between light and viewer (Q2.30) at the three corners and then at the midpoints of
+    /// the edges 0-1, 1-2 and 2-0. It can be used for one directional light and an infinitely distant viewer, if the vertices hold cosines
+    /// ([`VertexLight::Cosines`](crate::method::VertexLight::Cosines)). `exponent` is the material's highlight exponent; larger ones are
+    /// computed more exactly.
     #[inline(always)]
     pub fn six_half(&self, exponent: u16) -> [i32; 6] {
         let [a, b, c] = self.corners;
         self.six_half_from([a.light[1], b.light[1], c.light[1]], exponent)
     }
 
-    /// Returns N·H (Q2.30) at the three corners and then at the midpoints of the edges 0-1, 1-2 and 2-0, from the values at the `corners`
-    /// under a directional light with an infinitely distant viewer. `exponent` is the material's, which decides how exact the result is.
+    /// Returns the cosine N·H of normal and half vector between light and viewer (Q2.30) at the three corners and then at the midpoints of
+    /// the edges 0-1, 1-2 and 2-0, from its values at the `corners`. It can be used for a directional light and an infinitely distant
+    /// viewer. `exponent` is the material's highlight exponent; larger ones are computed more exactly.
     #[inline(always)]
     pub fn six_half_from(&self, corners: [i32; 3], exponent: u16) -> [i32; 6] {
         if is_steep(exponent) { exact_six(self.vertices(), corners) } else { self.six_from(corners) }
     }
 
-    /// Returns the cosine of the normal with a fixed direction (Q2.30) at the three corners and then at the midpoints of the edges 0-1, 1-2
-    /// and 2-0, from the values at the corners.
+    /// Returns the cosine of the normal and a fixed direction (Q2.30) at the three corners and then at the midpoints of the edges 0-1, 1-2
+    /// and 2-0, from its values at the corners.
     #[inline(always)]
     pub fn six_from(&self, [a, b, c]: [i32; 3]) -> [i32; 6] {
         let [ab, bc, ca] = self.edges(self.triangle.inverse_sum_length);

@@ -77,7 +77,7 @@ pub struct Parts<'f> {
 }
 
 impl<'f> TriangleSetup<'f> {
-    /// Prepares the triangle to be drawn in parts, for methods that split a triangle.
+    /// Returns an object by which a method can draw the triangle in smaller parts, each interpolated on its own.
     #[must_use]
     pub fn parts(&self) -> Parts<'f> {
         let Self { screen, pixels, .. } = *self;

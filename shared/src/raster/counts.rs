@@ -6,7 +6,7 @@
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Counts {
-    /// The number of triangles drawn without depth test, because nothing can hide them.
+    /// The number of triangles drawn without depth test, because no other triangle can overlap them.
     pub without_depth: u32,
     /// The number of highlights that were left out because they are too weak to be visible, counted for each triangle and light.
     pub without_highlight: u32,

@@ -230,8 +230,8 @@ impl<'a> Scene<'a> {
         self.set_repainted();
     }
 
-    /// Returns the objects. Their order decides which one is visible where surfaces of two objects lie at exactly equal depth: the one
-    /// whose origin is nearer to the camera, or else the earlier one.
+    /// Returns the objects in the order of their indices. Where surfaces of two objects lie at exactly equal depth, the object whose origin
+    /// is nearer to the camera is visible; if these are equal, too, the earlier one.
     #[must_use]
     pub fn objects(&self) -> &[Object] {
         self.objects.get(..self.count).unwrap_or_default()

@@ -191,9 +191,8 @@ impl Pose {
     }
 
     /// Returns a copy of this pose, rotated further by the rotation of `other` about the axes of the world. Position and scale stay. Called
-    /// once a frame with a small rotation, it makes an object spin; the result stays a rotation after any number of calls.
-    ///
-    /// Error: at most [`STEP_ERROR`] (tests::steps). The length of the quaternion is within [`QUATERNION_ERROR`] of 1.
+    /// once a frame with a small rotation, it makes an object spin; the result stays a rotation after any number of calls. Each call adds
+    /// an error of at most 1e-8 radians.
     #[must_use]
     pub fn turned(self, other: &Self) -> Self {
         let ([a, b, c, d], [w, x, y, z]) = (other.rotation.map(i64::from), self.rotation.map(i64::from));

@@ -27,7 +27,10 @@ use zerocopy::{FromBytes, Immutable, KnownLayout};
 /// [`crate::include_stream!`], which does so. `B` is the type of the contents, for example `[u8; 1000]`.
 #[derive(Clone, Copy, Debug)]
 #[repr(C, align(4))]
-pub struct Aligned<B: ?Sized>(pub B);
+pub struct Aligned<B: ?Sized>(
+    /// The bytes that are aligned.
+    pub B,
+);
 
 /// Embeds a stream file (a mesh file written by `microphong convert`) in the program, like `include_bytes!`. The result is a
 /// `&'static [u8]` that is aligned for [`Stream::parse`](crate::Stream::parse), so the file can be read in place from flash:
