@@ -62,10 +62,10 @@ impl<C: Pixel + fmt::Debug, U, O> fmt::Debug for Picture<'_, '_, C, U, O> {
 }
 
 impl<'r, 'a, C: Pixel> Picture<'r, 'a, C> {
-    /// Creates a picture of frame `number` of the stream's animation. A number beyond the last frame starts over.
+    /// Creates a picture of frame `number` of the animation in the stream (mesh file). A number beyond the last frame starts over.
     ///
-    /// `band` is the buffer into which `renderer` draws some rows at a time. Give it [`crate::Layout::band`] pixels; with fewer, the
-    /// picture is sent in more and smaller pieces.
+    /// `band` is the buffer into which `renderer` draws some rows at a time. Give it [`Layout::band`](crate::Layout::band) pixels; with
+    /// fewer, the picture is sent in more and smaller pieces.
     ///
     /// # Errors
     /// Returns [`RenderError::Band`] if `band` is shorter than one row of the picture.
@@ -75,7 +75,7 @@ impl<'r, 'a, C: Pixel> Picture<'r, 'a, C> {
     }
 
     /// Creates a picture of the scene in its current state, for programs that move objects themselves through [`Renderer::scene`]. `band`
-    /// is the buffer into which `renderer` draws some rows at a time: [`crate::Layout::band`] pixels.
+    /// is the buffer into which `renderer` draws some rows at a time: [`Layout::band`](crate::Layout::band) pixels.
     ///
     /// # Errors
     /// Returns [`RenderError::Band`] if `band` is shorter than one row of the picture.

@@ -18,43 +18,44 @@ pub enum RenderError {
         /// The height of the picture that was asked for, in pixels.
         height: u32,
     },
-    /// The [`crate::Layout`] has another width than the picture, no rows, or no processor.
+    /// The [`Layout`](crate::Layout) has another width than the picture, no rows, or no processor.
     Layout {
         /// The width of the picture that was asked for, in pixels.
         width: u32,
     },
-    /// The memory that was passed to the renderer is smaller than [`crate::Layout::words`].
+    /// The memory that was passed to the renderer is smaller than [`Layout::words`](crate::Layout::words).
     Memory {
         /// The number of 64-bit words that are needed.
         need: usize,
     },
-    /// The stream has more materials than the layout has room for; set [`crate::Layout::materials`].
+    /// The stream (mesh file) has more materials than the layout has room for; set [`Layout::materials`](crate::Layout::materials).
     Materials {
-        /// The number of materials in the stream.
+        /// The number of materials in the stream (mesh file).
         need: usize,
     },
-    /// The stream has more objects than the layout has room for; set [`crate::Layout::objects`].
+    /// The stream (mesh file) has more objects than the layout has room for; set [`Layout::objects`](crate::Layout::objects).
     Objects {
-        /// The number of objects in the stream.
+        /// The number of objects in the stream (mesh file).
         need: usize,
     },
-    /// Antialiasing was turned on, but the layout has no room for it; set [`crate::Layout::antialias`].
+    /// Antialiasing was turned on, but the layout has no room for it; set [`Layout::antialias`](crate::Layout::antialias).
     NoSamples,
     /// The pixel buffer for a band (group of rows drawn at once) is shorter than one row of the picture.
     Band {
         /// The smallest number of pixels that the buffer may have: one row of the picture.
         need: usize,
     },
-    /// A part of the picture would lie outside of the display; see [`crate::Picture::at`].
+    /// A part of the picture would lie outside of the display; see [`Picture::at`](crate::Picture::at).
     Corner,
-    /// The stream or a setting needs a cargo feature of this crate that is turned off.
+    /// The stream (mesh file) or a setting needs a cargo feature of this crate that is turned off.
     Feature {
         /// The name of the cargo feature.
         name: &'static str,
     },
-    /// The stream asks for a shading method that is not in the list of shaders that was passed to [`crate::Renderer::new`].
+    /// The stream (mesh file) asks for a shading method that is not in the list of shaders that was passed to
+    /// [`Renderer::new`](crate::Renderer::new).
     UnknownMethod {
-        /// The number of the missing method, as in [`crate::method::Facts::id`].
+        /// The number of the missing method, as in [`Facts::id`](crate::method::Facts::id).
         method: u16,
     },
     /// The shading method supports only directional lights and an infinitely distant viewer, and the scene has a point light or a local

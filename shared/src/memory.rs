@@ -13,9 +13,9 @@ use crate::{
 };
 use zerocopy::{FromBytes, Immutable, IntoBytes, KnownLayout};
 
-/// The configuration that decides how much memory a [`crate::Renderer`] needs: the size of the picture and of its bands (a band is a group
-/// of rows that is drawn at once), and how many vertices, triangles, materials and objects there is room for. Use it as a constant, so that
-/// the memory can be a `static`.
+/// The configuration that decides how much memory a [`Renderer`](crate::Renderer) needs: the size of the picture and of its bands (a band
+/// is a group of rows that is drawn at once), and how many vertices, triangles, materials and objects there is room for. Use it as a
+/// constant, so that the memory can be a `static`.
 ///
 /// ```
 /// use embedded_graphics_core::pixelcolor::Rgb565;
@@ -28,12 +28,13 @@ use zerocopy::{FromBytes, Immutable, IntoBytes, KnownLayout};
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub struct Layout {
-    /// The width of the picture in pixels. It has to equal the width that [`crate::Renderer::new`] is called with.
+    /// The width of the picture in pixels. It has to equal the width that [`Renderer::new`](crate::Renderer::new) is called with.
     pub width: usize,
     /// The number of rows of a band (group of rows drawn at once), at least 1. A picture is drawn and sent band by band, so few rows save
     /// memory, and many rows save time.
     pub rows: usize,
-    /// The number of processors that draw at the same time, 1 or 2, each its own rows of the picture. See [`crate::Frame::in_two`].
+    /// The number of processors that draw at the same time, 1 or 2, each its own rows of the picture. See
+    /// [`Frame::in_two`](crate::Frame::in_two).
     pub processors: usize,
     /// The number of transformed vertices that a frame keeps, 32 bytes each. If the scene has more vertices, the picture stays the same,
     /// but the vertices without room are transformed again for each triangle that uses them.
@@ -42,17 +43,17 @@ pub struct Layout {
     /// triangles are visible, the picture stays the same, but each band (group of rows drawn at once) goes through all triangles of the
     /// scene.
     pub triangles: usize,
-    /// The number of materials that there is room for. A renderer refuses a stream that has more.
+    /// The number of materials that there is room for. A renderer refuses a stream (mesh file) that has more.
     pub materials: usize,
-    /// The number of objects that there is room for, at least 1. A renderer refuses a stream that has more, and [`crate::Scene::add`] fails
-    /// beyond this number.
+    /// The number of objects that there is room for, at least 1. A renderer refuses a stream (mesh file) that has more, and
+    /// [`Scene::add`](crate::Scene::add) fails beyond this number.
     pub objects: usize,
     /// The number of triangles that can continue from one band (group of rows drawn at once) into the next without being set up again, 132
     /// bytes each. If more triangles cross the border between two bands, the picture stays the same, but the next band sets up the others
     /// again.
     pub active_triangles: usize,
     /// Whether there is room for antialiasing, which takes 72 bytes for each pixel of a band (group of rows drawn at once).
-    /// [`crate::Renderer::set_antialias`] turns it on.
+    /// [`Renderer::set_antialias`](crate::Renderer::set_antialias) turns it on.
     pub antialias: bool,
 }
 
@@ -119,8 +120,8 @@ impl Layout {
         Self { antialias, ..self }
     }
 
-    /// Sets the numbers of vertices, triangles, materials and objects to what the scene in `stream` needs. All other values stay. This
-    /// suits programs that can allocate memory when they run; a `static` needs numbers that are known at compile time.
+    /// Sets the numbers of vertices, triangles, materials and objects to what the scene in the mesh file `stream` needs. All other values
+    /// stay. This suits programs that can allocate memory when they run; a `static` needs numbers that are known at compile time.
     #[must_use]
     pub fn with_room_for(self, stream: &Stream<'_>) -> Self {
         let whole = [Instance { first_mesh: 0, meshes: stream.meshes.len() as u16, material: 0, reserved: 0 }];
@@ -137,7 +138,7 @@ impl Layout {
     }
 
     /// Returns the number of pixels in a band (group of rows drawn at once): width times rows. The program passes a pixel buffer of this
-    /// length to [`crate::Picture::new`] or [`crate::Frame::next_band`].
+    /// length to [`Picture::new`](crate::Picture::new) or [`Frame::next_band`](crate::Frame::next_band).
     #[must_use]
     pub const fn band(&self) -> usize {
         self.width * self.rows
@@ -147,8 +148,8 @@ impl Layout {
         if self.antialias { self.band() * self.processors } else { 0 }
     }
 
-    /// Returns the number of 64-bit words of memory that a renderer needs when it draws in the pixel format `C`. [`crate::Renderer::new`]
-    /// takes a `&mut [u64]` of this length.
+    /// Returns the number of 64-bit words of memory that a renderer needs when it draws in the pixel format `C`.
+    /// [`Renderer::new`](crate::Renderer::new) takes a `&mut [u64]` of this length.
     #[must_use]
     pub const fn words<C: Pixel>(&self) -> usize {
         let bytes = padded(self.vertices * size_of::<ScreenVertex>())

@@ -38,7 +38,7 @@ pub struct Renderer<'a, C: Pixel> {
 impl<'a, C: Pixel> Renderer<'a, C> {
     /// Creates a renderer for pictures of `size` pixels.
     ///
-    /// - `stream` has the meshes, materials, lights and camera, and the number of the shading method to use.
+    /// - `stream` is the mesh file. It has the meshes, materials, lights and camera, and the number of the shading method to use.
     /// - `layout` says how much memory there is. Its width is that of the picture.
     /// - `memory` is working memory of at least [`Layout::words`] words, with any contents.
     /// - `shaders` lists the shading methods that the program contains. The renderer uses the one that the stream asks for.
@@ -56,8 +56,8 @@ impl<'a, C: Pixel> Renderer<'a, C> {
         Self::with_shader(stream, size, layout, memory, *shader)
     }
 
-    /// Creates a renderer that uses the shading method `shader`, whatever method the stream asks for. All other arguments are as in
-    /// [`Self::new`].
+    /// Creates a renderer that uses the shading method `shader`, whatever method the stream (mesh file) asks for. All other arguments are
+    /// as in [`Self::new`].
     ///
     /// # Errors
     /// Returns the errors of [`Self::new`] except [`RenderError::UnknownMethod`].
@@ -186,8 +186,8 @@ impl<'a, C: Pixel> Renderer<'a, C> {
     }
 
     /// Sets the error budget of [`Shader::AUTO`] and [`Shader::AUTO_LINEAR`]: the largest difference of a pixel from Phong shading, in
-    /// units of 1/255 of full intensity, from 1/2 to 16. A larger budget is faster. The default is stored in the stream. Other methods
-    /// ignore it.
+    /// units of 1/255 of full intensity, from 1/2 to 16. A larger budget is faster. The default is stored in the stream (mesh file). Other
+    /// methods ignore it.
     ///
     /// # Errors
     /// Returns [`RenderError::Budget`] if the budget is less than [`LEAST_BUDGET`] or more than [`LARGEST_BUDGET`]. The budget then stays.
@@ -308,8 +308,8 @@ impl<'a, C: Pixel> Renderer<'a, C> {
         !self.is_invalidated && self.scene.is_latest(number)
     }
 
-    /// Begins frame `number` of the stream's animation. A number beyond the last frame starts over. This is [`Scene::play`] followed by
-    /// [`Self::draw`]; the pixels are drawn by [`Frame::next_band`].
+    /// Begins frame `number` of the animation in the stream (mesh file). A number beyond the last frame starts over. This is
+    /// [`Scene::play`] followed by [`Self::draw`]; the pixels are drawn by [`Frame::next_band`].
     pub fn frame(&mut self, number: u32) -> Frame<'_, C> {
         self.scene.play(number);
         self.draw()

@@ -65,13 +65,13 @@ impl<C: Pixel> Shader<C> {
     /// root is squared and raised to the material's exponent. The result is hardly distinguishable from Phong shading, and takes less time.
     pub const SQRT6: Self = Self::with_loops(&Sqrt6);
     /// Phong shading that normalises without square root, division or table of roots: the normal is interpolated linearly, its reciprocal
-    /// length quadratically, and one step of Newton's method at every pixel corrects the length. Under point lights or with a local viewer
-    /// it draws like [`Shader::PHONG`].
+    /// length quadratically, and a step of Newton's method at every pixel corrects the length. Under point lights or with a local viewer it
+    /// draws like [`Shader::PHONG`].
     pub const RENQ_NEWTON: Self = Self::with_loops(&RenqNewton);
 
     /// A method that chooses for each triangle the cheapest way whose error stays within a budget: one colour, linear interpolation, two
-    /// kinds of quadratic interpolation, or Phong shading. [`crate::Renderer::set_budget`] sets the budget. This is the default of
-    /// `microphong convert`.
+    /// kinds of quadratic interpolation, or Phong shading. [`Renderer::set_budget`](crate::Renderer::set_budget) sets the budget. This is
+    /// the default of `microphong convert`.
     pub const AUTO: Self = Self::with_loops(&Auto::<true>);
     /// A smaller variant of [`Shader::AUTO`], without quadratic interpolation. It keeps to the same error budget and takes about three
     /// fifths of the flash; large triangles take longer.

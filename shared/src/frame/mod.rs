@@ -17,8 +17,9 @@ use core::ops::Range;
 use embedded_graphics_core::primitives::Rectangle;
 use part::Part;
 
-/// One frame, ready to be drawn band by band (groups of rows) from the top. [`crate::Renderer::frame`] and [`crate::Renderer::draw`] begin
-/// one. Programs with a display of embedded-graphics can use [`crate::Picture`] instead.
+/// One frame, ready to be drawn band by band (groups of rows) from the top. [`Renderer::frame`](crate::Renderer::frame) and
+/// [`Renderer::draw`](crate::Renderer::draw) begin one. Programs with a display of embedded-graphics can use [`Picture`](crate::Picture)
+/// instead.
 #[derive(Debug)]
 pub struct Frame<'r, C: Pixel> {
     context: Context<'r, C>,
@@ -30,7 +31,7 @@ impl<'r, C: Pixel> Frame<'r, C> {
     /// the last band.
     ///
     /// The band takes the first `area.size.width * area.size.height` pixels of `pixels`, where `area` is the rectangle. The buffer should
-    /// have [`crate::Layout::band`] pixels; if it is shorter, the band has fewer rows.
+    /// have [`Layout::band`](crate::Layout::band) pixels; if it is shorter, the band has fewer rows.
     ///
     /// # Errors
     /// Returns [`RenderError::Band`] if `pixels` is shorter than one row of the picture.
@@ -40,10 +41,10 @@ impl<'r, C: Pixel> Frame<'r, C> {
 
     /// Draws the next band (group of rows) like [`Self::next_band`], over something that the program draws, for example an image. `under`
     /// is called with the pixels of the band, which have the background already, and with the rectangle of the band in the picture.
-    /// [`crate::BandTarget`] makes a target for embedded-graphics of both.
+    /// [`BandTarget`](crate::BandTarget) makes a target for embedded-graphics of both.
     ///
-    /// With partial redraw, call [`crate::Renderer::invalidate`] with the area in which the result of `under` changes. [`Self::rows`] does
-    /// not include rows in which only `under` draws.
+    /// With partial redraw, call [`Renderer::invalidate`](crate::Renderer::invalidate) with the area in which the result of `under`
+    /// changes. [`Self::rows`] does not include rows in which only `under` draws.
     ///
     /// # Errors
     /// Returns [`RenderError::Band`] if `pixels` is shorter than one row of the picture.
@@ -52,14 +53,15 @@ impl<'r, C: Pixel> Frame<'r, C> {
     }
 
     /// Returns the rectangle that the frame draws, in pixels of the picture. It is the whole picture, unless
-    /// [`crate::Renderer::set_partial_redraw`] is on: then it is the rectangle around all pixels that may have changed since the last
-    /// frame.
+    /// [`Renderer::set_partial_redraw`](crate::Renderer::set_partial_redraw) is on: then it is the rectangle around all pixels that may
+    /// have changed since the last frame.
     #[must_use]
     pub fn area(&self) -> Rectangle {
         self.context.region.hull().rectangle()
     }
 
-    /// Returns `true` if the frame draws the whole picture. With [`crate::Renderer::set_partial_redraw`] a frame may draw only a part.
+    /// Returns `true` if the frame draws the whole picture. With [`Renderer::set_partial_redraw`](crate::Renderer::set_partial_redraw) a
+    /// frame may draw only a part.
     #[must_use]
     pub fn is_whole(&self) -> bool {
         self.context.region.is_whole()
@@ -100,8 +102,8 @@ impl<'r, C: Pixel> Frame<'r, C> {
     /// Divides the frame into the rows above `row` and the rows from `row` on, so that two processors can draw at the same time. Call this
     /// before the first band, with a row from [`Self::row_at`].
     ///
-    /// The layout has to be for two [`crate::Layout::processors`], and [`crate::Layout::triangles`] at least twice the number of visible
-    /// triangles. Otherwise the upper part gets all rows.
+    /// The layout has to be for two [`Layout::processors`](crate::Layout::processors), and [`Layout::triangles`](crate::Layout::triangles)
+    /// at least twice the number of visible triangles. Otherwise the upper part gets all rows.
     #[must_use]
     pub fn in_two(self, row: u32) -> FrameInTwo<'r, C> {
         let Self { context, part } = self;

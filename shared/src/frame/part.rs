@@ -21,8 +21,8 @@ use embedded_graphics_core::{
     primitives::Rectangle,
 };
 
-/// Statistics of one frame: how many triangles and pixels were drawn, and what did not fit into memory. [`crate::Frame::stats`] and the
-/// `draw` method of [`crate::Picture`] return them.
+/// Statistics of one frame: how many triangles and pixels were drawn, and what did not fit into memory.
+/// [`Frame::stats`](crate::Frame::stats) and the `draw` method of [`Picture`](crate::Picture) return them.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Stats {
@@ -38,13 +38,13 @@ pub struct Stats {
     /// it. An object that nearer objects hide in a whole band (group of rows drawn at once) does not count there.
     pub pixels: u32,
     /// How often the frame went through all triangles of the scene: once, or once for each band (group of rows drawn at once) if
-    /// [`crate::Layout::triangles`] is too small.
+    /// [`Layout::triangles`](crate::Layout::triangles) is too small.
     pub passes: u32,
-    /// The number of vertices that the layout has no room for; increase [`crate::Layout::vertices`] if it is not 0. Each triangle that uses
-    /// one of them transforms it again.
+    /// The number of vertices that the layout has no room for; increase [`Layout::vertices`](crate::Layout::vertices) if it is not 0. Each
+    /// triangle that uses one of them transforms it again.
     pub uncached: u32,
     /// How often a triangle that continues from one band (group of rows drawn at once) into the next had to be set up again. If it is
-    /// large, increase [`crate::Layout::active_triangles`].
+    /// large, increase [`Layout::active_triangles`](crate::Layout::active_triangles).
     pub set_up_anew: u32,
     /// Counts of triangles by the way in which they were drawn. All are 0 unless this crate is built with the feature `skips`.
     pub counts: Counts,

@@ -90,7 +90,7 @@ fn seam(depth: &mut [u16], vertices: usize) -> &mut [SeamPlace] {
 }
 
 /// The work of a frame before its first pixel (transforming vertices and listing visible triangles), divided into two parts for two
-/// processors. [`crate::Renderer::prepare`] creates it, and [`Self::frame`] ends it.
+/// processors. [`Renderer::prepare`](crate::Renderer::prepare) creates it, and [`Self::frame`] ends it.
 #[derive(Debug)]
 pub struct Preparation<'r, C: Pixel> {
     /// The lists of its part are those of the later triangles.

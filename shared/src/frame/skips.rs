@@ -1,7 +1,7 @@
 //! Work that a frame leaves out because nobody can see the result.
 
-/// Switches for invisible work that a frame leaves out, for the method `set_skips` of a renderer. They exist to measure what each saves; normally
-/// all are on.
+/// Switches for invisible work that a frame leaves out, for the method `set_skips` of a renderer. They exist to measure what each saves;
+/// normally all are on.
 ///
 /// The picture stays the same, bit for bit, with two exceptions. A triangle that faces away and crosses the near plane may be visible in
 /// parts, by rounding, if [`Self::back_faces`] is off. With antialiasing, a light may brighten pixels on the edges of a triangle that it
@@ -10,17 +10,17 @@
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[expect(clippy::struct_excessive_bools, reason = "each is a switch of its own")]
 pub struct Skips {
-    /// Leaves out triangles that face away from the camera before their vertices are transformed.
+    /// Whether triangles that face away from the camera are left out before their vertices are transformed.
     pub back_faces: bool,
-    /// Leaves out triangles whose bounding box contains no pixel centre.
+    /// Whether triangles are left out whose bounding box contains no pixel centre.
     pub between_centres: bool,
-    /// Leaves out the depth test for the front faces of a closed convex mesh, because none of them can hide another.
+    /// Whether the depth test is left out for the front faces of a closed convex mesh, because none of them can hide another.
     pub depth: bool,
-    /// Leaves out highlights on triangles where they are too weak to be visible. Some methods do so even if this is off.
+    /// Whether highlights are left out on triangles where they are too weak to be visible. Some methods leave them out even if this is off.
     pub highlights: bool,
-    /// Leaves out lights on triangles that they do not reach.
+    /// Whether lights are left out on triangles that they do not reach.
     pub lights: bool,
-    /// Leaves out objects in bands (groups of rows drawn at once) where nearer objects hide them.
+    /// Whether objects are left out in bands (groups of rows drawn at once) where nearer objects hide them.
     pub hidden_objects: bool,
 }
 

@@ -10,7 +10,7 @@ use crate::{
 use zerocopy::{FromBytes, Immutable, IntoBytes, KnownLayout};
 
 /// A vertex of a mesh after projection to the screen, with the light there. A shading method reads it as a corner of a triangle, see
-/// [`crate::method::TriangleSetup::corners`].
+/// [`TriangleSetup::corners`](crate::method::TriangleSetup::corners).
 #[derive(FromBytes, IntoBytes, Immutable, KnownLayout, Clone, Copy, Debug)]
 #[repr(C)]
 pub struct ScreenVertex {
@@ -21,8 +21,8 @@ pub struct ScreenVertex {
     /// The inverse depth in Q0.28: 1 at the near plane, 0 infinitely far away (or at the far plane of an orthographic camera). In
     /// perspective it is `near / z`.
     pub depth: i32,
-    /// The light at the vertex, in the form that [`crate::method::Facts::vertex_light`] asks for. Light levels are Q9.7, from 0 to 255;
-    /// cosines such as N·L are Q2.30. See [`crate::method::VertexLight`].
+    /// The light at the vertex, in the form that [`Facts::vertex_light`](crate::method::Facts::vertex_light) asks for. Light levels are
+    /// Q9.7, from 0 to 255; cosines such as N·L are Q2.30. See [`VertexLight`](crate::method::VertexLight).
     pub light: [i32; 4],
     /// Bookkeeping of the renderer. A shading method has no need of it.
     pub state: State,
@@ -30,7 +30,7 @@ pub struct ScreenVertex {
 
 impl ScreenVertex {
     /// Returns the light levels of the vertex: red, green, blue, each Q9.7 from 0 to 255. Use it in a method whose
-    /// [`crate::method::Facts::vertex_light`] is [`crate::method::VertexLight::Levels`].
+    /// [`Facts::vertex_light`](crate::method::Facts::vertex_light) is [`VertexLight::Levels`](crate::method::VertexLight::Levels).
     #[inline(always)]
     #[must_use]
     pub fn levels(&self) -> [i32; 3] {

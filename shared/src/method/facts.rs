@@ -2,18 +2,19 @@
 
 use crate::{lighting::reflectance::Highlight, setup::steepness::Steepness};
 
-/// The properties of a shading method, which [`crate::method::Method::facts`] returns. For a method of your own, begin with [`Self::OWN`].
+/// The properties of a shading method, which [`Method::facts`](crate::method::Method::facts) returns. For a method of your own, begin with
+/// [`Self::OWN`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Facts {
     /// The name of the method in error messages and logs, and on the command line.
     pub name: &'static str,
-    /// The number of the method, by which a stream asks for it. No two methods of a program may have the same number. Numbers from
-    /// [`Facts::FIRST_FREE`] on are free for methods of your own.
+    /// The number of the method, by which a stream (mesh file) asks for it. No two methods of a program may have the same number. Numbers
+    /// from [`Facts::FIRST_FREE`] on are free for methods of your own.
     pub id: u16,
     /// The author and the year of the publication in which the method was described; it may be empty.
     pub source: &'static str,
     /// The light that the renderer computes at each vertex, once for all triangles around it. The method reads it from
-    /// [`crate::method::ScreenVertex::light`].
+    /// [`ScreenVertex::light`](crate::method::ScreenVertex::light).
     pub vertex_light: VertexLight,
     /// The quantity that is raised to the exponent of the material.
     #[doc(hidden)]
@@ -27,8 +28,8 @@ pub struct Facts {
     /// Whether the method can draw point lights, and highlights for a local viewer (with the exact direction from each point to the eye).
     /// If not, the renderer refuses scenes that have them.
     pub near_lights: bool,
-    /// Whether the method supports perspective-correct interpolation. A method that draws by [`crate::method::Area::draw`] or
-    /// [`crate::method::Shading::draw_levels`] over whole triangles does.
+    /// Whether the method supports perspective-correct interpolation. A method that draws by [`Area::draw`](crate::method::Area::draw) or
+    /// [`Shading::draw_levels`](crate::method::Shading::draw_levels) over whole triangles does.
     pub perspective: bool,
     /// Numbers of operations in the method's formulas.
     #[doc(hidden)]
@@ -112,9 +113,9 @@ pub enum HighlightField {
     Root,
 }
 
-/// The form of light that the renderer computes at each vertex for a shading method, in [`crate::method::ScreenVertex::light`]. N is the
-/// normal, L the direction to the light, and H the half vector between light and viewer. Cosines are Q2.30, and light levels are Q9.7 from
-/// 0 to 255.
+/// The form of light that the renderer computes at each vertex for a shading method, in
+/// [`ScreenVertex::light`](crate::method::ScreenVertex::light). N is the normal, L the direction to the light, and H the half vector
+/// between light and viewer. Cosines are Q2.30, and light levels are Q9.7 from 0 to 255.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum VertexLight {
     /// No light is computed at vertices; the four numbers are 0.

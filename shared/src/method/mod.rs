@@ -88,8 +88,8 @@ pub use {
     sub_triangle::{Part, Parts, SubTriangle},
 };
 
-/// A shading method: it computes the light of the pixels of a triangle. Implement it for a method of your own, and make a [`crate::Shader`]
-/// of it by [`crate::Shader::new`]. Clipping, depth test and pixel formats are the renderer's part.
+/// A shading method: it computes the light of the pixels of a triangle. Implement it for a method of your own, and make a
+/// [`Shader`](crate::Shader) of it by [`Shader::new`](crate::Shader::new). Clipping, depth test and pixel formats are the renderer's part.
 pub trait Method: Sync {
     /// Returns the properties of the method, for example its name and the light that it needs at vertices.
     fn facts(&self) -> &'static Facts;
@@ -226,7 +226,7 @@ impl TriangleSetup<'_> {
         TriangleSetup { screen: &ScreenTriangle::NONE, gradients: &Gradients::NONE, ..*self }
     }
 
-    /// Returns the three vertices of the triangle in the stream, the top one first, then clockwise on the screen.
+    /// Returns the three vertices of the triangle in the mesh file, the top one first, then clockwise on the screen.
     #[inline(always)]
     pub fn vertices(&self) -> [&Vertex; 3] {
         let [a, c, b] = self.triangle.corners;
@@ -245,7 +245,7 @@ impl TriangleSetup<'_> {
         (self.perspective && !(a == b && b == c)).then_some([a, b, c])
     }
 
-    /// Sorts three numbers that belong to the edges of the triangle in the stream into the order of the edges here: 0-1, 1-2, 2-0.
+    /// Sorts three numbers that belong to the edges of the triangle in the mesh file into the order of the edges here: 0-1, 1-2, 2-0.
     #[inline(always)]
     pub fn edges(&self, [ab, bc, ca]: [u16; 3]) -> [u16; 3] {
         turn([ca, bc, ab], self.turned)

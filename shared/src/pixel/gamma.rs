@@ -6,8 +6,8 @@
 
 use core::fmt;
 
-/// The curve of a display, for [`crate::Renderer::set_gamma`]. For each linear light level from 0 to 255 it holds the value to send to the
-/// display, in units of 1/256 of a level: 0 to 65,280. Make your own for a display that [`SRGB`] does not suit.
+/// The curve of a display, for [`Renderer::set_gamma`](crate::Renderer::set_gamma). For each linear light level from 0 to 255 it holds the
+/// value to send to the display, in units of 1/256 of a level: 0 to 65,280. Make your own for a display that [`SRGB`] does not suit.
 #[derive(Clone, PartialEq, Eq)]
 pub struct Gamma(
     /// The 256 values to send to the display, in units of 1/256 of a level, from 0 to 65,280.

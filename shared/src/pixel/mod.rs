@@ -47,7 +47,8 @@ pub trait Pixel: Copy + 'static {
         let [r, g, b] = Self::DEPTH;
         r < 8 && g < 8 && b < 8
     };
-    /// Whether dither is on by default; [`crate::Renderer::set_dither`] changes it. It is on if blue or grey has fewer than eight bits.
+    /// Whether dither is on by default; [`Renderer::set_dither`](crate::Renderer::set_dither) changes it. It is on if blue or grey has
+    /// fewer than eight bits.
     const DITHERED: bool = Self::DEPTH[2] < 8;
     /// Whether tables of colours have finer steps than pixels, so that dither is applied after the look-up.
     #[doc(hidden)]

@@ -110,7 +110,7 @@ impl<P: Patch, S: IntensityShader<<P::Walker as Walker>::Value>> SpanShader for 
 }
 
 /// The target that a shading method draws to: some rows of the picture, in any pixel format. A method only passes it on to functions that
-/// draw, such as [`crate::method::Area::draw`].
+/// draw, such as [`Area::draw`](crate::method::Area::draw).
 pub trait Canvas {
     /// Number of columns, first row, and one past the last row.
     #[doc(hidden)]

@@ -1,8 +1,8 @@
 //! Counts of triangles that are drawn.
 
-/// Counts of triangles by the way in which they were drawn; part of [`crate::Stats`]. Except in `hidden`, each triangle counts only in the
-/// band (group of rows drawn at once) where it begins. Antialiased triangles and extremely thin ones do not count. All counts are 0 unless
-/// this crate is built with the feature `skips`.
+/// Counts of triangles by the way in which they were drawn; part of [`Stats`](crate::Stats). Except in `hidden`, each triangle counts only
+/// in the band (group of rows drawn at once) where it begins. Antialiased triangles and extremely thin ones do not count. All counts are 0
+/// unless this crate is built with the feature `skips`.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Counts {
@@ -15,8 +15,8 @@ pub struct Counts {
     /// The number of triangles that were left out in a band (group of rows drawn at once), because nearer objects hide their object there
     /// or it has no pixels there. A triangle counts once for each band in which it is left out.
     pub hidden: u32,
-    /// The number of triangles that [`crate::Shader::AUTO`] drew in each of its five ways: one colour, linear interpolation, quadratic
-    /// interpolation of light levels, quadratic interpolation of cosines, and Phong shading. Other methods leave all five at 0.
+    /// The number of triangles that [`Shader::AUTO`](crate::Shader::AUTO) drew in each of its five ways: one colour, linear interpolation,
+    /// quadratic interpolation of light levels, quadratic interpolation of cosines, and Phong shading. Other methods leave all five at 0.
     pub choices: [u32; 5],
 }
 

@@ -2,8 +2,8 @@
 
 use core::fmt;
 
-/// The reason why a [`crate::Scene`], a [`crate::Pose`] or a [`crate::Light`] cannot have the values that a program asks for. A scene that
-/// returns this error stays unchanged.
+/// The reason why a [`Scene`](crate::Scene), a [`Pose`](crate::Pose) or a [`Light`](crate::Light) cannot have the values that a program
+/// asks for. A scene that returns this error stays unchanged.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
@@ -22,14 +22,15 @@ pub enum SceneError {
         /// The index that was asked for.
         index: usize,
     },
-    /// The stream has no meshes with these indices, or the range begins or ends between a mesh and its coarser levels of detail.
+    /// The stream (mesh file) has no meshes with these indices, or the range begins or ends between a mesh and its coarser levels of
+    /// detail.
     Meshes,
-    /// The stream has no material with this index.
+    /// The stream (mesh file) has no material with this index.
     Material {
         /// The index that was asked for.
         index: usize,
     },
-    /// The scene has as many objects as the layout has room for; set [`crate::Layout::objects`].
+    /// The scene has as many objects as the layout has room for; set [`Layout::objects`](crate::Layout::objects).
     Objects {
         /// The number of objects that the layout has room for.
         room: usize,

@@ -67,10 +67,10 @@ pub(crate) struct SceneMaterial {
     pub(crate) is_stale: u16,
 }
 
-/// A scene: objects, materials, lights, a camera and a background. [`crate::Renderer::scene`] gives access to it.
+/// A scene: objects, materials, lights, a camera and a background. [`Renderer::scene`](crate::Renderer::scene) gives access to it.
 ///
-/// A scene begins with what the stream says. If the stream lists no objects, there is one object that consists of all meshes. A change is
-/// checked at once, and the next [`crate::Renderer::draw`] shows it.
+/// A scene begins with the contents of the stream (mesh file). If the stream lists no objects, there is one object that consists of all
+/// meshes. A change is checked at once, and the next [`Renderer::draw`](crate::Renderer::draw) shows it.
 ///
 /// The world is right-handed: x to the right, y up, z to the viewer. Objects lie within 16 units of the origin along each axis, at scales
 /// of 1/16 to 8. The depth buffer has 16 bits, which hold `near / z`: if the farthest object is 30 times as far as the near plane, surfaces
@@ -139,8 +139,8 @@ impl<'a> Scene<'a> {
         scene
     }
 
-    /// Moves the camera, the objects and the lights to where the stream's animation has them in frame `number`. A number beyond the last
-    /// frame starts over. Nothing is drawn; [`crate::Renderer::frame`] does both.
+    /// Moves the camera, the objects and the lights to where the animation in the stream (mesh file) has them in frame `number`. A number
+    /// beyond the last frame starts over. Nothing is drawn; [`Renderer::frame`](crate::Renderer::frame) does both.
     pub fn play(&mut self, number: u32) {
         let place = self.place_of(number);
         if place != self.place {
@@ -238,18 +238,18 @@ impl<'a> Scene<'a> {
     }
 
     /// Removes all objects. Call this before [`Self::add`] if the program builds its own scene, because a new scene has objects already:
-    /// the stream's, or one that consists of all meshes.
+    /// the objects of the stream (mesh file), or one that consists of all meshes.
     pub fn clear(&mut self) {
         self.count = 0;
         self.rearrange();
     }
 
-    /// Adds an object and returns its index. `meshes` are the indices of its meshes in the stream, as [`Stream::mesh`] returns them for a
-    /// name. Several objects can share meshes. The object is visible, and each mesh has its own material.
+    /// Adds an object and returns its index. `meshes` are the indices of its meshes in the stream (mesh file), as [`Stream::mesh`] returns
+    /// them for a name. Several objects can share meshes. The object is visible, and each mesh has its own material.
     ///
     /// # Errors
     /// Returns [`SceneError::Meshes`] if the stream does not have these meshes, and [`SceneError::Objects`] if the layout has no room for
-    /// another object ([`crate::Layout::objects`]).
+    /// another object ([`Layout::objects`](crate::Layout::objects)).
     pub fn add(&mut self, meshes: Range<u16>, pose: Pose) -> Result<usize, SceneError> {
         let object = Object::new(&self.stream, meshes).ok_or(SceneError::Meshes)?;
         let room = self.objects.len();
@@ -281,7 +281,7 @@ impl<'a> Scene<'a> {
         self.objects.get_mut(..self.count).and_then(|objects| objects.get_mut(index)).ok_or(SceneError::Object { index })
     }
 
-    /// Sets the rotation, position and scale of the object `index`.
+    /// Sets the rotation, position and scale of the object with the index `index`.
     ///
     /// # Errors
     /// Returns [`SceneError::Object`] if there is no object with this index.
@@ -292,7 +292,7 @@ impl<'a> Scene<'a> {
         Ok(())
     }
 
-    /// Shows or hides the object `index`.
+    /// Shows the object with the index `index` if `visible` is `true`, and hides it otherwise.
     ///
     /// # Errors
     /// Returns [`SceneError::Object`] if there is no object with this index.
@@ -303,8 +303,8 @@ impl<'a> Scene<'a> {
         Ok(())
     }
 
-    /// Sets the material of the object `index`: the index of one of the stream's materials for all its meshes, or `None` so that each mesh
-    /// has its own material.
+    /// Sets the material of the object with the index `index`. `material` is the index of the material that all its meshes get, or `None`
+    /// so that each mesh has its own material.
     ///
     /// # Errors
     /// Returns [`SceneError::Object`] or [`SceneError::Material`] if there is no object or material with this index.
@@ -318,12 +318,13 @@ impl<'a> Scene<'a> {
         Ok(())
     }
 
-    /// Returns the materials in the order of their indices. They are the stream's until [`Self::set_material`] changes one.
+    /// Returns the materials in the order of their indices. They come from the stream (mesh file) until [`Self::set_material`] changes one.
     pub fn materials(&self) -> impl ExactSizeIterator<Item = &Material> {
         self.materials.iter().map(|slot| &slot.material)
     }
 
-    /// Replaces the material `index`. The next frame takes longer, because it computes the colour tables of this material again.
+    /// Replaces the material with the index `index`. The next frame takes longer, because it computes the colour tables of this material
+    /// again.
     ///
     /// # Errors
     /// Returns [`SceneError::Material`] if there is no material with this index, [`SceneError::Range`] if a value is out of range, and
@@ -402,7 +403,7 @@ impl<'a> Scene<'a> {
         self.set_repainted();
     }
 
-    /// Returns the camera. If it orbits, its rotation is the one of frame 0 of the orbit.
+    /// Returns the camera. If it orbits, its rotation is the one in frame 0 of the orbit.
     #[must_use]
     pub fn camera(&self) -> &Camera {
         &self.camera
@@ -412,7 +413,8 @@ impl<'a> Scene<'a> {
     ///
     /// # Errors
     /// Returns [`SceneError::Range`] if a value is out of range, [`SceneError::Light`] if the shading method does not support a local
-    /// viewer, and [`SceneError::Perspective`] if it does not support perspective-correct interpolation while that is on.
+    /// viewer, and [`SceneError::Perspective`] if perspective-correct interpolation of light is on and the method does not support it for a
+    /// perspective camera.
     pub fn set_camera(&mut self, camera: Camera) -> Result<(), SceneError> {
         in_range(camera.fault())?;
         if !self.limits.near_lights && camera.viewer == VIEWER_LOCAL && camera.projection == PERSPECTIVE {
@@ -430,8 +432,8 @@ impl<'a> Scene<'a> {
     }
 
     /// Moves the camera to the position `eye` and turns it so that it looks at `target`, with the direction `up` upwards in the picture.
-    /// All are in world units; a position is within 16 units of the origin. The camera stops following the stream's orbit. The focal length
-    /// stays.
+    /// All are in world units, and positions lie within 16 units of the origin along each axis. An orbit of the camera ends, and the focal
+    /// length stays.
     ///
     /// # Errors
     /// Returns [`SceneError::Rotation`] if `eye` equals `target`, or `up` is zero or parallel to the viewing direction. Returns
@@ -441,7 +443,7 @@ impl<'a> Scene<'a> {
     }
 
     /// Moves the camera to the position and rotation of `pose`. The camera looks along the positive z axis of the pose, and the y axis
-    /// points upwards in the picture; the scale is ignored. The camera stops following the stream's orbit. The focal length stays.
+    /// points upwards in the picture; the scale is ignored. An orbit of the camera ends, and the focal length stays.
     ///
     /// # Errors
     /// Returns [`SceneError::Range`] if the camera is farther than 16 units from the origin of the world along one of the camera's own

@@ -10,7 +10,7 @@ use crate::{
 use core::ops::Range;
 use zerocopy::{FromBytes, Immutable, IntoBytes, KnownLayout};
 
-/// An object of a [`crate::Scene`]: one or more meshes that move together. Several objects can share meshes.
+/// An object of a [`Scene`](crate::Scene): one or more meshes that move together. Several objects can share meshes.
 #[derive(FromBytes, IntoBytes, Immutable, KnownLayout, Clone, Copy, Debug, PartialEq, Eq)]
 #[repr(C)]
 pub struct Object {
@@ -76,7 +76,7 @@ impl Object {
         self.pose
     }
 
-    /// Returns the indices of the object's meshes in [`Stream::meshes`].
+    /// Returns the indices of the object's meshes in the mesh file, see [`Stream::meshes`].
     #[must_use]
     pub fn meshes(&self) -> Range<u16> {
         let [first, end] = self.meshes;
@@ -89,7 +89,8 @@ impl Object {
         (self.material != OWN_MATERIALS).then_some(self.material)
     }
 
-    /// Returns `true` unless the object is hidden by [`crate::Scene::set_visible`] or by the stream's animation.
+    /// Returns `true` unless the object is hidden by [`Scene::set_visible`](crate::Scene::set_visible) or by the animation in the stream
+    /// (mesh file).
     #[must_use]
     pub fn is_visible(&self) -> bool {
         self.hidden == 0

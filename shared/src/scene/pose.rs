@@ -133,7 +133,7 @@ impl Pose {
     }
 
     /// Creates a pose at `position` whose z axis points to `target`, and whose y axis is as close to the direction `up` as possible. This
-    /// suits objects that face something, and cameras ([`crate::Scene::set_camera_pose`]).
+    /// suits objects that face something, and cameras ([`Scene::set_camera_pose`](crate::Scene::set_camera_pose)).
     ///
     /// # Errors
     /// Returns [`SceneError::Rotation`] if `position` equals `target`, or `up` is zero or parallel to the direction of the target. Returns

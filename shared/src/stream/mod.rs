@@ -24,7 +24,7 @@ pub use record::{Camera, Header, Mesh};
 use zerocopy::{FromBytes, Immutable, KnownLayout};
 
 /// A wrapper that aligns its contents to four bytes, as [`Stream::parse`] needs. Wrap the result of `include_bytes!` in it, or use
-/// [`crate::include_stream!`], which does so. `B` is the type of the contents, for example `[u8; 1000]`.
+/// [`include_stream!`](crate::include_stream!), which does so. `B` is the type of the contents, for example `[u8; 1000]`.
 #[derive(Clone, Copy, Debug)]
 #[repr(C, align(4))]
 pub struct Aligned<B: ?Sized>(
@@ -83,7 +83,8 @@ pub struct Stream<'a> {
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[non_exhaustive]
 pub enum StreamError {
-    /// The bytes do not begin at an address that is a multiple of four. [`Aligned`] or [`crate::include_stream!`] aligns them.
+    /// The bytes do not begin at an address that is a multiple of four. [`Aligned`] or [`include_stream!`](crate::include_stream!) aligns
+    /// them.
     Misaligned,
     /// There are fewer bytes than the stream has.
     Truncated {
@@ -336,8 +337,8 @@ impl<'a> Stream<'a> {
         field(next == self.header.keys, "keys", self.tracks.len())
     }
 
-    /// Returns the keyframes of `track`, which is the movement of one object, light or camera. Returns `None` if `track` belongs to another
-    /// stream.
+    /// Returns the keyframes of `track`, which is the movement of one object, light or camera. Returns `None` if the stream does not have
+    /// them; this happens only for a track of another stream.
     #[must_use]
     pub fn keys_of(&self, track: &Track) -> Option<&'a [Key]> {
         self.keys.get(track.first_key as usize..)?.get(..track.keys as usize)
@@ -369,13 +370,13 @@ impl<'a> Stream<'a> {
         meshes.filter_map(move |i| level(all, i.into(), error.to_bits()))
     }
 
-    /// Returns the vertices of `mesh`. Returns `None` if `mesh` belongs to another stream.
+    /// Returns the vertices of `mesh`. Returns `None` if the stream does not have them; this happens only for a mesh of another stream.
     #[must_use]
     pub fn vertices_of(&self, mesh: &Mesh) -> Option<&'a [Vertex]> {
         self.vertices.get(mesh.first_vertex as usize..)?.get(..mesh.vertices as usize)
     }
 
-    /// Returns the triangles of `mesh`. Returns `None` if `mesh` belongs to another stream.
+    /// Returns the triangles of `mesh`. Returns `None` if the stream does not have them; this happens only for a mesh of another stream.
     #[must_use]
     pub fn triangles_of(&self, mesh: &Mesh) -> Option<&'a [Triangle]> {
         self.triangles.get(mesh.first_triangle as usize..)?.get(..mesh.triangles as usize)

@@ -98,7 +98,7 @@ impl<'a> Stream<'a> {
         Names { meshes: self.meshes, entries: self.names, next: 0 }
     }
 
-    /// Finds the object `name` and returns the indices of its meshes, for [`crate::Scene::add`].
+    /// Finds the object `name` and returns the indices of its meshes, for [`Scene::add`](crate::Scene::add).
     ///
     /// ```no_run
     /// # use microphong::{Pose, Renderer, Stream, pixel::Pixel};

@@ -28,8 +28,8 @@ pub struct Header {
     pub magic: [u8; 4],
     /// The version of the file format.
     pub version: u16,
-    /// The number of the shading method that the stream asks for, as in [`crate::method::Facts::id`]. [`crate::Renderer::with_shader`]
-    /// ignores it.
+    /// The number of the shading method that the stream asks for, as in [`Facts::id`](crate::method::Facts::id).
+    /// [`Renderer::with_shader`](crate::Renderer::with_shader) ignores it.
     pub shader: u16,
     /// The length of the whole stream in bytes.
     pub length: u32,
@@ -55,8 +55,8 @@ pub struct Header {
     pub keys: u32,
     /// The background colour of the first row: red, green, blue, each 0 to 255.
     pub background: [u8; 3],
-    /// The error budget of [`crate::Shader::AUTO`] as an integer, in units of 1/8 of 1/255 of full intensity: 4 to 128. [`Self::budget`]
-    /// returns it as a number.
+    /// The error budget of [`Shader::AUTO`](crate::Shader::AUTO) as an integer, in units of 1/8 of 1/255 of full intensity: 4 to 128.
+    /// [`Self::budget`] returns it as a number.
     pub budget: u8,
     /// The ambient light as integers: red, green, blue, each 0 to 32,768, where 16,384 is full intensity. [`Self::ambient`] returns it as
     /// numbers.
@@ -80,8 +80,8 @@ impl Header {
         self.ambient.map(Gain::from_bits)
     }
 
-    /// Returns the error budget of [`crate::Shader::AUTO`]: the largest difference of a pixel from Phong shading, in units of 1/255 of full
-    /// intensity, from 1/2 to 16.
+    /// Returns the error budget of [`Shader::AUTO`](crate::Shader::AUTO): the largest difference of a pixel from Phong shading, in units of
+    /// 1/255 of full intensity, from 1/2 to 16.
     #[must_use]
     pub fn budget(&self) -> ErrorBudget {
         ErrorBudget::from_bits(self.budget)
@@ -100,7 +100,7 @@ pub const VIEWER_INFINITE: u8 = 0;
 pub const VIEWER_LOCAL: u8 = 1;
 
 /// A camera as the stream stores it. Fields are integers (fixed-point bits); the methods return numbers. To move the camera of a scene, use
-/// [`crate::Scene::look_at`].
+/// [`Scene::look_at`](crate::Scene::look_at).
 ///
 /// In eye space x points to the right, y up, and z away from the viewer. A point is transformed by
 /// `eye_space = rotation · orbit(frame) · object_space + translation`, where `orbit` turns by `frame / period` of a revolution about
@@ -224,7 +224,7 @@ pub struct Mesh {
     pub triangles: u32,
     /// The number of vertices. A coarser level of detail has the vertices of its mesh.
     pub vertices: u16,
-    /// The index of the material in [`crate::Stream::materials`].
+    /// The index of the material in [`Stream::materials`](crate::Stream::materials).
     pub material: u16,
     /// The largest distance between this level of detail and the full mesh (Hausdorff distance), in units of 1/16,384, rounded up; 0 for a
     /// full mesh.
@@ -272,7 +272,7 @@ pub struct Material {
 
 impl Material {
     /// Creates a material from its colours (red, green, blue, each 0 to 2) and the exponent of its highlight (1 to 1024). The ranges are
-    /// checked by [`crate::Scene::set_material`].
+    /// checked by [`Scene::set_material`](crate::Scene::set_material).
     #[must_use]
     pub fn new(ambient: [Gain; 3], diffuse: [Gain; 3], specular: [Gain; 3], exponent: u16) -> Self {
         let [ambient, diffuse, specular] = [ambient, diffuse, specular].map(|colour| colour.map(Gain::to_bits));
