@@ -18,9 +18,9 @@ pub struct BandTarget<'b, C> {
 }
 
 impl<'b, C> BandTarget<'b, C> {
-    /// Creates a target that draws into `pixels`, the pixels of one band in row-major order. `area` is the position of the band on the
-    /// display: the rectangle that [`Frame::next_band`](crate::Frame::next_band) returned, moved by the position of the picture's upper
-    /// left corner.
+    /// Creates a target that draws into `pixels`, the pixels of one band (group of rows drawn at once) in row-major order. `area` is the
+    /// position of the band on the display: the rectangle that [`Frame::next_band`](crate::Frame::next_band) returned, moved by the
+    /// position of the picture's upper left corner.
     #[must_use]
     pub fn new(pixels: &'b mut [C], area: Rectangle) -> Self {
         Self { pixels, area }

@@ -106,8 +106,8 @@ impl Layout {
         Self { objects, ..self }
     }
 
-    /// Sets the number of triangles that can continue from one band (group of rows drawn at once) into the next without new set-up, 132
-    /// bytes each. The default is 48.
+    /// Sets the number of triangles that can continue from one band (group of rows drawn at once) into the next without being set up again,
+    /// 132 bytes each. The default is 48.
     #[must_use]
     pub const fn active_triangles(self, active_triangles: usize) -> Self {
         Self { active_triangles, ..self }
@@ -180,7 +180,7 @@ const fn padded(bytes: usize) -> usize {
     bytes.next_multiple_of(size_of::<u64>())
 }
 
-/// The sizes that docs/design.md tells.
+/// The sizes that docs/design.md states.
 const _: () = {
     assert!(size_of::<ScreenVertex>() == 32 && size_of::<Entry>() == 8 && size_of::<ActiveTriangle>() == 132);
     assert!(size_of::<Reflectance>() == 8580 && size_of::<Sample>() == 72);
@@ -197,12 +197,13 @@ pub(crate) struct Memory<'a, C: Pixel> {
     pub(crate) depth: &'a mut [u16],
     /// Objects in the latest frame.
     pub(crate) placements: &'a mut [Placement],
-    /// Their indices, in the order in which they are drawn.
+    /// The indices of the objects, in the order in which they are drawn.
     pub(crate) order: &'a mut [u32],
-    /// One for each material, as in `ramps`, the tables of colours.
+    /// The reflectance of each material.
     pub(crate) reflectances: &'a mut [Reflectance],
+    /// The tables of colours of each material.
     pub(crate) ramps: &'a mut [C::Ramps],
-    /// For each material, what a method with an error budget knows of it.
+    /// The error bounds of each material, for methods with an error budget.
     pub(crate) error_bounds: &'a mut [ErrorBounds],
     /// Samples for antialiasing; empty without it.
     pub(crate) samples: &'a mut [Sample],
@@ -211,7 +212,8 @@ pub(crate) struct Memory<'a, C: Pixel> {
 }
 
 impl<'a, C: Pixel> Memory<'a, C> {
-    /// Divides `words`, room for objects and materials of the scene behind the rest; `None` if there are fewer than [`Layout::words`] says.
+    /// Divides `words` into the parts of the memory and the room for objects and materials of the scene. Returns `None` if there are fewer
+    /// words than [`Layout::words`].
     pub(crate) fn new(layout: &Layout, words: &'a mut [u64]) -> Option<(Self, &'a mut [Object], &'a mut [SceneMaterial])> {
         let bytes = words.as_mut_bytes();
         let (vertices, bytes) = take(bytes, layout.vertices)?;

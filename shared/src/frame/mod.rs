@@ -81,26 +81,26 @@ impl<'r, C: Pixel> Frame<'r, C> {
         self.part.bins.row_at(self.part.entries, share)
     }
 
-    /// Restricts the frame to `rows`. Call this before the first band. It saves time if the display still shows the other rows of the last
-    /// frame, because no triangle reaches them in either frame; see [`Self::rows`].
+    /// Restricts the frame to the picture's `rows`. Call this before the first call of [`Self::next_band`]. It saves time if the display
+    /// still shows all other rows of the last frame and no triangle reaches them in either frame; see [`Self::rows`].
     pub fn limit(&mut self, rows: Range<u32>) {
         self.part.limit(rows);
     }
 
-    /// Returns `true` if the last band (group of rows) has been drawn.
+    /// Returns `true` if all rows of the frame have been drawn.
     #[must_use]
     pub fn is_complete(&self) -> bool {
         self.part.is_complete(&self.context)
     }
 
-    /// Returns counts of what has been drawn. They are complete after the last band.
+    /// Returns counts of what has been drawn. They are complete when [`Self::next_band`] has returned `None`.
     #[must_use]
     pub fn stats(&self) -> Stats {
         self.part.stats.culled()
     }
 
     /// Divides the frame into the rows above `row` and the rows from `row` on, so that two processors can draw at the same time. Call this
-    /// before the first band, with a row from [`Self::row_at`].
+    /// before the first call of [`Self::next_band`], with a row from [`Self::row_at`].
     ///
     /// The layout has to be for two [`Layout::processors`](crate::Layout::processors), and [`Layout::triangles`](crate::Layout::triangles)
     /// at least twice the number of visible triangles. Otherwise the upper part gets all rows.
@@ -127,7 +127,7 @@ impl<'r, C: Pixel> FrameInTwo<'r, C> {
         parts.each_mut().map(|part| FramePart { context, part })
     }
 
-    /// Returns counts of what both parts have drawn. They are complete after the last band of both.
+    /// Returns counts of what both parts have drawn. They are complete when [`FramePart::next_band`] has returned `None` for both.
     #[must_use]
     pub fn stats(&self) -> Stats {
         let [upper, lower] = self.parts.each_ref().map(|part| part.stats);

@@ -112,7 +112,7 @@ impl<'r> Part<'r> {
         Ok(Some(Rectangle::new(Point::new(left as i32, area.top_left.y), Size::new(right - left, height))))
     }
 
-    /// The rows of the next band, if there is room for so many `pixels`; `None` after the last.
+    /// Returns the rows of the next band, for which a buffer of `pixels` pixels is long enough; `None` after the last band.
     fn next_rows<C: Pixel>(&self, context: &Context<'_, C>, pixels: usize) -> Result<Option<[u16; 2]>, RenderError> {
         let width = context.settings.size.width;
         let fit = u32::try_from(pixels).unwrap_or(u32::MAX).checked_div(width).unwrap_or(0);
@@ -127,7 +127,7 @@ impl<'r> Part<'r> {
         Ok((rows > 0).then(|| [start as u16, (start + rows) as u16]))
     }
 
-    /// The rows above `row`, and those from there on, `width` pixels wide: see [`crate::Frame::in_two`].
+    /// Divides the part into the rows above `row` and the rest, in a picture that is `width` pixels wide: see [`crate::Frame::in_two`].
     pub(crate) fn in_two(self, row: u32, width: usize) -> [Self; 2] {
         let Self { bins, binned, entries, depth, samples, active_triangles, queue, rows, top, bottom, stats } = self;
         let used = bins.count().map_or(usize::MAX, usize::from);
@@ -157,7 +157,7 @@ impl<'r> Part<'r> {
         [Part { bins, binned, entries, depth, samples, active_triangles, queue, rows, top, bottom: row, stats }, below]
     }
 
-    /// Draws only these `rows` of its own.
+    /// Restricts the part to these `rows`.
     pub(crate) fn limit(&mut self, rows: Range<u32>) {
         (self.top, self.bottom) = (rows.start.max(self.top), rows.end.min(self.bottom));
     }
@@ -167,7 +167,7 @@ impl<'r> Part<'r> {
         context.region.next(self.top).rows().start >= self.bottom
     }
 
-    /// Draws what falls into the band of the rows from `top` to `bottom`, of which these `columns` are wanted; its pixels are background.
+    /// Draws all triangles in the band from row `top` to row `bottom`, whose pixels hold the background. Only these `columns` are needed.
     #[inline(never)]
     fn draw<C: Pixel>(&mut self, context: &Context<'_, C>, pixels: &mut [C], columns: [u16; 2], [top, bottom]: [u32; 2]) {
         let (width, rows) = (context.settings.size.width as usize, bottom - top);
@@ -218,13 +218,13 @@ fn narrow<C: Copy>(pixels: &mut [C], width: usize, columns: Range<usize>) {
     }
 }
 
-/// The first `length` of some memory, or all if there are fewer, and the rest.
+/// Splits some memory behind the first `length` values, or behind all if there are fewer.
 pub(super) fn halves<T>(memory: &mut [T], length: usize) -> (&mut [T], &mut [T]) {
     let length = length.min(memory.len());
     memory.split_at_mut_checked(length).unwrap_or_default()
 }
 
-/// Draws the triangles of `band`; returns their pixels there.
+/// Draws the triangles of `band`, and returns the number of their pixels there.
 fn draw_binned<C: Pixel>(context: &Context<'_, C>, walk: &mut Walk<'_>, columns: [u16; 2], band: &mut Band<'_, C>) -> u32 {
     let mut pixels = 0u32;
     let mut next = walk.next();
@@ -258,7 +258,7 @@ fn leave_out<C: Pixel>(placed: &PlacedMesh<'_>, key: Key, walk: &mut Walk<'_>, b
     next
 }
 
-/// Draws all triangles into `band`; returns their pixels there, and how many of them start there.
+/// Draws all triangles into `band`. Returns the number of their pixels there, and the number of triangles that start there.
 #[cold]
 #[inline(never)]
 fn draw_all<C: Pixel>(context: &Context<'_, C>, columns: [u16; 2], band: &mut Band<'_, C>) -> (u32, u32) {

@@ -68,7 +68,7 @@ impl Seams {
         Some(Self(seams))
     }
 
-    /// The place where a `share` of the triangles, of 2^16, lies before.
+    /// Returns the place before which `share / 2^16` of the triangles lie.
     pub(crate) fn division(&self, triangles: u32, share: u16) -> Division {
         let step = (usize::from(share) * STEPS + (1 << 15)) >> 16;
         let vertex = self.0.get(step).copied().map(usize::from);
@@ -76,7 +76,7 @@ impl Seams {
     }
 }
 
-/// Where the later half begins. By default it is the whole.
+/// Where the later half begins. By default it has all triangles.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct Division {
     triangle: usize,
@@ -93,7 +93,7 @@ fn seam(depth: &mut [u16], vertices: usize) -> &mut [SeamPlace] {
 /// processors. [`Renderer::prepare`](crate::Renderer::prepare) creates it, and [`Self::frame`] ends it.
 #[derive(Debug)]
 pub struct Preparation<'r, C: Pixel> {
-    /// The lists of its part are those of the later triangles.
+    /// The frame. Its lists hold the later triangles.
     frame: Frame<'r, C>,
     cache: &'r mut [ScreenVertex],
     division: Division,
@@ -172,7 +172,7 @@ impl<'r, C: Pixel> Frame<'r, C> {
         (Self { context, part }, cache, depth_elision)
     }
 
-    /// All triangles are in the bins, and `cache` has the vertices.
+    /// Completes the frame, once all triangles are in the bins and `cache` has the vertices.
     #[inline(always)]
     fn complete(&mut self, cache: &'r [ScreenVertex], depth_elision: Option<DepthElision>) {
         let Self { context, part } = self;
@@ -348,7 +348,7 @@ impl<'r, C: Pixel> PreparationPart<'_, 'r, C> {
         }
     }
 
-    /// Does so with the triangles of a mesh that belong to this half; `earlier` ones belong to meshes before it.
+    /// Puts the triangles of a mesh that belong to this half into the bins. `earlier` triangles belong to meshes before it.
     // A call, so that its loop has all registers.
     #[inline(never)]
     fn bin_mesh<const DIVIDED: bool>(&mut self, placed: &PlacedMesh<'r>, earlier: usize) {

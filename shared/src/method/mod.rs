@@ -457,7 +457,7 @@ where
     if C::Ramps::CHECKERED { patch.checkered(gradients.row()) } else { patch }
 }
 
-/// The bias of walked levels, and so much more.
+/// The bias of walked levels plus `more`.
 const fn bias(more: i32) -> i32 {
     (BIAS << WALK).wrapping_add(more)
 }
@@ -483,7 +483,7 @@ impl Shading<'_> {
         self.draw_channels::<N, BITS>(area, &channels(levels), [0; 3], canvas)
     }
 
-    /// [`Self::draw_levels`] with the nodes of each channel, all of them raised by so much.
+    /// Draws like [`Self::draw_levels`], from the nodes of each channel, which are raised by `raises`.
     pub(crate) fn draw_channels<const N: usize, const BITS: u32>(
         &self,
         area: &impl Area,

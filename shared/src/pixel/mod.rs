@@ -145,7 +145,7 @@ pub trait Pixel: Copy + 'static {
     }
 }
 
-/// In each channel as many steps as `by` is of channels of eight bits.
+/// Multiplies `by` by the step of each channel, relative to the step of a channel of eight bits.
 #[inline(always)]
 pub(crate) fn steps<C: Pixel>(by: i32) -> [i32; 3] {
     let [r, g, b] = C::DEPTH;

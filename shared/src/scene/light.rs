@@ -25,8 +25,8 @@ use fixed::{traits::ToFixed, types::I32F32};
 impl Light {
     /// Creates a directional light, which is infinitely far away and stays fixed in the world.
     ///
-    /// `towards` is the direction from the objects to the light, of any length but 0: x to the right, y up, z to the viewer, as a camera
-    /// sees them that looks along the negative z axis. `colour` is red, green and blue, each 0 to 2; 1 is full intensity.
+    /// `towards` is the direction from the objects to the light, of any length but 0. Its axes are those of the world: x to the right, y
+    /// up, z to the viewer. `colour` is red, green and blue, each 0 to 2; 1 is full intensity.
     ///
     /// # Errors
     /// Returns [`SceneError::Direction`] if the direction is zero, not finite or too long, and [`SceneError::Range`] if a colour is out of

@@ -52,14 +52,14 @@ use zerocopy::{FromBytes, Immutable, IntoBytes, KnownLayout};
 /// Limits of the shading method in use. A change of the scene beyond them is refused.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Limits {
-    /// Near lights and a local viewer.
+    /// Whether near lights and a local viewer are possible.
     pub(crate) near_lights: bool,
-    /// A perspective camera, as light is interpolated now.
+    /// Whether a perspective camera is possible, with light interpolated as it is now.
     pub(crate) perspective: bool,
     pub(crate) least_exponent: u16,
 }
 
-/// A material of a scene, and whether its tables are those of an earlier one.
+/// A material of a scene, and whether its tables have to be computed again.
 #[derive(FromBytes, IntoBytes, Immutable, KnownLayout, Clone, Copy, Debug)]
 #[repr(C)]
 pub(crate) struct SceneMaterial {
@@ -192,12 +192,12 @@ impl<'a> Scene<'a> {
         }
     }
 
-    /// Frames of one orbit differ.
+    /// The number of frame `number` within its orbit.
     fn place_of(&self, number: u32) -> u32 {
         number.checked_rem(self.camera.period.into()).unwrap_or(0)
     }
 
-    /// Frames of a stream with tracks differ.
+    /// The number of frame `number` within the animation; `None` if the stream has no tracks.
     fn frame_of(&self, number: u32) -> Option<u32> {
         if self.stream.tracks.is_empty() { None } else { number.checked_rem(self.stream.header.frames.into()) }
     }
@@ -213,13 +213,13 @@ impl<'a> Scene<'a> {
         !self.changed
     }
 
-    /// The scene is drawn.
+    /// Marks the scene as drawn.
     pub(crate) fn set_drawn(&mut self) {
         (self.changed, self.view_changed, self.rearranged, self.repainted) = (false, false, false, false);
         self.objects.iter_mut().for_each(|object| object.has_moved = 0);
     }
 
-    /// Colours have changed.
+    /// Marks colours as changed.
     fn set_repainted(&mut self) {
         (self.changed, self.repainted) = (true, true);
     }
@@ -261,7 +261,7 @@ impl<'a> Scene<'a> {
         Ok(self.count - 1)
     }
 
-    /// Vertices of all objects.
+    /// The number of vertices of all objects.
     pub(crate) fn vertices(&self) -> u32 {
         self.objects().iter().fold(0, |sum, object| sum + object.vertices)
     }
@@ -346,7 +346,7 @@ impl<'a> Scene<'a> {
         self.materials.iter_mut().enumerate().filter_map(move |(index, slot)| Some((index, stale(slot)?)))
     }
 
-    /// The tables of all materials are to be computed anew.
+    /// Marks the tables of all materials as stale, so that the next frame computes them again.
     pub(crate) fn set_stale(&mut self) {
         self.materials.iter_mut().for_each(|slot| slot.is_stale = 1);
         self.set_repainted();
@@ -458,7 +458,7 @@ impl<'a> Scene<'a> {
         self.set_camera(Camera { rotation, translation, period: 0, ..self.camera })
     }
 
-    /// Changes what the method in use can draw; the scene is such.
+    /// Sets the limits of the method in use. The scene is within them.
     pub(crate) fn set_limits(&mut self, limits: Limits) {
         self.limits = limits;
     }

@@ -33,7 +33,8 @@ pub struct Object {
 }
 
 impl Object {
-    /// The object that consists of `meshes` of a stream, as they are; `None` if there are none such, or the first is a coarser level.
+    /// Creates an object that consists of `meshes` of a stream. Returns `None` if the stream does not have them, or if the range divides a
+    /// mesh from its coarser levels.
     pub(crate) fn new(stream: &Stream<'_>, meshes: Range<u16>) -> Option<Self> {
         let (first, end) = (usize::from(meshes.start), usize::from(meshes.end));
         let all = stream.meshes.get(first..end)?;
@@ -96,7 +97,7 @@ impl Object {
         self.hidden == 0
     }
 
-    /// Moves, shows or hides it. Returns whether it was otherwise.
+    /// Moves, shows or hides the object. Returns whether this changes it.
     pub(crate) fn place(&mut self, pose: Pose, hidden: bool) -> bool {
         let moves = (self.pose, self.hidden) != (pose, hidden.into());
         (self.pose, self.hidden) = (pose, hidden.into());

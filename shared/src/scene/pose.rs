@@ -62,7 +62,7 @@ impl Pose {
     /// The pose of an object at the origin, without rotation, at the size of its mesh.
     pub const IDENTITY: Self = Self { rotation: [ONE, 0, 0, 0], position: [0; 3], scale: 1 << 16 };
 
-    /// Creates a rotation from the quaternion `[w, x, y, z]`, which need not be normalised.
+    /// Creates a pose at the origin with the rotation of the quaternion `[w, x, y, z]`, which need not be normalised.
     ///
     /// # Errors
     /// Returns [`SceneError::Rotation`] if all four numbers are zero.
@@ -70,7 +70,8 @@ impl Pose {
         Self::rotated(quaternion.map(|c| c.to_bits().into()))
     }
 
-    /// Creates a rotation from a 3x3 matrix, given by rows, which transforms vectors from object space to the world.
+    /// Creates a pose at the origin with the rotation of a 3x3 matrix, given by rows, which transforms vectors from object space to the
+    /// world.
     ///
     /// # Errors
     /// Returns [`SceneError::Rotation`] if the matrix mirrors or is not orthonormal: the squared length of each row has to be within 1/256
@@ -110,8 +111,8 @@ impl Pose {
         Self::rotated(longest.1)
     }
 
-    /// Creates a rotation by `angle` (in turns, 0 to 1) about `axis`, which may have any length but zero. The object turns
-    /// counter-clockwise as seen from the tip of the axis.
+    /// Creates a pose at the origin, rotated by `angle` (in turns, 0 to 1) about `axis`, which may have any length but zero. The object
+    /// turns counter-clockwise as seen from the tip of the axis.
     ///
     /// # Errors
     /// Returns [`SceneError::Rotation`] if the axis is zero.
@@ -124,8 +125,8 @@ impl Pose {
         Self::rotated([cos.into(), x, y, z])
     }
 
-    /// Creates a rotation from Euler angles in turns. The object turns first by `roll` about z, then by `pitch` about x, then by `yaw`
-    /// about y; all three are fixed axes of the world.
+    /// Creates a pose at the origin, rotated by Euler angles in turns. The object turns first by `roll` about z, then by `pitch` about x,
+    /// then by `yaw` about y; all three are fixed axes of the world.
     #[must_use]
     pub fn from_euler(yaw: Angle, pitch: Angle, roll: Angle) -> Self {
         let about = |axis, angle| Self::about(axis, angle).unwrap_or(Self::IDENTITY);
@@ -201,8 +202,8 @@ impl Pose {
         Self { rotation: put_back(product.map(|c| (c + (1 << (ROTATION - 1))) >> ROTATION)), ..self }
     }
 
-    /// The way from this pose to another, `share` of 2^16: positions and scales linearly, rotations the shorter way round, and all ever the
-    /// same number of steps. Source: Shoemake (1985), with the chord in place of the arc.
+    /// Interpolates from this pose to another by `share / 2^16`: positions and scales linearly, rotations the shorter way round, in
+    /// constant time. Source: Shoemake (1985), with the chord in place of the arc.
     #[must_use]
     pub(crate) fn towards(&self, other: &Self, share: i64) -> Self {
         let mean = |a: i32, b: i32| (i64::from(a) + (((i64::from(b) - i64::from(a)) * share) >> 16)) as i32;
@@ -273,7 +274,7 @@ impl Default for Pose {
     }
 }
 
-/// Conversions of what is not a number panic.
+/// Returns the number if it is finite. Conversions of other numbers panic.
 fn finite(number: f32) -> Option<f32> {
     number.is_finite().then_some(number)
 }

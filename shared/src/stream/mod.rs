@@ -47,7 +47,7 @@ macro_rules! include_stream {
 /// in place: a `Stream` only borrows the bytes, and copies cost nothing. [`Self::parse`] has checked all of it.
 #[derive(Clone, Copy, Debug)]
 pub struct Stream<'a> {
-    /// The first record of the stream, with the camera, the background and the number of records of each kind.
+    /// The first record of the stream (mesh file), with the camera, the background and the number of records of each kind.
     pub header: &'a Header,
     /// The meshes. Each is followed by its coarser levels of detail, if it has any.
     pub meshes: &'a [Mesh],
@@ -86,39 +86,39 @@ pub enum StreamError {
     /// The bytes do not begin at an address that is a multiple of four. [`Aligned`] or [`include_stream!`](crate::include_stream!) aligns
     /// them.
     Misaligned,
-    /// There are fewer bytes than the stream has.
+    /// There are fewer bytes than the stream (mesh file) has.
     Truncated {
         /// The number of bytes that are needed.
         need: u32,
         /// The number of bytes that there are.
         have: u32,
     },
-    /// The bytes are not a stream, because they do not begin with `mTRI`.
+    /// The bytes are not a stream (mesh file), because they do not begin with `mTRI`.
     Magic,
-    /// The stream was written for another version of this crate. Convert the mesh again with `microphong convert`.
+    /// The stream (mesh file) was written for another version of this crate. Convert the mesh again with `microphong convert`.
     Version {
         /// The version of the format in the stream.
         found: u16,
     },
-    /// The checksum does not match, because the bytes have changed since they were written.
+    /// The checksum of the stream (mesh file) does not match, because its bytes have changed since they were written.
     Checksum {
-        /// The checksum in the header of the stream.
+        /// The checksum in the header of the stream (mesh file).
         stored: u32,
-        /// The checksum of the bytes that there are.
+        /// The checksum computed from the bytes that there are.
         computed: u32,
     },
-    /// The header is not consistent: its length is too small for the numbers of records that it states.
+    /// The header of the stream (mesh file) contradicts itself: its length is too small for the numbers of records that it states.
     Length {
         /// The number of bytes that these records take.
         need: u32,
         /// The length in bytes that the header states.
         claimed: u32,
     },
-    /// A field of a record has a value outside of its range.
+    /// A field in the stream (mesh file) has a value outside of its range.
     Field {
         /// The name of the field.
         name: &'static str,
-        /// The index of the record, counted among the records of the same kind.
+        /// The index of the record that has the field, among the records of its kind (meshes, lights and so on).
         record: u32,
     },
 }
@@ -200,8 +200,8 @@ pub fn length(header: &Header) -> Option<u32> {
 }
 
 impl<'a> Stream<'a> {
-    /// Checks `bytes` and returns a view of the stream in them. Length, checksum, indices and ranges are checked once, here. Bytes behind
-    /// the end of the stream are ignored.
+    /// Checks `bytes` and returns a view of the stream (mesh file) in them. Length, checksum, indices and ranges are checked once, here.
+    /// Bytes behind the end of the stream are ignored.
     ///
     /// # Errors
     /// Returns a [`StreamError`] that describes the first fault.

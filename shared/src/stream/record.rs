@@ -19,21 +19,21 @@ pub const MAGIC: [u8; 4] = *b"mTRI";
 /// Version of the format.
 pub const VERSION: u16 = 7;
 
-/// The first record of a stream: the camera, the background, and the number of records of each kind. Most programs only read
+/// The first record of a stream (mesh file): the camera, the background, and the number of records of each kind. Most programs only read
 /// [`Self::frames`].
 #[derive(FromBytes, IntoBytes, Immutable, KnownLayout, Clone, Copy, Debug, PartialEq, Eq)]
 #[repr(C)]
 pub struct Header {
-    /// The first four bytes of every stream: `mTRI`.
+    /// The first four bytes of every stream (mesh file): `mTRI`.
     pub magic: [u8; 4],
-    /// The version of the file format.
+    /// The version of the file format. A program reads only files of its own version.
     pub version: u16,
-    /// The number of the shading method that the stream asks for, as in [`Facts::id`](crate::method::Facts::id).
+    /// The number of the shading method that the stream (mesh file) asks for, as in [`Facts::id`](crate::method::Facts::id).
     /// [`Renderer::with_shader`](crate::Renderer::with_shader) ignores it.
     pub shader: u16,
-    /// The length of the whole stream in bytes.
+    /// The length of the whole stream (mesh file) in bytes.
     pub length: u32,
-    /// The checksum of all bytes of the stream except this field: CRC-32 as in zip files (polynomial 04C11DB7, reflected).
+    /// The checksum of all bytes of the stream (mesh file) except this field: CRC-32 as in zip files (polynomial 04C11DB7, reflected).
     pub crc: u32,
     /// The number of [`Mesh`] records, at least 1. Levels of detail are counted as well.
     pub meshes: u16,
@@ -211,18 +211,18 @@ pub const PERSPECTIVE: u8 = 0;
 /// An orthographic camera: rays are parallel.
 pub const ORTHOGRAPHIC: u8 = 1;
 
-/// A mesh of a stream: some consecutive vertices and triangles that have one material. A mesh can be followed by coarser levels of detail,
-/// records of this type that have fewer triangles on the same vertices. A frame draws one level of each mesh.
+/// A mesh of a stream (mesh file): some consecutive vertices and triangles that have one material. A mesh can be followed by coarser levels
+/// of detail, records of this type that have fewer triangles on the same vertices. A frame draws one level of each mesh.
 #[derive(FromBytes, IntoBytes, Immutable, KnownLayout, Clone, Copy, Debug, PartialEq, Eq)]
 #[repr(C)]
 pub struct Mesh {
-    /// The index of the first vertex among all vertices of the stream. A coarser level of detail has the vertices of its mesh.
+    /// The index of the first vertex among all vertices of the stream (mesh file). A coarser level of detail has the vertices of its mesh.
     pub first_vertex: u32,
-    /// The index of the first triangle among all triangles of the stream.
+    /// The index of the first triangle among all triangles of the stream (mesh file).
     pub first_triangle: u32,
-    /// The number of triangles.
+    /// The number of triangles of the mesh.
     pub triangles: u32,
-    /// The number of vertices. A coarser level of detail has the vertices of its mesh.
+    /// The number of vertices of the mesh. A coarser level of detail has the vertices of its mesh.
     pub vertices: u16,
     /// The index of the material in [`Stream::materials`](crate::Stream::materials).
     pub material: u16,
@@ -259,11 +259,11 @@ pub const LEAN: u32 = 6;
 #[derive(FromBytes, IntoBytes, Immutable, KnownLayout, Clone, Copy, Debug, PartialEq, Eq)]
 #[repr(C)]
 pub struct Material {
-    /// The factors of the ambient light: red, green, blue, each 0 to 32,768, where 16,384 is 1.
+    /// The ambient reflectance, by which the ambient light is multiplied: red, green, blue, each 0 to 32,768, where 16,384 is 1.
     pub ambient: [u16; 3],
-    /// The factors of diffuse reflection: red, green, blue, each 0 to 32,768, where 16,384 is 1. This is the colour of the surface.
+    /// The diffuse reflectance, which is the colour of the surface: red, green, blue, each 0 to 32,768, where 16,384 is 1.
     pub diffuse: [u16; 3],
-    /// The factors of the highlight: red, green, blue, each 0 to 32,768, where 16,384 is 1.
+    /// The specular reflectance, which is the colour of highlights: red, green, blue, each 0 to 32,768, where 16,384 is 1.
     pub specular: [u16; 3],
     /// The exponent of the highlight, 1 to 1024. A larger exponent makes a smaller highlight. It is applied to N·H, where N is the normal
     /// and H the half vector between light and viewer (Blinn).
@@ -271,27 +271,27 @@ pub struct Material {
 }
 
 impl Material {
-    /// Creates a material from its colours (red, green, blue, each 0 to 2) and the exponent of its highlight (1 to 1024). The ranges are
-    /// checked by [`Scene::set_material`](crate::Scene::set_material).
+    /// Creates a material from its ambient, diffuse and specular reflectance (red, green, blue, each 0 to 2) and the exponent of its
+    /// highlight (1 to 1024). [`Scene::set_material`](crate::Scene::set_material) checks these ranges.
     #[must_use]
     pub fn new(ambient: [Gain; 3], diffuse: [Gain; 3], specular: [Gain; 3], exponent: u16) -> Self {
         let [ambient, diffuse, specular] = [ambient, diffuse, specular].map(|colour| colour.map(Gain::to_bits));
         Self { ambient, diffuse, specular, exponent }
     }
 
-    /// Returns the factors of the ambient light: red, green, blue, each 0 to 2.
+    /// Returns the ambient reflectance, by which the ambient light is multiplied: red, green, blue, each 0 to 2.
     #[must_use]
     pub fn ambient(&self) -> [Gain; 3] {
         self.ambient.map(Gain::from_bits)
     }
 
-    /// Returns the factors of diffuse reflection: red, green, blue, each 0 to 2. This is the colour of the surface.
+    /// Returns the diffuse reflectance, which is the colour of the surface: red, green, blue, each 0 to 2.
     #[must_use]
     pub fn diffuse(&self) -> [Gain; 3] {
         self.diffuse.map(Gain::from_bits)
     }
 
-    /// Returns the factors of the highlight: red, green, blue, each 0 to 2.
+    /// Returns the specular reflectance, which is the colour of highlights: red, green, blue, each 0 to 2.
     #[must_use]
     pub fn specular(&self) -> [Gain; 3] {
         self.specular.map(Gain::from_bits)
