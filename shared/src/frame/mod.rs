@@ -31,7 +31,8 @@ impl<'r, C: Pixel> Frame<'r, C> {
     /// the last band.
     ///
     /// The band takes the first `area.size.width * area.size.height` pixels of `pixels`, where `area` is the rectangle. The buffer should
-    /// have [`Layout::band`](crate::Layout::band) pixels; if it is shorter, the band has fewer rows.
+    /// have [`Layout::band`](crate::Layout::band) pixels; if it is shorter, the band has fewer rows. With partial redraw the rectangle may
+    /// be narrower than the picture.
     ///
     /// # Errors
     /// Returns [`RenderError::Band`] if `pixels` is shorter than one row of the picture.
@@ -40,8 +41,8 @@ impl<'r, C: Pixel> Frame<'r, C> {
     }
 
     /// Draws the next band (group of rows) like [`Self::next_band`], over something that the program draws, for example an image. `under`
-    /// is called with the pixels of the band, which have the background already, and with the rectangle of the band in the picture.
-    /// [`BandTarget`](crate::BandTarget) makes a target for embedded-graphics of both.
+    /// is called with the pixels of the band, which have the background already, and with the rectangle of the band in the picture, which
+    /// is always as wide as the picture. [`BandTarget`](crate::BandTarget) makes a target for embedded-graphics of both.
     ///
     /// With partial redraw, call [`Renderer::invalidate`](crate::Renderer::invalidate) with the area in which the result of `under`
     /// changes. [`Self::rows`] does not include rows in which only `under` draws.

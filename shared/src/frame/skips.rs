@@ -3,9 +3,9 @@
 /// Switches for invisible work that a frame leaves out, for the method `set_skips` of a renderer. They exist to measure what each saves;
 /// normally all are on.
 ///
-/// The picture stays the same, bit for bit, with two exceptions. A triangle that faces away and crosses the near plane may be visible in
-/// parts, by rounding, if [`Self::back_faces`] is off. With antialiasing, a light may brighten pixels on the edges of a triangle that it
-/// does not reach if [`Self::lights`] is off.
+/// The picture stays the same, bit for bit, with two exceptions. A triangle that faces away and is clipped (at the near plane, or far
+/// outside of the picture) may be visible in parts, by rounding, if [`Self::back_faces`] is off. With antialiasing, a light may brighten
+/// pixels on the edges of a triangle that it does not reach if [`Self::lights`] is off.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[expect(clippy::struct_excessive_bools, reason = "each is a switch of its own")]
