@@ -165,6 +165,7 @@ where
     }
 }
 
+#[doc(hidden)]
 impl Shading<'_> {
     /// Draws the triangle `setup` under any number of lights, by a lighting `model` that computes the light at each pixel from interpolated
     /// fields (quantities with values at the corners, or at more points). `of` returns the field of each light, and `common` is a field for

@@ -213,6 +213,7 @@ pub struct TriangleSetup<'f> {
 impl TriangleSetup<'_> {
     /// Returns how exactly values have to be interpolated on this triangle: a larger highlight exponent of the material needs more exact
     /// arithmetic. Functions that fit polynomials use it.
+    #[doc(hidden)]
     #[must_use]
     pub fn steepness(&self) -> Steepness {
         self.gradients.steepness()
@@ -227,6 +228,7 @@ impl TriangleSetup<'_> {
     }
 
     /// Returns the three vertices of the triangle in the mesh file, the top one first, then clockwise on the screen.
+    #[doc(hidden)]
     #[inline(always)]
     pub fn vertices(&self) -> [&Vertex; 3] {
         let [a, c, b] = self.triangle.corners;
@@ -237,6 +239,7 @@ impl TriangleSetup<'_> {
 
     /// Returns the inverse depths of the corners (Q0.28), for perspective-correct interpolation. Returns `None` if that is off, or if all
     /// corners are equally far, so that linear interpolation on the screen gives the same result.
+    #[doc(hidden)]
     #[inline(always)]
     pub fn inv_depth(&self) -> Option<[i32; 3]> {
         let [a, b, c] = self.corners;
@@ -246,6 +249,7 @@ impl TriangleSetup<'_> {
     }
 
     /// Sorts three numbers that belong to the edges of the triangle in the mesh file into the order of the edges here: 0-1, 1-2, 2-0.
+    #[doc(hidden)]
     #[inline(always)]
     pub fn edges(&self, [ab, bc, ca]: [u16; 3]) -> [u16; 3] {
         turn([ca, bc, ab], self.turned)
@@ -284,6 +288,7 @@ impl TriangleSetup<'_> {
 
     /// Fits a polynomial on the screen to `field` (a quantity with values at the corners, or at more points), without perspective.
     /// [`Shading::draw_rows`] takes the result.
+    #[doc(hidden)]
     #[must_use]
     pub fn fit<F: Field>(&self, field: &F) -> F::Patch {
         field.fit(self.gradients)
@@ -291,6 +296,7 @@ impl TriangleSetup<'_> {
 
     /// Returns the row of the screen at which the polynomials of [`Self::fit`] begin. With antialiasing, rows are finer than pixels; see
     /// [`Self::finer`].
+    #[doc(hidden)]
     #[must_use]
     pub fn first_row(&self) -> i32 {
         self.gradients.row()
@@ -298,6 +304,7 @@ impl TriangleSetup<'_> {
 
     /// Returns the base-2 logarithm of the number of positions along each axis of a pixel where the triangle can be shaded. It is 0 without
     /// antialiasing.
+    #[doc(hidden)]
     #[must_use]
     pub fn finer(&self) -> u32 {
         self.pixels.finer()
@@ -331,6 +338,7 @@ impl TriangleSetup<'_> {
 
     /// Returns `true` if no point of the triangle has a visible highlight. It can be used for one directional light and an infinitely
     /// distant viewer, if the vertices hold cosines ([`VertexLight::Cosines`]).
+    #[doc(hidden)]
     #[inline(always)]
     pub fn has_no_highlight(&self, reflectance: &Reflectance) -> bool {
         let [a, b, c] = self.corners;
@@ -374,6 +382,7 @@ impl TriangleSetup<'_> {
 
     /// Returns the value of N·H (Q2.30) below which no highlight is visible on this triangle, where N is the normal interpolated linearly
     /// between the corners without normalising, and H the half vector between light and viewer.
+    #[doc(hidden)]
     #[inline(always)]
     pub fn highlight_threshold(&self, reflectance: &Reflectance) -> i32 {
         self.before_division(reflectance.highlight_threshold())
@@ -466,6 +475,7 @@ impl Shading<'_> {
     /// Returns `true` if vertices hold cosines, and `false` if they hold light levels, in a method that asks for
     /// [`VertexLight::CosinesOrLevels`]. Cosines are there if the scene has just one light, which is directional, and the viewer is
     /// infinitely distant.
+    #[doc(hidden)]
     #[inline(always)]
     #[must_use]
     pub fn vertices_have_cosines(&self) -> bool {
@@ -475,6 +485,7 @@ impl Shading<'_> {
     /// Interpolates light levels over `area` and draws them to `canvas`. `levels` are red, green and blue, Q9.7, at `N` points: the 3
     /// corners, or 6 with the midpoints of the edges 0-1, 1-2 and 2-0. `BITS` is the number of bits of their range: 15 for levels from 0 to
     /// 255. Returns the number of pixels drawn.
+    #[doc(hidden)]
     pub fn draw_levels<const N: usize, const BITS: u32>(&self, area: &impl Area, levels: [[i32; 3]; N], canvas: &mut dyn Canvas) -> u32
     where
         Nodes<N, 1, BITS>: Field<Value = [u32; 1]>,

@@ -31,6 +31,7 @@ pub fn is_steep(exponent: u16) -> bool {
     exponent > 64
 }
 
+#[doc(hidden)]
 impl Shading<'_> {
     /// Computes the light levels of red, green and blue at `node`, a point of the triangle with its unit normal. They are Q9.7 from 0 to
     /// 255.
@@ -42,6 +43,7 @@ impl Shading<'_> {
     }
 }
 
+#[doc(hidden)]
 impl Shading<'_> {
     /// Computes the light levels of red, green and blue at the midpoints of the edges 0-1, 1-2 and 2-0. They are Q9.7 from 0 to 255.
     #[inline(never)]
@@ -58,6 +60,7 @@ impl Shading<'_> {
     }
 }
 
+#[doc(hidden)]
 impl TriangleSetup<'_> {
     /// Returns position and unit normal of each corner in object space, for [`Shading::levels`].
     pub fn corner_nodes(&self) -> [Node; 3] {

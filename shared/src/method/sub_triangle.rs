@@ -76,6 +76,7 @@ pub struct Parts<'f> {
     depth: Plane<1>,
 }
 
+#[doc(hidden)]
 impl<'f> TriangleSetup<'f> {
     /// Returns an object by which a method can draw the triangle in smaller parts, each interpolated on its own.
     #[must_use]

@@ -339,6 +339,7 @@ impl<'a> Stream<'a> {
 
     /// Returns the keyframes of `track`, which is the movement of one object, light or camera. Returns `None` if the stream does not have
     /// them; this happens only for a track of another stream.
+    #[doc(hidden)]
     #[must_use]
     pub fn keys_of(&self, track: &Track) -> Option<&'a [Key]> {
         self.keys.get(track.first_key as usize..)?.get(..track.keys as usize)
@@ -346,6 +347,7 @@ impl<'a> Stream<'a> {
 
     /// Returns `true` if all lights are directional and the viewer is infinitely distant, so that the directions to light and viewer are
     /// equal at all points. Drawing is fastest then.
+    #[doc(hidden)]
     #[must_use]
     pub fn is_constant(&self) -> bool {
         let infinite = self.header.camera.viewer == VIEWER_INFINITE || self.header.camera.projection == ORTHOGRAPHIC;
@@ -360,6 +362,7 @@ impl<'a> Stream<'a> {
 
     /// Returns one level of detail for each mesh: the coarsest one whose surface is no farther than `error` from the full mesh, in units of
     /// object space. With an error of 0 these are the full meshes.
+    #[doc(hidden)]
     pub fn meshes_within(&self, error: GeometricError) -> impl DoubleEndedIterator<Item = &'a Mesh> + use<'a> {
         self.levels_within(0..self.meshes.len() as u16, error)
     }
@@ -371,12 +374,14 @@ impl<'a> Stream<'a> {
     }
 
     /// Returns the vertices of `mesh`. Returns `None` if the stream does not have them; this happens only for a mesh of another stream.
+    #[doc(hidden)]
     #[must_use]
     pub fn vertices_of(&self, mesh: &Mesh) -> Option<&'a [Vertex]> {
         self.vertices.get(mesh.first_vertex as usize..)?.get(..mesh.vertices as usize)
     }
 
     /// Returns the triangles of `mesh`. Returns `None` if the stream does not have them; this happens only for a mesh of another stream.
+    #[doc(hidden)]
     #[must_use]
     pub fn triangles_of(&self, mesh: &Mesh) -> Option<&'a [Triangle]> {
         self.triangles.get(mesh.first_triangle as usize..)?.get(..mesh.triangles as usize)

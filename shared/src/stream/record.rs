@@ -25,15 +25,19 @@ pub const VERSION: u16 = 7;
 #[repr(C)]
 pub struct Header {
     /// The first four bytes of every stream (mesh file): `mTRI`.
+    #[doc(hidden)]
     pub magic: [u8; 4],
     /// The version of the file format. A program reads only files of its own version.
+    #[doc(hidden)]
     pub version: u16,
     /// The number of the shading method that the stream (mesh file) asks for, as in [`Facts::id`](crate::method::Facts::id).
     /// [`Renderer::with_shader`](crate::Renderer::with_shader) ignores it.
     pub shader: u16,
     /// The length of the whole stream (mesh file) in bytes.
+    #[doc(hidden)]
     pub length: u32,
     /// The checksum of all bytes of the stream (mesh file) except this field: CRC-32 as in zip files (polynomial 04C11DB7, reflected).
+    #[doc(hidden)]
     pub crc: u32,
     /// The number of [`Mesh`] records, at least 1. Levels of detail are counted as well.
     pub meshes: u16,
@@ -48,25 +52,34 @@ pub struct Header {
     /// The number of triangles of all meshes and of their coarser levels of detail.
     pub triangles: u32,
     /// The number of objects in the scene. If it is 0, the scene has one object, which consists of all meshes.
+    #[doc(hidden)]
     pub instances: u16,
     /// The number of movements in the animation, each of one object, light or camera.
+    #[doc(hidden)]
     pub tracks: u16,
     /// The number of keyframes of all movements.
+    #[doc(hidden)]
     pub keys: u32,
     /// The background colour of the first row: red, green, blue, each 0 to 255.
+    #[doc(hidden)]
     pub background: [u8; 3],
     /// The error budget of [`Shader::AUTO`](crate::Shader::AUTO) as an integer, in units of 1/8 of 1/255 of full intensity: 4 to 128.
     /// [`Self::budget`] returns it as a number.
+    #[doc(hidden)]
     pub budget: u8,
     /// The ambient light as integers: red, green, blue, each 0 to 32,768, where 16,384 is full intensity. [`Self::ambient`] returns it as
     /// numbers.
+    #[doc(hidden)]
     pub ambient: [u16; 3],
     /// The radius of the sphere about the origin of object space that contains all vertices, as an integer: units of 1/16,384, rounded up.
     /// [`Self::radius`] returns it as a number.
+    #[doc(hidden)]
     pub radius: u16,
     /// The background colour of the last row: red, green, blue, each 0 to 255. The colour changes evenly from the first row to the last.
+    #[doc(hidden)]
     pub background_bottom: [u8; 3],
     /// The number of texts that are drawn over the picture.
+    #[doc(hidden)]
     pub labels: u8,
     /// The camera at the beginning of the animation.
     pub camera: Camera,
@@ -88,6 +101,7 @@ impl Header {
     }
 
     /// Returns the radius of the sphere about the origin of object space that contains all vertices.
+    #[doc(hidden)]
     #[must_use]
     pub fn radius(&self) -> Radius {
         Radius::from_bits(self.radius)
@@ -99,36 +113,45 @@ pub const VIEWER_INFINITE: u8 = 0;
 /// The viewer is near: highlights use the direction from each point to the eye.
 pub const VIEWER_LOCAL: u8 = 1;
 
-/// A camera as the stream stores it. Fields are integers (fixed-point bits); the methods return numbers. To move the camera of a scene, use
-/// [`Scene::look_at`](crate::Scene::look_at).
+/// The camera of a scene: where it stands, where it looks, its focal length, and whether it orbits.
 ///
-/// In eye space x points to the right, y up, and z away from the viewer. A point is transformed by
-/// `eye_space = rotation · orbit(frame) · object_space + translation`, where `orbit` turns by `frame / period` of a revolution about
-/// `axis`.
+/// [`Scene::look_at`](crate::Scene::look_at) moves it. To change the focal length, take [`Scene::camera`](crate::Scene::camera), call
+/// [`Camera::with_focal`], and pass the result to [`Scene::set_camera`](crate::Scene::set_camera).
+// In eye space x points to the right, y up, and z away from the viewer. A point is transformed by
+// `eye_space = rotation · orbit(frame) · object_space + translation`, where `orbit` turns by `frame / period` of a revolution about `axis`.
 #[derive(FromBytes, IntoBytes, Immutable, KnownLayout, Clone, Copy, Debug, PartialEq, Eq)]
 #[repr(C)]
 pub struct Camera {
     /// The rows of the rotation matrix from object space to eye space in frame 0, in units of 2^-30, so that 1 is `1 << 30`. The matrix is
     /// orthonormal to within 1/256. Its determinant is -1, because object space is right-handed and eye space left-handed.
+    #[doc(hidden)]
     pub rotation: [[i32; 3]; 3],
     /// The position of the origin of object space in eye space, in units of 1/16,384, each coordinate -16 to 16.
+    #[doc(hidden)]
     pub translation: [i32; 3],
     /// The axis of the orbit in object space: a unit vector in units of 2^-30.
+    #[doc(hidden)]
     pub axis: [i32; 3],
     /// The number of frames in which the camera orbits once, or 0 if it stands still.
+    #[doc(hidden)]
     pub period: u16,
     /// The kind of projection: 0 for perspective, 1 for orthographic (parallel rays).
+    #[doc(hidden)]
     pub projection: u8,
     /// The kind of viewer for highlights: 0 for an infinitely distant viewer, which is faster, and 1 for a local viewer, with the exact
     /// direction from each point to the eye.
+    #[doc(hidden)]
     pub viewer: u8,
     /// The focal length in units of 1/65,536, from 1/16 to 16. In perspective, the tangent of half the field of view of the picture's
     /// smaller side is 1 / focal. An orthographic picture shows 1 / focal units of object space in half of its smaller side.
+    #[doc(hidden)]
     pub focal: u32,
     /// The distance of the near plane along z of eye space, in units of 1/16,384, from 1/64 to less than 16. Nothing nearer is drawn.
+    #[doc(hidden)]
     pub near: i32,
     /// The distance of the far plane of an orthographic camera along z of eye space, in units of 1/16,384: more than `near`, at most 32. A
     /// perspective camera has no far plane and ignores it.
+    #[doc(hidden)]
     pub far: i32,
 }
 
@@ -140,6 +163,7 @@ impl Camera {
     /// - `translation` is the position of the origin of object space in eye space.
     /// - `focal` is the focal length, from 1/16 to 16; see [`Self::focal`].
     /// - `near` and `far` are the distances of the near and the far plane. A perspective camera ignores `far`.
+    #[doc(hidden)]
     #[must_use]
     pub fn new(projection: u8, rotation: [[Rotation; 3]; 3], translation: [Length; 3], focal: Focal, [near, far]: [Length; 2]) -> Self {
         Self {
@@ -169,21 +193,30 @@ impl Camera {
     }
 
     /// Returns the rows of the rotation matrix from object space to eye space in frame 0.
+    #[doc(hidden)]
     #[must_use]
     pub fn rotation(&self) -> [[Rotation; 3]; 3] {
         self.rotation.map(|row| row.map(Rotation::from_bits))
     }
 
     /// Returns the position of the origin of object space in eye space, in units of object space.
+    #[doc(hidden)]
     #[must_use]
     pub fn translation(&self) -> [Length; 3] {
         self.translation.map(Length::from_bits)
     }
 
     /// Returns the axis of the orbit, a unit vector in object space.
+    #[doc(hidden)]
     #[must_use]
     pub fn axis(&self) -> [Rotation; 3] {
         self.axis.map(Rotation::from_bits)
+    }
+
+    /// Returns a copy of this camera with another focal length, from 1/16 to 16. A longer one shows a smaller part of the scene, larger.
+    #[must_use]
+    pub fn with_focal(self, focal: Focal) -> Self {
+        Self { focal: focal.to_bits(), ..self }
     }
 
     /// Returns the focal length. In perspective, the tangent of half the field of view of the picture's smaller side is 1 / focal. An
@@ -217,8 +250,10 @@ pub const ORTHOGRAPHIC: u8 = 1;
 #[repr(C)]
 pub struct Mesh {
     /// The index of the first vertex among all vertices of the stream (mesh file). A coarser level of detail has the vertices of its mesh.
+    #[doc(hidden)]
     pub first_vertex: u32,
     /// The index of the first triangle among all triangles of the stream (mesh file).
+    #[doc(hidden)]
     pub first_triangle: u32,
     /// The number of triangles of the mesh.
     pub triangles: u32,
@@ -228,9 +263,11 @@ pub struct Mesh {
     pub material: u16,
     /// The largest distance between this level of detail and the full mesh (Hausdorff distance), in units of 1/16,384, rounded up; 0 for a
     /// full mesh.
+    #[doc(hidden)]
     pub error: u16,
     /// Properties as bits. Bit 0 is 1 if the mesh is closed and convex, so that none of its front faces can hide another; the renderer then
     /// leaves out depth tests. The other bits are unused.
+    #[doc(hidden)]
     pub flags: u16,
 }
 
@@ -260,10 +297,13 @@ pub const LEAN: u32 = 6;
 #[repr(C)]
 pub struct Material {
     /// The ambient reflectance, by which the ambient light is multiplied: red, green, blue, each 0 to 32,768, where 16,384 is 1.
+    #[doc(hidden)]
     pub ambient: [u16; 3],
     /// The diffuse reflectance, which is the colour of the surface: red, green, blue, each 0 to 32,768, where 16,384 is 1.
+    #[doc(hidden)]
     pub diffuse: [u16; 3],
     /// The specular reflectance, which is the colour of highlights: red, green, blue, each 0 to 32,768, where 16,384 is 1.
+    #[doc(hidden)]
     pub specular: [u16; 3],
     /// The exponent of the highlight, 1 to 1024. A larger exponent makes a smaller highlight. It is applied to N·H, where N is the normal
     /// and H the half vector between light and viewer (Blinn).
@@ -305,12 +345,16 @@ impl Material {
 pub struct Light {
     /// The unit vector towards a directional light, or the position of a point light, in units of 1/16,384. Positions are within 16 units
     /// of the origin along each axis.
+    #[doc(hidden)]
     pub vector: [i32; 3],
     /// The colour: red, green, blue, each 0 to 32,768, where 16,384 is full intensity.
+    #[doc(hidden)]
     pub colour: [u16; 3],
     /// The kind of light: 0 for directional, 1 for a point light.
+    #[doc(hidden)]
     pub kind: u8,
     /// The space of the vector: 0 if the light is fixed in the world, 1 if it moves with the camera.
+    #[doc(hidden)]
     pub space: u8,
 }
 
@@ -318,12 +362,14 @@ impl Light {
     /// Creates a light from the values of its fields: `kind` is 0 for a directional light and 1 for a point light, `space` is 0 for the
     /// world and 1 for eye space (x to the right, y up, z away from the viewer), and each channel of `colour` is 0 to 2.
     /// [`Self::directional`] and [`Self::near`] are easier to use, and check their arguments.
+    #[doc(hidden)]
     #[must_use]
     pub fn new(kind: u8, space: u8, vector: [Length; 3], colour: [Gain; 3]) -> Self {
         Self { vector: vector.map(Length::to_bits), colour: colour.map(Gain::to_bits), kind, space }
     }
 
     /// Returns the unit vector towards a directional light, or the position of a point light.
+    #[doc(hidden)]
     #[must_use]
     pub fn vector(&self) -> [Length; 3] {
         self.vector.map(Length::from_bits)
