@@ -1,4 +1,4 @@
-//! Pictures on displays of embedded-graphics, drawn in bands, with texts, lines and images under and over them.
+//! Pictures on embedded-graphics displays, drawn in bands, with texts, lines and images under and over them.
 
 use crate::{Renderer, Stats, band_target::BandTarget, error::RenderError, pixel::Pixel};
 use core::{cell::RefCell, fmt};
@@ -22,7 +22,7 @@ use embedded_graphics_core::{
 /// };
 /// use microphong::{Picture, RenderError, Renderer};
 ///
-/// /// The object before an image, and a text before the object. The image stays in flash: embedded-graphics reads it there.
+/// /// Draws the object in front of an image, with a text in front of the object. The image stays in flash: embedded-graphics reads it there.
 /// fn show<D: DrawTarget<Color = Rgb565>>(
 ///     renderer: &mut Renderer<'_, Rgb565>,
 ///     band: &mut [Rgb565],

@@ -18,7 +18,7 @@ pub enum RenderError {
         /// The height of the picture that was asked for, in pixels.
         height: u32,
     },
-    /// The [`Layout`](crate::Layout) has another width than the picture, no rows, or no processor.
+    /// The [`Layout`](crate::Layout) is for pictures of another width, or it has 0 rows or 0 processors.
     Layout {
         /// The width of the picture that was asked for, in pixels.
         width: u32,

@@ -82,7 +82,8 @@ impl Layout {
         Self { processors, ..self }
     }
 
-    /// Sets the number of transformed vertices that a frame can keep, 32 bytes each. The default is 1,024.
+    /// Sets the number of vertices that there is room for. If the scene has more, it is still drawn, but vertices that do not fit are transformed
+    /// again for each triangle that uses them, which is slower.
     #[must_use]
     pub const fn vertices(self, vertices: usize) -> Self {
         Self { vertices, ..self }

@@ -12,8 +12,8 @@ use crate::{
 };
 use core::fmt;
 
-/// A shading method, compiled for the pixel format `C`. Choose from the constants, or wrap your own [`Method`] by [`Self::new`]. A program
-/// contains only the code of the methods that it names.
+/// A shading method, compiled for the pixel format `C`. Choose one of the constants, or wrap your own [`Method`] with [`Self::new`]. A program
+/// contains only the code of the methods that it mentions.
 #[derive(Clone, Copy)]
 pub struct Shader<C: Pixel> {
     method: &'static dyn Method,
@@ -52,8 +52,8 @@ impl<C: Pixel> TriangleLoops<C> {
 impl<C: Pixel> Shader<C> {
     /// Flat shading: each triangle has one colour. It suits objects with facets, and is the fastest method.
     pub const FLAT: Self = Self::with_loops(&Flat);
-    /// Gouraud shading: light is computed at the corners of a triangle and interpolated linearly. It suits dull surfaces, and triangles of
-    /// a few pixels.
+    /// Gouraud shading: light is computed at the corners of a triangle and interpolated linearly. It suits matte surfaces, and highlights that are
+    /// wider than a triangle.
     pub const GOURAUD: Self = Self::with_loops(&Gouraud);
     /// Six-point shading: light is computed at the corners and the midpoints of the edges of a triangle, and interpolated by a quadratic
     /// polynomial. It suits smooth surfaces, but flattens highlights that are narrower than a triangle.
@@ -61,8 +61,9 @@ impl<C: Pixel> Shader<C> {
     /// Phong shading: the normal is interpolated and normalised at every pixel. Highlights use the half vector H between light and viewer
     /// (Blinn). All other methods approximate this result.
     pub const PHONG: Self = Self::with_loops(&Phong);
-    /// Six-point shading of the square root of N·H, where N is the normal and H the half vector between light and viewer. At each pixel the
-    /// root is squared and raised to the material's exponent. The result is hardly distinguishable from Phong shading, and takes less time.
+    /// Phong-like shading for large triangles: the square root of N·H is computed at the corners of a triangle and the midpoints of its edges, and
+    /// interpolated quadratically. At each pixel it is squared and raised to the exponent of the material. The result is almost the same as with
+    /// [`Shader::PHONG`], in less time.
     pub const SQRT6: Self = Self::with_loops(&Sqrt6);
     /// Phong shading that normalises without square root, division or table of roots: the normal is interpolated linearly, its reciprocal
     /// length quadratically, and a step of Newton's method at every pixel corrects the length. Under point lights or with a local viewer it
@@ -73,8 +74,8 @@ impl<C: Pixel> Shader<C> {
     /// kinds of quadratic interpolation, or Phong shading. [`Renderer::set_budget`](crate::Renderer::set_budget) sets the budget. This is
     /// the default of `microphong convert`.
     pub const AUTO: Self = Self::with_loops(&Auto::<true>);
-    /// A smaller variant of [`Shader::AUTO`], without quadratic interpolation. It keeps to the same error budget and takes about three
-    /// fifths of the flash; large triangles take longer.
+    /// A variant of [`Shader::AUTO`] without quadratic interpolation. Its code takes about 60 % of the flash that the code of `AUTO` takes. It keeps
+    /// the same error budget, but is slower on large triangles.
     pub const AUTO_LINEAR: Self = Self::with_loops(&Auto::<false>);
 
     /// All shading methods of this crate. A program that uses this list contains the code of every method.

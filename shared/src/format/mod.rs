@@ -1,6 +1,6 @@
-//! The number formats of the interface.
+//! Number formats of the public interface.
 //!
-//! Nothing in this crate is a floating-point number while it draws. A fraction is an integer that is divided by a power of two. In the format `Qm.f`
+//! Drawing uses no floating-point numbers. A fraction is an integer that is divided by a power of two. In the format `Qm.f`
 //! an integer has `m` bits before the point, the sign included, and `f` bits behind it. Numbers of the interface are types of the crate [`fixed`]
 //! under a name that says what they measure: `Gain::from_num(0.5)` rounds to the nearest.
 
@@ -20,8 +20,8 @@ pub type Length = I18F14;
 pub type Gain = U2F14;
 /// An entry of a rotation matrix, or a component of a quaternion or unit vector, from -1 to 1: 32 bits, in steps of 2^-30.
 pub type Rotation = I2F30;
-/// A focal length, from 1/16 to 16: 32 bits, in steps of 1/65,536. In perspective, the tangent of half the field of view of the picture's
-/// smaller side is 1 / focal.
+/// The focal length of a camera, from 1/16 to 16. For a perspective camera, the tangent of half the field of view of the smaller side of the picture
+/// is 1 / focal. An orthographic camera shows 1 / focal units in half of this side. Unsigned Q16.16.
 pub type Focal = U16F16;
 /// The size of an object relative to its mesh, from 1/16 to 8: 32 bits, in steps of 1/65,536.
 pub type Scale = U16F16;
@@ -31,13 +31,13 @@ pub type Angle = U0F32;
 /// An error budget: the largest difference of a pixel from Phong shading, in units of 1/255 of full intensity. It has 8 bits, in steps of
 /// 1/8; budgets from 1/2 to 16 are allowed.
 pub type ErrorBudget = U5F3;
-/// The light at a pixel: red, green, blue, each in units of 1/256 of a light level, so that 255 · 256 is full intensity. Larger values
-/// count as full. On a material or in a pixel format of one channel, only the first number counts.
+/// The light at a pixel: red, green and blue. Full intensity is 255 · 256 = 65,280; larger values count as full. If all colours of a material are
+/// shades of one colour, or the pixel format is grey, only the first number counts.
 pub type Intensity = [i32; 3];
 
-/// The smallest error budget: 1/2, in units of 1/255 of full intensity.
+/// The smallest [`ErrorBudget`]: a pixel may differ from Phong shading by 1/2, in units of 1/255 of full intensity.
 pub const LEAST_BUDGET: ErrorBudget = ErrorBudget::from_bits(1 << 2);
-/// The largest error budget: 16, in units of 1/255 of full intensity.
+/// The largest [`ErrorBudget`]: a pixel may differ from Phong shading by 16, in units of 1/255 of full intensity.
 pub const LARGEST_BUDGET: ErrorBudget = ErrorBudget::from_bits(16 << 3);
 /// The largest number of lights in a scene: 8.
 pub const MAX_LIGHTS: usize = 8;

@@ -17,9 +17,8 @@ use core::ops::Range;
 use embedded_graphics_core::primitives::Rectangle;
 use part::Part;
 
-/// One frame, ready to be drawn band by band (groups of rows) from the top. [`Renderer::frame`](crate::Renderer::frame) and
-/// [`Renderer::draw`](crate::Renderer::draw) begin one. Programs with a display of embedded-graphics can use [`Picture`](crate::Picture)
-/// instead.
+/// One frame, ready to be drawn from the top, band by band (a band is a group of rows). [`Renderer::frame`](crate::Renderer::frame) and
+/// [`Renderer::draw`](crate::Renderer::draw) create one. Programs with an embedded-graphics display can use [`Picture`](crate::Picture) instead.
 #[derive(Debug)]
 pub struct Frame<'r, C: Pixel> {
     context: Context<'r, C>,
@@ -41,8 +40,8 @@ impl<'r, C: Pixel> Frame<'r, C> {
     }
 
     /// Draws the next band (group of rows) like [`Self::next_band`], over something that the program draws, for example an image. `under`
-    /// is called with the pixels of the band, which have the background already, and with the rectangle of the band in the picture, which
-    /// is always as wide as the picture. [`BandTarget`](crate::BandTarget) makes a target for embedded-graphics of both.
+    /// is called with the pixels of the band, which already contain the background, and with the rectangle of the band in the picture, which
+    /// is always as wide as the picture. [`BandTarget::new`](crate::BandTarget::new) turns the two into an embedded-graphics draw target.
     ///
     /// With partial redraw, call [`Renderer::invalidate`](crate::Renderer::invalidate) with the area in which the result of `under`
     /// changes. [`Self::rows`] does not include rows in which only `under` draws.
@@ -68,8 +67,8 @@ impl<'r, C: Pixel> Frame<'r, C> {
         self.context.region.is_whole()
     }
 
-    /// Returns the range of rows that triangles of this frame can reach. Within [`Self::area`], all other rows have only background and
-    /// labels.
+    /// Returns the rows that triangles of this frame can reach. The other rows of [`Self::area`] contain only the background, and texts that never
+    /// move.
     #[must_use]
     pub fn rows(&self) -> Range<u32> {
         self.part.rows.clone()
@@ -82,8 +81,8 @@ impl<'r, C: Pixel> Frame<'r, C> {
         self.part.bins.row_at(self.part.entries, share)
     }
 
-    /// Restricts the frame to the picture's `rows`. Call this before the first call of [`Self::next_band`]. It saves time if the display
-    /// still shows all other rows of the last frame and no triangle reaches them in either frame; see [`Self::rows`].
+    /// Draws only these `rows` of the picture, to save time. The result is right only if the display still shows the other rows of the previous
+    /// frame, and no triangle lies in them in the previous frame or in this one; see [`Self::rows`]. Call it before the first [`Self::next_band`].
     pub fn limit(&mut self, rows: Range<u32>) {
         self.part.limit(rows);
     }

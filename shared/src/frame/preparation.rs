@@ -281,7 +281,7 @@ pub struct PreparationPart<'f, 'r, C: Pixel> {
 }
 
 impl<'r, C: Pixel> PreparationPart<'_, 'r, C> {
-    /// Returns the range of triangles that this part prepares, counted through all meshes of the frame. It is empty if the other part does
+    /// Returns the range of triangles that this part prepares, numbered consecutively across all meshes of the frame. It is empty if the other part does
     /// everything.
     #[must_use]
     pub fn triangles(&self) -> Range<usize> {

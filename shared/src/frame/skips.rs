@@ -1,10 +1,10 @@
 //! Work that a frame leaves out because nobody can see the result.
 
-/// Switches for invisible work that a frame leaves out, for the method `set_skips` of a renderer. They exist to measure what each saves;
+/// Switches for skipping work that has no visible effect, for the method `set_skips` of a renderer. They exist to measure what each saves;
 /// normally all are on.
 ///
 /// The picture stays the same, bit for bit, with two exceptions. A triangle that faces away and is clipped (at the near plane, or far
-/// outside of the picture) may be visible in parts, by rounding, if [`Self::back_faces`] is off. With antialiasing, a light may brighten
+/// outside of the picture) may be visible in parts, because of rounding, if [`Self::back_faces`] is off. With antialiasing, a light may brighten
 /// pixels on the edges of a triangle that it does not reach if [`Self::lights`] is off.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
@@ -14,7 +14,8 @@ pub struct Skips {
     pub back_faces: bool,
     /// Whether triangles are left out whose bounding box contains no pixel centre.
     pub between_centres: bool,
-    /// Whether the depth test is left out for the front faces of a closed convex mesh, because none of them can hide another.
+    /// Whether the depth test is left out for the triangles of a closed convex mesh, which cannot hide each other, where no other object may overlap
+    /// them.
     pub depth: bool,
     /// Whether highlights are left out on triangles where they are too weak to be visible. Some methods leave them out even if this is off.
     pub highlights: bool,
@@ -31,7 +32,7 @@ impl Skips {
     /// All switches off: nothing is left out.
     pub const NONE: Self =
         Self { back_faces: false, between_centres: false, depth: false, highlights: false, lights: false, hidden_objects: false };
-    /// For each switch its name, and the value in which it alone is off. A benchmark can go through this list.
+    /// One entry for each switch: its name, and a value in which only this switch is off.
     pub const ALL_BUT: [(&str, Self); 6] = [
         ("back-faces", Self { back_faces: false, ..Self::ALL }),
         ("between-centres", Self { between_centres: false, ..Self::ALL }),

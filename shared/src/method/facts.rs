@@ -28,8 +28,8 @@ pub struct Facts {
     /// Whether the method can draw point lights, and highlights for a local viewer (with the exact direction from each point to the eye).
     /// If not, the renderer refuses scenes that have them.
     pub near_lights: bool,
-    /// Whether the method supports perspective-correct interpolation. A method that draws by [`Area::draw`](crate::method::Area::draw) or
-    /// [`Shading::draw_levels`](crate::method::Shading::draw_levels) over whole triangles does.
+    /// Whether the method supports perspective-correct interpolation. Methods that draw whole triangles with
+    /// [`Area::draw`](crate::method::Area::draw) do.
     pub perspective: bool,
     /// Numbers of operations in the method's formulas.
     #[doc(hidden)]
@@ -37,7 +37,7 @@ pub struct Facts {
 }
 
 impl Facts {
-    /// The first method number that is free for methods of your own: 32,768.
+    /// The first value of [`Facts::id`] that is free for your own methods: 32,768. Smaller values are reserved for this crate.
     pub const FIRST_FREE: u16 = 0x8000;
 
     /// Properties that suit most methods of your own: `Facts { name: "mine", ..Facts::OWN }`. The renderer computes light levels at
@@ -118,26 +118,30 @@ pub enum HighlightField {
 /// between light and viewer. Cosines are Q2.30, and light levels are Q9.7 from 0 to 255.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum VertexLight {
-    /// No light is computed at vertices; the four numbers are 0.
+    /// No light is computed at vertices.
     None,
     /// The cosines N·L and N·H (Q2.30), where N is the normal, L the direction to the light, and H the half vector between light and
     /// viewer. They are there for one directional light, or for two on a material of several colours, if the viewer is infinitely distant.
     /// In all other scenes the four numbers are 0.
+    #[doc(hidden)]
     Cosines,
     /// The cosines N·L and N·H (Q2.30), if there is just one light, which is directional, and the viewer is infinitely distant. N is the
     /// normal, L the direction to the light, and H the half vector between light and viewer. In all other scenes it is like
     /// [`Self::Levels`].
+    #[doc(hidden)]
     CosinesOrLevels,
     /// The cosines N·L and N·H (Q2.30) and a third number, if there is just one light, which is directional, and the viewer is infinitely
     /// distant. N is the normal, L the direction to the light, and H the half vector between light and viewer. The third number is the
     /// light level (Q9.7) on a material that is drawn in one channel, and the strength of the highlight (unsigned Q0.16) on one that is
     /// drawn in three. In all other scenes it is like [`Self::Levels`].
+    #[doc(hidden)]
     ReflectionOrLevels,
     /// The cosines N·L and N·H (Q2.30) and a third number, if there is just one light, which is directional, and the viewer is infinitely
     /// distant. N is the normal, L the direction to the light, and H the half vector between light and viewer. The third number is the
     /// light level (Q9.7) on a material that is drawn in one channel, and the strength of the highlight (unsigned Q0.16) on one that is
     /// drawn in three. In all other scenes it is like [`Self::Cosines`].
+    #[doc(hidden)]
     CosinesAndReflection,
-    /// Light levels of red, green and blue, Q9.7 from 0 to 255, under lights of any number and kind. This suits most methods.
+    /// The light levels of red, green and blue, for any number and kind of lights: see [`ScreenVertex::levels`](crate::method::ScreenVertex::levels).
     Levels,
 }

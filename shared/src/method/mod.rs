@@ -88,8 +88,8 @@ pub use {
     sub_triangle::{Part, Parts, SubTriangle},
 };
 
-/// A shading method: it computes the light of the pixels of a triangle. Implement it for a method of your own, and make a
-/// [`Shader`](crate::Shader) of it by [`Shader::new`](crate::Shader::new). Clipping, depth test and pixel formats are the renderer's part.
+/// A shading method: it computes the light of the pixels of a triangle. Implement it for a method of your own, and wrap it
+/// with [`Shader::new`](crate::Shader::new). The renderer takes care of clipping, depth test and pixel formats.
 pub trait Method: Sync {
     /// Returns the properties of the method, for example its name and the light that it needs at vertices.
     fn facts(&self) -> &'static Facts;
@@ -101,9 +101,9 @@ pub trait Method: Sync {
         ErrorBounds::EMPTY
     }
 
-    /// Draws the pixels of the triangle `setup` to `canvas`, for example by [`Shading::draw_levels`] or [`Area::draw`]. `shading` has the
-    /// material and the lights. Returns the number of pixels drawn, which these functions return. It is called again for each band (group
-    /// of rows drawn at once) that the triangle lies in.
+    /// Draws the pixels of the triangle `setup` to `canvas`, for example with [`Area::draw`], and returns the number of pixels drawn, as `draw` does.
+    /// `shading` has the material and the lights. The renderer calls this function for each triangle, and again for each band (a group of rows that
+    /// is drawn at once) that the triangle lies in.
     fn shade(&self, setup: &TriangleSetup<'_>, shading: &Shading<'_>, canvas: &mut dyn Canvas) -> u32;
 }
 
@@ -199,8 +199,7 @@ pub struct TriangleSetup<'f> {
     /// How often the stream's corners are rotated, so that the top one is first: 0, 1 or 2.
     #[doc(hidden)]
     pub turned: usize,
-    /// Whether the depth of each pixel has to be tested, because other triangles may overlap this one. Functions that draw do this
-    /// themselves.
+    /// Whether pixels need a depth test, because another triangle may overlap this one. [`Area::draw`] takes care of it.
     pub needs_depth_test: bool,
     /// Whether perspective-correct interpolation of light is on for this triangle.
     pub perspective: bool,
@@ -397,8 +396,8 @@ impl TriangleSetup<'_> {
 
 /// An area of the screen that can be shaded: a triangle ([`TriangleSetup`]) or a part of one.
 pub trait Area {
-    /// Draws the area to `canvas`: interpolates `field` (a quantity with values at the corners, or at more points, for example
-    /// [`levels_at`]) and computes the light of each pixel by `shader`. Returns the number of pixels drawn.
+    /// Draws the area to `canvas`. It interpolates `field`, a quantity whose values at the corners are known, such as [`levels_at`], and computes the
+    /// light of each pixel with `shader`. Returns the number of pixels drawn.
     fn draw<F: Field, S: IntensityShader<F::Value>>(&self, field: &F, shader: S, canvas: &mut dyn Canvas) -> u32;
 }
 
@@ -420,18 +419,23 @@ impl Area for TriangleSetup<'_> {
 pub struct Shading<'f> {
     /// The material under the lights of the scene. It converts cosines to light levels: N·L (normal and direction to the light) for diffuse
     /// light, and N·H (normal and half vector between light and viewer) for highlights.
+    #[doc(hidden)]
     pub reflectance: &'f Reflectance,
     /// The lights of the scene and the viewer, in object space.
+    #[doc(hidden)]
     pub lighting: &'f Lighting,
     /// The exponent of the material's highlight, 1 to 1024.
     pub exponent: u16,
     /// The unit vectors L (to the light) and H (half vector between light and viewer) in object space, Q2.30, if there is just one light,
     /// which is directional, and the viewer is infinitely distant. Otherwise `None`.
+    #[doc(hidden)]
     pub constant: Option<[[i32; 3]; 2]>,
     /// Bounds of the error that cheap interpolation makes on this material, for methods that keep to an error budget.
+    #[doc(hidden)]
     pub error_bounds: &'f ErrorBounds,
     /// The error budget: the largest difference of a pixel from Phong shading, in Q9.7 units of 1/255 of full intensity. Only methods that
     /// keep to a budget use it.
+    #[doc(hidden)]
     pub budget: u32,
 }
 
@@ -579,8 +583,7 @@ impl IntensityShader<()> for Uniform {
     }
 }
 
-/// The [`IntensityShader`] for interpolated light levels, such as the field [`levels_at`] gives: it converts them to an [`Intensity`]
-/// without any change.
+/// An [`IntensityShader`] for interpolated light levels, such as those of [`levels_at`]: each pixel gets the interpolated level.
 #[derive(Clone, Copy, Debug)]
 pub struct Walked;
 

@@ -1,4 +1,4 @@
-//! Pixel formats: how a colour of 8 bits a channel becomes the value that a display stores.
+//! Pixel formats: how a colour with 8 bits per channel is converted to the value that a display stores.
 
 pub(crate) mod colour;
 #[doc(hidden)]
@@ -33,8 +33,9 @@ use zerocopy::{FromBytes, Immutable, IntoBytes, KnownLayout};
 pub trait Pixel: Copy + 'static {
     /// The type of a pixel in the tables that map light levels to colours: often the raw integer of the pixel, such as `u16` for RGB565.
     type Stored: FromBytes + IntoBytes + Immutable + KnownLayout + Copy + core::fmt::Debug;
-    /// The type of the tables that map light levels to colours: [`InTurn`] for channels of five to seven bits, which are dithered by two
-    /// tables, and [`Rounded`] for all others.
+    /// The tables that map light levels to colours. Choose [`InTurn`] if channels have five to seven bits: they are dithered by two tables that
+    /// alternate. Choose [`Rounded`] otherwise: eight bits need no dither, and with fewer than five bits a threshold is added to each level before
+    /// the look-up.
     type Ramps: Ramps<Self::Stored>;
 
     /// Whether the format has one channel (grey) instead of three.
@@ -59,10 +60,10 @@ pub trait Pixel: Copy + 'static {
     /// Creates a pixel from red, green and blue, each of as many bits as [`Self::DEPTH`] says. A grey format uses the first number.
     fn pack(channels: [u32; 3]) -> Self;
 
-    /// Converts a pixel to the type that the colour tables have.
+    /// Converts the pixel to [`Self::Stored`], the form in which the tables of a material keep the colour for each light level ([`Self::Ramps`]).
     fn stored(self) -> Self::Stored;
 
-    /// Converts an entry of the colour tables to a pixel.
+    /// Converts a colour from the tables of a material, [`Self::Stored`], back to a pixel.
     fn from_stored(stored: Self::Stored) -> Self;
 
     /// The entry of a table of colours for channels in unsigned Q8.8 that are scaled to [`Self::DEPTH`]. This is the pixel by a
@@ -470,7 +471,7 @@ impl PictureCrc {
         self.bytes += pixels.len() * C::BYTES;
     }
 
-    /// Joins the checksum of the lower part of the picture, which [`Self::of_rest`] began, to this one of the upper part.
+    /// Appends the checksum of the lower part of a picture, which began with [`Self::of_rest`], to this checksum of the upper part.
     pub fn append(&mut self, rest: Self) {
         // A checksum is linear: that of all bytes is that of the first ones, followed by zeros, plus that of the rest that follows zeros.
         (0..rest.bytes).for_each(|_| self.digest.update(&[0]));

@@ -53,7 +53,8 @@ pub struct Stream<'a> {
     pub meshes: &'a [Mesh],
     /// The materials: their colours and highlight exponents. A mesh refers to them by index.
     pub materials: &'a [Material],
-    /// The lights at the beginning of the scene. Each shines on all meshes.
+    /// The lights that the scene has at first; a program can change them, see [`Scene::set_lights`](crate::Scene::set_lights). Each light shines on
+    /// all meshes.
     pub lights: &'a [Light],
     /// Objects of the scene. If there are none, the scene is one object of all meshes.
     #[doc(hidden)]
@@ -86,11 +87,11 @@ pub enum StreamError {
     /// The bytes do not begin at an address that is a multiple of four. [`Aligned`] or [`include_stream!`](crate::include_stream!) aligns
     /// them.
     Misaligned,
-    /// There are fewer bytes than the stream (mesh file) has.
+    /// The slice is shorter than the length in the header of the mesh file says, for example because the file was cut off.
     Truncated {
         /// The number of bytes that are needed.
         need: u32,
-        /// The number of bytes that there are.
+        /// The number of bytes in the slice.
         have: u32,
     },
     /// The bytes are not a stream (mesh file), because they do not begin with `mTRI`.
@@ -104,12 +105,12 @@ pub enum StreamError {
     Checksum {
         /// The checksum in the header of the stream (mesh file).
         stored: u32,
-        /// The checksum computed from the bytes that there are.
+        /// The checksum of the bytes in the slice.
         computed: u32,
     },
     /// The header of the stream (mesh file) contradicts itself: its length is too small for the numbers of records that it states.
     Length {
-        /// The number of bytes that these records take.
+        /// The smallest length in bytes that the numbers of meshes, vertices and triangles in the header require.
         need: u32,
         /// The length in bytes that the header states.
         claimed: u32,
@@ -201,7 +202,7 @@ pub fn length(header: &Header) -> Option<u32> {
 
 impl<'a> Stream<'a> {
     /// Checks `bytes` and returns a view of the stream (mesh file) in them. Length, checksum, indices and ranges are checked once, here.
-    /// Bytes behind the end of the stream are ignored.
+    /// Bytes after the end of the stream are ignored.
     ///
     /// # Errors
     /// Returns a [`StreamError`] that describes the first fault.

@@ -98,7 +98,8 @@ impl<'a> Stream<'a> {
         Names { meshes: self.meshes, entries: self.names, next: 0 }
     }
 
-    /// Finds the object `name` and returns the indices of its meshes, for [`Scene::add`](crate::Scene::add).
+    /// Returns the indices of the meshes of the object `name`, as [`Scene::add`](crate::Scene::add) takes them. `convert` keeps the names that
+    /// objects have in a model file.
     ///
     /// ```no_run
     /// # use microphong::{Pose, Renderer, Stream, pixel::Pixel};
@@ -109,7 +110,7 @@ impl<'a> Stream<'a> {
     /// ```
     ///
     /// # Errors
-    /// Returns [`UnknownMesh`] if the stream has no object of this name. The error lists the names that there are.
+    /// Returns [`UnknownMesh`] if the stream has no object of this name. The error lists the available names.
     pub fn mesh<'n>(&self, name: &'n str) -> Result<Range<u16>, UnknownMesh<'n>>
     where
         'a: 'n,
