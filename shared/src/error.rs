@@ -64,7 +64,8 @@ pub enum RenderError {
         /// The name of the shading method.
         shader: &'static str,
     },
-    /// The error budget (the largest error of a pixel) is less than 1/2 or more than 16, in units of 1/255 of full intensity.
+    /// The error budget, which is the largest difference of a pixel from Phong shading, is less than 1/2 or more than 16, in units of 1/255 of full
+    /// intensity. See [`Renderer::set_budget`](crate::Renderer::set_budget).
     Budget,
     /// A material's highlight exponent is too small for the shading method.
     Exponent {

@@ -101,7 +101,7 @@ impl Layout {
         Self { materials, ..self }
     }
 
-    /// Sets the number of objects that there is room for. The default is 1.
+    /// Sets the number of objects that a scene has room for: one for each call of [`Scene::add`](crate::Scene::add). The default is 1.
     #[must_use]
     pub const fn objects(self, objects: usize) -> Self {
         Self { objects, ..self }

@@ -111,7 +111,8 @@ impl<C: Pixel> Shader<C> {
         self.method.facts()
     }
 
-    /// Returns the shading method without its pixel format.
+    /// Returns the shading method that this shader draws with. A shader is a method together with loops for one pixel format; the method is the same
+    /// for all formats.
     #[must_use]
     pub fn method(&self) -> &'static dyn Method {
         self.method

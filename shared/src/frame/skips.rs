@@ -4,8 +4,8 @@
 /// normally all are on.
 ///
 /// The picture stays the same, bit for bit, with two exceptions. A triangle that faces away and is clipped (at the near plane, or far
-/// outside of the picture) may be visible in parts, because of rounding, if [`Self::back_faces`] is off. With antialiasing, a light may brighten
-/// pixels on the edges of a triangle that it does not reach if [`Self::lights`] is off.
+/// outside of the picture) may be visible in parts, because of rounding, if [`Self::back_faces`] is off. With antialiasing and [`Self::lights`] off, a
+/// light may brighten pixels on the edges of a triangle that it does not reach.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[expect(clippy::struct_excessive_bools, reason = "each is a switch of its own")]
@@ -14,8 +14,8 @@ pub struct Skips {
     pub back_faces: bool,
     /// Whether triangles are left out whose bounding box contains no pixel centre.
     pub between_centres: bool,
-    /// Whether the depth test is left out for the triangles of a closed convex mesh, which cannot hide each other, where no other object may overlap
-    /// them.
+    /// Whether the depth test is left out for closed convex meshes, wherever no other object can overlap them. The visible triangles of such a mesh
+    /// cannot hide each other.
     pub depth: bool,
     /// Whether highlights are left out on triangles where they are too weak to be visible. Some methods leave them out even if this is off.
     pub highlights: bool,

@@ -6,7 +6,7 @@ use crate::{lighting::reflectance::Highlight, setup::steepness::Steepness};
 /// [`Self::OWN`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Facts {
-    /// The name of the method in error messages and logs, and on the command line.
+    /// The name of the method in error messages and logs, and in the options of the command-line tool `microphong`.
     pub name: &'static str,
     /// The number of the method, by which a stream (mesh file) asks for it. No two methods of a program may have the same number. Numbers
     /// from [`Facts::FIRST_FREE`] on are free for methods of your own.

@@ -450,9 +450,9 @@ fn channels<const N: usize>(levels: [[i32; 3]; N]) -> [[i32; N]; 3] {
     channels
 }
 
-/// Creates a field (a quantity to be interpolated over a triangle) of light levels in three channels, for [`Area::draw`]. `levels` are red,
-/// green and blue, Q9.7 from 0 to 255, at `N` points: the 3 corners, or 6 with the midpoints of the edges 0-1, 1-2 and 2-0. Use [`Walked`]
-/// to convert the interpolated values to an [`Intensity`].
+/// Creates a field (a quantity to be interpolated over a triangle) of light levels in three channels, for [`Area::draw`]. `levels` are red, green and
+/// blue, each from 0 to 255 in Q9.7 (the integers 0 to 32,640), at `N` points: the 3 corners, or 6 with the midpoints of the edges 0-1, 1-2 and 2-0.
+/// Use [`Walked`] to convert the interpolated values to an [`Intensity`].
 #[must_use]
 pub fn levels_at<const N: usize>(levels: [[i32; 3]; N]) -> Nodes<N, 3, RANGE> {
     Nodes::new(channels(levels), EXTRA).biased([bias(0); 3])

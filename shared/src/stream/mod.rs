@@ -43,8 +43,8 @@ macro_rules! include_stream {
     }};
 }
 
-/// A view of a mesh file ("stream") that `microphong convert` has written: meshes, materials, lights, a camera and an animation. It is read
-/// in place: a `Stream` only borrows the bytes, and copies cost nothing. [`Self::parse`] has checked all of it.
+/// A view of a mesh file ("stream") that `microphong convert` has written: meshes, materials, lights, a camera and an animation. It is read in place:
+/// a `Stream` only borrows the bytes, and copies cost nothing. [`Self::parse`] has checked all of it but the names of objects.
 #[derive(Clone, Copy, Debug)]
 pub struct Stream<'a> {
     /// The first record of the stream (mesh file), with the camera, the background and the number of records of each kind.
@@ -117,7 +117,7 @@ pub enum StreamError {
     },
     /// A field in the stream (mesh file) has a value outside of its range.
     Field {
-        /// The name of the field.
+        /// The name of the field whose value is out of its range, such as "light colour".
         name: &'static str,
         /// The index of the record that has the field, among the records of its kind (meshes, lights and so on).
         record: u32,
