@@ -253,7 +253,7 @@ fn meshes_are_simplified() {
     let said = place.succeeds(&["convert", "bowl.obj", "--simplify", "400", "--lod", "64x64,320x240"]);
     assert!(said.contains("pixels in a picture of 320x240") && said.contains("a level of"), "{said}");
     for most in ["800", "4000000000"] {
-        assert!(place.succeeds(&["convert", "bowl.obj", "--simplify", most]).contains("not simplified: it has no more than"));
+        assert!(place.succeeds(&["convert", "bowl.obj", "--simplify", most]).contains("not simplified: the mesh has no more than"));
     }
     assert!(json(&["two.obj", "--simplify", "300"])["triangles"].as_u64() <= Some(300));
     place.fails(
@@ -1168,7 +1168,7 @@ fn formats_and_bands_keep_their_promises() {
 #[test]
 fn perspective_is_corrected_or_refused() {
     let place = Place::new();
-    let words = ["goldman shading has no perspective-correct form"];
+    let words = ["goldman cannot interpolate light in perspective"];
     place.fails(&["render", "teapot", "--shader", "goldman", "--perspective-correct"], 1, &words);
     place.fails(&["compare", "teapot", "--size", "64x48", "--shader", "duff,goldman", "--perspective-correct"], 1, &words);
     let compare = ["compare", "teapot", "--size", "64x48", "--shader", "all", "--perspective-correct", "--json"];

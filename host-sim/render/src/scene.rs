@@ -68,7 +68,7 @@ pub fn description(name: &str) -> &'static str {
         "triangle" => "one bulged triangle, point light close in front",
         "gauges" => "three gauges whose needles move, 2 objects each",
         "board" => "a board with 11 pieces, one of which moves",
-        "sensor" => "an object that turns as a recorded sensor says, under a moving light",
+        "sensor" => "an object with the recorded orientation of a sensor, under a moving light",
         _ => "",
     }
 }

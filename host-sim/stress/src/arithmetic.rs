@@ -29,7 +29,7 @@ impl Family for Arithmetic {
     }
 
     fn about(&self) -> &'static str {
-        "integers shade every pixel as the same method does in floating point"
+        "each method in integers gives the light of this method in floating point, in every pixel"
     }
 
     fn limit(&self) -> Option<(f64, &'static str)> {
