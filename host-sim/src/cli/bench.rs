@@ -33,15 +33,15 @@ use std::path::{Path, PathBuf};
 #[derive(clap::Args)]
 #[command(after_help = EXAMPLES)]
 pub(crate) struct Arguments {
-    /// .tri, .obj, .stl, .ply, .gltf, .glb and .toml files, names of built-in scenes, or all for all built-in scenes. By default six scenes of common
+    /// .tri, .obj, .stl, .ply, .gltf, .glb and .toml files, names of built-in scenes, or `all` for every built-in scene. By default six scenes of common
     /// kinds: large and small triangles, in one hue, in blue with a white highlight, and under two coloured lights.
     #[arg(value_name = "SCENE", default_values = scene::PORTFOLIO)]
     scenes: Vec<String>,
-    /// Shading methods, separated by commas, or all for all methods that can draw the scene.
+    /// Shading methods, separated by commas, or `all` for every method that can draw the scene.
     #[arg(long, value_name = "S,...", default_value = "flat,gouraud,six-point,sqrt6,phong", value_parser = parse::SeveralShaders)]
     shader: Several<Shader>,
-    /// Error budgets of auto and auto-linear, separated by commas: the largest difference of a pixel from Phong shading, in 1/255, from 0.5 to 16. By
-    /// default the scene defines it.
+    /// Error budgets of auto and auto-linear, separated by commas: the largest difference of a pixel from Phong shading, in 1/255, from 0.5 to 16. The
+    /// default is the budget of the scene.
     #[arg(long, value_name = "LSB,...", value_delimiter = ',', value_parser = parse::budget)]
     budget: Vec<ErrorBudget>,
     /// Boards, separated by commas: mps2-an385 (Cortex-M3), mps2-an386 (Cortex-M4F), pico (Cortex-M0+), x86-64 (this computer);

@@ -29,7 +29,7 @@ pub(crate) struct Arguments {
 
 const EXAMPLES: &str = "\
 Examples:
-  microphong bounds > shared/src/method/highlight_error/table.rs    takes five minutes on two processors
+  microphong bounds > shared/src/method/highlight_error/table.rs    five minutes on two processors
   microphong bounds --check 100000 --effort 200 --seed 7            search for larger errors";
 
 /// The kinds of error, in the order of the table.

@@ -25,20 +25,20 @@ use std::path::PathBuf;
 #[derive(clap::Args)]
 #[command(after_help = EXAMPLES)]
 pub(crate) struct Arguments {
-    /// .tri, .obj, .stl, .ply, .gltf, .glb and .toml files, names of built-in scenes, or all for all built-in scenes.
+    /// .tri, .obj, .stl, .ply, .gltf, .glb and .toml files, names of built-in scenes, or `all` for every built-in scene.
     #[arg(required = true, value_name = "SCENE")]
     scenes: Vec<String>,
     /// Shading methods by name, separated by commas, or all.
     #[arg(long, default_value = "all", value_name = "S,...", value_parser = parse::SeveralShaders)]
     shader: Several<Shader>,
-    /// Error budget of auto and auto-linear: the largest difference of a pixel from Phong shading, in 1/255, from 0.5 to 16. By default the scene
-    /// defines it.
+    /// Error budget of auto and auto-linear: the largest difference of a pixel from Phong shading, in 1/255, from 0.5 to 16. The default is the
+    /// budget of the scene.
     #[arg(long, value_name = "LSB", value_parser = parse::budget)]
     budget: Option<ErrorBudget>,
-    /// Exponent of all highlights, 1 to 1024, in scenes of every kind. By default the scene defines it.
+    /// Exponent of all highlights, 1 to 1024, in scenes of every kind. The default is the exponent of each material.
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
     override_exponent: Option<u16>,
-    /// Size of the picture. By default the scene defines it; it is 640x480 for mesh files.
+    /// Size of the picture. The default is the size of the scene, or 640x480 for mesh files.
     #[arg(long, value_name = "WxH", value_parser = parse::size)]
     size: Option<(u32, u32)>,
     /// Interpolate in perspective, in Phong shading and in all methods.

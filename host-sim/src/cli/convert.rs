@@ -31,7 +31,7 @@ use microphong_sim::{
 use serde::Serialize;
 use std::path::{Path, PathBuf};
 
-/// Convert a model file (OBJ, glTF 2.0, STL or PLY) to a stream, the mesh file that a program keeps in flash
+/// Convert a model file (OBJ, glTF 2.0, STL, PLY) to a stream, the mesh file of a program
 ///
 /// Normals come from the file if every corner has one. Otherwise the command computes them: light is smooth within each smoothing group of the file.
 /// If there are no groups, light is smooth across edges that fold by no more than --crease. Polygons, also concave ones, are cut into triangles.

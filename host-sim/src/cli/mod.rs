@@ -50,12 +50,12 @@ Examples:
   microphong inspect mesh.tri                      show the contents and the size of a stream
   microphong verify teapot --board all             compare emulated boards with this computer
   microphong bench                                 count the instructions of a frame
-  microphong growth                                count them for more triangles, pixels, lights and bands
+  microphong growth                                count them for more triangles, pixels, lights
   microphong size part.obj --chip rp2040           show flash, RAM and stack of whole programs
   microphong compare teapot --report comparison    measure all methods against Phong shading
   microphong papers --only vlasic                  check the claims of a paper
   microphong stress --seconds 60                   search for scenes that are drawn wrong
-  microphong bounds --check 10000                  search for errors that exceed the bounds of `auto`
+  microphong bounds --check 10000                  search for errors beyond the bounds of `auto`
 
 Exit codes: 0 success; 1 failure, or pictures differ; 2 wrong usage.";
 

@@ -23,14 +23,14 @@ use std::{
 pub(crate) struct Arguments {
     /// A .tri, .obj, .stl, .ply, .gltf, .glb or .toml file, or a built-in scene; `microphong scenes` lists the built-in scenes.
     scene: String,
-    /// Shading method. By default the scene names it. `microphong compare` compares methods.
+    /// Shading method. The default is the method of the scene. `microphong compare` compares methods.
     #[arg(long, value_parser = parse::Shaders)]
     shader: Option<Shader>,
-    /// Error budget of auto and auto-linear: the largest difference of a pixel from Phong shading, in 1/255, from 0.5 to 16. By default the scene
-    /// defines it.
+    /// Error budget of auto and auto-linear: the largest difference of a pixel from Phong shading, in 1/255, from 0.5 to 16. The default is the
+    /// budget of the scene.
     #[arg(long, value_name = "LSB", value_parser = parse::budget)]
     budget: Option<ErrorBudget>,
-    /// Size of the picture. By default the scene defines it; it is 640x480 for mesh files.
+    /// Size of the picture. The default is the size of the scene, or 640x480 for mesh files.
     #[arg(long, value_name = "WxH", value_parser = parse::size)]
     size: Option<(u32, u32)>,
     /// Pixel format. The names of types in programs, such as BinaryColor, are accepted as well.

@@ -21,17 +21,17 @@ use std::path::PathBuf;
 #[derive(clap::Args)]
 #[command(after_help = EXAMPLES)]
 pub(crate) struct Arguments {
-    /// .tri, .obj, .stl, .ply, .gltf, .glb and .toml files, names of built-in scenes, or all for all built-in scenes.
+    /// .tri, .obj, .stl, .ply, .gltf, .glb and .toml files, names of built-in scenes, or `all` for every built-in scene.
     #[arg(value_name = "SCENE", default_value = "teapot")]
     scenes: Vec<String>,
     /// Boards, separated by commas: pico, lm3s6965evb, mps2-an385, mps2-an386; or all.
     #[arg(long, value_parser = boards)]
     board: Several<Board>,
-    /// Shading methods, separated by commas, or all for all methods of the board's firmware.
+    /// Shading methods, separated by commas, or `all` for every method of the firmware.
     #[arg(long, default_value = "all", value_parser = parse::SeveralShaders)]
     shader: Several<Shader>,
-    /// Error budget of auto and auto-linear: the largest difference of a pixel from Phong shading, in 1/255, from 0.5 to 16. By default the scene
-    /// defines it.
+    /// Error budget of auto and auto-linear: the largest difference of a pixel from Phong shading, in 1/255, from 0.5 to 16. The default is the
+    /// budget of the scene.
     #[arg(long, value_name = "LSB", value_parser = parse::budget)]
     budget: Option<ErrorBudget>,
     /// Number of frames to compare, starting with the first.

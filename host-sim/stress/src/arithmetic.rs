@@ -29,7 +29,7 @@ impl Family for Arithmetic {
     }
 
     fn about(&self) -> &'static str {
-        "each method in integers gives the light of this method in floating point, in every pixel"
+        "the integer version of each method gives the light of its floating-point version"
     }
 
     fn limit(&self) -> Option<(f64, &'static str)> {

@@ -38,7 +38,7 @@ impl Family for Changes {
     }
 
     fn about(&self) -> &'static str {
-        "partial redraw of a changed scene gives the picture of a new renderer; values out of range are errors"
+        "partial redraw gives the picture of a new renderer; values out of range are errors"
     }
 
     fn counts(&self) -> &'static [&'static str] {

@@ -21,7 +21,7 @@ impl Family for Sameness {
     }
 
     fn about(&self) -> &'static str {
-        "bands, memory, row limits, earlier frames and skipped work change no pixel and no count"
+        "bands, memory, limits, earlier frames and skipped work change no pixel or count"
     }
 
     fn check(&self, random: &mut Random) -> Verdict {
