@@ -3,7 +3,7 @@ use embedded_graphics::{pixelcolor::Rgb565, prelude::*};
 use embedded_graphics_simulator::{OutputSettings, SimulatorDisplay};
 use microphong::{Layout, Picture, Renderer, Shader, Stream, include_stream};
 
-/// Pictures 240 pixels wide, drawn 40 rows at a time.
+/// Pictures are 240 pixels wide and drawn 40 rows at a time.
 const LAYOUT: Layout = Layout::new(240, 40);
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {

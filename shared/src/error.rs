@@ -98,7 +98,10 @@ impl fmt::Display for RenderError {
             Self::Feature { name } => write!(f, "this program lacks the cargo feature {name}; enable it in Cargo.toml"),
             Self::Budget => f.write_str("the error budget is out of range; it must be 0.5 to 16"),
             Self::UnknownMethod { method } => {
-                write!(f, "this program lacks shading method number {method}, which the stream names; list it, or convert with another --shader")
+                write!(
+                    f,
+                    "this program lacks shading method number {method}, which the stream names; list it, or convert with another --shader"
+                )
             }
             Self::Light { shader } => {
                 write!(f, "{shader} supports only directional lights and an infinitely far viewer; use another shading method")

@@ -202,7 +202,10 @@ fn streams_with_wrong_levels_are_refused() -> Result {
     assert_eq!(refused(&|meshes| meshes[2].material = 1)?, level(2));
     assert_eq!(refused(&|meshes| meshes[1].first_vertex = 1)?, "mesh first vertex of record 1 is out of range; convert the mesh again");
     assert_eq!(refused(&|meshes| meshes[1].error = 0)?, "mesh first vertex of record 1 is out of range; convert the mesh again");
-    assert_eq!(refused(&|meshes| meshes[2].first_triangle -= 1)?, "mesh first triangle of record 2 is out of range; convert the mesh again");
+    assert_eq!(
+        refused(&|meshes| meshes[2].first_triangle -= 1)?,
+        "mesh first triangle of record 2 is out of range; convert the mesh again"
+    );
     assert_eq!(refused(&|meshes| meshes[2].triangles -= 1)?, "mesh coverage of record 3 is out of range; convert the mesh again");
     Ok(())
 }

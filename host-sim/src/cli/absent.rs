@@ -42,7 +42,10 @@ pub(super) fn refuse(what: &str, name: &str, arguments: &[OsString]) -> Result<O
             command.push_str(&argument);
         }
     }
-    Err(Usage(format!("this build has no {what}, because it was compiled without emulated boards; in the folder of the sources, run\n  {command}")).into())
+    Err(Usage(format!(
+        "this build has no {what}, because it was compiled without emulated boards; in the folder of the sources, run\n  {command}"
+    ))
+    .into())
 }
 
 #[cfg(test)]

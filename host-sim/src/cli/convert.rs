@@ -272,9 +272,11 @@ fn convert_script(
     let own = [("--shader", arguments.shader.is_some()), ("--budget", arguments.budget.is_some()), ("--size", arguments.size.is_some())];
     if let Some((option, _)) = own.into_iter().find(|(_, given)| *given) {
         let field = &option[2..];
-        return Err(
-            Usage(format!("{}: {option} is for mesh files; write `{field}` into the text of the scene instead", arguments.mesh.display())).into()
-        );
+        return Err(Usage(format!(
+            "{}: {option} is for mesh files; write `{field}` into the text of the scene instead",
+            arguments.mesh.display()
+        ))
+        .into());
     }
     let scene = scenes::load(&arguments.mesh.to_string_lossy(), arguments.options.as_ref(), format)?;
     let stream = scene.stream.parse()?;
@@ -332,8 +334,7 @@ const USUAL: (u32, u32) = (320, 240);
 fn unseen(stream: &Stream<'_>, (width, height): (u32, u32)) -> Result<Option<String>> {
     let is_seen = render::shows_a_pixel(stream, Size::new(width, height))?;
     Ok((!is_seen).then(|| {
-        "no frame shows a pixel of the mesh: its faces point away from the viewer (use --flip), or it is thinner than a pixel"
-            .to_owned()
+        "no frame shows a pixel of the mesh: its faces point away from the viewer (use --flip), or it is thinner than a pixel".to_owned()
     }))
 }
 
@@ -408,10 +409,7 @@ fn text(line: &Line<'_>, materials: &[Option<&str>]) -> Result<()> {
         report::line(&format!("  a level of detail of {} triangles, less than {error:.4} units from the mesh", count(*triangles)))?;
     }
     let memory = count(line.memory);
-    report::line(&format!(
-        "  a program needs {memory} bytes of memory in {}, and a band of pixels:\n    {}",
-        line.format, line.layout
-    ))?;
+    report::line(&format!("  a program needs {memory} bytes of memory in {}, and a band of pixels:\n    {}", line.format, line.layout))?;
     count::text(line.costs.as_deref())?;
     let crossed = match line.crossed {
         0 => return Ok(()),

@@ -218,7 +218,9 @@ impl Target {
             _ if path.exists() && !path.is_file() || output::is_stdout(path) => Ok(Self::File(path.to_owned())),
             Some("apng") => Ok(Self::File(path.to_owned())),
             Some("png") if frames == 1 => Ok(Self::File(path.to_owned())),
-            Some("png") => Err(Usage(format!("{}: a .png file cannot hold {frames} frames; name an .apng file or a directory", path.display()))),
+            Some("png") => {
+                Err(Usage(format!("{}: a .png file cannot hold {frames} frames; name an .apng file or a directory", path.display())))
+            }
             None => Ok(Self::Directory(path.to_owned())),
             Some(other) => Err(Usage(format!("{}: cannot write .{other}; name a .png or .apng file or a directory", path.display()))),
         }
