@@ -177,7 +177,7 @@ pub struct Misplaced {
 impl fmt::Display for Misplaced {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let Self { name, kind, remedy } = self;
-        write!(f, "{name} is {kind}, and options such as --up and --colour are for mesh files; {remedy}")
+        write!(f, "{name} is {kind}, and options such as --up and --colour are for model files; {remedy}")
     }
 }
 

@@ -38,7 +38,7 @@ pub(crate) struct Arguments {
     /// Exponent of all highlights, 1 to 1024, in scenes of every kind. The default is the exponent of each material.
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
     override_exponent: Option<u16>,
-    /// Size of the picture. The default is the size of the scene, or 640x480 for mesh files.
+    /// Size of the picture. The default is the size of the scene, or 640x480 for model files.
     #[arg(long, value_name = "WxH", value_parser = parse::size)]
     size: Option<(u32, u32)>,
     /// Interpolate in perspective, in Phong shading and in all methods.

@@ -273,7 +273,7 @@ fn convert_script(
     if let Some((option, _)) = own.into_iter().find(|(_, given)| *given) {
         let field = &option[2..];
         return Err(Usage(format!(
-            "{}: {option} is for mesh files; write `{field}` into the text of the scene instead",
+            "{}: {option} is for model files; write `{field}` into the text of the scene instead",
             arguments.mesh.display()
         ))
         .into());

@@ -30,7 +30,7 @@ pub(crate) struct Arguments {
     /// budget of the scene.
     #[arg(long, value_name = "LSB", value_parser = parse::budget)]
     budget: Option<ErrorBudget>,
-    /// Size of the picture. The default is the size of the scene, or 640x480 for mesh files.
+    /// Size of the picture. The default is the size of the scene, or 640x480 for model files.
     #[arg(long, value_name = "WxH", value_parser = parse::size)]
     size: Option<(u32, u32)>,
     /// Pixel format. The names of types in programs, such as BinaryColor, are accepted as well.
