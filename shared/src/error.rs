@@ -87,7 +87,10 @@ impl fmt::Display for RenderError {
                 write!(f, "a picture of {width}x{height} pixels cannot be drawn; each side must be 1 to {MAX_SIDE}")
             }
             Self::Layout { width } => {
-                write!(f, "the layout is not for a picture of {width} columns, or has no row; use Layout::new({width}, rows) with one row or more")
+                write!(
+                    f,
+                    "the layout is not for a picture of {width} columns, or has no row; use Layout::new({width}, rows) with one row or more"
+                )
             }
             Self::Memory { need } => write!(f, "the memory is too small; it must have {need} words of 64 bits (Layout::words)"),
             Self::Materials { need } => write!(f, "the layout has too little room for materials; set Layout::materials({need})"),
