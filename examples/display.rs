@@ -1,13 +1,13 @@
-//! A mesh on a display of embedded-graphics. The display is simulated here, and saved as a picture.
+//! Draws a mesh on a display of embedded-graphics. The display is simulated here, and saved as a picture.
 use embedded_graphics::{pixelcolor::Rgb565, prelude::*};
 use embedded_graphics_simulator::{OutputSettings, SimulatorDisplay};
 use microphong::{Layout, Picture, Renderer, Shader, Stream, include_stream};
 
-/// Pictures 240 pixels wide, drawn 40 rows at a time.
+/// Pictures are 240 pixels wide and drawn 40 rows at a time.
 const LAYOUT: Layout = Layout::new(240, 40);
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
-    // Microcontrollers read the mesh from flash, and keep memory and band in a `static`.
+    // A program for a microcontroller reads the mesh from flash, and keeps `memory` and `band` in a `static`.
     let stream = Stream::parse(include_stream!("../firmware/teapot.tri"))?;
     let (mut memory, mut band) = (vec![0; LAYOUT.words::<Rgb565>()], [Rgb565::BLACK; LAYOUT.band()]);
     let mut display = SimulatorDisplay::<Rgb565>::new(Size::new(240, 240));

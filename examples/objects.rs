@@ -6,20 +6,20 @@ use embedded_graphics::{pixelcolor::Rgb565, prelude::*};
 use embedded_graphics_simulator::{OutputSettings, SimulatorDisplay};
 use microphong::{Layout, Picture, Pose, Renderer, Shader, Stats, Stream, format::Angle, include_stream};
 
-/// Pictures 240 pixels wide, drawn 40 rows at a time, with room for two objects.
+/// Pictures are 240 pixels wide and drawn 40 rows at a time. There is room for two objects.
 const LAYOUT: Layout = Layout::new(240, 40).objects(2);
 
-/// A picture for each angle, side by side, and the counts of the last one.
+/// Draws a picture for each angle, side by side, and returns the counts of the last one.
 ///
 /// # Errors
-/// When the stream has no mesh of a name, or the layout no room.
+/// The stream has no mesh with one of the names, or the layout has too little room.
 pub(crate) fn draw() -> Result<(SimulatorDisplay<Rgb565>, Stats), Box<dyn std::error::Error>> {
     let stream = Stream::parse(include_stream!("gauge.tri"))?;
     let (mut memory, mut band) = (vec![0; LAYOUT.words::<Rgb565>()], [Rgb565::BLACK; LAYOUT.band()]);
     let mut display = SimulatorDisplay::new(Size::new(480, 240));
     let mut renderer = Renderer::new(stream, Size::new(240, 240), &LAYOUT, &mut memory, &[Shader::AUTO])?;
 
-    // The names are those of the file: `o Dial` and `o Needle`.
+    // The names come from the file: `o Dial` and `o Needle`.
     let scene = renderer.scene();
     scene.clear();
     scene.add(stream.mesh("Dial")?, Pose::IDENTITY)?;

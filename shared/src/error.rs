@@ -84,26 +84,36 @@ pub enum RenderError {
 impl fmt::Display for RenderError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
-            Self::Size { width, height } => write!(f, "a picture of {width}x{height} pixels; each side must be 1 to {MAX_SIDE}"),
-            Self::Layout { width } => write!(f, "the layout of the memory is not for pictures of {width} columns, or has no row"),
-            Self::Memory { need } => write!(f, "the memory needs {need} words of 64 bits, as Layout::words says"),
-            Self::Materials { need } => write!(f, "the stream has {need} materials; give the layout of the memory room for as many"),
-            Self::Objects { need } => write!(f, "the scene has objects: {need}; give the layout of the memory room for as many"),
-            Self::NoSamples => f.write_str("antialiasing needs memory of its own; ask for it by Layout::antialias"),
-            Self::Band { need } => write!(f, "a band of pixels must hold a row of the picture, {need} pixels"),
+            Self::Size { width, height } => {
+                write!(f, "a picture of {width}x{height} pixels cannot be drawn; each side must be 1 to {MAX_SIDE}")
+            }
+            Self::Layout { width } => {
+                write!(
+                    f,
+                    "the layout is not for a picture of {width} columns, or has no row; use Layout::new({width}, rows) with one row or more"
+                )
+            }
+            Self::Memory { need } => write!(f, "the memory is too small; it must have {need} words of 64 bits (Layout::words)"),
+            Self::Materials { need } => write!(f, "the layout has too little room for materials; set Layout::materials({need})"),
+            Self::Objects { need } => write!(f, "the layout has too little room for objects; set Layout::objects({need})"),
+            Self::NoSamples => f.write_str("the layout has no memory for antialiasing; set Layout::antialias(true)"),
+            Self::Band { need } => write!(f, "the band is too short; it must hold at least one row of {need} pixels"),
             Self::Corner => f.write_str("the picture would reach beyond the display; move it or make it smaller"),
-            Self::Feature { name } => write!(f, "this needs the feature {name}; build the program with it"),
-            Self::Budget => f.write_str("an error budget must be 1/2 to 16"),
+            Self::Feature { name } => write!(f, "this program lacks the cargo feature {name}; enable it in Cargo.toml"),
+            Self::Budget => f.write_str("the error budget is out of range; it must be 0.5 to 16"),
             Self::UnknownMethod { method } => {
-                write!(f, "this program has no shading method number {method}, for which the stream asks; convert it with another --shader")
+                write!(
+                    f,
+                    "this program lacks shading method number {method}, which the stream names; list it, or convert with another --shader"
+                )
             }
             Self::Light { shader } => {
-                write!(f, "{shader} shading needs directional lights and an infinitely far viewer; this scene has near ones")
+                write!(f, "{shader} supports only directional lights and an infinitely far viewer; use another shading method")
             }
             Self::Exponent { shader, least } => {
-                write!(f, "{shader} shading needs materials whose exponent is {least} or more; give the material a larger one")
+                write!(f, "{shader} supports only exponents of {least} or more; use a larger exponent or another shading method")
             }
-            Self::Perspective { shader } => write!(f, "{shader} shading has no perspective-correct form"),
+            Self::Perspective { shader } => write!(f, "{shader} cannot interpolate light in perspective; use another shading method"),
         }
     }
 }

@@ -444,7 +444,7 @@ fn memory_that_is_missing_is_named() {
     let mut renderer = Renderer::<Rgb565>::new(stream, Size::new(32, 8), &layout, &mut memory, &Shader::ALL.map(Shader::on)).unwrap();
     assert_eq!(renderer.set_antialias(true), Err(RenderError::NoSamples));
     let text = renderer.set_antialias(true).unwrap_err().to_string();
-    assert_eq!(text, "antialiasing needs memory of its own; ask for it by Layout::antialias");
+    assert_eq!(text, "the layout has no memory for antialiasing; set Layout::antialias(true)");
     assert_eq!(renderer.set_antialias(false), Ok(()));
     assert_eq!(renderer.band_rows(), 2, "still without");
 }

@@ -140,7 +140,7 @@ fn costs_have_not_grown() {
         println!("{} costs have shrunk, which would hide later growth: {renew}", shrunk.len());
     }
     let list: Vec<_> = grown.iter().map(|change| change.to_string()).collect();
-    assert!(grown.is_empty(), "{} costs have grown:\n{}\n{growth}\nif that is meant, {renew}", grown.len(), list.join("\n"));
+    assert!(grown.is_empty(), "{} costs have grown:\n{}\n{growth}\nif this is intended, {renew}", grown.len(), list.join("\n"));
 }
 
 /// Renewed costs are the measured ones, with the reason beside them. Unchanged costs need no reason.
@@ -164,5 +164,5 @@ fn renewal_keeps_the_reason() {
 
     assert!(run(&["--renew", "costs.csv", "--reason", "None."]).contains("nothing to renew"));
     assert_eq!(fs::read_to_string(&reasons).unwrap(), text);
-    assert!(run(&["--check", "costs.csv"]).starts_with("1 frames cost what is recorded\nsince 0.1.0"));
+    assert!(run(&["--check", "costs.csv"]).starts_with("the costs of 1 frames are as recorded\nsince 0.1.0"));
 }

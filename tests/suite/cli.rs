@@ -253,7 +253,7 @@ fn meshes_are_simplified() {
     let said = place.succeeds(&["convert", "bowl.obj", "--simplify", "400", "--lod", "64x64,320x240"]);
     assert!(said.contains("pixels in a picture of 320x240") && said.contains("a level of"), "{said}");
     for most in ["800", "4000000000"] {
-        assert!(place.succeeds(&["convert", "bowl.obj", "--simplify", most]).contains("not simplified: it has no more than"));
+        assert!(place.succeeds(&["convert", "bowl.obj", "--simplify", most]).contains("not simplified: the mesh has no more than"));
     }
     assert!(json(&["two.obj", "--simplify", "300"])["triangles"].as_u64() <= Some(300));
     place.fails(
@@ -1073,9 +1073,9 @@ fn texts_that_are_no_scenes_are_refused() {
         (with("shape", "shap"), "unknown field `shap`"),
         (format!("{good}positon = [1, 0, 0]\n"), "unknown field `positon`"),
         (format!("{good}keys = [{{ frame = 1, agnle = 3 }}]\n"), "unknown field `agnle`"),
-        (with("sphere", "cone"), "there is no shape \"cone\"; take box, cylinder, sphere or torus"),
+        (with("sphere", "cone"), "there is no shape \"cone\"; use box, cylinder, sphere or torus"),
         (with("shape = \"sphere\"", "file = \"none.obj\""), "none.obj"),
-        (with("shape = \"sphere\"\n", ""), "say either the file"),
+        (with("shape = \"sphere\"\n", ""), "a mesh needs either `file`, or `shape`"),
         (with("mesh = \"a\"", "mesh = \"b\""), "line 8: object 1: mesh: there is no mesh \"b\"; write a [[mesh]] of this name"),
         (with("at = [0, 0, 4]", "at = [0, 0, 0]"), "line 3: camera: at: the camera must not look at the point where it is"),
         (with("at = [0, 0, 4]", "at = [0, 3, 0]"), "line 3: camera: at: the camera must not look along its `up`"),
@@ -1085,14 +1085,14 @@ fn texts_that_are_no_scenes_are_refused() {
         ),
         (format!("{good}scale = 9\n"), "line 9: object 1: scale: 9 is not possible; it must be a number from 0.0625 to 8"),
         (format!("{good}at = [17, 0, 0]\n"), "line 9: object 1: at: 17 is not possible; it must be a number from -16 to 16"),
-        (format!("{good}angle = 3\n"), "line 9: object 1: angle: say a rotation by"),
+        (format!("{good}angle = 3\n"), "line 9: object 1: angle: a rotation needs either"),
         (format!("{good}quaternion = [0, 0, 0, 0]\n"), "quaternion: it must not be zero"),
         (format!("{good}keys = [{{ frame = 3 }}, {{ frame = 3 }}]\n"), "line 9: object 1: key 2: frame: the frames of keys must rise"),
         (format!("{good}[[light]]\ntowards = [0, 0, 0]\n"), "light 1"),
-        (format!("{good}[[light]]\ntowards = [1, 0, 0]\nat = [1, 0, 0]\n"), "say either where it shines from"),
-        (format!("{good}[[light]]\ntowards = [1, 0, 0]\ncolour = \"red\"\n"), "\"red\" is no colour; write it as RRGGBB"),
+        (format!("{good}[[light]]\ntowards = [1, 0, 0]\nat = [1, 0, 0]\n"), "a light needs either `towards`"),
+        (format!("{good}[[light]]\ntowards = [1, 0, 0]\ncolour = \"red\"\n"), "\"red\" is not a colour; write it as RRGGBB"),
         (format!("background = 7\n{good}"), "a background is a colour, as \"203040\", or a gradient"),
-        (format!("background = {{ top = \"red\", bottom = \"000000\" }}\n{good}"), "line 1: background: top: \"red\" is no colour"),
+        (format!("background = {{ top = \"red\", bottom = \"000000\" }}\n{good}"), "line 1: background: top: \"red\" is not a colour"),
         (label("text = \"\"\nat = [0, 0]"), "line 10: label 1: text: it has 0 characters; it can have 1 to 30"),
         (label("text = \"0123456789012345678901234567890\"\nat = [0, 0]"), "it has 31 characters"),
         (label("text = \"5 \u{3a9}\"\nat = [0, 0]"), "its characters must be those of ISO 8859-1, in one line"),
@@ -1102,8 +1102,8 @@ fn texts_that_are_no_scenes_are_refused() {
             label("text = \"a\"\nat = [0, 0]\nheight = 5.9"),
             "line 12: label 1: height: 5.9 is not possible; it must be a number from 6 to less than 1920",
         ),
-        (label("text = \"a\"\nat = [0, 0]\nalign = \"top\""), "there is no \"top\"; take left, middle or right"),
-        (label("text = \"a\"\nat = [0, 0]\ncolour = \"red\""), "line 12: label 1: colour: \"red\" is no colour"),
+        (label("text = \"a\"\nat = [0, 0]\nalign = \"top\""), "there is no \"top\"; use left, middle or right"),
+        (label("text = \"a\"\nat = [0, 0]\ncolour = \"red\""), "line 12: label 1: colour: \"red\" is not a colour"),
         (format!("shader = \"none\"\n{good}"), "there is no method \"none\""),
         (format!("{good}[[mesh]]\nname = \"a\"\nshape = \"box\"\n"), "two meshes of the name"),
         (
@@ -1168,7 +1168,7 @@ fn formats_and_bands_keep_their_promises() {
 #[test]
 fn perspective_is_corrected_or_refused() {
     let place = Place::new();
-    let words = ["goldman shading has no perspective-correct form"];
+    let words = ["goldman cannot interpolate light in perspective"];
     place.fails(&["render", "teapot", "--shader", "goldman", "--perspective-correct"], 1, &words);
     place.fails(&["compare", "teapot", "--size", "64x48", "--shader", "duff,goldman", "--perspective-correct"], 1, &words);
     let compare = ["compare", "teapot", "--size", "64x48", "--shader", "all", "--perspective-correct", "--json"];

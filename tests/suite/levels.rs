@@ -194,16 +194,19 @@ fn streams_with_wrong_levels_are_refused() -> Result {
         Ok(StreamBytes::from(&bytes[..]).parse().err().map(|error| error.to_string()).unwrap_or_default())
     };
     assert_eq!(refused(&|_| ())?, "");
-    let level = |record: u32| format!("mesh level of record {record} is out of range");
+    let level = |record: u32| format!("mesh level of record {record} is out of range; convert the mesh again");
     assert_eq!(refused(&|meshes| meshes[0].error = 1)?, level(0));
     assert_eq!(refused(&|meshes| meshes[2].error = meshes[1].error)?, level(2));
     assert_eq!(refused(&|meshes| meshes[1].error = u16::MAX)?, level(2));
     assert_eq!(refused(&|meshes| meshes[1].vertices -= 1)?, level(1));
     assert_eq!(refused(&|meshes| meshes[2].material = 1)?, level(2));
-    assert_eq!(refused(&|meshes| meshes[1].first_vertex = 1)?, "mesh first vertex of record 1 is out of range");
-    assert_eq!(refused(&|meshes| meshes[1].error = 0)?, "mesh first vertex of record 1 is out of range");
-    assert_eq!(refused(&|meshes| meshes[2].first_triangle -= 1)?, "mesh first triangle of record 2 is out of range");
-    assert_eq!(refused(&|meshes| meshes[2].triangles -= 1)?, "mesh coverage of record 3 is out of range");
+    assert_eq!(refused(&|meshes| meshes[1].first_vertex = 1)?, "mesh first vertex of record 1 is out of range; convert the mesh again");
+    assert_eq!(refused(&|meshes| meshes[1].error = 0)?, "mesh first vertex of record 1 is out of range; convert the mesh again");
+    assert_eq!(
+        refused(&|meshes| meshes[2].first_triangle -= 1)?,
+        "mesh first triangle of record 2 is out of range; convert the mesh again"
+    );
+    assert_eq!(refused(&|meshes| meshes[2].triangles -= 1)?, "mesh coverage of record 3 is out of range; convert the mesh again");
     Ok(())
 }
 

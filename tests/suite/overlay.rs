@@ -343,7 +343,11 @@ fn what_is_no_label_is_refused() {
     ];
     for label in faults {
         let bytes = labelled(vec![good, label]);
-        assert_eq!(bytes.parse().err().map(|error| error.to_string()), Some("label of record 1 is out of range".to_owned()), "{label:?}");
+        assert_eq!(
+            bytes.parse().err().map(|error| error.to_string()),
+            Some("label of record 1 is out of range; convert the mesh again".to_owned()),
+            "{label:?}"
+        );
     }
     assert!(labelled(vec![good, text(&[b'~'; 30]), text(b" \xA0\xFF")]).parse().is_ok());
 }

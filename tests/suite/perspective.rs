@@ -227,7 +227,7 @@ fn what_cannot_be_corrected_is_refused() {
         assert_eq!(result.is_ok(), shader.facts().perspective, "{}", shader.name());
         if let Err(error) = result {
             assert_eq!(error, RenderError::Perspective { shader: shader.name() });
-            assert_eq!(error.to_string(), format!("{} shading has no perspective-correct form", shader.name()));
+            assert_eq!(error.to_string(), format!("{} cannot interpolate light in perspective; use another shading method", shader.name()));
             // The other way round: the method in use stays.
             renderer.set_shader(Shader::PHONG.on()).unwrap();
             renderer.set_perspective_correct(true).unwrap();

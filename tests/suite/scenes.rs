@@ -473,7 +473,7 @@ fn what_cannot_be_drawn_is_refused() {
         (
             scene.look_at([I18F14::ONE; 3], [I18F14::ONE; 3], [I18F14::ZERO, I18F14::ONE, I18F14::ZERO]).err(),
             SceneError::Rotation,
-            "a rotation must be",
+            "not a rotation",
         ),
         (Pose::from_quaternion([I2F30::ZERO; 4]).err(), SceneError::Rotation, "quaternion"),
         (Pose::about([0; 3], U0F32::ZERO).err(), SceneError::Rotation, "axis"),

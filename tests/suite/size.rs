@@ -39,7 +39,7 @@ fn sizes_have_not_grown() {
     changes.iter().for_each(|(text, _)| println!("{text}"));
     let grown: Vec<_> = changes.iter().filter(|(_, grown)| *grown).collect();
     let renew = "cargo run --release --features boards -- size --renew tests/baselines/sizes.csv --reason \"...\"";
-    assert!(grown.is_empty(), "{grown:#?}\nif that is meant, renew the file: {renew}");
+    assert!(grown.is_empty(), "{grown:#?}\nif this is intended, renew the file: {renew}");
     // What no emulator has run has no stack.
     assert!(all.iter().all(|entry| (entry.stack == 0) == matches!(entry.program.core, Core::CortexM33 | Core::RiscV)
         && entry.flash > 30_000

@@ -135,7 +135,7 @@ fn a_missing_method_is_named() -> Result {
     let elf = Elf::read(&verify::build(board)?)?.with_stream(&stream("teapot")?)?;
     let recording = board::run(board, &elf, Until::FirstFrame)?;
     let failure = recording.failure().expect("a line that starts with `error: `");
-    assert!(failure.contains("no shading method number 26") && failure.contains("convert it with another --shader"), "{failure}");
+    assert!(failure.contains("lacks shading method number 26") && failure.contains("convert with another --shader"), "{failure}");
     assert!(message::is_shown(board, recording.pictures.last().expect("a picture"), failure), "the display does not show {failure:?}");
     Ok(())
 }

@@ -1,4 +1,4 @@
-//! The teapot on an ILI9341 panel, 320x240, by an STM32F411: SCK at PA5, MOSI at PA7, CS at PA4, DC at PA3, RST at PA2.
+//! Draws the teapot with an STM32F411 on an ILI9341 panel, 320x240: SCK at PA5, MOSI at PA7, CS at PA4, DC at PA3, RST at PA2.
 #![no_std]
 #![no_main]
 

@@ -3,13 +3,13 @@
 use embedded_graphics::{pixelcolor::Rgb565, prelude::*};
 use microphong::{Layout, Picture, RenderError, Renderer, Shader, Stream, include_stream};
 
-/// Pictures 320 pixels wide, 24 rows at once; room for all vertices and triangles of the teapot, and one material.
+/// Pictures are 320 pixels wide and drawn 24 rows at a time. There is room for all vertices and triangles of the teapot, and one material.
 pub(crate) const LAYOUT: Layout = Layout::new(320, 24).vertices(529).triangles(992);
-/// Read in place: the mesh stays in flash.
+/// The mesh is read in place from flash.
 pub(crate) static MESH: &[u8] = include_stream!("../teapot.tri");
 
 pub(crate) fn renderer<'a>(stream: Stream<'a>, memory: &'a mut [u64]) -> Result<Renderer<'a, Rgb565>, RenderError> {
-    // What `convert` asks for unless told otherwise. The program has the code of the methods in this list and of no others.
+    // `convert` selects the method `auto` by default. The program contains only the code of the methods in this list.
     Renderer::new(stream, Size::new(320, 240), &LAYOUT, memory, &[Shader::AUTO])
 }
 

@@ -33,10 +33,7 @@ impl StreamBytes {
         let bytes = fs::read(path).with_context(|| format!("cannot read {}", path.display()))?;
         let stream = Self::from(bytes.as_slice());
         let checked = stream.parse().and_then(|stream| stream.names().try_for_each(|entry| entry.map(drop)));
-        checked.map_err(|error| match error {
-            StreamError::Magic => anyhow!("{}: {error}; make one with `microphong convert mesh.obj -o mesh.tri`", path.display()),
-            _ => anyhow!("{}: {error}; copy the file again, or make it anew with `microphong convert`", path.display()),
-        })?;
+        checked.map_err(|error| anyhow!("{}: {error}", path.display()))?;
         Ok(stream)
     }
 

@@ -125,7 +125,7 @@ fn buffers(document: &Document, mut blob: Option<Vec<u8>>, path: &Path) -> Resul
             }
         };
         if bytes.len() < buffer.length() {
-            bail!("{} bytes, but {} are said to be there; it was cut off", bytes.len(), buffer.length());
+            bail!("it has {} bytes instead of {}; the file was cut off", bytes.len(), buffer.length());
         }
         Ok(bytes)
     };

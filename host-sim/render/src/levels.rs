@@ -153,7 +153,7 @@ pub fn simplify(mesh: &Mesh, parts: &mut [Part], most: usize, tick: &dyn Fn()) -
         bail!("the mesh cannot be made of {most} triangles, but of {after}{borders}");
     }
     if parts.iter().any(|part| part.triangles.is_empty()) {
-        bail!("with {most} triangles nothing is left of the mesh, which has {before}, or of one of its materials or objects; give more");
+        bail!("with {most} of {before} triangles nothing is left of the mesh, or of one of its materials or objects; give more");
     }
     Ok(Some(Simplified { before, error: apart }))
 }

@@ -68,7 +68,7 @@ pub fn description(name: &str) -> &'static str {
         "triangle" => "one bulged triangle, point light close in front",
         "gauges" => "three gauges whose needles move, 2 objects each",
         "board" => "a board with 11 pieces, one of which moves",
-        "sensor" => "an object that turns as a recorded sensor says, under a moving light",
+        "sensor" => "an object with the recorded orientation of a sensor, under a moving light",
         _ => "",
     }
 }
@@ -177,7 +177,7 @@ pub struct Misplaced {
 impl fmt::Display for Misplaced {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let Self { name, kind, remedy } = self;
-        write!(f, "{name} is {kind}, and options such as --up and --colour are for mesh files; {remedy}")
+        write!(f, "{name} is {kind}, and options such as --up and --colour are for model files; {remedy}")
     }
 }
 

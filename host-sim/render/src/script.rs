@@ -130,7 +130,7 @@ fn colour(field: Field<'_>) -> Result<V3> {
     let text = field.text()?;
     let digits = text.strip_prefix('#').unwrap_or(&text);
     let value = u32::from_str_radix(digits, 16).ok().filter(|_| digits.len() == 6 && !digits.starts_with('+'));
-    let value = value.ok_or_else(|| place.error(format!("\"{}\" is no colour; write it as RRGGBB", quoted(&text))))?;
+    let value = value.ok_or_else(|| place.error(format!("\"{}\" is not a colour; write it as RRGGBB", quoted(&text))))?;
     Ok([16, 8, 0].map(|shift| f64::from(value >> shift & 255) / 255.0))
 }
 
@@ -157,7 +157,7 @@ fn shader(field: Field<'_>) -> Result<Shader> {
     let name = field.text()?;
     Shader::ALL.into_iter().find(|shader| shader.name() == name).ok_or_else(|| {
         let names: Vec<_> = Shader::ALL.iter().map(|shader| shader.name()).collect();
-        place.error(format!("there is no method \"{}\"; take one of {}", quoted(&name), names.join(", ")))
+        place.error(format!("there is no method \"{}\"; use one of {}", quoted(&name), names.join(", ")))
     })
 }
 
@@ -189,7 +189,7 @@ impl Stock {
         let (mut mesh, mut materials) = match (&file, &shape) {
             (Some(file), None) => from_file(file, crease, folder).with_context(|| table.place_of("file").to_string())?,
             (None, Some(shape)) => (of_shape(shape, tube, &table.place_of("shape"))?, vec![None]),
-            _ => return Err(table.place.error(format!("say either the file of the mesh, or as its shape {SHAPES}"))),
+            _ => return Err(table.place.error(format!("a mesh needs either `file`, or `shape` with {SHAPES}"))),
         };
         if let Some(size) = size {
             mesh = shapes::stretched(mesh, size);
@@ -218,7 +218,7 @@ impl Stock {
         self.surfaces.extend(surfaces(&materials, &surface, AMBIENT));
         ensure!(
             self.parts.len() > first,
-            table.place.error("nothing is left of it in steps of 1/16384; make it larger, and scale the object")
+            table.place.error("rounded to steps of 1/16384, nothing is left of it; make it larger, and scale the object")
         );
         let many = "there are too many materials and parts of meshes; 65535 are possible";
         ensure!(self.parts.len().max(self.surfaces.len()) <= NUMBERS as usize, table.place.error(many));
@@ -239,7 +239,7 @@ fn name(field: Field<'_>) -> Result<String> {
 }
 
 fn from_file(file: &str, crease: f64, folder: Option<&Path>) -> Result<(Mesh, Vec<Option<Material>>)> {
-    let folder = folder.context("there is no folder from which files could be read; take a shape")?;
+    let folder = folder.context("there is no folder from which files could be read; use a shape")?;
     let Imported { mesh, materials, .. } = import::file(&folder.join(file), Weld { crease, ..Weld::default() })?;
     Ok((mesh, materials))
 }
@@ -250,7 +250,7 @@ fn of_shape(shape: &str, tube: f64, place: &Place<'_>) -> Result<Mesh> {
         "cylinder" => shapes::cylinder(32),
         "sphere" => shapes::sphere(18, 11, 0.0),
         "torus" => shapes::ring(28, 10, tube),
-        other => return Err(place.error(format!("there is no shape \"{}\"; take {SHAPES}", quoted(other)))),
+        other => return Err(place.error(format!("there is no shape \"{}\"; use {SHAPES}", quoted(other)))),
     })
 }
 
@@ -283,7 +283,7 @@ fn align(field: Field<'_>) -> Result<u8> {
         "left" => Ok(LEFT),
         "middle" => Ok(MIDDLE),
         "right" => Ok(RIGHT),
-        other => Err(place.error(format!("there is no \"{}\"; take left, middle or right", quoted(other)))),
+        other => Err(place.error(format!("there is no \"{}\"; use left, middle or right", quoted(other)))),
     }
 }
 
@@ -297,7 +297,7 @@ fn lamp(mut table: Table<'_>, index: usize, cast: &mut Cast) -> Result<Lamp> {
     let lamp = match (towards, at) {
         (Some(towards), None) => Lamp::Fixed(towards, colour),
         (None, Some(at)) => Lamp::FixedNear(at, colour),
-        _ => return Err(table.place.error("say either where it shines from, by `towards`, or where it is, by `at`")),
+        _ => return Err(table.place.error("a light needs either `towards`, its direction, or `at`, its position")),
     };
     let mut before = None;
     let stop = |mut table: Table<'_>, frame| {
@@ -305,7 +305,7 @@ fn lamp(mut table: Table<'_>, index: usize, cast: &mut Cast) -> Result<Lamp> {
         let at = table.get("at", |field| field.numbers(&WORLD))?;
         table.end()?;
         let vector = if matches!(lamp, Lamp::Fixed(..)) { towards.filter(|_| at.is_none()) } else { at.filter(|_| towards.is_none()) };
-        let vector = vector.ok_or_else(|| table.place.error("its keys must say the same as the light: `towards` or `at`"))?;
+        let vector = vector.ok_or_else(|| table.place.error("a light and its keys must all have `towards`, or all `at`"))?;
         // Between opposite directions there is no shorter way, and the straight one goes through no light.
         let is_opposite = towards.zip(before.replace(vector)).is_some_and(|(now, before)| dot(now, before) < OPPOSITE);
         let opposite = "it is opposite to the key before, and there are many ways between them; write a key in between";
@@ -418,7 +418,7 @@ fn pose(table: &mut Table<'_>, frame: u32) -> Result<Stop> {
         (None, None, Some(axis), Some(angle)) => Turn::About(axis, angle),
         _ => {
             let place = table.place_of_any(&["quaternion", "euler", "axis", "angle"]);
-            return Err(place.error("say a rotation by `axis` and `angle`, by `euler`, or by `quaternion`"));
+            return Err(place.error("a rotation needs either `axis` and `angle`, or `euler`, or `quaternion`"));
         }
     };
     let scale = if hidden { 0 } else { nearest::<Scale>(scale).to_bits() };

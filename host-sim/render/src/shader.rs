@@ -97,7 +97,7 @@ impl Shader {
     pub fn of(stream: &Stream<'_>) -> Result<Self> {
         let id = stream.header.shader;
         Self::by_id(id)
-            .with_context(|| format!("the stream asks for shading method number {id}, which is none of these; name one by --shader"))
+            .with_context(|| format!("the stream names shading method number {id}, which this command lacks; choose one with --shader"))
     }
 
     /// Whether the method chooses by an error budget.

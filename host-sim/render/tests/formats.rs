@@ -291,7 +291,7 @@ fn errors_of_gltf_name_the_place() {
         ("/bufferViews/1/byteLength", json!(5), "accessor 1 does not lie in its buffer"),
         ("/bufferViews/1/byteStride", json!(4), "accessor 1 does not lie in its buffer"),
         ("/bufferViews/1/buffer", json!(1), "bufferViews[1].buffer"),
-        ("/buffers/0/byteLength", json!(100_000), "buffer 0: 240 bytes, but 100000 are said to be there; it was cut off"),
+        ("/buffers/0/byteLength", json!(100_000), "buffer 0: it has 240 bytes instead of 100000; the file was cut off"),
         ("/buffers/0/uri", json!("none.bin"), "none.bin; put it beside the mesh"),
         ("/buffers/0/uri", json!("data:;base64,A"), "buffer 0: its data URI"),
         ("/scenes", json!([]), "scene"),

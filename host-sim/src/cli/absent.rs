@@ -10,7 +10,7 @@ macro_rules! absent {
     ($($name:ident: $about:literal;)*) => {$(
         pub(super) mod $name {
             #[derive(clap::Args)]
-            #[command(about = concat!($about, " (not in this build; call it to see how to get it)"), disable_help_flag = true)]
+            #[command(about = concat!($about, " (not in this build; run it to see how to build it)"), disable_help_flag = true)]
             pub(crate) struct Arguments {
                 #[arg(hide = true, trailing_var_arg = true, allow_hyphen_values = true)]
                 arguments: Vec<std::ffi::OsString>,
@@ -25,10 +25,10 @@ macro_rules! absent {
 
 #[cfg(not(feature = "boards"))]
 absent! {
-    verify: "Draw scenes by a board's own firmware under emulation, and compare every pixel with this computer";
-    bench: "Count the instructions that a processor takes for one frame";
-    growth: "Count how the cost of a frame grows with triangles, pixels, lights and bands";
-    size: "Print flash, RAM and stack of whole programs, and whether chips have room for them";
+    verify: "Draw scenes with the firmware of emulated boards, and compare every pixel with this computer";
+    bench: "Count the instructions that a processor needs for one frame";
+    growth: "Count the instructions of a frame for growing numbers of triangles, pixels, lights and bands";
+    size: "Show flash, RAM and stack of whole programs, and whether they fit into chips";
 }
 
 /// The error that names the build with `what`, by the command to run.
@@ -42,7 +42,10 @@ pub(super) fn refuse(what: &str, name: &str, arguments: &[OsString]) -> Result<O
             command.push_str(&argument);
         }
     }
-    Err(Usage(format!("this build has no {what}: it was compiled without emulated boards; in the sources, run\n  {command}")).into())
+    Err(Usage(format!(
+        "this build has no {what}, because it was compiled without emulated boards; in the folder of the sources, run\n  {command}"
+    ))
+    .into())
 }
 
 #[cfg(test)]

@@ -26,22 +26,22 @@ use microphong_sim::{
 };
 use std::path::{Path, PathBuf};
 
-/// Count the instructions that a processor takes for one frame, by stage, and show the error of the frame
+/// Count the instructions that a processor needs for one frame, by stage, and measure the error of the frame
 ///
 /// The counts are exact: an emulated board runs its firmware, or callgrind runs the code on this computer, and every instruction is counted.
-/// Instructions are not cycles. The counts of the Pico are approximate.
+/// Instructions are not cycles. The cycles and times of the Pico are approximate.
 #[derive(clap::Args)]
 #[command(after_help = EXAMPLES)]
 pub(crate) struct Arguments {
-    /// .tri, .obj, .stl, .ply, .gltf, .glb and .toml files, built-in scenes, or all built-in scenes. By default one of each common kind: large and
-    /// small triangles, in one hue, in blue with a white highlight, and under two coloured lights.
+    /// .tri, .obj, .stl, .ply, .gltf, .glb and .toml files, names of built-in scenes, or `all` for every built-in scene. By default six scenes of common
+    /// kinds: large and small triangles, in one hue, in blue with a white highlight, and under two coloured lights.
     #[arg(value_name = "SCENE", default_values = scene::PORTFOLIO)]
     scenes: Vec<String>,
-    /// Shading methods, separated by commas, or all that can draw the scene.
+    /// Shading methods, separated by commas, or `all` for every method that can draw the scene.
     #[arg(long, value_name = "S,...", default_value = "flat,gouraud,six-point,sqrt6,phong", value_parser = parse::SeveralShaders)]
     shader: Several<Shader>,
-    /// Error budget of auto and auto-linear: the largest error of a pixel against Phong shading, in 1/255, from 0.5 to 16. Several are separated by
-    /// commas. By default the scene's own.
+    /// Error budgets of auto and auto-linear, separated by commas: the largest difference of a pixel from Phong shading, in 1/255, from 0.5 to 16. The
+    /// default is the budget of the scene.
     #[arg(long, value_name = "LSB,...", value_delimiter = ',', value_parser = parse::budget)]
     budget: Vec<ErrorBudget>,
     /// Boards, separated by commas: mps2-an385 (Cortex-M3), mps2-an386 (Cortex-M4F), pico (Cortex-M0+), x86-64 (this computer);
@@ -51,23 +51,23 @@ pub(crate) struct Arguments {
     /// Print one JSON object per frame, or per animation.
     #[arg(long)]
     json: bool,
-    /// Write DIR/index.html and DIR/chart.svg: run time against error, growth of costs, and break-even points, on one page.
+    /// Write DIR/index.html and DIR/chart.svg: a page with run time against error, the growth of costs, and break-even points.
     #[arg(long, value_name = "DIR")]
     report: Option<PathBuf>,
-    /// Also measure other renderers on these scenes, on the boards mps2-an385, mps2-an386 and x86-64, and print their figures beside ours.
+    /// Also measure other renderers on these scenes, on the boards mps2-an385, mps2-an386 and x86-64, and print their figures beside those of microphong.
     #[arg(long)]
     peers: bool,
-    /// Count antialiasing and interpolation in perspective beside the plain style, on this computer.
+    /// Also count frames with antialiasing, and with interpolation in perspective, on this computer.
     #[arg(long, conflicts_with_all = ["board", "report", "peers"])]
     styles: bool,
-    /// Count what is saved by leaving out work that nobody can see, one kind at a time, on this computer.
+    /// Count how many instructions are saved by skipping invisible work, for each kind of work, on this computer.
     #[arg(long, conflicts_with_all = ["board", "report", "peers", "styles"])]
     skips: bool,
-    /// Count all frames of an animation but the first, in bands of 16 rows, on this computer: all of the picture, all without hidden objects, and
-    /// only areas that have changed.
+    /// Count the frames of an animation after the first, in bands of 16 rows, on this computer: whole pictures with and without hidden objects, and
+    /// partial redraw.
     #[arg(long, conflicts_with_all = ["board", "report", "peers", "styles", "skips"])]
     redraw: bool,
-    /// Measure the frames that FILE lists. Fail if one takes over 0.2 % more instructions or flash than FILE records.
+    /// Measure the frames that FILE lists. Fail if a frame needs over 0.2 % more instructions or flash than FILE records.
     #[arg(long, value_name = "FILE", conflicts_with_all = ["scenes", "MeshOptions", "shader", "board", "json", "report", "peers", "styles", "skips", "redraw"])]
     check: Option<PathBuf>,
     /// Measure the frames that FILE lists, and record their costs there. Needs --reason.
@@ -78,7 +78,7 @@ pub(crate) struct Arguments {
         conflicts_with_all = ["scenes", "MeshOptions", "shader", "board", "json", "report", "peers", "styles", "skips", "redraw", "check"]
     )]
     renew: Option<PathBuf>,
-    /// Why costs have changed, in a sentence. With --renew costs.csv it is added to costs-reasons.md.
+    /// The reason for the changed costs, in a sentence. With --renew costs.csv it is added to costs-reasons.md.
     #[arg(long, value_name = "TEXT", requires = "renew", value_parser = parse::reason)]
     reason: Option<String>,
     #[command(flatten)]
@@ -90,31 +90,31 @@ Examples:
   microphong bench                                       ordinary scenes on a Cortex-M3
   microphong bench peer-sphere-convex                    a convex mesh, drawn without depth test
   microphong bench teapot --board pico --shader sqrt6    frame time and frames per second of the Pico
-  microphong bench all --shader all --board all --json   everything
-  microphong bench peer-sphere --shader all --board all --report bench    the chart, as a page
-  microphong bench --peers --board mps2-an385,mps2-an386,x86-64    beside other renderers
-  microphong bench --styles                              what antialiasing and perspective cost
-  microphong bench all --skips                           what leaving out invisible work saves
-  microphong bench board --redraw --shader auto          what partial redraw saves
-  microphong bench --check tests/baselines/costs.csv     has anything become dearer?
+  microphong bench all --shader all --board all --json   all scenes, methods and boards
+  microphong bench peer-sphere --shader all --board all --report bench    a page with the chart
+  microphong bench --peers --board mps2-an385,mps2-an386,x86-64    compared with other renderers
+  microphong bench --styles                              the cost of antialiasing and perspective
+  microphong bench all --skips                           the saving by skipping invisible work
+  microphong bench board --redraw --shader auto          the saving by partial redraw
+  microphong bench --check tests/baselines/costs.csv     check that no cost has grown
   microphong bench --renew tests/baselines/costs.csv --reason \"Thin triangles no longer flicker.\"
-                                                         it has, and this is why
+                                                         record the new costs and the reason
 
 Stages:
-  frame     once a frame: camera, lights
-  vertex    transformation and light
-  cull      triangles that face away or are off screen, binning
-  set-up    per triangle and band: nodes, fits, edges
-  span      per row of a triangle, up to the inner loop
+  frame     once per frame: camera, lights
+  vertex    transformation and lighting of vertices
+  cull      removing triangles that face away or are off screen, and sorting the others into bands
+  set-up    once per triangle and band: polynomials of light and depth, edges
+  span      once per row of a triangle: work before the inner loop
   pixel     the inner loop
-  clear     background and depth of the band; not part of the sum
-  transfer  pixels on their way to the display, waiting left out; not part of the sum
+  clear     filling the band with the background and the farthest depth; not part of the sum
+  transfer  sending pixels to the display, without waiting; not part of the sum
 
-  flash     what a firmware with this method alone has more than one with none; in brackets
-            what no other method needs
-  error     against per-pixel Phong shading in 64-bit floating point, 255 is full
+  flash     flash that the method adds to a firmware without methods; in brackets the part
+            that no other method shares
+  error     difference from per-pixel Phong shading in 64-bit floating point; 255 is full intensity
 
-Exit codes: 0 done; 1 failed, or something has become dearer; 2 wrong usage.";
+Exit codes: 0 success; 1 failure, or a cost has grown; 2 wrong usage.";
 
 /// Processors, by their boards.
 fn processors(text: &str) -> Result<Several<Processor>, String> {
@@ -129,7 +129,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome> {
         return renew(path, reason);
     }
     if (arguments.styles || arguments.skips || arguments.redraw) && arguments.budget.len() > 1 {
-        return Err(Usage("--styles, --skips and --redraw count by one --budget; give one value".to_owned()).into());
+        return Err(Usage("--styles, --skips and --redraw take only one --budget; give one value".to_owned()).into());
     }
     let scenes = scenes::load_all(&arguments.scenes, arguments.options.as_ref(), arguments.budget.first().copied())?;
     let Several { values: shaders, all } = &arguments.shader;
@@ -223,8 +223,8 @@ fn redrawn(cost: &RedrawCost) -> Result<()> {
     let RedrawCost { scene, shader, frames, band_rows, whole, with_hidden_objects, redrawn } = cost;
     let (times, share) = (*with_hidden_objects as f64 / *whole as f64, 100.0 * *redrawn as f64 / *whole as f64);
     report::line(&format!(
-        "x86-64, {scene}, {shader}: {} instructions a frame, mean of {frames} in bands of {band_rows} rows; with hidden-objects {times:.2} times; \
-         what has changed alone {}, {share:.1} %",
+        "x86-64, {scene}, {shader}: {} instructions per frame, mean of {frames} in bands of {band_rows} rows; with hidden-objects {times:.2} times; \
+         partial redraw {}, {share:.1} %",
         report::grouped(*whole),
         report::grouped(*redrawn)
     ))
@@ -248,7 +248,7 @@ fn drawable<W>(scenes: &[(Scene, W)]) -> Result<Vec<&Scene>> {
     let mut drawable = Vec::new();
     for (scene, _) in scenes {
         match peers::obstacle(&scene.stream.parse()?)? {
-            Some(obstacle) => report::error(&format!("other renderers do not draw {}: {obstacle}", scene.name)),
+            Some(obstacle) => report::error(&format!("other renderers cannot draw {}: {obstacle}", scene.name)),
             None => drawable.push(scene),
         }
     }
@@ -285,13 +285,13 @@ fn compare(path: &Path) -> Result<Outcome> {
     changes.iter().try_for_each(|change| report::line(&change.to_string()))?;
     let grown = changes.iter().filter(|change| change.percent() > 0.0).count();
     let shrunk = changes.len() - grown;
-    let renew = format!("if that is meant, renew the file: microphong bench --renew {} --reason \"...\"", path.display());
+    let renew = format!("if this is intended, renew the file: microphong bench --renew {} --reason \"...\"", path.display());
     if grown > 0 {
         report::line(&format!("{grown} of {} costs have grown by more than {} %; {renew}", 2 * recorded.len(), baseline::TOLERANCE))?;
     } else if shrunk > 0 {
         report::line(&format!("{shrunk} costs have shrunk, which would hide later growth; {renew}"))?;
     } else {
-        report::line(&format!("{} frames cost what is recorded", recorded.len()))?;
+        report::line(&format!("the costs of {} frames are as recorded", recorded.len()))?;
     }
     grown_since(path, &measured)?;
     Ok(if grown > 0 { Outcome::Differences } else { Outcome::Done })
@@ -300,7 +300,7 @@ fn compare(path: &Path) -> Result<Outcome> {
 fn renew(path: &Path, reason: &str) -> Result<Outcome> {
     let [recorded, measured] = again(path)?;
     if recorded == measured {
-        report::line(&format!("{} frames cost exactly what is recorded: nothing to renew", recorded.len()))?;
+        report::line(&format!("the costs of {} frames are exactly as recorded: nothing to renew", recorded.len()))?;
     } else {
         baseline::changes(&recorded, &measured).iter().try_for_each(|change| report::line(&change.to_string()))?;
         let reasons = renewal::renew(path, [&recorded, &measured], reason)?;

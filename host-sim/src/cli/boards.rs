@@ -66,7 +66,7 @@ impl Board {
         let Self { name, budget: Budget { height, layout }, .. } = self;
         let length = stream.header.length as usize;
         if let Some(room) = self.room().filter(|&room| length > room) {
-            bail!("the stream has {length} bytes, and {name} has room for {room}; --simplify makes it smaller");
+            bail!("the stream has {length} bytes, but {name} has room for {room}; use --simplify to make it smaller");
         }
         ensure!(self.has_text || stream.labels.is_empty(), "the firmware of {name} has no fonts; remove the labels");
         let size = Size::new(layout.width as u32, *height as u32);
@@ -75,11 +75,11 @@ impl Board {
         match Renderer::<Rgb565>::with_shader(*stream, size, layout, &mut memory, shader.on()) {
             Ok(_) => Ok(()),
             Err(RenderError::Materials { need }) => bail!(
-                "it has {need} materials, and the firmware of {name} has room for {}; give several the same material, or the mesh one --colour",
+                "the scene has {need} materials, but the firmware of {name} has room for {}; use fewer materials, or --colour for one",
                 layout.materials
             ),
             Err(RenderError::Objects { need }) => {
-                bail!("it has {need} objects, and the firmware of {name} has room for {}; leave some out", layout.objects)
+                bail!("the scene has {need} objects, but the firmware of {name} has room for {}; remove some", layout.objects)
             }
             Err(error) => bail!("the firmware of {name} cannot draw it: {error}"),
         }

@@ -6,20 +6,20 @@ use microphong::method::highlight_error::{COLUMNS, Growth, LEAST_EXPONENTS, ROWS
 use microphong_sim::bounds::{Place, STEPS, Table, source, table, worst};
 use serde::Serialize;
 
-/// Search for the largest errors of interpolated highlights, and write the table by which `auto` chooses
+/// Search for the largest errors of interpolated highlights, and print the table that `auto` uses to choose methods
 ///
-/// The table is a file of the core, shared/src/method/highlight_error/table.rs. It holds the largest errors that were found, and a margin. With
-/// --check no table is written: triangles are searched whose errors exceed the compiled table.
+/// The table is a file of the core, shared/src/method/highlight_error/table.rs. It holds the largest errors that were found, with a margin. With --check
+/// the command prints no table. Instead it searches for triangles whose errors exceed the compiled table.
 #[derive(clap::Args)]
 #[command(after_help = EXAMPLES)]
 pub(crate) struct Arguments {
-    /// Number of triangles to try for each entry and exponent. More take longer and find slightly larger errors.
+    /// Number of triangles to try for each entry and exponent. A larger number takes longer and finds slightly larger errors.
     #[arg(long, default_value_t = 2000, value_name = "N", value_parser = clap::value_parser!(u32).range(40..))]
     effort: u32,
     /// Seed of the random triangles.
     #[arg(long, default_value_t = 1, value_name = "S", value_parser = parse::whole)]
     seed: u64,
-    /// Search this number of places in the compiled table for larger errors, and write no table.
+    /// Search for larger errors at this number of places of the compiled table, and print no table.
     #[arg(long, value_name = "PLACES", value_parser = parse::count)]
     check: Option<u64>,
     /// Print one JSON object.
@@ -30,7 +30,7 @@ pub(crate) struct Arguments {
 const EXAMPLES: &str = "\
 Examples:
   microphong bounds > shared/src/method/highlight_error/table.rs    five minutes on two processors
-  microphong bounds --check 100000 --effort 200 --seed 7            look for larger errors";
+  microphong bounds --check 100000 --effort 200 --seed 7            search for larger errors";
 
 /// The kinds of error, in the order of the table.
 const KINDS: [&str; 4] = ["linear, too dark", "linear, too bright", "quadratic", "cosines"];

@@ -21,24 +21,24 @@ use std::path::PathBuf;
 
 /// Measure shading methods against Phong shading in 64-bit floating point
 ///
-/// Light levels are compared before a pixel format rounds them. One LSB is 1/255 of full intensity.
+/// The command compares light levels before a pixel format rounds them. One LSB is 1/255 of full intensity.
 #[derive(clap::Args)]
 #[command(after_help = EXAMPLES)]
 pub(crate) struct Arguments {
-    /// .tri, .obj, .stl, .ply, .gltf, .glb and .toml files, built-in scenes, or all built-in scenes.
+    /// .tri, .obj, .stl, .ply, .gltf, .glb and .toml files, names of built-in scenes, or `all` for every built-in scene.
     #[arg(required = true, value_name = "SCENE")]
     scenes: Vec<String>,
     /// Shading methods by name, separated by commas, or all.
     #[arg(long, default_value = "all", value_name = "S,...", value_parser = parse::SeveralShaders)]
     shader: Several<Shader>,
-    /// Error budget of auto and auto-linear: the largest error of a pixel against Phong shading, in 1/255, from 0.5 to 16. By default the scene's
-    /// own.
+    /// Error budget of auto and auto-linear: the largest difference of a pixel from Phong shading, in 1/255, from 0.5 to 16. The default is the
+    /// budget of the scene.
     #[arg(long, value_name = "LSB", value_parser = parse::budget)]
     budget: Option<ErrorBudget>,
-    /// Exponent of all highlights, 1 to 1024, in scenes of every kind. By default the scene's own.
+    /// Exponent of all highlights, 1 to 1024, in scenes of every kind. The default is the exponent of each material.
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
     override_exponent: Option<u16>,
-    /// Size of the picture. By default the scene's own, or 640x480 for mesh files.
+    /// Size of the picture. The default is the size of the scene, or 640x480 for model files.
     #[arg(long, value_name = "WxH", value_parser = parse::size)]
     size: Option<(u32, u32)>,
     /// Interpolate in perspective, in Phong shading and in all methods.
@@ -64,15 +64,15 @@ Examples:
   microphong compare all --shader six-point,renq --json
 
 Columns:
-  error       of the integer picture: largest, 99th percentile, root mean square
-  method      of the method in floating point: what its formula leaves
-  arithmetic  of the integers against the method in floating point, largest
-  colour      1 less the mean difference of 8-bit pixels; psnr in dB, of the same
-  alike       structure and colour as the eye sees them, 1 is the same
-  edge, mach  largest jump of the level across an edge that two triangles share, and of its slope (LSB per
-              pixel), in floating point; of auto by what it chooses for each of the two
-  + * load    additions, multiplications and table look-ups per pixel, without those of perspective
-  set-up      operations per triangle, and per row where there are any";
+  error       error of the integer picture: largest, 99th percentile, root mean square
+  method      error of the method's formula, in floating point
+  arithmetic  largest difference between the integer picture and the method in floating point
+  colour      1 minus the mean difference of 8-bit pixels; psnr is computed from the same pixels, in dB
+  alike       similarity of structure and colour to the eye; 1 means equal
+  edge, mach  largest jump of the light level, and of its slope (LSB per pixel), across an edge between two
+              triangles, in floating point; for auto, with the methods that it chooses for the two
+  + * load    additions, multiplications and table look-ups per pixel, without those for perspective
+  set-up      operations per triangle, and per row if there are any";
 
 /// What is known of one method on one scene; all figures are null if it could not be drawn, and `reason` says why.
 #[derive(Serialize)]

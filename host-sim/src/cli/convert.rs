@@ -31,49 +31,50 @@ use microphong_sim::{
 use serde::Serialize;
 use std::path::{Path, PathBuf};
 
-/// Convert a mesh to a stream for a board's flash: Wavefront OBJ, glTF 2.0, STL or PLY
+/// Convert a model file (OBJ, glTF 2.0, STL, PLY) to a stream, the mesh file of a program
 ///
-/// Normals come from the file if every corner has one. Otherwise they are computed: light is smooth within the file's smoothing groups, or without
-/// groups over edges that fold by no more than --crease. Polygons are cut into triangles, concave ones as well. Materials come from the .mtl file
-/// beside an .obj file (Kd, Ks, Ka, Ns), or from the .gltf or .glb file (base colour, metallic, roughness). Of glTF the default scene is converted,
-/// with the transformations of its nodes. The output names everything in the files that is left out.
+/// Normals come from the file if every corner has one. Otherwise the command computes them: light is smooth within each smoothing group of the file.
+/// If there are no groups, light is smooth across edges that fold by no more than --crease. Polygons, also concave ones, are cut into triangles.
+/// Materials come from the .mtl file beside an .obj file (Kd, Ks, Ka, Ns), or from the .gltf or .glb file (base colour, metallic, roughness). Of a glTF
+/// file the default scene is converted, with the transformations of its nodes. The command prints everything in the file that it ignores.
 ///
-/// Each object of the file keeps its name, by which a program finds it. Objects are o of OBJ (g in a file with at most one o), and the nodes of glTF.
-/// An object has one mesh in the stream for each of its materials.
+/// Each object of the file keeps its name, and a program can find it by this name. An object is an `o` of OBJ (or a `g`, if the file has at most one
+/// `o`), or a node of glTF. An object has one mesh in the stream for each of its materials.
 ///
-/// The mesh is centred and scaled to a sphere of radius 1. A single closed convex mesh is marked, so that it is drawn without depth test. Its picture
-/// is the same.
+/// The mesh is centred and scaled to a sphere of radius 1. A single closed convex mesh is marked, so that it is drawn without depth test. This does not
+/// change its picture.
 ///
-/// A .toml file is a scripted scene: a text that describes objects, lights, the camera and their movements. Only --output, --board, --count and
-/// --json apply to it. Three examples are in tests/scenes.
+/// A .toml file is a scripted scene: it describes objects, lights, the camera and their movements. Only --output, --board, --format, --count and --json
+/// apply to it. Three examples are in tests/scenes.
 #[derive(clap::Args)]
 #[command(after_help = EXAMPLES)]
 pub(crate) struct Arguments {
-    /// Mesh file to read.
+    /// Model file to read.
     mesh: PathBuf,
-    /// Stream file to write, or - for standard output. By default the name of the mesh file with .tri.
+    /// Stream file to write, or - for standard output. The default is the name of the model file with the ending .tri.
     #[arg(short, long, value_name = "FILE.tri")]
     output: Option<PathBuf>,
-    /// Shading method that the stream asks for. By default auto, or auto-linear if the board of --board lacks auto. The board lm3s6965evb has flat,
+    /// Shading method that the stream names. The default is auto, or auto-linear if the board of --board lacks auto. The board lm3s6965evb has flat,
     /// gouraud and auto-linear, the others have all.
     #[arg(long, value_parser = parse::Shaders)]
     shader: Option<Shader>,
-    /// Board whose firmware shall draw the stream. Whatever this firmware would refuse is refused, such as a method that it lacks or too many materials.
+    /// Board that shall draw the stream. The command fails if the firmware of this board cannot draw it, for example because it lacks the method or has
+    /// no room for the materials.
     #[arg(long, value_name = "NAME", value_parser = BOARDS.map(|board| board.name))]
     board: Option<String>,
-    /// Pixel format of the display. By default the format of --board, or else rgb565. In one bit and up to 16 greys a mesh without materials is white on
-    /// black.
+    /// Pixel format of the display. The default is the format of --board, or else rgb565. In formats of one bit and of up to 16 greys a mesh without
+    /// materials is white on black.
     #[arg(long, value_parser = parse::Formats)]
     format: Option<Format>,
-    /// Count a frame on each board, or on the board of --board, and print instructions, and frames per second where time is modelled. Boards are
-    /// emulated, which needs a build with `--features boards`.
+    /// Count the instructions of a frame on each board, or on the board of --board, and print the frames per second if they are known. The boards are
+    /// emulated; this needs a build with `--features boards`.
     #[arg(long)]
     count: bool,
-    /// Error budget of auto and auto-linear: the largest error of a pixel against Phong shading, in 1/255, from 0.5 to 16. By default 1.
+    /// Error budget of auto and auto-linear: the largest difference of a pixel from Phong shading, in 1/255, from 0.5 to 16. The default is 1.
     #[arg(long, value_name = "LSB", value_parser = parse::budget)]
     budget: Option<ErrorBudget>,
-    /// Picture to fill with the mesh. By default the whole turn is seen on displays of every shape, because the mesh fits the narrower side. A
-    /// picture that is wider than high can show a wide mesh larger, but narrower displays then cut its sides off.
+    /// Size of the picture that the mesh fills. By default the mesh fits the narrower side, so that the whole turn is visible on displays of every
+    /// shape. With a wide size, a wide mesh becomes larger, but narrower displays cut off its sides.
     #[arg(long, value_name = "WxH", value_parser = parse::size)]
     size: Option<(u32, u32)>,
     /// Print one JSON object.
@@ -155,13 +156,13 @@ struct Level {
 pub(crate) fn run(arguments: &Arguments) -> Result<Outcome> {
     let source = &arguments.mesh;
     if source.extension().is_some_and(|e| e.eq_ignore_ascii_case("tri")) {
-        return Err(Usage(format!("{} is a stream already; name an .obj, .stl, .ply, .gltf, .glb or .toml file", source.display())).into());
+        return Err(Usage(format!("{} is already a stream; name an .obj, .stl, .ply, .gltf, .glb or .toml file", source.display())).into());
     }
     let board = arguments.board.as_deref().and_then(Board::named);
     let lacks = |shader| board.as_ref().and_then(|board| board.lacks(shader));
     let shader = arguments.shader.unwrap_or(if lacks(Shader::AUTO).is_some() { Shader::AUTO_LINEAR } else { Shader::AUTO });
     if let Some(has) = lacks(shader) {
-        return Err(Usage(format!("{has}: name one of them by --shader")).into());
+        return Err(Usage(format!("{has}: use one of them as --shader")).into());
     }
     let format = arguments.format.or(board.as_ref().map(|board| board.format)).unwrap_or(Format::Rgb565);
     let options = mesh_options::or_default(arguments.options.as_ref(), format)?;
@@ -181,7 +182,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome> {
     let bytes = converted.stream().with_context(|| source.display().to_string())?;
     let Converted { mesh, report, materials, mut remarks, parts, lost, look, simplified } = converted;
     if let (Some(most), None) = (options.simplify, &simplified) {
-        remarks.push(format!("not simplified: it has no more than {} triangles", report::grouped(most as u64)));
+        remarks.push(format!("not simplified: the mesh has no more than {} triangles", report::grouped(most as u64)));
     }
     let stream = bytes.parse()?;
     if let Some(board) = &board {
@@ -271,15 +272,17 @@ fn convert_script(
     let own = [("--shader", arguments.shader.is_some()), ("--budget", arguments.budget.is_some()), ("--size", arguments.size.is_some())];
     if let Some((option, _)) = own.into_iter().find(|(_, given)| *given) {
         let field = &option[2..];
-        return Err(
-            Usage(format!("{}: {option} is for mesh files; write `{field}` into the text of the scene", arguments.mesh.display())).into()
-        );
+        return Err(Usage(format!(
+            "{}: {option} is for model files; write `{field}` into the text of the scene instead",
+            arguments.mesh.display()
+        ))
+        .into());
     }
     let scene = scenes::load(&arguments.mesh.to_string_lossy(), arguments.options.as_ref(), format)?;
     let stream = scene.stream.parse()?;
     if let Some(board) = board {
         if let Some(has) = board.lacks(Shader::of(&stream)?) {
-            bail!("{}: {has}: name one of them as `shader` in its text", arguments.mesh.display());
+            bail!("{}: {has}: use one of them as `shader` in the text of the scene", arguments.mesh.display());
         }
         board.check(&stream).with_context(|| arguments.mesh.display().to_string())?;
     }
@@ -331,8 +334,7 @@ const USUAL: (u32, u32) = (320, 240);
 fn unseen(stream: &Stream<'_>, (width, height): (u32, u32)) -> Result<Option<String>> {
     let is_seen = render::shows_a_pixel(stream, Size::new(width, height))?;
     Ok((!is_seen).then(|| {
-        "no frame shows a pixel of it: its faces look away (--flip turns them over), or seen from here it is thinner than a pixel"
-            .to_owned()
+        "no frame shows a pixel of the mesh: its faces point away from the viewer (use --flip), or it is thinner than a pixel".to_owned()
     }))
 }
 
@@ -382,7 +384,7 @@ fn text(line: &Line<'_>, materials: &[Option<&str>]) -> Result<()> {
     let turned = if line.turned { ", surface turned inside out" } else { "" };
     let (welded, degenerate) = (count(line.welded), count(line.degenerate));
     let convex = if line.closed_convex { ", closed and convex" } else { "" };
-    report::line(&format!("  {welded} vertices welded, {degenerate} degenerate triangles dropped, {normals}{turned}{convex}"))?;
+    report::line(&format!("  {welded} vertices welded, {degenerate} degenerate triangles removed, {normals}{turned}{convex}"))?;
     match line.materials {
         0 => {}
         1 => report::line("  1 material from the file")?,
@@ -392,7 +394,7 @@ fn text(line: &Line<'_>, materials: &[Option<&str>]) -> Result<()> {
     if let Some(ByObject { meshes, bytes }) = line.by_object {
         let bytes = if line.simplified.is_some() { String::new() } else { format!("{} bytes of ", count(bytes)) };
         let meshes = report::counted(meshes, meshes::MESHES);
-        report::line(&format!("  each object has meshes of its own; --merge saves {meshes}, {bytes}flash and some time"))?;
+        report::line(&format!("  each object has separate meshes; --merge saves {meshes}, {bytes}flash and some time"))?;
     }
     for remark in &line.remarks {
         report::line(&format!("  {remark}"))?;
@@ -407,10 +409,7 @@ fn text(line: &Line<'_>, materials: &[Option<&str>]) -> Result<()> {
         report::line(&format!("  a level of detail of {} triangles, less than {error:.4} units from the mesh", count(*triangles)))?;
     }
     let memory = count(line.memory);
-    report::line(&format!(
-        "  a program needs {memory} bytes of memory for it in {}, and a band of pixels:\n    {}",
-        line.format, line.layout
-    ))?;
+    report::line(&format!("  a program needs {memory} bytes of memory in {}, and a band of pixels:\n    {}", line.format, line.layout))?;
     count::text(line.costs.as_deref())?;
     let crossed = match line.crossed {
         0 => return Ok(()),

@@ -30,7 +30,7 @@ pub(super) fn prepare(board: Option<&str>) -> Result<Counter> {
     let boards: Vec<_> = boards.copied().collect();
     if boards.is_empty() {
         let board = board.unwrap_or_default();
-        return Err(Usage(format!("--count: frames of {board} cannot be counted; take mps2-an385, which has the same processor")).into());
+        return Err(Usage(format!("--count cannot count frames of {board}; use mps2-an385, which has the same processor")).into());
     }
     Ok(Counter { bench: Bench::new(&boards)?, boards })
 }
@@ -83,7 +83,7 @@ impl Counter {
 /// Prints what has been counted, or how it can be.
 pub(super) fn text(costs: Option<&[Cost]>) -> Result<()> {
     let Some(costs) = costs else {
-        return report::line("  --count prints the instructions of a frame on boards, in a build with `--features boards`");
+        return report::line("  --count prints the instructions of a frame on emulated boards (needs a build with `--features boards`)");
     };
     for Cost { board, cpu, width, height, instructions, frames_per_second } in costs {
         let rate = frames_per_second.map_or(String::new(), |rate| format!(", {rate} frames/s"));

@@ -14,10 +14,10 @@ use microphong_sim::{
     shader::Shader,
 };
 
-/// Count how the cost of a frame grows with triangles, pixels, lights and bands
+/// Count the instructions of a frame for growing numbers of triangles, pixels, lights and bands
 ///
-/// Costs are instructions of x86-64, counted exactly by callgrind, because no board has the memory. Triangles, pixels and lights are varied on a flat
-/// square with the normals of a cushion, which covers the same pixels at every fineness. Bands are varied on the scene peer-sphere.
+/// Callgrind counts the instructions exactly, on this computer, because no emulated board has enough memory. Triangles, pixels and lights are varied on a
+/// flat square with the normals of a cushion: it covers the same pixels with any number of triangles. Bands are varied on the scene peer-sphere.
 #[derive(clap::Args)]
 #[command(after_help = EXAMPLES)]
 pub(crate) struct Arguments {
@@ -38,10 +38,10 @@ Examples:
   microphong growth bands --shader all
   microphong growth triangles,pixels --shader six-point,phong --json
 
-triangles  100 to 100,000 on 40,000 pixels
-pixels     1,000 to 1,000,000 of 512 triangles
-lights     1 to 8, 968 triangles on 40,000 pixels
-bands      1 to 24 in which the same picture is drawn";
+triangles  100 to 100,000 triangles on 40,000 pixels
+pixels     1,000 to 1,000,000 pixels with 512 triangles
+lights     1 to 8 lights with 968 triangles on 40,000 pixels
+bands      1 to 24 bands for one picture";
 
 /// What grows, by name.
 fn sweeps(text: &str) -> Result<Several<Sweep>, String> {
@@ -78,7 +78,7 @@ fn text(sweep: Sweep, shaders: &[Shader], points: &[Point]) -> Result<()> {
     let unit = match sweep {
         Sweep::Triangles | Sweep::Pixels => "instructions per pixel",
         Sweep::Lights => "thousand instructions",
-        Sweep::Bands => "thousand instructions, and times one band",
+        Sweep::Bands => "thousand instructions, and their ratio to one band",
     };
     report::line(&format!("{sweep}: {unit}"))?;
     report::line(&format!("  {:>9}{}", "", shaders.iter().map(|shader| format!("{:>20}", shader.name())).collect::<String>()))?;

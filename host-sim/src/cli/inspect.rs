@@ -14,13 +14,13 @@ use microphong_sim::{bytes::StreamBytes, render::Format, scene::Unknown, shader:
 use serde::Serialize;
 use std::path::Path;
 
-/// Show the contents of a stream, and its flash
+/// Show the contents of a stream, and the flash that it takes
 #[derive(clap::Args)]
 #[command(
     after_help = "Examples:\n  microphong inspect teapot.tri --json\n  microphong inspect gauges\n  microphong inspect scan.ply --simplify 2000"
 )]
 pub(crate) struct Arguments {
-    /// A stream made by `microphong convert`, a built-in scene, or a file for `convert`: .obj, .stl, .ply, .gltf, .glb or .toml.
+    /// A stream from `microphong convert`, a built-in scene, or an .obj, .stl, .ply, .gltf, .glb or .toml file.
     scene: String,
     /// Print one JSON object.
     #[arg(long)]

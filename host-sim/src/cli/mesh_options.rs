@@ -13,49 +13,49 @@ use microphong_sim::{
 
 /// Options that describe the surface, light and view of a mesh file; other scenes have their own.
 #[derive(clap::Args, Clone)]
-#[command(next_help_heading = "Options for mesh files (.obj, .stl, .ply, .gltf, .glb)")]
+#[command(next_help_heading = "Options for model files (.obj, .stl, .ply, .gltf, .glb)")]
 pub(crate) struct MeshOptions {
     /// Axis of the mesh that points up: x, y, z, -x, -y or -z.
     #[arg(long, default_value = "y", value_parser = parse::up, allow_hyphen_values = true)]
     up: Up,
-    /// Turn the surface inside out, for meshes whose faces wind clockwise. Closed meshes are turned without this option.
+    /// Turn the surface inside out, for meshes whose faces wind clockwise. Closed meshes are corrected without this option.
     #[arg(long)]
     flip: bool,
-    /// Largest angle in degrees at which an edge looks smooth, for files without normals and smoothing groups: 0 shows all facets, 180 none.
+    /// Largest angle in degrees at which an edge looks smooth: 0 shows all facets, 180 none. It applies to files without normals and smoothing groups.
     #[arg(long, value_name = "DEGREES", default_value_t = CREASE, value_parser = parse::crease)]
     crease: f64,
-    /// Merge all objects into one without a name: one mesh for each material. It takes less flash.
+    /// Merge all objects into one object without a name, which takes less flash. It has one mesh for each material.
     #[arg(long)]
     merge: bool,
-    /// Colour of the whole surface, RRGGBB, instead of the file's materials. Without materials the default is copper, or white in one bit and up to
-    /// 16 greys.
+    /// Colour of the whole surface, RRGGBB, instead of the file's materials. A file without materials is copper by default, or white in formats of
+    /// one bit and of up to 16 greys.
     #[arg(long, visible_alias = "color", value_name = "RRGGBB", value_parser = parse::colour)]
     colour: Option<V3>,
-    /// Diffuse reflection of materials that the file does not define, 0 to 2. By default 0.5, or 0.8 in one bit and up to 16 greys.
+    /// Diffuse reflection of materials that the file does not define, 0 to 2. The default is 0.5, or 0.8 in formats of one bit and of up to 16 greys.
     #[arg(long, value_name = "SHARE", value_parser = parse::share)]
     diffuse: Option<f64>,
-    /// Strength of the highlight of materials that the file does not define, 0 to 2. By default 0.4.
+    /// Strength of the highlight of materials that the file does not define, 0 to 2. The default is 0.4.
     #[arg(long, value_name = "SHARE", value_parser = parse::share)]
     specular: Option<f64>,
-    /// Ambient light, which comes from all sides, 0 to 2. By default 0.1, or 0.15 in one bit and up to 16 greys.
+    /// Ambient light, which comes from all sides, 0 to 2. The default is 0.1, or 0.15 in formats of one bit and of up to 16 greys.
     #[arg(long, value_name = "SHARE", value_parser = parse::share)]
     ambient: Option<f64>,
-    /// Exponent of the highlight of materials that the file does not define, 1 to 1024. Larger ones are smaller and sharper. By default 30, or 20 in
-    /// one bit and up to 16 greys.
+    /// Exponent of the highlight of materials that the file does not define, 1 to 1024. A larger exponent makes a smaller, sharper highlight. The
+    /// default is 30, or 20 in formats of one bit and of up to 16 greys.
     #[arg(long, value_parser = clap::value_parser!(u16).range(1..=1024))]
     exponent: Option<u16>,
-    /// A light in the direction X,Y,Z: x to the right, y up, z towards the eye. White unless a colour follows. With at: it is a near light at the
-    /// position X,Y,Z from the centre of the mesh, whose radius is 1; near lights take longer. Repeat the option for up to eight lights. By default
-    /// one light comes from the upper left.
+    /// A light in the direction X,Y,Z: x points to the right, y up, z towards the viewer. The light is white, or has the colour RRGGBB. After at: it
+    /// is a near light at the position X,Y,Z, relative to the centre of the mesh, whose radius is 1; near lights take longer. Repeat the option for
+    /// up to eight lights. By default one light comes from the upper left.
     #[arg(long = "light", value_name = "[at:]X,Y,Z[:RRGGBB]", value_parser = parse::light, allow_hyphen_values = true)]
     lights: Vec<Lamp>,
-    /// White highlights, as of plastic, instead of coloured ones, as of metal.
+    /// Make highlights white, as on plastic. Without this option they have the colour of the surface, as on metal.
     #[arg(long)]
     plastic: bool,
-    /// Background colour, RRGGBB. By default 1a1c20, or black in one bit and up to 16 greys.
+    /// Background colour, RRGGBB. The default is 1a1c20, or black in formats of one bit and of up to 16 greys.
     #[arg(long, value_name = "RRGGBB", value_parser = parse::bytes)]
     background: Option<[u8; 3]>,
-    /// Number of frames of one turn of the camera around the axis that points up; 0 for a camera that stands still.
+    /// Number of frames in which the camera moves once around the mesh. With 0 the camera stands still.
     #[arg(long, value_name = "FRAMES", default_value_t = ORBIT)]
     orbit: u16,
     /// Position of the camera, in degrees to the right of the front.
@@ -67,16 +67,16 @@ pub(crate) struct MeshOptions {
     /// Projection: perspective or parallel.
     #[arg(long, default_value = "perspective", value_parser = parse::projection)]
     projection: Projection,
-    /// Compute highlights with the direction from each point to the eye, instead of one direction for all points. This takes longer.
+    /// Compute highlights with the direction from each point to the viewer, instead of one direction for all points. This takes longer.
     #[arg(long)]
     local_viewer: bool,
-    /// Reduce the mesh to this number of triangles, or fewer, on some of its vertices. The output says how far the result is from the mesh of the file. Levels of
-    /// --lod are made from the result.
+    /// Reduce the mesh to at most this number of triangles. The command prints the largest distance between the result and the mesh of the file.
+    /// Levels of --lod are made from the result.
     #[arg(long, value_name = "TRIANGLES", value_parser = clap::value_parser!(u32).range(1..))]
     simplify: Option<u32>,
-    /// Sizes of pictures for which to make a level of detail: the fewest triangles that lie less than half a pixel from the mesh in this picture. A
-    /// picture shows the coarsest level that fits it. Each triangle of a level takes 30 bytes of flash. A level that saves less than a tenth of the
-    /// triangles is left out.
+    /// Sizes of pictures, separated by commas. For each size a coarser level of detail is added: the fewest triangles that stay within half a pixel of
+    /// the mesh. A program draws the coarsest level that fits its picture. Each triangle of a level takes 30 bytes of flash. A level that saves less
+    /// than a tenth of the triangles is not added.
     #[arg(long, value_name = "WxH,...", value_delimiter = ',', value_parser = parse::size)]
     lod: Vec<(u32, u32)>,
 }
@@ -88,7 +88,7 @@ impl MeshOptions {
     /// When there are more lights than a scene has.
     pub(crate) fn options(&self, format: Format) -> Result<Options, Usage> {
         if self.lights.len() > MAX_LIGHTS {
-            return Err(Usage(format!("{} times --light; a scene has {MAX_LIGHTS} lights at most", self.lights.len())));
+            return Err(Usage(format!("{} times --light; a scene has at most {MAX_LIGHTS} lights", self.lights.len())));
         }
         let view = View::orbit(self.up, self.azimuth.to_radians(), self.elevation.to_radians(), DISTANCE, self.orbit);
         let Finish { colour, shares, exponent, background } = Finish::of(format);

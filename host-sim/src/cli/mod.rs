@@ -46,18 +46,18 @@ Examples:
   microphong scenes                                list the built-in scenes
   microphong render teapot                         write teapot.png
   microphong render teapot --frames 120 -o t.apng  write an animation of one turn
-  microphong convert mesh.obj -o mesh.tri          make a stream for a board's flash
-  microphong inspect mesh.tri                      what is inside, and how large it is
+  microphong convert mesh.obj -o mesh.tri          make a stream, the mesh file of a program
+  microphong inspect mesh.tri                      show the contents and the size of a stream
   microphong verify teapot --board all             compare emulated boards with this computer
   microphong bench                                 count the instructions of a frame
-  microphong growth                                count how that grows with triangles, pixels, lights, bands
-  microphong size part.obj --chip rp2040           flash, RAM and stack of whole programs
+  microphong growth                                count them for more triangles, pixels, lights
+  microphong size part.obj --chip rp2040           show flash, RAM and stack of whole programs
   microphong compare teapot --report comparison    measure all methods against Phong shading
-  microphong papers --only vlasic                  compute again what a paper claims
-  microphong stress --seconds 60                   look for scenes that are drawn wrong
-  microphong bounds --check 10000                  look for larger errors than `auto` reckons with
+  microphong papers --only vlasic                  check the claims of a paper
+  microphong stress --seconds 60                   search for scenes that are drawn wrong
+  microphong bounds --check 10000                  search for errors beyond the bounds of `auto`
 
-Exit codes: 0 done; 1 failed, or pictures differ; 2 wrong usage.";
+Exit codes: 0 success; 1 failure, or pictures differ; 2 wrong usage.";
 
 #[derive(Subcommand)]
 enum Command {

@@ -8,10 +8,9 @@ use super::{
 use anyhow::Result;
 use microphong_sim::papers::{self, Claim, Topic, Verdict};
 
-/// Compute again what the papers claim, and show which claims hold
+/// Check the claims of the papers by computing them again
 ///
-/// The methods are those of the oracle, in 64-bit floating point. Errors in a paper are shown by an example. Figures of error are in LSB, which is
-/// 1/255 of full intensity.
+/// The command computes with 64-bit floating point. It shows an error in a paper by an example. One LSB is 1/255 of full intensity.
 #[derive(clap::Args)]
 #[command(after_help = EXAMPLES)]
 pub(crate) struct Arguments {

@@ -151,12 +151,12 @@ pub(crate) fn light(text: &str) -> Result<Lamp, String> {
     if is_near {
         if vector.iter().any(|c| c.abs() > FARTHEST_LIGHT) {
             return Err(format!(
-                "a near light has coordinates from -{FARTHEST_LIGHT} to {FARTHEST_LIGHT}; take a direction for a farther one"
+                "a near light has coordinates from -{FARTHEST_LIGHT} to {FARTHEST_LIGHT}; use a direction for a light that is farther away"
             ));
         }
         return Ok(Lamp::Near(vector, colour));
     }
-    let towards = unit(vector).ok_or("a direction is needed; 0,0,0 has none")?;
+    let towards = unit(vector).ok_or("a direction is needed; 0,0,0 is not a direction")?;
     Ok(Lamp::Distant(towards, colour))
 }
 

@@ -21,19 +21,19 @@ use std::{
 #[derive(clap::Args)]
 #[command(after_help = EXAMPLES)]
 pub(crate) struct Arguments {
-    /// A .tri, .obj, .stl, .ply, .gltf, .glb or .toml file, or a built-in scene; `microphong scenes` lists them.
+    /// A .tri, .obj, .stl, .ply, .gltf, .glb or .toml file, or a built-in scene; `microphong scenes` lists the built-in scenes.
     scene: String,
-    /// Shading method. By default the scene's own. `microphong compare` compares methods.
+    /// Shading method. The default is the method of the scene. `microphong compare` compares methods.
     #[arg(long, value_parser = parse::Shaders)]
     shader: Option<Shader>,
-    /// Error budget of auto and auto-linear: the largest error of a pixel against Phong shading, in 1/255, from 0.5 to 16. By default the scene's
-    /// own.
+    /// Error budget of auto and auto-linear: the largest difference of a pixel from Phong shading, in 1/255, from 0.5 to 16. The default is the
+    /// budget of the scene.
     #[arg(long, value_name = "LSB", value_parser = parse::budget)]
     budget: Option<ErrorBudget>,
-    /// Size of the picture. By default the scene's own, or 640x480 for mesh files.
+    /// Size of the picture. The default is the size of the scene, or 640x480 for model files.
     #[arg(long, value_name = "WxH", value_parser = parse::size)]
     size: Option<(u32, u32)>,
-    /// Pixel format. The names of types in programs, such as BinaryColor, are understood as well.
+    /// Pixel format. The names of types in programs, such as BinaryColor, are accepted as well.
     #[arg(long, default_value = "rgb565", value_parser = parse::Formats)]
     format: Format,
     /// Number of frames to draw.
@@ -45,27 +45,27 @@ pub(crate) struct Arguments {
     /// Interpolate light in perspective. This is correct for triangles that reach from near to far.
     #[arg(long)]
     perspective_correct: bool,
-    /// Dither, which hides the steps between few colours. Formats of less than eight bits a channel always have it, unless --no-dither is given.
+    /// Dither, which hides the steps between few colours. It is on by default in formats of fewer than eight bits per channel.
     #[arg(long)]
     dither: bool,
     /// Round colours instead of dithering them.
     #[arg(long, conflicts_with = "dither")]
     no_dither: bool,
-    /// Curve of the display: linear sends light levels unchanged, srgb corrects them for most displays, which makes pictures brighter and shadows
+    /// Curve of the display: linear sends light levels unchanged; srgb corrects them for most displays, which makes pictures brighter and shadows
     /// softer.
     #[arg(long, value_enum, default_value_t = Gamma::Linear)]
     gamma: Gamma,
-    /// Smooth outlines: a pixel on an edge mixes both sides by the exact areas that they cover.
+    /// Smooth outlines: a pixel on an edge mixes the colours of both sides in proportion to the exact areas that they cover.
     #[arg(long)]
     antialias: bool,
-    /// Number of rows to draw at once, as a board with little memory does. The picture is the same.
+    /// Number of rows to draw at a time, as a board with little memory does. It does not change the picture.
     #[arg(long, default_value_t = 16, value_parser = clap::value_parser!(u32).range(1..))]
     band_rows: u32,
-    /// Paint each triangle in the colour of the way in which the method auto draws it, with a legend below the picture. Dark parts of the picture
+    /// Paint each triangle in a colour that shows the method which auto chooses for it, with a legend below the picture. Dark parts of the picture
     /// stay darker.
     #[arg(long, value_name = "WHAT", conflicts_with_all = ["antialias", "dither", "band_rows"])]
     show: Option<Show>,
-    /// FILE.png, FILE.apng, a directory, or - for standard output. By default SCENE.png, or SCENE.apng for several frames, in the current directory.
+    /// FILE.png, FILE.apng, a directory, or - for standard output. The default is SCENE.png, or SCENE.apng for several frames, in the current directory.
     #[arg(short, long)]
     output: Option<PathBuf>,
     /// Print one JSON object per frame.
@@ -188,7 +188,7 @@ fn method(arguments: &Arguments, stream: &Stream<'_>) -> Result<Shader> {
         (None, None) => Shader::of(stream),
         (None, Some(shader)) => Ok(shader),
         (Some(Show::Methods), Some(shader)) if !shader.keeps_budget() => {
-            Err(Usage(format!("--show methods needs the method auto or auto-linear; --shader {} chooses nothing", shader.name())).into())
+            Err(Usage(format!("--show methods needs auto or auto-linear as --shader; {} does not choose methods", shader.name())).into())
         }
         (Some(Show::Methods), shader) => Ok(shader.unwrap_or(Shader::AUTO)),
     }
@@ -218,7 +218,9 @@ impl Target {
             _ if path.exists() && !path.is_file() || output::is_stdout(path) => Ok(Self::File(path.to_owned())),
             Some("apng") => Ok(Self::File(path.to_owned())),
             Some("png") if frames == 1 => Ok(Self::File(path.to_owned())),
-            Some("png") => Err(Usage(format!("{}: {frames} frames do not fit a .png; name an .apng file or a directory", path.display()))),
+            Some("png") => {
+                Err(Usage(format!("{}: a .png file cannot hold {frames} frames; name an .apng file or a directory", path.display())))
+            }
             None => Ok(Self::Directory(path.to_owned())),
             Some(other) => Err(Usage(format!("{}: cannot write .{other}; name a .png or .apng file or a directory", path.display()))),
         }

@@ -13,7 +13,7 @@ use microphong_sim::{
 };
 use serde::Serialize;
 
-/// List the built-in scenes.
+/// List the built-in scenes
 #[derive(clap::Args)]
 pub(crate) struct Arguments {
     /// Print one JSON object per scene.

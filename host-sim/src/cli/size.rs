@@ -19,14 +19,14 @@ use microphong_sim::{
 use serde::Serialize;
 use std::path::{Path, PathBuf};
 
-/// Print flash, RAM and stack of whole programs, and whether chips have room for them.
+/// Show flash, RAM and stack of whole programs, and whether they fit into chips
 ///
-/// It builds a program for each method and pixel format. The programs have no display driver and no log, which come on top. Flash and RAM are
-/// those of the compiled program with the memory that the mesh takes. The stack is what an emulated processor used while it drew one turn.
+/// The command builds a program for each method and pixel format. The programs have no display driver and no log; add their sizes. Flash and RAM are
+/// the sizes of the compiled program, including the memory for the mesh. The stack is the largest one that an emulated processor used in one turn.
 #[derive(clap::Args)]
 #[command(after_help = EXAMPLES)]
 pub(crate) struct Arguments {
-    /// .tri, .obj, .stl, .ply, .gltf, .glb or .toml file, or a built-in scene.
+    /// A .tri, .obj, .stl, .ply, .gltf, .glb or .toml file, or a built-in scene.
     #[arg(value_name = "SCENE", default_value = baseline::SCENE)]
     scene: String,
     /// Chips, separated by commas: stm32f103 (Cortex-M3), samd21, rp2040 (Cortex-M0+), stm32f411, nrf52840 (Cortex-M4F), rp2350 (Cortex-M33),
@@ -42,13 +42,13 @@ pub(crate) struct Arguments {
     /// Print one JSON object per program and chip.
     #[arg(long)]
     json: bool,
-    /// Measure the programs that FILE lists, and fail if one takes over 0.2 % more than it says.
+    /// Measure the programs that FILE lists. Fail if a program takes over 0.2 % more than FILE records.
     #[arg(long, value_name = "FILE", conflicts_with_all = ["scene", "MeshOptions", "chip", "shader", "format", "json"])]
     check: Option<PathBuf>,
-    /// Measure the programs that FILE lists, and write what they take now.
+    /// Measure the programs that FILE lists, and record their sizes there. Needs --reason.
     #[arg(long, value_name = "FILE", requires = "reason", conflicts_with_all = ["scene", "MeshOptions", "chip", "shader", "format", "json", "check"])]
     renew: Option<PathBuf>,
-    /// Why sizes have changed, in a sentence: --renew of sizes.csv adds it to sizes-reasons.md.
+    /// The reason for the changed sizes, in a sentence. With --renew sizes.csv it is added to sizes-reasons.md.
     #[arg(long, value_name = "TEXT", requires = "renew", value_parser = parse::reason)]
     reason: Option<String>,
     #[command(flatten)]
@@ -58,9 +58,9 @@ pub(crate) struct Arguments {
 const EXAMPLES: &str = "\
 Examples:
   microphong size                                         the teapot on an STM32F103
-  microphong size part.obj --chip rp2040 --format rgb565  a mesh of yours
-  microphong size --chip all --json                       everything
-  microphong size --check tests/baselines/sizes.csv       has anything become larger?";
+  microphong size part.obj --chip rp2040 --format rgb565  your own mesh
+  microphong size --chip all --json                       all chips, methods and formats
+  microphong size --check tests/baselines/sizes.csv       check that no program has grown";
 
 fn chips(text: &str) -> Result<Several<Chip>, String> {
     parse::several(text, &Chip::ALL, |text| parse::among(text, &Chip::ALL, |chip| chip.name))
@@ -178,9 +178,9 @@ fn check(path: &Path) -> Result<Outcome> {
     let changes = changes(&figures);
     changes.iter().try_for_each(|(text, _)| report::line(text))?;
     let grown = changes.iter().filter(|(_, grown)| *grown).count();
-    let renew = format!("if that is meant, renew the file: microphong size --renew {} --reason \"...\"", path.display());
+    let renew = format!("if this is intended, renew the file: microphong size --renew {} --reason \"...\"", path.display());
     match (grown, changes.len()) {
-        (0, 0) => report::line(&format!("{} programs take what they did", figures[0].len()))?,
+        (0, 0) => report::line(&format!("the sizes of {} programs are as recorded", figures[0].len()))?,
         (0, shrunk) => report::line(&format!("{shrunk} figures have shrunk, which would hide later growth; {renew}"))?,
         (grown, _) => report::line(&format!("{grown} figures have grown; {renew}"))?,
     }
@@ -191,7 +191,7 @@ fn renew(path: &Path, reason: &str) -> Result<Outcome> {
     let figures = again(path)?;
     let [recorded, measured] = &figures;
     if recorded == measured {
-        report::line(&format!("{} programs take exactly what is recorded: nothing to renew", recorded.len()))?;
+        report::line(&format!("the sizes of {} programs are exactly as recorded: nothing to renew", recorded.len()))?;
         return Ok(Outcome::Done);
     }
     changes(&figures).iter().try_for_each(|(text, _)| report::line(text))?;

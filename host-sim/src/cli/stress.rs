@@ -16,30 +16,30 @@ use std::{
     time::{Duration, Instant},
 };
 
-/// Look for scenes that are drawn wrong, by random cases and exact checks
+/// Search for scenes that are drawn wrong, with random cases and exact checks
 ///
-/// Each family makes cases of one kind, and checks them without any code of the renderer. A case that fails does not end the run. The worst failure
-/// of each method is made as small as possible and written as a stream, and the command that draws it is printed. Case N of a seed is the same in
-/// every run.
+/// A family is one kind of case. It makes random cases, and checks them without any code of the renderer. A failure does not end the run. The command
+/// makes the worst failure of each method as small as possible, writes it as a stream, and prints the command that draws it. Case N of a seed is the
+/// same in every run.
 #[derive(clap::Args)]
 #[command(after_help = after_help())]
 pub(crate) struct Arguments {
-    /// Seconds to run, shared by the families.
+    /// Seconds to run, divided between the families.
     #[arg(long, default_value_t = 10.0, value_name = "N", value_parser = seconds)]
     seconds: f64,
     /// Number of cases for each family, instead of --seconds.
     #[arg(long, value_name = "N", conflicts_with = "seconds", value_parser = parse::count)]
     cases: Option<u64>,
-    /// Seed of the random cases. By default a random one.
+    /// Seed of the random cases. The default is a random seed.
     #[arg(long, value_name = "S", value_parser = parse::whole)]
     seed: Option<u64>,
-    /// Number of the first case of each family. With --cases 1 it repeats the case of that number.
+    /// Number of the first case of each family. With --cases 1 only this case runs.
     #[arg(long, default_value_t = 0, value_name = "N", value_parser = parse::whole)]
     first: u64,
     /// Families, separated by commas, or all.
     #[arg(long, default_value = "all", value_name = "NAME,...", value_parser = only)]
     only: Several<&'static str>,
-    /// Error budget in the family budget, in 1/255, from 0.5 to 16. By default random ones.
+    /// Error budget of the family `budget`, in 1/255, from 0.5 to 16. By default each case has a random budget.
     #[arg(long, value_name = "LSB", value_parser = parse::budget)]
     budget: Option<ErrorBudget>,
     /// Directory for streams of failures.
@@ -52,16 +52,16 @@ pub(crate) struct Arguments {
 
 const EXAMPLES: &str = "\
 Examples:
-  microphong stress                                  ten seconds of everything
-  microphong stress --seconds 3600 --seed 7          an hour
+  microphong stress                                  all families for ten seconds
+  microphong stress --seconds 3600 --seed 7          all families for an hour
   microphong stress --only arithmetic,sameness       two families
-  microphong stress --only budget --budget 1         auto against Phong shading, by one budget
-  microphong stress --only coverage --seed 7 --first 4711 --cases 1    one case again
+  microphong stress --only budget --budget 1         auto against Phong shading, with one budget
+  microphong stress --only coverage --seed 7 --first 4711 --cases 1    repeat one case
 
-Overflows are seen by a build that looks for them: cargo run --profile stress -- stress";
+A build with overflow checks also finds overflows: cargo run --profile stress -- stress";
 
 /// Help text of the family that this build lacks.
-const WITHOUT_BOARDS: &str = "\n  cost        with --features boards: a frame takes no more instructions than are documented";
+const WITHOUT_BOARDS: &str = "\n  cost        with --features boards: a frame needs no more instructions than documented";
 
 /// The examples, and the assertion of each family.
 fn after_help() -> String {
@@ -114,7 +114,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome> {
             tell(family.name(), seed, failure, arguments)?;
         }
     }
-    ensure!(cases > 0, "no case was judged; give more --seconds, or more --cases");
+    ensure!(cases > 0, "no case was judged; use more --seconds, or more --cases");
     Ok(if failed { Outcome::Differences } else { Outcome::Done })
 }
 
@@ -159,9 +159,9 @@ fn tell(family: &str, seed: u64, failure: &Failure, arguments: &Arguments) -> Re
     if let Some(case) = case {
         let file = arguments.artefacts.join(format!("{family}-{seed}-{number}.tri"));
         output::write(&file, case.stream.as_bytes())?;
-        report::error(&format!("  its scene, as small as it can be: {}", case.command(&file)));
+        report::error(&format!("  to draw its scene, made as small as possible: {}", case.command(&file)));
     }
     let budget = arguments.budget.map_or(String::new(), |budget| format!(" --budget {budget}"));
-    report::error(&format!("  again: microphong stress --only {family} --seed {seed} --first {number} --cases 1{budget}"));
+    report::error(&format!("  to repeat it: microphong stress --only {family} --seed {seed} --first {number} --cases 1{budget}"));
     Ok(())
 }

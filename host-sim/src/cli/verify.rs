@@ -17,24 +17,24 @@ use microphong_sim::{
 use serde::Serialize;
 use std::path::PathBuf;
 
-/// Draw scenes by a board's own firmware under emulation, and compare every pixel with this computer
+/// Draw scenes with the firmware of emulated boards, and compare every pixel with this computer
 #[derive(clap::Args)]
 #[command(after_help = EXAMPLES)]
 pub(crate) struct Arguments {
-    /// .tri, .obj, .stl, .ply, .gltf, .glb and .toml files, built-in scenes, or all built-in scenes.
+    /// .tri, .obj, .stl, .ply, .gltf, .glb and .toml files, names of built-in scenes, or `all` for every built-in scene.
     #[arg(value_name = "SCENE", default_value = "teapot")]
     scenes: Vec<String>,
     /// Boards, separated by commas: pico, lm3s6965evb, mps2-an385, mps2-an386; or all.
     #[arg(long, value_parser = boards)]
     board: Several<Board>,
-    /// Shading methods, separated by commas, or all that the board has room for.
+    /// Shading methods, separated by commas, or `all` for every method of the firmware.
     #[arg(long, default_value = "all", value_parser = parse::SeveralShaders)]
     shader: Several<Shader>,
-    /// Error budget of auto and auto-linear: the largest error of a pixel against Phong shading, in 1/255, from 0.5 to 16. By default the scene's
-    /// own.
+    /// Error budget of auto and auto-linear: the largest difference of a pixel from Phong shading, in 1/255, from 0.5 to 16. The default is the
+    /// budget of the scene.
     #[arg(long, value_name = "LSB", value_parser = parse::budget)]
     budget: Option<ErrorBudget>,
-    /// Number of frames to compare, beginning with the first.
+    /// Number of frames to compare, starting with the first.
     #[arg(long, default_value_t = 3, value_parser = clap::value_parser!(u16).range(1..))]
     frames: u16,
     /// Directory for pictures that differ.
@@ -52,7 +52,7 @@ Examples:
   microphong verify bunny torus --board pico --shader six-point
   microphong verify all --board all --json
 
-Exit codes: 0 all pixels are equal; 1 some differ, or a board failed; 2 wrong usage.";
+Exit codes: 0 all pixels are equal; 1 some pixels differ, or a board failed; 2 wrong usage.";
 
 /// Boards by name.
 fn boards(text: &str) -> Result<Several<Board>, String> {
@@ -82,14 +82,14 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome> {
         }
     }
     let count = runs.len();
-    ensure!(count > 0, "nothing to compare: none of these boards has a method that can shade one of these scenes");
+    ensure!(count > 0, "nothing to compare: no board has a method that can draw one of these scenes");
     let bar = report::progress(count as u64 + 1, "verifying pictures");
     let (mut differ, mut failed) = (0, 0);
     let mut built: Option<(Board, PathBuf)> = None;
     for (board, scene, shader) in runs {
         let elf = match &built {
             Some((of, elf)) if *of == board => elf.clone(),
-            _ => verify::build(board).with_context(|| format!("no firmware for {board}"))?,
+            _ => verify::build(board).with_context(|| format!("cannot build the firmware of {board}"))?,
         };
         built = Some((board, elf.clone()));
         let request = Request {
@@ -136,7 +136,7 @@ fn lacking(board: Board, shader: Shader, json: bool) -> Result<()> {
         return report::json(&Lacking { board, shader: shader.name(), lacking: true });
     }
     let has: Vec<_> = Shader::ALL.into_iter().filter(|&shader| board.has(shader)).map(Shader::name).collect();
-    report::line(&format!("{board} is left out, it has no {}; it has {}", shader.name(), has.join(", ")))
+    report::line(&format!("{board} is skipped, because it has no {}; it has {}", shader.name(), has.join(", ")))
 }
 
 fn text(result: &Report, artefacts: &std::path::Path) -> Result<()> {

@@ -29,7 +29,7 @@ impl Family for Arithmetic {
     }
 
     fn about(&self) -> &'static str {
-        "integers shade every pixel as the same method does in floating point"
+        "the integer version of each method gives the light of its floating-point version"
     }
 
     fn limit(&self) -> Option<(f64, &'static str)> {

@@ -36,7 +36,7 @@ impl Family for Budget {
     }
 
     fn about(&self) -> &'static str {
-        "auto is off from Phong shading by no more than its budget"
+        "auto differs from Phong shading by no more than its budget"
     }
 
     fn limit(&self) -> Option<(f64, &'static str)> {

@@ -38,7 +38,7 @@ impl Family for Changes {
     }
 
     fn about(&self) -> &'static str {
-        "a scene that has changed is drawn as a new one, by redrawing what has changed alone; nothing out of range is taken"
+        "partial redraw gives the picture of a new renderer; values out of range are errors"
     }
 
     fn counts(&self) -> &'static [&'static str] {

@@ -47,7 +47,7 @@ impl<C: Count> Family for Cost<C> {
     }
 
     fn about(&self) -> &'static str {
-        "a frame takes no more instructions than are documented"
+        "a frame needs no more instructions than documented"
     }
 
     fn limit(&self) -> Option<(f64, &'static str)> {

@@ -33,7 +33,7 @@ impl Family for Coverage {
     }
 
     fn about(&self) -> &'static str {
-        "a triangle covers the pixels whose centres lie in it, or on a top or left edge"
+        "a triangle covers the pixels whose centres lie inside it, or on a top or left edge"
     }
 
     fn check(&self, random: &mut Random) -> Verdict {

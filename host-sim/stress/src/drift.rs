@@ -21,7 +21,7 @@ impl Family for Drift {
     }
 
     fn about(&self) -> &'static str {
-        "the pose of any of 2^32 frames is as exact as that of the first, and a rotation"
+        "the camera of each of 2^32 frames has a rotation as exact as in the first frame"
     }
 
     fn limit(&self) -> Option<(f64, &'static str)> {

@@ -70,7 +70,7 @@ impl Family for Hostile {
     }
 
     fn about(&self) -> &'static str {
-        "a damaged stream is refused, or drawn and asked for names without a panic or an overflow"
+        "a damaged stream gives an error, or is read and drawn without a panic or an overflow"
     }
 
     fn check(&self, random: &mut Random) -> Verdict {

@@ -21,7 +21,7 @@ impl Family for Sameness {
     }
 
     fn about(&self) -> &'static str {
-        "neither bands nor memory, neither limits nor what was drawn before nor what is left out change a pixel or a count"
+        "bands, memory, limits, earlier frames and skipped work change no pixel or count"
     }
 
     fn check(&self, random: &mut Random) -> Verdict {

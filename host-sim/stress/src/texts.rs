@@ -249,7 +249,7 @@ impl Family for Texts {
     }
 
     fn about(&self) -> &'static str {
-        "the text of a scene is refused by the line that is wrong, or becomes a stream that is drawn without a panic"
+        "a scene text gives an error that names the line, or is drawn without a panic"
     }
 
     fn counts(&self) -> &'static [&'static str] {

@@ -25,7 +25,7 @@ impl Family for Walks {
     }
 
     fn about(&self) -> &'static str {
-        "forward differences over 4,096 columns and 2,047 rows end where one multiplication leads"
+        "forward differences over 4,096 columns and 2,047 rows end at the exact value"
     }
 
     fn check(&self, random: &mut Random) -> Verdict {

@@ -38,7 +38,7 @@ impl Family for Watertight {
     }
 
     fn about(&self) -> &'static str {
-        "a pixel is drawn if and only if its centre lies in a triangle that shows its front"
+        "a pixel is drawn if and only if its centre lies in a triangle that faces the viewer"
     }
 
     fn limit(&self) -> Option<(f64, &'static str)> {

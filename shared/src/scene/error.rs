@@ -56,22 +56,24 @@ pub enum SceneError {
 impl fmt::Display for SceneError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
-            Self::Rotation => {
-                f.write_str("a rotation must be a quaternion other than zero, an axis other than zero, or an orthonormal matrix")
-            }
-            Self::Direction => f.write_str("a direction must be three numbers that are not all zero"),
-            Self::Position => f.write_str("a position must be within 16 units of the origin along each axis"),
-            Self::Scale => f.write_str("a scale must be 1/16 to 8"),
-            Self::Object { index } => write!(f, "there is no object number {index}"),
-            Self::Meshes => f.write_str("the stream has no such meshes, or the first is a coarser level of another"),
-            Self::Material { index } => write!(f, "the stream has no material number {index}"),
-            Self::Objects { room } => write!(f, "there is room for {room} objects; ask for more by Layout::objects"),
-            Self::Range { name } => write!(f, "{name} is out of range"),
-            Self::Light => f.write_str("the shading method needs directional lights and an infinitely far viewer"),
-            Self::Perspective => f.write_str(
-                "the shading method cannot interpolate light in perspective; turn that off by Renderer::set_perspective_correct, or keep an orthographic camera",
+            Self::Rotation => f.write_str(
+                "this is not a rotation; a quaternion or axis must not be zero, a matrix must be orthonormal, and `up` must not be parallel to the view",
             ),
-            Self::Exponent { least } => write!(f, "the shading method needs materials whose exponent is {least} or more"),
+            Self::Direction => f.write_str("this is not a direction; it must be three numbers that are not all zero"),
+            Self::Position => f.write_str("the position is out of range; it must be within 16 units of the origin along each axis"),
+            Self::Scale => f.write_str("the scale is out of range; it must be 1/16 to 8"),
+            Self::Object { index } => write!(f, "there is no object number {index}; use an index that Scene::add returned"),
+            Self::Meshes => f.write_str("the stream has no such meshes, or the range begins with a level of detail; use Stream::mesh"),
+            Self::Material { index } => write!(f, "the stream has no material number {index}; use a smaller index"),
+            Self::Objects { room } => write!(f, "the layout has room for only {room} objects; set Layout::objects to more"),
+            Self::Range { name } => write!(f, "{name} is out of range; its documentation gives the limits"),
+            Self::Light => {
+                f.write_str("this method supports only directional lights and an infinitely far viewer; use another shading method")
+            }
+            Self::Perspective => f.write_str(
+                "this method cannot interpolate light in perspective; call Renderer::set_perspective_correct(false) or use an orthographic camera",
+            ),
+            Self::Exponent { least } => write!(f, "this method supports only exponents of {least} or more; use a larger one"),
         }
     }
 }

@@ -127,19 +127,19 @@ pub enum StreamError {
 impl fmt::Display for StreamError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
-            Self::Misaligned => write!(f, "the bytes are not aligned to 4"),
-            Self::Truncated { need, have } => write!(f, "truncated: {have} bytes of {need}"),
-            Self::Magic => write!(f, "offset 0: not a triangle stream (wrong magic)"),
+            Self::Misaligned => write!(f, "the stream does not begin at a multiple of 4 bytes; embed it with include_stream!"),
+            Self::Truncated { need, have } => write!(f, "the stream is truncated to {have} bytes of {need}; copy or convert it again"),
+            Self::Magic => write!(f, "offset 0: this is not a stream (wrong magic); make one with `microphong convert`"),
             Self::Version { found } => {
-                write!(f, "offset 4: format version {found}, this program reads {VERSION}; convert the mesh again")
+                write!(f, "offset 4: the format has version {found}, but this program reads {VERSION}; convert the mesh again")
             }
             Self::Checksum { stored, computed } => {
-                write!(f, "offset 12: checksum {stored:08x}, but the bytes have {computed:08x}: the file is damaged")
+                write!(f, "offset 12: the stream is damaged (checksum {computed:08x} instead of {stored:08x}); copy or convert it again")
             }
             Self::Length { need, claimed } => {
-                write!(f, "offset 8: length {claimed}, but the counts ask for {need}")
+                write!(f, "offset 8: the length is {claimed} bytes, but the records take {need}; convert the mesh again")
             }
-            Self::Field { name, record } => write!(f, "{name} of record {record} is out of range"),
+            Self::Field { name, record } => write!(f, "{name} of record {record} is out of range; convert the mesh again"),
         }
     }
 }

@@ -123,7 +123,7 @@ impl fmt::Display for Unsupported {
         match self {
             Self::Unknown(name) => write!(f, "unknown method {name:?}; name one of: {}", NAMES.join(", ")),
             Self::Near(name) => write!(f, "{name} cannot draw point lights or a local viewer: its directions are constant"),
-            Self::Perspective(name) => write!(f, "{name} has no perspective-correct form"),
+            Self::Perspective(name) => write!(f, "{name} cannot interpolate light in perspective"),
         }
     }
 }
