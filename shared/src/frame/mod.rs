@@ -1,14 +1,16 @@
 //! One frame: preparation before its rows are drawn, and drawing in one part or in two.
 
+mod colours;
 mod context;
 mod part;
 mod preparation;
 mod skips;
 
+pub(crate) use colours::{ColourSettings, Colours};
 pub(crate) use context::Settings;
 pub use part::Stats;
-pub(crate) use preparation::Seams;
 pub use preparation::{Preparation, PreparationPart};
+pub(crate) use preparation::{Prepared, Seams};
 pub use skips::Skips;
 
 use crate::{error::RenderError, pixel::Pixel};
@@ -20,11 +22,16 @@ use part::Part;
 /// One frame, drawn band by band from the top.
 #[derive(Debug)]
 pub struct Frame<'r, C: Pixel> {
-    context: Context<'r, C>,
+    context: Context<'r>,
     part: Part<'r>,
+    colours: Colours<'r, C>,
 }
 
 impl<'r, C: Pixel> Frame<'r, C> {
+    pub(crate) fn new(Prepared { context, part }: Prepared<'r>, colours: Colours<'r, C>) -> Self {
+        Self { context, part, colours }
+    }
+
     /// Draws the next band into the front of `pixels`, row by row, and returns its area in the picture; `None` after the last band.
     ///
     /// The first `area.size.width * area.size.height` entries of `pixels` hold the band. If `pixels` is shorter than a whole band, the band has fewer
@@ -45,7 +52,7 @@ impl<'r, C: Pixel> Frame<'r, C> {
     /// # Errors
     /// When `pixels` does not hold one row.
     pub fn next_band_over(&mut self, pixels: &mut [C], under: impl FnOnce(&mut [C], Rectangle)) -> Result<Option<Rectangle>, RenderError> {
-        self.part.next_band(&self.context, pixels, under)
+        self.part.next_band(&self.context, &self.colours, pixels, under)
     }
 
     /// The rectangle that the frame draws. This is the whole picture, or with [`crate::Renderer::set_partial_redraw`] the rectangle around all pixels
@@ -97,15 +104,16 @@ impl<'r, C: Pixel> Frame<'r, C> {
     /// layout has to be for two [`crate::Layout::processors`]. If the triangles fill more than half of their memory, the first part gets all rows.
     #[must_use]
     pub fn in_two(self, row: u32) -> FrameInTwo<'r, C> {
-        let Self { context, part } = self;
-        FrameInTwo { parts: part.in_two(row, context.settings.size.width as usize), context }
+        let Self { context, part, colours } = self;
+        FrameInTwo { parts: part.in_two(row, context.settings.size.width as usize), context, colours }
     }
 }
 
 /// A frame in two parts, see [`Frame::in_two`].
 #[derive(Debug)]
 pub struct FrameInTwo<'r, C: Pixel> {
-    context: Context<'r, C>,
+    context: Context<'r>,
+    colours: Colours<'r, C>,
     parts: [Part<'r>; 2],
 }
 
@@ -113,8 +121,8 @@ impl<'r, C: Pixel> FrameInTwo<'r, C> {
     /// The upper part and the lower one.
     #[must_use]
     pub fn parts(&mut self) -> [FramePart<'_, 'r, C>; 2] {
-        let Self { context, parts } = self;
-        parts.each_mut().map(|part| FramePart { context, part })
+        let Self { context, colours, parts } = self;
+        parts.each_mut().map(|part| FramePart { context, colours, part })
     }
 
     /// The counts of what has been drawn. They are complete after the last band of both parts.
@@ -128,7 +136,8 @@ impl<'r, C: Pixel> FrameInTwo<'r, C> {
 /// One part of a frame, drawn band by band from its top.
 #[derive(Debug)]
 pub struct FramePart<'f, 'r, C: Pixel> {
-    context: &'f Context<'r, C>,
+    context: &'f Context<'r>,
+    colours: &'f Colours<'r, C>,
     part: &'f mut Part<'r>,
 }
 
@@ -146,6 +155,6 @@ impl<C: Pixel> FramePart<'_, '_, C> {
     /// # Errors
     /// When `pixels` does not hold one row.
     pub fn next_band_over(&mut self, pixels: &mut [C], under: impl FnOnce(&mut [C], Rectangle)) -> Result<Option<Rectangle>, RenderError> {
-        self.part.next_band(self.context, pixels, under)
+        self.part.next_band(self.context, self.colours, pixels, under)
     }
 }
