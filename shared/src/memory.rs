@@ -189,7 +189,7 @@ const _: () = {
 
 /// The memory of a renderer, divided into its parts.
 #[derive(Debug)]
-pub(crate) struct Memory<'a, C: Pixel> {
+pub(crate) struct Memory<'a> {
     /// Transformed vertices.
     pub(crate) vertices: &'a mut [ScreenVertex],
     /// Triangles that face the camera.
@@ -202,8 +202,6 @@ pub(crate) struct Memory<'a, C: Pixel> {
     pub(crate) order: &'a mut [u32],
     /// The reflectance of each material.
     pub(crate) reflectances: &'a mut [Reflectance],
-    /// The tables of colours of each material.
-    pub(crate) ramps: &'a mut [C::Ramps],
     /// The error bounds of each material, for methods with an error budget.
     pub(crate) error_bounds: &'a mut [ErrorBounds],
     /// Samples for antialiasing; empty without it.
@@ -212,11 +210,16 @@ pub(crate) struct Memory<'a, C: Pixel> {
     pub(crate) active_triangles: &'a mut [ActiveTriangle],
 }
 
-impl<'a, C: Pixel> Memory<'a, C> {
-    /// Divides `words` into the parts of the memory and the room for objects and materials of the scene. Returns `None` if there are fewer
-    /// words than [`Layout::words`].
-    pub(crate) fn new(layout: &Layout, words: &'a mut [u64]) -> Option<(Self, &'a mut [Object], &'a mut [SceneMaterial])> {
-        let bytes = words.as_mut_bytes();
+/// Takes the tables of colours of all materials from `words`. Returns them and the bytes behind them, or `None` if there are fewer words than
+/// [`Layout::words`].
+pub(crate) fn take_ramps<'a, C: Pixel>(layout: &Layout, words: &'a mut [u64]) -> Option<(&'a mut [C::Ramps], &'a mut [u8])> {
+    take(words.as_mut_bytes(), layout.materials)
+}
+
+impl<'a> Memory<'a> {
+    /// Divides the `bytes` behind the tables of colours into the parts of the memory and the room for objects and materials of the scene. Returns
+    /// `None` if there are fewer than [`Layout::words`] says.
+    pub(crate) fn new(layout: &Layout, bytes: &'a mut [u8]) -> Option<(Self, &'a mut [Object], &'a mut [SceneMaterial])> {
         let (vertices, bytes) = take(bytes, layout.vertices)?;
         let (bins, bytes) = take(bytes, layout.triangles)?;
         let (active_triangles, bytes) = take(bytes, layout.active_triangles)?;
@@ -225,15 +228,10 @@ impl<'a, C: Pixel> Memory<'a, C> {
         let (reflectances, bytes) = take(bytes, layout.materials)?;
         let (error_bounds, bytes) = take(bytes, layout.materials)?;
         let (samples, bytes) = take(bytes, layout.samples())?;
-        let (ramps, bytes) = take(bytes, layout.materials)?;
         let (depth, bytes) = take(bytes, layout.band() * layout.processors)?;
         let (objects, bytes) = take(bytes, layout.objects)?;
         let (materials, _) = take(bytes, layout.materials)?;
-        Some((
-            Self { vertices, bins, depth, placements, order, reflectances, ramps, error_bounds, samples, active_triangles },
-            objects,
-            materials,
-        ))
+        Some((Self { vertices, bins, depth, placements, order, reflectances, error_bounds, samples, active_triangles }, objects, materials))
     }
 }
 

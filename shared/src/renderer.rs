@@ -4,12 +4,12 @@ use crate::{
     Stream,
     error::{MAX_SIDE, RenderError},
     format::{ErrorBudget, LARGEST_BUDGET, LEAST_BUDGET, LEVEL, MAX_LIGHTS},
-    frame::{Frame, Preparation, Seams, Settings},
+    frame::{ColourSettings, Colours, Frame, Preparation, Prepared, Seams, Settings},
     geometry::{area::Area, lens::Lens, model_view::ModelView, region::Region},
     lighting::{lights::Directions, material_tables::fill_ramps},
-    memory::{Layout, Memory},
+    memory::{Layout, Memory, take_ramps},
     method::Facts,
-    pixel::{Pixel, gamma::Gamma, ramps::Ramps},
+    pixel::{Channels, Pixel, gamma::Gamma, ramps::Ramps},
     placement::{Placements, Placing},
     scene::{Limits, Scene},
     shader::Shader,
@@ -22,9 +22,12 @@ use embedded_graphics_core::{geometry::Size, primitives::Rectangle};
 /// the program lends it; nothing is allocated.
 #[derive(Debug)]
 pub struct Renderer<'a, C: Pixel> {
-    settings: Settings<C>,
+    settings: Settings,
+    colours: ColourSettings<C>,
     scene: Scene<'a>,
-    memory: Memory<'a, C>,
+    memory: Memory<'a>,
+    /// Tables of colours, one for each material.
+    ramps: &'a mut [C::Ramps],
     /// See [`Self::prepare`].
     seams: Option<Seams>,
     /// Whether other triangles are drawn than when the seams were found.
@@ -85,6 +88,7 @@ impl<'a, C: Pixel> Renderer<'a, C> {
             return Err(RenderError::Objects { need });
         }
         let need = layout.words::<C>();
+        let (ramps, memory) = take_ramps::<C>(layout, memory).ok_or(RenderError::Memory { need })?;
         let (memory, objects, materials) = Memory::new(layout, memory).ok_or(RenderError::Memory { need })?;
         check(&stream, shader.facts(), false)?;
         if !cfg!(feature = "text") && !stream.labels.is_empty() {
@@ -93,9 +97,7 @@ impl<'a, C: Pixel> Renderer<'a, C> {
         let settings = Settings {
             size,
             processors: layout.processors as u32,
-            shader,
-            dither: C::DITHERED,
-            gamma: None,
+            method: shader.method(),
             perspective_correct: false,
             antialias: false,
             budget: level(stream.header.budget()),
@@ -105,7 +107,8 @@ impl<'a, C: Pixel> Renderer<'a, C> {
             partial_redraw: false,
         };
         let scene = Scene::new(stream, materials, objects, limits(shader.facts(), false));
-        Ok(Self { settings, scene, memory, seams: None, rearranged: true, region: Region::NONE, is_invalidated: false })
+        let colours = ColourSettings { shader, dither: C::DITHERED, gamma: None };
+        Ok(Self { settings, colours, scene, memory, ramps, seams: None, rearranged: true, region: Region::NONE, is_invalidated: false })
     }
 
     /// Returns the scene, so that the program can change objects, materials, lights and the camera between frames.
@@ -122,7 +125,7 @@ impl<'a, C: Pixel> Renderer<'a, C> {
     pub fn set_shader(&mut self, shader: Shader<C>) -> Result<(), RenderError> {
         let (facts, scene) = (shader.facts(), &self.scene);
         check_scene(scene.camera(), scene.lights(), scene.materials(), facts, self.settings.perspective_correct)?;
-        self.settings.shader = shader;
+        (self.settings.method, self.colours.shader) = (shader.method(), shader);
         self.scene.set_limits(limits(facts, self.settings.perspective_correct));
         self.scene.set_stale();
         Ok(())
@@ -132,8 +135,9 @@ impl<'a, C: Pixel> Renderer<'a, C> {
     // A call that frames make only where something has.
     #[inline(never)]
     fn fill_tables(&mut self) {
-        let Self { settings, scene, memory: Memory { reflectances, ramps, error_bounds, .. }, .. } = self;
-        let (shader, facts, ambient) = (settings.shader, settings.shader.facts(), scene.ambient);
+        let Self { settings, colours, ramps, scene, memory: Memory { reflectances, error_bounds, .. }, .. } = self;
+        let (method, ColourSettings { dither, gamma, .. }) = (settings.method, colours);
+        let (facts, ambient) = (method.facts(), scene.ambient);
         let lights: heapless::Vec<Light, MAX_LIGHTS> = heapless::Vec::from_slice(scene.lights()).unwrap_or_default();
         for (index, material) in scene.stale_materials() {
             let (Some(reflectance), Some(ramps), Some(bounds)) =
@@ -141,11 +145,11 @@ impl<'a, C: Pixel> Renderer<'a, C> {
             else {
                 continue;
             };
-            reflectance.fill::<C>(ambient, &material, &lights, (facts.highlight, facts.highlight_levels));
-            fill_ramps::<C>(ramps, reflectance, settings.dither, settings.gamma);
-            *bounds = shader.method().error_bounds(reflectance, material.exponent, lights.len());
-            if settings.dither && C::Ramps::CHECKERED {
-                reflectance.dither::<C>();
+            reflectance.fill(Channels::of::<C>(), ambient, &material, &lights, (facts.highlight, facts.highlight_levels));
+            fill_ramps::<C>(ramps, reflectance, *dither, *gamma);
+            *bounds = method.error_bounds(reflectance, material.exponent, lights.len());
+            if *dither && C::Ramps::CHECKERED {
+                reflectance.dither();
             }
             #[cfg(feature = "skips")]
             reflectance.leave_out(settings.skips.highlights, settings.skips.lights);
@@ -163,7 +167,7 @@ impl<'a, C: Pixel> Renderer<'a, C> {
     /// Returns the shading method in use.
     #[must_use]
     pub fn shader(&self) -> Shader<C> {
-        self.settings.shader
+        self.colours.shader
     }
 
     /// Turns perspective-correct interpolation of light on or off; the default is off. Without it, light is interpolated linearly on the
@@ -178,9 +182,9 @@ impl<'a, C: Pixel> Renderer<'a, C> {
             return Err(RenderError::Feature { name: "perspective" });
         }
         let scene = &self.scene;
-        check_scene(scene.camera(), scene.lights(), scene.materials(), self.settings.shader.facts(), on)?;
+        check_scene(scene.camera(), scene.lights(), scene.materials(), self.settings.method.facts(), on)?;
         self.settings.perspective_correct = on;
-        self.scene.set_limits(limits(self.settings.shader.facts(), on));
+        self.scene.set_limits(limits(self.settings.method.facts(), on));
         self.scene.set_view_changed();
         Ok(())
     }
@@ -209,7 +213,7 @@ impl<'a, C: Pixel> Renderer<'a, C> {
     /// - Greys of one to four bits are fastest with dither, and several times as slow without it.
     /// - All other formats are fastest without dither, and several times as slow with it.
     pub fn set_dither(&mut self, dither: bool) {
-        self.settings.dither = dither;
+        self.colours.dither = dither;
         self.scene.set_stale();
     }
 
@@ -219,7 +223,7 @@ impl<'a, C: Pixel> Renderer<'a, C> {
     /// In grey formats the correction takes no more time. Neither does it in formats of fewer than eight bits a channel for materials whose
     /// colours are multiples of one another. All other materials can take several times as long.
     pub fn set_gamma(&mut self, gamma: Option<&'static Gamma>) {
-        self.settings.gamma = gamma;
+        self.colours.gamma = gamma;
         self.scene.set_stale();
     }
 
@@ -320,7 +324,8 @@ impl<'a, C: Pixel> Renderer<'a, C> {
     #[inline(never)]
     pub fn draw(&mut self) -> Frame<'_, C> {
         self.place();
-        Frame::new(&self.settings, &self.scene, &mut self.memory, &self.region)
+        let Self { settings, colours, scene, memory, ramps, region, .. } = self;
+        Frame::new(Prepared::new(settings, scene, memory, region), Colours { settings: colours, ramps })
     }
 
     /// Begins frame `number` as [`Self::frame`] does, and divides the work before the first pixel between two processors. The picture does
@@ -334,7 +339,9 @@ impl<'a, C: Pixel> Renderer<'a, C> {
         if mem::take(&mut self.rearranged) && self.settings.processors > 1 {
             self.seams = Seams::new(&self.scene, &mut self.memory);
         }
-        Preparation::new(&self.settings, &self.scene, &mut self.memory, &self.region, self.seams.map(|seams| (seams, share)))
+        let Self { settings, colours, scene, memory, ramps, region, seams, .. } = self;
+        let colours = Colours { settings: colours, ramps };
+        Preparation::new(settings, scene, memory, region, seams.map(|seams| (seams, share)), colours)
     }
 
     /// Places what has moved, and computes tables that are stale.

@@ -2,7 +2,7 @@
 
 use crate::{
     geometry::bin::{Key, Walk},
-    mesh::MeshPass,
+    mesh::Drawing,
     method::{
         DrawTriangle, Facts, General, Loops, Method, Style, auto::Auto, flat::Flat, gouraud::Gouraud, phong::Phong,
         renq_newton::RenqNewton, six_point::SixPoint, sqrt6::Sqrt6,
@@ -24,8 +24,8 @@ pub struct Shader<C: Pixel> {
     three_channels: TriangleLoops<C>,
 }
 
-/// The type of [`MeshPass::run`] with the loops of one method.
-type Run<C> = fn(&MeshPass<'_, C>, Key, &mut Walk<'_>, &mut Band<'_, C>) -> (u32, Option<Key>);
+/// The type of [`Drawing::run`] with the loops of one method.
+type Run<C> = fn(&Drawing<'_, C>, Key, &mut Walk<'_>, &mut Band<'_, C>) -> (u32, Option<Key>);
 
 /// What draws triangles by the loops of one method.
 pub(crate) struct TriangleLoops<C: Pixel> {
@@ -121,6 +121,6 @@ impl<C: Pixel> Shader<C> {
 
 impl<C: Pixel> fmt::Debug for Shader<C> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(self.facts().name)
+        self.method.fmt(f)
     }
 }

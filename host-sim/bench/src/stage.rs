@@ -63,7 +63,7 @@ pub(super) enum Part {
 
 /// Parts of functions by what their names contain; the first that fits counts. Names as the compiler writes them, so that this
 /// is the one place to follow when functions move.
-const TABLE: [(&str, Part); 30] = [
+const TABLE: [(&str, Part); 32] = [
     ("microphong::raster::triangle::fill_rows", Part::Row),
     ("as microphong::raster::canvas::SpanShader::span", Part::Row),
     ("microphong::raster::band::Band::clear", Part::Clear),
@@ -74,14 +74,16 @@ const TABLE: [(&str, Part); 30] = [
     ("microphong::renderer::Renderer::draw", Part::Frame),
     ("microphong::renderer::Renderer::place", Part::Frame),
     ("microphong::renderer::Renderer::prepare", Part::Frame),
-    ("microphong::frame::Frame::new", Part::Frame),
-    ("microphong::frame::preparation::Preparation::", Part::Frame),
+    ("microphong::frame::preparation::Prepared::", Part::Frame),
+    ("microphong::frame::preparation::Halves::", Part::Frame),
     ("microphong::mesh::vertices::VertexStage::transform", Part::Vertex),
     ("microphong::frame::preparation::PreparationPart", Part::Cull),
     ("microphong::geometry::bin::Bins", Part::Cull),
     ("microphong::frame::part::Part::draw", Part::Setup),
-    ("microphong::frame::context::Context::drawing", Part::Setup),
-    ("microphong::mesh::MeshPass", Part::Setup),
+    ("microphong::frame::colours::Colours::drawing", Part::Setup),
+    ("microphong::frame::context::Context::pass", Part::Setup),
+    ("microphong::mesh::Drawing", Part::Setup),
+    ("microphong::mesh::pass::MeshPass", Part::Setup),
     // Of the host's program, which has no display.
     ("frame::counted_frame", Part::Frame),
     ("Framebuffer::blit", Part::Transfer),

@@ -6,7 +6,7 @@ use microphong::{
     Stream,
     format::{BIAS, CHANNEL, Intensity, RAMP, WALK},
     method::{Highlight, Reflectance},
-    pixel::{Pixel, ramps::Rounded},
+    pixel::{Channels, Pixel, ramps::Rounded},
     stream::record::Material,
 };
 use microphong_render::{
@@ -85,7 +85,7 @@ impl Pixel for Fine {
 #[must_use]
 pub fn is_one_channel(stream: &Stream<'_>, material: &Material) -> bool {
     let mut reflectance = Box::new(Reflectance::EMPTY);
-    reflectance.fill::<Fine>(stream.header.ambient, material, stream.lights, (Highlight::Half, false));
+    reflectance.fill(Channels::of::<Fine>(), stream.header.ambient, material, stream.lights, (Highlight::Half, false));
     !reflectance.three_channels()
 }
 

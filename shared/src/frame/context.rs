@@ -9,28 +9,22 @@ use crate::{
         region::Region,
         viewport::Viewport,
     },
-    lighting::{material_tables::MaterialTables, output::Output, reflectance::Reflectance},
+    lighting::reflectance::Reflectance,
     mesh::{MeshPass, vertices::VertexStage},
-    method::{ErrorBounds, Shading, Style, VertexLight},
-    pixel::{Pixel, gamma::Gamma},
+    method::{ErrorBounds, Method, Shading, Style, VertexLight},
     placement::{Placement, Placements},
-    raster::band::Band,
     scene::{Object, Scene},
-    shader::{Shader, TriangleLoops},
     stream::record::{CLOSED_CONVEX, Mesh},
 };
 use embedded_graphics_core::geometry::Size;
 
 /// How scenes are drawn, from frame to frame.
 #[derive(Debug)]
-pub(crate) struct Settings<C: Pixel> {
+pub(crate) struct Settings {
     pub(crate) size: Size,
     /// Processors that draw at the same time.
     pub(crate) processors: u32,
-    pub(crate) shader: Shader<C>,
-    pub(crate) dither: bool,
-    /// The curve of the display.
-    pub(crate) gamma: Option<&'static Gamma>,
+    pub(crate) method: &'static dyn Method,
     pub(crate) perspective_correct: bool,
     pub(crate) antialias: bool,
     /// How far a pixel may be off by a method that keeps to a budget, in 1/255, Q9.7.
@@ -43,7 +37,7 @@ pub(crate) struct Settings<C: Pixel> {
     pub(crate) partial_redraw: bool,
 }
 
-impl<C: Pixel> Settings<C> {
+impl Settings {
     #[inline(always)]
     pub(crate) fn antialiased(&self) -> bool {
         cfg!(feature = "antialias") && self.antialias
@@ -76,8 +70,8 @@ impl<C: Pixel> Settings<C> {
 
 /// One frame of a scene, its vertices on the screen.
 #[derive(Debug)]
-pub(crate) struct Context<'r, C: Pixel> {
-    pub(crate) settings: &'r Settings<C>,
+pub(crate) struct Context<'r> {
+    pub(crate) settings: &'r Settings,
     pub(crate) scene: &'r Scene<'r>,
     pub(crate) placements: Placements<'r>,
     /// The pixels that the frame has.
@@ -85,9 +79,8 @@ pub(crate) struct Context<'r, C: Pixel> {
     /// Where triangles may overlap; `None` if they may do so everywhere.
     pub(crate) depth_elision: Option<DepthElision>,
     pub(crate) vertices: &'r [ScreenVertex],
-    /// One for each material, as in `ramps`, the tables of colours.
+    /// One for each material.
     pub(crate) reflectances: &'r [Reflectance],
-    pub(crate) ramps: &'r [C::Ramps],
     /// What a method that keeps to a budget knows of each material.
     pub(crate) error_bounds: &'r [ErrorBounds],
 }
@@ -131,9 +124,9 @@ pub(crate) fn meshes<'r>(scene: &'r Scene<'_>, placements: Placements<'r>) -> im
     })
 }
 
-impl<'r, C: Pixel> Context<'r, C> {
+impl<'r> Context<'r> {
     /// The meshes of all objects, each at the level that is drawn.
-    pub(crate) fn meshes(&self) -> impl DoubleEndedIterator<Item = PlacedMesh<'r>> + use<'r, C> {
+    pub(crate) fn meshes(&self) -> impl DoubleEndedIterator<Item = PlacedMesh<'r>> + use<'r> {
         meshes(self.scene, self.placements)
     }
 
@@ -156,17 +149,16 @@ impl<'r, C: Pixel> Context<'r, C> {
         Some(PlacedMesh::new(placement, object, first, mesh))
     }
 
-    /// Whether all pixels of an object in these `columns` of `band`, if there are any, are nearer than the object is: none of its triangles can be
-    /// seen there.
-    pub(crate) fn hides(&self, placement: &Placement, columns: [u16; 2], band: &Band<'_, C>) -> bool {
+    /// Whether all pixels of an object in these `columns` of a band, if there are any, are nearer than the object is: none of its triangles can be
+    /// seen there. The band has the rows from `first` up to `end`, and this `depth`.
+    pub(crate) fn hides(&self, placement: &Placement, columns: [u16; 2], [first, end]: [i32; 2], depth: &[u16]) -> bool {
         if !self.settings.skips().hidden_objects || self.settings.antialiased() {
             return false;
         }
         let Area { columns: [left, right], rows: [top, bottom] } = placement.area.within(&Area { columns, rows: [0, u16::MAX] });
-        let [first, end] = band.range();
         (i32::from(top).max(first)..i32::from(bottom).min(end)).all(|row| {
-            let start = band.start(row);
-            let pixels = band.depth.get(start.wrapping_add(left.into())..start.wrapping_add(right.into())).unwrap_or_default();
+            let start = ((row - first) as usize).wrapping_mul(self.settings.size.width as usize);
+            let pixels = depth.get(start.wrapping_add(left.into())..start.wrapping_add(right.into())).unwrap_or_default();
             pixels.iter().all(|&inv_depth| inv_depth >= placement.nearest)
         })
     }
@@ -174,7 +166,7 @@ impl<'r, C: Pixel> Context<'r, C> {
     /// Whether vertices are lit once it is known which triangles reach into the area: where that is not the whole picture, most do not, and
     /// levels take longer than to find that out.
     pub(crate) fn lights_later(&self) -> bool {
-        let may_have_levels = match self.settings.shader.facts().vertex_light {
+        let may_have_levels = match self.settings.method.facts().vertex_light {
             VertexLight::None | VertexLight::Cosines | VertexLight::CosinesAndReflection => false,
             VertexLight::CosinesOrLevels | VertexLight::ReflectionOrLevels | VertexLight::Levels => true,
         };
@@ -183,35 +175,34 @@ impl<'r, C: Pixel> Context<'r, C> {
 
     /// The stage that transforms and lights the vertices of `placed`.
     pub(super) fn stage<'s>(&'s self, placed: &PlacedMesh<'s>) -> Option<VertexStage<'s>> {
-        let light = self.settings.shader.facts().vertex_light;
+        let light = self.settings.method.facts().vertex_light;
         let reflectance = self.reflectances.get(placed.material)?;
         let Placement { view, lighting, .. } = placed.placement;
         Some(VertexStage { view, lighting, constant: lighting.constant(), reflectance, light })
     }
 
-    /// What the triangles of `placed` have in common in a band of which these `columns` are wanted, and the loops that draw them.
+    /// What the triangles of `placed` have in common in a band of which these `columns` are wanted, and their style.
     #[inline(never)]
-    pub(crate) fn drawing<'s>(&'s self, placed: &PlacedMesh<'s>, columns: [u16; 2]) -> Option<(MeshPass<'s, C>, TriangleLoops<C>)> {
-        let Settings { shader, dither, gamma, .. } = self.settings;
+    pub(crate) fn pass<'s>(&'s self, placed: &PlacedMesh<'s>, columns: [u16; 2]) -> Option<(MeshPass<'s>, Style)> {
+        let method = self.settings.method;
         let (stream, material, stage) = (&self.scene.stream, placed.material, self.stage(placed)?);
-        let (reflectance, ramps) = (self.reflectances.get(material)?, self.ramps.get(material)?);
+        let reflectance = self.reflectances.get(material)?;
         let perspective = self.settings.perspective_correct && stage.view.is_perspective();
         let lighting = stage.lighting;
-        let output = Output::new(MaterialTables { ramps, reflectance }, *dither, *gamma);
         let style = Style {
             three_channels: reflectance.three_channels(),
             lights: if lighting.is_constant() { reflectance.lights() } else { 0 },
             local_viewer: lighting.is_directional() && !lighting.is_constant() && reflectance.lights() == 1,
-            by_canvas: !output.suits_loops() || self.settings.antialiased(),
+            by_canvas: self.settings.antialiased(),
             perspective,
         };
         // In perspective, light is interpolated between columns that depend on where a row begins: rows are drawn whole.
         let columns = if perspective { [0, self.settings.size.width as u16] } else { columns };
         let exponent = self.scene.material(material)?.exponent;
         let error_bounds = self.error_bounds.get(material)?;
-        let drawing = MeshPass {
-            method: shader.method(),
-            steepness: shader.method().facts().steepness(exponent),
+        let pass = MeshPass {
+            method,
+            steepness: method.facts().steepness(exponent),
             shading: Shading {
                 reflectance,
                 lighting,
@@ -220,7 +211,6 @@ impl<'r, C: Pixel> Context<'r, C> {
                 error_bounds,
                 budget: self.settings.budget,
             },
-            output,
             stage,
             depth_elision: self.depth_elision.as_ref(),
             first_triangle: placed.first_triangle,
@@ -231,6 +221,6 @@ impl<'r, C: Pixel> Context<'r, C> {
             columns: columns.map(i32::from),
             perspective,
         };
-        Some((drawing, shader.loops(style)))
+        Some((pass, style))
     }
 }

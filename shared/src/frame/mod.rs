@@ -1,14 +1,16 @@
 //! One frame: preparation before its rows are drawn, and drawing in one part or in two.
 
+mod colours;
 mod context;
 mod part;
 mod preparation;
 mod skips;
 
+pub(crate) use colours::{ColourSettings, Colours};
 pub(crate) use context::Settings;
 pub use part::Stats;
-pub(crate) use preparation::Seams;
 pub use preparation::{Preparation, PreparationPart};
+pub(crate) use preparation::{Prepared, Seams};
 pub use skips::Skips;
 
 use crate::{error::RenderError, pixel::Pixel};
@@ -21,11 +23,16 @@ use part::Part;
 /// [`Renderer::draw`](crate::Renderer::draw) create one. Programs with an embedded-graphics display can use [`Picture`](crate::Picture) instead.
 #[derive(Debug)]
 pub struct Frame<'r, C: Pixel> {
-    context: Context<'r, C>,
+    context: Context<'r>,
     part: Part<'r>,
+    colours: Colours<'r, C>,
 }
 
 impl<'r, C: Pixel> Frame<'r, C> {
+    pub(crate) fn new(Prepared { context, part }: Prepared<'r>, colours: Colours<'r, C>) -> Self {
+        Self { context, part, colours }
+    }
+
     /// Draws the next band (group of rows) into `pixels` in row-major order, and returns its rectangle in the picture. Returns `None` after
     /// the last band.
     ///
@@ -49,7 +56,7 @@ impl<'r, C: Pixel> Frame<'r, C> {
     /// # Errors
     /// Returns [`RenderError::Band`] if `pixels` is shorter than one row of the picture.
     pub fn next_band_over(&mut self, pixels: &mut [C], under: impl FnOnce(&mut [C], Rectangle)) -> Result<Option<Rectangle>, RenderError> {
-        self.part.next_band(&self.context, pixels, under)
+        self.part.next_band(&self.context, &self.colours, pixels, under)
     }
 
     /// Returns the rectangle that the frame draws, in pixels of the picture. It is the whole picture, unless
@@ -106,8 +113,8 @@ impl<'r, C: Pixel> Frame<'r, C> {
     /// at least twice the number of visible triangles. Otherwise the upper part gets all rows.
     #[must_use]
     pub fn in_two(self, row: u32) -> FrameInTwo<'r, C> {
-        let Self { context, part } = self;
-        FrameInTwo { parts: part.in_two(row, context.settings.size.width as usize), context }
+        let Self { context, part, colours } = self;
+        FrameInTwo { parts: part.in_two(row, context.settings.size.width as usize), context, colours }
     }
 }
 
@@ -115,7 +122,8 @@ impl<'r, C: Pixel> Frame<'r, C> {
 /// it.
 #[derive(Debug)]
 pub struct FrameInTwo<'r, C: Pixel> {
-    context: Context<'r, C>,
+    context: Context<'r>,
+    colours: Colours<'r, C>,
     parts: [Part<'r>; 2],
 }
 
@@ -123,8 +131,8 @@ impl<'r, C: Pixel> FrameInTwo<'r, C> {
     /// Returns the upper part and the lower part. Each can be moved to its own processor.
     #[must_use]
     pub fn parts(&mut self) -> [FramePart<'_, 'r, C>; 2] {
-        let Self { context, parts } = self;
-        parts.each_mut().map(|part| FramePart { context, part })
+        let Self { context, colours, parts } = self;
+        parts.each_mut().map(|part| FramePart { context, colours, part })
     }
 
     /// Returns counts of what both parts have drawn. They are complete when [`FramePart::next_band`] has returned `None` for both.
@@ -138,7 +146,8 @@ impl<'r, C: Pixel> FrameInTwo<'r, C> {
 /// The upper or the lower part of a frame, for one of two processors to draw. [`FrameInTwo::parts`] returns both.
 #[derive(Debug)]
 pub struct FramePart<'f, 'r, C: Pixel> {
-    context: &'f Context<'r, C>,
+    context: &'f Context<'r>,
+    colours: &'f Colours<'r, C>,
     part: &'f mut Part<'r>,
 }
 
@@ -158,6 +167,6 @@ impl<C: Pixel> FramePart<'_, '_, C> {
     /// # Errors
     /// Returns [`RenderError::Band`] if `pixels` is shorter than one row of the picture.
     pub fn next_band_over(&mut self, pixels: &mut [C], under: impl FnOnce(&mut [C], Rectangle)) -> Result<Option<Rectangle>, RenderError> {
-        self.part.next_band(self.context, pixels, under)
+        self.part.next_band(self.context, self.colours, pixels, under)
     }
 }

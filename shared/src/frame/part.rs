@@ -3,7 +3,10 @@
 use crate::{
     coverage::sample::Sample,
     error::RenderError,
-    frame::context::{Context, PlacedMesh},
+    frame::{
+        colours::Colours,
+        context::{Context, PlacedMesh},
+    },
     geometry::{
         area::Area,
         bin::{Bins, Entry, Key, Walk},
@@ -90,7 +93,8 @@ impl<'r> Part<'r> {
     /// See [`crate::Frame::next_band_over`].
     pub(crate) fn next_band<C: Pixel>(
         &mut self,
-        context: &Context<'_, C>,
+        context: &Context<'_>,
+        colours: &Colours<'_, C>,
         pixels: &mut [C],
         under: impl FnOnce(&mut [C], Rectangle),
     ) -> Result<Option<Rectangle>, RenderError> {
@@ -103,7 +107,7 @@ impl<'r> Part<'r> {
         let pixels = pixels.get_mut(..(width * height) as usize).unwrap_or_default();
         context.scene.background().fill(pixels, area, size.height);
         under(pixels, area);
-        self.draw(context, pixels, [left as u16, right as u16], rows.map(u32::from));
+        self.draw(context, colours, pixels, [left as u16, right as u16], rows.map(u32::from));
         #[cfg(feature = "text")]
         crate::text::draw(context.scene.stream.labels, size, pixels, area);
         if right - left < width {
@@ -113,7 +117,7 @@ impl<'r> Part<'r> {
     }
 
     /// Returns the rows of the next band, for which a buffer of `pixels` pixels is long enough; `None` after the last band.
-    fn next_rows<C: Pixel>(&self, context: &Context<'_, C>, pixels: usize) -> Result<Option<[u16; 2]>, RenderError> {
+    fn next_rows(&self, context: &Context<'_>, pixels: usize) -> Result<Option<[u16; 2]>, RenderError> {
         let width = context.settings.size.width;
         let fit = u32::try_from(pixels).unwrap_or(u32::MAX).checked_div(width).unwrap_or(0);
         if fit == 0 {
@@ -163,13 +167,20 @@ impl<'r> Part<'r> {
     }
 
     /// Whether the last band has been drawn.
-    pub(crate) fn is_complete<C: Pixel>(&self, context: &Context<'_, C>) -> bool {
+    pub(crate) fn is_complete(&self, context: &Context<'_>) -> bool {
         context.region.next(self.top).rows().start >= self.bottom
     }
 
     /// Draws all triangles in the band from row `top` to row `bottom`, whose pixels hold the background. Only these `columns` are needed.
     #[inline(never)]
-    fn draw<C: Pixel>(&mut self, context: &Context<'_, C>, pixels: &mut [C], columns: [u16; 2], [top, bottom]: [u32; 2]) {
+    fn draw<C: Pixel>(
+        &mut self,
+        context: &Context<'_>,
+        colours: &Colours<'_, C>,
+        pixels: &mut [C],
+        columns: [u16; 2],
+        [top, bottom]: [u32; 2],
+    ) {
         let (width, rows) = (context.settings.size.width as usize, bottom - top);
         let count = width * rows as usize;
         if top > self.top {
@@ -184,12 +195,12 @@ impl<'r> Part<'r> {
         let (pixels, drawn) = if self.binned {
             self.bins.skip(self.entries, top);
             let mut walk = self.bins.band(self.entries, bottom);
-            let pixels = draw_binned(context, &mut walk, columns, &mut band);
+            let pixels = draw_binned(context, colours, &mut walk, columns, &mut band);
             self.bins.take_over(walk);
             (pixels, 0)
         } else {
             self.stats.passes += 1;
-            draw_all(context, columns, &mut band)
+            draw_all(context, colours, columns, &mut band)
         };
         self.stats.pixels = self.stats.pixels.saturating_add(pixels);
         self.stats.drawn += drawn;
@@ -225,17 +236,23 @@ pub(super) fn halves<T>(memory: &mut [T], length: usize) -> (&mut [T], &mut [T])
 }
 
 /// Draws the triangles of `band`, and returns the number of their pixels there.
-fn draw_binned<C: Pixel>(context: &Context<'_, C>, walk: &mut Walk<'_>, columns: [u16; 2], band: &mut Band<'_, C>) -> u32 {
+fn draw_binned<C: Pixel>(
+    context: &Context<'_>,
+    colours: &Colours<'_, C>,
+    walk: &mut Walk<'_>,
+    columns: [u16; 2],
+    band: &mut Band<'_, C>,
+) -> u32 {
     let mut pixels = 0u32;
     let mut next = walk.next();
     while let Some(key) = next {
         // A scene has both.
         let Some(placed) = context.mesh(key.triangle()) else { break };
-        if context.hides(placed.placement, columns, band) {
-            next = leave_out(&placed, key, walk, band);
+        if context.hides(placed.placement, columns, band.range(), band.depth) {
+            next = leave_out(&placed, key, walk, &mut band.active, &mut band.counts);
             continue;
         }
-        let Some((drawing, loops)) = context.drawing(&placed, columns) else { break };
+        let Some((drawing, loops)) = colours.drawing(context, &placed, columns) else { break };
         let (drawn, rest) = (loops.run)(&drawing, key, walk, band);
         pixels = pixels.saturating_add(drawn);
         next = rest;
@@ -245,14 +262,14 @@ fn draw_binned<C: Pixel>(context: &Context<'_, C>, walk: &mut Walk<'_>, columns:
 
 /// Leaves out the triangle `key` and all that follow in the same mesh; returns the first one of another.
 #[inline(never)]
-fn leave_out<C: Pixel>(placed: &PlacedMesh<'_>, key: Key, walk: &mut Walk<'_>, band: &mut Band<'_, C>) -> Option<Key> {
+fn leave_out(placed: &PlacedMesh<'_>, key: Key, walk: &mut Walk<'_>, active: &mut ActiveTriangles<'_>, counts: &mut Counts) -> Option<Key> {
     let mut next = Some(key);
     while let Some(key) = next.filter(|key| placed.has(key.triangle())) {
         if cfg!(feature = "skips") {
-            band.counts.hidden += 1;
+            counts.hidden += 1;
         }
         // What the band above has saved of it stands on the first row of this band: no later band may go on from there.
-        let _ = band.active.take(key.word());
+        let _ = active.take(key.word());
         next = walk.next();
     }
     next
@@ -261,12 +278,12 @@ fn leave_out<C: Pixel>(placed: &PlacedMesh<'_>, key: Key, walk: &mut Walk<'_>, b
 /// Draws all triangles into `band`. Returns the number of their pixels there, and the number of triangles that start there.
 #[cold]
 #[inline(never)]
-fn draw_all<C: Pixel>(context: &Context<'_, C>, columns: [u16; 2], band: &mut Band<'_, C>) -> (u32, u32) {
+fn draw_all<C: Pixel>(context: &Context<'_>, colours: &Colours<'_, C>, columns: [u16; 2], band: &mut Band<'_, C>) -> (u32, u32) {
     let (mut pixels, mut drawn) = (0u32, 0);
     for placed in context.meshes() {
-        let Some((drawing, loops)) = context.drawing(&placed, columns) else { continue };
-        for triangle in drawing.triangles.iter().filter(|triangle| placed.placement.facing.may_face(triangle)) {
-            let Some(bounds) = drawing.bounds(triangle) else { continue };
+        let Some((drawing, loops)) = colours.drawing(context, &placed, columns) else { continue };
+        for triangle in drawing.pass.triangles.iter().filter(|triangle| placed.placement.facing.may_face(triangle)) {
+            let Some(bounds) = drawing.pass.bounds(triangle) else { continue };
             // A triangle is counted in the band where it starts.
             let bottom = band.top + band.rows;
             drawn += u32::from((band.top..bottom).contains(&bounds.top));

@@ -12,6 +12,7 @@
 use crate::{
     frame::{
         Frame,
+        colours::Colours,
         context::{Context, PlacedMesh, Settings, meshes},
         part::{Part, Stats, halves},
     },
@@ -45,7 +46,7 @@ pub(crate) struct Seams([u16; STEPS]);
 impl Seams {
     /// `None` if the placed objects of `scene` have few triangles, or more than [`Bins::join`] can join, or `memory` has not room for all of
     /// them, for all vertices, and for any seam: what happens once a frame is then left to one processor.
-    pub(crate) fn new<C: Pixel>(scene: &Scene<'_>, memory: &mut Memory<'_, C>) -> Option<Self> {
+    pub(crate) fn new(scene: &Scene<'_>, memory: &mut Memory<'_>) -> Option<Self> {
         let stream = &scene.stream;
         let placements = Placements::new(scene, memory.placements, memory.order);
         let (triangles, vertices) = (placements.drawn() as usize, scene.vertices() as usize);
@@ -93,8 +94,15 @@ fn seam(depth: &mut [u16], vertices: usize) -> &mut [SeamPlace] {
 /// processors. [`Renderer::prepare`](crate::Renderer::prepare) creates it, and [`Self::frame`] ends it.
 #[derive(Debug)]
 pub struct Preparation<'r, C: Pixel> {
+    colours: Colours<'r, C>,
+    halves: Halves<'r>,
+}
+
+/// A frame that is prepared in two halves.
+#[derive(Debug)]
+struct Halves<'r> {
     /// The frame. Its lists hold the later triangles.
-    frame: Frame<'r, C>,
+    prepared: Prepared<'r>,
     cache: &'r mut [ScreenVertex],
     division: Division,
     /// The lists of the earlier triangles.
@@ -104,17 +112,24 @@ pub struct Preparation<'r, C: Pixel> {
     is_done: [bool; 2],
 }
 
-/// A frame without triangles and vertices, room for vertices, and where triangles may overlap.
-type Empty<'r, C> = (Frame<'r, C>, &'r mut [ScreenVertex], Option<DepthElision>);
+/// A frame, of which every part but the tables of colours is known.
+#[derive(Debug)]
+pub(crate) struct Prepared<'r> {
+    pub(super) context: Context<'r>,
+    pub(super) part: Part<'r>,
+}
 
-impl<'r, C: Pixel> Frame<'r, C> {
-    /// A frame of a scene whose objects are placed, prepared by one processor.
+/// A frame without triangles and vertices, room for vertices, and where triangles may overlap.
+type Empty<'r> = (Prepared<'r>, &'r mut [ScreenVertex], Option<DepthElision>);
+
+impl<'r> Prepared<'r> {
+    /// Prepares a frame of a scene whose objects are placed, on one processor.
     #[inline(never)]
-    pub(crate) fn new(settings: &'r Settings<C>, scene: &'r Scene<'_>, memory: &'r mut Memory<'_, C>, region: &'r Region) -> Self {
-        let (mut frame, cache, mut depth_elision) = Self::empty(settings, scene, memory, region);
-        let Part { bins, entries, stats, .. } = &mut frame.part;
+    pub(crate) fn new(settings: &'r Settings, scene: &'r Scene<'_>, memory: &'r mut Memory<'_>, region: &'r Region) -> Self {
+        let (mut prepared, cache, mut depth_elision) = Self::empty(settings, scene, memory, region);
+        let Part { bins, entries, stats, .. } = &mut prepared.part;
         let whole = PreparationPart {
-            context: &frame.context,
+            context: &prepared.context,
             triangles: 0..stats.triangles as usize,
             cached: cache,
             seam: &mut [],
@@ -124,25 +139,14 @@ impl<'r, C: Pixel> Frame<'r, C> {
             is_done: &mut false,
         };
         whole.bin::<false>();
-        frame.complete(cache, depth_elision);
-        frame
+        prepared.complete(cache, depth_elision);
+        prepared
     }
 
     #[inline(always)]
-    fn empty(settings: &'r Settings<C>, scene: &'r Scene<'_>, memory: &'r mut Memory<'_, C>, region: &'r Region) -> Empty<'r, C> {
-        let Memory {
-            vertices: cache,
-            bins: entries,
-            depth,
-            placements,
-            order,
-            reflectances,
-            ramps,
-            error_bounds,
-            samples,
-            active_triangles,
-            ..
-        } = memory;
+    fn empty(settings: &'r Settings, scene: &'r Scene<'_>, memory: &'r mut Memory<'_>, region: &'r Region) -> Empty<'r> {
+        let Memory { vertices: cache, bins: entries, depth, placements, order, reflectances, error_bounds, samples, active_triangles } =
+            memory;
         let size = settings.size;
         let placements = Placements::new(scene, placements, order);
         // Bins as high as the bands of one processor.
@@ -152,8 +156,7 @@ impl<'r, C: Pixel> Frame<'r, C> {
         let triangles = placements.drawn();
         let visible = placements.objects(scene).filter(|(placement, _)| placement.drawn > 0);
         let as_they_are = visible.fold(0, |sum, (_, object)| sum + object.triangles);
-        let context =
-            Context { settings, scene, placements, region, depth_elision: None, vertices: &[], reflectances, ramps, error_bounds };
+        let context = Context { settings, scene, placements, region, depth_elision: None, vertices: &[], reflectances, error_bounds };
         let elides = settings.skips().depth && !settings.antialiased();
         let depth_elision = if elides { context.convex().and_then(DepthElision::new) } else { None };
         let part = Part {
@@ -186,28 +189,51 @@ impl<'r, C: Pixel> Frame<'r, C> {
 }
 
 impl<'r, C: Pixel> Preparation<'r, C> {
-    #[inline(never)]
     pub(crate) fn new(
-        settings: &'r Settings<C>,
+        settings: &'r Settings,
         scene: &'r Scene<'_>,
-        memory: &'r mut Memory<'_, C>,
+        memory: &'r mut Memory<'_>,
         region: &'r Region,
         seams: Option<(Seams, u16)>,
+        colours: Colours<'r, C>,
     ) -> Self {
-        let (frame, cache, depth_elision) = Frame::empty(settings, scene, memory, region);
-        let division = seams.map(|(seams, share)| seams.division(frame.part.stats.triangles, share)).unwrap_or_default();
-        let earlier = frame.part.bins.open();
-        Self { frame, cache, division, earlier, depth_elisions: [depth_elision.clone(), depth_elision], is_done: [false; 2] }
+        Self { colours, halves: Halves::new(settings, scene, memory, region, seams) }
     }
 
     /// Returns the two parts. Call [`PreparationPart::run`] for each, one on each processor. The first one has the later triangles of the
     /// scene, the second one the earlier triangles. If the work cannot be divided, the first part does everything and the second one
     /// nothing.
     #[must_use]
-    pub fn parts(&mut self) -> [PreparationPart<'_, 'r, C>; 2] {
-        let Self { frame, cache, division: Division { triangle, vertex }, earlier: earlier_bins, depth_elisions, is_done } = self;
+    pub fn parts(&mut self) -> [PreparationPart<'_, 'r>; 2] {
+        self.halves.parts()
+    }
+
+    /// Ends the preparation and returns the frame, ready to be drawn. A part that has not been run is run here.
+    #[must_use]
+    pub fn frame(self) -> Frame<'r, C> {
+        Frame::new(self.halves.join(), self.colours)
+    }
+}
+
+impl<'r> Halves<'r> {
+    #[inline(never)]
+    fn new(
+        settings: &'r Settings,
+        scene: &'r Scene<'_>,
+        memory: &'r mut Memory<'_>,
+        region: &'r Region,
+        seams: Option<(Seams, u16)>,
+    ) -> Self {
+        let (prepared, cache, depth_elision) = Prepared::empty(settings, scene, memory, region);
+        let division = seams.map(|(seams, share)| seams.division(prepared.part.stats.triangles, share)).unwrap_or_default();
+        let earlier = prepared.part.bins.open();
+        Self { prepared, cache, division, earlier, depth_elisions: [depth_elision.clone(), depth_elision], is_done: [false; 2] }
+    }
+
+    fn parts(&mut self) -> [PreparationPart<'_, 'r>; 2] {
+        let Self { prepared, cache, division: Division { triangle, vertex }, earlier: earlier_bins, depth_elisions, is_done } = self;
         let ([later_elision, earlier_elision], [later_done, earlier_done]) = (depth_elisions, is_done);
-        let Frame { context, part: Part { bins: later_bins, entries, depth, stats, .. } } = frame;
+        let Prepared { context, part: Part { bins: later_bins, entries, depth, stats, .. } } = prepared;
         let all = stats.triangles as usize;
         let (earlier_cached, later_cached) = halves(cache, *vertex);
         // As many entries as triangles: none can be without.
@@ -235,25 +261,24 @@ impl<'r, C: Pixel> Preparation<'r, C> {
         [later, earlier]
     }
 
-    /// Ends the preparation and returns the frame, ready to be drawn. A part that has not been run is run here.
-    #[must_use]
+    /// Runs the parts that have not been run, and joins their lists.
     #[inline(never)]
-    pub fn frame(mut self) -> Frame<'r, C> {
+    fn join(mut self) -> Prepared<'r> {
         self.parts().into_iter().for_each(PreparationPart::run);
-        let Self { mut frame, cache, division: Division { triangle, vertex }, earlier, depth_elisions: [later, before], .. } = self;
-        let Frame { context, part } = &mut frame;
+        let Self { mut prepared, cache, division: Division { triangle, vertex }, earlier, depth_elisions: [later, before], .. } = self;
+        let Prepared { context, part } = &mut prepared;
         if triangle > 0 {
             close(context, cache, seam(part.depth, vertex));
             part.bins.join(part.entries, &earlier, part.entries.len() - triangle);
         }
-        frame.complete(cache, later.zip(before).map(|(later, before)| later.and(&before)));
-        frame
+        prepared.complete(cache, later.zip(before).map(|(later, before)| later.and(&before)));
+        prepared
     }
 }
 
 /// Transforms the vertices that triangles at the seam use and no earlier ones.
 #[inline(never)]
-fn close<C: Pixel>(context: &Context<'_, C>, cache: &mut [ScreenVertex], seam: &[SeamPlace]) {
+fn close(context: &Context<'_>, cache: &mut [ScreenVertex], seam: &[SeamPlace]) {
     for placed in context.meshes() {
         let (first, vertices) = (placed.first_vertex, context.scene.stream.vertices_of(placed.mesh));
         if let (Some(seam), Some(cached), Some(vertices), Some(stage)) =
@@ -266,8 +291,8 @@ fn close<C: Pixel>(context: &Context<'_, C>, cache: &mut [ScreenVertex], seam: &
 
 /// One of two parts of the work of a frame before its first pixel, for one processor. [`Preparation::parts`] returns both.
 #[derive(Debug)]
-pub struct PreparationPart<'f, 'r, C: Pixel> {
-    context: &'f Context<'r, C>,
+pub struct PreparationPart<'f, 'r> {
+    context: &'f Context<'r>,
     /// Its triangles, counted from the first of those that are drawn at this level of detail.
     triangles: Range<usize>,
     /// Its vertices, which follow those of the seam.
@@ -280,7 +305,7 @@ pub struct PreparationPart<'f, 'r, C: Pixel> {
     is_done: &'f mut bool,
 }
 
-impl<'r, C: Pixel> PreparationPart<'_, 'r, C> {
+impl<'r> PreparationPart<'_, 'r> {
     /// Returns the range of triangles that this part prepares, numbered consecutively across all meshes of the frame. It is empty if the other part does
     /// everything.
     #[must_use]

@@ -31,7 +31,7 @@ impl<P: Raised, C: Pixel> ByRow<P, C> {
 
     #[inline(always)]
     fn turn(&mut self) {
-        self.patch.raise(steps::<C>(self.higher));
+        self.patch.raise(steps(C::DEPTH, self.higher));
         self.higher = -self.higher;
     }
 }

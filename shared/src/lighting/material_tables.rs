@@ -149,7 +149,7 @@ impl<'a, C: Pixel> MaterialTables<'a, C> {
     #[inline(always)]
     fn mixed_by_turns(&self, levels: [i32; 3]) -> [C::Stored; 2] {
         let [r, g, b] = zip(levels, C::DEPTH, rounded);
-        let [r_more, g_more, b_more] = steps::<C>(self.reflectance.quarter());
+        let [r_more, g_more, b_more] = steps(C::DEPTH, self.reflectance.quarter());
         let even = C::mixed([r - r_more, g - g_more, b - b_more]).stored();
         if C::Ramps::CHECKERED { [even, C::mixed([r + r_more, g + g_more, b + b_more]).stored()] } else { [even; 2] }
     }
@@ -169,6 +169,7 @@ mod tests {
     use crate::{
         format::{COSINE, RAMP, UNIT},
         lighting::reflectance::Highlight,
+        pixel::Channels,
         stream::record::{Light, Material},
     };
     use embedded_graphics_core::pixelcolor::{Rgb565, Rgb888};
@@ -178,7 +179,13 @@ mod tests {
     /// The reflectance of a material under one light in the pixel format `C`.
     fn reflectance<C: Pixel>(material: &Material, colour: [u16; 3]) -> Reflectance {
         let mut reflectance = Reflectance::EMPTY;
-        reflectance.fill::<C>([1 << UNIT; 3], material, &[Light { colour, ..Light::new_zeroed() }], (Highlight::Half, false));
+        reflectance.fill(
+            Channels::of::<C>(),
+            [1 << UNIT; 3],
+            material,
+            &[Light { colour, ..Light::new_zeroed() }],
+            (Highlight::Half, false),
+        );
         reflectance
     }
 
@@ -201,7 +208,7 @@ mod tests {
                     let differences = zip(colour, expected, |colour, expected| (i32::from(colour) - expected).abs());
                     assert!(differences.into_iter().all(|difference| difference <= 1), "{gain}: {colour:?} {expected:?}");
                 }
-                reflectance.dither::<Rgb565>();
+                reflectance.dither();
             }
         }
     }

@@ -11,7 +11,7 @@ use crate::{
         highlight_lut::{Base, ENTRY, HighlightLut, square},
         vector::zip,
     },
-    pixel::{Pixel, dither::quantise, gamma::Gamma, ramps::Ramps, steps},
+    pixel::{Channels, dither::quantise, gamma::Gamma, steps},
     stream::record::{Light, Material},
 };
 use zerocopy::{FromBytes, Immutable, IntoBytes, KnownLayout};
@@ -187,28 +187,29 @@ impl Reflectance {
         depth: [0; 3],
     };
 
-    /// Computes the reflectance of `material` under `lights`, for a method with these highlights and the pixel format `C`. If the method
-    /// allows it, and there is one channel and one light, the table of highlights `holds_levels` instead of fractions.
-    pub fn fill<C: Pixel>(
+    /// Computes the reflectance of `material` under `lights`, for a method with these highlights and for a pixel format with these `channels`.
+    /// If the method allows it, and there is one channel and one light, the table of highlights `holds_levels` instead of fractions.
+    pub fn fill(
         &mut self,
+        channels: Channels,
         ambient: [u16; 3],
         material: &Material,
         lights: &[Light],
         (highlight, holds_levels): (Highlight, bool),
     ) {
-        let depth = C::DEPTH;
+        let Channels { depth, is_gray, is_coarse, .. } = channels;
         // What each light adds at most, diffuse and specular, and the ambient term.
         let mut terms = heapless::Vec::<Colour, { 2 * MAX_LIGHTS + 1 }>::new();
         let lit = lights.iter().flat_map(|light| [(light.colour, material.diffuse), (light.colour, material.specular)]);
         for (light, reflectance) in lit.chain([(ambient, material.ambient)]) {
             let colour = product(light, reflectance);
             // There is room for the terms of as many lights as a stream has.
-            let _ = terms.push(if C::GRAY { luma(colour) } else { colour });
+            let _ = terms.push(if is_gray { luma(colour) } else { colour });
         }
         // The brightest of all terms sets the base colour; the others may be multiples of it.
         let base = terms.iter().fold([0; 3], |base, &term| if largest(term) >= largest(base) { term } else { base });
         // A level of the table of colours is rounded before its colour is: pixel formats that would show it have greys alone in one channel.
-        let direction = if C::COARSE { base } else { [largest(base); 3] };
+        let direction = if is_coarse { base } else { [largest(base); 3] };
         let one_channel = terms.iter().all(|&term| along(term, direction));
         self.depth = depth;
         self.quarter = 0;
@@ -220,12 +221,12 @@ impl Reflectance {
                 *gains = Gains { diffuse: levels(diffuse), specular: levels(specular) };
             }
         }
-        let total = self.total::<C>(lights.len());
+        let total = self.total(channels.is_checkered, lights.len());
         self.excess = (total >> (9 + LEVEL)).checked_ilog2().map_or(0, |bits| bits + 1);
         let fits = if one_channel { total < LARGEST } else { self.excess == 0 };
         let (ambient, diffuse) = (self.ambient, self.gains[0].diffuse);
         let within = zip(ambient, diffuse, |ambient, diffuse| ambient + i32::from(diffuse) <= FULL) == [true; 3];
-        self.has_ramp = u8::from(one_channel || C::COARSE && lights.len() == 1 && within);
+        self.has_ramp = u8::from(one_channel || is_coarse && lights.len() == 1 && within);
         let most = (1..3).fold(0, |most, k| if diffuse[k] > diffuse[most] { k } else { most });
         self.ramp = [ambient[most], diffuse[most].into()];
         let looped = holds_levels && fits && (lights.len() == 1 || lights.len() == 2 && !one_channel);
@@ -241,7 +242,7 @@ impl Reflectance {
             }
         }
         // Greys have no three channels.
-        if !C::GRAY {
+        if !is_gray {
             let [first, _, again] = even;
             *again = *first;
             *odd = *even;
@@ -320,11 +321,11 @@ impl Reflectance {
     }
 
     /// Dithers three channels by rows: even ones are a quarter of a step lower, odd ones higher.
-    pub(crate) fn dither<C: Pixel>(&mut self) {
+    pub(crate) fn dither(&mut self) {
         self.quarter = 1 << (CHANNEL - 2);
         for (rows, quarter) in self.sums.iter_mut().zip([-self.quarter, self.quarter]) {
             for sums in rows {
-                *sums = zip(*sums, steps::<C>(quarter), Sum::raised);
+                *sums = zip(*sums, steps(self.depth, quarter), Sum::raised);
             }
         }
     }
@@ -569,8 +570,8 @@ impl Reflectance {
 
     /// The largest level under `lights` lights, Q9.7 or more bits, and the constant for rounding: half a step of a channel, or with a checkerboard
     /// three quarters.
-    fn total<C: Pixel>(&self, lights: usize) -> u32 {
-        let quarters = if C::Ramps::CHECKERED { 3 } else { 2 };
+    fn total(&self, is_checkered: bool, lights: usize) -> u32 {
+        let quarters = if is_checkered { 3 } else { 2 };
         let mut total = zip(self.ambient, self.depth, |level, depth| level as u32 + (quarters << (LEVEL + 6 - depth)));
         for gains in self.gains.iter().take(lights) {
             let light = zip(gains.diffuse, gains.specular, |diffuse, specular| u32::from(diffuse) + u32::from(specular));

@@ -64,7 +64,7 @@ pub use crate::{
     geometry::projection::ScreenVertex,
     raster::canvas::{Canvas, IntensityShader},
 };
-use core::marker::PhantomData;
+use core::{fmt, marker::PhantomData};
 pub use facts::{Facts, VertexLight};
 // For the crate of the literature.
 #[doc(hidden)]
@@ -105,6 +105,12 @@ pub trait Method: Sync {
     /// `shading` has the material and the lights. The renderer calls this function for each triangle, and again for each band (a group of rows that
     /// is drawn at once) that the triangle lies in.
     fn shade(&self, setup: &TriangleSetup<'_>, shading: &Shading<'_>, canvas: &mut dyn Canvas) -> u32;
+}
+
+impl fmt::Debug for dyn Method {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(self.facts().name)
+    }
 }
 
 /// How the triangles of a mesh are drawn. It is decided once for all of them.
@@ -557,12 +563,12 @@ impl Shading<'_> {
             // By measurement, planes take fewer instructions if the nodes are lower by a quarter of a step, and quadratics if it is taken off after
             // the fit.
             if N == 3 && C::Ramps::CHECKERED {
-                let [r, g, b] = steps::<C>(higher() >> 1);
+                let [r, g, b] = steps(C::DEPTH, higher() >> 1);
                 bias = [bias[0] - r, bias[1] - g, bias[2] - b];
             }
             let mut patch = Nodes::<N, 3, RANGE>::new(channels(), CHANNEL - LEVEL).biased(bias).fit(setup.gradients);
             if N > 3 && C::Ramps::CHECKERED {
-                patch.raise(steps::<C>(-(higher() >> 1)));
+                patch.raise(steps(C::DEPTH, -(higher() >> 1)));
             }
             walked(ByRow::new(patch, higher()))
         };

@@ -146,10 +146,31 @@ pub trait Pixel: Copy + 'static {
     }
 }
 
-/// Multiplies `by` by the step of each channel, relative to the step of a channel of eight bits.
+/// Properties of a pixel format, for code that is compiled once for all formats.
+#[doc(hidden)]
+#[derive(Clone, Copy, Debug)]
+pub struct Channels {
+    /// [`Pixel::DEPTH`].
+    pub depth: [u32; 3],
+    /// [`Pixel::GRAY`].
+    pub is_gray: bool,
+    /// [`Pixel::COARSE`].
+    pub is_coarse: bool,
+    /// [`Ramps::CHECKERED`].
+    pub is_checkered: bool,
+}
+
+impl Channels {
+    /// The properties of the pixel format `C`.
+    #[must_use]
+    pub const fn of<C: Pixel>() -> Self {
+        Self { depth: C::DEPTH, is_gray: C::GRAY, is_coarse: C::COARSE, is_checkered: C::Ramps::CHECKERED }
+    }
+}
+
+/// Multiplies `by` by the step of a channel of each of these depths, relative to the step of a channel of eight bits.
 #[inline(always)]
-pub(crate) fn steps<C: Pixel>(by: i32) -> [i32; 3] {
-    let [r, g, b] = C::DEPTH;
+pub(crate) fn steps([r, g, b]: [u32; 3], by: i32) -> [i32; 3] {
     [by << (8 - r), by << (8 - g), by << (8 - b)]
 }
 

@@ -1,0 +1,44 @@
+//! The part of a frame that depends on the pixel format: colours of materials, and loops that write them.
+
+use crate::{
+    frame::context::{Context, PlacedMesh},
+    lighting::{material_tables::MaterialTables, output::Output},
+    mesh::Drawing,
+    pixel::{Pixel, gamma::Gamma},
+    shader::{Shader, TriangleLoops},
+};
+
+/// How light becomes pixels, from frame to frame.
+#[derive(Debug)]
+pub(crate) struct ColourSettings<C: Pixel> {
+    pub(crate) shader: Shader<C>,
+    pub(crate) dither: bool,
+    /// The curve of the display.
+    pub(crate) gamma: Option<&'static Gamma>,
+}
+
+/// How light becomes pixels in one frame.
+#[derive(Debug)]
+pub(crate) struct Colours<'r, C: Pixel> {
+    pub(crate) settings: &'r ColourSettings<C>,
+    /// Tables of colours, one for each material.
+    pub(crate) ramps: &'r [C::Ramps],
+}
+
+impl<'r, C: Pixel> Colours<'r, C> {
+    /// What the triangles of `placed` have in common in a band of which these `columns` are wanted, and the loops that draw them.
+    #[inline(never)]
+    pub(crate) fn drawing<'s>(
+        &'s self,
+        context: &'s Context<'r>,
+        placed: &PlacedMesh<'s>,
+        columns: [u16; 2],
+    ) -> Option<(Drawing<'s, C>, TriangleLoops<C>)> {
+        let ColourSettings { shader, dither, gamma } = self.settings;
+        let (pass, mut style) = context.pass(placed, columns)?;
+        let output =
+            Output::new(MaterialTables { ramps: self.ramps.get(placed.material)?, reflectance: pass.shading.reflectance }, *dither, *gamma);
+        style.by_canvas |= !output.suits_loops();
+        Some((Drawing { pass, output }, shader.loops(style)))
+    }
+}
