@@ -1,30 +1,22 @@
-//! Gives the linker a memory map with room for any program, and the program the path of a stream to begin with.
+//! Gives the linker the memory map of an emulated board with this processor, which has room for any program, and the program the path of a stream
+//! to begin with.
 
 use std::{env, error::Error, fs, path::PathBuf};
 
-/// Flash, RAM and the memory for streams are where the boards mps2-an* of QEMU have memory.
-const MAP: &str = "\
-MEMORY
-{
-  FLASH  : ORIGIN = 0x00000000, LENGTH = 4M
-  RAM    : ORIGIN = 0x20000000, LENGTH = 4M
-  STREAM : ORIGIN = 0x21000000, LENGTH = 16M
-}
-";
-/// Names that the linker script of RISC-V has for them.
-const REGIONS: [(&str, &str); 6] =
-    [("TEXT", "FLASH"), ("RODATA", "FLASH"), ("DATA", "RAM"), ("BSS", "RAM"), ("HEAP", "RAM"), ("STACK", "RAM")];
-
 fn main() -> Result<(), Box<dyn Error>> {
-    let is_riscv = env::var("TARGET")?.starts_with("riscv32");
-    let mut map = MAP.to_owned();
-    if is_riscv {
-        map.extend(REGIONS.map(|(region, memory)| format!("REGION_ALIAS(\"REGION_{region}\", {memory});\n")));
-    }
+    let target = env::var("TARGET")?;
+    let is_riscv = target.starts_with("riscv32");
+    let board = match target.as_str() {
+        _ if is_riscv => "riscv-virt",
+        "thumbv8m.main-none-eabihf" => "mps2-an505",
+        "thumbv7em-none-eabihf" => "mps2-an386",
+        _ => "mps2-an385",
+    };
     let out = PathBuf::from(env::var_os("OUT_DIR").ok_or("run by cargo, which sets OUT_DIR")?);
-    fs::write(out.join("memory.x"), map)?;
-    let script = "../../firmware/boards/stream.x";
-    fs::copy(script, out.join("stream.x")).map_err(|e| format!("{script}: {e}"))?;
+    let (memory, script) = (format!("../../firmware/boards/{board}.x"), "../../firmware/boards/stream.x");
+    for (path, name) in [(memory.as_str(), "memory.x"), (script, "stream.x")] {
+        fs::copy(path, out.join(name)).map_err(|e| format!("{path}: {e}"))?;
+    }
     println!("cargo:rustc-link-search={}", out.display());
     if is_riscv {
         println!("cargo:rustc-link-arg-bins=-Tmemory.x");
@@ -34,7 +26,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     }
     let stream = fs::canonicalize("../../firmware/teapot.tri")?;
     println!("cargo:rustc-env=STREAM_FILE={}", stream.display());
-    for path in ["build.rs", script] {
+    for path in ["build.rs", &memory, script] {
         println!("cargo:rerun-if-changed={path}");
     }
     println!("cargo:rerun-if-changed={}", stream.display());

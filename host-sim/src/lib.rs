@@ -8,8 +8,8 @@ pub use microphong_bounds as bounds;
 pub use microphong_compare::{self as compare, level};
 pub use microphong_oracle::{self as oracle, papers};
 pub use microphong_render::{
-    bytes, choices, convert, convex, distance, image, import, legend, levels, look, mesh, number, obj, output, polygon, quantise, render,
-    scene, script, shader, shapes, vector, view,
+    bytes, chip, choices, convert, convex, distance, image, import, legend, levels, look, mesh, number, obj, output, polygon, program,
+    quantise, render, scene, script, shader, shapes, vector, view,
 };
 pub use microphong_stress as stress;
 

@@ -1,5 +1,6 @@
 //! Memory decides how a frame is drawn, and never the picture.
 
+use crate::golden::root;
 use embedded_graphics::{
     mock_display::MockDisplay,
     pixelcolor::{Gray8, Rgb565},
@@ -7,7 +8,7 @@ use embedded_graphics::{
 };
 use microphong::{FramePart, Layout, MAX_SIDE, Picture, RenderError, Renderer, Stats, Stream, renderer::check};
 use microphong_sim::{
-    convert::Options,
+    convert::{AZIMUTH, Converted, DISTANCE, ELEVATION, ORBIT, Options},
     look::Look,
     mesh::Mesh,
     quantise::quantise,
@@ -390,4 +391,55 @@ fn what_does_not_fit_is_named() {
     }
     assert_eq!(renderer.check_band(&pixels), Ok(()));
     assert_eq!(renderer.frame(0).next_band(&mut pixels).map(|area| area.map(|area| area.size)), Ok(Some(Size::new(64, 1))));
+}
+
+/// The layout that programs are advised to have holds all triangles across borders of bands: none is set up anew in any frame, whatever the method.
+/// The number follows from the height of bands. Without the reserve for other poses it is the smallest.
+#[test]
+fn program_layouts_have_room_for_active_triangles() {
+    for name in ["teapot", "torus", "bunny", "gauges"] {
+        let scene = scene::load(name).unwrap();
+        let stream = scene.stream.parse().unwrap();
+        for (width, height, rows) in [(240, 240, 16), (128, 64, 8)] {
+            let size = Size::new(width, height);
+            let set_up_anew = |shader: Shader, layout: &Layout| -> u32 {
+                let mut memory = vec![0; layout.words::<Rgb565>()];
+                let mut renderer = Renderer::with_shader(stream, size, layout, &mut memory, shader.on()).unwrap();
+                let mut band = vec![Rgb565::BLACK; layout.band()];
+                let frame = |number| {
+                    let mut frame = renderer.frame(number);
+                    while frame.next_band(&mut band).unwrap().is_some() {}
+                    frame.stats().set_up_anew
+                };
+                (0..u32::from(stream.header.frames).min(120)).map(frame).sum()
+            };
+            let layout = render::program_layout(&stream, size, rows).unwrap();
+            let fewest = render::fewest_active_triangles(&stream, size, rows).unwrap();
+            assert_eq!(layout.active_triangles, fewest + fewest.div_ceil(2), "{name}");
+            assert!(fewest > 10 && layout.active_triangles < layout.triangles / 4, "{name}: {fewest}");
+            for shader in [Shader::AUTO, Shader::PHONG, Shader::GOURAUD] {
+                let anew = set_up_anew(shader, &layout.active_triangles(fewest));
+                assert_eq!(anew, 0, "{name}, {width}x{height}, {}", shader.name());
+            }
+            assert!(set_up_anew(Shader::FLAT, &layout.active_triangles(fewest - 1)) > 0, "{name}: {fewest} are too many");
+            assert_eq!(render::program_layout(&stream, size, height).unwrap().active_triangles, 0, "{name}: one band has no border");
+        }
+    }
+}
+
+/// The reserve holds the triangles of a turn that is seen from farther above or from below.
+#[test]
+fn program_layouts_have_room_for_other_poses() {
+    let counts = |elevation: f64| {
+        let view = View::orbit(Up::Y, AZIMUTH.to_radians(), elevation.to_radians(), DISTANCE, ORBIT);
+        let options = Options { view, size: (240, 240), ..Options::default() };
+        let bytes = Converted::read(&root().join("meshes/teapot.obj"), &options, &()).unwrap().stream().unwrap();
+        let (stream, size) = (bytes.parse().unwrap(), Size::new(240, 240));
+        let layout = render::program_layout(&stream, size, 16).unwrap();
+        (layout.active_triangles, render::fewest_active_triangles(&stream, size, 16).unwrap())
+    };
+    let (room, fewest) = counts(ELEVATION);
+    let others = [-40.0, 0.0, 40.0].map(|elevation| counts(elevation).1);
+    assert!(others.iter().all(|&other| other <= room), "{others:?} of {room}");
+    assert!(others.iter().any(|&other| other > fewest), "{others:?}: the reserve is needed beyond {fewest}");
 }

@@ -969,6 +969,41 @@ fn convert_refuses_what_a_board_would_refuse() {
     place.fails(&["convert", "large.obj", "--board", "lm3s6965evb", "-o", "no.tri"], 1, &["room for 133120", "--simplify"]);
 }
 
+/// A mesh for which there is no room ends with the number for --simplify for which there is, and with the error that --simplify then reports.
+#[test]
+fn convert_says_how_far_to_simplify() {
+    let place = Place::new();
+    place.file("large.obj", bowl(50, false)).file("larger.obj", bowl(84, false));
+    // The number and the error of `--simplify N makes it fit WHOM: ERROR`, at the end of the text.
+    let remedy = |text: &str, whom: &str| {
+        let (_, remedy) = text.trim_end().rsplit_once("; --simplify ").unwrap_or_else(|| panic!("no remedy in {text}"));
+        let (most, error) = remedy.split_once(&format!(" makes it fit {whom}: ")).unwrap_or_else(|| panic!("not for {whom}: {text}"));
+        assert!(error.starts_with("at most 0.") && error.ends_with("pixels in a picture of 320x240"), "{error}");
+        (most.parse::<u64>().expect("a number"), error.to_owned())
+    };
+
+    let arguments = ["convert", "large.obj", "--board", "lm3s6965evb", "-o", "large.tri"];
+    let output = place.run(&arguments);
+    let (most, error) = remedy(&String::from_utf8_lossy(&output.stderr), "lm3s6965evb");
+    assert_eq!((output.status.code(), place.files()), (Some(1), vec!["large.obj".to_owned(), "larger.obj".to_owned()]));
+    let said = place.succeeds(&[&arguments[..], &["--simplify", &most.to_string()]].concat());
+    assert!(said.contains(&error), "{said}");
+    let too_many = (most + most / 32).to_string();
+    fs::remove_file(place.0.path().join("large.tri")).expect("a stream");
+    place.fails(&[&arguments[..], &["--simplify", &too_many]].concat(), 1, &["lm3s6965evb has room for", "; --simplify"]);
+
+    // A wide picture leaves less RAM for the mesh.
+    let arguments = ["convert", "larger.obj", "--size", "2040x240", "--format", "rgb888"];
+    let said = place.succeeds(&arguments);
+    let last = said.lines().last().expect("a line");
+    assert!(last.starts_with("  no common chip has room for a program with it by auto in rgb888; --simplify "), "{said}");
+    let (most, error) = remedy(last, "rp2350");
+    let said = place.succeeds(&[&arguments[..], &["--simplify", &most.to_string()]].concat());
+    assert!(said.contains(&error) && !said.contains("no common chip"), "{said}");
+    let said = place.succeeds(&["convert", "large.obj"]);
+    assert!(!said.contains("no common chip") && !said.contains("--simplify"), "{said}");
+}
+
 /// `convert` ends with what a frame takes on boards where that is asked for, and refuses a board that it cannot count on before it writes.
 #[test]
 fn convert_counts_on_boards() {

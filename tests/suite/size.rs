@@ -1,11 +1,15 @@
 //! Whole programs take no more flash, RAM and stack than recorded, and what chips have room for is what the guide says.
 
 use crate::golden::root;
-use microphong_sim::bench::size::{
-    Chip, Core, FORMATS, Program, SHADERS,
-    baseline::{self, Entry},
+use embedded_graphics::geometry::Size;
+use microphong::Layout;
+use microphong_sim::{
+    bench::size::{baseline, picture},
+    chip::{Chip, Core},
+    program::{Entry, FORMATS, Program, SHADERS},
+    render::{self, Format},
+    shader::Shader,
 };
-use microphong_sim::{render::Format, shader::Shader};
 use std::{fs, process::Command};
 
 /// Each processor and method once; `microphong size --check` measures all programs.
@@ -16,9 +20,8 @@ const MEASURED: [(Core, Format, Shader); 5] = [
     (Core::CortexM33, Format::Rgb565, Shader::AUTO_LINEAR),
     (Core::RiscV, Format::Binary, Shader::PHONG),
 ];
-/// Flash of a vertex and a triangle, and RAM of both. A closed mesh has half as many vertices as triangles.
+/// Flash of half a vertex and a triangle: a closed mesh has half as many vertices as triangles.
 const FLASH: u64 = 12 / 2 + 30;
-const RAM: u64 = 32 / 2 + 8;
 
 fn recorded() -> Vec<Entry> {
     baseline::read(&root().join("baselines/sizes.csv")).expect("sizes")
@@ -35,15 +38,12 @@ fn sizes_have_not_grown() {
     assert_eq!(all.iter().map(|entry| entry.program).collect::<Vec<_>>(), Program::all(&Core::ALL, &SHADERS, &FORMATS));
     let recorded = MEASURED.map(|(core, format, shader)| of(&all, core, format, shader));
     let measured = baseline::again(&recorded, &|| ()).unwrap();
-    let changes: Vec<_> = measured.iter().zip(&recorded).flat_map(|(is, was)| is.changes(was)).collect();
+    let changes: Vec<_> = measured.iter().zip(&recorded).flat_map(|(is, was)| baseline::changes(is, was)).collect();
     changes.iter().for_each(|(text, _)| println!("{text}"));
     let grown: Vec<_> = changes.iter().filter(|(_, grown)| *grown).collect();
     let renew = "cargo run --release --features boards -- size --renew tests/baselines/sizes.csv --reason \"...\"";
     assert!(grown.is_empty(), "{grown:#?}\nif this is intended, renew the file: {renew}");
-    // What no emulator has run has no stack.
-    assert!(all.iter().all(|entry| (entry.stack == 0) == matches!(entry.program.core, Core::CortexM33 | Core::RiscV)
-        && entry.flash > 30_000
-        && entry.ram > 10_000));
+    assert!(all.iter().all(|entry| entry.flash > 30_000 && entry.ram > 10_000 && entry.stack > 3_000));
 }
 
 /// Kilobytes of each method and format on each processor, and the deepest stack.
@@ -59,24 +59,27 @@ fn programs(recorded: &[Entry]) -> Vec<String> {
     rows.map(row).collect()
 }
 
-/// Triangles, in hundreds, for which chips have flash and RAM.
+/// Triangles, in hundreds, for which chips have flash and RAM. The number that cross the border of a band grows with the square root of all.
 fn chips(recorded: &[Entry]) -> Vec<String> {
     let teapot = microphong_sim::scene::load(baseline::SCENE).expect("a scene");
-    let header = teapot.stream.parse().expect("a stream").header;
-    let mesh = u64::from(header.vertices) * 32 + u64::from(header.triangles) * 8;
+    let stream = teapot.stream.parse().expect("a stream");
     let row = |chip: &Chip| {
         let columns = [(Format::Binary, Shader::GOURAUD), (Format::Rgb565, Shader::GOURAUD), (Format::Rgb565, Shader::AUTO_LINEAR)];
         let columns = columns.into_iter().chain([(Format::Rgb565, Shader::PHONG), (Format::Rgb565, Shader::AUTO)]);
         let cells: Vec<_> = columns
             .map(|(format, shader)| {
                 let entry = of(recorded, chip.core, format, shader);
-                let stack = if entry.stack > 0 { entry.stack } else { of(recorded, Core::CortexM3, format, shader).stack };
-                let by_flash = chip.flash_bytes.saturating_sub(entry.flash) / FLASH;
-                let by_ram = chip.ram_bytes.saturating_sub(entry.ram - mesh + stack) / RAM;
-                match by_flash.min(by_ram) / 100 {
-                    0 => "no".to_owned(),
-                    hundreds => (hundreds * 100).to_string(),
-                }
+                let (width, height, rows) = picture(format);
+                let layout = render::program_layout(&stream, Size::new(width, height), rows as u32).expect("a layout");
+                let bytes = |layout: &Layout| format.bytes(layout)[0] as u64;
+                let fits = |&hundreds: &u64| {
+                    let triangles = hundreds as usize * 100;
+                    let active = layout.active_triangles as f64 * (triangles as f64 / layout.triangles as f64).sqrt();
+                    let room = layout.vertices(triangles / 2).triangles(triangles).active_triangles(active as usize);
+                    let ram = entry.ram - bytes(&layout) + bytes(&room) + entry.stack;
+                    chip.load(entry.flash + FLASH * hundreds * 100, ram) <= 1.0
+                };
+                (1..).take_while(fits).last().map_or("no".to_owned(), |hundreds| (hundreds * 100).to_string())
             })
             .collect();
         let [flash, ram] = [chip.flash_bytes, chip.ram_bytes].map(|bytes| bytes >> 10);
@@ -98,22 +101,24 @@ fn the_guide_says_what_programs_take_and_what_fits() {
 /// Figures for a mesh are figures of the teapot's program, with the mesh's bytes and memory instead of the teapot's.
 #[test]
 fn the_mesh_counts() {
-    let arguments = ["size", "sphere-40", "--chip", "stm32f103,samd21", "--shader", "gouraud", "--format", "binary", "--json"];
+    let arguments = ["size", "sphere-40", "--chip", "stm32f103,samd21", "--shader", "gouraud", "--json"];
     let output = Command::new(microphong_tests::program()).args(arguments).output().expect("the program");
     assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
     let lines: Vec<serde_json::Value> =
         String::from_utf8_lossy(&output.stdout).lines().map(|line| serde_json::from_str(line).expect("JSON")).collect();
-    assert_eq!(lines.iter().map(|line| line["chip"].as_str()).collect::<Vec<_>>(), [Some("stm32f103"), Some("samd21")]);
+    let [m3, m0] = [("stm32f103", Core::CortexM3), ("samd21", Core::CortexM0Plus)];
+    // In one bit, the smaller chip has the flash, but 20 KiB of RAM are less than the program takes with its stack. In colour, neither has the RAM.
+    let expected = [(m3, Format::Rgb565, false), (m3, Format::Binary, false), (m0, Format::Rgb565, false), (m0, Format::Binary, true)];
+    assert_eq!(lines.len(), expected.len());
     let recorded = recorded();
-    // The smaller chip has the flash, but 20 KiB of RAM are less than the program takes with its stack.
-    for (line, (core, fits)) in lines.iter().zip([(Core::CortexM3, false), (Core::CortexM0Plus, true)]) {
-        let teapot = of(&recorded, core, Format::Binary, Shader::GOURAUD);
+    for (line, ((chip, core), format, fits)) in lines.iter().zip(expected) {
+        assert_eq!((line["chip"].as_str(), line["format"].as_str()), (Some(chip), Some(format.name())));
+        let teapot = of(&recorded, core, format, Shader::GOURAUD);
         let figure = |name: &str| line[name].as_u64().expect("a figure");
         let stream = microphong_sim::scene::load("sphere-40").expect("a scene").stream;
         assert_eq!(figure("mesh_bytes"), stream.as_bytes().len() as u64);
         assert!(figure("flash_bytes").abs_diff(teapot.flash) * 500 <= teapot.flash, "{line}");
         assert!(figure("ram_bytes") < teapot.ram - 20_000 && figure("stack_bytes") > 1000, "{line}");
-        assert!(figure("flash_bytes") + figure("mesh_bytes") <= figure("chip_flash_bytes"), "{line}");
         assert_eq!(line["fits"].as_bool(), Some(fits), "{line}");
     }
 }

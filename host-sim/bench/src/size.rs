@@ -2,49 +2,31 @@
 //! format, no display driver and no log.
 
 pub mod baseline;
-mod chip;
-
-pub use chip::{Chip, Core};
 
 use anyhow::{Context, Result};
-use microphong::{Layout, Stream, pixel::Pixel};
-use microphong_boards::{build::releases, elf::Elf, stack, verify};
+use embedded_graphics_core::geometry;
+use microphong::Stream;
+use microphong_boards::{Machine, build::releases, elf::Elf, stack, verify};
 use microphong_render::{
-    render::{Format, InFormat},
+    chip::Core,
+    program::Program,
+    render::{self, Format},
     scene::Scene,
     shader::Shader,
 };
 use rayon::prelude::*;
 use serde::Serialize;
 
-/// Methods that there are programs with.
-pub const SHADERS: [Shader; 4] = [Shader::GOURAUD, Shader::AUTO_LINEAR, Shader::PHONG, Shader::AUTO];
-/// Pixel formats that there are programs with.
-pub const FORMATS: [Format; 2] = [Format::Rgb565, Format::Binary];
 /// Frames that are drawn to measure the stack: a turn of the built-in scenes.
 const FRAMES: u16 = 120;
 
-/// A program.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Program {
-    /// The processor that it is compiled for.
-    pub core: Core,
-    /// Method of the program.
-    pub shader: Shader,
-    /// Pixel format of the program.
-    pub format: Format,
-}
-
-impl Program {
-    /// All programs for these processors, methods and formats.
-    #[must_use]
-    pub fn all(cores: &[Core], shaders: &[Shader], formats: &[Format]) -> Vec<Self> {
-        let of = |&core: &Core| formats.iter().flat_map(move |&format| shaders.iter().map(move |&shader| Self { core, shader, format }));
-        cores.iter().flat_map(of).collect()
-    }
-
-    fn name(self) -> String {
-        format!("{}-{}", self.shader.name(), self.format.name())
+/// The machine on which QEMU executes programs for a processor; a Cortex-M3 executes code for a Cortex-M0+ as well.
+const fn machine(core: Core) -> Machine {
+    match core {
+        Core::CortexM0Plus | Core::CortexM3 => Machine::Arm("mps2-an385"),
+        Core::CortexM4F => Machine::Arm("mps2-an386"),
+        Core::CortexM33 => Machine::Arm("mps2-an505"),
+        Core::RiscV => Machine::RiscvVirt,
     }
 }
 
@@ -63,18 +45,19 @@ pub struct Size {
     pub mesh_bytes: u64,
     /// Static variables: the memory of the renderer with room for all of the mesh, a band and the rest.
     pub ram_bytes: u64,
-    /// The stack that all frames have used; unknown where no emulator is at hand.
-    pub stack_bytes: Option<u64>,
+    /// The stack that all frames have used.
+    pub stack_bytes: u64,
 }
 
 /// Builds the `programs`, measures each with the mesh of `scene`, and calls `tick` after each.
 ///
 /// # Errors
-/// When a program does not compile, or cannot draw the scene.
+/// When an emulator is missing, or a program does not compile or cannot draw the scene.
 pub fn measure(programs: &[Program], scene: &Scene, tick: &(dyn Fn() + Sync)) -> Result<Vec<Size>> {
     let stream = scene.stream.parse()?;
     let bytes = verify::prepare(scene.stream.as_bytes(), Shader::of(&stream)?, stream.header.frames.clamp(1, FRAMES))?;
     let mut built = Vec::new();
+    programs.iter().try_for_each(|program| machine(program.core).check())?;
     for core in Core::ALL {
         let names: Vec<_> = programs.iter().filter(|program| program.core == core).map(|program| program.name()).collect();
         let names: Vec<_> = names.iter().map(String::as_str).collect();
@@ -93,26 +76,15 @@ pub fn measure(programs: &[Program], scene: &Scene, tick: &(dyn Fn() + Sync)) ->
 }
 
 fn size(program: Program, elf: &Elf, stream: &Stream<'_>) -> Result<Size> {
-    let (width, _, rows) = picture(program.format);
-    let layout = Layout::new(width as usize, rows).with_room_for(stream);
+    let (width, height, rows) = picture(program.format);
+    let layout = render::program_layout(stream, geometry::Size::new(width, height), rows as u32)?;
     let mesh_bytes = u64::from(stream.header.length);
     // The program has room for any mesh.
     let room = u64::from(elf.symbol("MEMORY")?.1) + u64::from(elf.symbol("BAND")?.1);
     Ok(Size {
         flash_bytes: elf.flash_bytes()? - mesh_bytes,
         mesh_bytes,
-        ram_bytes: elf.ram_bytes()? - room + program.format.run(Memory(&layout)),
-        stack_bytes: program.core.machine().map(|machine| stack(machine, elf)).transpose()?,
+        ram_bytes: elf.ram_bytes()? - room + program.format.bytes(&layout).into_iter().sum::<usize>() as u64,
+        stack_bytes: stack(machine(program.core), elf)?,
     })
-}
-
-/// Bytes of the renderer's memory and of a band.
-struct Memory<'a>(&'a Layout);
-
-impl InFormat for Memory<'_> {
-    type Output = u64;
-
-    fn in_format<C: Pixel>(self) -> u64 {
-        (self.0.bytes::<C>() + self.0.band() * size_of::<C>()) as u64
-    }
 }

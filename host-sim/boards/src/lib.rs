@@ -17,7 +17,7 @@ use budget::Budget;
 use elf::Elf;
 use microphong_render::shader::Shader;
 pub use pico::{Fault, FrameTime, Pico};
-pub use qemu::{Blocks, INSTRUCTIONS_PER_TICK, clocked, stack, trace};
+pub use qemu::{Blocks, INSTRUCTIONS_PER_TICK, Machine, clocked, stack, trace};
 use serde::{Serialize, Serializer};
 use std::{fmt, ops::Range};
 

@@ -186,11 +186,53 @@ impl Converted {
             steps.begin("simplifying", parts.len());
             simplified = levels::simplify(&mesh, &mut parts, most, &|| steps.step()).with_context(place)?;
         }
-        let errors: Vec<_> = options.levels.iter().map(|&size| look.tolerance(&parts, size)).collect();
+        let errors = look.tolerances(&parts, &options.levels);
         // The stream is a step as well, so that a single level is announced.
         steps.begin("searching levels of detail", parts.len() * errors.len() + 1);
         levels::add(&mesh, &mut parts, &errors, &|| steps.step()).with_context(place)?;
         Ok(Self { mesh, report, materials, remarks, parts, lost, look, simplified })
+    }
+
+    /// The largest simplified mesh, to within a 64th, for whose stream there is room; `None` if there is none. `load` is the share of the room that a
+    /// stream takes. The mesh as it is must take more than all of it.
+    ///
+    /// # Errors
+    /// When `load` fails, or no stream can be made.
+    pub fn largest(&self, options: &Options, load: &dyn Fn(&StreamBytes) -> Result<f64>, steps: &dyn Steps) -> Result<Option<Largest>> {
+        /// The load to aim at, a little less than all.
+        const AIM: f64 = 1.0 - 1.0 / 256.0;
+        const ENOUGH: f64 = 1.0 - 1.0 / 64.0;
+        let (whole, _) = quantise(&self.mesh);
+        let (mut too_few, mut too_many) = (0, levels::count(&self.parts));
+        let mut largest = None;
+        // Loads are nearly linear in the number of triangles: the next number is where the line through the last two loads meets the aim.
+        let mut last = [(0.0, 0.0), (too_many as f64, load(&self.stream()?)?)];
+        steps.begin("searching the largest mesh that fits", SEARCH);
+        while too_many - too_few > 1 + too_few / 64 {
+            let [(first, first_load), (second, second_load)] = last;
+            let guess = (first + (AIM - first_load) * (second - first) / (second_load - first_load)) as usize;
+            let most = if guess > too_few && guess < too_many { guess } else { too_few.midpoint(too_many) };
+            // Some meshes cannot be made of so few.
+            let Ok(parts) = levels::reduced(&self.mesh, &whole, most) else {
+                too_few = most;
+                continue;
+            };
+            let mut with_levels = parts.clone();
+            levels::add(&self.mesh, &mut with_levels, &self.look.tolerances(&parts, &options.levels), &|| ())?;
+            let load = load(&self.look.stream(&with_levels)?)?;
+            last = [last[1], (most as f64, load)];
+            steps.step();
+            if load > 1.0 {
+                too_many = most;
+                continue;
+            }
+            too_few = most;
+            largest = Some((most, parts));
+            if load >= ENOUGH {
+                break;
+            }
+        }
+        Ok(largest.map(|(most, parts)| Largest { most, simplified: levels::difference(&whole, &parts, &|| steps.step()), parts }))
     }
 
     /// The stream.
@@ -200,6 +242,20 @@ impl Converted {
     pub fn stream(&self) -> Result<StreamBytes> {
         self.look.stream(&self.parts)
     }
+}
+
+/// Simplified meshes that a search for the largest one looks at, as a rule.
+const SEARCH: usize = 4;
+
+/// The largest simplified mesh for which there is room.
+#[derive(Clone, Debug)]
+pub struct Largest {
+    /// The number of triangles that it was asked to have at most.
+    pub most: usize,
+    /// The parts of the mesh, without levels of detail.
+    pub parts: Vec<Part>,
+    /// What simplification did.
+    pub simplified: Simplified,
 }
 
 /// A near light counts from the centre of the mesh; in a stream it counts from the eye.

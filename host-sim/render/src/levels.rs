@@ -116,34 +116,56 @@ pub struct Simplified {
 /// Smaller distances do not count: a tenth of a step of positions.
 const NEAREST: f64 = 0.1 / 16384.0;
 
-/// Reduces the parts of a mesh to at most `most` triangles together, on some of their vertices; other vertices are dropped. `None` if they have no
-/// more triangles. `tick` is called after each part.
+/// Reduces the parts of a mesh to at most `most` triangles together, as [`reduced`] does, and measures the [`difference`]. `None` if they have no more
+/// triangles. `tick` is called after each part.
 ///
 /// # Errors
 /// When the mesh cannot be reduced so far.
-pub fn simplify(mesh: &Mesh, parts: &mut [Part], most: usize, tick: &dyn Fn()) -> Result<Option<Simplified>> {
-    let before: usize = parts.iter().map(|part| part.triangles.len()).sum();
-    if before <= most {
+pub fn simplify(mesh: &Mesh, parts: &mut Vec<Part>, most: usize, tick: &dyn Fn()) -> Result<Option<Simplified>> {
+    if count(parts) <= most {
         return Ok(None);
     }
-    let borders = borders(parts);
-    let mut apart: f64 = 0.0;
-    for (part, options) in parts.iter_mut().zip(borders) {
+    let reduced = reduced(mesh, parts, most)?;
+    let simplified = difference(parts, &reduced, tick);
+    *parts = reduced;
+    Ok(Some(simplified))
+}
+
+/// The difference between the parts of a mesh and the [`reduced`] ones. `tick` is called after each part.
+#[must_use]
+pub fn difference(parts: &[Part], reduced: &[Part], tick: &dyn Fn()) -> Simplified {
+    let apart = |(part, reduced): (&Part, &Part)| {
+        let surface = |part: &Part| corners(&part.vertices, &part.triangles);
+        let apart = hausdorff(&surface(part), &surface(reduced), [NEAREST, f64::INFINITY]);
+        tick();
+        apart.unwrap_or(f64::INFINITY)
+    };
+    Simplified { before: count(parts), error: parts.iter().zip(reduced).map(apart).fold(0.0, f64::max) }
+}
+
+/// Triangles of all parts together.
+#[must_use]
+pub fn count(parts: &[Part]) -> usize {
+    parts.iter().map(|part| part.triangles.len()).sum()
+}
+
+/// The parts of a mesh, which have more than `most` triangles, made of at most `most` on some of their vertices; other vertices are dropped.
+///
+/// # Errors
+/// When the mesh cannot be reduced so far.
+pub fn reduced(mesh: &Mesh, parts: &[Part], most: usize) -> Result<Vec<Part>> {
+    let (before, borders) = (count(parts), borders(parts));
+    let reduce = |(part, options): (&Part, SimplifyOptions)| {
         // Each part has its share, which may be less than it can be made of.
         let share = (part.triangles.len() as u64 * most as u64 / before as u64) as usize;
         let triangles: Vec<_> =
             simplified(part, share, options)?.into_iter().filter_map(|corners| quantise::record(&part.vertices, corners)).collect();
-        if !triangles.is_empty() {
-            let error =
-                hausdorff(&corners(&part.vertices, &part.triangles), &corners(&part.vertices, &triangles), [NEAREST, f64::INFINITY]);
-            apart = apart.max(error.unwrap_or(f64::INFINITY));
-        }
-        part.closed_convex = is_convex(mesh, part, &triangles);
-        part.triangles = triangles;
-        drop_unused(part);
-        tick();
-    }
-    let after: usize = parts.iter().map(|part| part.triangles.len()).sum();
+        let mut part = Part { closed_convex: is_convex(mesh, part, &triangles), triangles, ..part.clone() };
+        drop_unused(&mut part);
+        Ok(part)
+    };
+    let parts = parts.iter().zip(borders).map(reduce).collect::<Result<Vec<_>>>()?;
+    let after = count(&parts);
     if after > most {
         let borders = if parts.len() > 1 {
             ", because borders between materials and between objects stay as they are; give more, or one --colour and --merge"
@@ -155,7 +177,7 @@ pub fn simplify(mesh: &Mesh, parts: &mut [Part], most: usize, tick: &dyn Fn()) -
     if parts.iter().any(|part| part.triangles.is_empty()) {
         bail!("with {most} of {before} triangles nothing is left of the mesh, or of one of its materials or objects; give more");
     }
-    Ok(Some(Simplified { before, error: apart }))
+    Ok(parts)
 }
 
 /// Drops vertices that no triangle has; the others keep their order.

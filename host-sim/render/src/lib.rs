@@ -1,6 +1,7 @@
 //! From meshes to pictures: scenes, the streams that boards draw, and drawing them by the core.
 
 pub mod bytes;
+pub mod chip;
 pub mod choices;
 pub mod convert;
 pub mod convex;
@@ -22,6 +23,7 @@ pub mod output;
 mod pbr;
 pub mod ply;
 pub mod polygon;
+pub mod program;
 pub mod quantise;
 pub mod render;
 pub mod scene;

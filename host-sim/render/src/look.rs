@@ -154,6 +154,12 @@ impl Look {
         stream_tolerance(&self.seen(parts), Size::new(size.0, size.1))
     }
 
+    /// The tolerance of each of these pictures.
+    #[must_use]
+    pub fn tolerances(&self, parts: &[Part], sizes: &[(u32, u32)]) -> Vec<GeometricError> {
+        sizes.iter().map(|&size| self.tolerance(parts, size)).collect()
+    }
+
     /// A header of which camera and radius are right.
     fn seen(&self, parts: &[Part]) -> Header {
         let camera = if self.local_viewer { camera(&self.view).with_local_viewer() } else { camera(&self.view) };

@@ -99,6 +99,46 @@ pub fn shows_a_pixel(stream: &Stream<'_>, size: Size) -> Result<bool> {
     Ok(false)
 }
 
+/// Frames that are drawn to count active triangles: a turn of most scenes.
+const COUNTED: u32 = 120;
+
+/// The fewest active triangles with which no frame of a stream sets up a triangle anew, whatever the method. Of more than 120 frames, some are drawn.
+///
+/// # Errors
+/// When `size` is out of range.
+pub fn fewest_active_triangles(stream: &Stream<'_>, size: Size, band_rows: u32) -> Result<usize> {
+    if band_rows >= size.height {
+        return Ok(0);
+    }
+    let mut layout = Layout::new(size.width as usize, band_rows as usize).with_room_for(stream).active_triangles(0);
+    let mut band = vec![Gray8::pack([0; 3]); layout.band()];
+    let frames = u32::from(stream.header.frames);
+    for number in (0..frames).step_by(frames.div_ceil(COUNTED).max(1) as usize) {
+        loop {
+            let mut memory = vec![0; layout.words::<Gray8>()];
+            let mut renderer = Renderer::with_shader(*stream, size, &layout, &mut memory, Shader::FLAT.on())?;
+            let mut frame = renderer.frame(number);
+            while frame.next_band(&mut band)?.is_some() {}
+            if frame.stats().set_up_anew == 0 {
+                break;
+            }
+            layout.active_triangles += 1;
+        }
+    }
+    Ok(layout.active_triangles)
+}
+
+/// The layout for a program that draws a stream in bands of `band_rows` rows: with room for all of it, and for its active triangles. There is room for
+/// half as many again of these, because the program may show poses that the stream does not.
+///
+/// # Errors
+/// When `size` is out of range.
+pub fn program_layout(stream: &Stream<'_>, size: Size, band_rows: u32) -> Result<Layout> {
+    let layout = Layout::new(size.width as usize, band_rows as usize).with_room_for(stream);
+    let fewest = fewest_active_triangles(stream, size, band_rows)?;
+    Ok(layout.active_triangles((fewest + fewest.div_ceil(2)).min(layout.triangles)))
+}
+
 /// Checksum of a picture.
 #[must_use]
 pub fn crc<C: Pixel>(pixels: &[C]) -> u32 {
@@ -173,6 +213,20 @@ impl Format {
             Self::Rgb666 => what.in_format::<Rgb666>(),
             Self::Rgb332 => what.in_format::<Rgb332>(),
         }
+    }
+
+    /// Bytes of the renderer's memory, and of a band of pixels.
+    #[must_use]
+    pub fn bytes(self, layout: &Layout) -> [usize; 2] {
+        struct Of<'a>(&'a Layout);
+        impl InFormat for Of<'_> {
+            type Output = [usize; 2];
+
+            fn in_format<C: Pixel>(self) -> [usize; 2] {
+                [self.0.bytes::<C>(), self.0.band() * size_of::<C>()]
+            }
+        }
+        self.run(Of(layout))
     }
 
     /// Whether the format is dithered by default: [`Pixel::DITHERED`].

@@ -8,6 +8,7 @@ mod stream;
 use core::{convert::Infallible, marker::PhantomData, panic::PanicInfo};
 use embedded_graphics_core::{pixelcolor::PixelColor, prelude::*, primitives::Rectangle};
 use microphong::{Layout, Picture, Renderer, Shader, Stream, pixel::Pixel};
+use semihosting::sys::arm_compat::{sys_readc, sys_writec};
 
 #[cfg(target_arch = "arm")]
 pub use cortex_m_rt::entry;
@@ -65,19 +66,10 @@ fn draw<C: Pixel + PixelColor>(memory: &mut [u64], band: &mut [C], shader: Shade
 }
 
 /// Hands the host a byte, and waits until it has looked at the stack.
-#[cfg(target_arch = "arm")]
 fn tell(byte: u8) {
-    use cortex_m_semihosting::{nr, syscall, syscall1};
-    // SAFETY: WRITEC reads one byte; READC takes no argument and touches no memory of ours.
-    unsafe {
-        syscall(nr::WRITEC, &byte);
-        syscall1(nr::READC, 0);
-    }
+    sys_writec(byte);
+    let _ = sys_readc();
 }
-
-/// Nobody runs it.
-#[cfg(target_arch = "riscv32")]
-fn tell(_: u8) {}
 
 #[panic_handler]
 fn panic(_: &PanicInfo<'_>) -> ! {

@@ -10,6 +10,7 @@ use budget::Budget;
 use embedded_graphics_core::{geometry::Size, pixelcolor::Rgb565};
 use microphong::{RenderError, Renderer, Stream};
 use microphong_sim::{render::Format, shader::Shader};
+use std::{error::Error, fmt};
 
 /// A board that there is firmware for.
 pub(super) struct Board {
@@ -48,6 +49,23 @@ pub(super) const BOARDS: [Board; 4] = [
     Board { name: "mps2-an386", memory: include_str!("../../../firmware/boards/mps2-an386.x"), ..MPS2 },
 ];
 
+/// A board has no room for a stream, but would take a smaller one.
+#[derive(Debug)]
+pub(super) struct TooLarge {
+    name: &'static str,
+    length: usize,
+    room: usize,
+}
+
+impl fmt::Display for TooLarge {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self { name, length, room } = self;
+        write!(f, "the stream has {length} bytes, and {name} has room for {room}")
+    }
+}
+
+impl Error for TooLarge {}
+
 impl Board {
     /// The board with this name.
     pub(super) fn named(name: &str) -> Option<Self> {
@@ -64,16 +82,12 @@ impl Board {
     /// Refuses a stream that the firmware would refuse, or that does not fit the board.
     pub(super) fn check(&self, stream: &Stream<'_>) -> Result<()> {
         let Self { name, budget: Budget { height, layout }, .. } = self;
-        let length = stream.header.length as usize;
-        if let Some(room) = self.room().filter(|&room| length > room) {
-            bail!("the stream has {length} bytes, but {name} has room for {room}; use --simplify to make it smaller");
-        }
         ensure!(self.has_text || stream.labels.is_empty(), "the firmware of {name} has no fonts; remove the labels");
         let size = Size::new(layout.width as u32, *height as u32);
         let mut memory = vec![0; layout.words::<Rgb565>()];
         let shader = Shader::of(stream)?;
         match Renderer::<Rgb565>::with_shader(*stream, size, layout, &mut memory, shader.on()) {
-            Ok(_) => Ok(()),
+            Ok(_) => {}
             Err(RenderError::Materials { need }) => bail!(
                 "the scene has {need} materials, but the firmware of {name} has room for {}; use fewer materials, or --colour for one",
                 layout.materials
@@ -83,6 +97,22 @@ impl Board {
             }
             Err(error) => bail!("the firmware of {name} cannot draw it: {error}"),
         }
+        let length = stream.header.length as usize;
+        match self.room().filter(|&room| length > room) {
+            Some(room) => Err(TooLarge { name, length, room }.into()),
+            None => Ok(()),
+        }
+    }
+
+    /// The share of its memory for streams that a stream takes.
+    pub(super) fn load(&self, stream: &Stream<'_>) -> f64 {
+        self.room().map_or(0.0, |room| f64::from(stream.header.length) / room as f64)
+    }
+
+    /// Size of its picture, and rows of a band.
+    pub(super) fn picture(&self) -> ((u32, u32), u32) {
+        let Budget { height, layout } = self.budget;
+        ((layout.width as u32, height as u32), layout.rows as u32)
     }
 
     /// Bytes that a stream may have.

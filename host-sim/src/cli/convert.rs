@@ -2,29 +2,24 @@
 
 use super::{
     Outcome, Usage,
-    boards::{BOARDS, Board},
+    boards::{BOARDS, Board, TooLarge},
     count::{self, Cost, Counter},
     mesh_options::{self, MeshOptions},
     meshes, parse,
     report::{self, Bars},
+    room::{Picture, Remedy, Simplified},
     scenes,
 };
-use anyhow::{Context, Result, bail};
+use anyhow::{Context, Result, anyhow, bail};
 use embedded_graphics_core::geometry::Size;
-use microphong::{
-    Layout, Stream,
-    format::{ErrorBudget, GeometricError},
-    pixel::Pixel,
-    stream::record,
-};
+use microphong::{Layout, Stream, format::ErrorBudget, stream::record};
 use microphong_sim::{
     convert::{Converted, Options, SQUARE},
     levels,
-    look::Look,
     mesh::Mesh,
     output,
     quantise::{Part, quantise},
-    render::{self, Format, InFormat},
+    render::{self, Format},
     scene::{self, Scene},
     shader::Shader,
 };
@@ -121,19 +116,15 @@ struct Line<'a> {
     memory: usize,
     /// The pixel format of that memory.
     format: &'static str,
+    /// Method of the program.
+    shader: &'static str,
+    /// Whether a common chip or the board of --board has room for the program.
+    fits: bool,
+    /// What makes it fit if not.
+    remedy: Option<Remedy>,
     remarks: Vec<String>,
     /// Costs of frames, if they were counted.
     costs: Option<Vec<Cost>>,
-}
-
-/// Result of --simplify.
-#[derive(Serialize)]
-struct Simplified {
-    before: usize,
-    error: f64,
-    /// The error in pixels, at most, in a picture of this size.
-    pixels: f64,
-    size: (u32, u32),
 }
 
 /// The cost of meshes for each object.
@@ -175,24 +166,39 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome> {
     if scene::is_script(source) {
         return convert_script(arguments, (board.as_ref(), format), &target, counter.as_ref());
     }
+    let picture = Picture::new(arguments.size, board.as_ref(), format);
+    let bars = Bars::default();
     let options = Options { size: arguments.size.unwrap_or(SQUARE), ..options };
-    let mut converted = Converted::read(source, &options, &Bars::default())?;
+    let mut converted = Converted::read(source, &options, &bars)?;
     converted.look.budget = arguments.budget.unwrap_or(ErrorBudget::ONE);
     converted.look.shader = shader;
     let bytes = converted.stream().with_context(|| source.display().to_string())?;
+    let stream = bytes.parse()?;
+    if let Some(board) = &board
+        && let Err(refused) = board.check(&stream)
+    {
+        let load = |stream: &Stream<'_>| Ok(board.load(stream));
+        let is_too_large = refused.is::<TooLarge>();
+        let remedy = if is_too_large { Remedy::search((&converted, &options), board.name, &load, &bars)? } else { None };
+        let refused = match remedy {
+            Some(remedy) => anyhow!("{refused}; {}", remedy.text()),
+            None => refused,
+        };
+        return Err(refused.context(source.display().to_string()));
+    }
+    let layout = picture.layout(&stream)?;
+    let (chip, load) = picture.roomiest(&stream, &layout)?;
+    let fits = board.is_some() || load <= 1.0;
+    let load = |stream: &Stream<'_>| Ok(picture.roomiest(stream, &picture.layout(stream)?)?.1);
+    let remedy = if fits { None } else { Remedy::search((&converted, &options), chip.name, &load, &bars)? };
+    drop(bars);
     let Converted { mesh, report, materials, mut remarks, parts, lost, look, simplified } = converted;
     if let (Some(most), None) = (options.simplify, &simplified) {
         remarks.push(format!("not simplified: the mesh has no more than {} triangles", report::grouped(most as u64)));
     }
-    let stream = bytes.parse()?;
-    if let Some(board) = &board {
-        board.check(&stream).with_context(|| source.display().to_string())?;
-    }
     report::leave_to(&target);
     output::write(&target, bytes.as_bytes())?;
-    let size = arguments.size.unwrap_or(USUAL);
-    remarks.extend(unseen(&stream, size)?);
-    let layout = Layout::new(size.0 as usize, ROWS).with_room_for(&stream);
+    remarks.extend(unseen(&stream, picture.size)?);
     let name = source.display().to_string();
     let line = Line {
         mesh: &source.to_string_lossy(),
@@ -209,14 +215,17 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome> {
         own_normals: report.own_normals,
         turned: report.turned,
         closed_convex: parts.iter().all(|part| part.closed_convex),
-        simplified: simplified.map(|simplified| in_pixels(simplified, &look, &parts, &options.levels)),
+        simplified: simplified.map(|simplified| Simplified::new(simplified, &look, &parts, &options.levels)),
         levels: parts.iter().enumerate().flat_map(|(mesh, part)| part.coarser.iter().map(move |level| of(mesh, level))).collect(),
         bytes: bytes.as_bytes().len(),
         layout: text_of(&layout),
-        memory: memory(&layout, format),
+        memory: format.bytes(&layout)[0],
         format: format.name(),
+        shader: shader.name(),
+        fits,
+        remedy,
         remarks,
-        costs: counter.map(|counter| counter.count(&Scene { name, stream: bytes.clone(), size })).transpose()?,
+        costs: counter.map(|counter| counter.count(&Scene { name, stream: bytes.clone(), size: picture.size })).transpose()?,
     };
     if arguments.json {
         report::json(&line)?;
@@ -288,7 +297,7 @@ fn convert_script(
     }
     report::leave_to(target);
     output::write(target, scene.stream.as_bytes())?;
-    let layout = Layout::new(scene.size.0 as usize, ROWS).with_room_for(&stream);
+    let layout = Picture::new(board.is_none().then_some(scene.size), board, format).layout(&stream)?;
     let line = SceneLine {
         scene: &arguments.mesh.to_string_lossy(),
         output: &target.to_string_lossy(),
@@ -299,7 +308,7 @@ fn convert_script(
         frames: stream.header.frames,
         bytes: scene.stream.as_bytes().len(),
         layout: text_of(&layout),
-        memory: memory(&layout, format),
+        memory: format.bytes(&layout)[0],
         format: format.name(),
         remarks: unseen(&stream, scene.size)?.into_iter().collect(),
         costs: counter.map(|counter| counter.count(&scene)).transpose()?,
@@ -323,12 +332,10 @@ fn convert_script(
         report::line(&format!("  {remark}"))?;
     }
     report::line(&format!("  {layout}, {} bytes of memory in {format}", count(memory)))?;
+    report::line(ACTIVE)?;
     count::text(costs.as_deref())?;
     Ok(Outcome::Done)
 }
-
-/// The commonest display, where no other picture is named.
-const USUAL: (u32, u32) = (320, 240);
 
 /// The remark that no frame shows a pixel of the mesh.
 fn unseen(stream: &Stream<'_>, (width, height): (u32, u32)) -> Result<Option<String>> {
@@ -338,38 +345,18 @@ fn unseen(stream: &Stream<'_>, (width, height): (u32, u32)) -> Result<Option<Str
     }))
 }
 
-/// The error of a simplified mesh in the largest picture that `--lod` names.
-fn in_pixels(levels::Simplified { before, error }: levels::Simplified, look: &Look, parts: &[Part], pictures: &[(u32, u32)]) -> Simplified {
-    let size = pictures.iter().copied().max_by_key(|&(width, height)| u64::from(width) * u64::from(height)).unwrap_or(USUAL);
-    // That which half a pixel is at the nearest point of the mesh. It is never more than that, so that these pixels are never too few.
-    let half: f64 = look.tolerance(parts, size).max(GeometricError::DELTA).into();
-    Simplified { before, error, pixels: 0.5 * error / half, size }
-}
-
 /// Largest number of lines for meshes.
 const LISTED: usize = 20;
 
-/// Rows of a band in the layout that is printed.
-const ROWS: usize = 16;
-
-/// Bytes that a layout takes in a format.
-fn memory(layout: &Layout, format: Format) -> usize {
-    struct Bytes<'a>(&'a Layout);
-    impl InFormat for Bytes<'_> {
-        type Output = usize;
-
-        fn in_format<C: Pixel>(self) -> usize {
-            self.0.bytes::<C>()
-        }
-    }
-    format.run(Bytes(layout))
-}
+/// What `active_triangles` of a layout means.
+const ACTIVE: &str = "    active_triangles: half as many again as the frames need, for other poses; with fewer, a frame takes longer";
 
 /// A layout as a program has it.
 fn text_of(layout: &Layout) -> String {
-    let Layout { width, rows, vertices, triangles, materials, objects, .. } = layout;
+    let Layout { width, rows, vertices, triangles, materials, objects, active_triangles, .. } = layout;
     let several = if *objects > 1 { format!(".objects({objects})") } else { String::new() };
-    format!("Layout::new({width}, {rows}).vertices({vertices}).triangles({triangles}).materials({materials}){several}")
+    let text = format!("Layout::new({width}, {rows}).vertices({vertices}).triangles({triangles}).materials({materials}){several}");
+    format!("{text}.active_triangles({active_triangles})")
 }
 
 fn of(mesh: usize, level: &levels::Level) -> Level {
@@ -399,22 +386,28 @@ fn text(line: &Line<'_>, materials: &[Option<&str>]) -> Result<()> {
     for remark in &line.remarks {
         report::line(&format!("  {remark}"))?;
     }
-    if let Some(Simplified { before, error, pixels, size: (width, height) }) = line.simplified {
-        let before = count(before);
-        report::line(&format!(
-            "  simplified from {before} triangles: at most {error:.4} units from the mesh, {pixels:.1} pixels in a picture of {width}x{height}"
-        ))?;
+    if let Some(simplified) = &line.simplified {
+        report::line(&format!("  simplified from {} triangles: {}", count(simplified.before), simplified.text()))?;
     }
     for Level { triangles, error, .. } in &line.levels {
         report::line(&format!("  a level of detail of {} triangles, less than {error:.4} units from the mesh", count(*triangles)))?;
     }
     let memory = count(line.memory);
     report::line(&format!("  a program needs {memory} bytes of memory in {}, and a band of pixels:\n    {}", line.format, line.layout))?;
+    report::line(ACTIVE)?;
     count::text(line.costs.as_deref())?;
     let crossed = match line.crossed {
-        0 => return Ok(()),
-        1 => "1 polygon crosses itself; split it".to_owned(),
-        several => format!("{} polygons cross themselves; split them", count(several)),
+        0 => None,
+        1 => Some("1 polygon crosses itself; split it".to_owned()),
+        several => Some(format!("{} polygons cross themselves; split them", count(several))),
     };
-    report::line(&format!("  {crossed}, or check the picture"))
+    if let Some(crossed) = crossed {
+        report::line(&format!("  {crossed}, or check the picture"))?;
+    }
+    if !line.fits {
+        let remedy = line.remedy.as_ref().map_or_else(String::new, |remedy| format!("; {}", remedy.text()));
+        let (shader, format) = (line.shader, line.format);
+        report::line(&format!("  no common chip has room for a program with it by {shader} in {format}{remedy}"))?;
+    }
+    Ok(())
 }

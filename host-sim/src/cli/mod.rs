@@ -18,6 +18,7 @@ mod papers;
 mod parse;
 mod render;
 mod report;
+mod room;
 mod scenes;
 #[cfg(feature = "boards")]
 mod size;

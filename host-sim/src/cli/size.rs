@@ -8,11 +8,9 @@ use super::{
 };
 use anyhow::Result;
 use microphong_sim::{
-    bench::size::{
-        Chip, FORMATS, Program, SHADERS, Size,
-        baseline::{self, Entry},
-        measure, picture,
-    },
+    bench::size::{Size, baseline, measure, picture},
+    chip::Chip,
+    program::{Entry, FORMATS, Program, SHADERS},
     render::Format,
     shader::Shader,
 };
@@ -95,8 +93,7 @@ struct Line<'a> {
 impl<'a> Line<'a> {
     fn new(scene: &'a str, chip: &Chip, program: Program, size: Size) -> Self {
         let (width, height, band_rows) = picture(program.format);
-        let fits =
-            size.flash_bytes + size.mesh_bytes <= chip.flash_bytes && size.ram_bytes + size.stack_bytes.unwrap_or(0) <= chip.ram_bytes;
+        let fits = chip.load(size.flash_bytes + size.mesh_bytes, size.ram_bytes + size.stack_bytes) <= 1.0;
         let [chip_flash_bytes, chip_ram_bytes] = [chip.flash_bytes, chip.ram_bytes];
         let (shader, format) = (program.shader.name(), program.format.name());
         Self {
@@ -117,8 +114,7 @@ impl<'a> Line<'a> {
 
     fn text(&self) -> Result<()> {
         let Size { flash_bytes, mesh_bytes, ram_bytes, stack_bytes } = self.size;
-        let [flash, with_mesh, ram] = [flash_bytes, flash_bytes + mesh_bytes, ram_bytes].map(report::grouped);
-        let stack = stack_bytes.map_or("unknown".to_owned(), report::grouped);
+        let [flash, with_mesh, ram, stack] = [flash_bytes, flash_bytes + mesh_bytes, ram_bytes, stack_bytes].map(report::grouped);
         let fits = if self.fits { "yes" } else { "no" };
         report::line(&format!("  {:<12} {:<7} {flash:>9} {with_mesh:>10} {ram:>8} {stack:>8}  {fits}", self.shader, self.format))
     }
@@ -170,7 +166,7 @@ fn again(path: &Path) -> Result<[Vec<Entry>; 2]> {
 
 /// Changes beyond the tolerance, and whether they are growth.
 fn changes([recorded, measured]: &[Vec<Entry>; 2]) -> Vec<(String, bool)> {
-    recorded.iter().zip(measured).flat_map(|(was, is)| is.changes(was)).collect()
+    recorded.iter().zip(measured).flat_map(|(was, is)| baseline::changes(is, was)).collect()
 }
 
 fn check(path: &Path) -> Result<Outcome> {

@@ -16,6 +16,7 @@ use anyhow::{Context, Result, anyhow, bail, ensure};
 use qmp::Qmp;
 use screen::Screen;
 use std::{
+    fmt,
     io::{self, ErrorKind, Read, Write},
     process::{Child, ChildStdin, ChildStdout, Command, Stdio},
     sync::mpsc::{self, Receiver, RecvTimeoutError},
@@ -30,22 +31,66 @@ const END: Duration = Duration::from_secs(20);
 /// The exit code that the firmware's fault handler chooses.
 const PANIC: i32 = 101;
 
-/// The command that runs `program` on the machine that QEMU knows by this name, without anything that looks at it.
-fn machine(name: &str, program: &Scratch) -> Command {
-    let mut machine = Command::new("qemu-system-arm");
-    bound(&mut machine)
-        .args(["-M", name, "-display", "none", "-nodefaults", "-nic", "none", "-serial", "none", "-monitor", "none"])
-        .args(["-chardev", "stdio,id=host,signal=off", "-semihosting-config", "enable=on,target=native,chardev=host"])
-        .arg("-kernel")
-        .arg(program.path());
-    machine
+/// A machine that QEMU emulates.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Machine {
+    /// A board with a Cortex-M processor, by the name that QEMU and this program have for it.
+    Arm(&'static str),
+    /// A RISC-V processor of 32 bits with memory and little else.
+    RiscvVirt,
 }
 
-/// Why QEMU has not started.
-fn missing(error: io::Error) -> anyhow::Error {
-    match error.kind() {
-        ErrorKind::NotFound => anyhow!("qemu-system-arm is not installed; `apt-get install -y --no-install-recommends qemu-system-arm`"),
-        _ => anyhow!("cannot start qemu-system-arm: {error}"),
+impl fmt::Display for Machine {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Self::Arm(name) => name,
+            Self::RiscvVirt => "riscv-virt",
+        })
+    }
+}
+
+impl Machine {
+    /// The program that emulates it, and the package of Debian that has the program.
+    const fn emulator(self) -> [&'static str; 2] {
+        match self {
+            Self::Arm(_) => ["qemu-system-arm"; 2],
+            Self::RiscvVirt => ["qemu-system-riscv32", "qemu-system-misc"],
+        }
+    }
+
+    /// The command that runs `program`, without anything that looks at it.
+    fn command(self, program: &Scratch) -> Command {
+        let [emulator, _] = self.emulator();
+        let mut command = Command::new(emulator);
+        match self {
+            Self::Arm(name) => command.args(["-M", name]),
+            Self::RiscvVirt => command.args(["-M", "virt", "-bios", "none"]),
+        };
+        bound(&mut command)
+            .args(["-display", "none", "-nodefaults", "-nic", "none", "-serial", "none", "-monitor", "none"])
+            .args(["-chardev", "stdio,id=host,signal=off", "-semihosting-config", "enable=on,target=native,chardev=host"])
+            .arg("-kernel")
+            .arg(program.path());
+        command
+    }
+
+    /// Checks that its emulator is installed, before a program is compiled for it.
+    ///
+    /// # Errors
+    /// Says what to install.
+    pub fn check(self) -> Result<()> {
+        let [emulator, _] = self.emulator();
+        let version = Command::new(emulator).arg("--version").stdin(Stdio::null()).output();
+        version.map(drop).map_err(|error| self.missing(error))
+    }
+
+    /// Why QEMU has not started.
+    fn missing(self, error: io::Error) -> anyhow::Error {
+        let [emulator, package] = self.emulator();
+        match error.kind() {
+            ErrorKind::NotFound => anyhow!("{emulator} is not installed; `apt-get install -y --no-install-recommends {package}`"),
+            _ => anyhow!("cannot start {emulator}: {error}"),
+        }
     }
 }
 
@@ -68,12 +113,13 @@ impl Drop for Emulator {
 }
 
 impl Emulator {
-    /// Starts `machine`; `decode` finds the lines in the bytes that the program sends.
-    fn start(mut machine: Command, decode: Decode) -> Result<Self> {
-        let mut process = machine.stdin(Stdio::piped()).stdout(Stdio::piped()).stderr(Stdio::null()).spawn().map_err(missing)?;
+    /// Starts `machine` by its `command`; `decode` finds the lines in the bytes that the program sends.
+    fn start(machine: Machine, mut command: Command, decode: Decode) -> Result<Self> {
+        let process = command.stdin(Stdio::piped()).stdout(Stdio::piped()).stderr(Stdio::null()).spawn();
+        let mut process = process.map_err(|error| machine.missing(error))?;
         let pipes = (process.stdin.take(), process.stdout.take());
         let (Some(input), Some(output)) = pipes else {
-            bail!("qemu-system-arm started without pipes");
+            bail!("QEMU started without pipes");
         };
         Ok(Self { process, input, lines: read_lines(output, decode) })
     }
@@ -133,9 +179,10 @@ pub(super) fn run(board: Board, elf: &Elf, until: Until) -> Result<Recording> {
     let screen = Screen::of(board, elf)?;
 
     let mut recording = Recording::default();
-    let mut machine = machine(board.name(), &program);
-    let qmp = Qmp::new(&mut machine)?;
-    let mut emulator = Emulator::start(machine, decoder(elf)?)?;
+    let machine = Machine::Arm(board.name());
+    let mut command = machine.command(&program);
+    let qmp = Qmp::new(&mut command)?;
+    let mut emulator = Emulator::start(machine, command, decoder(elf)?)?;
     let outcome = play(&mut emulator, qmp, &screen, until, &mut recording);
     outcome.with_context(|| format!("{board} in QEMU; {}", log::tail(&recording.log)))?;
     Ok(recording)
@@ -151,9 +198,10 @@ pub const INSTRUCTIONS_PER_TICK: f64 = 40.0 / 256.0;
 /// When the program crashes, falls silent or fails.
 pub fn clocked(board: Board, elf: &Elf) -> Result<Vec<String>> {
     let program = Scratch::new(elf.bytes())?;
-    let mut machine = machine(board.name(), &program);
-    machine.args(["-icount", "shift=8,sleep=off"]);
-    let mut emulator = Emulator::start(machine, decoder(elf)?)?;
+    let machine = Machine::Arm(board.name());
+    let mut command = machine.command(&program);
+    command.args(["-icount", "shift=8,sleep=off"]);
+    let mut emulator = Emulator::start(machine, command, decoder(elf)?)?;
     let mut lines = Vec::new();
     while let Some(line) = emulator.line()? {
         lines.push(line);
@@ -164,34 +212,34 @@ pub fn clocked(board: Board, elf: &Elf) -> Result<Vec<String>> {
     }
 }
 
-/// Bytes below the top of the stack that are looked at.
+/// Bytes below the top of the stack that are painted before the start, and looked at in the end.
 const DEEPEST: u32 = 1 << 18;
-/// The word with which the start-up code fills the stack.
-const PAINT: [u8; 4] = 0xCCCC_CCCC_u32.to_le_bytes();
+/// The paint. Start-up code that paints the stack as well uses this value.
+const PAINT: u8 = 0xCC;
 
-/// Runs a program of the package `size` on the machine of this name until all frames are drawn, and returns the bytes of stack that have lost their
-/// paint.
+/// Runs a program of the package `size` on a machine until all frames are drawn, and returns the bytes of stack that have lost their paint.
 ///
 /// # Errors
 /// When the program cannot draw its stream, crashes or falls silent.
-pub fn stack(name: &str, elf: &Elf) -> Result<u64> {
-    let program = Scratch::new(elf.bytes())?;
-    let mut machine = machine(name, &program);
-    let mut qmp = Qmp::new(&mut machine)?;
+pub fn stack(machine: Machine, elf: &Elf) -> Result<u64> {
+    let (program, paint) = (Scratch::new(elf.bytes())?, Scratch::new(&[PAINT; DEEPEST as usize])?);
+    let bottom = elf.symbol("_stack_start")?.0 - DEEPEST;
+    let mut command = machine.command(&program);
+    command.args(["-device", &format!("loader,file={},addr={bottom:#x},force-raw=on", paint.path().display())]);
+    let mut qmp = Qmp::new(&mut command)?;
     let letters: Decode = Box::new(|bytes, line| bytes.iter().for_each(|&byte| line(char::from(byte).to_string())));
-    let emulator = Emulator::start(machine, letters)?;
+    let emulator = Emulator::start(machine, command, letters)?;
     qmp.greet()?;
     match emulator.line()?.as_deref() {
         Some("d") => {}
-        Some(_) => bail!("the program on {name} cannot draw the scene"),
-        None => bail!("QEMU has ended before the program on {name}"),
+        Some(_) => bail!("the program on {machine} cannot draw the scene"),
+        None => bail!("QEMU has ended before the program on {machine}"),
     }
-    let [(bottom, _), (top, _)] = [elf.symbol("_stack_end")?, elf.symbol("_stack_start")?];
-    let size = (top - bottom).min(DEEPEST);
-    let bytes = qmp.memory(top - size, size)?;
-    let clean = bytes.chunks_exact(PAINT.len()).take_while(|word| **word == PAINT).count() * PAINT.len();
-    ensure!(clean > 0, "the stack of the program on {name} is deeper than {size} bytes");
-    Ok(u64::from(size) - clean as u64)
+    let bytes = qmp.memory(bottom, DEEPEST)?;
+    // A word that has lost only some of its paint counts as a whole.
+    let clean = bytes.iter().take_while(|&&byte| byte == PAINT).count() / size_of::<u32>() * size_of::<u32>();
+    ensure!(clean > 0, "the stack of the program on {machine} is deeper than {DEEPEST} bytes");
+    Ok(u64::from(DEEPEST) - clean as u64)
 }
 
 fn play(emulator: &mut Emulator, mut qmp: Qmp, screen: &Screen, until: Until, recording: &mut Recording) -> Result<()> {

@@ -10,7 +10,7 @@ use super::{
         elf::Elf,
         log::{Decoder, tail},
     },
-    machine, missing,
+    Machine,
 };
 use anyhow::{Context, Result, anyhow, bail, ensure};
 use std::{
@@ -45,18 +45,20 @@ pub fn trace(board: Board, elf: &Elf, ranges: &[Range<u32>], blocks: Blocks, vis
         let separator = if filter.is_empty() { "" } else { "," };
         write!(filter, "{separator}{:#x}..{:#x}", range.start, range.end - 1)?;
     }
-    let mut process = machine(board.name(), &program)
+    let machine = Machine::Arm(board.name());
+    let process = machine
+        .command(&program)
         // The log goes to the standard error output. Blocks that lead to others by themselves would not be in it.
         .args(["-d", "in_asm,exec,nochain", "-dfilter", &filter])
         .args((blocks == Blocks::Single).then_some("-singlestep"))
         .stdin(Stdio::piped())
         .stdout(Stdio::piped())
         .stderr(Stdio::piped())
-        .spawn()
-        .map_err(missing)?;
+        .spawn();
+    let mut process = process.map_err(|error| machine.missing(error))?;
     let pipes = (process.stdin.take(), process.stdout.take(), process.stderr.take());
     let (Some(mut input), Some(mut messages), Some(output)) = pipes else {
-        bail!("qemu-system-arm started without pipes");
+        bail!("QEMU started without pipes");
     };
     // The firmware waits for a byte after each frame; nobody looks at the display here.
     input.write_all(&[b'n'; 64]).context("QEMU has closed its input")?;

@@ -54,15 +54,6 @@ impl Core {
             Self::RiscV => "riscv32imc-unknown-none-elf",
         }
     }
-
-    /// The machine on which QEMU executes its programs; a Cortex-M3 executes code for a Cortex-M0+ as well.
-    pub(super) const fn machine(self) -> Option<&'static str> {
-        match self {
-            Self::CortexM0Plus | Self::CortexM3 => Some("mps2-an385"),
-            Self::CortexM4F => Some("mps2-an386"),
-            Self::CortexM33 | Self::RiscV => None,
-        }
-    }
 }
 
 /// A chip that is in common use.
@@ -93,4 +84,10 @@ impl Chip {
         chip("rp2350", Core::CortexM33, 4096, 520),
         chip("esp32-c3", Core::RiscV, 4096, 400),
     ];
+
+    /// The share of its flash that these bytes take, or the share of its RAM if that is larger: at most 1 if it has room for them.
+    #[must_use]
+    pub const fn load(&self, flash: u64, ram: u64) -> f64 {
+        (flash as f64 / self.flash_bytes as f64).max(ram as f64 / self.ram_bytes as f64)
+    }
 }

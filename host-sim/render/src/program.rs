@@ -1,0 +1,145 @@
+//! Whole programs with one method and one pixel format, and what they take, as it was measured and recorded.
+
+use crate::{
+    chip::{Chip, Core},
+    render::Format,
+    shader::Shader,
+};
+use anyhow::{Context, Result, bail, ensure};
+use std::fmt;
+
+/// Methods that there are programs with.
+pub const SHADERS: [Shader; 4] = [Shader::GOURAUD, Shader::AUTO_LINEAR, Shader::PHONG, Shader::AUTO];
+/// Pixel formats that there are programs with.
+pub const FORMATS: [Format; 2] = [Format::Rgb565, Format::Binary];
+
+/// The names of an entry's figures, which is the first line of the record.
+pub const HEAD: &str = "core,format,shader,flash_bytes,ram_bytes,stack_bytes";
+
+/// A program.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Program {
+    /// The processor that it is compiled for.
+    pub core: Core,
+    /// Method of the program.
+    pub shader: Shader,
+    /// Pixel format of the program.
+    pub format: Format,
+}
+
+impl Program {
+    /// All programs for these processors, methods and formats.
+    #[must_use]
+    pub fn all(cores: &[Core], shaders: &[Shader], formats: &[Format]) -> Vec<Self> {
+        let of = |&core: &Core| formats.iter().flat_map(move |&format| shaders.iter().map(move |&shader| Self { core, shader, format }));
+        cores.iter().flat_map(of).collect()
+    }
+
+    /// The name of its file.
+    #[must_use]
+    pub fn name(self) -> String {
+        format!("{}-{}", self.shader.name(), self.format.name())
+    }
+
+    /// The recorded program that takes what this one takes, or more: `auto` is the largest method, and `Rgb565` the larger format.
+    fn recorded(self) -> Self {
+        let shader = if SHADERS.contains(&self.shader) { self.shader } else { Shader::AUTO };
+        let format = if FORMATS.contains(&self.format) { self.format } else { Format::Rgb565 };
+        Self { shader, format, ..self }
+    }
+}
+
+/// A line of the record.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Entry {
+    /// The program.
+    pub program: Program,
+    /// Bytes of flash, without the mesh.
+    pub flash: u64,
+    /// Bytes of static variables, with room for the teapot.
+    pub ram: u64,
+    /// Bytes of stack.
+    pub stack: u64,
+}
+
+impl Entry {
+    fn parse(line: &str) -> Result<Self> {
+        let words: Vec<_> = line.split(',').map(str::trim).collect();
+        let [core, format, shader, flash, ram, stack] = words[..] else {
+            bail!("{} words instead of those of `{HEAD}`", words.len());
+        };
+        let number = |word: &str| word.parse::<u64>().with_context(|| format!("`{word}` is no number"));
+        let core = Core::ALL.into_iter().find(|other| other.name() == core).with_context(|| format!("no processor {core}"))?;
+        let format = FORMATS.into_iter().find(|other| other.name() == format).with_context(|| format!("no pixel format {format}"))?;
+        let shader = SHADERS.into_iter().find(|other| other.name() == shader).with_context(|| format!("no method {shader}"))?;
+        Ok(Self { program: Program { core, shader, format }, flash: number(flash)?, ram: number(ram)?, stack: number(stack)? })
+    }
+
+    /// Reads a record.
+    ///
+    /// # Errors
+    /// Names the line.
+    pub fn all(text: &str) -> Result<Vec<Self>> {
+        let lines = (1..).zip(text.lines()).filter(|(_, line)| !line.trim().is_empty() && *line != HEAD);
+        let entries = lines.map(|(number, line)| Self::parse(line).with_context(|| format!("line {number}")));
+        let entries = entries.collect::<Result<Vec<_>>>()?;
+        ensure!(!entries.is_empty(), "it has no line: `{HEAD}` and a program in each line are needed");
+        Ok(entries)
+    }
+}
+
+impl fmt::Display for Entry {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self { program: Program { core, shader, format }, flash, ram, stack } = self;
+        write!(f, "{},{},{},{flash},{ram},{stack}", core.name(), format.name(), shader.name())
+    }
+}
+
+/// The common chips, and the share of flash or RAM, whichever is larger, that a program by this method in this format takes of each. The mesh takes so
+/// many bytes of flash, and the renderer's memory and a band take so many bytes of RAM. The rest is taken from the record of this version.
+///
+/// # Errors
+/// When the record is damaged.
+pub fn loads(shader: Shader, format: Format, [mesh, memory]: [usize; 2]) -> Result<Vec<(Chip, f64)>> {
+    let recorded = Entry::all(include_str!("../../../tests/baselines/sizes.csv"))?;
+    let load = |chip: Chip| {
+        let program = Program { core: chip.core, shader, format }.recorded();
+        let entry = recorded.iter().find(|entry| entry.program == program).with_context(|| format!("no size of {program:?}"))?;
+        Ok((chip, chip.load(entry.flash + mesh as u64, memory as u64 + entry.stack)))
+    };
+    Chip::ALL.into_iter().map(load).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn damaged_lines_say_what_is_wrong() {
+        for (line, message) in [
+            ("", "it has no line"),
+            ("cortex-m3,binary,gouraud,1", "4 words"),
+            ("cortex-m3,binary,gouraud,1,x,1", "`x` is no number"),
+            ("m3,binary,gouraud,1,1,1", "no processor m3"),
+            ("cortex-m3,gray4,gouraud,1,1,1", "no pixel format gray4"),
+            ("cortex-m3,binary,flat,1,1,1", "no method flat"),
+        ] {
+            let error = format!("{:#}", Entry::all(line).unwrap_err());
+            assert!(error.contains(message), "{error}");
+        }
+    }
+
+    /// Larger programs and meshes have room on fewer chips, and a format or method without a program counts as a larger one.
+    #[test]
+    fn chips_take_what_they_have_room_for() {
+        let names = |shader, format, bytes| -> Vec<_> {
+            loads(shader, format, bytes).unwrap().into_iter().filter(|(_, load)| *load <= 1.0).map(|(chip, _)| chip.name).collect()
+        };
+        assert_eq!(names(Shader::GOURAUD, Format::Binary, [1000, 20_000]).first(), Some(&"samd21"));
+        assert_eq!(names(Shader::GOURAUD, Format::Binary, [200_000, 20_000]).first(), Some(&"stm32f411"));
+        assert_eq!(names(Shader::GOURAUD, Format::Binary, [1000, 300_000]), ["rp2350", "esp32-c3"]);
+        assert_eq!(names(Shader::GOURAUD, Format::Binary, [1000, 600_000]), [""; 0]);
+        let [flash, ram] = [300_000, 20_000];
+        assert_eq!(names(Shader::FLAT, Format::Gray4, [flash, ram]), names(Shader::AUTO, Format::Rgb565, [flash, ram]));
+    }
+}
