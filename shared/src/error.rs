@@ -38,6 +38,11 @@ pub enum RenderError {
         /// Number of objects in the stream.
         need: usize,
     },
+    /// The method looks up highlights in tables, and the layout has none; see [`crate::Layout::without_highlight_tables`].
+    HighlightTables {
+        /// Name of the method.
+        shader: &'static str,
+    },
     /// The layout has no room for antialiasing; see [`crate::Layout::antialias`].
     NoSamples,
     /// The memory for a band is shorter than one row of the picture.
@@ -86,6 +91,9 @@ impl fmt::Display for RenderError {
             Self::Memory { need } => write!(f, "the memory needs {need} words of 64 bits, as Layout::words says"),
             Self::Materials { need } => write!(f, "the stream has {need} materials; give the layout of the memory room for as many"),
             Self::Objects { need } => write!(f, "the scene has objects: {need}; give the layout of the memory room for as many"),
+            Self::HighlightTables { shader } => {
+                write!(f, "{shader} shading needs tables of highlights; build the layout without Layout::without_highlight_tables")
+            }
             Self::NoSamples => f.write_str("antialiasing needs memory of its own; ask for it by Layout::antialias"),
             Self::Band { need } => write!(f, "a band of pixels must hold a row of the picture, {need} pixels"),
             Self::Corner => f.write_str("the picture would reach beyond the display; move it or make it smaller"),

@@ -4,6 +4,7 @@ use crate::{
     coverage::sample::Sample,
     geometry::{bin::Entry, projection::ScreenVertex},
     lighting::reflectance::Reflectance,
+    math::highlight_lut::HighlightLut,
     method::ErrorBounds,
     pixel::Pixel,
     placement::Placement,
@@ -45,6 +46,8 @@ pub struct Layout {
     pub active_triangles: usize,
     /// Whether there is room for antialiasing, which takes 72 bytes for each pixel of a band.
     pub antialias: bool,
+    /// Whether there is room for tables of highlights, one for each material. See [`Self::without_highlight_tables`].
+    pub highlight_tables: bool,
 }
 
 impl Layout {
@@ -62,6 +65,7 @@ impl Layout {
             objects: 1,
             active_triangles: 48,
             antialias: false,
+            highlight_tables: true,
         }
     }
 
@@ -107,6 +111,13 @@ impl Layout {
         Self { antialias, ..self }
     }
 
+    /// Leaves out the tables of highlights, which take 8,200 bytes for each material. The methods [`Shader::FLAT`](crate::Shader::FLAT) and
+    /// [`Shader::GOURAUD`](crate::Shader::GOURAUD) need none, and a renderer refuses all others.
+    #[must_use]
+    pub const fn without_highlight_tables(self) -> Self {
+        Self { highlight_tables: false, ..self }
+    }
+
     /// Sets the numbers of vertices, triangles, materials and objects to those of a stream.
     #[must_use]
     pub fn with_room_for(self, stream: &Stream<'_>) -> Self {
@@ -129,6 +140,10 @@ impl Layout {
         self.width * self.rows
     }
 
+    const fn tables(&self) -> usize {
+        if self.highlight_tables { self.materials } else { 0 }
+    }
+
     const fn samples(&self) -> usize {
         if self.antialias { self.band() * self.processors } else { 0 }
     }
@@ -144,6 +159,7 @@ impl Layout {
             + padded(self.objects * size_of::<Object>())
             + padded(self.materials * size_of::<SceneMaterial>())
             + padded(self.materials * size_of::<Reflectance>())
+            + padded(self.tables() * size_of::<HighlightLut>())
             + padded(self.materials * size_of::<ErrorBounds>())
             + padded(self.samples() * size_of::<Sample>())
             + padded(self.materials * size_of::<C::Ramps>())
@@ -166,7 +182,7 @@ const fn padded(bytes: usize) -> usize {
 /// The sizes that docs/design.md tells.
 const _: () = {
     assert!(size_of::<ScreenVertex>() == 32 && size_of::<Entry>() == 8 && size_of::<ActiveTriangle>() == 132);
-    assert!(size_of::<Reflectance>() == 8580 && size_of::<Sample>() == 72);
+    assert!(size_of::<Reflectance>() == 396 && size_of::<HighlightLut>() == 8200 && size_of::<Sample>() == 72);
 };
 
 /// The memory of a renderer, divided into its parts.
@@ -184,6 +200,8 @@ pub(crate) struct Memory<'a> {
     pub(crate) order: &'a mut [u32],
     /// One for each material.
     pub(crate) reflectances: &'a mut [Reflectance],
+    /// One table of highlights for each material, or none.
+    pub(crate) tables: &'a mut [HighlightLut],
     /// For each material, what a method with an error budget knows of it.
     pub(crate) error_bounds: &'a mut [ErrorBounds],
     /// Samples for antialiasing; empty without it.
@@ -208,12 +226,17 @@ impl<'a> Memory<'a> {
         let (placements, bytes) = take(bytes, layout.objects)?;
         let (order, bytes) = take(bytes, layout.objects)?;
         let (reflectances, bytes) = take(bytes, layout.materials)?;
+        let (tables, bytes) = take(bytes, layout.tables())?;
         let (error_bounds, bytes) = take(bytes, layout.materials)?;
         let (samples, bytes) = take(bytes, layout.samples())?;
         let (depth, bytes) = take(bytes, layout.band() * layout.processors)?;
         let (objects, bytes) = take(bytes, layout.objects)?;
         let (materials, _) = take(bytes, layout.materials)?;
-        Some((Self { vertices, bins, depth, placements, order, reflectances, error_bounds, samples, active_triangles }, objects, materials))
+        Some((
+            Self { vertices, bins, depth, placements, order, reflectances, tables, error_bounds, samples, active_triangles },
+            objects,
+            materials,
+        ))
     }
 }
 

@@ -4,7 +4,7 @@ use crate::{
     format::{BIAS, CHANNEL, COSINE, LEVEL, WALK},
     lighting::{
         constant_lights::{ByTurns, FACTOR, OneLightRamp, OneLightRgb, TwoLightsRgb},
-        reflectance::Reflectance,
+        reflectance::{LitMaterial, Reflectance},
     },
     math::vector::zip,
     pixel::{Pixel, gamma::Gamma, ramps::Ramps, steps},
@@ -18,7 +18,7 @@ pub struct MaterialTables<'a, C: Pixel> {
     /// highlight, by the level of the channel that has most diffuse light.
     pub ramps: &'a C::Ramps,
     /// Reflectances of the material, in levels.
-    pub reflectance: &'a Reflectance,
+    pub reflectance: LitMaterial<'a>,
 }
 
 impl<C: Pixel> Clone for MaterialTables<'_, C> {
@@ -74,9 +74,9 @@ impl<'a, C: Pixel> MaterialTables<'a, C> {
     #[inline(always)]
     #[must_use]
     pub fn one_light_ramp(&self) -> Option<OneLightRamp<'a, C>> {
-        let Reflectance { ramp: [_, diffuse], highlight_lut, .. } = self.reflectance;
-        let ramps = ByTurns::new(self.ramps.squares());
-        self.reflectance.holds_levels().then(|| OneLightRamp { ramps, diffuse: *diffuse as u16, floor: highlight_lut.least() })
+        let (ramps, [_, diffuse]) = (ByTurns::new(self.ramps.squares()), self.reflectance.ramp);
+        let floor = self.reflectance.table()?.least();
+        self.reflectance.holds_levels().then_some(OneLightRamp { ramps, diffuse: diffuse as u16, floor })
     }
 
     /// The table of colours of a triangle in three channels under the only light, where that has no highlight; `None` unless
@@ -104,7 +104,7 @@ impl<'a, C: Pixel> MaterialTables<'a, C> {
     /// The sums of three channels under the first light.
     #[inline(always)]
     fn sums(&self) -> OneLightRgb<'a, C> {
-        let [[even, ..], [odd, ..]] = &self.reflectance.sums;
+        let [[even, ..], [odd, ..]] = &self.reflectance.reflectance().sums;
         OneLightRgb(ByTurns::new([even, odd]), PhantomData)
     }
 
@@ -112,7 +112,7 @@ impl<'a, C: Pixel> MaterialTables<'a, C> {
     #[inline(always)]
     #[must_use]
     pub fn two_lights_rgb(&self) -> Option<[TwoLightsRgb<'a, C>; 2]> {
-        let [even, odd] = &self.reflectance.sums;
+        let [even, odd] = &self.reflectance.reflectance().sums;
         let forth = ByTurns::new([even.first_chunk()?, odd.first_chunk()?]);
         let back = ByTurns::new([even.last_chunk()?, odd.last_chunk()?]);
         (!C::GRAY && self.reflectance.lights() == 2).then_some([TwoLightsRgb(forth, PhantomData), TwoLightsRgb(back, PhantomData)])
@@ -196,7 +196,7 @@ mod tests {
             let material = Material { ambient: [gain; 3], diffuse: [gain, gain / 2, 0], specular: [gain; 3], exponent: 30 };
             let mut reflectance = reflectance::<Rgb565>(&material, [1 << UNIT; 3]);
             for _ in 0..2 {
-                let tables = MaterialTables::<Rgb565> { ramps: &[[0; RAMP]; 2], reflectance: &reflectance };
+                let tables = MaterialTables::<Rgb565> { ramps: &[[0; RAMP]; 2], reflectance: LitMaterial::new(&reflectance, None) };
                 let exact = reflectance.reflection(1 << COSINE, 1 << 16);
                 let colours = tables.one_light([1 << COSINE, 1 << COSINE]).map(|stored| Rgb565::from_stored(stored).channels());
                 for (colour, turn) in colours.into_iter().zip([-1, 1]) {
@@ -229,7 +229,7 @@ mod tests {
             prop_assert!(reflectance.has_ramp());
             let mut ramps = [[0; RAMP]; 2];
             fill_ramps::<Rgb565>(&mut ramps, &reflectance, false, None);
-            let tables = MaterialTables::<Rgb565> { ramps: &ramps, reflectance: &reflectance };
+            let tables = MaterialTables::<Rgb565> { ramps: &ramps, reflectance: LitMaterial::new(&reflectance, None) };
             for cosine in (-4..=64).map(|c| c << (COSINE - 6)) {
                 let [exact, _] = tables.colour(reflectance.reflection(cosine, 0)).map(|stored| Rgb565::from_stored(stored).channels());
                 let [tabled, _] = tables.tint(reflectance.ramp_level(cosine)).map(|stored| Rgb565::from_stored(stored).channels());

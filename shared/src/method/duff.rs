@@ -37,9 +37,9 @@ pub fn shade_constant(setup: &TriangleSetup<'_>, shading: &Shading<'_>, canvas: 
             let fit = |source: &Source| {
                 // Both are linear, so that corners tell.
                 let [towards, half] = shading.constant_cosines(setup, source);
-                if !setup.leaves_out_highlight(reflectance, &half) {
+                if !setup.leaves_out_highlight(&reflectance, &half) {
                     Lit::Fully(linear([towards, half]))
-                } else if setup.leaves_out_light(reflectance, &towards) {
+                } else if setup.leaves_out_light(&reflectance, &towards) {
                     Lit::Nowhere
                 } else {
                     Lit::Diffuse(linear([towards]))
@@ -117,7 +117,7 @@ pub(crate) fn draw<C: Pixel>(
     band: &mut Band<'_, C>,
 ) -> Option<u32> {
     let reflectance = tables.reflectance;
-    if is_steep(shading.exponent) && (reflectance.lights() > 1 || largest(&corners()[1]) >= setup.highlight_threshold(reflectance)) {
+    if is_steep(shading.exponent) && (reflectance.lights() > 1 || largest(&corners()[1]) >= setup.highlight_threshold(&reflectance)) {
         return None;
     }
     // |N|² has two more bits than other quadratics, and its root is half as steep.

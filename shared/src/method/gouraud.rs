@@ -110,13 +110,13 @@ pub(super) fn draw_three<C: Pixel>(
 ) -> u32 {
     let ([a, b, c], reflectance) = (setup.corners, tables.reflectance);
     // By the table of colours where the light has no highlight.
-    if has_ramp(setup, reflectance) {
+    if has_ramp(setup, &reflectance) {
         let level = |[cosine, ..]: [i32; 4]| reflectance.ramp_level(cosine) + raise;
         let levels = || [level(a.light), level(b.light), level(c.light)];
         return setup.fill(|| one::<C>(setup.gradients, levels()), Ramp(tables.ramps), band);
     }
     let channels = || {
-        let [[r0, g0, b0], [r1, g1, b1], [r2, g2, b2]] = reflections([a, b, c], reflectance);
+        let [[r0, g0, b0], [r1, g1, b1], [r2, g2, b2]] = reflections([a, b, c], &reflectance);
         [[r0, r1, r2], [g0, g1, g2], [b0, b1, b2]]
     };
     shading.fill_three(setup, channels, raise, |plane| plane, band)
@@ -131,7 +131,7 @@ fn one<C: Pixel>(gradients: &Gradients, levels: [i32; 3]) -> Plane<1> {
 /// The levels at the corners.
 fn corner_levels(setup: &TriangleSetup<'_>, shading: &Shading<'_>) -> [[i32; 3]; 3] {
     if shading.constant.is_some() {
-        return reflected(setup, shading.reflectance);
+        return reflected(setup, &shading.reflectance);
     }
     let [a, b, c] = setup.corners;
     [a.levels(), b.levels(), c.levels()]
@@ -139,7 +139,7 @@ fn corner_levels(setup: &TriangleSetup<'_>, shading: &Shading<'_>) -> [[i32; 3];
 
 /// The levels at the corners under one constant light.
 pub(super) fn reflected(setup: &TriangleSetup<'_>, reflectance: &Reflectance) -> [[i32; 3]; 3] {
-    if reflectance.three_channels() { reflections(setup.corners, reflectance) } else { setup.corners.map(|corner| [corner.light[2]; 3]) }
+    if reflectance.three_channels() { reflections(setup.corners, &reflectance) } else { setup.corners.map(|corner| [corner.light[2]; 3]) }
 }
 
 /// The levels at corners whose light is [`VertexLight::ReflectionOrLevels`] of one constant light in three channels.

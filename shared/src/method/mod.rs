@@ -76,7 +76,7 @@ pub use {
         },
         lighting::{
             lights::{Lighting, Source, Viewer, cosine, point},
-            reflectance::{Highlight, Reflectance, Reflection},
+            reflectance::{Highlight, LitMaterial, Reflectance, Reflection},
         },
         math::highlight_lut::CosineLookup,
         setup::steepness::Steepness,
@@ -96,7 +96,7 @@ pub trait Method: Sync {
     /// Computes bounds for a method with an error budget, for a material of exponent `_exponent` under `_lights` lights. Other methods do nothing
     /// here.
     #[doc(hidden)]
-    fn error_bounds(&self, _reflectance: &Reflectance, _exponent: u16, _lights: usize) -> ErrorBounds {
+    fn error_bounds(&self, _reflectance: LitMaterial<'_>, _exponent: u16, _lights: usize) -> ErrorBounds {
         ErrorBounds::EMPTY
     }
 
@@ -330,7 +330,7 @@ impl TriangleSetup<'_> {
     #[inline(always)]
     pub fn has_no_highlight(&self, reflectance: &Reflectance) -> bool {
         let [a, b, c] = self.corners;
-        a.light[1].max(b.light[1]).max(c.light[1]) < self.highlight_threshold(reflectance)
+        a.light[1].max(b.light[1]).max(c.light[1]) < self.highlight_threshold(&reflectance)
     }
 
     /// Whether the highlight of a constant light, whose N·H at the corners is `half`, is left out because it can be seen nowhere.
@@ -404,7 +404,7 @@ impl Area for TriangleSetup<'_> {
 #[derive(Clone, Copy)]
 pub struct Shading<'f> {
     /// Colours that the material reflects.
-    pub reflectance: &'f Reflectance,
+    pub reflectance: LitMaterial<'f>,
     /// The lights of the scene, as the object sees them.
     pub lighting: &'f Lighting,
     /// The material's exponent.

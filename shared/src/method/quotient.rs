@@ -162,18 +162,18 @@ pub(super) fn draw<const EXACT: bool, F: Field, C: Pixel>(
     let rgb = tables.one_light_rgb();
     // Without a highlight three channels are drawn by a table of colours, which rounds otherwise: that is no matter of leaving it out.
     let has_no_highlight = match rgb {
-        Some(_) => largest(&cosines[1]) < setup.highlight_threshold(tables.reflectance),
-        None => setup.leaves_out_highlight(tables.reflectance, &cosines[1]),
+        Some(_) => largest(&cosines[1]) < setup.highlight_threshold(&tables.reflectance),
+        None => setup.leaves_out_highlight(&tables.reflectance, &cosines[1]),
     };
     let ramp = if rgb.is_some() { tables.diffuse_ramp() } else { Some(tables.one_light_ramp()?) };
-    Some(match (ramp, rgb) {
+    match (ramp, rgb) {
         // Boards with displays of greys have little flash: no loop of its own for that there.
         (Some(ramp), _) if !C::GRAY && has_no_highlight => {
-            draw_diffuse::<EXACT, _, _>(setup, &cosines[0], length, half_reciprocal, ramp, tables, band)
+            Some(draw_diffuse::<EXACT, _, _>(setup, &cosines[0], length, half_reciprocal, ramp, tables, band))
         }
         (_, Some(rgb)) => draw_rgb::<EXACT, _, _>(setup, cosines, length, half_reciprocal, rgb, tables, band),
         (ramp, None) => draw_in::<EXACT, _, _>(setup, cosines, length, half_reciprocal, ramp?, tables, band),
-    })
+    }
 }
 
 /// Draws as [`draw_in`] does, in three channels. It is compiled once for triangles of all sizes, because a call is a small share of their time.
@@ -186,7 +186,7 @@ fn draw_rgb<const EXACT: bool, F: Field, C: Pixel>(
     colours: OneLightRgb<'_, C>,
     tables: MaterialTables<'_, C>,
     band: &mut Band<'_, C>,
-) -> u32 {
+) -> Option<u32> {
     draw_in::<EXACT, _, _>(setup, cosines, length, half_reciprocal, colours, tables, band)
 }
 
@@ -201,14 +201,14 @@ pub(super) fn draw_two<const EXACT: bool, F: Field, C: Pixel>(
 ) -> Option<u32> {
     let TwoLights { colours, cosines: [first, second], highlights } = TwoLights::on(setup, tables)?;
     let full = colours.diffuse();
-    let lookup = QuotientLookup::new(&tables.reflectance.highlight_lut);
+    let lookup = QuotientLookup::new(tables.reflectance.table()?);
     let shader = DiffuseAndHighlight::<_, _, EXACT> { colours, lookup, half_reciprocal };
     let both = |[towards, half]: &CornerCosines| (plane(setup, full, towards), numerator(setup, lookup, half));
     setup.count(band.top, &mut band.counts.without_highlight, 2 - highlights);
     Some(match highlights {
-        1 if setup.leaves_out_light(tables.reflectance, &second[0]) => {
+        1 if setup.leaves_out_light(&tables.reflectance, &second[0]) => {
             setup.count(band.top, &mut band.counts.without_light, 1);
-            draw_rgb::<EXACT, _, _>(setup, &first, length, half_reciprocal, colours.first(), tables, band)
+            return draw_rgb::<EXACT, _, _>(setup, &first, length, half_reciprocal, colours.first(), tables, band);
         }
         0 => {
             let patch = || ((plane(setup, full, &first[0]), plane(setup, full, &second[0])), fitted(&length(), setup.gradients));
@@ -232,13 +232,13 @@ fn draw_in<const EXACT: bool, F: Field, T: OneLight>(
     colours: T,
     tables: MaterialTables<'_, T::Pixel>,
     band: &mut Band<'_, T::Pixel>,
-) -> u32
+) -> Option<u32>
 where
     T::Pixel: Pixel,
 {
-    let lookup = QuotientLookup::new(&tables.reflectance.highlight_lut);
+    let lookup = QuotientLookup::new(tables.reflectance.table()?);
     let patch = || patch(setup, colours.diffuse(), lookup, cosines, length);
-    setup.fill(patch, DiffuseAndHighlight::<_, _, EXACT> { colours, lookup, half_reciprocal }, band)
+    Some(setup.fill(patch, DiffuseAndHighlight::<_, _, EXACT> { colours, lookup, half_reciprocal }, band))
 }
 
 /// Draws a triangle without a highlight by a table of colours.
@@ -252,7 +252,7 @@ fn draw_diffuse<const EXACT: bool, F: Field, C: Pixel>(
     tables: MaterialTables<'_, C>,
     band: &mut Band<'_, C>,
 ) -> u32 {
-    if setup.leaves_out_light(tables.reflectance, towards) {
+    if setup.leaves_out_light(&tables.reflectance, towards) {
         setup.count(band.top, &mut band.counts.without_light, 1);
         return setup.fill(|| Constant, Solid(colours.unlit()), band);
     }

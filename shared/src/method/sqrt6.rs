@@ -89,7 +89,7 @@ impl SixCosines {
 
 /// [`Method::shade`] under constant lights.
 fn shade_constant<const ROOT: IsRoot>(setup: &TriangleSetup<'_>, shading: &Shading<'_>, canvas: &mut dyn Canvas) -> u32 {
-    let threshold = setup.highlight_threshold(shading.reflectance);
+    let threshold = setup.highlight_threshold(&shading.reflectance);
     let fit = |source: &_| {
         let [towards, half] = shading.lighting.directions(source, [0; 3]);
         let (towards, half) = (setup.six_from(setup.corner_cosines(towards)), setup.corner_cosines(half));
@@ -154,7 +154,7 @@ fn draw_any<const ROOT: IsRoot, C: Pixel>(
     }
     let (cosines, rgb) = (&setup.corner_lights(), tables.one_light_rgb());
     let ramp = if rgb.is_some() { tables.diffuse_ramp() } else { Some(tables.one_light_ramp()?) };
-    let has_no_highlight = largest(&cosines[1]) < setup.highlight_threshold(tables.reflectance);
+    let has_no_highlight = largest(&cosines[1]) < setup.highlight_threshold(&tables.reflectance);
     // What a table of colours declines in three channels has been drawn as if it had a highlight.
     let declined = rgb.is_some() && setup.resumed(band) == Some(DiffuseAndHighlight::<OneLightRgb<'_, C>>::ID);
     if let Some(ramp) = ramp.filter(|_| has_no_highlight && !declined) {
@@ -193,14 +193,14 @@ fn draw_two<const ROOT: IsRoot, C: Pixel>(
 ) -> Option<u32> {
     let TwoLights { colours, cosines: [first, second], highlights } = TwoLights::on(setup, tables)?;
     let (full, exponent) = (colours.diffuse(), shading.exponent);
-    let steeply = |[_, half]: CornerCosines| !is_exact(setup, half, tables.reflectance);
+    let steeply = |[_, half]: CornerCosines| !is_exact(setup, half, &tables.reflectance);
     if setup.place.is_none() && !setup.gradients.walks_in_words() && (highlights > 0 && steeply(first) || highlights > 1 && steeply(second))
     {
         return None;
     }
     let (towards, other) = (setup.six_from(first[0]), setup.six_from(second[0]));
     let is_dark = |cosines| DiffuseSign::of(cosines) == DiffuseSign::Nowhere;
-    let lookup = DefectLookup::new(&tables.reflectance.highlight_lut);
+    let lookup = DefectLookup::new(tables.reflectance.table()?);
     let shader = DiffuseAndHighlight { colours, lookup };
     let diffuse = |cosines| diffuse(setup, full, cosines);
     let highlight = |[_, half]: CornerCosines| highlight::<ROOT>(setup, half, lookup, exponent);
@@ -226,7 +226,7 @@ fn draw<const ROOT: IsRoot, C: Pixel, T: OneLight<Pixel = C>>(
     tables: MaterialTables<'_, C>,
     band: &mut Band<'_, C>,
 ) -> Option<u32> {
-    if setup.resumed(band).is_none() && !setup.gradients.walks_in_words() && !is_exact(setup, half, tables.reflectance) {
+    if setup.resumed(band).is_none() && !setup.gradients.walks_in_words() && !is_exact(setup, half, &tables.reflectance) {
         return None;
     }
     // No nodes are needed of an active triangle.
@@ -237,7 +237,7 @@ fn draw<const ROOT: IsRoot, C: Pixel, T: OneLight<Pixel = C>>(
             return None;
         }
     }
-    let lookup = DefectLookup::new(&tables.reflectance.highlight_lut);
+    let lookup = DefectLookup::new(tables.reflectance.table()?);
     let patch = || (diffuse(setup, colours.diffuse(), cosines), highlight::<ROOT>(setup, half, lookup, exponent));
     Some(setup.fill(patch, DiffuseAndHighlight { colours, lookup }, band))
 }
@@ -413,7 +413,7 @@ fn walked<const ROOT: IsRoot>(w: i32) -> i32 {
 #[inline(never)]
 fn is_exact(setup: &TriangleSetup<'_>, half: [i32; 3], reflectance: &Reflectance) -> bool {
     let [a, b, c] = half;
-    a == b && b == c || largest(&half) < setup.highlight_threshold(reflectance)
+    a == b && b == c || largest(&half) < setup.highlight_threshold(&reflectance)
 }
 
 /// Looks up highlights at the pixel.
