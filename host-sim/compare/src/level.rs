@@ -57,7 +57,7 @@ impl Pixel for Fine {
         Self(Some(levels))
     }
 
-    fn entry<const BITS: u32>(ramp: &[[u32; 3]; RAMP], level: u32) -> [u32; 3] {
+    fn entry(ramp: &[[u32; 3]; RAMP], level: u32, bits: u32) -> [u32; 3] {
         let walked = level << (WALK - BITS);
         // Between two entries of a table of colours: the level includes the half that rounds to the nearest.
         let exact = walked.saturating_sub(1 << (WALK - 1));

@@ -260,8 +260,8 @@ impl<C: Pixel> Pixel for Traced<C> {
         Self::new(C::shown(stored, threshold))
     }
 
-    fn entry<const BITS: u32>(ramp: &[C::Stored; RAMP], level: u32) -> C::Stored {
-        C::entry::<BITS>(ramp, level)
+    fn entry(ramp: &[C::Stored; RAMP], level: u32, bits: u32) -> C::Stored {
+        C::entry(ramp, level, bits)
     }
 
     fn quantised(intensity: Intensity, threshold: u32) -> Self {

@@ -159,7 +159,7 @@ impl<'a, C: Pixel> MaterialTables<'a, C> {
     #[must_use]
     pub fn tint(&self, level: i32) -> [C::Stored; 2] {
         let ([even, odd], level) = (self.ramps.squares(), Reflectance::biased(level) << (WALK - LEVEL));
-        [C::entry::<WALK>(even, level), C::entry::<WALK>(odd, level)]
+        [C::entry(even, level, WALK), C::entry(odd, level, WALK)]
     }
 }
 

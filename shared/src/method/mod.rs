@@ -19,6 +19,7 @@ pub mod gouraud;
 pub mod highlight_error;
 #[doc(hidden)]
 pub mod lighting_model;
+mod lit;
 mod local_viewer;
 #[doc(hidden)]
 pub mod node;

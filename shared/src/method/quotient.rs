@@ -11,16 +11,18 @@ use crate::{
         plane::Plane,
     },
     lighting::{
-        constant_lights::{OneLight, OneLightRamp, OneLightRgb, TwoLightsRgb, node},
+        constant_lights::{Colours, DiffuseOnly, OneLightRamp, OneLightRgb, TwoLightsRgb, WithHighlight, node},
         material_tables::MaterialTables,
     },
     math::{highlight_lookup, highlight_lookup::QuotientLookup},
-    method::{CornerCosines, TriangleSetup, largest, lighting_model::fitted, two_lights::TwoLights},
-    pixel::{Pixel, dither::ByRows},
-    raster::{
-        band::Band,
-        pixel_shader::{PixelShader, Solid},
+    method::{
+        CornerCosines, TriangleSetup, largest,
+        lighting_model::fitted,
+        lit::{AtPixel, FromValues, LitShader},
+        two_lights::TwoLights,
     },
+    pixel::Pixel,
+    raster::{band::Band, pixel_shader::Solid},
 };
 
 /// Fraction bits of a diffuse level at a node. With a sign, levels then have [`RANGE`] bits.
@@ -34,110 +36,40 @@ const PIXEL: u32 = LEVEL - 3;
 /// Bits of the range of numerators at nodes, in steps of the table.
 const STEPS: u32 = 26;
 
-/// A walked value for each of two lights.
-type Walked<V> = (V, V);
-
-/// Diffuse light and highlight from numerators and a length. `R` computes half a reciprocal length, Q2.30, from walked values. Unless it is
-/// `EXACT`, cosines may exceed 1 and then count as 1.
+/// Values at the pixel are numerators and a length. `R` computes half a reciprocal length, Q2.30, from walked values. Unless it is `EXACT`, cosines may
+/// exceed 1 and then count as 1.
 #[derive(Clone, Copy)]
-struct DiffuseAndHighlight<'a, T, R, const EXACT: bool> {
-    colours: T,
+struct Quotient<'a, R, const EXACT: bool> {
     lookup: QuotientLookup<'a>,
     half_reciprocal: R,
 }
 
-impl<T: ByRows, R: Copy, const EXACT: bool> ByRows for DiffuseAndHighlight<'_, T, R, EXACT> {
+/// Half a reciprocal length, and the lookup of highlights.
+struct Common<'a, const EXACT: bool>(i32, QuotientLookup<'a>);
+
+impl<'a, L, V, R: Fn(L) -> i32 + Copy, const EXACT: bool> AtPixel<(V, L)> for Quotient<'a, R, EXACT> {
+    type Common = Common<'a, EXACT>;
+    type Values = V;
+
+    const BITS: u32 = PIXEL;
+
     #[inline(always)]
-    fn step_row(&mut self) {
-        self.colours.step_row();
+    fn at(&self, (values, length): (V, L)) -> (Self::Common, V) {
+        (Common((self.half_reciprocal)(length), self.lookup), values)
     }
 }
 
-impl<T: OneLight, V, R: Fn(V) -> i32 + Copy, const EXACT: bool> PixelShader<(([u32; 1], [u32; 1]), V)>
-    for DiffuseAndHighlight<'_, T, R, EXACT>
-{
-    type Pixel = T::Pixel;
-
-    const CHEAP: bool = T::TABLED;
-
+impl<const EXACT: bool> FromValues<Common<'_, EXACT>, [u32; 1]> for DiffuseOnly {
     #[inline(always)]
-    fn shade(&self, (([light], [half]), length): (([u32; 1], [u32; 1]), V), threshold: u32) -> T::Pixel {
-        let half_reciprocal = (self.half_reciprocal)(length);
-        let diffuse = quotient::<EXACT>(self.colours.diffuse(), light, half_reciprocal);
-        let highlight = self.lookup.at(upper(half as i32, half_reciprocal));
-        self.colours.colour::<PIXEL>(diffuse, highlight, threshold)
+    fn from_values(&Common(half_reciprocal, _): &Common<'_, EXACT>, full: u16, [light]: [u32; 1]) -> Self {
+        Self(quotient::<EXACT>(full, light, half_reciprocal))
     }
 }
 
-/// Diffuse light from a numerator and a length, where there is no highlight.
-#[derive(Clone, Copy)]
-struct DiffuseOnly<T, R, const EXACT: bool> {
-    colours: T,
-    half_reciprocal: R,
-}
-
-impl<T: ByRows, R: Copy, const EXACT: bool> ByRows for DiffuseOnly<T, R, EXACT> {
+impl<const EXACT: bool> FromValues<Common<'_, EXACT>, ([u32; 1], [u32; 1])> for WithHighlight {
     #[inline(always)]
-    fn step_row(&mut self) {
-        self.colours.step_row();
-    }
-}
-
-impl<C: Pixel, V, R: Fn(V) -> i32 + Copy, const EXACT: bool> PixelShader<([u32; 1], V)> for DiffuseOnly<OneLightRamp<'_, C>, R, EXACT> {
-    type Pixel = C;
-
-    const CHEAP: bool = true;
-
-    #[inline(always)]
-    fn shade(&self, ([light], length): ([u32; 1], V), threshold: u32) -> C {
-        let diffuse = quotient::<EXACT>(self.colours.diffuse(), light, (self.half_reciprocal)(length));
-        self.colours.without_highlight::<PIXEL>(diffuse, threshold)
-    }
-}
-
-/// Shades by two lights.
-impl<C: Pixel, V, R: Fn(V) -> i32 + Copy, const EXACT: bool> PixelShader<(Walked<([u32; 1], [u32; 1])>, V)>
-    for DiffuseAndHighlight<'_, TwoLightsRgb<'_, C>, R, EXACT>
-{
-    type Pixel = C;
-
-    #[inline(always)]
-    fn shade(&self, ((one, two), length): (Walked<([u32; 1], [u32; 1])>, V), _: u32) -> C {
-        let half_reciprocal = (self.half_reciprocal)(length);
-        let light = |([light], [half]): ([u32; 1], [u32; 1])| {
-            let diffuse = quotient::<EXACT>(self.colours.diffuse(), light, half_reciprocal);
-            (diffuse, self.lookup.at(upper(half as i32, half_reciprocal)))
-        };
-        self.colours.colour::<PIXEL>([light(one), light(two)])
-    }
-}
-
-/// Shades by two lights, of which the second has no highlight.
-impl<C: Pixel, V, R: Fn(V) -> i32 + Copy, const EXACT: bool> PixelShader<((([u32; 1], [u32; 1]), [u32; 1]), V)>
-    for DiffuseAndHighlight<'_, TwoLightsRgb<'_, C>, R, EXACT>
-{
-    type Pixel = C;
-
-    #[inline(always)]
-    fn shade(&self, ((([light], [half]), [other]), length): ((([u32; 1], [u32; 1]), [u32; 1]), V), _: u32) -> C {
-        let half_reciprocal = (self.half_reciprocal)(length);
-        let diffuse = |light| quotient::<EXACT>(self.colours.diffuse(), light, half_reciprocal);
-        let highlight = self.lookup.at(upper(half as i32, half_reciprocal));
-        self.colours.colour::<PIXEL>([(diffuse(light), highlight), (diffuse(other), 0)])
-    }
-}
-
-/// Shades by two lights without highlights.
-impl<C: Pixel, V, R: Fn(V) -> i32 + Copy, const EXACT: bool> PixelShader<(Walked<[u32; 1]>, V)>
-    for DiffuseOnly<TwoLightsRgb<'_, C>, R, EXACT>
-{
-    type Pixel = C;
-
-    #[inline(always)]
-    fn shade(&self, (([one], [two]), length): (Walked<[u32; 1]>, V), _: u32) -> C {
-        let half_reciprocal = (self.half_reciprocal)(length);
-        let light = |light| (quotient::<EXACT>(self.colours.diffuse(), light, half_reciprocal), 0);
-        self.colours.colour::<PIXEL>([light(one), light(two)])
+    fn from_values(&Common(half_reciprocal, lookup): &Common<'_, EXACT>, full: u16, ([light], [half]): ([u32; 1], [u32; 1])) -> Self {
+        Self(quotient::<EXACT>(full, light, half_reciprocal), lookup.at(upper(half as i32, half_reciprocal)))
     }
 }
 
@@ -169,7 +101,7 @@ pub(super) fn draw<const EXACT: bool, F: Field, C: Pixel>(
     match (ramp, rgb) {
         // Boards with displays of greys have little flash: no loop of its own for that there.
         (Some(ramp), _) if !C::GRAY && has_no_highlight => {
-            Some(draw_diffuse::<EXACT, _, _>(setup, &cosines[0], length, half_reciprocal, ramp, tables, band))
+            draw_diffuse::<EXACT, _, _>(setup, &cosines[0], length, half_reciprocal, ramp, tables, band)
         }
         (_, Some(rgb)) => draw_rgb::<EXACT, _, _>(setup, cosines, length, half_reciprocal, rgb, tables, band),
         (ramp, None) => draw_in::<EXACT, _, _>(setup, cosines, length, half_reciprocal, ramp?, tables, band),
@@ -200,9 +132,9 @@ pub(super) fn draw_two<const EXACT: bool, F: Field, C: Pixel>(
     band: &mut Band<'_, C>,
 ) -> Option<u32> {
     let TwoLights { colours, cosines: [first, second], highlights } = TwoLights::on(setup, tables)?;
-    let full = colours.diffuse();
+    let full = TwoLightsRgb::<C>::DIFFUSE;
     let lookup = QuotientLookup::new(tables.reflectance.table()?);
-    let shader = DiffuseAndHighlight::<_, _, EXACT> { colours, lookup, half_reciprocal };
+    let at = Quotient::<_, EXACT> { lookup, half_reciprocal };
     let both = |[towards, half]: &CornerCosines| (plane(setup, full, towards), numerator(setup, lookup, half));
     setup.count(band.top, &mut band.counts.without_highlight, 2 - highlights);
     Some(match highlights {
@@ -212,19 +144,22 @@ pub(super) fn draw_two<const EXACT: bool, F: Field, C: Pixel>(
         }
         0 => {
             let patch = || ((plane(setup, full, &first[0]), plane(setup, full, &second[0])), fitted(&length(), setup.gradients));
-            setup.fill(patch, DiffuseOnly::<_, _, EXACT> { colours, half_reciprocal }, band)
+            setup.fill(patch, LitShader::of::<(DiffuseOnly, DiffuseOnly)>(colours, at), band)
         }
         1 => {
             let patch = || (ByColumn((both(&first), plane(setup, full, &second[0]))), fitted(&length(), setup.gradients));
-            setup.fill(patch, shader, band)
+            setup.fill(patch, LitShader::of::<(WithHighlight, DiffuseOnly)>(colours, at), band)
         }
-        _ => setup.fill(|| (ByColumn((both(&first), both(&second))), fitted(&length(), setup.gradients)), shader, band),
+        _ => {
+            let patch = || (ByColumn((both(&first), both(&second))), fitted(&length(), setup.gradients));
+            setup.fill(patch, LitShader::of::<(WithHighlight, WithHighlight)>(colours, at), band)
+        }
     })
 }
 
 /// Draws a triangle with a highlight in these `colours`.
 #[inline(always)]
-fn draw_in<const EXACT: bool, F: Field, T: OneLight>(
+fn draw_in<const EXACT: bool, F: Field, T: Colours<WithHighlight>>(
     setup: &TriangleSetup<'_>,
     cosines: &CornerCosines,
     length: impl FnOnce() -> F,
@@ -238,7 +173,7 @@ where
 {
     let lookup = QuotientLookup::new(tables.reflectance.table()?);
     let patch = || patch(setup, colours.diffuse(), lookup, cosines, length);
-    Some(setup.fill(patch, DiffuseAndHighlight::<_, _, EXACT> { colours, lookup, half_reciprocal }, band))
+    Some(setup.fill(patch, LitShader::of::<WithHighlight>(colours, Quotient::<_, EXACT> { lookup, half_reciprocal }), band))
 }
 
 /// Draws a triangle without a highlight by a table of colours.
@@ -251,14 +186,15 @@ fn draw_diffuse<const EXACT: bool, F: Field, C: Pixel>(
     colours: OneLightRamp<'_, C>,
     tables: MaterialTables<'_, C>,
     band: &mut Band<'_, C>,
-) -> u32 {
+) -> Option<u32> {
     if setup.leaves_out_light(&tables.reflectance, towards) {
         setup.count(band.top, &mut band.counts.without_light, 1);
-        return setup.fill(|| Constant, Solid(colours.unlit()), band);
+        return Some(setup.fill(|| Constant, Solid(colours.unlit()), band));
     }
     setup.count(band.top, &mut band.counts.without_highlight, 1);
-    let patch = || diffuse_patch(setup, colours.diffuse(), towards, length);
-    setup.fill(patch, DiffuseOnly::<_, _, EXACT> { colours, half_reciprocal }, band)
+    let patch = || diffuse_patch(setup, Colours::<DiffuseOnly>::diffuse(&colours), towards, length);
+    let lookup = QuotientLookup::new(tables.reflectance.table()?);
+    Some(setup.fill(patch, LitShader::of::<DiffuseOnly>(colours, Quotient::<_, EXACT> { lookup, half_reciprocal }), band))
 }
 
 /// The numerator of diffuse light. `full` is the material's level at cosine 1.
