@@ -139,7 +139,7 @@ fn corner_levels(setup: &TriangleSetup<'_>, shading: &Shading<'_>) -> [[i32; 3];
 
 /// The levels at the corners under one constant light.
 pub(super) fn reflected(setup: &TriangleSetup<'_>, reflectance: &Reflectance) -> [[i32; 3]; 3] {
-    if reflectance.three_channels() { reflections(setup.corners, &reflectance) } else { setup.corners.map(|corner| [corner.light[2]; 3]) }
+    if reflectance.three_channels() { reflections(setup.corners, reflectance) } else { setup.corners.map(|corner| [corner.light[2]; 3]) }
 }
 
 /// The levels at corners whose light is [`VertexLight::ReflectionOrLevels`] of one constant light in three channels.

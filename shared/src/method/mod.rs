@@ -331,7 +331,7 @@ impl TriangleSetup<'_> {
     #[inline(always)]
     pub fn has_no_highlight(&self, reflectance: &Reflectance) -> bool {
         let [a, b, c] = self.corners;
-        a.light[1].max(b.light[1]).max(c.light[1]) < self.highlight_threshold(&reflectance)
+        a.light[1].max(b.light[1]).max(c.light[1]) < self.highlight_threshold(reflectance)
     }
 
     /// Whether the highlight of a constant light, whose N·H at the corners is `half`, is left out because it can be seen nowhere.

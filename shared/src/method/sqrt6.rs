@@ -374,7 +374,7 @@ fn walked<const ROOT: IsRoot>(w: i32) -> i32 {
 #[inline(never)]
 fn is_exact(setup: &TriangleSetup<'_>, half: [i32; 3], reflectance: &Reflectance) -> bool {
     let [a, b, c] = half;
-    a == b && b == c || largest(&half) < setup.highlight_threshold(&reflectance)
+    a == b && b == c || largest(&half) < setup.highlight_threshold(reflectance)
 }
 
 /// Looks up highlights at the pixel.
