@@ -552,21 +552,21 @@ impl<'f> LitMaterial<'f> {
     /// The material without its table.
     #[inline(always)]
     #[must_use]
-    pub fn reflectance(&self) -> &'f Reflectance {
+    pub fn reflectance(self) -> &'f Reflectance {
         self.reflectance
     }
 
     /// The table of highlights. Renderers refuse methods that need one if there is none.
     #[inline(always)]
     #[must_use]
-    pub fn table(&self) -> Option<&'f HighlightLut> {
+    pub fn table(self) -> Option<&'f HighlightLut> {
         self.table
     }
 
     /// The highlight at N·H (Q2.30), unsigned Q0.16.
     #[inline(always)]
     #[must_use]
-    pub fn highlight_at(&self, half: i32) -> u32 {
+    pub fn highlight_at(self, half: i32) -> u32 {
         match self.table {
             Some(table) => table.at(half),
             None => self.highlights.at(half),
@@ -576,22 +576,22 @@ impl<'f> LitMaterial<'f> {
     /// The level of a material of one channel under one light, Q9.7 in [0, 255], from `[N·L, N·H]` (Q2.30).
     #[inline(never)]
     #[must_use]
-    pub fn level(&self, [diffuse, half]: [i32; 2]) -> i32 {
+    pub fn level(self, [diffuse, half]: [i32; 2]) -> i32 {
         let [gains, ..] = &self.gains;
-        let light = reflected((gains.diffuse[0], gains.specular[0]), diffuse, self.highlight_at(half));
+        let light = reflected((gains.diffuse[0], gains.specular[0]), diffuse, self.highlight(half));
         (self.ambient[0] + light).min(FULL)
     }
 
     /// The highlight at N·H (Q2.30), unsigned Q0.16, 0 where none can be seen.
     #[inline]
     #[must_use]
-    pub fn highlight(&self, half: i32) -> u32 {
+    pub fn highlight(self, half: i32) -> u32 {
         if half < self.highlight_threshold { 0 } else { self.highlight_at(half) }
     }
 
     /// The diffuse level at cosine 1 and the level of a whole highlight of a light, Q9.7, each in the channel where it is largest.
     #[must_use]
-    pub fn largest_gains(&self, light: usize) -> [u32; 2] {
+    pub fn largest_gains(self, light: usize) -> [u32; 2] {
         let Gains { diffuse, specular } = self.gains.get(light).copied().unwrap_or(Gains::NONE);
         let most = |gains: [u16; 3]| largest(gains.map(u32::from));
         [most(diffuse), if self.holds_levels() { self.highlight_at(1 << COSINE) } else { most(specular) }]
@@ -600,14 +600,14 @@ impl<'f> LitMaterial<'f> {
     /// Levels under one light, Q9.7 in [0, 255], from `[N·L, N·H]` (Q2.30).
     #[inline]
     #[must_use]
-    pub fn one_light(&self, cosines: [i32; 2]) -> [i32; 3] {
+    pub fn one_light(self, cosines: [i32; 2]) -> [i32; 3] {
         if self.three_channels() { self.levels(core::iter::once(cosines)) } else { [self.level(cosines); 3] }
     }
 
     /// Levels at a point, Q9.7 in [0, 255], from the cosines `[N·L, N·H]` (Q2.30) of each light.
     #[inline]
     #[must_use]
-    pub fn levels(&self, cosines: impl Iterator<Item = [i32; 2]>) -> [i32; 3] {
+    pub fn levels(self, cosines: impl Iterator<Item = [i32; 2]>) -> [i32; 3] {
         let mut levels = self.ambient;
         for (gains, [diffuse, half]) in self.gains.iter().zip(cosines) {
             let highlight = self.highlight_at(half);
@@ -619,7 +619,7 @@ impl<'f> LitMaterial<'f> {
     /// Levels under constant lights, Q9.7 in [0, 255].
     #[inline(never)]
     #[must_use]
-    pub fn constant_levels(&self, sources: &[Source], normal: &MeanNormal) -> [i32; 3] {
+    pub fn constant_levels(self, sources: &[Source], normal: &MeanNormal) -> [i32; 3] {
         if sources.len() > 2 || self.excess != 0 {
             return self.many_constant_levels(sources, normal);
         }
@@ -635,7 +635,7 @@ impl<'f> LitMaterial<'f> {
     /// Levels under two lights, Q9.7 in [0, 255], from N·L and N·H (Q2.30) of one, then of the other. Domain: [`Self::has_two_lights`].
     #[inline]
     #[must_use]
-    pub fn two_lights(&self, [towards, half, other, other_half]: [i32; 4]) -> [i32; 3] {
+    pub fn two_lights(self, [towards, half, other, other_half]: [i32; 4]) -> [i32; 3] {
         let lit = |towards, half| [node_cosine(towards), self.highlight(half) as i32];
         self.two_sums([lit(towards, half), lit(other, other_half)])
     }
@@ -643,7 +643,7 @@ impl<'f> LitMaterial<'f> {
     /// Levels as in [`Self::constant_levels`], for sums that do not fit a word, or for more than two lights.
     #[cold]
     #[inline(never)]
-    fn many_constant_levels(&self, sources: &[Source], normal: &MeanNormal) -> [i32; 3] {
+    fn many_constant_levels(self, sources: &[Source], normal: &MeanNormal) -> [i32; 3] {
         let cosines = sources.iter().map(|source| source.directional().map_or([0; 2], |directions| directions.map(|v| normal.cosine(v))));
         self.levels(cosines)
     }

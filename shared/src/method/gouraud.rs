@@ -110,13 +110,13 @@ pub(super) fn draw_three<C: Pixel>(
 ) -> u32 {
     let ([a, b, c], reflectance) = (setup.corners, tables.reflectance);
     // By the table of colours where the light has no highlight.
-    if has_ramp(setup, &reflectance) {
+    if has_ramp(setup, reflectance) {
         let level = |[cosine, ..]: [i32; 4]| reflectance.ramp_level(cosine) + raise;
         let levels = || [level(a.light), level(b.light), level(c.light)];
         return setup.fill(|| one::<C>(setup.gradients, levels()), Ramp(tables.ramps), band);
     }
     let channels = || {
-        let [[r0, g0, b0], [r1, g1, b1], [r2, g2, b2]] = reflections([a, b, c], &reflectance);
+        let [[r0, g0, b0], [r1, g1, b1], [r2, g2, b2]] = reflections([a, b, c], reflectance);
         [[r0, r1, r2], [g0, g1, g2], [b0, b1, b2]]
     };
     shading.fill_three(setup, channels, raise, |plane| plane, band)

@@ -67,13 +67,13 @@ pub(crate) fn draw<C: Pixel>(
     // What the band above has saved has no highlight: polynomials of all others are too long.
     if setup.place.is_none() {
         let products = Products::new(setup, eye, towards)?;
-        if products.largest_half(light) >= setup.highlight_threshold(&tables.reflectance) >> (COSINE - HALF) {
+        if products.largest_half(light) >= setup.highlight_threshold(tables.reflectance) >> (COSINE - HALF) {
             if is_steep(shading.exponent) || !setup.gradients.walks_in_words() {
                 return None;
             }
             let length = duff::tabled(setup)?;
             let patch = products.patch(setup, light, length);
-            let (lookup, lengths) = (tables.reflectance.table()?.by_cosine(), HalfRsqrt::get());
+            let (lookup, lengths) = (shading.reflectance.table()?.by_cosine(), HalfRsqrt::get());
             let colours = match tables.one_light_rgb() {
                 Some(colours) => Either::Rgb(colours),
                 None => Either::Ramp(tables.one_light_ramp()?),

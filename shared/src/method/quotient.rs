@@ -14,7 +14,7 @@ use crate::{
         constant_lights::{Colours, DiffuseOnly, OneLightRamp, OneLightRgb, TwoLightsRgb, WithHighlight, node},
         material_tables::MaterialTables,
     },
-    math::{highlight_lookup, highlight_lookup::QuotientLookup},
+    math::{highlight_lookup, highlight_lookup::QuotientLookup, highlight_lut::HighlightLut},
     method::{
         CornerCosines, TriangleSetup, largest,
         lighting_model::fitted,
@@ -36,40 +36,63 @@ const PIXEL: u32 = LEVEL - 3;
 /// Bits of the range of numerators at nodes, in steps of the table.
 const STEPS: u32 = 26;
 
-/// Values at the pixel are numerators and a length. `R` computes half a reciprocal length, Q2.30, from walked values. Unless it is `EXACT`, cosines may
-/// exceed 1 and then count as 1.
+/// Half a reciprocal length, Q2.30. Unless it is `EXACT`, cosines may exceed 1 and then count as 1.
+struct HalfReciprocal<const EXACT: bool>(i32);
+
+/// Values at the pixel are numerators without highlights and a length, from which `R` computes half a reciprocal length.
 #[derive(Clone, Copy)]
-struct Quotient<'a, R, const EXACT: bool> {
-    lookup: QuotientLookup<'a>,
-    half_reciprocal: R,
-}
+struct Quotient<R, const EXACT: bool>(R);
 
-/// Half a reciprocal length, and the lookup of highlights.
-struct Common<'a, const EXACT: bool>(i32, QuotientLookup<'a>);
+/// Values at the pixel are numerators with highlights and a length.
+#[derive(Clone, Copy)]
+struct QuotientWithHighlight<'a, R, const EXACT: bool>(QuotientLookup<'a>, R);
 
-impl<'a, L, V, R: Fn(L) -> i32 + Copy, const EXACT: bool> AtPixel<(V, L)> for Quotient<'a, R, EXACT> {
-    type Common = Common<'a, EXACT>;
+impl<L, V, R: Fn(L) -> i32 + Copy, const EXACT: bool> AtPixel<(V, L)> for Quotient<R, EXACT> {
+    type Common = HalfReciprocal<EXACT>;
     type Values = V;
 
     const BITS: u32 = PIXEL;
 
     #[inline(always)]
     fn at(&self, (values, length): (V, L)) -> (Self::Common, V) {
-        (Common((self.half_reciprocal)(length), self.lookup), values)
+        (HalfReciprocal(self.0(length)), values)
     }
 }
 
-impl<const EXACT: bool> FromValues<Common<'_, EXACT>, [u32; 1]> for DiffuseOnly {
+impl<'a, L, V, R: Fn(L) -> i32 + Copy, const EXACT: bool> AtPixel<(V, L)> for QuotientWithHighlight<'a, R, EXACT> {
+    type Common = (QuotientLookup<'a>, HalfReciprocal<EXACT>);
+    type Values = V;
+
+    const BITS: u32 = PIXEL;
+
     #[inline(always)]
-    fn from_values(&Common(half_reciprocal, _): &Common<'_, EXACT>, full: u16, [light]: [u32; 1]) -> Self {
+    fn at(&self, (values, length): (V, L)) -> (Self::Common, V) {
+        ((self.0, HalfReciprocal(self.1(length))), values)
+    }
+}
+
+impl<const EXACT: bool> FromValues<HalfReciprocal<EXACT>, [u32; 1]> for DiffuseOnly {
+    #[inline(always)]
+    fn from_values(&HalfReciprocal(half_reciprocal): &HalfReciprocal<EXACT>, full: u16, [light]: [u32; 1]) -> Self {
         Self(quotient::<EXACT>(full, light, half_reciprocal))
     }
 }
 
-impl<const EXACT: bool> FromValues<Common<'_, EXACT>, ([u32; 1], [u32; 1])> for WithHighlight {
+impl<const EXACT: bool> FromValues<(QuotientLookup<'_>, HalfReciprocal<EXACT>), [u32; 1]> for DiffuseOnly {
     #[inline(always)]
-    fn from_values(&Common(half_reciprocal, lookup): &Common<'_, EXACT>, full: u16, ([light], [half]): ([u32; 1], [u32; 1])) -> Self {
-        Self(quotient::<EXACT>(full, light, half_reciprocal), lookup.at(upper(half as i32, half_reciprocal)))
+    fn from_values((_, half_reciprocal): &(QuotientLookup<'_>, HalfReciprocal<EXACT>), full: u16, light: [u32; 1]) -> Self {
+        Self::from_values(half_reciprocal, full, light)
+    }
+}
+
+impl<const EXACT: bool> FromValues<(QuotientLookup<'_>, HalfReciprocal<EXACT>), ([u32; 1], [u32; 1])> for WithHighlight {
+    #[inline(always)]
+    fn from_values(
+        (lookup, HalfReciprocal(half_reciprocal)): &(QuotientLookup<'_>, HalfReciprocal<EXACT>),
+        full: u16,
+        ([light], [half]): ([u32; 1], [u32; 1]),
+    ) -> Self {
+        Self(quotient::<EXACT>(full, light, *half_reciprocal), lookup.at(upper(half as i32, *half_reciprocal)))
     }
 }
 
@@ -88,24 +111,24 @@ pub(super) fn draw<const EXACT: bool, F: Field, C: Pixel>(
     cosines: &CornerCosines,
     length: impl FnOnce() -> F,
     half_reciprocal: impl Fn(F::Value) -> i32 + Copy,
-    tables: MaterialTables<'_, C>,
+    (tables, lut): (MaterialTables<'_, C>, &HighlightLut),
     band: &mut Band<'_, C>,
 ) -> Option<u32> {
     let rgb = tables.one_light_rgb();
     // Without a highlight three channels are drawn by a table of colours, which rounds otherwise: that is no matter of leaving it out.
     let has_no_highlight = match rgb {
-        Some(_) => largest(&cosines[1]) < setup.highlight_threshold(&tables.reflectance),
-        None => setup.leaves_out_highlight(&tables.reflectance, &cosines[1]),
+        Some(_) => largest(&cosines[1]) < setup.highlight_threshold(tables.reflectance),
+        None => setup.leaves_out_highlight(tables.reflectance, &cosines[1]),
     };
     let ramp = if rgb.is_some() { tables.diffuse_ramp() } else { Some(tables.one_light_ramp()?) };
-    match (ramp, rgb) {
+    Some(match (ramp, rgb) {
         // Boards with displays of greys have little flash: no loop of its own for that there.
         (Some(ramp), _) if !C::GRAY && has_no_highlight => {
             draw_diffuse::<EXACT, _, _>(setup, &cosines[0], length, half_reciprocal, ramp, tables, band)
         }
-        (_, Some(rgb)) => draw_rgb::<EXACT, _, _>(setup, cosines, length, half_reciprocal, rgb, tables, band),
-        (ramp, None) => draw_in::<EXACT, _, _>(setup, cosines, length, half_reciprocal, ramp?, tables, band),
-    }
+        (_, Some(rgb)) => draw_rgb::<EXACT, _, _>(setup, cosines, length, half_reciprocal, rgb, lut, band),
+        (ramp, None) => draw_in::<EXACT, _, _>(setup, cosines, length, half_reciprocal, ramp?, lut, band),
+    })
 }
 
 /// Draws as [`draw_in`] does, in three channels. It is compiled once for triangles of all sizes, because a call is a small share of their time.
@@ -116,10 +139,10 @@ fn draw_rgb<const EXACT: bool, F: Field, C: Pixel>(
     length: impl FnOnce() -> F,
     half_reciprocal: impl Fn(F::Value) -> i32 + Copy,
     colours: OneLightRgb<'_, C>,
-    tables: MaterialTables<'_, C>,
+    lut: &HighlightLut,
     band: &mut Band<'_, C>,
-) -> Option<u32> {
-    draw_in::<EXACT, _, _>(setup, cosines, length, half_reciprocal, colours, tables, band)
+) -> u32 {
+    draw_in::<EXACT, _, _>(setup, cosines, length, half_reciprocal, colours, lut, band)
 }
 
 /// Draws `setup` under two constant lights.
@@ -128,23 +151,23 @@ pub(super) fn draw_two<const EXACT: bool, F: Field, C: Pixel>(
     setup: &TriangleSetup<'_>,
     length: impl FnOnce() -> F,
     half_reciprocal: impl Fn(F::Value) -> i32 + Copy,
-    tables: MaterialTables<'_, C>,
+    (tables, lut): (MaterialTables<'_, C>, &HighlightLut),
     band: &mut Band<'_, C>,
 ) -> Option<u32> {
     let TwoLights { colours, cosines: [first, second], highlights } = TwoLights::on(setup, tables)?;
     let full = TwoLightsRgb::<C>::DIFFUSE;
-    let lookup = QuotientLookup::new(tables.reflectance.table()?);
-    let at = Quotient::<_, EXACT> { lookup, half_reciprocal };
+    let lookup = QuotientLookup::new(lut);
+    let at = QuotientWithHighlight::<_, EXACT>(lookup, half_reciprocal);
     let both = |[towards, half]: &CornerCosines| (plane(setup, full, towards), numerator(setup, lookup, half));
     setup.count(band.top, &mut band.counts.without_highlight, 2 - highlights);
     Some(match highlights {
-        1 if setup.leaves_out_light(&tables.reflectance, &second[0]) => {
+        1 if setup.leaves_out_light(tables.reflectance, &second[0]) => {
             setup.count(band.top, &mut band.counts.without_light, 1);
-            return draw_rgb::<EXACT, _, _>(setup, &first, length, half_reciprocal, colours.first(), tables, band);
+            draw_rgb::<EXACT, _, _>(setup, &first, length, half_reciprocal, colours.first(), lut, band)
         }
         0 => {
             let patch = || ((plane(setup, full, &first[0]), plane(setup, full, &second[0])), fitted(&length(), setup.gradients));
-            setup.fill(patch, LitShader::of::<(DiffuseOnly, DiffuseOnly)>(colours, at), band)
+            setup.fill(patch, LitShader::of::<(DiffuseOnly, DiffuseOnly)>(colours, Quotient::<_, EXACT>(half_reciprocal)), band)
         }
         1 => {
             let patch = || (ByColumn((both(&first), plane(setup, full, &second[0]))), fitted(&length(), setup.gradients));
@@ -165,15 +188,15 @@ fn draw_in<const EXACT: bool, F: Field, T: Colours<WithHighlight>>(
     length: impl FnOnce() -> F,
     half_reciprocal: impl Fn(F::Value) -> i32 + Copy,
     colours: T,
-    tables: MaterialTables<'_, T::Pixel>,
+    lut: &HighlightLut,
     band: &mut Band<'_, T::Pixel>,
-) -> Option<u32>
+) -> u32
 where
     T::Pixel: Pixel,
 {
-    let lookup = QuotientLookup::new(tables.reflectance.table()?);
+    let lookup = QuotientLookup::new(lut);
     let patch = || patch(setup, colours.diffuse(), lookup, cosines, length);
-    Some(setup.fill(patch, LitShader::of::<WithHighlight>(colours, Quotient::<_, EXACT> { lookup, half_reciprocal }), band))
+    setup.fill(patch, LitShader::of::<WithHighlight>(colours, QuotientWithHighlight::<_, EXACT>(lookup, half_reciprocal)), band)
 }
 
 /// Draws a triangle without a highlight by a table of colours.
@@ -186,15 +209,14 @@ fn draw_diffuse<const EXACT: bool, F: Field, C: Pixel>(
     colours: OneLightRamp<'_, C>,
     tables: MaterialTables<'_, C>,
     band: &mut Band<'_, C>,
-) -> Option<u32> {
-    if setup.leaves_out_light(&tables.reflectance, towards) {
+) -> u32 {
+    if setup.leaves_out_light(tables.reflectance, towards) {
         setup.count(band.top, &mut band.counts.without_light, 1);
-        return Some(setup.fill(|| Constant, Solid(colours.unlit()), band));
+        return setup.fill(|| Constant, Solid(colours.unlit()), band);
     }
     setup.count(band.top, &mut band.counts.without_highlight, 1);
     let patch = || diffuse_patch(setup, Colours::<DiffuseOnly>::diffuse(&colours), towards, length);
-    let lookup = QuotientLookup::new(tables.reflectance.table()?);
-    Some(setup.fill(patch, LitShader::of::<DiffuseOnly>(colours, Quotient::<_, EXACT> { lookup, half_reciprocal }), band))
+    setup.fill(patch, LitShader::of::<DiffuseOnly>(colours, Quotient::<_, EXACT>(half_reciprocal)), band)
 }
 
 /// The numerator of diffuse light. `full` is the material's level at cosine 1.

@@ -40,7 +40,7 @@ use crate::{
 
 /// Numbers of the loops with a highlight and without.
 const WITH_HIGHLIGHT: u8 = <WithHighlight as FromValues<DefectLookup<'_>, ([u32; 1], [u32; 1])>>::ID;
-const DIFFUSE_ONLY: u8 = <DiffuseOnly as FromValues<DefectLookup<'_>, [u32; 1]>>::ID;
+const DIFFUSE_ONLY: u8 = <DiffuseOnly as FromValues<(), [u32; 1]>>::ID;
 
 /// Whether the quadratic goes through roots of N·H, as the table of highlights expects, or through N·H itself.
 type IsRoot = bool;
@@ -159,7 +159,7 @@ fn draw_any<const ROOT: IsRoot, C: Pixel>(
     }
     let (cosines, rgb) = (&setup.corner_lights(), tables.one_light_rgb());
     let ramp = if rgb.is_some() { tables.diffuse_ramp() } else { Some(tables.one_light_ramp()?) };
-    let has_no_highlight = largest(&cosines[1]) < setup.highlight_threshold(&tables.reflectance);
+    let has_no_highlight = largest(&cosines[1]) < setup.highlight_threshold(tables.reflectance);
     // What a table of colours declines in three channels has been drawn as if it had a highlight.
     let declined = rgb.is_some() && setup.resumed(band) == Some(WITH_HIGHLIGHT);
     if let Some(ramp) = ramp.filter(|_| has_no_highlight && !declined) {
@@ -170,8 +170,8 @@ fn draw_any<const ROOT: IsRoot, C: Pixel>(
         }
     }
     match rgb {
-        Some(rgb) => draw_rgb::<ROOT, C>(setup, cosines, rgb, shading.exponent, tables, band),
-        None => draw::<ROOT, C, _>(setup, cosines, ramp?, shading.exponent, tables, band),
+        Some(rgb) => draw_rgb::<ROOT, C>(setup, cosines, rgb, shading, tables, band),
+        None => draw::<ROOT, C, _>(setup, cosines, ramp?, shading, tables, band),
     }
 }
 
@@ -181,11 +181,11 @@ fn draw_rgb<const ROOT: IsRoot, C: Pixel>(
     setup: &TriangleSetup<'_>,
     corners: &CornerCosines,
     colours: OneLightRgb<'_, C>,
-    exponent: u16,
+    shading: &Shading<'_>,
     tables: MaterialTables<'_, C>,
     band: &mut Band<'_, C>,
 ) -> Option<u32> {
-    draw::<ROOT, C, _>(setup, corners, colours, exponent, tables, band)
+    draw::<ROOT, C, _>(setup, corners, colours, shading, tables, band)
 }
 
 /// Draws `setup` under two constant lights.
@@ -198,23 +198,23 @@ fn draw_two<const ROOT: IsRoot, C: Pixel>(
 ) -> Option<u32> {
     let TwoLights { colours, cosines: [first, second], highlights } = TwoLights::on(setup, tables)?;
     let (full, exponent) = (TwoLightsRgb::<C>::DIFFUSE, shading.exponent);
-    let steeply = |[_, half]: CornerCosines| !is_exact(setup, half, &tables.reflectance);
+    let steeply = |[_, half]: CornerCosines| !is_exact(setup, half, tables.reflectance);
     if setup.place.is_none() && !setup.gradients.walks_in_words() && (highlights > 0 && steeply(first) || highlights > 1 && steeply(second))
     {
         return None;
     }
     let (towards, other) = (setup.six_from(first[0]), setup.six_from(second[0]));
     let is_dark = |cosines| DiffuseSign::of(cosines) == DiffuseSign::Nowhere;
-    let lookup = DefectLookup::new(tables.reflectance.table()?);
+    let lookup = DefectLookup::new(shading.reflectance.table()?);
     let diffuse = |cosines| diffuse(setup, full, cosines);
     let highlight = |[_, half]: CornerCosines| highlight::<ROOT>(setup, half, lookup, exponent);
     setup.count(band.top, &mut band.counts.without_highlight, 2 - highlights);
     Some(match highlights {
         1 if is_dark(other) => {
             setup.count(band.top, &mut band.counts.without_light, 1);
-            return draw_rgb::<ROOT, C>(setup, &first, colours.first(), exponent, tables, band);
+            return draw_rgb::<ROOT, C>(setup, &first, colours.first(), shading, tables, band);
         }
-        0 => setup.fill(|| (diffuse(towards), diffuse(other)), LitShader::of::<(DiffuseOnly, DiffuseOnly)>(colours, lookup), band),
+        0 => setup.fill(|| (diffuse(towards), diffuse(other)), LitShader::of::<(DiffuseOnly, DiffuseOnly)>(colours, Diffuse), band),
         1 => {
             let shader = LitShader::of::<(WithHighlight, DiffuseOnly)>(colours, lookup);
             setup.fill(|| ByColumn(((diffuse(towards), highlight(first)), diffuse(other))), shader, band)
@@ -232,11 +232,11 @@ fn draw<const ROOT: IsRoot, C: Pixel, T: Colours<WithHighlight, Pixel = C>>(
     setup: &TriangleSetup<'_>,
     &[towards, half]: &CornerCosines,
     colours: T,
-    exponent: u16,
+    shading: &Shading<'_>,
     tables: MaterialTables<'_, C>,
     band: &mut Band<'_, C>,
 ) -> Option<u32> {
-    if setup.resumed(band).is_none() && !setup.gradients.walks_in_words() && !is_exact(setup, half, &tables.reflectance) {
+    if setup.resumed(band).is_none() && !setup.gradients.walks_in_words() && !is_exact(setup, half, tables.reflectance) {
         return None;
     }
     // No nodes are needed of an active triangle.
@@ -247,8 +247,8 @@ fn draw<const ROOT: IsRoot, C: Pixel, T: Colours<WithHighlight, Pixel = C>>(
             return None;
         }
     }
-    let lookup = DefectLookup::new(tables.reflectance.table()?);
-    let patch = || (diffuse(setup, colours.diffuse(), cosines), highlight::<ROOT>(setup, half, lookup, exponent));
+    let lookup = DefectLookup::new(shading.reflectance.table()?);
+    let patch = || (diffuse(setup, colours.diffuse(), cosines), highlight::<ROOT>(setup, half, lookup, shading.exponent));
     Some(setup.fill(patch, LitShader::of::<WithHighlight>(colours, lookup), band))
 }
 
@@ -275,9 +275,8 @@ fn draw_diffuse<C: Pixel>(
     Some(if id == Ramp::<C>::ID {
         Shading::fill_one(setup, || tables.reflectance.six_diffuse(cosines), tables, band)
     } else {
-        let lookup = DefectLookup::new(tables.reflectance.table()?);
         let full = Colours::<DiffuseOnly>::diffuse(&colours);
-        setup.fill(|| diffuse(setup, full, cosines), LitShader::of::<DiffuseOnly>(colours, lookup), band)
+        setup.fill(|| diffuse(setup, full, cosines), LitShader::of::<DiffuseOnly>(colours, Diffuse), band)
     })
 }
 
@@ -317,10 +316,33 @@ impl FromValues<DefectLookup<'_>, ([u32; 1], [u32; 1])> for WithHighlight {
 }
 
 impl FromValues<DefectLookup<'_>, [u32; 1]> for DiffuseOnly {
+    #[inline(always)]
+    fn from_values(_: &DefectLookup<'_>, full: u16, light: [u32; 1]) -> Self {
+        Self::from_values(&(), full, light)
+    }
+}
+
+/// Values at the pixel are walked diffuse levels alone.
+#[derive(Clone, Copy)]
+struct Diffuse;
+
+impl<V> AtPixel<V> for Diffuse {
+    type Common = ();
+    type Values = V;
+
+    const BITS: u32 = WALK;
+
+    #[inline(always)]
+    fn at(&self, value: V) -> ((), V) {
+        ((), value)
+    }
+}
+
+impl FromValues<(), [u32; 1]> for DiffuseOnly {
     const ID: u8 = 1;
 
     #[inline(always)]
-    fn from_values(_: &DefectLookup<'_>, _: u16, [light]: [u32; 1]) -> Self {
+    fn from_values((): &(), _: u16, [light]: [u32; 1]) -> Self {
         Self(signed(light))
     }
 }

@@ -23,7 +23,7 @@ impl<'a, C: Pixel> TwoLights<'a, C> {
     pub(super) fn on(setup: &TriangleSetup<'_>, tables: MaterialTables<'a, C>) -> Option<Self> {
         let [forth, back] = tables.two_lights_rgb()?;
         let [one, two] = setup.corners_of_two_lights();
-        let highlit = |[_, half]: &CornerCosines| !setup.leaves_out_highlight(&tables.reflectance, half);
+        let highlit = |[_, half]: &CornerCosines| !setup.leaves_out_highlight(tables.reflectance, half);
         Some(match (highlit(&one), highlit(&two)) {
             (false, true) => Self { colours: back, cosines: [two, one], highlights: 1 },
             (first, second) => Self { colours: forth, cosines: [one, two], highlights: u32::from(first) + u32::from(second) },
