@@ -38,6 +38,12 @@ pub enum RenderError {
         /// The number of objects in the stream (mesh file).
         need: usize,
     },
+    /// The shading method looks up highlights in tables, and the layout has no memory for them. See
+    /// [`Layout::without_highlight_tables`](crate::Layout::without_highlight_tables).
+    HighlightTables {
+        /// The name of the shading method.
+        shader: &'static str,
+    },
     /// Antialiasing was turned on, but the layout has no room for it; set [`Layout::antialias`](crate::Layout::antialias).
     NoSamples,
     /// The pixel buffer for a band (group of rows drawn at once) is shorter than one row of the picture.
@@ -96,6 +102,9 @@ impl fmt::Display for RenderError {
             Self::Memory { need } => write!(f, "the memory is too small; it must have {need} words of 64 bits (Layout::words)"),
             Self::Materials { need } => write!(f, "the layout has too little room for materials; set Layout::materials({need})"),
             Self::Objects { need } => write!(f, "the layout has too little room for objects; set Layout::objects({need})"),
+            Self::HighlightTables { shader } => {
+                write!(f, "{shader} needs tables of highlights; make the layout without Layout::without_highlight_tables")
+            }
             Self::NoSamples => f.write_str("the layout has no memory for antialiasing; set Layout::antialias(true)"),
             Self::Band { need } => write!(f, "the band is too short; it must hold at least one row of {need} pixels"),
             Self::Corner => f.write_str("the picture would reach beyond the display; move it or make it smaller"),

@@ -4,6 +4,7 @@ use crate::{
     coverage::sample::Sample,
     geometry::{bin::Entry, projection::ScreenVertex},
     lighting::reflectance::Reflectance,
+    math::highlight_lut::HighlightLut,
     method::ErrorBounds,
     pixel::Pixel,
     placement::Placement,
@@ -23,7 +24,7 @@ use zerocopy::{FromBytes, Immutable, IntoBytes, KnownLayout};
 ///
 /// const LAYOUT: Layout = Layout::new(240, 40).vertices(1024).triangles(1024);
 /// static MEMORY: [u64; LAYOUT.words::<Rgb565>()] = [0; LAYOUT.words::<Rgb565>()];
-/// assert_eq!(LAYOUT.bytes::<Rgb565>(), 77_744);
+/// assert_eq!(LAYOUT.bytes::<Rgb565>(), 77_760);
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
@@ -55,6 +56,8 @@ pub struct Layout {
     /// Whether there is room for antialiasing, which takes 72 bytes for each pixel of a band (group of rows drawn at once).
     /// [`Renderer::set_antialias`](crate::Renderer::set_antialias) turns it on.
     pub antialias: bool,
+    /// Whether there is room for tables of highlights, one for each material; by default there is. See [`Self::without_highlight_tables`].
+    pub highlight_tables: bool,
 }
 
 impl Layout {
@@ -73,6 +76,7 @@ impl Layout {
             objects: 1,
             active_triangles: 48,
             antialias: false,
+            highlight_tables: true,
         }
     }
 
@@ -121,6 +125,14 @@ impl Layout {
         Self { antialias, ..self }
     }
 
+    /// Leaves out the tables of highlights, which take 8,200 bytes for each material. Methods that compute highlights at vertices need none:
+    /// [`Shader::FLAT`](crate::Shader::FLAT), [`Shader::GOURAUD`](crate::Shader::GOURAUD), and, more slowly,
+    /// [`Shader::SIX_POINT`](crate::Shader::SIX_POINT). A renderer refuses all others.
+    #[must_use]
+    pub const fn without_highlight_tables(self) -> Self {
+        Self { highlight_tables: false, ..self }
+    }
+
     /// Sets the numbers of vertices, triangles, materials and objects to what the scene in the mesh file `stream` needs. All other values
     /// stay. This suits programs that can allocate memory when they run; a `static` needs numbers that are known at compile time.
     #[must_use]
@@ -145,6 +157,10 @@ impl Layout {
         self.width * self.rows
     }
 
+    const fn tables(&self) -> usize {
+        if self.highlight_tables { self.materials } else { 0 }
+    }
+
     const fn samples(&self) -> usize {
         if self.antialias { self.band() * self.processors } else { 0 }
     }
@@ -161,6 +177,7 @@ impl Layout {
             + padded(self.objects * size_of::<Object>())
             + padded(self.materials * size_of::<SceneMaterial>())
             + padded(self.materials * size_of::<Reflectance>())
+            + padded(self.tables() * size_of::<HighlightLut>())
             + padded(self.materials * size_of::<ErrorBounds>())
             + padded(self.samples() * size_of::<Sample>())
             + padded(self.materials * size_of::<C::Ramps>())
@@ -184,7 +201,7 @@ const fn padded(bytes: usize) -> usize {
 /// The sizes that docs/design.md states.
 const _: () = {
     assert!(size_of::<ScreenVertex>() == 32 && size_of::<Entry>() == 8 && size_of::<ActiveTriangle>() == 132);
-    assert!(size_of::<Reflectance>() == 8580 && size_of::<Sample>() == 72);
+    assert!(size_of::<Reflectance>() == 396 && size_of::<HighlightLut>() == 8200 && size_of::<Sample>() == 72);
 };
 
 /// The memory of a renderer, divided into its parts.
@@ -202,6 +219,8 @@ pub(crate) struct Memory<'a> {
     pub(crate) order: &'a mut [u32],
     /// The reflectance of each material.
     pub(crate) reflectances: &'a mut [Reflectance],
+    /// The table of highlights of each material, or none.
+    pub(crate) tables: &'a mut [HighlightLut],
     /// The error bounds of each material, for methods with an error budget.
     pub(crate) error_bounds: &'a mut [ErrorBounds],
     /// Samples for antialiasing; empty without it.
@@ -226,12 +245,17 @@ impl<'a> Memory<'a> {
         let (placements, bytes) = take(bytes, layout.objects)?;
         let (order, bytes) = take(bytes, layout.objects)?;
         let (reflectances, bytes) = take(bytes, layout.materials)?;
+        let (tables, bytes) = take(bytes, layout.tables())?;
         let (error_bounds, bytes) = take(bytes, layout.materials)?;
         let (samples, bytes) = take(bytes, layout.samples())?;
         let (depth, bytes) = take(bytes, layout.band() * layout.processors)?;
         let (objects, bytes) = take(bytes, layout.objects)?;
         let (materials, _) = take(bytes, layout.materials)?;
-        Some((Self { vertices, bins, depth, placements, order, reflectances, error_bounds, samples, active_triangles }, objects, materials))
+        Some((
+            Self { vertices, bins, depth, placements, order, reflectances, tables, error_bounds, samples, active_triangles },
+            objects,
+            materials,
+        ))
     }
 }
 

@@ -6,9 +6,9 @@ use crate::{
     format::{ErrorBudget, LARGEST_BUDGET, LEAST_BUDGET, LEVEL, MAX_LIGHTS},
     frame::{ColourSettings, Colours, Frame, Preparation, Prepared, Seams, Settings},
     geometry::{area::Area, lens::Lens, model_view::ModelView, region::Region},
-    lighting::{lights::Directions, material_tables::fill_ramps},
+    lighting::{lights::Directions, material_tables::fill_ramps, reflectance::LitMaterial},
     memory::{Layout, Memory, take_ramps},
-    method::Facts,
+    method::{Facts, HighlightField},
     pixel::{Channels, Pixel, gamma::Gamma, ramps::Ramps},
     placement::{Placements, Placing},
     scene::{Limits, Scene},
@@ -28,6 +28,8 @@ pub struct Renderer<'a, C: Pixel> {
     memory: Memory<'a>,
     /// Tables of colours, one for each material.
     ramps: &'a mut [C::Ramps],
+    /// Whether the memory has tables of highlights. A stream may have no materials.
+    has_highlight_tables: bool,
     /// See [`Self::prepare`].
     seams: Option<Seams>,
     /// Whether other triangles are drawn than when the seams were found.
@@ -91,6 +93,7 @@ impl<'a, C: Pixel> Renderer<'a, C> {
         let (ramps, memory) = take_ramps::<C>(layout, memory).ok_or(RenderError::Memory { need })?;
         let (memory, objects, materials) = Memory::new(layout, memory).ok_or(RenderError::Memory { need })?;
         check(&stream, shader.facts(), false)?;
+        check_tables(shader.facts(), layout.highlight_tables)?;
         if !cfg!(feature = "text") && !stream.labels.is_empty() {
             return Err(RenderError::Feature { name: "text" });
         }
@@ -108,7 +111,18 @@ impl<'a, C: Pixel> Renderer<'a, C> {
         };
         let scene = Scene::new(stream, materials, objects, limits(shader.facts(), false));
         let colours = ColourSettings { shader, dither: C::DITHERED, gamma: None };
-        Ok(Self { settings, colours, scene, memory, ramps, seams: None, rearranged: true, region: Region::NONE, is_invalidated: false })
+        Ok(Self {
+            settings,
+            colours,
+            scene,
+            memory,
+            ramps,
+            has_highlight_tables: layout.highlight_tables,
+            seams: None,
+            rearranged: true,
+            region: Region::NONE,
+            is_invalidated: false,
+        })
     }
 
     /// Returns the scene, so that the program can change objects, materials, lights and the camera between frames.
@@ -124,6 +138,7 @@ impl<'a, C: Pixel> Renderer<'a, C> {
     /// renderer then keeps its method.
     pub fn set_shader(&mut self, shader: Shader<C>) -> Result<(), RenderError> {
         let (facts, scene) = (shader.facts(), &self.scene);
+        check_tables(facts, self.has_highlight_tables)?;
         check_scene(scene.camera(), scene.lights(), scene.materials(), facts, self.settings.perspective_correct)?;
         (self.settings.method, self.colours.shader) = (shader.method(), shader);
         self.scene.set_limits(limits(facts, self.settings.perspective_correct));
@@ -135,7 +150,7 @@ impl<'a, C: Pixel> Renderer<'a, C> {
     // A call that frames make only where something has.
     #[inline(never)]
     fn fill_tables(&mut self) {
-        let Self { settings, colours, ramps, scene, memory: Memory { reflectances, error_bounds, .. }, .. } = self;
+        let Self { settings, colours, ramps, scene, memory: Memory { reflectances, tables, error_bounds, .. }, .. } = self;
         let (method, ColourSettings { dither, gamma, .. }) = (settings.method, colours);
         let (facts, ambient) = (method.facts(), scene.ambient);
         let lights: heapless::Vec<Light, MAX_LIGHTS> = heapless::Vec::from_slice(scene.lights()).unwrap_or_default();
@@ -147,7 +162,11 @@ impl<'a, C: Pixel> Renderer<'a, C> {
             };
             reflectance.fill(Channels::of::<C>(), ambient, &material, &lights, (facts.highlight, facts.highlight_levels));
             fill_ramps::<C>(ramps, reflectance, *dither, *gamma);
-            *bounds = method.error_bounds(reflectance, material.exponent, lights.len());
+            let table = tables.get_mut(index).map(|table| {
+                table.fill(&reflectance.highlights);
+                &*table
+            });
+            *bounds = method.error_bounds(LitMaterial::new(reflectance, table), material.exponent, lights.len());
             if *dither && C::Ramps::CHECKERED {
                 reflectance.dither();
             }
@@ -410,6 +429,15 @@ fn limits(facts: &Facts, perspective_correct: bool) -> Limits {
 /// When it cannot.
 pub fn check(stream: &Stream<'_>, facts: &Facts, perspective_correct: bool) -> Result<(), RenderError> {
     check_scene(&stream.header.camera, stream.lights, stream.materials.iter(), facts, perspective_correct)
+}
+
+/// Checks that a method has the tables of highlights that it needs: it does if it computes highlights at pixels.
+fn check_tables(facts: &Facts, has_tables: bool) -> Result<(), RenderError> {
+    if has_tables || facts.highlight_field == HighlightField::Level {
+        Ok(())
+    } else {
+        Err(RenderError::HighlightTables { shader: facts.name })
+    }
 }
 
 fn check_scene<'m>(

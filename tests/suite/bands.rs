@@ -6,7 +6,7 @@ use embedded_graphics::{
     pixelcolor::{Gray8, Rgb565},
     prelude::*,
 };
-use microphong::{FramePart, Layout, MAX_SIDE, Picture, RenderError, Renderer, Stats, Stream, renderer::check};
+use microphong::{FramePart, Layout, MAX_SIDE, Picture, RenderError, Renderer, Stats, Stream, method::HighlightField, renderer::check};
 use microphong_sim::{
     convert::{AZIMUTH, Converted, DISTANCE, ELEVATION, ORBIT, Options},
     look::Look,
@@ -340,6 +340,35 @@ fn a_slice_shorter_than_a_band_gets_fewer_rows() {
         assert!(frame.stats().set_up_anew >= stats.set_up_anew);
         assert_eq!(Stats { set_up_anew: stats.set_up_anew, ..frame.stats() }, stats);
     }
+}
+
+/// Methods that compute highlights at vertices or nodes draw the same picture without tables of highlights. All others are refused.
+#[test]
+fn tables_of_highlights_change_no_pixel() {
+    let size = Size::new(150, 120);
+    let mut methods = [0; 2];
+    for name in ["teapot", "peer-sphere-plastic", "peer-sphere-lights", "sphere-40"] {
+        let scene = scene::load(name).unwrap();
+        let stream: Stream<'_> = scene.stream.parse().unwrap();
+        let draw = |layout: Layout, shader: Shader| {
+            let mut memory = vec![u64::MAX; layout.words::<Rgb565>()];
+            let mut renderer = Renderer::<Rgb565>::with_shader(stream, size, &layout, &mut memory, shader.on())?;
+            let mut pixels = vec![Rgb565::RED; layout.band()];
+            renderer.frame(5).next_band(&mut pixels)?;
+            Ok(pixels)
+        };
+        let layout = Layout::new(150, 120).with_room_for(&stream);
+        for shader in Shader::ALL.into_iter().filter(|&shader| check(&stream, shader.facts(), false).is_ok()) {
+            let without = draw(layout.without_highlight_tables(), shader);
+            let at_pixels = shader.facts().highlight_field != HighlightField::Level;
+            methods[usize::from(at_pixels)] += 1;
+            let expected = if at_pixels { Err(RenderError::HighlightTables { shader: shader.facts().name }) } else { draw(layout, shader) };
+            assert!(without == expected, "{name}, {}: {:?}", shader.name(), without.err());
+        }
+    }
+    assert!(methods.into_iter().all(|count| count > 10), "{methods:?}");
+    let [with, without] = [Layout::new(150, 120), Layout::new(150, 120).without_highlight_tables()].map(|layout| layout.bytes::<Gray8>());
+    assert_eq!(with - without, 8200);
 }
 
 #[test]

@@ -57,8 +57,8 @@ impl Pixel for Fine {
         Self(Some(levels))
     }
 
-    fn entry<const BITS: u32>(ramp: &[[u32; 3]; RAMP], level: u32) -> [u32; 3] {
-        let walked = level << (WALK - BITS);
+    fn entry(ramp: &[[u32; 3]; RAMP], level: u32, bits: u32) -> [u32; 3] {
+        let walked = level << (WALK - bits);
         // Between two entries of a table of colours: the level includes the half that rounds to the nearest.
         let exact = walked.saturating_sub(1 << (WALK - 1));
         let (entry, fraction) = ((exact >> WALK) as usize % RAMP, i64::from(exact & ((1 << WALK) - 1)));

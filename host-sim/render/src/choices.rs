@@ -13,7 +13,7 @@ use microphong::{
     Stats, Stream,
     format::{Intensity, LEVEL, RAMP},
     method::{
-        Canvas, ErrorBounds, Facts, Method, Reflectance, Shading, TriangleSetup,
+        Canvas, ErrorBounds, Facts, LitMaterial, Method, Shading, TriangleSetup,
         auto::{Auto, Choice, choose, raises},
     },
     pixel::Pixel,
@@ -176,7 +176,7 @@ impl<const QUADRATICS: bool> Method for Telling<QUADRATICS> {
         &FACTS
     }
 
-    fn error_bounds(&self, reflectance: &Reflectance, exponent: u16, lights: usize) -> ErrorBounds {
+    fn error_bounds(&self, reflectance: LitMaterial<'_>, exponent: u16, lights: usize) -> ErrorBounds {
         Auto::<QUADRATICS>.error_bounds(reflectance, exponent, lights)
     }
 
@@ -260,8 +260,8 @@ impl<C: Pixel> Pixel for Traced<C> {
         Self::new(C::shown(stored, threshold))
     }
 
-    fn entry<const BITS: u32>(ramp: &[C::Stored; RAMP], level: u32) -> C::Stored {
-        C::entry::<BITS>(ramp, level)
+    fn entry(ramp: &[C::Stored; RAMP], level: u32, bits: u32) -> C::Stored {
+        C::entry(ramp, level, bits)
     }
 
     fn quantised(intensity: Intensity, threshold: u32) -> Self {

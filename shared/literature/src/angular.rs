@@ -79,7 +79,7 @@ fn draw(setup: &TriangleSetup<'_>, shading: &Shading<'_>, fit: fn(u16) -> Parabo
     let (edges, [one, many]) = (Edges::new(setup), [1, shading.exponent].map(fit));
     let rows = edges.rows(setup);
     let diffuse = |direction| Lobe { direction, parabolas: &one, lut: None };
-    let highlight = |direction| Lobe { direction, parabolas: &many, lut: Some(&shading.reflectance.highlight_lut) };
+    let highlight = |direction| Lobe { direction, parabolas: &many, lut: shading.reflectance.table() };
     if shading.lighting.is_constant() {
         let arcs = arcs(setup.vertices().map(|vertex| wide(vertex.normal)));
         let fit = |[towards, half]: [[i32; 3]; 2]| LobesOnRows { rows, arcs, lobes: [diffuse(towards), highlight(half)] };

@@ -52,9 +52,9 @@ fn draw(setup: &TriangleSetup<'_>, shading: &Shading<'_>, canvas: &mut dyn Canva
 /// No light's highlight reaches a visible level anywhere on the triangle.
 fn has_no_highlight(setup: &TriangleSetup<'_>, shading: &Shading<'_>) -> bool {
     if shading.vertices_have_cosines() {
-        return setup.has_no_highlight(shading.reflectance);
+        return setup.has_no_highlight(&shading.reflectance);
     }
-    let limit = setup.highlight_threshold(shading.reflectance);
+    let limit = setup.highlight_threshold(&shading.reflectance);
     let corners = setup.corner_nodes();
     shading.lighting.is_constant()
         && shading

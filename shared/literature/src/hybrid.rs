@@ -76,7 +76,7 @@ fn draw(setup: &TriangleSetup<'_>, shading: &Shading<'_>, fit: fn(u16) -> Parabo
     let (edges, parabolas) = (Edges::new(setup), fit(shading.exponent));
     let rows = edges.rows(setup);
     let bows = |Turned { normals, direction }| {
-        let lobe = Lobe { direction, parabolas: &parabolas, lut: Some(&shading.reflectance.highlight_lut) };
+        let lobe = Lobe { direction, parabolas: &parabolas, lut: shading.reflectance.table() };
         Bows { rows, normals, lobe }
     };
     let constant = |direction| bows(Turned { normals: setup.corner_nodes().map(|node| node.normal), direction });

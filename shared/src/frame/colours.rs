@@ -36,8 +36,11 @@ impl<'r, C: Pixel> Colours<'r, C> {
     ) -> Option<(Drawing<'s, C>, TriangleLoops<C>)> {
         let ColourSettings { shader, dither, gamma } = self.settings;
         let (pass, mut style) = context.pass(placed, columns)?;
-        let output =
-            Output::new(MaterialTables { ramps: self.ramps.get(placed.material)?, reflectance: pass.shading.reflectance }, *dither, *gamma);
+        let output = Output::new(
+            MaterialTables { ramps: self.ramps.get(placed.material)?, reflectance: pass.shading.reflectance.reflectance() },
+            *dither,
+            *gamma,
+        );
         style.by_canvas |= !output.suits_loops();
         Some((Drawing { pass, output }, shader.loops(style)))
     }

@@ -9,7 +9,8 @@ use crate::{
         region::Region,
         viewport::Viewport,
     },
-    lighting::reflectance::Reflectance,
+    lighting::reflectance::{LitMaterial, Reflectance},
+    math::highlight_lut::HighlightLut,
     mesh::{MeshPass, vertices::VertexStage},
     method::{ErrorBounds, Method, Shading, Style, VertexLight},
     placement::{Placement, Placements},
@@ -81,6 +82,8 @@ pub(crate) struct Context<'r> {
     pub(crate) vertices: &'r [ScreenVertex],
     /// One for each material.
     pub(crate) reflectances: &'r [Reflectance],
+    /// Tables of highlights, one for each material, or none if the method needs none.
+    pub(crate) tables: &'r [HighlightLut],
     /// What a method that keeps to a budget knows of each material.
     pub(crate) error_bounds: &'r [ErrorBounds],
 }
@@ -173,10 +176,15 @@ impl<'r> Context<'r> {
         may_have_levels && !self.region.is_whole()
     }
 
+    /// Material `index` under the lights of the scene.
+    fn material(&self, index: usize) -> Option<LitMaterial<'r>> {
+        Some(LitMaterial::new(self.reflectances.get(index)?, self.tables.get(index)))
+    }
+
     /// The stage that transforms and lights the vertices of `placed`.
     pub(super) fn stage<'s>(&'s self, placed: &PlacedMesh<'s>) -> Option<VertexStage<'s>> {
         let light = self.settings.method.facts().vertex_light;
-        let reflectance = self.reflectances.get(placed.material)?;
+        let reflectance = self.material(placed.material)?;
         let Placement { view, lighting, .. } = placed.placement;
         Some(VertexStage { view, lighting, constant: lighting.constant(), reflectance, light })
     }
@@ -186,7 +194,7 @@ impl<'r> Context<'r> {
     pub(crate) fn pass<'s>(&'s self, placed: &PlacedMesh<'s>, columns: [u16; 2]) -> Option<(MeshPass<'s>, Style)> {
         let method = self.settings.method;
         let (stream, material, stage) = (&self.scene.stream, placed.material, self.stage(placed)?);
-        let reflectance = self.reflectances.get(material)?;
+        let reflectance = stage.reflectance;
         let perspective = self.settings.perspective_correct && stage.view.is_perspective();
         let lighting = stage.lighting;
         let style = Style {

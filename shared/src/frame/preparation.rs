@@ -145,8 +145,18 @@ impl<'r> Prepared<'r> {
 
     #[inline(always)]
     fn empty(settings: &'r Settings, scene: &'r Scene<'_>, memory: &'r mut Memory<'_>, region: &'r Region) -> Empty<'r> {
-        let Memory { vertices: cache, bins: entries, depth, placements, order, reflectances, error_bounds, samples, active_triangles } =
-            memory;
+        let Memory {
+            vertices: cache,
+            bins: entries,
+            depth,
+            placements,
+            order,
+            reflectances,
+            tables,
+            error_bounds,
+            samples,
+            active_triangles,
+        } = memory;
         let size = settings.size;
         let placements = Placements::new(scene, placements, order);
         // Bins as high as the bands of one processor.
@@ -156,7 +166,8 @@ impl<'r> Prepared<'r> {
         let triangles = placements.drawn();
         let visible = placements.objects(scene).filter(|(placement, _)| placement.drawn > 0);
         let as_they_are = visible.fold(0, |sum, (_, object)| sum + object.triangles);
-        let context = Context { settings, scene, placements, region, depth_elision: None, vertices: &[], reflectances, error_bounds };
+        let context =
+            Context { settings, scene, placements, region, depth_elision: None, vertices: &[], reflectances, tables, error_bounds };
         let elides = settings.skips().depth && !settings.antialiased();
         let depth_elision = if elides { context.convex().and_then(DepthElision::new) } else { None };
         let part = Part {

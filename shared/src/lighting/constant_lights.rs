@@ -40,8 +40,23 @@ impl<'a, T> ByTurns<'a, T> {
     }
 }
 
-/// Makes the colour of a pixel from diffuse light and a highlight.
-pub trait OneLight: ByRows {
+/// A light with a highlight: a walked diffuse level, negative where there is no light, and an entry of the table of highlights.
+#[derive(Clone, Copy, Debug)]
+pub struct WithHighlight(pub i32, pub u32);
+
+/// A light without a highlight: a walked diffuse level, negative where there is no light.
+#[derive(Clone, Copy, Debug)]
+pub struct DiffuseOnly(pub i32);
+
+impl From<DiffuseOnly> for WithHighlight {
+    #[inline(always)]
+    fn from(DiffuseOnly(diffuse): DiffuseOnly) -> Self {
+        Self(diffuse, 0)
+    }
+}
+
+/// Makes the colour of a pixel of light: [`WithHighlight`] or [`DiffuseOnly`], or a pair of them for two lights.
+pub trait Colours<L>: ByRows {
     /// The pixel that is stored.
     type Pixel: Pixel;
 
@@ -51,9 +66,8 @@ pub trait OneLight: ByRows {
     /// The diffuse level at cosine 1, Q9.7: the unit in which diffuse light is walked.
     fn diffuse(&self) -> u16;
 
-    /// The colour of a walked diffuse level, Q9.`BITS`, negative where there is no light, and an entry of the table of highlights, with a
-    /// [`crate::pixel::dither::threshold`].
-    fn colour<const BITS: u32>(&self, diffuse: i32, highlight: u32, threshold: u32) -> Self::Pixel;
+    /// The colour of light whose diffuse levels have `bits` fraction bits, with a [`crate::pixel::dither::threshold`].
+    fn colour(&self, bits: u32, light: L, threshold: u32) -> Self::Pixel;
 
     /// Whether no diffuse level is above 255.
     #[inline(always)]
@@ -94,7 +108,7 @@ impl<C: Pixel> ByRows for OneLightRamp<'_, C> {
     }
 }
 
-impl<C: Pixel> OneLight for OneLightRamp<'_, C> {
+impl<C: Pixel> Colours<WithHighlight> for OneLightRamp<'_, C> {
     type Pixel = C;
 
     const TABLED: bool = true;
@@ -105,8 +119,24 @@ impl<C: Pixel> OneLight for OneLightRamp<'_, C> {
     }
 
     #[inline(always)]
-    fn colour<const BITS: u32>(&self, diffuse: i32, highlight: u32, threshold: u32) -> C {
-        C::ramped::<BITS>(self.ramps.now, (diffuse.max(0) as u32).wrapping_add(highlight << (BITS - LEVEL)), threshold)
+    fn colour(&self, bits: u32, WithHighlight(diffuse, highlight): WithHighlight, threshold: u32) -> C {
+        C::ramped(self.ramps.now, (diffuse.max(0) as u32).wrapping_add(highlight << (bits - LEVEL)), bits, threshold)
+    }
+}
+
+impl<C: Pixel> Colours<DiffuseOnly> for OneLightRamp<'_, C> {
+    type Pixel = C;
+
+    const TABLED: bool = true;
+
+    #[inline(always)]
+    fn diffuse(&self) -> u16 {
+        self.diffuse
+    }
+
+    #[inline(always)]
+    fn colour(&self, bits: u32, DiffuseOnly(diffuse): DiffuseOnly, threshold: u32) -> C {
+        self.colour(bits, WithHighlight(diffuse, self.floor), threshold)
     }
 }
 
@@ -114,13 +144,7 @@ impl<C: Pixel> OneLightRamp<'_, C> {
     /// The colour where there is neither diffuse light nor a highlight, on even rows and on odd ones.
     pub fn unlit(&self) -> [C::Stored; 2] {
         let ByTurns { now, next } = self.ramps;
-        [C::entry::<LEVEL>(now, self.floor), C::entry::<LEVEL>(next, self.floor)]
-    }
-
-    /// [`OneLight::colour`] where there is no highlight.
-    #[inline(always)]
-    pub fn without_highlight<const BITS: u32>(&self, diffuse: i32, threshold: u32) -> C {
-        self.colour::<BITS>(diffuse, self.floor, threshold)
+        [C::entry(now, self.floor, LEVEL), C::entry(next, self.floor, LEVEL)]
     }
 }
 
@@ -212,14 +236,14 @@ const _: () = assert!(ENTRY + LEVEL - 1 == CHANNEL);
 
 /// A walked diffuse level as a cosine from 0 to 1, Q1.15.
 #[inline(always)]
-fn cosine<const BITS: u32>(diffuse: i32) -> i32 {
+fn cosine(bits: u32, diffuse: i32) -> i32 {
     // Armv7-M shifts and clamps by one instruction.
-    (diffuse >> (BITS + FULL - FACTOR)).clamp(0, (1 << FACTOR) - 1)
+    (diffuse >> ((bits + FULL - FACTOR) & 31)).clamp(0, (1 << FACTOR) - 1)
 }
 
 impl<C> OneLightRgb<'_, C> {
-    /// See [`OneLight::diffuse`].
-    const DIFFUSE: u16 = 1 << (FULL + LEVEL);
+    /// See [`Colours::diffuse`].
+    pub const DIFFUSE: u16 = 1 << (FULL + LEVEL);
 }
 
 impl<C: Pixel> OneLightRgb<'_, C> {
@@ -243,7 +267,7 @@ impl<C: Pixel> ByRows for OneLightRgb<'_, C> {
     }
 }
 
-impl<C: Pixel> OneLight for OneLightRgb<'_, C> {
+impl<C: Pixel> Colours<WithHighlight> for OneLightRgb<'_, C> {
     type Pixel = C;
 
     const TABLED: bool = false;
@@ -254,8 +278,8 @@ impl<C: Pixel> OneLight for OneLightRgb<'_, C> {
     }
 
     #[inline(always)]
-    fn colour<const BITS: u32>(&self, diffuse: i32, highlight: u32, _: u32) -> C {
-        let ([r, g, b], cosine, highlight) = (self.0.now, cosine::<BITS>(diffuse), highlight as i32);
+    fn colour(&self, bits: u32, WithHighlight(diffuse, highlight): WithHighlight, _: u32) -> C {
+        let ([r, g, b], cosine, highlight) = (self.0.now, cosine(bits, diffuse), highlight as i32);
         C::mixed([r.level_from_highlight(cosine, highlight), g.level(cosine, highlight), b.level(cosine, highlight)])
     }
 }
@@ -267,18 +291,21 @@ impl<C: Pixel> ByRows for TwoLightsRgb<'_, C> {
     }
 }
 
-impl<C: Pixel> TwoLightsRgb<'_, C> {
-    /// [`OneLight::diffuse`] of both lights.
+impl<C: Pixel, A: Into<WithHighlight>, B: Into<WithHighlight>> Colours<(A, B)> for TwoLightsRgb<'_, C> {
+    type Pixel = C;
+
+    const TABLED: bool = false;
+
     #[inline(always)]
-    pub fn diffuse(&self) -> u16 {
+    fn diffuse(&self) -> u16 {
         OneLightRgb::<C>::DIFFUSE
     }
 
-    /// The colour of a walked diffuse level and a highlight of each light, as [`OneLight::colour`].
     #[inline(always)]
-    pub fn colour<const BITS: u32>(&self, [one, two]: [(i32, u32); 2]) -> C {
+    fn colour(&self, bits: u32, (one, two): (A, B), _: u32) -> C {
         let [[r, g, b], [r2, g2, b2]] = self.0.now;
-        let (c, h, c2, h2) = (cosine::<BITS>(one.0), one.1 as i32, cosine::<BITS>(two.0), two.1 as i32);
+        let (WithHighlight(c, h), WithHighlight(c2, h2)) = (one.into(), two.into());
+        let (c, h, c2, h2) = (cosine(bits, c), h as i32, cosine(bits, c2), h2 as i32);
         let level = |first: &Sum, second: &Sum| first.level_from_highlight(c, h).wrapping_add(second.light(c2, h2));
         // The same, the second light's products one after the other. In which channels that leaves loops more registers is known by measurement
         // alone.
@@ -287,6 +314,11 @@ impl<C: Pixel> TwoLightsRgb<'_, C> {
         };
         C::mixed([level(r, r2), in_turn(g, g2), level(b, b2)])
     }
+}
+
+impl<C> TwoLightsRgb<'_, C> {
+    /// The diffuse level of both lights at cosine 1, as [`Colours::diffuse`].
+    pub const DIFFUSE: u16 = OneLightRgb::<C>::DIFFUSE;
 
     /// The colours of the first light alone.
     #[inline(always)]

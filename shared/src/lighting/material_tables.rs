@@ -4,7 +4,7 @@ use crate::{
     format::{BIAS, CHANNEL, COSINE, LEVEL, WALK},
     lighting::{
         constant_lights::{ByTurns, FACTOR, OneLightRamp, OneLightRgb, TwoLightsRgb},
-        reflectance::Reflectance,
+        reflectance::{LitMaterial, Reflectance},
     },
     math::vector::zip,
     pixel::{Pixel, gamma::Gamma, ramps::Ramps, steps},
@@ -74,9 +74,9 @@ impl<'a, C: Pixel> MaterialTables<'a, C> {
     #[inline(always)]
     #[must_use]
     pub fn one_light_ramp(&self) -> Option<OneLightRamp<'a, C>> {
-        let Reflectance { ramp: [_, diffuse], highlight_lut, .. } = self.reflectance;
-        let ramps = ByTurns::new(self.ramps.squares());
-        self.reflectance.holds_levels().then(|| OneLightRamp { ramps, diffuse: *diffuse as u16, floor: highlight_lut.least() })
+        let (ramps, [_, diffuse]) = (ByTurns::new(self.ramps.squares()), self.reflectance.ramp);
+        let floor = self.reflectance.highlights.floor();
+        self.reflectance.holds_levels().then_some(OneLightRamp { ramps, diffuse: diffuse as u16, floor })
     }
 
     /// The table of colours of a triangle in three channels under the only light, where that has no highlight; `None` unless
@@ -118,17 +118,17 @@ impl<'a, C: Pixel> MaterialTables<'a, C> {
         (!C::GRAY && self.reflectance.lights() == 2).then_some([TwoLightsRgb(forth, PhantomData), TwoLightsRgb(back, PhantomData)])
     }
 
-    /// The colour under one light from `[N·L, N·H]` (Q2.30), on even rows and on odd ones.
+    /// The colour of `material`, which is this one, under one light from `[N·L, N·H]` (Q2.30), on even rows and on odd ones.
     #[inline(always)]
     #[must_use]
-    pub fn one_light(&self, cosines: [i32; 2]) -> [C::Stored; 2] {
-        if self.three_channels() { self.one_light_mixed(cosines) } else { self.tint(self.reflectance.level(cosines)) }
+    pub fn one_light(&self, material: LitMaterial<'_>, cosines: [i32; 2]) -> [C::Stored; 2] {
+        if self.three_channels() { self.one_light_mixed(material, cosines) } else { self.tint(material.level(cosines)) }
     }
 
     /// [`Self::one_light`] in three channels.
     #[inline(never)]
-    fn one_light_mixed(self, [cosine, half]: [i32; 2]) -> [C::Stored; 2] {
-        match self.reflectance.highlight(half) {
+    fn one_light_mixed(self, material: LitMaterial<'_>, [cosine, half]: [i32; 2]) -> [C::Stored; 2] {
+        match material.highlight(half) {
             0 if self.reflectance.has_ramp() => self.tint(self.reflectance.ramp_level(cosine)),
             highlight if self.reflectance.sums_fit() => self.sums().by_turns(cosine >> (COSINE - FACTOR), highlight),
             highlight => self.mixed_by_turns(self.reflectance.reflection(cosine, highlight)),
@@ -159,7 +159,7 @@ impl<'a, C: Pixel> MaterialTables<'a, C> {
     #[must_use]
     pub fn tint(&self, level: i32) -> [C::Stored; 2] {
         let ([even, odd], level) = (self.ramps.squares(), Reflectance::biased(level) << (WALK - LEVEL));
-        [C::entry::<WALK>(even, level), C::entry::<WALK>(odd, level)]
+        [C::entry(even, level, WALK), C::entry(odd, level, WALK)]
     }
 }
 
@@ -198,7 +198,9 @@ mod tests {
             for _ in 0..2 {
                 let tables = MaterialTables::<Rgb565> { ramps: &[[0; RAMP]; 2], reflectance: &reflectance };
                 let exact = reflectance.reflection(1 << COSINE, 1 << 16);
-                let colours = tables.one_light([1 << COSINE, 1 << COSINE]).map(|stored| Rgb565::from_stored(stored).channels());
+                let colours = tables
+                    .one_light(LitMaterial::new(&reflectance, None), [1 << COSINE, 1 << COSINE])
+                    .map(|stored| Rgb565::from_stored(stored).channels());
                 for (colour, turn) in colours.into_iter().zip([-1, 1]) {
                     let quarter = reflectance.quarter() * turn;
                     let expected = zip(exact, Rgb565::DEPTH, |level, depth| {

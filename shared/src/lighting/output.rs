@@ -88,6 +88,6 @@ impl<'a, C: Pixel> Output<'a, C> {
     #[inline(always)]
     #[must_use]
     pub fn by_table(ramp: &[C::Stored; RAMP], [level, ..]: Intensity, threshold: u32) -> C {
-        C::ramped::<INTENSITY>(ramp, (level + (BIAS << INTENSITY) + (1 << (INTENSITY - 1))) as u32, threshold)
+        C::ramped(ramp, (level + (BIAS << INTENSITY) + (1 << (INTENSITY - 1))) as u32, INTENSITY, threshold)
     }
 }

@@ -8,12 +8,13 @@ use crate::{
         lights::{MeanNormal, Source},
     },
     math::{
-        highlight_lut::{Base, ENTRY, HighlightLut, square},
+        highlight_lut::{Base, ENTRY, HighlightCurve, HighlightLut, square},
         vector::zip,
     },
     pixel::{Channels, dither::quantise, gamma::Gamma, steps},
     stream::record::{Light, Material},
 };
+use core::ops::Deref;
 use zerocopy::{FromBytes, Immutable, IntoBytes, KnownLayout};
 
 /// Largest level of a node, Q9.7.
@@ -104,12 +105,12 @@ impl Factors {
     }
 }
 
-/// A material under the lights of a scene: the gains of each light, and the lookup table of highlights.
+/// A material under the lights of a scene: the gains of each light, and the power function of highlights.
 #[derive(FromBytes, IntoBytes, Immutable, KnownLayout, Clone, Copy, Debug)]
 #[repr(C)]
 pub struct Reflectance {
-    /// The lookup table of highlights.
-    pub highlight_lut: HighlightLut,
+    /// The power function of highlights.
+    pub highlights: HighlightCurve,
     /// The levels of ambient light, Q9.7.
     pub(super) ambient: [i32; 3],
     highlight_threshold: i32,
@@ -170,7 +171,7 @@ impl Reflectance {
     /// A reflectance that is not computed yet; all zeros, which takes no flash in static memory.
     pub const EMPTY: Self = Self {
         base: [0; 3],
-        highlight_lut: HighlightLut::EMPTY,
+        highlights: HighlightCurve::EMPTY,
         three_channels: 0,
         has_ramp: 0,
         has_two_lights: 0,
@@ -254,18 +255,18 @@ impl Reflectance {
             // The remaining specular gain is 65535/65536.
             one.specular = [u16::MAX; 3];
         }
-        self.highlight_lut.fill(material.exponent, highlight.base(), full, floor);
+        self.highlights = HighlightCurve::new(material.exponent, highlight.base(), full, floor);
         // Intensities are rounded down, and so are cosines: half of their last place more.
         let mut sums = self.ambient.map(|level| (level << (FACTOR - self.excess)) + (1 << (CHANNEL - 9 - self.excess)));
         for light in 0..lights.len() {
             let factors = self.factors(light);
-            let none = factors.levels(Reflection { diffuse: 0, highlight: self.highlight_lut.floor() });
+            let none = factors.levels(Reflection { diffuse: 0, highlight: self.highlights.floor() });
             sums = zip(sums, zip(factors.diffuse, none, |diffuse, none| (diffuse >> 1) - none), i32::wrapping_add);
         }
         self.ambient_sums = sums;
         self.highlight_threshold = match highlight.base() {
-            Base::Square => square(self.highlight_lut.highlight_threshold()),
-            _ => self.highlight_lut.highlight_threshold(),
+            Base::Square => square(self.highlights.highlight_threshold()),
+            _ => self.highlights.highlight_threshold(),
         };
         let whole = largest(base).max(1);
         self.base = zip(base, depth, |channel, depth| share(channel, whole, depth));
@@ -366,22 +367,6 @@ impl Reflectance {
         if cfg!(feature = "skips") && self.computes_all[1] != 0 { i32::MIN } else { 0 }
     }
 
-    /// The level of a material of one channel under one light, Q9.7 in [0, 255], from `[N·L, N·H]` (Q2.30).
-    #[inline(never)]
-    #[must_use]
-    pub fn level(&self, [diffuse, half]: [i32; 2]) -> i32 {
-        let [gains, ..] = &self.gains;
-        let light = reflected((gains.diffuse[0], gains.specular[0]), diffuse, self.highlight_lut.at(half));
-        (self.ambient[0] + light).min(FULL)
-    }
-
-    /// The highlight at N·H (Q2.30), unsigned Q0.16, 0 where none can be seen.
-    #[inline]
-    #[must_use]
-    pub fn highlight(&self, half: i32) -> u32 {
-        if half < self.highlight_threshold { 0 } else { self.highlight_lut.at(half) }
-    }
-
     /// The level of the table of colours without highlight at N·L (Q2.30) under one light, Q9.7. Domain: [`Self::has_ramp`].
     #[inline(always)]
     #[must_use]
@@ -394,14 +379,6 @@ impl Reflectance {
     pub fn ramp_rise(&self, raise: i32) -> [i32; 3] {
         let share = |gain: u16| (raise * i32::from(gain)).checked_div(self.ramp[1]).unwrap_or(0);
         self.gains[0].diffuse.map(share)
-    }
-
-    /// The diffuse level at cosine 1 and the level of a whole highlight of a light, Q9.7, each in the channel where it is largest.
-    #[must_use]
-    pub fn largest_gains(&self, light: usize) -> [u32; 2] {
-        let Gains { diffuse, specular } = self.gains.get(light).copied().unwrap_or(Gains::NONE);
-        let most = |gains: [u16; 3]| largest(gains.map(u32::from));
-        [most(diffuse), if self.holds_levels() { self.highlight_lut.at(1 << COSINE) } else { most(specular) }]
     }
 
     /// Levels of three channels under one light, Q9.7 in [0, 255], from N·L (Q2.30) and a highlight (unsigned Q0.16).
@@ -449,49 +426,6 @@ impl Reflectance {
         [level(a, i), level(b, j), level(c, k), level(ab, ij), level(bc, jk), level(ca, ki)]
     }
 
-    /// Levels under one light, Q9.7 in [0, 255], from `[N·L, N·H]` (Q2.30).
-    #[inline]
-    #[must_use]
-    pub fn one_light(&self, cosines: [i32; 2]) -> [i32; 3] {
-        if self.three_channels() { self.levels(core::iter::once(cosines)) } else { [self.level(cosines); 3] }
-    }
-
-    /// Levels at a point, Q9.7 in [0, 255], from the cosines `[N·L, N·H]` (Q2.30) of each light.
-    #[inline]
-    #[must_use]
-    pub fn levels(&self, cosines: impl Iterator<Item = [i32; 2]>) -> [i32; 3] {
-        let mut levels = self.ambient;
-        for (gains, [diffuse, half]) in self.gains.iter().zip(cosines) {
-            let highlight = self.highlight_lut.at(half);
-            self.add(&mut levels, gains, diffuse, highlight);
-        }
-        levels.map(|level| level.min(FULL))
-    }
-
-    /// Levels under constant lights, Q9.7 in [0, 255].
-    #[inline(never)]
-    #[must_use]
-    pub fn constant_levels(&self, sources: &[Source], normal: &MeanNormal) -> [i32; 3] {
-        if sources.len() > 2 || self.excess != 0 {
-            return self.many_constant_levels(sources, normal);
-        }
-        let mut lit = [[0; 2]; 2];
-        for (lit, source) in lit.iter_mut().zip(sources) {
-            if let Some(&[towards, half]) = source.directional() {
-                *lit = [node_cosine(normal.cosine(towards)), self.highlight(normal.cosine(half)) as i32];
-            }
-        }
-        self.two_sums(lit)
-    }
-
-    /// Levels under two lights, Q9.7 in [0, 255], from N·L and N·H (Q2.30) of one, then of the other. Domain: [`Self::has_two_lights`].
-    #[inline]
-    #[must_use]
-    pub fn two_lights(&self, [towards, half, other, other_half]: [i32; 4]) -> [i32; 3] {
-        let lit = |towards, half| [node_cosine(towards), self.highlight(half) as i32];
-        self.two_sums([lit(towards, half), lit(other, other_half)])
-    }
-
     /// Levels under two lights, Q9.7 in [0, 255], from a cosine, Q1.15, and a highlight, unsigned Q0.16, of each.
     #[inline(always)]
     fn two_sums(&self, [[cosine, highlight], [other, other_highlight]]: [[i32; 2]; 2]) -> [i32; 3] {
@@ -502,14 +436,6 @@ impl Reflectance {
         };
         let ([r, g, b], [r1, g1, b1], [r2, g2, b2]) = (self.ambient, first, second);
         [level(r, r1, r2).min(FULL), level(g, g1, g2).min(FULL), level(b, b1, b2).min(FULL)]
-    }
-
-    /// Levels as in [`Self::constant_levels`], for sums that do not fit a word, or for more than two lights.
-    #[cold]
-    #[inline(never)]
-    fn many_constant_levels(&self, sources: &[Source], normal: &MeanNormal) -> [i32; 3] {
-        let cosines = sources.iter().map(|source| source.directional().map_or([0; 2], |directions| directions.map(|v| normal.cosine(v))));
-        self.levels(cosines)
     }
 
     /// The levels of ambient light, Q9.7.
@@ -540,7 +466,7 @@ impl Reflectance {
     /// Adds to `sums` what a table entry without a highlight adds for a light; [`Self::ambient_sums`] is less by this.
     #[inline(always)]
     pub fn add_no_highlight(&self, factors: &Factors, sums: &mut [i32; 3]) {
-        factors.add(sums, Reflection { diffuse: 0, highlight: self.highlight_lut.floor() });
+        factors.add(sums, Reflection { diffuse: 0, highlight: self.highlights.floor() });
     }
 
     /// Converts sums of all lights to intensities.
@@ -596,6 +522,130 @@ impl Reflectance {
             None => scaled,
         };
         quantise(scaled, self.depth, threshold)
+    }
+}
+
+/// A material under the lights of a scene, with its table of highlights if there is memory for one.
+#[derive(Clone, Copy, Debug)]
+pub struct LitMaterial<'f> {
+    reflectance: &'f Reflectance,
+    table: Option<&'f HighlightLut>,
+}
+
+impl Deref for LitMaterial<'_> {
+    type Target = Reflectance;
+
+    #[inline(always)]
+    fn deref(&self) -> &Reflectance {
+        self.reflectance
+    }
+}
+
+impl<'f> LitMaterial<'f> {
+    /// A material and its table, which has been filled with the curve of its highlights.
+    #[inline(always)]
+    #[must_use]
+    pub fn new(reflectance: &'f Reflectance, table: Option<&'f HighlightLut>) -> Self {
+        Self { reflectance, table }
+    }
+
+    /// The material without its table.
+    #[inline(always)]
+    #[must_use]
+    pub fn reflectance(self) -> &'f Reflectance {
+        self.reflectance
+    }
+
+    /// The table of highlights. Renderers refuse methods that need one if there is none.
+    #[inline(always)]
+    #[must_use]
+    pub fn table(self) -> Option<&'f HighlightLut> {
+        self.table
+    }
+
+    /// The highlight at N·H (Q2.30), unsigned Q0.16.
+    #[inline(always)]
+    #[must_use]
+    pub fn highlight_at(self, half: i32) -> u32 {
+        match self.table {
+            Some(table) => table.at(half),
+            None => self.highlights.at(half),
+        }
+    }
+
+    /// The level of a material of one channel under one light, Q9.7 in [0, 255], from `[N·L, N·H]` (Q2.30).
+    #[inline(never)]
+    #[must_use]
+    pub fn level(self, [diffuse, half]: [i32; 2]) -> i32 {
+        let [gains, ..] = &self.gains;
+        let light = reflected((gains.diffuse[0], gains.specular[0]), diffuse, self.highlight(half));
+        (self.ambient[0] + light).min(FULL)
+    }
+
+    /// The highlight at N·H (Q2.30), unsigned Q0.16, 0 where none can be seen.
+    #[inline]
+    #[must_use]
+    pub fn highlight(self, half: i32) -> u32 {
+        if half < self.highlight_threshold { 0 } else { self.highlight_at(half) }
+    }
+
+    /// The diffuse level at cosine 1 and the level of a whole highlight of a light, Q9.7, each in the channel where it is largest.
+    #[must_use]
+    pub fn largest_gains(self, light: usize) -> [u32; 2] {
+        let Gains { diffuse, specular } = self.gains.get(light).copied().unwrap_or(Gains::NONE);
+        let most = |gains: [u16; 3]| largest(gains.map(u32::from));
+        [most(diffuse), if self.holds_levels() { self.highlight_at(1 << COSINE) } else { most(specular) }]
+    }
+
+    /// Levels under one light, Q9.7 in [0, 255], from `[N·L, N·H]` (Q2.30).
+    #[inline]
+    #[must_use]
+    pub fn one_light(self, cosines: [i32; 2]) -> [i32; 3] {
+        if self.three_channels() { self.levels(core::iter::once(cosines)) } else { [self.level(cosines); 3] }
+    }
+
+    /// Levels at a point, Q9.7 in [0, 255], from the cosines `[N·L, N·H]` (Q2.30) of each light.
+    #[inline]
+    #[must_use]
+    pub fn levels(self, cosines: impl Iterator<Item = [i32; 2]>) -> [i32; 3] {
+        let mut levels = self.ambient;
+        for (gains, [diffuse, half]) in self.gains.iter().zip(cosines) {
+            let highlight = self.highlight_at(half);
+            self.add(&mut levels, gains, diffuse, highlight);
+        }
+        levels.map(|level| level.min(FULL))
+    }
+
+    /// Levels under constant lights, Q9.7 in [0, 255].
+    #[inline(never)]
+    #[must_use]
+    pub fn constant_levels(self, sources: &[Source], normal: &MeanNormal) -> [i32; 3] {
+        if sources.len() > 2 || self.excess != 0 {
+            return self.many_constant_levels(sources, normal);
+        }
+        let mut lit = [[0; 2]; 2];
+        for (lit, source) in lit.iter_mut().zip(sources) {
+            if let Some(&[towards, half]) = source.directional() {
+                *lit = [node_cosine(normal.cosine(towards)), self.highlight(normal.cosine(half)) as i32];
+            }
+        }
+        self.two_sums(lit)
+    }
+
+    /// Levels under two lights, Q9.7 in [0, 255], from N·L and N·H (Q2.30) of one, then of the other. Domain: [`Self::has_two_lights`].
+    #[inline]
+    #[must_use]
+    pub fn two_lights(self, [towards, half, other, other_half]: [i32; 4]) -> [i32; 3] {
+        let lit = |towards, half| [node_cosine(towards), self.highlight(half) as i32];
+        self.two_sums([lit(towards, half), lit(other, other_half)])
+    }
+
+    /// Levels as in [`Self::constant_levels`], for sums that do not fit a word, or for more than two lights.
+    #[cold]
+    #[inline(never)]
+    fn many_constant_levels(self, sources: &[Source], normal: &MeanNormal) -> [i32; 3] {
+        let cosines = sources.iter().map(|source| source.directional().map_or([0; 2], |directions| directions.map(|v| normal.cosine(v))));
+        self.levels(cosines)
     }
 }
 

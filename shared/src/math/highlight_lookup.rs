@@ -98,11 +98,11 @@ impl<'a> DefectLookup<'a> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::math::highlight_lut::{Base, NEAREST_ERROR};
+    use crate::math::highlight_lut::{Base, HighlightCurve, NEAREST_ERROR};
 
     /// Largest error of `at` against x^n: next to entries, and half way between two of them.
-    fn error(n: u16, lut: &HighlightLut, at: impl Fn(i32) -> u32) -> f64 {
-        let step = (2f64.powi(30) - f64::from(lut.highlight_threshold())) / SIZE as f64;
+    fn error(n: u16, curve: &HighlightCurve, at: impl Fn(i32) -> u32) -> f64 {
+        let step = (2f64.powi(30) - f64::from(curve.highlight_threshold())) / SIZE as f64;
         let error = |position: f64| {
             let cosine = (2f64.powi(30) - (step * position).floor()) as i32;
             let exact = (f64::from(cosine) / 2f64.powi(30)).max(0.0).powi(n.into());
@@ -115,18 +115,18 @@ mod tests {
     #[test]
     fn entries_are_the_nearest() {
         for n in (1..12).chain([20, 50, 127, 128, 500, 1023, 1024]) {
-            let mut lut = HighlightLut::EMPTY;
-            lut.fill(n, Base::Itself, 1 << 16, 0);
+            let (mut lut, curve) = (HighlightLut::EMPTY, HighlightCurve::new(n, Base::Itself, 1 << 16, 0));
+            lut.fill(&curve);
             let quotients = QuotientLookup::new(&lut);
             for length in [1.0, 0.9, 0.77, 0.6, 0.5] {
                 let half_reciprocal = (f64::from(1 << 29) / length) as i64;
                 let numerator = |cosine: i32| (f64::from(cosine) * length).round() as i32;
                 let quotient = |cosine| (((i64::from(quotients.node(numerator(cosine))) << EXTRA) * half_reciprocal) >> 32) as i32;
-                let worst = error(n, &lut, |cosine| quotients.at(quotient(cosine)));
+                let worst = error(n, &curve, |cosine| quotients.at(quotient(cosine)));
                 assert!(worst <= NEAREST_ERROR, "quotients, n = {n}, length {length}: {worst}");
             }
             let defects = DefectLookup::new(&lut);
-            let worst = error(n, &lut, |cosine| defects.at((defects.node(cosine) << 6) + defects.half()));
+            let worst = error(n, &curve, |cosine| defects.at((defects.node(cosine) << 6) + defects.half()));
             assert!(worst <= NEAREST_ERROR, "defects, n = {n}: {worst}");
         }
     }

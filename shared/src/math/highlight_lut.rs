@@ -13,6 +13,23 @@ use zerocopy::{FromBytes, Immutable, IntoBytes, KnownLayout};
 /// Number of intervals in the table. It has one entry more.
 pub(crate) const SIZE: usize = 4096;
 
+/// The highlight's power function `floor + full base^n`, unsigned Q0.16, by which a table is filled and which replaces one where there is no memory
+/// for it.
+#[derive(FromBytes, IntoBytes, Immutable, KnownLayout, Clone, Copy, Debug)]
+#[repr(C)]
+pub struct HighlightCurve {
+    /// 4 max(n, 8), where n is the exponent of the argument: an index of a table is (1 - x) times 128 times this.
+    scale: u32,
+    /// The value at 1, less the floor, unsigned Q0.16.
+    full: u32,
+    /// The exponent.
+    n: u16,
+    /// The value where the power is 0, unsigned Q0.16.
+    floor: u16,
+    /// See [`Base`].
+    base: u32,
+}
+
 /// Lookup table of the highlight's power function `floor + full x^n`, unsigned Q0.16, in 4096 intervals.
 ///
 /// Domain: n from 1 to 1024. The table covers x in [1 - 8/n, 1], or [0, 1] for n < 8; below that x^n is less than e^-8 and taken as 0.
@@ -30,6 +47,7 @@ pub struct HighlightLut {
 
 /// The base that is raised to the exponent, as a function of the table's argument x.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[repr(u32)]
 pub enum Base {
     /// The base is x.
     Itself,
@@ -102,47 +120,119 @@ fn power(mut x: u32, mut n: u16) -> u32 {
 /// Fraction bits of an entry, unsigned Q0.16.
 pub const ENTRY: u32 = 16;
 
+impl HighlightCurve {
+    /// A curve that is 0 everywhere.
+    pub(crate) const EMPTY: Self = Self { scale: 0, full: 0, n: 0, floor: 0, base: Base::Itself as u32 };
+
+    /// The curve `floor + full base^n`.
+    ///
+    /// Domain: `n` is 1 to 1024, at least 2 for [`Base::Root`] and 4 for [`Base::FourthRoot`]; `full` and `floor` are unsigned Q0.16, their
+    /// sum at most 1.
+    #[must_use]
+    pub fn new(n: u16, base: Base, full: u32, floor: u16) -> Self {
+        let n4 = u32::from(n) << 2;
+        let scale = WHOLE.max(NonZeroU32::new(if base == Base::Square { n4 << 1 } else { n4 >> base.roots() }).unwrap_or(WHOLE));
+        Self { scale: scale.get(), full, n, floor, base: base as u32 }
+    }
+
+    fn scale(&self) -> NonZeroU32 {
+        NonZeroU32::new(self.scale).unwrap_or(WHOLE)
+    }
+
+    /// `1 - x` between two entries of a table, Q1.63: 8 / (4096 max(n, 8)). Products of two x fit 64 bits.
+    fn step(&self) -> u64 {
+        long(1 << 56, self.scale().get().into())
+    }
+
+    /// The value `i` steps below 1, where [`Self::step`] is `step`. In integers: the bits are the same on every machine.
+    ///
+    /// Source: binary exponentiation in Q1.31.
+    fn value(&self, i: usize, step: u64) -> u32 {
+        let x = (1u64 << 31).saturating_sub((i as u64 * step) >> 32);
+        let roots = |roots| (0..roots).fold(x, |x, _| root(x << 31));
+        let x = match self.base {
+            base if base == Base::Square as u32 => (square((x >> 1) as i32).max(0) as u64) << 1,
+            base if base == Base::Root as u32 => roots(Base::Root.roots()),
+            base if base == Base::FourthRoot as u32 => roots(Base::FourthRoot.roots()),
+            _ => x,
+        };
+        u32::from(self.floor) + ((unsigned_product(power(x as u32, self.n), self.full) + (1 << 30)) >> 31) as u32
+    }
+
+    /// Position of a cosine (Q2.30) in a table, unsigned Q20.12: 1 - cosine in steps of the table. Small cosines lie past the end.
+    #[inline(always)]
+    fn position(&self, cosine: i32) -> u32 {
+        position(self.scale, cosine)
+    }
+
+    /// [`HighlightLut::at`] without a table, bit for bit. It takes some hundred instructions.
+    ///
+    /// Domain: every `cosine`, Q2.30; above 1 counts as 1. Error: at most [`ERROR`] of full intensity (tests::error).
+    #[inline(never)]
+    #[must_use]
+    pub fn at(&self, cosine: i32) -> u32 {
+        let position = self.position(cosine);
+        let i = (position >> 12) as usize;
+        if i >= SIZE {
+            return 0;
+        }
+        let (block, k) = (i / COMPUTED, i % COMPUTED);
+        let step = self.step();
+        let ends = [self.value(block * COMPUTED, step), self.value((block + 1) * COMPUTED, step)];
+        let entry = |k: usize| if block * COMPUTED + k < SIZE - 1 { between(ends, k) } else { self.floor };
+        interpolated([entry(k), entry(k + 1)], position, self.floor)
+    }
+
+    /// The smallest value, where the power is 0; unsigned Q0.16.
+    #[must_use]
+    pub fn floor(&self) -> u32 {
+        self.floor.into()
+    }
+
+    /// The cosine, Q2.30, at which a table ends. The powers of smaller cosines count as 0.
+    #[must_use]
+    pub fn highlight_threshold(&self) -> i32 {
+        (1i32 << COSINE) - long(32u64 << COSINE, self.scale().get().into()) as i32
+    }
+}
+
+/// See [`HighlightCurve::position`].
+#[inline(always)]
+fn position(scale: u32, cosine: i32) -> u32 {
+    let below = (1i32 << COSINE).saturating_sub(cosine).max(0) as u32;
+    // (1 - cosine) * 4 n / 32 * 4096 / 2^30, with 12 fraction bits.
+    u32::try_from(unsigned_product(below, scale) >> (COSINE - 19)).unwrap_or(u32::MAX)
+}
+
+/// The entry `k` of [`COMPUTED`] from the first to the second of two computed entries.
+fn between([upper, lower]: [u32; 2], k: usize) -> u16 {
+    let sum = upper * (COMPUTED - k) as u32 + lower * k as u32;
+    (sum / COMPUTED as u32).min(0xffff) as u16
+}
+
+/// The value at a position between two entries of a table, without the floor.
+#[inline(always)]
+fn interpolated([a, b]: [u16; 2], position: u32, floor: u16) -> u32 {
+    u32::from(a) - ((u32::from(a.saturating_sub(b)) * (position & 0xfff)) >> 12) - u32::from(floor)
+}
+
 impl HighlightLut {
     /// An empty table for static memory. It is all zeros, so that it takes no flash.
     pub const EMPTY: Self = Self { table: [0; SIZE + 1], scale: 0, floor: 0 };
 
-    /// Computes the table of `floor + full base^n`, in integers: the bits are the same on every machine.
-    ///
-    /// Domain: `n` is 1 to 1024, at least 2 for [`Base::Root`] and 4 for [`Base::FourthRoot`]; `full` and `floor` are unsigned Q0.16, their
-    /// sum at most 1. Source: binary exponentiation in Q1.31.
-    pub fn fill(&mut self, n: u16, base: Base, full: u32, floor: u16) {
-        let n4 = u32::from(n) << 2;
-        let scale = WHOLE.max(NonZeroU32::new(if base == Base::Square { n4 << 1 } else { n4 >> base.roots() }).unwrap_or(WHOLE));
-        self.scale = scale.get();
-        self.floor = floor;
-        // x = 1 - 8 i / (4096 max(n, 8)), Q1.31: products of two fit 64 bits. The step has 32 more fraction bits.
-        let step = long(1 << 56, scale.get().into());
-        let value = |i: usize| {
-            let x = (1u64 << 31).saturating_sub((i as u64 * step) >> 32);
-            let x = match base {
-                Base::Square => (square((x >> 1) as i32).max(0) as u64) << 1,
-                _ => (0..base.roots()).fold(x, |x, _| root(x << 31)),
-            };
-            u32::from(floor) + ((unsigned_product(power(x as u32, n), full) + (1 << 30)) >> 31) as u32
-        };
-        let mut upper = value(0);
+    /// Computes the table of a curve.
+    pub fn fill(&mut self, curve: &HighlightCurve) {
+        (self.scale, self.floor) = (curve.scale().get(), curve.floor);
+        let step = curve.step();
+        let mut upper = curve.value(0, step);
         for (i, entries) in self.table.chunks_mut(COMPUTED).enumerate() {
-            let lower = value((i + 1) * COMPUTED);
-            let sum = (0..).map(|k| upper * (COMPUTED as u32 - k) + lower * k);
-            entries.iter_mut().zip(sum).for_each(|(entry, sum)| *entry = (sum / COMPUTED as u32).min(0xffff) as u16);
+            let lower = curve.value((i + 1) * COMPUTED, step);
+            entries.iter_mut().enumerate().for_each(|(k, entry)| *entry = between([upper, lower], k));
             upper = lower;
         }
         // Everything below the domain gets the lowest entry; in the pixel loop, the one above it.
         let [.., lower, lowest] = &mut self.table;
-        (*lowest, *lower) = (floor, floor);
-    }
-
-    /// Position of a cosine (Q2.30) in the table, unsigned Q20.12: 1 - cosine in steps of the table. Small cosines lie past the end.
-    #[inline(always)]
-    fn position(&self, cosine: i32) -> u32 {
-        let below = (1i32 << COSINE).saturating_sub(cosine).max(0) as u32;
-        // (1 - cosine) * 4 n / 32 * 4096 / 2^30, with 12 fraction bits.
-        u32::try_from(unsigned_product(below, self.scale) >> (COSINE - 19)).unwrap_or(u32::MAX)
+        (*lowest, *lower) = (curve.floor, curve.floor);
     }
 
     /// `full cosine^n`, unsigned Q0.16, without the floor, by linear interpolation.
@@ -150,10 +240,10 @@ impl HighlightLut {
     /// Domain: every `cosine`, Q2.30; above 1 counts as 1. Error: at most [`ERROR`] of full intensity (tests::error).
     #[must_use]
     pub fn at(&self, cosine: i32) -> u32 {
-        let position = self.position(cosine);
+        let position = position(self.scale, cosine);
         let i = (position >> 12) as usize;
         match (self.table.get(i), self.table.get(i + 1)) {
-            (Some(&a), Some(&b)) => u32::from(a) - ((u32::from(a.saturating_sub(b)) * (position & 0xfff)) >> 12) - u32::from(self.floor),
+            (Some(&a), Some(&b)) => interpolated([a, b], position, self.floor),
             _ => 0,
         }
     }
@@ -165,23 +255,11 @@ impl HighlightLut {
         CosineLookup { table: &self.table, top: (1 << PIXEL_COSINE) + ((1 << 19) / scale) as i32, factor: (scale.get() << 16) as i32 }
     }
 
-    /// The smallest value of the table, where the power is 0; unsigned Q0.16.
-    #[must_use]
-    pub fn floor(&self) -> u32 {
-        self.floor.into()
-    }
-
     /// The last entry of the table, which a pixel takes for all smaller cosines; unsigned Q0.16.
     #[inline(always)]
     #[must_use]
     pub fn least(&self) -> u32 {
         self.table[SIZE - 1].into()
-    }
-
-    /// The cosine, Q2.30, at which the table ends. The powers of smaller cosines count as 0.
-    #[must_use]
-    pub fn highlight_threshold(&self) -> i32 {
-        (1i32 << COSINE) - long(32u64 << COSINE, NonZeroU32::new(self.scale).unwrap_or(WHOLE).get().into()) as i32
     }
 }
 
@@ -234,10 +312,10 @@ mod tests {
                 if n >> base.roots() == 0 {
                     continue;
                 }
-                let mut lut = HighlightLut::EMPTY;
-                lut.fill(n, base, full, floor);
+                let (mut lut, curve) = (HighlightLut::EMPTY, HighlightCurve::new(n, base, full, floor));
+                lut.fill(&curve);
                 let (mut at, mut nearest) = (0f64, 0f64);
-                let step = 2f64.powi(30) - f64::from(lut.highlight_threshold());
+                let step = 2f64.powi(30) - f64::from(curve.highlight_threshold());
                 for position in positions() {
                     let cosine = (2f64.powi(30) - (step / SIZE as f64 * position).floor()) as i32;
                     let x = f64::from(cosine) / 2f64.powi(30);
@@ -247,12 +325,13 @@ mod tests {
                         _ => x.max(0.0).powf(1.0 / f64::from(1 << base.roots())),
                     };
                     let exact = f64::from(full) * x.powi(n.into());
+                    assert_eq!(curve.at(cosine), lut.at(cosine), "n = {n}, {base:?}: {cosine}");
                     at = at.max((f64::from(lut.at(cosine)) - exact).abs() / 65_536.0);
                     nearest = nearest.max((f64::from(lut.by_cosine().at(cosine >> 3)) - f64::from(floor) - exact).abs() / 65_536.0);
                 }
                 assert!(at <= ERROR, "n = {n}, {base:?}: {at}");
                 assert!(nearest <= NEAREST_ERROR, "n = {n}, {base:?}: {nearest}");
-                assert_eq!(lut.at(lut.highlight_threshold() - 1), 0, "n = {n}, {base:?}");
+                assert_eq!(lut.at(curve.highlight_threshold() - 1), 0, "n = {n}, {base:?}");
             }
         }
     }

@@ -8,7 +8,7 @@ use crate::{
     },
     lighting::{
         lights::{Lighting, MeanNormal, point, vertex_cosine},
-        reflectance::Reflectance,
+        reflectance::LitMaterial,
     },
     math::vector::{map, wide},
     method::VertexLight,
@@ -30,7 +30,7 @@ pub(crate) struct VertexStage<'f> {
     pub(crate) lighting: &'f Lighting,
     /// See [`Lighting::constant`].
     pub(crate) constant: Option<&'f [[i32; 3]; 2]>,
-    pub(crate) reflectance: &'f Reflectance,
+    pub(crate) reflectance: LitMaterial<'f>,
     /// The light that the method needs at vertices.
     pub(crate) light: VertexLight,
 }

@@ -37,9 +37,9 @@ pub fn shade_constant(setup: &TriangleSetup<'_>, shading: &Shading<'_>, canvas: 
             let fit = |source: &Source| {
                 // Both are linear, so that corners tell.
                 let [towards, half] = shading.constant_cosines(setup, source);
-                if !setup.leaves_out_highlight(reflectance, &half) {
+                if !setup.leaves_out_highlight(&reflectance, &half) {
                     Lit::Fully(linear([towards, half]))
-                } else if setup.leaves_out_light(reflectance, &towards) {
+                } else if setup.leaves_out_light(&reflectance, &towards) {
                     Lit::Nowhere
                 } else {
                     Lit::Diffuse(linear([towards]))
@@ -125,14 +125,14 @@ pub(crate) fn draw<C: Pixel>(
         return None;
     }
     let square = tabled(setup)?;
-    let halves = HalfRsqrt::get();
+    let (halves, lut) = (HalfRsqrt::get(), shading.reflectance.table()?);
     let half_reciprocal = |[square]: [u32; 1]| halves.rsqrt(square) as i32;
     // One closure for both, or each would have loops of its own.
     let length = || square;
     if tables.reflectance.lights() == 2 {
-        return quotient::draw_two::<true, _, C>(setup, length, half_reciprocal, tables, band);
+        return quotient::draw_two::<true, _, C>(setup, length, half_reciprocal, (tables, lut), band);
     }
-    quotient::draw::<true, _, C>(setup, &corners(), length, half_reciprocal, tables, band)
+    quotient::draw::<true, _, C>(setup, &corners(), length, half_reciprocal, (tables, lut), band)
 }
 
 /// The field |N|² minus [`LEAST`], Q0.32; `None` if |N|² leaves the table of roots.

@@ -17,7 +17,7 @@
 use crate::{
     arch::product::unsigned_product,
     format::{COSINE, HAVERSINE, NORMAL_LENGTH},
-    lighting::reflectance::{FULL, Reflectance},
+    lighting::reflectance::{FULL, LitMaterial},
     method::{
         CornerCosines,
         highlight_error::{self, Place, USUAL_EXPONENT},
@@ -106,7 +106,7 @@ impl ErrorBounds {
 
     /// Error bounds for a material of this `exponent` under `lights` lights.
     #[must_use]
-    pub fn new(reflectance: &Reflectance, exponent: u16, lights: usize) -> Self {
+    pub fn new(reflectance: LitMaterial<'_>, exponent: u16, lights: usize) -> Self {
         let light = |light| {
             let [diffuse, specular] = if light < lights { reflectance.largest_gains(light) } else { [0; 2] };
             let narrowed = specular * u32::from(USUAL_EXPONENT) / u32::from(exponent.max(1)) + 1;
@@ -342,7 +342,7 @@ impl ErrorBounds {
     /// Whether light may exceed 255 somewhere on the triangle: what is clamped at nodes is not clamped between them.
     #[inline(never)]
     #[must_use]
-    pub(crate) fn saturates(&self, curvature: Curvature, cosines: &[CornerCosines], reflectance: &Reflectance) -> bool {
+    pub(crate) fn saturates(&self, curvature: Curvature, cosines: &[CornerCosines], reflectance: LitMaterial<'_>) -> bool {
         let mut sum = self.ambient as i32;
         for (light, [towards, half]) in self.lights.iter().zip(cosines) {
             let [towards, half] = [towards, half].map(|cosines| curvature.cosine(above_zero(largest(cosines))).min(1 << BOUND));
@@ -355,8 +355,8 @@ impl ErrorBounds {
 
     /// The level of a light's highlight at N·H (Q2.30), Q9.7, rounded up.
     #[inline(always)]
-    fn share_of(&self, light: &LightBounds, reflectance: &Reflectance, half: i32) -> u32 {
-        let entry = reflectance.highlight_lut.at(half);
+    fn share_of(&self, light: &LightBounds, reflectance: LitMaterial<'_>, half: i32) -> u32 {
+        let entry = reflectance.highlight_at(half);
         let level = if reflectance.holds_levels() { entry } else { (light.specular * entry) >> 16 };
         level + (light.specular >> 7) + 2
     }
@@ -418,7 +418,10 @@ mod tests {
     use super::*;
     use crate::{
         format::{LEVEL, UNIT},
-        lighting::{lights::vertex_cosine, reflectance::Highlight},
+        lighting::{
+            lights::vertex_cosine,
+            reflectance::{Highlight, Reflectance},
+        },
         math::vector::wide,
         method::highlight_error::EXACT,
         pixel::Channels,
@@ -511,7 +514,8 @@ mod tests {
         let material = Material { ambient: bright, diffuse: bright, specular: bright, exponent: 1024 };
         let light = Light { colour: bright, ..Light::new_zeroed() };
         reflectance.fill(Channels::of::<Gray8>(), bright, &material, &[light; 2], (Highlight::Half, false));
-        let bounds = ErrorBounds::new(&reflectance, 1024, 2);
+        let reflectance = LitMaterial::new(&reflectance, None);
+        let bounds = ErrorBounds::new(reflectance, 1024, 2);
         let one = (1 << COSINE) + (1 << (COSINE - UNIT));
         for angle in [0.0f64, 0.01, 0.5, 0.615] {
             // As far from one another as from the axis.
@@ -522,7 +526,7 @@ mod tests {
                 let cosines = [[towards, [one; 3]]; 2];
                 let _ = (bounds.linear(1 << 20, curvature, cosines), bounds.quadratic(&triangle, curvature, &cosines));
                 let _ = bounds.cosines(&triangle, curvature, &cosines);
-                assert!(bounds.saturates(curvature, &cosines, &reflectance));
+                assert!(bounds.saturates(curvature, &cosines, reflectance));
                 assert!(bounds.linear(1 << 20, curvature, cosines).is_none_or(|linear| linear.brightest as i32 >= FULL));
             }
         }
@@ -542,7 +546,8 @@ mod tests {
             let mut reflectance = Reflectance::EMPTY;
             let white = Light { colour: [1 << UNIT; 3], ..Light::new_zeroed() };
             reflectance.fill(Channels::of::<Gray8>(), [1 << UNIT; 3], &material, &[white; 2][..lights], (Highlight::Half, false));
-            let bounds = ErrorBounds::new(&reflectance, exponent, lights);
+            let reflectance = LitMaterial::new(&reflectance, None);
+            let bounds = ErrorBounds::new(reflectance, exponent, lights);
             let (facing, spread) = (random.direction(), 0.6f64.powf(1.0 + 4.0 * random.next().abs()));
             // As long as a mesh has them.
             let fixed = [(); 3].map(|()| {

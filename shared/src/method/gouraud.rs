@@ -131,7 +131,7 @@ fn one<C: Pixel>(gradients: &Gradients, levels: [i32; 3]) -> Plane<1> {
 /// The levels at the corners.
 fn corner_levels(setup: &TriangleSetup<'_>, shading: &Shading<'_>) -> [[i32; 3]; 3] {
     if shading.constant.is_some() {
-        return reflected(setup, shading.reflectance);
+        return reflected(setup, &shading.reflectance);
     }
     let [a, b, c] = setup.corners;
     [a.levels(), b.levels(), c.levels()]

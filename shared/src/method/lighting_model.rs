@@ -9,9 +9,9 @@ use crate::{
     },
     lighting::{
         lights::{Source, cosine},
-        reflectance::{Factors, Reflectance, Reflection},
+        reflectance::{Factors, LitMaterial, Reflection},
     },
-    math::highlight_lut::CosineLookup,
+    math::highlight_lut::{CosineLookup, HighlightLut},
     method::{Shading, TriangleSetup, node::Node},
     raster::canvas::{CHUNK, Canvas, SpanShader, SpanTarget},
     setup::gradients::Gradients,
@@ -54,7 +54,7 @@ pub enum Lit<V, D> {
 
 /// Shades a triangle under any lights on any material. Lights take turns over a run of pixels, so that each loop knows one light.
 struct ManyLights<'a, K, P, D, F, S> {
-    reflectance: &'a Reflectance,
+    reflectance: LitMaterial<'a>,
     model: F,
     /// The field that all lights share.
     common: K,
@@ -255,7 +255,9 @@ impl Shading<'_> {
         F: LightingModel<<K::Walker as Walker>::Value, <P::Walker as Walker>::Value, <D::Walker as Walker>::Value>,
     {
         let reflectance = self.reflectance;
-        let (lut, mut ambient) = (reflectance.highlight_lut.by_cosine(), reflectance.ambient_sums());
+        // Renderers refuse methods that look up highlights if there is no table.
+        let Some(lut) = reflectance.table().map(HighlightLut::by_cosine) else { return 0 };
+        let mut ambient = reflectance.ambient_sums();
         let (mut lights, mut diffuse) = (heapless::Vec::<_, MAX_LIGHTS>::new(), heapless::Vec::<_, MAX_LIGHTS>::new());
         let (mut without_highlight, mut without_light) = (0, 0);
         for (light, source) in self.lighting.sources().iter().enumerate() {

@@ -18,7 +18,7 @@ use crate::{
     format::{COSINE, UNIT},
     interpolate::{by_column::ByColumn, field::Nodes, plane::Plane, quadric::Quadric},
     lighting::{
-        constant_lights::{OneLight, OneLightRamp, OneLightRgb, node},
+        constant_lights::{Colours, OneLightRamp, OneLightRgb, WithHighlight, node},
         lights::point,
         material_tables::MaterialTables,
     },
@@ -30,10 +30,11 @@ use crate::{
     method::{
         CornerCosines, Shading, Style, TriangleSetup, duff, largest,
         lighting_model::{BITS, fitted, linear, quadratic, signed},
+        lit::{AtPixel, FromValues, LitShader},
         node::{FRACTION, field_product, is_steep, map_six},
     },
     pixel::{Pixel, dither::ByRows},
-    raster::{band::Band, pixel_shader::PixelShader},
+    raster::band::Band,
     stream::record::Vertex,
 };
 
@@ -72,12 +73,13 @@ pub(crate) fn draw<C: Pixel>(
             }
             let length = duff::tabled(setup)?;
             let patch = products.patch(setup, light, length);
-            let (lookup, lengths) = (tables.reflectance.highlight_lut.by_cosine(), HalfRsqrt::get());
+            let (lookup, lengths) = (shading.reflectance.table()?.by_cosine(), HalfRsqrt::get());
             let colours = match tables.one_light_rgb() {
-                Some(colours) => Colours::Rgb(colours),
-                None => Colours::Ramp(tables.one_light_ramp()?),
+                Some(colours) => Either::Rgb(colours),
+                None => Either::Ramp(tables.one_light_ramp()?),
             };
-            return Some(Ok(setup.screen.draw(setup.gradients, patch, DiffuseAndHighlight { colours, lookup, lengths }, band)));
+            let shader = LitShader::of::<WithHighlight>(colours, FromProducts { lookup, lengths });
+            return Some(Ok(setup.screen.draw(setup.gradients, patch, shader, band)));
         }
     }
     Some(Err([light, BEHIND]))
@@ -166,52 +168,76 @@ fn half(lengths: &HalfRsqrt, nl: i32, nv: i32, lv: i32) -> i32 {
     upper((nl >> 3) + nv, lengths.rsqrt(quarter.wrapping_sub(LEAST)) as i32)
 }
 
-/// Diffuse light and highlight from walked products.
+/// Values at the pixel are walked products.
 #[derive(Clone, Copy)]
-struct DiffuseAndHighlight<'a, C: Pixel> {
-    colours: Colours<'a, C>,
+struct FromProducts<'a> {
     lookup: CosineLookup<'a>,
     lengths: &'a HalfRsqrt,
-}
-
-/// The colours of a material in one channel or three, which are told apart at each pixel: a loop for each would be much code.
-#[derive(Clone, Copy)]
-enum Colours<'a, C: Pixel> {
-    Ramp(OneLightRamp<'a, C>),
-    Rgb(OneLightRgb<'a, C>),
-}
-
-/// The colour of diffuse light of this cosine, Q5.27, and a highlight.
-#[inline(always)]
-fn colour<T: OneLight>(colours: &T, cosine: i32, highlight: u32, threshold: u32) -> T::Pixel {
-    // The cosine counts as one of Q2.30, so that the level has three bits less.
-    colours.colour::<17>(node(colours.diffuse(), cosine, 20), highlight, threshold)
 }
 
 /// The values of [`Walked`].
 type Value = ([u32; 1], (([u32; 1], [u32; 1]), ([u32; 1], [u32; 1])));
 
-impl<C: Pixel> ByRows for DiffuseAndHighlight<'_, C> {
+/// N·L, Q5.27, and a highlight.
+type CosineAndHighlight = (i32, u32);
+
+impl AtPixel<Value> for FromProducts<'_> {
+    type Common = ();
+    type Values = CosineAndHighlight;
+
+    // The cosine counts as one of Q2.30, so that the level has three bits less than 20.
+    const BITS: u32 = 17;
+
+    #[inline(always)]
+    fn at(&self, ([nn], (([vv], [nv]), ([nl], [lv]))): Value) -> ((), CosineAndHighlight) {
+        let (normal, view) = (self.lengths.rsqrt(nn) as i32, self.lengths.rsqrt(vv) as i32);
+        let half = half(self.lengths, signed(nl), upper(signed(nv), view), upper(signed(lv), view));
+        ((), (upper(signed(nl), normal), self.lookup.at(upper(half << (COSINE - HALF), normal))))
+    }
+}
+
+impl FromValues<(), CosineAndHighlight> for WithHighlight {
+    #[inline(always)]
+    fn from_values((): &(), full: u16, (cosine, highlight): CosineAndHighlight) -> Self {
+        Self(node(full, cosine, 20), highlight)
+    }
+}
+
+/// The colours of a material in one channel or three, which are told apart at each pixel: a loop for each would be much code.
+#[derive(Clone, Copy)]
+enum Either<'a, C: Pixel> {
+    Ramp(OneLightRamp<'a, C>),
+    Rgb(OneLightRgb<'a, C>),
+}
+
+impl<C: Pixel> ByRows for Either<'_, C> {
     #[inline(always)]
     fn step_row(&mut self) {
-        match &mut self.colours {
-            Colours::Ramp(colours) => colours.step_row(),
-            Colours::Rgb(colours) => colours.step_row(),
+        match self {
+            Self::Ramp(colours) => colours.step_row(),
+            Self::Rgb(colours) => colours.step_row(),
         }
     }
 }
 
-impl<C: Pixel> PixelShader<Value> for DiffuseAndHighlight<'_, C> {
+impl<C: Pixel> Colours<WithHighlight> for Either<'_, C> {
     type Pixel = C;
 
+    const TABLED: bool = false;
+
     #[inline(always)]
-    fn shade(&self, ([nn], (([vv], [nv]), ([nl], [lv]))): Value, threshold: u32) -> C {
-        let (normal, view) = (self.lengths.rsqrt(nn) as i32, self.lengths.rsqrt(vv) as i32);
-        let half = half(self.lengths, signed(nl), upper(signed(nv), view), upper(signed(lv), view));
-        let (diffuse, highlight) = (upper(signed(nl), normal), self.lookup.at(upper(half << (COSINE - HALF), normal)));
-        match self.colours {
-            Colours::Ramp(colours) => colour(&colours, diffuse, highlight, threshold),
-            Colours::Rgb(colours) => colour(&colours, diffuse, highlight, threshold),
+    fn diffuse(&self) -> u16 {
+        match self {
+            Self::Ramp(colours) => Colours::<WithHighlight>::diffuse(colours),
+            Self::Rgb(colours) => colours.diffuse(),
+        }
+    }
+
+    #[inline(always)]
+    fn colour(&self, bits: u32, light: WithHighlight, threshold: u32) -> C {
+        match self {
+            Self::Ramp(colours) => colours.colour(bits, light, threshold),
+            Self::Rgb(colours) => colours.colour(bits, light, threshold),
         }
     }
 }

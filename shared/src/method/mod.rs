@@ -19,6 +19,7 @@ pub mod gouraud;
 pub mod highlight_error;
 #[doc(hidden)]
 pub mod lighting_model;
+mod lit;
 mod local_viewer;
 #[doc(hidden)]
 pub mod node;
@@ -76,7 +77,7 @@ pub use {
         },
         lighting::{
             lights::{Lighting, Source, Viewer, cosine, point},
-            reflectance::{Highlight, Reflectance, Reflection},
+            reflectance::{Highlight, LitMaterial, Reflectance, Reflection},
         },
         math::highlight_lut::CosineLookup,
         setup::steepness::Steepness,
@@ -97,7 +98,7 @@ pub trait Method: Sync {
     /// Computes bounds for a method with an error budget, for a material of exponent `_exponent` under `_lights` lights. Other methods do nothing
     /// here.
     #[doc(hidden)]
-    fn error_bounds(&self, _reflectance: &Reflectance, _exponent: u16, _lights: usize) -> ErrorBounds {
+    fn error_bounds(&self, _reflectance: LitMaterial<'_>, _exponent: u16, _lights: usize) -> ErrorBounds {
         ErrorBounds::EMPTY
     }
 
@@ -426,7 +427,7 @@ pub struct Shading<'f> {
     /// The material under the lights of the scene. It converts cosines to light levels: N·L (normal and direction to the light) for diffuse
     /// light, and N·H (normal and half vector between light and viewer) for highlights.
     #[doc(hidden)]
-    pub reflectance: &'f Reflectance,
+    pub reflectance: LitMaterial<'f>,
     /// The lights of the scene and the viewer, in object space.
     #[doc(hidden)]
     pub lighting: &'f Lighting,

@@ -11,16 +11,18 @@ use crate::{
         plane::Plane,
     },
     lighting::{
-        constant_lights::{OneLight, OneLightRamp, OneLightRgb, TwoLightsRgb, node},
+        constant_lights::{Colours, DiffuseOnly, OneLightRamp, OneLightRgb, TwoLightsRgb, WithHighlight, node},
         material_tables::MaterialTables,
     },
-    math::{highlight_lookup, highlight_lookup::QuotientLookup},
-    method::{CornerCosines, TriangleSetup, largest, lighting_model::fitted, two_lights::TwoLights},
-    pixel::{Pixel, dither::ByRows},
-    raster::{
-        band::Band,
-        pixel_shader::{PixelShader, Solid},
+    math::{highlight_lookup, highlight_lookup::QuotientLookup, highlight_lut::HighlightLut},
+    method::{
+        CornerCosines, TriangleSetup, largest,
+        lighting_model::fitted,
+        lit::{AtPixel, FromValues, LitShader},
+        two_lights::TwoLights,
     },
+    pixel::Pixel,
+    raster::{band::Band, pixel_shader::Solid},
 };
 
 /// Fraction bits of a diffuse level at a node. With a sign, levels then have [`RANGE`] bits.
@@ -34,110 +36,63 @@ const PIXEL: u32 = LEVEL - 3;
 /// Bits of the range of numerators at nodes, in steps of the table.
 const STEPS: u32 = 26;
 
-/// A walked value for each of two lights.
-type Walked<V> = (V, V);
+/// Half a reciprocal length, Q2.30. Unless it is `EXACT`, cosines may exceed 1 and then count as 1.
+struct HalfReciprocal<const EXACT: bool>(i32);
 
-/// Diffuse light and highlight from numerators and a length. `R` computes half a reciprocal length, Q2.30, from walked values. Unless it is
-/// `EXACT`, cosines may exceed 1 and then count as 1.
+/// Values at the pixel are numerators without highlights and a length, from which `R` computes half a reciprocal length.
 #[derive(Clone, Copy)]
-struct DiffuseAndHighlight<'a, T, R, const EXACT: bool> {
-    colours: T,
-    lookup: QuotientLookup<'a>,
-    half_reciprocal: R,
-}
+struct Quotient<R, const EXACT: bool>(R);
 
-impl<T: ByRows, R: Copy, const EXACT: bool> ByRows for DiffuseAndHighlight<'_, T, R, EXACT> {
-    #[inline(always)]
-    fn step_row(&mut self) {
-        self.colours.step_row();
-    }
-}
-
-impl<T: OneLight, V, R: Fn(V) -> i32 + Copy, const EXACT: bool> PixelShader<(([u32; 1], [u32; 1]), V)>
-    for DiffuseAndHighlight<'_, T, R, EXACT>
-{
-    type Pixel = T::Pixel;
-
-    const CHEAP: bool = T::TABLED;
-
-    #[inline(always)]
-    fn shade(&self, (([light], [half]), length): (([u32; 1], [u32; 1]), V), threshold: u32) -> T::Pixel {
-        let half_reciprocal = (self.half_reciprocal)(length);
-        let diffuse = quotient::<EXACT>(self.colours.diffuse(), light, half_reciprocal);
-        let highlight = self.lookup.at(upper(half as i32, half_reciprocal));
-        self.colours.colour::<PIXEL>(diffuse, highlight, threshold)
-    }
-}
-
-/// Diffuse light from a numerator and a length, where there is no highlight.
+/// Values at the pixel are numerators with highlights and a length.
 #[derive(Clone, Copy)]
-struct DiffuseOnly<T, R, const EXACT: bool> {
-    colours: T,
-    half_reciprocal: R,
-}
+struct QuotientWithHighlight<'a, R, const EXACT: bool>(QuotientLookup<'a>, R);
 
-impl<T: ByRows, R: Copy, const EXACT: bool> ByRows for DiffuseOnly<T, R, EXACT> {
+impl<L, V, R: Fn(L) -> i32 + Copy, const EXACT: bool> AtPixel<(V, L)> for Quotient<R, EXACT> {
+    type Common = HalfReciprocal<EXACT>;
+    type Values = V;
+
+    const BITS: u32 = PIXEL;
+
     #[inline(always)]
-    fn step_row(&mut self) {
-        self.colours.step_row();
+    fn at(&self, (values, length): (V, L)) -> (Self::Common, V) {
+        (HalfReciprocal(self.0(length)), values)
     }
 }
 
-impl<C: Pixel, V, R: Fn(V) -> i32 + Copy, const EXACT: bool> PixelShader<([u32; 1], V)> for DiffuseOnly<OneLightRamp<'_, C>, R, EXACT> {
-    type Pixel = C;
+impl<'a, L, V, R: Fn(L) -> i32 + Copy, const EXACT: bool> AtPixel<(V, L)> for QuotientWithHighlight<'a, R, EXACT> {
+    type Common = (QuotientLookup<'a>, HalfReciprocal<EXACT>);
+    type Values = V;
 
-    const CHEAP: bool = true;
+    const BITS: u32 = PIXEL;
 
     #[inline(always)]
-    fn shade(&self, ([light], length): ([u32; 1], V), threshold: u32) -> C {
-        let diffuse = quotient::<EXACT>(self.colours.diffuse(), light, (self.half_reciprocal)(length));
-        self.colours.without_highlight::<PIXEL>(diffuse, threshold)
+    fn at(&self, (values, length): (V, L)) -> (Self::Common, V) {
+        ((self.0, HalfReciprocal(self.1(length))), values)
     }
 }
 
-/// Shades by two lights.
-impl<C: Pixel, V, R: Fn(V) -> i32 + Copy, const EXACT: bool> PixelShader<(Walked<([u32; 1], [u32; 1])>, V)>
-    for DiffuseAndHighlight<'_, TwoLightsRgb<'_, C>, R, EXACT>
-{
-    type Pixel = C;
-
+impl<const EXACT: bool> FromValues<HalfReciprocal<EXACT>, [u32; 1]> for DiffuseOnly {
     #[inline(always)]
-    fn shade(&self, ((one, two), length): (Walked<([u32; 1], [u32; 1])>, V), _: u32) -> C {
-        let half_reciprocal = (self.half_reciprocal)(length);
-        let light = |([light], [half]): ([u32; 1], [u32; 1])| {
-            let diffuse = quotient::<EXACT>(self.colours.diffuse(), light, half_reciprocal);
-            (diffuse, self.lookup.at(upper(half as i32, half_reciprocal)))
-        };
-        self.colours.colour::<PIXEL>([light(one), light(two)])
+    fn from_values(&HalfReciprocal(half_reciprocal): &HalfReciprocal<EXACT>, full: u16, [light]: [u32; 1]) -> Self {
+        Self(quotient::<EXACT>(full, light, half_reciprocal))
     }
 }
 
-/// Shades by two lights, of which the second has no highlight.
-impl<C: Pixel, V, R: Fn(V) -> i32 + Copy, const EXACT: bool> PixelShader<((([u32; 1], [u32; 1]), [u32; 1]), V)>
-    for DiffuseAndHighlight<'_, TwoLightsRgb<'_, C>, R, EXACT>
-{
-    type Pixel = C;
-
+impl<const EXACT: bool> FromValues<(QuotientLookup<'_>, HalfReciprocal<EXACT>), [u32; 1]> for DiffuseOnly {
     #[inline(always)]
-    fn shade(&self, ((([light], [half]), [other]), length): ((([u32; 1], [u32; 1]), [u32; 1]), V), _: u32) -> C {
-        let half_reciprocal = (self.half_reciprocal)(length);
-        let diffuse = |light| quotient::<EXACT>(self.colours.diffuse(), light, half_reciprocal);
-        let highlight = self.lookup.at(upper(half as i32, half_reciprocal));
-        self.colours.colour::<PIXEL>([(diffuse(light), highlight), (diffuse(other), 0)])
+    fn from_values((_, half_reciprocal): &(QuotientLookup<'_>, HalfReciprocal<EXACT>), full: u16, light: [u32; 1]) -> Self {
+        Self::from_values(half_reciprocal, full, light)
     }
 }
 
-/// Shades by two lights without highlights.
-impl<C: Pixel, V, R: Fn(V) -> i32 + Copy, const EXACT: bool> PixelShader<(Walked<[u32; 1]>, V)>
-    for DiffuseOnly<TwoLightsRgb<'_, C>, R, EXACT>
-{
-    type Pixel = C;
-
+impl<const EXACT: bool> FromValues<(QuotientLookup<'_>, HalfReciprocal<EXACT>), ([u32; 1], [u32; 1])> for WithHighlight {
     #[inline(always)]
-    fn shade(&self, (([one], [two]), length): (Walked<[u32; 1]>, V), _: u32) -> C {
-        let half_reciprocal = (self.half_reciprocal)(length);
-        let light = |light| (quotient::<EXACT>(self.colours.diffuse(), light, half_reciprocal), 0);
-        self.colours.colour::<PIXEL>([light(one), light(two)])
+    fn from_values(
+        (lookup, HalfReciprocal(half_reciprocal)): &(QuotientLookup<'_>, HalfReciprocal<EXACT>),
+        full: u16,
+        ([light], [half]): ([u32; 1], [u32; 1]),
+    ) -> Self {
+        Self(quotient::<EXACT>(full, light, *half_reciprocal), lookup.at(upper(half as i32, *half_reciprocal)))
     }
 }
 
@@ -156,7 +111,7 @@ pub(super) fn draw<const EXACT: bool, F: Field, C: Pixel>(
     cosines: &CornerCosines,
     length: impl FnOnce() -> F,
     half_reciprocal: impl Fn(F::Value) -> i32 + Copy,
-    tables: MaterialTables<'_, C>,
+    (tables, lut): (MaterialTables<'_, C>, &HighlightLut),
     band: &mut Band<'_, C>,
 ) -> Option<u32> {
     let rgb = tables.one_light_rgb();
@@ -171,8 +126,8 @@ pub(super) fn draw<const EXACT: bool, F: Field, C: Pixel>(
         (Some(ramp), _) if !C::GRAY && has_no_highlight => {
             draw_diffuse::<EXACT, _, _>(setup, &cosines[0], length, half_reciprocal, ramp, tables, band)
         }
-        (_, Some(rgb)) => draw_rgb::<EXACT, _, _>(setup, cosines, length, half_reciprocal, rgb, tables, band),
-        (ramp, None) => draw_in::<EXACT, _, _>(setup, cosines, length, half_reciprocal, ramp?, tables, band),
+        (_, Some(rgb)) => draw_rgb::<EXACT, _, _>(setup, cosines, length, half_reciprocal, rgb, lut, band),
+        (ramp, None) => draw_in::<EXACT, _, _>(setup, cosines, length, half_reciprocal, ramp?, lut, band),
     })
 }
 
@@ -184,10 +139,10 @@ fn draw_rgb<const EXACT: bool, F: Field, C: Pixel>(
     length: impl FnOnce() -> F,
     half_reciprocal: impl Fn(F::Value) -> i32 + Copy,
     colours: OneLightRgb<'_, C>,
-    tables: MaterialTables<'_, C>,
+    lut: &HighlightLut,
     band: &mut Band<'_, C>,
 ) -> u32 {
-    draw_in::<EXACT, _, _>(setup, cosines, length, half_reciprocal, colours, tables, band)
+    draw_in::<EXACT, _, _>(setup, cosines, length, half_reciprocal, colours, lut, band)
 }
 
 /// Draws `setup` under two constant lights.
@@ -196,49 +151,52 @@ pub(super) fn draw_two<const EXACT: bool, F: Field, C: Pixel>(
     setup: &TriangleSetup<'_>,
     length: impl FnOnce() -> F,
     half_reciprocal: impl Fn(F::Value) -> i32 + Copy,
-    tables: MaterialTables<'_, C>,
+    (tables, lut): (MaterialTables<'_, C>, &HighlightLut),
     band: &mut Band<'_, C>,
 ) -> Option<u32> {
     let TwoLights { colours, cosines: [first, second], highlights } = TwoLights::on(setup, tables)?;
-    let full = colours.diffuse();
-    let lookup = QuotientLookup::new(&tables.reflectance.highlight_lut);
-    let shader = DiffuseAndHighlight::<_, _, EXACT> { colours, lookup, half_reciprocal };
+    let full = TwoLightsRgb::<C>::DIFFUSE;
+    let lookup = QuotientLookup::new(lut);
+    let at = QuotientWithHighlight::<_, EXACT>(lookup, half_reciprocal);
     let both = |[towards, half]: &CornerCosines| (plane(setup, full, towards), numerator(setup, lookup, half));
     setup.count(band.top, &mut band.counts.without_highlight, 2 - highlights);
     Some(match highlights {
         1 if setup.leaves_out_light(tables.reflectance, &second[0]) => {
             setup.count(band.top, &mut band.counts.without_light, 1);
-            draw_rgb::<EXACT, _, _>(setup, &first, length, half_reciprocal, colours.first(), tables, band)
+            draw_rgb::<EXACT, _, _>(setup, &first, length, half_reciprocal, colours.first(), lut, band)
         }
         0 => {
             let patch = || ((plane(setup, full, &first[0]), plane(setup, full, &second[0])), fitted(&length(), setup.gradients));
-            setup.fill(patch, DiffuseOnly::<_, _, EXACT> { colours, half_reciprocal }, band)
+            setup.fill(patch, LitShader::of::<(DiffuseOnly, DiffuseOnly)>(colours, Quotient::<_, EXACT>(half_reciprocal)), band)
         }
         1 => {
             let patch = || (ByColumn((both(&first), plane(setup, full, &second[0]))), fitted(&length(), setup.gradients));
-            setup.fill(patch, shader, band)
+            setup.fill(patch, LitShader::of::<(WithHighlight, DiffuseOnly)>(colours, at), band)
         }
-        _ => setup.fill(|| (ByColumn((both(&first), both(&second))), fitted(&length(), setup.gradients)), shader, band),
+        _ => {
+            let patch = || (ByColumn((both(&first), both(&second))), fitted(&length(), setup.gradients));
+            setup.fill(patch, LitShader::of::<(WithHighlight, WithHighlight)>(colours, at), band)
+        }
     })
 }
 
 /// Draws a triangle with a highlight in these `colours`.
 #[inline(always)]
-fn draw_in<const EXACT: bool, F: Field, T: OneLight>(
+fn draw_in<const EXACT: bool, F: Field, T: Colours<WithHighlight>>(
     setup: &TriangleSetup<'_>,
     cosines: &CornerCosines,
     length: impl FnOnce() -> F,
     half_reciprocal: impl Fn(F::Value) -> i32 + Copy,
     colours: T,
-    tables: MaterialTables<'_, T::Pixel>,
+    lut: &HighlightLut,
     band: &mut Band<'_, T::Pixel>,
 ) -> u32
 where
     T::Pixel: Pixel,
 {
-    let lookup = QuotientLookup::new(&tables.reflectance.highlight_lut);
+    let lookup = QuotientLookup::new(lut);
     let patch = || patch(setup, colours.diffuse(), lookup, cosines, length);
-    setup.fill(patch, DiffuseAndHighlight::<_, _, EXACT> { colours, lookup, half_reciprocal }, band)
+    setup.fill(patch, LitShader::of::<WithHighlight>(colours, QuotientWithHighlight::<_, EXACT>(lookup, half_reciprocal)), band)
 }
 
 /// Draws a triangle without a highlight by a table of colours.
@@ -257,8 +215,8 @@ fn draw_diffuse<const EXACT: bool, F: Field, C: Pixel>(
         return setup.fill(|| Constant, Solid(colours.unlit()), band);
     }
     setup.count(band.top, &mut band.counts.without_highlight, 1);
-    let patch = || diffuse_patch(setup, colours.diffuse(), towards, length);
-    setup.fill(patch, DiffuseOnly::<_, _, EXACT> { colours, half_reciprocal }, band)
+    let patch = || diffuse_patch(setup, Colours::<DiffuseOnly>::diffuse(&colours), towards, length);
+    setup.fill(patch, LitShader::of::<DiffuseOnly>(colours, Quotient::<_, EXACT>(half_reciprocal)), band)
 }
 
 /// The numerator of diffuse light. `full` is the material's level at cosine 1.

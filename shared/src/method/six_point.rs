@@ -55,7 +55,7 @@ impl Loops for SixPoint {
         // One constant light without a highlight is one number also in three channels.
         let one = C::GRAY
             || !reflectance.three_channels()
-            || shading.constant.is_some() && reflectance.has_ramp() && setup.has_no_highlight(reflectance);
+            || shading.constant.is_some() && reflectance.has_ramp() && setup.has_no_highlight(&reflectance);
         if !one {
             return Some(draw_rgb(setup, shading, band));
         }
@@ -77,10 +77,10 @@ fn draw_rgb<C: Pixel>(setup: &TriangleSetup<'_>, shading: &Shading<'_>, band: &m
 #[inline(always)]
 fn reflected(setup: &TriangleSetup<'_>, shading: &Shading<'_>) -> ([i32; 6], [u32; 6]) {
     let light = setup.six_diffuse();
-    if setup.has_no_highlight(shading.reflectance) {
+    if setup.has_no_highlight(&shading.reflectance) {
         return (light, [0; 6]);
     }
-    (light, map_six(setup.six_half(shading.exponent), |half| shading.reflectance.highlight_lut.at(half)))
+    (light, map_six(setup.six_half(shading.exponent), |half| shading.reflectance.highlight_at(half)))
 }
 
 /// Levels at the six nodes, in three channels.
@@ -107,10 +107,10 @@ fn three_levels(setup: &TriangleSetup<'_>, shading: &Shading<'_>) -> [[i32; 6]; 
 #[inline(always)]
 fn one_level(setup: &TriangleSetup<'_>, shading: &Shading<'_>) -> [i32; 6] {
     let (light, reflectance) = (setup.six_diffuse(), shading.reflectance);
-    if setup.has_no_highlight(reflectance) {
+    if setup.has_no_highlight(&reflectance) {
         return reflectance.six_diffuse_clamped(light);
     }
-    reflectance.six(0, light, map_six(setup.six_half(shading.exponent), |half| reflectance.highlight_lut.at(half)))
+    reflectance.six(0, light, map_six(setup.six_half(shading.exponent), |half| reflectance.highlight_at(half)))
 }
 
 /// Node levels under any lights: corners are lit already, midpoints are lit here.

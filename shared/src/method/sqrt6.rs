@@ -18,7 +18,7 @@ use crate::{
         quadric::Quadric,
     },
     lighting::{
-        constant_lights::{OneLight, OneLightRamp, OneLightRgb, TwoLightsRgb, node},
+        constant_lights::{Colours, DiffuseOnly, OneLightRamp, OneLightRgb, TwoLightsRgb, WithHighlight, node},
         material_tables::MaterialTables,
         reflectance::{Highlight, Reflectance, Reflection},
     },
@@ -26,16 +26,21 @@ use crate::{
     method::{
         CornerCosines, Costs, Facts, HighlightField, Loops, Method, RANGE, Shading, Style, TriangleSetup, VertexLight, largest,
         lighting_model::{BITS, EXTRA, LightingModel, Lit, Quadratic, quadratic, signed},
+        lit::{AtPixel, FromValues, LitShader},
         node::map_six,
         two_lights::TwoLights,
     },
-    pixel::{Pixel, dither::ByRows},
+    pixel::Pixel,
     raster::{
         band::Band,
         canvas::Canvas,
         pixel_shader::{PixelShader, Ramp},
     },
 };
+
+/// Numbers of the loops with a highlight and without.
+const WITH_HIGHLIGHT: u8 = <WithHighlight as FromValues<DefectLookup<'_>, ([u32; 1], [u32; 1])>>::ID;
+const DIFFUSE_ONLY: u8 = <DiffuseOnly as FromValues<(), [u32; 1]>>::ID;
 
 /// Whether the quadratic goes through roots of N·H, as the table of highlights expects, or through N·H itself.
 type IsRoot = bool;
@@ -76,7 +81,7 @@ impl Method for Sqrt6 {
         }
         let nodes = setup.six_nodes(shading.exponent);
         let fit = |source: &_| Lit::<_, Quadratic<1>>::Fully(shading.six_products(&nodes, source, |[light, half]| [light, root(half)]));
-        shading.draw_lit_in_part(setup, fit, Constant, AtPixel, canvas)
+        shading.draw_lit_in_part(setup, fit, Constant, LookedUp, canvas)
     }
 }
 
@@ -89,7 +94,7 @@ impl SixCosines {
 
 /// [`Method::shade`] under constant lights.
 fn shade_constant<const ROOT: IsRoot>(setup: &TriangleSetup<'_>, shading: &Shading<'_>, canvas: &mut dyn Canvas) -> u32 {
-    let threshold = setup.highlight_threshold(shading.reflectance);
+    let threshold = setup.highlight_threshold(&shading.reflectance);
     let fit = |source: &_| {
         let [towards, half] = shading.lighting.directions(source, [0; 3]);
         let (towards, half) = (setup.six_from(setup.corner_cosines(towards)), setup.corner_cosines(half));
@@ -102,7 +107,7 @@ fn shade_constant<const ROOT: IsRoot>(setup: &TriangleSetup<'_>, shading: &Shadi
             Lit::Diffuse(quadratic([towards]))
         }
     };
-    shading.draw_lit_in_part(setup, fit, Constant, AtPixel, canvas)
+    shading.draw_lit_in_part(setup, fit, Constant, LookedUp, canvas)
 }
 
 impl Loops for Sqrt6 {
@@ -156,7 +161,7 @@ fn draw_any<const ROOT: IsRoot, C: Pixel>(
     let ramp = if rgb.is_some() { tables.diffuse_ramp() } else { Some(tables.one_light_ramp()?) };
     let has_no_highlight = largest(&cosines[1]) < setup.highlight_threshold(tables.reflectance);
     // What a table of colours declines in three channels has been drawn as if it had a highlight.
-    let declined = rgb.is_some() && setup.resumed(band) == Some(DiffuseAndHighlight::<OneLightRgb<'_, C>>::ID);
+    let declined = rgb.is_some() && setup.resumed(band) == Some(WITH_HIGHLIGHT);
     if let Some(ramp) = ramp.filter(|_| has_no_highlight && !declined) {
         let drawn = draw_diffuse(setup, cosines, ramp, tables, band);
         if drawn.is_some() || rgb.is_none() {
@@ -165,8 +170,8 @@ fn draw_any<const ROOT: IsRoot, C: Pixel>(
         }
     }
     match rgb {
-        Some(rgb) => draw_rgb::<ROOT, C>(setup, cosines, rgb, shading.exponent, tables, band),
-        None => draw::<ROOT, C, _>(setup, cosines, ramp?, shading.exponent, tables, band),
+        Some(rgb) => draw_rgb::<ROOT, C>(setup, cosines, rgb, shading, tables, band),
+        None => draw::<ROOT, C, _>(setup, cosines, ramp?, shading, tables, band),
     }
 }
 
@@ -176,11 +181,11 @@ fn draw_rgb<const ROOT: IsRoot, C: Pixel>(
     setup: &TriangleSetup<'_>,
     corners: &CornerCosines,
     colours: OneLightRgb<'_, C>,
-    exponent: u16,
+    shading: &Shading<'_>,
     tables: MaterialTables<'_, C>,
     band: &mut Band<'_, C>,
 ) -> Option<u32> {
-    draw::<ROOT, C, _>(setup, corners, colours, exponent, tables, band)
+    draw::<ROOT, C, _>(setup, corners, colours, shading, tables, band)
 }
 
 /// Draws `setup` under two constant lights.
@@ -192,7 +197,7 @@ fn draw_two<const ROOT: IsRoot, C: Pixel>(
     band: &mut Band<'_, C>,
 ) -> Option<u32> {
     let TwoLights { colours, cosines: [first, second], highlights } = TwoLights::on(setup, tables)?;
-    let (full, exponent) = (colours.diffuse(), shading.exponent);
+    let (full, exponent) = (TwoLightsRgb::<C>::DIFFUSE, shading.exponent);
     let steeply = |[_, half]: CornerCosines| !is_exact(setup, half, tables.reflectance);
     if setup.place.is_none() && !setup.gradients.walks_in_words() && (highlights > 0 && steeply(first) || highlights > 1 && steeply(second))
     {
@@ -200,29 +205,34 @@ fn draw_two<const ROOT: IsRoot, C: Pixel>(
     }
     let (towards, other) = (setup.six_from(first[0]), setup.six_from(second[0]));
     let is_dark = |cosines| DiffuseSign::of(cosines) == DiffuseSign::Nowhere;
-    let lookup = DefectLookup::new(&tables.reflectance.highlight_lut);
-    let shader = DiffuseAndHighlight { colours, lookup };
+    let lookup = DefectLookup::new(shading.reflectance.table()?);
     let diffuse = |cosines| diffuse(setup, full, cosines);
     let highlight = |[_, half]: CornerCosines| highlight::<ROOT>(setup, half, lookup, exponent);
     setup.count(band.top, &mut band.counts.without_highlight, 2 - highlights);
     Some(match highlights {
         1 if is_dark(other) => {
             setup.count(band.top, &mut band.counts.without_light, 1);
-            return draw_rgb::<ROOT, C>(setup, &first, colours.first(), exponent, tables, band);
+            return draw_rgb::<ROOT, C>(setup, &first, colours.first(), shading, tables, band);
         }
-        0 => setup.fill(|| (diffuse(towards), diffuse(other)), DiffuseOnly(colours), band),
-        1 => setup.fill(|| ByColumn(((diffuse(towards), highlight(first)), diffuse(other))), shader, band),
-        _ => setup.fill(|| ByColumn(((diffuse(towards), highlight(first)), (diffuse(other), highlight(second)))), shader, band),
+        0 => setup.fill(|| (diffuse(towards), diffuse(other)), LitShader::of::<(DiffuseOnly, DiffuseOnly)>(colours, Diffuse), band),
+        1 => {
+            let shader = LitShader::of::<(WithHighlight, DiffuseOnly)>(colours, lookup);
+            setup.fill(|| ByColumn(((diffuse(towards), highlight(first)), diffuse(other))), shader, band)
+        }
+        _ => {
+            let shader = LitShader::of::<(WithHighlight, WithHighlight)>(colours, lookup);
+            setup.fill(|| ByColumn(((diffuse(towards), highlight(first)), (diffuse(other), highlight(second)))), shader, band)
+        }
     })
 }
 
 /// Draws `setup` with a highlight under one constant light in these `colours`; `None` if levels may leave the walked format.
 #[inline(always)]
-fn draw<const ROOT: IsRoot, C: Pixel, T: OneLight<Pixel = C>>(
+fn draw<const ROOT: IsRoot, C: Pixel, T: Colours<WithHighlight, Pixel = C>>(
     setup: &TriangleSetup<'_>,
     &[towards, half]: &CornerCosines,
     colours: T,
-    exponent: u16,
+    shading: &Shading<'_>,
     tables: MaterialTables<'_, C>,
     band: &mut Band<'_, C>,
 ) -> Option<u32> {
@@ -237,9 +247,9 @@ fn draw<const ROOT: IsRoot, C: Pixel, T: OneLight<Pixel = C>>(
             return None;
         }
     }
-    let lookup = DefectLookup::new(&tables.reflectance.highlight_lut);
-    let patch = || (diffuse(setup, colours.diffuse(), cosines), highlight::<ROOT>(setup, half, lookup, exponent));
-    Some(setup.fill(patch, DiffuseAndHighlight { colours, lookup }, band))
+    let lookup = DefectLookup::new(shading.reflectance.table()?);
+    let patch = || (diffuse(setup, colours.diffuse(), cosines), highlight::<ROOT>(setup, half, lookup, shading.exponent));
+    Some(setup.fill(patch, LitShader::of::<WithHighlight>(colours, lookup), band))
 }
 
 /// Draws `setup` without a highlight under one constant light by a table of colours; `None` if levels may leave the walked format.
@@ -257,15 +267,16 @@ fn draw_diffuse<C: Pixel>(
     let id = match (resumed, DiffuseSign::of(cosines)) {
         (Some(id), _) => id,
         (None, DiffuseSign::Nowhere) => Ramp::<C>::ID,
-        (None, _) if !colours.is_within() => return None,
+        (None, _) if !Colours::<DiffuseOnly>::is_within(&colours) => return None,
         (None, DiffuseSign::Everywhere) => Ramp::<C>::ID,
-        (None, DiffuseSign::Partly) => DiffuseOnly::<OneLightRamp<'_, C>>::ID,
+        (None, DiffuseSign::Partly) => DIFFUSE_ONLY,
         (None, DiffuseSign::Steeply) => return None,
     };
     Some(if id == Ramp::<C>::ID {
         Shading::fill_one(setup, || tables.reflectance.six_diffuse(cosines), tables, band)
     } else {
-        setup.fill(|| diffuse(setup, colours.diffuse(), cosines), DiffuseOnly(colours), band)
+        let full = Colours::<DiffuseOnly>::diffuse(&colours);
+        setup.fill(|| diffuse(setup, full, cosines), LitShader::of::<DiffuseOnly>(colours, Diffuse), band)
     })
 }
 
@@ -282,85 +293,57 @@ fn highlight<const ROOT: IsRoot>(setup: &TriangleSetup<'_>, half: [i32; 3], look
     Nodes::<6, 1, BITS>::new(half, EXTRA).biased([lookup.half()]).fit(setup.gradients)
 }
 
-/// A walked diffuse level, and a highlight by 1 minus the root of N·H.
-#[derive(Clone, Copy)]
-struct DiffuseAndHighlight<'a, T> {
-    colours: T,
-    lookup: DefectLookup<'a>,
-}
+/// Values at the pixel are walked diffuse levels, and for highlights 1 minus the root of N·H.
+impl<V> AtPixel<V> for DefectLookup<'_> {
+    type Common = Self;
+    type Values = V;
 
-impl<T: ByRows> ByRows for DiffuseAndHighlight<'_, T> {
+    const BITS: u32 = WALK;
+
     #[inline(always)]
-    fn step_row(&mut self) {
-        self.colours.step_row();
+    fn at(&self, value: V) -> (Self, V) {
+        (*self, value)
     }
 }
 
-impl<T: OneLight> PixelShader<([u32; 1], [u32; 1])> for DiffuseAndHighlight<'_, T> {
-    type Pixel = T::Pixel;
-
-    const CHEAP: bool = T::TABLED;
-
+impl FromValues<DefectLookup<'_>, ([u32; 1], [u32; 1])> for WithHighlight {
     const ID: u8 = 2;
 
     #[inline(always)]
-    fn shade(&self, ([light], [defect]): ([u32; 1], [u32; 1]), threshold: u32) -> T::Pixel {
-        self.colours.colour::<WALK>(signed(light), self.lookup.at(signed(defect)), threshold)
+    fn from_values(lookup: &DefectLookup<'_>, _: u16, ([light], [defect]): ([u32; 1], [u32; 1])) -> Self {
+        Self(signed(light), lookup.at(signed(defect)))
     }
 }
 
-/// Shades by two lights.
-impl<C: Pixel> PixelShader<(([u32; 1], [u32; 1]), ([u32; 1], [u32; 1]))> for DiffuseAndHighlight<'_, TwoLightsRgb<'_, C>> {
-    type Pixel = C;
-
+impl FromValues<DefectLookup<'_>, [u32; 1]> for DiffuseOnly {
     #[inline(always)]
-    fn shade(&self, (one, two): (([u32; 1], [u32; 1]), ([u32; 1], [u32; 1])), _: u32) -> C {
-        let light = |([light], [defect]): ([u32; 1], [u32; 1])| (signed(light), self.lookup.at(signed(defect)));
-        self.colours.colour::<WALK>([light(one), light(two)])
+    fn from_values(_: &DefectLookup<'_>, full: u16, light: [u32; 1]) -> Self {
+        Self::from_values(&(), full, light)
     }
 }
 
-/// Shades by two lights, of which the second has no highlight.
-impl<C: Pixel> PixelShader<(([u32; 1], [u32; 1]), [u32; 1])> for DiffuseAndHighlight<'_, TwoLightsRgb<'_, C>> {
-    type Pixel = C;
-
-    #[inline(always)]
-    fn shade(&self, (([light], [defect]), [other]): (([u32; 1], [u32; 1]), [u32; 1]), _: u32) -> C {
-        self.colours.colour::<WALK>([(signed(light), self.lookup.at(signed(defect))), (signed(other), 0)])
-    }
-}
-
-/// Diffuse light alone: a walked level, negative where there is no light.
+/// Values at the pixel are walked diffuse levels alone.
 #[derive(Clone, Copy)]
-struct DiffuseOnly<T>(T);
+struct Diffuse;
 
-impl<T: ByRows> ByRows for DiffuseOnly<T> {
+impl<V> AtPixel<V> for Diffuse {
+    type Common = ();
+    type Values = V;
+
+    const BITS: u32 = WALK;
+
     #[inline(always)]
-    fn step_row(&mut self) {
-        self.0.step_row();
+    fn at(&self, value: V) -> ((), V) {
+        ((), value)
     }
 }
 
-impl<C: Pixel> PixelShader<[u32; 1]> for DiffuseOnly<OneLightRamp<'_, C>> {
-    type Pixel = C;
-
-    const CHEAP: bool = true;
-
+impl FromValues<(), [u32; 1]> for DiffuseOnly {
     const ID: u8 = 1;
 
     #[inline(always)]
-    fn shade(&self, [light]: [u32; 1], threshold: u32) -> C {
-        self.0.without_highlight::<WALK>(signed(light), threshold)
-    }
-}
-
-/// Shades by two lights without highlights.
-impl<C: Pixel> PixelShader<([u32; 1], [u32; 1])> for DiffuseOnly<TwoLightsRgb<'_, C>> {
-    type Pixel = C;
-
-    #[inline(always)]
-    fn shade(&self, ([one], [two]): ([u32; 1], [u32; 1]), _: u32) -> C {
-        self.0.colour::<WALK>([(signed(one), 0), (signed(two), 0)])
+    fn from_values((): &(), _: u16, [light]: [u32; 1]) -> Self {
+        Self(signed(light))
     }
 }
 
@@ -418,9 +401,9 @@ fn is_exact(setup: &TriangleSetup<'_>, half: [i32; 3], reflectance: &Reflectance
 
 /// Looks up highlights at the pixel.
 #[derive(Clone, Copy)]
-struct AtPixel;
+struct LookedUp;
 
-impl LightingModel<(), [u32; 2], [u32; 1]> for AtPixel {
+impl LightingModel<(), [u32; 2], [u32; 1]> for LookedUp {
     type Common = ();
 
     #[inline(always)]

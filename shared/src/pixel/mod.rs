@@ -93,11 +93,11 @@ pub trait Pixel: Copy + 'static {
     /// Returns the value of the pixel as an integer, independent of the order of its bytes in memory. [`PictureCrc`] uses it.
     fn bits(self) -> u32;
 
-    /// Looks up a level in a table of colours. Levels have a bias and `BITS` fraction bits, and include half a step for rounding.
+    /// Looks up a level in a table of colours. Levels have a bias and `bits` fraction bits, and include half a step for rounding.
     #[doc(hidden)]
     #[inline(always)]
-    fn entry<const BITS: u32>(ramp: &[Self::Stored; RAMP], level: u32) -> Self::Stored {
-        ramp[(level >> BITS) as usize % RAMP]
+    fn entry(ramp: &[Self::Stored; RAMP], level: u32, bits: u32) -> Self::Stored {
+        ramp[(level >> (bits & 31)) as usize % RAMP]
     }
 
     /// Looks up a walked level in tables of colours, see [`Ramps::walked`].
@@ -108,15 +108,15 @@ pub trait Pixel: Copy + 'static {
             ramps.walked(level)
         } else {
             let [ramp, _] = ramps.squares();
-            Self::entry::<WALK>(ramp, level)
+            Self::entry(ramp, level, WALK)
         }
     }
 
     /// The colour of a level, see [`Self::entry`], by a [`dither::threshold`].
     #[doc(hidden)]
     #[inline(always)]
-    fn ramped<const BITS: u32>(ramp: &[Self::Stored; RAMP], level: u32, threshold: u32) -> Self {
-        Self::shown(Self::entry::<BITS>(ramp, level), threshold)
+    fn ramped(ramp: &[Self::Stored; RAMP], level: u32, bits: u32, threshold: u32) -> Self {
+        Self::shown(Self::entry(ramp, level, bits), threshold)
     }
 
     /// The colour of three intensities, by a [`dither::threshold`].

@@ -2,7 +2,7 @@
 
 use super::costs::SAVINGS;
 use crate::{
-    lighting::reflectance::{FULL, Reflectance},
+    lighting::reflectance::{FULL, LitMaterial},
     method::{
         CornerCosines, Shading, TriangleSetup,
         error_bound::{Curvature, Linear},
@@ -186,7 +186,7 @@ fn two_lights(
 
 /// The levels at the corners under two constant lights.
 #[inline(never)]
-pub(super) fn corner_levels(setup: &TriangleSetup<'_>, reflectance: &Reflectance) -> [[i32; 3]; 3] {
+pub(super) fn corner_levels(setup: &TriangleSetup<'_>, reflectance: LitMaterial<'_>) -> [[i32; 3]; 3] {
     let [a, b, c] = setup.corners;
     [reflectance.two_lights(a.light), reflectance.two_lights(b.light), reflectance.two_lights(c.light)]
 }

@@ -17,7 +17,7 @@ use crate::{
     interpolate::{Constant, by_column::ByColumn},
     lighting::{
         material_tables::MaterialTables,
-        reflectance::{FULL, Highlight, Reflectance},
+        reflectance::{FULL, Highlight, LitMaterial},
     },
     math::vector::zip,
     method::{
@@ -70,7 +70,7 @@ fn half_way(setup: &TriangleSetup<'_>, k: usize, floor: i32) -> i32 {
 pub fn raises(choice: Choice, setup: &TriangleSetup<'_>, shading: &Shading<'_>) -> [i32; 3] {
     let (Choice::Solid(raise) | Choice::Linear(raise)) = choice else { return [0; 3] };
     let reflectance = shading.reflectance;
-    let by_table = shading.vertices_have_cosines() && reflectance.three_channels() && gouraud::has_ramp(setup, reflectance);
+    let by_table = shading.vertices_have_cosines() && reflectance.three_channels() && gouraud::has_ramp(setup, &reflectance);
     if by_table { reflectance.ramp_rise(raise) } else { [raise; 3] }
 }
 
@@ -95,7 +95,7 @@ fn solid<C: Pixel>(setup: &TriangleSetup<'_>, shading: &Shading<'_>, raise: i32,
         if !reflectance.three_channels() {
             return tables.tint(half_way(setup, 2, 0) + raise);
         }
-        if gouraud::has_ramp(setup, reflectance) {
+        if gouraud::has_ramp(setup, &reflectance) {
             return tables.tint(reflectance.ramp_level(half_way(setup, 0, 0)) + raise);
         }
     }
@@ -122,7 +122,7 @@ impl<const QUADRATICS: bool> Method for Auto<QUADRATICS> {
         if QUADRATICS { &FACTS } else { &FACTS_WITHOUT_QUADRATICS }
     }
 
-    fn error_bounds(&self, reflectance: &Reflectance, exponent: u16, lights: usize) -> ErrorBounds {
+    fn error_bounds(&self, reflectance: LitMaterial<'_>, exponent: u16, lights: usize) -> ErrorBounds {
         ErrorBounds::new(reflectance, exponent, lights)
     }
 
@@ -136,7 +136,7 @@ impl<const QUADRATICS: bool> Method for Auto<QUADRATICS> {
                 setup.draw_spans(&mut Shaded::new(Constant, Uniform(of_levels(middle(setup, shading, raises)))), canvas)
             }
             (Choice::Linear(_), constant) => {
-                let levels = if constant.is_some() { gouraud::reflected(setup, reflectance) } else { corner_levels(setup, reflectance) };
+                let levels = if constant.is_some() { gouraud::reflected(setup, &reflectance) } else { corner_levels(setup, reflectance) };
                 shading.draw_channels::<3, RANGE>(setup, &channels(levels), raises, canvas)
             }
             (Choice::Quadratic, Some(_)) if QUADRATICS => SixPoint.shade(setup, shading, canvas),

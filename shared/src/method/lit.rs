@@ -1,0 +1,82 @@
+//! Pixel shaders under constant lights: a method computes light from walked values, and a material has colours for it.
+//!
+//! What a method does at a pixel is one [`AtPixel`], and one [`FromValues`] for a light with a highlight and one for a light without. All else is
+//! here: one light or two, and colours from a table or from sums.
+
+use crate::{lighting::constant_lights::Colours, pixel::dither::ByRows, raster::pixel_shader::PixelShader};
+use core::marker::PhantomData;
+
+/// What a method computes at a pixel for all lights together, such as a reciprocal length.
+pub(super) trait AtPixel<V>: Copy {
+    /// What it has computed.
+    type Common;
+    /// The values of the lights.
+    type Values;
+
+    /// Fraction bits of a diffuse level.
+    const BITS: u32;
+
+    /// Divides walked values into what all lights have in common and the values of the lights.
+    fn at(&self, value: V) -> (Self::Common, Self::Values);
+}
+
+/// The light that a method `M` makes of walked values. `full` is the level of diffuse light at cosine 1.
+pub(super) trait FromValues<M, V> {
+    /// Number of the loop, see [`PixelShader::ID`].
+    const ID: u8 = 0;
+
+    fn from_values(common: &M, full: u16, values: V) -> Self;
+}
+
+/// Two lights.
+impl<M, A: FromValues<M, V>, B: FromValues<M, W>, V, W> FromValues<M, (V, W)> for (A, B) {
+    #[inline(always)]
+    fn from_values(common: &M, full: u16, (one, two): (V, W)) -> Self {
+        (A::from_values(common, full, one), B::from_values(common, full, two))
+    }
+}
+
+/// Light `L` that a method computes at the pixel, in the colours of a material.
+pub(super) struct LitShader<T, K, L> {
+    colours: T,
+    at: K,
+    light: PhantomData<L>,
+}
+
+impl<T: Copy, K: Copy, L> Clone for LitShader<T, K, L> {
+    fn clone(&self) -> Self {
+        *self
+    }
+}
+
+impl<T: Copy, K: Copy, L> Copy for LitShader<T, K, L> {}
+
+impl<T, K> LitShader<T, K, ()> {
+    /// A shader for lights with highlights where `L` is [`WithHighlight`](crate::lighting::constant_lights::WithHighlight), and for lights without
+    /// where it is [`DiffuseOnly`](crate::lighting::constant_lights::DiffuseOnly). For two lights it is a pair.
+    #[inline(always)]
+    pub(super) fn of<L>(colours: T, at: K) -> LitShader<T, K, L> {
+        LitShader { colours, at, light: PhantomData }
+    }
+}
+
+impl<T: ByRows, K: Copy, L> ByRows for LitShader<T, K, L> {
+    #[inline(always)]
+    fn step_row(&mut self) {
+        self.colours.step_row();
+    }
+}
+
+impl<V, T: Colours<L>, K: AtPixel<V>, L: FromValues<K::Common, K::Values>> PixelShader<V> for LitShader<T, K, L> {
+    type Pixel = T::Pixel;
+
+    const CHEAP: bool = T::TABLED;
+
+    const ID: u8 = L::ID;
+
+    #[inline(always)]
+    fn shade(&self, value: V, threshold: u32) -> T::Pixel {
+        let (common, values) = self.at.at(value);
+        self.colours.colour(K::BITS, L::from_values(&common, self.colours.diffuse(), values), threshold)
+    }
+}
