@@ -442,7 +442,7 @@ fn program_layouts_have_room_for_active_triangles() {
                 };
                 (0..u32::from(stream.header.frames).min(120)).map(frame).sum()
             };
-            let layout = render::program_layout(&stream, size, rows).unwrap();
+            let layout = render::program_layout(&stream, Shader::AUTO, size, rows).unwrap();
             let fewest = render::fewest_active_triangles(&stream, size, rows).unwrap();
             assert_eq!(layout.active_triangles, fewest + fewest.div_ceil(2), "{name}");
             assert!(fewest > 10 && layout.active_triangles < layout.triangles / 4, "{name}: {fewest}");
@@ -451,7 +451,11 @@ fn program_layouts_have_room_for_active_triangles() {
                 assert_eq!(anew, 0, "{name}, {width}x{height}, {}", shader.name());
             }
             assert!(set_up_anew(Shader::FLAT, &layout.active_triangles(fewest - 1)) > 0, "{name}: {fewest} are too many");
-            assert_eq!(render::program_layout(&stream, size, height).unwrap().active_triangles, 0, "{name}: one band has no border");
+            assert_eq!(
+                render::program_layout(&stream, Shader::AUTO, size, height).unwrap().active_triangles,
+                0,
+                "{name}: one band has no border"
+            );
         }
     }
 }
@@ -464,7 +468,7 @@ fn program_layouts_have_room_for_other_poses() {
         let options = Options { view, size: (240, 240), ..Options::default() };
         let bytes = Converted::read(&root().join("meshes/teapot.obj"), &options, &()).unwrap().stream().unwrap();
         let (stream, size) = (bytes.parse().unwrap(), Size::new(240, 240));
-        let layout = render::program_layout(&stream, size, 16).unwrap();
+        let layout = render::program_layout(&stream, Shader::AUTO, size, 16).unwrap();
         (layout.active_triangles, render::fewest_active_triangles(&stream, size, 16).unwrap())
     };
     let (room, fewest) = counts(ELEVATION);

@@ -70,7 +70,7 @@ fn chips(recorded: &[Entry]) -> Vec<String> {
             .map(|(format, shader)| {
                 let entry = of(recorded, chip.core, format, shader);
                 let (width, height, rows) = picture(format);
-                let layout = render::program_layout(&stream, Size::new(width, height), rows as u32).expect("a layout");
+                let layout = render::program_layout(&stream, shader, Size::new(width, height), rows as u32).expect("a layout");
                 let bytes = |layout: &Layout| format.bytes(layout)[0] as u64;
                 let fits = |&hundreds: &u64| {
                     let triangles = hundreds as usize * 100;

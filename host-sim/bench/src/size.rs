@@ -77,7 +77,7 @@ pub fn measure(programs: &[Program], scene: &Scene, tick: &(dyn Fn() + Sync)) ->
 
 fn size(program: Program, elf: &Elf, stream: &Stream<'_>) -> Result<Size> {
     let (width, height, rows) = picture(program.format);
-    let layout = render::program_layout(stream, geometry::Size::new(width, height), rows as u32)?;
+    let layout = render::program_layout(stream, program.shader, geometry::Size::new(width, height), rows as u32)?;
     let mesh_bytes = u64::from(stream.header.length);
     // The program has room for any mesh.
     let room = u64::from(elf.symbol("MEMORY")?.1) + u64::from(elf.symbol("BAND")?.1);

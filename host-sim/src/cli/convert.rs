@@ -353,10 +353,11 @@ const ACTIVE: &str = "    active_triangles: half as many again as the frames nee
 
 /// A layout as a program has it.
 fn text_of(layout: &Layout) -> String {
-    let Layout { width, rows, vertices, triangles, materials, objects, active_triangles, .. } = layout;
+    let Layout { width, rows, vertices, triangles, materials, objects, active_triangles, highlight_tables, .. } = layout;
     let several = if *objects > 1 { format!(".objects({objects})") } else { String::new() };
     let text = format!("Layout::new({width}, {rows}).vertices({vertices}).triangles({triangles}).materials({materials}){several}");
-    format!("{text}.active_triangles({active_triangles})")
+    let tables = if *highlight_tables { "" } else { ".without_highlight_tables()" };
+    format!("{text}.active_triangles({active_triangles}){tables}")
 }
 
 fn of(mesh: usize, level: &levels::Level) -> Level {

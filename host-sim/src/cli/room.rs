@@ -41,7 +41,7 @@ impl Picture {
 
     /// The layout for a program that draws a stream.
     pub(super) fn layout(&self, stream: &Stream<'_>) -> Result<Layout> {
-        render::program_layout(stream, Size::new(self.size.0, self.size.1), self.rows)
+        render::program_layout(stream, Shader::of(stream)?, Size::new(self.size.0, self.size.1), self.rows)
     }
 
     /// The common chip with the most room for a program with a stream, this layout and nothing else, and the share that the program takes of it.
