@@ -9,9 +9,9 @@ pub use chip::{Chip, Core};
 use anyhow::{Context, Result};
 use microphong::{Layout, Stream, pixel::Pixel};
 use microphong_boards::{build::releases, elf::Elf, stack, verify};
+use microphong_models::scene::Scene;
 use microphong_render::{
     render::{Format, InFormat},
-    scene::Scene,
     shader::Shader,
 };
 use rayon::prelude::*;

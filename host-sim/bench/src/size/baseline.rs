@@ -6,7 +6,8 @@ use crate::{
     renewal::{mean, with_reason},
 };
 use anyhow::{Context, Result, ensure};
-use microphong_render::{output, scene};
+use microphong_models::scene;
+use microphong_render::output;
 use std::{
     fmt, fs,
     path::{Path, PathBuf},

@@ -8,11 +8,11 @@ use crate::{
     mesh::{Mesh, Report, Weld},
     mtl::Material,
     quantise::{Part, quantise},
-    render::Format,
     vector::{V3, add},
     view::{Up, View},
 };
 use anyhow::{Context, Result};
+use microphong_render::render::Format;
 use std::path::Path;
 
 /// The look of a mesh without materials.
