@@ -159,6 +159,7 @@ impl Converted {
     /// Names the file, and what is wrong with it.
     pub fn read(path: &Path, options: &Options, steps: &dyn Steps) -> Result<Self> {
         let place = || path.display().to_string();
+        steps.begin("reading the file", 1);
         let Imported { mut mesh, report, mut objects, mut materials, mut remarks } = import::file(path, options.weld)?;
         if options.repaint && materials.iter().any(Option::is_some) {
             remarks.push(format!("{} materials of the file have the one colour of --colour", materials.iter().flatten().count()));
@@ -187,8 +188,7 @@ impl Converted {
             simplified = levels::simplify(&mesh, &mut parts, most, &|| steps.step()).with_context(place)?;
         }
         let errors: Vec<_> = options.levels.iter().map(|&size| look.tolerance(&parts, size)).collect();
-        // The stream is a step as well, so that a single level is announced.
-        steps.begin("searching levels of detail", parts.len() * errors.len() + 1);
+        steps.begin("searching levels of detail", parts.len() * errors.len());
         levels::add(&mesh, &mut parts, &errors, &|| steps.step()).with_context(place)?;
         Ok(Self { mesh, report, materials, remarks, parts, lost, look, simplified })
     }
