@@ -2,6 +2,7 @@
 
 use crate::{
     bytes::StreamBytes,
+    fields::quoted,
     import::{self, Imported},
     levels::{self, Simplified},
     look::{BACKGROUND, Lamp, Look, Surface},
@@ -40,10 +41,7 @@ impl Finish {
     /// The look that can be read in a pixel format.
     #[must_use]
     pub const fn of(format: Format) -> Self {
-        match format {
-            Format::Binary | Format::Gray2 | Format::Gray4 => Self::GREY,
-            _ => Self::COLOUR,
-        }
+        if format.has_few_greys() { Self::GREY } else { Self::COLOUR }
     }
 }
 
@@ -81,6 +79,8 @@ pub struct Options {
     pub view: View,
     /// Whether highlights see the eye where it is, not infinitely far.
     pub local_viewer: bool,
+    /// Pixel format of the pictures.
+    pub format: Format,
     /// Size of the picture that the turn fills.
     pub size: (u32, u32),
     /// Most triangles.
@@ -110,6 +110,7 @@ impl Options {
             background,
             view: View::orbit(Up::Y, AZIMUTH.to_radians(), ELEVATION.to_radians(), DISTANCE, ORBIT),
             local_viewer: false,
+            format,
             size: SQUARE,
             simplify: None,
             levels: Vec::new(),
@@ -123,12 +124,15 @@ pub trait Steps {
     fn begin(&self, what: &'static str, count: usize);
     /// A step is done.
     fn step(&self);
+    /// Says what a user should know of the file, at once.
+    fn warn(&self, what: &str);
 }
 
 /// Work that nobody watches.
 impl Steps for () {
     fn begin(&self, _: &'static str, _: usize) {}
     fn step(&self) {}
+    fn warn(&self, _: &str) {}
 }
 
 /// A mesh file that is ready to become a stream.
@@ -166,6 +170,17 @@ impl Converted {
             mesh.merge_materials();
             materials = vec![None];
         }
+        let is_dark = |material: &&Material| is_dark(&material.surface(options.ambient), options.format);
+        let dark: Vec<_> = materials.iter().flatten().filter(is_dark).collect();
+        if let [first, others @ ..] = &dark[..] {
+            let more = if others.is_empty() { String::new() } else { format!(" and {} more", others.len()) };
+            steps.warn(&format!(
+                "{}: the material \"{}\"{more} is too dark for the few greys of {}; --colour ffffff makes the whole mesh white",
+                place(),
+                quoted(&first.name),
+                options.format.name()
+            ));
+        }
         if options.merge {
             mesh.merge_objects();
             objects.clear();
@@ -200,6 +215,15 @@ impl Converted {
     pub fn stream(&self) -> Result<StreamBytes> {
         self.look.stream(&self.parts)
     }
+}
+
+/// Level, of 1, below which a picture of few greys shows no form.
+const READABLE: f64 = 0.25;
+
+/// Whether a surface in full light, without its highlight, is too dark for the few greys of a format.
+fn is_dark(surface: &Surface, format: Format) -> bool {
+    let [r, g, b] = add(surface.ambient, surface.diffuse);
+    format.has_few_greys() && 0.3 * r + 0.59 * g + 0.11 * b < READABLE
 }
 
 /// A near light counts from the centre of the mesh; in a stream it counts from the eye.

@@ -146,6 +146,10 @@ impl Steps for Bars {
     fn step(&self) {
         self.0.borrow().iter().for_each(|bar| bar.inc(1));
     }
+
+    fn warn(&self, what: &str) {
+        error(&format!("warning: {what}"));
+    }
 }
 
 /// Prints on stderr how far long work is.
