@@ -93,10 +93,14 @@ fn tell(bar: &ProgressBar, what: &'static str, ended: &Receiver<()>) {
         BARS.add(bar.clone()).enable_steady_tick(LONG);
         return;
     }
-    let count = bar.length().unwrap_or_default();
-    log::info!("{what}{}", if count > 1 { format!(", {count} steps") } else { String::new() });
-    while goes_on(SILENCE) {
-        log::info!("{what}, {} of {}", bar.position(), counted(count, ["step", "steps"]));
+    match bar.length() {
+        Some(count @ 2..) => {
+            log::info!("{what}, {count} steps");
+            while goes_on(SILENCE) {
+                log::info!("{what}, {} of {count} steps", bar.position());
+            }
+        }
+        _ => log::info!("{what}"),
     }
 }
 
