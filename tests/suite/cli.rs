@@ -1067,7 +1067,7 @@ fn convert_inspect_and_render_work_together() {
 #[test]
 fn long_work_is_announced() {
     let place = Place::new();
-    place.file("large.obj", &"v 0 0 0\nv 1 0 0\nv 0 1 0\nf -3 -2 -1\n".repeat(100_000));
+    place.file("large.obj", &"v 0 0 0\nv 1 0 0\nv 0 1 0\nf -3 -2 -1\n".repeat(300_000));
     let bunny = Path::new(env!("CARGO_MANIFEST_DIR")).join("meshes/bunny.obj");
     let bunny = bunny.to_string_lossy();
     let cases: [(&[&str], &str); 2] = [
