@@ -1067,11 +1067,11 @@ fn convert_inspect_and_render_work_together() {
 #[test]
 fn long_work_is_announced() {
     let place = Place::new();
-    place.file("large.obj", &"v 0 0 0\nv 1 0 0\nv 0 1 0\nf -3 -2 -1\n".repeat(300_000));
+    place.file("large.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf -3 -2 -1\n".repeat(400_000));
     let bunny = Path::new(env!("CARGO_MANIFEST_DIR")).join("meshes/bunny.obj");
     let bunny = bunny.to_string_lossy();
     let cases: [(&[&str], &str); 2] = [
-        (&["convert", &bunny, "-o", "out.tri", "--lod", "64x64"], "searching levels of detail ...\n"),
+        (&["convert", &bunny, "-o", "out.tri", "--lod", "240x240"], "searching levels of detail ...\n"),
         (&["convert", "large.obj", "-o", "out.tri"], "reading the file ...\n"),
     ];
     for (command, announced) in cases {
@@ -1086,7 +1086,7 @@ fn dark_materials_are_told_where_there_are_few_greys() {
     let place = Place::new();
     place.file("paint.mtl", "newmtl coal\nKd 0.02 0.02 0.02\nnewmtl chalk\nKd 0.9 0.9 0.9\n");
     for material in ["coal", "chalk"] {
-        place.file(&format!("{material}.obj"), &format!("mtllib paint.mtl\nusemtl {material}\n{TETRAHEDRON}"));
+        place.file(&format!("{material}.obj"), format!("mtllib paint.mtl\nusemtl {material}\n{TETRAHEDRON}"));
     }
     let told = |mesh: &str, options: &[&str]| {
         let output = place.run(&[&["render", mesh, "-o", "out.png", "--size", "33x17"], options].concat());
