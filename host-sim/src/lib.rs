@@ -6,11 +6,11 @@ pub use microphong_bench as bench;
 pub use microphong_boards::{self as board, verify};
 pub use microphong_bounds as bounds;
 pub use microphong_compare::{self as compare, level};
-pub use microphong_oracle::{self as oracle, papers};
-pub use microphong_render::{
-    bytes, chip, choices, convert, convex, distance, image, import, legend, levels, look, mesh, number, obj, output, polygon, program,
-    quantise, render, scene, script, shader, shapes, vector, view,
+pub use microphong_models::{
+    bytes, convert, convex, distance, import, levels, look, mesh, number, obj, polygon, quantise, scene, script, shapes, vector, view,
 };
+pub use microphong_oracle::{self as oracle, papers};
+pub use microphong_render::{chip, choices, image, legend, output, program, render, shader};
 pub use microphong_stress as stress;
 
 /// All families of random cases. With a `budget`, the family of this name keeps to it.

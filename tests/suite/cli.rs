@@ -640,6 +640,16 @@ fn negative_numbers_are_told_by_their_range() {
     for (command, option, range) in cases {
         place.fails(&[command, &[option, "-1"]].concat(), 2, &["'-1'", option, range]);
     }
+    let lists: [(&[&str], &str, &str, &str); 4] = [
+        (&["convert", "good.obj"], "--size", "-1x5", "each side from 1"),
+        (&["convert", "good.obj"], "--lod", "-1x5,64x64", "each side from 1"),
+        (&["compare", "good.obj"], "--budget", "-1", "from 0.5 to 16"),
+        (&["render", "good.obj"], "--diffuse", "-.5", "from 0 to 2"),
+    ];
+    for (command, option, list, range) in lists {
+        let first = list.split(',').next().expect("a value");
+        place.fails(&[command, &[option, list]].concat(), 2, &[&format!("'{first}'"), option, range]);
+    }
     place.succeeds(&["render", "good.obj", "--azimuth", "-30.5", "--elevation", "-10", "--size", "33x17"]);
 }
 
@@ -1072,10 +1082,10 @@ fn convert_inspect_and_render_work_together() {
     assert_eq!((&inspected["vertices"], &inspected["frames"]), (&4.into(), &7.into()));
     let drawn = json(place.succeeds(&["render", "good.tri", "--size", "33x17", "--json"]));
     assert_eq!((&drawn["shader"], &drawn["output"]), (&"phong".into(), &"good.png".into()));
-    // What may take longer than a second announces itself, a single level too; what does not is silent.
-    for (lod, announced) in [(&[][..], ""), (&["--lod", "64x64"], "searching levels of detail, 2 steps ...\n")] {
+    // What takes no second is silent.
+    for lod in [&[][..], &["--lod", "64x64"]] {
         let output = place.run(&[&["convert", "good.obj", "-o", "lod.tri"], lod].concat());
-        assert!(output.status.success() && output.stderr == announced.as_bytes(), "{lod:?}: {output:?}");
+        assert!(output.status.success() && output.stderr.is_empty(), "{lod:?}: {output:?}");
     }
     assert_eq!(place.succeeds(&["render", "good.tri", "--size", "33x17", "--frames", "3", "-o", "f/", "--json"]).lines().count(), 3);
     assert_eq!(place.succeeds(&["render", "good.tri", "--size", "33x17", "--frames", "3", "-o", "f.apng"]).lines().count(), 2);
@@ -1086,6 +1096,49 @@ fn convert_inspect_and_render_work_together() {
     let count = scene::NAMES.len() + scene::VARIANTS.len() + scene::SCRIPTED.len();
     assert_eq!(place.succeeds(&["scenes"]).lines().count(), count);
     assert_eq!(place.succeeds(&["scenes", "--json"]).lines().count(), count);
+}
+
+/// What takes longer than a second announces itself, a single step too.
+#[test]
+fn long_work_is_announced() {
+    let place = Place::new();
+    place.file("large.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf -3 -2 -1\n".repeat(400_000));
+    let bunny = Path::new(env!("CARGO_MANIFEST_DIR")).join("meshes/bunny.obj");
+    let bunny = bunny.to_string_lossy();
+    let cases: [(&[&str], &str); 2] = [
+        (&["convert", &bunny, "-o", "out.tri", "--lod", "240x240"], "searching levels of detail ...\n"),
+        (&["convert", "large.obj", "-o", "out.tri"], "reading the file ...\n"),
+    ];
+    for (command, announced) in cases {
+        let output = place.run(command);
+        assert!(String::from_utf8_lossy(&output.stderr).contains(announced), "{command:?}: {output:?}");
+    }
+}
+
+/// A material that few greys do not show is said, and what helps.
+#[test]
+fn dark_materials_are_told_where_there_are_few_greys() {
+    let place = Place::new();
+    place.file("paint.mtl", "newmtl coal\nKd 0.02 0.02 0.02\nnewmtl chalk\nKd 0.9 0.9 0.9\n");
+    for material in ["coal", "chalk"] {
+        place.file(&format!("{material}.obj"), format!("mtllib paint.mtl\nusemtl {material}\n{TETRAHEDRON}"));
+    }
+    let told = |mesh: &str, options: &[&str]| {
+        let output = place.run(&[&["render", mesh, "-o", "out.png", "--size", "33x17"], options].concat());
+        assert!(output.status.success(), "{output:?}");
+        String::from_utf8_lossy(&output.stderr).into_owned()
+    };
+    for format in ["binary", "gray2", "gray4"] {
+        let told = told("coal.obj", &["--format", format]);
+        assert!(["warning: coal.obj", format, "\"coal\"", "--colour"].iter().all(|part| told.contains(part)), "{told}");
+    }
+    for (mesh, options) in [
+        ("coal.obj", &["--format", "gray8"][..]),
+        ("coal.obj", &["--format", "binary", "--colour", "ffffff"]),
+        ("chalk.obj", &["--format", "binary"]),
+    ] {
+        assert_eq!(told(mesh, options), "", "{mesh} {options:?}");
+    }
 }
 
 /// A text that is not a scene is refused with the place and the fault, and leaves no file.

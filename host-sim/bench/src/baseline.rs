@@ -5,7 +5,8 @@
 
 use super::{Bench, Measurement, Processor};
 use anyhow::{Context, Result, ensure};
-use microphong_render::{output, scene, shader::Shader};
+use microphong_models::scene;
+use microphong_render::{output, shader::Shader};
 use std::{fmt, fs, path::Path};
 
 /// Growth of instructions or flash that is let pass, in percent. A shrinkage of more asks to renew the file, or it would hide later growth.

@@ -5,16 +5,15 @@
 
 use super::{Stages, callgrind};
 use anyhow::Result;
-use microphong_render::{
+use microphong_models::{
     bytes::StreamBytes,
     convert,
     look::{Lamp, Look, Surface},
     quantise::quantise,
-    scene,
-    shader::Shader,
-    shapes,
+    scene, shapes,
     view::View,
 };
+use microphong_render::shader::Shader;
 use rayon::prelude::*;
 use serde::{Serialize, Serializer};
 use std::{fmt, path::Path};

@@ -7,11 +7,11 @@ use anyhow::{Context, Result};
 use embedded_graphics_core::geometry;
 use microphong::Stream;
 use microphong_boards::{Machine, build::releases, elf::Elf, stack, verify};
+use microphong_models::scene::Scene;
 use microphong_render::{
     chip::Core,
     program::Program,
     render::{self, Format},
-    scene::Scene,
     shader::Shader,
 };
 use rayon::prelude::*;

@@ -5,9 +5,9 @@ use crate::{Processor, callgrind::Counters};
 use anyhow::{Context, Result, ensure};
 use embedded_graphics_core::geometry::Size;
 use microphong::{Skips, pixel::Rgb565Be};
+use microphong_models::scene::Scene;
 use microphong_render::{
     render::{self, Format, Style},
-    scene::Scene,
     shader::Shader,
 };
 use microphong_stress::{case::Case, cost::Count};

@@ -11,7 +11,8 @@ use microphong::{
     pixel::{PictureCrc, Pixel, Rgb565Be},
     stream::{record::Header, seal},
 };
-use microphong_render::{bytes::StreamBytes, image, shader::Shader};
+use microphong_models::bytes::StreamBytes;
+use microphong_render::{image, shader::Shader};
 use serde::{Serialize, Serializer};
 use std::{
     fs,

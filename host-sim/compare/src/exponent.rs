@@ -28,7 +28,7 @@ pub fn with_exponent(stream: &[u8], exponent: u16) -> Result<Vec<u8>> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use microphong_render::{bytes::StreamBytes, scene};
+    use microphong_models::{bytes::StreamBytes, scene};
 
     #[test]
     fn only_exponents_change() {

@@ -1,7 +1,7 @@
 //! Condition number of shading at a point: by how much it magnifies rounding errors of its inputs.
 
 use super::{Facet, Frame, Place, light::highlight, scene::direction};
-use microphong_render::vector::{V3, add, dot, length, sub};
+use microphong_models::vector::{V3, add, dot, length, sub};
 
 /// Corners, middles of edges and the centre: where methods take the normals and lights between which they interpolate.
 const NODES: [V3; 7] =

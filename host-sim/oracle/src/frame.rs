@@ -11,7 +11,7 @@ use microphong::{
         record::{DIRECTIONAL, EYE_SPACE, PERSPECTIVE, VIEWER_LOCAL},
     },
 };
-use microphong_render::{
+use microphong_models::{
     levels,
     vector::{V3, add, apply, cross, dot, length, scale, sub},
 };

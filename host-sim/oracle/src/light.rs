@@ -6,7 +6,7 @@ use super::{
     scene::{Light, Material, direction},
 };
 use microphong::math::highlight_lut;
-use microphong_render::vector::{V3, add, dot};
+use microphong_models::vector::{V3, add, dot};
 
 /// Error of one light's level by rounding of two gains, two products and a cosine of 15 bits, in levels of 7 fraction bits.
 const ROUNDING: f64 = 3.0 / 128.0;

@@ -1,6 +1,6 @@
 //! Polynomials through values at corners, midpoints and thirds.
 
-use microphong_render::vector::V3;
+use microphong_models::vector::V3;
 
 /// The corners, then the midpoints of the edges 0-1, 1-2 and 2-0.
 pub(crate) const SIX: [V3; 6] = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0], [0.5, 0.5, 0.0], [0.0, 0.5, 0.5], [0.5, 0.0, 0.5]];

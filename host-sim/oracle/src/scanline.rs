@@ -1,6 +1,6 @@
 //! Rows of a triangle: their ends on the edges, and interpolation along both.
 
-use microphong_render::vector::{V3, add, dot, scale};
+use microphong_models::vector::{V3, add, dot, scale};
 
 /// The point at which a row leaves the triangle.
 #[derive(Clone, Copy, Debug)]

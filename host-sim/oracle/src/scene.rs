@@ -1,6 +1,6 @@
 //! Lights, viewer and materials.
 
-use microphong_render::vector::{V3, sub, unit};
+use microphong_models::vector::{V3, sub, unit};
 
 /// Position of a light or viewer, in object space.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -1,36 +1,10 @@
-//! From meshes to pictures: scenes, the streams that boards draw, and drawing them by the core.
+//! Pictures of triangle streams, drawn by the core.
 
-pub mod bytes;
 pub mod chip;
 pub mod choices;
-pub mod convert;
-pub mod convex;
-pub mod distance;
-mod fields;
-mod foreign;
-pub mod gltf;
 pub mod image;
-pub mod import;
 pub mod legend;
-pub mod levels;
-pub mod look;
-pub mod mesh;
-pub mod mtl;
-mod names;
-pub mod number;
-pub mod obj;
 pub mod output;
-mod pbr;
-pub mod ply;
-pub mod polygon;
 pub mod program;
-pub mod quantise;
 pub mod render;
-pub mod scene;
-pub mod script;
 pub mod shader;
-pub mod shapes;
-pub mod stl;
-mod turn;
-pub mod vector;
-pub mod view;

@@ -232,6 +232,12 @@ impl Format {
         self.run(Of(layout))
     }
 
+    /// Whether the format has 16 greys or fewer.
+    #[must_use]
+    pub const fn has_few_greys(self) -> bool {
+        matches!(self, Self::Binary | Self::Gray2 | Self::Gray4)
+    }
+
     /// Whether the format is dithered by default: [`Pixel::DITHERED`].
     #[must_use]
     pub fn is_dithered(self) -> bool {

@@ -105,6 +105,7 @@ impl MeshOptions {
             background: self.background.unwrap_or(background),
             view: if self.projection == Projection::Orthographic { view.parallel() } else { view },
             local_viewer: self.local_viewer,
+            format,
             simplify: self.simplify.map(|most| most as usize),
             levels: self.lod.clone(),
             ..Options::default()

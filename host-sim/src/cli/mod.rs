@@ -30,9 +30,9 @@ mod verify;
 use absent::{bench, growth, size, verify};
 
 use anyhow::{Context, Result};
-use clap::{CommandFactory, FromArgMatches, Parser, Subcommand};
+use clap::{Parser, Subcommand};
 use microphong_sim::scene;
-use std::process::ExitCode;
+use std::{ffi::OsString, process::ExitCode};
 
 /// Phong-quality shading for microcontrollers: convert meshes, draw them, and verify boards
 #[derive(Parser)]
@@ -94,17 +94,27 @@ enum Outcome {
     Differences,
 }
 
-/// The command line. A negative number is a value, so that an argument whose range it leaves is told by that, and not as an unknown option.
-fn command() -> clap::Command {
-    let takes_numbers =
-        |argument: clap::Arg| if argument.get_action().takes_values() { argument.allow_negative_numbers(true) } else { argument };
-    Arguments::command().mut_subcommands(|command| command.mut_args(takes_numbers))
+/// The words of the command line. A word that begins as a negative number does, such as -1x5, is the value of the option before it, so that an option
+/// is told by its range, and the value not as an unknown option.
+fn words(given: impl IntoIterator<Item = OsString>) -> Vec<OsString> {
+    let mut words: Vec<OsString> = Vec::new();
+    for word in given {
+        let is_number = matches!(word.as_encoded_bytes(), [b'-', b'0'..=b'9' | b'.', ..]);
+        match words.last_mut() {
+            Some(option) if is_number && option.as_encoded_bytes().starts_with(b"--") => {
+                option.push("=");
+                option.push(word);
+            }
+            _ => words.push(word),
+        }
+    }
+    words
 }
 
 /// Runs the command line.
 pub(crate) fn main() -> ExitCode {
     report::start();
-    let result = match command().try_get_matches().and_then(|matches| Arguments::from_arg_matches(&matches)) {
+    let result = match Arguments::try_parse_from(words(std::env::args_os())) {
         Ok(arguments) => run(arguments.command),
         Err(wrong) if wrong.use_stderr() => {
             // Nobody left to tell when stderr is closed.

@@ -1,7 +1,7 @@
 //! What a command prints: results on stdout, errors and progress on stderr.
 
 use anyhow::{Context, Result};
-use indicatif::{MultiProgress, ProgressBar, ProgressStyle};
+use indicatif::{MultiProgress, ProgressBar, ProgressDrawTarget, ProgressStyle};
 use log::{LevelFilter, Log, Metadata, Record};
 use microphong_sim::{choices::Choices, convert::Steps, output};
 use serde::Serialize;
@@ -10,10 +10,12 @@ use std::{
     io::Write,
     path::Path,
     sync::{
-        LazyLock, Mutex,
+        LazyLock,
         atomic::{AtomicBool, Ordering},
+        mpsc::{Receiver, RecvTimeoutError, Sender, channel},
     },
-    time::{Duration, Instant},
+    thread::{self, JoinHandle},
+    time::Duration,
 };
 
 /// All progress bars. They make room for other output.
@@ -57,55 +59,60 @@ pub(crate) fn error(text: &str) {
     let _ = BARS.suspend(|| writeln!(std::io::stderr().lock(), "{text}"));
 }
 
+/// Work that takes less is silent.
+const LONG: Duration = Duration::from_secs(1);
 /// Between lines that tell how far long work is, where no bar shows it.
 const SILENCE: Duration = Duration::from_secs(30);
 
-/// Steps of long work: a bar on a terminal, and lines elsewhere.
+/// Steps of work. Long work is announced on stderr: by a bar on a terminal, and by lines elsewhere.
 pub(crate) struct Progress {
     bar: ProgressBar,
-    what: &'static str,
-    /// When a line was printed last; `None` where the bar is seen, or there is none.
-    told: Option<Mutex<Instant>>,
+    /// Tells of the work until its end, which the first of them is for. A thread, because a single step may take long.
+    teller: Option<(Sender<()>, JoinHandle<()>)>,
 }
 
-/// Work of `count` steps, which is announced on stderr. Silent for a single step.
+/// Work of `count` steps.
 pub(crate) fn progress(count: u64, what: &'static str) -> Progress {
-    let bar = if count < 2 { ProgressBar::hidden() } else { BARS.add(ProgressBar::new(count)) };
-    let is_hidden = BARS.is_hidden();
-    if count > 1 {
-        if is_hidden {
-            log::info!("{what}, {count} steps");
-        }
+    let bar = ProgressBar::with_draw_target(Some(count), ProgressDrawTarget::hidden());
+    let (end, ended) = channel();
+    let told = bar.clone();
+    Progress { bar, teller: Some((end, thread::spawn(move || tell(&told, what, &ended)))) }
+}
+
+/// Tells of work when it has become long, and how far it is.
+fn tell(bar: &ProgressBar, what: &'static str, ended: &Receiver<()>) {
+    let goes_on = |time| ended.recv_timeout(time) == Err(RecvTimeoutError::Timeout);
+    if !goes_on(LONG) {
+        return;
+    }
+    if !BARS.is_hidden() {
         if let Ok(style) = ProgressStyle::with_template("{msg} {wide_bar} {pos}/{len} {elapsed}, {eta} to go") {
             bar.set_style(style);
         }
         bar.set_message(what);
-        // A single step may take long.
-        bar.enable_steady_tick(Duration::from_secs(1));
+        BARS.add(bar.clone()).enable_steady_tick(LONG);
+        return;
     }
-    Progress { bar, what, told: (count > 1 && is_hidden).then(|| Mutex::new(Instant::now())) }
+    match bar.length() {
+        Some(count @ 2..) => {
+            log::info!("{what}, {count} steps");
+            while goes_on(SILENCE) {
+                log::info!("{what}, {} of {count} steps", bar.position());
+            }
+        }
+        _ => log::info!("{what}"),
+    }
 }
 
 impl Progress {
     /// More steps are done.
     pub(crate) fn inc(&self, steps: u64) {
         self.bar.inc(steps);
-        self.tell();
     }
 
     /// So many steps are done.
     pub(crate) fn set_position(&self, steps: u64) {
         self.bar.set_position(steps);
-        self.tell();
-    }
-
-    /// Tells how far the work is, after a while of silence.
-    fn tell(&self) {
-        let Some(Ok(mut told)) = self.told.as_ref().map(Mutex::lock) else { return };
-        if told.elapsed() >= SILENCE {
-            *told = Instant::now();
-            log::info!("{}, {} of {} steps", self.what, self.bar.position(), self.bar.length().unwrap_or_default());
-        }
     }
 
     /// Prints something that is not part of the bar.
@@ -114,34 +121,42 @@ impl Progress {
     }
 
     /// All is done.
-    pub(crate) fn finish_and_clear(&self) {
+    pub(crate) fn finish_and_clear(self) {}
+}
+
+/// Work ends where nobody counts its steps any more, on errors too.
+impl Drop for Progress {
+    fn drop(&mut self) {
+        if let Some((end, teller)) = self.teller.take() {
+            drop(end);
+            // It cannot panic.
+            let _ = teller.join();
+        }
         self.bar.finish_and_clear();
     }
 }
 
-/// The bar of each step of a conversion, one after the other.
+/// The progress of each step of a conversion, one after the other.
 #[derive(Default)]
 pub(crate) struct Bars(RefCell<Option<Progress>>);
 
 impl Steps for Bars {
     fn begin(&self, what: &'static str, count: usize) {
-        if let Some(last) = self.0.replace(Some(progress(count as u64, what))) {
-            last.finish_and_clear();
-        }
+        // The work before ends first.
+        drop(self.0.take());
+        self.0.replace(Some(progress(count as u64, what)));
     }
 
     fn step(&self) {
         self.0.borrow().iter().for_each(|bar| bar.inc(1));
     }
-}
 
-impl Drop for Bars {
-    fn drop(&mut self) {
-        self.0.take().iter().for_each(Progress::finish_and_clear);
+    fn warn(&self, what: &str) {
+        error(&format!("warning: {what}"));
     }
 }
 
-/// Prints the start of long work on stderr.
+/// Prints on stderr how far long work is.
 struct Announcer;
 
 impl Log for Announcer {

@@ -13,8 +13,9 @@ use microphong::{
     method::{Canvas, Facts, Method, Shading, TriangleSetup, phong::Phong},
 };
 use microphong_compare::level;
+use microphong_models::vector::length;
 use microphong_oracle::{Frame, Shade, phong};
-use microphong_render::{render::Style, shader::Shader, vector::length};
+use microphong_render::{render::Style, shader::Shader};
 use std::{collections::HashMap, sync::LazyLock};
 
 /// Random scenes, by `auto` with this budget, or random ones.

@@ -2,8 +2,8 @@
 
 use anyhow::Result;
 use embedded_graphics_core::geometry::Size;
+use microphong_models::bytes::StreamBytes;
 use microphong_render::{
-    bytes::StreamBytes,
     render::{Format, Picture, Settings, Style, picture},
     shader::Shader,
 };

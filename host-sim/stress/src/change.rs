@@ -11,7 +11,8 @@ use microphong::{
         record::{Camera, DIRECTIONAL, EYE_SPACE, Light, Material, ORTHOGRAPHIC, PERSPECTIVE, POINT, VIEWER_LOCAL},
     },
 };
-use microphong_render::{number::nearest, render::Style, shader::Shader, vector::length};
+use microphong_models::{number::nearest, vector::length};
+use microphong_render::{render::Style, shader::Shader};
 use std::ops::Range;
 
 /// An object of a scene.

@@ -21,13 +21,12 @@ use microphong::{
     pixel::gamma,
     stream::record::{CAMERA_TRACK, Key, LIGHT_TRACK, OBJECT_TRACK},
 };
-use microphong_render::{
+use microphong_models::{
     look::{Cast, Lamp, Look, Member, Way},
     number::nearest,
     quantise::Part,
-    render::Style,
-    shader::Shader,
 };
+use microphong_render::{render::Style, shader::Shader};
 
 /// Random scenes of up to twelve objects, and random changes.
 pub struct Changes;

@@ -17,14 +17,14 @@ use microphong::{
     geometry::{lens::Lens, model_view::ModelView, projection::View},
     stream::record::{Camera, DIRECTIONAL, Header, Light, Mesh as Record, POINT, Triangle, VIEWER_INFINITE, VIEWER_LOCAL},
 };
-use microphong_render::{
+use microphong_models::{
     bytes::StreamBytes,
     levels,
     mesh::Mesh,
-    render::{Format, Style},
     shapes,
     vector::{add, scale, unit},
 };
+use microphong_render::render::{Format, Style};
 use std::ops::Range;
 use zerocopy::IntoBytes;
 

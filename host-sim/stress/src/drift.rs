@@ -6,7 +6,7 @@ use microphong::{
     scene::{ORBIT_ERROR, ROTATION_ERROR},
     stream::record::{Camera, PERSPECTIVE},
 };
-use microphong_render::vector::{V3, apply, dot, length, product, rotation, sub};
+use microphong_models::vector::{V3, apply, dot, length, product, rotation, sub};
 use std::f64::consts::TAU;
 
 /// Frames of random orbits.

@@ -10,9 +10,8 @@ use microphong::{
         seal,
     },
 };
+use microphong_models::{bytes::StreamBytes, mesh, obj};
 use microphong_render::{
-    bytes::StreamBytes,
-    mesh, obj,
     render::{Format, Style},
     shader::Shader,
 };

@@ -8,7 +8,7 @@ use crate::{
     scenes::{self, Wishes},
 };
 use microphong::stream::{record::Header, seal};
-use microphong_render::bytes::StreamBytes;
+use microphong_models::bytes::StreamBytes;
 use zerocopy::FromBytes;
 
 /// Damaged streams of random scenes.

@@ -2,17 +2,19 @@
 
 use crate::{case::Case, random::Random};
 use microphong::Skips;
-use microphong_render::{
+use microphong_models::{
     bytes::StreamBytes,
     levels,
     look::{Lamp, Look, Surface},
     mesh::Mesh,
     quantise::{Part, quantise},
-    render::{Format, Style},
-    shader::Shader,
     shapes,
     vector::{V3, add, apply, cross, rotation, scale, sub, unit},
     view::{Projection, View},
+};
+use microphong_render::{
+    render::{Format, Style},
+    shader::Shader,
 };
 use std::f64::consts::TAU;
 

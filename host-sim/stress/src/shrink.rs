@@ -2,7 +2,8 @@
 
 use crate::case::Case;
 use microphong::stream::{self, record::Header, seal};
-use microphong_render::{bytes::StreamBytes, render::Format};
+use microphong_models::bytes::StreamBytes;
+use microphong_render::render::Format;
 use zerocopy::IntoBytes;
 
 /// Makes `case` smaller as long as it `fails`.

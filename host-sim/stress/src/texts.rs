@@ -1,7 +1,8 @@
 //! Texts of scenes: random ones, with numbers out of range, and with lines and bytes that nobody meant.
 
 use crate::{Family, Verdict, case::Case, random::Random, scenes};
-use microphong_render::{bytes::StreamBytes, script, shader::Shader};
+use microphong_models::{bytes::StreamBytes, script};
+use microphong_render::shader::Shader;
 
 /// Random texts of scenes.
 pub struct Texts;

@@ -5,7 +5,7 @@ use crate::{
     random::Random,
     scenes::{self, Hard, Wishes},
 };
-use microphong_render::{
+use microphong_models::{
     look::{Lamp, Look},
     mesh::Mesh,
     vector::{V3, add, scale, sub, unit},

@@ -23,7 +23,8 @@ use microphong::{
         seal,
     },
 };
-use microphong_render::{bytes::StreamBytes, levels, render, shader::Shader};
+use microphong_models::{bytes::StreamBytes, levels};
+use microphong_render::{render, shader::Shader};
 use zerocopy::FromBytes;
 
 /// A colour that no scene shows. Surfaces are black, so pixels that are not drawn can be recognised.

@@ -15,7 +15,8 @@ use super::{
 use anyhow::{Context, Result};
 use maud::{Markup, PreEscaped, html};
 use microphong_compare::document::{COLOURS, document};
-use microphong_render::{output::Output, scene::PEER};
+use microphong_models::scene::PEER;
+use microphong_render::output::Output;
 use scatter::{Axes, Error};
 use std::{
     fs,
@@ -226,7 +227,8 @@ mod tests {
     use super::*;
     use crate::Stages;
     use embedded_graphics_core::{geometry::Size, pixelcolor::Rgb565};
-    use microphong_render::{choices, scene, shader::Shader};
+    use microphong_models::scene;
+    use microphong_render::{choices, shader::Shader};
 
     fn measured() -> Vec<Measurement> {
         let frame = |scene: &str, board: Processor, shader: Shader, index: u64| {

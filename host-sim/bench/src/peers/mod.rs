@@ -21,11 +21,8 @@ use microphong_boards::{
     clocked,
     elf::Elf,
 };
-use microphong_render::{
-    render,
-    scene::{self, PORTFOLIO, Scene},
-    shader::Shader,
-};
+use microphong_models::scene::{self, PORTFOLIO, Scene};
+use microphong_render::{render, shader::Shader};
 use serde::Serialize;
 use std::{array, ffi::OsString, path::PathBuf};
 

@@ -4,7 +4,7 @@ use super::{Frame, PEERS};
 use crate::{Measurement, Processor};
 use anyhow::{Context, Result, bail};
 use microphong_boards::budget::PICO;
-use microphong_render::scene::PEER;
+use microphong_models::scene::PEER;
 
 /// A renderer's method.
 #[derive(Clone, Debug, PartialEq)]

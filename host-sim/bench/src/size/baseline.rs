@@ -6,10 +6,10 @@ use crate::{
     renewal::{mean, with_reason},
 };
 use anyhow::{Context, Result};
+use microphong_models::scene;
 use microphong_render::{
     output,
     program::{Entry, HEAD, Program},
-    scene,
 };
 use std::{
     fs,

@@ -7,7 +7,7 @@ use crate::{
     scanline::{End, Span},
     scene::direction,
 };
-use microphong_render::vector::{V3, add, cross, dot, scale};
+use microphong_models::vector::{V3, add, cross, dot, scale};
 
 /// Half widths of the parabolas for an exponent: of the middle one, and of all three.
 pub(crate) type Widths = fn(f64) -> [f64; 2];
@@ -121,7 +121,7 @@ pub(super) fn hybrid<'f>(frame: &'f Frame, facet: &'f Facet, widths: Widths) -> 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use microphong_render::vector::unit;
+    use microphong_models::vector::unit;
     use std::f64::consts::FRAC_PI_2;
 
     /// Largest difference of the parabolas to cos^s.

@@ -7,7 +7,7 @@ use crate::{
     poly::{SIX, blend, quadratic as quadratic_weights, sum},
     scene::direction,
 };
-use microphong_render::vector::{V3, cross, dot, scale, sub};
+use microphong_models::vector::{V3, cross, dot, scale, sub};
 
 /// The normal's coordinates across H, along the axis that is nearest to the eye's vertical, and square to it.
 ///

@@ -6,7 +6,7 @@ use crate::{
     poly::{blend, sum},
     scene::direction,
 };
-use microphong_render::vector::{V3, add, apply, dot, scale, sub};
+use microphong_models::vector::{V3, add, apply, dot, scale, sub};
 
 /// Coordinates of the view mirrored at the normal, `W = 2 (n·v) n - v`: `(Wx, Wy) / |W + (0, 0, 1)|`.
 fn coordinates(normal: V3, view: V3) -> [f64; 2] {

@@ -7,7 +7,7 @@ use crate::{
     scanline::{Span, lerp},
     scene::direction,
 };
-use microphong_render::vector::{dot, length as length_of};
+use microphong_models::vector::{dot, length as length_of};
 
 /// A pixel centre on the right edge is not in the row; the edge's column is rounded, by less than this.
 const TIE: f64 = 1e-9;

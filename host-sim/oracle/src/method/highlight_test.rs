@@ -2,7 +2,7 @@
 
 use super::{Decide, gouraud};
 use crate::{Facet, Frame, Shade, light::phong};
-use microphong_render::vector::dot;
+use microphong_models::vector::dot;
 
 /// The largest N·H on a triangle is at most the corners' largest over r, the least length of an interpolated normal.
 /// A triangle on which it stays below `1 - 8/e` for every light counts as dark: to the power of e that is less than

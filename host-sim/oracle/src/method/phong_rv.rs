@@ -5,7 +5,7 @@ use crate::{
     light::reflection,
     scene::{Light, direction},
 };
-use microphong_render::vector::dot;
+use microphong_models::vector::dot;
 
 pub(super) fn shade<'f>(frame: &'f Frame, facet: &'f Facet) -> Shade<'f> {
     let exponent = frame.material(facet).exponent;

@@ -4,7 +4,7 @@ use crate::{
     Facet, Frame, Shade,
     poly::{FOUR, blend, quarter, within},
 };
-use microphong_render::vector::V3;
+use microphong_models::vector::V3;
 
 /// Longest edge of a part, in pixels.
 const LONGEST: f64 = 8.0;

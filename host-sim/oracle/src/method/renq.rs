@@ -4,7 +4,7 @@ use crate::{
     Facet, Frame, Levels, Shade,
     poly::{SIX, blend, quadratic, sum},
 };
-use microphong_render::vector::dot;
+use microphong_models::vector::dot;
 
 /// N·L and N·H of the interpolated normal, not normalised: `scale` then takes their length away.
 ///

@@ -13,7 +13,7 @@ use crate::{
     poly::{blend, quadratic, quarter},
     scanline::lerp,
 };
-use microphong_render::vector::V3;
+use microphong_models::vector::V3;
 
 /// Largest error of an edge's parabola at its quarters, in levels.
 const EDGE: f64 = 1.0;

@@ -5,7 +5,7 @@ use crate::{
     scanline::{Span, slerp},
     scene::direction,
 };
-use microphong_render::vector::dot;
+use microphong_models::vector::dot;
 
 pub(super) fn shade<'f>(frame: &'f Frame, facet: &'f Facet) -> Shade<'f> {
     let normals = facet.normals.map(direction);

@@ -1,7 +1,7 @@
 //! N·L and N·H by their second-order Taylor expansion about the centroid (Bishop and Weimer 1986, infinite eye).
 
 use crate::{Facet, Frame, Shade};
-use microphong_render::vector::{V3, dot, length, sub};
+use microphong_models::vector::{V3, dot, length, sub};
 
 /// The expansion of `v·N / |N|` at `N = c + m`, about `c`:
 ///
@@ -25,7 +25,7 @@ pub(super) fn shade<'f>(frame: &'f Frame, facet: &'f Facet) -> Shade<'f> {
 #[cfg(test)]
 pub(super) mod tests {
     use super::*;
-    use microphong_render::vector::{add, scale, unit};
+    use microphong_models::vector::{add, scale, unit};
 
     /// Step of the differences.
     const STEP: f64 = 1e-3;

@@ -2,7 +2,7 @@
 //! Weimer 1986, finite eye).
 
 use crate::{Facet, Frame, Shade, frame::mixed};
-use microphong_render::vector::{V3, add, dot, length, scale, sub};
+use microphong_models::vector::{V3, add, dot, length, scale, sub};
 
 /// The expansion of `N·W / (|N| |W|)` at `N = c + m`, `W = f + q`, about `c` and `f`.
 ///
@@ -40,7 +40,7 @@ pub(super) fn shade<'f>(frame: &'f Frame, facet: &'f Facet) -> Shade<'f> {
 mod tests {
     use super::{super::taylor, *};
     use crate::{Light, Material, Place};
-    use microphong_render::vector::scale;
+    use microphong_models::vector::scale;
 
     const NORMALS: [V3; 3] = [[0.3, -0.2, 0.85], [0.4, 0.1, -0.3], [-0.2, 0.5, 0.25]];
     const TOWARDS: [V3; 3] = [[-0.5, 0.6, 1.2], [0.3, 0.2, 0.1], [0.1, -0.4, 0.2]];

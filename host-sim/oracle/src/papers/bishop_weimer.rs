@@ -3,7 +3,7 @@
 use super::{Claim, Random, Source, Topic, Verdict, direction, frame, grey, grid, largest, taylor};
 use crate::{Facet, Place, method, phong};
 use anyhow::Result;
-use microphong_render::vector::{V3, add, dot, length, scale};
+use microphong_models::vector::{V3, add, dot, length, scale};
 
 const TABLES: Source = Source(Topic::BishopWeimer, "table of powers");
 const SPREAD: Source = Source(Topic::BishopWeimer, "range of normals");

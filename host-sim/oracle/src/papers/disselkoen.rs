@@ -2,7 +2,7 @@
 
 use super::{Claim, Random, Source, Topic, Value, Verdict, bishop_weimer, direction, largest};
 use crate::angular::{Widths, along, parabolas, printed, refitted};
-use microphong_render::vector::{V3, add, cross, dot, length, scale, sub};
+use microphong_models::vector::{V3, add, cross, dot, length, scale, sub};
 use std::{collections::HashMap, f64::consts::FRAC_PI_2};
 
 const ANGULAR: Source = Source(Topic::Disselkoen, "3, after Kuijk & Blake 1989");

@@ -1,7 +1,7 @@
 //! Walking normals along a row (Goldman's lecture).
 
 use super::{Claim, Random, Source, Topic, Verdict, direction, largest};
-use microphong_render::{
+use microphong_models::{
     polygon::newell,
     vector::{V3, add, cross, dot, length, scale, sub},
 };

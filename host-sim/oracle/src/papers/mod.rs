@@ -11,7 +11,7 @@ mod vlasic;
 
 use crate::{Facet, Frame, Light, Material, Place};
 use anyhow::Result;
-use microphong_render::{
+use microphong_models::{
     mesh::Mesh,
     vector::{V3, apply, product, rotation, unit},
 };

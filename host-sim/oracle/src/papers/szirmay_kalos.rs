@@ -3,7 +3,7 @@
 use super::{Claim, Random, Source, Topic, Verdict, centre, distant, grid, largest, polynomial, row};
 use crate::{Facet, Frame, SIX, method, phong, quadratic, sum};
 use anyhow::Result;
-use microphong_render::{
+use microphong_models::{
     shapes,
     vector::{V3, add, dot, scale, sub},
 };

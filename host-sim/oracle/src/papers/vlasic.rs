@@ -3,7 +3,7 @@
 use super::{Claim, Random, Source, Topic, Verdict, direction, frame, grey, largest, polynomial};
 use crate::{Facet, Frame, Levels, Place, SIX, TEN, cubic, method, phong, quadratic, sum};
 use anyhow::Result;
-use microphong_render::{
+use microphong_models::{
     scene,
     shapes::bulged_triangle,
     vector::{V3, add, cross, dot, scale, sub},

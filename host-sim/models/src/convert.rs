@@ -2,17 +2,18 @@
 
 use crate::{
     bytes::StreamBytes,
+    fields::quoted,
     import::{self, Imported},
     levels::{self, Simplified},
     look::{BACKGROUND, Lamp, Look, Surface},
     mesh::{Mesh, Report, Weld},
     mtl::Material,
     quantise::{Part, quantise},
-    render::Format,
     vector::{V3, add},
     view::{Up, View},
 };
 use anyhow::{Context, Result};
+use microphong_render::render::Format;
 use std::path::Path;
 
 /// The look of a mesh without materials.
@@ -40,10 +41,7 @@ impl Finish {
     /// The look that can be read in a pixel format.
     #[must_use]
     pub const fn of(format: Format) -> Self {
-        match format {
-            Format::Binary | Format::Gray2 | Format::Gray4 => Self::GREY,
-            _ => Self::COLOUR,
-        }
+        if format.has_few_greys() { Self::GREY } else { Self::COLOUR }
     }
 }
 
@@ -81,6 +79,8 @@ pub struct Options {
     pub view: View,
     /// Whether highlights see the eye where it is, not infinitely far.
     pub local_viewer: bool,
+    /// Pixel format of the pictures.
+    pub format: Format,
     /// Size of the picture that the turn fills.
     pub size: (u32, u32),
     /// Most triangles.
@@ -110,6 +110,7 @@ impl Options {
             background,
             view: View::orbit(Up::Y, AZIMUTH.to_radians(), ELEVATION.to_radians(), DISTANCE, ORBIT),
             local_viewer: false,
+            format,
             size: SQUARE,
             simplify: None,
             levels: Vec::new(),
@@ -123,12 +124,15 @@ pub trait Steps {
     fn begin(&self, what: &'static str, count: usize);
     /// A step is done.
     fn step(&self);
+    /// Says what a user should know of the file, at once.
+    fn warn(&self, what: &str);
 }
 
 /// Work that nobody watches.
 impl Steps for () {
     fn begin(&self, _: &'static str, _: usize) {}
     fn step(&self) {}
+    fn warn(&self, _: &str) {}
 }
 
 /// A mesh file that is ready to become a stream.
@@ -159,11 +163,23 @@ impl Converted {
     /// Names the file, and what is wrong with it.
     pub fn read(path: &Path, options: &Options, steps: &dyn Steps) -> Result<Self> {
         let place = || path.display().to_string();
+        steps.begin("reading the file", 1);
         let Imported { mut mesh, report, mut objects, mut materials, mut remarks } = import::file(path, options.weld)?;
         if options.repaint && materials.iter().any(Option::is_some) {
             remarks.push(format!("{} materials of the file have the one colour of --colour", materials.iter().flatten().count()));
             mesh.merge_materials();
             materials = vec![None];
+        }
+        let is_dark = |material: &&Material| is_dark(&material.surface(options.ambient), options.format);
+        let dark: Vec<_> = materials.iter().flatten().filter(is_dark).collect();
+        if let [first, others @ ..] = &dark[..] {
+            let more = if others.is_empty() { String::new() } else { format!(" and {} more", others.len()) };
+            steps.warn(&format!(
+                "{}: the material \"{}\"{more} is too dark for the few greys of {}; --colour ffffff makes the whole mesh white",
+                place(),
+                quoted(&first.name),
+                options.format.name()
+            ));
         }
         if options.merge {
             mesh.merge_objects();
@@ -256,6 +272,15 @@ pub struct Largest {
     pub parts: Vec<Part>,
     /// What simplification did.
     pub simplified: Simplified,
+}
+
+/// Level, of 1, below which a picture of few greys shows no form.
+const READABLE: f64 = 0.25;
+
+/// Whether a surface in full light, without its highlight, is too dark for the few greys of a format.
+fn is_dark(surface: &Surface, format: Format) -> bool {
+    let [r, g, b] = add(surface.ambient, surface.diffuse);
+    format.has_few_greys() && 0.3 * r + 0.59 * g + 0.11 * b < READABLE
 }
 
 /// A near light counts from the centre of the mesh; in a stream it counts from the eye.

@@ -11,7 +11,6 @@ use crate::{
     mtl::Material,
     number::nearest,
     quantise::{Part, quantise},
-    shader::Shader,
     shapes,
     turn::{Stop, Turn, along},
     vector::{V3, add, cross, dot, length, scale, sub, unit},
@@ -27,6 +26,7 @@ use microphong::{
         record::{CAMERA_TRACK, Key, LABEL_TEXT, LEAST_LINE, LEFT, LIGHT_TRACK, Label, MAX_POSITION, MIDDLE, OBJECT_TRACK, RIGHT},
     },
 };
+use microphong_render::shader::Shader;
 use std::{
     collections::HashMap,
     ops::{Range, RangeInclusive},

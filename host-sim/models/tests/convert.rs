@@ -4,17 +4,17 @@ use microphong::{
     Stream,
     stream::record::{CLOSED_CONVEX, Triangle},
 };
-use microphong_render::{
+use microphong_models::{
     import,
     look::{Look, Surface},
     mesh::{self, Mesh, Weld},
     obj,
     quantise::{normal, quantise},
     scene,
-    shader::Shader,
     vector::{V3, add, cross, dot, length, scale, sub, unit},
     view::{Up, View},
 };
+use microphong_render::shader::Shader;
 use std::{
     collections::{HashMap, HashSet},
     fs,

@@ -1,6 +1,6 @@
 //! A mesh becomes one and the same stream from several file formats, and damaged files are errors.
 
-use microphong_render::{
+use microphong_models::{
     import::{self, Imported},
     look::{Look, Surface},
     mesh::Weld,

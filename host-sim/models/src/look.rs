@@ -4,7 +4,6 @@ use crate::{
     bytes::StreamBytes,
     number::{above, nearest},
     quantise::Part,
-    shader::Shader,
     vector::{V3, length, scale, unit},
     view::{Projection, View},
 };
@@ -23,6 +22,7 @@ use microphong::{
         },
     },
 };
+use microphong_render::shader::Shader;
 use zerocopy::{FromZeros, IntoBytes};
 
 /// Reflectances of a surface for each channel, where 1 reflects all light.

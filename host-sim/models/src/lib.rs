@@ -1,0 +1,28 @@
+//! Models and scenes, from their files to triangle streams.
+
+pub mod bytes;
+pub mod convert;
+pub mod convex;
+pub mod distance;
+mod fields;
+mod foreign;
+pub mod gltf;
+pub mod import;
+pub mod levels;
+pub mod look;
+pub mod mesh;
+pub mod mtl;
+mod names;
+pub mod number;
+pub mod obj;
+mod pbr;
+pub mod ply;
+pub mod polygon;
+pub mod quantise;
+pub mod scene;
+pub mod script;
+pub mod shapes;
+pub mod stl;
+mod turn;
+pub mod vector;
+pub mod view;
