@@ -14,11 +14,7 @@ use microphong::{
         viewport::Bounds,
     },
     interpolate::{Constant, plane::Plane},
-    lighting::{
-        material_tables::MaterialTables,
-        output::Output,
-        reflectance::{LitMaterial, Reflectance},
-    },
+    lighting::{material_tables::MaterialTables, output::Output, reflectance::Reflectance},
     method::{
         Uniform,
         sub_triangle::{ScreenSubTriangle, SubTriangle},
