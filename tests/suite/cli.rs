@@ -1106,7 +1106,7 @@ fn long_work_is_announced() {
     let bunny = Path::new(env!("CARGO_MANIFEST_DIR")).join("meshes/bunny.obj");
     let bunny = bunny.to_string_lossy();
     let cases: [(&[&str], &str); 2] = [
-        (&["convert", &bunny, "-o", "out.tri", "--lod", "240x240"], "searching levels of detail ...\n"),
+        (&["convert", &bunny, "-o", "out.tri", "--lod", "120x120"], "searching levels of detail ...\n"),
         (&["convert", "large.obj", "-o", "out.tri"], "reading the file ...\n"),
     ];
     for (command, announced) in cases {
