@@ -2,7 +2,6 @@
 
 use crate::{
     frame::context::{Context, PlacedMesh},
-    lighting::{material_tables::MaterialTables, output::Output},
     mesh::Drawing,
     pixel::{Pixel, gamma::Gamma},
     shader::{Shader, TriangleLoops},
@@ -36,12 +35,8 @@ impl<'r, C: Pixel> Colours<'r, C> {
     ) -> Option<(Drawing<'s, C>, TriangleLoops<C>)> {
         let ColourSettings { shader, dither, gamma } = self.settings;
         let (pass, mut style) = context.pass(placed, columns)?;
-        let output = Output::new(
-            MaterialTables { ramps: self.ramps.get(placed.material)?, reflectance: pass.shading.reflectance.reflectance() },
-            *dither,
-            *gamma,
-        );
-        style.by_canvas |= !output.suits_loops();
-        Some((Drawing { pass, output }, shader.loops(style)))
+        let drawing = Drawing { pass, ramps: self.ramps.get(placed.material)?, dither: *dither, gamma: *gamma };
+        style.by_canvas |= !drawing.output().suits_loops();
+        Some((drawing, shader.loops(style)))
     }
 }

@@ -18,7 +18,7 @@ pub struct MaterialTables<'a, C: Pixel> {
     /// highlight, by the level of the channel that has most diffuse light.
     pub ramps: &'a C::Ramps,
     /// Reflectances of the material, in levels.
-    pub reflectance: &'a Reflectance,
+    pub reflectance: &'a LitMaterial<'a>,
 }
 
 impl<C: Pixel> Clone for MaterialTables<'_, C> {
@@ -104,7 +104,7 @@ impl<'a, C: Pixel> MaterialTables<'a, C> {
     /// The sums of three channels under the first light.
     #[inline(always)]
     fn sums(&self) -> OneLightRgb<'a, C> {
-        let [[even, ..], [odd, ..]] = &self.reflectance.sums;
+        let [[even, ..], [odd, ..]] = &self.reflectance.reflectance().sums;
         OneLightRgb(ByTurns::new([even, odd]), PhantomData)
     }
 
@@ -112,23 +112,23 @@ impl<'a, C: Pixel> MaterialTables<'a, C> {
     #[inline(always)]
     #[must_use]
     pub fn two_lights_rgb(&self) -> Option<[TwoLightsRgb<'a, C>; 2]> {
-        let [even, odd] = &self.reflectance.sums;
+        let [even, odd] = &self.reflectance.reflectance().sums;
         let forth = ByTurns::new([even.first_chunk()?, odd.first_chunk()?]);
         let back = ByTurns::new([even.last_chunk()?, odd.last_chunk()?]);
         (!C::GRAY && self.reflectance.lights() == 2).then_some([TwoLightsRgb(forth, PhantomData), TwoLightsRgb(back, PhantomData)])
     }
 
-    /// The colour of `material`, which is this one, under one light from `[N·L, N·H]` (Q2.30), on even rows and on odd ones.
+    /// The colour under one light from `[N·L, N·H]` (Q2.30), on even rows and on odd ones.
     #[inline(always)]
     #[must_use]
-    pub fn one_light(&self, material: LitMaterial<'_>, cosines: [i32; 2]) -> [C::Stored; 2] {
-        if self.three_channels() { self.one_light_mixed(material, cosines) } else { self.tint(material.level(cosines)) }
+    pub fn one_light(&self, cosines: [i32; 2]) -> [C::Stored; 2] {
+        if self.three_channels() { self.one_light_mixed(cosines) } else { self.tint(self.reflectance.level(cosines)) }
     }
 
     /// [`Self::one_light`] in three channels.
     #[inline(never)]
-    fn one_light_mixed(self, material: LitMaterial<'_>, [cosine, half]: [i32; 2]) -> [C::Stored; 2] {
-        match material.highlight(half) {
+    fn one_light_mixed(self, [cosine, half]: [i32; 2]) -> [C::Stored; 2] {
+        match self.reflectance.highlight(half) {
             0 if self.reflectance.has_ramp() => self.tint(self.reflectance.ramp_level(cosine)),
             highlight if self.reflectance.sums_fit() => self.sums().by_turns(cosine >> (COSINE - FACTOR), highlight),
             highlight => self.mixed_by_turns(self.reflectance.reflection(cosine, highlight)),
@@ -196,11 +196,9 @@ mod tests {
             let material = Material { ambient: [gain; 3], diffuse: [gain, gain / 2, 0], specular: [gain; 3], exponent: 30 };
             let mut reflectance = reflectance::<Rgb565>(&material, [1 << UNIT; 3]);
             for _ in 0..2 {
-                let tables = MaterialTables::<Rgb565> { ramps: &[[0; RAMP]; 2], reflectance: &reflectance };
+                let tables = MaterialTables::<Rgb565> { ramps: &[[0; RAMP]; 2], reflectance: &LitMaterial::new(&reflectance, None) };
                 let exact = reflectance.reflection(1 << COSINE, 1 << 16);
-                let colours = tables
-                    .one_light(LitMaterial::new(&reflectance, None), [1 << COSINE, 1 << COSINE])
-                    .map(|stored| Rgb565::from_stored(stored).channels());
+                let colours = tables.one_light([1 << COSINE, 1 << COSINE]).map(|stored| Rgb565::from_stored(stored).channels());
                 for (colour, turn) in colours.into_iter().zip([-1, 1]) {
                     let quarter = reflectance.quarter() * turn;
                     let expected = zip(exact, Rgb565::DEPTH, |level, depth| {
@@ -231,7 +229,7 @@ mod tests {
             prop_assert!(reflectance.has_ramp());
             let mut ramps = [[0; RAMP]; 2];
             fill_ramps::<Rgb565>(&mut ramps, &reflectance, false, None);
-            let tables = MaterialTables::<Rgb565> { ramps: &ramps, reflectance: &reflectance };
+            let tables = MaterialTables::<Rgb565> { ramps: &ramps, reflectance: &LitMaterial::new(&reflectance, None) };
             for cosine in (-4..=64).map(|c| c << (COSINE - 6)) {
                 let [exact, _] = tables.colour(reflectance.reflection(cosine, 0)).map(|stored| Rgb565::from_stored(stored).channels());
                 let [tabled, _] = tables.tint(reflectance.ramp_level(cosine)).map(|stored| Rgb565::from_stored(stored).channels());

@@ -6,9 +6,9 @@ pub(crate) mod vertices;
 use crate::{
     antialias::PixelSet,
     geometry::bin::{Key, Walk},
-    lighting::output::Output,
+    lighting::{material_tables::MaterialTables, output::Output},
     method::{DrawTriangle, General, Loops, TriangleSetup, tiles},
-    pixel::Pixel,
+    pixel::{Pixel, gamma::Gamma},
     raster::{
         band::Band,
         canvas::BandCanvas,
@@ -22,10 +22,24 @@ pub(crate) use pass::MeshPass;
 /// A mesh in one frame, and the colours of its material in the pixel format `C`.
 pub(crate) struct Drawing<'f, C: Pixel> {
     pub(crate) pass: MeshPass<'f>,
-    pub(crate) output: Output<'f, C>,
+    /// The tables of colours of the material.
+    pub(crate) ramps: &'f C::Ramps,
+    pub(crate) dither: bool,
+    /// The curve of the display.
+    pub(crate) gamma: Option<&'static Gamma>,
 }
 
 impl<C: Pixel> Drawing<'_, C> {
+    #[inline(always)]
+    fn tables(&self) -> MaterialTables<'_, C> {
+        MaterialTables { ramps: self.ramps, reflectance: &self.pass.shading.reflectance }
+    }
+
+    /// What makes pixels of intensities.
+    pub(crate) fn output(&self) -> Output<'_, C> {
+        Output::new(self.tables(), self.dither, self.gamma)
+    }
+
     /// Draws the triangle `key` and all that follow in the same mesh, by the loops `L` where they can. Returns the number of pixels in `band`, and
     /// the first triangle of another mesh.
     #[inline(never)]
@@ -55,14 +69,14 @@ impl<C: Pixel> Drawing<'_, C> {
     pub(crate) fn draw(&self, loops: DrawTriangle<C>, triangle: &Triangle, band: &mut Band<'_, C>) -> u32 {
         let (width, rows) = (band.width as i32, band.range());
         self.pass.set_up(triangle, width, rows, &mut |setup| {
-            loops(setup, &self.pass.shading, self.output.tables, band).unwrap_or_else(|| self.shade_generally(setup, band))
+            loops(setup, &self.pass.shading, self.tables(), band).unwrap_or_else(|| self.shade_generally(setup, band))
         })
     }
 
     #[inline(never)]
     fn shade_generally(&self, setup: &TriangleSetup<'_>, band: &mut Band<'_, C>) -> u32 {
         let MeshPass { method, shading, .. } = &self.pass;
-        tiles::shade(setup, &mut BandCanvas { band, output: &self.output }, |setup, canvas| method.shade(setup, shading, canvas))
+        tiles::shade(setup, &mut BandCanvas { band, output: &self.output() }, |setup, canvas| method.shade(setup, shading, canvas))
     }
 
     /// Draws a word-sized triangle, see [`Viewport::is_word_sized`]. `key` identifies it among active triangles. `None` if the loops cannot draw it.
@@ -100,6 +114,6 @@ impl<C: Pixel> Drawing<'_, C> {
             pixels: PixelSet::Centres,
             place,
         };
-        L::draw(&setup, &self.pass.shading, self.output.tables, band)
+        L::draw(&setup, &self.pass.shading, self.tables(), band)
     }
 }

@@ -125,14 +125,14 @@ pub(crate) fn draw<C: Pixel>(
         return None;
     }
     let square = tabled(setup)?;
-    let (halves, lut) = (HalfRsqrt::get(), shading.reflectance.table()?);
+    let halves = HalfRsqrt::get();
     let half_reciprocal = |[square]: [u32; 1]| halves.rsqrt(square) as i32;
     // One closure for both, or each would have loops of its own.
     let length = || square;
     if tables.reflectance.lights() == 2 {
-        return quotient::draw_two::<true, _, C>(setup, length, half_reciprocal, (tables, lut), band);
+        return quotient::draw_two::<true, _, C>(setup, length, half_reciprocal, tables, band);
     }
-    quotient::draw::<true, _, C>(setup, &corners(), length, half_reciprocal, (tables, lut), band)
+    quotient::draw::<true, _, C>(setup, &corners(), length, half_reciprocal, tables, band)
 }
 
 /// The field |N|² minus [`LEAST`], Q0.32; `None` if |N|² leaves the table of roots.

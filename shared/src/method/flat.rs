@@ -65,7 +65,7 @@ impl Loops for Flat {
         let colour = match shading.constant {
             Some([towards, half]) => {
                 let normal = wide(setup.triangle.normal);
-                tables.one_light(shading.reflectance, [vertex_cosine(normal, towards), vertex_cosine(normal, half)])
+                tables.one_light([vertex_cosine(normal, towards), vertex_cosine(normal, half)])
             }
             None => tables.colour(levels(setup.triangle, setup.vertices, shading)),
         };

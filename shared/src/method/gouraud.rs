@@ -108,7 +108,7 @@ pub(super) fn draw_three<C: Pixel>(
     tables: MaterialTables<'_, C>,
     band: &mut Band<'_, C>,
 ) -> u32 {
-    let ([a, b, c], reflectance) = (setup.corners, tables.reflectance);
+    let ([a, b, c], reflectance) = (setup.corners, tables.reflectance.reflectance());
     // By the table of colours where the light has no highlight.
     if has_ramp(setup, reflectance) {
         let level = |[cosine, ..]: [i32; 4]| reflectance.ramp_level(cosine) + raise;

@@ -111,10 +111,10 @@ pub(super) fn draw<const EXACT: bool, F: Field, C: Pixel>(
     cosines: &CornerCosines,
     length: impl FnOnce() -> F,
     half_reciprocal: impl Fn(F::Value) -> i32 + Copy,
-    (tables, lut): (MaterialTables<'_, C>, &HighlightLut),
+    tables: MaterialTables<'_, C>,
     band: &mut Band<'_, C>,
 ) -> Option<u32> {
-    let rgb = tables.one_light_rgb();
+    let (rgb, lut) = (tables.one_light_rgb(), tables.reflectance.table()?);
     // Without a highlight three channels are drawn by a table of colours, which rounds otherwise: that is no matter of leaving it out.
     let has_no_highlight = match rgb {
         Some(_) => largest(&cosines[1]) < setup.highlight_threshold(tables.reflectance),
@@ -151,19 +151,19 @@ pub(super) fn draw_two<const EXACT: bool, F: Field, C: Pixel>(
     setup: &TriangleSetup<'_>,
     length: impl FnOnce() -> F,
     half_reciprocal: impl Fn(F::Value) -> i32 + Copy,
-    (tables, lut): (MaterialTables<'_, C>, &HighlightLut),
+    tables: MaterialTables<'_, C>,
     band: &mut Band<'_, C>,
 ) -> Option<u32> {
     let TwoLights { colours, cosines: [first, second], highlights } = TwoLights::on(setup, tables)?;
     let full = TwoLightsRgb::<C>::DIFFUSE;
-    let lookup = QuotientLookup::new(lut);
+    let lookup = QuotientLookup::new(tables.reflectance.table()?);
     let at = QuotientWithHighlight::<_, EXACT>(lookup, half_reciprocal);
     let both = |[towards, half]: &CornerCosines| (plane(setup, full, towards), numerator(setup, lookup, half));
     setup.count(band.top, &mut band.counts.without_highlight, 2 - highlights);
     Some(match highlights {
         1 if setup.leaves_out_light(tables.reflectance, &second[0]) => {
             setup.count(band.top, &mut band.counts.without_light, 1);
-            draw_rgb::<EXACT, _, _>(setup, &first, length, half_reciprocal, colours.first(), lut, band)
+            draw_rgb::<EXACT, _, _>(setup, &first, length, half_reciprocal, colours.first(), tables.reflectance.table()?, band)
         }
         0 => {
             let patch = || ((plane(setup, full, &first[0]), plane(setup, full, &second[0])), fitted(&length(), setup.gradients));

@@ -82,14 +82,7 @@ impl Loops for RenqNewton {
             return None;
         }
         let lengths = || (renq::length(setup, shading.exponent), duff::square(setup, shading.exponent));
-        quotient::draw::<false, _, C>(
-            setup,
-            &setup.corner_lights(),
-            lengths,
-            |lengths| Newton::<1>.half_reciprocal(lengths),
-            (tables, shading.reflectance.table()?),
-            band,
-        )
+        quotient::draw::<false, _, C>(setup, &setup.corner_lights(), lengths, |lengths| Newton::<1>.half_reciprocal(lengths), tables, band)
     }
 }
 
