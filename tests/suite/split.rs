@@ -14,7 +14,11 @@ use microphong::{
         viewport::Bounds,
     },
     interpolate::{Constant, plane::Plane},
-    lighting::{material_tables::MaterialTables, output::Output, reflectance::Reflectance},
+    lighting::{
+        material_tables::MaterialTables,
+        output::Output,
+        reflectance::{LitMaterial, Reflectance},
+    },
     method::{
         Uniform,
         sub_triangle::{ScreenSubTriangle, SubTriangle},
@@ -64,7 +68,7 @@ fn parts_of_random_triangles_cover_each_pixel_once() {
     let (w, h) = (WIDTH as i32 * 16, HEIGHT as i32 * 16);
     let (mut triangles, mut covered) = (0, 0u64);
     // Every level is the same colour.
-    let tables = MaterialTables::<Gray8> { ramps: &[[1; RAMP]], reflectance: &Reflectance::EMPTY };
+    let tables = MaterialTables::<Gray8> { ramps: &[[1; RAMP]], reflectance: &LitMaterial::new(&Reflectance::EMPTY, None) };
     let cases = cases(12_000) as usize;
     for i in 0..cases {
         let corners = match i % 5 {
