@@ -125,9 +125,9 @@ impl Layout {
         Self { antialias, ..self }
     }
 
-    /// Leaves out the tables of highlights, which take 8,200 bytes for each material. Methods that compute highlights at vertices need none:
-    /// [`Shader::FLAT`](crate::Shader::FLAT), [`Shader::GOURAUD`](crate::Shader::GOURAUD), and, more slowly,
-    /// [`Shader::SIX_POINT`](crate::Shader::SIX_POINT). A renderer refuses all others.
+    /// Leaves out the tables of highlights, which take 8,200 bytes for each material. Methods that use the light of vertices alone need none:
+    /// [`Shader::FLAT`](crate::Shader::FLAT) and [`Shader::GOURAUD`](crate::Shader::GOURAUD). A renderer refuses all others, see
+    /// [`Method::needs_highlight_tables`](crate::method::Method::needs_highlight_tables).
     #[must_use]
     pub const fn without_highlight_tables(self) -> Self {
         Self { highlight_tables: false, ..self }

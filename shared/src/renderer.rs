@@ -8,7 +8,7 @@ use crate::{
     geometry::{area::Area, lens::Lens, model_view::ModelView, region::Region},
     lighting::{lights::Directions, material_tables::fill_ramps, reflectance::LitMaterial},
     memory::{Layout, Memory, take_ramps},
-    method::{Facts, HighlightField},
+    method::{Facts, Method},
     pixel::{Channels, Pixel, gamma::Gamma, ramps::Ramps},
     placement::{Placements, Placing},
     scene::{Limits, Scene},
@@ -93,7 +93,7 @@ impl<'a, C: Pixel> Renderer<'a, C> {
         let (ramps, memory) = take_ramps::<C>(layout, memory).ok_or(RenderError::Memory { need })?;
         let (memory, objects, materials) = Memory::new(layout, memory).ok_or(RenderError::Memory { need })?;
         check(&stream, shader.facts(), false)?;
-        check_tables(shader.facts(), layout.highlight_tables)?;
+        check_tables(shader.method(), layout.highlight_tables)?;
         if !cfg!(feature = "text") && !stream.labels.is_empty() {
             return Err(RenderError::Feature { name: "text" });
         }
@@ -138,7 +138,7 @@ impl<'a, C: Pixel> Renderer<'a, C> {
     /// renderer then keeps its method.
     pub fn set_shader(&mut self, shader: Shader<C>) -> Result<(), RenderError> {
         let (facts, scene) = (shader.facts(), &self.scene);
-        check_tables(facts, self.has_highlight_tables)?;
+        check_tables(shader.method(), self.has_highlight_tables)?;
         check_scene(scene.camera(), scene.lights(), scene.materials(), facts, self.settings.perspective_correct)?;
         (self.settings.method, self.colours.shader) = (shader.method(), shader);
         self.scene.set_limits(limits(facts, self.settings.perspective_correct));
@@ -431,13 +431,9 @@ pub fn check(stream: &Stream<'_>, facts: &Facts, perspective_correct: bool) -> R
     check_scene(&stream.header.camera, stream.lights, stream.materials.iter(), facts, perspective_correct)
 }
 
-/// Checks that a method has the tables of highlights that it needs: it does if it computes highlights at pixels.
-fn check_tables(facts: &Facts, has_tables: bool) -> Result<(), RenderError> {
-    if has_tables || facts.highlight_field == HighlightField::Level {
-        Ok(())
-    } else {
-        Err(RenderError::HighlightTables { shader: facts.name })
-    }
+/// Checks that a method has the tables of highlights that it needs.
+fn check_tables(method: &dyn Method, has_tables: bool) -> Result<(), RenderError> {
+    if has_tables || !method.needs_highlight_tables() { Ok(()) } else { Err(RenderError::HighlightTables { shader: method.facts().name }) }
 }
 
 fn check_scene<'m>(

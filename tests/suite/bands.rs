@@ -6,7 +6,7 @@ use embedded_graphics::{
     pixelcolor::{Gray8, Rgb565},
     prelude::*,
 };
-use microphong::{FramePart, Layout, MAX_SIDE, Picture, RenderError, Renderer, Stats, Stream, method::HighlightField, renderer::check};
+use microphong::{FramePart, Layout, MAX_SIDE, Picture, RenderError, Renderer, Stats, Stream, renderer::check};
 use microphong_sim::{
     convert::{AZIMUTH, Converted, DISTANCE, ELEVATION, ORBIT, Options},
     look::Look,
@@ -342,7 +342,7 @@ fn a_slice_shorter_than_a_band_gets_fewer_rows() {
     }
 }
 
-/// Methods that compute highlights at vertices or nodes draw the same picture without tables of highlights. All others are refused.
+/// Methods that use the light of vertices alone draw the same picture without tables of highlights. All others are refused.
 #[test]
 fn tables_of_highlights_change_no_pixel() {
     let size = Size::new(150, 120);
@@ -360,13 +360,14 @@ fn tables_of_highlights_change_no_pixel() {
         let layout = Layout::new(150, 120).with_room_for(&stream);
         for shader in Shader::ALL.into_iter().filter(|&shader| check(&stream, shader.facts(), false).is_ok()) {
             let without = draw(layout.without_highlight_tables(), shader);
-            let at_pixels = shader.facts().highlight_field != HighlightField::Level;
-            methods[usize::from(at_pixels)] += 1;
-            let expected = if at_pixels { Err(RenderError::HighlightTables { shader: shader.facts().name }) } else { draw(layout, shader) };
+            let needs_tables = shader.on::<Rgb565>().method().needs_highlight_tables();
+            methods[usize::from(needs_tables)] += 1;
+            let expected =
+                if needs_tables { Err(RenderError::HighlightTables { shader: shader.facts().name }) } else { draw(layout, shader) };
             assert!(without == expected, "{name}, {}: {:?}", shader.name(), without.err());
         }
     }
-    assert!(methods.into_iter().all(|count| count > 10), "{methods:?}");
+    assert!(methods[0] == 2 * 4 && methods[1] > 50, "{methods:?}");
     let [with, without] = [Layout::new(150, 120), Layout::new(150, 120).without_highlight_tables()].map(|layout| layout.bytes::<Gray8>());
     assert_eq!(with - without, 8200);
 }

@@ -129,15 +129,15 @@ pub fn fewest_active_triangles(stream: &Stream<'_>, size: Size, band_rows: u32) 
 }
 
 /// The layout for a program that draws a stream in bands of `band_rows` rows: with room for all of it, and for its active triangles. There is room for
-/// half as many again of these, because the program may show poses that the stream does not. There are no tables of highlights if `shader` lights
-/// vertices alone.
+/// half as many again of these, because the program may show poses that the stream does not. There are tables of highlights if `shader` needs
+/// them.
 ///
 /// # Errors
 /// When `size` is out of range.
 pub fn program_layout(stream: &Stream<'_>, shader: Shader, size: Size, band_rows: u32) -> Result<Layout> {
     let layout = Layout::new(size.width as usize, band_rows as usize).with_room_for(stream);
-    let lights_vertices_alone = [Shader::FLAT, Shader::GOURAUD].contains(&shader);
-    let layout = if lights_vertices_alone { layout.without_highlight_tables() } else { layout };
+    let has_tables = shader.on::<Gray8>().method().needs_highlight_tables();
+    let layout = if has_tables { layout } else { layout.without_highlight_tables() };
     let fewest = fewest_active_triangles(stream, size, band_rows)?;
     Ok(layout.active_triangles((fewest + fewest.div_ceil(2)).min(layout.triangles)))
 }

@@ -42,6 +42,10 @@ impl Method for Flat {
         &FACTS
     }
 
+    fn needs_highlight_tables(&self) -> bool {
+        false
+    }
+
     fn shade(&self, setup: &TriangleSetup<'_>, shading: &Shading<'_>, canvas: &mut dyn Canvas) -> u32 {
         let shader = Uniform(of_levels(levels(setup.triangle, setup.vertices, shading)));
         setup.draw_spans(&mut Shaded::new(Constant, shader), canvas)

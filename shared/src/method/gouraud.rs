@@ -38,6 +38,10 @@ impl Method for Gouraud {
         &FACTS
     }
 
+    fn needs_highlight_tables(&self) -> bool {
+        false
+    }
+
     fn shade(&self, setup: &TriangleSetup<'_>, shading: &Shading<'_>, canvas: &mut dyn Canvas) -> u32 {
         shading.draw_levels::<3, RANGE>(setup, corner_levels(setup, shading), canvas)
     }

@@ -102,6 +102,12 @@ pub trait Method: Sync {
         ErrorBounds::EMPTY
     }
 
+    /// Returns whether the method looks up highlights in tables while it draws. If it does not, because it uses the light of vertices alone, it
+    /// also draws with a [`Layout::without_highlight_tables`](crate::Layout::without_highlight_tables).
+    fn needs_highlight_tables(&self) -> bool {
+        true
+    }
+
     /// Draws the pixels of the triangle `setup` to `canvas`, for example with [`Area::draw`], and returns the number of pixels drawn, as `draw` does.
     /// `shading` has the material and the lights. The renderer calls this function for each triangle, and again for each band (a group of rows that
     /// is drawn at once) that the triangle lies in.
