@@ -1103,10 +1103,15 @@ fn convert_inspect_and_render_work_together() {
 fn long_work_is_announced() {
     let place = Place::new();
     place.file("large.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf -3 -2 -1\n".repeat(400_000));
-    let bunny = Path::new(env!("CARGO_MANIFEST_DIR")).join("meshes/bunny.obj");
-    let bunny = bunny.to_string_lossy();
+    // Waves of 7,200 triangles: the search for a level takes several seconds.
+    let side = 60;
+    let points = (0..=side).flat_map(|y| (0..=side).map(move |x| [x, y].map(|c| f64::from(c) / f64::from(side))));
+    let vertices = points.map(|[x, y]| format!("v {x} {:.5} {y}\n", 0.1 * (9.0 * x).sin() * (7.0 * y).cos()));
+    let squares = (0..side).flat_map(|y| (0..side).map(move |x| y * (side + 1) + x + 1));
+    let triangles = squares.map(|a| format!("f {a} {c} {b}\nf {b} {c} {d}\n", b = a + 1, c = a + side + 1, d = a + side + 2));
+    place.file("waves.obj", vertices.chain(triangles).collect::<String>());
     let cases: [(&[&str], &str); 2] = [
-        (&["convert", &bunny, "-o", "out.tri", "--lod", "120x120"], "searching levels of detail ...\n"),
+        (&["convert", "waves.obj", "-o", "out.tri", "--lod", "120x120"], "searching levels of detail ...\n"),
         (&["convert", "large.obj", "-o", "out.tri"], "reading the file ...\n"),
     ];
     for (command, announced) in cases {

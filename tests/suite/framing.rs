@@ -85,5 +85,5 @@ fn a_mesh_that_no_frame_shows_is_said() {
     fs::write(directory.path().join("floor.obj"), "v -1 0 -1\nv 1 0 -1\nv 0 0 1\nf 1 3 2\n").unwrap();
     let text = |options: &[&str]| succeeds(directory.path(), &[&["convert", "floor.obj"], options].concat());
     assert!(!text(&[]).contains("no frame shows a pixel"), "{}", text(&[]));
-    assert!(text(&["--flip"]).contains("no frame shows a pixel of it: its faces look away"), "{}", text(&["--flip"]));
+    assert!(text(&["--flip"]).contains("no frame shows a pixel of the mesh: its faces point away"), "{}", text(&["--flip"]));
 }

@@ -203,8 +203,7 @@ impl Converted {
             simplified = levels::simplify(&mesh, &mut parts, most, &|| steps.step()).with_context(place)?;
         }
         let errors = look.tolerances(&parts, &options.levels);
-        // The stream is a step as well, so that a single level is announced.
-        steps.begin("searching levels of detail", parts.len() * errors.len() + 1);
+        steps.begin("searching levels of detail", parts.len() * errors.len());
         levels::add(&mesh, &mut parts, &errors, &|| steps.step()).with_context(place)?;
         Ok(Self { mesh, report, materials, remarks, parts, lost, look, simplified })
     }
