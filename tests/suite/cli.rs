@@ -1102,7 +1102,7 @@ fn convert_inspect_and_render_work_together() {
 #[test]
 fn long_work_is_announced() {
     let place = Place::new();
-    place.file("large.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf -3 -2 -1\n".repeat(400_000));
+    place.file("large.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf -3 -2 -1\n".repeat(40_000));
     // Waves of 7,200 triangles: the search for a level takes several seconds.
     let side = 60;
     let points = (0..=side).flat_map(|y| (0..=side).map(move |x| [x, y].map(|c| f64::from(c) / f64::from(side))));
