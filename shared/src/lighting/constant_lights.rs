@@ -55,8 +55,8 @@ impl From<DiffuseOnly> for WithHighlight {
     }
 }
 
-/// Makes the colour of a pixel of light: [`WithHighlight`] or [`DiffuseOnly`], or a pair of them for two lights.
-pub trait Colours<L>: ByRows {
+/// The colours of a material under constant lights.
+pub trait LitColours: ByRows {
     /// The pixel that is stored.
     type Pixel: Pixel;
 
@@ -66,14 +66,17 @@ pub trait Colours<L>: ByRows {
     /// The diffuse level at cosine 1, Q9.7: the unit in which diffuse light is walked.
     fn diffuse(&self) -> u16;
 
-    /// The colour of light whose diffuse levels have `bits` fraction bits, with a [`crate::pixel::dither::threshold`].
-    fn colour(&self, bits: u32, light: L, threshold: u32) -> Self::Pixel;
-
     /// Whether no diffuse level is above 255.
     #[inline(always)]
     fn is_within(&self) -> bool {
         self.diffuse() <= 255 << LEVEL
     }
+}
+
+/// Makes the colour of a pixel of light: [`WithHighlight`] or [`DiffuseOnly`], or a pair of them for two lights.
+pub trait Shades<L>: LitColours {
+    /// The colour of light whose diffuse levels have `bits` fraction bits, with a [`crate::pixel::dither::threshold`].
+    fn colour(&self, bits: u32, light: L, threshold: u32) -> Self::Pixel;
 }
 
 /// The diffuse level of a node of this cosine (Q2.30), of a material with the level `full` (Q9.7) at cosine 1, in Q10 with `bits` fraction
@@ -108,7 +111,7 @@ impl<C: Pixel> ByRows for OneLightRamp<'_, C> {
     }
 }
 
-impl<C: Pixel> Colours<WithHighlight> for OneLightRamp<'_, C> {
+impl<C: Pixel> LitColours for OneLightRamp<'_, C> {
     type Pixel = C;
 
     const TABLED: bool = true;
@@ -117,23 +120,16 @@ impl<C: Pixel> Colours<WithHighlight> for OneLightRamp<'_, C> {
     fn diffuse(&self) -> u16 {
         self.diffuse
     }
+}
 
+impl<C: Pixel> Shades<WithHighlight> for OneLightRamp<'_, C> {
     #[inline(always)]
     fn colour(&self, bits: u32, WithHighlight(diffuse, highlight): WithHighlight, threshold: u32) -> C {
         C::ramped(self.ramps.now, (diffuse.max(0) as u32).wrapping_add(highlight << (bits - LEVEL)), bits, threshold)
     }
 }
 
-impl<C: Pixel> Colours<DiffuseOnly> for OneLightRamp<'_, C> {
-    type Pixel = C;
-
-    const TABLED: bool = true;
-
-    #[inline(always)]
-    fn diffuse(&self) -> u16 {
-        self.diffuse
-    }
-
+impl<C: Pixel> Shades<DiffuseOnly> for OneLightRamp<'_, C> {
     #[inline(always)]
     fn colour(&self, bits: u32, DiffuseOnly(diffuse): DiffuseOnly, threshold: u32) -> C {
         self.colour(bits, WithHighlight(diffuse, self.floor), threshold)
@@ -242,8 +238,8 @@ fn cosine(bits: u32, diffuse: i32) -> i32 {
 }
 
 impl<C> OneLightRgb<'_, C> {
-    /// See [`Colours::diffuse`].
-    pub const DIFFUSE: u16 = 1 << (FULL + LEVEL);
+    /// See [`LitColours::diffuse`].
+    const DIFFUSE: u16 = 1 << (FULL + LEVEL);
 }
 
 impl<C: Pixel> OneLightRgb<'_, C> {
@@ -267,7 +263,7 @@ impl<C: Pixel> ByRows for OneLightRgb<'_, C> {
     }
 }
 
-impl<C: Pixel> Colours<WithHighlight> for OneLightRgb<'_, C> {
+impl<C: Pixel> LitColours for OneLightRgb<'_, C> {
     type Pixel = C;
 
     const TABLED: bool = false;
@@ -276,7 +272,9 @@ impl<C: Pixel> Colours<WithHighlight> for OneLightRgb<'_, C> {
     fn diffuse(&self) -> u16 {
         Self::DIFFUSE
     }
+}
 
+impl<C: Pixel> Shades<WithHighlight> for OneLightRgb<'_, C> {
     #[inline(always)]
     fn colour(&self, bits: u32, WithHighlight(diffuse, highlight): WithHighlight, _: u32) -> C {
         let ([r, g, b], cosine, highlight) = (self.0.now, cosine(bits, diffuse), highlight as i32);
@@ -291,7 +289,7 @@ impl<C: Pixel> ByRows for TwoLightsRgb<'_, C> {
     }
 }
 
-impl<C: Pixel, A: Into<WithHighlight>, B: Into<WithHighlight>> Colours<(A, B)> for TwoLightsRgb<'_, C> {
+impl<C: Pixel> LitColours for TwoLightsRgb<'_, C> {
     type Pixel = C;
 
     const TABLED: bool = false;
@@ -300,7 +298,9 @@ impl<C: Pixel, A: Into<WithHighlight>, B: Into<WithHighlight>> Colours<(A, B)> f
     fn diffuse(&self) -> u16 {
         OneLightRgb::<C>::DIFFUSE
     }
+}
 
+impl<C: Pixel, A: Into<WithHighlight>, B: Into<WithHighlight>> Shades<(A, B)> for TwoLightsRgb<'_, C> {
     #[inline(always)]
     fn colour(&self, bits: u32, (one, two): (A, B), _: u32) -> C {
         let [[r, g, b], [r2, g2, b2]] = self.0.now;
@@ -317,9 +317,6 @@ impl<C: Pixel, A: Into<WithHighlight>, B: Into<WithHighlight>> Colours<(A, B)> f
 }
 
 impl<C> TwoLightsRgb<'_, C> {
-    /// The diffuse level of both lights at cosine 1, as [`Colours::diffuse`].
-    pub const DIFFUSE: u16 = OneLightRgb::<C>::DIFFUSE;
-
     /// The colours of the first light alone.
     #[inline(always)]
     pub fn first(&self) -> OneLightRgb<'_, C> {

@@ -159,19 +159,13 @@ impl HighlightCurve {
         u32::from(self.floor) + ((unsigned_product(power(x as u32, self.n), self.full) + (1 << 30)) >> 31) as u32
     }
 
-    /// Position of a cosine (Q2.30) in a table, unsigned Q20.12: 1 - cosine in steps of the table. Small cosines lie past the end.
-    #[inline(always)]
-    fn position(&self, cosine: i32) -> u32 {
-        position(self.scale, cosine)
-    }
-
     /// [`HighlightLut::at`] without a table, bit for bit. It takes some hundred instructions.
     ///
     /// Domain: every `cosine`, Q2.30; above 1 counts as 1. Error: at most [`ERROR`] of full intensity (tests::error).
     #[inline(never)]
     #[must_use]
     pub fn at(&self, cosine: i32) -> u32 {
-        let position = self.position(cosine);
+        let position = position(self.scale, cosine);
         let i = (position >> 12) as usize;
         if i >= SIZE {
             return 0;
@@ -196,7 +190,7 @@ impl HighlightCurve {
     }
 }
 
-/// See [`HighlightCurve::position`].
+/// Position of a cosine (Q2.30) in a table, unsigned Q20.12: 1 - cosine in steps of the table. Small cosines lie past the end.
 #[inline(always)]
 fn position(scale: u32, cosine: i32) -> u32 {
     let below = (1i32 << COSINE).saturating_sub(cosine).max(0) as u32;
@@ -253,13 +247,6 @@ impl HighlightLut {
     pub fn by_cosine(&self) -> CosineLookup<'_> {
         let scale = NonZeroU32::new(self.scale).unwrap_or(WHOLE);
         CosineLookup { table: &self.table, top: (1 << PIXEL_COSINE) + ((1 << 19) / scale) as i32, factor: (scale.get() << 16) as i32 }
-    }
-
-    /// The last entry of the table, which a pixel takes for all smaller cosines; unsigned Q0.16.
-    #[inline(always)]
-    #[must_use]
-    pub fn least(&self) -> u32 {
-        self.table[SIZE - 1].into()
     }
 }
 

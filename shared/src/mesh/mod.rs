@@ -79,7 +79,8 @@ impl<C: Pixel> Drawing<'_, C> {
         tiles::shade(setup, &mut BandCanvas { band, output: &self.output() }, |setup, canvas| method.shade(setup, shading, canvas))
     }
 
-    /// Draws a word-sized triangle, see [`Viewport::is_word_sized`]. `key` identifies it among active triangles. `None` if the loops cannot draw it.
+    /// Draws a word-sized triangle, see [`is_word_sized`](crate::geometry::viewport::Viewport::is_word_sized). `key` identifies it among active
+    /// triangles. `None` if the loops cannot draw it.
     // Instructions of Armv6-M reach little of a large stack frame, so this is a call there.
     #[cfg_attr(all(target_arch = "arm", not(target_has_atomic = "32")), inline(never))]
     #[cfg_attr(not(all(target_arch = "arm", not(target_has_atomic = "32"))), inline(always))]

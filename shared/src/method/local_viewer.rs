@@ -18,7 +18,7 @@ use crate::{
     format::{COSINE, UNIT},
     interpolate::{by_column::ByColumn, field::Nodes, plane::Plane, quadric::Quadric},
     lighting::{
-        constant_lights::{Colours, OneLightRamp, OneLightRgb, WithHighlight, node},
+        constant_lights::{LitColours, OneLightRamp, OneLightRgb, Shades, WithHighlight, node},
         lights::point,
         material_tables::MaterialTables,
     },
@@ -220,7 +220,7 @@ impl<C: Pixel> ByRows for Either<'_, C> {
     }
 }
 
-impl<C: Pixel> Colours<WithHighlight> for Either<'_, C> {
+impl<C: Pixel> LitColours for Either<'_, C> {
     type Pixel = C;
 
     const TABLED: bool = false;
@@ -228,11 +228,13 @@ impl<C: Pixel> Colours<WithHighlight> for Either<'_, C> {
     #[inline(always)]
     fn diffuse(&self) -> u16 {
         match self {
-            Self::Ramp(colours) => Colours::<WithHighlight>::diffuse(colours),
+            Self::Ramp(colours) => colours.diffuse(),
             Self::Rgb(colours) => colours.diffuse(),
         }
     }
+}
 
+impl<C: Pixel> Shades<WithHighlight> for Either<'_, C> {
     #[inline(always)]
     fn colour(&self, bits: u32, light: WithHighlight, threshold: u32) -> C {
         match self {

@@ -11,7 +11,7 @@ use crate::{
         plane::Plane,
     },
     lighting::{
-        constant_lights::{Colours, DiffuseOnly, OneLightRamp, OneLightRgb, TwoLightsRgb, WithHighlight, node},
+        constant_lights::{DiffuseOnly, LitColours, OneLightRamp, OneLightRgb, Shades, WithHighlight, node},
         material_tables::MaterialTables,
     },
     math::{highlight_lookup, highlight_lookup::QuotientLookup, highlight_lut::HighlightLut},
@@ -178,7 +178,7 @@ pub(super) fn draw_two<const EXACT: bool, F: Field, C: Pixel>(
     band: &mut Band<'_, C>,
 ) -> Option<u32> {
     let TwoLights { colours, cosines: [first, second], highlights } = TwoLights::on(setup, tables)?;
-    let full = TwoLightsRgb::<C>::DIFFUSE;
+    let full = colours.diffuse();
     let lookup = QuotientLookup::new(tables.reflectance.table()?);
     let at = QuotientWithHighlight::<_, EXACT>(lookup, half_reciprocal);
     let both = |[towards, half]: &CornerCosines| (plane(setup, full, towards), numerator(setup, lookup, half));
@@ -205,7 +205,7 @@ pub(super) fn draw_two<const EXACT: bool, F: Field, C: Pixel>(
 
 /// Draws a triangle with a highlight in these `colours`.
 #[inline(always)]
-fn draw_in<const EXACT: bool, F: Field, T: Colours<WithHighlight>>(
+fn draw_in<const EXACT: bool, F: Field, T: Shades<WithHighlight>>(
     setup: &TriangleSetup<'_>,
     cosines: &CornerCosines,
     length: impl FnOnce() -> F,
@@ -238,7 +238,7 @@ fn draw_diffuse<const EXACT: bool, F: Field, C: Pixel>(
         return setup.fill(|| Constant, Solid(colours.unlit()), band);
     }
     setup.count(band.top, &mut band.counts.without_highlight, 1);
-    let patch = || diffuse_patch(setup, Colours::<DiffuseOnly>::diffuse(&colours), towards, length);
+    let patch = || diffuse_patch(setup, colours.diffuse(), towards, length);
     setup.fill(patch, LitShader::of::<DiffuseOnly>(colours, Quotient::<_, EXACT>(half_reciprocal)), band)
 }
 

@@ -18,7 +18,7 @@ use crate::{
         quadric::Quadric,
     },
     lighting::{
-        constant_lights::{Colours, DiffuseOnly, OneLightRamp, OneLightRgb, TwoLightsRgb, WithHighlight, node},
+        constant_lights::{DiffuseOnly, LitColours, OneLightRamp, OneLightRgb, Shades, WithHighlight, node},
         material_tables::MaterialTables,
         reflectance::{Highlight, Reflectance, Reflection},
     },
@@ -197,7 +197,7 @@ fn draw_two<const ROOT: IsRoot, C: Pixel>(
     band: &mut Band<'_, C>,
 ) -> Option<u32> {
     let TwoLights { colours, cosines: [first, second], highlights } = TwoLights::on(setup, tables)?;
-    let (full, exponent) = (TwoLightsRgb::<C>::DIFFUSE, shading.exponent);
+    let (full, exponent) = (colours.diffuse(), shading.exponent);
     let steeply = |[_, half]: CornerCosines| !is_exact(setup, half, tables.reflectance);
     if setup.place.is_none() && !setup.gradients.walks_in_words() && (highlights > 0 && steeply(first) || highlights > 1 && steeply(second))
     {
@@ -228,7 +228,7 @@ fn draw_two<const ROOT: IsRoot, C: Pixel>(
 
 /// Draws `setup` with a highlight under one constant light in these `colours`; `None` if levels may leave the walked format.
 #[inline(always)]
-fn draw<const ROOT: IsRoot, C: Pixel, T: Colours<WithHighlight, Pixel = C>>(
+fn draw<const ROOT: IsRoot, C: Pixel, T: Shades<WithHighlight, Pixel = C>>(
     setup: &TriangleSetup<'_>,
     &[towards, half]: &CornerCosines,
     colours: T,
@@ -267,7 +267,7 @@ fn draw_diffuse<C: Pixel>(
     let id = match (resumed, DiffuseSign::of(cosines)) {
         (Some(id), _) => id,
         (None, DiffuseSign::Nowhere) => Ramp::<C>::ID,
-        (None, _) if !Colours::<DiffuseOnly>::is_within(&colours) => return None,
+        (None, _) if !colours.is_within() => return None,
         (None, DiffuseSign::Everywhere) => Ramp::<C>::ID,
         (None, DiffuseSign::Partly) => DIFFUSE_ONLY,
         (None, DiffuseSign::Steeply) => return None,
@@ -275,8 +275,7 @@ fn draw_diffuse<C: Pixel>(
     Some(if id == Ramp::<C>::ID {
         Shading::fill_one(setup, || tables.reflectance.six_diffuse(cosines), tables, band)
     } else {
-        let full = Colours::<DiffuseOnly>::diffuse(&colours);
-        setup.fill(|| diffuse(setup, full, cosines), LitShader::of::<DiffuseOnly>(colours, Diffuse), band)
+        setup.fill(|| diffuse(setup, colours.diffuse(), cosines), LitShader::of::<DiffuseOnly>(colours, Diffuse), band)
     })
 }
 

@@ -192,7 +192,7 @@ pub(super) fn run(board: Board, elf: &Elf, until: Until) -> Result<Recording> {
 pub const INSTRUCTIONS_PER_TICK: f64 = 40.0 / 256.0;
 
 /// Runs a program that looks at nothing but a timer, to its end, and returns its log. Time is what the processor executes, 256 ns an
-/// instruction: exact, and far quicker than [`trace`].
+/// instruction: exact, and far quicker than [`trace()`].
 ///
 /// # Errors
 /// When the program crashes, falls silent or fails.
