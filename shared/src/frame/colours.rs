@@ -34,9 +34,9 @@ impl<'r, C: Pixel> Colours<'r, C> {
         columns: [u16; 2],
     ) -> Option<(Drawing<'s, C>, TriangleLoops<C>)> {
         let ColourSettings { shader, dither, gamma } = self.settings;
-        let (pass, mut style) = context.pass(placed, columns)?;
-        let drawing = Drawing { pass, ramps: self.ramps.get(placed.material)?, dither: *dither, gamma: *gamma };
-        style.by_canvas |= !drawing.output().suits_loops();
-        Some((drawing, shader.loops(style)))
+        let (pass, ramps) = (context.pass(placed, columns)?, self.ramps.get(placed.material)?);
+        let drawing = Drawing { pass, ramps, dither: *dither, gamma: *gamma };
+        let loops = shader.loops(drawing.style());
+        Some((drawing, loops))
     }
 }

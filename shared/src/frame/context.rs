@@ -12,7 +12,7 @@ use crate::{
     lighting::reflectance::{LitMaterial, Reflectance},
     math::highlight_lut::HighlightLut,
     mesh::{MeshPass, vertices::VertexStage},
-    method::{ErrorBounds, Method, Shading, Style, VertexLight},
+    method::{ErrorBounds, Method, Shading, VertexLight},
     placement::{Placement, Placements},
     scene::{Object, Scene},
     stream::record::{CLOSED_CONVEX, Mesh},
@@ -189,26 +189,19 @@ impl<'r> Context<'r> {
         Some(VertexStage { view, lighting, constant: lighting.constant(), reflectance, light })
     }
 
-    /// What the triangles of `placed` have in common in a band of which these `columns` are wanted, and their style.
+    /// What the triangles of `placed` have in common in a band of which these `columns` are wanted.
     #[inline(never)]
-    pub(crate) fn pass<'s>(&'s self, placed: &PlacedMesh<'s>, columns: [u16; 2]) -> Option<(MeshPass<'s>, Style)> {
+    pub(crate) fn pass<'s>(&'s self, placed: &PlacedMesh<'s>, columns: [u16; 2]) -> Option<MeshPass<'s>> {
         let method = self.settings.method;
         let (stream, material, stage) = (&self.scene.stream, placed.material, self.stage(placed)?);
         let reflectance = stage.reflectance;
         let perspective = self.settings.perspective_correct && stage.view.is_perspective();
         let lighting = stage.lighting;
-        let style = Style {
-            three_channels: reflectance.three_channels(),
-            lights: if lighting.is_constant() { reflectance.lights() } else { 0 },
-            local_viewer: lighting.is_directional() && !lighting.is_constant() && reflectance.lights() == 1,
-            by_canvas: self.settings.antialiased(),
-            perspective,
-        };
         // In perspective, light is interpolated between columns that depend on where a row begins: rows are drawn whole.
         let columns = if perspective { [0, self.settings.size.width as u16] } else { columns };
         let exponent = self.scene.material(material)?.exponent;
         let error_bounds = self.error_bounds.get(material)?;
-        let pass = MeshPass {
+        Some(MeshPass {
             method,
             steepness: method.facts().steepness(exponent),
             shading: Shading {
@@ -228,7 +221,6 @@ impl<'r> Context<'r> {
             viewport: self.settings.viewport(),
             columns: columns.map(i32::from),
             perspective,
-        };
-        Some((pass, style))
+        })
     }
 }

@@ -7,7 +7,7 @@ use crate::{
     antialias::PixelSet,
     geometry::bin::{Key, Walk},
     lighting::{material_tables::MaterialTables, output::Output},
-    method::{DrawTriangle, General, Loops, TriangleSetup, tiles},
+    method::{DrawTriangle, General, Loops, Shading, Style, TriangleSetup, tiles},
     pixel::{Pixel, gamma::Gamma},
     raster::{
         band::Band,
@@ -36,8 +36,20 @@ impl<C: Pixel> Drawing<'_, C> {
     }
 
     /// What makes pixels of intensities.
-    pub(crate) fn output(&self) -> Output<'_, C> {
+    fn output(&self) -> Output<'_, C> {
         Output::new(self.tables(), self.dither, self.gamma)
+    }
+
+    /// How the triangles of the mesh are drawn.
+    pub(crate) fn style(&self) -> Style {
+        let MeshPass { shading: Shading { reflectance, lighting, .. }, viewport, perspective, .. } = &self.pass;
+        Style {
+            three_channels: reflectance.three_channels(),
+            lights: if lighting.is_constant() { reflectance.lights() } else { 0 },
+            local_viewer: lighting.is_directional() && !lighting.is_constant() && reflectance.lights() == 1,
+            by_canvas: viewport.antialiased || !self.output().suits_loops(),
+            perspective: *perspective,
+        }
     }
 
     /// Draws the triangle `key` and all that follow in the same mesh, by the loops `L` where they can. Returns the number of pixels in `band`, and

@@ -20,11 +20,13 @@ pub(super) trait AtPixel<V>: Copy {
     fn at(&self, value: V) -> (Self::Common, Self::Values);
 }
 
-/// The light that a method `M` makes of walked values. `full` is the level of diffuse light at cosine 1.
+/// A light that a method makes of its values `V` at a pixel, and of `M`, which all lights have in common there.
 pub(super) trait FromValues<M, V> {
     /// Number of the loop, see [`PixelShader::ID`].
     const ID: u8 = 0;
 
+    /// Computes the light. `full` is the level of diffuse light at cosine 1, see
+    /// [`LitColours::diffuse`](crate::lighting::constant_lights::LitColours::diffuse).
     fn from_values(common: &M, full: u16, values: V) -> Self;
 }
 

@@ -4,9 +4,6 @@
 //! exactly quadratic; all are walked. V is measured in units of its length at the farthest corner, so it is 1/2 to 1 long unless the viewer is close.
 //! Three squares then lie in the table of reciprocal roots, without counting of leading zeros: |V|², |N|², and a quarter of |L + V|², which is 2 + 2
 //! L·V where V has the length 1.
-//! |V|² exactly quadratic, and all are walked. Measured in its length at the farthest corner, V is 1/2 to 1 long unless the viewer is close:
-//! then the table of reciprocal roots has its square, that of N, and, since |L + V|² = 2 + 2 L·V where V has the length 1, a quarter of
-//! that, all without counting leading zeros.
 //!
 //! Many triangles have no highlight, as the coefficients of these polynomials tell. They are drawn as under an infinitely far viewer.
 //!
