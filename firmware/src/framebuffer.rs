@@ -7,6 +7,7 @@ use embedded_graphics::{
     prelude::*,
     primitives::Rectangle,
 };
+use microphong::pixel::Output;
 
 /// Pixels of the frame buffer.
 pub const LENGTH: usize = MPS2.layout.width * MPS2.height;
@@ -72,7 +73,7 @@ impl Display for Framebuffer {
         OriginDimensions::size(self)
     }
 
-    fn send(&mut self, area: Rectangle, band: &'static mut [Rgb565]) -> &'static mut [Rgb565] {
+    fn send(&mut self, area: Rectangle, band: &'static mut [Rgb565], _: Output) -> &'static mut [Rgb565] {
         self.blit(area, part(band, area));
         band
     }

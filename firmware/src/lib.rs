@@ -30,13 +30,13 @@ pub use picture::error_picture;
 use embedded_graphics::{prelude::*, primitives::Rectangle};
 use microphong::{
     Counts, Layout, Renderer, Shader, Stream,
-    pixel::{PictureCrc, Pixel},
+    pixel::{Output, PictureCrc, Pixel},
 };
 use panic_probe as _;
 
 /// A board as the frame loop needs it.
 pub trait Display {
-    /// The pixel format in which the renderer draws.
+    /// The pixel that the renderer draws.
     type Color: Pixel;
 
     /// The picture's size.
@@ -51,8 +51,9 @@ pub trait Display {
     }
 
     /// Begins to show the pixels of `area`, row by row, which are at the front of `band`. Returns memory for the next band. It may be the memory of
-    /// an earlier band, because a board can send one band while the next one is drawn.
-    fn send(&mut self, area: Rectangle, band: &'static mut [Self::Color]) -> &'static mut [Self::Color];
+    /// an earlier band, because a board can send one band while the next one is drawn. `output` makes pixels of the display if the renderer draws
+    /// others.
+    fn send(&mut self, area: Rectangle, band: &'static mut [Self::Color], output: Output) -> &'static mut [Self::Color];
 
     /// Called when all of a frame has been handed over.
     fn present(&mut self) {}

@@ -34,7 +34,8 @@ pub struct OneCore<C: 'static> {
 
 impl<D: Display> Painter<D> for OneCore<D::Color> {
     fn draw(&mut self, display: &mut D, mut frame: Frame<'_, D::Color>, crc: Option<&mut PictureCrc>) -> Result<Stats, Failure> {
-        rows(|band| frame.next_band(band), &mut self.band, |area, band| display.send(area, band), crc)?;
+        let output = frame.output();
+        rows(|band| frame.next_band(band), &mut self.band, |area, band| display.send(area, band, output), crc)?;
         Ok(frame.stats())
     }
 }

@@ -111,12 +111,12 @@ where
     }
 
     fn draw(&mut self, display: &mut D, frame: Frame<'_, D::Color>, mut crc: Option<&mut PictureCrc>) -> Result<Stats, Failure> {
-        let row = frame.row_at(self.share);
+        let (row, output) = (frame.row_at(self.share), frame.output());
         let mut frame = frame.in_two(row);
         let [upper, lower] = frame.parts();
         let [above, below] = &mut self.bands;
         let display = Mutex::new(RefCell::new(display));
-        let send = |area, band| critical_section::with(|cs| display.borrow_ref_mut(cs).send(area, band));
+        let send = |area, band| critical_section::with(|cs| display.borrow_ref_mut(cs).send(area, band, output));
         let mut rest = crc.is_some().then(PictureCrc::of_rest);
         let (of_upper, of_lower) =
             self.second.join(|| draw(upper, above, send, crc.as_deref_mut()), || draw(lower, below, send, rest.as_mut()));

@@ -7,6 +7,7 @@ use embedded_graphics::{
     prelude::*,
     primitives::Rectangle,
 };
+use microphong::pixel::{LightGray, Output};
 
 const WIDTH: usize = LM3S6965EVB.layout.width;
 const HEIGHT: usize = LM3S6965EVB.height;
@@ -170,14 +171,14 @@ impl DrawTarget for Ssd0323 {
 }
 
 impl Display for Ssd0323 {
-    type Color = Gray4;
+    type Color = LightGray<4>;
 
     fn size(&self) -> Size {
         OriginDimensions::size(self)
     }
 
-    fn send(&mut self, area: Rectangle, band: &'static mut [Gray4]) -> &'static mut [Gray4] {
-        let Ok(()) = self.fill_contiguous(&area, band.iter().copied());
+    fn send(&mut self, area: Rectangle, band: &'static mut [LightGray<4>], output: Output) -> &'static mut [LightGray<4>] {
+        let Ok(()) = self.fill_contiguous(&area, output.pixels(band, area));
         self.flush(area.top_left.y as usize, area.size.height as usize);
         band
     }

@@ -18,7 +18,7 @@ use embedded_graphics::{
     primitives::Rectangle,
 };
 use embedded_hal_bus::spi::ExclusiveDevice;
-use microphong::pixel::Rgb565Be;
+use microphong::pixel::{self, Rgb565Be};
 use mipidsi::{Builder, interface::SpiInterface, models::ST7789, options::ColorInversion};
 use zerocopy::IntoBytes;
 
@@ -160,7 +160,7 @@ impl Display for St7789 {
     }
 
     #[inline(never)]
-    fn send(&mut self, area: Rectangle, band: &'static mut [Rgb565Be]) -> &'static mut [Rgb565Be] {
+    fn send(&mut self, area: Rectangle, band: &'static mut [Rgb565Be], _: pixel::Output) -> &'static mut [Rgb565Be] {
         self.watchdog.feed(SIGN_OF_LIFE);
         self.settle();
         if self.failure.is_some() {

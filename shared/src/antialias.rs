@@ -199,7 +199,7 @@ impl Shape<'_> {
                 let (from, to) = (start.max(from).max(0), stop.min(to).min(width));
                 if from < to {
                     shade(Place { at: [row, from], column: from, count: to - from }, &mut |column, intensity| {
-                        let colour = canvas.channels(intensity, column, row);
+                        let colour = canvas.to_mix(intensity, row);
                         canvas.add(column, row, Layer::whole(depth.range(column, row), colour));
                     });
                     pixels += (to - from) as u32;
@@ -218,7 +218,7 @@ impl Shape<'_> {
                     let place = |pixel: i32, offset: i32| (pixel << finer) + ((offset + (1 << (15 - finer))) >> (16 - finer));
                     let at = inside.nearest([place(row, fragment.centroid[1]), place(column, fragment.centroid[0])]);
                     shade(Place { at, column, count: 1 }, &mut |column, intensity| {
-                        let colour = canvas.channels(intensity, column, row);
+                        let colour = canvas.to_mix(intensity, row);
                         canvas.add(column, row, Layer::new(depth.range(column, row), coverage, fragment.mask, colour));
                     });
                     pixels += 1;

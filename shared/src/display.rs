@@ -1,7 +1,12 @@
 //! Pictures on embedded-graphics displays, drawn in bands, with texts, lines and images under and over them.
 
-use crate::{Renderer, Stats, band_target::BandTarget, error::RenderError, pixel::Pixel};
-use core::{cell::RefCell, fmt};
+use crate::{
+    Renderer, Stats,
+    band_target::BandTarget,
+    error::RenderError,
+    pixel::{FromDrawn, Pixel},
+};
+use core::{cell::RefCell, fmt, marker::PhantomData};
 use embedded_graphics_core::{
     Drawable,
     draw_target::DrawTarget,
@@ -13,8 +18,8 @@ use embedded_graphics_core::{
 /// One frame as a [`Drawable`] of embedded-graphics. Its method `draw` renders the frame onto a display and returns the frame's [`Stats`].
 ///
 /// A picture can lie anywhere on the display ([`Self::at`]). Text, lines and images can be drawn behind it ([`Self::under`]) and in front
-/// of it ([`Self::over`]) without flicker. `C` is the pixel format; `U` and `O` are the types of the functions that draw behind and in
-/// front.
+/// of it ([`Self::over`]) without flicker. `C` is the pixel that the renderer draws, `F` the pixel format of the
+/// display, and `U` and `O` are the types of the functions that draw behind and in front.
 ///
 /// ```
 /// use embedded_graphics::{
@@ -41,7 +46,7 @@ use embedded_graphics_core::{
 ///     Ok(())
 /// }
 /// ```
-pub struct Picture<'r, 'a, C: Pixel, U = Draw<C>, O = Draw<C>> {
+pub struct Picture<'r, 'a, C: Pixel, F = C, U = Draw<C, F>, O = Draw<C, F>> {
     parts: RefCell<(&'r mut Renderer<'a, C>, &'r mut [C])>,
     /// Number of the frame of the stream's animation; `None` for the scene as the program has set it.
     number: Option<u32>,
@@ -49,12 +54,13 @@ pub struct Picture<'r, 'a, C: Pixel, U = Draw<C>, O = Draw<C>> {
     corner: Point,
     under: Option<U>,
     over: Option<O>,
+    format: PhantomData<F>,
 }
 
 /// A function that draws on a band.
-type Draw<C> = fn(&mut BandTarget<'_, C>);
+type Draw<C, F> = fn(&mut BandTarget<'_, C, F>);
 
-impl<C: Pixel + fmt::Debug, U, O> fmt::Debug for Picture<'_, '_, C, U, O> {
+impl<C: Pixel + fmt::Debug, F, U, O> fmt::Debug for Picture<'_, '_, C, F, U, O> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let Self { parts, number, corner, .. } = self;
         f.debug_struct("Picture").field("parts", parts).field("number", number).field("corner", corner).finish_non_exhaustive()
@@ -71,7 +77,8 @@ impl<'r, 'a, C: Pixel> Picture<'r, 'a, C> {
     /// Returns [`RenderError::Band`] if `band` is shorter than one row of the picture.
     pub fn new(renderer: &'r mut Renderer<'a, C>, band: &'r mut [C], number: u32) -> Result<Self, RenderError> {
         renderer.check_band(band)?;
-        Ok(Self { parts: RefCell::new((renderer, band)), number: Some(number), corner: Point::zero(), under: None, over: None })
+        let (parts, corner) = (RefCell::new((renderer, band)), Point::zero());
+        Ok(Self { parts, number: Some(number), corner, under: None, over: None, format: PhantomData })
     }
 
     /// Creates a picture of the scene in its current state, for programs that move objects themselves through [`Renderer::scene`]. `band`
@@ -82,9 +89,17 @@ impl<'r, 'a, C: Pixel> Picture<'r, 'a, C> {
     pub fn of_scene(renderer: &'r mut Renderer<'a, C>, band: &'r mut [C]) -> Result<Self, RenderError> {
         Ok(Self { number: None, ..Self::new(renderer, band, 0)? })
     }
+
+    /// Sets the pixel format `F` of the display, if the renderer draws other pixels: [`Light`](crate::pixel::Light) or
+    /// [`LightGray`](crate::pixel::LightGray). Call it before [`Self::under`] and [`Self::over`], which then draw in colours of the display.
+    #[must_use]
+    pub fn shown_as<F: FromDrawn<C>>(self) -> Picture<'r, 'a, C, F> {
+        let Self { parts, number, corner, .. } = self;
+        Picture { parts, number, corner, under: None, over: None, format: PhantomData }
+    }
 }
 
-impl<'r, 'a, C: Pixel, U, O> Picture<'r, 'a, C, U, O> {
+impl<'r, 'a, C: Pixel, F, U, O> Picture<'r, 'a, C, F, U, O> {
     /// Moves the picture on the display: `corner` is the position of its upper left pixel, in pixels of `display`. Without this call the
     /// picture lies at `(0, 0)`. The rest of the display stays untouched.
     ///
@@ -108,33 +123,34 @@ impl<'r, 'a, C: Pixel, U, O> Picture<'r, 'a, C, U, O> {
     /// bands (groups of rows), and `under` is called once for each band. Each call draws the same things, in coordinates of the display;
     /// pixels outside of the band are discarded.
     #[must_use]
-    pub fn under<F: Fn(&mut BandTarget<'_, C>)>(self, under: F) -> Picture<'r, 'a, C, F, O> {
-        let Self { parts, number, corner, over, .. } = self;
-        Picture { parts, number, corner, under: Some(under), over }
+    pub fn under<N: Fn(&mut BandTarget<'_, C, F>)>(self, under: N) -> Picture<'r, 'a, C, F, N, O> {
+        let Self { parts, number, corner, over, format, .. } = self;
+        Picture { parts, number, corner, under: Some(under), over, format }
     }
 
     /// Sets a function that draws in front of the objects, for example a label. The picture is drawn in bands (groups of rows), and `over`
     /// is called once for each band. Each call draws the same things, in coordinates of the display; pixels outside of the band are
     /// discarded.
     #[must_use]
-    pub fn over<F: Fn(&mut BandTarget<'_, C>)>(self, over: F) -> Picture<'r, 'a, C, U, F> {
-        let Self { parts, number, corner, under, .. } = self;
-        Picture { parts, number, corner, under, over: Some(over) }
+    pub fn over<N: Fn(&mut BandTarget<'_, C, F>)>(self, over: N) -> Picture<'r, 'a, C, F, U, N> {
+        let Self { parts, number, corner, under, format, .. } = self;
+        Picture { parts, number, corner, under, over: Some(over), format }
     }
 }
 
-impl<C, U, O> Drawable for Picture<'_, '_, C, U, O>
+impl<C, F, U, O> Drawable for Picture<'_, '_, C, F, U, O>
 where
-    C: Pixel + PixelColor,
-    U: Fn(&mut BandTarget<'_, C>),
-    O: Fn(&mut BandTarget<'_, C>),
+    C: Pixel,
+    F: FromDrawn<C> + PixelColor,
+    U: Fn(&mut BandTarget<'_, C, F>),
+    O: Fn(&mut BandTarget<'_, C, F>),
 {
-    type Color = C;
+    type Color = F;
     type Output = Stats;
 
     /// Renders the frame and sends it to `target`, with one call of `fill_contiguous` for each band (group of rows drawn at once). Returns
     /// the frame's [`Stats`], or the first error of the display.
-    fn draw<D: DrawTarget<Color = C>>(&self, target: &mut D) -> Result<Stats, D::Error> {
+    fn draw<D: DrawTarget<Color = F>>(&self, target: &mut D) -> Result<Stats, D::Error> {
         // The picture is borrowed already only if a display draws it from within its own `fill_contiguous`.
         let Ok(mut parts) = self.parts.try_borrow_mut() else { return Ok(Stats::default()) };
         let (renderer, band) = &mut *parts;
@@ -144,16 +160,16 @@ where
         };
         let on_display = |area: Rectangle| Rectangle::new(area.top_left + self.corner, area.size);
         // The band holds a row: that was checked.
-        while let Ok(Some(area)) = frame.next_band_over(band, |pixels, area| {
+        while let Ok(Some(drawn)) = frame.next_band_over(band, |pixels, area| {
             if let Some(under) = &self.under {
                 under(&mut BandTarget::new(pixels, on_display(area)));
             }
         }) {
-            let area = on_display(area);
+            let area = on_display(drawn);
             if let Some(over) = &self.over {
                 over(&mut BandTarget::new(band, area));
             }
-            target.fill_contiguous(&area, band.iter().copied().take((area.size.width * area.size.height) as usize))?;
+            target.fill_contiguous(&area, frame.output().pixels(band, drawn))?;
         }
         Ok(frame.stats())
     }

@@ -8,7 +8,7 @@ use microphong::{
     Layout, RenderError, Renderer, Stats, Stream,
     coverage::area::TriangleCoverage,
     format::{BIAS, Intensity, RAMP},
-    pixel::{Pixel, ramps::Rounded},
+    pixel::{Pixel, PixelFormat, ramps::Rounded},
 };
 use microphong_sim::{
     oracle::{self, Frame},
@@ -181,10 +181,7 @@ fn coverages_of_a_patch_add_up_to_one() {
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct White(u8);
 
-impl Pixel for White {
-    type Stored = u8;
-    type Ramps = Rounded<u8>;
-
+impl PixelFormat for White {
     const GRAY: bool = true;
     const DEPTH: [u32; 3] = [8; 3];
     const BYTES: usize = 1;
@@ -193,20 +190,25 @@ impl Pixel for White {
         Self(luma as u8)
     }
 
-    fn stored(self) -> u8 {
-        self.0
-    }
-
-    fn from_stored(stored: u8) -> Self {
-        Self(stored)
-    }
-
     fn channels(self) -> [u8; 3] {
         [self.0; 3]
     }
 
     fn bits(self) -> u32 {
         self.0.into()
+    }
+}
+
+impl Pixel for White {
+    type Stored = u8;
+    type Ramps = Rounded<u8>;
+
+    fn stored(self) -> u8 {
+        self.0
+    }
+
+    fn from_stored(stored: u8) -> Self {
+        Self(stored)
     }
 
     fn entry(_: &[u8; RAMP], level: u32, bits: u32) -> u8 {

@@ -1,13 +1,14 @@
-//! Greys of few bits, dithered by loops as by the general way: against the picture of 256 greys and thresholds in floating point. Colours of five
-//! bits to seven, dithered by two thresholds in turn: against rounded ones, and against a picture of eight bits.
+//! Dither. Greys of few bits and light become pixels of the display by a pass, which is compared with pictures of eight bits and thresholds in floating
+//! point. Colours of five bits to seven that are drawn directly are dithered by two thresholds in turn, and compared with rounded ones.
 
 use embedded_graphics::{
     geometry::Size,
     pixelcolor::{Bgr565, BinaryColor, Gray2, Gray4, Gray8, Rgb565, Rgb666, Rgb888},
 };
 use microphong::{
+    Renderer,
     method::sqrt6::Sqrt6,
-    pixel::{Pixel, Rgb565Be, dither::threshold},
+    pixel::{FromDrawn, Light, LightGray, Pixel, PixelFormat, Rgb332, Rgb565Be, dither::threshold},
 };
 use microphong_sim::{
     render::{self, Style},
@@ -17,47 +18,84 @@ use microphong_sim::{
 
 const SIZE: Size = Size::new(120, 90);
 
-fn channels<C: Pixel>(scene: &str, style: Style) -> Vec<[u8; 3]> {
+fn shown<C: Pixel, F: FromDrawn<C>>(scene: &str, style: Style) -> Vec<[u8; 3]> {
     let scene = scene::load(scene).expect("built-in scene");
-    let (pixels, _) = render::frame::<C>(scene.stream.parse().expect("a stream"), SIZE, style, 16, 3).expect("a picture");
-    pixels.into_iter().map(Pixel::channels).collect()
+    let stream = scene.stream.parse().expect("a stream");
+    let (pixels, _) = render::frame_by::<C, F>(stream, SIZE, style, style.shader.on(), 16, 3).expect("a picture");
+    pixels.into_iter().map(F::channels).collect()
 }
 
-fn picture<C: Pixel>(scene: &str, style: Style) -> Vec<u8> {
-    channels::<C>(scene, style).into_iter().map(|[grey, ..]| grey).collect()
+fn channels<C: Pixel>(scene: &str, style: Style) -> Vec<[u8; 3]> {
+    shown::<C, C>(scene, style)
 }
 
-/// Every pixel is the level of 256 greys plus its threshold, rounded down to the greys that there are; or, without dither, the nearest grey.
-fn check<C: Pixel>(scene: &str, style: Style) {
-    let most = f64::from((1u32 << C::DEPTH[0]) - 1);
-    let levels = picture::<Gray8>(scene, Style { dither: false, ..style });
-    let drawn = picture::<C>(scene, style);
-    let mut greys = [0; 256];
-    let background = levels[0];
-    for (pixel, (&level, &grey)) in levels.iter().zip(&drawn).enumerate().filter(|(_, (level, _))| **level != background) {
+/// Every channel of a pixel that is not background is a level of eight bits plus its threshold, rounded down to the levels of the display; or,
+/// without dither, the nearest. `off` is by how much the two pictures may differ, in 1/255.
+fn check<C: Pixel, F: FromDrawn<C>>(levels: &[[u8; 3]], off: f64, scene: &str, style: Style) {
+    let (drawn, background) = (shown::<C, F>(scene, style), levels[0]);
+    let mut seen = [0; 256];
+    for (pixel, (level, shown)) in levels.iter().zip(&drawn).enumerate() {
         let (x, y) = (pixel % SIZE.width as usize, pixel / SIZE.width as usize);
+        if *level == background && *shown == drawn[0] {
+            continue;
+        }
         let share = if style.dither { f64::from(threshold(x, y)) / 128.0 } else { 0.5 };
-        // Tables hold eight bits, of which the last is worth two of 256 greys where a pixel has one bit; both pictures are rounded to theirs.
-        let within = [-1.6, 1.6].map(|off| ((f64::from(level) + off).clamp(0.0, 255.0) / 255.0 * most + share).floor().min(most));
-        let name = style.shader.name();
-        assert!((within[0]..=within[1]).contains(&f64::from(grey)), "{scene} by {name}, {x} {y}: {grey} of {most} for {level}");
-        greys[usize::from(grey)] += 1;
+        for (k, (&level, &shown)) in level.iter().zip(shown).enumerate() {
+            let most = f64::from((1u32 << F::DEPTH[k]) - 1);
+            // Thresholds are rounded to the steps of light.
+            let step = most / if C::GRAY { 255.0 } else { 511.0 };
+            let within = [-off, off].map(|off| (f64::from(level) + off).clamp(0.0, 255.0) / 255.0 * most + share);
+            let within = [(within[0] - step).floor(), within[1].floor().min(most)];
+            let name = style.shader.name();
+            assert!(
+                (within[0]..=within[1]).contains(&f64::from(shown)),
+                "{scene} by {name}, {x} {y}, channel {k}: {shown} of {most} for {level}"
+            );
+            seen[usize::from(shown)] += 1;
+        }
     }
-    assert!(greys.iter().filter(|&&count| count > 50).count() > 1, "{greys:?}");
+    assert!(seen.iter().filter(|&&count| count > 50).count() > 1, "{seen:?}");
 }
 
-/// Few greys are dithered by methods' own loops, and under several lights by the general loop. There is no seam where one triangle is drawn by the
-/// one and its neighbour by the other.
 #[test]
-fn few_greys_are_dithered_by_their_tables() {
+fn greys_become_few_greys_by_a_pass() {
     for scene in ["sphere-168", "teapot", "bunny", "sphere-690"] {
         for shader in Shader::CORE {
+            let levels = channels::<Gray8>(scene, Style::from(shader));
             for dither in [true, false] {
                 let style = Style { dither, ..shader.into() };
-                check::<Gray4>(scene, style);
-                check::<Gray2>(scene, style);
-                check::<BinaryColor>(scene, style);
+                check::<LightGray<4>, Gray4>(&levels, 1.6, scene, style);
+                check::<LightGray<2>, Gray2>(&levels, 1.6, scene, style);
+                check::<LightGray<1>, BinaryColor>(&levels, 1.6, scene, style);
             }
+        }
+    }
+}
+
+/// Light is within 1 of 255 of what a picture of eight bits rounds, under one light and several, in one hue and in three channels, saturated highlights included.
+#[test]
+fn light_becomes_colours_by_a_pass() {
+    for scene in ["sphere-168", "bunny", "peer-sphere-plastic", "peer-sphere-lights"] {
+        for shader in Shader::CORE {
+            let levels = channels::<Rgb888>(scene, Style::from(shader));
+            for dither in [true, false] {
+                let style = Style { dither, ..shader.into() };
+                check::<Light<5, 6, 5>, Rgb565>(&levels, 1.5, scene, style);
+                check::<Light<3, 3, 2>, Rgb332>(&levels, 1.5, scene, style);
+            }
+        }
+    }
+}
+
+/// The pass corrects light by the curve of the display, as pictures of eight bits are corrected, and leaves the background as it is.
+#[test]
+fn the_pass_corrects_light_by_the_curve() {
+    for scene in ["sphere-168", "bunny", "peer-sphere-lights"] {
+        for dither in [true, false] {
+            let style = Style { srgb: true, dither, ..Shader::PHONG.into() };
+            let levels = channels::<Rgb888>(scene, Style { dither: false, ..style });
+            // Light has nine bits. Where it is dark, a step of it is 6 of 255 after the curve.
+            check::<Light<5, 6, 5>, Rgb565>(&levels, 7.0, scene, style);
         }
     }
 }
@@ -181,5 +219,31 @@ fn the_curve_of_a_display_is_dithered() {
         let (others, [dithered, rounded]) = turns::<Rgb565>(scene, Style { srgb: true, ..shader.into() }, turn);
         println!("{scene} by {}: {others} channels, {dithered:.3} of {rounded:.3} steps off", shader.name());
         assert!(others > 1000 && dithered < 0.75 * rounded, "{scene} by {}: {others}, {dithered}, {rounded}", shader.name());
+    }
+}
+
+/// Highlights that are brighter than a display can show are full, and backgrounds show no dither.
+#[test]
+fn light_that_is_too_bright_is_full() {
+    let scene = scene::load("peer-sphere-plastic").expect("built-in scene");
+    let stream = scene.stream.parse().expect("a stream");
+    let layout = render::layout(&stream, SIZE, SIZE.height);
+    let mut memory = vec![0; layout.words::<Light<5, 6, 5>>()];
+    for shader in Shader::CORE {
+        let mut renderer = Renderer::with_shader(stream, SIZE, &layout, &mut memory, shader.on()).expect("a renderer");
+        let mut material = stream.materials[0];
+        (material.diffuse, material.specular) = ([1 << 14, 1 << 12, 1 << 14], [1 << 15; 3]);
+        renderer.scene().set_material(0, material).expect("a material");
+        let mut frame = renderer.draw();
+        let mut band = vec![Light::BLACK; layout.band()];
+        let area = frame.next_band(&mut band).expect("a band").expect("rows");
+        let shown: Vec<_> = frame.output().pixels::<_, Rgb565>(&band, area).map(PixelFormat::channels).collect();
+        let full = shown.iter().filter(|[r, g, b]| *r == 31 && *g >= 62 && *b == 31).count();
+        // Green is never above red and blue, in which the material reflects more.
+        assert!(shown.iter().all(|[r, g, _]| *g <= 2 * *r + 3), "{}: green", shader.name());
+        assert!(full > 50, "{}: {full} pixels are full", shader.name());
+        let background = shown[0];
+        let mut edge = shown.iter().take(8);
+        assert!(edge.all(|pixel| *pixel == background));
     }
 }

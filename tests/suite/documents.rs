@@ -2,7 +2,7 @@
 //! with the recorded ones, sizes in the guide agree with the layout, and doc comments begin with a subject.
 
 use crate::golden::{bless, root};
-use embedded_graphics::pixelcolor::{BinaryColor, Rgb565};
+use embedded_graphics::pixelcolor::{Gray8, Rgb565};
 use microphong::{Layout, pixel::Pixel};
 use std::{
     fs,
@@ -148,7 +148,7 @@ fn memory_is_what_the_guide_says() {
         assert!(bytes.abs_diff(told) < 64, "{bytes} bytes, the guide says {told}");
     }
     has::<Rgb565>(&layout, common + 2 * told("material in `Rgb565`"));
-    has::<BinaryColor>(&layout, common + 2 * told("material in `BinaryColor`"));
+    has::<Gray8>(&layout, common + 2 * told("material in `Gray8`"));
 }
 
 /// Instructions and flash of each method in the README and the guide, as `tests/baselines/costs.csv` has them. The README tells whole

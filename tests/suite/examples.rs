@@ -44,7 +44,7 @@ macro_rules! shows {
         let mut memory = vec![0; words(&$scene::LAYOUT, $scene::renderer)];
         let mut renderer = $scene::renderer(stream, &mut memory).expect("a renderer");
         let mut display = SimulatorDisplay::new(renderer.size());
-        let mut band = vec![display.get_pixel(Point::zero()); $scene::LAYOUT.band()];
+        let mut band = vec![pixel::PixelFormat::pack([0; 3]); $scene::LAYOUT.band()];
         let ($renderer, $band) = (&mut renderer, &mut band);
         let Ok(stats) = $picture.expect("a picture").draw(&mut display);
         compare(concat!("examples/", $name), &stats, &display);

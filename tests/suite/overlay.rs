@@ -4,7 +4,7 @@
 use embedded_graphics::{
     image::{Image, ImageRaw},
     mono_font::{MonoTextStyle, ascii::FONT_6X10},
-    pixelcolor::{BinaryColor, Rgb565, raw::BigEndian},
+    pixelcolor::{BinaryColor, Gray4, Rgb565, raw::BigEndian},
     prelude::*,
     primitives::{Circle, Line, PrimitiveStyle, PrimitiveStyleBuilder, Rectangle, RoundedRectangle, StyledDrawable},
     text::{Alignment, Text},
@@ -13,7 +13,7 @@ use embedded_graphics_simulator::SimulatorDisplay;
 use microphong::{
     BandTarget, Layout, Picture, RenderError, Renderer,
     format::Share,
-    pixel::Pixel,
+    pixel::{FromDrawn, Light, LightGray, Pixel, Rgb565Be},
     stream::record::{LEFT, Label, MIDDLE, RIGHT},
 };
 use microphong_sim::{scene, script, shader::Shader};
@@ -43,19 +43,23 @@ where
     let Ok(()) = Image::new(&image, Point::new(80, 4)).draw(&mut target.color_converted());
 }
 
-fn over<C: Pixel + PixelColor + From<BinaryColor> + Debug>(dark: C, bright: C) {
+fn over<C, F>(dark: F, bright: F)
+where
+    C: Pixel + From<F>,
+    F: FromDrawn<C> + PixelColor + From<BinaryColor> + Debug,
+{
     let scene = scene::load("torus").expect("a built-in scene");
     let stream = scene.stream.parse().expect("a stream");
     for rows in [1, 7, 16, 64] {
         let layout = Layout::new(SIZE.width as usize, rows).vertices(stream.vertices.len()).triangles(stream.triangles.len());
         let mut memory = vec![0; layout.words::<C>()];
         let mut renderer = Renderer::with_shader(stream, SIZE, &layout, &mut memory, Shader::PHONG.on()).expect("a renderer");
-        let mut band = vec![dark; layout.band()];
-        let [mut expected, mut drawn] = [(); 2].map(|()| SimulatorDisplay::<C>::with_default_color(SIZE, dark));
-        let Ok(before) = Picture::new(&mut renderer, &mut band, 3).expect("a band").draw(&mut expected);
+        let mut band = vec![C::from(dark); layout.band()];
+        let [mut expected, mut drawn] = [(); 2].map(|()| SimulatorDisplay::<F>::with_default_color(SIZE, dark));
+        let Ok(before) = Picture::new(&mut renderer, &mut band, 3).expect("a band").shown_as::<F>().draw(&mut expected);
         gauge(&mut expected, dark, bright);
-        let picture = Picture::new(&mut renderer, &mut band, 3).expect("a band");
-        let Ok(stats) = picture.over(|band: &mut BandTarget<'_, C>| gauge(band, dark, bright)).draw(&mut drawn);
+        let picture = Picture::new(&mut renderer, &mut band, 3).expect("a band").shown_as::<F>();
+        let Ok(stats) = picture.over(|band: &mut BandTarget<'_, C, F>| gauge(band, dark, bright)).draw(&mut drawn);
         assert_eq!(stats, before);
         assert_eq!(drawn.diff(&expected).map(|_| ()), None, "{rows} rows");
     }
@@ -63,8 +67,9 @@ fn over<C: Pixel + PixelColor + From<BinaryColor> + Debug>(dark: C, bright: C) {
 
 #[test]
 fn drawing_over_bands_is_drawing_over_the_picture() {
-    over(Rgb565::new(2, 4, 6), Rgb565::YELLOW);
-    over(BinaryColor::Off, BinaryColor::On);
+    over::<Rgb565, _>(Rgb565::new(2, 4, 6), Rgb565::YELLOW);
+    over::<Light<5, 6, 5>, _>(Rgb565::new(2, 4, 6), Rgb565::YELLOW);
+    over::<LightGray<1>, _>(BinaryColor::Off, BinaryColor::On);
 }
 
 /// A display that begins at any pixel, and knows which pixels were drawn.
@@ -165,16 +170,20 @@ fn stripes<D: DrawTarget<Error = Infallible>>(target: &mut D, [dark, bright]: [D
 }
 
 /// Each pixel over stripes equals the pixel over a background of the stripe's colour, at antialiased edges as well.
-fn under<C: Pixel + PixelColor + Debug + Send + Sync>(antialias: bool, dither: bool) {
+fn under<C, F>(antialias: bool, dither: bool)
+where
+    C: Pixel + From<F> + Send + Sync,
+    F: FromDrawn<C> + PixelColor + Debug + Send + Sync,
+{
     let scene = scene::load("torus").expect("a built-in scene");
     let stream = scene.stream.parse().expect("a stream");
     // Each channel's bits are those of the format, or none.
     let colours = [[0, 255, 0], [255, 0, 255]];
     let packed = colours.map(|colour| {
-        let [dr, dg, db] = C::DEPTH;
+        let [dr, dg, db] = F::DEPTH;
         let luma = (u32::from(colour[0]) * 77 + u32::from(colour[1]) * 150 + u32::from(colour[2]) * 29) >> 8;
-        let [r, g, b] = if C::GRAY { [luma; 3] } else { colour.map(u32::from) };
-        C::pack([r >> (8 - dr), g >> (8 - dg), b >> (8 - db)])
+        let [r, g, b] = if F::GRAY { [luma; 3] } else { colour.map(u32::from) };
+        F::pack([r >> (8 - dr), g >> (8 - dg), b >> (8 - db)])
     });
     for rows in [1, 7, 64] {
         let layout = Layout::new(SIZE.width as usize, rows).with_room_for(&stream).antialias(antialias).processors(2);
@@ -182,20 +191,20 @@ fn under<C: Pixel + PixelColor + Debug + Send + Sync>(antialias: bool, dither: b
         let mut renderer = Renderer::<C>::with_shader(stream, SIZE, &layout, &mut memory, Shader::PHONG.on()).expect("a renderer");
         renderer.set_dither(dither);
         renderer.set_antialias(antialias).expect("room");
-        let mut band = vec![packed[0]; layout.band()];
+        let mut band = vec![C::from(packed[0]); layout.band()];
         let whole = Rectangle::new(Point::zero(), SIZE);
         let [dark, bright] = colours.map(|colour| {
             renderer.scene().set_background(colour);
-            let mut display = SimulatorDisplay::<C>::with_default_color(SIZE, packed[0]);
-            let Ok(_) = Picture::of_scene(&mut renderer, &mut band).expect("a band").draw(&mut display);
+            let mut display = SimulatorDisplay::<F>::with_default_color(SIZE, packed[0]);
+            let Ok(_) = Picture::of_scene(&mut renderer, &mut band).expect("a band").shown_as::<F>().draw(&mut display);
             display
         });
         let of = |point: Point| if is_bright(point) { bright.get_pixel(point) } else { dark.get_pixel(point) };
         let expected: Vec<_> = whole.points().map(of).collect();
         assert!(whole.points().any(|point| dark.get_pixel(point) == bright.get_pixel(point)), "there is an object");
 
-        let mut display = SimulatorDisplay::<C>::with_default_color(SIZE, packed[0]);
-        let picture = Picture::of_scene(&mut renderer, &mut band).expect("a band").under(|band| stripes(band, packed));
+        let mut display = SimulatorDisplay::<F>::with_default_color(SIZE, packed[0]);
+        let picture = Picture::of_scene(&mut renderer, &mut band).expect("a band").shown_as::<F>().under(|band| stripes(band, packed));
         let Ok(_) = picture.draw(&mut display);
         let shown: Vec<_> = whole.points().map(|point| display.get_pixel(point)).collect();
         assert!(shown == expected, "{rows} rows");
@@ -204,10 +213,10 @@ fn under<C: Pixel + PixelColor + Debug + Send + Sync>(antialias: bool, dither: b
         let mut frame = renderer.draw().in_two(30);
         let parts = thread::scope(|threads| {
             let draw = |mut part: microphong::FramePart<'_, '_, C>| {
-                let (mut band, mut pixels) = (vec![packed[0]; layout.band()], Vec::new());
-                let under = |pixels: &mut [C], area| stripes(&mut BandTarget::new(pixels, area), packed);
+                let (mut band, mut pixels) = (vec![C::from(packed[0]); layout.band()], Vec::new());
+                let under = |pixels: &mut [C], area| stripes(&mut BandTarget::<C, F>::new(pixels, area), packed);
                 while let Some(area) = part.next_band_over(&mut band, under).expect("a row") {
-                    pixels.extend_from_slice(&band[..(area.size.width * area.size.height) as usize]);
+                    pixels.extend(part.output().pixels::<C, F>(&band, area));
                 }
                 pixels
             };
@@ -221,10 +230,11 @@ fn under<C: Pixel + PixelColor + Debug + Send + Sync>(antialias: bool, dither: b
 #[test]
 fn what_is_under_a_picture_is_its_background() {
     for antialias in [false, true] {
-        under::<Rgb565>(antialias, false);
-        under::<Rgb565>(antialias, true);
-        under::<microphong::pixel::Rgb565Be>(antialias, false);
-        under::<embedded_graphics::pixelcolor::Gray4>(antialias, true);
+        under::<Rgb565, Rgb565>(antialias, false);
+        under::<Rgb565, Rgb565>(antialias, true);
+        under::<Rgb565Be, Rgb565Be>(antialias, false);
+        under::<Light<5, 6, 5>, Rgb565Be>(antialias, true);
+        under::<LightGray<4>, Gray4>(antialias, true);
     }
 }
 

@@ -16,7 +16,6 @@ use microphong::{
     interpolate::{Constant, plane::Plane},
     lighting::{
         material_tables::MaterialTables,
-        output::Output,
         reflectance::{LitMaterial, Reflectance},
     },
     method::{
@@ -26,7 +25,7 @@ use microphong::{
     raster::{
         active::ActiveTriangles,
         band::Band,
-        canvas::{BandCanvas, Canvas, Shaded},
+        canvas::{BandCanvas, Canvas, Colourist, Shaded},
         pixel_shader::Solid,
         triangle::ScreenTriangle,
     },
@@ -114,7 +113,8 @@ fn parts_of_random_triangles_cover_each_pixel_once() {
                 } else {
                     let mut chance = Random::new(splits, 0);
                     let mut chance = (i % 3 > 0 && rows == HEIGHT).then_some(&mut chance);
-                    let mut canvas = BandCanvas { band: &mut band, output: &Output::new(tables, false, None) };
+                    let colourist = Colourist { tables, dither: false, gamma: None };
+                    let mut canvas = BandCanvas { band: &mut band, colourist: &colourist };
                     whole.draw(&SubTriangle::WHOLE, (i % 7) as u32, &mut chance, &mut canvas)
                 };
                 picture[top * WIDTH..][..rows * WIDTH].copy_from_slice(&pixels);

@@ -10,8 +10,8 @@ use embassy_rp::{
     watchdog::{ResetReason, Watchdog},
 };
 use embassy_time::{Duration, Instant};
-use embedded_graphics::{pixelcolor::BinaryColor, prelude::*};
-use microphong::Stream;
+use embedded_graphics::prelude::*;
+use microphong::{Stream, pixel::LightGray};
 use panic_probe as _;
 use scene::LAYOUT;
 use ssd1306::{I2CDisplayInterface, Ssd1306, prelude::*};
@@ -20,8 +20,8 @@ defmt::timestamp!("{=u64:us}", Instant::now().as_micros());
 
 #[cortex_m_rt::entry]
 fn main() -> ! {
-    static mut MEMORY: [u64; LAYOUT.words::<BinaryColor>()] = [0; LAYOUT.words::<BinaryColor>()];
-    static mut BAND: [BinaryColor; LAYOUT.band()] = [BinaryColor::Off; LAYOUT.band()];
+    static mut MEMORY: [u64; LAYOUT.words::<LightGray<1>>()] = [0; LAYOUT.words::<LightGray<1>>()];
+    static mut BAND: [LightGray<1>; LAYOUT.band()] = [LightGray::BLACK; LAYOUT.band()];
 
     let pins = embassy_rp::init(Default::default());
     // A display that holds a line of the bus low would stop the program for ever.

@@ -63,12 +63,13 @@ pub(super) enum Part {
 
 /// Parts of functions by what their names contain; the first that fits counts. Names as the compiler writes them, so that this
 /// is the one place to follow when functions move.
-const TABLE: [(&str, Part); 32] = [
+const TABLE: [(&str, Part); 33] = [
     ("microphong::raster::triangle::fill_rows", Part::Row),
     ("as microphong::raster::canvas::SpanShader::span", Part::Row),
     ("microphong::raster::band::Band::clear", Part::Clear),
     ("microphong::raster::band::fill_pixels", Part::Clear),
     ("microphong::raster::gradient::fill", Part::Clear),
+    ("microphong::pixel::light::Output::convert", Part::Transfer),
     ("microphong::text::draw", Part::Setup),
     ("microphong::renderer::Renderer::frame", Part::Frame),
     ("microphong::renderer::Renderer::draw", Part::Frame),

@@ -8,7 +8,7 @@ use embedded_graphics_core::{
 };
 use microphong::{
     RenderError, Renderer, Stats, Stream,
-    pixel::{PictureCrc, Pixel, Rgb565Be},
+    pixel::{FromDrawn, LightGray, PictureCrc, Pixel, Rgb565Be},
     stream::{record::Header, seal},
 };
 use microphong_models::bytes::StreamBytes;
@@ -201,14 +201,19 @@ pub fn first_frame(board: Board, bytes: &[u8]) -> Result<Picture, String> {
 /// Draws in the board's format.
 fn draw(board: Board, stream: Stream<'_>, shaders: &[Shader], frames: usize) -> Result<Vec<Picture>, RenderError> {
     match board.format() {
-        Format::Rgb565 => draw_in::<Rgb565>(board, stream, shaders, frames),
-        Format::Rgb565Be => draw_in::<Rgb565Be>(board, stream, shaders, frames),
-        Format::Gray4 => draw_in::<Gray4>(board, stream, shaders, frames),
+        Format::Rgb565 => draw_in::<Rgb565, Rgb565>(board, stream, shaders, frames),
+        Format::Rgb565Be => draw_in::<Rgb565Be, Rgb565Be>(board, stream, shaders, frames),
+        Format::Gray4 => draw_in::<LightGray<4>, Gray4>(board, stream, shaders, frames),
     }
 }
 
 /// Draws with as much memory as the firmware has, in as many bands.
-fn draw_in<C: Pixel>(board: Board, stream: Stream<'_>, shaders: &[Shader], frames: usize) -> Result<Vec<Picture>, RenderError> {
+fn draw_in<C: Pixel, F: FromDrawn<C>>(
+    board: Board,
+    stream: Stream<'_>,
+    shaders: &[Shader],
+    frames: usize,
+) -> Result<Vec<Picture>, RenderError> {
     let Budget { height, layout } = board.budget();
     let size = Size::new(layout.width as u32, height as u32);
     let mut memory = vec![0; layout.words::<C>()];
@@ -226,7 +231,7 @@ fn draw_in<C: Pixel>(board: Board, stream: Stream<'_>, shaders: &[Shader], frame
         while let Some(area) = frame.next_band(&mut band)? {
             let drawn = &band[..(area.size.width * area.size.height) as usize];
             checksum.update(drawn);
-            pixels.extend(drawn.iter().map(|pixel| pixel.bits()));
+            pixels.extend(frame.output().pixels::<C, F>(drawn, area).map(F::bits));
         }
         Ok(Picture { pixels, shader, checksum: checksum.finish(), stats: frame.stats() })
     });

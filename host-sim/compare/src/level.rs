@@ -6,7 +6,7 @@ use microphong::{
     Stream,
     format::{BIAS, CHANNEL, Intensity, RAMP, WALK},
     method::{Highlight, Reflectance},
-    pixel::{Channels, Pixel, ramps::Rounded},
+    pixel::{Channels, Pixel, PixelFormat, ramps::Rounded},
     stream::record::Material,
 };
 use microphong_render::{
@@ -21,27 +21,12 @@ struct Fine(Option<[u32; 3]>);
 /// An entry of the table of colours of a material of one channel.
 const ONE_CHANNEL: [u32; 3] = [u32::MAX; 3];
 
-impl Pixel for Fine {
-    /// Levels of three channels, or [`ONE_CHANNEL`].
-    type Stored = [u32; 3];
-    type Ramps = Rounded<[u32; 3]>;
-
+impl PixelFormat for Fine {
     const GRAY: bool = false;
     const DEPTH: [u32; 3] = [8; 3];
-    /// Pictures for errors are drawn as boards draw them. The one difference is that a walked level of one channel has a bit more than in formats
-    /// with a checkerboard.
-    const COARSE: bool = true;
     const BYTES: usize = 3;
 
     fn pack(_: [u32; 3]) -> Self {
-        Self(None)
-    }
-
-    fn stored(self) -> [u32; 3] {
-        self.0.unwrap_or(ONE_CHANNEL)
-    }
-
-    fn from_stored(_: [u32; 3]) -> Self {
         Self(None)
     }
 
@@ -52,8 +37,22 @@ impl Pixel for Fine {
     fn bits(self) -> u32 {
         0
     }
+}
 
-    fn shown(levels: [u32; 3], _: u32) -> Self {
+impl Pixel for Fine {
+    /// Levels of three channels, or [`ONE_CHANNEL`].
+    type Stored = [u32; 3];
+    type Ramps = Rounded<[u32; 3]>;
+
+    /// Pictures for errors are drawn as boards draw them. The one difference is that a walked level of one channel has a bit more than in formats
+    /// with a checkerboard.
+    const COARSE: bool = true;
+
+    fn stored(self) -> [u32; 3] {
+        self.0.unwrap_or(ONE_CHANNEL)
+    }
+
+    fn from_stored(levels: [u32; 3]) -> Self {
         Self(Some(levels))
     }
 

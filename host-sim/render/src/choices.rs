@@ -16,7 +16,7 @@ use microphong::{
         Canvas, ErrorBounds, Facts, LitMaterial, Method, Shading, TriangleSetup,
         auto::{Auto, Choice, choose, raises},
     },
-    pixel::Pixel,
+    pixel::{FromDrawn, Pixel, PixelFormat},
     stream::record::Triangle,
 };
 use serde::{Serialize, Serializer};
@@ -223,25 +223,13 @@ impl<C: Pixel> Traced<C> {
     }
 }
 
-impl<C: Pixel> Pixel for Traced<C> {
-    type Stored = C::Stored;
-    type Ramps = C::Ramps;
-
+impl<C: Pixel> PixelFormat for Traced<C> {
     const GRAY: bool = C::GRAY;
     const DEPTH: [u32; 3] = C::DEPTH;
-    const COARSE: bool = C::COARSE;
     const BYTES: usize = C::BYTES;
 
     fn pack(channels: [u32; 3]) -> Self {
         Self::new(C::pack(channels))
-    }
-
-    fn stored(self) -> C::Stored {
-        self.pixel.stored()
-    }
-
-    fn from_stored(stored: C::Stored) -> Self {
-        Self::new(C::from_stored(stored))
     }
 
     fn channels(self) -> [u8; 3] {
@@ -251,13 +239,26 @@ impl<C: Pixel> Pixel for Traced<C> {
     fn bits(self) -> u32 {
         self.pixel.bits()
     }
+}
+
+impl<C: Pixel> Pixel for Traced<C> {
+    type Stored = C::Stored;
+    type Ramps = C::Ramps;
+
+    const COARSE: bool = C::COARSE;
+    const LEVELS: [u32; 3] = C::LEVELS;
+    const IS_LIGHT: bool = C::IS_LIGHT;
+
+    fn stored(self) -> C::Stored {
+        self.pixel.stored()
+    }
+
+    fn from_stored(stored: C::Stored) -> Self {
+        Self::new(C::from_stored(stored))
+    }
 
     fn tabled(channels: [u32; 3], threshold: u32) -> C::Stored {
         C::tabled(channels, threshold)
-    }
-
-    fn shown(stored: C::Stored, threshold: u32) -> Self {
-        Self::new(C::shown(stored, threshold))
     }
 
     fn entry(ramp: &[C::Stored; RAMP], level: u32, bits: u32) -> C::Stored {
@@ -318,7 +319,7 @@ pub fn painted(stream: Stream<'_>, settings: &Settings, number: u32) -> anyhow::
     impl InFormat for Paint<'_> {
         type Output = anyhow::Result<(Picture, Choices)>;
 
-        fn in_format<C: Pixel>(self) -> Self::Output {
+        fn in_format<C: Pixel, F: FromDrawn<C>>(self) -> Self::Output {
             let Self(stream, s, number) = self;
             let (pixels, stats, choices) = told::<Traced<C>>(s.style.shader, stream, s.size, s.style.perspective_correct, number)?;
             let painted: Vec<_> = pixels.into_iter().map(Traced::painted).collect();

@@ -2,7 +2,7 @@
 
 use crate::output::Output;
 use anyhow::{Context, Result};
-use microphong::pixel::Pixel;
+use microphong::pixel::PixelFormat;
 use std::{cell::RefCell, io::Write, path::Path, rc::Rc};
 
 /// A channel of `bits` bits in 8, by repeating it: 0 stays 0 and the largest value becomes 255.
@@ -14,14 +14,14 @@ pub fn replicate(value: u32, bits: u32) -> u8 {
 
 /// A pixel as 8-bit red, green and blue.
 #[must_use]
-pub fn to_rgb<C: Pixel>(pixel: C) -> [u8; 3] {
+pub fn to_rgb<C: PixelFormat>(pixel: C) -> [u8; 3] {
     let (channels, depth) = (pixel.channels(), C::DEPTH);
     [0, 1, 2].map(|k| replicate(channels[k].into(), depth[k]))
 }
 
 /// Pixels as bytes, red, green and blue in turn.
 #[must_use]
-pub fn rgb_bytes<C: Pixel>(pixels: &[C]) -> Vec<u8> {
+pub fn rgb_bytes<C: PixelFormat>(pixels: &[C]) -> Vec<u8> {
     pixels.iter().flat_map(|&p| to_rgb(p)).collect()
 }
 

@@ -8,7 +8,7 @@ use embedded_graphics_core::{
 };
 use microphong::{
     Layout, Renderer, Skips, Stats, Stream,
-    pixel::{PictureCrc, Pixel, Rgb332, gamma},
+    pixel::{FromDrawn, Light, LightGray, PictureCrc, Pixel, PixelFormat, Rgb332, gamma},
 };
 
 /// Options of drawing a scene.
@@ -53,18 +53,18 @@ pub fn frame<C: Pixel>(stream: Stream<'_>, size: Size, style: impl Into<Style>, 
     frame_by(stream, size, style, style.shader.on(), band_rows, number)
 }
 
-/// [`frame`] by this shader, whatever the style says.
+/// Draws like [`frame`], by `shader` whatever the style says, pixels `C`, and returns pixels of the display.
 ///
 /// # Errors
-/// Those of [`frame`].
-pub fn frame_by<C: Pixel>(
+/// Returns the errors of [`frame`].
+pub fn frame_by<C: Pixel, F: FromDrawn<C>>(
     stream: Stream<'_>,
     size: Size,
     style: Style,
     shader: microphong::Shader<C>,
     band_rows: u32,
     number: u32,
-) -> Result<(Vec<C>, Stats)> {
+) -> Result<(Vec<F>, Stats)> {
     let rows = band_rows.clamp(1, size.height.max(1));
     let layout = layout(&stream, size, rows).antialias(style.antialias);
     let mut memory = vec![0; layout.words::<C>()];
@@ -79,7 +79,8 @@ pub fn frame_by<C: Pixel>(
     let mut frame = renderer.frame(number);
     while let Some(area) = frame.next_band(&mut band)? {
         let count = area.size.width as usize * area.size.height as usize;
-        pixels.extend_from_slice(band.get(..count).context("the renderer filled more rows than a band has")?);
+        let band = band.get(..count).context("the renderer filled more rows than a band has")?;
+        pixels.extend(frame.output().pixels::<C, F>(band, area));
     }
     let stats = frame.stats();
     Ok((pixels, stats))
@@ -144,7 +145,7 @@ pub fn program_layout(stream: &Stream<'_>, shader: Shader, size: Size, band_rows
 
 /// Checksum of a picture.
 #[must_use]
-pub fn crc<C: Pixel>(pixels: &[C]) -> u32 {
+pub fn crc<F: PixelFormat>(pixels: &[F]) -> u32 {
     let mut crc = PictureCrc::default();
     crc.update(pixels);
     crc.finish()
@@ -171,6 +172,8 @@ pub enum Format {
     Rgb666,
     /// Three bits of red and green, two of blue.
     Rgb332,
+    /// [`Self::Rgb565`] by way of light, with 8x8 dither.
+    LightRgb565,
 }
 
 /// An operation for a pixel format that is chosen at run time.
@@ -178,14 +181,24 @@ pub trait InFormat {
     /// The result of the operation.
     type Output;
 
-    /// Does it.
-    fn in_format<C: Pixel>(self) -> Self::Output;
+    /// Does it, where pixels `C` are drawn for a display with pixels `F`.
+    fn in_format<C: Pixel, F: FromDrawn<C>>(self) -> Self::Output;
 }
 
 impl Format {
     /// Every format.
-    pub const ALL: [Self; 9] =
-        [Self::Rgb565, Self::Rgb888, Self::Gray8, Self::Gray4, Self::Gray2, Self::Binary, Self::Bgr565, Self::Rgb666, Self::Rgb332];
+    pub const ALL: [Self; 10] = [
+        Self::Rgb565,
+        Self::Rgb888,
+        Self::Gray8,
+        Self::Gray4,
+        Self::Gray2,
+        Self::Binary,
+        Self::Bgr565,
+        Self::Rgb666,
+        Self::Rgb332,
+        Self::LightRgb565,
+    ];
 
     /// The name on the command line.
     #[must_use]
@@ -200,21 +213,23 @@ impl Format {
             Self::Bgr565 => "bgr565",
             Self::Rgb666 => "rgb666",
             Self::Rgb332 => "rgb332",
+            Self::LightRgb565 => "light-rgb565",
         }
     }
 
     /// Does something in this format.
     pub fn run<T: InFormat>(self, what: T) -> T::Output {
         match self {
-            Self::Rgb565 => what.in_format::<Rgb565>(),
-            Self::Rgb888 => what.in_format::<Rgb888>(),
-            Self::Gray8 => what.in_format::<Gray8>(),
-            Self::Gray4 => what.in_format::<Gray4>(),
-            Self::Gray2 => what.in_format::<Gray2>(),
-            Self::Binary => what.in_format::<BinaryColor>(),
-            Self::Bgr565 => what.in_format::<Bgr565>(),
-            Self::Rgb666 => what.in_format::<Rgb666>(),
-            Self::Rgb332 => what.in_format::<Rgb332>(),
+            Self::Rgb565 => what.in_format::<Rgb565, Rgb565>(),
+            Self::Rgb888 => what.in_format::<Rgb888, Rgb888>(),
+            Self::Gray8 => what.in_format::<Gray8, Gray8>(),
+            Self::Gray4 => what.in_format::<LightGray<4>, Gray4>(),
+            Self::Gray2 => what.in_format::<LightGray<2>, Gray2>(),
+            Self::Binary => what.in_format::<LightGray<1>, BinaryColor>(),
+            Self::Bgr565 => what.in_format::<Bgr565, Bgr565>(),
+            Self::Rgb666 => what.in_format::<Rgb666, Rgb666>(),
+            Self::Rgb332 => what.in_format::<Light<3, 3, 2>, Rgb332>(),
+            Self::LightRgb565 => what.in_format::<Light<5, 6, 5>, Rgb565>(),
         }
     }
 
@@ -225,7 +240,7 @@ impl Format {
         impl InFormat for Of<'_> {
             type Output = [usize; 2];
 
-            fn in_format<C: Pixel>(self) -> [usize; 2] {
+            fn in_format<C: Pixel, F: FromDrawn<C>>(self) -> [usize; 2] {
                 [self.0.bytes::<C>(), self.0.band() * size_of::<C>()]
             }
         }
@@ -238,15 +253,15 @@ impl Format {
         matches!(self, Self::Binary | Self::Gray2 | Self::Gray4)
     }
 
-    /// Whether the format is dithered by default: [`Pixel::DITHERED`].
+    /// Whether dither changes the picture: a channel has fewer than eight bits.
     #[must_use]
     pub fn is_dithered(self) -> bool {
         struct Asked;
         impl InFormat for Asked {
             type Output = bool;
 
-            fn in_format<C: Pixel>(self) -> bool {
-                C::DITHERED
+            fn in_format<C: Pixel, F: FromDrawn<C>>(self) -> bool {
+                F::DEPTH[2] < 8
             }
         }
         self.run(Asked)
@@ -286,9 +301,9 @@ pub fn picture(stream: Stream<'_>, settings: &Settings, number: u32) -> Result<P
     impl InFormat for View<'_> {
         type Output = Result<Picture>;
 
-        fn in_format<C: Pixel>(self) -> Result<Picture> {
+        fn in_format<C: Pixel, F: FromDrawn<C>>(self) -> Result<Picture> {
             let Self(stream, s, number) = self;
-            let (pixels, stats) = frame::<C>(stream, s.size, s.style, s.band_rows, number)?;
+            let (pixels, stats) = frame_by::<C, F>(stream, s.size, s.style, s.style.shader.on(), s.band_rows, number)?;
             Ok(Picture { rgb: image::rgb_bytes(&pixels), crc: crc(&pixels), stats })
         }
     }

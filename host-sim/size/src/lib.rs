@@ -7,7 +7,7 @@ mod stream;
 
 use core::{convert::Infallible, marker::PhantomData, panic::PanicInfo};
 use embedded_graphics_core::{pixelcolor::PixelColor, prelude::*, primitives::Rectangle};
-use microphong::{Layout, Picture, Renderer, Shader, Stream, pixel::Pixel};
+use microphong::{Layout, Picture, Renderer, Shader, Stream, pixel::{FromDrawn, Pixel}};
 use semihosting::sys::arm_compat::{sys_readc, sys_writec};
 
 #[cfg(target_arch = "arm")]
@@ -48,19 +48,22 @@ fn send<C: PixelColor>(colour: C) {
 }
 
 /// Draws all frames of the stream, and tells the host whether they are drawn.
-pub fn run<C: Pixel + PixelColor>(memory: &mut [u64], band: &mut [C], shader: Shader<C>) -> ! {
-    let drawn = draw(memory, band, shader).is_some();
+pub fn run<C: Pixel, F: FromDrawn<C> + PixelColor>(memory: &mut [u64], band: &mut [C], shader: Shader<C>) -> !
+where
+    C: From<F>,
+{
+    let drawn = draw::<C, F>(memory, band, shader).is_some();
     loop {
         tell(if drawn { b'd' } else { b'f' });
     }
 }
 
-fn draw<C: Pixel + PixelColor>(memory: &mut [u64], band: &mut [C], shader: Shader<C>) -> Option<()> {
+fn draw<C: Pixel + From<F>, F: FromDrawn<C> + PixelColor>(memory: &mut [u64], band: &mut [C], shader: Shader<C>) -> Option<()> {
     let stream = Stream::parse(stream::bytes()).ok()?;
-    let mut display = Panel(PhantomData);
+    let mut display = Panel(PhantomData::<F>);
     let mut renderer = Renderer::with_shader(stream, display.size(), &ROOM, memory, shader).ok()?;
     for number in 0..u32::from(stream.header.frames) {
-        let Ok(_) = Picture::new(&mut renderer, band, number).ok()?.draw(&mut display);
+        let Ok(_) = Picture::new(&mut renderer, band, number).ok()?.shown_as::<F>().draw(&mut display);
     }
     Some(())
 }
@@ -76,25 +79,25 @@ fn panic(_: &PanicInfo<'_>) -> ! {
     loop {}
 }
 
-/// A program that draws by one method in one pixel format. The host finds memory and band by their names.
+/// A program that draws by one method pixels of one type for a display with one pixel format. The host finds memory and band by their names.
 #[macro_export]
 macro_rules! program {
-    ($format:ident, $black:ident, $shader:ident) => {
+    ($drawn:ty, $format:ident, $shader:ident) => {
         use ::embedded_graphics_core::pixelcolor::*;
-        use ::microphong::Shader;
+        use ::microphong::{Shader, pixel::*};
         use ::size::ROOM;
 
         #[unsafe(no_mangle)]
-        static mut MEMORY: [u64; ROOM.words::<$format>()] = [0; ROOM.words::<$format>()];
+        static mut MEMORY: [u64; ROOM.words::<$drawn>()] = [0; ROOM.words::<$drawn>()];
         #[unsafe(no_mangle)]
-        static mut BAND: [$format; ROOM.band()] = [$format::$black; ROOM.band()];
+        static mut BAND: [$drawn; ROOM.band()] = [<$drawn>::BLACK; ROOM.band()];
 
         /// Draws.
         #[::size::entry]
         fn main() -> ! {
             // SAFETY: nothing else in the program names them, and `main` runs once.
             let (memory, band) = unsafe { (&mut *(&raw mut MEMORY), &mut *(&raw mut BAND)) };
-            ::size::run(memory, band, Shader::$shader)
+            ::size::run::<$drawn, $format>(memory, band, Shader::$shader)
         }
     };
 }

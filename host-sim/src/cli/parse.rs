@@ -120,7 +120,12 @@ pub(crate) fn format(text: &str) -> Result<Format, String> {
 /// One of these pixel formats, by the names that [`format()`] takes.
 pub(crate) fn format_among(text: &str, all: &[Format]) -> Result<Format, String> {
     let name = text.to_ascii_lowercase();
-    among(if name == "binarycolor" { Format::Binary.name() } else { &name }, all, Format::name)
+    let name = match name.as_str() {
+        "binarycolor" => Format::Binary.name(),
+        "lightrgb565" => Format::LightRgb565.name(),
+        name => name,
+    };
+    among(name, all, Format::name)
 }
 
 /// An axis by name.

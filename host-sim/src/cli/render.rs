@@ -33,7 +33,7 @@ pub(crate) struct Arguments {
     /// Size of the picture. The default is the size of the scene, or 640x480 for model files.
     #[arg(long, value_name = "WxH", value_parser = parse::size)]
     size: Option<(u32, u32)>,
-    /// Pixel format. The names of types in programs, such as BinaryColor, are accepted as well.
+    /// Pixel format. light-rgb565 is rgb565 drawn as light, with 8x8 dither. The names of types in programs, such as BinaryColor, are accepted as well.
     #[arg(long, default_value = "rgb565", value_parser = parse::Formats)]
     format: Format,
     /// Number of frames to draw.
@@ -124,6 +124,13 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome> {
     let wanted = arguments.output.as_deref().map(|path| Target::of(path, frames)).transpose()?;
     let scene = scenes::with_budget(scenes::load(&arguments.scene, arguments.options.as_ref(), arguments.format)?, arguments.budget);
     let stream = scene.stream.parse().with_context(|| arguments.scene.clone())?;
+    if arguments.dither && !arguments.format.is_dithered() {
+        let name = arguments.format.name();
+        return Err(Usage(format!(
+            "--dither: {name} has eight bits a channel, which need no dither; leave it out, or choose another --format"
+        ))
+        .into());
+    }
     let target = wanted.unwrap_or_else(|| {
         let file = PathBuf::from(format!("{}.{}", scene.name, if frames > 1 { "apng" } else { "png" }));
         Target::File(file)

@@ -3,7 +3,7 @@
 use crate::{
     frame::context::{Context, PlacedMesh},
     mesh::Drawing,
-    pixel::{Pixel, gamma::Gamma},
+    pixel::{Output, Pixel, gamma::Gamma},
     shader::{Shader, TriangleLoops},
 };
 
@@ -25,6 +25,12 @@ pub(crate) struct Colours<'r, C: Pixel> {
 }
 
 impl<'r, C: Pixel> Colours<'r, C> {
+    /// The pass that makes pixels of the display of a finished band.
+    pub(crate) fn output(&self) -> Output {
+        let &ColourSettings { dither, gamma, .. } = self.settings;
+        Output { dither, gamma }
+    }
+
     /// What the triangles of `placed` have in common in a band of which these `columns` are wanted, and the loops that draw them.
     #[inline(never)]
     pub(crate) fn drawing<'s>(

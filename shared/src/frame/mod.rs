@@ -13,7 +13,10 @@ pub use preparation::{Preparation, PreparationPart};
 pub(crate) use preparation::{Prepared, Seams};
 pub use skips::Skips;
 
-use crate::{error::RenderError, pixel::Pixel};
+use crate::{
+    error::RenderError,
+    pixel::{Output, Pixel},
+};
 use context::Context;
 use core::ops::Range;
 use embedded_graphics_core::primitives::Rectangle;
@@ -57,6 +60,13 @@ impl<'r, C: Pixel> Frame<'r, C> {
     /// Returns [`RenderError::Band`] if `pixels` is shorter than one row of the picture.
     pub fn next_band_over(&mut self, pixels: &mut [C], under: impl FnOnce(&mut [C], Rectangle)) -> Result<Option<Rectangle>, RenderError> {
         self.part.next_band(&self.context, &self.colours, pixels, under)
+    }
+
+    /// Returns the pass that makes pixels of the display of a finished band, if the renderer draws other pixels than the display stores:
+    /// [`Light`](crate::pixel::Light) or [`LightGray`](crate::pixel::LightGray).
+    #[must_use]
+    pub fn output(&self) -> Output {
+        self.colours.output()
     }
 
     /// Returns the rectangle that the frame draws, in pixels of the picture. It is the whole picture, unless
@@ -168,5 +178,11 @@ impl<C: Pixel> FramePart<'_, '_, C> {
     /// Returns [`RenderError::Band`] if `pixels` is shorter than one row of the picture.
     pub fn next_band_over(&mut self, pixels: &mut [C], under: impl FnOnce(&mut [C], Rectangle)) -> Result<Option<Rectangle>, RenderError> {
         self.part.next_band(self.context, self.colours, pixels, under)
+    }
+
+    /// Returns the pass that makes pixels of the display of a finished band. See [`Frame::output`].
+    #[must_use]
+    pub fn output(&self) -> Output {
+        self.colours.output()
     }
 }

@@ -4,7 +4,7 @@ use crate::{
     arch::product::upper,
     format::{BIAS, CHANNEL, COSINE, LEVEL, RAMP},
     math::highlight_lut::ENTRY,
-    pixel::{Pixel, dither::ByRows, ramps::Ramps},
+    pixel::{Pixel, dither::ByRows, half_step, ramps::Ramps},
 };
 use core::marker::PhantomData;
 use zerocopy::{FromBytes, Immutable, IntoBytes, KnownLayout};
@@ -75,8 +75,8 @@ pub trait LitColours: ByRows {
 
 /// Makes the colour of a pixel of light: [`WithHighlight`] or [`DiffuseOnly`], or a pair of them for two lights.
 pub trait Shades<L>: LitColours {
-    /// The colour of light whose diffuse levels have `bits` fraction bits, with a [`crate::pixel::dither::threshold`].
-    fn colour(&self, bits: u32, light: L, threshold: u32) -> Self::Pixel;
+    /// The colour of light whose diffuse levels have `bits` fraction bits.
+    fn colour(&self, bits: u32, light: L) -> Self::Pixel;
 }
 
 /// The diffuse level of a node of this cosine (Q2.30), of a material with the level `full` (Q9.7) at cosine 1, in Q10 with `bits` fraction
@@ -124,15 +124,15 @@ impl<C: Pixel> LitColours for OneLightRamp<'_, C> {
 
 impl<C: Pixel> Shades<WithHighlight> for OneLightRamp<'_, C> {
     #[inline(always)]
-    fn colour(&self, bits: u32, WithHighlight(diffuse, highlight): WithHighlight, threshold: u32) -> C {
-        C::ramped(self.ramps.now, (diffuse.max(0) as u32).wrapping_add(highlight << (bits - LEVEL)), bits, threshold)
+    fn colour(&self, bits: u32, WithHighlight(diffuse, highlight): WithHighlight) -> C {
+        C::ramped(self.ramps.now, (diffuse.max(0) as u32).wrapping_add(highlight << (bits - LEVEL)), bits)
     }
 }
 
 impl<C: Pixel> Shades<DiffuseOnly> for OneLightRamp<'_, C> {
     #[inline(always)]
-    fn colour(&self, bits: u32, DiffuseOnly(diffuse): DiffuseOnly, threshold: u32) -> C {
-        self.colour(bits, WithHighlight(diffuse, self.floor), threshold)
+    fn colour(&self, bits: u32, DiffuseOnly(diffuse): DiffuseOnly) -> C {
+        self.colour(bits, WithHighlight(diffuse, self.floor))
     }
 }
 
@@ -193,12 +193,12 @@ impl Sum {
     /// Factors that are not filled yet; all zeros.
     pub(super) const EMPTY: Self = Self { ambient: 0, diffuse: 0, specular: 0 };
 
-    /// The factors for levels of ambient, diffuse and specular light, Q9.7, in a channel of `depth` bits. `all` is the diffuse light of all lights.
-    pub(super) fn new(ambient: i32, [diffuse, all]: [u16; 2], specular: u16, depth: u32) -> Self {
+    /// The factors for levels of ambient, diffuse and specular light, Q9.7, in a channel of `bits` bits. `all` is the diffuse light of all lights.
+    pub(super) fn new(ambient: i32, [diffuse, all]: [u16; 2], specular: u16, bits: u32) -> Self {
         Self {
             // Cosines are rounded down: half of their last place more. Of all lights, so that it does not matter which of them is first, nor
             // whether one is left out.
-            ambient: ((ambient + (1 << (LEVEL + 7 - depth))) << FACTOR) + (i32::from(all) >> 1),
+            ambient: (ambient << FACTOR).wrapping_add(half_step(bits)).wrapping_add(i32::from(all) >> 1),
             diffuse: diffuse.into(),
             specular: (i32::from(specular) + 1) >> 1,
         }
@@ -276,7 +276,7 @@ impl<C: Pixel> LitColours for OneLightRgb<'_, C> {
 
 impl<C: Pixel> Shades<WithHighlight> for OneLightRgb<'_, C> {
     #[inline(always)]
-    fn colour(&self, bits: u32, WithHighlight(diffuse, highlight): WithHighlight, _: u32) -> C {
+    fn colour(&self, bits: u32, WithHighlight(diffuse, highlight): WithHighlight) -> C {
         let ([r, g, b], cosine, highlight) = (self.0.now, cosine(bits, diffuse), highlight as i32);
         C::mixed([r.level_from_highlight(cosine, highlight), g.level(cosine, highlight), b.level(cosine, highlight)])
     }
@@ -302,7 +302,7 @@ impl<C: Pixel> LitColours for TwoLightsRgb<'_, C> {
 
 impl<C: Pixel, A: Into<WithHighlight>, B: Into<WithHighlight>> Shades<(A, B)> for TwoLightsRgb<'_, C> {
     #[inline(always)]
-    fn colour(&self, bits: u32, (one, two): (A, B), _: u32) -> C {
+    fn colour(&self, bits: u32, (one, two): (A, B)) -> C {
         let [[r, g, b], [r2, g2, b2]] = self.0.now;
         let (WithHighlight(c, h), WithHighlight(c2, h2)) = (one.into(), two.into());
         let (c, h, c2, h2) = (cosine(bits, c), h as i32, cosine(bits, c2), h2 as i32);

@@ -7,7 +7,7 @@ use crate::{
         reflectance::{LitMaterial, Reflectance},
     },
     math::vector::zip,
-    pixel::{Pixel, gamma::Gamma, ramps::Ramps, steps},
+    pixel::{Pixel, gamma::Gamma, half_step, ramps::Ramps, steps},
 };
 use core::marker::PhantomData;
 
@@ -29,17 +29,17 @@ impl<C: Pixel> Clone for MaterialTables<'_, C> {
 
 impl<C: Pixel> Copy for MaterialTables<'_, C> {}
 
-/// Adds half a step of a channel of `depth` bits to a level, Q9.7; the result is Q10.22.
+/// Adds half a step of a channel of `bits` bits to a level, Q9.7; the result is Q10.22.
 #[inline(always)]
-fn rounded(level: i32, depth: u32) -> i32 {
-    (level + (1 << (LEVEL + 7 - depth))) << (CHANNEL - LEVEL)
+fn rounded(level: i32, bits: u32) -> i32 {
+    (level << (CHANNEL - LEVEL)).wrapping_add(half_step(bits))
 }
 
 /// The colour of three levels, Q9.7, by a [`crate::pixel::dither::threshold`].
 #[inline(always)]
 fn mixed<C: Pixel>(levels: [i32; 3], threshold: u32) -> C {
-    // A step of a channel is 2^(8 - depth) levels, of which thresholds are 1/128.
-    C::mixed(zip(levels, C::DEPTH, |level, depth| (level + ((threshold as i32) << (LEVEL + 1 - depth))) << (CHANNEL - LEVEL)))
+    // Thresholds are 1/64 of half a step.
+    C::mixed(zip(levels, C::LEVELS, |level, bits| (level << (CHANNEL - LEVEL)) + threshold as i32 * (half_step(bits) >> 6)))
 }
 
 /// Fills the tables of colours of a material, with the curve of a display. In three channels they stay linear, because code that draws them with a
@@ -61,9 +61,9 @@ pub fn fill_ramps<C: Pixel>(ramps: &mut C::Ramps, reflectance: &Reflectance, dit
     }
     ramps.fill(dither, |i, threshold| {
         let level = (i as i32 - BIAS).clamp(0, 255) as u32;
-        let channels = zip(reflectance.base, C::DEPTH, |base, depth| {
+        let channels = zip(reflectance.base, C::LEVELS, |base, depth| {
             let scaled = level * u32::from(base);
-            gamma.map_or(scaled, |gamma| gamma.encoded(scaled, depth))
+            gamma.filter(|_| !C::IS_LIGHT).map_or(scaled, |gamma| gamma.encoded(scaled, depth))
         });
         C::tabled(channels, threshold)
     });
@@ -148,7 +148,7 @@ impl<'a, C: Pixel> MaterialTables<'a, C> {
     /// [`Self::colour`] in three channels.
     #[inline(always)]
     fn mixed_by_turns(&self, levels: [i32; 3]) -> [C::Stored; 2] {
-        let [r, g, b] = zip(levels, C::DEPTH, rounded);
+        let [r, g, b] = zip(levels, C::LEVELS, rounded);
         let [r_more, g_more, b_more] = steps(C::DEPTH, self.reflectance.quarter());
         let even = C::mixed([r - r_more, g - g_more, b - b_more]).stored();
         if C::Ramps::CHECKERED { [even, C::mixed([r + r_more, g + g_more, b + b_more]).stored()] } else { [even; 2] }
@@ -169,7 +169,7 @@ mod tests {
     use crate::{
         format::{COSINE, RAMP, UNIT},
         lighting::reflectance::Highlight,
-        pixel::Channels,
+        pixel::{Channels, PixelFormat},
         stream::record::{Light, Material},
     };
     use embedded_graphics_core::pixelcolor::{Rgb565, Rgb888};

@@ -3,5 +3,4 @@
 pub mod constant_lights;
 pub mod lights;
 pub mod material_tables;
-pub mod output;
 pub mod reflectance;

@@ -11,7 +11,7 @@ use crate::{
         highlight_lut::{Base, ENTRY, HighlightCurve, HighlightLut, square},
         vector::zip,
     },
-    pixel::{Channels, dither::quantise, gamma::Gamma, steps},
+    pixel::{Channels, gamma::Gamma, steps},
     stream::record::{Light, Material},
 };
 use core::ops::Deref;
@@ -506,10 +506,10 @@ impl Reflectance {
         largest(total)
     }
 
-    /// The channels of an intensity in the pixel format, by the curve of a display and a [`crate::pixel::dither::threshold`].
+    /// An intensity in unsigned Q8.8 that is scaled to the depths of the pixel format, by the curve of a display.
     #[inline]
     #[must_use]
-    pub fn dithered(&self, intensity: Intensity, threshold: u32, gamma: Option<&Gamma>) -> [u8; 3] {
+    pub fn scaled(&self, intensity: Intensity, gamma: Option<&Gamma>) -> [u32; 3] {
         let intensity = intensity.map(|level| level.min(255 << 8));
         let [level, ..] = intensity;
         let scaled = if self.three_channels() {
@@ -517,11 +517,7 @@ impl Reflectance {
         } else {
             self.base.map(|base| (level as u32 * u32::from(base)) >> 8)
         };
-        let scaled = match gamma {
-            Some(gamma) => zip(scaled, self.depth, |level, depth| gamma.encoded(level, depth)),
-            None => scaled,
-        };
-        quantise(scaled, self.depth, threshold)
+        gamma.map_or(scaled, |gamma| zip(scaled, self.depth, |level, depth| gamma.encoded(level, depth)))
     }
 }
 

@@ -6,12 +6,12 @@ pub(crate) mod vertices;
 use crate::{
     antialias::PixelSet,
     geometry::bin::{Key, Walk},
-    lighting::{material_tables::MaterialTables, output::Output},
+    lighting::material_tables::MaterialTables,
     method::{DrawTriangle, General, Loops, Shading, Style, TriangleSetup, tiles},
     pixel::{Pixel, gamma::Gamma},
     raster::{
         band::Band,
-        canvas::BandCanvas,
+        canvas::{BandCanvas, Colourist},
         triangle::{ScreenTriangle, turned},
     },
     setup::gradients::Gradients,
@@ -36,8 +36,8 @@ impl<C: Pixel> Drawing<'_, C> {
     }
 
     /// What makes pixels of intensities.
-    fn output(&self) -> Output<'_, C> {
-        Output::new(self.tables(), self.dither, self.gamma)
+    fn colourist(&self) -> Colourist<'_, C> {
+        Colourist { tables: self.tables(), dither: self.dither, gamma: self.gamma }
     }
 
     /// How the triangles of the mesh are drawn.
@@ -49,7 +49,7 @@ impl<C: Pixel> Drawing<'_, C> {
             three_channels: reflectance.three_channels(),
             lights: if lighting.is_constant() { reflectance.lights() } else { 0 },
             local_viewer: lighting.is_directional() && !lighting.is_constant() && reflectance.lights() == 1,
-            by_canvas: viewport.antialiased || !self.output().suits_loops(),
+            by_canvas: viewport.antialiased || self.colourist().corrects(),
             perspective: *perspective,
         }
     }
@@ -90,7 +90,7 @@ impl<C: Pixel> Drawing<'_, C> {
     #[inline(never)]
     fn shade_generally(&self, setup: &TriangleSetup<'_>, band: &mut Band<'_, C>) -> u32 {
         let MeshPass { method, shading, .. } = &self.pass;
-        tiles::shade(setup, &mut BandCanvas { band, output: &self.output() }, |setup, canvas| method.shade(setup, shading, canvas))
+        tiles::shade(setup, &mut BandCanvas { band, colourist: &self.colourist() }, |setup, canvas| method.shade(setup, shading, canvas))
     }
 
     /// Draws a word-sized triangle, see [`is_word_sized`](crate::geometry::viewport::Viewport::is_word_sized). `key` identifies it among active

@@ -77,8 +77,8 @@ impl<V, T: Shades<L>, K: AtPixel<V>, L: FromValues<K::Common, K::Values>> PixelS
     const ID: u8 = L::ID;
 
     #[inline(always)]
-    fn shade(&self, value: V, threshold: u32) -> T::Pixel {
+    fn shade(&self, value: V) -> T::Pixel {
         let (common, values) = self.at.at(value);
-        self.colours.colour(K::BITS, L::from_values(&common, self.colours.diffuse(), values), threshold)
+        self.colours.colour(K::BITS, L::from_values(&common, self.colours.diffuse(), values))
     }
 }

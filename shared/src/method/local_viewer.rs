@@ -233,10 +233,10 @@ impl<C: Pixel> LitColours for Either<'_, C> {
 
 impl<C: Pixel> Shades<WithHighlight> for Either<'_, C> {
     #[inline(always)]
-    fn colour(&self, bits: u32, light: WithHighlight, threshold: u32) -> C {
+    fn colour(&self, bits: u32, light: WithHighlight) -> C {
         match self {
-            Self::Ramp(colours) => colours.colour(bits, light, threshold),
-            Self::Rgb(colours) => colours.colour(bits, light, threshold),
+            Self::Ramp(colours) => colours.colour(bits, light),
+            Self::Rgb(colours) => colours.colour(bits, light),
         }
     }
 }

@@ -47,7 +47,7 @@ use crate::{
     geometry::viewport::first_centre,
     interpolate::{Checkerboard, Raised, by_row::ByRow, perspective::PerspectivePatch},
     lighting::material_tables::MaterialTables,
-    pixel::{Pixel, ramps::Ramps, steps},
+    pixel::{Pixel, half_step, ramps::Ramps, steps},
     raster::{
         active::ActiveTriangle,
         band::Band,
@@ -129,7 +129,7 @@ pub(crate) struct Style {
     pub(crate) lights: u8,
     /// Whether there is one directional light under a local viewer, whose levels fit these formats.
     pub(crate) local_viewer: bool,
-    /// Whether only a canvas can make the colours: by 8x8 dither of colours, antialiasing, or the curve of a display on three channels.
+    /// Whether only a canvas can make the colours: by antialiasing, or by the curve of a display on three channels that are not light.
     pub(crate) by_canvas: bool,
     /// Whether light is interpolated in perspective.
     pub(crate) perspective: bool,
@@ -559,8 +559,8 @@ impl Shading<'_> {
         Nodes<N, 3, RANGE>: Field<Patch: Raised>,
     {
         let half_steps = const {
-            let [r, g, b] = C::DEPTH;
-            [1 << (CHANNEL + 7 - r), 1 << (CHANNEL + 7 - g), 1 << (CHANNEL + 7 - b)]
+            let [r, g, b] = C::LEVELS;
+            [half_step(r), half_step(g), half_step(b)]
         };
         let patch = || {
             let higher = || self.reflectance.higher_below(setup.gradients.row());

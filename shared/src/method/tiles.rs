@@ -63,8 +63,8 @@ impl Canvas for Tile<'_> {
         self.canvas.add(column, row, layer);
     }
 
-    fn channels(&self, intensity: Intensity, column: i32, row: i32) -> [u8; 3] {
-        self.canvas.channels(intensity, column, row)
+    fn to_mix(&self, intensity: Intensity, row: i32) -> [u8; 3] {
+        self.canvas.to_mix(intensity, row)
     }
 }
 

@@ -22,43 +22,8 @@ const BAYER: [[u8; 8]; 8] = {
 /// The threshold at a pixel, 1/128 of an output step.
 #[inline(always)]
 #[must_use]
-pub fn threshold(x: usize, y: usize) -> u32 {
-    BAYER[y & 7][x & 7].into()
-}
-
-/// Rows of thresholds twice side by side, so that eight follow one another from each column on.
-static ROWS: [[u8; 16]; 8] = {
-    let mut rows = [[0; 16]; 8];
-    let mut place = 0;
-    while place < 128 {
-        rows[place / 16][place % 16] = BAYER[place / 16][place % 8];
-        place += 1;
-    }
-    rows
-};
-
-/// The thresholds of `row` from `column` on; after eight they begin anew.
-#[inline(always)]
-#[must_use]
-pub(crate) fn row(row: u32, column: usize) -> &'static [u8; 8] {
-    ROWS[row as usize & 7].get(column & 7..).and_then(<[u8]>::first_chunk).unwrap_or(&ROUNDED)
-}
-
-/// The threshold that rounds, in all columns.
-pub(crate) const ROUNDED: [u8; 8] = [HALF as u8; 8];
-
-/// A channel in unsigned Q8.8 that is scaled to `depth` bits, as eight bits: those of the pixel, and fraction bits below them.
-#[must_use]
-pub(crate) fn finer(channel: u32) -> u8 {
-    ((channel + 128) >> 8).min(255) as u8
-}
-
-/// The `depth` bits of the pixel that a [`finer`] channel has with a [`threshold`].
-#[inline(always)]
-#[must_use]
-pub(crate) fn coarser(finer: u8, depth: u32, threshold: u32) -> u32 {
-    // A step of the pixel is 2^(8 - depth), thresholds have seven bits.
-    (u32::from(finer) + (threshold >> (depth - 1))) >> (8 - depth)
+pub const fn threshold(x: usize, y: usize) -> u32 {
+    BAYER[y & 7][x & 7] as u32
 }
 
 /// The threshold that rounds.

@@ -6,21 +6,25 @@
 
 use core::fmt;
 
-/// The curve of a display, for [`Renderer::set_gamma`](crate::Renderer::set_gamma). For each linear light level from 0 to 255 it holds the
-/// value to send to the display, in units of 1/256 of a level: 0 to 65,280. Make your own for a display that [`SRGB`] does not suit.
+/// The curve of a display, for [`Renderer::set_gamma`](crate::Renderer::set_gamma). Make your own with [`Self::new`] for a display that
+/// [`SRGB`] does not suit.
 #[derive(Clone, PartialEq, Eq)]
-pub struct Gamma(
-    /// The 256 values to send to the display, in units of 1/256 of a level, from 0 to 65,280.
-    pub [u16; LEVELS],
-);
+pub struct Gamma {
+    /// The value to send for each level.
+    levels: [u16; LEVELS],
+    /// The value to send for each level of light, unsigned Q0.16.
+    pub(super) light: [u16; LIGHT],
+}
 
 /// Levels of a curve.
 const LEVELS: usize = 256;
+/// Levels of light.
+const LIGHT: usize = 1024;
 
 /// The curve of sRGB displays (IEC 61966-2-1), about a power of 1/2.2. Values between entries are interpolated linearly, and are within
 /// 0.47/255 of the exact curve.
 #[rustfmt::skip]
-pub static SRGB: Gamma = Gamma([
+pub static SRGB: Gamma = Gamma::new([
     0, 3254, 5545, 7227, 8604, 9792, 10849, 11806, 12687, 13506, 14273, 14997, 15683, 16337, 16962, 17561, 18138, 18694, 19231, 19751,
     20255, 20745, 21221, 21685, 22137, 22578, 23009, 23431, 23844, 24248, 24644, 25032, 25413, 25788, 26155, 26517, 26872, 27222, 27566,
     27905, 28239, 28568, 28893, 29213, 29529, 29840, 30148, 30452, 30752, 31048, 31341, 31630, 31916, 32199, 32479, 32756, 33030, 33301,
@@ -38,6 +42,24 @@ pub static SRGB: Gamma = Gamma([
 ]);
 
 impl Gamma {
+    /// Creates a curve: for each linear light level from 0 to 255, the value to send to the display, in units of 1/256 of a level: 0 to
+    /// 65,280. Values between them are interpolated linearly.
+    #[must_use]
+    pub const fn new(levels: [u16; 256]) -> Self {
+        let mut light = [0; LIGHT];
+        let mut index = 0;
+        while index < LIGHT {
+            // Black light is half a level: see `pixel/light.rs`.
+            let (at, last) = (if index < 2 { 0 } else { (index - 2) * (LEVELS - 1) }, LIGHT - 3);
+            let (level, part) = (at / last, at % last);
+            let above = levels[if level + 1 < LEVELS { level + 1 } else { level }] as usize;
+            let value = (levels[level] as usize * (last - part) + above * part + last / 2) / last;
+            light[index] = (value + (value >> 8)) as u16;
+            index += 1;
+        }
+        Self { levels, light }
+    }
+
     /// What to send for `level`, which is a channel in unsigned Q8.8 that is scaled to `depth` bits, and so is the result: both at most
     /// `2^16 - 2^(16 - depth)`, full intensity.
     #[inline(never)]
@@ -47,7 +69,7 @@ impl Gamma {
         // Both products are below 2^32.
         let level = (level.min(full) * FULL + full / 2).checked_div(full).unwrap_or(0);
         let (index, part) = (level >> 8, level & 0xFF);
-        let at = |index: u32| u32::from(self.0[index as usize % LEVELS]);
+        let at = |index: u32| u32::from(self.levels[index as usize % LEVELS]);
         let (below, above) = (at(index), at((index + 1).min(LEVELS as u32 - 1)));
         let value = (below * (256 - part) + above * part + 128) >> 8;
         (value.min(FULL) * full + FULL / 2) / FULL
@@ -75,7 +97,7 @@ mod tests {
 
     #[test]
     fn the_table_of_srgb_is_exact_to_rounding() {
-        for (level, &value) in SRGB.0.iter().enumerate() {
+        for (level, &value) in SRGB.levels.iter().enumerate() {
             assert_eq!(value, (srgb(level as f64) * 256.0).round() as u16, "{level}");
         }
     }

@@ -5,11 +5,14 @@ pub(crate) mod colour;
 pub mod dither;
 #[doc(hidden)]
 pub mod gamma;
+mod light;
 #[doc(hidden)]
 pub mod ramps;
 
 #[doc(inline)]
 pub use gamma::{Gamma, SRGB};
+#[doc(inline)]
+pub use light::{FromDrawn, Light, LightGray, Output, Pixels};
 #[doc(inline)]
 pub use ramps::{InTurn, Rounded};
 
@@ -28,37 +31,47 @@ use embedded_graphics_core::{
 };
 use zerocopy::{FromBytes, Immutable, IntoBytes, KnownLayout};
 
-/// A pixel format that the renderer can draw. It is implemented for the colours of embedded-graphics (for example `Rgb565`, `Gray8`,
-/// `BinaryColor`) and for [`Rgb565Be`] and [`Rgb332`]. Implement it for a colour type of your own to support another format.
-pub trait Pixel: Copy + 'static {
-    /// The type of a pixel in the tables that map light levels to colours: often the raw integer of the pixel, such as `u16` for RGB565.
-    type Stored: FromBytes + IntoBytes + Immutable + KnownLayout + Copy + core::fmt::Debug;
-    /// The tables that map light levels to colours. Choose [`InTurn`] if channels have five to seven bits: they are dithered by two tables that
-    /// alternate. Choose [`Rounded`] otherwise: eight bits need no dither, and with fewer than five bits a threshold is added to each level before
-    /// the look-up.
-    type Ramps: Ramps<Self::Stored>;
-
+/// A format in which a display stores pixels. It is implemented for the colours of embedded-graphics (for example `Rgb565`, `Gray4`,
+/// `BinaryColor`) and for [`Rgb565Be`] and [`Rgb332`].
+pub trait PixelFormat: Copy + 'static {
     /// Whether the format has one channel (grey) instead of three.
     const GRAY: bool;
     /// The number of bits of red, green and blue, each 1 to 8. A grey format gives its number of bits three times.
     const DEPTH: [u32; 3];
+    /// The number of bytes of a pixel that [`PictureCrc`] adds to the checksum of a picture: 1 to 4.
+    const BYTES: usize;
+
+    /// Creates a pixel from red, green and blue, each of as many bits as [`Self::DEPTH`] says. A grey format uses the first number.
+    fn pack(channels: [u32; 3]) -> Self;
+
+    /// Returns red, green and blue, each of as many bits as [`Self::DEPTH`] says. A grey format returns its value three times.
+    fn channels(self) -> [u8; 3];
+
+    /// Returns the value of the pixel as an integer, independent of the order of its bytes in memory. [`PictureCrc`] uses it.
+    fn bits(self) -> u32;
+}
+
+/// A pixel that the renderer draws: a pixel of the display, such as `Rgb565` or `Gray8`, or [`Light`], from which a pass over the finished
+/// band makes pixels of the display. Implement it for a colour type of your own to draw another format directly.
+pub trait Pixel: PixelFormat {
+    /// The type of a pixel in the tables that map light levels to colours: often the raw integer of the pixel, such as `u16` for RGB565.
+    type Stored: FromBytes + IntoBytes + Immutable + KnownLayout + Copy + core::fmt::Debug;
+    /// The tables that map light levels to colours. Choose [`InTurn`] if channels have five to seven bits: they are dithered by two tables that
+    /// alternate. Choose [`Rounded`] otherwise.
+    type Ramps: Ramps<Self::Stored>;
+
     /// Whether channels have so few bits that the light of several channels may be rounded to a level of 1/255 first.
     #[doc(hidden)]
     const COARSE: bool = {
         let [r, g, b] = Self::DEPTH;
         r < 8 && g < 8 && b < 8
     };
-    /// Whether dither is on by default; [`Renderer::set_dither`](crate::Renderer::set_dither) changes it. It is on if blue or grey has
-    /// fewer than eight bits.
-    const DITHERED: bool = Self::DEPTH[2] < 8;
-    /// Whether tables of colours have finer steps than pixels, so that dither is applied after the look-up.
+    /// The number of bits of each channel to which levels of light are scaled and rounded.
     #[doc(hidden)]
-    const DITHERED_BY_TABLE: bool = Self::GRAY && Self::DITHERED && !Self::Ramps::CHECKERED;
-    /// The number of bytes of a pixel that [`PictureCrc`] adds to the checksum of a picture: 1 to 4.
-    const BYTES: usize;
-
-    /// Creates a pixel from red, green and blue, each of as many bits as [`Self::DEPTH`] says. A grey format uses the first number.
-    fn pack(channels: [u32; 3]) -> Self;
+    const LEVELS: [u32; 3] = Self::DEPTH;
+    /// Whether a pass makes pixels of the display of this pixel, with dither and the curve of the display. All colours are linear until then.
+    #[doc(hidden)]
+    const IS_LIGHT: bool = false;
 
     /// Converts the pixel to [`Self::Stored`], the form in which the tables of a material keep the colour for each light level ([`Self::Ramps`]).
     fn stored(self) -> Self::Stored;
@@ -66,18 +79,11 @@ pub trait Pixel: Copy + 'static {
     /// Converts a colour from the tables of a material, [`Self::Stored`], back to a pixel.
     fn from_stored(stored: Self::Stored) -> Self;
 
-    /// The entry of a table of colours for channels in unsigned Q8.8 that are scaled to [`Self::DEPTH`]. This is the pixel by a
-    /// [`dither::threshold`], or a finer value in formats that are [`Self::DITHERED_BY_TABLE`].
+    /// The entry of a table of colours: the pixel of channels in unsigned Q8.8 that are scaled to [`PixelFormat::DEPTH`], by a
+    /// [`dither::threshold`].
     #[doc(hidden)]
     fn tabled(channels: [u32; 3], threshold: u32) -> Self::Stored {
         Self::pack(quantise(channels, Self::DEPTH, threshold).map(u32::from)).stored()
-    }
-
-    /// The pixel of a table's entry. The [`dither::threshold`] is used in formats that are [`Self::DITHERED_BY_TABLE`].
-    #[doc(hidden)]
-    #[inline(always)]
-    fn shown(stored: Self::Stored, _threshold: u32) -> Self {
-        Self::from_stored(stored)
     }
 
     /// The pixel twice. A format of two bytes takes both from one word, so that some processors can store them at once.
@@ -87,11 +93,23 @@ pub trait Pixel: Copy + 'static {
         [self; 2]
     }
 
-    /// Returns red, green and blue, each of as many bits as [`Self::DEPTH`] says. A grey format returns its value three times.
-    fn channels(self) -> [u8; 3];
+    /// The channels of the pixel as antialiasing mixes them, at most eight bits each.
+    #[doc(hidden)]
+    fn to_mix(self) -> [u8; 3] {
+        self.channels()
+    }
 
-    /// Returns the value of the pixel as an integer, independent of the order of its bytes in memory. [`PictureCrc`] uses it.
-    fn bits(self) -> u32;
+    /// The channels, for [`Self::mixed_from`], of a colour in unsigned Q8.8 that is scaled to [`PixelFormat::DEPTH`].
+    #[doc(hidden)]
+    fn quantised_to_mix(channels: [u32; 3], threshold: u32) -> [u8; 3] {
+        quantise(channels, Self::DEPTH, threshold)
+    }
+
+    /// The pixel of channels that antialiasing has mixed, see [`Self::to_mix`].
+    #[doc(hidden)]
+    fn mixed_from(channels: [u8; 3]) -> Self {
+        Self::pack(channels.map(u32::from))
+    }
 
     /// Looks up a level in a table of colours. Levels have a bias and `bits` fraction bits, and include half a step for rounding.
     #[doc(hidden)]
@@ -112,11 +130,11 @@ pub trait Pixel: Copy + 'static {
         }
     }
 
-    /// The colour of a level, see [`Self::entry`], by a [`dither::threshold`].
+    /// The colour of a level, see [`Self::entry`].
     #[doc(hidden)]
     #[inline(always)]
-    fn ramped(ramp: &[Self::Stored; RAMP], level: u32, bits: u32, threshold: u32) -> Self {
-        Self::shown(Self::entry(ramp, level, bits), threshold)
+    fn ramped(ramp: &[Self::Stored; RAMP], level: u32, bits: u32) -> Self {
+        Self::from_stored(Self::entry(ramp, level, bits))
     }
 
     /// The colour of three intensities, by a [`dither::threshold`].
@@ -146,13 +164,19 @@ pub trait Pixel: Copy + 'static {
     }
 }
 
+/// Half a step of a channel of `bits` bits, as a level with [`CHANNEL`] fraction bits.
+#[inline(always)]
+pub(crate) const fn half_step(bits: u32) -> i32 {
+    1 << (CHANNEL + 7 - bits)
+}
+
 /// Properties of a pixel format, for code that is compiled once for all formats.
 #[doc(hidden)]
 #[derive(Clone, Copy, Debug)]
 pub struct Channels {
-    /// [`Pixel::DEPTH`].
+    /// [`Pixel::LEVELS`].
     pub depth: [u32; 3],
-    /// [`Pixel::GRAY`].
+    /// [`PixelFormat::GRAY`].
     pub is_gray: bool,
     /// [`Pixel::COARSE`].
     pub is_coarse: bool,
@@ -164,7 +188,7 @@ impl Channels {
     /// The properties of the pixel format `C`.
     #[must_use]
     pub const fn of<C: Pixel>() -> Self {
-        Self { depth: C::DEPTH, is_gray: C::GRAY, is_coarse: C::COARSE, is_checkered: C::Ramps::CHECKERED }
+        Self { depth: C::LEVELS, is_gray: C::GRAY, is_coarse: C::COARSE, is_checkered: C::Ramps::CHECKERED }
     }
 }
 
@@ -190,10 +214,7 @@ fn halves(half: u16) -> [u16; 2] {
 /// Channels of 5, 6 and 5 bits in a word; the numbers are those of the high and of the low one.
 macro_rules! rgb565 {
     ($format:ty, $high:literal, $low:literal) => {
-        impl Pixel for $format {
-            type Stored = u16;
-            type Ramps = InTurn<u16>;
-
+        impl PixelFormat for $format {
             const GRAY: bool = false;
             const DEPTH: [u32; 3] = [5, 6, 5];
             const BYTES: usize = 2;
@@ -202,6 +223,19 @@ macro_rules! rgb565 {
             fn pack(channels: [u32; 3]) -> Self {
                 RawU16::new(rgb565([channels[$high], channels[1], channels[$low]])).into()
             }
+
+            fn channels(self) -> [u8; 3] {
+                [self.r(), self.g(), self.b()]
+            }
+
+            fn bits(self) -> u32 {
+                self.stored().into()
+            }
+        }
+
+        impl Pixel for $format {
+            type Stored = u16;
+            type Ramps = InTurn<u16>;
 
             #[inline(always)]
             fn stored(self) -> u16 {
@@ -218,14 +252,6 @@ macro_rules! rgb565 {
                 let [even, odd] = halves(self.stored());
                 [Self::from_stored(even), Self::from_stored(odd)]
             }
-
-            fn channels(self) -> [u8; 3] {
-                [self.r(), self.g(), self.b()]
-            }
-
-            fn bits(self) -> u32 {
-                self.stored().into()
-            }
         }
     };
 }
@@ -236,10 +262,7 @@ rgb565!(Bgr565, 2, 0);
 /// Red, green and blue of equal depth.
 macro_rules! rgb {
     ($format:ty, $depth:literal, $ramps:ident) => {
-        impl Pixel for $format {
-            type Stored = u32;
-            type Ramps = $ramps<u32>;
-
+        impl PixelFormat for $format {
             const GRAY: bool = false;
             const DEPTH: [u32; 3] = [$depth; 3];
             const BYTES: usize = 3;
@@ -249,6 +272,19 @@ macro_rules! rgb {
                 RawU24::new(r << (2 * $depth) | g << $depth | b).into()
             }
 
+            fn channels(self) -> [u8; 3] {
+                [self.r(), self.g(), self.b()]
+            }
+
+            fn bits(self) -> u32 {
+                self.stored()
+            }
+        }
+
+        impl Pixel for $format {
+            type Stored = u32;
+            type Ramps = $ramps<u32>;
+
             #[inline(always)]
             fn stored(self) -> u32 {
                 RawU24::from(self).into_inner()
@@ -257,14 +293,6 @@ macro_rules! rgb {
             #[inline(always)]
             fn from_stored(stored: u32) -> Self {
                 RawU24::new(stored).into()
-            }
-
-            fn channels(self) -> [u8; 3] {
-                [self.r(), self.g(), self.b()]
-            }
-
-            fn bits(self) -> u32 {
-                self.stored()
             }
         }
     };
@@ -276,48 +304,22 @@ rgb!(Rgb888, 8, Rounded);
 /// One channel.
 macro_rules! gray {
     ($format:ty, $raw:ty, $depth:literal) => {
-        impl Pixel for $format {
-            type Stored = u8;
-            type Ramps = Rounded<u8>;
-
+        impl PixelFormat for $format {
             const GRAY: bool = true;
             const DEPTH: [u32; 3] = [$depth; 3];
             const BYTES: usize = 1;
-
-            fn tabled([luma, ..]: [u32; 3], threshold: u32) -> u8 {
-                if Self::DITHERED_BY_TABLE { dither::finer(luma) } else { quantise([luma; 3], Self::DEPTH, threshold)[0] }
-            }
-
-            #[inline(always)]
-            fn shown(stored: u8, threshold: u32) -> Self {
-                if Self::DITHERED_BY_TABLE {
-                    Self::pack([dither::coarser(stored, $depth, threshold); 3])
-                } else {
-                    Self::from_stored(stored)
-                }
-            }
 
             #[inline(always)]
             fn pack([luma, ..]: [u32; 3]) -> Self {
                 <$raw>::new(luma as u8).into()
             }
 
-            #[inline(always)]
-            fn stored(self) -> u8 {
-                <$raw>::from(self).into_inner()
-            }
-
-            #[inline(always)]
-            fn from_stored(stored: u8) -> Self {
-                <$raw>::new(stored).into()
-            }
-
             fn channels(self) -> [u8; 3] {
-                [self.stored(); 3]
+                [<$raw>::from(self).into_inner(); 3]
             }
 
             fn bits(self) -> u32 {
-                self.stored().into()
+                <$raw>::from(self).into_inner().into()
             }
         }
     };
@@ -327,6 +329,21 @@ gray!(Gray8, RawU8, 8);
 gray!(Gray4, RawU4, 4);
 gray!(Gray2, RawU2, 2);
 gray!(BinaryColor, RawU1, 1);
+
+impl Pixel for Gray8 {
+    type Stored = u8;
+    type Ramps = Rounded<u8>;
+
+    #[inline(always)]
+    fn stored(self) -> u8 {
+        RawU8::from(self).into_inner()
+    }
+
+    #[inline(always)]
+    fn from_stored(stored: u8) -> Self {
+        RawU8::new(stored).into()
+    }
+}
 
 /// A pixel in the format RGB565 with the high byte first in memory, as displays on a serial bus expect it. The bytes of a band can be sent
 /// without conversion.
@@ -361,10 +378,7 @@ impl From<Rgb565> for Rgb565Be {
     }
 }
 
-impl Pixel for Rgb565Be {
-    type Stored = Self;
-    type Ramps = InTurn<Self>;
-
+impl PixelFormat for Rgb565Be {
     const GRAY: bool = false;
     const DEPTH: [u32; 3] = [5, 6, 5];
     const BYTES: usize = 2;
@@ -373,6 +387,20 @@ impl Pixel for Rgb565Be {
     fn pack(channels: [u32; 3]) -> Self {
         Self(rgb565(channels).to_be())
     }
+
+    fn channels(self) -> [u8; 3] {
+        let bits = u16::from_be(self.0);
+        [(bits >> 11) as u8, (bits >> 5 & 0x3F) as u8, (bits & 0x1F) as u8]
+    }
+
+    fn bits(self) -> u32 {
+        u16::from_be(self.0).into()
+    }
+}
+
+impl Pixel for Rgb565Be {
+    type Stored = Self;
+    type Ramps = InTurn<Self>;
 
     #[inline(always)]
     fn stored(self) -> Self {
@@ -388,15 +416,6 @@ impl Pixel for Rgb565Be {
     fn pair(self) -> [Self; 2] {
         let [even, odd] = halves(self.0);
         [Self(even), Self(odd)]
-    }
-
-    fn channels(self) -> [u8; 3] {
-        let bits = u16::from_be(self.0);
-        [(bits >> 11) as u8, (bits >> 5 & 0x3F) as u8, (bits & 0x1F) as u8]
-    }
-
-    fn bits(self) -> u32 {
-        u16::from_be(self.0).into()
     }
 }
 
@@ -426,10 +445,7 @@ impl From<Rgb332> for RawU8 {
     }
 }
 
-impl Pixel for Rgb332 {
-    type Stored = u8;
-    type Ramps = Rounded<u8>;
-
+impl PixelFormat for Rgb332 {
     const GRAY: bool = false;
     const DEPTH: [u32; 3] = [3, 3, 2];
     const BYTES: usize = 1;
@@ -437,16 +453,6 @@ impl Pixel for Rgb332 {
     #[inline(always)]
     fn pack([r, g, b]: [u32; 3]) -> Self {
         Self((r << 5 | g << 2 | b) as u8)
-    }
-
-    #[inline(always)]
-    fn stored(self) -> u8 {
-        self.0
-    }
-
-    #[inline(always)]
-    fn from_stored(stored: u8) -> Self {
-        Self(stored)
     }
 
     fn channels(self) -> [u8; 3] {
@@ -484,7 +490,7 @@ impl PictureCrc {
     }
 
     /// Adds the next pixels of the picture, of format `C`.
-    pub fn update<C: Pixel>(&mut self, pixels: &[C]) {
+    pub fn update<C: PixelFormat>(&mut self, pixels: &[C]) {
         for pixel in pixels {
             let bytes = pixel.bits().to_le_bytes();
             self.digest.update(&bytes[..C::BYTES]);

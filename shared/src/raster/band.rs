@@ -42,7 +42,7 @@ impl<C: Pixel> Band<'_, C> {
     pub fn resolve(&mut self) {
         if let Some(blend) = &self.blend {
             for (pixel, sample) in self.pixels.iter_mut().zip(blend.samples.iter()) {
-                *pixel = C::pack(sample.resolve(pixel.channels()).map(u32::from));
+                *pixel = C::mixed_from(sample.resolve(pixel.to_mix()));
             }
         }
     }

@@ -2,17 +2,21 @@
 //!
 //! A [`SpanShader`] shades a row of pixels as [`Intensity`] and knows no pixel formats. A [`Canvas`] tests depth, converts intensities to colours,
 //! stores them, and knows no methods. So each method and each pixel format is compiled once, and not each pair of them. The general loop draws all
-//! that a method has no loop for (see [`crate::method`]): many lights, near lights, antialiasing, interpolation in perspective, and 8x8 dither of
-//! colours.
+//! that a method has no loop for (see [`crate::method`]): many lights, near lights, antialiasing, and interpolation in perspective.
 //!
 //! Cost: several times as much as a method's own loop if the method takes few instructions a pixel, and little more if it takes a hundred.
 
 use crate::{
     coverage::sample::Layer,
-    format::Intensity,
+    format::{BIAS, INTENSITY, Intensity, RAMP},
     interpolate::{Patch, Walker, plane::Linear},
-    lighting::output::Output,
-    pixel::{Pixel, dither::HALF, ramps::Ramps},
+    lighting::material_tables::MaterialTables,
+    pixel::{
+        Pixel,
+        dither::{HALF, SQUARES},
+        gamma::Gamma,
+        ramps::Ramps,
+    },
     raster::{
         band::{Band, Blend},
         counts::Counts,
@@ -129,17 +133,59 @@ pub trait Canvas {
     #[doc(hidden)]
     fn add(&mut self, column: i32, row: i32, layer: Layer);
 
-    /// Converts an intensity to the channels of the pixel format, at this pixel.
+    /// Converts an intensity in this row to channels that antialiasing mixes.
     #[doc(hidden)]
-    fn channels(&self, intensity: Intensity, column: i32, row: i32) -> [u8; 3];
+    fn to_mix(&self, intensity: Intensity, row: i32) -> [u8; 3];
+}
+
+/// Converts the intensities of one material to pixels.
+pub struct Colourist<'c, C: Pixel> {
+    /// The colours of the material.
+    pub tables: MaterialTables<'c, C>,
+    /// Whether rows are dithered by turns, in formats with a checkerboard. A turn at each pixel would take longer.
+    pub dither: bool,
+    /// The curve of the display, by which tables in one channel are corrected already.
+    pub gamma: Option<&'c Gamma>,
+}
+
+impl<C: Pixel> Colourist<'_, C> {
+    /// Whether colours are corrected by the curve of the display at each pixel, because no table and no pass does it.
+    #[must_use]
+    pub fn corrects(&self) -> bool {
+        self.gamma.is_some() && self.tables.reflectance.three_channels() && !C::IS_LIGHT
+    }
+
+    /// What is added to a colour of `row` before it is rounded down.
+    fn threshold(&self, row: usize) -> u32 {
+        if self.dither && C::Ramps::CHECKERED { SQUARES[row % 2] } else { HALF }
+    }
+
+    /// The channels of an intensity as antialiasing mixes them, see [`Pixel::to_mix`].
+    fn to_mix(&self, intensity: Intensity, row: usize) -> [u8; 3] {
+        if self.corrects() || C::IS_LIGHT {
+            return C::quantised_to_mix(self.tables.reflectance.scaled(intensity, self.gamma), self.threshold(row));
+        }
+        let colour = if self.tables.reflectance.three_channels() {
+            C::quantised(intensity, self.threshold(row))
+        } else {
+            Self::by_table(self.tables.ramps.squares()[row % 2], intensity)
+        };
+        colour.to_mix()
+    }
+
+    /// The colour of a material in one channel for an intensity, by a table of colours.
+    #[inline(always)]
+    fn by_table(ramp: &[C::Stored; RAMP], [level, ..]: Intensity) -> C {
+        C::ramped(ramp, (level + (BIAS << INTENSITY) + (1 << (INTENSITY - 1))) as u32, INTENSITY)
+    }
 }
 
 /// A band in a pixel format.
 pub struct BandCanvas<'c, 'b, C: Pixel> {
     /// The band that is drawn into.
     pub band: &'c mut Band<'b, C>,
-    /// The colours of the material.
-    pub output: &'c Output<'c, C>,
+    /// What makes its pixels.
+    pub colourist: &'c Colourist<'c, C>,
 }
 
 impl<C: Pixel> Canvas for BandCanvas<'_, '_, C> {
@@ -156,8 +202,7 @@ impl<C: Pixel> Canvas for BandCanvas<'_, '_, C> {
         let stop = self.band.start(row).wrapping_add(end as usize);
         let start = stop.wrapping_sub(count);
         if let (Some(pixels), Some(depth)) = (self.band.pixels.get_mut(start..stop), self.band.depth.get_mut(start..stop)) {
-            let column = (end as usize).wrapping_sub(count);
-            let mut target = Row { pixels, depth, inv_depth, output: self.output, column, row: row as usize };
+            let mut target = Row { pixels, depth, inv_depth, colourist: self.colourist, row: row as usize };
             shader.span(0, end, count, &mut target);
         }
     }
@@ -172,8 +217,8 @@ impl<C: Pixel> Canvas for BandCanvas<'_, '_, C> {
         }
     }
 
-    fn channels(&self, intensity: Intensity, column: i32, row: i32) -> [u8; 3] {
-        self.output.channels(intensity, column as usize, row as usize)
+    fn to_mix(&self, intensity: Intensity, row: i32) -> [u8; 3] {
+        self.colourist.to_mix(intensity, row as usize)
     }
 }
 
@@ -183,9 +228,7 @@ struct Row<'r, C: Pixel> {
     depth: &'r mut [u16],
     /// The depth, which stands on the column right of the pixels that are still to be tested.
     inv_depth: Linear<1>,
-    output: &'r Output<'r, C>,
-    /// Column of the first pixel.
-    column: usize,
+    colourist: &'r Colourist<'r, C>,
     row: usize,
 }
 
@@ -207,29 +250,28 @@ impl<C: Pixel> SpanTarget for Row<'_, C> {
     }
 
     fn put(&mut self, first: usize, visible: u32, intensities: &[Intensity; CHUNK]) {
-        let (output, column, row) = (self.output, self.column.wrapping_add(first), self.row);
-        let pixels = self.pixels.get_mut(first..).unwrap_or_default();
-        let threshold = |k| output.threshold(column.wrapping_add(k), row);
-        // One loop for each way to make a colour: no pixel asks for it. The table of colours has the curve in it already.
-        if output.by_threshold() {
-            let colour = |k, intensity| C::pack(output.quantised(intensity, threshold(k)).map(u32::from));
-            put_each(pixels, visible, intensities, colour);
-        } else if output.tables.reflectance.three_channels() {
-            let threshold = if C::Ramps::CHECKERED { threshold(0) } else { HALF };
-            put_each(pixels, visible, intensities, |_, intensity| C::quantised(intensity, threshold));
+        let (colourist, reflectance) = (self.colourist, &self.colourist.tables.reflectance);
+        let (pixels, threshold) = (self.pixels.get_mut(first..).unwrap_or_default(), colourist.threshold(self.row));
+        // One loop for each way to make a colour, so that no pixel has to ask.
+        if colourist.corrects() {
+            put_each(pixels, visible, intensities, |intensity| {
+                C::mixed_from(C::quantised_to_mix(reflectance.scaled(intensity, colourist.gamma), threshold))
+            });
+        } else if reflectance.three_channels() {
+            put_each(pixels, visible, intensities, |intensity| C::quantised(intensity, threshold));
         } else {
-            let ramp = output.ramp(row);
-            put_each(pixels, visible, intensities, |k, intensity| Output::by_table(ramp, intensity, threshold(k)));
+            let ramp = colourist.tables.ramps.squares()[self.row % 2];
+            put_each(pixels, visible, intensities, |intensity| Colourist::by_table(ramp, intensity));
         }
     }
 }
 
 /// Stores the colours of the intensities that are `visible`, counted from the first of `pixels`.
 #[inline(always)]
-fn put_each<C>(pixels: &mut [C], mut visible: u32, intensities: &[Intensity; CHUNK], colour: impl Fn(usize, Intensity) -> C) {
-    for (k, (pixel, &intensity)) in pixels.iter_mut().zip(intensities).enumerate() {
+fn put_each<C>(pixels: &mut [C], mut visible: u32, intensities: &[Intensity; CHUNK], colour: impl Fn(Intensity) -> C) {
+    for (pixel, &intensity) in pixels.iter_mut().zip(intensities) {
         if visible & 1 != 0 {
-            *pixel = colour(k, intensity);
+            *pixel = colour(intensity);
         }
         visible >>= 1;
         if visible == 0 {

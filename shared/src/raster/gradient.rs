@@ -1,7 +1,7 @@
 //! Vertical gradients between two colours. They are dithered in all formats: this takes eight colours a row, and without it a display of 16 bits a
 //! pixel would show steps.
 
-use crate::pixel::{Pixel, colour::shown, dither::threshold};
+use crate::pixel::{PixelFormat, colour::shown, dither::threshold};
 use embedded_graphics_core::primitives::Rectangle;
 
 /// Number of columns after which thresholds of dither repeat.
@@ -10,7 +10,7 @@ const COLUMNS: usize = 8;
 /// Fills the band `area` of a picture of `height` rows.
 // A call, so that its instructions can be told from a frame's.
 #[inline(never)]
-pub(super) fn fill<C: Pixel>(ends: [[u8; 3]; 2], pixels: &mut [C], area: Rectangle, height: u32) {
+pub(super) fn fill<C: PixelFormat>(ends: [[u8; 3]; 2], pixels: &mut [C], area: Rectangle, height: u32) {
     let ends = ends.map(shown::<C>);
     let rows = pixels.chunks_exact_mut((area.size.width as usize).max(1));
     for (pixels, row) in rows.zip(area.top_left.y.unsigned_abs()..) {
@@ -31,7 +31,7 @@ struct Levels {
 }
 
 impl Levels {
-    fn new<C: Pixel>([[top_r, top_g, top_b], [r, g, b]]: [[u8; 3]; 2], row: u32, height: u32) -> Self {
+    fn new<C: PixelFormat>([[top_r, top_g, top_b], [r, g, b]]: [[u8; 3]; 2], row: u32, height: u32) -> Self {
         let last = height.saturating_sub(1).max(1);
         let (row, denominator) = (row.min(last), 255 * last);
         let channel = |top: u8, bottom: u8, depth: u32| {
@@ -45,7 +45,7 @@ impl Levels {
     }
 
     /// The colour for a threshold in 1/128 of a step.
-    fn colour<C: Pixel>(&self, threshold: u32) -> C {
+    fn colour<C: PixelFormat>(&self, threshold: u32) -> C {
         let whole = self.denominator << 7;
         C::pack(self.channels.map(|(level, numerator)| level + u32::from((numerator << 7) + threshold * self.denominator >= whole)))
     }
@@ -64,7 +64,7 @@ mod tests {
 
     const ENDS: [[u8; 3]; 2] = [[10, 250, 77], [200, 30, 78]];
 
-    fn filled<C: Pixel>(height: u32, rows: u32) -> Vec<[u8; 3]> {
+    fn filled<C: PixelFormat>(height: u32, rows: u32) -> Vec<[u8; 3]> {
         let mut pixels = Vec::new();
         for top in (0..height).step_by(rows as usize) {
             let area = Rectangle::new(Point::new(0, top as i32), Size::new(16, rows.min(height - top)));
@@ -75,7 +75,7 @@ mod tests {
         pixels
     }
 
-    fn gradient<C: Pixel>() {
+    fn gradient<C: PixelFormat>() {
         for height in [1, 2, 3, 48, 2047] {
             let dithered = filled::<C>(height, 5);
             assert_eq!(dithered, filled::<C>(height, height));

@@ -14,8 +14,8 @@ pub trait PixelShader<V>: ByRows {
     /// Number of the shader among the method's shaders. It is saved with an active triangle.
     const ID: u8 = 0;
 
-    /// The colour of a value, by a [`crate::pixel::dither::threshold`].
-    fn shade(&self, value: V, threshold: u32) -> Self::Pixel;
+    /// The colour of a value.
+    fn shade(&self, value: V) -> Self::Pixel;
 }
 
 /// One colour for all pixels, as tables of colours hold it for even rows and for odd ones.
@@ -46,9 +46,9 @@ impl<C: Pixel> PixelShader<()> for Solid<C> {
     const CHEAP: bool = true;
 
     #[inline(always)]
-    fn shade(&self, (): (), threshold: u32) -> C {
+    fn shade(&self, (): ()) -> C {
         let Self([now, _]) = *self;
-        C::shown(now, threshold)
+        C::from_stored(now)
     }
 }
 
@@ -72,8 +72,8 @@ impl<C: Pixel> PixelShader<[u32; 1]> for Ramp<'_, C> {
     const CHEAP: bool = true;
 
     #[inline(always)]
-    fn shade(&self, [level]: [u32; 1], threshold: u32) -> C {
-        C::shown(C::walked(self.0, level), threshold)
+    fn shade(&self, [level]: [u32; 1]) -> C {
+        C::from_stored(C::walked(self.0, level))
     }
 }
 
@@ -88,7 +88,7 @@ impl<C: Pixel> PixelShader<[u32; 3]> for Rgb<C> {
     type Pixel = C;
 
     #[inline(always)]
-    fn shade(&self, levels: [u32; 3], _: u32) -> C {
+    fn shade(&self, levels: [u32; 3]) -> C {
         let [r, g, b] = levels;
         C::mixed([r as i32, g as i32, b as i32])
     }

@@ -2,7 +2,6 @@
 
 use crate::{
     interpolate::{Constant, Walker, plane::Linear},
-    pixel::Pixel,
     raster::pixel_shader::PixelShader,
 };
 use core::ops::Range;
@@ -48,7 +47,7 @@ impl DepthTest for Constant {
     }
 }
 
-/// Shades the pixels of one span that pass the depth test, from right to left; `thresholds` are those of its first pixels.
+/// Shades the pixels of one span that pass the depth test, from right to left.
 ///
 /// `test` and `walker` stand one pixel right of the span. They step first and the index counts down
 /// to zero: the loop ends on its own subtraction, and every slice is checked
@@ -63,7 +62,6 @@ pub(crate) fn fill<S: DepthTest, W: Walker, T: PixelShader<W::Value>>(
     mut test: S,
     mut walker: W,
     shader: T,
-    thresholds: &[u8; 8],
 ) {
     let mut i = pixels.len();
     let Some(depth) = S::depth(depth, 0..i) else { return };
@@ -72,7 +70,7 @@ pub(crate) fn fill<S: DepthTest, W: Walker, T: PixelShader<W::Value>>(
         test.step();
         walker.step();
         if test.passes(depth, i) {
-            pixels[i] = shader.shade(walker.value(), if T::Pixel::DITHERED_BY_TABLE { thresholds[i & 7].into() } else { 0 });
+            pixels[i] = shader.shade(walker.value());
         }
     }
 }

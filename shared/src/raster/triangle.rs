@@ -5,7 +5,6 @@ use crate::{
     format::{DEPTH, DEPTH_NODE, DEPTH_WALK},
     geometry::projection::ScreenVertex,
     interpolate::{Constant, Patch, Walker, plane::Plane},
-    pixel::{Pixel, dither},
     raster::{
         active::{ActiveTriangle, ActiveTriangles},
         band::Band,
@@ -72,8 +71,6 @@ pub(crate) struct Rows<'b, D, P: Patch, T: PixelShader<<P::Walker as Walker>::Va
     pub(crate) depth: D,
     pub(crate) patch: P,
     pub(crate) shader: T,
-    /// The coming row, where it has thresholds.
-    pub(crate) row: u32,
 }
 
 /// All bits of the number of pixels in a row.
@@ -343,20 +340,7 @@ impl<'b, D: Patch<Walker: DepthTest>, P: Patch, T: PixelShader<<P::Walker as Wal
     pub(crate) fn new(band: &'b mut Band<'_, T::Pixel>, row: i32, sides: LeftRight, depth: D, patch: P, mut shader: T) -> Self {
         let (width, start) = (band.width, band.start(row));
         shader.start_at(row);
-        Self {
-            pixels: band.pixels,
-            buffer: band.depth,
-            width,
-            start,
-            sides,
-            count: 0,
-            height: 0,
-            filled: 0,
-            depth,
-            patch,
-            shader,
-            row: row as u32,
-        }
+        Self { pixels: band.pixels, buffer: band.depth, width, start, sides, count: 0, height: 0, filled: 0, depth, patch, shader }
     }
 
     /// Fills one row and steps the edges to the next.
@@ -380,8 +364,7 @@ impl<'b, D: Patch<Walker: DepthTest>, P: Patch, T: PixelShader<<P::Walker as Wal
             && let Some(pixels) = self.pixels.get_mut(start..end)
             && let Some(buffer) = D::Walker::depth(self.buffer, start..end)
         {
-            let thresholds = if T::Pixel::DITHERED_BY_TABLE { dither::row(self.row, left) } else { &dither::ROUNDED };
-            fill(pixels, buffer, self.depth.enter(right as i32), self.patch.enter(right as i32), self.shader, thresholds);
+            fill(pixels, buffer, self.depth.enter(right as i32), self.patch.enter(right as i32), self.shader);
             if !Self::AHEAD && late {
                 self.filled = self.filled.wrapping_add(count as u32);
             }
@@ -391,13 +374,13 @@ impl<'b, D: Patch<Walker: DepthTest>, P: Patch, T: PixelShader<<P::Walker as Wal
     /// Fills all rows in a local copy.
     #[inline(always)]
     fn fill_here(&mut self) {
-        let Rows { width, start, sides, count, height, filled, depth, patch, shader, row, .. } = *self;
+        let Rows { width, start, sides, count, height, filled, depth, patch, shader, .. } = *self;
         let pixels = &mut *self.pixels;
         // Cut to the length of the pixels, it needs no test of its own in each row. On x86-64, by measurement, that costs an instruction a
         // pixel.
         let length = if cfg!(target_arch = "arm") { pixels.len() } else { self.buffer.len() };
         let Some(buffer) = D::Walker::depth(self.buffer, 0..length) else { return };
-        let mut rows = Rows { pixels, buffer, width, start, sides, count, height, filled, depth, patch, shader, row };
+        let mut rows = Rows { pixels, buffer, width, start, sides, count, height, filled, depth, patch, shader };
         let ahead = |count: u32| if Self::AHEAD { count } else { 0 };
         rows.filled = rows.filled.wrapping_add(ahead(rows.count));
         loop {
@@ -415,8 +398,8 @@ impl<'b, D: Patch<Walker: DepthTest>, P: Patch, T: PixelShader<<P::Walker as Wal
         }
         // The count of the row behind the last is taken back.
         self.filled = rows.filled.wrapping_sub(ahead(rows.count));
-        let Rows { start, sides, depth, patch, shader, row, .. } = rows;
-        (self.start, self.sides, self.depth, self.patch, self.shader, self.row) = (start, sides, depth, patch, shader, row);
+        let Rows { start, sides, depth, patch, shader, .. } = rows;
+        (self.start, self.sides, self.depth, self.patch, self.shader) = (start, sides, depth, patch, shader);
     }
 
     /// Steps to the next row.
@@ -425,8 +408,5 @@ impl<'b, D: Patch<Walker: DepthTest>, P: Patch, T: PixelShader<<P::Walker as Wal
         self.depth.step_row();
         self.patch.step_row();
         self.shader.step_row();
-        if T::Pixel::DITHERED_BY_TABLE {
-            self.row = self.row.wrapping_add(1);
-        }
     }
 }

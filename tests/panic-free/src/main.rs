@@ -6,12 +6,13 @@
 #![no_main]
 
 use embedded_graphics_core::{
-    geometry::Size,
+    geometry::{Point, Size},
     pixelcolor::{Gray4, Rgb565},
+    primitives::Rectangle,
 };
 use microphong::{
     Layout, PreparationPart, Renderer, Shader, Stream,
-    pixel::{PictureCrc, Pixel, Rgb565Be, gamma::SRGB},
+    pixel::{FromDrawn, Light, LightGray, Output, PictureCrc, Pixel, Rgb565Be, gamma::SRGB},
 };
 
 use microphong_literature::ALL;
@@ -30,12 +31,13 @@ const BAND: usize = 9600;
 /// Room for a small scene, antialiased.
 const LAYOUT: Layout = Layout::new(240, 40).vertices(600).triangles(600).materials(2).processors(2).antialias(cfg!(feature = "all"));
 /// Number of words that suffices in every pixel format: the largest pixels take most.
-const WORDS: usize = LAYOUT.words::<Rgb565>();
+const WORDS: usize = LAYOUT.words::<Light<5, 6, 5>>();
 
-/// The memory that a board draws pictures of one pixel format in.
-pub struct Buffers<C: Pixel> {
+/// The memory that a board draws pictures in: of pixels `C` for a display with pixels `F`.
+pub struct Buffers<C: Pixel, F> {
     memory: [u64; WORDS],
     band: [C; BAND],
+    pixels: [F; BAND],
 }
 
 /// What to draw, and how. Nothing of it is known at compile time.
@@ -55,10 +57,11 @@ pub struct Request {
     gamma: bool,
     antialias: bool,
     perspective: bool,
+    output: Output,
 }
 
 /// One frame, band by band, as a board draws it: its checksum and its count of pixels.
-fn draw<C: Pixel>(request: Request, buffers: &mut Buffers<C>) -> Option<u32> {
+fn draw<C: Pixel, F: FromDrawn<C>>(request: Request, buffers: &mut Buffers<C, F>) -> Option<u32> {
     let [width, height] = request.size;
     let literature = Shader::new(*ALL.get(request.shader / 8)?);
     let shader = Shader::ALL.get(request.shader).copied().unwrap_or(literature);
@@ -71,8 +74,10 @@ fn draw<C: Pixel>(request: Request, buffers: &mut Buffers<C>) -> Option<u32> {
     renderer.set_perspective_correct(request.perspective).ok()?;
     let mut frame = renderer.frame(request.number);
     let mut crc = PictureCrc::default();
-    while frame.next_band(&mut buffers.band).ok()?.is_some() {
-        crc.update(&buffers.band);
+    while let Some(area) = frame.next_band(&mut buffers.band).ok()? {
+        frame.output().convert(&buffers.band, area, &mut buffers.pixels);
+        crc.update(&buffers.pixels);
+        frame.output().pixels::<C, F>(&buffers.band, area).for_each(|pixel| crc.update(&[pixel]));
     }
     let mut preparation = renderer.prepare(request.number, request.share);
     preparation.parts().into_iter().for_each(PreparationPart::run);
@@ -80,8 +85,9 @@ fn draw<C: Pixel>(request: Request, buffers: &mut Buffers<C>) -> Option<u32> {
     let row = frame.row_at(request.share);
     let mut frame = frame.in_two(row);
     for mut part in frame.parts() {
-        while part.next_band(&mut buffers.band).ok()?.is_some() {
-            crc.update(&buffers.band);
+        while let Some(area) = part.next_band(&mut buffers.band).ok()? {
+            part.output().convert(&buffers.band, area, &mut buffers.pixels);
+            crc.update(&buffers.pixels);
         }
     }
     let named = stream.mesh(request.name).map_or(0, |meshes| meshes.end.into());
@@ -92,13 +98,17 @@ fn draw<C: Pixel>(request: Request, buffers: &mut Buffers<C>) -> Option<u32> {
 #[unsafe(no_mangle)]
 pub extern "C" fn _start(
     request: &'static Request,
-    rgb565: &'static mut Buffers<Rgb565>,
-    rgb565_be: &'static mut Buffers<Rgb565Be>,
-    gray4: &'static mut Buffers<Gray4>,
+    rgb565: &'static mut Buffers<Rgb565, Rgb565>,
+    rgb565_be: &'static mut Buffers<Rgb565Be, Rgb565Be>,
+    light: &'static mut Buffers<Light<5, 6, 5>, Rgb565>,
+    gray4: &'static mut Buffers<LightGray<4>, Gray4>,
+    packed: &'static mut [u8; BAND / 2],
 ) -> u32 {
     if cfg!(feature = "with-a-panic") {
         return u32::from(request.stream[request.shader]);
     }
-    let checksums = [draw(*request, rgb565), draw(*request, rgb565_be), draw(*request, gray4)];
+    let checksums = [draw(*request, rgb565), draw(*request, rgb565_be), draw(*request, light), draw(*request, gray4)];
+    let (area, output) = (Rectangle::new(Point::zero(), request.size.into()), request.output);
+    output.pack(&gray4.band, area, packed);
     checksums.into_iter().flatten().fold(0, |all, one| all ^ one)
 }

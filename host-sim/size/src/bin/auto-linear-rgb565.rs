@@ -2,4 +2,4 @@
 #![no_std]
 #![no_main]
 
-size::program!(Rgb565, BLACK, AUTO_LINEAR);
+size::program!(Rgb565, Rgb565, AUTO_LINEAR);

@@ -2,4 +2,4 @@
 #![no_std]
 #![no_main]
 
-size::program!(BinaryColor, Off, PHONG);
+size::program!(LightGray<1>, BinaryColor, PHONG);
