@@ -113,7 +113,7 @@ fn parts_of_random_triangles_cover_each_pixel_once() {
                 } else {
                     let mut chance = Random::new(splits, 0);
                     let mut chance = (i % 3 > 0 && rows == HEIGHT).then_some(&mut chance);
-                    let colourist = Colourist { tables, dither: false, gamma: None };
+                    let colourist = Colourist::new(tables, false, None);
                     let mut canvas = BandCanvas { band: &mut band, colourist: &colourist };
                     whole.draw(&SubTriangle::WHOLE, (i % 7) as u32, &mut chance, &mut canvas)
                 };

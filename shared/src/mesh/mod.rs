@@ -37,7 +37,7 @@ impl<C: Pixel> Drawing<'_, C> {
 
     /// What makes pixels of intensities.
     fn colourist(&self) -> Colourist<'_, C> {
-        Colourist { tables: self.tables(), dither: self.dither, gamma: self.gamma }
+        Colourist::new(self.tables(), self.dither, self.gamma)
     }
 
     /// How the triangles of the mesh are drawn.
@@ -49,7 +49,7 @@ impl<C: Pixel> Drawing<'_, C> {
             three_channels: reflectance.three_channels(),
             lights: if lighting.is_constant() { reflectance.lights() } else { 0 },
             local_viewer: lighting.is_directional() && !lighting.is_constant() && reflectance.lights() == 1,
-            by_canvas: viewport.antialiased || self.colourist().corrects(),
+            by_canvas: viewport.antialiased || !self.colourist().suits_loops(),
             perspective: *perspective,
         }
     }

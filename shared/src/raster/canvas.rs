@@ -143,16 +143,25 @@ pub struct Colourist<'c, C: Pixel> {
     /// The colours of the material.
     pub tables: MaterialTables<'c, C>,
     /// Whether rows are dithered by turns, in formats with a checkerboard. A turn at each pixel would take longer.
-    pub dither: bool,
+    dither: bool,
     /// The curve of the display, by which tables in one channel are corrected already.
-    pub gamma: Option<&'c Gamma>,
+    gamma: Option<&'c Gamma>,
+    /// Whether colours are corrected by the curve at each pixel, because no table and no pass does it.
+    corrects: bool,
 }
 
-impl<C: Pixel> Colourist<'_, C> {
-    /// Whether colours are corrected by the curve of the display at each pixel, because no table and no pass does it.
+impl<'c, C: Pixel> Colourist<'c, C> {
+    /// The colours of a material, with these settings of the renderer.
     #[must_use]
-    pub fn corrects(&self) -> bool {
-        self.gamma.is_some() && self.tables.reflectance.three_channels() && !C::IS_LIGHT
+    pub fn new(tables: MaterialTables<'c, C>, dither: bool, gamma: Option<&'c Gamma>) -> Self {
+        let corrects = gamma.is_some() && tables.reflectance.three_channels() && !C::IS_LIGHT;
+        Self { tables, dither, gamma, corrects }
+    }
+
+    /// Whether the loops of methods make these colours.
+    #[must_use]
+    pub fn suits_loops(&self) -> bool {
+        !self.corrects
     }
 
     /// What is added to a colour of `row` before it is rounded down.
@@ -162,7 +171,7 @@ impl<C: Pixel> Colourist<'_, C> {
 
     /// The channels of an intensity as antialiasing mixes them, see [`Pixel::to_mix`].
     fn to_mix(&self, intensity: Intensity, row: usize) -> [u8; 3] {
-        if self.corrects() || C::IS_LIGHT {
+        if self.corrects || C::IS_LIGHT {
             return C::quantised_to_mix(self.tables.reflectance.scaled(intensity, self.gamma), self.threshold(row));
         }
         let colour = if self.tables.reflectance.three_channels() {
@@ -251,16 +260,18 @@ impl<C: Pixel> SpanTarget for Row<'_, C> {
 
     fn put(&mut self, first: usize, visible: u32, intensities: &[Intensity; CHUNK]) {
         let (colourist, reflectance) = (self.colourist, &self.colourist.tables.reflectance);
-        let (pixels, threshold) = (self.pixels.get_mut(first..).unwrap_or_default(), colourist.threshold(self.row));
+        let (pixels, row) = (self.pixels.get_mut(first..).unwrap_or_default(), self.row);
         // One loop for each way to make a colour, so that no pixel has to ask.
-        if colourist.corrects() {
+        if colourist.corrects {
+            let threshold = colourist.threshold(row);
             put_each(pixels, visible, intensities, |intensity| {
                 C::mixed_from(C::quantised_to_mix(reflectance.scaled(intensity, colourist.gamma), threshold))
             });
         } else if reflectance.three_channels() {
+            let threshold = colourist.threshold(row);
             put_each(pixels, visible, intensities, |intensity| C::quantised(intensity, threshold));
         } else {
-            let ramp = colourist.tables.ramps.squares()[self.row % 2];
+            let ramp = colourist.tables.ramps.squares()[row % 2];
             put_each(pixels, visible, intensities, |intensity| Colourist::by_table(ramp, intensity));
         }
     }
