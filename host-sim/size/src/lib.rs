@@ -7,7 +7,10 @@ mod stream;
 
 use core::{convert::Infallible, marker::PhantomData, panic::PanicInfo};
 use embedded_graphics_core::{pixelcolor::PixelColor, prelude::*, primitives::Rectangle};
-use microphong::{Layout, Picture, Renderer, Shader, Stream, pixel::{FromDrawn, Pixel}};
+use microphong::{
+    Layout, Picture, Renderer, Shader, Stream,
+    pixel::{FromDrawn, Pixel},
+};
 use semihosting::sys::arm_compat::{sys_readc, sys_writec};
 
 #[cfg(target_arch = "arm")]
