@@ -44,8 +44,8 @@ impl<C: Pixel> Clone for TriangleLoops<C> {
 impl<C: Pixel> Copy for TriangleLoops<C> {}
 
 impl<C: Pixel> TriangleLoops<C> {
-    const fn of<L: Loops>() -> Self {
-        Self { run: |drawing, entry, walk, band| drawing.run::<L>(entry, walk, band), draw: L::draw }
+    const fn of<L: Loops, const THREE: bool>() -> Self {
+        Self { run: |drawing, entry, walk, band| drawing.run::<L, THREE>(entry, walk, band), draw: L::draw::<C, THREE> }
     }
 }
 
@@ -85,21 +85,24 @@ impl<C: Pixel> Shader<C> {
     /// Creates a shader from your own implementation of [`Method`], or from a method of the crate `microphong-literature`.
     #[must_use]
     pub const fn new(method: &'static dyn Method) -> Self {
-        Self { method, take: General::take, loops: TriangleLoops::of::<General>(), three_channels: TriangleLoops::of::<General>() }
+        let general = TriangleLoops::of::<General, false>();
+        Self { method, take: General::take, loops: general, three_channels: general }
     }
 
     const fn with_loops<M: Method + Loops>(method: &'static M) -> Self {
         // A grey format has one channel.
-        let three_channels = if C::GRAY { TriangleLoops::of::<M>() } else { TriangleLoops::of::<M::ThreeChannels>() };
-        Self { method, take: M::take, loops: TriangleLoops::of::<M>(), three_channels }
+        let loops = TriangleLoops::of::<M, false>();
+        let three_channels = if M::APART && !C::GRAY { TriangleLoops::of::<M, true>() } else { loops };
+        Self { method, take: M::take, loops, three_channels }
     }
 
     /// The loops that draw a style.
     pub(crate) fn loops(&self, style: Style) -> TriangleLoops<C> {
+        // Decision: loops.
         match ((self.take)(style), style.three_channels) {
             (true, false) => self.loops,
             (true, true) => self.three_channels,
-            (false, _) => TriangleLoops::of::<General>(),
+            (false, _) => TriangleLoops::of::<General, false>(),
         }
     }
 }

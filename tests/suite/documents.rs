@@ -209,3 +209,33 @@ fn public_names_are_those_that_are_listed() {
     assert!(listed == names, "new: {}; gone: {}", only(&names, &listed), only(&listed, &names));
     println!("{} public names", names.lines().count());
 }
+
+/// Decisions about a triangle are made where docs/design.md says, each in one place, and its drawing has them.
+#[test]
+fn decisions_are_made_where_the_design_says() {
+    let repository = repository();
+    let design = read(&repository.join("docs/design.md"));
+    let (table, drawing): (Vec<&str>, Vec<&str>) = design.lines().partition(|line| line.starts_with('|'));
+    // `(number) name` of a row of the table, and the row.
+    let row = |line: &&'_ str| {
+        let (name, _) = line.strip_prefix("| ")?.split_once(" |")?;
+        let (number, _) = name.strip_prefix('(')?.split_once(')')?;
+        number.parse::<u8>().ok().map(|_| (name.to_owned(), (*line).to_owned()))
+    };
+    let told: Vec<_> = table.iter().filter_map(row).collect();
+    let mut made = Vec::new();
+    for path in sources(&repository.join("shared/src")) {
+        let marks = read(&path);
+        let marks = marks.lines().filter_map(|line| line.trim().strip_prefix("// Decision: ")?.strip_suffix('.'));
+        made.extend(marks.map(|name| (name.to_owned(), path.strip_prefix(&repository).expect("a file of the core").to_owned())));
+    }
+    for (name, row) in &told {
+        let (_, bare) = name.split_once(") ").expect("a name behind the number");
+        let places: Vec<_> = made.iter().filter(|(made, _)| made == bare).map(|(_, path)| path.to_string_lossy()).collect();
+        let [place] = places.as_slice() else { panic!("{bare} is decided in {} places: {places:?}", places.len()) };
+        assert!(row.contains(&format!("](../{place})")), "{bare} is decided in {place}, and the table says {row}");
+        let drawn = drawing.iter().filter(|line| line.contains(name.as_str())).count();
+        assert_eq!(drawn, 1, "{name} in the drawing");
+    }
+    assert_eq!(made.len(), told.len(), "marks in the code, and rows of the table: {made:?}");
+}

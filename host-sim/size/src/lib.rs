@@ -51,10 +51,7 @@ fn send<C: PixelColor>(colour: C) {
 }
 
 /// Draws all frames of the stream, and tells the host whether they are drawn.
-pub fn run<C: Pixel, F: FromDrawn<C> + PixelColor>(memory: &mut [u64], band: &mut [C], shader: Shader<C>) -> !
-where
-    C: From<F>,
-{
+pub fn run<C: Pixel + From<F>, F: FromDrawn<C> + PixelColor>(memory: &mut [u64], band: &mut [C], shader: Shader<C>) -> ! {
     let drawn = draw::<C, F>(memory, band, shader).is_some();
     loop {
         tell(if drawn { b'd' } else { b'f' });

@@ -192,6 +192,7 @@ impl<'r> Part<'r> {
         let blend = context.settings.antialiased().then(|| Blend { samples: self.samples.get_mut(..count).unwrap_or_default() });
         let mut band = Band { pixels, depth, width, top: top as i32, rows: rows as i32, blend, active, counts: Counts::default() };
         band.clear(self.rows.clone());
+        // Decision: lists.
         let (pixels, drawn) = if self.binned {
             self.bins.skip(self.entries, top);
             let mut walk = self.bins.band(self.entries, bottom);
@@ -248,6 +249,7 @@ fn draw_binned<C: Pixel>(
     while let Some(key) = next {
         // A scene has both.
         let Some(placed) = context.mesh(key.triangle()) else { break };
+        // Decision: hidden object.
         if context.hides(placed.placement, columns, band.range(), band.depth) {
             next = leave_out(&placed, key, walk, &mut band.active, &mut band.counts);
             continue;

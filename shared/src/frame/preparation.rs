@@ -415,6 +415,7 @@ impl<'r> PreparationPart<'_, 'r> {
         while let [before @ .., triangle] = rest {
             rest = before;
             let height = facing.height(triangle);
+            // Decision: facing.
             if height < leaning {
                 continue;
             }

@@ -175,6 +175,7 @@ impl Viewport {
     /// Whether a triangle with cached corners is word-sized and reaches into the viewport. It is then set up in words.
     #[inline(always)]
     pub fn is_word_sized(self, extent: &Extent) -> bool {
+        // Decision: word or exact.
         !self.antialiased && extent.left >= 0 && extent.right < self.width << SUBPIXEL && extent.fits_words()
     }
 

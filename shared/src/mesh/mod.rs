@@ -44,6 +44,7 @@ impl<C: Pixel> Drawing<'_, C> {
     // As part of its caller, it changes how the compiler arranges the set-up of triangles: +0.7 % of a frame on Armv6-M.
     #[inline(never)]
     pub(crate) fn style(&self) -> Style {
+        // Decision: style.
         let MeshPass { shading: Shading { reflectance, lighting, .. }, viewport, perspective, .. } = &self.pass;
         Style {
             three_channels: reflectance.three_channels(),
@@ -57,17 +58,18 @@ impl<C: Pixel> Drawing<'_, C> {
     /// Draws the triangle `key` and all that follow in the same mesh, by the loops `L` where they can. Returns the number of pixels in `band`, and
     /// the first triangle of another mesh.
     #[inline(never)]
-    pub(crate) fn run<L: Loops>(&self, mut key: Key, walk: &mut Walk<'_>, band: &mut Band<'_, C>) -> (u32, Option<Key>) {
+    pub(crate) fn run<L: Loops, const THREE: bool>(&self, mut key: Key, walk: &mut Walk<'_>, band: &mut Band<'_, C>) -> (u32, Option<Key>) {
         let mut pixels = 0u32;
         loop {
             // The mesh has every triangle of its entries.
             if let Some(triangle) = self.pass.triangles.get(self.pass.index(key)) {
                 let drawn = if L::GENERAL || !key.is_word_sized() {
-                    self.draw(L::draw, triangle, band)
+                    self.draw(L::draw::<C, THREE>, triangle, band)
                 } else {
                     // A triangle that the loops decline is set up anew: if its set-up were passed on, that of all triangles would be kept
                     // in memory.
-                    self.draw_word_sized::<L>(triangle, key.word(), band).unwrap_or_else(|| self.draw(General::draw, triangle, band))
+                    self.draw_word_sized::<L, THREE>(triangle, key.word(), band)
+                        .unwrap_or_else(|| self.draw(General::draw::<C, false>, triangle, band))
                 };
                 pixels = pixels.saturating_add(drawn);
             }
@@ -98,10 +100,11 @@ impl<C: Pixel> Drawing<'_, C> {
     // Instructions of Armv6-M reach little of a large stack frame, so this is a call there.
     #[cfg_attr(all(target_arch = "arm", not(target_has_atomic = "32")), inline(never))]
     #[cfg_attr(not(all(target_arch = "arm", not(target_has_atomic = "32"))), inline(always))]
-    fn draw_word_sized<L: Loops>(&self, triangle: &Triangle, key: u32, band: &mut Band<'_, C>) -> Option<u32> {
+    fn draw_word_sized<L: Loops, const THREE: bool>(&self, triangle: &Triangle, key: u32, band: &mut Band<'_, C>) -> Option<u32> {
         let (by, corners) = turned(self.pass.corners(triangle)?);
         let place = band.active.take(key);
         let (screen, gradients, needs_depth_test);
+        // Decision: continued.
         if let Some(active_triangle) = place.and_then(|place| band.active.active_triangle(place)) {
             (screen, gradients) = (ScreenTriangle::resumed(active_triangle, by, band), Gradients::NONE);
             needs_depth_test = active_triangle.inv_depth().is_some();
@@ -129,6 +132,6 @@ impl<C: Pixel> Drawing<'_, C> {
             pixels: PixelSet::Centres,
             place,
         };
-        L::draw(&setup, &self.pass.shading, self.tables(), band)
+        L::draw::<C, THREE>(&setup, &self.pass.shading, self.tables(), band)
     }
 }

@@ -82,6 +82,7 @@ impl MeshPass<'_> {
     #[inline(always)]
     pub(super) fn needs_depth_test(&self, screen: &ScreenTriangle) -> bool {
         let [[x0, top], [x1, y1], [x2, y2]] = screen.corners;
+        // Decision: depth.
         self.depth_elision.is_none_or(|elision| elision.needs_depth_test([x0.min(x1).min(x2), x0.max(x1).max(x2)], [top, y1.max(y2)]))
     }
 
@@ -111,6 +112,7 @@ impl MeshPass<'_> {
         let (Some(a), Some(b), Some(c)) = (a, b, c) else { return 0 };
         let vertices = [a, b, c];
         let [a, b, c] = &vertices.map(|vertex| self.stage.transform(vertex));
+        // Decision: clip.
         if is_ready(&[a, b, c]) {
             return self.set_up_placed(&MeshTriangle { corners: [a, b, c], triangle, vertices: self.vertices }, target);
         }
@@ -134,6 +136,7 @@ impl MeshPass<'_> {
     }
 
     fn set_up_placed(&self, placed: &MeshTriangle<'_>, target: &mut Target<'_>) -> u32 {
+        // Decision: pixels.
         if cfg!(feature = "antialias") && self.viewport.antialiased {
             self.set_up_antialiased(placed, target)
         } else {

@@ -90,14 +90,12 @@ where
 pub(crate) struct Duff;
 
 impl Loops for Duff {
-    type ThreeChannels = Self;
-
     fn take(style: Style) -> bool {
         (1..=2).contains(&style.lights) && !style.by_canvas && !style.perspective
     }
 
     #[inline(always)]
-    fn draw<C: Pixel>(
+    fn draw<C: Pixel, const THREE: bool>(
         setup: &TriangleSetup<'_>,
         shading: &Shading<'_>,
         tables: MaterialTables<'_, C>,

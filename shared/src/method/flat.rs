@@ -53,14 +53,12 @@ impl Method for Flat {
 }
 
 impl Loops for Flat {
-    type ThreeChannels = Self;
-
     fn take(style: Style) -> bool {
         !style.by_canvas
     }
 
     #[inline(always)]
-    fn draw<C: Pixel>(
+    fn draw<C: Pixel, const THREE: bool>(
         setup: &TriangleSetup<'_>,
         shading: &Shading<'_>,
         tables: MaterialTables<'_, C>,

@@ -11,7 +11,7 @@ use crate::{
         material_tables::MaterialTables,
         reflectance::{Highlight, Reflectance},
     },
-    method::{Costs, Facts, HighlightField, Loops, Method, RANGE, Shading, Style, ThreeChannels, TriangleSetup, VertexLight, fit_levels},
+    method::{Costs, Facts, HighlightField, Loops, Method, RANGE, Shading, Style, TriangleSetup, VertexLight, fit_levels},
     pixel::Pixel,
     raster::{band::Band, canvas::Canvas, pixel_shader::Ramp},
     setup::gradients::Gradients,
@@ -48,34 +48,23 @@ impl Method for Gouraud {
 }
 
 impl Loops for Gouraud {
-    type ThreeChannels = ThreeChannels<Self>;
+    const APART: bool = true;
 
     fn take(style: Style) -> bool {
         !style.by_canvas && !style.perspective
     }
 
     #[inline(always)]
-    fn draw<C: Pixel>(setup: &TriangleSetup<'_>, _: &Shading<'_>, tables: MaterialTables<'_, C>, band: &mut Band<'_, C>) -> Option<u32> {
-        let [a, b, c] = setup.corners;
-        Some(setup.fill(|| one::<C>(setup.gradients, [a.light[2], b.light[2], c.light[2]]), Ramp(tables.ramps), band))
-    }
-}
-
-impl Loops for ThreeChannels<Gouraud> {
-    type ThreeChannels = Self;
-
-    fn take(style: Style) -> bool {
-        Gouraud::take(style)
-    }
-
-    #[inline(always)]
-    fn draw<C: Pixel>(
+    fn draw<C: Pixel, const THREE: bool>(
         setup: &TriangleSetup<'_>,
         shading: &Shading<'_>,
         tables: MaterialTables<'_, C>,
         band: &mut Band<'_, C>,
     ) -> Option<u32> {
         let [a, b, c] = setup.corners;
+        if !THREE {
+            return Some(setup.fill(|| one::<C>(setup.gradients, [a.light[2], b.light[2], c.light[2]]), Ramp(tables.ramps), band));
+        }
         // Each of these is drawn by a call of its own: by measurement, what they have in common is set up sooner.
         if shading.constant.is_none() {
             let channels = || {

@@ -137,8 +137,8 @@ pub(crate) struct Style {
 
 /// Loops of a method for some styles, compiled for each pixel format. All other styles are drawn by the general loop, through a [`Canvas`].
 pub(crate) trait Loops {
-    /// The loops in three channels. They may be the same type.
-    type ThreeChannels: Loops;
+    /// Whether the loops in three channels are compiled apart from loops in one. Otherwise the method asks for the channels itself.
+    const APART: bool = false;
 
     /// Whether the method has only the general loop.
     const GENERAL: bool = false;
@@ -146,8 +146,9 @@ pub(crate) trait Loops {
     /// Whether there are loops for `style`.
     fn take(style: Style) -> bool;
 
-    /// Shades `setup` into `band` and returns the number of its pixels there; `None` if the general loop has to draw the triangle.
-    fn draw<C: Pixel>(
+    /// Shades `setup` into `band` and returns the number of its pixels there; `None` if the general loop has to draw the triangle. `THREE` says
+    /// whether the material has three channels, if loops are compiled [`Self::APART`].
+    fn draw<C: Pixel, const THREE: bool>(
         setup: &TriangleSetup<'_>,
         shading: &Shading<'_>,
         tables: MaterialTables<'_, C>,
@@ -158,15 +159,10 @@ pub(crate) trait Loops {
 /// The type of [`Loops::draw`] in one pixel format.
 pub(crate) type DrawTriangle<C> = fn(&TriangleSetup<'_>, &Shading<'_>, MaterialTables<'_, C>, &mut Band<'_, C>) -> Option<u32>;
 
-/// The loops of the method `M` in three channels.
-pub(crate) struct ThreeChannels<M>(PhantomData<M>);
-
 /// A method without loops of its own: the general loop draws all triangles.
 pub(crate) struct General;
 
 impl Loops for General {
-    type ThreeChannels = Self;
-
     const GENERAL: bool = true;
 
     fn take(_: Style) -> bool {
@@ -174,7 +170,12 @@ impl Loops for General {
     }
 
     #[inline(always)]
-    fn draw<C: Pixel>(_: &TriangleSetup<'_>, _: &Shading<'_>, _: MaterialTables<'_, C>, _: &mut Band<'_, C>) -> Option<u32> {
+    fn draw<C: Pixel, const THREE: bool>(
+        _: &TriangleSetup<'_>,
+        _: &Shading<'_>,
+        _: MaterialTables<'_, C>,
+        _: &mut Band<'_, C>,
+    ) -> Option<u32> {
         None
     }
 }

@@ -55,14 +55,12 @@ impl Method for Phong {
 }
 
 impl Loops for Phong {
-    type ThreeChannels = Self;
-
     fn take(style: Style) -> bool {
         Duff::take(style) || local_viewer::take(style)
     }
 
     #[inline(always)]
-    fn draw<C: Pixel>(
+    fn draw<C: Pixel, const THREE: bool>(
         setup: &TriangleSetup<'_>,
         shading: &Shading<'_>,
         tables: MaterialTables<'_, C>,

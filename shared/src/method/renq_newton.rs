@@ -63,14 +63,12 @@ impl Method for RenqNewton {
 }
 
 impl Loops for RenqNewton {
-    type ThreeChannels = Self;
-
     fn take(style: Style) -> bool {
         style.lights == 1 && !style.by_canvas && !style.perspective
     }
 
     #[inline(always)]
-    fn draw<C: Pixel>(
+    fn draw<C: Pixel, const THREE: bool>(
         setup: &TriangleSetup<'_>,
         shading: &Shading<'_>,
         tables: MaterialTables<'_, C>,

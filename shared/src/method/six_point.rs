@@ -38,14 +38,12 @@ impl Method for SixPoint {
 }
 
 impl Loops for SixPoint {
-    type ThreeChannels = Self;
-
     fn take(style: Style) -> bool {
         !style.by_canvas && !style.perspective
     }
 
     #[inline(always)]
-    fn draw<C: Pixel>(
+    fn draw<C: Pixel, const THREE: bool>(
         setup: &TriangleSetup<'_>,
         shading: &Shading<'_>,
         tables: MaterialTables<'_, C>,

@@ -111,14 +111,12 @@ fn shade_constant<const ROOT: IsRoot>(setup: &TriangleSetup<'_>, shading: &Shadi
 }
 
 impl Loops for Sqrt6 {
-    type ThreeChannels = Self;
-
     fn take(style: Style) -> bool {
         (1..=2).contains(&style.lights) && !style.by_canvas && !style.perspective
     }
 
     #[inline(always)]
-    fn draw<C: Pixel>(
+    fn draw<C: Pixel, const THREE: bool>(
         setup: &TriangleSetup<'_>,
         shading: &Shading<'_>,
         tables: MaterialTables<'_, C>,
@@ -129,14 +127,12 @@ impl Loops for Sqrt6 {
 }
 
 impl Loops for SixCosines {
-    type ThreeChannels = Self;
-
     fn take(style: Style) -> bool {
         Sqrt6::take(style)
     }
 
     #[inline(always)]
-    fn draw<C: Pixel>(
+    fn draw<C: Pixel, const THREE: bool>(
         setup: &TriangleSetup<'_>,
         shading: &Shading<'_>,
         tables: MaterialTables<'_, C>,

@@ -75,6 +75,7 @@ pub(crate) fn shade(
     canvas: &mut dyn Canvas,
     mut shade: impl FnMut(&TriangleSetup<'_>, &mut dyn Canvas) -> u32,
 ) -> u32 {
+    // Decision: tiles.
     if setup.gradients.walks_in_words() || setup.pixels != PixelSet::Centres {
         return shade(setup, canvas);
     }

@@ -45,6 +45,7 @@ impl Choice {
 #[inline(always)]
 #[must_use]
 pub fn choose<const QUADRATICS: bool>(setup: &TriangleSetup<'_>, shading: &Shading<'_>) -> Choice {
+    // Decision: choice of auto.
     // In functions of their own: together they would need more registers than there are.
     if shading.vertices_have_cosines() {
         under_one_light::<QUADRATICS>(setup, shading)

@@ -21,9 +21,8 @@ use crate::{
     },
     math::vector::zip,
     method::{
-        Costs, DrawTriangle, Facts, HighlightField, Loops, Method, RANGE, Shading, Style, ThreeChannels, TriangleSetup, Uniform,
-        VertexLight, channels, duff::Duff, error_bound::ErrorBounds, gouraud, of_levels, phong::Phong, six_point::SixPoint,
-        sqrt6::SixCosines,
+        Costs, DrawTriangle, Facts, HighlightField, Loops, Method, RANGE, Shading, Style, TriangleSetup, Uniform, VertexLight, channels,
+        duff::Duff, error_bound::ErrorBounds, gouraud, of_levels, phong::Phong, six_point::SixPoint, sqrt6::SixCosines,
     },
     pixel::Pixel,
     raster::{
@@ -150,14 +149,14 @@ impl<const QUADRATICS: bool> Method for Auto<QUADRATICS> {
 }
 
 impl<const QUADRATICS: bool> Loops for Auto<QUADRATICS> {
-    type ThreeChannels = ThreeChannels<Self>;
+    const APART: bool = true;
 
     fn take(style: Style) -> bool {
         Duff::take(style)
     }
 
     #[inline(always)]
-    fn draw<C: Pixel>(
+    fn draw<C: Pixel, const THREE: bool>(
         setup: &TriangleSetup<'_>,
         shading: &Shading<'_>,
         tables: MaterialTables<'_, C>,
@@ -165,43 +164,22 @@ impl<const QUADRATICS: bool> Loops for Auto<QUADRATICS> {
     ) -> Option<u32> {
         let choice = choose::<QUADRATICS>(setup, shading);
         setup.count(band.top, choice.count(&mut band.counts), 1);
+        // Under two lights vertices have levels of all channels, where there are three.
+        let under_two = THREE && shading.constant.is_none();
         match choice {
             Choice::Solid(raise) => Some(setup.fill(|| Constant, Solid(solid(setup, shading, raise, tables)), band)),
-            Choice::Linear(raise) => Some(gouraud::draw_one(setup, raise, tables, band)),
-            Choice::Quadratic if QUADRATICS => by::<SixPoint, _>(setup, shading, tables, band),
-            Choice::Cosines if QUADRATICS => by::<SixCosines, _>(setup, shading, tables, band),
-            Choice::Quadratic | Choice::Cosines | Choice::Phong => by::<Phong, _>(setup, shading, tables, band),
-        }
-    }
-}
-
-impl<const QUADRATICS: bool> Loops for ThreeChannels<Auto<QUADRATICS>> {
-    type ThreeChannels = Self;
-
-    fn take(style: Style) -> bool {
-        Auto::<QUADRATICS>::take(style)
-    }
-
-    #[inline(always)]
-    fn draw<C: Pixel>(
-        setup: &TriangleSetup<'_>,
-        shading: &Shading<'_>,
-        tables: MaterialTables<'_, C>,
-        band: &mut Band<'_, C>,
-    ) -> Option<u32> {
-        let choice = choose::<QUADRATICS>(setup, shading);
-        setup.count(band.top, choice.count(&mut band.counts), 1);
-        match (choice, shading.constant) {
-            (Choice::Solid(raise), _) => Some(setup.fill(|| Constant, Solid(solid(setup, shading, raise, tables)), band)),
-            (Choice::Linear(raise), Some(_)) => Some(gouraud::draw_three(setup, shading, raise, tables, band)),
-            (Choice::Linear(raise), None) => {
+            Choice::Linear(raise) if under_two => {
                 let channels = || channels(corner_levels(setup, shading.reflectance));
                 Some(shading.fill_three(setup, channels, raise, |plane| plane, band))
             }
-            (Choice::Quadratic, Some(_)) if QUADRATICS => by::<SixPoint, _>(setup, shading, tables, band),
-            (Choice::Quadratic, None) if QUADRATICS => Some(shading.fill_three(setup, || six_under_two(setup, shading), 0, ByColumn, band)),
-            (Choice::Cosines, _) if QUADRATICS => by::<SixCosines, _>(setup, shading, tables, band),
-            (Choice::Quadratic | Choice::Cosines | Choice::Phong, _) => by::<Phong, _>(setup, shading, tables, band),
+            Choice::Linear(raise) if THREE => Some(gouraud::draw_three(setup, shading, raise, tables, band)),
+            Choice::Linear(raise) => Some(gouraud::draw_one(setup, raise, tables, band)),
+            Choice::Quadratic if QUADRATICS && under_two => {
+                Some(shading.fill_three(setup, || six_under_two(setup, shading), 0, ByColumn, band))
+            }
+            Choice::Quadratic if QUADRATICS => by::<SixPoint, _>(setup, shading, tables, band),
+            Choice::Cosines if QUADRATICS => by::<SixCosines, _>(setup, shading, tables, band),
+            Choice::Quadratic | Choice::Cosines | Choice::Phong => by::<Phong, _>(setup, shading, tables, band),
         }
     }
 }
@@ -214,6 +192,6 @@ fn by<L: Loops, C: Pixel>(
     tables: MaterialTables<'_, C>,
     band: &mut Band<'_, C>,
 ) -> Option<u32> {
-    let draw: DrawTriangle<C> = L::draw;
+    let draw: DrawTriangle<C> = L::draw::<C, false>;
     black_box(draw)(setup, shading, tables, band)
 }
