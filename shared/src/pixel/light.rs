@@ -43,7 +43,7 @@ const fn word([r, g, b]: [u32; 3]) -> u32 {
 
 /// A pixel of light for a display with `R` bits of red, `G` bits of green and `B` bits of blue. It is finer than a pixel of the display. A pass
 /// over the finished band, [`Output`], makes pixels of the display, with 8x8 ordered dither and the curve of the display. A program that draws
-/// light shows smoother colours than a program that draws pixels of the display directly, and takes 7 to 9 instructions more for each pixel of
+/// light shows smoother colours than a program that draws pixels of the display directly, and takes 7 to 11 instructions more for each pixel of
 /// the picture on a Cortex-M3.
 #[derive(Clone, Copy, Default, PartialEq, Eq, FromBytes, IntoBytes, Immutable, KnownLayout)]
 #[repr(transparent)]

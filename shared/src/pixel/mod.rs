@@ -79,7 +79,7 @@ pub trait Pixel: PixelFormat {
     /// Converts a colour from the tables of a material, [`Self::Stored`], back to a pixel.
     fn from_stored(stored: Self::Stored) -> Self;
 
-    /// The entry of a table of colours: the pixel of channels in unsigned Q8.8 that are scaled to [`PixelFormat::DEPTH`], by a
+    /// The entry of a table of colours: the pixel of channels in unsigned Q8.8 that are scaled to [`Self::LEVELS`], by a
     /// [`dither::threshold`].
     #[doc(hidden)]
     fn tabled(channels: [u32; 3], threshold: u32) -> Self::Stored {
@@ -99,7 +99,7 @@ pub trait Pixel: PixelFormat {
         self.channels()
     }
 
-    /// The channels, for [`Self::mixed_from`], of a colour in unsigned Q8.8 that is scaled to [`PixelFormat::DEPTH`].
+    /// The channels, for [`Self::mixed_from`], of a colour in unsigned Q8.8 that is scaled to [`Self::LEVELS`].
     #[doc(hidden)]
     fn quantised_to_mix(channels: [u32; 3], threshold: u32) -> [u8; 3] {
         quantise(channels, Self::DEPTH, threshold)
