@@ -40,7 +40,7 @@ const fn sunset() -> [u8; 2 * SIDE * SIDE] {
 /// Errors of the library, if a constant of this file is wrong.
 pub(crate) fn draw() -> Result<(SimulatorDisplay<Rgb565>, Stats), Box<dyn std::error::Error>> {
     // Read in place: on a microcontroller the mesh stays in flash.
-    let stream = Stream::parse(include_stream!("../firmware/teapot.tri"))?;
+    let stream = Stream::parse_included(include_stream!("../firmware/teapot.tri"))?;
     let mut memory = vec![0; LAYOUT.words::<Rgb565>()];
     let mut band = [Rgb565::BLACK; LAYOUT.band()];
     let mut display = SimulatorDisplay::<Rgb565>::new(Size::new(320, 240));

@@ -8,7 +8,7 @@ const LAYOUT: Layout = Layout::new(240, 40);
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
     // A program for a microcontroller reads the mesh from flash, and keeps `memory` and `band` in a `static`.
-    let stream = Stream::parse(include_stream!("../firmware/teapot.tri"))?;
+    let stream = Stream::parse_included(include_stream!("../firmware/teapot.tri"))?;
     let (mut memory, mut band) = (vec![0; LAYOUT.words::<Rgb565>()], [Rgb565::BLACK; LAYOUT.band()]);
     let mut display = SimulatorDisplay::<Rgb565>::new(Size::new(240, 240));
 

@@ -14,7 +14,7 @@ const LAYOUT: Layout = Layout::new(240, 40).objects(2);
 /// # Errors
 /// The stream has no mesh with one of the names, or the layout has too little room.
 pub(crate) fn draw() -> Result<(SimulatorDisplay<Rgb565>, Stats), Box<dyn std::error::Error>> {
-    let stream = Stream::parse(include_stream!("gauge.tri"))?;
+    let stream = Stream::parse_included(include_stream!("gauge.tri"))?;
     let (mut memory, mut band) = (vec![0; LAYOUT.words::<Rgb565>()], [Rgb565::BLACK; LAYOUT.band()]);
     let mut display = SimulatorDisplay::new(Size::new(480, 240));
     let mut renderer = Renderer::new(stream, Size::new(240, 240), &LAYOUT, &mut memory, &[Shader::AUTO])?;

@@ -44,7 +44,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     use microphong::{Layout, Picture, Renderer, Shader, Stream, include_stream};
     const LAYOUT: Layout = Layout::new(240, 40);
 
-    let stream = Stream::parse(include_stream!("../firmware/teapot.tri"))?;
+    let stream = Stream::parse_included(include_stream!("../firmware/teapot.tri"))?;
     let (mut memory, mut band) = (vec![0; LAYOUT.words::<Rgb565>()], [Rgb565::BLACK; LAYOUT.band()]);
     let mut display = SimulatorDisplay::<Rgb565>::new(Size::new(240, 240));
     let mut renderer = Renderer::with_shader(stream, display.size(), &LAYOUT, &mut memory, Shader::new(&Cartoon))?;

@@ -52,12 +52,14 @@
 //!
 //! | module | what it does |
 //! |---|---|
+//! | `features` | the parts of the core that a program can do without |
 //! | [`format`](mod@format) | the number formats of the interface |
 //! | `arch` | wide products, quotients and counts of zeros, as short as each processor can |
 //! | `math` | reciprocal, root, lookup table of highlights, vectors, in integers |
 //! | [`pixel`] | pixel formats, ordered dither, curves of displays |
 //! | [`stream`] | mesh files in flash, checked and read in place |
 //! | `scene` | what is drawn: objects in the world, lights, a camera |
+//! | `requirements` | the features that a mesh file needs |
 //! | `geometry` | object space to the screen, and what need not be drawn |
 //! | `lighting` | lights, and what materials reflect of them |
 //! | `setup` | edges and gradients of a triangle |
@@ -83,6 +85,8 @@ mod arch;
 mod band_target;
 mod display;
 mod error;
+#[doc(hidden)]
+pub mod features;
 pub mod format;
 mod frame;
 #[doc(hidden)]
@@ -92,6 +96,7 @@ mod mesh;
 pub mod method;
 pub mod pixel;
 mod placement;
+mod requirements;
 #[doc(hidden)]
 pub mod scene;
 mod shader;

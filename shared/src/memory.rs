@@ -2,6 +2,7 @@
 
 use crate::{
     coverage::sample::Sample,
+    features::LIGHTS,
     geometry::{bin::Entry, projection::ScreenVertex},
     lighting::reflectance::Reflectance,
     math::highlight_lut::HighlightLut,
@@ -201,7 +202,8 @@ const fn padded(bytes: usize) -> usize {
 /// The sizes that docs/design.md states.
 const _: () = {
     assert!(size_of::<ScreenVertex>() == 32 && size_of::<Entry>() == 8 && size_of::<ActiveTriangle>() == 132);
-    assert!(size_of::<Reflectance>() == 396 && size_of::<HighlightLut>() == 8200 && size_of::<Sample>() == 72);
+    assert!(!LIGHTS || size_of::<Reflectance>() == 396);
+    assert!(size_of::<HighlightLut>() == 8200 && size_of::<Sample>() == 72);
 };
 
 /// The memory of a renderer, divided into its parts.

@@ -1,6 +1,7 @@
 //! The place of an object in one frame, computed once before its triangles are drawn.
 
 use crate::{
+    features::OBJECTS,
     format::GeometricError,
     geometry::{area::Area, cull::Facing, detail::tolerance, lens::Lens, model_view::ModelView, projection::View, region::Region},
     lighting::lights::{Directions, Lighting},
@@ -114,6 +115,9 @@ impl<'r> Placements<'r> {
 
     /// Sorts indices by the depth of their objects. Equally near objects stay in the order of the scene. Returns whether the order has changed.
     pub(crate) fn sort(placements: &[Placement], order: &mut [u32]) -> bool {
+        if !OBJECTS {
+            return false;
+        }
         let key = |index: &Cell<u32>| {
             let index = index.get();
             (placements.get(index as usize).map_or(i32::MAX, |placement| placement.depth), index)
@@ -141,6 +145,9 @@ impl<'r> Placements<'r> {
 
     /// The object that has triangle `id` of the frame.
     pub(crate) fn with_triangle(self, scene: &'r Scene<'_>, id: u32) -> Option<(&'r Placement, &'r Object)> {
+        if !OBJECTS {
+            return self.object(scene, 0);
+        }
         // They follow one another without a gap: it is the last one that does not start behind the triangle.
         let starts = |&index: &u32| self.placements.get(index as usize).is_some_and(|placement| placement.first_triangle <= id);
         self.object(scene, *self.order.get(self.order.partition_point(starts).wrapping_sub(1))?)

@@ -3,9 +3,10 @@
 use crate::{
     Stream,
     error::{MAX_SIDE, RenderError},
+    features::{self, Feature},
     format::{ErrorBudget, LARGEST_BUDGET, LEAST_BUDGET, LEVEL, MAX_LIGHTS},
     frame::{ColourSettings, Colours, Frame, Preparation, Prepared, Seams, Settings},
-    geometry::{area::Area, lens::Lens, model_view::ModelView, region::Region},
+    geometry::{lens::Lens, model_view::ModelView, region::Region},
     lighting::{lights::Directions, material_tables::fill_ramps, reflectance::LitMaterial},
     memory::{Layout, Memory, take_ramps},
     method::{Facts, Method},
@@ -16,7 +17,8 @@ use crate::{
     stream::record::{Camera, DIRECTIONAL, Light, Material, PERSPECTIVE, VIEWER_LOCAL},
 };
 use core::mem;
-use embedded_graphics_core::{geometry::Size, primitives::Rectangle};
+use embedded_graphics_core::geometry::Size;
+use zerocopy::FromZeros;
 
 /// A renderer, which draws the frames of a [`Scene`] in the pixel format `C`. It owns the scene and all settings, and works in memory that
 /// the program lends it; nothing is allocated.
@@ -54,7 +56,7 @@ impl<'a, C: Pixel> Renderer<'a, C> {
     /// - Returns [`RenderError::Layout`] if `layout` has another width than `size`, or no rows.
     /// - Returns [`RenderError::Memory`], [`RenderError::Materials`] or [`RenderError::Objects`] if there is too little room.
     /// - Returns [`RenderError::Light`] or [`RenderError::Exponent`] if the method cannot shade this scene.
-    /// - Returns [`RenderError::Feature`] if the stream has text labels and this crate is built without the feature `text`.
+    /// - Returns [`RenderError::Feature`] if the stream needs a cargo feature that this crate is built without.
     pub fn new(stream: Stream<'a>, size: Size, layout: &Layout, memory: &'a mut [u64], shaders: &[Shader<C>]) -> Result<Self, RenderError> {
         let method = stream.header.shader;
         let shader = shaders.iter().find(|shader| shader.facts().id == method).ok_or(RenderError::UnknownMethod { method })?;
@@ -92,11 +94,11 @@ impl<'a, C: Pixel> Renderer<'a, C> {
         let need = layout.words::<C>();
         let (ramps, memory) = take_ramps::<C>(layout, memory).ok_or(RenderError::Memory { need })?;
         let (memory, objects, materials) = Memory::new(layout, memory).ok_or(RenderError::Memory { need })?;
+        if let Some(feature) = Feature::missing(&stream, &Channels::of::<C>()) {
+            return Err(RenderError::Feature { name: feature.name() });
+        }
         check(&stream, shader.facts(), false)?;
         check_tables(shader.method(), layout.highlight_tables)?;
-        if !cfg!(feature = "text") && !stream.labels.is_empty() {
-            return Err(RenderError::Feature { name: "text" });
-        }
         let settings = Settings {
             size,
             processors: layout.processors as u32,
@@ -109,7 +111,7 @@ impl<'a, C: Pixel> Renderer<'a, C> {
             levels_of_detail: true,
             partial_redraw: false,
         };
-        let scene = Scene::new(stream, materials, objects, limits(shader.facts(), false));
+        let scene = Scene::new(stream, materials, objects, limits(shader.facts(), false), Channels::of::<C>());
         let colours = ColourSettings { shader, dither: true, gamma: None };
         Ok(Self {
             settings,
@@ -153,7 +155,11 @@ impl<'a, C: Pixel> Renderer<'a, C> {
         let Self { settings, colours, ramps, scene, memory: Memory { reflectances, tables, error_bounds, .. }, .. } = self;
         let (method, ColourSettings { dither, gamma, .. }) = (settings.method, colours);
         let (facts, ambient) = (method.facts(), scene.ambient);
-        let lights: heapless::Vec<Light, MAX_LIGHTS> = heapless::Vec::from_slice(scene.lights()).unwrap_or_default();
+        let mut lights: heapless::Vec<Light, MAX_LIGHTS> = heapless::Vec::from_slice(scene.lights()).unwrap_or_default();
+        if !features::LIGHTS && lights.is_empty() {
+            // A black light takes the place of none.
+            let _ = lights.push(Light::new_zeroed());
+        }
         for (index, material) in scene.stale_materials() {
             let (Some(reflectance), Some(ramps), Some(bounds)) =
                 (reflectances.get_mut(index), ramps.get_mut(index), error_bounds.get_mut(index))
@@ -197,7 +203,7 @@ impl<'a, C: Pixel> Renderer<'a, C> {
     /// Returns [`RenderError::Feature`] if this crate is built without the feature `perspective`, and [`RenderError::Perspective`] if the
     /// camera is perspective and the shading method cannot do this. The setting then stays.
     pub fn set_perspective_correct(&mut self, on: bool) -> Result<(), RenderError> {
-        if on && !cfg!(feature = "perspective") {
+        if on && !features::PERSPECTIVE {
             return Err(RenderError::Feature { name: "perspective" });
         }
         let scene = &self.scene;
@@ -253,7 +259,7 @@ impl<'a, C: Pixel> Renderer<'a, C> {
     /// memory has no room for it ([`Layout::antialias`]). Antialiasing is then off.
     pub fn set_antialias(&mut self, antialias: bool) -> Result<(), RenderError> {
         self.settings.antialias = false;
-        if antialias && !cfg!(feature = "antialias") {
+        if antialias && !features::ANTIALIAS {
             return Err(RenderError::Feature { name: "antialias" });
         }
         if antialias && self.memory.samples.is_empty() {
@@ -277,6 +283,7 @@ impl<'a, C: Pixel> Renderer<'a, C> {
     ///
     /// A text or image that the program itself draws under or over the picture is not watched. Call [`Self::invalidate`] with its area when
     /// it changes.
+    #[cfg(feature = "redraw")]
     pub fn set_partial_redraw(&mut self, on: bool) {
         self.settings.partial_redraw = on;
     }
@@ -284,8 +291,9 @@ impl<'a, C: Pixel> Renderer<'a, C> {
     /// Marks an area of the picture to be drawn and sent again by the next frame. With partial redraw ([`Self::set_partial_redraw`]), call
     /// it when something changes that the program itself draws over the picture, for example a clock. `area` is in pixels of the picture,
     /// and is clipped to it. Areas of several calls add up.
-    pub fn invalidate(&mut self, area: Rectangle) {
-        let area = Area::of(area, self.settings.size);
+    #[cfg(feature = "redraw")]
+    pub fn invalidate(&mut self, area: embedded_graphics_core::primitives::Rectangle) {
+        let area = crate::geometry::area::Area::of(area, self.settings.size);
         if !area.is_empty() {
             if !mem::replace(&mut self.is_invalidated, true) {
                 self.clear_region();
@@ -368,7 +376,7 @@ impl<'a, C: Pixel> Renderer<'a, C> {
             self.fill_tables();
         }
         // Everything is drawn where colours have changed, or the view has.
-        let is_partial = self.settings.partial_redraw && !self.scene.repainted;
+        let is_partial = features::REDRAW && self.settings.partial_redraw && !self.scene.repainted;
         if !is_partial {
             self.region.fill(self.settings.size);
         } else if !self.is_invalidated {

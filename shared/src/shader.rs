@@ -1,14 +1,16 @@
 //! A shading method together with the loops that draw it in one pixel format.
 
 use crate::{
+    features::COLOURS,
     geometry::bin::{Key, Walk},
     mesh::Drawing,
     method::{
-        DrawTriangle, Facts, General, Loops, Method, Style, auto::Auto, flat::Flat, gouraud::Gouraud, phong::Phong,
-        renq_newton::RenqNewton, six_point::SixPoint, sqrt6::Sqrt6,
+        ErrorBounds, Facts, General, LitMaterial, Loops, Method, Shading, Style, TriangleSetup, auto::Auto, flat::Flat, gouraud::Gouraud,
+        needs_general, phong::Phong, renq_newton::RenqNewton, six_point::SixPoint, sqrt6::Sqrt6,
     },
     pixel::Pixel,
-    raster::band::Band,
+    raster::{band::Band, canvas::Canvas},
+    stream::record::Triangle,
 };
 use core::fmt;
 
@@ -22,6 +24,8 @@ pub struct Shader<C: Pixel> {
     pub(crate) loops: TriangleLoops<C>,
     /// Loops for three channels.
     three_channels: TriangleLoops<C>,
+    /// The general loop, unless the program needs none.
+    general: TriangleLoops<C>,
 }
 
 /// The type of [`Drawing::run`] with the loops of one method.
@@ -32,7 +36,28 @@ pub(crate) struct TriangleLoops<C: Pixel> {
     /// Draws the triangles of a mesh that lie in a band.
     pub(crate) run: Run<C>,
     /// Draws one triangle.
-    pub(crate) draw: DrawTriangle<C>,
+    pub(crate) draw: fn(&Drawing<'_, C>, &Triangle, &mut Band<'_, C>) -> u32,
+}
+
+/// A method whose loops draw everything: a program that has no other pointer to it contains no general loop of it.
+struct LoopsAlone<M>(M);
+
+impl<M: Method> Method for LoopsAlone<M> {
+    fn facts(&self) -> &'static Facts {
+        self.0.facts()
+    }
+
+    fn error_bounds(&self, reflectance: LitMaterial<'_>, exponent: u16, lights: usize) -> ErrorBounds {
+        self.0.error_bounds(reflectance, exponent, lights)
+    }
+
+    fn needs_highlight_tables(&self) -> bool {
+        self.0.needs_highlight_tables()
+    }
+
+    fn shade(&self, _: &TriangleSetup<'_>, _: &Shading<'_>, _: &mut dyn Canvas) -> u32 {
+        0
+    }
 }
 
 impl<C: Pixel> Clone for TriangleLoops<C> {
@@ -45,38 +70,41 @@ impl<C: Pixel> Copy for TriangleLoops<C> {}
 
 impl<C: Pixel> TriangleLoops<C> {
     const fn of<L: Loops, const THREE: bool>() -> Self {
-        Self { run: |drawing, entry, walk, band| drawing.run::<L, THREE>(entry, walk, band), draw: L::draw::<C, THREE> }
+        Self {
+            run: |drawing, entry, walk, band| drawing.run::<L, THREE>(entry, walk, band),
+            draw: |drawing, triangle, band| drawing.draw::<L, THREE>(triangle, band),
+        }
     }
 }
 
 impl<C: Pixel> Shader<C> {
     /// Flat shading: each triangle has one colour. It suits objects with facets, and is the fastest method.
-    pub const FLAT: Self = Self::with_loops(&Flat);
+    pub const FLAT: Self = Self::with_loops(&LoopsAlone(Flat));
     /// Gouraud shading: light is computed at the corners of a triangle and interpolated linearly. It suits matte surfaces, and highlights that are
     /// wider than a triangle.
-    pub const GOURAUD: Self = Self::with_loops(&Gouraud);
+    pub const GOURAUD: Self = Self::with_loops(&LoopsAlone(Gouraud));
     /// Six-point shading: light is computed at the corners and the midpoints of the edges of a triangle, and interpolated by a quadratic
     /// polynomial. It suits smooth surfaces, but flattens highlights that are narrower than a triangle.
-    pub const SIX_POINT: Self = Self::with_loops(&SixPoint);
+    pub const SIX_POINT: Self = Self::with_loops(&LoopsAlone(SixPoint));
     /// Phong shading: the normal is interpolated and normalised at every pixel. Highlights use the half vector H between light and viewer
     /// (Blinn). All other methods approximate this result.
-    pub const PHONG: Self = Self::with_loops(&Phong);
+    pub const PHONG: Self = Self::with_loops(&LoopsAlone(Phong));
     /// Phong-like shading for large triangles: the square root of N·H is computed at the corners of a triangle and the midpoints of its edges, and
     /// interpolated quadratically. At each pixel it is squared and raised to the exponent of the material. The result is almost the same as with
     /// [`Shader::PHONG`], in less time.
-    pub const SQRT6: Self = Self::with_loops(&Sqrt6);
+    pub const SQRT6: Self = Self::with_loops(&LoopsAlone(Sqrt6));
     /// Phong shading that normalises without square root, division or table of roots: the normal is interpolated linearly, its reciprocal
     /// length quadratically, and a step of Newton's method at every pixel corrects the length. Under point lights or with a local viewer it
     /// draws like [`Shader::PHONG`].
-    pub const RENQ_NEWTON: Self = Self::with_loops(&RenqNewton);
+    pub const RENQ_NEWTON: Self = Self::with_loops(&LoopsAlone(RenqNewton));
 
     /// A method that chooses for each triangle the cheapest way whose error stays within a budget: one colour, linear interpolation, two
     /// kinds of quadratic interpolation, or Phong shading. [`Renderer::set_budget`](crate::Renderer::set_budget) sets the budget. This is
     /// the default of `microphong convert`.
-    pub const AUTO: Self = Self::with_loops(&Auto::<true>);
+    pub const AUTO: Self = Self::with_loops(&LoopsAlone(Auto::<true>));
     /// A variant of [`Shader::AUTO`] without quadratic interpolation. Its code takes about 60 % of the flash that the code of `AUTO` takes. It keeps
     /// the same error budget, but is slower on large triangles.
-    pub const AUTO_LINEAR: Self = Self::with_loops(&Auto::<false>);
+    pub const AUTO_LINEAR: Self = Self::with_loops(&LoopsAlone(Auto::<false>));
 
     /// All shading methods of this crate. A program that uses this list contains the code of every method.
     pub const ALL: [Self; 8] =
@@ -86,14 +114,16 @@ impl<C: Pixel> Shader<C> {
     #[must_use]
     pub const fn new(method: &'static dyn Method) -> Self {
         let general = TriangleLoops::of::<General, false>();
-        Self { method, take: General::take, loops: general, three_channels: general }
+        Self { method, take: General::take, loops: general, three_channels: general, general }
     }
 
-    const fn with_loops<M: Method + Loops>(method: &'static M) -> Self {
-        // A grey format has one channel.
+    const fn with_loops<M: Method + Loops>(method: &'static LoopsAlone<M>) -> Self {
+        // A grey format has one channel, and so has a program without the feature `colours`.
         let loops = TriangleLoops::of::<M, false>();
-        let three_channels = if M::APART && !C::GRAY { TriangleLoops::of::<M, true>() } else { loops };
-        Self { method, take: M::take, loops, three_channels }
+        let three_channels = if M::APART && !C::GRAY && COLOURS { TriangleLoops::of::<M, true>() } else { loops };
+        let method: &'static dyn Method = if needs_general::<M, C>() { &method.0 } else { method };
+        let general = if needs_general::<M, C>() { TriangleLoops::of::<General, false>() } else { loops };
+        Self { method, take: M::take, loops, three_channels, general }
     }
 
     /// The loops that draw a style.
@@ -102,7 +132,7 @@ impl<C: Pixel> Shader<C> {
         match ((self.take)(style), style.three_channels) {
             (true, false) => self.loops,
             (true, true) => self.three_channels,
-            (false, _) => TriangleLoops::of::<General, false>(),
+            (false, _) => self.general,
         }
     }
 }

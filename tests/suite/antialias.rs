@@ -451,26 +451,34 @@ fn memory_that_is_missing_is_named() {
     assert_eq!(renderer.band_rows(), 2, "still without");
 }
 
-/// Pixels wholly inside one triangle are those of the ordinary picture; others change little by little.
+/// Pixels wholly inside one triangle are those of the ordinary picture. At most five of a picture are a step of a channel off, because polynomials of
+/// finer corners are rounded otherwise.
 #[test]
 fn inner_pixels_stay() {
     let scene = scene::load("dodecahedron").unwrap();
     let stream: Stream<'_> = scene.stream.parse().unwrap();
-    let mut inner = vec![false; 160 * 120];
-    for facet in &Frame::new(stream, (160, 120), 3).facets {
-        let corners = facet.screen.map(|corner| corner.map(|c| (c * 16.0) as i32));
-        let contour = TriangleCoverage::new(corners, 4);
-        let [top, bottom] = contour.rows();
-        for y in top..bottom {
-            let [start, stop] = contour.row(y).inner;
-            (start..stop).for_each(|x| inner[(y * 160 + x) as usize] = true);
+    for frame in 0..24 {
+        let mut inner = vec![false; 160 * 120];
+        for facet in &Frame::new(stream, (160, 120), frame).facets {
+            let corners = facet.screen.map(|corner| corner.map(|c| (c * 16.0) as i32));
+            let contour = TriangleCoverage::new(corners, 4);
+            let [top, bottom] = contour.rows();
+            for y in top..bottom {
+                let [start, stop] = contour.row(y).inner;
+                (start..stop).for_each(|x| inner[(y * 160 + x) as usize] = true);
+            }
         }
-    }
-    for shader in Shader::ALL {
-        let size = Size::new(160, 120);
-        let Ok((plain, _)) = render::frame::<Rgb565>(stream, size, shader, 120, 3) else { continue };
-        let (smooth, _) = render::frame::<Rgb565>(stream, size, smooth(shader), 120, 3).unwrap();
-        let changed = plain.iter().zip(&smooth).zip(&inner).filter(|((a, b), inner)| **inner && a != b).count();
-        assert_eq!(changed, 0, "{}", shader.name());
+        for shader in Shader::ALL {
+            let size = Size::new(160, 120);
+            let Ok((plain, _)) = render::frame::<Rgb565>(stream, size, shader, 120, frame) else { continue };
+            let (smooth, _) = render::frame::<Rgb565>(stream, size, smooth(shader), 120, frame).unwrap();
+            let changed: Vec<_> = plain.iter().zip(&smooth).zip(&inner).filter(|((a, b), inner)| **inner && a != b).collect();
+            let is_a_step = |(a, b): (&Rgb565, &Rgb565)| a.r().abs_diff(b.r()).max(a.g().abs_diff(b.g())).max(a.b().abs_diff(b.b())) == 1;
+            assert!(
+                changed.len() <= 5 && changed.iter().all(|(pair, _)| is_a_step(*pair)),
+                "{}, frame {frame}: {changed:?}",
+                shader.name()
+            );
+        }
     }
 }

@@ -4,11 +4,12 @@
 //! The streams are the fuzzers' corpus, random ones of `microphong stress` with damaged bytes, and some whose values are the largest and smallest of
 //! the format, or one beyond. Each replaces the stream in the one program of a board.
 
+use crate::parts::Parts;
 use microphong::{
     format::{MAX_LIGHTS, Share},
     stream::{
         self, MAX_EXPONENT, MAX_FOCAL, MAX_GAIN, MAX_LENGTH, MIN_FOCAL, MIN_NEAR,
-        record::{Header, Instance, Key, LABEL_TEXT, Label, Light, Material, Mesh, ORTHOGRAPHIC, POINT, RIGHT, Track, Triangle, Vertex},
+        record::{Header, LABEL_TEXT, Label, Light, Material, ORTHOGRAPHIC, POINT, RIGHT, Triangle},
     },
 };
 use microphong_sim::{
@@ -20,7 +21,6 @@ use microphong_sim::{
 };
 use microphong_tests::{cases, message, seed};
 use std::{error::Error, fs, path::Path};
-use zerocopy::IntoBytes;
 
 type Result<T = ()> = std::result::Result<T, Box<dyn Error>>;
 
@@ -58,69 +58,6 @@ fn drawable(board: Board, case: Case) -> Vec<u8> {
     let shader = if board.has(case.style.shader) { case.style.shader } else { board.shader() };
     let prepared = case.stream.parse().ok().and_then(|stream| verify::prepare(case.stream.as_bytes(), shader, stream.header.frames).ok());
     prepared.unwrap_or_else(|| case.stream.as_bytes().to_vec())
-}
-
-/// A stream in parts that can be changed.
-struct Parts {
-    header: Header,
-    meshes: Vec<Mesh>,
-    materials: Vec<Material>,
-    lights: Vec<Light>,
-    instances: Vec<Instance>,
-    tracks: Vec<Track>,
-    keys: Vec<Key>,
-    vertices: Vec<Vertex>,
-    triangles: Vec<Triangle>,
-    labels: Vec<Label>,
-    names: Vec<u8>,
-}
-
-impl Parts {
-    fn of(stream: &StreamBytes) -> Result<Self> {
-        let stream = stream.parse()?;
-        Ok(Self {
-            header: *stream.header,
-            meshes: stream.meshes.to_vec(),
-            materials: stream.materials.to_vec(),
-            lights: stream.lights.to_vec(),
-            instances: stream.instances.to_vec(),
-            tracks: stream.tracks.to_vec(),
-            keys: stream.keys.to_vec(),
-            vertices: stream.vertices.to_vec(),
-            triangles: stream.triangles.to_vec(),
-            labels: stream.labels.to_vec(),
-            names: stream.names.to_vec(),
-        })
-    }
-
-    /// The stream, whose counts and length are right, but for what `lie` makes of its header.
-    fn stream(mut self, lie: fn(&mut Header)) -> Vec<u8> {
-        let header = &mut self.header;
-        (header.meshes, header.materials, header.lights) =
-            (self.meshes.len() as u16, self.materials.len() as u16, self.lights.len() as u16);
-        (header.instances, header.tracks, header.keys) = (self.instances.len() as u16, self.tracks.len() as u16, self.keys.len() as u32);
-        (header.vertices, header.triangles) = (self.vertices.len() as u32, self.triangles.len() as u32);
-        header.labels = self.labels.len() as u8;
-        header.length = stream::length(header).map_or(u32::MAX, |length| length.saturating_add(self.names.len() as u32));
-        lie(header);
-        let mut bytes = self.header.as_bytes().to_vec();
-        for records in [
-            self.meshes.as_bytes(),
-            self.materials.as_bytes(),
-            self.lights.as_bytes(),
-            self.instances.as_bytes(),
-            self.tracks.as_bytes(),
-            self.keys.as_bytes(),
-            self.vertices.as_bytes(),
-            self.triangles.as_bytes(),
-            self.labels.as_bytes(),
-            &self.names,
-        ] {
-            bytes.extend_from_slice(records);
-        }
-        stream::seal(&mut bytes);
-        bytes
-    }
 }
 
 /// A label in the middle of the picture, as long as can be.

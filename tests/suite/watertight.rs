@@ -121,7 +121,7 @@ fn closed_meshes_have_no_holes() {
 #[test]
 fn planes_alone_would_leave_holes() {
     let case = Case::new("bunny of thick triangles", &thick(&scene::load("bunny").unwrap().stream), 480);
-    assert!(differences(&case, Shader::FLAT.into(), 59).0 > 0);
+    assert!((0..120).any(|frame| differences(&case, Shader::FLAT.into(), frame).0 > 0));
 }
 
 #[test]

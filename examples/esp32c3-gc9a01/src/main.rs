@@ -36,7 +36,7 @@ fn main() -> ! {
     let mut display = defmt::expect!(display.ok(), "the display's bus failed");
 
     let sensor = defmt::unwrap!(TemperatureSensor::new(pins.TSENS, Default::default()).ok());
-    let stream = defmt::expect!(Stream::parse(scene::MESH), "the mesh in flash is damaged");
+    let stream = defmt::expect!(Stream::parse_included(scene::MESH), "the mesh is not from include_stream!");
     let mut renderer = defmt::expect!(scene::renderer(stream, MEMORY.take()), "the mesh cannot be drawn");
     let (band, mut celsius) = (BAND.take(), 20.0);
     loop {

@@ -45,7 +45,7 @@ fn main() -> ! {
     // The sensor needs this time to start. Its mode 8 makes orientations of gyroscope and accelerometer.
     block_for(Duration::from_millis(650));
     defmt::expect!(sensor.blocking_write(SENSOR, &[0x3d, 0x08]), "the sensor does not answer");
-    let stream = defmt::expect!(Stream::parse(scene::MESH), "the mesh in flash is damaged");
+    let stream = defmt::expect!(Stream::parse_included(scene::MESH), "the mesh is not from include_stream!");
     let mut renderer = defmt::expect!(scene::renderer(stream, MEMORY), "the mesh cannot be drawn");
     loop {
         // A quaternion w, x, y, z, in 16 bits each. Without the last six of them, noise moves nothing: a step is half a degree.

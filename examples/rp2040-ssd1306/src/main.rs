@@ -38,7 +38,7 @@ fn main() -> ! {
     let mut display = Ssd1306::new(bus, DisplaySize128x64, DisplayRotation::Rotate0).into_buffered_graphics_mode();
     defmt::expect!(display.init().ok(), "no display answers at address 0x3C; look at its wires");
 
-    let stream = defmt::expect!(Stream::parse(scene::MESH), "the mesh in flash is damaged");
+    let stream = defmt::expect!(Stream::parse_included(scene::MESH), "the mesh is not from include_stream!");
     let mut renderer = defmt::expect!(scene::renderer(stream, MEMORY), "the mesh cannot be drawn");
     for number in (0..u32::from(stream.header.frames)).cycle() {
         let picture = defmt::expect!(scene::picture(&mut renderer, BAND, number), "the band is too short");

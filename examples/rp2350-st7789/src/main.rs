@@ -36,7 +36,7 @@ fn main() -> ! {
     let display = builder.invert_colors(ColorInversion::Inverted).init(&mut Delay);
     let mut display = defmt::expect!(display.ok(), "the display's bus failed");
 
-    let stream = defmt::expect!(Stream::parse(scene::MESH), "the mesh in flash is damaged");
+    let stream = defmt::expect!(Stream::parse_included(scene::MESH), "the mesh is not from include_stream!");
     let mut renderer = defmt::expect!(scene::renderer(stream, MEMORY), "the mesh cannot be drawn");
     let mut rate = None;
     for number in (0..u32::from(stream.header.frames)).cycle() {

@@ -10,7 +10,7 @@ use microphong_boards::{Machine, build::releases, elf::Elf, stack, verify};
 use microphong_models::scene::Scene;
 use microphong_render::{
     chip::Core,
-    program::Program,
+    program::{Features, Program},
     render::{self, Format},
     shader::Shader,
 };
@@ -56,19 +56,28 @@ pub struct Size {
 pub fn measure(programs: &[Program], scene: &Scene, tick: &(dyn Fn() + Sync)) -> Result<Vec<Size>> {
     let stream = scene.stream.parse()?;
     let bytes = verify::prepare(scene.stream.as_bytes(), Shader::of(&stream)?, stream.header.frames.clamp(1, FRAMES))?;
-    let mut built = Vec::new();
     programs.iter().try_for_each(|program| machine(program.core).check())?;
-    for core in Core::ALL {
-        let names: Vec<_> = programs.iter().filter(|program| program.core == core).map(|program| program.name()).collect();
+    let mut built = Vec::new();
+    for (core, features) in Core::ALL.into_iter().flat_map(|core| Features::ALL.map(|features| (core, features))) {
+        let of = programs.iter().filter(|program| (program.core, program.features) == (core, features));
+        let names: Vec<_> = of.clone().map(|program| program.name()).collect();
         let names: Vec<_> = names.iter().map(String::as_str).collect();
-        if !names.is_empty() {
-            built.push((core, releases(&names, "", core.target(), &format!("programs for {}", core.title()))?));
+        if names.is_empty() {
+            continue;
+        }
+        let (flags, what) = match features {
+            Features::Default => ("full", ""),
+            Features::None => ("", " without features"),
+        };
+        let folder = releases(&["-p", "size"], &names, flags, core.target(), &format!("programs for {}{what}", core.title()))?;
+        // Programs with other features take the place of these files.
+        for program in of {
+            built.push((*program, Elf::read(&folder.join(program.name()))?.with_stream(&bytes)?));
         }
     }
     let measured = programs.par_iter().map(|program| {
-        let (_, folder) = built.iter().find(|(core, _)| *core == program.core).context("a processor without programs")?;
-        let elf = Elf::read(&folder.join(program.name()))?.with_stream(&bytes)?;
-        let size = size(*program, &elf, &stream);
+        let (_, elf) = built.iter().find(|(built, _)| built == program).context("a program that is not built")?;
+        let size = size(*program, elf, &stream);
         tick();
         size.with_context(|| format!("{} by {} on {}", scene.name, program.shader.name(), program.core.title()))
     });

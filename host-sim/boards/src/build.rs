@@ -33,14 +33,15 @@ pub fn program(board: Board, name: &str) -> Result<PathBuf> {
 /// # Errors
 /// When the target or the compiler is missing, or the program does not compile.
 pub fn release(name: &str, features: &str, target: &str, what: &str) -> Result<PathBuf> {
-    Ok(releases(&[name], features, target, what)?.join(name))
+    Ok(releases(&["--workspace"], &[name], features, target, what)?.join(name))
 }
 
-/// Builds several programs of the workspace `firmware` together, as [`release`] does, and returns their folder.
+/// Builds several programs of the workspace `firmware` together, as [`release`] does, and returns their folder. Features apply to the `packages` alone,
+/// which are options of cargo.
 ///
 /// # Errors
 /// When the target or the compiler is missing, or a program does not compile.
-pub fn releases(names: &[&str], features: &str, target: &str, what: &str) -> Result<PathBuf> {
+pub fn releases(packages: &[&str], names: &[&str], features: &str, target: &str, what: &str) -> Result<PathBuf> {
     let root = sources()?;
     let directory = root.join("firmware");
     install_target(target, &directory)?;
@@ -48,7 +49,9 @@ pub fn releases(names: &[&str], features: &str, target: &str, what: &str) -> Res
     let output = root.join("target/firmware");
     let status = Command::new(env::var_os("CARGO").unwrap_or_else(|| "cargo".into()))
         .current_dir(directory)
-        .args(["build", "--quiet", "--release", "--workspace", "--no-default-features", "--features", features])
+        .args(["build", "--quiet", "--release"])
+        .args(packages)
+        .args(["--no-default-features", "--features", features])
         .args(names.iter().flat_map(|&name| ["--bin", name]))
         .args(["--target", target, "--target-dir"])
         .arg(&output)

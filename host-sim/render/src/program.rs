@@ -6,6 +6,7 @@ use crate::{
     shader::Shader,
 };
 use anyhow::{Context, Result, bail, ensure};
+use microphong::{Stream, features::Feature};
 use std::fmt;
 
 /// Methods that there are programs with.
@@ -14,13 +15,51 @@ pub const SHADERS: [Shader; 4] = [Shader::GOURAUD, Shader::AUTO_LINEAR, Shader::
 pub const FORMATS: [Format; 2] = [Format::Rgb565, Format::Binary];
 
 /// The names of an entry's figures, which is the first line of the record.
-pub const HEAD: &str = "core,format,shader,flash_bytes,ram_bytes,stack_bytes";
+pub const HEAD: &str = "core,features,format,shader,flash_bytes,ram_bytes,stack_bytes";
+
+/// The cargo features of the core in a program.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Features {
+    /// The default features.
+    Default,
+    /// No features: one directional light, an infinitely far viewer, materials of one colour, one object and no movements but an orbit.
+    None,
+}
+
+impl Features {
+    /// All choices that there are programs with.
+    pub const ALL: [Self; 2] = [Self::Default, Self::None];
+
+    /// The name in files.
+    #[must_use]
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Default => "default",
+            Self::None => "none",
+        }
+    }
+
+    /// The least features with which a program can draw `stream` in this format.
+    #[must_use]
+    pub fn needed_by(stream: &Stream<'_>, format: Format) -> Self {
+        if needs(stream, format).is_empty() { Self::None } else { Self::Default }
+    }
+}
+
+/// The cargo features of the core that a program needs to draw `stream` in this format.
+#[must_use]
+pub fn needs(stream: &Stream<'_>, format: Format) -> Vec<Feature> {
+    let channels = format.channels();
+    Feature::ALL.into_iter().filter(|feature| feature.is_needed_by(stream, &channels)).collect()
+}
 
 /// A program.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Program {
     /// The processor that it is compiled for.
     pub core: Core,
+    /// Its cargo features.
+    pub features: Features,
     /// Method of the program.
     pub shader: Shader,
     /// Pixel format of the program.
@@ -28,11 +67,17 @@ pub struct Program {
 }
 
 impl Program {
-    /// All programs for these processors, methods and formats.
+    /// All programs for these processors, features, methods and formats.
     #[must_use]
-    pub fn all(cores: &[Core], shaders: &[Shader], formats: &[Format]) -> Vec<Self> {
-        let of = |&core: &Core| formats.iter().flat_map(move |&format| shaders.iter().map(move |&shader| Self { core, shader, format }));
-        cores.iter().flat_map(of).collect()
+    pub fn all(cores: &[Core], features: &[Features], shaders: &[Shader], formats: &[Format]) -> Vec<Self> {
+        let mut all = Vec::new();
+        for &core in cores {
+            for &features in features {
+                let of = |&format| shaders.iter().map(move |&shader| Self { core, features, shader, format });
+                all.extend(formats.iter().flat_map(of));
+            }
+        }
+        all
     }
 
     /// The name of its file.
@@ -65,14 +110,17 @@ pub struct Entry {
 impl Entry {
     fn parse(line: &str) -> Result<Self> {
         let words: Vec<_> = line.split(',').map(str::trim).collect();
-        let [core, format, shader, flash, ram, stack] = words[..] else {
+        let [core, features, format, shader, flash, ram, stack] = words[..] else {
             bail!("{} words instead of those of `{HEAD}`", words.len());
         };
         let number = |word: &str| word.parse::<u64>().with_context(|| format!("`{word}` is no number"));
         let core = Core::ALL.into_iter().find(|other| other.name() == core).with_context(|| format!("no processor {core}"))?;
+        let features =
+            Features::ALL.into_iter().find(|other| other.name() == features).with_context(|| format!("no features {features}"))?;
         let format = FORMATS.into_iter().find(|other| other.name() == format).with_context(|| format!("no pixel format {format}"))?;
         let shader = SHADERS.into_iter().find(|other| other.name() == shader).with_context(|| format!("no method {shader}"))?;
-        Ok(Self { program: Program { core, shader, format }, flash: number(flash)?, ram: number(ram)?, stack: number(stack)? })
+        let program = Program { core, features, shader, format };
+        Ok(Self { program, flash: number(flash)?, ram: number(ram)?, stack: number(stack)? })
     }
 
     /// Reads a record.
@@ -90,20 +138,21 @@ impl Entry {
 
 impl fmt::Display for Entry {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let Self { program: Program { core, shader, format }, flash, ram, stack } = self;
-        write!(f, "{},{},{},{flash},{ram},{stack}", core.name(), format.name(), shader.name())
+        let Self { program: Program { core, features, shader, format }, flash, ram, stack } = self;
+        write!(f, "{},{},{},{},{flash},{ram},{stack}", core.name(), features.name(), format.name(), shader.name())
     }
 }
 
-/// The common chips, and the share of flash or RAM, whichever is larger, that a program by this method in this format takes of each. The mesh takes so
-/// many bytes of flash, and the renderer's memory and a band take so many bytes of RAM. The rest is taken from the record of this version.
+/// The common chips, and the share of flash or RAM, whichever is larger, that a program takes of each. The program has this method, this format and
+/// these features. The mesh takes so many bytes of flash, and the renderer's memory and a band take so many bytes of RAM. The rest is taken from the
+/// record of this version.
 ///
 /// # Errors
 /// When the record is damaged.
-pub fn loads(shader: Shader, format: Format, [mesh, memory]: [usize; 2]) -> Result<Vec<(Chip, f64)>> {
+pub fn loads(features: Features, shader: Shader, format: Format, [mesh, memory]: [usize; 2]) -> Result<Vec<(Chip, f64)>> {
     let recorded = Entry::all(include_str!("../../../tests/baselines/sizes.csv"))?;
     let load = |chip: Chip| {
-        let program = Program { core: chip.core, shader, format }.recorded();
+        let program = Program { core: chip.core, features, shader, format }.recorded();
         let entry = recorded.iter().find(|entry| entry.program == program).with_context(|| format!("no size of {program:?}"))?;
         Ok((chip, chip.load(entry.flash + mesh as u64, memory as u64 + entry.stack)))
     };
@@ -118,11 +167,12 @@ mod tests {
     fn damaged_lines_say_what_is_wrong() {
         for (line, message) in [
             ("", "it has no line"),
-            ("cortex-m3,binary,gouraud,1", "4 words"),
-            ("cortex-m3,binary,gouraud,1,x,1", "`x` is no number"),
-            ("m3,binary,gouraud,1,1,1", "no processor m3"),
-            ("cortex-m3,gray4,gouraud,1,1,1", "no pixel format gray4"),
-            ("cortex-m3,binary,flat,1,1,1", "no method flat"),
+            ("cortex-m3,none,binary,gouraud,1", "5 words"),
+            ("cortex-m3,none,binary,gouraud,1,x,1", "`x` is no number"),
+            ("m3,none,binary,gouraud,1,1,1", "no processor m3"),
+            ("cortex-m3,some,binary,gouraud,1,1,1", "no features some"),
+            ("cortex-m3,none,gray4,gouraud,1,1,1", "no pixel format gray4"),
+            ("cortex-m3,none,binary,flat,1,1,1", "no method flat"),
         ] {
             let error = format!("{:#}", Entry::all(line).unwrap_err());
             assert!(error.contains(message), "{error}");
@@ -133,7 +183,12 @@ mod tests {
     #[test]
     fn chips_take_what_they_have_room_for() {
         let names = |shader, format, bytes| -> Vec<_> {
-            loads(shader, format, bytes).unwrap().into_iter().filter(|(_, load)| *load <= 1.0).map(|(chip, _)| chip.name).collect()
+            loads(Features::Default, shader, format, bytes)
+                .unwrap()
+                .into_iter()
+                .filter(|(_, load)| *load <= 1.0)
+                .map(|(chip, _)| chip.name)
+                .collect()
         };
         assert_eq!(names(Shader::GOURAUD, Format::Binary, [1000, 20_000]).first(), Some(&"samd21"));
         assert_eq!(names(Shader::GOURAUD, Format::Binary, [200_000, 20_000]).first(), Some(&"stm32f411"));

@@ -8,7 +8,7 @@ use embedded_graphics_core::{
 };
 use microphong::{
     Layout, Renderer, Skips, Stats, Stream,
-    pixel::{FromDrawn, Light, LightGray, PictureCrc, Pixel, PixelFormat, Rgb332, gamma},
+    pixel::{Channels, FromDrawn, Light, LightGray, PictureCrc, Pixel, PixelFormat, Rgb332, gamma},
 };
 
 /// Options of drawing a scene.
@@ -245,6 +245,20 @@ impl Format {
             }
         }
         self.run(Of(layout))
+    }
+
+    /// Properties of the pixels that are drawn for this format.
+    #[must_use]
+    pub fn channels(self) -> Channels {
+        struct Of;
+        impl InFormat for Of {
+            type Output = Channels;
+
+            fn in_format<C: Pixel, F: FromDrawn<C>>(self) -> Channels {
+                Channels::of::<C>()
+            }
+        }
+        self.run(Of)
     }
 
     /// Whether the format has 16 greys or fewer.

@@ -59,7 +59,7 @@ pub fn run<C: Pixel + From<F>, F: FromDrawn<C> + PixelColor>(memory: &mut [u64],
 }
 
 fn draw<C: Pixel + From<F>, F: FromDrawn<C> + PixelColor>(memory: &mut [u64], band: &mut [C], shader: Shader<C>) -> Option<()> {
-    let stream = Stream::parse(stream::bytes()).ok()?;
+    let stream = Stream::parse_included(stream::bytes()).ok()?;
     let mut display = Panel(PhantomData::<F>);
     let mut renderer = Renderer::with_shader(stream, display.size(), &ROOM, memory, shader).ok()?;
     for number in 0..u32::from(stream.header.frames) {

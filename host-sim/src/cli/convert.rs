@@ -4,6 +4,7 @@ use super::{
     Outcome, Usage,
     boards::{BOARDS, Board, TooLarge},
     count::{self, Cost, Counter},
+    features,
     mesh_options::{self, MeshOptions},
     meshes, parse,
     report::{self, Bars},
@@ -116,6 +117,8 @@ struct Line<'a> {
     memory: usize,
     /// The pixel format of that memory.
     format: &'static str,
+    /// Cargo features of the core that the program needs.
+    features: Vec<&'static str>,
     /// Method of the program.
     shader: &'static str,
     /// Whether a common chip or the board of --board has room for the program.
@@ -221,6 +224,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome> {
         layout: text_of(&layout),
         memory: format.bytes(&layout)[0],
         format: format.name(),
+        features: features::names(&stream, format),
         shader: shader.name(),
         fits,
         remedy,
@@ -266,6 +270,8 @@ struct SceneLine<'a> {
     memory: usize,
     /// The pixel format of that memory.
     format: &'static str,
+    /// Cargo features of the core that the program needs.
+    features: Vec<&'static str>,
     remarks: Vec<String>,
     /// Costs of frames, if they were counted.
     costs: Option<Vec<Cost>>,
@@ -310,6 +316,7 @@ fn convert_script(
         layout: text_of(&layout),
         memory: format.bytes(&layout)[0],
         format: format.name(),
+        features: features::names(&stream, format),
         remarks: unseen(&stream, scene.size)?.into_iter().collect(),
         costs: counter.map(|counter| counter.count(&scene)).transpose()?,
     };
@@ -318,7 +325,8 @@ fn convert_script(
         return Ok(Outcome::Done);
     }
     let count = |n: usize| report::grouped(n as u64);
-    let SceneLine { scene, output, objects, meshes, list, triangles, frames, bytes, layout, memory, format, remarks, costs } = line;
+    let SceneLine { scene, output, objects, meshes, list, triangles, frames, bytes, layout, memory, format, features, remarks, costs } =
+        line;
     report::line(&format!(
         "{output}: {} of {} and {}, {}, from {scene}",
         report::counted(objects, ["object", "objects"]),
@@ -333,6 +341,7 @@ fn convert_script(
     }
     report::line(&format!("  {layout}, {} bytes of memory in {format}", count(memory)))?;
     report::line(ACTIVE)?;
+    report::line(&format!("    {}", features::text(&features)))?;
     count::text(costs.as_deref())?;
     Ok(Outcome::Done)
 }
@@ -396,6 +405,7 @@ fn text(line: &Line<'_>, materials: &[Option<&str>]) -> Result<()> {
     let memory = count(line.memory);
     report::line(&format!("  a program needs {memory} bytes of memory in {}, and a band of pixels:\n    {}", line.format, line.layout))?;
     report::line(ACTIVE)?;
+    report::line(&format!("    {}", features::text(&line.features)))?;
     count::text(line.costs.as_deref())?;
     let crossed = match line.crossed {
         0 => None,

@@ -1,6 +1,6 @@
 //! `microphong inspect`.
 
-use super::{Outcome, mesh_options::MeshOptions, meshes, report, scenes};
+use super::{Outcome, features, mesh_options::MeshOptions, meshes, report, scenes};
 use anyhow::{Context, Result};
 use embedded_graphics_core::geometry::Size;
 use microphong::{
@@ -46,6 +46,8 @@ struct Line<'a> {
     labels: usize,
     levels: Vec<Level>,
     bytes: u32,
+    /// Cargo features of the core that a program needs for it, in `Rgb565`.
+    features: Vec<&'static str>,
 }
 
 /// A coarser level of a mesh.
@@ -82,6 +84,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome> {
             labels: stream.labels.len(),
             levels: levels(&stream),
             bytes: header.length,
+            features: features::names(&stream, Format::Rgb565),
         })?;
     } else {
         text(file, &stream, &list)?;
@@ -134,7 +137,8 @@ fn text(file: &str, stream: &Stream<'_>, list: &[meshes::Row]) -> Result<()> {
     let viewer = if header.camera.viewer == VIEWER_LOCAL { "local" } else { "infinite" };
     let frames = report::counted(header.frames, report::FRAMES);
     let shader = Shader::by_id(header.shader).map_or_else(|| format!("number {}", header.shader), |shader| shader.name().to_owned());
-    report::line(&format!("  {kind}, {viewer} viewer, {orbit}, {frames}, shader {shader}"))
+    report::line(&format!("  {kind}, {viewer} viewer, {orbit}, {frames}, shader {shader}"))?;
+    report::line(&format!("  {}", features::text(&features::names(stream, Format::Rgb565))))
 }
 
 fn levels(stream: &Stream<'_>) -> Vec<Level> {

@@ -9,6 +9,7 @@ mod bounds;
 mod compare;
 mod convert;
 mod count;
+mod features;
 #[cfg(feature = "boards")]
 mod growth;
 mod inspect;

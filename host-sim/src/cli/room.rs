@@ -10,7 +10,7 @@ use microphong_sim::{
     convert::{Converted, Largest, Options, Steps},
     levels,
     look::Look,
-    program,
+    program::{self, Features},
     quantise::Part,
     render::{self, Format},
     shader::Shader,
@@ -47,7 +47,7 @@ impl Picture {
     /// The common chip with the most room for a program with a stream, this layout and nothing else, and the share that the program takes of it.
     pub(super) fn roomiest(&self, stream: &Stream<'_>, layout: &Layout) -> Result<(Chip, f64)> {
         let bytes = [stream.header.length as usize, self.format.bytes(layout).into_iter().sum()];
-        let loads = program::loads(Shader::of(stream)?, self.format, bytes)?;
+        let loads = program::loads(Features::needed_by(stream, self.format), Shader::of(stream)?, self.format, bytes)?;
         loads.into_iter().min_by(|one, other| one.1.total_cmp(&other.1)).context("there is no chip")
     }
 }

@@ -1,7 +1,7 @@
 //! `microphong size`.
 
 use super::{
-    Outcome,
+    Outcome, Usage, features,
     mesh_options::MeshOptions,
     parse::{self, Several},
     report, scenes,
@@ -10,8 +10,9 @@ use anyhow::Result;
 use microphong_sim::{
     bench::size::{Size, baseline, measure, picture},
     chip::Chip,
-    program::{Entry, FORMATS, Program, SHADERS},
+    program::{Entry, FORMATS, Features, Program, SHADERS},
     render::Format,
+    scene::Scene,
     shader::Shader,
 };
 use serde::Serialize;
@@ -37,14 +38,18 @@ pub(crate) struct Arguments {
     /// Pixel formats, separated by commas: rgb565, at 240x240 in bands of 16 rows; binary, at 128x64 in bands of 8 rows; or all.
     #[arg(long, value_name = "F,...", default_value = "all", value_parser = formats)]
     format: Several<Format>,
+    /// Cargo features of microphong in the programs, separated by commas: default; none, if the scene needs none; or all. By default these are the
+    /// least that the scene needs.
+    #[arg(long, value_name = "F,...", value_parser = choices)]
+    features: Option<Several<Features>>,
     /// Print one JSON object per program and chip.
     #[arg(long)]
     json: bool,
     /// Measure the programs that FILE lists. Fail if a program takes over 0.2 % more than FILE records.
-    #[arg(long, value_name = "FILE", conflicts_with_all = ["scene", "MeshOptions", "chip", "shader", "format", "json"])]
+    #[arg(long, value_name = "FILE", conflicts_with_all = ["scene", "MeshOptions", "chip", "shader", "format", "features", "json"])]
     check: Option<PathBuf>,
     /// Measure the programs that FILE lists, and record their sizes there. Needs --reason.
-    #[arg(long, value_name = "FILE", requires = "reason", conflicts_with_all = ["scene", "MeshOptions", "chip", "shader", "format", "json", "check"])]
+    #[arg(long, value_name = "FILE", requires = "reason", conflicts_with_all = ["scene", "MeshOptions", "chip", "shader", "format", "features", "json", "check"])]
     renew: Option<PathBuf>,
     /// The reason for the changed sizes, in a sentence. With --renew sizes.csv it is added to sizes-reasons.md.
     #[arg(long, value_name = "TEXT", requires = "renew", value_parser = parse::reason)]
@@ -72,12 +77,17 @@ fn formats(text: &str) -> Result<Several<Format>, String> {
     parse::several(text, &FORMATS, |text| parse::format_among(text, &FORMATS))
 }
 
+fn choices(text: &str) -> Result<Several<Features>, String> {
+    parse::several(text, &Features::ALL, |text| parse::among(text, &Features::ALL, |features| features.name()))
+}
+
 /// A program on a chip.
 #[derive(Serialize)]
 struct Line<'a> {
     scene: &'a str,
     chip: &'a str,
     core: &'a str,
+    features: &'a str,
     shader: &'a str,
     format: &'a str,
     width: u32,
@@ -100,6 +110,7 @@ impl<'a> Line<'a> {
             scene,
             chip: chip.name,
             core: chip.core.name(),
+            features: program.features.name(),
             shader,
             format,
             width,
@@ -116,7 +127,10 @@ impl<'a> Line<'a> {
         let Size { flash_bytes, mesh_bytes, ram_bytes, stack_bytes } = self.size;
         let [flash, with_mesh, ram, stack] = [flash_bytes, flash_bytes + mesh_bytes, ram_bytes, stack_bytes].map(report::grouped);
         let fits = if self.fits { "yes" } else { "no" };
-        report::line(&format!("  {:<12} {:<7} {flash:>9} {with_mesh:>10} {ram:>8} {stack:>8}  {fits}", self.shader, self.format))
+        report::line(&format!(
+            "  {:<12} {:<7} {:<8} {flash:>9} {with_mesh:>10} {ram:>8} {stack:>8}  {fits}",
+            self.shader, self.format, self.features
+        ))
     }
 }
 
@@ -134,7 +148,8 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome> {
             cores.push(chip.core);
         }
     }
-    let programs = Program::all(&cores, &arguments.shader.values, &arguments.format.values);
+    let features = features_of(&scene, arguments)?;
+    let programs = Program::all(&cores, &features, &arguments.shader.values, &arguments.format.values);
     let bar = report::progress(programs.len() as u64, "building and measuring programs");
     let sizes = measure(&programs, &scene, &|| bar.inc(1))?;
     bar.finish_and_clear();
@@ -143,8 +158,8 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome> {
             let [flash, ram] = [chip.flash_bytes, chip.ram_bytes].map(report::grouped);
             report::line(&format!("{}, {} on {} ({flash} bytes of flash, {ram} of RAM)", scene.name, chip.core.title(), chip.name))?;
             report::line(&format!(
-                "  {:<12} {:<7} {:>9} {:>10} {:>8} {:>8}  fits",
-                "method", "format", "flash", "with mesh", "RAM", "stack"
+                "  {:<12} {:<7} {:<8} {:>9} {:>10} {:>8} {:>8}  fits",
+                "method", "format", "features", "flash", "with mesh", "RAM", "stack"
             ))?;
         }
         for (program, size) in programs.iter().zip(&sizes).filter(|(program, _)| program.core == chip.core) {
@@ -153,6 +168,21 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome> {
         }
     }
     Ok(Outcome::Done)
+}
+
+/// The cargo features of programs that draw `scene`.
+fn features_of(scene: &Scene, arguments: &Arguments) -> Result<Vec<Features>> {
+    let stream = scene.stream.parse()?;
+    let mut needs: Vec<_> = arguments.format.values.iter().flat_map(|&format| features::names(&stream, format)).collect();
+    needs.sort_unstable();
+    needs.dedup();
+    let least = if needs.is_empty() { Features::None } else { Features::Default };
+    let Some(features) = &arguments.features else { return Ok(vec![least]) };
+    if least == Features::Default && features.values.contains(&Features::None) {
+        let text = format!("{} needs the cargo features {}: use --features default", scene.name, needs.join(", "));
+        return Err(Usage(text).into());
+    }
+    Ok(features.values.clone())
 }
 
 /// What a file lists, as recorded and as measured now.

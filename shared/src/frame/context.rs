@@ -1,6 +1,7 @@
 //! What all rows of a frame have in common. It does not change while they are drawn, so two processors can read it at the same time.
 
 use crate::{
+    features::{ANTIALIAS, OBJECTS, REDRAW},
     frame::skips::Skips,
     geometry::{
         area::Area,
@@ -41,7 +42,7 @@ pub(crate) struct Settings {
 impl Settings {
     #[inline(always)]
     pub(crate) fn antialiased(&self) -> bool {
-        cfg!(feature = "antialias") && self.antialias
+        ANTIALIAS && self.antialias
     }
 
     /// What is left out.
@@ -155,7 +156,7 @@ impl<'r> Context<'r> {
     /// Whether all pixels of an object in these `columns` of a band, if there are any, are nearer than the object is: none of its triangles can be
     /// seen there. The band has the rows from `first` up to `end`, and this `depth`.
     pub(crate) fn hides(&self, placement: &Placement, columns: [u16; 2], [first, end]: [i32; 2], depth: &[u16]) -> bool {
-        if !self.settings.skips().hidden_objects || self.settings.antialiased() {
+        if !OBJECTS || !self.settings.skips().hidden_objects || self.settings.antialiased() {
             return false;
         }
         let Area { columns: [left, right], rows: [top, bottom] } = placement.area.within(&Area { columns, rows: [0, u16::MAX] });
@@ -173,7 +174,7 @@ impl<'r> Context<'r> {
             VertexLight::None | VertexLight::Cosines | VertexLight::CosinesAndReflection => false,
             VertexLight::CosinesOrLevels | VertexLight::ReflectionOrLevels | VertexLight::Levels => true,
         };
-        may_have_levels && !self.region.is_whole()
+        REDRAW && may_have_levels && !self.region.is_whole()
     }
 
     /// Material `index` under the lights of the scene.

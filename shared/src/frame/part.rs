@@ -3,6 +3,7 @@
 use crate::{
     coverage::sample::Sample,
     error::RenderError,
+    features::SKIPS,
     frame::{
         colours::Colours,
         context::{Context, PlacedMesh},
@@ -267,7 +268,7 @@ fn draw_binned<C: Pixel>(
 fn leave_out(placed: &PlacedMesh<'_>, key: Key, walk: &mut Walk<'_>, active: &mut ActiveTriangles<'_>, counts: &mut Counts) -> Option<Key> {
     let mut next = Some(key);
     while let Some(key) = next.filter(|key| placed.has(key.triangle())) {
-        if cfg!(feature = "skips") {
+        if SKIPS {
             counts.hidden += 1;
         }
         // What the band above has saved of it stands on the first row of this band: no later band may go on from there.
@@ -290,7 +291,7 @@ fn draw_all<C: Pixel>(context: &Context<'_>, colours: &Colours<'_, C>, columns: 
             let bottom = band.top + band.rows;
             drawn += u32::from((band.top..bottom).contains(&bounds.top));
             if bounds.bottom > band.top && bounds.top < bottom {
-                pixels = pixels.saturating_add(drawing.draw(loops.draw, triangle, band));
+                pixels = pixels.saturating_add((loops.draw)(&drawing, triangle, band));
             }
         }
     }

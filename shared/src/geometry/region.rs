@@ -5,7 +5,7 @@
 //! band reaches into the next strip, because its rectangle would have pixels of neither strip's changes, and objects that reach into none of the
 //! rectangles are not drawn.
 
-use crate::geometry::area::Area;
+use crate::{features::REDRAW, geometry::area::Area};
 use core::slice;
 use embedded_graphics_core::geometry::Size;
 
@@ -42,7 +42,7 @@ impl Region {
 
     /// Whether the region is the whole picture.
     pub(crate) fn is_whole(&self) -> bool {
-        self.is_whole
+        !REDRAW || self.is_whole
     }
 
     /// The smallest rectangle that contains all pixels of the region.
@@ -53,7 +53,7 @@ impl Region {
     /// Adds the pixels of `area`, which lies in the picture.
     #[inline(never)]
     pub(crate) fn include(&mut self, area: &Area) {
-        if self.is_whole || area.is_empty() {
+        if self.is_whole() || area.is_empty() {
             return;
         }
         self.hull = self.hull.union(area);
@@ -68,7 +68,7 @@ impl Region {
     /// The smallest rectangle that contains all pixels of both the region and `area`, which lies in the picture.
     #[inline(always)]
     pub(crate) fn within(&self, area: &Area) -> Area {
-        if self.is_whole { *area } else { self.part_within(area) }
+        if self.is_whole() { *area } else { self.part_within(area) }
     }
 
     #[inline(never)]
@@ -86,7 +86,7 @@ impl Region {
     pub(crate) fn next(&self, row: u32) -> Area {
         let row = row.min(u16::MAX.into()) as u16;
         let from = |area: &Area| Area { rows: [area.rows[0].max(row), area.rows[1]], ..*area };
-        let mut all = if self.is_whole { slice::from_ref(&self.hull) } else { &self.strips }.iter().map(from);
+        let mut all = if self.is_whole() { slice::from_ref(&self.hull) } else { &self.strips }.iter().map(from);
         all.find(|area| !area.is_empty()).unwrap_or(Area { rows: [u16::MAX; 2], ..Area::NONE })
     }
 }

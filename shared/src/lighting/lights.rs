@@ -2,12 +2,16 @@
 
 use crate::{
     arch::product::{HALVES, by_fraction},
+    features::{ALWAYS_CONSTANT, LIGHTS, NEAR_LIGHTS},
     format::{COSINE, MAX_LIGHTS, POSITION, UNIT},
     geometry::model_view::ModelView,
     math::vector::{add, dot, map, narrow_dot, normalise, sub, wide},
     stream::record::{Camera, DIRECTIONAL, EYE_SPACE, Light, PERSPECTIVE, VIEWER_LOCAL},
 };
 use zerocopy::{FromBytes, FromZeros as _, Immutable, IntoBytes, KnownLayout};
+
+/// Number of lights that there is room for. Without the feature `lights` a scene has just one; it is black if the mesh file has none.
+pub(super) const ROOM: usize = if LIGHTS { MAX_LIGHTS } else { 1 };
 
 /// A light in object space. It lies in the renderer's memory.
 #[derive(FromBytes, IntoBytes, Immutable, KnownLayout, Clone, Copy, Debug)]
@@ -34,7 +38,9 @@ pub enum Viewer {
 #[repr(C)]
 pub struct Lighting {
     /// The lights of the scene, in its order; the first `count` are used.
-    sources: [Source; MAX_LIGHTS],
+    sources: [Source; ROOM],
+    /// The memory of a renderer needs sizes that are multiples of 8.
+    reserved: [u32; ROOM % 2],
     count: u32,
     /// See [`Self::is_directional`]: 0 or 1.
     directional: u32,
@@ -51,16 +57,16 @@ pub struct Lighting {
 /// The directions of a scene's lights in the world. They are computed once a frame; for each object they are only rotated.
 pub struct Directions {
     /// L and H of each light, Q2.30; point lights have none.
-    vectors: [[[i32; 3]; 2]; MAX_LIGHTS],
+    vectors: [[[i32; 3]; 2]; ROOM],
     /// Whether all lights are directional.
     are_directional: bool,
 }
 
 impl Directions {
-    /// Directions of the lights of a scene, at most [`MAX_LIGHTS`], where `world` maps the world to eye space.
+    /// Directions of the lights of a scene, at most [`ROOM`], where `world` maps the world to eye space.
     #[must_use]
     pub fn new(lights: &[Light], world: &ModelView) -> Self {
-        let mut vectors = [[[0; 3]; 2]; MAX_LIGHTS];
+        let mut vectors = [[[0; 3]; 2]; ROOM];
         for (direction, light) in vectors.iter_mut().zip(lights).filter(|(_, light)| light.kind == DIRECTIONAL) {
             let unit = normalise(light.vector);
             let towards = if light.space == EYE_SPACE { world.to_object(unit) } else { unit };
@@ -90,8 +96,11 @@ impl Lighting {
             *source = Source::new(light, towards, model_view);
         }
         self.count = lights.len() as u32;
+        if !LIGHTS && lights.is_empty() {
+            (self.sources, self.count) = ([Source::NONE; ROOM], 1);
+        }
         self.directional = directions.are_directional.into();
-        let is_local = camera.viewer == VIEWER_LOCAL && camera.projection == PERSPECTIVE;
+        let is_local = NEAR_LIGHTS && camera.viewer == VIEWER_LOCAL && camera.projection == PERSPECTIVE;
         let ([right, up, _], towards_eye) = (model_view.rotation, towards_eye(model_view));
         (self.is_local, self.viewer) = (is_local.into(), if is_local { model_view.eye() } else { towards_eye });
         self.axes = [right, up, towards_eye];
@@ -110,7 +119,7 @@ impl Lighting {
     #[inline(always)]
     #[must_use]
     pub fn viewer(&self) -> Viewer {
-        if self.is_local == 0 { Viewer::Infinite(self.viewer) } else { Viewer::Local(self.viewer) }
+        if self.is_local() { Viewer::Local(self.viewer) } else { Viewer::Infinite(self.viewer) }
     }
 
     /// L and H, if there is just one light, it is directional, and the viewer infinitely far. N·L and N·H are then linear in N, which every method
@@ -118,6 +127,7 @@ impl Lighting {
     #[must_use]
     pub fn constant(&self) -> Option<&[[i32; 3]; 2]> {
         match self.sources() {
+            _ if ALWAYS_CONSTANT => self.sources.first().map(|source| &source.vectors),
             [source] if self.is_constant() => source.directional(),
             _ => None,
         }
@@ -132,7 +142,7 @@ impl Lighting {
     #[must_use]
     pub fn directions(&self, source: &Source, position: [i32; 3]) -> [[i32; 3]; 2] {
         match source.directional() {
-            Some(directions) if self.is_local == 0 => *directions,
+            Some(directions) if !self.is_local() => *directions,
             _ => {
                 let towards = source.towards(position);
                 [towards, half(towards, self.viewer().towards(position))]
@@ -144,21 +154,29 @@ impl Lighting {
     #[inline(always)]
     #[must_use]
     pub fn is_constant(&self) -> bool {
-        self.directional & !self.is_local & 1 != 0
+        !NEAR_LIGHTS || self.directional & !self.is_local & 1 != 0
     }
 
     /// Whether all lights are directional.
     #[inline(always)]
     #[must_use]
     pub fn is_directional(&self) -> bool {
-        self.directional != 0
+        !NEAR_LIGHTS || self.directional != 0
+    }
+
+    #[inline(always)]
+    fn is_local(&self) -> bool {
+        NEAR_LIGHTS && self.is_local != 0
     }
 }
 
 impl Source {
+    /// A light of no direction.
+    const NONE: Self = Self { vectors: [[0; 3]; 2], is_point: 0 };
+
     /// Transforms `light`, whose L and H in the world are known, to an object at the place `model_view`.
     fn new(light: &Light, directions: &[[i32; 3]; 2], model_view: &ModelView) -> Self {
-        if light.kind == DIRECTIONAL {
+        if !NEAR_LIGHTS || light.kind == DIRECTIONAL {
             let [towards, half] = *directions;
             return Self { vectors: [model_view.world_to_object(towards), model_view.world_to_object(half)], is_point: 0 };
         }
@@ -171,7 +189,7 @@ impl Source {
     #[inline(always)]
     #[must_use]
     pub fn directional(&self) -> Option<&[[i32; 3]; 2]> {
-        (self.is_point == 0).then_some(&self.vectors)
+        (!self.is_point()).then_some(&self.vectors)
     }
 
     /// The position, Q7.25, of a point light.
@@ -179,14 +197,19 @@ impl Source {
     #[must_use]
     pub fn point(&self) -> Option<[i32; 3]> {
         let [point, _] = self.vectors;
-        (self.is_point != 0).then_some(point)
+        self.is_point().then_some(point)
+    }
+
+    #[inline(always)]
+    fn is_point(&self) -> bool {
+        NEAR_LIGHTS && self.is_point != 0
     }
 
     /// Unit vector from `position` towards the light, Q2.30.
     #[must_use]
     pub fn towards(&self, position: [i32; 3]) -> [i32; 3] {
         let [vector, _] = self.vectors;
-        if self.is_point == 0 { vector } else { normalise(sub(vector, position)) }
+        if self.is_point() { normalise(sub(vector, position)) } else { vector }
     }
 }
 

@@ -1,6 +1,7 @@
 //! The colours of a material in a pixel format, computed once.
 
 use crate::{
+    features::{COLOURS, LIGHTS},
     format::{BIAS, CHANNEL, COSINE, LEVEL, WALK},
     lighting::{
         constant_lights::{ByTurns, FACTOR, OneLightRamp, OneLightRgb, TwoLightsRgb},
@@ -115,7 +116,8 @@ impl<'a, C: Pixel> MaterialTables<'a, C> {
         let [even, odd] = &self.reflectance.reflectance().sums;
         let forth = ByTurns::new([even.first_chunk()?, odd.first_chunk()?]);
         let back = ByTurns::new([even.last_chunk()?, odd.last_chunk()?]);
-        (!C::GRAY && self.reflectance.lights() == 2).then_some([TwoLightsRgb(forth, PhantomData), TwoLightsRgb(back, PhantomData)])
+        (LIGHTS && COLOURS && !C::GRAY && self.reflectance.lights() == 2)
+            .then_some([TwoLightsRgb(forth, PhantomData), TwoLightsRgb(back, PhantomData)])
     }
 
     /// The colour under one light from `[N·L, N·H]` (Q2.30), on even rows and on odd ones.

@@ -1,17 +1,19 @@
 //! Reflectances of a material under the lights of a scene, in levels, computed once.
 
 use crate::{
-    arch::{product::unsigned_product, quotient::long},
-    format::{BIAS, CHANNEL, COSINE, Intensity, LEVEL, MAX_LIGHTS, PIXEL_COSINE, UNIT},
+    arch::quotient::long,
+    features::{COLOURS, LIGHTS, SKIPS},
+    format::{BIAS, CHANNEL, COSINE, Intensity, LEVEL, PIXEL_COSINE, UNIT},
     lighting::{
         constant_lights::{FACTOR, LARGEST, Sum, Sums},
-        lights::{MeanNormal, Source},
+        lights::{MeanNormal, ROOM, Source},
     },
     math::{
         highlight_lut::{Base, ENTRY, HighlightCurve, HighlightLut, square},
         vector::zip,
     },
     pixel::{Channels, gamma::Gamma, steps},
+    scene::{Colour, LightTerms, largest},
     stream::record::{Light, Material},
 };
 use core::ops::Deref;
@@ -118,7 +120,7 @@ pub struct Reflectance {
     quarter: i32,
     /// Bits of each channel of the pixel format.
     depth: [u32; 3],
-    pub(super) gains: [Gains; MAX_LIGHTS],
+    pub(super) gains: [Gains; ROOM],
     /// Bits by which the sum of all lights may leave Q10.22, at most 5.
     excess: u32,
     /// Sums for [`OneLightRgb`](super::constant_lights::OneLightRgb): of the first light, of the second light, and of the first light again, so that
@@ -142,31 +144,6 @@ pub struct Reflectance {
     computes_all: [u8; 2],
 }
 
-/// A colour as products of gains, Q4.28.
-type Colour = [u32; 3];
-
-#[inline(never)]
-fn product(a: [u16; 3], b: [u16; 3]) -> Colour {
-    zip(a, b, |a, b| u32::from(a) * u32::from(b))
-}
-
-/// Rec. 601 luma in all three channels.
-fn luma([r, g, b]: Colour) -> Colour {
-    [(r >> 8) * 77 + (g >> 8) * 150 + (b >> 8) * 29; 3]
-}
-
-fn largest(colour: Colour) -> u32 {
-    colour.into_iter().fold(0, u32::max)
-}
-
-/// Whether `colour` is a multiple of `base`, to 1/1024 of its largest channel.
-#[inline(never)]
-fn along(colour: Colour, base: Colour) -> bool {
-    let (a, b) = (largest(colour), largest(base));
-    let most = unsigned_product(a, b) >> 10;
-    zip(colour, base, |c, d| unsigned_product(c, b).abs_diff(unsigned_product(d, a)) <= most) == [true; 3]
-}
-
 impl Reflectance {
     /// A reflectance that is not computed yet; all zeros, which takes no flash in static memory.
     pub const EMPTY: Self = Self {
@@ -178,7 +155,7 @@ impl Reflectance {
         computes_all: [0; 2],
         quarter: 0,
         ambient: [0; 3],
-        gains: [Gains::NONE; MAX_LIGHTS],
+        gains: [Gains::NONE; ROOM],
         sums: [[[Sum::EMPTY; 3]; 3]; 2],
         ambient_sums: [0; 3],
         ramp: [0; 2],
@@ -199,19 +176,8 @@ impl Reflectance {
         (highlight, holds_levels): (Highlight, bool),
     ) {
         let Channels { depth, is_gray, is_coarse, .. } = channels;
-        // What each light adds at most, diffuse and specular, and the ambient term.
-        let mut terms = heapless::Vec::<Colour, { 2 * MAX_LIGHTS + 1 }>::new();
-        let lit = lights.iter().flat_map(|light| [(light.colour, material.diffuse), (light.colour, material.specular)]);
-        for (light, reflectance) in lit.chain([(ambient, material.ambient)]) {
-            let colour = product(light, reflectance);
-            // There is room for the terms of as many lights as a stream has.
-            let _ = terms.push(if is_gray { luma(colour) } else { colour });
-        }
-        // The brightest of all terms sets the base colour; the others may be multiples of it.
-        let base = terms.iter().fold([0; 3], |base, &term| if largest(term) >= largest(base) { term } else { base });
-        // A level of the table of colours is rounded before its colour is: pixel formats that would show it have greys alone in one channel.
-        let direction = if is_coarse { base } else { [largest(base); 3] };
-        let one_channel = terms.iter().all(|&term| along(term, direction));
+        let LightTerms { colours: terms, base, are_one_channel } = LightTerms::new(&channels, ambient, material, lights);
+        let one_channel = !COLOURS || are_one_channel;
         self.depth = depth;
         self.quarter = 0;
         self.three_channels = u8::from(!one_channel);
@@ -234,8 +200,8 @@ impl Reflectance {
         self.lights = if looped { lights.len() as u8 } else { 0 };
         self.has_two_lights = u8::from(lights.len() == 2 && !one_channel && fits);
         let holds_levels = looped && one_channel;
-        let [one, two, ..] = &self.gains;
-        let all = zip(one.diffuse, if lights.len() > 1 { two.diffuse } else { [0; 3] }, u16::saturating_add);
+        let second = self.gains.get(1).filter(|_| lights.len() > 1).map_or([0; 3], |gains| gains.diffuse);
+        let all = zip(diffuse, second, u16::saturating_add);
         let [even, odd] = &mut self.sums;
         for (sums, gains) in even.iter_mut().zip(&self.gains) {
             for (k, sum) in sums.iter_mut().enumerate() {
@@ -276,7 +242,7 @@ impl Reflectance {
     #[inline(always)]
     #[must_use]
     pub fn three_channels(&self) -> bool {
-        self.three_channels != 0
+        COLOURS && self.three_channels != 0
     }
 
     /// Whether all light without a highlight under one light is a level of the table of colours. It is in one channel, and in three unless a level
@@ -284,7 +250,7 @@ impl Reflectance {
     #[inline(always)]
     #[must_use]
     pub fn has_ramp(&self) -> bool {
-        self.has_ramp != 0
+        !COLOURS || self.has_ramp != 0
     }
 
     /// Whether the table of highlights holds levels: the ambient level plus the highlight of the only light.
@@ -305,7 +271,7 @@ impl Reflectance {
     #[inline(always)]
     #[must_use]
     pub fn has_two_lights(&self) -> bool {
-        self.has_two_lights != 0
+        LIGHTS && COLOURS && self.has_two_lights != 0
     }
 
     /// Smallest N·H, Q2.30, whose highlight counts, see [`HighlightLut::highlight_threshold`].
@@ -357,14 +323,14 @@ impl Reflectance {
     #[inline(always)]
     #[must_use]
     pub(crate) fn faintest(&self) -> i32 {
-        if cfg!(feature = "skips") && self.computes_all[0] != 0 { i32::MIN } else { self.highlight_threshold }
+        if SKIPS && self.computes_all[0] != 0 { i32::MIN } else { self.highlight_threshold }
     }
 
     /// N·L, Q2.30, up to which a light is left out: 0 unless that is switched off.
     #[inline(always)]
     #[must_use]
     pub(crate) fn darkest(&self) -> i32 {
-        if cfg!(feature = "skips") && self.computes_all[1] != 0 { i32::MIN } else { 0 }
+        if SKIPS && self.computes_all[1] != 0 { i32::MIN } else { 0 }
     }
 
     /// The level of the table of colours without highlight at N·L (Q2.30) under one light, Q9.7. Domain: [`Self::has_ramp`].

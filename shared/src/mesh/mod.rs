@@ -7,7 +7,7 @@ use crate::{
     antialias::PixelSet,
     geometry::bin::{Key, Walk},
     lighting::material_tables::MaterialTables,
-    method::{DrawTriangle, General, Loops, Shading, Style, TriangleSetup, tiles},
+    method::{DrawTriangle, General, Loops, Shading, Style, TriangleSetup, needs_general, tiles},
     pixel::{Pixel, gamma::Gamma},
     raster::{
         band::Band,
@@ -64,12 +64,11 @@ impl<C: Pixel> Drawing<'_, C> {
             // The mesh has every triangle of its entries.
             if let Some(triangle) = self.pass.triangles.get(self.pass.index(key)) {
                 let drawn = if L::GENERAL || !key.is_word_sized() {
-                    self.draw(L::draw::<C, THREE>, triangle, band)
+                    self.draw::<L, THREE>(triangle, band)
                 } else {
                     // A triangle that the loops decline is set up anew: if its set-up were passed on, that of all triangles would be kept
                     // in memory.
-                    self.draw_word_sized::<L, THREE>(triangle, key.word(), band)
-                        .unwrap_or_else(|| self.draw(General::draw::<C, false>, triangle, band))
+                    self.draw_word_sized::<L, THREE>(triangle, key.word(), band).unwrap_or_else(|| self.draw_declined::<L>(triangle, band))
                 };
                 pixels = pixels.saturating_add(drawn);
             }
@@ -80,12 +79,30 @@ impl<C: Pixel> Drawing<'_, C> {
         }
     }
 
-    /// Draws a triangle of any size, by `loops` if possible. Returns the number of its pixels in `band`.
+    /// Draws a triangle of any size, by the loops `L` if possible. Returns the number of its pixels in `band`.
+    #[inline(always)]
+    pub(crate) fn draw<L: Loops, const THREE: bool>(&self, triangle: &Triangle, band: &mut Band<'_, C>) -> u32 {
+        let loops: DrawTriangle<C> = L::draw::<C, THREE>;
+        if const { needs_general::<L, C>() } {
+            self.draw_by::<true>(loops, triangle, band)
+        } else {
+            self.draw_by::<false>(loops, triangle, band)
+        }
+    }
+
+    /// Draws a triangle that the loops `L` cannot draw.
+    #[inline(always)]
+    fn draw_declined<L: Loops>(&self, triangle: &Triangle, band: &mut Band<'_, C>) -> u32 {
+        if const { needs_general::<L, C>() } { self.draw_by::<true>(General::draw::<C, false>, triangle, band) } else { 0 }
+    }
+
+    /// Draws a triangle of any size, by `loops` if possible, and otherwise by the general loop if the program has one.
     #[inline(never)]
-    pub(crate) fn draw(&self, loops: DrawTriangle<C>, triangle: &Triangle, band: &mut Band<'_, C>) -> u32 {
+    fn draw_by<const GENERAL: bool>(&self, loops: DrawTriangle<C>, triangle: &Triangle, band: &mut Band<'_, C>) -> u32 {
         let (width, rows) = (band.width as i32, band.range());
         self.pass.set_up(triangle, width, rows, &mut |setup| {
-            loops(setup, &self.pass.shading, self.tables(), band).unwrap_or_else(|| self.shade_generally(setup, band))
+            let drawn = loops(setup, &self.pass.shading, self.tables(), band);
+            drawn.unwrap_or_else(|| if GENERAL { self.shade_generally(setup, band) } else { 0 })
         })
     }
 

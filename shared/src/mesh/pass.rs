@@ -3,6 +3,7 @@
 use crate::{
     antialias,
     antialias::PixelSet,
+    features::ANTIALIAS,
     format::SUBPIXEL,
     geometry::{
         bin::Key,
@@ -137,7 +138,7 @@ impl MeshPass<'_> {
 
     fn set_up_placed(&self, placed: &MeshTriangle<'_>, target: &mut Target<'_>) -> u32 {
         // Decision: pixels.
-        if cfg!(feature = "antialias") && self.viewport.antialiased {
+        if ANTIALIAS && self.viewport.antialiased {
             self.set_up_antialiased(placed, target)
         } else {
             self.set_up_pixels(PixelSet::Centres, placed, target)

@@ -1,6 +1,7 @@
 //! The vertices of one mesh, transformed to the screen and lit.
 
 use crate::{
+    features::ALWAYS_CONSTANT,
     format::UNIT,
     geometry::{
         projection::{ScreenVertex, State, View},
@@ -130,6 +131,8 @@ impl VertexStage<'_> {
         let normal = wide(vertex.normal);
         match (self.light, self.constant) {
             (VertexLight::None, _) => [0; 4],
+            // All scenes have one constant light then.
+            (_, None) if ALWAYS_CONSTANT => [0; 4],
             (VertexLight::Cosines | VertexLight::CosinesAndReflection, None) if self.has_two_lights() => self.cosines_of_two_lights(normal),
             (VertexLight::Cosines | VertexLight::CosinesAndReflection, None) => [0; 4],
             (light, Some([towards, half])) if light != VertexLight::Levels || !self.reflectance.three_channels() => {

@@ -10,6 +10,7 @@
 
 use crate::{
     arch::product::{product, upper},
+    features::LIGHTS,
     format::{HAVERSINE, NORMAL_LENGTH, UNIT},
     interpolate::field::{Field, Nodes},
     lighting::{lights::Source, material_tables::MaterialTables, reflectance::Reflection},
@@ -127,7 +128,7 @@ pub(crate) fn draw<C: Pixel>(
     let half_reciprocal = |[square]: [u32; 1]| halves.rsqrt(square) as i32;
     // One closure for both, or each would have loops of its own.
     let length = || square;
-    if tables.reflectance.lights() == 2 {
+    if LIGHTS && tables.reflectance.lights() == 2 {
         return quotient::draw_two::<true, _, C>(setup, length, half_reciprocal, tables, band);
     }
     quotient::draw::<true, _, C>(setup, &corners(), length, half_reciprocal, tables, band)

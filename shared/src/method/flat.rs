@@ -11,13 +11,9 @@ use crate::{
         reflectance::Highlight,
     },
     math::vector::{add, wide},
-    method::{Costs, Facts, HighlightField, Loops, Method, Shading, Style, TriangleSetup, Uniform, VertexLight, node::Node, of_levels},
+    method::{Costs, Facts, HighlightField, Loops, Method, Shading, Style, TriangleSetup, VertexLight, draw_uniform, node::Node},
     pixel::Pixel,
-    raster::{
-        band::Band,
-        canvas::{Canvas, Shaded},
-        pixel_shader::Solid,
-    },
+    raster::{band::Band, canvas::Canvas, pixel_shader::Solid},
     stream::record::{Triangle, Vertex},
 };
 
@@ -47,12 +43,13 @@ impl Method for Flat {
     }
 
     fn shade(&self, setup: &TriangleSetup<'_>, shading: &Shading<'_>, canvas: &mut dyn Canvas) -> u32 {
-        let shader = Uniform(of_levels(levels(setup.triangle, setup.vertices, shading)));
-        setup.draw_spans(&mut Shaded::new(Constant, shader), canvas)
+        draw_uniform(setup, levels(setup.triangle, setup.vertices, shading), canvas)
     }
 }
 
 impl Loops for Flat {
+    const DECLINES: bool = false;
+
     fn take(style: Style) -> bool {
         !style.by_canvas
     }

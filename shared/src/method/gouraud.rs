@@ -49,6 +49,7 @@ impl Method for Gouraud {
 
 impl Loops for Gouraud {
     const APART: bool = true;
+    const DECLINES: bool = false;
 
     fn take(style: Style) -> bool {
         !style.by_canvas && !style.perspective

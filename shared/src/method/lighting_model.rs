@@ -1,6 +1,7 @@
 //! Lighting models: how interpolated fields become reflected light at a pixel.
 
 use crate::{
+    features::PERSPECTIVE,
     format::{COSINE, MAX_LIGHTS},
     interpolate::{
         Constant, Patch, Walker,
@@ -203,9 +204,7 @@ impl Shading<'_> {
         F: LightingModel<K::Value, V::Value, D::Value>,
     {
         let gradients = setup.gradients;
-        if cfg!(feature = "perspective")
-            && let Some(inv_depth) = setup.inv_depth()
-        {
+        if PERSPECTIVE && let Some(inv_depth) = setup.inv_depth() {
             let common = PerspectivePatch::new(gradients, inv_depth, common.surface());
             let of = |source: &Source| match of(source) {
                 Lit::Nowhere => Lit::Nowhere,

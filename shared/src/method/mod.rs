@@ -43,6 +43,7 @@ mod two_lights;
 use crate::{
     antialias::{PixelSet, Shape},
     arch::product::by_fraction,
+    features::{ALWAYS_CONSTANT, ANTIALIAS, COLOURS, PERSPECTIVE, SKIPS},
     format::{BIAS, CHANNEL, INTENSITY, LEVEL, NORMAL_LENGTH, SUBPIXEL, WALK},
     geometry::viewport::first_centre,
     interpolate::{Checkerboard, Raised, by_row::ByRow, perspective::PerspectivePatch},
@@ -143,6 +144,9 @@ pub(crate) trait Loops {
     /// Whether the method has only the general loop.
     const GENERAL: bool = false;
 
+    /// Whether the loops leave some triangles of the styles that they take to the general loop.
+    const DECLINES: bool = true;
+
     /// Whether there are loops for `style`.
     fn take(style: Style) -> bool;
 
@@ -154,6 +158,12 @@ pub(crate) trait Loops {
         tables: MaterialTables<'_, C>,
         band: &mut Band<'_, C>,
     ) -> Option<u32>;
+}
+
+/// Whether a program that draws by the loops `L` in the pixel format `C` needs the general loop: for some triangles, or for some styles.
+pub(crate) const fn needs_general<L: Loops, C: Pixel>() -> bool {
+    // Of colours, only the curve of a display on three channels that are not light needs a canvas.
+    L::DECLINES || ANTIALIAS || PERSPECTIVE || COLOURS && !C::GRAY && !C::IS_LIGHT
 }
 
 /// The type of [`Loops::draw`] in one pixel format.
@@ -325,7 +335,7 @@ impl TriangleSetup<'_> {
 
     /// Draws the triangle by `shader`, which begins on [`Self::first_row`]. Returns the number of pixels in `canvas`.
     pub(crate) fn draw_spans(&self, shader: &mut dyn SpanShader, canvas: &mut dyn Canvas) -> u32 {
-        if cfg!(feature = "antialias") && self.pixels != PixelSet::Centres {
+        if ANTIALIAS && self.pixels != PixelSet::Centres {
             let Self { screen, pixels, .. } = *self;
             let shape = Shape { screen, pixels, part: None, corners: screen.corners, bits: SUBPIXEL };
             return shape.draw(self.gradients.row(), shader, canvas, &mut |_| [i32::MIN, i32::MAX]);
@@ -374,7 +384,7 @@ impl TriangleSetup<'_> {
     #[inline(always)]
     pub(crate) fn count(&self, top: i32, count: &mut u32, number: u32) {
         // Where the thinnest triangles begin, they may contain no pixel centre, and are not drawn.
-        if !cfg!(feature = "skips") || self.pixels != PixelSet::Centres || self.gradients.is_thinner_than(MAX_FINE_THINNESS) {
+        if !SKIPS || self.pixels != PixelSet::Centres || self.gradients.is_thinner_than(MAX_FINE_THINNESS) {
             return;
         }
         let [first, ..] = self.corners;
@@ -387,7 +397,7 @@ impl TriangleSetup<'_> {
     #[inline(always)]
     pub(crate) fn count_on(&self, canvas: &mut dyn Canvas, count: impl FnOnce(&mut Counts) -> &mut u32, number: u32) {
         // The compiler does not see that calls of a canvas can be left out.
-        if cfg!(feature = "skips") {
+        if SKIPS {
             let [_, top, _] = canvas.bounds();
             self.count(top, count(canvas.counts()), number);
         }
@@ -418,9 +428,7 @@ pub trait Area {
 /// The whole triangle, in perspective or not.
 impl Area for TriangleSetup<'_> {
     fn draw<F: Field, S: IntensityShader<F::Value>>(&self, field: &F, shader: S, canvas: &mut dyn Canvas) -> u32 {
-        if cfg!(feature = "perspective")
-            && let Some(inv_depth) = self.inv_depth()
-        {
+        if PERSPECTIVE && let Some(inv_depth) = self.inv_depth() {
             let patch = PerspectivePatch::new(self.gradients, inv_depth, field.surface());
             return self.draw_spans(&mut Shaded::new(patch, shader), canvas);
         }
@@ -497,7 +505,7 @@ impl Shading<'_> {
     #[inline(always)]
     #[must_use]
     pub fn vertices_have_cosines(&self) -> bool {
-        self.constant.is_some()
+        ALWAYS_CONSTANT || self.constant.is_some()
     }
 
     /// Interpolates light levels over `area` and draws them to `canvas`. `levels` are red, green and blue, Q9.7, at `N` points: the 3
@@ -582,6 +590,13 @@ impl Shading<'_> {
         };
         setup.fill(patch, Rgb(PhantomData), band)
     }
+}
+
+/// Draws all pixels of a triangle with these levels, and returns their number in `canvas`.
+// A call, so that a method that can also draw otherwise does not keep its memory on the stack meanwhile.
+#[inline(never)]
+pub(crate) fn draw_uniform(setup: &TriangleSetup<'_>, levels: [i32; 3], canvas: &mut dyn Canvas) -> u32 {
+    setup.draw_spans(&mut Shaded::new(Constant, Uniform(of_levels(levels))), canvas)
 }
 
 /// Shades all pixels with one intensity.

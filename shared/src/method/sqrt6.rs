@@ -10,6 +10,7 @@
 //! Domain: any lights; coarse triangles near a light need splitting.
 
 use crate::{
+    features::LIGHTS,
     format::{LEVEL, WALK},
     interpolate::{
         Constant,
@@ -150,7 +151,7 @@ fn draw_any<const ROOT: IsRoot, C: Pixel>(
     tables: MaterialTables<'_, C>,
     band: &mut Band<'_, C>,
 ) -> Option<u32> {
-    if tables.reflectance.lights() == 2 {
+    if LIGHTS && tables.reflectance.lights() == 2 {
         return draw_two::<ROOT, C>(setup, shading, tables, band);
     }
     let (cosines, rgb) = (&setup.corner_lights(), tables.one_light_rgb());

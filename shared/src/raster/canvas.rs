@@ -8,6 +8,7 @@
 
 use crate::{
     coverage::sample::Layer,
+    features::ANTIALIAS,
     format::{BIAS, INTENSITY, Intensity, RAMP},
     interpolate::{Patch, Walker, plane::Linear},
     lighting::material_tables::MaterialTables,
@@ -218,7 +219,7 @@ impl<C: Pixel> Canvas for BandCanvas<'_, '_, C> {
 
     fn add(&mut self, column: i32, row: i32, layer: Layer) {
         let index = self.band.start(row).wrapping_add(column as usize);
-        if cfg!(feature = "antialias")
+        if ANTIALIAS
             && let Some(Blend { samples }) = &mut self.band.blend
             && let Some(sample) = samples.get_mut(index)
         {

@@ -46,6 +46,11 @@ pub enum SceneError {
     /// The change would set a perspective camera while perspective-correct interpolation of light is on, and the shading method does not
     /// support both.
     Perspective,
+    /// The change needs a cargo feature of this crate that is turned off.
+    Feature {
+        /// The name of the cargo feature.
+        name: &'static str,
+    },
     /// The highlight exponent of a material is too small for the shading method.
     Exponent {
         /// The smallest exponent that the method can draw.
@@ -73,6 +78,7 @@ impl fmt::Display for SceneError {
             Self::Perspective => f.write_str(
                 "this method cannot interpolate light in perspective; call Renderer::set_perspective_correct(false) or use an orthographic camera",
             ),
+            Self::Feature { name } => write!(f, "this program lacks the cargo feature {name}; enable it in Cargo.toml"),
             Self::Exponent { least } => write!(f, "this method supports only exponents of {least} or more; use a larger one"),
         }
     }

@@ -25,6 +25,7 @@ mod background;
 mod bounding_volume;
 mod error;
 mod light;
+mod light_terms;
 mod object;
 pub(crate) mod orbit;
 mod pose;
@@ -34,13 +35,16 @@ pub use angle::SIN_COS_ERROR;
 pub use background::Background;
 pub(crate) use bounding_volume::BoundingVolume;
 pub use error::SceneError;
+pub(crate) use light_terms::{Colour, LightTerms, largest};
 pub use object::Object;
-pub use orbit::{CIRCLE_ERROR, ORBIT_ERROR, ROTATION_ERROR};
+pub use orbit::{ORBIT_ERROR, ROTATION_ERROR};
 pub use pose::{MAX_SCALE, MIN_SCALE, Pose, QUATERNION_ERROR, STEP_ERROR};
 
 use crate::{
+    features::{ANIMATION, COLOURS, Feature, OBJECTS},
     format::{Gain, Length, MAX_LIGHTS, ROTATION},
     math::vector::dot,
+    pixel::Channels,
     stream::{
         Stream, is_gain,
         record::{Camera, DIRECTIONAL, LIGHT_TRACK, Light, Material, OBJECT_TRACK, OWN_MATERIALS, PERSPECTIVE, Track, VIEWER_LOCAL},
@@ -91,6 +95,8 @@ pub struct Scene<'a> {
     objects: &'a mut [Object],
     count: usize,
     limits: Limits,
+    /// Properties of the pixel format.
+    channels: Channels,
     /// Whether something has changed since the latest frame, and whether all objects are seen otherwise, or there are others.
     changed: bool,
     pub(crate) view_changed: bool,
@@ -101,7 +107,13 @@ pub struct Scene<'a> {
 
 impl<'a> Scene<'a> {
     /// The scene of a stream; there is room for one object and all materials.
-    pub(crate) fn new(stream: Stream<'a>, materials: &'a mut [SceneMaterial], objects: &'a mut [Object], limits: Limits) -> Self {
+    pub(crate) fn new(
+        stream: Stream<'a>,
+        materials: &'a mut [SceneMaterial],
+        objects: &'a mut [Object],
+        limits: Limits,
+        channels: Channels,
+    ) -> Self {
         // There may be room for more, which nobody has written to.
         let materials = materials.get_mut(..stream.materials.len()).unwrap_or_default();
         for (slot, &material) in materials.iter_mut().zip(stream.materials) {
@@ -120,6 +132,7 @@ impl<'a> Scene<'a> {
             objects,
             count: 0,
             limits,
+            channels,
             changed: true,
             view_changed: true,
             repainted: true,
@@ -148,7 +161,7 @@ impl<'a> Scene<'a> {
             self.set_view_changed();
         }
         let frame = self.frame_of(number);
-        if self.played != frame {
+        if ANIMATION && self.played != frame {
             // What has one key is put there once; a program may move it from there.
             let fewest = if self.played.is_some() { 2 } else { 1 };
             self.played = frame;
@@ -234,7 +247,7 @@ impl<'a> Scene<'a> {
     /// is nearer to the camera is visible; if these are equal, too, the earlier one.
     #[must_use]
     pub fn objects(&self) -> &[Object] {
-        self.objects.get(..self.count).unwrap_or_default()
+        self.objects.get(..if OBJECTS { self.count } else { self.count.min(1) }).unwrap_or_default()
     }
 
     /// Removes all objects. Call this before [`Self::add`] if the program builds its own scene, because a new scene has objects already:
@@ -251,6 +264,7 @@ impl<'a> Scene<'a> {
     /// Returns [`SceneError::Meshes`] if the stream does not have these meshes, and [`SceneError::Objects`] if the layout has no room for
     /// another object ([`Layout::objects`](crate::Layout::objects)).
     pub fn add(&mut self, meshes: Range<u16>, pose: Pose) -> Result<usize, SceneError> {
+        require(Feature::Objects, self.count > 0)?;
         let object = Object::new(&self.stream, meshes).ok_or(SceneError::Meshes)?;
         let room = self.objects.len();
         let slot = self.objects.get_mut(self.count).ok_or(SceneError::Objects { room })?;
@@ -331,6 +345,7 @@ impl<'a> Scene<'a> {
     /// [`SceneError::Exponent`] if the exponent is too small for the shading method.
     pub fn set_material(&mut self, index: usize, material: Material) -> Result<(), SceneError> {
         in_range(material.fault())?;
+        self.check_colours(self.ambient, &self.lights, [&material])?;
         let least = self.limits.least_exponent;
         if material.exponent < least {
             return Err(SceneError::Exponent { least });
@@ -366,6 +381,9 @@ impl<'a> Scene<'a> {
     /// shading method does not support a point light.
     pub fn set_lights(&mut self, lights: &[Light]) -> Result<(), SceneError> {
         lights.iter().try_for_each(|light| in_range(light.fault()))?;
+        require(Feature::Lights, lights.len() > 1)?;
+        require(Feature::NearLights, lights.iter().any(|light| light.kind != DIRECTIONAL))?;
+        self.check_colours(self.ambient, lights, self.materials())?;
         if !self.limits.near_lights && lights.iter().any(|light| light.kind != DIRECTIONAL) {
             return Err(SceneError::Light);
         }
@@ -386,6 +404,7 @@ impl<'a> Scene<'a> {
     pub fn set_ambient(&mut self, ambient: [Gain; 3]) -> Result<(), SceneError> {
         let ambient = ambient.map(Gain::to_bits);
         in_range((!is_gain(ambient)).then_some("ambient light"))?;
+        self.check_colours(ambient, &self.lights, self.materials())?;
         self.ambient = ambient;
         self.set_stale();
         Ok(())
@@ -417,6 +436,7 @@ impl<'a> Scene<'a> {
     /// perspective camera.
     pub fn set_camera(&mut self, camera: Camera) -> Result<(), SceneError> {
         in_range(camera.fault())?;
+        require(Feature::NearLights, camera.viewer == VIEWER_LOCAL && camera.projection == PERSPECTIVE)?;
         if !self.limits.near_lights && camera.viewer == VIEWER_LOCAL && camera.projection == PERSPECTIVE {
             return Err(SceneError::Light);
         }
@@ -458,10 +478,26 @@ impl<'a> Scene<'a> {
         self.set_camera(Camera { rotation, translation, period: 0, ..self.camera })
     }
 
+    /// Checks that these materials have one channel, unless the program has the feature for more.
+    fn check_colours<'m>(
+        &self,
+        ambient: [u16; 3],
+        lights: &[Light],
+        materials: impl IntoIterator<Item = &'m Material>,
+    ) -> Result<(), SceneError> {
+        let needs = |material| !LightTerms::new(&self.channels, ambient, material, lights).are_one_channel;
+        if COLOURS { Ok(()) } else { require(Feature::Colours, materials.into_iter().any(needs)) }
+    }
+
     /// Sets the limits of the method in use. The scene is within them.
     pub(crate) fn set_limits(&mut self, limits: Limits) {
         self.limits = limits;
     }
+}
+
+/// Checks that the program has a `feature` if a change `needs` it.
+fn require(feature: Feature, needs: bool) -> Result<(), SceneError> {
+    if needs && !feature.is_on() { Err(SceneError::Feature { name: feature.name() }) } else { Ok(()) }
 }
 
 fn in_range(fault: Option<&'static str>) -> Result<(), SceneError> {

@@ -1,11 +1,11 @@
 //! The animation of a stream whose camera orbits.
 
 use crate::{
-    format::ROTATION,
+    format::{Angle, ROTATION},
     math::vector::{cross, dot, zip},
+    scene::angle::{SIN_COS_ERROR, sin_cos},
     stream::record::Camera,
 };
-use micromath::F32Ext;
 
 /// Rows of the rotation from the world to the eye in frame `number`, Q2.30.
 #[must_use]
@@ -18,11 +18,11 @@ pub(crate) fn rotation(camera: &Camera, number: u32) -> [[i32; 3]; 3] {
 
 /// `rotation` times the rotation by `frame / period` of a turn about `axis`, all Q2.30.
 ///
-/// Domain: `rotation` is a rotation matrix and `axis` a unit vector, to within rounding. Error: at most [`ORBIT_ERROR`] of the angle;
-/// at most [`ROTATION_ERROR`] of the dot products of rows (tests::rotations_stay_rotations). Source: the formula of
-/// Rodrigues (1840), row by row.
+/// Domain: `rotation` is a rotation matrix and `axis` a unit vector, to within rounding. Error: at most [`ORBIT_ERROR`] of the angle, and at most
+/// [`ROTATION_ERROR`] of the dot products of rows (tests::rotations_stay_rotations). Source: the formula of Rodrigues (1840), row by row.
 fn turned(rotation: [[i32; 3]; 3], axis: [i32; 3], frame: u32, period: u32) -> [[i32; 3]; 3] {
-    let (sin, cos) = sin_cos(frame, period);
+    let turns = (u64::from(frame) << 32).checked_div(period.into()).unwrap_or(0);
+    let [sin, cos] = sin_cos(Angle::from_bits(turns as u32)).map(i64::from);
     let limit = 1i64 << ROTATION;
     rotation.map(|row| {
         let along = ((dot(row, axis) >> ROTATION) * (limit - cos)) >> ROTATION;
@@ -31,51 +31,16 @@ fn turned(rotation: [[i32; 3]; 3], axis: [i32; 3], frame: u32, period: u32) -> [
     })
 }
 
-/// Largest difference between an orbit's angle in a frame and `frame / period` of a turn, in radians: 0.063 degrees.
-pub const ORBIT_ERROR: f64 = 1.1e-3;
-/// Largest difference between 1 and the root of sine² + cosine² of an orbit's angle: two units of Q2.30.
-pub const CIRCLE_ERROR: f64 = 2.0 / (1u32 << 30) as f64;
+/// Largest difference between an orbit's angle in a frame and `frame / period` of a turn, in radians: the error of sine and cosine, and the angle's
+/// rounding to 2^-32 of a turn.
+pub const ORBIT_ERROR: f64 = SIN_COS_ERROR + core::f64::consts::TAU / (1u64 << 32) as f64;
 /// Largest change of the dot products of a matrix's rows, 1 and 0 for an exact rotation, when an orbit turns it: 24 units of Q2.30.
 pub const ROTATION_ERROR: f64 = 24.0 / (1u32 << 30) as f64;
-
-/// Sine and cosine of `frame / period` of a turn, Q2.30.
-///
-/// Domain: `frame` is less than `period`, which is at most 65,535. Error: at most [`ORBIT_ERROR`] of the angle, [`CIRCLE_ERROR`] of the
-/// distance from the origin (tests::unit_circle). Source: the polynomials of micromath, which give the same bits on every machine, and
-/// two steps of the method of Newton that put the pair back on the unit circle, so that a rotation stays one.
-fn sin_cos(frame: u32, period: u32) -> (i64, i64) {
-    let angle = frame as f32 / period as f32 * core::f32::consts::TAU;
-    let one = (1u32 << ROTATION) as f32;
-    let (mut sin, mut cos) = ((F32Ext::sin(angle) * one) as i64, (F32Ext::cos(angle) * one) as i64);
-    for _ in 0..2 {
-        let square = (sin * sin + cos * cos) >> ROTATION;
-        let factor = ((3 << ROTATION) - square) >> 1;
-        sin = (sin * factor) >> ROTATION;
-        cos = (cos * factor) >> ROTATION;
-    }
-    (sin, cos)
-}
 
 #[cfg(test)]
 mod tests {
     use super::*;
     use crate::math::vector::normalise;
-
-    #[test]
-    fn unit_circle() {
-        let (mut circle, mut orbit) = (0f64, 0f64);
-        for period in (1..700).chain([2048, 4096, 65_535]) {
-            for frame in 0..period {
-                let (sin, cos) = sin_cos(frame, period);
-                let (s, c) = (sin as f64 / 2f64.powi(30), cos as f64 / 2f64.powi(30));
-                let (sin, cos) = (f64::from(frame) / f64::from(period) * core::f64::consts::TAU).sin_cos();
-                circle = circle.max((s.hypot(c) - 1.0).abs());
-                // The angle between the two points of the circle.
-                orbit = orbit.max((s * cos - c * sin).atan2(c * cos + s * sin).abs());
-            }
-        }
-        assert!(circle <= CIRCLE_ERROR && orbit <= ORBIT_ERROR, "{circle:e} {orbit:e}");
-    }
 
     #[test]
     fn rotations_stay_rotations() {

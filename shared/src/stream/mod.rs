@@ -3,6 +3,7 @@
 //! A stream is read in place, from flash. [`Stream::parse`] checks length, checksum, all indices and all ranges, once. Rendering relies on these
 //! checks and repeats none of them.
 
+mod included;
 mod names;
 #[doc(hidden)]
 pub mod record;
@@ -12,6 +13,8 @@ use crate::{
     math::vector::{cross, dot},
 };
 use core::{fmt, ops::Range};
+#[doc(hidden)]
+pub use included::check_included;
 #[doc(hidden)]
 pub use names::MAX_NAME;
 pub use names::{Names, UnknownMesh};
@@ -31,17 +34,6 @@ pub struct Aligned<B: ?Sized>(
     /// The bytes that are aligned.
     pub B,
 );
-
-/// Embeds a stream file (a mesh file written by `microphong convert`) in the program, like `include_bytes!`. The result is a
-/// `&'static [u8]` that is aligned for [`Stream::parse`](crate::Stream::parse), so the file can be read in place from flash:
-/// `include_stream!("teapot.tri")`.
-#[macro_export]
-macro_rules! include_stream {
-    ($path:expr) => {{
-        static STREAM: &$crate::stream::Aligned<[u8]> = &$crate::stream::Aligned(*include_bytes!($path));
-        &STREAM.0
-    }};
-}
 
 /// A view of a mesh file ("stream") that `microphong convert` has written: meshes, materials, lights, a camera and an animation. It is read in place:
 /// a `Stream` only borrows the bytes, and copies cost nothing. [`Self::parse`] has checked all of it but the names of objects.
@@ -206,7 +198,21 @@ impl<'a> Stream<'a> {
     ///
     /// # Errors
     /// Returns a [`StreamError`] that describes the first fault.
+    // Copies of it on the way stay off the stack of the frame loop.
+    #[inline(never)]
     pub fn parse(bytes: &'a [u8]) -> Result<Self, StreamError> {
+        let stream = Self::read(bytes)?;
+        let header = stream.header;
+        let computed = checksum(bytes.get(..header.length as usize).unwrap_or_default());
+        if computed != header.crc {
+            return Err(StreamError::Checksum { stored: header.crc, computed });
+        }
+        stream.check()?;
+        Ok(stream)
+    }
+
+    /// Finds the records in `bytes`, which begin with a header.
+    fn read(bytes: &'a [u8]) -> Result<Self, StreamError> {
         let have = bytes.len() as u32;
         let truncated = |need| StreamError::Truncated { need, have };
         let (header, _) = Header::ref_from_prefix(bytes).map_err(|e| match e {
@@ -224,12 +230,8 @@ impl<'a> Stream<'a> {
         if need > header.length {
             return Err(StreamError::Length { need, claimed: header.length });
         }
-        let computed = checksum(stream);
-        if computed != header.crc {
-            return Err(StreamError::Checksum { stored: header.crc, computed });
-        }
         let mut rest = stream.get(size_of::<Header>()..).ok_or(truncated(need))?;
-        let stream = Self {
+        Ok(Self {
             header,
             meshes: take(&mut rest, header.meshes.into())?,
             materials: take(&mut rest, header.materials.into())?,
@@ -241,9 +243,7 @@ impl<'a> Stream<'a> {
             triangles: take(&mut rest, header.triangles as usize)?,
             labels: take(&mut rest, header.labels.into())?,
             names: rest,
-        };
-        stream.check()?;
-        Ok(stream)
+        })
     }
 
     /// The ranges that the renderer's arithmetic relies on.

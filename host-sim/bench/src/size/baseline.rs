@@ -42,10 +42,11 @@ pub fn read(path: &Path) -> Result<Vec<Entry>> {
 /// Figures that are more than the tolerance from the `recorded` ones, in words, and whether they are larger.
 #[must_use]
 pub fn changes(measured: &Entry, recorded: &Entry) -> Vec<(String, bool)> {
-    let Program { core, shader, format } = measured.program;
+    let Program { core, features, shader, format } = measured.program;
     let change = |(what, is, was): (&str, u64, u64)| {
         let percent = (is as f64 - was as f64) / was.max(1) as f64 * 100.0;
-        let text = format!("{} in {} on {}: {what} {was} -> {is} ({percent:+.2} %)", shader.name(), format.name(), core.name());
+        let program = format!("{} in {} on {}, features {}", shader.name(), format.name(), core.name(), features.name());
+        let text = format!("{program}: {what} {was} -> {is} ({percent:+.2} %)");
         (percent.abs() > TOLERANCE).then_some((text, is > was))
     };
     let figures =

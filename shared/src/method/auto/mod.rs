@@ -21,15 +21,11 @@ use crate::{
     },
     math::vector::zip,
     method::{
-        Costs, DrawTriangle, Facts, HighlightField, Loops, Method, RANGE, Shading, Style, TriangleSetup, Uniform, VertexLight, channels,
-        duff::Duff, error_bound::ErrorBounds, gouraud, of_levels, phong::Phong, six_point::SixPoint, sqrt6::SixCosines,
+        Costs, DrawTriangle, Facts, HighlightField, Loops, Method, RANGE, Shading, Style, TriangleSetup, VertexLight, channels,
+        draw_uniform, duff::Duff, error_bound::ErrorBounds, gouraud, phong::Phong, six_point::SixPoint, sqrt6::SixCosines,
     },
     pixel::Pixel,
-    raster::{
-        band::Band,
-        canvas::{Canvas, Shaded},
-        pixel_shader::Solid,
-    },
+    raster::{band::Band, canvas::Canvas, pixel_shader::Solid},
 };
 pub use choice::{Choice, choose};
 use choice::{corner_levels, extremes};
@@ -131,9 +127,7 @@ impl<const QUADRATICS: bool> Method for Auto<QUADRATICS> {
         let reflectance = shading.reflectance;
         let raises = raises(choice, setup, shading);
         match (choice, shading.constant) {
-            (Choice::Solid(_), _) => {
-                setup.draw_spans(&mut Shaded::new(Constant, Uniform(of_levels(middle(setup, shading, raises)))), canvas)
-            }
+            (Choice::Solid(_), _) => draw_uniform(setup, middle(setup, shading, raises), canvas),
             (Choice::Linear(_), constant) => {
                 let levels = if constant.is_some() { gouraud::reflected(setup, &reflectance) } else { corner_levels(setup, reflectance) };
                 shading.draw_channels::<3, RANGE>(setup, &channels(levels), raises, canvas)

@@ -1,0 +1,71 @@
+//! Cargo features: what a program can do without, to save flash.
+//!
+//! Code asks them here, in conditions that are constant. So all code is compiled and checked with every choice of features, and the compiler drops
+//! what a program lacks.
+
+/// A cargo feature that some mesh files need.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Feature {
+    /// Movements of objects, lights and the camera that the mesh file contains. A camera that orbits needs no feature.
+    Animation,
+    /// Materials that reflect more than one colour, for example a white highlight on a red surface.
+    Colours,
+    /// More than one light.
+    Lights,
+    /// Lights at a point, and highlights as seen from a camera that is not infinitely far.
+    NearLights,
+    /// More than one object.
+    Objects,
+    /// Texts over the picture.
+    Text,
+}
+
+impl Feature {
+    /// All of them.
+    pub const ALL: [Self; 6] = [Self::Animation, Self::Colours, Self::Lights, Self::NearLights, Self::Objects, Self::Text];
+
+    /// The name of the feature in `Cargo.toml`.
+    #[must_use]
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Animation => "animation",
+            Self::Colours => "colours",
+            Self::Lights => "lights",
+            Self::NearLights => "near-lights",
+            Self::Objects => "objects",
+            Self::Text => "text",
+        }
+    }
+
+    /// Whether the program has the feature.
+    #[inline(always)]
+    #[must_use]
+    pub const fn is_on(self) -> bool {
+        match self {
+            Self::Animation => cfg!(feature = "animation"),
+            Self::Colours => cfg!(feature = "colours"),
+            Self::Lights => cfg!(feature = "lights"),
+            Self::NearLights => cfg!(feature = "near-lights"),
+            Self::Objects => cfg!(feature = "objects"),
+            Self::Text => cfg!(feature = "text"),
+        }
+    }
+}
+
+pub(crate) const ANIMATION: bool = Feature::Animation.is_on();
+pub(crate) const COLOURS: bool = Feature::Colours.is_on();
+pub(crate) const LIGHTS: bool = Feature::Lights.is_on();
+pub(crate) const NEAR_LIGHTS: bool = Feature::NearLights.is_on();
+pub(crate) const OBJECTS: bool = Feature::Objects.is_on();
+
+/// Whether a frame can draw only what has changed.
+pub(crate) const REDRAW: bool = cfg!(feature = "redraw");
+/// Whether edges can be antialiased.
+pub(crate) const ANTIALIAS: bool = cfg!(feature = "antialias");
+/// Whether light can be interpolated in perspective.
+pub(crate) const PERSPECTIVE: bool = cfg!(feature = "perspective");
+/// Whether skips of invisible work can be switched off, and are counted.
+pub(crate) const SKIPS: bool = cfg!(feature = "skips");
+
+/// Whether all light comes from one direction to a viewer who is infinitely far, so that N·L and N·H are linear in N.
+pub(crate) const ALWAYS_CONSTANT: bool = !LIGHTS && !NEAR_LIGHTS;

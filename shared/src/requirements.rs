@@ -1,0 +1,42 @@
+//! The cargo features that a mesh file needs.
+
+use crate::{
+    features::Feature,
+    pixel::Channels,
+    scene::LightTerms,
+    stream::{
+        Stream,
+        record::{DIRECTIONAL, PERSPECTIVE, VIEWER_LOCAL},
+    },
+};
+
+impl Feature {
+    /// Whether `stream` cannot be drawn without the feature, in a pixel format with these `channels`.
+    #[inline(always)]
+    #[must_use]
+    pub fn is_needed_by(self, stream: &Stream<'_>, channels: &Channels) -> bool {
+        let Stream { header, lights, .. } = stream;
+        match self {
+            Self::Animation => !stream.tracks.is_empty(),
+            Self::Colours => {
+                stream.materials.iter().any(|material| !LightTerms::new(channels, header.ambient, material, lights).are_one_channel)
+            }
+            Self::Lights => lights.len() > 1,
+            Self::NearLights => {
+                let is_local = header.camera.viewer == VIEWER_LOCAL && header.camera.projection == PERSPECTIVE;
+                is_local || lights.iter().any(|light| light.kind != DIRECTIONAL)
+            }
+            Self::Objects => stream.instances.len() > 1,
+            Self::Text => !stream.labels.is_empty(),
+        }
+    }
+
+    /// A feature that `stream` needs and that the program lacks.
+    pub(crate) fn missing(stream: &Stream<'_>, channels: &Channels) -> Option<Self> {
+        // One by one, so that the compiler drops the check of a feature that the program has.
+        let lacks = |feature: Self| (!feature.is_on() && feature.is_needed_by(stream, channels)).then_some(feature);
+        let [animation, colours, lights, near_lights, objects, text] = Self::ALL;
+        let scene = lacks(animation).or_else(|| lacks(objects)).or_else(|| lacks(text));
+        scene.or_else(|| lacks(lights)).or_else(|| lacks(near_lights)).or_else(|| lacks(colours))
+    }
+}
