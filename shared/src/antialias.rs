@@ -164,7 +164,7 @@ fn side(from: [i64; 2], to: [i64; 2], p: [i64; 2]) -> i64 {
 }
 
 /// The place of a span: row and column on the grid of the patch, first column and number of pixels on the screen.
-struct Place {
+struct PixelRun {
     at: [i32; 2],
     column: i32,
     count: i32,
@@ -186,7 +186,7 @@ impl Shape<'_> {
         let [first, end] = drawn.rows();
         let mut pixels = 0;
         // Shades the pixels of a place and hands them to the closure with their columns.
-        let mut shade = |place: Place, put: &mut dyn FnMut(i32, Intensity)| {
+        let mut shade = |place: PixelRun, put: &mut dyn FnMut(i32, Intensity)| {
             let end = place.at[1].wrapping_add(place.count);
             let mut target = EachPixel { column: place.column, put };
             shader.span(place.at[0].wrapping_sub(anchor), end, place.count as usize, &mut target);
@@ -198,7 +198,7 @@ impl Shape<'_> {
                 let [from, to] = owned(row);
                 let (from, to) = (start.max(from).max(0), stop.min(to).min(width));
                 if from < to {
-                    shade(Place { at: [row, from], column: from, count: to - from }, &mut |column, intensity| {
+                    shade(PixelRun { at: [row, from], column: from, count: to - from }, &mut |column, intensity| {
                         let colour = canvas.to_mix(intensity, row);
                         canvas.add(column, row, Layer::whole(depth.range(column, row), colour));
                     });
@@ -217,7 +217,7 @@ impl Shape<'_> {
                     // The nearest place of the finer grid.
                     let place = |pixel: i32, offset: i32| (pixel << finer) + ((offset + (1 << (15 - finer))) >> (16 - finer));
                     let at = inside.nearest([place(row, fragment.centroid[1]), place(column, fragment.centroid[0])]);
-                    shade(Place { at, column, count: 1 }, &mut |column, intensity| {
+                    shade(PixelRun { at, column, count: 1 }, &mut |column, intensity| {
                         let colour = canvas.to_mix(intensity, row);
                         canvas.add(column, row, Layer::new(depth.range(column, row), coverage, fragment.mask, colour));
                     });

@@ -2,7 +2,7 @@
 
 use crate::{
     features::COLOURS,
-    geometry::bin::{Key, Walk},
+    geometry::bin::{TriangleKey, Walk},
     mesh::Drawing,
     method::{
         ErrorBounds, Facts, General, LitMaterial, Loops, Method, Shading, Style, TriangleSetup, auto::Auto, flat::Flat, gouraud::Gouraud,
@@ -29,7 +29,7 @@ pub struct Shader<C: Pixel> {
 }
 
 /// The type of [`Drawing::run`] with the loops of one method.
-type Run<C> = fn(&Drawing<'_, C>, Key, &mut Walk<'_>, &mut Band<'_, C>) -> (u32, Option<Key>);
+type Run<C> = fn(&Drawing<'_, C>, TriangleKey, &mut Walk<'_>, &mut Band<'_, C>) -> (u32, Option<TriangleKey>);
 
 /// What draws triangles by the loops of one method.
 pub(crate) struct TriangleLoops<C: Pixel> {

@@ -11,8 +11,8 @@
 mod triangle;
 
 use microphong::method::highlight_error::{
-    COLUMNS, COLUMNS_A_UNIT, CURVED, Curved, Growth, KINDS, Kind, LEAST_EXPONENTS, LEAST_SIZE, LINEAR, LINEAR_SIZE, Linear, RATE, ROWS,
-    ROWS_BEHIND, SHARE,
+    COLUMNS, COLUMNS_A_UNIT, CURVED, Curved, Growth, KINDS, Kind, LEAST_EXPONENTS, LEAST_SIZE, LINEAR, LINEAR_SIZE, LinearTable, RATE,
+    ROWS, ROWS_BEHIND, SHARE,
 };
 use microphong_stress::random::Random;
 use rayon::prelude::*;
@@ -26,7 +26,7 @@ type Found = [[[f64; COLUMNS]; SEARCHED]; KINDS];
 #[derive(Clone, Debug)]
 pub struct Table {
     /// Errors of linear interpolation.
-    pub linear: [Linear; LEAST_EXPONENTS.len()],
+    pub linear: [LinearTable; LEAST_EXPONENTS.len()],
     /// Errors of quadratic interpolation.
     pub curved: [Curved; LEAST_EXPONENTS.len()],
 }
@@ -299,11 +299,11 @@ pub fn worst(table: &Table, kind: usize, tries: u64, effort: u32, seed: u64) -> 
 pub fn source(table: &Table, effort: u32, seed: u64) -> String {
     let mut text = format!(
         "//! The tables of `highlight_error`, written by `microphong bounds --effort {effort} --seed {seed}`.\n\n\
-         use super::{{Curved, Growth, LEAST_EXPONENTS, Linear}};\n\n\
+         use super::{{Curved, Growth, LEAST_EXPONENTS, LinearTable}};\n\n\
          const fn growth(rate: u16, base: u16, slope: u16) -> Growth {{\n    Growth {{ rate, base, slope }}\n}}\n\n\
          /// For each range of exponents: columns by the distance from the peak, and how errors of both kinds grow there.\n\
          #[rustfmt::skip]\n\
-         pub static LINEAR: [Linear; LEAST_EXPONENTS.len()] = [\n"
+         pub static LINEAR: [LinearTable; LEAST_EXPONENTS.len()] = [\n"
     );
     // A String takes all that is written.
     for part in &table.linear {

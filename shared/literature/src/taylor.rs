@@ -20,7 +20,7 @@ use microphong::{
         vector::{add, dot, sub, wide},
     },
     method::{
-        Canvas, Constant, CosineLookup, Costs, Facts, Held, Highlight, HighlightField, LightingModel, Method, Quadratic, Reflection,
+        Canvas, Constant, CosineLookup, Costs, Facts, Held, Highlight, HighlightField, LightingModel, Method, QuadraticNodes, Reflection,
         Shading, Source, Steep, Steepness, TriangleSetup, VertexLight,
         lighting_model::{EXTRA, NODE},
         signed, tiles,
@@ -104,7 +104,7 @@ pub fn draw_by(
         let bits = shift + VECTOR - NODE;
         let nodes = values.map(|nodes| nodes.map(|node| (node >> bits) as i32));
         let steepness = if shift == 0 { unshifted } else { Steepness::new(u32::from(shading.exponent) << shift) };
-        (Steep { field: Quadratic::new(nodes, EXTRA), steepness }, Held(shift))
+        (Steep { field: QuadraticNodes::new(nodes, EXTRA), steepness }, Held(shift))
     };
     tiles::shade_steeply(steepness(setup, shading), setup, canvas, |setup, canvas| shading.draw_lit(setup, fit, Constant, Clamped, canvas))
 }

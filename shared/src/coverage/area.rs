@@ -19,7 +19,7 @@ const ONE: i64 = 1 << PLACE;
 
 /// An edge from its upper to its lower end.
 #[derive(Clone, Copy, Debug)]
-struct Edge {
+struct ContourEdge {
     x: i64,
     y: i64,
     dx: i64,
@@ -32,7 +32,7 @@ struct Edge {
 /// The edges of a triangle, from which its coverage of pixels follows.
 #[derive(Clone, Copy, Debug)]
 pub struct TriangleCoverage {
-    edges: [Edge; 3],
+    edges: [ContourEdge; 3],
     /// Fraction bits of coordinates, at most 10.
     bits: u32,
 }
@@ -46,7 +46,7 @@ impl TriangleCoverage {
             let left = end[1] < start[1];
             let ([x, y], [u, v]) = if left { (end, start) } else { (start, end) };
             let [x, y, u, v] = [x, y, u, v].map(i64::from);
-            Edge { x, y, dx: u - x, dy: v - y, left }
+            ContourEdge { x, y, dx: u - x, dy: v - y, left }
         };
         Self { edges: [edge(a, b), edge(b, c), edge(c, a)], bits: bits.clamp(4, 10) }
     }
@@ -109,7 +109,7 @@ struct EdgeSegment {
 }
 
 impl EdgeSegment {
-    fn new(edge: &Edge, row: i32, bits: u32) -> Self {
+    fn new(edge: &ContourEdge, row: i32, bits: u32) -> Self {
         let top = i64::from(row) << bits;
         let (from, to) = (edge.y.max(top), (edge.y + edge.dy).min(top + (1 << bits)));
         let at = |y: i64| edge.x * edge.dy + edge.dx * (y - edge.y);

@@ -20,14 +20,14 @@ use crate::{
 use context::Context;
 use core::ops::Range;
 use embedded_graphics_core::primitives::Rectangle;
-use part::Part;
+use part::FrameRows;
 
 /// One frame, ready to be drawn from the top, band by band (a band is a group of rows). [`Renderer::frame`](crate::Renderer::frame) and
 /// [`Renderer::draw`](crate::Renderer::draw) create one. Programs with an embedded-graphics display can use [`Picture`](crate::Picture) instead.
 #[derive(Debug)]
 pub struct Frame<'r, C: Pixel> {
     context: Context<'r>,
-    part: Part<'r>,
+    part: FrameRows<'r>,
     colours: Colours<'r, C>,
 }
 
@@ -134,7 +134,7 @@ impl<'r, C: Pixel> Frame<'r, C> {
 pub struct FrameInTwo<'r, C: Pixel> {
     context: Context<'r>,
     colours: Colours<'r, C>,
-    parts: [Part<'r>; 2],
+    parts: [FrameRows<'r>; 2],
 }
 
 impl<'r, C: Pixel> FrameInTwo<'r, C> {
@@ -158,7 +158,7 @@ impl<'r, C: Pixel> FrameInTwo<'r, C> {
 pub struct FramePart<'f, 'r, C: Pixel> {
     context: &'f Context<'r>,
     colours: &'f Colours<'r, C>,
-    part: &'f mut Part<'r>,
+    part: &'f mut FrameRows<'r>,
 }
 
 impl<C: Pixel> FramePart<'_, '_, C> {

@@ -10,7 +10,7 @@ use crate::{
     },
     geometry::{
         area::Area,
-        bin::{Bins, Entry, Key, Walk},
+        bin::{Bins, Entry, TriangleKey, Walk},
     },
     pixel::Pixel,
     raster::{
@@ -69,7 +69,7 @@ impl Stats {
 
 /// The rows that one processor draws, and the memory that it takes for them.
 #[derive(Debug)]
-pub(crate) struct Part<'r> {
+pub(crate) struct FrameRows<'r> {
     pub(crate) bins: Bins,
     /// Whether all triangles found room in the bins.
     pub(crate) binned: bool,
@@ -90,7 +90,7 @@ pub(crate) struct Part<'r> {
     pub(crate) stats: Stats,
 }
 
-impl<'r> Part<'r> {
+impl<'r> FrameRows<'r> {
     /// See [`crate::Frame::next_band_over`].
     pub(crate) fn next_band<C: Pixel>(
         &mut self,
@@ -146,7 +146,7 @@ impl<'r> Part<'r> {
         let (active_triangles, active_below) = halves(active_triangles, held);
         let (depth, depth_below) = halves(depth, of_depth);
         let (samples, samples_below) = halves(samples, of_samples);
-        let below = Part {
+        let below = FrameRows {
             bins: bins.clone(),
             binned,
             entries: below,
@@ -159,7 +159,7 @@ impl<'r> Part<'r> {
             bottom,
             stats: Stats::default(),
         };
-        [Part { bins, binned, entries, depth, samples, active_triangles, queue, rows, top, bottom: row, stats }, below]
+        [FrameRows { bins, binned, entries, depth, samples, active_triangles, queue, rows, top, bottom: row, stats }, below]
     }
 
     /// Restricts the part to these `rows`.
@@ -265,7 +265,13 @@ fn draw_binned<C: Pixel>(
 
 /// Leaves out the triangle `key` and all that follow in the same mesh; returns the first one of another.
 #[inline(never)]
-fn leave_out(placed: &PlacedMesh<'_>, key: Key, walk: &mut Walk<'_>, active: &mut ActiveTriangles<'_>, counts: &mut Counts) -> Option<Key> {
+fn leave_out(
+    placed: &PlacedMesh<'_>,
+    key: TriangleKey,
+    walk: &mut Walk<'_>,
+    active: &mut ActiveTriangles<'_>,
+    counts: &mut Counts,
+) -> Option<TriangleKey> {
     let mut next = Some(key);
     while let Some(key) = next.filter(|key| placed.has(key.triangle())) {
         if SKIPS {

@@ -14,7 +14,7 @@ use crate::{
         Frame,
         colours::Colours,
         context::{Context, PlacedMesh, Settings, meshes},
-        part::{Part, Stats, halves},
+        part::{FrameRows, Stats, halves},
     },
     geometry::{
         bin::{Bins, Entry},
@@ -116,7 +116,7 @@ struct Halves<'r> {
 #[derive(Debug)]
 pub(crate) struct Prepared<'r> {
     pub(super) context: Context<'r>,
-    pub(super) part: Part<'r>,
+    pub(super) part: FrameRows<'r>,
 }
 
 /// A frame without triangles and vertices, room for vertices, and where triangles may overlap.
@@ -127,7 +127,7 @@ impl<'r> Prepared<'r> {
     #[inline(never)]
     pub(crate) fn new(settings: &'r Settings, scene: &'r Scene<'_>, memory: &'r mut Memory<'_>, region: &'r Region) -> Self {
         let (mut prepared, cache, mut depth_elision) = Self::empty(settings, scene, memory, region);
-        let Part { bins, entries, stats, .. } = &mut prepared.part;
+        let FrameRows { bins, entries, stats, .. } = &mut prepared.part;
         let whole = PreparationPart {
             context: &prepared.context,
             triangles: 0..stats.triangles as usize,
@@ -170,7 +170,7 @@ impl<'r> Prepared<'r> {
             Context { settings, scene, placements, region, depth_elision: None, vertices: &[], reflectances, tables, error_bounds };
         let elides = settings.skips().depth && !settings.antialiased();
         let depth_elision = if elides { context.convex().and_then(DepthElision::new) } else { None };
-        let part = Part {
+        let part = FrameRows {
             bins,
             binned: false,
             entries,
@@ -244,7 +244,7 @@ impl<'r> Halves<'r> {
     fn parts(&mut self) -> [PreparationPart<'_, 'r>; 2] {
         let Self { prepared, cache, division: Division { triangle, vertex }, earlier: earlier_bins, depth_elisions, is_done } = self;
         let ([later_elision, earlier_elision], [later_done, earlier_done]) = (depth_elisions, is_done);
-        let Prepared { context, part: Part { bins: later_bins, entries, depth, stats, .. } } = prepared;
+        let Prepared { context, part: FrameRows { bins: later_bins, entries, depth, stats, .. } } = prepared;
         let all = stats.triangles as usize;
         let (earlier_cached, later_cached) = halves(cache, *vertex);
         // As many entries as triangles: none can be without.

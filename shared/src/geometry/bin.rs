@@ -18,9 +18,9 @@ const OPEN: u16 = 1 << 15;
 /// A triangle in a list: twice its index in the stream, plus 1 if it is word-sized. Each triangle has another key.
 #[derive(FromBytes, IntoBytes, Immutable, KnownLayout, Clone, Copy, Debug)]
 #[repr(transparent)]
-pub(crate) struct Key(u32);
+pub(crate) struct TriangleKey(u32);
 
-impl Key {
+impl TriangleKey {
     #[inline(always)]
     fn new(triangle: u32, word_sized: bool) -> Self {
         Self(triangle << 1 | u32::from(word_sized))
@@ -53,7 +53,7 @@ impl Key {
 #[repr(C)]
 pub(crate) struct Entry {
     /// Key of the triangle.
-    key: Key,
+    key: TriangleKey,
     /// One past the last row of the triangle.
     bottom: u16,
     /// Link to the next entry.
@@ -64,13 +64,13 @@ impl Entry {
     /// The key of the entry's triangle.
     #[inline(always)]
     #[must_use]
-    pub(crate) fn key(&self) -> Key {
+    pub(crate) fn key(&self) -> TriangleKey {
         self.key
     }
 
     /// An entry of zeros.
     #[cfg(test)]
-    pub(crate) const EMPTY: Self = Self { key: Key(0), bottom: 0, next: NONE };
+    pub(crate) const EMPTY: Self = Self { key: TriangleKey(0), bottom: 0, next: NONE };
 }
 
 /// The triangles of one frame: a list for each bin, and one of active triangles. Fields are ordered by use, because instructions of Armv6-M reach
@@ -128,7 +128,7 @@ impl Bins {
         let link = self.count.wrapping_add(1);
         match (self.heads.get_mut(bin), entries.get_mut(usize::from(self.count))) {
             (Some(head), Some(entry)) if link != NONE => {
-                *entry = Entry { key: Key::new(triangle, word_sized), bottom: bottom as u16, next: *head };
+                *entry = Entry { key: TriangleKey::new(triangle, word_sized), bottom: bottom as u16, next: *head };
                 *head = link;
                 self.count = link;
                 self.top = self.top.min(top);
@@ -239,10 +239,10 @@ pub(crate) struct Walk<'e> {
 }
 
 impl Iterator for Walk<'_> {
-    type Item = Key;
+    type Item = TriangleKey;
 
     #[inline(always)]
-    fn next(&mut self) -> Option<Key> {
+    fn next(&mut self) -> Option<TriangleKey> {
         // Entries are put in from the last triangle to the first: of two lists the later entry comes first in the stream. Which list is which
         // does not matter.
         let [one, other] = self.lists;

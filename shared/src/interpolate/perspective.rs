@@ -38,13 +38,13 @@ pub trait Surface: Copy {
 #[derive(Clone, Copy, Debug)]
 pub struct PerspectivePatch<S> {
     /// Numerators of the barycentric coordinates of corners 1 and 2, and their common denominator.
-    rows: [Row; 3],
+    rows: [PerspectiveRow; 3],
     surface: S,
 }
 
 /// The linear function `c + dx x + dy y`, see [`Gradients::fine`].
 #[derive(Clone, Copy, Debug)]
-struct Row {
+struct PerspectiveRow {
     /// Value at column 0 of the current row.
     c: i64,
     dx: i64,
@@ -64,13 +64,13 @@ impl<S: Surface> PerspectivePatch<S> {
 
 /// The linear functions whose quotients are the barycentric coordinates, for corners with this inverse depth.
 #[inline(never)]
-fn rows(gradients: &Gradients, inv_depth: [i32; 3]) -> [Row; 3] {
+fn rows(gradients: &Gradients, inv_depth: [i32; 3]) -> [PerspectiveRow; 3] {
     // A common factor cancels out, so the largest inverse depth is scaled to just below 1.
     let zeros = inv_depth.iter().fold(1, |m, w| m | w).leading_zeros();
     let [a, b, c] = inv_depth.map(|w| w.wrapping_shl(zeros.saturating_sub(2)));
     let row = |nodes| {
         let [c, dx, dy] = gradients.fine(nodes);
-        Row { c: c.wrapping_sub(dx.wrapping_mul(gradients.column().into())), dx, dy }
+        PerspectiveRow { c: c.wrapping_sub(dx.wrapping_mul(gradients.column().into())), dx, dy }
     };
     [row([0, b, 0]), row([0, 0, c]), row([a, b, c])]
 }

@@ -7,7 +7,7 @@ use crate::{
 
 /// A linear function `c + dx x + dy y` in each of `CH` channels, standing on one row.
 #[derive(Clone, Copy, Debug)]
-pub struct Plane<const CH: usize>([Row; CH]);
+pub struct Plane<const CH: usize>([PlaneRow; CH]);
 
 impl<const CH: usize> Default for Plane<CH> {
     fn default() -> Self {
@@ -17,13 +17,13 @@ impl<const CH: usize> Default for Plane<CH> {
 
 /// One channel: the value at column 0 of the current row, and the derivatives.
 #[derive(Clone, Copy, Debug)]
-struct Row {
+struct PlaneRow {
     c: i32,
     dx: i32,
     dy: i32,
 }
 
-impl Row {
+impl PlaneRow {
     /// See [`Plane::fit`].
     #[inline(always)]
     fn fit<const BITS: u32>(gradients: &Gradients, nodes: [i32; 3], extra: u32, bias: i32) -> Self {
@@ -41,7 +41,7 @@ impl Row {
 
 impl<const CH: usize> Plane<CH> {
     /// A constant, so that no loop clears one channel after the other.
-    const ZERO: Self = Self([Row { c: 0, dx: 0, dy: 0 }; CH]);
+    const ZERO: Self = Self([PlaneRow { c: 0, dx: 0, dy: 0 }; CH]);
 
     /// The linear field with the value `nodes[channel][k]` at corner `k`. Nodes lie in a range narrower than 2^`BITS`. Values are walked with `extra`
     /// more fraction bits than nodes have, and with `bias` added.
@@ -55,17 +55,17 @@ impl<const CH: usize> Plane<CH> {
         let mut plane = Self::ZERO;
         if CH == 1 {
             for ((row, nodes), bias) in plane.0.iter_mut().zip(*nodes).zip(bias) {
-                *row = Row::fit::<BITS>(gradients, nodes, extra, bias);
+                *row = PlaneRow::fit::<BITS>(gradients, nodes, extra, bias);
             }
         } else {
-            each_channel::<CH>(|c| plane.0[c] = Row::fitted::<BITS>(gradients, &nodes[c], extra, bias[c]));
+            each_channel::<CH>(|c| plane.0[c] = PlaneRow::fitted::<BITS>(gradients, &nodes[c], extra, bias[c]));
         }
         plane
     }
 }
 
 impl<const CH: usize> Patch for Plane<CH> {
-    type Walker = Linear<CH>;
+    type Walker = LinearWalker<CH>;
 
     #[inline(always)]
     fn jump(&mut self, rows: i32) {
@@ -100,18 +100,18 @@ impl<const CH: usize> Patch for Plane<CH> {
     fn load(words: &[u32]) -> Option<Self> {
         let (rows, _) = words.as_chunks::<3>();
         let rows = rows.first_chunk::<CH>()?;
-        Some(Self(rows.map(|[c, dx, dy]| Row { c: c as i32, dx: dx as i32, dy: dy as i32 })))
+        Some(Self(rows.map(|[c, dx, dy]| PlaneRow { c: c as i32, dx: dx as i32, dy: dy as i32 })))
     }
 
     #[inline(always)]
-    fn enter(&self, x: i32) -> Linear<CH> {
+    fn enter(&self, x: i32) -> LinearWalker<CH> {
         if CH == 1 {
-            return Linear {
+            return LinearWalker {
                 value: self.0.map(|row| row.c.wrapping_add(row.dx.wrapping_mul(x)) as u32),
                 step: self.0.map(|row| row.dx as u32),
             };
         }
-        let mut walker = Linear { value: [0; CH], step: [0; CH] };
+        let mut walker = LinearWalker { value: [0; CH], step: [0; CH] };
         each_channel::<CH>(|c| {
             let row = &self.0[c];
             walker.value[c] = row.c.wrapping_add(row.dx.wrapping_mul(x)) as u32;
@@ -142,12 +142,12 @@ impl<const CH: usize> Checkerboard for Plane<CH> {
 
 /// Walks a [`Plane`] by one addition a pixel and channel.
 #[derive(Clone, Copy, Debug)]
-pub struct Linear<const CH: usize> {
+pub struct LinearWalker<const CH: usize> {
     value: [u32; CH],
     step: [u32; CH],
 }
 
-impl<const CH: usize> Walker for Linear<CH> {
+impl<const CH: usize> Walker for LinearWalker<CH> {
     type Value = [u32; CH];
 
     #[inline(always)]

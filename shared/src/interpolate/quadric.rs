@@ -7,7 +7,7 @@ use crate::{
 
 /// A quadratic function `c + dx x + dy y + dxx x² + dxy x y + dyy y²` in each of `CH` channels, standing on one row.
 #[derive(Clone, Copy, Debug)]
-pub struct Quadric<const CH: usize>([Row; CH]);
+pub struct Quadric<const CH: usize>([QuadricRow; CH]);
 
 impl<const CH: usize> Default for Quadric<CH> {
     fn default() -> Self {
@@ -17,7 +17,7 @@ impl<const CH: usize> Default for Quadric<CH> {
 
 /// One channel, with x measured from column 0: the polynomial on one row, and how it changes from row to row.
 #[derive(Clone, Copy, Debug)]
-struct Row {
+struct QuadricRow {
     /// Value at column 0.
     c: i32,
     /// First difference of `c` downwards, and its own difference.
@@ -30,7 +30,7 @@ struct Row {
     dxx: i32,
 }
 
-impl Row {
+impl QuadricRow {
     /// See [`Quadric::fit`].
     #[inline(always)]
     fn fit<const BITS: u32>(gradients: &Gradients, nodes: [i32; 6], extra: u32, bias: i32) -> Self {
@@ -49,7 +49,7 @@ impl Row {
     }
 }
 
-impl Row {
+impl QuadricRow {
     /// [`Self::fit`] in a function of its own, for several channels.
     #[inline(never)]
     fn fitted<const BITS: u32>(gradients: &Gradients, nodes: &[i32; 6], extra: u32, bias: i32) -> Self {
@@ -59,7 +59,7 @@ impl Row {
 
 impl<const CH: usize> Quadric<CH> {
     /// A constant, so that no loop clears one channel after the other.
-    const ZERO: Self = Self([Row { c: 0, c_down: 0, c_down2: 0, dx: 0, dx_down: 0, dxx: 0 }; CH]);
+    const ZERO: Self = Self([QuadricRow { c: 0, c_down: 0, c_down2: 0, dx: 0, dx_down: 0, dxx: 0 }; CH]);
 
     /// The quadratic through six nodes per channel: corners 0, 1, 2, then the midpoints of the edges 01, 12, 20.
     ///
@@ -76,10 +76,10 @@ impl<const CH: usize> Quadric<CH> {
         let mut quadric = Self::ZERO;
         if CH == 1 {
             for ((to, nodes), bias) in quadric.0.iter_mut().zip(*nodes).zip(bias) {
-                *to = Row::fit::<BITS>(gradients, nodes, extra, bias);
+                *to = QuadricRow::fit::<BITS>(gradients, nodes, extra, bias);
             }
         } else {
-            each_channel::<CH>(|c| quadric.0[c] = Row::fitted::<BITS>(gradients, &nodes[c], extra, bias[c]));
+            each_channel::<CH>(|c| quadric.0[c] = QuadricRow::fitted::<BITS>(gradients, &nodes[c], extra, bias[c]));
         }
         quadric
     }
@@ -93,7 +93,7 @@ fn long<const BITS: u32>(gradients: &Gradients, nodes: [i32; 6], extra: u32) -> 
 }
 
 impl<const CH: usize> Patch for Quadric<CH> {
-    type Walker = Quadratic<CH>;
+    type Walker = QuadraticWalker<CH>;
 
     #[inline(always)]
     fn jump(&mut self, rows: i32) {
@@ -133,21 +133,21 @@ impl<const CH: usize> Patch for Quadric<CH> {
         let rows = rows.first_chunk::<CH>()?;
         Some(Self(rows.map(|words| {
             let [c, c_down, c_down2, dx, dx_down, dxx] = words.map(|c| c as i32);
-            Row { c, c_down, c_down2, dx, dx_down, dxx }
+            QuadricRow { c, c_down, c_down2, dx, dx_down, dxx }
         })))
     }
 
     #[inline(always)]
-    fn enter(&self, x: i32) -> Quadratic<CH> {
+    fn enter(&self, x: i32) -> QuadraticWalker<CH> {
         if CH == 1 {
-            return Quadratic {
+            return QuadraticWalker {
                 value: self.0.map(|row| row.c.wrapping_add(row.dx.wrapping_add(row.dxx.wrapping_mul(x)).wrapping_mul(x)) as u32),
                 // V(x - 1) - V(x) = dxx - dx - 2 dxx x.
                 d1: self.0.map(|row| row.dxx.wrapping_sub(row.dx).wrapping_sub(row.dxx.wrapping_mul(x).wrapping_mul(2)) as u32),
                 d2: self.0.map(|row| row.dxx.wrapping_mul(2) as u32),
             };
         }
-        let mut walker = Quadratic { value: [0; CH], d1: [0; CH], d2: [0; CH] };
+        let mut walker = QuadraticWalker { value: [0; CH], d1: [0; CH], d2: [0; CH] };
         each_channel::<CH>(|c| {
             let row = &self.0[c];
             let quadratic = row.dxx.wrapping_mul(x);
@@ -181,13 +181,13 @@ impl<const CH: usize> Checkerboard for Quadric<CH> {
 
 /// Walks a [`Quadric`] by two additions a pixel and channel.
 #[derive(Clone, Copy, Debug)]
-pub struct Quadratic<const CH: usize> {
+pub struct QuadraticWalker<const CH: usize> {
     value: [u32; CH],
     d1: [u32; CH],
     d2: [u32; CH],
 }
 
-impl<const CH: usize> Walker for Quadratic<CH> {
+impl<const CH: usize> Walker for QuadraticWalker<CH> {
     type Value = [u32; CH];
 
     #[inline(always)]

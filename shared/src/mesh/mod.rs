@@ -5,7 +5,7 @@ pub(crate) mod vertices;
 
 use crate::{
     antialias::PixelSet,
-    geometry::bin::{Key, Walk},
+    geometry::bin::{TriangleKey, Walk},
     lighting::material_tables::MaterialTables,
     method::{DrawTriangle, General, Loops, Shading, Style, TriangleSetup, needs_general, tiles},
     pixel::{Pixel, gamma::Gamma},
@@ -58,7 +58,12 @@ impl<C: Pixel> Drawing<'_, C> {
     /// Draws the triangle `key` and all that follow in the same mesh, by the loops `L` where they can. Returns the number of pixels in `band`, and
     /// the first triangle of another mesh.
     #[inline(never)]
-    pub(crate) fn run<L: Loops, const THREE: bool>(&self, mut key: Key, walk: &mut Walk<'_>, band: &mut Band<'_, C>) -> (u32, Option<Key>) {
+    pub(crate) fn run<L: Loops, const THREE: bool>(
+        &self,
+        mut key: TriangleKey,
+        walk: &mut Walk<'_>,
+        band: &mut Band<'_, C>,
+    ) -> (u32, Option<TriangleKey>) {
         let mut pixels = 0u32;
         loop {
             // The mesh has every triangle of its entries.

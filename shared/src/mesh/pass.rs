@@ -6,7 +6,7 @@ use crate::{
     features::ANTIALIAS,
     format::SUBPIXEL,
     geometry::{
-        bin::Key,
+        bin::TriangleKey,
         clip,
         cull::Extent,
         depth_elision::DepthElision,
@@ -68,7 +68,7 @@ struct Target<'t> {
 impl MeshPass<'_> {
     /// Index of a triangle in the mesh. It is beyond the mesh's end if the triangle belongs to a later mesh.
     #[inline(always)]
-    pub(super) fn index(&self, key: Key) -> usize {
+    pub(super) fn index(&self, key: TriangleKey) -> usize {
         key.triangle().wrapping_sub(self.first_triangle) as usize
     }
 

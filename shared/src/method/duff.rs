@@ -21,7 +21,7 @@ use crate::{
     },
     method::{
         CornerCosines, Loops, Shading, Style, TriangleSetup, largest,
-        lighting_model::{EXTRA, LightingModel, Lit, NODE, Quadratic, linear, signed},
+        lighting_model::{EXTRA, LightingModel, Lit, NODE, QuadraticNodes, linear, signed},
         node::is_steep,
         quotient,
     },
@@ -156,7 +156,7 @@ pub fn is_curved(setup: &TriangleSetup<'_>) -> bool {
 
 /// |N|², Q2.30: exactly quadratic, and for steep highlights exact.
 #[inline(always)]
-pub fn square(setup: &TriangleSetup<'_>, exponent: u16) -> Quadratic<1> {
+pub fn square(setup: &TriangleSetup<'_>, exponent: u16) -> QuadraticNodes<1> {
     let nodes = if is_steep(exponent) {
         exact(setup)
     } else {
@@ -164,7 +164,7 @@ pub fn square(setup: &TriangleSetup<'_>, exponent: u16) -> Quadratic<1> {
         let [ab, bc, ca] = setup.edges(setup.triangle.haversine).map(|haversine| -(i32::from(haversine) << (NODE - HAVERSINE)));
         [0, 0, 0, ab, bc, ca]
     };
-    Quadratic::new([nodes], EXTRA).biased([1 << 30])
+    QuadraticNodes::new([nodes], EXTRA).biased([1 << 30])
 }
 
 /// Six nodes of |N|² - 1 by the normals themselves, which are of unit length but for the rounding of their components.

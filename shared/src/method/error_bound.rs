@@ -20,7 +20,7 @@ use crate::{
     lighting::reflectance::{FULL, LitMaterial},
     method::{
         CornerCosines,
-        highlight_error::{self, Place, USUAL_EXPONENT},
+        highlight_error::{self, TablePlace, USUAL_EXPONENT},
         largest,
     },
     stream::record::Triangle,
@@ -242,7 +242,7 @@ fn terminator(curvature: Curvature, &[a, b, c]: &[i32; 3], most: u32) -> Option<
 
 /// Bounds of linear interpolation between the corners.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Linear {
+pub(crate) struct LinearBound {
     /// Range of the error.
     pub(crate) interval: Interval,
     /// The brightest level, in 1/255 of full intensity, Q9.7.
@@ -254,9 +254,9 @@ pub(crate) struct Linear {
 impl ErrorBounds {
     /// The place in the table of errors of the highlight of a light with these N·H at the corners; `None` where it cannot be seen.
     #[inline(always)]
-    fn highlight(&self, curvature: Curvature, half: &[i32; 3]) -> Option<Place> {
+    fn highlight(&self, curvature: Curvature, half: &[i32; 3]) -> Option<TablePlace> {
         let cosine = curvature.cosine(above_zero(largest(half)));
-        (cosine >= self.threshold).then(|| Place::new(self.part, curvature.short, cosine, self.exponent))
+        (cosine >= self.threshold).then(|| TablePlace::new(self.part, curvature.short, cosine, self.exponent))
     }
 
     /// Bounds of linear interpolation between the corners under `N` lights; `None` if it exceeds the budget wherever in its interval light is.
@@ -264,9 +264,9 @@ impl ErrorBounds {
     /// Diffuse light is judged first, because that is soon done.
     #[inline(always)]
     #[must_use]
-    pub(crate) fn linear<const N: usize>(&self, budget: u32, curvature: Curvature, cosines: [CornerCosines; N]) -> Option<Linear> {
+    pub(crate) fn linear<const N: usize>(&self, budget: u32, curvature: Curvature, cosines: [CornerCosines; N]) -> Option<LinearBound> {
         let rounding = Interval { below: 2, above: 2 };
-        let mut bounds = Linear { interval: rounding, brightest: self.ambient, has_highlight: false };
+        let mut bounds = LinearBound { interval: rounding, brightest: self.ambient, has_highlight: false };
         // Written out: a loop would keep all of it in memory.
         self.add_diffuse(0, curvature, &cosines, &mut bounds);
         self.add_diffuse(1, curvature, &cosines, &mut bounds);
@@ -279,7 +279,7 @@ impl ErrorBounds {
     }
 
     #[inline(always)]
-    fn add_diffuse(&self, light: usize, curvature: Curvature, cosines: &[CornerCosines], bounds: &mut Linear) {
+    fn add_diffuse(&self, light: usize, curvature: Curvature, cosines: &[CornerCosines], bounds: &mut LinearBound) {
         if let (Some(light), Some([towards, _])) = (self.lights.get(light), cosines.get(light)) {
             let (interval, level) = light.diffuse(curvature, towards);
             bounds.interval = bounds.interval.plus(interval);
@@ -288,7 +288,7 @@ impl ErrorBounds {
     }
 
     #[inline(always)]
-    fn add_highlight(&self, light: usize, curvature: Curvature, cosines: &[CornerCosines], bounds: &mut Linear) {
+    fn add_highlight(&self, light: usize, curvature: Curvature, cosines: &[CornerCosines], bounds: &mut LinearBound) {
         if let (Some(light), Some([_, half])) = (self.lights.get(light), cosines.get(light))
             && let Some(place) = self.highlight(curvature, half)
         {

@@ -286,7 +286,7 @@ impl Shading<'_> {
     /// Returns the cosines N·L (normal and direction to the light) and N·H (normal and half vector between light and viewer) as fields that
     /// are linear over the triangle, for a directional light and an infinitely distant viewer. N is interpolated without being normalised,
     /// so the fields are exact.
-    pub fn constant_products(&self, setup: &TriangleSetup<'_>, source: &Source) -> Linear<2> {
+    pub fn constant_products(&self, setup: &TriangleSetup<'_>, source: &Source) -> LinearNodes<2> {
         linear(self.constant_cosines(setup, source))
     }
 
@@ -299,26 +299,26 @@ impl Shading<'_> {
     /// Returns the cosines N·L (normal and direction to the light) and N·H (normal and half vector between light and viewer) of a light as
     /// fields that are quadratic over the triangle. `nodes` are the three corners and then the midpoints of the edges 0-1, 1-2 and 2-0.
     /// `map` is applied to each pair of cosines first, for example to take square roots.
-    pub fn six_products(&self, nodes: &[Node; 6], source: &Source, map: impl Fn([i32; 2]) -> [i32; 2]) -> Quadratic<2> {
+    pub fn six_products(&self, nodes: &[Node; 6], source: &Source, map: impl Fn([i32; 2]) -> [i32; 2]) -> QuadraticNodes<2> {
         let values = nodes.map(|node| map(self.lighting.directions(source, node.position).map(|direction| cosine(node.normal, direction))));
         quadratic([values.map(|[light, _]| light), values.map(|[_, half]| half)])
     }
 }
 
 /// A linear field: it goes through the values at the three corners.
-pub type Linear<const CH: usize> = Nodes<3, CH, BITS>;
+pub type LinearNodes<const CH: usize> = Nodes<3, CH, BITS>;
 /// A quadratic field: it goes through the values at three corners and three midpoints of edges.
-pub type Quadratic<const CH: usize> = Nodes<6, CH, BITS>;
+pub type QuadraticNodes<const CH: usize> = Nodes<6, CH, BITS>;
 
 /// The quadratic through values at six nodes, Q2.30.
 #[inline]
-pub fn quadratic<const CH: usize>(nodes: [[i32; 6]; CH]) -> Quadratic<CH> {
+pub fn quadratic<const CH: usize>(nodes: [[i32; 6]; CH]) -> QuadraticNodes<CH> {
     Nodes::new(rounded(nodes), EXTRA)
 }
 
 /// The plane through values at three nodes, Q2.30.
 #[inline]
-pub fn linear<const CH: usize>(nodes: [[i32; 3]; CH]) -> Linear<CH> {
+pub fn linear<const CH: usize>(nodes: [[i32; 3]; CH]) -> LinearNodes<CH> {
     Nodes::new(rounded(nodes), EXTRA)
 }
 

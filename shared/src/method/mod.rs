@@ -85,7 +85,7 @@ pub use {
     },
     error_bound::ErrorBounds,
     facts::{Costs, HighlightField},
-    lighting_model::{LightingModel, Linear, Quadratic, linear, quadratic, signed},
+    lighting_model::{LightingModel, LinearNodes, QuadraticNodes, linear, quadratic, signed},
     node::Node,
     sub_triangle::{Part, Parts, SubTriangle},
 };

@@ -15,14 +15,14 @@ use crate::{
     math::highlight_lut::CosineLookup,
     method::{
         TriangleSetup,
-        lighting_model::{EXTRA, LightingModel, NODE, Quadratic, signed},
+        lighting_model::{EXTRA, LightingModel, NODE, QuadraticNodes, signed},
         node::is_steep,
     },
 };
 
 /// Half the quadratic through 1/|N| at six nodes, Q2.30.
 #[inline(always)]
-pub fn length(setup: &TriangleSetup<'_>, exponent: u16) -> Quadratic<1> {
+pub fn length(setup: &TriangleSetup<'_>, exponent: u16) -> QuadraticNodes<1> {
     // 1/|Ni+Nj| - 1/2, zero at the corners. It is at most 1/2 where the normal is as long as methods want it here; the record of a damaged
     // stream may say so of one that is shorter.
     let node = |inverse: u32| {
@@ -34,7 +34,7 @@ pub fn length(setup: &TriangleSetup<'_>, exponent: u16) -> Quadratic<1> {
         let [ab, bc, ca] = setup.inverse_sum_lengths();
         [node(ab), node(bc), node(ca)]
     };
-    Quadratic::new([[0, 0, 0, ab, bc, ca]], EXTRA).biased([1 << 29])
+    QuadraticNodes::new([[0, 0, 0, ab, bc, ca]], EXTRA).biased([1 << 29])
 }
 
 /// Shades by numerators times a reciprocal length.

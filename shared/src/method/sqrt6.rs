@@ -26,7 +26,7 @@ use crate::{
     math::{highlight_lookup::DefectLookup, highlight_lut::CosineLookup, rsqrt::sqrt},
     method::{
         CornerCosines, Costs, Facts, HighlightField, Loops, Method, RANGE, Shading, Style, TriangleSetup, VertexLight, largest,
-        lighting_model::{BITS, EXTRA, LightingModel, Lit, Quadratic, quadratic, signed},
+        lighting_model::{BITS, EXTRA, LightingModel, Lit, QuadraticNodes, quadratic, signed},
         lit::{AtPixel, FromValues, LitShader},
         node::map_six,
         two_lights::TwoLights,
@@ -81,7 +81,8 @@ impl Method for Sqrt6 {
             return shade_constant::<true>(setup, shading, canvas);
         }
         let nodes = setup.six_nodes(shading.exponent);
-        let fit = |source: &_| Lit::<_, Quadratic<1>>::Fully(shading.six_products(&nodes, source, |[light, half]| [light, root(half)]));
+        let fit =
+            |source: &_| Lit::<_, QuadraticNodes<1>>::Fully(shading.six_products(&nodes, source, |[light, half]| [light, root(half)]));
         shading.draw_lit_in_part(setup, fit, Constant, LookedUp, canvas)
     }
 }

@@ -10,7 +10,7 @@ use crate::{
     format::{Intensity, SUBPIXEL},
     interpolate::{
         Patch,
-        plane::{Linear, Plane},
+        plane::{LinearWalker, Plane},
     },
     method::TriangleSetup,
     raster::{
@@ -47,7 +47,7 @@ impl Canvas for Tile<'_> {
         }
     }
 
-    fn draw_row(&mut self, row: i32, end: i32, count: usize, _: Linear<1>, shader: &mut dyn SpanShader) {
+    fn draw_row(&mut self, row: i32, end: i32, count: usize, _: LinearWalker<1>, shader: &mut dyn SpanShader) {
         let [left, right] = self.columns;
         let (first, end) = (end.wrapping_sub(count as i32).max(left), end.min(right));
         if first < end && self.rows[0] <= row && row < self.rows[1] {

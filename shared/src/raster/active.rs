@@ -14,7 +14,7 @@ use crate::{
 #[derive(FromBytes, IntoBytes, Immutable, KnownLayout, Clone, Copy, Debug)]
 #[repr(C)]
 pub struct ActiveTriangle {
-    /// The triangle, [`crate::geometry::bin::Key::word`]; 0 if there is none.
+    /// The triangle, [`crate::geometry::bin::TriangleKey::word`]; 0 if there is none.
     pub(crate) key: u32,
     pub(crate) edges: EdgeState,
     /// Not 0 if the depth has been saved.

@@ -10,7 +10,7 @@ use crate::{
     coverage::sample::Layer,
     features::ANTIALIAS,
     format::{BIAS, INTENSITY, Intensity, RAMP},
-    interpolate::{Patch, Walker, plane::Linear},
+    interpolate::{Patch, Walker, plane::LinearWalker},
     lighting::material_tables::MaterialTables,
     pixel::{
         Pixel,
@@ -128,7 +128,7 @@ pub trait Canvas {
     /// Draws the `count` pixels of `row` to the left of column `end` by `shader`, which stands on this row. Pixels whose `inv_depth`, which stands on
     /// column `end`, fails the depth test are left out.
     #[doc(hidden)]
-    fn draw_row(&mut self, row: i32, end: i32, count: usize, inv_depth: Linear<1>, shader: &mut dyn SpanShader);
+    fn draw_row(&mut self, row: i32, end: i32, count: usize, inv_depth: LinearWalker<1>, shader: &mut dyn SpanShader);
 
     /// Adds a layer to a pixel, for antialiasing.
     #[doc(hidden)]
@@ -208,11 +208,11 @@ impl<C: Pixel> Canvas for BandCanvas<'_, '_, C> {
         &mut self.band.counts
     }
 
-    fn draw_row(&mut self, row: i32, end: i32, count: usize, inv_depth: Linear<1>, shader: &mut dyn SpanShader) {
+    fn draw_row(&mut self, row: i32, end: i32, count: usize, inv_depth: LinearWalker<1>, shader: &mut dyn SpanShader) {
         let stop = self.band.start(row).wrapping_add(end as usize);
         let start = stop.wrapping_sub(count);
         if let (Some(pixels), Some(depth)) = (self.band.pixels.get_mut(start..stop), self.band.depth.get_mut(start..stop)) {
-            let mut target = Row { pixels, depth, inv_depth, colourist: self.colourist, row: row as usize };
+            let mut target = CanvasRow { pixels, depth, inv_depth, colourist: self.colourist, row: row as usize };
             shader.span(0, end, count, &mut target);
         }
     }
@@ -233,16 +233,16 @@ impl<C: Pixel> Canvas for BandCanvas<'_, '_, C> {
 }
 
 /// A span in a pixel format.
-struct Row<'r, C: Pixel> {
+struct CanvasRow<'r, C: Pixel> {
     pixels: &'r mut [C],
     depth: &'r mut [u16],
     /// The depth, which stands on the column right of the pixels that are still to be tested.
-    inv_depth: Linear<1>,
+    inv_depth: LinearWalker<1>,
     colourist: &'r Colourist<'r, C>,
     row: usize,
 }
 
-impl<C: Pixel> SpanTarget for Row<'_, C> {
+impl<C: Pixel> SpanTarget for CanvasRow<'_, C> {
     fn visible(&mut self, first: usize, count: usize) -> u32 {
         let mut visible = 0;
         let depth = self.depth.get_mut(first..first.wrapping_add(count)).unwrap_or_default();

@@ -1,7 +1,7 @@
 //! The inner loop over the pixels of a span.
 
 use crate::{
-    interpolate::{Constant, Walker, plane::Linear},
+    interpolate::{Constant, Walker, plane::LinearWalker},
     raster::pixel_shader::PixelShader,
 };
 use core::ops::Range;
@@ -16,7 +16,7 @@ pub(crate) trait DepthTest: Walker {
 }
 
 /// The test of an inverse depth, of which the upper half is stored.
-impl DepthTest for Linear<1> {
+impl DepthTest for LinearWalker<1> {
     #[inline(always)]
     fn depth(depth: &mut [u16], pixels: Range<usize>) -> Option<&mut [u16]> {
         depth.get_mut(pixels)

@@ -45,7 +45,7 @@ const LEAST: i32 = 20;
 /// middle of the visible part for large ones.
 #[derive(Clone, Copy, Debug)]
 pub struct Gradients {
-    scale: Scale,
+    precision: Precision,
     /// Vector from corner 0 to the centre of its pixel, [`FINE`] fraction bits.
     offset: [i32; 2],
     /// Vector from that pixel to the anchor, in pixels.
@@ -62,7 +62,7 @@ pub struct Gradients {
 
 /// Either the reciprocal of the area, from which the gradients follow, or the gradients themselves.
 #[derive(Clone, Copy, Debug)]
-enum Scale {
+enum Precision {
     /// The reciprocal area of a word-sized triangle, see [`Gradients::if_word_sized`].
     WordSized(WordSized),
     /// Gradients of a part of a word-sized triangle.
@@ -100,7 +100,7 @@ impl Gradients {
 
     /// Gradients of a triangle on which nothing is fitted.
     pub(crate) const NONE: Self = Self {
-        scale: Scale::Any(Slopes { s: [0; 2], t: [0; 2], exponent: 0 }),
+        precision: Precision::Any(Slopes { s: [0; 2], t: [0; 2], exponent: 0 }),
         offset: [0; 2],
         shift: [0; 2],
         anchor: [0; 2],
@@ -122,7 +122,7 @@ impl Gradients {
         let ([x0, y0], edges) = edges(corners);
         let anchor = [x0 >> SUBPIXEL, (y0 + CENTRE - 1) >> SUBPIXEL];
         let offset = [((anchor[0] << SUBPIXEL) + CENTRE - x0) << SPLITS, ((anchor[1] << SUBPIXEL) + CENTRE - y0) << SPLITS];
-        Self { scale: Scale::WordSized(area), offset, shift: [0; 2], anchor, edges, level: 0, steepness }
+        Self { precision: Precision::WordSized(area), offset, shift: [0; 2], anchor, edges, level: 0, steepness }
     }
 
     /// The gradients of any triangle; `None` if it has no area or runs the other way.
@@ -155,7 +155,7 @@ impl Gradients {
             exponent: 90 - zeros - drop,
         };
         Some(Self {
-            scale: Scale::Any(gradients),
+            precision: Precision::Any(gradients),
             offset: [(pixel[0] << SUBPIXEL) + CENTRE - x0, (pixel[1] << SUBPIXEL) + CENTRE - y0].map(|c| c << SPLITS),
             shift,
             anchor: [pixel[0].wrapping_add(shift[0]), pixel[1].wrapping_add(shift[1])],
@@ -198,9 +198,9 @@ impl Gradients {
         let anchor = if near { pixel } else { self.anchor };
         let Slopes { s, t, exponent } = self.gradients();
         let gradients = Slopes { s: gradient(s), t: gradient(t), exponent: exponent - level as i32 };
-        let fits_words = near && gradients.exponent >= LEAST && !matches!(self.scale, Scale::Any(_));
+        let fits_words = near && gradients.exponent >= LEAST && !matches!(self.precision, Precision::Any(_));
         Self {
-            scale: if fits_words { Scale::Part(gradients) } else { Scale::Any(gradients) },
+            precision: if fits_words { Precision::Part(gradients) } else { Precision::Any(gradients) },
             offset: [centre(0), centre(1)],
             shift: [anchor[0].wrapping_sub(pixel[0]), anchor[1].wrapping_sub(pixel[1])],
             anchor,
@@ -213,8 +213,8 @@ impl Gradients {
     /// Converts the gradients to the form from which many parts are taken fast.
     #[must_use]
     pub fn parted(&self) -> Self {
-        match self.scale {
-            Scale::WordSized(area) => Self { scale: Scale::Part(Self::mantissas(self.edges, area)), ..*self },
+        match self.precision {
+            Precision::WordSized(area) => Self { precision: Precision::Part(Self::mantissas(self.edges, area)), ..*self },
             _ => *self,
         }
     }
@@ -224,13 +224,13 @@ impl Gradients {
     #[inline(always)]
     #[must_use]
     pub fn is_thinner_than(&self, ratio: i64) -> bool {
-        matches!(self.scale, Scale::Any(_)) && is_longer(self.edges, ratio)
+        matches!(self.precision, Precision::Any(_)) && is_longer(self.edges, ratio)
     }
 
     /// Whether the triangle is neither word-sized nor a part.
     #[inline(always)]
     pub(crate) fn is_any(&self) -> bool {
-        matches!(self.scale, Scale::Any(_))
+        matches!(self.precision, Precision::Any(_))
     }
 
     /// Column of the anchor.
@@ -250,10 +250,10 @@ impl Gradients {
     /// Gradients of s and t.
     #[inline(always)]
     fn gradients(&self) -> Slopes {
-        match self.scale {
-            Scale::WordSized(area) => Self::mantissas(self.edges, area),
-            Scale::Part(gradients) => gradients,
-            Scale::Any(gradients) => gradients,
+        match self.precision {
+            Precision::WordSized(area) => Self::mantissas(self.edges, area),
+            Precision::Part(gradients) => gradients,
+            Precision::Any(gradients) => gradients,
         }
     }
 
@@ -275,17 +275,17 @@ impl Gradients {
     #[inline(always)]
     #[must_use]
     pub fn linear<const BITS: u32>(&self, nodes: [i32; 3], extra: u32) -> [i32; 3] {
-        match self.scale {
-            Scale::WordSized(area) if BITS <= word_sized::LINEAR && extra <= word_sized::EXTRA => {
+        match self.precision {
+            Precision::WordSized(area) if BITS <= word_sized::LINEAR && extra <= word_sized::EXTRA => {
                 area.linear(self.edges, self.subpixels(), nodes, extra)
             }
-            Scale::WordSized(area)
+            Precision::WordSized(area)
                 if BITS <= word_sized::LONG && extra >= word_sized::LONG_EXTRA && self.steepness.fits_words(area.bits) =>
             {
                 area.long_linear(self.edges, self.subpixels(), nodes, extra)
             }
             // Words would show.
-            Scale::WordSized(_) if BITS > word_sized::LINEAR && self.steepness.is_steep() => self.linear_any(nodes, extra),
+            Precision::WordSized(_) if BITS > word_sized::LINEAR && self.steepness.is_steep() => self.linear_any(nodes, extra),
             _ => self.linear_otherwise(BITS, nodes, extra),
         }
     }
@@ -293,9 +293,9 @@ impl Gradients {
     /// The gradients are passed by value: if their address were taken, the fast way would keep them in memory.
     #[inline(never)]
     fn linear_otherwise(self, bits: u32, nodes: [i32; 3], extra: u32) -> [i32; 3] {
-        match self.scale {
-            Scale::WordSized(_) | Scale::Part(_) => self.linear_by_mantissas(bits, nodes, extra),
-            Scale::Any(_) => self.linear_any(nodes, extra),
+        match self.precision {
+            Precision::WordSized(_) | Precision::Part(_) => self.linear_by_mantissas(bits, nodes, extra),
+            Precision::Any(_) => self.linear_any(nodes, extra),
         }
     }
 
@@ -349,8 +349,8 @@ impl Gradients {
     #[inline(always)]
     #[must_use]
     pub fn quadratic<const BITS: u32>(&self, nodes: [i32; 6], extra: u32) -> [i32; 6] {
-        match self.scale {
-            Scale::WordSized(area) if BITS <= word_sized::QUADRATIC && extra <= word_sized::EXTRA => {
+        match self.precision {
+            Precision::WordSized(area) if BITS <= word_sized::QUADRATIC && extra <= word_sized::EXTRA => {
                 match area.quadratic(self.edges, self.subpixels(), nodes, extra) {
                     Some(fitted) => fitted,
                     None => {
@@ -361,14 +361,14 @@ impl Gradients {
                     }
                 }
             }
-            Scale::WordSized(area) if BITS <= word_sized::LONG && extra >= word_sized::LONG_EXTRA => {
+            Precision::WordSized(area) if BITS <= word_sized::LONG && extra >= word_sized::LONG_EXTRA => {
                 match area.long_quadratic(self.edges, self.subpixels(), nodes, extra, self.steepness) {
                     Some(fitted) => fitted,
                     None => self.quadratic_any(BITS, nodes, extra),
                 }
             }
-            Scale::WordSized(_) | Scale::Part(_) => self.quadratic_by_mantissas(BITS, nodes, extra),
-            Scale::Any(_) => self.quadratic_any(BITS, nodes, extra),
+            Precision::WordSized(_) | Precision::Part(_) => self.quadratic_by_mantissas(BITS, nodes, extra),
+            Precision::Any(_) => self.quadratic_any(BITS, nodes, extra),
         }
     }
 
@@ -445,8 +445,8 @@ impl Gradients {
     /// Length over height, rounded up, where length is measured as in [`Self::is_thinner_than`].
     #[inline(always)]
     fn thinness(&self) -> u32 {
-        match self.scale {
-            Scale::WordSized(area) => area.thinness(self.edges),
+        match self.precision {
+            Precision::WordSized(area) => area.thinness(self.edges),
             _ => thinness(self.edges),
         }
     }
@@ -461,8 +461,8 @@ impl Gradients {
     #[inline(always)]
     #[must_use]
     pub(crate) fn walks_in_words(&self) -> bool {
-        match self.scale {
-            Scale::WordSized(area) if self.steepness.walks_word_sized(area.bits) => true,
+        match self.precision {
+            Precision::WordSized(area) if self.steepness.walks_word_sized(area.bits) => true,
             _ => walks_in_words(self.edges, self.shift, self.steepness),
         }
     }

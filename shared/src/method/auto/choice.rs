@@ -5,7 +5,7 @@ use crate::{
     lighting::reflectance::{FULL, LitMaterial},
     method::{
         CornerCosines, Shading, TriangleSetup,
-        error_bound::{Curvature, Linear},
+        error_bound::{Curvature, LinearBound},
         largest,
     },
     raster::counts::Counts,
@@ -132,8 +132,8 @@ fn lit_range(cosines: &[i32; 3]) -> i32 {
 /// One colour or linear interpolation under one constant light, where linear interpolation has these bounds; `None` if levels of the corners may have
 /// been clamped at 255.
 #[inline(always)]
-fn one_light(setup: &TriangleSetup<'_>, shading: &Shading<'_>, [towards, _]: &CornerCosines, bounds: Linear) -> Option<Choice> {
-    let ([a, b, c], Linear { interval, brightest, has_highlight }) = (setup.corners, bounds);
+fn one_light(setup: &TriangleSetup<'_>, shading: &Shading<'_>, [towards, _]: &CornerCosines, bounds: LinearBound) -> Option<Choice> {
+    let ([a, b, c], LinearBound { interval, brightest, has_highlight }) = (setup.corners, bounds);
     let Shading { error_bounds: limits, budget, reflectance, .. } = *shading;
     let (raise, three) = (interval.raise(budget), reflectance.three_channels());
     // The levels in one channel, the highlights in three.
@@ -169,9 +169,9 @@ fn two_lights(
     setup: &TriangleSetup<'_>,
     shading: &Shading<'_>,
     [[towards, _], [other, _]]: &[CornerCosines; 2],
-    bounds: Linear,
+    bounds: LinearBound,
 ) -> Option<Choice> {
-    let Linear { interval, brightest, has_highlight } = bounds;
+    let LinearBound { interval, brightest, has_highlight } = bounds;
     let Shading { error_bounds: limits, budget, .. } = *shading;
     if brightest as i32 >= FULL && corner_levels(setup, shading.reflectance).as_flattened().iter().any(|&level| level >= FULL) {
         return None;

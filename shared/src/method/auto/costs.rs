@@ -38,7 +38,7 @@ impl Cost {
 
 /// Costs of the ways to draw a triangle that linear interpolation does not keep within the budget.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Costs {
+pub struct LoopCosts {
     /// Cost of the quadratic through levels.
     pub quadratic: Cost,
     /// Cost of the quadratic through cosines.
@@ -57,7 +57,7 @@ pub(crate) struct Savings {
 }
 
 impl Savings {
-    const fn of(Costs { quadratic, cosines, phong }: Costs) -> Self {
+    const fn of(LoopCosts { quadratic, cosines, phong }: LoopCosts) -> Self {
         Self { quadratic: phong.minus(quadratic).minus(JUDGE_QUADRATIC), cosines: phong.minus(cosines).minus(JUDGE_COSINES) }
     }
 }
@@ -68,10 +68,10 @@ const JUDGE_QUADRATIC: Cost = Cost::new(500, 0, 0);
 const JUDGE_COSINES: Cost = Cost::new(350, 0, 0);
 
 /// Costs in one channel, in three, and under two lights.
-pub const COSTS: [Costs; 3] = [
-    Costs { quadratic: Cost::new(1016, 66, 13), cosines: Cost::new(1276, 83, 21), phong: Cost::new(1030, 85, 32) },
-    Costs { quadratic: Cost::new(1309, 80, 23), cosines: Cost::new(1118, 81, 32), phong: Cost::new(941, 85, 42) },
-    Costs { quadratic: Cost::new(2149, 96, 31), cosines: Cost::new(1678, 97, 64), phong: Cost::new(1193, 96, 70) },
+pub const COSTS: [LoopCosts; 3] = [
+    LoopCosts { quadratic: Cost::new(1016, 66, 13), cosines: Cost::new(1276, 83, 21), phong: Cost::new(1030, 85, 32) },
+    LoopCosts { quadratic: Cost::new(1309, 80, 23), cosines: Cost::new(1118, 81, 32), phong: Cost::new(941, 85, 42) },
+    LoopCosts { quadratic: Cost::new(2149, 96, 31), cosines: Cost::new(1678, 97, 64), phong: Cost::new(1193, 96, 70) },
 ];
 
 /// What quadratics save in each of these styles.

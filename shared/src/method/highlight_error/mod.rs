@@ -71,7 +71,7 @@ pub struct Growth {
 }
 
 /// The errors [`Kind::LinearBelow`] and [`Kind::LinearAbove`] of one part, by column.
-pub type Linear = [[Growth; 2]; COLUMNS];
+pub type LinearTable = [[Growth; 2]; COLUMNS];
 
 /// The errors [`Kind::Quadratic`] and [`Kind::Cosines`] of one part by row and column, unsigned Q1.15, rounded up.
 pub type Curved = [[[u16; 2]; COLUMNS]; ROWS + ROWS_BEHIND];
@@ -87,14 +87,14 @@ const FIRST: u32 = NORMAL_LENGTH - LEAST_SIZE_BITS;
 
 /// A place in the tables.
 #[derive(Clone, Copy)]
-pub(crate) struct Place {
+pub(crate) struct TablePlace {
     part: usize,
     column: usize,
     /// n (1 - ρ), at least [`LEAST_SIZE`], 15 fraction bits.
     size: u32,
 }
 
-impl Place {
+impl TablePlace {
     /// The place for triangles whose normals are shorter than 1 by up to `short`, where the highlight of an exponent is brightest at N·H =
     /// `cosine`; both Q1.15. Domain: `short` up to 1/5; n (1 - `cosine`) up to 8, beyond which highlights are not drawn.
     #[inline(always)]

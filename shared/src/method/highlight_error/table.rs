@@ -1,6 +1,6 @@
 //! The tables of `highlight_error`, written by `microphong bounds --effort 2000 --seed 1`.
 
-use super::{Curved, Growth, LEAST_EXPONENTS, Linear};
+use super::{Curved, Growth, LEAST_EXPONENTS, LinearTable};
 
 const fn growth(rate: u16, base: u16, slope: u16) -> Growth {
     Growth { rate, base, slope }
@@ -8,7 +8,7 @@ const fn growth(rate: u16, base: u16, slope: u16) -> Growth {
 
 /// For each range of exponents: columns by the distance from the peak, and how errors of both kinds grow there.
 #[rustfmt::skip]
-pub static LINEAR: [Linear; LEAST_EXPONENTS.len()] = [
+pub static LINEAR: [LinearTable; LEAST_EXPONENTS.len()] = [
     [
         [growth(1055, 18787, 0), growth(33747, 9748, 1)], [growth(815, 14512, 1), growth(33747, 9748, 1)], [growth(619, 11013, 1), growth(33747, 8573, 7)], [growth(460, 8189, 0), growth(33747, 5613, 0)],
         [growth(334, 5946, 0), growth(1053, 3813, 0)], [growth(236, 4198, 1), growth(1053, 2696, 1)], [growth(161, 2868, 1), growth(1053, 1997, 0)], [growth(106, 1882, 1), growth(1053, 1395, 1)],
