@@ -182,18 +182,21 @@ mod tests {
     /// Larger programs and meshes have room on fewer chips, and a format or method without a program counts as a larger one.
     #[test]
     fn chips_take_what_they_have_room_for() {
-        let names = |shader, format, bytes| -> Vec<_> {
-            loads(Features::Default, shader, format, bytes)
+        let fits = |features, shader, format, bytes| -> Vec<_> {
+            loads(features, shader, format, bytes)
                 .unwrap()
                 .into_iter()
                 .filter(|(_, load)| *load <= 1.0)
                 .map(|(chip, _)| chip.name)
                 .collect()
         };
+        let names = |shader, format, bytes| fits(Features::Default, shader, format, bytes);
         assert_eq!(names(Shader::GOURAUD, Format::Binary, [1000, 20_000]).first(), Some(&"samd21"));
-        assert_eq!(names(Shader::GOURAUD, Format::Binary, [200_000, 20_000]).first(), Some(&"stm32f411"));
+        assert_eq!(names(Shader::GOURAUD, Format::Binary, [210_000, 20_000]).first(), Some(&"stm32f411"));
         assert_eq!(names(Shader::GOURAUD, Format::Binary, [1000, 300_000]), ["rp2350", "esp32-c3"]);
         assert_eq!(names(Shader::GOURAUD, Format::Binary, [1000, 600_000]), [""; 0]);
+        let first = |features| fits(features, Shader::GOURAUD, Format::Binary, [15_000, 12_000])[0];
+        assert_eq!(Features::ALL.map(first), ["samd21", "stm32f103"], "features take flash");
         let [flash, ram] = [300_000, 20_000];
         assert_eq!(names(Shader::FLAT, Format::Gray4, [flash, ram]), names(Shader::AUTO, Format::Rgb565, [flash, ram]));
     }

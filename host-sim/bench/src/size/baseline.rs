@@ -89,13 +89,13 @@ mod tests {
 
     #[test]
     fn growth_beyond_the_tolerance_is_named() {
-        let line = "cortex-m3,binary,gouraud,1000,2000,100";
+        let line = "cortex-m3,none,binary,gouraud,1000,2000,100";
         let old = Entry::all(line).unwrap()[0];
         assert_eq!(old.to_string(), line);
         assert!(changes(&Entry { flash: 1002, ram: 1996, ..old }, &old).is_empty());
         let changes = changes(&Entry { flash: 1003, ram: 1995, ..old }, &old);
-        let named =
-            ["flash 1000 -> 1003 (+0.30 %)", "RAM 2000 -> 1995 (-0.25 %)"].map(|text| format!("gouraud in binary on cortex-m3: {text}"));
+        let named = ["flash 1000 -> 1003 (+0.30 %)", "RAM 2000 -> 1995 (-0.25 %)"]
+            .map(|text| format!("gouraud in binary on cortex-m3, features none: {text}"));
         assert_eq!(changes, named.into_iter().zip([true, false]).collect::<Vec<_>>());
     }
 }
