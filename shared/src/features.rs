@@ -1,7 +1,7 @@
 //! Cargo features: what a program can do without, to save flash.
 //!
-//! Code asks them here, in conditions that are constant. So all code is compiled and checked with every choice of features, and the compiler drops
-//! what a program lacks.
+//! Most code asks the constants of this file in plain conditions. The compiler then checks it with every choice of features, and drops what a program
+//! lacks. Functions that would have no effect are left out by `#[cfg]`.
 
 /// A cargo feature that some mesh files need.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -12,16 +12,16 @@ pub enum Feature {
     Colours,
     /// More than one light.
     Lights,
-    /// Lights at a point, and highlights as seen from a camera that is not infinitely far.
+    /// Point lights, and highlights as seen from a camera that is not infinitely far.
     NearLights,
     /// More than one object.
     Objects,
-    /// Texts over the picture.
+    /// Labels, which are texts over the picture.
     Text,
 }
 
 impl Feature {
-    /// All of them.
+    /// All features that a mesh file can need.
     pub const ALL: [Self; 6] = [Self::Animation, Self::Colours, Self::Lights, Self::NearLights, Self::Objects, Self::Text];
 
     /// The name of the feature in `Cargo.toml`.
@@ -64,8 +64,8 @@ pub(crate) const REDRAW: bool = cfg!(feature = "redraw");
 pub(crate) const ANTIALIAS: bool = cfg!(feature = "antialias");
 /// Whether light can be interpolated in perspective.
 pub(crate) const PERSPECTIVE: bool = cfg!(feature = "perspective");
-/// Whether skips of invisible work can be switched off, and are counted.
+/// Whether a program can switch off the skipping of invisible work, and count it.
 pub(crate) const SKIPS: bool = cfg!(feature = "skips");
 
-/// Whether all light comes from one direction to a viewer who is infinitely far, so that N·L and N·H are linear in N.
+/// Whether the only light is directional and the viewer is infinitely far, so that N·L and N·H are linear in N.
 pub(crate) const ALWAYS_CONSTANT: bool = !LIGHTS && !NEAR_LIGHTS;

@@ -11,7 +11,7 @@ use crate::{
 };
 
 impl Feature {
-    /// Whether `stream` cannot be drawn without the feature, in a pixel format with these `channels`.
+    /// Whether `stream` needs the feature to be drawn in a pixel format with these `channels`.
     #[inline(always)]
     #[must_use]
     pub fn is_needed_by(self, stream: &Stream<'_>, channels: &Channels) -> bool {
@@ -31,9 +31,9 @@ impl Feature {
         }
     }
 
-    /// A feature that `stream` needs and that the program lacks.
+    /// The first feature that `stream` needs and that the program lacks.
     pub(crate) fn missing(stream: &Stream<'_>, channels: &Channels) -> Option<Self> {
-        // One by one, so that the compiler drops the check of a feature that the program has.
+        // Each feature is asked for by name, so that the compiler drops the check if the program has it.
         let lacks = |feature: Self| (!feature.is_on() && feature.is_needed_by(stream, channels)).then_some(feature);
         let [animation, colours, lights, near_lights, objects, text] = Self::ALL;
         let scene = lacks(animation).or_else(|| lacks(objects)).or_else(|| lacks(text));

@@ -263,6 +263,8 @@ impl<'a> Scene<'a> {
     /// # Errors
     /// Returns [`SceneError::Meshes`] if the stream does not have these meshes, and [`SceneError::Objects`] if the layout has no room for
     /// another object ([`Layout::objects`](crate::Layout::objects)).
+    ///
+    /// Returns [`SceneError::Feature`] if the change needs a cargo feature of this crate that is turned off.
     pub fn add(&mut self, meshes: Range<u16>, pose: Pose) -> Result<usize, SceneError> {
         require(Feature::Objects, self.count > 0)?;
         let object = Object::new(&self.stream, meshes).ok_or(SceneError::Meshes)?;
@@ -343,6 +345,8 @@ impl<'a> Scene<'a> {
     /// # Errors
     /// Returns [`SceneError::Material`] if there is no material with this index, [`SceneError::Range`] if a value is out of range, and
     /// [`SceneError::Exponent`] if the exponent is too small for the shading method.
+    ///
+    /// Returns [`SceneError::Feature`] if the change needs a cargo feature of this crate that is turned off.
     pub fn set_material(&mut self, index: usize, material: Material) -> Result<(), SceneError> {
         in_range(material.fault())?;
         self.check_colours(self.ambient, &self.lights, [&material])?;
@@ -379,6 +383,8 @@ impl<'a> Scene<'a> {
     /// # Errors
     /// Returns [`SceneError::Range`] if there are more than [`MAX_LIGHTS`] or a value is out of range, and [`SceneError::Light`] if the
     /// shading method does not support a point light.
+    ///
+    /// Returns [`SceneError::Feature`] if the change needs a cargo feature of this crate that is turned off.
     pub fn set_lights(&mut self, lights: &[Light]) -> Result<(), SceneError> {
         lights.iter().try_for_each(|light| in_range(light.fault()))?;
         require(Feature::Lights, lights.len() > 1)?;
@@ -401,6 +407,8 @@ impl<'a> Scene<'a> {
     ///
     /// # Errors
     /// Returns [`SceneError::Range`] if a value is more than 2.
+    ///
+    /// Returns [`SceneError::Feature`] if the change needs a cargo feature of this crate that is turned off.
     pub fn set_ambient(&mut self, ambient: [Gain; 3]) -> Result<(), SceneError> {
         let ambient = ambient.map(Gain::to_bits);
         in_range((!is_gain(ambient)).then_some("ambient light"))?;
@@ -434,6 +442,8 @@ impl<'a> Scene<'a> {
     /// Returns [`SceneError::Range`] if a value is out of range, [`SceneError::Light`] if the shading method does not support a local
     /// viewer, and [`SceneError::Perspective`] if perspective-correct interpolation of light is on and the method does not support it for a
     /// perspective camera.
+    ///
+    /// Returns [`SceneError::Feature`] if the change needs a cargo feature of this crate that is turned off.
     pub fn set_camera(&mut self, camera: Camera) -> Result<(), SceneError> {
         in_range(camera.fault())?;
         require(Feature::NearLights, camera.viewer == VIEWER_LOCAL && camera.projection == PERSPECTIVE)?;
