@@ -451,8 +451,8 @@ fn memory_that_is_missing_is_named() {
     assert_eq!(renderer.band_rows(), 2, "still without");
 }
 
-/// Pixels wholly inside one triangle are those of the ordinary picture. At most five of a picture are a step of a channel off, because polynomials of
-/// finer corners are rounded otherwise.
+/// Pixels wholly inside one triangle are those of the ordinary picture. By three methods a few of a picture are a step of a channel off, because
+/// polynomials of finer corners are rounded otherwise.
 #[test]
 fn inner_pixels_stay() {
     let scene = scene::load("dodecahedron").unwrap();
@@ -473,9 +473,14 @@ fn inner_pixels_stay() {
             let Ok((plain, _)) = render::frame::<Rgb565>(stream, size, shader, 120, frame) else { continue };
             let (smooth, _) = render::frame::<Rgb565>(stream, size, smooth(shader), 120, frame).unwrap();
             let changed: Vec<_> = plain.iter().zip(&smooth).zip(&inner).filter(|((a, b), inner)| **inner && a != b).collect();
+            let most = match shader.name() {
+                "six-point" => 5,
+                "gouraud" | "taylor-finite" => 1,
+                _ => 0,
+            };
             let is_a_step = |(a, b): (&Rgb565, &Rgb565)| a.r().abs_diff(b.r()).max(a.g().abs_diff(b.g())).max(a.b().abs_diff(b.b())) == 1;
             assert!(
-                changed.len() <= 5 && changed.iter().all(|(pair, _)| is_a_step(*pair)),
+                changed.len() <= most && changed.iter().all(|(pair, _)| is_a_step(*pair)),
                 "{}, frame {frame}: {changed:?}",
                 shader.name()
             );

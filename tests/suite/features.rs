@@ -51,7 +51,10 @@ fn fewer_features_draw_the_same_or_name_what_is_missing() {
     let files: Vec<_> = streams.iter().map(|(name, _)| place.path().join(name).display().to_string()).collect();
     files.iter().zip(&streams).for_each(|(file, (_, stream))| fs::write(file, stream.as_bytes()).unwrap());
     let expected = drawn(ALL, &files);
-    assert!(expected.iter().all(|line| line.split('\t').count() == 4 && line.len() > 20), "{expected:#?}");
+    // With all features there is a picture of each, and those of different scenes differ.
+    let checksum = |line: &String| line.rsplit('\t').next().filter(|sum| u32::from_str_radix(sum, 16).is_ok()).map(str::to_owned);
+    let sums: Option<BTreeSet<_>> = expected.iter().map(checksum).collect();
+    assert!(sums.is_some_and(|sums| sums.len() * 2 > expected.len()), "{expected:#?}");
     for features in SETS {
         let has: BTreeSet<_> = features.split(',').collect();
         let (mut same, mut refused) = (0, BTreeSet::new());

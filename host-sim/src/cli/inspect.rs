@@ -137,8 +137,8 @@ fn text(file: &str, stream: &Stream<'_>, list: &[meshes::Row]) -> Result<()> {
     let viewer = if header.camera.viewer == VIEWER_LOCAL { "local" } else { "infinite" };
     let frames = report::counted(header.frames, report::FRAMES);
     let shader = Shader::by_id(header.shader).map_or_else(|| format!("number {}", header.shader), |shader| shader.name().to_owned());
-    report::line(&format!("  {kind}, {viewer} viewer, {orbit}, {frames}, shader {shader}"))?;
-    report::line(&format!("  {}", features::text(&features::names(stream, Format::Rgb565))))
+    report::line(&format!("  {}", features::text(&features::names(stream, Format::Rgb565))))?;
+    report::line(&format!("  {kind}, {viewer} viewer, {orbit}, {frames}, shader {shader}"))
 }
 
 fn levels(stream: &Stream<'_>) -> Vec<Level> {
