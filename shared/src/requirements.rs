@@ -1,14 +1,6 @@
 //! The cargo features that a mesh file needs.
 
-use crate::{
-    features::Feature,
-    pixel::Channels,
-    scene::LightTerms,
-    stream::{
-        Stream,
-        record::{DIRECTIONAL, PERSPECTIVE, VIEWER_LOCAL},
-    },
-};
+use crate::{features::Feature, pixel::Channels, scene::LightTerms, stream::Stream};
 
 impl Feature {
     /// Whether `stream` needs the feature to be drawn in a pixel format with these `channels`.
@@ -22,10 +14,7 @@ impl Feature {
                 stream.materials.iter().any(|material| !LightTerms::new(channels, header.ambient, material, lights).are_one_channel)
             }
             Self::Lights => lights.len() > 1,
-            Self::NearLights => {
-                let is_local = header.camera.viewer == VIEWER_LOCAL && header.camera.projection == PERSPECTIVE;
-                is_local || lights.iter().any(|light| light.kind != DIRECTIONAL)
-            }
+            Self::NearLights => !stream.is_constant(),
             Self::Objects => stream.instances.len() > 1,
             Self::Text => !stream.labels.is_empty(),
         }
