@@ -50,7 +50,7 @@ pub struct Layout {
     /// The number of objects that there is room for, at least 1. A renderer refuses a stream (mesh file) that has more, and
     /// [`Scene::add`](crate::Scene::add) fails beyond this number.
     pub objects: usize,
-    /// The number of triangles that can continue from one band (group of rows drawn at once) into the next without being set up again, 132
+    /// The number of triangles that can continue from one band (group of rows drawn at once) into the next without being set up again, 128
     /// bytes each. If more triangles cross the border between two bands, the picture stays the same, but the next band sets up the others
     /// again.
     pub active_triangles: usize,
@@ -113,7 +113,7 @@ impl Layout {
     }
 
     /// Sets the number of triangles that can continue from one band (group of rows drawn at once) into the next without being set up again,
-    /// 132 bytes each. The default is 48.
+    /// 128 bytes each. The default is 48.
     #[must_use]
     pub const fn active_triangles(self, active_triangles: usize) -> Self {
         Self { active_triangles, ..self }
@@ -201,7 +201,7 @@ const fn padded(bytes: usize) -> usize {
 
 /// The sizes that docs/design.md states.
 const _: () = {
-    assert!(size_of::<ScreenVertex>() == 32 && size_of::<Entry>() == 8 && size_of::<ActiveTriangle>() == 132);
+    assert!(size_of::<ScreenVertex>() == 32 && size_of::<Entry>() == 8 && size_of::<ActiveTriangle>() == 128);
     assert!(!LIGHTS || size_of::<Reflectance>() == 396);
     assert!(size_of::<HighlightLut>() == 8200 && size_of::<Sample>() == 72);
 };

@@ -32,6 +32,7 @@ pub struct Shader<C: Pixel> {
 type Run<C> = fn(&Drawing<'_, C>, TriangleKey, &mut Walk<'_>, &mut Band<'_, C>) -> (u32, Option<TriangleKey>);
 
 /// What draws triangles by the loops of one method.
+#[derive(Clone, Copy)]
 pub(crate) struct TriangleLoops<C: Pixel> {
     /// Draws the triangles of a mesh that lie in a band.
     pub(crate) run: Run<C>,
@@ -59,14 +60,6 @@ impl<M: Method> Method for LoopsAlone<M> {
         0
     }
 }
-
-impl<C: Pixel> Clone for TriangleLoops<C> {
-    fn clone(&self) -> Self {
-        *self
-    }
-}
-
-impl<C: Pixel> Copy for TriangleLoops<C> {}
 
 impl<C: Pixel> TriangleLoops<C> {
     const fn of<L: Loops, const THREE: bool>() -> Self {

@@ -109,7 +109,7 @@ fn parts_of_random_triangles_cover_each_pixel_once() {
                 };
                 drawn[k] += if k == 0 {
                     let screen = ScreenTriangle::new(corners, [0, WIDTH as i32], [top, top + rows].map(|row| row as i32));
-                    screen.draw(&gradients, Constant, Solid::<Gray8>([1; 2]), &mut band)
+                    screen.draw(&gradients, Constant, Solid::<Gray8>::new([1; 2]), &mut band)
                 } else {
                     let mut chance = Random::new(splits, 0);
                     let mut chance = (i % 3 > 0 && rows == HEIGHT).then_some(&mut chance);

@@ -129,7 +129,7 @@ pub fn draw(corners: Corners, band_rows: usize, counts: &mut [u8]) -> u32 {
         let screen = ScreenTriangle::new(corners, [0, WIDTH as i32], [top, top + rows].map(|row| row as i32));
         let visible = Bounds::new(&Extent::new(screen.corners)).clipped(Bounds::whole(WIDTH as i32, HEIGHT as i32)).sides();
         let Some(gradients) = Gradients::new(screen.corners, visible) else { return 0 };
-        drawn += screen.draw(&gradients, Constant, Solid::<Gray8>([1; 2]), &mut band);
+        drawn += screen.draw(&gradients, Constant, Solid::<Gray8>::new([1; 2]), &mut band);
         for (count, pixel) in counts[top * WIDTH..].iter_mut().zip(&pixels) {
             *count += pixel.luma();
         }

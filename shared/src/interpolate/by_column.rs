@@ -33,6 +33,11 @@ impl<P: Patch<Walker: Copy>> Patch for ByColumn<P> {
         AtColumn { patch: self.0, walker: self.0.enter(x), x }
     }
 
+    #[inline(always)]
+    fn raised(self, by: &<P::Walker as Walker>::Value) -> Self {
+        Self(self.0.raised(by))
+    }
+
     const WORDS: usize = P::WORDS;
 
     #[inline(always)]

@@ -9,7 +9,6 @@
 //! Methods describe what they interpolate by [`field`]s. [`perspective`] interpolates fields in perspective.
 
 pub mod by_column;
-pub mod by_row;
 pub mod cubic;
 pub mod field;
 pub mod perspective;
@@ -29,6 +28,13 @@ pub trait Patch: Copy {
 
     /// A walker that stands on column `x`; its first step leads to `x - 1`.
     fn enter(&self, x: i32) -> Self::Walker;
+
+    /// The polynomial with `by` added to its values, if it can be raised.
+    #[inline(always)]
+    #[must_use]
+    fn raised(self, _by: &<Self::Walker as Walker>::Value) -> Self {
+        self
+    }
 
     /// Number of words that [`Self::save`] writes.
     const WORDS: usize = 0;
@@ -53,12 +59,6 @@ pub trait Checkerboard: Patch {
     /// stands on `row`. Values have one bit less then; higher bits wrap.
     #[must_use]
     fn checkered(self, row: i32) -> Self;
-}
-
-/// A polynomial of three channels that can be raised.
-pub trait Raised: Patch {
-    /// Adds `by` to each channel.
-    fn raise(&mut self, by: [i32; 3]);
 }
 
 /// Half of the range of a walked value.

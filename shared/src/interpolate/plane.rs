@@ -1,7 +1,7 @@
 //! Linear fields.
 
 use crate::{
-    interpolate::{Checkerboard, HALF_RANGE, Patch, Raised, Walker, each_channel},
+    interpolate::{Checkerboard, HALF_RANGE, Patch, Walker, each_channel},
     setup::gradients::Gradients,
 };
 
@@ -85,6 +85,12 @@ impl<const CH: usize> Patch for Plane<CH> {
         each_channel::<CH>(|c| self.0[c].c = self.0[c].c.wrapping_add(self.0[c].dy));
     }
 
+    #[inline(always)]
+    fn raised(mut self, by: &[u32; CH]) -> Self {
+        each_channel::<CH>(|c| self.0[c].c = self.0[c].c.wrapping_add(by[c] as i32));
+        self
+    }
+
     const WORDS: usize = 3 * CH;
 
     #[inline(always)]
@@ -118,13 +124,6 @@ impl<const CH: usize> Patch for Plane<CH> {
             walker.step[c] = row.dx as u32;
         });
         walker
-    }
-}
-
-impl Raised for Plane<3> {
-    #[inline(always)]
-    fn raise(&mut self, by: [i32; 3]) {
-        each_channel::<3>(|c| self.0[c].c = self.0[c].c.wrapping_add(by[c]));
     }
 }
 

@@ -1,7 +1,7 @@
 //! Quadratic fields.
 
 use crate::{
-    interpolate::{Checkerboard, HALF_RANGE, Patch, Raised, Walker, each_channel},
+    interpolate::{Checkerboard, HALF_RANGE, Patch, Walker, each_channel},
     setup::{gradients::Gradients, word_sized::QUADRATIC},
 };
 
@@ -116,6 +116,12 @@ impl<const CH: usize> Patch for Quadric<CH> {
         });
     }
 
+    #[inline(always)]
+    fn raised(mut self, by: &[u32; CH]) -> Self {
+        each_channel::<CH>(|c| self.0[c].c = self.0[c].c.wrapping_add(by[c] as i32));
+        self
+    }
+
     const WORDS: usize = 6 * CH;
 
     #[inline(always)]
@@ -157,13 +163,6 @@ impl<const CH: usize> Patch for Quadric<CH> {
             walker.d2[c] = row.dxx.wrapping_mul(2) as u32;
         });
         walker
-    }
-}
-
-impl Raised for Quadric<3> {
-    #[inline(always)]
-    fn raise(&mut self, by: [i32; 3]) {
-        each_channel::<3>(|c| self.0[c].c = self.0[c].c.wrapping_add(by[c]));
     }
 }
 

@@ -4,41 +4,14 @@ use crate::{
     arch::product::upper,
     format::{BIAS, CHANNEL, COSINE, LEVEL, RAMP},
     math::highlight_lut::ENTRY,
-    pixel::{Pixel, dither::ByRows, half_step, ramps::Ramps},
+    pixel::{
+        Pixel,
+        by_rows::{ByRows, ByTurns},
+        half_step,
+        ramps::Ramps,
+    },
 };
-use core::marker::PhantomData;
 use zerocopy::{FromBytes, Immutable, IntoBytes, KnownLayout};
-
-/// Tables for even rows and for odd ones. Formats without a checkerboard use the first.
-#[derive(Debug)]
-pub(super) struct ByTurns<'a, T> {
-    now: &'a T,
-    next: &'a T,
-}
-
-impl<T> Clone for ByTurns<'_, T> {
-    fn clone(&self) -> Self {
-        *self
-    }
-}
-
-impl<T> Copy for ByTurns<'_, T> {}
-
-impl<'a, T> ByTurns<'a, T> {
-    /// Makes the pair. The first table is for even rows.
-    #[inline(always)]
-    pub(super) fn new([now, next]: [&'a T; 2]) -> Self {
-        Self { now, next }
-    }
-
-    /// Changes to the other table, in formats with a checkerboard.
-    #[inline(always)]
-    fn turn<C: Pixel>(&mut self) {
-        if C::Ramps::CHECKERED {
-            (self.now, self.next) = (self.next, self.now);
-        }
-    }
-}
 
 /// A light with a highlight: a walked diffuse level, negative where there is no light, and an entry of the table of highlights.
 #[derive(Clone, Copy, Debug)]
@@ -88,26 +61,18 @@ pub fn node(full: u16, cosine: i32, bits: u32) -> i32 {
 
 /// A table of colours, indexed by the diffuse level plus an entry of the table of highlights. These entries are levels of highlight and ambient
 /// light. In one channel the level is all of the light, in three channels it is one light without a highlight.
-#[derive(Debug)]
+#[derive(Clone, Copy, Debug)]
 pub struct OneLightRamp<'a, C: Pixel> {
-    pub(super) ramps: ByTurns<'a, [C::Stored; RAMP]>,
+    pub(super) ramps: ByTurns<&'a [C::Stored; RAMP], C>,
     pub(super) diffuse: u16,
     /// The level without diffuse light and highlight, as an entry of the table of highlights.
     pub(super) floor: u32,
 }
 
-impl<C: Pixel> Clone for OneLightRamp<'_, C> {
-    fn clone(&self) -> Self {
-        *self
-    }
-}
-
-impl<C: Pixel> Copy for OneLightRamp<'_, C> {}
-
 impl<C: Pixel> ByRows for OneLightRamp<'_, C> {
     #[inline(always)]
     fn step_row(&mut self) {
-        self.ramps.turn::<C>();
+        self.ramps.step_row();
     }
 }
 
@@ -125,7 +90,7 @@ impl<C: Pixel> LitColours for OneLightRamp<'_, C> {
 impl<C: Pixel> Shades<WithHighlight> for OneLightRamp<'_, C> {
     #[inline(always)]
     fn colour(&self, bits: u32, WithHighlight(diffuse, highlight): WithHighlight) -> C {
-        C::ramped(self.ramps.now, (diffuse.max(0) as u32).wrapping_add(highlight << (bits - LEVEL)), bits)
+        C::ramped(self.ramps.now(), (diffuse.max(0) as u32).wrapping_add(highlight << (bits - LEVEL)), bits)
     }
 }
 
@@ -139,35 +104,18 @@ impl<C: Pixel> Shades<DiffuseOnly> for OneLightRamp<'_, C> {
 impl<C: Pixel> OneLightRamp<'_, C> {
     /// The colour where there is neither diffuse light nor a highlight, on even rows and on odd ones.
     pub fn unlit(&self) -> [C::Stored; 2] {
-        let ByTurns { now, next } = self.ramps;
-        [C::entry(now, self.floor, LEVEL), C::entry(next, self.floor, LEVEL)]
+        self.ramps.both().map(|ramp| C::entry(ramp, self.floor, LEVEL))
     }
 }
 
 /// Three channels, each the sum of two products: of the cosine and of the highlight with the material's reflectances.
-#[derive(Debug)]
-pub struct OneLightRgb<'a, C>(pub(super) ByTurns<'a, Sums>, pub(super) PhantomData<C>);
+#[derive(Clone, Copy, Debug)]
+pub struct OneLightRgb<'a, C>(pub(super) ByTurns<&'a Sums, C>);
 
 /// Three channels under two lights: the sums of [`OneLightRgb`] for the first, and the addends of the second. The second cosine is rounded down, by
 /// at most 1/128 of a level.
-#[derive(Debug)]
-pub struct TwoLightsRgb<'a, C>(pub(super) ByTurns<'a, [Sums; 2]>, pub(super) PhantomData<C>);
-
-impl<C> Clone for OneLightRgb<'_, C> {
-    fn clone(&self) -> Self {
-        *self
-    }
-}
-
-impl<C> Copy for OneLightRgb<'_, C> {}
-
-impl<C> Clone for TwoLightsRgb<'_, C> {
-    fn clone(&self) -> Self {
-        *self
-    }
-}
-
-impl<C> Copy for TwoLightsRgb<'_, C> {}
+#[derive(Clone, Copy, Debug)]
+pub struct TwoLightsRgb<'a, C>(pub(super) ByTurns<&'a [Sums; 2], C>);
 
 /// The factors of [`OneLightRgb`] for each channel. In Q10.22 the sum of all three is below 2^31.
 pub type Sums = [Sum; 3];
@@ -246,7 +194,7 @@ impl<C: Pixel> OneLightRgb<'_, C> {
     /// The colour of one cosine, Q1.15, and a highlight, unsigned Q0.16, on even rows and on odd ones.
     #[inline(always)]
     pub fn by_turns(&self, cosine: i32, highlight: u32) -> [C::Stored; 2] {
-        let ByTurns { now: [r, g, b], next: [odd_r, odd_g, odd_b] } = self.0;
+        let [[r, g, b], [odd_r, odd_g, odd_b]] = self.0.both();
         let (cosine, highlight) = (cosine.clamp(0, (1 << FACTOR) - 1), highlight as i32);
         let (red, green, blue) = (r.light(cosine, highlight), g.light(cosine, highlight), b.light(cosine, highlight));
         let lit = |sum: &Sum, light: i32| sum.ambient.wrapping_add(light);
@@ -259,7 +207,7 @@ impl<C: Pixel> OneLightRgb<'_, C> {
 impl<C: Pixel> ByRows for OneLightRgb<'_, C> {
     #[inline(always)]
     fn step_row(&mut self) {
-        self.0.turn::<C>();
+        self.0.step_row();
     }
 }
 
@@ -277,7 +225,7 @@ impl<C: Pixel> LitColours for OneLightRgb<'_, C> {
 impl<C: Pixel> Shades<WithHighlight> for OneLightRgb<'_, C> {
     #[inline(always)]
     fn colour(&self, bits: u32, WithHighlight(diffuse, highlight): WithHighlight) -> C {
-        let ([r, g, b], cosine, highlight) = (self.0.now, cosine(bits, diffuse), highlight as i32);
+        let ([r, g, b], cosine, highlight) = (self.0.now(), cosine(bits, diffuse), highlight as i32);
         C::mixed([r.level_from_highlight(cosine, highlight), g.level(cosine, highlight), b.level(cosine, highlight)])
     }
 }
@@ -285,7 +233,7 @@ impl<C: Pixel> Shades<WithHighlight> for OneLightRgb<'_, C> {
 impl<C: Pixel> ByRows for TwoLightsRgb<'_, C> {
     #[inline(always)]
     fn step_row(&mut self) {
-        self.0.turn::<C>();
+        self.0.step_row();
     }
 }
 
@@ -303,7 +251,7 @@ impl<C: Pixel> LitColours for TwoLightsRgb<'_, C> {
 impl<C: Pixel, A: Into<WithHighlight>, B: Into<WithHighlight>> Shades<(A, B)> for TwoLightsRgb<'_, C> {
     #[inline(always)]
     fn colour(&self, bits: u32, (one, two): (A, B)) -> C {
-        let [[r, g, b], [r2, g2, b2]] = self.0.now;
+        let [[r, g, b], [r2, g2, b2]] = self.0.now();
         let (WithHighlight(c, h), WithHighlight(c2, h2)) = (one.into(), two.into());
         let (c, h, c2, h2) = (cosine(bits, c), h as i32, cosine(bits, c2), h2 as i32);
         let level = |first: &Sum, second: &Sum| first.level_from_highlight(c, h).wrapping_add(second.light(c2, h2));
@@ -316,12 +264,11 @@ impl<C: Pixel, A: Into<WithHighlight>, B: Into<WithHighlight>> Shades<(A, B)> fo
     }
 }
 
-impl<C> TwoLightsRgb<'_, C> {
+impl<'a, C> TwoLightsRgb<'a, C> {
     /// The colours of the first light alone.
     #[inline(always)]
-    pub fn first(&self) -> OneLightRgb<'_, C> {
-        let ByTurns { now: [now, _], next: [next, _] } = self.0;
-        OneLightRgb(ByTurns { now, next }, PhantomData)
+    pub fn first(&self) -> OneLightRgb<'a, C> {
+        OneLightRgb(self.0.map(|[first, _]| first))
     }
 }
 

@@ -4,16 +4,15 @@ use crate::{
     features::{COLOURS, LIGHTS},
     format::{BIAS, CHANNEL, COSINE, LEVEL, WALK},
     lighting::{
-        constant_lights::{ByTurns, FACTOR, OneLightRamp, OneLightRgb, TwoLightsRgb},
+        constant_lights::{FACTOR, OneLightRamp, OneLightRgb, TwoLightsRgb},
         reflectance::{LitMaterial, Reflectance},
     },
     math::vector::zip,
-    pixel::{Pixel, gamma::Gamma, half_step, ramps::Ramps, steps},
+    pixel::{Pixel, by_rows::ByTurns, gamma::Gamma, half_step, ramps::Ramps, steps},
 };
-use core::marker::PhantomData;
 
 /// The colours of a material in a pixel format.
-#[derive(Debug)]
+#[derive(Clone, Copy, Debug)]
 pub struct MaterialTables<'a, C: Pixel> {
     /// Colour of each level of a material of one channel. In three channels under one light, if [`Reflectance::has_ramp`], colours without a
     /// highlight, by the level of the channel that has most diffuse light.
@@ -21,14 +20,6 @@ pub struct MaterialTables<'a, C: Pixel> {
     /// Reflectances of the material, in levels.
     pub reflectance: &'a LitMaterial<'a>,
 }
-
-impl<C: Pixel> Clone for MaterialTables<'_, C> {
-    fn clone(&self) -> Self {
-        *self
-    }
-}
-
-impl<C: Pixel> Copy for MaterialTables<'_, C> {}
 
 /// Adds half a step of a channel of `bits` bits to a level, Q9.7; the result is Q10.22.
 #[inline(always)]
@@ -106,7 +97,7 @@ impl<'a, C: Pixel> MaterialTables<'a, C> {
     #[inline(always)]
     fn sums(&self) -> OneLightRgb<'a, C> {
         let [[even, ..], [odd, ..]] = &self.reflectance.reflectance().sums;
-        OneLightRgb(ByTurns::new([even, odd]), PhantomData)
+        OneLightRgb(ByTurns::new([even, odd]))
     }
 
     /// The sums of three channels under two lights in the order of the stream, and in the other, if [`Reflectance::lights`] is 2.
@@ -116,8 +107,7 @@ impl<'a, C: Pixel> MaterialTables<'a, C> {
         let [even, odd] = &self.reflectance.reflectance().sums;
         let forth = ByTurns::new([even.first_chunk()?, odd.first_chunk()?]);
         let back = ByTurns::new([even.last_chunk()?, odd.last_chunk()?]);
-        (LIGHTS && COLOURS && !C::GRAY && self.reflectance.lights() == 2)
-            .then_some([TwoLightsRgb(forth, PhantomData), TwoLightsRgb(back, PhantomData)])
+        (LIGHTS && COLOURS && !C::GRAY && self.reflectance.lights() == 2).then_some([TwoLightsRgb(forth), TwoLightsRgb(back)])
     }
 
     /// The colour under one light from `[N·L, N·H]` (Q2.30), on even rows and on odd ones.

@@ -297,14 +297,6 @@ impl Reflectance {
         }
     }
 
-    /// Dither offset in three channels from `row` to the row below, with [`CHANNEL`] fraction bits, as if channels had eight bits: half a step up
-    /// from even rows, half a step down from odd ones; 0 without dither.
-    #[inline(always)]
-    #[must_use]
-    pub(crate) fn higher_below(&self, row: i32) -> i32 {
-        if row & 1 == 0 { 2 * self.quarter } else { -2 * self.quarter }
-    }
-
     /// Dither offset in three channels, a quarter of a step, with [`CHANNEL`] fraction bits, as if channels had eight bits. Even rows are lower by it
     /// and odd ones higher; 0 without dither.
     #[inline(always)]

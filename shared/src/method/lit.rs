@@ -3,7 +3,7 @@
 //! What a method does at a pixel is one [`AtPixel`], and one [`FromValues`] for a light with a highlight and one for a light without. All else is
 //! here: one light or two, and colours from a table or from sums.
 
-use crate::{lighting::constant_lights::Shades, pixel::dither::ByRows, raster::pixel_shader::PixelShader};
+use crate::{lighting::constant_lights::Shades, pixel::by_rows::ByRows, raster::pixel_shader::PixelShader};
 use core::marker::PhantomData;
 
 /// What a method computes at a pixel for all lights together, such as a reciprocal length.

@@ -30,7 +30,7 @@ use crate::{
         lit::{AtPixel, FromValues, LitShader},
         node::{FRACTION, field_product, is_steep, map_six},
     },
-    pixel::{Pixel, dither::ByRows},
+    pixel::{Pixel, by_rows::ByRows},
     raster::band::Band,
     stream::record::Vertex,
 };

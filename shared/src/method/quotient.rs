@@ -235,7 +235,7 @@ fn draw_diffuse<const EXACT: bool, F: Field, C: Pixel>(
 ) -> u32 {
     if setup.leaves_out_light(tables.reflectance, towards) {
         setup.count(band.top, &mut band.counts.without_light, 1);
-        return setup.fill(|| Constant, Solid(colours.unlit()), band);
+        return setup.fill(|| Constant, Solid::new(colours.unlit()), band);
     }
     setup.count(band.top, &mut band.counts.without_highlight, 1);
     let patch = || diffuse_patch(setup, colours.diffuse(), towards, length);

@@ -31,21 +31,6 @@ pub const HALF: u32 = 64;
 /// The thresholds on the squares of a checkerboard, a quarter of a step below [`HALF`] and above it.
 pub const SQUARES: [u32; 2] = [HALF / 2, HALF / 2 + HALF];
 
-/// State that differs between even and odd rows, for dither.
-pub trait ByRows: Copy {
-    /// Moves down by one row.
-    #[inline(always)]
-    fn step_row(&mut self) {}
-
-    /// Moves down from the first row of the picture to `row`.
-    #[inline(always)]
-    fn start_at(&mut self, row: i32) {
-        if row & 1 != 0 {
-            self.step_row();
-        }
-    }
-}
-
 /// Channels of `depth` bits from channels in unsigned Q8.8 that are scaled to that depth, with a [`threshold`] in place of rounding.
 #[inline(always)]
 #[must_use]

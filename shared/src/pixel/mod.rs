@@ -1,5 +1,7 @@
 //! Pixel formats: how a colour with 8 bits per channel is converted to the value that a display stores.
 
+#[doc(hidden)]
+pub mod by_rows;
 pub(crate) mod colour;
 #[doc(hidden)]
 pub mod dither;

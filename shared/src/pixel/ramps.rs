@@ -13,7 +13,7 @@ use core::fmt::Debug;
 use zerocopy::{FromBytes, Immutable, IntoBytes, KnownLayout};
 
 /// The tables of colours of a material. `T` is the type of their entries.
-pub trait Ramps<T: Copy>: FromBytes + IntoBytes + Immutable + KnownLayout + Debug + Sync {
+pub trait Ramps<T: Copy>: Copy + FromBytes + IntoBytes + Immutable + KnownLayout + Debug + Sync {
     /// Whether there is a table for each kind of square of a checkerboard.
     const CHECKERED: bool;
     /// Fraction bits of a level while it is walked along a span: [`WALK`], or one less if the highest bit selects the square of the checkerboard.

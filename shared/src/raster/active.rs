@@ -29,8 +29,8 @@ impl ActiveTriangle {
     /// No triangle; all zeros, which takes no flash in static memory.
     pub const EMPTY: Self = Self { key: 0, edges: EdgeState::NONE, has_depth: 0, depth: [0; 3], words: [0; Self::WORDS] };
 
-    /// Words of a patch that can be saved: a quadratic in three channels, and the dither offset to the next row.
-    pub(crate) const WORDS: usize = 19;
+    /// Words of a patch that can be saved: a quadratic in three channels.
+    pub(crate) const WORDS: usize = 18;
 
     /// Saves a triangle that has been stepped to the end of a band; false if the patch cannot be saved.
     #[inline(always)]

@@ -1,7 +1,11 @@
 //! Pixel shaders, which convert walked values to pixels in loops that are compiled for one method and one pixel format.
 
-use crate::pixel::{Pixel, dither::ByRows, ramps::Ramps};
-use core::marker::PhantomData;
+use crate::pixel::{
+    Pixel,
+    by_rows::{ByRows, ByTurns},
+    ramps::Ramps,
+    steps,
+};
 
 /// Converts the value at a pixel to its colour.
 pub trait PixelShader<V>: ByRows {
@@ -14,29 +18,32 @@ pub trait PixelShader<V>: ByRows {
     /// Number of the shader among the method's shaders. It is saved with an active triangle.
     const ID: u8 = 0;
 
+    /// What is added to all values of the current row; `None` if nothing is, in any row.
+    #[inline(always)]
+    fn raise(&self) -> Option<V> {
+        None
+    }
+
     /// The colour of a value.
     fn shade(&self, value: V) -> Self::Pixel;
 }
 
 /// One colour for all pixels, as tables of colours hold it for even rows and for odd ones.
-#[derive(Debug)]
-pub struct Solid<C: Pixel>(pub [C::Stored; 2]);
+#[derive(Clone, Copy, Debug)]
+pub struct Solid<C: Pixel>(ByTurns<C::Stored, C>);
 
-impl<C: Pixel> Clone for Solid<C> {
-    fn clone(&self) -> Self {
-        *self
+impl<C: Pixel> Solid<C> {
+    /// A colour for even rows and one for odd rows.
+    #[inline(always)]
+    pub fn new(colours: [C::Stored; 2]) -> Self {
+        Self(ByTurns::new(colours))
     }
 }
-
-impl<C: Pixel> Copy for Solid<C> {}
 
 impl<C: Pixel> ByRows for Solid<C> {
     #[inline(always)]
     fn step_row(&mut self) {
-        if C::Ramps::CHECKERED {
-            let Self([now, next]) = *self;
-            *self = Self([next, now]);
-        }
+        self.0.step_row();
     }
 }
 
@@ -47,22 +54,13 @@ impl<C: Pixel> PixelShader<()> for Solid<C> {
 
     #[inline(always)]
     fn shade(&self, (): ()) -> C {
-        let Self([now, _]) = *self;
-        C::from_stored(now)
+        C::from_stored(self.0.now())
     }
 }
 
 /// One walked level, which is the index of a table of colours. Guards at both ends of the table replace a clamp.
-#[derive(Debug)]
+#[derive(Clone, Copy, Debug)]
 pub struct Ramp<'a, C: Pixel>(pub &'a C::Ramps);
-
-impl<C: Pixel> Clone for Ramp<'_, C> {
-    fn clone(&self) -> Self {
-        *self
-    }
-}
-
-impl<C: Pixel> Copy for Ramp<'_, C> {}
 
 impl<C: Pixel> ByRows for Ramp<'_, C> {}
 
@@ -77,19 +75,59 @@ impl<C: Pixel> PixelShader<[u32; 1]> for Ramp<'_, C> {
     }
 }
 
-/// Three walked levels with [`crate::format::CHANNEL`] fraction bits, scaled so that their upper bits are the channels. Constants for rounding or
-/// dither have been added.
+/// Three walked levels with [`crate::format::CHANNEL`] fraction bits, scaled so that their upper bits are the channels. Half a step for rounding has
+/// been added.
+///
+/// Such channels have no table to choose for dither, and a threshold at each pixel would be three additions. So all levels of a row are raised.
 #[derive(Clone, Copy, Debug)]
-pub struct Rgb<C>(pub PhantomData<C>);
+pub struct Rgb<C>(ByTurns<i32, C>);
 
-impl<C: Pixel> ByRows for Rgb<C> {}
+impl<C: Pixel> Rgb<C> {
+    /// Dithers by rows: levels of even rows are lower by `quarter`, those of odd rows higher, in units of a channel of eight bits.
+    #[inline(always)]
+    pub fn new(quarter: i32) -> Self {
+        Self(ByTurns::new([-quarter, quarter]))
+    }
+}
+
+impl<C: Pixel> ByRows for Rgb<C> {
+    #[inline(always)]
+    fn step_row(&mut self) {
+        self.0.step_row();
+    }
+}
 
 impl<C: Pixel> PixelShader<[u32; 3]> for Rgb<C> {
     type Pixel = C;
 
     #[inline(always)]
+    fn raise(&self) -> Option<[u32; 3]> {
+        C::Ramps::CHECKERED.then(|| {
+            let [r, g, b] = steps(C::DEPTH, self.0.now());
+            [r as u32, g as u32, b as u32]
+        })
+    }
+
+    #[inline(always)]
     fn shade(&self, levels: [u32; 3]) -> C {
         let [r, g, b] = levels;
         C::mixed([r as i32, g as i32, b as i32])
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use embedded_graphics_core::pixelcolor::{Rgb565, Rgb888};
+
+    /// Even rows are lower and odd rows higher, by twice as much in a channel that has one bit less.
+    #[test]
+    fn channels_are_raised_by_rows() {
+        let mut shader = Rgb::<Rgb565>::new(6);
+        let lower = [48u32, 24, 48].map(u32::wrapping_neg);
+        assert_eq!(shader.raise(), Some(lower));
+        shader.step_row();
+        assert_eq!(shader.raise(), Some([48, 24, 48]));
+        assert_eq!(Rgb::<Rgb888>::new(6).raise(), None);
     }
 }

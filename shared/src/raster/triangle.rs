@@ -364,7 +364,15 @@ impl<'b, D: Patch<Walker: DepthTest>, P: Patch, T: PixelShader<<P::Walker as Wal
             && let Some(pixels) = self.pixels.get_mut(start..end)
             && let Some(buffer) = D::Walker::depth(self.buffer, start..end)
         {
-            fill(pixels, buffer, self.depth.enter(right as i32), self.patch.enter(right as i32), self.shader);
+            // By measurement, loops have more registers if raised values are entered before depth, and others after it.
+            let (test, walker) = match self.shader.raise() {
+                Some(by) => {
+                    let walker = self.patch.raised(&by).enter(right as i32);
+                    (self.depth.enter(right as i32), walker)
+                }
+                None => (self.depth.enter(right as i32), self.patch.enter(right as i32)),
+            };
+            fill(pixels, buffer, test, walker, self.shader);
             if !Self::AHEAD && late {
                 self.filled = self.filled.wrapping_add(count as u32);
             }
