@@ -5,8 +5,11 @@ use crate::{
     geometry::bin::{TriangleKey, Walk},
     mesh::Drawing,
     method::{
-        ErrorBounds, Facts, General, LitMaterial, Loops, Method, Shading, Style, TriangleSetup, auto::Auto, flat::Flat, gouraud::Gouraud,
-        needs_general, phong::Phong, renq_newton::RenqNewton, six_point::SixPoint, sqrt6::Sqrt6,
+        ErrorBounds, Facts, General, LitMaterial, Loops, Method, Shading, Style, TriangleSetup,
+        auto::Auto,
+        cosines::{phong::Phong, renq_newton::RenqNewton, sqrt6::Sqrt6},
+        levels::{flat::Flat, gouraud::Gouraud, six_point::SixPoint},
+        needs_general,
     },
     pixel::Pixel,
     raster::{band::Band, canvas::Canvas},

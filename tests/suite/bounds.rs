@@ -1,6 +1,6 @@
 //! The table of errors by which `auto` judges methods, against a search of its own.
 
-use microphong::method::highlight_error::{Growth, KINDS, Kind};
+use microphong::method::auto::highlight_error::{Growth, KINDS, Kind};
 use microphong_sim::bounds::{Table, worst};
 
 /// A search with another seed, at other exponents and sizes, finds no triangle whose error exceeds the table. If all entries where it found most were

@@ -4,7 +4,7 @@ use embedded_graphics::geometry::Size;
 use microphong::{
     method::{
         auto::costs::{COSTS, Cost},
-        sqrt6::Sqrt6,
+        cosines::sqrt6::Sqrt6,
     },
     stream::record::Triangle,
 };

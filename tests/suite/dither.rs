@@ -7,7 +7,7 @@ use embedded_graphics::{
 };
 use microphong::{
     Renderer,
-    method::sqrt6::Sqrt6,
+    method::cosines::sqrt6::Sqrt6,
     pixel::{FromDrawn, Light, LightGray, Pixel, PixelFormat, Rgb332, Rgb565Be, dither::threshold},
 };
 use microphong_sim::{

@@ -1,7 +1,7 @@
 //! The flashable firmware of every board, run on its emulated display and compared with the host, pixel by pixel.
 
 use microphong::{
-    method::{Canvas, Facts, Method, Shading, TriangleSetup, gouraud::Gouraud},
+    method::{Canvas, Facts, Method, Shading, TriangleSetup, levels::gouraud::Gouraud},
     stream::{
         record::{Triangle, Vertex},
         seal,

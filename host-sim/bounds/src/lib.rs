@@ -2,7 +2,7 @@
 //!
 //! The error of interpolating a highlight (N·H/|N|)^n on a triangle depends on its three unit normals, seen from the half vector. For all exponents n
 //! it is about the same function of n (1 - ρ) and n (1 - w), where ρ is the smallest length of N on the triangle, and w the largest N·H at a corner
-//! over ρ. [`microphong::method::highlight_error`] describes the table.
+//! over ρ. [`microphong::method::auto::highlight_error`] describes the table.
 //!
 //! An entry is the largest error found on any triangle that is at most as large and at least as far from the peak. Random triangles are tried, and
 //! triangles of neighbouring entries, which are moved as long as the error grows. This is a maximum of what was tried, not a proof. So margins are
@@ -10,7 +10,7 @@
 
 mod triangle;
 
-use microphong::method::highlight_error::{
+use microphong::method::auto::highlight_error::{
     COLUMNS, COLUMNS_A_UNIT, CURVED, Curved, Growth, KINDS, Kind, LEAST_EXPONENTS, LEAST_SIZE, LINEAR, LINEAR_SIZE, LinearTable, RATE,
     ROWS, ROWS_BEHIND, SHARE,
 };

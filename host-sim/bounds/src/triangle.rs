@@ -1,6 +1,6 @@
 //! A triangle of unit normals around the peak of a highlight, and what interpolation is off from its highlight.
 
-use microphong::method::highlight_error::{KINDS, USUAL_EXPONENT};
+use microphong::method::auto::highlight_error::{KINDS, USUAL_EXPONENT};
 use microphong_stress::random::Random;
 use std::array;
 
@@ -80,7 +80,7 @@ impl Triangle {
         })
     }
 
-    /// Largest errors of each kind for an exponent, over the whole highlight. The error of [`microphong::method::highlight_error::Kind::Cosines`] is
+    /// Largest errors of each kind for an exponent, over the whole highlight. The error of [`microphong::method::auto::highlight_error::Kind::Cosines`] is
     /// multiplied by the exponent over [`USUAL_EXPONENT`].
     #[must_use]
     pub fn errors(&self, exponent: u16) -> [f64; KINDS] {

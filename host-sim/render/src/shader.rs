@@ -4,7 +4,10 @@ use anyhow::{Context, Result};
 use microphong::{
     Stream,
     method::{
-        Facts, Method, auto::Auto, flat::Flat, gouraud::Gouraud, phong::Phong, renq_newton::RenqNewton, six_point::SixPoint, sqrt6::Sqrt6,
+        Facts, Method,
+        auto::Auto,
+        cosines::{phong::Phong, renq_newton::RenqNewton, sqrt6::Sqrt6},
+        levels::{flat::Flat, gouraud::Gouraud, six_point::SixPoint},
     },
     pixel::Pixel,
 };

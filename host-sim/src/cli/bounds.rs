@@ -2,13 +2,13 @@
 
 use super::{Outcome, parse, report};
 use anyhow::Result;
-use microphong::method::highlight_error::{COLUMNS, Growth, LEAST_EXPONENTS, ROWS, ROWS_BEHIND};
+use microphong::method::auto::highlight_error::{COLUMNS, Growth, LEAST_EXPONENTS, ROWS, ROWS_BEHIND};
 use microphong_sim::bounds::{Place, STEPS, Table, source, table, worst};
 use serde::Serialize;
 
 /// Search for the largest errors of interpolated highlights, and print the table that `auto` uses to choose methods
 ///
-/// The table is a file of the core, shared/src/method/highlight_error/table.rs. It holds the largest errors that were found, with a margin. With --check
+/// The table is a file of the core, shared/src/method/auto/highlight_error/table.rs. It holds the largest errors that were found, with a margin. With --check
 /// the command prints no table. Instead it searches for triangles whose errors exceed the compiled table.
 #[derive(clap::Args)]
 #[command(after_help = EXAMPLES)]
@@ -29,7 +29,7 @@ pub(crate) struct Arguments {
 
 const EXAMPLES: &str = "\
 Examples:
-  microphong bounds > shared/src/method/highlight_error/table.rs    five minutes on two processors
+  microphong bounds > shared/src/method/auto/highlight_error/table.rs    five minutes on two processors
   microphong bounds --check 100000 --effort 200 --seed 7            search for larger errors";
 
 /// The kinds of error, in the order of the table.

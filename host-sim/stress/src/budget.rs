@@ -10,7 +10,7 @@ use crate::{
 use embedded_graphics_core::geometry::Size;
 use microphong::{
     format::ErrorBudget,
-    method::{Canvas, Facts, Method, Shading, TriangleSetup, phong::Phong},
+    method::{Canvas, Facts, Method, Shading, TriangleSetup, cosines::phong::Phong},
 };
 use microphong_compare::level;
 use microphong_models::vector::length;

@@ -1,7 +1,7 @@
 //! The cubic through ten points (Vlasic 2002): lit at the corners, at the thirds of the edges and at the centroid.
 //!
 //! Cost: three additions of 64 bits a pixel and channel; ten points to light. Continuous: both neighbours light the thirds of their edge alike. It
-//! has a third to a half of the error of [`microphong::method::six_point`]. Domain: any lights.
+//! has a third to a half of the error of [`microphong::method::levels::six_point`]. Domain: any lights.
 
 use microphong::method::{Canvas, Costs, Facts, Highlight, HighlightField, Method, RANGE, Shading, TriangleSetup, VertexLight};
 

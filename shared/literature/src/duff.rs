@@ -8,7 +8,7 @@
 //! tables' error, mainly [`microphong::math::highlight_lut::NEAREST_ERROR`] of the highlight. Domain: any lights; under near lights as exact as six
 //! points are.
 
-use microphong::method::{Canvas, Costs, Facts, Highlight, HighlightField, Method, Shading, TriangleSetup, VertexLight, duff};
+use microphong::method::{Canvas, Costs, Facts, Highlight, HighlightField, Method, Shading, TriangleSetup, VertexLight, cosines::duff};
 
 static FACTS: Facts = Facts {
     name: "duff",

@@ -8,7 +8,7 @@
 //!
 //! Cost: 2 additions, a root and 4 products a pixel; an addition, 3 products and the highlight's table per light. Continuous,
 //! but where a corner's normal points away from the eye its W is mirrored once more, and triangles along
-//! the silhouette sweep the whole map. Error against Phong: large there, else [`microphong::method::gouraud`]'s of diffuse light.
+//! the silhouette sweep the whole map. Error against Phong: large there, else [`microphong::method::levels::gouraud`]'s of diffuse light.
 //! Domain: any lights; the highlights of near ones are wrong by design.
 
 use microphong::{
@@ -16,7 +16,7 @@ use microphong::{
     math::vector::{dot, normalise, zip},
     method::{
         Canvas, CosineLookup, Costs, Facts, Held, Highlight, HighlightField, Lighting, LightingModel, Method, Node, Reflection, Shading,
-        Source, TriangleSetup, VertexLight, Viewer, cosine, duff::Root, linear, signed,
+        Source, TriangleSetup, VertexLight, Viewer, cosine, cosines::duff::Root, linear, signed,
     },
 };
 

@@ -1,6 +1,6 @@
 //! Gouraud shading of the four triangles between corners and edge midpoints.
 //!
-//! The poor man's quadratic: the six nodes of [`microphong::method::six_point`], linear in
+//! The poor man's quadratic: the six nodes of [`microphong::method::levels::six_point`], linear in
 //! between. Cost: one addition a pixel and channel; three more nodes and four times
 //! Gouraud's set-up a triangle. Continuous. A quarter of Gouraud's error.
 

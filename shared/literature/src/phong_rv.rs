@@ -1,14 +1,14 @@
 //! Per-pixel Phong shading with the reflected light (Phong 1975): highlights by R·V, R = 2(N·L)N - L.
 //!
 //! The exponent is a quarter of the half vector's. Highlights then have the width of the half vector's where L, N and V lie in a plane; elsewhere
-//! they are rounder. It walks what [`microphong::method::phong`] walks.
+//! they are rounder. It walks what [`microphong::method::cosines::phong`] walks.
 //!
 //! Cost: 6 additions and 2 roots, and for each light 6 additions, a root and 4 products. Domain: any lights and viewer.
 //! Error against the half vector: the difference of the two models.
 
 use microphong::method::{
     Canvas, CosineLookup, Costs, Facts, Highlight, HighlightField, LightingModel, Method, Reflection, Shading, TriangleSetup, VertexLight,
-    phong, phong::Common,
+    cosines::{phong, phong::Common},
 };
 
 static FACTS: Facts = Facts {

@@ -7,38 +7,18 @@
 #[doc(hidden)]
 pub mod auto;
 #[doc(hidden)]
-pub mod duff;
-#[doc(hidden)]
-pub mod error_bound;
+pub mod cosines;
 mod facts;
 #[doc(hidden)]
-pub mod flat;
-#[doc(hidden)]
-pub mod gouraud;
-#[doc(hidden)]
-pub mod highlight_error;
+pub mod levels;
 #[doc(hidden)]
 pub mod lighting_model;
-mod lit;
-mod local_viewer;
 #[doc(hidden)]
 pub mod node;
-#[doc(hidden)]
-pub mod phong;
-mod quotient;
-#[doc(hidden)]
-pub mod renq;
-#[doc(hidden)]
-pub mod renq_newton;
-#[doc(hidden)]
-pub mod six_point;
-#[doc(hidden)]
-pub mod sqrt6;
 #[doc(hidden)]
 pub mod sub_triangle;
 #[doc(hidden)]
 pub mod tiles;
-mod two_lights;
 
 use crate::{
     antialias::{PixelSet, Shape},
@@ -83,7 +63,7 @@ pub use {
         math::highlight_lut::CosineLookup,
         setup::steepness::Steepness,
     },
-    error_bound::ErrorBounds,
+    auto::error_bound::ErrorBounds,
     facts::{Costs, HighlightField},
     lighting_model::{LightingModel, LinearNodes, QuadraticNodes, linear, quadratic, signed},
     node::Node,

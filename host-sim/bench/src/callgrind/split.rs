@@ -116,7 +116,7 @@ cfn=memcpy
 calls=45 0x90
 0x62 88
 0x63 45
-cfn=microphong::method::quotient::tone
+cfn=microphong::method::cosines::quotient::tone
 calls=45 0xa0
 0x63 444
 jcnd=39/45 0x62
@@ -124,7 +124,7 @@ jcnd=39/45 0x62
 0x64 6
 jcnd=4/6 0x61
 0x64
-fn=microphong::method::quotient::tone
+fn=microphong::method::cosines::quotient::tone
 0xa0 444
 fn=microphong::raster::band::Band<C>::clear
 0x80 1000

@@ -5,7 +5,7 @@ use crate::{
     lighting::reflectance::{FULL, LitMaterial},
     method::{
         CornerCosines, Shading, TriangleSetup,
-        error_bound::{Curvature, LinearBound},
+        auto::error_bound::{Curvature, LinearBound},
         largest,
     },
     raster::counts::Counts,

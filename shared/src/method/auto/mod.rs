@@ -12,6 +12,10 @@
 
 mod choice;
 pub mod costs;
+#[doc(hidden)]
+pub mod error_bound;
+#[doc(hidden)]
+pub mod highlight_error;
 
 use crate::{
     interpolate::{Constant, by_column::ByColumn},
@@ -21,8 +25,12 @@ use crate::{
     },
     math::vector::zip,
     method::{
-        Costs, DrawTriangle, Facts, HighlightField, Loops, Method, RANGE, Shading, Style, TriangleSetup, VertexLight, channels,
-        draw_uniform, duff::Duff, error_bound::ErrorBounds, gouraud, phong::Phong, six_point::SixPoint, sqrt6::SixCosines,
+        Costs, DrawTriangle, Facts, HighlightField, Loops, Method, RANGE, Shading, Style, TriangleSetup, VertexLight,
+        auto::error_bound::ErrorBounds,
+        channels,
+        cosines::{duff::Duff, phong::Phong, sqrt6::SixCosines},
+        draw_uniform,
+        levels::{gouraud, six_point::SixPoint},
     },
     pixel::Pixel,
     raster::{band::Band, canvas::Canvas, pixel_shader::Solid},

@@ -20,10 +20,11 @@ use crate::{
         vector::{add, narrow_dot, wide},
     },
     method::{
-        CornerCosines, Loops, Shading, Style, TriangleSetup, largest,
+        CornerCosines, Loops, Shading, Style, TriangleSetup,
+        cosines::quotient,
+        largest,
         lighting_model::{EXTRA, LightingModel, Lit, NODE, QuadraticNodes, linear, signed},
         node::is_steep,
-        quotient,
     },
     pixel::Pixel,
     raster::{band::Band, canvas::Canvas},

@@ -25,9 +25,13 @@ use crate::{
         vector::{dot, over_longest, sub, wide},
     },
     method::{
-        CornerCosines, Shading, Style, TriangleSetup, duff, largest,
+        CornerCosines, Shading, Style, TriangleSetup,
+        cosines::{
+            duff,
+            lit::{AtPixel, FromValues, LitShader},
+        },
+        largest,
         lighting_model::{BITS, fitted, linear, quadratic, signed},
-        lit::{AtPixel, FromValues, LitShader},
         node::{FRACTION, field_product, is_steep, map_six},
     },
     pixel::{Pixel, by_rows::ByRows},

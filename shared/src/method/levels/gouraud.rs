@@ -80,7 +80,7 @@ impl Loops for Gouraud {
 
 /// Draws a triangle of one channel, with all levels `raise` higher. Returns the number of its pixels in `band`.
 #[inline(never)]
-pub(super) fn draw_one<C: Pixel>(setup: &TriangleSetup<'_>, raise: i32, tables: MaterialTables<'_, C>, band: &mut Band<'_, C>) -> u32 {
+pub(crate) fn draw_one<C: Pixel>(setup: &TriangleSetup<'_>, raise: i32, tables: MaterialTables<'_, C>, band: &mut Band<'_, C>) -> u32 {
     let [a, b, c] = setup.corners;
     let levels = || [a.light[2] + raise, b.light[2] + raise, c.light[2] + raise];
     setup.fill(|| fit_levels::<3, C>(setup.gradients, levels()), Ramp(tables.ramps), band)
@@ -88,14 +88,14 @@ pub(super) fn draw_one<C: Pixel>(setup: &TriangleSetup<'_>, raise: i32, tables: 
 
 /// Whether a triangle of three channels under one constant light is a ramp of the table of colours: no corner has a highlight.
 #[inline(always)]
-pub(super) fn has_ramp(setup: &TriangleSetup<'_>, reflectance: &Reflectance) -> bool {
+pub(crate) fn has_ramp(setup: &TriangleSetup<'_>, reflectance: &Reflectance) -> bool {
     let [a, b, c] = setup.corners;
     a.light[2] | b.light[2] | c.light[2] == 0 && reflectance.has_ramp()
 }
 
 /// Draws a triangle of three channels under one constant light, with all levels `raise` higher. Returns the number of its pixels in `band`.
 #[inline(always)]
-pub(super) fn draw_three<C: Pixel>(
+pub(crate) fn draw_three<C: Pixel>(
     setup: &TriangleSetup<'_>,
     shading: &Shading<'_>,
     raise: i32,
@@ -132,7 +132,7 @@ fn corner_levels(setup: &TriangleSetup<'_>, shading: &Shading<'_>) -> [[i32; 3];
 }
 
 /// The levels at the corners under one constant light.
-pub(super) fn reflected(setup: &TriangleSetup<'_>, reflectance: &Reflectance) -> [[i32; 3]; 3] {
+pub(crate) fn reflected(setup: &TriangleSetup<'_>, reflectance: &Reflectance) -> [[i32; 3]; 3] {
     if reflectance.three_channels() { reflections(setup.corners, reflectance) } else { setup.corners.map(|corner| [corner.light[2]; 3]) }
 }
 

@@ -1,7 +1,7 @@
 //! Per-pixel Phong shading (Phong 1975), highlights by the half vector (Blinn 1977).
 //!
 //! Normals, lights and viewer are linear over the screen. Every dot product of them is therefore linear or exactly quadratic and can be walked. Only
-//! the roots that normalise are taken at each pixel. One constant light is drawn by [`crate::method::duff`], one directional light under a local
+//! the roots that normalise are taken at each pixel. One constant light is drawn by [`crate::method::cosines::duff`], one directional light under a local
 //! viewer by `local_viewer`.
 //!
 //! Cost: one constant light as `duff`; otherwise 6 additions and 2 roots, and 6 additions and 2 roots more for each light. Error: the tables' error,
@@ -19,9 +19,11 @@ use crate::{
     },
     method::{
         Costs, Facts, HighlightField, Loops, Method, Shading, Style, TriangleSetup, VertexLight,
-        duff::{self, Duff, Root},
+        cosines::{
+            duff::{self, Duff, Root},
+            local_viewer,
+        },
         lighting_model::{LightingModel, quadratic, signed},
-        local_viewer,
         node::field_product,
     },
     pixel::Pixel,

@@ -5,7 +5,7 @@
 //! the same slope.
 //!
 //! Cost: 4 additions a pixel and light and the highlight's table, which also squares; 12 cosines to set up. Triangles
-//! without a highlight under one constant light cost as much as by [`crate::method::six_point`]. Continuous.
+//! without a highlight under one constant light cost as much as by [`crate::method::levels::six_point`]. Continuous.
 //! Error against Phong: 2.4 LSB at worst on a sphere of 168 triangles, 0.2 on one of 690 (exponent 50, ks 1/2).
 //! Domain: any lights; coarse triangles near a light need splitting.
 
@@ -25,11 +25,14 @@ use crate::{
     },
     math::{highlight_lookup::DefectLookup, highlight_lut::CosineLookup, rsqrt::sqrt},
     method::{
-        CornerCosines, Costs, Facts, HighlightField, Loops, Method, RANGE, Shading, Style, TriangleSetup, VertexLight, largest,
+        CornerCosines, Costs, Facts, HighlightField, Loops, Method, RANGE, Shading, Style, TriangleSetup, VertexLight,
+        cosines::{
+            lit::{AtPixel, FromValues, LitShader},
+            two_lights::TwoLights,
+        },
+        largest,
         lighting_model::{BITS, EXTRA, LightingModel, Lit, QuadraticNodes, quadratic, signed},
-        lit::{AtPixel, FromValues, LitShader},
         node::map_six,
-        two_lights::TwoLights,
     },
     pixel::Pixel,
     raster::{

@@ -6,7 +6,7 @@
 //! Cost: 4 additions a pixel, 2 products and the highlight's table; 2 or 4 additions and 2 products more per light.
 //! Continuous. Error against Phong: 255 ks n w^n 0.0125 (e/r)^4, w the largest N·H/|N|, e the longest |Ni-Nj|, r
 //! the least |N|: 3 LSB at worst on a sphere of 168 triangles, 0.3 on one of 690 (exponent 50, ks 1/2).
-//! Domain: any lights; where |N| falls below 1/2, [`crate::method::duff`]'s root takes over.
+//! Domain: any lights; where |N| falls below 1/2, [`crate::method::cosines::duff`]'s root takes over.
 
 use crate::{
     arch::product::upper,

@@ -1,12 +1,12 @@
-//! Quadratic renormalisation, corrected by Newton's iteration: q = m (3 - D m²)/2 with m from [`crate::method::renq`] and D = |N|².
+//! Quadratic renormalisation, corrected by Newton's iteration: q = m (3 - D m²)/2 with m from [`crate::method::cosines::renq`] and D = |N|².
 //!
 //! One step squares m's relative error, delta <= 0.02 e⁴, e² = 3 (1 - min |N|²), to 1.5 delta²; where that still shows at the material's
 //! exponent, on strongly curved triangles, a second step is taken. No root, no division, no table but the highlight's.
 //!
 //! Cost: 6 additions a pixel, 5 products (8 with two steps) and the highlight's table; 2 or 4 additions and 2 products
 //! more per light. Continuous. Error against Phong under constant light: 0.1 LSB and the table's.
-//! Domain: any lights; where |N| falls below 1/2, [`crate::method::duff`]'s root takes over. Under near lights, and for a local viewer, no
-//! quadratic through six points is exact: there it is [`crate::method::phong`].
+//! Domain: any lights; where |N| falls below 1/2, [`crate::method::cosines::duff`]'s root takes over. Under near lights, and for a local viewer, no
+//! quadratic through six points is exact: there it is [`crate::method::cosines::phong`].
 
 use crate::{
     arch::product::{unsigned_product, upper},
@@ -17,10 +17,9 @@ use crate::{
     },
     math::highlight_lut::CosineLookup,
     method::{
-        Costs, Facts, HighlightField, Loops, Method, Shading, Style, TriangleSetup, VertexLight, duff,
+        Costs, Facts, HighlightField, Loops, Method, Shading, Style, TriangleSetup, VertexLight,
+        cosines::{duff, phong::Phong, quotient, renq},
         lighting_model::{LightingModel, signed},
-        phong::Phong,
-        quotient, renq,
     },
     pixel::Pixel,
     raster::{band::Band, canvas::Canvas},

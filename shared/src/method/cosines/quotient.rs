@@ -16,10 +16,13 @@ use crate::{
     },
     math::{highlight_lookup, highlight_lookup::QuotientLookup, highlight_lut::HighlightLut},
     method::{
-        CornerCosines, TriangleSetup, largest,
+        CornerCosines, TriangleSetup,
+        cosines::{
+            lit::{AtPixel, FromValues, LitShader},
+            two_lights::TwoLights,
+        },
+        largest,
         lighting_model::fitted,
-        lit::{AtPixel, FromValues, LitShader},
-        two_lights::TwoLights,
     },
     pixel::Pixel,
     raster::{band::Band, pixel_shader::Solid},

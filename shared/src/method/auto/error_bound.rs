@@ -3,7 +3,7 @@
 //! The light on a triangle depends on the interpolated normal N, which is linear and shorter than the corners' unit normals: by the diffuse cosine
 //! N·L/|N| and the highlight (N·H/|N|)^n. The stream has the smallest length ρ of N on each triangle.
 //!
-//! - What interpolation is off from highlights stands in a table, [`crate::method::highlight_error`].
+//! - What interpolation is off from highlights stands in a table, [`crate::method::auto::highlight_error`].
 //! - Diffuse light that is interpolated linearly is N·L instead of N·L/|N|: too dark by N·L (1/|N| - 1), at most by N·L (1/ρ - 1).
 //! - The quadratic through six points is off from diffuse light by its third derivative along lines, at most 3.01, times (e/ρ)³
 //!   `REMAINDER`. Here e is the longest distance between two corners' normals; with h = e²/4, the haversine, (e/ρ)² is at most
@@ -20,7 +20,7 @@ use crate::{
     lighting::reflectance::{FULL, LitMaterial},
     method::{
         CornerCosines,
-        highlight_error::{self, TablePlace, USUAL_EXPONENT},
+        auto::highlight_error::{self, TablePlace, USUAL_EXPONENT},
         largest,
     },
     stream::record::Triangle,
@@ -423,7 +423,7 @@ mod tests {
             reflectance::{Highlight, Reflectance},
         },
         math::vector::wide,
-        method::highlight_error::EXACT,
+        method::auto::highlight_error::EXACT,
         pixel::Channels,
         stream::record::{Light, Material},
     };

@@ -1,0 +1,16 @@
+//! Methods that interpolate cosines, and compute light from them at the pixel.
+
+#[doc(hidden)]
+pub mod duff;
+mod lit;
+mod local_viewer;
+#[doc(hidden)]
+pub mod phong;
+mod quotient;
+#[doc(hidden)]
+pub mod renq;
+#[doc(hidden)]
+pub mod renq_newton;
+#[doc(hidden)]
+pub mod sqrt6;
+mod two_lights;
