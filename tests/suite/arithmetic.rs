@@ -1,7 +1,7 @@
 //! Integers against the same method in 64-bit floating point: every method, every pixel of every scene, all around.
 
 use microphong::stream::{
-    record::{Header, Light, Material},
+    record::{Header, Light, Material, OBJECT_SPACE, POINT},
     seal,
 };
 use microphong_sim::{
@@ -20,7 +20,7 @@ const ERROR: f64 = 0.30;
 const DECIDING_ERROR: f64 = 0.48;
 /// Largest difference of any method on materials that are lifted above white, in 1/255.
 const BRIGHT_ERROR: f64 = 0.30;
-/// Largest difference of Phong shading under a local viewer, in 1/255: at the exponent 1024, by what rounds at the nodes of the general way.
+/// Largest difference of Phong shading under a near light or for a near viewer, in 1/255: at the exponent 1024, by what rounds at the nodes of the general way.
 const LOCAL_ERROR: f64 = 0.40;
 /// Frames of the orbit. Errors differ more from pixel to pixel than from frame to frame, so all pixels of few frames are compared; `stress`
 /// looks at other scenes for a minute.
@@ -101,30 +101,44 @@ fn bright_lights_are_clamped_at_the_end() {
     }
 }
 
-/// Directional light under a local viewer, for which methods may have loops, and highlights of all widths.
+/// A near viewer of directional light, a near light under an infinitely far viewer, for which methods may have loops, and both near. Highlights of
+/// all widths.
 #[test]
-fn local_viewers_are_as_exact() {
-    let phong = Shader::ALL.iter().copied().find(|shader| shader.name() == "phong").unwrap();
-    for name in ["teapot", "peer-sphere-plastic", "bunny"] {
+fn near_lights_and_viewers_are_as_exact() {
+    let cases = ["teapot", "peer-sphere-plastic", "bunny"]
+        .into_iter()
+        .flat_map(|name| [[true, false], [false, true], [true; 2]].map(|near| (name, near)));
+    for (name, [near_light, near_viewer]) in cases {
         for exponent in [1, 8, 9, 30, 64, 65, 300, 1024] {
             let mut scene = scene::load(name).unwrap();
             let mut bytes = scene.stream.as_bytes().to_vec();
             let stream = scene.stream.parse().unwrap();
             let place = |record: *const u8| record as usize - scene.stream.as_bytes().as_ptr() as usize;
-            let header = Header { camera: stream.header.camera.with_local_viewer(), ..*stream.header };
+            let camera = if near_viewer { stream.header.camera.with_local_viewer() } else { stream.header.camera };
+            let header = Header { camera, ..*stream.header };
             bytes[place((&raw const *stream.header).cast())..][..size_of::<Header>()].copy_from_slice(header.as_bytes());
             for material in stream.materials {
                 let material_of = Material { exponent, ..*material };
                 bytes[place((&raw const *material).cast())..][..size_of::<Material>()].copy_from_slice(material_of.as_bytes());
             }
+            if near_light {
+                for light in stream.lights {
+                    // In the direction of the directional light.
+                    let near = Light { kind: POINT, space: OBJECT_SPACE, vector: light.vector.map(|c| c * 5 / 2), ..*light };
+                    bytes[place((&raw const *light).cast())..][..size_of::<Light>()].copy_from_slice(near.as_bytes());
+                }
+            }
             seal(&mut bytes);
             scene.stream = StreamBytes::from(&bytes[..]);
-            let stream = scene.stream.parse().unwrap();
             for number in [0, 40] {
-                let frame = Frame::new(stream, scene.size, number);
-                let error = error(&scene, &frame, &frame.visible(), phong, number);
-                println!("{name:20} {exponent:5} {number:3} {error:.3} LSB");
-                assert!(error <= LOCAL_ERROR, "{name}, exponent {exponent}, frame {number}: {error} LSB");
+                for shader in Shader::ALL.iter().copied().filter(|shader| matches!(shader.name(), "phong" | "auto")) {
+                    let size = [scene.size.0, scene.size.1];
+                    let case = Case { size, frame: number, style: shader.into(), ..Case::new(scene.stream.clone()) };
+                    let found = arithmetic::judge(&case).unwrap();
+                    println!("{name:20} {near_light:5} {near_viewer:5} {exponent:5} {number:3} {:5} {found:?}", shader.name());
+                    assert!(found.error <= LOCAL_ERROR, "{name}, exponent {exponent}, frame {number}: {found:?}");
+                    assert!(found.strictly > 3 * (found.leniently + found.not_judged), "{name}: {found:?}");
+                }
             }
         }
     }

@@ -96,7 +96,7 @@ impl Graph {
     }
 }
 
-/// The type that is the method, as symbols name it.
+/// The end of the name of the type that is the method, as symbols name it.
 fn type_name(shader: Shader) -> String {
     if shader.keeps_budget() {
         return format!("microphong::method::auto::Auto<{}>", shader == Shader::AUTO);
@@ -105,7 +105,8 @@ fn type_name(shader: Shader) -> String {
     let name: String = shader.name().split('-').map(word).collect();
     let module = shader.name().trim_end_matches("-original").replace('-', "_");
     if Shader::CORE.contains(&shader) {
-        format!("microphong::method::{module}::{name}")
+        // In the folder of what it interpolates.
+        format!("::{module}::{name}")
     } else {
         format!("microphong_literature::{module}::{name}")
     }

@@ -8,15 +8,12 @@ use crate::{
     tiles,
 };
 use embedded_graphics_core::geometry::Size;
-use microphong::{
-    format::ErrorBudget,
-    method::{Canvas, Facts, Method, Shading, TriangleSetup, cosines::phong::Phong},
-};
+use microphong::format::ErrorBudget;
 use microphong_compare::level;
 use microphong_models::vector::length;
 use microphong_oracle::{Frame, Shade, phong};
 use microphong_render::{render::Style, shader::Shader};
-use std::{collections::HashMap, sync::LazyLock};
+use std::collections::HashMap;
 
 /// Random scenes, by `auto` with this budget, or random ones.
 pub struct Budget(pub Option<ErrorBudget>);
@@ -73,20 +70,6 @@ pub fn case(random: &mut Random) -> Option<Case> {
     Some(Case { style: Style { shader: Shader::AUTO, antialias: false, dither: false, ..case.style }, ..case })
 }
 
-/// The method `phong` without its own loops. Under near lights and for a near viewer `auto` has none, and those of `phong` round differently.
-struct General;
-
-impl Method for General {
-    fn facts(&self) -> &'static Facts {
-        static FACTS: LazyLock<Facts> = LazyLock::new(|| Facts { id: Facts::FIRST_FREE, ..*Phong.facts() });
-        &FACTS
-    }
-
-    fn shade(&self, setup: &TriangleSetup<'_>, shading: &Shading<'_>, canvas: &mut dyn Canvas) -> u32 {
-        Phong.shade(setup, shading, canvas)
-    }
-}
-
 /// The result of a case.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Found {
@@ -108,8 +91,7 @@ pub fn judge(case: &Case) -> Option<Found> {
     let of = if case.style.perspective_correct { Frame::perspective_correct } else { Frame::new };
     let frame = of(stream, (width, height), number);
     let picture = |shader| level::picture(stream, Size::new(width, height), Style { shader, ..case.style }, number).ok();
-    let (drawn, by_phong) =
-        (picture(case.style.shader)?, picture(if frame.is_constant() { Shader::PHONG } else { Shader::new(&General) })?);
+    let (drawn, by_phong) = (picture(case.style.shader)?, picture(Shader::PHONG)?);
     let right = allowed(stream.header.budget().to_num(), frame.lights.len());
     let mut shades: HashMap<u32, (Shade<'_>, bool)> = HashMap::new();
     let mut worst = 0f64;

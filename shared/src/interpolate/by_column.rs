@@ -12,7 +12,7 @@ use core::hint::black_box;
 const EVALUATES: bool = SATURATES;
 
 /// A polynomial that is evaluated at each column. The values are bit for bit those of stepping.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, Default)]
 pub struct ByColumn<P>(pub P);
 
 impl<P: Patch<Walker: Copy>> Patch for ByColumn<P> {

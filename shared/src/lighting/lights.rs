@@ -42,7 +42,7 @@ pub struct Lighting {
     /// The memory of a renderer needs sizes that are multiples of 8.
     reserved: [u32; ROOM % 2],
     count: u32,
-    /// See [`Self::is_directional`]: 0 or 1.
+    /// Whether all lights are directional: 0 or 1.
     directional: u32,
     /// See [`Viewer`].
     viewer: [i32; 3],
@@ -157,11 +157,10 @@ impl Lighting {
         !NEAR_LIGHTS || self.directional & !self.is_local & 1 != 0
     }
 
-    /// Whether all lights are directional.
-    #[inline(always)]
+    /// Whether either all lights or the viewer are near, and the other is infinitely far. Domain: one light.
     #[must_use]
-    pub fn is_directional(&self) -> bool {
-        !NEAR_LIGHTS || self.directional != 0
+    pub(crate) fn has_one_near(&self) -> bool {
+        NEAR_LIGHTS && (self.directional != 0) == self.is_local()
     }
 
     #[inline(always)]

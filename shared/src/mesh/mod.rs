@@ -49,7 +49,8 @@ impl<C: Pixel> Drawing<'_, C> {
         Style {
             three_channels: reflectance.three_channels(),
             lights: if lighting.is_constant() { reflectance.lights() } else { 0 },
-            local_viewer: lighting.is_directional() && !lighting.is_constant() && reflectance.lights() == 1,
+            // Boards with displays of greys have little flash: no loops there.
+            one_near: !C::GRAY && lighting.has_one_near() && reflectance.lights() == 1,
             by_canvas: viewport.antialiased || !self.colourist().suits_loops(),
             perspective: *perspective,
         }

@@ -108,8 +108,8 @@ pub(crate) struct Style {
     pub(crate) three_channels: bool,
     /// Number of constant lights, if their levels fit the formats of [`crate::lighting::constant_lights`]; otherwise 0.
     pub(crate) lights: u8,
-    /// Whether there is one directional light under a local viewer, whose levels fit these formats.
-    pub(crate) local_viewer: bool,
+    /// Whether there is one light, and either it or the viewer is near, and its levels fit these formats.
+    pub(crate) one_near: bool,
     /// Whether only a canvas can make the colours: by antialiasing, or by the curve of a display on three channels that are not light.
     pub(crate) by_canvas: bool,
     /// Whether light is interpolated in perspective.

@@ -28,7 +28,7 @@ use crate::{
         Costs, DrawTriangle, Facts, HighlightField, Loops, Method, RANGE, Shading, Style, TriangleSetup, VertexLight,
         auto::error_bound::ErrorBounds,
         channels,
-        cosines::{duff::Duff, phong::Phong, sqrt6::SixCosines},
+        cosines::{phong::Phong, sqrt6::SixCosines},
         draw_uniform,
         levels::{gouraud, six_point::SixPoint},
     },
@@ -154,7 +154,7 @@ impl<const QUADRATICS: bool> Loops for Auto<QUADRATICS> {
     const APART: bool = true;
 
     fn take(style: Style) -> bool {
-        Duff::take(style)
+        Phong::take(style)
     }
 
     #[inline(always)]

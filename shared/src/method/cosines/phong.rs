@@ -1,8 +1,8 @@
 //! Per-pixel Phong shading (Phong 1975), highlights by the half vector (Blinn 1977).
 //!
 //! Normals, lights and viewer are linear over the screen. Every dot product of them is therefore linear or exactly quadratic and can be walked. Only
-//! the roots that normalise are taken at each pixel. One constant light is drawn by [`crate::method::cosines::duff`], one directional light under a local
-//! viewer by `local_viewer`.
+//! the roots that normalise are taken at each pixel. One constant light is drawn by [`crate::method::cosines::duff`], one light where it or the viewer
+//! is near by `near`.
 //!
 //! Cost: one constant light as `duff`; otherwise 6 additions and 2 roots, and 6 additions and 2 roots more for each light. Error: the tables' error,
 //! mainly [`crate::math::highlight_lut::NEAREST_ERROR`] of the highlight. Domain: any lights and viewer.
@@ -21,7 +21,7 @@ use crate::{
         Costs, Facts, HighlightField, Loops, Method, Shading, Style, TriangleSetup, VertexLight,
         cosines::{
             duff::{self, Duff, Root},
-            local_viewer,
+            near::{self, Drawn},
         },
         lighting_model::{LightingModel, quadratic, signed},
         node::field_product,
@@ -58,7 +58,7 @@ impl Method for Phong {
 
 impl Loops for Phong {
     fn take(style: Style) -> bool {
-        Duff::take(style) || local_viewer::take(style)
+        Duff::take(style) || near::take(style)
     }
 
     #[inline(always)]
@@ -68,15 +68,13 @@ impl Loops for Phong {
         tables: MaterialTables<'_, C>,
         band: &mut Band<'_, C>,
     ) -> Option<u32> {
-        let cosines = match shading.lighting.viewer() {
-            Viewer::Infinite(_) => None,
-            // Boards with displays of greys have little flash: no loop there.
-            Viewer::Local(_) if C::GRAY => return None,
-            Viewer::Local(eye) => match local_viewer::draw(setup, eye, shading, tables, band)? {
-                Ok(pixels) => return Some(pixels),
-                Err(cosines) => Some(cosines),
-            },
-        };
+        let mut cosines = None;
+        if !C::GRAY && !shading.lighting.is_constant() {
+            match near::draw(setup, shading, tables, band)? {
+                Drawn::Pixels(pixels) => return Some(pixels),
+                Drawn::Constantly(corners) => cosines = Some(corners),
+            }
+        }
         duff::draw(setup, || cosines.unwrap_or_else(|| setup.corner_lights()), shading, tables, band)
     }
 }
