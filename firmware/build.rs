@@ -2,21 +2,20 @@
 
 use std::{env, error::Error, fs, path::PathBuf};
 
-/// The teapot by the method `auto`.
+/// The stream, unless another is named: the teapot by the method `auto`.
 const TEAPOT: &str = "teapot.tri";
 
-/// Features that choose a board, where its memory map lies, and its stream unless another is named.
-const BOARDS: [(&str, &str, &str); 4] = [
-    ("PICO", "../memory.x", TEAPOT),
-    // By auto-linear: it has no flash for auto.
-    ("LM3S6965EVB", "boards/lm3s6965evb.x", "boards/lm3s6965evb.tri"),
-    ("MPS2_AN385", "boards/mps2-an385.x", TEAPOT),
-    ("MPS2_AN386", "boards/mps2-an386.x", TEAPOT),
+/// Features that choose a board, and where its memory map lies.
+const BOARDS: [(&str, &str); 4] = [
+    ("PICO", "../memory.x"),
+    ("LM3S6965EVB", "boards/lm3s6965evb.x"),
+    ("MPS2_AN385", "boards/mps2-an385.x"),
+    ("MPS2_AN386", "boards/mps2-an386.x"),
 ];
 
 fn main() -> Result<(), Box<dyn Error>> {
     let chosen: Vec<_> = BOARDS.iter().filter(|(feature, ..)| env::var_os(format!("CARGO_FEATURE_{feature}")).is_some()).collect();
-    let [(board, memory, stream)] = chosen[..] else {
+    let [(board, memory)] = chosen[..] else {
         return Err("enable exactly one board: --no-default-features --features lm3s6965evb (or pico, mps2-an385, mps2-an386)".into());
     };
 
@@ -34,7 +33,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         println!("cargo:rustc-link-arg-bins=-Tlink-rp.x");
     }
 
-    let stream = env::var_os("MICROPHONG_STREAM").map_or_else(|| PathBuf::from(stream), PathBuf::from);
+    let stream = env::var_os("MICROPHONG_STREAM").map_or_else(|| PathBuf::from(TEAPOT), PathBuf::from);
     let stream = fs::canonicalize(&stream).map_err(|e| {
         format!("{}: {e}; name one in MICROPHONG_STREAM, as `microphong convert MESH.obj -o MESH.tri` makes them", stream.display())
     })?;

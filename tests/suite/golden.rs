@@ -6,7 +6,6 @@
 use embedded_graphics::{geometry::Size, pixelcolor::Rgb565};
 use microphong::pixel::{Pixel, Rgb565Be};
 use microphong_sim::{
-    board::Board,
     convert::{Converted, Options},
     image,
     mesh::Weld,
@@ -83,21 +82,19 @@ pub(crate) fn check_pixels(golden: &Path, Size { width, height }: Size, drawn: &
     Some(format!("{file}: {count} of {} pixels differ, see {}", drawn.len(), path.display()))
 }
 
-/// The streams that firmware is built with: the teapot as `convert --crease 180` makes it, by a method that the board has.
+/// The stream that firmware is built with: the teapot as `convert --crease 180` makes it.
 #[test]
 fn firmware_has_the_teapot() {
     let options = Options { weld: Weld::SMOOTH, ..Options::default() };
     let converted = Converted::read(&root().join("meshes/teapot.obj"), &options, &()).expect("a mesh");
     let stream = converted.stream().expect("a stream");
     let frames = stream.parse().expect("a stream").header.frames;
-    for (file, board) in [("teapot.tri", Board::Pico), ("boards/lm3s6965evb.tri", Board::Lm3s6965evb)] {
-        let path = root().join("../firmware").join(file);
-        let stream = verify::prepare(stream.as_bytes(), board.shader(), frames).expect("a stream");
-        if bless() {
-            fs::write(&path, &stream).expect("a stream for firmware");
-        }
-        assert!(fs::read(&path).ok() == Some(stream), "{file}: not what MICROPHONG_BLESS=1 would make it");
+    let path = root().join("../firmware/teapot.tri");
+    let stream = verify::prepare(stream.as_bytes(), Shader::AUTO, frames).expect("a stream");
+    if bless() {
+        fs::write(&path, &stream).expect("a stream for firmware");
     }
+    assert!(fs::read(&path).ok() == Some(stream), "teapot.tri: not what MICROPHONG_BLESS=1 would make it");
 }
 
 /// Whether current pictures are recorded instead of compared.

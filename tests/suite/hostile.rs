@@ -16,6 +16,7 @@ use microphong_sim::{
     board::{self, Board, Recording, Until, elf::Elf},
     bytes::StreamBytes,
     scene,
+    shader::Shader,
     stress::{case::Case, fuzz, hostile, random::Random},
     verify,
 };
@@ -55,7 +56,7 @@ fn damaged(board: Board) -> Vec<Named> {
 
 /// The case's stream, to be drawn by the case's method if it can be drawn and the board has that method.
 fn drawable(board: Board, case: Case) -> Vec<u8> {
-    let shader = if board.has(case.style.shader) { case.style.shader } else { board.shader() };
+    let shader = if board.has(case.style.shader) { case.style.shader } else { Shader::AUTO };
     let prepared = case.stream.parse().ok().and_then(|stream| verify::prepare(case.stream.as_bytes(), shader, stream.header.frames).ok());
     prepared.unwrap_or_else(|| case.stream.as_bytes().to_vec())
 }
@@ -135,10 +136,10 @@ const LIES: [Change<Header>; 6] = [
 ];
 
 /// Streams at the limits of the format.
-fn limits(board: Board) -> Result<Vec<Named>> {
+fn limits() -> Result<Vec<Named>> {
     let base = scene::load("dodecahedron")?.stream;
     let frames = base.parse()?.header.frames;
-    let base = StreamBytes::from(&verify::prepare(base.as_bytes(), board.shader(), frames)?[..]);
+    let base = StreamBytes::from(&verify::prepare(base.as_bytes(), Shader::AUTO, frames)?[..]);
     let mut streams = vec![("no bytes".to_owned(), Vec::new()), ("a lone magic".to_owned(), stream::record::MAGIC.to_vec())];
     for (name, change) in LIMITS {
         let mut parts = Parts::of(&base)?;
@@ -173,7 +174,7 @@ fn judge(board: Board, elf: &Elf, bytes: &[u8], Recording { pictures, log }: &Re
 fn board(board: Board) -> Result {
     let elf = Elf::read(&verify::build(board)?)?;
     let (mut drawn, mut refused, mut wrong) = (0, 0, Vec::new());
-    for (name, bytes) in corpus(board)?.into_iter().chain(damaged(board)).chain(limits(board)?) {
+    for (name, bytes) in corpus(board)?.into_iter().chain(damaged(board)).chain(limits()?) {
         match run(board, &elf, &bytes).and_then(|recording| judge(board, &elf, &bytes, &recording)) {
             Ok(true) => drawn += 1,
             Ok(false) => refused += 1,

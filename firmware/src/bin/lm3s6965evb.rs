@@ -5,9 +5,6 @@
 use microphong::{Layout, Shader, pixel::LightGray};
 use microphong_firmware::{OneCore, budget::LM3S6965EVB, run, ssd0323::Ssd0323};
 
-/// The methods for which there is flash beside a scene. What `phong` draws, `auto-linear` draws to half of a level.
-const SHADERS: [Shader<LightGray<4>>; 3] = [Shader::FLAT, Shader::GOURAUD, Shader::AUTO_LINEAR];
-
 const LAYOUT: Layout = LM3S6965EVB.layout;
 
 #[cortex_m_rt::entry]
@@ -16,5 +13,5 @@ fn main() -> ! {
     static mut BAND: [LightGray<4>; LAYOUT.band()] = [LightGray::BLACK; LAYOUT.band()];
     static mut MEMORY: [u64; LAYOUT.words::<LightGray<4>>()] = [0; LAYOUT.words::<LightGray<4>>()];
 
-    run(&mut Ssd0323::start(PICTURE), &mut OneCore { band: BAND }, &LAYOUT, MEMORY, &SHADERS)
+    run(&mut Ssd0323::start(PICTURE), &mut OneCore { band: BAND }, &LAYOUT, MEMORY, &Shader::ALL)
 }

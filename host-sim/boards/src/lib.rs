@@ -90,19 +90,13 @@ impl Board {
     /// Whether its firmware has room for the method.
     #[must_use]
     pub fn has(self, shader: Shader) -> bool {
-        self != Self::Lm3s6965evb || Shader::SMALLEST_BOARD.contains(&shader)
+        self != Self::Lm3s6965evb || Shader::CORE.contains(&shader)
     }
 
     /// Whether its firmware has room for labels: for fonts.
     #[must_use]
     pub fn has_text(self) -> bool {
         self != Self::Lm3s6965evb
-    }
-
-    /// The method of the stream that its firmware is built with.
-    #[must_use]
-    pub fn shader(self) -> Shader {
-        if self.has(Shader::AUTO) { Shader::AUTO } else { Shader::AUTO_LINEAR }
     }
 
     /// The value of a byte of the memory for streams before anything is written there: erased flash, but QEMU begins with zeros.

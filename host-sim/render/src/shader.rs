@@ -78,9 +78,6 @@ impl Shader {
     pub const CORE: [Self; 8] =
         [Self::FLAT, Self::GOURAUD, Self::SIX_POINT, Self::PHONG, Self::SQRT6, Self::RENQ_NEWTON, Self::AUTO, Self::AUTO_LINEAR];
 
-    /// The methods for which the smallest board, lm3s6965evb, has flash.
-    pub const SMALLEST_BOARD: [Self; 3] = [Self::FLAT, Self::GOURAUD, Self::AUTO_LINEAR];
-
     /// A method that is none of these.
     #[must_use]
     pub const fn new(method: &'static dyn Method) -> Self {

@@ -39,7 +39,7 @@ pub(super) const BOARDS: [Board; 4] = [
     Board { name: "pico", budget: budget::PICO, memory: include_str!("../../../memory.x"), ..MPS2 },
     Board {
         name: "lm3s6965evb",
-        methods: &Shader::SMALLEST_BOARD,
+        methods: &Shader::CORE,
         budget: budget::LM3S6965EVB,
         format: Format::Gray4,
         has_text: false,

@@ -50,8 +50,8 @@ pub(crate) struct Arguments {
     /// Stream file to write, or - for standard output. The default is the name of the model file with the ending .tri.
     #[arg(short, long, value_name = "FILE.tri")]
     output: Option<PathBuf>,
-    /// Shading method that the stream names. The default is auto, or auto-linear if the board of --board lacks auto. The board lm3s6965evb has flat,
-    /// gouraud and auto-linear, the others have all.
+    /// Shading method that the stream names. The default is auto. The board lm3s6965evb has the methods of the core, the others also those of the
+    /// literature.
     #[arg(long, value_parser = parse::Shaders)]
     shader: Option<Shader>,
     /// Board that shall draw the stream. The command fails if the firmware of this board cannot draw it, for example because it lacks the method or has
@@ -153,9 +153,8 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome> {
         return Err(Usage(format!("{} is already a stream; name an .obj, .stl, .ply, .gltf, .glb or .toml file", source.display())).into());
     }
     let board = arguments.board.as_deref().and_then(Board::named);
-    let lacks = |shader| board.as_ref().and_then(|board| board.lacks(shader));
-    let shader = arguments.shader.unwrap_or(if lacks(Shader::AUTO).is_some() { Shader::AUTO_LINEAR } else { Shader::AUTO });
-    if let Some(has) = lacks(shader) {
+    let shader = arguments.shader.unwrap_or(Shader::AUTO);
+    if let Some(has) = board.as_ref().and_then(|board| board.lacks(shader)) {
         return Err(Usage(format!("{has}: use one of them as --shader")).into());
     }
     let format = arguments.format.or(board.as_ref().map(|board| board.format)).unwrap_or(Format::Rgb565);
