@@ -40,7 +40,7 @@ pub(crate) struct Settings {
 }
 
 impl Settings {
-    #[inline(always)]
+    #[inline]
     pub(crate) fn antialiased(&self) -> bool {
         ANTIALIAS && self.antialias
     }

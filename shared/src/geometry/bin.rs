@@ -21,27 +21,27 @@ const OPEN: u16 = 1 << 15;
 pub(crate) struct TriangleKey(u32);
 
 impl TriangleKey {
-    #[inline(always)]
+    #[inline]
     fn new(triangle: u32, word_sized: bool) -> Self {
         Self(triangle << 1 | u32::from(word_sized))
     }
 
     /// Index of the triangle in the stream.
-    #[inline(always)]
+    #[inline]
     #[must_use]
     pub(crate) fn triangle(self) -> u32 {
         self.0 >> 1
     }
 
     /// Whether the triangle was pushed as word-sized, see [`Bins::push`].
-    #[inline(always)]
+    #[inline]
     #[must_use]
     pub(crate) fn is_word_sized(self) -> bool {
         self.0 & 1 != 0
     }
 
     /// The key as a word, which is not 0 if the triangle is word-sized.
-    #[inline(always)]
+    #[inline]
     #[must_use]
     pub(crate) fn word(self) -> u32 {
         self.0
@@ -62,7 +62,7 @@ pub(crate) struct Entry {
 
 impl Entry {
     /// The key of the entry's triangle.
-    #[inline(always)]
+    #[inline]
     #[must_use]
     pub(crate) fn key(&self) -> TriangleKey {
         self.key
@@ -115,7 +115,7 @@ impl Bins {
 
     /// The bin of a row below 2048, by a product, which is cheaper than a quotient. With bins of more than 512 rows the result may be one too high.
     /// This does no harm, because it is used both to store and to find triangles.
-    #[inline(always)]
+    #[inline]
     fn of(&self, row: u32) -> usize {
         (row.wrapping_mul(self.bins_per_row) >> 20) as usize
     }
@@ -267,7 +267,7 @@ impl Walk<'_> {
 }
 
 /// The index that a link leads to.
-#[inline(always)]
+#[inline]
 fn linked(link: u32) -> Option<usize> {
     link.checked_sub(1).map(|index| index as usize)
 }

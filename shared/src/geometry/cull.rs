@@ -111,7 +111,7 @@ impl Facing {
     }
 
     /// Whether `triangle` may show its front. If in doubt the answer is yes, and the signed area on the screen decides.
-    #[inline(always)]
+    #[inline]
     #[must_use]
     pub fn may_face(&self, triangle: &Triangle) -> bool {
         self.height(triangle) >= Self::FRONT

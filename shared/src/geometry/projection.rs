@@ -111,7 +111,7 @@ impl View {
     }
 
     /// Whether the camera is perspective, so that rays meet in the eye.
-    #[inline(always)]
+    #[inline]
     #[must_use]
     pub fn is_perspective(&self) -> bool {
         self.lens.is_perspective()

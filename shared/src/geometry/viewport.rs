@@ -12,7 +12,7 @@ use crate::{
 };
 
 /// First row whose centre is not above `y`, or column whose centre is not left of it (1/16 pixel).
-#[inline(always)]
+#[inline]
 #[must_use]
 pub fn first_centre(y: i32) -> i32 {
     y.wrapping_add(CENTRE - 1) >> SUBPIXEL
@@ -77,7 +77,7 @@ impl Bounds {
     }
 
     /// All pixels of a viewport of this size.
-    #[inline(always)]
+    #[inline]
     #[must_use]
     pub fn whole(width: i32, height: i32) -> Self {
         Self { left: 0, top: 0, right: width, bottom: height }
@@ -104,14 +104,14 @@ impl Bounds {
     }
 
     /// The bounds as `[left, top, right, bottom]`.
-    #[inline(always)]
+    #[inline]
     #[must_use]
     pub fn sides(self) -> [i32; 4] {
         [self.left, self.top, self.right, self.bottom]
     }
 
     /// Whether the bounds have no pixel.
-    #[inline(always)]
+    #[inline]
     #[must_use]
     pub fn is_empty(&self) -> bool {
         self.left >= self.right || self.top >= self.bottom
@@ -140,13 +140,13 @@ pub struct Viewport {
 
 impl Viewport {
     /// The bounds of the whole viewport.
-    #[inline(always)]
+    #[inline]
     pub fn whole(self) -> Bounds {
         Bounds::whole(self.width, self.height)
     }
 
     /// The visible bounding box of a triangle; `None` if it shows its back, or no pixel can belong to it.
-    #[inline(always)]
+    #[inline]
     pub fn bounds(self, extent: &Extent) -> Option<Bounds> {
         self.bounds_within(extent, self.whole())
     }

@@ -80,7 +80,7 @@ pub struct Factors {
 
 impl Factors {
     /// Adds a reflection to the levels of a pixel, in Q10.22 less the bits of [`Reflectance::excess`].
-    #[inline(always)]
+    #[inline]
     pub fn add(&self, levels: &mut [i32; 3], reflection: Reflection) {
         *levels = zip(*levels, self.levels(reflection), i32::wrapping_add);
     }
@@ -93,7 +93,7 @@ impl Factors {
     }
 
     /// A cosine, Q5.27, with the fraction bits of a factor. Approximations above 1 count as 1. Armv7-M shifts and clamps in one instruction.
-    #[inline(always)]
+    #[inline]
     fn cosine(diffuse: i32) -> i32 {
         (diffuse >> (PIXEL_COSINE - FACTOR)).clamp(0, (1 << FACTOR) - 1)
     }
@@ -239,7 +239,7 @@ impl Reflectance {
     }
 
     /// Whether three levels are walked instead of one, because the colours of the material are not multiples of one colour.
-    #[inline(always)]
+    #[inline]
     #[must_use]
     pub fn three_channels(&self) -> bool {
         COLOURS && self.three_channels != 0
@@ -247,28 +247,28 @@ impl Reflectance {
 
     /// Whether all light without a highlight under one light is a level of the table of colours. It is in one channel, and in three unless a level
     /// exceeds 255 or the pixel format is finer than the table.
-    #[inline(always)]
+    #[inline]
     #[must_use]
     pub fn has_ramp(&self) -> bool {
         !COLOURS || self.has_ramp != 0
     }
 
     /// Whether the table of highlights holds levels: the ambient level plus the highlight of the only light.
-    #[inline(always)]
+    #[inline]
     #[must_use]
     pub fn holds_levels(&self) -> bool {
         self.lights() == 1 && !self.three_channels()
     }
 
     /// Number of lights, if the method has loops for this number and their levels fit their formats; otherwise 0.
-    #[inline(always)]
+    #[inline]
     #[must_use]
     pub fn lights(&self) -> u8 {
         self.lights
     }
 
     /// Whether there are two lights on three channels, and their sums fit a word.
-    #[inline(always)]
+    #[inline]
     #[must_use]
     pub fn has_two_lights(&self) -> bool {
         LIGHTS && COLOURS && self.has_two_lights != 0
@@ -281,7 +281,7 @@ impl Reflectance {
     }
 
     /// Whether the light of all lights fits a word as [`Sum`]s add it up.
-    #[inline(always)]
+    #[inline]
     #[must_use]
     pub fn sums_fit(&self) -> bool {
         self.excess == 0
@@ -299,7 +299,7 @@ impl Reflectance {
 
     /// Dither offset in three channels from `row` to the row below, with [`CHANNEL`] fraction bits, as if channels had eight bits: half a step up
     /// from even rows, half a step down from odd ones; 0 without dither.
-    #[inline(always)]
+    #[inline]
     #[must_use]
     pub(crate) fn higher_below(&self, row: i32) -> i32 {
         if row & 1 == 0 { 2 * self.quarter } else { -2 * self.quarter }
@@ -307,7 +307,7 @@ impl Reflectance {
 
     /// Dither offset in three channels, a quarter of a step, with [`CHANNEL`] fraction bits, as if channels had eight bits. Even rows are lower by it
     /// and odd ones higher; 0 without dither.
-    #[inline(always)]
+    #[inline]
     #[must_use]
     pub(crate) fn quarter(&self) -> i32 {
         self.quarter
@@ -320,21 +320,21 @@ impl Reflectance {
     }
 
     /// N·H, Q2.30, below which a highlight is left out: [`Self::highlight_threshold`] unless that is switched off.
-    #[inline(always)]
+    #[inline]
     #[must_use]
     pub(crate) fn faintest(&self) -> i32 {
         if SKIPS && self.computes_all[0] != 0 { i32::MIN } else { self.highlight_threshold }
     }
 
     /// N·L, Q2.30, up to which a light is left out: 0 unless that is switched off.
-    #[inline(always)]
+    #[inline]
     #[must_use]
     pub(crate) fn darkest(&self) -> i32 {
         if SKIPS && self.computes_all[1] != 0 { i32::MIN } else { 0 }
     }
 
     /// The level of the table of colours without highlight at N·L (Q2.30) under one light, Q9.7. Domain: [`Self::has_ramp`].
-    #[inline(always)]
+    #[inline]
     #[must_use]
     pub fn ramp_level(&self, cosine: i32) -> i32 {
         diffuse_level(self.ramp, cosine)
@@ -348,7 +348,7 @@ impl Reflectance {
     }
 
     /// Levels of three channels under one light, Q9.7 in [0, 255], from N·L (Q2.30) and a highlight (unsigned Q0.16).
-    #[inline(always)]
+    #[inline]
     #[must_use]
     pub fn reflection(&self, cosine: i32, highlight: u32) -> [i32; 3] {
         [self.channel(0, cosine, highlight), self.channel(1, cosine, highlight), self.channel(2, cosine, highlight)]
@@ -405,7 +405,7 @@ impl Reflectance {
     }
 
     /// The levels of ambient light, Q9.7.
-    #[inline(always)]
+    #[inline]
     #[must_use]
     pub fn ambient(&self) -> [i32; 3] {
         self.ambient
@@ -423,14 +423,14 @@ impl Reflectance {
     }
 
     /// The sums to which [`Factors::add`] adds all lights: ambient light, minus what a table entry without a highlight would add for each light.
-    #[inline(always)]
+    #[inline]
     #[must_use]
     pub fn ambient_sums(&self) -> [i32; 3] {
         self.ambient_sums
     }
 
     /// Adds to `sums` what a table entry without a highlight adds for a light; [`Self::ambient_sums`] is less by this.
-    #[inline(always)]
+    #[inline]
     pub fn add_no_highlight(&self, factors: &Factors, sums: &mut [i32; 3]) {
         factors.add(sums, Reflection { diffuse: 0, highlight: self.highlights.floor() });
     }
@@ -497,7 +497,7 @@ pub struct LitMaterial<'f> {
 impl Deref for LitMaterial<'_> {
     type Target = Reflectance;
 
-    #[inline(always)]
+    #[inline]
     fn deref(&self) -> &Reflectance {
         self.reflectance
     }
@@ -505,21 +505,21 @@ impl Deref for LitMaterial<'_> {
 
 impl<'f> LitMaterial<'f> {
     /// A material and its table, which has been filled with the curve of its highlights.
-    #[inline(always)]
+    #[inline]
     #[must_use]
     pub fn new(reflectance: &'f Reflectance, table: Option<&'f HighlightLut>) -> Self {
         Self { reflectance, table }
     }
 
     /// The material without its table.
-    #[inline(always)]
+    #[inline]
     #[must_use]
     pub fn reflectance(self) -> &'f Reflectance {
         self.reflectance
     }
 
     /// The table of highlights. Renderers refuse methods that need one if there is none.
-    #[inline(always)]
+    #[inline]
     #[must_use]
     pub fn table(self) -> Option<&'f HighlightLut> {
         self.table
@@ -637,7 +637,7 @@ fn reflected((diffuse, specular): (u16, u16), cosine: i32, highlight: u32) -> i3
 }
 
 /// N·L of a node, Q2.30, as a factor of diffuse light, Q1.15; 0 if it is negative.
-#[inline(always)]
+#[inline]
 fn node_cosine(cosine: i32) -> i32 {
     cosine.max(0) >> (COSINE - FACTOR)
 }

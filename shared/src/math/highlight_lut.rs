@@ -205,7 +205,7 @@ fn between([upper, lower]: [u32; 2], k: usize) -> u16 {
 }
 
 /// The value at a position between two entries of a table, without the floor.
-#[inline(always)]
+#[inline]
 fn interpolated([a, b]: [u16; 2], position: u32, floor: u16) -> u32 {
     u32::from(a) - ((u32::from(a.saturating_sub(b)) * (position & 0xfff)) >> 12) - u32::from(floor)
 }

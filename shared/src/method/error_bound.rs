@@ -82,13 +82,13 @@ const fn share(x: f64) -> u32 {
 }
 
 /// `x` times a number in Q16, rounded up.
-#[inline(always)]
+#[inline]
 fn times(x: u32, share: u32) -> u32 {
     (unsigned_product(x, share) >> 16) as u32 + 1
 }
 
 /// `x` times a number in Q0.32, rounded up.
-#[inline(always)]
+#[inline]
 fn fraction(x: u32, share: u32) -> u32 {
     (unsigned_product(x, share) >> 32) as u32 + 1
 }
@@ -167,7 +167,7 @@ impl Curvature {
 }
 
 /// A cosine (Q2.30) that is not negative, or 0, as bounds are computed from it, Q1.15, rounded up.
-#[inline(always)]
+#[inline]
 fn above_zero(cosine: i32) -> u32 {
     (cosine.max(-1) + (1 << (COSINE - BOUND))) as u32 >> (COSINE - BOUND)
 }
@@ -183,13 +183,13 @@ pub(crate) struct Interval {
 
 impl Interval {
     /// How far light may be from the middle of the interval.
-    #[inline(always)]
+    #[inline]
     pub(crate) fn half(self) -> u32 {
         ((self.below + self.above) >> 1) + 1
     }
 
     /// The middle of the interval.
-    #[inline(always)]
+    #[inline]
     pub(crate) fn middle(self) -> i32 {
         (self.below as i32 - self.above as i32) >> 1
     }
@@ -201,7 +201,7 @@ impl Interval {
         beyond(self.below) - beyond(self.above)
     }
 
-    #[inline(always)]
+    #[inline]
     fn plus(self, other: Self) -> Self {
         Self { below: self.below + other.below, above: self.above + other.above }
     }
@@ -209,7 +209,7 @@ impl Interval {
 
 impl LightBounds {
     /// Error of the quadratic through diffuse light that is not clamped; see [`Curvature::remainder`].
-    #[inline(always)]
+    #[inline]
     fn remainder(&self, of_triangle: u32) -> u32 {
         fraction(times(self.diffuse, share(3.01)), of_triangle)
     }
@@ -378,14 +378,14 @@ impl ErrorBounds {
     }
 
     /// The brightest level of the first light at this cosine and highlight, Q9.7, rounded up.
-    #[inline(always)]
+    #[inline]
     #[must_use]
     pub(crate) fn brightest(&self, cosine: i32, highlight: i32) -> i32 {
         (self.ambient + self.diffuse_level(0, cosine) + self.highlight_level(highlight)) as i32
     }
 
     /// Whether light may exceed 255 anywhere.
-    #[inline(always)]
+    #[inline]
     #[must_use]
     pub(crate) fn may_saturate(&self) -> bool {
         self.may_saturate != 0

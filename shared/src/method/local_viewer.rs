@@ -152,7 +152,7 @@ fn least([a, b, c, ab, bc, ca]: [i32; 6]) -> i32 {
 }
 
 /// |V|², Q2.30, as the table of reciprocal roots is indexed.
-#[inline(always)]
+#[inline]
 fn above_least(square: i32) -> u32 {
     ((square as u32) << 2).wrapping_sub(LEAST)
 }
@@ -194,7 +194,7 @@ impl AtPixel<Value> for FromProducts<'_> {
 }
 
 impl FromValues<(), CosineAndHighlight> for WithHighlight {
-    #[inline(always)]
+    #[inline]
     fn from_values((): &(), full: u16, (cosine, highlight): CosineAndHighlight) -> Self {
         Self(node(full, cosine, 20), highlight)
     }

@@ -253,7 +253,6 @@ fn exact_six(vertices: [&Vertex; 3], [a, b, c]: [i32; 3]) -> [i32; 6] {
 }
 
 /// Applies `f` to pairs of values at six nodes. It is written out, because `map` is a loop through memory at opt-level "s".
-#[inline(always)]
 pub fn zip_six<A, B, R>([a0, a1, a2, a3, a4, a5]: [A; 6], [b0, b1, b2, b3, b4, b5]: [B; 6], f: impl Fn(A, B) -> R) -> [R; 6] {
     [f(a0, b0), f(a1, b1), f(a2, b2), f(a3, b3), f(a4, b4), f(a5, b5)]
 }

@@ -162,7 +162,7 @@ impl TablePlace {
     }
 
     /// Upper bound for the level of the brightest highlight on the triangle: w^n is at most 2^-n(1 - w).
-    #[inline(always)]
+    #[inline]
     #[must_use]
     pub(crate) fn brightest(self, specular: u32) -> u32 {
         (specular >> (self.column as u32 / COLUMNS_A_UNIT)) + 1
