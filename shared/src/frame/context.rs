@@ -46,7 +46,7 @@ impl Settings {
     }
 
     /// What is left out.
-    #[inline(always)]
+    #[inline]
     pub(crate) fn skips(&self) -> Skips {
         #[cfg(feature = "skips")]
         return self.skips;

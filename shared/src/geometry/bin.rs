@@ -122,7 +122,7 @@ impl Bins {
 
     /// Puts a triangle that covers rows `top .. bottom` in front of its list, and remembers whether it is `word_sized`. Triangles are
     /// pushed from the last to the first.
-    #[inline(always)]
+    #[inline]
     pub(crate) fn push(&mut self, entries: &mut [Entry], triangle: u32, word_sized: bool, [top, bottom]: [u32; 2]) {
         let bin = self.of(top);
         let link = self.count.wrapping_add(1);
@@ -241,7 +241,7 @@ pub(crate) struct Walk<'e> {
 impl Iterator for Walk<'_> {
     type Item = TriangleKey;
 
-    #[inline(always)]
+    #[inline]
     fn next(&mut self) -> Option<TriangleKey> {
         // Entries are put in from the last triangle to the first: of two lists the later entry comes first in the stream. Which list is which
         // does not matter.
@@ -273,7 +273,7 @@ fn linked(link: u32) -> Option<usize> {
 }
 
 /// Makes `link` follow `tail`, the last entry of the list that starts at `head`.
-#[inline(always)]
+#[inline]
 fn append(entries: &mut [Entry], head: &mut u32, tail: u32, link: u32) {
     match linked(tail).and_then(|index| entries.get_mut(index)) {
         Some(tail) => tail.next = link as u16,

@@ -33,7 +33,7 @@ pub struct Bounds {
 
 impl Bounds {
     /// The pixels whose centres the bounding box of a triangle contains.
-    #[inline(always)]
+    #[inline]
     #[must_use]
     pub fn new(extent: &Extent) -> Self {
         Self {
@@ -84,7 +84,7 @@ impl Bounds {
     }
 
     /// The part of the bounds that lies within `to`.
-    #[inline(always)]
+    #[inline]
     #[must_use]
     pub fn clipped(self, to: Self) -> Self {
         Self {
@@ -96,7 +96,7 @@ impl Bounds {
     }
 
     /// The part of the bounds that lies within `to`, if it has a pixel.
-    #[inline(always)]
+    #[inline]
     #[must_use]
     pub fn visible(self, to: Self) -> Option<Self> {
         let bounds = self.clipped(to);
@@ -153,7 +153,7 @@ impl Viewport {
 
     /// The part of a triangle's bounding box that lies in a part of the viewport; `None` if the triangle shows its back, or no pixel there can belong
     /// to it.
-    #[inline(always)]
+    #[inline]
     pub fn bounds_within(self, extent: &Extent, part: Bounds) -> Option<Bounds> {
         if extent.area <= 0 {
             return None;
@@ -173,7 +173,7 @@ impl Viewport {
     }
 
     /// Whether a triangle with cached corners is word-sized and reaches into the viewport. It is then set up in words.
-    #[inline(always)]
+    #[inline]
     pub fn is_word_sized(self, extent: &Extent) -> bool {
         // Decision: word or exact.
         !self.antialiased && extent.left >= 0 && extent.right < self.width << SUBPIXEL && extent.fits_words()

@@ -193,7 +193,7 @@ impl Source {
     }
 
     /// The position, Q7.25, of a point light.
-    #[inline(always)]
+    #[inline]
     #[must_use]
     pub fn point(&self) -> Option<[i32; 3]> {
         let [point, _] = self.vectors;
@@ -225,7 +225,7 @@ impl Viewer {
 }
 
 /// Converts the position of a vertex to a point where light is computed, Q7.25.
-#[inline(always)]
+#[inline]
 #[must_use]
 pub fn point(position: [i16; 3]) -> [i32; 3] {
     let [x, y, z] = wide(position);
@@ -286,7 +286,7 @@ impl MeanNormal {
     }
 
     /// Cosine of the angle to a unit vector, Q2.30. At a vertex the bits of [`vertex_cosine`].
-    #[inline(always)]
+    #[inline]
     #[must_use]
     pub fn cosine(&self, direction: [i32; 3]) -> i32 {
         let mean = scaled_dot::<{ UNIT + 1 }>(self.sum, direction);

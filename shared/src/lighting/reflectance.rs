@@ -86,7 +86,7 @@ impl Factors {
     }
 
     /// Adds diffuse light only.
-    #[inline(always)]
+    #[inline]
     pub fn add_diffuse(&self, levels: &mut [i32; 3], diffuse: i32) {
         let cosine = Self::cosine(diffuse);
         *levels = zip(*levels, self.diffuse, |level, diffuse| level.wrapping_add(diffuse.wrapping_mul(cosine)));
@@ -98,7 +98,7 @@ impl Factors {
         (diffuse >> (PIXEL_COSINE - FACTOR)).clamp(0, (1 << FACTOR) - 1)
     }
 
-    #[inline(always)]
+    #[inline]
     fn levels(&self, Reflection { diffuse, highlight }: Reflection) -> [i32; 3] {
         let cosine = Self::cosine(diffuse);
         let level = |diffuse: i32, specular: i32| diffuse.wrapping_mul(cosine).wrapping_add(specular.wrapping_mul(highlight as i32));
@@ -355,7 +355,7 @@ impl Reflectance {
     }
 
     /// The level of a channel under one light, Q9.7 in [0, 255], from N·L (Q2.30) and a highlight (unsigned Q0.16).
-    #[inline(always)]
+    #[inline]
     fn channel(&self, channel: usize, cosine: i32, highlight: u32) -> i32 {
         let ([gains, ..], n) = (&self.gains, channel % 3);
         let diffuse = diffuse_level([self.ambient[n], gains.diffuse[n].into()], cosine);
@@ -364,7 +364,7 @@ impl Reflectance {
 
     /// The levels of the table of colours without highlight at six nodes with these cosines, under one light, not clamped, Q9.7. Domain:
     /// [`Self::has_ramp`].
-    #[inline(always)]
+    #[inline]
     #[must_use]
     pub fn six_diffuse(&self, [a, b, c, ab, bc, ca]: [i32; 6]) -> [i32; 6] {
         let level = |cosine| diffuse_level(self.ramp, cosine);
@@ -385,7 +385,7 @@ impl Reflectance {
     }
 
     /// The levels of a channel under one light, Q9.7 in [0, 255], at six nodes of these cosines and highlights (unsigned Q0.16).
-    #[inline(always)]
+    #[inline]
     #[must_use]
     pub fn six(&self, channel: usize, [a, b, c, ab, bc, ca]: [i32; 6], [i, j, k, ij, jk, ki]: [u32; 6]) -> [i32; 6] {
         let level = |cosine, highlight| self.channel(channel, cosine, highlight);
@@ -393,7 +393,7 @@ impl Reflectance {
     }
 
     /// Levels under two lights, Q9.7 in [0, 255], from a cosine, Q1.15, and a highlight, unsigned Q0.16, of each.
-    #[inline(always)]
+    #[inline]
     fn two_sums(&self, [[cosine, highlight], [other, other_highlight]]: [[i32; 2]; 2]) -> [i32; 3] {
         let [[first, second, _], _] = &self.sums;
         let level = |ambient: i32, first: &Sum, second: &Sum| {
@@ -412,7 +412,7 @@ impl Reflectance {
     }
 
     /// Factors of light number `light`.
-    #[inline(always)]
+    #[inline]
     #[must_use]
     pub fn factors(&self, light: usize) -> Factors {
         let Gains { diffuse, specular } = self.gains.get(light).copied().unwrap_or(Gains::NONE);
@@ -436,7 +436,7 @@ impl Reflectance {
     }
 
     /// Converts sums of all lights to intensities.
-    #[inline(always)]
+    #[inline]
     pub fn intensities(&self) -> impl Fn([i32; 3]) -> Intensity + use<> {
         let shift = (CHANNEL - 8 - self.excess) & 31;
         // Armv7-M clamps by one instruction.
@@ -444,7 +444,7 @@ impl Reflectance {
         move |[r, g, b]| [intensity(r), intensity(g), intensity(b)]
     }
 
-    #[inline(always)]
+    #[inline]
     fn add(&self, levels: &mut [i32; 3], gains: &Gains, diffuse: i32, highlight: u32) {
         let light = |level: i32, gains| level.saturating_add(reflected(gains, diffuse, highlight));
         if !self.three_channels() {
@@ -526,7 +526,7 @@ impl<'f> LitMaterial<'f> {
     }
 
     /// The highlight at N·H (Q2.30), unsigned Q0.16.
-    #[inline(always)]
+    #[inline]
     #[must_use]
     pub fn highlight_at(self, half: i32) -> u32 {
         match self.table {
@@ -612,7 +612,7 @@ impl<'f> LitMaterial<'f> {
 }
 
 /// The level without highlight, not clamped, rounded as by [`reflected`]. `ambient` is the ambient level, `diffuse` the diffuse level at cosine 1.
-#[inline(always)]
+#[inline]
 fn diffuse_level([ambient, diffuse]: [i32; 2], cosine: i32) -> i32 {
     let base = ((ambient as u32) << 15) + (1 << 14);
     ((base + diffuse as u32 * (cosine.max(0) as u32 >> (COSINE - 15))) >> 15) as i32
@@ -628,7 +628,7 @@ pub struct Reflection {
 }
 
 /// The level, Q9.7, of light reflected with the gains `(diffuse, specular)`, for N·L (Q2.30) and a highlight (Q0.16).
-#[inline(always)]
+#[inline]
 fn reflected((diffuse, specular): (u16, u16), cosine: i32, highlight: u32) -> i32 {
     let cosine = cosine.max(0) as u32 >> (COSINE - 15);
     let diffuse = (u32::from(diffuse) * cosine + (1 << 14)) >> 15;

@@ -43,7 +43,7 @@ impl<'a> QuotientLookup<'a> {
     /// `quotient` is the upper half of the product of the numerator, in the format of a node with [`EXTRA`] more fraction bits, and half
     /// the reciprocal length, Q2.30. Domain: every quotient that fits; small ones take the last entry. Error: at most
     /// [`crate::math::highlight_lut::NEAREST_ERROR`] for lengths of 1/2 to 1 (tests::entries_are_the_nearest). Source: our own.
-    #[inline(always)]
+    #[inline]
     #[must_use]
     pub(crate) fn at(&self, quotient: i32) -> u32 {
         // One instruction shifts and clamps, and nothing is left to check.

@@ -84,7 +84,6 @@ impl<C: Pixel> Drawing<'_, C> {
     }
 
     /// Draws a triangle of any size, by the loops `L` if possible. Returns the number of its pixels in `band`.
-    #[inline(always)]
     pub(crate) fn draw<L: Loops, const THREE: bool>(&self, triangle: &Triangle, band: &mut Band<'_, C>) -> u32 {
         let loops: DrawTriangle<C> = L::draw::<C, THREE>;
         if const { needs_general::<L, C>() } {

@@ -158,7 +158,7 @@ fn above_least(square: i32) -> u32 {
 }
 
 /// N·H, Q7.25, from N·L, Q2.30, and N·V and L·V, Q5.27, where V has the length 1 and N any.
-#[inline(always)]
+#[inline]
 fn half(lengths: &HalfRsqrt, nl: i32, nv: i32, lv: i32) -> i32 {
     // |L + V|² / 4 = (1 + L·V) / 2, of which half the reciprocal root is 1 / |L + V|.
     let quarter = (1u32 << 31).wrapping_add((lv as u32) << 4);
@@ -185,7 +185,7 @@ impl AtPixel<Value> for FromProducts<'_> {
     // The cosine counts as one of Q2.30, so that the level has three bits less than 20.
     const BITS: u32 = 17;
 
-    #[inline(always)]
+    #[inline]
     fn at(&self, ([nn], (([vv], [nv]), ([nl], [lv]))): Value) -> ((), CosineAndHighlight) {
         let (normal, view) = (self.lengths.rsqrt(nn) as i32, self.lengths.rsqrt(vv) as i32);
         let half = half(self.lengths, signed(nl), upper(signed(nv), view), upper(signed(lv), view));
@@ -208,7 +208,6 @@ enum Either<'a, C: Pixel> {
 }
 
 impl<C: Pixel> ByRows for Either<'_, C> {
-    #[inline(always)]
     fn step_row(&mut self) {
         match self {
             Self::Ramp(colours) => colours.step_row(),
@@ -222,7 +221,6 @@ impl<C: Pixel> LitColours for Either<'_, C> {
 
     const TABLED: bool = false;
 
-    #[inline(always)]
     fn diffuse(&self) -> u16 {
         match self {
             Self::Ramp(colours) => colours.diffuse(),
@@ -232,7 +230,6 @@ impl<C: Pixel> LitColours for Either<'_, C> {
 }
 
 impl<C: Pixel> Shades<WithHighlight> for Either<'_, C> {
-    #[inline(always)]
     fn colour(&self, bits: u32, light: WithHighlight) -> C {
         match self {
             Self::Ramp(colours) => colours.colour(bits, light),

@@ -121,7 +121,7 @@ impl TriangleSetup<'_> {
 
     /// Returns for each edge 0-1, 1-2, 2-0 the reciprocal length of the sum of the unit normals at its ends, with 17 fraction bits.
     /// Multiplied by the sum, it gives the unit normal at the midpoint.
-    #[inline(always)]
+    #[inline]
     pub fn inverse_sum_lengths(&self) -> [u32; 3] {
         let [ab, bc, ca] = self.edges(self.triangle.inverse_sum_length);
         if ab.max(bc).max(ca) == u16::MAX {
@@ -196,7 +196,7 @@ impl TriangleSetup<'_> {
     }
 
     /// The normals at the midpoints of the edges 01, 12, 20; `None` if the record does not hold the factors of all.
-    #[inline(always)]
+    #[inline]
     fn middle_normals(&self) -> Option<[MeanNormal; 3]> {
         let [ab, bc, ca] = self.edges(self.triangle.inverse_sum_length);
         let [a, b, c] = self.vertices();

@@ -134,7 +134,7 @@ impl Edge {
 
 /// `rest / dy` with [`COLUMN`] fraction bits, rounded down, in two steps that fit words. Domain: `rest` is below `dy`, and that below
 /// [`MIN_DIVIDED_HEIGHT`].
-#[inline(always)]
+#[inline]
 fn fraction(rest: u32, dy: u32) -> u32 {
     let dy = dy.max(1);
     let upper = rest << (COLUMN - SUBPIXEL);

@@ -139,7 +139,7 @@ impl Steepness {
 
     /// Whether gradients of 30 bits do not fit a quadratic on a triangle that is `thinness` times as long as high, if second derivatives are rounded
     /// as for large second differences.
-    #[inline(always)]
+    #[inline]
     pub(crate) fn is_thin(self, thinness: u32) -> bool {
         // No limit is above 511, and steepness has at most 13 bits.
         let thinness = thinness.min(511);
