@@ -38,7 +38,7 @@ impl Feature {
     }
 
     /// Whether the program has the feature.
-    #[inline(always)]
+    #[inline]
     #[must_use]
     pub const fn is_on(self) -> bool {
         match self {

@@ -4,7 +4,7 @@ use crate::{features::Feature, pixel::Channels, scene::LightTerms, stream::Strea
 
 impl Feature {
     /// Whether `stream` needs the feature to be drawn in a pixel format with these `channels`.
-    #[inline(always)]
+    #[inline]
     #[must_use]
     pub fn is_needed_by(self, stream: &Stream<'_>, channels: &Channels) -> bool {
         let Stream { header, lights, .. } = stream;

@@ -31,7 +31,7 @@ pub(crate) const SLOPE: u32 = 21;
 ///
 /// Domain: `n` is -1023 to 1023, `d` is 1 to [`LARGEST`]; other arguments give a number without meaning. Exact
 /// (tests::every_slope_is_exact, on every argument). Source: a reciprocal from a table, corrected by the remainder.
-#[inline(always)]
+#[inline]
 #[must_use]
 pub(crate) fn slope(n: i32, d: i32) -> i32 {
     if HALVES { by_table(n, d) } else { (n << SLOPE).div_euclid(d.max(1)) }

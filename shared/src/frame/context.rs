@@ -40,13 +40,13 @@ pub(crate) struct Settings {
 }
 
 impl Settings {
-    #[inline(always)]
+    #[inline]
     pub(crate) fn antialiased(&self) -> bool {
         ANTIALIAS && self.antialias
     }
 
     /// What is left out.
-    #[inline(always)]
+    #[inline]
     pub(crate) fn skips(&self) -> Skips {
         #[cfg(feature = "skips")]
         return self.skips;

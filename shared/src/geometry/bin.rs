@@ -21,27 +21,27 @@ const OPEN: u16 = 1 << 15;
 pub(crate) struct TriangleKey(u32);
 
 impl TriangleKey {
-    #[inline(always)]
+    #[inline]
     fn new(triangle: u32, word_sized: bool) -> Self {
         Self(triangle << 1 | u32::from(word_sized))
     }
 
     /// Index of the triangle in the stream.
-    #[inline(always)]
+    #[inline]
     #[must_use]
     pub(crate) fn triangle(self) -> u32 {
         self.0 >> 1
     }
 
     /// Whether the triangle was pushed as word-sized, see [`Bins::push`].
-    #[inline(always)]
+    #[inline]
     #[must_use]
     pub(crate) fn is_word_sized(self) -> bool {
         self.0 & 1 != 0
     }
 
     /// The key as a word, which is not 0 if the triangle is word-sized.
-    #[inline(always)]
+    #[inline]
     #[must_use]
     pub(crate) fn word(self) -> u32 {
         self.0
@@ -62,7 +62,7 @@ pub(crate) struct Entry {
 
 impl Entry {
     /// The key of the entry's triangle.
-    #[inline(always)]
+    #[inline]
     #[must_use]
     pub(crate) fn key(&self) -> TriangleKey {
         self.key
@@ -115,14 +115,14 @@ impl Bins {
 
     /// The bin of a row below 2048, by a product, which is cheaper than a quotient. With bins of more than 512 rows the result may be one too high.
     /// This does no harm, because it is used both to store and to find triangles.
-    #[inline(always)]
+    #[inline]
     fn of(&self, row: u32) -> usize {
         (row.wrapping_mul(self.bins_per_row) >> 20) as usize
     }
 
     /// Puts a triangle that covers rows `top .. bottom` in front of its list, and remembers whether it is `word_sized`. Triangles are
     /// pushed from the last to the first.
-    #[inline(always)]
+    #[inline]
     pub(crate) fn push(&mut self, entries: &mut [Entry], triangle: u32, word_sized: bool, [top, bottom]: [u32; 2]) {
         let bin = self.of(top);
         let link = self.count.wrapping_add(1);
@@ -241,7 +241,7 @@ pub(crate) struct Walk<'e> {
 impl Iterator for Walk<'_> {
     type Item = TriangleKey;
 
-    #[inline(always)]
+    #[inline]
     fn next(&mut self) -> Option<TriangleKey> {
         // Entries are put in from the last triangle to the first: of two lists the later entry comes first in the stream. Which list is which
         // does not matter.
@@ -267,13 +267,13 @@ impl Walk<'_> {
 }
 
 /// The index that a link leads to.
-#[inline(always)]
+#[inline]
 fn linked(link: u32) -> Option<usize> {
     link.checked_sub(1).map(|index| index as usize)
 }
 
 /// Makes `link` follow `tail`, the last entry of the list that starts at `head`.
-#[inline(always)]
+#[inline]
 fn append(entries: &mut [Entry], head: &mut u32, tail: u32, link: u32) {
     match linked(tail).and_then(|index| entries.get_mut(index)) {
         Some(tail) => tail.next = link as u16,

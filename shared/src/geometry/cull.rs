@@ -111,7 +111,7 @@ impl Facing {
     }
 
     /// Whether `triangle` may show its front. If in doubt the answer is yes, and the signed area on the screen decides.
-    #[inline(always)]
+    #[inline]
     #[must_use]
     pub fn may_face(&self, triangle: &Triangle) -> bool {
         self.height(triangle) >= Self::FRONT
@@ -121,7 +121,7 @@ impl Facing {
     pub(crate) const FRONT: i32 = -SLACK;
 
     /// The height of the eye above the plane of `triangle`, plus the slack that makes up for its rounded corners.
-    #[inline(always)]
+    #[inline]
     #[must_use]
     pub(crate) fn height(&self, triangle: &Triangle) -> i32 {
         let plane = i32::from(triangle.offset).wrapping_mul(self.offset_scale);
@@ -155,7 +155,7 @@ pub struct Extent {
 
 impl Extent {
     /// The extent of corners `[x, y]` that run clockwise as seen from the front.
-    #[inline(always)]
+    #[inline]
     #[must_use]
     pub fn new([[x0, y0], [x1, y1], [x2, y2]]: [[i32; 2]; 3]) -> Self {
         let (left, right) = (x0.min(x1).min(x2), x0.max(x1).max(x2));
@@ -182,7 +182,7 @@ impl Extent {
     }
 
     /// An upper bound of the longest side: the larger of width and height plus half of the other, since x² + y² <= (x + y/2)² where y <= x.
-    #[inline(always)]
+    #[inline]
     #[must_use]
     pub fn length(&self) -> i32 {
         let (width, height) = (self.right - self.left, self.bottom - self.top);

@@ -139,19 +139,19 @@ impl Lens {
     }
 
     /// [`Self::place`] under parallel rays.
-    #[inline(always)]
+    #[inline]
     fn parallel_place(&self, c: i32) -> i32 {
         saturated((i64::from(c) * self.focal + (1 << (UNIT + 15))) >> (UNIT + 16))
     }
 
     /// [`Self::depth`] under parallel rays.
-    #[inline(always)]
+    #[inline]
     fn parallel_depth(&self, z: i32) -> i32 {
         saturated((i64::from(self.far - z) * self.inv_depth) >> UNIT).max(FARTHEST)
     }
 
     /// Whether the camera is perspective, so that rays meet in the eye.
-    #[inline(always)]
+    #[inline]
     #[must_use]
     pub fn is_perspective(&self) -> bool {
         self.is_perspective != 0
@@ -249,7 +249,7 @@ fn limited(c: i32) -> i32 {
 }
 
 /// The nearest value that fits 32 bits.
-#[inline(always)]
+#[inline]
 fn saturated(value: i64) -> i32 {
     value.clamp(i32::MIN.into(), i32::MAX.into()) as i32
 }

@@ -31,7 +31,7 @@ pub struct ScreenVertex {
 impl ScreenVertex {
     /// Returns the light levels of the vertex: red, green, blue, each Q9.7 from 0 to 255. Use it in a method whose
     /// [`Facts::vertex_light`](crate::method::Facts::vertex_light) is [`VertexLight::Levels`](crate::method::VertexLight::Levels).
-    #[inline(always)]
+    #[inline]
     #[must_use]
     pub fn levels(&self) -> [i32; 3] {
         let [r, g, b, _] = self.light;
@@ -102,7 +102,7 @@ impl View {
     }
 
     /// Converts a position to eye space, Q18.14.
-    #[inline(always)]
+    #[inline]
     #[must_use]
     pub fn to_eye(&self, position: [i16; 3]) -> [i32; 3] {
         let [x, y, z] = self.rotation;
@@ -111,7 +111,7 @@ impl View {
     }
 
     /// Whether the camera is perspective, so that rays meet in the eye.
-    #[inline(always)]
+    #[inline]
     #[must_use]
     pub fn is_perspective(&self) -> bool {
         self.lens.is_perspective()

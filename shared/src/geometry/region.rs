@@ -66,7 +66,7 @@ impl Region {
     }
 
     /// The smallest rectangle that contains all pixels of both the region and `area`, which lies in the picture.
-    #[inline(always)]
+    #[inline]
     pub(crate) fn within(&self, area: &Area) -> Area {
         if self.is_whole() { *area } else { self.part_within(area) }
     }

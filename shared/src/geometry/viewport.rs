@@ -12,7 +12,7 @@ use crate::{
 };
 
 /// First row whose centre is not above `y`, or column whose centre is not left of it (1/16 pixel).
-#[inline(always)]
+#[inline]
 #[must_use]
 pub fn first_centre(y: i32) -> i32 {
     y.wrapping_add(CENTRE - 1) >> SUBPIXEL
@@ -33,7 +33,7 @@ pub struct Bounds {
 
 impl Bounds {
     /// The pixels whose centres the bounding box of a triangle contains.
-    #[inline(always)]
+    #[inline]
     #[must_use]
     pub fn new(extent: &Extent) -> Self {
         Self {
@@ -77,14 +77,14 @@ impl Bounds {
     }
 
     /// All pixels of a viewport of this size.
-    #[inline(always)]
+    #[inline]
     #[must_use]
     pub fn whole(width: i32, height: i32) -> Self {
         Self { left: 0, top: 0, right: width, bottom: height }
     }
 
     /// The part of the bounds that lies within `to`.
-    #[inline(always)]
+    #[inline]
     #[must_use]
     pub fn clipped(self, to: Self) -> Self {
         Self {
@@ -96,7 +96,7 @@ impl Bounds {
     }
 
     /// The part of the bounds that lies within `to`, if it has a pixel.
-    #[inline(always)]
+    #[inline]
     #[must_use]
     pub fn visible(self, to: Self) -> Option<Self> {
         let bounds = self.clipped(to);
@@ -104,14 +104,14 @@ impl Bounds {
     }
 
     /// The bounds as `[left, top, right, bottom]`.
-    #[inline(always)]
+    #[inline]
     #[must_use]
     pub fn sides(self) -> [i32; 4] {
         [self.left, self.top, self.right, self.bottom]
     }
 
     /// Whether the bounds have no pixel.
-    #[inline(always)]
+    #[inline]
     #[must_use]
     pub fn is_empty(&self) -> bool {
         self.left >= self.right || self.top >= self.bottom
@@ -140,20 +140,20 @@ pub struct Viewport {
 
 impl Viewport {
     /// The bounds of the whole viewport.
-    #[inline(always)]
+    #[inline]
     pub fn whole(self) -> Bounds {
         Bounds::whole(self.width, self.height)
     }
 
     /// The visible bounding box of a triangle; `None` if it shows its back, or no pixel can belong to it.
-    #[inline(always)]
+    #[inline]
     pub fn bounds(self, extent: &Extent) -> Option<Bounds> {
         self.bounds_within(extent, self.whole())
     }
 
     /// The part of a triangle's bounding box that lies in a part of the viewport; `None` if the triangle shows its back, or no pixel there can belong
     /// to it.
-    #[inline(always)]
+    #[inline]
     pub fn bounds_within(self, extent: &Extent, part: Bounds) -> Option<Bounds> {
         if extent.area <= 0 {
             return None;
@@ -173,7 +173,7 @@ impl Viewport {
     }
 
     /// Whether a triangle with cached corners is word-sized and reaches into the viewport. It is then set up in words.
-    #[inline(always)]
+    #[inline]
     pub fn is_word_sized(self, extent: &Extent) -> bool {
         // Decision: word or exact.
         !self.antialiased && extent.left >= 0 && extent.right < self.width << SUBPIXEL && extent.fits_words()

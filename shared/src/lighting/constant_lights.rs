@@ -22,7 +22,7 @@ pub struct WithHighlight(pub i32, pub u32);
 pub struct DiffuseOnly(pub i32);
 
 impl From<DiffuseOnly> for WithHighlight {
-    #[inline(always)]
+    #[inline]
     fn from(DiffuseOnly(diffuse): DiffuseOnly) -> Self {
         Self(diffuse, 0)
     }
@@ -40,7 +40,7 @@ pub trait LitColours: ByRows {
     fn diffuse(&self) -> u16;
 
     /// Whether no diffuse level is above 255.
-    #[inline(always)]
+    #[inline]
     fn is_within(&self) -> bool {
         self.diffuse() <= 255 << LEVEL
     }
@@ -54,7 +54,7 @@ pub trait Shades<L>: LitColours {
 
 /// The diffuse level of a node of this cosine (Q2.30), of a material with the level `full` (Q9.7) at cosine 1, in Q10 with `bits` fraction
 /// bits, at most 20, rounded down.
-#[inline(always)]
+#[inline]
 pub fn node(full: u16, cosine: i32, bits: u32) -> i32 {
     upper(cosine, i32::from(full) << 15) >> (COSINE + LEVEL - 17 - bits)
 }
@@ -70,7 +70,6 @@ pub struct OneLightRamp<'a, C: Pixel> {
 }
 
 impl<C: Pixel> ByRows for OneLightRamp<'_, C> {
-    #[inline(always)]
     fn step_row(&mut self) {
         self.ramps.step_row();
     }
@@ -81,21 +80,18 @@ impl<C: Pixel> LitColours for OneLightRamp<'_, C> {
 
     const TABLED: bool = true;
 
-    #[inline(always)]
     fn diffuse(&self) -> u16 {
         self.diffuse
     }
 }
 
 impl<C: Pixel> Shades<WithHighlight> for OneLightRamp<'_, C> {
-    #[inline(always)]
     fn colour(&self, bits: u32, WithHighlight(diffuse, highlight): WithHighlight) -> C {
         C::ramped(self.ramps.now(), (diffuse.max(0) as u32).wrapping_add(highlight << (bits - LEVEL)), bits)
     }
 }
 
 impl<C: Pixel> Shades<DiffuseOnly> for OneLightRamp<'_, C> {
-    #[inline(always)]
     fn colour(&self, bits: u32, DiffuseOnly(diffuse): DiffuseOnly) -> C {
         self.colour(bits, WithHighlight(diffuse, self.floor))
     }
@@ -153,7 +149,7 @@ impl Sum {
     }
 
     /// What the light adds at a pixel, from a cosine, Q1.15, and a highlight, unsigned Q0.16; Q10.22.
-    #[inline(always)]
+    #[inline]
     pub(super) fn light(&self, cosine: i32, highlight: i32) -> i32 {
         self.diffuse.wrapping_mul(cosine).wrapping_add(self.specular.wrapping_mul(highlight))
     }
@@ -164,13 +160,13 @@ impl Sum {
     }
 
     /// The level, Q10.22, from a cosine, Q1.15, and a highlight, unsigned Q0.16.
-    #[inline(always)]
+    #[inline]
     fn level(&self, cosine: i32, highlight: i32) -> i32 {
         self.ambient.wrapping_add(self.light(cosine, highlight))
     }
 
     /// [`Self::level`] with the highlight added first. Only measurement tells which order leaves loops more registers.
-    #[inline(always)]
+    #[inline]
     fn level_from_highlight(&self, cosine: i32, highlight: i32) -> i32 {
         self.ambient.wrapping_add(self.specular.wrapping_mul(highlight)).wrapping_add(self.diffuse.wrapping_mul(cosine))
     }
@@ -205,7 +201,6 @@ impl<C: Pixel> OneLightRgb<'_, C> {
 }
 
 impl<C: Pixel> ByRows for OneLightRgb<'_, C> {
-    #[inline(always)]
     fn step_row(&mut self) {
         self.0.step_row();
     }
@@ -216,7 +211,6 @@ impl<C: Pixel> LitColours for OneLightRgb<'_, C> {
 
     const TABLED: bool = false;
 
-    #[inline(always)]
     fn diffuse(&self) -> u16 {
         Self::DIFFUSE
     }
@@ -231,7 +225,6 @@ impl<C: Pixel> Shades<WithHighlight> for OneLightRgb<'_, C> {
 }
 
 impl<C: Pixel> ByRows for TwoLightsRgb<'_, C> {
-    #[inline(always)]
     fn step_row(&mut self) {
         self.0.step_row();
     }
@@ -242,7 +235,6 @@ impl<C: Pixel> LitColours for TwoLightsRgb<'_, C> {
 
     const TABLED: bool = false;
 
-    #[inline(always)]
     fn diffuse(&self) -> u16 {
         OneLightRgb::<C>::DIFFUSE
     }

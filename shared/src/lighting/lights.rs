@@ -109,14 +109,14 @@ impl Lighting {
     }
 
     /// All lights, in the order of the scene.
-    #[inline(always)]
+    #[inline]
     #[must_use]
     pub fn sources(&self) -> &[Source] {
         self.sources.get(..self.count as usize).unwrap_or_default()
     }
 
     /// Position from which highlights are seen.
-    #[inline(always)]
+    #[inline]
     #[must_use]
     pub fn viewer(&self) -> Viewer {
         if self.is_local() { Viewer::Local(self.viewer) } else { Viewer::Infinite(self.viewer) }
@@ -151,7 +151,7 @@ impl Lighting {
     }
 
     /// Whether all lights are directional and the viewer is infinitely far, so that L and H are the same everywhere.
-    #[inline(always)]
+    #[inline]
     #[must_use]
     pub fn is_constant(&self) -> bool {
         !NEAR_LIGHTS || self.directional & !self.is_local & 1 != 0
@@ -163,7 +163,7 @@ impl Lighting {
         NEAR_LIGHTS && (self.directional != 0) == self.is_local()
     }
 
-    #[inline(always)]
+    #[inline]
     fn is_local(&self) -> bool {
         NEAR_LIGHTS && self.is_local != 0
     }
@@ -185,21 +185,21 @@ impl Source {
     }
 
     /// The unit vectors L and H, Q2.30, of a directional light. H is unused under a local viewer.
-    #[inline(always)]
+    #[inline]
     #[must_use]
     pub fn directional(&self) -> Option<&[[i32; 3]; 2]> {
         (!self.is_point()).then_some(&self.vectors)
     }
 
     /// The position, Q7.25, of a point light.
-    #[inline(always)]
+    #[inline]
     #[must_use]
     pub fn point(&self) -> Option<[i32; 3]> {
         let [point, _] = self.vectors;
         self.is_point().then_some(point)
     }
 
-    #[inline(always)]
+    #[inline]
     fn is_point(&self) -> bool {
         NEAR_LIGHTS && self.is_point != 0
     }
@@ -224,7 +224,7 @@ impl Viewer {
 }
 
 /// Converts the position of a vertex to a point where light is computed, Q7.25.
-#[inline(always)]
+#[inline]
 #[must_use]
 pub fn point(position: [i16; 3]) -> [i32; 3] {
     let [x, y, z] = wide(position);
@@ -271,21 +271,21 @@ pub struct MeanNormal {
 
 impl MeanNormal {
     /// Half-way between two vertex normals, with the factor of their edge in the stream.
-    #[inline(always)]
+    #[inline]
     #[must_use]
     pub fn new(a: [i32; 3], b: [i32; 3], excess: u16) -> Self {
         Self { sum: add(a, b), excess }
     }
 
     /// A vertex normal, or the normal of a triangle's plane.
-    #[inline(always)]
+    #[inline]
     #[must_use]
     pub fn at(normal: [i32; 3]) -> Self {
         Self::new(normal, normal, 0)
     }
 
     /// Cosine of the angle to a unit vector, Q2.30. At a vertex the bits of [`vertex_cosine`].
-    #[inline(always)]
+    #[inline]
     #[must_use]
     pub fn cosine(&self, direction: [i32; 3]) -> i32 {
         let mean = scaled_dot::<{ UNIT + 1 }>(self.sum, direction);

@@ -22,7 +22,7 @@ pub struct MaterialTables<'a, C: Pixel> {
 }
 
 /// Adds half a step of a channel of `bits` bits to a level, Q9.7; the result is Q10.22.
-#[inline(always)]
+#[inline]
 fn rounded(level: i32, bits: u32) -> i32 {
     (level << (CHANNEL - LEVEL)).wrapping_add(half_step(bits))
 }
@@ -81,14 +81,12 @@ impl<'a, C: Pixel> MaterialTables<'a, C> {
     }
 
     /// The sums of three channels under the only light, if the material has three. Domain: [`Reflectance::lights`] is 1.
-    #[inline(always)]
     #[must_use]
     pub fn one_light_rgb(&self) -> Option<OneLightRgb<'a, C>> {
         self.three_channels().then_some(self.sums())
     }
 
     /// Whether the material has three channels. Formats of greys never have, so the compiler leaves this code out for them.
-    #[inline(always)]
     fn three_channels(&self) -> bool {
         !C::GRAY && self.reflectance.three_channels()
     }

@@ -80,25 +80,25 @@ pub struct Factors {
 
 impl Factors {
     /// Adds a reflection to the levels of a pixel, in Q10.22 less the bits of [`Reflectance::excess`].
-    #[inline(always)]
+    #[inline]
     pub fn add(&self, levels: &mut [i32; 3], reflection: Reflection) {
         *levels = zip(*levels, self.levels(reflection), i32::wrapping_add);
     }
 
     /// Adds diffuse light only.
-    #[inline(always)]
+    #[inline]
     pub fn add_diffuse(&self, levels: &mut [i32; 3], diffuse: i32) {
         let cosine = Self::cosine(diffuse);
         *levels = zip(*levels, self.diffuse, |level, diffuse| level.wrapping_add(diffuse.wrapping_mul(cosine)));
     }
 
     /// A cosine, Q5.27, with the fraction bits of a factor. Approximations above 1 count as 1. Armv7-M shifts and clamps in one instruction.
-    #[inline(always)]
+    #[inline]
     fn cosine(diffuse: i32) -> i32 {
         (diffuse >> (PIXEL_COSINE - FACTOR)).clamp(0, (1 << FACTOR) - 1)
     }
 
-    #[inline(always)]
+    #[inline]
     fn levels(&self, Reflection { diffuse, highlight }: Reflection) -> [i32; 3] {
         let cosine = Self::cosine(diffuse);
         let level = |diffuse: i32, specular: i32| diffuse.wrapping_mul(cosine).wrapping_add(specular.wrapping_mul(highlight as i32));
@@ -239,7 +239,7 @@ impl Reflectance {
     }
 
     /// Whether three levels are walked instead of one, because the colours of the material are not multiples of one colour.
-    #[inline(always)]
+    #[inline]
     #[must_use]
     pub fn three_channels(&self) -> bool {
         COLOURS && self.three_channels != 0
@@ -247,28 +247,28 @@ impl Reflectance {
 
     /// Whether all light without a highlight under one light is a level of the table of colours. It is in one channel, and in three unless a level
     /// exceeds 255 or the pixel format is finer than the table.
-    #[inline(always)]
+    #[inline]
     #[must_use]
     pub fn has_ramp(&self) -> bool {
         !COLOURS || self.has_ramp != 0
     }
 
     /// Whether the table of highlights holds levels: the ambient level plus the highlight of the only light.
-    #[inline(always)]
+    #[inline]
     #[must_use]
     pub fn holds_levels(&self) -> bool {
         self.lights() == 1 && !self.three_channels()
     }
 
     /// Number of lights, if the method has loops for this number and their levels fit their formats; otherwise 0.
-    #[inline(always)]
+    #[inline]
     #[must_use]
     pub fn lights(&self) -> u8 {
         self.lights
     }
 
     /// Whether there are two lights on three channels, and their sums fit a word.
-    #[inline(always)]
+    #[inline]
     #[must_use]
     pub fn has_two_lights(&self) -> bool {
         LIGHTS && COLOURS && self.has_two_lights != 0
@@ -281,7 +281,7 @@ impl Reflectance {
     }
 
     /// Whether the light of all lights fits a word as [`Sum`]s add it up.
-    #[inline(always)]
+    #[inline]
     #[must_use]
     pub fn sums_fit(&self) -> bool {
         self.excess == 0
@@ -299,7 +299,7 @@ impl Reflectance {
 
     /// Dither offset in three channels, a quarter of a step, with [`CHANNEL`] fraction bits, as if channels had eight bits. Even rows are lower by it
     /// and odd ones higher; 0 without dither.
-    #[inline(always)]
+    #[inline]
     #[must_use]
     pub(crate) fn quarter(&self) -> i32 {
         self.quarter
@@ -312,21 +312,21 @@ impl Reflectance {
     }
 
     /// N·H, Q2.30, below which a highlight is left out: [`Self::highlight_threshold`] unless that is switched off.
-    #[inline(always)]
+    #[inline]
     #[must_use]
     pub(crate) fn faintest(&self) -> i32 {
         if SKIPS && self.computes_all[0] != 0 { i32::MIN } else { self.highlight_threshold }
     }
 
     /// N·L, Q2.30, up to which a light is left out: 0 unless that is switched off.
-    #[inline(always)]
+    #[inline]
     #[must_use]
     pub(crate) fn darkest(&self) -> i32 {
         if SKIPS && self.computes_all[1] != 0 { i32::MIN } else { 0 }
     }
 
     /// The level of the table of colours without highlight at N·L (Q2.30) under one light, Q9.7. Domain: [`Self::has_ramp`].
-    #[inline(always)]
+    #[inline]
     #[must_use]
     pub fn ramp_level(&self, cosine: i32) -> i32 {
         diffuse_level(self.ramp, cosine)
@@ -340,14 +340,14 @@ impl Reflectance {
     }
 
     /// Levels of three channels under one light, Q9.7 in [0, 255], from N·L (Q2.30) and a highlight (unsigned Q0.16).
-    #[inline(always)]
+    #[inline]
     #[must_use]
     pub fn reflection(&self, cosine: i32, highlight: u32) -> [i32; 3] {
         [self.channel(0, cosine, highlight), self.channel(1, cosine, highlight), self.channel(2, cosine, highlight)]
     }
 
     /// The level of a channel under one light, Q9.7 in [0, 255], from N·L (Q2.30) and a highlight (unsigned Q0.16).
-    #[inline(always)]
+    #[inline]
     fn channel(&self, channel: usize, cosine: i32, highlight: u32) -> i32 {
         let ([gains, ..], n) = (&self.gains, channel % 3);
         let diffuse = diffuse_level([self.ambient[n], gains.diffuse[n].into()], cosine);
@@ -356,7 +356,7 @@ impl Reflectance {
 
     /// The levels of the table of colours without highlight at six nodes with these cosines, under one light, not clamped, Q9.7. Domain:
     /// [`Self::has_ramp`].
-    #[inline(always)]
+    #[inline]
     #[must_use]
     pub fn six_diffuse(&self, [a, b, c, ab, bc, ca]: [i32; 6]) -> [i32; 6] {
         let level = |cosine| diffuse_level(self.ramp, cosine);
@@ -377,7 +377,7 @@ impl Reflectance {
     }
 
     /// The levels of a channel under one light, Q9.7 in [0, 255], at six nodes of these cosines and highlights (unsigned Q0.16).
-    #[inline(always)]
+    #[inline]
     #[must_use]
     pub fn six(&self, channel: usize, [a, b, c, ab, bc, ca]: [i32; 6], [i, j, k, ij, jk, ki]: [u32; 6]) -> [i32; 6] {
         let level = |cosine, highlight| self.channel(channel, cosine, highlight);
@@ -385,7 +385,7 @@ impl Reflectance {
     }
 
     /// Levels under two lights, Q9.7 in [0, 255], from a cosine, Q1.15, and a highlight, unsigned Q0.16, of each.
-    #[inline(always)]
+    #[inline]
     fn two_sums(&self, [[cosine, highlight], [other, other_highlight]]: [[i32; 2]; 2]) -> [i32; 3] {
         let [[first, second, _], _] = &self.sums;
         let level = |ambient: i32, first: &Sum, second: &Sum| {
@@ -397,14 +397,14 @@ impl Reflectance {
     }
 
     /// The levels of ambient light, Q9.7.
-    #[inline(always)]
+    #[inline]
     #[must_use]
     pub fn ambient(&self) -> [i32; 3] {
         self.ambient
     }
 
     /// Factors of light number `light`.
-    #[inline(always)]
+    #[inline]
     #[must_use]
     pub fn factors(&self, light: usize) -> Factors {
         let Gains { diffuse, specular } = self.gains.get(light).copied().unwrap_or(Gains::NONE);
@@ -415,20 +415,20 @@ impl Reflectance {
     }
 
     /// The sums to which [`Factors::add`] adds all lights: ambient light, minus what a table entry without a highlight would add for each light.
-    #[inline(always)]
+    #[inline]
     #[must_use]
     pub fn ambient_sums(&self) -> [i32; 3] {
         self.ambient_sums
     }
 
     /// Adds to `sums` what a table entry without a highlight adds for a light; [`Self::ambient_sums`] is less by this.
-    #[inline(always)]
+    #[inline]
     pub fn add_no_highlight(&self, factors: &Factors, sums: &mut [i32; 3]) {
         factors.add(sums, Reflection { diffuse: 0, highlight: self.highlights.floor() });
     }
 
     /// Converts sums of all lights to intensities.
-    #[inline(always)]
+    #[inline]
     pub fn intensities(&self) -> impl Fn([i32; 3]) -> Intensity + use<> {
         let shift = (CHANNEL - 8 - self.excess) & 31;
         // Armv7-M clamps by one instruction.
@@ -436,7 +436,7 @@ impl Reflectance {
         move |[r, g, b]| [intensity(r), intensity(g), intensity(b)]
     }
 
-    #[inline(always)]
+    #[inline]
     fn add(&self, levels: &mut [i32; 3], gains: &Gains, diffuse: i32, highlight: u32) {
         let light = |level: i32, gains| level.saturating_add(reflected(gains, diffuse, highlight));
         if !self.three_channels() {
@@ -489,7 +489,7 @@ pub struct LitMaterial<'f> {
 impl Deref for LitMaterial<'_> {
     type Target = Reflectance;
 
-    #[inline(always)]
+    #[inline]
     fn deref(&self) -> &Reflectance {
         self.reflectance
     }
@@ -497,28 +497,28 @@ impl Deref for LitMaterial<'_> {
 
 impl<'f> LitMaterial<'f> {
     /// A material and its table, which has been filled with the curve of its highlights.
-    #[inline(always)]
+    #[inline]
     #[must_use]
     pub fn new(reflectance: &'f Reflectance, table: Option<&'f HighlightLut>) -> Self {
         Self { reflectance, table }
     }
 
     /// The material without its table.
-    #[inline(always)]
+    #[inline]
     #[must_use]
     pub fn reflectance(self) -> &'f Reflectance {
         self.reflectance
     }
 
     /// The table of highlights. Renderers refuse methods that need one if there is none.
-    #[inline(always)]
+    #[inline]
     #[must_use]
     pub fn table(self) -> Option<&'f HighlightLut> {
         self.table
     }
 
     /// The highlight at N·H (Q2.30), unsigned Q0.16.
-    #[inline(always)]
+    #[inline]
     #[must_use]
     pub fn highlight_at(self, half: i32) -> u32 {
         match self.table {
@@ -604,7 +604,7 @@ impl<'f> LitMaterial<'f> {
 }
 
 /// The level without highlight, not clamped, rounded as by [`reflected`]. `ambient` is the ambient level, `diffuse` the diffuse level at cosine 1.
-#[inline(always)]
+#[inline]
 fn diffuse_level([ambient, diffuse]: [i32; 2], cosine: i32) -> i32 {
     let base = ((ambient as u32) << 15) + (1 << 14);
     ((base + diffuse as u32 * (cosine.max(0) as u32 >> (COSINE - 15))) >> 15) as i32
@@ -620,7 +620,7 @@ pub struct Reflection {
 }
 
 /// The level, Q9.7, of light reflected with the gains `(diffuse, specular)`, for N·L (Q2.30) and a highlight (Q0.16).
-#[inline(always)]
+#[inline]
 fn reflected((diffuse, specular): (u16, u16), cosine: i32, highlight: u32) -> i32 {
     let cosine = cosine.max(0) as u32 >> (COSINE - 15);
     let diffuse = (u32::from(diffuse) * cosine + (1 << 14)) >> 15;
@@ -629,7 +629,7 @@ fn reflected((diffuse, specular): (u16, u16), cosine: i32, highlight: u32) -> i3
 }
 
 /// N·L of a node, Q2.30, as a factor of diffuse light, Q1.15; 0 if it is negative.
-#[inline(always)]
+#[inline]
 fn node_cosine(cosine: i32) -> i32 {
     cosine.max(0) >> (COSINE - FACTOR)
 }

@@ -32,7 +32,7 @@ impl<'a> QuotientLookup<'a> {
     }
 
     /// The node of a numerator, Q2.30: the numerator in steps of the table, Q20.6, rounded down. Domain: within ±2.
-    #[inline(always)]
+    #[inline]
     #[must_use]
     pub(crate) fn node(&self, cosine: i32) -> i32 {
         upper_by_half_word(cosine, self.factor) >> (23 - NODE - 16)
@@ -43,7 +43,7 @@ impl<'a> QuotientLookup<'a> {
     /// `quotient` is the upper half of the product of the numerator, in the format of a node with [`EXTRA`] more fraction bits, and half
     /// the reciprocal length, Q2.30. Domain: every quotient that fits; small ones take the last entry. Error: at most
     /// [`crate::math::highlight_lut::NEAREST_ERROR`] for lengths of 1/2 to 1 (tests::entries_are_the_nearest). Source: our own.
-    #[inline(always)]
+    #[inline]
     #[must_use]
     pub(crate) fn at(&self, quotient: i32) -> u32 {
         // One instruction shifts and clamps, and nothing is left to check.
@@ -71,14 +71,14 @@ impl<'a> DefectLookup<'a> {
     }
 
     /// The node of a cosine, Q2.30: 1 - cosine times a factor of 1/2 to 1, Q2.24, rounded down. Domain: above -1.
-    #[inline(always)]
+    #[inline]
     #[must_use]
     pub(crate) fn node(&self, cosine: i32) -> i32 {
         upper_by_half_word((1 << 30) - cosine, self.factor) >> 5
     }
 
     /// Half a step of the table, Q2.30. Added to an interpolated defect, it makes the entry below the nearest one.
-    #[inline(always)]
+    #[inline]
     #[must_use]
     pub(crate) fn half(&self) -> i32 {
         1 << (self.shift - 1)
@@ -88,7 +88,7 @@ impl<'a> DefectLookup<'a> {
     ///
     /// `defect` is in the format of a node with 6 more fraction bits, Q2.30, with [`Self::half`] added. Domain: every `i32`; large ones
     /// take the last entry. Error: at most [`crate::math::highlight_lut::NEAREST_ERROR`] (tests::entries_are_the_nearest). Source: our own.
-    #[inline(always)]
+    #[inline]
     #[must_use]
     pub(crate) fn at(&self, defect: i32) -> u32 {
         self.table[(defect >> (self.shift & 31)).clamp(0, SIZE as i32 - 1) as usize].into()

@@ -191,7 +191,7 @@ impl HighlightCurve {
 }
 
 /// Position of a cosine (Q2.30) in a table, unsigned Q20.12: 1 - cosine in steps of the table. Small cosines lie past the end.
-#[inline(always)]
+#[inline]
 fn position(scale: u32, cosine: i32) -> u32 {
     let below = (1i32 << COSINE).saturating_sub(cosine).max(0) as u32;
     // (1 - cosine) * 4 n / 32 * 4096 / 2^30, with 12 fraction bits.
@@ -205,7 +205,7 @@ fn between([upper, lower]: [u32; 2], k: usize) -> u16 {
 }
 
 /// The value at a position between two entries of a table, without the floor.
-#[inline(always)]
+#[inline]
 fn interpolated([a, b]: [u16; 2], position: u32, floor: u16) -> u32 {
     u32::from(a) - ((u32::from(a.saturating_sub(b)) * (position & 0xfff)) >> 12) - u32::from(floor)
 }
@@ -262,7 +262,7 @@ impl CosineLookup<'_> {
     /// `floor + full cosine^n`, unsigned Q0.16, from the nearest entry.
     ///
     /// Domain: `cosine` in Q5.27 such that 1 - cosine fits it. Error: at most [`NEAREST_ERROR`] (tests::error).
-    #[inline(always)]
+    #[inline]
     #[must_use]
     pub fn at(&self, cosine: i32) -> u32 {
         let fine = upper_by_half_word(self.top.wrapping_sub(cosine), self.factor);

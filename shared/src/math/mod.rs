@@ -14,7 +14,7 @@ pub(crate) mod wide;
 /// `value / 2^bits`, rounded to nearest, halves up; for negative `bits` a left shift that wraps modulo 2^64.
 ///
 /// Domain: `value + 2^(bits - 1)` fits 64 bits. Above 62 bits, and below -63, the result is 0. Exact (tests::scaling).
-#[inline(always)]
+#[inline]
 #[must_use]
 pub fn scale(value: i64, bits: i32) -> i64 {
     if bits > 62 {

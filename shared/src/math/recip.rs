@@ -57,7 +57,7 @@ pub struct Divisor {
 
 impl Divisor {
     /// The divisor `x`, unsigned Q2.30; 0 counts as the smallest number, 2^-30.
-    #[inline(always)]
+    #[inline]
     #[must_use]
     pub fn new(x: u32) -> Self {
         let zeros = x.max(1).leading_zeros();
@@ -68,7 +68,7 @@ impl Divisor {
     ///
     /// Domain: every `i32`. Error: at most [`DIVIDE_ERROR`] relative, and 1 unit for rounding (tests::divisions). Source: a product
     /// with the reciprocal.
-    #[inline(always)]
+    #[inline]
     #[must_use]
     pub fn divide(self, value: i32) -> i32 {
         let product = product(value, self.inverse as i32) >> (32 - self.zeros.min(31));

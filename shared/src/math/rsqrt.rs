@@ -109,7 +109,7 @@ impl HalfRsqrt {
     ///
     /// Domain: x in [1/4, 1]. Error: at most [`HALF_ERROR`] relative; from [`LEAST`] to 1/4, and above 1, at most [`OUTSIDE_ERROR`]
     /// (tests::half_error, on every argument). Source: linear interpolation with balanced error, our own.
-    #[inline(always)]
+    #[inline]
     #[must_use]
     pub fn rsqrt(&self, above: u32) -> u32 {
         // Interval in the upper bits, place in it in the ten below them.

@@ -6,7 +6,7 @@ use crate::{
 };
 
 /// Dot product of two vectors, in the product of their formats. Domain: the sum fits 64 bits, as for components below 2^30. Exact.
-#[inline(always)]
+#[inline]
 #[must_use]
 pub fn dot(a: [i32; 3], b: [i32; 3]) -> i64 {
     if HALVES { dot_by_calls(a, b) } else { product(a[0], b[0]) + product(a[1], b[1]) + product(a[2], b[2]) }
@@ -19,14 +19,14 @@ fn dot_by_calls(a: [i32; 3], b: [i32; 3]) -> i64 {
 }
 
 /// Converts a vertex normal or position to `i32`, in the same format.
-#[inline(always)]
+#[inline]
 #[must_use]
 pub fn wide(v: [i16; 3]) -> [i32; 3] {
     map(v, i32::from)
 }
 
 /// Dot product of two vectors, in the product of their formats. Domain: the sum fits 32 bits; else it wraps modulo 2^32. Exact.
-#[inline(always)]
+#[inline]
 #[must_use]
 pub fn narrow_dot([a0, a1, a2]: [i32; 3], [b0, b1, b2]: [i32; 3]) -> i32 {
     a0.wrapping_mul(b0).wrapping_add(a1.wrapping_mul(b1)).wrapping_add(a2.wrapping_mul(b2))
@@ -49,21 +49,20 @@ pub fn zip<A, B, R>([a0, a1, a2]: [A; 3], [b0, b1, b2]: [B; 3], f: impl Fn(A, B)
 }
 
 /// The transpose of a matrix.
-#[inline(always)]
 #[must_use]
 pub fn transposed<A>([[a, b, c], [d, e, f], [g, h, i]]: [[A; 3]; 3]) -> [[A; 3]; 3] {
     [[a, d, g], [b, e, h], [c, f, i]]
 }
 
 /// Computes `a - b`, in their format. It wraps modulo 2^32 if it overflows.
-#[inline(always)]
+#[inline]
 #[must_use]
 pub fn sub(a: [i32; 3], b: [i32; 3]) -> [i32; 3] {
     zip(a, b, i32::wrapping_sub)
 }
 
 /// Computes `a + b`, in their format. It wraps modulo 2^32 if it overflows.
-#[inline(always)]
+#[inline]
 #[must_use]
 pub fn add(a: [i32; 3], b: [i32; 3]) -> [i32; 3] {
     zip(a, b, i32::wrapping_add)

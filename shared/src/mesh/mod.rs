@@ -30,7 +30,6 @@ pub(crate) struct Drawing<'f, C: Pixel> {
 }
 
 impl<C: Pixel> Drawing<'_, C> {
-    #[inline(always)]
     fn tables(&self) -> MaterialTables<'_, C> {
         MaterialTables { ramps: self.ramps, reflectance: &self.pass.shading.reflectance }
     }
@@ -86,7 +85,6 @@ impl<C: Pixel> Drawing<'_, C> {
     }
 
     /// Draws a triangle of any size, by the loops `L` if possible. Returns the number of its pixels in `band`.
-    #[inline(always)]
     pub(crate) fn draw<L: Loops, const THREE: bool>(&self, triangle: &Triangle, band: &mut Band<'_, C>) -> u32 {
         let loops: DrawTriangle<C> = L::draw::<C, THREE>;
         if const { needs_general::<L, C>() } {
@@ -97,7 +95,6 @@ impl<C: Pixel> Drawing<'_, C> {
     }
 
     /// Draws a triangle that the loops `L` cannot draw.
-    #[inline(always)]
     fn draw_declined<L: Loops>(&self, triangle: &Triangle, band: &mut Band<'_, C>) -> u32 {
         if const { needs_general::<L, C>() } { self.draw_by::<true>(General::draw::<C, false>, triangle, band) } else { 0 }
     }

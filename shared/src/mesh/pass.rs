@@ -67,7 +67,7 @@ struct Target<'t> {
 
 impl MeshPass<'_> {
     /// Index of a triangle in the mesh. It is beyond the mesh's end if the triangle belongs to a later mesh.
-    #[inline(always)]
+    #[inline]
     pub(super) fn index(&self, key: TriangleKey) -> usize {
         key.triangle().wrapping_sub(self.first_triangle) as usize
     }
@@ -191,7 +191,7 @@ impl MeshPass<'_> {
     }
 }
 
-#[inline(always)]
+#[inline]
 fn is_ready([a, b, c]: &[&ScreenVertex; 3]) -> bool {
     a.state == State::READY && b.state == State::READY && c.state == State::READY
 }

@@ -166,7 +166,7 @@ impl VertexStage<'_> {
     }
 
     /// Whether vertices have the cosines of two lights: both are constant, on a material of three channels.
-    #[inline(always)]
+    #[inline]
     fn has_two_lights(&self) -> bool {
         self.reflectance.has_two_lights() && self.lighting.is_constant()
     }

@@ -323,13 +323,12 @@ pub fn linear<const CH: usize>(nodes: [[i32; 3]; CH]) -> LinearNodes<CH> {
 }
 
 /// From Q2.30 to [`NODE`] fraction bits.
-#[inline(always)]
 fn rounded<const N: usize, const CH: usize>(nodes: [[i32; N]; CH]) -> [[i32; N]; CH] {
     nodes.map(|nodes| nodes.map(|node| (node + (1 << (EXTRA - 1))) >> EXTRA))
 }
 
 /// Converts a walked field to a signed number, Q2.30.
-#[inline(always)]
+#[inline]
 pub fn signed(field: u32) -> i32 {
     field as i32
 }

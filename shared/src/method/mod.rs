@@ -159,7 +159,6 @@ impl Loops for General {
         true
     }
 
-    #[inline(always)]
     fn draw<C: Pixel, const THREE: bool>(
         _: &TriangleSetup<'_>,
         _: &Shading<'_>,
@@ -180,7 +179,7 @@ pub const RANGE: u32 = LEVEL + 8;
 pub(crate) type CornerCosines = [[i32; 3]; 2];
 
 /// The largest of three values.
-#[inline(always)]
+#[inline]
 pub(crate) fn largest(&[a, b, c]: &[i32; 3]) -> i32 {
     a.max(b).max(c)
 }
@@ -224,7 +223,7 @@ impl TriangleSetup<'_> {
 
     /// Copies the set-up without edges and gradients, for functions that light the triangle. Since these are not passed on, the compiler keeps them
     /// in registers.
-    #[inline(always)]
+    #[inline]
     #[must_use]
     pub(crate) fn for_lighting(&self) -> TriangleSetup<'_> {
         TriangleSetup { screen: &ScreenTriangle::NONE, gradients: &Gradients::NONE, ..*self }
@@ -253,7 +252,7 @@ impl TriangleSetup<'_> {
 
     /// Sorts three numbers that belong to the edges of the triangle in the mesh file into the order of the edges here: 0-1, 1-2, 2-0.
     #[doc(hidden)]
-    #[inline(always)]
+    #[inline]
     pub fn edges(&self, [ab, bc, ca]: [u16; 3]) -> [u16; 3] {
         turn([ca, bc, ab], self.turned)
     }
@@ -284,7 +283,6 @@ impl TriangleSetup<'_> {
     }
 
     /// The [`PixelShader::ID`] that the band above has saved; `None` if the triangle is not active.
-    #[inline(always)]
     pub(crate) fn resumed<C>(&self, band: &Band<'_, C>) -> Option<u8> {
         Some(band.active.active_triangle(self.place?)?.edges.shader)
     }
@@ -349,13 +347,13 @@ impl TriangleSetup<'_> {
     }
 
     /// Whether the highlight of a constant light, whose N·H at the corners is `half`, is left out because it can be seen nowhere.
-    #[inline(always)]
+    #[inline]
     pub(crate) fn leaves_out_highlight(&self, reflectance: &Reflectance, half: &[i32; 3]) -> bool {
         largest(half) < self.before_division(reflectance.faintest())
     }
 
     /// Whether a light whose N·L at the corners is `towards` is left out because it reaches the triangle nowhere.
-    #[inline(always)]
+    #[inline]
     pub(crate) fn leaves_out_light(&self, reflectance: &Reflectance, towards: &[i32; 3]) -> bool {
         largest(towards) <= reflectance.darkest()
     }
@@ -386,13 +384,13 @@ impl TriangleSetup<'_> {
     /// Returns the value of N·H (Q2.30) below which no highlight is visible on this triangle, where N is the normal interpolated linearly
     /// between the corners without normalising, and H the half vector between light and viewer.
     #[doc(hidden)]
-    #[inline(always)]
+    #[inline]
     pub fn highlight_threshold(&self, reflectance: &Reflectance) -> i32 {
         self.before_division(reflectance.highlight_threshold())
     }
 
     /// What a cosine, Q2.30, is at least before it is divided by |N|, where N·H is linear and |N| at least [`Triangle::min_normal_length`].
-    #[inline(always)]
+    #[inline]
     fn before_division(&self, cosine: i32) -> i32 {
         by_fraction(cosine, self.triangle.min_normal_length) << (16 - NORMAL_LENGTH)
     }
@@ -482,7 +480,7 @@ impl Shading<'_> {
     /// [`VertexLight::CosinesOrLevels`]. Cosines are there if the scene has just one light, which is directional, and the viewer is
     /// infinitely distant.
     #[doc(hidden)]
-    #[inline(always)]
+    #[inline]
     #[must_use]
     pub fn vertices_have_cosines(&self) -> bool {
         ALWAYS_CONSTANT || self.constant.is_some()
@@ -586,13 +584,13 @@ impl IntensityShader<()> for Uniform {
 pub struct Walked;
 
 /// Converts a walked level, which has a bias, to an intensity.
-#[inline(always)]
+#[inline]
 fn intensity(walked: u32) -> i32 {
     ((walked >> (WALK - INTENSITY)) as i32 - (BIAS << INTENSITY)).clamp(0, (1 << 16) - 1)
 }
 
 /// Converts levels in Q9.7 to intensities of at most 255.
-#[inline(always)]
+#[inline]
 #[must_use]
 #[doc(hidden)]
 pub fn of_levels(levels: [i32; 3]) -> Intensity {
@@ -600,14 +598,14 @@ pub fn of_levels(levels: [i32; 3]) -> Intensity {
 }
 
 impl IntensityShader<[u32; 1]> for Walked {
-    #[inline(always)]
+    #[inline]
     fn shade(&self, [level]: [u32; 1]) -> Intensity {
         [intensity(level); 3]
     }
 }
 
 impl IntensityShader<[u32; 3]> for Walked {
-    #[inline(always)]
+    #[inline]
     fn shade(&self, levels: [u32; 3]) -> Intensity {
         levels.map(intensity)
     }

@@ -121,7 +121,7 @@ impl TriangleSetup<'_> {
 
     /// Returns for each edge 0-1, 1-2, 2-0 the reciprocal length of the sum of the unit normals at its ends, with 17 fraction bits.
     /// Multiplied by the sum, it gives the unit normal at the midpoint.
-    #[inline(always)]
+    #[inline]
     pub fn inverse_sum_lengths(&self) -> [u32; 3] {
         let [ab, bc, ca] = self.edges(self.triangle.inverse_sum_length);
         if ab.max(bc).max(ca) == u16::MAX {
@@ -196,7 +196,7 @@ impl TriangleSetup<'_> {
     }
 
     /// The normals at the midpoints of the edges 01, 12, 20; `None` if the record does not hold the factors of all.
-    #[inline(always)]
+    #[inline]
     fn middle_normals(&self) -> Option<[MeanNormal; 3]> {
         let [ab, bc, ca] = self.edges(self.triangle.inverse_sum_length);
         let [a, b, c] = self.vertices();
@@ -253,7 +253,6 @@ fn exact_six(vertices: [&Vertex; 3], [a, b, c]: [i32; 3]) -> [i32; 6] {
 }
 
 /// Applies `f` to pairs of values at six nodes. It is written out, because `map` is a loop through memory at opt-level "s".
-#[inline(always)]
 pub fn zip_six<A, B, R>([a0, a1, a2, a3, a4, a5]: [A; 6], [b0, b1, b2, b3, b4, b5]: [B; 6], f: impl Fn(A, B) -> R) -> [R; 6] {
     [f(a0, b0), f(a1, b1), f(a2, b2), f(a3, b3), f(a4, b4), f(a5, b5)]
 }

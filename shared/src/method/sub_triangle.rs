@@ -34,7 +34,7 @@ impl SubTriangle {
     pub const WHOLE: Self = Self { level: 0, origin: [0; 3], turned: false };
 
     /// How often the triangle was split. Barycentric coordinates are over 2 to this power.
-    #[inline(always)]
+    #[inline]
     #[must_use]
     pub fn level(&self) -> u32 {
         self.level
@@ -94,7 +94,7 @@ impl Parts<'_> {
     }
 
     /// The area of `sub_triangle`, to draw on.
-    #[inline(always)]
+    #[inline]
     #[must_use]
     pub fn part<'p>(&'p self, sub_triangle: &'p SubTriangle) -> Part<'p> {
         Part { whole: self, sub_triangle }

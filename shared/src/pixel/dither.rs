@@ -20,7 +20,7 @@ const BAYER: [[u8; 8]; 8] = {
 };
 
 /// The threshold at a pixel, 1/128 of an output step.
-#[inline(always)]
+#[inline]
 #[must_use]
 pub const fn threshold(x: usize, y: usize) -> u32 {
     BAYER[y & 7][x & 7] as u32

@@ -36,7 +36,7 @@ const LOWEST: [u32; 3] = [11, 20, 0];
 /// This bit marks colours that are sent as they are, without the curve of the display.
 const IS_FINAL: u32 = 1 << 31;
 
-#[inline(always)]
+#[inline]
 const fn word([r, g, b]: [u32; 3]) -> u32 {
     r << LOWEST[0] | g << LOWEST[1] | b << LOWEST[2]
 }
@@ -82,7 +82,6 @@ impl<const R: u32, const G: u32, const B: u32> Light<R, G, B> {
     }
 
     /// The channels.
-    #[inline(always)]
     const fn fine(self) -> [u32; 3] {
         [self.0 >> LOWEST[0] & MAX, self.0 >> LOWEST[1] & MAX, self.0 >> LOWEST[2] & MAX]
     }
@@ -95,7 +94,6 @@ impl<const R: u32, const G: u32, const B: u32> Light<R, G, B> {
     }
 
     /// The pixel of channels of at most [`MAX`], scaled to the display.
-    #[inline(always)]
     fn scaled_to_display([r, g, b]: [u32; 3]) -> Self {
         Self(word([r - (r >> R), g - (g >> G), b - (b >> B)]))
     }
@@ -160,12 +158,10 @@ impl<const R: u32, const G: u32, const B: u32> Pixel for Light<R, G, B> {
     const LEVELS: [u32; 3] = [8; 3];
     const IS_LIGHT: bool = true;
 
-    #[inline(always)]
     fn stored(self) -> u32 {
         self.0
     }
 
-    #[inline(always)]
     fn from_stored(stored: u32) -> Self {
         Self(stored)
     }
@@ -235,7 +231,6 @@ impl<const DEPTH: u32> LightGray<DEPTH> {
     }
 
     /// The grey that the display shows.
-    #[inline(always)]
     const fn upper(self, threshold: u8) -> u32 {
         (self.0 as u32 + threshold as u32) >> (8 - DEPTH)
     }
@@ -274,12 +269,10 @@ impl<const DEPTH: u32> Pixel for LightGray<DEPTH> {
     type Stored = u8;
     type Ramps = Rounded<u8>;
 
-    #[inline(always)]
     fn stored(self) -> u8 {
         self.0
     }
 
-    #[inline(always)]
     fn from_stored(stored: u8) -> Self {
         Self(stored)
     }
@@ -343,7 +336,6 @@ pub trait FromDrawn<C: Pixel>: PixelFormat {
 
     /// The pixel corrected by the curve of the display, if it is light.
     #[doc(hidden)]
-    #[inline(always)]
     fn curved(drawn: C, _: &Gamma) -> C {
         drawn
     }
@@ -353,12 +345,10 @@ pub trait FromDrawn<C: Pixel>: PixelFormat {
 impl<C: Pixel> FromDrawn<C> for C {
     type Threshold = ();
 
-    #[inline(always)]
     fn thresholds(_: usize, _: bool) -> &'static [(); 16] {
         &[(); 16]
     }
 
-    #[inline(always)]
     fn finished(drawn: C, (): ()) -> C {
         drawn
     }
@@ -458,7 +448,6 @@ impl Output {
 }
 
 /// Eight thresholds of a row from `column` on.
-#[inline(always)]
 fn eight_from<T>(thresholds: &[T; 16], column: usize) -> Option<&[T; 8]> {
     thresholds.get(column % 8..)?.first_chunk()
 }
@@ -469,17 +458,17 @@ macro_rules! colour {
         impl FromDrawn<Light<$r, $g, $b>> for $format {
             type Threshold = u32;
 
-            #[inline(always)]
+            #[inline]
             fn thresholds(row: usize, dither: bool) -> &'static [u32; 16] {
                 if dither { &Light::<$r, $g, $b>::THRESHOLDS[row % 8] } else { &Light::<$r, $g, $b>::HALVES }
             }
 
-            #[inline(always)]
+            #[inline]
             fn finished(Light(light): Light<$r, $g, $b>, threshold: u32) -> Self {
                 Self::pack(Light::<$r, $g, $b>::upper(light.wrapping_add(threshold)))
             }
 
-            #[inline(always)]
+            #[inline]
             fn curved(light: Light<$r, $g, $b>, gamma: &Gamma) -> Light<$r, $g, $b> {
                 light.curved(gamma)
             }
@@ -509,12 +498,12 @@ macro_rules! gray {
         impl FromDrawn<LightGray<$depth>> for $format {
             type Threshold = u8;
 
-            #[inline(always)]
+            #[inline]
             fn thresholds(row: usize, dither: bool) -> &'static [u8; 16] {
                 LightGray::<$depth>::thresholds(row, dither)
             }
 
-            #[inline(always)]
+            #[inline]
             fn finished(drawn: LightGray<$depth>, threshold: u8) -> Self {
                 Self::pack([drawn.upper(threshold); 3])
             }

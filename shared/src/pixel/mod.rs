@@ -90,7 +90,7 @@ pub trait Pixel: PixelFormat {
 
     /// The pixel twice. A format of two bytes takes both from one word, so that some processors can store them at once.
     #[doc(hidden)]
-    #[inline(always)]
+    #[inline]
     fn pair(self) -> [Self; 2] {
         [self; 2]
     }
@@ -115,7 +115,7 @@ pub trait Pixel: PixelFormat {
 
     /// Looks up a level in a table of colours. Levels have a bias and `bits` fraction bits, and include half a step for rounding.
     #[doc(hidden)]
-    #[inline(always)]
+    #[inline]
     fn entry(ramp: &[Self::Stored; RAMP], level: u32, bits: u32) -> Self::Stored {
         ramp[(level >> (bits & 31)) as usize % RAMP]
     }
@@ -134,7 +134,7 @@ pub trait Pixel: PixelFormat {
 
     /// The colour of a level, see [`Self::entry`].
     #[doc(hidden)]
-    #[inline(always)]
+    #[inline]
     fn ramped(ramp: &[Self::Stored; RAMP], level: u32, bits: u32) -> Self {
         Self::from_stored(Self::entry(ramp, level, bits))
     }
@@ -167,7 +167,7 @@ pub trait Pixel: PixelFormat {
 }
 
 /// Half a step of a channel of `bits` bits, as a level with [`CHANNEL`] fraction bits.
-#[inline(always)]
+#[inline]
 pub(crate) const fn half_step(bits: u32) -> i32 {
     1 << (CHANNEL + 7 - bits)
 }
@@ -195,13 +195,13 @@ impl Channels {
 }
 
 /// Multiplies `by` by the step of a channel of each of these depths, relative to the step of a channel of eight bits.
-#[inline(always)]
+#[inline]
 pub(crate) fn steps([r, g, b]: [u32; 3], by: i32) -> [i32; 3] {
     [by << (8 - r), by << (8 - g), by << (8 - b)]
 }
 
 /// Channels of 5, 6 and 5 bits, packed.
-#[inline(always)]
+#[inline]
 fn rgb565([high, middle, low]: [u32; 3]) -> u16 {
     (high << 11 | middle << 5 | low) as u16
 }
@@ -221,7 +221,7 @@ macro_rules! rgb565 {
             const DEPTH: [u32; 3] = [5, 6, 5];
             const BYTES: usize = 2;
 
-            #[inline(always)]
+            #[inline]
             fn pack(channels: [u32; 3]) -> Self {
                 RawU16::new(rgb565([channels[$high], channels[1], channels[$low]])).into()
             }
@@ -239,12 +239,12 @@ macro_rules! rgb565 {
             type Stored = u16;
             type Ramps = InTurn<u16>;
 
-            #[inline(always)]
+            #[inline]
             fn stored(self) -> u16 {
                 RawU16::from(self).into_inner()
             }
 
-            #[inline(always)]
+            #[inline]
             fn from_stored(stored: u16) -> Self {
                 RawU16::new(stored).into()
             }
@@ -269,7 +269,7 @@ macro_rules! rgb {
             const DEPTH: [u32; 3] = [$depth; 3];
             const BYTES: usize = 3;
 
-            #[inline(always)]
+            #[inline]
             fn pack([r, g, b]: [u32; 3]) -> Self {
                 RawU24::new(r << (2 * $depth) | g << $depth | b).into()
             }
@@ -287,12 +287,12 @@ macro_rules! rgb {
             type Stored = u32;
             type Ramps = $ramps<u32>;
 
-            #[inline(always)]
+            #[inline]
             fn stored(self) -> u32 {
                 RawU24::from(self).into_inner()
             }
 
-            #[inline(always)]
+            #[inline]
             fn from_stored(stored: u32) -> Self {
                 RawU24::new(stored).into()
             }
@@ -311,7 +311,7 @@ macro_rules! gray {
             const DEPTH: [u32; 3] = [$depth; 3];
             const BYTES: usize = 1;
 
-            #[inline(always)]
+            #[inline]
             fn pack([luma, ..]: [u32; 3]) -> Self {
                 <$raw>::new(luma as u8).into()
             }
@@ -336,12 +336,12 @@ impl Pixel for Gray8 {
     type Stored = u8;
     type Ramps = Rounded<u8>;
 
-    #[inline(always)]
+    #[inline]
     fn stored(self) -> u8 {
         RawU8::from(self).into_inner()
     }
 
-    #[inline(always)]
+    #[inline]
     fn from_stored(stored: u8) -> Self {
         RawU8::new(stored).into()
     }
@@ -385,7 +385,7 @@ impl PixelFormat for Rgb565Be {
     const DEPTH: [u32; 3] = [5, 6, 5];
     const BYTES: usize = 2;
 
-    #[inline(always)]
+    #[inline]
     fn pack(channels: [u32; 3]) -> Self {
         Self(rgb565(channels).to_be())
     }
@@ -404,12 +404,12 @@ impl Pixel for Rgb565Be {
     type Stored = Self;
     type Ramps = InTurn<Self>;
 
-    #[inline(always)]
+    #[inline]
     fn stored(self) -> Self {
         self
     }
 
-    #[inline(always)]
+    #[inline]
     fn from_stored(stored: Self) -> Self {
         stored
     }
@@ -452,7 +452,7 @@ impl PixelFormat for Rgb332 {
     const DEPTH: [u32; 3] = [3, 3, 2];
     const BYTES: usize = 1;
 
-    #[inline(always)]
+    #[inline]
     fn pack([r, g, b]: [u32; 3]) -> Self {
         Self((r << 5 | g << 2 | b) as u8)
     }

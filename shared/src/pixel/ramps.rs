@@ -71,7 +71,6 @@ impl<T: Copy + Debug + FromBytes + IntoBytes + Immutable + KnownLayout + Sync> R
         [first, second]
     }
 
-    #[inline(always)]
     fn walked(&self, level: u32) -> T {
         self.as_flattened()[(level >> Self::BITS) as usize % (2 * RAMP)]
     }

@@ -41,13 +41,12 @@ impl ActiveTriangle {
     }
 
     /// The plane of depth; `None` if the triangle is drawn without depth test.
-    #[inline(always)]
+    #[inline]
     pub(crate) fn inv_depth(&self) -> Option<Plane<1>> {
         if self.has_depth != 0 { Plane::load(&self.depth) } else { None }
     }
 
     /// The saved patch.
-    #[inline(always)]
     pub(crate) fn patch<P: Patch>(&self) -> Option<P> {
         P::load(&self.words)
     }
@@ -100,7 +99,7 @@ impl<'a> ActiveTriangles<'a> {
     }
 
     /// The active triangle at an index.
-    #[inline(always)]
+    #[inline]
     pub(crate) fn active_triangle(&self, place: usize) -> Option<&ActiveTriangle> {
         self.active_triangles.get(place)
     }

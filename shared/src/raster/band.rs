@@ -63,13 +63,11 @@ impl<C> Band<'_, C> {
     }
 
     /// The first row, and one past the last.
-    #[inline(always)]
     pub(crate) fn range(&self) -> [i32; 2] {
         [self.top, self.top.wrapping_add(self.rows)]
     }
 
     /// Index of the first pixel of `row`.
-    #[inline(always)]
     #[must_use]
     pub fn start(&self, row: i32) -> usize {
         (row.wrapping_sub(self.top) as usize).wrapping_mul(self.width)

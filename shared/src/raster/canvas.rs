@@ -184,7 +184,6 @@ impl<'c, C: Pixel> Colourist<'c, C> {
     }
 
     /// The colour of a material in one channel for an intensity, by a table of colours.
-    #[inline(always)]
     fn by_table(ramp: &[C::Stored; RAMP], [level, ..]: Intensity) -> C {
         C::ramped(ramp, (level + (BIAS << INTENSITY) + (1 << (INTENSITY - 1))) as u32, INTENSITY)
     }

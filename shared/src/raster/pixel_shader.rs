@@ -69,7 +69,6 @@ impl<C: Pixel> PixelShader<[u32; 1]> for Ramp<'_, C> {
 
     const CHEAP: bool = true;
 
-    #[inline(always)]
     fn shade(&self, [level]: [u32; 1]) -> C {
         C::from_stored(C::walked(self.0, level))
     }

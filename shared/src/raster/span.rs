@@ -17,7 +17,7 @@ pub(crate) trait DepthTest: Walker {
 
 /// The test of an inverse depth, of which the upper half is stored.
 impl DepthTest for LinearWalker<1> {
-    #[inline(always)]
+    #[inline]
     fn depth(depth: &mut [u16], pixels: Range<usize>) -> Option<&mut [u16]> {
         depth.get_mut(pixels)
     }
@@ -36,12 +36,12 @@ impl DepthTest for LinearWalker<1> {
 
 /// No test: every pixel passes.
 impl DepthTest for Constant {
-    #[inline(always)]
+    #[inline]
     fn depth(_: &mut [u16], _: Range<usize>) -> Option<&mut [u16]> {
         Some(&mut [])
     }
 
-    #[inline(always)]
+    #[inline]
     fn passes(&self, _: &mut [u16], _: usize) -> bool {
         true
     }

@@ -46,7 +46,7 @@ struct RowRange {
 }
 
 impl RowRange {
-    #[inline(always)]
+    #[inline]
     const fn of(sides: EdgeWalker, key: u32) -> Self {
         Self { sides, inv_depth: None, key, resumed: 0 }
     }
@@ -114,7 +114,7 @@ impl ScreenTriangle {
     }
 
     /// Whether no row lies in the band.
-    #[inline(always)]
+    #[inline]
     #[must_use]
     pub fn is_empty(&self) -> bool {
         self.rows.sides.row >= self.rows.sides.end
@@ -276,12 +276,12 @@ pub(crate) fn turned(corners: [&ScreenVertex; 3]) -> (usize, [&ScreenVertex; 3])
     (by, turn(corners, by))
 }
 
-#[inline(always)]
+#[inline]
 fn places([a, b, c]: [&ScreenVertex; 3]) -> [[i32; 2]; 3] {
     [[a.x, a.y], [b.x, b.y], [c.x, c.y]]
 }
 
-#[inline(always)]
+#[inline]
 fn depths([a, b, c]: [&ScreenVertex; 3]) -> [i32; 3] {
     [a.depth, b.depth, c.depth]
 }

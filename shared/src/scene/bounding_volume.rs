@@ -17,7 +17,6 @@ pub(crate) struct BoundingVolume {
 
 impl BoundingVolume {
     /// The box and the ball around vertices at these positions.
-    #[inline(always)]
     pub(crate) fn around(positions: impl Iterator<Item = [i16; 3]>) -> Self {
         let (mut least, mut most, mut square) = ([i16::MAX; 3], [i16::MIN; 3], 0u32);
         positions.for_each(|position| {

@@ -106,7 +106,7 @@ impl Object {
     }
 
     /// Index of the material of `mesh` on this object.
-    #[inline(always)]
+    #[inline]
     pub(crate) fn material_of(&self, mesh: &Mesh) -> usize {
         usize::from(if self.material == OWN_MATERIALS { mesh.material } else { self.material })
     }

@@ -51,7 +51,7 @@ pub(crate) struct EdgeX {
 }
 
 /// Converts a coordinate in 1/16 pixel to the format of a stepped column. All ones below the integer part turn its floor into a ceiling.
-#[inline(always)]
+#[inline]
 fn walked(sixteenths: i32) -> u32 {
     ((sixteenths << (COLUMN - SUBPIXEL)) as u32).wrapping_add((1 << COLUMN) - 1)
 }
@@ -61,7 +61,7 @@ impl EdgeX {
     pub(crate) const NONE: Self = Self { x: 0, step: 0 };
 
     /// Moves down `rows` rows.
-    #[inline(always)]
+    #[inline]
     pub(crate) fn skip(&mut self, rows: i32) {
         self.x = self.x.wrapping_add(self.step.wrapping_mul(rows as u32));
     }
@@ -69,7 +69,7 @@ impl EdgeX {
 
 impl Edge {
     /// The edge from `upper` to `lower`, each `[x, y]` in 1/16 pixel.
-    #[inline(always)]
+    #[inline]
     #[must_use]
     pub(crate) fn new(upper: [i32; 2], lower: [i32; 2]) -> Self {
         Self { x: upper[0], y: upper[1], dx: lower[0].wrapping_sub(upper[0]), dy: lower[1].wrapping_sub(upper[1]) }
@@ -107,7 +107,7 @@ impl Edge {
     /// Number of rows over which the stepped column of a larger edge stays exact; 0 if the edge cannot be stepped.
     ///
     /// The bound is the one in [`Self::walk`], except that the start is too small by less than 2^-21.
-    #[inline(always)]
+    #[inline]
     #[must_use]
     pub(crate) fn exact_rows(&self) -> i32 {
         if self.dy < MIN_DIVIDED_HEIGHT { (1 << (COLUMN + SUBPIXEL - 8)) / self.dy.max(1) - 2 } else { 0 }
@@ -134,7 +134,7 @@ impl Edge {
 
 /// `rest / dy` with [`COLUMN`] fraction bits, rounded down, in two steps that fit words. Domain: `rest` is below `dy`, and that below
 /// [`MIN_DIVIDED_HEIGHT`].
-#[inline(always)]
+#[inline]
 fn fraction(rest: u32, dy: u32) -> u32 {
     let dy = dy.max(1);
     let upper = rest << (COLUMN - SUBPIXEL);

@@ -18,7 +18,7 @@ pub(crate) struct LeftRight {
 
 impl LeftRight {
     /// Number of columns in the row.
-    #[inline(always)]
+    #[inline]
     pub(crate) fn columns(&self) -> u32 {
         (self.right.x >> COLUMN).wrapping_sub(self.left.x >> COLUMN)
     }
@@ -147,7 +147,7 @@ impl EdgeWalker {
     }
 
     /// Whether rows follow in the next band to which the edges can be stepped.
-    #[inline(always)]
+    #[inline]
     pub(crate) fn goes_on(&self) -> bool {
         self.low > self.end
     }
@@ -217,7 +217,7 @@ fn is_steppable([[a, _], [b, _], [c, _]]: [[i32; 2]; 3]) -> bool {
 }
 
 /// Whether the middle corner is on the right side.
-#[inline(always)]
+#[inline]
 fn turns_right([_, right, left]: [[i32; 2]; 3]) -> bool {
     right[1] < left[1]
 }

@@ -174,7 +174,7 @@ impl Gradients {
     }
 
     /// These gradients, for fields of this steepness: they are fitted as exactly as the highlights of a material need them.
-    #[inline(always)]
+    #[inline]
     #[must_use]
     pub fn steep(self, steepness: Steepness) -> Self {
         Self { steepness, ..self }
@@ -221,27 +221,27 @@ impl Gradients {
 
     /// Whether the triangle is not word-sized and longer than about `ratio` times its height. The measure is the square of its longest side by
     /// columns or rows from corner 0, over twice its area.
-    #[inline(always)]
+    #[inline]
     #[must_use]
     pub fn is_thinner_than(&self, ratio: i64) -> bool {
         matches!(self.precision, Precision::Any(_)) && is_longer(self.edges, ratio)
     }
 
     /// Whether the triangle is neither word-sized nor a part.
-    #[inline(always)]
+    #[inline]
     pub(crate) fn is_any(&self) -> bool {
         matches!(self.precision, Precision::Any(_))
     }
 
     /// Column of the anchor.
-    #[inline(always)]
+    #[inline]
     #[must_use]
     pub fn column(&self) -> i32 {
         self.anchor[0]
     }
 
     /// Row of the anchor.
-    #[inline(always)]
+    #[inline]
     #[must_use]
     pub fn row(&self) -> i32 {
         self.anchor[1]
@@ -300,7 +300,7 @@ impl Gradients {
     }
 
     /// Vector from corner 0 to the centre of its pixel, in 1/16 pixel, for a triangle that is not a part.
-    #[inline(always)]
+    #[inline]
     fn subpixels(&self) -> [i32; 2] {
         [self.offset[0] >> SPLITS, self.offset[1] >> SPLITS]
     }
@@ -520,7 +520,7 @@ fn walks_in_words([[x1, y1], [x2, y2]]: [[i32; 2]; 2], shift: [i32; 2], steepnes
 }
 
 /// The first corner, and the edges from it to the others.
-#[inline(always)]
+#[inline]
 fn edges([[x0, y0], [x1, y1], [x2, y2]]: [[i32; 2]; 3]) -> ([i32; 2], [[i32; 2]; 2]) {
     ([x0, y0], [[x1.wrapping_sub(x0), y1.wrapping_sub(y0)], [x2.wrapping_sub(x0), y2.wrapping_sub(y0)]])
 }
@@ -573,19 +573,19 @@ impl Mantissas {
 }
 
 /// The upper half of a product, rounded to nearest, times 2.
-#[inline(always)]
+#[inline]
 fn twice_upper(product: i64) -> i32 {
     ((product.wrapping_add(1 << 31) >> 32) as i32) << 1
 }
 
 /// The product of `gradient` and `offset`, which is at most a pixel ([`FINE`] fraction bits).
-#[inline(always)]
+#[inline]
 fn at(gradient: [i32; 2], offset: [i32; 2]) -> i32 {
     ((product(gradient[0], offset[0]) + product(gradient[1], offset[1])) >> FINE) as i32
 }
 
 /// `gradient` times `offset`, [`FINE`] fraction bits.
-#[inline(always)]
+#[inline]
 fn along(gradient: i64, offset: i32) -> i64 {
     gradient.wrapping_mul(offset.into()) >> FINE
 }

@@ -93,7 +93,7 @@ impl Steepness {
     }
 
     /// Whether a quadratic can be walked in words all over a word-sized triangle whose sides have this number of bits.
-    #[inline(always)]
+    #[inline]
     pub(crate) fn walks_word_sized(self, bits: u32) -> bool {
         bits <= u32::from(self.walked)
     }
@@ -108,7 +108,7 @@ impl Steepness {
     }
 
     /// Whether a highlight is computed from the field.
-    #[inline(always)]
+    #[inline]
     pub(crate) fn is_steep(self) -> bool {
         self.exponent > 0
     }
@@ -119,13 +119,13 @@ impl Steepness {
     }
 
     /// Whether words fit first derivatives on a word-sized triangle whose sides have this number of bits.
-    #[inline(always)]
+    #[inline]
     pub(crate) fn fits_words(self, bits: u32) -> bool {
         u32::from(self.exponent) <= (FIRST << 3) >> (bits & 31)
     }
 
     /// Whether [`Self::bends`] is sure where d k² is below 2^(`log` - [`Self::LOG`]).
-    #[inline(always)]
+    #[inline]
     pub(crate) fn bends_little(self, log: u32) -> bool {
         log <= u32::from(self.bend)
     }
@@ -139,7 +139,7 @@ impl Steepness {
 
     /// Whether gradients of 30 bits do not fit a quadratic on a triangle that is `thinness` times as long as high, if second derivatives are rounded
     /// as for large second differences.
-    #[inline(always)]
+    #[inline]
     pub(crate) fn is_thin(self, thinness: u32) -> bool {
         // No limit is above 511, and steepness has at most 13 bits.
         let thinness = thinness.min(511);

@@ -245,7 +245,7 @@ fn room([a, b, c]: [i32; 3]) -> u32 {
 }
 
 /// Twice the area between two edges, modulo 2^32.
-#[inline(always)]
+#[inline]
 fn area([[x1, y1], [x2, y2]]: [[i32; 2]; 2]) -> i32 {
     x1.wrapping_mul(y2).wrapping_sub(x2.wrapping_mul(y1))
 }

@@ -117,7 +117,7 @@ fn extent(setup: &TriangleSetup<'_>) -> [i32; 2] {
 }
 
 /// The smallest and the largest of three values.
-#[inline(always)]
+#[inline]
 pub(super) fn extremes([a, b, c]: [i32; 3]) -> [i32; 2] {
     [a.min(b).min(c), a.max(b).max(c)]
 }

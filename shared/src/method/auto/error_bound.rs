@@ -82,13 +82,13 @@ const fn share(x: f64) -> u32 {
 }
 
 /// `x` times a number in Q16, rounded up.
-#[inline(always)]
+#[inline]
 fn times(x: u32, share: u32) -> u32 {
     (unsigned_product(x, share) >> 16) as u32 + 1
 }
 
 /// `x` times a number in Q0.32, rounded up.
-#[inline(always)]
+#[inline]
 fn fraction(x: u32, share: u32) -> u32 {
     (unsigned_product(x, share) >> 32) as u32 + 1
 }
@@ -138,7 +138,7 @@ pub(crate) struct Curvature {
 
 impl Curvature {
     /// The curvature of a triangle; `None` if it is too large for any bound.
-    #[inline(always)]
+    #[inline]
     #[must_use]
     pub(crate) fn of(triangle: &Triangle) -> Option<Self> {
         let short = (1u32 << NORMAL_LENGTH).wrapping_sub(triangle.min_normal_length.into());
@@ -148,7 +148,7 @@ impl Curvature {
     }
 
     /// The remainder of the quadratic through six points over the third derivative of what is interpolated, Q0.32.
-    #[inline(always)]
+    #[inline]
     fn remainder(triangle: &Triangle) -> u32 {
         let [ab, bc, ca] = triangle.haversine;
         // Haversines are rounded to the nearest.
@@ -159,7 +159,7 @@ impl Curvature {
     }
 
     /// An upper bound of a cosine whose numerator is linear and largest at a corner with this value, which is not negative; Q1.15.
-    #[inline(always)]
+    #[inline]
     fn cosine(self, corner: u32) -> u32 {
         // Normals are unit vectors to 2^-15.
         corner + ((corner * self.longer) >> BOUND) + 2
@@ -167,7 +167,7 @@ impl Curvature {
 }
 
 /// A cosine (Q2.30) that is not negative, or 0, as bounds are computed from it, Q1.15, rounded up.
-#[inline(always)]
+#[inline]
 fn above_zero(cosine: i32) -> u32 {
     (cosine.max(-1) + (1 << (COSINE - BOUND))) as u32 >> (COSINE - BOUND)
 }
@@ -183,25 +183,25 @@ pub(crate) struct Interval {
 
 impl Interval {
     /// How far light may be from the middle of the interval.
-    #[inline(always)]
+    #[inline]
     pub(crate) fn half(self) -> u32 {
         ((self.below + self.above) >> 1) + 1
     }
 
     /// The middle of the interval.
-    #[inline(always)]
+    #[inline]
     pub(crate) fn middle(self) -> i32 {
         (self.below as i32 - self.above as i32) >> 1
     }
 
     /// Amount by which levels have to be raised to keep to the budget; 0 if they do. The budget is at least [`Self::half`].
-    #[inline(always)]
+    #[inline]
     pub(crate) fn raise(self, budget: u32) -> i32 {
         let beyond = |error: u32| (error as i32 - budget as i32).max(0);
         beyond(self.below) - beyond(self.above)
     }
 
-    #[inline(always)]
+    #[inline]
     fn plus(self, other: Self) -> Self {
         Self { below: self.below + other.below, above: self.above + other.above }
     }
@@ -209,13 +209,13 @@ impl Interval {
 
 impl LightBounds {
     /// Error of the quadratic through diffuse light that is not clamped; see [`Curvature::remainder`].
-    #[inline(always)]
+    #[inline]
     fn remainder(&self, of_triangle: u32) -> u32 {
         fraction(times(self.diffuse, share(3.01)), of_triangle)
     }
 
     /// Linear interpolation of diffuse light: bounds, and the brightest level at a corner.
-    #[inline(always)]
+    #[inline]
     fn diffuse(&self, curvature: Curvature, towards: &[i32; 3]) -> (Interval, u32) {
         let mut interval = Interval { below: 0, above: 0 };
         let most = largest(towards);
@@ -234,7 +234,7 @@ impl LightBounds {
 }
 
 /// How far N·L reaches above zero (`most`, Q1.15) and below it on a triangle, Q1.15, rounded up; `None` unless it does both.
-#[inline(always)]
+#[inline]
 fn terminator(curvature: Curvature, &[a, b, c]: &[i32; 3], most: u32) -> Option<[u32; 2]> {
     let least = a.min(b).min(c);
     (least < 0).then(|| [curvature.cosine(most), above_zero(0i32.wrapping_sub(least))])
@@ -253,7 +253,7 @@ pub(crate) struct LinearBound {
 
 impl ErrorBounds {
     /// The place in the table of errors of the highlight of a light with these N·H at the corners; `None` where it cannot be seen.
-    #[inline(always)]
+    #[inline]
     fn highlight(&self, curvature: Curvature, half: &[i32; 3]) -> Option<TablePlace> {
         let cosine = curvature.cosine(above_zero(largest(half)));
         (cosine >= self.threshold).then(|| TablePlace::new(self.part, curvature.short, cosine, self.exponent))
@@ -278,7 +278,7 @@ impl ErrorBounds {
         (bounds.interval.half() <= budget).then_some(bounds)
     }
 
-    #[inline(always)]
+    #[inline]
     fn add_diffuse(&self, light: usize, curvature: Curvature, cosines: &[CornerCosines], bounds: &mut LinearBound) {
         if let (Some(light), Some([towards, _])) = (self.lights.get(light), cosines.get(light)) {
             let (interval, level) = light.diffuse(curvature, towards);
@@ -287,7 +287,7 @@ impl ErrorBounds {
         }
     }
 
-    #[inline(always)]
+    #[inline]
     fn add_highlight(&self, light: usize, curvature: Curvature, cosines: &[CornerCosines], bounds: &mut LinearBound) {
         if let (Some(light), Some([_, half])) = (self.lights.get(light), cosines.get(light))
             && let Some(place) = self.highlight(curvature, half)
@@ -354,7 +354,7 @@ impl ErrorBounds {
     }
 
     /// The level of a light's highlight at N·H (Q2.30), Q9.7, rounded up.
-    #[inline(always)]
+    #[inline]
     fn share_of(&self, light: &LightBounds, reflectance: LitMaterial<'_>, half: i32) -> u32 {
         let entry = reflectance.highlight_at(half);
         let level = if reflectance.holds_levels() { entry } else { (light.specular * entry) >> 16 };
@@ -362,7 +362,7 @@ impl ErrorBounds {
     }
 
     /// The diffuse level of a light for a difference of cosines, Q2.30; the level is Q9.7, rounded up.
-    #[inline(always)]
+    #[inline]
     #[must_use]
     pub(crate) fn diffuse_level(&self, light: usize, cosine: i32) -> u32 {
         let diffuse = self.lights.get(light).map_or(0, |light| light.diffuse);
@@ -370,7 +370,7 @@ impl ErrorBounds {
     }
 
     /// The level of the first light's highlight for a difference of powers, unsigned Q0.16; the level is Q9.7, rounded up.
-    #[inline(always)]
+    #[inline]
     #[must_use]
     pub(crate) fn highlight_level(&self, highlight: i32) -> u32 {
         let [LightBounds { specular, .. }, _] = &self.lights;
@@ -378,14 +378,14 @@ impl ErrorBounds {
     }
 
     /// The brightest level of the first light at this cosine and highlight, Q9.7, rounded up.
-    #[inline(always)]
+    #[inline]
     #[must_use]
     pub(crate) fn brightest(&self, cosine: i32, highlight: i32) -> i32 {
         (self.ambient + self.diffuse_level(0, cosine) + self.highlight_level(highlight)) as i32
     }
 
     /// Whether light may exceed 255 anywhere.
-    #[inline(always)]
+    #[inline]
     #[must_use]
     pub(crate) fn may_saturate(&self) -> bool {
         self.may_saturate != 0
@@ -393,7 +393,7 @@ impl ErrorBounds {
 }
 
 /// The root of `x`, Q0.16, rounded up. Domain: 1 to 2^17. Error: 6 %.
-#[inline(always)]
+#[inline]
 fn rooted(x: u32) -> u32 {
     // x moved up by an even number of bits, to 2^30 at least: its root is below the entry.
     let zeros = x.leading_zeros() & 30;

@@ -32,7 +32,6 @@ pub(super) trait FromValues<M, V> {
 
 /// Two lights.
 impl<M, A: FromValues<M, V>, B: FromValues<M, W>, V, W> FromValues<M, (V, W)> for (A, B) {
-    #[inline(always)]
     fn from_values(common: &M, full: u16, (one, two): (V, W)) -> Self {
         (A::from_values(common, full, one), B::from_values(common, full, two))
     }
@@ -56,14 +55,12 @@ impl<T: Copy, K: Copy, L> Copy for LitShader<T, K, L> {}
 impl<T, K> LitShader<T, K, ()> {
     /// A shader for lights with highlights where `L` is [`WithHighlight`](crate::lighting::constant_lights::WithHighlight), and for lights without
     /// where it is [`DiffuseOnly`](crate::lighting::constant_lights::DiffuseOnly). For two lights it is a pair.
-    #[inline(always)]
     pub(super) fn of<L>(colours: T, at: K) -> LitShader<T, K, L> {
         LitShader { colours, at, light: PhantomData }
     }
 }
 
 impl<T: ByRows, K: Copy, L> ByRows for LitShader<T, K, L> {
-    #[inline(always)]
     fn step_row(&mut self) {
         self.colours.step_row();
     }

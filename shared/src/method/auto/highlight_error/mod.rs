@@ -97,7 +97,7 @@ pub(crate) struct TablePlace {
 impl TablePlace {
     /// The place for triangles whose normals are shorter than 1 by up to `short`, where the highlight of an exponent is brightest at N·H =
     /// `cosine`; both Q1.15. Domain: `short` up to 1/5; n (1 - `cosine`) up to 8, beyond which highlights are not drawn.
-    #[inline(always)]
+    #[inline]
     #[must_use]
     pub(crate) fn new(part: u8, short: u32, cosine: u32, exponent: u16) -> Self {
         let exponent = u32::from(exponent);
@@ -113,7 +113,7 @@ impl TablePlace {
 
     /// Largest amounts by which linear interpolation of a highlight is too dark and too bright. The level at the highlight's peak is `specular`,
     /// Q9.7.
-    #[inline(always)]
+    #[inline]
     #[must_use]
     pub(crate) fn linear(self, specular: u32) -> [u32; 2] {
         if self.size > 1 << (NORMAL_LENGTH + LINEAR_SIZE_BITS) {
@@ -129,7 +129,7 @@ impl TablePlace {
     }
 
     /// The entry of [`CURVED`] for a kind of error, interpolated between two rows; `None` behind the last row.
-    #[inline(always)]
+    #[inline]
     fn entry(self, kind: Kind) -> Option<u32> {
         let size = self.size;
         let zeros = size.leading_zeros();
@@ -141,7 +141,7 @@ impl TablePlace {
     }
 
     /// The largest error of [`Kind::Quadratic`] for a highlight with the level `specular` at its peak, Q9.7.
-    #[inline(always)]
+    #[inline]
     #[must_use]
     pub(crate) fn error_of_quadratic(self, specular: u32) -> u32 {
         match self.entry(Kind::Quadratic) {
@@ -152,7 +152,7 @@ impl TablePlace {
 
     /// The largest error of [`Kind::Cosines`] for a highlight with the level `specular` at its peak, Q9.7. `narrowed` is `specular` times
     /// [`USUAL_EXPONENT`] over the exponent. No error exceeds `specular`, because a power is between 0 and 1.
-    #[inline(always)]
+    #[inline]
     #[must_use]
     pub(crate) fn error_of_cosines(self, specular: u32, narrowed: u32) -> u32 {
         match self.entry(Kind::Cosines) {
@@ -162,7 +162,7 @@ impl TablePlace {
     }
 
     /// Upper bound for the level of the brightest highlight on the triangle: w^n is at most 2^-n(1 - w).
-    #[inline(always)]
+    #[inline]
     #[must_use]
     pub(crate) fn brightest(self, specular: u32) -> u32 {
         (specular >> (self.column as u32 / COLUMNS_A_UNIT)) + 1
@@ -170,7 +170,7 @@ impl TablePlace {
 
     /// Error of light at corners whose normals are longer or shorter than 1 by up to 2^-15, at an exponent above [`EXACT`]. It is this times the
     /// exponent times the brightest highlight on the triangle, w^n, which is at most 2^-n(1 - w).
-    #[inline(always)]
+    #[inline]
     #[must_use]
     pub(crate) fn rounding(self, exponent: u16, specular: u32) -> u32 {
         if exponent <= EXACT {
