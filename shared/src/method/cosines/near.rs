@@ -57,9 +57,9 @@ pub(crate) fn take(style: Style) -> bool {
 
 /// How a triangle has been drawn, or is to be drawn.
 pub(crate) enum Drawn {
-    /// It has this number of pixels in the band.
+    /// The number of its pixels in the band.
     Pixels(u32),
-    /// As under an infinitely far viewer, by these cosines.
+    /// The triangle is to be drawn as under an infinitely far viewer, by these cosines.
     Constantly(CornerCosines),
 }
 
