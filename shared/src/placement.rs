@@ -3,7 +3,9 @@
 use crate::{
     features::OBJECTS,
     format::GeometricError,
-    geometry::{area::Area, cull::Facing, detail::tolerance, lens::Lens, model_view::ModelView, projection::View, region::Region},
+    geometry::{
+        cull::Facing, detail::tolerance, lens::Lens, model_view::ModelView, pixel_rect::PixelRect, projection::View, region::Region,
+    },
     lighting::lights::{Directions, Lighting},
     scene::{Object, Scene},
     stream::record::Mesh,
@@ -25,7 +27,7 @@ pub(crate) struct Placement {
     /// Number of triangles at the levels at which the object is drawn if it can be seen.
     triangles: u32,
     /// The pixels that the object can reach; none if it is out of sight.
-    pub(crate) area: Area,
+    pub(crate) area: PixelRect,
     /// Largest distance of coarser levels from their meshes, a [`GeometricError`].
     tolerance: u16,
     /// The smallest depth that a pixel of the object can have, in the format of the depth buffer.
@@ -52,7 +54,7 @@ pub(crate) struct Placing {
 impl Placement {
     /// Places `object` of a scene.
     pub(crate) fn update(&mut self, scene: &Scene<'_>, object: &Object, how: &Placing) {
-        (self.area, self.triangles, self.depth) = (Area::NONE, 0, i32::MAX);
+        (self.area, self.triangles, self.depth) = (PixelRect::NONE, 0, i32::MAX);
         if !object.is_visible() {
             return;
         }

@@ -293,7 +293,7 @@ impl<'a, C: Pixel> Renderer<'a, C> {
     /// and is clipped to it. Areas of several calls add up.
     #[cfg(feature = "redraw")]
     pub fn invalidate(&mut self, area: embedded_graphics_core::primitives::Rectangle) {
-        let area = crate::geometry::area::Area::of(area, self.settings.size);
+        let area = crate::geometry::pixel_rect::PixelRect::of(area, self.settings.size);
         if !area.is_empty() {
             if !mem::replace(&mut self.is_invalidated, true) {
                 self.clear_region();

@@ -22,7 +22,7 @@ use microphong::{
     method::{
         Canvas, Constant, CosineLookup, Costs, Facts, Held, Highlight, HighlightField, LightingModel, Method, QuadraticNodes, Reflection,
         Shading, Source, Steep, Steepness, TriangleSetup, VertexLight,
-        lighting_model::{EXTRA, NODE},
+        lighting_model::{FIELD_EXTRA, FIELD_NODE},
         signed, tiles,
     },
 };
@@ -101,10 +101,10 @@ pub fn draw_by(
     let (normal, unshifted) = (normals(setup), setup.steepness());
     let fit = |source: &Source| {
         let (values, shift) = expanded(&normal, directions(source));
-        let bits = shift + VECTOR - NODE;
+        let bits = shift + VECTOR - FIELD_NODE;
         let nodes = values.map(|nodes| nodes.map(|node| (node >> bits) as i32));
         let steepness = if shift == 0 { unshifted } else { Steepness::new(u32::from(shading.exponent) << shift) };
-        (Steep { field: QuadraticNodes::new(nodes, EXTRA), steepness }, Held(shift))
+        (Steep { field: QuadraticNodes::new(nodes, FIELD_EXTRA), steepness }, Held(shift))
     };
     tiles::shade_steeply(steepness(setup, shading), setup, canvas, |setup, canvas| shading.draw_lit(setup, fit, Constant, Clamped, canvas))
 }

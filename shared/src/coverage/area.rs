@@ -62,9 +62,9 @@ impl TriangleCoverage {
 
     /// The part of the triangle in `row`.
     #[must_use]
-    pub fn row(&self, row: i32) -> Row {
+    pub fn row(&self, row: i32) -> CoverageRow {
         let segments = self.edges.map(|edge| EdgeSegment::new(&edge, row, self.bits));
-        let mut row = Row { segments, columns: [i32::MAX, i32::MIN], inner: [i32::MIN, i32::MAX] };
+        let mut row = CoverageRow { segments, columns: [i32::MAX, i32::MIN], inner: [i32::MIN, i32::MAX] };
         let mut heights = [0; 2];
         for segment in segments.iter().filter(|segment| segment.height > 0) {
             let whole = segment.dy << self.bits;
@@ -172,7 +172,7 @@ impl EdgeSegment {
     }
 
     /// The area of `column` to the right of the segment; steps to the next column.
-    fn area(&mut self, column: i32) -> Area {
+    fn area(&mut self, column: i32) -> Moments {
         let border = i64::from(column) << PLACE;
         let [[x0, y0], [x1, _]] = self.ends;
         let (next, leave) = (self.integral(column + 1), self.crossing(border + ONE));
@@ -181,7 +181,7 @@ impl EdgeSegment {
         // right.
         let (beside, within) = ((self.entry - y0).abs(), (leave - self.entry).abs());
         let rest = within * (2 * ONE - a - b);
-        let area = Area {
+        let area = Moments {
             coverage: next - self.integral,
             size: (beside << (PLACE + 1)) + rest,
             x: (beside << (2 * PLACE)) + within * (ONE * ONE - (a * a + a * b + b * b) / 3),
@@ -209,7 +209,7 @@ pub type Mask = u32;
 
 /// An area and its moments about the upper left corner of a pixel.
 #[derive(Clone, Copy, Debug, Default)]
-struct Area {
+struct Moments {
     /// The area, rounded alike on both sides of every edge.
     coverage: i64,
     /// Twice the area, 32 fraction bits, and twice its first moments `x` and `y`, 48 fraction bits.
@@ -220,7 +220,7 @@ struct Area {
 
 /// A triangle in one row of pixels.
 #[derive(Clone, Copy, Debug)]
-pub struct Row {
+pub struct CoverageRow {
     segments: [EdgeSegment; 3],
     /// Columns that the triangle touches, half open.
     pub columns: [i32; 2],
@@ -239,7 +239,7 @@ pub struct Fragment {
     pub centroid: [i32; 2],
 }
 
-impl Row {
+impl CoverageRow {
     /// Moves to `column`.
     pub fn enter(&mut self, column: i32) {
         self.segments.iter_mut().for_each(|segment| segment.enter(column));
@@ -247,7 +247,7 @@ impl Row {
 
     /// The covered part of `column`, to which the row has been moved; steps to the next column.
     pub fn step(&mut self, column: i32) -> Fragment {
-        let (mut sum, mut mask) = (Area::default(), 0);
+        let (mut sum, mut mask) = (Moments::default(), 0);
         for segment in self.segments.iter_mut().filter(|segment| segment.height > 0) {
             let area = segment.area(column);
             mask ^= segment.mask(column);

@@ -4,8 +4,8 @@ use crate::{
     features::{ANTIALIAS, OBJECTS, REDRAW},
     frame::skips::Skips,
     geometry::{
-        area::Area,
         depth_elision::DepthElision,
+        pixel_rect::PixelRect,
         projection::{ScreenVertex, View},
         region::Region,
         viewport::Viewport,
@@ -159,7 +159,7 @@ impl<'r> Context<'r> {
         if !OBJECTS || !self.settings.skips().hidden_objects || self.settings.antialiased() {
             return false;
         }
-        let Area { columns: [left, right], rows: [top, bottom] } = placement.area.within(&Area { columns, rows: [0, u16::MAX] });
+        let PixelRect { columns: [left, right], rows: [top, bottom] } = placement.area.within(&PixelRect { columns, rows: [0, u16::MAX] });
         (i32::from(top).max(first)..i32::from(bottom).min(end)).all(|row| {
             let start = ((row - first) as usize).wrapping_mul(self.settings.size.width as usize);
             let pixels = depth.get(start.wrapping_add(left.into())..start.wrapping_add(right.into())).unwrap_or_default();

@@ -9,8 +9,8 @@ use crate::{
         context::{Context, PlacedMesh},
     },
     geometry::{
-        area::Area,
         bin::{Bins, Entry, TriangleKey, Walk},
+        pixel_rect::PixelRect,
     },
     pixel::Pixel,
     raster::{
@@ -102,7 +102,7 @@ impl<'r> FrameRows<'r> {
         let Some(rows) = self.next_rows(context, pixels.len())? else { return Ok(None) };
         let size = context.settings.size;
         // They are drawn in all columns, and sent in those that are wanted.
-        let whole = Area { columns: [0, size.width as u16], rows };
+        let whole = PixelRect { columns: [0, size.width as u16], rows };
         let (area, Range { start: left, end: right }) = (whole.rectangle(), context.region.within(&whole).columns());
         let Size { width, height } = area.size;
         let pixels = pixels.get_mut(..(width * height) as usize).unwrap_or_default();

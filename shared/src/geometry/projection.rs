@@ -3,7 +3,7 @@
 use crate::{
     arch::product::product,
     format::{DEPTH, ROTATION, SUBPIXEL, UNIT},
-    geometry::{area::Area, lens::Lens, model_view::ModelView},
+    geometry::{lens::Lens, model_view::ModelView, pixel_rect::PixelRect},
     math::vector::{add, dot, map, narrow_dot, sub, wide, zip},
     scene::BoundingVolume,
 };
@@ -189,20 +189,20 @@ impl View {
     /// The pixels of the viewport that a part of object space can reach, and the nearest depth of such a pixel, in the format of the depth buffer.
     /// None if no part of it can be seen. If in doubt, there are more pixels and nearer depths.
     #[must_use]
-    pub(crate) fn reached(&self, bounds: &BoundingVolume) -> (Area, u16) {
+    pub(crate) fn reached(&self, bounds: &BoundingVolume) -> (PixelRect, u16) {
         let sides = self.sides(bounds);
         let (size, [.., [nearest, farthest]]) = (self.lens.size(), sides);
         if farthest < self.lens.near || !self.is_perspective() && nearest > self.lens.far {
-            return (Area::NONE, 0);
+            return (PixelRect::NONE, 0);
         }
         if nearest < self.lens.near {
-            return (Area::whole(size), u16::MAX);
+            return (PixelRect::whole(size), u16::MAX);
         }
         let ([columns, rows], inv_depth) = self.lens.project_box(sides);
         // A pixel more, for what is rounded on the way.
         let within = |c: i32, side: u32| c.clamp(0, i32::from(side as u16)) as u16;
         let pixels = |[least, most]: [i32; 2], side| [within((least >> SUBPIXEL) - 2, side), within((most >> SUBPIXEL) + 3, side)];
-        let area = Area { columns: pixels(columns, size.width), rows: pixels(rows, size.height) };
+        let area = PixelRect { columns: pixels(columns, size.width), rows: pixels(rows, size.height) };
         (area, ((inv_depth >> (DEPTH - 16)) as u16).saturating_add(SPARE))
     }
 

@@ -5,7 +5,7 @@
 //! band reaches into the next strip, because its rectangle would have pixels of neither strip's changes, and objects that reach into none of the
 //! rectangles are not drawn.
 
-use crate::{features::REDRAW, geometry::area::Area};
+use crate::{features::REDRAW, geometry::pixel_rect::PixelRect};
 use core::slice;
 use embedded_graphics_core::geometry::Size;
 
@@ -16,21 +16,21 @@ const STRIPS: usize = 16;
 #[derive(Clone, Debug)]
 pub(crate) struct Region {
     /// The smallest rectangle that contains all of the pixels.
-    hull: Area,
+    hull: PixelRect,
     /// Whether the region is the whole picture; it is one strip then.
     is_whole: bool,
     /// Rows of a strip.
     rows: u16,
-    strips: [Area; STRIPS],
+    strips: [PixelRect; STRIPS],
 }
 
 impl Region {
     /// The empty region.
-    pub(crate) const NONE: Self = Self { hull: Area::NONE, is_whole: false, rows: 0, strips: [Area::NONE; STRIPS] };
+    pub(crate) const NONE: Self = Self { hull: PixelRect::NONE, is_whole: false, rows: 0, strips: [PixelRect::NONE; STRIPS] };
 
     /// Takes all pixels of a picture of this `size`.
     pub(crate) fn fill(&mut self, size: Size) {
-        (self.hull, self.is_whole) = (Area::whole(size), true);
+        (self.hull, self.is_whole) = (PixelRect::whole(size), true);
     }
 
     /// Drops all pixels, of a picture of this `height`, no larger than [`crate::MAX_SIDE`], which is drawn `band_rows` rows at a time.
@@ -46,13 +46,13 @@ impl Region {
     }
 
     /// The smallest rectangle that contains all pixels of the region.
-    pub(crate) fn hull(&self) -> Area {
+    pub(crate) fn hull(&self) -> PixelRect {
         self.hull
     }
 
     /// Adds the pixels of `area`, which lies in the picture.
     #[inline(never)]
-    pub(crate) fn include(&mut self, area: &Area) {
+    pub(crate) fn include(&mut self, area: &PixelRect) {
         if self.is_whole() || area.is_empty() {
             return;
         }
@@ -61,33 +61,33 @@ impl Region {
         for strip in &mut self.strips {
             let [_, top] = rows;
             rows = [top, top + self.rows];
-            *strip = strip.union(&area.within(&Area { rows, ..*area }));
+            *strip = strip.union(&area.within(&PixelRect { rows, ..*area }));
         }
     }
 
     /// The smallest rectangle that contains all pixels of both the region and `area`, which lies in the picture.
     #[inline]
-    pub(crate) fn within(&self, area: &Area) -> Area {
+    pub(crate) fn within(&self, area: &PixelRect) -> PixelRect {
         if self.is_whole() { *area } else { self.part_within(area) }
     }
 
     #[inline(never)]
-    fn part_within(&self, area: &Area) -> Area {
+    fn part_within(&self, area: &PixelRect) -> PixelRect {
         let area = area.within(&self.hull);
         if area.is_empty() {
             return area;
         }
-        let meets = |strip: &&Area| strip.rows[0] < area.rows[1] && area.rows[0] < strip.rows[1];
-        self.strips.iter().filter(meets).fold(Area::NONE, |hull, strip| hull.union(&strip.within(&area)))
+        let meets = |strip: &&PixelRect| strip.rows[0] < area.rows[1] && area.rows[0] < strip.rows[1];
+        self.strips.iter().filter(meets).fold(PixelRect::NONE, |hull, strip| hull.union(&strip.within(&area)))
     }
 
     /// The first rectangle from `row` on that a band may fill. After the last one, an empty rectangle behind all rows.
     #[inline(never)]
-    pub(crate) fn next(&self, row: u32) -> Area {
+    pub(crate) fn next(&self, row: u32) -> PixelRect {
         let row = row.min(u16::MAX.into()) as u16;
-        let from = |area: &Area| Area { rows: [area.rows[0].max(row), area.rows[1]], ..*area };
+        let from = |area: &PixelRect| PixelRect { rows: [area.rows[0].max(row), area.rows[1]], ..*area };
         let mut all = if self.is_whole() { slice::from_ref(&self.hull) } else { &self.strips }.iter().map(from);
-        all.find(|area| !area.is_empty()).unwrap_or(Area { rows: [u16::MAX; 2], ..Area::NONE })
+        all.find(|area| !area.is_empty()).unwrap_or(PixelRect { rows: [u16::MAX; 2], ..PixelRect::NONE })
     }
 }
 
@@ -102,11 +102,11 @@ mod tests {
         (0..side, 1..side / 4).prop_map(move |(start, length)| [start, (start + length).min(side)])
     }
 
-    fn area() -> impl Strategy<Value = Area> {
-        (range(SIDES[0]), range(SIDES[1])).prop_map(|(columns, rows)| Area { columns, rows })
+    fn area() -> impl Strategy<Value = PixelRect> {
+        (range(SIDES[0]), range(SIDES[1])).prop_map(|(columns, rows)| PixelRect { columns, rows })
     }
 
-    fn has(area: &Area, x: u16, y: u16) -> bool {
+    fn has(area: &PixelRect, x: u16, y: u16) -> bool {
         let contains = |[start, end]: [u16; 2], place| (start..end).contains(&place);
         contains(area.columns, x) && contains(area.rows, y)
     }
@@ -116,8 +116,8 @@ mod tests {
     }
 
     /// The smallest area that has these pixels.
-    fn hull(pixels: impl Iterator<Item = (u16, u16)>) -> Area {
-        pixels.fold(Area::NONE, |hull, (x, y)| hull.union(&Area { columns: [x, x + 1], rows: [y, y + 1] }))
+    fn hull(pixels: impl Iterator<Item = (u16, u16)>) -> PixelRect {
+        pixels.fold(PixelRect::NONE, |hull, (x, y)| hull.union(&PixelRect { columns: [x, x + 1], rows: [y, y + 1] }))
     }
 
     proptest! {
@@ -140,7 +140,7 @@ mod tests {
                 // Not all of it at once.
                 let bottom = end.min(start + band);
                 row = bottom.into();
-                pixels().filter(|&(x, y)| has(&Area { rows: [start, bottom], ..area }, x, y)).for_each(|(x, y)| drawn[y as usize][x as usize] = true);
+                pixels().filter(|&(x, y)| has(&PixelRect { rows: [start, bottom], ..area }, x, y)).for_each(|(x, y)| drawn[y as usize][x as usize] = true);
             }
             let wanted = |x, y| areas.iter().any(|area| has(area, x, y));
             for first in (0..SIDES[1]).step_by(rows.into()) {
@@ -150,7 +150,7 @@ mod tests {
                 }
             }
             let within = region.within(&other);
-            prop_assert_eq!(if within.is_empty() { Area::NONE } else { within }, hull(pixels().filter(|&(x, y)| drawn[y as usize][x as usize] && has(&other, x, y))));
+            prop_assert_eq!(if within.is_empty() { PixelRect::NONE } else { within }, hull(pixels().filter(|&(x, y)| drawn[y as usize][x as usize] && has(&other, x, y))));
             prop_assert_eq!(region.hull(), hull(pixels().filter(|&(x, y)| wanted(x, y))));
         }
     }
@@ -159,10 +159,10 @@ mod tests {
     fn a_whole_picture_is_one_strip() {
         let mut region = Region::NONE;
         region.fill(Size::new(30, 100));
-        let area = Area { columns: [4, 9], rows: [80, 90] };
+        let area = PixelRect { columns: [4, 9], rows: [80, 90] };
         region.include(&area);
         assert!(region.is_whole() && region.next(0) == region.hull() && region.within(&area) == area);
-        assert_eq!(region.next(40), Area { columns: [0, 30], rows: [40, 100] });
+        assert_eq!(region.next(40), PixelRect { columns: [0, 30], rows: [40, 100] });
         assert!(region.next(100).is_empty());
     }
 }

@@ -3,9 +3,9 @@
 use crate::{
     format::{CENTRE, SUBPIXEL},
     geometry::{
-        area::Area,
         clip,
         cull::Extent,
+        pixel_rect::PixelRect,
         projection::{ScreenVertex, View},
     },
     stream::record::Vertex,
@@ -118,8 +118,8 @@ impl Bounds {
     }
 }
 
-impl From<&Area> for Bounds {
-    fn from(area: &Area) -> Self {
+impl From<&PixelRect> for Bounds {
+    fn from(area: &PixelRect) -> Self {
         let ([left, right], [top, bottom]) = (area.columns.map(i32::from), area.rows.map(i32::from));
         Self { left, top, right, bottom }
     }

@@ -131,7 +131,7 @@ pub struct Sum {
 /// Fraction bits of a cosine that is multiplied by a diffuse level.
 pub(super) const FACTOR: u32 = CHANNEL - LEVEL;
 /// The diffuse level of [`OneLightRgb`] at cosine 1 is 2 to this power: half of the walked range, so that cosines and their overshoots fit.
-const FULL: u32 = 7;
+const FULL_BITS: u32 = 7;
 
 impl Sum {
     /// Factors that are not filled yet; all zeros.
@@ -178,12 +178,12 @@ const _: () = assert!(ENTRY + LEVEL - 1 == CHANNEL);
 #[inline(always)]
 fn cosine(bits: u32, diffuse: i32) -> i32 {
     // Armv7-M shifts and clamps by one instruction.
-    (diffuse >> ((bits + FULL - FACTOR) & 31)).clamp(0, (1 << FACTOR) - 1)
+    (diffuse >> ((bits + FULL_BITS - FACTOR) & 31)).clamp(0, (1 << FACTOR) - 1)
 }
 
 impl<C> OneLightRgb<'_, C> {
     /// See [`LitColours::diffuse`].
-    const DIFFUSE: u16 = 1 << (FULL + LEVEL);
+    const DIFFUSE: u16 = 1 << (FULL_BITS + LEVEL);
 }
 
 impl<C: Pixel> OneLightRgb<'_, C> {

@@ -28,7 +28,6 @@ pub struct ByTurns<T, C> {
 
 impl<T: Copy, C> ByTurns<T, C> {
     /// Makes the pair, on an even row.
-    #[inline(always)]
     pub fn new(values: [T; 2]) -> Self {
         Self { values, format: PhantomData }
     }
@@ -40,13 +39,11 @@ impl<T: Copy, C> ByTurns<T, C> {
     }
 
     /// A pair of what `f` makes of both values.
-    #[inline(always)]
     pub fn map<U: Copy>(&self, f: impl Fn(T) -> U) -> ByTurns<U, C> {
         ByTurns::new(self.both().map(f))
     }
 
     /// The value for the current row and the one for the next.
-    #[inline(always)]
     pub fn both(&self) -> [T; 2] {
         self.values
     }

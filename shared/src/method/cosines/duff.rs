@@ -23,7 +23,7 @@ use crate::{
         CornerCosines, Loops, Shading, Style, TriangleSetup,
         cosines::quotient,
         largest,
-        lighting_model::{EXTRA, LightingModel, Lit, NODE, QuadraticNodes, linear, signed},
+        lighting_model::{FIELD_EXTRA, FIELD_NODE, LightingModel, Lit, QuadraticNodes, linear, signed},
         node::is_steep,
     },
     pixel::Pixel,
@@ -162,10 +162,10 @@ pub fn square(setup: &TriangleSetup<'_>, exponent: u16) -> QuadraticNodes<1> {
         exact(setup)
     } else {
         // |N|² - 1 is zero at the corners.
-        let [ab, bc, ca] = setup.edges(setup.triangle.haversine).map(|haversine| -(i32::from(haversine) << (NODE - HAVERSINE)));
+        let [ab, bc, ca] = setup.edges(setup.triangle.haversine).map(|haversine| -(i32::from(haversine) << (FIELD_NODE - HAVERSINE)));
         [0, 0, 0, ab, bc, ca]
     };
-    QuadraticNodes::new([nodes], EXTRA).biased([1 << 30])
+    QuadraticNodes::new([nodes], FIELD_EXTRA).biased([1 << 30])
 }
 
 /// Six nodes of |N|² - 1 by the normals themselves, which are of unit length but for the rounding of their components.
@@ -175,7 +175,7 @@ fn exact(setup: &TriangleSetup<'_>) -> [i32; 6] {
     let [a, b, c] = setup.vertices().map(|vertex| wide(vertex.normal));
     let square = |v: [i32; 3]| narrow_dot(v, v);
     // Products of normals have 28 fraction bits. Half-way between two, the normal is half their sum, and its square a quarter.
-    let node = |square: i32, bits: u32| (square.wrapping_sub(1 << bits).wrapping_add(1 << (bits - NODE - 1))) >> (bits - NODE);
+    let node = |square: i32, bits: u32| (square.wrapping_sub(1 << bits).wrapping_add(1 << (bits - FIELD_NODE - 1))) >> (bits - FIELD_NODE);
     let corner = |v: [i32; 3]| node(square(v), 2 * UNIT);
     let middle = |a: [i32; 3], b: [i32; 3]| node(square(add(a, b)), 2 * UNIT + 2);
     [corner(a), corner(b), corner(c), middle(a, b), middle(b, c), middle(c, a)]

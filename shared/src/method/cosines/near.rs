@@ -34,7 +34,7 @@ use crate::{
             lit::{AtPixel, FromValues, LitShader},
         },
         largest,
-        lighting_model::{BITS, fitted, linear, quadratic, signed},
+        lighting_model::{FIELD_BITS, fitted, linear, quadratic, signed},
         node::{FRACTION, field_product, is_steep, map_six},
     },
     pixel::{Pixel, by_rows::ByRows},
@@ -101,7 +101,7 @@ fn draw_by_near_light<C: Pixel>(
 ) -> Option<u32> {
     let ramp = if tables.reflectance.three_channels() { tables.diffuse_ramp() } else { tables.one_light_ramp() };
     // What the band above has saved has no highlight, see above.
-    let mut patch = DiffuseWalked::default();
+    let mut patch = DiffuseProducts::default();
     if setup.place.is_none() {
         let products = Products::new(setup, position, towards)?;
         let view = setup.corner_cosines(towards);
@@ -148,9 +148,9 @@ struct Products {
 }
 
 /// The quadratics |N|², |P|² and N·P, and the planes N·F and F·P: more than there are registers.
-type Walked = ByColumn<(Quadric<1>, ((Quadric<1>, Quadric<1>), (Plane<1>, Plane<1>)))>;
+type HighlightProducts = ByColumn<(Quadric<1>, ((Quadric<1>, Quadric<1>), (Plane<1>, Plane<1>)))>;
 /// The quadratics |N|², |P|² and N·P.
-type DiffuseWalked = ByColumn<(Quadric<1>, (Quadric<1>, Quadric<1>))>;
+type DiffuseProducts = ByColumn<(Quadric<1>, (Quadric<1>, Quadric<1>))>;
 
 impl Products {
     /// The products for what is near at `near`, Q7.25, and the other in the direction `fixed`, Q2.30. `None` if lengths leave the table of reciprocal
@@ -194,7 +194,7 @@ impl Products {
 
     /// The polynomials of all products.
     #[inline(never)]
-    fn patch(&self, setup: &TriangleSetup<'_>, fixed: [i32; 3], length: Length) -> Walked {
+    fn patch(&self, setup: &TriangleSetup<'_>, fixed: [i32; 3], length: Length) -> HighlightProducts {
         let plane = |corners| fitted(&linear([corners]), setup.gradients);
         let ByColumn((length, quadratics)) = self.diffuse_patch(setup, length);
         ByColumn((length, (quadratics, (plane(fixed), plane(self.fp)))))
@@ -202,8 +202,8 @@ impl Products {
 
     /// The polynomials without those that highlights alone need.
     #[inline(never)]
-    fn diffuse_patch(&self, setup: &TriangleSetup<'_>, length: Length) -> DiffuseWalked {
-        let pp = Nodes::<6, 1, { BITS - 2 }>::new([map_six(self.pp, |square| (above_least(square) >> 8) as i32)], 8);
+    fn diffuse_patch(&self, setup: &TriangleSetup<'_>, length: Length) -> DiffuseProducts {
+        let pp = Nodes::<6, 1, { FIELD_BITS - 2 }>::new([map_six(self.pp, |square| (above_least(square) >> 8) as i32)], 8);
         ByColumn((fitted(&length, setup.gradients), (fitted(&pp, setup.gradients), fitted(&quadratic([self.np]), setup.gradients))))
     }
 }
@@ -243,7 +243,7 @@ struct FromProducts<'a, const LIGHT: bool> {
     lengths: &'a HalfRsqrt,
 }
 
-/// The values of [`Walked`].
+/// The values of [`HighlightProducts`].
 type Value = ([u32; 1], (([u32; 1], [u32; 1]), ([u32; 1], [u32; 1])));
 
 /// N·L, Q5.27, and a highlight.

@@ -15,7 +15,7 @@ use crate::{
     math::highlight_lut::CosineLookup,
     method::{
         TriangleSetup,
-        lighting_model::{EXTRA, LightingModel, NODE, QuadraticNodes, signed},
+        lighting_model::{FIELD_EXTRA, FIELD_NODE, LightingModel, QuadraticNodes, signed},
         node::is_steep,
     },
 };
@@ -26,15 +26,15 @@ pub fn length(setup: &TriangleSetup<'_>, exponent: u16) -> QuadraticNodes<1> {
     // 1/|Ni+Nj| - 1/2, zero at the corners. It is at most 1/2 where the normal is as long as methods want it here; the record of a damaged
     // stream may say so of one that is shorter.
     let node = |inverse: u32| {
-        (inverse.min(1 << INVERSE_SUM_LENGTH).wrapping_sub(1 << (INVERSE_SUM_LENGTH - 1)) << (NODE - INVERSE_SUM_LENGTH)) as i32
+        (inverse.min(1 << INVERSE_SUM_LENGTH).wrapping_sub(1 << (INVERSE_SUM_LENGTH - 1)) << (FIELD_NODE - INVERSE_SUM_LENGTH)) as i32
     };
     let [ab, bc, ca] = if is_steep(exponent) {
-        setup.fine_inverse_sum_lengths().map(|inverse| inverse as i32 - (1 << (NODE - 1)))
+        setup.fine_inverse_sum_lengths().map(|inverse| inverse as i32 - (1 << (FIELD_NODE - 1)))
     } else {
         let [ab, bc, ca] = setup.inverse_sum_lengths();
         [node(ab), node(bc), node(ca)]
     };
-    QuadraticNodes::new([[0, 0, 0, ab, bc, ca]], EXTRA).biased([1 << 29])
+    QuadraticNodes::new([[0, 0, 0, ab, bc, ca]], FIELD_EXTRA).biased([1 << 29])
 }
 
 /// Shades by numerators times a reciprocal length.

@@ -31,7 +31,7 @@ use crate::{
             two_lights::TwoLights,
         },
         largest,
-        lighting_model::{BITS, EXTRA, LightingModel, Lit, QuadraticNodes, quadratic, signed},
+        lighting_model::{FIELD_BITS, FIELD_EXTRA, LightingModel, Lit, QuadraticNodes, quadratic, signed},
         node::map_six,
     },
     pixel::Pixel,
@@ -290,7 +290,7 @@ fn diffuse(setup: &TriangleSetup<'_>, full: u16, cosines: [i32; 6]) -> Quadric<1
 #[inline(never)]
 fn highlight<const ROOT: IsRoot>(setup: &TriangleSetup<'_>, half: [i32; 3], lookup: DefectLookup<'_>, exponent: u16) -> Quadric<1> {
     let half = [map_six(map_six(setup.six_half_from(half, exponent), walked::<ROOT>), |node| lookup.node(node))];
-    Nodes::<6, 1, BITS>::new(half, EXTRA).biased([lookup.half()]).fit(setup.gradients)
+    Nodes::<6, 1, FIELD_BITS>::new(half, FIELD_EXTRA).biased([lookup.half()]).fit(setup.gradients)
 }
 
 /// Values at the pixel are walked diffuse levels, and for highlights 1 minus the root of N·H.

@@ -10,14 +10,14 @@ use zerocopy::{FromBytes, Immutable, IntoBytes, KnownLayout};
 /// A rectangle of pixels. It lies in the renderer's memory.
 #[derive(FromBytes, IntoBytes, Immutable, KnownLayout, Clone, Copy, Debug, PartialEq, Eq)]
 #[repr(C)]
-pub struct Area {
+pub struct PixelRect {
     /// The first column, and one past the last.
     pub columns: [u16; 2],
     /// The first row, and one past the last.
     pub rows: [u16; 2],
 }
 
-impl Area {
+impl PixelRect {
     /// The empty rectangle.
     pub const NONE: Self = Self { columns: [0; 2], rows: [0; 2] };
 
@@ -92,14 +92,14 @@ mod tests {
     use super::*;
     use proptest::prelude::*;
 
-    fn area() -> impl Strategy<Value = Area> {
-        prop::array::uniform2(prop::array::uniform2(0u16..6)).prop_map(|[columns, rows]| Area { columns, rows })
+    fn area() -> impl Strategy<Value = PixelRect> {
+        prop::array::uniform2(prop::array::uniform2(0u16..6)).prop_map(|[columns, rows]| PixelRect { columns, rows })
     }
 
     proptest! {
         #[test]
         fn areas_are_sets_of_pixels(one in area(), other in area()) {
-            let has = |area: &Area, x: u32, y: u32| area.columns().contains(&x) && area.rows().contains(&y);
+            let has = |area: &PixelRect, x: u32, y: u32| area.columns().contains(&x) && area.rows().contains(&y);
             let pixels = || (0..6).flat_map(|x| (0..6).map(move |y| (x, y)));
             let both = one.union(&other);
             prop_assert_eq!(one.is_empty(), !pixels().any(|(x, y)| has(&one, x, y)));
