@@ -19,7 +19,7 @@ fn loops_are_as_short_as_by_hand() {
         (Shader::PHONG, 32),
         (Shader::SQRT6, 20),
         // The general way: a plane and a quadratic in intensities that know no pixel format.
-        (named("gouraud4"), 34),
+        (named("gouraud4"), 33),
         (named("six-point-centre"), 36),
     ];
     check("peer-sphere", &limits);
