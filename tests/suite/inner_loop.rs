@@ -20,7 +20,7 @@ fn loops_are_as_short_as_by_hand() {
         (Shader::SQRT6, 20),
         // The general way: a plane and a quadratic in intensities that know no pixel format.
         (named("gouraud4"), 33),
-        (named("six-point-centre"), 36),
+        (named("six-point-centre"), 34),
     ];
     check("peer-sphere", &limits);
 }
