@@ -20,7 +20,8 @@ const ERROR: f64 = 0.30;
 const DECIDING_ERROR: f64 = 0.48;
 /// Largest difference of any method on materials that are lifted above white, in 1/255.
 const BRIGHT_ERROR: f64 = 0.30;
-/// Largest difference of Phong shading under a near light or for a near viewer, in 1/255: at the exponent 1024, by what rounds at the nodes of the general way.
+/// Largest difference of Phong shading under a near light or for a near viewer, in 1/255: at the exponent 1024, by what rounds at the nodes of the
+/// general way.
 const LOCAL_ERROR: f64 = 0.40;
 /// Frames of the orbit. Errors differ more from pixel to pixel than from frame to frame, so all pixels of few frames are compared; `stress`
 /// looks at other scenes for a minute.
@@ -101,8 +102,8 @@ fn bright_lights_are_clamped_at_the_end() {
     }
 }
 
-/// A near viewer of directional light, a near light under an infinitely far viewer, for which methods may have loops, and both near. Highlights of
-/// all widths.
+/// A near viewer of directional light, a near light under an infinitely far viewer, for which methods may have loops, and both near, with highlights of
+/// all widths. If both are near, they may be opposite at a pixel, where rounding decides: such pixels are judged by their sensitivity.
 #[test]
 fn near_lights_and_viewers_are_as_exact() {
     let cases = ["teapot", "peer-sphere-plastic", "bunny"]
@@ -130,14 +131,22 @@ fn near_lights_and_viewers_are_as_exact() {
             }
             seal(&mut bytes);
             scene.stream = StreamBytes::from(&bytes[..]);
+            let stream = scene.stream.parse().unwrap();
             for number in [0, 40] {
-                for shader in Shader::ALL.iter().copied().filter(|shader| matches!(shader.name(), "phong" | "auto")) {
-                    let size = [scene.size.0, scene.size.1];
-                    let case = Case { size, frame: number, style: shader.into(), ..Case::new(scene.stream.clone()) };
-                    let found = arithmetic::judge(&case).unwrap();
-                    println!("{name:20} {near_light:5} {near_viewer:5} {exponent:5} {number:3} {:5} {found:?}", shader.name());
-                    assert!(found.error <= LOCAL_ERROR, "{name}, exponent {exponent}, frame {number}: {found:?}");
-                    assert!(found.strictly > 3 * (found.leniently + found.not_judged), "{name}: {found:?}");
+                let frame = Frame::new(stream, scene.size, number);
+                let visible = frame.visible();
+                for shader in [Shader::PHONG, Shader::AUTO] {
+                    let error = if near_light && near_viewer {
+                        let size = [scene.size.0, scene.size.1];
+                        let case = Case { size, frame: number, style: shader.into(), ..Case::new(scene.stream.clone()) };
+                        let found = arithmetic::judge(&case).unwrap();
+                        assert!(found.strictly > 3 * (found.leniently + found.not_judged), "{name}: {found:?}");
+                        found.error
+                    } else {
+                        error(&scene, &frame, &visible, shader, number)
+                    };
+                    println!("{name:20} {near_light:5} {near_viewer:5} {exponent:5} {number:3} {:5} {error:.3} LSB", shader.name());
+                    assert!(error <= LOCAL_ERROR, "{name}, exponent {exponent}, frame {number}: {error} LSB");
                 }
             }
         }
