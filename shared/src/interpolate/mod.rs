@@ -29,7 +29,7 @@ pub trait Patch: Copy {
     /// A walker that stands on column `x`; its first step leads to `x - 1`.
     fn enter(&self, x: i32) -> Self::Walker;
 
-    /// The polynomial with `by` added to its values, if it can be raised.
+    /// The polynomial with `by` added to its values. Only polynomials of levels are raised, for dither; others need not implement it.
     #[inline(always)]
     #[must_use]
     fn raised(self, _by: &<Self::Walker as Walker>::Value) -> Self {

@@ -116,6 +116,18 @@ pub(crate) struct Style {
     pub(crate) perspective: bool,
 }
 
+impl Style {
+    /// Whether loops that interpolate on the screen can make the colours.
+    pub(crate) fn is_plain(self) -> bool {
+        !self.by_canvas && !self.perspective
+    }
+
+    /// Whether loops for one constant light, or for two, can draw it.
+    pub(crate) fn has_constant_lights(self) -> bool {
+        (1..=2).contains(&self.lights) && self.is_plain()
+    }
+}
+
 /// Loops of a method for some styles, compiled for each pixel format. All other styles are drawn by the general loop, through a [`Canvas`].
 pub(crate) trait Loops {
     /// Whether the loops in three channels are compiled apart from loops in one. Otherwise the method asks for the channels itself.

@@ -93,7 +93,7 @@ pub(crate) struct Duff;
 
 impl Loops for Duff {
     fn take(style: Style) -> bool {
-        (1..=2).contains(&style.lights) && !style.by_canvas && !style.perspective
+        style.has_constant_lights()
     }
 
     #[inline(always)]

@@ -21,6 +21,7 @@ use crate::{
         constant_lights::{DiffuseOnly, LitColours, OneLightRamp, OneLightRgb, Shades, WithHighlight, node},
         lights::{Viewer, point},
         material_tables::MaterialTables,
+        reflectance::Reflectance,
     },
     math::{
         highlight_lut::CosineLookup,
@@ -52,7 +53,7 @@ const HALF: u32 = 25;
 
 /// Whether there are loops for `style`.
 pub(crate) fn take(style: Style) -> bool {
-    style.one_near && !style.by_canvas && !style.perspective
+    style.one_near && style.is_plain()
 }
 
 /// How a triangle has been drawn, or is to be drawn.
@@ -78,7 +79,7 @@ pub(crate) fn draw<C: Pixel>(
             // What the band above has saved has no highlight: polynomials of all others are too long.
             if setup.place.is_none() {
                 let products = Products::new(setup, eye, towards)?;
-                if products.may_have_highlight(setup, light, tables) {
+                if products.may_have_highlight(setup, light, tables.reflectance) {
                     return draw_highlight::<false, C>(setup, &products, light, shading, tables, band).map(Drawn::Pixels);
                 }
             }
@@ -100,12 +101,12 @@ fn draw_by_near_light<C: Pixel>(
     band: &mut Band<'_, C>,
 ) -> Option<u32> {
     let ramp = if tables.reflectance.three_channels() { tables.diffuse_ramp() } else { tables.one_light_ramp() };
-    // What the band above has saved has no highlight, see above.
+    // What the band above has saved has no highlight: polynomials of all others are too long. It is loaded in place of this one.
     let mut patch = DiffuseProducts::default();
     if setup.place.is_none() {
         let products = Products::new(setup, position, towards)?;
         let view = setup.corner_cosines(towards);
-        if ramp.is_none() || products.may_have_highlight(setup, view, tables) {
+        if ramp.is_none() || products.may_have_highlight(setup, view, tables.reflectance) {
             return draw_highlight::<true, C>(setup, &products, view, shading, tables, band);
         }
         patch = products.diffuse_patch(setup, duff::tabled(setup)?);
@@ -177,8 +178,8 @@ impl Products {
     }
 
     /// Whether a highlight may be visible on the triangle, from N·F at the corners.
-    fn may_have_highlight<C: Pixel>(&self, setup: &TriangleSetup<'_>, fixed: [i32; 3], tables: MaterialTables<'_, C>) -> bool {
-        self.largest_half(fixed) >= setup.highlight_threshold(tables.reflectance) >> (COSINE - HALF)
+    fn may_have_highlight(&self, setup: &TriangleSetup<'_>, fixed: [i32; 3], reflectance: &Reflectance) -> bool {
+        self.largest_half(fixed) >= setup.highlight_threshold(reflectance) >> (COSINE - HALF)
     }
 
     /// A bound of N·H on the triangle, Q7.25, from N·F at the corners.

@@ -63,7 +63,7 @@ impl Method for RenqNewton {
 
 impl Loops for RenqNewton {
     fn take(style: Style) -> bool {
-        style.lights == 1 && !style.by_canvas && !style.perspective
+        style.lights == 1 && style.is_plain()
     }
 
     #[inline(always)]

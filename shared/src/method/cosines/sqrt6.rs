@@ -117,7 +117,7 @@ fn shade_constant<const ROOT: IsRoot>(setup: &TriangleSetup<'_>, shading: &Shadi
 
 impl Loops for Sqrt6 {
     fn take(style: Style) -> bool {
-        (1..=2).contains(&style.lights) && !style.by_canvas && !style.perspective
+        style.has_constant_lights()
     }
 
     #[inline(always)]
@@ -133,7 +133,7 @@ impl Loops for Sqrt6 {
 
 impl Loops for SixCosines {
     fn take(style: Style) -> bool {
-        Sqrt6::take(style)
+        style.has_constant_lights()
     }
 
     #[inline(always)]

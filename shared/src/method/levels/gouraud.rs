@@ -52,7 +52,7 @@ impl Loops for Gouraud {
     const DECLINES: bool = false;
 
     fn take(style: Style) -> bool {
-        !style.by_canvas && !style.perspective
+        style.is_plain()
     }
 
     #[inline(always)]

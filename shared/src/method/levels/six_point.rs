@@ -39,7 +39,7 @@ impl Method for SixPoint {
 
 impl Loops for SixPoint {
     fn take(style: Style) -> bool {
-        !style.by_canvas && !style.perspective
+        style.is_plain()
     }
 
     #[inline(always)]
