@@ -80,8 +80,8 @@ impl Triangle {
         })
     }
 
-    /// Largest errors of each kind for an exponent, over the whole highlight. The error of [`microphong::method::auto::highlight_error::Kind::Cosines`] is
-    /// multiplied by the exponent over [`USUAL_EXPONENT`].
+    /// Largest errors of each kind for an exponent, over the whole highlight. The error of
+    /// [`microphong::method::auto::highlight_error::Kind::Cosines`] is multiplied by the exponent over [`USUAL_EXPONENT`].
     #[must_use]
     pub fn errors(&self, exponent: u16) -> [f64; KINDS] {
         let n = f64::from(exponent);

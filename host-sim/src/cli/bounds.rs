@@ -8,8 +8,8 @@ use serde::Serialize;
 
 /// Search for the largest errors of interpolated highlights, and print the table that `auto` uses to choose methods
 ///
-/// The table is a file of the core, shared/src/method/auto/highlight_error/table.rs. It holds the largest errors that were found, with a margin. With --check
-/// the command prints no table. Instead it searches for triangles whose errors exceed the compiled table.
+/// The table is a file of the core, shared/src/method/auto/highlight_error/table.rs. It holds the largest errors that were found, with a margin.
+/// With --check the command prints no table. Instead it searches for triangles whose errors exceed the compiled table.
 #[derive(clap::Args)]
 #[command(after_help = EXAMPLES)]
 pub(crate) struct Arguments {

@@ -4,8 +4,9 @@
 //! over r. Where this stays below the cosine whose power counts as 0, for each light, only diffuse light is left, and it changes slowly. Near lights
 //! have no such bound at a fair price, so all triangles are drawn by Phong shading.
 //!
-//! Cost: three comparisons a triangle and light, and then the cost of [`microphong::method::levels::gouraud`] or [`microphong::method::cosines::phong`]. Not
-//! continuous where the two meet. Error against Phong: Gouraud's error of diffuse light. Domain: any lights.
+//! Cost: three comparisons a triangle and light, and then the cost of [`microphong::method::levels::gouraud`] or
+//! [`microphong::method::cosines::phong`]. Not continuous where the two meet. Error against Phong: Gouraud's error of diffuse light. Domain: any
+//! lights.
 
 use microphong::method::{
     Canvas, Costs, Facts, Highlight, HighlightField, Method, RANGE, Shading, Source, TriangleSetup, VertexLight, cosine,
