@@ -61,14 +61,8 @@ pub fn shade(setup: &TriangleSetup<'_>, shading: &Shading<'_>, canvas: &mut dyn 
     draw_products(setup, shading, square(setup, shading.exponent), Rooted, canvas)
 }
 
-/// Shades by `model`. `common` and N·L and N·H of each light are interpolated; normals are not normalised, so these are linear under constant lights.
-pub(super) fn draw_constant<K: Field, F>(
-    setup: &TriangleSetup<'_>,
-    shading: &Shading<'_>,
-    common: K,
-    model: F,
-    canvas: &mut dyn Canvas,
-) -> u32
+/// Shades by `model` under constant lights, where N·L and N·H are linear.
+fn draw_constant<K: Field, F>(setup: &TriangleSetup<'_>, shading: &Shading<'_>, common: K, model: F, canvas: &mut dyn Canvas) -> u32
 where
     F: LightingModel<K::Value, [u32; 2]>,
 {
@@ -125,19 +119,18 @@ pub(crate) fn draw<C: Pixel>(
         return None;
     }
     let square = tabled(setup)?;
-    let halves = HalfRsqrt::get();
-    let half_reciprocal = |[square]: [u32; 1]| halves.rsqrt(square) as i32;
-    // One closure for both, or each would have loops of its own.
-    let length = || square;
     if LIGHTS && tables.reflectance.lights() == 2 {
-        return quotient::draw_two::<true, _, C>(setup, length, half_reciprocal, tables, band);
+        return quotient::draw_two(setup, &square, tables, band);
     }
-    quotient::draw::<true, _, C>(setup, &corners(), length, half_reciprocal, tables, band)
+    quotient::draw(setup, &corners(), &square, tables, band)
 }
+
+/// The field of [`tabled`].
+pub(crate) type Square = Nodes<6, 1, HAVERSINE_RANGE>;
 
 /// The field |N|² minus [`LEAST`], Q0.32; `None` if |N|² leaves the table of roots.
 #[inline(always)]
-pub(crate) fn tabled(setup: &TriangleSetup<'_>) -> Option<Nodes<6, 1, HAVERSINE_RANGE>> {
+pub(crate) fn tabled(setup: &TriangleSetup<'_>) -> Option<Square> {
     let [ab, bc, ca] = setup.edges(setup.triangle.haversine);
     if is_curved(setup) || ab.max(bc).max(ca) >= 1 << HAVERSINE_RANGE {
         return None;
@@ -148,7 +141,7 @@ pub(crate) fn tabled(setup: &TriangleSetup<'_>) -> Option<Nodes<6, 1, HAVERSINE_
 
 /// Bits of the haversine of an edge whose normals are at most 90 degrees apart. They are so few that triangles are set up in words, see
 /// [`crate::setup::word_sized`].
-pub(crate) const HAVERSINE_RANGE: u32 = HAVERSINE - 1;
+const HAVERSINE_RANGE: u32 = HAVERSINE - 1;
 
 /// Whether the interpolated normal may be shorter than 1/2, where the table of roots and every fit of 1/|N| end.
 pub fn is_curved(setup: &TriangleSetup<'_>) -> bool {

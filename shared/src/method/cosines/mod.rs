@@ -8,9 +8,5 @@ mod near;
 pub mod phong;
 mod quotient;
 #[doc(hidden)]
-pub mod renq;
-#[doc(hidden)]
-pub mod renq_newton;
-#[doc(hidden)]
 pub mod sqrt6;
 mod two_lights;

@@ -195,7 +195,7 @@ impl Products {
 
     /// The polynomials of all products.
     #[inline(never)]
-    fn patch(&self, setup: &TriangleSetup<'_>, fixed: [i32; 3], length: Length) -> HighlightProducts {
+    fn patch(&self, setup: &TriangleSetup<'_>, fixed: [i32; 3], length: duff::Square) -> HighlightProducts {
         let plane = |corners| fitted(&linear([corners]), setup.gradients);
         let ByColumn((length, quadratics)) = self.diffuse_patch(setup, length);
         ByColumn((length, (quadratics, (plane(fixed), plane(self.fp)))))
@@ -203,14 +203,11 @@ impl Products {
 
     /// The polynomials without those that highlights alone need.
     #[inline(never)]
-    fn diffuse_patch(&self, setup: &TriangleSetup<'_>, length: Length) -> DiffuseProducts {
+    fn diffuse_patch(&self, setup: &TriangleSetup<'_>, length: duff::Square) -> DiffuseProducts {
         let pp = Nodes::<6, 1, { FIELD_BITS - 2 }>::new([map_six(self.pp, |square| (above_least(square) >> 8) as i32)], 8);
         ByColumn((fitted(&length, setup.gradients), (fitted(&pp, setup.gradients), fitted(&quadratic([self.np]), setup.gradients))))
     }
 }
-
-/// The field |N|².
-type Length = Nodes<6, 1, { duff::HAVERSINE_RANGE }>;
 
 /// The coefficients of the quadratic through six nodes, Q2.30, in the form of Bernstein: their least and their largest are bounds.
 fn coefficients([a, b, c, ab, bc, ca]: [i32; 6]) -> [i32; 6] {
