@@ -15,6 +15,7 @@ pub mod levels;
 pub mod lighting_model;
 #[doc(hidden)]
 pub mod node;
+mod perspective;
 #[doc(hidden)]
 pub mod sub_triangle;
 #[doc(hidden)]
@@ -117,9 +118,9 @@ pub(crate) struct Style {
 }
 
 impl Style {
-    /// Whether loops that interpolate on the screen can make the colours.
+    /// Whether loops can make the colours.
     pub(crate) fn is_plain(self) -> bool {
-        !self.by_canvas && !self.perspective
+        !self.by_canvas
     }
 
     /// Whether loops for one constant light, or for two, can draw it.
@@ -136,7 +137,7 @@ pub(crate) trait Loops {
     /// Whether the method has only the general loop.
     const GENERAL: bool = false;
 
-    /// Whether the loops leave some triangles of the styles that they take to the general loop.
+    /// Whether the loops leave some triangles of the styles that they take to the general loop, also without perspective.
     const DECLINES: bool = true;
 
     /// Whether there are loops for `style`.
@@ -189,6 +190,13 @@ pub const RANGE: u32 = LEVEL + 8;
 
 /// N·L and N·H of a constant light at the corners, Q2.30.
 pub(crate) type CornerCosines = [[i32; 3]; 2];
+
+/// The largest difference between the levels of three corners, in any channel.
+pub(crate) fn largest_range(corners: [[i32; 3]; 3]) -> u32 {
+    let [[r0, g0, b0], [r1, g1, b1], [r2, g2, b2]] = corners;
+    let range = |a: i32, b: i32, c: i32| (a.max(b).max(c) - a.min(b).min(c)) as u32;
+    range(r0, r1, r2).max(range(g0, g1, g2)).max(range(b0, b1, b2))
+}
 
 /// The largest of three values.
 #[inline]
@@ -260,6 +268,18 @@ impl TriangleSetup<'_> {
         let (a, b, c) = (a.depth, b.depth, c.depth);
         // If all corners are equally far, interpolation on the screen is the same.
         (self.perspective && !(a == b && b == c)).then_some([a, b, c])
+    }
+
+    /// The bound of [`perspective::screen_error`] on this triangle; 0 if perspective is off.
+    pub(crate) fn perspective_error(&self, range: u32) -> u32 {
+        self.inv_depth().map_or(0, |inv_depth| perspective::screen_error(inv_depth, range))
+    }
+
+    /// Whether values that are linear over the triangle and differ by `range`, Q9.7, between corners have to be interpolated in perspective: if they
+    /// would otherwise be off by more than a quarter of a level.
+    #[inline(always)]
+    pub(crate) fn needs_perspective(&self, range: impl FnOnce() -> u32) -> bool {
+        PERSPECTIVE && self.perspective && self.place.is_none() && self.perspective_error(range()) > 1 << (LEVEL - 2)
     }
 
     /// Sorts three numbers that belong to the edges of the triangle in the mesh file into the order of the edges here: 0-1, 1-2, 2-0.

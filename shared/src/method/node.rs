@@ -213,6 +213,12 @@ fn sums([a, b, c]: [&Vertex; 3]) -> [([i32; 3], [i32; 3]); 3] {
     })
 }
 
+/// The coefficients of the quadratic through six nodes, in the form of Bernstein: their least and their largest are bounds of its values.
+pub(crate) fn coefficients([a, b, c, ab, bc, ca]: [i32; 6]) -> [i32; 6] {
+    let middle = |a: i32, b: i32, ab: i32| ab + (ab - ((a >> 1) + (b >> 1)));
+    [a, b, c, middle(a, b, ab), middle(b, c, bc), middle(c, a, ca)]
+}
+
 /// [`TriangleSetup::inverse_sum_lengths`] where the 16 bits of a record (`given`) do not hold all of them.
 #[cold]
 #[inline(never)]

@@ -12,16 +12,19 @@ use crate::{
     arch::product::{product, upper},
     features::LIGHTS,
     format::{HAVERSINE, NORMAL_LENGTH, UNIT},
-    interpolate::field::{Field, Nodes},
+    interpolate::field::Field,
     lighting::{lights::Source, material_tables::MaterialTables, reflectance::Reflection},
     math::{
         highlight_lut::CosineLookup,
-        rsqrt::{HalfRsqrt, LEAST},
+        rsqrt::HalfRsqrt,
         vector::{add, narrow_dot, wide},
     },
     method::{
         CornerCosines, Loops, Shading, Style, TriangleSetup,
-        cosines::quotient,
+        cosines::{
+            quotient,
+            scale::{self, Lengths, UnitSquare},
+        },
         largest,
         lighting_model::{FIELD_EXTRA, FIELD_NODE, LightingModel, Lit, QuadraticNodes, linear, signed},
         node::is_steep,
@@ -118,30 +121,18 @@ pub(crate) fn draw<C: Pixel>(
     if setup.gradients.is_any() && !setup.gradients.steep(setup.gradients.steepness().halved(3)).walks_in_words() {
         return None;
     }
-    let square = tabled(setup)?;
+    let lengths = Lengths::of(setup)?;
     if LIGHTS && tables.reflectance.lights() == 2 {
-        return quotient::draw_two(setup, &square, tables, band);
+        return quotient::draw_two(setup, &lengths, tables, band);
     }
-    quotient::draw(setup, &corners(), &square, tables, band)
+    quotient::draw(setup, &corners(), &lengths, tables, band)
 }
 
-/// The field of [`tabled`].
-pub(crate) type Square = Nodes<6, 1, HAVERSINE_RANGE>;
-
-/// The field |N|² minus [`LEAST`], Q0.32; `None` if |N|² leaves the table of roots.
+/// The field |N|² minus [`LEAST`](crate::math::rsqrt::LEAST), Q0.32, of normals of unit length; `None` if |N|² leaves the table of roots.
 #[inline(always)]
-pub(crate) fn tabled(setup: &TriangleSetup<'_>) -> Option<Square> {
-    let [ab, bc, ca] = setup.edges(setup.triangle.haversine);
-    if is_curved(setup) || ab.max(bc).max(ca) >= 1 << HAVERSINE_RANGE {
-        return None;
-    }
-    let nodes = [0, 0, 0, -i32::from(ab), -i32::from(bc), -i32::from(ca)];
-    Some(Nodes::new([nodes], 32 - HAVERSINE).biased([0u32.wrapping_sub(LEAST) as i32]))
+pub(super) fn tabled(setup: &TriangleSetup<'_>) -> Option<UnitSquare> {
+    scale::is_flat(setup).then(|| scale::unit_square(setup))
 }
-
-/// Bits of the haversine of an edge whose normals are at most 90 degrees apart. They are so few that triangles are set up in words, see
-/// [`crate::setup::word_sized`].
-const HAVERSINE_RANGE: u32 = HAVERSINE - 1;
 
 /// Whether the interpolated normal may be shorter than 1/2, where the table of roots and every fit of 1/|N| end.
 pub fn is_curved(setup: &TriangleSetup<'_>) -> bool {

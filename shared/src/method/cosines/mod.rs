@@ -7,6 +7,7 @@ mod near;
 #[doc(hidden)]
 pub mod phong;
 mod quotient;
+mod scale;
 #[doc(hidden)]
 pub mod sqrt6;
 mod two_lights;

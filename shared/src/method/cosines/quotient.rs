@@ -18,12 +18,11 @@ use crate::{
     method::{
         CornerCosines, TriangleSetup,
         cosines::{
-            duff::Square,
             lit::{AtPixel, FromValues, LitShader},
+            scale::Lengths,
             two_lights::TwoLights,
         },
         largest,
-        lighting_model::fitted,
     },
     pixel::Pixel,
     raster::{band::Band, pixel_shader::Solid},
@@ -123,12 +122,12 @@ impl FromValues<(QuotientLookup<'_>, HalfReciprocal), ([u32; 1], [u32; 1])> for 
     }
 }
 
-/// Draws `setup` under one light with these `cosines` and the field `square` of |N|²; `None` if its levels do not fit their formats.
+/// Draws `setup` under one light with these `cosines` and `lengths` of normals; `None` if its levels do not fit their formats.
 #[inline(always)]
 pub(super) fn draw<C: Pixel>(
     setup: &TriangleSetup<'_>,
     cosines: &CornerCosines,
-    square: &Square,
+    lengths: &Lengths,
     tables: MaterialTables<'_, C>,
     band: &mut Band<'_, C>,
 ) -> Option<u32> {
@@ -141,9 +140,9 @@ pub(super) fn draw<C: Pixel>(
     let ramp = if rgb.is_some() { tables.diffuse_ramp() } else { Some(tables.one_light_ramp()?) };
     Some(match (ramp, rgb) {
         // Boards with displays of greys have little flash: no loop of its own for that there.
-        (Some(ramp), _) if !C::GRAY && has_no_highlight => draw_diffuse(setup, &cosines[0], square, ramp, tables, band),
-        (_, Some(rgb)) => draw_rgb(setup, cosines, square, rgb, lut, band),
-        (ramp, None) => draw_in(setup, cosines, square, ramp?, lut, band),
+        (Some(ramp), _) if !C::GRAY && has_no_highlight => draw_diffuse(setup, &cosines[0], lengths, ramp, tables, band),
+        (_, Some(rgb)) => draw_rgb(setup, cosines, lengths, rgb, lut, band),
+        (ramp, None) => draw_in(setup, cosines, lengths, ramp?, lut, band),
     })
 }
 
@@ -152,19 +151,19 @@ pub(super) fn draw<C: Pixel>(
 fn draw_rgb<C: Pixel>(
     setup: &TriangleSetup<'_>,
     cosines: &CornerCosines,
-    square: &Square,
+    lengths: &Lengths,
     colours: OneLightRgb<'_, C>,
     lut: &HighlightLut,
     band: &mut Band<'_, C>,
 ) -> u32 {
-    draw_in(setup, cosines, square, colours, lut, band)
+    draw_in(setup, cosines, lengths, colours, lut, band)
 }
 
 /// Draws `setup` under two constant lights.
 #[inline(never)]
 pub(super) fn draw_two<C: Pixel>(
     setup: &TriangleSetup<'_>,
-    square: &Square,
+    lengths: &Lengths,
     tables: MaterialTables<'_, C>,
     band: &mut Band<'_, C>,
 ) -> Option<u32> {
@@ -172,24 +171,23 @@ pub(super) fn draw_two<C: Pixel>(
     let full = colours.diffuse();
     let lookup = QuotientLookup::new(tables.reflectance.table()?);
     let at = QuotientWithHighlight(lookup, HalfRsqrt::get());
-    let both = |[towards, half]: &CornerCosines| (plane(setup, full, towards), numerator(setup, lookup, half));
-    let length = || fitted(square, setup.gradients);
+    let both = |[towards, half]: &CornerCosines| (plane(setup, full, lengths, towards), numerator(setup, lookup, lengths, half));
     setup.count(band.top, &mut band.counts.without_highlight, 2 - highlights);
     Some(match highlights {
         1 if setup.leaves_out_light(tables.reflectance, &second[0]) => {
             setup.count(band.top, &mut band.counts.without_light, 1);
-            draw_rgb(setup, &first, square, colours.first(), tables.reflectance.table()?, band)
+            draw_rgb(setup, &first, lengths, colours.first(), tables.reflectance.table()?, band)
         }
         0 => {
-            let patch = || ((plane(setup, full, &first[0]), plane(setup, full, &second[0])), length());
+            let patch = || ((plane(setup, full, lengths, &first[0]), plane(setup, full, lengths, &second[0])), lengths.square(setup));
             setup.fill(patch, LitShader::of::<(DiffuseOnly, DiffuseOnly)>(colours, Quotient(HalfRsqrt::get())), band)
         }
         1 => {
-            let patch = || (ByColumn((both(&first), plane(setup, full, &second[0]))), length());
+            let patch = || (ByColumn((both(&first), plane(setup, full, lengths, &second[0]))), lengths.square(setup));
             setup.fill(patch, LitShader::of::<(HighlightFirst, DiffuseOnly)>(colours, at), band)
         }
         _ => {
-            let patch = || (ByColumn((both(&first), both(&second))), length());
+            let patch = || (ByColumn((both(&first), both(&second))), lengths.square(setup));
             setup.fill(patch, LitShader::of::<(HighlightFirst, HighlightFirst)>(colours, at), band)
         }
     })
@@ -200,13 +198,13 @@ pub(super) fn draw_two<C: Pixel>(
 fn draw_in<T: Shades<WithHighlight>>(
     setup: &TriangleSetup<'_>,
     cosines: &CornerCosines,
-    square: &Square,
+    lengths: &Lengths,
     colours: T,
     lut: &HighlightLut,
     band: &mut Band<'_, T::Pixel>,
 ) -> u32 {
     let lookup = QuotientLookup::new(lut);
-    let patch = || patch(setup, colours.diffuse(), lookup, cosines, square);
+    let patch = || patch(setup, colours.diffuse(), lookup, cosines, lengths);
     setup.fill(patch, LitShader::of::<WithHighlight>(colours, QuotientWithHighlight(lookup, HalfRsqrt::get())), band)
 }
 
@@ -215,7 +213,7 @@ fn draw_in<T: Shades<WithHighlight>>(
 fn draw_diffuse<C: Pixel>(
     setup: &TriangleSetup<'_>,
     towards: &[i32; 3],
-    square: &Square,
+    lengths: &Lengths,
     colours: OneLightRamp<'_, C>,
     tables: MaterialTables<'_, C>,
     band: &mut Band<'_, C>,
@@ -225,40 +223,42 @@ fn draw_diffuse<C: Pixel>(
         return setup.fill(|| Constant, Solid::new(colours.unlit()), band);
     }
     setup.count(band.top, &mut band.counts.without_highlight, 1);
-    let patch = || diffuse_patch(setup, colours.diffuse(), towards, square);
+    let patch = || diffuse_patch(setup, colours.diffuse(), towards, lengths);
     setup.fill(patch, LitShader::of::<DiffuseOnly>(colours, Quotient(HalfRsqrt::get())), band)
 }
 
 /// The numerator of diffuse light. `full` is the material's level at cosine 1.
 #[inline(always)]
-fn diffuse(setup: &TriangleSetup<'_>, full: u16, &[a, b, c]: &[i32; 3]) -> Plane<1> {
+fn diffuse(setup: &TriangleSetup<'_>, full: u16, lengths: &Lengths, towards: &[i32; 3]) -> Plane<1> {
+    let [a, b, c] = lengths.apply(towards);
     let nodes = [node(full, a, NODE), node(full, b, NODE), node(full, c, NODE)];
     Nodes::<3, 1, RANGE>::new([nodes], LEVEL - NODE).fit(setup.gradients)
 }
 
 /// A function of its own around [`diffuse`].
 #[inline(never)]
-fn plane(setup: &TriangleSetup<'_>, full: u16, towards: &[i32; 3]) -> Plane<1> {
-    diffuse(setup, full, towards)
+fn plane(setup: &TriangleSetup<'_>, full: u16, lengths: &Lengths, towards: &[i32; 3]) -> Plane<1> {
+    diffuse(setup, full, lengths, towards)
 }
 
 /// The numerator of the highlight.
 #[inline(always)]
-fn highlight(setup: &TriangleSetup<'_>, lookup: QuotientLookup<'_>, &[a, b, c]: &[i32; 3]) -> Plane<1> {
+fn highlight(setup: &TriangleSetup<'_>, lookup: QuotientLookup<'_>, lengths: &Lengths, half: &[i32; 3]) -> Plane<1> {
+    let [a, b, c] = lengths.apply(half);
     let half = [lookup.node(a), lookup.node(b), lookup.node(c)];
     Nodes::<3, 1, STEPS>::new([half], highlight_lookup::EXTRA).fit(setup.gradients)
 }
 
 /// A function of its own around [`highlight`].
 #[inline(never)]
-fn numerator(setup: &TriangleSetup<'_>, lookup: QuotientLookup<'_>, half: &[i32; 3]) -> Plane<1> {
-    highlight(setup, lookup, half)
+fn numerator(setup: &TriangleSetup<'_>, lookup: QuotientLookup<'_>, lengths: &Lengths, half: &[i32; 3]) -> Plane<1> {
+    highlight(setup, lookup, lengths, half)
 }
 
 /// The numerator of diffuse light, and |N|².
 #[inline(never)]
-fn diffuse_patch(setup: &TriangleSetup<'_>, full: u16, towards: &[i32; 3], square: &Square) -> (Plane<1>, Quadric<1>) {
-    (diffuse(setup, full, towards), square.fit(setup.gradients))
+fn diffuse_patch(setup: &TriangleSetup<'_>, full: u16, towards: &[i32; 3], lengths: &Lengths) -> (Plane<1>, Quadric<1>) {
+    (diffuse(setup, full, lengths, towards), lengths.square(setup))
 }
 
 /// The numerators of diffuse light and of the highlight, and |N|².
@@ -268,8 +268,8 @@ fn patch(
     full: u16,
     lookup: QuotientLookup<'_>,
     [towards, half]: &CornerCosines,
-    square: &Square,
+    lengths: &Lengths,
 ) -> ((Plane<1>, Plane<1>), Quadric<1>) {
     // Two planes of one channel, because the compiler keeps one plane of two channels in memory.
-    ((diffuse(setup, full, towards), highlight(setup, lookup, half)), square.fit(setup.gradients))
+    ((diffuse(setup, full, lengths, towards), highlight(setup, lookup, lengths, half)), lengths.square(setup))
 }

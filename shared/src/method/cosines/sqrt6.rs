@@ -117,7 +117,7 @@ fn shade_constant<const ROOT: IsRoot>(setup: &TriangleSetup<'_>, shading: &Shadi
 
 impl Loops for Sqrt6 {
     fn take(style: Style) -> bool {
-        style.has_constant_lights()
+        style.has_constant_lights() && !style.perspective
     }
 
     #[inline(always)]
@@ -133,7 +133,7 @@ impl Loops for Sqrt6 {
 
 impl Loops for SixCosines {
     fn take(style: Style) -> bool {
-        style.has_constant_lights()
+        style.has_constant_lights() && !style.perspective
     }
 
     #[inline(always)]

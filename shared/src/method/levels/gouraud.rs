@@ -11,7 +11,7 @@ use crate::{
         material_tables::MaterialTables,
         reflectance::{Highlight, Reflectance},
     },
-    method::{Costs, Facts, HighlightField, Loops, Method, RANGE, Shading, Style, TriangleSetup, VertexLight, fit_levels},
+    method::{Costs, Facts, HighlightField, Loops, Method, RANGE, Shading, Style, TriangleSetup, VertexLight, fit_levels, largest_range},
     pixel::Pixel,
     raster::{band::Band, canvas::Canvas, pixel_shader::Ramp},
     setup::gradients::Gradients,
@@ -63,6 +63,9 @@ impl Loops for Gouraud {
         band: &mut Band<'_, C>,
     ) -> Option<u32> {
         let [a, b, c] = setup.corners;
+        if setup.needs_perspective(|| largest_range(corner_levels(setup, shading))) {
+            return None;
+        }
         if !THREE {
             return Some(setup.fill(|| one::<C>(setup.gradients, [a.light[2], b.light[2], c.light[2]]), Ramp(tables.ramps), band));
         }

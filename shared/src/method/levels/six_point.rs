@@ -6,7 +6,10 @@
 use crate::{
     interpolate::by_column::ByColumn,
     lighting::{material_tables::MaterialTables, reflectance::Highlight},
-    method::{Costs, Facts, HighlightField, Loops, Method, RANGE, Shading, Style, TriangleSetup, VertexLight, node::map_six},
+    method::{
+        Costs, Facts, HighlightField, Loops, Method, RANGE, Shading, Style, TriangleSetup, VertexLight,
+        node::{coefficients, map_six},
+    },
     pixel::Pixel,
     raster::{band::Band, canvas::Canvas},
 };
@@ -49,6 +52,9 @@ impl Loops for SixPoint {
         tables: MaterialTables<'_, C>,
         band: &mut Band<'_, C>,
     ) -> Option<u32> {
+        if setup.needs_perspective(|| 2 * largest_of_quadratics(&levels(setup, shading))) {
+            return None;
+        }
         let reflectance = shading.reflectance;
         // One constant light without a highlight is one number also in three channels.
         let one = C::GRAY
@@ -63,6 +69,19 @@ impl Loops for SixPoint {
         };
         Some(Shading::fill_one(setup, nodes, tables, band))
     }
+}
+
+/// The largest difference between two coefficients, in the form of Bernstein, of the quadratic through six nodes, in any channel.
+///
+/// A quadratic is the mean of its coefficients if each of two indices is drawn with the weights b of the corners. If they are drawn with other weights,
+/// it differs by at most this range times twice the distance of the weights, see [`TriangleSetup::perspective_error`].
+fn largest_of_quadratics(channels: &[[i32; 6]; 3]) -> u32 {
+    let range = |nodes: [i32; 6]| {
+        let coefficients = coefficients(nodes);
+        let (least, most) = coefficients.iter().fold((i32::MAX, i32::MIN), |(least, most), &c| (least.min(c), most.max(c)));
+        (most - least) as u32
+    };
+    channels.iter().fold(0, |largest, &nodes| largest.max(range(nodes)))
 }
 
 /// Draws `setup` in three channels.
