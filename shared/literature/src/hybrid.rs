@@ -9,13 +9,13 @@ use crate::{
     angular::{Turned, turned},
     arc::Arc,
     parabola::{Lobe, Parabolas, PiecewiseQuadratic},
-    scanline::{Edges, Rows},
+    scanline::{self, Edges, Rows},
 };
 use microphong::{
     math::vector::normalise,
     method::{
-        Canvas, Constant, CosineLookup, Costs, Facts, Highlight, HighlightField, LightingModel, Method, Patch, Reflection, Shading, Source,
-        TriangleSetup, VertexLight, cosine, quadratic, signed,
+        Canvas, Constant, CosineLookup, Costs, Facts, Field, Highlight, HighlightField, LightingModel, Method, Patch, Reflection, Shading,
+        Source, TriangleSetup, VertexLight, cosine, quadratic, signed,
     },
 };
 
@@ -82,7 +82,7 @@ fn draw(setup: &TriangleSetup<'_>, shading: &Shading<'_>, fit: fn(u16) -> Parabo
     let constant = |direction| bows(Turned { normals: setup.corner_nodes().map(|node| node.normal), direction });
     let (nodes, is_constant) = (setup.six_nodes(shading.exponent), shading.lighting.is_constant());
     let fit = |source: &Source| {
-        let diffuse = setup.fit(&quadratic([nodes.map(|node| cosine(node.normal, source.towards(node.position)))]));
+        let diffuse = quadratic([nodes.map(|node| cosine(node.normal, source.towards(node.position)))]).fit(setup.gradients);
         let highlight = if is_constant {
             let [_, half] = shading.lighting.directions(source, [0; 3]);
             constant(half)
@@ -92,7 +92,7 @@ fn draw(setup: &TriangleSetup<'_>, shading: &Shading<'_>, fit: fn(u16) -> Parabo
         };
         (diffuse, highlight)
     };
-    shading.draw_rows(setup, fit, Constant, Both, canvas)
+    scanline::draw(setup, shading, fit, Constant, Both, canvas)
 }
 
 /// Highlights along the rows.

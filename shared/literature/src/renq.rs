@@ -8,10 +8,11 @@
 //! the least |N|: 3 LSB at worst on a sphere of 168 triangles, 0.3 on one of 690 (exponent 50, ks 1/2).
 //! Domain: any lights; where |N| falls below 1/2, [`microphong::method::cosines::duff`]'s root takes over.
 
+use crate::duff::{draw_products, shade};
 use microphong::method::{
     Canvas, Costs, Facts, Highlight, HighlightField, Method, Shading, TriangleSetup, VertexLight,
     cosines::{
-        duff,
+        duff::is_curved,
         renq::{Scaled, length},
     },
 };
@@ -38,9 +39,9 @@ impl Method for Renq {
     }
 
     fn shade(&self, setup: &TriangleSetup<'_>, shading: &Shading<'_>, canvas: &mut dyn Canvas) -> u32 {
-        if duff::is_curved(setup) {
-            return duff::shade(setup, shading, canvas);
+        if is_curved(setup) {
+            return shade(setup, shading, canvas);
         }
-        duff::draw_products(setup, shading, length(setup, shading.exponent), Scaled, canvas)
+        draw_products(setup, shading, length(setup, shading.exponent), Scaled, canvas)
     }
 }

@@ -13,11 +13,12 @@
 use crate::{
     six_point_centre::{CENTRE, DEPTH},
     split::{Levels, Six, SubTriangles, corners, differ, edges},
+    sub_triangle::SubTriangle,
 };
 use microphong::{
     format::LEVEL,
     math::vector::zip,
-    method::{Canvas, Costs, Facts, Highlight, HighlightField, Method, Shading, SubTriangle, TriangleSetup, VertexLight},
+    method::{Canvas, Costs, Facts, Highlight, HighlightField, Method, Shading, TriangleSetup, VertexLight},
 };
 
 /// Largest error of an edge's parabola at its quarters, Q9.7.

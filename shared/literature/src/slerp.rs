@@ -12,7 +12,7 @@
 use crate::{
     angle::sin_cos,
     arc::Arc,
-    scanline::{Edges, Rows},
+    scanline::{self, Edges, Rows},
 };
 use microphong::{
     math::vector::{dot, normalise, wide},
@@ -54,7 +54,7 @@ fn draw(setup: &TriangleSetup<'_>, shading: &Shading<'_>, canvas: &mut dyn Canva
     // The normal itself: its products with the axes.
     let one = 1 << 30;
     let arcs = Arcs { rows, arcs, along: [[one, 0, 0], [0, one, 0], [0, 0, one]] };
-    shading.draw_rows(setup, |_| Constant, arcs, Many(shading.lighting), canvas)
+    scanline::draw(setup, shading, |_| Constant, arcs, Many(shading.lighting), canvas)
 }
 
 /// The arcs along the three edges between normals of any length.
