@@ -17,8 +17,8 @@ use crate::{
 use microphong::{
     math::vector::{add, dot, normalise, wide, zip},
     method::{
-        Canvas, Constant, CosineLookup, Costs, Facts, Highlight, HighlightField, Lighting, LightingModel, Method, Patch, Reflection,
-        Shading, Source, TriangleSetup, VertexLight, Walker,
+        Canvas, Constant, CosineLookup, Facts, Highlight, HighlightField, Lighting, LightingModel, Method, Patch, Reflection, Shading,
+        Source, TriangleSetup, VertexLight, Walker,
     },
 };
 
@@ -32,7 +32,6 @@ static FACTS: Facts = Facts {
     highlight_field: HighlightField::Level,
     near_lights: true,
     perspective: false,
-    costs: Costs::new(5, 0, 0, 200).per_row(360),
 };
 
 static ORIGINAL: Facts = Facts {
@@ -45,7 +44,6 @@ static ORIGINAL: Facts = Facts {
     highlight_field: HighlightField::Level,
     near_lights: true,
     perspective: false,
-    costs: Costs::new(5, 0, 0, 200).per_row(360),
 };
 
 /// Highlights in three parabolas a span.

@@ -10,7 +10,7 @@
 
 use crate::nodes::six_linear_nodes;
 use microphong::method::{
-    Canvas, Costs, Facts, Field, Highlight, HighlightField, LightingModel, Method, Shading, TriangleSetup, VertexLight,
+    Canvas, Facts, Field, Highlight, HighlightField, LightingModel, Method, Shading, TriangleSetup, VertexLight,
     cosines::duff::{Rooted, draw_constant, shade_constant, square},
 };
 
@@ -24,7 +24,6 @@ static FACTS: Facts = Facts {
     highlight_field: HighlightField::Quadratic,
     near_lights: true,
     perspective: true,
-    costs: Costs::new(6, 3, 2, 60),
 };
 
 /// Duff's form of Phong shading.

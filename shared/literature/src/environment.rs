@@ -16,7 +16,7 @@ use microphong::{
     format::{COSINE, POSITION, UNIT},
     math::vector::{dot, normalise, zip},
     method::{
-        Canvas, CosineLookup, Costs, Facts, Highlight, HighlightField, Lighting, LightingModel, Method, Node, Reflection, Shading, Source,
+        Canvas, CosineLookup, Facts, Highlight, HighlightField, Lighting, LightingModel, Method, Node, Reflection, Shading, Source,
         TriangleSetup, VertexLight, Viewer, cosine, cosines::duff::Root, linear, signed,
     },
 };
@@ -34,7 +34,6 @@ static FACTS: Facts = Facts {
     highlight_field: HighlightField::Plane,
     near_lights: true,
     perspective: true,
-    costs: Costs::new(4, 0, 1, 20),
 };
 
 /// Highlights from a sphere map.

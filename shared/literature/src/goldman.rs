@@ -16,8 +16,8 @@ use crate::{
 use microphong::{
     math::vector::{dot, normalise, wide},
     method::{
-        Canvas, Constant, CosineLookup, Costs, Facts, Highlight, HighlightField, Lighting, LightingModel, Method, Patch, Reflection,
-        Shading, Source, TriangleSetup, VertexLight, Viewer, Walker, cosine,
+        Canvas, Constant, CosineLookup, Facts, Highlight, HighlightField, Lighting, LightingModel, Method, Patch, Reflection, Shading,
+        Source, TriangleSetup, VertexLight, Viewer, Walker, cosine,
     },
 };
 
@@ -31,7 +31,6 @@ static FACTS: Facts = Facts {
     highlight_field: HighlightField::Level,
     near_lights: false,
     perspective: false,
-    costs: Costs::new(7, 4, 1, 30).per_row(70),
 };
 
 /// Goldman's scanlines.

@@ -14,8 +14,8 @@ use crate::{
 use microphong::{
     math::vector::normalise,
     method::{
-        Canvas, Constant, CosineLookup, Costs, Facts, Field, Highlight, HighlightField, LightingModel, Method, Patch, Reflection, Shading,
-        Source, TriangleSetup, VertexLight, cosine, quadratic, signed,
+        Canvas, Constant, CosineLookup, Facts, Field, Highlight, HighlightField, LightingModel, Method, Patch, Reflection, Shading, Source,
+        TriangleSetup, VertexLight, cosine, quadratic, signed,
     },
 };
 
@@ -29,7 +29,6 @@ static FACTS: Facts = Facts {
     highlight_field: HighlightField::Level,
     near_lights: true,
     perspective: false,
-    costs: Costs::new(5, 0, 0, 290).per_row(180),
 };
 
 static ORIGINAL: Facts = Facts {
@@ -42,7 +41,6 @@ static ORIGINAL: Facts = Facts {
     highlight_field: HighlightField::Level,
     near_lights: true,
     perspective: false,
-    costs: Costs::new(5, 0, 0, 290).per_row(180),
 };
 
 /// Highlights in three parabolas a span.

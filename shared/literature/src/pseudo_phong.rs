@@ -8,7 +8,7 @@
 use crate::{split::SubTriangles, sub_triangle::SubTriangle};
 use microphong::{
     format::{SPLITS, SUBPIXEL},
-    method::{Canvas, Costs, Facts, Highlight, HighlightField, Method, Shading, TriangleSetup, VertexLight},
+    method::{Canvas, Facts, Highlight, HighlightField, Method, Shading, TriangleSetup, VertexLight},
 };
 
 /// Logarithm of the longest edge of a part, 8 pixels in 1/16 pixel.
@@ -24,7 +24,6 @@ static FACTS: Facts = Facts {
     highlight_field: HighlightField::Level,
     near_lights: true,
     perspective: false,
-    costs: Costs::new(1, 0, 0, 520),
 };
 
 /// Gouraud shading of small parts.

@@ -10,7 +10,7 @@
 
 use crate::duff::{draw_products, shade};
 use microphong::method::{
-    Canvas, Costs, Facts, Highlight, HighlightField, Method, Shading, TriangleSetup, VertexLight,
+    Canvas, Facts, Highlight, HighlightField, Method, Shading, TriangleSetup, VertexLight,
     cosines::{
         duff::is_curved,
         renq::{Scaled, length},
@@ -27,7 +27,6 @@ static FACTS: Facts = Facts {
     highlight_field: HighlightField::Quadratic,
     near_lights: true,
     perspective: true,
-    costs: Costs::new(5, 2, 1, 60),
 };
 
 /// Quadratic renormalisation.

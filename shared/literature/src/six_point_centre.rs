@@ -13,7 +13,7 @@ use crate::{
 };
 use microphong::{
     format::LEVEL,
-    method::{Canvas, Costs, Facts, Highlight, HighlightField, Method, Shading, TriangleSetup, VertexLight},
+    method::{Canvas, Facts, Highlight, HighlightField, Method, Shading, TriangleSetup, VertexLight},
 };
 
 /// Largest error of the quadratic at the centre, Q9.7.
@@ -31,7 +31,6 @@ static FACTS: Facts = Facts {
     highlight_field: HighlightField::Level,
     near_lights: true,
     perspective: false,
-    costs: Costs::new(2, 0, 0, 175),
 };
 
 /// Six-point shading, split as printed.

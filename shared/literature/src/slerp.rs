@@ -17,8 +17,8 @@ use crate::{
 use microphong::{
     math::vector::{dot, normalise, wide},
     method::{
-        Canvas, Constant, CosineLookup, Costs, Facts, Highlight, HighlightField, Lighting, LightingModel, Method, Patch, Reflection,
-        Shading, Source, TriangleSetup, VertexLight, Walker, cosine,
+        Canvas, Constant, CosineLookup, Facts, Highlight, HighlightField, Lighting, LightingModel, Method, Patch, Reflection, Shading,
+        Source, TriangleSetup, VertexLight, Walker, cosine,
     },
 };
 
@@ -32,7 +32,6 @@ static FACTS: Facts = Facts {
     highlight_field: HighlightField::Level,
     near_lights: false,
     perspective: false,
-    costs: Costs::new(5, 8, 1, 30).per_row(100),
 };
 
 /// Normals turned at constant speed.

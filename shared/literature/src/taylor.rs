@@ -21,8 +21,8 @@ use microphong::{
         vector::{add, dot, sub, wide},
     },
     method::{
-        Canvas, Constant, CosineLookup, Costs, Facts, Highlight, HighlightField, LightingModel, Method, QuadraticNodes, Reflection,
-        Shading, Source, Steepness, TriangleSetup, VertexLight,
+        Canvas, Constant, CosineLookup, Facts, Highlight, HighlightField, LightingModel, Method, QuadraticNodes, Reflection, Shading,
+        Source, Steepness, TriangleSetup, VertexLight,
         lighting_model::{FIELD_EXTRA, FIELD_NODE},
         signed, tiles,
     },
@@ -41,7 +41,6 @@ static FACTS: Facts = Facts {
     highlight_field: HighlightField::Plane,
     near_lights: false,
     perspective: true,
-    costs: Costs::new(5, 0, 1, 180),
 };
 
 /// Taylor quadratics for constant lights.

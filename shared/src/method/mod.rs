@@ -72,7 +72,7 @@ pub use {
         stream::record::Vertex,
     },
     auto::error_bound::ErrorBounds,
-    facts::{Costs, HighlightField},
+    facts::HighlightField,
     lighting_model::{LightingModel, LinearNodes, Lit, QuadraticNodes, linear, quadratic, signed},
     node::Node,
 };

@@ -11,7 +11,7 @@ use crate::nodes::third;
 use field::TenNodes;
 use microphong::{
     format::{BIAS, LEVEL, WALK},
-    method::{Area, Canvas, Costs, Facts, Highlight, HighlightField, Method, Shading, TriangleSetup, VertexLight, Walked},
+    method::{Area, Canvas, Facts, Highlight, HighlightField, Method, Shading, TriangleSetup, VertexLight, Walked},
 };
 
 static FACTS: Facts = Facts {
@@ -24,7 +24,6 @@ static FACTS: Facts = Facts {
     highlight_field: HighlightField::Level,
     near_lights: true,
     perspective: true,
-    costs: Costs::new(3, 0, 0, 330),
 };
 
 /// Ten-point shading.

@@ -11,13 +11,10 @@
 use crate::{
     arch::product::{unsigned_product, upper},
     format::NORMAL_LENGTH,
-    lighting::{
-        material_tables::MaterialTables,
-        reflectance::{Highlight, Reflection},
-    },
+    lighting::{material_tables::MaterialTables, reflectance::Reflection},
     math::highlight_lut::CosineLookup,
     method::{
-        Costs, Facts, HighlightField, Loops, Method, Shading, Style, TriangleSetup, VertexLight,
+        Facts, HighlightField, Loops, Method, Shading, Style, TriangleSetup, VertexLight,
         cosines::{duff, phong::Phong, quotient, renq},
         lighting_model::{LightingModel, signed},
     },
@@ -30,12 +27,9 @@ static FACTS: Facts = Facts {
     id: 25,
     source: "microphong 2026",
     vertex_light: VertexLight::Cosines,
-    highlight: Highlight::Half,
     highlight_levels: true,
     highlight_field: HighlightField::Quadratic,
-    near_lights: true,
-    perspective: true,
-    costs: Costs::new(7, 5, 1, 85),
+    ..Facts::OWN
 };
 
 /// Quadratic renormalisation, corrected by Newton's iteration.

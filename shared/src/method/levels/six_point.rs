@@ -5,8 +5,8 @@
 
 use crate::{
     interpolate::by_column::ByColumn,
-    lighting::{material_tables::MaterialTables, reflectance::Highlight},
-    method::{Costs, Facts, HighlightField, Loops, Method, RANGE, Shading, Style, TriangleSetup, VertexLight, node::map_six},
+    lighting::material_tables::MaterialTables,
+    method::{Facts, Loops, Method, RANGE, Shading, Style, TriangleSetup, VertexLight, node::map_six},
     pixel::Pixel,
     raster::{band::Band, canvas::Canvas},
 };
@@ -16,12 +16,7 @@ static FACTS: Facts = Facts {
     id: 2,
     source: "Szirmay-Kalos et al. 2000; Vlasic 2002",
     vertex_light: VertexLight::CosinesOrLevels,
-    highlight: Highlight::Half,
-    highlight_levels: false,
-    highlight_field: HighlightField::Level,
-    near_lights: true,
-    perspective: true,
-    costs: Costs::new(2, 0, 0, 135),
+    ..Facts::OWN
 };
 
 /// Six-point shading.
