@@ -8,12 +8,13 @@
 //! the least |N|: 3 LSB at worst on a sphere of 168 triangles, 0.3 on one of 690 (exponent 50, ks 1/2).
 //! Domain: any lights; where |N| falls below 1/2, [`microphong::method::cosines::duff`]'s root takes over.
 
+use crate::duff::{draw_products, shade};
 use microphong::{
     format::INVERSE_SUM_LENGTH,
     method::{
-        Canvas, CosineLookup, Costs, Facts, Highlight, HighlightField, LightingModel, Method, QuadraticNodes, Reflection, Shading,
-        TriangleSetup, VertexLight,
-        cosines::duff,
+        Canvas, CosineLookup, Facts, Highlight, HighlightField, LightingModel, Method, QuadraticNodes, Reflection, Shading, TriangleSetup,
+        VertexLight,
+        cosines::duff::is_curved,
         lighting_model::{FIELD_EXTRA, FIELD_NODE},
         node::is_steep,
         signed,
@@ -30,7 +31,6 @@ static FACTS: Facts = Facts {
     highlight_field: HighlightField::Quadratic,
     near_lights: true,
     perspective: true,
-    costs: Costs::new(5, 2, 1, 60),
 };
 
 /// Quadratic renormalisation.
@@ -42,10 +42,10 @@ impl Method for Renq {
     }
 
     fn shade(&self, setup: &TriangleSetup<'_>, shading: &Shading<'_>, canvas: &mut dyn Canvas) -> u32 {
-        if duff::is_curved(setup) {
-            return duff::shade(setup, shading, canvas);
+        if is_curved(setup) {
+            return shade(setup, shading, canvas);
         }
-        duff::draw_products(setup, shading, length(setup, shading.exponent), Scaled, canvas)
+        draw_products(setup, shading, length(setup, shading.exponent), Scaled, canvas)
     }
 }
 

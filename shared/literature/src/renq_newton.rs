@@ -7,9 +7,12 @@
 //! Error against Phong under constant light: 0.1 LSB and the table's. Domain: any lights; where |N| falls below 1/2, [`microphong::method::cosines::duff`]'s root takes over. Under near lights, and for a local viewer, no
 //! quadratic through six points is exact: there it is [`microphong::method::cosines::phong`].
 
-use crate::renq::{self, upper};
+use crate::{
+    duff::draw_products,
+    renq::{self, upper},
+};
 use microphong::method::{
-    Canvas, CosineLookup, Costs, Facts, Highlight, HighlightField, LightingModel, Method, Reflection, Shading, TriangleSetup, VertexLight,
+    Canvas, CosineLookup, Facts, Highlight, HighlightField, LightingModel, Method, Reflection, Shading, TriangleSetup, VertexLight,
     cosines::{duff, phong::Phong},
     signed,
 };
@@ -24,7 +27,6 @@ static FACTS: Facts = Facts {
     highlight_field: HighlightField::Quadratic,
     near_lights: true,
     perspective: true,
-    costs: Costs::new(7, 8, 1, 85),
 };
 
 /// Quadratic renormalisation, corrected by Newton's iteration.
@@ -40,7 +42,7 @@ impl Method for RenqNewton {
             return Phong.shade(setup, shading, canvas);
         }
         let lengths = (renq::length(setup, shading.exponent), duff::square(setup, shading.exponent));
-        duff::draw_products(setup, shading, lengths, Newton, canvas)
+        draw_products(setup, shading, lengths, Newton, canvas)
     }
 }
 

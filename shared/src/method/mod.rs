@@ -17,12 +17,9 @@ pub mod lighting_model;
 pub mod node;
 mod perspective;
 #[doc(hidden)]
-pub mod sub_triangle;
-#[doc(hidden)]
 pub mod tiles;
 
 use crate::{
-    antialias::{PixelSet, Shape},
     arch::product::by_fraction,
     features::{ALWAYS_CONSTANT, ANTIALIAS, COLOURS, PERSPECTIVE, SKIPS},
     format::{BIAS, CHANNEL, INTENSITY, LEVEL, NORMAL_LENGTH, SUBPIXEL, WALK},
@@ -33,13 +30,12 @@ use crate::{
     raster::{
         active::ActiveTriangle,
         band::Band,
-        canvas::{Shaded, SpanShader},
         counts::Counts,
         pixel_shader::{PixelShader, Ramp, Rgb},
-        triangle::{ScreenTriangle, turn},
+        triangle::turn,
     },
-    setup::gradients::{Gradients, MAX_FINE_THINNESS},
-    stream::record::{Triangle, Vertex},
+    setup::gradients::MAX_FINE_THINNESS,
+    stream::record::Triangle,
 };
 #[doc(inline)]
 pub use crate::{
@@ -53,22 +49,33 @@ pub use facts::{Facts, VertexLight};
 #[doc(hidden)]
 pub use {
     crate::{
+        antialias::{PixelSet, Shape, coarse},
+        coverage::area::TriangleCoverage,
         interpolate::{
-            Constant, Held, Patch, Walker,
-            field::{Field, Nodes, Steep},
+            Constant, Patch, Walker,
+            field::{Field, Nodes},
+            perspective::{Point, SHARE, Surface},
+            plane::Plane,
         },
         lighting::{
             lights::{Lighting, Source, Viewer, cosine, point},
             reflectance::{Highlight, LitMaterial, Reflectance, Reflection},
         },
         math::highlight_lut::CosineLookup,
-        setup::steepness::Steepness,
+        raster::{
+            canvas::{Shaded, SpanShader},
+            triangle::ScreenTriangle,
+        },
+        setup::{
+            gradients::{GUARD, Gradients, MAX_THINNESS, NEAR, Slopes},
+            steepness::Steepness,
+        },
+        stream::record::Vertex,
     },
     auto::error_bound::ErrorBounds,
-    facts::{Costs, HighlightField},
-    lighting_model::{LightingModel, LinearNodes, QuadraticNodes, linear, quadratic, signed},
+    facts::HighlightField,
+    lighting_model::{LightingModel, LinearNodes, Lit, QuadraticNodes, linear, quadratic, signed},
     node::Node,
-    sub_triangle::{Part, Parts, SubTriangle},
 };
 
 /// A shading method: it computes the light of the pixels of a triangle. Implement it for a method of your own, and wrap it
@@ -208,9 +215,11 @@ pub(crate) fn largest(&[a, b, c]: &[i32; 3]) -> i32 {
 /// points where light is computed: the corners, and for some methods the midpoints of the edges 0-1, 1-2 and 2-0.
 pub struct TriangleSetup<'f> {
     /// Corners, edges and depth on the screen.
-    pub(crate) screen: &'f ScreenTriangle,
+    #[doc(hidden)]
+    pub screen: &'f ScreenTriangle,
     /// The gradients by which polynomials are fitted to the triangle.
-    pub(crate) gradients: &'f Gradients,
+    #[doc(hidden)]
+    pub gradients: &'f Gradients,
     /// The corners on the screen with their light: the top one first, then clockwise.
     pub corners: [&'f ScreenVertex; 3],
     /// The triangle's record in the stream.
@@ -227,20 +236,13 @@ pub struct TriangleSetup<'f> {
     /// Whether perspective-correct interpolation of light is on for this triangle.
     pub perspective: bool,
     /// Which pixels of the triangle are drawn.
-    pub(crate) pixels: PixelSet,
+    #[doc(hidden)]
+    pub pixels: PixelSet,
     /// Index of the active triangle whose patch the band above has saved. It is loaded, and nothing is fitted.
     pub(crate) place: Option<usize>,
 }
 
 impl TriangleSetup<'_> {
-    /// Returns how exactly values have to be interpolated on this triangle: a larger highlight exponent of the material needs more exact
-    /// arithmetic. Functions that fit polynomials use it.
-    #[doc(hidden)]
-    #[must_use]
-    pub fn steepness(&self) -> Steepness {
-        self.gradients.steepness()
-    }
-
     /// Copies the set-up without edges and gradients, for functions that light the triangle. Since these are not passed on, the compiler keeps them
     /// in registers.
     #[inline]
@@ -319,31 +321,7 @@ impl TriangleSetup<'_> {
         Some(band.active.active_triangle(self.place?)?.edges.shader)
     }
 
-    /// Fits a polynomial on the screen to `field` (a quantity with values at the corners, or at more points), without perspective.
-    /// [`Shading::draw_rows`] takes the result.
-    #[doc(hidden)]
-    #[must_use]
-    pub fn fit<F: Field>(&self, field: &F) -> F::Patch {
-        field.fit(self.gradients)
-    }
-
-    /// Returns the row of the screen at which the polynomials of [`Self::fit`] begin. With antialiasing, rows are finer than pixels; see
-    /// [`Self::finer`].
-    #[doc(hidden)]
-    #[must_use]
-    pub fn first_row(&self) -> i32 {
-        self.gradients.row()
-    }
-
-    /// Returns the base-2 logarithm of the number of positions along each axis of a pixel where the triangle can be shaded. It is 0 without
-    /// antialiasing.
-    #[doc(hidden)]
-    #[must_use]
-    pub fn finer(&self) -> u32 {
-        self.pixels.finer()
-    }
-
-    /// Draws the triangle by `shader`, which begins on [`Self::first_row`]. Returns the number of pixels in `canvas`.
+    /// Draws the triangle by `shader`, which begins on the row of the anchor. Returns the number of pixels in `canvas`.
     pub(crate) fn draw_spans(&self, shader: &mut dyn SpanShader, canvas: &mut dyn Canvas) -> u32 {
         if ANTIALIAS && self.pixels != PixelSet::Centres {
             let Self { screen, pixels, .. } = *self;

@@ -56,33 +56,12 @@ pub fn shade_constant(setup: &TriangleSetup<'_>, shading: &Shading<'_>, canvas: 
     }
 }
 
-/// Shades by linear numerators over a root, or by quadratic numerators under near lights.
-pub fn shade(setup: &TriangleSetup<'_>, shading: &Shading<'_>, canvas: &mut dyn Canvas) -> u32 {
-    if shading.lighting.is_constant() {
-        return shade_constant(setup, shading, canvas);
-    }
-    draw_products(setup, shading, square(setup, shading.exponent), Rooted, canvas)
-}
-
-/// Shades by `model` under constant lights, where N·L and N·H are linear.
-fn draw_constant<K: Field, F>(setup: &TriangleSetup<'_>, shading: &Shading<'_>, common: K, model: F, canvas: &mut dyn Canvas) -> u32
+/// Shades by `model`. `common` and N·L and N·H of each light are interpolated; normals are not normalised, so these are linear under constant lights.
+pub fn draw_constant<K: Field, F>(setup: &TriangleSetup<'_>, shading: &Shading<'_>, common: K, model: F, canvas: &mut dyn Canvas) -> u32
 where
     F: LightingModel<K::Value, [u32; 2]>,
 {
     shading.draw_lit(setup, |source| shading.constant_products(setup, source), common, model, canvas)
-}
-
-/// Shades by `model`. `common` and N·L and N·H of each light are interpolated; normals are not normalised. N·L and N·H are linear under constant
-/// lights, otherwise quadratics through six points.
-pub fn draw_products<K: Field, F>(setup: &TriangleSetup<'_>, shading: &Shading<'_>, common: K, model: F, canvas: &mut dyn Canvas) -> u32
-where
-    F: LightingModel<K::Value, [u32; 2]>,
-{
-    if shading.lighting.is_constant() {
-        return draw_constant(setup, shading, common, model, canvas);
-    }
-    let nodes = setup.six_linear_nodes();
-    shading.draw_lit(setup, |source| shading.six_products(&nodes, source, |p| p), common, model, canvas)
 }
 
 /// The loops under one or two lights.

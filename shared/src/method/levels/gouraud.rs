@@ -7,28 +7,14 @@
 use crate::{
     geometry::projection::ScreenVertex,
     interpolate::plane::Plane,
-    lighting::{
-        material_tables::MaterialTables,
-        reflectance::{Highlight, Reflectance},
-    },
-    method::{Costs, Facts, HighlightField, Loops, Method, RANGE, Shading, Style, TriangleSetup, VertexLight, fit_levels, largest_range},
+    lighting::{material_tables::MaterialTables, reflectance::Reflectance},
+    method::{Facts, Loops, Method, RANGE, Shading, Style, TriangleSetup, VertexLight, fit_levels, largest_range},
     pixel::Pixel,
     raster::{band::Band, canvas::Canvas, pixel_shader::Ramp},
     setup::gradients::Gradients,
 };
 
-static FACTS: Facts = Facts {
-    name: "gouraud",
-    id: 1,
-    source: "Gouraud 1971",
-    vertex_light: VertexLight::ReflectionOrLevels,
-    highlight: Highlight::Half,
-    highlight_levels: false,
-    highlight_field: HighlightField::Level,
-    near_lights: true,
-    perspective: true,
-    costs: Costs::new(1, 0, 0, 10),
-};
+static FACTS: Facts = Facts { name: "gouraud", id: 1, source: "Gouraud 1971", vertex_light: VertexLight::ReflectionOrLevels, ..Facts::OWN };
 
 /// Gouraud shading.
 pub struct Gouraud;

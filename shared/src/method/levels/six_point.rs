@@ -5,9 +5,9 @@
 
 use crate::{
     interpolate::by_column::ByColumn,
-    lighting::{material_tables::MaterialTables, reflectance::Highlight},
+    lighting::material_tables::MaterialTables,
     method::{
-        Costs, Facts, HighlightField, Loops, Method, RANGE, Shading, Style, TriangleSetup, VertexLight,
+        Facts, Loops, Method, RANGE, Shading, Style, TriangleSetup, VertexLight,
         node::{coefficients, map_six},
     },
     pixel::Pixel,
@@ -19,12 +19,7 @@ static FACTS: Facts = Facts {
     id: 2,
     source: "Szirmay-Kalos et al. 2000; Vlasic 2002",
     vertex_light: VertexLight::CosinesOrLevels,
-    highlight: Highlight::Half,
-    highlight_levels: false,
-    highlight_field: HighlightField::Level,
-    near_lights: true,
-    perspective: true,
-    costs: Costs::new(2, 0, 0, 135),
+    ..Facts::OWN
 };
 
 /// Six-point shading.
