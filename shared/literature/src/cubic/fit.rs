@@ -13,19 +13,19 @@ use microphong::{
 #[must_use]
 pub fn fit(gradients: &Gradients, nodes: [i32; 10], extra: u32) -> Terms<i64> {
     let (nodes, fraction) = (nodes.map(Wide::from), extra + GUARD as u32);
-    let shift = gradients.shift.map(Wide::from);
+    let [x, y] = gradients.shift.map(Wide::from);
     let thin = if gradients.is_thinner_than(MAX_THINNESS) { Sliver::new(gradients) } else { None };
     let terms = if let Some(sliver) = thin {
-        sliver.fit(nodes, fraction).moved_across(|a, b| a + b * shift[0]).moved_down(|a, b| a + b * shift[1])
+        sliver.fit(nodes, fraction).moved_across(|a, b| a + b * x).moved_down(|a, b| a + b * y)
     } else {
         // With three mantissas terms stay below 2^114, moved below 2^124.
         let Slopes { s, t, exponent } = gradients.slopes();
         let terms = Terms::of(nodes, s.map(Wide::from), t.map(Wide::from));
         let scaled = terms.map(|c, degree| scaled(c, degree as i32 * exponent + 2 - fraction as i32));
         // From the corner to the anchor.
-        let way = |k: usize| Wide::from(gradients.offset[k]) + shift[k].shifted(FINE);
+        let [ox, oy] = gradients.offset.map(Wide::from);
         let by = |way: Wide| move |a: Wide, b: Wide| a + Wide((b * way).0 >> FINE);
-        scaled.moved_across(by(way(0))).moved_down(by(way(1)))
+        scaled.moved_across(by(ox + x.shifted(FINE))).moved_down(by(oy + y.shifted(FINE)))
     };
     terms.map(|c, _| scaled(c, GUARD).0 as i64)
 }

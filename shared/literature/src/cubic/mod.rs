@@ -46,7 +46,7 @@ fn draw(setup: &TriangleSetup<'_>, shading: &Shading<'_>, canvas: &mut dyn Canva
     let nodes = [a, b, c, ab, ba, bc, cb, ca, ac, middle];
     let (extra, bias) = (WALK - LEVEL, BIAS << WALK);
     if shading.reflectance.three_channels() {
-        let values = [0, 1, 2].map(|channel| nodes.map(|levels| levels[channel]));
+        let values = [nodes.map(|[red, ..]| red), nodes.map(|[_, green, _]| green), nodes.map(|[.., blue]| blue)];
         setup.draw(&TenNodes { values, extra, bias: [bias; 3] }, Walked, canvas)
     } else {
         setup.draw(&TenNodes { values: [nodes.map(|[level, ..]| level)], extra, bias: [bias] }, Walked, canvas)
