@@ -12,14 +12,18 @@ use core::fmt;
 pub struct Gamma {
     /// The value to send for each level.
     levels: [u16; LEVELS],
-    /// The value to send for each level of light, unsigned Q0.16.
-    pub(super) light: [u16; LIGHT],
+    /// The value to send for each channel of light, for displays of each of [`DEPTHS`].
+    light: [[u8; LIGHT]; DEPTHS.len()],
 }
 
 /// Levels of a curve.
 const LEVELS: usize = 256;
-/// Levels of light.
-const LIGHT: usize = 1024;
+/// Bits of a channel of light.
+pub(super) const LIGHT_BITS: u32 = 9;
+/// Values of a channel of light. A table for each depth is indexed by the channel itself, which saves a product and a division at each pixel.
+const LIGHT: usize = 1 << LIGHT_BITS;
+/// Bits of channels of the displays that light is made for.
+const DEPTHS: [u32; 5] = [2, 3, 5, 6, 8];
 
 /// The curve of sRGB displays (IEC 61966-2-1), about a power of 1/2.2. Values between entries are interpolated linearly, and are within
 /// 0.47/255 of the exact curve.
@@ -46,18 +50,44 @@ impl Gamma {
     /// 65,280. Values between them are interpolated linearly.
     #[must_use]
     pub const fn new(levels: [u16; 256]) -> Self {
-        let mut light = [0; LIGHT];
-        let mut index = 0;
-        while index < LIGHT {
-            // Black light is half a level: see `pixel/light.rs`.
-            let (at, last) = (if index < 2 { 0 } else { (index - 2) * (LEVELS - 1) }, LIGHT - 3);
-            let (level, part) = (at / last, at % last);
-            let above = levels[if level + 1 < LEVELS { level + 1 } else { level }] as usize;
-            let value = (levels[level] as usize * (last - part) + above * part + last / 2) / last;
-            light[index] = (value + (value >> 8)) as u16;
-            index += 1;
+        let mut light = [[0; LIGHT]; DEPTHS.len()];
+        let mut place = 0;
+        while place < DEPTHS.len() * LIGHT {
+            let (table, channel) = (place / LIGHT, place % LIGHT);
+            light[table][channel] = Self::curved(&levels, channel as u32, DEPTHS[table]);
+            place += 1;
         }
         Self { levels, light }
+    }
+
+    /// What to send for a `channel` of light that is scaled to a display of `depth` bits, in 1/256 of full light, also scaled to the display. It is
+    /// rounded up, because thresholds of dither are smaller by half a level.
+    const fn curved(levels: &[u16; LEVELS], channel: u32, depth: u32) -> u8 {
+        let full = ((1 << depth) - 1) << (LIGHT_BITS - depth);
+        // Black light is half a level, 1/510: see `pixel/light.rs`.
+        let (above_black, range) = ((510 * channel).saturating_sub(full), 509 * full);
+        let above_black = if above_black < range { above_black } else { range };
+        // All products are below 2^32.
+        let (level, part) = (above_black * 255 / range, above_black * 255 % range);
+        let (level, part) = (level as usize, part * 256 / range);
+        let next = if level + 1 < LEVELS { level + 1 } else { level };
+        let value = (levels[level] as u32 * (256 - part) + levels[next] as u32 * part) >> 8;
+        let value = if value < FULL { value } else { FULL };
+        let full = ((1 << depth) - 1) << (8 - depth);
+        (value * full).div_ceil(FULL) as u8
+    }
+
+    /// The table of channels of light for a display of `depth` bits: what to send, see [`Self::curved`].
+    #[inline(always)]
+    pub(super) const fn light(&self, depth: u32) -> &[u8; LIGHT] {
+        let [two, three, five, six, eight] = &self.light;
+        match depth {
+            2 => two,
+            3 => three,
+            5 => five,
+            6 => six,
+            _ => eight,
+        }
     }
 
     /// What to send for `level`, which is a channel in unsigned Q8.8 that is scaled to `depth` bits, and so is the result: both at most
@@ -117,6 +147,21 @@ mod tests {
                 before = value;
             }
             assert_eq!((SRGB.encoded(0, depth), SRGB.encoded(full, depth), SRGB.encoded(full + 1, depth)), (0, full, full), "{depth} bits");
+        }
+    }
+
+    /// Tables of light follow the curve, rounded up, from black, which is half a level, to full light.
+    #[test]
+    fn light_follows_the_curve() {
+        for depth in DEPTHS {
+            let (full, sent_full) = (((1 << depth) - 1) << (LIGHT_BITS - depth), ((1 << depth) - 1) << (8 - depth));
+            let table = SRGB.light(depth);
+            for (channel, &sent) in table.iter().enumerate() {
+                let level = (255.0 * (channel as f64 / f64::from(full) * 510.0 - 1.0) / 509.0).clamp(0.0, 255.0);
+                let off = f64::from(sent) - srgb(level) / 255.0 * f64::from(sent_full);
+                assert!((-0.47..1.0).contains(&off), "{depth} bits, {channel}: {sent}, off by {off}");
+            }
+            assert!(table.is_sorted() && table[0] == 0 && i32::from(table[full as usize]) == sent_full, "{depth} bits");
         }
     }
 }

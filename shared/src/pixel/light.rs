@@ -13,7 +13,7 @@ use crate::{
     pixel::{
         Pixel, PixelFormat, Rgb332, Rgb565Be,
         dither::{HALF, threshold},
-        gamma::Gamma,
+        gamma::{Gamma, LIGHT_BITS as BITS},
         ramps::Rounded,
     },
 };
@@ -27,8 +27,6 @@ use embedded_graphics_core::{
 };
 use zerocopy::{FromBytes, Immutable, IntoBytes, KnownLayout};
 
-/// Bits of a channel of light.
-const BITS: u32 = 9;
 /// Largest value of a channel before it is scaled to the display.
 const MAX: u32 = (1 << BITS) - 1;
 /// The lowest bits of red, green and blue in a word. Their order and distance are such that one shift takes red and blue to their places in RGB565.
@@ -105,12 +103,7 @@ impl<const R: u32, const G: u32, const B: u32> Light<R, G, B> {
             return self;
         }
         let [r, g, b] = self.fine();
-        let curved = |channel: u32, depth: u32| {
-            let full = ((1 << depth) - 1) << (BITS - depth);
-            let index = (channel * (gamma.light.len() as u32 - 1)).checked_div(full).unwrap_or(0);
-            let value = u32::from(gamma.light[index as usize % gamma.light.len()]);
-            (value - (value >> depth) + (1 << (15 - BITS))) >> (16 - BITS)
-        };
+        let curved = |channel: u32, depth: u32| u32::from(gamma.light(depth)[channel as usize]) << (BITS - 8);
         Self(word([curved(r, R), curved(g, G), curved(b, B)]))
     }
 
@@ -209,6 +202,9 @@ impl<const DEPTH: u32> LightGray<DEPTH> {
     /// Black, for example to fill a pixel buffer.
     pub const BLACK: Self = Self(0);
 
+    /// Full light. It has zeros below the channel of the display, so that no threshold makes it overflow.
+    const FULL: u8 = (((1 << DEPTH) - 1) << (8 - DEPTH)) as u8;
+
     /// The thresholds of each row, twice side by side.
     const THRESHOLDS: [[u8; 16]; 8] = {
         let mut thresholds = [[0; 16]; 8];
@@ -230,6 +226,25 @@ impl<const DEPTH: u32> LightGray<DEPTH> {
         if dither { &Self::THRESHOLDS[row % 8] } else { &Self::HALVES }
     }
 
+    /// Eight greys as the display shows them, packed into the first `DEPTH` bytes. Thresholds of four greys are the bytes of a word.
+    #[inline(always)]
+    fn packed([a, b, c, d, e, f, g, h]: &[Self; 8], [left, right]: [u32; 2]) -> [u8; 4] {
+        let four = |greys: [u8; 4], thresholds: u32| {
+            // No sum of a grey and its threshold reaches into the next byte.
+            let sums = u32::from_le_bytes(greys).wrapping_add(thresholds);
+            let upper = sums & 0x0101_0101 * (0x100 - (1 << (8 - DEPTH)));
+            // The first and the third byte take the bits of the byte that follows, and then the first one those of the third.
+            let pairs = upper | upper >> (8 + DEPTH);
+            if DEPTH == 4 { pairs } else { pairs | pairs >> (16 + 2 * DEPTH) }
+        };
+        let (first, second) = (four([a.0, b.0, c.0, d.0], left), four([e.0, f.0, g.0, h.0], right));
+        match DEPTH {
+            4 => [first as u8, (first >> 16) as u8, second as u8, (second >> 16) as u8],
+            2 => [first as u8, second as u8, 0, 0],
+            _ => [(first | (second & 0xFF) >> 4) as u8, 0, 0, 0],
+        }
+    }
+
     /// The grey that the display shows.
     const fn upper(self, threshold: u8) -> u32 {
         (self.0 as u32 + threshold as u32) >> (8 - DEPTH)
@@ -242,7 +257,7 @@ impl<const DEPTH: u32> PixelColor for LightGray<DEPTH> {
 
 impl<const DEPTH: u32> From<RawU8> for LightGray<DEPTH> {
     fn from(raw: RawU8) -> Self {
-        Self(raw.into_inner())
+        Self(raw.into_inner().min(Self::FULL))
     }
 }
 
@@ -431,16 +446,27 @@ impl Output {
     pub fn pack<const DEPTH: u32>(self, band: &[LightGray<DEPTH>], area: Rectangle, bytes: &mut [u8]) {
         const { assert!(DEPTH == 1 || DEPTH == 2 || DEPTH == 4, "only greys of one, two and four bits fill whole bytes") };
         let width = (area.size.width as usize).max(1);
-        let in_byte = 8 / DEPTH as usize;
-        let in_row = width.div_ceil(in_byte);
+        let in_row = width.div_ceil(8 / DEPTH as usize);
         let rows = band.chunks_exact(width).zip(bytes.chunks_exact_mut(in_row)).take(area.size.height as usize);
         for ((greys, bytes), row) in rows.zip(area.top_left.y as usize..) {
             let Some(thresholds) = eight_from(LightGray::<DEPTH>::thresholds(row, self.dither), area.top_left.x as usize) else { return };
+            let [a, b, c, d, e, f, g, h] = *thresholds;
+            let thresholds = [u32::from_le_bytes([a, b, c, d]), u32::from_le_bytes([e, f, g, h])];
             for (eight, bytes) in greys.chunks(8).zip(bytes.chunks_mut(DEPTH as usize)) {
-                for ((greys, thresholds), byte) in eight.chunks(in_byte).zip(thresholds.chunks(in_byte)).zip(bytes) {
-                    let join = |packed: u32, (grey, &threshold): (&LightGray<DEPTH>, _)| packed << DEPTH | grey.upper(threshold);
-                    let packed = greys.iter().zip(thresholds).fold(0, join);
-                    *byte = (packed << (DEPTH as usize * (in_byte - greys.len()))) as u8;
+                let packed = match eight.first_chunk() {
+                    Some(eight) => LightGray::packed(eight, thresholds),
+                    None => {
+                        // Black, which no threshold brightens, follows the last pixels of the row.
+                        let mut padded = [LightGray(0); 8];
+                        padded.iter_mut().zip(eight).for_each(|(padded, grey)| *padded = *grey);
+                        LightGray::packed(&padded, thresholds)
+                    }
+                };
+                let [a, b, c, d] = packed;
+                match bytes {
+                    [first, second, third, fourth] => (*first, *second, *third, *fourth) = (a, b, c, d),
+                    [first, second] => (*first, *second) = (a, b),
+                    rest => rest.iter_mut().zip(packed).for_each(|(byte, packed)| *byte = packed),
                 }
             }
         }

@@ -95,6 +95,14 @@ pub trait Pixel: PixelFormat {
         [self; 2]
     }
 
+    /// Two colours with the green of the other.
+    #[doc(hidden)]
+    fn greens_exchanged([even, odd]: [Self::Stored; 2]) -> [Self::Stored; 2] {
+        let ([r, g, b], [odd_r, odd_g, odd_b]) = (Self::from_stored(even).channels(), Self::from_stored(odd).channels());
+        let packed = |r: u8, g: u8, b: u8| Self::pack([r.into(), g.into(), b.into()]).stored();
+        [packed(r, odd_g, b), packed(odd_r, g, odd_b)]
+    }
+
     /// The channels of the pixel as antialiasing mixes them, at most eight bits each.
     #[doc(hidden)]
     fn to_mix(self) -> [u8; 3] {
@@ -206,6 +214,16 @@ fn rgb565([high, middle, low]: [u32; 3]) -> u16 {
     (high << 11 | middle << 5 | low) as u16
 }
 
+/// Green in RGB565.
+const GREEN: u16 = 0x3F << 5;
+
+/// Two numbers with the bits of `mask` of the other.
+#[inline(always)]
+fn exchanged([a, b]: [u16; 2], mask: u16) -> [u16; 2] {
+    let differing = (a ^ b) & mask;
+    [a ^ differing, b ^ differing]
+}
+
 /// Both halves of a word, each of them `half`; the compiler must not know that they are the same.
 #[inline(always)]
 fn halves(half: u16) -> [u16; 2] {
@@ -247,6 +265,11 @@ macro_rules! rgb565 {
             #[inline]
             fn from_stored(stored: u16) -> Self {
                 RawU16::new(stored).into()
+            }
+
+            #[inline(always)]
+            fn greens_exchanged(colours: [u16; 2]) -> [u16; 2] {
+                exchanged(colours, GREEN)
             }
 
             #[inline(always)]
@@ -412,6 +435,12 @@ impl Pixel for Rgb565Be {
     #[inline]
     fn from_stored(stored: Self) -> Self {
         stored
+    }
+
+    #[inline(always)]
+    fn greens_exchanged([even, odd]: [Self; 2]) -> [Self; 2] {
+        let [even, odd] = exchanged([even.0, odd.0], GREEN.to_be());
+        [Self(even), Self(odd)]
     }
 
     #[inline(always)]

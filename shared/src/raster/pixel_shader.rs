@@ -38,6 +38,13 @@ impl<C: Pixel> Solid<C> {
     pub fn new(colours: [C::Stored; 2]) -> Self {
         Self(ByTurns::new(colours))
     }
+
+    /// The colours of a face, as tables of colours hold them: in even rows all channels are darker. Rows of a large face would show as stripes. So
+    /// its green, which has more than half of the luminance, is brighter where red and blue are darker.
+    #[inline(always)]
+    pub fn face(colours: [C::Stored; 2]) -> Self {
+        Self::new(if C::Ramps::CHECKERED { C::greens_exchanged(colours) } else { colours })
+    }
 }
 
 impl<C: Pixel> ByRows for Solid<C> {
@@ -118,6 +125,16 @@ impl<C: Pixel> PixelShader<[u32; 3]> for Rgb<C> {
 mod tests {
     use super::*;
     use embedded_graphics_core::pixelcolor::{Rgb565, Rgb888};
+
+    /// Rows of a face take the darker red and blue together with the brighter green.
+    #[test]
+    fn green_is_dithered_against_red_and_blue() {
+        let [dark, bright] = [Rgb565::new(10, 20, 30), Rgb565::new(11, 21, 31)];
+        let mut shader = Solid::<Rgb565>::face([dark, bright].map(Pixel::stored));
+        assert_eq!(shader.shade(()), Rgb565::new(10, 21, 30));
+        shader.step_row();
+        assert_eq!(shader.shade(()), Rgb565::new(11, 20, 31));
+    }
 
     /// Even rows are lower and odd rows higher, by twice as much in a channel that has one bit less.
     #[test]

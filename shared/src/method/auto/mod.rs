@@ -166,7 +166,7 @@ impl<const QUADRATICS: bool> Loops for Auto<QUADRATICS> {
         // Under two lights vertices have levels of all channels, where there are three.
         let under_two = THREE && shading.constant.is_none();
         match choice {
-            Choice::Solid(raise) => Some(setup.fill(|| Constant, Solid::new(solid(setup, shading, raise, tables)), band)),
+            Choice::Solid(raise) => Some(setup.fill(|| Constant, Solid::face(solid(setup, shading, raise, tables)), band)),
             Choice::Linear(raise) if under_two => {
                 let channels = || channels(corner_levels(setup, shading.reflectance));
                 Some(shading.fill_three(setup, channels, raise, |plane| plane, band))

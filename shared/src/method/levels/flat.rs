@@ -56,7 +56,7 @@ impl Loops for Flat {
             }
             None => tables.colour(levels(setup.triangle, setup.vertices, shading)),
         };
-        Some(setup.fill(|| Constant, Solid::new(colour), band))
+        Some(setup.fill(|| Constant, Solid::face(colour), band))
     }
 }
 
