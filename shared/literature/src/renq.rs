@@ -11,6 +11,7 @@
 use crate::duff::{draw_products, shade};
 use microphong::{
     format::INVERSE_SUM_LENGTH,
+    math::upper,
     method::{
         Canvas, CosineLookup, Facts, Highlight, HighlightField, LightingModel, Method, QuadraticNodes, Reflection, Shading, TriangleSetup,
         VertexLight,
@@ -81,12 +82,7 @@ impl LightingModel<[u32; 1], [u32; 2]> for Scaled {
 
     #[inline(always)]
     fn reflect(&self, _: usize, &length: &i32, [light, half]: [u32; 2], lut: CosineLookup<'_>) -> Reflection {
+        // Upper halves of Q2.30 times Q2.30 are cosines in Q5.27.
         Reflection { diffuse: upper(signed(light), length), highlight: lut.at(upper(signed(half), length)) }
     }
-}
-
-/// The upper half of a product. That of a numerator and half a reciprocal length, Q2.30 each, is a cosine in Q5.27.
-#[inline(always)]
-pub fn upper(a: i32, b: i32) -> i32 {
-    ((i64::from(a) * i64::from(b)) >> 32) as i32
 }

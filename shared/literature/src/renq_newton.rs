@@ -7,14 +7,14 @@
 //! Error against Phong under constant light: 0.1 LSB and the table's. Domain: any lights; where |N| falls below 1/2, [`microphong::method::cosines::duff`]'s root takes over. Under near lights, and for a local viewer, no
 //! quadratic through six points is exact: there it is [`microphong::method::cosines::phong`].
 
-use crate::{
-    duff::draw_products,
-    renq::{self, upper},
-};
-use microphong::method::{
-    Canvas, CosineLookup, Facts, Highlight, HighlightField, LightingModel, Method, Reflection, Shading, TriangleSetup, VertexLight,
-    cosines::{duff, phong::Phong},
-    signed,
+use crate::{duff::draw_products, renq};
+use microphong::{
+    math::upper,
+    method::{
+        Canvas, CosineLookup, Facts, Highlight, HighlightField, LightingModel, Method, Reflection, Shading, TriangleSetup, VertexLight,
+        cosines::{duff, phong::Phong},
+        signed,
+    },
 };
 
 static FACTS: Facts = Facts {

@@ -27,7 +27,7 @@ pub(crate) fn unsigned_product(a: u32, b: u32) -> u64 {
 /// Source: Knuth, The Art of Computer Programming 4.3.1, Algorithm M; Warren, Hacker's Delight 8-2.
 #[inline]
 #[must_use]
-pub(crate) fn upper(a: i32, b: i32) -> i32 {
+pub fn upper(a: i32, b: i32) -> i32 {
     if HALVES { upper_by_halves(a, b) } else { ((i64::from(a) * i64::from(b)) >> 32) as i32 }
 }
 

@@ -11,6 +11,9 @@ pub mod rsqrt;
 pub mod vector;
 pub mod wide;
 
+/// For the crate of the literature.
+pub use crate::arch::product::upper;
+
 /// `value / 2^bits`, rounded to nearest, halves up; for negative `bits` a left shift that wraps modulo 2^64.
 ///
 /// Domain: `value + 2^(bits - 1)` fits 64 bits. Above 62 bits, and below -63, the result is 0. Exact (tests::scaling).

@@ -19,7 +19,7 @@ pub(super) fn screen_error([a, b, c]: [i32; 3], range: u32) -> u32 {
     // Both in units of 2^-15 to 2^-16 of the least one, which is rounded down, and their difference up.
     let zeros = least.leading_zeros();
     let (least, difference) = (least << zeros >> 16, (difference << zeros >> 16) + 1);
-    (range.min(1 << 15) * difference >> 2).checked_div(least).map_or(range, |error| (error + 1).min(range))
+    ((range.min(1 << 15) * difference) >> 2).checked_div(least).map_or(range, |error| (error + 1).min(range))
 }
 
 #[cfg(test)]
