@@ -7,7 +7,7 @@ use crate::{
     method::{
         ErrorBounds, Facts, General, LitMaterial, Loops, Method, Shading, Style, TriangleSetup,
         auto::Auto,
-        cosines::{phong::Phong, renq_newton::RenqNewton, sqrt6::Sqrt6},
+        cosines::{phong::Phong, sqrt6::Sqrt6},
         levels::{flat::Flat, gouraud::Gouraud, six_point::SixPoint},
         needs_general,
     },
@@ -89,10 +89,6 @@ impl<C: Pixel> Shader<C> {
     /// interpolated quadratically. At each pixel it is squared and raised to the exponent of the material. The result is almost the same as with
     /// [`Shader::PHONG`], in less time.
     pub const SQRT6: Self = Self::with_loops(&LoopsAlone(Sqrt6));
-    /// Phong shading that normalises without square root, division or table of roots: the normal is interpolated linearly, its reciprocal
-    /// length quadratically, and a step of Newton's method at every pixel corrects the length. Under point lights or with a local viewer it
-    /// draws like [`Shader::PHONG`].
-    pub const RENQ_NEWTON: Self = Self::with_loops(&LoopsAlone(RenqNewton));
 
     /// A method that chooses for each triangle the cheapest way whose error stays within a budget: one colour, linear interpolation, two
     /// kinds of quadratic interpolation, or Phong shading. [`Renderer::set_budget`](crate::Renderer::set_budget) sets the budget. This is
@@ -103,8 +99,7 @@ impl<C: Pixel> Shader<C> {
     pub const AUTO_LINEAR: Self = Self::with_loops(&LoopsAlone(Auto::<false>));
 
     /// All shading methods of this crate. A program that uses this list contains the code of every method.
-    pub const ALL: [Self; 8] =
-        [Self::FLAT, Self::GOURAUD, Self::SIX_POINT, Self::PHONG, Self::SQRT6, Self::RENQ_NEWTON, Self::AUTO, Self::AUTO_LINEAR];
+    pub const ALL: [Self; 7] = [Self::FLAT, Self::GOURAUD, Self::SIX_POINT, Self::PHONG, Self::SQRT6, Self::AUTO, Self::AUTO_LINEAR];
 
     /// Creates a shader from your own implementation of [`Method`], or from a method of the crate `microphong-literature`.
     #[must_use]

@@ -12,12 +12,13 @@
 
 use microphong::{
     format::{BIAS, CHANNEL, LEVEL, WALK},
-    interpolate::{Patch, Walker, cubic::Cubic, plane::Plane, quadric::Quadric},
+    interpolate::{Patch, Walker, plane::Plane, quadric::Quadric},
     setup::{
         gradients::{Gradients, MAX_THINNESS},
         steepness::{CURVATURE, SLOPE, Steepness},
     },
 };
+use microphong_literature::cubic::field::CubicPatch;
 use microphong_sim::stress::{coverage::side, random::Random};
 use microphong_tests::{cases, seed};
 use std::{f64::consts::TAU, ops::Range};
@@ -222,7 +223,7 @@ fn cubics_stay_within_the_bound() {
         let Some(gradients) = Gradients::new(c, visible) else { continue };
         triangles += 1;
         let nodes: [i32; 10] = std::array::from_fn(|_| random.pick(0..255 << LEVEL));
-        let mut patch = Cubic::<1>::fit(&gradients, &[nodes], WALK - LEVEL, [BIAS << WALK]);
+        let mut patch = CubicPatch::<1>::fit(&gradients, &[nodes], WALK - LEVEL, [BIAS << WALK]);
         // Longest edge over the height on it.
         let longest2 = (0..3).map(|k| square(c[k], c[(k + 1) % 3])).fold(0.0, f64::max);
         let thinness = longest2 / side(c[0], c[1], c[2]) as f64;

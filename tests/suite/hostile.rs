@@ -15,7 +15,7 @@ use microphong::{
 use microphong_sim::{
     board::{self, Board, Recording, Until, elf::Elf},
     bytes::StreamBytes,
-    scene,
+    records, scene,
     shader::Shader,
     stress::{case::Case, fuzz, hostile, random::Random},
     verify,
@@ -63,7 +63,7 @@ fn drawable(board: Board, case: Case) -> Vec<u8> {
 
 /// A label in the middle of the picture, as long as can be.
 fn label(colour: [u8; 3]) -> Label {
-    Label::new([Share::ZERO; 2], Share::from_bits(300), colour, 1, b"0123456789\xB0C \xA0\xFF abcdefghijklmno")
+    records::label([Share::ZERO; 2], Share::from_bits(300), colour, 1, b"0123456789\xB0C \xA0\xFF abcdefghijklmno")
 }
 
 /// A name and a change.

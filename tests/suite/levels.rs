@@ -6,7 +6,7 @@ use embedded_graphics::{
 };
 use microphong::{
     Layout, Renderer, Stats, Stream,
-    format::GeometricError,
+    format::{GeometricError, Length, Radius},
     geometry::detail::stream_tolerance,
     stream::{
         record::{Header, Mesh, PERSPECTIVE},
@@ -21,6 +21,7 @@ use microphong_sim::{
     look::{Look, Surface},
     obj,
     quantise::quantise,
+    records::position,
     render,
     shader::Shader,
     shapes,
@@ -112,7 +113,7 @@ fn errors_are_true_and_the_coarsest_is_drawn() -> Result {
     let corners = |mesh: &Mesh| -> Vec<[V3; 3]> {
         let vertices = stream.vertices_of(mesh).unwrap_or_default();
         let triangles = stream.triangles_of(mesh).unwrap_or_default();
-        triangles.iter().map(|t| t.corners.map(|c| vertices[usize::from(c)].position().map(f64::from))).collect()
+        triangles.iter().map(|t| t.corners.map(|c| position(&vertices[usize::from(c)]).map(f64::from))).collect()
     };
     assert!(stream.meshes.len() > 3, "{}", stream.meshes.len());
     let finest = corners(&stream.meshes[0]);
@@ -126,7 +127,8 @@ fn errors_are_true_and_the_coarsest_is_drawn() -> Result {
     let header = stream.header;
     assert_eq!(header.camera.projection, PERSPECTIVE);
     for side in 1..400 {
-        let z = (f64::from(header.camera.translation()[2]) - f64::from(header.radius())).max(f64::from(header.camera.near()));
+        let z = (f64::from(Length::from_bits(header.camera.translation[2])) - f64::from(Radius::from_bits(header.radius)))
+            .max(f64::from(header.camera.near()));
         // A way along the ray to a corner of the picture shows as well, by the slope of that ray.
         let focal = f64::from(header.camera.focal());
         let slope = 1f64.hypot(1.0) / focal;

@@ -16,7 +16,7 @@ use microphong::{
     pixel::{FromDrawn, Light, LightGray, Pixel, Rgb565Be},
     stream::record::{LEFT, Label, MIDDLE, RIGHT},
 };
-use microphong_sim::{scene, script, shader::Shader};
+use microphong_sim::{records::label, scene, script, shader::Shader};
 use std::{convert::Infallible, fmt::Debug, thread};
 
 const SIZE: Size = Size::new(96, 64);
@@ -287,14 +287,14 @@ fn labels_lie_over_the_picture() {
     };
     let share = |value: f64| Share::from_num(value);
     let labels = [
-        Label::new([share(0.0), share(0.0)], share(0.16), [255, 255, 0], MIDDLE, b"12 \xB0C"),
-        Label::new([share(-0.75), share(-0.4)], share(0.25), [0, 0, 255], LEFT, b"left"),
-        Label::new([share(0.75), share(0.4)], share(0.1), [255, 255, 255], RIGHT, b"right"),
+        label([share(0.0), share(0.0)], share(0.16), [255, 255, 0], MIDDLE, b"12 \xB0C"),
+        label([share(-0.75), share(-0.4)], share(0.25), [0, 0, 255], LEFT, b"left"),
+        label([share(0.75), share(0.4)], share(0.1), [255, 255, 255], RIGHT, b"right"),
         // Beyond every side.
-        Label::new([share(-7.9), share(7.9)], share(0.1), [255; 3], RIGHT, b"nowhere"),
-        Label::new([share(0.75), share(0.5)], share(0.15), [255; 3], MIDDLE, b"over the edge"),
+        label([share(-7.9), share(7.9)], share(0.1), [255; 3], RIGHT, b"nowhere"),
+        label([share(0.75), share(0.5)], share(0.15), [255; 3], MIDDLE, b"over the edge"),
         // Left out of small pictures.
-        Label::new([share(-0.2), share(0.3)], share(0.07), [0, 255, 255], LEFT, b"small"),
+        label([share(-0.2), share(0.3)], share(0.07), [0, 255, 255], LEFT, b"small"),
     ];
     let fonts = |height: u32| match height {
         64 => [&FONT_6X10, &FONT_9X15, &FONT_4X6, &FONT_4X6, &FONT_6X10].map(Some).into_iter().chain([None]).collect::<Vec<_>>(),
@@ -331,8 +331,8 @@ fn labels_lie_over_the_picture() {
 
 #[test]
 fn what_is_no_label_is_refused() {
-    let good = Label::new([Share::ZERO; 2], Share::from_num(0.1), [255; 3], MIDDLE, b"12 V");
-    let text = |text: &[u8]| Label::new([Share::ZERO; 2], Share::from_num(0.1), [255; 3], MIDDLE, text);
+    let good = label([Share::ZERO; 2], Share::from_num(0.1), [255; 3], MIDDLE, b"12 V");
+    let text = |text: &[u8]| label([Share::ZERO; 2], Share::from_num(0.1), [255; 3], MIDDLE, text);
     let hole = Label {
         text: {
             let mut text = good.text;

@@ -18,10 +18,7 @@ use microphong::{
         material_tables::MaterialTables,
         reflectance::{LitMaterial, Reflectance},
     },
-    method::{
-        Uniform,
-        sub_triangle::{ScreenSubTriangle, SubTriangle},
-    },
+    method::Uniform,
     raster::{
         active::ActiveTriangles,
         band::Band,
@@ -31,6 +28,7 @@ use microphong::{
     },
     setup::gradients::Gradients,
 };
+use microphong_literature::sub_triangle::{ScreenSubTriangle, SubTriangle};
 use microphong_sim::{level, render, scene, shader::Shader, stress::random::Random};
 use microphong_tests::{cases, named, seed};
 

@@ -2,6 +2,7 @@
 
 use embedded_graphics::pixelcolor::{Rgb565, RgbColor};
 use microphong::{
+    format::NormalLength,
     geometry::model_view::ModelView,
     interpolate::{Patch, plane::Plane},
     setup::gradients::Gradients,
@@ -113,7 +114,8 @@ fn arithmetic_looks_where_it_is_hard() {
     for number in 0..600 {
         let Some(case) = arithmetic::case(&mut Random::new(9, number)) else { continue };
         let stream = case.stream.parse().unwrap();
-        let lengths: Vec<f32> = stream.triangles.iter().map(|triangle| triangle.min_normal_length().to_num()).collect();
+        let lengths: Vec<f32> =
+            stream.triangles.iter().map(|triangle| NormalLength::from_bits(triangle.min_normal_length).to_num()).collect();
         let extreme = lengths.iter().filter(|&&length| !(1.0 / 64.0..0.999).contains(&length)).count();
         let features = [
             stream.materials[0].exponent > 256,
@@ -356,7 +358,7 @@ fn budget_has_scenes_of_all_kinds() {
         near += usize::from(stream.lights.iter().any(|light| light.kind == POINT));
         local += usize::from(stream.header.camera.viewer == VIEWER_LOCAL);
         triangles += stream.triangles.len();
-        for length in stream.triangles.iter().map(|triangle| f64::from(triangle.min_normal_length())) {
+        for length in stream.triangles.iter().map(|triangle| f64::from(NormalLength::from_bits(triangle.min_normal_length))) {
             opposite += usize::from(length < 1.0 / 64.0);
             creased += usize::from((1.0 / 64.0..0.7).contains(&length));
         }

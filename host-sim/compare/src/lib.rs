@@ -8,6 +8,7 @@ mod edges;
 pub mod exponent;
 pub mod figures;
 pub mod level;
+pub mod operations;
 pub mod page;
 mod samples;
 
@@ -16,13 +17,14 @@ use edges::Edges;
 pub use edges::Jumps;
 use embedded_graphics_core::{geometry::Size, pixelcolor::Rgb565};
 use figures::Spread;
-use microphong::{Stream, method::Costs, renderer::check};
+use microphong::{Stream, renderer::check};
 use microphong_oracle::{self as oracle, Facet, Frame, Levels};
 use microphong_render::{
     choices::{self, Choices},
     render::{self, Format, Settings, Style},
     shader::Shader,
 };
+use operations::Operations;
 use samples::Samples;
 use std::ops::Range;
 
@@ -79,8 +81,8 @@ pub struct Comparison {
     pub similarity: f64,
     /// Jumps at edges of the method in f64. For `auto`, each triangle is drawn by what `auto` chooses for it.
     pub jumps: Jumps,
-    /// Operations.
-    pub costs: Costs,
+    /// Numbers of operations in the formulas of the method.
+    pub operations: Operations,
     /// Error budget of the method `auto`, in 1/255.
     pub budget: Option<f64>,
     /// The ways that the method `auto` chooses.
@@ -282,7 +284,7 @@ impl<'s> Reference<'s> {
             psnr: figures::psnr(&pairs),
             similarity: figures::similarity(window.width(), window.height(), [&drawn, &wanted])?,
             jumps: self.edges.jumps(&self.frame, &shade)?,
-            costs: shader.facts().costs,
+            operations: Operations::of(shader.name()),
             budget: told.as_ref().map(|told| told.budget),
             choices: told.as_ref().map(|told| told.choices),
             pixels: pairs.len(),

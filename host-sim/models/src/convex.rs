@@ -4,6 +4,7 @@
 
 use crate::{
     mesh::{Mesh, is_closed},
+    records,
     vector::{V3, cross, dot, length, scale, sub, unit},
 };
 use microphong::{
@@ -67,7 +68,7 @@ fn solid_angle([a, b, c]: [V3; 3]) -> f64 {
 
 /// Rounding has turned no plane by more than 2^-[`LEAN`] rad.
 fn leans_little(faces: &[Face], vertices: &[Vertex], triangles: &[Triangle]) -> bool {
-    let rounded = triangles.iter().map(|t| normal(t.corners.map(|v| vertices[usize::from(v)].position().map(f64::from))));
+    let rounded = triangles.iter().map(|t| normal(t.corners.map(|v| records::position(&vertices[usize::from(v)]).map(f64::from))));
     faces.len() == triangles.len()
         && faces.iter().zip(rounded).all(|(face, rounded)| rounded.is_some_and(|n| length(sub(n, face.normal)) < (-f64::from(LEAN)).exp2()))
 }

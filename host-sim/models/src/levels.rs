@@ -9,6 +9,7 @@ use crate::{
     mesh::Mesh,
     number::above,
     quantise::{self, Part},
+    records,
 };
 use anyhow::{Result, anyhow, bail};
 use embedded_graphics_core::geometry::Size;
@@ -209,8 +210,8 @@ pub fn drawn<'a>(stream: &Stream<'a>, size: Size) -> impl DoubleEndedIterator<It
 fn simplified(part: &Part, target: usize, options: SimplifyOptions) -> Result<Vec<[u16; 3]>> {
     let refused = |error| anyhow!("the mesh cannot be simplified: {error}");
     let indices: Vec<u32> = part.triangles.iter().flat_map(|triangle| triangle.corners.map(u32::from)).collect();
-    let positions: Vec<[f32; 3]> = part.vertices.iter().map(|vertex| vertex.position().map(f32::from)).collect();
-    let normals: Vec<f32> = part.vertices.iter().flat_map(|vertex| vertex.normal().map(f32::from)).collect();
+    let positions: Vec<[f32; 3]> = part.vertices.iter().map(|vertex| records::position(vertex).map(f32::from)).collect();
+    let normals: Vec<f32> = part.vertices.iter().flat_map(|vertex| records::normal(vertex).map(f32::from)).collect();
     let positions = Positions::from_packed(&positions);
     let normals = Attributes::from_interleaved(&normals, part.vertices.len(), NORMALS.len(), NORMALS.len(), 0).map_err(refused)?;
     // The error is one that no mesh has: the number of triangles decides.
@@ -221,7 +222,10 @@ fn simplified(part: &Part, target: usize, options: SimplifyOptions) -> Result<Ve
 }
 
 fn corners(vertices: &[Vertex], triangles: &[Triangle]) -> Vec<Corners> {
-    triangles.iter().map(|triangle| triangle.corners.map(|corner| vertices[usize::from(corner)].position().map(f64::from))).collect()
+    triangles
+        .iter()
+        .map(|triangle| triangle.corners.map(|corner| records::position(&vertices[usize::from(corner)]).map(f64::from)))
+        .collect()
 }
 
 /// Whether these triangles of a part are closed and convex; vertices that they leave out are no part of them.

@@ -19,6 +19,7 @@ mod pbr;
 pub mod ply;
 pub mod polygon;
 pub mod quantise;
+pub mod records;
 pub mod scene;
 pub mod script;
 pub mod shapes;

@@ -4,6 +4,7 @@ use crate::{
     bytes::StreamBytes,
     number::{above, nearest},
     quantise::Part,
+    records,
     vector::{V3, length, scale, unit},
     view::{Projection, View},
 };
@@ -261,7 +262,7 @@ impl Look {
 /// Radius of the ball about the origin that holds all vertices, rounded up.
 fn radius(parts: &[Part]) -> Radius {
     let vertices = parts.iter().flat_map(|part| &part.vertices);
-    let farthest = vertices.map(|vertex| length(vertex.position().map(f64::from))).fold(0.0, f64::max);
+    let farthest = vertices.map(|vertex| length(records::position(vertex).map(f64::from))).fold(0.0, f64::max);
     above(farthest)
 }
 
@@ -288,6 +289,6 @@ fn camera(view: &View) -> Camera {
     let projection = if view.projection == Projection::Perspective { PERSPECTIVE } else { ORTHOGRAPHIC };
     let rotation = view.rotation.map(|row| row.map(nearest));
     let depths = [view.near, view.far].map(nearest);
-    Camera::new(projection, rotation, view.translation.map(nearest), nearest(view.focal), depths)
+    records::camera(projection, rotation, view.translation.map(nearest), nearest(view.focal), depths)
         .orbiting(view.axis.map(nearest), view.period)
 }

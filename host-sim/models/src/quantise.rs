@@ -5,6 +5,7 @@ use crate::{
     levels::Level,
     mesh::{Mesh, Submesh},
     number::{above, below, nearest},
+    records,
     vector::{V3, add, cross, dot, length, scale, sub, unit},
 };
 use microphong::{
@@ -59,7 +60,8 @@ impl Part {
 /// Also counts triangles that had an area before the rounding, but not after it.
 #[must_use]
 pub fn quantise(mesh: &Mesh) -> (Vec<Part>, usize) {
-    let vertices: Vec<Vertex> = mesh.positions.iter().zip(&mesh.normals).map(|(&p, &n)| Vertex::new(p.map(nearest), normal(n))).collect();
+    let vertices: Vec<Vertex> =
+        mesh.positions.iter().zip(&mesh.normals).map(|(&p, &n)| records::vertex(p.map(nearest), normal(n))).collect();
     let mut parts = Vec::new();
     let mut dropped = 0;
     let mut submeshes: BTreeMap<Submesh, Vec<[usize; 3]>> = BTreeMap::new();
@@ -125,10 +127,10 @@ pub(crate) fn record(vertices: &[Vertex], corners: [u16; 3]) -> Option<Triangle>
 
 /// All constants that depend on neither camera nor light; `None` for a triangle without area. Corners are left at 0.
 fn constants(corners: [Vertex; 3]) -> Option<Triangle> {
-    let [a, b, c] = corners.map(|v| widen(v.position()));
+    let [a, b, c] = corners.map(|v| widen(records::position(&v)));
     // Exact: 16-bit differences, and sums of a few of their products.
     let plane = unit(cross(sub(b, a), sub(c, a)))?;
-    let normals = corners.map(|v| unit(widen(v.normal())).unwrap_or([0.0, 0.0, 1.0]));
+    let normals = corners.map(|v| unit(widen(records::normal(&v))).unwrap_or([0.0, 0.0, 1.0]));
     let cosine = [0, 1, 2].map(|k| dot(normals[k], normals[(k + 1) % 3]).clamp(-1.0, 1.0));
     let sums = [0, 1, 2].map(|k| length(add(normals[k], normals[(k + 1) % 3])));
     let quantised = normal(plane);

@@ -11,7 +11,7 @@ use crate::{
     mtl::Material,
     number::nearest,
     quantise::{Part, quantise},
-    shapes,
+    records, shapes,
     turn::{Stop, Turn, along},
     vector::{V3, add, cross, dot, length, scale, sub, unit},
     view::{Projection, View},
@@ -274,7 +274,7 @@ fn label(mut table: Table<'_>, size: [u32; 2]) -> Result<Label> {
     let position = [at[0] - width / 2.0, at[1] - height / 2.0].map(|offset| offset / side);
     let far = "it is too far from the picture; less than 8 of its smaller sides from its middle are possible";
     ensure!(position.iter().all(|share| share.abs() < 8.0), table.place_of("at").error(far));
-    Ok(Label::new(position.map(nearest), nearest(line / side), colour, alignment, &text))
+    Ok(records::label(position.map(nearest), nearest(line / side), colour, alignment, &text))
 }
 
 fn align(field: Field<'_>) -> Result<u8> {

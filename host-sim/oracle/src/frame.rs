@@ -4,7 +4,7 @@ use super::scene::{Light, Material, Place, direction};
 use embedded_graphics_core::geometry::Size;
 use microphong::{
     Stream,
-    format::{DEPTH, Gain, ROTATION, SUBPIXEL, UNIT},
+    format::{DEPTH, Gain, NORMAL_LENGTH, ROTATION, SUBPIXEL, UNIT},
     geometry::{lens::Lens, model_view::ModelView, projection::View},
     stream::{
         record,
@@ -59,8 +59,8 @@ pub struct Facet {
 }
 
 /// Converts fixed-point numbers of a stream.
-fn real<const N: usize>(v: [i32; N], bits: u32) -> [f64; N] {
-    v.map(|c| f64::from(c) / f64::from(bits).exp2())
+fn real<T: Into<f64>, const N: usize>(v: [T; N], bits: u32) -> [f64; N] {
+    v.map(|c| c.into() / f64::from(bits).exp2())
 }
 
 /// Reflectance or light.
@@ -85,7 +85,7 @@ impl Frame {
         let local = camera.viewer == VIEWER_LOCAL && camera.projection == PERSPECTIVE;
         let viewer = if local { Place::Near(to_object(scale(translation, -1.0))) } else { Place::Far(towards) };
         let lights = stream.lights.iter().map(|light| {
-            let vector = light.vector().map(f64::from);
+            let vector = real(light.vector, UNIT);
             let place = match (light.kind, light.space) {
                 (DIRECTIONAL, EYE_SPACE) => Place::Far(direction(to_object(vector))),
                 (DIRECTIONAL, _) => Place::Far(direction(vector)),
@@ -158,10 +158,10 @@ fn facet(stream: Stream<'_>, mesh: &record::Mesh, triangle: &record::Triangle, i
         inv_depth: places.map(|[_, _, depth]| f64::from(depth) / f64::from(DEPTH).exp2()),
         shares: [1.0; 3],
         vertices,
-        normals: corners.map(|v| v.normal().map(f64::from)),
-        positions: corners.map(|v| v.position().map(f64::from)),
-        plane: triangle.normal().map(f64::from),
-        min_normal_length: f64::from(triangle.min_normal_length()),
+        normals: corners.map(|v| real(v.normal, UNIT)),
+        positions: corners.map(|v| real(v.position, UNIT)),
+        plane: real(triangle.normal, UNIT),
+        min_normal_length: f64::from(triangle.min_normal_length) / f64::from(NORMAL_LENGTH).exp2(),
         material: mesh.material.into(),
         id,
     })

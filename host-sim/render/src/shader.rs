@@ -6,7 +6,7 @@ use microphong::{
     method::{
         Facts, Method,
         auto::Auto,
-        cosines::{phong::Phong, renq_newton::RenqNewton, sqrt6::Sqrt6},
+        cosines::{phong::Phong, sqrt6::Sqrt6},
         levels::{flat::Flat, gouraud::Gouraud, six_point::SixPoint},
     },
     pixel::Pixel,
@@ -32,7 +32,7 @@ impl Shader {
     /// Linear numerators times a quadratic reciprocal length.
     pub const RENQ: Self = Self(&literature::Renq);
     /// Linear numerators times a quadratic reciprocal length, made exact by Newton's iteration.
-    pub const RENQ_NEWTON: Self = Self(&RenqNewton);
+    pub const RENQ_NEWTON: Self = Self(&literature::RenqNewton);
 
     /// The method `auto`: for each triangle the cheapest way within the error budget.
     pub const AUTO: Self = Self(&Auto::<true>);
@@ -41,7 +41,7 @@ impl Shader {
 
     /// Every method, in the order of their numbers.
     pub const ALL: [Self; 28] = {
-        let [a, b, c, d, e, f, g, h, i, j, k, l, m, n, o, p, q, r, s, t] = literature::ALL;
+        let [a, b, c, d, e, f, g, h, i, j, k, l, m, n, o, p, q, r, s, t, u] = literature::ALL;
         [
             Self::FLAT,
             Self::GOURAUD,
@@ -68,15 +68,14 @@ impl Shader {
             Self(s),
             Self::SQRT6,
             Self(t),
-            Self::RENQ_NEWTON,
+            Self(u),
             Self::AUTO,
             Self::AUTO_LINEAR,
         ]
     };
 
     /// The methods that the core itself has.
-    pub const CORE: [Self; 8] =
-        [Self::FLAT, Self::GOURAUD, Self::SIX_POINT, Self::PHONG, Self::SQRT6, Self::RENQ_NEWTON, Self::AUTO, Self::AUTO_LINEAR];
+    pub const CORE: [Self; 7] = [Self::FLAT, Self::GOURAUD, Self::SIX_POINT, Self::PHONG, Self::SQRT6, Self::AUTO, Self::AUTO_LINEAR];
 
     /// A method that is none of these.
     #[must_use]

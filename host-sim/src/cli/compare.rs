@@ -11,7 +11,7 @@ use microphong::{format::ErrorBudget, renderer::check};
 use microphong_sim::{
     bytes::StreamBytes,
     choices::Choices,
-    compare::{Comparison, Reference, exponent::with_exponent, page::Page},
+    compare::{Comparison, Reference, exponent::with_exponent, operations::Operations, page::Page},
     scene::Scene,
     shader::Shader,
 };
@@ -181,7 +181,7 @@ fn json(scene: &Scene, exponent: Option<u16>, rows: &[Row]) -> Result<()> {
     for Row { shader, result } in rows {
         let found = result.as_ref().ok();
         let figure = |of: fn(&Comparison) -> f64| found.map(of);
-        let costs = shader.facts().costs;
+        let operations = Operations::of(shader.name());
         report::json(&Line {
             scene: &scene.name,
             shader: shader.name(),
@@ -198,11 +198,11 @@ fn json(scene: &Scene, exponent: Option<u16>, rows: &[Row]) -> Result<()> {
             arithmetic_rmse_lsb: figure(|c| c.arithmetic.rmse),
             method_max_lsb: figure(|c| c.method.max),
             method_rmse_lsb: figure(|c| c.method.rmse),
-            adds: costs.adds,
-            multiplies: costs.multiplies,
-            loads: costs.loads,
-            setup: costs.setup,
-            setup_row: costs.row,
+            adds: operations.adds,
+            multiplies: operations.multiplies,
+            loads: operations.loads,
+            setup: operations.setup,
+            setup_row: operations.row,
             budget: found.and_then(|c| c.budget),
             choices: found.and_then(|c| c.choices),
             pixels: found.map(|c| c.pixels),
@@ -228,7 +228,7 @@ fn text(scene: &Scene, exponent: Option<u16>, reference: &Reference<'_>, rows: &
     rows.iter().try_for_each(|Row { shader, result }| match result {
         Err(reason) => report::line(&format!("  {:18}  {reason}", shader.name())),
         Ok(c) => {
-            let row = if c.costs.row > 0 { format!(" + {}/row", c.costs.row) } else { String::new() };
+            let row = if c.operations.row > 0 { format!(" + {}/row", c.operations.row) } else { String::new() };
             report::line(&format!(
                 "  {:18}  {:>10.2} {:>7.2} {:>7.3}   {:>11.2} {:>5.2}  {:>6.2}  {:>6.4} {:>6.1} {:>6.4} {:>7.2} {:>7.2}  {:>2} {:>2}  {:>4}  {:>6}{row}",
                 shader.name(),
@@ -243,10 +243,10 @@ fn text(scene: &Scene, exponent: Option<u16>, reference: &Reference<'_>, rows: &
                 c.similarity,
                 c.jumps.level,
                 c.jumps.slope,
-                c.costs.adds,
-                c.costs.multiplies,
-                c.costs.loads,
-                c.costs.setup,
+                c.operations.adds,
+                c.operations.multiplies,
+                c.operations.loads,
+                c.operations.setup,
             ))?;
             c.budget.zip(c.choices).iter().try_for_each(report::choices)
         }

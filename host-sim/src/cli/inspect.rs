@@ -5,6 +5,7 @@ use anyhow::{Context, Result};
 use embedded_graphics_core::geometry::Size;
 use microphong::{
     MAX_SIDE, Stream,
+    format::{Length, NormalLength},
     geometry::detail::stream_tolerance,
     stream::record::{
         CAMERA_TRACK, CLOSED_CONVEX, EYE_SPACE, Header, LIGHT_TRACK, Light, Mesh, OBJECT_TRACK, PERSPECTIVE, POINT, Triangle, VIEWER_LOCAL,
@@ -182,7 +183,7 @@ fn exponents(stream: &Stream<'_>) -> String {
 
 fn lights(stream: &Stream<'_>) -> String {
     let kind = |light: &Light| {
-        let [x, y, z] = light.vector().map(f64::from);
+        let [x, y, z] = light.vector.map(|c| f64::from(Length::from_bits(c)));
         let kind = if light.kind == POINT { "at" } else { "towards" };
         // Eye space has z away from the viewer; a user never sees it.
         let (z, place) = if light.space == EYE_SPACE { (-z, "as the camera sees it") } else { (z, "in the world") };
@@ -193,6 +194,7 @@ fn lights(stream: &Stream<'_>) -> String {
 
 /// How strongly normals vary within a triangle, as the smallest length of an interpolated normal. Short ones are hard to shade.
 fn bend(stream: &Stream<'_>) -> String {
-    let least = stream.triangles.iter().map(Triangle::min_normal_length).min().unwrap_or_default();
+    let least = stream.triangles.iter().map(|triangle| triangle.min_normal_length).min().unwrap_or_default();
+    let least = NormalLength::from_bits(least);
     format!("interpolated normals at least {least:.3} long")
 }

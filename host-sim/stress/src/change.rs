@@ -297,7 +297,7 @@ impl Change {
             }
             Self::Lights(lights) => {
                 let directional = |light: &Light| {
-                    let length = length(light.vector().map(f64::from));
+                    let length = length(light.vector.map(|c| f64::from(Length::from_bits(c))));
                     light.kind == DIRECTIONAL && (length * length - 1.0).abs() <= 1.0 / 256.0
                 };
                 let is_right = |light: &Light| {

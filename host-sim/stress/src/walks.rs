@@ -6,9 +6,10 @@ use crate::{
     random::Random,
 };
 use microphong::{
-    interpolate::{Patch, Walker, cubic::Cubic, plane::Plane, quadric::Quadric},
+    interpolate::{Patch, Walker, plane::Plane, quadric::Quadric},
     setup::gradients::Gradients,
 };
+use microphong_literature::cubic::field::CubicPatch;
 use std::hint::black_box;
 
 /// Columns that are walked.
@@ -41,7 +42,7 @@ impl Family for Walks {
         let wrong = [
             ("plane", drifts(Plane::<1>::fit::<15>(&gradients, &[three], 16, [0]), row, column)),
             ("quadratic", drifts(Quadric::<1>::fit::<15>(&gradients, &[six], 16, [0]), row, column)),
-            ("cubic", drifts(Cubic::<1>::fit(&gradients, &[ten], 16, [0]), row, column)),
+            ("cubic", drifts(CubicPatch::<1>::fit(&gradients, &[ten], 16, [0]), row, column)),
         ];
         let failure =
             wrong.iter().find(|(_, wrong)| *wrong).map(|(name, _)| format!("{name} on {corners:?}, {row} rows, {column} columns"));

@@ -11,14 +11,14 @@
 use crate::{
     arc::Arc,
     parabola::{Lobe, Parabolas, PiecewiseQuadratic},
-    scanline::{Edges, Rows},
+    scanline::{self, Edges, Rows},
     slerp::arcs,
 };
 use microphong::{
     math::vector::{add, dot, normalise, wide, zip},
     method::{
-        Canvas, Constant, CosineLookup, Costs, Facts, Highlight, HighlightField, Lighting, LightingModel, Method, Patch, Reflection,
-        Shading, Source, TriangleSetup, VertexLight, Walker,
+        Canvas, Constant, CosineLookup, Facts, Highlight, HighlightField, Lighting, LightingModel, Method, Patch, Reflection, Shading,
+        Source, TriangleSetup, VertexLight, Walker,
     },
 };
 
@@ -32,7 +32,6 @@ static FACTS: Facts = Facts {
     highlight_field: HighlightField::Level,
     near_lights: true,
     perspective: false,
-    costs: Costs::new(5, 0, 0, 200).per_row(360),
 };
 
 static ORIGINAL: Facts = Facts {
@@ -45,7 +44,6 @@ static ORIGINAL: Facts = Facts {
     highlight_field: HighlightField::Level,
     near_lights: true,
     perspective: false,
-    costs: Costs::new(5, 0, 0, 200).per_row(360),
 };
 
 /// Highlights in three parabolas a span.
@@ -84,14 +82,14 @@ fn draw(setup: &TriangleSetup<'_>, shading: &Shading<'_>, fit: fn(u16) -> Parabo
         let arcs = arcs(setup.vertices().map(|vertex| wide(vertex.normal)));
         let fit = |[towards, half]: [[i32; 3]; 2]| LobesOnRows { rows, arcs, lobes: [diffuse(towards), highlight(half)] };
         let of = |source: &Source| fit(shading.lighting.directions(source, [0; 3]));
-        shading.draw_rows(setup, of, Constant, Both, canvas)
+        scanline::draw(setup, shading, of, Constant, Both, canvas)
     } else {
         let fit = |source: &Source| {
             let [l, h] = turned(setup, shading.lighting, source);
             let on_rows = |turned: Turned, lobe| LobesOnRows { rows, arcs: arcs(turned.normals), lobes: [lobe] };
             (on_rows(l, diffuse(l.direction)), on_rows(h, highlight(h.direction)))
         };
-        shading.draw_rows(setup, fit, Constant, Both, canvas)
+        scanline::draw(setup, shading, fit, Constant, Both, canvas)
     }
 }
 

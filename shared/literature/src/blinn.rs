@@ -13,8 +13,8 @@ use microphong::{
     format::{COSINE, PIXEL_COSINE},
     math::vector::{cross, normalise, zip},
     method::{
-        Canvas, Constant, CosineLookup, Costs, Facts, Highlight, HighlightField, Lighting, LightingModel, Method, Node, Reflection,
-        Shading, Source, TriangleSetup, VertexLight, cosine, linear, signed,
+        Canvas, Constant, CosineLookup, Facts, Highlight, HighlightField, Lighting, LightingModel, Method, Node, Reflection, Shading,
+        Source, TriangleSetup, VertexLight, cosine, linear, signed,
     },
 };
 
@@ -28,7 +28,6 @@ static FACTS: Facts = Facts {
     highlight_field: HighlightField::Plane,
     near_lights: true,
     perspective: true,
-    costs: Costs::new(4, 2, 1, 25),
 };
 
 /// Highlights from a map around the half vector.

@@ -8,7 +8,11 @@
 //! tables' error, mainly [`microphong::math::highlight_lut::NEAREST_ERROR`] of the highlight. Domain: any lights; under near lights as exact as six
 //! points are.
 
-use microphong::method::{Canvas, Costs, Facts, Highlight, HighlightField, Method, Shading, TriangleSetup, VertexLight, cosines::duff};
+use crate::nodes::six_linear_nodes;
+use microphong::method::{
+    Canvas, Facts, Field, Highlight, HighlightField, LightingModel, Method, Shading, TriangleSetup, VertexLight,
+    cosines::duff::{Rooted, draw_constant, shade_constant, square},
+};
 
 static FACTS: Facts = Facts {
     name: "duff",
@@ -20,7 +24,6 @@ static FACTS: Facts = Facts {
     highlight_field: HighlightField::Quadratic,
     near_lights: true,
     perspective: true,
-    costs: Costs::new(6, 3, 2, 60),
 };
 
 /// Duff's form of Phong shading.
@@ -32,6 +35,27 @@ impl Method for Duff {
     }
 
     fn shade(&self, setup: &TriangleSetup<'_>, shading: &Shading<'_>, canvas: &mut dyn Canvas) -> u32 {
-        duff::shade(setup, shading, canvas)
+        shade(setup, shading, canvas)
     }
+}
+
+/// Shades by linear numerators over a root, or by quadratic numerators under near lights.
+pub fn shade(setup: &TriangleSetup<'_>, shading: &Shading<'_>, canvas: &mut dyn Canvas) -> u32 {
+    if shading.lighting.is_constant() {
+        return shade_constant(setup, shading, canvas);
+    }
+    draw_products(setup, shading, square(setup, shading.exponent), Rooted, canvas)
+}
+
+/// Shades by `model`. `common` and N·L and N·H of each light are interpolated; normals are not normalised. N·L and N·H are linear under constant
+/// lights, otherwise quadratics through six points.
+pub fn draw_products<K: Field, F>(setup: &TriangleSetup<'_>, shading: &Shading<'_>, common: K, model: F, canvas: &mut dyn Canvas) -> u32
+where
+    F: LightingModel<K::Value, [u32; 2]>,
+{
+    if shading.lighting.is_constant() {
+        return draw_constant(setup, shading, common, model, canvas);
+    }
+    let nodes = six_linear_nodes(setup);
+    shading.draw_lit(setup, |source| shading.six_products(&nodes, source, |p| p), common, model, canvas)
 }

@@ -11,12 +11,13 @@
 //! the silhouette sweep the whole map. Error against Phong: large there, else [`microphong::method::levels::gouraud`]'s of diffuse light.
 //! Domain: any lights; the highlights of near ones are wrong by design.
 
+use crate::fields::Held;
 use microphong::{
     format::{COSINE, POSITION, UNIT},
     math::vector::{dot, normalise, zip},
     method::{
-        Canvas, CosineLookup, Costs, Facts, Held, Highlight, HighlightField, Lighting, LightingModel, Method, Node, Reflection, Shading,
-        Source, TriangleSetup, VertexLight, Viewer, cosine, cosines::duff::Root, linear, signed,
+        Canvas, CosineLookup, Facts, Highlight, HighlightField, Lighting, LightingModel, Method, Node, Reflection, Shading, Source,
+        TriangleSetup, VertexLight, Viewer, cosine, cosines::duff::Root, linear, signed,
     },
 };
 
@@ -33,7 +34,6 @@ static FACTS: Facts = Facts {
     highlight_field: HighlightField::Plane,
     near_lights: true,
     perspective: true,
-    costs: Costs::new(4, 0, 1, 20),
 };
 
 /// Highlights from a sphere map.

@@ -9,15 +9,15 @@
 //! and 5 products, with the highlight's table. Error of the length: (1/2) of the square of its change from pixel to pixel. Domain: directional lights
 //! and an infinitely far viewer.
 
-use crate::scanline::{Edges, Rows};
+use crate::{
+    divisor::Divisor,
+    scanline::{self, Edges, Rows},
+};
 use microphong::{
-    math::{
-        recip::Divisor,
-        vector::{dot, normalise, wide},
-    },
+    math::vector::{dot, normalise, wide},
     method::{
-        Canvas, Constant, CosineLookup, Costs, Facts, Highlight, HighlightField, Lighting, LightingModel, Method, Patch, Reflection,
-        Shading, Source, TriangleSetup, VertexLight, Viewer, Walker, cosine,
+        Canvas, Constant, CosineLookup, Facts, Highlight, HighlightField, Lighting, LightingModel, Method, Patch, Reflection, Shading,
+        Source, TriangleSetup, VertexLight, Viewer, Walker, cosine,
     },
 };
 
@@ -31,7 +31,6 @@ static FACTS: Facts = Facts {
     highlight_field: HighlightField::Level,
     near_lights: false,
     perspective: false,
-    costs: Costs::new(7, 4, 1, 30).per_row(70),
 };
 
 /// Goldman's scanlines.
@@ -55,7 +54,7 @@ fn draw(setup: &TriangleSetup<'_>, shading: &Shading<'_>, canvas: &mut dyn Canva
     // The normal itself: its products with the axes.
     let one = 1 << 30;
     let chords = Chords { rows, normals, along: [[one, 0, 0], [0, one, 0], [0, 0, one]] };
-    shading.draw_rows(setup, |_| Constant, chords, Many { lighting: shading.lighting, view }, canvas)
+    scanline::draw(setup, shading, |_| Constant, chords, Many { lighting: shading.lighting, view }, canvas)
 }
 
 /// Normals along rows, multiplied by `M` vectors.

@@ -4,8 +4,8 @@
 //! between. Cost: one addition a pixel and channel; three more nodes and four times
 //! Gouraud's set-up a triangle. Continuous. A quarter of Gouraud's error.
 
-use crate::split::SubTriangles;
-use microphong::method::{Canvas, Costs, Facts, Highlight, HighlightField, Method, Shading, SubTriangle, TriangleSetup, VertexLight};
+use crate::{split::SubTriangles, sub_triangle::SubTriangle};
+use microphong::method::{Canvas, Facts, Highlight, HighlightField, Method, Shading, TriangleSetup, VertexLight};
 
 static FACTS: Facts = Facts {
     name: "gouraud4",
@@ -17,7 +17,6 @@ static FACTS: Facts = Facts {
     highlight_field: HighlightField::Level,
     near_lights: true,
     perspective: false,
-    costs: Costs::new(1, 0, 0, 130),
 };
 
 /// Gouraud shading of four parts.

@@ -9,8 +9,8 @@
 //! lights.
 
 use microphong::method::{
-    Canvas, Costs, Facts, Highlight, HighlightField, Method, RANGE, Shading, Source, TriangleSetup, VertexLight, cosine,
-    cosines::phong::Phong, levels::gouraud::Gouraud,
+    Canvas, Facts, Highlight, HighlightField, Method, RANGE, Shading, Source, TriangleSetup, VertexLight, cosine, cosines::phong::Phong,
+    levels::gouraud::Gouraud,
 };
 
 static FACTS: Facts = Facts {
@@ -23,7 +23,6 @@ static FACTS: Facts = Facts {
     highlight_field: HighlightField::Quadratic,
     near_lights: true,
     perspective: true,
-    costs: Costs::new(11, 12, 2, 35),
 };
 
 /// Phong shading where a highlight can be.

@@ -9,12 +9,12 @@ use crate::{
     angular::{Turned, turned},
     arc::Arc,
     parabola::{Lobe, Parabolas, PiecewiseQuadratic},
-    scanline::{Edges, Rows},
+    scanline::{self, Edges, Rows},
 };
 use microphong::{
     math::vector::normalise,
     method::{
-        Canvas, Constant, CosineLookup, Costs, Facts, Highlight, HighlightField, LightingModel, Method, Patch, Reflection, Shading, Source,
+        Canvas, Constant, CosineLookup, Facts, Field, Highlight, HighlightField, LightingModel, Method, Patch, Reflection, Shading, Source,
         TriangleSetup, VertexLight, cosine, quadratic, signed,
     },
 };
@@ -29,7 +29,6 @@ static FACTS: Facts = Facts {
     highlight_field: HighlightField::Level,
     near_lights: true,
     perspective: false,
-    costs: Costs::new(5, 0, 0, 290).per_row(180),
 };
 
 static ORIGINAL: Facts = Facts {
@@ -42,7 +41,6 @@ static ORIGINAL: Facts = Facts {
     highlight_field: HighlightField::Level,
     near_lights: true,
     perspective: false,
-    costs: Costs::new(5, 0, 0, 290).per_row(180),
 };
 
 /// Highlights in three parabolas a span.
@@ -82,7 +80,7 @@ fn draw(setup: &TriangleSetup<'_>, shading: &Shading<'_>, fit: fn(u16) -> Parabo
     let constant = |direction| bows(Turned { normals: setup.corner_nodes().map(|node| node.normal), direction });
     let (nodes, is_constant) = (setup.six_nodes(shading.exponent), shading.lighting.is_constant());
     let fit = |source: &Source| {
-        let diffuse = setup.fit(&quadratic([nodes.map(|node| cosine(node.normal, source.towards(node.position)))]));
+        let diffuse = quadratic([nodes.map(|node| cosine(node.normal, source.towards(node.position)))]).fit(setup.gradients);
         let highlight = if is_constant {
             let [_, half] = shading.lighting.directions(source, [0; 3]);
             constant(half)
@@ -92,7 +90,7 @@ fn draw(setup: &TriangleSetup<'_>, shading: &Shading<'_>, fit: fn(u16) -> Parabo
         };
         (diffuse, highlight)
     };
-    shading.draw_rows(setup, fit, Constant, Both, canvas)
+    scanline::draw(setup, shading, fit, Constant, Both, canvas)
 }
 
 /// Highlights along the rows.

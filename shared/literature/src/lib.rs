@@ -10,22 +10,27 @@ pub mod angular;
 pub mod arc;
 pub mod blinn;
 pub mod cubic;
+pub mod divisor;
 pub mod duff;
 pub mod environment;
+pub mod fields;
 pub mod goldman;
 pub mod gouraud4;
 pub mod highlight_test;
 pub mod hybrid;
+pub mod nodes;
 pub mod parabola;
 pub mod phong_rv;
 pub mod pseudo_phong;
 pub mod quadratic_blinn;
 pub mod renq;
+pub mod renq_newton;
 pub mod scanline;
 pub mod six_point_adaptive;
 pub mod six_point_centre;
 pub mod slerp;
 pub mod split;
+pub mod sub_triangle;
 pub mod taylor;
 pub mod taylor_finite;
 
@@ -43,6 +48,7 @@ pub use phong_rv::PhongRv;
 pub use pseudo_phong::PseudoPhong;
 pub use quadratic_blinn::QuadraticBlinn;
 pub use renq::Renq;
+pub use renq_newton::RenqNewton;
 pub use six_point_adaptive::SixPointAdaptive;
 pub use six_point_centre::SixPointCentre;
 pub use slerp::Slerp;
@@ -50,7 +56,7 @@ pub use taylor::Taylor;
 pub use taylor_finite::TaylorFinite;
 
 /// Every method of this crate, in the order of their numbers.
-pub const ALL: [&dyn Method; 20] = [
+pub const ALL: [&dyn Method; 21] = [
     &PhongRv,
     &Gouraud4,
     &PseudoPhong,
@@ -71,4 +77,5 @@ pub const ALL: [&dyn Method; 20] = [
     &Blinn,
     &QuadraticBlinn,
     &Renq,
+    &RenqNewton,
 ];

@@ -7,7 +7,7 @@
 //! Error against the half vector: the difference of the two models.
 
 use microphong::method::{
-    Canvas, CosineLookup, Costs, Facts, Highlight, HighlightField, LightingModel, Method, Reflection, Shading, TriangleSetup, VertexLight,
+    Canvas, CosineLookup, Facts, Highlight, HighlightField, LightingModel, Method, Reflection, Shading, TriangleSetup, VertexLight,
     cosines::{phong, phong::Common},
 };
 
@@ -21,7 +21,6 @@ static FACTS: Facts = Facts {
     highlight_field: HighlightField::Quadratic,
     near_lights: true,
     perspective: true,
-    costs: Costs::new(12, 13, 2, 30),
 };
 
 /// Phong shading with the reflected light.

@@ -5,10 +5,10 @@
 //! addition a pixel and channel, but a light and a set-up for every 32 pixels or fewer. Neighbours may be split unequally; they then meet in chords
 //! of one curve.
 
-use crate::split::SubTriangles;
+use crate::{split::SubTriangles, sub_triangle::SubTriangle};
 use microphong::{
     format::{SPLITS, SUBPIXEL},
-    method::{Canvas, Costs, Facts, Highlight, HighlightField, Method, Shading, SubTriangle, TriangleSetup, VertexLight},
+    method::{Canvas, Facts, Highlight, HighlightField, Method, Shading, TriangleSetup, VertexLight},
 };
 
 /// Logarithm of the longest edge of a part, 8 pixels in 1/16 pixel.
@@ -24,7 +24,6 @@ static FACTS: Facts = Facts {
     highlight_field: HighlightField::Level,
     near_lights: true,
     perspective: false,
-    costs: Costs::new(1, 0, 0, 520),
 };
 
 /// Gouraud shading of small parts.
@@ -47,7 +46,7 @@ fn draw(setup: &TriangleSetup<'_>, shading: &Shading<'_>, canvas: &mut dyn Canva
 
 /// Number of times that the triangle is split.
 fn splits(setup: &TriangleSetup<'_>) -> u32 {
-    let ([a, b, c], finer) = (setup.corners, setup.finer());
+    let ([a, b, c], finer) = (setup.corners, setup.pixels.finer());
     let longest = [(a, b), (b, c), (c, a)].into_iter().fold(0, |longest, (a, b)| {
         let (x, y) = (i64::from(a.x) - i64::from(b.x), i64::from(a.y) - i64::from(b.y));
         longest.max(x * x + y * y)

@@ -5,7 +5,7 @@
 
 use crate::blinn::{Across, coordinates};
 use microphong::method::{
-    Canvas, Constant, Costs, Facts, Highlight, HighlightField, Method, Shading, Source, TriangleSetup, VertexLight, quadratic,
+    Canvas, Constant, Facts, Highlight, HighlightField, Method, Shading, Source, TriangleSetup, VertexLight, quadratic,
 };
 
 static FACTS: Facts = Facts {
@@ -18,7 +18,6 @@ static FACTS: Facts = Facts {
     highlight_field: HighlightField::Quadratic,
     near_lights: true,
     perspective: true,
-    costs: Costs::new(7, 2, 1, 260),
 };
 
 /// Highlights from a map around the half vector, quadratic.

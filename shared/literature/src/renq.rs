@@ -8,11 +8,16 @@
 //! the least |N|: 3 LSB at worst on a sphere of 168 triangles, 0.3 on one of 690 (exponent 50, ks 1/2).
 //! Domain: any lights; where |N| falls below 1/2, [`microphong::method::cosines::duff`]'s root takes over.
 
-use microphong::method::{
-    Canvas, Costs, Facts, Highlight, HighlightField, Method, Shading, TriangleSetup, VertexLight,
-    cosines::{
-        duff,
-        renq::{Scaled, length},
+use crate::duff::{draw_products, shade};
+use microphong::{
+    format::INVERSE_SUM_LENGTH,
+    method::{
+        Canvas, CosineLookup, Facts, Highlight, HighlightField, LightingModel, Method, QuadraticNodes, Reflection, Shading, TriangleSetup,
+        VertexLight,
+        cosines::duff::is_curved,
+        lighting_model::{FIELD_EXTRA, FIELD_NODE},
+        node::is_steep,
+        signed,
     },
 };
 
@@ -26,7 +31,6 @@ static FACTS: Facts = Facts {
     highlight_field: HighlightField::Quadratic,
     near_lights: true,
     perspective: true,
-    costs: Costs::new(5, 2, 1, 60),
 };
 
 /// Quadratic renormalisation.
@@ -38,9 +42,51 @@ impl Method for Renq {
     }
 
     fn shade(&self, setup: &TriangleSetup<'_>, shading: &Shading<'_>, canvas: &mut dyn Canvas) -> u32 {
-        if duff::is_curved(setup) {
-            return duff::shade(setup, shading, canvas);
+        if is_curved(setup) {
+            return shade(setup, shading, canvas);
         }
-        duff::draw_products(setup, shading, length(setup, shading.exponent), Scaled, canvas)
+        draw_products(setup, shading, length(setup, shading.exponent), Scaled, canvas)
     }
+}
+
+/// Half the quadratic through 1/|N| at six nodes, Q2.30.
+#[inline(always)]
+pub fn length(setup: &TriangleSetup<'_>, exponent: u16) -> QuadraticNodes<1> {
+    // 1/|Ni+Nj| - 1/2, zero at the corners. It is at most 1/2 where the normal is as long as methods want it here; the record of a damaged
+    // stream may say so of one that is shorter.
+    let node = |inverse: u32| {
+        (inverse.min(1 << INVERSE_SUM_LENGTH).wrapping_sub(1 << (INVERSE_SUM_LENGTH - 1)) << (FIELD_NODE - INVERSE_SUM_LENGTH)) as i32
+    };
+    let [ab, bc, ca] = if is_steep(exponent) {
+        setup.fine_inverse_sum_lengths().map(|inverse| inverse as i32 - (1 << (FIELD_NODE - 1)))
+    } else {
+        let [ab, bc, ca] = setup.inverse_sum_lengths();
+        [node(ab), node(bc), node(ca)]
+    };
+    QuadraticNodes::new([[0, 0, 0, ab, bc, ca]], FIELD_EXTRA).biased([1 << 29])
+}
+
+/// Shades by numerators times a reciprocal length.
+#[derive(Clone, Copy)]
+pub struct Scaled;
+
+impl LightingModel<[u32; 1], [u32; 2]> for Scaled {
+    /// 1/(2|N|), Q2.30.
+    type Common = i32;
+
+    #[inline(always)]
+    fn common(&self, [length]: [u32; 1]) -> i32 {
+        signed(length)
+    }
+
+    #[inline(always)]
+    fn reflect(&self, _: usize, &length: &i32, [light, half]: [u32; 2], lut: CosineLookup<'_>) -> Reflection {
+        Reflection { diffuse: upper(signed(light), length), highlight: lut.at(upper(signed(half), length)) }
+    }
+}
+
+/// The upper half of a product. That of a numerator and half a reciprocal length, Q2.30 each, is a cosine in Q5.27.
+#[inline(always)]
+pub fn upper(a: i32, b: i32) -> i32 {
+    ((i64::from(a) * i64::from(b)) >> 32) as i32
 }

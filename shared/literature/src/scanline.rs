@@ -7,8 +7,24 @@
 use microphong::{
     format::{CENTRE, SUBPIXEL},
     math::{recip::recip, vector::zip},
-    method::{TriangleSetup, Walker},
+    method::{Canvas, Constant, LightingModel, Lit, Patch, Shading, Source, TriangleSetup, Walker},
 };
+
+/// Draws the triangle `setup` under any number of lights, by a lighting `model` that computes the light at each pixel from polynomials along rows:
+/// `of` returns one for each light, and `common` is one for all lights together. Returns the number of pixels drawn.
+pub fn draw<K: Patch, P: Patch, F>(
+    setup: &TriangleSetup<'_>,
+    shading: &Shading<'_>,
+    of: impl Fn(&Source) -> P,
+    common: K,
+    model: F,
+    canvas: &mut dyn Canvas,
+) -> u32
+where
+    F: LightingModel<<K::Walker as Walker>::Value, <P::Walker as Walker>::Value>,
+{
+    shading.draw_patches(setup, |source| Lit::<P, Constant>::Fully(of(source)), common, model, canvas)
+}
 
 /// The edges of a triangle: 0 from its top to its right corner, 1 on to its left one, 2 back to the top.
 #[derive(Clone, Copy, Debug)]
@@ -64,7 +80,7 @@ impl Edges {
 
     /// The rows, starting with that on which shading begins.
     pub fn rows(&self, setup: &TriangleSetup<'_>) -> Rows<'_> {
-        Rows { edges: self, row: setup.first_row() }
+        Rows { edges: self, row: setup.gradients.row() }
     }
 }
 

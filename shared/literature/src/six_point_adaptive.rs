@@ -13,11 +13,12 @@
 use crate::{
     six_point_centre::{CENTRE, DEPTH},
     split::{Levels, Six, SubTriangles, corners, differ, edges},
+    sub_triangle::SubTriangle,
 };
 use microphong::{
     format::LEVEL,
     math::vector::zip,
-    method::{Canvas, Costs, Facts, Highlight, HighlightField, Method, Shading, SubTriangle, TriangleSetup, VertexLight},
+    method::{Canvas, Facts, Highlight, HighlightField, Method, Shading, TriangleSetup, VertexLight},
 };
 
 /// Largest error of an edge's parabola at its quarters, Q9.7.
@@ -33,7 +34,6 @@ static FACTS: Facts = Facts {
     highlight_field: HighlightField::Level,
     near_lights: true,
     perspective: false,
-    costs: Costs::new(2, 0, 0, 355),
 };
 
 /// Six-point shading, split without cracks.

@@ -7,10 +7,13 @@
 //! [`crate::six_point_adaptive`] does neither. Cost: two additions a pixel and
 //! channel; one more light a triangle, and nine a split.
 
-use crate::split::{Six, SubTriangles, corners, edges};
+use crate::{
+    split::{Six, SubTriangles, corners, edges},
+    sub_triangle::SubTriangle,
+};
 use microphong::{
     format::LEVEL,
-    method::{Canvas, Costs, Facts, Highlight, HighlightField, Method, Shading, SubTriangle, TriangleSetup, VertexLight},
+    method::{Canvas, Facts, Highlight, HighlightField, Method, Shading, TriangleSetup, VertexLight},
 };
 
 /// Largest error of the quadratic at the centre, Q9.7.
@@ -28,7 +31,6 @@ static FACTS: Facts = Facts {
     highlight_field: HighlightField::Level,
     near_lights: true,
     perspective: false,
-    costs: Costs::new(2, 0, 0, 175),
 };
 
 /// Six-point shading, split as printed.

@@ -12,13 +12,13 @@
 use crate::{
     angle::sin_cos,
     arc::Arc,
-    scanline::{Edges, Rows},
+    scanline::{self, Edges, Rows},
 };
 use microphong::{
     math::vector::{dot, normalise, wide},
     method::{
-        Canvas, Constant, CosineLookup, Costs, Facts, Highlight, HighlightField, Lighting, LightingModel, Method, Patch, Reflection,
-        Shading, Source, TriangleSetup, VertexLight, Walker, cosine,
+        Canvas, Constant, CosineLookup, Facts, Highlight, HighlightField, Lighting, LightingModel, Method, Patch, Reflection, Shading,
+        Source, TriangleSetup, VertexLight, Walker, cosine,
     },
 };
 
@@ -32,7 +32,6 @@ static FACTS: Facts = Facts {
     highlight_field: HighlightField::Level,
     near_lights: false,
     perspective: false,
-    costs: Costs::new(5, 8, 1, 30).per_row(100),
 };
 
 /// Normals turned at constant speed.
@@ -54,7 +53,7 @@ fn draw(setup: &TriangleSetup<'_>, shading: &Shading<'_>, canvas: &mut dyn Canva
     // The normal itself: its products with the axes.
     let one = 1 << 30;
     let arcs = Arcs { rows, arcs, along: [[one, 0, 0], [0, one, 0], [0, 0, one]] };
-    shading.draw_rows(setup, |_| Constant, arcs, Many(shading.lighting), canvas)
+    scanline::draw(setup, shading, |_| Constant, arcs, Many(shading.lighting), canvas)
 }
 
 /// The arcs along the three edges between normals of any length.

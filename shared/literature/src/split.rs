@@ -1,8 +1,12 @@
 //! Code for methods that split a triangle into sub-triangles and shade each by itself.
 
+use crate::{
+    nodes::{node, third},
+    sub_triangle::{Parts, SubTriangle},
+};
 use microphong::{
     math::vector::{add, zip},
-    method::{Canvas, Parts, Shading, SubTriangle, TriangleSetup},
+    method::{Canvas, Shading, TriangleSetup},
 };
 
 /// Light of three channels, Q9.7.
@@ -55,7 +59,7 @@ pub fn corners<A: Copy>([a, b, c]: [A; 3], [ab, bc, ca]: [A; 3], k: usize) -> [A
 impl<'a, 'f> SubTriangles<'a, 'f> {
     /// The parts of a triangle.
     pub fn new(setup: &'a TriangleSetup<'f>, shading: &'a Shading<'f>) -> Self {
-        Self { setup, shading, parts: setup.parts() }
+        Self { setup, shading, parts: Parts::new(setup) }
     }
 
     /// Whether anything of `sub_triangle` may be seen in `canvas`.
@@ -75,7 +79,7 @@ impl<'a, 'f> SubTriangles<'a, 'f> {
 
     /// Light at a point with the barycentric coordinates `weights / 2^bits`.
     fn light(&self, weights: [i32; 3], bits: u32) -> Levels {
-        self.shading.levels(&self.setup.node(weights, bits))
+        self.shading.levels(&node(self.setup, weights, bits))
     }
 
     /// Light at the middles of the edges 01, 12, 20.
@@ -104,7 +108,7 @@ impl<'a, 'f> SubTriangles<'a, 'f> {
     /// Whether the quadratic through `six` misses the light in the centre of `sub_triangle` by more than `tolerance` in any channel.
     pub fn misses_centre(&self, sub_triangle: &SubTriangle, six: &Six, tolerance: i32) -> bool {
         let [a, b, c] = sub_triangle.corners();
-        let exact = self.shading.levels(&self.setup.third(add(a, add(b, c)), sub_triangle.level()));
+        let exact = self.shading.levels(&third(self.setup, add(a, add(b, c)), sub_triangle.level()));
         let sum = |[a, b, c]: [Levels; 3]| add(a, add(b, c));
         // Lagrange's weights are -1/9 and 4/9.
         let fitted = zip(sum(six.middles), sum(six.corners), |m, c| 4 * m - c);

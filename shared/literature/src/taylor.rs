@@ -13,6 +13,7 @@
 //! continuous. Error against Phong: 12 LSB on a sphere of 168 triangles, 1.5 on one of 690 (exponent 50, ks 1/2);
 //! useless on coarser ones. Domain: constant lights.
 
+use crate::fields::{Held, Steep};
 use microphong::{
     format::{COSINE, NORMAL_LENGTH, UNIT},
     math::{
@@ -20,8 +21,8 @@ use microphong::{
         vector::{add, dot, sub, wide},
     },
     method::{
-        Canvas, Constant, CosineLookup, Costs, Facts, Held, Highlight, HighlightField, LightingModel, Method, QuadraticNodes, Reflection,
-        Shading, Source, Steep, Steepness, TriangleSetup, VertexLight,
+        Canvas, Constant, CosineLookup, Facts, Highlight, HighlightField, LightingModel, Method, QuadraticNodes, Reflection, Shading,
+        Source, Steepness, TriangleSetup, VertexLight,
         lighting_model::{FIELD_EXTRA, FIELD_NODE},
         signed, tiles,
     },
@@ -40,7 +41,6 @@ static FACTS: Facts = Facts {
     highlight_field: HighlightField::Plane,
     near_lights: false,
     perspective: true,
-    costs: Costs::new(5, 0, 1, 180),
 };
 
 /// Taylor quadratics for constant lights.
@@ -98,7 +98,7 @@ pub fn draw_by(
     canvas: &mut dyn Canvas,
     directions: impl Fn(&Source) -> [Series; 2],
 ) -> u32 {
-    let (normal, unshifted) = (normals(setup), setup.steepness());
+    let (normal, unshifted) = (normals(setup), setup.gradients.steepness());
     let fit = |source: &Source| {
         let (values, shift) = expanded(&normal, directions(source));
         let bits = shift + VECTOR - FIELD_NODE;

@@ -14,7 +14,7 @@ use crate::{
 use microphong::{
     format::COSINE,
     math::vector::add,
-    method::{Canvas, Costs, Facts, Highlight, HighlightField, Method, Shading, Source, TriangleSetup, VertexLight, point},
+    method::{Canvas, Facts, Highlight, HighlightField, Method, Shading, Source, TriangleSetup, VertexLight, point},
 };
 
 static FACTS: Facts = Facts {
@@ -27,7 +27,6 @@ static FACTS: Facts = Facts {
     highlight_field: HighlightField::Plane,
     near_lights: true,
     perspective: true,
-    costs: Costs::new(5, 0, 1, 550),
 };
 
 /// Taylor quadratics for any lights.

@@ -61,11 +61,17 @@ mod tests {
 
     /// A header whose camera looks along z, as far as matters here.
     fn header(projection: u8, [distance, near, radius, focal]: [f64; 4]) -> Header {
-        let one = Rotation::ONE;
-        let rotation =
-            [[one, Rotation::ZERO, Rotation::ZERO], [Rotation::ZERO, one, Rotation::ZERO], [Rotation::ZERO, Rotation::ZERO, -one]];
-        let translation = [0.0, 0.0, distance].map(Length::from_num);
-        let camera = Camera::new(projection, rotation, translation, Focal::from_num(focal), [near, 32.0].map(Length::from_num));
+        let length = |number: f64| Length::from_num(number).to_bits();
+        let one = Rotation::ONE.to_bits();
+        let camera = Camera {
+            projection,
+            rotation: [[one, 0, 0], [0, one, 0], [0, 0, -one]],
+            translation: [0, 0, length(distance)],
+            focal: Focal::from_num(focal).to_bits(),
+            near: length(near),
+            far: length(32.0),
+            ..Camera::new_zeroed()
+        };
         Header { camera, radius: Radius::from_num(radius).to_bits(), ..Header::new_zeroed() }
     }
 

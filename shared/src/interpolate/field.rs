@@ -5,13 +5,12 @@
 
 use crate::{
     interpolate::{
-        Constant, Held, Patch, Walker,
-        cubic::Cubic,
+        Constant, Patch, Walker,
         perspective::{Point, SHARE, Surface},
         plane::Plane,
         quadric::Quadric,
     },
-    setup::{gradients::Gradients, steepness::Steepness},
+    setup::gradients::Gradients,
 };
 
 /// A quantity that varies over a triangle.
@@ -19,9 +18,9 @@ pub trait Field {
     /// The value at a point.
     type Value;
     /// The field as a polynomial on the screen, without perspective.
-    type Patch: Patch<Walker: Walker<Value = Self::Value> + Copy> + Default;
+    type Patch: Patch<Walker: Walker<Value = Self::Value> + Copy>;
     /// The field as a polynomial in barycentric coordinates of the triangle.
-    type Surface: Surface<Value = Self::Value> + Default;
+    type Surface: Surface<Value = Self::Value>;
 
     /// Fits the polynomial on the screen, on the triangle of `gradients`.
     fn fit(&self, gradients: &Gradients) -> Self::Patch;
@@ -30,8 +29,7 @@ pub trait Field {
     fn surface(&self) -> Self::Surface;
 }
 
-/// A polynomial through three, six or ten nodes in each of `CH` channels: see [`Plane::fit`], [`Quadric::fit`] (which explains `BITS`) and
-/// [`Cubic::fit`].
+/// A polynomial through three or six nodes in each of `CH` channels: see [`Plane::fit`] and [`Quadric::fit`], which explain `BITS`.
 #[derive(Clone, Copy, Debug)]
 pub struct Nodes<const N: usize, const CH: usize, const BITS: u32 = 32> {
     pub(crate) values: [[i32; N]; CH],
@@ -52,12 +50,6 @@ impl<const N: usize, const CH: usize, const BITS: u32> Nodes<N, CH, BITS> {
     #[must_use]
     pub fn biased(self, bias: [i32; CH]) -> Self {
         Self { bias, ..self }
-    }
-}
-
-impl<const N: usize, const CH: usize, const BITS: u32> Default for Nodes<N, CH, BITS> {
-    fn default() -> Self {
-        Self::new([[0; N]; CH], 0)
     }
 }
 
@@ -91,43 +83,6 @@ impl<const CH: usize, const BITS: u32> Field for Nodes<6, CH, BITS> {
     }
 }
 
-impl<const CH: usize, const BITS: u32> Field for Nodes<10, CH, BITS> {
-    type Value = [u32; CH];
-    type Patch = Cubic<CH>;
-    type Surface = Self;
-
-    fn fit(&self, gradients: &Gradients) -> Cubic<CH> {
-        Cubic::fit(gradients, &self.values, self.extra, self.bias)
-    }
-
-    fn surface(&self) -> Self {
-        *self
-    }
-}
-
-/// A field with its own steepness: light depends on it more or less steeply than on other fields of its triangle.
-#[derive(Clone, Copy, Debug)]
-pub struct Steep<F> {
-    /// The field.
-    pub field: F,
-    /// How steeply light depends on the field.
-    pub steepness: Steepness,
-}
-
-impl<F: Field> Field for Steep<F> {
-    type Value = F::Value;
-    type Patch = F::Patch;
-    type Surface = F::Surface;
-
-    fn fit(&self, gradients: &Gradients) -> F::Patch {
-        self.field.fit(&gradients.steep(self.steepness))
-    }
-
-    fn surface(&self) -> F::Surface {
-        self.field.surface()
-    }
-}
-
 impl Field for Constant {
     type Value = ();
     type Patch = Self;
@@ -147,29 +102,6 @@ impl Surface for Constant {
     type Value = ();
 
     fn at(&self, _: &Point) {}
-}
-
-impl<T: Copy + Default> Field for Held<T> {
-    type Value = T;
-    type Patch = Self;
-    type Surface = Self;
-
-    #[inline(always)]
-    fn fit(&self, _: &Gradients) -> Self {
-        *self
-    }
-
-    fn surface(&self) -> Self {
-        *self
-    }
-}
-
-impl<T: Copy> Surface for Held<T> {
-    type Value = T;
-
-    fn at(&self, _: &Point) -> T {
-        self.0
-    }
 }
 
 /// Two fields side by side.
@@ -225,15 +157,5 @@ impl<const CH: usize, const BITS: u32> Surface for Nodes<6, CH, BITS> {
     #[inline(always)]
     fn at(&self, point: &Point) -> [u32; CH] {
         self.blend(point.six()).map(|value| value as u32)
-    }
-}
-
-impl<const CH: usize, const BITS: u32> Surface for Nodes<10, CH, BITS> {
-    type Value = [u32; CH];
-
-    /// The value is clamped, as that of a walked cubic.
-    #[inline(always)]
-    fn at(&self, point: &Point) -> [u32; CH] {
-        self.blend(point.ten()).map(|value| value.clamp(0, u32::MAX.into()) as u32)
     }
 }

@@ -1,15 +1,12 @@
 //! Polynomials over a triangle: fitted once, then walked by additions.
 //!
-//! `Gradients` turns node values into derivatives, [`plane::Plane`], [`quadric::Quadric`] and
-//! [`cubic::Cubic`] hold them as integers for the rows of a triangle, and
-//! their walkers run along one span. Coefficients are rounded once; every later
-//! step is exact modulo 2^32 (2^64), so neither rows, nor bands, nor clipping change a
-//! bit of a value, and nothing drifts.
+//! `Gradients` turns node values into derivatives, [`plane::Plane`] and [`quadric::Quadric`] hold them as integers for the rows of a
+//! triangle, and their walkers run along one span. Coefficients are rounded once; every later step is exact modulo 2^32, so neither rows, nor
+//! bands, nor clipping change a bit of a value, and nothing drifts.
 //!
 //! Methods describe what they interpolate by [`field`]s. [`perspective`] interpolates fields in perspective.
 
 pub mod by_column;
-pub mod cubic;
 pub mod field;
 pub mod perspective;
 pub mod plane;
@@ -92,7 +89,7 @@ pub trait Walker {
 }
 
 /// A polynomial without a value, for methods that interpolate nothing.
-#[derive(Clone, Copy, Debug, Default)]
+#[derive(Clone, Copy, Debug)]
 pub struct Constant;
 
 impl Patch for Constant {
@@ -121,32 +118,6 @@ impl Walker for Constant {
     fn step(&mut self) {}
     #[inline(always)]
     fn value(&self) {}
-}
-
-/// A polynomial with one value everywhere.
-#[derive(Clone, Copy, Debug, Default)]
-pub struct Held<T>(pub T);
-
-impl<T: Copy> Patch for Held<T> {
-    type Walker = Self;
-    #[inline(always)]
-    fn jump(&mut self, _: i32) {}
-    #[inline(always)]
-    fn step_row(&mut self) {}
-    #[inline(always)]
-    fn enter(&self, _: i32) -> Self {
-        *self
-    }
-}
-
-impl<T: Copy> Walker for Held<T> {
-    type Value = T;
-    #[inline(always)]
-    fn step(&mut self) {}
-    #[inline(always)]
-    fn value(&self) -> T {
-        self.0
-    }
 }
 
 /// Two polynomials side by side.

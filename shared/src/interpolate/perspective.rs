@@ -7,7 +7,7 @@
 //! instead, whatever is interpolated, and the polynomial is evaluated at the pixel.
 //!
 //! Cost: 3 additions of 64 bits a step; at each pixel that is seen a reciprocal, 2 products, and Lagrange's weights of the
-//! nodes: none for planes, 6 products for quadratics, 15 for cubics, and then a product per node and channel.
+//! nodes: none for planes, 6 products for quadratics, and then a product per node and channel.
 //! Set-up: three planes instead of a fit of each channel.
 
 use crate::{
@@ -17,13 +17,13 @@ use crate::{
 };
 
 /// Fraction bits of barycentric coordinates, Q2.30.
-pub(crate) const SHARE: u32 = 30;
+pub const SHARE: u32 = 30;
 /// One, as a barycentric coordinate.
 const ONE: i64 = 1 << SHARE;
 
 /// A point of a triangle, by its barycentric coordinates, Q2.30, whose sum is one.
 #[derive(Clone, Copy, Debug)]
-pub struct Point(pub(crate) [i32; 3]);
+pub struct Point(pub [i32; 3]);
 
 /// A quantity that can be evaluated at any point of a triangle.
 pub trait Surface: Copy {
@@ -150,16 +150,5 @@ impl Point {
         let corner = |u: i64| ((u * (2 * u - ONE)) >> SHARE) as i32;
         let edge = |u: i64, v: i64| ((u * v) >> (SHARE - 2)) as i32;
         [corner(a), corner(b), corner(c), edge(a, b), edge(b, c), edge(c, a)]
-    }
-
-    /// Lagrange's weights of ten nodes, in the order of [`crate::interpolate::cubic::Cubic::fit`].
-    #[inline(always)]
-    pub(crate) fn ten(&self) -> [i32; 10] {
-        let [a, b, c] = self.0.map(i64::from);
-        let times = |u: i64, v: i64| (u * v) >> SHARE;
-        let corner = |u: i64| (times(times(u, 3 * u - ONE), 3 * u - 2 * ONE) >> 1) as i32;
-        let edge = |near: i64, far: i64| ((9 * times(times(near, far), 3 * near - ONE)) >> 1) as i32;
-        let centre = (27 * times(times(a, b), c)) as i32;
-        [corner(a), corner(b), corner(c), edge(a, b), edge(b, a), edge(b, c), edge(c, b), edge(c, a), edge(a, c), centre]
     }
 }

@@ -9,7 +9,7 @@ pub mod highlight_lut;
 pub mod recip;
 pub mod rsqrt;
 pub mod vector;
-pub(crate) mod wide;
+pub mod wide;
 
 /// `value / 2^bits`, rounded to nearest, halves up; for negative `bits` a left shift that wraps modulo 2^64.
 ///
@@ -28,20 +28,6 @@ pub fn scale(value: i64, bits: i32) -> i64 {
     }
 }
 
-/// `value / 2^bits`, rounded to nearest, halves up, in 128 bits; for negative `bits` a left shift that wraps modulo 2^128.
-///
-/// Domain: `bits` is -127 to 126, and `value + 2^(bits - 1)` fits 128 bits. Exact (tests::scaling).
-#[inline(never)]
-#[must_use]
-pub fn scale_wide(value: i128, bits: i32) -> i128 {
-    if bits > 0 {
-        let bits = bits.unsigned_abs().min(126);
-        value.wrapping_add(1 << (bits - 1)) >> bits
-    } else {
-        value.wrapping_shl(bits.unsigned_abs())
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -52,13 +38,10 @@ mod tests {
             for bits in 1..63 {
                 let nearest = (i128::from(value) + (1 << (bits - 1))).div_euclid(1 << bits);
                 assert_eq!(i128::from(scale(value, bits)), nearest, "{value} {bits}");
-                assert_eq!(scale_wide(value.into(), bits), nearest, "{value} {bits}");
-                assert_eq!(scale_wide(i128::from(value) << 63, bits + 63), nearest, "{value} {bits}");
             }
             for bits in 0..64u32 {
                 let left = i128::from(value) << bits;
                 assert_eq!(scale(value, -(bits as i32)), left as i64, "{value} -{bits}");
-                assert_eq!(scale_wide(value.into(), -(bits as i32)), left, "{value} -{bits}");
             }
             assert_eq!([scale(value, 63), scale(value, -64)], [0; 2]);
         }

@@ -31,9 +31,6 @@ pub struct Facts {
     /// Whether the method supports perspective-correct interpolation. Methods that draw whole triangles with
     /// [`Area::draw`](crate::method::Area::draw) do.
     pub perspective: bool,
-    /// Numbers of operations in the method's formulas.
-    #[doc(hidden)]
-    pub costs: Costs,
 }
 
 impl Facts {
@@ -52,7 +49,6 @@ impl Facts {
         highlight_field: HighlightField::Level,
         near_lights: true,
         perspective: true,
-        costs: Costs::new(0, 0, 0, 0),
     };
 
     /// How steeply light depends on the interpolated fields of this method, for a material of this exponent.
@@ -64,39 +60,6 @@ impl Facts {
             HighlightField::Quadratic => steepness,
             HighlightField::Root => Steepness::new(2 * exponent as u32),
         }
-    }
-}
-
-/// Numbers of operations in a method's formulas, counted by hand. `microphong bench` counts instructions.
-///
-/// The numbers are for one white directional light, an infinitely far viewer, and one channel. Gains of the material are part of walked values or
-/// tables. A look-up in an interpolated table counts as one load, one multiplication and one addition (reciprocal roots), in a fine table as one load
-/// (powers). Divisions and roots count as multiplications. Setting up a linear field takes 10 operations, a lit node 30, a quadratic 45.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Costs {
-    /// Additions per pixel.
-    pub adds: u32,
-    /// Multiplications and divisions per pixel.
-    pub multiplies: u32,
-    /// Table look-ups per pixel.
-    pub loads: u32,
-    /// Operations to set up one triangle that is not split.
-    pub setup: u32,
-    /// Operations to set up one row of a triangle, beyond the forward differences of its edges.
-    pub row: u32,
-}
-
-impl Costs {
-    /// Operations of a method that has none for each row.
-    #[must_use]
-    pub const fn new(adds: u32, multiplies: u32, loads: u32, setup: u32) -> Self {
-        Self { adds, multiplies, loads, setup, row: 0 }
-    }
-
-    /// Adds operations for each row.
-    #[must_use]
-    pub const fn per_row(self, row: u32) -> Self {
-        Self { row, ..self }
     }
 }
 

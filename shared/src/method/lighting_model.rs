@@ -221,25 +221,8 @@ impl Shading<'_> {
         self.draw_patches(setup, of, fitted(&common, gradients), model, canvas)
     }
 
-    /// Draws a triangle like [`Self::draw_lit`], for methods that interpolate along rows of the screen. `of` and `common` are polynomials
-    /// on the screen, as [`TriangleSetup::fit`] makes them, in place of fields. Returns the number of pixels drawn.
-    pub fn draw_rows<K, P, F>(
-        &self,
-        setup: &TriangleSetup<'_>,
-        of: impl Fn(&Source) -> P,
-        common: K,
-        model: F,
-        canvas: &mut dyn Canvas,
-    ) -> u32
-    where
-        K: Patch,
-        P: Patch,
-        F: LightingModel<<K::Walker as Walker>::Value, <P::Walker as Walker>::Value>,
-    {
-        self.draw_patches(setup, |source| Lit::<P, Constant>::Fully(of(source)), common, model, canvas)
-    }
-
-    fn draw_patches<K, P, D, F>(
+    /// Draws a triangle like [`Self::draw_lit_in_part`], by polynomials on the screen in place of fields.
+    pub fn draw_patches<K, P, D, F>(
         &self,
         setup: &TriangleSetup<'_>,
         of: impl Fn(&Source) -> Lit<P, D>,

@@ -15,13 +15,11 @@ pub mod levels;
 pub mod lighting_model;
 #[doc(hidden)]
 pub mod node;
-#[doc(hidden)]
-pub mod sub_triangle;
+mod perspective;
 #[doc(hidden)]
 pub mod tiles;
 
 use crate::{
-    antialias::{PixelSet, Shape},
     arch::product::by_fraction,
     features::{ALWAYS_CONSTANT, ANTIALIAS, COLOURS, PERSPECTIVE, SKIPS},
     format::{BIAS, CHANNEL, INTENSITY, LEVEL, NORMAL_LENGTH, SUBPIXEL, WALK},
@@ -32,13 +30,12 @@ use crate::{
     raster::{
         active::ActiveTriangle,
         band::Band,
-        canvas::{Shaded, SpanShader},
         counts::Counts,
         pixel_shader::{PixelShader, Ramp, Rgb},
-        triangle::{ScreenTriangle, turn},
+        triangle::turn,
     },
-    setup::gradients::{Gradients, MAX_FINE_THINNESS},
-    stream::record::{Triangle, Vertex},
+    setup::gradients::MAX_FINE_THINNESS,
+    stream::record::Triangle,
 };
 #[doc(inline)]
 pub use crate::{
@@ -52,22 +49,33 @@ pub use facts::{Facts, VertexLight};
 #[doc(hidden)]
 pub use {
     crate::{
+        antialias::{PixelSet, Shape, coarse},
+        coverage::area::TriangleCoverage,
         interpolate::{
-            Constant, Held, Patch, Walker,
-            field::{Field, Nodes, Steep},
+            Constant, Patch, Walker,
+            field::{Field, Nodes},
+            perspective::{Point, SHARE, Surface},
+            plane::Plane,
         },
         lighting::{
             lights::{Lighting, Source, Viewer, cosine, point},
             reflectance::{Highlight, LitMaterial, Reflectance, Reflection},
         },
         math::highlight_lut::CosineLookup,
-        setup::steepness::Steepness,
+        raster::{
+            canvas::{Shaded, SpanShader},
+            triangle::ScreenTriangle,
+        },
+        setup::{
+            gradients::{GUARD, Gradients, MAX_THINNESS, NEAR, Slopes},
+            steepness::Steepness,
+        },
+        stream::record::Vertex,
     },
     auto::error_bound::ErrorBounds,
-    facts::{Costs, HighlightField},
-    lighting_model::{LightingModel, LinearNodes, QuadraticNodes, linear, quadratic, signed},
+    facts::HighlightField,
+    lighting_model::{LightingModel, LinearNodes, Lit, QuadraticNodes, linear, quadratic, signed},
     node::Node,
-    sub_triangle::{Part, Parts, SubTriangle},
 };
 
 /// A shading method: it computes the light of the pixels of a triangle. Implement it for a method of your own, and wrap it
@@ -117,9 +125,9 @@ pub(crate) struct Style {
 }
 
 impl Style {
-    /// Whether loops that interpolate on the screen can make the colours.
+    /// Whether loops can make the colours.
     pub(crate) fn is_plain(self) -> bool {
-        !self.by_canvas && !self.perspective
+        !self.by_canvas
     }
 
     /// Whether loops for one constant light, or for two, can draw it.
@@ -136,7 +144,7 @@ pub(crate) trait Loops {
     /// Whether the method has only the general loop.
     const GENERAL: bool = false;
 
-    /// Whether the loops leave some triangles of the styles that they take to the general loop.
+    /// Whether the loops leave some triangles of the styles that they take to the general loop, also without perspective.
     const DECLINES: bool = true;
 
     /// Whether there are loops for `style`.
@@ -190,6 +198,13 @@ pub const RANGE: u32 = LEVEL + 8;
 /// N·L and N·H of a constant light at the corners, Q2.30.
 pub(crate) type CornerCosines = [[i32; 3]; 2];
 
+/// The largest difference between the levels of three corners, in any channel.
+pub(crate) fn largest_range(corners: [[i32; 3]; 3]) -> u32 {
+    let [[r0, g0, b0], [r1, g1, b1], [r2, g2, b2]] = corners;
+    let range = |a: i32, b: i32, c: i32| (a.max(b).max(c) - a.min(b).min(c)) as u32;
+    range(r0, r1, r2).max(range(g0, g1, g2)).max(range(b0, b1, b2))
+}
+
 /// The largest of three values.
 #[inline]
 pub(crate) fn largest(&[a, b, c]: &[i32; 3]) -> i32 {
@@ -200,9 +215,11 @@ pub(crate) fn largest(&[a, b, c]: &[i32; 3]) -> i32 {
 /// points where light is computed: the corners, and for some methods the midpoints of the edges 0-1, 1-2 and 2-0.
 pub struct TriangleSetup<'f> {
     /// Corners, edges and depth on the screen.
-    pub(crate) screen: &'f ScreenTriangle,
+    #[doc(hidden)]
+    pub screen: &'f ScreenTriangle,
     /// The gradients by which polynomials are fitted to the triangle.
-    pub(crate) gradients: &'f Gradients,
+    #[doc(hidden)]
+    pub gradients: &'f Gradients,
     /// The corners on the screen with their light: the top one first, then clockwise.
     pub corners: [&'f ScreenVertex; 3],
     /// The triangle's record in the stream.
@@ -219,20 +236,13 @@ pub struct TriangleSetup<'f> {
     /// Whether perspective-correct interpolation of light is on for this triangle.
     pub perspective: bool,
     /// Which pixels of the triangle are drawn.
-    pub(crate) pixels: PixelSet,
+    #[doc(hidden)]
+    pub pixels: PixelSet,
     /// Index of the active triangle whose patch the band above has saved. It is loaded, and nothing is fitted.
     pub(crate) place: Option<usize>,
 }
 
 impl TriangleSetup<'_> {
-    /// Returns how exactly values have to be interpolated on this triangle: a larger highlight exponent of the material needs more exact
-    /// arithmetic. Functions that fit polynomials use it.
-    #[doc(hidden)]
-    #[must_use]
-    pub fn steepness(&self) -> Steepness {
-        self.gradients.steepness()
-    }
-
     /// Copies the set-up without edges and gradients, for functions that light the triangle. Since these are not passed on, the compiler keeps them
     /// in registers.
     #[inline]
@@ -260,6 +270,18 @@ impl TriangleSetup<'_> {
         let (a, b, c) = (a.depth, b.depth, c.depth);
         // If all corners are equally far, interpolation on the screen is the same.
         (self.perspective && !(a == b && b == c)).then_some([a, b, c])
+    }
+
+    /// The bound of [`perspective::screen_error`] on this triangle; 0 if perspective is off.
+    pub(crate) fn perspective_error(&self, range: u32) -> u32 {
+        self.inv_depth().map_or(0, |inv_depth| perspective::screen_error(inv_depth, range))
+    }
+
+    /// Whether values that are linear over the triangle and differ by `range`, Q9.7, between corners have to be interpolated in perspective: if they
+    /// would otherwise be off by more than a quarter of a level.
+    #[inline(always)]
+    pub(crate) fn needs_perspective(&self, range: impl FnOnce() -> u32) -> bool {
+        PERSPECTIVE && self.perspective && self.place.is_none() && self.perspective_error(range()) > 1 << (LEVEL - 2)
     }
 
     /// Sorts three numbers that belong to the edges of the triangle in the mesh file into the order of the edges here: 0-1, 1-2, 2-0.
@@ -299,31 +321,7 @@ impl TriangleSetup<'_> {
         Some(band.active.active_triangle(self.place?)?.edges.shader)
     }
 
-    /// Fits a polynomial on the screen to `field` (a quantity with values at the corners, or at more points), without perspective.
-    /// [`Shading::draw_rows`] takes the result.
-    #[doc(hidden)]
-    #[must_use]
-    pub fn fit<F: Field>(&self, field: &F) -> F::Patch {
-        field.fit(self.gradients)
-    }
-
-    /// Returns the row of the screen at which the polynomials of [`Self::fit`] begin. With antialiasing, rows are finer than pixels; see
-    /// [`Self::finer`].
-    #[doc(hidden)]
-    #[must_use]
-    pub fn first_row(&self) -> i32 {
-        self.gradients.row()
-    }
-
-    /// Returns the base-2 logarithm of the number of positions along each axis of a pixel where the triangle can be shaded. It is 0 without
-    /// antialiasing.
-    #[doc(hidden)]
-    #[must_use]
-    pub fn finer(&self) -> u32 {
-        self.pixels.finer()
-    }
-
-    /// Draws the triangle by `shader`, which begins on [`Self::first_row`]. Returns the number of pixels in `canvas`.
+    /// Draws the triangle by `shader`, which begins on the row of the anchor. Returns the number of pixels in `canvas`.
     pub(crate) fn draw_spans(&self, shader: &mut dyn SpanShader, canvas: &mut dyn Canvas) -> u32 {
         if ANTIALIAS && self.pixels != PixelSet::Centres {
             let Self { screen, pixels, .. } = *self;

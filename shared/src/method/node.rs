@@ -86,34 +86,6 @@ impl TriangleSetup<'_> {
         [a, b, c, middle(0), middle(1), middle(2)]
     }
 
-    /// Returns position and normal, in object space, of the three corners and then of the midpoints of the edges 0-1, 1-2 and 2-0. The
-    /// normals at midpoints are means of two corners and are not normalised.
-    pub fn six_linear_nodes(&self) -> [Node; 6] {
-        let [ab, bc, ca] = self.sums().map(|(position, sum)| Node { position, normal: sum.map(|c| c << (FINER - 1)) });
-        let [a, b, c] = self.corner_nodes();
-        [a, b, c, ab, bc, ca]
-    }
-
-    /// Returns position and unit normal of the point with the barycentric coordinates `weights / 2^bits`. The weights belong to the corners
-    /// 0, 1, 2, are not negative, and add up to `2^bits`; `bits` is at most 11.
-    pub fn node(&self, weights: [i32; 3], bits: u32) -> Node {
-        let ([a, b, c], [u, v, w]) = (self.vertices(), weights);
-        let mean = |of: fn(&Vertex) -> [i16; 3]| {
-            let (a, b, c) = (wide(of(a)), wide(of(b)), wide(of(c)));
-            zip(zip(a, b, |a, b| a * u + b * v), c, |ab, c| ab + c * w)
-        };
-        let [x, y, z] = mean(|vertex| vertex.position);
-        let up = POSITION - UNIT - bits;
-        Node { position: [x << up, y << up, z << up], normal: normalise(mean(|vertex| vertex.normal)) }
-    }
-
-    /// Returns position and unit normal of the point with the barycentric coordinates `weights / (3 · 2^bits)`. The weights belong to the
-    /// corners 0, 1, 2, are not negative, and add up to `3 · 2^bits`.
-    pub fn third(&self, weights: [i32; 3], bits: u32) -> Node {
-        let node = self.node(weights, bits);
-        Node { position: node.position.map(|c| c / 3), ..node }
-    }
-
     /// Position, and sum of the ends' normals (Q3.14), at the middle of each edge.
     fn sums(&self) -> [([i32; 3], [i32; 3]); 3] {
         sums(self.vertices())
@@ -213,6 +185,12 @@ fn sums([a, b, c]: [&Vertex; 3]) -> [([i32; 3], [i32; 3]); 3] {
     })
 }
 
+/// The coefficients of the quadratic through six nodes, in the form of Bernstein: their least and their largest are bounds of its values.
+pub(crate) fn coefficients([a, b, c, ab, bc, ca]: [i32; 6]) -> [i32; 6] {
+    let middle = |a: i32, b: i32, ab: i32| ab + (ab - ((a >> 1) + (b >> 1)));
+    [a, b, c, middle(a, b, ab), middle(b, c, bc), middle(c, a, ca)]
+}
+
 /// [`TriangleSetup::inverse_sum_lengths`] where the 16 bits of a record (`given`) do not hold all of them.
 #[cold]
 #[inline(never)]
@@ -252,11 +230,6 @@ fn exact_six(vertices: [&Vertex; 3], [a, b, c]: [i32; 3]) -> [i32; 6] {
     [a, b, c, ab, bc, ca]
 }
 
-/// Applies `f` to pairs of values at six nodes. It is written out, because `map` is a loop through memory at opt-level "s".
-pub fn zip_six<A, B, R>([a0, a1, a2, a3, a4, a5]: [A; 6], [b0, b1, b2, b3, b4, b5]: [B; 6], f: impl Fn(A, B) -> R) -> [R; 6] {
-    [f(a0, b0), f(a1, b1), f(a2, b2), f(a3, b3), f(a4, b4), f(a5, b5)]
-}
-
 /// Fraction bits of the vectors of a [`field_product`].
 pub(super) const FRACTION: u32 = 28;
 
@@ -267,62 +240,4 @@ pub(super) fn field_product(a: &[[i32; 3]; 3], b: &[[i32; 3]; 3]) -> [i32; 6] {
     let corner = |a, b| (dot(a, b) >> (2 * FRACTION - COSINE)) as i32;
     let middle = |a, c, b, d| (dot(add(a, c), add(b, d)) >> (2 * FRACTION + 2 - COSINE)) as i32;
     [corner(a0, b0), corner(a1, b1), corner(a2, b2), middle(a0, a1, b0, b1), middle(a1, a2, b1, b2), middle(a2, a0, b2, b0)]
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::{
-        antialias::PixelSet,
-        geometry::projection::{ScreenVertex, State},
-        raster::triangle::ScreenTriangle,
-        setup::gradients::Gradients,
-        stream::record::Triangle,
-    };
-    use zerocopy::FromZeros;
-
-    /// Points of an edge by the weights of its ends are the same, bit for bit, in both triangles that share it,
-    /// whichever corners its ends are there and whatever lies opposite: so both light and split it alike.
-    #[test]
-    fn neighbours_agree_on_their_edge() {
-        let mut state = 1u64;
-        let mut random = || {
-            state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
-            (state >> 48) as i16 / 2
-        };
-        let screen = [[0, 0], [160, 90], [20, 200]].map(|[x, y]| ScreenVertex { x, y, depth: 0, light: [0; 4], state: State::READY });
-        let [a, b, c] = &screen;
-        let screen = ScreenTriangle::new([a, b, c], [0; 2], [0; 2]);
-        let gradients = Gradients::if_word_sized(screen.corners).unwrap();
-        let triangle = Triangle { corners: [0, 2, 1], ..Triangle::new_zeroed() };
-        for _ in 0..1_000 {
-            let mut vertex = || Vertex { position: [random(), random(), random()], normal: [random(), random(), random()] };
-            let [p, q, r, s] = [vertex(), vertex(), vertex(), vertex()];
-            let setup = |vertices| TriangleSetup {
-                screen: &screen,
-                gradients: &gradients,
-                corners: [a, b, c],
-                triangle: &triangle,
-                vertices,
-                turned: 0,
-                needs_depth_test: true,
-                perspective: false,
-                pixels: PixelSet::Centres,
-                place: None,
-            };
-            let corners = [[p, q, r], [q, p, s], [s, q, p], [p, s, q]];
-            let [one, others @ ..] = corners.each_ref().map(|corners| setup(corners.as_slice()));
-            for (k, other) in others.iter().enumerate() {
-                for bits in 0..=5 {
-                    for w in 0..=1 << bits {
-                        let v = (1 << bits) - w;
-                        let node = one.node([v, w, 0], bits);
-                        // Split once more or less, it is the same point.
-                        let same = other.node([[w, v, 0], [0, w, v], [v, 0, w]][k].map(|w| 2 * w), bits + 1);
-                        assert_eq!((node.position, node.normal), (same.position, same.normal));
-                    }
-                }
-            }
-        }
-    }
 }

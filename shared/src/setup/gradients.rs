@@ -12,8 +12,8 @@
 use crate::{
     arch::product::{product, rounded},
     format::{CENTRE, FINE, SPLITS, SUBPIXEL},
-    math::{recip::recip, scale, scale_wide, wide::Wide},
-    setup::{sliver::Sliver, steepness::Steepness, terms::Terms, word_sized, word_sized::WordSized},
+    math::{recip::recip, scale},
+    setup::{sliver::Sliver, steepness::Steepness, word_sized, word_sized::WordSized},
 };
 
 /// Fraction bits of coefficients beyond the walked format, until they have been moved to the anchor.
@@ -47,15 +47,15 @@ const LEAST: i32 = 20;
 pub struct Gradients {
     precision: Precision,
     /// Vector from corner 0 to the centre of its pixel, [`FINE`] fraction bits.
-    offset: [i32; 2],
+    pub offset: [i32; 2],
     /// Vector from that pixel to the anchor, in pixels.
-    shift: [i32; 2],
+    pub shift: [i32; 2],
     /// The anchor.
     anchor: [i32; 2],
     /// Vectors from corner 0 to the corners 1 and 2, in 1/16 pixel, of a part of the triangle 2^`level` times finer.
-    edges: [[i32; 2]; 2],
+    pub edges: [[i32; 2]; 2],
     /// How often the triangle was split.
-    level: u32,
+    pub level: u32,
     /// How steeply light depends on the fitted field.
     steepness: Steepness,
 }
@@ -70,12 +70,15 @@ enum Precision {
     Any(Slopes),
 }
 
-/// Gradients of s and t per pixel: mantissas, all with the exponent `exponent`.
+/// Gradients of s and t per pixel, `[along x, along y]`: mantissas, each to be divided by 2^`exponent`.
 #[derive(Clone, Copy, Debug)]
-struct Slopes {
-    s: [i32; 2],
-    t: [i32; 2],
-    exponent: i32,
+pub struct Slopes {
+    /// Gradient of s.
+    pub s: [i32; 2],
+    /// Gradient of t.
+    pub t: [i32; 2],
+    /// The exponent of all mantissas.
+    pub exponent: i32,
 }
 
 /// Columns and rows that are drawn, half open: `[left, top, right, bottom]`.
@@ -190,13 +193,14 @@ impl Gradients {
     /// turned by 180 degrees or not. They are exact: the triangle's gradients times ±2^`level`.
     ///
     /// A part that is not `near` its corner everywhere has the triangle's anchor.
+    #[inline]
     #[must_use]
     pub fn part(&self, corner: [i32; 2], level: u32, turned: bool, near: bool) -> Self {
         let gradient = |g: [i32; 2]| if turned { g.map(i32::wrapping_neg) } else { g };
         let pixel = corner.map(|c| c >> FINE);
         let centre = |k: usize| (pixel[k] << FINE).wrapping_add(1 << (FINE - 1)).wrapping_sub(corner[k]);
         let anchor = if near { pixel } else { self.anchor };
-        let Slopes { s, t, exponent } = self.gradients();
+        let Slopes { s, t, exponent } = self.slopes();
         let gradients = Slopes { s: gradient(s), t: gradient(t), exponent: exponent - level as i32 };
         let fits_words = near && gradients.exponent >= LEAST && !matches!(self.precision, Precision::Any(_));
         Self {
@@ -249,7 +253,8 @@ impl Gradients {
 
     /// Gradients of s and t.
     #[inline(always)]
-    fn gradients(&self) -> Slopes {
+    #[must_use]
+    pub fn slopes(&self) -> Slopes {
         match self.precision {
             Precision::WordSized(area) => Self::mantissas(self.edges, area),
             Precision::Part(gradients) => gradients,
@@ -306,7 +311,7 @@ impl Gradients {
     }
 
     fn linear_by_mantissas(&self, bits: u32, [i0, i1, i2]: [i32; 3], extra: u32) -> [i32; 3] {
-        let gradients = self.gradients();
+        let gradients = self.slopes();
         // Differences are below 2^bits.
         let up = 30 - bits;
         let left = extra + bits + 2 - gradients.exponent as u32;
@@ -332,14 +337,14 @@ impl Gradients {
     /// The coefficients `[c, dx, dy]` of the linear field through the corners' values, at the pixel of corner 0, with `GUARD` more bits than walked.
     #[inline(always)]
     fn plane(&self, nodes: [i32; 3], extra: u32) -> [i64; 3] {
-        let (c, dx, dy) = self.slopes(nodes[0], nodes[1].wrapping_sub(nodes[0]), nodes[2].wrapping_sub(nodes[0]), extra);
+        let (c, dx, dy) = self.derivatives(nodes[0], nodes[1].wrapping_sub(nodes[0]), nodes[2].wrapping_sub(nodes[0]), extra);
         [c.wrapping_add(along(dx, self.offset[0])).wrapping_add(along(dy, self.offset[1])), dx, dy]
     }
 
     /// Value at corner 0 and derivatives along x and y of `c0 + c1 s + c2 t`, with `GUARD` more bits than walked.
     #[inline(always)]
-    fn slopes(&self, c0: i32, c1: i32, c2: i32, extra: u32) -> (i64, i64, i64) {
-        let Slopes { s, t, exponent } = self.gradients();
+    fn derivatives(&self, c0: i32, c1: i32, c2: i32, extra: u32) -> (i64, i64, i64) {
+        let Slopes { s, t, exponent } = self.slopes();
         let bits = exponent - extra as i32 - GUARD;
         let along = |s: i32, t: i32| scale(product(c1, s) + product(c2, t), bits);
         (i64::from(c0).wrapping_shl(extra + GUARD as u32), along(s[0], t[0]), along(s[1], t[1]))
@@ -374,7 +379,7 @@ impl Gradients {
 
     #[inline(never)]
     fn quadratic_by_mantissas(&self, bits: u32, [i0, i1, i2, i01, i12, i20]: [i32; 6], extra: u32) -> [i32; 6] {
-        let gradients = self.gradients();
+        let gradients = self.slopes();
         let mantissas = Mantissas::new(gradients, self.offset);
         let exponent = gradients.exponent as u32;
         // First and second differences are below 2^(bits + 2).
@@ -422,11 +427,11 @@ impl Gradients {
         if is_exact && let Some(sliver) = self.sliver() {
             return self.round(sliver.quadratic(nodes, extra + GUARD as u32));
         }
-        let (c, dx, dy) = self.slopes(i0, 4 * i01 - 3 * i0 - i1, 4 * i20 - 3 * i0 - i2, extra);
+        let (c, dx, dy) = self.derivatives(i0, 4 * i01 - 3 * i0 - i1, 4 * i20 - 3 * i0 - i2, extra);
         // One factor of the chain rule, then the other: two products with mantissas, less these bits, stay below 2^31.
         let less = range as i32 + 2;
         let (ss, st, tt) = (ss << up, st << up, tt << up);
-        let Slopes { s, t, exponent } = self.gradients();
+        let Slopes { s, t, exponent } = self.slopes();
         let sum = |a: i32, b: i32, k: usize, bits: i32| scale(product(a, s[k]) + product(b, t[k]), bits);
         let once = |a: i32, b: i32, k: usize| sum(a, b, k, less) as i32;
         let (sx, tx, sy, ty) = (once(ss, st, 0), once(st, tt, 0), once(ss, st, 1), once(st, tt, 1));
@@ -465,30 +470,6 @@ impl Gradients {
             Precision::WordSized(area) if self.steepness.walks_word_sized(area.bits) => true,
             _ => walks_in_words(self.edges, self.shift, self.steepness),
         }
-    }
-
-    /// The terms of the cubic through ten nodes in a range of 2^15, at the anchor; by powers of x, then of y.
-    ///
-    /// In 128 bits all steps are exact, except the gradients and one rounding of each coefficient.
-    #[must_use]
-    pub fn cubic(&self, nodes: [i32; 10], extra: u32) -> Terms<i64> {
-        let fraction = extra + GUARD as u32;
-        let terms = if self.is_thinner_than(MAX_THINNESS)
-            && let Some(sliver) = self.sliver()
-        {
-            let by = |k: usize| move |a: Wide, b: Wide| a + b * Wide::from(self.shift[k]);
-            sliver.cubic(nodes, fraction).moved_across(by(0)).moved_down(by(1))
-        } else {
-            // With three mantissas terms stay below 2^114, moved below 2^124.
-            let Slopes { s, t, exponent } = self.gradients();
-            let terms = Terms::of(nodes.map(Wide::from), s.map(Wide::from), t.map(Wide::from));
-            let scaled = terms.map(|c, degree| Wide(scale_wide(c.0, degree as i32 * exponent + 2 - fraction as i32)));
-            // From the corner to the anchor.
-            let way = |k: usize| Wide(i128::from(self.offset[k]) + (i128::from(self.shift[k]) << FINE));
-            let by = |k: usize| move |a: Wide, b: Wide| a + Wide((b * way(k)).0 >> FINE);
-            scaled.moved_across(by(0)).moved_down(by(1))
-        };
-        terms.map(|c, _| scale_wide(c.0, GUARD) as i64)
     }
 
     /// Moves coefficients from corner 0's pixel to the anchor, exactly, and rounds them to the walked format.

@@ -5,5 +5,4 @@ pub(crate) mod edge_walker;
 pub mod gradients;
 mod sliver;
 pub mod steepness;
-pub mod terms;
 pub(crate) mod word_sized;

@@ -3,7 +3,7 @@
 //! Across a sliver a polynomial bends so sharply that its derivatives on the screen cancel one another, and rounding them separately would lose the
 //! value. Here nothing is rounded before the last division. This is slow, but rarely needed.
 
-use crate::{math::wide::Wide, setup::terms::Terms};
+use crate::math::wide::Wide;
 use core::num::NonZeroU32;
 
 /// A triangle, given by the two edges from its first corner, and the anchor relative to this corner.
@@ -59,29 +59,6 @@ impl Sliver {
             over(dot(&m_x, &y).0, 2),
             over(dot(&m_y, &y).0 >> 1, 2),
         ]
-    }
-
-    /// The terms of the cubic through ten nodes at the anchor, with `extra` more bits than the nodes.
-    ///
-    /// Every coefficient is exact before it is rounded down, modulo 2^128.
-    #[cold]
-    #[inline(never)]
-    pub(crate) fn cubic(&self, nodes: [i32; 10], extra: u32) -> Terms<Wide> {
-        let [[x1, y1], [x2, y2]] = self.edges.map(|edge| edge.map(Wide::from));
-        let [ox, oy] = self.offset.map(Wide::from);
-        let det = Wide(i128::from(self.area.get()));
-        // det is below 2^28, as slivers have less than 1/128 of their square; all together below 2^105.
-        let common = Terms::of(nodes.map(Wide::from), [y2, -x2], [-y1, x1]).map(|c, degree| (degree..3).fold(c, |c, _| c * det));
-        let divisor = 4 * det * det * det;
-        let over = |numerator: Wide, bits: u32| {
-            // Long division, 35 bits at a time.
-            let (whole, rest) = numerator.divided(divisor);
-            let (upper, rest) = rest.shifted(bits / 2).divided(divisor);
-            let (lower, _) = rest.shifted(bits - bits / 2).divided(divisor);
-            whole.shifted(bits) + upper.shifted(bits - bits / 2) + lower
-        };
-        let at_anchor = common.moved_across(|a, b| a + b * ox).moved_down(|a, b| a + b * oy);
-        at_anchor.map(|c, degree| over(c, extra + degree * self.bits))
     }
 }
 

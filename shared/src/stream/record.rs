@@ -99,13 +99,6 @@ impl Header {
     pub fn budget(&self) -> ErrorBudget {
         ErrorBudget::from_bits(self.budget)
     }
-
-    /// Returns the radius of the sphere about the origin of object space that contains all vertices.
-    #[doc(hidden)]
-    #[must_use]
-    pub fn radius(&self) -> Radius {
-        Radius::from_bits(self.radius)
-    }
 }
 
 /// The viewer is infinitely far: highlights use one direction to the eye for the whole scene. This is cheaper.
@@ -156,29 +149,6 @@ pub struct Camera {
 }
 
 impl Camera {
-    /// Creates a camera that stands still, with an infinitely distant viewer for highlights.
-    ///
-    /// - `projection` is 0 for perspective, 1 for orthographic.
-    /// - `rotation` has the rows of the rotation matrix from object space to eye space, in which z points away from the viewer.
-    /// - `translation` is the position of the origin of object space in eye space.
-    /// - `focal` is the focal length, from 1/16 to 16; see [`Self::focal`].
-    /// - `near` and `far` are the distances of the near and the far plane. A perspective camera ignores `far`.
-    #[doc(hidden)]
-    #[must_use]
-    pub fn new(projection: u8, rotation: [[Rotation; 3]; 3], translation: [Length; 3], focal: Focal, [near, far]: [Length; 2]) -> Self {
-        Self {
-            rotation: rotation.map(|row| row.map(Rotation::to_bits)),
-            translation: translation.map(Length::to_bits),
-            axis: [Rotation::ZERO, Rotation::ONE, Rotation::ZERO].map(Rotation::to_bits),
-            period: 0,
-            projection,
-            viewer: VIEWER_INFINITE,
-            focal: focal.to_bits(),
-            near: near.to_bits(),
-            far: far.to_bits(),
-        }
-    }
-
     /// Makes the viewer local: highlights use the exact direction from each point to the eye. This takes more time than an infinitely
     /// distant viewer.
     #[must_use]
@@ -190,27 +160,6 @@ impl Camera {
     #[must_use]
     pub fn orbiting(self, axis: [Rotation; 3], period: u16) -> Self {
         Self { axis: axis.map(Rotation::to_bits), period, ..self }
-    }
-
-    /// Returns the rows of the rotation matrix from object space to eye space in frame 0.
-    #[doc(hidden)]
-    #[must_use]
-    pub fn rotation(&self) -> [[Rotation; 3]; 3] {
-        self.rotation.map(|row| row.map(Rotation::from_bits))
-    }
-
-    /// Returns the position of the origin of object space in eye space, in units of object space.
-    #[doc(hidden)]
-    #[must_use]
-    pub fn translation(&self) -> [Length; 3] {
-        self.translation.map(Length::from_bits)
-    }
-
-    /// Returns the axis of the orbit, a unit vector in object space.
-    #[doc(hidden)]
-    #[must_use]
-    pub fn axis(&self) -> [Rotation; 3] {
-        self.axis.map(Rotation::from_bits)
     }
 
     /// Returns a copy of this camera with another focal length, from 1/16 to 16. A longer one shows a smaller part of the scene, larger.
@@ -368,13 +317,6 @@ impl Light {
         Self { vector: vector.map(Length::to_bits), colour: colour.map(Gain::to_bits), kind, space }
     }
 
-    /// Returns the unit vector towards a directional light, or the position of a point light.
-    #[doc(hidden)]
-    #[must_use]
-    pub fn vector(&self) -> [Length; 3] {
-        self.vector.map(Length::from_bits)
-    }
-
     /// Returns the colour: red, green, blue, each 0 to 2, where 1 is full intensity.
     #[must_use]
     pub fn colour(&self) -> [Gain; 3] {
@@ -460,24 +402,6 @@ pub struct Vertex {
 impl Vertex {
     /// A vertex whose position and normal are zero.
     pub const ZERO: Self = Self { position: [0; 3], normal: [0; 3] };
-
-    /// A vertex at `position` with a unit normal.
-    #[must_use]
-    pub fn new(position: [Unit; 3], normal: [Unit; 3]) -> Self {
-        Self { position: position.map(Unit::to_bits), normal: normal.map(Unit::to_bits) }
-    }
-
-    /// Position in object space.
-    #[must_use]
-    pub fn position(&self) -> [Unit; 3] {
-        self.position.map(Unit::from_bits)
-    }
-
-    /// Unit normal in object space.
-    #[must_use]
-    pub fn normal(&self) -> [Unit; 3] {
-        self.normal.map(Unit::from_bits)
-    }
 }
 
 /// A triangle: three vertices, and constants that depend on neither camera nor light.
@@ -507,38 +431,6 @@ pub struct Triangle {
     /// least one step, at most 65535. It tells how far the triangle has to face away before rounding of corners cannot turn it to the front, see
     /// [`crate::geometry::cull`].
     pub inverse_altitude: u16,
-}
-
-impl Triangle {
-    /// For each edge the haversine of the angle between the normals at its ends.
-    #[must_use]
-    pub fn haversine(&self) -> [Haversine; 3] {
-        self.haversine.map(Haversine::from_bits)
-    }
-
-    /// Lower bound for the length of the interpolated normal.
-    #[must_use]
-    pub fn min_normal_length(&self) -> NormalLength {
-        NormalLength::from_bits(self.min_normal_length)
-    }
-
-    /// Unit normal of the plane.
-    #[must_use]
-    pub fn normal(&self) -> [Unit; 3] {
-        self.normal.map(Unit::from_bits)
-    }
-
-    /// Distance of the plane from the origin.
-    #[must_use]
-    pub fn offset(&self) -> Unit {
-        Unit::from_bits(self.offset)
-    }
-
-    /// 1 over the smallest altitude of the triangle, per unit of object space.
-    #[must_use]
-    pub fn inverse_altitude(&self) -> InverseAltitude {
-        InverseAltitude::from_bits(self.inverse_altitude)
-    }
 }
 
 /// A text over the picture. In pictures of any size it lies at the same place of the scene.
@@ -572,14 +464,6 @@ pub const MIDDLE: u8 = 1;
 pub const RIGHT: u8 = 2;
 
 impl Label {
-    /// A label. If `text` is longer than [`LABEL_TEXT`] characters, the rest is cut off.
-    #[must_use]
-    pub fn new(position: [Share; 2], height: Share, colour: [u8; 3], alignment: u8, text: &[u8]) -> Self {
-        let mut room = [0; LABEL_TEXT];
-        room.iter_mut().zip(text).for_each(|(room, character)| *room = *character);
-        Self { position: position.map(Share::to_bits), height: height.to_bits(), colour, alignment, text: room }
-    }
-
     /// Distance of the text from the centre of the picture, to the right and downwards.
     #[must_use]
     pub fn position(&self) -> [Share; 2] {

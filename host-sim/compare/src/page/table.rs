@@ -44,11 +44,11 @@ const GROUPS: [(&str, &[Column]); 6] = [
     (
         "operations",
         &[
-            ("+", "additions per pixel", 0, |c| c.costs.adds.into()),
-            ("×", "multiplications per pixel", 0, |c| c.costs.multiplies.into()),
-            ("loads", "table look-ups per pixel", 0, |c| c.costs.loads.into()),
-            ("set-up", "operations per triangle", 0, |c| c.costs.setup.into()),
-            ("row", "operations per row of a triangle", 0, |c| c.costs.row.into()),
+            ("+", "additions per pixel", 0, |c| c.operations.adds.into()),
+            ("×", "multiplications per pixel", 0, |c| c.operations.multiplies.into()),
+            ("loads", "table look-ups per pixel", 0, |c| c.operations.loads.into()),
+            ("set-up", "operations per triangle", 0, |c| c.operations.setup.into()),
+            ("row", "operations per row of a triangle", 0, |c| c.operations.row.into()),
         ],
     ),
 ];

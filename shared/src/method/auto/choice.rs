@@ -2,11 +2,12 @@
 
 use super::costs::SAVINGS;
 use crate::{
+    features::PERSPECTIVE,
     lighting::reflectance::{FULL, LitMaterial},
     method::{
         CornerCosines, Shading, TriangleSetup,
-        auto::error_bound::{Curvature, LinearBound},
-        largest,
+        auto::error_bound::{Curvature, Interval, LinearBound},
+        largest, largest_range,
     },
     raster::counts::Counts,
     setup::edge::COLUMNS,
@@ -78,6 +79,10 @@ fn under_two_lights<const QUADRATICS: bool>(setup: &TriangleSetup<'_>, shading: 
 #[inline(never)]
 fn curved<const QUADRATICS: bool>(setup: &TriangleSetup<'_>, shading: &Shading<'_>, curvature: Curvature) -> Choice {
     let two_lights = !shading.vertices_have_cosines();
+    // Of these methods Phong shading alone is exact in perspective.
+    if PERSPECTIVE && setup.inv_depth().is_some() {
+        return Choice::Phong;
+    }
     let style = if two_lights { 2 } else { usize::from(shading.reflectance.three_channels()) };
     let Some(savings) = SAVINGS.get(style).filter(|_| QUADRATICS) else { return Choice::Phong };
     let extent = extent(setup);
@@ -135,7 +140,7 @@ fn lit_range(cosines: &[i32; 3]) -> i32 {
 fn one_light(setup: &TriangleSetup<'_>, shading: &Shading<'_>, [towards, _]: &CornerCosines, bounds: LinearBound) -> Option<Choice> {
     let ([a, b, c], LinearBound { interval, brightest, has_highlight }) = (setup.corners, bounds);
     let Shading { error_bounds: limits, budget, reflectance, .. } = *shading;
-    let (raise, three) = (interval.raise(budget), reflectance.three_channels());
+    let three = reflectance.three_channels();
     // The levels in one channel, the highlights in three.
     let reflected = || extremes([a.light[2], b.light[2], c.light[2]]);
     if brightest as i32 >= FULL {
@@ -146,17 +151,18 @@ fn one_light(setup: &TriangleSetup<'_>, shading: &Shading<'_>, [towards, _]: &Co
         }
     }
     let diffuse = limits.diffuse_level(0, lit_range(towards));
-    if interval.half() + (diffuse >> 1) < budget {
+    let range = || {
         let [least, most] = reflected();
-        let range = match (has_highlight, three) {
+        match (has_highlight, three) {
             (false, _) => diffuse,
             (true, false) => (most - least) as u32,
             (true, true) => diffuse + limits.highlight_level(most - least),
-        };
-        if interval.half() + (range >> 1) < budget {
-            return Some(Choice::Solid(interval.middle()));
         }
+    };
+    if interval.half() + (diffuse >> 1) < budget && interval.half() + (range() >> 1) < budget {
+        return Some(Choice::Solid(interval.middle()));
     }
+    let raise = linear_raise(setup, interval, budget, range)?;
     // Without a highlight at the corners a table of colours is interpolated, which raises each channel by its share of diffuse light: too
     // little for a highlight that is nowhere but in between.
     let is_hidden = raise > 0 && has_highlight && three && a.light[2] | b.light[2] | c.light[2] == 0;
@@ -182,7 +188,19 @@ fn two_lights(
             return Some(Choice::Solid(interval.middle()));
         }
     }
-    Some(Choice::Linear(interval.raise(budget)))
+    let range = || largest_range(corner_levels(setup, shading.reflectance));
+    linear_raise(setup, interval, budget, range).map(Choice::Linear)
+}
+
+/// By how much levels are raised so that linear interpolation, whose errors lie in `interval`, keeps to the budget; `None` if it does not in
+/// perspective. Levels at the corners differ by `range`.
+#[inline(always)]
+fn linear_raise(setup: &TriangleSetup<'_>, interval: Interval, budget: u32, range: impl FnOnce() -> u32) -> Option<i32> {
+    if !PERSPECTIVE || !setup.perspective {
+        return Some(interval.raise(budget));
+    }
+    let rest = budget.checked_sub(setup.perspective_error(range()))?;
+    (interval.half() <= rest).then(|| interval.raise(rest))
 }
 
 /// The levels at the corners under two constant lights.

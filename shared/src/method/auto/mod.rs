@@ -21,11 +21,11 @@ use crate::{
     interpolate::{Constant, by_column::ByColumn},
     lighting::{
         material_tables::MaterialTables,
-        reflectance::{FULL, Highlight, LitMaterial},
+        reflectance::{FULL, LitMaterial},
     },
     math::vector::zip,
     method::{
-        Costs, DrawTriangle, Facts, HighlightField, Loops, Method, RANGE, Shading, Style, TriangleSetup, VertexLight,
+        DrawTriangle, Facts, HighlightField, Loops, Method, RANGE, Shading, Style, TriangleSetup, VertexLight,
         auto::error_bound::ErrorBounds,
         channels,
         cosines::{phong::Phong, sqrt6::SixCosines},
@@ -44,13 +44,10 @@ static FACTS: Facts = Facts {
     id: 26,
     source: "microphong 2026",
     vertex_light: VertexLight::CosinesAndReflection,
-    highlight: Highlight::Half,
     highlight_levels: true,
     highlight_field: HighlightField::Quadratic,
-    near_lights: true,
-    perspective: true,
     // At most: those of Phong shading.
-    costs: Costs::new(11, 12, 2, 30),
+    ..Facts::OWN
 };
 
 static FACTS_WITHOUT_QUADRATICS: Facts = Facts { name: "auto-linear", id: 27, ..FACTS };

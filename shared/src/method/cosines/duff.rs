@@ -12,16 +12,19 @@ use crate::{
     arch::product::{product, upper},
     features::LIGHTS,
     format::{HAVERSINE, NORMAL_LENGTH, UNIT},
-    interpolate::field::{Field, Nodes},
+    interpolate::field::Field,
     lighting::{lights::Source, material_tables::MaterialTables, reflectance::Reflection},
     math::{
         highlight_lut::CosineLookup,
-        rsqrt::{HalfRsqrt, LEAST},
+        rsqrt::HalfRsqrt,
         vector::{add, narrow_dot, wide},
     },
     method::{
         CornerCosines, Loops, Shading, Style, TriangleSetup,
-        cosines::quotient,
+        cosines::{
+            quotient,
+            scale::{self, Lengths, UnitSquare},
+        },
         largest,
         lighting_model::{FIELD_EXTRA, FIELD_NODE, LightingModel, Lit, QuadraticNodes, linear, signed},
         node::is_steep,
@@ -53,39 +56,12 @@ pub fn shade_constant(setup: &TriangleSetup<'_>, shading: &Shading<'_>, canvas: 
     }
 }
 
-/// Shades by linear numerators over a root, or by quadratic numerators under near lights.
-pub fn shade(setup: &TriangleSetup<'_>, shading: &Shading<'_>, canvas: &mut dyn Canvas) -> u32 {
-    if shading.lighting.is_constant() {
-        return shade_constant(setup, shading, canvas);
-    }
-    draw_products(setup, shading, square(setup, shading.exponent), Rooted, canvas)
-}
-
 /// Shades by `model`. `common` and N·L and N·H of each light are interpolated; normals are not normalised, so these are linear under constant lights.
-pub(super) fn draw_constant<K: Field, F>(
-    setup: &TriangleSetup<'_>,
-    shading: &Shading<'_>,
-    common: K,
-    model: F,
-    canvas: &mut dyn Canvas,
-) -> u32
+pub fn draw_constant<K: Field, F>(setup: &TriangleSetup<'_>, shading: &Shading<'_>, common: K, model: F, canvas: &mut dyn Canvas) -> u32
 where
     F: LightingModel<K::Value, [u32; 2]>,
 {
     shading.draw_lit(setup, |source| shading.constant_products(setup, source), common, model, canvas)
-}
-
-/// Shades by `model`. `common` and N·L and N·H of each light are interpolated; normals are not normalised. N·L and N·H are linear under constant
-/// lights, otherwise quadratics through six points.
-pub fn draw_products<K: Field, F>(setup: &TriangleSetup<'_>, shading: &Shading<'_>, common: K, model: F, canvas: &mut dyn Canvas) -> u32
-where
-    F: LightingModel<K::Value, [u32; 2]>,
-{
-    if shading.lighting.is_constant() {
-        return draw_constant(setup, shading, common, model, canvas);
-    }
-    let nodes = setup.six_linear_nodes();
-    shading.draw_lit(setup, |source| shading.six_products(&nodes, source, |p| p), common, model, canvas)
 }
 
 /// The loops under one or two lights.
@@ -124,31 +100,18 @@ pub(crate) fn draw<C: Pixel>(
     if setup.gradients.is_any() && !setup.gradients.steep(setup.gradients.steepness().halved(3)).walks_in_words() {
         return None;
     }
-    let square = tabled(setup)?;
-    let halves = HalfRsqrt::get();
-    let half_reciprocal = |[square]: [u32; 1]| halves.rsqrt(square) as i32;
-    // One closure for both, or each would have loops of its own.
-    let length = || square;
+    let lengths = Lengths::of(setup)?;
     if LIGHTS && tables.reflectance.lights() == 2 {
-        return quotient::draw_two::<true, _, C>(setup, length, half_reciprocal, tables, band);
+        return quotient::draw_two(setup, &lengths, tables, band);
     }
-    quotient::draw::<true, _, C>(setup, &corners(), length, half_reciprocal, tables, band)
+    quotient::draw(setup, &corners(), &lengths, tables, band)
 }
 
-/// The field |N|² minus [`LEAST`], Q0.32; `None` if |N|² leaves the table of roots.
+/// The field |N|² minus [`LEAST`](crate::math::rsqrt::LEAST), Q0.32, of normals of unit length; `None` if |N|² leaves the table of roots.
 #[inline(always)]
-pub(crate) fn tabled(setup: &TriangleSetup<'_>) -> Option<Nodes<6, 1, HAVERSINE_RANGE>> {
-    let [ab, bc, ca] = setup.edges(setup.triangle.haversine);
-    if is_curved(setup) || ab.max(bc).max(ca) >= 1 << HAVERSINE_RANGE {
-        return None;
-    }
-    let nodes = [0, 0, 0, -i32::from(ab), -i32::from(bc), -i32::from(ca)];
-    Some(Nodes::new([nodes], 32 - HAVERSINE).biased([0u32.wrapping_sub(LEAST) as i32]))
+pub(super) fn tabled(setup: &TriangleSetup<'_>) -> Option<UnitSquare> {
+    scale::is_flat(setup).then(|| scale::unit_square(setup))
 }
-
-/// Bits of the haversine of an edge whose normals are at most 90 degrees apart. They are so few that triangles are set up in words, see
-/// [`crate::setup::word_sized`].
-pub(crate) const HAVERSINE_RANGE: u32 = HAVERSINE - 1;
 
 /// Whether the interpolated normal may be shorter than 1/2, where the table of roots and every fit of 1/|N| end.
 pub fn is_curved(setup: &TriangleSetup<'_>) -> bool {

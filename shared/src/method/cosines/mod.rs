@@ -7,10 +7,7 @@ mod near;
 #[doc(hidden)]
 pub mod phong;
 mod quotient;
-#[doc(hidden)]
-pub mod renq;
-#[doc(hidden)]
-pub mod renq_newton;
+mod scale;
 #[doc(hidden)]
 pub mod sqrt6;
 mod two_lights;

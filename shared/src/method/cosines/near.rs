@@ -33,10 +33,11 @@ use crate::{
         cosines::{
             duff,
             lit::{AtPixel, FromValues, LitShader},
+            scale,
         },
         largest,
         lighting_model::{FIELD_BITS, fitted, linear, quadratic, signed},
-        node::{FRACTION, field_product, is_steep, map_six},
+        node::{FRACTION, coefficients, field_product, is_steep, map_six},
     },
     pixel::{Pixel, by_rows::ByRows},
     raster::band::Band,
@@ -53,7 +54,7 @@ const HALF: u32 = 25;
 
 /// Whether there are loops for `style`.
 pub(crate) fn take(style: Style) -> bool {
-    style.one_near && style.is_plain()
+    style.one_near && style.is_plain() && !style.perspective
 }
 
 /// How a triangle has been drawn, or is to be drawn.
@@ -195,7 +196,7 @@ impl Products {
 
     /// The polynomials of all products.
     #[inline(never)]
-    fn patch(&self, setup: &TriangleSetup<'_>, fixed: [i32; 3], length: Length) -> HighlightProducts {
+    fn patch(&self, setup: &TriangleSetup<'_>, fixed: [i32; 3], length: scale::UnitSquare) -> HighlightProducts {
         let plane = |corners| fitted(&linear([corners]), setup.gradients);
         let ByColumn((length, quadratics)) = self.diffuse_patch(setup, length);
         ByColumn((length, (quadratics, (plane(fixed), plane(self.fp)))))
@@ -203,19 +204,10 @@ impl Products {
 
     /// The polynomials without those that highlights alone need.
     #[inline(never)]
-    fn diffuse_patch(&self, setup: &TriangleSetup<'_>, length: Length) -> DiffuseProducts {
+    fn diffuse_patch(&self, setup: &TriangleSetup<'_>, length: scale::UnitSquare) -> DiffuseProducts {
         let pp = Nodes::<6, 1, { FIELD_BITS - 2 }>::new([map_six(self.pp, |square| (above_least(square) >> 8) as i32)], 8);
         ByColumn((fitted(&length, setup.gradients), (fitted(&pp, setup.gradients), fitted(&quadratic([self.np]), setup.gradients))))
     }
-}
-
-/// The field |N|².
-type Length = Nodes<6, 1, { duff::HAVERSINE_RANGE }>;
-
-/// The coefficients of the quadratic through six nodes, Q2.30, in the form of Bernstein: their least and their largest are bounds.
-fn coefficients([a, b, c, ab, bc, ca]: [i32; 6]) -> [i32; 6] {
-    let middle = |a: i32, b: i32, ab: i32| ab + (ab - ((a >> 1) + (b >> 1)));
-    [a, b, c, middle(a, b, ab), middle(b, c, bc), middle(c, a, ca)]
 }
 
 /// The least of six values.

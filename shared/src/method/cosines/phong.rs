@@ -11,14 +11,14 @@ use crate::{
     lighting::{
         lights::{Source, Viewer, point},
         material_tables::MaterialTables,
-        reflectance::{Highlight, Reflection},
+        reflectance::Reflection,
     },
     math::{
         highlight_lut::CosineLookup,
         vector::{sub, wide},
     },
     method::{
-        Costs, Facts, HighlightField, Loops, Method, Shading, Style, TriangleSetup, VertexLight,
+        Facts, HighlightField, Loops, Method, Shading, Style, TriangleSetup, VertexLight,
         cosines::{
             duff::{self, Duff, Root},
             near::{self, Drawn},
@@ -35,12 +35,9 @@ static FACTS: Facts = Facts {
     id: 3,
     source: "Phong 1975; Blinn 1977",
     vertex_light: VertexLight::Cosines,
-    highlight: Highlight::Half,
     highlight_levels: true,
     highlight_field: HighlightField::Quadratic,
-    near_lights: true,
-    perspective: true,
-    costs: Costs::new(11, 12, 2, 30),
+    ..Facts::OWN
 };
 
 /// Phong shading: the normal is normalised at every pixel.

@@ -25,7 +25,7 @@ use crate::{
     },
     math::{highlight_lookup::DefectLookup, highlight_lut::CosineLookup, rsqrt::sqrt},
     method::{
-        CornerCosines, Costs, Facts, HighlightField, Loops, Method, RANGE, Shading, Style, TriangleSetup, VertexLight,
+        CornerCosines, Facts, HighlightField, Loops, Method, RANGE, Shading, Style, TriangleSetup, VertexLight,
         cosines::{
             lit::{AtPixel, FromValues, LitShader},
             two_lights::TwoLights,
@@ -62,9 +62,7 @@ static FACTS: Facts = Facts {
     highlight: Highlight::Root,
     highlight_levels: true,
     highlight_field: HighlightField::Root,
-    near_lights: true,
-    perspective: true,
-    costs: Costs::new(5, 0, 1, 175),
+    ..Facts::OWN
 };
 
 /// Six-point shading with a square root of N·H.
@@ -117,7 +115,7 @@ fn shade_constant<const ROOT: IsRoot>(setup: &TriangleSetup<'_>, shading: &Shadi
 
 impl Loops for Sqrt6 {
     fn take(style: Style) -> bool {
-        style.has_constant_lights()
+        style.has_constant_lights() && !style.perspective
     }
 
     #[inline(always)]
@@ -133,7 +131,7 @@ impl Loops for Sqrt6 {
 
 impl Loops for SixCosines {
     fn take(style: Style) -> bool {
-        style.has_constant_lights()
+        style.has_constant_lights() && !style.perspective
     }
 
     #[inline(always)]

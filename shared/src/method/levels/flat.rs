@@ -8,27 +8,15 @@ use crate::{
     lighting::{
         lights::{MeanNormal, point, vertex_cosine},
         material_tables::MaterialTables,
-        reflectance::Highlight,
     },
     math::vector::{add, wide},
-    method::{Costs, Facts, HighlightField, Loops, Method, Shading, Style, TriangleSetup, VertexLight, draw_uniform, node::Node},
+    method::{Facts, Loops, Method, Shading, Style, TriangleSetup, VertexLight, draw_uniform, node::Node},
     pixel::Pixel,
     raster::{band::Band, canvas::Canvas, pixel_shader::Solid},
     stream::record::{Triangle, Vertex},
 };
 
-static FACTS: Facts = Facts {
-    name: "flat",
-    id: 0,
-    source: "",
-    vertex_light: VertexLight::None,
-    highlight: Highlight::Half,
-    highlight_levels: false,
-    highlight_field: HighlightField::Level,
-    near_lights: true,
-    perspective: true,
-    costs: Costs::new(0, 0, 0, 5),
-};
+static FACTS: Facts = Facts { name: "flat", id: 0, source: "", vertex_light: VertexLight::None, ..Facts::OWN };
 
 /// Flat shading.
 pub struct Flat;

@@ -7,28 +7,14 @@
 use crate::{
     geometry::projection::ScreenVertex,
     interpolate::plane::Plane,
-    lighting::{
-        material_tables::MaterialTables,
-        reflectance::{Highlight, Reflectance},
-    },
-    method::{Costs, Facts, HighlightField, Loops, Method, RANGE, Shading, Style, TriangleSetup, VertexLight, fit_levels},
+    lighting::{material_tables::MaterialTables, reflectance::Reflectance},
+    method::{Facts, Loops, Method, RANGE, Shading, Style, TriangleSetup, VertexLight, fit_levels, largest_range},
     pixel::Pixel,
     raster::{band::Band, canvas::Canvas, pixel_shader::Ramp},
     setup::gradients::Gradients,
 };
 
-static FACTS: Facts = Facts {
-    name: "gouraud",
-    id: 1,
-    source: "Gouraud 1971",
-    vertex_light: VertexLight::ReflectionOrLevels,
-    highlight: Highlight::Half,
-    highlight_levels: false,
-    highlight_field: HighlightField::Level,
-    near_lights: true,
-    perspective: true,
-    costs: Costs::new(1, 0, 0, 10),
-};
+static FACTS: Facts = Facts { name: "gouraud", id: 1, source: "Gouraud 1971", vertex_light: VertexLight::ReflectionOrLevels, ..Facts::OWN };
 
 /// Gouraud shading.
 pub struct Gouraud;
@@ -63,6 +49,9 @@ impl Loops for Gouraud {
         band: &mut Band<'_, C>,
     ) -> Option<u32> {
         let [a, b, c] = setup.corners;
+        if setup.needs_perspective(|| largest_range(corner_levels(setup, shading))) {
+            return None;
+        }
         if !THREE {
             return Some(setup.fill(|| one::<C>(setup.gradients, [a.light[2], b.light[2], c.light[2]]), Ramp(tables.ramps), band));
         }

@@ -5,8 +5,11 @@
 
 use crate::{
     interpolate::by_column::ByColumn,
-    lighting::{material_tables::MaterialTables, reflectance::Highlight},
-    method::{Costs, Facts, HighlightField, Loops, Method, RANGE, Shading, Style, TriangleSetup, VertexLight, node::map_six},
+    lighting::material_tables::MaterialTables,
+    method::{
+        Facts, Loops, Method, RANGE, Shading, Style, TriangleSetup, VertexLight,
+        node::{coefficients, map_six},
+    },
     pixel::Pixel,
     raster::{band::Band, canvas::Canvas},
 };
@@ -16,12 +19,7 @@ static FACTS: Facts = Facts {
     id: 2,
     source: "Szirmay-Kalos et al. 2000; Vlasic 2002",
     vertex_light: VertexLight::CosinesOrLevels,
-    highlight: Highlight::Half,
-    highlight_levels: false,
-    highlight_field: HighlightField::Level,
-    near_lights: true,
-    perspective: true,
-    costs: Costs::new(2, 0, 0, 135),
+    ..Facts::OWN
 };
 
 /// Six-point shading.
@@ -49,6 +47,9 @@ impl Loops for SixPoint {
         tables: MaterialTables<'_, C>,
         band: &mut Band<'_, C>,
     ) -> Option<u32> {
+        if setup.needs_perspective(|| 2 * largest_of_quadratics(&levels(setup, shading))) {
+            return None;
+        }
         let reflectance = shading.reflectance;
         // One constant light without a highlight is one number also in three channels.
         let one = C::GRAY
@@ -63,6 +64,19 @@ impl Loops for SixPoint {
         };
         Some(Shading::fill_one(setup, nodes, tables, band))
     }
+}
+
+/// The largest difference between two coefficients, in the form of Bernstein, of the quadratic through six nodes, in any channel.
+///
+/// A quadratic is the mean of its coefficients if each of two indices is drawn with the weights b of the corners. If they are drawn with other weights,
+/// it differs by at most this range times twice the distance of the weights, see [`TriangleSetup::perspective_error`].
+fn largest_of_quadratics(channels: &[[i32; 6]; 3]) -> u32 {
+    let range = |nodes: [i32; 6]| {
+        let coefficients = coefficients(nodes);
+        let (least, most) = coefficients.iter().fold((i32::MAX, i32::MIN), |(least, most), &c| (least.min(c), most.max(c)));
+        (most - least) as u32
+    };
+    channels.iter().fold(0, |largest, &nodes| largest.max(range(nodes)))
 }
 
 /// Draws `setup` in three channels.

@@ -4,18 +4,13 @@
 //! can be split again. Corners of sub-triangles are exact in the finer coordinates used here, so their edges lie exactly on the triangle's edges and
 //! on each other. The top-left rule gives every pixel of the triangle to one sub-triangle, without cracks and overlaps.
 
-use crate::{
-    antialias::{PixelSet, Shape, coarse},
-    coverage::area::TriangleCoverage,
+use microphong::{
     format::{FINE, SPLITS, SUBPIXEL},
-    interpolate::{Patch, field::Field, plane::Plane},
     math::vector::zip,
-    method::{Area, TriangleSetup},
-    raster::{
-        canvas::{Canvas, IntensityShader, Shaded, SpanShader},
-        triangle::ScreenTriangle,
+    method::{
+        Area, Canvas, Field, Gradients, IntensityShader, NEAR, Patch, PixelSet, Plane, ScreenTriangle, Shaded, Shape, SpanShader,
+        TriangleCoverage, TriangleSetup, coarse,
     },
-    setup::gradients::{Gradients, NEAR},
 };
 
 /// Distance from a pixel's border to its centre.
@@ -76,13 +71,12 @@ pub struct Parts<'f> {
     depth: Plane<1>,
 }
 
-#[doc(hidden)]
-impl<'f> TriangleSetup<'f> {
-    /// Returns an object by which a method can draw the triangle in smaller parts, each interpolated on its own.
+impl<'f> Parts<'f> {
+    /// The parts of the triangle `setup`, each interpolated on its own.
     #[must_use]
-    pub fn parts(&self) -> Parts<'f> {
-        let Self { screen, pixels, .. } = *self;
-        Parts { screen, pixels, gradients: self.gradients.parted(), depth: screen.plane(self.gradients, 0) }
+    pub fn new(setup: &TriangleSetup<'f>) -> Self {
+        let TriangleSetup { screen, gradients, pixels, .. } = *setup;
+        Self { screen, pixels, gradients: gradients.parted(), depth: screen.plane(gradients, 0) }
     }
 }
 
@@ -120,7 +114,6 @@ impl Area for Part<'_> {
 }
 
 /// A sub-triangle on the screen.
-#[doc(hidden)]
 #[derive(Clone, Copy, Debug)]
 pub struct ScreenSubTriangle<'o> {
     screen: &'o ScreenTriangle,

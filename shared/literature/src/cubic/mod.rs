@@ -3,7 +3,16 @@
 //! Cost: three additions of 64 bits a pixel and channel; ten points to light. Continuous: both neighbours light the thirds of their edge alike. It
 //! has a third to a half of the error of [`microphong::method::levels::six_point`]. Domain: any lights.
 
-use microphong::method::{Canvas, Costs, Facts, Highlight, HighlightField, Method, RANGE, Shading, TriangleSetup, VertexLight};
+pub mod field;
+pub mod fit;
+pub mod terms;
+
+use crate::nodes::third;
+use field::TenNodes;
+use microphong::{
+    format::{BIAS, LEVEL, WALK},
+    method::{Area, Canvas, Facts, Highlight, HighlightField, Method, Shading, TriangleSetup, VertexLight, Walked},
+};
 
 static FACTS: Facts = Facts {
     name: "cubic",
@@ -15,7 +24,6 @@ static FACTS: Facts = Facts {
     highlight_field: HighlightField::Level,
     near_lights: true,
     perspective: true,
-    costs: Costs::new(3, 0, 0, 330),
 };
 
 /// Ten-point shading.
@@ -34,6 +42,13 @@ impl Method for Cubic {
 fn draw(setup: &TriangleSetup<'_>, shading: &Shading<'_>, canvas: &mut dyn Canvas) -> u32 {
     let [a, b, c] = setup.corners.map(|corner| corner.levels());
     let thirds = [[2, 1, 0], [1, 2, 0], [0, 2, 1], [0, 1, 2], [1, 0, 2], [2, 0, 1], [1, 1, 1]];
-    let [ab, ba, bc, cb, ca, ac, middle] = thirds.map(|weights| shading.levels(&setup.third(weights, 0)));
-    shading.draw_levels::<10, RANGE>(setup, [a, b, c, ab, ba, bc, cb, ca, ac, middle], canvas)
+    let [ab, ba, bc, cb, ca, ac, middle] = thirds.map(|weights| shading.levels(&third(setup, weights, 0)));
+    let nodes = [a, b, c, ab, ba, bc, cb, ca, ac, middle];
+    let (extra, bias) = (WALK - LEVEL, BIAS << WALK);
+    if shading.reflectance.three_channels() {
+        let values = [nodes.map(|[red, ..]| red), nodes.map(|[_, green, _]| green), nodes.map(|[.., blue]| blue)];
+        setup.draw(&TenNodes { values, extra, bias: [bias; 3] }, Walked, canvas)
+    } else {
+        setup.draw(&TenNodes { values: [nodes.map(|[level, ..]| level)], extra, bias: [bias] }, Walked, canvas)
+    }
 }

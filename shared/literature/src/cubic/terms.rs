@@ -1,16 +1,16 @@
 //! The terms of a cubic in two variables.
 
-use crate::math::wide::Wide;
+use microphong::math::wide::Wide;
 
 /// Coefficients of a cubic: one array for each power of the first variable, in the order of powers of the second.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Terms<T>(pub [T; 4], pub [T; 3], pub [T; 2], pub [T; 1]);
 
 impl Terms<Wide> {
-    /// Four times the cubic through ten nodes, see [`crate::interpolate::cubic::Cubic::fit`], measured from corner 0: with `s` and `t` the
+    /// Four times the cubic through ten nodes, see [`super::field::CubicPatch::fit`], measured from corner 0: with `s` and `t` the
     /// gradients of the barycentric coordinates of corners 1 and 2. A term of degree n has n factors of them.
     #[must_use]
-    pub(crate) fn of(nodes: [Wide; 10], s: [Wide; 2], t: [Wide; 2]) -> Self {
+    pub fn of(nodes: [Wide; 10], s: [Wide; 2], t: [Wide; 2]) -> Self {
         let [v0, v1, v2, a1, a2, b1, b2, c1, c2, m] = nodes;
         // Symmetric forms in (s, t); the linear and the cubic one are halved.
         let side = |v: Wide, near: Wide, far: Wide| 2 * v - 11 * v0 + 18 * near - 9 * far;
@@ -69,7 +69,7 @@ impl<T: Copy> Terms<T> {
 
 /// A cubic in one variable from another origin: Horner's rule, once for each derivative.
 #[inline(always)]
-pub(crate) fn moved<T: Copy>([c, x, xx, xxx]: [T; 4], step: &impl Fn(T, T) -> T) -> [T; 4] {
+pub fn moved<T: Copy>([c, x, xx, xxx]: [T; 4], step: &impl Fn(T, T) -> T) -> [T; 4] {
     let xx = step(xx, xxx);
     let x = step(x, xx);
     let [x_moved, xx_moved, _] = moved_quadratic([x, xx, xxx], step);
