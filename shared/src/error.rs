@@ -44,6 +44,12 @@ pub enum RenderError {
         /// The name of the shading method.
         shader: &'static str,
     },
+    /// The materials have more different highlights than the layout has tables for; set
+    /// [`Layout::highlight_tables`](crate::Layout::highlight_tables).
+    TooFewHighlightTables {
+        /// The number of tables that are needed.
+        need: usize,
+    },
     /// Antialiasing was turned on, but the layout has no room for it; set [`Layout::antialias`](crate::Layout::antialias).
     NoSamples,
     /// The pixel buffer for a band (group of rows drawn at once) is shorter than one row of the picture.
@@ -104,6 +110,9 @@ impl fmt::Display for RenderError {
             Self::Objects { need } => write!(f, "the layout has too little room for objects; set Layout::objects({need})"),
             Self::HighlightTables { shader } => {
                 write!(f, "{shader} needs tables of highlights; make the layout without Layout::without_highlight_tables")
+            }
+            Self::TooFewHighlightTables { need } => {
+                write!(f, "the layout has too few tables of highlights; set Layout::highlight_tables({need})")
             }
             Self::NoSamples => f.write_str("the layout has no memory for antialiasing; set Layout::antialias(true)"),
             Self::Band { need } => write!(f, "the band is too short; it must hold at least one row of {need} pixels"),

@@ -57,8 +57,9 @@ pub struct Layout {
     /// Whether there is room for antialiasing, which takes 72 bytes for each pixel of a band (group of rows drawn at once).
     /// [`Renderer::set_antialias`](crate::Renderer::set_antialias) turns it on.
     pub antialias: bool,
-    /// Whether there is room for tables of highlights, one for each material; by default there is. See [`Self::without_highlight_tables`].
-    pub highlight_tables: bool,
+    /// The number of tables of highlights that there is room for, 8,200 bytes each; more than [`Self::materials`] are never needed. By default
+    /// there is one for each material. Materials with equal highlights share one. See [`Self::highlight_tables`](Self::highlight_tables()).
+    pub highlight_tables: usize,
 }
 
 impl Layout {
@@ -77,7 +78,7 @@ impl Layout {
             objects: 1,
             active_triangles: 48,
             antialias: false,
-            highlight_tables: true,
+            highlight_tables: usize::MAX,
         }
     }
 
@@ -126,12 +127,23 @@ impl Layout {
         Self { antialias, ..self }
     }
 
+    /// Sets the number of tables of highlights, which take 8,200 bytes each. By default there is one for each material. Materials with equal
+    /// highlights share a table. These are all materials of one exponent whose highlights differ in hue from their diffuse light, as on plastic, or
+    /// that are lit by several lights. Under one light, materials of one hue share a table only if their ambient and specular light are equal too.
+    ///
+    /// If there are too few, [`Frame::next_band`](crate::Frame::next_band) returns
+    /// [`RenderError::TooFewHighlightTables`](crate::RenderError::TooFewHighlightTables) with the number that is needed.
+    #[must_use]
+    pub const fn highlight_tables(self, highlight_tables: usize) -> Self {
+        Self { highlight_tables, ..self }
+    }
+
     /// Leaves out the tables of highlights, which take 8,200 bytes for each material. Methods that use the light of vertices alone need none:
     /// [`Shader::FLAT`](crate::Shader::FLAT) and [`Shader::GOURAUD`](crate::Shader::GOURAUD). A renderer refuses all others, see
     /// [`Method::needs_highlight_tables`](crate::method::Method::needs_highlight_tables).
     #[must_use]
     pub const fn without_highlight_tables(self) -> Self {
-        Self { highlight_tables: false, ..self }
+        self.highlight_tables(0)
     }
 
     /// Sets the numbers of vertices, triangles, materials and objects to what the scene in the mesh file `stream` needs. All other values
@@ -159,7 +171,7 @@ impl Layout {
     }
 
     const fn tables(&self) -> usize {
-        if self.highlight_tables { self.materials } else { 0 }
+        if self.highlight_tables < self.materials { self.highlight_tables } else { self.materials }
     }
 
     const fn samples(&self) -> usize {
@@ -221,7 +233,7 @@ pub(crate) struct Memory<'a> {
     pub(crate) order: &'a mut [u32],
     /// The reflectance of each material.
     pub(crate) reflectances: &'a mut [Reflectance],
-    /// The table of highlights of each material, or none.
+    /// Tables of highlights, which materials share, or none.
     pub(crate) tables: &'a mut [HighlightLut],
     /// The error bounds of each material, for methods with an error budget.
     pub(crate) error_bounds: &'a mut [ErrorBounds],

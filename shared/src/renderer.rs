@@ -7,7 +7,7 @@ use crate::{
     format::{ErrorBudget, LARGEST_BUDGET, LEAST_BUDGET, LEVEL, MAX_LIGHTS},
     frame::{ColourSettings, Colours, Frame, Preparation, Prepared, Seams, Settings},
     geometry::{lens::Lens, model_view::ModelView, region::Region},
-    lighting::{lights::Directions, material_tables::fill_ramps, reflectance::LitMaterial},
+    lighting::{highlight_tables, lights::Directions, material_tables::fill_ramps, reflectance::LitMaterial},
     memory::{Layout, Memory, take_ramps},
     method::{Facts, Method},
     pixel::{Channels, Pixel, gamma::Gamma, ramps::Ramps},
@@ -98,13 +98,14 @@ impl<'a, C: Pixel> Renderer<'a, C> {
             return Err(RenderError::Feature { name: feature.name() });
         }
         check(&stream, shader.facts(), false)?;
-        check_tables(shader.method(), layout.highlight_tables)?;
+        check_tables(shader.method(), layout.highlight_tables > 0)?;
         let settings = Settings {
             size,
             processors: layout.processors as u32,
             method: shader.method(),
             perspective_correct: false,
             antialias: false,
+            lacking_tables: 0,
             budget: level(stream.header.budget()),
             #[cfg(feature = "skips")]
             skips: crate::frame::Skips::ALL,
@@ -119,7 +120,7 @@ impl<'a, C: Pixel> Renderer<'a, C> {
             scene,
             memory,
             ramps,
-            has_highlight_tables: layout.highlight_tables,
+            has_highlight_tables: layout.highlight_tables > 0,
             seams: None,
             rearranged: true,
             region: Region::NONE,
@@ -160,18 +161,17 @@ impl<'a, C: Pixel> Renderer<'a, C> {
             // A black light takes the place of none.
             let _ = lights.push(Light::new_zeroed());
         }
+        let reflectances = reflectances.get_mut(..scene.materials().len()).unwrap_or_default();
         for (index, material) in scene.stale_materials() {
-            let (Some(reflectance), Some(ramps), Some(bounds)) =
-                (reflectances.get_mut(index), ramps.get_mut(index), error_bounds.get_mut(index))
-            else {
-                continue;
-            };
-            reflectance.fill(Channels::of::<C>(), ambient, &material, &lights, (facts.highlight, facts.highlight_levels));
-            fill_ramps::<C>(ramps, reflectance, *dither, *gamma);
-            let table = tables.get_mut(index).map(|table| {
-                table.fill(&reflectance.highlights);
-                &*table
-            });
+            if let (Some(reflectance), Some(ramps)) = (reflectances.get_mut(index), ramps.get_mut(index)) {
+                reflectance.fill(Channels::of::<C>(), ambient, &material, &lights, (facts.highlight, facts.highlight_levels));
+                fill_ramps::<C>(ramps, reflectance, *dither, *gamma);
+            }
+        }
+        for (index, material) in scene.stale_materials() {
+            highlight_tables::assign(reflectances, index, tables);
+            let (Some(reflectance), Some(bounds)) = (reflectances.get_mut(index), error_bounds.get_mut(index)) else { continue };
+            let table = reflectance.table(tables);
             *bounds = method.error_bounds(LitMaterial::new(reflectance, table), material.exponent, lights.len());
             if *dither && C::Ramps::CHECKERED {
                 reflectance.dither();
@@ -179,6 +179,8 @@ impl<'a, C: Pixel> Renderer<'a, C> {
             #[cfg(feature = "skips")]
             reflectance.leave_out(settings.skips.highlights, settings.skips.lights);
         }
+        scene.set_fresh();
+        settings.lacking_tables = if method.needs_highlight_tables() { highlight_tables::lacking(reflectances) } else { 0 };
     }
 
     /// Sets which invisible work a frame leaves out; by default this is all of it. The picture is the same with any choice, apart from two

@@ -6,7 +6,7 @@ use embedded_graphics::{
     pixelcolor::{Gray8, Rgb565},
     prelude::*,
 };
-use microphong::{FramePart, Layout, MAX_SIDE, Picture, RenderError, Renderer, Stats, Stream, renderer::check};
+use microphong::{FramePart, Layout, MAX_SIDE, Material, Picture, RenderError, Renderer, Stats, Stream, renderer::check};
 use microphong_sim::{
     convert::{AZIMUTH, Converted, DISTANCE, ELEVATION, ORBIT, Options},
     look::Look,
@@ -370,6 +370,35 @@ fn tables_of_highlights_change_no_pixel() {
     assert!(methods[0] == 2 * 4 && methods[1] > 50, "{methods:?}");
     let [with, without] = [Layout::new(150, 120), Layout::new(150, 120).without_highlight_tables()].map(|layout| layout.bytes::<Gray8>());
     assert_eq!(with - without, 8200);
+}
+
+/// Materials with equal highlights share a table, also after one of them has changed. If there are too few tables, the number is named.
+#[test]
+fn materials_share_tables_of_highlights() {
+    let size = Size::new(150, 120);
+    let scene = scene::load("board").unwrap();
+    let stream: Stream<'_> = scene.stream.parse().unwrap();
+    let materials = stream.materials.len();
+    let draw = |tables: usize, shader: Shader, exponents: [u16; 2]| {
+        let layout = Layout::new(150, 120).with_room_for(&stream).highlight_tables(tables);
+        let mut memory = vec![u64::MAX; layout.words::<Rgb565>()];
+        let mut renderer = Renderer::<Rgb565>::with_shader(stream, size, &layout, &mut memory, shader.on())?;
+        let mut pixels = vec![Rgb565::RED; layout.band()];
+        for exponent in exponents {
+            for index in (0..materials).rev().step_by(2) {
+                renderer.scene().set_material(index, Material { exponent, ..stream.materials[index] }).expect("a material");
+            }
+            renderer.draw().next_band(&mut pixels)?;
+        }
+        Ok(pixels)
+    };
+    for shader in [Shader::PHONG, Shader::AUTO, Shader::SQRT6] {
+        let expected = draw(materials, shader, [20, 40]);
+        let Err(RenderError::TooFewHighlightTables { need }) = draw(1, shader, [20, 40]) else { panic!("one table is too few") };
+        assert!(need < materials, "{need} tables for {materials} materials");
+        assert!(expected.is_ok() && draw(need, shader, [20, 40]) == expected, "{}", shader.name());
+        assert_eq!(draw(need - 1, shader, [20, 40]), Err(RenderError::TooFewHighlightTables { need }));
+    }
 }
 
 #[test]

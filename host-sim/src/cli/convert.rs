@@ -364,7 +364,7 @@ fn text_of(layout: &Layout) -> String {
     let Layout { width, rows, vertices, triangles, materials, objects, active_triangles, highlight_tables, .. } = layout;
     let several = if *objects > 1 { format!(".objects({objects})") } else { String::new() };
     let text = format!("Layout::new({width}, {rows}).vertices({vertices}).triangles({triangles}).materials({materials}){several}");
-    let tables = if *highlight_tables { "" } else { ".without_highlight_tables()" };
+    let tables = if *highlight_tables > 0 { "" } else { ".without_highlight_tables()" };
     format!("{text}.active_triangles({active_triangles}){tables}")
 }
 

@@ -29,6 +29,8 @@ pub(crate) struct Settings {
     pub(crate) method: &'static dyn Method,
     pub(crate) perspective_correct: bool,
     pub(crate) antialias: bool,
+    /// The number of tables of highlights that the materials need, if there are fewer; otherwise 0.
+    pub(crate) lacking_tables: usize,
     /// How far a pixel may be off by a method that keeps to a budget, in 1/255, Q9.7.
     pub(crate) budget: u32,
     #[cfg(feature = "skips")]
@@ -83,7 +85,7 @@ pub(crate) struct Context<'r> {
     pub(crate) vertices: &'r [ScreenVertex],
     /// One for each material.
     pub(crate) reflectances: &'r [Reflectance],
-    /// Tables of highlights, one for each material, or none if the method needs none.
+    /// Tables of highlights, which materials share, or none if the method needs none.
     pub(crate) tables: &'r [HighlightLut],
     /// What a method that keeps to a budget knows of each material.
     pub(crate) error_bounds: &'r [ErrorBounds],
@@ -179,7 +181,8 @@ impl<'r> Context<'r> {
 
     /// Material `index` under the lights of the scene.
     fn material(&self, index: usize) -> Option<LitMaterial<'r>> {
-        Some(LitMaterial::new(self.reflectances.get(index)?, self.tables.get(index)))
+        let reflectance = self.reflectances.get(index)?;
+        Some(LitMaterial::new(reflectance, reflectance.table(self.tables)))
     }
 
     /// The stage that transforms and lights the vertices of `placed`.

@@ -121,6 +121,9 @@ impl<'r> FrameRows<'r> {
     fn next_rows(&self, context: &Context<'_>, pixels: usize) -> Result<Option<[u16; 2]>, RenderError> {
         let width = context.settings.size.width;
         let fit = u32::try_from(pixels).unwrap_or(u32::MAX).checked_div(width).unwrap_or(0);
+        if context.settings.lacking_tables > 0 {
+            return Err(RenderError::TooFewHighlightTables { need: context.settings.lacking_tables });
+        }
         if fit == 0 {
             return Err(RenderError::Band { need: width as usize });
         }

@@ -1,6 +1,7 @@
 //! The lights of one frame, and their reflection by materials.
 
 pub mod constant_lights;
+pub mod highlight_tables;
 pub mod lights;
 pub mod material_tables;
 pub mod reflectance;

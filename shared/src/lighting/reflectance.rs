@@ -122,7 +122,9 @@ pub struct Reflectance {
     depth: [u32; 3],
     pub(super) gains: [Gains; ROOM],
     /// Bits by which the sum of all lights may leave Q10.22, at most 5.
-    excess: u32,
+    excess: u16,
+    /// Number of the table of highlights, counted from 1; 0 if there is none. See [`super::highlight_tables`].
+    pub(super) table: u16,
     /// Sums for [`OneLightRgb`](super::constant_lights::OneLightRgb): of the first light, of the second light, and of the first light again, so that
     /// two neighbours are both lights in either order. One array is for even rows, one for odd rows.
     pub(super) sums: [[Sums; 3]; 2],
@@ -162,6 +164,7 @@ impl Reflectance {
         highlight_threshold: 0,
         lights: 0,
         excess: 0,
+        table: 0,
         depth: [0; 3],
     };
 
@@ -189,8 +192,10 @@ impl Reflectance {
             }
         }
         let total = self.total(channels.is_checkered, lights.len());
-        self.excess = (total >> (9 + LEVEL)).checked_ilog2().map_or(0, |bits| bits + 1);
-        let fits = if one_channel { total < LARGEST } else { self.excess == 0 };
+        self.table = 0;
+        let excess = (total >> (9 + LEVEL)).checked_ilog2().map_or(0, |bits| bits + 1);
+        self.excess = excess as u16;
+        let fits = if one_channel { total < LARGEST } else { excess == 0 };
         let (ambient, diffuse) = (self.ambient, self.gains[0].diffuse);
         let within = zip(ambient, diffuse, |ambient, diffuse| ambient + i32::from(diffuse) <= FULL) == [true; 3];
         self.has_ramp = u8::from(one_channel || is_coarse && lights.len() == 1 && within);
@@ -223,7 +228,7 @@ impl Reflectance {
         }
         self.highlights = HighlightCurve::new(material.exponent, highlight.base(), full, floor);
         // Intensities are rounded down, and so are cosines: half of their last place more.
-        let mut sums = self.ambient.map(|level| (level << (FACTOR - self.excess)) + (1 << (CHANNEL - 9 - self.excess)));
+        let mut sums = self.ambient.map(|level| (level << (FACTOR - excess)) + (1 << (CHANNEL - 9 - excess)));
         for light in 0..lights.len() {
             let factors = self.factors(light);
             let none = factors.levels(Reflection { diffuse: 0, highlight: self.highlights.floor() });
@@ -265,6 +270,13 @@ impl Reflectance {
     #[must_use]
     pub fn lights(&self) -> u8 {
         self.lights
+    }
+
+    /// The table of highlights among `tables`, if there is one for this material.
+    #[inline]
+    #[must_use]
+    pub(crate) fn table<'t>(&self, tables: &'t [HighlightLut]) -> Option<&'t HighlightLut> {
+        tables.get(usize::from(self.table).wrapping_sub(1))
     }
 
     /// Whether there are two lights on three channels, and their sums fit a word.
@@ -430,7 +442,7 @@ impl Reflectance {
     /// Converts sums of all lights to intensities.
     #[inline]
     pub fn intensities(&self) -> impl Fn([i32; 3]) -> Intensity + use<> {
-        let shift = (CHANNEL - 8 - self.excess) & 31;
+        let shift = (CHANNEL - 8 - u32::from(self.excess)) & 31;
         // Armv7-M clamps by one instruction.
         let intensity = move |sum: i32| (sum >> shift).clamp(0, (1 << 16) - 1);
         move |[r, g, b]| [intensity(r), intensity(g), intensity(b)]

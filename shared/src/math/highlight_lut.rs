@@ -15,7 +15,7 @@ pub(crate) const SIZE: usize = 4096;
 
 /// The highlight's power function `floor + full base^n`, unsigned Q0.16, by which a table is filled and which replaces one where there is no memory
 /// for it.
-#[derive(FromBytes, IntoBytes, Immutable, KnownLayout, Clone, Copy, Debug)]
+#[derive(FromBytes, IntoBytes, Immutable, KnownLayout, Clone, Copy, Debug, PartialEq, Eq)]
 #[repr(C)]
 pub struct HighlightCurve {
     /// 4 max(n, 8), where n is the exponent of the argument: an index of a table is (1 - x) times 128 times this.

@@ -232,7 +232,7 @@ impl<const DEPTH: u32> LightGray<DEPTH> {
         let four = |greys: [u8; 4], thresholds: u32| {
             // No sum of a grey and its threshold reaches into the next byte.
             let sums = u32::from_le_bytes(greys).wrapping_add(thresholds);
-            let upper = sums & 0x0101_0101 * (0x100 - (1 << (8 - DEPTH)));
+            let upper = sums & (0x0101_0101 * u32::from(Self::FULL));
             // The first and the third byte take the bits of the byte that follows, and then the first one those of the third.
             let pairs = upper | upper >> (8 + DEPTH);
             if DEPTH == 4 { pairs } else { pairs | pairs >> (16 + 2 * DEPTH) }

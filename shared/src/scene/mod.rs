@@ -50,7 +50,7 @@ use crate::{
         record::{Camera, DIRECTIONAL, LIGHT_TRACK, Light, Material, OBJECT_TRACK, OWN_MATERIALS, PERSPECTIVE, Track, VIEWER_LOCAL},
     },
 };
-use core::{mem, ops::Range};
+use core::ops::Range;
 use zerocopy::{FromBytes, Immutable, IntoBytes, KnownLayout};
 
 /// Limits of the shading method in use. A change of the scene beyond them is refused.
@@ -359,10 +359,14 @@ impl<'a> Scene<'a> {
         Ok(())
     }
 
-    /// The materials whose tables are to be computed, with their indices, each once.
-    pub(crate) fn stale_materials(&mut self) -> impl Iterator<Item = (usize, Material)> {
-        let stale = |slot: &mut SceneMaterial| (mem::take(&mut slot.is_stale) != 0).then_some(slot.material);
-        self.materials.iter_mut().enumerate().filter_map(move |(index, slot)| Some((index, stale(slot)?)))
+    /// The materials whose tables are to be computed, with their indices.
+    pub(crate) fn stale_materials(&self) -> impl Iterator<Item = (usize, Material)> {
+        self.materials.iter().enumerate().filter(|(_, slot)| slot.is_stale != 0).map(|(index, slot)| (index, slot.material))
+    }
+
+    /// Marks the tables of all materials as computed.
+    pub(crate) fn set_fresh(&mut self) {
+        self.materials.iter_mut().for_each(|slot| slot.is_stale = 0);
     }
 
     /// Marks the tables of all materials as stale, so that the next frame computes them again.
