@@ -273,7 +273,6 @@ pub(super) fn field_product(a: &[[i32; 3]; 3], b: &[[i32; 3]; 3]) -> [i32; 6] {
 mod tests {
     use super::*;
     use crate::{
-        antialias::PixelSet,
         geometry::projection::{ScreenVertex, State},
         raster::triangle::ScreenTriangle,
         setup::gradients::Gradients,
@@ -307,7 +306,6 @@ mod tests {
                 turned: 0,
                 needs_depth_test: true,
                 perspective: false,
-                pixels: PixelSet::Centres,
                 place: None,
             };
             let corners = [[p, q, r], [q, p, s], [s, q, p], [p, s, q]];
