@@ -22,7 +22,7 @@ use crate::{
         bin::{Bins, Entry},
         cull::{Extent, Facing},
         depth_elision::DepthElision,
-        projection::{ScreenVertex, State, View},
+        projection::{ScreenVertex, State},
         region::Region,
         viewport::{Bounds, Viewport},
     },
@@ -432,24 +432,18 @@ impl<'r> PreparationPart<'_, 'r> {
                 }
             };
             let mut word_sized = false;
-            let mut extent = None;
             let bounds = match stage.corners(cached, first_cached, vertices, triangle) {
                 Some(corners) => {
-                    let of_corners = Extent::new(corners);
+                    let extent = Extent::new(corners);
                     if let Some(elision) = depth_elision {
-                        elision.include(&of_corners);
+                        elision.include(&extent);
                     }
-                    word_sized = viewport.is_word_sized(&of_corners);
-                    let bounds = viewport.bounds_within(&of_corners, area);
-                    if ANTIALIAS {
-                        extent = Some(of_corners);
-                    }
-                    bounds
+                    word_sized = viewport.is_word_sized(&extent);
+                    viewport.bounds_within(&extent, area)
                 }
                 None if DIVIDED => {
                     let bounds;
-                    (extent, word_sized, bounds) =
-                        at_seam(&stage, (&mut *cached, &mut *seam), viewport, depth_elision, (vertices, triangle));
+                    (word_sized, bounds) = at_seam(&stage, (&mut *cached, &mut *seam), viewport, depth_elision, (vertices, triangle));
                     bounds.and_then(|bounds| bounds.visible(area))
                 }
                 None => {
@@ -458,7 +452,10 @@ impl<'r> PreparationPart<'_, 'r> {
                 }
             };
             push(bounds, word_sized);
-            if ANTIALIAS && keeps_touched && bounds.is_none() && touches(viewport, stage.view, extent.as_ref(), (vertices, triangle), area)
+            if ANTIALIAS
+                && keeps_touched
+                && bounds.is_none()
+                && touches(&stage, (&mut *cached, &mut *seam), viewport, (vertices, triangle), area)
             {
                 // Its edges may be outlines.
                 bins.keep(entries, id + rest.len() as u32);
@@ -478,19 +475,24 @@ fn area_of(context: &Context<'_>, placed: &PlacedMesh<'_>) -> Bounds {
     area
 }
 
-/// Whether a triangle that contains no pixel centre touches a pixel. It has an `extent` if its corners are cached.
+/// Whether a triangle that contains no pixel centre touches a pixel of `area`.
 #[inline(never)]
-fn touches(viewport: Viewport, view: &View, extent: Option<&Extent>, (vertices, triangle): (&[Vertex], &Triangle), area: Bounds) -> bool {
-    if let Some(extent) = extent {
-        return viewport.touches(extent, area);
+fn touches(
+    stage: &VertexStage<'_>,
+    (cached, seam): (&mut [ScreenVertex], &mut [SeamPlace]),
+    viewport: Viewport,
+    (vertices, triangle): (&[Vertex], &Triangle),
+    area: Bounds,
+) -> bool {
+    if let Some(corners) = stage.corners_at_seam(cached, seam, vertices, triangle) {
+        return viewport.touches(&Extent::new(corners), area);
     }
     let [a, c, b] = triangle.corners.map(|corner| vertices.get(usize::from(corner)));
     let (Some(a), Some(b), Some(c)) = (a, b, c) else { return false };
-    viewport.touches_by(view, [a, b, c], area)
+    viewport.touches_by(stage.view, [a, b, c], area)
 }
 
-/// The extent of a triangle where a corner belongs to the other half, unless it needs clipping; whether it is word-sized, and its visible bounding
-/// box.
+/// Whether a triangle is word-sized, and its visible bounding box, where a corner belongs to the other half or needs clipping.
 #[cold]
 #[inline(never)]
 fn at_seam(
@@ -499,14 +501,14 @@ fn at_seam(
     viewport: Viewport,
     depth_elision: &mut Option<DepthElision>,
     (vertices, triangle): (&[Vertex], &Triangle),
-) -> (Option<Extent>, bool, Option<Bounds>) {
+) -> (bool, Option<Bounds>) {
     let Some(corners) = stage.corners_at_seam(cached, seam, vertices, triangle) else {
         *depth_elision = None;
-        return (None, false, stage.bounds(viewport, vertices, triangle));
+        return (false, stage.bounds(viewport, vertices, triangle));
     };
     let extent = Extent::new(corners);
     if let Some(elision) = depth_elision {
         elision.include(&extent);
     }
-    (Some(extent), viewport.is_word_sized(&extent), viewport.bounds(&extent))
+    (viewport.is_word_sized(&extent), viewport.bounds(&extent))
 }
