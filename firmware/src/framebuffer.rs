@@ -105,7 +105,7 @@ macro_rules! framebuffer_board {
         use ::microphong::Layout;
         use ::microphong_firmware::{OneCore, budget::MPS2, framebuffer, run};
 
-        const LAYOUT: Layout = MPS2.layout;
+        const LAYOUT: Layout = $crate::smooth(MPS2.layout);
 
         /// The host finds it by this name.
         #[unsafe(no_mangle)]

@@ -103,6 +103,12 @@ pub fn stop<D: Display>(display: &mut D, failure: Failure) -> ! {
     display.halt()
 }
 
+/// The layout with room for smooth outlines, if the firmware can draw them.
+#[must_use]
+pub const fn smooth(layout: Layout) -> Layout {
+    layout.antialias(cfg!(feature = "antialias")).edges(4096)
+}
+
 /// Returns only if it cannot start or go on.
 fn animate<D: Display>(
     display: &mut D,
@@ -113,6 +119,10 @@ fn animate<D: Display>(
 ) -> Result<core::convert::Infallible, Failure> {
     let stream = Stream::parse(stream::bytes())?;
     let mut renderer = Renderer::new(stream, display.size(), layout, memory, shaders)?;
+    #[cfg(feature = "antialias")]
+    if !stream.neighbours.is_empty() {
+        renderer.set_antialias(true)?;
+    }
     let mut counts = Counts::default();
     for number in 0..u32::from(stream.header.frames) {
         let mut crc = PictureCrc::default();

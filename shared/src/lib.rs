@@ -64,11 +64,10 @@
 //! | `lighting` | lights, and what materials reflect of them |
 //! | `setup` | edges and gradients of a triangle |
 //! | `interpolate` | polynomials, fitted to a triangle and walked by additions |
-//! | `coverage` | exact areas of pixels, and what is seen through one |
 //! | `raster` | bands, active triangles, and the loops that fill rows |
-//! | `antialias` | pixels on the edges of triangles |
 //! | [`method`] | the shading methods, and what a method of your own needs |
 //! | `mesh` | the triangles of one mesh in one frame |
+//! | `edges` | smooth outlines of a finished band |
 //! | `placement` | where an object is in one frame |
 //! | `shader` | a method together with its loops: [`Shader`] |
 //! | `error` | why a renderer cannot draw: [`RenderError`] |
@@ -84,6 +83,7 @@
 mod arch;
 mod band_target;
 mod display;
+mod edges;
 mod error;
 #[doc(hidden)]
 pub mod features;
@@ -105,10 +105,6 @@ pub mod stream;
 mod text;
 
 // No part of the interface: public for the tests, tools and other packages of this repository alone.
-#[doc(hidden)]
-pub mod antialias;
-#[doc(hidden)]
-pub mod coverage;
 #[doc(hidden)]
 pub mod geometry;
 #[doc(hidden)]

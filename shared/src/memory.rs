@@ -1,7 +1,7 @@
 //! The memory of a renderer. All sizes follow from one configuration, [`Layout`].
 
 use crate::{
-    coverage::sample::Sample,
+    edges::Edge,
     features::LIGHTS,
     geometry::{bin::Entry, projection::ScreenVertex},
     lighting::reflectance::Reflectance,
@@ -54,12 +54,15 @@ pub struct Layout {
     /// bytes each. If more triangles cross the border between two bands, the picture stays the same, but the next band sets up the others
     /// again.
     pub active_triangles: usize,
-    /// Whether there is room for antialiasing, which takes 72 bytes for each pixel of a band (group of rows drawn at once).
-    /// [`Renderer::set_antialias`](crate::Renderer::set_antialias) turns it on.
+    /// Whether there is room for antialiasing, which takes two to three bytes for each pixel of a band (group of rows drawn at once), four rows
+    /// more, and 24 bytes for each of [`Self::edges`]. [`Renderer::set_antialias`](crate::Renderer::set_antialias) turns it on.
     pub antialias: bool,
     /// The number of tables of highlights that there is room for, 8,200 bytes each; more than [`Self::materials`] are never needed. By default
     /// there is one for each material. Materials with equal highlights share one. See [`Self::highlight_tables`](Self::highlight_tables()).
     pub highlight_tables: usize,
+    /// With antialiasing, the number of edges in the outlines of a frame that there is room for, 24 bytes each. If there are more, the picture stays
+    /// the same, but each band (group of rows drawn at once) looks for them in all triangles of the scene.
+    pub edges: usize,
 }
 
 impl Layout {
@@ -79,6 +82,7 @@ impl Layout {
             active_triangles: 48,
             antialias: false,
             highlight_tables: usize::MAX,
+            edges: 512,
         }
     }
 
@@ -120,8 +124,8 @@ impl Layout {
         Self { active_triangles, ..self }
     }
 
-    /// Sets whether there is room for antialiasing, which takes 72 bytes for each pixel of a band (group of rows drawn at once). The
-    /// default is `false`.
+    /// Sets whether there is room for antialiasing, which takes two to three bytes for each pixel of a band (group of rows drawn at once), and
+    /// room for edges. The default is `false`.
     #[must_use]
     pub const fn antialias(self, antialias: bool) -> Self {
         Self { antialias, ..self }
@@ -136,6 +140,12 @@ impl Layout {
     #[must_use]
     pub const fn highlight_tables(self, highlight_tables: usize) -> Self {
         Self { highlight_tables, ..self }
+    }
+
+    /// Sets the number of edges in the outlines of a frame that there is room for with antialiasing, 24 bytes each. The default is 512.
+    #[must_use]
+    pub const fn edges(self, edges: usize) -> Self {
+        Self { edges, ..self }
     }
 
     /// Leaves out the tables of highlights, which take 8,200 bytes for each material. Methods that use the light of vertices alone need none:
@@ -174,8 +184,24 @@ impl Layout {
         if self.highlight_tables < self.materials { self.highlight_tables } else { self.materials }
     }
 
-    const fn samples(&self) -> usize {
-        if self.antialias { self.band() * self.processors } else { 0 }
+    /// Rows of depth. With antialiasing, those above and below the band belong to them.
+    const fn depth(&self) -> usize {
+        (self.rows + if self.antialias { 2 } else { 0 }) * self.width * self.processors
+    }
+
+    /// Edges, their entries in lists, pixels that can be marked, and places of marked pixels.
+    const fn smoothing(&self) -> [usize; 4] {
+        if self.antialias { [self.edges, self.edges * self.processors, self.band() * self.processors, self.marked()] } else { [0; 4] }
+    }
+
+    /// Marked pixels of a band that there is room for: at least those of a row.
+    const fn marked(&self) -> usize {
+        (self.width + self.band() / 4) * self.processors
+    }
+
+    /// Colours that are kept for antialiasing: of marked pixels, and of two rows.
+    const fn kept(&self) -> usize {
+        if self.antialias { self.marked() + 2 * self.width * self.processors } else { 0 }
     }
 
     /// Returns the number of 64-bit words of memory that a renderer needs when it draws in the pixel format `C`.
@@ -192,9 +218,13 @@ impl Layout {
             + padded(self.materials * size_of::<Reflectance>())
             + padded(self.tables() * size_of::<HighlightLut>())
             + padded(self.materials * size_of::<ErrorBounds>())
-            + padded(self.samples() * size_of::<Sample>())
+            + padded(self.smoothing()[0] * size_of::<Edge>())
+            + padded(self.smoothing()[1] * size_of::<Entry>())
+            + padded(self.smoothing()[2])
+            + padded(self.smoothing()[3] * size_of::<u16>())
+            + padded(self.kept() * size_of::<C::Stored>())
             + padded(self.materials * size_of::<C::Ramps>())
-            + padded(self.band() * self.processors * size_of::<u16>());
+            + padded(self.depth() * size_of::<u16>());
         bytes / size_of::<u64>()
     }
 
@@ -215,7 +245,7 @@ const fn padded(bytes: usize) -> usize {
 const _: () = {
     assert!(size_of::<ScreenVertex>() == 32 && size_of::<Entry>() == 8 && size_of::<ActiveTriangle>() == 128);
     assert!(!LIGHTS || size_of::<Reflectance>() == 396);
-    assert!(size_of::<HighlightLut>() == 8200 && size_of::<Sample>() == 72);
+    assert!(size_of::<HighlightLut>() == 8200 && size_of::<Edge>() == 16);
 };
 
 /// The memory of a renderer, divided into its parts.
@@ -237,10 +267,25 @@ pub(crate) struct Memory<'a> {
     pub(crate) tables: &'a mut [HighlightLut],
     /// The error bounds of each material, for methods with an error budget.
     pub(crate) error_bounds: &'a mut [ErrorBounds],
-    /// Samples for antialiasing; empty without it.
-    pub(crate) samples: &'a mut [Sample],
+    /// Memory for antialiasing; empty without it.
+    pub(crate) smoothing: Smoothing<'a>,
     /// Triangles that are kept from one band to the next.
     pub(crate) active_triangles: &'a mut [ActiveTriangle],
+}
+
+/// Memory for antialiasing, of one processor or of two.
+#[derive(Debug, Default)]
+pub(crate) struct Smoothing<'a> {
+    /// The edges of a frame.
+    pub(crate) edges: &'a mut [Edge],
+    /// Entries of the lists of edges.
+    pub(crate) entries: &'a mut [Entry],
+    /// Marks of the pixels of a band. They are 0 between two bands.
+    pub(crate) marks: &'a mut [u8],
+    /// The pixels that have a mark.
+    pub(crate) places: &'a mut [u16],
+    /// Colours in the pixel format, as bytes: those of two rows, then those of marked pixels.
+    pub(crate) colours: &'a mut [u8],
 }
 
 /// Takes the tables of colours of all materials from `words`. Returns them and the bytes behind them, or `None` if there are fewer words than
@@ -251,8 +296,8 @@ pub(crate) fn take_ramps<'a, C: Pixel>(layout: &Layout, words: &'a mut [u64]) ->
 
 impl<'a> Memory<'a> {
     /// Divides the `bytes` behind the tables of colours into the parts of the memory and the room for objects and materials of the scene. Returns
-    /// `None` if there are fewer than [`Layout::words`] says.
-    pub(crate) fn new(layout: &Layout, bytes: &'a mut [u8]) -> Option<(Self, &'a mut [Object], &'a mut [SceneMaterial])> {
+    /// `None` if there are fewer than [`Layout::words`] says. A colour takes `stored` bytes.
+    pub(crate) fn new(layout: &Layout, bytes: &'a mut [u8], stored: usize) -> Option<(Self, &'a mut [Object], &'a mut [SceneMaterial])> {
         let (vertices, bytes) = take(bytes, layout.vertices)?;
         let (bins, bytes) = take(bytes, layout.triangles)?;
         let (active_triangles, bytes) = take(bytes, layout.active_triangles)?;
@@ -261,12 +306,18 @@ impl<'a> Memory<'a> {
         let (reflectances, bytes) = take(bytes, layout.materials)?;
         let (tables, bytes) = take(bytes, layout.tables())?;
         let (error_bounds, bytes) = take(bytes, layout.materials)?;
-        let (samples, bytes) = take(bytes, layout.samples())?;
-        let (depth, bytes) = take(bytes, layout.band() * layout.processors)?;
+        let [edges, edge_entries, marks, places] = layout.smoothing();
+        let (edges, bytes) = take(bytes, edges)?;
+        let (edge_entries, bytes) = take(bytes, edge_entries)?;
+        let (marks, bytes) = take(bytes, marks)?;
+        let (places, bytes) = take(bytes, places)?;
+        let (kept, bytes) = take(bytes, layout.kept() * stored)?;
+        let smoothing = Smoothing { edges, entries: edge_entries, marks, places, colours: kept };
+        let (depth, bytes) = take(bytes, layout.depth())?;
         let (objects, bytes) = take(bytes, layout.objects)?;
         let (materials, _) = take(bytes, layout.materials)?;
         Some((
-            Self { vertices, bins, depth, placements, order, reflectances, tables, error_bounds, samples, active_triangles },
+            Self { vertices, bins, depth, placements, order, reflectances, tables, error_bounds, smoothing, active_triangles },
             objects,
             materials,
         ))
@@ -278,4 +329,10 @@ fn take<T: FromBytes + IntoBytes + Immutable + KnownLayout>(bytes: &mut [u8], co
     let (part, rest) = bytes.split_at_mut_checked(padded(count.checked_mul(size_of::<T>())?))?;
     let (values, _) = <[T]>::mut_from_prefix_with_elems(part, count).ok()?;
     Some((values, rest))
+}
+
+/// Splits some memory behind the first `length` values, or behind all if there are fewer.
+pub(crate) fn halves<T>(memory: &mut [T], length: usize) -> (&mut [T], &mut [T]) {
+    let length = length.min(memory.len());
+    memory.split_at_mut_checked(length).unwrap_or_default()
 }

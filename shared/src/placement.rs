@@ -77,10 +77,11 @@ impl Placement {
         };
     }
 
-    /// Draws the object in the frame if it reaches into `region`. Returns whether the number of its triangles changes.
-    pub(crate) fn draw_within(&mut self, region: &Region) -> bool {
+    /// Draws the object in the frame if the pixels that it changes, in the rectangle `touched`, reach into `region`. Returns whether the number of
+    /// its triangles changes.
+    pub(crate) fn draw_within(&mut self, region: &Region, touched: &PixelRect) -> bool {
         let before = self.drawn;
-        self.drawn = if region.within(&self.area).is_empty() { 0 } else { self.triangles };
+        self.drawn = if region.within(touched).is_empty() { 0 } else { self.triangles };
         before != self.drawn
     }
 

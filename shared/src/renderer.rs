@@ -93,7 +93,7 @@ impl<'a, C: Pixel> Renderer<'a, C> {
         }
         let need = layout.words::<C>();
         let (ramps, memory) = take_ramps::<C>(layout, memory).ok_or(RenderError::Memory { need })?;
-        let (memory, objects, materials) = Memory::new(layout, memory).ok_or(RenderError::Memory { need })?;
+        let (memory, objects, materials) = Memory::new(layout, memory, size_of::<C::Stored>()).ok_or(RenderError::Memory { need })?;
         if let Some(feature) = Feature::missing(&stream, &Channels::of::<C>()) {
             return Err(RenderError::Feature { name: feature.name() });
         }
@@ -101,6 +101,7 @@ impl<'a, C: Pixel> Renderer<'a, C> {
         check_tables(shader.method(), layout.highlight_tables > 0)?;
         let settings = Settings {
             size,
+            rows: (layout.rows * layout.processors).min(MAX_SIDE as usize) as u32,
             processors: layout.processors as u32,
             method: shader.method(),
             perspective_correct: false,
@@ -253,20 +254,28 @@ impl<'a, C: Pixel> Renderer<'a, C> {
         self.scene.set_stale();
     }
 
-    /// Turns antialiasing on or off; the default is off. Each pixel on the edge of a triangle is blended by the exact area that the
-    /// triangle covers.
+    /// Turns antialiasing on or off; the default is off. Each pixel on an outline, which is where a surface ends or its shading jumps, is mixed
+    /// with the pixel beyond the outline.
     ///
     /// # Errors
-    /// Returns [`RenderError::Feature`] if this crate is built without the feature `antialias`, and [`RenderError::NoSamples`] if the
-    /// memory has no room for it ([`Layout::antialias`]). Antialiasing is then off.
+    /// Antialiasing is then off:
+    ///
+    /// - Returns [`RenderError::Feature`] if this crate is built without the feature `antialias`.
+    /// - Returns [`RenderError::AntialiasMemory`] if the memory has no room for it ([`Layout::antialias`]).
+    /// - Returns [`RenderError::Neighbours`] if the stream (mesh file) was written without `--antialias`.
     pub fn set_antialias(&mut self, antialias: bool) -> Result<(), RenderError> {
         self.settings.antialias = false;
         if antialias && !features::ANTIALIAS {
             return Err(RenderError::Feature { name: "antialias" });
         }
-        if antialias && self.memory.samples.is_empty() {
-            return Err(RenderError::NoSamples);
+        if antialias && self.memory.smoothing.marks.is_empty() {
+            return Err(RenderError::AntialiasMemory);
         }
+        if antialias && self.scene.stream.neighbours.is_empty() && !self.scene.stream.triangles.is_empty() {
+            return Err(RenderError::Neighbours);
+        }
+        // No pixel is marked before the first band.
+        self.memory.smoothing.marks.fill(0);
         self.settings.antialias = antialias;
         self.scene.set_view_changed();
         Ok(())
@@ -305,9 +314,8 @@ impl<'a, C: Pixel> Renderer<'a, C> {
     }
 
     fn clear_region(&mut self) {
-        let Self { settings, memory, region, .. } = self;
-        let band_rows = settings.band_rows(memory.depth.len(), memory.samples.len());
-        region.clear(settings.size.height, band_rows.checked_div(settings.processors).unwrap_or(0));
+        let Self { settings, region, .. } = self;
+        region.clear(settings.size.height, settings.band_rows().checked_div(settings.processors).unwrap_or(0));
     }
 
     /// Returns the size of the picture in pixels.
@@ -320,7 +328,7 @@ impl<'a, C: Pixel> Renderer<'a, C> {
     /// [`Layout::rows`] times [`Layout::processors`], or the height of the picture if this is less.
     #[must_use]
     pub fn band_rows(&self) -> u32 {
-        self.settings.band_rows(self.memory.depth.len(), self.memory.samples.len())
+        self.settings.band_rows()
     }
 
     /// Checks that a pixel buffer is long enough for [`Frame::next_band`], which needs at least one row of the picture.
@@ -397,9 +405,9 @@ impl<'a, C: Pixel> Renderer<'a, C> {
         let Memory { placements, order, .. } = memory;
         for (object, placement) in scene.objects().iter().zip(placements.iter_mut()) {
             if scene.view_changed || object.has_moved != 0 {
-                region.include(&placement.area);
+                region.include(&settings.touched(&placement.area));
                 placement.update(scene, object, &how);
-                region.include(&placement.area);
+                region.include(&settings.touched(&placement.area));
             }
         }
         let order = order.get_mut(..scene.objects().len()).unwrap_or_default();
@@ -412,7 +420,7 @@ impl<'a, C: Pixel> Renderer<'a, C> {
             let (Some(placement), Some(object)) = (placements.get_mut(index), scene.objects().get(index)) else { continue };
             (placement.first_triangle, placement.first_vertex) = (triangles, vertices);
             (triangles, vertices) = (triangles.wrapping_add(object.span), vertices.wrapping_add(object.vertices));
-            *rearranged |= placement.draw_within(region);
+            *rearranged |= placement.draw_within(region, &settings.touched(&placement.area));
         }
         scene.set_drawn();
     }

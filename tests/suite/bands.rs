@@ -156,7 +156,8 @@ fn two_preparations_are_the_whole() {
         mesh.triangles.chunks(170).map(|triangles| quantise(&Mesh { triangles: triangles.to_vec(), ..mesh.clone() }).0).collect::<Vec<_>>();
     streams.push(("meshes", look(4.0).stream(&meshes.concat()).unwrap()));
     for (name, stream) in &streams {
-        let stream = stream.parse().unwrap();
+        let smooth = stream.with_neighbours().unwrap();
+        let stream = smooth.parse().unwrap();
         let (vertices, triangles) = (stream.vertices.len(), stream.triangles.len());
         let layout = Layout::new(100, 80).processors(2).materials(stream.materials.len()).active_triangles(20).antialias(true);
         for (room, fits) in [([vertices, triangles], true), ([vertices / 2, triangles], false), ([vertices, triangles / 3], false)] {
@@ -286,7 +287,8 @@ fn what_was_in_the_memory_does_not_matter() {
     let size = Size::new(100, 70);
     for name in ["teapot", "torus", "sphere-40"] {
         let scene = scene::load(name).unwrap();
-        let stream = scene.stream.parse().unwrap();
+        let smooth = scene.stream.with_neighbours().unwrap();
+        let stream = smooth.parse().unwrap();
         for shader in Shader::ALL.into_iter().filter(|&shader| check(&stream, shader.facts(), false).is_ok()) {
             for antialias in [false, true] {
                 let layout = Layout::new(100, 16).materials(stream.materials.len()).active_triangles(20).antialias(antialias);

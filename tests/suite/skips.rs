@@ -86,7 +86,8 @@ fn hidden_objects_are_left_out() {
 #[test]
 fn a_frame_like_the_latest_is_known() {
     let scene = scene::load("sphere-168").unwrap();
-    let bytes = scene.stream.parse().unwrap();
+    let smooth = scene.stream.with_neighbours().unwrap();
+    let bytes = smooth.parse().unwrap();
     let (mut standing, period) = (*bytes.header, u32::from(bytes.header.camera.period));
     standing.camera.period = 0;
     let standing = Stream { header: &standing, ..bytes };

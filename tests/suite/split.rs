@@ -6,7 +6,6 @@ use embedded_graphics::{
 };
 use microphong::{
     Counts, Stats,
-    antialias::PixelSet,
     format::RAMP,
     geometry::{
         cull::Extent,
@@ -47,7 +46,7 @@ struct Whole<'a> {
 impl Whole<'_> {
     /// Draws `part`, or its own parts until they are of this `level`: all of them, or by chance.
     fn draw(&self, part: &SubTriangle, level: u32, random: &mut Option<&mut Random>, canvas: &mut dyn Canvas) -> u32 {
-        let place = ScreenSubTriangle::new(self.screen, PixelSet::Centres, part);
+        let place = ScreenSubTriangle::new(self.screen, part);
         if !place.meets(canvas) {
             return 0;
         }
@@ -101,7 +100,6 @@ fn parts_of_random_triangles_cover_each_pixel_once() {
                     width: WIDTH,
                     top: top as i32,
                     rows: rows as i32,
-                    blend: None,
                     active: ActiveTriangles::default(),
                     counts: Counts::default(),
                 };

@@ -6,6 +6,7 @@ use microphong::{
     format::ErrorBudget,
     stream::{record::Header, seal},
 };
+use microphong_render::neighbours::{has_neighbours, with_neighbours};
 use std::{fs, path::Path};
 use zerocopy::{FromBytes, IntoBytes};
 
@@ -53,6 +54,20 @@ impl StreamBytes {
             seal(bytes);
         }
         self
+    }
+
+    /// Adds the neighbours of all triangles, which antialiasing needs.
+    ///
+    /// # Errors
+    /// Errors of [`Self::parse`], or when a mesh has too many triangles.
+    pub fn with_neighbours(&self) -> Result<Self> {
+        let stream = self.parse()?;
+        if has_neighbours(&stream) {
+            return Ok(self.clone());
+        }
+        let words = with_neighbours(&stream)?;
+        let (header, _) = Header::ref_from_prefix(words.as_bytes()).map_err(|_| anyhow!("the stream has no header"))?;
+        Ok(Self { length: header.length as usize, words })
     }
 
     /// The checked view of the bytes.

@@ -4,6 +4,7 @@ pub mod chip;
 pub mod choices;
 pub mod image;
 pub mod legend;
+pub mod neighbours;
 pub mod output;
 pub mod program;
 pub mod render;

@@ -1,6 +1,6 @@
 //! The core renderer with as much memory as a scene wants.
 
-use crate::{image, shader::Shader};
+use crate::{image, neighbours, shader::Shader};
 use anyhow::{Context, Result};
 use embedded_graphics_core::{
     geometry::Size,
@@ -10,6 +10,7 @@ use microphong::{
     Layout, Renderer, Skips, Stats, Stream,
     pixel::{Channels, FromDrawn, Light, LightGray, PictureCrc, Pixel, PixelFormat, Rgb332, gamma},
 };
+use zerocopy::IntoBytes;
 
 /// Options of drawing a scene.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -65,8 +66,12 @@ pub fn frame_by<C: Pixel, F: FromDrawn<C>>(
     band_rows: u32,
     number: u32,
 ) -> Result<(Vec<F>, Stats)> {
+    if style.antialias && !neighbours::has_neighbours(&stream) {
+        let words = neighbours::with_neighbours(&stream)?;
+        return frame_by(Stream::parse(words.as_bytes())?, size, style, shader, band_rows, number);
+    }
     let rows = band_rows.clamp(1, size.height.max(1));
-    let layout = layout(&stream, size, rows).antialias(style.antialias);
+    let layout = layout(&stream, size, rows).antialias(style.antialias).edges(stream.triangles.len() * 3);
     let mut memory = vec![0; layout.words::<C>()];
     let mut renderer = Renderer::with_shader(stream, size, &layout, &mut memory, shader)?;
     renderer.set_perspective_correct(style.perspective_correct)?;
@@ -131,7 +136,7 @@ pub fn fewest_active_triangles(stream: &Stream<'_>, size: Size, band_rows: u32) 
 
 /// The layout for a program that draws a stream in bands of `band_rows` rows: with room for all of it, and for its active triangles. There is room for
 /// half as many again of these, because the program may show poses that the stream does not. There are tables of highlights if `shader` needs
-/// them.
+/// them, and room for antialiasing if the stream has neighbours.
 ///
 /// # Errors
 /// When `size` is out of range.
@@ -140,7 +145,23 @@ pub fn program_layout(stream: &Stream<'_>, shader: Shader, size: Size, band_rows
     let has_tables = shader.on::<Gray8>().method().needs_highlight_tables();
     let layout = if has_tables { layout } else { layout.without_highlight_tables() };
     let fewest = fewest_active_triangles(stream, size, band_rows)?;
-    Ok(layout.active_triangles((fewest + fewest.div_ceil(2)).min(layout.triangles)))
+    let layout = layout.active_triangles((fewest + fewest.div_ceil(2)).min(layout.triangles));
+    if stream.neighbours.is_empty() {
+        return Ok(layout);
+    }
+    let edges = most_edges(stream, size)?;
+    Ok(layout.antialias(true).edges(edges + edges.div_ceil(2)))
+}
+
+/// The largest number of edges in the outlines of a frame.
+fn most_edges(stream: &Stream<'_>, size: Size) -> Result<usize> {
+    let layout = Layout::new(size.width as usize, 16).with_room_for(stream).antialias(true).edges(3 * stream.triangles.len());
+    let mut memory = vec![0; layout.words::<Gray8>()];
+    let mut renderer = Renderer::<Gray8>::with_shader(*stream, size, &layout, &mut memory, Shader::FLAT.on())?;
+    renderer.set_antialias(true)?;
+    let frames = u32::from(stream.header.frames);
+    let step = frames.div_ceil(COUNTED).max(1) as usize;
+    Ok((0..frames).step_by(step).map(|number| renderer.frame(number).stats().edges).max().unwrap_or(0) as usize)
 }
 
 /// Checksum of a picture.

@@ -15,6 +15,7 @@ use anyhow::{Context, Result, anyhow, bail};
 use embedded_graphics_core::geometry::Size;
 use microphong::{Layout, Stream, format::ErrorBudget, stream::record};
 use microphong_sim::{
+    bytes::StreamBytes,
     convert::{Converted, Options, SQUARE},
     levels,
     mesh::Mesh,
@@ -40,8 +41,8 @@ use std::path::{Path, PathBuf};
 /// The mesh is centred and scaled to a sphere of radius 1. A single closed convex mesh is marked, so that it is drawn without depth test. This does not
 /// change its picture.
 ///
-/// A .toml file is a scripted scene: it describes objects, lights, the camera and their movements. Only --output, --board, --format, --count and --json
-/// apply to it. Three examples are in tests/scenes.
+/// A .toml file is a scripted scene: it describes objects, lights, the camera and their movements. Only --output, --board, --format, --count, --antialias and
+/// --json apply to it. Three examples are in tests/scenes.
 #[derive(clap::Args)]
 #[command(after_help = EXAMPLES)]
 pub(crate) struct Arguments {
@@ -73,11 +74,21 @@ pub(crate) struct Arguments {
     /// shape. With a wide size, a wide mesh becomes larger, but narrower displays cut off its sides.
     #[arg(long, value_name = "WxH", value_parser = parse::size)]
     size: Option<(u32, u32)>,
+    /// Write the neighbours of triangles, from which a program finds the outlines that it smooths (Renderer::set_antialias): 6 bytes a triangle.
+    #[arg(long)]
+    antialias: bool,
     /// Print one JSON object.
     #[arg(long)]
     json: bool,
     #[command(flatten)]
     options: Option<MeshOptions>,
+}
+
+impl Arguments {
+    /// Adds the neighbours of triangles to a stream, if they are wanted.
+    fn outlined(&self, stream: StreamBytes) -> Result<StreamBytes> {
+        if self.antialias { stream.with_neighbours() } else { Ok(stream) }
+    }
 }
 
 const EXAMPLES: &str = "\
@@ -174,7 +185,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome> {
     let mut converted = Converted::read(source, &options, &bars)?;
     converted.look.budget = arguments.budget.unwrap_or(ErrorBudget::ONE);
     converted.look.shader = shader;
-    let bytes = converted.stream().with_context(|| source.display().to_string())?;
+    let bytes = converted.stream().and_then(|bytes| arguments.outlined(bytes)).with_context(|| source.display().to_string())?;
     let stream = bytes.parse()?;
     if let Some(board) = &board
         && let Err(refused) = board.check(&stream)
@@ -292,7 +303,8 @@ fn convert_script(
         ))
         .into());
     }
-    let scene = scenes::load(&arguments.mesh.to_string_lossy(), arguments.options.as_ref(), format)?;
+    let mut scene = scenes::load(&arguments.mesh.to_string_lossy(), arguments.options.as_ref(), format)?;
+    scene.stream = arguments.outlined(scene.stream)?;
     let stream = scene.stream.parse()?;
     if let Some(board) = board {
         if let Some(has) = board.lacks(Shader::of(&stream)?) {
@@ -361,11 +373,12 @@ const ACTIVE: &str = "    active_triangles: half as many again as the frames nee
 
 /// A layout as a program has it.
 fn text_of(layout: &Layout) -> String {
-    let Layout { width, rows, vertices, triangles, materials, objects, active_triangles, highlight_tables, .. } = layout;
+    let Layout { width, rows, vertices, triangles, materials, objects, active_triangles, highlight_tables, antialias, edges, .. } = layout;
     let several = if *objects > 1 { format!(".objects({objects})") } else { String::new() };
     let text = format!("Layout::new({width}, {rows}).vertices({vertices}).triangles({triangles}).materials({materials}){several}");
     let tables = if *highlight_tables > 0 { "" } else { ".without_highlight_tables()" };
-    format!("{text}.active_triangles({active_triangles}){tables}")
+    let smooth = if *antialias { format!(".antialias(true).edges({edges})") } else { String::new() };
+    format!("{text}.active_triangles({active_triangles}){tables}{smooth}")
 }
 
 fn of(mesh: usize, level: &levels::Level) -> Level {

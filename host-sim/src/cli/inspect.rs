@@ -119,6 +119,9 @@ fn text(file: &str, stream: &Stream<'_>, list: &[meshes::Row]) -> Result<()> {
     }
     row("vertices", stream.vertices.len(), size_of_val(stream.vertices), "")?;
     row("triangles", stream.triangles.len(), size_of_val(stream.triangles), &bend(stream))?;
+    if !stream.neighbours.is_empty() {
+        row("neighbours", stream.neighbours.len(), size_of_val(stream.neighbours), "")?;
+    }
     if !stream.labels.is_empty() {
         row("labels", stream.labels.len(), size_of_val(stream.labels), &labels(stream))?;
     }

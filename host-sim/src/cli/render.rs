@@ -55,7 +55,8 @@ pub(crate) struct Arguments {
     /// softer.
     #[arg(long, value_enum, default_value_t = Gamma::Linear)]
     gamma: Gamma,
-    /// Smooth outlines: a pixel on an edge mixes the colours of both sides in proportion to the exact areas that they cover.
+    /// Smooth outlines: where a surface ends or its shading jumps, a pixel mixes the colours of both sides in proportion to the areas that they cover.
+    /// A stream that was converted without --antialias gets its outlines first.
     #[arg(long)]
     antialias: bool,
     /// Number of rows to draw at a time, as a board with little memory does. It does not change the picture.
@@ -123,7 +124,8 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome> {
     let frames = arguments.frames;
     let wanted = arguments.output.as_deref().map(|path| Target::of(path, frames)).transpose()?;
     let scene = scenes::with_budget(scenes::load(&arguments.scene, arguments.options.as_ref(), arguments.format)?, arguments.budget);
-    let stream = scene.stream.parse().with_context(|| arguments.scene.clone())?;
+    let smooth = if arguments.antialias { Some(scene.stream.with_neighbours().with_context(|| arguments.scene.clone())?) } else { None };
+    let stream = smooth.as_ref().unwrap_or(&scene.stream).parse().with_context(|| arguments.scene.clone())?;
     if arguments.dither && !arguments.format.is_dithered() {
         let name = arguments.format.name();
         return Err(Usage(format!(

@@ -165,7 +165,8 @@ pub fn all(_: &mut Frame<'_, Rgb565>) {}
 /// # Errors
 /// The faulty frame, its fault, and the changes since the frame before.
 pub fn judge(case: &Case, limit: Limit) -> Result<Option<Found>, String> {
-    let Ok(stream) = case.stream.parse() else { return Ok(None) };
+    let Ok(bytes) = case.stream.with_neighbours() else { return Ok(None) };
+    let Ok(stream) = bytes.parse() else { return Ok(None) };
     let random = &mut Random::new(case.frame.into(), 0);
     let mut state = State::new(&stream, case.style);
     let layout = layout(random, case, &stream, &state);
@@ -228,6 +229,7 @@ fn layout(random: &mut Random, case: &Case, stream: &Stream<'_>, state: &State) 
         .triangles(some(random, layout.triangles))
         .active_triangles(random.pick(0..64) as usize)
         .antialias(random.once_in(3))
+        .edges(random.pick(0..400) as usize)
         .processors(random.pick(1..3) as usize)
 }
 

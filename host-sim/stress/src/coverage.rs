@@ -122,7 +122,6 @@ pub fn draw(corners: Corners, band_rows: usize, counts: &mut [u8]) -> u32 {
             width: WIDTH,
             top: top as i32,
             rows: rows as i32,
-            blend: None,
             active: ActiveTriangles::default(),
             counts: Counts::default(),
         };

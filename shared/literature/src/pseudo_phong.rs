@@ -46,10 +46,10 @@ fn draw(setup: &TriangleSetup<'_>, shading: &Shading<'_>, canvas: &mut dyn Canva
 
 /// Number of times that the triangle is split.
 fn splits(setup: &TriangleSetup<'_>) -> u32 {
-    let ([a, b, c], finer) = (setup.corners, setup.pixels.finer());
+    let [a, b, c] = setup.corners;
     let longest = [(a, b), (b, c), (c, a)].into_iter().fold(0, |longest, (a, b)| {
         let (x, y) = (i64::from(a.x) - i64::from(b.x), i64::from(a.y) - i64::from(b.y));
         longest.max(x * x + y * y)
     });
-    (0..SPLITS).find(|k| longest <= 1 << (2 * (LONGEST + finer + k))).unwrap_or(SPLITS)
+    (0..SPLITS).find(|k| longest <= 1 << (2 * (LONGEST + k))).unwrap_or(SPLITS)
 }

@@ -5,12 +5,9 @@
 //! on each other. The top-left rule gives every pixel of the triangle to one sub-triangle, without cracks and overlaps.
 
 use microphong::{
-    format::{FINE, SPLITS, SUBPIXEL},
+    format::{FINE, SPLITS},
     math::vector::zip,
-    method::{
-        Area, Canvas, Field, Gradients, IntensityShader, NEAR, Patch, PixelSet, Plane, ScreenTriangle, Shaded, Shape, SpanShader,
-        TriangleCoverage, TriangleSetup, coarse,
-    },
+    method::{Area, Canvas, Field, Gradients, IntensityShader, NEAR, Patch, Plane, ScreenTriangle, Shaded, SpanShader, TriangleSetup},
 };
 
 /// Distance from a pixel's border to its centre.
@@ -66,7 +63,6 @@ impl SubTriangle {
 /// A triangle that is drawn in parts, with what is needed to fit fields to them.
 pub struct Parts<'f> {
     screen: &'f ScreenTriangle,
-    pixels: PixelSet,
     gradients: Gradients,
     depth: Plane<1>,
 }
@@ -75,8 +71,8 @@ impl<'f> Parts<'f> {
     /// The parts of the triangle `setup`, each interpolated on its own.
     #[must_use]
     pub fn new(setup: &TriangleSetup<'f>) -> Self {
-        let TriangleSetup { screen, gradients, pixels, .. } = *setup;
-        Self { screen, pixels, gradients: gradients.parted(), depth: screen.plane(gradients, 0) }
+        let TriangleSetup { screen, gradients, .. } = *setup;
+        Self { screen, gradients: gradients.parted(), depth: screen.plane(gradients, 0) }
     }
 }
 
@@ -84,7 +80,7 @@ impl Parts<'_> {
     /// Whether `canvas` has a pixel of the box around `sub_triangle`.
     #[must_use]
     pub fn meets(&self, sub_triangle: &SubTriangle, canvas: &dyn Canvas) -> bool {
-        ScreenSubTriangle::new(self.screen, self.pixels, sub_triangle).meets(canvas)
+        ScreenSubTriangle::new(self.screen, sub_triangle).meets(canvas)
     }
 
     /// The area of `sub_triangle`, to draw on.
@@ -103,8 +99,8 @@ pub struct Part<'p> {
 
 impl Area for Part<'_> {
     fn draw<F: Field, S: IntensityShader<F::Value>>(&self, field: &F, shader: S, canvas: &mut dyn Canvas) -> u32 {
-        let Parts { screen, pixels, gradients, depth } = self.whole;
-        let place = ScreenSubTriangle::new(screen, *pixels, self.sub_triangle);
+        let Parts { screen, gradients, depth } = self.whole;
+        let place = ScreenSubTriangle::new(screen, self.sub_triangle);
         if !place.meets(canvas) {
             return 0;
         }
@@ -115,9 +111,7 @@ impl Area for Part<'_> {
 
 /// A sub-triangle on the screen.
 #[derive(Clone, Copy, Debug)]
-pub struct ScreenSubTriangle<'o> {
-    screen: &'o ScreenTriangle,
-    pixels: PixelSet,
+pub struct ScreenSubTriangle {
     sub_triangle: SubTriangle,
     /// Corners, clockwise, with [`FINE`] fraction bits.
     corners: [[i32; 2]; 3],
@@ -137,11 +131,11 @@ fn range([a, b, c]: [i32; 3]) -> [i32; 2] {
     [first_centre(a.min(b).min(c)), first_centre(a.max(b).max(c))]
 }
 
-impl<'o> ScreenSubTriangle<'o> {
-    /// Where `sub_triangle` lies, and which of its pixels are drawn.
+impl ScreenSubTriangle {
+    /// Where `sub_triangle` lies.
     #[inline(never)]
     #[must_use]
-    pub fn new(screen: &'o ScreenTriangle, pixels: PixelSet, sub_triangle: &SubTriangle) -> Self {
+    pub fn new(screen: &ScreenTriangle, sub_triangle: &SubTriangle) -> Self {
         let finer = SPLITS.saturating_sub(sub_triangle.level);
         let (sign, [u, v, w]) = (sub_triangle.sign(), sub_triangle.origin);
         // One coordinate of the corners, which lie around the point of the barycentric coordinates `origin`.
@@ -152,30 +146,16 @@ impl<'o> ScreenSubTriangle<'o> {
         };
         let [[ax, ay], [bx, by], [cx, cy]] = screen.corners;
         let (columns, rows) = (along([ax, bx, cx]), along([ay, by, cy]));
-        Self {
-            screen,
-            pixels,
-            sub_triangle: *sub_triangle,
-            corners: zip(columns, rows, |x, y| [x, y]),
-            rows: range(rows),
-            columns: range(columns),
-        }
+        Self { sub_triangle: *sub_triangle, corners: zip(columns, rows, |x, y| [x, y]), rows: range(rows), columns: range(columns) }
     }
 }
 
-impl ScreenSubTriangle<'_> {
+impl ScreenSubTriangle {
     /// Whether the box around the sub-triangle has a pixel in `canvas`.
     #[inline]
     #[must_use]
     pub fn meets(&self, canvas: &dyn Canvas) -> bool {
-        let ([top, bottom], [left, right]) = match self.pixels {
-            PixelSet::Centres | PixelSet::Inner => (self.rows, self.columns),
-            // A pixel that it touches has one of the finer places, or has it next to it.
-            PixelSet::Edge(finer) => {
-                let touched = |[from, to]: [i32; 2]| [(from >> finer).wrapping_sub(1), (to >> finer).wrapping_add(2)];
-                (touched(self.rows), touched(self.columns))
-            }
-        };
+        let ([top, bottom], [left, right]) = (self.rows, self.columns);
         let [width, first, end] = canvas.bounds();
         top.max(first) < bottom.min(end) && left.max(0) < right.min(width)
     }
@@ -191,9 +171,6 @@ impl ScreenSubTriangle<'_> {
     /// Draws the rows that lie in `canvas` and returns how many pixels they have. `shader` stands on row `anchor`, `depth` is the
     /// triangle's on row 0.
     pub fn draw(&self, anchor: i32, mut depth: Plane<1>, shader: &mut dyn SpanShader, canvas: &mut dyn Canvas) -> u32 {
-        if self.pixels != PixelSet::Centres {
-            return self.smooth(anchor, shader, canvas);
-        }
         let [a, b, c] = self.corners;
         let [width, top, bottom] = canvas.bounds();
         let (first, end) = (self.rows[0].max(top), self.rows[1].min(bottom));
@@ -220,36 +197,6 @@ impl ScreenSubTriangle<'_> {
             shader.step_row();
         }
         pixels
-    }
-
-    /// [`Self::draw`] with antialiasing.
-    #[inline(never)]
-    fn smooth(&self, anchor: i32, shader: &mut dyn SpanShader, canvas: &mut dyn Canvas) -> u32 {
-        // Corners of a piece have only so many fraction bits as it was split more.
-        let (bits, level) = (FINE - SUBPIXEL, self.sub_triangle.level.min(SPLITS));
-        let part = TriangleCoverage::new(
-            self.corners.map(|c| coarse(c, self.pixels.finer(), bits).map(|c| c >> (SPLITS - level))),
-            SUBPIXEL + level,
-        );
-        let [a, b, c] = self.corners;
-        let mut owned = |row: i32| {
-            let mut columns = [i32::MIN, i32::MAX];
-            if (self.rows[0]..self.rows[1]).contains(&row) {
-                for line in [Line::new(a, b, row), Line::new(b, c, row), Line::new(c, a, row)] {
-                    let column = line.column as i32;
-                    match line.side {
-                        Side::Left => columns[0] = columns[0].max(column),
-                        Side::Right => columns[1] = columns[1].min(column),
-                        Side::None => {}
-                    }
-                }
-            } else {
-                columns = [0; 2];
-            }
-            columns
-        };
-        let shape = Shape { screen: self.screen, pixels: self.pixels, part: Some(part), corners: self.corners, bits: FINE };
-        shape.draw(anchor, shader, canvas, &mut owned)
     }
 }
 

@@ -55,12 +55,6 @@ pub const DEPTH: u32 = 28;
 pub const DEPTH_NODE: u32 = 20;
 /// Fraction bits of depth while it is walked. The depth buffer keeps the 16 bits above them.
 pub const DEPTH_WALK: u32 = 16;
-/// Fraction bits of the part of a pixel that a triangle covers: Q1.16, where 1 is the whole pixel.
-pub const COVERAGE: u32 = 16;
-/// Number of surfaces that antialiasing keeps apart in one pixel.
-pub const LAYERS: usize = 3;
-/// Base-2 logarithm of the number of places along each axis of a pixel where antialiasing can shade it.
-pub const FINER: u32 = 4;
 /// Fraction bits of a cosine in the loop over pixels: Q5.27. Sums and overshoots fit.
 pub const PIXEL_COSINE: u32 = 27;
 /// Fraction bits of the reciprocal length of the sum of two unit normals, 1/|N1+N2|, unsigned Q1.17 in [1/2, 1). A stream stores this number minus

@@ -1,6 +1,7 @@
 //! What all rows of a frame have in common. It does not change while they are drawn, so two processors can read it at the same time.
 
 use crate::{
+    edges::{Edge, find::Outlined},
     features::{ANTIALIAS, OBJECTS, REDRAW},
     frame::skips::Skips,
     geometry::{
@@ -8,7 +9,7 @@ use crate::{
         pixel_rect::PixelRect,
         projection::{ScreenVertex, View},
         region::Region,
-        viewport::Viewport,
+        viewport::{Bounds, Viewport},
     },
     lighting::reflectance::{LitMaterial, Reflectance},
     math::highlight_lut::HighlightLut,
@@ -24,6 +25,8 @@ use embedded_graphics_core::geometry::Size;
 #[derive(Debug)]
 pub(crate) struct Settings {
     pub(crate) size: Size,
+    /// Rows of a band that there is room for, of all processors.
+    pub(crate) rows: u32,
     /// Processors that draw at the same time.
     pub(crate) processors: u32,
     pub(crate) method: &'static dyn Method,
@@ -56,19 +59,19 @@ impl Settings {
         Skips::ALL
     }
 
-    /// Rows of a band for which there is room for depth, and for samples.
-    pub(crate) fn band_rows(&self, depth: usize, samples: usize) -> u32 {
-        let pixels = if self.antialiased() { depth.min(samples) } else { depth };
-        (pixels as u32).checked_div(self.size.width).unwrap_or(0).min(self.size.height)
+    /// Rows of a band, of all processors.
+    pub(crate) fn band_rows(&self) -> u32 {
+        self.rows.min(self.size.height)
+    }
+
+    /// The pixels in which an object that reaches into `area` changes the picture: with antialiasing those around it, too.
+    #[inline]
+    pub(crate) fn touched(&self, area: &PixelRect) -> PixelRect {
+        if self.antialiased() { area.grown(1, self.size) } else { *area }
     }
 
     pub(crate) fn viewport(&self) -> Viewport {
-        Viewport {
-            width: self.size.width as i32,
-            height: self.size.height as i32,
-            antialiased: self.antialiased(),
-            all_touched: self.antialiased() || !self.skips().between_centres,
-        }
+        Viewport { width: self.size.width as i32, height: self.size.height as i32, all_touched: !self.skips().between_centres }
     }
 }
 
@@ -158,7 +161,7 @@ impl<'r> Context<'r> {
     /// Whether all pixels of an object in these `columns` of a band, if there are any, are nearer than the object is: none of its triangles can be
     /// seen there. The band has the rows from `first` up to `end`, and this `depth`.
     pub(crate) fn hides(&self, placement: &Placement, columns: [u16; 2], [first, end]: [i32; 2], depth: &[u16]) -> bool {
-        if !OBJECTS || !self.settings.skips().hidden_objects || self.settings.antialiased() {
+        if !OBJECTS || !self.settings.skips().hidden_objects {
             return false;
         }
         let PixelRect { columns: [left, right], rows: [top, bottom] } = placement.area.within(&PixelRect { columns, rows: [0, u16::MAX] });
@@ -191,6 +194,41 @@ impl<'r> Context<'r> {
         let reflectance = self.material(placed.material)?;
         let Placement { view, lighting, .. } = placed.placement;
         Some(VertexStage { view, lighting, constant: lighting.constant(), reflectance, light })
+    }
+
+    /// A mesh whose outlines are found.
+    pub(crate) fn outlined<'s>(&'s self, placed: &PlacedMesh<'s>) -> Option<Outlined<'s>> {
+        let (stream, mesh) = (&self.scene.stream, placed.mesh);
+        let Placement { view, facing, .. } = placed.placement;
+        Some(Outlined {
+            view,
+            facing: *facing,
+            triangles: stream.triangles_of(mesh)?,
+            neighbours: stream.neighbours_of(mesh),
+            vertices: stream.vertices_of(mesh)?,
+            cached: self.vertices.get(placed.first_vertex..).unwrap_or_default(),
+        })
+    }
+
+    /// Calls `put` with every edge of the frame's outlines, for frames that have no list of them.
+    #[cold]
+    #[inline(never)]
+    pub(crate) fn each_edge(&self, put: &mut dyn FnMut(&Edge)) {
+        let (viewport, hull) = (self.settings.viewport(), self.settings.touched(&self.region.hull()));
+        for placed in self.meshes() {
+            let Some(outlined) = self.outlined(&placed) else { continue };
+            let area = Bounds::from(&self.settings.touched(&hull));
+            let faces = |triangle| outlined.faces(triangle, viewport, area);
+            for triangle in 0..outlined.triangles.len() {
+                if faces(triangle as u16) {
+                    outlined.edges(triangle, faces, &mut |edge| {
+                        if edge.meets(&hull) {
+                            put(edge);
+                        }
+                    });
+                }
+            }
+        }
     }
 
     /// What the triangles of `placed` have in common in a band of which these `columns` are wanted.

@@ -5,6 +5,7 @@ mod context;
 mod part;
 mod preparation;
 mod skips;
+mod smoother;
 
 pub(crate) use colours::{ColourSettings, Colours};
 pub(crate) use context::Settings;
@@ -52,13 +53,14 @@ impl<'r, C: Pixel> Frame<'r, C> {
     /// Draws the next band (group of rows) like [`Self::next_band`], over something that the program draws, for example an image. `under`
     /// is called with the pixels of the band, which already contain the background, and with the rectangle of the band in the picture, which
     /// is always as wide as the picture. [`BandTarget::new`](crate::BandTarget::new) turns the two into an embedded-graphics draw target.
+    /// With antialiasing the rows that are drawn at once are not those of the band that is returned, and `under` may be called several times.
     ///
     /// With partial redraw, call [`Renderer::invalidate`](crate::Renderer::invalidate) with the area in which the result of `under`
     /// changes. [`Self::rows`] does not include rows in which only `under` draws.
     ///
     /// # Errors
     /// Returns [`RenderError::Band`] if `pixels` is shorter than one row of the picture.
-    pub fn next_band_over(&mut self, pixels: &mut [C], under: impl FnOnce(&mut [C], Rectangle)) -> Result<Option<Rectangle>, RenderError> {
+    pub fn next_band_over(&mut self, pixels: &mut [C], under: impl FnMut(&mut [C], Rectangle)) -> Result<Option<Rectangle>, RenderError> {
         self.part.next_band(&self.context, &self.colours, pixels, under)
     }
 
@@ -124,7 +126,7 @@ impl<'r, C: Pixel> Frame<'r, C> {
     #[must_use]
     pub fn in_two(self, row: u32) -> FrameInTwo<'r, C> {
         let Self { context, part, colours } = self;
-        FrameInTwo { parts: part.in_two(row, context.settings.size.width as usize), context, colours }
+        FrameInTwo { parts: part.in_two(row, &context), context, colours }
     }
 }
 
@@ -176,7 +178,7 @@ impl<C: Pixel> FramePart<'_, '_, C> {
     ///
     /// # Errors
     /// Returns [`RenderError::Band`] if `pixels` is shorter than one row of the picture.
-    pub fn next_band_over(&mut self, pixels: &mut [C], under: impl FnOnce(&mut [C], Rectangle)) -> Result<Option<Rectangle>, RenderError> {
+    pub fn next_band_over(&mut self, pixels: &mut [C], under: impl FnMut(&mut [C], Rectangle)) -> Result<Option<Rectangle>, RenderError> {
         self.part.next_band(self.context, self.colours, pixels, under)
     }
 

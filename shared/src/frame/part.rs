@@ -1,21 +1,23 @@
 //! Some rows of a frame, drawn band by band from the top. Two parts share nothing that drawing writes, so they can be drawn at the same time.
 
 use crate::{
-    coverage::sample::Sample,
+    edges::find,
     error::RenderError,
-    features::SKIPS,
+    features::{ANTIALIAS, SKIPS},
     frame::{
         colours::Colours,
         context::{Context, PlacedMesh},
+        smoother::{Kept, SmoothedBand, Smoother, keep},
     },
     geometry::{
         bin::{Bins, Entry, TriangleKey, Walk},
         pixel_rect::PixelRect,
     },
+    memory::halves,
     pixel::Pixel,
     raster::{
         active::{ActiveTriangle, ActiveTriangles, QueueState},
-        band::{Band, Blend},
+        band::Band,
         counts::Counts,
     },
 };
@@ -24,6 +26,7 @@ use embedded_graphics_core::{
     geometry::{Point, Size},
     primitives::Rectangle,
 };
+use zerocopy::{FromBytes, IntoBytes};
 
 /// Statistics of one frame: how many triangles and pixels were drawn, and what did not fit into memory.
 /// [`Frame::stats`](crate::Frame::stats) and the `draw` method of [`Picture`](crate::Picture) return them.
@@ -50,6 +53,9 @@ pub struct Stats {
     /// How often a triangle that continues from one band (group of rows drawn at once) into the next had to be set up again. If it is
     /// large, increase [`Layout::active_triangles`](crate::Layout::active_triangles).
     pub set_up_anew: u32,
+    /// The number of edges in the outlines of the frame, with antialiasing. If it exceeds [`Layout::edges`](crate::Layout::edges), each band looks for
+    /// all edges anew.
+    pub edges: u32,
     /// Counts of triangles by the way in which they were drawn. All are 0 unless this crate is built with the feature `skips`.
     pub counts: Counts,
 }
@@ -76,16 +82,20 @@ pub(crate) struct FrameRows<'r> {
     pub(crate) entries: &'r mut [Entry],
     /// Depth buffer of one band.
     pub(crate) depth: &'r mut [u16],
-    /// Samples of one band for antialiasing; empty if antialiasing is off.
-    pub(crate) samples: &'r mut [Sample],
+    /// Antialiasing.
+    pub(crate) smoother: Smoother<'r>,
     /// Triangles that are kept for the next band, and triangles that the last band has kept.
     pub(crate) active_triangles: &'r mut [ActiveTriangle],
     pub(crate) queue: QueueState,
     /// Rows that triangles may reach.
     pub(crate) rows: Range<u32>,
-    /// First row that has not been drawn.
+    /// First row that no band has returned.
     pub(crate) top: u32,
-    /// One past the last row to be drawn.
+    /// First row that has not been drawn.
+    pub(crate) drawn: u32,
+    /// Rows of a band that there is room for.
+    pub(crate) band_rows: u32,
+    /// One past the last row to be returned.
     pub(crate) bottom: u32,
     pub(crate) stats: Stats,
 }
@@ -97,7 +107,7 @@ impl<'r> FrameRows<'r> {
         context: &Context<'_>,
         colours: &Colours<'_, C>,
         pixels: &mut [C],
-        under: impl FnOnce(&mut [C], Rectangle),
+        mut under: impl FnMut(&mut [C], Rectangle),
     ) -> Result<Option<Rectangle>, RenderError> {
         let Some(rows) = self.next_rows(context, pixels.len())? else { return Ok(None) };
         let size = context.settings.size;
@@ -105,10 +115,16 @@ impl<'r> FrameRows<'r> {
         let whole = PixelRect { columns: [0, size.width as u16], rows };
         let (area, Range { start: left, end: right }) = (whole.rectangle(), context.region.within(&whole).columns());
         let Size { width, height } = area.size;
-        let pixels = pixels.get_mut(..(width * height) as usize).unwrap_or_default();
-        context.scene.background().fill(pixels, area, size.height);
-        under(pixels, area);
-        self.draw(context, colours, pixels, [left as u16, right as u16], rows.map(u32::from));
+        let columns = [left as u16, right as u16];
+        let pixels = if ANTIALIAS && context.settings.antialiased() {
+            self.draw_smooth(context, colours, pixels, &mut under, columns, rows.map(u32::from));
+            pixels.get_mut(..(width * height) as usize).unwrap_or_default()
+        } else {
+            let pixels = pixels.get_mut(..(width * height) as usize).unwrap_or_default();
+            self.draw_over(context, colours, pixels, &mut under, columns, rows.map(u32::from), 0);
+            pixels
+        };
+        self.top = rows[1].into();
         #[cfg(feature = "text")]
         crate::text::draw(context.scene.stream.labels, size, pixels, area);
         if right - left < width {
@@ -127,42 +143,57 @@ impl<'r> FrameRows<'r> {
         if fit == 0 {
             return Err(RenderError::Band { need: width as usize });
         }
-        // Bands end where bins end.
-        let band_rows = context.settings.band_rows(self.depth.len(), self.samples.len());
         let Range { start, end } = context.region.next(self.top).rows();
+        if ANTIALIAS && context.settings.antialiased() {
+            // The last row of the buffer belongs to the next band, unless the picture ends there.
+            let most = fit.min(self.band_rows).min((1 << 16) / width.max(1));
+            let most = if start + most >= context.settings.size.height { most } else { most.saturating_sub(1).max(1) };
+            let rows = most.min(end.min(self.bottom).saturating_sub(start));
+            return Ok((rows > 0).then(|| [start as u16, (start + rows) as u16]));
+        }
+        // Bands end where bins end.
+        let band_rows = self.band_rows;
         let into = start.checked_rem(band_rows).unwrap_or(0);
         let rows = band_rows.saturating_sub(into).min(end.min(self.bottom).saturating_sub(start)).min(fit);
         Ok((rows > 0).then(|| [start as u16, (start + rows) as u16]))
     }
 
-    /// Divides the part into the rows above `row` and the rest, in a picture that is `width` pixels wide: see [`crate::Frame::in_two`].
-    pub(crate) fn in_two(self, row: u32, width: usize) -> [Self; 2] {
-        let Self { bins, binned, entries, depth, samples, active_triangles, queue, rows, top, bottom, stats } = self;
+    /// Divides the part into the rows above `row` and the rest: see [`crate::Frame::in_two`].
+    pub(crate) fn in_two(self, row: u32, context: &Context<'_>) -> [Self; 2] {
+        let (width, smooth) = (context.settings.size.width as usize, ANTIALIAS && context.settings.antialiased());
+        let Self { bins, binned, entries, depth, smoother, active_triangles, queue, rows, top, drawn, band_rows, bottom, stats } = self;
         let used = bins.count().map_or(usize::MAX, usize::from);
-        let fits = binned && used <= entries.len() / 2 && width <= depth.len() / 2;
+        let fits = binned && used <= entries.len() / 2 && band_rows >= 2 && (!smooth || context.settings.processors == 2);
         let row = if fits { row.min(bottom).max(top) } else { bottom };
         // Each processor links the triangles of its own rows, so both have a list of all of them.
         let (entries, below) = halves(entries, if fits { used } else { usize::MAX });
         below.iter_mut().zip(entries.iter()).for_each(|(below, entry)| *below = *entry);
         let rows_of = |length: usize| if fits { (length / 2).checked_div(width).unwrap_or(0) * width } else { usize::MAX };
-        let (held, of_depth, of_samples) = (active_triangles.len() / 2, rows_of(depth.len()), rows_of(samples.len()));
+        let (held, of_depth) = (active_triangles.len() / 2, rows_of(depth.len()));
         let (active_triangles, active_below) = halves(active_triangles, held);
         let (depth, depth_below) = halves(depth, of_depth);
-        let (samples, samples_below) = halves(samples, of_samples);
+        let [smoother, smoother_below] = smoother.in_two(fits);
+        let band_rows = if fits { context.settings.rows / 2 } else { band_rows };
+        let band_rows = band_rows.min(context.settings.size.height);
         let below = FrameRows {
             bins: bins.clone(),
             binned,
             entries: below,
             depth: depth_below,
-            samples: samples_below,
+            smoother: smoother_below,
             active_triangles: active_below,
             queue,
             rows: rows.clone(),
             top: row,
+            drawn,
+            band_rows,
             bottom,
             stats: Stats::default(),
         };
-        [FrameRows { bins, binned, entries, depth, samples, active_triangles, queue, rows, top, bottom: row, stats }, below]
+        [
+            FrameRows { bins, binned, entries, depth, smoother, active_triangles, queue, rows, top, drawn, band_rows, bottom: row, stats },
+            below,
+        ]
     }
 
     /// Restricts the part to these `rows`.
@@ -175,7 +206,121 @@ impl<'r> FrameRows<'r> {
         context.region.next(self.top).rows().start >= self.bottom
     }
 
-    /// Draws all triangles in the band from row `top` to row `bottom`, whose pixels hold the background. Only these `columns` are needed.
+    /// Draws all triangles in the band from row `top` to row `bottom` over the background and `under`. Only these `columns` are needed. The depth of
+    /// the band lies `before` rows behind the beginning of the depth buffer.
+    // In the parts of its caller, it would be in the program several times.
+    #[inline(never)]
+    #[expect(clippy::too_many_arguments, reason = "the band of pixels, its place, and what is drawn there")]
+    fn draw_over<C: Pixel>(
+        &mut self,
+        context: &Context<'_>,
+        colours: &Colours<'_, C>,
+        pixels: &mut [C],
+        under: &mut dyn FnMut(&mut [C], Rectangle),
+        columns: [u16; 2],
+        [top, bottom]: [u32; 2],
+        before: usize,
+    ) {
+        let size = context.settings.size;
+        let area = Rectangle::new(Point::new(0, top as i32), Size::new(size.width, bottom - top));
+        context.scene.background().fill(pixels, area, size.height);
+        under(pixels, area);
+        self.draw(context, colours, pixels, columns, [top, bottom], before * size.width as usize);
+    }
+
+    /// Draws the rows from `top` to `bottom` with smooth outlines. Only these `columns` are needed. The buffer has one row more, if the picture does not
+    /// end there and the band has more than one row.
+    #[inline(never)]
+    fn draw_smooth<C: Pixel>(
+        &mut self,
+        context: &Context<'_>,
+        colours: &Colours<'_, C>,
+        pixels: &mut [C],
+        under: &mut dyn FnMut(&mut [C], Rectangle),
+        [left, right]: [u16; 2],
+        [top, bottom]: [u32; 2],
+    ) {
+        let Size { width, height } = context.settings.size;
+        let columns = [left.saturating_sub(1), right.saturating_add(1).min(width as u16)];
+        let row = width as usize;
+        if !self.smoother.holds(top) {
+            for first in top.saturating_sub(1)..=top {
+                let pixels = pixels.get_mut(..row).unwrap_or_default();
+                self.draw_over(context, colours, pixels, under, columns, [first, first + 1], (first + 1 - top) as usize);
+                let Kept { above, held, .. } = self.smoother.kept::<C::Stored>(row);
+                keep(if first < top { above } else { held }, pixels, 1);
+            }
+        }
+        let (count, next) = ((bottom - top) as usize, (bottom + 1).min(height));
+        // The row that is held comes first, and a row below the band is held next. A buffer of one row holds one after the other.
+        let is_single = count == 1 && pixels.len() < 2 * row;
+        let fresh = pixels.get_mut(if is_single { 0 } else { row }..).unwrap_or_default();
+        let fresh = fresh.get_mut(..(next - top - 1) as usize * row).unwrap_or_default();
+        if !fresh.is_empty() {
+            self.draw_over(context, colours, fresh, under, columns, [top + 1, next], 2);
+        }
+        let Kept { held, .. } = self.smoother.kept::<C::Stored>(row);
+        for (at, held) in held.iter_mut().enumerate() {
+            let colour = C::from_stored(*held);
+            let below = pixels.get(if is_single { at } else { count * row + at });
+            if let Some(below) = below.filter(|_| next > bottom) {
+                *held = below.stored();
+            }
+            if let Some(pixel) = pixels.get_mut(at) {
+                *pixel = colour;
+            }
+        }
+        let pixels = pixels.get_mut(..count * row).unwrap_or_default();
+        // The depth buffer begins with the row above the band.
+        let reached = self.rows.start.max(top.saturating_sub(1))..self.rows.end.min(next);
+        let known = if reached.is_empty() { top..top } else { reached };
+        let start = (known.start + 1 - top) as usize * row;
+        let depth = self.depth.get(start..start + known.len() * row).unwrap_or_default();
+        let band = SmoothedBand { width: row, rows: top..bottom, known, depth };
+        self.smoother.smooth(context, pixels, &band, colours.output().gamma);
+        self.smoother.hold(bottom);
+        if let Some(last) = self.depth.get_mut(..(count + 2) * row) {
+            last.copy_within(count * row.., 0);
+        }
+    }
+
+    /// Finds the edges that antialiasing smooths.
+    #[inline(never)]
+    pub(crate) fn find_edges(&mut self, context: &Context<'_>) {
+        let Self { bins, binned, entries, depth, smoother, rows, stats, .. } = self;
+        let hull = context.settings.touched(&context.region.hull());
+        // An edge changes pixels beside those of triangles.
+        let reach = rows.start.saturating_sub(1)..rows.end.saturating_add(1).min(context.settings.size.height);
+        *rows = if rows.start >= rows.end { rows.clone() } else { reach };
+        let mut rest = bins.count().and_then(|count| entries.get(..count.into())).unwrap_or_default();
+        let mut complete = *binned;
+        for placed in context.meshes().rev() {
+            let Some(outlined) = context.outlined(&placed) else { continue };
+            let of_mesh = rest.iter().take_while(|entry| placed.has(entry.key().triangle())).count();
+            let (own, others) = (rest.get(..of_mesh).unwrap_or_default(), rest.get(of_mesh..).unwrap_or_default());
+            rest = others;
+            let words = placed.mesh.triangles.div_ceil(32) as usize;
+            let Ok((faces, _)) = <[u32]>::mut_from_prefix_with_elems(depth.as_mut_bytes(), words) else {
+                complete = false;
+                continue;
+            };
+            faces.fill(0);
+            let index = |entry: &Entry| entry.key().triangle().wrapping_sub(placed.first_triangle) as usize;
+            own.iter().for_each(|entry| find::add(faces, index(entry)));
+            let faces = &*faces;
+            for entry in own {
+                outlined.edges(index(entry), |triangle| find::has(faces, triangle), &mut |edge| {
+                    if edge.meets(&hull) {
+                        smoother.put(edge, rows.clone());
+                    }
+                });
+            }
+        }
+        stats.edges = smoother.close(complete);
+    }
+
+    /// Draws all triangles in the band from row `top` to row `bottom`, whose pixels hold the background. Only these `columns` are needed. The depth of
+    /// the band begins with pixel `from` of the depth buffer.
     #[inline(never)]
     fn draw<C: Pixel>(
         &mut self,
@@ -184,17 +329,22 @@ impl<'r> FrameRows<'r> {
         pixels: &mut [C],
         columns: [u16; 2],
         [top, bottom]: [u32; 2],
+        from: usize,
     ) {
         let (width, rows) = (context.settings.size.width as usize, bottom - top);
         let count = width * rows as usize;
-        if top > self.top {
+        if self.binned && (bottom <= self.rows.start || self.rows.end <= top) {
+            // No triangle has a pixel there, and the depth is unknown.
+            self.drawn = bottom;
+            return;
+        }
+        if top > self.drawn {
             // What has been saved stands on a row that is left out.
             self.queue = QueueState::default();
         }
         let active = ActiveTriangles::new(self.active_triangles, self.queue);
-        let depth = self.depth.get_mut(..count).unwrap_or_default();
-        let blend = context.settings.antialiased().then(|| Blend { samples: self.samples.get_mut(..count).unwrap_or_default() });
-        let mut band = Band { pixels, depth, width, top: top as i32, rows: rows as i32, blend, active, counts: Counts::default() };
+        let depth = self.depth.get_mut(from..from + count).unwrap_or_default();
+        let mut band = Band { pixels, depth, width, top: top as i32, rows: rows as i32, active, counts: Counts::default() };
         band.clear(self.rows.clone());
         // Decision: lists.
         let (pixels, drawn) = if self.binned {
@@ -209,13 +359,10 @@ impl<'r> FrameRows<'r> {
         };
         self.stats.pixels = self.stats.pixels.saturating_add(pixels);
         self.stats.drawn += drawn;
-        if context.settings.antialiased() {
-            band.resolve();
-        }
         self.stats.counts = self.stats.counts.and(band.counts);
         self.queue = band.active.queue();
         self.stats.set_up_anew = self.stats.set_up_anew.saturating_add(band.active.overflow());
-        self.top = bottom;
+        self.drawn = bottom;
     }
 }
 
@@ -232,12 +379,6 @@ fn narrow<C: Copy>(pixels: &mut [C], width: usize, columns: Range<usize>) {
             pixels.copy_within(from.., 0);
         }
     }
-}
-
-/// Splits some memory behind the first `length` values, or behind all if there are fewer.
-pub(super) fn halves<T>(memory: &mut [T], length: usize) -> (&mut [T], &mut [T]) {
-    let length = length.min(memory.len());
-    memory.split_at_mut_checked(length).unwrap_or_default()
 }
 
 /// Draws the triangles of `band`, and returns the number of their pixels there.

@@ -10,11 +10,13 @@
 //! longer than all else at a vertex.
 
 use crate::{
+    features::ANTIALIAS,
     frame::{
         Frame,
         colours::Colours,
         context::{Context, PlacedMesh, Settings, meshes},
-        part::{FrameRows, Stats, halves},
+        part::{FrameRows, Stats},
+        smoother::Smoother,
     },
     geometry::{
         bin::{Bins, Entry},
@@ -24,7 +26,7 @@ use crate::{
         region::Region,
         viewport::{Bounds, Viewport},
     },
-    memory::Memory,
+    memory::{Memory, halves},
     mesh::vertices::{SeamPlace, UNUSED, VertexStage},
     method::VertexLight,
     pixel::Pixel,
@@ -154,13 +156,13 @@ impl<'r> Prepared<'r> {
             reflectances,
             tables,
             error_bounds,
-            samples,
+            smoothing,
             active_triangles,
         } = memory;
         let size = settings.size;
         let placements = Placements::new(scene, placements, order);
         // Bins as high as the bands of one processor.
-        let band_rows = settings.band_rows(depth.len(), samples.len()).checked_div(settings.processors).unwrap_or(0);
+        let band_rows = settings.band_rows().checked_div(settings.processors).unwrap_or(0);
         let bins = Bins::new(size.height, band_rows);
         let uncached = scene.vertices().saturating_sub(cache.len() as u32);
         let triangles = placements.drawn();
@@ -175,11 +177,13 @@ impl<'r> Prepared<'r> {
             binned: false,
             entries,
             depth,
-            samples,
+            smoother: Smoother::new(smoothing, settings.antialiased().then(|| Bins::new(size.height, band_rows))),
             active_triangles,
             queue: QueueState::default(),
             rows: region.hull().rows(),
             top: region.hull().rows().start,
+            drawn: 0,
+            band_rows: settings.band_rows(),
             bottom: region.hull().rows().end,
             stats: Stats { triangles, simplified: as_they_are - triangles, uncached, ..Stats::default() },
         };
@@ -193,8 +197,11 @@ impl<'r> Prepared<'r> {
         (context.vertices, context.depth_elision) = (cache, depth_elision);
         if let Some(count) = part.bins.count() {
             part.binned = true;
-            (part.stats.passes, part.stats.drawn) = (1, count.into());
+            (part.stats.passes, part.stats.drawn) = (1, part.bins.linked(count).into());
             part.rows = part.bins.rows();
+        }
+        if ANTIALIAS && context.settings.antialiased() {
+            part.find_edges(context);
         }
     }
 }
@@ -393,10 +400,8 @@ impl<'r> PreparationPart<'_, 'r> {
         let facing = black_box(placed.placement.facing);
         let (stream, mesh) = (&context.scene.stream, placed.mesh);
         let viewport = context.settings.viewport();
-        // What lies beside it is left out, but not what lies below it: bands save triangles that go on, also where no strip below has pixels of
-        // the object, and what they have saved is taken off by those that walk the triangle.
-        let mut area = Bounds::from(&context.region.within(&placed.placement.area));
-        area.bottom = area.bottom.max(context.region.hull().rows().end as i32);
+        let area = area_of(context, placed);
+        let keeps_touched = context.settings.antialiased();
         // Reached by a pointer of its own, which is opaque to the compiler: instructions of Armv6-M reach little of a structure.
         let (bins, depth_elision, entries) = (black_box(&mut **bins), &mut **depth_elision, &mut **entries);
         let leaning = if depth_elision.is_some() { facing.leaning() } else { Facing::FRONT };
@@ -437,9 +442,9 @@ impl<'r> PreparationPart<'_, 'r> {
                     viewport.bounds_within(&extent, area)
                 }
                 None if DIVIDED => {
-                    let (word_sized, bounds) = at_seam(&stage, (&mut *cached, &mut *seam), viewport, depth_elision, (vertices, triangle));
-                    push(bounds.and_then(|bounds| bounds.visible(area)), word_sized);
-                    continue;
+                    let bounds;
+                    (word_sized, bounds) = at_seam(&stage, (&mut *cached, &mut *seam), viewport, depth_elision, (vertices, triangle));
+                    bounds.and_then(|bounds| bounds.visible(area))
                 }
                 None => {
                     *depth_elision = None;
@@ -447,8 +452,44 @@ impl<'r> PreparationPart<'_, 'r> {
                 }
             };
             push(bounds, word_sized);
+            if ANTIALIAS
+                && keeps_touched
+                && bounds.is_none()
+                && touches(&stage, (&mut *cached, &mut *seam), viewport, (vertices, triangle), area)
+            {
+                // Its edges may be outlines.
+                bins.keep(entries, id + rest.len() as u32);
+            }
         }
     }
+}
+
+/// The pixels for which triangles of a mesh are kept.
+#[inline(always)]
+fn area_of(context: &Context<'_>, placed: &PlacedMesh<'_>) -> Bounds {
+    let (settings, region) = (context.settings, context.region);
+    let mut area = Bounds::from(&settings.touched(&region.within(&settings.touched(&placed.placement.area))));
+    // What lies beside it is left out, but not what lies below it: bands save triangles that go on, also where no strip below has pixels of the object,
+    // and what they have saved is taken off by those that walk the triangle.
+    area.bottom = area.bottom.max(settings.touched(&region.hull()).rows().end as i32);
+    area
+}
+
+/// Whether a triangle that contains no pixel centre touches a pixel of `area`.
+#[inline(never)]
+fn touches(
+    stage: &VertexStage<'_>,
+    (cached, seam): (&mut [ScreenVertex], &mut [SeamPlace]),
+    viewport: Viewport,
+    (vertices, triangle): (&[Vertex], &Triangle),
+    area: Bounds,
+) -> bool {
+    if let Some(corners) = stage.corners_at_seam(cached, seam, vertices, triangle) {
+        return viewport.touches(&Extent::new(corners), area);
+    }
+    let [a, c, b] = triangle.corners.map(|corner| vertices.get(usize::from(corner)));
+    let (Some(a), Some(b), Some(c)) = (a, b, c) else { return false };
+    viewport.touches_by(stage.view, [a, b, c], area)
 }
 
 /// Whether a triangle is word-sized, and its visible bounding box, where a corner belongs to the other half or needs clipping.

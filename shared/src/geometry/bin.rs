@@ -93,6 +93,8 @@ pub(crate) struct Bins {
     /// Whether some triangle found no room.
     overflow: bool,
     heads: [u16; BINS],
+    /// Entries in use that are in no list.
+    kept: u16,
 }
 
 impl Bins {
@@ -104,6 +106,7 @@ impl Bins {
             heads: [NONE; BINS],
             active: NONE,
             count: 0,
+            kept: 0,
             overflow: false,
             reached: 0,
             drawn: 0,
@@ -138,6 +141,19 @@ impl Bins {
         }
     }
 
+    /// Puts a triangle that has no pixel among the entries, and into no list. Triangles are kept in the order of [`Self::push`].
+    #[inline(never)]
+    pub(crate) fn keep(&mut self, entries: &mut [Entry], triangle: u32) {
+        match entries.get_mut(usize::from(self.count)) {
+            Some(entry) if self.count < u16::MAX => {
+                *entry = Entry { key: TriangleKey::new(triangle, false), bottom: 0, next: NONE };
+                self.count += 1;
+                self.kept += 1;
+            }
+            _ => self.overflow = true,
+        }
+    }
+
     /// Copies the bins without their triangles. Each list ends with the number of its bin, so that [`Self::join`] can append other lists. A frame has
     /// less than 2^15 triangles.
     #[must_use]
@@ -149,6 +165,7 @@ impl Bins {
     /// the others, and have the larger links, as all entries that are pushed later.
     pub(crate) fn join(&mut self, entries: &mut [Entry], earlier: &Self, first: usize) {
         let Self { heads, count, .. } = *self;
+        // The link of an entry that is in no list leads nowhere.
         let joined = |link| if link & OPEN == 0 { link + count } else { heads.get(usize::from(link & !OPEN)).copied().unwrap_or(NONE) };
         let entries = Cell::from_mut(entries).as_slice_of_cells();
         let (to, from) = (entries.get(count.into()..).unwrap_or_default(), entries.get(first..).unwrap_or_default());
@@ -158,11 +175,18 @@ impl Bins {
         }
         self.heads = earlier.heads.map(joined);
         self.count = count + earlier.count;
+        self.kept += earlier.kept;
         self.overflow |= earlier.overflow;
         (self.top, self.bottom) = (self.top.min(earlier.top), self.bottom.max(earlier.bottom));
     }
 
-    /// Number of triangles in all lists; `None` if some found no room.
+    /// Number of triangles in the lists, where there are `count` entries.
+    #[must_use]
+    pub(crate) fn linked(&self, count: u16) -> u16 {
+        count.saturating_sub(self.kept)
+    }
+
+    /// Number of entries; `None` if some triangle found no room.
     #[must_use]
     pub(crate) fn count(&self) -> Option<u16> {
         (!self.overflow).then_some(self.count)
@@ -182,13 +206,13 @@ impl Bins {
         let step = NonZeroU32::new((end - start).div_ceil(BINS as u32)).unwrap_or(NonZeroU32::MIN);
         let steps_per_row = (1 << 20) / step + 1;
         let mut ends = [0u16; BINS];
-        for entry in entries.iter().take(self.count.into()) {
+        for entry in entries.iter().take(self.count.into()).filter(|entry| entry.bottom > 0) {
             let last = u32::from(entry.bottom).saturating_sub(start + 1);
             if let Some(ends) = ends.get_mut((last.wrapping_mul(steps_per_row) >> 20) as usize) {
                 *ends += 1;
             }
         }
-        let (mut wanted, mut row) = ((u32::from(self.count) * u32::from(share)) >> 16, start);
+        let (mut wanted, mut row) = ((u32::from(self.linked(self.count)) * u32::from(share)) >> 16, start);
         for ends in ends.map(u32::from) {
             match NonZeroU32::new(ends) {
                 Some(ends) if wanted < ends.get() => return row + wanted * step.get() / ends,

@@ -66,6 +66,24 @@ pub(crate) fn clip(view: &View, vertices: [&Vertex; 3]) -> Vec<Cut, CORNERS> {
     cuts
 }
 
+/// The part of an edge that can be projected, as `[x, y, inv_depth]` of its ends; `None` if there is none.
+#[must_use]
+pub(crate) fn clip_edge(view: &View, ends: [&Vertex; 2]) -> Option<[[i32; 3]; 2]> {
+    let corner = |v: &Vertex| Corner { eye: view.to_eye(v.position), position: wide(v.position), normal: wide(v.normal) };
+    let [mut a, mut b] = ends.map(corner);
+    for plane in 0..PLANES {
+        let (da, db) = (view.lens.distance(a.eye, plane), view.lens.distance(b.eye, plane));
+        match (da >= 0, db >= 0) {
+            (true, true) => {}
+            (true, false) => b = between(&a, &b, da, db),
+            (false, true) => a = between(&b, &a, db, da),
+            (false, false) => return None,
+        }
+    }
+    let [(a, _), (b, _)] = [view.lens.project(a.eye), view.lens.project(b.eye)];
+    Some([a, b])
+}
+
 /// The point where the line from `inner` (distance `di` >= 0) to `outer` (`d_o` < 0) meets the plane.
 fn between(inner: &Corner, outer: &Corner, di: i64, d_o: i64) -> Corner {
     // The ratio with 22 fraction bits, without overflow.

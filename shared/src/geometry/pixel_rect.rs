@@ -62,6 +62,14 @@ impl PixelRect {
         Self { columns: within(self.columns, other.columns), rows: within(self.rows, other.rows) }
     }
 
+    /// The pixels of the rectangle and those up to `reach` pixels away, in a picture of `size`. An empty rectangle stays empty.
+    #[must_use]
+    pub fn grown(&self, reach: u16, size: Size) -> Self {
+        let grown = |[start, end]: [u16; 2]| [start.saturating_sub(reach), end.saturating_add(reach)];
+        let Self { columns, rows } = *self;
+        if self.is_empty() { *self } else { Self { columns: grown(columns), rows: grown(rows) }.within(&Self::whole(size)) }
+    }
+
     /// The columns of the rectangle.
     #[must_use]
     pub fn columns(&self) -> Range<u32> {

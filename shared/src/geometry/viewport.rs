@@ -132,8 +132,6 @@ pub struct Viewport {
     pub width: i32,
     /// Number of rows.
     pub height: i32,
-    /// Whether pixels are weighted by covered areas, so that a triangle can touch more of them.
-    pub antialiased: bool,
     /// Whether triangles are drawn that touch pixels and contain no centre of one.
     pub all_touched: bool,
 }
@@ -166,6 +164,26 @@ impl Viewport {
         bounds.visible(part)
     }
 
+    /// Whether a triangle shows its front and touches a pixel of `area`, even if it contains no centre of one.
+    #[inline(never)]
+    pub fn touches(self, extent: &Extent, area: Bounds) -> bool {
+        let corners = [[extent.left, extent.top, 0], [extent.right, extent.bottom, 0]];
+        extent.area > 0 && Bounds::touched(corners.into_iter()).visible(area).is_some()
+    }
+
+    /// [`Self::touches`] by vertices, for triangles with a corner that is not cached or needs clipping. Of a clipped triangle its plane has decided
+    /// that it shows its front.
+    #[cold]
+    #[inline(never)]
+    pub fn touches_by(self, view: &View, vertices: [&Vertex; 3], area: Bounds) -> bool {
+        let places = vertices.map(|vertex| view.lens.project(view.to_eye(vertex.position)));
+        if places.iter().all(|&(_, inside)| inside) {
+            return self.touches(&Extent::new(places.map(|([x, y, _], _)| [x, y])), area);
+        }
+        let polygon = clip::clip(view, vertices);
+        !polygon.is_empty() && Bounds::touched(polygon.iter().map(|cut| cut.place)).visible(area).is_some()
+    }
+
     /// [`Self::bounds`] by the corners, for rare triangles.
     #[inline(never)]
     pub fn bounds_of(self, corners: [&ScreenVertex; 3]) -> Option<Bounds> {
@@ -176,7 +194,7 @@ impl Viewport {
     #[inline]
     pub fn is_word_sized(self, extent: &Extent) -> bool {
         // Decision: word or exact.
-        !self.antialiased && extent.left >= 0 && extent.right < self.width << SUBPIXEL && extent.fits_words()
+        extent.left >= 0 && extent.right < self.width << SUBPIXEL && extent.fits_words()
     }
 
     /// The visible bounding box of the part that clipping leaves of a triangle.
@@ -193,9 +211,9 @@ impl Viewport {
         bounds.visible(self.whole())
     }
 
-    /// The visible bounding box of a triangle, on a grid that is finer by 2 to the power `finer`.
-    pub fn box_of(self, corners: [&ScreenVertex; 3], finer: u32) -> [i32; 4] {
+    /// The visible bounding box of a triangle.
+    pub fn box_of(self, corners: [&ScreenVertex; 3]) -> [i32; 4] {
         let extent = Extent::new(corners.map(|corner| [corner.x, corner.y]));
-        Bounds::new(&extent).clipped(Bounds::whole(self.width << finer, self.height << finer)).sides()
+        Bounds::new(&extent).clipped(self.whole()).sides()
     }
 }

@@ -4,7 +4,6 @@ mod pass;
 pub(crate) mod vertices;
 
 use crate::{
-    antialias::PixelSet,
     geometry::bin::{TriangleKey, Walk},
     lighting::material_tables::MaterialTables,
     method::{DrawTriangle, General, Loops, Shading, Style, TriangleSetup, needs_general, tiles},
@@ -44,13 +43,13 @@ impl<C: Pixel> Drawing<'_, C> {
     #[inline(never)]
     pub(crate) fn style(&self) -> Style {
         // Decision: style.
-        let MeshPass { shading: Shading { reflectance, lighting, .. }, viewport, perspective, .. } = &self.pass;
+        let MeshPass { shading: Shading { reflectance, lighting, .. }, perspective, .. } = &self.pass;
         Style {
             three_channels: reflectance.three_channels(),
             lights: if lighting.is_constant() { reflectance.lights() } else { 0 },
             // Boards with displays of greys have little flash: no loops there.
             one_near: !C::GRAY && lighting.has_one_near() && reflectance.lights() == 1,
-            by_canvas: viewport.antialiased || !self.colourist().suits_loops(),
+            by_canvas: !self.colourist().suits_loops(),
             perspective: *perspective,
         }
     }
@@ -149,7 +148,6 @@ impl<C: Pixel> Drawing<'_, C> {
             turned: by,
             needs_depth_test,
             perspective: self.pass.perspective,
-            pixels: PixelSet::Centres,
             place,
         };
         L::draw::<C, THREE>(&setup, &self.pass.shading, self.tables(), band)

@@ -1,14 +1,10 @@
 //! Set-up of the triangles of one mesh, whatever their size. It knows no pixel format.
 
 use crate::{
-    antialias,
-    antialias::PixelSet,
-    features::ANTIALIAS,
     format::SUBPIXEL,
     geometry::{
         bin::TriangleKey,
         clip,
-        cull::Extent,
         depth_elision::DepthElision,
         projection::{ScreenVertex, State},
         viewport::{Bounds, Viewport},
@@ -95,7 +91,7 @@ impl MeshPass<'_> {
         }
     }
 
-    /// Sets up a triangle of any size, in parts where it is clipped or antialiased, and calls `draw` for each part, which returns the number of its
+    /// Sets up a triangle of any size, in parts where it is clipped, and calls `draw` for each part, which returns the number of its
     /// pixels. The band is `width` pixels wide, and `rows` are its first row and one past its last. Returns the sum.
     pub(super) fn set_up(&self, triangle: &Triangle, width: i32, rows: [i32; 2], draw: &mut dyn FnMut(&TriangleSetup<'_>) -> u32) -> u32 {
         let target = &mut Target { width, rows, draw };
@@ -137,42 +133,16 @@ impl MeshPass<'_> {
     }
 
     fn set_up_placed(&self, placed: &MeshTriangle<'_>, target: &mut Target<'_>) -> u32 {
-        // Decision: pixels.
-        if ANTIALIAS && self.viewport.antialiased {
-            self.set_up_antialiased(placed, target)
-        } else {
-            self.set_up_pixels(PixelSet::Centres, placed, target)
-        }
-    }
-
-    /// Sets up a triangle for the pixels wholly inside, then for the edge pixels, with the corners on a finer grid.
-    #[cold]
-    #[inline(never)]
-    fn set_up_antialiased(&self, placed: &MeshTriangle<'_>, target: &mut Target<'_>) -> u32 {
-        let finer = antialias::finer(placed.corners);
-        let [a, b, c] = &placed.corners.map(|corner| antialias::refined(corner, finer));
-        let is_narrow = Extent::new(placed.corners.map(|corner| [corner.x, corner.y])).contains_no_pixel();
-        let inner = if is_narrow { 0 } else { self.set_up_pixels(PixelSet::Inner, placed, target) };
-        inner + self.set_up_pixels(PixelSet::Edge(finer), &MeshTriangle { corners: [a, b, c], ..*placed }, target)
-    }
-
-    /// Sets up a triangle for the pixels of the set `pixels`.
-    fn set_up_pixels(&self, pixels: PixelSet, placed: &MeshTriangle<'_>, target: &mut Target<'_>) -> u32 {
-        let by_rows = pixels == PixelSet::Centres;
-        let screen = if by_rows {
-            let [a, b, c] = placed.corners.map(|corner| corner.x);
-            let is_wide = a.max(b).max(c).wrapping_sub(a.min(b).min(c)) >= WIDE;
-            ScreenTriangle::new(placed.corners, if is_wide { self.columns } else { [0, target.width] }, target.rows)
-        } else {
-            ScreenTriangle::without_rows(placed.corners)
-        };
-        if by_rows && screen.is_empty() {
+        let [a, b, c] = placed.corners.map(|corner| corner.x);
+        let is_wide = a.max(b).max(c).wrapping_sub(a.min(b).min(c)) >= WIDE;
+        let screen = ScreenTriangle::new(placed.corners, if is_wide { self.columns } else { [0, target.width] }, target.rows);
+        if screen.is_empty() {
             return 0;
         }
-        let Some(gradients) = Gradients::new(screen.corners, self.viewport.box_of(placed.corners, pixels.finer())) else { return 0 };
+        let Some(gradients) = Gradients::new(screen.corners, self.viewport.box_of(placed.corners)) else { return 0 };
         let gradients = gradients.steep(self.steepness);
         // Most of the slivers of a fine mesh lie between the centres of pixels.
-        if by_rows && gradients.is_thinner_than(MAX_FINE_THINNESS) && screen.covers_nothing() {
+        if gradients.is_thinner_than(MAX_FINE_THINNESS) && screen.covers_nothing() {
             return 0;
         }
         let setup = TriangleSetup {
@@ -184,7 +154,6 @@ impl MeshPass<'_> {
             vertices: placed.vertices,
             needs_depth_test: self.needs_depth_test(&screen),
             perspective: self.perspective,
-            pixels,
             place: None,
         };
         (target.draw)(&setup)

@@ -21,8 +21,8 @@ pub mod tiles;
 
 use crate::{
     arch::product::by_fraction,
-    features::{ALWAYS_CONSTANT, ANTIALIAS, COLOURS, PERSPECTIVE, SKIPS},
-    format::{BIAS, CHANNEL, INTENSITY, LEVEL, NORMAL_LENGTH, SUBPIXEL, WALK},
+    features::{ALWAYS_CONSTANT, COLOURS, PERSPECTIVE, SKIPS},
+    format::{BIAS, CHANNEL, INTENSITY, LEVEL, NORMAL_LENGTH, WALK},
     geometry::viewport::first_centre,
     interpolate::{Checkerboard, perspective::PerspectivePatch},
     lighting::material_tables::MaterialTables,
@@ -49,8 +49,6 @@ pub use facts::{Facts, VertexLight};
 #[doc(hidden)]
 pub use {
     crate::{
-        antialias::{PixelSet, Shape, coarse},
-        coverage::area::TriangleCoverage,
         interpolate::{
             Constant, Patch, Walker,
             field::{Field, Nodes},
@@ -118,7 +116,7 @@ pub(crate) struct Style {
     pub(crate) lights: u8,
     /// Whether there is one light, and either it or the viewer is near, and its levels fit these formats.
     pub(crate) one_near: bool,
-    /// Whether only a canvas can make the colours: by antialiasing, or by the curve of a display on three channels that are not light.
+    /// Whether only a canvas can make the colours: by the curve of a display on three channels that are not light.
     pub(crate) by_canvas: bool,
     /// Whether light is interpolated in perspective.
     pub(crate) perspective: bool,
@@ -163,7 +161,7 @@ pub(crate) trait Loops {
 /// Whether a program that draws by the loops `L` in the pixel format `C` needs the general loop: for some triangles, or for some styles.
 pub(crate) const fn needs_general<L: Loops, C: Pixel>() -> bool {
     // Of colours, only the curve of a display on three channels that are not light needs a canvas.
-    L::DECLINES || ANTIALIAS || PERSPECTIVE || COLOURS && !C::GRAY && !C::IS_LIGHT
+    L::DECLINES || PERSPECTIVE || COLOURS && !C::GRAY && !C::IS_LIGHT
 }
 
 /// The type of [`Loops::draw`] in one pixel format.
@@ -235,9 +233,6 @@ pub struct TriangleSetup<'f> {
     pub needs_depth_test: bool,
     /// Whether perspective-correct interpolation of light is on for this triangle.
     pub perspective: bool,
-    /// Which pixels of the triangle are drawn.
-    #[doc(hidden)]
-    pub pixels: PixelSet,
     /// Index of the active triangle whose patch the band above has saved. It is loaded, and nothing is fitted.
     pub(crate) place: Option<usize>,
 }
@@ -323,11 +318,6 @@ impl TriangleSetup<'_> {
 
     /// Draws the triangle by `shader`, which begins on the row of the anchor. Returns the number of pixels in `canvas`.
     pub(crate) fn draw_spans(&self, shader: &mut dyn SpanShader, canvas: &mut dyn Canvas) -> u32 {
-        if ANTIALIAS && self.pixels != PixelSet::Centres {
-            let Self { screen, pixels, .. } = *self;
-            let shape = Shape { screen, pixels, part: None, corners: screen.corners, bits: SUBPIXEL };
-            return shape.draw(self.gradients.row(), shader, canvas, &mut |_| [i32::MIN, i32::MAX]);
-        }
         self.screen.draw_spans(self.gradients, shader, canvas)
     }
 
@@ -372,7 +362,7 @@ impl TriangleSetup<'_> {
     #[inline(always)]
     pub(crate) fn count(&self, top: i32, count: &mut u32, number: u32) {
         // Where the thinnest triangles begin, they may contain no pixel centre, and are not drawn.
-        if !SKIPS || self.pixels != PixelSet::Centres || self.gradients.is_thinner_than(MAX_FINE_THINNESS) {
+        if !SKIPS || self.gradients.is_thinner_than(MAX_FINE_THINNESS) {
             return;
         }
         let [first, ..] = self.corners;

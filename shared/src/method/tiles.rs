@@ -5,9 +5,7 @@
 //! corner, so neither bands nor the size of the picture change a pixel. Depth is walked over the whole triangle, as always.
 
 use crate::{
-    antialias::PixelSet,
-    coverage::sample::Layer,
-    format::{Intensity, SUBPIXEL},
+    format::SUBPIXEL,
     interpolate::{
         Patch,
         plane::{LinearWalker, Plane},
@@ -58,14 +56,6 @@ impl Canvas for Tile<'_> {
             self.pixels = self.pixels.wrapping_add(count);
         }
     }
-
-    fn add(&mut self, column: i32, row: i32, layer: Layer) {
-        self.canvas.add(column, row, layer);
-    }
-
-    fn to_mix(&self, intensity: Intensity, row: i32) -> [u8; 3] {
-        self.canvas.to_mix(intensity, row)
-    }
 }
 
 /// Shades a triangle by `shade`, in tiles if they are needed. Returns the number of its pixels in `canvas`.
@@ -76,7 +66,7 @@ pub(crate) fn shade(
     mut shade: impl FnMut(&TriangleSetup<'_>, &mut dyn Canvas) -> u32,
 ) -> u32 {
     // Decision: tiles.
-    if setup.gradients.walks_in_words() || setup.pixels != PixelSet::Centres {
+    if setup.gradients.walks_in_words() {
         return shade(setup, canvas);
     }
     in_tiles(setup, canvas, &mut shade)

@@ -179,6 +179,16 @@ impl<const R: u32, const G: u32, const B: u32> Pixel for Light<R, G, B> {
         Self::of_levels([r, g, b], CHANNEL)
     }
 
+    fn mixed_with(self, other: Self, share: u32, gamma: Option<&'static Gamma>) -> Self {
+        // Where only one of both has been corrected by the curve of the display, the other one is corrected here.
+        let are_unlike = (self.0 ^ other.0) & IS_FINAL != 0;
+        let [own, other] =
+            [self, other].map(|light| if let Some(gamma) = gamma.filter(|_| are_unlike) { light.curved(gamma) } else { light });
+        let (a, b) = (own.fine(), other.fine());
+        let channel = |k: usize| (a[k] * (128 - share) + b[k] * share + 64) >> 7;
+        Self(word([channel(0), channel(1), channel(2)]) | (self.0 | other.0) & IS_FINAL)
+    }
+
     fn to_mix(self) -> [u8; 3] {
         self.fine().map(|channel| (channel >> (BITS - 8)) as u8)
     }

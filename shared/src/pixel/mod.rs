@@ -103,6 +103,14 @@ pub trait Pixel: PixelFormat {
         [packed(r, odd_g, b), packed(odd_r, g, odd_b)]
     }
 
+    /// Mixes the pixel with `share / 128` of `other`; for antialiasing. A pixel of light needs the curve of the display for it.
+    #[doc(hidden)]
+    fn mixed_with(self, other: Self, share: u32, _: Option<&'static Gamma>) -> Self {
+        let (own, other) = (self.to_mix(), other.to_mix());
+        let channel = |k: usize| ((u32::from(own[k]) * (128 - share) + u32::from(other[k]) * share + 64) >> 7) as u8;
+        Self::mixed_from([channel(0), channel(1), channel(2)])
+    }
+
     /// The channels of the pixel as antialiasing mixes them, at most eight bits each.
     #[doc(hidden)]
     fn to_mix(self) -> [u8; 3] {
@@ -224,6 +232,18 @@ fn exchanged([a, b]: [u16; 2], mask: u16) -> [u16; 2] {
     [a ^ differing, b ^ differing]
 }
 
+/// Mixes a colour of 5, 6 and 5 bits with `share / 128` of another one, rounded to the nearest.
+#[inline]
+fn mixed_rgb565(own: u16, other: u16, share: u32) -> u16 {
+    // Red, green and blue in one word, with five bits between them.
+    const CHANNELS: u32 = 0x07E0_F81F;
+    let spread = |colour: u16| (u32::from(colour) | u32::from(colour) << 16) & CHANNELS;
+    let (own, other) = (spread(own), spread(other));
+    let half = 1 << 4 | 1 << 15 | 1 << 25;
+    let sum = (own << 5).wrapping_add(other.wrapping_sub(own).wrapping_mul((share + 2) >> 2)).wrapping_add(half) >> 5 & CHANNELS;
+    (sum | sum >> 16) as u16
+}
+
 /// Both halves of a word, each of them `half`; the compiler must not know that they are the same.
 #[inline(always)]
 fn halves(half: u16) -> [u16; 2] {
@@ -276,6 +296,11 @@ macro_rules! rgb565 {
             fn pair(self) -> [Self; 2] {
                 let [even, odd] = halves(self.stored());
                 [Self::from_stored(even), Self::from_stored(odd)]
+            }
+
+            #[inline]
+            fn mixed_with(self, other: Self, share: u32, _: Option<&'static Gamma>) -> Self {
+                Self::from_stored(mixed_rgb565(self.stored(), other.stored(), share))
             }
         }
     };
@@ -447,6 +472,11 @@ impl Pixel for Rgb565Be {
     fn pair(self) -> [Self; 2] {
         let [even, odd] = halves(self.0);
         [Self(even), Self(odd)]
+    }
+
+    #[inline]
+    fn mixed_with(self, other: Self, share: u32, _: Option<&'static Gamma>) -> Self {
+        Self(mixed_rgb565(u16::from_be(self.0), u16::from_be(other.0), share).to_be())
     }
 }
 

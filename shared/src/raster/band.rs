@@ -1,7 +1,6 @@
 //! A band: some rows of the picture and their depth. Drawing writes no other memory.
 
 use crate::{
-    coverage::sample::Sample,
     pixel::Pixel,
     raster::{active::ActiveTriangles, counts::Counts},
 };
@@ -21,45 +20,19 @@ pub struct Band<'a, C> {
     pub top: i32,
     /// Number of rows.
     pub rows: i32,
-    /// Samples for antialiasing. Until [`Self::resolve`] they take the place of `depth` and `pixels`, and `pixels` hold the background.
-    pub blend: Option<Blend<'a>>,
     /// Active triangles that the band above has saved, and those that this band saves.
     pub active: ActiveTriangles<'a>,
     /// Counts of what was drawn.
     pub counts: Counts,
 }
 
-/// The samples in which antialiasing collects the surfaces of each pixel.
-#[derive(Debug)]
-pub struct Blend<'a> {
-    /// All pixels, row by row.
-    pub samples: &'a mut [Sample],
-}
-
-impl<C: Pixel> Band<'_, C> {
-    /// Converts samples to pixels. What samples do not cover shows the pixel that is there.
-    #[inline(never)]
-    pub fn resolve(&mut self) {
-        if let Some(blend) = &self.blend {
-            for (pixel, sample) in self.pixels.iter_mut().zip(blend.samples.iter()) {
-                *pixel = C::mixed_from(sample.resolve(pixel.to_mix()));
-            }
-        }
-    }
-}
-
 impl<C> Band<'_, C> {
     /// Sets the depth to infinity in rows that triangles can reach. The depth of other rows is never read.
     #[inline(never)]
     pub fn clear(&mut self, reached: Range<u32>) {
-        match &mut self.blend {
-            Some(blend) => blend.samples.fill(Sample::EMPTY),
-            None => {
-                let within = |row: u32| (row as i32).max(self.top).min(self.top.wrapping_add(self.rows));
-                let (first, end) = (self.start(within(reached.start)), self.start(within(reached.end)));
-                clear_depth(self.depth.get_mut(first..end).unwrap_or_default());
-            }
-        }
+        let within = |row: u32| (row as i32).max(self.top).min(self.top.wrapping_add(self.rows));
+        let (first, end) = (self.start(within(reached.start)), self.start(within(reached.end)));
+        clear_depth(self.depth.get_mut(first..end).unwrap_or_default());
     }
 
     /// The first row, and one past the last.

@@ -2,13 +2,11 @@
 //!
 //! A [`SpanShader`] shades a row of pixels as [`Intensity`] and knows no pixel formats. A [`Canvas`] tests depth, converts intensities to colours,
 //! stores them, and knows no methods. So each method and each pixel format is compiled once, and not each pair of them. The general loop draws all
-//! that a method has no loop for (see [`crate::method`]): many lights, near lights, antialiasing, and interpolation in perspective.
+//! that a method has no loop for (see [`crate::method`]): many lights, near lights, and interpolation in perspective.
 //!
 //! Cost: several times as much as a method's own loop if the method takes few instructions a pixel, and little more if it takes a hundred.
 
 use crate::{
-    coverage::sample::Layer,
-    features::ANTIALIAS,
     format::{BIAS, INTENSITY, Intensity, RAMP},
     interpolate::{Patch, Walker, plane::LinearWalker},
     lighting::material_tables::MaterialTables,
@@ -18,10 +16,7 @@ use crate::{
         gamma::Gamma,
         ramps::Ramps,
     },
-    raster::{
-        band::{Band, Blend},
-        counts::Counts,
-    },
+    raster::{band::Band, counts::Counts},
 };
 
 /// Number of pixels that are shaded at once.
@@ -129,14 +124,6 @@ pub trait Canvas {
     /// column `end`, fails the depth test are left out.
     #[doc(hidden)]
     fn draw_row(&mut self, row: i32, end: i32, count: usize, inv_depth: LinearWalker<1>, shader: &mut dyn SpanShader);
-
-    /// Adds a layer to a pixel, for antialiasing.
-    #[doc(hidden)]
-    fn add(&mut self, column: i32, row: i32, layer: Layer);
-
-    /// Converts an intensity in this row to channels that antialiasing mixes.
-    #[doc(hidden)]
-    fn to_mix(&self, intensity: Intensity, row: i32) -> [u8; 3];
 }
 
 /// Converts the intensities of one material to pixels.
@@ -170,19 +157,6 @@ impl<'c, C: Pixel> Colourist<'c, C> {
         if self.dither && C::Ramps::CHECKERED { SQUARES[row % 2] } else { HALF }
     }
 
-    /// The channels of an intensity as antialiasing mixes them, see [`Pixel::to_mix`].
-    fn to_mix(&self, intensity: Intensity, row: usize) -> [u8; 3] {
-        if self.corrects || C::IS_LIGHT {
-            return C::quantised_to_mix(self.tables.reflectance.scaled(intensity, self.gamma), self.threshold(row));
-        }
-        let colour = if self.tables.reflectance.three_channels() {
-            C::quantised(intensity, self.threshold(row))
-        } else {
-            Self::by_table(self.tables.ramps.squares()[row % 2], intensity)
-        };
-        colour.to_mix()
-    }
-
     /// The colour of a material in one channel for an intensity, by a table of colours.
     fn by_table(ramp: &[C::Stored; RAMP], [level, ..]: Intensity) -> C {
         C::ramped(ramp, (level + (BIAS << INTENSITY) + (1 << (INTENSITY - 1))) as u32, INTENSITY)
@@ -214,20 +188,6 @@ impl<C: Pixel> Canvas for BandCanvas<'_, '_, C> {
             let mut target = CanvasRow { pixels, depth, inv_depth, colourist: self.colourist, row: row as usize };
             shader.span(0, end, count, &mut target);
         }
-    }
-
-    fn add(&mut self, column: i32, row: i32, layer: Layer) {
-        let index = self.band.start(row).wrapping_add(column as usize);
-        if ANTIALIAS
-            && let Some(Blend { samples }) = &mut self.band.blend
-            && let Some(sample) = samples.get_mut(index)
-        {
-            sample.add(layer);
-        }
-    }
-
-    fn to_mix(&self, intensity: Intensity, row: i32) -> [u8; 3] {
-        self.colourist.to_mix(intensity, row as usize)
     }
 }
 
@@ -287,28 +247,6 @@ fn put_each<C>(pixels: &mut [C], mut visible: u32, intensities: &[Intensity; CHU
         visible >>= 1;
         if visible == 0 {
             return;
-        }
-    }
-}
-
-/// A span of antialiased pixels, all visible; `put` takes each with its column.
-pub struct EachPixel<F> {
-    /// Column of the first pixel.
-    pub column: i32,
-    /// Receives a column and its intensity.
-    pub put: F,
-}
-
-impl<F: FnMut(i32, Intensity)> SpanTarget for EachPixel<F> {
-    fn visible(&mut self, _: usize, count: usize) -> u32 {
-        (1 << count) - 1
-    }
-
-    fn put(&mut self, first: usize, visible: u32, intensities: &[Intensity; CHUNK]) {
-        for (k, &intensity) in intensities.iter().enumerate() {
-            if visible & (1 << k) != 0 {
-                (self.put)(self.column.wrapping_add((first + k) as i32), intensity);
-            }
         }
     }
 }

@@ -1,7 +1,7 @@
 //! Counts of triangles that are drawn.
 
 /// Counts of triangles by the way in which they were drawn; part of [`Stats`](crate::Stats). Except in `hidden`, each triangle counts only
-/// in the band (group of rows drawn at once) where it begins. Antialiased triangles and extremely thin ones do not count. All counts are 0
+/// in the band (group of rows drawn at once) where it begins. Extremely thin triangles do not count. All counts are 0
 /// unless this crate is built with the feature `skips`.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]

@@ -28,7 +28,7 @@ pub struct ScreenTriangle {
     pub(crate) depth: [i32; 3],
     /// Index of the top corner in the order of the mesh.
     pub turned: usize,
-    /// The rows of the triangle in a band; unused with antialiasing.
+    /// The rows of the triangle in a band.
     rows: RowRange,
 }
 
@@ -172,14 +172,6 @@ impl ScreenTriangle {
         band: &mut Band<'_, T::Pixel>,
     ) -> u32 {
         self.walk(gradients, Constant, patch, shader, band)
-    }
-
-    /// A triangle without rows, which is drawn by areas for antialiasing.
-    #[inline(never)]
-    #[must_use]
-    pub fn without_rows(corners: [&ScreenVertex; 3]) -> Self {
-        let (turned, corners) = turned(corners);
-        Self { corners: places(corners), depth: depths(corners), turned, rows: RowRange::of(EdgeWalker::NONE, 0) }
     }
 
     /// Draws the triangle's rows in `canvas` by the general loop. Returns the number of its pixels there. `shader` stands on the anchor's row.

@@ -19,8 +19,9 @@ pub use included::check_included;
 pub use names::MAX_NAME;
 pub use names::{Names, UnknownMesh};
 use record::{
-    CAMERA_TRACK, DIRECTIONAL, EYE_SPACE, Instance, Key, LIGHT_TRACK, Label, Light, MAGIC, MAX_POSITION, Material, OBJECT_TRACK,
-    ORTHOGRAPHIC, OWN_MATERIALS, PERSPECTIVE, POINT, RIGHT, Track, Triangle, VERSION, VIEWER_INFINITE, VIEWER_LOCAL, Vertex,
+    CAMERA_TRACK, DIRECTIONAL, EYE_SPACE, HAS_NEIGHBOURS, Instance, Key, LIGHT_TRACK, Label, Light, MAGIC, MAX_POSITION, Material,
+    Neighbours, OBJECT_TRACK, OPEN, ORTHOGRAPHIC, OWN_MATERIALS, PERSPECTIVE, POINT, RIGHT, Track, Triangle, VERSION, VIEWER_INFINITE,
+    VIEWER_LOCAL, Vertex,
 };
 #[doc(inline)]
 pub use record::{Camera, Header, Mesh};
@@ -63,6 +64,9 @@ pub struct Stream<'a> {
     /// Triangles of all meshes and of their levels of detail.
     #[doc(hidden)]
     pub triangles: &'a [Triangle],
+    /// Neighbours of all triangles, for antialiasing; empty if `microphong convert` wrote the file without `--antialias`.
+    #[doc(hidden)]
+    pub neighbours: &'a [Neighbours],
     /// Texts that are drawn over the picture.
     #[doc(hidden)]
     pub labels: &'a [Label],
@@ -173,7 +177,7 @@ fn take<'a, T: FromBytes + Immutable + KnownLayout>(bytes: &mut &'a [u8], count:
     Ok(records)
 }
 
-/// Length in bytes of a stream with the numbers of records in `header`, without names; `None` beyond 4 GiB.
+/// Length in bytes of a stream with the numbers of records in `header`, without names and neighbours; `None` beyond 4 GiB.
 #[doc(hidden)]
 #[must_use]
 pub fn length(header: &Header) -> Option<u32> {
@@ -231,9 +235,17 @@ impl<'a> Stream<'a> {
             return Err(StreamError::Length { need, claimed: header.length });
         }
         let mut rest = stream.get(size_of::<Header>()..).ok_or(truncated(need))?;
+        let meshes: &[Mesh] = take(&mut rest, header.meshes.into())?;
+        let has_neighbours = meshes.first().is_some_and(|mesh| mesh.flags & HAS_NEIGHBOURS != 0);
+        let neighbours = if has_neighbours { header.triangles } else { 0 };
+        let need = neighbours.checked_mul(size_of::<Neighbours>() as u32).and_then(|bytes| bytes.checked_add(need));
+        let need = need.ok_or(StreamError::Field { name: "count", record: 0 })?;
+        if need > header.length {
+            return Err(StreamError::Length { need, claimed: header.length });
+        }
         Ok(Self {
             header,
-            meshes: take(&mut rest, header.meshes.into())?,
+            meshes,
             materials: take(&mut rest, header.materials.into())?,
             lights: take(&mut rest, header.lights.into())?,
             instances: take(&mut rest, header.instances.into())?,
@@ -241,6 +253,7 @@ impl<'a> Stream<'a> {
             keys: take(&mut rest, header.keys as usize)?,
             vertices: take(&mut rest, header.vertices as usize)?,
             triangles: take(&mut rest, header.triangles as usize)?,
+            neighbours: take(&mut rest, neighbours as usize)?,
             labels: take(&mut rest, header.labels.into())?,
             names: rest,
         })
@@ -280,6 +293,12 @@ impl<'a> Stream<'a> {
             for (k, triangle) in triangles.iter().enumerate() {
                 let name = "triangle corner";
                 field(triangle.corners.iter().all(|&c| c < mesh.vertices), name, mesh.first_triangle as usize + k)?;
+            }
+            let has_neighbours = mesh.flags & HAS_NEIGHBOURS != 0;
+            field(has_neighbours != self.neighbours.is_empty() || header.triangles == 0, "mesh neighbours", i)?;
+            for (k, Neighbours(edges)) in self.neighbours_of(mesh).iter().enumerate() {
+                let exists = |&other: &u16| other & OPEN == OPEN || u32::from(other & OPEN) < mesh.triangles;
+                field(edges.iter().all(exists), "triangle neighbour", mesh.first_triangle as usize + k)?;
             }
         }
         field(next_vertex == header.vertices && next_triangle == header.triangles, "mesh coverage", self.meshes.len())?;
@@ -386,6 +405,14 @@ impl<'a> Stream<'a> {
     #[must_use]
     pub fn triangles_of(&self, mesh: &Mesh) -> Option<&'a [Triangle]> {
         self.triangles.get(mesh.first_triangle as usize..)?.get(..mesh.triangles as usize)
+    }
+
+    /// Returns the neighbours of the triangles of `mesh`: one for each triangle, or none if the stream does not have them.
+    #[doc(hidden)]
+    #[must_use]
+    pub fn neighbours_of(&self, mesh: &Mesh) -> &'a [Neighbours] {
+        let all = self.neighbours.get(mesh.first_triangle as usize..).unwrap_or_default();
+        all.get(..mesh.triangles as usize).unwrap_or_default()
     }
 }
 

@@ -215,7 +215,7 @@ pub struct Mesh {
     #[doc(hidden)]
     pub error: u16,
     /// Properties as bits. Bit 0 is 1 if the mesh is closed and convex, so that none of its front faces can hide another; the renderer then
-    /// leaves out depth tests. The other bits are unused.
+    /// leaves out depth tests. Bit 1 is 1 if the stream has the neighbours of the mesh's triangles. The other bits are unused.
     #[doc(hidden)]
     pub flags: u16,
 }
@@ -236,6 +236,9 @@ impl Mesh {
 ///   nearest; 0.36 units of the last place are left for the body's own arithmetic.
 /// - By that rounding no triangle has leaned by more than 2^-[`LEAN`] rad.
 pub const CLOSED_CONVEX: u16 = 1;
+
+/// The stream has [`Neighbours`] for the triangles of the mesh. All meshes of a stream have this property, or none.
+pub const HAS_NEIGHBOURS: u16 = 2;
 
 /// The largest angle by which rounding may have tilted a triangle of a [`CLOSED_CONVEX`] mesh is 2^-`LEAN` rad: 0.9 degrees.
 pub const LEAN: u32 = 6;
@@ -432,6 +435,21 @@ pub struct Triangle {
     /// [`crate::geometry::cull`].
     pub inverse_altitude: u16,
 }
+
+/// The neighbours of a triangle, from which outlines are found. Entry `k` belongs to the edge that joins the corners `k` and `k + 1`.
+#[derive(FromBytes, IntoBytes, Immutable, KnownLayout, Clone, Copy, Debug, PartialEq, Eq)]
+#[repr(transparent)]
+pub struct Neighbours(
+    /// The index of the triangle on the other side of the edge, among those of the same mesh at the same level of detail, or [`OPEN`]. The highest
+    /// bit is [`CREASE`].
+    pub [u16; 3],
+);
+
+/// The edge has no neighbour in the mesh: the surface ends there, or another material begins.
+pub const OPEN: u16 = 0x7FFF;
+
+/// The shading of the two triangles at the edge differs, because their normals do.
+pub const CREASE: u16 = 0x8000;
 
 /// A text over the picture. In pictures of any size it lies at the same place of the scene.
 #[derive(FromBytes, IntoBytes, Immutable, KnownLayout, Clone, Copy, Debug, PartialEq, Eq)]

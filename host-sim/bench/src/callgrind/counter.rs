@@ -83,7 +83,8 @@ impl Counter {
 
     /// Draws a case, and counts; `None` if the method cannot draw it in this style.
     fn count(&mut self, case: &Case, options: &str) -> Result<Option<u64>> {
-        let stream = Scratch::new(case.stream.as_bytes())?;
+        let smooth = if case.style.antialias { Some(case.stream.with_neighbours()?) } else { None };
+        let stream = Scratch::new(smooth.as_ref().unwrap_or(&case.stream).as_bytes())?;
         let died = "the program that draws has ended under callgrind";
         writeln!(self.questions, "{} {}{options}", stream.path().display(), words(case)).context(died)?;
         let mut answer = String::new();

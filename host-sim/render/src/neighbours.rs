@@ -1,0 +1,92 @@
+//! The neighbours of triangles, from which the core finds outlines.
+//!
+//! Neighbours are found by position, so doubled vertices, whose normals differ, do not separate triangles. Meshes of other materials, and other levels
+//! of detail, have no common neighbours: the core treats such borders as edges whose other side it does not know.
+
+use anyhow::{Result, ensure};
+use microphong::{
+    Stream,
+    stream::{
+        self,
+        record::{CREASE, HAS_NEIGHBOURS, Mesh, Neighbours, OPEN, Triangle, Vertex},
+    },
+};
+use std::collections::HashMap;
+use zerocopy::IntoBytes;
+
+/// The cosine of the angle between two normals from which on shading jumps visibly: 12 degrees.
+const CREASE_COSINE: f64 = 0.978;
+
+/// An end of an edge.
+type Position = [i16; 3];
+
+/// Whether a stream has the neighbours of its triangles.
+#[must_use]
+pub fn has_neighbours(stream: &Stream<'_>) -> bool {
+    !stream.neighbours.is_empty() || stream.triangles.is_empty()
+}
+
+/// Returns a stream with the neighbours of all triangles, padded to whole words.
+///
+/// # Errors
+/// When a mesh has more triangles than a table of neighbours can number.
+pub fn with_neighbours(stream: &Stream<'_>) -> Result<Vec<u32>> {
+    let mut header = *stream.header;
+    let mut meshes = stream.meshes.to_vec();
+    let mut neighbours = Vec::with_capacity(stream.triangles.len());
+    for mesh in &mut meshes {
+        ensure!(mesh.triangles <= u32::from(OPEN), "a mesh has more than {OPEN} triangles; simplify it, or leave out --antialias");
+        mesh.flags |= HAS_NEIGHBOURS;
+        neighbours.extend(of_mesh(stream, mesh));
+    }
+    header.length += (size_of_val(neighbours.as_slice()) - size_of_val(stream.neighbours)) as u32;
+    let mut bytes = [
+        header.as_bytes(),
+        meshes.as_bytes(),
+        stream.materials.as_bytes(),
+        stream.lights.as_bytes(),
+        stream.instances.as_bytes(),
+        stream.tracks.as_bytes(),
+        stream.keys.as_bytes(),
+        stream.vertices.as_bytes(),
+        stream.triangles.as_bytes(),
+        neighbours.as_bytes(),
+        stream.labels.as_bytes(),
+        stream.names,
+    ]
+    .concat();
+    stream::seal(&mut bytes);
+    let mut words = vec![0; bytes.len().div_ceil(4)];
+    words.as_mut_bytes()[..bytes.len()].copy_from_slice(&bytes);
+    Ok(words)
+}
+
+/// The neighbours of the triangles of one mesh at one level.
+fn of_mesh(stream: &Stream<'_>, mesh: &Mesh) -> Vec<Neighbours> {
+    let (triangles, vertices) = (stream.triangles_of(mesh).unwrap_or_default(), stream.vertices_of(mesh).unwrap_or_default());
+    let ends =
+        |triangle: &Triangle, k: usize| [triangle.corners[k], triangle.corners[(k + 1) % 3]].map(|corner| &vertices[usize::from(corner)]);
+    let mut sides: HashMap<[Position; 2], Vec<(usize, [&Vertex; 2])>> = HashMap::new();
+    for (index, triangle) in triangles.iter().enumerate() {
+        for k in 0..3 {
+            let ends = ends(triangle, k);
+            sides.entry(ends.map(|end| end.position)).or_default().push((index, ends));
+        }
+    }
+    let neighbour = |index: usize, [from, to]: [&Vertex; 2]| {
+        let none = &Vec::new();
+        let (own, others) = (&sides[&[from.position, to.position]], sides.get(&[to.position, from.position]).unwrap_or(none));
+        // Of three surfaces that meet at an edge, each ends there.
+        let ([_], [(other, [other_to, other_from])]) = (own.as_slice(), others.as_slice()) else { return OPEN };
+        let jumps = [(from, other_from), (to, other_to)].into_iter().any(|(one, other)| cosine(one.normal, other.normal) < CREASE_COSINE);
+        if *other == index { OPEN } else { *other as u16 | if jumps { CREASE } else { 0 } }
+    };
+    let of_triangle = |(index, triangle): (usize, &Triangle)| Neighbours([0, 1, 2].map(|k| neighbour(index, ends(triangle, k))));
+    triangles.iter().enumerate().map(of_triangle).collect()
+}
+
+/// The cosine of the angle between two normals.
+fn cosine(a: [i16; 3], b: [i16; 3]) -> f64 {
+    let dot = |a: [i16; 3], b: [i16; 3]| (0..3).map(|k| f64::from(a[k]) * f64::from(b[k])).sum::<f64>();
+    dot(a, b) / (dot(a, a) * dot(b, b)).sqrt()
+}

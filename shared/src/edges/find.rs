@@ -1,0 +1,121 @@
+//! The outlines of a mesh: edges at which its visible surface ends, and edges at which its shading jumps.
+
+use crate::{
+    edges::{Edge, Place},
+    geometry::{
+        clip::{clip, clip_edge},
+        cull::Facing,
+        projection::{ScreenVertex, State, View},
+        viewport::{Bounds, Viewport},
+    },
+    stream::record::{CREASE, Neighbours, OPEN, Triangle, Vertex},
+};
+
+/// A mesh in one frame, whose outlines are found.
+pub(crate) struct Outlined<'f> {
+    pub(crate) view: &'f View,
+    pub(crate) facing: Facing,
+    pub(crate) triangles: &'f [Triangle],
+    pub(crate) neighbours: &'f [Neighbours],
+    pub(crate) vertices: &'f [Vertex],
+    /// The cached vertices on the screen.
+    pub(crate) cached: &'f [ScreenVertex],
+}
+
+/// Triangles of a mesh, one bit each.
+pub(crate) type Set = [u32];
+
+/// Whether a triangle is in `set`.
+#[inline]
+pub(crate) fn has(set: &Set, triangle: u16) -> bool {
+    set.get(usize::from(triangle >> 5)).is_some_and(|word| word >> (triangle & 31) & 1 != 0)
+}
+
+/// Adds a triangle to `set`.
+#[inline]
+pub(crate) fn add(set: &mut Set, triangle: usize) {
+    if let Some(word) = set.get_mut(triangle >> 5) {
+        *word |= 1 << (triangle & 31);
+    }
+}
+
+impl Outlined<'_> {
+    /// Calls `put` with the outlines that belong to a triangle that faces the viewer. `faces` tells of each neighbour whether it does so, too.
+    #[inline(always)]
+    pub(crate) fn edges(&self, triangle: usize, faces: impl Fn(u16) -> bool, put: &mut dyn FnMut(&Edge)) {
+        let Some(Neighbours([a, b, c])) = self.neighbours.get(triangle).copied() else { return };
+        // No triangle has the number `OPEN`.
+        let surrounded = faces(a & OPEN) && faces(b & OPEN) && faces(c & OPEN);
+        if !surrounded || (a | b | c) & CREASE != 0 {
+            for (k, neighbour) in [a, b, c].into_iter().enumerate() {
+                let other = neighbour & OPEN;
+                if !faces(other) {
+                    self.put(triangle, k, (other == OPEN).then_some(triangle), put);
+                } else if neighbour & CREASE != 0 && usize::from(other) > triangle {
+                    self.put(triangle, k, Some(other.into()), put);
+                }
+            }
+        }
+    }
+
+    /// Calls `put` with edge `k` of a triangle. The triangle `other` is seen beyond the edge, if any is.
+    #[inline(never)]
+    fn put(&self, triangle: usize, k: usize, other: Option<usize>, put: &mut dyn FnMut(&Edge)) {
+        let Some(triangle) = self.triangles.get(triangle) else { return };
+        let beyond = other.and_then(|other| self.triangles.get(other)).map_or(0, |other| self.range(other));
+        // Seen from the front, corners run counter-clockwise, and the surface lies to the left.
+        let corner = |k: usize| triangle.corners.get(if k < 3 { k } else { 0 }).copied().unwrap_or(0);
+        let ends = [corner(k + 1), corner(k)];
+        let [from, to] = ends.map(|corner| self.cached(corner));
+        let ends = match (from, to) {
+            (Some(from), Some(to)) => Some([from, to]),
+            _ => self.clipped(ends),
+        };
+        if let Some(edge) = ends.and_then(|ends| Edge::new(ends, self.range(triangle), beyond)) {
+            put(&edge);
+        }
+    }
+
+    /// The place of a corner on the screen, if it is cached and need not be clipped.
+    #[inline]
+    fn cached(&self, corner: u16) -> Option<Place> {
+        let vertex = self.cached.get(usize::from(corner)).filter(|vertex| vertex.state == State::READY)?;
+        Some([vertex.x, vertex.y, vertex.depth])
+    }
+
+    /// The part of an edge that can be projected.
+    #[cold]
+    #[inline(never)]
+    fn clipped(&self, ends: [u16; 2]) -> Option<[Place; 2]> {
+        let [from, to] = ends.map(|corner| self.vertices.get(usize::from(corner)));
+        clip_edge(self.view, [from?, to?])
+    }
+
+    /// The range of inverse depth of a triangle.
+    #[inline]
+    fn range(&self, triangle: &Triangle) -> i32 {
+        let [a, b, c] = triangle.corners.map(|corner| self.cached(corner));
+        let (Some([.., a]), Some([.., b]), Some([.., c])) = (a, b, c) else { return self.clipped_range(triangle) };
+        a.max(b).max(c).wrapping_sub(a.min(b).min(c))
+    }
+
+    #[cold]
+    #[inline(never)]
+    fn clipped_range(&self, triangle: &Triangle) -> i32 {
+        let [a, c, b] = triangle.corners.map(|corner| self.vertices.get(usize::from(corner)));
+        let (Some(a), Some(b), Some(c)) = (a, b, c) else { return 0 };
+        let polygon = clip(self.view, [a, b, c]);
+        let depth = || polygon.iter().map(|cut| cut.place[2]);
+        depth().max().unwrap_or(0).wrapping_sub(depth().min().unwrap_or(0))
+    }
+
+    /// Whether a triangle faces the viewer and touches a pixel of `area`.
+    #[inline(never)]
+    pub(crate) fn faces(&self, triangle: u16, viewport: Viewport, area: Bounds) -> bool {
+        let triangle = self.triangles.get(usize::from(triangle)).filter(|triangle| self.facing.may_face(triangle));
+        let Some([a, c, b]) = triangle.map(|triangle| triangle.corners) else { return false };
+        let [a, b, c] = [a, b, c].map(|corner| self.vertices.get(usize::from(corner)));
+        let (Some(a), Some(b), Some(c)) = (a, b, c) else { return false };
+        viewport.touches_by(self.view, [a, b, c], area)
+    }
+}

@@ -1,0 +1,54 @@
+//! Mixes pixels with the neighbours that are seen beyond an edge.
+
+use crate::{
+    edges::walk::{DIRECTION, DOWN, LEFT, UP},
+    pixel::{Pixel, gamma::Gamma},
+};
+
+/// Pixels of a band around those that are mixed, as they were before.
+pub(crate) struct Surroundings<'s, C: Pixel> {
+    /// The row above the first one that is mixed.
+    pub(crate) above: &'s [C::Stored],
+    /// The row below the band.
+    pub(crate) below: &'s [C::Stored],
+    /// Number of columns.
+    pub(crate) width: usize,
+    /// The curve of the display.
+    pub(crate) gamma: Option<&'static Gamma>,
+}
+
+impl<C: Pixel> Surroundings<'_, C> {
+    /// Computes the colours of `places`, which are pixels of the band's rows from number `first` on. `marks` are those of these rows.
+    #[inline(never)]
+    pub(crate) fn mix(&self, pixels: &[C], first: usize, marks: &[u8], places: &[u16], mixed: &mut [C::Stored]) {
+        let start = first.wrapping_mul(self.width);
+        for (&place, mixed) in places.iter().zip(mixed) {
+            let place = usize::from(place);
+            let (at, mark) = (start.wrapping_add(place), marks.get(place).copied().unwrap_or(0));
+            let Some(&own) = pixels.get(at) else { continue };
+            let neighbour = match mark & ((1 << DIRECTION) - 1) {
+                UP if place < self.width => self.above.get(place).copied().map(C::from_stored),
+                UP => pixels.get(at.wrapping_sub(self.width)).copied(),
+                DOWN => {
+                    let below = at.wrapping_add(self.width);
+                    let beyond = || self.below.get(below.wrapping_sub(pixels.len())).copied().map(C::from_stored);
+                    pixels.get(below).copied().or_else(beyond)
+                }
+                LEFT => pixels.get(at.wrapping_sub(1)).copied(),
+                _ => pixels.get(at.wrapping_add(1)).copied(),
+            };
+            *mixed = own.mixed_with(neighbour.unwrap_or(own), (mark >> DIRECTION).into(), self.gamma).stored();
+        }
+    }
+}
+
+/// Stores what [`Surroundings::mix`] has computed into the pixels that begin with the marked rows, and removes the marks.
+#[inline(never)]
+pub(crate) fn store<C: Pixel>(pixels: &mut [C], marks: &mut [u8], places: &[u16], mixed: &[C::Stored]) {
+    for (&place, &mixed) in places.iter().zip(mixed) {
+        if let (Some(pixel), Some(mark)) = (pixels.get_mut(usize::from(place)), marks.get_mut(usize::from(place))) {
+            *pixel = C::from_stored(mixed);
+            *mark = 0;
+        }
+    }
+}

@@ -1,0 +1,154 @@
+//! Follows an edge pixel by pixel, and notes which share of each pixel lies beyond it.
+//!
+//! An edge is walked along its longer axis. In each column of that axis (a column or a row of the picture) whose centre it passes, it runs between the
+//! centres of two pixels, or through one of them. The area of the pixel on the other side of the edge is exact for the straight line.
+
+use crate::{arch::quotient::inverse, edges::Edge, format::SUBPIXEL};
+
+/// Direction of a neighbour, the lower bits of a mark.
+pub(crate) const UP: u8 = 0;
+/// See [`UP`].
+pub(crate) const DOWN: u8 = 1;
+/// See [`UP`].
+pub(crate) const LEFT: u8 = 2;
+/// See [`UP`].
+pub(crate) const RIGHT: u8 = 3;
+
+/// Bits of a direction.
+pub(crate) const DIRECTION: u32 = 2;
+
+/// Fraction bits of the share of a neighbour in a mark. A share is less than a half.
+pub(crate) const SHARE: u32 = 7;
+
+/// The rows of a picture in which edges are walked.
+pub(crate) struct Window<'w> {
+    /// Number of columns.
+    pub(crate) width: i32,
+    /// The rows whose depth is known, half open.
+    pub(crate) rows: [i32; 2],
+    /// The depth in these rows.
+    pub(crate) depth: &'w [u16],
+    /// The first of the rows in which pixels are noted.
+    pub(crate) top: i32,
+    /// One past the last of them.
+    pub(crate) bottom: i32,
+    /// A share and a direction for each pixel of these rows, or 0.
+    pub(crate) marks: &'w mut [u8],
+    /// The pixels that are noted.
+    pub(crate) places: &'w mut [u16],
+    /// Number of pixels that are noted. If it exceeds the places, some found no room.
+    pub(crate) count: usize,
+}
+
+const ONE: i32 = 1 << 16;
+const HALF: i32 = ONE / 2;
+
+impl Window<'_> {
+    /// Notes a pixel of the window; `share` is Q.16 and less than a half.
+    #[inline(always)]
+    fn note(&mut self, pixel: i32, share: i32, direction: u8) {
+        let mark = ((share >> (16 - SHARE)).min((1 << (SHARE - 1)) - 1) << DIRECTION) as u8 | direction;
+        if let Some(old) = self.marks.get_mut(pixel as usize) {
+            if *old == 0 {
+                if let Some(place) = self.places.get_mut(self.count) {
+                    *place = pixel as u16;
+                }
+                self.count += 1;
+            }
+            *old = mark.max(*old);
+        }
+    }
+
+    /// Walks an edge.
+    #[inline(never)]
+    pub(crate) fn walk(&mut self, edge: &Edge) {
+        let [[ax, ay], [bx, by]] = edge.ends.map(|end| end.map(i32::from));
+        let [mut z0, mut z1] = edge.depth.map(i32::from);
+        let is_flat = (bx - ax).abs() >= (by - ay).abs();
+        // Major and minor coordinate of both ends; the major one grows.
+        let ([mut m0, mut n0], [mut m1, mut n1]) = if is_flat { ([ax, ay], [bx, by]) } else { ([ay, ax], [by, bx]) };
+        let is_reversed = m1 < m0;
+        if is_reversed {
+            (m0, n0, z0, m1, n1, z1) = (m1, n1, z1, m0, n0, z0);
+        }
+        // Whether the surface lies on the side of larger minor coordinates.
+        let is_below = is_flat != is_reversed;
+        let length = (m1 - m0) as u32;
+        let ([first_major, end_major], [first_minor, end_minor]) =
+            if is_flat { ([0, self.width], self.rows) } else { ([self.top, self.bottom], [0, self.width]) };
+        // Columns whose centre it passes.
+        let half = 1 << (SUBPIXEL - 1);
+        let first = ((m0 + half - 1) >> SUBPIXEL).max(first_major);
+        let end = ((m1 + half - 1) >> SUBPIXEL).min(end_major);
+        if first >= end {
+            return;
+        }
+        // 2^32 / length, shifted right by `zeros`.
+        let zeros = length.leading_zeros().wrapping_sub(16) & 15;
+        let reciprocal = inverse(length << zeros);
+        let signed = |size: u32, sign: i32| if sign < 0 { (size as i32).wrapping_neg() } else { size as i32 };
+        let step = signed((n1 - n0).unsigned_abs().wrapping_mul(reciprocal) >> (16 - zeros), n1 - n0);
+        let depth_step = signed((z1 - z0).unsigned_abs().wrapping_mul(reciprocal >> 2) >> (18 - zeros), z1 - z0);
+        // Minor coordinate at the centre of the first column, Q.16, and depth, Q.12.
+        let from = (first << SUBPIXEL) + half - m0;
+        let mut minor = (n0 << (16 - SUBPIXEL)) + step.wrapping_mul(from >> SUBPIXEL) + (step.wrapping_mul(from & 15) >> SUBPIXEL);
+        let mut depth = (z0 << 12) + depth_step.wrapping_mul(from);
+        let depth_step = depth_step << SUBPIXEL;
+        let half_step = step.abs() >> 1;
+        let corner = per_corner(half_step);
+        let (major_stride, minor_stride) = if is_flat { (1, self.width) } else { (self.width, 1) };
+        let (inner, outer) = if is_below { (minor_stride, 0) } else { (0, minor_stride) };
+        let [towards_low, towards_high] = if is_flat { [UP, DOWN] } else { [LEFT, RIGHT] };
+        let mut base = if is_flat { first - self.rows[0] * self.width } else { (first - self.rows[0]) * self.width };
+        let to_mark = (self.top - self.rows[0]) * self.width;
+        let pairs = (end_minor - 1 - first_minor) as u32;
+        let (range, beyond) = (i32::from(edge.range), i32::from(edge.beyond));
+        let known = self.depth;
+        let inv_depth = |at: i32| known.get(at as usize).map_or(0, |depth| i32::from(*depth));
+        let mut left = end - first;
+        loop {
+            // The last pixel whose centre lies before the edge; its pair is the next one.
+            let low = (minor - HALF - 1) >> 16;
+            if ((low - first_minor) as u32) < pairs {
+                let at = base + low * minor_stride;
+                let own = depth >> 12;
+                if inv_depth(at + outer) <= own + beyond && inv_depth(at + inner) >= own - range {
+                    // The edge lies this far behind the centre of `low`.
+                    let behind = minor - HALF - 1 - (low << 16);
+                    let pixel = at - to_mark;
+                    let (near, far, distance) = if behind < HALF {
+                        (pixel, pixel + minor_stride, HALF - behind)
+                    } else {
+                        (pixel + minor_stride, pixel, behind - HALF)
+                    };
+                    let (to_far, to_near) = if behind < HALF { (towards_high, towards_low) } else { (towards_low, towards_high) };
+                    let past = half_step - distance;
+                    let small = if past > 0 { (((past >> 4) * (past >> 4)) >> 8).wrapping_mul(corner) >> 14 } else { 0 };
+                    self.note(near, distance + small, to_far);
+                    if small > 256 {
+                        self.note(far, small, to_near);
+                    }
+                }
+            }
+            left -= 1;
+            if left == 0 {
+                return;
+            }
+            minor = minor.wrapping_add(step);
+            depth = depth.wrapping_add(depth_step);
+            base += major_stride;
+        }
+    }
+}
+
+/// 2^24 over 1/16 of `half_step`, for areas of corners; 0 if there are none.
+#[inline]
+fn per_corner(half_step: i32) -> i32 {
+    let size = (half_step >> 4) as u32;
+    if size == 0 {
+        return 0;
+    }
+    let zeros = size.leading_zeros().wrapping_sub(16) & 15;
+    let inverse = inverse(size << zeros);
+    (if zeros < 8 { inverse >> (8 - zeros) } else { inverse << (zeros - 8) }) as i32
+}
