@@ -18,6 +18,7 @@ pub(crate) mod walk;
 use crate::{
     format::{DEPTH, SUBPIXEL},
     geometry::pixel_rect::PixelRect,
+    math::vector::zip,
 };
 use zerocopy::{FromBytes, Immutable, IntoBytes, KnownLayout};
 
@@ -90,20 +91,20 @@ fn is_near([x, y, _]: Place) -> bool {
 #[cold]
 #[inline(never)]
 fn cut(mut ends: [Place; 2]) -> Option<[Place; 2]> {
-    for (axis, sign) in [(0, 1), (0, -1), (1, 1), (1, -1)] {
-        let [a, b] = ends.map(|end| i64::from(FARTHEST - sign * end[axis]));
+    for (is_row, sign) in [(false, 1), (false, -1), (true, 1), (true, -1)] {
+        let distance = |[x, y, _]: Place| i64::from(FARTHEST - sign * if is_row { y } else { x });
         // The point of the border between an inner end at the distance `d` and an outer one at the distance `e`.
         let border = |inner: Place, outer: Place, d: i64, e: i64| -> Place {
             let mixed = |from: i32, to: i32| from + ((i64::from(to) - i64::from(from)) * d).checked_div(d - e).unwrap_or(0) as i32;
-            let mut border = [mixed(inner[0], outer[0]), mixed(inner[1], outer[1]), mixed(inner[2], outer[2])];
-            border[axis] = sign * FARTHEST;
-            border
+            let [x, y, depth] = zip(inner, outer, mixed);
+            if is_row { [x, sign * FARTHEST, depth] } else { [sign * FARTHEST, y, depth] }
         };
         let [from, to] = ends;
+        let (a, b) = (distance(from), distance(to));
         match (a < 0, b < 0) {
             (true, true) => return None,
-            (true, false) => ends[0] = border(to, from, b, a),
-            (false, true) => ends[1] = border(from, to, a, b),
+            (true, false) => ends = [border(to, from, b, a), to],
+            (false, true) => ends = [from, border(from, to, a, b)],
             (false, false) => {}
         }
     }

@@ -21,7 +21,7 @@ use crate::{
         counts::Counts,
     },
 };
-use core::ops::Range;
+use core::{cell::Cell, ops::Range};
 use embedded_graphics_core::{
     geometry::{Point, Size},
     primitives::Rectangle,
@@ -273,15 +273,16 @@ impl<'r> FrameRows<'r> {
         let pixels = pixels.get_mut(..count * row).unwrap_or_default();
         // The depth buffer begins with the row above the band.
         let reached = self.rows.start.max(top.saturating_sub(1))..self.rows.end.min(next);
-        let known = if reached.is_empty() { top..top } else { reached };
+        let known = if reached.start >= reached.end { top..top } else { reached };
         let start = (known.start + 1 - top) as usize * row;
-        let depth = self.depth.get(start..start + known.len() * row).unwrap_or_default();
+        let depth = self.depth.get(start..start + (known.end - known.start) as usize * row).unwrap_or_default();
         let band = SmoothedBand { width: row, rows: top..bottom, known, depth };
         self.smoother.smooth(context, pixels, &band, colours.output().gamma);
         self.smoother.hold(bottom);
-        if let Some(last) = self.depth.get_mut(..(count + 2) * row) {
-            last.copy_within(count * row.., 0);
-        }
+        // The depth of the last row and of the one below it comes first in the next band.
+        let depth = Cell::from_mut(&mut *self.depth).as_slice_of_cells();
+        let last = depth.get(count * row..(count + 2) * row).unwrap_or_default();
+        depth.iter().zip(last).for_each(|(to, from)| to.set(from.get()));
     }
 
     /// Finds the edges that antialiasing smooths.

@@ -148,7 +148,7 @@ impl<'r> Smoother<'r> {
             }
         }
         if end <= first || end < rows.end {
-            keep(kept::<C::Stored>(self.colours, *width).above, pixels, rows.len());
+            keep(kept::<C::Stored>(self.colours, *width).above, pixels, (rows.end - rows.start) as usize);
         }
     }
 

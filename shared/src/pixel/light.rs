@@ -184,9 +184,9 @@ impl<const R: u32, const G: u32, const B: u32> Pixel for Light<R, G, B> {
         let are_unlike = (self.0 ^ other.0) & IS_FINAL != 0;
         let [own, other] =
             [self, other].map(|light| if let Some(gamma) = gamma.filter(|_| are_unlike) { light.curved(gamma) } else { light });
-        let (a, b) = (own.fine(), other.fine());
-        let channel = |k: usize| (a[k] * (128 - share) + b[k] * share + 64) >> 7;
-        Self(word([channel(0), channel(1), channel(2)]) | (self.0 | other.0) & IS_FINAL)
+        let mixed = |own: u32, other: u32| (own * (128 - share) + other * share + 64) >> 7;
+        let ([r, g, b], [red, green, blue]) = (own.fine(), other.fine());
+        Self(word([mixed(r, red), mixed(g, green), mixed(b, blue)]) | (self.0 | other.0) & IS_FINAL)
     }
 
     fn to_mix(self) -> [u8; 3] {

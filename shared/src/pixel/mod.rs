@@ -106,9 +106,9 @@ pub trait Pixel: PixelFormat {
     /// Mixes the pixel with `share / 128` of `other`; for antialiasing. A pixel of light needs the curve of the display for it.
     #[doc(hidden)]
     fn mixed_with(self, other: Self, share: u32, _: Option<&'static Gamma>) -> Self {
-        let (own, other) = (self.to_mix(), other.to_mix());
-        let channel = |k: usize| ((u32::from(own[k]) * (128 - share) + u32::from(other[k]) * share + 64) >> 7) as u8;
-        Self::mixed_from([channel(0), channel(1), channel(2)])
+        let mixed = |own: u8, other: u8| ((u32::from(own) * (128 - share) + u32::from(other) * share + 64) >> 7) as u8;
+        let ([r, g, b], [red, green, blue]) = (self.to_mix(), other.to_mix());
+        Self::mixed_from([mixed(r, red), mixed(g, green), mixed(b, blue)])
     }
 
     /// The channels of the pixel as antialiasing mixes them, at most eight bits each.
