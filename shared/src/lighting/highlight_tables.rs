@@ -20,10 +20,8 @@ pub(crate) fn assign(materials: &mut [Reflectance], index: usize, tables: &mut [
 
 /// The number of tables that all `materials` need; 0 if each has one.
 pub(crate) fn lacking(materials: &[Reflectance]) -> usize {
-    let is_first = |&index: &usize| {
-        let (before, rest) = materials.split_at(index);
-        rest.first().is_some_and(|material| before.iter().all(|other| other.highlights != material.highlights))
-    };
+    let is_first =
+        |&(index, material): &(usize, &Reflectance)| materials.iter().take(index).all(|other| other.highlights != material.highlights);
     let is_lacking = materials.iter().any(|material| material.table == 0);
-    if is_lacking { (0..materials.len()).filter(is_first).count() } else { 0 }
+    if is_lacking { materials.iter().enumerate().filter(is_first).count() } else { 0 }
 }

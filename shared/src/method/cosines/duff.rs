@@ -107,7 +107,7 @@ pub(crate) fn draw<C: Pixel>(
     quotient::draw(setup, &corners(), &lengths, tables, band)
 }
 
-/// The field |N|² minus [`LEAST`](crate::math::rsqrt::LEAST), Q0.32, of normals of unit length; `None` if |N|² leaves the table of roots.
+/// The field |N|² minus [`crate::math::rsqrt::LEAST`], Q0.32, of normals of unit length; `None` if |N|² leaves the table of roots.
 #[inline(always)]
 pub(super) fn tabled(setup: &TriangleSetup<'_>) -> Option<UnitSquare> {
     scale::is_flat(setup).then(|| scale::unit_square(setup))
@@ -144,7 +144,7 @@ fn exact(setup: &TriangleSetup<'_>) -> [i32; 6] {
     [corner(a), corner(b), corner(c), middle(a, b), middle(b, c), middle(c, a)]
 }
 
-/// Normalises by 1/|N| from a table, for |N|² in [1/4, 1]; |N|² minus [`LEAST`] is walked.
+/// Normalises by 1/|N| from a table, for |N|² in [1/4, 1]; |N|² minus [`crate::math::rsqrt::LEAST`] is walked.
 #[derive(Clone, Copy)]
 struct Tabled;
 
