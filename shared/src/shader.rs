@@ -119,7 +119,7 @@ impl<C: Pixel> Shader<C> {
 
     /// The loops that draw a style.
     pub(crate) fn loops(&self, style: Style) -> TriangleLoops<C> {
-        // Decision: loops.
+        // Decision: style.
         match ((self.take)(style), style.three_channels) {
             (true, false) => self.loops,
             (true, true) => self.three_channels,

@@ -42,7 +42,6 @@ impl<C: Pixel> Drawing<'_, C> {
     // As part of its caller, it changes how the compiler arranges the set-up of triangles: +0.7 % of a frame on Armv6-M.
     #[inline(never)]
     pub(crate) fn style(&self) -> Style {
-        // Decision: style.
         let MeshPass { shading: Shading { reflectance, lighting, .. }, perspective, .. } = &self.pass;
         Style {
             three_channels: reflectance.three_channels(),
