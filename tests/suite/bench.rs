@@ -35,8 +35,8 @@ fn blocks_are_the_instructions_in_them() {
     assert!(executed[0] == executed[1], "blocks and single instructions differ");
 }
 
-/// Each style is counted as itself, in the order of their names: flat shading costs the same in perspective, but for the question, and what
-/// cannot be drawn has no count.
+/// Each style is counted as itself, in the order of their names. Flat shading costs the same in perspective, but for the question. Smooth outlines take
+/// less than three plain frames, and linear light in perspective, on triangles as large as these, takes more. What cannot be drawn has no count.
 #[test]
 fn styles_are_told_apart() {
     let shaders = [Shader::FLAT, Shader::GOURAUD, named("gouraud4")];

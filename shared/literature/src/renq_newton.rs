@@ -4,8 +4,8 @@
 //! exponent. The method needs no root, no division, and no table but the highlight's.
 //!
 //! Cost: 6 additions a pixel, 8 products and the highlight's table; 2 additions and 2 products more per light. Continuous.
-//! Error against Phong under constant light: 0.1 LSB and the table's. Domain: any lights; where |N| falls below 1/2, [`microphong::method::cosines::duff`]'s root takes over. Under near lights, and for a local viewer, no
-//! quadratic through six points is exact: there it is [`microphong::method::cosines::phong`].
+//! Error against Phong under constant light: 0.1 LSB and the table's. Domain: any lights. Where |N| falls below 1/2, under near lights, and for a
+//! local viewer, the method draws as [`microphong::method::cosines::phong`].
 
 use crate::{duff::draw_products, renq};
 use microphong::{
