@@ -394,6 +394,20 @@ fn materials_share_tables_of_highlights() {
         }
         Ok(pixels)
     };
+    // Materials without a highlight need none.
+    let matt = |index: usize| Material { specular: [0; 3], exponent: index as u16 + 8, ..stream.materials[index] };
+    let draw_matt = |tables: usize, shader: Shader| {
+        let layout = Layout::new(150, 120).with_room_for(&stream).highlight_tables(tables);
+        let mut memory = vec![u64::MAX; layout.words::<Rgb565>()];
+        let mut renderer = Renderer::<Rgb565>::with_shader(stream, size, &layout, &mut memory, shader.on())?;
+        (0..materials).for_each(|index| renderer.scene().set_material(index, matt(index)).expect("a material"));
+        let mut pixels = vec![Rgb565::RED; layout.band()];
+        renderer.draw().next_band(&mut pixels).map(|_| pixels)
+    };
+    for shader in Shader::ALL.into_iter().filter(|&shader| check(&stream, shader.facts(), false).is_ok()) {
+        let expected = draw_matt(materials, shader);
+        assert!(expected.is_ok() && draw_matt(1, shader) == expected, "{}", shader.name());
+    }
     for shader in [Shader::PHONG, Shader::AUTO, Shader::SQRT6] {
         let expected = draw(materials, shader, [20, 40]);
         let Err(RenderError::TooFewHighlightTables { need }) = draw(1, shader, [20, 40]) else { panic!("one table is too few") };

@@ -945,10 +945,16 @@ fn convert_refuses_what_a_board_would_refuse() {
         let head = "frames = 1\nshader = \"gouraud\"\n[camera]\nat = [0, 0, 5]\n[[mesh]]\nname = \"box\"\nshape = \"box\"\n";
         format!("{head}{}{more}", "[[object]]\nmesh = \"box\"\n".repeat(objects))
     };
-    for count in [2, 3, 4, 5, 16, 17] {
-        let colours: String = (0..count).map(|k| format!("newmtl m{k}\nKd 0.{} 0.5 0.5\n", k + 10)).collect();
-        place.file(&format!("m{count}.mtl"), colours);
-        place.file(&format!("m{count}.obj"), format!("mtllib m{count}.mtl\n{}", materials(count)));
+    let model = |name: &str, count: usize, highlight: &dyn Fn(usize) -> String| {
+        let colours: String = (0..count).map(|k| format!("newmtl m{k}\nKd 0.{} 0.5 0.5\n{}", k + 10, highlight(k))).collect();
+        place.file(&format!("{name}{count}.mtl"), colours);
+        place.file(&format!("{name}{count}.obj"), format!("mtllib {name}{count}.mtl\n{}", materials(count)));
+    };
+    for count in [2, 3, 12, 13, 16, 17] {
+        model("m", count, &|_| String::new());
+    }
+    for count in [4, 5] {
+        model("glossy", count, &|k| format!("Ks 0.5 0.5 0.5\nNs {}\n", 10 * k + 10));
     }
     for count in [1, 2, 12, 13, 64, 65] {
         place.file(&format!("o{count}.toml"), scene(count, ""));
@@ -957,7 +963,11 @@ fn convert_refuses_what_a_board_would_refuse() {
     let (mut refused, mut taken) = (0, 0);
     for file in place.files().iter().filter(|file| !file.ends_with("mtl")) {
         for board in Board::ALL {
-            let shader = if file.ends_with("toml") { &[][..] } else { &["--shader", "gouraud"] };
+            let shader = match file {
+                file if file.ends_with("toml") => &[][..],
+                file if file.starts_with("glossy") => &["--shader", "phong"],
+                _ => &["--shader", "gouraud"],
+            };
             place.succeeds(&[&["convert", file, "-o", "out.tri"], shader].concat());
             let bytes = fs::read(place.0.path().join("out.tri")).expect("a stream");
             let fits = board != Board::Lm3s6965evb || bytes.len() <= 56 << 10;
@@ -976,10 +986,12 @@ fn convert_refuses_what_a_board_would_refuse() {
             }
         }
     }
-    // Refused by the Pico 6 of 14, by the smallest board 12, by each of the two others 2.
-    assert_eq!((taken, refused), (34, 22));
-    place.fails(&["convert", "m5.obj", "--board", "pico", "-o", "no.tri"], 1, &["5 materials", "room for 4", "--colour"]);
-    place.succeeds(&["convert", "m5.obj", "--board", "pico", "--colour", "ff8000"]);
+    // Refused by the Pico 7 of 16, by the smallest board 14, by each of the two others 2.
+    assert_eq!((taken, refused), (39, 25));
+    place.fails(&["convert", "m13.obj", "--board", "pico", "-o", "no.tri"], 1, &["13 materials", "room for 12", "--colour"]);
+    place.succeeds(&["convert", "m13.obj", "--board", "pico", "--colour", "ff8000"]);
+    place.fails(&["convert", "glossy5.obj", "--board", "pico", "-o", "no.tri"], 1, &["5 kinds of highlights", "room for 4", "gouraud"]);
+    place.succeeds(&["convert", "glossy5.obj", "--board", "pico", "--shader", "gouraud"]);
     place.fails(&["convert", "o13.toml", "--board", "pico", "-o", "no.tri"], 1, &["13 objects", "room for 12"]);
     place.fails(&["convert", "label.toml", "--board", "lm3s6965evb", "-o", "no.tri"], 1, &["no fonts", "labels"]);
     place.fails(&["convert", "large.obj", "--board", "lm3s6965evb", "-o", "no.tri"], 1, &["room for 57344", "--simplify"]);

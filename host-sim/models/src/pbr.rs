@@ -2,8 +2,9 @@
 //!
 //! The mirrored colour follows the glTF 2.0 specification, appendix B: 0.04, mixed with the base colour by the metallic factor. The exponent is the
 //! one of the closest Blinn-Phong distribution: 2 / alpha² - 2, where alpha is the square of the roughness (Walter et al. 2007; Karis 2013, "Specular
-//! BRDF Reference"). There is one difference from the specification, because a picture has no surroundings that a metal could mirror: metals, which
-//! have no diffuse reflection there, keep half of their colour for it.
+//! BRDF Reference"). There are two differences from the specification. A picture has no surroundings that a metal could mirror: metals, which have no
+//! diffuse reflection there, keep half of their colour for it. Peaks of highlights have one brightness here, while physical ones are the fainter the
+//! wider they are: below the exponent 8 highlights fade, and from 1 on, where they would be as wide as diffuse light, there are none.
 //!
 //! Colours of glTF are linear. Colours of a stream are added as a display takes them, so they are encoded as sRGB (IEC 61966-2-1).
 
@@ -16,18 +17,22 @@ use crate::{
 const DIELECTRIC: f64 = 0.04;
 /// Share of the evenly reflected light that metals keep.
 const KEPT: f64 = 0.5;
+/// The exponent below which highlights fade.
+const FADING: f64 = 8.0;
 
 /// The material nearest to a base colour, linear, with these shares.
 pub(crate) fn material(name: String, [red, green, blue, _]: [f32; 4], metallic: f32, roughness: f32) -> Material {
     let base = [red, green, blue].map(|c| f64::from(c).clamp(0.0, 1.0));
     let metallic = f64::from(metallic).clamp(0.0, 1.0);
-    let mirrored = add(scale([DIELECTRIC; 3], 1.0 - metallic), scale(base, metallic));
+    let exponent = exponent(roughness.into());
+    let strength = if exponent > 1.0 { (exponent / FADING).min(1.0) } else { 0.0 };
+    let mirrored = scale(add(scale([DIELECTRIC; 3], 1.0 - metallic), scale(base, metallic)), strength);
     Material {
         name,
         ambient: None,
-        diffuse: Some(scale(encoded(base), 1.0 - (1.0 - KEPT) * metallic)),
+        diffuse: Some(scale(encoded(base), 1.0 - (1.0 - KEPT) * metallic * strength)),
         specular: Some(encoded(mirrored)),
-        exponent: Some(exponent(roughness.into())),
+        exponent: Some(exponent),
     }
 }
 
@@ -46,6 +51,10 @@ fn encoded(linear: V3) -> V3 {
 mod tests {
     use super::*;
 
+    fn near(a: Option<V3>, b: V3) -> bool {
+        a.is_some_and(|a| a.iter().zip(b).all(|(a, b)| (a - b).abs() < 1e-3))
+    }
+
     #[test]
     fn exponents_follow_the_roughness() {
         for (roughness, expected) in [(1.0, 1.0), (0.5, 30.0), (0.25, 510.0), (0.1, 1024.0), (0.0, 1024.0)] {
@@ -54,8 +63,19 @@ mod tests {
     }
 
     #[test]
+    fn rough_surfaces_have_no_highlight() {
+        let red = |metallic, roughness| material(String::new(), [1.0, 0.0, 0.0, 1.0], metallic, roughness);
+        for metallic in [0.0, 1.0] {
+            let rough = red(metallic, 1.0);
+            assert!(near(rough.diffuse, [1.0, 0.0, 0.0]) && rough.specular == Some([0.0; 3]), "{rough:?}");
+        }
+        let strength = |roughness| red(0.0, roughness).specular.map_or(0.0, |[r, ..]| r);
+        assert!([0.9, 0.85, 0.8, 0.75, 0.7].map(strength).is_sorted_by(|a, b| a < b));
+        assert!((strength(0.6) - strength(0.3)).abs() < 1e-9, "{} {}", strength(0.6), strength(0.3));
+    }
+
+    #[test]
     fn metals_have_coloured_highlights_and_others_white_ones() {
-        let near = |a: Option<V3>, b: V3| a.is_some_and(|a| a.iter().zip(b).all(|(a, b)| (a - b).abs() < 1e-3));
         let copper = material(String::new(), [1.0, 0.214_041, 0.0, 1.0], 1.0, 0.5);
         assert!(near(copper.diffuse, [0.5, 0.25, 0.0]) && near(copper.specular, [1.0, 0.5, 0.0]), "{copper:?}");
         let paint = material(String::new(), [1.0, 0.214_041, 0.0, 1.0], 0.0, 0.5);

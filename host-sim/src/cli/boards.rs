@@ -86,8 +86,15 @@ impl Board {
         let size = Size::new(layout.width as u32, *height as u32);
         let mut memory = vec![0; layout.words::<Rgb565>()];
         let shader = Shader::of(stream)?;
-        match Renderer::<Rgb565>::with_shader(*stream, size, layout, &mut memory, shader.on()) {
+        let drawn = Renderer::<Rgb565>::with_shader(*stream, size, layout, &mut memory, shader.on())
+            .and_then(|mut renderer| renderer.frame(0).next_band(&mut vec![Rgb565::default(); layout.band()]));
+        match drawn {
             Ok(_) => {}
+            Err(RenderError::TooFewHighlightTables { need }) => bail!(
+                "the scene has {need} kinds of highlights, but the firmware of {name} has room for {}; use fewer exponents, or --shader gouraud, \
+                 which needs no room for them",
+                layout.highlight_tables
+            ),
             Err(RenderError::Materials { need }) => bail!(
                 "the scene has {need} materials, but the firmware of {name} has room for {}; use fewer materials, or --colour for one",
                 layout.materials

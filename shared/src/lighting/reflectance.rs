@@ -219,12 +219,15 @@ impl Reflectance {
             *again = *first;
             *odd = *even;
         }
+        let is_matt = self.gains.iter().take(lights.len()).all(|gains| gains.specular == [0; 3]);
         let [one, ..] = &mut self.gains;
         let (mut full, mut floor) = (1 << ENTRY, 0);
         if holds_levels {
             (full, floor) = (one.specular[0].into(), Self::biased(self.ambient[0]) as u16);
             // The remaining specular gain is 65535/65536.
-            one.specular = [u16::MAX; 3];
+            if !is_matt {
+                one.specular = [u16::MAX; 3];
+            }
         }
         self.highlights = HighlightCurve::new(material.exponent, highlight.base(), full, floor);
         // Intensities are rounded down, and so are cosines: half of their last place more.
@@ -236,6 +239,8 @@ impl Reflectance {
         }
         self.ambient_sums = sums;
         self.highlight_threshold = match highlight.base() {
+            // Loops for greys have no code of their own without a highlight: they look up the level of ambient light.
+            _ if is_matt && !(is_gray && holds_levels) => Self::NO_HIGHLIGHT,
             Base::Square => square(self.highlights.highlight_threshold()),
             _ => self.highlights.highlight_threshold(),
         };
@@ -286,7 +291,17 @@ impl Reflectance {
         LIGHTS && COLOURS && self.has_two_lights != 0
     }
 
-    /// Smallest N·H, Q2.30, whose highlight counts, see [`HighlightLut::highlight_threshold`].
+    /// [`Self::highlight_threshold`] of a material without highlights, greater than every N·H.
+    pub(crate) const NO_HIGHLIGHT: i32 = i32::MAX;
+
+    /// Whether the material has no highlight under the lights of the scene, so that it needs no table.
+    #[inline]
+    #[must_use]
+    pub fn is_matt(&self) -> bool {
+        self.highlight_threshold == Self::NO_HIGHLIGHT
+    }
+
+    /// Smallest N·H, Q2.30, whose highlight counts, see [`HighlightCurve::highlight_threshold`]; [`Self::NO_HIGHLIGHT`] if there is none.
     #[must_use]
     pub fn highlight_threshold(&self) -> i32 {
         self.highlight_threshold
@@ -327,7 +342,7 @@ impl Reflectance {
     #[inline]
     #[must_use]
     pub(crate) fn faintest(&self) -> i32 {
-        if SKIPS && self.computes_all[0] != 0 { i32::MIN } else { self.highlight_threshold }
+        if SKIPS && self.computes_all[0] != 0 && !self.is_matt() { i32::MIN } else { self.highlight_threshold }
     }
 
     /// N·L, Q2.30, up to which a light is left out: 0 unless that is switched off.
@@ -560,7 +575,7 @@ impl<'f> LitMaterial<'f> {
     pub fn largest_gains(self, light: usize) -> [u32; 2] {
         let Gains { diffuse, specular } = self.gains.get(light).copied().unwrap_or(Gains::NONE);
         let most = |gains: [u16; 3]| largest(gains.map(u32::from));
-        [most(diffuse), if self.holds_levels() { self.highlight_at(1 << COSINE) } else { most(specular) }]
+        [most(diffuse), if self.holds_levels() { self.highlight(1 << COSINE) } else { most(specular) }]
     }
 
     /// Levels under one light, Q9.7 in [0, 255], from `[N·L, N·H]` (Q2.30).

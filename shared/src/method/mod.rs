@@ -392,6 +392,9 @@ impl TriangleSetup<'_> {
     /// What a cosine, Q2.30, is at least before it is divided by |N|, where N·H is linear and |N| at least [`Triangle::min_normal_length`].
     #[inline]
     fn before_division(&self, cosine: i32) -> i32 {
+        if cosine == Reflectance::NO_HIGHLIGHT {
+            return cosine;
+        }
         by_fraction(cosine, self.triangle.min_normal_length) << (16 - NORMAL_LENGTH)
     }
 }
