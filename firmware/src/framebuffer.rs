@@ -7,8 +7,10 @@ use embedded_graphics::{
     prelude::*,
     primitives::Rectangle,
 };
-use microphong::pixel::Output;
+use microphong::{Layout, pixel::Output};
 
+/// The renderer's memory.
+pub const LAYOUT: Layout = MPS2.layout.antialias(cfg!(feature = "antialias"));
 /// Pixels of the frame buffer.
 pub const LENGTH: usize = MPS2.layout.width * MPS2.height;
 
@@ -103,9 +105,9 @@ macro_rules! framebuffer_board {
     ($shaders:expr) => {
         use ::embedded_graphics::pixelcolor::{Rgb565, RgbColor};
         use ::microphong::Layout;
-        use ::microphong_firmware::{OneCore, budget::MPS2, framebuffer, run};
+        use ::microphong_firmware::{OneCore, framebuffer, run};
 
-        const LAYOUT: Layout = $crate::smooth(MPS2.layout);
+        const LAYOUT: Layout = framebuffer::LAYOUT;
 
         /// The host finds it by this name.
         #[unsafe(no_mangle)]

@@ -103,12 +103,6 @@ pub fn stop<D: Display>(display: &mut D, failure: Failure) -> ! {
     display.halt()
 }
 
-/// The layout with room for smooth outlines, if the firmware can draw them.
-#[must_use]
-pub const fn smooth(layout: Layout) -> Layout {
-    layout.antialias(cfg!(feature = "antialias")).edges(4096)
-}
-
 /// Returns only if it cannot start or go on.
 fn animate<D: Display>(
     display: &mut D,

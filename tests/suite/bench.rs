@@ -15,7 +15,7 @@ use std::{collections::BTreeMap, fs, path::Path, process::Command};
 fn blocks_are_the_instructions_in_them() {
     let board = Processor::CortexM3.board().unwrap();
     let scene = scene::load("sphere-168").unwrap();
-    let elf = Elf::read(&verify::build(board).unwrap()).unwrap();
+    let elf = Elf::read(&verify::build(board, false).unwrap()).unwrap();
     let elf = elf.with_stream(&verify::prepare(scene.stream.as_bytes(), named("duff"), 1).unwrap()).unwrap();
     let ranges = Meter::new(&elf).unwrap().ranges();
     let executed = [Blocks::Whole, Blocks::Single].map(|blocks| {
@@ -119,6 +119,25 @@ fn counts_repeat() {
         let sent = 2 * 16 * found.pixels..2 * 16 * 240 * 240;
         assert!(found.timing.is_none_or(|time| sent.contains(&time.wire_cycles) && time.frame_cycles > time.wire_cycles));
     }
+}
+
+/// Smooth outlines on a Cortex-M3 take no more instructions over the plain frame than the guide says.
+#[test]
+fn smooth_outlines_cost_what_the_guide_says() {
+    let guide = include_str!("../../docs/guide/costs.md");
+    let processor = Processor::CortexM3;
+    let (plain, smooth) = (Bench::new(&[processor]).unwrap(), Bench::antialiased(&[processor]).unwrap());
+    for name in ["teapot", "torus", "bunny"] {
+        let scene = scene::load(name).unwrap();
+        let [before, after] =
+            [&plain, &smooth].map(|bench| bench.count(&scene, &[(processor, Shader::GOURAUD)], &|| ()).unwrap()[0].instructions);
+        let more = (after - before) as f64 / 1e3;
+        println!("{name}: {before} + {more:.0} k, {:.3} times", after as f64 / before as f64);
+        let row = guide.lines().find(|line| line.starts_with(&format!("| `{name}` | + "))).expect("a row");
+        let stated: f64 = row.split(['+', 'k']).nth(1).and_then(|figure| figure.trim().parse().ok()).expect("a figure");
+        assert!((more - stated).abs() <= 0.01 * stated, "{name}: {more:.1} thousand, and the guide says {stated}");
+    }
+    assert!(Bench::antialiased(&[Processor::X86_64]).unwrap_err().to_string().contains("--styles"));
 }
 
 /// No frame costs more than recorded, but for the tolerance.

@@ -58,7 +58,7 @@ fn stack_used(stack: &[u8], paint: u32) -> usize {
 
 #[test]
 fn ten_thousand_frames_use_up_nothing() -> Result {
-    let elf = Elf::read(&verify::build(Board::Pico)?)?.with_stream(&stream()?)?;
+    let elf = Elf::read(&verify::build(Board::Pico, false)?)?.with_stream(&stream()?)?;
     let stack = offsets(elf.symbol("_stack_end")?.0..elf.symbol("_stack_start")?.0);
     // What the renderer and the frame loop are given to write: all else is to stay as it is.
     let given: Vec<_> = elf.objects()?.into_iter().filter(|(name, _)| name.ends_with("::BANDS") || name.ends_with("::MEMORY")).collect();

@@ -24,7 +24,7 @@ fn after(pictures: usize) -> Result<Pico> {
 /// A Pico that has shown this number of pictures of a stream.
 fn after_of(stream: &[u8], pictures: usize) -> Result<Pico> {
     let stream = verify::prepare(stream, Shader::SIX_POINT, FRAMES)?;
-    let mut pico = Pico::new(&Elf::read(&verify::build(Board::Pico)?)?.with_stream(&stream)?)?;
+    let mut pico = Pico::new(&Elf::read(&verify::build(Board::Pico, false)?)?.with_stream(&stream)?)?;
     for _ in 0..pictures {
         pico.next_picture()?;
     }

@@ -172,7 +172,7 @@ fn judge(board: Board, elf: &Elf, bytes: &[u8], Recording { pictures, log }: &Re
 
 /// Runs all streams on one board.
 fn board(board: Board) -> Result {
-    let elf = Elf::read(&verify::build(board)?)?;
+    let elf = Elf::read(&verify::build(board, false)?)?;
     let (mut drawn, mut refused, mut wrong) = (0, 0, Vec::new());
     for (name, bytes) in corpus(board)?.into_iter().chain(damaged(board)).chain(limits()?) {
         match run(board, &elf, &bytes).and_then(|recording| judge(board, &elf, &bytes, &recording)) {
@@ -191,7 +191,7 @@ fn board(board: Board) -> Result {
 #[test]
 fn what_belongs_to_another_stream_is_noticed() -> Result {
     let board = Board::Mps2An385;
-    let elf = Elf::read(&verify::build(board)?)?;
+    let elf = Elf::read(&verify::build(board, false)?)?;
     let scene = |name| -> Result<Vec<u8>> { Ok(scene::load(name)?.stream.as_bytes().to_vec()) };
     let mut short = scene("triangle")?;
     short[8] = 0xFF;

@@ -29,13 +29,13 @@ fn stream(scene: &str) -> Result<Vec<u8>> {
 }
 
 fn request(board: Board, scene: &str, shader: Shader) -> Result<Request> {
-    Ok(Request { board, scene: scene.to_owned(), stream: stream(scene)?, firmware_stream: None, shader, frames: FRAMES })
+    Ok(Request { board, scene: scene.to_owned(), stream: stream(scene)?, firmware_stream: None, shader, frames: FRAMES, antialias: false })
 }
 
 /// All shaders and scenes on one board. The core's shaders draw all scenes, the others draw the teapot.
 fn matrix(board: Board) -> Result {
     let directory = tempfile::tempdir()?;
-    let elf = verify::build(board)?;
+    let elf = verify::build(board, false)?;
     let mut pictures = Vec::new();
     // The smallest board has no room for large meshes, nor for several objects.
     let is_small = board == Board::Lm3s6965evb;
@@ -73,6 +73,28 @@ fn matrix(board: Board) -> Result {
     Ok(())
 }
 
+/// Smooth outlines are the same bits on boards, too.
+#[test]
+fn smooth_outlines() -> Result {
+    let directory = tempfile::tempdir()?;
+    for board in Board::ALL.into_iter().filter(|board| board.smooths()) {
+        let elf = verify::build(board, true)?;
+        let scenes = ["teapot", "torus", "bunny", "dodecahedron"].iter().chain(&SCRIPTED);
+        let pictures = scenes.flat_map(|scene| [Shader::GOURAUD, Shader::AUTO, Shader::PHONG].map(|shader| (scene, shader)));
+        for (scene, shader) in pictures.collect::<Vec<_>>() {
+            let stream = scene::load(scene)?.stream.with_neighbours()?.as_bytes().to_vec();
+            let request = Request { antialias: true, stream, ..request(board, scene, shader)? };
+            let report = verify::run(&request, &elf, directory.path())?;
+            assert_eq!(report.differing, 0, "{board} {scene} {}", shader.name());
+            // It would differ if the host drew no outlines.
+            let plain = verify::run(&Request { antialias: false, ..request }, &elf, directory.path())?;
+            assert!(plain.differing > 100, "{board} {scene} {}: {} pixels of outlines", shader.name(), plain.differing);
+        }
+    }
+    assert!(verify::build(Board::Pico, true).unwrap_err().to_string().contains("smooth outlines"));
+    Ok(())
+}
+
 /// The stream with one bit of the first vertex's normal flipped: too little for a stream to be refused.
 fn bent(scene: &str) -> Result<Vec<u8>> {
     let stream = scene::load(scene)?.stream;
@@ -89,7 +111,7 @@ fn bent(scene: &str) -> Result<Vec<u8>> {
 fn flipped_bit(board: Board) -> Result {
     let directory = tempfile::tempdir()?;
     let request = Request { firmware_stream: Some(bent("triangle")?), ..request(board, "triangle", Shader::GOURAUD)? };
-    let report = verify::run(&request, &verify::build(board)?, directory.path())?;
+    let report = verify::run(&request, &verify::build(board, false)?, directory.path())?;
     assert!(report.differing > 0, "{board}: a bent normal went unnoticed");
     for name in ["board.png", "host.png", "difference.png"] {
         assert!(directory.path().join(name).is_file(), "{board}: no {name}");
@@ -103,7 +125,7 @@ fn damaged_stream(board: Board) -> Result {
     if let Some(last) = bytes.last_mut() {
         *last ^= 1;
     }
-    let elf = Elf::read(&verify::build(board)?)?.with_stream(&bytes)?;
+    let elf = Elf::read(&verify::build(board, false)?)?.with_stream(&bytes)?;
     let recording = board::run(board, &elf, Until::LastFrame(1))?;
     let failure = recording.failure().expect("a line that starts with `error: `");
     assert!(failure.contains("checksum"), "{board}: {failure}");
@@ -119,7 +141,7 @@ fn damaged_stream(board: Board) -> Result {
 
 /// The firmware as it is built, without another stream put into it, draws the teapot.
 fn as_built(board: Board) -> Result {
-    let elf = Elf::read(&verify::build(board)?)?;
+    let elf = Elf::read(&verify::build(board, false)?)?;
     let recording = board::run(board, &elf, Until::FirstFrame)?;
     let stream = fs::read(Path::new(env!("CARGO_MANIFEST_DIR")).join("../firmware/teapot.tri"))?;
     let expected = verify::first_frame(board, &stream)?;
@@ -134,7 +156,7 @@ fn as_built(board: Board) -> Result {
 fn a_missing_method_is_named() -> Result {
     let board = Board::Lm3s6965evb;
     let duff = Shader::ALL.into_iter().find(|shader| shader.name() == "duff").expect("a method");
-    let elf = Elf::read(&verify::build(board)?)?.with_stream(&verify::prepare(&stream("teapot")?, duff, 1)?)?;
+    let elf = Elf::read(&verify::build(board, false)?)?.with_stream(&verify::prepare(&stream("teapot")?, duff, 1)?)?;
     let recording = board::run(board, &elf, Until::FirstFrame)?;
     let failure = recording.failure().expect("a line that starts with `error: `");
     assert!(
@@ -177,7 +199,7 @@ fn a_method_of_a_users_own_is_the_hosts() -> Result {
 /// A file that does not fit is refused before it runs.
 #[test]
 fn too_large_a_stream_is_refused() -> Result {
-    let elf = Elf::read(&verify::build(Board::Lm3s6965evb)?)?;
+    let elf = Elf::read(&verify::build(Board::Lm3s6965evb, false)?)?;
     let error = elf.with_stream(&vec![0; 256 << 10]).expect_err("no such room").to_string();
     assert!(error.contains("room"), "{error}");
     Ok(())

@@ -18,7 +18,7 @@ pub mod size;
 pub mod stage;
 pub mod styles;
 
-use anyhow::{Context, Result};
+use anyhow::{Context, Result, ensure};
 use embedded_graphics_core::{geometry::Size, pixelcolor::Rgb565};
 use flash::Graph;
 pub use measurement::{Measurement, Timing};
@@ -51,6 +51,8 @@ pub struct Bench {
     firmware: Vec<(Processor, Firmware)>,
     /// The program that draws on the host.
     host: Option<PathBuf>,
+    /// Whether outlines are smooth, on boards.
+    antialias: bool,
 }
 
 impl Bench {
@@ -59,10 +61,23 @@ impl Bench {
     /// # Errors
     /// When a firmware does not compile.
     pub fn new(processors: &[Processor]) -> Result<Self> {
+        Self::of(processors, false)
+    }
+
+    /// Builds the firmware of boards that draws smooth outlines.
+    ///
+    /// # Errors
+    /// When a board has no memory for them, a processor is no board, or a firmware does not compile.
+    pub fn antialiased(processors: &[Processor]) -> Result<Self> {
+        ensure!(!processors.contains(&Processor::X86_64), "smooth outlines on this computer are counted by --styles");
+        Self::of(processors, true)
+    }
+
+    fn of(processors: &[Processor], antialias: bool) -> Result<Self> {
         let boards = processors.iter().filter(|processor| processor.board().is_some());
-        let built = boards.map(|&processor| Ok((processor, Firmware::build(processor)?)));
+        let built = boards.map(|&processor| Ok((processor, Firmware::build(processor, antialias)?)));
         let host = processors.contains(&Processor::X86_64).then(callgrind::build).transpose()?;
-        Ok(Self { firmware: built.collect::<Result<_>>()?, host })
+        Ok(Self { firmware: built.collect::<Result<_>>()?, host, antialias })
     }
 
     /// Measures frame 0 of `scene` by each of the `wanted` methods on each of the processors, with its error and what `auto`
@@ -113,13 +128,15 @@ impl Bench {
             check(&stream, shader.facts(), false)?;
         }
         let drawn = self.count_on_host(scene, wanted, tick)?;
+        let stream = if self.antialias { scene.stream.with_neighbours()? } else { scene.stream.clone() };
+        let scene = Scene { name: scene.name.clone(), stream, size: scene.size };
         let measured = wanted.par_iter().map(|&(processor, shader)| {
             if let Some(measurement) = drawn.iter().find(|m| processor == Processor::X86_64 && m.shader == shader.name()) {
                 return Ok(measurement.clone());
             }
             let firmware = self.firmware.iter().find(|(of, _)| *of == processor);
             let (_, firmware) = firmware.with_context(|| format!("no firmware for {}", processor.name()))?;
-            let measured = firmware.measure(processor, scene, shader);
+            let measured = firmware.measure(processor, &scene, shader);
             tick();
             measured.with_context(|| format!("{}, {}, {}", processor.board_name(), scene.name, shader.name()))
         });
@@ -143,9 +160,9 @@ impl Bench {
 }
 
 impl Firmware {
-    fn build(processor: Processor) -> Result<Self> {
+    fn build(processor: Processor, antialias: bool) -> Result<Self> {
         let board = processor.board().with_context(|| format!("{} has no firmware", processor.name()))?;
-        let elf = Elf::read(&verify::build(board)?)?;
+        let elf = Elf::read(&verify::build(board, antialias)?)?;
         Ok(Self { board, meter: Meter::new(&elf)?, graph: Graph::new(&elf)?, elf })
     }
 

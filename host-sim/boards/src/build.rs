@@ -26,6 +26,16 @@ pub fn program(board: Board, name: &str) -> Result<PathBuf> {
     release(name, &format!("microphong-firmware/{board}"), board.target(), &what)
 }
 
+/// Builds the firmware of `board` that draws smooth outlines, and returns the ELF's path.
+///
+/// # Errors
+/// When the board has no memory for them, the target or the compiler is missing, or the firmware does not compile.
+pub fn antialias(board: Board) -> Result<PathBuf> {
+    ensure!(board.smooths(), "the firmware of {board} draws no smooth outlines: they need more memory than it has");
+    let features = format!("microphong-firmware/{board},microphong-firmware/antialias");
+    release("antialias", &features, board.target(), &format!("the firmware for {board} with smooth outlines"))
+}
+
 /// Builds a program of the workspace `firmware` with only these `features`, and returns its path. `what` is the program's name in messages.
 ///
 /// Features apply to the whole workspace, and all programs share a directory, so dependencies are compiled once for each target.

@@ -99,6 +99,12 @@ impl Board {
         self != Self::Lm3s6965evb
     }
 
+    /// Whether it has memory for smooth outlines, so that there is a firmware that draws them.
+    #[must_use]
+    pub const fn smooths(self) -> bool {
+        matches!(self, Self::Mps2An385 | Self::Mps2An386)
+    }
+
     /// The value of a byte of the memory for streams before anything is written there: erased flash, but QEMU begins with zeros.
     #[must_use]
     pub const fn blank(self) -> u8 {

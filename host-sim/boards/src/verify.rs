@@ -1,6 +1,6 @@
 //! The proof: a board's own firmware draws a scene on the board's emulated display, and every pixel must be the host's.
 
-use crate::{Board, Format, Recording, Until, budget::Budget, build::firmware, elf::Elf};
+use crate::{Board, Format, Recording, Until, budget::Budget, build, elf::Elf};
 use anyhow::{Context, Result, anyhow, bail, ensure};
 use embedded_graphics_core::{
     geometry::Size,
@@ -35,6 +35,8 @@ pub struct Request {
     pub shader: Shader,
     /// Frames to compare, from the first.
     pub frames: u16,
+    /// Whether both draw smooth outlines. The stream must have the neighbours of its triangles, and the firmware must be that of [`build`] for them.
+    pub antialias: bool,
 }
 
 /// The result of a comparison.
@@ -49,6 +51,8 @@ pub struct Report {
     pub shader: Shader,
     /// Frames compared.
     pub frames: u16,
+    /// Whether they had smooth outlines.
+    pub antialias: bool,
     /// Pixels compared, of all frames.
     pub pixels: u64,
     /// Compared pixels that differ.
@@ -65,12 +69,12 @@ fn shader_name<S: Serializer>(shader: &Shader, serializer: S) -> Result<S::Ok, S
     serializer.serialize_str(shader.name())
 }
 
-/// Compiles the firmware of `board` and returns the ELF's path. One ELF serves any number of runs.
+/// Compiles the firmware of `board`, with smooth outlines or without, and returns the ELF's path. One ELF serves any number of runs.
 ///
 /// # Errors
-/// When the target or the compiler is missing, or the firmware does not compile.
-pub fn build(board: Board) -> Result<PathBuf> {
-    firmware(board)
+/// When the target or the compiler is missing, the firmware does not compile, or the board has no memory for smooth outlines.
+pub fn build(board: Board, antialias: bool) -> Result<PathBuf> {
+    if antialias { build::antialias(board) } else { build::firmware(board) }
 }
 
 /// Runs `elf` on the board with the requested stream in it, and compares what its display shows with what the host draws.
@@ -94,7 +98,7 @@ fn compare(request: &Request, elf: &Path, artefacts: &Path) -> Result<Report> {
     let elf = Elf::read(elf)?.with_stream(&board_stream)?;
 
     let stream = host_stream.parse()?;
-    let host = draw(*board, stream, &[*shader], frames).context("the board cannot draw this stream")?;
+    let host = draw(*board, stream, (&[*shader], frames, request.antialias)).context("the board cannot draw this stream")?;
     let recording = crate::run(request.board, &elf, Until::LastFrame(frames))?;
     check_log(&recording, frames)?;
 
@@ -119,6 +123,7 @@ fn compare(request: &Request, elf: &Path, artefacts: &Path) -> Result<Report> {
         scene: request.scene.clone(),
         shader: request.shader,
         frames: request.frames,
+        antialias: request.antialias,
         pixels: host.iter().map(|picture| picture.pixels.len() as u64).sum(),
         differing,
         ram_bytes: elf.ram_bytes()?,
@@ -194,16 +199,19 @@ pub fn first_frame(board: Board, bytes: &[u8]) -> Result<Picture, String> {
     let bytes = StreamBytes::from(bytes);
     let stream = bytes.parse().map_err(|error| format!("stream: {error}"))?;
     let shaders: Vec<_> = Shader::ALL.into_iter().filter(|&shader| board.has(shader)).collect();
-    let mut pictures = draw(board, stream, &shaders, 1).map_err(|error| format!("setup: {error}"))?;
+    let mut pictures = draw(board, stream, (&shaders, 1, false)).map_err(|error| format!("setup: {error}"))?;
     Ok(pictures.remove(0))
 }
 
+/// The methods that there are, the number of frames, and whether outlines are smooth.
+type How<'s> = (&'s [Shader], usize, bool);
+
 /// Draws in the board's format.
-fn draw(board: Board, stream: Stream<'_>, shaders: &[Shader], frames: usize) -> Result<Vec<Picture>, RenderError> {
+fn draw(board: Board, stream: Stream<'_>, how: How<'_>) -> Result<Vec<Picture>, RenderError> {
     match board.format() {
-        Format::Rgb565 => draw_in::<Rgb565, Rgb565>(board, stream, shaders, frames),
-        Format::Rgb565Be => draw_in::<Rgb565Be, Rgb565Be>(board, stream, shaders, frames),
-        Format::Gray4 => draw_in::<LightGray<4>, Gray4>(board, stream, shaders, frames),
+        Format::Rgb565 => draw_in::<Rgb565, Rgb565>(board, stream, how),
+        Format::Rgb565Be => draw_in::<Rgb565Be, Rgb565Be>(board, stream, how),
+        Format::Gray4 => draw_in::<LightGray<4>, Gray4>(board, stream, how),
     }
 }
 
@@ -211,16 +219,19 @@ fn draw(board: Board, stream: Stream<'_>, shaders: &[Shader], frames: usize) -> 
 fn draw_in<C: Pixel, F: FromDrawn<C>>(
     board: Board,
     stream: Stream<'_>,
-    shaders: &[Shader],
-    frames: usize,
+    (shaders, frames, antialias): How<'_>,
 ) -> Result<Vec<Picture>, RenderError> {
     let Budget { height, layout } = board.budget();
+    let layout = layout.antialias(antialias);
     let size = Size::new(layout.width as u32, height as u32);
     let mut memory = vec![0; layout.words::<C>()];
     let shaders: Vec<_> = shaders.iter().map(|shader| shader.on()).collect();
     let mut renderer = Renderer::new(stream, size, &layout, &mut memory, &shaders)?;
     if !board.has_text() && !stream.labels.is_empty() {
         return Err(RenderError::Feature { name: "text" });
+    }
+    if antialias {
+        renderer.set_antialias(true)?;
     }
     let shader = renderer.shader().facts().name;
     let mut band = vec![C::pack([0; 3]); layout.band()];

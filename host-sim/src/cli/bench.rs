@@ -48,6 +48,9 @@ pub(crate) struct Arguments {
     /// or all.
     #[arg(long, value_name = "B,...", default_value = "mps2-an385", value_parser = processors)]
     board: Several<Processor>,
+    /// Draw smooth outlines, on boards that have the memory for them: mps2-an385, mps2-an386.
+    #[arg(long, conflicts_with_all = ["report", "peers"])]
+    antialias: bool,
     /// Print one JSON object per frame, or per animation.
     #[arg(long)]
     json: bool,
@@ -58,24 +61,24 @@ pub(crate) struct Arguments {
     #[arg(long)]
     peers: bool,
     /// Also count frames with antialiasing, and with interpolation in perspective, on this computer.
-    #[arg(long, conflicts_with_all = ["board", "report", "peers"])]
+    #[arg(long, conflicts_with_all = ["antialias", "board", "report", "peers"])]
     styles: bool,
     /// Count how many instructions are saved by skipping invisible work, for each kind of work, on this computer.
-    #[arg(long, conflicts_with_all = ["board", "report", "peers", "styles"])]
+    #[arg(long, conflicts_with_all = ["antialias", "board", "report", "peers", "styles"])]
     skips: bool,
     /// Count the frames of an animation after the first, in bands of 16 rows, on this computer: whole pictures with and without hidden objects, and
     /// partial redraw.
-    #[arg(long, conflicts_with_all = ["board", "report", "peers", "styles", "skips"])]
+    #[arg(long, conflicts_with_all = ["antialias", "board", "report", "peers", "styles", "skips"])]
     redraw: bool,
     /// Measure the frames that FILE lists. Fail if a frame needs over 0.2 % more instructions or flash than FILE records.
-    #[arg(long, value_name = "FILE", conflicts_with_all = ["scenes", "MeshOptions", "shader", "board", "json", "report", "peers", "styles", "skips", "redraw"])]
+    #[arg(long, value_name = "FILE", conflicts_with_all = ["scenes", "MeshOptions", "shader", "antialias", "board", "json", "report", "peers", "styles", "skips", "redraw"])]
     check: Option<PathBuf>,
     /// Measure the frames that FILE lists, and record their costs there. Needs --reason.
     #[arg(
         long,
         value_name = "FILE",
         requires = "reason",
-        conflicts_with_all = ["scenes", "MeshOptions", "shader", "board", "json", "report", "peers", "styles", "skips", "redraw", "check"]
+        conflicts_with_all = ["scenes", "MeshOptions", "shader", "antialias", "board", "json", "report", "peers", "styles", "skips", "redraw", "check"]
     )]
     renew: Option<PathBuf>,
     /// The reason for the changed costs, in a sentence. With --renew costs.csv it is added to costs-reasons.md.
@@ -93,6 +96,7 @@ Examples:
   microphong bench all --shader all --board all --json   all scenes, methods and boards
   microphong bench peer-sphere --shader all --board all --report bench    a page with the chart
   microphong bench --peers --board mps2-an385,mps2-an386,x86-64    compared with other renderers
+  microphong bench teapot --antialias --shader gouraud   with smooth outlines
   microphong bench --styles                              the cost of antialiasing and perspective
   microphong bench all --skips                           the saving by skipping invisible work
   microphong bench board --redraw --shader auto          the saving by partial redraw
@@ -158,7 +162,8 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome> {
     let steps = scenes.iter().map(|(_, wanted)| wanted.len() + others.len() * again(wanted).len()).sum::<usize>();
     let steps = steps + 1 + common.len() * boards.len();
     let bar = report::progress(steps as u64, "counting instructions");
-    let bench = Bench::new(&arguments.board.values)?;
+    let processors = &arguments.board.values;
+    let bench = if arguments.antialias { Bench::antialiased(processors) } else { Bench::new(processors) }?;
     bar.inc(1);
     let mut all = Vec::new();
     for (scene, wanted) in &scenes {

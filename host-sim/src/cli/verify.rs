@@ -34,6 +34,9 @@ pub(crate) struct Arguments {
     /// budget of the scene.
     #[arg(long, value_name = "LSB", value_parser = parse::budget)]
     budget: Option<ErrorBudget>,
+    /// Draw smooth outlines, on boards that have the memory for them: mps2-an385, mps2-an386.
+    #[arg(long)]
+    antialias: bool,
     /// Number of frames to compare, starting with the first.
     #[arg(long, default_value_t = 3, value_parser = clap::value_parser!(u16).range(1..))]
     frames: u16,
@@ -51,6 +54,7 @@ const EXAMPLES: &str = "\
 Examples:
   microphong verify bunny torus --board pico --shader six-point
   microphong verify all --board all --json
+  microphong verify teapot board --board mps2-an385 --antialias
 
 Exit codes: 0 all pixels are equal; 1 some pixels differ, or a board failed; 2 wrong usage.";
 
@@ -61,7 +65,9 @@ fn boards(text: &str) -> Result<Several<Board>, String> {
 
 pub(crate) fn run(arguments: &Arguments) -> Result<Outcome> {
     let scenes = scenes::load_all(&arguments.scenes, arguments.options.as_ref(), arguments.budget)?;
-    let boards = &arguments.board.values;
+    // Of all boards those that can draw it.
+    let boards = arguments.board.values.iter().filter(|board| !arguments.antialias || !arguments.board.all || board.smooths());
+    let boards: Vec<_> = boards.copied().collect();
     let shaders = &arguments.shader;
     // Of all methods those that the board has and that can shade the scene.
     let wanted = |board: Board, scene: &Scene, shader: Shader| {
@@ -76,7 +82,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome> {
         }
     }
     let mut runs = Vec::new();
-    for &board in boards {
+    for &board in &boards {
         for scene in &scenes {
             runs.extend(shaders.values.iter().filter(|&&shader| wanted(board, scene, shader)).map(|&shader| (board, scene, shader)));
         }
@@ -89,16 +95,21 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome> {
     for (board, scene, shader) in runs {
         let elf = match &built {
             Some((of, elf)) if *of == board => elf.clone(),
-            _ => verify::build(board).with_context(|| format!("cannot build the firmware of {board}"))?,
+            _ => verify::build(board, arguments.antialias).with_context(|| format!("cannot build the firmware of {board}"))?,
         };
         built = Some((board, elf.clone()));
         let request = Request {
             board,
             scene: scene.name.clone(),
-            stream: scene.stream.as_bytes().to_vec(),
+            stream: if arguments.antialias {
+                scene.stream.with_neighbours()?.as_bytes().to_vec()
+            } else {
+                scene.stream.as_bytes().to_vec()
+            },
             firmware_stream: None,
             shader,
             frames: arguments.frames,
+            antialias: arguments.antialias,
         };
         let artefacts = arguments.artefacts.join(format!("{board}-{}-{}", scene.name, shader.name()));
         bar.inc(1);
