@@ -64,12 +64,15 @@ impl Outlined<'_> {
         let Some(triangle) = self.triangles.get(triangle) else { return };
         let beyond = other.and_then(|other| self.triangles.get(other)).map_or(0, |other| self.range(other));
         // Seen from the front, corners run counter-clockwise, and the surface lies to the left.
-        let corner = |k: usize| triangle.corners.get(if k < 3 { k } else { 0 }).copied().unwrap_or(0);
-        let ends = [corner(k + 1), corner(k)];
-        let [from, to] = ends.map(|corner| self.cached(corner));
-        let ends = match (from, to) {
+        let [a, b, c] = triangle.corners;
+        let (from, to) = match k {
+            0 => (b, a),
+            1 => (c, b),
+            _ => (a, c),
+        };
+        let ends = match (self.cached(from), self.cached(to)) {
             (Some(from), Some(to)) => Some([from, to]),
-            _ => self.clipped(ends),
+            _ => self.clipped([from, to]),
         };
         if let Some(edge) = ends.and_then(|ends| Edge::new(ends, self.range(triangle), beyond)) {
             put(&edge);
@@ -94,8 +97,10 @@ impl Outlined<'_> {
     /// The range of inverse depth of a triangle.
     #[inline]
     fn range(&self, triangle: &Triangle) -> i32 {
-        let [a, b, c] = triangle.corners.map(|corner| self.cached(corner));
-        let (Some([.., a]), Some([.., b]), Some([.., c])) = (a, b, c) else { return self.clipped_range(triangle) };
+        let [a, b, c] = triangle.corners;
+        let (Some([.., a]), Some([.., b]), Some([.., c])) = (self.cached(a), self.cached(b), self.cached(c)) else {
+            return self.clipped_range(triangle);
+        };
         a.max(b).max(c).wrapping_sub(a.min(b).min(c))
     }
 

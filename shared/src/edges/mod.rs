@@ -49,7 +49,8 @@ impl Edge {
     pub(crate) fn new([from, to]: [Place; 2], range: i32, beyond: i32) -> Option<Self> {
         let [from, to] = if is_near(from) && is_near(to) { [from, to] } else { cut([from, to])? };
         let place = |[x, y, _]: Place| [x as i16, y as i16];
-        let [range, beyond] = [range, beyond].map(|range| in_buffer(range).saturating_add(2));
+        let at_least = |range| in_buffer(range).saturating_add(2);
+        let (range, beyond) = (at_least(range), at_least(beyond));
         Some(Self { ends: [place(from), place(to)], depth: [in_buffer(from[2]), in_buffer(to[2])], range, beyond })
     }
 

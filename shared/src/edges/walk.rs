@@ -62,8 +62,10 @@ impl Window<'_> {
     /// Walks an edge.
     #[inline(never)]
     pub(crate) fn walk(&mut self, edge: &Edge) {
-        let [[ax, ay], [bx, by]] = edge.ends.map(|end| end.map(i32::from));
-        let [mut z0, mut z1] = edge.depth.map(i32::from);
+        // One by one: `map` of arrays goes through memory at opt-level "s".
+        let Edge { ends: [[ax, ay], [bx, by]], depth: [z0, z1], .. } = *edge;
+        let (ax, ay, bx, by) = (i32::from(ax), i32::from(ay), i32::from(bx), i32::from(by));
+        let (mut z0, mut z1) = (i32::from(z0), i32::from(z1));
         let is_flat = (bx - ax).abs() >= (by - ay).abs();
         // Major and minor coordinate of both ends; the major one grows.
         let ([mut m0, mut n0], [mut m1, mut n1]) = if is_flat { ([ax, ay], [bx, by]) } else { ([ay, ax], [by, bx]) };

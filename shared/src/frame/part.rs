@@ -243,30 +243,32 @@ impl<'r> FrameRows<'r> {
         let Size { width, height } = context.settings.size;
         let columns = [left.saturating_sub(1), right.saturating_add(1).min(width as u16)];
         let row = width as usize;
-        if !self.smoother.holds(top) {
-            for first in top.saturating_sub(1)..=top {
+        let (count, next) = ((bottom - top) as usize, (bottom + 1).min(height));
+        // The row that is held comes first, and a row below the band is held next. A buffer of one row holds one after the other.
+        let is_single = count == 1 && pixels.len() < 2 * row;
+        let is_held = self.smoother.holds(top);
+        let drawn = if is_held || is_single { top + 1 } else { top };
+        if !is_held {
+            for first in top.saturating_sub(1)..drawn {
                 let pixels = pixels.get_mut(..row).unwrap_or_default();
                 self.draw_over(context, colours, pixels, under, columns, [first, first + 1], (first + 1 - top) as usize);
                 let Kept { above, held, .. } = self.smoother.kept::<C::Stored>(row);
                 keep(if first < top { above } else { held }, pixels, 1);
             }
         }
-        let (count, next) = ((bottom - top) as usize, (bottom + 1).min(height));
-        // The row that is held comes first, and a row below the band is held next. A buffer of one row holds one after the other.
-        let is_single = count == 1 && pixels.len() < 2 * row;
-        let fresh = pixels.get_mut(if is_single { 0 } else { row }..).unwrap_or_default();
-        let fresh = fresh.get_mut(..(next - top - 1) as usize * row).unwrap_or_default();
+        let fresh = pixels.get_mut(if is_single { 0 } else { (drawn - top) as usize * row }..).unwrap_or_default();
+        let fresh = fresh.get_mut(..(next - drawn) as usize * row).unwrap_or_default();
         if !fresh.is_empty() {
-            self.draw_over(context, colours, fresh, under, columns, [top + 1, next], 2);
+            self.draw_over(context, colours, fresh, under, columns, [drawn, next], (drawn + 1 - top) as usize);
         }
         let Kept { held, .. } = self.smoother.kept::<C::Stored>(row);
         for (at, held) in held.iter_mut().enumerate() {
-            let colour = C::from_stored(*held);
+            let colour = (drawn > top).then(|| C::from_stored(*held));
             let below = pixels.get(if is_single { at } else { count * row + at });
             if let Some(below) = below.filter(|_| next > bottom) {
                 *held = below.stored();
             }
-            if let Some(pixel) = pixels.get_mut(at) {
+            if let (Some(colour), Some(pixel)) = (colour, pixels.get_mut(at)) {
                 *pixel = colour;
             }
         }
