@@ -3,12 +3,14 @@
 use super::{Outcome, Usage, mesh_options::MeshOptions, parse, report, scenes};
 use anyhow::{Context, Result};
 use embedded_graphics_core::geometry::Size;
-use microphong::{Skips, Stream, format::ErrorBudget, renderer::check};
+use microphong::{Skips, Stream, format::ErrorBudget, renderer::check, stream::record::OPEN};
 use microphong_sim::{
+    bytes::StreamBytes,
     choices::{self, Choices},
     image::{self, Film},
     legend, output,
     render::{self, Format, Picture, Settings, Style},
+    scene::Scene,
     shader::Shader,
 };
 use serde::Serialize;
@@ -55,16 +57,16 @@ pub(crate) struct Arguments {
     /// softer.
     #[arg(long, value_enum, default_value_t = Gamma::Linear)]
     gamma: Gamma,
-    /// Smooth outlines: where a surface ends or its shading jumps, a pixel mixes the colours of both sides in proportion to the areas that they cover.
-    /// A stream that was converted without --antialias gets its outlines first.
+    /// Draw outlines jagged, as a program without `Renderer::set_antialias` does. By default they are smooth: where a surface ends or its shading jumps,
+    /// a pixel mixes the colours of both sides in proportion to the areas that they cover.
     #[arg(long)]
-    antialias: bool,
+    no_antialias: bool,
     /// Number of rows to draw at a time, as a board with little memory does. It does not change the picture.
     #[arg(long, default_value_t = 16, value_parser = clap::value_parser!(u32).range(1..))]
     band_rows: u32,
     /// Paint each triangle in a colour that shows the method which auto chooses for it, with a legend below the picture. Dark parts of the picture
     /// stay darker.
-    #[arg(long, value_name = "WHAT", conflicts_with_all = ["antialias", "dither", "band_rows"])]
+    #[arg(long, value_name = "WHAT", conflicts_with_all = ["dither", "band_rows"])]
     show: Option<Show>,
     /// FILE.png, FILE.apng, a directory, or - for standard output. The default is SCENE.png, or SCENE.apng for several frames, in the current directory.
     #[arg(short, long)]
@@ -80,7 +82,7 @@ const EXAMPLES: &str = "\
 Examples:
   microphong render teapot
   microphong render teapot --shader gouraud --size 320x240 -o gouraud.png
-  microphong render bunny --antialias
+  microphong render bunny --no-antialias
   microphong render part.obj --up z --colour 4080ff --plastic
   microphong render mesh.tri --format gray4 --no-dither
   microphong render mesh.tri --format binary --size 128x64
@@ -93,6 +95,21 @@ Examples:
 enum Gamma {
     Linear,
     Srgb,
+}
+
+/// The stream of a scene with the neighbours of its triangles, from which outlines are found; `None`, with a note, if a mesh has too many triangles.
+fn smooth(scene: &Scene) -> Result<Option<StreamBytes>> {
+    let most = usize::from(OPEN);
+    let stream = scene.stream.parse().with_context(|| scene.name.clone())?;
+    if stream.meshes.iter().any(|mesh| mesh.triangles as usize > most) {
+        report::error(&format!(
+            "the outlines of {} are jagged, because one of its meshes has more than {} triangles; use --simplify for smooth ones",
+            scene.name,
+            report::grouped(most as u64)
+        ));
+        return Ok(None);
+    }
+    scene.stream.with_neighbours().map(Some).with_context(|| scene.name.clone())
 }
 
 /// What a picture shows instead of colours.
@@ -124,7 +141,8 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome> {
     let frames = arguments.frames;
     let wanted = arguments.output.as_deref().map(|path| Target::of(path, frames)).transpose()?;
     let scene = scenes::with_budget(scenes::load(&arguments.scene, arguments.options.as_ref(), arguments.format)?, arguments.budget);
-    let smooth = if arguments.antialias { Some(scene.stream.with_neighbours().with_context(|| arguments.scene.clone())?) } else { None };
+    let wants_smooth = !arguments.no_antialias && arguments.show.is_none();
+    let smooth = if wants_smooth { smooth(&scene)? } else { None };
     let stream = smooth.as_ref().unwrap_or(&scene.stream).parse().with_context(|| arguments.scene.clone())?;
     if arguments.dither && !arguments.format.is_dithered() {
         let name = arguments.format.name();
@@ -143,7 +161,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome> {
         style: Style {
             shader: method(arguments, &stream).with_context(|| scene.name.clone())?,
             perspective_correct: arguments.perspective_correct,
-            antialias: arguments.antialias,
+            antialias: smooth.is_some(),
             dither: arguments.dither || arguments.format.is_dithered() && !arguments.no_dither,
             srgb: arguments.gamma == Gamma::Srgb,
             skips: Skips::ALL,
