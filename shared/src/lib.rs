@@ -120,6 +120,7 @@ pub mod setup;
 
 pub use band_target::BandTarget;
 pub use display::Picture;
+pub use edges::Outlines;
 pub use error::{MAX_SIDE, RenderError};
 pub use fixed;
 pub use frame::{Frame, FrameInTwo, FramePart, Preparation, PreparationPart, Skips, Stats};

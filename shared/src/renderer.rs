@@ -2,6 +2,7 @@
 
 use crate::{
     Stream,
+    edges::Outlines,
     error::{MAX_SIDE, RenderError},
     features::{self, Feature},
     format::{ErrorBudget, LARGEST_BUDGET, LEAST_BUDGET, LEVEL, MAX_LIGHTS},
@@ -106,6 +107,7 @@ impl<'a, C: Pixel> Renderer<'a, C> {
             method: shader.method(),
             perspective_correct: false,
             antialias: false,
+            outlines: None,
             lacking_tables: 0,
             budget: level(stream.header.budget()),
             #[cfg(feature = "skips")]
@@ -265,18 +267,36 @@ impl<'a, C: Pixel> Renderer<'a, C> {
     /// - Returns [`RenderError::Neighbours`] if the stream (mesh file) was written without `--antialias`.
     pub fn set_antialias(&mut self, antialias: bool) -> Result<(), RenderError> {
         self.settings.antialias = false;
-        if antialias && !features::ANTIALIAS {
+        self.check_edges(antialias)?;
+        self.settings.antialias = antialias;
+        Ok(())
+    }
+
+    /// Draws antialiased lines along outlines, which are where a surface ends (silhouettes) or its shading jumps (creases); the default is `None`. Lines
+    /// take the place of [antialiasing](Self::set_antialias).
+    ///
+    /// # Errors
+    /// There are no lines then, for the reasons that [`Self::set_antialias`] names.
+    pub fn set_outlines(&mut self, outlines: Option<Outlines>) -> Result<(), RenderError> {
+        self.settings.outlines = None;
+        self.check_edges(outlines.is_some())?;
+        self.settings.outlines = outlines;
+        Ok(())
+    }
+
+    /// Prepares for frames whose edges are found, if they are `wanted`.
+    fn check_edges(&mut self, wanted: bool) -> Result<(), RenderError> {
+        if wanted && !features::ANTIALIAS {
             return Err(RenderError::Feature { name: "antialias" });
         }
-        if antialias && self.memory.smoothing.marks.is_empty() {
+        if wanted && self.memory.smoothing.marks.is_empty() {
             return Err(RenderError::AntialiasMemory);
         }
-        if antialias && self.scene.stream.neighbours.is_empty() && !self.scene.stream.triangles.is_empty() {
+        if wanted && self.scene.stream.neighbours.is_empty() && !self.scene.stream.triangles.is_empty() {
             return Err(RenderError::Neighbours);
         }
         // No pixel is marked before the first band.
         self.memory.smoothing.marks.fill(0);
-        self.settings.antialias = antialias;
         self.scene.set_view_changed();
         Ok(())
     }

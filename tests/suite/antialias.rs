@@ -5,13 +5,13 @@ use embedded_graphics::{
     prelude::*,
 };
 use microphong::{
-    Layout, RenderError, Renderer, Stream,
+    Layout, Outlines, RenderError, Renderer, Stream,
     stream::record::{CREASE, Neighbours, OPEN},
 };
 use microphong_sim::{
     bytes::StreamBytes,
     convert::Options,
-    look::Look,
+    look::{Look, Surface},
     mesh::Mesh,
     quantise::quantise,
     render::{self, Style},
@@ -88,11 +88,12 @@ fn outlines_are_like_supersampled_ones() {
 }
 
 /// A picture in bands of `layout.rows` rows, by two processors if they have a row between them.
-fn draw(stream: Stream<'_>, size: Size, layout: Layout, shader: Shader, number: u32, between: Option<u32>) -> Vec<Rgb565> {
+fn draw(stream: Stream<'_>, size: Size, layout: Layout, style: Style, number: u32, between: Option<u32>) -> Vec<Rgb565> {
     let layout = layout.antialias(true).materials(stream.materials.len()).objects(stream.instances.len().max(1));
     let mut memory = vec![u64::MAX / 3; layout.words::<Rgb565>()];
-    let mut renderer = Renderer::with_shader(stream, size, &layout, &mut memory, shader.on()).unwrap();
-    renderer.set_antialias(true).unwrap();
+    let mut renderer = Renderer::with_shader(stream, size, &layout, &mut memory, style.shader.on()).unwrap();
+    renderer.set_antialias(style.antialias).unwrap();
+    renderer.set_outlines(style.outlines).unwrap();
     let mut frame = renderer.frame(number);
     let mut pixels = Vec::new();
     let Some(row) = between else {
@@ -133,23 +134,31 @@ fn neither_bands_nor_overflow_change_a_pixel() {
     let scenes = ["teapot", "torus", "sensor", "board"].map(|name| (name, load(name)));
     for (name, stream) in scenes.iter().map(|(name, stream)| (*name, stream)).chain([("near", &near())]) {
         let stream = stream.parse().unwrap();
-        for (shader, number) in [(Shader::GOURAUD, 5), (Shader::AUTO, 20)] {
+        let lines = |shader: Shader, alone| Style { outlines: Some(Outlines::new([200, 0, 90]).alone(alone)), ..shader.into() };
+        let styles = [
+            (smooth(Shader::GOURAUD), 5),
+            (smooth(Shader::AUTO), 20),
+            (lines(Shader::GOURAUD, false), 11),
+            (lines(Shader::FLAT, true), 17),
+        ];
+        for (style, number) in styles {
+            let name = format!("{name}, {}, {:?}", style.shader.name(), style.outlines);
             let room = |rows: usize| Layout::new(150, rows).with_room_for(&stream).edges(3 * stream.triangles.len());
-            let whole = draw(stream, size, room(110), shader, number, None);
+            let whole = draw(stream, size, room(110), style, number, None);
             assert_eq!(whole.len(), 150 * 110);
-            let (plain, _) = render::frame::<Rgb565>(stream, size, Style { dither: true, ..shader.into() }, 110, number).unwrap();
-            assert!(plain != whole, "{name}: outlines are smooth");
+            let (plain, _) = render::frame::<Rgb565>(stream, size, Style { dither: true, ..style.shader.into() }, 110, number).unwrap();
+            assert!(plain != whole, "{name}: outlines are drawn");
             for rows in [1, 2, 7, 16, 40] {
-                assert!(draw(stream, size, room(rows), shader, number, None) == whole, "{name}, {}: bands of {rows} rows", shader.name());
+                assert!(draw(stream, size, room(rows), style, number, None) == whole, "{name}: bands of {rows} rows");
             }
             for layout in [room(16).edges(5), room(7).triangles(30), room(16).vertices(40), room(16).vertices(40).triangles(20).edges(0)] {
-                assert!(draw(stream, size, layout, shader, number, None) == whole, "{name}, {}: {layout:?}", shader.name());
+                assert!(draw(stream, size, layout, style, number, None) == whole, "{name}: {layout:?}");
             }
             let triangles = 2 * stream.triangles.len();
             for (rows, between) in [(8, 55), (16, 1), (1, 40), (40, 109)] {
                 let layout = room(rows).triangles(triangles).processors(2);
-                let parts = draw(stream, size, layout, shader, number, Some(between));
-                assert!(parts == whole, "{name}, {}: divided above row {between}, bands of {rows} rows", shader.name());
+                let parts = draw(stream, size, layout, style, number, Some(between));
+                assert!(parts == whole, "{name}: divided above row {between}, bands of {rows} rows");
             }
         }
     }
@@ -179,9 +188,9 @@ fn marks_without_room_change_no_pixel() {
     assert!(creases > stream.triangles.len(), "{creases}");
     let size = Size::new(120, 100);
     let room = |rows: usize| Layout::new(120, rows).with_room_for(&stream).edges(3 * stream.triangles.len());
-    let whole = draw(stream, size, room(100), Shader::GOURAUD, 0, None);
+    let whole = draw(stream, size, room(100), smooth(Shader::GOURAUD), 0, None);
     for rows in [1, 9, 50] {
-        assert!(draw(stream, size, room(rows), Shader::GOURAUD, 0, None) == whole, "bands of {rows} rows");
+        assert!(draw(stream, size, room(rows), smooth(Shader::GOURAUD), 0, None) == whole, "bands of {rows} rows");
     }
 }
 
@@ -205,6 +214,38 @@ fn inner_pixels_stay() {
             changed += usize::from(plain[at] != smooth[at]);
         }
         assert!(inner > 2000 && changed > 100, "{}: {inner} inside, {changed} changed", shader.name());
+    }
+}
+
+/// Lines are drawn along a straight edge as wide as a pixel, whatever its slope, and nowhere else. Alone they leave the background, and what surfaces
+/// hide stays hidden.
+#[test]
+fn lines_are_as_wide_as_a_pixel() {
+    let size = Size::new_equal(120);
+    let white = Some(Outlines::new([255; 3]).alone(true));
+    let light = |pixels: &[Rgb888]| -> f64 { pixels.iter().map(|pixel| f64::from(pixel.r()) / 255.0).sum() };
+    let black = |mesh: &Mesh, number: u32| {
+        let mut look = Look::new(Surface::metal([1.0; 3], [0.1, 0.5, 0.4], 20), View::orbit(Up::Y, 0.5, 0.35, 4.0, 120));
+        look.background = [0; 3].into();
+        let stream = look.stream(&quantise(mesh).0).unwrap().with_neighbours().unwrap();
+        let draw = |outlines| {
+            let style = Style { outlines, ..Shader::FLAT.into() };
+            render::frame::<Rgb888>(stream.parse().unwrap(), size, style, 120, number).unwrap().0
+        };
+        (draw(None), draw(white))
+    };
+    for number in 0..12 {
+        // Around a ball, the sum of all light is the length of the outline.
+        let (plain, lines) = black(&shapes::sphere(60, 30, 0.0), number * 5);
+        let area = plain.iter().filter(|&&pixel| pixel != Rgb888::BLACK).count() as f64;
+        let length = 2.0 * (std::f64::consts::PI * area).sqrt();
+        // Along diagonals a line is thinner than a pixel.
+        let share = light(&lines) / length;
+        assert!((0.8..1.05).contains(&share), "frame {number}: {share}");
+        let inner = |at: usize| [1, 2, 120, 240].iter().all(|d| [at - d, at + d].iter().all(|&near| plain[near] != Rgb888::BLACK));
+        for at in (241..plain.len() - 241).filter(|&at| inner(at)) {
+            assert_eq!(lines[at], Rgb888::BLACK, "frame {number}: a line within the ball");
+        }
     }
 }
 

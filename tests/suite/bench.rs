@@ -41,11 +41,13 @@ fn blocks_are_the_instructions_in_them() {
 fn styles_are_told_apart() {
     let shaders = [Shader::FLAT, Shader::GOURAUD, named("gouraud4")];
     let costs = styles::measure(&Counters::default(), &scene::load("dodecahedron").unwrap(), &shaders, styles::styles, &|| ()).unwrap();
-    let [flat, gouraud, split]: [[Option<u64>; 3]; 3] = [0, 1, 2].map(|k: usize| costs[k].instructions.as_slice().try_into().unwrap());
+    let [flat, gouraud, split]: [[Option<u64>; 4]; 3] = [0, 1, 2].map(|k: usize| costs[k].instructions.as_slice().try_into().unwrap());
     println!("{:?}: {flat:?}, {gouraud:?}, {split:?}", costs[0].styles);
-    assert!(flat[0].unwrap().abs_diff(flat[2].unwrap()) < 100);
-    assert!(flat[1] > flat[0] && gouraud[1] > gouraud[0], "antialiasing");
-    assert!(gouraud[2] > gouraud[1] && gouraud[1] < gouraud[0].map(|plain| 3 * plain) && split[2].is_none());
+    let [plain, smooth, lines, perspective] = gouraud;
+    assert!(flat[0].unwrap().abs_diff(flat[3].unwrap()) < 100);
+    assert!(flat[1] > flat[0] && smooth > plain, "antialiasing");
+    assert!(lines > plain && lines != smooth && lines < plain.map(|plain| 3 * plain), "outlines");
+    assert!(perspective > smooth && smooth < plain.map(|plain| 3 * plain) && split[3].is_none());
 }
 
 /// A ball stands still, and a small box beside it moves.

@@ -129,7 +129,7 @@ fn what_chooses_nothing_cannot_be_shown() {
     let directory = tempfile::tempdir().expect("scratch directory");
     let cases: [(&[&str], &[&str]); 5] = [
         (&["--show", "methods", "--shader", "phong"], &["--show methods", "auto", "phong"]),
-        (&["--show", "methods", "--antialias"], &["--show", "--antialias"]),
+        (&["--show", "methods", "--outlines", "000000"], &["--show", "--outlines"]),
         (&["--show", "methods", "--dither"], &["--show", "--dither"]),
         (&["--show", "methods", "--band-rows", "4"], &["--show", "--band-rows"]),
         (&["--show", "edges"], &["--show", "methods"]),

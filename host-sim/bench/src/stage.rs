@@ -25,6 +25,8 @@ pub struct Stages {
     pub span: u64,
     /// The inner loop.
     pub pixel: u64,
+    /// Outlines: found, followed and mixed. It is 0 in plain frames.
+    pub edges: u64,
     /// Pixels on their way to the display. Not part of [`Self::drawing`].
     pub transfer: u64,
     /// Background and depth of the band cleared. Not part of [`Self::drawing`].
@@ -37,7 +39,7 @@ impl Stages {
     /// Instructions that draw: all but clearing and transfer.
     #[must_use]
     pub fn drawing(&self) -> u64 {
-        self.vertex + self.cull + self.setup + self.span + self.pixel + self.frame
+        self.vertex + self.cull + self.setup + self.span + self.pixel + self.edges + self.frame
     }
 }
 
@@ -51,6 +53,7 @@ pub(super) enum Part {
     /// Span and inner loop.
     Row,
     Clear,
+    Edges,
     Transfer,
     /// The processor has nothing to do until the transfer has ended.
     Idle,
@@ -63,7 +66,7 @@ pub(super) enum Part {
 
 /// Parts of functions by what their names contain; the first that fits counts. Names as the compiler writes them, so that this
 /// is the one place to follow when functions move.
-const TABLE: [(&str, Part); 33] = [
+const TABLE: [(&str, Part); 35] = [
     ("microphong::raster::triangle::fill_rows", Part::Row),
     ("as microphong::raster::canvas::SpanShader::span", Part::Row),
     ("microphong::raster::band::Band::clear", Part::Clear),
@@ -80,7 +83,9 @@ const TABLE: [(&str, Part); 33] = [
     ("microphong::mesh::vertices::VertexStage::transform", Part::Vertex),
     ("microphong::frame::preparation::PreparationPart", Part::Cull),
     ("microphong::geometry::bin::Bins", Part::Cull),
-    ("microphong::frame::part::Part::draw", Part::Setup),
+    ("microphong::frame::part::FrameRows::draw", Part::Setup),
+    ("microphong::frame::smoother::Smoother::", Part::Edges),
+    ("microphong::frame::part::FrameRows::find_edges", Part::Edges),
     ("microphong::frame::colours::Colours::drawing", Part::Setup),
     ("microphong::frame::context::Context::pass", Part::Setup),
     ("microphong::mesh::Drawing", Part::Setup),
@@ -275,6 +280,7 @@ impl Meter {
                 setup: part(Part::Setup),
                 span: of(span),
                 pixel: of(pixel),
+                edges: part(Part::Edges),
                 transfer: part(Part::Transfer),
                 clear: part(Part::Clear),
                 frame: part(Part::Frame),

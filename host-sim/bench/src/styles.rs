@@ -4,7 +4,7 @@
 use crate::{Processor, callgrind::Counters};
 use anyhow::{Context, Result, ensure};
 use embedded_graphics_core::geometry::Size;
-use microphong::{Skips, pixel::Rgb565Be};
+use microphong::{Outlines, Skips, pixel::Rgb565Be};
 use microphong_models::scene::Scene;
 use microphong_render::{
     render::{self, Format, Style},
@@ -18,13 +18,14 @@ use std::iter;
 /// A way of drawing, by name.
 pub type Named = (String, Style);
 
-/// The plain style of a method, antialiasing and interpolation in perspective.
+/// The plain style of a method, antialiasing, lines along outlines, and interpolation in perspective.
 #[must_use]
 pub fn styles(shader: Shader) -> Vec<Named> {
     let plain = Style::from(shader);
     let named = [
         ("plain", plain),
         ("antialias", Style { antialias: true, ..plain }),
+        ("outlines", Style { outlines: Some(Outlines::new([255; 3])), ..plain }),
         ("perspective-correct", Style { perspective_correct: true, ..plain }),
     ];
     named.map(|(name, style)| (name.to_owned(), style)).into()

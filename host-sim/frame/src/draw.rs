@@ -4,7 +4,7 @@ use embedded_graphics_core::{
     geometry::Size,
     pixelcolor::{Rgb565, RgbColor},
 };
-use microphong::{Layout, Renderer, Shader, Skips, Stats, Stream};
+use microphong::{Layout, Outlines, Renderer, Shader, Skips, Stats, Stream};
 use microphong_literature::ALL;
 use std::{error::Error, fs, hint::black_box, ops::Range};
 use zerocopy::IntoBytes;
@@ -43,6 +43,7 @@ pub(crate) struct Wanted<'w> {
     redraw: bool,
     dither: bool,
     antialias: bool,
+    outlines: bool,
     perspective_correct: bool,
     skips: Skips,
 }
@@ -54,15 +55,17 @@ impl<'w> Wanted<'w> {
         let (width, height) = size.split_once('x').ok_or("a size is WIDTHxHEIGHT")?;
         let size = Size::new(width.parse()?, height.parse()?);
         let rows = rows.parse()?;
-        let (animation, redraw, dither, antialias, perspective_correct) = (false, false, false, false, false);
+        let (animation, redraw, dither, antialias, outlines, perspective_correct) = (false, false, false, false, false, false);
         let skips = Skips::ALL;
-        let mut wanted = Self { path, size, rows, shader, number: 0, animation, redraw, dither, antialias, perspective_correct, skips };
+        let mut wanted =
+            Self { path, size, rows, shader, number: 0, animation, redraw, dither, antialias, outlines, perspective_correct, skips };
         for option in options {
             match option.split_once('=').unwrap_or((option, "")) {
                 ("animation", "") => wanted.animation = true,
                 ("redraw", "") => wanted.redraw = true,
                 ("dither", "") => wanted.dither = true,
                 ("antialias", "") => wanted.antialias = true,
+                ("outlines", "") => wanted.outlines = true,
                 ("perspective-correct", "") => wanted.perspective_correct = true,
                 ("frame", number) => wanted.number = number.parse()?,
                 ("with", name) => {
@@ -85,12 +88,13 @@ impl<'w> Wanted<'w> {
         let literature = ALL.into_iter().map(Shader::new);
         let shader = Shader::ALL.into_iter().chain(literature).find(|method| method.facts().name == self.shader);
         let layout = Layout::new(self.size.width as usize, self.rows as usize).with_room_for(&stream);
-        let layout = layout.active_triangles(layout.triangles).antialias(self.antialias).edges(3 * layout.triangles);
+        let layout = layout.active_triangles(layout.triangles).antialias(self.antialias || self.outlines).edges(3 * layout.triangles);
         let mut memory = vec![0; layout.words::<Rgb565>()];
         let mut band = vec![Rgb565::BLACK; layout.band()];
         let mut renderer = Renderer::with_shader(stream, self.size, &layout, &mut memory, shader.ok_or("no such method")?)?;
         renderer.set_dither(self.dither);
         renderer.set_antialias(self.antialias)?;
+        renderer.set_outlines(self.outlines.then_some(Outlines::new([255; 3])))?;
         renderer.set_perspective_correct(self.perspective_correct)?;
         #[cfg(feature = "styles")]
         renderer.set_skips(self.skips);

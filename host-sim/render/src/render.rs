@@ -7,7 +7,7 @@ use embedded_graphics_core::{
     pixelcolor::{Bgr565, BinaryColor, Gray2, Gray4, Gray8, Rgb565, Rgb666, Rgb888},
 };
 use microphong::{
-    Layout, Renderer, Skips, Stats, Stream,
+    Layout, Outlines, Renderer, Skips, Stats, Stream,
     pixel::{Channels, FromDrawn, Light, LightGray, PictureCrc, Pixel, PixelFormat, Rgb332, gamma},
 };
 use zerocopy::IntoBytes;
@@ -21,6 +21,8 @@ pub struct Style {
     pub perspective_correct: bool,
     /// Antialiasing.
     pub antialias: bool,
+    /// Lines along outlines.
+    pub outlines: Option<Outlines>,
     /// Ordered dither.
     pub dither: bool,
     /// Colours for a display with the curve of sRGB, in place of linear ones.
@@ -32,7 +34,15 @@ pub struct Style {
 /// The method, and nothing else.
 impl From<Shader> for Style {
     fn from(shader: Shader) -> Self {
-        Self { shader, perspective_correct: false, antialias: false, dither: false, srgb: false, skips: Skips::ALL }
+        Self { shader, perspective_correct: false, antialias: false, outlines: None, dither: false, srgb: false, skips: Skips::ALL }
+    }
+}
+
+impl Style {
+    /// Whether edges are found, to be smoothed or to be drawn as lines.
+    #[must_use]
+    pub const fn has_edges(&self) -> bool {
+        self.antialias || self.outlines.is_some()
     }
 }
 
@@ -66,12 +76,12 @@ pub fn frame_by<C: Pixel, F: FromDrawn<C>>(
     band_rows: u32,
     number: u32,
 ) -> Result<(Vec<F>, Stats)> {
-    if style.antialias && !neighbours::has_neighbours(&stream) {
+    if style.has_edges() && !neighbours::has_neighbours(&stream) {
         let words = neighbours::with_neighbours(&stream)?;
         return frame_by(Stream::parse(words.as_bytes())?, size, style, shader, band_rows, number);
     }
     let rows = band_rows.clamp(1, size.height.max(1));
-    let layout = layout(&stream, size, rows).antialias(style.antialias).edges(stream.triangles.len() * 3);
+    let layout = layout(&stream, size, rows).antialias(style.has_edges()).edges(stream.triangles.len() * 3);
     let mut memory = vec![0; layout.words::<C>()];
     let mut renderer = Renderer::with_shader(stream, size, &layout, &mut memory, shader)?;
     renderer.set_perspective_correct(style.perspective_correct)?;
@@ -79,6 +89,7 @@ pub fn frame_by<C: Pixel, F: FromDrawn<C>>(
     renderer.set_gamma(style.srgb.then_some(&gamma::SRGB));
     renderer.set_skips(style.skips);
     renderer.set_antialias(style.antialias)?;
+    renderer.set_outlines(style.outlines)?;
     let mut pixels = Vec::with_capacity(size.width as usize * size.height as usize);
     let mut band = vec![C::pack([0; 3]); layout.band()];
     let mut frame = renderer.frame(number);

@@ -60,7 +60,7 @@ pub(crate) struct Arguments {
     /// Also measure other renderers on these scenes, on the boards mps2-an385, mps2-an386 and x86-64, and print their figures beside those of microphong.
     #[arg(long)]
     peers: bool,
-    /// Also count frames with antialiasing, and with interpolation in perspective, on this computer.
+    /// Also count frames with antialiasing, with lines along outlines, and with interpolation in perspective, on this computer.
     #[arg(long, conflicts_with_all = ["antialias", "board", "report", "peers"])]
     styles: bool,
     /// Count how many instructions are saved by skipping invisible work, for each kind of work, on this computer.
@@ -97,7 +97,7 @@ Examples:
   microphong bench peer-sphere --shader all --board all --report bench    a page with the chart
   microphong bench --peers --board mps2-an385,mps2-an386,x86-64    compared with other renderers
   microphong bench teapot --antialias --shader gouraud   with smooth outlines
-  microphong bench --styles                              the cost of antialiasing and perspective
+  microphong bench --styles                              the cost of antialiasing, outlines and perspective
   microphong bench all --skips                           the saving by skipping invisible work
   microphong bench board --redraw --shader auto          the saving by partial redraw
   microphong bench --check tests/baselines/costs.csv     check that no cost has grown
@@ -111,6 +111,7 @@ Stages:
   set-up    once per triangle and band: polynomials of light and depth, edges
   span      once per row of a triangle: work before the inner loop
   pixel     the inner loop
+  edges     smooth outlines: finding and following edges, mixing pixels
   clear     filling the band with the background and the farthest depth; not part of the sum
   transfer  sending pixels to the display, without waiting; not part of the sum
 
@@ -328,10 +329,11 @@ fn text(m: &Measurement) -> Result<()> {
     report::line(&format!("{} ({}), {}, {}: {all} instructions{error}", m.board.board_name(), m.cpu, m.scene, m.shader))?;
     m.budget.zip(m.choices).iter().try_for_each(report::choices)?;
     let s = m.by_stage;
-    let stages = [s.frame, s.vertex, s.cull, s.setup, s.span, s.pixel, s.clear, s.transfer].map(report::grouped);
-    let [frame, vertex, cull, setup, span, pixel, clear, transfer] = stages;
+    let stages = [s.frame, s.vertex, s.cull, s.setup, s.span, s.pixel, s.edges, s.clear, s.transfer].map(report::grouped);
+    let [frame, vertex, cull, setup, span, pixel, edges, clear, transfer] = stages;
+    let edges = if s.edges > 0 { format!(", edges {edges}") } else { String::new() };
     report::line(&format!(
-        "  frame {frame}, vertex {vertex}, cull {cull}, set-up {setup}, span {span}, pixel {pixel}; clear {clear}, transfer {transfer}"
+        "  frame {frame}, vertex {vertex}, cull {cull}, set-up {setup}, span {span}, pixel {pixel}{edges}; clear {clear}, transfer {transfer}"
     ))?;
     let rates = format!(
         "{:.2} per pixel, {:.1} of them in the inner loop; set-up {:.0} per triangle, {:.1} per span",

@@ -3,7 +3,7 @@
 use super::{Outcome, Usage, mesh_options::MeshOptions, parse, report, scenes};
 use anyhow::{Context, Result};
 use embedded_graphics_core::geometry::Size;
-use microphong::{Skips, Stream, format::ErrorBudget, renderer::check, stream::record::OPEN};
+use microphong::{Outlines, Skips, Stream, format::ErrorBudget, renderer::check, stream::record::OPEN};
 use microphong_sim::{
     bytes::StreamBytes,
     choices::{self, Choices},
@@ -12,6 +12,7 @@ use microphong_sim::{
     render::{self, Format, Picture, Settings, Style},
     scene::Scene,
     shader::Shader,
+    vector::V3,
 };
 use serde::Serialize;
 use std::{
@@ -61,12 +62,18 @@ pub(crate) struct Arguments {
     /// a pixel mixes the colours of both sides in proportion to the areas that they cover.
     #[arg(long)]
     no_antialias: bool,
+    /// Draw lines of this colour along outlines: where a surface ends, or its shading jumps.
+    #[arg(long, value_name = "RRGGBB", value_parser = parse::colour, conflicts_with = "no_antialias")]
+    outlines: Option<V3>,
+    /// Draw the lines of --outlines on the background, without the surfaces.
+    #[arg(long, requires = "outlines")]
+    outlines_alone: bool,
     /// Number of rows to draw at a time, as a board with little memory does. It does not change the picture.
     #[arg(long, default_value_t = 16, value_parser = clap::value_parser!(u32).range(1..))]
     band_rows: u32,
     /// Paint each triangle in a colour that shows the method which auto chooses for it, with a legend below the picture. Dark parts of the picture
     /// stay darker.
-    #[arg(long, value_name = "WHAT", conflicts_with_all = ["dither", "band_rows"])]
+    #[arg(long, value_name = "WHAT", conflicts_with_all = ["outlines", "dither", "band_rows"])]
     show: Option<Show>,
     /// FILE.png, FILE.apng, a directory, or - for standard output. The default is SCENE.png, or SCENE.apng for several frames, in the current directory.
     #[arg(short, long)]
@@ -83,6 +90,7 @@ Examples:
   microphong render teapot
   microphong render teapot --shader gouraud --size 320x240 -o gouraud.png
   microphong render bunny --no-antialias
+  microphong render sensor --outlines ffffff --outlines-alone --format binary --size 128x64
   microphong render part.obj --up z --colour 4080ff --plastic
   microphong render mesh.tri --format gray4 --no-dither
   microphong render mesh.tri --format binary --size 128x64
@@ -110,6 +118,12 @@ fn smooth(scene: &Scene) -> Result<Option<StreamBytes>> {
         return Ok(None);
     }
     scene.stream.with_neighbours().map(Some).with_context(|| scene.name.clone())
+}
+
+/// The lines that are wanted along outlines.
+fn outlines(arguments: &Arguments) -> Option<Outlines> {
+    let colour = arguments.outlines?.map(|channel| (channel * 255.0).round() as u8);
+    Some(Outlines::new(colour).alone(arguments.outlines_alone))
 }
 
 /// What a picture shows instead of colours.
@@ -162,6 +176,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome> {
             shader: method(arguments, &stream).with_context(|| scene.name.clone())?,
             perspective_correct: arguments.perspective_correct,
             antialias: smooth.is_some(),
+            outlines: smooth.as_ref().and(outlines(arguments)),
             dither: arguments.dither || arguments.format.is_dithered() && !arguments.no_dither,
             srgb: arguments.gamma == Gamma::Srgb,
             skips: Skips::ALL,

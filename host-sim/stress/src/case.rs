@@ -2,6 +2,7 @@
 
 use anyhow::Result;
 use embedded_graphics_core::geometry::Size;
+use microphong::Outlines;
 use microphong_models::bytes::StreamBytes;
 use microphong_render::{
     render::{Format, Picture, Settings, Style, picture},
@@ -57,10 +58,13 @@ impl Case {
             (style.perspective_correct, " --perspective-correct"),
             (style.dither && !format.is_dithered(), " --dither"),
             (!style.dither && format.is_dithered(), " --no-dither"),
-            (style.antialias, " --antialias"),
+            (!style.has_edges(), " --no-antialias"),
             (style.srgb, " --gamma srgb"),
         ];
-        let options: String = options.iter().filter(|(on, _)| *on).map(|(_, text)| *text).collect();
+        let mut options: String = options.iter().filter(|(on, _)| *on).map(|(_, text)| *text).collect();
+        if let Some(Outlines { colour: [r, g, b], alone, .. }) = style.outlines {
+            options += &format!(" --outlines {r:02x}{g:02x}{b:02x}{}", if alone { " --outlines-alone" } else { "" });
+        }
         format!(
             "microphong render {} --shader {} --size {width}x{height} --format {} --band-rows {band_rows} --first {frame}{options}",
             file.display(),

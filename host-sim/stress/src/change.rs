@@ -89,7 +89,7 @@ impl State {
             .triangles(meshes().map(|mesh| mesh.triangles as usize).sum())
             .materials(stream.materials.len())
             .objects(self.objects.len().max(stream.instances.len()).max(1))
-            .antialias(self.style.antialias)
+            .antialias(self.style.has_edges())
     }
 
     /// Makes a renderer with the scene of its stream draw this state.
@@ -125,7 +125,7 @@ impl State {
     }
 
     fn set_style<C: Pixel>(&self, renderer: &mut Renderer<'_, C>) -> Result<(), RenderError> {
-        let Style { shader, perspective_correct, antialias, dither, srgb, skips } = self.style;
+        let Style { shader, perspective_correct, antialias, outlines, dither, srgb, skips } = self.style;
         renderer.set_dither(dither);
         renderer.set_gamma(srgb.then_some(&gamma::SRGB));
         renderer.set_skips(skips);
@@ -133,6 +133,7 @@ impl State {
         renderer.set_shader(shader.on())?;
         renderer.set_perspective_correct(perspective_correct)?;
         renderer.set_antialias(antialias)?;
+        renderer.set_outlines(outlines)?;
         renderer.set_budget(self.budget)
     }
 

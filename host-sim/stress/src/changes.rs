@@ -173,7 +173,7 @@ pub fn judge(case: &Case, limit: Limit) -> Result<Option<Found>, String> {
     let mut memory = vec![0x0123_4567_89AB_CDEF; layout.words::<Rgb565>()];
     let shader = case.style.shader.on();
     let Ok(mut renderer) = Renderer::with_shader(stream, case.pixels(), &layout, &mut memory, shader) else { return Ok(None) };
-    state.style = Style { perspective_correct: false, antialias: layout.antialias && case.style.antialias, ..case.style };
+    state.style = Style { perspective_correct: false, antialias: layout.antialias && case.style.antialias, outlines: None, ..case.style };
     renderer.set_antialias(state.style.antialias).map_err(|error| error.to_string())?;
     renderer.set_dither(case.style.dither);
     renderer.set_gamma(case.style.srgb.then_some(&gamma::SRGB));

@@ -4,7 +4,7 @@
 
 use crate::{case::Case, texts};
 use microphong::{
-    Skips, Stream,
+    Outlines, Skips, Stream,
     stream::{
         record::{Header, MAGIC, VERSION},
         seal,
@@ -63,6 +63,7 @@ pub fn sealed(bytes: &[u8]) -> Option<Case> {
         shader: Shader::ALL[usize::from(shader) % Shader::ALL.len()],
         perspective_correct: style & 1 != 0,
         antialias: style & 2 != 0,
+        outlines: (style & 32 != 0).then(|| Outlines::new([low, high, style]).alone(style & 64 != 0)),
         dither: style & 4 != 0,
         srgb: style & 16 != 0,
         skips: if style & 8 == 0 { Skips::ALL } else { Skips::NONE },
@@ -118,12 +119,14 @@ fn draw(case: Case) {
 #[must_use]
 pub fn seed(case: &Case) -> Vec<u8> {
     let index = |shader: Shader| Shader::ALL.iter().position(|&other| other == shader).unwrap_or(0) as u8;
-    let Style { shader, perspective_correct, antialias, dither, srgb, skips } = case.style;
+    let Style { shader, perspective_correct, antialias, outlines, dither, srgb, skips } = case.style;
     let style = u8::from(perspective_correct)
         | u8::from(antialias) << 1
         | u8::from(dither) << 2
         | u8::from(skips != Skips::ALL) << 3
-        | u8::from(srgb) << 4;
+        | u8::from(srgb) << 4
+        | u8::from(outlines.is_some()) << 5
+        | u8::from(outlines.is_some_and(|outlines| outlines.alone)) << 6;
     let format = Format::ALL.iter().position(|&other| other == case.format).unwrap_or(0) as u8;
     let [width, height] = case.size.map(|side| ((side - 1) % 64) as u8);
     let [low, high, ..] = case.frame.to_le_bytes();

@@ -9,7 +9,7 @@ use crate::{
 };
 use anyhow::{Result, ensure};
 use embedded_graphics_core::pixelcolor::Rgb565;
-use microphong::{Counts, Layout, Renderer, Skips, Stats};
+use microphong::{Counts, Layout, Outlines, Renderer, Skips, Stats};
 use microphong_render::render;
 
 /// Random scenes in random styles.
@@ -25,10 +25,14 @@ impl Family for Sameness {
     }
 
     fn check(&self, random: &mut Random) -> Verdict {
-        let Some(case) = scenes::case(random, Wishes { closed: false, unclipped: false, triangles: 600, hard: scenes::Hard::default() })
+        let Some(mut case) =
+            scenes::case(random, Wishes { closed: false, unclipped: false, triangles: 600, hard: scenes::Hard::default() })
         else {
             return Verdict::skipped();
         };
+        if random.once_in(4) {
+            case.style.outlines = Some(Outlines::new([random.bits() as u8, 128, 255]).alone(random.once_in(2)));
+        }
         match differs(&case) {
             Ok(what) => Verdict { failure: what, case: Some(case), ..Verdict::default() },
             // The method cannot draw this scene in this style.
@@ -52,7 +56,7 @@ fn differs(case: &Case) -> Result<Option<String>> {
             .triangles(triangles)
             .materials(stream.materials.len())
             .active_triangles(active)
-            .antialias(case.style.antialias)
+            .antialias(case.style.has_edges())
             .edges(edges)
     };
     let ways = [
@@ -98,6 +102,7 @@ fn twice(case: &Case, layout: Layout, skips: Skips) -> Result<[(Vec<Rgb565>, Sta
     let mut renderer = Renderer::with_shader(stream.parse()?, case.pixels(), &layout, &mut memory, case.style.shader.on())?;
     renderer.set_perspective_correct(case.style.perspective_correct)?;
     renderer.set_antialias(case.style.antialias)?;
+    renderer.set_outlines(case.style.outlines)?;
     renderer.set_dither(case.style.dither);
     renderer.set_skips(skips);
     let mut draw = |number| -> Result<(Vec<Rgb565>, Stats)> {

@@ -105,6 +105,7 @@ pub fn styled(random: &mut Random, stream: StreamBytes, size: [u32; 2]) -> Case 
         shader: random.among(&Shader::ALL),
         perspective_correct: random.once_in(4),
         antialias: random.once_in(4),
+        outlines: None,
         dither: random.once_in(4),
         srgb: false,
         skips: Skips::ALL,

@@ -39,6 +39,7 @@ pub fn smallest(mut case: Case, fails: &dyn Fn(&Case) -> bool) -> Case {
     for simpler in [
         |case: &mut Case| case.frame = 0,
         |case: &mut Case| case.style.antialias = false,
+        |case: &mut Case| case.style.outlines = None,
         |case: &mut Case| case.style.perspective_correct = false,
         |case: &mut Case| case.style.dither = false,
         |case: &mut Case| case.format = Format::Rgb888,

@@ -32,8 +32,10 @@ pub(crate) struct Window<'w> {
     pub(crate) top: i32,
     /// One past the last of them.
     pub(crate) bottom: i32,
-    /// A share and a direction for each pixel of these rows, or 0.
+    /// A share and a direction for each pixel of these rows, or 0. If edges are lines, it is a share of 255.
     pub(crate) marks: &'w mut [u8],
+    /// Whether edges are lines.
+    pub(crate) lines: bool,
     /// The pixels that are noted.
     pub(crate) places: &'w mut [u16],
     /// Number of pixels that are noted. If it exceeds the places, some found no room.
@@ -47,7 +49,12 @@ impl Window<'_> {
     /// Notes a pixel of the window; `share` is Q.16 and less than a half.
     #[inline(always)]
     fn note(&mut self, pixel: i32, share: i32, direction: u8) {
-        let mark = ((share >> (16 - SHARE)).min((1 << (SHARE - 1)) - 1) << DIRECTION) as u8 | direction;
+        self.mark(pixel, ((share >> (16 - SHARE)).min((1 << (SHARE - 1)) - 1) << DIRECTION) as u8 | direction);
+    }
+
+    /// Marks a pixel of the window, unless it has a larger mark. Domain: `mark` is not 0.
+    #[inline(always)]
+    fn mark(&mut self, pixel: i32, mark: u8) {
         if let Some(old) = self.marks.get_mut(pixel as usize) {
             if *old == 0 {
                 if let Some(place) = self.places.get_mut(self.count) {
@@ -105,6 +112,8 @@ impl Window<'_> {
         let to_mark = (self.top - self.rows[0]) * self.width;
         let pairs = (end_minor - 1 - first_minor) as u32;
         let (range, beyond) = (i32::from(edge.range), i32::from(edge.beyond));
+        // Lines need a surface beside them. Rows that no triangle reaches have no depth.
+        let least = i32::from(self.lines);
         let known = self.depth;
         let inv_depth = |at: i32| known.get(at as usize).map_or(0, |depth| i32::from(*depth));
         let mut left = end - first;
@@ -114,21 +123,27 @@ impl Window<'_> {
             if ((low - first_minor) as u32) < pairs {
                 let at = base + low * minor_stride;
                 let own = depth >> 12;
-                if inv_depth(at + outer) <= own + beyond && inv_depth(at + inner) >= own - range {
+                if inv_depth(at + outer) <= own + beyond && inv_depth(at + inner) >= (own - range).max(least) {
                     // The edge lies this far behind the centre of `low`.
                     let behind = minor - HALF - 1 - (low << 16);
                     let pixel = at - to_mark;
-                    let (near, far, distance) = if behind < HALF {
-                        (pixel, pixel + minor_stride, HALF - behind)
+                    if self.lines {
+                        let share = (behind >> 8).clamp(1, 254) as u8;
+                        self.mark(pixel, 255 - share);
+                        self.mark(pixel + minor_stride, share);
                     } else {
-                        (pixel + minor_stride, pixel, behind - HALF)
-                    };
-                    let (to_far, to_near) = if behind < HALF { (towards_high, towards_low) } else { (towards_low, towards_high) };
-                    let past = half_step - distance;
-                    let small = if past > 0 { (((past >> 4) * (past >> 4)) >> 8).wrapping_mul(corner) >> 14 } else { 0 };
-                    self.note(near, distance + small, to_far);
-                    if small > 256 {
-                        self.note(far, small, to_near);
+                        let (near, far, distance) = if behind < HALF {
+                            (pixel, pixel + minor_stride, HALF - behind)
+                        } else {
+                            (pixel + minor_stride, pixel, behind - HALF)
+                        };
+                        let (to_far, to_near) = if behind < HALF { (towards_high, towards_low) } else { (towards_low, towards_high) };
+                        let past = half_step - distance;
+                        let small = if past > 0 { (((past >> 4) * (past >> 4)) >> 8).wrapping_mul(corner) >> 14 } else { 0 };
+                        self.note(near, distance + small, to_far);
+                        if small > 256 {
+                            self.note(far, small, to_near);
+                        }
                     }
                 }
             }

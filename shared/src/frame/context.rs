@@ -1,6 +1,7 @@
 //! What all rows of a frame have in common. It does not change while they are drawn, so two processors can read it at the same time.
 
 use crate::{
+    edges::Outlines,
     edges::{Edge, find::Outlined},
     features::{ANTIALIAS, OBJECTS, REDRAW},
     frame::skips::Skips,
@@ -32,6 +33,8 @@ pub(crate) struct Settings {
     pub(crate) method: &'static dyn Method,
     pub(crate) perspective_correct: bool,
     pub(crate) antialias: bool,
+    /// Lines that are drawn along edges.
+    pub(crate) outlines: Option<Outlines>,
     /// The number of tables of highlights that the materials need, if there are fewer; otherwise 0.
     pub(crate) lacking_tables: usize,
     /// How far a pixel may be off by a method that keeps to a budget, in 1/255, Q9.7.
@@ -45,9 +48,10 @@ pub(crate) struct Settings {
 }
 
 impl Settings {
+    /// Whether the edges of surfaces are found, to be smoothed or to be drawn as lines.
     #[inline]
-    pub(crate) fn antialiased(&self) -> bool {
-        ANTIALIAS && self.antialias
+    pub(crate) fn has_edges(&self) -> bool {
+        ANTIALIAS && (self.antialias || self.outlines.is_some())
     }
 
     /// What is left out.
@@ -64,10 +68,10 @@ impl Settings {
         self.rows.min(self.size.height)
     }
 
-    /// The pixels in which an object that reaches into `area` changes the picture: with antialiasing those around it, too.
+    /// The pixels in which an object that reaches into `area` changes the picture: where edges are found those around it, too.
     #[inline]
     pub(crate) fn touched(&self, area: &PixelRect) -> PixelRect {
-        if self.antialiased() { area.grown(1, self.size) } else { *area }
+        if self.has_edges() { area.grown(1, self.size) } else { *area }
     }
 
     pub(crate) fn viewport(&self) -> Viewport {

@@ -116,7 +116,7 @@ impl<'r> FrameRows<'r> {
         let (area, Range { start: left, end: right }) = (whole.rectangle(), context.region.within(&whole).columns());
         let Size { width, height } = area.size;
         let columns = [left as u16, right as u16];
-        let pixels = if ANTIALIAS && context.settings.antialiased() {
+        let pixels = if ANTIALIAS && context.settings.has_edges() {
             self.draw_smooth(context, colours, pixels, &mut under, columns, rows.map(u32::from));
             pixels.get_mut(..(width * height) as usize).unwrap_or_default()
         } else {
@@ -144,7 +144,7 @@ impl<'r> FrameRows<'r> {
             return Err(RenderError::Band { need: width as usize });
         }
         let Range { start, end } = context.region.next(self.top).rows();
-        if ANTIALIAS && context.settings.antialiased() {
+        if ANTIALIAS && context.settings.has_edges() {
             // The last row of the buffer belongs to the next band, unless the picture ends there.
             let most = fit.min(self.band_rows).min((1 << 16) / width.max(1));
             let most = if start + most >= context.settings.size.height { most } else { most.saturating_sub(1).max(1) };
@@ -160,7 +160,7 @@ impl<'r> FrameRows<'r> {
 
     /// Divides the part into the rows above `row` and the rest: see [`crate::Frame::in_two`].
     pub(crate) fn in_two(self, row: u32, context: &Context<'_>) -> [Self; 2] {
-        let (width, smooth) = (context.settings.size.width as usize, ANTIALIAS && context.settings.antialiased());
+        let (width, smooth) = (context.settings.size.width as usize, ANTIALIAS && context.settings.has_edges());
         let Self { bins, binned, entries, depth, smoother, active_triangles, queue, rows, top, drawn, band_rows, bottom, stats } = self;
         let used = bins.count().map_or(usize::MAX, usize::from);
         let fits = binned && used <= entries.len() / 2 && band_rows >= 2 && (!smooth || context.settings.processors == 2);
@@ -226,6 +226,11 @@ impl<'r> FrameRows<'r> {
         context.scene.background().fill(pixels, area, size.height);
         under(pixels, area);
         self.draw(context, colours, pixels, columns, [top, bottom], before * size.width as usize);
+        if ANTIALIAS && context.settings.outlines.is_some_and(|outlines| outlines.alone) {
+            // What has been drawn hides lines behind it, and is not shown.
+            context.scene.background().fill(pixels, area, size.height);
+            under(pixels, area);
+        }
     }
 
     /// Draws the rows from `top` to `bottom` with smooth outlines. Only these `columns` are needed. The buffer has one row more, if the picture does not

@@ -170,14 +170,14 @@ impl<'r> Prepared<'r> {
         let as_they_are = visible.fold(0, |sum, (_, object)| sum + object.triangles);
         let context =
             Context { settings, scene, placements, region, depth_elision: None, vertices: &[], reflectances, tables, error_bounds };
-        let elides = settings.skips().depth && !settings.antialiased();
+        let elides = settings.skips().depth && !settings.has_edges();
         let depth_elision = if elides { context.convex().and_then(DepthElision::new) } else { None };
         let part = FrameRows {
             bins,
             binned: false,
             entries,
             depth,
-            smoother: Smoother::new(smoothing, settings.antialiased().then(|| Bins::new(size.height, band_rows))),
+            smoother: Smoother::new(smoothing, settings.has_edges().then(|| Bins::new(size.height, band_rows))),
             active_triangles,
             queue: QueueState::default(),
             rows: region.hull().rows(),
@@ -200,7 +200,7 @@ impl<'r> Prepared<'r> {
             (part.stats.passes, part.stats.drawn) = (1, part.bins.linked(count).into());
             part.rows = part.bins.rows();
         }
-        if ANTIALIAS && context.settings.antialiased() {
+        if ANTIALIAS && context.settings.has_edges() {
             part.find_edges(context);
         }
     }
@@ -401,7 +401,7 @@ impl<'r> PreparationPart<'_, 'r> {
         let (stream, mesh) = (&context.scene.stream, placed.mesh);
         let viewport = context.settings.viewport();
         let area = area_of(context, placed);
-        let keeps_touched = context.settings.antialiased();
+        let keeps_touched = context.settings.has_edges();
         // Reached by a pointer of its own, which is opaque to the compiler: instructions of Armv6-M reach little of a structure.
         let (bins, depth_elision, entries) = (black_box(&mut **bins), &mut **depth_elision, &mut **entries);
         let leaning = if depth_elision.is_some() { facing.leaning() } else { Facing::FRONT };

@@ -5,14 +5,14 @@
 
 use crate::{
     edges::{
-        Edge,
-        mix::{Surroundings, store},
+        Edge, Outlines,
+        mix::{Surroundings, draw, store},
         walk::Window,
     },
     frame::context::Context,
     geometry::bin::{Bins, Entry},
     memory::{Smoothing, halves},
-    pixel::{Pixel, gamma::Gamma},
+    pixel::{Pixel, colour::colour, gamma::Gamma},
 };
 use core::{mem, ops::Range};
 use zerocopy::{FromBytes, Immutable, IntoBytes, KnownLayout};
@@ -138,13 +138,13 @@ impl<'r> Smoother<'r> {
         let (first, end) = (rows.start.max(known.start), rows.end.min(known.end));
         let whole = first..end;
         if first < end && self.mark(context, band, &whole, true) {
-            self.mix(pixels, band, &whole, gamma);
+            self.mix(pixels, band, &whole, (context.settings.outlines, gamma));
         } else {
             // There are more marks than places. A row has room for all of its marks.
             for row in whole {
                 let row = row..row + 1;
                 self.mark(context, band, &row, false);
-                self.mix(pixels, band, &row, gamma);
+                self.mix(pixels, band, &row, (context.settings.outlines, gamma));
             }
         }
         if end <= first || end < rows.end {
@@ -164,6 +164,7 @@ impl<'r> Smoother<'r> {
             depth: band.depth,
             top: rows.start as i32,
             bottom: rows.end as i32,
+            lines: context.settings.outlines.is_some(),
             marks,
             places,
             count: 0,
@@ -195,13 +196,23 @@ impl<'r> Smoother<'r> {
         fits
     }
 
-    /// Mixes the marked pixels of `rows`.
+    /// Mixes the marked pixels of `rows`, or draws lines there.
     #[inline(never)]
-    fn mix<C: Pixel>(&mut self, pixels: &mut [C], band: &SmoothedBand<'_>, rows: &Range<u32>, gamma: Option<&'static Gamma>) {
+    fn mix<C: Pixel>(
+        &mut self,
+        pixels: &mut [C],
+        band: &SmoothedBand<'_>,
+        rows: &Range<u32>,
+        (outlines, gamma): (Option<Outlines>, Option<&'static Gamma>),
+    ) {
         let width = band.width;
         let Kept { above, held, mixed } = kept::<C::Stored>(self.colours, width);
         let first = (rows.start - band.rows.start) as usize;
         let places = self.places.get(..self.count).unwrap_or_default();
+        if let Some(Outlines { colour: rgb, .. }) = outlines {
+            draw(pixels.get_mut(first * width..).unwrap_or_default(), self.marks, places, colour::<C>(rgb), gamma);
+            return;
+        }
         Surroundings::<C> { above, below: held, width, gamma }.mix(pixels, first, self.marks, places, mixed);
         keep(above, pixels, (rows.end - band.rows.start) as usize);
         store(pixels.get_mut(first * width..).unwrap_or_default(), self.marks, places, mixed);

@@ -83,7 +83,7 @@ impl Counter {
 
     /// Draws a case, and counts; `None` if the method cannot draw it in this style.
     fn count(&mut self, case: &Case, options: &str) -> Result<Option<u64>> {
-        let smooth = if case.style.antialias { Some(case.stream.with_neighbours()?) } else { None };
+        let smooth = if case.style.has_edges() { Some(case.stream.with_neighbours()?) } else { None };
         let stream = Scratch::new(smooth.as_ref().unwrap_or(&case.stream).as_bytes())?;
         let died = "the program that draws has ended under callgrind";
         writeln!(self.questions, "{} {}{options}", stream.path().display(), words(case)).context(died)?;
@@ -112,7 +112,12 @@ impl Drop for Counter {
 /// A case as the program that draws understands it.
 fn words(case: &Case) -> String {
     let Case { size: [width, height], frame, style, band_rows, .. } = case;
-    let options = [(style.dither, " dither"), (style.antialias, " antialias"), (style.perspective_correct, " perspective-correct")];
+    let options = [
+        (style.dither, " dither"),
+        (style.antialias, " antialias"),
+        (style.outlines.is_some(), " outlines"),
+        (style.perspective_correct, " perspective-correct"),
+    ];
     let mut options: String = options.iter().filter(|(on, _)| *on).map(|(_, word)| *word).collect();
     if let Some((name, _)) = Skips::ALL_BUT.iter().find(|(_, skips)| *skips == style.skips) {
         options += &format!(" with={name}");

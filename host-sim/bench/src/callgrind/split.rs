@@ -35,6 +35,7 @@ pub(super) fn stages(profile: &Profile) -> Result<(Stages, u64)> {
                 Part::Row if nest.inner.contains(&address) => stages.pixel += cost,
                 Part::Row => stages.span += cost,
                 Part::Clear => stages.clear += cost,
+                Part::Edges => stages.edges += cost,
                 Part::Transfer | Part::Idle | Part::Outside | Part::Unwatched | Part::Callers => {}
             }
         }
