@@ -67,24 +67,29 @@ impl Window<'_> {
     }
 
     /// Walks an edge.
-    #[inline(never)]
     pub(crate) fn walk(&mut self, edge: &Edge) {
         // One by one: `map` of arrays goes through memory at opt-level "s".
-        let Edge { ends: [[ax, ay], [bx, by]], depth: [z0, z1], .. } = *edge;
+        let Edge { ends: [[ax, ay], [bx, by]], depth: [a, b], range, beyond } = *edge;
         let (ax, ay, bx, by) = (i32::from(ax), i32::from(ay), i32::from(bx), i32::from(by));
-        let (mut z0, mut z1) = (i32::from(z0), i32::from(z1));
-        let is_flat = (bx - ax).abs() >= (by - ay).abs();
-        // Major and minor coordinate of both ends; the major one grows.
-        let ([mut m0, mut n0], [mut m1, mut n1]) = if is_flat { ([ax, ay], [bx, by]) } else { ([ay, ax], [by, bx]) };
-        let is_reversed = m1 < m0;
-        if is_reversed {
-            (m0, n0, z0, m1, n1, z1) = (m1, n1, z1, m0, n0, z0);
+        let (a, b, depth_bounds) = (i32::from(a), i32::from(b), [i32::from(range), i32::from(beyond)]);
+        // The major coordinate grows from the first end to the second. The surface lies on the side of larger minor coordinates where an edge runs to the
+        // right, or up.
+        if (bx - ax).abs() >= (by - ay).abs() {
+            let (from, to) = if ax <= bx { ([ax, ay, a], [bx, by, b]) } else { ([bx, by, b], [ax, ay, a]) };
+            self.follow(true, [from, to], depth_bounds, ax <= bx);
+        } else {
+            let (from, to) = if ay <= by { ([ay, ax, a], [by, bx, b]) } else { ([by, bx, b], [ay, ax, a]) };
+            self.follow(false, [from, to], depth_bounds, by < ay);
         }
-        // Whether the surface lies on the side of larger minor coordinates.
-        let is_below = is_flat != is_reversed;
+    }
+
+    /// Follows an edge whose ends are `[major coordinate, minor coordinate, depth]`. Its major axis is x if it `is_flat`, and y if not.
+    #[inline(never)]
+    fn follow(&mut self, is_flat: bool, [[m0, n0, z0], [m1, n1, z1]]: [[i32; 3]; 2], [range, beyond]: [i32; 2], is_below: bool) {
         let length = (m1 - m0) as u32;
+        let width = self.width;
         let ([first_major, end_major], [first_minor, end_minor]) =
-            if is_flat { ([0, self.width], self.rows) } else { ([self.top, self.bottom], [0, self.width]) };
+            if is_flat { ([0, width], self.rows) } else { ([self.top, self.bottom], [0, width]) };
         // Columns whose centre it passes.
         let half = 1 << (SUBPIXEL - 1);
         let first = ((m0 + half - 1) >> SUBPIXEL).max(first_major);
@@ -98,20 +103,19 @@ impl Window<'_> {
         let signed = |size: u32, sign: i32| if sign < 0 { (size as i32).wrapping_neg() } else { size as i32 };
         let step = signed((n1 - n0).unsigned_abs().wrapping_mul(reciprocal) >> (16 - zeros), n1 - n0);
         let depth_step = signed((z1 - z0).unsigned_abs().wrapping_mul(reciprocal >> 2) >> (18 - zeros), z1 - z0);
-        // Minor coordinate at the centre of the first column, Q.16, and depth, Q.12.
+        // Behind the centre of the first row of the minor axis, Q.16, in the first column, and depth, Q.12.
         let from = (first << SUBPIXEL) + half - m0;
-        let mut minor = (n0 << (16 - SUBPIXEL)) + step.wrapping_mul(from >> SUBPIXEL) + (step.wrapping_mul(from & 15) >> SUBPIXEL);
+        let minor = (n0 << (16 - SUBPIXEL)) + step.wrapping_mul(from >> SUBPIXEL) + (step.wrapping_mul(from & 15) >> SUBPIXEL);
+        let mut minor = minor.wrapping_sub(HALF + 1 + (first_minor << 16));
         let mut depth = (z0 << 12) + depth_step.wrapping_mul(from);
         let depth_step = depth_step << SUBPIXEL;
         let half_step = step.abs() >> 1;
         let corner = per_corner(half_step);
-        let (major_stride, minor_stride) = if is_flat { (1, self.width) } else { (self.width, 1) };
-        let (inner, outer) = if is_below { (minor_stride, 0) } else { (0, minor_stride) };
+        let (major_stride, minor_stride) = if is_flat { (1, width) } else { (width, 1) };
         let [towards_low, towards_high] = if is_flat { [UP, DOWN] } else { [LEFT, RIGHT] };
-        let mut base = if is_flat { first - self.rows[0] * self.width } else { (first - self.rows[0]) * self.width };
-        let to_mark = (self.top - self.rows[0]) * self.width;
+        let mut base = if is_flat { first } else { (first - self.rows[0]) * width };
+        let to_mark = (self.top - self.rows[0]) * width;
         let pairs = (end_minor - 1 - first_minor) as u32;
-        let (range, beyond) = (i32::from(edge.range), i32::from(edge.beyond));
         // Lines need a surface beside them. Rows that no triangle reaches have no depth.
         let least = i32::from(self.lines);
         let known = self.depth;
@@ -119,29 +123,28 @@ impl Window<'_> {
         let mut left = end - first;
         loop {
             // The last pixel whose centre lies before the edge; its pair is the next one.
-            let low = (minor - HALF - 1) >> 16;
-            if ((low - first_minor) as u32) < pairs {
+            let low = minor >> 16;
+            if (low as u32) < pairs {
                 let at = base + low * minor_stride;
-                let own = depth >> 12;
-                if inv_depth(at + outer) <= own + beyond && inv_depth(at + inner) >= (own - range).max(least) {
+                let (low_depth, high_depth, own) = (inv_depth(at), inv_depth(at + minor_stride), depth >> 12);
+                let (outer, inner) = if is_below { (low_depth, high_depth) } else { (high_depth, low_depth) };
+                if outer <= own + beyond && inner >= (own - range).max(least) {
                     // The edge lies this far behind the centre of `low`.
-                    let behind = minor - HALF - 1 - (low << 16);
-                    let pixel = at - to_mark;
+                    let (behind, pixel) = (minor & (ONE - 1), at - to_mark);
                     if self.lines {
                         let share = (behind >> 8).clamp(1, 254) as u8;
                         self.mark(pixel, 255 - share);
                         self.mark(pixel + minor_stride, share);
                     } else {
-                        let (near, far, distance) = if behind < HALF {
-                            (pixel, pixel + minor_stride, HALF - behind)
-                        } else {
-                            (pixel + minor_stride, pixel, behind - HALF)
-                        };
-                        let (to_far, to_near) = if behind < HALF { (towards_high, towards_low) } else { (towards_low, towards_high) };
+                        let is_low = behind < HALF;
+                        let distance = (behind - HALF).abs();
                         let past = half_step - distance;
                         let small = if past > 0 { (((past >> 4) * (past >> 4)) >> 8).wrapping_mul(corner) >> 14 } else { 0 };
+                        let high = pixel + minor_stride;
+                        let (near, to_far) = if is_low { (pixel, towards_high) } else { (high, towards_low) };
                         self.note(near, distance + small, to_far);
                         if small > 256 {
+                            let (far, to_near) = if is_low { (high, towards_low) } else { (pixel, towards_high) };
                             self.note(far, small, to_near);
                         }
                     }

@@ -21,7 +21,7 @@ use crate::{
         counts::Counts,
     },
 };
-use core::{cell::Cell, ops::Range};
+use core::ops::Range;
 use embedded_graphics_core::{
     geometry::{Point, Size},
     primitives::Rectangle,
@@ -267,15 +267,18 @@ impl<'r> FrameRows<'r> {
             self.draw_over(context, colours, fresh, under, columns, [drawn, next], (drawn + 1 - top) as usize);
         }
         let Kept { held, .. } = self.smoother.kept::<C::Stored>(row);
-        for (at, held) in held.iter_mut().enumerate() {
-            let colour = (drawn > top).then(|| C::from_stored(*held));
-            let below = pixels.get(if is_single { at } else { count * row + at });
-            if let Some(below) = below.filter(|_| next > bottom) {
-                *held = below.stored();
+        let is_last = next == bottom;
+        if drawn > top {
+            for (pixel, held) in pixels.iter_mut().zip(held.iter_mut()) {
+                let below = pixel.stored();
+                *pixel = C::from_stored(*held);
+                if is_single && !is_last {
+                    *held = below;
+                }
             }
-            if let (Some(colour), Some(pixel)) = (colour, pixels.get_mut(at)) {
-                *pixel = colour;
-            }
+        }
+        if !is_single && !is_last {
+            keep(held, pixels, count + 1);
         }
         let pixels = pixels.get_mut(..count * row).unwrap_or_default();
         // The depth buffer begins with the row above the band.
@@ -287,9 +290,13 @@ impl<'r> FrameRows<'r> {
         self.smoother.smooth(context, pixels, &band, colours.output().gamma);
         self.smoother.hold(bottom);
         // The depth of the last row and of the one below it comes first in the next band.
-        let depth = Cell::from_mut(&mut *self.depth).as_slice_of_cells();
-        let last = depth.get(count * row..(count + 2) * row).unwrap_or_default();
-        depth.iter().zip(last).for_each(|(to, from)| to.set(from.get()));
+        for at in [0, row] {
+            if let Some((first, last)) = self.depth.split_at_mut_checked(at + count * row).filter(|_| !is_last)
+                && let (Some(to), Some(from)) = (first.get_mut(at..at + row), last.get(..row))
+            {
+                to.copy_from_slice(from);
+            }
+        }
     }
 
     /// Finds the edges that antialiasing smooths.
