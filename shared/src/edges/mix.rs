@@ -4,6 +4,7 @@ use crate::{
     edges::walk::{DIRECTION, DOWN, LEFT, UP},
     pixel::{Pixel, gamma::Gamma},
 };
+use core::array;
 
 /// Pixels of a band around those that are mixed, as they were before.
 pub(crate) struct Surroundings<'s, C: Pixel> {
@@ -21,22 +22,25 @@ impl<C: Pixel> Surroundings<'_, C> {
     /// Computes the colours of `places`, which are pixels of the band's rows from number `first` on. `marks` are those of these rows.
     #[inline(never)]
     pub(crate) fn mix(&self, pixels: &[C], first: usize, marks: &[u8], places: &[u16], mixed: &mut [C::Stored]) {
-        let start = first.wrapping_mul(self.width);
+        // A place above the first row is no place among these.
+        let pixels = pixels.get(first.wrapping_mul(self.width)..).unwrap_or_default();
+        let ways: [usize; 4] = array::from_fn(|direction| match direction as u8 {
+            UP => self.width.wrapping_neg(),
+            DOWN => self.width,
+            LEFT => 1usize.wrapping_neg(),
+            _ => 1,
+        });
         for (&place, mixed) in places.iter().zip(mixed) {
             let place = usize::from(place);
-            let (at, mark) = (start.wrapping_add(place), marks.get(place).copied().unwrap_or(0));
-            let Some(&own) = pixels.get(at) else { continue };
-            let neighbour = match mark & ((1 << DIRECTION) - 1) {
-                UP if place < self.width => self.above.get(place).copied().map(C::from_stored),
-                UP => pixels.get(at.wrapping_sub(self.width)).copied(),
-                DOWN => {
-                    let below = at.wrapping_add(self.width);
-                    let beyond = || self.below.get(below.wrapping_sub(pixels.len())).copied().map(C::from_stored);
-                    pixels.get(below).copied().or_else(beyond)
-                }
-                LEFT => pixels.get(at.wrapping_sub(1)).copied(),
-                _ => pixels.get(at.wrapping_add(1)).copied(),
+            let mark = marks.get(place).copied().unwrap_or(0);
+            let Some(&own) = pixels.get(place) else { continue };
+            let direction = mark & ((1 << DIRECTION) - 1);
+            let at = place.wrapping_add(ways[usize::from(direction)]);
+            let beyond = || {
+                let row = if direction == UP { self.above.get(place) } else { self.below.get(at.wrapping_sub(pixels.len())) };
+                row.copied().map(C::from_stored)
             };
+            let neighbour = pixels.get(at).copied().or_else(beyond);
             *mixed = own.mixed_with(neighbour.unwrap_or(own), (mark >> DIRECTION).into(), self.gamma).stored();
         }
     }

@@ -93,7 +93,7 @@ fn=microphong::mesh::vertices::VertexStage::transform
 cfn=memcpy
 calls=1 0x90
 0x2 5
-fn=microphong::frame::part::Part::draw
+fn=microphong::frame::part::FrameRows::draw
 0x3 20
 cfn=microphong::raster::band::Band<C>::clear
 calls=1 0x80
@@ -146,7 +146,7 @@ totals: 1731
 
     #[test]
     fn a_frame_without_rows_is_an_error() {
-        let profile = Profile::parse("fn=microphong::frame::part::Part::draw\n0x3 20\n").expect("a profile");
+        let profile = Profile::parse("fn=microphong::frame::part::FrameRows::draw\n0x3 20\n").expect("a profile");
         assert!(stages(&profile).is_err());
     }
 }
