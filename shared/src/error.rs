@@ -50,10 +50,10 @@ pub enum RenderError {
         /// The number of tables that are needed.
         need: usize,
     },
-    /// Antialiasing was turned on, but the layout has no room for it; set [`Layout::antialias`](crate::Layout::antialias).
+    /// Antialiasing, or lines along outlines, were turned on, but the layout has no room for them; set [`Layout::antialias`](crate::Layout::antialias).
     AntialiasMemory,
-    /// Antialiasing was turned on, but the stream (mesh file) does not have the neighbours of its triangles; write it by `microphong convert
-    /// --antialias`.
+    /// Antialiasing, or lines along outlines, were turned on, but the stream (mesh file) does not have the neighbours of its triangles; write it by
+    /// `microphong convert --antialias`.
     Neighbours,
     /// The pixel buffer for a band (group of rows drawn at once) is shorter than one row of the picture.
     Band {
@@ -117,8 +117,8 @@ impl fmt::Display for RenderError {
             Self::TooFewHighlightTables { need } => {
                 write!(f, "the layout has too few tables of highlights; set Layout::highlight_tables({need})")
             }
-            Self::AntialiasMemory => f.write_str("the layout has no memory for antialiasing; set Layout::antialias(true)"),
-            Self::Neighbours => f.write_str("the stream has no outlines to smooth; make it with `microphong convert --antialias`"),
+            Self::AntialiasMemory => f.write_str("the layout has no memory for outlines; set Layout::antialias(true)"),
+            Self::Neighbours => f.write_str("the stream has no neighbours of triangles; make it with `microphong convert --antialias`"),
             Self::Band { need } => write!(f, "the band is too short; it must hold at least one row of {need} pixels"),
             Self::Corner => f.write_str("the picture would reach beyond the display; move it or make it smaller"),
             Self::Feature { name } => write!(f, "this program lacks the cargo feature {name}; enable it in Cargo.toml"),

@@ -272,11 +272,11 @@ impl<'a, C: Pixel> Renderer<'a, C> {
         Ok(())
     }
 
-    /// Draws antialiased lines along outlines, which are where a surface ends (silhouettes) or its shading jumps (creases); the default is `None`. Lines
-    /// take the place of [antialiasing](Self::set_antialias).
+    /// Draws antialiased lines along outlines. An outline is where a surface ends (silhouette), or where its shading jumps (crease). The default is
+    /// `None`, without lines. Lines take the place of [antialiasing](Self::set_antialias).
     ///
     /// # Errors
-    /// There are no lines then, for the reasons that [`Self::set_antialias`] names.
+    /// There are no lines then. The errors are those of [`Self::set_antialias`]: lines need the same feature, memory and stream.
     pub fn set_outlines(&mut self, outlines: Option<Outlines>) -> Result<(), RenderError> {
         self.settings.outlines = None;
         self.check_edges(outlines.is_some())?;

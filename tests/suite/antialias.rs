@@ -292,6 +292,8 @@ fn what_is_missing_is_named() {
         let mut renderer = Renderer::<Rgb565>::new(stream.parse().unwrap(), Size::new(32, 8), &layout, &mut memory, &shaders).unwrap();
         let refusal = renderer.set_antialias(true).err();
         assert_eq!(renderer.set_antialias(false), Ok(()));
+        assert_eq!(renderer.set_outlines(Some(Outlines::new([0; 3]))).err(), refusal, "lines need the same");
+        assert_eq!(renderer.set_outlines(None), Ok(()));
         assert_eq!(renderer.band_rows(), 2, "still without");
         refusal
     };
@@ -300,7 +302,7 @@ fn what_is_missing_is_named() {
     assert_eq!(refusal(&plain, layout.antialias(true)), Some(RenderError::Neighbours));
     assert_eq!(refusal(&smooth, layout.antialias(true)), None);
     let text = RenderError::AntialiasMemory.to_string();
-    assert_eq!(text, "the layout has no memory for antialiasing; set Layout::antialias(true)");
+    assert_eq!(text, "the layout has no memory for outlines; set Layout::antialias(true)");
     let text = RenderError::Neighbours.to_string();
-    assert_eq!(text, "the stream has no outlines to smooth; make it with `microphong convert --antialias`");
+    assert_eq!(text, "the stream has no neighbours of triangles; make it with `microphong convert --antialias`");
 }

@@ -3,8 +3,9 @@
 //! The mirrored colour follows the glTF 2.0 specification, appendix B: 0.04, mixed with the base colour by the metallic factor. The exponent is the
 //! one of the closest Blinn-Phong distribution: 2 / alpha² - 2, where alpha is the square of the roughness (Walter et al. 2007; Karis 2013, "Specular
 //! BRDF Reference"). There are two differences from the specification. A picture has no surroundings that a metal could mirror: metals, which have no
-//! diffuse reflection there, keep half of their colour for it. Peaks of highlights have one brightness here, while physical ones are the fainter the
-//! wider they are: below the exponent 8 highlights fade, and from 1 on, where they would be as wide as diffuse light, there are none.
+//! diffuse reflection there, keep half of their colour for it, and more where their highlights fade. Peaks of highlights have one brightness here, while
+//! physical ones are fainter the wider they are. So highlights of an exponent below 8 fade here, and at the exponent 1, where they would be as wide as
+//! diffuse light, there are none.
 //!
 //! Colours of glTF are linear. Colours of a stream are added as a display takes them, so they are encoded as sRGB (IEC 61966-2-1).
 

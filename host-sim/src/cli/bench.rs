@@ -48,7 +48,7 @@ pub(crate) struct Arguments {
     /// or all.
     #[arg(long, value_name = "B,...", default_value = "mps2-an385", value_parser = processors)]
     board: Several<Processor>,
-    /// Draw smooth outlines, on boards that have the memory for them: mps2-an385, mps2-an386.
+    /// Draw smooth outlines. Only the boards mps2-an385 and mps2-an386 have the memory for them; name them with --board.
     #[arg(long, conflicts_with_all = ["report", "peers"])]
     antialias: bool,
     /// Print one JSON object per frame, or per animation.

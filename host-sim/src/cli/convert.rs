@@ -74,7 +74,7 @@ pub(crate) struct Arguments {
     /// shape. With a wide size, a wide mesh becomes larger, but narrower displays cut off its sides.
     #[arg(long, value_name = "WxH", value_parser = parse::size)]
     size: Option<(u32, u32)>,
-    /// Write the neighbours of triangles, from which a program finds the outlines that it smooths (Renderer::set_antialias): 6 bytes a triangle.
+    /// Write the neighbours of triangles, from which a program finds outlines (Renderer::set_antialias, Renderer::set_outlines): 6 bytes a triangle.
     #[arg(long)]
     antialias: bool,
     /// Print one JSON object.

@@ -1,7 +1,7 @@
 //! `microphong render`.
 
 use super::{Outcome, Usage, mesh_options::MeshOptions, parse, report, scenes};
-use anyhow::{Context, Result};
+use anyhow::{Context, Result, ensure};
 use embedded_graphics_core::geometry::Size;
 use microphong::{Outlines, Skips, Stream, format::ErrorBudget, renderer::check, stream::record::OPEN};
 use microphong_sim::{
@@ -106,10 +106,16 @@ enum Gamma {
 }
 
 /// The stream of a scene with the neighbours of its triangles, from which outlines are found; `None`, with a note, if a mesh has too many triangles.
-fn smooth(scene: &Scene) -> Result<Option<StreamBytes>> {
+/// `lines` are an error then.
+fn smooth(scene: &Scene, lines: bool) -> Result<Option<StreamBytes>> {
     let most = usize::from(OPEN);
     let stream = scene.stream.parse().with_context(|| scene.name.clone())?;
     if stream.meshes.iter().any(|mesh| mesh.triangles as usize > most) {
+        ensure!(
+            !lines,
+            "{} has no lines along outlines, because one of its meshes has more than {most} triangles; use --simplify",
+            scene.name
+        );
         report::error(&format!(
             "the outlines of {} are jagged, because one of its meshes has more than {} triangles; use --simplify for smooth ones",
             scene.name,
@@ -156,7 +162,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome> {
     let wanted = arguments.output.as_deref().map(|path| Target::of(path, frames)).transpose()?;
     let scene = scenes::with_budget(scenes::load(&arguments.scene, arguments.options.as_ref(), arguments.format)?, arguments.budget);
     let wants_smooth = !arguments.no_antialias && arguments.show.is_none();
-    let smooth = if wants_smooth { smooth(&scene)? } else { None };
+    let smooth = if wants_smooth { smooth(&scene, arguments.outlines.is_some())? } else { None };
     let stream = smooth.as_ref().unwrap_or(&scene.stream).parse().with_context(|| arguments.scene.clone())?;
     if arguments.dither && !arguments.format.is_dithered() {
         let name = arguments.format.name();

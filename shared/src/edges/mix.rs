@@ -22,7 +22,7 @@ impl<C: Pixel> Surroundings<'_, C> {
     /// Computes the colours of `places`, which are pixels of the band's rows from number `first` on. `marks` are those of these rows.
     #[inline(never)]
     pub(crate) fn mix(&self, pixels: &[C], first: usize, marks: &[u8], places: &[u16], mixed: &mut [C::Stored]) {
-        // A place above the first row is no place among these.
+        // These begin with the first row, so the index of a pixel above wraps around and is not found.
         let pixels = pixels.get(first.wrapping_mul(self.width)..).unwrap_or_default();
         let ways: [usize; 4] = array::from_fn(|direction| match direction as u8 {
             UP => self.width.wrapping_neg(),

@@ -103,7 +103,8 @@ impl Window<'_> {
         let signed = |size: u32, sign: i32| if sign < 0 { (size as i32).wrapping_neg() } else { size as i32 };
         let step = signed((n1 - n0).unsigned_abs().wrapping_mul(reciprocal) >> (16 - zeros), n1 - n0);
         let depth_step = signed((z1 - z0).unsigned_abs().wrapping_mul(reciprocal >> 2) >> (18 - zeros), z1 - z0);
-        // Behind the centre of the first row of the minor axis, Q.16, in the first column, and depth, Q.12.
+        // `minor` is how far the edge lies behind the centre of the first pixel of the minor axis, Q.16. `depth` is Q.12. Both are those of the first
+        // column.
         let from = (first << SUBPIXEL) + half - m0;
         let minor = (n0 << (16 - SUBPIXEL)) + step.wrapping_mul(from >> SUBPIXEL) + (step.wrapping_mul(from & 15) >> SUBPIXEL);
         let mut minor = minor.wrapping_sub(HALF + 1 + (first_minor << 16));

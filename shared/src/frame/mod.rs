@@ -53,7 +53,8 @@ impl<'r, C: Pixel> Frame<'r, C> {
     /// Draws the next band (group of rows) like [`Self::next_band`], over something that the program draws, for example an image. `under`
     /// is called with the pixels of the band, which already contain the background, and with the rectangle of the band in the picture, which
     /// is always as wide as the picture. [`BandTarget::new`](crate::BandTarget::new) turns the two into an embedded-graphics draw target.
-    /// With antialiasing the rows that are drawn at once are not those of the band that is returned, and `under` may be called several times.
+    /// With antialiasing, or lines along outlines, the rows that are drawn at once are not those of the band that is returned. `under` may be called
+    /// several times, also for the same rows, so it must draw the same each time.
     ///
     /// With partial redraw, call [`Renderer::invalidate`](crate::Renderer::invalidate) with the area in which the result of `under`
     /// changes. [`Self::rows`] does not include rows in which only `under` draws.

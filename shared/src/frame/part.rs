@@ -53,7 +53,7 @@ pub struct Stats {
     /// How often a triangle that continues from one band (group of rows drawn at once) into the next had to be set up again. If it is
     /// large, increase [`Layout::active_triangles`](crate::Layout::active_triangles).
     pub set_up_anew: u32,
-    /// The number of edges in the outlines of the frame, with antialiasing. If it exceeds [`Layout::edges`](crate::Layout::edges), each band looks for
+    /// The number of edges in the outlines of the frame, with antialiasing or lines. If it exceeds [`Layout::edges`](crate::Layout::edges), each band looks for
     /// all edges anew.
     pub edges: u32,
     /// Counts of triangles by the way in which they were drawn. All are 0 unless this crate is built with the feature `skips`.
@@ -299,7 +299,7 @@ impl<'r> FrameRows<'r> {
         }
     }
 
-    /// Finds the edges that antialiasing smooths.
+    /// Finds the edges that are smoothed, or drawn as lines.
     #[inline(never)]
     pub(crate) fn find_edges(&mut self, context: &Context<'_>) {
         let Self { bins, binned, entries, depth, smoother, rows, stats, .. } = self;

@@ -1,5 +1,5 @@
 //! Tables of highlights. Materials with equal highlights share one: in three channels, and under several lights, these are all materials of one exponent.
-//! Materials without highlights need none.
+//! Materials without highlights need none, except greys whose table holds levels.
 
 use crate::{lighting::reflectance::Reflectance, math::highlight_lut::HighlightLut};
 

@@ -294,7 +294,8 @@ impl Reflectance {
     /// [`Self::highlight_threshold`] of a material without highlights, greater than every N·H.
     pub(crate) const NO_HIGHLIGHT: i32 = i32::MAX;
 
-    /// Whether the material has no highlight under the lights of the scene, so that it needs no table.
+    /// Whether the material has no highlight under the lights of the scene, so that it needs no table. Greys whose table holds
+    /// levels always need one.
     #[inline]
     #[must_use]
     pub fn is_matt(&self) -> bool {

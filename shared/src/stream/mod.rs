@@ -64,7 +64,7 @@ pub struct Stream<'a> {
     /// Triangles of all meshes and of their levels of detail.
     #[doc(hidden)]
     pub triangles: &'a [Triangle],
-    /// Neighbours of all triangles, for antialiasing; empty if `microphong convert` wrote the file without `--antialias`.
+    /// Neighbours of all triangles, for antialiasing and lines; empty if `microphong convert` wrote the file without `--antialias`.
     #[doc(hidden)]
     pub neighbours: &'a [Neighbours],
     /// Texts that are drawn over the picture.
