@@ -58,7 +58,8 @@ pub struct Layout {
     /// more, and 24 bytes for each of [`Self::edges`]. [`Renderer::set_antialias`](crate::Renderer::set_antialias) turns it on.
     pub antialias: bool,
     /// The number of tables of highlights that there is room for, 8,200 bytes each; more than [`Self::materials`] are never needed. By default
-    /// there is one for each material. Materials with equal highlights share one, and materials without highlights need none, except in greys under one light. See [`Self::highlight_tables`](Self::highlight_tables()).
+    /// there is one for each material. Materials with equal highlights share one, and materials without highlights need none, except in greys
+    /// under one light. See [`Self::highlight_tables`](Self::highlight_tables()).
     pub highlight_tables: usize,
     /// With antialiasing, the number of edges in the outlines of a frame that there is room for, 24 bytes each. If there are more, the picture stays
     /// the same, but each band (group of rows drawn at once) looks for them in all triangles of the scene.
@@ -132,7 +133,8 @@ impl Layout {
     }
 
     /// Sets the number of tables of highlights, which take 8,200 bytes each. By default there is one for each material. Materials without highlights
-    /// need none, except in greys under one light. Materials with equal highlights share a table. These are all materials of one exponent whose highlights differ in hue from their diffuse light, as on plastic, or
+    /// need none, except in greys under one light. Materials with equal highlights share a table. These are all materials of one exponent whose
+    /// highlights differ in hue from their diffuse light, as on plastic, or
     /// that are lit by several lights. Under one light, materials of one hue share a table only if their ambient and specular light are equal too.
     ///
     /// If there are too few, [`Frame::next_band`](crate::Frame::next_band) returns

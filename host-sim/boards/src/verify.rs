@@ -35,7 +35,8 @@ pub struct Request {
     pub shader: Shader,
     /// Frames to compare, from the first.
     pub frames: u16,
-    /// Whether both draw smooth outlines. The stream must have the neighbours of its triangles, and the firmware must be the one that [`build()`] makes for them.
+    /// Whether both draw smooth outlines. The stream must have the neighbours of its triangles, and the firmware must be the one that [`build()`]
+    /// makes for them.
     pub antialias: bool,
 }
 

@@ -53,8 +53,8 @@ pub struct Stats {
     /// How often a triangle that continues from one band (group of rows drawn at once) into the next had to be set up again. If it is
     /// large, increase [`Layout::active_triangles`](crate::Layout::active_triangles).
     pub set_up_anew: u32,
-    /// The number of edges in the outlines of the frame, with antialiasing or lines. If it exceeds [`Layout::edges`](crate::Layout::edges), each band looks for
-    /// all edges anew.
+    /// The number of edges in the outlines of the frame, with antialiasing or lines. If it exceeds [`Layout::edges`](crate::Layout::edges), each
+    /// band looks for all edges anew.
     pub edges: u32,
     /// Counts of triangles by the way in which they were drawn. All are 0 unless this crate is built with the feature `skips`.
     pub counts: Counts,
