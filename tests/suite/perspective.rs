@@ -166,6 +166,31 @@ fn correction_comes_closer_to_the_truth() {
     }
 }
 
+/// Where triangles reach far, six points on the screen are nearer to Phong shading than six points in space that are interpolated as if there were no
+/// perspective.
+#[test]
+fn six_points_on_the_screen_are_better() {
+    for scene in close_scenes() {
+        let stream = scene.stream.parse().unwrap();
+        let [plain, seen] = [Frame::new(stream, scene.size, 0), Frame::perspective_correct(stream, scene.size, 0)];
+        let exact: Vec<_> = seen.facets.iter().map(|facet| method("phong", &seen, facet).unwrap()).collect();
+        let rms = |frame: &Frame| {
+            let shades: Vec<_> = frame.facets.iter().map(|facet| method("six-point", frame, facet).unwrap()).collect();
+            let pixels = seen.visible().into_iter().enumerate().filter_map(|(i, candidates)| {
+                let (facet, i) = (*candidates.first()? as usize, i as u32);
+                let centre = [i % scene.size.0, i / scene.size.0].map(|c| f64::from(c) + 0.5);
+                let (a, b) = (exact[facet](centre), shades[facet](centre));
+                Some((0..3).map(|k| (a[k] - b[k]).abs()).fold(0.0, f64::max).powi(2))
+            });
+            let squares: Vec<f64> = pixels.collect();
+            (squares.iter().sum::<f64>() / squares.len() as f64).sqrt()
+        };
+        let [plain, seen] = [rms(&plain), rms(&seen)];
+        println!("{:28} {plain:.2} -> {seen:.2} of 255", scene.name);
+        assert!(seen < 0.85 * plain, "{}: {seen}, in place of {plain}", scene.name);
+    }
+}
+
 #[test]
 fn parallel_rays_make_no_difference() {
     for name in ["sphere-168", "torus"] {

@@ -194,10 +194,19 @@ impl Facet {
     /// Affine coordinates of the point that is seen at a point of the screen: the corners' shares, whose sum is one.
     #[must_use]
     pub fn weights(&self, p: [f64; 2]) -> V3 {
-        let [flat, shares] = [self.flat_weights(p), self.shares];
-        let parts = [0, 1, 2].map(|k| flat[k] * shares[k]);
+        self.seen(self.flat_weights(p))
+    }
+
+    /// Affine coordinates of the point that is seen at the point of the screen with the affine coordinates `flat`.
+    pub(super) fn seen(&self, flat: V3) -> V3 {
+        let parts = [0, 1, 2].map(|k| flat[k] * self.shares[k]);
         let whole: f64 = parts.iter().sum();
         parts.map(|part| part / whole)
+    }
+
+    /// Whether a quadratic on the screen has its nodes there: without perspective, or if normals bend so little that none is shorter than 1/2.
+    pub(super) fn has_screen_nodes(&self) -> bool {
+        self.shares == [1.0; 3] || self.min_normal_length >= 0.5
     }
 
     /// Affine coordinates of a point on the screen.

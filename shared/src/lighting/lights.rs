@@ -1,7 +1,7 @@
 //! The lights of one frame in object space. They are transformed once a frame for each object, so that no normal needs to be rotated.
 
 use crate::{
-    arch::product::{HALVES, by_fraction},
+    arch::product::{HALVES, by_fraction, upper},
     features::{ALWAYS_CONSTANT, LIGHTS, NEAR_LIGHTS},
     format::{COSINE, MAX_LIGHTS, POSITION, UNIT},
     geometry::model_view::ModelView,
@@ -260,6 +260,12 @@ pub fn vertex_cosine(normal: [i32; 3], direction: [i32; 3]) -> i32 {
     scaled_dot::<UNIT>(normal, direction)
 }
 
+/// A unit normal that is a vector times a factor.
+pub trait UnitNormal {
+    /// Cosine of the angle to a unit vector, both Q2.30.
+    fn cosine(&self, direction: [i32; 3]) -> i32;
+}
+
 /// A unit normal half-way between two vertices, or at one of them: half the sum of two vertex normals, times a factor.
 #[derive(Clone, Copy, Debug)]
 pub struct MeanNormal {
@@ -283,14 +289,37 @@ impl MeanNormal {
     pub fn at(normal: [i32; 3]) -> Self {
         Self::new(normal, normal, 0)
     }
+}
 
-    /// Cosine of the angle to a unit vector, Q2.30. At a vertex the bits of [`vertex_cosine`].
+impl UnitNormal for MeanNormal {
+    /// At a vertex the bits of [`vertex_cosine`].
     #[inline]
-    #[must_use]
-    pub fn cosine(&self, direction: [i32; 3]) -> i32 {
+    fn cosine(&self, direction: [i32; 3]) -> i32 {
         let mean = scaled_dot::<{ UNIT + 1 }>(self.sum, direction);
         mean.wrapping_add(by_fraction(mean, self.excess))
     }
+}
+
+/// An interpolated normal over its length.
+#[derive(Clone, Copy, Debug)]
+pub struct InterpolatedNormal {
+    /// The normal as it is interpolated, Q2.30.
+    pub vector: [i32; 3],
+    /// Half of its reciprocal length, Q2.30.
+    pub half_reciprocal: i32,
+}
+
+impl UnitNormal for InterpolatedNormal {
+    #[inline]
+    fn cosine(&self, direction: [i32; 3]) -> i32 {
+        over_length(cosine(self.vector, direction), self.half_reciprocal)
+    }
+}
+
+/// A cosine with an interpolated normal, Q2.30, divided by the normal's length. Half of the reciprocal length is Q2.30. Error: 2^-27.
+#[inline(always)]
+pub(crate) fn over_length(cosine: i32, half_reciprocal: i32) -> i32 {
+    upper(cosine, half_reciprocal) << 3
 }
 
 /// The unit half vector between two unit vectors, Q2.30; zero if they are opposite. Source: Blinn (1977).

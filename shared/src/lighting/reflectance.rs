@@ -6,7 +6,7 @@ use crate::{
     format::{BIAS, CHANNEL, COSINE, Intensity, LEVEL, PIXEL_COSINE, UNIT},
     lighting::{
         constant_lights::{FACTOR, LARGEST, Sum, Sums},
-        lights::{MeanNormal, ROOM, Source},
+        lights::{ROOM, Source, UnitNormal},
     },
     math::{
         highlight_lut::{Base, ENTRY, HighlightCurve, HighlightLut, square},
@@ -598,10 +598,10 @@ impl<'f> LitMaterial<'f> {
         levels.map(|level| level.min(FULL))
     }
 
-    /// Levels under constant lights, Q9.7 in [0, 255].
+    /// Levels under constant lights, Q9.7 in [0, 255], of a unit normal.
     #[inline(never)]
     #[must_use]
-    pub fn constant_levels(self, sources: &[Source], normal: &MeanNormal) -> [i32; 3] {
+    pub fn constant_levels<N: UnitNormal>(self, sources: &[Source], normal: &N) -> [i32; 3] {
         if sources.len() > 2 || self.excess != 0 {
             return self.many_constant_levels(sources, normal);
         }
@@ -625,7 +625,7 @@ impl<'f> LitMaterial<'f> {
     /// Levels as in [`Self::constant_levels`], for sums that do not fit a word, or for more than two lights.
     #[cold]
     #[inline(never)]
-    fn many_constant_levels(self, sources: &[Source], normal: &MeanNormal) -> [i32; 3] {
+    fn many_constant_levels<N: UnitNormal>(self, sources: &[Source], normal: &N) -> [i32; 3] {
         let cosines = sources.iter().map(|source| source.directional().map_or([0; 2], |directions| directions.map(|v| normal.cosine(v))));
         self.levels(cosines)
     }

@@ -44,7 +44,9 @@ pub use crate::{
     raster::canvas::{Canvas, IntensityShader},
 };
 use core::fmt;
+use cosines::duff::is_curved;
 pub use facts::{Facts, VertexLight};
+pub(crate) use perspective::{LinearWay, Middles};
 // For the crate of the literature.
 #[doc(hidden)]
 pub use {
@@ -267,16 +269,45 @@ impl TriangleSetup<'_> {
         (self.perspective && !(a == b && b == c)).then_some([a, b, c])
     }
 
-    /// The bound of [`perspective::screen_error`] on this triangle; 0 if perspective is off.
-    pub(crate) fn perspective_error(&self, range: u32) -> u32 {
-        self.inv_depth().map_or(0, |inv_depth| perspective::screen_error(inv_depth, range))
+    /// A bound of the error of values that differ by `range` between corners, and that a plane on the screen interpolates; 0 if perspective is off.
+    pub(crate) fn plane_error(&self, range: u32) -> u32 {
+        self.inv_depth().map_or(0, |inv_depth| perspective::plane_error(inv_depth, range))
     }
 
-    /// Whether values that are linear over the triangle and differ by `range`, Q9.7, between corners have to be interpolated in perspective: if they
-    /// would otherwise be off by more than a quarter of a level.
+    /// How values are interpolated on the screen that are linear over the triangle and differ by `range`, Q9.7, between corners: in the fastest way that
+    /// is off by at most a quarter of a level.
     #[inline(always)]
-    pub(crate) fn needs_perspective(&self, range: impl FnOnce() -> u32) -> bool {
-        PERSPECTIVE && self.perspective && self.place.is_none() && self.perspective_error(range()) > 1 << (LEVEL - 2)
+    pub(crate) fn linear_way(&self, range: impl FnOnce() -> u32) -> LinearWay {
+        match self.inv_depth() {
+            Some(inv_depth) if PERSPECTIVE => perspective::linear_way(inv_depth, range(), 1 << (LEVEL - 2)),
+            _ => LinearWay::Plane,
+        }
+    }
+
+    /// The nodes on the edges of the triangle, on the screen if [`Self::has_screen_nodes`].
+    #[inline(always)]
+    pub(crate) fn middles(&self) -> Middles {
+        Middles(if PERSPECTIVE && !is_curved(self) { self.inv_depth().map(perspective::middles) } else { None })
+    }
+
+    /// Whether a quadratic on the screen can have its nodes there: perspective is off, or no interpolated normal is so short that the rounding of a place
+    /// on an edge would turn it.
+    #[inline(always)]
+    pub(crate) fn has_screen_nodes(&self) -> bool {
+        !PERSPECTIVE || self.inv_depth().is_none() || !is_curved(self)
+    }
+
+    /// [`Self::has_screen_nodes`], and the farthest corner is at most 9/8 as far as the nearest, or perspective is off.
+    #[inline(always)]
+    pub(crate) fn is_evenly_far(&self) -> bool {
+        let even = |[a, b, c]: [i32; 3]| (a.max(b).max(c) as u32).wrapping_mul(8) <= (a.min(b).min(c) as u32).wrapping_mul(9);
+        !PERSPECTIVE || self.inv_depth().is_none_or(|inv_depth| !is_curved(self) && even(inv_depth))
+    }
+
+    /// Copies the set-up without perspective, for methods whose polynomials on the screen have nodes in perspective.
+    #[must_use]
+    pub(crate) fn on_screen(&self) -> TriangleSetup<'_> {
+        TriangleSetup { perspective: false, ..*self }
     }
 
     /// Sorts three numbers that belong to the edges of the triangle in the mesh file into the order of the edges here: 0-1, 1-2, 2-0.

@@ -2,13 +2,14 @@
 
 use crate::{
     arch::product::{by_fraction, product},
+    features::PERSPECTIVE,
     format::{COSINE, INVERSE_SUM_LENGTH, POSITION, UNIT},
-    lighting::lights::{MeanNormal, cosine, point, vertex_cosine},
+    lighting::lights::{InterpolatedNormal, MeanNormal, cosine, over_length, point, vertex_cosine},
     math::{
-        rsqrt::rsqrt_wide,
+        rsqrt::{HalfRsqrt, LEAST, rsqrt_wide},
         vector::{add, dot, normalise, wide, zip},
     },
-    method::{Shading, TriangleSetup},
+    method::{Middles, Shading, TriangleSetup},
     stream::record::Vertex,
 };
 
@@ -45,9 +46,12 @@ impl Shading<'_> {
 
 #[doc(hidden)]
 impl Shading<'_> {
-    /// Computes the light levels of red, green and blue at the midpoints of the edges 0-1, 1-2 and 2-0. They are Q9.7 from 0 to 255.
+    /// Computes the light levels of red, green and blue at the [`Middles`] of the edges 0-1, 1-2 and 2-0. They are Q9.7 from 0 to 255.
     #[inline(never)]
-    pub fn middle_levels(&self, setup: &TriangleSetup<'_>) -> [[i32; 3]; 3] {
+    pub(crate) fn middle_levels(&self, setup: &TriangleSetup<'_>) -> [[i32; 3]; 3] {
+        if let Middles(Some(shares)) = setup.middles() {
+            return self.levels_at(setup, shares);
+        }
         if self.lighting.is_constant()
             && !is_steep(self.exponent)
             && let Some([ab, bc, ca]) = &setup.middle_normals()
@@ -56,6 +60,22 @@ impl Shading<'_> {
             return [levels(ab), levels(bc), levels(ca)];
         }
         let [.., ab, bc, ca] = setup.six_nodes(self.exponent);
+        [self.levels(&ab), self.levels(&bc), self.levels(&ca)]
+    }
+}
+
+impl Shading<'_> {
+    /// The light levels at these shares of the edges.
+    #[inline(never)]
+    fn levels_at(&self, setup: &TriangleSetup<'_>, shares: [u16; 3]) -> [[i32; 3]; 3] {
+        if self.lighting.is_constant() && !is_steep(self.exponent) {
+            let levels = |vector, half_reciprocal| {
+                self.reflectance.constant_levels(self.lighting.sources(), &InterpolatedNormal { vector, half_reciprocal })
+            };
+            let ([ab, bc, ca], [rab, rbc, rca]) = (seen_normals(setup.vertices(), shares), setup.half_reciprocals(shares));
+            return [levels(ab, rab), levels(bc, rbc), levels(ca, rca)];
+        }
+        let [ab, bc, ca] = seen_nodes(setup.vertices(), shares);
         [self.levels(&ab), self.levels(&bc), self.levels(&ca)]
     }
 }
@@ -84,6 +104,13 @@ impl TriangleSetup<'_> {
             Node { position, normal: sum.map(|c| (product(c, inverse) >> (UNIT + INVERSE_SUM_LENGTH - 30)) as i32) }
         };
         [a, b, c, middle(0), middle(1), middle(2)]
+    }
+
+    /// [`Self::six_nodes`] with the nodes `middles`.
+    pub(crate) fn six_nodes_at(&self, middles: Middles, exponent: u16) -> [Node; 6] {
+        let Middles(Some(shares)) = middles else { return self.six_nodes(exponent) };
+        let ([a, b, c], [ab, bc, ca]) = (self.corner_nodes(), seen_nodes(self.vertices(), shares));
+        [a, b, c, ab, bc, ca]
     }
 
     /// Position, and sum of the ends' normals (Q3.14), at the middle of each edge.
@@ -115,23 +142,19 @@ impl TriangleSetup<'_> {
         })
     }
 
-    /// Returns the cosine N·L of normal and direction to the light (Q2.30) at the three corners and then at the midpoints of the edges 0-1,
-    /// 1-2 and 2-0. It can be used for one directional light and an infinitely distant viewer, if the vertices hold cosines
+    /// The cosine N·L (Q2.30) at the corners and the [`Middles`]. Domain: one constant light, and vertices that hold cosines
     /// ([`VertexLight::Cosines`](crate::method::VertexLight::Cosines)).
     #[inline(always)]
-    pub fn six_diffuse(&self) -> [i32; 6] {
+    pub(crate) fn six_diffuse(&self) -> [i32; 6] {
         let [a, b, c] = self.corners;
-        self.six_from([a.light[0], b.light[0], c.light[0]])
+        self.six_at(self.middles(), [a.light[0], b.light[0], c.light[0]])
     }
 
-    /// Returns the cosine N·H of normal and half vector between light and viewer (Q2.30) at the three corners and then at the midpoints of
-    /// the edges 0-1, 1-2 and 2-0. It can be used for one directional light and an infinitely distant viewer, if the vertices hold cosines
-    /// ([`VertexLight::Cosines`](crate::method::VertexLight::Cosines)). `exponent` is the material's highlight exponent; larger ones are
-    /// computed more exactly.
+    /// The cosine N·H (Q2.30) at the same points. `exponent` is the material's highlight exponent; for larger ones it is computed more exactly.
     #[inline(always)]
-    pub fn six_half(&self, exponent: u16) -> [i32; 6] {
+    pub(crate) fn six_half(&self, exponent: u16) -> [i32; 6] {
         let [a, b, c] = self.corners;
-        self.six_half_from([a.light[1], b.light[1], c.light[1]], exponent)
+        self.six_half_at(self.middles(), [a.light[1], b.light[1], c.light[1]], exponent)
     }
 
     /// Returns the cosine N·H of normal and half vector between light and viewer (Q2.30) at the three corners and then at the midpoints of
@@ -157,6 +180,45 @@ impl TriangleSetup<'_> {
             mean + by_fraction(mean, excess)
         };
         [a, b, c, middle(a, b, ab), middle(b, c, bc), middle(c, a, ca)]
+    }
+
+    /// [`Self::six_from`] with the nodes `middles`.
+    #[inline(always)]
+    pub(crate) fn six_at(&self, middles: Middles, corners: [i32; 3]) -> [i32; 6] {
+        match middles {
+            Middles(Some(shares)) if PERSPECTIVE => self.six_seen(shares, corners),
+            _ => self.six_from(corners),
+        }
+    }
+
+    /// [`Self::six_half_from`] with the nodes `middles`.
+    #[inline(always)]
+    pub(crate) fn six_half_at(&self, middles: Middles, corners: [i32; 3], exponent: u16) -> [i32; 6] {
+        match middles {
+            Middles(Some(shares)) if PERSPECTIVE && is_steep(exponent) => exact_six_seen(self.vertices(), shares, corners),
+            Middles(Some(shares)) if PERSPECTIVE => self.six_seen(shares, corners),
+            _ => self.six_half_from(corners, exponent),
+        }
+    }
+
+    /// [`Self::six_from`] with nodes at these shares of the edges.
+    #[inline(never)]
+    fn six_seen(&self, shares: [u16; 3], [a, b, c]: [i32; 3]) -> [i32; 6] {
+        let ([at, bt, ct], [ab, bc, ca]) = (shares, self.half_reciprocals(shares));
+        [a, b, c, over_length(mixed(a, b, at), ab), over_length(mixed(b, c, bt), bc), over_length(mixed(c, a, ct), ca)]
+    }
+
+    /// Half the reciprocal length of the interpolated normal at these shares of the edges, Q2.30. Domain: it is at least 1/2 long.
+    #[inline(always)]
+    fn half_reciprocals(&self, [at, bt, ct]: [u16; 3]) -> [i32; 3] {
+        let ([ab, bc, ca], lengths) = (self.edges(self.triangle.haversine), HalfRsqrt::get());
+        let half_reciprocal = |share: u16, haversine: u16| {
+            // With the share s and the haversine h of the edge, the normal has the squared length 1 - 4 s (1 - s) h, Q0.32.
+            let bend = (u32::from(share) * ((1 << 16) - u32::from(share))) >> 14;
+            let square = 0u32.wrapping_sub(bend.wrapping_mul(haversine.into()));
+            lengths.rsqrt(square.wrapping_sub(LEAST)) as i32
+        };
+        [half_reciprocal(at, ab), half_reciprocal(bt, bc), half_reciprocal(ct, ca)]
     }
 
     /// Returns the cosines (Q2.30) between the normals of the corners and `direction`, a unit vector in object space (Q2.30).
@@ -226,6 +288,45 @@ fn exact_six(vertices: [&Vertex; 3], [a, b, c]: [i32; 3]) -> [i32; 6] {
         // 1/|Ni+Nj| is 2^(14 - exponent) times the mantissa.
         let (mantissa, exponent) = rsqrt_wide(dot(sum, sum).max(1) as u64);
         (product((a >> 1) + (b >> 1), mantissa as i32) >> (exponent.max(UNIT + 1) - UNIT - 1)) as i32
+    });
+    [a, b, c, ab, bc, ca]
+}
+
+/// The value at a share of an edge, from those at its ends.
+#[inline(always)]
+pub(crate) fn mixed(from: i32, to: i32, share: u16) -> i32 {
+    from - by_fraction(from, share) + by_fraction(to, share)
+}
+
+/// The sum of the ends' normals of each edge, weighted by its share; Q2.30.
+fn seen_normals([a, b, c]: [&Vertex; 3], [ab, bc, ca]: [u16; 3]) -> [[i32; 3]; 3] {
+    let sum = |a: &Vertex, b: &Vertex, share: u16| {
+        let (from, to) = ((1 << 16) - i32::from(share), i32::from(share));
+        zip(wide(a.normal), wide(b.normal), |a, b| a * from + b * to)
+    };
+    [sum(a, b, ab), sum(b, c, bc), sum(c, a, ca)]
+}
+
+/// The points at these shares of the edges, with their unit normals.
+#[inline(never)]
+fn seen_nodes(vertices: [&Vertex; 3], shares: [u16; 3]) -> [Node; 3] {
+    let [a, b, c] = vertices.map(|vertex| point(vertex.position));
+    let between = |from, to, share| zip(from, to, |from, to| mixed(from, to, share));
+    let [ab, bc, ca] = shares;
+    let positions = [between(a, b, ab), between(b, c, bc), between(c, a, ca)];
+    zip(positions, seen_normals(vertices, shares), |position, normal| Node { position, normal: normalise(normal) })
+}
+
+/// [`TriangleSetup::six_seen`] by the lengths of the sums of normals, for steep highlights.
+#[cold]
+#[inline(never)]
+fn exact_six_seen(vertices: [&Vertex; 3], shares: [u16; 3], [a, b, c]: [i32; 3]) -> [i32; 6] {
+    let [at, bt, ct] = shares;
+    let sums = [mixed(a, b, at), mixed(b, c, bt), mixed(c, a, ct)];
+    let [ab, bc, ca] = zip(sums, seen_normals(vertices, shares), |sum, normal| {
+        // 1/|N| is 2^(60 - exponent) times the mantissa, in which N has 30 fraction bits.
+        let (mantissa, exponent) = rsqrt_wide(dot(normal, normal).max(1) as u64);
+        (product(sum, mantissa as i32) >> (exponent.max(30) - 30)) as i32
     });
     [a, b, c, ab, bc, ca]
 }

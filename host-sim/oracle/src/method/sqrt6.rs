@@ -26,15 +26,19 @@ pub(super) fn by_cosines<'f>(frame: &'f Frame, facet: &'f Facet) -> Shade<'f> {
 
 /// N·H is interpolated as a function of it, and that undone.
 fn fitted<'f>(frame: &'f Frame, facet: &'f Facet, function: fn(f64) -> f64, inverse: fn(f64) -> f64) -> Shade<'f> {
+    // In perspective it is a quadratic on the screen through midpoints there, unless the triangle reaches too far.
+    let [least, most] = [f64::min, f64::max].map(|choose| facet.shares.into_iter().reduce(choose).unwrap_or(1.0));
+    let on_screen = facet.has_screen_nodes() && 8.0 * most <= 9.0 * least;
     let fit = |light| {
         SIX.map(|node| {
+            let node = if on_screen { facet.seen(node) } else { node };
             let [diffuse, half] = frame.cosines(light, facet.position(node), facet.node(node));
             [diffuse, function(half)]
         })
     };
     let fits: Vec<_> = frame.lights.iter().map(fit).collect();
     Box::new(move |p| {
-        let weights = quadratic(facet.weights(p));
+        let weights = quadratic(if on_screen { facet.flat_weights(p) } else { facet.weights(p) });
         let cosines = fits.iter().map(|fit| blend(&weights, fit)).map(|[diffuse, half]| [diffuse, inverse(half)]);
         frame.lit(facet, cosines)
     })

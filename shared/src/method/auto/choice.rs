@@ -199,7 +199,7 @@ fn linear_raise(setup: &TriangleSetup<'_>, interval: Interval, budget: u32, rang
     if !PERSPECTIVE || !setup.perspective {
         return Some(interval.raise(budget));
     }
-    let rest = budget.checked_sub(setup.perspective_error(range()))?;
+    let rest = budget.checked_sub(setup.plane_error(range()))?;
     (interval.half() <= rest).then(|| interval.raise(rest))
 }
 

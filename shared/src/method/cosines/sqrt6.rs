@@ -25,7 +25,7 @@ use crate::{
     },
     math::{highlight_lookup::DefectLookup, highlight_lut::CosineLookup, rsqrt::sqrt},
     method::{
-        CornerCosines, Facts, HighlightField, Loops, Method, RANGE, Shading, Style, TriangleSetup, VertexLight,
+        CornerCosines, Facts, HighlightField, Loops, Method, Middles, RANGE, Shading, Style, TriangleSetup, VertexLight,
         cosines::{
             lit::{AtPixel, FromValues, LitShader},
             two_lights::TwoLights,
@@ -78,10 +78,12 @@ impl Method for Sqrt6 {
     }
 
     fn shade(&self, setup: &TriangleSetup<'_>, shading: &Shading<'_>, canvas: &mut dyn Canvas) -> u32 {
+        let even = setup.on_screen();
+        let (setup, middles) = if setup.is_evenly_far() { (&even, setup.middles()) } else { (setup, Middles::IN_SPACE) };
         if shading.lighting.is_constant() {
-            return shade_constant::<true>(setup, shading, canvas);
+            return shade_constant::<true>(setup, middles, shading, canvas);
         }
-        let nodes = setup.six_nodes(shading.exponent);
+        let nodes = setup.six_nodes_at(middles, shading.exponent);
         let fit =
             |source: &_| Lit::<_, QuadraticNodes<1>>::Fully(shading.six_products(&nodes, source, |[light, half]| [light, root(half)]));
         shading.draw_lit_in_part(setup, fit, Constant, LookedUp, canvas)
@@ -91,18 +93,18 @@ impl Method for Sqrt6 {
 impl SixCosines {
     /// Shades the triangle `setup` under constant lights into `canvas`; returns the number of its pixels there.
     pub(crate) fn shade(setup: &TriangleSetup<'_>, shading: &Shading<'_>, canvas: &mut dyn Canvas) -> u32 {
-        shade_constant::<false>(setup, shading, canvas)
+        shade_constant::<false>(setup, Middles::IN_SPACE, shading, canvas)
     }
 }
 
-/// [`Method::shade`] under constant lights.
-fn shade_constant<const ROOT: IsRoot>(setup: &TriangleSetup<'_>, shading: &Shading<'_>, canvas: &mut dyn Canvas) -> u32 {
+/// [`Method::shade`] under constant lights, with the nodes `middles`.
+fn shade_constant<const ROOT: IsRoot>(setup: &TriangleSetup<'_>, middles: Middles, shading: &Shading<'_>, canvas: &mut dyn Canvas) -> u32 {
     let threshold = setup.highlight_threshold(&shading.reflectance);
     let fit = |source: &_| {
         let [towards, half] = shading.lighting.directions(source, [0; 3]);
-        let (towards, half) = (setup.six_from(setup.corner_cosines(towards)), setup.corner_cosines(half));
+        let (towards, half) = (setup.six_at(middles, setup.corner_cosines(towards)), setup.corner_cosines(half));
         if largest(&half) >= threshold {
-            let half = map_six(setup.six_half_from(half, shading.exponent), walked::<ROOT>);
+            let half = map_six(setup.six_half_at(middles, half, shading.exponent), walked::<ROOT>);
             Lit::Fully(quadratic([towards, half]))
         } else if DiffuseSign::of(towards) == DiffuseSign::Nowhere {
             Lit::Nowhere
@@ -115,7 +117,7 @@ fn shade_constant<const ROOT: IsRoot>(setup: &TriangleSetup<'_>, shading: &Shadi
 
 impl Loops for Sqrt6 {
     fn take(style: Style) -> bool {
-        style.has_constant_lights() && !style.perspective
+        style.has_constant_lights()
     }
 
     #[inline(always)]
@@ -131,7 +133,7 @@ impl Loops for Sqrt6 {
 
 impl Loops for SixCosines {
     fn take(style: Style) -> bool {
-        style.has_constant_lights() && !style.perspective
+        style.has_constant_lights()
     }
 
     #[inline(always)]
@@ -153,6 +155,10 @@ fn draw_any<const ROOT: IsRoot, C: Pixel>(
     tables: MaterialTables<'_, C>,
     band: &mut Band<'_, C>,
 ) -> Option<u32> {
+    // A quadratic on the screen bends too little for triangles that reach far.
+    if !setup.is_evenly_far() {
+        return None;
+    }
     if LIGHTS && tables.reflectance.lights() == 2 {
         return draw_two::<ROOT, C>(setup, shading, tables, band);
     }
@@ -202,7 +208,8 @@ fn draw_two<const ROOT: IsRoot, C: Pixel>(
     {
         return None;
     }
-    let (towards, other) = (setup.six_from(first[0]), setup.six_from(second[0]));
+    let middles = setup.middles();
+    let (towards, other) = (setup.six_at(middles, first[0]), setup.six_at(middles, second[0]));
     let is_dark = |cosines| DiffuseSign::of(cosines) == DiffuseSign::Nowhere;
     let lookup = DefectLookup::new(shading.reflectance.table()?);
     let diffuse = |cosines| diffuse(setup, full, cosines);
@@ -239,7 +246,7 @@ fn draw<const ROOT: IsRoot, C: Pixel, T: Shades<WithHighlight, Pixel = C>>(
         return None;
     }
     // No nodes are needed of an active triangle.
-    let cosines = if setup.resumed(band).is_none() { setup.six_from(towards) } else { [0; 6] };
+    let cosines = if setup.resumed(band).is_none() { setup.six_at(setup.middles(), towards) } else { [0; 6] };
     if T::TABLED && setup.resumed(band).is_none() {
         let sign = DiffuseSign::of(cosines);
         if !colours.is_within() || sign == DiffuseSign::Nowhere || sign == DiffuseSign::Steeply {
@@ -262,7 +269,7 @@ fn draw_diffuse<C: Pixel>(
 ) -> Option<u32> {
     let resumed = setup.resumed(band);
     // The pixel shader of an active triangle has been chosen, and no nodes are needed.
-    let cosines = if resumed.is_none() { setup.six_from(towards) } else { [0; 6] };
+    let cosines = if resumed.is_none() { setup.six_at(setup.middles(), towards) } else { [0; 6] };
     let id = match (resumed, DiffuseSign::of(cosines)) {
         (Some(id), _) => id,
         (None, DiffuseSign::Nowhere) => Ramp::<C>::ID,
@@ -287,7 +294,7 @@ fn diffuse(setup: &TriangleSetup<'_>, full: u16, cosines: [i32; 6]) -> Quadric<1
 /// 1 minus the root of N·H, or minus N·H, which is `half` at the corners, as the table of highlights is looked up by.
 #[inline(never)]
 fn highlight<const ROOT: IsRoot>(setup: &TriangleSetup<'_>, half: [i32; 3], lookup: DefectLookup<'_>, exponent: u16) -> Quadric<1> {
-    let half = [map_six(map_six(setup.six_half_from(half, exponent), walked::<ROOT>), |node| lookup.node(node))];
+    let half = [map_six(map_six(setup.six_half_at(setup.middles(), half, exponent), walked::<ROOT>), |node| lookup.node(node))];
     Nodes::<6, 1, FIELD_BITS>::new(half, FIELD_EXTRA).biased([lookup.half()]).fit(setup.gradients)
 }
 

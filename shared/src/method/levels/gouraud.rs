@@ -5,10 +5,14 @@
 //! for diffuse light, c the smallest cosine between two corners' normals.
 
 use crate::{
+    features::PERSPECTIVE,
     geometry::projection::ScreenVertex,
-    interpolate::plane::Plane,
+    interpolate::{by_column::ByColumn, plane::Plane},
     lighting::{material_tables::MaterialTables, reflectance::Reflectance},
-    method::{Facts, Loops, Method, RANGE, Shading, Style, TriangleSetup, VertexLight, fit_levels, largest_range},
+    method::{
+        Facts, LinearWay, Loops, Method, RANGE, Shading, Style, TriangleSetup, VertexLight, channels, fit_levels, largest_range,
+        node::mixed,
+    },
     pixel::Pixel,
     raster::{band::Band, canvas::Canvas, pixel_shader::Ramp},
     setup::gradients::Gradients,
@@ -49,8 +53,12 @@ impl Loops for Gouraud {
         band: &mut Band<'_, C>,
     ) -> Option<u32> {
         let [a, b, c] = setup.corners;
-        if setup.needs_perspective(|| largest_range(corner_levels(setup, shading))) {
-            return None;
+        if PERSPECTIVE {
+            match setup.linear_way(|| largest_range(corner_levels(setup, shading))) {
+                LinearWay::Plane => {}
+                LinearWay::Quadratic(middles) => return Some(draw_seen(setup, shading, middles, tables, band)),
+                LinearWay::InSpace => return None,
+            }
         }
         if !THREE {
             return Some(setup.fill(|| one::<C>(setup.gradients, [a.light[2], b.light[2], c.light[2]]), Ramp(tables.ramps), band));
@@ -103,6 +111,28 @@ pub(crate) fn draw_three<C: Pixel>(
         [[r0, r1, r2], [g0, g1, g2], [b0, b1, b2]]
     };
     shading.fill_three(setup, channels, raise, |plane| plane, band)
+}
+
+/// Draws a triangle by the quadratic through the levels at the corners and at these shares of the edges. Returns the number of its pixels in `band`.
+#[inline(never)]
+fn draw_seen<C: Pixel>(
+    setup: &TriangleSetup<'_>,
+    shading: &Shading<'_>,
+    [ab, bc, ca]: [u16; 3],
+    tables: MaterialTables<'_, C>,
+    band: &mut Band<'_, C>,
+) -> u32 {
+    let six = |[a, b, c]: [i32; 3]| [a, b, c, mixed(a, b, ab), mixed(b, c, bc), mixed(c, a, ca)];
+    let (corners, reflectance) = (setup.corners, shading.reflectance);
+    if shading.constant.is_some() && reflectance.three_channels() && has_ramp(setup, &reflectance) {
+        let levels = || six(corners.map(|corner| reflectance.ramp_level(corner.light[0])));
+        return Shading::fill_one(setup, levels, tables, band);
+    }
+    let [red, green, blue] = channels(corner_levels(setup, shading));
+    if C::GRAY || !reflectance.three_channels() {
+        return Shading::fill_one(setup, || six(red), tables, band);
+    }
+    shading.fill_three(setup, || [six(red), six(green), six(blue)], 0, ByColumn, band)
 }
 
 /// A function of its own: measured, the loop that draws the triangle has more registers then.

@@ -6,10 +6,7 @@
 use crate::{
     interpolate::by_column::ByColumn,
     lighting::material_tables::MaterialTables,
-    method::{
-        Facts, Loops, Method, RANGE, Shading, Style, TriangleSetup, VertexLight,
-        node::{coefficients, map_six},
-    },
+    method::{Facts, Loops, Method, RANGE, Shading, Style, TriangleSetup, VertexLight, node::map_six},
     pixel::Pixel,
     raster::{band::Band, canvas::Canvas},
 };
@@ -31,7 +28,9 @@ impl Method for SixPoint {
     }
 
     fn shade(&self, setup: &TriangleSetup<'_>, shading: &Shading<'_>, canvas: &mut dyn Canvas) -> u32 {
-        shading.draw_channels::<6, RANGE>(setup, &levels(setup, shading), [0; 3], canvas)
+        let on_screen = setup.on_screen();
+        let area = if setup.has_screen_nodes() { &on_screen } else { setup };
+        shading.draw_channels::<6, RANGE>(area, &levels(setup, shading), [0; 3], canvas)
     }
 }
 
@@ -47,7 +46,7 @@ impl Loops for SixPoint {
         tables: MaterialTables<'_, C>,
         band: &mut Band<'_, C>,
     ) -> Option<u32> {
-        if setup.needs_perspective(|| 2 * largest_of_quadratics(&levels(setup, shading))) {
+        if !setup.has_screen_nodes() {
             return None;
         }
         let reflectance = shading.reflectance;
@@ -64,19 +63,6 @@ impl Loops for SixPoint {
         };
         Some(Shading::fill_one(setup, nodes, tables, band))
     }
-}
-
-/// The largest difference between two coefficients, in the form of Bernstein, of the quadratic through six nodes, in any channel.
-///
-/// A quadratic is the mean of its coefficients if each of two indices is drawn with the weights b of the corners. If they are drawn with other weights,
-/// it differs by at most this range times twice the distance of the weights, see [`TriangleSetup::perspective_error`].
-fn largest_of_quadratics(channels: &[[i32; 6]; 3]) -> u32 {
-    let range = |nodes: [i32; 6]| {
-        let coefficients = coefficients(nodes);
-        let (least, most) = coefficients.iter().fold((i32::MAX, i32::MIN), |(least, most), &c| (least.min(c), most.max(c)));
-        (most - least) as u32
-    };
-    channels.iter().fold(0, |largest, &nodes| largest.max(range(nodes)))
 }
 
 /// Draws `setup` in three channels.
