@@ -1,11 +1,12 @@
 //! Smooth outlines against supersampled pictures, and against themselves where nothing may change them.
 
 use embedded_graphics::{
-    pixelcolor::{Rgb565, Rgb888},
+    pixelcolor::{Gray8, Rgb565, Rgb888},
     prelude::*,
 };
 use microphong::{
     Layout, Outlines, RenderError, Renderer, Stream,
+    pixel::{LightGray, PixelFormat},
     stream::record::{CREASE, Neighbours, OPEN},
 };
 use microphong_sim::{
@@ -246,6 +247,29 @@ fn lines_are_as_wide_as_a_pixel() {
         for at in (241..plain.len() - 241).filter(|&at| inner(at)) {
             assert_eq!(lines[at], Rgb888::BLACK, "frame {number}: a line within the ball");
         }
+    }
+}
+
+/// A display of one bit shows a line without gaps: each of its pixels has all of the colour, and they are as many as the light of smooth lines.
+#[test]
+fn lines_of_one_bit_have_no_gaps() {
+    let size = Size::new(128, 64);
+    let style = Style { outlines: Some(Outlines::new([255; 3]).alone(true)), dither: true, ..Shader::FLAT.into() };
+    for (name, mesh) in
+        [("sphere", shapes::sphere(60, 30, 0.0)), ("torus", shapes::torus(60, 40)), ("coarse sphere", shapes::sphere(8, 5, 0.0))]
+    {
+        let mut look = Look::new(Surface::metal([1.0; 3], [0.1, 0.5, 0.4], 20), View::orbit(Up::Y, 0.5, 0.35, 4.0, 120));
+        look.background = [0; 3].into();
+        let stream = look.stream(&quantise(&mesh).0).unwrap().with_neighbours().unwrap();
+        let stream = stream.parse().unwrap();
+        let (crisp, _) = render::frame::<LightGray<1>>(stream, size, style, 64, 0).unwrap();
+        let (smooth, _) = render::frame::<Gray8>(stream, size, style, 64, 0).unwrap();
+        let white = LightGray::pack([1; 3]);
+        assert!(crisp.iter().all(|&pixel| pixel == LightGray::BLACK || pixel == white), "{name}: shares of the colour");
+        let drawn = crisp.iter().filter(|&&pixel| pixel == white).count() as f64;
+        let share = drawn / smooth.iter().map(|pixel| f64::from(pixel.luma()) / 255.0).sum::<f64>();
+        println!("{name}: {drawn} pixels, {share:.3} of the light of smooth lines");
+        assert!((0.9..1.1).contains(&share), "{name}: {share}");
     }
 }
 

@@ -58,11 +58,20 @@ pub(crate) fn store<C: Pixel>(pixels: &mut [C], marks: &mut [u8], places: &[u16]
 }
 
 /// Draws lines of one colour: adds it to the marked pixels, and removes the marks. `pixels` begin with the marked rows.
+///
+/// A display of one bit would show a share of the colour as dots. There, of the two pixels that share a line, the one with the larger share gets the
+/// colour, so that the line has no gaps.
 #[inline(never)]
 pub(crate) fn draw<C: Pixel>(pixels: &mut [C], marks: &mut [u8], places: &[u16], colour: C, gamma: Option<&'static Gamma>) {
     for &place in places {
         if let (Some(pixel), Some(mark)) = (pixels.get_mut(usize::from(place)), marks.get_mut(usize::from(place))) {
-            *pixel = pixel.mixed_with(colour, u32::from(*mark).div_ceil(2), gamma);
+            if C::DEPTH == [1; 3] {
+                if *mark >= 128 {
+                    *pixel = colour;
+                }
+            } else {
+                *pixel = pixel.mixed_with(colour, u32::from(*mark).div_ceil(2), gamma);
+            }
             *mark = 0;
         }
     }
