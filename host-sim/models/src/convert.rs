@@ -33,8 +33,9 @@ pub struct Finish {
 pub const COPPER: V3 = [1.0, 0.62, 0.33];
 
 impl Finish {
-    /// Copper on a dark neutral colour.
-    const COLOUR: Self = Self { colour: COPPER, shares: [0.1, 0.5, 0.4], exponent: 30, background: BACKGROUND };
+    /// Copper on a dark neutral colour, with so much ambient light that the dark side can be told from it. All shares together are 1, so that
+    /// the brightest point is just full.
+    const COLOUR: Self = Self { colour: COPPER, shares: [0.18, 0.5, 0.32], exponent: 30, background: BACKGROUND };
     /// White on black: one bit and few greys have no steps to spare.
     const GREY: Self = Self { colour: [1.0; 3], shares: [0.15, 0.8, 0.4], exponent: 20, background: [0; 3] };
 

@@ -34,10 +34,11 @@ pub(crate) struct MeshOptions {
     /// Diffuse reflection of materials that the file does not define, 0 to 2. The default is 0.5, or 0.8 in formats of one bit and of up to 16 greys.
     #[arg(long, value_name = "SHARE", value_parser = parse::share)]
     diffuse: Option<f64>,
-    /// Strength of the highlight of materials that the file does not define, 0 to 2. The default is 0.4.
+    /// Strength of the highlight of materials that the file does not define, 0 to 2. The default is 0.32, or 0.4 in formats of one bit and of up to 16
+    /// greys.
     #[arg(long, value_name = "SHARE", value_parser = parse::share)]
     specular: Option<f64>,
-    /// Ambient light, which comes from all sides, 0 to 2. The default is 0.1, or 0.15 in formats of one bit and of up to 16 greys.
+    /// Ambient light, which comes from all sides, 0 to 2. The default is 0.18, or 0.15 in formats of one bit and of up to 16 greys.
     #[arg(long, value_name = "SHARE", value_parser = parse::share)]
     ambient: Option<f64>,
     /// Exponent of the highlight of materials that the file does not define, 1 to 1024. A larger exponent makes a smaller, sharper highlight. The
