@@ -104,7 +104,7 @@ impl Edge {
 #[inline]
 fn touched(a: i16, b: i16) -> [i32; 2] {
     let half = 1 << (SUBPIXEL - 1);
-    [(i32::from(a.min(b)) - half) >> SUBPIXEL, ((i32::from(a.max(b)) - half) >> SUBPIXEL) + 2]
+    [(i32::from(a.min(b)) - half - 1) >> SUBPIXEL, ((i32::from(a.max(b)) - half) >> SUBPIXEL) + 2]
 }
 
 /// Converts a depth to the format of the depth buffer.
