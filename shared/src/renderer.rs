@@ -273,7 +273,8 @@ impl<'a, C: Pixel> Renderer<'a, C> {
     }
 
     /// Draws antialiased lines along outlines. An outline is where a surface ends (silhouette), or where its shading jumps (crease). The default is
-    /// `None`, without lines. Lines take the place of [antialiasing](Self::set_antialias).
+    /// `None`, without lines. In formats of one bit, of the two pixels that share a line the one that it covers more gets its colour. Lines take the
+    /// place of [antialiasing](Self::set_antialias).
     ///
     /// # Errors
     /// There are no lines then. The errors are those of [`Self::set_antialias`]: lines need the same feature, memory and stream.

@@ -9,8 +9,8 @@ pub(crate) const LAYOUT: Layout = Layout::new(128, 64).vertices(593).triangles(9
 /// The teapot, white on black: a display of one bit shows no other colours well.
 pub(crate) static MESH: &[u8] = include_stream!("../teapot.tri");
 
-/// Triangles have a few pixels here: light that is linear in between is enough. Greys are dithered when they are sent, and white lines show where dark
-/// surfaces end.
+/// Triangles have a few pixels here: light that is linear in between is enough. Greys are dithered when they are sent, and white lines show where
+/// dark surfaces end.
 pub(crate) fn renderer<'a>(stream: Stream<'a>, memory: &'a mut [u64]) -> Result<Renderer<'a, LightGray<1>>, RenderError> {
     let mut renderer = Renderer::with_shader(stream, Size::new(128, 64), &LAYOUT, memory, Shader::GOURAUD)?;
     renderer.set_outlines(Some(Outlines::new([255; 3])))?;

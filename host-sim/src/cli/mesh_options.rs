@@ -21,7 +21,8 @@ pub(crate) struct MeshOptions {
     /// Turn the surface inside out, for meshes whose faces wind clockwise. Closed meshes are corrected without this option.
     #[arg(long)]
     flip: bool,
-    /// Largest angle in degrees at which an edge looks smooth: 0 shows all facets, 180 none. It applies to files without normals and smoothing groups.
+    /// Largest angle in degrees at which an edge looks smooth: 0 shows all facets, 180 none. It applies to files without normals and smoothing
+    /// groups.
     #[arg(long, value_name = "DEGREES", default_value_t = CREASE, value_parser = parse::crease)]
     crease: f64,
     /// Merge all objects into one object without a name, which takes less flash. It has one mesh for each material.
@@ -34,8 +35,8 @@ pub(crate) struct MeshOptions {
     /// Diffuse reflection of materials that the file does not define, 0 to 2. The default is 0.5, or 0.8 in formats of one bit and of up to 16 greys.
     #[arg(long, value_name = "SHARE", value_parser = parse::share)]
     diffuse: Option<f64>,
-    /// Strength of the highlight of materials that the file does not define, 0 to 2. The default is 0.32, or 0.4 in formats of one bit and of up to 16
-    /// greys.
+    /// Strength of the highlight of materials that the file does not define, 0 to 2. The default is 0.32, or 0.4 in formats of one bit and of up to
+    /// 16 greys.
     #[arg(long, value_name = "SHARE", value_parser = parse::share)]
     specular: Option<f64>,
     /// Ambient light, which comes from all sides, 0 to 2. The default is 0.18, or 0.15 in formats of one bit and of up to 16 greys.
@@ -75,9 +76,9 @@ pub(crate) struct MeshOptions {
     /// Levels of --lod are made from the result.
     #[arg(long, value_name = "TRIANGLES", value_parser = clap::value_parser!(u32).range(1..))]
     simplify: Option<u32>,
-    /// Sizes of pictures, separated by commas. For each size a coarser level of detail is added: the fewest triangles that stay within half a pixel of
-    /// the mesh. A program draws the coarsest level that fits its picture. Each triangle of a level takes 30 bytes of flash. A level that saves less
-    /// than a tenth of the triangles is not added.
+    /// Sizes of pictures, separated by commas. For each size a coarser level of detail is added: the fewest triangles that stay within half a pixel
+    /// of the mesh. A program draws the coarsest level that fits its picture. Each triangle of a level takes 30 bytes of flash. A level that saves
+    /// less than a tenth of the triangles is not added.
     #[arg(long, value_name = "WxH,...", value_delimiter = ',', value_parser = parse::size)]
     lod: Vec<(u32, u32)>,
 }

@@ -15,7 +15,6 @@ use microphong::{
     method::{
         Canvas, CosineLookup, Facts, Highlight, HighlightField, LightingModel, Method, QuadraticNodes, Reflection, Shading, TriangleSetup,
         VertexLight,
-        cosines::duff::is_curved,
         lighting_model::{FIELD_EXTRA, FIELD_NODE},
         node::is_steep,
         signed,
@@ -43,7 +42,7 @@ impl Method for Renq {
     }
 
     fn shade(&self, setup: &TriangleSetup<'_>, shading: &Shading<'_>, canvas: &mut dyn Canvas) -> u32 {
-        if is_curved(setup) {
+        if setup.is_curved() {
             return shade(setup, shading, canvas);
         }
         draw_products(setup, shading, length(setup, shading.exponent), Scaled, canvas)

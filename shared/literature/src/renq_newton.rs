@@ -38,7 +38,7 @@ impl Method for RenqNewton {
     }
 
     fn shade(&self, setup: &TriangleSetup<'_>, shading: &Shading<'_>, canvas: &mut dyn Canvas) -> u32 {
-        if !shading.lighting.is_constant() || duff::is_curved(setup) {
+        if !shading.lighting.is_constant() || setup.is_curved() {
             return Phong.shade(setup, shading, canvas);
         }
         let lengths = (renq::length(setup, shading.exponent), duff::square(setup, shading.exponent));

@@ -11,8 +11,8 @@ use crate::{
     stream::record::{CREASE, Neighbours, OPEN, Triangle, Vertex},
 };
 
-/// How much nearer than an edge the surface beyond it may be, as a power of 1/2: at 240x240 a floor that is seen under 45 degrees rises so much in
-/// half a pixel.
+/// The surface beyond an edge may be nearer than the edge by 2^-`RISE` of its inverse depth. At 240x240, a floor that is seen under 45 degrees rises
+/// by this within half a pixel.
 const RISE: u32 = 9;
 
 /// A mesh in one frame, whose outlines are found.
@@ -79,7 +79,7 @@ impl Outlined<'_> {
             _ => self.clipped([from, to]),
         };
         let Some([from, to]) = ends else { return };
-        // What an object stands on is nearer than the object's lower edge, by as much as it rises within a pixel.
+        // An object may stand on a surface. That surface is nearer than the object's lower edge, because it rises towards the viewer.
         let beyond = beyond.unwrap_or(from[2].max(to[2]) >> RISE);
         if let Some(edge) = Edge::new([from, to], self.range(triangle), beyond) {
             put(&edge);

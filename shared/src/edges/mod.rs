@@ -8,8 +8,8 @@
 //!    direction of the neighbour that is seen there, in one byte. The depth of both pixels tells whether the edge can be seen between them.
 //! 3. [`mix`] adds that share of the neighbour's colour to each noted pixel.
 //!
-//! Instead of being mixed, edges can be drawn as lines of one colour ([`Outlines`]): then the share is the one that a line along the edge, one pixel wide,
-//! covers of both pixels.
+//! Instead of being mixed, edges can be drawn as lines of one colour ([`Outlines`]): then the share is the one that a line along the edge, one pixel
+//! wide, covers of both pixels.
 //!
 //! A pixel keeps the largest share that any edge notes, so the order of edges changes nothing. A pixel is mixed with the colours that its neighbours
 //! had before the pass, and with pixels of the rows above and below the band, so the height of bands changes nothing either.
@@ -25,8 +25,8 @@ use crate::{
 };
 use zerocopy::{FromBytes, Immutable, IntoBytes, KnownLayout};
 
-/// Lines along the outlines of surfaces, for [`Renderer::set_outlines`](crate::Renderer::set_outlines): line drawings, for example for displays of one
-/// bit, and pictures of products.
+/// Lines along the outlines of surfaces, for [`Renderer::set_outlines`](crate::Renderer::set_outlines): line drawings, for example for displays of
+/// one bit, and pictures of products.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[non_exhaustive]
@@ -62,7 +62,8 @@ pub(crate) struct Edge {
     depth: [u16; 2],
     /// How far the surface beside the edge may be from the edge's own depth in the pixels next to it.
     range: u16,
-    /// How far the pixel beyond the edge may be in front of the edge: the range of the other surface, or 0 where there is none.
+    /// How far the pixel beyond the edge may be in front of the edge: the range of the other surface, or a small
+    /// share of the edge's depth where there is none, see [`find`].
     beyond: u16,
 }
 

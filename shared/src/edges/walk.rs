@@ -1,7 +1,7 @@
 //! Follows an edge pixel by pixel, and notes which share of each pixel lies beyond it.
 //!
-//! An edge is walked along its longer axis. In each column of that axis (a column or a row of the picture) whose centre it passes, it runs between the
-//! centres of two pixels, or through one of them. The area of the pixel on the other side of the edge is exact for the straight line.
+//! An edge is walked along its longer axis. In each column of that axis (a column or a row of the picture) whose centre it passes, it runs between
+//! the centres of two pixels, or through one of them. The area of the pixel on the other side of the edge is exact for the straight line.
 
 use crate::{arch::quotient::inverse, edges::Edge, format::SUBPIXEL};
 
@@ -72,8 +72,8 @@ impl Window<'_> {
         let Edge { ends: [[ax, ay], [bx, by]], depth: [a, b], range, beyond } = *edge;
         let (ax, ay, bx, by) = (i32::from(ax), i32::from(ay), i32::from(bx), i32::from(by));
         let (a, b, depth_bounds) = (i32::from(a), i32::from(b), [i32::from(range), i32::from(beyond)]);
-        // The major coordinate grows from the first end to the second. The surface lies on the side of larger minor coordinates where an edge runs to the
-        // right, or up.
+        // The major coordinate grows from the first end to the second. The surface lies on the side of larger minor coordinates where an edge runs to
+        // the right, or up.
         if (bx - ax).abs() >= (by - ay).abs() {
             let (from, to) = if ax <= bx { ([ax, ay, a], [bx, by, b]) } else { ([bx, by, b], [ax, ay, a]) };
             self.follow(true, [from, to], depth_bounds, ax <= bx);
@@ -101,17 +101,26 @@ impl Window<'_> {
         let zeros = length.leading_zeros().wrapping_sub(16) & 15;
         let reciprocal = inverse(length << zeros);
         let signed = |size: u32, sign: i32| if sign < 0 { (size as i32).wrapping_neg() } else { size as i32 };
-        let step = signed((n1 - n0).unsigned_abs().wrapping_mul(reciprocal) >> (16 - zeros), n1 - n0);
-        // A pixel whose centre lies on the edge is before a line that descends to the right, and behind all others, as where triangles are filled: its
-        // row begins there, or ends before. The size of `step` is too small by less than 2: it is rounded so that centres stay on their side.
+        // A pixel whose centre lies on the edge is before a line that descends to the right, and behind all others, as where triangles are filled:
+        // its row begins there, or ends before. So `step` is rounded up where the line descends, and down elsewhere: such centres stay on their side.
+        // At a column n, another centre nearer than n/65536 of a pixel may be taken for one on the other side.
         let is_before = is_flat && n1 > n0;
-        let rounding = if is_before { 2 } else { 0 };
-        let step = step + if n1 < n0 { -2 } else { rounding };
+        let rise = (n1 - n0).unsigned_abs();
+        // Too small by less than 2.
+        let mut slope = rise.wrapping_mul(reciprocal) >> (16 - zeros);
+        let mut rest = (rise << 16).wrapping_sub(slope.wrapping_mul(length));
+        for _ in 0..2 {
+            if rest >= length {
+                (slope, rest) = (slope + 1, rest - length);
+            }
+        }
+        let step = signed(slope + u32::from(rest > 0 && (is_before || n1 < n0)), n1 - n0);
         let depth_step = signed((z1 - z0).unsigned_abs().wrapping_mul(reciprocal >> 2) >> (18 - zeros), z1 - z0);
         // `minor` is how far the edge lies behind the centre of the first pixel of the minor axis, Q.16. `depth` is Q.12. Both are those of the first
         // column.
         let from = (first << SUBPIXEL) + half - m0;
-        let minor = (n0 << (16 - SUBPIXEL)) + step.wrapping_mul(from >> SUBPIXEL) + (step.wrapping_mul(from & 15) >> SUBPIXEL);
+        let part = step.wrapping_mul(from & 15) + if is_before { 15 } else { 0 };
+        let minor = (n0 << (16 - SUBPIXEL)) + step.wrapping_mul(from >> SUBPIXEL) + (part >> SUBPIXEL);
         let mut minor = minor.wrapping_sub(HALF + i32::from(!is_before) + (first_minor << 16));
         let mut depth = (z0 << 12) + depth_step.wrapping_mul(from);
         let depth_step = depth_step << SUBPIXEL;
@@ -184,7 +193,7 @@ mod tests {
     use super::*;
     use crate::edges::{Edge, Place};
 
-    const SIDE: i32 = 16;
+    const SIDE: i32 = 64;
 
     /// Each noted pixel is mixed with a pixel on the other side of the edge, also where an edge passes exactly through centres of pixels, as many do:
     /// corners have only 16 places in a pixel.
@@ -195,13 +204,19 @@ mod tests {
             state = state.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
             ((state >> 8) % end) as i32
         };
-        for _ in 0..20_000 {
-            let [ax, ay] = [64 + number(128), 64 + number(128)];
-            let [bx, by] = [ax + number(129) - 64, ay + number(129) - 64];
+        for round in 0..4_000 {
+            // Short edges, as most are, and long ones.
+            let longest = if round % 2 == 0 { 64 } else { 640 };
+            let [ax, ay] = [192 + number(640), 192 + number(640)];
+            let [bx, by] = [ax, ay].map(|from| (from + number(2 * longest + 1) - longest as i32).clamp(16, 1008));
+            let length = (bx - ax).abs().max((by - ay).abs());
+            let side = |at: i32| {
+                let [x, y] = [at % SIDE, at / SIDE].map(|pixel| 16 * pixel + 8);
+                (bx - ax) * (y - ay) - (by - ay) * (x - ax)
+            };
             // Which centres the surface has, as triangles are filled.
             let depth: [u16; (SIDE * SIDE) as usize] = core::array::from_fn(|at| {
-                let [x, y] = [at as i32 % SIDE, at as i32 / SIDE].map(|pixel| 16 * pixel + 8);
-                let side = (bx - ax) * (y - ay) - (by - ay) * (x - ax);
+                let side = side(at as i32);
                 through_centres += i32::from(side == 0);
                 let is_covered = side > 0 || side == 0 && (by < ay || by == ay && bx > ax);
                 if is_covered { 1000 } else { 0 }
@@ -223,9 +238,12 @@ mod tests {
             window.walk(&edge);
             for at in (0..SIDE * SIDE).filter(|at| marks[*at as usize] != 0) {
                 let beyond = at + [-SIDE, SIDE, -1, 1][usize::from(marks[at as usize] & 3)];
-                assert!(depth[at as usize] != depth[beyond as usize], "pixel {at} of the edge from {ax}, {ay} to {bx}, {by}");
+                // The walker may err by 1/65536 of a pixel in each column.
+                let is_close = |at| side(at) != 0 && i64::from(side(at).abs()) << 16 <= i64::from(length) * i64::from(length + 16);
+                let is_right = depth[at as usize] != depth[beyond as usize];
+                assert!(is_right || is_close(at) || is_close(beyond), "pixel {at} of the edge from {ax}, {ay} to {bx}, {by}");
             }
         }
-        assert!(through_centres > 1000, "{through_centres}");
+        assert!(through_centres > 500, "{through_centres}");
     }
 }

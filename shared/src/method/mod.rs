@@ -44,7 +44,6 @@ pub use crate::{
     raster::canvas::{Canvas, IntensityShader},
 };
 use core::fmt;
-use cosines::duff::is_curved;
 pub use facts::{Facts, VertexLight};
 pub(crate) use perspective::{LinearWay, Middles};
 // For the crate of the literature.
@@ -274,8 +273,8 @@ impl TriangleSetup<'_> {
         self.inv_depth().map_or(0, |inv_depth| perspective::plane_error(inv_depth, range))
     }
 
-    /// How values are interpolated on the screen that are linear over the triangle and differ by `range`, Q9.7, between corners: in the fastest way that
-    /// is off by at most a quarter of a level.
+    /// How values are interpolated on the screen that are linear over the triangle and differ by `range`, Q9.7, between corners: in the fastest way
+    /// that is off by at most a quarter of a level, and 1/64 for the rounding of nodes.
     #[inline(always)]
     pub(crate) fn linear_way(&self, range: impl FnOnce() -> u32) -> LinearWay {
         match self.inv_depth() {
@@ -284,24 +283,32 @@ impl TriangleSetup<'_> {
         }
     }
 
+    /// Whether the interpolated normal may be shorter than 1/2, where the table of roots and every fit of 1/|N| end.
+    #[doc(hidden)]
+    #[inline]
+    #[must_use]
+    pub fn is_curved(&self) -> bool {
+        self.triangle.min_normal_length < 1 << (NORMAL_LENGTH - 1)
+    }
+
     /// The nodes on the edges of the triangle, on the screen if [`Self::has_screen_nodes`].
     #[inline(always)]
     pub(crate) fn middles(&self) -> Middles {
-        Middles(if PERSPECTIVE && !is_curved(self) { self.inv_depth().map(perspective::middles) } else { None })
+        Middles(if PERSPECTIVE && !self.is_curved() { self.inv_depth().map(perspective::middles) } else { None })
     }
 
-    /// Whether a quadratic on the screen can have its nodes there: perspective is off, or no interpolated normal is so short that the rounding of a place
-    /// on an edge would turn it.
+    /// Whether a quadratic on the screen can have its nodes there: perspective is off, or no interpolated normal is so short that the rounding of a
+    /// place on an edge would turn it.
     #[inline(always)]
     pub(crate) fn has_screen_nodes(&self) -> bool {
-        !PERSPECTIVE || self.inv_depth().is_none() || !is_curved(self)
+        !PERSPECTIVE || self.inv_depth().is_none() || !self.is_curved()
     }
 
     /// [`Self::has_screen_nodes`], and the farthest corner is at most 9/8 as far as the nearest, or perspective is off.
     #[inline(always)]
     pub(crate) fn is_evenly_far(&self) -> bool {
         let even = |[a, b, c]: [i32; 3]| (a.max(b).max(c) as u32).wrapping_mul(8) <= (a.min(b).min(c) as u32).wrapping_mul(9);
-        !PERSPECTIVE || self.inv_depth().is_none_or(|inv_depth| !is_curved(self) && even(inv_depth))
+        self.has_screen_nodes() && (!PERSPECTIVE || self.inv_depth().is_none_or(even))
     }
 
     /// Copies the set-up without perspective, for methods whose polynomials on the screen have nodes in perspective.

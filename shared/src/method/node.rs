@@ -44,7 +44,6 @@ impl Shading<'_> {
     }
 }
 
-#[doc(hidden)]
 impl Shading<'_> {
     /// Computes the light levels of red, green and blue at the [`Middles`] of the edges 0-1, 1-2 and 2-0. They are Q9.7 from 0 to 255.
     #[inline(never)]
@@ -62,9 +61,7 @@ impl Shading<'_> {
         let [.., ab, bc, ca] = setup.six_nodes(self.exponent);
         [self.levels(&ab), self.levels(&bc), self.levels(&ca)]
     }
-}
 
-impl Shading<'_> {
     /// The light levels at these shares of the edges.
     #[inline(never)]
     fn levels_at(&self, setup: &TriangleSetup<'_>, shares: [u16; 3]) -> [[i32; 3]; 3] {
@@ -161,14 +158,14 @@ impl TriangleSetup<'_> {
     /// the edges 0-1, 1-2 and 2-0, from its values at the `corners`. It can be used for a directional light and an infinitely distant
     /// viewer. `exponent` is the material's highlight exponent; larger ones are computed more exactly.
     #[inline(always)]
-    pub fn six_half_from(&self, corners: [i32; 3], exponent: u16) -> [i32; 6] {
+    pub(crate) fn six_half_from(&self, corners: [i32; 3], exponent: u16) -> [i32; 6] {
         if is_steep(exponent) { exact_six(self.vertices(), corners) } else { self.six_from(corners) }
     }
 
     /// Returns the cosine of the normal and a fixed direction (Q2.30) at the three corners and then at the midpoints of the edges 0-1, 1-2
     /// and 2-0, from its values at the corners.
     #[inline(always)]
-    pub fn six_from(&self, [a, b, c]: [i32; 3]) -> [i32; 6] {
+    pub(crate) fn six_from(&self, [a, b, c]: [i32; 3]) -> [i32; 6] {
         let [ab, bc, ca] = self.edges(self.triangle.inverse_sum_length);
         if ab.max(bc).max(ca) == u16::MAX {
             let [ab, bc, ca] = wide_middles(self.vertices(), [ab, bc, ca], [a, b, c]);
@@ -324,7 +321,7 @@ fn exact_six_seen(vertices: [&Vertex; 3], shares: [u16; 3], [a, b, c]: [i32; 3])
     let [at, bt, ct] = shares;
     let sums = [mixed(a, b, at), mixed(b, c, bt), mixed(c, a, ct)];
     let [ab, bc, ca] = zip(sums, seen_normals(vertices, shares), |sum, normal| {
-        // 1/|N| is 2^(60 - exponent) times the mantissa, in which N has 30 fraction bits.
+        // 1/|N| is 2^(30 - exponent) times the mantissa, because N has 30 fraction bits.
         let (mantissa, exponent) = rsqrt_wide(dot(normal, normal).max(1) as u64);
         (product(sum, mantissa as i32) >> (exponent.max(30) - 30)) as i32
     });

@@ -1,5 +1,5 @@
-//! The quadratic through the colours of corners and edge midpoints (Szirmay-Kalos and others 2000, Vlasic 2002). In perspective it is a quadratic on the
-//! screen, and the midpoints are those of the edges on the screen.
+//! The quadratic through the colours of corners and edge midpoints (Szirmay-Kalos and others 2000, Vlasic 2002). In perspective it is a quadratic on
+//! the screen, and the midpoints are those of the edges on the screen.
 
 use crate::{
     Facet, Frame, Shade,

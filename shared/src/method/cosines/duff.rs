@@ -11,7 +11,7 @@
 use crate::{
     arch::product::{product, upper},
     features::LIGHTS,
-    format::{HAVERSINE, NORMAL_LENGTH, UNIT},
+    format::{HAVERSINE, UNIT},
     interpolate::field::Field,
     lighting::{lights::Source, material_tables::MaterialTables, reflectance::Reflection},
     math::{
@@ -111,11 +111,6 @@ pub(crate) fn draw<C: Pixel>(
 #[inline(always)]
 pub(super) fn tabled(setup: &TriangleSetup<'_>) -> Option<UnitSquare> {
     scale::is_flat(setup).then(|| scale::unit_square(setup))
-}
-
-/// Whether the interpolated normal may be shorter than 1/2, where the table of roots and every fit of 1/|N| end.
-pub fn is_curved(setup: &TriangleSetup<'_>) -> bool {
-    setup.triangle.min_normal_length < 1 << (NORMAL_LENGTH - 1)
 }
 
 /// |N|², Q2.30: exactly quadratic, and for steep highlights exact.

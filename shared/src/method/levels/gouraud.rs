@@ -1,6 +1,6 @@
 //! Gouraud shading (Gouraud 1971): light at the corners, interpolated linearly.
 //!
-//! Cost: one addition a pixel and channel. Continuous. Error against Phong: at
+//! Cost: one addition a pixel and channel, two in perspective where a quadratic is needed. Continuous. Error against Phong: at
 //! most 255 ks n (1 - c)/(1 + 2c) for the highlight and 255 kd 1.165 (1 - c)/(1 + 2c)
 //! for diffuse light, c the smallest cosine between two corners' normals.
 
@@ -128,11 +128,11 @@ fn draw_seen<C: Pixel>(
         let levels = || six(corners.map(|corner| reflectance.ramp_level(corner.light[0])));
         return Shading::fill_one(setup, levels, tables, band);
     }
-    let [red, green, blue] = channels(corner_levels(setup, shading));
+    let levels = || channels(corner_levels(setup, shading));
     if C::GRAY || !reflectance.three_channels() {
-        return Shading::fill_one(setup, || six(red), tables, band);
+        return Shading::fill_one(setup, || six(levels()[0]), tables, band);
     }
-    shading.fill_three(setup, || [six(red), six(green), six(blue)], 0, ByColumn, band)
+    shading.fill_three(setup, || levels().map(six), 0, ByColumn, band)
 }
 
 /// A function of its own: measured, the loop that draws the triangle has more registers then.

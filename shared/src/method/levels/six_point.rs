@@ -1,7 +1,7 @@
 //! The six-point quadratic (Szirmay-Kalos et al.; Vlasic 2002, 4.2): light at the corners and the edges' midpoints, interpolated quadratically.
 //!
-//! Cost: two additions a pixel and channel. Continuous: both neighbours light the midpoint of their edge alike. It is good for wide highlights or
-//! fine meshes. A highlight narrower than a triangle is flattened.
+//! Cost: two additions a pixel and channel. Continuous: both neighbours light the midpoint of their edge alike, but for a strongly curved one in
+//! perspective. It is good for wide highlights or fine meshes. A highlight narrower than a triangle is flattened.
 
 use crate::{
     interpolate::by_column::ByColumn,
