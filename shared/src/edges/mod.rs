@@ -62,8 +62,8 @@ pub(crate) struct Edge {
     depth: [u16; 2],
     /// How far the surface beside the edge may be from the edge's own depth in the pixels next to it.
     range: u16,
-    /// How far the pixel beyond the edge may be in front of the edge: the range of the other surface, or a small
-    /// share of the edge's depth where there is none, see [`find`].
+    /// How far the pixel beyond the edge may be in front of the edge: the range of the other surface, or a small share of the edge's depth where there
+    /// is none, see [`find`].
     beyond: u16,
 }
 

@@ -103,7 +103,9 @@ impl Window<'_> {
         let signed = |size: u32, sign: i32| if sign < 0 { (size as i32).wrapping_neg() } else { size as i32 };
         // A pixel whose centre lies on the edge is before a line that descends to the right, and behind all others, as where triangles are filled:
         // its row begins there, or ends before. So `step` is rounded up where the line descends, and down elsewhere: such centres stay on their side.
-        // At a column n, another centre nearer than n/65536 of a pixel may be taken for one on the other side.
+        // The part of a step to the first column is rounded down everywhere: at such a centre the exact value and the sum are integers, so a sum that
+        // is less than 1 too small is not too small. At a column n, another centre nearer than n/65536 of a pixel may be taken for one on the other
+        // side.
         let is_before = is_flat && n1 > n0;
         let rise = (n1 - n0).unsigned_abs();
         // Too small by less than 2.
@@ -119,8 +121,7 @@ impl Window<'_> {
         // `minor` is how far the edge lies behind the centre of the first pixel of the minor axis, Q.16. `depth` is Q.12. Both are those of the first
         // column.
         let from = (first << SUBPIXEL) + half - m0;
-        let part = step.wrapping_mul(from & 15) + if is_before { 15 } else { 0 };
-        let minor = (n0 << (16 - SUBPIXEL)) + step.wrapping_mul(from >> SUBPIXEL) + (part >> SUBPIXEL);
+        let minor = (n0 << (16 - SUBPIXEL)) + step.wrapping_mul(from >> SUBPIXEL) + (step.wrapping_mul(from & 15) >> SUBPIXEL);
         let mut minor = minor.wrapping_sub(HALF + i32::from(!is_before) + (first_minor << 16));
         let mut depth = (z0 << 12) + depth_step.wrapping_mul(from);
         let depth_step = depth_step << SUBPIXEL;

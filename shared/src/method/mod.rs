@@ -294,7 +294,7 @@ impl TriangleSetup<'_> {
     /// The nodes on the edges of the triangle, on the screen if [`Self::has_screen_nodes`].
     #[inline(always)]
     pub(crate) fn middles(&self) -> Middles {
-        Middles(if PERSPECTIVE && !self.is_curved() { self.inv_depth().map(perspective::middles) } else { None })
+        Middles(if PERSPECTIVE && self.has_screen_nodes() { self.inv_depth().map(perspective::middles) } else { None })
     }
 
     /// Whether a quadratic on the screen can have its nodes there: perspective is off, or no interpolated normal is so short that the rounding of a
@@ -304,7 +304,8 @@ impl TriangleSetup<'_> {
         !PERSPECTIVE || self.inv_depth().is_none() || !self.is_curved()
     }
 
-    /// [`Self::has_screen_nodes`], and the farthest corner is at most 9/8 as far as the nearest, or perspective is off.
+    /// Whether such a quadratic also serves a root of N·H, which bends more than light: besides, the farthest corner is at most 9/8 as far as the
+    /// nearest, or perspective is off.
     #[inline(always)]
     pub(crate) fn is_evenly_far(&self) -> bool {
         let even = |[a, b, c]: [i32; 3]| (a.max(b).max(c) as u32).wrapping_mul(8) <= (a.min(b).min(c) as u32).wrapping_mul(9);

@@ -7,10 +7,10 @@ use crate::{
 };
 
 pub(super) fn shade<'f>(frame: &'f Frame, facet: &'f Facet) -> Shade<'f> {
-    if !facet.has_screen_nodes() {
-        let nodes = SIX.map(|node| frame.node(facet, node));
-        return Box::new(move |p| blend(&quadratic(facet.weights(p)), &nodes).map(|level| level.clamp(0.0, 255.0)));
-    }
-    let nodes = SIX.map(|node| frame.node(facet, facet.seen(node)));
-    Box::new(move |p| blend(&quadratic(facet.flat_weights(p)), &nodes).map(|level| level.clamp(0.0, 255.0)))
+    let on_screen = facet.has_screen_nodes();
+    let nodes = SIX.map(|node| frame.node(facet, if on_screen { facet.seen(node) } else { node }));
+    Box::new(move |p| {
+        let weights = if on_screen { facet.flat_weights(p) } else { facet.weights(p) };
+        blend(&quadratic(weights), &nodes).map(|level| level.clamp(0.0, 255.0))
+    })
 }
