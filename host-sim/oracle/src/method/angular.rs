@@ -1,6 +1,7 @@
 //! Light as a function of an angle: along a row the normal turns evenly, and cos^s of the angle to L or H is three
 //! parabolas (Kuijk and Blake 1989; Disselkoen 1991).
 
+use super::Decide;
 use crate::{
     Facet, Frame, Light, Shade,
     poly::{SIX, quadratic, sum},
@@ -37,10 +38,11 @@ pub(crate) fn parabolas(angle: f64, [a, b]: [f64; 2]) -> f64 {
 /// Squared sine of an angle below which two normals have no plane, 2^-18: rounded normals cannot tell it.
 const SHORT: f64 = 1.0 / (1u64 << 18) as f64;
 
-/// [`along`], or linear where there is hardly any angle between the normals, so no plane either.
-fn along_row([l, r]: [V3; 2], v: V3, t: f64, s: f64, widths: Widths) -> f64 {
+/// [`along`], or linear where there is hardly any angle between the normals, so no plane either. The parabolas differ from the power itself, so light
+/// jumps where the one changes to the other. What decides counts in 1/255 of [`SHORT`].
+fn along_row([l, r]: [V3; 2], v: V3, t: f64, s: f64, widths: Widths, decide: &Decide<'_>) -> f64 {
     let (ll, lr, rr) = (dot(l, l), dot(l, r), dot(r, r));
-    if ll * rr - lr * lr > SHORT * ll * rr {
+    if decide(255.0 * ((ll * rr - lr * lr) / (SHORT * ll * rr).max(f64::MIN_POSITIVE) - 1.0)) {
         return along([l, r], v, t, s, widths);
     }
     let end = |cosine: f64, square: f64| (cosine / square.sqrt().max(1e-6)).max(0.0).powf(s);
@@ -83,7 +85,7 @@ impl Turned {
 }
 
 /// Normals on great circles along the edges, diffuse light as the highlight, with the exponent 1.
-pub(super) fn angular<'f>(frame: &'f Frame, facet: &'f Facet, widths: Widths) -> Shade<'f> {
+pub(super) fn angular<'f>(frame: &'f Frame, facet: &'f Facet, widths: Widths, decide: &'f Decide<'f>) -> Shade<'f> {
     let exponent = frame.material(facet).exponent;
     let turn = |light: &Light| {
         let unit = |turned: Turned| Turned { normals: turned.normals.map(direction), ..turned };
@@ -94,14 +96,14 @@ pub(super) fn angular<'f>(frame: &'f Frame, facet: &'f Facet, widths: Widths) ->
         let span = Span::new(&facet.screen, y);
         let power = |field: &Turned, s: f64| {
             let ends = [span.left, span.right].map(|end| end.slerp(&field.normals));
-            along_row(ends, field.direction, span.along(x), s, widths)
+            along_row(ends, field.direction, span.along(x), s, widths, decide)
         };
         frame.levels(facet, lights.iter().map(|[diffuse, half]| [power(diffuse, 1.0), power(half, exponent)]))
     })
 }
 
 /// Normals linear along the edges, diffuse light by the six-point fit of N·L.
-pub(super) fn hybrid<'f>(frame: &'f Frame, facet: &'f Facet, widths: Widths) -> Shade<'f> {
+pub(super) fn hybrid<'f>(frame: &'f Frame, facet: &'f Facet, widths: Widths, decide: &'f Decide<'f>) -> Shade<'f> {
     let exponent = frame.material(facet).exponent;
     let prepare = |light: &Light| {
         let diffuse = SIX.map(|node| dot(facet.node(node), light.place.from(facet.position(node))));
@@ -112,7 +114,7 @@ pub(super) fn hybrid<'f>(frame: &'f Frame, facet: &'f Facet, widths: Widths) -> 
         let (span, weights) = (Span::new(&facet.screen, y), quadratic(facet.weights([x, y])));
         let power = |field: &Turned| {
             let ends = [span.left, span.right].map(|end: End| end.lerp(&field.normals));
-            along_row(ends, field.direction, span.along(x), exponent, widths)
+            along_row(ends, field.direction, span.along(x), exponent, widths, decide)
         };
         frame.levels(facet, lights.iter().map(|(diffuse, half)| [sum(&weights, diffuse), power(half)]))
     })

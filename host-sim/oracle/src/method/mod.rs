@@ -90,10 +90,10 @@ const METHODS: [Method; 28] = [
     any("quadratic-blinn", |frame, facet, _| blinn::quadratic(frame, facet)),
     by_rows(constant("goldman", |frame, facet, _| goldman::shade(frame, facet))),
     by_rows(constant("slerp", |frame, facet, _| slerp::shade(frame, facet))),
-    by_rows(any("angular", |frame, facet, _| angular::angular(frame, facet, angular::refitted))),
-    by_rows(any("hybrid", |frame, facet, _| angular::hybrid(frame, facet, angular::refitted))),
-    by_rows(any("angular-original", |frame, facet, _| angular::angular(frame, facet, angular::printed))),
-    by_rows(any("hybrid-original", |frame, facet, _| angular::hybrid(frame, facet, angular::printed))),
+    by_rows(deciding("angular", |frame, facet, decide| angular::angular(frame, facet, angular::refitted, decide))),
+    by_rows(deciding("hybrid", |frame, facet, decide| angular::hybrid(frame, facet, angular::refitted, decide))),
+    by_rows(deciding("angular-original", |frame, facet, decide| angular::angular(frame, facet, angular::printed, decide))),
+    by_rows(deciding("hybrid-original", |frame, facet, decide| angular::hybrid(frame, facet, angular::printed, decide))),
 ];
 
 /// The names of all methods.
