@@ -12,6 +12,8 @@ pub enum Feature {
     Colours,
     /// More than one light.
     Lights,
+    /// Point lights with a range or a cone, and light from the sky.
+    LightShapes,
     /// Point lights, and highlights as seen from a camera that is not infinitely far.
     NearLights,
     /// More than one object.
@@ -22,7 +24,8 @@ pub enum Feature {
 
 impl Feature {
     /// All features that a mesh file can need.
-    pub const ALL: [Self; 6] = [Self::Animation, Self::Colours, Self::Lights, Self::NearLights, Self::Objects, Self::Text];
+    pub const ALL: [Self; 7] =
+        [Self::Animation, Self::Colours, Self::Lights, Self::LightShapes, Self::NearLights, Self::Objects, Self::Text];
 
     /// The name of the feature in `Cargo.toml`.
     #[must_use]
@@ -31,6 +34,7 @@ impl Feature {
             Self::Animation => "animation",
             Self::Colours => "colours",
             Self::Lights => "lights",
+            Self::LightShapes => "light-shapes",
             Self::NearLights => "near-lights",
             Self::Objects => "objects",
             Self::Text => "text",
@@ -45,6 +49,7 @@ impl Feature {
             Self::Animation => cfg!(feature = "animation"),
             Self::Colours => cfg!(feature = "colours"),
             Self::Lights => cfg!(feature = "lights"),
+            Self::LightShapes => cfg!(feature = "light-shapes"),
             Self::NearLights => cfg!(feature = "near-lights"),
             Self::Objects => cfg!(feature = "objects"),
             Self::Text => cfg!(feature = "text"),
@@ -55,6 +60,7 @@ impl Feature {
 pub(crate) const ANIMATION: bool = Feature::Animation.is_on();
 pub(crate) const COLOURS: bool = Feature::Colours.is_on();
 pub(crate) const LIGHTS: bool = Feature::Lights.is_on();
+pub(crate) const LIGHT_SHAPES: bool = Feature::LightShapes.is_on();
 pub(crate) const NEAR_LIGHTS: bool = Feature::NearLights.is_on();
 pub(crate) const OBJECTS: bool = Feature::Objects.is_on();
 
@@ -68,4 +74,4 @@ pub(crate) const PERSPECTIVE: bool = cfg!(feature = "perspective");
 pub(crate) const SKIPS: bool = cfg!(feature = "skips");
 
 /// Whether the only light is directional and the viewer is infinitely far, so that N·L and N·H are linear in N.
-pub(crate) const ALWAYS_CONSTANT: bool = !LIGHTS && !NEAR_LIGHTS;
+pub(crate) const ALWAYS_CONSTANT: bool = !LIGHTS && !NEAR_LIGHTS && !LIGHT_SHAPES;

@@ -15,7 +15,7 @@ use crate::{
     placement::{Placements, Placing},
     scene::{Limits, Scene},
     shader::Shader,
-    stream::record::{Camera, DIRECTIONAL, Light, Material, PERSPECTIVE, VIEWER_LOCAL},
+    stream::record::{Camera, Light, Material, PERSPECTIVE, POINT, VIEWER_LOCAL},
 };
 use core::mem;
 use embedded_graphics_core::geometry::Size;
@@ -483,7 +483,7 @@ fn check_scene<'m>(
 ) -> Result<(), RenderError> {
     let Limits { near_lights, perspective, least_exponent: least } = limits(facts, perspective_correct);
     let is_perspective = camera.projection == PERSPECTIVE;
-    if !near_lights && (is_perspective && camera.viewer == VIEWER_LOCAL || lights.iter().any(|light| light.kind != DIRECTIONAL)) {
+    if !near_lights && (is_perspective && camera.viewer == VIEWER_LOCAL || lights.iter().any(|light| light.kind == POINT)) {
         return Err(RenderError::Light { shader: facts.name });
     }
     if materials.any(|material| material.exponent < least) {

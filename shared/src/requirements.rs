@@ -1,6 +1,11 @@
 //! The cargo features that a mesh file needs.
 
-use crate::{features::Feature, pixel::Channels, scene::LightTerms, stream::Stream};
+use crate::{
+    features::Feature,
+    pixel::Channels,
+    scene::LightTerms,
+    stream::{Stream, record::Light},
+};
 
 impl Feature {
     /// Whether `stream` needs the feature to be drawn in a pixel format with these `channels`.
@@ -14,6 +19,7 @@ impl Feature {
                 stream.materials.iter().any(|material| !LightTerms::new(channels, header.ambient, material, lights).are_one_channel)
             }
             Self::Lights => lights.len() > 1,
+            Self::LightShapes => lights.iter().any(Light::has_shape),
             Self::NearLights => !stream.is_constant(),
             Self::Objects => stream.instances.len() > 1,
             Self::Text => !stream.labels.is_empty(),
@@ -24,8 +30,8 @@ impl Feature {
     pub(crate) fn missing(stream: &Stream<'_>, channels: &Channels) -> Option<Self> {
         // Each feature is asked for by name, so that the compiler drops the check if the program has it.
         let lacks = |feature: Self| (!feature.is_on() && feature.is_needed_by(stream, channels)).then_some(feature);
-        let [animation, colours, lights, near_lights, objects, text] = Self::ALL;
+        let [animation, colours, lights, light_shapes, near_lights, objects, text] = Self::ALL;
         let scene = lacks(animation).or_else(|| lacks(objects)).or_else(|| lacks(text));
-        scene.or_else(|| lacks(lights)).or_else(|| lacks(near_lights)).or_else(|| lacks(colours))
+        scene.or_else(|| lacks(lights)).or_else(|| lacks(near_lights)).or_else(|| lacks(light_shapes)).or_else(|| lacks(colours))
     }
 }

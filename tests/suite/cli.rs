@@ -1207,7 +1207,7 @@ fn texts_that_are_no_scenes_are_refused() {
         (format!("{good}quaternion = [0, 0, 0, 0]\n"), "quaternion: it must not be zero"),
         (format!("{good}keys = [{{ frame = 3 }}, {{ frame = 3 }}]\n"), "line 9: object 1: key 2: frame: the frames of keys must rise"),
         (format!("{good}[[light]]\ntowards = [0, 0, 0]\n"), "light 1"),
-        (format!("{good}[[light]]\ntowards = [1, 0, 0]\nat = [1, 0, 0]\n"), "a light needs either `towards`"),
+        (format!("{good}[[light]]\ntowards = [1, 0, 0]\nat = [1, 0, 0]\n"), "a light needs one of `towards`"),
         (format!("{good}[[light]]\ntowards = [1, 0, 0]\ncolour = \"red\"\n"), "\"red\" is not a colour; write it as RRGGBB"),
         (format!("background = 7\n{good}"), "a background is a colour, as \"203040\", or a gradient"),
         (format!("background = {{ top = \"red\", bottom = \"000000\" }}\n{good}"), "line 1: background: top: \"red\" is not a colour"),

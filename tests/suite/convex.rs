@@ -255,7 +255,7 @@ fn convex_bodies_look_the_same() {
         .run(&(bodies(), views(), sizes, 0u32..50), |(mesh, view, (width, height, rows), number)| {
             let (parts, _) = quantise(&mesh);
             let mut look = Look::new(Surface::metal([1.0; 3], [0.1, 0.5, 0.4], 20), view);
-            look.lamps = vec![Lamp::Distant([0.4, 0.3, -1.0], [1.0; 3])];
+            look.lamps = vec![Lamp::distant([0.4, 0.3, -1.0], [1.0; 3])];
             let stream = look.stream(&parts).unwrap();
             all.set(all.get() + 1);
             without_depth.set(without_depth.get() + usize::from(is_marked(&stream)));

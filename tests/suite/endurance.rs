@@ -41,7 +41,7 @@ fn stream() -> Result<Vec<u8>> {
     view.translation[1] = 0.8;
     let mut look = Look::new(Surface::metal([1.0, 0.7, 0.3], [0.1, 0.5, 0.4], 30), view);
     look.shader = Shader::GOURAUD;
-    look.lamps = vec![Lamp::Distant([-0.4, 0.5, -0.77], [1.0; 3])];
+    look.lamps = vec![Lamp::distant([-0.4, 0.5, -0.77], [1.0; 3])];
     Ok(look.stream(&quantise(&mesh).0)?.as_bytes().to_vec())
 }
 

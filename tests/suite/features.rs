@@ -1,18 +1,25 @@
 //! With fewer cargo features the core draws the same pictures, or names the feature that is missing.
 
-use crate::{golden::root, parts::Parts};
-use microphong::{features::Feature, stream::record::VIEWER_LOCAL};
+use crate::{
+    golden::root,
+    lights::{lit, spotlight},
+    parts::Parts,
+};
+use microphong::{
+    features::Feature,
+    stream::record::{SKY, VIEWER_LOCAL},
+};
 use microphong_sim::{board::build, bytes::StreamBytes, program, render::Format, scene};
 use std::{collections::BTreeSet, fs, process::Command};
 use tempfile::TempDir;
 
 /// Features of the core, each set compiled for this computer.
-const SETS: [&str; 4] = ["", "colours", "near-lights", "animation,lights,objects"];
-const ALL: &str = "animation,colours,lights,near-lights,objects,redraw,text";
+const SETS: [&str; 4] = ["", "colours", "light-shapes,near-lights", "animation,lights,objects"];
+const ALL: &str = "animation,colours,light-shapes,lights,near-lights,objects,redraw,text";
 
 const SCENES: [&str; 8] = ["teapot", "torus", "sphere-40", "peer-sphere-plastic", "peer-sphere-lights", "gauges", "board", "sensor"];
 
-/// Streams of the scenes, one without lights, and one that is seen by a local viewer.
+/// Streams of the scenes, one without lights, one that is seen by a local viewer, one in the light of a spotlight, and one in that of the sky.
 fn streams() -> Vec<(String, StreamBytes)> {
     let mut streams: Vec<_> = SCENES.map(|name| (name.to_owned(), scene::load(name).unwrap().stream)).into();
     let teapot = scene::load("teapot").unwrap().stream;
@@ -23,6 +30,8 @@ fn streams() -> Vec<(String, StreamBytes)> {
     };
     streams.push(("no-lights".to_owned(), changed(|parts| parts.lights.clear())));
     streams.push(("local-viewer".to_owned(), changed(|parts| parts.header.camera.viewer = VIEWER_LOCAL)));
+    streams.push(("spotlight".to_owned(), lit("teapot", &[spotlight()])));
+    streams.push(("sky".to_owned(), changed(|parts| parts.lights[0].kind = SKY)));
     streams
 }
 

@@ -27,6 +27,7 @@ mod independent;
 mod inner_loop;
 mod layers;
 mod levels;
+mod lights;
 mod names;
 mod numerics;
 mod oracle;

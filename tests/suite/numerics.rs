@@ -97,7 +97,7 @@ fn scene(name: &str, exponent: f64) -> Frame {
     Frame {
         size: (side, side),
         facets: facets(&mesh, &product(&rotation([1.0, 0.0, 0.0], tilt), &rotation([0.0, 1.0, 0.0], turn)), f64::from(side)),
-        lights: vec![Light { place: light, colour: grey(1.0) }],
+        lights: vec![Light::even(light, grey(1.0))],
         viewer: if near { Place::Near([0.0, 0.0, 4.0]) } else { Place::Far([0.0, 0.0, 1.0]) },
         axes: [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]],
         materials: vec![Material { ambient: grey(0.0), diffuse: grey(0.5), specular: grey(0.5), exponent }],

@@ -22,7 +22,7 @@ fn single(facet: Facet, light: Place, viewer: Place, exponent: f64) -> Frame {
     Frame {
         size: (100, 100),
         facets: vec![facet],
-        lights: vec![Light { place: light, colour: [1.0, 0.9, 0.8] }],
+        lights: vec![Light::even(light, [1.0, 0.9, 0.8])],
         viewer,
         axes: [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]],
         materials: vec![material],
@@ -216,7 +216,8 @@ fn close_decisions_have_several_outcomes() {
                 assert_eq!(outcomes(name, &frame, facet, p, 0.0).unwrap(), [shade(p)], "{name}");
                 // One such place is enough.
                 if !several {
-                    let outcomes = outcomes(name, &frame, facet, p, 0.5).unwrap();
+                    // Some decide on what is rare: with this margin, all decisions are close.
+                    let outcomes = outcomes(name, &frame, facet, p, 1e9).unwrap();
                     assert_eq!(outcomes[0], shade(p), "{name}");
                     several = outcomes.iter().any(|&outcome| outcome != outcomes[0]);
                 }

@@ -50,8 +50,8 @@ fn upright(tilt: f64, distance: f64) -> View {
 
 /// The eye close to a dodecahedron, to a floor and to a triangle lying down: depths of one triangle 1 to 4 and more.
 fn close_scenes() -> Vec<Scene> {
-    let distant = || vec![Lamp::Distant([-0.2, 0.7, 0.3], [1.0; 3])];
-    let near = || vec![Lamp::Near([-1.2, 1.6, 0.4], [1.0, 0.9, 0.8]), Lamp::Distant([0.6, 0.5, -0.6], [0.2, 0.3, 0.4])];
+    let distant = || vec![Lamp::distant([-0.2, 0.7, 0.3], [1.0; 3])];
+    let near = || vec![Lamp::near([-1.2, 1.6, 0.4], [1.0, 0.9, 0.8]), Lamp::distant([0.6, 0.5, -0.6], [0.2, 0.3, 0.4])];
     let with = |view: View, near: f64, focal: f64| View { near, ..view.focal(focal) };
     let flat = with(upright(0.35, 1.8), 0.1, 1.1);
     // Turns about the line of sight of an upright one: it has no back to show.

@@ -145,9 +145,9 @@ const CASTS: [[Placed; 3]; 4] = [
 /// Objects with poses are drawn as meshes that lie so: by lights and a viewer that are far or near.
 #[test]
 fn posed_objects_are_drawn_as_meshes_that_lie_so() {
-    let far = vec![Lamp::Fixed([-0.4, 0.6, 0.7], [1.0; 3])];
-    let two = vec![Lamp::Distant([-0.4, 0.6, -0.7], [1.0, 0.9, 0.8]), Lamp::Fixed([0.8, 0.1, 0.5], [0.2, 0.3, 0.5])];
-    let near = vec![Lamp::FixedNear([-1.0, 1.2, 2.0], [1.0; 3]), Lamp::Near([0.8, 0.9, 2.5], [0.3, 0.2, 0.2])];
+    let far = vec![Lamp::fixed([-0.4, 0.6, 0.7], [1.0; 3])];
+    let two = vec![Lamp::distant([-0.4, 0.6, -0.7], [1.0, 0.9, 0.8]), Lamp::fixed([0.8, 0.1, 0.5], [0.2, 0.3, 0.5])];
+    let near = vec![Lamp::fixed_near([-1.0, 1.2, 2.0], [1.0; 3]), Lamp::near([0.8, 0.9, 2.5], [0.3, 0.2, 0.2])];
     let looks = [
         look(far.clone(), false, Projection::Perspective),
         look(two, false, Projection::Perspective),
@@ -182,7 +182,7 @@ fn posed_objects_are_drawn_as_meshes_that_lie_so() {
 /// Meshes that are objects of their own, where they are, are the whole stream, bit for bit.
 #[test]
 fn objects_at_rest_are_the_stream() {
-    let look = look(vec![Lamp::Distant([-0.4, 0.6, -0.7], [1.0; 3])], false, Projection::Perspective);
+    let look = look(vec![Lamp::distant([-0.4, 0.6, -0.7], [1.0; 3])], false, Projection::Perspective);
     let bytes = stream(&look, &meshes());
     let stream = bytes.parse().unwrap();
     let whole = drawn(stream, room(&stream), |_| ());
@@ -295,7 +295,7 @@ fn changed_areas_are_all_that_changes() {
 /// If nothing moves, a frame draws only what is invalidated, and the next one nothing.
 #[test]
 fn invalidated_areas_are_drawn_once_more() {
-    let bytes = stream(&look(vec![Lamp::Distant([-0.4, 0.6, -0.7], [1.0; 3])], false, Projection::Perspective), &meshes());
+    let bytes = stream(&look(vec![Lamp::distant([-0.4, 0.6, -0.7], [1.0; 3])], false, Projection::Perspective), &meshes());
     let stream = bytes.parse().unwrap();
     let layout = room(&stream);
     let mut memory = vec![0; layout.words::<Rgb888>()];
@@ -328,9 +328,9 @@ fn invalidated_areas_are_drawn_once_more() {
 /// Changes by a program are drawn as if the stream had them.
 #[test]
 fn changes_are_drawn_as_if_the_stream_had_them() {
-    let first = look(vec![Lamp::Fixed([-0.4, 0.6, 0.7], [1.0; 3])], false, Projection::Perspective);
+    let first = look(vec![Lamp::fixed([-0.4, 0.6, 0.7], [1.0; 3])], false, Projection::Perspective);
     let mut second = look(
-        vec![Lamp::Distant([0.4, 0.6, -0.7], [0.5, 0.8, 1.0]), Lamp::FixedNear([1.0, 1.0, 2.0], [0.6; 3])],
+        vec![Lamp::distant([0.4, 0.6, -0.7], [0.5, 0.8, 1.0]), Lamp::fixed_near([1.0, 1.0, 2.0], [0.6; 3])],
         true,
         Projection::Perspective,
     );
@@ -369,7 +369,7 @@ fn changes_are_drawn_as_if_the_stream_had_them() {
 /// A camera that is moved sees what one at that place in the stream sees.
 #[test]
 fn the_camera_looks_where_it_is_told() {
-    let look = look(vec![Lamp::Fixed([-0.4, 0.6, 0.7], [1.0; 3])], false, Projection::Perspective);
+    let look = look(vec![Lamp::fixed([-0.4, 0.6, 0.7], [1.0; 3])], false, Projection::Perspective);
     let bytes = stream(&look, &meshes());
     let stream = bytes.parse().unwrap();
     let [zero, one, four] = [0, 1, 4].map(I18F14::from_num);
@@ -391,7 +391,7 @@ fn the_camera_looks_where_it_is_told() {
 /// Where two surfaces are a thousandth of the range from near to far apart, the nearer is seen everywhere, at the far end as well.
 #[test]
 fn surfaces_a_thousandth_of_the_range_apart_do_not_fight() {
-    let mut look = look(vec![Lamp::Distant([0.0, 0.0, -1.0], [1.0; 3])], false, Projection::Perspective);
+    let mut look = look(vec![Lamp::distant([0.0, 0.0, -1.0], [1.0; 3])], false, Projection::Perspective);
     look.surfaces = vec![Surface::metal([1.0, 0.0, 0.0], [0.5, 0.5, 0.0], 1), Surface::metal([0.0, 1.0, 0.0], [0.5, 0.5, 0.0], 1)];
     (look.view.near, look.view.translation) = (0.5, [0.0; 3]);
     let square = shapes::stretched(shapes::cushion(1), [1.5, 1.5, 1.0]);
@@ -424,7 +424,7 @@ fn surfaces_a_thousandth_of_the_range_apart_do_not_fight() {
 /// A change that cannot be drawn is refused, and the message says why.
 #[test]
 fn what_cannot_be_drawn_is_refused() {
-    let first = look(vec![Lamp::Fixed([-0.4, 0.6, 0.7], [1.0; 3])], false, Projection::Perspective);
+    let first = look(vec![Lamp::fixed([-0.4, 0.6, 0.7], [1.0; 3])], false, Projection::Perspective);
     let bytes = stream(&first, &meshes());
     let stream = bytes.parse().unwrap();
     let layout = Layout::new(SIZE.width as usize, SIZE.height as usize).with_room_for(&stream).objects(2);

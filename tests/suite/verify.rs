@@ -1,5 +1,6 @@
 //! The flashable firmware of every board, run on its emulated display and compared with the host, pixel by pixel.
 
+use crate::lights;
 use microphong::{
     method::{Canvas, Facts, Method, Shading, TriangleSetup, levels::gouraud::Gouraud},
     stream::{
@@ -70,6 +71,22 @@ fn matrix(board: Board) -> Result {
         }
     }
     assert!(!directory.path().join("board.png").exists(), "pictures are kept only where they differ");
+    Ok(())
+}
+
+/// Lights with a range and a cone, and light from the sky, are the same bits on boards.
+#[test]
+fn all_lights() -> Result {
+    let directory = tempfile::tempdir()?;
+    let [sky, ground] = lights::hemisphere();
+    for board in Board::ALL.into_iter().filter(|board| board.smooths()) {
+        let elf = verify::build(board, true)?;
+        for shader in [Shader::FLAT, Shader::GOURAUD, Shader::SIX_POINT, Shader::SQRT6, Shader::PHONG, Shader::AUTO] {
+            let stream = lights::lit("teapot", &[sky, ground, lights::spotlight()]).with_neighbours()?.as_bytes().to_vec();
+            let report = verify::run(&Request { antialias: true, stream, ..request(board, "teapot", shader)? }, &elf, directory.path())?;
+            assert_eq!(report.differing, 0, "{board} {}", shader.name());
+        }
+    }
     Ok(())
 }
 

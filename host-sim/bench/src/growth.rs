@@ -148,7 +148,7 @@ impl Step {
         look.lamps = (0..lights)
             .map(|i| {
                 let (y, x) = (std::f64::consts::TAU * i as f64 / LIGHTS.len() as f64).sin_cos();
-                Lamp::Distant([0.5 * x, 0.5 * y, -0.8], [share; 3])
+                Lamp::distant([0.5 * x, 0.5 * y, -0.8], [share; 3])
             })
             .collect();
         let stream = look.stream(&quantise(&shapes::cushion(cells)).0)?;

@@ -7,7 +7,8 @@ use embedded_graphics_core::{
     pixelcolor::{Gray4, Rgb565},
 };
 use microphong::{
-    RenderError, Renderer, Stats, Stream,
+    Light, RenderError, Renderer, Stats, Stream,
+    features::Feature,
     pixel::{FromDrawn, LightGray, PictureCrc, Pixel, Rgb565Be},
     stream::{record::Header, seal},
 };
@@ -227,10 +228,13 @@ fn draw_in<C: Pixel, F: FromDrawn<C>>(
     let size = Size::new(layout.width as u32, height as u32);
     let mut memory = vec![0; layout.words::<C>()];
     let shaders: Vec<_> = shaders.iter().map(|shader| shader.on()).collect();
-    let mut renderer = Renderer::new(stream, size, &layout, &mut memory, &shaders)?;
     if !board.has_text() && !stream.labels.is_empty() {
-        return Err(RenderError::Feature { name: "text" });
+        return Err(RenderError::Feature { name: Feature::Text.name() });
     }
+    if !antialias && stream.lights.iter().any(Light::has_shape) {
+        return Err(RenderError::Feature { name: Feature::LightShapes.name() });
+    }
+    let mut renderer = Renderer::new(stream, size, &layout, &mut memory, &shaders)?;
     if antialias {
         renderer.set_antialias(true)?;
     }

@@ -5,7 +5,7 @@ use crate::{
     fields::quoted,
     import::{self, Imported},
     levels::{self, Simplified},
-    look::{BACKGROUND, Lamp, Look, Surface},
+    look::{BACKGROUND, Lamp, LampKind, Look, Surface},
     mesh::{Mesh, Report, Weld},
     mtl::Material,
     quantise::{Part, quantise},
@@ -285,8 +285,8 @@ fn is_dark(surface: &Surface, format: Format) -> bool {
 
 /// A near light counts from the centre of the mesh; in a stream it counts from the eye.
 fn placed(lamp: Lamp, view: &View) -> Lamp {
-    match lamp {
-        Lamp::Near(position, colour) => Lamp::Near(add(position, view.translation), colour),
-        _ => lamp,
+    match lamp.kind {
+        LampKind::Near => Lamp { vector: add(lamp.vector, view.translation), ..lamp },
+        LampKind::Distant | LampKind::Sky => lamp,
     }
 }

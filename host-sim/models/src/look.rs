@@ -11,7 +11,7 @@ use crate::{
 use anyhow::{Context, Result};
 use embedded_graphics_core::geometry::Size;
 use microphong::{
-    format::{ErrorBudget, Gain, GeometricError, Radius},
+    format::{ErrorBudget, Gain, GeometricError, Radius, Reach, UNIT, Unit},
     geometry::detail::stream_tolerance,
     scene::Background,
     stream,
@@ -19,7 +19,7 @@ use microphong::{
         MAX_GAIN, MAX_NAME,
         record::{
             CLOSED_CONVEX, Camera, DIRECTIONAL, EYE_SPACE, Header, Instance, Key, Label, Light, MAGIC, Material, Mesh, OBJECT_SPACE,
-            ORTHOGRAPHIC, OWN_MATERIALS, PERSPECTIVE, POINT, Track, VERSION,
+            ORTHOGRAPHIC, OWN_MATERIALS, PERSPECTIVE, POINT, SKY, Track, VERSION,
         },
     },
 };
@@ -55,15 +55,71 @@ impl Surface {
 
 /// A light.
 #[derive(Clone, Copy, Debug)]
-pub enum Lamp {
-    /// Infinitely far: direction towards it in eye space, and colour.
-    Distant(V3, V3),
-    /// Near: position in eye space, and colour.
-    Near(V3, V3),
-    /// Infinitely far, whatever the camera does: direction towards it in the world, and colour.
-    Fixed(V3, V3),
-    /// Near, whatever the camera does: position in the world, and colour.
-    FixedNear(V3, V3),
+pub struct Lamp {
+    /// What the vector is.
+    pub kind: LampKind,
+    /// A direction towards the light, or its position. Unless it is fixed, it counts in eye space.
+    pub vector: V3,
+    /// Red, green, blue; 1 is full.
+    pub colour: V3,
+    /// Whether the light stays where it is in the world, whatever the camera does.
+    pub is_fixed: bool,
+    /// The distance at which a near light ends.
+    pub range: Option<f64>,
+    /// The cone of a near light.
+    pub cone: Option<Cone>,
+}
+
+/// The kinds of lights.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum LampKind {
+    /// Infinitely far.
+    Distant,
+    /// At a position.
+    Near,
+    /// From a half of the sky about a direction.
+    Sky,
+}
+
+/// The cone of a near light.
+#[derive(Clone, Copy, Debug)]
+pub struct Cone {
+    /// Where it shines: a direction in the space of the light's position.
+    pub axis: V3,
+    /// The angle from the axis up to which light is full, in degrees.
+    pub full: f64,
+    /// The angle from which on there is none, at most 180 and greater.
+    pub edge: f64,
+}
+
+impl Lamp {
+    const fn new(kind: LampKind, vector: V3, colour: V3, is_fixed: bool) -> Self {
+        Self { kind, vector, colour, is_fixed, range: None, cone: None }
+    }
+
+    /// An infinitely far light that goes where the camera goes: direction towards it in eye space, and colour.
+    #[must_use]
+    pub const fn distant(towards: V3, colour: V3) -> Self {
+        Self::new(LampKind::Distant, towards, colour, false)
+    }
+
+    /// A near light that goes where the camera goes: position in eye space, and colour.
+    #[must_use]
+    pub const fn near(position: V3, colour: V3) -> Self {
+        Self::new(LampKind::Near, position, colour, false)
+    }
+
+    /// An infinitely far light, whatever the camera does: direction towards it in the world, and colour.
+    #[must_use]
+    pub const fn fixed(towards: V3, colour: V3) -> Self {
+        Self::new(LampKind::Distant, towards, colour, true)
+    }
+
+    /// A near light, whatever the camera does: position in the world, and colour.
+    #[must_use]
+    pub const fn fixed_near(position: V3, colour: V3) -> Self {
+        Self::new(LampKind::Near, position, colour, true)
+    }
 }
 
 /// An object of a scene: some parts of its meshes.
@@ -136,7 +192,7 @@ impl Look {
         Self {
             objects: Vec::new(),
             surfaces: vec![surface],
-            lamps: vec![Lamp::Distant(KEY, [1.0; 3])],
+            lamps: vec![Lamp::distant(KEY, [1.0; 3])],
             ambient: [1.0; 3],
             background: BACKGROUND.into(),
             local_viewer: false,
@@ -275,14 +331,26 @@ fn material(surface: &Surface) -> Material {
     Material::new(ambient.map(gain), diffuse.map(gain), specular.map(gain), exponent)
 }
 
+/// The smallest difference of the cosines of a cone: 1/1,024.
+const LEAST_SOFTNESS: i16 = 16;
+
 fn light(lamp: &Lamp) -> Light {
-    let (kind, space, vector, colour) = match *lamp {
-        Lamp::Distant(direction, colour) => (DIRECTIONAL, EYE_SPACE, unit(direction).unwrap_or(KEY), colour),
-        Lamp::Near(position, colour) => (POINT, EYE_SPACE, position, colour),
-        Lamp::Fixed(direction, colour) => (DIRECTIONAL, OBJECT_SPACE, unit(direction).unwrap_or(KEY), colour),
-        Lamp::FixedNear(position, colour) => (POINT, OBJECT_SPACE, position, colour),
+    let kind = match lamp.kind {
+        LampKind::Distant => DIRECTIONAL,
+        LampKind::Near => POINT,
+        LampKind::Sky => SKY,
     };
-    Light::new(kind, space, vector.map(nearest), colour.map(gain))
+    let vector = if kind == POINT { lamp.vector } else { unit(lamp.vector).unwrap_or(KEY) };
+    let space = if lamp.is_fixed { OBJECT_SPACE } else { EYE_SPACE };
+    let mut light = Light::new(kind, space, vector.map(nearest), lamp.colour.map(gain));
+    light.range = lamp.range.map_or(0, |range| nearest::<Reach>(range).to_bits());
+    if let Some(cone) = lamp.cone {
+        let [edge, full] = [cone.edge, cone.full].map(|angle| nearest::<Unit>(angle.to_radians().cos()).to_bits());
+        light.axis = unit(cone.axis).unwrap_or(KEY).map(|c| nearest::<Unit>(c).to_bits());
+        let edge = edge.min((1 << UNIT) - LEAST_SOFTNESS);
+        light.cone = [edge, full.max(edge + LEAST_SOFTNESS)];
+    }
+    light
 }
 
 fn camera(view: &View) -> Camera {

@@ -224,7 +224,7 @@ fn teapot() -> Result<Parts> {
     let view = View::orbit(Up::Y, 0.45, 0.3, DISTANCE, ORBIT).fit(&mesh.positions, SQUARE, MARGIN);
     let mut look = Look::new(Surface::metal(COPPER, [0.1, 0.52, 0.38], 30), view);
     // Low enough that the highlight lies on the belly, not on the lid alone.
-    look.lamps = vec![Lamp::Distant([-0.5, 0.28, -0.8], [1.0; 3])];
+    look.lamps = vec![Lamp::distant([-0.5, 0.28, -0.8], [1.0; 3])];
     Ok((mesh, look, SIZE))
 }
 
@@ -233,7 +233,7 @@ fn bunny() -> Result<Parts> {
     let mesh = welded(BUNNY)?;
     let view = View::orbit(Up::Y, 0.25, 0.15, DISTANCE, ORBIT).fit(&mesh.positions, size, MARGIN);
     let mut look = Look::new(Surface::plastic([0.92, 0.89, 0.84], [0.1, 0.68, 0.2], 24), view);
-    look.lamps = vec![Lamp::Distant([-0.5, 0.6, -0.6], [1.0, 0.95, 0.86]), Lamp::Distant([0.9, 0.05, -0.25], [0.16, 0.24, 0.4])];
+    look.lamps = vec![Lamp::distant([-0.5, 0.6, -0.6], [1.0, 0.95, 0.86]), Lamp::distant([0.9, 0.05, -0.25], [0.16, 0.24, 0.4])];
     Ok((mesh, look, size))
 }
 
@@ -241,7 +241,7 @@ fn bunny() -> Result<Parts> {
 fn ball(meridians: usize, bands: usize) -> Parts {
     let view = tilted(0.5, 0.35).parallel().focal(0.92);
     let mut look = Look::new(Surface::metal([1.0; 3], [0.08, 0.47, 0.45], 20), view);
-    look.lamps = vec![Lamp::Distant([-0.4, 0.5, -0.77], [1.0; 3])];
+    look.lamps = vec![Lamp::distant([-0.4, 0.5, -0.77], [1.0; 3])];
     (shapes::sphere(meridians, bands, 0.0), look, SQUARE)
 }
 
@@ -260,13 +260,13 @@ fn peer_sphere(surface: Surface, colours: &[V3]) -> Parts {
     let mut view = View::orbit(Up::Y, 0.0, 0.0, 3.0, ORBIT).focal(2.8);
     view.near = 1.75;
     let mut look = Look::new(surface, view);
-    look.lamps = PEER_LIGHTS.iter().zip(colours).map(|(&towards, &colour)| Lamp::Distant(towards, colour)).collect();
+    look.lamps = PEER_LIGHTS.iter().zip(colours).map(|(&towards, &colour)| Lamp::distant(towards, colour)).collect();
     (mesh, look, (320, 240))
 }
 
 fn near_light(colour: V3, view: View) -> Look {
     let mut look = Look::new(Surface::metal(colour, [0.08, 0.47, 0.45], 20), view.focal(3.5));
-    look.lamps = vec![Lamp::Near([-0.9, 1.0, DISTANCE - 2.0], [1.0; 3])];
+    look.lamps = vec![Lamp::near([-0.9, 1.0, DISTANCE - 2.0], [1.0; 3])];
     look.local_viewer = true;
     look
 }
@@ -276,7 +276,7 @@ fn torus() -> Parts {
     let mesh = shapes::torus(75, 25);
     let view = tilted(0.7, 0.4).parallel().fit(&mesh.positions, size, MARGIN);
     let mut look = Look::new(Surface::plastic(BLUE, [0.12, 0.75, 0.45], 20), view);
-    look.lamps = vec![Lamp::Distant([-0.4, 0.5, -0.77], [1.0; 3])];
+    look.lamps = vec![Lamp::distant([-0.4, 0.5, -0.77], [1.0; 3])];
     (mesh, look, size)
 }
 
@@ -287,7 +287,7 @@ fn triangle() -> Parts {
     let mesh = shapes::bulged_triangle();
     let view = view.fit(&mesh.positions, SQUARE, MARGIN);
     let mut look = Look::new(Surface::metal([1.0; 3], [0.06, 0.44, 0.5], 20), view);
-    look.lamps = vec![Lamp::Near([0.1, -0.15, 2.0], [1.0; 3])];
+    look.lamps = vec![Lamp::near([0.1, -0.15, 2.0], [1.0; 3])];
     look.local_viewer = true;
     (mesh, look, SQUARE)
 }

@@ -6,7 +6,7 @@ use crate::{
     bytes::StreamBytes,
     fields::{Field, Place, Table, quoted},
     import::{self, Imported, surfaces},
-    look::{Cast, KEY, Lamp, Look, Member, Surface, Way},
+    look::{Cast, Cone, KEY, Lamp, LampKind, Look, Member, Surface, Way},
     mesh::{CREASE, Mesh, Weld},
     mtl::Material,
     number::nearest,
@@ -107,7 +107,7 @@ pub fn stream(text: &str, folder: Option<&Path>) -> Result<(StreamBytes, (u32, u
     look.background = background.unwrap_or(look.background);
     look.shader = shader.unwrap_or(look.shader);
     look.budget = budget.map_or(look.budget, nearest::<ErrorBudget>);
-    look.lamps = vec![Lamp::Fixed(KEY.map(|c| -c), [1.0; 3])];
+    look.lamps = vec![Lamp::fixed(KEY.map(|c| -c), [1.0; 3])];
     if !lights.is_empty() {
         look.lamps = lights.into_iter().enumerate().map(|(i, table)| lamp(table, i, &mut cast)).collect::<Result<_>>()?;
     }
@@ -287,25 +287,57 @@ fn align(field: Field<'_>) -> Result<u8> {
     }
 }
 
+/// Possible ranges of lights.
+const RANGE: RangeInclusive<f64> = 0.0625..=31.9;
+/// Angles of cones, in degrees.
+const ANGLES: RangeInclusive<f64> = 0.0..=180.0;
+
 /// The light of number `index`, and its way.
 fn lamp(mut table: Table<'_>, index: usize, cast: &mut Cast) -> Result<Lamp> {
     let towards = table.get("towards", direction)?;
     let at = table.get("at", |field| field.numbers(&WORLD))?;
+    let sky = table.get("sky", direction)?;
     let colour = table.get("colour", colour)?.unwrap_or([1.0; 3]);
+    let range = table.get("range", |field| field.number(&RANGE))?;
+    let shines = table.get("shines", direction)?;
+    let cone: Option<[f64; 2]> = table.get("cone", |field| field.numbers(&ANGLES))?;
     let keys = table.list("keys", "key", NUMBERS as usize)?;
     table.end()?;
-    let lamp = match (towards, at) {
-        (Some(towards), None) => Lamp::Fixed(towards, colour),
-        (None, Some(at)) => Lamp::FixedNear(at, colour),
-        _ => return Err(table.place.error("a light needs either `towards`, its direction, or `at`, its position")),
+    let mut lamp = match (towards, at, sky) {
+        (Some(towards), None, None) => Lamp::fixed(towards, colour),
+        (None, Some(at), None) => Lamp::fixed_near(at, colour),
+        (None, None, Some(up)) => Lamp { kind: LampKind::Sky, ..Lamp::fixed(up, colour) },
+        _ => {
+            let needs =
+                "a light needs one of `towards`, its direction, `at`, its position, and `sky`, the direction to the middle of the sky";
+            return Err(table.place.error(needs));
+        }
+    };
+    let has_beam = range.is_some() || shines.is_some() || cone.is_some();
+    ensure!(lamp.kind == LampKind::Near || !has_beam, table.place.error("only a light with `at` can have `range`, `shines` and `cone`"));
+    lamp.range = range;
+    lamp.cone = match (shines, cone) {
+        (None, None) => None,
+        (Some(axis), Some([full, edge])) if full < edge => Some(Cone { axis, full, edge }),
+        (Some(_), Some(_)) => {
+            let order = "the first angle, up to which light is full, must be smaller than the second, where it ends";
+            return Err(table.place_of("cone").error(order));
+        }
+        _ => return Err(table.place.error("a light with a cone needs both `shines`, its direction, and `cone`, two angles in degrees")),
     };
     let mut before = None;
     let stop = |mut table: Table<'_>, frame| {
         let towards = table.get("towards", direction)?;
         let at = table.get("at", |field| field.numbers(&WORLD))?;
+        let sky = table.get("sky", direction)?;
         table.end()?;
-        let vector = if matches!(lamp, Lamp::Fixed(..)) { towards.filter(|_| at.is_none()) } else { at.filter(|_| towards.is_none()) };
-        let vector = vector.ok_or_else(|| table.place.error("a light and its keys must all have `towards`, or all `at`"))?;
+        let vector = match (lamp.kind, towards, at, sky) {
+            (LampKind::Distant, Some(vector), None, None)
+            | (LampKind::Near, None, Some(vector), None)
+            | (LampKind::Sky, None, None, Some(vector)) => vector,
+            _ => return Err(table.place.error("a light and its keys must all have `towards`, all `at`, or all `sky`")),
+        };
+        let towards = towards.or(sky);
         // Between opposite directions there is no shorter way, and the straight one goes through no light.
         let is_opposite = towards.zip(before.replace(vector)).is_some_and(|(now, before)| dot(now, before) < OPPOSITE);
         let opposite = "it is opposite to the key before, and there are many ways between them; write a key in between";

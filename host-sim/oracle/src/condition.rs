@@ -94,7 +94,7 @@ mod tests {
         let frame = |light: Place, viewer: Place| Frame {
             size: (60, 60),
             facets: Vec::new(),
-            lights: vec![Light { place: light, colour: [1.0; 3] }],
+            lights: vec![Light::even(light, [1.0; 3])],
             viewer,
             axes: Facet::CORNERS,
             materials: vec![Material { ambient: [0.0; 3], diffuse: [0.5; 3], specular: [1.0; 3], exponent: 8.0 }],

@@ -8,7 +8,7 @@ use microphong::{
     geometry::{lens::Lens, model_view::ModelView, projection::View},
     stream::{
         record,
-        record::{DIRECTIONAL, EYE_SPACE, PERSPECTIVE, VIEWER_LOCAL},
+        record::{EYE_SPACE, PERSPECTIVE, POINT, SKY, VIEWER_LOCAL},
     },
 };
 use microphong_models::{
@@ -87,12 +87,19 @@ impl Frame {
         let lights = stream.lights.iter().map(|light| {
             let vector = real(light.vector, UNIT);
             let place = match (light.kind, light.space) {
-                (DIRECTIONAL, EYE_SPACE) => Place::Far(direction(to_object(vector))),
-                (DIRECTIONAL, _) => Place::Far(direction(vector)),
-                (_, EYE_SPACE) => Place::Near(to_object(sub(vector, translation))),
-                _ => Place::Near(vector),
+                (POINT, EYE_SPACE) => Place::Near(to_object(sub(vector, translation))),
+                (POINT, _) => Place::Near(vector),
+                (_, EYE_SPACE) => Place::Far(direction(to_object(vector))),
+                _ => Place::Far(direction(vector)),
             };
-            Light { place, colour: gain(light.colour()) }
+            let axis = real(light.axis, UNIT);
+            let axis = if light.space == EYE_SPACE { to_object(axis) } else { axis };
+            Light {
+                is_sky: light.kind == SKY,
+                range: (light.range > 0).then(|| light.range().to_num()),
+                cone: (light.axis != [0; 3]).then(|| (direction(axis), real(light.cone, UNIT))),
+                ..Light::even(place, gain(light.colour()))
+            }
         });
         let around = gain(stream.header.ambient());
         let materials = stream.materials.iter().map(|material| {
@@ -228,6 +235,12 @@ impl Facet {
     #[must_use]
     pub fn position(&self, weights: V3) -> V3 {
         mixed(&self.positions, weights)
+    }
+
+    /// The point of the triangle, in object space, that a method takes at a point of the screen.
+    #[must_use]
+    pub fn at(&self, p: [f64; 2]) -> V3 {
+        self.position(self.weights(p))
     }
 
     /// The normal that a node of a polynomial has: a corner's as it stands, all others of unit length.

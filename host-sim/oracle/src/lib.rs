@@ -17,7 +17,7 @@ mod visible;
 pub use frame::{Facet, Frame};
 pub use light::phong;
 pub(crate) use method::angular;
-pub use method::{NAMES, Unsupported, chosen, decides, method, outcomes};
+pub use method::{MOST_OUTCOMES, NAMES, Unsupported, chosen, decides, method, outcomes};
 pub(crate) use poly::{SIX, TEN, cubic, quadratic, sum};
 pub use scene::{Light, Material, Place};
 

@@ -45,12 +45,13 @@ impl Frame {
     ///
     /// Light at a point has the error of the table of highlights, and rounding of gains and cosines. The quadratic at the centre weighs its six nodes
     /// by 5/3 in all. Nodes on the parabola of an edge that is not split have up to 5/4 times the error of others. The light they are compared with
-    /// has an error, too: 5/3 · 5/4 + 1 is 3.1.
+    /// has an error, too: 5/3 · 5/4 + 1 is 3.1. A light whose range ends before the triangle has no error.
     #[must_use]
     pub fn undecided(&self, facet: &Facet) -> f64 {
         let specular = self.material(facet).specular;
         let largest = |light: &Light| (0..3).map(|k| light.colour[k] * specular[k]).fold(0.0, f64::max);
-        self.lights.iter().map(|light| 3.1 * (255.0 * highlight_lut::ERROR * largest(light) + ROUNDING)).sum()
+        let arrives = |light: &&Light| light.reaches(facet.positions);
+        self.lights.iter().filter(arrives).map(|light| 3.1 * (255.0 * highlight_lut::ERROR * largest(light) + ROUNDING)).sum()
     }
 
     /// The one channel in which a facet is shaded: the brightest, if all light that its material reflects has one hue, to 1/1024 of the largest
@@ -72,28 +73,29 @@ impl Frame {
     }
 
     /// `255 (ka + Σ colour (kd d + ks s))` over all lights, each with its `[d, s]`, d from 0 to 1: what approximation lifts above
-    /// one counts as one.
-    pub(super) fn levels(&self, facet: &Facet, reflected: impl IntoIterator<Item = [f64; 2]>) -> Levels {
+    /// one counts as one. Ranges and cones weaken lights as at `position`.
+    pub(super) fn levels(&self, facet: &Facet, position: V3, reflected: impl IntoIterator<Item = [f64; 2]>) -> Levels {
         let material = self.material(facet);
         let mut sum = material.ambient;
         for (light, [diffuse, specular]) in self.lights.iter().zip(reflected) {
+            let (strength, specular) = (light.strength(position), if light.is_sky { 0.0 } else { specular });
             for (k, channel) in sum.iter_mut().enumerate() {
-                *channel += light.colour[k] * (material.diffuse[k] * diffuse.clamp(0.0, 1.0) + material.specular[k] * specular);
+                *channel += light.colour[k] * strength * (material.diffuse[k] * light.diffuse(diffuse) + material.specular[k] * specular);
             }
         }
         sum.map(|channel| (255.0 * channel).clamp(0.0, 255.0))
     }
 
     /// The level from each light's `[N·L, N·H]`.
-    pub(super) fn lit(&self, facet: &Facet, cosines: impl IntoIterator<Item = [f64; 2]>) -> Levels {
+    pub(super) fn lit(&self, facet: &Facet, position: V3, cosines: impl IntoIterator<Item = [f64; 2]>) -> Levels {
         let exponent = self.material(facet).exponent;
-        self.levels(facet, cosines.into_iter().map(|[diffuse, half]| [diffuse, highlight(half, exponent)]))
+        self.levels(facet, position, cosines.into_iter().map(|[diffuse, half]| [diffuse, highlight(half, exponent)]))
     }
 
     /// The light of a node of a polynomial: Phong's, but that a corner's normal stays as it stands.
     pub(super) fn node(&self, facet: &Facet, weights: V3) -> Levels {
         let (position, normal) = (facet.position(weights), facet.node(weights));
-        self.lit(facet, self.lights.iter().map(|light| self.cosines(light, position, normal)))
+        self.lit(facet, position, self.lights.iter().map(|light| self.cosines(light, position, normal)))
     }
 }
 
@@ -118,6 +120,6 @@ pub fn phong<'f>(frame: &'f Frame, facet: &'f Facet) -> Shade<'f> {
     Box::new(move |p| {
         let weights = facet.weights(p);
         let (position, normal) = (facet.position(weights), direction(facet.normal(weights)));
-        frame.lit(facet, frame.lights.iter().map(|light| frame.cosines(light, position, normal)))
+        frame.lit(facet, position, frame.lights.iter().map(|light| frame.cosines(light, position, normal)))
     })
 }

@@ -1,6 +1,6 @@
 //! Lights, viewer and materials.
 
-use microphong_models::vector::{V3, sub, unit};
+use microphong_models::vector::{V3, dot, length, sub, unit};
 
 /// Position of a light or viewer, in object space.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -22,13 +22,53 @@ impl Place {
     }
 }
 
-/// A light without fall-off.
+/// A light.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Light {
-    /// Position of the light.
+    /// Position of the light, or of the middle of the sky.
     pub place: Place,
     /// Red, green, blue; 1 is full.
     pub colour: V3,
+    /// Whether it comes from half of the sky.
+    pub is_sky: bool,
+    /// The distance at which it ends.
+    pub range: Option<f64>,
+    /// The unit vector in which it shines, and the cosines to it where its cone ends and where its light is full.
+    pub cone: Option<(V3, [f64; 2])>,
+}
+
+impl Light {
+    /// A light that is as strong everywhere.
+    #[must_use]
+    pub const fn even(place: Place, colour: V3) -> Self {
+        Self { place, colour, is_sky: false, range: None, cone: None }
+    }
+
+    /// What is left of it at a position: 1 if it is as strong as at its source.
+    #[must_use]
+    pub fn strength(&self, position: V3) -> f64 {
+        let Place::Near(place) = self.place else { return 1.0 };
+        let way = sub(position, place);
+        let part = self.range.map_or(0.0, |range| dot(way, way) / (range * range));
+        let within = self.cone.map_or(1.0, |(axis, [edge, full])| ((dot(axis, direction(way)) - edge) / (full - edge)).clamp(0.0, 1.0));
+        (1.0 - part).max(0.0).powi(2) * within.powi(2)
+    }
+
+    /// Whether its range may reach a triangle between these corners.
+    #[must_use]
+    pub fn reaches(&self, corners: [V3; 3]) -> bool {
+        let (Place::Near(place), Some(range)) = (self.place, self.range) else { return true };
+        let [a, ..] = corners;
+        let apart = |from: V3, to: V3| length(sub(from, to));
+        let size = corners.into_iter().map(|corner| apart(a, corner)).fold(0.0, f64::max);
+        apart(a, place) < range + size
+    }
+
+    /// The part of its diffuse light that a surface gets whose cosine to it is `cosine`.
+    #[must_use]
+    pub fn diffuse(&self, cosine: f64) -> f64 {
+        if self.is_sky { f64::midpoint(1.0, cosine).clamp(0.0, 1.0) } else { cosine.clamp(0.0, 1.0) }
+    }
 }
 
 /// Reflectances of a surface for each channel, where 1 reflects all light.

@@ -8,7 +8,8 @@ use microphong::{
     format::{Length, NormalLength},
     geometry::detail::stream_tolerance,
     stream::record::{
-        CAMERA_TRACK, CLOSED_CONVEX, EYE_SPACE, Header, LIGHT_TRACK, Light, Mesh, OBJECT_TRACK, PERSPECTIVE, POINT, Triangle, VIEWER_LOCAL,
+        CAMERA_TRACK, CLOSED_CONVEX, EYE_SPACE, Header, LIGHT_TRACK, Light, Mesh, OBJECT_TRACK, PERSPECTIVE, POINT, SKY, Triangle,
+        VIEWER_LOCAL,
     },
 };
 use microphong_sim::{bytes::StreamBytes, render::Format, scene::Unknown, shader::Shader};
@@ -187,10 +188,17 @@ fn exponents(stream: &Stream<'_>) -> String {
 fn lights(stream: &Stream<'_>) -> String {
     let kind = |light: &Light| {
         let [x, y, z] = light.vector.map(|c| f64::from(Length::from_bits(c)));
-        let kind = if light.kind == POINT { "at" } else { "towards" };
+        let kind = match light.kind {
+            POINT => "at",
+            SKY => "sky towards",
+            _ => "towards",
+        };
         // Eye space has z away from the viewer; a user never sees it.
         let (z, place) = if light.space == EYE_SPACE { (-z, "as the camera sees it") } else { (z, "in the world") };
-        format!("{kind} ({x:.2}, {y:.2}, {z:.2}) {place}")
+        let range = if light.range > 0 { format!(", ends at a distance of {:.2}", light.range()) } else { String::new() };
+        let [edge, full] = light.cone.map(|cosine| f64::from(microphong::format::Unit::from_bits(cosine)).acos().to_degrees());
+        let cone = if light.axis == [0; 3] { String::new() } else { format!(", in a cone of {full:.0} to {edge:.0} degrees") };
+        format!("{kind} ({x:.2}, {y:.2}, {z:.2}) {place}{range}{cone}")
     };
     stream.lights.iter().map(kind).collect::<Vec<_>>().join("; ")
 }

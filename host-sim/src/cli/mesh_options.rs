@@ -47,9 +47,11 @@ pub(crate) struct MeshOptions {
     #[arg(long, value_parser = clap::value_parser!(u16).range(1..=1024))]
     exponent: Option<u16>,
     /// A light in the direction X,Y,Z: x points to the right, y up, z towards the viewer. The light is white, or has the colour RRGGBB. After at: it
-    /// is a near light at the position X,Y,Z, relative to the centre of the mesh, whose radius is 1; near lights take longer. Repeat the option for
-    /// up to eight lights. By default one light comes from the upper left.
-    #[arg(long = "light", value_name = "[at:]X,Y,Z[:RRGGBB]", value_parser = parse::light, allow_hyphen_values = true)]
+    /// is a near light at the position X,Y,Z, relative to the centre of the mesh, whose radius is 1; near lights take longer. A near light may end at a
+    /// distance, as in at:1,2,2:range=4, and may have a cone, as in at:0,3,0:shines=0,-1,0:cone=15,25 in degrees from the direction in which it
+    /// shines: light is full up to the first angle and ends at the second. After sky: it is light from the half of the sky around the direction
+    /// X,Y,Z, as in sky:0,1,0:8090ff. Repeat the option for up to eight lights. By default one light comes from the upper left.
+    #[arg(long = "light", value_name = "[at:|sky:]X,Y,Z[:RRGGBB]", value_parser = parse::light, allow_hyphen_values = true)]
     lights: Vec<Lamp>,
     /// Make highlights white, as on plastic. Without this option they have the colour of the surface, as on metal.
     #[arg(long)]

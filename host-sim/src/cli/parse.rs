@@ -9,14 +9,14 @@ use microphong::{
     format::{ErrorBudget, LARGEST_BUDGET, LEAST_BUDGET},
 };
 use microphong_sim::{
-    look::Lamp,
+    look::{Cone, Lamp, LampKind},
     papers::Topic,
     render::Format,
     shader::Shader,
     vector::{V3, unit},
     view::{Projection, Up},
 };
-use std::{ffi::OsStr, iter};
+use std::{ffi::OsStr, iter, ops::RangeInclusive};
 
 /// The value among `all` that has the name `text`.
 pub(crate) fn among<T: Copy>(text: &str, all: &[T], name: impl Fn(T) -> &'static str) -> Result<T, String> {
@@ -140,29 +140,70 @@ pub(crate) fn crease(text: &str) -> Result<f64, String> {
 
 /// Farthest coordinate of a near light, in radii of the mesh; farther ones do not fit a stream with every camera.
 const FARTHEST_LIGHT: f64 = 8.0;
+/// Ranges of near lights.
+const LIGHT_RANGE: RangeInclusive<f64> = 0.0625..=31.9;
 
-/// `X,Y,Z` or `X,Y,Z:RRGGBB`, a direction, or with `at:` before it a position: x to the right, y up and z to the eye, white unless a colour is
-/// given. Positions count from the centre of the mesh.
+/// Numbers between commas.
+fn numbers<const N: usize>(text: &str) -> Option<[f64; N]> {
+    let numbers: Option<Vec<f64>> = text.split(',').map(|number| number.trim().parse().ok().filter(|n: &f64| n.is_finite())).collect();
+    numbers.and_then(|numbers| numbers.try_into().ok())
+}
+
+/// `X,Y,Z`, a direction, or with `at:` before it a position, or with `sky:` the direction to the middle of the sky: x to the right, y up and z to the
+/// eye. Behind it may follow `:RRGGBB`, a colour, and of a near light `:range=R` and `:shines=X,Y,Z:cone=A,B`. Positions count from the centre of the
+/// mesh.
 pub(crate) fn light(text: &str) -> Result<Lamp, String> {
-    let (is_near, rest) = text.strip_prefix("at:").map_or((false, text), |rest| (true, rest));
-    let (vector, given) = rest.split_once(':').map_or((rest, None), |(vector, given)| (vector, Some(given)));
-    let numbers: Option<Vec<f64>> = vector.split(',').map(|number| number.trim().parse().ok().filter(|n: &f64| n.is_finite())).collect();
-    let [x, y, z] = numbers.and_then(|numbers| numbers.try_into().ok()).ok_or(
+    let (kind, rest) = match text.split_once(':') {
+        Some(("at", rest)) => (LampKind::Near, rest),
+        Some(("sky", rest)) => (LampKind::Sky, rest),
+        _ => (LampKind::Distant, text),
+    };
+    let mut parts = rest.split(':');
+    // In eye space z runs away from the eye.
+    let vector = |text| numbers(text).map(|[x, y, z]| [x, y, -z]);
+    let place = vector(parts.next().unwrap_or_default()).ok_or(
         "three numbers are needed, such as -0.5,0.6,0.7, or at:-0.5,0.6,1.7 for a near light; a colour may follow, such as :ffc080",
     )?;
-    // In eye space z runs away from the eye.
-    let vector = [x, y, -z];
-    let colour = given.map_or(Ok([1.0; 3]), colour)?;
-    if is_near {
-        if vector.iter().any(|c| c.abs() > FARTHEST_LIGHT) {
+    let mut lamp = Lamp { kind, ..Lamp::distant(place, [1.0; 3]) };
+    let (mut axis, mut angles) = (None, None);
+    for part in parts {
+        match part.split_once('=') {
+            None => lamp.colour = colour(part)?,
+            Some(("range", range)) => {
+                let range = range.parse().ok().filter(|range| LIGHT_RANGE.contains(range));
+                lamp.range =
+                    Some(range.ok_or_else(|| format!("a range is a number from {} to {}", LIGHT_RANGE.start(), LIGHT_RANGE.end()))?);
+            }
+            Some(("shines", text)) => {
+                axis = Some(vector(text).and_then(unit).ok_or("shines= needs a direction of three numbers, such as shines=0,-1,0")?);
+            }
+            Some(("cone", text)) => {
+                let valid = |&[full, edge]: &[f64; 2]| 0.0 <= full && full < edge && edge <= 180.0;
+                angles = Some(numbers(text).filter(valid).ok_or(
+                    "cone= needs two angles from 0 to 180 degrees, such as cone=15,25: light is full up to the first, and ends at the second",
+                )?);
+            }
+            Some((name, _)) => return Err(format!("there is no {name}=; a near light can have range=, shines= and cone=")),
+        }
+    }
+    lamp.cone = match (axis, angles) {
+        (Some(axis), Some([full, edge])) => Some(Cone { axis, full, edge }),
+        (None, None) => None,
+        _ => return Err("a light with a cone needs both shines=X,Y,Z and cone=A,B".to_owned()),
+    };
+    if kind == LampKind::Near {
+        if place.iter().any(|c| c.abs() > FARTHEST_LIGHT) {
             return Err(format!(
                 "a near light has coordinates from -{FARTHEST_LIGHT} to {FARTHEST_LIGHT}; use a direction for a light that is farther away"
             ));
         }
-        return Ok(Lamp::Near(vector, colour));
+        return Ok(lamp);
     }
-    let towards = unit(vector).ok_or("a direction is needed; 0,0,0 is not a direction")?;
-    Ok(Lamp::Distant(towards, colour))
+    if lamp.range.is_some() || lamp.cone.is_some() {
+        return Err("only a near light, with at: before its position, can have range=, shines= and cone=".to_owned());
+    }
+    lamp.vector = unit(place).ok_or("a direction is needed; 0,0,0 is not a direction")?;
+    Ok(lamp)
 }
 
 /// `perspective` or `parallel`.

@@ -12,7 +12,7 @@ use crate::{
 };
 use microphong::{Stream, renderer};
 use microphong_compare::{UNDECIDED, level};
-use microphong_oracle::{Facet, Frame, Levels, Shade, chosen, decides, method, outcomes};
+use microphong_oracle::{Facet, Frame, Levels, MOST_OUTCOMES, Shade, chosen, decides, method, outcomes};
 use microphong_render::{render::Style, shader::Shader};
 
 /// Largest difference of any method, in 1/255 of full intensity.
@@ -135,6 +135,7 @@ pub fn judge(case: &Case) -> Option<Found> {
     for pixel in pixels(case, &frame, &frame.visible())? {
         let facets = pixel.errors.iter().map(|&(facet, _)| &frame.facets[facet as usize]);
         let sensitivity = match divides {
+            _ if pixel.is_undecidable && pixel.least() > LIMIT => f64::INFINITY,
             _ if mirrors && facets.clone().any(|facet| frame.is_at_horizon(facet, pixel.centre)) => f64::INFINITY,
             Divides::Nowhere => 0.0,
             _ => facets.map(|facet| frame.sensitivity(facet, pixel.centre, divides == Divides::AtNodes)).fold(0.0, f64::max),
@@ -187,6 +188,8 @@ struct Pixel {
     centre: [f64; 2],
     /// The facets that may be seen there, and how far the pixel is off from each, in 1/255; none where coverage differs.
     errors: Vec<(u32, f64)>,
+    /// Whether the method takes so many close decisions that not all of its results are known.
+    is_undecidable: bool,
 }
 
 impl Pixel {
@@ -209,19 +212,20 @@ fn pixels(case: &Case, frame: &Frame, visible: &[Vec<u32>]) -> Option<Vec<Pixel>
             Some(levels) if !candidates.is_empty() => levels,
             None if candidates.is_empty() => continue,
             _ => {
-                pixels.push(Pixel { centre, errors: Vec::new() });
+                pixels.push(Pixel { centre, errors: Vec::new(), is_undecidable: false });
                 continue;
             }
         };
         let errors =
             candidates.iter().map(|&c| (c, difference(frame, &frame.facets[c as usize], levels, shades[c as usize](centre)))).collect();
-        let mut pixel = Pixel { centre, errors };
+        let mut pixel = Pixel { centre, errors, is_undecidable: false };
         if pixel.least() > UNDECIDED && decides(shader.name()) {
             for (facet, error) in &mut pixel.errors {
                 let facet = &frame.facets[*facet as usize];
                 for [x, y] in [[0.0, 0.0], [NUDGE, NUDGE], [NUDGE, -NUDGE], [-NUDGE, NUDGE], [-NUDGE, -NUDGE]] {
                     let point = [centre[0] + x, centre[1] + y];
                     let outcomes: Vec<Levels> = outcomes(shader.name(), frame, facet, point, frame.undecided(facet)).ok()?;
+                    pixel.is_undecidable |= outcomes.len() == MOST_OUTCOMES;
                     *error = outcomes.into_iter().map(|exact| difference(frame, facet, levels, exact)).fold(*error, f64::min);
                 }
             }

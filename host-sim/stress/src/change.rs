@@ -3,12 +3,12 @@
 use crate::{random::Random, scenes::colour};
 use microphong::{
     Layout, Pose, RenderError, Renderer, Scene, SceneError, Stream,
-    format::{Angle, ErrorBudget, Gain, LARGEST_BUDGET, LEAST_BUDGET, Length, MAX_LIGHTS, Rotation, Scale},
+    format::{Angle, ErrorBudget, Gain, LARGEST_BUDGET, LEAST_BUDGET, Length, MAX_LIGHTS, Rotation, Scale, Unit},
     pixel::{Pixel, gamma},
     scene::{Background, MAX_POSITION, MAX_SCALE, MIN_SCALE},
     stream::{
-        MAX_EXPONENT, MAX_FOCAL, MAX_GAIN, MAX_LENGTH, MIN_FOCAL, MIN_NEAR,
-        record::{Camera, DIRECTIONAL, EYE_SPACE, Light, Material, ORTHOGRAPHIC, PERSPECTIVE, POINT, VIEWER_LOCAL},
+        MAX_EXPONENT, MAX_FOCAL, MAX_GAIN, MAX_LENGTH, MIN_FOCAL, MIN_NEAR, MIN_RANGE,
+        record::{Camera, DIRECTIONAL, EYE_SPACE, Light, Material, ORTHOGRAPHIC, PERSPECTIVE, POINT, SKY, VIEWER_LOCAL},
     },
 };
 use microphong_models::{number::nearest, vector::length};
@@ -299,12 +299,21 @@ impl Change {
             Self::Lights(lights) => {
                 let directional = |light: &Light| {
                     let length = length(light.vector.map(|c| f64::from(Length::from_bits(c))));
-                    light.kind == DIRECTIONAL && (length * length - 1.0).abs() <= 1.0 / 256.0
+                    light.kind != POINT && light.kind <= SKY && (length * length - 1.0).abs() <= 1.0 / 256.0
+                };
+                let is_shaped_rightly = |light: &Light| {
+                    let [edge, full] = light.cone;
+                    let length = length(light.axis.map(|c| f64::from(Unit::from_bits(c))));
+                    let is_cone = (length * length - 1.0).abs() <= 1.0 / 256.0 && (-16_384..full).contains(&edge) && full <= 16_384;
+                    let in_range = light.range == 0 || light.range >= MIN_RANGE;
+                    let is_even = light.axis == [0; 3] && light.cone == [0; 2];
+                    in_range && (is_even || is_cone) && (light.kind == POINT || light.range == 0 && is_even)
                 };
                 let is_right = |light: &Light| {
                     light.space <= EYE_SPACE
                         && is_gain(light.colour)
                         && light.vector.iter().all(|c| c.abs() <= MAX_LENGTH)
+                        && is_shaped_rightly(light)
                         && (directional(light) || light.kind == POINT && now.takes_near())
                 };
                 lights.len() <= MAX_LIGHTS && lights.iter().all(is_right)
@@ -468,6 +477,18 @@ fn lights(random: &mut Random, now: &State) -> Vec<Light> {
         light.space = random.pick(0..2) as u8;
         let reach = if (light.kind == POINT) != wrong { random.octaves(0.05, 15.0) } else { 1.0 };
         light.vector = random.direction().map(|c| nearest::<Length>(c * reach).to_bits());
+        (light.axis, light.range, light.cone) = ([0; 3], 0, [0; 2]);
+        if random.once_in(4) {
+            // A range, a cone, or light from the sky, which are not in range for some lights.
+            match random.pick(0..3) {
+                0 => light.range = random.pick(100..65_536) as u16,
+                1 => {
+                    light.axis = random.direction().map(|c| nearest::<Unit>(c).to_bits());
+                    light.cone = [random.pick(-20_000..16_000), random.pick(-10_000..16_385)].map(|c| c as i16);
+                }
+                _ => light.kind = SKY,
+            }
+        }
     }
     lights
 }

@@ -22,7 +22,7 @@ use microphong::{
     stream::record::{CAMERA_TRACK, Key, LIGHT_TRACK, OBJECT_TRACK},
 };
 use microphong_models::{
-    look::{Cast, Lamp, Look, Member, Way},
+    look::{Cast, LampKind, Look, Member, Way},
     number::nearest,
     quantise::Part,
 };
@@ -111,7 +111,7 @@ fn cast(random: &mut Random, parts: &[Part], look: &Look) -> Result<Cast, String
     }
     for (index, lamp) in (0..).zip(&look.lamps).filter(|_| random.once_in(3)).collect::<Vec<_>>() {
         let mut keys = keys(random, look, pose)?;
-        if matches!(lamp, Lamp::Distant(..) | Lamp::Fixed(..)) {
+        if lamp.kind != LampKind::Near {
             keys.iter_mut().for_each(|key| key.position = random.direction().map(|c| nearest::<Length>(c).to_bits()));
         }
         cast.ways.push(Way { kind: LIGHT_TRACK, index, keys });

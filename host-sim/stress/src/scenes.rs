@@ -5,11 +5,11 @@ use microphong::Skips;
 use microphong_models::{
     bytes::StreamBytes,
     levels,
-    look::{Lamp, Look, Surface},
+    look::{Cone, Lamp, LampKind, Look, Surface},
     mesh::Mesh,
     quantise::{Part, quantise},
     shapes,
-    vector::{V3, add, apply, cross, rotation, scale, sub, unit},
+    vector::{V3, add, apply, cross, length, rotation, scale, sub, unit},
     view::{Projection, View},
 };
 use microphong_render::{
@@ -210,6 +210,24 @@ pub fn surface(random: &mut Random, steep: bool) -> Surface {
     }
 }
 
+/// The lamp, or in a third of all cases one with a range or a cone, or one from the sky. The mesh is about `centre` in eye space.
+pub fn shaped(random: &mut Random, lamp: Lamp, centre: V3) -> Lamp {
+    if !random.once_in(3) {
+        return lamp;
+    }
+    if lamp.kind == LampKind::Distant {
+        return Lamp { kind: LampKind::Sky, ..lamp };
+    }
+    let way = sub(centre, lamp.vector);
+    // Up to a quarter of the distance, which leaves a spot, or far beyond it.
+    let range = (length(way) * random.octaves(0.25, 8.0)).clamp(0.125, 31.0);
+    let axis = add(unit(way).unwrap_or([0.0, 0.0, 1.0]), scale(random.direction(), random.between(0.0, 0.7)));
+    let full = random.between(0.0, 60.0);
+    let cone = Cone { axis, full, edge: full + random.octaves(2.0, 100.0) };
+    let (range, cone) = random.among(&[(Some(range), None), (None, Some(cone)), (Some(range), Some(cone))]);
+    Lamp { range, cone, ..lamp }
+}
+
 /// Material, lights and camera for a picture of `size`. If nothing may be clipped, most scenes fill their pictures, some are small, and some reach
 /// beyond the edges.
 pub fn look(random: &mut Random, mesh: &Mesh, size: [u32; 2], wishes: Wishes) -> Look {
@@ -250,13 +268,14 @@ pub fn look(random: &mut Random, mesh: &Mesh, size: [u32; 2], wishes: Wishes) ->
                     let vertex = mesh.positions[random.pick(0..mesh.positions.len() as i32) as usize];
                     add(apply(&view.rotation, vertex), scale(random.direction(), random.octaves(0.005, 0.5)))
                 };
-                Lamp::Near(add(place, view.translation), colour)
+                Lamp::near(add(place, view.translation), colour)
             } else {
-                Lamp::Distant(random.direction(), colour)
+                Lamp::distant(random.direction(), colour)
             }
         })
         .collect();
     look.local_viewer = wishes.hard.local || random.once_in(3);
+    look.lamps = look.lamps.iter().map(|&lamp| shaped(random, lamp, view.translation)).collect();
     look.background = random.among(&[[0; 3], [255; 3], [26, 28, 32]]).into();
     look
 }

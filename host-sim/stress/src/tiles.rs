@@ -6,7 +6,7 @@ use crate::{
     scenes::{self, Hard, Wishes},
 };
 use microphong_models::{
-    look::{Lamp, Look},
+    look::{Lamp, LampKind, Look},
     mesh::Mesh,
     vector::{V3, add, scale, sub, unit},
     view::View,
@@ -112,12 +112,13 @@ fn lamps(random: &mut Random, object: V3, certainly_near: bool) -> Vec<Lamp> {
     let mut lamp = |number| {
         let (direction, colour) = (random.direction(), scenes::colour(random));
         if certainly_near && number == 0 || near && random.once_in(2) {
-            Lamp::Near(add(object, scale(direction, random.octaves(0.3, 8.0))), colour)
+            Lamp::near(add(object, scale(direction, random.octaves(0.3, 8.0))), colour)
         } else {
-            Lamp::Distant(direction, colour)
+            Lamp::distant(direction, colour)
         }
     };
-    (0..count).map(&mut lamp).collect()
+    let lamps: Vec<Lamp> = (0..count).map(&mut lamp).collect();
+    lamps.into_iter().map(|lamp| scenes::shaped(random, lamp, object)).collect()
 }
 
 /// A direction in object space that a triangle faces: any, or the one at which a light has its highlight.
@@ -126,12 +127,8 @@ fn facing(random: &mut Random, look: &Look) -> V3 {
     if random.once_in(2) {
         return anywhere;
     }
-    let towards = match look.lamps[random.pick(0..look.lamps.len() as i32) as usize] {
-        Lamp::Distant(direction, _) => direction,
-        Lamp::Near(place, _) => sub(place, look.view.translation),
-        // These scenes have none such.
-        Lamp::Fixed(..) | Lamp::FixedNear(..) => return anywhere,
-    };
+    let lamp = &look.lamps[random.pick(0..look.lamps.len() as i32) as usize];
+    let towards = if lamp.kind == LampKind::Near { sub(lamp.vector, look.view.translation) } else { lamp.vector };
     // The eye looks along z of its space, from where z is negative; in object space, it is turned round.
     let [x, y, z] = unit(towards).unwrap_or(anywhere);
     let half = unit([x, y, 1.0 - z]).unwrap_or(anywhere);

@@ -47,7 +47,7 @@ fn draw(setup: &TriangleSetup<'_>, shading: &Shading<'_>, canvas: &mut dyn Canva
     let corners = setup.corner_nodes();
     let fit = |source: &Source| {
         let [diffuse, u, v] = coordinates(shading.lighting, source, corners);
-        linear([diffuse.map(|diffuse| diffuse.max(0)), u, v])
+        linear([diffuse.map(|diffuse| diffuse.max(source.darkest())), u, v])
     };
     shading.draw_lit(setup, fit, Constant, Across, canvas)
 }

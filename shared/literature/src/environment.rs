@@ -14,10 +14,13 @@
 use crate::fields::Held;
 use microphong::{
     format::{COSINE, POSITION, UNIT},
-    math::vector::{dot, normalise, zip},
+    math::{
+        rsqrt::Root,
+        vector::{dot, normalise, zip},
+    },
     method::{
         Canvas, CosineLookup, Facts, Highlight, HighlightField, Lighting, LightingModel, Method, Node, Reflection, Shading, Source,
-        TriangleSetup, VertexLight, Viewer, cosine, cosines::duff::Root, linear, signed,
+        TriangleSetup, VertexLight, Viewer, cosine, linear, signed,
     },
 };
 
@@ -60,9 +63,9 @@ fn draw(setup: &TriangleSetup<'_>, shading: &Shading<'_>, canvas: &mut dyn Canva
     shading.draw_lit(setup, fit, map, Mirror, canvas)
 }
 
-/// The corners' N·L, not negative.
+/// The corners' N·L, not negative unless the light comes from the sky.
 fn diffuse(corners: &[Node; 3], source: &Source) -> [i32; 3] {
-    corners.map(|corner| cosine(corner.normal, source.towards(corner.position)).max(0))
+    corners.map(|corner| cosine(corner.normal, source.towards(corner.position)).max(source.darkest()))
 }
 
 /// (u, v) of W = 2(N·V)N - V, Q2.30; all in the axes of the eye.

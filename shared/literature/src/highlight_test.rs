@@ -61,6 +61,7 @@ fn has_no_highlight(setup: &TriangleSetup<'_>, shading: &Shading<'_>) -> bool {
             .lighting
             .sources()
             .iter()
+            .filter(|source| !source.is_sky())
             .filter_map(Source::directional)
             .all(|&[_, half]| corners.iter().all(|corner| cosine(corner.normal, half) < limit))
 }

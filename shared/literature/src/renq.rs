@@ -15,8 +15,8 @@ use microphong::{
     method::{
         Canvas, CosineLookup, Facts, Highlight, HighlightField, LightingModel, Method, QuadraticNodes, Reflection, Shading, TriangleSetup,
         VertexLight,
-        lighting_model::{FIELD_EXTRA, FIELD_NODE},
         node::is_steep,
+        products::{FIELD_EXTRA, FIELD_NODE},
         signed,
     },
 };

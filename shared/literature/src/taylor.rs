@@ -23,7 +23,7 @@ use microphong::{
     method::{
         Canvas, Constant, CosineLookup, Facts, Highlight, HighlightField, LightingModel, Method, QuadraticNodes, Reflection, Shading,
         Source, Steepness, TriangleSetup, VertexLight,
-        lighting_model::{FIELD_EXTRA, FIELD_NODE},
+        products::{FIELD_EXTRA, FIELD_NODE},
         signed, tiles,
     },
 };

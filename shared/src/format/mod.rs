@@ -6,7 +6,7 @@
 
 mod internal;
 
-use fixed::types::{I2F14, I2F30, I18F14, U0F32, U2F14, U5F3, U16F16};
+use fixed::types::{I2F14, I2F30, I18F14, U0F32, U2F14, U5F3, U5F11, U16F16};
 #[doc(hidden)]
 pub use internal::*;
 
@@ -18,6 +18,8 @@ pub type Length = I18F14;
 /// A reflectance of a material, or the intensity of a light, in one colour channel: 16 bits, in steps of 1/16,384. 1 is full intensity, and
 /// values up to 2 are allowed.
 pub type Gain = U2F14;
+/// The distance at which a point light ends, in units of the world: 16 bits, from 0 to less than 32 in steps of 1/2,048.
+pub type Reach = U5F11;
 /// An entry of a rotation matrix, or a component of a quaternion or unit vector, from -1 to 1: 32 bits, in steps of 2^-30.
 pub type Rotation = I2F30;
 /// The focal length of a camera, from 1/16 to 16. For a perspective camera, the tangent of half the field of view of the smaller side of the picture

@@ -9,7 +9,9 @@ use crate::{
 
 /// Farthest coordinate of a near light or viewer in object space, Q7.25: 59 units, so that a vertex, which is less than 4 units from the
 /// origin, differs from it by less than 64. At the scale 1 none is farther than 56.
-const FARTHEST: i64 = 59 << POSITION;
+const FARTHEST: i64 = (FARTHEST_UNITS as i64) << POSITION;
+/// [`FARTHEST`] in units of object space.
+pub const FARTHEST_UNITS: u32 = 59;
 
 /// The transformation of an object from its own space to eye space: it is scaled, rotated and moved. The world is the space of an object without a
 /// pose.
@@ -104,14 +106,29 @@ impl ModelView {
     /// or farther by at most 1/56 rad.
     #[inline(never)]
     fn near(&self, rotation: [[i32; 3]; 3], v: [i32; 3]) -> [i32; 3] {
-        // Q.44, then Q.30 of the world, then Q.46 of object space.
-        let point =
-            map(transposed(rotation), |column| ((dot(column, v) >> UNIT) * i64::from(self.inverse_scale)) >> (ROTATION + 16 - POSITION));
+        let point = self.unlimited(rotation, v);
         if point.iter().all(|c| c.abs() <= FARTHEST) {
             return point.map(|c| c as i32);
         }
         // Below 2^36.
         normalise(point.map(|c| (c >> 6) as i32)).map(|c| ((i64::from(c) * FARTHEST) >> ROTATION) as i32)
+    }
+
+    /// [`Self::near`] for a vector of any length.
+    #[inline(always)]
+    fn unlimited(&self, rotation: [[i32; 3]; 3], v: [i32; 3]) -> [i64; 3] {
+        // Q.44, then Q.30 of the world, then Q.46 of object space.
+        map(transposed(rotation), |column| ((dot(column, v) >> UNIT) * i64::from(self.inverse_scale)) >> (ROTATION + 16 - POSITION))
+    }
+
+    /// The squared length, Q.38, of the vector from the object's centre to a point, if the point is too far away to be converted and
+    /// [`Self::point_to_object`] or [`Self::world_point_to_object`] shortens the vector to [`FARTHEST_UNITS`]. `is_eye_space` tells which of the two.
+    #[must_use]
+    pub fn shortened(&self, v: [i32; 3], is_eye_space: bool) -> Option<u64> {
+        let (rotation, centre) = if is_eye_space { (self.rotation, self.translation) } else { (self.to_world, self.position) };
+        let point = self.unlimited(rotation, sub(v, centre));
+        let shorter = point.map(|c| (c >> 6) as i32);
+        point.iter().any(|c| c.abs() > FARTHEST).then(|| dot(shorter, shorter) as u64)
     }
 }
 

@@ -2,26 +2,31 @@
 
 use crate::{
     arch::product::{HALVES, by_fraction, upper},
-    features::{ALWAYS_CONSTANT, LIGHTS, NEAR_LIGHTS},
+    features::{ALWAYS_CONSTANT, LIGHT_SHAPES, LIGHTS, NEAR_LIGHTS},
     format::{COSINE, MAX_LIGHTS, POSITION, UNIT},
     geometry::model_view::ModelView,
+    lighting::shape::{STRENGTH, Shape},
     math::vector::{add, dot, map, narrow_dot, normalise, sub, wide},
-    stream::record::{Camera, DIRECTIONAL, EYE_SPACE, Light, PERSPECTIVE, VIEWER_LOCAL},
+    stream::record::{Camera, EYE_SPACE, Light, PERSPECTIVE, POINT, SKY, VIEWER_LOCAL},
 };
 use zerocopy::{FromBytes, FromZeros as _, Immutable, IntoBytes, KnownLayout};
 
 /// Number of lights that there is room for. Without the feature `lights` a scene has just one; it is black if the mesh file has none.
 pub(super) const ROOM: usize = if LIGHTS { MAX_LIGHTS } else { 1 };
+/// Number of shapes in a light. A program without them has no memory for them.
+pub(crate) const SHAPES: usize = if LIGHT_SHAPES { 1 } else { 0 };
 
 /// A light in object space. It lies in the renderer's memory.
 #[derive(FromBytes, IntoBytes, Immutable, KnownLayout, Clone, Copy, Debug)]
 #[repr(C)]
 pub struct Source {
     /// For a directional light the unit vector L towards it, and the unit half vector H between L and an infinitely far viewer, which is unused under
-    /// a local viewer; Q2.30. For a point light its position, Q7.25.
+    /// a local viewer; Q2.30. For a point light its position, Q7.25, and the axis of its cone, Q2.30.
     vectors: [[i32; 3]; 2],
-    /// Whether the light is at a position: 0 or 1.
-    is_point: u32,
+    /// The kind of light, as in [`Light::kind`].
+    kind: u32,
+    /// The range and the cone of a point light.
+    shape: [Shape; SHAPES],
 }
 
 /// Position from which highlights are seen, in object space.
@@ -67,12 +72,12 @@ impl Directions {
     #[must_use]
     pub fn new(lights: &[Light], world: &ModelView) -> Self {
         let mut vectors = [[[0; 3]; 2]; ROOM];
-        for (direction, light) in vectors.iter_mut().zip(lights).filter(|(_, light)| light.kind == DIRECTIONAL) {
+        for (direction, light) in vectors.iter_mut().zip(lights).filter(|(_, light)| light.kind != POINT) {
             let unit = normalise(light.vector);
             let towards = if light.space == EYE_SPACE { world.to_object(unit) } else { unit };
             *direction = [towards, half(towards, towards_eye(world))];
         }
-        Self { vectors, are_directional: lights.iter().all(|light| light.kind == DIRECTIONAL) }
+        Self { vectors, are_directional: lights.iter().all(|light| light.kind != POINT) }
     }
 }
 
@@ -128,14 +133,15 @@ impl Lighting {
     pub fn constant(&self) -> Option<&[[i32; 3]; 2]> {
         match self.sources() {
             _ if ALWAYS_CONSTANT => self.sources.first().map(|source| &source.vectors),
-            [source] if self.is_constant() => source.directional(),
+            [source] if self.is_constant() && !source.is_sky() => source.directional(),
             _ => None,
         }
     }
 
-    /// Computes `[N·L, N·H]` of each light, Q2.30, at `position` (Q7.25) with the normal `normal` (Q2.30, at most unit length).
-    pub fn cosines(&self, position: [i32; 3], normal: [i32; 3]) -> impl Iterator<Item = [i32; 2]> {
-        self.sources().iter().map(move |source| self.directions(source, position).map(|direction| cosine(normal, direction)))
+    /// Computes how each light falls on a surface at `position` (Q7.25) with the normal `normal` (Q2.30, at most unit length).
+    pub fn incident(&self, position: [i32; 3], normal: [i32; 3]) -> impl Iterator<Item = Incident> {
+        let cosines = move |source| self.directions(source, position).map(|direction| cosine(normal, direction));
+        self.sources().iter().map(move |source| source.incident(cosines(source), Some(position)))
     }
 
     /// The unit vectors L and H of a light at `position` (Q7.25), Q2.30.
@@ -160,7 +166,7 @@ impl Lighting {
     /// Whether either all lights or the viewer are near, and the other is infinitely far. Domain: one light.
     #[must_use]
     pub(crate) fn has_one_near(&self) -> bool {
-        NEAR_LIGHTS && (self.directional != 0) == self.is_local()
+        NEAR_LIGHTS && (self.directional != 0) == self.is_local() && !self.sources().iter().any(Source::has_shape)
     }
 
     #[inline]
@@ -171,17 +177,70 @@ impl Lighting {
 
 impl Source {
     /// A light of no direction.
-    const NONE: Self = Self { vectors: [[0; 3]; 2], is_point: 0 };
+    const NONE: Self = Self { vectors: [[0; 3]; 2], kind: 0, shape: [Shape::NONE; SHAPES] };
 
     /// Transforms `light`, whose L and H in the world are known, to an object at the place `model_view`.
     fn new(light: &Light, directions: &[[i32; 3]; 2], model_view: &ModelView) -> Self {
-        if !NEAR_LIGHTS || light.kind == DIRECTIONAL {
+        let kind = light.kind.into();
+        if !NEAR_LIGHTS || light.kind != POINT {
             let [towards, half] = *directions;
-            return Self { vectors: [model_view.world_to_object(towards), model_view.world_to_object(half)], is_point: 0 };
+            return Self { vectors: [model_view.world_to_object(towards), model_view.world_to_object(half)], kind, ..Self::NONE };
         }
         let is_eye_space = light.space == EYE_SPACE;
         let point = if is_eye_space { model_view.point_to_object(light.vector) } else { model_view.world_point_to_object(light.vector) };
-        Self { vectors: [point; 2], is_point: 1 }
+        let (mut axis, mut shape) = ([0; 3], [Shape::NONE; SHAPES]);
+        if let Some(shape) = shape.first_mut() {
+            (*shape, axis) = Shape::new(light, model_view, model_view.shortened(light.vector, is_eye_space));
+        }
+        Self { vectors: [point, axis], kind, shape }
+    }
+
+    /// How the light falls on a surface where N·L and N·H are `cosines`, at a position in object space (Q7.25). Lights that are no point lights need
+    /// none.
+    fn incident(&self, cosines: [i32; 2], position: Option<[i32; 3]>) -> Incident {
+        let [towards, half] = cosines;
+        let ([point, axis], full) = (self.vectors, 1 << STRENGTH);
+        match (self.shape.first(), position) {
+            _ if self.is_sky() => Incident { towards: part_of_sky(towards, COSINE), half, strength: full },
+            (Some(shape), Some(position)) if !shape.is_even() => {
+                Incident { towards, half, strength: shape.strength(axis, sub(point, position)) }
+            }
+            _ => Incident { towards, half, strength: full },
+        }
+    }
+
+    /// How a light that is no point light falls on a surface where N·L and N·H are `cosines`.
+    #[inline]
+    #[must_use]
+    pub fn distant(&self, cosines: [i32; 2]) -> Incident {
+        self.incident(cosines, None)
+    }
+
+    /// The range and the cone of a point light that has one, and the axis of the cone, Q2.30.
+    #[inline]
+    #[must_use]
+    pub(crate) fn shape(&self) -> Option<(&Shape, [i32; 3])> {
+        let [_, axis] = self.vectors;
+        self.shape.first().filter(|shape| !shape.is_even()).map(|shape| (shape, axis))
+    }
+
+    /// Whether the light comes from the sky.
+    #[inline]
+    #[must_use]
+    pub fn is_sky(&self) -> bool {
+        LIGHT_SHAPES && self.kind == u32::from(SKY)
+    }
+
+    /// N·L, Q2.30, from which a surface gets less and less light until it gets none: 0, and -1 for light from the sky.
+    #[inline]
+    #[must_use]
+    pub fn darkest(&self) -> i32 {
+        if self.is_sky() { -(1 << COSINE) } else { 0 }
+    }
+
+    #[inline]
+    fn has_shape(&self) -> bool {
+        self.is_sky() || self.shape().is_some()
     }
 
     /// The unit vectors L and H, Q2.30, of a directional light. H is unused under a local viewer.
@@ -201,7 +260,7 @@ impl Source {
 
     #[inline]
     fn is_point(&self) -> bool {
-        NEAR_LIGHTS && self.is_point != 0
+        NEAR_LIGHTS && self.kind == u32::from(POINT)
     }
 
     /// Unit vector from `position` towards the light, Q2.30.
@@ -320,6 +379,31 @@ impl UnitNormal for InterpolatedNormal {
 #[inline(always)]
 pub(crate) fn over_length(cosine: i32, half_reciprocal: i32) -> i32 {
     upper(cosine, half_reciprocal) << 3
+}
+
+/// How a light falls on a surface.
+#[derive(Clone, Copy, Debug)]
+pub struct Incident {
+    /// N·L, Q2.30. For light from the sky (1 + N·L)/2.
+    pub towards: i32,
+    /// N·H, Q2.30.
+    pub half: i32,
+    /// What range and cone leave of the light: up to 1 << [`STRENGTH`].
+    pub strength: u32,
+}
+
+impl From<[i32; 2]> for Incident {
+    /// The light of a directional light, by N·L and N·H.
+    #[inline]
+    fn from([towards, half]: [i32; 2]) -> Self {
+        Self { towards, half, strength: 1 << STRENGTH }
+    }
+}
+
+/// The part of the sky's half about the direction L that a surface sees, (1 + N·L)/2, from N·L in any format with `1 << bits` as one.
+#[inline]
+pub(crate) fn part_of_sky(cosine: i32, bits: u32) -> i32 {
+    (cosine >> 1) + (1 << (bits - 1))
 }
 
 /// The unit half vector between two unit vectors, Q2.30; zero if they are opposite. Source: Blinn (1977).

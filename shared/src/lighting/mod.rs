@@ -5,3 +5,4 @@ pub mod highlight_tables;
 pub mod lights;
 pub mod material_tables;
 pub mod reflectance;
+pub mod shape;

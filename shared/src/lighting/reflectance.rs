@@ -1,12 +1,16 @@
 //! Reflectances of a material under the lights of a scene, in levels, computed once.
 
 use crate::{
-    arch::quotient::long,
-    features::{COLOURS, LIGHTS, SKIPS},
+    arch::{
+        product::{product, unsigned_product},
+        quotient::long,
+    },
+    features::{COLOURS, LIGHT_SHAPES, LIGHTS, SKIPS},
     format::{BIAS, CHANNEL, COSINE, Intensity, LEVEL, PIXEL_COSINE, UNIT},
     lighting::{
         constant_lights::{FACTOR, LARGEST, Sum, Sums},
-        lights::{ROOM, Source, UnitNormal},
+        lights::{Incident, ROOM, Source, UnitNormal, part_of_sky},
+        shape::STRENGTH,
     },
     math::{
         highlight_lut::{Base, ENTRY, HighlightCurve, HighlightLut, square},
@@ -201,9 +205,10 @@ impl Reflectance {
         self.has_ramp = u8::from(one_channel || is_coarse && lights.len() == 1 && within);
         let most = (1..3).fold(0, |most, k| if diffuse[k] > diffuse[most] { k } else { most });
         self.ramp = [ambient[most], diffuse[most].into()];
-        let looped = holds_levels && fits && (lights.len() == 1 || lights.len() == 2 && !one_channel);
+        let is_plain = !LIGHT_SHAPES || !lights.iter().any(Light::has_shape);
+        let looped = holds_levels && fits && is_plain && (lights.len() == 1 || lights.len() == 2 && !one_channel);
         self.lights = if looped { lights.len() as u8 } else { 0 };
-        self.has_two_lights = u8::from(lights.len() == 2 && !one_channel && fits);
+        self.has_two_lights = u8::from(lights.len() == 2 && !one_channel && fits && is_plain);
         let holds_levels = looped && one_channel;
         let second = self.gains.get(1).filter(|_| lights.len() > 1).map_or([0; 3], |gains| gains.diffuse);
         let all = zip(diffuse, second, u16::saturating_add);
@@ -583,17 +588,20 @@ impl<'f> LitMaterial<'f> {
     #[inline]
     #[must_use]
     pub fn one_light(self, cosines: [i32; 2]) -> [i32; 3] {
-        if self.three_channels() { self.levels(core::iter::once(cosines)) } else { [self.level(cosines); 3] }
+        if self.three_channels() { self.levels(core::iter::once(cosines.into())) } else { [self.level(cosines); 3] }
     }
 
-    /// Levels at a point, Q9.7 in [0, 255], from the cosines `[N·L, N·H]` (Q2.30) of each light.
+    /// Levels at a point, Q9.7 in [0, 255], from what falls on it from each light.
     #[inline]
     #[must_use]
-    pub fn levels(self, cosines: impl Iterator<Item = [i32; 2]>) -> [i32; 3] {
+    pub fn levels(self, incident: impl Iterator<Item = Incident>) -> [i32; 3] {
         let mut levels = self.ambient;
-        for (gains, [diffuse, half]) in self.gains.iter().zip(cosines) {
-            let highlight = self.highlight_at(half);
-            self.add(&mut levels, gains, diffuse, highlight);
+        for (gains, Incident { towards, half, strength }) in self.gains.iter().zip(incident) {
+            let mut light = Reflection { diffuse: towards, highlight: self.highlight_at(half) };
+            if LIGHT_SHAPES {
+                light = light.weakened(strength);
+            }
+            self.add(&mut levels, gains, light.diffuse, light.highlight);
         }
         levels.map(|level| level.min(FULL))
     }
@@ -602,7 +610,7 @@ impl<'f> LitMaterial<'f> {
     #[inline(never)]
     #[must_use]
     pub fn constant_levels<N: UnitNormal>(self, sources: &[Source], normal: &N) -> [i32; 3] {
-        if sources.len() > 2 || self.excess != 0 {
+        if sources.len() > 2 || self.excess != 0 || LIGHT_SHAPES && sources.iter().any(Source::is_sky) {
             return self.many_constant_levels(sources, normal);
         }
         let mut lit = [[0; 2]; 2];
@@ -626,8 +634,8 @@ impl<'f> LitMaterial<'f> {
     #[cold]
     #[inline(never)]
     fn many_constant_levels<N: UnitNormal>(self, sources: &[Source], normal: &N) -> [i32; 3] {
-        let cosines = sources.iter().map(|source| source.directional().map_or([0; 2], |directions| directions.map(|v| normal.cosine(v))));
-        self.levels(cosines)
+        let cosines = |source: &Source| source.directional().map_or([0; 2], |directions| directions.map(|v| normal.cosine(v)));
+        self.levels(sources.iter().map(|source| source.distant(cosines(source))))
     }
 }
 
@@ -645,6 +653,23 @@ pub struct Reflection {
     pub diffuse: i32,
     /// The highlight, a power of a cosine, unsigned Q0.16.
     pub highlight: u32,
+}
+
+impl Reflection {
+    /// The light of a source that has this part of its strength, up to 1 << [`STRENGTH`].
+    #[inline]
+    #[must_use]
+    pub(crate) fn weakened(self, strength: u32) -> Self {
+        let diffuse = (product(self.diffuse, strength as i32) >> STRENGTH) as i32;
+        Self { diffuse, highlight: (unsigned_product(self.highlight, strength) >> STRENGTH) as u32 }
+    }
+
+    /// The light of the sky about L, where this is that of a directional light: there is no highlight.
+    #[inline]
+    #[must_use]
+    pub(crate) fn of_sky(self) -> Self {
+        Self { diffuse: part_of_sky(self.diffuse, PIXEL_COSINE), highlight: 0 }
+    }
 }
 
 /// The level, Q9.7, of light reflected with the gains `(diffuse, specular)`, for N·L (Q2.30) and a highlight (Q0.16).

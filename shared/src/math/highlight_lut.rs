@@ -204,10 +204,11 @@ fn between([upper, lower]: [u32; 2], k: usize) -> u16 {
     (sum / COMPUTED as u32).min(0xffff) as u16
 }
 
-/// The value at a position between two entries of a table, without the floor.
+/// The value at a position between two entries of a table, without the floor. It wraps only in a table that is not filled, which materials without a
+/// highlight may have.
 #[inline]
 fn interpolated([a, b]: [u16; 2], position: u32, floor: u16) -> u32 {
-    u32::from(a) - ((u32::from(a.saturating_sub(b)) * (position & 0xfff)) >> 12) - u32::from(floor)
+    u32::from(a).wrapping_sub((u32::from(a.saturating_sub(b)) * (position & 0xfff)) >> 12).wrapping_sub(floor.into())
 }
 
 impl HighlightLut {

@@ -1,6 +1,6 @@
 //! Square roots and reciprocal square roots.
 
-use crate::arch::product::{unsigned_by_fraction, unsigned_product, upper};
+use crate::arch::product::{product, unsigned_by_fraction, unsigned_product, upper};
 
 /// First estimates of 1/sqrt(m), Q0.16, by the upper eight bits (64..=255) of `m`, Q2.30.
 static SEED: [u16; 192] = {
@@ -155,6 +155,32 @@ impl HalfRsqrt {
         // The residual 1 - m y², Q0.32, of which words keep the sign: less than 2^15.
         let residual = 0u32.wrapping_sub((unsigned_product((unsigned_product(m, y) >> 30) as u32, y) >> 28) as u32) as i32;
         y.wrapping_add((((y >> 15) as i32).wrapping_mul(residual) >> 18) as u32)
+    }
+}
+
+/// The reciprocal root 1/sqrt(x): a mantissa in Q2.30 and a power of two to multiply it by.
+#[derive(Clone, Copy, Default)]
+pub struct Root {
+    mantissa: u32,
+    shift: u32,
+}
+
+impl Root {
+    /// The reciprocal root of `x` in Q2.30, (0, 2].
+    #[inline(always)]
+    pub fn of(x: u32) -> Self {
+        let shift = x.max(1).leading_zeros() & !1;
+        // x = m 2^-shift, m in [1, 4): the root's exponent is half of it.
+        Self { mantissa: HalfRsqrt::get().fine(x << (shift & 31)), shift: shift / 2 }
+    }
+
+    /// Computes `value / sqrt(x)`, Q2.30 each, saturating at 2. Error: the root's, and less than 2/sqrt(x) units of the last place, because the
+    /// quotient is rounded down before it is shifted.
+    #[inline(always)]
+    pub fn divide(self, value: i32) -> i32 {
+        let quotient = (product(value, self.mantissa as i32) >> 30) as i32;
+        let shifted = quotient.wrapping_shl(self.shift);
+        if shifted.wrapping_shr(self.shift) == quotient { shifted } else { i32::MAX ^ (quotient >> 31) }
     }
 }
 

@@ -149,7 +149,7 @@ impl VertexStage<'_> {
         let [r, g, b] = if self.lighting.is_constant() {
             self.reflectance.constant_levels(self.lighting.sources(), &MeanNormal::at(normal))
         } else {
-            self.reflectance.levels(self.lighting.cosines(point(vertex.position), map(normal, |c| c << (30 - UNIT))))
+            self.reflectance.levels(self.lighting.incident(point(vertex.position), map(normal, |c| c << (30 - UNIT))))
         };
         [r, g, b, 0]
     }

@@ -2,28 +2,21 @@
 
 use crate::{
     features::PERSPECTIVE,
-    format::{COSINE, MAX_LIGHTS},
-    interpolate::{
-        Constant, Patch, Walker,
-        field::{Field, Nodes},
-        perspective::PerspectivePatch,
-    },
+    format::MAX_LIGHTS,
+    interpolate::{Constant, Patch, Walker, field::Field, perspective::PerspectivePatch},
     lighting::{
-        lights::{Source, cosine},
+        lights::{SHAPES, Source, cosine},
         reflectance::{Factors, LitMaterial, Reflection},
     },
     math::highlight_lut::{CosineLookup, HighlightLut},
-    method::{Shading, TriangleSetup, node::Node},
+    method::{
+        Shading, TriangleSetup,
+        node::Node,
+        products::{LinearNodes, QuadraticNodes, fitted, linear, quadratic},
+        weakening::{Change, Way},
+    },
     raster::canvas::{CHUNK, Canvas, SpanShader, SpanTarget},
-    setup::gradients::Gradients,
 };
-
-/// Fraction bits of a field at a node. A walked field has [`COSINE`] fraction bits.
-pub const FIELD_NODE: u32 = 24;
-/// Fraction bits that a walked field has more than a node.
-pub const FIELD_EXTRA: u32 = COSINE - FIELD_NODE;
-/// Bits of the range of nodes, which lie in [-2, 2].
-pub const FIELD_BITS: u32 = FIELD_NODE + 2;
 
 /// Computes the light at a pixel from interpolated fields: `V` for each light, `D` for a light without a highlight, and `K` once for all lights.
 pub trait LightingModel<K, V, D = ()>: Copy {
@@ -53,16 +46,31 @@ pub enum Lit<V, D> {
     Fully(V),
 }
 
+/// How a light changes over a triangle: nothing in a program without the feature.
+type Changes<'s, W> = [Change<'s, W>; SHAPES];
+
+/// Walkers of what changes.
+#[inline(always)]
+fn entered<'s, P: Patch>(changes: &Changes<'s, P>, enter: impl Fn(&P) -> P::Walker) -> Changes<'s, P::Walker> {
+    changes.each_ref().map(|change| change.enter(&enter))
+}
+
+/// The light at a pixel where it changes so.
+#[inline(always)]
+fn changed<W: Walker<Value = [u32; 2]>>(changes: &Changes<'_, W>, reflection: Reflection) -> Reflection {
+    changes.iter().fold(reflection, |reflection, change| change.applied(reflection))
+}
+
 /// Shades a triangle under any lights on any material. Lights take turns over a run of pixels, so that each loop knows one light.
-struct ManyLights<'a, K, P, D, F, S> {
+struct ManyLights<'a, 's, K, P, D, W, F, S> {
     reflectance: LitMaterial<'a>,
     model: F,
     /// The field that all lights share.
     common: K,
-    /// The number and the field of each light that adds a highlight, and what it adds.
-    lights: &'a mut [(usize, P, Factors)],
-    /// The field of each light that adds no highlight, and what it adds.
-    diffuse: &'a mut [(D, Factors)],
+    /// The number and the field of each light that adds a highlight, what it adds, and how it changes over the triangle.
+    lights: &'a mut [(usize, P, Factors, Changes<'s, W>)],
+    /// The field of each light that adds no highlight, what it adds, and how it changes.
+    diffuse: &'a mut [(D, Factors, Changes<'s, W>)],
     lut: CosineLookup<'a>,
     /// Where the sums of all lights begin.
     ambient: [i32; 3],
@@ -70,12 +78,6 @@ struct ManyLights<'a, K, P, D, F, S> {
     /// cleared once a triangle and not once a span.
     shared: &'a mut [S; CHUNK],
     levels: &'a mut [[i32; 3]; CHUNK],
-}
-
-/// [`Field::fit`] in a function of its own, so that all methods share its code.
-#[inline(never)]
-pub(crate) fn fitted<F: Field>(field: &F, gradients: &Gradients) -> F::Patch {
-    field.fit(gradients)
 }
 
 /// A walker that stands on column `x`, `rows` rows below `patch`.
@@ -89,11 +91,12 @@ fn enter<P: Patch>(patch: &P, rows: i32, x: i32) -> P::Walker {
     patch.enter(x)
 }
 
-impl<K, P, D, F> SpanShader for ManyLights<'_, K, P, D, F, F::Common>
+impl<K, P, D, W, F> SpanShader for ManyLights<'_, '_, K, P, D, W, F, F::Common>
 where
     K: Patch,
     P: Patch,
     D: Patch,
+    W: Patch<Walker: Walker<Value = [u32; 2]>>,
     F: LightingModel<<K::Walker as Walker>::Value, <P::Walker as Walker>::Value, <D::Walker as Walker>::Value>,
 {
     fn span(&mut self, rows: i32, end: i32, count: usize, target: &mut dyn SpanTarget) {
@@ -121,26 +124,30 @@ where
             if visible == 0 {
                 continue;
             }
-            for (light, patch, factors) in lights.iter() {
-                let mut walker = enter(patch, rows, entry);
+            for (light, patch, factors, changes) in lights.iter() {
+                let (mut walker, mut changes) = (enter(patch, rows, entry), entered(changes, |way| enter(way, rows, entry)));
                 let mut k = run;
                 while k > 0 {
                     k -= 1;
                     walker.step();
+                    changes.iter_mut().for_each(Change::step);
                     if visible & (1 << k) != 0 {
-                        factors.add(&mut levels[k % CHUNK], model.reflect(*light, &shared[k % CHUNK], walker.value(), *lut));
+                        let reflection = model.reflect(*light, &shared[k % CHUNK], walker.value(), *lut);
+                        factors.add(&mut levels[k % CHUNK], changed(&changes, reflection));
                     }
                 }
             }
             if size_of::<<D::Walker as Walker>::Value>() > 0 {
-                for (patch, factors) in diffuse.iter() {
-                    let mut walker = enter(patch, rows, entry);
+                for (patch, factors, changes) in diffuse.iter() {
+                    let (mut walker, mut changes) = (enter(patch, rows, entry), entered(changes, |way| enter(way, rows, entry)));
                     let mut k = run;
                     while k > 0 {
                         k -= 1;
                         walker.step();
+                        changes.iter_mut().for_each(Change::step);
                         if visible & (1 << k) != 0 {
-                            factors.add_diffuse(&mut levels[k % CHUNK], model.reflect_diffuse(&shared[k % CHUNK], walker.value()));
+                            let diffuse = model.reflect_diffuse(&shared[k % CHUNK], walker.value());
+                            factors.add_diffuse(&mut levels[k % CHUNK], changed(&changes, Reflection { diffuse, highlight: 0 }).diffuse);
                         }
                     }
                 }
@@ -155,14 +162,25 @@ where
 
     fn jump(&mut self, rows: i32) {
         self.common.jump(rows);
-        self.lights.iter_mut().for_each(|(_, patch, _)| patch.jump(rows));
-        self.diffuse.iter_mut().for_each(|(patch, _)| patch.jump(rows));
+        self.lights.iter_mut().for_each(|(_, patch, ..)| patch.jump(rows));
+        self.diffuse.iter_mut().for_each(|(patch, ..)| patch.jump(rows));
+        self.ways().for_each(|way| way.jump(rows));
     }
 
     fn step_row(&mut self) {
         self.common.step_row();
-        self.lights.iter_mut().for_each(|(_, patch, _)| patch.step_row());
-        self.diffuse.iter_mut().for_each(|(patch, _)| patch.step_row());
+        self.lights.iter_mut().for_each(|(_, patch, ..)| patch.step_row());
+        self.diffuse.iter_mut().for_each(|(patch, ..)| patch.step_row());
+        self.ways().for_each(Patch::step_row);
+    }
+}
+
+impl<'a, 's, K, P, D, W, F, S> ManyLights<'a, 's, K, P, D, W, F, S> {
+    /// What is walked of the lights that change.
+    fn ways(&mut self) -> impl Iterator<Item = &mut W> + use<'_, 'a, 's, K, P, D, W, F, S> {
+        let changes =
+            self.lights.iter_mut().flat_map(|(.., changes)| changes).chain(self.diffuse.iter_mut().flat_map(|(.., changes)| changes));
+        changes.filter_map(Change::way)
     }
 }
 
@@ -211,7 +229,7 @@ impl Shading<'_> {
                 Lit::Diffuse(field) => Lit::Diffuse(common.with(field.surface())),
                 Lit::Fully(field) => Lit::Fully(common.with(field.surface())),
             };
-            return self.draw_patches(setup, of, common, model, canvas);
+            return self.draw_changing(setup, of, |way: Way| common.with(way.surface()), common, model, canvas);
         }
         let of = |source: &Source| match of(source) {
             Lit::Nowhere => Lit::Nowhere,
@@ -236,6 +254,26 @@ impl Shading<'_> {
         D: Patch,
         F: LightingModel<<K::Walker as Walker>::Value, <P::Walker as Walker>::Value, <D::Walker as Walker>::Value>,
     {
+        self.draw_changing(setup, of, |way: Way| fitted(&way, setup.gradients), common, model, canvas)
+    }
+
+    /// [`Self::draw_patches`], where `walked` makes polynomials of how range and cone weaken a light.
+    fn draw_changing<K, P, D, W, F>(
+        &self,
+        setup: &TriangleSetup<'_>,
+        of: impl Fn(&Source) -> Lit<P, D>,
+        walked: impl Fn(Way) -> W,
+        common: K,
+        model: F,
+        canvas: &mut dyn Canvas,
+    ) -> u32
+    where
+        K: Patch,
+        P: Patch,
+        D: Patch,
+        W: Patch<Walker: Walker<Value = [u32; 2]>>,
+        F: LightingModel<<K::Walker as Walker>::Value, <P::Walker as Walker>::Value, <D::Walker as Walker>::Value>,
+    {
         let reflectance = self.reflectance;
         // Renderers refuse methods that look up highlights if there is no table.
         let Some(lut) = reflectance.table().map(HighlightLut::by_cosine) else { return 0 };
@@ -244,17 +282,19 @@ impl Shading<'_> {
         let (mut without_highlight, mut without_light) = (0, 0);
         for (light, source) in self.lighting.sources().iter().enumerate() {
             let factors = reflectance.factors(light);
+            let changes = [(); SHAPES].map(|()| Change::of(source, setup.vertices()));
+            let is_dark = changes.iter().any(|change| matches!(change, Change::Dark));
             // There is room for as many lights as a frame has.
             match of(source) {
-                Lit::Fully(patch) => {
-                    let _ = lights.push((light, patch, factors));
+                Lit::Fully(patch) if !is_dark => {
+                    let _ = lights.push((light, patch, factors, changes.map(|change| change.map(&walked))));
                     continue;
                 }
-                Lit::Diffuse(patch) => {
-                    let _ = diffuse.push((patch, factors));
+                Lit::Diffuse(patch) if !is_dark => {
+                    let _ = diffuse.push((patch, factors, changes.map(|change| change.map(&walked))));
                     without_highlight += 1;
                 }
-                Lit::Nowhere => without_light += 1,
+                _ => without_light += 1,
             }
             reflectance.add_no_highlight(&factors, &mut ambient);
         }
@@ -286,32 +326,4 @@ impl Shading<'_> {
         let values = nodes.map(|node| map(self.lighting.directions(source, node.position).map(|direction| cosine(node.normal, direction))));
         quadratic([values.map(|[light, _]| light), values.map(|[_, half]| half)])
     }
-}
-
-/// A linear field: it goes through the values at the three corners.
-pub type LinearNodes<const CH: usize> = Nodes<3, CH, FIELD_BITS>;
-/// A quadratic field: it goes through the values at three corners and three midpoints of edges.
-pub type QuadraticNodes<const CH: usize> = Nodes<6, CH, FIELD_BITS>;
-
-/// The quadratic through values at six nodes, Q2.30.
-#[inline]
-pub fn quadratic<const CH: usize>(nodes: [[i32; 6]; CH]) -> QuadraticNodes<CH> {
-    Nodes::new(rounded(nodes), FIELD_EXTRA)
-}
-
-/// The plane through values at three nodes, Q2.30.
-#[inline]
-pub fn linear<const CH: usize>(nodes: [[i32; 3]; CH]) -> LinearNodes<CH> {
-    Nodes::new(rounded(nodes), FIELD_EXTRA)
-}
-
-/// From Q2.30 to [`FIELD_NODE`] fraction bits.
-fn rounded<const N: usize, const CH: usize>(nodes: [[i32; N]; CH]) -> [[i32; N]; CH] {
-    nodes.map(|nodes| nodes.map(|node| (node + (1 << (FIELD_EXTRA - 1))) >> FIELD_EXTRA))
-}
-
-/// Converts a walked field to a signed number, Q2.30.
-#[inline]
-pub fn signed(field: u32) -> i32 {
-    field as i32
 }

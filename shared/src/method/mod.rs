@@ -17,7 +17,10 @@ pub mod lighting_model;
 pub mod node;
 mod perspective;
 #[doc(hidden)]
+pub mod products;
+#[doc(hidden)]
 pub mod tiles;
+mod weakening;
 
 use crate::{
     arch::product::by_fraction,
@@ -73,8 +76,9 @@ pub use {
     },
     auto::error_bound::ErrorBounds,
     facts::HighlightField,
-    lighting_model::{LightingModel, LinearNodes, Lit, QuadraticNodes, linear, quadratic, signed},
+    lighting_model::{LightingModel, Lit},
     node::Node,
+    products::{LinearNodes, QuadraticNodes, linear, quadratic, signed},
 };
 
 /// A shading method: it computes the light of the pixels of a triangle. Implement it for a method of your own, and wrap it

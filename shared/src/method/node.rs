@@ -40,7 +40,7 @@ impl Shading<'_> {
         if let Some([towards, half]) = self.constant {
             return self.reflectance.one_light([cosine(node.normal, towards), cosine(node.normal, half)]);
         }
-        self.reflectance.levels(self.lighting.cosines(node.position, node.normal))
+        self.reflectance.levels(self.lighting.incident(node.position, node.normal))
     }
 }
 

@@ -47,7 +47,7 @@ use crate::{
     pixel::Channels,
     stream::{
         Stream, is_gain,
-        record::{Camera, DIRECTIONAL, LIGHT_TRACK, Light, Material, OBJECT_TRACK, OWN_MATERIALS, PERSPECTIVE, Track, VIEWER_LOCAL},
+        record::{Camera, LIGHT_TRACK, Light, Material, OBJECT_TRACK, OWN_MATERIALS, PERSPECTIVE, POINT, SKY, Track, VIEWER_LOCAL},
     },
 };
 use core::ops::Range;
@@ -381,7 +381,7 @@ impl<'a> Scene<'a> {
         &self.lights
     }
 
-    /// Replaces all lights, of which there may be up to 8. If their number or their colours change, the next frame takes longer, because it
+    /// Replaces all lights, of which there may be up to 8. If their number, their colours or what kind of lights they are changes, the next frame takes longer, because it
     /// computes the colour tables of all materials again.
     ///
     /// # Errors
@@ -392,13 +392,16 @@ impl<'a> Scene<'a> {
     pub fn set_lights(&mut self, lights: &[Light]) -> Result<(), SceneError> {
         lights.iter().try_for_each(|light| in_range(light.fault()))?;
         require(Feature::Lights, lights.len() > 1)?;
-        require(Feature::NearLights, lights.iter().any(|light| light.kind != DIRECTIONAL))?;
+        require(Feature::NearLights, lights.iter().any(|light| light.kind == POINT))?;
+        require(Feature::LightShapes, lights.iter().any(Light::has_shape))?;
         self.check_colours(self.ambient, lights, self.materials())?;
-        if !self.limits.near_lights && lights.iter().any(|light| light.kind != DIRECTIONAL) {
+        if !self.limits.near_lights && lights.iter().any(|light| light.kind == POINT) {
             return Err(SceneError::Light);
         }
         let lights = heapless::Vec::from_slice(lights).map_err(|_| SceneError::Range { name: "number of lights" })?;
-        if !lights.iter().map(|light| light.colour).eq(self.lights.iter().map(|light| light.colour)) {
+        // What the tables of materials depend on.
+        let tabled = |light: &Light| (light.colour, light.kind == SKY, light.has_shape());
+        if !lights.iter().map(tabled).eq(self.lights.iter().map(tabled)) {
             self.set_stale();
         }
         self.lights = lights;

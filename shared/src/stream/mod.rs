@@ -19,8 +19,8 @@ pub use included::check_included;
 pub use names::MAX_NAME;
 pub use names::{Names, UnknownMesh};
 use record::{
-    CAMERA_TRACK, DIRECTIONAL, EYE_SPACE, HAS_NEIGHBOURS, Instance, Key, LIGHT_TRACK, Label, Light, MAGIC, MAX_POSITION, Material,
-    Neighbours, OBJECT_TRACK, OPEN, ORTHOGRAPHIC, OWN_MATERIALS, PERSPECTIVE, POINT, RIGHT, Track, Triangle, VERSION, VIEWER_INFINITE,
+    CAMERA_TRACK, Cut, EYE_SPACE, HAS_NEIGHBOURS, Instance, Key, LIGHT_TRACK, Label, Light, MAGIC, MAX_POSITION, Material, Neighbours,
+    OBJECT_TRACK, OPEN, ORTHOGRAPHIC, OWN_MATERIALS, PERSPECTIVE, POINT, RIGHT, SKY, Track, Triangle, VERSION, VIEWER_INFINITE,
     VIEWER_LOCAL, Vertex,
 };
 #[doc(inline)]
@@ -58,6 +58,9 @@ pub struct Stream<'a> {
     /// Keys of all tracks.
     #[doc(hidden)]
     pub keys: &'a [Key],
+    /// Triangles that cut each other, for antialiasing and lines.
+    #[doc(hidden)]
+    pub cuts: &'a [Cut],
     /// Vertices of all meshes.
     #[doc(hidden)]
     pub vertices: &'a [Vertex],
@@ -192,6 +195,7 @@ pub fn length(header: &Header) -> Option<u32> {
         (header.vertices, size_of::<Vertex>()),
         (header.triangles, size_of::<Triangle>()),
         (header.labels.into(), size_of::<Label>()),
+        (header.cuts, size_of::<Cut>()),
     ];
     sizes.iter().try_fold(0u32, |sum, &(count, size)| sum.checked_add(count.checked_mul(size as u32)?))
 }
@@ -251,6 +255,7 @@ impl<'a> Stream<'a> {
             instances: take(&mut rest, header.instances.into())?,
             tracks: take(&mut rest, header.tracks.into())?,
             keys: take(&mut rest, header.keys as usize)?,
+            cuts: take(&mut rest, header.cuts as usize)?,
             vertices: take(&mut rest, header.vertices as usize)?,
             triangles: take(&mut rest, header.triangles as usize)?,
             neighbours: take(&mut rest, neighbours as usize)?,
@@ -315,6 +320,9 @@ impl<'a> Stream<'a> {
         for (i, label) in self.labels.iter().enumerate() {
             field(label.is_valid(), "label", i)?;
         }
+        for (i, &Cut([one, other])) in self.cuts.iter().enumerate() {
+            field(one < other && other < header.triangles, "cut", i)?;
+        }
         Ok(())
     }
 
@@ -341,7 +349,7 @@ impl<'a> Stream<'a> {
             next = next.saturating_add(track.keys);
             let keys = self.keys_of(track).ok_or(StreamError::Field { name: "keys of a track", record: i as u32 })?;
             field(keys.windows(2).all(|pair| matches!(pair, [a, b] if a.frame < b.frame)), "order of keys in a track", i)?;
-            let is_directional = track.kind == LIGHT_TRACK && self.lights.get(index).is_some_and(|light| light.kind == DIRECTIONAL);
+            let is_directional = track.kind == LIGHT_TRACK && self.lights.get(index).is_some_and(|light| light.kind != POINT);
             for (k, key) in keys.iter().enumerate() {
                 let record = track.first_key as usize + k;
                 let [w, x, y, z] = key.rotation.map(|c| i64::from(c >> 1));
@@ -371,7 +379,7 @@ impl<'a> Stream<'a> {
     #[must_use]
     pub fn is_constant(&self) -> bool {
         let infinite = self.header.camera.viewer == VIEWER_INFINITE || self.header.camera.projection == ORTHOGRAPHIC;
-        infinite && self.lights.iter().all(|light| light.kind == DIRECTIONAL)
+        infinite && self.lights.iter().all(|light| light.kind != POINT)
     }
 
     /// Returns `true` if the camera is a perspective one, and `false` if it is orthographic.
@@ -446,11 +454,22 @@ impl Light {
     pub(crate) fn fault(&self) -> Option<&'static str> {
         let square = self.vector.iter().map(|&c| i64::from(c) * i64::from(c)).sum::<i64>();
         fault([
-            (self.kind <= POINT && self.space <= EYE_SPACE, "light kind"),
+            (self.kind <= SKY && self.space <= EYE_SPACE, "light kind"),
             (is_gain(self.colour), "light colour"),
             (self.vector.iter().all(|&c| within(c, MAX_LENGTH)), "light vector"),
             (self.kind == POINT || is_one(square, 2 * UNIT), "light direction"),
+            (self.range == 0 || self.kind == POINT && self.range >= MIN_RANGE, "light range"),
+            (self.has_valid_cone(), "light cone"),
         ])
+    }
+
+    /// Whether there is no cone, or the light is at a point, its axis of unit length, and its cosines in order.
+    fn has_valid_cone(&self) -> bool {
+        let [edge, full] = self.cone;
+        match self.axis {
+            [0, 0, 0] => self.cone == [0; 2],
+            axis => self.kind == POINT && is_one(square(axis).into(), 2 * UNIT) && -1 << UNIT <= edge && edge < full && full <= 1 << UNIT,
+        }
     }
 }
 
@@ -504,6 +523,9 @@ pub const MAX_GAIN: u16 = 2 << UNIT;
 /// Largest component of a translation or of a light's position, as the bits of a [`crate::format::Length`]: 16 units.
 #[doc(hidden)]
 pub const MAX_LENGTH: i32 = 16 << UNIT;
+/// Smallest range of a light, as the bits of a [`crate::format::Reach`]: 1/16 unit.
+#[doc(hidden)]
+pub const MIN_RANGE: u16 = 1 << 7;
 /// Smallest scale of an object, as the bits of a [`crate::format::Scale`]: 1/16.
 #[doc(hidden)]
 pub const MIN_SCALE: u32 = 1 << 12;

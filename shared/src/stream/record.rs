@@ -7,7 +7,7 @@
 
 #[doc(no_inline)]
 pub use crate::format::{
-    ErrorBudget, Focal, Gain, GeometricError, Haversine, InverseAltitude, Length, NormalLength, Radius, Rotation, Scale, Share, Unit,
+    ErrorBudget, Focal, Gain, GeometricError, Haversine, InverseAltitude, Length, NormalLength, Radius, Reach, Rotation, Scale, Share, Unit,
 };
 use zerocopy::{FromBytes, Immutable, IntoBytes, KnownLayout};
 
@@ -17,7 +17,7 @@ compile_error!("streams are read in place and are little-endian");
 /// First four bytes of every stream.
 pub const MAGIC: [u8; 4] = *b"mTRI";
 /// Version of the format.
-pub const VERSION: u16 = 7;
+pub const VERSION: u16 = 8;
 
 /// The first record of a stream (mesh file): the camera, the background, and the number of records of each kind. Most programs only read
 /// [`Self::frames`].
@@ -81,6 +81,9 @@ pub struct Header {
     /// The number of texts that are drawn over the picture.
     #[doc(hidden)]
     pub labels: u8,
+    /// The number of [`Cut`] records.
+    #[doc(hidden)]
+    pub cuts: u32,
     /// The camera at the beginning of the animation.
     pub camera: Camera,
 }
@@ -290,34 +293,45 @@ impl Material {
     }
 }
 
-/// A light, which is either directional or a point light. It does not weaken with distance. Create one by [`Self::directional`] or
-/// [`Self::near`]; the fields are integers as the stream stores them.
+/// A light: directional, at a point, or from the sky. Create one by [`Self::directional`], [`Self::near`] or [`Self::sky`]; the fields are
+/// integers as the stream stores them.
 #[derive(FromBytes, IntoBytes, Immutable, KnownLayout, Clone, Copy, Debug, PartialEq, Eq)]
 #[repr(C)]
 pub struct Light {
-    /// The unit vector towards a directional light, or the position of a point light, in units of 1/16,384. Positions are within 16 units
-    /// of the origin along each axis.
+    /// The unit vector towards a directional light or to the middle of the sky, or the position of a point light, in units of 1/16,384. Positions are
+    /// within 16 units of the origin along each axis.
     #[doc(hidden)]
     pub vector: [i32; 3],
     /// The colour: red, green, blue, each 0 to 32,768, where 16,384 is full intensity.
     #[doc(hidden)]
     pub colour: [u16; 3],
-    /// The kind of light: 0 for directional, 1 for a point light.
+    /// The kind of light: 0 for directional, 1 for a point light, 2 for the sky.
     #[doc(hidden)]
     pub kind: u8,
-    /// The space of the vector: 0 if the light is fixed in the world, 1 if it moves with the camera.
+    /// The space of the vector and of the axis: 0 if the light is fixed in the world, 1 if it moves with the camera.
     #[doc(hidden)]
     pub space: u8,
+    /// The axis of a point light's cone, from the light to where it shines: a unit vector in units of 1/16,384. Zero if the light shines all around.
+    #[doc(hidden)]
+    pub axis: [i16; 3],
+    /// The distance at which a point light ends, a [`Reach`] of 1/16 to less than 32 units; 0 if it does not weaken with distance.
+    #[doc(hidden)]
+    pub range: u16,
+    /// The cosines of the angles between the axis of a cone and the edge of its light, and between the axis and where the light is full; in units of
+    /// 1/16,384, the second greater than the first. Zero if there is no axis.
+    #[doc(hidden)]
+    pub cone: [i16; 2],
 }
 
 impl Light {
-    /// Creates a light from the values of its fields: `kind` is 0 for a directional light and 1 for a point light, `space` is 0 for the
+    /// Creates a light from the values of its fields: `kind` is 0 for a directional light, 1 for a point light and 2 for the sky, `space` is 0 for the
     /// world and 1 for eye space (x to the right, y up, z away from the viewer), and each channel of `colour` is 0 to 2.
-    /// [`Self::directional`] and [`Self::near`] are easier to use, and check their arguments.
+    /// [`Self::directional`], [`Self::near`] and [`Self::sky`] are easier to use, and check their arguments.
     #[doc(hidden)]
     #[must_use]
     pub fn new(kind: u8, space: u8, vector: [Length; 3], colour: [Gain; 3]) -> Self {
-        Self { vector: vector.map(Length::to_bits), colour: colour.map(Gain::to_bits), kind, space }
+        let (vector, colour) = (vector.map(Length::to_bits), colour.map(Gain::to_bits));
+        Self { vector, colour, kind, space, axis: [0; 3], range: 0, cone: [0; 2] }
     }
 
     /// Returns the colour: red, green, blue, each 0 to 2, where 1 is full intensity.
@@ -325,12 +339,27 @@ impl Light {
     pub fn colour(&self) -> [Gain; 3] {
         self.colour.map(Gain::from_bits)
     }
+
+    /// Returns the distance at which a point light ends, or 0 if it does not weaken with distance.
+    #[must_use]
+    pub fn range(&self) -> Reach {
+        Reach::from_bits(self.range)
+    }
+
+    /// Whether the light has a range or a cone, or comes from the sky.
+    #[doc(hidden)]
+    #[must_use]
+    pub fn has_shape(&self) -> bool {
+        self.kind == SKY || self.range > 0 || self.axis != [0; 3]
+    }
 }
 
 /// A directional light, which is infinitely far.
 pub const DIRECTIONAL: u8 = 0;
 /// A point light, which has a position.
 pub const POINT: u8 = 1;
+/// Light from a half of the sky, all around its middle: a surface gets (1 + N·L)/2 of it, and it makes no highlight.
+pub const SKY: u8 = 2;
 /// The light stands still in the world.
 pub const OBJECT_SPACE: u8 = 0;
 /// The light moves with the camera.
@@ -450,6 +479,14 @@ pub const OPEN: u16 = 0x7FFF;
 
 /// The shading of the two triangles at the edge differs, because their normals do.
 pub const CREASE: u16 = 0x8000;
+
+/// Two triangles of the stream that cut each other. `microphong convert` lists them, so that antialiasing finds the line between them.
+#[derive(FromBytes, IntoBytes, Immutable, KnownLayout, Clone, Copy, Debug, PartialEq, Eq)]
+#[repr(transparent)]
+pub struct Cut(
+    /// Indices of two full triangles of one object, among all triangles of the stream. The first is less than the second.
+    pub [u32; 2],
+);
 
 /// A text over the picture. In pictures of any size it lies at the same place of the scene.
 #[derive(FromBytes, IntoBytes, Immutable, KnownLayout, Clone, Copy, Debug, PartialEq, Eq)]

@@ -98,7 +98,7 @@ pub(super) fn angular<'f>(frame: &'f Frame, facet: &'f Facet, widths: Widths, de
             let ends = [span.left, span.right].map(|end| end.slerp(&field.normals));
             along_row(ends, field.direction, span.along(x), s, widths, decide)
         };
-        frame.levels(facet, lights.iter().map(|[diffuse, half]| [power(diffuse, 1.0), power(half, exponent)]))
+        frame.levels(facet, facet.at([x, y]), lights.iter().map(|[diffuse, half]| [power(diffuse, 1.0), power(half, exponent)]))
     })
 }
 
@@ -116,7 +116,7 @@ pub(super) fn hybrid<'f>(frame: &'f Frame, facet: &'f Facet, widths: Widths, dec
             let ends = [span.left, span.right].map(|end: End| end.lerp(&field.normals));
             along_row(ends, field.direction, span.along(x), exponent, widths, decide)
         };
-        frame.levels(facet, lights.iter().map(|(diffuse, half)| [sum(&weights, diffuse), power(half)]))
+        frame.levels(facet, facet.at([x, y]), lights.iter().map(|(diffuse, half)| [sum(&weights, diffuse), power(half)]))
     })
 }
 

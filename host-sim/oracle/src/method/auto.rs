@@ -60,7 +60,7 @@ fn solid<'f>(frame: &'f Frame, facet: &'f Facet, by_light: bool) -> Shade<'f> {
             let cosines = Facet::CORNERS.map(|corner| frame.cosines(light, facet.position(corner), facet.node(corner)));
             [middle(cosines.map(|[diffuse, _]| diffuse.max(0.0))), middle(cosines.map(|[_, half]| highlight(half, exponent)))]
         });
-        frame.levels(facet, reflected)
+        frame.levels(facet, facet.positions[0], reflected)
     } else {
         let [a, b, c] = Facet::CORNERS.map(|corner| frame.node(facet, corner));
         [0, 1, 2].map(|k| middle([a[k], b[k], c[k]]))

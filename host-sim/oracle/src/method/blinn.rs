@@ -37,12 +37,16 @@ pub(super) fn linear<'f>(frame: &'f Frame, facet: &'f Facet) -> Shade<'f> {
     let lights: Vec<([[f64; 2]; 3], [f64; 3])> = (frame.lights.iter())
         .map(|light| {
             let corners = [0, 1, 2].map(|k| coordinates(frame, light, facet.positions[k], facet.normals[k]));
-            (corners, diffuse(facet, light.place))
+            (corners, diffuse(facet, light))
         })
         .collect();
     Box::new(move |p| {
         let weights = facet.weights(p);
-        frame.levels(facet, lights.iter().map(|(corners, diffuse)| [sum(&weights, diffuse), map(blend(&weights, corners), exponent)]))
+        frame.levels(
+            facet,
+            facet.at(p),
+            lights.iter().map(|(corners, diffuse)| [sum(&weights, diffuse), map(blend(&weights, corners), exponent)]),
+        )
     })
 }
 
@@ -60,6 +64,6 @@ pub(super) fn quadratic<'f>(frame: &'f Frame, facet: &'f Facet) -> Shade<'f> {
     Box::new(move |p| {
         let weights = quadratic_weights(facet.weights(p));
         let reflected = fits.iter().map(|fit| blend(&weights, fit)).map(|[diffuse, u, v]| [diffuse, map([u, v], exponent)]);
-        frame.levels(facet, reflected)
+        frame.levels(facet, facet.at(p), reflected)
     })
 }

@@ -10,6 +10,6 @@ pub(super) fn shade<'f>(frame: &'f Frame, facet: &'f Facet) -> Shade<'f> {
     let (numerators, squares) = (Numerators::new(frame, facet), squares(facet));
     Box::new(move |p| {
         let weights = quadratic(facet.weights(p));
-        numerators.lit(&weights, rsqrt(sum(&weights, &squares)))
+        numerators.lit(p, &weights, rsqrt(sum(&weights, &squares)))
     })
 }

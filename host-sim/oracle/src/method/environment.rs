@@ -1,7 +1,7 @@
 //! The highlight as a picture of the surroundings: a sphere map, its coordinates linear (Vlasic 2002, 4.2).
 
 use crate::{
-    Facet, Frame, Place, Shade,
+    Facet, Frame, Light, Place, Shade,
     light::highlight,
     poly::{blend, sum},
     scene::direction,
@@ -33,18 +33,19 @@ pub(super) fn shade<'f>(frame: &'f Frame, facet: &'f Facet) -> Shade<'f> {
                 Place::Far(towards) => towards,
                 Place::Near(position) => direction(position),
             };
-            (to_eye(towards), diffuse(facet, light.place))
+            (to_eye(towards), diffuse(facet, light))
         })
         .collect();
     Box::new(move |p| {
         let weights = facet.weights(p);
         let mirrored = mirrored(blend(&weights, &corners));
         let reflected = |(towards, diffuse): &(V3, [f64; 3])| [sum(&weights, diffuse), highlight(dot(mirrored, *towards), exponent / 4.0)];
-        frame.levels(facet, lights.iter().map(reflected))
+        frame.levels(facet, facet.at(p), lights.iter().map(reflected))
     })
 }
 
 /// The corners' `max(0, N·L)`, as Gouraud has them.
-pub(super) fn diffuse(facet: &Facet, light: Place) -> [f64; 3] {
-    [0, 1, 2].map(|k| dot(facet.normals[k], light.from(facet.positions[k])).max(0.0))
+pub(super) fn diffuse(facet: &Facet, light: &Light) -> [f64; 3] {
+    let least = if light.is_sky { -1.0 } else { 0.0 };
+    [0, 1, 2].map(|k| dot(facet.normals[k], light.place.from(facet.positions[k])).max(least))
 }

@@ -4,6 +4,6 @@ use crate::{Facet, Frame, Shade};
 
 pub(super) fn shade<'f>(frame: &'f Frame, facet: &'f Facet) -> Shade<'f> {
     let centre = facet.position(Facet::CENTRE);
-    let levels = frame.lit(facet, frame.lights.iter().map(|light| frame.cosines(light, centre, facet.plane)));
+    let levels = frame.lit(facet, centre, frame.lights.iter().map(|light| frame.cosines(light, centre, facet.plane)));
     Box::new(move |_| levels)
 }

@@ -29,6 +29,7 @@ pub(super) fn shade<'f>(frame: &'f Frame, facet: &'f Facet) -> Shade<'f> {
         let exact = length_of(normal).max(1e-6);
         frame.levels(
             facet,
+            facet.at([x, y]),
             rays.iter().map(|rays| {
                 let (light, view, between) = (dot(rays.light, normal), dot(rays.view, normal), dot(rays.light, rays.view));
                 // R·V needs no root: 2 (L·N)(V·N)/|N|² - L·V, so the exact length serves.

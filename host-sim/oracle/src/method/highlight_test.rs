@@ -14,7 +14,7 @@ pub(super) fn shade<'f>(frame: &'f Frame, facet: &'f Facet, decide: &'f Decide<'
         return phong(frame, facet);
     }
     let threshold = (1.0 - 8.0 / frame.material(facet).exponent.max(8.0)).max(0.0);
-    let largest = frame.lights.iter().flat_map(|light| {
+    let largest = frame.lights.iter().filter(|light| !light.is_sky).flat_map(|light| {
         let half = frame.rays(light, facet.positions[0]).half;
         facet.normals.map(|normal| dot(normal, half))
     });

@@ -157,8 +157,13 @@ pub fn method<'f>(name: &str, frame: &'f Frame, facet: &'f Facet) -> Result<Shad
     Ok((Method::of(name, frame, facet)?.build)(frame, facet, &|excess| excess > 0.0))
 }
 
+/// Largest number of results that [`outcomes`] returns. Eight close decisions have as many. There may be more where light hardly differs from one edge
+/// of a small part of a triangle to the next, and each doubles their number.
+pub const MOST_OUTCOMES: usize = 1 << 8;
+
 /// All results that a method may have at a point of `facet` in an arithmetic with errors of up to `margin` levels where it decides, see
-/// [`Frame::undecided`]: every combination of decisions that are this close. The first is the exact result.
+/// [`Frame::undecided`]: every combination of decisions that are this close, of which at most [`MOST_OUTCOMES`] are returned. The first is the exact
+/// result.
 ///
 /// # Errors
 /// When there is no such method, or when it cannot draw this frame.
@@ -184,6 +189,9 @@ pub fn outcomes(name: &str, frame: &Frame, facet: &Facet, point: [f64; 2], margi
         };
         outcomes.push((method.build)(frame, facet, &decide)(point));
         (close, _) = way.into_inner();
+        if outcomes.len() == MOST_OUTCOMES {
+            return Ok(outcomes);
+        }
         // The last one that was taken once is taken the other way.
         while close.pop_if(|(_, again)| *again).is_some() {}
         match close.last_mut() {

@@ -17,6 +17,6 @@ pub(super) fn shade<'f>(frame: &'f Frame, facet: &'f Facet) -> Shade<'f> {
             let (diffuse, view) = (dot(normal, rays.light), dot(normal, rays.view));
             [diffuse, reflection(diffuse, view, dot(rays.light, rays.view), exponent)]
         };
-        frame.levels(facet, frame.lights.iter().map(reflected))
+        frame.levels(facet, position, frame.lights.iter().map(reflected))
     })
 }

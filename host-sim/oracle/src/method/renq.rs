@@ -21,9 +21,9 @@ impl<'f> Numerators<'f> {
         Self { frame, facet, fits: frame.lights.iter().map(fit).collect() }
     }
 
-    /// The colour where the six nodes have these weights and 1/|N| is `scale`.
-    pub(super) fn lit(&self, weights: &[f64; 6], scale: f64) -> Levels {
-        self.frame.lit(self.facet, self.fits.iter().map(|fit| blend(weights, fit).map(|cosine| cosine * scale)))
+    /// The colour at a pixel where the six nodes have these weights and 1/|N| is `scale`.
+    pub(super) fn lit(&self, p: [f64; 2], weights: &[f64; 6], scale: f64) -> Levels {
+        self.frame.lit(self.facet, self.facet.at(p), self.fits.iter().map(|fit| blend(weights, fit).map(|cosine| cosine * scale)))
     }
 }
 
@@ -57,6 +57,6 @@ pub(super) fn shade<'f>(frame: &'f Frame, facet: &'f Facet) -> Shade<'f> {
     Box::new(move |p| {
         let weights = quadratic(facet.weights(p));
         let scale = if facet.min_normal_length < CURVED { rsqrt(sum(&weights, &squares)) } else { sum(&weights, &reciprocals) };
-        numerators.lit(&weights, scale)
+        numerators.lit(p, &weights, scale)
     })
 }

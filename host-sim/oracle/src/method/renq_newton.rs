@@ -29,6 +29,6 @@ pub(super) fn shade<'f>(frame: &'f Frame, facet: &'f Facet) -> Shade<'f> {
         let newton = |m: f64| m * (3.0 - square * m * m) / 2.0;
         let scale =
             if facet.min_normal_length < CURVED { rsqrt(square) } else { (0..steps).fold(sum(&weights, &reciprocals), |m, _| newton(m)) };
-        numerators.lit(&weights, scale)
+        numerators.lit(p, &weights, scale)
     })
 }

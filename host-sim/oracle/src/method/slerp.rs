@@ -13,6 +13,6 @@ pub(super) fn shade<'f>(frame: &'f Frame, facet: &'f Facet) -> Shade<'f> {
     Box::new(move |[x, y]| {
         let span = Span::new(&facet.screen, y);
         let normal = slerp(span.left.slerp(&normals), span.right.slerp(&normals), span.along(x));
-        frame.lit(facet, rays.iter().map(|rays| [rays.light, rays.half].map(|v| dot(normal, v))))
+        frame.lit(facet, facet.at([x, y]), rays.iter().map(|rays| [rays.light, rays.half].map(|v| dot(normal, v))))
     })
 }

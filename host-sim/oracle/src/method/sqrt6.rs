@@ -38,9 +38,10 @@ fn fitted<'f>(frame: &'f Frame, facet: &'f Facet, function: fn(f64) -> f64, inve
     };
     let fits: Vec<_> = frame.lights.iter().map(fit).collect();
     Box::new(move |p| {
-        let weights = quadratic(if on_screen { facet.flat_weights(p) } else { facet.weights(p) });
+        let weights = if on_screen { facet.flat_weights(p) } else { facet.weights(p) };
+        let (position, weights) = (facet.position(weights), quadratic(weights));
         let cosines = fits.iter().map(|fit| blend(&weights, fit)).map(|[diffuse, half]| [diffuse, inverse(half)]);
-        frame.lit(facet, cosines)
+        frame.lit(facet, position, cosines)
     })
 }
 

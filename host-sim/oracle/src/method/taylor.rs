@@ -18,7 +18,7 @@ pub(super) fn shade<'f>(frame: &'f Frame, facet: &'f Facet) -> Shade<'f> {
     let rays: Vec<_> = frame.lights.iter().map(|light| frame.rays(light, facet.position(Facet::CENTRE))).collect();
     Box::new(move |p| {
         let away = sub(facet.normal(facet.weights(p)), centre);
-        frame.lit(facet, rays.iter().map(|rays| [rays.light, rays.half].map(|v| expansion(v, centre, away).min(1.0))))
+        frame.lit(facet, facet.at(p), rays.iter().map(|rays| [rays.light, rays.half].map(|v| expansion(v, centre, away).min(1.0))))
     })
 }
 

@@ -32,7 +32,7 @@ pub(super) fn shade<'f>(frame: &'f Frame, facet: &'f Facet) -> Shade<'f> {
     Box::new(move |p| {
         let weights = facet.weights(p);
         let normal = expand(&facet.normals, weights);
-        frame.lit(facet, corners.iter().map(|fields| [0, 1].map(|k| expansion(normal, expand(&fields[k], weights)).min(1.0))))
+        frame.lit(facet, facet.at(p), corners.iter().map(|fields| [0, 1].map(|k| expansion(normal, expand(&fields[k], weights)).min(1.0))))
     })
 }
 
@@ -86,7 +86,7 @@ mod tests {
         let frame = Frame {
             size: (100, 100),
             facets: vec![facet.clone()],
-            lights: vec![Light { place: Place::Near([-0.9, 1.0, 1.0]), colour: [1.0; 3] }],
+            lights: vec![Light::even(Place::Near([-0.9, 1.0, 1.0]), [1.0; 3])],
             viewer: Place::Near([0.5, 0.0, 1.5]),
             axes: Facet::CORNERS,
             materials: vec![glossy],

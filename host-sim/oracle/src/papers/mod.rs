@@ -336,7 +336,7 @@ fn frame(side: u32, facets: Vec<Facet>, light: Place, viewer: Place, material: M
     Frame {
         size: (side, side),
         facets,
-        lights: vec![Light { place: light, colour: [1.0; 3] }],
+        lights: vec![Light::even(light, [1.0; 3])],
         viewer,
         axes: [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]],
         materials: vec![material],

@@ -9,14 +9,14 @@
 //! are.
 
 use crate::{
-    arch::product::{product, upper},
+    arch::product::upper,
     features::LIGHTS,
     format::{HAVERSINE, UNIT},
     interpolate::field::Field,
     lighting::{lights::Source, material_tables::MaterialTables, reflectance::Reflection},
     math::{
         highlight_lut::CosineLookup,
-        rsqrt::HalfRsqrt,
+        rsqrt::{HalfRsqrt, Root},
         vector::{add, narrow_dot, wide},
     },
     method::{
@@ -26,8 +26,9 @@ use crate::{
             scale::{self, Lengths, UnitSquare},
         },
         largest,
-        lighting_model::{FIELD_EXTRA, FIELD_NODE, LightingModel, Lit, QuadraticNodes, linear, signed},
+        lighting_model::{LightingModel, Lit},
         node::is_steep,
+        products::{FIELD_EXTRA, FIELD_NODE, QuadraticNodes, linear, signed},
     },
     pixel::Pixel,
     raster::{band::Band, canvas::Canvas},
@@ -42,9 +43,9 @@ pub fn shade_constant(setup: &TriangleSetup<'_>, shading: &Shading<'_>, canvas: 
             let fit = |source: &Source| {
                 // Both are linear, so that corners tell.
                 let [towards, half] = shading.constant_cosines(setup, source);
-                if !setup.leaves_out_highlight(&reflectance, &half) {
+                if !source.is_sky() && !setup.leaves_out_highlight(&reflectance, &half) {
                     Lit::Fully(linear([towards, half]))
-                } else if setup.leaves_out_light(&reflectance, &towards) {
+                } else if !source.is_sky() && setup.leaves_out_light(&reflectance, &towards) {
                     Lit::Nowhere
                 } else {
                     Lit::Diffuse(linear([towards]))
@@ -178,31 +179,5 @@ impl LightingModel<[u32; 1], [u32; 2]> for Rooted {
     fn reflect(&self, _: usize, root: &Root, fields: [u32; 2], lut: CosineLookup<'_>) -> Reflection {
         let [diffuse, half] = fields.map(|cosine| root.divide(signed(cosine)) >> 3);
         Reflection { diffuse, highlight: lut.at(half) }
-    }
-}
-
-/// The reciprocal root 1/sqrt(x): a mantissa in Q2.30 and a power of two to multiply it by.
-#[derive(Clone, Copy, Default)]
-pub struct Root {
-    mantissa: u32,
-    shift: u32,
-}
-
-impl Root {
-    /// The reciprocal root of `x` in Q2.30, (0, 2].
-    #[inline(always)]
-    pub fn of(x: u32) -> Self {
-        let shift = x.max(1).leading_zeros() & !1;
-        // x = m 2^-shift, m in [1, 4): the root's exponent is half of it.
-        Self { mantissa: HalfRsqrt::get().fine(x << (shift & 31)), shift: shift / 2 }
-    }
-
-    /// Computes `value / sqrt(x)`, Q2.30 each, saturating at 2. Error: the root's, and less than 2/sqrt(x) units of the last place, because the
-    /// quotient is rounded down before it is shifted.
-    #[inline(always)]
-    pub fn divide(self, value: i32) -> i32 {
-        let quotient = (product(value, self.mantissa as i32) >> 30) as i32;
-        let shifted = quotient.wrapping_shl(self.shift);
-        if shifted.wrapping_shr(self.shift) == quotient { shifted } else { i32::MAX ^ (quotient >> 31) }
     }
 }

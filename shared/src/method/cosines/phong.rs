@@ -15,16 +15,18 @@ use crate::{
     },
     math::{
         highlight_lut::CosineLookup,
+        rsqrt::Root,
         vector::{sub, wide},
     },
     method::{
         Facts, HighlightField, Loops, Method, Shading, Style, TriangleSetup, VertexLight,
         cosines::{
-            duff::{self, Duff, Root},
+            duff::{self, Duff},
             near::{self, Drawn},
         },
-        lighting_model::{LightingModel, quadratic, signed},
+        lighting_model::LightingModel,
         node::field_product,
+        products::{quadratic, signed},
     },
     pixel::Pixel,
     raster::{band::Band, canvas::Canvas},

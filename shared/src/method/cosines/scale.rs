@@ -19,8 +19,8 @@ use crate::{
     math::{recip::recip, rsqrt::LEAST},
     method::{
         TriangleSetup,
-        lighting_model::{FIELD_BITS, FIELD_NODE, fitted},
         node::map_six,
+        products::{FIELD_BITS, FIELD_NODE, fitted},
     },
 };
 

@@ -21,6 +21,7 @@ use crate::{
     },
     lighting::{
         constant_lights::{DiffuseOnly, LitColours, OneLightRamp, OneLightRgb, Shades, WithHighlight, node},
+        lights::Source,
         material_tables::MaterialTables,
         reflectance::{Highlight, Reflectance, Reflection},
     },
@@ -32,8 +33,9 @@ use crate::{
             two_lights::TwoLights,
         },
         largest,
-        lighting_model::{FIELD_BITS, FIELD_EXTRA, LightingModel, Lit, QuadraticNodes, quadratic, signed},
+        lighting_model::{LightingModel, Lit},
         node::map_six,
+        products::{FIELD_BITS, FIELD_EXTRA, QuadraticNodes, quadratic, signed},
     },
     pixel::Pixel,
     raster::{
@@ -101,13 +103,13 @@ impl SixCosines {
 /// [`Method::shade`] under constant lights, with the nodes `middles`.
 fn shade_constant<const ROOT: IsRoot>(setup: &TriangleSetup<'_>, middles: Middles, shading: &Shading<'_>, canvas: &mut dyn Canvas) -> u32 {
     let threshold = setup.highlight_threshold(&shading.reflectance);
-    let fit = |source: &_| {
+    let fit = |source: &Source| {
         let [towards, half] = shading.lighting.directions(source, [0; 3]);
         let (towards, half) = (setup.six_at(middles, setup.corner_cosines(towards)), setup.corner_cosines(half));
-        if largest(&half) >= threshold {
+        if !source.is_sky() && largest(&half) >= threshold {
             let half = map_six(setup.six_half_at(middles, half, shading.exponent), walked::<ROOT>);
             Lit::Fully(quadratic([towards, half]))
-        } else if DiffuseSign::of(towards) == DiffuseSign::Nowhere {
+        } else if !source.is_sky() && DiffuseSign::of(towards) == DiffuseSign::Nowhere {
             Lit::Nowhere
         } else {
             Lit::Diffuse(quadratic([towards]))
