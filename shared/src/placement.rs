@@ -156,7 +156,8 @@ impl<'r> Placements<'r> {
         self.object(scene, *self.order.get(self.order.partition_point(starts).wrapping_sub(1))?)
     }
 
-    fn object(self, scene: &'r Scene<'_>, index: u32) -> Option<(&'r Placement, &'r Object)> {
+    /// The object with this index in the scene.
+    pub(crate) fn object(self, scene: &'r Scene<'_>, index: u32) -> Option<(&'r Placement, &'r Object)> {
         Some((self.placements.get(index as usize)?, scene.objects().get(index as usize)?))
     }
 

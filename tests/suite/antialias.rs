@@ -72,7 +72,7 @@ fn errors(pixels: &[Rgb888], exact: &[([f64; 3], f64)]) -> [f64; 2] {
 #[test]
 fn outlines_are_like_supersampled_ones() {
     let scenes =
-        [("peer-sphere", 2.1, 1), ("torus", 4.2, 3), ("bunny", 6.3, 3), ("teapot", 7.5, 3), ("sensor", 5.4, 3), ("board", 19.0, 2)];
+        [("peer-sphere", 2.1, 1), ("torus", 4.2, 3), ("bunny", 6.3, 3), ("teapot", 6.2, 3), ("sensor", 4.0, 3), ("board", 10.5, 2)];
     for (name, most, frames) in scenes {
         let stream = load(name);
         let stream = stream.parse().unwrap();
@@ -278,7 +278,10 @@ fn lines_of_one_bit_have_no_gaps() {
 fn neighbours_change_no_plain_picture() {
     for name in ["teapot", "sensor"] {
         let (plain, smooth) = (scene::load(name).unwrap().stream, load(name));
-        assert_eq!(smooth.as_bytes().len(), plain.as_bytes().len() + 6 * plain.parse().unwrap().triangles.len());
+        let cuts = smooth.parse().unwrap().cuts.len();
+        println!("{name}: {cuts} pairs of triangles cut each other");
+        assert!(cuts > 20, "{name}: {cuts}");
+        assert_eq!(smooth.as_bytes().len(), plain.as_bytes().len() + 6 * plain.parse().unwrap().triangles.len() + 12 * cuts);
         let draw = |stream: &StreamBytes| render::frame::<Rgb565>(stream.parse().unwrap(), Size::new(90, 70), Shader::AUTO, 16, 7).unwrap();
         assert!(draw(&plain) == draw(&smooth), "{name}");
     }

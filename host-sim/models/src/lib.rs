@@ -25,5 +25,6 @@ pub mod script;
 pub mod shapes;
 pub mod stl;
 mod turn;
-pub mod vector;
 pub mod view;
+
+pub use microphong_render::vector;

@@ -2,6 +2,7 @@
 
 pub mod chip;
 pub mod choices;
+mod cuts;
 pub mod image;
 pub mod legend;
 pub mod neighbours;
@@ -9,3 +10,4 @@ pub mod output;
 pub mod program;
 pub mod render;
 pub mod shader;
+pub mod vector;

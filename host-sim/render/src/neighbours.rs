@@ -1,8 +1,9 @@
-//! The neighbours of triangles, from which the core finds outlines.
+//! The neighbours of triangles, from which the core finds outlines, and the triangles that cut each other.
 //!
 //! Neighbours are found by position, so doubled vertices, whose normals differ, do not separate triangles. Meshes of other materials, and other levels
 //! of detail, have no common neighbours: the core treats such borders as edges whose other side it does not know.
 
+use crate::cuts;
 use anyhow::{Result, ensure};
 use microphong::{
     Stream,
@@ -26,7 +27,7 @@ pub fn has_neighbours(stream: &Stream<'_>) -> bool {
     !stream.neighbours.is_empty() || stream.triangles.is_empty()
 }
 
-/// Returns a stream with the neighbours of all triangles, padded to whole words.
+/// Returns a stream with the neighbours of all triangles and the pairs that cut each other, padded to whole words.
 ///
 /// # Errors
 /// When a mesh has more triangles than a table of neighbours can number.
@@ -39,7 +40,10 @@ pub fn with_neighbours(stream: &Stream<'_>) -> Result<Vec<u32>> {
         mesh.flags |= HAS_NEIGHBOURS;
         neighbours.extend(of_mesh(stream, mesh));
     }
-    header.length += (size_of_val(neighbours.as_slice()) - size_of_val(stream.neighbours)) as u32;
+    let cuts = cuts::of(stream);
+    header.cuts = cuts.len() as u32;
+    let more = size_of_val(neighbours.as_slice()) + size_of_val(cuts.as_slice());
+    header.length += (more - size_of_val(stream.neighbours) - size_of_val(stream.cuts)) as u32;
     let mut bytes = [
         header.as_bytes(),
         meshes.as_bytes(),
@@ -48,6 +52,7 @@ pub fn with_neighbours(stream: &Stream<'_>) -> Result<Vec<u32>> {
         stream.instances.as_bytes(),
         stream.tracks.as_bytes(),
         stream.keys.as_bytes(),
+        cuts.as_bytes(),
         stream.vertices.as_bytes(),
         stream.triangles.as_bytes(),
         neighbours.as_bytes(),

@@ -118,6 +118,9 @@ fn text(file: &str, stream: &Stream<'_>, list: &[meshes::Row]) -> Result<()> {
         row("tracks", stream.tracks.len(), size_of_val(stream.tracks), "")?;
         row("keys", stream.keys.len(), size_of_val(stream.keys), &moving(stream))?;
     }
+    if !stream.cuts.is_empty() {
+        row("cuts", stream.cuts.len(), size_of_val(stream.cuts), "pairs of triangles that cut each other")?;
+    }
     row("vertices", stream.vertices.len(), size_of_val(stream.vertices), "")?;
     row("triangles", stream.triangles.len(), size_of_val(stream.triangles), &bend(stream))?;
     if !stream.neighbours.is_empty() {

@@ -1,7 +1,7 @@
 //! The outlines of a mesh: edges at which its visible surface ends, and edges at which its shading jumps.
 
 use crate::{
-    edges::{Edge, Place},
+    edges::{Edge, Place, cut::Flat},
     geometry::{
         clip::{clip, clip_edge},
         cull::Facing,
@@ -99,6 +99,29 @@ impl Outlined<'_> {
     fn clipped(&self, ends: [u16; 2]) -> Option<[Place; 2]> {
         let [from, to] = ends.map(|corner| self.vertices.get(usize::from(corner)));
         clip_edge(self.view, [from?, to?])
+    }
+
+    /// Whether a triangle may face the viewer.
+    #[inline]
+    pub(crate) fn may_face(&self, triangle: usize) -> bool {
+        self.triangles.get(triangle).is_some_and(|triangle| self.facing.may_face(triangle))
+    }
+
+    /// A triangle that may cut others, if it faces the viewer and need not be clipped.
+    pub(crate) fn flat(&self, triangle: usize) -> Option<Flat> {
+        let triangle = self.triangles.get(triangle)?;
+        let place = |corner: u16| self.cached(corner).or_else(|| self.projected(corner));
+        let [a, c, b] = triangle.corners;
+        Flat::new([place(a)?, place(b)?, place(c)?])
+    }
+
+    /// The place of a corner that is not cached.
+    #[cold]
+    #[inline(never)]
+    fn projected(&self, corner: u16) -> Option<Place> {
+        let position = self.vertices.get(usize::from(corner))?.position;
+        let (place, inside) = self.view.lens.project(self.view.to_eye(position));
+        inside.then_some(place)
     }
 
     /// The range of inverse depth of a triangle.

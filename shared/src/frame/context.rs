@@ -18,7 +18,7 @@ use crate::{
     method::{ErrorBounds, Method, Shading, VertexLight},
     placement::{Placement, Placements},
     scene::{Object, Scene},
-    stream::record::{CLOSED_CONVEX, Mesh},
+    stream::record::{CLOSED_CONVEX, Cut, Mesh},
 };
 use embedded_graphics_core::geometry::Size;
 
@@ -214,6 +214,53 @@ impl<'r> Context<'r> {
         })
     }
 
+    /// Calls `put` with the edges at which triangles cut each other.
+    #[inline(never)]
+    pub(crate) fn each_cut(&self, put: &mut dyn FnMut(&Edge)) {
+        // Most pairs belong to the meshes of the pair before them.
+        let (mut meshes, mut other_meshes) = (None, None);
+        for &Cut { triangles: [one, other], objects: [object, other_object] } in self.scene.stream.cuts {
+            if let Some((one, first)) = self.with_triangle(&mut meshes, object, one)
+                && let Some((other, other_first)) = self.with_triangle(&mut other_meshes, other_object, other)
+                && let Some(one) = one.flat(first)
+                && let Some(other) = other.flat(other_first)
+                && let Some(edge) = one.edge(&other)
+            {
+                put(&edge);
+            }
+        }
+    }
+
+    /// The mesh of an object that has a triangle of the stream which faces the viewer, and the number of the triangle in it. `known` is the mesh that
+    /// was found last.
+    #[inline(always)]
+    fn with_triangle<'k, 's>(
+        &'s self,
+        known: &'k mut Option<(u16, u32, Outlined<'s>)>,
+        object: u16,
+        triangle: u32,
+    ) -> Option<(&'k Outlined<'s>, usize)> {
+        let is_right = |&(of, first, ref mesh): &(u16, u32, Outlined<'s>)| {
+            of == object && ((triangle.wrapping_sub(first)) as usize) < mesh.triangles.len()
+        };
+        if !known.as_ref().is_some_and(is_right) {
+            *known = self.mesh_of(object, triangle);
+        }
+        let (_, first, outlined) = known.as_ref()?;
+        let index = triangle.wrapping_sub(*first) as usize;
+        outlined.may_face(index).then_some((outlined, index))
+    }
+
+    /// The object, its mesh at the level that is drawn which has a triangle of the stream, and the mesh's first triangle.
+    #[inline(never)]
+    fn mesh_of(&self, object: u16, triangle: u32) -> Option<(u16, u32, Outlined<'_>)> {
+        let (placement, of) = self.placements.object(self.scene, object.into())?;
+        let first = self.scene.stream.meshes.get(usize::from(of.meshes().start))?;
+        let has = |mesh: &&Mesh| triangle.wrapping_sub(mesh.first_triangle) < mesh.triangles;
+        let mesh = placement.meshes(self.scene, of).find(has)?;
+        Some((object, mesh.first_triangle, self.outlined(&PlacedMesh::new(placement, of, first, mesh))?))
+    }
+
     /// Calls `put` with every edge of the frame's outlines, for frames that have no list of them.
     #[cold]
     #[inline(never)]
@@ -233,6 +280,11 @@ impl<'r> Context<'r> {
                 }
             }
         }
+        self.each_cut(&mut |edge| {
+            if edge.meets(&hull) {
+                put(edge);
+            }
+        });
     }
 
     /// What the triangles of `placed` have in common in a band of which these `columns` are wanted.

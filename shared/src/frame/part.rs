@@ -331,6 +331,11 @@ impl<'r> FrameRows<'r> {
                 });
             }
         }
+        context.each_cut(&mut |edge| {
+            if edge.meets(&hull) {
+                smoother.put(edge, rows.clone());
+            }
+        });
         stats.edges = smoother.close(complete);
     }
 

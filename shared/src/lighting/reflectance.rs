@@ -610,13 +610,15 @@ impl<'f> LitMaterial<'f> {
     #[inline(never)]
     #[must_use]
     pub fn constant_levels<N: UnitNormal>(self, sources: &[Source], normal: &N) -> [i32; 3] {
-        if sources.len() > 2 || self.excess != 0 || LIGHT_SHAPES && sources.iter().any(Source::is_sky) {
+        if sources.len() > 2 || self.excess != 0 {
             return self.many_constant_levels(sources, normal);
         }
         let mut lit = [[0; 2]; 2];
         for (lit, source) in lit.iter_mut().zip(sources) {
             if let Some(&[towards, half]) = source.directional() {
-                *lit = [node_cosine(normal.cosine(towards)), self.highlight(normal.cosine(half)) as i32];
+                let cosine = normal.cosine(towards);
+                let towards = if source.is_sky() { part_of_sky(cosine, COSINE) } else { cosine };
+                *lit = [node_cosine(towards), self.highlight(normal.cosine(half)) as i32];
             }
         }
         self.two_sums(lit)

@@ -320,8 +320,9 @@ impl<'a> Stream<'a> {
         for (i, label) in self.labels.iter().enumerate() {
             field(label.is_valid(), "label", i)?;
         }
-        for (i, &Cut([one, other])) in self.cuts.iter().enumerate() {
-            field(one < other && other < header.triangles, "cut", i)?;
+        for (i, Cut { triangles, objects }) in self.cuts.iter().enumerate() {
+            let exist = objects.iter().all(|&object| object < header.instances.max(1));
+            field(exist && triangles.iter().all(|&triangle| triangle < header.triangles), "cut", i)?;
         }
         Ok(())
     }

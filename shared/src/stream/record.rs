@@ -482,11 +482,13 @@ pub const CREASE: u16 = 0x8000;
 
 /// Two triangles of the stream that cut each other. `microphong convert` lists them, so that antialiasing finds the line between them.
 #[derive(FromBytes, IntoBytes, Immutable, KnownLayout, Clone, Copy, Debug, PartialEq, Eq)]
-#[repr(transparent)]
-pub struct Cut(
-    /// Indices of two full triangles of one object, among all triangles of the stream. The first is less than the second.
-    pub [u32; 2],
-);
+#[repr(C)]
+pub struct Cut {
+    /// Indices of the two triangles, among all triangles of the stream. Both belong to full meshes.
+    pub triangles: [u32; 2],
+    /// Indices of the objects that they belong to; 0 if the stream has no objects.
+    pub objects: [u16; 2],
+}
 
 /// A text over the picture. In pictures of any size it lies at the same place of the scene.
 #[derive(FromBytes, IntoBytes, Immutable, KnownLayout, Clone, Copy, Debug, PartialEq, Eq)]

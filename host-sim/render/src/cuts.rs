@@ -1,0 +1,133 @@
+//! The triangles that cut each other, between which the core smooths the line.
+//!
+//! Pairs are looked for where objects stand in the first frame. The core computes each line from where the two triangles are, so a pair that has moved
+//! apart has none.
+
+use crate::vector::{V3, add, cross, dot, scale, sub};
+use microphong::{
+    Stream,
+    format::{Length, Rotation, Scale, Unit},
+    stream::record::{Cut, OBJECT_TRACK},
+};
+use std::ops::Range;
+
+/// The part of a common line below which it is too short to be seen, in units of the world: about a sixth of a pixel in a picture of 240 pixels.
+const SHORTEST: f64 = 1.0 / 512.0;
+
+/// A triangle in the world.
+struct Placed {
+    corners: [V3; 3],
+    normal: V3,
+    number: u32,
+    object: u16,
+}
+
+/// All pairs of full triangles that cut each other, in order.
+pub(crate) fn of(stream: &Stream<'_>) -> Vec<Cut> {
+    let mut triangles = placed(stream);
+    let extreme = |triangle: &Placed, axis: usize, of: fn(f64, f64) -> f64| {
+        let [a, b, c] = triangle.corners;
+        of(of(a[axis], b[axis]), c[axis])
+    };
+    let least = |triangle: &Placed, axis| extreme(triangle, axis, f64::min);
+    let most = |triangle: &Placed, axis| extreme(triangle, axis, f64::max);
+    triangles.sort_by(|a, b| least(a, 0).total_cmp(&least(b, 0)));
+    let mut cuts = Vec::new();
+    // Triangles whose extents along x overlap are neighbours in this order.
+    for (i, one) in triangles.iter().enumerate() {
+        let end = most(one, 0);
+        for other in triangles[i + 1..].iter().take_while(|other| least(other, 0) <= end) {
+            let overlap = |axis| least(one, axis) <= most(other, axis) && least(other, axis) <= most(one, axis);
+            if overlap(1) && overlap(2) && common(one, other) > SHORTEST {
+                cuts.push(Cut { triangles: [one.number, other.number], objects: [one.object, other.object] });
+            }
+        }
+    }
+    cuts.sort_by_key(|cut| (cut.objects, cut.triangles));
+    cuts
+}
+
+/// The full triangles of all objects.
+fn placed(stream: &Stream<'_>) -> Vec<Placed> {
+    let mut triangles = Vec::new();
+    let mut place = |object: u16, meshes: Range<usize>, to_world: &dyn Fn(V3) -> V3| {
+        for mesh in stream.meshes.get(meshes).unwrap_or_default().iter().filter(|mesh| mesh.error == 0) {
+            let vertices = stream.vertices_of(mesh).unwrap_or_default();
+            let corner = |index: u16| to_world(vertices[usize::from(index)].position.map(|c| f64::from(Unit::from_bits(c))));
+            for (number, triangle) in (mesh.first_triangle..).zip(stream.triangles_of(mesh).unwrap_or_default()) {
+                let corners = triangle.corners.map(corner);
+                let normal = cross(sub(corners[1], corners[0]), sub(corners[2], corners[0]));
+                triangles.push(Placed { corners, normal, number, object });
+            }
+        }
+    };
+    if stream.instances.is_empty() {
+        place(0, 0..stream.meshes.len(), &|position| position);
+    }
+    for (index, instance) in (0..).zip(stream.instances) {
+        let track = stream.tracks.iter().find(|track| track.kind == OBJECT_TRACK && track.index == index);
+        let key = track.and_then(|track| stream.keys_of(track)?.first());
+        let first = usize::from(instance.first_mesh);
+        let meshes = first..first + usize::from(instance.meshes);
+        let Some(key) = key else {
+            place(index, meshes, &|position| position);
+            continue;
+        };
+        let [w, x, y, z] = key.rotation.map(|c| f64::from(Rotation::from_bits(c)));
+        let (axis, size) = ([x, y, z], f64::from(Scale::from_bits(key.scale)));
+        let origin = key.position.map(|c| f64::from(Length::from_bits(c)));
+        // v + 2 q × (q × v + w v).
+        let turned = |v: V3| add(v, scale(cross(axis, add(cross(axis, v), scale(v, w))), 2.0));
+        place(index, meshes, &|position| add(origin, scale(turned(position), size)));
+    }
+    triangles
+}
+
+/// The length of the line that two triangles have in common: 0 if they touch, share a corner, or lie in one plane.
+fn common(one: &Placed, other: &Placed) -> f64 {
+    if one.corners.iter().any(|corner| other.corners.contains(corner)) {
+        return 0.0;
+    }
+    let line = cross(one.normal, other.normal);
+    let length = dot(line, line).sqrt();
+    let (Some(a), Some(b)) = (cut(one, other, line), cut(other, one, line)) else { return 0.0 };
+    (a[1].min(b[1]) - a[0].max(b[0])) / length.max(f64::MIN_POSITIVE)
+}
+
+/// The part of the line of both planes that lies in the triangle `one`, along the vector `line`.
+fn cut(one: &Placed, other: &Placed, line: V3) -> Option<[f64; 2]> {
+    let distances = one.corners.map(|corner| dot(other.normal, sub(corner, other.corners[0])));
+    let along = one.corners.map(|corner| dot(line, corner));
+    let crossings = [0, 1, 2].map(|k| {
+        let (a, b) = (distances[k], distances[(k + 1) % 3]);
+        ((a < 0.0) != (b < 0.0)).then(|| along[k] + (along[(k + 1) % 3] - along[k]) * a / (a - b))
+    });
+    let mut found = crossings.into_iter().flatten();
+    let (a, b) = (found.next()?, found.next()?);
+    Some([a.min(b), a.max(b)])
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn triangle(corners: [V3; 3]) -> Placed {
+        Placed { corners, normal: cross(sub(corners[1], corners[0]), sub(corners[2], corners[0])), number: 0, object: 0 }
+    }
+
+    #[test]
+    fn lines_are_as_long_as_both_triangles_have_them() {
+        let floor = triangle([[-1.0, 0.0, -1.0], [-1.0, 0.0, 3.0], [3.0, 0.0, -1.0]]);
+        let wall = |low: f64, x: f64| triangle([[x, low, 0.0], [x + 1.0, low, 0.0], [x, 1.0, 0.0]]);
+        // Half of the wall is below the floor, so the line is half as long as its edge.
+        assert!((common(&floor, &wall(-1.0, 0.0)) - 0.5).abs() < 1e-12);
+        assert!((common(&wall(-1.0, 0.0), &floor) - 0.5).abs() < 1e-12);
+        // It stands on the floor, is above it, or beside it.
+        for apart in [wall(0.0, 0.0), wall(0.1, 0.0), wall(-1.0, 2.5)] {
+            assert!(common(&floor, &apart) <= 0.0);
+        }
+        // In one plane, and with a common corner.
+        assert!(common(&floor, &triangle([[0.0, 0.0, 0.0], [0.5, 0.0, 0.0], [0.0, 0.0, 0.5]])) <= 0.0);
+        assert!(common(&floor, &triangle([[-1.0, 0.0, -1.0], [0.5, -1.0, 0.0], [0.5, 1.0, 0.0]])) <= 0.0);
+    }
+}
