@@ -4,7 +4,7 @@
 //!
 //! 1. Once a frame, [`find`] lists the edges at which a surface that faces the viewer ends (silhouettes), and the edges at which its shading jumps
 //!    (creases). The stream has the neighbours of each triangle, and culling knows which triangles face the viewer. It also has the triangles that cut
-//!    each other, and [`cut`] finds the lines between them.
+//!    each other, and [`mod@cut`] finds the lines between them.
 //! 2. In each band, [`walk`] follows the edges pixel by pixel. It computes which share of a pixel lies beyond the edge, and notes the share, and the
 //!    direction of the neighbour that is seen there, in one byte. The depth of both pixels tells whether the edge can be seen between them.
 //! 3. [`mix`] adds that share of the neighbour's colour to each noted pixel.

@@ -10,7 +10,7 @@ use crate::{
 /// Farthest coordinate of a near light or viewer in object space, Q7.25: 59 units, so that a vertex, which is less than 4 units from the
 /// origin, differs from it by less than 64. At the scale 1 none is farther than 56.
 const FARTHEST: i64 = (FARTHEST_UNITS as i64) << POSITION;
-/// [`FARTHEST`] in units of object space.
+/// The distance, in units of object space, to which near lights and viewers that are farther away are moved.
 pub const FARTHEST_UNITS: u32 = 59;
 
 /// The transformation of an object from its own space to eye space: it is scaled, rotated and moved. The world is the space of an object without a

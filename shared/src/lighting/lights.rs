@@ -163,10 +163,12 @@ impl Lighting {
         !NEAR_LIGHTS || self.directional & !self.is_local & 1 != 0
     }
 
-    /// Whether either all lights or the viewer are near, and the other is infinitely far. Domain: one light.
+    /// Whether either all lights or the viewer are near, and the other is infinitely far, and the light has no other shape than a range. Domain: one
+    /// light.
     #[must_use]
     pub(crate) fn has_one_near(&self) -> bool {
-        NEAR_LIGHTS && (self.directional != 0) == self.is_local() && !self.sources().iter().any(Source::has_shape)
+        let is_simple = |source: &Source| !source.is_sky() && !source.shape().is_some_and(|(shape, _)| shape.has_cone());
+        NEAR_LIGHTS && (self.directional != 0) == self.is_local() && self.sources().iter().all(is_simple)
     }
 
     #[inline]
@@ -236,11 +238,6 @@ impl Source {
     #[must_use]
     pub fn darkest(&self) -> i32 {
         if self.is_sky() { -(1 << COSINE) } else { 0 }
-    }
-
-    #[inline]
-    fn has_shape(&self) -> bool {
-        self.is_sky() || self.shape().is_some()
     }
 
     /// The unit vectors L and H, Q2.30, of a directional light. H is unused under a local viewer.

@@ -18,7 +18,7 @@ use crate::{
     },
     pixel::{Channels, gamma::Gamma, steps},
     scene::{Colour, LightTerms, largest},
-    stream::record::{Light, Material},
+    stream::record::{Light, Material, POINT},
 };
 use core::ops::Deref;
 use zerocopy::{FromBytes, Immutable, IntoBytes, KnownLayout};
@@ -205,8 +205,11 @@ impl Reflectance {
         self.has_ramp = u8::from(one_channel || is_coarse && lights.len() == 1 && within);
         let most = (1..3).fold(0, |most, k| if diffuse[k] > diffuse[most] { k } else { most });
         self.ramp = [ambient[most], diffuse[most].into()];
+        // There are loops for one near light that has a range.
+        let is_ranged = |light: &Light| light.kind == POINT && light.axis == [0; 3];
         let is_plain = !LIGHT_SHAPES || !lights.iter().any(Light::has_shape);
-        let looped = holds_levels && fits && is_plain && (lights.len() == 1 || lights.len() == 2 && !one_channel);
+        let is_one = lights.len() == 1 && (is_plain || lights.iter().all(is_ranged));
+        let looped = holds_levels && fits && (is_one || lights.len() == 2 && !one_channel && is_plain);
         self.lights = if looped { lights.len() as u8 } else { 0 };
         self.has_two_lights = u8::from(lights.len() == 2 && !one_channel && fits && is_plain);
         let holds_levels = looped && one_channel;
@@ -599,7 +602,7 @@ impl<'f> LitMaterial<'f> {
         for (gains, Incident { towards, half, strength }) in self.gains.iter().zip(incident) {
             let mut light = Reflection { diffuse: towards, highlight: self.highlight_at(half) };
             if LIGHT_SHAPES {
-                light = light.weakened(strength);
+                light = light.weakened(strength, 0);
             }
             self.add(&mut levels, gains, light.diffuse, light.highlight);
         }
@@ -658,12 +661,14 @@ pub struct Reflection {
 }
 
 impl Reflection {
-    /// The light of a source that has this part of its strength, up to 1 << [`STRENGTH`].
+    /// The light of a source that has this part of its strength, up to 1 << [`STRENGTH`]. A table of highlights holds `floor` where there is no
+    /// highlight.
     #[inline]
     #[must_use]
-    pub(crate) fn weakened(self, strength: u32) -> Self {
+    pub(crate) fn weakened(self, strength: u32, floor: u32) -> Self {
         let diffuse = (product(self.diffuse, strength as i32) >> STRENGTH) as i32;
-        Self { diffuse, highlight: (unsigned_product(self.highlight, strength) >> STRENGTH) as u32 }
+        let highlight = unsigned_product(self.highlight.saturating_sub(floor), strength) >> STRENGTH;
+        Self { diffuse, highlight: highlight as u32 + floor }
     }
 
     /// The light of the sky about L, where this is that of a directional light: there is no highlight.

@@ -57,8 +57,8 @@ fn entered<'s, P: Patch>(changes: &Changes<'s, P>, enter: impl Fn(&P) -> P::Walk
 
 /// The light at a pixel where it changes so.
 #[inline(always)]
-fn changed<W: Walker<Value = [u32; 2]>>(changes: &Changes<'_, W>, reflection: Reflection) -> Reflection {
-    changes.iter().fold(reflection, |reflection, change| change.applied(reflection))
+fn changed<W: Walker<Value = [u32; 2]>>(changes: &Changes<'_, W>, reflection: Reflection, floor: u32) -> Reflection {
+    changes.iter().fold(reflection, |reflection, change| change.applied(reflection, floor))
 }
 
 /// Shades a triangle under any lights on any material. Lights take turns over a run of pixels, so that each loop knows one light.
@@ -102,7 +102,7 @@ where
     fn span(&mut self, rows: i32, end: i32, count: usize, target: &mut dyn SpanTarget) {
         let Self { reflectance, model, common, lights, diffuse, lut, ambient, shared, levels } = self;
         let mut common = enter(common, rows, end);
-        let intensity = reflectance.intensities();
+        let (intensity, floor) = (reflectance.intensities(), reflectance.highlights.floor());
         let mut first = count;
         while first > 0 {
             let run = first.min(CHUNK);
@@ -133,7 +133,7 @@ where
                     changes.iter_mut().for_each(Change::step);
                     if visible & (1 << k) != 0 {
                         let reflection = model.reflect(*light, &shared[k % CHUNK], walker.value(), *lut);
-                        factors.add(&mut levels[k % CHUNK], changed(&changes, reflection));
+                        factors.add(&mut levels[k % CHUNK], changed(&changes, reflection, floor));
                     }
                 }
             }
@@ -147,7 +147,7 @@ where
                         changes.iter_mut().for_each(Change::step);
                         if visible & (1 << k) != 0 {
                             let diffuse = model.reflect_diffuse(&shared[k % CHUNK], walker.value());
-                            factors.add_diffuse(&mut levels[k % CHUNK], changed(&changes, Reflection { diffuse, highlight: 0 }).diffuse);
+                            factors.add_diffuse(&mut levels[k % CHUNK], changed(&changes, Reflection { diffuse, highlight: 0 }, 0).diffuse);
                         }
                     }
                 }

@@ -102,16 +102,17 @@ impl<W: Walker<Value = [u32; 2]>> Change<'_, W> {
         }
     }
 
-    /// The light at the pixel, where this would be reflected of a light that is as strong everywhere.
+    /// The light at the pixel, where this would be reflected of a light that is as strong everywhere. The table of highlights holds `floor` where there
+    /// is no highlight.
     #[inline(always)]
-    pub(crate) fn applied(&self, reflection: Reflection) -> Reflection {
+    pub(crate) fn applied(&self, reflection: Reflection, floor: u32) -> Reflection {
         match self {
             Self::None | Self::Dark => reflection,
             Self::Sky => reflection.of_sky(),
             Self::Weaker(way, shape, nearness) => {
                 // Approximations above 1 count as 1 before the light is weaker, not afterwards.
                 let diffuse = reflection.diffuse.min(1 << PIXEL_COSINE);
-                Reflection { diffuse, ..reflection }.weakened(strength(way.value(), shape, *nearness))
+                Reflection { diffuse, ..reflection }.weakened(strength(way.value(), shape, *nearness), floor)
             }
         }
     }

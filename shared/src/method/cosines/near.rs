@@ -9,6 +9,8 @@
 //! Many triangles have no highlight, as the coefficients of these polynomials tell. Under a near light these are drawn from |N|², |P|² and N·P alone.
 //! For a near viewer they are drawn as for an infinitely far one.
 //!
+//! A light with a range is weaker by its squared distance, which is |P|²; a light with a cone is drawn by the general loop.
+//!
 //! Cost: with a highlight 8 products to evaluate the polynomials, 3 roots from a table, 7 products more and the table of highlights; without one two
 //! roots and three products. Error: the tables' error; the three roots err by at most 4.5e-6 together, which is 0.07 of 1/255 at the exponent 64.
 //! Beyond this exponent the general loop draws highlights.
@@ -22,11 +24,12 @@ use crate::{
         lights::{Viewer, point},
         material_tables::MaterialTables,
         reflectance::Reflectance,
+        shape::{CoarseNearness, Shape},
     },
     math::{
         highlight_lut::CosineLookup,
         rsqrt::{HalfRsqrt, LEAST},
-        vector::{dot, over_longest, sub, wide},
+        vector::{dot, map, over_longest, sub, wide},
     },
     method::{
         CornerCosines, Shading, Style, TriangleSetup,
@@ -81,7 +84,7 @@ pub(crate) fn draw<C: Pixel>(
             if setup.place.is_none() {
                 let products = Products::new(setup, eye, towards)?;
                 if products.may_have_highlight(setup, light, tables.reflectance) {
-                    return draw_highlight::<false, C>(setup, &products, light, shading, tables, band).map(Drawn::Pixels);
+                    return draw_highlight::<false, C>(setup, &products, light, Whole, shading, tables, band).map(Drawn::Pixels);
                 }
             }
             Some(Drawn::Constantly([light, BEHIND]))
@@ -101,6 +104,23 @@ fn draw_by_near_light<C: Pixel>(
     tables: MaterialTables<'_, C>,
     band: &mut Band<'_, C>,
 ) -> Option<u32> {
+    let [source] = shading.lighting.sources() else { return None };
+    if let Some((shape, _)) = source.shape() {
+        let left = Ranged { nearness: distances(setup, position, shape)?, floor: tables.reflectance.highlights.floor() };
+        return draw_weakened(setup, [position, towards], left, shading, tables, band);
+    }
+    draw_weakened(setup, [position, towards], Whole, shading, tables, band)
+}
+
+/// [`draw_by_near_light`] with what its range leaves of it.
+fn draw_weakened<C: Pixel>(
+    setup: &TriangleSetup<'_>,
+    [position, towards]: [[i32; 3]; 2],
+    left: impl Left,
+    shading: &Shading<'_>,
+    tables: MaterialTables<'_, C>,
+    band: &mut Band<'_, C>,
+) -> Option<u32> {
     let ramp = if tables.reflectance.three_channels() { tables.diffuse_ramp() } else { tables.one_light_ramp() };
     // What the band above has saved has no highlight: polynomials of all others are too long. It is loaded in place of this one.
     let mut patch = DiffuseProducts::default();
@@ -108,12 +128,12 @@ fn draw_by_near_light<C: Pixel>(
         let products = Products::new(setup, position, towards)?;
         let view = setup.corner_cosines(towards);
         if ramp.is_none() || products.may_have_highlight(setup, view, tables.reflectance) {
-            return draw_highlight::<true, C>(setup, &products, view, shading, tables, band);
+            return draw_highlight::<true, C>(setup, &products, view, left, shading, tables, band);
         }
         patch = products.diffuse_patch(setup, duff::tabled(setup)?);
     }
     setup.count(band.top, &mut band.counts.without_highlight, 1);
-    Some(setup.fill(|| patch, LitShader::of::<DiffuseOnly>(ramp?, Diffuse { lengths: HalfRsqrt::get() }), band))
+    Some(setup.fill(|| patch, LitShader::of::<DiffuseOnly>(ramp?, Diffuse { lengths: HalfRsqrt::get(), left }), band))
 }
 
 /// Draws `setup` with a highlight. `fixed` is N·F at the corners, Q2.30. `LIGHT` tells whether the light is near and not the viewer.
@@ -122,6 +142,7 @@ fn draw_highlight<const LIGHT: bool, C: Pixel>(
     setup: &TriangleSetup<'_>,
     products: &Products,
     fixed: [i32; 3],
+    left: impl Left,
     shading: &Shading<'_>,
     tables: MaterialTables<'_, C>,
     band: &mut Band<'_, C>,
@@ -135,7 +156,7 @@ fn draw_highlight<const LIGHT: bool, C: Pixel>(
         Some(colours) => Either::Rgb(colours),
         None => Either::Ramp(tables.one_light_ramp()?),
     };
-    let shader = LitShader::of::<WithHighlight>(colours, FromProducts::<LIGHT> { lookup, lengths });
+    let shader = LitShader::of::<WithHighlight>(colours, FromProducts::<LIGHT, _> { lookup, lengths, left });
     Some(setup.screen.draw(setup.gradients, patch, shader, band))
 }
 
@@ -229,11 +250,80 @@ fn half(lengths: &HalfRsqrt, nf: i32, np: i32, fp: i32) -> i32 {
     upper((nf >> 3) + np, lengths.rsqrt(quarter.wrapping_sub(LEAST)) as i32)
 }
 
+/// What is left of a near light at a pixel.
+trait Left: Copy {
+    /// What is left of a cosine, Q5.27, and a highlight at the squared distance |P|², which is walked as the table of reciprocal roots is indexed.
+    fn of(&self, light: CosineAndHighlight, square: u32) -> CosineAndHighlight;
+
+    /// What is left of a cosine, Q5.27.
+    fn of_diffuse(&self, cosine: i32, square: u32) -> i32;
+}
+
+/// A light that is as strong everywhere, or a near viewer.
+#[derive(Clone, Copy)]
+struct Whole;
+
+impl Left for Whole {
+    #[inline(always)]
+    fn of(&self, light: CosineAndHighlight, _: u32) -> CosineAndHighlight {
+        light
+    }
+
+    #[inline(always)]
+    fn of_diffuse(&self, cosine: i32, _: u32) -> i32 {
+        cosine
+    }
+}
+
+/// A light that has a range.
+#[derive(Clone, Copy)]
+struct Ranged {
+    nearness: CoarseNearness,
+    /// The entry of the table of highlights where there is none.
+    floor: u32,
+}
+
+impl Ranged {
+    /// The strength, Q2.30.
+    #[inline(always)]
+    fn strength(&self, square: u32) -> i32 {
+        // Rounding may carry it a little below the least square, or above 1, which does not fit.
+        const BELOW: u32 = 1 << 28;
+        self.nearness.strength(square.wrapping_add(BELOW).saturating_add(LEAST - BELOW))
+    }
+}
+
+impl Left for Ranged {
+    #[inline(always)]
+    fn of(&self, (cosine, highlight): CosineAndHighlight, square: u32) -> CosineAndHighlight {
+        let strength = self.strength(square);
+        let above = highlight.wrapping_sub(self.floor);
+        (upper(cosine, strength) << 2, self.floor + ((above * (strength as u32 >> 14)) >> 16))
+    }
+
+    #[inline(always)]
+    fn of_diffuse(&self, cosine: i32, square: u32) -> i32 {
+        upper(cosine, self.strength(square)) << 2
+    }
+}
+
+/// The squared distance of the farthest corner, which |P|² counts as 1, as a part of the light's range.
+fn distances(setup: &TriangleSetup<'_>, position: [i32; 3], shape: &Shape) -> Option<CoarseNearness> {
+    let half = |vertex: &Vertex| map(sub(position, point(vertex.position)), |c| c >> 1);
+    let square = |vertex| {
+        let way = half(vertex);
+        dot(way, way) as u64
+    };
+    let [a, b, c] = setup.vertices();
+    shape.nearness(square(a).max(square(b)).max(square(c))).coarse()
+}
+
 /// Values at the pixel are walked products. `LIGHT` tells whether the light is near and not the viewer.
 #[derive(Clone, Copy)]
-struct FromProducts<'a, const LIGHT: bool> {
+struct FromProducts<'a, const LIGHT: bool, W> {
     lookup: CosineLookup<'a>,
     lengths: &'a HalfRsqrt,
+    left: W,
 }
 
 /// The values of [`HighlightProducts`].
@@ -245,7 +335,7 @@ type CosineAndHighlight = (i32, u32);
 /// Fraction bits of diffuse levels. A cosine in Q5.27 counts as one of Q2.30, so they have three bits less than 20.
 const DIFFUSE: u32 = 17;
 
-impl<const LIGHT: bool> AtPixel<Value> for FromProducts<'_, LIGHT> {
+impl<const LIGHT: bool, W: Left> AtPixel<Value> for FromProducts<'_, LIGHT, W> {
     type Common = ();
     type Values = CosineAndHighlight;
 
@@ -257,7 +347,7 @@ impl<const LIGHT: bool> AtPixel<Value> for FromProducts<'_, LIGHT> {
         let np = upper(signed(np), near);
         let half = half(self.lengths, signed(nf), np, upper(signed(fp), near));
         let light = if LIGHT { np << 3 } else { signed(nf) };
-        ((), (upper(light, normal), self.lookup.at(upper(half << (COSINE - HALF), normal))))
+        ((), self.left.of((upper(light, normal), self.lookup.at(upper(half << (COSINE - HALF), normal))), pp))
     }
 }
 
@@ -270,11 +360,12 @@ impl FromValues<(), CosineAndHighlight> for WithHighlight {
 
 /// Values at the pixel are the walked products of diffuse light from a near light.
 #[derive(Clone, Copy)]
-struct Diffuse<'a> {
+struct Diffuse<'a, W> {
     lengths: &'a HalfRsqrt,
+    left: W,
 }
 
-impl AtPixel<([u32; 1], ([u32; 1], [u32; 1]))> for Diffuse<'_> {
+impl<W: Left> AtPixel<([u32; 1], ([u32; 1], [u32; 1]))> for Diffuse<'_, W> {
     type Common = ();
     /// N·L, Q5.27.
     type Values = i32;
@@ -284,7 +375,7 @@ impl AtPixel<([u32; 1], ([u32; 1], [u32; 1]))> for Diffuse<'_> {
     #[inline(always)]
     fn at(&self, ([nn], ([pp], [np])): ([u32; 1], ([u32; 1], [u32; 1]))) -> ((), i32) {
         let np = upper(signed(np), self.lengths.rsqrt(pp) as i32);
-        ((), upper(np << 3, self.lengths.rsqrt(nn) as i32))
+        ((), self.left.of_diffuse(upper(np << 3, self.lengths.rsqrt(nn) as i32), pp))
     }
 }
 
