@@ -74,4 +74,4 @@ pub(crate) const PERSPECTIVE: bool = cfg!(feature = "perspective");
 pub(crate) const SKIPS: bool = cfg!(feature = "skips");
 
 /// Whether the only light is directional and the viewer is infinitely far, so that N·L and N·H are linear in N.
-pub(crate) const ALWAYS_CONSTANT: bool = !LIGHTS && !NEAR_LIGHTS && !LIGHT_SHAPES;
+pub(crate) const ALWAYS_CONSTANT: bool = !LIGHTS && !NEAR_LIGHTS;

@@ -19,6 +19,7 @@ use microphong_sim::{
     scene,
     shader::Shader,
     shapes,
+    vector::{cross, unit},
     view::{Up, View},
 };
 use std::thread;
@@ -248,6 +249,53 @@ fn lines_are_as_wide_as_a_pixel() {
             assert_eq!(lines[at], Rgb888::BLACK, "frame {number}: a line within the ball");
         }
     }
+}
+
+/// A board hides what is behind it: the outlines of a floor and a wall, and the line along which they cut each other. Both reach far, so the depths of
+/// each span those of the board.
+#[test]
+fn lines_are_hidden_by_what_is_in_front() {
+    let quad = |corners: [[f64; 3]; 4]| {
+        let [a, b, _, d] = corners;
+        let edge = |to: [f64; 3]| [0, 1, 2].map(|k| to[k] - a[k]);
+        let normal = unit(cross(edge(b), edge(d))).unwrap();
+        (corners, normal)
+    };
+    let floor = quad([[-1.0, 0.0, 1.0], [1.0, 0.0, 1.0], [1.0, 0.0, -1.0], [-1.0, 0.0, -1.0]]);
+    let wall = quad([[0.2, -0.6, -0.9], [0.2, -0.6, 0.9], [0.2, 0.6, 0.9], [0.2, 0.6, -0.9]]);
+    let board = quad([[-0.2, -0.3, 1.1], [0.6, -0.3, 1.1], [0.6, 0.4, 1.1], [-0.2, 0.4, 1.1]]);
+    let draw = |quads: &[([[f64; 3]; 4], [f64; 3])], style: Style| {
+        let mut mesh = Mesh::default();
+        for (k, (corners, normal)) in quads.iter().enumerate() {
+            mesh.positions.extend(corners);
+            mesh.normals.extend([*normal; 4]);
+            mesh.triangles.extend([[0, 1, 2], [0, 2, 3]].map(|corners: [usize; 3]| corners.map(|corner| corner + 4 * k)));
+        }
+        let mut look = Look::new(Surface::metal([1.0; 3], [0.5, 0.5, 0.0], 1), View::orbit(Up::Y, 0.0, 0.45, 2.6, 0));
+        look.background = [0; 3].into();
+        let stream = look.stream(&quantise(&mesh).0).unwrap().with_neighbours().unwrap();
+        let pixels = render::frame::<Rgb888>(stream.parse().unwrap(), Size::new_equal(160), style, 16, 0).unwrap().0;
+        (pixels, stream.parse().unwrap().cuts.len())
+    };
+    let lines = Style { outlines: Some(Outlines::new([255; 3]).alone(true)), ..Shader::FLAT.into() };
+    let lit = |pixels: &[Rgb888]| pixels.iter().map(|pixel| pixel.r() > 60).collect::<Vec<_>>();
+    let (both, cuts) = draw(&[floor, wall], lines);
+    assert!(cuts > 0);
+    let (alone, both) = (lit(&draw(&[wall], lines).0), lit(&both));
+    let in_front: Vec<bool> = draw(&[board], Shader::FLAT.into()).0.iter().map(|&pixel| pixel != Rgb888::BLACK).collect();
+    let inside = |at: usize| [1, 2, 3, 160, 320, 480].iter().all(|d| [at - d, at + d].iter().all(|&near| in_front[near]));
+    let all = lit(&draw(&[floor, wall, board], lines).0);
+    let (mut seen, mut hidden) = (0, 0);
+    for at in 480..all.len() - 480 {
+        let is_line = both[at] && !alone[at];
+        if inside(at) {
+            hidden += usize::from(is_line);
+            assert!(!all[at], "a line at {}, {} on the board", at % 160, at / 160);
+        } else {
+            seen += usize::from(is_line && all[at]);
+        }
+    }
+    assert!(hidden > 5 && seen > 30, "{hidden} pixels of lines are hidden, {seen} are not");
 }
 
 /// A display of one bit shows a line without gaps: each of its pixels has all of the colour, and they are as many as the light of smooth lines.

@@ -284,6 +284,36 @@ fn lights_may_be_near() {
     assert!(half > 0 && away == [-2 * half, half, -4 * half], "{away:?}");
 }
 
+/// A near light may have a range and a cone, and light may come from the sky. What is wrong of them is named.
+#[test]
+fn lights_may_have_shapes() {
+    use microphong::stream::record::{POINT, SKY};
+    let place = Place::new();
+    place.file("good.obj", TETRAHEDRON);
+    let lights = ["--light", "at:0,2,0:ffc080:range=4:shines=0,-1,0:cone=30,60", "--light", "sky:0,3,0"];
+    place.succeeds(&[&["convert", "good.obj"], &lights[..]].concat());
+    let bytes = StreamBytes::read(&place.0.path().join("good.tri")).expect("a stream");
+    let [spot, sky] = bytes.parse().expect("a stream").lights else { panic!("two lights") };
+    assert_eq!((spot.kind, spot.axis, spot.cone), (POINT, [0, -16_384, 0], [8192, 14_189]));
+    assert_eq!((sky.kind, sky.vector), (SKY, [0, 16_384, 0]));
+    let said = place.succeeds(&["inspect", "good.tri"]);
+    assert!(said.contains("ends at a distance of 4.00, shines (0.00, -1.00, 0.00) in a cone of 30 to 60 degrees"), "{said}");
+    assert!(said.contains("sky towards (0.00, 1.00, 0.00)"), "{said}");
+    for (light, message) in [
+        ("0,0,1:range=4", "only a near light"),
+        ("at:0,0,1:range=0", "a range is a number from 0.0625 to 31.9"),
+        ("at:0,0,1:cone=10,20", "needs both shines="),
+        ("at:0,0,1:shines=0,0,1:cone=20,10", "two angles from 0 to 180 degrees"),
+        ("at:0,0,1:shines=0,0,0:cone=10,20", "shines= needs a direction"),
+        ("at:0,0,1:width=7", "there is no width="),
+        ("at:0,0,1:ff0000:00ff00", "a colour is given twice"),
+        ("sky:0,0,0", "0,0,0 is not a direction"),
+    ] {
+        place.fails(&["convert", "good.obj", "--light", light], 2, &[message]);
+    }
+    place.fails(&[&["convert", "good.obj", "--board", "pico"], &lights[..]].concat(), 1, &["no lights with a range or a cone"]);
+}
+
 /// A glTF file with its buffer inside is converted. An error names the place.
 #[test]
 fn gltf_is_converted() {

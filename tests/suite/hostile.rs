@@ -50,7 +50,7 @@ fn corpus(board: Board) -> Result<Vec<Named>> {
 fn damaged(board: Board) -> Vec<Named> {
     let seed = seed();
     let numbered = (0..).filter_map(|number| Some((number, hostile::damaged(&mut Random::new(seed, number))?)));
-    // The firmware has no lights of all shapes, and would refuse too many.
+    // The plain firmware lacks the feature `light-shapes`, and would refuse these streams.
     let is_plain = |case: &Case| !case.stream.parse().is_ok_and(|stream| stream.lights.iter().any(Light::has_shape));
     let numbered = numbered.filter(|(_, case)| is_plain(case));
     let named = numbered.map(|(number, case)| (format!("hostile {number} of seed {seed}"), drawable(board, case)));

@@ -78,7 +78,7 @@ fn a_surface_gets_as_much_light_as_it_sees_of_the_sky() {
 #[test]
 fn lights_end_where_they_say() {
     let degrees = |degrees: f32| Angle::from_num(degrees / 360.0);
-    // Two units in front of the teapot's nearest point, and beside it.
+    // The light is two units in front of the teapot. Its cone points away from the teapot, or its range ends before it.
     let near = Light::near([0, 0, -1], [1, 1, 1]).unwrap().with_camera();
     let away = near.with_cone([0, 0, 1], degrees(20.0), degrees(60.0)).unwrap();
     let short = near.with_range(0.5).unwrap();

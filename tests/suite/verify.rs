@@ -74,7 +74,7 @@ fn matrix(board: Board) -> Result {
     Ok(())
 }
 
-/// Lights with a range and a cone, and light from the sky, are the same bits on boards.
+/// Boards draw the pixels of the host, also under lights with a range and a cone and under light from the sky.
 #[test]
 fn all_lights() -> Result {
     let directory = tempfile::tempdir()?;

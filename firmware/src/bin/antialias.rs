@@ -1,4 +1,5 @@
-//! Boards with a frame buffer, smooth outlines, and lights with a range or a cone or from the sky. It is a program of its own, because code for them makes plain frames a little slower.
+//! Boards with a frame buffer, smooth outlines, and lights with a range or a cone or from the sky. It is a program of its own, because code for them
+//! makes plain frames a little slower.
 #![no_std]
 #![no_main]
 

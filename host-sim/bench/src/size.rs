@@ -84,16 +84,21 @@ pub fn measure(programs: &[Program], scene: &Scene, tick: &(dyn Fn() + Sync)) ->
     measured.collect()
 }
 
+/// Bytes of the shapes of all lights, for each object.
+const SHAPES_OF_LIGHTS: u64 = 128;
+
 fn size(program: Program, elf: &Elf, stream: &Stream<'_>) -> Result<Size> {
     let (width, height, rows) = picture(program.format);
     let layout = render::program_layout(stream, program.shader, geometry::Size::new(width, height), rows as u32)?;
     let mesh_bytes = u64::from(stream.header.length);
     // The program has room for any mesh.
     let room = u64::from(elf.symbol("MEMORY")?.1) + u64::from(elf.symbol("BAND")?.1);
+    // This computer's core has the feature `light-shapes`, which the program lacks.
+    let shapes = SHAPES_OF_LIGHTS * layout.objects as u64;
     Ok(Size {
         flash_bytes: elf.flash_bytes()? - mesh_bytes,
         mesh_bytes,
-        ram_bytes: elf.ram_bytes()? - room + program.format.bytes(&layout).into_iter().sum::<usize>() as u64,
+        ram_bytes: elf.ram_bytes()? - room + program.format.bytes(&layout).into_iter().sum::<usize>() as u64 - shapes,
         stack_bytes: stack(machine(program.core), elf)?,
     })
 }

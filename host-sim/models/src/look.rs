@@ -24,6 +24,7 @@ use microphong::{
     },
 };
 use microphong_render::shader::Shader;
+use std::ops::RangeInclusive;
 use zerocopy::{FromZeros, IntoBytes};
 
 /// Reflectances of a surface for each channel, where 1 reflects all light.
@@ -56,9 +57,9 @@ impl Surface {
 /// A light.
 #[derive(Clone, Copy, Debug)]
 pub struct Lamp {
-    /// What the vector is.
+    /// The kind of light, which tells what the vector is.
     pub kind: LampKind,
-    /// A direction towards the light, or its position. Unless it is fixed, it counts in eye space.
+    /// A direction towards the light, or its position. Unless the light is fixed, the vector counts in eye space.
     pub vector: V3,
     /// Red, green, blue; 1 is full.
     pub colour: V3,
@@ -81,6 +82,9 @@ pub enum LampKind {
     Sky,
 }
 
+/// Possible ranges of near lights, in units of the world.
+pub const LIGHT_RANGE: RangeInclusive<f64> = 0.0625..=31.9;
+
 /// The cone of a near light.
 #[derive(Clone, Copy, Debug)]
 pub struct Cone {
@@ -88,7 +92,7 @@ pub struct Cone {
     pub axis: V3,
     /// The angle from the axis up to which light is full, in degrees.
     pub full: f64,
-    /// The angle from which on there is none, at most 180 and greater.
+    /// The angle from the axis from which on there is no light, in degrees: greater than `full`, at most 180.
     pub edge: f64,
 }
 

@@ -6,7 +6,7 @@ use crate::{
     bytes::StreamBytes,
     fields::{Field, Place, Table, quoted},
     import::{self, Imported, surfaces},
-    look::{Cast, Cone, KEY, Lamp, LampKind, Look, Member, Surface, Way},
+    look::{Cast, Cone, KEY, LIGHT_RANGE, Lamp, LampKind, Look, Member, Surface, Way},
     mesh::{CREASE, Mesh, Weld},
     mtl::Material,
     number::nearest,
@@ -287,8 +287,6 @@ fn align(field: Field<'_>) -> Result<u8> {
     }
 }
 
-/// Possible ranges of lights.
-const RANGE: RangeInclusive<f64> = 0.0625..=31.9;
 /// Angles of cones, in degrees.
 const ANGLES: RangeInclusive<f64> = 0.0..=180.0;
 
@@ -298,7 +296,7 @@ fn lamp(mut table: Table<'_>, index: usize, cast: &mut Cast) -> Result<Lamp> {
     let at = table.get("at", |field| field.numbers(&WORLD))?;
     let sky = table.get("sky", direction)?;
     let colour = table.get("colour", colour)?.unwrap_or([1.0; 3]);
-    let range = table.get("range", |field| field.number(&RANGE))?;
+    let range = table.get("range", |field| field.number(&LIGHT_RANGE))?;
     let shines = table.get("shines", direction)?;
     let cone: Option<[f64; 2]> = table.get("cone", |field| field.numbers(&ANGLES))?;
     let keys = table.list("keys", "key", NUMBERS as usize)?;

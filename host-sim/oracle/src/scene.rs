@@ -38,7 +38,7 @@ pub struct Light {
 }
 
 impl Light {
-    /// A light that is as strong everywhere.
+    /// A light that is equally strong everywhere.
     #[must_use]
     pub const fn even(place: Place, colour: V3) -> Self {
         Self { place, colour, is_sky: false, range: None, cone: None }

@@ -11,33 +11,37 @@ use microphong::{
 };
 use std::ops::Range;
 
-/// The part of a common line below which it is too short to be seen, in units of the world: about a sixth of a pixel in a picture of 240 pixels.
+/// The length, in units of the world, below which a common line is too short to be seen: about a sixth of a pixel in a picture of 240 pixels.
 const SHORTEST: f64 = 1.0 / 512.0;
 
 /// A triangle in the world.
 struct Placed {
     corners: [V3; 3],
     normal: V3,
+    /// The least and the largest coordinates.
+    least: V3,
+    most: V3,
     number: u32,
     object: u16,
+}
+
+impl Placed {
+    fn new(corners: [V3; 3], number: u32, object: u16) -> Self {
+        let [a, b, c] = corners;
+        let extreme = |of: fn(f64, f64) -> f64| [0, 1, 2].map(|axis| of(of(a[axis], b[axis]), c[axis]));
+        Self { corners, normal: cross(sub(b, a), sub(c, a)), least: extreme(f64::min), most: extreme(f64::max), number, object }
+    }
 }
 
 /// All pairs of full triangles that cut each other, in order.
 pub(crate) fn of(stream: &Stream<'_>) -> Vec<Cut> {
     let mut triangles = placed(stream);
-    let extreme = |triangle: &Placed, axis: usize, of: fn(f64, f64) -> f64| {
-        let [a, b, c] = triangle.corners;
-        of(of(a[axis], b[axis]), c[axis])
-    };
-    let least = |triangle: &Placed, axis| extreme(triangle, axis, f64::min);
-    let most = |triangle: &Placed, axis| extreme(triangle, axis, f64::max);
-    triangles.sort_by(|a, b| least(a, 0).total_cmp(&least(b, 0)));
+    triangles.sort_by(|a, b| a.least[0].total_cmp(&b.least[0]));
     let mut cuts = Vec::new();
     // Triangles whose extents along x overlap are neighbours in this order.
     for (i, one) in triangles.iter().enumerate() {
-        let end = most(one, 0);
-        for other in triangles[i + 1..].iter().take_while(|other| least(other, 0) <= end) {
-            let overlap = |axis| least(one, axis) <= most(other, axis) && least(other, axis) <= most(one, axis);
+        for other in triangles[i + 1..].iter().take_while(|other| other.least[0] <= one.most[0]) {
+            let overlap = |axis: usize| one.least[axis] <= other.most[axis] && other.least[axis] <= one.most[axis];
             if overlap(1) && overlap(2) && common(one, other) > SHORTEST {
                 cuts.push(Cut { triangles: [one.number, other.number], objects: [one.object, other.object] });
             }
@@ -55,9 +59,7 @@ fn placed(stream: &Stream<'_>) -> Vec<Placed> {
             let vertices = stream.vertices_of(mesh).unwrap_or_default();
             let corner = |index: u16| to_world(vertices[usize::from(index)].position.map(|c| f64::from(Unit::from_bits(c))));
             for (number, triangle) in (mesh.first_triangle..).zip(stream.triangles_of(mesh).unwrap_or_default()) {
-                let corners = triangle.corners.map(corner);
-                let normal = cross(sub(corners[1], corners[0]), sub(corners[2], corners[0]));
-                triangles.push(Placed { corners, normal, number, object });
+                triangles.push(Placed::new(triangle.corners.map(corner), number, object));
             }
         }
     };
@@ -112,7 +114,7 @@ mod tests {
     use super::*;
 
     fn triangle(corners: [V3; 3]) -> Placed {
-        Placed { corners, normal: cross(sub(corners[1], corners[0]), sub(corners[2], corners[0])), number: 0, object: 0 }
+        Placed::new(corners, 0, 0)
     }
 
     #[test]

@@ -42,8 +42,8 @@ pub fn with_neighbours(stream: &Stream<'_>) -> Result<Vec<u32>> {
     }
     let cuts = cuts::of(stream);
     header.cuts = cuts.len() as u32;
-    let more = size_of_val(neighbours.as_slice()) + size_of_val(cuts.as_slice());
-    header.length += (more - size_of_val(stream.neighbours) - size_of_val(stream.cuts)) as u32;
+    let before = size_of_val(stream.neighbours) + size_of_val(stream.cuts);
+    header.length = header.length - before as u32 + (size_of_val(neighbours.as_slice()) + size_of_val(cuts.as_slice())) as u32;
     let mut bytes = [
         header.as_bytes(),
         meshes.as_bytes(),

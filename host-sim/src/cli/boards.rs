@@ -8,7 +8,7 @@ mod budget;
 use anyhow::{Result, bail, ensure};
 use budget::Budget;
 use embedded_graphics_core::{geometry::Size, pixelcolor::Rgb565};
-use microphong::{RenderError, Renderer, Stream};
+use microphong::{Light, RenderError, Renderer, Stream};
 use microphong_sim::{render::Format, shader::Shader};
 use std::{error::Error, fmt};
 
@@ -83,6 +83,11 @@ impl Board {
     pub(super) fn check(&self, stream: &Stream<'_>) -> Result<()> {
         let Self { name, budget: Budget { height, layout }, .. } = self;
         ensure!(self.has_text || stream.labels.is_empty(), "the firmware of {name} has no fonts; remove the labels");
+        ensure!(
+            !stream.lights.iter().any(Light::has_shape),
+            "the firmware of {name} has no lights with a range or a cone, and no light from the sky; remove them, or write a program with the cargo \
+             feature light-shapes"
+        );
         let size = Size::new(layout.width as u32, *height as u32);
         let mut memory = vec![0; layout.words::<Rgb565>()];
         let shader = Shader::of(stream)?;

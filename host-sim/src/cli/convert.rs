@@ -74,7 +74,8 @@ pub(crate) struct Arguments {
     /// shape. With a wide size, a wide mesh becomes larger, but narrower displays cut off its sides.
     #[arg(long, value_name = "WxH", value_parser = parse::size)]
     size: Option<(u32, u32)>,
-    /// Write the neighbours of triangles, from which a program finds outlines (Renderer::set_antialias, Renderer::set_outlines): 6 bytes a triangle.
+    /// Write what a program needs to find outlines (Renderer::set_antialias, Renderer::set_outlines): the neighbours of triangles, 6 bytes for each
+    /// triangle, and the pairs of triangles that cut each other, 12 bytes for each pair.
     #[arg(long)]
     antialias: bool,
     /// Print one JSON object.

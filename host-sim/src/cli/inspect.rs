@@ -5,7 +5,7 @@ use anyhow::{Context, Result};
 use embedded_graphics_core::geometry::Size;
 use microphong::{
     MAX_SIDE, Stream,
-    format::{Length, NormalLength},
+    format::{Length, NormalLength, Unit},
     geometry::detail::stream_tolerance,
     stream::record::{
         CAMERA_TRACK, CLOSED_CONVEX, EYE_SPACE, Header, LIGHT_TRACK, Light, Mesh, OBJECT_TRACK, PERSPECTIVE, POINT, SKY, Triangle,
@@ -197,10 +197,13 @@ fn lights(stream: &Stream<'_>) -> String {
             _ => "towards",
         };
         // Eye space has z away from the viewer; a user never sees it.
-        let (z, place) = if light.space == EYE_SPACE { (-z, "as the camera sees it") } else { (z, "in the world") };
+        let (z, place) = if light.space == EYE_SPACE { (0.0 - z, "as the camera sees it") } else { (z, "in the world") };
         let range = if light.range > 0 { format!(", ends at a distance of {:.2}", light.range()) } else { String::new() };
-        let [edge, full] = light.cone.map(|cosine| f64::from(microphong::format::Unit::from_bits(cosine)).acos().to_degrees());
-        let cone = if light.axis == [0; 3] { String::new() } else { format!(", in a cone of {full:.0} to {edge:.0} degrees") };
+        let [edge, full] = light.cone.map(|cosine| f64::from(Unit::from_bits(cosine)).acos().to_degrees());
+        let [to_x, to_y, to_z] = light.axis.map(|c| f64::from(Unit::from_bits(c)));
+        let to_z = if light.space == EYE_SPACE { 0.0 - to_z } else { to_z };
+        let shines = format!(", shines ({to_x:.2}, {to_y:.2}, {to_z:.2}) in a cone of {full:.0} to {edge:.0} degrees");
+        let cone = if light.axis == [0; 3] { "" } else { &shines };
         format!("{kind} ({x:.2}, {y:.2}, {z:.2}) {place}{range}{cone}")
     };
     stream.lights.iter().map(kind).collect::<Vec<_>>().join("; ")

@@ -9,14 +9,14 @@ use microphong::{
     format::{ErrorBudget, LARGEST_BUDGET, LEAST_BUDGET},
 };
 use microphong_sim::{
-    look::{Cone, Lamp, LampKind},
+    look::{Cone, LIGHT_RANGE, Lamp, LampKind},
     papers::Topic,
     render::Format,
     shader::Shader,
     vector::{V3, unit},
     view::{Projection, Up},
 };
-use std::{ffi::OsStr, iter, ops::RangeInclusive};
+use std::{ffi::OsStr, iter};
 
 /// The value among `all` that has the name `text`.
 pub(crate) fn among<T: Copy>(text: &str, all: &[T], name: impl Fn(T) -> &'static str) -> Result<T, String> {
@@ -140,8 +140,6 @@ pub(crate) fn crease(text: &str) -> Result<f64, String> {
 
 /// Farthest coordinate of a near light, in radii of the mesh; farther ones do not fit a stream with every camera.
 const FARTHEST_LIGHT: f64 = 8.0;
-/// Ranges of near lights.
-const LIGHT_RANGE: RangeInclusive<f64> = 0.0625..=31.9;
 
 /// Numbers between commas.
 fn numbers<const N: usize>(text: &str) -> Option<[f64; N]> {
@@ -162,11 +160,16 @@ pub(crate) fn light(text: &str) -> Result<Lamp, String> {
     // In eye space z runs away from the eye.
     let vector = |text| numbers(text).map(|[x, y, z]| [x, y, -z]);
     let place = vector(parts.next().unwrap_or_default()).ok_or(
-        "three numbers are needed, such as -0.5,0.6,0.7, or at:-0.5,0.6,1.7 for a near light; a colour may follow, such as :ffc080",
+        "three numbers are needed, such as -0.5,0.6,0.7, at:-0.5,0.6,1.7 for a near light, or sky:0,1,0; a colour may follow, such as :ffc080",
     )?;
     let mut lamp = Lamp { kind, ..Lamp::distant(place, [1.0; 3]) };
-    let (mut axis, mut angles) = (None, None);
+    let (mut axis, mut angles, mut given) = (None, None, Vec::new());
     for part in parts {
+        let name = part.split_once('=').map_or("a colour", |(name, _)| name);
+        if given.contains(&name) {
+            return Err(format!("{name} is given twice"));
+        }
+        given.push(name);
         match part.split_once('=') {
             None => lamp.colour = colour(part)?,
             Some(("range", range)) => {

@@ -58,11 +58,11 @@ pub(crate) struct Arguments {
     /// softer.
     #[arg(long, value_enum, default_value_t = Gamma::Linear)]
     gamma: Gamma,
-    /// Draw outlines jagged, as a program without `Renderer::set_antialias` does. By default they are smooth: where a surface ends or its shading jumps,
-    /// a pixel mixes the colours of both sides in proportion to the areas that they cover.
+    /// Draw outlines jagged, as a program without `Renderer::set_antialias` does. By default they are smooth: where a surface ends, its shading jumps or
+    /// two surfaces cut each other, a pixel mixes the colours of both sides in proportion to the areas that they cover.
     #[arg(long)]
     no_antialias: bool,
-    /// Draw lines of this colour along outlines: where a surface ends, or its shading jumps.
+    /// Draw lines of this colour along outlines: where a surface ends, its shading jumps, or two surfaces cut each other.
     #[arg(long, value_name = "RRGGBB", value_parser = parse::colour, conflicts_with = "no_antialias")]
     outlines: Option<V3>,
     /// Draw the lines of --outlines on the background, without the surfaces.

@@ -7,6 +7,7 @@ use super::{
     report, scenes,
 };
 use anyhow::Result;
+use microphong::features::Feature;
 use microphong_sim::{
     bench::size::{Size, baseline, measure, picture},
     chip::Chip,
@@ -176,6 +177,10 @@ fn features_of(scene: &Scene, arguments: &Arguments) -> Result<Vec<Features>> {
     let mut needs: Vec<_> = arguments.format.values.iter().flat_map(|&format| features::names(&stream, format)).collect();
     needs.sort_unstable();
     needs.dedup();
+    if needs.contains(&Feature::LightShapes.name()) {
+        let text = format!("{} needs the cargo feature light-shapes, which the measured programs lack; remove these lights", scene.name);
+        return Err(Usage(text).into());
+    }
     let least = if needs.is_empty() { Features::None } else { Features::Default };
     let Some(features) = &arguments.features else { return Ok(vec![least]) };
     if least == Features::Default && features.values.contains(&Features::None) {

@@ -2,8 +2,8 @@
 //! edges, and diffuse light by polynomials: here the quadratic through N·L at six points.
 //!
 //! Cost: 5 additions and a comparison a pixel and light; a row has 3 unit vectors, 2 arc tangents and 2 divisions to set up. Error: the parabolas',
-//! 3.6 of 255 in the highlight (as printed: 66), and jumps where rows begin on different edges. Domain: any lights; coarse meshes under near lights
-//! are off by up to 45 of 255.
+//! 3.6 of 255 in the highlight (as printed: 66), and jumps as those of [`crate::angular`]. Domain: any lights; coarse meshes under near lights are off
+//! by up to 45 of 255.
 
 use crate::{
     angular::{Turned, turned},

@@ -15,6 +15,9 @@ use crate::{
 /// by this within half a pixel.
 const RISE: u32 = 9;
 
+/// Where the inverse depth of a triangle changes by more than 2^-`STEEP` of itself, a line at its rim could be seen through what is in front of it.
+const STEEP: u32 = 4;
+
 /// A mesh in one frame, whose outlines are found.
 pub(crate) struct Outlined<'f> {
     pub(crate) view: &'f View,
@@ -109,7 +112,11 @@ impl Outlined<'_> {
 
     /// A triangle that may cut others, if it faces the viewer and need not be clipped.
     pub(crate) fn flat(&self, triangle: usize) -> Option<Flat> {
-        let triangle = self.triangles.get(triangle)?;
+        self.flat_of(self.triangles.get(triangle)?)
+    }
+
+    #[inline(never)]
+    fn flat_of(&self, triangle: &Triangle) -> Option<Flat> {
         let place = |corner: u16| self.cached(corner).or_else(|| self.projected(corner));
         let [a, c, b] = triangle.corners;
         Flat::new([place(a)?, place(b)?, place(c)?])
@@ -124,24 +131,27 @@ impl Outlined<'_> {
         inside.then_some(place)
     }
 
-    /// The range of inverse depth of a triangle.
+    /// The range of inverse depth of a triangle. Where that is large, it is the range within a pixel.
     #[inline]
     fn range(&self, triangle: &Triangle) -> i32 {
         let [a, b, c] = triangle.corners;
-        let (Some([.., a]), Some([.., b]), Some([.., c])) = (self.cached(a), self.cached(b), self.cached(c)) else {
-            return self.clipped_range(triangle);
+        let [farthest, nearest] = match (self.cached(a), self.cached(b), self.cached(c)) {
+            (Some([.., a]), Some([.., b]), Some([.., c])) => [a.min(b).min(c), a.max(b).max(c)],
+            _ => self.clipped_depths(triangle),
         };
-        a.max(b).max(c).wrapping_sub(a.min(b).min(c))
+        let range = nearest.wrapping_sub(farthest);
+        if range <= nearest >> STEEP { range } else { self.flat_of(triangle).map_or(range, |flat| flat.range()) }
     }
 
+    /// The least and the largest inverse depth of what is left of a triangle after clipping.
     #[cold]
     #[inline(never)]
-    fn clipped_range(&self, triangle: &Triangle) -> i32 {
+    fn clipped_depths(&self, triangle: &Triangle) -> [i32; 2] {
         let [a, c, b] = triangle.corners.map(|corner| self.vertices.get(usize::from(corner)));
-        let (Some(a), Some(b), Some(c)) = (a, b, c) else { return 0 };
+        let (Some(a), Some(b), Some(c)) = (a, b, c) else { return [0; 2] };
         let polygon = clip(self.view, [a, b, c]);
         let depth = || polygon.iter().map(|cut| cut.place[2]);
-        depth().max().unwrap_or(0).wrapping_sub(depth().min().unwrap_or(0))
+        [depth().min().unwrap_or(0), depth().max().unwrap_or(0)]
     }
 
     /// Whether a triangle faces the viewer and touches a pixel of `area`.

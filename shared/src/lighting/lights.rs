@@ -20,7 +20,7 @@ pub(crate) const SHAPES: usize = if LIGHT_SHAPES { 1 } else { 0 };
 #[derive(FromBytes, IntoBytes, Immutable, KnownLayout, Clone, Copy, Debug)]
 #[repr(C)]
 pub struct Source {
-    /// For a directional light the unit vector L towards it, and the unit half vector H between L and an infinitely far viewer, which is unused under
+    /// For a directional light, and for light from the sky, the unit vector L towards it, and the unit half vector H between L and an infinitely far viewer, which is unused under
     /// a local viewer; Q2.30. For a point light its position, Q7.25, and the axis of its cone, Q2.30.
     vectors: [[i32; 3]; 2],
     /// The kind of light, as in [`Light::kind`].
@@ -47,7 +47,7 @@ pub struct Lighting {
     /// The memory of a renderer needs sizes that are multiples of 8.
     reserved: [u32; ROOM % 2],
     count: u32,
-    /// Whether all lights are directional: 0 or 1.
+    /// Whether no light is a point light: 0 or 1.
     directional: u32,
     /// See [`Viewer`].
     viewer: [i32; 3],
@@ -63,7 +63,7 @@ pub struct Lighting {
 pub struct Directions {
     /// L and H of each light, Q2.30; point lights have none.
     vectors: [[[i32; 3]; 2]; ROOM],
-    /// Whether all lights are directional.
+    /// Whether no light is a point light.
     are_directional: bool,
 }
 
@@ -156,7 +156,7 @@ impl Lighting {
         }
     }
 
-    /// Whether all lights are directional and the viewer is infinitely far, so that L and H are the same everywhere.
+    /// Whether no light is a point light and the viewer is infinitely far, so that L and H are the same everywhere.
     #[inline]
     #[must_use]
     pub fn is_constant(&self) -> bool {
@@ -233,7 +233,7 @@ impl Source {
         LIGHT_SHAPES && self.kind == u32::from(SKY)
     }
 
-    /// N·L, Q2.30, from which a surface gets less and less light until it gets none: 0, and -1 for light from the sky.
+    /// The smallest N·L, Q2.30, that counts: a surface with this N·L gets no light. It is 0, and -1 for light from the sky.
     #[inline]
     #[must_use]
     pub fn darkest(&self) -> i32 {

@@ -661,8 +661,8 @@ pub struct Reflection {
 }
 
 impl Reflection {
-    /// The light of a source that has this part of its strength, up to 1 << [`STRENGTH`]. A table of highlights holds `floor` where there is no
-    /// highlight.
+    /// The light of a source that has this part of its strength, up to 1 << [`STRENGTH`]. The diffuse light may have any format. A table of
+    /// highlights holds `floor` where there is no highlight.
     #[inline]
     #[must_use]
     pub(crate) fn weakened(self, strength: u32, floor: u32) -> Self {

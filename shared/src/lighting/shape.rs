@@ -1,8 +1,8 @@
-//! What the light of a point light depends on besides the angle: its range and its cone.
+//! How the range and the cone of a point light weaken it.
 //!
-//! A light with the range R is weaker by (1 - d²/R²)² at the distance d, and dark from R on. This needs no division at the pixel, and neither it nor
-//! its slope jumps at R. In a cone the light is weaker by the square of (c - e)/(f - e), where c is the cosine to the axis, e that of the cone's edge
-//! and f that up to which light is full. Source of the cone: glTF, KHR_lights_punctual.
+//! At the distance d, a light with the range R has (1 - d²/R²)² of its strength; from R on it has none. The formula needs no division at the pixel.
+//! Neither the strength nor its slope jumps at R. Let c be the cosine of the angle to the axis of a cone, e the cosine at the edge of the cone, and f the
+//! cosine up to which light is full. In the cone the light has ((c - e)/(f - e))² of its strength. Source of the cone: glTF, KHR_lights_punctual.
 
 use crate::{
     arch::product::unsigned_product,
@@ -65,7 +65,7 @@ impl Shape {
         (shape, if difference > 0 { normalise(axis) } else { [0; 3] })
     }
 
-    /// Whether the light is as strong everywhere.
+    /// Whether the light is equally strong everywhere.
     #[inline]
     pub(super) fn is_even(&self) -> bool {
         self.slope == 0 && self.inverse_square == 0

@@ -1,10 +1,12 @@
 //! What range and cone leave of a light at each pixel of a triangle.
 //!
 //! The squared distance of the light is exactly quadratic over a triangle, and the product of the way to it and the axis of its cone is linear. Both
-//! are walked as one field of two channels. So what is left is exact at each pixel, whatever the method interpolates.
+//! are walked as one field of two channels. So what is left is exact at each pixel, except by `sqrt6` in perspective, which takes positions linearly on
+//! the screen.
 //!
 //! Cost: 4 additions and 3 products a pixel; in a cone a root and 4 products more. Error: the squared distance errs by 2^-24 of that of the farthest
-//! corner, which counts where a triangle is much larger than the range: 2^-14 of d²/R² where it is 32 times as large.
+//! corner, which counts where a triangle is much larger than the range: 2^-14 of d²/R² where it is 32 times as large. In a
+//! cone the cosine errs by 2^-25 q², where q is the distance of the farthest corner over that of the pixel.
 
 use crate::{
     format::{COSINE, PIXEL_COSINE},
@@ -31,7 +33,7 @@ pub(crate) type Way = QuadraticNodes<2>;
 /// How a light changes over a triangle.
 #[derive(Clone, Copy, Debug)]
 pub(crate) enum Change<'f, P> {
-    /// The light is as strong everywhere.
+    /// The light is equally strong everywhere.
     None,
     /// No light arrives.
     Dark,
@@ -102,8 +104,8 @@ impl<W: Walker<Value = [u32; 2]>> Change<'_, W> {
         }
     }
 
-    /// The light at the pixel, where this would be reflected of a light that is as strong everywhere. The table of highlights holds `floor` where there
-    /// is no highlight.
+    /// What the surface reflects at the pixel. `reflection` is what it would reflect of the light at full strength. The table of highlights holds
+    /// `floor` where there is no highlight.
     #[inline(always)]
     pub(crate) fn applied(&self, reflection: Reflection, floor: u32) -> Reflection {
         match self {

@@ -95,7 +95,8 @@ impl Light {
     ///
     /// # Errors
     /// Returns [`SceneError::Direction`] if the direction is zero, not finite or too long, and [`SceneError::Range`] if the light is no point
-    /// light, or `edge` is not larger than `full` by about a degree.
+    /// light, if `edge` is more than half a turn, or if the cosine of `edge` is not smaller than that of `full` by at least 1/16,384. Close to
+    /// the axis this is about half a degree.
     ///
     /// ```
     /// use microphong::{Light, SceneError, format::Angle};

@@ -480,7 +480,7 @@ pub const OPEN: u16 = 0x7FFF;
 /// The shading of the two triangles at the edge differs, because their normals do.
 pub const CREASE: u16 = 0x8000;
 
-/// Two triangles of the stream that cut each other. `microphong convert` lists them, so that antialiasing finds the line between them.
+/// Two triangles of the stream that cut each other. `microphong convert --antialias` lists them, so that antialiasing finds the line between them.
 #[derive(FromBytes, IntoBytes, Immutable, KnownLayout, Clone, Copy, Debug, PartialEq, Eq)]
 #[repr(C)]
 pub struct Cut {

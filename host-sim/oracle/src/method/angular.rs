@@ -39,7 +39,7 @@ pub(crate) fn parabolas(angle: f64, [a, b]: [f64; 2]) -> f64 {
 const SHORT: f64 = 1.0 / (1u64 << 18) as f64;
 
 /// [`along`], or linear where there is hardly any angle between the normals, so no plane either. The parabolas differ from the power itself, so light
-/// jumps where the one changes to the other. What decides counts in 1/255 of [`SHORT`].
+/// jumps where the one changes to the other. The squared sine decides. Its distance from [`SHORT`] is passed to `decide` in units of 1/255 of `SHORT`.
 fn along_row([l, r]: [V3; 2], v: V3, t: f64, s: f64, widths: Widths, decide: &Decide<'_>) -> f64 {
     let (ll, lr, rr) = (dot(l, l), dot(l, r), dot(r, r));
     if decide(255.0 * ((ll * rr - lr * lr) / (SHORT * ll * rr).max(f64::MIN_POSITIVE) - 1.0)) {

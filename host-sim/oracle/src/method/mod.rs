@@ -157,8 +157,8 @@ pub fn method<'f>(name: &str, frame: &'f Frame, facet: &'f Facet) -> Result<Shad
     Ok((Method::of(name, frame, facet)?.build)(frame, facet, &|excess| excess > 0.0))
 }
 
-/// Largest number of results that [`outcomes`] returns. Eight close decisions have as many. There may be more where light hardly differs from one edge
-/// of a small part of a triangle to the next, and each doubles their number.
+/// Largest number of results that [`outcomes`] returns. Eight close decisions have as many. More can occur on small parts of a triangle, where
+/// light hardly differs between edges. Each close decision doubles the number.
 pub const MOST_OUTCOMES: usize = 1 << 8;
 
 /// All results that a method may have at a point of `facet` in an arithmetic with errors of up to `margin` levels where it decides, see
