@@ -520,3 +520,12 @@ fn fitted(scenes: &[[f64; cost::PARTS]]) -> [u32; cost::PARTS] {
         ((bound / digit).ceil() * digit) as u32
     })
 }
+
+/// A frame that is drawn in part with smooth outlines: two bands of which different columns are wanted, so that the row that one holds for the other
+/// has to have the columns of both. It was wrong in this case of the family.
+#[test]
+fn rows_that_are_held_have_the_columns_of_the_next_band() {
+    let case = changes::case(&mut Random::new(991_200_004, 5814), 60).unwrap().unwrap();
+    let found = changes::judge(&case, changes::all).expect("the picture of a new renderer");
+    assert!(found.is_some() && case.style.antialias);
+}

@@ -117,7 +117,8 @@ impl<'r> FrameRows<'r> {
         let Size { width, height } = area.size;
         let columns = [left as u16, right as u16];
         let pixels = if ANTIALIAS && context.settings.has_edges() {
-            self.draw_smooth(context, colours, pixels, &mut under, columns, rows.map(u32::from));
+            // The row that is held belongs to the next band, of which other columns may be wanted.
+            self.draw_smooth(context, colours, pixels, &mut under, context.region.hull().columns, rows.map(u32::from));
             pixels.get_mut(..(width * height) as usize).unwrap_or_default()
         } else {
             let pixels = pixels.get_mut(..(width * height) as usize).unwrap_or_default();
