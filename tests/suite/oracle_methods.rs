@@ -216,8 +216,9 @@ fn close_decisions_have_several_outcomes() {
                 assert_eq!(outcomes(name, &frame, facet, p, 0.0).unwrap(), [shade(p)], "{name}");
                 // One such place is enough.
                 if !several {
-                    // Some decide on what is rare: with this margin, all decisions are close.
-                    let outcomes = outcomes(name, &frame, facet, p, 1e9).unwrap();
+                    // Rows of hardly any angle are rare: with a large margin, all of these decisions are close.
+                    let margin = if ["angular", "hybrid"].iter().any(|rare| name.starts_with(rare)) { 1e9 } else { 0.5 };
+                    let outcomes = outcomes(name, &frame, facet, p, margin).unwrap();
                     assert_eq!(outcomes[0], shade(p), "{name}");
                     several = outcomes.iter().any(|&outcome| outcome != outcomes[0]);
                 }

@@ -214,9 +214,10 @@ impl<'r> Context<'r> {
         })
     }
 
-    /// Calls `put` with the edges at which triangles cut each other.
+    /// Calls `put` with the edges of the area to be drawn at which triangles cut each other.
     #[inline(never)]
     pub(crate) fn each_cut(&self, put: &mut dyn FnMut(&Edge)) {
+        let hull = self.settings.touched(&self.region.hull());
         // Most pairs belong to the meshes of the pair before them.
         let (mut meshes, mut other_meshes) = (None, None);
         for &Cut { triangles: [one, other], objects: [object, other_object] } in self.scene.stream.cuts {
@@ -225,6 +226,7 @@ impl<'r> Context<'r> {
                 && let Some(one) = one.flat(first)
                 && let Some(other) = other.flat(other_first)
                 && let Some(edge) = one.edge(&other)
+                && edge.meets(&hull)
             {
                 put(&edge);
             }
@@ -280,11 +282,7 @@ impl<'r> Context<'r> {
                 }
             }
         }
-        self.each_cut(&mut |edge| {
-            if edge.meets(&hull) {
-                put(edge);
-            }
-        });
+        self.each_cut(put);
     }
 
     /// What the triangles of `placed` have in common in a band of which these `columns` are wanted.

@@ -332,11 +332,7 @@ impl<'r> FrameRows<'r> {
                 });
             }
         }
-        context.each_cut(&mut |edge| {
-            if edge.meets(&hull) {
-                smoother.put(edge, rows.clone());
-            }
-        });
+        context.each_cut(&mut |edge| smoother.put(edge, rows.clone()));
         stats.edges = smoother.close(complete);
     }
 

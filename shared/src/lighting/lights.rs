@@ -20,8 +20,8 @@ pub(crate) const SHAPES: usize = if LIGHT_SHAPES { 1 } else { 0 };
 #[derive(FromBytes, IntoBytes, Immutable, KnownLayout, Clone, Copy, Debug)]
 #[repr(C)]
 pub struct Source {
-    /// For a directional light, and for light from the sky, the unit vector L towards it, and the unit half vector H between L and an infinitely far viewer, which is unused under
-    /// a local viewer; Q2.30. For a point light its position, Q7.25, and the axis of its cone, Q2.30.
+    /// For a directional light, and for light from the sky, the unit vector L towards it, and the unit half vector H between L and an infinitely far
+    /// viewer, which is unused under a local viewer; Q2.30. For a point light its position, Q7.25, and the axis of its cone, Q2.30.
     vectors: [[i32; 3]; 2],
     /// The kind of light, as in [`Light::kind`].
     kind: u32,
