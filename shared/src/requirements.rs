@@ -15,6 +15,8 @@ impl Feature {
         let Stream { header, lights, .. } = stream;
         match self {
             Self::Animation => !stream.tracks.is_empty(),
+            // Several lights are summed in three channels.
+            Self::Colours if Self::Lights.is_needed_by(stream, channels) && !channels.is_gray => true,
             Self::Colours => {
                 stream.materials.iter().any(|material| !LightTerms::new(channels, header.ambient, material, lights).are_one_channel)
             }

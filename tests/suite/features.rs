@@ -14,7 +14,7 @@ use std::{collections::BTreeSet, fs, process::Command};
 use tempfile::TempDir;
 
 /// Features of the core, each set compiled for this computer.
-const SETS: [&str; 4] = ["", "colours", "light-shapes,near-lights", "animation,lights,objects"];
+const SETS: [&str; 4] = ["", "colours", "light-shapes,near-lights", "animation,colours,lights,objects"];
 const ALL: &str = "animation,colours,light-shapes,lights,near-lights,objects,redraw,text";
 
 const SCENES: [&str; 8] = ["teapot", "torus", "sphere-40", "peer-sphere-plastic", "peer-sphere-lights", "gauges", "board", "sensor"];

@@ -8,6 +8,8 @@ const NODES: [V3; 7] =
     [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0], [0.5, 0.5, 0.0], [0.0, 0.5, 0.5], [0.5, 0.0, 0.5], Facet::CENTRE];
 /// The exponent up to which |N|² follows from the constants of edges, which have 16 fraction bits. Beyond it, |N|² follows from the normals.
 const STEEP: f64 = 64.0;
+/// Error of a walked square, in units of the largest at a corner.
+const WALKED: f64 = 1.0 / (1u64 << 24) as f64;
 
 impl Place {
     /// The squared distance of the farthest corner from this light or viewer, divided by the squared distance of `position`.
@@ -44,6 +46,26 @@ impl Frame {
             (true, true) => 18,
         };
         f64::from(-bits).exp2()
+    }
+
+    /// Largest change of a point's light, in levels, if the walked square of a light's distance has the error of a word. A cone divides by the distance,
+    /// so that the error counts the more, the closer the light is in comparison with the farthest corner.
+    #[must_use]
+    pub fn weakening(&self, facet: &Facet, point: [f64; 2]) -> f64 {
+        let (weights, material) = (facet.weights(point), self.material(facet));
+        let position = facet.position(weights);
+        let mut levels = [0.0; 3];
+        for light in self.lights.iter().filter(|light| light.range.is_some() || light.cone.is_some()) {
+            let Place::Near(place) = light.place else { continue };
+            let (closeness, way) = (light.place.closeness(facet, position), sub(position, place));
+            let errors = [closeness * dot(way, way), closeness].map(|error| WALKED * error);
+            let strength = |sign: f64| light.strength_beside(position, [-sign * errors[0], sign * errors[1]]);
+            let change = strength(1.0) - strength(-1.0);
+            for (k, level) in levels.iter_mut().enumerate() {
+                *level += 255.0 * light.colour[k] * change * (material.diffuse[k] + material.specular[k]);
+            }
+        }
+        levels.into_iter().fold(0.0, f64::max)
     }
 
     /// Whether rounding decides on which side of the horizon the half vector of a light is at a point: highlights by R·V, of low exponents,

@@ -47,10 +47,17 @@ impl Light {
     /// What is left of it at a position: 1 if it is as strong as at its source.
     #[must_use]
     pub fn strength(&self, position: V3) -> f64 {
+        self.strength_beside(position, [0.0; 2])
+    }
+
+    /// [`Self::strength`], where the squared distance and the cosine to the axis of the cone are larger by `more`.
+    #[must_use]
+    pub fn strength_beside(&self, position: V3, more: [f64; 2]) -> f64 {
         let Place::Near(place) = self.place else { return 1.0 };
-        let way = sub(position, place);
-        let part = self.range.map_or(0.0, |range| dot(way, way) / (range * range));
-        let within = self.cone.map_or(1.0, |(axis, [edge, full])| ((dot(axis, direction(way)) - edge) / (full - edge)).clamp(0.0, 1.0));
+        let (way, [square, cosine]) = (sub(position, place), more);
+        let part = self.range.map_or(0.0, |range| (dot(way, way) + square) / (range * range));
+        let share = |axis, [edge, full]: [f64; 2]| (dot(axis, direction(way)) + cosine - edge) / (full - edge);
+        let within = self.cone.map_or(1.0, |(axis, cosines)| share(axis, cosines).clamp(0.0, 1.0));
         (1.0 - part).max(0.0).powi(2) * within.powi(2)
     }
 

@@ -122,6 +122,12 @@ impl Divides {
     }
 }
 
+/// Whether a method interpolates light, which it computes at nodes with the strength that lights have there. All others weaken lights at each pixel, by
+/// a walked distance.
+fn interpolates_light(name: &str) -> bool {
+    matches!(name, "flat" | "gouraud" | "gouraud4" | "six-point" | "six-point-adaptive" | "six-point-centre" | "cubic")
+}
+
 /// Judges each pixel of a frame by its sensitivity; `None` if the method cannot draw it.
 #[must_use]
 pub fn judge(case: &Case) -> Option<Found> {
@@ -131,15 +137,19 @@ pub fn judge(case: &Case) -> Option<Found> {
     let lights = PER_LIGHT * frame.lights.len().saturating_sub(1) as f64;
     let divides = Divides::of(case.style.shader.name(), frame.is_constant());
     let mirrors = case.style.shader.name() == "phong-rv";
+    let interpolates_light = interpolates_light(case.style.shader.name());
     let mut found = Found::default();
     for pixel in pixels(case, &frame, &frame.visible())? {
         let facets = pixel.errors.iter().map(|&(facet, _)| &frame.facets[facet as usize]);
+        let weakening =
+            if interpolates_light { 0.0 } else { facets.clone().map(|facet| frame.weakening(facet, pixel.centre)).fold(0.0, f64::max) };
         let sensitivity = match divides {
             _ if pixel.is_undecidable && pixel.least() > LIMIT => f64::INFINITY,
             _ if mirrors && facets.clone().any(|facet| frame.is_at_horizon(facet, pixel.centre)) => f64::INFINITY,
             Divides::Nowhere => 0.0,
-            _ => facets.map(|facet| frame.sensitivity(facet, pixel.centre, divides == Divides::AtNodes)).fold(0.0, f64::max),
+            _ => facets.clone().map(|facet| frame.sensitivity(facet, pixel.centre, divides == Divides::AtNodes)).fold(0.0, f64::max),
         };
+        let sensitivity = sensitivity + weakening;
         let more = if sensitivity < STRICT { 0.0 } else { sensitivity };
         match sensitivity {
             ..STRICT => found.strictly += 1,

@@ -51,6 +51,47 @@ impl<P: Patch<Walker: Copy>> Patch for ByColumn<P> {
     }
 }
 
+/// The number of the column itself, for pixel shaders that evaluate polynomials of their own. Nothing that is walked beside it is saved for the next
+/// band, because their polynomials would not be.
+#[derive(Clone, Copy, Debug)]
+pub struct Column;
+
+impl Patch for Column {
+    type Walker = ColumnWalker;
+
+    #[inline(always)]
+    fn jump(&mut self, _: i32) {}
+
+    #[inline(always)]
+    fn step_row(&mut self) {}
+
+    #[inline(always)]
+    fn enter(&self, x: i32) -> ColumnWalker {
+        ColumnWalker(x)
+    }
+
+    /// More than there is room for.
+    const WORDS: usize = 1 << 8;
+}
+
+/// A column of a span.
+#[derive(Clone, Copy, Debug)]
+pub struct ColumnWalker(i32);
+
+impl Walker for ColumnWalker {
+    type Value = i32;
+
+    #[inline(always)]
+    fn step(&mut self) {
+        self.0 = self.0.wrapping_sub(1);
+    }
+
+    #[inline(always)]
+    fn value(&self) -> i32 {
+        self.0
+    }
+}
+
 /// A column together with the polynomial or its walker. The compiler removes what is not used.
 #[derive(Clone, Copy, Debug)]
 pub struct AtColumn<P: Patch> {

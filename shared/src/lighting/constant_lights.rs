@@ -1,13 +1,12 @@
-//! The colours of a material under one or two constant lights, for pixel loops. Diffuse light is walked, and highlights are looked up.
+//! The colours of a material under constant lights, for pixel loops. Diffuse light is walked, and highlights are looked up.
 
 use crate::{
     arch::product::upper,
-    format::{BIAS, CHANNEL, COSINE, LEVEL, RAMP},
+    format::{BIAS, CHANNEL, COSINE, INTENSITY, LEVEL, RAMP},
     math::highlight_lut::ENTRY,
     pixel::{
         Pixel,
         by_rows::{ByRows, ByTurns},
-        half_step,
         ramps::Ramps,
     },
 };
@@ -20,6 +19,13 @@ pub struct WithHighlight(pub i32, pub u32);
 /// A light without a highlight: a walked diffuse level, negative where there is no light.
 #[derive(Clone, Copy, Debug)]
 pub struct DiffuseOnly(pub i32);
+
+/// The diffuse light of several lights in each channel: levels, Q10 with [`SUMMED`] fraction bits.
+#[derive(Clone, Copy, Debug)]
+pub struct Summed(pub [i32; 3]);
+
+/// Fraction bits of [`Summed`].
+pub(crate) const SUMMED: u32 = CHANNEL - 3;
 
 impl From<DiffuseOnly> for WithHighlight {
     #[inline]
@@ -137,15 +143,9 @@ impl Sum {
     /// Factors that are not filled yet; all zeros.
     pub(super) const EMPTY: Self = Self { ambient: 0, diffuse: 0, specular: 0 };
 
-    /// The factors for levels of ambient, diffuse and specular light, Q9.7, in a channel of `bits` bits. `all` is the diffuse light of all lights.
-    pub(super) fn new(ambient: i32, [diffuse, all]: [u16; 2], specular: u16, bits: u32) -> Self {
-        Self {
-            // Cosines are rounded down: half of their last place more. Of all lights, so that it does not matter which of them is first, nor
-            // whether one is left out.
-            ambient: (ambient << FACTOR).wrapping_add(half_step(bits)).wrapping_add(i32::from(all) >> 1),
-            diffuse: diffuse.into(),
-            specular: (i32::from(specular) + 1) >> 1,
-        }
+    /// The factors for a level of ambient light with a constant for rounding, Q10.22, and levels of diffuse and specular light, Q9.7.
+    pub(super) fn new(ambient: i32, diffuse: u16, specular: u16) -> Self {
+        Self { ambient, diffuse: diffuse.into(), specular: (i32::from(specular) + 1) >> 1 }
     }
 
     /// What the light adds at a pixel, from a cosine, Q1.15, and a highlight, unsigned Q0.16; Q10.22.
@@ -176,7 +176,7 @@ const _: () = assert!(ENTRY + LEVEL - 1 == CHANNEL);
 
 /// A walked diffuse level as a cosine from 0 to 1, Q1.15.
 #[inline(always)]
-fn cosine(bits: u32, diffuse: i32) -> i32 {
+pub(crate) fn cosine(bits: u32, diffuse: i32) -> i32 {
     // Armv7-M shifts and clamps by one instruction.
     (diffuse >> ((bits + FULL_BITS - FACTOR) & 31)).clamp(0, (1 << FACTOR) - 1)
 }
@@ -221,6 +221,57 @@ impl<C: Pixel> Shades<WithHighlight> for OneLightRgb<'_, C> {
     fn colour(&self, bits: u32, WithHighlight(diffuse, highlight): WithHighlight) -> C {
         let ([r, g, b], cosine, highlight) = (self.0.now(), cosine(bits, diffuse), highlight as i32);
         C::mixed([r.level_from_highlight(cosine, highlight), g.level(cosine, highlight), b.level(cosine, highlight)])
+    }
+}
+
+/// Three channels under any number of lights: ambient light, to which the light at a pixel is added.
+#[derive(Clone, Copy, Debug)]
+pub struct SummedRgb<'a, C> {
+    /// The levels of ambient light, as the sums of the first light contain them.
+    pub(super) ambient: ByTurns<&'a Sums, C>,
+    /// Fraction bits that levels have more than an intensity.
+    pub(super) bits: u32,
+}
+
+impl<C: Pixel> ByRows for SummedRgb<'_, C> {
+    #[inline(always)]
+    fn step_row(&mut self) {
+        self.ambient.step_row();
+    }
+}
+
+impl<C: Pixel> LitColours for SummedRgb<'_, C> {
+    type Pixel = C;
+
+    const TABLED: bool = false;
+
+    fn diffuse(&self) -> u16 {
+        OneLightRgb::<C>::DIFFUSE
+    }
+}
+
+impl<C: Pixel> SummedRgb<'_, C> {
+    /// The levels of this diffuse light and of ambient light.
+    #[inline(always)]
+    pub(crate) fn levels(&self, Summed([red, green, blue]): Summed) -> [i32; 3] {
+        let [r, g, b] = self.ambient.now();
+        let level = |ambient: &Sum, sum: i32| ambient.ambient.wrapping_add(sum << (CHANNEL - SUMMED));
+        [level(r, red), level(g, green), level(b, blue)]
+    }
+
+    /// The colour of levels.
+    #[inline(always)]
+    pub(crate) fn mixed(&self, [r, g, b]: [i32; 3]) -> C {
+        // Armv7-M clamps by one instruction.
+        let level = |level: i32| (level >> (self.bits & 31)).clamp(0, (1 << (8 + INTENSITY)) - 1) << (CHANNEL - INTENSITY);
+        C::mixed([level(r), level(g), level(b)])
+    }
+}
+
+impl<C: Pixel> Shades<Summed> for SummedRgb<'_, C> {
+    #[inline(always)]
+    fn colour(&self, _: u32, sum: Summed) -> C {
+        self.mixed(self.levels(sum))
     }
 }
 

@@ -2,9 +2,9 @@
 
 use crate::{
     features::{COLOURS, LIGHTS},
-    format::{BIAS, CHANNEL, COSINE, LEVEL, WALK},
+    format::{BIAS, CHANNEL, COSINE, INTENSITY, LEVEL, WALK},
     lighting::{
-        constant_lights::{FACTOR, OneLightRamp, OneLightRgb, TwoLightsRgb},
+        constant_lights::{FACTOR, OneLightRamp, OneLightRgb, SummedRgb, TwoLightsRgb},
         reflectance::{LitMaterial, Reflectance},
     },
     math::vector::zip,
@@ -106,6 +106,13 @@ impl<'a, C: Pixel> MaterialTables<'a, C> {
         let forth = ByTurns::new([even.first_chunk()?, odd.first_chunk()?]);
         let back = ByTurns::new([even.last_chunk()?, odd.last_chunk()?]);
         (LIGHTS && COLOURS && !C::GRAY && self.reflectance.lights() == 2).then_some([TwoLightsRgb(forth), TwoLightsRgb(back)])
+    }
+
+    /// The colours where light is summed. Domain: [`Reflectance::sums_lights`].
+    #[inline(always)]
+    pub(crate) fn summed_rgb(&self) -> SummedRgb<'a, C> {
+        let OneLightRgb(ambient) = self.sums();
+        SummedRgb { ambient, bits: CHANNEL - INTENSITY - self.reflectance.excess() }
     }
 
     /// The colour under one light from `[N·L, N·H]` (Q2.30), on even rows and on odd ones.

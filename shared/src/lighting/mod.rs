@@ -6,3 +6,4 @@ pub mod lights;
 pub mod material_tables;
 pub mod reflectance;
 pub mod shape;
+pub(crate) mod summed;

@@ -16,12 +16,15 @@ use crate::{
         highlight_lut::{Base, ENTRY, HighlightCurve, HighlightLut, square},
         vector::zip,
     },
-    pixel::{Channels, gamma::Gamma, steps},
+    pixel::{Channels, gamma::Gamma, half_step, steps},
     scene::{Colour, LightTerms, largest},
-    stream::record::{Light, Material, POINT},
+    stream::record::{Light, Material, POINT, SKY},
 };
 use core::ops::Deref;
 use zerocopy::{FromBytes, Immutable, IntoBytes, KnownLayout};
+
+/// [`Reflectance::lights`] where the diffuse light of all lights is summed.
+pub(crate) const SUMMED: u8 = 3;
 
 /// Largest level of a node, Q9.7.
 pub const FULL: i32 = 255 << LEVEL;
@@ -77,9 +80,9 @@ impl Gains {
 #[derive(Clone, Copy, Debug)]
 pub struct Factors {
     /// The diffuse level at cosine 1, Q9.7 less the bits of [`Reflectance::excess`].
-    diffuse: [i32; 3],
+    pub(crate) diffuse: [i32; 3],
     /// The level of a whole highlight, Q9.6 less these bits.
-    specular: [i32; 3],
+    pub(crate) specular: [i32; 3],
 }
 
 impl Factors {
@@ -104,10 +107,22 @@ impl Factors {
 
     #[inline]
     fn levels(&self, Reflection { diffuse, highlight }: Reflection) -> [i32; 3] {
-        let cosine = Self::cosine(diffuse);
+        self.at(Self::cosine(diffuse), highlight)
+    }
+
+    /// What the light adds at a cosine, Q1.15, and a highlight, unsigned Q0.16.
+    #[inline]
+    fn at(&self, cosine: i32, highlight: u32) -> [i32; 3] {
         let level = |diffuse: i32, specular: i32| diffuse.wrapping_mul(cosine).wrapping_add(specular.wrapping_mul(highlight as i32));
         let ([dr, dg, db], [sr, sg, sb]) = (self.diffuse, self.specular);
         [level(dr, sr), level(dg, sg), level(db, sb)]
+    }
+
+    /// Adds the diffuse light at a cosine, Q1.15, to the levels of a vertex.
+    #[inline]
+    pub(super) fn add_at(&self, [r, g, b]: [i32; 3], cosine: i32) -> [i32; 3] {
+        let ([dr, dg, db], level) = (self.diffuse, |level: i32, gain: i32| level.wrapping_add(gain.wrapping_mul(cosine)));
+        [level(r, dr), level(g, dg), level(b, db)]
     }
 }
 
@@ -184,7 +199,11 @@ impl Reflectance {
     ) {
         let Channels { depth, is_gray, is_coarse, .. } = channels;
         let LightTerms { colours: terms, base, are_one_channel } = LightTerms::new(&channels, ambient, material, lights);
-        let one_channel = !COLOURS || are_one_channel;
+        let is_plain = !LIGHT_SHAPES || !lights.iter().any(Light::has_shape);
+        let is_sky = |light: &Light| LIGHT_SHAPES && light.kind == SKY;
+        // Loops for several lights have three channels.
+        let are_several = LIGHTS && lights.len() > 1;
+        let one_channel = !COLOURS || are_one_channel && (is_gray || !(holds_levels && are_several));
         self.depth = depth;
         self.quarter = 0;
         self.three_channels = u8::from(!one_channel);
@@ -207,18 +226,29 @@ impl Reflectance {
         self.ramp = [ambient[most], diffuse[most].into()];
         // There are loops for one near light that has a range.
         let is_ranged = |light: &Light| light.kind == POINT && light.axis == [0; 3];
-        let is_plain = !LIGHT_SHAPES || !lights.iter().any(Light::has_shape);
         let is_one = lights.len() == 1 && (is_plain || lights.iter().all(is_ranged));
-        let looped = holds_levels && fits && (is_one || lights.len() == 2 && !one_channel && is_plain);
-        self.lights = if looped { lights.len() as u8 } else { 0 };
-        self.has_two_lights = u8::from(lights.len() == 2 && !one_channel && fits && is_plain);
-        let holds_levels = looped && one_channel;
-        let second = self.gains.get(1).filter(|_| lights.len() > 1).map_or([0; 3], |gains| gains.diffuse);
-        let all = zip(diffuse, second, u16::saturating_add);
+        let are_two = lights.len() == 2 && !one_channel && is_plain;
+        self.lights = match holds_levels && fits {
+            true if is_one || are_two => lights.len() as u8,
+            _ if holds_levels && are_several && !one_channel => SUMMED,
+            _ => 0,
+        };
+        self.has_two_lights = u8::from(are_two && fits);
+        let holds_levels = self.lights == 1 && one_channel;
+        // Where lights are summed, half of the sky's light is ambient. Elsewhere cosines are rounded down: half of their last place more. Of all
+        // lights, so that it does not matter which of them is first, nor whether one is left out.
+        let summed = self.lights == SUMMED;
+        let mut more = [0; 3];
+        for (gains, _) in self.gains.iter().zip(lights).filter(|(_, light)| !summed || is_sky(light)) {
+            more = zip(more, gains.diffuse, |more, gain| more + i32::from(gain));
+        }
+        let less = if summed { excess } else { 0 };
+        let bits = if summed { FACTOR - less } else { 0 };
+        let ambient = zip(self.ambient, more, |level, more| (level << (FACTOR - less)).wrapping_add((more << bits) >> 1));
         let [even, odd] = &mut self.sums;
         for (sums, gains) in even.iter_mut().zip(&self.gains) {
             for (k, sum) in sums.iter_mut().enumerate() {
-                *sum = Sum::new(self.ambient[k], [gains.diffuse[k], all[k]], gains.specular[k], depth[k]);
+                *sum = Sum::new(ambient[k].wrapping_add(half_step(depth[k]) >> less), gains.diffuse[k], gains.specular[k]);
             }
         }
         // Greys have no three channels.
@@ -278,7 +308,8 @@ impl Reflectance {
         self.lights() == 1 && !self.three_channels()
     }
 
-    /// Number of lights, if the method has loops for this number and their levels fit their formats; otherwise 0.
+    /// Number of lights, if the method has loops for this number and their levels fit their formats; [`SUMMED`] for more than two lights, and for light
+    /// from the sky; otherwise 0.
     #[inline]
     #[must_use]
     pub fn lights(&self) -> u8 {
@@ -297,6 +328,13 @@ impl Reflectance {
     #[must_use]
     pub fn has_two_lights(&self) -> bool {
         LIGHTS && COLOURS && self.has_two_lights != 0
+    }
+
+    /// Whether light is summed, see [`crate::lighting::summed`].
+    #[inline]
+    #[must_use]
+    pub(crate) fn sums_lights(&self) -> bool {
+        LIGHTS && COLOURS && self.lights == SUMMED
     }
 
     /// [`Self::highlight_threshold`] of a material without highlights, greater than every N·H.
@@ -326,9 +364,10 @@ impl Reflectance {
     /// Dithers three channels by rows: even ones are a quarter of a step lower, odd ones higher.
     pub(crate) fn dither(&mut self) {
         self.quarter = 1 << (CHANNEL - 2);
+        let less = if self.lights == SUMMED { self.excess } else { 0 };
         for (rows, quarter) in self.sums.iter_mut().zip([-self.quarter, self.quarter]) {
             for sums in rows {
-                *sums = zip(*sums, steps(self.depth, quarter), Sum::raised);
+                *sums = zip(*sums, steps(self.depth, quarter), |sum, step| sum.raised(step >> less));
             }
         }
     }
@@ -437,6 +476,12 @@ impl Reflectance {
     #[must_use]
     pub fn ambient(&self) -> [i32; 3] {
         self.ambient
+    }
+
+    /// Bits by which the sum of all lights may leave Q10.22, at most 5.
+    #[inline]
+    pub(super) fn excess(&self) -> u32 {
+        u32::from(self.excess)
     }
 
     /// Factors of light number `light`.
@@ -636,11 +681,21 @@ impl<'f> LitMaterial<'f> {
     }
 
     /// Levels as in [`Self::constant_levels`], for sums that do not fit a word, or for more than two lights.
-    #[cold]
     #[inline(never)]
     fn many_constant_levels<N: UnitNormal>(self, sources: &[Source], normal: &N) -> [i32; 3] {
-        let cosines = |source: &Source| source.directional().map_or([0; 2], |directions| directions.map(|v| normal.cosine(v)));
-        self.levels(sources.iter().map(|source| source.distant(cosines(source))))
+        let bits = (FACTOR - self.excess()) & 31;
+        let [mut r, mut g, mut b] = [1i32 << (bits - 1); 3];
+        for (light, source) in sources.iter().enumerate() {
+            let Some(&[towards, half]) = source.directional() else { continue };
+            let cosine = normal.cosine(towards);
+            let (towards, highlight) =
+                if source.is_sky() { (part_of_sky(cosine, COSINE), 0) } else { (cosine, self.highlight(normal.cosine(half))) };
+            // One by one: arrays go through memory at opt-level "s".
+            let [red, green, blue] = self.factors(light).at(node_cosine(towards), highlight);
+            (r, g, b) = (r.wrapping_add(red), g.wrapping_add(green), b.wrapping_add(blue));
+        }
+        let ([red, green, blue], level) = (self.ambient, |ambient: i32, sum: i32| (ambient + (sum >> bits)).min(FULL));
+        [level(red, r), level(green, g), level(blue, b)]
     }
 }
 
@@ -690,7 +745,7 @@ fn reflected((diffuse, specular): (u16, u16), cosine: i32, highlight: u32) -> i3
 
 /// N·L of a node, Q2.30, as a factor of diffuse light, Q1.15; 0 if it is negative.
 #[inline]
-fn node_cosine(cosine: i32) -> i32 {
+pub(super) fn node_cosine(cosine: i32) -> i32 {
     cosine.max(0) >> (COSINE - FACTOR)
 }
 

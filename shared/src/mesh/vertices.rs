@@ -10,6 +10,7 @@ use crate::{
     lighting::{
         lights::{Lighting, MeanNormal, point, vertex_cosine},
         reflectance::LitMaterial,
+        summed,
     },
     math::vector::{map, wide},
     method::VertexLight,
@@ -128,30 +129,32 @@ impl VertexStage<'_> {
     /// The light of a vertex, as [`ScreenVertex::light`] describes it.
     #[inline(always)]
     fn light_at(&self, vertex: &Vertex) -> [i32; 4] {
-        let normal = wide(vertex.normal);
         match (self.light, self.constant) {
             (VertexLight::None, _) => [0; 4],
             // All scenes have one constant light then.
             (_, None) if ALWAYS_CONSTANT => [0; 4],
-            (VertexLight::Cosines | VertexLight::CosinesAndReflection, None) if self.has_two_lights() => self.cosines_of_two_lights(normal),
-            (VertexLight::Cosines | VertexLight::CosinesAndReflection, None) => [0; 4],
             (light, Some([towards, half])) if light != VertexLight::Levels || !self.reflectance.three_channels() => {
+                let normal = wide(vertex.normal);
                 self.under_one_light(light, [vertex_cosine(normal, *towards), vertex_cosine(normal, *half)])
             }
-            _ => self.levels(vertex),
+            _ => self.under_lights(vertex),
         }
     }
 
-    /// The light levels of a vertex under all lights.
+    /// The light of a vertex under any lights.
     #[inline(never)]
-    fn levels(&self, vertex: &Vertex) -> [i32; 4] {
-        let normal = wide(vertex.normal);
-        let [r, g, b] = if self.lighting.is_constant() {
-            self.reflectance.constant_levels(self.lighting.sources(), &MeanNormal::at(normal))
-        } else {
-            self.reflectance.levels(self.lighting.incident(point(vertex.position), map(normal, |c| c << (30 - UNIT))))
-        };
-        [r, g, b, 0]
+    fn under_lights(&self, vertex: &Vertex) -> [i32; 4] {
+        let (normal, reflectance, lighting) = (wide(vertex.normal), &self.reflectance, self.lighting);
+        let has_levels = !matches!(self.light, VertexLight::Cosines | VertexLight::CosinesAndReflection);
+        match lighting.is_constant() {
+            true if has_levels => of_levels(reflectance.constant_levels(lighting.sources(), &MeanNormal::at(normal))),
+            true if reflectance.has_two_lights() => self.cosines_of_two_lights(normal),
+            true if reflectance.sums_lights() => summed::at_vertex(reflectance, lighting.sources(), normal),
+            false if has_levels => {
+                of_levels(reflectance.levels(lighting.incident(point(vertex.position), map(normal, |c| c << (30 - UNIT)))))
+            }
+            _ => [0; 4],
+        }
     }
 
     /// The light of a vertex with these cosines of one constant light.
@@ -163,12 +166,6 @@ impl VertexStage<'_> {
             _ if self.reflectance.three_channels() => [towards, half, self.reflectance.highlight(half) as i32, 0],
             _ => [towards, half, self.reflectance.level([towards, half]), 0],
         }
-    }
-
-    /// Whether vertices have the cosines of two lights: both are constant, on a material of three channels.
-    #[inline]
-    fn has_two_lights(&self) -> bool {
-        self.reflectance.has_two_lights() && self.lighting.is_constant()
     }
 
     /// N·L and N·H of one light, then of the other, Q2.30.
@@ -193,4 +190,10 @@ impl VertexStage<'_> {
             viewport.clipped_bounds(self.view, vertices)
         }
     }
+}
+
+/// The light of a vertex that has these levels of red, green and blue.
+#[inline(always)]
+fn of_levels([r, g, b]: [i32; 3]) -> [i32; 4] {
+    [r, g, b, 0]
 }

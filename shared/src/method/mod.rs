@@ -117,7 +117,7 @@ impl fmt::Debug for dyn Method {
 pub(crate) struct Style {
     /// Whether colours have three channels instead of one.
     pub(crate) three_channels: bool,
-    /// Number of constant lights, if their levels fit the formats of [`crate::lighting::constant_lights`]; otherwise 0.
+    /// Number of constant lights as [`Reflectance::lights`], if their levels fit the formats of [`crate::lighting::constant_lights`]; otherwise 0.
     pub(crate) lights: u8,
     /// Whether there is one light, and either it or the viewer is near, and its levels fit these formats.
     pub(crate) one_near: bool,
@@ -134,7 +134,7 @@ impl Style {
     }
 
     /// Whether loops for one constant light, or for two, can draw it.
-    pub(crate) fn has_constant_lights(self) -> bool {
+    pub(crate) fn has_one_light_or_two(self) -> bool {
         (1..=2).contains(&self.lights) && self.is_plain()
     }
 }

@@ -13,7 +13,11 @@ use crate::{
     features::LIGHTS,
     format::{HAVERSINE, UNIT},
     interpolate::field::Field,
-    lighting::{lights::Source, material_tables::MaterialTables, reflectance::Reflection},
+    lighting::{
+        lights::Source,
+        material_tables::MaterialTables,
+        reflectance::{Reflection, SUMMED},
+    },
     math::{
         highlight_lut::CosineLookup,
         rsqrt::{HalfRsqrt, Root},
@@ -24,6 +28,7 @@ use crate::{
         cosines::{
             quotient,
             scale::{self, Lengths, UnitSquare},
+            summed,
         },
         largest,
         lighting_model::{LightingModel, Lit},
@@ -65,12 +70,12 @@ where
     shading.draw_lit(setup, |source| shading.constant_products(setup, source), common, model, canvas)
 }
 
-/// The loops under one or two lights.
+/// The loops under constant lights.
 pub(crate) struct Duff;
 
 impl Loops for Duff {
     fn take(style: Style) -> bool {
-        style.has_constant_lights()
+        style.lights > 0 && style.is_plain()
     }
 
     #[inline(always)]
@@ -84,7 +89,7 @@ impl Loops for Duff {
     }
 }
 
-/// [`Loops::draw`] under one light with the cosines `corners`, or two.
+/// [`Loops::draw`] under one light with the cosines `corners`, or several.
 #[inline(always)]
 pub(crate) fn draw<C: Pixel>(
     setup: &TriangleSetup<'_>,
@@ -94,7 +99,11 @@ pub(crate) fn draw<C: Pixel>(
     band: &mut Band<'_, C>,
 ) -> Option<u32> {
     let reflectance = tables.reflectance;
-    if is_steep(shading.exponent) && (reflectance.lights() > 1 || largest(&corners()[1]) >= setup.highlight_threshold(reflectance)) {
+    let has_highlight = || match reflectance.lights() {
+        1 => largest(&corners()[1]) >= setup.highlight_threshold(reflectance),
+        lights => lights != SUMMED,
+    };
+    if is_steep(shading.exponent) && has_highlight() {
         return None;
     }
     // |N|² has two more bits than other quadratics, and its root is half as steep.
@@ -102,8 +111,12 @@ pub(crate) fn draw<C: Pixel>(
         return None;
     }
     let lengths = Lengths::of(setup)?;
-    if LIGHTS && tables.reflectance.lights() == 2 {
-        return quotient::draw_two(setup, &lengths, tables, band);
+    if LIGHTS && reflectance.lights() > 1 {
+        return if reflectance.sums_lights() {
+            summed::draw(setup, shading, &lengths, tables, band)
+        } else {
+            quotient::draw_two(setup, &lengths, tables, band)
+        };
     }
     quotient::draw(setup, &corners(), &lengths, tables, band)
 }

@@ -10,4 +10,5 @@ mod quotient;
 mod scale;
 #[doc(hidden)]
 pub mod sqrt6;
+mod summed;
 mod two_lights;

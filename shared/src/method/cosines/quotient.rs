@@ -29,22 +29,22 @@ use crate::{
 };
 
 /// Fraction bits of a diffuse level at a node. With a sign, levels then have [`RANGE`] bits.
-const NODE: u32 = 10;
+pub(super) const NODE: u32 = 10;
 /// Bits of the range of diffuse levels at nodes.
-const RANGE: u32 = 20;
+pub(super) const RANGE: u32 = 20;
 /// Fraction bits of a walked diffuse level.
-const LEVEL: u32 = 22;
+pub(super) const LEVEL: u32 = 22;
 /// Fraction bits of a level at a pixel, which is the upper half of the product of a walked level and half a reciprocal length, Q2.30.
-const PIXEL: u32 = LEVEL - 3;
+pub(super) const PIXEL: u32 = LEVEL - 3;
 /// Bits of the range of numerators at nodes, in steps of the table.
 const STEPS: u32 = 26;
 
 /// Half a reciprocal length, Q2.30.
-struct HalfReciprocal(i32);
+pub(super) struct HalfReciprocal(pub(super) i32);
 
 /// Values at the pixel are numerators without highlights and a squared length.
 #[derive(Clone, Copy)]
-struct Quotient<'a>(&'a HalfRsqrt);
+pub(super) struct Quotient<'a>(pub(super) &'a HalfRsqrt);
 
 /// Values at the pixel are numerators with highlights and a squared length.
 #[derive(Clone, Copy)]
@@ -237,7 +237,7 @@ fn diffuse(setup: &TriangleSetup<'_>, full: u16, lengths: &Lengths, towards: &[i
 
 /// A function of its own around [`diffuse`].
 #[inline(never)]
-fn plane(setup: &TriangleSetup<'_>, full: u16, lengths: &Lengths, towards: &[i32; 3]) -> Plane<1> {
+pub(super) fn plane(setup: &TriangleSetup<'_>, full: u16, lengths: &Lengths, towards: &[i32; 3]) -> Plane<1> {
     diffuse(setup, full, lengths, towards)
 }
 
@@ -251,7 +251,7 @@ fn highlight(setup: &TriangleSetup<'_>, lookup: QuotientLookup<'_>, lengths: &Le
 
 /// A function of its own around [`highlight`].
 #[inline(never)]
-fn numerator(setup: &TriangleSetup<'_>, lookup: QuotientLookup<'_>, lengths: &Lengths, half: &[i32; 3]) -> Plane<1> {
+pub(super) fn numerator(setup: &TriangleSetup<'_>, lookup: QuotientLookup<'_>, lengths: &Lengths, half: &[i32; 3]) -> Plane<1> {
     highlight(setup, lookup, lengths, half)
 }
 

@@ -120,7 +120,7 @@ fn shade_constant<const ROOT: IsRoot>(setup: &TriangleSetup<'_>, middles: Middle
 
 impl Loops for Sqrt6 {
     fn take(style: Style) -> bool {
-        style.has_constant_lights()
+        style.has_one_light_or_two()
     }
 
     #[inline(always)]
@@ -136,7 +136,7 @@ impl Loops for Sqrt6 {
 
 impl Loops for SixCosines {
     fn take(style: Style) -> bool {
-        style.has_constant_lights()
+        style.has_one_light_or_two()
     }
 
     #[inline(always)]

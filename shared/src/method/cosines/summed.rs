@@ -1,0 +1,225 @@
+//! Loops under any number of constant lights. The diffuse light of most is one sum, see [`crate::lighting::summed`]. Lights that end on a triangle are
+//! added one by one at each pixel, and so are highlights.
+//!
+//! Cost: that of three planes and a root for the sum; five products for each light that ends, and for each highlight the same and its table.
+
+use crate::{
+    arch::product::upper,
+    format::{MAX_LIGHTS, NORMAL_LENGTH},
+    interpolate::{
+        Patch, Walker,
+        by_column::{ByColumn, Column},
+        field::{Field, Nodes},
+        plane::Plane,
+    },
+    lighting::{
+        constant_lights::{DiffuseOnly, LitColours, SUMMED, Summed, SummedRgb, cosine},
+        material_tables::MaterialTables,
+        summed::{LEAST_LENGTH, Sides, part},
+    },
+    math::{
+        highlight_lookup::QuotientLookup,
+        rsqrt::HalfRsqrt,
+        vector::{map, zip},
+    },
+    method::{
+        Shading, TriangleSetup,
+        cosines::{
+            lit::{FromValues, LitShader},
+            quotient::{HalfReciprocal, LEVEL, NODE, PIXEL, Quotient, RANGE, numerator, plane},
+            scale::Lengths,
+        },
+        node::is_steep,
+    },
+    pixel::{Pixel, by_rows::ByRows},
+    raster::{band::Band, pixel_shader::PixelShader},
+};
+use core::cell::Cell;
+
+/// What is added at each pixel: a numerator, and a factor for each channel by which diffuse light or a highlight is multiplied.
+struct Term {
+    numerator: Cell<Plane<1>>,
+    factors: [i32; 3],
+}
+
+/// Room for a term of each light.
+type Terms = heapless::Vec<Term, MAX_LIGHTS>;
+
+impl Term {
+    /// Adds a term of `numerator`; there is room for all.
+    fn add(terms: &mut Terms, numerator: Plane<1>, factors: [i32; 3]) {
+        let _ = terms.push(Self { numerator: Cell::new(numerator), factors });
+    }
+
+    /// Moves the numerator down by `rows`.
+    #[inline(always)]
+    fn jump(&self, rows: i32) {
+        let mut moved = self.numerator.get();
+        moved.jump(rows);
+        self.numerator.set(moved);
+    }
+
+    /// The numerator at a column.
+    #[inline(always)]
+    fn at(&self, column: i32) -> [u32; 1] {
+        self.numerator.get().enter(column).value()
+    }
+}
+
+/// The lights on a triangle.
+#[derive(Default)]
+struct SummedLights {
+    /// The sum of diffuse light at the corners in each channel, as vertices hold it.
+    corners: [[i32; 3]; 3],
+    /// The diffuse light of lights that end on the triangle.
+    ending: Terms,
+    /// The highlights that can be seen there.
+    highlights: Terms,
+    /// Numbers of lights that reach the triangle without a highlight, and of lights that do not reach it.
+    without: [u32; 2],
+}
+
+impl SummedLights {
+    /// The lights on the triangle `setup`.
+    #[inline(never)]
+    fn on<C: Pixel>(
+        setup: &TriangleSetup<'_>,
+        shading: &Shading<'_>,
+        lengths: &Lengths,
+        lookup: QuotientLookup<'_>,
+        tables: MaterialTables<'_, C>,
+    ) -> Self {
+        let (material, full) = (tables.reflectance, tables.summed_rgb().diffuse());
+        let [a, b, c] = setup.corners.map(|corner| corner.light);
+        let sides = Sides::of_triangle([a[3], b[3], c[3]]);
+        let is_long = setup.triangle.min_normal_length >= LEAST_LENGTH << (NORMAL_LENGTH - 4);
+        let mut lights = Self { corners: [[a[0], b[0], c[0]], [a[1], b[1], c[1]], [a[2], b[2], c[2]]], ..Self::default() };
+        for (light, source) in shading.lighting.sources().iter().enumerate() {
+            let Some(&[towards, half]) = source.directional() else { continue };
+            let is_dark = sides.is_dark(light) && setup.leaves_out_light(material, &[0; 3]);
+            if !is_dark && !sides.is_bright(light) {
+                let towards = setup.corner_cosines(towards);
+                let (gains, [a, b, c]) = (material.factors(light).diffuse, map(towards, |cosine| part(source, cosine)));
+                for (channel, gain) in lights.corners.iter_mut().zip(gains) {
+                    let without = |sum: i32, part: i32| sum.wrapping_sub(gain.wrapping_mul(part));
+                    *channel = [without(channel[0], a), without(channel[1], b), without(channel[2], c)];
+                }
+                Term::add(&mut lights.ending, plane(setup, full, lengths, &towards), gains);
+            }
+            let mut has_highlight = !source.is_sky() && (!is_long || sides.may_have_highlight(light));
+            if has_highlight {
+                let half = setup.corner_cosines(half);
+                has_highlight = !setup.leaves_out_highlight(material, &half);
+                if has_highlight {
+                    Term::add(&mut lights.highlights, numerator(setup, lookup, lengths, &half), material.factors(light).specular);
+                }
+            }
+            let [without_highlight, without_light] = &mut lights.without;
+            *without_highlight += u32::from(!has_highlight && !is_dark);
+            *without_light += u32::from(!has_highlight && is_dark);
+        }
+        lights
+    }
+}
+
+/// Draws `setup`. `None` if it has a highlight that is too steep.
+#[inline(never)]
+pub(super) fn draw<C: Pixel>(
+    setup: &TriangleSetup<'_>,
+    shading: &Shading<'_>,
+    lengths: &Lengths,
+    tables: MaterialTables<'_, C>,
+    band: &mut Band<'_, C>,
+) -> Option<u32> {
+    let (lookup, colours) = (QuotientLookup::new(tables.reflectance.table()?), tables.summed_rgb());
+    let lights = &SummedLights::on(setup, shading, lengths, lookup, tables);
+    if is_steep(shading.exponent) && !lights.highlights.is_empty() {
+        return None;
+    }
+    let [without_highlight, without_light] = lights.without;
+    setup.count(band.top, &mut band.counts.without_highlight, without_highlight);
+    setup.count(band.top, &mut band.counts.without_light, without_light);
+    let patch = || (sums(setup, lengths, &lights.corners), lengths.square(setup));
+    if lights.ending.is_empty() && lights.highlights.is_empty() {
+        return Some(setup.fill(patch, LitShader::of::<Summed>(colours, Quotient(HalfRsqrt::get())), band));
+    }
+    let shader = OneByOne { colours, lookup, lengths: HalfRsqrt::get(), lights, row: setup.gradients.row() };
+    Some(setup.fill(|| (Column, ByColumn(patch())), shader, band))
+}
+
+/// The numerators of sums of diffuse light.
+#[inline(never)]
+fn sums(setup: &TriangleSetup<'_>, lengths: &Lengths, corners: &[[i32; 3]; 3]) -> Plane<3> {
+    let node = |sum: i32| (sum + (1 << (LEVEL - NODE - 1))) >> (LEVEL - NODE);
+    let nodes = map(*corners, |channel| map(lengths.apply(&channel), node));
+    Nodes::<3, 3, RANGE>::new(nodes, LEVEL - NODE).fit(setup.gradients)
+}
+
+impl FromValues<HalfReciprocal, [u32; 3]> for Summed {
+    #[inline(always)]
+    fn from_values(&HalfReciprocal(half_reciprocal): &HalfReciprocal, _: u16, [r, g, b]: [u32; 3]) -> Self {
+        let over_length = |sum: u32| upper(sum as i32, half_reciprocal);
+        Self([over_length(r), over_length(g), over_length(b)])
+    }
+}
+
+// The upper half of a product with half a reciprocal length, Q2.30, has three bits less.
+const _: () = assert!(SUMMED == LEVEL - 3);
+
+/// The value at a pixel: its column, the numerators of the sums, and |N|².
+type Value = (i32, ([u32; 3], [u32; 1]));
+
+/// Adds lights one by one to the sums. Their numerators stand in memory, since there may be any number; they are evaluated at the column of a pixel.
+#[derive(Clone, Copy)]
+struct OneByOne<'a, C> {
+    colours: SummedRgb<'a, C>,
+    lookup: QuotientLookup<'a>,
+    lengths: &'a HalfRsqrt,
+    lights: &'a SummedLights,
+    /// The row on which the numerators stand before the first row is drawn.
+    row: i32,
+}
+
+impl<C> OneByOne<'_, C> {
+    #[inline(always)]
+    fn jump(&self, rows: i32) {
+        self.lights.ending.iter().for_each(|term| term.jump(rows));
+        self.lights.highlights.iter().for_each(|term| term.jump(rows));
+    }
+}
+
+impl<C: Pixel> ByRows for OneByOne<'_, C> {
+    #[inline(always)]
+    fn step_row(&mut self) {
+        self.colours.step_row();
+        self.jump(1);
+    }
+
+    #[inline(always)]
+    fn start_at(&mut self, row: i32) {
+        self.colours.start_at(row);
+        self.jump(row.wrapping_sub(self.row));
+    }
+}
+
+impl<C: Pixel> PixelShader<Value> for OneByOne<'_, C> {
+    type Pixel = C;
+
+    #[inline(always)]
+    fn shade(&self, (column, (sums, [square])): Value) -> C {
+        let Self { colours, lookup, lengths, lights, .. } = self;
+        let half_reciprocal = HalfReciprocal(lengths.rsqrt(square) as i32);
+        let mut levels = colours.levels(Summed::from_values(&half_reciprocal, 0, sums));
+        let mut add =
+            |term: &Term, value: i32| levels = zip(levels, term.factors, |level, factor| level.wrapping_add(factor.wrapping_mul(value)));
+        for term in &lights.ending {
+            let DiffuseOnly(level) = DiffuseOnly::from_values(&half_reciprocal, 0, term.at(column));
+            add(term, cosine(PIXEL, level));
+        }
+        for term in &lights.highlights {
+            let [half] = term.at(column);
+            add(term, lookup.at(upper(half as i32, half_reciprocal.0)) as i32);
+        }
+        colours.mixed(levels)
+    }
+}
