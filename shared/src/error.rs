@@ -1,6 +1,10 @@
 //! Errors of a renderer.
 
-use crate::setup::edge::COLUMNS;
+use crate::{
+    features::Feature,
+    scene::{NO_EDGE_MEMORY, NO_NEIGHBOURS, NoEdges},
+    setup::edge::COLUMNS,
+};
 use core::fmt;
 
 /// The largest width and height of a picture: 2,047 pixels.
@@ -50,9 +54,9 @@ pub enum RenderError {
         /// The number of tables that are needed.
         need: usize,
     },
-    /// Antialiasing, or lines along outlines, were turned on, but the layout has no room for them; set [`Layout::antialias`](crate::Layout::antialias).
+    /// Antialiasing was turned on, or the stream (mesh file) states lines along outlines, but the layout has no room for them; set [`Layout::antialias`](crate::Layout::antialias).
     AntialiasMemory,
-    /// Antialiasing, or lines along outlines, were turned on, but the stream (mesh file) does not have the neighbours of its triangles; write it by
+    /// Antialiasing was turned on, but the stream (mesh file) does not have the neighbours of its triangles; write it by
     /// `microphong convert --antialias`.
     Neighbours,
     /// The pixel buffer for a band (group of rows drawn at once) is shorter than one row of the picture.
@@ -117,8 +121,8 @@ impl fmt::Display for RenderError {
             Self::TooFewHighlightTables { need } => {
                 write!(f, "the layout has too few tables of highlights; set Layout::highlight_tables({need})")
             }
-            Self::AntialiasMemory => f.write_str("the layout has no memory for outlines; set Layout::antialias(true)"),
-            Self::Neighbours => f.write_str("the stream has no neighbours of triangles; make it with `microphong convert --antialias`"),
+            Self::AntialiasMemory => f.write_str(NO_EDGE_MEMORY),
+            Self::Neighbours => f.write_str(NO_NEIGHBOURS),
             Self::Band { need } => write!(f, "the band is too short; it must hold at least one row of {need} pixels"),
             Self::Corner => f.write_str("the picture would reach beyond the display; move it or make it smaller"),
             Self::Feature { name } => write!(f, "this program lacks the cargo feature {name}; enable it in Cargo.toml"),
@@ -141,3 +145,13 @@ impl fmt::Display for RenderError {
 }
 
 impl core::error::Error for RenderError {}
+
+impl From<NoEdges> for RenderError {
+    fn from(reason: NoEdges) -> Self {
+        match reason {
+            NoEdges::Feature => Self::Feature { name: Feature::Antialias.name() },
+            NoEdges::Memory => Self::AntialiasMemory,
+            NoEdges::Neighbours => Self::Neighbours,
+        }
+    }
+}

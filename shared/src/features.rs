@@ -8,6 +8,8 @@
 pub enum Feature {
     /// Movements of objects, lights and the camera that the mesh file contains. A camera that orbits needs no feature.
     Animation,
+    /// Lines along outlines.
+    Antialias,
     /// Materials that reflect more than one colour, for example a white highlight on a red surface.
     Colours,
     /// More than one light.
@@ -24,14 +26,15 @@ pub enum Feature {
 
 impl Feature {
     /// All features that a mesh file can need.
-    pub const ALL: [Self; 7] =
-        [Self::Animation, Self::Colours, Self::Lights, Self::LightShapes, Self::NearLights, Self::Objects, Self::Text];
+    pub const ALL: [Self; 8] =
+        [Self::Animation, Self::Antialias, Self::Colours, Self::Lights, Self::LightShapes, Self::NearLights, Self::Objects, Self::Text];
 
     /// The name of the feature in `Cargo.toml`.
     #[must_use]
     pub const fn name(self) -> &'static str {
         match self {
             Self::Animation => "animation",
+            Self::Antialias => "antialias",
             Self::Colours => "colours",
             Self::Lights => "lights",
             Self::LightShapes => "light-shapes",
@@ -47,6 +50,7 @@ impl Feature {
     pub const fn is_on(self) -> bool {
         match self {
             Self::Animation => cfg!(feature = "animation"),
+            Self::Antialias => cfg!(feature = "antialias"),
             Self::Colours => cfg!(feature = "colours"),
             Self::Lights => cfg!(feature = "lights"),
             Self::LightShapes => cfg!(feature = "light-shapes"),
@@ -58,6 +62,8 @@ impl Feature {
 }
 
 pub(crate) const ANIMATION: bool = Feature::Animation.is_on();
+/// Whether edges can be smoothed, or drawn as lines.
+pub(crate) const ANTIALIAS: bool = Feature::Antialias.is_on();
 pub(crate) const COLOURS: bool = Feature::Colours.is_on();
 pub(crate) const LIGHTS: bool = Feature::Lights.is_on();
 pub(crate) const LIGHT_SHAPES: bool = Feature::LightShapes.is_on();
@@ -66,8 +72,6 @@ pub(crate) const OBJECTS: bool = Feature::Objects.is_on();
 
 /// Whether a frame can draw only what has changed.
 pub(crate) const REDRAW: bool = cfg!(feature = "redraw");
-/// Whether edges can be antialiased.
-pub(crate) const ANTIALIAS: bool = cfg!(feature = "antialias");
 /// Whether light can be interpolated in perspective.
 pub(crate) const PERSPECTIVE: bool = cfg!(feature = "perspective");
 /// Whether a program can switch off the skipping of invisible work, and count it.

@@ -120,7 +120,6 @@ pub mod setup;
 
 pub use band_target::BandTarget;
 pub use display::Picture;
-pub use edges::Outlines;
 pub use error::{MAX_SIDE, RenderError};
 pub use fixed;
 pub use frame::{Frame, FrameInTwo, FramePart, Preparation, PreparationPart, Skips, Stats};
@@ -129,7 +128,7 @@ pub use raster::counts::Counts;
 #[doc(inline)]
 pub use renderer::Renderer;
 #[doc(inline)]
-pub use scene::{Background, Object, Pose, Scene, SceneError};
+pub use scene::{Background, Object, Outlines, Pose, Scene, SceneError};
 pub use shader::Shader;
 #[doc(inline)]
 pub use stream::{

@@ -11,7 +11,10 @@ use crate::{
     placement::Placement,
     raster::active::ActiveTriangle,
     scene::{Object, SceneMaterial},
-    stream::{Stream, record::Instance},
+    stream::{
+        Stream,
+        record::{Instance, NO_OUTLINES},
+    },
 };
 use zerocopy::{FromBytes, Immutable, IntoBytes, KnownLayout};
 
@@ -56,7 +59,8 @@ pub struct Layout {
     /// again.
     pub active_triangles: usize,
     /// Whether there is room for antialiasing, which takes two to three bytes for each pixel of a band (group of rows drawn at once), four rows
-    /// more, and 24 bytes for each of [`Self::edges`]. [`Renderer::set_antialias`](crate::Renderer::set_antialias) turns it on.
+    /// more, and 24 bytes for each of [`Self::edges`]. [`Renderer::set_antialias`](crate::Renderer::set_antialias) turns it on. Lines along outlines
+    /// need it, too.
     pub antialias: bool,
     /// The number of tables of highlights that there is room for, 8,200 bytes each; more than [`Self::materials`] are never needed. By default
     /// there is one for each material. Materials with equal highlights share one, and materials without highlights need none, except in greys
@@ -159,8 +163,8 @@ impl Layout {
         self.highlight_tables(0)
     }
 
-    /// Sets the numbers of vertices, triangles, materials and objects to what the scene in the mesh file `stream` needs. All other values
-    /// stay. This suits programs that can allocate memory when they run; a `static` needs numbers that are known at compile time.
+    /// Sets the numbers of vertices, triangles, materials and objects to what the scene in the mesh file `stream` needs, and makes room for
+    /// antialiasing if the scene has lines along outlines. All other values stay. This suits programs that can allocate memory when they run; a `static` needs numbers that are known at compile time.
     #[must_use]
     pub fn with_room_for(self, stream: &Stream<'_>) -> Self {
         let whole = [Instance { first_mesh: 0, meshes: stream.meshes.len() as u16, material: 0, reserved: 0 }];
@@ -173,7 +177,8 @@ impl Layout {
                 triangles = triangles.saturating_add(mesh.triangles as usize);
             }
         }
-        Self { vertices, triangles, materials: stream.materials.len(), objects: objects.len(), ..self }
+        let antialias = self.antialias || stream.header.outlines != NO_OUTLINES;
+        Self { vertices, triangles, materials: stream.materials.len(), objects: objects.len(), antialias, ..self }
     }
 
     /// Returns the number of pixels in a band (group of rows drawn at once): width times rows. The program passes a pixel buffer of this

@@ -2,7 +2,6 @@
 
 use crate::{
     Stream,
-    edges::Outlines,
     error::{MAX_SIDE, RenderError},
     features::{self, Feature},
     format::{ErrorBudget, LARGEST_BUDGET, LEAST_BUDGET, LEVEL, MAX_LIGHTS},
@@ -58,6 +57,7 @@ impl<'a, C: Pixel> Renderer<'a, C> {
     /// - Returns [`RenderError::Memory`], [`RenderError::Materials`] or [`RenderError::Objects`] if there is too little room.
     /// - Returns [`RenderError::Light`] or [`RenderError::Exponent`] if the method cannot shade this scene.
     /// - Returns [`RenderError::Feature`] if the stream needs a cargo feature that this crate is built without.
+    /// - Returns [`RenderError::AntialiasMemory`] if the stream states lines along outlines and `layout` has no room for them.
     pub fn new(stream: Stream<'a>, size: Size, layout: &Layout, memory: &'a mut [u64], shaders: &[Shader<C>]) -> Result<Self, RenderError> {
         let method = stream.header.shader;
         let shader = shaders.iter().find(|shader| shader.facts().id == method).ok_or(RenderError::UnknownMethod { method })?;
@@ -95,7 +95,7 @@ impl<'a, C: Pixel> Renderer<'a, C> {
         let need = layout.words::<C>();
         let (ramps, memory) = take_ramps::<C>(layout, memory).ok_or(RenderError::Memory { need })?;
         let (memory, objects, materials) = Memory::new(layout, memory, size_of::<C::Stored>()).ok_or(RenderError::Memory { need })?;
-        if let Some(feature) = Feature::missing(&stream, &Channels::of::<C>()) {
+        if let Some(feature) = Feature::missing(&stream, &Channels::of::<C>(), Feature::is_on) {
             return Err(RenderError::Feature { name: feature.name() });
         }
         check(&stream, shader.facts(), false)?;
@@ -115,7 +115,16 @@ impl<'a, C: Pixel> Renderer<'a, C> {
             levels_of_detail: true,
             partial_redraw: false,
         };
-        let scene = Scene::new(stream, materials, objects, limits(shader.facts(), false), Channels::of::<C>());
+        // No pixel is marked before the first band, and none behind one.
+        if features::ANTIALIAS {
+            memory.smoothing.marks.fill(0);
+        }
+        let has_edge_memory = features::ANTIALIAS && !memory.smoothing.marks.is_empty();
+        let limits = limits(shader.facts(), false);
+        let scene = Scene::new(stream, materials, objects, has_edge_memory, limits, Channels::of::<C>());
+        if features::ANTIALIAS && scene.outlines().is_some() {
+            scene.check_edges()?;
+        }
         let colours = ColourSettings { shader, dither: true, gamma: None };
         Ok(Self {
             settings,
@@ -266,38 +275,10 @@ impl<'a, C: Pixel> Renderer<'a, C> {
     /// - Returns [`RenderError::AntialiasMemory`] if the memory has no room for it ([`Layout::antialias`]).
     /// - Returns [`RenderError::Neighbours`] if the stream (mesh file) was written without `--antialias`.
     pub fn set_antialias(&mut self, antialias: bool) -> Result<(), RenderError> {
-        self.settings.antialias = false;
-        self.check_edges(antialias)?;
+        if antialias {
+            self.scene.check_edges()?;
+        }
         self.settings.antialias = antialias;
-        Ok(())
-    }
-
-    /// Draws antialiased lines along outlines. An outline is where a surface ends (silhouette), or where its shading jumps (crease). The default is
-    /// `None`, without lines. In formats of one bit, of the two pixels that share a line the one that it covers more gets its colour. Lines take the
-    /// place of [antialiasing](Self::set_antialias).
-    ///
-    /// # Errors
-    /// There are no lines then. The errors are those of [`Self::set_antialias`]: lines need the same feature, memory and stream.
-    pub fn set_outlines(&mut self, outlines: Option<Outlines>) -> Result<(), RenderError> {
-        self.settings.outlines = None;
-        self.check_edges(outlines.is_some())?;
-        self.settings.outlines = outlines;
-        Ok(())
-    }
-
-    /// Prepares for frames whose edges are found, if they are `wanted`.
-    fn check_edges(&mut self, wanted: bool) -> Result<(), RenderError> {
-        if wanted && !features::ANTIALIAS {
-            return Err(RenderError::Feature { name: "antialias" });
-        }
-        if wanted && self.memory.smoothing.marks.is_empty() {
-            return Err(RenderError::AntialiasMemory);
-        }
-        if wanted && self.scene.stream.neighbours.is_empty() && !self.scene.stream.triangles.is_empty() {
-            return Err(RenderError::Neighbours);
-        }
-        // No pixel is marked before the first band.
-        self.memory.smoothing.marks.fill(0);
         self.scene.set_view_changed();
         Ok(())
     }
@@ -415,6 +396,9 @@ impl<'a, C: Pixel> Renderer<'a, C> {
         }
         self.is_invalidated = false;
         let Self { settings, scene, memory, rearranged, region, .. } = self;
+        if features::ANTIALIAS {
+            settings.outlines = scene.outlines();
+        }
         let world = ModelView::new(scene.camera(), scene.place);
         let how = Placing {
             lens: Lens::new(scene.camera(), settings.size),

@@ -4,7 +4,10 @@ use crate::{
     features::Feature,
     pixel::Channels,
     scene::LightTerms,
-    stream::{Stream, record::Light},
+    stream::{
+        Stream,
+        record::{Light, NO_OUTLINES},
+    },
 };
 
 impl Feature {
@@ -15,6 +18,7 @@ impl Feature {
         let Stream { header, lights, .. } = stream;
         match self {
             Self::Animation => !stream.tracks.is_empty(),
+            Self::Antialias => header.outlines != NO_OUTLINES,
             // Several lights are summed in three channels.
             Self::Colours if Self::Lights.is_needed_by(stream, channels) && !channels.is_gray => true,
             Self::Colours => {
@@ -28,12 +32,14 @@ impl Feature {
         }
     }
 
-    /// The first feature that `stream` needs and that the program lacks.
-    pub(crate) fn missing(stream: &Stream<'_>, channels: &Channels) -> Option<Self> {
+    /// The first feature that `stream` needs, and that a program which `has` the others lacks.
+    #[inline]
+    #[must_use]
+    pub fn missing(stream: &Stream<'_>, channels: &Channels, has: impl Fn(Self) -> bool) -> Option<Self> {
         // Each feature is asked for by name, so that the compiler drops the check if the program has it.
-        let lacks = |feature: Self| (!feature.is_on() && feature.is_needed_by(stream, channels)).then_some(feature);
-        let [animation, colours, lights, light_shapes, near_lights, objects, text] = Self::ALL;
-        let scene = lacks(animation).or_else(|| lacks(objects)).or_else(|| lacks(text));
+        let lacks = |feature: Self| (!has(feature) && feature.is_needed_by(stream, channels)).then_some(feature);
+        let [animation, antialias, colours, lights, light_shapes, near_lights, objects, text] = Self::ALL;
+        let scene = lacks(animation).or_else(|| lacks(objects)).or_else(|| lacks(text)).or_else(|| lacks(antialias));
         scene.or_else(|| lacks(lights)).or_else(|| lacks(near_lights)).or_else(|| lacks(light_shapes)).or_else(|| lacks(colours))
     }
 }

@@ -7,7 +7,7 @@ use embedded_graphics::{
 use microphong::{
     Layout, Outlines, RenderError, Renderer, Stream,
     pixel::{LightGray, PixelFormat},
-    stream::record::{CREASE, Neighbours, OPEN},
+    stream::record::{CREASE, Header, NO_OUTLINES, Neighbours, OPEN, OUTLINES_ALONE},
 };
 use microphong_sim::{
     bytes::StreamBytes,
@@ -20,6 +20,7 @@ use microphong_sim::{
     shader::Shader,
     shapes,
     vector::{cross, unit},
+    verify,
     view::{Up, View},
 };
 use std::thread;
@@ -95,7 +96,7 @@ fn draw(stream: Stream<'_>, size: Size, layout: Layout, style: Style, number: u3
     let mut memory = vec![u64::MAX / 3; layout.words::<Rgb565>()];
     let mut renderer = Renderer::with_shader(stream, size, &layout, &mut memory, style.shader.on()).unwrap();
     renderer.set_antialias(style.antialias).unwrap();
-    renderer.set_outlines(style.outlines).unwrap();
+    renderer.scene().set_outlines(style.outlines).unwrap();
     let mut frame = renderer.frame(number);
     let mut pixels = Vec::new();
     let Some(row) = between else {
@@ -357,6 +358,75 @@ fn neighbours_are_mutual() {
     }
 }
 
+/// A stream with lines gives the picture of a program that asks for them, over the surfaces and alone. A program can remove or replace them.
+#[test]
+fn streams_state_lines() {
+    let (size, layout) = (Size::new(120, 90), Layout::new(120, 17).vertices(4096).triangles(4096).edges(4096));
+    for name in ["teapot", "sensor"] {
+        let smooth = load(name);
+        let [over, alone] = [Outlines::new([200, 0, 90]), Outlines::new([10, 255, 40]).alone(true)];
+        for outlines in [over, alone] {
+            let with_lines = smooth.with_outlines(outlines).unwrap();
+            let draw = |stream: &StreamBytes, style: Style| {
+                let (pixels, _) = render::frame::<Rgb565>(stream.parse().unwrap(), size, style, 17, 3).unwrap();
+                pixels
+            };
+            let style = |outlines| Style { outlines, antialias: true, ..Shader::GOURAUD.into() };
+            let expected = draw(&smooth, style(Some(outlines)));
+            assert!(draw(&with_lines, style(None)) == expected, "{name}, {outlines:?}");
+            let plain = draw(&smooth, style(None));
+            assert!(draw(&with_lines.clone().without_outlines(), style(None)) == plain && plain != expected, "{name}, {outlines:?}");
+            let other = Outlines::new([0, 0, 255]);
+            assert!(draw(&with_lines, style(Some(other))) == draw(&smooth, style(Some(other))), "{name}, {outlines:?}");
+            // Between two frames.
+            let parsed = with_lines.parse().unwrap();
+            let layout = layout.with_room_for(&parsed);
+            let mut memory = vec![u64::MAX / 3; layout.words::<Rgb565>()];
+            let mut renderer = Renderer::with_shader(parsed, size, &layout, &mut memory, Shader::GOURAUD.on()).unwrap();
+            renderer.set_antialias(true).unwrap();
+            renderer.set_dither(false);
+            assert_eq!(renderer.scene().outlines(), Some(outlines));
+            let mut shown = |change: Option<Option<Outlines>>| {
+                if let Some(outlines) = change {
+                    renderer.scene().set_outlines(outlines).unwrap();
+                    assert!(!renderer.scene().is_unchanged());
+                }
+                let (mut pixels, mut band) = (Vec::new(), vec![Rgb565::RED; layout.band()]);
+                let mut frame = renderer.frame(3);
+                while let Some(area) = frame.next_band(&mut band).unwrap() {
+                    pixels.extend_from_slice(&band[..(area.size.width * area.size.height) as usize]);
+                }
+                pixels
+            };
+            assert!(
+                shown(None) == expected && shown(Some(None)) == plain && shown(Some(Some(outlines))) == expected,
+                "{name}, {outlines:?}"
+            );
+        }
+    }
+}
+
+/// Fields of lines that contradict one another, or the rest of the stream, are refused.
+#[test]
+fn false_lines_are_refused() {
+    let (plain, smooth) = (scene::load("triangle").unwrap().stream, load("triangle"));
+    let fault = |stream: &StreamBytes, outlines, outline_colour| {
+        let change = |header: &mut Header| (header.outlines, header.outline_colour) = (outlines, outline_colour);
+        let bytes = verify::with_header(stream.as_bytes(), change).unwrap();
+        StreamBytes::from(&bytes[..]).parse().err().map(|error| error.to_string())
+    };
+    let says = |field: &str| Some(format!("{field} of record 0 is out of range; convert the mesh again"));
+    assert_eq!([0, 1, 2].map(|kind| fault(&smooth, kind, [0; 3])), [None, None, None]);
+    assert_eq!(fault(&smooth, OUTLINES_ALONE + 1, [0; 3]), says("outlines"));
+    assert_eq!(fault(&smooth, NO_OUTLINES, [0, 1, 0]), says("outline colour"));
+    assert_eq!(fault(&plain, OUTLINES_ALONE, [0; 3]), says("neighbours for outlines"));
+    // A layout has to have room for them.
+    let (with_lines, layout) = (smooth.with_outlines(Outlines::new([255; 3])).unwrap(), Layout::new(32, 2));
+    let mut memory = vec![0; layout.words::<Rgb565>()];
+    let refusal = Renderer::with_shader(with_lines.parse().unwrap(), Size::new(32, 8), &layout, &mut memory, Shader::FLAT.on::<Rgb565>());
+    assert_eq!(refusal.err(), Some(RenderError::AntialiasMemory));
+}
+
 #[test]
 fn what_is_missing_is_named() {
     let plain = scene::load("triangle").unwrap().stream;
@@ -367,8 +437,10 @@ fn what_is_missing_is_named() {
         let mut renderer = Renderer::<Rgb565>::new(stream.parse().unwrap(), Size::new(32, 8), &layout, &mut memory, &shaders).unwrap();
         let refusal = renderer.set_antialias(true).err();
         assert_eq!(renderer.set_antialias(false), Ok(()));
-        assert_eq!(renderer.set_outlines(Some(Outlines::new([0; 3]))).err(), refusal, "lines need the same");
-        assert_eq!(renderer.set_outlines(None), Ok(()));
+        let refused = renderer.scene().set_outlines(Some(Outlines::new([0; 3]))).err();
+        assert_eq!(refused.map(|error| error.to_string()), refusal.map(|error| error.to_string()), "lines need the same");
+        assert_eq!(renderer.scene().outlines().is_some(), refusal.is_none());
+        assert_eq!(renderer.scene().set_outlines(None), Ok(()));
         assert_eq!(renderer.band_rows(), 2, "still without");
         refusal
     };

@@ -991,6 +991,7 @@ fn convert_refuses_what_a_board_would_refuse() {
         place.file(&format!("o{count}.toml"), scene(count, ""));
     }
     place.file("label.toml", scene(1, "[[label]]\ntext = \"5\"\nat = [0, 0]\n")).file("large.obj", bowl(50, false));
+    place.file("lines.toml", scene(1, "[outlines]\n"));
     let (mut refused, mut taken) = (0, 0);
     for file in place.files().iter().filter(|file| !file.ends_with("mtl")) {
         for board in Board::ALL {
@@ -1017,14 +1018,15 @@ fn convert_refuses_what_a_board_would_refuse() {
             }
         }
     }
-    // Refused by the Pico 7 of 16, by the smallest board 14, by each of the two others 2.
-    assert_eq!((taken, refused), (39, 25));
+    // Refused by the Pico 8 of 17, by the smallest board 15, by each of the two others 3.
+    assert_eq!((taken, refused), (39, 29));
     place.fails(&["convert", "m13.obj", "--board", "pico", "-o", "no.tri"], 1, &["13 materials", "room for 12", "--colour"]);
     place.succeeds(&["convert", "m13.obj", "--board", "pico", "--colour", "ff8000"]);
     place.fails(&["convert", "glossy5.obj", "--board", "pico", "-o", "no.tri"], 1, &["5 kinds of highlights", "room for 4", "gouraud"]);
     place.succeeds(&["convert", "glossy5.obj", "--board", "pico", "--shader", "gouraud"]);
     place.fails(&["convert", "o13.toml", "--board", "pico", "-o", "no.tri"], 1, &["13 objects", "room for 12"]);
     place.fails(&["convert", "label.toml", "--board", "lm3s6965evb", "-o", "no.tri"], 1, &["no fonts", "labels"]);
+    place.fails(&["convert", "lines.toml", "--board", "pico", "-o", "no.tri"], 1, &["no lines along outlines", "feature antialias"]);
     place.fails(&["convert", "large.obj", "--board", "lm3s6965evb", "-o", "no.tri"], 1, &["room for 57344", "--simplify"]);
 }
 
@@ -1241,6 +1243,10 @@ fn texts_that_are_no_scenes_are_refused() {
         (format!("{good}[[light]]\ntowards = [1, 0, 0]\ncolour = \"red\"\n"), "\"red\" is not a colour; write it as RRGGBB"),
         (format!("background = 7\n{good}"), "a background is a colour, as \"203040\", or a gradient"),
         (format!("background = {{ top = \"red\", bottom = \"000000\" }}\n{good}"), "line 1: background: top: \"red\" is not a colour"),
+        (format!("outlines = true\n{good}"), "line 1: outlines: true is not possible; it must be a table"),
+        (format!("{good}[outlines]\ncolour = \"red\"\n"), "line 10: outlines: colour: \"red\" is not a colour; write it as RRGGBB"),
+        (format!("{good}[outlines]\nalone = 1\n"), "line 10: outlines: alone: 1 is not possible; it must be true or false"),
+        (format!("{good}[outlines]\nwidth = 2\n"), "outlines: unknown field `width`"),
         (label("text = \"\"\nat = [0, 0]"), "line 10: label 1: text: it has 0 characters; it can have 1 to 30"),
         (label("text = \"0123456789012345678901234567890\"\nat = [0, 0]"), "it has 31 characters"),
         (label("text = \"5 \u{3a9}\"\nat = [0, 0]"), "its characters must be those of ISO 8859-1, in one line"),
@@ -1315,6 +1321,54 @@ fn formats_and_bands_keep_their_promises() {
         });
         assert_ne!(lines[0], lines[1], "{format}: outlines are smooth by default");
     }
+}
+
+/// Lines along outlines belong to a scene: its text or an option of `convert` states them, `inspect` shows them, and `render` draws them or others.
+#[test]
+fn lines_along_outlines_are_part_of_a_scene() {
+    let place = Place::new();
+    let text = "frames = 1\n[camera]\nat = [1, 2, 4]\n[[mesh]]\nname = \"box\"\nshape = \"box\"\n[[object]]\nmesh = \"box\"\n";
+    place.file("plain.toml", text).file("white.toml", format!("{text}[outlines]\n"));
+    place.file("drawing.toml", format!("{text}[outlines]\ncolour = \"ff8000\"\nalone = true\n"));
+    let lines = |stream: &str| {
+        let line = place.succeeds(&["inspect", stream, "--json"]);
+        let line = serde_json::from_str::<serde_json::Value>(&line).expect("JSON");
+        let needs = line["features"].as_array().expect("features").contains(&"antialias".into());
+        (line["outlines"]["colour"].as_str().map(str::to_owned), line["outlines"]["alone"].as_bool(), needs)
+    };
+    let of = |colour: &str, alone| (Some(colour.to_owned()), Some(alone), true);
+    assert_eq!(
+        (lines("plain.toml"), lines("white.toml"), lines("drawing.toml")),
+        ((None, None, false), of("ffffff", false), of("ff8000", true))
+    );
+    // The option takes the place of what the text says.
+    place.succeeds(&["convert", "drawing.toml", "--outlines", "#0040ff", "-o", "blue.tri"]);
+    assert_eq!(lines("blue.tri"), of("0040ff", false));
+    let said = place.succeeds(&["convert", "plain.toml", "--outlines", "ff8000", "--outlines-alone", "-o", "drawing.tri"]);
+    assert!(said.contains(".antialias(true)") && said.contains("\"antialias\""), "{said}");
+    let said = place.succeeds(&["inspect", "drawing.tri"]);
+    assert!(said.contains("lines of the colour ff8000 along outlines, on the background, without the surfaces"), "{said}");
+    place.file("box.obj", TETRAHEDRON);
+    place.succeeds(&["convert", "box.obj", "--outlines", "112233", "-o", "box.tri"]);
+    assert_eq!(lines("box.tri"), of("112233", false));
+    // What is drawn: the picture of a stream is that of the text, and that of the option of `render`.
+    let drawn = |arguments: &[&str]| {
+        let line = place.succeeds(&[&["render", "--size", "64x48", "--json", "-o", "out.png"], arguments].concat());
+        serde_json::from_str::<serde_json::Value>(&line).expect("JSON")["crc"].clone()
+    };
+    let drawing = drawn(&["drawing.toml"]);
+    assert_eq!(drawing, drawn(&["drawing.tri"]));
+    assert_eq!(drawing, drawn(&["plain.toml", "--outlines", "ff8000", "--outlines-alone"]));
+    assert_eq!(drawing, drawn(&["blue.tri", "--outlines", "ff8000", "--outlines-alone"]));
+    assert_ne!(drawing, drawn(&["plain.toml"]));
+    let usage = [
+        &["convert", "plain.toml", "--outlines", "red"][..],
+        &["convert", "plain.toml", "--outlines-alone"],
+        &["render", "plain.toml", "--outlines-alone"],
+        &["render", "plain.toml", "--no-antialias", "--outlines-alone"],
+        &["size", "white.toml"],
+    ];
+    usage.into_iter().for_each(|arguments| place.fails(arguments, 2, &["outlines"]));
 }
 
 #[test]

@@ -6,6 +6,7 @@ use crate::{
     parts::Parts,
 };
 use microphong::{
+    Outlines,
     features::Feature,
     stream::record::{SKY, VIEWER_LOCAL},
 };
@@ -14,12 +15,13 @@ use std::{collections::BTreeSet, fs, process::Command};
 use tempfile::TempDir;
 
 /// Features of the core, each set compiled for this computer.
-const SETS: [&str; 4] = ["", "colours", "light-shapes,near-lights", "animation,colours,lights,objects"];
-const ALL: &str = "animation,colours,light-shapes,lights,near-lights,objects,redraw,text";
+const SETS: [&str; 4] = ["", "colours", "antialias,light-shapes,near-lights", "animation,colours,lights,objects"];
+const ALL: &str = "animation,antialias,colours,light-shapes,lights,near-lights,objects,redraw,text";
 
 const SCENES: [&str; 8] = ["teapot", "torus", "sphere-40", "peer-sphere-plastic", "peer-sphere-lights", "gauges", "board", "sensor"];
 
-/// Streams of the scenes, one without lights, one that is seen by a local viewer, one in the light of a spotlight, and one in that of the sky.
+/// Streams of the scenes, one without lights, one that is seen by a local viewer, one in the light of a spotlight, one with lines along outlines, and one
+/// in the light of the sky.
 fn streams() -> Vec<(String, StreamBytes)> {
     let mut streams: Vec<_> = SCENES.map(|name| (name.to_owned(), scene::load(name).unwrap().stream)).into();
     let teapot = scene::load("teapot").unwrap().stream;
@@ -31,6 +33,7 @@ fn streams() -> Vec<(String, StreamBytes)> {
     streams.push(("no-lights".to_owned(), changed(|parts| parts.lights.clear())));
     streams.push(("local-viewer".to_owned(), changed(|parts| parts.header.camera.viewer = VIEWER_LOCAL)));
     streams.push(("spotlight".to_owned(), lit("teapot", &[spotlight()])));
+    streams.push(("outlines".to_owned(), teapot.with_outlines(Outlines::new([255; 3])).unwrap()));
     streams.push(("sky".to_owned(), changed(|parts| parts.lights[0].kind = SKY)));
     streams
 }

@@ -9,7 +9,9 @@ use microphong::{
     format::{MAX_LIGHTS, Share},
     stream::{
         self, MAX_EXPONENT, MAX_FOCAL, MAX_GAIN, MAX_LENGTH, MIN_FOCAL, MIN_NEAR,
-        record::{Header, LABEL_TEXT, Label, Light, Material, ORTHOGRAPHIC, POINT, RIGHT, Triangle},
+        record::{
+            Header, LABEL_TEXT, Label, Light, Material, ORTHOGRAPHIC, OUTLINES_ALONE, OUTLINES_OVER_SURFACES, POINT, RIGHT, Triangle,
+        },
     },
 };
 use microphong_sim::{
@@ -73,7 +75,7 @@ fn label(colour: [u8; 3]) -> Label {
 type Change<T> = (&'static str, fn(&mut T));
 
 /// Values at the ends of their ranges, and beyond them.
-const LIMITS: [Change<Parts>; 25] = [
+const LIMITS: [Change<Parts>; 28] = [
     ("least focal length", |parts| parts.header.camera.focal = MIN_FOCAL),
     ("largest focal length", |parts| parts.header.camera.focal = MAX_FOCAL),
     ("too large a focal length", |parts| parts.header.camera.focal = MAX_FOCAL + 1),
@@ -118,6 +120,9 @@ const LIMITS: [Change<Parts>; 25] = [
     ("a label with a control character", |parts| parts.labels = vec![Label { text: [b'\n'; LABEL_TEXT], ..label([0; 3]) }]),
     ("a label of no height", |parts| parts.labels = vec![Label { height: 0, ..label([0; 3]) }]),
     ("a label that is aligned in no way", |parts| parts.labels = vec![Label { alignment: RIGHT + 1, ..label([0; 3]) }]),
+    ("lines along outlines of no kind", |parts| parts.header.outlines = OUTLINES_ALONE + 1),
+    ("a colour of no lines along outlines", |parts| parts.header.outline_colour = [0, 0, 1]),
+    ("lines along outlines without neighbours", |parts| parts.header.outlines = OUTLINES_OVER_SURFACES),
     ("a name", |parts| parts.names = b"\x06needle".to_vec()),
     ("a name that no program can read", |parts| parts.names = b"\xFF\xFE".to_vec()),
     ("no mesh", |parts| {

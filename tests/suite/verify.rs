@@ -2,6 +2,7 @@
 
 use crate::lights;
 use microphong::{
+    Outlines,
     method::{Canvas, Facts, Method, Shading, TriangleSetup, levels::gouraud::Gouraud},
     stream::{
         record::{Triangle, Vertex},
@@ -109,6 +110,29 @@ fn smooth_outlines() -> Result {
         }
     }
     assert!(verify::build(Board::Pico, true).unwrap_err().to_string().contains("smooth outlines"));
+    Ok(())
+}
+
+/// A board draws the lines along outlines that a stream states, and its program says nothing of them.
+#[test]
+fn lines_of_a_scene() -> Result {
+    let directory = tempfile::tempdir()?;
+    let (board, scene) = (Board::Mps2An385, "sensor");
+    let elf = verify::build(board, true)?;
+    for outlines in [Outlines::new([255, 160, 0]), Outlines::new([255; 3]).alone(true)] {
+        let stream = scene::load(scene)?.stream.with_outlines(outlines)?;
+        let request = Request { antialias: true, stream: stream.as_bytes().to_vec(), ..request(board, scene, Shader::GOURAUD)? };
+        assert_eq!(verify::run(&request, &elf, directory.path())?.differing, 0, "{outlines:?}");
+        // It would differ if either drew no lines.
+        let without = Some(stream.without_outlines().as_bytes().to_vec());
+        let other = verify::run(&Request { firmware_stream: without, ..request }, &elf, directory.path())?;
+        assert!(other.differing > 500, "{outlines:?}: {} pixels of lines", other.differing);
+    }
+    // The plain firmware has no code for them.
+    let stream = scene::load(scene)?.stream.with_outlines(Outlines::new([255; 3]))?.as_bytes().to_vec();
+    let elf = verify::build(board, false)?;
+    let error = verify::run(&Request { stream, ..request(board, scene, Shader::GOURAUD)? }, &elf, directory.path()).expect_err("no lines");
+    assert!(format!("{error:#}").contains("lacks the cargo feature antialias"), "{error:#}");
     Ok(())
 }
 

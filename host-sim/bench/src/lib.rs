@@ -86,8 +86,10 @@ impl Bench {
     /// # Errors
     /// When a method cannot shade the scene, or a board fails.
     pub fn measure(&self, scene: &Scene, wanted: &[(Processor, Shader)], tick: &(dyn Fn() + Sync)) -> Result<Vec<Measurement>> {
-        let stream = scene.stream.parse()?;
         let mut measured = self.count(scene, wanted, tick)?;
+        // Lines would hide errors of shading.
+        let shaded = scene.stream.clone().without_outlines();
+        let stream = shaded.parse()?;
         // No reference draws several objects.
         if !stream.instances.is_empty() {
             return Ok(measured);

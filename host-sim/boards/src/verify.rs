@@ -7,9 +7,9 @@ use embedded_graphics_core::{
     pixelcolor::{Gray4, Rgb565},
 };
 use microphong::{
-    Light, RenderError, Renderer, Stats, Stream,
+    RenderError, Renderer, Stats, Stream,
     features::Feature,
-    pixel::{FromDrawn, LightGray, PictureCrc, Pixel, Rgb565Be},
+    pixel::{Channels, FromDrawn, LightGray, PictureCrc, Pixel, Rgb565Be},
     stream::{record::Header, seal},
 };
 use microphong_models::bytes::StreamBytes;
@@ -228,11 +228,14 @@ fn draw_in<C: Pixel, F: FromDrawn<C>>(
     let size = Size::new(layout.width as u32, height as u32);
     let mut memory = vec![0; layout.words::<C>()];
     let shaders: Vec<_> = shaders.iter().map(|shader| shader.on()).collect();
-    if !board.has_text() && !stream.labels.is_empty() {
-        return Err(RenderError::Feature { name: Feature::Text.name() });
-    }
-    if !antialias && stream.lights.iter().any(Light::has_shape) {
-        return Err(RenderError::Feature { name: Feature::LightShapes.name() });
+    // The core has all features here.
+    let has = |feature| match feature {
+        Feature::Text => board.has_text(),
+        Feature::Antialias | Feature::LightShapes => antialias,
+        _ => true,
+    };
+    if let Some(feature) = Feature::missing(&stream, &Channels::of::<C>(), has) {
+        return Err(RenderError::Feature { name: feature.name() });
     }
     let mut renderer = Renderer::new(stream, size, &layout, &mut memory, &shaders)?;
     if antialias {

@@ -88,13 +88,18 @@ impl<'w> Wanted<'w> {
         let literature = ALL.into_iter().map(Shader::new);
         let shader = Shader::ALL.into_iter().chain(literature).find(|method| method.facts().name == self.shader);
         let layout = Layout::new(self.size.width as usize, self.rows as usize).with_room_for(&stream);
-        let layout = layout.active_triangles(layout.triangles).antialias(self.antialias || self.outlines).edges(3 * layout.triangles);
+        let layout = layout
+            .active_triangles(layout.triangles)
+            .antialias(layout.antialias || self.antialias || self.outlines)
+            .edges(3 * layout.triangles);
         let mut memory = vec![0; layout.words::<Rgb565>()];
         let mut band = vec![Rgb565::BLACK; layout.band()];
         let mut renderer = Renderer::with_shader(stream, self.size, &layout, &mut memory, shader.ok_or("no such method")?)?;
         renderer.set_dither(self.dither);
         renderer.set_antialias(self.antialias)?;
-        renderer.set_outlines(self.outlines.then_some(Outlines::new([255; 3])))?;
+        if self.outlines {
+            renderer.scene().set_outlines(Some(Outlines::new([255; 3])))?;
+        }
         renderer.set_perspective_correct(self.perspective_correct)?;
         #[cfg(feature = "styles")]
         renderer.set_skips(self.skips);

@@ -2,9 +2,12 @@
 
 use anyhow::{Context, Result, anyhow};
 use microphong::{
-    Stream, StreamError,
+    Outlines, Stream, StreamError,
     format::ErrorBudget,
-    stream::{record::Header, seal},
+    stream::{
+        record::{Header, NO_OUTLINES, OUTLINES_ALONE, OUTLINES_OVER_SURFACES},
+        seal,
+    },
 };
 use microphong_render::neighbours::{has_neighbours, with_neighbours};
 use std::{fs, path::Path};
@@ -46,17 +49,38 @@ impl StreamBytes {
 
     /// Changes how far a pixel may be off by a method that keeps to a budget.
     #[must_use]
-    pub fn with_budget(mut self, budget: ErrorBudget) -> Self {
+    pub fn with_budget(self, budget: ErrorBudget) -> Self {
+        self.with_header(|header| header.budget = budget.to_bits())
+    }
+
+    /// Changes the header.
+    fn with_header(mut self, change: impl FnOnce(&mut Header)) -> Self {
         let length = self.length;
         let bytes = &mut self.words.as_mut_bytes()[..length];
         if let Ok((header, _)) = Header::mut_from_prefix(bytes) {
-            header.budget = budget.to_bits();
+            change(header);
             seal(bytes);
         }
         self
     }
 
-    /// Adds the neighbours of all triangles, which antialiasing needs.
+    /// States lines along outlines in place of those that there are, and adds the neighbours that they need.
+    ///
+    /// # Errors
+    /// Errors of [`Self::with_neighbours`].
+    pub fn with_outlines(&self, Outlines { colour, alone, .. }: Outlines) -> Result<Self> {
+        let outlines = if alone { OUTLINES_ALONE } else { OUTLINES_OVER_SURFACES };
+        let stream = self.with_neighbours()?;
+        Ok(stream.with_header(|header| (header.outlines, header.outline_colour) = (outlines, colour)))
+    }
+
+    /// Removes the lines along outlines, which are no part of what references of shading draw. The neighbours stay.
+    #[must_use]
+    pub fn without_outlines(self) -> Self {
+        self.with_header(|header| (header.outlines, header.outline_colour) = (NO_OUTLINES, [0; 3]))
+    }
+
+    /// Adds the neighbours of all triangles, which antialiasing and lines along outlines need.
     ///
     /// # Errors
     /// Errors of [`Self::parse`], or when a mesh has too many triangles.

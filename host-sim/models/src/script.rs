@@ -18,7 +18,7 @@ use crate::{
 };
 use anyhow::{Context, Result, anyhow, ensure};
 use microphong::{
-    MAX_SIDE,
+    MAX_SIDE, Outlines,
     format::{ErrorBudget, LARGEST_BUDGET, LEAST_BUDGET, Length, MAX_LIGHTS, Scale},
     scene::Background,
     stream::{
@@ -82,6 +82,7 @@ pub fn stream(text: &str, folder: Option<&Path>) -> Result<(StreamBytes, (u32, u
     let frames = script.need("frames", |field| field.integer(&(1..=NUMBERS)))?;
     let size = script.get("size", |field| field.array(|side| side.integer(&(1..=MAX_SIDE))))?.unwrap_or([240; 2]);
     let background = script.get("background", background)?;
+    let outlines = script.get("outlines", outlines)?;
     let shader = script.get("shader", shader)?;
     let budget = script.get("budget", |field| field.number(&(LEAST_BUDGET.to_num::<f64>()..=LARGEST_BUDGET.to_num())))?;
     let camera = script.need("camera", Field::table)?;
@@ -115,7 +116,10 @@ pub fn stream(text: &str, folder: Option<&Path>) -> Result<(StreamBytes, (u32, u
     cast.ways.sort_by_key(|way| way.kind);
     look.labels = labels.into_iter().map(|table| label(table, size)).collect::<Result<_>>()?;
     look.cast = cast;
-    let stream = look.stream(&parts).with_context(|| script.place.to_string())?;
+    let mut stream = look.stream(&parts).with_context(|| script.place.to_string())?;
+    if let Some(outlines) = outlines {
+        stream = stream.with_outlines(outlines).with_context(|| script.place_of("outlines").to_string())?;
+    }
     Ok((stream, size.into()))
 }
 
@@ -150,6 +154,15 @@ fn background(field: Field<'_>) -> Result<Background> {
     let [top, bottom] = [table.need("top", bytes)?, table.need("bottom", bytes)?];
     table.end()?;
     Ok(Background::Gradient { top, bottom })
+}
+
+/// Lines along outlines.
+fn outlines(field: Field<'_>) -> Result<Outlines> {
+    let mut table = field.table()?;
+    let colour = table.get("colour", bytes)?.unwrap_or([255; 3]);
+    let alone = table.get("alone", Field::flag)?.unwrap_or(false);
+    table.end()?;
+    Ok(Outlines::new(colour).alone(alone))
 }
 
 fn shader(field: Field<'_>) -> Result<Shader> {

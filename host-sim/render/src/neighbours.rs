@@ -36,7 +36,10 @@ pub fn with_neighbours(stream: &Stream<'_>) -> Result<Vec<u32>> {
     let mut meshes = stream.meshes.to_vec();
     let mut neighbours = Vec::with_capacity(stream.triangles.len());
     for mesh in &mut meshes {
-        ensure!(mesh.triangles <= u32::from(OPEN), "a mesh has more than {OPEN} triangles; simplify it, or leave out --antialias");
+        ensure!(
+            mesh.triangles <= u32::from(OPEN),
+            "a mesh has more than {OPEN} triangles; simplify it, or leave out antialiasing and lines along outlines"
+        );
         mesh.flags |= HAS_NEIGHBOURS;
         neighbours.extend(of_mesh(stream, mesh));
     }

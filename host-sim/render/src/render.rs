@@ -21,7 +21,7 @@ pub struct Style {
     pub perspective_correct: bool,
     /// Antialiasing.
     pub antialias: bool,
-    /// Lines along outlines.
+    /// Lines along outlines, in place of those of the scene.
     pub outlines: Option<Outlines>,
     /// Ordered dither.
     pub dither: bool,
@@ -39,7 +39,7 @@ impl From<Shader> for Style {
 }
 
 impl Style {
-    /// Whether edges are found, to be smoothed or to be drawn as lines.
+    /// Whether the style asks for edges, to be smoothed or to be drawn as lines.
     #[must_use]
     pub const fn has_edges(&self) -> bool {
         self.antialias || self.outlines.is_some()
@@ -81,7 +81,8 @@ pub fn frame_by<C: Pixel, F: FromDrawn<C>>(
         return frame_by(Stream::parse(words.as_bytes())?, size, style, shader, band_rows, number);
     }
     let rows = band_rows.clamp(1, size.height.max(1));
-    let layout = layout(&stream, size, rows).antialias(style.has_edges()).edges(stream.triangles.len() * 3);
+    let layout = layout(&stream, size, rows).edges(stream.triangles.len() * 3);
+    let layout = layout.antialias(layout.antialias || style.has_edges());
     let mut memory = vec![0; layout.words::<C>()];
     let mut renderer = Renderer::with_shader(stream, size, &layout, &mut memory, shader)?;
     renderer.set_perspective_correct(style.perspective_correct)?;
@@ -89,7 +90,9 @@ pub fn frame_by<C: Pixel, F: FromDrawn<C>>(
     renderer.set_gamma(style.srgb.then_some(&gamma::SRGB));
     renderer.set_skips(style.skips);
     renderer.set_antialias(style.antialias)?;
-    renderer.set_outlines(style.outlines)?;
+    if style.outlines.is_some() {
+        renderer.scene().set_outlines(style.outlines)?;
+    }
     let mut pixels = Vec::with_capacity(size.width as usize * size.height as usize);
     let mut band = vec![C::pack([0; 3]); layout.band()];
     let mut frame = renderer.frame(number);

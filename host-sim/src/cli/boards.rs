@@ -8,7 +8,7 @@ mod budget;
 use anyhow::{Result, bail, ensure};
 use budget::Budget;
 use embedded_graphics_core::{geometry::Size, pixelcolor::Rgb565};
-use microphong::{Light, RenderError, Renderer, Stream};
+use microphong::{Light, Outlines, RenderError, Renderer, Stream};
 use microphong_sim::{render::Format, shader::Shader};
 use std::{error::Error, fmt};
 
@@ -87,6 +87,10 @@ impl Board {
             !stream.lights.iter().any(Light::has_shape),
             "the firmware of {name} has no lights with a range or a cone, and no light from the sky; remove them, or write a program with the cargo \
              feature light-shapes"
+        );
+        ensure!(
+            Outlines::of(stream.header).is_none(),
+            "the firmware of {name} draws no lines along outlines; remove them, or write a program with the cargo feature antialias"
         );
         let size = Size::new(layout.width as u32, *height as u32);
         let mut memory = vec![0; layout.words::<Rgb565>()];

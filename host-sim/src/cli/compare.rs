@@ -161,7 +161,9 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome> {
 
 /// The scenes with the exponent that was asked for.
 fn chosen(arguments: &Arguments) -> Result<Vec<Scene>> {
-    let mut scenes = scenes::load_all(&arguments.scenes, arguments.options.as_ref(), arguments.budget)?;
+    let scenes = scenes::load_all(&arguments.scenes, arguments.options.as_ref(), arguments.budget)?;
+    // Lines would hide errors of shading.
+    let mut scenes: Vec<_> = scenes.into_iter().map(|scene| Scene { stream: scene.stream.without_outlines(), ..scene }).collect();
     if let Some(exponent) = arguments.override_exponent {
         for scene in &mut scenes {
             let bytes = with_exponent(scene.stream.as_bytes(), exponent).with_context(|| scene.name.clone())?;

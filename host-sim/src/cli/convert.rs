@@ -6,7 +6,9 @@ use super::{
     count::{self, Cost, Counter},
     features,
     mesh_options::{self, MeshOptions},
-    meshes, parse,
+    meshes,
+    outlines::OutlineOptions,
+    parse,
     report::{self, Bars},
     room::{Picture, Remedy, Simplified},
     scenes,
@@ -41,8 +43,8 @@ use std::path::{Path, PathBuf};
 /// The mesh is centred and scaled to a sphere of radius 1. A single closed convex mesh is marked, so that it is drawn without depth test. This does not
 /// change its picture.
 ///
-/// A .toml file is a scripted scene: it describes objects, lights, the camera and their movements. Only --output, --board, --format, --count, --antialias and
-/// --json apply to it. Three examples are in tests/scenes.
+/// A .toml file is a scripted scene: it describes objects, lights, the camera and their movements. Only --output, --board, --format, --count, --antialias,
+/// --outlines, --outlines-alone and --json apply to it. Three examples are in tests/scenes.
 #[derive(clap::Args)]
 #[command(after_help = EXAMPLES)]
 pub(crate) struct Arguments {
@@ -74,10 +76,12 @@ pub(crate) struct Arguments {
     /// shape. With a wide size, a wide mesh becomes larger, but narrower displays cut off its sides.
     #[arg(long, value_name = "WxH", value_parser = parse::size)]
     size: Option<(u32, u32)>,
-    /// Write what a program needs to find outlines (Renderer::set_antialias, Renderer::set_outlines): the neighbours of triangles, 6 bytes for each
-    /// triangle, and the pairs of triangles that cut each other, 12 bytes for each pair.
+    /// Write what a program needs to find outlines (Renderer::set_antialias, Scene::set_outlines): the neighbours of triangles, 6 bytes for each
+    /// triangle, and the pairs of triangles that cut each other, 12 bytes for each pair. --outlines implies it.
     #[arg(long)]
     antialias: bool,
+    #[command(flatten)]
+    outlines: OutlineOptions,
     /// Print one JSON object.
     #[arg(long)]
     json: bool,
@@ -86,9 +90,13 @@ pub(crate) struct Arguments {
 }
 
 impl Arguments {
-    /// Adds the neighbours of triangles to a stream, if they are wanted.
+    /// Adds lines along outlines to a stream, or the neighbours of triangles, if they are wanted.
     fn outlined(&self, stream: StreamBytes) -> Result<StreamBytes> {
-        if self.antialias { stream.with_neighbours() } else { Ok(stream) }
+        match self.outlines.wanted() {
+            Some(outlines) => stream.with_outlines(outlines),
+            None if self.antialias => stream.with_neighbours(),
+            None => Ok(stream),
+        }
     }
 }
 
@@ -99,6 +107,7 @@ Examples:
   microphong convert part.obj --board lm3s6965evb
   microphong convert part.obj --board pico --count
   microphong convert scan.ply --simplify 2000
+  microphong convert part.obj --outlines ffffff --outlines-alone --shader flat
   microphong convert part.obj --up z --colour 4080ff --plastic --exponent 60 --orbit 240
   microphong convert car.obj --light -0.5,0.6,0.7:fff0d8 --light 1,0.1,0.2:304060
   microphong convert toy.glb --light at:-1,1,2:fff0d8

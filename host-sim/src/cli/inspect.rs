@@ -4,7 +4,7 @@ use super::{Outcome, features, mesh_options::MeshOptions, meshes, report, scenes
 use anyhow::{Context, Result};
 use embedded_graphics_core::geometry::Size;
 use microphong::{
-    MAX_SIDE, Stream,
+    MAX_SIDE, Outlines, Stream,
     format::{Length, NormalLength, Unit},
     geometry::detail::stream_tolerance,
     stream::record::{
@@ -46,10 +46,27 @@ struct Line<'a> {
     objects: usize,
     keys: usize,
     labels: usize,
+    /// Lines along outlines.
+    outlines: Option<Lines>,
     levels: Vec<Level>,
     bytes: u32,
     /// Cargo features of the core that a program needs for it, in `Rgb565`.
     features: Vec<&'static str>,
+}
+
+/// Lines along outlines.
+#[derive(Serialize)]
+struct Lines {
+    /// RRGGBB.
+    colour: String,
+    alone: bool,
+}
+
+impl Lines {
+    fn of(stream: &Stream<'_>) -> Option<Self> {
+        let Outlines { colour: [r, g, b], alone, .. } = Outlines::of(stream.header)?;
+        Some(Self { colour: format!("{r:02x}{g:02x}{b:02x}"), alone })
+    }
 }
 
 /// A coarser level of a mesh.
@@ -84,6 +101,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome> {
             objects: stream.instances.len().max(1),
             keys: stream.keys.len(),
             labels: stream.labels.len(),
+            outlines: Lines::of(&stream),
             levels: levels(&stream),
             bytes: header.length,
             features: features::names(&stream, Format::Rgb565),
@@ -146,6 +164,10 @@ fn text(file: &str, stream: &Stream<'_>, list: &[meshes::Row]) -> Result<()> {
     let frames = report::counted(header.frames, report::FRAMES);
     let shader = Shader::by_id(header.shader).map_or_else(|| format!("number {}", header.shader), |shader| shader.name().to_owned());
     report::line(&format!("  {}", features::text(&features::names(stream, Format::Rgb565))))?;
+    if let Some(Lines { colour, alone }) = Lines::of(stream) {
+        let place = if alone { "on the background, without the surfaces" } else { "over the surfaces" };
+        report::line(&format!("  lines of the colour {colour} along outlines, {place}"))?;
+    }
     report::line(&format!("  {kind}, {viewer} viewer, {orbit}, {frames}, shader {shader}"))
 }
 

@@ -15,6 +15,7 @@ mod growth;
 mod inspect;
 mod mesh_options;
 mod meshes;
+mod outlines;
 mod papers;
 mod parse;
 mod render;

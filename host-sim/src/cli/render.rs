@@ -1,9 +1,9 @@
 //! `microphong render`.
 
-use super::{Outcome, Usage, mesh_options::MeshOptions, parse, report, scenes};
+use super::{Outcome, Usage, mesh_options::MeshOptions, outlines::OutlineOptions, parse, report, scenes};
 use anyhow::{Context, Result, ensure};
 use embedded_graphics_core::geometry::Size;
-use microphong::{Outlines, Skips, Stream, format::ErrorBudget, renderer::check, stream::record::OPEN};
+use microphong::{Skips, Stream, format::ErrorBudget, renderer::check, stream::record::OPEN};
 use microphong_sim::{
     bytes::StreamBytes,
     choices::{self, Choices},
@@ -12,7 +12,6 @@ use microphong_sim::{
     render::{self, Format, Picture, Settings, Style},
     scene::Scene,
     shader::Shader,
-    vector::V3,
 };
 use serde::Serialize;
 use std::{
@@ -60,14 +59,10 @@ pub(crate) struct Arguments {
     gamma: Gamma,
     /// Draw outlines jagged, as a program without `Renderer::set_antialias` does. By default they are smooth: where a surface ends, its shading jumps or
     /// two surfaces cut each other, a pixel mixes the colours of both sides in proportion to the areas that they cover.
-    #[arg(long)]
+    #[arg(long, conflicts_with_all = ["outlines", "outlines_alone"])]
     no_antialias: bool,
-    /// Draw lines of this colour along outlines: where a surface ends, its shading jumps, or two surfaces cut each other.
-    #[arg(long, value_name = "RRGGBB", value_parser = parse::colour, conflicts_with = "no_antialias")]
-    outlines: Option<V3>,
-    /// Draw the lines of --outlines on the background, without the surfaces.
-    #[arg(long, requires = "outlines")]
-    outlines_alone: bool,
+    #[command(flatten)]
+    outlines: OutlineOptions,
     /// Number of rows to draw at a time, as a board with little memory does. It does not change the picture.
     #[arg(long, default_value_t = 16, value_parser = clap::value_parser!(u32).range(1..))]
     band_rows: u32,
@@ -126,12 +121,6 @@ fn smooth(scene: &Scene, lines: bool) -> Result<Option<StreamBytes>> {
     scene.stream.with_neighbours().map(Some).with_context(|| scene.name.clone())
 }
 
-/// The lines that are wanted along outlines.
-fn outlines(arguments: &Arguments) -> Option<Outlines> {
-    let colour = arguments.outlines?.map(|channel| (channel * 255.0).round() as u8);
-    Some(Outlines::new(colour).alone(arguments.outlines_alone))
-}
-
 /// What a picture shows instead of colours.
 #[derive(Clone, Copy, clap::ValueEnum)]
 enum Show {
@@ -161,8 +150,9 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome> {
     let frames = arguments.frames;
     let wanted = arguments.output.as_deref().map(|path| Target::of(path, frames)).transpose()?;
     let scene = scenes::with_budget(scenes::load(&arguments.scene, arguments.options.as_ref(), arguments.format)?, arguments.budget);
+    let outlines = arguments.outlines.wanted();
     let wants_smooth = !arguments.no_antialias && arguments.show.is_none();
-    let smooth = if wants_smooth { smooth(&scene, arguments.outlines.is_some())? } else { None };
+    let smooth = if wants_smooth { smooth(&scene, outlines.is_some())? } else { None };
     let stream = smooth.as_ref().unwrap_or(&scene.stream).parse().with_context(|| arguments.scene.clone())?;
     if arguments.dither && !arguments.format.is_dithered() {
         let name = arguments.format.name();
@@ -182,7 +172,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome> {
             shader: method(arguments, &stream).with_context(|| scene.name.clone())?,
             perspective_correct: arguments.perspective_correct,
             antialias: smooth.is_some(),
-            outlines: smooth.as_ref().and(outlines(arguments)),
+            outlines,
             dither: arguments.dither || arguments.format.is_dithered() && !arguments.no_dither,
             srgb: arguments.gamma == Gamma::Srgb,
             skips: Skips::ALL,

@@ -177,9 +177,13 @@ fn features_of(scene: &Scene, arguments: &Arguments) -> Result<Vec<Features>> {
     let mut needs: Vec<_> = arguments.format.values.iter().flat_map(|&format| features::names(&stream, format)).collect();
     needs.sort_unstable();
     needs.dedup();
-    if needs.contains(&Feature::LightShapes.name()) {
-        let text = format!("{} needs the cargo feature light-shapes, which the measured programs lack; remove these lights", scene.name);
-        return Err(Usage(text).into());
+    // What no measured program has.
+    for (feature, what) in [(Feature::LightShapes, "these lights"), (Feature::Antialias, "the lines along outlines")] {
+        let name = feature.name();
+        if needs.contains(&name) {
+            let text = format!("{} needs the cargo feature {name}, which the measured programs lack; remove {what}", scene.name);
+            return Err(Usage(text).into());
+        }
     }
     let least = if needs.is_empty() { Features::None } else { Features::Default };
     let Some(features) = &arguments.features else { return Ok(vec![least]) };

@@ -2,7 +2,7 @@
 
 use crate::{random::Random, scenes::colour};
 use microphong::{
-    Layout, Pose, RenderError, Renderer, Scene, SceneError, Stream,
+    Layout, Outlines, Pose, RenderError, Renderer, Scene, SceneError, Stream,
     format::{Angle, ErrorBudget, Gain, LARGEST_BUDGET, LEAST_BUDGET, Length, MAX_LIGHTS, Rotation, Scale, Unit},
     pixel::{Pixel, gamma},
     scene::{Background, MAX_POSITION, MAX_SCALE, MIN_SCALE},
@@ -120,12 +120,13 @@ impl State {
         }
         scene.set_ambient(self.ambient)?;
         scene.set_background(self.background);
+        scene.set_outlines(self.style.outlines)?;
         scene.play(self.frame);
         Ok(())
     }
 
     fn set_style<C: Pixel>(&self, renderer: &mut Renderer<'_, C>) -> Result<(), RenderError> {
-        let Style { shader, perspective_correct, antialias, outlines, dither, srgb, skips } = self.style;
+        let Style { shader, perspective_correct, antialias, dither, srgb, skips, .. } = self.style;
         renderer.set_dither(dither);
         renderer.set_gamma(srgb.then_some(&gamma::SRGB));
         renderer.set_skips(skips);
@@ -133,7 +134,6 @@ impl State {
         renderer.set_shader(shader.on())?;
         renderer.set_perspective_correct(perspective_correct)?;
         renderer.set_antialias(antialias)?;
-        renderer.set_outlines(outlines)?;
         renderer.set_budget(self.budget)
     }
 
@@ -154,6 +154,7 @@ pub enum Change {
     Lights(Vec<Light>),
     Ambient([Gain; 3]),
     Background(Background),
+    Outlines(Option<Outlines>),
     Camera(Camera),
     Eye(Pose),
     Clear,
@@ -223,7 +224,11 @@ impl Change {
             }
             17 => Self::Shader(random.among(&Shader::ALL)),
             18 => Self::PerspectiveCorrect(random.once_in(2)),
-            19 => Self::Antialias(random.once_in(2)),
+            19 => match random.pick(0..4) {
+                0 => Self::Outlines(None),
+                1 => Self::Outlines(Some(Outlines::new([random.bits() as u8, 128, 255]).alone(random.once_in(2)))),
+                on => Self::Antialias(on == 2),
+            },
             20 => Self::Dither(random.once_in(2)),
             21 => Self::Budget(ErrorBudget::from_bits(random.bits() as u8 >> random.pick(0..7))),
             22 => Self::LevelsOfDetail(random.once_in(2)),
@@ -261,6 +266,7 @@ impl Change {
             Self::Material(index, material) => scene.set_material(*index, *material),
             Self::Lights(lights) => scene.set_lights(lights),
             Self::Ambient(ambient) => scene.set_ambient(*ambient),
+            Self::Outlines(outlines) => scene.set_outlines(*outlines),
             Self::Camera(camera) => scene.set_camera(*camera),
             Self::Eye(pose) => scene.set_camera_pose(pose),
             Self::Add(meshes, pose) => scene.add(meshes.clone(), *pose).map(|_| ()),
@@ -341,6 +347,7 @@ impl Change {
                     && starts(meshes.end)
             }
             Self::Antialias(on) => !on || layout.antialias,
+            Self::Outlines(outlines) => outlines.is_none() || layout.antialias,
             Self::Budget(budget) => (LEAST_BUDGET..=LARGEST_BUDGET).contains(budget),
             Self::Shader(_) | Self::PerspectiveCorrect(true) => return None,
             Self::Background(_)
@@ -363,6 +370,7 @@ impl Change {
             Self::Lights(lights) => state.lights = lights,
             Self::Ambient(ambient) => state.ambient = ambient,
             Self::Background(background) => state.background = background,
+            Self::Outlines(outlines) => state.style.outlines = outlines,
             Self::Camera(camera) => {
                 (state.camera, state.eye) = (camera, None);
                 state.frame = state.frame.checked_rem(camera.period.into()).unwrap_or(0);

@@ -16,7 +16,7 @@ use embedded_graphics_core::{
     primitives::{PointsIter, Rectangle},
 };
 use microphong::{
-    Frame, Layout, Pose, Renderer, Stream,
+    Frame, Layout, Outlines, Pose, Renderer, Stream,
     format::Length,
     pixel::gamma,
     stream::record::{CAMERA_TRACK, Key, LIGHT_TRACK, OBJECT_TRACK},
@@ -173,7 +173,8 @@ pub fn judge(case: &Case, limit: Limit) -> Result<Option<Found>, String> {
     let mut memory = vec![0x0123_4567_89AB_CDEF; layout.words::<Rgb565>()];
     let shader = case.style.shader.on();
     let Ok(mut renderer) = Renderer::with_shader(stream, case.pixels(), &layout, &mut memory, shader) else { return Ok(None) };
-    state.style = Style { perspective_correct: false, antialias: layout.antialias && case.style.antialias, outlines: None, ..case.style };
+    let (antialias, outlines) = (layout.antialias && case.style.antialias, Outlines::of(stream.header));
+    state.style = Style { perspective_correct: false, antialias, outlines, ..case.style };
     renderer.set_antialias(state.style.antialias).map_err(|error| error.to_string())?;
     renderer.set_dither(case.style.dither);
     renderer.set_gamma(case.style.srgb.then_some(&gamma::SRGB));

@@ -102,7 +102,7 @@ fn twice(case: &Case, layout: Layout, skips: Skips) -> Result<[(Vec<Rgb565>, Sta
     let mut renderer = Renderer::with_shader(stream.parse()?, case.pixels(), &layout, &mut memory, case.style.shader.on())?;
     renderer.set_perspective_correct(case.style.perspective_correct)?;
     renderer.set_antialias(case.style.antialias)?;
-    renderer.set_outlines(case.style.outlines)?;
+    renderer.scene().set_outlines(case.style.outlines)?;
     renderer.set_dither(case.style.dither);
     renderer.set_skips(skips);
     let mut draw = |number| -> Result<(Vec<Rgb565>, Stats)> {

@@ -111,6 +111,11 @@ impl Writer<'_> {
             let keys = self.keys(Self::pose);
             lines.extend(if self.random.once_in(2) { keys } else { self.pose() });
         }
+        if self.random.once_in(8) {
+            lines.push("[outlines]".to_owned());
+            let optional = vec![format!("colour = {}", self.colour()), "alone = true".to_owned()];
+            lines.extend(self.with(Vec::new(), optional));
+        }
         for _ in 0..self.random.pick(0..3) {
             lines.push("[[label]]".to_owned());
             lines.extend(self.label());

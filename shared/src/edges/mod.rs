@@ -9,7 +9,7 @@
 //!    direction of the neighbour that is seen there, in one byte. The depth of both pixels tells whether the edge can be seen between them.
 //! 3. [`mix`] adds that share of the neighbour's colour to each noted pixel.
 //!
-//! Instead of being mixed, edges can be drawn as lines of one colour ([`Outlines`]): then the share is the one that a line along the edge, one pixel
+//! Instead of being mixed, edges can be drawn as lines of one colour ([`Outlines`](crate::Outlines)): then the share is the one that a line along the edge, one pixel
 //! wide, covers of both pixels.
 //!
 //! A pixel keeps the largest share that any edge notes, so the order of edges changes nothing. A pixel is mixed with the colours that its neighbours
@@ -26,33 +26,6 @@ use crate::{
     math::vector::zip,
 };
 use zerocopy::{FromBytes, Immutable, IntoBytes, KnownLayout};
-
-/// Lines along the outlines of surfaces, for [`Renderer::set_outlines`](crate::Renderer::set_outlines): line drawings, for example for displays of
-/// one bit, and pictures of products.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-#[cfg_attr(feature = "defmt", derive(defmt::Format))]
-#[non_exhaustive]
-pub struct Outlines {
-    /// The colour of the lines: red, green, blue, each 0 to 255.
-    pub colour: [u8; 3],
-    /// Whether the lines are drawn on the background, without the surfaces. The surfaces still hide what is behind them.
-    pub alone: bool,
-}
-
-impl Outlines {
-    /// Creates lines of a colour over the shaded surfaces.
-    #[must_use]
-    pub const fn new(colour: [u8; 3]) -> Self {
-        Self { colour, alone: false }
-    }
-
-    /// Sets whether the lines are drawn on the background, without the surfaces. Choose [`Shader::FLAT`](crate::Shader::FLAT) then: it is the fastest
-    /// method, and no colour of the surfaces is visible.
-    #[must_use]
-    pub const fn alone(self, alone: bool) -> Self {
-        Self { alone, ..self }
-    }
-}
 
 /// An edge on the screen. The surface lies to its right, seen along the edge from its first end to its second one.
 #[derive(FromBytes, IntoBytes, Immutable, KnownLayout, Clone, Copy, Debug, Default, PartialEq, Eq)]

@@ -1,7 +1,6 @@
 //! What all rows of a frame have in common. It does not change while they are drawn, so two processors can read it at the same time.
 
 use crate::{
-    edges::Outlines,
     edges::{Edge, find::Outlined},
     features::{ANTIALIAS, OBJECTS, REDRAW},
     frame::skips::Skips,
@@ -17,7 +16,7 @@ use crate::{
     mesh::{MeshPass, vertices::VertexStage},
     method::{ErrorBounds, Method, Shading, VertexLight},
     placement::{Placement, Placements},
-    scene::{Object, Scene},
+    scene::{Object, Outlines, Scene},
     stream::record::{CLOSED_CONVEX, Cut, Mesh},
 };
 use embedded_graphics_core::geometry::Size;
@@ -33,7 +32,7 @@ pub(crate) struct Settings {
     pub(crate) method: &'static dyn Method,
     pub(crate) perspective_correct: bool,
     pub(crate) antialias: bool,
-    /// Lines that are drawn along edges.
+    /// Lines that are drawn along edges, as the scene has them in this frame.
     pub(crate) outlines: Option<Outlines>,
     /// The number of tables of highlights that the materials need, if there are fewer; otherwise 0.
     pub(crate) lacking_tables: usize,

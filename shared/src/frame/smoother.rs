@@ -5,7 +5,7 @@
 
 use crate::{
     edges::{
-        Edge, Outlines,
+        Edge,
         mix::{Surroundings, draw, store},
         walk::Window,
     },
@@ -13,6 +13,7 @@ use crate::{
     geometry::bin::{Bins, Entry},
     memory::{Smoothing, halves},
     pixel::{Pixel, colour::colour, gamma::Gamma},
+    scene::Outlines,
 };
 use core::{mem, ops::Range};
 use zerocopy::{FromBytes, Immutable, IntoBytes, KnownLayout};

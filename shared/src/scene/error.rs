@@ -1,5 +1,6 @@
 //! Errors of changes to a scene.
 
+use crate::features::Feature;
 use core::fmt;
 
 /// The reason why a [`Scene`](crate::Scene), a [`Pose`](crate::Pose) or a [`Light`](crate::Light) cannot have the values that a program
@@ -51,6 +52,11 @@ pub enum SceneError {
         /// The name of the cargo feature.
         name: &'static str,
     },
+    /// Lines along outlines were asked for, but the layout has no room for them; set [`Layout::antialias`](crate::Layout::antialias).
+    AntialiasMemory,
+    /// Lines along outlines were asked for, but the stream (mesh file) does not have the neighbours of its triangles; write it by
+    /// `microphong convert --antialias`.
+    Neighbours,
     /// The highlight exponent of a material is too small for the shading method.
     Exponent {
         /// The smallest exponent that the method can draw.
@@ -79,9 +85,37 @@ impl fmt::Display for SceneError {
                 "this method cannot interpolate light in perspective; call Renderer::set_perspective_correct(false) or use an orthographic camera",
             ),
             Self::Feature { name } => write!(f, "this program lacks the cargo feature {name}; enable it in Cargo.toml"),
+            Self::AntialiasMemory => f.write_str(NO_EDGE_MEMORY),
+            Self::Neighbours => f.write_str(NO_NEIGHBOURS),
             Self::Exponent { least } => write!(f, "this method supports only exponents of {least} or more; use a larger one"),
         }
     }
 }
 
 impl core::error::Error for SceneError {}
+
+/// What `AntialiasMemory` says.
+pub(crate) const NO_EDGE_MEMORY: &str = "the layout has no memory for outlines; set Layout::antialias(true)";
+/// What `Neighbours` says.
+pub(crate) const NO_NEIGHBOURS: &str = "the stream has no neighbours of triangles; make it with `microphong convert --antialias`";
+
+/// The reason why edges cannot be found, to be smoothed or to be drawn as lines. The first is a setting of the renderer, the second belongs to the scene.
+#[derive(Clone, Copy, Debug)]
+pub(crate) enum NoEdges {
+    /// The program lacks the cargo feature.
+    Feature,
+    /// The layout has no room.
+    Memory,
+    /// The stream does not say which triangles are neighbours.
+    Neighbours,
+}
+
+impl From<NoEdges> for SceneError {
+    fn from(reason: NoEdges) -> Self {
+        match reason {
+            NoEdges::Feature => Self::Feature { name: Feature::Antialias.name() },
+            NoEdges::Memory => Self::AntialiasMemory,
+            NoEdges::Neighbours => Self::Neighbours,
+        }
+    }
+}

@@ -28,6 +28,7 @@ mod light;
 mod light_terms;
 mod object;
 pub(crate) mod orbit;
+mod outlines;
 mod pose;
 
 pub use crate::stream::record::MAX_POSITION;
@@ -35,13 +36,15 @@ pub use angle::SIN_COS_ERROR;
 pub use background::Background;
 pub(crate) use bounding_volume::BoundingVolume;
 pub use error::SceneError;
+pub(crate) use error::{NO_EDGE_MEMORY, NO_NEIGHBOURS, NoEdges};
 pub(crate) use light_terms::{Colour, LightTerms, largest};
 pub use object::Object;
 pub use orbit::{ORBIT_ERROR, ROTATION_ERROR};
+pub use outlines::Outlines;
 pub use pose::{MAX_SCALE, MIN_SCALE, Pose, QUATERNION_ERROR, STEP_ERROR};
 
 use crate::{
-    features::{ANIMATION, COLOURS, Feature, OBJECTS},
+    features::{ANIMATION, ANTIALIAS, COLOURS, Feature, OBJECTS},
     format::{Gain, Length, MAX_LIGHTS, ROTATION},
     math::vector::dot,
     pixel::Channels,
@@ -90,6 +93,9 @@ pub struct Scene<'a> {
     lights: heapless::Vec<Light, MAX_LIGHTS>,
     pub(crate) ambient: [u16; 3],
     background: Background,
+    outlines: Option<Outlines>,
+    /// Whether there is memory for edges, which are smoothed or drawn as lines.
+    has_edge_memory: bool,
     materials: &'a mut [SceneMaterial],
     /// Room for objects, of which `count` are used.
     objects: &'a mut [Object],
@@ -111,6 +117,7 @@ impl<'a> Scene<'a> {
         stream: Stream<'a>,
         materials: &'a mut [SceneMaterial],
         objects: &'a mut [Object],
+        has_edge_memory: bool,
         limits: Limits,
         channels: Channels,
     ) -> Self {
@@ -128,6 +135,9 @@ impl<'a> Scene<'a> {
             lights: heapless::Vec::from_slice(stream.lights).unwrap_or_default(),
             ambient: stream.header.ambient,
             background: Background::between(stream.header.background, stream.header.background_bottom),
+            // A renderer is refused where a program without the feature would have to draw lines.
+            outlines: if ANTIALIAS { Outlines::of(stream.header) } else { None },
+            has_edge_memory,
             materials,
             objects,
             count: 0,
@@ -435,6 +445,47 @@ impl<'a> Scene<'a> {
     pub fn set_background(&mut self, background: impl Into<Background>) {
         self.background = background.into();
         self.set_repainted();
+    }
+
+    /// Returns the lines along outlines, or `None` if there are none.
+    #[must_use]
+    pub fn outlines(&self) -> Option<Outlines> {
+        self.outlines
+    }
+
+    /// Draws antialiased lines along outlines, or none. An outline is where a surface ends (silhouette), where its shading jumps (crease), or where two
+    /// surfaces cut each other. The stream (mesh file) says which lines the scene has at first. In formats of one bit, of the two pixels that share a
+    /// line the one that it covers more gets its colour. Lines take the place of [antialiasing](crate::Renderer::set_antialias).
+    ///
+    /// # Errors
+    /// The scene keeps the lines that it has.
+    ///
+    /// - Returns [`SceneError::Feature`] if this crate is built without the feature `antialias`.
+    /// - Returns [`SceneError::AntialiasMemory`] if the memory has no room for them ([`Layout::antialias`](crate::Layout::antialias)).
+    /// - Returns [`SceneError::Neighbours`] if the stream (mesh file) was written without `--antialias` and `--outlines`.
+    pub fn set_outlines(&mut self, outlines: Option<Outlines>) -> Result<(), SceneError> {
+        if outlines.is_some() {
+            self.check_edges()?;
+        }
+        if self.outlines != outlines {
+            self.outlines = outlines;
+            self.set_view_changed();
+        }
+        Ok(())
+    }
+
+    /// Checks that edges can be found, to be smoothed or to be drawn as lines.
+    pub(crate) fn check_edges(&self) -> Result<(), NoEdges> {
+        if !ANTIALIAS {
+            return Err(NoEdges::Feature);
+        }
+        if !self.has_edge_memory {
+            return Err(NoEdges::Memory);
+        }
+        if self.stream.neighbours.is_empty() && !self.stream.triangles.is_empty() {
+            return Err(NoEdges::Neighbours);
+        }
+        Ok(())
     }
 
     /// Returns the camera. If it orbits, its rotation is the one in frame 0 of the orbit.

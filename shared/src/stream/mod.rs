@@ -19,9 +19,9 @@ pub use included::check_included;
 pub use names::MAX_NAME;
 pub use names::{Names, UnknownMesh};
 use record::{
-    CAMERA_TRACK, Cut, EYE_SPACE, HAS_NEIGHBOURS, Instance, Key, LIGHT_TRACK, Label, Light, MAGIC, MAX_POSITION, Material, Neighbours,
-    OBJECT_TRACK, OPEN, ORTHOGRAPHIC, OWN_MATERIALS, PERSPECTIVE, POINT, RIGHT, SKY, Track, Triangle, VERSION, VIEWER_INFINITE,
-    VIEWER_LOCAL, Vertex,
+    CAMERA_TRACK, Cut, EYE_SPACE, HAS_NEIGHBOURS, Instance, Key, LIGHT_TRACK, Label, Light, MAGIC, MAX_POSITION, Material, NO_OUTLINES,
+    Neighbours, OBJECT_TRACK, OPEN, ORTHOGRAPHIC, OUTLINES_ALONE, OWN_MATERIALS, PERSPECTIVE, POINT, RIGHT, SKY, Track, Triangle, VERSION,
+    VIEWER_INFINITE, VIEWER_LOCAL, Vertex,
 };
 #[doc(inline)]
 pub use record::{Camera, Header, Mesh};
@@ -270,6 +270,10 @@ impl<'a> Stream<'a> {
         field(header.frames > 0, "frames", 0)?;
         field((LEAST_BUDGET..=LARGEST_BUDGET).contains(&header.budget()), "budget", 0)?;
         field(self.lights.len() <= MAX_LIGHTS, "lights", 0)?;
+        field(header.outlines <= OUTLINES_ALONE, "outlines", 0)?;
+        let has_outlines = header.outlines != NO_OUTLINES;
+        field(has_outlines || header.outline_colour == [0; 3], "outline colour", 0)?;
+        field(!has_outlines || header.triangles == 0 || !self.neighbours.is_empty(), "neighbours for outlines", 0)?;
         let fault = |fault: Option<&'static str>, i: usize| fault.map_or(Ok(()), |name| field(false, name, i));
         fault(header.camera.fault(), 0)?;
         for (i, material) in self.materials.iter().enumerate() {

@@ -17,7 +17,7 @@ compile_error!("streams are read in place and are little-endian");
 /// First four bytes of every stream.
 pub const MAGIC: [u8; 4] = *b"mTRI";
 /// Version of the format.
-pub const VERSION: u16 = 8;
+pub const VERSION: u16 = 9;
 
 /// The first record of a stream (mesh file): the camera, the background, and the number of records of each kind. Most programs only read
 /// [`Self::frames`].
@@ -84,6 +84,12 @@ pub struct Header {
     /// The number of [`Cut`] records.
     #[doc(hidden)]
     pub cuts: u32,
+    /// The colour of the lines along outlines: red, green, blue, each 0 to 255; zero if there are no lines.
+    #[doc(hidden)]
+    pub outline_colour: [u8; 3],
+    /// The lines along outlines: 0 for none, 1 for lines over the surfaces, 2 for lines alone on the background.
+    #[doc(hidden)]
+    pub outlines: u8,
     /// The camera at the beginning of the animation.
     pub camera: Camera,
 }
@@ -103,6 +109,13 @@ impl Header {
         ErrorBudget::from_bits(self.budget)
     }
 }
+
+/// The scene has no lines along outlines.
+pub const NO_OUTLINES: u8 = 0;
+/// The scene has lines along outlines, over the shaded surfaces.
+pub const OUTLINES_OVER_SURFACES: u8 = 1;
+/// The scene has lines along outlines, on the background without the surfaces.
+pub const OUTLINES_ALONE: u8 = 2;
 
 /// The viewer is infinitely far: highlights use one direction to the eye for the whole scene. This is cheaper.
 pub const VIEWER_INFINITE: u8 = 0;

@@ -10,7 +10,7 @@ use microphong::{
     stream::Aligned,
 };
 
-const LAYOUT: Layout = Layout::new(96, 20).vertices(4096).triangles(8192).materials(8).objects(64);
+const LAYOUT: Layout = Layout::new(96, 20).vertices(4096).triangles(8192).materials(8).objects(64).antialias(true);
 /// Frames that are drawn.
 const FRAMES: [u32; 2] = [0, 7];
 
