@@ -3,7 +3,7 @@
 use crate::{
     bytes::StreamBytes,
     fields::quoted,
-    import::{self, Imported},
+    import::{self, Imported, Rules},
     levels::{self, Simplified},
     look::{BACKGROUND, Lamp, LampKind, Look, Surface},
     mesh::{Mesh, Report, Weld},
@@ -64,6 +64,8 @@ pub const MARGIN: f64 = 0.06;
 pub struct Options {
     /// How polygons become a surface.
     pub weld: Weld,
+    /// What is passed of a file.
+    pub rules: Rules,
     /// Whether all objects become one without a name.
     pub merge: bool,
     /// The material where the file has none.
@@ -103,6 +105,7 @@ impl Options {
         let Finish { colour, shares, exponent, background } = Finish::of(format);
         Self {
             weld: Weld::default(),
+            rules: Rules::default(),
             merge: false,
             surface: Surface::metal(colour, shares, exponent),
             repaint: false,
@@ -165,7 +168,7 @@ impl Converted {
     pub fn read(path: &Path, options: &Options, steps: &dyn Steps) -> Result<Self> {
         let place = || path.display().to_string();
         steps.begin("reading the file", 1);
-        let Imported { mut mesh, report, mut objects, mut materials, mut remarks } = import::file(path, options.weld)?;
+        let Imported { mut mesh, report, mut objects, mut materials, mut remarks } = import::file_by(path, options.weld, options.rules)?;
         if options.repaint && materials.iter().any(Option::is_some) {
             remarks.push(format!("{} materials of the file have the one colour of --colour", materials.iter().flatten().count()));
             mesh.merge_materials();

@@ -1,16 +1,20 @@
 //! Reads a mesh and its materials from files.
 
 use crate::{
+    faults::{COMPUTED_NORMAL, Faults, TURNED},
+    files::{self, Folder, Missing},
     foreign, gltf,
     look::Surface,
     mesh::{self, Mesh, Report, Soup, Weld},
     mtl, names,
+    number::grouped,
     obj::{self, Obj},
     ply::{self, Ply},
-    stl,
+    stl::{self, Stl},
+    text,
 };
-use anyhow::{Context, Result};
-use std::{collections::BTreeSet, fs, path::Path};
+use anyhow::{Context, Result, bail};
+use std::{collections::BTreeSet, path::Path};
 
 /// A mesh from a file.
 #[derive(Clone, Debug)]
@@ -34,6 +38,15 @@ pub fn surfaces(materials: &[Option<mtl::Material>], other: &Surface, ambient_li
     materials.iter().map(|material| material.as_ref().map_or(*other, |material| material.surface(ambient_light))).collect()
 }
 
+/// What is passed of a file, beyond what is right.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Rules {
+    /// Wrong elements are errors, even if the rest of the mesh can be drawn without them.
+    pub strict: bool,
+    /// A model may name files outside its folder.
+    pub allow_outside: bool,
+}
+
 /// The contents of a file of any format.
 #[derive(Default)]
 struct Contents {
@@ -41,6 +54,7 @@ struct Contents {
     objects: Vec<String>,
     materials: Vec<Option<mtl::Material>>,
     ignored: BTreeSet<&'static str>,
+    faults: Faults,
     remarks: Vec<String>,
 }
 
@@ -49,9 +63,28 @@ struct Contents {
 /// # Errors
 /// Names the file and the place in it.
 pub fn file(path: &Path, weld: Weld) -> Result<Imported> {
+    file_by(path, weld, Rules::default())
+}
+
+/// As [`file()`], by these rules.
+///
+/// # Errors
+/// Names the file and the place in it.
+pub fn file_by(path: &Path, weld: Weld, rules: Rules) -> Result<Imported> {
     let place = || path.display().to_string();
-    let Contents { soup, objects, materials, ignored, mut remarks } = contents(path, &read(path)?)?;
+    let folder = Folder::of(path, rules.allow_outside);
+    let Contents { soup, objects, materials, ignored, mut faults, mut remarks } = contents(path, &files::read(path)?, &folder)?;
     let (mesh, report) = mesh::weld(&soup, weld).with_context(place)?;
+    faults.add_several(COMPUTED_NORMAL, report.computed_normals, || format!("face {}", report.first_computed));
+    faults.add_several(TURNED, report.mended, || format!("face {}", report.first_mended));
+    if report.missing_normals > 0 {
+        let count = grouped(report.missing_normals);
+        remarks.push(format!("normals of {count} corners are computed, because the file has none there; the others are those of the file"));
+    }
+    if let Some(fault) = faults.sentences().next().filter(|_| rules.strict) {
+        bail!("{}: {fault}; --strict refuses it: repair the file, or convert it without --strict", place());
+    }
+    remarks.splice(0..0, faults.sentences());
     if !ignored.is_empty() {
         remarks.push(format!("left out: {}", ignored.into_iter().collect::<Vec<_>>().join(", ")));
     }
@@ -60,55 +93,87 @@ pub fn file(path: &Path, weld: Weld) -> Result<Imported> {
 }
 
 /// Chooses the reader by how the file begins, or where that says nothing, by the ending of its name.
-fn contents(path: &Path, bytes: &[u8]) -> Result<Contents> {
+fn contents(path: &Path, bytes: &[u8], folder: &Folder) -> Result<Contents> {
     let place = || path.display().to_string();
     let ends = |ending| path.extension().is_some_and(|e| e.eq_ignore_ascii_case(ending));
     let plain = Contents { materials: vec![None], ..Contents::default() };
+    foreign::refuse(path, bytes)?;
     if ply::is_ply(bytes) || ends("ply") {
-        let Ply { soup, ignored } = ply::parse(bytes).with_context(place)?;
-        return Ok(Contents { soup, ignored, ..plain });
+        let Ply { soup, ignored, faults } = ply::parse(bytes).with_context(place)?;
+        return Ok(Contents { soup, ignored, faults, ..plain });
     }
     if gltf::is_gltf(bytes) || ends("gltf") || ends("glb") {
-        let gltf::Scene { soup, objects, materials, ignored } = gltf::parse(bytes, path).with_context(place)?;
-        return Ok(Contents { soup, objects, materials, ignored, ..plain });
+        let gltf::Scene { soup, objects, materials, ignored, faults } = gltf::parse(bytes, folder).with_context(place)?;
+        return Ok(Contents { soup, objects, materials, ignored, faults, ..plain });
     }
-    foreign::refuse(path, bytes)?;
-    if stl::is_stl(bytes) {
-        return Ok(Contents { soup: stl::parse(bytes).with_context(place)?, ..plain });
+    foreign::refuse_ending(path)?;
+    if stl::is_stl(bytes, ends("stl")) {
+        let Stl { soup, faults, ignored, remarks } = stl::parse(bytes).with_context(place)?;
+        return Ok(Contents { soup, faults, ignored, remarks, ..plain });
     }
-    with_libraries(path, obj::parse(&String::from_utf8_lossy(bytes)).with_context(place)?)
+    let obj = obj::parse(&text::decoded(bytes)).with_context(place)?;
+    if obj.soup.positions.is_empty() && obj.soup.faces.is_empty() {
+        let what = if bytes.is_empty() { "the file is empty" } else { "nothing in the file is OBJ, glTF, STL or PLY" };
+        bail!("{}: the mesh has no faces, because {what}; export it as one of OBJ, glTF, STL and PLY", place());
+    }
+    with_libraries(folder, obj).with_context(place)
 }
 
 /// An OBJ file with the materials of the files that it names.
-fn with_libraries(path: &Path, Obj { soup, objects, materials: names, libraries, mut ignored }: Obj) -> Result<Contents> {
-    let (mut known, mut remarks) = (Vec::new(), Vec::new());
+fn with_libraries(folder: &Folder, obj: Obj) -> Result<Contents> {
+    let Obj { soup, objects, materials: names, libraries, mut ignored, faults, mut remarks } = obj;
+    let mut known = Vec::new();
     if names.iter().any(Option::is_some) {
         for library in libraries {
-            // One name with blanks in it, or several names.
-            let whole = path.with_file_name(&library);
-            let files =
-                if whole.is_file() { vec![whole] } else { library.split_whitespace().map(|name| path.with_file_name(name)).collect() };
-            for path in files {
+            for name in files_of(&library, folder) {
                 // A mesh is of use without its materials.
-                let Ok(bytes) = fs::read(&path) else {
-                    remarks.push(format!("{} cannot be read; to have its materials, put it beside the mesh", path.display()));
-                    continue;
+                let (path, bytes) = match folder.read(&name) {
+                    Ok(file) => file,
+                    Err(error) => {
+                        let missing = error.downcast_ref::<Missing>().map(|Missing(path)| path.display());
+                        remarks.push(missing.map_or_else(
+                            || format!("the materials are missing: {error:#}"),
+                            |path| format!("{path} cannot be read; to have its materials, put it beside the mesh"),
+                        ));
+                        continue;
+                    }
                 };
-                let mtl = mtl::parse(&String::from_utf8_lossy(&bytes)).with_context(|| path.display().to_string())?;
+                if let Some(other) = foreign::what_it_is(&path, &bytes) {
+                    remarks.push(format!("the materials are missing: {other}"));
+                    continue;
+                }
+                let mtl = mtl::parse(&text::decoded(&bytes)).with_context(|| path.display().to_string())?;
                 known.extend(mtl.materials);
                 ignored.extend(mtl.ignored);
             }
         }
     }
-    let materials: Vec<_> = names.iter().map(|name| known.iter().find(|material| Some(&material.name) == name.as_ref()).cloned()).collect();
+    let materials: Vec<_> = names.iter().map(|name| name.as_ref().and_then(|name| named(&known, name)).cloned()).collect();
     let unknown: Vec<_> =
         names.iter().zip(&materials).filter(|(_, known)| known.is_none()).filter_map(|(name, _)| name.as_deref()).collect();
     if !unknown.is_empty() {
         remarks.push(format!("materials that no file defines have the colour of the command line: {}", unknown.join(", ")));
     }
-    Ok(Contents { soup, objects, materials, ignored, remarks })
+    Ok(Contents { soup, objects, materials, ignored, faults, remarks })
 }
 
-pub(crate) fn read(path: &Path) -> Result<Vec<u8>> {
-    fs::read(path).with_context(|| format!("cannot read {}", path.display()))
+/// The names of the files of a `mtllib`: one name that may have blanks in it, or several names. Some programs write quotes around them.
+fn files_of(library: &str, folder: &Folder) -> Vec<String> {
+    let bare = |name: &str| name.trim_matches('"').to_owned();
+    let is_one = |name: &String| folder.find(name).is_ok();
+    if is_one(&bare(library)) || library.starts_with('"') && library.matches('"').count() == 2 {
+        return vec![bare(library)];
+    }
+    let several: Vec<_> = library.split_whitespace().map(bare).collect();
+    // None of the words is a file: then it is one name, of a file that is missing.
+    if several.iter().any(is_one) { several } else { vec![bare(library)] }
+}
+
+/// The material of this name, or of a name that differs by a comment, or else by capitals.
+fn named<'a>(materials: &'a [mtl::Material], name: &str) -> Option<&'a mtl::Material> {
+    let by = |same: &dyn Fn(&str) -> bool| materials.iter().find(|material| same(&material.name));
+    let short = |name: &str| name.split(" #").next().unwrap_or_default().trim_end().to_owned();
+    by(&|known| known == name)
+        .or_else(|| by(&|known| known == short(name) || short(known) == name))
+        .or_else(|| by(&|known| known.to_lowercase() == name.to_lowercase()))
 }

@@ -1,11 +1,12 @@
 //! Polygon soup to a welded mesh of triangles.
 
 use crate::{
+    mend::{self, Winding},
     polygon::{WELD, cut, newell},
     vector::{V3, add, cross, dot, length, scale, sub, unit},
 };
 use anyhow::{Result, bail};
-use std::{collections::HashMap, mem};
+use std::{borrow::Cow, collections::HashMap, mem};
 
 /// The contents of a mesh file: polygons whose corners may repeat positions.
 #[derive(Clone, Debug, Default)]
@@ -132,6 +133,22 @@ pub struct Report {
     pub crossed: usize,
     /// The closed surface was inside out and has been turned.
     pub turned: bool,
+    /// Faces that were wound against their neighbours, or of a closed part that was inside out, and have been turned.
+    pub mended: usize,
+    /// The number of the first of them, from 1 on.
+    pub first_mended: usize,
+    /// Corners whose normals have no direction: these normals were computed.
+    pub computed_normals: usize,
+    /// The number of the first face with such a corner, from 1 on.
+    pub first_computed: usize,
+    /// Corners for which the file has no normal, although others have one: these normals were computed.
+    pub missing_normals: usize,
+    /// Edges of one face.
+    pub open_edges: usize,
+    /// Edges over which two faces disagree, however they are turned.
+    pub opposed_edges: usize,
+    /// Edges of more than two faces.
+    pub crowded_edges: usize,
 }
 
 /// Smaller meshes would vanish when squared.
@@ -149,9 +166,16 @@ pub fn weld(soup: &Soup, Weld { turn, crease }: Weld) -> Result<(Mesh, Report)> 
     }
     let positions = fit_sphere(soup)?;
     let places = merge(&positions);
-    let mut report = Report { welded: merged(soup, &places), own_normals: has_normals(soup), ..Report::default() };
-    let (mut mesh, crossed) =
-        if report.own_normals { with_own_normals(soup, &positions, &places) } else { smooth(soup, &positions, &places, crease) };
+    let mut report = Report { welded: merged(soup, &places), ..Report::default() };
+    let soup = &*mended(soup, &positions, &places, &mut report);
+    let mut normals = with_direction(soup);
+    report.own_normals = normals.iter().filter(|normal| normal.is_some()).count() * 2 >= normals.len();
+    let (mut mesh, crossed) = if report.own_normals {
+        complete(&mut normals, soup, &positions, &places, crease, &mut report);
+        with_own_normals(soup, &positions, &places, &normals)
+    } else {
+        smooth(soup, &positions, &places, crease)
+    };
     report.crossed = crossed;
     let before = mesh.triangles.len();
     drop_degenerate(&mut mesh);
@@ -218,23 +242,106 @@ fn merged(soup: &Soup, places: &[usize]) -> usize {
     places.iter().enumerate().filter(|&(i, &first)| used[i] && first != i).count()
 }
 
-/// Whether every corner has a normal with a direction.
-fn has_normals(soup: &Soup) -> bool {
-    soup.corners().all(|c| c.normal.is_some_and(|n| unit(soup.normals[n]).is_some()))
+/// The soup with all faces wound as their neighbours are, closed parts with the outside in front.
+fn mended<'a>(soup: &'a Soup, positions: &[V3], places: &[usize], report: &mut Report) -> Cow<'a, Soup> {
+    let Winding { turned, faces, open, opposed, crowded } = mend::winding(soup, positions, places);
+    (report.open_edges, report.opposed_edges, report.crowded_edges) = (open, opposed, crowded);
+    let count = turned.iter().filter(|turned| **turned).count();
+    // A surface that is inside out as a whole is turned as a whole, later.
+    if count == 0 || count == faces {
+        return Cow::Borrowed(soup);
+    }
+    report.mended = count;
+    report.first_mended = turned.iter().position(|turned| *turned).map_or(0, |face| face + 1);
+    let mut soup = soup.clone();
+    // The first corner stays the first.
+    soup.faces.iter_mut().zip(turned).filter(|(_, turned)| *turned).for_each(|(face, _)| face.corners[1..].reverse());
+    Cow::Owned(soup)
 }
 
-/// Also counts polygons that cross themselves.
-fn with_own_normals(soup: &Soup, positions: &[V3], places: &[usize]) -> (Mesh, usize) {
+/// The normal of each corner, in the order of faces, if the file gives one with a direction.
+fn with_direction(soup: &Soup) -> Vec<Option<V3>> {
+    soup.corners().map(|corner| corner.normal.and_then(|n| unit(soup.normals[n]))).collect()
+}
+
+/// Computes the normals that are missing. Corners of one place that share a normal in the file share one that is computed, too.
+fn complete(normals: &mut [Option<V3>], soup: &Soup, positions: &[V3], places: &[usize], crease: f64, report: &mut Report) {
+    if normals.iter().all(Option::is_some) {
+        return;
+    }
+    let mut around: Vec<Vec<Around>> = vec![Vec::new(); positions.len()];
+    let mut shared: HashMap<(usize, usize), V3> = HashMap::new();
+    let areas = areas(soup, positions, places);
+    for (number, face) in soup.faces.iter().enumerate() {
+        for (k, corner) in face.corners.iter().enumerate() {
+            let place = places[corner.position];
+            around[place].push((number, k, unit(areas[number])));
+            if let Some(normal) = corner.normal {
+                let sum = shared.entry((place, normal)).or_default();
+                *sum = add(*sum, areas[number]);
+            }
+        }
+    }
+    let mut sheets: HashMap<(usize, usize), V3> = HashMap::new();
+    let mut normals = normals.iter_mut();
+    for (number, face) in soup.faces.iter().enumerate() {
+        for (k, (corner, normal)) in face.corners.iter().zip(&mut normals).enumerate() {
+            if normal.is_some() {
+                continue;
+            }
+            let place = places[corner.position];
+            if corner.normal.is_some() {
+                report.computed_normals += 1;
+                if report.first_computed == 0 {
+                    report.first_computed = number + 1;
+                }
+            } else {
+                report.missing_normals += 1;
+            }
+            let sum = corner.normal.and_then(|normal| shared.get(&(place, normal))).copied().unwrap_or_default();
+            if length(sum) > 1e-14 {
+                *normal = unit(sum);
+                continue;
+            }
+            let mut left = mem::take(&mut around[place]);
+            while !left.is_empty() {
+                let sheet = sheet(soup, &mut left, crease);
+                let direction = direction(&sheet, &areas);
+                sheets.extend(sheet.into_iter().map(|(face, k, _)| ((face, k), direction)));
+            }
+            *normal = sheets.get(&(number, k)).copied();
+        }
+    }
+}
+
+/// The area vector of each face.
+fn areas(soup: &Soup, positions: &[V3], places: &[usize]) -> Vec<V3> {
+    soup.faces.iter().map(|face| newell(&face.corners.iter().map(|c| positions[places[c.position]]).collect::<Vec<_>>())).collect()
+}
+
+/// The normal of faces around a place between which light is smooth: the sum of their area vectors.
+fn direction(sheet: &[Around], areas: &[V3]) -> V3 {
+    let sum = sheet.iter().fold([0.0; 3], |sum, &(face, ..)| add(sum, areas[face]));
+    // Faces back to back cancel; then any one of them is as good as the other.
+    let any = sheet.iter().find_map(|&(.., direction)| direction);
+    let normal = if length(sum) > 1e-14 { unit(sum) } else { any };
+    normal.unwrap_or([0.0, 0.0, 1.0])
+}
+
+/// Also counts polygons that cross themselves. Each corner has one of `normals`, in the order of faces.
+fn with_own_normals(soup: &Soup, positions: &[V3], places: &[usize], normals: &[Option<V3>]) -> (Mesh, usize) {
     let mut crossed = 0;
     let mut mesh = Mesh::default();
     let mut vertices: HashMap<(usize, [i32; 3]), usize> = HashMap::new();
+    let mut normals = normals.iter();
     for face in &soup.faces {
         let corners: Vec<usize> = face
             .corners
             .iter()
-            .map(|corner| {
+            .zip(&mut normals)
+            .map(|(corner, normal)| {
                 let place = places[corner.position];
-                let normal = corner.normal.and_then(|n| unit(soup.normals[n])).unwrap_or([0.0, 0.0, 1.0]);
+                let normal = normal.unwrap_or([0.0, 0.0, 1.0]);
                 // Finer than a stream keeps them: equal keys become equal normals.
                 let key = normal.map(|c| (c * 65536.0).round() as i32);
                 *vertices.entry((place, key)).or_insert_with(|| {
@@ -264,8 +371,7 @@ type Around = (usize, usize, Option<V3>);
 /// Computes one normal for all faces around a position between which light is smooth: the sum of their area vectors. Also counts polygons that cross
 /// themselves.
 fn smooth(soup: &Soup, positions: &[V3], places: &[usize], crease: f64) -> (Mesh, usize) {
-    let areas: Vec<V3> =
-        soup.faces.iter().map(|face| newell(&face.corners.iter().map(|c| positions[places[c.position]]).collect::<Vec<_>>())).collect();
+    let areas = areas(soup, positions, places);
     let mut around: Vec<Vec<Around>> = vec![Vec::new(); positions.len()];
     for (number, face) in soup.faces.iter().enumerate() {
         for (k, corner) in face.corners.iter().enumerate() {
@@ -277,15 +383,12 @@ fn smooth(soup: &Soup, positions: &[V3], places: &[usize], crease: f64) -> (Mesh
     for (place, mut left) in around.into_iter().enumerate() {
         while !left.is_empty() {
             let sheet = sheet(soup, &mut left, crease);
-            let sum = sheet.iter().fold([0.0; 3], |sum, &(face, ..)| add(sum, areas[face]));
-            // Faces back to back cancel; then any one of them is as good as the other.
-            let any = sheet.iter().find_map(|&(.., direction)| direction);
-            let normal = if length(sum) > 1e-14 { unit(sum) } else { any };
+            let normal = direction(&sheet, &areas);
             for (face, k, _) in sheet {
                 vertices[face][k] = mesh.positions.len();
             }
             mesh.positions.push(positions[place]);
-            mesh.normals.push(normal.unwrap_or([0.0, 0.0, 1.0]));
+            mesh.normals.push(normal);
         }
     }
     let crossed = soup.faces.iter().zip(&vertices).filter(|(face, vertices)| push(&mut mesh, face, vertices)).count();

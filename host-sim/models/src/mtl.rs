@@ -3,12 +3,13 @@
 //! It is our own, as the reader for OBJ is, because an error should name the line of a bad number.
 
 use crate::{
+    fields::quoted,
     look::Surface,
-    obj::{logical_lines, plain, rest},
+    text::{logical_lines, plain, rest, without_comments},
     vector::{V3, scale},
 };
 use anyhow::{Context, Result, bail};
-use std::collections::BTreeSet;
+use std::collections::{BTreeSet, HashSet};
 
 /// The contents of an MTL file.
 #[derive(Clone, Debug, Default)]
@@ -61,9 +62,12 @@ impl Material {
 /// The error names the line and its fault.
 pub fn parse(text: &str) -> Result<Mtl> {
     let mut mtl = Mtl::default();
+    // Materials whose colour is in a texture.
+    let mut textured = HashSet::new();
     for (number, line) in logical_lines(&plain(text)) {
         let mut words = line.split_whitespace();
-        let Some(keyword) = words.next() else { continue };
+        let Some(written) = words.next() else { continue };
+        let keyword = written.to_ascii_lowercase();
         if keyword == "newmtl" {
             let name = rest(&line);
             if name.is_empty() {
@@ -72,24 +76,36 @@ pub fn parse(text: &str) -> Result<Mtl> {
             mtl.materials.push(Material { name, ambient: None, diffuse: None, specular: None, exponent: None });
             continue;
         }
-        let ignored = match keyword {
+        let ignored = match keyword.as_str() {
             "d" if words.clone().next() == Some("1") => None,
-            "d" | "Tr" | "Tf" => Some("transparency"),
-            "Ke" => Some("materials that shine by themselves"),
-            _ if keyword.starts_with("map_") || ["bump", "disp", "decal", "norm", "refl"].contains(&keyword) => Some("textures"),
+            "d" | "tr" | "tf" => Some("transparency"),
+            "ke" => Some("materials that shine by themselves"),
+            _ if keyword.starts_with("map_") || ["bump", "disp", "decal", "norm", "refl"].contains(&keyword.as_str()) => Some("textures"),
             _ => None,
         };
         mtl.ignored.extend(ignored);
+        let index = mtl.materials.len();
         let Some(material) = mtl.materials.last_mut() else { continue };
-        let place = || format!("line {number}: {keyword} of material {:?}", material.name);
-        match keyword {
-            "Ka" => material.ambient = colour(words).with_context(place)?.or(material.ambient),
-            "Kd" => material.diffuse = colour(words).with_context(place)?.or(material.diffuse),
-            "Ks" => material.specular = colour(words).with_context(place)?.or(material.specular),
-            "Ns" => material.exponent = Some(share(words.next().unwrap_or_default()).with_context(place)?),
+        let place = || format!("line {number}: {written} of material {:?}", quoted(&material.name));
+        match keyword.as_str() {
+            "ka" => material.ambient = colour(words).with_context(place)?.or(material.ambient),
+            "kd" => material.diffuse = colour(words).with_context(place)?.or(material.diffuse),
+            "ks" => material.specular = colour(words).with_context(place)?.or(material.specular),
+            "ns" => material.exponent = Some(share(words.next().unwrap_or_default()).with_context(place)?),
             // Illumination models without a highlight.
             "illum" if ["0", "1"].contains(&words.next().unwrap_or_default()) => material.specular = Some([0.0; 3]),
+            "map_kd" => drop(textured.insert(index - 1)),
             _ => {}
+        }
+    }
+    let whole: Vec<&str> = mtl.materials.iter().map(|material| material.name.as_str()).collect();
+    let names = without_comments(&whole);
+    for (index, (material, name)) in mtl.materials.iter_mut().zip(names).enumerate() {
+        material.name = name;
+        // Maya writes black where the texture has the colour.
+        if textured.contains(&index) && material.diffuse == Some([0.0; 3]) {
+            material.diffuse = None;
+            material.ambient = material.ambient.filter(|&ambient| ambient != [0.0; 3]);
         }
     }
     Ok(mtl)
@@ -112,7 +128,7 @@ fn colour<'a>(mut words: impl Iterator<Item = &'a str>) -> Result<Option<V3>> {
 /// A number that is not negative.
 fn share(word: &str) -> Result<f64> {
     let share = word.parse().ok().filter(|share: &f64| share.is_finite() && *share >= 0.0);
-    share.with_context(|| format!("{word:?} is not a number from 0 on"))
+    share.with_context(|| format!("{:?} is not a number from 0 on", quoted(word)))
 }
 
 #[cfg(test)]
@@ -130,6 +146,31 @@ mod tests {
         assert_eq!((ambient, diffuse, specular, exponent), (scale(DIFFUSE, 0.5), DIFFUSE, [0.0; 3], 30));
         assert_eq!(matt.surface(0.1).specular, [0.0; 3]);
         assert_eq!(mtl.ignored.into_iter().collect::<Vec<_>>(), ["textures", "transparency"]);
+    }
+
+    #[test]
+    fn statements_may_be_in_capitals_and_names_have_number_signs() {
+        let mtl =
+            parse("NEWMTL Material__#25\nKD 1 0 0\nNewMtl Material #112 # red\nkd 0 0 1\nks 1\nns 7\nKA 0.5\nMAP_KS a#b.png\n").unwrap();
+        let [one, two] = &mtl.materials[..] else { panic!("{mtl:?}") };
+        assert_eq!((&one.name[..], one.diffuse), ("Material__#25", Some([1.0, 0.0, 0.0])));
+        assert_eq!((&two.name[..], two.diffuse, two.specular), ("Material #112", Some([0.0, 0.0, 1.0]), Some([1.0; 3])));
+        assert_eq!((two.exponent, two.ambient, mtl.ignored.contains("textures")), (Some(7.0), Some([0.5; 3]), true));
+    }
+
+    /// Black beside a texture is no colour, as Maya writes it; black alone is.
+    #[test]
+    fn black_beside_a_texture_is_grey() {
+        for (text, diffuse) in [
+            ("Kd 0.00 0.00 0.00\nKa 0 0 0\nmap_Kd a.png", DIFFUSE),
+            ("map_Kd a.png\nKd 0", DIFFUSE),
+            ("Kd 0 0 0", [0.0; 3]),
+            ("Kd 0 0 0\nmap_Ks a.png", [0.0; 3]),
+            ("Kd 0 0 0.1\nmap_Kd a.png", [0.0, 0.0, 0.1]),
+        ] {
+            let surface = parse(&format!("newmtl before\nKd 1\nnewmtl a\n{text}\nnewmtl after\nKd 1\n")).unwrap().materials[1].surface(0.5);
+            assert_eq!((surface.diffuse, surface.ambient), (diffuse, scale(diffuse, 0.5)), "{text}");
+        }
     }
 
     #[test]

@@ -1,4 +1,4 @@
-//! Floating point to the numbers of a stream.
+//! Floating point to the numbers of a stream, and numbers as messages say them.
 
 use microphong::fixed::traits::Fixed;
 
@@ -24,6 +24,20 @@ pub fn above<F: Fixed>(x: f64) -> F {
 /// The smallest step of a format, a power of two.
 fn last_place<F: Fixed>() -> f64 {
     F::DELTA.to_num()
+}
+
+/// 12345 as 12,345.
+#[must_use]
+pub fn grouped(number: impl TryInto<u64>) -> String {
+    let digits = number.try_into().unwrap_or(u64::MAX).to_string();
+    let mut text = String::new();
+    for (i, digit) in digits.chars().enumerate() {
+        if i > 0 && (digits.len() - i).is_multiple_of(3) {
+            text.push(',');
+        }
+        text.push(digit);
+    }
+    text
 }
 
 #[cfg(test)]

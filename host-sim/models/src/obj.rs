@@ -2,8 +2,14 @@
 //!
 //! A reader of our own, because a bad number or index should be reported with its line.
 
-use crate::mesh::{Corner, Face, Smoothing, Soup, Submesh};
-use anyhow::{Context, Result, bail};
+use crate::{
+    faults::{FEW_CORNERS, Faults, UNUSED_NORMAL, UNUSED_POSITION},
+    fields::quoted,
+    mesh::{Corner, Face, Smoothing, Soup, Submesh},
+    number::grouped,
+    text::{keyword, logical_lines, plain, rest, without_comment, without_comments},
+};
+use anyhow::{Context, Error, Result, bail};
 use std::collections::{BTreeSet, HashMap};
 
 /// Larger coordinates would overflow when squared.
@@ -22,6 +28,59 @@ pub struct Obj {
     pub libraries: Vec<String>,
     /// Contents that are left out, in words.
     pub ignored: BTreeSet<&'static str>,
+    /// Wrong elements that are left out.
+    pub faults: Faults,
+    /// What else the user should know, in sentences.
+    pub remarks: Vec<String>,
+}
+
+/// Statements that OBJ has, and that change nothing here.
+const WITHOUT_EFFECT: [&str; 28] = [
+    "mg",
+    "bevel",
+    "c_interp",
+    "d_interp",
+    "lod",
+    "usemap",
+    "maplib",
+    "shadow_obj",
+    "trace_obj",
+    "ctech",
+    "stech",
+    "deg",
+    "bmat",
+    "step",
+    "parm",
+    "trim",
+    "hole",
+    "scrv",
+    "sp",
+    "end",
+    "con",
+    "call",
+    "csh",
+    "bsp",
+    "bzp",
+    "cdc",
+    "cdp",
+    "res",
+];
+
+/// Vectors of a file, of which some may be wrong. These matter only if a face uses them.
+#[derive(Default)]
+struct Vectors {
+    wrong: Vec<(usize, usize, Error)>,
+}
+
+impl Vectors {
+    /// Adds a vector, or zero in the place of a wrong one.
+    fn push(&mut self, vectors: &mut Vec<[f64; 3]>, vector: Result<[f64; 3]>, line: usize) {
+        let vector = vector.unwrap_or_else(|error| {
+            self.wrong.push((vectors.len(), line, error));
+            [0.0; 3]
+        });
+        vectors.push(vector);
+    }
 }
 
 /// Parses the text of an OBJ file. Lines end in LF, CR or both. A byte order mark is skipped.
@@ -34,14 +93,25 @@ pub fn parse(text: &str) -> Result<Obj> {
     let mut lines = Vec::new();
     let (mut name, mut smoothing) = (None, Smoothing::ByAngle);
     let mut naming = Naming::default();
+    let (mut positions, mut normals) = (Vectors::default(), Vectors::default());
+    // The first wrong element of any kind, and the first face of too few corners.
+    let (mut first, mut first_face) = (None, None);
+    let (mut unknown, mut first_unknown) = (0usize, None);
     for (number, line) in logical_lines(&plain(text)) {
-        let mut words = line.split_whitespace();
+        let words = || line.split_whitespace().skip(1);
         let soup = &mut obj.soup;
-        match words.next() {
-            Some("v") => soup.positions.push(vector(words).with_context(|| format!("line {number}: vertex"))?),
-            Some("vn") => soup.normals.push(vector(words).with_context(|| format!("line {number}: normal"))?),
-            Some("f") => {
-                let corners = corners(words, soup).with_context(|| format!("line {number}: face"))?;
+        match keyword(&line).as_str() {
+            "v" => positions.push(&mut soup.positions, vector(words()).with_context(|| format!("line {number}: vertex")), number),
+            "vn" => normals.push(&mut soup.normals, vector(words()).with_context(|| format!("line {number}: normal")), number),
+            "f" => {
+                let corners = corners(words(), soup).with_context(|| format!("line {number}: face"))?;
+                if corners.len() < 3 {
+                    let error = || format!("line {number}: face: {} corners; three at least are needed", corners.len());
+                    first_face.get_or_insert_with(error);
+                    first.get_or_insert_with(|| (number, error()));
+                    obj.faults.add(FEW_CORNERS, || format!("line {number}"));
+                    continue;
+                }
                 let known = obj.materials.iter().position(|material| *material == name);
                 let material = known.unwrap_or(obj.materials.len());
                 if known.is_none() {
@@ -52,33 +122,107 @@ pub fn parse(text: &str) -> Result<Obj> {
                 lines.push(number);
             }
             // Names may have blanks in them.
-            Some("usemtl") => name = Some(rest(&line)).filter(|name| !name.is_empty()),
-            Some("mtllib") => obj.libraries.push(rest(&line)),
-            Some("s") => smoothing = group(words.next()).with_context(|| format!("line {number}: smoothing group"))?,
-            Some("vt") => drop(obj.ignored.insert("texture coordinates")),
-            Some("l" | "p") => drop(obj.ignored.insert("lines and points")),
-            Some("vp" | "curv" | "curv2" | "surf" | "cstype") => drop(obj.ignored.insert("curves and free-form surfaces")),
-            Some("o") => naming.object(rest(&line)),
-            Some("g") => naming.group(rest(&line)),
-            _ => {}
+            "usemtl" => name = Some(rest(&line)).filter(|name| !name.is_empty()),
+            "mtllib" => obj.libraries.push(without_comment(&rest(&line)).to_owned()),
+            "s" => smoothing = group(words().next()).with_context(|| format!("line {number}: smoothing group"))?,
+            "vt" => drop(obj.ignored.insert("texture coordinates")),
+            "l" | "p" => drop(obj.ignored.insert("lines and points")),
+            "vp" | "curv" | "curv2" | "surf" | "cstype" => drop(obj.ignored.insert("curves and free-form surfaces")),
+            "o" => naming.object(without_comment(&rest(&line)).to_owned()),
+            "g" => naming.group(without_comment(&rest(&line)).to_owned()),
+            word if word.is_empty() || WITHOUT_EFFECT.contains(&word) => {}
+            word => {
+                unknown += 1;
+                first_unknown.get_or_insert_with(|| format!("`{}` in line {number}", quoted(word)));
+            }
         }
     }
-    let soup = &obj.soup;
-    let (positions, normals) = (soup.positions.len(), soup.normals.len());
-    for (face, line) in soup.faces.iter().zip(lines) {
-        for corner in &face.corners {
-            if corner.position >= positions {
-                bail!("line {line}: face: vertex {} is out of range; the file has {positions}", corner.position + 1);
-            }
-            if let Some(normal) = corner.normal.filter(|&n| n >= normals) {
-                bail!("line {line}: face: normal {} is out of range; the file has {normals}", normal + 1);
-            }
+    for (_, line, error) in positions.wrong.iter().chain(&normals.wrong) {
+        if first.as_ref().is_none_or(|(first, _)| line < first) {
+            first = Some((*line, format!("{error:#}")));
         }
+    }
+    // Nothing is left but what is wrong.
+    if let Some((_, error)) = first.filter(|_| obj.soup.faces.is_empty()) {
+        bail!(error);
+    }
+    if let Some(error) = first_face.filter(|_| obj.faults.count(FEW_CORNERS) > obj.soup.faces.len()) {
+        bail!(
+            "{error}; {} faces of {} are like it",
+            grouped(obj.faults.count(FEW_CORNERS)),
+            grouped(lines.len() + obj.faults.count(FEW_CORNERS))
+        );
+    }
+    if let Some(first) = first_unknown {
+        obj.remarks.push(match unknown {
+            1 => format!("1 line that is no statement of OBJ is left out: {first}"),
+            several => format!("{} lines that are no statements of OBJ are left out; the first: {first}", grouped(several)),
+        });
+    }
+    let used = used(&obj.soup, &lines)?;
+    for (index, line, error) in positions.wrong {
+        if used.positions[index] {
+            return Err(error);
+        }
+        obj.faults.add(UNUSED_POSITION, || format!("line {line}"));
+    }
+    // One without a direction stands for a normal that is used, and another is computed.
+    for (_, line, _) in normals.wrong.iter().filter(|(index, ..)| !used.normals[*index]) {
+        obj.faults.add(UNUSED_NORMAL, || format!("line {line}"));
     }
     let of_faces;
     (obj.objects, of_faces) = naming.objects();
     obj.soup.faces.iter_mut().zip(of_faces).for_each(|(face, object)| face.submesh.object = object);
+    obj.merge_comments();
     Ok(obj)
+}
+
+impl Obj {
+    /// Makes one material of those whose names differ only by a comment.
+    fn merge_comments(&mut self) {
+        let named: Vec<&str> = self.materials.iter().flatten().map(String::as_str).collect();
+        let mut names = without_comments(&named).into_iter();
+        let names: Vec<_> = self.materials.iter().map(|name| name.as_ref().and_then(|_| names.next())).collect();
+        let mut merged: Vec<Option<String>> = Vec::new();
+        let numbers: Vec<usize> = names
+            .into_iter()
+            .map(|name| {
+                let known = merged.iter().position(|other| *other == name);
+                known.unwrap_or_else(|| {
+                    merged.push(name);
+                    merged.len() - 1
+                })
+            })
+            .collect();
+        self.soup.faces.iter_mut().for_each(|face| face.submesh.material = numbers[face.submesh.material]);
+        self.materials = merged;
+    }
+}
+
+/// Whether a face uses each of the positions and normals.
+struct Used {
+    positions: Vec<bool>,
+    normals: Vec<bool>,
+}
+
+/// Checks indices of faces, which stand in these lines.
+fn used(soup: &Soup, lines: &[usize]) -> Result<Used> {
+    let (positions, normals) = (soup.positions.len(), soup.normals.len());
+    let mut used = Used { positions: vec![false; positions], normals: vec![false; normals] };
+    for (face, line) in soup.faces.iter().zip(lines) {
+        for corner in &face.corners {
+            match used.positions.get_mut(corner.position) {
+                Some(used) => *used = true,
+                None => bail!("line {line}: face: vertex {} is out of range; the file has {positions}", corner.position + 1),
+            }
+            match corner.normal.map(|normal| (normal, used.normals.get_mut(normal))) {
+                Some((_, Some(used))) => *used = true,
+                Some((normal, None)) => bail!("line {line}: face: normal {} is out of range; the file has {normals}", normal + 1),
+                None => {}
+            }
+        }
+    }
+    Ok(used)
 }
 
 /// The objects and groups of a file, and which of them each face is in.
@@ -137,64 +281,32 @@ impl Naming {
     }
 }
 
-/// The text with LF at the ends of its lines, and no byte order mark.
-pub(crate) fn plain(text: &str) -> String {
-    text.strip_prefix('\u{FEFF}').unwrap_or(text).replace("\r\n", "\n").replace('\r', "\n")
-}
-
-/// The part of a line after its first word.
-pub(crate) fn rest(line: &str) -> String {
-    line.trim().split_once(char::is_whitespace).map_or("", |(_, rest)| rest.trim()).to_owned()
-}
-
 /// The number of a smoothing group; 0 and `off` are none.
 fn group(word: Option<&str>) -> Result<Smoothing> {
     let word = word.context("a number is missing, or off")?;
-    match word {
+    match word.to_ascii_lowercase().as_str() {
         "off" | "0" => Ok(Smoothing::Flat),
         "on" => Ok(Smoothing::Group(1)),
-        _ => Ok(Smoothing::Group(word.parse().ok().with_context(|| format!("{word:?} is neither a whole number nor off"))?)),
+        _ => Ok(Smoothing::Group(word.parse().ok().with_context(|| format!("{:?} is neither a whole number nor off", quoted(word)))?)),
     }
-}
-
-/// Lines without comments, with their numbers; a backslash at the end joins the next line.
-pub(crate) fn logical_lines(text: &str) -> impl Iterator<Item = (usize, String)> {
-    let mut lines = text.lines().enumerate();
-    std::iter::from_fn(move || {
-        let (index, first) = lines.next()?;
-        let mut line = strip(first).to_owned();
-        while line.ends_with('\\') {
-            line.pop();
-            line.push(' ');
-            line.push_str(lines.next().map_or("", |(_, next)| strip(next)));
-        }
-        Some((index + 1, line))
-    })
-}
-
-fn strip(line: &str) -> &str {
-    line.split('#').next().unwrap_or_default().trim_end()
 }
 
 fn vector<'a>(mut words: impl Iterator<Item = &'a str>) -> Result<[f64; 3]> {
     let mut vector = [0.0; 3];
     for (component, axis) in vector.iter_mut().zip(["x", "y", "z"]) {
         let word = words.next().with_context(|| format!("{axis} is missing; three numbers are needed"))?;
-        let number: f64 = word.parse().ok().with_context(|| format!("{axis} is {word:?}, not a number"))?;
+        let hint = if word.contains(',') { "; write numbers with a point, as 0.5" } else { "" };
+        let number: f64 = word.parse().ok().with_context(|| format!("{axis} is {:?}, not a number{hint}", quoted(word)))?;
         *component = number;
         if !number.is_finite() || number.abs() > LARGEST {
-            bail!("{axis} is {word}; coordinates must be finite and below {LARGEST:e}");
+            bail!("{axis} is {}; coordinates must be finite and below {LARGEST:e}", quoted(word));
         }
     }
     Ok(vector)
 }
 
 fn corners<'a>(words: impl Iterator<Item = &'a str>, soup: &Soup) -> Result<Vec<Corner>> {
-    let corners = words.map(|word| corner(word, soup)).collect::<Result<Vec<_>>>()?;
-    if corners.len() < 3 {
-        bail!("{} corners; three at least are needed", corners.len());
-    }
-    Ok(corners)
+    words.map(|word| corner(word, soup)).collect()
 }
 
 /// `position`, `position/texture`, `position/texture/normal` or `position//normal`.
@@ -207,7 +319,7 @@ fn corner(word: &str, soup: &Soup) -> Result<Corner> {
 
 /// Indices count from 1; negative ones count back from the last one so far.
 fn index(word: &str, count: usize, what: &str) -> Result<usize> {
-    let number: i64 = word.parse().ok().with_context(|| format!("{what} index {word:?} is not a whole number"))?;
+    let number: i64 = word.parse().ok().with_context(|| format!("{what} index {:?} is not a whole number", quoted(word)))?;
     let index = if number > 0 { number - 1 } else { number + count as i64 };
     if number == 0 || index < 0 {
         bail!("{what} {number} is out of range; indices count from 1, and there are {count} so far");
@@ -254,6 +366,55 @@ mod tests {
         let faces: Vec<_> = obj.soup.faces.iter().map(|face| (face.submesh.material, face.smoothing)).collect();
         assert_eq!(faces, [(0, Smoothing::ByAngle), (1, Smoothing::Group(2)), (2, Smoothing::Flat), (1, Smoothing::Flat)]);
         assert_eq!(obj.ignored.into_iter().collect::<Vec<_>>(), ["lines and points", "texture coordinates"]);
+    }
+
+    /// Wrong elements that no face needs are left out, and so are a few faces without three corners.
+    #[test]
+    fn wrong_elements_that_do_not_matter_are_counted() {
+        let good = "v 0 0 0\nv 1 0 0\nv 0 1 0\nvn 0 0 1\nf 1//1 2//1 3//1\n";
+        let said = |text: &str| {
+            let obj = parse(text).unwrap();
+            assert_eq!(obj.soup.faces.len(), 1, "{text:?}");
+            obj.faults.sentences().chain(obj.remarks).collect::<Vec<_>>()
+        };
+        assert!(said(good).is_empty());
+        for (more, kind) in
+            [("v nan 0 0", "vertex"), ("v 1", "vertex"), ("v 1.#QNAN 0 0", "vertex"), ("vn x y z", "normal"), ("vn 1 1.#INF 0", "normal")]
+        {
+            let expected = format!("1 {kind} is not three finite numbers and is left out, because no face uses it: line 6");
+            assert_eq!(said(&format!("{good}{more}\n")), [expected], "{more}");
+        }
+        assert_eq!(said(&format!("{good}f 1 2\n")), ["1 face has fewer than three corners and is left out: line 6"]);
+        assert!(
+            said(&format!("{good}#!x\nbevel on\nCSTYLE\nxyz 1\n"))[0]
+                .ends_with("no statements of OBJ are left out; the first: `cstyle` in line 8")
+        );
+        // A face with such a normal gets one that is computed.
+        let obj = parse(&good.replace("vn 0 0 1", "vn 0 0 nan")).unwrap();
+        assert!(obj.soup.normals == [[0.0; 3]] && obj.faults.sentences().next().is_none());
+        for (text, error) in [
+            (good.replace("v 1 0 0", "v 1 0 1.#QNAN0"), "line 2: vertex: z is \"1.#QNAN0\", not a number"),
+            (good.replace("v 1 0 0", "v 1 0 inf"), "line 2: vertex: z is inf; coordinates must be finite and below 1e100"),
+            (good.replace("v 1 0 0", "v 1,5 0 0"), "line 2: vertex: x is \"1,5\", not a number; write numbers with a point, as 0.5"),
+            (format!("{good}f 1\nf 2 3\n"), "line 6: face: 1 corners; three at least are needed; 2 faces of 3 are like it"),
+            (format!("{good}v 0 0 nan\nf 1 2 4\n"), "line 6: vertex: z is nan; coordinates must be finite and below 1e100"),
+        ] {
+            assert_eq!(format!("{:#}", parse(&text).unwrap_err()), error, "{text:?}");
+        }
+    }
+
+    #[test]
+    fn statements_may_be_in_capitals_and_names_have_number_signs() {
+        let triangle = "F 1 2 3\n";
+        let text = format!(
+            "MTLLIB a#1.mtl # here\nV 0 0 0\nV 1 0 0\nV 0 1 0\nUseMtl Material__#25\nS OFF\n{triangle}usemtl Material #112\n{triangle}usemtl Material__#25 # again\n{triangle}o Part #3\n{triangle}"
+        );
+        let obj = parse(&text).unwrap();
+        assert_eq!((&obj.libraries[..], obj.objects.len()), (&["a#1.mtl".to_owned()][..], 2));
+        assert_eq!(obj.objects[1], "Part #3");
+        assert_eq!(obj.materials, [Some("Material__#25".to_owned()), Some("Material #112".to_owned())]);
+        assert_eq!(obj.soup.faces.iter().map(|face| face.submesh.material).collect::<Vec<_>>(), [0, 1, 0, 0]);
+        assert!(obj.soup.faces.iter().all(|face| face.smoothing == Smoothing::Flat) && obj.remarks.is_empty());
     }
 
     #[test]

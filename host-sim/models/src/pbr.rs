@@ -21,12 +21,51 @@ const KEPT: f64 = 0.5;
 /// The exponent below which highlights fade.
 const FADING: f64 = 8.0;
 
+/// The material nearest to one of specular and glossiness (KHR_materials_pbrSpecularGlossiness): a diffuse colour and a mirrored one, both linear. Such
+/// materials have no metallic factor. How far one is a metal follows from the two colours, as the specification's own conversion to metallic and
+/// roughness computes it.
+pub(crate) fn of_gloss(name: String, [red, green, blue, _]: [f32; 4], specular: [f32; 3], glossiness: f32) -> Material {
+    let limited = |colour: [f32; 3]| colour.map(|c| f64::from(c).clamp(0.0, 1.0));
+    let (diffuse, specular) = (limited([red, green, blue]), limited(specular));
+    let exponent = exponent(1.0 - f64::from(glossiness));
+    let strength = strength(exponent);
+    let metallic = metallic(diffuse, specular).powi(2);
+    // As for a metal of metallic and roughness: it keeps more of its colour where its highlight fades.
+    let kept = scale(encoded(specular), metallic * (1.0 - (1.0 - KEPT) * strength));
+    Material {
+        name,
+        ambient: None,
+        diffuse: Some(add(scale(encoded(diffuse), 1.0 - metallic), kept)),
+        specular: Some(encoded(scale(specular, strength))),
+        exponent: Some(exponent),
+    }
+}
+
+/// How far a material is a metal, from 0 to 1: the solution of the quadratic equation by which the two colours follow from a base colour.
+fn metallic(diffuse: V3, specular: V3) -> f64 {
+    let brightness = |[r, g, b]: V3| (0.299 * r * r + 0.587 * g * g + 0.114 * b * b).sqrt();
+    let (bright, mirrored) = (brightness(diffuse), brightness(specular));
+    if mirrored < DIELECTRIC {
+        return 0.0;
+    }
+    let strongest = specular.into_iter().fold(0.0, f64::max);
+    let b = bright * (1.0 - strongest) / (1.0 - DIELECTRIC) + mirrored - 2.0 * DIELECTRIC;
+    let c = DIELECTRIC - mirrored;
+    let root = (b * b - 4.0 * DIELECTRIC * c).max(0.0).sqrt();
+    ((root - b) / (2.0 * DIELECTRIC)).clamp(0.0, 1.0)
+}
+
+/// How bright a highlight of this exponent is.
+fn strength(exponent: f64) -> f64 {
+    if exponent > 1.0 { (exponent / FADING).min(1.0) } else { 0.0 }
+}
+
 /// The material nearest to a base colour, linear, with these shares.
 pub(crate) fn material(name: String, [red, green, blue, _]: [f32; 4], metallic: f32, roughness: f32) -> Material {
     let base = [red, green, blue].map(|c| f64::from(c).clamp(0.0, 1.0));
     let metallic = f64::from(metallic).clamp(0.0, 1.0);
     let exponent = exponent(roughness.into());
-    let strength = if exponent > 1.0 { (exponent / FADING).min(1.0) } else { 0.0 };
+    let strength = strength(exponent);
     let mirrored = scale(add(scale([DIELECTRIC; 3], 1.0 - metallic), scale(base, metallic)), strength);
     Material {
         name,
@@ -73,6 +112,24 @@ mod tests {
         let strength = |roughness| red(0.0, roughness).specular.map_or(0.0, |[r, ..]| r);
         assert!([0.9, 0.85, 0.8, 0.75, 0.7].map(strength).is_sorted_by(|a, b| a < b));
         assert!((strength(0.6) - strength(0.3)).abs() < 1e-9, "{} {}", strength(0.6), strength(0.3));
+    }
+
+    #[test]
+    fn specular_and_glossiness_keep_their_colours() {
+        let orange = of_gloss(String::new(), [1.0, 0.214_041, 0.0, 1.0], [0.04; 3], 0.5);
+        assert!(near(orange.diffuse, [1.0, 0.5, 0.0]) && near(orange.specular, [0.221; 3]) && orange.exponent == Some(30.0), "{orange:?}");
+        // With more of a highlight it stays orange.
+        let shiny = of_gloss(String::new(), [1.0, 0.3, 0.0, 1.0], [0.2; 3], 0.5).diffuse.unwrap_or_default();
+        assert!(shiny[0] > 0.9 && (0.5..0.6).contains(&shiny[1]) && shiny[2] < 0.1, "{shiny:?}");
+        // A metal is the same by either description.
+        for gloss in [0.0, 0.2, 0.5, 0.9] {
+            let gold = of_gloss(String::new(), [0.0, 0.0, 0.0, 1.0], [1.0, 0.5, 0.1], gloss);
+            let same = material(String::new(), [1.0, 0.5, 0.1, 1.0], 1.0, 1.0 - gloss);
+            assert!(
+                near(gold.diffuse, same.diffuse.unwrap_or_default()) && near(gold.specular, same.specular.unwrap_or_default()),
+                "{gold:?}, {same:?}"
+            );
+        }
     }
 
     #[test]

@@ -1,6 +1,7 @@
 //! Reads PLY, text and binary, by the library `ply-rs-bw`: positions, normals and polygons; tells what else there is.
 
 use crate::{
+    faults::{FEW_CORNERS, Faults, UNUSED_NORMAL, UNUSED_POSITION},
     mesh::{Corner, Face, Smoothing, Soup, Submesh},
     obj::LARGEST,
 };
@@ -9,7 +10,7 @@ use ply_rs_bw::{
     parser::{ParseError, Parser, Reader},
     ply::{ElementDef, Encoding, Header, Property, PropertyAccess, PropertyAccessResult},
 };
-use std::collections::BTreeSet;
+use std::{borrow::Cow, collections::BTreeSet};
 
 /// The contents of a PLY file.
 #[derive(Clone, Debug, Default)]
@@ -18,6 +19,8 @@ pub struct Ply {
     pub soup: Soup,
     /// Contents that are left out, in words.
     pub ignored: BTreeSet<&'static str>,
+    /// Wrong elements that are left out.
+    pub faults: Faults,
 }
 
 /// Whether a file is PLY.
@@ -30,10 +33,11 @@ pub(crate) fn is_ply(bytes: &[u8]) -> bool {
 /// # Errors
 /// The error names the line, the vertex or the face, and its fault.
 pub fn parse(bytes: &[u8]) -> Result<Ply> {
+    let bytes = &*with_numbers(bytes);
     let mut reader = Reader::new(bytes);
     let header = Parser::<Skipped>::new().read_header(&mut reader).map_err(|error| plain(&error, true))?;
     let mut ply = Ply { ignored: ignored(&header), ..Ply::default() };
-    let (mut vertices, mut faces) = (Vec::new(), Vec::new());
+    let (mut vertices, mut faces, mut strips) = (Vec::new(), Vec::new(), Vec::new());
     let mut with_normals = false;
     for (name, element) in &header.elements {
         match name.as_str() {
@@ -44,41 +48,108 @@ pub fn parse(bytes: &[u8]) -> Result<Ply> {
                 with_normals = NORMALS.iter().all(|axis| element.properties.contains_key(*axis));
                 vertices = elements::<Vertex>(&mut reader, element, &header)?;
             }
-            "face" => {
-                if !CORNERS.iter().any(|list| element.properties.contains_key(*list)) {
-                    bail!("PLY: faces have no property {}; export them with lists of vertices", CORNERS.join(" or "));
-                }
-                faces = elements::<Corners>(&mut reader, element, &header)?;
-            }
+            "face" => faces = corners(&mut reader, element, &header, "faces")?,
+            "tristrips" => strips = corners(&mut reader, element, &header, "strips of triangles")?,
             _ => drop(elements::<Skipped>(&mut reader, element, &header)?),
         }
     }
-    for (number, vertex) in (1..).zip(&vertices) {
-        if vertex.position.iter().any(|c| !c.is_finite() || c.abs() > LARGEST) {
-            bail!("PLY, vertex {number}: coordinates must be finite and below {LARGEST:e}");
-        }
-        if with_normals && vertex.normal.iter().any(|c| !c.is_finite() || c.abs() > LARGEST) {
-            bail!("PLY, vertex {number}: its normal must be finite");
-        }
-    }
+    let corner = |index: i64, place: &str| {
+        let position = usize::try_from(index).ok().filter(|&index| index < vertices.len());
+        let range = || format!("PLY, {place}: vertex {index} is out of range; they count from 0, and the file has {}", vertices.len());
+        position.with_context(range).map(|position| Corner { position, normal: with_normals.then_some(position) })
+    };
+    let mut first = None;
     for (number, Corners(corners)) in (1..).zip(faces) {
         if corners.len() < 3 {
-            bail!("PLY, face {number}: {} corners; three at least are needed", corners.len());
+            first.get_or_insert_with(|| format!("PLY, face {number}: {} corners; three at least are needed", corners.len()));
+            ply.faults.add(FEW_CORNERS, || format!("face {number}"));
+            continue;
         }
-        let corner = |index: i64| {
-            let position = usize::try_from(index).ok().filter(|&index| index < vertices.len());
-            let range =
-                || format!("PLY, face {number}: vertex {index} is out of range; they count from 0, and the file has {}", vertices.len());
-            position.with_context(range).map(|position| Corner { position, normal: with_normals.then_some(position) })
-        };
-        let corners = corners.into_iter().map(corner).collect::<Result<_>>()?;
+        let corners = corners.into_iter().map(|index| corner(index, &format!("face {number}"))).collect::<Result<_>>()?;
         ply.soup.faces.push(Face { corners, submesh: Submesh::default(), smoothing: Smoothing::ByAngle });
+    }
+    for (number, Corners(strip)) in (1..).zip(strips) {
+        for triangle in triangles(&strip) {
+            let corners = triangle.into_iter().map(|index| corner(index, &format!("strip {number}"))).collect::<Result<_>>()?;
+            ply.soup.faces.push(Face { corners, submesh: Submesh::default(), smoothing: Smoothing::ByAngle });
+        }
+    }
+    if let Some(error) = first.filter(|_| ply.faults.count(FEW_CORNERS) > ply.soup.faces.len()) {
+        bail!(error);
+    }
+    let mut used = vec![false; vertices.len()];
+    ply.soup.faces.iter().flat_map(|face| &face.corners).for_each(|corner| used[corner.position] = true);
+    let is_right = |vector: &[f64; 3]| vector.iter().all(|c| c.is_finite() && c.abs() <= LARGEST);
+    for (number, (vertex, used)) in (1..).zip(vertices.iter_mut().zip(used)) {
+        if !is_right(&vertex.position) {
+            // Without faces nothing is used, and nothing is right.
+            if used || ply.soup.faces.is_empty() {
+                bail!("PLY, vertex {number}: coordinates must be finite and below {LARGEST:e}");
+            }
+            ply.faults.add(UNUSED_POSITION, || format!("vertex {number}"));
+            vertex.position = [0.0; 3];
+        }
+        if with_normals && !is_right(&vertex.normal) {
+            if !used {
+                ply.faults.add(UNUSED_NORMAL, || format!("vertex {number}"));
+            }
+            // One without a direction, for which another is computed.
+            vertex.normal = [0.0; 3];
+        }
     }
     ply.soup.positions = vertices.iter().map(|vertex| vertex.position).collect();
     if with_normals {
         ply.soup.normals = vertices.iter().map(|vertex| vertex.normal).collect();
     }
     Ok(ply)
+}
+
+/// Text with a number that is not finite in the place of words such as `nan`, which the library does not read.
+fn with_numbers(bytes: &[u8]) -> Cow<'_, [u8]> {
+    const END: &[u8] = b"end_header";
+    let head = bytes.windows(END.len()).position(|word| word == END).map_or(bytes.len(), |start| start + END.len());
+    let (head, body) = bytes.split_at(head);
+    let is_text = head.windows(12).any(|words| words == b"format ascii");
+    let is_word = |byte: &u8| byte.is_ascii_alphabetic() && !byte.eq_ignore_ascii_case(&b'e') || *byte == b'#';
+    if !is_text || !body.iter().any(is_word) {
+        return Cow::Borrowed(bytes);
+    }
+    let mut text = head.to_vec();
+    for word in body.split_inclusive(u8::is_ascii_whitespace) {
+        let number = word.trim_ascii_end();
+        let is_not_finite = number.iter().any(is_word) && std::str::from_utf8(number).is_ok_and(is_no_number);
+        text.extend_from_slice(if is_not_finite { b"1e999" } else { number });
+        text.extend_from_slice(&word[number.len()..]);
+    }
+    Cow::Owned(text)
+}
+
+/// Whether a word stands for what is not finite, as programs write it.
+fn is_no_number(word: &str) -> bool {
+    let word = word.trim_start_matches(['-', '+']).to_ascii_lowercase();
+    ["nan", "inf", "1.#"].iter().any(|start| word.starts_with(start))
+}
+
+/// The triangles of strips, of which -1 ends each, all wound alike.
+fn triangles(strips: &[i64]) -> Vec<[i64; 3]> {
+    let strips = strips.split(|&index| index == -1);
+    let of_strip = |strip: &[i64]| {
+        let turned = |(number, corners): (usize, &[i64])| match *corners {
+            [a, b, c] if number % 2 == 0 => Some([a, b, c]),
+            [a, b, c] => Some([b, a, c]),
+            _ => None,
+        };
+        strip.windows(3).enumerate().filter_map(turned).collect::<Vec<_>>()
+    };
+    strips.flat_map(of_strip).collect()
+}
+
+/// The lists of corners of all elements of a kind, which errors call `what`.
+fn corners(reader: &mut Reader<&[u8]>, element: &ElementDef, header: &Header, what: &str) -> Result<Vec<Corners>> {
+    if !CORNERS.iter().any(|list| element.properties.contains_key(*list)) {
+        bail!("PLY: {what} have no property {}; export them with lists of vertices", CORNERS.join(" or "));
+    }
+    elements(reader, element, header)
 }
 
 const AXES: [&str; 3] = ["x", "y", "z"];
@@ -91,7 +162,6 @@ fn ignored(header: &Header) -> BTreeSet<&'static str> {
     let elements = header.elements.iter().filter(|(_, element)| element.count > 0);
     let whole = elements.clone().filter_map(|(name, _)| match name.as_str() {
         "edge" => Some("lines and points"),
-        "tristrips" => Some("strips of triangles"),
         _ => None,
     });
     let properties = elements.flat_map(|(name, element)| element.properties.keys().map(move |property| (name, property)));
@@ -124,6 +194,8 @@ fn plain(error: &ParseError, is_text: bool) -> anyhow::Error {
     let what = message.lines().next().unwrap_or_default().trim_end_matches('.');
     // What it was that could not be read stands last.
     let why = message.lines().rev().find_map(|line| line.trim().strip_prefix("Error: ")).filter(|_| is_text);
+    // What the library's grammar expects is no help.
+    let why = why.map(|why| if why.contains("expected one of") { "numbers with blanks between them are needed" } else { why });
     let why = why.map(|why| why.chars().take(LONGEST).collect::<String>()).map_or(String::new(), |why| format!(": {why}"));
     match line.filter(|_| is_text) {
         Some(line) => anyhow!("PLY, line {line}: {what}{why}"),
@@ -254,7 +326,8 @@ mod tests {
     fn text_and_binary_are_the_same() {
         for bytes in [text(), binary(false), binary(true)] {
             assert!(is_ply(&bytes));
-            let Ply { soup, ignored } = parse(&bytes).unwrap();
+            let Ply { soup, ignored, faults } = parse(&bytes).unwrap();
+            assert!(faults.sentences().next().is_none());
             assert_eq!(soup.positions, [[0.0, 0.5, 0.0], [1.0, 0.0, -2.0], [0.0, 1.0, 0.0]]);
             assert_eq!(
                 soup.faces.iter().map(|face| face.corners.iter().map(|c| c.position).collect()).collect::<Vec<Vec<_>>>(),
@@ -301,6 +374,45 @@ mod tests {
         let whole = binary(false);
         let cut = format!("{:#}", parse(&whole[..whole.len() - 3]).unwrap_err());
         assert_eq!(cut, "PLY: Unexpected end of file while reading binary element 'face' (expected 1, got 0)");
+    }
+
+    #[test]
+    fn strips_are_triangles_that_are_wound_alike() {
+        assert_eq!(triangles(&[0, 1, 2, 3, -1, 4, 5, 6, 7, 8]), [[0, 1, 2], [2, 1, 3], [4, 5, 6], [6, 5, 7], [6, 7, 8]]);
+        assert!(triangles(&[-1, 0, 1, -1, -1, 2]).is_empty() && triangles(&[]).is_empty());
+        let text = "ply\nformat ascii 1.0\nelement vertex 5\nproperty float x\nproperty float y\nproperty float z\nelement tristrips 1\nproperty list int int vertex_indices\nend_header\n0 0 0\n1 0 0\n0 1 0\n1 1 0\n0 2 0\n5 0 1 2 3 4\n";
+        let Ply { soup, ignored, .. } = parse(text.as_bytes()).unwrap();
+        assert!(soup.faces.len() == 3 && ignored.is_empty());
+        for face in &soup.faces {
+            let [a, b, c] = [0, 1, 2].map(|k| soup.positions[face.corners[k].position]);
+            assert!((b[0] - a[0]) * (c[1] - a[1]) > (b[1] - a[1]) * (c[0] - a[0]), "{face:?}");
+        }
+        let error = format!("{:#}", parse(text.replace("5 0 1 2 3 4", "5 0 1 2 3 5").as_bytes()).unwrap_err());
+        assert_eq!(error, "PLY, strip 1: vertex 5 is out of range; they count from 0, and the file has 5");
+    }
+
+    #[test]
+    fn wrong_elements_that_do_not_matter_are_counted() {
+        let head = "ply\nformat ascii 1.0\nelement vertex 4\nproperty float x\nproperty float y\nproperty float z\nproperty float nx\nproperty float ny\nproperty float nz\nelement face 2\nproperty list uchar int vertex_indices\nend_header\n";
+        let text = format!("{head}0 0 0 0 0 1\n1 0 0 0 0 nan\n0 1 0 0 0 1\nnan 0 0 0 inf 1\n3 0 1 2\n2 0 1\n");
+        let Ply { soup, faults, .. } = parse(text.as_bytes()).unwrap();
+        assert_eq!((soup.faces.len(), soup.normals[1]), (1, [0.0; 3]));
+        let said: Vec<_> = faults.sentences().collect();
+        assert_eq!(
+            said,
+            [
+                "1 face has fewer than three corners and is left out: face 2",
+                "1 vertex is not three finite numbers and is left out, because no face uses it: vertex 4",
+                "1 normal is not three finite numbers and is left out, because no face uses it: vertex 4"
+            ]
+        );
+        let used = format!("{:#}", parse(text.replace("3 0 1 2\n", "3 0 1 3\n").as_bytes()).unwrap_err());
+        assert_eq!(used, "PLY, vertex 4: coordinates must be finite and below 1e100");
+        for word in ["-nan(ind)", "1.#QNAN", "NaN", "-Inf"] {
+            assert_eq!(parse(text.replace("nan", word).as_bytes()).unwrap().soup.normals[1], [0.0; 3], "{word}");
+        }
+        let word = format!("{:#}", parse(text.replace("1 0 0 0 0 nan", "1 0 0 0 0 none").as_bytes()).unwrap_err());
+        assert_eq!(word, "PLY, line 14: Couldn't read element line: numbers with blanks between them are needed");
     }
 
     #[test]

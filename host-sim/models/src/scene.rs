@@ -3,8 +3,8 @@
 use crate::{
     bytes::StreamBytes,
     convert::{COPPER, Converted, DISTANCE, MARGIN, ORBIT, Options, SQUARE, Steps},
+    files::read,
     foreign,
-    import::read,
     look::{Lamp, Look, Surface},
     mesh::{self, Mesh, Weld},
     obj,

@@ -3,7 +3,7 @@
 use microphong_models::{
     import::{self, Imported},
     look::{Look, Surface},
-    mesh::Weld,
+    mesh::{Mesh, Weld},
     quantise::quantise,
     vector::{V3, add, cross, dot, length, sub},
     view::{Up, View},
@@ -285,8 +285,18 @@ fn errors_of_gltf_name_the_place() {
         ("/accessors/0/componentType", json!(5126), "indices: accessor 0 has the type Scalar of F32"),
         (
             "/accessors/1/sparse",
-            json!({"count": 1, "indices": {"bufferView": 0, "componentType": 5125}, "values": {"bufferView": 1}}),
-            "accessor 1 is sparse; export it without sparse accessors",
+            json!({"count": 99, "indices": {"bufferView": 0, "componentType": 5125}, "values": {"bufferView": 1}}),
+            "accessor 1: its sparse elements do not lie in their buffer; the file is damaged",
+        ),
+        (
+            "/accessors/1/sparse",
+            json!({"count": 1, "indices": {"bufferView": 1, "componentType": 5125, "byteOffset": 12}, "values": {"bufferView": 1}}),
+            "accessor 1: its sparse element 1065353216 is out of range; there are 8",
+        ),
+        (
+            "/accessors/1/sparse",
+            json!({"count": 1, "indices": {"bufferView": 9, "componentType": 5125}, "values": {"bufferView": 1}}),
+            "accessors[1].sparse.indices.bufferView: there is no element of this number",
         ),
         ("/bufferViews/1/byteLength", json!(5), "accessor 1 does not lie in its buffer"),
         ("/bufferViews/1/byteStride", json!(4), "accessor 1 does not lie in its buffer"),
@@ -298,7 +308,37 @@ fn errors_of_gltf_name_the_place() {
         ("/nodes/0/children", json!([0]), "node 0: the scene reaches it twice; nodes must form a tree"),
         ("/nodes/0/mesh", json!(1), "nodes[0].mesh"),
         ("/nodes/0/translation", json!([1e39, 0, 0]), "glTF"),
-        ("/extensionsRequired", json!(["KHR_draco_mesh_compression"]), "export it without compression and extensions"),
+        (
+            "/extensionsRequired",
+            json!(["KHR_mesh_quantization", "XYZ_new_geometry"]),
+            "it needs the extension XYZ_new_geometry, which is not read; export it without this extension",
+        ),
+        (
+            "/meshes/0/primitives/0/extensions",
+            json!({"KHR_draco_mesh_compression": {"bufferView": 1, "attributes": {"POSITION": 0}}}),
+            "its mesh, compressed by Draco, cannot be read; it is damaged, or of a kind that is not read: `npx @gltf-transform/cli copy",
+        ),
+        (
+            "/meshes/0/primitives/0/extensions",
+            json!({"KHR_draco_mesh_compression": {"bufferView": 7}}),
+            "its bytes, compressed by Draco, do not lie in a buffer; the file is damaged",
+        ),
+        (
+            "/bufferViews/1/extensions",
+            json!({"EXT_meshopt_compression": {"buffer": 0, "byteLength": 96, "byteStride": 12, "count": 8, "mode": "ATTRIBUTES"}}),
+            "view 1 of a buffer: its bytes, compressed by meshoptimizer, cannot be read; they are damaged, or of a kind that is not read",
+        ),
+        (
+            "/bufferViews/1/extensions",
+            json!({"EXT_meshopt_compression": {"buffer": 0, "byteLength": 96, "byteStride": 12, "count": 9, "mode": "ATTRIBUTES"}}),
+            "its compression has 9 elements of 12 bytes, but the view has 96 bytes; the file is damaged",
+        ),
+        (
+            "/bufferViews/1/extensions",
+            json!({"EXT_meshopt_compression": {"buffer": 0, "byteLength": 97, "byteOffset": 200, "byteStride": 12, "count": 8}}),
+            "its compressed bytes do not lie in their buffer; the file is damaged",
+        ),
+        ("/asset/version", json!("3.0"), "glTF 3.0; export it as glTF 2.0"),
         (
             "/meshes/0/primitives/0/attributes/POSITION",
             json!(9),
@@ -321,9 +361,303 @@ fn errors_of_gltf_name_the_place() {
     );
     assert_eq!(place.wrong("a.gltf", document.to_string()), "glTF, buffer 0: it is the binary chunk of a GLB file, which is missing");
     let whole = glb(&document, &bytes);
+    let old = [&whole[..4], &[1], &whole[5..]].concat();
+    assert_eq!(place.wrong("a.glb", old), "GLB: glTF 1.0; export it as glTF 2.0");
+    assert_eq!(place.wrong("a.gltf", r#"{"asset": {"version": "1.0"}, "meshes": {}}"#), "glTF 1.0; export it as glTF 2.0");
     assert_eq!(place.wrong("a.glb", &whole[..whole.len() - 1]), "GLB: the file is shorter than its head says; it was cut off");
     assert!(place.wrong("a.gltf", "{\"asset\": ").starts_with("glTF: EOF while parsing"));
     assert!(place.wrong("a.gltf", "no JSON").starts_with("glTF: "));
+}
+
+/// The triangles of a mesh by the positions of their corners, in an order that does not depend on that of the file.
+fn surface(mesh: &Mesh) -> Vec<[[i64; 3]; 3]> {
+    let rounded = |vertex: usize| mesh.positions[vertex].map(|c| (c * 1e4).round() as i64);
+    let mut triangles: Vec<_> = mesh
+        .triangles
+        .iter()
+        .map(|triangle| {
+            let mut corners = triangle.map(rounded);
+            let least = (0..3).min_by_key(|&k| corners[k]).unwrap();
+            corners.rotate_left(least);
+            corners
+        })
+        .collect();
+    triangles.sort_unstable();
+    triangles
+}
+
+fn bytes_of(hex: &str) -> Vec<u8> {
+    (0..hex.len() / 2).map(|k| u8::from_str_radix(&hex[2 * k..2 * k + 2], 16).unwrap()).collect()
+}
+
+/// The cube as the encoder of Google compresses it, by its two methods. In the second one indices keep their order.
+const DRACO: [&str; 2] = [
+    "445241434f02020101000000080c000b0000035f4b1501011001ff000001000903000002010101000303012001200300b0429c2002050800000000ff3f00000000000000000000000000000000803f0e",
+    "445241434f0202010000000c0801000102000203040506040607000305000504010706010602000407000701030206030605010100090300000200010100030301280118030010b2501029120000000000ff3f00000000000000000000000000000000803f0e",
+];
+
+fn of_draco(bytes: &[u8]) -> Vec<u8> {
+    let extension = json!({"KHR_draco_mesh_compression": {"bufferView": 0, "attributes": {"POSITION": 0}}});
+    let document = json!({
+        "asset": {"version": "2.0"}, "scene": 0, "scenes": [{"nodes": [0]}], "nodes": [{"mesh": 0}],
+        "meshes": [{"primitives": [{"attributes": {"POSITION": 1}, "indices": 0, "extensions": extension}]}],
+        "accessors": [{"componentType": 5123, "type": "SCALAR", "count": 36}, {"componentType": 5126, "type": "VEC3", "count": 8}],
+        "bufferViews": [{"buffer": 0, "byteLength": bytes.len()}], "buffers": [{"byteLength": bytes.len()}],
+        "extensionsUsed": ["KHR_draco_mesh_compression"], "extensionsRequired": ["KHR_draco_mesh_compression"],
+    });
+    glb(&document, bytes)
+}
+
+/// The cube as the original meshoptimizer compresses it: indices, and positions of 16 bits.
+const MESHOPT: &str = "e1f02030110015201620170503007687566778a9866589689801690000000000a0020034343000000000010664000001303000000304011020000001030300000304010102000000000000000000000000000000000000000000000000000000000180018001800000000000";
+
+fn of_meshopt(bytes: &[u8]) -> Vec<u8> {
+    let packed = |offset: u32, length: u32, mode: &str, stride: u32, count: u32| {
+        json!({"EXT_meshopt_compression": {
+            "buffer": 0, "byteOffset": offset, "byteLength": length, "mode": mode, "byteStride": stride, "count": count
+        }})
+    };
+    let document = json!({
+        "asset": {"version": "2.0"}, "scene": 0, "scenes": [{"nodes": [0]}],
+        "nodes": [{"mesh": 0, "translation": [0.5, 0.5, 0.5], "scale": [0.5, 0.5, 0.5]}],
+        "meshes": [{"primitives": [{"attributes": {"POSITION": 1}, "indices": 0}]}],
+        "accessors": [
+            {"componentType": 5123, "type": "SCALAR", "count": 36, "bufferView": 0},
+            {"componentType": 5122, "type": "VEC3", "count": 8, "bufferView": 1, "normalized": true}
+        ],
+        "bufferViews": [
+            {"buffer": 1, "byteLength": 72, "extensions": packed(0, 29, "TRIANGLES", 2, 36)},
+            {"buffer": 1, "byteOffset": 72, "byteLength": 64, "byteStride": 8, "extensions": packed(32, 73, "ATTRIBUTES", 8, 8)}
+        ],
+        "buffers": [{"byteLength": bytes.len()}, {"byteLength": 136, "extensions": {"EXT_meshopt_compression": {"fallback": true}}}],
+        "extensionsUsed": ["EXT_meshopt_compression", "KHR_mesh_quantization"],
+        "extensionsRequired": ["EXT_meshopt_compression", "KHR_mesh_quantization"],
+    });
+    glb(&document, bytes)
+}
+
+#[test]
+fn compressed_meshes_are_the_same_surface() {
+    let place = Place::new();
+    let plain = place.file("plain.obj", cube().obj());
+    let expected = surface(&import::file(&plain, Weld::default()).unwrap().mesh);
+    for bytes in DRACO.map(|hex| of_draco(&bytes_of(hex))).into_iter().chain([of_meshopt(&bytes_of(MESHOPT))]) {
+        let Imported { mesh, remarks, report, .. } = import::file(&place.file("a.glb", bytes), Weld::default()).unwrap();
+        assert!(surface(&mesh) == expected && remarks.is_empty() && !report.turned, "{remarks:?}");
+    }
+    assert!(stream(&place.file("b.glb", of_draco(&bytes_of(DRACO[1])))) == stream(&plain));
+}
+
+/// Sparse and quantised numbers, padding, and what programs write beyond the specification make no difference.
+#[test]
+fn numbers_of_every_kind_are_the_same_mesh() {
+    let place = Place::new();
+    let shape = sphere();
+    let (document, bytes) = shape.gltf();
+    let expected = stream(&place.file("a.glb", glb(&document, &bytes)));
+    let mut more = bytes.clone();
+    let view = |more: &mut Vec<u8>, document: &mut Value, bytes: &[u8]| {
+        more.resize(more.len().next_multiple_of(4), 0);
+        let views = document["bufferViews"].as_array_mut().unwrap();
+        views.push(json!({"buffer": 0, "byteOffset": more.len(), "byteLength": bytes.len()}));
+        let number = views.len() - 1;
+        more.extend(bytes);
+        document["buffers"][0]["byteLength"] = more.len().into();
+        number
+    };
+    // All positions but the first are in a view; or none is.
+    let count = shape.positions.len() as u16;
+    for all in [false, true] {
+        let mut document = document.clone();
+        let which: Vec<u16> = if all { (0..count).collect() } else { vec![0] };
+        let indices = view(&mut more, &mut document, &which.iter().flat_map(|k| k.to_le_bytes()).collect::<Vec<_>>());
+        let values: Vec<u8> = which.iter().flat_map(|&k| shape.positions[usize::from(k)]).flat_map(f32::to_le_bytes).collect();
+        let values = view(&mut more, &mut document, &values);
+        let accessor = &mut document["accessors"][1];
+        accessor["sparse"] =
+            json!({"count": which.len(), "indices": {"bufferView": indices, "componentType": 5123}, "values": {"bufferView": values}});
+        let mut damaged = more.clone();
+        if all {
+            accessor.as_object_mut().unwrap().remove("bufferView");
+        } else {
+            let start = document["bufferViews"][1]["byteOffset"].as_u64().unwrap() as usize;
+            damaged[start..start + 4].copy_from_slice(&9f32.to_le_bytes());
+        }
+        assert!(stream(&place.file("a.glb", glb(&document, &damaged))) == expected, "{all}");
+    }
+    // Padding of zeros, chunks of others, numbers without a box, attributes and extensions that nobody knows.
+    let mut odd = document.clone();
+    odd["accessors"][1].as_object_mut().unwrap().remove("min");
+    odd["meshes"][0]["primitives"][0]["attributes"]["_BATCHID"] = 0.into();
+    odd["textures"] = json!([{"extensions": {"KHR_texture_basisu": {"source": 0}}}]);
+    odd["extensionsUsed"] = json!(["KHR_materials_unlit", "KHR_texture_basisu", "XYZ_notes"]);
+    odd["extensionsRequired"] = json!(["KHR_materials_unlit", "KHR_texture_basisu"]);
+    odd["extensions"] = json!({"XYZ_notes": {"text": "none"}});
+    let mut whole = glb(&odd, &bytes);
+    let end = 20 + odd.to_string().len().next_multiple_of(4);
+    whole[20..end].iter_mut().rev().take_while(|byte| **byte == b' ').for_each(|byte| *byte = 0);
+    whole.splice(end..end, [&8u32.to_le_bytes()[..], b"NOTE", &[0; 12]].concat()[..12 + 4].iter().copied());
+    let length = (whole.len() as u32).to_le_bytes();
+    whole[8..12].copy_from_slice(&length);
+    assert!(stream(&place.file("odd.glb", &whole)) == expected);
+    place.file("odd.bin", &bytes);
+    odd["buffers"][0]["uri"] = "odd.bin".into();
+    assert!(stream(&place.file("odd.gltf", format!("{odd}\n\0\0\0"))) == expected);
+}
+
+/// Whole numbers stand for shares of the largest one, or for themselves, only where the file says that it is quantised.
+#[test]
+fn quantised_positions_are_read_where_the_file_says_so() {
+    let place = Place::new();
+    let expected = surface(&import::file(&place.file("a.obj", cube().obj()), Weld::default()).unwrap().mesh);
+    let (document, bytes) = cube().gltf();
+    let start = document["bufferViews"][1]["byteOffset"].as_u64().unwrap() as usize;
+    for (component, normalized, one) in [(5120, true, 127u16), (5120, false, 1), (5121, true, 255), (5122, false, 7), (5123, true, 65535)] {
+        let mut document = document.clone();
+        let mut bytes = bytes[..start].to_vec();
+        for position in cube().positions {
+            let number = |c: f32| c as u16 * one;
+            let wide = component > 5121;
+            bytes.extend(position.into_iter().flat_map(|c| if wide { number(c).to_le_bytes().to_vec() } else { vec![number(c) as u8] }));
+            // Each vertex begins at a multiple of four bytes.
+            bytes.resize(bytes.len() + if wide { 2 } else { 1 }, 0xFF);
+        }
+        let stride = if component > 5121 { 8 } else { 4 };
+        document["bufferViews"][1] = json!({"buffer": 0, "byteOffset": start, "byteLength": 8 * stride, "byteStride": stride});
+        document["buffers"][0]["byteLength"] = bytes.len().into();
+        let accessor = &mut document["accessors"][1];
+        (accessor["componentType"], accessor["normalized"]) = (component.into(), normalized.into());
+        let error = place.wrong("a.glb", glb(&document, &bytes));
+        assert!(error.contains("but Vec3 of [F32] is needed"), "{error}");
+        document["extensionsRequired"] = json!(["KHR_mesh_quantization"]);
+        document["extensionsUsed"] = json!(["KHR_mesh_quantization"]);
+        let imported = import::file(&place.file("a.glb", glb(&document, &bytes)), Weld::default()).unwrap();
+        assert!(surface(&imported.mesh) == expected, "{component}");
+    }
+}
+
+/// A mesh with a skin stands where its joints put it. Its node, and what is above it, have no effect.
+#[test]
+fn skinned_meshes_stand_in_the_pose_of_their_joints() {
+    let place = Place::new();
+    // A bar along y, of which the upper half hangs on the second joint.
+    let shape = Shape {
+        positions: [[0, 0, 0], [1, 0, 0], [0, 0, 1], [0, 2, 0], [1, 2, 0], [0, 2, 1]].map(|p: [u8; 3]| p.map(f32::from)).into(),
+        normals: Vec::new(),
+        triangles: vec![[0, 1, 2], [3, 5, 4], [0, 3, 1], [1, 3, 4], [1, 4, 2], [2, 4, 5], [2, 5, 0], [0, 5, 3]],
+    };
+    let (mut document, mut bytes) = shape.gltf();
+    let mut add = |contents: &[u8], component: u32, kind: &str, count: usize| {
+        let views = document["bufferViews"].as_array_mut().unwrap();
+        views.push(json!({"buffer": 0, "byteOffset": bytes.len(), "byteLength": contents.len()}));
+        let view = views.len() - 1;
+        bytes.extend(contents);
+        document["buffers"][0]["byteLength"] = bytes.len().into();
+        let accessors = document["accessors"].as_array_mut().unwrap();
+        accessors.push(json!({"bufferView": view, "componentType": component, "type": kind, "count": count}));
+        accessors.len() - 1
+    };
+    let joints = add(&[[0, 0, 0, 0], [0; 4], [0; 4], [1, 0, 0, 0], [1, 0, 0, 0], [0, 1, 0, 0]].concat(), 5121, "VEC4", 6);
+    // Shares of 255. The last vertex hangs on both joints, by weights that are not 1 together.
+    let weights =
+        add(&[[255, 0, 0, 0], [255, 0, 0, 0], [255, 0, 0, 0], [255, 0, 0, 0], [128, 0, 0, 0], [0, 255, 0, 0]].concat(), 5121, "VEC4", 6);
+    // The second joint was at (0, 1, 0) when the skin was bound.
+    let matrix = |x: f32, y: f32, z: f32| [1.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0, x, y, z, 1.0f32];
+    let inverse: Vec<u8> = [matrix(0.0, 0.0, 0.0), matrix(0.0, -1.0, 0.0)].concat().into_iter().flat_map(f32::to_le_bytes).collect();
+    let inverse = add(&inverse, 5126, "MAT4", 2);
+    let attributes = &mut document["meshes"][0]["primitives"][0]["attributes"];
+    (attributes["JOINTS_0"], attributes["WEIGHTS_0"]) = (joints.into(), weights.into());
+    document["skins"] = json!([{"joints": [2, 3], "inverseBindMatrices": inverse}]);
+    // The armature lies and is small, as some programs export it; its joints make up for that. The second one turns a quarter about z.
+    let lie = json!([0.707_106_77, 0, 0, 0.707_106_77]);
+    let stand = json!([-0.707_106_77, 0, 0, 0.707_106_77]);
+    document["nodes"] = json!([
+        {"rotation": lie, "scale": [0.01, 0.01, 0.01], "children": [1, 2]},
+        {"mesh": 0, "skin": 0, "translation": [7, 7, 7]},
+        {"rotation": stand, "scale": [100, 100, 100], "children": [3]},
+        {"translation": [0, 1, 0], "rotation": [0, 0, 0.707_106_77, 0.707_106_77]}
+    ]);
+    let Imported { mesh, remarks, .. } = import::file(&place.file("a.glb", glb(&document, &bytes)), Weld::default()).unwrap();
+    assert!(remarks.is_empty(), "{remarks:?}");
+    let posed = Shape {
+        positions: [[0, 0, 0], [1, 0, 0], [0, 0, 1], [-1, 1, 0], [-1, 2, 0], [-1, 1, 1]].map(|p: [i8; 3]| p.map(f32::from)).into(),
+        ..shape
+    };
+    let expected = surface(&import::file(&place.file("posed.obj", posed.obj()), Weld::default()).unwrap().mesh);
+    let near = |a: &[[i64; 3]; 3], b: &[[i64; 3]; 3]| a.as_flattened().iter().zip(b.as_flattened()).all(|(a, b)| (a - b).abs() <= 2);
+    let found = surface(&mesh);
+    assert!(found.len() == expected.len() && found.iter().all(|a| expected.iter().any(|b| near(a, b))), "{found:?}\n{expected:?}");
+    let mut far = document.clone();
+    far["skins"][0]["joints"] = json!([2]);
+    assert_eq!(place.wrong("far.glb", glb(&far, &bytes)), "glTF, mesh 0, primitive 0: vertex 3: joint 1 is out of range; the skin has 1");
+}
+
+/// Targets of a morph are added by the weights of the node, or else by those of the mesh.
+#[test]
+fn morph_targets_have_their_default_weights() {
+    let place = Place::new();
+    let (mut document, mut bytes) = cube().gltf();
+    // The corner (1, 1, 1) goes up by 2.
+    let mut offsets = vec![0u8; 96];
+    offsets[7 * 12 + 8..].copy_from_slice(&2f32.to_le_bytes());
+    document["bufferViews"].as_array_mut().unwrap().push(json!({"buffer": 0, "byteOffset": bytes.len(), "byteLength": 96}));
+    bytes.extend(offsets);
+    document["buffers"][0]["byteLength"] = bytes.len().into();
+    document["accessors"].as_array_mut().unwrap().push(json!({"bufferView": 2, "componentType": 5126, "type": "VEC3", "count": 8}));
+    document["meshes"][0]["primitives"][0]["targets"] = json!([{"POSITION": 2}]);
+    let mesh = |document: &Value| import::file(&place.file("a.glb", glb(document, &bytes)), Weld::default()).unwrap();
+    let shape = |top: f32| {
+        let mut shape = cube();
+        shape.positions[7][2] = top;
+        surface(&import::file(&place.file("a.obj", shape.obj()), Weld::default()).unwrap().mesh)
+    };
+    let imported = mesh(&document);
+    assert!(surface(&imported.mesh) == shape(1.0));
+    assert_eq!(imported.remarks, ["left out: morph targets, but for their default weights"]);
+    document["meshes"][0]["weights"] = json!([0.5]);
+    assert!(surface(&mesh(&document).mesh) == shape(2.0));
+    document["nodes"][0]["weights"] = json!([0.25]);
+    assert!(surface(&mesh(&document).mesh) == shape(1.5));
+}
+
+#[test]
+fn specular_and_glossiness_have_a_colour() {
+    let place = Place::new();
+    let (mut document, bytes) = cube().gltf();
+    document["extensionsUsed"] = json!(["KHR_materials_pbrSpecularGlossiness"]);
+    document["materials"] = json!([{"name": "orange", "extensions": {"KHR_materials_pbrSpecularGlossiness": {
+        "diffuseFactor": [1, 0.214_041, 0, 1], "specularFactor": [0.04, 0.04, 0.04], "glossinessFactor": 0.5
+    }}}]);
+    document["meshes"][0]["primitives"][0]["material"] = 0.into();
+    let imported = import::file(&place.file("a.glb", glb(&document, &bytes)), Weld::default()).unwrap();
+    let [Some(orange)] = &imported.materials[..] else { panic!("{:?}", imported.materials) };
+    let [red, green, blue] = orange.diffuse.unwrap();
+    assert!(red > 0.99 && (green - 0.5).abs() < 0.01 && blue < 0.01 && imported.remarks.is_empty(), "{orange:?}, {:?}", imported.remarks);
+}
+
+/// Files outside the folder of the model are not opened, unless that is allowed; devices never are.
+#[test]
+fn models_open_no_files_outside_their_folder() {
+    let place = Place::new();
+    let (mut document, bytes) = cube().gltf();
+    let outside = place.file("outside.bin", &bytes);
+    fs::create_dir(place.0.path().join("inside")).unwrap();
+    let mut written = |uri: &str| {
+        document["buffers"][0]["uri"] = uri.into();
+        place.file("inside/a.gltf", document.to_string())
+    };
+    let rules = |allow_outside| import::Rules { allow_outside, ..import::Rules::default() };
+    for uri in [outside.display().to_string(), "../outside.bin".to_owned(), "%2E%2E/outside.bin".to_owned()] {
+        let path = written(&uri);
+        let error = format!("{:#}", import::file(&path, Weld::default()).unwrap_err());
+        assert!(error.contains("buffer 0") && error.contains("lies outside the folder of the model"), "{error}");
+        import::file_by(&path, Weld::default(), rules(true)).unwrap();
+    }
+    let path = written("/dev/zero");
+    for (allowed, words) in [(false, "lies outside the folder"), (true, "is no regular file")] {
+        let error = format!("{:#}", import::file_by(&path, Weld::default(), rules(allowed)).unwrap_err());
+        assert!(error.contains(words), "{error}");
+    }
 }
 
 proptest! {
@@ -340,5 +674,19 @@ proptest! {
         let places: Vec<_> = (0..whole.len()).filter(|&k| !digits || whole[k].is_ascii_digit()).collect();
         whole[places[at.index(places.len())]] = byte;
         let _ = import::file(&place.file("damaged.glb", &whole), Weld::default());
+    }
+
+    /// Wherever compressed bytes are damaged, they are a mesh or an error.
+    #[test]
+    fn any_damage_of_compressed_bytes_may_come(which in 0..3usize, at in any::<prop::sample::Index>(), byte in any::<u8>(), cut in any::<prop::sample::Index>(), cuts in any::<bool>()) {
+        let place = Place::new();
+        let mut bytes = bytes_of([DRACO[0], DRACO[1], MESHOPT][which]);
+        let at = at.index(bytes.len());
+        bytes[at] = byte;
+        if cuts {
+            bytes.truncate(cut.index(bytes.len()));
+        }
+        let whole = if which < 2 { of_draco(&bytes) } else { of_meshopt(&bytes) };
+        let _ = import::file(&place.file("a.glb", whole), Weld::default());
     }
 }

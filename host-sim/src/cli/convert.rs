@@ -32,10 +32,13 @@ use std::path::{Path, PathBuf};
 
 /// Convert a model file (OBJ, glTF 2.0, STL, PLY) to a stream, the mesh file of a program
 ///
-/// Normals come from the file if every corner has one. Otherwise the command computes them: light is smooth within each smoothing group of the file.
-/// If there are no groups, light is smooth across edges that fold by no more than --crease. Polygons, also concave ones, are cut into triangles.
+/// Normals come from the file if at least half of the corners have one. Other normals are computed: light is smooth within each smoothing group of the
+/// file. If there are no groups, light is smooth across edges that fold by no more than --crease. Polygons, also concave ones, are cut into triangles.
 /// Materials come from the .mtl file beside an .obj file (Kd, Ks, Ka, Ns), or from the .gltf or .glb file (base colour, metallic, roughness). Of a glTF
-/// file the default scene is converted, with the transformations of its nodes. The command prints everything in the file that it ignores.
+/// file the default scene is converted, where its nodes and skins put it. The command prints everything in the file that it ignores.
+///
+/// A model may name other files, such as materials and buffers. They are opened only if they are regular files in the folder of the model. A file may have
+/// at most 1 GiB.
 ///
 /// Each object of the file keeps its name, and a program can find it by this name. An object is an `o` of OBJ (or a `g`, if the file has at most one
 /// `o`), or a node of glTF. An object has one mesh in the stream for each of its materials.
@@ -130,6 +133,14 @@ struct Line<'a> {
     crossed: usize,
     own_normals: bool,
     turned: bool,
+    /// Faces that were turned to agree with their neighbours, or in a closed part that was inside out.
+    mended: usize,
+    /// Corners whose normals were computed, although the others are those of the file.
+    computed_normals: usize,
+    open_edges: usize,
+    opposed_edges: usize,
+    /// Edges of more than two faces.
+    crowded_edges: usize,
     closed_convex: bool,
     simplified: Option<Simplified>,
     levels: Vec<Level>,
@@ -237,6 +248,11 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome> {
         crossed: report.crossed,
         own_normals: report.own_normals,
         turned: report.turned,
+        mended: report.mended,
+        computed_normals: report.computed_normals + report.missing_normals,
+        open_edges: report.open_edges,
+        opposed_edges: report.opposed_edges,
+        crowded_edges: report.crowded_edges,
         closed_convex: parts.iter().all(|part| part.closed_convex),
         simplified: simplified.map(|simplified| Simplified::new(simplified, &look, &parts, &options.levels)),
         levels: parts.iter().enumerate().flat_map(|(mesh, part)| part.coarser.iter().map(move |level| of(mesh, level))).collect(),
@@ -391,6 +407,31 @@ fn text_of(layout: &Layout) -> String {
     format!("{text}.active_triangles({active_triangles}){tables}{smooth}")
 }
 
+/// Says at which edges the surface is not as that of a solid body is.
+fn edges(line: &Line<'_>) -> Result<()> {
+    let kinds = [
+        (
+            line.open_edges,
+            ["edge has", "edges have"],
+            "one face only: the surface is open, and backs of faces are not drawn; --flip turns it inside out",
+        ),
+        (
+            line.opposed_edges,
+            ["edge has", "edges have"],
+            "two faces that disagree about the front, however they are turned; split the surface there in a modelling program",
+        ),
+        (
+            line.crowded_edges,
+            ["edge has", "edges have"],
+            "more than two faces; if the picture is wrong there, remove doubled and inner faces in a modelling program",
+        ),
+    ];
+    for (count, words, text) in kinds.into_iter().filter(|(count, ..)| *count > 0) {
+        report::line(&format!("  {} {text}", report::counted(count, words)))?;
+    }
+    Ok(())
+}
+
 fn of(mesh: usize, level: &levels::Level) -> Level {
     Level { mesh, triangles: level.triangles.len(), error: level.error.into() }
 }
@@ -404,6 +445,7 @@ fn text(line: &Line<'_>, materials: &[Option<&str>]) -> Result<()> {
     let (welded, degenerate) = (count(line.welded), count(line.degenerate));
     let convex = if line.closed_convex { ", closed and convex" } else { "" };
     report::line(&format!("  {welded} vertices welded, {degenerate} degenerate triangles removed, {normals}{turned}{convex}"))?;
+    edges(line)?;
     match line.materials {
         0 => {}
         1 => report::line("  1 material from the file")?,

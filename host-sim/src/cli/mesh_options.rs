@@ -4,6 +4,7 @@ use super::{Usage, parse};
 use microphong::format::MAX_LIGHTS;
 use microphong_sim::{
     convert::{AZIMUTH, DISTANCE, ELEVATION, Finish, ORBIT, Options},
+    import::Rules,
     look::{Lamp, Surface},
     mesh::{CREASE, Weld},
     render::Format,
@@ -18,13 +19,23 @@ pub(crate) struct MeshOptions {
     /// Axis of the mesh that points up: x, y, z, -x, -y or -z.
     #[arg(long, default_value = "y", value_parser = parse::up, allow_hyphen_values = true)]
     up: Up,
-    /// Turn the surface inside out, for meshes whose faces wind clockwise. Closed meshes are corrected without this option.
+    /// Turn the surface inside out, for meshes whose faces wind clockwise. Closed meshes, and faces that are wound against their neighbours, are
+    /// corrected without this option.
     #[arg(long)]
     flip: bool,
     /// Largest angle in degrees at which an edge looks smooth: 0 shows all facets, 180 none. It applies to files without normals and smoothing
     /// groups.
     #[arg(long, value_name = "DEGREES", default_value_t = CREASE, value_parser = parse::crease)]
     crease: f64,
+    /// Refuse a file with wrong elements. Without this option they are left out or mended, if the rest of the mesh can be drawn, and the command prints
+    /// them: faces of fewer than three corners, vertices and normals that are not finite numbers, normals without a direction, and faces that are wound
+    /// against their neighbours.
+    #[arg(long)]
+    strict: bool,
+    /// Open files outside the folder of the model, if the model names them. Without this option only regular files in this folder are opened. Use it
+    /// only for models that you trust.
+    #[arg(long)]
+    allow_outside: bool,
     /// Merge all objects into one object without a name, which takes less flash. It has one mesh for each material.
     #[arg(long)]
     merge: bool,
@@ -101,6 +112,7 @@ impl MeshOptions {
         let material = if self.plastic { Surface::plastic } else { Surface::metal };
         Ok(Options {
             weld: Weld { turn: self.flip, crease: self.crease },
+            rules: Rules { strict: self.strict, allow_outside: self.allow_outside },
             merge: self.merge,
             surface: material(self.colour.unwrap_or(colour), shares, self.exponent.unwrap_or(exponent)),
             repaint: self.colour.is_some(),

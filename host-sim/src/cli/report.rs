@@ -3,6 +3,7 @@
 use anyhow::{Context, Result};
 use indicatif::{MultiProgress, ProgressBar, ProgressDrawTarget, ProgressStyle};
 use log::{LevelFilter, Log, Metadata, Record};
+pub(crate) use microphong_sim::number::grouped;
 use microphong_sim::{choices::Choices, convert::Steps, output};
 use serde::Serialize;
 use std::{
@@ -193,16 +194,3 @@ pub(crate) fn counted(number: impl TryInto<u64>, [one, many]: [&str; 2]) -> Stri
 pub(crate) const TRIANGLES: [&str; 2] = ["triangle", "triangles"];
 pub(crate) const VERTICES: [&str; 2] = ["vertex", "vertices"];
 pub(crate) const FRAMES: [&str; 2] = ["frame", "frames"];
-
-/// 12345 as 12,345.
-pub(crate) fn grouped(number: u64) -> String {
-    let digits = number.to_string();
-    let mut text = String::new();
-    for (i, digit) in digits.chars().enumerate() {
-        if i > 0 && (digits.len() - i).is_multiple_of(3) {
-            text.push(',');
-        }
-        text.push(digit);
-    }
-    text
-}
