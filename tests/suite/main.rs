@@ -19,6 +19,7 @@ mod endurance;
 mod examples;
 mod faults;
 mod features;
+mod files;
 mod framing;
 mod gamma;
 mod golden;

@@ -1,6 +1,7 @@
 //! The bytes of a stream, aligned so that they can be read in place.
 
-use anyhow::{Context, Result, anyhow};
+use crate::files;
+use anyhow::{Result, anyhow};
 use microphong::{
     Outlines, Stream, StreamError,
     format::ErrorBudget,
@@ -10,7 +11,7 @@ use microphong::{
     },
 };
 use microphong_render::neighbours::{has_neighbours, with_neighbours};
-use std::{fs, path::Path};
+use std::path::Path;
 use zerocopy::{FromBytes, IntoBytes};
 
 /// A stream in memory.
@@ -34,7 +35,7 @@ impl StreamBytes {
     /// # Errors
     /// The error names the file, its fault and the remedy.
     pub fn read(path: &Path) -> Result<Self> {
-        let bytes = fs::read(path).with_context(|| format!("cannot read {}", path.display()))?;
+        let bytes = files::read(path)?;
         let stream = Self::from(bytes.as_slice());
         let checked = stream.parse().and_then(|stream| stream.names().try_for_each(|entry| entry.map(drop)));
         checked.map_err(|error| anyhow!("{}: {error}", path.display()))?;

@@ -148,7 +148,9 @@ pub struct Converted {
     pub report: Report,
     /// The file's materials, by which parts count; `None` where the file does not say what a material is.
     pub materials: Vec<Option<Material>>,
-    /// What a user should know of the file, in sentences.
+    /// Wrong elements of the file that are left out or mended, in sentences.
+    pub faults: Vec<String>,
+    /// What a user should know of the file, in sentences; wrong elements are among it.
     pub remarks: Vec<String>,
     /// The meshes of the stream, with coarser levels.
     pub parts: Vec<Part>,
@@ -168,7 +170,8 @@ impl Converted {
     pub fn read(path: &Path, options: &Options, steps: &dyn Steps) -> Result<Self> {
         let place = || path.display().to_string();
         steps.begin("reading the file", 1);
-        let Imported { mut mesh, report, mut objects, mut materials, mut remarks } = import::file_by(path, options.weld, options.rules)?;
+        let Imported { mut mesh, report, mut objects, mut materials, faults, mut remarks } =
+            import::file_by(path, options.weld, options.rules)?;
         if options.repaint && materials.iter().any(Option::is_some) {
             remarks.push(format!("{} materials of the file have the one colour of --colour", materials.iter().flatten().count()));
             mesh.merge_materials();
@@ -209,7 +212,7 @@ impl Converted {
         let errors = look.tolerances(&parts, &options.levels);
         steps.begin("searching levels of detail", parts.len() * errors.len());
         levels::add(&mesh, &mut parts, &errors, &|| steps.step()).with_context(place)?;
-        Ok(Self { mesh, report, materials, remarks, parts, lost, look, simplified })
+        Ok(Self { mesh, report, materials, faults, remarks, parts, lost, look, simplified })
     }
 
     /// The largest simplified mesh, to within a 64th, for whose stream there is room; `None` if there is none. `load` is the share of the room that a

@@ -1,6 +1,6 @@
 //! Files of formats that are not read: recognised, so that an error can say what they are and what helps.
 
-use anyhow::{Result, bail};
+use anyhow::{Result, bail, ensure};
 use microphong::stream::record::MAGIC;
 use std::path::Path;
 
@@ -101,15 +101,25 @@ pub(crate) fn refuse(path: &Path, bytes: &[u8]) -> Result<()> {
     if let Some((format, remedy)) = by_content(path, bytes) {
         bail!("{}", said(path, format, remedy));
     }
-    if bytes.starts_with(&MAGIC) {
-        bail!("{}: a stream of microphong, which is converted already; give it the ending .tri, and it is drawn", path.display());
-    }
     if is_utf_16(bytes) {
         bail!("{}: text in UTF-16; save it as UTF-8 or ASCII", path.display());
     }
     if bytes.iter().all(|&byte| byte == 0) && !bytes.is_empty() {
         bail!("{}: all its {} bytes are zero; get the file again", path.display(), crate::number::grouped(bytes.len()));
     }
+    Ok(())
+}
+
+/// Passes what is no stream.
+///
+/// # Errors
+/// Names the file, and says that it is finished.
+pub(crate) fn refuse_stream(path: &Path, bytes: &[u8]) -> Result<()> {
+    ensure!(
+        !bytes.starts_with(&MAGIC),
+        "{}: a stream of microphong, which is converted already; give it the ending .tri, and every command takes it",
+        path.display()
+    );
     Ok(())
 }
 
@@ -274,7 +284,9 @@ mod tests {
         assert!(told("a.obj", b"OFF\n8 6 0\n").contains("OFF"));
         assert!(told("a.obj", b"  0\r\nSECTION\r\n").contains("DXF, a CAD format"));
         assert!(told("a.obj", &[0; 12]).contains("all its 12 bytes are zero"));
-        assert!(told("a.obj", &[&MAGIC[..], b"\0"].concat()).contains("a stream of microphong"));
+        let stream = [&MAGIC[..], b"\0"].concat();
+        refuse(Path::new("a.bin"), &stream).unwrap();
+        assert!(format!("{:#}", refuse_stream(Path::new("a.obj"), &stream).unwrap_err()).contains("a stream of microphong"));
         for text in ["v 0 0 0\nv 1 0 0\n", "solid a\nfacet normal"] {
             let wide: Vec<u8> = text.bytes().flat_map(|byte| [byte, 0]).collect();
             assert!(

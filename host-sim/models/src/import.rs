@@ -27,7 +27,9 @@ pub struct Imported {
     pub objects: Vec<String>,
     /// The materials of the file, by which the mesh counts; `None` where it does not say what a material is.
     pub materials: Vec<Option<mtl::Material>>,
-    /// Remarks on the file for the user, in sentences.
+    /// Wrong elements of the file that are left out or mended, in sentences.
+    pub faults: Vec<String>,
+    /// Remarks on the file for the user, in sentences; those on wrong elements are among them.
     pub remarks: Vec<String>,
 }
 
@@ -81,15 +83,16 @@ pub fn file_by(path: &Path, weld: Weld, rules: Rules) -> Result<Imported> {
         let count = grouped(report.missing_normals);
         remarks.push(format!("normals of {count} corners are computed, because the file has none there; the others are those of the file"));
     }
-    if let Some(fault) = faults.sentences().next().filter(|_| rules.strict) {
+    let faults: Vec<String> = faults.sentences().collect();
+    if let Some(fault) = faults.first().filter(|_| rules.strict) {
         bail!("{}: {fault}; --strict refuses it: repair the file, or convert it without --strict", place());
     }
-    remarks.splice(0..0, faults.sentences());
+    remarks.splice(0..0, faults.iter().cloned());
     if !ignored.is_empty() {
         remarks.push(format!("left out: {}", ignored.into_iter().collect::<Vec<_>>().join(", ")));
     }
     let objects = names::distinct(objects, &mut remarks);
-    Ok(Imported { mesh, report, objects, materials, remarks })
+    Ok(Imported { mesh, report, objects, materials, faults, remarks })
 }
 
 /// Chooses the reader by how the file begins, or where that says nothing, by the ending of its name.
@@ -98,6 +101,7 @@ fn contents(path: &Path, bytes: &[u8], folder: &Folder) -> Result<Contents> {
     let ends = |ending| path.extension().is_some_and(|e| e.eq_ignore_ascii_case(ending));
     let plain = Contents { materials: vec![None], ..Contents::default() };
     foreign::refuse(path, bytes)?;
+    foreign::refuse_stream(path, bytes)?;
     if ply::is_ply(bytes) || ends("ply") {
         let Ply { soup, ignored, faults } = ply::parse(bytes).with_context(place)?;
         return Ok(Contents { soup, ignored, faults, ..plain });

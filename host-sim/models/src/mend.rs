@@ -1,12 +1,13 @@
 //! Winding of faces: those that are wound against their neighbours are turned, and what cannot be mended is counted.
 //!
 //! Two faces at an edge agree if they run along it in opposite directions. From face to face over such edges, one face of a component decides for all
-//! others. If the component is closed, its volume tells the outside; if it is open, the larger area counts. Edges of more than two faces join nothing.
+//! others. If the component is closed, its volume tells the outside. If it is open, the normals of the file do, or else the larger area stays as it is.
+//! Edges of more than two faces join nothing.
 
 use crate::{
     mesh::Soup,
     polygon::newell,
-    vector::{V3, cross, dot, length, sub},
+    vector::{V3, add, cross, dot, length, sub, unit},
 };
 use std::collections::HashMap;
 
@@ -96,12 +97,16 @@ pub(crate) fn winding(soup: &Soup, positions: &[V3], places: &[usize]) -> Windin
         if is_closed && opposed == 0 {
             closed.push(component);
         } else if is_mixed {
-            // What has the larger area stays.
-            let area = |turned: bool| {
-                let faces = component.iter().filter(|&&face| winding.turned[face] == turned);
-                faces.map(|&face| length(area_of(&outlines[face], positions))).sum::<f64>()
+            let sum = |weight: &dyn Fn(usize, V3) -> f64| {
+                let weights = component.iter().map(|&face| {
+                    let weight = weight(face, area_of(&outlines[face], positions));
+                    if winding.turned[face] { -weight } else { weight }
+                });
+                weights.sum::<f64>()
             };
-            if area(true) > area(false) {
+            let by_normals = sum(&|face, area| dot(area, normals_of(soup, face)));
+            let by_area = sum(&|_, area| length(area));
+            if by_normals < 0.0 || by_normals == 0.0 && by_area < 0.0 {
                 component.iter().for_each(|&face| winding.turned[face] ^= true);
             }
         }
@@ -150,6 +155,12 @@ fn contains(component: &[usize], outlines: &[Vec<usize>], positions: &[V3], poin
 /// The triangles between the first corner and each side.
 fn fan(outline: &[usize]) -> impl Iterator<Item = [usize; 3]> {
     outline.windows(2).skip(1).map(|side| [outline[0], side[0], side[1]])
+}
+
+/// The sum of the normals that the file gives for the corners of a face.
+fn normals_of(soup: &Soup, face: usize) -> V3 {
+    let normals = soup.faces[face].corners.iter().filter_map(|corner| unit(soup.normals[corner.normal?]));
+    normals.fold([0.0; 3], add)
 }
 
 fn area_of(outline: &[usize], positions: &[V3]) -> V3 {
@@ -228,6 +239,9 @@ mod tests {
         let strip = "v 0 0 0\nv 1 0 0\nv 2 0 0\nv 9 0 0\nv 0 1 0\nv 1 1 0\nv 2 1 0\nv 9 1 0\n";
         assert_eq!(turned(&format!("{strip}f 1 2 6 5\nf 2 6 7 3\nf 3 4 8 7\n")), [1]);
         assert_eq!(turned(&format!("{strip}f 1 2 6 5\nf 2 3 7 6\nf 3 7 8 4\n")), [0, 1]);
+        // Normals of the file count more than areas.
+        let normals = format!("vn 0 0 -1\n{strip}f 1//1 2//1 6//1 5//1\nf 2//1 6//1 7//1 3//1\nf 3//1 4//1 8//1 7//1\n");
+        assert_eq!(turned(&normals), [0, 2]);
         // One that is wound alike stays, whichever side is in front.
         assert!(turned(&format!("{strip}f 5 6 2 1\nf 6 7 3 2\n")).is_empty());
     }

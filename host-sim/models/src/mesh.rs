@@ -143,6 +143,8 @@ pub struct Report {
     pub first_computed: usize,
     /// Corners for which the file has no normal, although others have one: these normals were computed.
     pub missing_normals: usize,
+    /// Triangles to whose backs the normals of the file point.
+    pub backward_normals: usize,
     /// Edges of one face.
     pub open_edges: usize,
     /// Edges over which two faces disagree, however they are turned.
@@ -193,7 +195,18 @@ pub fn weld(soup: &Soup, Weld { turn, crease }: Weld) -> Result<(Mesh, Report)> 
         report.turned = true;
     }
     drop_unused(&mut mesh);
+    if report.own_normals {
+        report.backward_normals = mesh.triangles.iter().filter(|triangle| is_backward(&mesh, triangle)).count();
+    }
     Ok((mesh, report))
+}
+
+/// Whether the normals of a triangle point to its back, and not only to the side.
+fn is_backward(mesh: &Mesh, triangle: &[usize; 3]) -> bool {
+    let [a, b, c] = triangle.map(|v| mesh.positions[v]);
+    let normal = triangle.iter().fold([0.0; 3], |sum, &v| add(sum, mesh.normals[v]));
+    let directions = unit(cross(sub(b, a), sub(c, a))).zip(unit(normal));
+    directions.is_some_and(|(front, normal)| dot(front, normal) < -0.5)
 }
 
 /// Positions moved to the centre of their bounding box and scaled to radius 1. Only positions that faces use count.

@@ -138,6 +138,8 @@ pub fn load_with(name_or_path: &str, options: &Options, are_given: bool, steps: 
     let path = Path::new(name_or_path);
     let ending = path.extension().map(|e| e.to_ascii_lowercase());
     let mut size = SIZE;
+    // What is drawn is not what the file says.
+    let warn = |fault: &str| steps.warn(&format!("{name_or_path}: {fault}"));
     let stream = match ending.as_deref().and_then(|e| e.to_str()) {
         Some("tri") => {
             fixed("a finished stream", "give them to `microphong convert`, which makes streams")?;
@@ -145,17 +147,19 @@ pub fn load_with(name_or_path: &str, options: &Options, are_given: bool, steps: 
         }
         Some("toml") => {
             fixed("a scripted scene", "write them into its text")?;
-            let scene = script::of_bytes(&read(path)?, path.parent()).with_context(|| name_or_path.to_owned())?;
+            let scene = script::of_bytes(&read(path)?, path.parent(), &warn).with_context(|| name_or_path.to_owned())?;
             size = scene.1;
             scene.0
         }
         Some("obj" | "stl" | "ply" | "gltf" | "glb") => {
             let converted = Converted::read(path, options, steps)?;
+            converted.faults.iter().for_each(|fault| warn(fault));
             converted.stream().with_context(|| name_or_path.to_owned())?
         }
         _ => {
             if path.is_file() {
                 foreign::refuse(path, &read(path)?)?;
+                foreign::refuse_ending(path)?;
             }
             return Err(Unknown(name_or_path.to_owned()).into());
         }

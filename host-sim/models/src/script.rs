@@ -60,16 +60,16 @@ const UP: V3 = [0.0, 1.0, 0.0];
 /// Share of light that is everywhere.
 const AMBIENT: f64 = 0.12;
 
-/// Reads a scripted scene from the bytes of a file, as [`stream`] does.
+/// Reads a scripted scene from the bytes of a file, as [`stream`] does. `warn` is called for what is wrong with its mesh files, and mended.
 ///
 /// # Errors
 /// The error names the line, the field and its fault.
-pub fn of_bytes(bytes: &[u8], folder: Option<&Path>) -> Result<(StreamBytes, (u32, u32))> {
+pub fn of_bytes(bytes: &[u8], folder: Option<&Path>, warn: &dyn Fn(&str)) -> Result<(StreamBytes, (u32, u32))> {
     let text = str::from_utf8(bytes).map_err(|error| {
         let line = 1 + bytes[..error.valid_up_to()].iter().filter(|&&byte| byte == b'\n').count();
         anyhow!("line {line}: the text is not UTF-8; save it in this encoding")
     })?;
-    stream(text, folder)
+    read(text, folder, warn)
 }
 
 /// Reads a scripted scene. Mesh files are searched in `folder`; without one the text may name none. Returns the stream and the size of its picture.
@@ -77,6 +77,10 @@ pub fn of_bytes(bytes: &[u8], folder: Option<&Path>) -> Result<(StreamBytes, (u3
 /// # Errors
 /// The error names the line, the field and its fault.
 pub fn stream(text: &str, folder: Option<&Path>) -> Result<(StreamBytes, (u32, u32))> {
+    read(text, folder, &|_| ())
+}
+
+fn read(text: &str, folder: Option<&Path>, warn: &dyn Fn(&str)) -> Result<(StreamBytes, (u32, u32))> {
     let mut script = Table::parse(text)?;
     let most = NUMBERS as usize;
     let frames = script.need("frames", |field| field.integer(&(1..=NUMBERS)))?;
@@ -97,7 +101,7 @@ pub fn stream(text: &str, folder: Option<&Path>) -> Result<(StreamBytes, (u32, u
     let mut cast = Cast::default();
     let view = self::camera(camera, &mut cast)?;
     let mut stock = Stock::default();
-    meshes.into_iter().try_for_each(|table| stock.add(table, folder))?;
+    meshes.into_iter().try_for_each(|table| stock.add(table, folder, warn))?;
     for (i, table) in objects.into_iter().enumerate() {
         object(table, i, &stock, &mut cast)?;
     }
@@ -187,7 +191,7 @@ struct Stock {
 
 impl Stock {
     /// Adds a mesh.
-    fn add(&mut self, mut table: Table<'_>, folder: Option<&Path>) -> Result<()> {
+    fn add(&mut self, mut table: Table<'_>, folder: Option<&Path>, warn: &dyn Fn(&str)) -> Result<()> {
         let name = table.need("name", name)?;
         let file = table.get("file", Field::text)?;
         let shape = table.get("shape", Field::text)?;
@@ -200,7 +204,7 @@ impl Stock {
         let crease = table.get("crease", |field| field.number(&FOLD))?.unwrap_or(CREASE);
         table.end()?;
         let (mut mesh, mut materials) = match (&file, &shape) {
-            (Some(file), None) => from_file(file, crease, folder).with_context(|| table.place_of("file").to_string())?,
+            (Some(file), None) => from_file(file, crease, folder, warn).with_context(|| table.place_of("file").to_string())?,
             (None, Some(shape)) => (of_shape(shape, tube, &table.place_of("shape"))?, vec![None]),
             _ => return Err(table.place.error(format!("a mesh needs either `file`, or `shape` with {SHAPES}"))),
         };
@@ -251,9 +255,10 @@ fn name(field: Field<'_>) -> Result<String> {
     Ok(name)
 }
 
-fn from_file(file: &str, crease: f64, folder: Option<&Path>) -> Result<(Mesh, Vec<Option<Material>>)> {
+fn from_file(file: &str, crease: f64, folder: Option<&Path>, warn: &dyn Fn(&str)) -> Result<(Mesh, Vec<Option<Material>>)> {
     let folder = folder.context("there is no folder from which files could be read; use a shape")?;
-    let Imported { mesh, materials, .. } = import::file(&folder.join(file), Weld { crease, ..Weld::default() })?;
+    let Imported { mesh, materials, faults, .. } = import::file(&folder.join(file), Weld { crease, ..Weld::default() })?;
+    faults.iter().for_each(|fault| warn(&format!("{file}: {fault}")));
     Ok((mesh, materials))
 }
 

@@ -37,6 +37,8 @@ enum Form {
     Text,
     /// Binary, with this number of triangles, and bytes behind them.
     Binary(usize, usize),
+    /// Binary, without the number of triangles; so many are there.
+    Uncounted(usize),
     /// Binary, of which only so many triangles are there.
     CutOff(u32, usize),
 }
@@ -55,6 +57,10 @@ fn form(bytes: &[u8], named: bool) -> Option<Form> {
     match (count, length) {
         (Some(count), _) if is_exact => Some(Form::Binary(count as usize, 0)),
         _ if is_text => Some(Form::Text),
+        // A program that did not know the number when it wrote the head.
+        (Some(0 | u32::MAX), _) if named && bytes.len() >= HEAD + TRIANGLE && (bytes.len() - HEAD).is_multiple_of(TRIANGLE) => {
+            Some(Form::Uncounted((bytes.len() - HEAD) / TRIANGLE))
+        }
         (Some(count), Some(length)) if named && bytes.contains(&0) => Some(if length < bytes.len() as u64 {
             Form::Binary(count as usize, bytes.len() - length as usize)
         } else {
@@ -78,6 +84,10 @@ pub(crate) fn is_stl(bytes: &[u8], named: bool) -> bool {
 pub fn parse(bytes: &[u8]) -> Result<Stl> {
     match form(bytes, true) {
         Some(Form::Binary(count, behind)) => binary(bytes, count, behind),
+        Some(Form::Uncounted(count)) => binary(bytes, count, 0).map(|mut stl| {
+            stl.remarks.push(format!("the head of the file does not say how many triangles it has; {} are there", grouped(count)));
+            stl
+        }),
         Some(Form::CutOff(count, there)) => bail!(
             "binary STL, cut off: it has {} bytes, in which {} of {} triangles are whole; get the file again",
             grouped(bytes.len()),
@@ -313,6 +323,13 @@ mod tests {
         let cut = "binary STL, cut off: it has 183 bytes, in which 1 of 2 triangles are whole; get the file again";
         assert_eq!(wrong(&whole[..whole.len() - 1]), cut);
         assert!(wrong(&whole[..HEAD]).contains("in which 0 of 2 triangles"));
+        for unknown in [0, u32::MAX] {
+            let mut uncounted = whole.clone();
+            uncounted[TITLE..HEAD].copy_from_slice(&unknown.to_le_bytes());
+            let stl = parse(&uncounted).unwrap();
+            let said = "the head of the file does not say how many triangles it has; 2 are there".to_owned();
+            assert_eq!((stl.soup.faces.len(), stl.remarks), (2, vec![said]));
+        }
         let mut coloured = whole;
         coloured[HEAD + TRIANGLE - 1] = 0x80;
         assert!(parse(&coloured).unwrap().ignored.contains("colours of faces"));

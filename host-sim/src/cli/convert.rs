@@ -137,6 +137,8 @@ struct Line<'a> {
     mended: usize,
     /// Corners whose normals were computed, although the others are those of the file.
     computed_normals: usize,
+    /// Triangles to whose backs the normals of the file point.
+    backward_normals: usize,
     open_edges: usize,
     opposed_edges: usize,
     /// Edges of more than two faces.
@@ -226,7 +228,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome> {
     let load = |stream: &Stream<'_>| Ok(picture.roomiest(stream, &picture.layout(stream)?)?.1);
     let remedy = if fits { None } else { Remedy::search((&converted, &options), chip.name, &load, &bars)? };
     drop(bars);
-    let Converted { mesh, report, materials, mut remarks, parts, lost, look, simplified } = converted;
+    let Converted { mesh, report, materials, mut remarks, parts, lost, look, simplified, .. } = converted;
     if let (Some(most), None) = (options.simplify, &simplified) {
         remarks.push(format!("not simplified: the mesh has no more than {} triangles", report::grouped(most as u64)));
     }
@@ -250,6 +252,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome> {
         turned: report.turned,
         mended: report.mended,
         computed_normals: report.computed_normals + report.missing_normals,
+        backward_normals: report.backward_normals,
         open_edges: report.open_edges,
         opposed_edges: report.opposed_edges,
         crowded_edges: report.crowded_edges,
@@ -407,9 +410,14 @@ fn text_of(layout: &Layout) -> String {
     format!("{text}.active_triangles({active_triangles}){tables}{smooth}")
 }
 
-/// Says at which edges the surface is not as that of a solid body is.
+/// Says at which edges the surface is not as that of a solid body is, and which normals do not fit it.
 fn edges(line: &Line<'_>) -> Result<()> {
     let kinds = [
+        (
+            line.backward_normals,
+            ["triangle has", "triangles have"],
+            "normals of the file that point to its back; if the picture is inside out, use --flip, or else export the file without normals",
+        ),
         (
             line.open_edges,
             ["edge has", "edges have"],

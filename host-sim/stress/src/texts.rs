@@ -232,7 +232,7 @@ fn damage(random: &mut Random, bytes: &mut Vec<u8>) {
 /// # Errors
 /// When the message of the refusal names no line, or is long.
 pub fn converted(bytes: &[u8]) -> Result<Option<StreamBytes>, String> {
-    match script::of_bytes(bytes, None) {
+    match script::of_bytes(bytes, None, &|_| ()) {
         Ok((stream, _)) => Ok(Some(stream)),
         Err(error) => {
             let said = format!("{error:#}");

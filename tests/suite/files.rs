@@ -1,0 +1,293 @@
+//! Model files of every kind, as programs write them: the command converts them, and says what it left out, or what else the file is.
+
+use microphong::stream::record::Material;
+use microphong_sim::bytes::StreamBytes;
+use microphong_tests::program;
+use serde_json::Value;
+use std::{
+    fs,
+    path::Path,
+    process::{Command, Output},
+};
+use tempfile::TempDir;
+
+/// A scratch directory in which the command runs.
+struct Place(TempDir);
+
+impl Place {
+    fn new() -> Self {
+        Self(tempfile::tempdir().expect("scratch directory"))
+    }
+
+    fn file(&self, name: &str, contents: impl AsRef<[u8]>) -> &Self {
+        let path = self.0.path().join(name);
+        fs::create_dir_all(path.parent().expect("a folder")).expect("a folder");
+        fs::write(path, contents).expect("a file");
+        self
+    }
+
+    fn run(&self, arguments: &[&str]) -> Output {
+        Command::new(program()).args(arguments).current_dir(self.0.path()).output().expect("the program")
+    }
+
+    /// The output of `convert`, which must succeed.
+    #[track_caller]
+    fn converts(&self, arguments: &[&str]) -> String {
+        let output = self.run(&[&["convert", "-o", "out.tri"], arguments].concat());
+        assert!(output.status.success(), "{arguments:?}: {}", String::from_utf8_lossy(&output.stderr));
+        String::from_utf8(output.stdout).expect("text")
+    }
+
+    /// What `convert` counts.
+    #[track_caller]
+    fn counts(&self, file: &str) -> Value {
+        serde_json::from_str(&self.converts(&[file, "--json"])).expect("JSON")
+    }
+
+    /// The error of a command, which must fail with code 1 and write nothing.
+    #[track_caller]
+    fn fails(&self, arguments: &[&str]) -> String {
+        let _ = fs::remove_file(self.0.path().join("out.tri"));
+        let output = self.run(arguments);
+        let stderr = String::from_utf8_lossy(&output.stderr).into_owned();
+        assert_eq!(output.status.code(), Some(1), "{arguments:?}: {stderr}");
+        assert!(!stderr.contains("panicked") && output.stdout.is_empty(), "{arguments:?}: {stderr}");
+        assert!(!Path::new(&self.0.path().join("out.tri")).exists(), "{arguments:?}");
+        stderr
+    }
+
+    /// The error of `convert` for a file.
+    #[track_caller]
+    fn refuses(&self, file: &str) -> String {
+        self.fails(&["convert", file, "-o", "out.tri"])
+    }
+
+    /// The diffuse colours of the last stream.
+    fn colours(&self) -> Vec<[f32; 3]> {
+        let bytes = StreamBytes::read(&self.0.path().join("out.tri")).expect("a stream");
+        let stream = bytes.parse().expect("a stream");
+        stream.materials.iter().map(|material: &Material| material.diffuse().map(|gain| gain.to_num::<f32>())).collect()
+    }
+}
+
+/// The corners of a cube.
+const CORNERS: &str = "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 1 1 0\nv 0 0 1\nv 1 0 1\nv 0 1 1\nv 1 1 1\n";
+const SIDES: [&str; 6] = ["f 1 3 4 2\n", "f 5 6 8 7\n", "f 1 2 6 5\n", "f 3 7 8 4\n", "f 1 5 7 3\n", "f 2 4 8 6\n"];
+
+/// A cube of which three sides have each of two materials.
+fn of_two_materials([one, other]: [&str; 2], library: &str) -> String {
+    format!("mtllib {library}\n{CORNERS}usemtl {one}\n{}usemtl {other}\n{}", SIDES[..3].concat(), SIDES[3..].concat())
+}
+
+#[test]
+fn materials_are_found_by_names_of_every_kind() {
+    let place = Place::new();
+    let names: [[&[u8]; 2]; 6] = [
+        [b"Material__#25", b"Material__#26"],
+        [b"Material #112", b"Material #113"],
+        [b"Material # 1", b"Material # 2"],
+        [b"Rot\xE4", b"Rot\xF6"],
+        ["Rotä".as_bytes(), "Rotö".as_bytes()],
+        // Shift JIS, in which the last byte is that of a backslash.
+        [b"\x95\x5C", b"\x90\x5C"],
+    ];
+    for [one, other] in names {
+        // The bytes of a name take the place of words that are the same in every encoding.
+        let with = |text: &str| {
+            let mut bytes = Vec::new();
+            for part in text.split_inclusive(['<', '>']) {
+                bytes.extend(part.trim_end_matches(['<', '>']).bytes());
+                bytes.extend(if part.ends_with('<') {
+                    one
+                } else if part.ends_with('>') {
+                    other
+                } else {
+                    b""
+                });
+            }
+            bytes
+        };
+        place.file("a.mtl", with("newmtl <\nKd 1 0 0\nNEWMTL >\nKD 0 0 1\n")).file("a.obj", with(&of_two_materials(["<", ">"], "a.mtl")));
+        let said = place.converts(&["a.obj"]);
+        assert!(said.contains("2 materials from the file") && !said.contains("no file defines"), "{said}");
+        let [[red, ..], [.., blue]] = place.colours()[..] else { panic!("{said}") };
+        assert!(red > 0.9 && blue > 0.9, "{said}");
+    }
+    // As Windows writes the name of the file, and finds it.
+    place
+        .file("Textures/Two Words.MTL", "newmtl a\nKd 1 0 0\nnewmtl b\nKd 0 0 1\n")
+        .file("b.mtl", "newmtl a\nKd 1 0 0\nnewmtl b\nKd 0 0 1\n");
+    for library in [".\\b.mtl", "B.MTL", "\"b.mtl\"", "C:\\Users\\me\\b.mtl", "textures\\two words.mtl", "none.mtl b.mtl", "/home/me/b.mtl"]
+    {
+        place.file("a.obj", of_two_materials(["a", "b"], library));
+        let said = place.converts(&["a.obj"]);
+        assert!(said.contains("2 materials from the file"), "{library}: {said}");
+    }
+    place.file("a.obj", of_two_materials(["a", "b"], "c.mtl")).file("c.mtl", "version https://git-lfs.github.com/spec/v1\noid sha256:0\n");
+    let said = place.converts(&["a.obj"]);
+    assert!(said.contains("the materials are missing: ") && said.contains("a pointer of Git LFS"), "{said}");
+}
+
+/// Single wrong elements are left out and said, by all commands; `--strict` refuses them.
+#[test]
+fn single_faults_are_said_and_strict_refuses_them() {
+    let place = Place::new();
+    let normals: String = ["0 0 -1", "0 0 1", "0 -1 0", "0 1 0", "-1 0 0", "0 0 0"].map(|normal| format!("vn {normal}\n")).concat();
+    let with_normals: String = SIDES
+        .iter()
+        .zip(1..)
+        .map(|(side, normal)| {
+            let corners: String = side.split_whitespace().skip(1).map(|corner| format!(" {corner}//{normal}")).collect();
+            format!("f{corners}\n")
+        })
+        .collect();
+    let good = format!("{CORNERS}{}", SIDES.concat());
+    let reversed = good.replace("f 1 3 4 2", "f 2 4 3 1").replace("f 2 4 8 6", "f 6 8 4 2");
+    let cases = [
+        (format!("{good}f 1 2\n"), "1 face has fewer than three corners and is left out: line 15"),
+        (format!("vn nan nan nan\n{good}"), "1 normal is not three finite numbers and is left out, because no face uses it: line 1"),
+        (format!("{good}v 1 2 1.#INF\n"), "1 vertex is not three finite numbers and is left out, because no face uses it: line 15"),
+        (
+            format!("{CORNERS}{normals}{with_normals}"),
+            "4 corners have normals without a direction; they are computed, and the others are those of the file; the first: face 6",
+        ),
+        (
+            reversed.clone(),
+            "2 faces were wound against their neighbours, or their closed parts were inside out, and are turned; the first: face 1",
+        ),
+    ];
+    for (text, said) in cases {
+        place.file("a.obj", text);
+        assert!(place.converts(&["a.obj"]).contains(&format!("  {said}\n")), "{said}");
+        let counts = place.counts("a.obj");
+        assert_eq!((&counts["closed_convex"], &counts["triangles"]), (&true.into(), &12.into()), "{said}");
+        let error = place.fails(&["convert", "a.obj", "--strict", "-o", "out.tri"]);
+        assert!(error.contains(&format!("a.obj: {said}; --strict refuses it: repair the file")), "{error}");
+        // A command that draws the file says it as well.
+        let inspected = place.run(&["inspect", "a.obj"]);
+        let stderr = String::from_utf8_lossy(&inspected.stderr);
+        assert!(inspected.status.success() && stderr.contains(&format!("warning: a.obj: {said}")), "{stderr}");
+    }
+    place.file("a.obj", &good).converts(&["a.obj", "--strict"]);
+    // What is mended is the same stream as what was right.
+    let stream = |place: &Place| fs::read(place.0.path().join("out.tri")).expect("a stream");
+    let right = stream(&place);
+    for (text, mended) in [(reversed, 2), (good.clone(), 0), (good.replace("f 1 3 4 2", "f 1 2 4 3"), 1)] {
+        place.file("a.obj", text);
+        assert_eq!(place.counts("a.obj")["mended"], mended);
+        assert_eq!(stream(&place).len(), right.len());
+    }
+    // A mesh file of a scene is told with the scene.
+    place.file("a.obj", format!("{good}f 1 2\n"));
+    place.file("a.toml", "frames = 1\n[camera]\nat = [0, 0, 5]\n[[mesh]]\nname = \"a\"\nfile = \"a.obj\"\n[[object]]\nmesh = \"a\"\n");
+    let output = place.run(&["convert", "a.toml", "-o", "out.tri"]);
+    assert!(String::from_utf8_lossy(&output.stderr).contains("warning: a.toml: a.obj: 1 face has fewer than three corners"));
+}
+
+#[test]
+fn edges_of_open_and_crowded_surfaces_are_counted() {
+    let place = Place::new();
+    let counts = |text: &str| {
+        place.file("a.obj", text);
+        let counts = place.counts("a.obj");
+        ["open_edges", "opposed_edges", "crowded_edges"].map(|kind| counts[kind].as_u64().expect("a number"))
+    };
+    let closed = format!("{CORNERS}{}", SIDES.concat());
+    assert_eq!(counts(&closed), [0; 3]);
+    assert!(!place.converts(&["a.obj"]).contains("edge"));
+    assert_eq!(counts(&closed.replace(SIDES[5], "")), [4, 0, 0]);
+    let said = place.converts(&["a.obj"]);
+    assert!(said.contains("  4 edges have one face only: the surface is open") && said.contains("--flip"), "{said}");
+    assert_eq!(counts(&format!("{closed}v 5 5 5\nf 1 2 9\n")), [2, 0, 1]);
+    let said = place.converts(&["a.obj"]);
+    assert!(said.contains("  1 edge has more than two faces") && said.contains("remove doubled and inner faces"), "{said}");
+    let band = "v 1 0 0\nv 1 0 1\nv -1 1 0\nv -1 1 1\nv -1 -1 0\nv -1 -1 1\nf 1 3 4 2\nf 3 5 6 4\nf 5 2 1 6\n";
+    assert_eq!(counts(band), [6, 1, 0]);
+    let said = place.converts(&["a.obj"]);
+    assert!(said.contains("  1 edge has two faces that disagree about the front"), "{said}");
+}
+
+/// What is no model says what it is, whatever its name is, and no words of libraries come through.
+#[test]
+fn other_files_say_what_they_are_and_what_helps() {
+    let place = Place::new();
+    let iges = format!("{:72}S{:>7}\n", "a part", 1);
+    let cases: [(&[u8], [&str; 2]); 14] = [
+        (b"ISO-10303-21;\nHEADER;\n", ["STEP, a CAD format", "export it as STL, OBJ or glTF"]),
+        (iges.as_bytes(), ["IGES, a CAD format", "FreeCAD"]),
+        (b"Kaydara FBX Binary  \0", ["the format FBX", "assimp export"]),
+        (b"; FBX 7.3.0 project file\n", ["the format FBX", "assimp export"]),
+        (b"BLENDER-v402", ["the format Blender", "assimp export"]),
+        (b"PK\x03\x04\x14\0\0\0 3D/3dmodel.model", ["the format 3MF", "assimp export"]),
+        (b"PK\x03\x04\x14\0\0\0 a.obj", ["compressed by zip", "unzip"]),
+        (b"\x1F\x8B\x08\0", ["compressed by gzip", "gunzip -c"]),
+        (b"version https://git-lfs.github.com/spec/v1\noid sha256:0\nsize 9\n", ["a pointer of Git LFS", "git lfs pull"]),
+        (b"\n<!DOCTYPE html><html>", ["a web page", "download the model itself"]),
+        (b"<?xml version=\"1.0\"?>\n<COLLADA>", ["the format COLLADA", "assimp export"]),
+        (b"\x89PNG\r\n\x1a\n", ["a picture (PNG)", "name the file of a model"]),
+        (b"mTRI\x01\0\0\0", ["a stream of microphong", "converted already"]),
+        (&[0; 99], ["all its 99 bytes are zero", "get the file again"]),
+    ];
+    for (bytes, words) in cases {
+        for file in ["a.obj", "a.stl", "a.ply", "a.glb", "a.gltf", "a"] {
+            let error = place.file(file, bytes).refuses(file);
+            assert!(error.contains(&format!("{file}: ")) && words.iter().all(|word| error.contains(word)), "{error}");
+        }
+        let drawn = place.fails(&["render", "a.obj"]);
+        assert!(words.iter().all(|word| drawn.contains(word)), "{drawn}");
+    }
+    // Files that were cut off, and nothing at all.
+    let binary: Vec<u8> = [&[b' '; 80][..], &2u32.to_le_bytes(), &[0; 99]].concat();
+    for (file, bytes, words) in [
+        ("a.stl", &binary[..], "binary STL, cut off: it has 183 bytes, in which 1 of 2 triangles are whole"),
+        ("b.stl", b"\0\x01", "binary STL, cut off"),
+        ("c.stl", b"solid a\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\n", "triangle 1, line 2: the file ends before its facet does"),
+        ("d.ply", b"ply\nformat ascii 1.0\nelement vertex 3\n", "PLY, line 4: Unexpected end of file"),
+        ("e.glb", b"glTF\x02\0\0\0\xFF\0\0\0", "GLB: the file is shorter than its head says; it was cut off"),
+        ("f.gltf", b"{\"asset\": {\"version\": \"2.0\"}", "it was cut off"),
+        ("g.obj", b"", "the file is empty"),
+        ("h.obj", b"Dear reader,\nthis is a letter.\n", "nothing in the file is OBJ, glTF, STL or PLY"),
+        ("i.obj", b"v 0 0 0\nv 1 0 0\nv 0 1 0\n", "the mesh has no faces; export it with polygons"),
+    ] {
+        let error = place.file(file, bytes).refuses(file);
+        assert!(error.contains(file) && error.contains(words), "{error}");
+        for innards in ["ParseError", "failed to fill", "expected one of", "Nan", "Some(", "location"] {
+            assert!(!error.contains(innards), "{error}");
+        }
+    }
+}
+
+/// A model opens no file outside its folder, and no device, and no file is read without end.
+#[test]
+fn models_open_only_files_beside_them() {
+    let place = Place::new();
+    place.file("secret.mtl", "newmtl a\nKd 1 0 0\n");
+    let mesh = |library: &str| place.file("in/a.obj", format!("mtllib {library}\nusemtl a\n{CORNERS}{}", SIDES.concat()));
+    for library in ["../secret.mtl".to_owned(), place.0.path().join("secret.mtl").display().to_string(), "..\\secret.mtl".to_owned()] {
+        mesh(&library);
+        let said = place.converts(&["in/a.obj"]);
+        let words = [
+            "the materials are missing: ",
+            "lies outside the folder of the model; put it at in/secret.mtl, or allow such files with --allow-outside",
+        ];
+        assert!(words.iter().all(|word| said.contains(word)) && !said.contains("1 material"), "{said}");
+        assert!(place.converts(&["in/a.obj", "--allow-outside"]).contains("1 material from the file"), "{library}");
+    }
+    let endless = |uri: &str| {
+        format!(
+            r#"{{"asset":{{"version":"2.0"}},"scenes":[{{"nodes":[0]}}],"nodes":[{{"mesh":0}}],
+            "meshes":[{{"primitives":[{{"attributes":{{"POSITION":0}}}}]}}],"accessors":[{{"bufferView":0,"componentType":5126,"count":3,"type":"VEC3"}}],
+            "bufferViews":[{{"buffer":0,"byteLength":36}}],"buffers":[{{"byteLength":36,"uri":"{uri}"}}]}}"#
+        )
+    };
+    let error = place.file("a.gltf", endless("/dev/zero")).refuses("a.gltf");
+    assert!(error.contains("a.gltf: glTF, buffer 0: \"/dev/zero\" lies outside the folder of the model"), "{error}");
+    #[cfg(unix)]
+    {
+        let error = place.fails(&["convert", "a.gltf", "--allow-outside", "-o", "out.tri"]);
+        assert!(error.contains("/dev/zero is no regular file"), "{error}");
+        std::os::unix::fs::symlink("/dev/zero", place.0.path().join("zero.bin")).expect("a link");
+        let error = place.file("a.gltf", endless("zero.bin")).refuses("a.gltf");
+        assert!(error.contains("zero.bin is a link out of the folder of the model"), "{error}");
+    }
+}
