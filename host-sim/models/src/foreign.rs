@@ -9,13 +9,13 @@ use std::path::Path;
 enum Remedy {
     /// A modelling program or `assimp` makes an OBJ of it.
     Model,
-    /// Only a modelling program does.
+    /// A modelling program makes an OBJ of it, and `assimp` does not.
     Scene,
-    /// It has surfaces and no triangles.
+    /// The file has surfaces and no triangles.
     Cad,
-    /// It has another file in it. The command unpacks it, with the name of the file in place of `IN` and of a mesh in place of `OUT`.
+    /// Another file is in the file. The command unpacks it, with the name of the file in place of `IN` and of a mesh in place of `OUT`.
     Packed(&'static str),
-    /// Nothing but this advice.
+    /// There is no more to say than this advice.
     Advice(&'static str),
 }
 use Remedy::{Advice, Cad, Model, Packed, Scene};

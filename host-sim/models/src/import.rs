@@ -68,7 +68,7 @@ pub fn file(path: &Path, weld: Weld) -> Result<Imported> {
     file_by(path, weld, Rules::default())
 }
 
-/// As [`file()`], by these rules.
+/// Reads and welds a file as [`file()`] does, by these rules.
 ///
 /// # Errors
 /// Names the file and the place in it.

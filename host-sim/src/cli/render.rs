@@ -306,7 +306,7 @@ fn text(line: &Line<'_>) -> Result<()> {
     let several = if line.frames > 1 { format!("{} frames, ", line.frames) } else { String::new() };
     report::line(&format!("{}: {}, {}, {several}{}x{}", line.output, line.scene, line.shader, line.width, line.height))?;
     let last = if line.frames > 1 { "last frame: " } else { "" };
-    let [culled, drawn, pixels] = [line.culled, line.drawn, line.pixels].map(|n| report::grouped(n));
+    let [culled, drawn, pixels] = [line.culled, line.drawn, line.pixels].map(report::grouped);
     let triangles = report::counted(line.triangles, report::TRIANGLES);
     report::line(&format!("  {last}{triangles}, {culled} culled, {drawn} drawn on {pixels} pixels, checksum {}", line.crc))?;
     line.budget.zip(line.choices).iter().try_for_each(report::choices)
