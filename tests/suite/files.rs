@@ -212,7 +212,8 @@ fn edges_of_open_and_crowded_surfaces_are_counted() {
 fn other_files_say_what_they_are_and_what_helps() {
     let place = Place::new();
     let iges = format!("{:72}S{:>7}\n", "a part", 1);
-    let cases: [(&[u8], [&str; 2]); 14] = [
+    let cases: [(&[u8], [&str; 2]); 15] = [
+        (b"../meshes/a.obj\n", ["the path of another file, as Git stores a link", "name that file"]),
         (b"ISO-10303-21;\nHEADER;\n", ["STEP, a CAD format", "export it as STL, OBJ or glTF"]),
         (iges.as_bytes(), ["IGES, a CAD format", "FreeCAD"]),
         (b"Kaydara FBX Binary  \0", ["the format FBX", "assimp export"]),
@@ -243,6 +244,8 @@ fn other_files_say_what_they_are_and_what_helps() {
         ("b.stl", b"\0\x01", "binary STL, cut off"),
         ("c.stl", b"solid a\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\n", "triangle 1, line 2: the file ends before its facet does"),
         ("d.ply", b"ply\nformat ascii 1.0\nelement vertex 3\n", "PLY, line 4: Unexpected end of file"),
+        ("j.ply", b"a letter\n", "j.ply: PLY, line 1: the magic number `ply` is missing"),
+        ("k.stl", b"{\"message\": \"Not Found\"}", "text in JSON and no glTF"),
         ("e.glb", b"glTF\x02\0\0\0\xFF\0\0\0", "GLB: the file is shorter than its head says; it was cut off"),
         ("f.gltf", b"{\"asset\": {\"version\": \"2.0\"}", "it was cut off"),
         ("g.obj", b"", "the file is empty"),

@@ -184,6 +184,9 @@ fn by_content(path: &Path, bytes: &[u8]) -> Option<Format> {
         let known = ELEMENTS.iter().find(|(element, _)| head.contains(element)).map(|&(_, format)| format);
         return known.or(Some(("a text in XML", NO_MODEL)));
     }
+    if let Some(format) = stored_link(text) {
+        return Some(format);
+    }
     if is_iges(bytes) {
         return Some(("IGES", Cad));
     }
@@ -196,6 +199,15 @@ fn by_content(path: &Path, bytes: &[u8]) -> Option<Format> {
         [b"0", b"SECTION"] | [b"999", _] => Some(("DXF", Cad)),
         _ => None,
     }
+}
+
+/// The path of another file, as Git stores a link where links are not possible.
+fn stored_link(text: &[u8]) -> Option<Format> {
+    let path = str::from_utf8(text.get(..text.len().min(1024))?).ok()?.trim();
+    let is_path = path.contains('/') && !path.contains(|c: char| c.is_whitespace() || "{}\"<>|*?".contains(c)) && text.len() <= 1024;
+    let of_annex = ("a pointer of git-annex, which stands for the file", Advice("run `git annex get` in its repository"));
+    let of_link = ("the path of another file, as Git stores a link", Advice("name that file"));
+    is_path.then_some(if path.contains("annex/objects/") { of_annex } else { of_link })
 }
 
 /// The format of an archive by a file in it.
@@ -283,6 +295,8 @@ mod tests {
         assert!(told("a.obj", b"MM\x08\0\0\0\0\0").contains("3DS"));
         assert!(told("a.obj", b"OFF\n8 6 0\n").contains("OFF"));
         assert!(told("a.obj", b"  0\r\nSECTION\r\n").contains("DXF, a CAD format"));
+        assert!(told("a.obj", b"/annex/objects/MD5E-s9--0.obj\n").contains("git annex get"));
+        assert!(told("a.obj", b"../other/a.obj").contains("the path of another file, as Git stores a link; name that file"));
         assert!(told("a.obj", &[0; 12]).contains("all its 12 bytes are zero"));
         let stream = [&MAGIC[..], b"\0"].concat();
         refuse(Path::new("a.bin"), &stream).unwrap();

@@ -10,7 +10,7 @@ use ply_rs_bw::{
     parser::{ParseError, Parser, Reader},
     ply::{ElementDef, Encoding, Header, Property, PropertyAccess, PropertyAccessResult},
 };
-use std::{borrow::Cow, collections::BTreeSet};
+use std::collections::BTreeSet;
 
 /// The contents of a PLY file.
 #[derive(Clone, Debug, Default)]
@@ -25,7 +25,13 @@ pub struct Ply {
 
 /// Whether a file is PLY.
 pub(crate) fn is_ply(bytes: &[u8]) -> bool {
-    [&b"ply\n"[..], b"ply\r"].iter().any(|start| bytes.starts_with(start))
+    magic(bytes).is_some()
+}
+
+/// The end of the first line, if it is the word by which PLY begins, in any capitals.
+fn magic(bytes: &[u8]) -> Option<usize> {
+    let end = bytes.iter().take(16).position(|byte| matches!(byte, b'\n' | b'\r'))?;
+    bytes[..end].trim_ascii().eq_ignore_ascii_case(b"ply").then_some(end)
 }
 
 /// Reads the polygons of a file, with a normal at each vertex if the file has one there.
@@ -33,7 +39,10 @@ pub(crate) fn is_ply(bytes: &[u8]) -> bool {
 /// # Errors
 /// The error names the line, the vertex or the face, and its fault.
 pub fn parse(bytes: &[u8]) -> Result<Ply> {
-    let bytes = &*with_numbers(bytes);
+    let Some(end) = magic(bytes) else {
+        bail!("PLY, line 1: the magic number `ply` is missing; the file is no PLY: give it the ending of its format, or export it again")
+    };
+    let bytes = &with_numbers(&bytes[end..])[..];
     let mut reader = Reader::new(bytes);
     let header = Parser::<Skipped>::new().read_header(&mut reader).map_err(|error| plain(&error, true))?;
     let mut ply = Ply { ignored: ignored(&header), ..Ply::default() };
@@ -104,15 +113,17 @@ pub fn parse(bytes: &[u8]) -> Result<Ply> {
     Ok(ply)
 }
 
-/// Text with a number that is not finite in the place of words such as `nan`, which the library does not read.
-fn with_numbers(bytes: &[u8]) -> Cow<'_, [u8]> {
+/// The file with the magic number as the library wants it, and in text with a number that is not finite in the place of words such as `nan`, which the
+/// library does not read.
+fn with_numbers(behind_magic: &[u8]) -> Vec<u8> {
+    let bytes = [b"ply", behind_magic].concat();
     const END: &[u8] = b"end_header";
     let head = bytes.windows(END.len()).position(|word| word == END).map_or(bytes.len(), |start| start + END.len());
     let (head, body) = bytes.split_at(head);
     let is_text = head.windows(12).any(|words| words == b"format ascii");
     let is_word = |byte: &u8| byte.is_ascii_alphabetic() && !byte.eq_ignore_ascii_case(&b'e') || *byte == b'#';
     if !is_text || !body.iter().any(is_word) {
-        return Cow::Borrowed(bytes);
+        return bytes;
     }
     let mut text = head.to_vec();
     for word in body.split_inclusive(u8::is_ascii_whitespace) {
@@ -121,7 +132,7 @@ fn with_numbers(bytes: &[u8]) -> Cow<'_, [u8]> {
         text.extend_from_slice(if is_not_finite { b"1e999" } else { number });
         text.extend_from_slice(&word[number.len()..]);
     }
-    Cow::Owned(text)
+    text
 }
 
 /// Whether a word stands for what is not finite, as programs write it.
@@ -191,10 +202,10 @@ fn plain(error: &ParseError, is_text: bool) -> anyhow::Error {
         .strip_prefix("Line ")
         .and_then(|rest| rest.split_once(": "))
         .map_or((None, &text[..]), |(line, message)| (Some(line), message));
-    let what = message.lines().next().unwrap_or_default().trim_end_matches('.');
+    // What the library's grammar expects is no help.
+    let what = message.lines().next().unwrap_or_default().split(": ParseError").next().unwrap_or_default().trim_end_matches('.');
     // What it was that could not be read stands last.
     let why = message.lines().rev().find_map(|line| line.trim().strip_prefix("Error: ")).filter(|_| is_text);
-    // What the library's grammar expects is no help.
     let why = why.map(|why| if why.contains("expected one of") { "numbers with blanks between them are needed" } else { why });
     let why = why.map(|why| why.chars().take(LONGEST).collect::<String>()).map_or(String::new(), |why| format!(": {why}"));
     match line.filter(|_| is_text) {
@@ -374,6 +385,19 @@ mod tests {
         let whole = binary(false);
         let cut = format!("{:#}", parse(&whole[..whole.len() - 3]).unwrap_err());
         assert_eq!(cut, "PLY: Unexpected end of file while reading binary element 'face' (expected 1, got 0)");
+    }
+
+    #[test]
+    fn the_first_line_may_be_in_capitals() {
+        let whole = [text(), binary(false)];
+        for (start, bytes) in ["PLY", "Ply ", " ply\t"].iter().flat_map(|start| whole.iter().map(move |bytes| (start, bytes))) {
+            let bytes = [start.as_bytes(), &bytes[3..]].concat();
+            assert!(is_ply(&bytes) && parse(&bytes).unwrap().soup.faces.len() == 1, "{start:?}");
+        }
+        for bytes in ["plywood\n", "ply", "", "a ply\n"] {
+            let error = format!("{:#}", parse(bytes.as_bytes()).unwrap_err());
+            assert!(!is_ply(bytes.as_bytes()) && error.starts_with("PLY, line 1: the magic number `ply` is missing"), "{error}");
+        }
     }
 
     #[test]

@@ -140,6 +140,14 @@ fn words(text: &str) -> impl Iterator<Item = (usize, String)> {
         if words.first().is_some_and(|word| word.starts_with(['#', ';'])) {
             words.clear();
         }
+        // Some programs write these in two words.
+        if let [end, what, ..] = &mut words[..]
+            && end == "end"
+            && ["solid", "facet", "loop"].contains(&what.as_str())
+        {
+            what.insert_str(0, "end");
+            words.remove(0);
+        }
         if words.first().is_some_and(|word| ["solid", "endsolid"].contains(&word.as_str())) {
             // Some programs write all in one line.
             let next = words.windows(2).position(|pair| pair == ["facet", "normal"]);
@@ -152,8 +160,7 @@ fn words(text: &str) -> impl Iterator<Item = (usize, String)> {
 fn of_text(bytes: &[u8]) -> Result<Stl> {
     let mut stl = Stl::default();
     let text = text::plain(&text::decoded(bytes));
-    // Padding, and the mark by which old programs ended a text.
-    let mut words = words(text.trim_end_matches(['\0', '\u{1A}'])).peekable();
+    let mut words = words(&text).peekable();
     // The line at which an open facet and an open solid begin.
     let (mut facet, mut solid) = (None, None);
     let mut first = 0;
@@ -281,6 +288,7 @@ mod tests {
             TEXT.replace("solid part", "solid facet of a vertex # 1\0").replace('\0', ""),
             TEXT.replace("solid part", "solid Gehäuse"),
             TEXT.to_uppercase(),
+            TEXT.replace("end", "end "),
             format!("\u{FEFF}\n  {TEXT}"),
             TEXT.replace('\n', "\r\n\t"),
             TEXT.replace('\n', "\r"),

@@ -10,9 +10,9 @@ pub(crate) fn decoded(bytes: &[u8]) -> String {
     bytes.split_inclusive(|&byte| byte == b'\n' || byte == b'\r').map(line).collect()
 }
 
-/// The text with LF at the ends of its lines, and no byte order mark.
+/// The text with LF at the ends of its lines, no byte order mark, and neither padding nor the mark by which old programs ended a text.
 pub(crate) fn plain(text: &str) -> String {
-    text.strip_prefix('\u{FEFF}').unwrap_or(text).replace("\r\n", "\n").replace('\r', "\n")
+    text.strip_prefix('\u{FEFF}').unwrap_or(text).trim_end_matches(['\0', '\u{1A}']).replace("\r\n", "\n").replace('\r', "\n")
 }
 
 /// The part of a line after its first word.

@@ -101,6 +101,9 @@ fn unreadable(text: &[u8], error: &json::Error) -> anyhow::Error {
     if let Some(version) = version.filter(|version| version.starts_with("1.")) {
         return anyhow!("glTF {}; export it as glTF 2.0", quoted(version));
     }
+    if value.as_ref().is_some_and(|value| value.get("asset").is_none()) {
+        return anyhow!("text in JSON and no glTF: it has no `asset`; export the model as glTF 2.0");
+    }
     let remedy = if error.is_eof() { "; it was cut off" } else { "" };
     anyhow!("glTF: {error}{remedy}")
 }
