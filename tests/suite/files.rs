@@ -294,3 +294,108 @@ fn models_open_only_files_beside_them() {
         assert!(error.contains("zero.bin is a link out of the folder of the model"), "{error}");
     }
 }
+
+/// A PNG of pixels in one row.
+fn row_of(pixels: &[[u8; 3]]) -> Vec<u8> {
+    let mut bytes = Vec::new();
+    let mut encoder = png::Encoder::new(&mut bytes, pixels.len() as u32, 1);
+    encoder.set_color(png::ColorType::Rgb);
+    encoder.set_depth(png::BitDepth::Eight);
+    encoder.write_header().expect("a header").write_image_data(pixels.as_flattened()).expect("pixels");
+    bytes
+}
+
+/// A cube whose sides are each in the middle of one of `count` patches of a texture.
+fn of_patches(count: usize, library: &str) -> String {
+    let places: String = (0..count).map(|patch| format!("vt {} 0.5\n", (patch as f64 + 0.5) / count as f64)).collect();
+    let sides = SIDES.iter().enumerate().map(|(number, side)| {
+        let corners = side[2..].split_whitespace().map(|corner| format!(" {corner}/{}", number % count + 1));
+        format!("f{}\n", corners.collect::<String>())
+    });
+    format!("mtllib {library}\n{CORNERS}{places}usemtl paint\n{}", sides.collect::<String>())
+}
+
+/// The colours of a texture that is a palette, and of vertices, become materials; of many, the most frequent ones stay apart.
+#[test]
+fn faces_have_the_colours_of_textures_and_vertices() {
+    let place = Place::new();
+    let patches = [[255, 0, 0], [0, 255, 0], [0, 0, 255]];
+    place.file("a.mtl", "newmtl paint\nKd 1 1 1\nmap_Kd a.png\n").file("a.png", row_of(&patches)).file("a.obj", of_patches(3, "a.mtl"));
+    let said = place.converts(&["a.obj"]);
+    assert!(
+        said.contains("3 materials are made for the colours of faces, of textures and vertices: no face is farther than 12 of 255"),
+        "{said}"
+    );
+    // Equally frequent colours come in the order of their channels.
+    assert_eq!(place.colours(), [[0.0, 0.0, 1.0], [0.0, 1.0, 0.0], [1.0, 0.0, 0.0]]);
+    let said = place.converts(&["a.obj", "--colours", "1"]);
+    assert!(said.contains("1 material is made") && said.contains("6 of 6 faces are farther than 12 of 255"), "{said}");
+    let said = place.converts(&["a.obj", "--colours", "0"]);
+    assert!(said.contains("left out: texture coordinates, textures") && place.colours() == [[1.0; 3]], "{said}");
+    // In JPEG, colours are nearly the same.
+    place.file("a.png", include_bytes!("../data/red.jpg"));
+    place.converts(&["a.obj"]);
+    let [[red, green, blue]] = place.colours()[..] else { panic!("{:?}", place.colours()) };
+    assert!(red > 0.97 && green < 0.03 && blue < 0.03, "{red} {green} {blue}");
+    // A damaged image and one of another kind are said, and the mesh has its material.
+    for (bytes, what) in [(row_of(&patches)[..40].to_vec(), "the image is damaged"), (b"GIF89a".to_vec(), "neither PNG nor JPEG")] {
+        let said = place.file("a.png", bytes).converts(&["a.obj"]);
+        assert!(said.contains("a texture is left out: a.png: ") && said.contains(what) && place.colours() == [[1.0; 3]], "{said}");
+    }
+    let coloured: String = CORNERS.lines().map(|line| format!("{line} 0 0.5 1\n")).collect();
+    place.file("b.obj", coloured + &SIDES.concat()).converts(&["b.obj"]);
+    let [[red, green, blue]] = place.colours()[..] else { panic!("{:?}", place.colours()) };
+    assert!(red == 0.0 && (green - 0.5).abs() < 0.01 && blue == 1.0, "{red} {green} {blue}");
+    let vertices: String = CORNERS.lines().map(|line| format!("{} 0 128 255\n", &line[2..])).collect();
+    let faces: String = SIDES
+        .iter()
+        .map(|side| {
+            let corners = side[2..].split_whitespace().map(|corner| format!(" {}", corner.parse::<u32>().expect("a number") - 1));
+            format!("4{}\n", corners.collect::<String>())
+        })
+        .collect();
+    let head = "ply\nformat ascii 1.0\nelement vertex 8\nproperty float x\nproperty float y\nproperty float z\nproperty uchar red\nproperty uchar green\nproperty uchar blue\nelement face 6\nproperty list uchar int vertex_indices\nend_header\n";
+    place.file("b.ply", format!("{head}{vertices}{faces}")).converts(&["b.ply"]);
+    assert_eq!(place.colours(), [[red, green, blue]]);
+}
+
+/// Colours of glTF: a texture that its transform moves, times colours of vertices, which are linear.
+#[test]
+fn gltf_has_the_colours_of_textures_and_vertices() {
+    let place = Place::new();
+    let floats = |numbers: &[f32]| numbers.iter().flat_map(|number| number.to_le_bytes()).collect::<Vec<u8>>();
+    let positions = floats(&[0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0, 0.0]);
+    let places = floats(&[0.1, 0.5, 0.1, 0.5, 0.1, 0.5]);
+    // As bytes, of which each is a share; linear light of 0.214 is half of sRGB.
+    let colours = [[255u8, 55, 255, 255]; 3].concat();
+    let image = row_of(&[[255, 0, 0], [0, 255, 255]]);
+    let mut bytes = [positions, places, colours, image.clone()].concat();
+    bytes.resize(bytes.len().next_multiple_of(4), 0);
+    let document = serde_json::json!({
+        "asset": {"version": "2.0"}, "scene": 0, "scenes": [{"nodes": [0]}], "nodes": [{"mesh": 0}],
+        "extensionsUsed": ["KHR_texture_transform"],
+        "buffers": [{"byteLength": bytes.len()}],
+        "bufferViews": [
+            {"buffer": 0, "byteOffset": 0, "byteLength": 36}, {"buffer": 0, "byteOffset": 36, "byteLength": 24},
+            {"buffer": 0, "byteOffset": 60, "byteLength": 12}, {"buffer": 0, "byteOffset": 72, "byteLength": image.len()}
+        ],
+        "accessors": [
+            {"bufferView": 0, "componentType": 5126, "count": 3, "type": "VEC3", "min": [0, 0, 0], "max": [1, 1, 0]},
+            {"bufferView": 1, "componentType": 5126, "count": 3, "type": "VEC2"},
+            {"bufferView": 2, "componentType": 5121, "normalized": true, "count": 3, "type": "VEC4"}
+        ],
+        "images": [{"bufferView": 3, "mimeType": "image/png"}], "textures": [{"source": 0}],
+        "materials": [{"pbrMetallicRoughness": {"metallicFactor": 0, "roughnessFactor": 1, "baseColorTexture":
+            {"index": 0, "extensions": {"KHR_texture_transform": {"offset": [0.5, 0]}}}}}],
+        "meshes": [{"primitives": [{"attributes": {"POSITION": 0, "TEXCOORD_0": 1, "COLOR_0": 2}, "material": 0}]}]
+    });
+    let mut text = document.to_string();
+    text.push_str(&" ".repeat(text.len().next_multiple_of(4) - text.len()));
+    let chunk = |kind: &[u8; 4], bytes: &[u8]| [&(bytes.len() as u32).to_le_bytes(), &kind[..], bytes].concat();
+    let chunks = [chunk(b"JSON", text.as_bytes()), chunk(b"BIN\0", &bytes)].concat();
+    let glb = [&b"glTF"[..], &2u32.to_le_bytes(), &(12 + chunks.len() as u32).to_le_bytes(), &chunks].concat();
+    let said = place.file("a.glb", glb).converts(&["a.glb"]);
+    assert!(said.contains("1 material is made for the colours of faces") && !said.contains("left out"), "{said}");
+    let [[red, green, blue]] = place.colours()[..] else { panic!("{:?}", place.colours()) };
+    assert!(red == 0.0 && (green - 0.5).abs() < 0.01 && blue == 1.0, "{red} {green} {blue}");
+}

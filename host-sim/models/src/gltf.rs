@@ -13,15 +13,19 @@ use crate::{
     mtl::Material,
     obj::LARGEST,
     pbr,
+    texture::{Image, Texture},
     vector::{V3, add, apply, scale, unit},
 };
 use accessor::{Bytes, Kind};
 use anyhow::{Context, Result, bail};
 use compressed::Draco;
 pub(crate) use document::is_gltf;
-use gltf::{Document, Node, Primitive, Semantic, material::AlphaMode, mesh::Mode};
+use gltf::{Document, Node, Primitive, Semantic, material::AlphaMode, mesh::Mode, texture::Info};
 use pose::{Skin, Transform};
-use std::collections::{BTreeSet, HashSet};
+use std::{
+    collections::{BTreeSet, HashMap, HashSet},
+    sync::Arc,
+};
 
 /// The contents of a glTF file.
 #[derive(Clone, Debug, Default)]
@@ -33,10 +37,14 @@ pub struct Scene {
     pub objects: Vec<String>,
     /// Materials by which [`Submesh::material`] counts; `None` where a primitive has none.
     pub materials: Vec<Option<Material>>,
+    /// Their textures.
+    pub(crate) textures: Vec<Option<Texture>>,
     /// Contents that are left out, in words.
     pub ignored: BTreeSet<&'static str>,
     /// Wrong elements that are left out.
     pub faults: Faults,
+    /// What else the user should know, in sentences.
+    pub remarks: Vec<String>,
 }
 
 /// Reads the default scene of a file, or its first scene if there is no default. Buffers may be in the file or in its folder.
@@ -47,8 +55,14 @@ pub(crate) fn parse(bytes: &[u8], folder: &Folder) -> Result<Scene> {
     let (document, blob) = document::open(bytes)?;
     let scene = document.default_scene().or_else(|| document.scenes().next()).context("glTF: it has no scene; export it with one")?;
     let bytes = Bytes::read(&document, blob, folder)?;
-    let mut reader =
-        Reader { document: &document, bytes, scene: Scene { ignored: besides(&document), ..Scene::default() }, numbers: Vec::new() };
+    let mut reader = Reader {
+        document: &document,
+        bytes,
+        scene: Scene { ignored: besides(&document), ..Scene::default() },
+        numbers: Vec::new(),
+        folder,
+        images: HashMap::new(),
+    };
     let places = pose::of_nodes(&document);
     let mut seen = HashSet::new();
     let mut open: Vec<Node<'_>> = scene.nodes().collect();
@@ -115,6 +129,9 @@ struct Reader<'a> {
     scene: Scene,
     /// The number in the file of each material of the scene.
     numbers: Vec<Option<usize>>,
+    folder: &'a Folder,
+    /// Images by their numbers in the file; `None` if one cannot be read.
+    images: HashMap<usize, Option<Arc<Image>>>,
 }
 
 impl Reader<'_> {
@@ -126,8 +143,7 @@ impl Reader<'_> {
         }
         for (semantic, _) in primitive.attributes() {
             match semantic {
-                Semantic::Colors(_) => drop(self.scene.ignored.insert("colours of vertices")),
-                Semantic::TexCoords(_) => drop(self.scene.ignored.insert("texture coordinates")),
+                Semantic::Colors(1..) => drop(self.scene.ignored.insert("further colours of vertices")),
                 _ => {}
             }
         }
@@ -160,9 +176,20 @@ impl Reader<'_> {
         let transform = |vertex: usize| skinned.as_ref().and_then(|skinned| skinned.get(vertex)).unwrap_or(&shape.transform);
         let mut used = vec![false; positions.len()];
         triangles.iter().flatten().for_each(|&vertex| used[vertex] = true);
+        let count = positions.len();
+        let colours = attributes.colours()?.filter(|colours| colours.len() == count);
+        let places = match colour_texture(&primitive.material()) {
+            Some(info) => attributes.get::<2>(&Semantic::TexCoords(places_of(&info)), Kind::Shares)?.filter(|places| places.len() == count),
+            None => None,
+        };
         let submesh = Submesh { object: self.scene.objects.len() - 1, material: self.material(primitive) };
         let Scene { soup, faults, .. } = &mut self.scene;
         let (first, first_normal) = (soup.positions.len(), soup.normals.len());
+        let (first_colour, first_place) = (soup.colours.len(), soup.places.len());
+        soup.colours.extend(
+            colours.iter().flatten().map(|&colour| pbr::encoded(colour.map(|c| if c.is_finite() { c.clamp(0.0, 1.0) } else { 1.0 }))),
+        );
+        soup.places.extend(places.iter().flatten().map(|place| place.map(|c| if c.is_finite() { c } else { 0.0 })));
         for (number, position) in positions.into_iter().enumerate() {
             let position = transform(number).point(position);
             let is_wrong = position.iter().any(|c| !c.is_finite() || c.abs() > LARGEST);
@@ -188,12 +215,39 @@ impl Reader<'_> {
             let turned = if transform.turns() { apply(&transform.of_normals(), normal) } else { normal };
             soup.normals.push(unit(turned).map_or(normal, |_| turned));
         }
-        let corner = |index| Corner { position: first + index, normal: normals.is_some().then_some(first_normal + index) };
+        let corner = |index| Corner {
+            position: first + index,
+            normal: normals.is_some().then_some(first_normal + index),
+            colour: colours.is_some().then_some(first_colour + index),
+            place: places.is_some().then_some(first_place + index),
+        };
         soup.faces.extend(triangles.into_iter().map(|[a, b, c]| {
             let [a, b, c] = if transform(a).mirrors() { [a, c, b] } else { [a, b, c] };
             Face { corners: vec![corner(a), corner(b), corner(c)], submesh, smoothing: Smoothing::ByAngle }
         }));
         Ok(())
+    }
+
+    /// A texture of the file, or nothing if it cannot be read, which is said.
+    fn texture(&mut self, info: &Info<'_>) -> Option<Texture> {
+        let Some(source) = info.texture().source() else {
+            self.scene.remarks.push(format!(
+                "the texture {} is left out: its image is neither PNG nor JPEG; save it as one of them",
+                info.texture().index()
+            ));
+            return None;
+        };
+        if let Some(known) = self.images.get(&source.index()) {
+            let image = known.clone()?;
+            return Some(Texture { image, transform: transform_of(info) });
+        }
+        let image = self.bytes.image(&source, self.folder).and_then(|bytes| Image::read(&bytes));
+        let image = image
+            .map(Arc::new)
+            .map_err(|error| self.scene.remarks.push(format!("the image {} is left out: {error:#}", source.index())))
+            .ok();
+        self.images.insert(source.index(), image.clone());
+        Some(Texture { image: image?, transform: transform_of(info) })
     }
 
     /// The number of a primitive's material in the scene; notes what of it is left out.
@@ -209,9 +263,9 @@ impl Reader<'_> {
                 Some(gloss) => pbr::of_gloss(name(), gloss.diffuse_factor(), gloss.specular_factor(), gloss.glossiness_factor()),
                 None => pbr::material(name(), pbr.base_color_factor(), pbr.metallic_factor(), pbr.roughness_factor()),
             }));
-            let of_gloss = gloss.is_some_and(|gloss| gloss.diffuse_texture().is_some() || gloss.specular_glossiness_texture().is_some());
-            let has_texture = of_gloss
-                || pbr.base_color_texture().is_some()
+            let texture = colour_texture(&material).and_then(|info| self.texture(&info));
+            self.scene.textures.push(texture);
+            let has_texture = gloss.is_some_and(|gloss| gloss.specular_glossiness_texture().is_some())
                 || pbr.metallic_roughness_texture().is_some()
                 || material.normal_texture().is_some()
                 || material.occlusion_texture().is_some()
@@ -221,13 +275,34 @@ impl Reader<'_> {
                     self.scene.ignored.insert(what);
                 }
             };
-            note(has_texture, "textures");
+            note(has_texture, "textures other than those of colour");
             note(material.alpha_mode() != AlphaMode::Opaque, "transparency");
             note(material.emissive_factor() != [0.0; 3], "materials that shine by themselves");
             note(material.double_sided(), "backs of double-sided materials");
             self.numbers.len() - 1
         })
     }
+}
+
+/// The texture of a material's colour.
+fn colour_texture<'a>(material: &gltf::Material<'a>) -> Option<Info<'a>> {
+    match material.pbr_specular_glossiness() {
+        Some(gloss) => gloss.diffuse_texture(),
+        None => material.pbr_metallic_roughness().base_color_texture(),
+    }
+}
+
+/// The set of coordinates on a texture.
+fn places_of(info: &Info<'_>) -> u32 {
+    info.texture_transform().and_then(|transform| transform.tex_coord()).unwrap_or_else(|| info.tex_coord())
+}
+
+/// How coordinates become those of the image (KHR_texture_transform): they are scaled, turned and moved.
+fn transform_of(info: &Info<'_>) -> [[f64; 3]; 2] {
+    let Some(transform) = info.texture_transform() else { return [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0]] };
+    let ([x, y], [width, height]) = (transform.offset().map(f64::from), transform.scale().map(f64::from));
+    let (sin, cos) = f64::from(transform.rotation()).sin_cos();
+    [[cos * width, sin * height, x], [-sin * width, cos * height, y]]
 }
 
 /// The attributes of a primitive, compressed or not.
@@ -245,6 +320,8 @@ impl Attributes<'_> {
             Semantic::Normals => "normals",
             Semantic::Joints(_) => "joints",
             Semantic::Weights(_) => "weights",
+            Semantic::Colors(_) => "colours",
+            Semantic::TexCoords(_) => "texture coordinates",
             _ => "attributes",
         };
         if let Some(compressed) = self.draco.map(|draco| draco.attribute(&semantic.to_string())).transpose().context(name)?.flatten() {
@@ -252,6 +329,16 @@ impl Attributes<'_> {
         }
         let Some(accessor) = self.primitive.get(semantic) else { return Ok(None) };
         self.bytes.numbers(&accessor, kind).context(name).map(Some)
+    }
+
+    /// The colours of vertices, which may have an opacity.
+    fn colours(&self) -> Result<Option<Vec<V3>>> {
+        let semantic = Semantic::Colors(0);
+        let has_opacity = self.primitive.get(&semantic).is_some_and(|accessor| accessor.dimensions() == gltf::accessor::Dimensions::Vec4);
+        if !has_opacity {
+            return self.get::<3>(&semantic, Kind::Shares);
+        }
+        Ok(self.get::<4>(&semantic, Kind::Shares)?.map(|colours| colours.into_iter().map(|[r, g, b, _]| [r, g, b]).collect()))
     }
 
     /// The joints of each vertex with their weights, of which there may be several sets.

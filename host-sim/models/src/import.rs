@@ -9,12 +9,14 @@ use crate::{
     mtl, names,
     number::grouped,
     obj::{self, Obj},
+    paint,
     ply::{self, Ply},
     stl::{self, Stl},
     text,
+    texture::{Image, Texture},
 };
 use anyhow::{Context, Result, bail};
-use std::{collections::BTreeSet, path::Path};
+use std::{collections::BTreeSet, path::Path, sync::Arc};
 
 /// A mesh from a file.
 #[derive(Clone, Debug)]
@@ -41,12 +43,23 @@ pub fn surfaces(materials: &[Option<mtl::Material>], other: &Surface, ambient_li
 }
 
 /// What is passed of a file, beyond what is right.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Rules {
     /// Wrong elements are errors, even if the rest of the mesh can be drawn without them.
     pub strict: bool,
     /// A model may name files outside its folder.
     pub allow_outside: bool,
+    /// Largest number of materials that are made for the colours of textures and vertices; 0 leaves these colours out.
+    pub colours: usize,
+}
+
+/// The default of [`Rules::colours`].
+pub const COLOURS: usize = 32;
+
+impl Default for Rules {
+    fn default() -> Self {
+        Self { strict: false, allow_outside: false, colours: COLOURS }
+    }
 }
 
 /// The contents of a file of any format.
@@ -55,6 +68,8 @@ struct Contents {
     soup: Soup,
     objects: Vec<String>,
     materials: Vec<Option<mtl::Material>>,
+    /// The textures of the materials, as far as they are known.
+    textures: Vec<Option<Texture>>,
     ignored: BTreeSet<&'static str>,
     faults: Faults,
     remarks: Vec<String>,
@@ -75,7 +90,15 @@ pub fn file(path: &Path, weld: Weld) -> Result<Imported> {
 pub fn file_by(path: &Path, weld: Weld, rules: Rules) -> Result<Imported> {
     let place = || path.display().to_string();
     let folder = Folder::of(path, rules.allow_outside);
-    let Contents { soup, objects, materials, ignored, mut faults, mut remarks } = contents(path, &files::read(path)?, &folder)?;
+    let Contents { mut soup, objects, mut materials, textures, mut ignored, mut faults, mut remarks } =
+        contents(path, &files::read(path)?, &folder)?;
+    let painted = paint::paint(&mut soup, &mut materials, &textures, rules.colours);
+    remarks.extend(painted.sentence());
+    if painted.faces == 0 {
+        ignored.extend((!soup.colours.is_empty()).then_some("colours of vertices"));
+        ignored.extend(textures.iter().any(Option::is_some).then_some("textures"));
+        ignored.extend((!soup.places.is_empty()).then_some("texture coordinates"));
+    }
     let (mesh, report) = mesh::weld(&soup, weld).with_context(place)?;
     faults.add_several(COMPUTED_NORMAL, report.computed_normals, || format!("face {}", report.first_computed));
     faults.add_several(TURNED, report.mended, || format!("face {}", report.first_mended));
@@ -107,8 +130,9 @@ fn contents(path: &Path, bytes: &[u8], folder: &Folder) -> Result<Contents> {
         return Ok(Contents { soup, ignored, faults, ..plain });
     }
     if gltf::is_gltf(bytes) || ends("gltf") || ends("glb") {
-        let gltf::Scene { soup, objects, materials, ignored, faults } = gltf::parse(bytes, folder).with_context(place)?;
-        return Ok(Contents { soup, objects, materials, ignored, faults, ..plain });
+        let gltf::Scene { soup, objects, materials, textures, ignored, faults, remarks } =
+            gltf::parse(bytes, folder).with_context(place)?;
+        return Ok(Contents { soup, objects, materials, textures, ignored, faults, remarks });
     }
     foreign::refuse_ending(path)?;
     if stl::is_stl(bytes, ends("stl")) {
@@ -158,7 +182,17 @@ fn with_libraries(folder: &Folder, obj: Obj) -> Result<Contents> {
     if !unknown.is_empty() {
         remarks.push(format!("materials that no file defines have the colour of the command line: {}", unknown.join(", ")));
     }
-    Ok(Contents { soup, objects, materials, ignored, faults, remarks })
+    let textures = materials.iter().map(|material| texture(material.as_ref()?.texture.as_ref()?, folder, &mut remarks)).collect();
+    Ok(Contents { soup, objects, materials, textures, ignored, faults, remarks })
+}
+
+/// A texture of this name, or nothing if it cannot be read, which is said.
+fn texture(name: &str, folder: &Folder, remarks: &mut Vec<String>) -> Option<Texture> {
+    // Rows of an image count from the top, and places from the bottom.
+    let transform = [[1.0, 0.0, 0.0], [0.0, -1.0, 1.0]];
+    let image = folder.read(name).and_then(|(path, bytes)| Image::read(&bytes).with_context(|| path.display().to_string()));
+    let image = image.map_err(|error| remarks.push(format!("a texture is left out: {error:#}"))).ok()?;
+    Some(Texture { image: Arc::new(image), transform })
 }
 
 /// The names of the files of a `mtllib`: one name that may have blanks in it, or several names. Some programs write quotes around them.

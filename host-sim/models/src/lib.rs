@@ -18,6 +18,7 @@ pub mod mtl;
 mod names;
 pub mod number;
 pub mod obj;
+mod paint;
 mod pbr;
 pub mod ply;
 pub mod polygon;
@@ -28,6 +29,7 @@ pub mod script;
 pub mod shapes;
 pub mod stl;
 mod text;
+mod texture;
 mod turn;
 pub mod view;
 

@@ -15,6 +15,10 @@ pub struct Soup {
     pub positions: Vec<V3>,
     /// Normals of any length, finite.
     pub normals: Vec<V3>,
+    /// Colours as sRGB has them, from 0 to 1.
+    pub colours: Vec<V3>,
+    /// Coordinates on textures.
+    pub places: Vec<[f64; 2]>,
     /// Polygons.
     pub faces: Vec<Face>,
 }
@@ -58,12 +62,16 @@ pub enum Smoothing {
 }
 
 /// A corner of a polygon.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, Default)]
 pub struct Corner {
     /// Index of the position.
     pub position: usize,
     /// Index of the normal, where the file gives one.
     pub normal: Option<usize>,
+    /// Index of the colour, where the file gives one.
+    pub colour: Option<usize>,
+    /// Index of the place on the texture, where the file gives one.
+    pub place: Option<usize>,
 }
 
 /// Triangles on shared vertices.

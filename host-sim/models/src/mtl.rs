@@ -9,7 +9,7 @@ use crate::{
     vector::{V3, scale},
 };
 use anyhow::{Context, Result, bail};
-use std::collections::{BTreeSet, HashSet};
+use std::collections::BTreeSet;
 
 /// The contents of an MTL file.
 #[derive(Clone, Debug, Default)]
@@ -21,7 +21,7 @@ pub struct Mtl {
 }
 
 /// A material. Colours are shares of light, 1 is all of it.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct Material {
     /// The name.
     pub name: String,
@@ -33,6 +33,8 @@ pub struct Material {
     pub specular: Option<V3>,
     /// `Ns`.
     pub exponent: Option<f64>,
+    /// `map_Kd`: the file of the texture.
+    pub texture: Option<String>,
 }
 
 /// Diffuse colour of a material without `Kd`.
@@ -43,6 +45,19 @@ const EXPONENT: f64 = 30.0;
 pub(crate) const SHARPEST: f64 = 1024.0;
 
 impl Material {
+    /// A material of one colour without a highlight.
+    pub(crate) fn matt(name: String, colour: V3) -> Self {
+        Self { name, diffuse: Some(colour), specular: Some([0.0; 3]), ..Self::default() }
+    }
+
+    /// The material, where its surface is multiplied by a colour, which has a name.
+    pub(crate) fn painted(&self, name: &str, colour: V3) -> Self {
+        let by = |own: V3| [0, 1, 2].map(|k| own[k] * colour[k]);
+        // A texture has all of the colour where the file does not say what is multiplied by it.
+        let diffuse = Some(by(self.diffuse.unwrap_or(if self.texture.is_some() { [1.0; 3] } else { DIFFUSE })));
+        Self { name: format!("{} {name}", self.name), diffuse, ambient: self.ambient.map(by), ..self.clone() }
+    }
+
     /// Converts the material to one of a stream, under ambient light from 0 to 1.
     #[must_use]
     pub fn surface(&self, ambient_light: f64) -> Surface {
@@ -62,8 +77,6 @@ impl Material {
 /// The error names the line and its fault.
 pub fn parse(text: &str) -> Result<Mtl> {
     let mut mtl = Mtl::default();
-    // Materials whose colour is in a texture.
-    let mut textured = HashSet::new();
     for (number, line) in logical_lines(&plain(text)) {
         let mut words = line.split_whitespace();
         let Some(written) = words.next() else { continue };
@@ -73,18 +86,20 @@ pub fn parse(text: &str) -> Result<Mtl> {
             if name.is_empty() {
                 bail!("line {number}: newmtl: a name is missing");
             }
-            mtl.materials.push(Material { name, ambient: None, diffuse: None, specular: None, exponent: None });
+            mtl.materials.push(Material { name, ..Material::default() });
             continue;
         }
         let ignored = match keyword.as_str() {
             "d" if words.clone().next() == Some("1") => None,
             "d" | "tr" | "tf" => Some("transparency"),
             "ke" => Some("materials that shine by themselves"),
-            _ if keyword.starts_with("map_") || ["bump", "disp", "decal", "norm", "refl"].contains(&keyword.as_str()) => Some("textures"),
+            "map_kd" => None,
+            _ if keyword.starts_with("map_") || ["bump", "disp", "decal", "norm", "refl"].contains(&keyword.as_str()) => {
+                Some("textures other than those of colour")
+            }
             _ => None,
         };
         mtl.ignored.extend(ignored);
-        let index = mtl.materials.len();
         let Some(material) = mtl.materials.last_mut() else { continue };
         let place = || format!("line {number}: {written} of material {:?}", quoted(&material.name));
         match keyword.as_str() {
@@ -94,21 +109,30 @@ pub fn parse(text: &str) -> Result<Mtl> {
             "ns" => material.exponent = Some(share(words.next().unwrap_or_default()).with_context(place)?),
             // Illumination models without a highlight.
             "illum" if ["0", "1"].contains(&words.next().unwrap_or_default()) => material.specular = Some([0.0; 3]),
-            "map_kd" => drop(textured.insert(index - 1)),
+            "map_kd" => material.texture = Some(file_of(&rest(&line))).filter(|name| !name.is_empty()),
             _ => {}
         }
     }
     let whole: Vec<&str> = mtl.materials.iter().map(|material| material.name.as_str()).collect();
     let names = without_comments(&whole);
-    for (index, (material, name)) in mtl.materials.iter_mut().zip(names).enumerate() {
+    for (material, name) in mtl.materials.iter_mut().zip(names) {
         material.name = name;
         // Maya writes black where the texture has the colour.
-        if textured.contains(&index) && material.diffuse == Some([0.0; 3]) {
+        if material.texture.is_some() && material.diffuse == Some([0.0; 3]) {
             material.diffuse = None;
             material.ambient = material.ambient.filter(|&ambient| ambient != [0.0; 3]);
         }
     }
     Ok(mtl)
+}
+
+/// The file of a texture, behind its options, such as `-s 1 1 1`.
+fn file_of(statement: &str) -> String {
+    let mut words = statement.split_whitespace().peekable();
+    while words.next_if(|word| word.starts_with('-')).is_some() {
+        while words.next_if(|word| word.parse::<f64>().is_ok() || ["on", "off"].contains(word)).is_some() {}
+    }
+    words.collect::<Vec<_>>().join(" ")
 }
 
 /// Three numbers, or one for all channels; `None` where the colour is a spectrum.
@@ -137,7 +161,7 @@ mod tests {
 
     #[test]
     fn colours_exponents_and_what_is_left_out() {
-        let mtl = parse("# from a modeller\nnewmtl red paint\nKa 1 1 1\nKd 0.8 0.1 0\nKs 0.5\nNs 96.1\nd 1\nillum 2\nnewmtl bare\nmap_Kd bare.png\nnewmtl matt\nKs 1 1 1\nillum 1\nTr 0.5\n").unwrap();
+        let mtl = parse("# from a modeller\nnewmtl red paint\nKa 1 1 1\nKd 0.8 0.1 0\nKs 0.5\nNs 96.1\nd 1\nillum 2\nnewmtl bare\nmap_Kd -s 1 1 1 -clamp on bare wood.png\nmap_Bump bare.png\nnewmtl matt\nKs 1 1 1\nillum 1\nTr 0.5\n").unwrap();
         let [red, bare, matt] = &mtl.materials[..] else { panic!("{mtl:?}") };
         assert_eq!(red.name, "red paint");
         let Surface { ambient, diffuse, specular, exponent } = red.surface(0.125);
@@ -145,7 +169,8 @@ mod tests {
         let Surface { ambient, diffuse, specular, exponent } = bare.surface(0.5);
         assert_eq!((ambient, diffuse, specular, exponent), (scale(DIFFUSE, 0.5), DIFFUSE, [0.0; 3], 30));
         assert_eq!(matt.surface(0.1).specular, [0.0; 3]);
-        assert_eq!(mtl.ignored.into_iter().collect::<Vec<_>>(), ["textures", "transparency"]);
+        assert_eq!(bare.texture.as_deref(), Some("bare wood.png"));
+        assert_eq!(mtl.ignored.into_iter().collect::<Vec<_>>(), ["textures other than those of colour", "transparency"]);
     }
 
     #[test]
@@ -155,7 +180,10 @@ mod tests {
         let [one, two] = &mtl.materials[..] else { panic!("{mtl:?}") };
         assert_eq!((&one.name[..], one.diffuse), ("Material__#25", Some([1.0, 0.0, 0.0])));
         assert_eq!((&two.name[..], two.diffuse, two.specular), ("Material #112", Some([0.0, 0.0, 1.0]), Some([1.0; 3])));
-        assert_eq!((two.exponent, two.ambient, mtl.ignored.contains("textures")), (Some(7.0), Some([0.5; 3]), true));
+        assert_eq!(
+            (two.exponent, two.ambient, mtl.ignored.contains("textures other than those of colour")),
+            (Some(7.0), Some([0.5; 3]), true)
+        );
     }
 
     /// Black beside a texture is no colour, as Maya writes it; black alone is.

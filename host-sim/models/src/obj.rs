@@ -97,11 +97,15 @@ pub fn parse(text: &str) -> Result<Obj> {
     // The first wrong element of any kind, and the first face of too few corners.
     let (mut first, mut first_face) = (None, None);
     let (mut unknown, mut first_unknown) = (0usize, None);
+    let mut colours = Vec::new();
     for (number, line) in logical_lines(&plain(text)) {
         let words = || line.split_whitespace().skip(1);
         let soup = &mut obj.soup;
         match keyword(&line).as_str() {
-            "v" => positions.push(&mut soup.positions, vector(words()).with_context(|| format!("line {number}: vertex")), number),
+            "v" => {
+                positions.push(&mut soup.positions, vector(words()).with_context(|| format!("line {number}: vertex")), number);
+                colours.push(colour(words().skip(3)));
+            }
             "vn" => normals.push(&mut soup.normals, vector(words()).with_context(|| format!("line {number}: normal")), number),
             "f" => {
                 let corners = corners(words(), soup).with_context(|| format!("line {number}: face"))?;
@@ -125,7 +129,8 @@ pub fn parse(text: &str) -> Result<Obj> {
             "usemtl" => name = Some(rest(&line)).filter(|name| !name.is_empty()),
             "mtllib" => obj.libraries.push(without_comment(&rest(&line)).to_owned()),
             "s" => smoothing = group(words().next()).with_context(|| format!("line {number}: smoothing group"))?,
-            "vt" => drop(obj.ignored.insert("texture coordinates")),
+            // A place that is wrong is on no texture.
+            "vt" => soup.places.push(place(words())),
             "l" | "p" => drop(obj.ignored.insert("lines and points")),
             "vp" | "curv" | "curv2" | "surf" | "cstype" => drop(obj.ignored.insert("curves and free-form surfaces")),
             "o" => naming.object(without_comment(&rest(&line)).to_owned()),
@@ -158,6 +163,15 @@ pub fn parse(text: &str) -> Result<Obj> {
             1 => format!("1 line that is no statement of OBJ is left out: {first}"),
             several => format!("{} lines that are no statements of OBJ are left out; the first: {first}", grouped(several)),
         });
+    }
+    // All or none: a vertex without a colour would be of another kind.
+    if colours.iter().all(Option::is_some) {
+        obj.soup.colours = colours.into_iter().flatten().collect();
+    }
+    let (with_colours, places) = (!obj.soup.colours.is_empty(), obj.soup.places.len());
+    for corner in obj.soup.faces.iter_mut().flat_map(|face| &mut face.corners) {
+        corner.colour = with_colours.then_some(corner.position);
+        corner.place = corner.place.filter(|&place| place < places);
     }
     let used = used(&obj.soup, &lines)?;
     for (index, line, error) in positions.wrong {
@@ -305,6 +319,20 @@ fn vector<'a>(mut words: impl Iterator<Item = &'a str>) -> Result<[f64; 3]> {
     Ok(vector)
 }
 
+/// The colour behind the coordinates of a vertex: three numbers from 0 to 1, or to 255.
+fn colour<'a>(words: impl Iterator<Item = &'a str>) -> Option<[f64; 3]> {
+    let numbers: Vec<f64> = words.map(str::parse).collect::<Result<_, _>>().ok()?;
+    let colour: [f64; 3] = numbers.try_into().ok()?;
+    let full = if colour.iter().any(|&c| c > 1.0) { 255.0 } else { 1.0 };
+    colour.iter().all(|c| (0.0..=255.0).contains(c)).then(|| colour.map(|c| c / full))
+}
+
+/// A place on a texture.
+fn place<'a>(words: impl Iterator<Item = &'a str>) -> [f64; 2] {
+    let mut numbers = words.map(|word| word.parse().ok().filter(|number: &f64| number.is_finite()).unwrap_or_default());
+    [numbers.next().unwrap_or_default(), numbers.next().unwrap_or_default()]
+}
+
 fn corners<'a>(words: impl Iterator<Item = &'a str>, soup: &Soup) -> Result<Vec<Corner>> {
     words.map(|word| corner(word, soup)).collect()
 }
@@ -313,8 +341,11 @@ fn corners<'a>(words: impl Iterator<Item = &'a str>, soup: &Soup) -> Result<Vec<
 fn corner(word: &str, soup: &Soup) -> Result<Corner> {
     let mut parts = word.split('/');
     let position = index(parts.next().unwrap_or_default(), soup.positions.len(), "vertex")?;
-    let normal = parts.nth(1).filter(|n| !n.is_empty()).map(|n| index(n, soup.normals.len(), "normal")).transpose()?;
-    Ok(Corner { position, normal })
+    let mut part = || parts.next().filter(|part| !part.is_empty());
+    // A place that is wrong is on no texture.
+    let place = part().and_then(|place| index(place, soup.places.len(), "place").ok());
+    let normal = part().map(|normal| index(normal, soup.normals.len(), "normal")).transpose()?;
+    Ok(Corner { position, normal, colour: None, place })
 }
 
 /// Indices count from 1; negative ones count back from the last one so far.
@@ -365,7 +396,8 @@ mod tests {
         assert_eq!(obj.materials, [None, Some("red paint".to_owned()), Some("b".to_owned())]);
         let faces: Vec<_> = obj.soup.faces.iter().map(|face| (face.submesh.material, face.smoothing)).collect();
         assert_eq!(faces, [(0, Smoothing::ByAngle), (1, Smoothing::Group(2)), (2, Smoothing::Flat), (1, Smoothing::Flat)]);
-        assert_eq!(obj.ignored.into_iter().collect::<Vec<_>>(), ["lines and points", "texture coordinates"]);
+        assert_eq!(obj.ignored.into_iter().collect::<Vec<_>>(), ["lines and points"]);
+        assert_eq!(obj.soup.places, [[0.0; 2]]);
     }
 
     /// Wrong elements that no face needs are left out, and so are a few faces without three corners.

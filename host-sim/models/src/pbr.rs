@@ -38,6 +38,7 @@ pub(crate) fn of_gloss(name: String, [red, green, blue, _]: [f32; 4], specular: 
         diffuse: Some(add(scale(encoded(diffuse), 1.0 - metallic), kept)),
         specular: Some(encoded(scale(specular, strength))),
         exponent: Some(exponent),
+        ..Material::default()
     }
 }
 
@@ -73,6 +74,7 @@ pub(crate) fn material(name: String, [red, green, blue, _]: [f32; 4], metallic: 
         diffuse: Some(scale(encoded(base), 1.0 - (1.0 - KEPT) * metallic * strength)),
         specular: Some(encoded(mirrored)),
         exponent: Some(exponent),
+        ..Material::default()
     }
 }
 
@@ -83,7 +85,7 @@ fn exponent(roughness: f64) -> f64 {
 }
 
 /// Linear light as sRGB has it.
-fn encoded(linear: V3) -> V3 {
+pub(crate) fn encoded(linear: V3) -> V3 {
     linear.map(|c| if c <= 0.003_130_8 { 12.92 * c } else { 1.055 * c.powf(1.0 / 2.4) - 0.055 })
 }
 

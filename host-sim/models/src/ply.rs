@@ -47,7 +47,7 @@ pub fn parse(bytes: &[u8]) -> Result<Ply> {
     let header = Parser::<Skipped>::new().read_header(&mut reader).map_err(|error| plain(&error, true))?;
     let mut ply = Ply { ignored: ignored(&header), ..Ply::default() };
     let (mut vertices, mut faces, mut strips) = (Vec::new(), Vec::new(), Vec::new());
-    let mut with_normals = false;
+    let (mut with_normals, mut with_colours) = (false, false);
     for (name, element) in &header.elements {
         match name.as_str() {
             "vertex" => {
@@ -55,6 +55,7 @@ pub fn parse(bytes: &[u8]) -> Result<Ply> {
                     bail!("PLY: vertices have no property {axis}; export them with x, y and z");
                 }
                 with_normals = NORMALS.iter().all(|axis| element.properties.contains_key(*axis));
+                with_colours = COLOURS.iter().all(|channel| element.properties.contains_key(*channel));
                 vertices = elements::<Vertex>(&mut reader, element, &header)?;
             }
             "face" => faces = corners(&mut reader, element, &header, "faces")?,
@@ -65,7 +66,12 @@ pub fn parse(bytes: &[u8]) -> Result<Ply> {
     let corner = |index: i64, place: &str| {
         let position = usize::try_from(index).ok().filter(|&index| index < vertices.len());
         let range = || format!("PLY, {place}: vertex {index} is out of range; they count from 0, and the file has {}", vertices.len());
-        position.with_context(range).map(|position| Corner { position, normal: with_normals.then_some(position) })
+        position.with_context(range).map(|position| Corner {
+            position,
+            normal: with_normals.then_some(position),
+            colour: with_colours.then_some(position),
+            place: None,
+        })
     };
     let mut first = None;
     for (number, Corners(corners)) in (1..).zip(faces) {
@@ -109,6 +115,10 @@ pub fn parse(bytes: &[u8]) -> Result<Ply> {
     ply.soup.positions = vertices.iter().map(|vertex| vertex.position).collect();
     if with_normals {
         ply.soup.normals = vertices.iter().map(|vertex| vertex.normal).collect();
+    }
+    if with_colours {
+        ply.soup.colours =
+            vertices.iter().map(|vertex| vertex.colour.map(|c| if c.is_finite() { c.clamp(0.0, 1.0) } else { 1.0 })).collect();
     }
     Ok(ply)
 }
@@ -165,6 +175,7 @@ fn corners(reader: &mut Reader<&[u8]>, element: &ElementDef, header: &Header, wh
 
 const AXES: [&str; 3] = ["x", "y", "z"];
 const NORMALS: [&str; 3] = ["nx", "ny", "nz"];
+const COLOURS: [&str; 3] = ["red", "green", "blue"];
 /// Names for the list of a face's corners; both are common.
 const CORNERS: [&str; 2] = ["vertex_indices", "vertex_index"];
 
@@ -175,14 +186,19 @@ fn ignored(header: &Header) -> BTreeSet<&'static str> {
         "edge" => Some("lines and points"),
         _ => None,
     });
+    let has = |element: &ElementDef, channel: &&str| element.properties.contains_key(*channel);
+    let is_part =
+        |element: &ElementDef| COLOURS.iter().any(|channel| has(element, channel)) && !COLOURS.iter().all(|channel| has(element, channel));
+    let parts_of_colours =
+        elements.clone().filter_map(|(name, element)| (name == "vertex" && is_part(element)).then_some("colours of vertices"));
     let properties = elements.flat_map(|(name, element)| element.properties.keys().map(move |property| (name, property)));
     let parts = properties.filter_map(|(name, property)| match (name.as_str(), property.trim_start_matches("diffuse_")) {
-        ("vertex", "red" | "green" | "blue" | "alpha" | "r" | "g" | "b") => Some("colours of vertices"),
+        ("vertex", "alpha" | "r" | "g" | "b") => Some("colours of vertices"),
         ("face", "red" | "green" | "blue" | "alpha") => Some("colours of faces"),
         ("vertex", "s" | "t" | "u" | "v" | "texture_u" | "texture_v") | ("face", "texcoord") => Some("texture coordinates"),
         _ => None,
     });
-    whole.chain(parts).collect()
+    whole.chain(parts_of_colours).chain(parts).collect()
 }
 
 /// All elements of a kind. They follow the elements that have been read.
@@ -232,6 +248,15 @@ fn number(property: &Property) -> Option<f64> {
     }
 }
 
+/// The number that stands for all of a colour in this type.
+fn full(property: &Property) -> f64 {
+    match property {
+        Property::UChar(_) => 255.0,
+        Property::UShort(_) => 65_535.0,
+        _ => 1.0,
+    }
+}
+
 /// Whole numbers of whatever type; `None` for all else.
 fn whole_numbers(property: Property) -> Option<Vec<i64>> {
     fn wide<N: Into<i64>>(list: Vec<N>) -> Vec<i64> {
@@ -252,6 +277,8 @@ fn whole_numbers(property: Property) -> Option<Vec<i64>> {
 struct Vertex {
     position: [f64; 3],
     normal: [f64; 3],
+    /// From 0 to 1.
+    colour: [f64; 3],
 }
 
 impl PropertyAccess for Vertex {
@@ -261,13 +288,14 @@ impl PropertyAccess for Vertex {
 
     fn set_property(&mut self, name: &str, property: Property) -> PropertyAccessResult {
         let axis = |names: [&str; 3]| names.iter().position(|&axis| axis == name);
-        let component = match (axis(AXES), axis(NORMALS)) {
-            (Some(axis), _) => &mut self.position[axis],
-            (_, Some(axis)) => &mut self.normal[axis],
+        let (component, full) = match (axis(AXES), axis(NORMALS), axis(COLOURS)) {
+            (Some(axis), ..) => (&mut self.position[axis], 1.0),
+            (_, Some(axis), _) => (&mut self.normal[axis], 1.0),
+            (.., Some(channel)) => (&mut self.colour[channel], full(&property)),
             _ => return PropertyAccessResult::Ignored,
         };
         let Some(number) = number(&property) else { return PropertyAccessResult::UnsupportedType };
-        *component = number;
+        *component = number / full;
         PropertyAccessResult::Set
     }
 }

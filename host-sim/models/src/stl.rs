@@ -127,7 +127,7 @@ fn binary(bytes: &[u8], count: usize, behind: usize) -> Result<Stl> {
 
 /// Adds a face of the positions from `first` on.
 fn push(soup: &mut Soup, first: usize) {
-    let corners = (first..soup.positions.len()).map(|position| Corner { position, normal: None }).collect();
+    let corners = (first..soup.positions.len()).map(|position| Corner { position, ..Corner::default() }).collect();
     soup.faces.push(Face { corners, submesh: Submesh::default(), smoothing: Smoothing::ByAngle });
 }
 

@@ -69,6 +69,16 @@ impl Bytes {
         Ok(end.and_then(|end| self.buffers.get(view.buffer().index())?.get(view.offset()..end)))
     }
 
+    /// The bytes of an image.
+    pub(super) fn image(&self, image: &gltf::Image<'_>, folder: &Folder) -> Result<Vec<u8>> {
+        match image.source() {
+            gltf::image::Source::View { view, .. } => {
+                Ok(self.view(&view)?.context("it does not lie in its buffer; the file is damaged")?.to_vec())
+            }
+            gltf::image::Source::Uri { uri, .. } => of_uri(uri, folder),
+        }
+    }
+
     /// The elements of an accessor, each of `N` numbers.
     pub(super) fn numbers<const N: usize>(&self, accessor: &Accessor<'_>, kind: Kind) -> Result<Vec<[f64; N]>> {
         let number = accessor.index();
@@ -128,21 +138,24 @@ fn buffer_of(buffer: &gltf::Buffer<'_>, blob: Option<&[u8]>, folder: &Folder) ->
         // What is compressed is in another buffer.
         Source::Bin if compressed::is_fallback(buffer) => return Ok(Vec::new()),
         Source::Bin => blob.context("it is the binary chunk of a GLB file, which is missing")?.to_vec(),
-        Source::Uri(uri) if uri.get(..5).is_some_and(|scheme| scheme.eq_ignore_ascii_case("data:")) => {
-            let url = data_url::DataUrl::process(uri).map_err(|error| anyhow!("its data URI is not valid: {error}"))?;
-            url.decode_to_vec().map_err(|error| anyhow!("its data URI: {error}"))?.0
-        }
-        Source::Uri(uri) => {
-            let name = percent_encoding::percent_decode_str(uri).decode_utf8().context("its name is not UTF-8")?;
-            // Some programs do not encode a percent sign that is part of the name.
-            let name = if folder.find(uri).is_ok() { uri } else { &*name };
-            folder.read(name)?.1
-        }
+        Source::Uri(uri) => of_uri(uri, folder)?,
     };
     if bytes.len() < buffer.length() {
         bail!("it has {} bytes instead of {}; the file was cut off", bytes.len(), buffer.length());
     }
     Ok(bytes)
+}
+
+/// The bytes that a URI has in itself, or those of the file that it names.
+fn of_uri(uri: &str, folder: &Folder) -> Result<Vec<u8>> {
+    if uri.get(..5).is_some_and(|scheme| scheme.eq_ignore_ascii_case("data:")) {
+        let url = data_url::DataUrl::process(uri).map_err(|error| anyhow!("its data URI is not valid: {error}"))?;
+        return Ok(url.decode_to_vec().map_err(|error| anyhow!("its data URI: {error}"))?.0);
+    }
+    let name = percent_encoding::percent_decode_str(uri).decode_utf8().context("its name is not UTF-8")?;
+    // Some programs do not encode a percent sign that is part of the name.
+    let name = if folder.find(uri).is_ok() { uri } else { &*name };
+    Ok(folder.read(name)?.1)
 }
 
 /// Numbers of one type.

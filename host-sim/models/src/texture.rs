@@ -1,0 +1,79 @@
+//! Textures of materials, of which colours of faces are read.
+
+use crate::vector::V3;
+use anyhow::{Context, Result, bail, ensure};
+use std::{io::Cursor, sync::Arc};
+
+/// Largest number of pixels of an image.
+const LARGEST: usize = 1 << 26;
+
+/// An image as colours of sRGB.
+#[derive(Debug)]
+pub(crate) struct Image {
+    width: usize,
+    /// Red, green and blue, row by row from the top.
+    pixels: Vec<[u8; 3]>,
+}
+
+/// An image on a surface.
+#[derive(Clone, Debug)]
+pub(crate) struct Texture {
+    pub(crate) image: Arc<Image>,
+    /// How coordinates of a surface become coordinates of the image: (u, v, 1) is multiplied by these rows.
+    pub(crate) transform: [[f64; 3]; 2],
+}
+
+impl Image {
+    /// Reads a PNG or JPEG file.
+    ///
+    /// # Errors
+    /// When it is neither, is damaged, or is too large.
+    pub(crate) fn read(bytes: &[u8]) -> Result<Self> {
+        if bytes.starts_with(b"\x89PNG") {
+            return Self::png(bytes);
+        }
+        if bytes.starts_with(&[0xFF, 0xD8]) {
+            return Self::jpeg(bytes);
+        }
+        bail!("the image is neither PNG nor JPEG; save it as one of them")
+    }
+
+    fn png(bytes: &[u8]) -> Result<Self> {
+        let damaged = "the image is damaged";
+        let mut decoder = png::Decoder::new(Cursor::new(bytes));
+        decoder.set_transformations(png::Transformations::normalize_to_color8());
+        let mut reader = decoder.read_info().context(damaged)?;
+        let size = reader.output_buffer_size().filter(|&size| size <= 4 * LARGEST).context("the image has too many pixels")?;
+        let mut data = vec![0; size];
+        let info = reader.next_frame(&mut data).context(damaged)?;
+        Self::of(info.width as usize, &data[..info.buffer_size()], info.color_type.samples())
+    }
+
+    fn jpeg(bytes: &[u8]) -> Result<Self> {
+        let mut decoder = zune_jpeg::JpegDecoder::new(Cursor::new(bytes));
+        let damaged = |_| anyhow::anyhow!("the image is damaged, or a kind of JPEG that is not read; save it as PNG");
+        decoder.decode_headers().map_err(damaged)?;
+        let (width, height) = decoder.dimensions().context("the image is damaged")?;
+        ensure!(width * height <= LARGEST, "the image has too many pixels");
+        let data = decoder.decode().map_err(damaged)?;
+        Self::of(width, &data, data.len() / (width * height).max(1))
+    }
+
+    /// An image of pixels of this number of channels: of greys, or of colours, and maybe of opacity.
+    fn of(width: usize, data: &[u8], channels: usize) -> Result<Self> {
+        ensure!(width > 0 && channels > 0 && data.len() >= width * channels, "the image is empty");
+        let colour = |pixel: &[u8]| if channels < 3 { [pixel[0]; 3] } else { [pixel[0], pixel[1], pixel[2]] };
+        Ok(Self { width, pixels: data.chunks_exact(channels).map(colour).collect() })
+    }
+}
+
+impl Texture {
+    /// The colour at coordinates of the surface, of the nearest pixel. The image repeats itself.
+    pub(crate) fn at(&self, [u, v]: [f64; 2]) -> V3 {
+        let Self { image, transform } = self;
+        let [u, v] = transform.map(|[a, b, c]| a * u + b * v + c);
+        let height = image.pixels.len() / image.width;
+        let place = |coordinate: f64, size: usize| ((coordinate.rem_euclid(1.0) * size as f64) as usize).min(size - 1);
+        image.pixels[place(v, height) * image.width + place(u, image.width)].map(|c| f64::from(c) / 255.0)
+    }
+}
