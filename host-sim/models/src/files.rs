@@ -7,12 +7,15 @@ use anyhow::{Context, Result, bail, ensure};
 use std::{
     fmt,
     fs::{self, File},
-    io::Read,
+    io::{self, Read},
     path::{Component, Path, PathBuf},
 };
 
 /// Largest number of bytes of a file.
 pub(crate) const LARGEST_FILE: u64 = 1 << 30;
+
+/// Number of bytes that are read at first.
+const STEP: u64 = 1 << 16;
 
 /// Reads a file that the user names. It may be a pipe.
 ///
@@ -27,8 +30,15 @@ fn limited(path: &Path, largest: u64) -> Result<Vec<u8>> {
     let place = || format!("cannot read {}", path.display());
     let mut file = File::open(path).with_context(place)?;
     let mut bytes = Vec::new();
-    // A device has no length: what is read counts.
-    file.by_ref().take(largest).read_to_end(&mut bytes).with_context(place)?;
+    // A device has no length: what is read counts. There is never room for more than is allowed.
+    loop {
+        let count = bytes.len() as u64;
+        let more = (count.max(STEP)).min(largest - count);
+        bytes.try_reserve_exact(more as usize).map_err(io::Error::from).with_context(place)?;
+        if (file.by_ref().take(more).read_to_end(&mut bytes).with_context(place)? as u64) < more || more == 0 {
+            break;
+        }
+    }
     if bytes.len() as u64 == largest {
         let has_more = file.read(&mut [0]).with_context(place)? > 0;
         ensure!(
