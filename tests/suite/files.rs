@@ -246,6 +246,7 @@ fn other_files_say_what_they_are_and_what_helps() {
         ("d.ply", b"ply\nformat ascii 1.0\nelement vertex 3\n", "PLY, line 4: Unexpected end of file"),
         ("j.ply", b"a letter\n", "j.ply: PLY, line 1: the magic number `ply` is missing"),
         ("k.stl", b"{\"message\": \"Not Found\"}", "text in JSON and no glTF"),
+        ("l.ply", b"ply\nformat ascii 1.0\nelement vertex three\n", "PLY, line 3: Couldn't parse line: a header has lines with `format`"),
         ("e.glb", b"glTF\x02\0\0\0\xFF\0\0\0", "GLB: the file is shorter than its head says; it was cut off"),
         ("f.gltf", b"{\"asset\": {\"version\": \"2.0\"}", "it was cut off"),
         ("g.obj", b"", "the file is empty"),

@@ -222,12 +222,26 @@ fn plain(error: &ParseError, is_text: bool) -> anyhow::Error {
     let what = message.lines().next().unwrap_or_default().split(": ParseError").next().unwrap_or_default().trim_end_matches('.');
     // What it was that could not be read stands last.
     let why = message.lines().rev().find_map(|line| line.trim().strip_prefix("Error: ")).filter(|_| is_text);
-    let why = why.map(|why| if why.contains("expected one of") { "numbers with blanks between them are needed" } else { why });
+    let why = why.map(in_words);
     let why = why.map(|why| why.chars().take(LONGEST).collect::<String>()).map_or(String::new(), |why| format!(": {why}"));
     match line.filter(|_| is_text) {
         Some(line) => anyhow!("PLY, line {line}: {what}{why}"),
         None => anyhow!("PLY: {what}{why}"),
     }
+}
+
+/// What is wrong, where the library says what its grammar expects, or names its own types.
+fn in_words(why: &str) -> &str {
+    let phrases = [
+        ("ParseError", "a header has lines with `format`, `comment`, `element NAME NUMBER`, `property TYPE NAME` and `end_header`"),
+        ("expected one of", "numbers with blanks between them are needed"),
+        ("Expected element of type", "a number is missing"),
+        (
+            "by the destination element",
+            "the type of a property is unsupported: corners are lists of whole numbers, and coordinates are no lists",
+        ),
+    ];
+    phrases.into_iter().find(|(innards, _)| why.contains(innards)).map_or(why, |(_, words)| words)
 }
 
 /// Characters of what a library says.
@@ -403,12 +417,19 @@ mod tests {
             (file(three, "").replace("property double z\n", ""), "PLY: vertices have no property z; export them with x, y and z"),
             (file(three, "").replace("vertex_indices", "corners"), "PLY: faces have no property vertex_indices or vertex_index"),
             (file(three, "3 0 1 2\n").replace("uchar int", "uchar float"), "is unsupported"),
-            (file(three, "").replace("double x", "real x"), "PLY, line 4: Couldn't parse line"),
+            (file(three, "").replace("double x", "real x"), "PLY, line 4: Couldn't parse line: a header has lines with `format`"),
+            (file(three, "").replace("element vertex 3", "element vertex three"), "PLY, line 3: Couldn't parse line: a header has lines"),
+            (file("0 0 0\n0 1\n", ""), "PLY, line 11: Couldn't read element line: a number is missing"),
             ("ply\nformat ascii 1.0\n".to_owned(), "PLY, line 3: Unexpected end of file while reading header (missing 'end_header')"),
             ("ply\nelement vertex 0\nend_header\n".to_owned(), "PLY: No format line found"),
         ] {
             let error = format!("{:#}", parse(text.as_bytes()).unwrap_err());
             assert!(error.contains(wrong) && !error.contains('\n'), "{error}");
+            // Nothing of the library's own types comes through.
+            assert!(
+                ["ParseError", "expected one of", "Scalar(", "List(", "destination"].iter().all(|innards| !error.contains(innards)),
+                "{error}"
+            );
         }
         let whole = binary(false);
         let cut = format!("{:#}", parse(&whole[..whole.len() - 3]).unwrap_err());
