@@ -1,5 +1,6 @@
 //! A mesh becomes one and the same stream from several file formats, and damaged files are errors.
 
+use meshoptimizer_rs::codec::{VertexEncoding, encode_vertex_buffer};
 use microphong_models::{
     import::{self, Imported},
     look::{Look, Surface},
@@ -451,6 +452,33 @@ fn compressed_meshes_are_the_same_surface() {
         assert!(surface(&mesh) == expected && remarks.is_empty() && !report.turned, "{remarks:?}");
     }
     assert!(stream(&place.file("b.glb", of_draco(&bytes_of(DRACO[1])))) == stream(&plain));
+}
+
+/// The newer form of the extension packs views in a second way.
+#[test]
+fn views_that_are_packed_by_the_newer_extension_are_read() {
+    let place = Place::new();
+    let (mut document, bytes) = sphere().gltf();
+    let expected = stream(&place.file("a.glb", glb(&document, &bytes)));
+    let view = document["bufferViews"][1].clone();
+    let [start, length] = ["byteOffset", "byteLength"].map(|name| view[name].as_u64().unwrap() as usize);
+    let encoding = VertexEncoding::new(1, 2).unwrap();
+    let packed =
+        encode_vertex_buffer(&bytes[start..start + length], length / 12, 12, encoding, &mut meshoptimizer_rs::Workspace::default())
+            .unwrap();
+    // The positions are nowhere else.
+    let mut bytes = bytes;
+    bytes[start..start + length].fill(0);
+    document["bufferViews"][1]["extensions"] = json!({"KHR_meshopt_compression": {
+        "buffer": 0, "byteOffset": bytes.len(), "byteLength": packed.len(), "byteStride": 12, "count": length / 12, "mode": "ATTRIBUTES"
+    }});
+    bytes.extend(&packed);
+    document["buffers"][0]["byteLength"] = bytes.len().into();
+    document["extensionsRequired"] = json!(["KHR_meshopt_compression"]);
+    assert!(stream(&place.file("b.glb", glb(&document, &bytes))) == expected);
+    document["bufferViews"][1]["extensions"]["KHR_meshopt_compression"]["filter"] = "NEW".into();
+    let error = place.wrong("c.glb", glb(&document, &bytes));
+    assert!(error.contains("of a kind that is not read") && error.contains("(the filter is \"NEW\")"), "{error}");
 }
 
 /// Sparse and quantised numbers, padding, and what programs write beyond the specification make no difference.
