@@ -207,6 +207,23 @@ fn edges_of_open_and_crowded_surfaces_are_counted() {
     assert!(said.contains("  1 edge has two faces that disagree about the front"), "{said}");
 }
 
+/// A surface whose normals point to its back may be inside out, which only the user can tell where it is open.
+#[test]
+fn normals_that_point_backwards_are_counted() {
+    let place = Place::new();
+    let square = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nvn 0 0 -1\nf 1//1 2//1 3//1 4//1\n";
+    let said = place.file("a.obj", square).converts(&["a.obj"]);
+    assert!(
+        said.contains("  2 triangles have normals of the file that point backwards; if the picture is inside out, use --flip"),
+        "{said}"
+    );
+    assert_eq!(place.counts("a.obj")["backward_normals"], 2);
+    let flipped = place.converts(&["a.obj", "--flip"]);
+    assert!(!flipped.contains("backwards") && flipped.contains("surface turned inside out"), "{flipped}");
+    place.file("a.obj", square.replace("0 0 -1", "0 0 1"));
+    assert_eq!(place.counts("a.obj")["backward_normals"], 0);
+}
+
 /// What is no model says what it is, whatever its name is, and no words of libraries come through.
 #[test]
 fn other_files_say_what_they_are_and_what_helps() {

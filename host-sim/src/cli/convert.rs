@@ -416,7 +416,7 @@ fn edges(line: &Line<'_>) -> Result<()> {
         (
             line.backward_normals,
             ["triangle has", "triangles have"],
-            "normals of the file that point to its back; if the picture is inside out, use --flip, or else export the file without normals",
+            "normals of the file that point backwards; if the picture is inside out, use --flip, or else export the file without normals",
         ),
         (
             line.open_edges,
