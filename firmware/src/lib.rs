@@ -16,6 +16,8 @@ mod stream;
 
 #[cfg(any(feature = "mps2-an385", feature = "mps2-an386"))]
 pub mod framebuffer;
+#[cfg(feature = "styles")]
+pub mod register;
 #[cfg(feature = "pico")]
 pub mod second_core;
 #[cfg(feature = "lm3s6965evb")]
@@ -30,7 +32,7 @@ pub use picture::error_picture;
 use embedded_graphics::{prelude::*, primitives::Rectangle};
 use microphong::{
     Counts, Layout, Renderer, Shader, Stream,
-    pixel::{Output, PictureCrc, Pixel},
+    pixel::{Output, PictureCrc, Pixel, gamma::SRGB},
 };
 use panic_probe as _;
 
@@ -116,6 +118,12 @@ fn animate<D: Display>(
     #[cfg(feature = "antialias")]
     if !stream.neighbours.is_empty() {
         renderer.set_antialias(true)?;
+    }
+    if cfg!(feature = "perspective") {
+        renderer.set_perspective_correct(true)?;
+    }
+    if cfg!(feature = "gamma") {
+        renderer.set_gamma(Some(&SRGB));
     }
     let mut counts = Counts::default();
     for number in 0..u32::from(stream.header.frames) {

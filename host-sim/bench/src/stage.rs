@@ -27,6 +27,8 @@ pub struct Stages {
     pub pixel: u64,
     /// Outlines: found, followed and mixed. It is 0 in plain frames.
     pub edges: u64,
+    /// Pixels of the display made from light. It is 0 where pixels are drawn as the display takes them.
+    pub output: u64,
     /// Pixels on their way to the display. Not part of [`Self::drawing`].
     pub transfer: u64,
     /// Background and depth of the band cleared. Not part of [`Self::drawing`].
@@ -39,7 +41,7 @@ impl Stages {
     /// Instructions that draw: all but clearing and transfer.
     #[must_use]
     pub fn drawing(&self) -> u64 {
-        self.vertex + self.cull + self.setup + self.span + self.pixel + self.edges + self.frame
+        self.vertex + self.cull + self.setup + self.span + self.pixel + self.edges + self.output + self.frame
     }
 }
 
@@ -54,6 +56,7 @@ pub(super) enum Part {
     Row,
     Clear,
     Edges,
+    Output,
     Transfer,
     /// The processor has nothing to do until the transfer has ended.
     Idle,
@@ -66,13 +69,14 @@ pub(super) enum Part {
 
 /// Parts of functions by what their names contain; the first that fits counts. Names as the compiler writes them, so that this
 /// is the one place to follow when functions move.
-const TABLE: [(&str, Part); 35] = [
+const TABLE: [(&str, Part); 36] = [
     ("microphong::raster::triangle::fill_rows", Part::Row),
     ("as microphong::raster::canvas::SpanShader::span", Part::Row),
     ("microphong::raster::band::Band::clear", Part::Clear),
     ("microphong::raster::band::fill_pixels", Part::Clear),
     ("microphong::raster::gradient::fill", Part::Clear),
-    ("microphong::pixel::light::Output::convert", Part::Transfer),
+    ("microphong::pixel::light::Output::convert", Part::Output),
+    ("microphong::pixel::light::Output::pack", Part::Output),
     ("microphong::text::draw", Part::Setup),
     ("microphong::renderer::Renderer::frame", Part::Frame),
     ("microphong::renderer::Renderer::draw", Part::Frame),
@@ -281,6 +285,7 @@ impl Meter {
                 span: of(span),
                 pixel: of(pixel),
                 edges: part(Part::Edges),
+                output: part(Part::Output),
                 transfer: part(Part::Transfer),
                 clear: part(Part::Clear),
                 frame: part(Part::Frame),

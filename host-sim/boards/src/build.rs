@@ -36,6 +36,18 @@ pub fn antialias(board: Board) -> Result<PathBuf> {
     release("antialias", &features, board.target(), &format!("the firmware for {board} with smooth outlines"))
 }
 
+/// Builds the program `styles` for `board`, which draws in a style or pixel format that cargo features name, and returns the ELF's path. It takes the
+/// place of the program with other features.
+///
+/// # Errors
+/// When the board has no memory for it, the target or the compiler is missing, or the program does not compile.
+pub fn styles(board: Board, features: &str) -> Result<PathBuf> {
+    ensure!(board.smooths(), "{board} has no program for styles: they need more memory than it has");
+    let all: Vec<_> =
+        [board.name(), "styles"].into_iter().chain(features.split(',')).map(|name| format!("microphong-firmware/{name}")).collect();
+    release("styles", &all.join(","), board.target(), &format!("the program for {board} with {features}"))
+}
+
 /// Builds a program of the workspace `firmware` with only these `features`, and returns its path. `what` is the program's name in messages.
 ///
 /// Features apply to the whole workspace, and all programs share a directory, so dependencies are compiled once for each target.

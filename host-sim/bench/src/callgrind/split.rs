@@ -36,6 +36,7 @@ pub(super) fn stages(profile: &Profile) -> Result<(Stages, u64)> {
                 Part::Row => stages.span += cost,
                 Part::Clear => stages.clear += cost,
                 Part::Edges => stages.edges += cost,
+                Part::Output => stages.output += cost,
                 Part::Transfer | Part::Idle | Part::Outside | Part::Unwatched | Part::Callers => {}
             }
         }
